@@ -1,0 +1,37 @@
+# rmlcell_library(NAME SOURCES ... LINKS ... [PRIVATE_LINKS ...])
+#
+# One folder, one static library, known to others as rmlcell::NAME. A target that is not defined yet
+# cannot be linked: since the root adds folders from the bottom up, a wrong direction stops the
+# configure run.
+function(rmlcell_require_targets owner)
+  foreach(target IN LISTS ARGN)
+    if(target MATCHES "::" AND NOT TARGET ${target})
+      message(FATAL_ERROR "${owner} links ${target}, which is not defined yet: dependencies point one way")
+    endif()
+  endforeach()
+endfunction()
+
+function(rmlcell_library name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
+  rmlcell_require_targets(${name} ${arg_LINKS} ${arg_PRIVATE_LINKS})
+  if(arg_SOURCES)
+    add_library(rmlcell_${name} STATIC ${arg_SOURCES})
+    target_link_libraries(rmlcell_${name} PUBLIC ${arg_LINKS} PRIVATE ${arg_PRIVATE_LINKS} rmlcell_warnings)
+    target_include_directories(rmlcell_${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  else()
+    add_library(rmlcell_${name} INTERFACE)
+    target_link_libraries(rmlcell_${name} INTERFACE ${arg_LINKS})
+    target_include_directories(rmlcell_${name} INTERFACE ${PROJECT_SOURCE_DIR})
+  endif()
+  add_library(rmlcell::${name} ALIAS rmlcell_${name})
+endfunction()
+
+# rmlcell_executable(NAME SOURCES ... LINKS ...)
+function(rmlcell_executable name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LINKS" ${ARGN})
+  rmlcell_require_targets(${name} ${arg_LINKS})
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE ${arg_LINKS} rmlcell_warnings)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+endfunction()

@@ -1,0 +1,27 @@
+# Compiler, linker and warning settings that hold for every target.
+find_program(CCACHE ccache)
+if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+endif()
+find_program(LLD ld.lld)
+if(LLD)
+  add_link_options(-fuse-ld=lld)
+endif()
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+find_package(Threads REQUIRED)
+
+# Same bytes on every machine: no contraction, no reassociation (docs/ARCHITECTURE.md, determinism).
+add_compile_options(-ffp-contract=off)
+
+add_library(rmlcell_warnings INTERFACE)
+target_compile_options(rmlcell_warnings INTERFACE
+  -Wall -Wextra -Wconversion -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Werror)
+
+set(RMLCELL_SANITIZE "" CACHE STRING "Sanitizers, as -fsanitize= takes them: address,undefined or thread")
+if(RMLCELL_SANITIZE)
+  add_compile_options(-fsanitize=${RMLCELL_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${RMLCELL_SANITIZE})
+endif()

@@ -1,0 +1,121 @@
+#include "engine/core/catalogue.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "engine/core/check.h"
+#include "engine/core/number_text.h"
+
+namespace rmlcell {
+namespace {
+
+constexpr std::array kCatalogue = {
+#define RMLCELL_ERROR(family, number, symbol, severity, when, advice)                 \
+  CatalogueEntry{ErrorCode::k##symbol, ErrorFamily::k##family, number, #symbol,       \
+                 Severity::k##severity, when, advice},
+#include "engine/core/catalogue.def"
+#undef RMLCELL_ERROR
+};
+
+constexpr bool IsIndexedByCode() {
+  for (std::size_t i = 0; i < kCatalogue.size(); ++i) {
+    if (static_cast<std::size_t>(kCatalogue[i].code) != i) return false;
+  }
+  return true;
+}
+static_assert(IsIndexedByCode(), "Lookup reads the row by its code");
+
+bool EqualIgnoringCase(std::string_view a, std::string_view b) {
+  return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) {
+    return std::toupper(x) == std::toupper(y);
+  });
+}
+
+}  // namespace
+
+std::span<const CatalogueEntry> Catalogue() { return kCatalogue; }
+
+const CatalogueEntry& Lookup(ErrorCode code) {
+  const auto index = static_cast<std::size_t>(code);
+  RMLCELL_CHECK(index < kCatalogue.size());
+  return kCatalogue[index];
+}
+
+std::optional<ErrorCode> FindError(ErrorFamily family, int number) {
+  for (const CatalogueEntry& entry : kCatalogue) {
+    if (entry.family == family && entry.number == number) return entry.code;
+  }
+  return std::nullopt;
+}
+
+std::string_view FamilyPrefix(ErrorFamily family) {
+  switch (family) {
+    case ErrorFamily::kOptimo: return "OPT";
+    case ErrorFamily::kRml1: return "RML1";
+    case ErrorFamily::kCell: return "CELL";
+  }
+  return "";
+}
+
+std::string_view SeverityName(Severity severity) {
+  switch (severity) {
+    case Severity::kAdvice: return "advice";
+    case Severity::kWarning: return "warning";
+    case Severity::kCompile: return "compile error";
+    case Severity::kProgram: return "program error";
+    case Severity::kFatal: return "fatal program error";
+    case Severity::kAlarm: return "alarm";
+    case Severity::kMessage: return "operator message";
+    case Severity::kTool: return "tool error";
+    case Severity::kBudget: return "budget";
+    case Severity::kDevice: return "device error";
+    case Severity::kRequest: return "request error";
+  }
+  return "";
+}
+
+std::string_view SeverityEffect(Severity severity) {
+  switch (severity) {
+    case Severity::kAdvice: return "Reported only.";
+    case Severity::kWarning: return "Reported with its place; changes nothing.";
+    case Severity::kCompile: return "The program is not stored.";
+    case Severity::kProgram:
+      return "The instruction has no effect, motion and beam stop; the program ends unless ERR catches it.";
+    case Severity::kFatal: return "The instruction has no effect, motion and beam stop, the run ends.";
+    case Severity::kAlarm:
+      return "The run ends with the shutter closed; no start until the alarm is acknowledged.";
+    case Severity::kMessage: return "Shown to the operator; the key or request has no effect.";
+    case Severity::kTool: return "The tool stops and writes nothing.";
+    case Severity::kBudget: return "The cell ends the run; beam off, shutter closed.";
+    case Severity::kDevice: return "Noted in the error register and log; interpretation goes on.";
+    case Severity::kRequest: return "The request is refused and nothing is changed.";
+  }
+  return "";
+}
+
+std::string CodeText(ErrorCode code) {
+  const CatalogueEntry& entry = Lookup(code);
+  return std::string(FamilyPrefix(entry.family)) + "-E" + std::to_string(entry.number);
+}
+
+std::vector<const CatalogueEntry*> FindByText(std::string_view text) {
+  std::vector<const CatalogueEntry*> found;
+  const std::size_t dash = text.find('-');
+  std::string_view family;
+  std::string_view digits = text;
+  if (dash != std::string_view::npos) {
+    family = text.substr(0, dash);
+    digits = text.substr(dash + 1);
+  }
+  if (!digits.empty() && (digits.front() == 'E' || digits.front() == 'e')) digits.remove_prefix(1);
+  const auto number = ParseInteger(digits);
+  for (const CatalogueEntry& entry : kCatalogue) {
+    const bool same_family = family.empty() || EqualIgnoringCase(family, FamilyPrefix(entry.family));
+    const bool same_number = number && *number == entry.number && same_family;
+    if (same_number || EqualIgnoringCase(text, entry.symbol)) found.push_back(&entry);
+  }
+  return found;
+}
+
+}  // namespace rmlcell

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rmlcell {
+
+// Every error, alarm and warning has one number, kept as the manuals print it (optimo.md section C,
+// rml1.md sections 4 and 6). Our own: 7000-7999 Optimo, 8000-8999 RML-1 advice, 9000-9999 the cell.
+enum class ErrorFamily { kOptimo, kRml1, kCell };
+
+// What the machine does about it; optimo.md section C explains each.
+enum class Severity {
+  kAdvice,   // reported only; style of a program
+  kWarning,  // reported with place and step; changes nothing
+  kCompile,  // the program is not stored
+  kProgram,  // the failing instruction has no effect; ERR may catch it
+  kFatal,    // as kProgram, but ERR is not used
+  kAlarm,    // as kFatal, and the machine stays in alarm
+  kMessage,  // shown to the operator; the request has no effect
+  kTool,     // an off-line tool stops and writes nothing
+  kBudget,   // the run is ended by the cell
+  kDevice,   // RML-1: noted in a register, interpretation goes on
+  kRequest,  // the cell refuses a request and nothing changes
+};
+
+enum class ErrorCode {
+#define RMLCELL_ERROR(family, number, symbol, severity, when, advice) k##symbol,
+#include "engine/core/catalogue.def"
+#undef RMLCELL_ERROR
+};
+
+struct CatalogueEntry {
+  ErrorCode code;
+  ErrorFamily family;
+  int number;
+  std::string_view symbol;  // "HoleRadiusZero"
+  Severity severity;
+  std::string_view when;    // what happened, a phrase
+  std::string_view advice;  // what the operator or programmer can do
+};
+
+// All rows, in the order of engine/core/catalogue.def.
+std::span<const CatalogueEntry> Catalogue();
+
+const CatalogueEntry& Lookup(ErrorCode code);
+
+// The row with this number, or nothing. Numbers of different families may be equal: RML1-E10.
+std::optional<ErrorCode> FindError(ErrorFamily family, int number);
+
+std::string_view FamilyPrefix(ErrorFamily family);  // "OPT", "RML1", "CELL"
+std::string_view SeverityName(Severity severity);   // "warning"
+
+// What the machine does on an error of this severity, one sentence.
+std::string_view SeverityEffect(Severity severity);
+
+std::string CodeText(ErrorCode code);  // "OPT-E348"
+
+// The rows that a person may mean by "OPT-E348", "rml1-e2", "348" or "HoleRadiusZero", in the order of
+// the catalogue; empty when there is none. A bare number may name rows of several families.
+std::vector<const CatalogueEntry*> FindByText(std::string_view text);
+
+}  // namespace rmlcell

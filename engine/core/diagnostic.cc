@@ -1,0 +1,73 @@
+#include "engine/core/diagnostic.h"
+
+#include <algorithm>
+
+namespace rmlcell {
+namespace {
+
+// Wider lines are shown around the caret only: a generated file may be one line of megabytes.
+constexpr std::size_t kShownBytes = 100;
+
+std::string_view LineAt(std::string_view source, int line) {
+  std::size_t begin = 0;
+  for (int i = 1; i < line; ++i) {
+    const std::size_t end = source.find('\n', begin);
+    if (end == std::string_view::npos) return {};
+    begin = end + 1;
+  }
+  std::string_view text = source.substr(begin, source.find('\n', begin) - begin);
+  if (!text.empty() && text.back() == '\r') text.remove_suffix(1);
+  return text;
+}
+
+// The line and a caret line below it. Bytes that a terminal would act on are shown as '?'.
+std::string CaretLines(std::string_view line, const SourceSpan& where) {
+  const std::size_t column = where.column > 0 ? static_cast<std::size_t>(where.column - 1) : 0;
+  const std::size_t from = column > kShownBytes / 2 ? column - kShownBytes / 2 : 0;
+  if (from > line.size()) return {};
+  std::string shown(line.substr(from, kShownBytes));
+  std::string caret;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(shown[i]);
+    if (byte != '\t' && (byte < 0x20 || byte == 0x7F)) shown[i] = '?';
+    if (from + i < column) caret += shown[i] == '\t' ? '\t' : ' ';
+  }
+  caret += '^';
+  const auto room = static_cast<int>(shown.size() + from > column ? shown.size() + from - column : 1);
+  for (int i = 1; i < std::min(where.length, room); ++i) caret += '~';
+  return "\n  " + shown + "\n  " + caret;
+}
+
+}  // namespace
+
+bool IsError(Severity severity) {
+  return severity != Severity::kAdvice && severity != Severity::kWarning &&
+         severity != Severity::kMessage && severity != Severity::kDevice;
+}
+
+std::string FormatDiagnostic(const Diagnostic& diagnostic, std::string_view source) {
+  const CatalogueEntry& entry = Lookup(diagnostic.code);
+  std::string text = diagnostic.file.empty() && diagnostic.program > 0
+                         ? "program " + std::to_string(diagnostic.program)
+                         : diagnostic.file;
+  if (diagnostic.where.line > 0) {
+    if (!text.empty()) text += ':';
+    text += std::to_string(diagnostic.where.line);
+    if (diagnostic.where.column > 0) text += ':' + std::to_string(diagnostic.where.column);
+  }
+  if (!text.empty()) text += ": ";
+  const bool error = IsError(diagnostic.severity);
+  text += error ? "error" : std::string(SeverityName(diagnostic.severity));
+  text += ' ' + CodeText(diagnostic.code) + ": ";
+  text += diagnostic.detail.empty() ? std::string(entry.when) : diagnostic.detail;
+  if (diagnostic.step > 0) text += " (step " + std::to_string(diagnostic.step) + ')';
+  if (!diagnostic.rule.empty()) text += " [" + diagnostic.rule + ']';
+  if (error || diagnostic.severity == Severity::kDevice) text += "; " + std::string(entry.advice);
+  if (diagnostic.where.line > 0 && !source.empty()) {
+    const std::string_view line = LineAt(source, diagnostic.where.line);
+    if (!line.empty()) text += CaretLines(line, diagnostic.where);
+  }
+  return text;
+}
+
+}  // namespace rmlcell

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/result.h"
+
+namespace rmlcell {
+
+// Replace `length` bytes at `byte_offset` of the file by `text`.
+struct Fix {
+  std::int64_t byte_offset = 0;
+  int length = 0;
+  std::string text;
+
+  bool operator==(const Fix&) const = default;
+};
+
+// A finding about a program, before it runs or while it runs.
+struct Diagnostic {
+  ErrorCode code;
+  Severity severity;     // normally that of the catalogue row; CHECK may lower or raise it
+  std::string detail;    // "radius is 0"
+  std::string rule;      // "OPT-2.27"; empty when the code says all
+  std::string file;      // as the user named it; empty for a stored program
+  SourceSpan where;      // line 0: no text is known
+  int program = 0;       // slot; 0 when the program has none
+  int step = 0;          // as the control counts; 0 when it belongs to no step
+  std::vector<Fix> fixes;
+
+  bool operator==(const Diagnostic&) const = default;
+};
+
+// An error stops a program from being stored or from going on; warnings and advice do not.
+bool IsError(Severity severity);
+
+// "part.S:12:6: error OPT-E7019: MOVE has 4 values, needs 5 [OPT-2.01]", then, when `source` is not
+// empty and the line is known, that line and a caret line below it. No line end after the last line.
+std::string FormatDiagnostic(const Diagnostic& diagnostic, std::string_view source);
+
+}  // namespace rmlcell

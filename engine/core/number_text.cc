@@ -1,0 +1,55 @@
+#include "engine/core/number_text.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace rmlcell {
+namespace {
+
+// 1e308 with decimals needs 309 digits, a sign, a point and the decimals.
+constexpr std::size_t kLongestFixed = 400;
+
+}  // namespace
+
+std::string FixedText(double value, int decimals) {
+  std::array<char, kLongestFixed> room{};
+  const auto end =
+      std::to_chars(room.data(), room.data() + room.size(), value, std::chars_format::fixed, decimals);
+  std::string text(room.data(), end.ptr);
+  if (!text.empty() && text.front() == '-' && text.find_first_not_of("-0.") == std::string::npos) {
+    text.erase(0, 1);
+  }
+  return text;
+}
+
+std::string TrimmedText(double value, int decimals) {
+  std::string text = FixedText(value, decimals);
+  const std::size_t point = text.find('.');
+  if (point == std::string::npos) return text;
+  const std::size_t last = text.find_last_not_of('0');
+  text.erase(std::max(last, point + 1) + 1);
+  return text;
+}
+
+std::string ShortestText(double value) {
+  std::array<char, 64> room{};
+  const auto end = std::to_chars(room.data(), room.data() + room.size(), value);
+  return {room.data(), end.ptr};
+}
+
+std::optional<double> ParseDouble(std::string_view text) {
+  double value = 0.0;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (end.ec != std::errc() || end.ptr != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+std::optional<long long> ParseInteger(std::string_view text) {
+  long long value = 0;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (end.ec != std::errc() || end.ptr != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+}  // namespace rmlcell

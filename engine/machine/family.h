@@ -1,0 +1,100 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/machine/run.h"
+
+namespace rmlcell::machine {
+
+struct FamilyInfo {
+  std::string_view id;          // "optimo"
+  std::string_view title;       // "Amada OPTIMO 5-axis laser"
+  std::string_view extensions;  // ".S .SI .CMP .O", space separated, compared without case
+  std::string_view axes;        // "X Y Z A B"
+  bool has_executables = false; // makes executables at slot + 100
+  bool has_schedules = false;   // laser schedules and process definitions
+};
+
+// A program text or stream as it comes from a user.
+struct SourceFile {
+  std::string name;  // decides units: .SI is inch
+  std::string_view bytes;
+};
+
+// What the machine would store, and what there is to say about it.
+struct Translation {
+  bool ok = false;                      // false: nothing may be stored
+  std::string object;
+  std::vector<Diagnostic> diagnostics;  // in order of place; at most kDiagnosticsMax
+  std::uint64_t diagnostics_dropped = 0;
+  std::vector<Figure> figures;          // "steps", "object_bytes" ...
+};
+inline constexpr std::size_t kDiagnosticsMax = 1000;
+
+struct CheckOptions {
+  bool advice = true;  // lint findings of severity warning and advice
+};
+
+// A process definition of a project: WORKDEF n, p with its parameters. OPT-3.01 to 3.08.
+struct ProcessDefinition {
+  int kind = 0;     // n
+  int process = 0;  // p
+  std::vector<double> values;
+  std::string note;
+
+  bool operator==(const ProcessDefinition&) const = default;
+};
+
+struct ProjectProgram {
+  int slot = 0;
+  SourceFile file;
+  bool inch = false;
+};
+struct ProjectBundle {
+  std::vector<ProjectProgram> programs;
+  std::vector<LaserSchedule> schedules;
+  std::vector<ProcessDefinition> processes;
+};
+struct TransferOptions {
+  bool insert_missing_definitions = false;  // put WORKDEFs of the project before the first WORK
+};
+// What a transfer would store: every program or none.
+struct TransferPlan {
+  bool ok = false;
+  struct Program {
+    int slot = 0;
+    std::string source;  // as compiled: metric, with inserted definitions
+    std::string object;
+  };
+  std::vector<Program> programs;
+  std::vector<Diagnostic> diagnostics;
+};
+
+// One machine family. A new family is one folder under engine/ and one line in engine/simulation/families.cc.
+// Stateless; every method may be called from several threads at once.
+class MachineFamily {
+ public:
+  virtual ~MachineFamily() = default;
+  virtual const FamilyInfo& info() const = 0;
+  virtual std::span<const ParameterInfo> parameters() const = 0;
+  virtual std::span<const MachineProfile> profiles() const = 0;
+
+  // Checks and translates. Bad programs are diagnostics, not errors.
+  virtual Translation Translate(const SourceFile& file, const Parameters& parameters,
+                                const CheckOptions& options) const = 0;
+
+  // Checks a project and makes what its transfer would store.
+  virtual TransferPlan PlanTransfer(const ProjectBundle& project, const Parameters& parameters,
+                                    const TransferOptions& options) const = 0;
+
+  // Errors: ProgramMissing (7102), ObjectCorrupt (7034), the link errors 7103..7108 and the like are not
+  // errors here: the run ends with them. Only a setup that makes no sense is refused.
+  // `observer` must outlive the run.
+  virtual Result<std::unique_ptr<Run>> NewRun(RunSetup setup, RunObserver& observer) const = 0;
+};
+
+}  // namespace rmlcell::machine

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/core/units.h"
+
+namespace rmlcell::machine {
+
+// What comes from outside while a program runs.
+enum class InputKind {
+  kLogical,    // IL[index] = value
+  kAnalogue,   // IA[index] = value
+  kDoor,       // operator door; value 1: open
+  kStart,      // keys; START also resumes a paused mill
+  kHold,
+  kStop,
+  kEmergencyStop,
+  kOverride,   // feed override in percent
+};
+
+struct InputChange {
+  SimTime at{0};
+  InputKind kind = InputKind::kLogical;
+  int index = 0;
+  double value = 0.0;
+
+  bool operator==(const InputChange&) const = default;
+};
+
+// Ordered by time; changes of the same time act in the order given.
+using InputScript = std::vector<InputChange>;
+
+}  // namespace rmlcell::machine

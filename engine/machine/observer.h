@@ -1,0 +1,105 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "engine/core/diagnostic.h"
+#include "engine/core/units.h"
+#include "engine/motion/planner.h"
+
+namespace rmlcell::machine {
+
+// Where in the programs something happened.
+struct Place {
+  int program = 0;               // slot of the module; 0 for a stream without slot
+  int step = 0;                  // as the control counts; for a stream the number of the command from 1
+  int line = 0;                  // 0 when no text is known
+  std::int64_t byte_offset = -1; // streams: of the command's first byte
+
+  bool operator==(const Place&) const = default;
+};
+
+// What a motion is for. Families map their own notions onto it; pictures and lengths depend on it.
+enum class MotionUse { kTravel, kCut, kPlunge, kRetract };
+
+// One timed motion, when it is over (or was stopped on the way).
+struct MotionDone {
+  SimTime start{0};
+  SimTime end{0};
+  Place place;
+  MotionUse use = MotionUse::kTravel;
+  const motion::PlannedMotion* motion = nullptr;  // valid during the call
+  double travelled = 0.0;         // along motion->path; less than its length when stopped
+  double programmed_mm_s = 0.0;   // feed rate asked for, override included; 0: as fast as the axes can
+  double power_percent = 0.0;     // laser: power at cruising speed; 0 with the beam off
+};
+
+// A MOVE (or coordinate set) carried out: where the tool now is.
+struct MoveDone {
+  SimTime at{0};
+  Place place;
+  motion::TipPose tip;             // machine frame; work units of a mill are in the family's figures
+  motion::AxisPose axes;
+  motion::Vec3 program_point;      // as programmed: program frame, or device units of a stream
+  double rotary_a = 0.0;           // as programmed: rad, or degrees of a stream
+  double feed_mm_s = 0.0;          // speed limit of the motion
+  std::string_view path;           // "LIN", "CIR", "PU" ...
+};
+
+// A state that outsiders can see: an output, the beam, a spindle.
+enum class Signal {
+  kOutput,    // OL[index]
+  kAnalogue,  // OA[index]
+  kShutter,   // 1 open
+  kBeam,      // 1 on; detail in percent of power
+  kSchedule,  // number of the active laser schedule
+  kGas,       // 1..3
+  kSensor,    // C-axis sensor
+  kSpindle,   // 1 turning; detail in rpm
+  kSpindleSpeed,  // rpm, while turning or standing
+  kRotaryTable,   // degrees
+};
+struct SignalChange {
+  SimTime at{0};
+  Place place;
+  Signal signal = Signal::kOutput;
+  int index = 0;
+  double value = 0.0;
+  double detail = 0.0;
+};
+
+enum class WaitKind { kDwell, kPierce, kSpinUp, kCondition, kOperator, kLoad };
+struct Wait {
+  SimTime start{0};
+  SimTime end{0};
+  Place place;
+  WaitKind kind = WaitKind::kDwell;
+  bool beam_on = false;
+  double power_percent = 0.0;
+};
+
+// A halt of the run: PAUSE, STOP, HOLD, breakpoint, !NR.
+struct Halt {
+  SimTime at{0};
+  Place place;
+  std::string_view why;  // "STOP"
+};
+
+// Told everything that a run does, in order of virtual time. Structs are valid during the call only.
+// Default bodies do nothing: override what you need. No method may call back into the run.
+class RunObserver {
+ public:
+  virtual ~RunObserver() = default;
+  virtual void OnStep(SimTime /*at*/, const Place&, std::string_view /*instruction*/) {}
+  virtual void OnMotion(const MotionDone&) {}
+  virtual void OnMove(const MoveDone&) {}
+  virtual void OnSignal(const SignalChange&) {}
+  virtual void OnWait(const Wait&) {}
+  virtual void OnHalt(const Halt&) {}
+  virtual void OnResume(SimTime /*at*/, const Place&) {}
+  virtual void OnProgram(SimTime /*at*/, const Place&, std::string_view /*what*/, int /*program*/) {}
+  virtual void OnMessage(SimTime /*at*/, const Place&, std::string_view /*text*/) {}
+  virtual void OnDiagnostic(SimTime /*at*/, const Diagnostic&) {}
+};
+
+}  // namespace rmlcell::machine

@@ -1,0 +1,103 @@
+#include "engine/machine/parameters.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "engine/core/number_text.h"
+
+namespace rmlcell::machine {
+namespace {
+
+bool EqualIgnoringCase(std::string_view a, std::string_view b) {
+  return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) {
+    return std::toupper(x) == std::toupper(y);
+  });
+}
+
+// The word of `choices` that `word` means, or nothing.
+std::string_view FindChoice(std::string_view choices, std::string_view word) {
+  while (!choices.empty()) {
+    const std::size_t end = std::min(choices.find(' '), choices.size());
+    const std::string_view choice = choices.substr(0, end);
+    if (EqualIgnoringCase(choice, word)) return choice;
+    choices.remove_prefix(std::min(end + 1, choices.size()));
+  }
+  return {};
+}
+
+}  // namespace
+
+const ParameterInfo* Parameters::Find(std::string_view name) const {
+  const auto found = std::ranges::find_if(
+      table_, [&](const ParameterInfo& info) { return EqualIgnoringCase(info.name, name); });
+  return found == table_.end() ? nullptr : &*found;
+}
+
+Status Parameters::Set(std::string_view name, double value) {
+  const ParameterInfo* info = Find(name);
+  if (info == nullptr) return Error{ErrorCode::kCellUnknownParameter, std::string(name), {}};
+  if (!info->choices.empty()) {
+    return Error{ErrorCode::kCellParameterRange,
+                 std::string(info->name) + " takes one of " + std::string(info->choices), {}};
+  }
+  if (!(value >= info->minimum && value <= info->maximum)) {
+    return Error{ErrorCode::kCellParameterRange,
+                 std::string(info->name) + " is " + ShortestText(value) + ", allowed are " +
+                     ShortestText(info->minimum) + " to " + ShortestText(info->maximum),
+                 {}};
+  }
+  numbers_.insert_or_assign(std::string(info->name), value);
+  return {};
+}
+
+Status Parameters::Set(std::string_view name, std::string_view text) {
+  const ParameterInfo* info = Find(name);
+  if (info == nullptr) return Error{ErrorCode::kCellUnknownParameter, std::string(name), {}};
+  if (info->choices.empty()) {
+    const std::optional<double> number = ParseDouble(text);
+    if (number) return Set(name, *number);
+    return Error{ErrorCode::kCellParameterRange,
+                 std::string(info->name) + " takes a number, not '" + std::string(text) + "'", {}};
+  }
+  const std::string_view choice = FindChoice(info->choices, text);
+  if (choice.empty()) {
+    return Error{ErrorCode::kCellParameterRange,
+                 std::string(info->name) + " takes one of " + std::string(info->choices), {}};
+  }
+  words_.insert_or_assign(std::string(info->name), std::string(choice));
+  return {};
+}
+
+Status Parameters::Apply(const MachineProfile& profile) {
+  Parameters changed = *this;
+  for (const ParameterValue& value : profile.values) {
+    const Status set = value.word.empty() ? changed.Set(value.name, value.number)
+                                          : changed.Set(value.name, value.word);
+    if (!set) return set;
+  }
+  *this = std::move(changed);
+  return {};
+}
+
+double Parameters::Number(std::string_view name) const {
+  const ParameterInfo* info = Find(name);
+  RMLCELL_CHECK(info != nullptr && info->choices.empty());
+  const auto found = numbers_.find(info->name);
+  return found == numbers_.end() ? info->standard : found->second;
+}
+
+std::string_view Parameters::Word(std::string_view name) const {
+  const ParameterInfo* info = Find(name);
+  RMLCELL_CHECK(info != nullptr && !info->choices.empty());
+  const auto found = words_.find(info->name);
+  if (found != words_.end()) return found->second;
+  return info->choices.substr(0, info->choices.find(' '));
+}
+
+std::map<std::string, std::string> Parameters::Changed() const {
+  std::map<std::string, std::string> changed(words_.begin(), words_.end());
+  for (const auto& [name, value] : numbers_) changed.emplace(name, ShortestText(value));
+  return changed;
+}
+
+}  // namespace rmlcell::machine

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/result.h"
+
+namespace rmlcell::machine {
+
+// One machine parameter of a family: a number with a range, or one of a few words.
+struct ParameterInfo {
+  std::string_view name;     // "VMAX"
+  std::string_view unit;     // "mm/s"; empty for words and counts
+  double standard = 0.0;     // default
+  double minimum = 0.0;
+  double maximum = 0.0;
+  std::string_view choices;  // "ARROW EFA51": the first word is the default; empty for a number
+  std::string_view text;     // what it means, one sentence
+  std::string_view rule;     // "OPT-B.01"
+};
+
+// A named set of values: "pw-1993", "srm-20".
+struct ParameterValue {
+  std::string_view name;
+  double number = 0.0;
+  std::string_view word;  // when the parameter is a word
+};
+struct MachineProfile {
+  std::string_view id;
+  std::string_view title;
+  std::vector<ParameterValue> values;
+};
+
+// The parameters of one machine: the table of its family, with the values that differ from the defaults.
+class Parameters {
+ public:
+  // `table` must outlive this; it is a constant of the family.
+  explicit Parameters(std::span<const ParameterInfo> table) : table_(table) {}
+
+  // Errors: CellUnknownParameter, CellParameterRange; nothing is changed then.
+  Status Set(std::string_view name, double value);
+  Status Set(std::string_view name, std::string_view text);  // a word, or a number as text
+  Status Apply(const MachineProfile& profile);
+
+  // Precondition: the family has this parameter, and it is a number, or a word.
+  double Number(std::string_view name) const;
+  std::string_view Word(std::string_view name) const;
+
+  std::span<const ParameterInfo> table() const { return table_; }
+
+  // What differs from the defaults, by name, as text that Set reads back.
+  std::map<std::string, std::string> Changed() const;
+
+ private:
+  const ParameterInfo* Find(std::string_view name) const;
+
+  std::span<const ParameterInfo> table_;
+  std::map<std::string, double, std::less<>> numbers_;
+  std::map<std::string, std::string, std::less<>> words_;
+};
+
+}  // namespace rmlcell::machine

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+
+#include "engine/motion/path.h"
+
+namespace rmlcell::motion {
+
+// Column position (crossing of the A and B axes) and head angles: what the five axes of the gantry do.
+struct AxisPose {
+  Vec3 column;
+  double a_rad = 0.0;
+  double b_rad = 0.0;
+
+  bool operator==(const AxisPose&) const = default;
+};
+
+inline constexpr int kAxisCount = 5;  // X Y Z A B
+using AxisValues = std::array<double, kAxisCount>;
+
+// Speed, acceleration, jerk and travel of each axis: mm and rad.
+struct AxisLimits {
+  AxisValues speed{};
+  AxisValues acceleration{};
+  AxisValues jerk{};
+  AxisValues travel_min{};
+  AxisValues travel_max{};
+};
+
+// R(A,B) = Rz(A) Rx(B); columns are the tool axes in the machine frame. motion.md 2.1.
+struct ToolAxes {
+  Vec3 x;
+  Vec3 y;
+  Vec3 u;  // from the tip towards the head
+};
+ToolAxes AxesOfTool(double a_rad, double b_rad);
+
+// Tool offset of TCP: tool coordinates, Z towards the lens. motion.md 2.2.
+struct ToolOffset {
+  double x_mm = 0.0;
+  double y_mm = 0.0;
+  double z_mm = 0.0;
+
+  bool operator==(const ToolOffset&) const = default;
+};
+
+// The head of the gantry: column = tip + R(A,B) (-X0, -Y0, L - Z0).
+struct Head {
+  double length_mm = 300.0;
+  ToolOffset tool;
+
+  AxisPose ColumnOf(const TipPose& pose) const;
+  TipPose TipOf(const AxisPose& pose) const;
+};
+
+// SYSDEF: p_machine = T + Rz(c) Ry(b) Rx(a) p_program. Angles stay those of the machine. motion.md 2.3.
+class WorkOffset {
+ public:
+  WorkOffset() = default;  // identity
+  WorkOffset(const Vec3& translation, double rz_rad, double ry_rad, double rx_rad);
+
+  Vec3 ToMachine(const Vec3& program_point) const;
+  Vec3 ToProgram(const Vec3& machine_point) const;
+  Vec3 DirectionToMachine(const Vec3& program_direction) const;
+
+ private:
+  Vec3 translation_;
+  Vec3 x_{1.0, 0.0, 0.0};  // columns of the rotation
+  Vec3 y_{0.0, 1.0, 0.0};
+  Vec3 z_{0.0, 0.0, 1.0};
+};
+
+// By how much, in mm or rad, an axis of `pose` leaves its travel; 0 when it does not. OPT-B.08.
+struct TravelExcess {
+  int axis = -1;  // 0..4, -1: inside
+  double excess = 0.0;
+};
+TravelExcess WorstExcess(const AxisPose& pose, const AxisLimits& limits);
+
+// The worst excess along a tip path at the points of motion.md 2.6.
+TravelExcess WorstExcess(const PathPiece& path, const Head& head, const AxisLimits& limits);
+
+}  // namespace rmlcell::motion

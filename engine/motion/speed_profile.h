@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <limits>
+
+namespace rmlcell::motion {
+
+// Limits along a path: mm/s, mm/s2, mm/s3, or the same by sigma. Every figure above zero; an infinite
+// jerk makes trapezoids. motion.md 5.1, 5.2.
+struct PathLimits {
+  double speed = 0.0;
+  double acceleration = 0.0;
+  double jerk = std::numeric_limits<double>::infinity();
+};
+
+// Where and how fast along a piece.
+struct PathState {
+  double s = 0.0;
+  double speed = 0.0;
+  double acceleration = 0.0;
+};
+
+// The time-optimal ramp-cruise-ramp from `v0` to `v1` over `length`, with zero acceleration at both ends:
+// at most seven phases of constant jerk. A value of fixed size.
+class SpeedProfile {
+ public:
+  struct Phase {
+    double duration_s = 0.0;
+    double jerk = 0.0;
+    PathState start;
+  };
+  static constexpr int kPhasesMax = 7;
+
+  SpeedProfile() = default;  // takes no time
+
+  // Precondition: length >= 0, limits above zero, v0 and v1 within limits.speed, and the change from v0
+  // to v1 fits into the length (see Reach).
+  static SpeedProfile Span(double length, double v0, double v1, const PathLimits& limits);
+
+  double duration_s() const { return duration_s_; }
+  double peak_speed() const { return peak_speed_; }
+  int phase_count() const { return count_; }
+  const Phase& phase(int index) const { return phases_[static_cast<std::size_t>(index)]; }
+
+  // 0 <= t <= duration_s(); outside it is clamped.
+  PathState At(double t_s) const;
+
+  // The ramp to rest that begins at `t_s`: first the acceleration is brought to zero, then down to
+  // speed 0 with the limits. Its s counts from the same origin. motion.md section 6 (STOP).
+  SpeedProfile StopFrom(double t_s, const PathLimits& limits) const;
+
+ private:
+  std::array<Phase, kPhasesMax> phases_{};
+  int count_ = 0;
+  double duration_s_ = 0.0;
+  double peak_speed_ = 0.0;
+};
+
+// The highest speed that can be reached from `v0` within `length`. motion.md 5.2.
+double Reach(double v0, double length, const PathLimits& limits);
+
+// Time and length of the ramp between two speeds.
+double RampTime(double v0, double v1, const PathLimits& limits);
+double RampLength(double v0, double v1, const PathLimits& limits);
+
+}  // namespace rmlcell::motion

@@ -1,0 +1,22 @@
+#include "storage/store.h"
+
+#include <future>
+
+namespace rmlcell::storage {
+
+Result<SubmittedJob> Store::SubmitAndWait(NewJob job) {
+  std::promise<Result<SubmittedJob>> promise;
+  std::future<Result<SubmittedJob>> future = promise.get_future();
+  Submit(std::move(job), [&](Result<SubmittedJob> result) { promise.set_value(std::move(result)); });
+  return future.get();
+}
+
+Result<std::int64_t> Store::AppendAndWait(const Lease& lease, std::vector<NewEvent> events) {
+  std::promise<Result<std::int64_t>> promise;
+  std::future<Result<std::int64_t>> future = promise.get_future();
+  Append(lease, std::move(events),
+         [&](Result<std::int64_t> result) { promise.set_value(std::move(result)); });
+  return future.get();
+}
+
+}  // namespace rmlcell::storage
