@@ -109,6 +109,11 @@ struct JobRecord {
   std::optional<WallTime> finished_at;
 };
 
+struct JobCounts {
+  std::int64_t queued = 0;
+  std::int64_t running = 0;
+};
+
 struct AttemptRecord {
   std::int64_t job = 0;
   int number = 0;  // from 1
@@ -139,6 +144,7 @@ struct NewArtifact {
   std::string name;  // "report", "toolpath", "picture.svg"
   std::string media_type;
   std::string bytes;
+  std::string existing_sha256;  // not empty: content that the store has already; `bytes` is not looked at
 };
 struct ArtifactRecord {
   std::int64_t job = 0;

@@ -20,7 +20,8 @@ struct NewJob {
   std::string caller;
   std::string specification;
   int attempts_max = 2;
-  std::vector<NewEvent> events;  // written in the transaction that makes the job
+  std::vector<NewArtifact> attachments;  // what the job works on: kept with it, whatever happens to slots
+  std::vector<NewEvent> events;          // written in the transaction that makes the job
 };
 struct SubmittedJob {
   JobRecord job;
@@ -114,6 +115,7 @@ class Store {
   virtual Result<JobRecord> GetJob(std::int64_t id) = 0;
   virtual Result<std::vector<JobRecord>> ListJobs(const JobQuery& query) = 0;
   virtual Result<std::vector<AttemptRecord>> ListAttempts(std::int64_t job) = 0;
+  virtual Result<JobCounts> CountJobs() = 0;  // cheap: called for every submission
 
   // Queued: cancelled at once, with `events`. Running: marked, the holder of the lease ends it.
   // Final: unchanged. Returns the job as it then is.
