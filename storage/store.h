@@ -41,6 +41,14 @@ struct LeasedJob {
   JobRecord job;
 };
 
+// What becomes of a job whose worker is gone: back to the queue while attempts are left, else the outcome.
+// A RUN is never repeated by itself: it becomes kInterrupted with the outcome's code.
+struct LossPolicy {
+  JobOutcome outcome;
+  std::vector<NewEvent> requeued;  // appended when it goes back to the queue
+  std::vector<NewEvent> ended;     // appended when it ends
+};
+
 // Newest first. A page ends where the next begins: pass `next` back as `after`.
 struct JobQuery {
   std::string machine;                // empty: all
@@ -140,12 +148,9 @@ class Store {
   // Gives the job back to the queue; this attempt does not count. CellLeaseLost.
   virtual Status HandBack(const Lease& lease, const std::vector<NewEvent>& events) = 0;
   // The worker is known to be dead: as if the lease ran out now. CellLeaseLost.
-  virtual Result<JobRecord> Abandon(const Lease& lease, const JobOutcome& when_no_attempt_is_left,
-                                    const std::vector<NewEvent>& events) = 0;
-  // Leases that ran out: their jobs go back to the queue, or fail when no attempt is left or, for RUN,
-  // become kInterrupted. Any server may call it at any time. Returns the jobs that changed.
-  virtual Result<std::vector<JobRecord>> Expire(const JobOutcome& when_no_attempt_is_left,
-                                                const std::vector<NewEvent>& events) = 0;
+  virtual Result<JobRecord> Abandon(const Lease& lease, const LossPolicy& policy) = 0;
+  // Every lease that ran out. Any server may call it at any time. Returns the jobs that changed.
+  virtual Result<std::vector<JobRecord>> Expire(const LossPolicy& policy) = 0;
 
   // --- events and artifacts ----------------------------------------------------------------------------
   virtual Result<std::vector<EventRecord>> JobEvents(std::int64_t job, std::int64_t after_sequence,
