@@ -12,16 +12,16 @@
 namespace rmlcell::storage {
 
 struct NewJob {
-  std::string request_id;    // empty: the store makes one
-  std::string request_hash;
-  std::string machine;
-  std::string kind;
-  std::string title;
-  std::string caller;
-  std::string specification;
+  std::string request_id{};    // empty: the store makes one
+  std::string request_hash{};
+  std::string machine{};
+  std::string kind{};
+  std::string title{};
+  std::string caller{};
+  std::string specification{};
   int attempts_max = 2;
-  std::vector<NewArtifact> attachments;  // what the job works on: kept with it, whatever happens to slots
-  std::vector<NewEvent> events;          // written in the transaction that makes the job
+  std::vector<NewArtifact> attachments{};  // what the job works on: kept with it, whatever happens to slots
+  std::vector<NewEvent> events{};          // written in the transaction that makes the job
 };
 struct SubmittedJob {
   JobRecord job;
@@ -33,7 +33,7 @@ struct Lease {
   std::int64_t job = 0;
   int attempt = 0;
   std::int64_t fence = 0;
-  std::string worker;
+  std::string worker{};
   WallTime until{};
 };
 struct LeasedJob {
@@ -45,17 +45,17 @@ struct LeasedJob {
 // A RUN is never repeated by itself: it becomes kInterrupted with the outcome's code.
 struct LossPolicy {
   JobOutcome outcome;
-  std::vector<NewEvent> requeued;  // appended when it goes back to the queue
-  std::vector<NewEvent> ended;     // appended when it ends
+  std::vector<NewEvent> requeued{};  // appended when it goes back to the queue
+  std::vector<NewEvent> ended{};     // appended when it ends
 };
 
 // Newest first. A page ends where the next begins: pass `next` back as `after`.
 struct JobQuery {
-  std::string machine;                // empty: all
-  std::optional<JobState> state;
-  std::string kind;                   // empty: all
-  std::string caller;                 // empty: all
-  std::optional<bool> finished;       // final states only, or unfinished only
+  std::string machine{};                // empty: all
+  std::optional<JobState> state{};
+  std::string kind{};                   // empty: all
+  std::string caller{};                 // empty: all
+  std::optional<bool> finished{};       // final states only, or unfinished only
   int limit = 50;
   std::int64_t before_id = 0;         // jobs with a smaller id; 0: from the newest
 };
@@ -63,10 +63,10 @@ struct JobQuery {
 // What to write into one slot. All writes of one call are made, or none.
 struct ProgramWrite {
   int slot = 0;
-  std::string name;
-  std::string object;
-  std::optional<std::string> source;
-  std::string source_name;
+  std::string name{};
+  std::string object{};
+  std::optional<std::string> source{};
+  std::string source_name{};
   Revision expected = kAnyRevision;
 };
 

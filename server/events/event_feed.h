@@ -51,6 +51,11 @@ class EventFeed {
   // Events of the whole cell after a position; from memory when it reaches back that far.
   Result<std::vector<storage::EventRecord>> EventsAfter(std::int64_t position, int limit);
 
+  // Events of one job after a sequence number, from the log.
+  Result<std::vector<storage::EventRecord>> JobEvents(std::int64_t job, std::int64_t after_sequence, int limit) {
+    return store_.JobEvents(job, after_sequence, limit);
+  }
+
   void PublishProgress(std::int64_t job, std::string bytes);
   void ForgetProgress(std::int64_t job);
   // The newest position of the job when it is newer than `seen`.
