@@ -216,6 +216,65 @@ PathState SpeedProfile::At(double t_s) const {
   return state;
 }
 
+SpeedProfile SpeedProfile::Steady(double length, double speed) {
+  SpeedProfile profile;
+  PathState state{0.0, speed, 0.0};
+  profile.AddPhase(state, length / speed, 0.0, 0.0);
+  profile.peak_speed_ = speed;
+  profile.end_ = {length, speed, 0.0};
+  return profile;
+}
+
+double SpeedProfile::TimeAt(double s) const {
+  double time = 0.0;
+  for (int k = 0; k < count_; ++k) {
+    const Phase& phase = phases_[static_cast<std::size_t>(k)];
+    const double duration = phase.duration_s;
+    const double next = k + 1 < count_ ? phases_[static_cast<std::size_t>(k) + 1].start.s : end_.s;
+    if (s >= next) {
+      time += duration;
+      continue;
+    }
+    const double wanted = s - phase.start.s;
+    if (wanted <= 0.0) return time;
+    const auto travelled = [&](double t) {
+      const double speed =
+          phase.start.speed + t * (phase.start.acceleration + 0.5 * t * phase.jerk);
+      const double way =
+          t * (phase.start.speed + t * (0.5 * phase.start.acceleration + t * phase.jerk / 6.0));
+      return ValueAndSlope{way, speed};
+    };
+    return time + Root(travelled, wanted, duration);
+  }
+  return time;
+}
+
+SpeedProfile SpeedProfile::Part(double s_from, double s_to) const {
+  const double t_from = TimeAt(s_from);
+  const double t_to = s_to >= end_.s ? duration_s_ : TimeAt(s_to);
+  SpeedProfile part;
+  double time = 0.0;
+  for (int k = 0; k < count_; ++k) {
+    const Phase& phase = phases_[static_cast<std::size_t>(k)];
+    const double from = std::max(t_from - time, 0.0);
+    const double to = std::min(t_to - time, phase.duration_s);
+    time += phase.duration_s;
+    if (!(to > from)) continue;
+    const PathState& start = phase.start;
+    PathState state;
+    state.s = start.s +
+              from * (start.speed + from * (0.5 * start.acceleration + from * phase.jerk / 6.0)) -
+              s_from;
+    state.speed = start.speed + from * (start.acceleration + 0.5 * from * phase.jerk);
+    part.peak_speed_ = std::max(part.peak_speed_, state.speed);
+    part.AddPhase(state, to - from, start.acceleration + from * phase.jerk, phase.jerk);
+    part.peak_speed_ = std::max(part.peak_speed_, state.speed);
+  }
+  part.end_ = At(t_to);
+  part.end_.s = s_to - s_from;
+  return part;
+}
+
 SpeedProfile SpeedProfile::StopFrom(double t_s, const PathLimits& limits) const {
   SpeedProfile stop;
   PathState state = At(t_s);

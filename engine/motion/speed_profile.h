@@ -37,11 +37,20 @@ class SpeedProfile {
   // from v0 to v1 fits into the length (see Reach).
   static SpeedProfile Span(double length, double v0, double v1, const PathLimits& limits);
 
+  // `length` at one speed above 0.
+  static SpeedProfile Steady(double length, double speed);
+
+  // The part between two places, s counted from the first. 0 <= s_from < s_to <= end().s.
+  SpeedProfile Part(double s_from, double s_to) const;
+
   double duration_s() const { return duration_s_; }
   const PathState& end() const { return end_; }  // s of the end, and the speed there
   double peak_speed() const { return peak_speed_; }
   int phase_count() const { return count_; }
   const Phase& phase(int index) const { return phases_[static_cast<std::size_t>(index)]; }
+
+  // When `s` is passed for the first time; clamped to the profile.
+  double TimeAt(double s) const;
 
   // 0 <= t <= duration_s(); outside it is clamped.
   PathState At(double t_s) const;

@@ -23,7 +23,9 @@ void Put(Figures& figures, const std::string& name, const Vec3& v) {
   figures[name + ".z"] = v.z;
 }
 
-std::string Numbered(std::string name, std::uint64_t number) { return name.append(std::to_string(number)); }
+std::string Numbered(std::string name, std::uint64_t number) {
+  return name.append(std::to_string(number));
+}
 
 double Number(const json& input, const char* name) { return input.at(name).get<double>(); }
 double NumberOr(const json& input, const char* name, double standard) {
@@ -198,7 +200,7 @@ Figures PointToPoint(const json& input, bool axes) {
 
 // A chain of moves. This version plans exact stops, so chains with a blended corner are not its
 // own.
-std::optional<Figures> PlanCase(const json& input) {
+Figures PlanCase(const json& input) {
   TipPose at = Pose(input.at("start"), input.at("start_ab"));
   MachineLimits machine = StandardMachine();
   if (!input.value("jerk", true)) machine.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
@@ -218,20 +220,30 @@ std::optional<Figures> PlanCase(const json& input) {
     move.acceleration_fraction = NumberOr(m, "accel", 100.0) / 100.0;
     move.overshoot_fraction = NumberOr(m, "oversh", 100.0) / 100.0;
     move.fly = m.value("fly", false);
-    if (move.fly && move.overshoot_fraction > 0.0) return std::nullopt;
     move.tag = static_cast<std::uint64_t>(++count);
     if (!planner.Append(move)) return Figures{{"kind", -1.0}};
     at = target;
   }
   planner.Stop();
   Figures figures{{"T", 0.0}, {"length", 0.0}};
+  double cut_sum = 0.0;
+  double deviation_max = 0.0;
   while (const std::optional<PlannedItem> item = planner.Next()) {
     const auto& motion = std::get<PlannedMotion>(*item);
     figures["T"] += motion.duration_s();
     figures["length"] += motion.path.length();
-    figures[Numbered("vlim", motion.tag)] = motion.limits.speed;
-    figures[Numbered("v", motion.tag)] = motion.speed.end().speed;
+    if (motion.path.kind() != PathPiece::Kind::kBlend) {
+      figures[Numbered("vlim", motion.tag)] = motion.limits.speed;
+    }
+    if (!motion.ends_move) continue;
+    figures[Numbered("v", motion.tag)] = motion.corner.speed;
+    figures[Numbered("d", motion.tag)] = motion.corner.cut_mm;
+    figures[Numbered("dev", motion.tag)] = motion.corner.deviation_mm;
+    cut_sum += motion.corner.cut_mm;
+    deviation_max = std::max(deviation_max, motion.corner.deviation_mm);
   }
+  figures["d_sum"] = cut_sum;
+  figures["dev_max"] = deviation_max;
   return figures;
 }
 
