@@ -23,7 +23,7 @@ struct WorkDefinition {
 // The WORKDEFs of one program and which processes it has ON. OPT-3.11, 3.12
 struct Processes {
   using Table = std::array<std::array<std::optional<WorkDefinition>, kProcessesPerKind>, kProcessKinds>;
-  Table definitions;
+  Table definitions{};
   std::array<std::array<bool, kProcessesPerKind>, kProcessKinds> on{};
 
   bool any_on() const;
@@ -34,8 +34,7 @@ struct Processes {
 // What the beam does: of the laser itself, one per machine. Times and events are the caller's.
 struct Beam {
   bool on = false;
-  bool suspended = false;  // off while motion is held; comes back with START (OPT-B.34)
-  machine::PowerLaw power;
+  machine::PowerLaw power{};
   bool shutter_open = false;
   bool shutter_was_open = false;  // closed by the door; START opens it again (OPT-3.62)
 };
