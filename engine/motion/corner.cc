@@ -19,8 +19,8 @@ double Rho(double half_cosine) { return 2.0 * std::sqrt(half_cosine); }
 // Peak curvature times cut between two lines; motion.md 4.2.
 double Bend(double half_sine, double half_cosine) {
   const double rho = Rho(half_cosine);
-  const double middle = 15.0 / 8.0 - 7.0 * rho / 16.0;
-  return 0.75 * rho * half_sine / (half_cosine * middle * middle);
+  const double middle = half_cosine * (15.0 / 8.0 - 7.0 * rho / 16.0);
+  return 0.75 * rho * half_sine / (middle * middle);
 }
 
 // sqrt(kappa'^2 + kappa^4) at u: path jerk per speed cubed.
@@ -90,7 +90,7 @@ class PlainTable {
   static constexpr double kFirst = 0.2088;  // sqrt(cos 87.5 degrees), rounded down
   static constexpr double kStep = (1.0 - kFirst) / (kNodes - 1);
   static constexpr double kHalfTurnMax = 1.5272;  // 87.5 degrees, rounded up
-  static constexpr double kRoom = 3e-7;           // what straight lines between nodes may lack
+  static constexpr double kRoom = 1e-6;           // what straight lines between nodes may lack
 
   PlainTable() {
     for (int k = 0; k < kNodes; ++k) {

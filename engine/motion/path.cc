@@ -158,6 +158,11 @@ void PathPiece::Prepare() {
   if (auto* part = std::get_if<CurvePart>(&shape_)) part->curve.Measure();
 }
 
+PathPiece::CurveRange PathPiece::curve_range() const {
+  const CurvePart& part = *std::get_if<CurvePart>(&shape_);
+  return {part.curve.ParameterAt(part.start), part.curve.ParameterAt(part.start + length_)};
+}
+
 double PathPiece::tip_length_mm() const { return by_sigma() ? 0.0 : length_; }
 
 Vec3 PathPiece::ArcPoint(double angle) const {

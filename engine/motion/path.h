@@ -83,6 +83,11 @@ class PathPiece {
 
   // Blends only: the whole curve of the corner, of which this piece may be a part.
   const CornerCurve& curve() const { return std::get_if<CurvePart>(&shape_)->curve; }
+  struct CurveRange {
+    double from = 0.0;  // u
+    double to = 1.0;
+  };
+  CurveRange curve_range() const;
 
  private:
   struct ArcShape {
