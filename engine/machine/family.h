@@ -106,6 +106,13 @@ class MachineFamily {
   virtual TransferPlan PlanTransfer(const ProjectBundle& project, const Parameters& parameters,
                                     const TransferOptions& options) const = 0;
 
+  // Canonical source of an object. A family without objects of its own gives the bytes back.
+  // Errors: ObjectCorrupt (7034).
+  virtual Result<std::string> Decompile(std::string_view object) const { return std::string(object); }
+
+  // Whether bytes are an executable of this family. Errors: ObjectCorrupt (7034).
+  virtual Status CheckExecutable(std::string_view /*executable*/) const { return {}; }
+
   // Errors: ProgramMissing (7102), ObjectCorrupt (7034), the link errors 7103..7108 and the like are not
   // errors here: the run ends with them. Only a setup that makes no sense is refused.
   // `observer` must outlive the run.
