@@ -21,25 +21,25 @@ using Revision = std::int64_t;
 inline constexpr Revision kAnyRevision = -1;
 
 struct MachineRecord {
-  std::string id;  // "optimo-1"
-  std::string family;
-  std::string title;
-  std::string profile;  // empty: the defaults of the family
-  std::map<std::string, std::string> parameters;  // what differs from the profile
-  std::string state;  // engine bytes kept between jobs; empty: a new machine
+  std::string id{};  // "optimo-1"
+  std::string family{};
+  std::string title{};
+  std::string profile{};  // empty: the defaults of the family
+  std::map<std::string, std::string> parameters{};  // what differs from the profile
+  std::string state{};  // engine bytes kept between jobs; empty: a new machine
   Revision revision = 0;
   WallTime created_at{};
   WallTime updated_at{};
 };
 
 struct ProgramRecord {
-  std::string machine;
+  std::string machine{};
   int slot = 0;  // 1..99
-  std::string name;
-  std::string object;
-  std::optional<std::string> source;      // where the program was stored from text
-  std::string source_name;                // file name of the source
-  std::optional<std::string> executable;  // at slot + 100
+  std::string name{};
+  std::string object{};
+  std::optional<std::string> source{};      // where the program was stored from text
+  std::string source_name{};                // file name of the source
+  std::optional<std::string> executable{};  // at slot + 100
   Revision revision = 0;                  // of the object; an executable made of an older one is gone
   WallTime created_at{};
   WallTime updated_at{};
@@ -48,8 +48,8 @@ struct ProgramRecord {
 // A program without its bytes, for lists.
 struct ProgramSummary {
   int slot = 0;
-  std::string name;
-  std::string source_name;
+  std::string name{};
+  std::string source_name{};
   std::int64_t object_bytes = 0;
   std::int64_t source_bytes = -1;      // -1: no source
   std::int64_t executable_bytes = -1;  // -1: no executable
@@ -60,19 +60,19 @@ struct ProgramSummary {
 };
 
 struct ScheduleRecord {
-  std::string machine;
+  std::string machine{};
   int number = 0;  // 1..63
-  std::string name;
-  std::string mode;
+  std::string name{};
+  std::string mode{};
   double power_percent = 100.0;
   Revision revision = 0;
   WallTime updated_at{};
 };
 
 struct ProjectRecord {
-  std::string id;
-  std::string title;
-  std::string body;  // opaque
+  std::string id{};
+  std::string title{};
+  std::string body{};  // opaque
   Revision revision = 0;
   WallTime created_at{};
   WallTime updated_at{};
@@ -83,46 +83,51 @@ inline bool IsFinal(JobState state) { return state != JobState::kQueued && state
 
 struct JobOutcome {
   JobState state = JobState::kSucceeded;
-  std::optional<ErrorCode> code;
-  std::string detail;
+  std::optional<ErrorCode> code{};
+  std::string detail{};
   int program = 0;  // where it ended, 0: not known
   int step = 0;
 };
 
 struct JobRecord {
   std::int64_t id = 0;       // counts up; the order of submission
-  std::string request_id;    // unique; made by the store when the client gave none
-  std::string request_hash;  // of what was asked for: the same request_id with another request is refused
-  std::string machine;
-  std::string kind;          // "CHECK", "SIMULATE", "RUN"
-  std::string title;
-  std::string caller;
-  std::string specification;  // opaque
+  std::string request_id{};    // unique; made by the store when the client gave none
+  std::string request_hash{};  // of what was asked for: the same request_id with another request is refused
+  std::string machine{};
+  std::string kind{};          // "CHECK", "SIMULATE", "RUN"
+  std::string title{};
+  std::string caller{};
+  std::string specification{};  // opaque
   JobState state = JobState::kQueued;
   bool cancel_requested = false;
   int attempts = 0;
   int attempts_max = 2;
-  std::optional<JobOutcome> outcome;
+  std::optional<JobOutcome> outcome{};
   std::int64_t last_sequence = 0;  // of its newest event
   WallTime created_at{};
-  std::optional<WallTime> started_at;
-  std::optional<WallTime> finished_at;
+  std::optional<WallTime> started_at{};
+  std::optional<WallTime> finished_at{};
+};
+
+struct JobCounts {
+  std::int64_t queued = 0;
+  std::int64_t running = 0;
 };
 
 struct AttemptRecord {
   std::int64_t job = 0;
   int number = 0;  // from 1
-  std::string worker;
+  std::string worker{};
   std::int64_t fence = 0;
   WallTime started_at{};
-  std::optional<WallTime> ended_at;
-  std::string how_it_ended;  // "succeeded", "failed", "lease ran out", "handed back"
+  std::optional<WallTime> ended_at{};
+  std::string how_it_ended{};  // "succeeded", "failed", "lease ran out", "handed back"
 };
 
 // One line of a job's durable log.
 struct NewEvent {
-  std::string kind;  // "state", "step", "alarm" ...: for filters and people
-  std::string payload;  // opaque
+  std::string kind{};  // "state", "step", "alarm" ...: for filters and people
+  std::string payload{};  // opaque
 };
 struct EventRecord {
   std::int64_t position = 0;  // over all jobs, counts up
@@ -130,20 +135,21 @@ struct EventRecord {
   std::int64_t sequence = 0;  // within the job, from 1 without a gap
   int attempt = 0;            // 0: from the server, outside an attempt
   WallTime at{};
-  std::string kind;
-  std::string payload;
+  std::string kind{};
+  std::string payload{};
 };
 
 // A product of a job: report, toolpath, picture. Bytes are kept once by content, compressed.
 struct NewArtifact {
-  std::string name;  // "report", "toolpath", "picture.svg"
-  std::string media_type;
-  std::string bytes;
+  std::string name{};  // "report", "toolpath", "picture.svg"
+  std::string media_type{};
+  std::string bytes{};
+  std::string existing_sha256;  // not empty: content that the store has already; `bytes` is not looked at
 };
 struct ArtifactRecord {
   std::int64_t job = 0;
-  std::string name;
-  std::string media_type;
+  std::string name{};
+  std::string media_type{};
   std::string sha256;  // lower-case hexadecimal, of the uncompressed bytes
   std::int64_t size = 0;
 };

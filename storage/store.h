@@ -12,15 +12,16 @@
 namespace rmlcell::storage {
 
 struct NewJob {
-  std::string request_id;    // empty: the store makes one
-  std::string request_hash;
-  std::string machine;
-  std::string kind;
-  std::string title;
-  std::string caller;
-  std::string specification;
+  std::string request_id{};    // empty: the store makes one
+  std::string request_hash{};
+  std::string machine{};
+  std::string kind{};
+  std::string title{};
+  std::string caller{};
+  std::string specification{};
   int attempts_max = 2;
-  std::vector<NewEvent> events;  // written in the transaction that makes the job
+  std::vector<NewArtifact> attachments{};  // what the job works on: kept with it, whatever happens to slots
+  std::vector<NewEvent> events{};          // written in the transaction that makes the job
 };
 struct SubmittedJob {
   JobRecord job;
@@ -32,7 +33,7 @@ struct Lease {
   std::int64_t job = 0;
   int attempt = 0;
   std::int64_t fence = 0;
-  std::string worker;
+  std::string worker{};
   WallTime until{};
 };
 struct LeasedJob {
@@ -40,13 +41,21 @@ struct LeasedJob {
   JobRecord job;
 };
 
+// What becomes of a job whose worker is gone: back to the queue while attempts are left, else the outcome.
+// A RUN is never repeated by itself: it becomes kInterrupted with the outcome's code.
+struct LossPolicy {
+  JobOutcome outcome;
+  std::vector<NewEvent> requeued{};  // appended when it goes back to the queue
+  std::vector<NewEvent> ended{};     // appended when it ends
+};
+
 // Newest first. A page ends where the next begins: pass `next` back as `after`.
 struct JobQuery {
-  std::string machine;                // empty: all
-  std::optional<JobState> state;
-  std::string kind;                   // empty: all
-  std::string caller;                 // empty: all
-  std::optional<bool> finished;       // final states only, or unfinished only
+  std::string machine{};                // empty: all
+  std::optional<JobState> state{};
+  std::string kind{};                   // empty: all
+  std::string caller{};                 // empty: all
+  std::optional<bool> finished{};       // final states only, or unfinished only
   int limit = 50;
   std::int64_t before_id = 0;         // jobs with a smaller id; 0: from the newest
 };
@@ -54,10 +63,10 @@ struct JobQuery {
 // What to write into one slot. All writes of one call are made, or none.
 struct ProgramWrite {
   int slot = 0;
-  std::string name;
-  std::string object;
-  std::optional<std::string> source;
-  std::string source_name;
+  std::string name{};
+  std::string object{};
+  std::optional<std::string> source{};
+  std::string source_name{};
   Revision expected = kAnyRevision;
 };
 
@@ -114,6 +123,7 @@ class Store {
   virtual Result<JobRecord> GetJob(std::int64_t id) = 0;
   virtual Result<std::vector<JobRecord>> ListJobs(const JobQuery& query) = 0;
   virtual Result<std::vector<AttemptRecord>> ListAttempts(std::int64_t job) = 0;
+  virtual Result<JobCounts> CountJobs() = 0;  // cheap: called for every submission
 
   // Queued: cancelled at once, with `events`. Running: marked, the holder of the lease ends it.
   // Final: unchanged. Returns the job as it then is.
@@ -138,12 +148,9 @@ class Store {
   // Gives the job back to the queue; this attempt does not count. CellLeaseLost.
   virtual Status HandBack(const Lease& lease, const std::vector<NewEvent>& events) = 0;
   // The worker is known to be dead: as if the lease ran out now. CellLeaseLost.
-  virtual Result<JobRecord> Abandon(const Lease& lease, const JobOutcome& when_no_attempt_is_left,
-                                    const std::vector<NewEvent>& events) = 0;
-  // Leases that ran out: their jobs go back to the queue, or fail when no attempt is left or, for RUN,
-  // become kInterrupted. Any server may call it at any time. Returns the jobs that changed.
-  virtual Result<std::vector<JobRecord>> Expire(const JobOutcome& when_no_attempt_is_left,
-                                                const std::vector<NewEvent>& events) = 0;
+  virtual Result<JobRecord> Abandon(const Lease& lease, const LossPolicy& policy) = 0;
+  // Every lease that ran out. Any server may call it at any time. Returns the jobs that changed.
+  virtual Result<std::vector<JobRecord>> Expire(const LossPolicy& policy) = 0;
 
   // --- events and artifacts ----------------------------------------------------------------------------
   virtual Result<std::vector<EventRecord>> JobEvents(std::int64_t job, std::int64_t after_sequence,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/machine/run.h"
+#include "engine/machine/shape.h"
 
 namespace rmlcell::machine {
 
@@ -74,7 +75,15 @@ struct TransferPlan {
   std::vector<Diagnostic> diagnostics;
 };
 
-// One machine family. A new family is one folder under engine/ and one line in engine/simulation/families.cc.
+// A figure that runs of a family may give (Run::figures): its name never changes meaning.
+struct FigureInfo {
+  std::string_view name;  // "programmed.cut_length"
+  std::string_view unit;  // "mm"; empty for counts
+  std::string_view text;  // what it means, one sentence
+};
+
+// One machine family. A new family is one folder under engine/ and one line in
+// engine/simulation/families.cc.
 // Stateless; every method may be called from several threads at once.
 class MachineFamily {
  public:
@@ -82,6 +91,12 @@ class MachineFamily {
   virtual const FamilyInfo& info() const = 0;
   virtual std::span<const ParameterInfo> parameters() const = 0;
   virtual std::span<const MachineProfile> profiles() const = 0;
+
+  // Every figure that Run::figures can hold; docs/facts.md lists them.
+  virtual std::span<const FigureInfo> figures() const { return {}; }
+
+  // What report and pictures need to know of a machine with these parameters.
+  virtual MachineShape Shape(const Parameters& /*parameters*/) const { return {}; }
 
   // Checks and translates. Bad programs are diagnostics, not errors.
   virtual Translation Translate(const SourceFile& file, const Parameters& parameters,

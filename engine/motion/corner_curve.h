@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+
+#include "engine/motion/pose.h"
+
+namespace rmlcell::motion {
+
+// Where a corner curve leaves or joins a path: pose, unit tangent, curvature vector (1/mm) and the
+// rates of the head (rad/mm).
+struct CurveEnd {
+  TipPose pose;
+  Vec3 tangent;
+  Vec3 curvature;
+  double a_rate = 0.0;
+  double b_rate = 0.0;
+};
+
+// Derivatives of a path by its own variable.
+struct PathDerivatives {
+  Vec3 tip;
+  double a = 0.0;
+  double b = 0.0;
+};
+
+// The curve of a /FLY passage: a quintic in X Y Z A B whose position, tangent, curvature and head
+// rates meet those of both pieces. motion.md 4.2. A value of fixed size.
+class CornerCurve {
+ public:
+  CornerCurve() = default;
+
+  // Both ends are cut at the distance `cut_mm` from the corner.
+  CornerCurve(const CurveEnd& from, const CurveEnd& to, double cut_mm);
+
+  // u runs from 0 to 1.
+  TipPose At(double u) const;
+  PathDerivatives Derivative(double u, int order) const;  // by u; order 1 to 3
+
+  // Derivatives by arc length: first (the tangent), second (the curvature vector).
+  PathDerivatives FirstByLength(double u) const;
+  PathDerivatives SecondByLength(double u) const;
+
+  // Arc length by Gauss-Legendre on eight panels. Measure() once, then LengthTo and ParameterAt are
+  // cheap; they measure for themselves when it was not called.
+  void Measure();
+  double Length() const;
+  double ParameterAt(double s) const;  // 0 <= s <= Length()
+
+  // Distance of `point` from the curve, and from its nearest place.
+  double DistanceFrom(const Vec3& point) const;
+
+  static constexpr int kPanels = 8;
+
+ private:
+  double Speed(double u) const;
+  double Integral(double from, double to) const;
+
+  // Coefficients of u^0 .. u^5.
+  std::array<Vec3, 6> tip_{};
+  std::array<double, 6> a_{};
+  std::array<double, 6> b_{};
+  std::array<double, kPanels + 1> reached_{};  // arc length at u = k / kPanels; all 0: not measured
+};
+
+}  // namespace rmlcell::motion

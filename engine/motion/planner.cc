@@ -1,0 +1,78 @@
+#include "engine/motion/planner.h"
+
+#include <cmath>
+
+#include "engine/core/number_text.h"
+#include "engine/motion/motion_chain.h"
+
+namespace rmlcell::motion {
+namespace {
+
+// ACCEL below 0.1 % would take hours to arrive: "little or no motion" in the manual. motion.md 5.1.
+constexpr double kAccelerationFractionMin = 0.001;
+
+bool IsFinite(const TipPose& pose) {
+  return std::isfinite(pose.tip.x) && std::isfinite(pose.tip.y) && std::isfinite(pose.tip.z) &&
+         std::isfinite(pose.a_rad) && std::isfinite(pose.b_rad);
+}
+
+// Moves too short to be made leave a gap between where the machine is and where the next move
+// believes it begins: a line begins where the machine is.
+PathPiece Anchored(const PathPiece& path, const TipPose* end) {
+  constexpr double kGap_mm = 1e-3;  // a thousand such moves
+  if (end == nullptr || path.from() == *end) return path;
+  const bool straight = path.kind() == PathPiece::Kind::kLine ||
+                        path.kind() == PathPiece::Kind::kRotary || !(path.length() > 0.0);
+  if (!straight || Distance(end->tip, path.from().tip) > kGap_mm ||
+      end->a_rad != path.from().a_rad || end->b_rad != path.from().b_rad) {
+    return path;
+  }
+  return PathPiece::Line(*end, path.to());
+}
+
+}  // namespace
+
+Planner::Planner(const MachineLimits& limits, std::size_t window)
+    : chain_(std::make_unique<MotionChain>(limits, window)) {}
+Planner::~Planner() = default;
+Planner::Planner(const Planner& other) : chain_(std::make_unique<MotionChain>(*other.chain_)) {}
+Planner& Planner::operator=(const Planner& other) {
+  if (this != &other) chain_ = std::make_unique<MotionChain>(*other.chain_);
+  return *this;
+}
+Planner::Planner(Planner&&) noexcept = default;
+Planner& Planner::operator=(Planner&&) noexcept = default;
+
+Status Planner::Append(const MoveCommand& move) {
+  if (!IsFinite(move.path.from()) || !IsFinite(move.path.to()) ||
+      !std::isfinite(move.path.length())) {
+    return Error{ErrorCode::kTargetOutOfTravel, "a coordinate is not a finite number", {}};
+  }
+  const PathPiece path = Anchored(move.path, chain_->end());
+  if (!(path.length() > 0.0)) {
+    chain_->Nothing(path.from(), move.fly);
+    return {};
+  }
+  if (!(move.speed_fraction > 0.0)) return Error{ErrorCode::kNoMotion, "the speed is 0", {}};
+  if (!(move.acceleration_fraction >= kAccelerationFractionMin)) {
+    return Error{ErrorCode::kNoMotion,
+                 "the acceleration is " + ShortestText(100.0 * move.acceleration_fraction) + " %",
+                 {}};
+  }
+  MoveCommand anchored = move;
+  anchored.path = path;
+  const PathLimits limits = LimitsOf(anchored, chain_->machine());
+  if (!(limits.speed > 0.0) || !(limits.acceleration > 0.0) || !(limits.jerk > 0.0)) {
+    return Error{ErrorCode::kNoMotion, "the speed is too low to ever arrive", {}};
+  }
+  chain_->Append(anchored, limits);
+  return {};
+}
+
+void Planner::Mark(std::uint64_t tag) { chain_->Mark(tag); }
+void Planner::Stop() { chain_->Stop(); }
+std::optional<PlannedItem> Planner::Next() { return chain_->Next(); }
+const MachineLimits& Planner::limits() const { return chain_->machine(); }
+std::uint64_t Planner::lookahead_starved() const { return chain_->starved(); }
+
+}  // namespace rmlcell::motion
