@@ -134,8 +134,14 @@ void PrintLeaf(const Module& module, const ExprNode& node, std::string& out) {
   out += ']';
 }
 
+void Prepend(std::string_view prefix, std::string& text) {
+  std::string joined(prefix);
+  joined += text;
+  text = std::move(joined);
+}
+
 void Enclose(std::string& text) {
-  text.insert(text.begin(), '(');
+  Prepend("(", text);
   text += ')';
 }
 
@@ -157,12 +163,12 @@ std::string ExpressionText(const Module& module, Expression expression) {
       Piece& operand = stack.back();
       if (OperandNeedsParentheses(node, *operand.root)) Enclose(operand.text);
       if (node.op == Node::kNegate) {
-        operand.text.insert(0, "-");
+        Prepend("-", operand.text);
       } else if (node.op == Node::kNot) {
-        operand.text.insert(0, "NOT ");
+        Prepend("NOT ", operand.text);
       } else {
         Enclose(operand.text);
-        operand.text.insert(0, FunctionName(node.op));
+        Prepend(FunctionName(node.op), operand.text);
       }
       operand.root = &node;
       continue;
