@@ -37,6 +37,7 @@ struct ParsedProgram {
   std::vector<NodePlace> label_places;      // parallel to Module::labels
   std::vector<NodePlace> end_label_places;  // parallel to Module::end_labels
   std::vector<Comment> comments;
+  std::vector<bool> broken_names;  // parallel to Module::names: its DECLARE has an error
 
   Place At(const Instruction& instruction) const;  // the whole statement
 };
