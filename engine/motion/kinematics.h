@@ -6,7 +6,8 @@
 
 namespace rmlcell::motion {
 
-// Column position (crossing of the A and B axes) and head angles: what the five axes of the gantry do.
+// Column position (crossing of the A and B axes) and head angles: what the five axes of the gantry
+// do.
 struct AxisPose {
   Vec3 column;
   double a_rad = 0.0;
@@ -47,13 +48,44 @@ struct ToolOffset {
 // The head of the gantry: column = tip + R(A,B) (-X0, -Y0, L - Z0).
 struct Head {
   double length_mm = 300.0;
-  ToolOffset tool;
+  ToolOffset tool{};
 
   AxisPose ColumnOf(const TipPose& pose) const;
   TipPose TipOf(const AxisPose& pose) const;
 };
 
-// SYSDEF: p_machine = T + Rz(c) Ry(b) Rx(a) p_program. Angles stay those of the machine. motion.md 2.3.
+// How the column moves with the tip and the head angles, by time or by path length: motion.md 2.4.
+struct TipRates {
+  Vec3 tip;
+  double a = 0.0;
+  double b = 0.0;
+};
+AxisValues AxisRates(const Head& head, double a_rad, double b_rad, const TipRates& first);
+AxisValues AxisSecondRates(const Head& head, double a_rad, double b_rad, const TipRates& first,
+                           const TipRates& second);
+
+// The head angles for a tool direction `u` (need not be a unit vector), of the two solutions and
+// their turns the one nearest to `near` in |dA| + |dB|; A stays where it is when u is along Z.
+// motion.md 2.5.
+struct HeadAngles {
+  double a_rad = 0.0;
+  double b_rad = 0.0;
+};
+HeadAngles AnglesOf(const Vec3& u, const HeadAngles& near);
+
+// Jog by a distance (mm or rad) along one axis, 0..4 for X Y Z A B. motion.md section 6.
+// kRobot: one axis alone. kAbsolute: A or B with the tip held. kTool: X Y Z along the tool axes.
+enum class JogMode { kRobot, kAbsolute, kTool };
+struct Jog {
+  JogMode mode = JogMode::kRobot;
+  int axis = 0;
+  double distance = 0.0;
+  bool tool_z_down = false;  // TCP with Z0 < Z1: Z (and with it Y) reversed, motion.md 2.2
+};
+AxisPose Jogged(const AxisPose& from, const Head& head, const Jog& jog);
+
+// SYSDEF: p_machine = T + Rz(c) Ry(b) Rx(a) p_program. Angles stay those of the machine.
+// motion.md 2.3.
 class WorkOffset {
  public:
   WorkOffset() = default;  // identity
@@ -69,6 +101,11 @@ class WorkOffset {
   Vec3 y_{0.0, 1.0, 0.0};
   Vec3 z_{0.0, 0.0, 1.0};
 };
+
+// Whether two tools put the tip at the same place; a TCP that changes it is a stop. motion.md 3.6.
+inline bool SameTip(const Head& a, const Head& b) {
+  return a.length_mm == b.length_mm && a.tool == b.tool;
+}
 
 // By how much, in mm or rad, an axis of `pose` leaves its travel; 0 when it does not. OPT-B.08.
 struct TravelExcess {

@@ -19,7 +19,7 @@ struct TipPose {
 inline constexpr double kTipLengthZero_mm = 1e-6;
 inline constexpr double kArcPointTolerance_mm = 1e-4;
 
-// One piece of path. A value: copy it freely, it owns nothing. MOT-3 (motion.md section 3).
+// One piece of path. A value: copy it freely, it owns nothing. motion.md section 3.
 // s runs from 0 to length(); for kRotary and kJoint it is the path variable sigma from 0 to 1.
 // Rotary axes are linear in s and never reduced by a turn.
 class PathPiece {
@@ -47,18 +47,24 @@ class PathPiece {
   static Result<Arc3> ArcThrough(const TipPose& from, const Vec3& via, const TipPose& to);
 
   // A turn of `sweep_rad` about `normal` (unit) through `from`; right-handed, sweep above 0.
-  static PathPiece Circle(const TipPose& from, const Vec3& centre, const Vec3& normal, double sweep_rad,
-                          double a_to_rad, double b_to_rad);
+  // `centre` is the foot of `from` on the axis; a sweep of one turn ends exactly where it began.
+  static PathPiece Circle(const TipPose& from, const Vec3& centre, const Vec3& normal,
+                          double sweep_rad, double a_to_rad, double b_to_rad);
+
+  // The piece between two values of s, 0 <= s_from < s_to <= length(). Not for sigma pieces.
+  PathPiece Part(double s_from, double s_to) const;
 
   Kind kind() const { return kind_; }
-  double length() const { return length_; }      // mm, or 1 for sigma pieces; 0: nothing to do
-  double tip_length_mm() const;                  // 0 for kRotary; for kJoint not known here, 0
+  double length() const { return length_; }  // mm, or 1 for sigma pieces; 0: nothing to do
+  double tip_length_mm() const;              // 0 for kRotary; for kJoint not known here, 0
+  bool by_sigma() const { return kind_ == Kind::kRotary || kind_ == Kind::kJoint; }
   const TipPose& from() const { return from_; }
   const TipPose& to() const { return to_; }
 
+  // Outside 0..length() the nearer end; the ends are from() and to() to the last bit.
   TipPose At(double s) const;
-  Vec3 Tangent(double s) const;    // unit
-  Vec3 Curvature(double s) const;  // 1/mm
+  Vec3 Tangent(double s) const;    // derivative of the tip by s: unit, or per sigma
+  Vec3 Curvature(double s) const;  // second derivative of the tip by s, 1/mm
   double a_rate() const;           // rad per unit of s
   double b_rate() const;
 
@@ -69,13 +75,16 @@ class PathPiece {
   double sweep_rad() const { return sweep_rad_; }
 
  private:
+  Vec3 ArcPoint(double angle) const;
+
   Kind kind_ = Kind::kLine;
   double length_ = 0.0;
   TipPose from_;
   TipPose to_;
   Vec3 centre_;
   Vec3 normal_;
-  Vec3 tangent_;  // at the start
+  Vec3 tangent_;  // arcs: unit tangent at the start
+  Vec3 inward_;   // arcs: unit vector from the start to the centre
   double radius_mm_ = 0.0;
   double sweep_rad_ = 0.0;
 };

@@ -5,8 +5,8 @@
 
 namespace rmlcell::motion {
 
-// Limits along a path: mm/s, mm/s2, mm/s3, or the same by sigma. Every figure above zero; an infinite
-// jerk makes trapezoids. motion.md 5.1, 5.2.
+// Limits along a path: mm/s, mm/s2, mm/s3, or the same by sigma. Every figure above zero; an
+// infinite jerk makes trapezoids. motion.md 5.1, 5.2.
 struct PathLimits {
   double speed = 0.0;
   double acceleration = 0.0;
@@ -20,8 +20,8 @@ struct PathState {
   double acceleration = 0.0;
 };
 
-// The time-optimal ramp-cruise-ramp from `v0` to `v1` over `length`, with zero acceleration at both ends:
-// at most seven phases of constant jerk. A value of fixed size.
+// The time-optimal ramp-cruise-ramp from `v0` to `v1` over `length`, with zero acceleration at both
+// ends: at most seven phases of constant jerk. A value of fixed size.
 class SpeedProfile {
  public:
   struct Phase {
@@ -33,11 +33,12 @@ class SpeedProfile {
 
   SpeedProfile() = default;  // takes no time
 
-  // Precondition: length >= 0, limits above zero, v0 and v1 within limits.speed, and the change from v0
-  // to v1 fits into the length (see Reach).
+  // Precondition: length >= 0, limits above zero, v0 and v1 within limits.speed, and the change
+  // from v0 to v1 fits into the length (see Reach).
   static SpeedProfile Span(double length, double v0, double v1, const PathLimits& limits);
 
   double duration_s() const { return duration_s_; }
+  const PathState& end() const { return end_; }  // s of the end, and the speed there
   double peak_speed() const { return peak_speed_; }
   int phase_count() const { return count_; }
   const Phase& phase(int index) const { return phases_[static_cast<std::size_t>(index)]; }
@@ -45,15 +46,22 @@ class SpeedProfile {
   // 0 <= t <= duration_s(); outside it is clamped.
   PathState At(double t_s) const;
 
-  // The ramp to rest that begins at `t_s`: first the acceleration is brought to zero, then down to
-  // speed 0 with the limits. Its s counts from the same origin. motion.md section 6 (STOP).
+  // The ramp to rest that begins at `t_s`, at once and with the limits: a motion that speeds up
+  // first brings its acceleration to zero, one that slows down goes on slowing down, so that a STOP
+  // never passes the place where the motion would have ended by itself. Its s counts from the same
+  // origin. motion.md section 6 (STOP, /END).
   SpeedProfile StopFrom(double t_s, const PathLimits& limits) const;
 
  private:
+  void AddPhase(PathState& state, double duration_s, double acceleration, double jerk);
+  void AddRamp(PathState& state, double change, double sign, double to_speed,
+               const PathLimits& limits);
+
   std::array<Phase, kPhasesMax> phases_{};
   int count_ = 0;
   double duration_s_ = 0.0;
   double peak_speed_ = 0.0;
+  PathState end_;
 };
 
 // The highest speed that can be reached from `v0` within `length`. motion.md 5.2.

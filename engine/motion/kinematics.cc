@@ -1,0 +1,188 @@
+#include "engine/motion/kinematics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/core/units.h"
+
+namespace rmlcell::motion {
+namespace {
+
+// The vector from the tip to the column in the machine frame, and its derivatives by A and B.
+struct HeadVector {
+  double sin_a, cos_a;
+  double x;     // r_x
+  double m, n;  // r turned about the tool's X axis: components across and along Z
+
+  HeadVector(const Head& head, double a_rad, double b_rad)
+      : sin_a(std::sin(a_rad)), cos_a(std::cos(a_rad)), x(-head.tool.x_mm) {
+    const double sin_b = std::sin(b_rad);
+    const double cos_b = std::cos(b_rad);
+    const double y = -head.tool.y_mm;
+    const double z = head.length_mm - head.tool.z_mm;
+    m = y * cos_b - z * sin_b;
+    n = y * sin_b + z * cos_b;
+  }
+  Vec3 Value() const { return {x * cos_a - m * sin_a, x * sin_a + m * cos_a, n}; }
+  Vec3 ByA() const { return {-x * sin_a - m * cos_a, x * cos_a - m * sin_a, 0.0}; }
+  Vec3 ByB() const { return {n * sin_a, -n * cos_a, m}; }
+  Vec3 ByAA() const { return {m * sin_a - x * cos_a, -x * sin_a - m * cos_a, 0.0}; }
+  Vec3 ByAB() const { return {n * cos_a, n * sin_a, 0.0}; }
+  Vec3 ByBB() const { return {m * sin_a, -m * cos_a, -n}; }
+};
+
+AxisValues Together(const Vec3& column, double a, double b) {
+  return {column.x, column.y, column.z, a, b};
+}
+
+// The angle that differs from `angle` by whole turns and is nearest to `near`.
+double NearestTurn(double angle, double near) {
+  return angle + kTurn * std::round((near - angle) / kTurn);
+}
+
+constexpr double kAlongZ = 1e-9;   // below: the direction does not tell A
+constexpr int kRangePieces = 16;   // 17 points on any piece, motion.md 2.6
+constexpr int kRangePerTurn = 32;  // on arcs
+
+void KeepWorse(TravelExcess& worst, const TravelExcess& other) {
+  if (other.excess > worst.excess) worst = other;
+}
+
+}  // namespace
+
+ToolAxes AxesOfTool(double a_rad, double b_rad) {
+  const double sin_a = std::sin(a_rad);
+  const double cos_a = std::cos(a_rad);
+  const double sin_b = std::sin(b_rad);
+  const double cos_b = std::cos(b_rad);
+  return {.x = {cos_a, sin_a, 0.0},
+          .y = {-sin_a * cos_b, cos_a * cos_b, sin_b},
+          .u = {sin_a * sin_b, -cos_a * sin_b, cos_b}};
+}
+
+AxisPose Head::ColumnOf(const TipPose& pose) const {
+  return {pose.tip + HeadVector(*this, pose.a_rad, pose.b_rad).Value(), pose.a_rad, pose.b_rad};
+}
+
+TipPose Head::TipOf(const AxisPose& pose) const {
+  return {pose.column - HeadVector(*this, pose.a_rad, pose.b_rad).Value(), pose.a_rad, pose.b_rad};
+}
+
+AxisValues AxisRates(const Head& head, double a_rad, double b_rad, const TipRates& first) {
+  if (first.a == 0.0 && first.b == 0.0) return Together(first.tip, 0.0, 0.0);
+  const HeadVector w(head, a_rad, b_rad);
+  return Together(first.tip + w.ByA() * first.a + w.ByB() * first.b, first.a, first.b);
+}
+
+AxisValues AxisSecondRates(const Head& head, double a_rad, double b_rad, const TipRates& first,
+                           const TipRates& second) {
+  const HeadVector w(head, a_rad, b_rad);
+  return Together(second.tip + w.ByA() * second.a + w.ByB() * second.b +
+                      w.ByAA() * (first.a * first.a) + w.ByAB() * (2.0 * first.a * first.b) +
+                      w.ByBB() * (first.b * first.b),
+                  second.a, second.b);
+}
+
+HeadAngles AnglesOf(const Vec3& u, const HeadAngles& near) {
+  const double across = std::hypot(u.x, u.y);
+  const double b = std::atan2(across, u.z);
+  if (across < kAlongZ) return {near.a_rad, b};
+  const double a = std::atan2(u.x, -u.y);
+  const HeadAngles first{NearestTurn(a, near.a_rad), b};
+  const HeadAngles twin{NearestTurn(a + kPi, near.a_rad), -b};
+  const auto distance = [&near](const HeadAngles& angles) {
+    return std::abs(angles.a_rad - near.a_rad) + std::abs(angles.b_rad - near.b_rad);
+  };
+  return distance(twin) < distance(first) ? twin : first;
+}
+
+AxisPose Jogged(const AxisPose& from, const Head& head, const Jog& jog) {
+  const auto step = [&jog](Vec3 column) {
+    (jog.axis == 0 ? column.x : jog.axis == 1 ? column.y : column.z) += jog.distance;
+    return column;
+  };
+  AxisPose to = from;
+  if (jog.axis >= 3) {
+    TipPose held = head.TipOf(from);
+    (jog.axis == 3 ? held.a_rad : held.b_rad) += jog.distance;
+    if (jog.mode == JogMode::kAbsolute) return head.ColumnOf(held);
+    to.a_rad = held.a_rad;
+    to.b_rad = held.b_rad;
+    return to;
+  }
+  if (jog.mode != JogMode::kTool) {
+    to.column = step(from.column);
+    return to;
+  }
+  const ToolAxes axes = AxesOfTool(from.a_rad, from.b_rad);
+  const double sign = jog.tool_z_down && jog.axis > 0 ? -1.0 : 1.0;
+  const Vec3& direction = jog.axis == 0 ? axes.x : jog.axis == 1 ? axes.y : axes.u;
+  to.column = from.column + direction * (sign * jog.distance);
+  return to;
+}
+
+WorkOffset::WorkOffset(const Vec3& translation, double rz_rad, double ry_rad, double rx_rad)
+    : translation_(translation) {
+  const double cz = std::cos(rz_rad), sz = std::sin(rz_rad);
+  const double cy = std::cos(ry_rad), sy = std::sin(ry_rad);
+  const double cx = std::cos(rx_rad), sx = std::sin(rx_rad);
+  x_ = {cz * cy, sz * cy, -sy};
+  y_ = {cz * sy * sx - sz * cx, sz * sy * sx + cz * cx, cy * sx};
+  z_ = {cz * sy * cx + sz * sx, sz * sy * cx - cz * sx, cy * cx};
+}
+
+Vec3 WorkOffset::DirectionToMachine(const Vec3& d) const { return x_ * d.x + y_ * d.y + z_ * d.z; }
+
+Vec3 WorkOffset::ToMachine(const Vec3& program_point) const {
+  return translation_ + DirectionToMachine(program_point);
+}
+
+Vec3 WorkOffset::ToProgram(const Vec3& machine_point) const {
+  const Vec3 p = machine_point - translation_;
+  return {Dot(x_, p), Dot(y_, p), Dot(z_, p)};
+}
+
+TravelExcess WorstExcess(const AxisPose& pose, const AxisLimits& limits) {
+  const AxisValues values = Together(pose.column, pose.a_rad, pose.b_rad);
+  TravelExcess worst;
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    const auto i = static_cast<std::size_t>(axis);
+    double excess = std::max(limits.travel_min[i] - values[i], values[i] - limits.travel_max[i]);
+    if (std::isnan(values[i])) excess = std::numeric_limits<double>::infinity();
+    KeepWorse(worst, {excess > 0.0 ? axis : -1, std::max(excess, 0.0)});
+  }
+  return worst;
+}
+
+TravelExcess WorstExcess(const PathPiece& path, const Head& head, const AxisLimits& limits) {
+  TravelExcess worst;
+  const auto look = [&](double s) {
+    const TipPose pose = path.At(s);
+    const AxisPose axes = path.kind() == PathPiece::Kind::kJoint
+                              ? AxisPose{pose.tip, pose.a_rad, pose.b_rad}
+                              : head.ColumnOf(pose);
+    KeepWorse(worst, WorstExcess(axes, limits));
+  };
+  const bool arc = path.kind() == PathPiece::Kind::kArc;
+  const int pieces =
+      arc ? std::max(kRangePieces,
+                     static_cast<int>(std::ceil(path.sweep_rad() / kTurn * kRangePerTurn)))
+          : kRangePieces;
+  for (int k = 0; k <= pieces; ++k) look(path.length() * k / pieces);
+  if (!arc) return worst;
+
+  // Where the circle is farthest along X, Y and Z: tangent(x) = t cos x + c sin x has no such
+  // component.
+  const Vec3 t = path.Tangent(0.0);
+  const Vec3 c = path.Curvature(0.0) * path.radius_mm();
+  for (const auto& [along, inward] :
+       {std::pair{t.x, c.x}, std::pair{t.y, c.y}, std::pair{t.z, c.z}}) {
+    double angle = std::atan2(-along, inward);
+    if (angle < 0.0) angle += kPi;
+    for (; angle < path.sweep_rad(); angle += kPi) look(angle * path.radius_mm());
+  }
+  return worst;
+}
+
+}  // namespace rmlcell::motion

@@ -1,0 +1,35 @@
+#include <algorithm>
+#include <cmath>
+
+#include "engine/motion/axis_demand.h"
+#include "engine/motion/planner.h"
+
+namespace rmlcell::motion {
+
+PathLimits LimitsOf(const MoveCommand& move, const MachineLimits& machine) {
+  const double share = std::clamp(move.acceleration_fraction, 0.0, 1.0);
+  const double speed_share = std::clamp(move.speed_fraction, 0.0, 1.0);
+  const bool contour = move.kind == MoveCommand::Kind::kContour && !move.path.by_sigma();
+  if (!contour) {
+    // Positioning, and turning the head about a tip that stands: the axes alone set the limits.
+    const double jerk = std::isinf(machine.tip_jerk_mm_s3) ? HUGE_VAL : kLargest;
+    return WithinAxes(move.path, move.head, machine.axes, {speed_share, share},
+                      {kLargest, kLargest, jerk});
+  }
+  PathLimits limits{speed_share * machine.tip_speed_mm_s, share * machine.tip_acceleration_mm_s2,
+                    share * machine.tip_jerk_mm_s3};
+  if (move.path.kind() == PathPiece::Kind::kArc) {
+    const double radius = move.path.radius_mm();
+    const double normal = machine.curve_normal * machine.tip_acceleration_mm_s2;
+    limits.acceleration =
+        std::min(limits.acceleration, machine.curve_tangential * machine.tip_acceleration_mm_s2);
+    limits.speed = std::min(limits.speed, std::sqrt(normal * radius));
+    if (std::isfinite(machine.tip_jerk_mm_s3)) {
+      const double jerk = machine.curve_jerk * machine.tip_jerk_mm_s3;
+      limits.speed = std::min(limits.speed, std::cbrt(jerk * radius * radius));
+    }
+  }
+  return WithinAxes(move.path, move.head, machine.axes, {1.0, 1.0}, limits);
+}
+
+}  // namespace rmlcell::motion

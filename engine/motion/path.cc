@@ -1,0 +1,175 @@
+#include "engine/motion/path.h"
+
+#include <cmath>
+
+#include "engine/core/units.h"
+
+namespace rmlcell::motion {
+namespace {
+
+constexpr double kCollinear_mm = kArcPointTolerance_mm;
+
+bool IsFinite(const Vec3& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+Vec3 Between(const Vec3& from, const Vec3& to, double share) { return from + (to - from) * share; }
+
+}  // namespace
+
+PathPiece PathPiece::Line(const TipPose& from, const TipPose& to) {
+  PathPiece piece;
+  piece.from_ = from;
+  piece.to_ = to;
+  const double distance = Distance(from.tip, to.tip);
+  if (distance > kTipLengthZero_mm) {
+    piece.kind_ = Kind::kLine;
+    piece.length_ = distance;
+    piece.tangent_ = (to.tip - from.tip) * (1.0 / distance);
+  } else if (from.a_rad != to.a_rad || from.b_rad != to.b_rad) {
+    piece.kind_ = Kind::kRotary;
+    piece.length_ = 1.0;
+  } else {
+    piece.length_ = 0.0;
+    if (!(distance <= kTipLengthZero_mm))
+      piece.length_ = distance;  // not a number: keep it visible
+  }
+  return piece;
+}
+
+PathPiece PathPiece::Joint(const TipPose& from, const TipPose& to) {
+  PathPiece piece;
+  piece.kind_ = Kind::kJoint;
+  piece.from_ = from;
+  piece.to_ = to;
+  piece.length_ = from == to ? 0.0 : 1.0;
+  return piece;
+}
+
+Result<PathPiece::Arc3> PathPiece::ArcThrough(const TipPose& from, const Vec3& via,
+                                              const TipPose& to) {
+  const Vec3 a = via - from.tip;
+  const Vec3 b = to.tip - from.tip;
+  const double chord = Norm(b);
+  const double to_via = Norm(a);
+  if (!std::isfinite(chord) || !std::isfinite(to_via) || !IsFinite(from.tip)) {
+    return Error{ErrorCode::kArcUndefined, "a coordinate is not a number", {}};
+  }
+  if (chord <= kArcPointTolerance_mm) {
+    if (to_via > kArcPointTolerance_mm) {
+      return Error{ErrorCode::kArcUndefined, "the arc ends where it begins", {}};
+    }
+    return Arc3{ArcCase::kNoTipMotion, Line(from, to)};
+  }
+  if (to_via <= kArcPointTolerance_mm || Distance(via, to.tip) <= kArcPointTolerance_mm) {
+    return Arc3{ArcCase::kLineWarned, Line(from, to)};
+  }
+  // In the plane of the three points, with the chord as abscissa: the via point lies at (along,
+  // -height) and the centre at (chord / 2, rise). Both ends are equally far from it by
+  // construction, so the arc ends at the target however large the radius; motion.md 3.2 gives the
+  // same circle.
+  const Vec3 chord_unit = b * (1.0 / chord);
+  const double along = Dot(a, chord_unit);
+  const Vec3 offset = a - chord_unit * along;
+  const double height = Norm(offset);
+  if (height <= kCollinear_mm) {
+    if (along > 0.0 && along < chord) return Arc3{ArcCase::kLineWarned, Line(from, to)};
+    return Error{ErrorCode::kArcUndefined,
+                 "the via point is on the line through start and target, outside them",
+                 {}};
+  }
+  const Vec3 up = offset * (-1.0 / height);
+  const double rise = (along * (chord - along) - height * height) / (2.0 * height);
+  const double radius = std::hypot(0.5 * chord, rise);
+  const double sine = 0.5 * chord / radius;  // of half the sweep
+  const double cosine = rise / radius;
+
+  Arc3 arc{ArcCase::kArc, {}};
+  PathPiece& piece = arc.path;
+  piece.kind_ = Kind::kArc;
+  piece.from_ = from;
+  piece.to_ = to;
+  piece.normal_ = Cross(chord_unit, up);
+  piece.tangent_ = chord_unit * cosine - up * sine;
+  piece.inward_ = chord_unit * sine + up * cosine;
+  piece.radius_mm_ = radius;
+  piece.sweep_rad_ = 2.0 * std::atan2(0.5 * chord, rise);
+  piece.length_ = radius * piece.sweep_rad_;
+  piece.centre_ = from.tip + chord_unit * (0.5 * chord) + up * rise;
+  return arc;
+}
+
+PathPiece PathPiece::Circle(const TipPose& from, const Vec3& centre, const Vec3& normal,
+                            double sweep_rad, double a_to_rad, double b_to_rad) {
+  PathPiece piece;
+  piece.kind_ = Kind::kArc;
+  piece.from_ = from;
+  piece.centre_ = centre;
+  piece.normal_ = normal;
+  const Vec3 inward = centre - from.tip;
+  piece.radius_mm_ = Norm(inward);
+  piece.inward_ = inward * (1.0 / piece.radius_mm_);
+  piece.tangent_ = Cross(piece.inward_, normal);
+  piece.sweep_rad_ = sweep_rad;
+  piece.length_ = piece.radius_mm_ * sweep_rad;
+  piece.to_ = {from.tip, a_to_rad, b_to_rad};
+  if (sweep_rad != kTurn) piece.to_.tip = piece.ArcPoint(sweep_rad);
+  return piece;
+}
+
+PathPiece PathPiece::Part(double s_from, double s_to) const {
+  PathPiece part = *this;
+  part.from_ = At(s_from);
+  part.to_ = At(s_to);
+  if (kind_ == Kind::kArc) {
+    part.tangent_ = Tangent(s_from);
+    part.inward_ = Curvature(s_from) * radius_mm_;
+    part.sweep_rad_ = (s_to - s_from) / radius_mm_;
+  }
+  if (!by_sigma()) part.length_ = s_to - s_from;
+  return part;
+}
+
+double PathPiece::tip_length_mm() const { return by_sigma() ? 0.0 : length_; }
+
+Vec3 PathPiece::ArcPoint(double angle) const {
+  // From the start point, not from the centre: a radius of 1e8 mm then costs no digits.
+  const double half_sine = std::sin(0.5 * angle);
+  return from_.tip + tangent_ * (radius_mm_ * std::sin(angle)) +
+         inward_ * (radius_mm_ * 2.0 * half_sine * half_sine);
+}
+
+TipPose PathPiece::At(double s) const {
+  if (!(s > 0.0)) return from_;
+  if (s >= length_) return to_;
+  const double share = s / length_;
+  TipPose pose;
+  pose.a_rad = from_.a_rad + (to_.a_rad - from_.a_rad) * share;
+  pose.b_rad = from_.b_rad + (to_.b_rad - from_.b_rad) * share;
+  pose.tip = kind_ == Kind::kArc ? ArcPoint(s / radius_mm_) : Between(from_.tip, to_.tip, share);
+  return pose;
+}
+
+Vec3 PathPiece::Tangent(double s) const {
+  if (kind_ == Kind::kArc) {
+    const double angle = s / radius_mm_;
+    return tangent_ * std::cos(angle) + inward_ * std::sin(angle);
+  }
+  if (kind_ == Kind::kLine) return tangent_;
+  return to_.tip - from_.tip;
+}
+
+Vec3 PathPiece::Curvature(double s) const {
+  if (kind_ != Kind::kArc) return {};
+  const double angle = s / radius_mm_;
+  return (inward_ * std::cos(angle) - tangent_ * std::sin(angle)) * (1.0 / radius_mm_);
+}
+
+double PathPiece::a_rate() const {
+  return length_ > 0.0 ? (to_.a_rad - from_.a_rad) / length_ : 0.0;
+}
+double PathPiece::b_rate() const {
+  return length_ > 0.0 ? (to_.b_rad - from_.b_rad) / length_ : 0.0;
+}
+
+}  // namespace rmlcell::motion

@@ -1,0 +1,257 @@
+#include "engine/motion/speed_profile.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rmlcell::motion {
+namespace {
+
+// Ramp lengths are compared against lengths that other formulas gave: this much relative room.
+constexpr double kRoundingRoom = 1e-12;
+
+struct Ramp {
+  double duration_s = 0.0;
+  double edge_s = 0.0;        // of each jerk phase; 0 for a trapezoid
+  double acceleration = 0.0;  // in the middle, without sign
+};
+
+Ramp RampOf(double change, const PathLimits& limits) {
+  const double a = limits.acceleration;
+  const double j = limits.jerk;
+  if (!(change > 0.0)) return {};
+  if (std::isinf(j)) return {change / a, 0.0, a};
+  if (change <= a * a / j) {
+    const double edge = std::sqrt(change / j);
+    return {2.0 * edge, edge, edge * j};
+  }
+  return {change / a + a / j, a / j, a};
+}
+
+// The root of f(y) = want for f increasing and convex or nearly so, from an upper bound: Newton
+// steps, halved whenever they leave the bracket. `f` returns value and derivative.
+template <class F>
+double Root(F f, double want, double high) {
+  constexpr int kStepsMax = 200;  // bisection alone ends after 64
+  double low = 0.0;
+  double y = high;
+  for (int step = 0; step < kStepsMax; ++step) {
+    const auto [value, slope] = f(y);
+    const double miss = value - want;
+    if (miss > 0.0) {
+      high = y;
+    } else {
+      low = y;
+    }
+    double next = slope > 0.0 ? y - miss / slope : low;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (std::abs(next - y) <= 4e-16 * high || next == low || next == high) return next;
+    y = next;
+  }
+  return y;
+}
+
+struct ValueAndSlope {
+  double value;
+  double slope;
+};
+
+// Length of a ramp between `low` and low + change, and its derivative by change.
+ValueAndSlope RampLengthBy(double low, double change, const PathLimits& limits) {
+  const double a = limits.acceleration;
+  const double j = limits.jerk;
+  const double mean = low + 0.5 * change;
+  if (std::isinf(j)) return {mean * change / a, (low + change) / a};
+  if (change <= a * a / j) {
+    const double root = std::sqrt(change / j);
+    return {2.0 * mean * root, change > 0.0 ? root + mean / (root * j) : HUGE_VAL};
+  }
+  const double time = change / a + a / j;
+  return {mean * time, 0.5 * time + mean / a};
+}
+
+// How far a profile between `top` and top - drop rises above the top when it never cruises.
+double PeakRise(double length, double top, double drop, const PathLimits& limits) {
+  const double a = limits.acceleration;
+  const double j = limits.jerk;
+  if (top == 0.0) {  // rest to rest: closed
+    if (std::isinf(j)) return std::sqrt(a * length);
+    if (length < 2.0 * a * a * a / (j * j)) return std::cbrt(0.25 * j * length * length);
+    const double b = a * a / j;
+    return 0.5 * (std::sqrt(b * b + 4.0 * a * length) - b);
+  }
+  // By y = sqrt(rise) both ramp lengths are smooth, increasing and convex.
+  const double low = top - drop;
+  const auto both = [&](double y) {
+    const double up = y * y;
+    const double down = drop + up;
+    const ValueAndSlope from_top = RampLengthBy(top, up, limits);
+    const double top_slope =
+        !std::isinf(j) && up <= a * a / j
+            ? (2.0 * top + 3.0 * up) / std::sqrt(j)  // of (2 top + y^2) y / sqrt(j)
+            : from_top.slope * 2.0 * y;
+    const ValueAndSlope from_low = RampLengthBy(low, down, limits);
+    const double low_slope = down > 0.0 && y > 0.0 ? from_low.slope * 2.0 * y : 0.0;
+    return ValueAndSlope{from_top.value + from_low.value, top_slope + low_slope};
+  };
+  const double y = Root(both, length, std::sqrt(std::max(limits.speed - top, 0.0)));
+  return y * y;
+}
+
+}  // namespace
+
+double RampTime(double v0, double v1, const PathLimits& limits) {
+  return RampOf(std::abs(v1 - v0), limits).duration_s;
+}
+
+double RampLength(double v0, double v1, const PathLimits& limits) {
+  return 0.5 * (v0 + v1) * RampTime(v0, v1, limits);
+}
+
+double Reach(double v0, double length, const PathLimits& limits) {
+  const double a = limits.acceleration;
+  const double j = limits.jerk;
+  if (!(length > 0.0)) return v0;
+  if (std::isinf(j)) return std::sqrt(v0 * v0 + 2.0 * a * length);
+  const double b = a * a / j;
+  if ((v0 + 0.5 * b) * (2.0 * a / j) <= length) {
+    const double c = v0 * b - v0 * v0 - 2.0 * a * length;
+    return 0.5 * (std::sqrt(b * b - 4.0 * c) - b);
+  }
+  // y^3 + 2 v0 y = length sqrt(j): Newton from above, where the cubic is convex. Both guesses are
+  // upper bounds, and the lower of the two is within a factor 1.5 of the root.
+  const double want = length * std::sqrt(j);
+  double y = std::cbrt(want);
+  if (v0 > 0.0) {
+    y = std::min(y, want / (2.0 * v0));
+    constexpr int kStepsMax = 8;  // 5 do, with the guess above
+    for (int step = 0; step < kStepsMax; ++step) {
+      const double next = y - (y * y * y + 2.0 * v0 * y - want) / (3.0 * y * y + 2.0 * v0);
+      const bool done = std::abs(next - y) <= 2e-16 * y;
+      y = next;
+      if (done) break;
+    }
+  }
+  return v0 + y * y;
+}
+
+SpeedProfile SpeedProfile::Span(double length, double v0, double v1, const PathLimits& limits) {
+  SpeedProfile profile;
+  profile.end_ = {std::max(length, 0.0), v1, 0.0};
+  if (!(length > 0.0)) return profile;
+  const double top = std::max(v0, v1);
+  const double drop = std::abs(v1 - v0);
+  PathState state{0.0, v0, 0.0};
+  const double direct = RampLength(v0, v1, limits);
+  if (direct > length * (1.0 + kRoundingRoom)) {
+    // Speeds that differ in their last digits over a length that is nearly nothing: the ramp
+    // between two neighbouring numbers near 500 mm/s is longer than 1e-6 mm.
+    profile.peak_speed_ = top;
+    const double time = 2.0 * length / (v0 + v1);
+    profile.AddPhase(state, time, (v1 - v0) / time, 0.0);
+    return profile;
+  }
+
+  // The peak as a rise above the higher end: where the two are close, their difference has no
+  // digits.
+  double rise = std::max(limits.speed - top, 0.0);
+  double cruise = length - RampLength(top, top + rise, limits) -
+                  RampLengthBy(top - drop, drop + rise, limits).value;
+  if (cruise < 0.0) {
+    rise = direct >= length * (1.0 - kRoundingRoom) ? 0.0 : PeakRise(length, top, drop, limits);
+    cruise = 0.0;
+  }
+  const double peak = top + rise;
+  profile.peak_speed_ = peak;
+  if (!(peak > 0.0)) return profile;  // a length that underflows
+
+  profile.AddRamp(state, v0 < v1 ? drop + rise : rise, 1.0, peak, limits);
+  if (cruise > kRoundingRoom * length) profile.AddPhase(state, cruise / peak, 0.0, 0.0);
+  profile.AddRamp(state, v0 < v1 ? rise : drop + rise, -1.0, v1, limits);
+  return profile;
+}
+
+void SpeedProfile::AddPhase(PathState& state, double duration_s, double acceleration, double jerk) {
+  if (!(duration_s > 0.0)) return;
+  state.acceleration = acceleration;
+  phases_[static_cast<std::size_t>(count_++)] = {duration_s, jerk, state};
+  const double t = duration_s;
+  state.s += t * (state.speed + t * (0.5 * acceleration + t * jerk / 6.0));
+  state.speed += t * (acceleration + 0.5 * t * jerk);
+  state.acceleration = acceleration + t * jerk;
+  duration_s_ += duration_s;
+}
+
+void SpeedProfile::AddRamp(PathState& state, double change, double sign, double to_speed,
+                           const PathLimits& limits) {
+  const Ramp ramp = RampOf(change, limits);
+  const double a = sign * ramp.acceleration;
+  if (ramp.edge_s == 0.0) {
+    AddPhase(state, ramp.duration_s, a, 0.0);
+  } else {
+    AddPhase(state, ramp.edge_s, 0.0, sign * limits.jerk);
+    AddPhase(state, ramp.duration_s - 2.0 * ramp.edge_s, a, 0.0);
+    AddPhase(state, ramp.edge_s, a, -sign * limits.jerk);
+  }
+  state.speed = to_speed;  // exactly, whatever the phases added up to
+  state.acceleration = 0.0;
+}
+
+PathState SpeedProfile::At(double t_s) const {
+  if (count_ == 0 || t_s >= duration_s_) return end_;
+  double t = std::max(t_s, 0.0);
+  int index = 0;
+  while (index + 1 < count_ && t >= phases_[static_cast<std::size_t>(index)].duration_s) {
+    t -= phases_[static_cast<std::size_t>(index)].duration_s;
+    ++index;
+  }
+  const Phase& p = phases_[static_cast<std::size_t>(index)];
+  t = std::min(t, p.duration_s);
+  PathState state;
+  state.s = p.start.s + t * (p.start.speed + t * (0.5 * p.start.acceleration + t * p.jerk / 6.0));
+  state.speed = p.start.speed + t * (p.start.acceleration + 0.5 * t * p.jerk);
+  state.acceleration = p.start.acceleration + t * p.jerk;
+  // Rounding must not carry the last phase past its end.
+  state.s = std::min(state.s, end_.s);
+  state.speed = std::max(state.speed, 0.0);
+  return state;
+}
+
+SpeedProfile SpeedProfile::StopFrom(double t_s, const PathLimits& limits) const {
+  SpeedProfile stop;
+  PathState state = At(t_s);
+  stop.peak_speed_ = state.speed;
+  const double a = state.acceleration;
+  const double j = limits.jerk;
+  if (std::isinf(j)) {
+    stop.AddRamp(state, state.speed, -1.0, 0.0, limits);
+  } else if (a >= 0.0) {
+    if (a > 0.0) stop.AddPhase(state, a / j, a, -j);
+    state.acceleration = 0.0;
+    stop.peak_speed_ = state.speed;
+    stop.AddRamp(state, state.speed, -1.0, 0.0, limits);
+  } else {
+    // Already slowing down: the rest of the ramp that began at a higher speed. A ramp to
+    // acceleration zero first would take more room than a motion that is about to end has left.
+    const double began = state.speed + a * a / (2.0 * j);
+    const double share = -a;
+    Ramp ramp = RampOf(began, limits);
+    ramp.acceleration = std::max(ramp.acceleration, share);
+    if (state.speed <= a * a / (2.0 * j)) {
+      if (state.speed > 0.0)
+        stop.AddPhase(state, 2.0 * state.speed / share, a, a * a / (2.0 * state.speed));
+    } else {
+      const double grow = (ramp.acceleration - share) / j;
+      const double release = ramp.acceleration / j;
+      stop.AddPhase(state, grow, a, -j);
+      const double left = state.speed - 0.5 * ramp.acceleration * release;
+      stop.AddPhase(state, std::max(left, 0.0) / ramp.acceleration, -ramp.acceleration, 0.0);
+      stop.AddPhase(state, release, -ramp.acceleration, j);
+    }
+    state.speed = 0.0;
+    state.acceleration = 0.0;
+  }
+  stop.end_ = {state.s, 0.0, 0.0};
+  return stop;
+}
+
+}  // namespace rmlcell::motion

@@ -1,0 +1,287 @@
+#include "tests/conformance/motion_case_kinds.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "engine/motion/feed_steps.h"
+#include "engine/motion/hole.h"
+#include "engine/motion/laser_power.h"
+#include "tests/engine/motion/standard_machine.h"
+
+namespace rmlcell::motion {
+namespace {
+
+using nlohmann::json;
+
+Vec3 Point(const json& j) {
+  return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
+}
+
+void Put(Figures& figures, const std::string& name, const Vec3& v) {
+  figures[name + ".x"] = v.x;
+  figures[name + ".y"] = v.y;
+  figures[name + ".z"] = v.z;
+}
+
+std::string Numbered(std::string name, std::uint64_t number) { return name.append(std::to_string(number)); }
+
+double Number(const json& input, const char* name) { return input.at(name).get<double>(); }
+double NumberOr(const json& input, const char* name, double standard) {
+  return input.contains(name) ? Number(input, name) : standard;
+}
+
+TipPose Pose(const json& tip, const json& ab) {
+  return {Point(tip), ab.at(0).get<double>(), ab.at(1).get<double>()};
+}
+
+Head HeadOf(const json& input) {
+  Head head;
+  if (input.contains("tcp")) {
+    const Vec3 offset = Point(input.at("tcp"));
+    head.tool = {offset.x, offset.y, offset.z};
+  }
+  return head;
+}
+
+WorkOffset OffsetOf(const json& input) {
+  const json& s = input.at("sysdef");
+  return {Point(s), s.at(3).get<double>(), s.at(4).get<double>(), s.at(5).get<double>()};
+}
+
+Figures ToolDirection(const json& input) {
+  Figures figures;
+  Put(figures, "u", AxesOfTool(Number(input, "A"), Number(input, "B")).u);
+  return figures;
+}
+
+Figures Inverse(const json& input) {
+  Figures figures;
+  const Vec3 tip = OffsetOf(input).ToMachine(Point(input.at("tip")));
+  Put(figures, "machine_tip", tip);
+  Put(figures, "column",
+      HeadOf(input).ColumnOf({tip, Number(input, "A"), Number(input, "B")}).column);
+  return figures;
+}
+
+Figures Forward(const json& input) {
+  Figures figures;
+  const AxisPose axes{Point(input.at("column")), Number(input, "A"), Number(input, "B")};
+  Put(figures, "tip", OffsetOf(input).ToProgram(HeadOf(input).TipOf(axes).tip));
+  return figures;
+}
+
+Figures ColumnRates(const json& input) {
+  Figures figures;
+  const double a = Number(input, "A");
+  const double b = Number(input, "B");
+  const TipRates first{Point(input.at("tip_v")), Number(input, "A1"), Number(input, "B1")};
+  const TipRates second{Point(input.at("tip_a")), Number(input, "A2"), Number(input, "B2")};
+  const AxisValues v = AxisRates(HeadOf(input), a, b, first);
+  const AxisValues w = AxisSecondRates(HeadOf(input), a, b, first, second);
+  Put(figures, "v", {v[0], v[1], v[2]});
+  Put(figures, "a", {w[0], w[1], w[2]});
+  return figures;
+}
+
+Figures JogCase(const json& input) {
+  const std::string mode = input.at("mode").get<std::string>();
+  const std::string axis = input.at("axis").get<std::string>();
+  Jog jog;
+  jog.mode = mode == "TCP" ? JogMode::kTool : mode == "ABS" ? JogMode::kAbsolute : JogMode::kRobot;
+  jog.axis = static_cast<int>(std::string("XYZAB").find(axis));
+  jog.distance = Number(input, "dist");
+  const AxisPose from{Point(input.at("column")), Number(input, "A"), Number(input, "B")};
+  const AxisPose to = Jogged(from, HeadOf(input), jog);
+  Figures figures{{"A", to.a_rad}, {"B", to.b_rad}};
+  Put(figures, "column", to.column);
+  return figures;
+}
+
+Figures Orientation(const json& input) {
+  const json& near = input.at("near");
+  const HeadAngles angles =
+      AnglesOf(Point(input.at("u")), {near.at(0).get<double>(), near.at(1).get<double>()});
+  return {{"A", angles.a_rad}, {"B", angles.b_rad}};
+}
+
+Figures Arc(const json& input) {
+  const Result<PathPiece::Arc3> arc =
+      PathPiece::ArcThrough({Point(input.at("E"))}, Point(input.at("F")), {Point(input.at("G"))});
+  if (!arc) return {{"kind", -1.0}};
+  if (arc->kind == PathPiece::ArcCase::kNoTipMotion) return {{"kind", 2.0}};
+  if (arc->kind != PathPiece::ArcCase::kArc) return {{"kind", 0.0}};
+  const PathPiece& path = arc->path;
+  Figures figures{{"kind", 1.0},
+                  {"R", path.radius_mm()},
+                  {"sweep", path.sweep_rad()},
+                  {"length", path.length()}};
+  Put(figures, "centre", path.centre());
+  Put(figures, "normal", path.normal());
+  return figures;
+}
+
+// One commanded motion, from rest to rest.
+PlannedMotion Single(const MoveCommand& move) {
+  Planner planner(StandardMachine());
+  PlannedMotion motion;
+  if (!planner.Append(move)) return motion;
+  planner.Stop();
+  if (std::optional<PlannedItem> item = planner.Next()) motion = std::get<PlannedMotion>(*item);
+  return motion;
+}
+
+Figures Hole(const json& input) {
+  const TipPose start = Pose(input.at("start"), input.at("start_ab"));
+  const json& ab = input.at("ab");
+  const TipPose centre = Pose(input.at("centre"), ab);
+  const Result<HolePath> hole = HoleThrough({.from = start,
+                                             .centre = centre,
+                                             .normal_point = Point(input.at("normal")),
+                                             .radius_mm = Number(input, "radius")});
+  if (!hole) return {{"kind", -1.0}};
+  MoveCommand move{
+      .path = hole->lead, .speed_fraction = Number(input, "speed") / 100.0, .settles = false};
+  const PlannedMotion lead = Single(move);
+  move.path = hole->circle;
+  move.settles = true;
+  const PlannedMotion circle = Single(move);
+  Figures figures{{"length", hole->lead.length() + hole->circle.length()},
+                  {"v_circle", circle.limits.speed},
+                  {"T", lead.duration_s() + circle.duration_s()}};
+  Put(figures, "entry", hole->circle.from().tip);
+  Put(figures, "quarter", hole->circle.At(0.25 * hole->circle.length()).tip);
+  return figures;
+}
+
+PathLimits LimitsFrom(const json& input, double speed) {
+  const json& jerk = input.at("j");
+  return {speed, Number(input, "a"),
+          jerk.is_null() ? std::numeric_limits<double>::infinity() : jerk.get<double>()};
+}
+
+Figures Profile(const json& input) {
+  const SpeedProfile profile =
+      SpeedProfile::Span(Number(input, "dist"), NumberOr(input, "v0", 0.0),
+                         NumberOr(input, "v1", 0.0), LimitsFrom(input, Number(input, "v")));
+  return {{"T", profile.duration_s()}, {"v_peak", profile.peak_speed()}};
+}
+
+Figures ReachCase(const json& input) {
+  return {{"v1", Reach(Number(input, "v0"), Number(input, "dist"), LimitsFrom(input, HUGE_VAL))}};
+}
+
+Figures PointToPoint(const json& input, bool axes) {
+  MoveCommand move;
+  move.speed_fraction =
+      std::min(1.0, Number(input, "speed") / 100.0 * NumberOr(input, "override", 100.0) / 100.0);
+  move.acceleration_fraction = NumberOr(input, "accel", 100.0) / 100.0;
+  move.settles = false;
+  if (axes) {
+    move.kind = MoveCommand::Kind::kPointToPointAxes;
+    const auto pose = [](const json& q) {
+      return TipPose{Point(q), q.at(3).get<double>(), q.at(4).get<double>()};
+    };
+    move.path = PathPiece::Joint(pose(input.at("q0")), pose(input.at("q1")));
+  } else {
+    move.kind = MoveCommand::Kind::kPointToPointTip;
+    move.path = PathPiece::Line(Pose(input.at("p0"), input.at("ab0")),
+                                Pose(input.at("p1"), input.at("ab1")));
+  }
+  const PlannedMotion motion = Single(move);
+  const double length = motion.path.length();  // 1, or mm: the figures are by sigma
+  return {{"T", motion.duration_s()},
+          {"sigma_peak", motion.speed.peak_speed() / length},
+          {"sigma_v", motion.limits.speed / length},
+          {"sigma_a", motion.limits.acceleration / length},
+          {"sigma_j", motion.limits.jerk / length}};
+}
+
+// A chain of moves. This version plans exact stops, so chains with a blended corner are not its
+// own.
+std::optional<Figures> PlanCase(const json& input) {
+  TipPose at = Pose(input.at("start"), input.at("start_ab"));
+  MachineLimits machine = StandardMachine();
+  if (!input.value("jerk", true)) machine.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
+  Planner planner(machine);
+  int count = 0;
+  for (const json& m : input.at("moves")) {
+    const TipPose target = Pose(m.at("target"), m.at("ab"));
+    MoveCommand move;
+    move.path = PathPiece::Line(at, target);
+    if (m.at("type") == "CIR") {
+      const Result<PathPiece::Arc3> arc = PathPiece::ArcThrough(at, Point(m.at("via")), target);
+      if (!arc) return Figures{{"kind", -1.0}};
+      move.path = arc->path;
+    }
+    move.speed_fraction =
+        std::min(1.0, Number(m, "speed") / 100.0 * NumberOr(m, "override", 100.0) / 100.0);
+    move.acceleration_fraction = NumberOr(m, "accel", 100.0) / 100.0;
+    move.overshoot_fraction = NumberOr(m, "oversh", 100.0) / 100.0;
+    move.fly = m.value("fly", false);
+    if (move.fly && move.overshoot_fraction > 0.0) return std::nullopt;
+    move.tag = static_cast<std::uint64_t>(++count);
+    if (!planner.Append(move)) return Figures{{"kind", -1.0}};
+    at = target;
+  }
+  planner.Stop();
+  Figures figures{{"T", 0.0}, {"length", 0.0}};
+  while (const std::optional<PlannedItem> item = planner.Next()) {
+    const auto& motion = std::get<PlannedMotion>(*item);
+    figures["T"] += motion.duration_s();
+    figures["length"] += motion.path.length();
+    figures[Numbered("vlim", motion.tag)] = motion.limits.speed;
+    figures[Numbered("v", motion.tag)] = motion.speed.end().speed;
+  }
+  return figures;
+}
+
+PowerLaw LawOf(double speed, double power) {
+  return {.speed_percent = speed,
+          .power_percent = power,
+          .tip_speed_max_mm_s = StandardMachine().tip_speed_mm_s};
+}
+
+Figures Power(const json& input) {
+  const PowerLaw law = LawOf(Number(input, "speed"), Number(input, "power"));
+  return {{"power_pct", law.PercentAt(Number(input, "v"))}};
+}
+
+Figures Cut(const json& input) {
+  const double length = Number(input, "dist");
+  const double delay = Number(input, "delay");
+  const double rated = Number(input, "laser_W");
+  const PlannedMotion motion = Single({.path = PathPiece::Line({}, {{length, 0.0, 0.0}}),
+                                       .speed_fraction = Number(input, "speed") / 100.0});
+  const PowerLaw law = LawOf(Number(input, "wd_speed"), Number(input, "wd_power"));
+  const double energy = EnergyOf(motion.speed, law, rated);
+  const double beam_on = delay + motion.duration_s();
+  return {{"beam_on", beam_on},
+          {"E_pierce", rated * Number(input, "peak") / 100.0 * delay},
+          {"E_cut", energy},
+          {"J_per_mm", energy / length},
+          {"T", beam_on}};
+}
+
+}  // namespace
+
+std::optional<Figures> Compute(const json& input) {
+  const std::string f = input.at("f").get<std::string>();
+  if (f == "tool_direction") return ToolDirection(input);
+  if (f == "inverse") return Inverse(input);
+  if (f == "forward") return Forward(input);
+  if (f == "column_rates") return ColumnRates(input);
+  if (f == "jog") return JogCase(input);
+  if (f == "orientation") return Orientation(input);
+  if (f == "arc3") return Arc(input);
+  if (f == "hole") return Hole(input);
+  if (f == "rest_to_rest" || f == "span") return Profile(input);
+  if (f == "reach") return ReachCase(input);
+  if (f == "ptp_robot" || f == "ptp_absol") return PointToPoint(input, f == "ptp_robot");
+  if (f == "power") return Power(input);
+  if (f == "cut") return Cut(input);
+  if (f == "quant") return Figures{{"v", FeedSteps{}.Nearest(Number(input, "value"))}};
+  if (f == "plan") return PlanCase(input);
+  return std::nullopt;
+}
+
+}  // namespace rmlcell::motion

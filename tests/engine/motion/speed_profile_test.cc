@@ -1,0 +1,197 @@
+#include "engine/motion/speed_profile.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace rmlcell::motion {
+namespace {
+
+constexpr double kNoJerkLimit = std::numeric_limits<double>::infinity();
+constexpr PathLimits kLimits{350.0, 2000.0, 40000.0};
+
+// Speed, acceleration and place at both sides of each phase edge agree, and no limit is passed.
+void ExpectSound(const SpeedProfile& p, double length, double v0, double v1,
+                 const PathLimits& limits) {
+  SCOPED_TRACE(testing::Message() << length << " mm, " << v0 << " to " << v1);
+  const double speed = std::max({limits.speed, v0, v1});
+  PathState last{0.0, v0, 0.0};
+  double time = 0.0;
+  for (int k = 0; k < p.phase_count(); ++k) {
+    const SpeedProfile::Phase& phase = p.phase(k);
+    EXPECT_NEAR(phase.start.s, last.s, 1e-9 * std::max(1.0, length));
+    EXPECT_NEAR(phase.start.speed, last.speed, 1e-7 * speed);
+    if (std::isfinite(limits.jerk)) {
+      EXPECT_NEAR(phase.start.acceleration, last.acceleration, 1e-7 * limits.acceleration);
+      EXPECT_LE(std::abs(phase.jerk), limits.jerk);
+    }
+    const double t = phase.duration_s;
+    last.acceleration = phase.start.acceleration + t * phase.jerk;
+    last.speed = phase.start.speed + t * (phase.start.acceleration + 0.5 * t * phase.jerk);
+    last.s = phase.start.s +
+             t * (phase.start.speed + t * (0.5 * phase.start.acceleration + t * phase.jerk / 6));
+    EXPECT_LE(std::abs(last.acceleration), limits.acceleration * (1 + 1e-9));
+    EXPECT_LE(last.speed, speed * (1 + 1e-9));
+    EXPECT_GE(last.speed, -1e-7 * speed);
+    time += t;
+  }
+  EXPECT_NEAR(time, p.duration_s(), 1e-12 * std::max(1.0, time));
+  EXPECT_NEAR(last.s, length, 1e-9 * std::max(1.0, length));
+  EXPECT_NEAR(last.speed, v1, 1e-6 * speed);
+  EXPECT_EQ(p.At(p.duration_s()).s, length);
+  EXPECT_EQ(p.At(p.duration_s()).speed, v1);
+}
+
+// motion.md 5.2: t = 2 sqrt(D/j) up to D = a^2/j = 100 mm/s, D/a + a/j above.
+TEST(Ramp, BothRegimesMeetAtTheBoundary) {
+  EXPECT_DOUBLE_EQ(RampTime(0, 25, kLimits), 2.0 * std::sqrt(25.0 / 40000.0));
+  EXPECT_DOUBLE_EQ(RampTime(10, 210, kLimits), 200.0 / 2000.0 + 0.05);
+  EXPECT_NEAR(RampTime(0, 100 * (1 - 1e-9), kLimits), RampTime(0, 100 * (1 + 1e-9), kLimits), 1e-9);
+  EXPECT_DOUBLE_EQ(RampLength(210, 10, kLimits), 110.0 * 0.15);
+  EXPECT_DOUBLE_EQ(RampTime(0, 50, {350, 2000, kNoJerkLimit}), 0.025);
+  EXPECT_EQ(RampTime(70, 70, kLimits), 0.0);
+}
+
+// OPT-2.36: run-up from rest to 50 mm/s takes 0.0707 s, with ACCEL 50 0.1000 s.
+TEST(Ramp, ManualsRunUp) {
+  EXPECT_NEAR(RampTime(0, 50, kLimits), 0.0707, 5e-5);
+  EXPECT_NEAR(RampTime(0, 50, {350, 1000, 20000}), 0.1000, 5e-5);
+}
+
+// The ramp to the speed reached takes exactly the length, on both sides of the regime boundary.
+TEST(Reach, InvertsTheRampLength) {
+  for (const double v0 : {0.0, 1e-12, 1e-6, 0.3, 50.0, 180.0, 500.0}) {
+    const double boundary = RampLength(v0, v0 + 100.0, kLimits);
+    for (const double length :
+         {1e-9, 1e-3, 0.4, boundary * (1 - 1e-9), boundary * (1 + 1e-9), 300.0}) {
+      const double v1 = Reach(v0, length, kLimits);
+      // To the last digits of v1: near 500 mm/s one unit of them is worth 1e-6 mm.
+      const double digit = 4e-16 * v1;
+      EXPECT_LE(RampLength(v0, std::max(v0, v1 - digit), kLimits), length * (1 + 1e-9)) << v0;
+      EXPECT_GE(RampLength(v0, v1 + digit, kLimits), length * (1 - 1e-9)) << v0;
+      EXPECT_GE(v1, v0);
+    }
+    EXPECT_DOUBLE_EQ(Reach(v0, 10.0, {350, 2000, kNoJerkLimit}), std::sqrt(v0 * v0 + 40000.0));
+  }
+  EXPECT_EQ(Reach(7.0, 0.0, kLimits), 7.0);
+}
+
+// Rest to rest, both sides of length 2 a^3 / j^2 = 10 mm: there the peak is 100 mm/s, reached by
+// two jerk phases of 0.05 s each way. motion.md 5.2.
+TEST(Span, RestToRestAtTheRegimeBoundary) {
+  for (const double length : {10.0 * (1 - 1e-9), 10.0, 10.0 * (1 + 1e-9)}) {
+    const SpeedProfile p = SpeedProfile::Span(length, 0, 0, kLimits);
+    EXPECT_NEAR(p.peak_speed(), 100.0, 1e-6);
+    EXPECT_NEAR(p.duration_s(), 0.2, 1e-9);
+    ExpectSound(p, length, 0, 0, kLimits);
+  }
+}
+
+TEST(Span, SoundInEveryRegime) {
+  for (const double jerk : {40000.0, kNoJerkLimit}) {
+    const PathLimits limits{350.0, 2000.0, jerk};
+    for (const double v0 : {0.0, 1e-9, 0.5, 25.0, 150.0, 350.0}) {
+      for (const double v1 : {0.0, 0.5, 24.9, 150.0, 350.0}) {
+        const double least = RampLength(v0, v1, limits);
+        for (const double more : {0.0, 1e-12, 1e-6, 0.01, 1.0, 30.0, 1000.0}) {
+          ExpectSound(SpeedProfile::Span(least + more, v0, v1, limits), least + more, v0, v1,
+                      limits);
+        }
+      }
+    }
+  }
+}
+
+// Forwards and backwards take the same time and the same peak.
+TEST(Span, IsSymmetric) {
+  std::mt19937_64 random(20260101);
+  std::uniform_real_distribution<double> speed(0.0, 350.0);
+  std::uniform_real_distribution<double> extra(-6.0, 3.0);
+  for (int k = 0; k < 1000; ++k) {
+    const double v0 = speed(random), v1 = speed(random);
+    const double length = RampLength(v0, v1, kLimits) + std::pow(10.0, extra(random));
+    const SpeedProfile there = SpeedProfile::Span(length, v0, v1, kLimits);
+    const SpeedProfile back = SpeedProfile::Span(length, v1, v0, kLimits);
+    EXPECT_NEAR(there.duration_s(), back.duration_s(), 1e-12 * std::max(1.0, there.duration_s()));
+    EXPECT_NEAR(there.peak_speed(), back.peak_speed(), 1e-9);
+  }
+}
+
+// A jerk limit that grows without bound costs at most a/j per ramp against the trapezoid.
+TEST(Span, TendsToTheTrapezoid) {
+  for (const double length : {0.1, 20.0, 1000.0}) {
+    const double trapezoid =
+        SpeedProfile::Span(length, 0, 0, {350, 2000, kNoJerkLimit}).duration_s();
+    for (const double jerk : {4e6, 4e8}) {
+      const double limited = SpeedProfile::Span(length, 0, 0, {350, 2000, jerk}).duration_s();
+      EXPECT_GE(limited, trapezoid);
+      EXPECT_LE(limited - trapezoid, 2.0 * 2000.0 / jerk * (1 + 1e-9));
+    }
+  }
+}
+
+// At() returns the place within a phase by its cubic: S02 is symmetric about 0.15 s, half way.
+TEST(Span, PlaceAtAnyTime) {
+  const SpeedProfile p = SpeedProfile::Span(30.0, 0, 0, kLimits);
+  EXPECT_NEAR(p.At(0.15).s, 15.0, 1e-12);
+  EXPECT_NEAR(p.At(0.15).speed, 200.0, 1e-9);
+  EXPECT_NEAR(p.At(0.03).s, 40000.0 * 0.03 * 0.03 * 0.03 / 6.0, 1e-12);
+  EXPECT_NEAR(p.At(0.03).acceleration, 1200.0, 1e-9);
+  EXPECT_EQ(p.At(-1.0).s, 0.0);
+  EXPECT_EQ(p.At(9.0).s, 30.0);
+  EXPECT_EQ(SpeedProfile{}.At(1.0).s, 0.0);
+  EXPECT_EQ(SpeedProfile::Span(0.0, 0, 0, kLimits).duration_s(), 0.0);
+}
+
+// OPT-B.31, case O03: from 100 mm/s to rest takes 0.1 s and 5 mm.
+TEST(StopFrom, CruisingIsOneRamp) {
+  const PathLimits limits{100.0, 2000.0, 40000.0};
+  const SpeedProfile stop = SpeedProfile::Span(500.0, 0, 0, limits).StopFrom(2.0, limits);
+  EXPECT_NEAR(stop.duration_s(), 0.1, 1e-12);
+  EXPECT_NEAR(stop.end().s, 200.0, 1e-9);
+  EXPECT_EQ(stop.At(1.0).speed, 0.0);
+}
+
+// At 0.03 s of S02: a = 1200, v = 18. Acceleration to zero takes 0.03 s and brings 36 mm/s, then
+// 2 sqrt(36/40000) = 0.06 s to rest.
+TEST(StopFrom, SpeedingUpFirstEndsTheAcceleration) {
+  const SpeedProfile stop = SpeedProfile::Span(30.0, 0, 0, kLimits).StopFrom(0.03, kLimits);
+  EXPECT_NEAR(stop.duration_s(), 0.09, 1e-12);
+  EXPECT_NEAR(stop.peak_speed(), 36.0, 1e-9);
+  EXPECT_NEAR(stop.At(0.03).speed, 36.0, 1e-9);
+}
+
+// A stop from any state is continuous, keeps the limits, ends at rest, and never passes the place
+// where the motion would have come to rest. motion.md section 6.
+TEST(StopFrom, AnyStateOfAnyProfile) {
+  for (const double jerk : {40000.0, kNoJerkLimit}) {
+    const PathLimits limits{350.0, 2000.0, jerk};
+    for (const double length : {0.01, 5.0, 12.0, 30.0, 400.0}) {
+      const SpeedProfile p = SpeedProfile::Span(length, 0, 0, limits);
+      for (int k = 0; k <= 200; ++k) {
+        const double t = p.duration_s() * k / 200;
+        const SpeedProfile stop = p.StopFrom(t, limits);
+        const PathState at = p.At(t);
+        EXPECT_NEAR(stop.At(0.0).s, at.s, 1e-12 * length);
+        EXPECT_NEAR(stop.At(0.0).speed, at.speed, 1e-9 + 1e-9 * at.speed);
+        EXPECT_LE(stop.end().s, length * (1 + 1e-9));
+        EXPECT_EQ(stop.end().speed, 0.0);
+        for (int i = 0; i < stop.phase_count(); ++i) {
+          EXPECT_LE(std::abs(stop.phase(i).start.acceleration), 2000.0 * (1 + 1e-9));
+          EXPECT_GE(stop.phase(i).start.speed, -1e-9);
+          if (i + 1 == stop.phase_count()) {
+            const auto& last = stop.phase(i);
+            const double d = last.duration_s;
+            EXPECT_NEAR(last.start.speed + d * (last.start.acceleration + 0.5 * d * last.jerk), 0.0,
+                        1e-6);
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rmlcell::motion

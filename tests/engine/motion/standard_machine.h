@@ -1,0 +1,19 @@
+#pragma once
+
+#include "engine/core/units.h"
+#include "engine/motion/planner.h"
+
+namespace rmlcell::motion {
+
+// The machine of motion.md section 1, as all figures of its section 12 assume it.
+inline MachineLimits StandardMachine() {
+  MachineLimits machine;
+  machine.axes.speed = {500.0, 500.0, 500.0, kTurn, kTurn};
+  machine.axes.acceleration = {2000.0, 2000.0, 2000.0, 20.0, 20.0};
+  machine.axes.jerk = {40000.0, 40000.0, 40000.0, 400.0, 400.0};
+  machine.axes.travel_min = {-600.0, -600.0, -1300.0, -12.6, -2.4};
+  machine.axes.travel_max = {3600.0, 3100.0, 1100.0, 12.6, 2.4};
+  return machine;
+}
+
+}  // namespace rmlcell::motion
