@@ -25,11 +25,11 @@ enum class MotionUse { kTravel, kCut, kPlunge, kRetract };
 // How the power of a laser follows the tip speed, in percent of its rated power (motion.md 8.1):
 // P = clamp(constant + per_mm_s * v, 0, 100). WORKDEF 0 and 2: a constant. WORKDEF 1: a line
 // through zero.
-struct PowerLaw {
+struct PowerBySpeed {
   double constant_percent = 0.0;
   double percent_per_mm_s = 0.0;
 
-  bool operator==(const PowerLaw&) const = default;
+  bool operator==(const PowerBySpeed&) const = default;
 };
 
 // One timed motion, when it is over, or a part of one. Whoever runs a motion tells it in parts where
@@ -47,7 +47,7 @@ struct MotionDone {
   double profile_start_s = 0.0;   // time within motion->speed at `start`
   double programmed_mm_s = 0.0;   // feed rate asked for, override included; 0: as fast as the axes can
   bool beam_on = false;
-  PowerLaw power{};                 // laser: in force while the beam is on
+  PowerBySpeed power{};             // laser: in force while the beam is on
 };
 
 // A MOVE (or coordinate set) carried out: where the tool now is.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -105,6 +106,16 @@ struct SpeedShortfall {
   bool operator==(const SpeedShortfall&) const = default;
 };
 
+// How long the beam was on at which speed and power; both add up to the beam-on time.
+inline constexpr int kSpeedBins = 21;  // standing; then 5 % each of the highest tip speed
+inline constexpr int kPowerBins = 20;  // 5 % each: [0,5) ... [95,100]
+struct BeamHistogram {
+  std::array<SimTime, kSpeedBins> by_speed{};
+  std::array<SimTime, kPowerBins> by_power{};
+
+  bool operator==(const BeamHistogram&) const = default;
+};
+
 // A finding of the run; the same finding at the same step is counted, not repeated.
 struct Finding {
   Diagnostic diagnostic;
@@ -137,7 +148,8 @@ struct RunReport {
   std::string inputs_hash;  // of everything the run depends on; see input_description.h
   std::map<std::string, std::string> changed_parameters;  // those that differ from the defaults
 
-  machine::Outcome outcome;
+  bool finished = false;     // false: a report on the way
+  machine::Outcome outcome;  // meaningless before
   Timing timing = Timing::kExact;
   SimTime cycle_time{0};
   std::uint64_t steps_executed = 0;
@@ -147,6 +159,7 @@ struct RunReport {
   WorkFigures total;  // time.total() == cycle_time
   SimTime shutter_open{0};
   double energy_j_per_mm_max = 0.0;  // highest mean of a step
+  BeamHistogram beam;
   SpeedShortfall shortfall;
 
   machine::Box programmed;  // points as the program wrote them
@@ -159,7 +172,6 @@ struct RunReport {
   std::map<int, WorkFigures> programs;  // by slot; at most kReportedProgramsMax
   std::vector<StepFigures> steps;       // by program and step; the first kReportedStepsMax that ran
   WorkFigures rest;                     // of all other steps
-  std::uint64_t rest_steps = 0;         // executions counted there
 
   std::vector<Finding> findings;  // in order of first occurrence; at most machine::kDiagnosticsMax
   std::uint64_t findings_dropped = 0;
