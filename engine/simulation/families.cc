@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "engine/optimo/control/optimo_family.h"
+
 namespace rmlcell::simulation {
 namespace {
 
@@ -25,7 +27,9 @@ std::string_view ExtensionOf(std::string_view name) {
 
 // The registration of the machine families: one line each.
 std::span<const machine::MachineFamily* const> Families() {
-  static const std::vector<const machine::MachineFamily*> families = {};
+  static const std::vector<const machine::MachineFamily*> families = {
+      &optimo::OptimoFamily(),
+  };
   return families;
 }
 

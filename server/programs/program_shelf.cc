@@ -10,7 +10,7 @@
 #include "server/config.h"
 #include "server/jobs/job_messages.h"
 #include "server/names.h"
-#include "server/programs/sha256.h"
+#include "proto/bridge/sha256.h"
 #include "server/services/machine_messages.h"
 
 namespace rmlcell::server {
@@ -209,7 +209,7 @@ Result<ProgramShelf::Content> ProgramShelf::Read(std::string_view name, v1::Prog
                    .sha256 = {}};
       }
   }
-  content.sha256 = Sha256Hex(content.bytes);
+  content.sha256 = bridge::Sha256Hex(content.bytes);
   return content;
 }
 

@@ -5,7 +5,7 @@
 #include "engine/simulation/families.h"
 #include "proto/bridge/findings.h"
 #include "server/programs/program_shelf.h"
-#include "server/programs/sha256.h"
+#include "proto/bridge/sha256.h"
 #include "server/services/job_streams.h"
 
 namespace rmlcell::server {
@@ -96,7 +96,7 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   v1::UploadProgramRequest message_;
   v1::UploadProgramRequest::Header header_;
-  Sha256 digest_;
+  bridge::Sha256 digest_;
   std::string bytes_;
   bool begun_ = false;
   bool finished_ = false;

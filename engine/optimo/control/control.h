@@ -87,7 +87,7 @@ class Control : private VariableAccess {
   double SchedulePower() const;
   void Show(PassageEffect effect);
   void Carry(const PassageEffect& effect);
-  void BeamOn(const machine::PowerLaw& power);
+  void BeamOn(const machine::PowerBySpeed& power);
   void BeamOff();
   void OpenShutter();
   void CloseShutter();

@@ -7,16 +7,6 @@
 namespace rmlcell::optimo {
 namespace {
 
-std::uint8_t GroupBit(VariableGroup group) {
-  switch (group) {
-    case VariableGroup::kIl: return kGroupIl;
-    case VariableGroup::kOl: return kGroupOl;
-    case VariableGroup::kIa: return kGroupIa;
-    case VariableGroup::kOa: return kGroupOa;
-    default: return 0;
-  }
-}
-
 constexpr int kFirstWorkFlag = 87;  // IL[87 + p], OPT-3.37
 constexpr int kLastWorkFlag = 94;
 constexpr int kMotionFlag = 95;  // OPT-7.68

@@ -77,7 +77,7 @@ void Control::CloseShutter() {
   TellSignal(machine::Signal::kShutter, 0, 0.0);
 }
 
-void Control::BeamOn(const machine::PowerLaw& power) {
+void Control::BeamOn(const machine::PowerBySpeed& power) {
   if (s_.active) TellMotion(s_.now);
   OpenShutter();
   const bool was_on = s_.beam.on;
@@ -198,7 +198,7 @@ void Control::WorkOn(int kind, int process) {
                  .place = s_.place,
                  .power = {.constant_percent = SchedulePower(), .percent_per_mm_s = 0.0}});
   }
-  const machine::PowerLaw ramp = RampedPower(*definition, parameters_.limits.tip_speed_mm_s);
+  const machine::PowerBySpeed ramp = RampedPower(*definition, parameters_.limits.tip_speed_mm_s);
   if (definition->delay_s <= 0.0) {
     return Show({.kind = PassageEffect::Kind::kBeamOn, .place = s_.place, .power = ramp});
   }

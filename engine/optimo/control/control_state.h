@@ -100,7 +100,7 @@ struct PassageEffect {
   machine::Place place{};
   int index = 0;
   double value = 0.0;
-  machine::PowerLaw power{};
+  machine::PowerBySpeed power{};
 };
 
 // What the control waits for before it goes on with the program.
@@ -175,7 +175,7 @@ struct ControlState {
   Op op = Op::kInvalid;
 
   Beam beam{};
-  machine::PowerLaw power_before_pierce{};
+  machine::PowerBySpeed power_before_pierce{};
   int gas = 1;
   std::map<int, std::string> made_executables{};
   std::map<int, Loaded> loaded{};  // executables of this run, by slot

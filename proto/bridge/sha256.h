@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace rmlcell::server {
+namespace rmlcell::bridge {
 
 // SHA-256 of bytes that come in parts.
 class Sha256 {
@@ -24,4 +24,4 @@ class Sha256 {
 
 std::string Sha256Hex(std::string_view bytes);
 
-}  // namespace rmlcell::server
+}  // namespace rmlcell::bridge

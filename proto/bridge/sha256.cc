@@ -1,10 +1,10 @@
-#include "server/programs/sha256.h"
+#include "proto/bridge/sha256.h"
 
 #include <openssl/evp.h>
 
 #include <array>
 
-namespace rmlcell::server {
+namespace rmlcell::bridge {
 
 struct Sha256::Context {
   struct Free {
@@ -40,4 +40,4 @@ std::string Sha256Hex(std::string_view bytes) {
   return digest.Hex();
 }
 
-}  // namespace rmlcell::server
+}  // namespace rmlcell::bridge
