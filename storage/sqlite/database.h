@@ -44,6 +44,9 @@ class Database {
   // Size of the write-ahead log after the newest commit of this connection.
   int log_pages() const { return *log_pages_; }
 
+  // Rows inserted, changed and deleted since it was opened, those of undone writes included.
+  std::int64_t total_changes() const { return sqlite3_total_changes64(handle_.get()); }
+
   bool in_transaction() const { return sqlite3_get_autocommit(handle_.get()) == 0; }
   sqlite3* handle() const { return handle_.get(); }
 

@@ -1,12 +1,8 @@
 #include "storage/sqlite/job_life.h"
 
-#include <openssl/rand.h>
-
 #include <algorithm>
-#include <array>
 
 #include "engine/core/check.h"
-#include "storage/sqlite/content.h"
 
 namespace rmlcell::storage::sqlite {
 namespace {
@@ -360,21 +356,6 @@ Result<std::optional<JobRecord>> ExpireLease(WriteContext& context, const Lease&
   Result<JobRecord> job = LoseAttempt(context, lease, "lease ran out", policy);
   if (!job) return job.error();
   return std::optional(*std::move(job));
-}
-
-std::string MakeRequestId(WallTime now) {
-  std::array<unsigned char, 16> bytes{};
-  RMLCELL_CHECK(RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) == 1);
-  const auto milliseconds = static_cast<std::uint64_t>(
-      std::chrono::floor<std::chrono::milliseconds>(now).time_since_epoch().count());
-  for (int i = 0; i < 6; ++i) {
-    bytes[static_cast<std::size_t>(i)] = static_cast<unsigned char>(milliseconds >> (40 - 8 * i));
-  }
-  bytes[6] = static_cast<unsigned char>(0x70 | (bytes[6] & 0x0F));  // version 7
-  bytes[8] = static_cast<unsigned char>(0x80 | (bytes[8] & 0x3F));  // variant of RFC 9562
-  std::string id = HexText({reinterpret_cast<const char*>(bytes.data()), bytes.size()});  // NOLINT
-  for (const std::size_t place : {20U, 16U, 12U, 8U}) id.insert(place, 1, '-');
-  return id;
 }
 
 }  // namespace rmlcell::storage::sqlite

@@ -52,8 +52,4 @@ Result<JobRecord> AbandonJob(WriteContext& context, const Lease& lease, const Lo
 Result<std::optional<JobRecord>> ExpireLease(WriteContext& context, const Lease& lease,
                                              const LossPolicy& policy);
 
-// A request id for a job whose client gave none: a UUID of version 7, which begins with the time,
-// so that new ones lie together in the index.
-std::string MakeRequestId(WallTime now);
-
 }  // namespace rmlcell::storage::sqlite

@@ -94,9 +94,10 @@ JobTable::JobTable(Database& database, BlobTable& blobs)
               " ON CONFLICT (request_id) DO NOTHING"),
       get_(database, Select("WHERE id = ?1")),
       find_by_request_(database, Select("WHERE request_id = ?1")),
-      oldest_queued_(database,
-                     "SELECT id FROM job INDEXED BY job_unfinished WHERE state = 0 AND kind = ?1"
-                     " ORDER BY id LIMIT 1"),
+      oldest_queued_(
+          database,
+          "SELECT id FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = 0 AND kind = ?1"
+          " ORDER BY id LIMIT 1"),
       update_(
           database,
           "UPDATE job SET state = ?2, cancel_requested = ?3, attempts = ?4, attempts_begun = ?5,"
@@ -111,9 +112,12 @@ JobTable::JobTable(Database& database, BlobTable& blobs)
           database,
           "SELECT specification, specification_blob FROM job_specification WHERE job = ?1"),
       last_id_(database, "SELECT ifnull(max(id), 0) FROM job"),
-      count_queued_(database, "SELECT count(*) FROM job INDEXED BY job_unfinished WHERE state = 0"),
-      count_running_(database,
-                     "SELECT count(*) FROM job INDEXED BY job_unfinished WHERE state = 1"),
+      count_queued_(
+          database,
+          "SELECT count(*) FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = 0"),
+      count_running_(
+          database,
+          "SELECT count(*) FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = 1"),
       count_finished_(database,
                       "SELECT count(*) FROM job INDEXED BY job_finished_by_time WHERE state >= 2"),
       oldest_finished_(database,
@@ -238,7 +242,7 @@ Result<std::vector<JobRecord>> JobTable::List(const JobQuery& query) {
 }
 
 Result<std::vector<JobRecord>> JobTable::ListUnfinished(JobState state, const JobQuery& query) {
-  const std::string lane = "INDEXED BY job_unfinished WHERE state = " + Number(state);
+  const std::string lane = "INDEXED BY job_unfinished WHERE state < 2 AND state = " + Number(state);
   if (!query.kind.empty()) return ListLane(lane, query, query.kind);
   const Result<std::vector<std::string>> kinds = KindsOf(state);
   if (!kinds) return kinds.error();
@@ -280,10 +284,12 @@ Result<std::vector<JobRecord>> JobTable::ListLane(const std::string& lane, const
 
 Result<std::vector<std::string>> JobTable::KindsOf(JobState state) {
   // Each step jumps to the next kind in the index: the cost is that of the kinds, not of the jobs.
-  Statement next(database_, "SELECT kind FROM job INDEXED BY job_unfinished WHERE state = " +
-                                Number(state) + " AND kind > ?1 ORDER BY kind LIMIT 1");
-  Statement first(database_, "SELECT kind FROM job INDEXED BY job_unfinished WHERE state = " +
-                                 Number(state) + " ORDER BY kind LIMIT 1");
+  Statement next(database_,
+                 "SELECT kind FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = " +
+                     Number(state) + " AND kind > ?1 ORDER BY kind LIMIT 1");
+  Statement first(database_,
+                  "SELECT kind FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = " +
+                      Number(state) + " ORDER BY kind LIMIT 1");
   const auto text = [](const Query& row) { return row.Text(0); };
   std::vector<std::string> kinds;
   Result<std::optional<std::string>> kind = FirstRow<std::string>(first.With(), text);

@@ -18,7 +18,7 @@ WallTime SystemTime();
 struct SqliteOptions {
   // The database file. Its directory is made when missing (mode 0700), the file has mode 0600.
   // Beside it lie its log (-wal, -shm) and the file that locks it (.lock).
-  std::string path;
+  std::string path{};
 
   // For locks that another program, such as a backup, holds on the file for a moment; after that a
   // write ends with CellStoreBusy and can be tried again.
@@ -47,7 +47,7 @@ struct SqliteOptions {
   bool check_whole_file = false;
 
   // A registered SQLite VFS, by name; empty: that of the system. For tests that let the disk fail.
-  std::string vfs;
+  std::string vfs{};
 };
 
 // The embedded store: one SQLite database, written by this process only.

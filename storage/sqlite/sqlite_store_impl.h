@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "storage/sqlite/reader_pool.h"
+#include "storage/sqlite/request_ids.h"
 #include "storage/sqlite/sqlite_store.h"
 #include "storage/sqlite/store_files.h"
 #include "storage/sqlite/watchers.h"
@@ -95,6 +96,7 @@ class SqliteStore final : public Store {
   // Destroyed from the last to the first: the writer answers what waits while all else is there.
   const StoreLock lock_;
   const Clock clock_;
+  RequestIds request_ids_;
   const std::unique_ptr<ReaderPool> readers_;
   Watchers watchers_;
   Writer writer_;

@@ -34,8 +34,8 @@ class SubmitOperation final : public WriteOperation {
   SubmitOperation(NewJob job, Done done) : job_(std::move(job)), done_(std::move(done)) {}
 
   // On the thread of the caller.
-  Status Prepare(Writer& writer, const Clock& clock) {
-    contents_.request_id = job_.request_id.empty() ? MakeRequestId(clock()) : job_.request_id;
+  Status Prepare(Writer& writer, RequestIds& ids, const Clock& clock) {
+    contents_.request_id = job_.request_id.empty() ? ids.Make(clock()) : job_.request_id;
     staged_.reserve(job_.attachments.size() + 1);
     const Status specification = Stage(
         StagedContent::Make(writer, job_.specification, StagedContent::Place::kRecordWhenSmall));
@@ -136,7 +136,7 @@ SqliteStore::SqliteStore(Parts parts)
 
 void SqliteStore::Submit(NewJob job, std::function<void(Result<SubmittedJob>)> done) {
   auto operation = std::make_unique<SubmitOperation>(std::move(job), std::move(done));
-  const Status prepared = operation->Prepare(writer_, clock_);
+  const Status prepared = operation->Prepare(writer_, request_ids_, clock_);
   if (!prepared) return operation->Answer(prepared);
   const std::size_t bytes = operation->bytes();
   writer_.Post(std::move(operation), bytes);

@@ -31,9 +31,9 @@ struct WriteContext {
   bool garbage = false;  // set: a blob may have lost its last reference or hold
 };
 
-// One write. Run() is called on the writer thread in a savepoint of its own and is undone when it
-// gives an error; it may be called again when the transaction around it could not be committed.
-// Then Answer() is called once, after the commit, with an error of Run() or of the commit.
+// One write. Run() is called on the writer thread inside a transaction and is undone when it gives
+// an error; it may be called again when that transaction could not be committed. Then Answer() is
+// called once, after the commit, with an error of Run() or of the commit.
 class WriteOperation {
  public:
   virtual ~WriteOperation() = default;

@@ -158,65 +158,74 @@ Writer::Batch Writer::Take() {
 
 void Writer::RunBatch(Batch batch) {
   if (batch.empty()) return;
-  const Status committed = TryBatch(batch);
-  if (!committed && batch.size() == 1) {
-    batch.front().status = committed;
-  } else if (!committed) {
+  Outcome outcome = TryBatch(batch, Undo::kWithAll);
+  // One failed in the middle of its writes: again, and this time each can be undone alone.
+  if (outcome == Outcome::kSpoilt) outcome = TryBatch(batch, Undo::kAlone);
+  if (outcome == Outcome::kLost && batch.size() > 1) {
     // One of them may be to blame, such as a program that no longer fits on the disk: each for
     // itself.
-    for (Pending& pending : batch) {
-      const Status alone = TryBatch(std::span(&pending, 1));
-      if (!alone) pending.status = alone;
-    }
+    for (Pending& pending : batch) TryBatch(std::span(&pending, 1), Undo::kAlone);
   }
   std::move(batch.begin(), batch.end(), std::back_inserter(answers_));
 }
 
-// One transaction. An error: nothing of it is there, and another try may do better. Else every
-// operation has its own status.
-Status Writer::TryBatch(std::span<Pending> batch) {
+// One transaction. kCommitted: every operation has its own status. Else nothing of it is there;
+// when it was lost, every operation has the reason as its status.
+Writer::Outcome Writer::TryBatch(std::span<Pending> batch, Undo undo) {
   const Counters before = counters_;
-  const auto failed = [&](Error error) -> Status {
+  const auto lose = [&](const Error& reason) {
     counters_ = before;
-    return error;
+    for (Pending& pending : batch) pending.status = reason;
+    return Outcome::kLost;
   };
   Result<Transaction> transaction =
       Transaction::Begin(connection_->transactions, Transaction::Kind::kWrite);
   if (!transaction) {
-    // Not the fault of any of them, and each alone would wait as long again.
-    for (Pending& pending : batch) pending.status = transaction.error();
-    return {};
+    lose(transaction.error());
+    return Outcome::kCommitted;  // not the fault of any of them, and each alone would wait as long
+                                 // again
   }
   WriteContext context{.tables = connection_->tables, .counters = counters_, .now = {}};
   for (Pending& pending : batch) {
-    const Status sound = RunOne(pending, context);
-    if (!sound) return failed(sound.error());
-    // Else the operations that follow would each be a transaction of their own.
-    if (!transaction->alive()) return failed(pending.status.error());
+    const Status sound = RunOne(pending, context, undo);
+    if (!sound) return lose(sound.error());
+    if (pending.status) continue;
+    // SQLite has ended the transaction: what followed would each be a transaction of its own.
+    if (!transaction->alive()) return lose(Error(pending.status.error()));
+    if (undo == Undo::kWithAll && pending.wrote) {
+      counters_ = before;
+      return Outcome::kSpoilt;
+    }
   }
   const Status committed = transaction->Commit();
-  if (!committed) return failed(committed.error());
+  if (!committed) return lose(committed.error());
   PublishCounts();
   tidy_ = tidy_ || context.garbage || housekeeping_.IsDue(counters_);
   if (context.changed) changed_();
-  return {};
+  return Outcome::kCommitted;
 }
 
 // An error: the transaction cannot go on.
-Status Writer::RunOne(Pending& pending, WriteContext& context) {
-  const Counters before = counters_;
+Status Writer::RunOne(Pending& pending, WriteContext& context, Undo undo) {
   context.now = clock_();
-  Result<Savepoint> savepoint = Savepoint::Begin(connection_->transactions);
-  if (!savepoint) return savepoint.error();
+  const Counters before = counters_;
+  const std::int64_t changes = connection_->database.total_changes();
+  std::optional<Savepoint> savepoint;
+  if (undo == Undo::kAlone) {
+    Result<Savepoint> begun = Savepoint::Begin(connection_->transactions);
+    if (!begun) return begun.error();
+    savepoint.emplace(*std::move(begun));
+  }
   try {
     pending.status = pending.operation->Run(context);
   } catch (const std::exception& exception) {
-    // Out of memory, or thrown by what a caller gave: that write fails, not the process.
+    // Out of memory: that write fails, not the process.
     pending.status = Error{ErrorCode::kCellInternal, exception.what(), {}};
   }
-  if (pending.status) return savepoint->Keep();
-  counters_ = before;
-  return savepoint->Undo();
+  pending.wrote = connection_->database.total_changes() != changes;
+  if (!pending.status) counters_ = before;
+  if (!savepoint) return {};
+  return pending.status ? savepoint->Keep() : savepoint->Undo();
 }
 
 void Writer::AnswerAll() {
