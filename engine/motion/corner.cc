@@ -194,6 +194,11 @@ double Corner::PlainSpeed(double cut_mm, const MachineLimits& machine) const {
   return std::min(by_acceleration, std::cbrt(machine.normal_jerk() * cut_mm * cut_mm / jerk));
 }
 
+double JunctionSpeed(const Vec3& tangent_in, const Vec3& tangent_out, double jump_mm_s) {
+  const Vec3 turn = tangent_out - tangent_in;
+  return jump_mm_s / std::max({std::abs(turn.x), std::abs(turn.y), std::abs(turn.z)});
+}
+
 CurveEnd EndAt(const PathPiece& path, double s) {
   const PathDerivatives first = path.First(s);
   return {.pose = path.At(s),

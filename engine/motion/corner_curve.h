@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "engine/motion/pose.h"
 
@@ -32,6 +33,11 @@ class CornerCurve {
   // Both ends are cut at the distance `cut_mm` from the corner.
   CornerCurve(const CurveEnd& from, const CurveEnd& to, double cut_mm);
 
+  // Between two lines without head rotation: from the corner itself, so that a curve of 1e-3 mm far
+  // from the origin keeps its digits.
+  CornerCurve(const TipPose& corner, const Vec3& tangent_in, const Vec3& tangent_out,
+              double cut_mm);
+
   // u runs from 0 to 1.
   TipPose At(double u) const;
   PathDerivatives Derivative(double u, int order) const;  // by u; order 1 to 3
@@ -40,7 +46,8 @@ class CornerCurve {
   PathDerivatives FirstByLength(double u) const;
   PathDerivatives SecondByLength(double u) const;
 
-  // Arc length by Gauss-Legendre on eight panels. Measure() once, then LengthTo and ParameterAt are
+  // Arc length by Gauss-Legendre on eight panels; on sixteen, narrower towards the place where the
+  // curve is sharpest, when it nearly has a cusp. Measure() once, then LengthTo and ParameterAt are
   // cheap; they measure for themselves when it was not called.
   void Measure();
   double Length() const;
@@ -49,17 +56,22 @@ class CornerCurve {
   // Distance of `point` from the curve, and from its nearest place.
   double DistanceFrom(const Vec3& point) const;
 
-  static constexpr int kPanels = 8;
+  static constexpr std::size_t kPanels = 8;
+  static constexpr std::size_t kPanelsMax = 16;
 
  private:
+  static double Scale(const Vec3& tangent_in, const Vec3& tangent_out, double cut_mm);
   double Speed(double u) const;
   double Integral(double from, double to) const;
+  void ChoosePanels();
 
   // Coefficients of u^0 .. u^5.
   std::array<Vec3, 6> tip_{};
   std::array<double, 6> a_{};
   std::array<double, 6> b_{};
-  std::array<double, kPanels + 1> reached_{};  // arc length at u = k / kPanels; all 0: not measured
+  std::size_t panels_ = 0;                        // 0: not measured
+  std::array<double, kPanelsMax + 1> edge_{};     // u
+  std::array<double, kPanelsMax + 1> reached_{};  // arc length there
 };
 
 }  // namespace rmlcell::motion

@@ -72,15 +72,20 @@ bool MotionChain::Join(const MoveCommand& move, const PathLimits& limits) {
   } else if (before.path.by_sigma() || move.path.by_sigma()) {
     passage = Passage::kStopNeighbour;
   } else if (SameTip(before.head, move.head) && Contiguous(before.path.to(), move.path.from())) {
-    corner = Corner::Between(before.path, move.path);
-    passage = corner.passage();
+    const bool mill = machine_.junction_jump_mm_s > 0.0;
+    if (!mill) corner = Corner::Between(before.path, move.path);
+    passage = mill ? Passage::kThrough : corner.passage();
     if (passage == Passage::kBlend && corner.straight() && std::isinf(machine_.tip_jerk_mm_s3)) {
       passage = Passage::kThrough;  // without a limit on jerk a jump of curvature needs no curve
     }
     if (!IsStop(passage)) cap = before.overshoot * std::min(before.limits.speed, limits.speed);
+    if (mill) {
+      cap = std::min(cap, JunctionSpeed(before.path.Tangent(before.path.length()),
+                                        move.path.Tangent(0.0), machine_.junction_jump_mm_s));
+    }
   }
   stands_ = false;
-  if (passage == Passage::kThrough && before.overshoot >= 1.0 && Equal(before.limits, limits)) {
+  if (passage == Passage::kThrough && Equal(before.limits, limits) && Equal(cap, limits.speed)) {
     // A line without end must not fill the window as one leg.
     const Leg& leg = legs_.back();
     if (leg.last_move - leg.first_move < window_ / 2) return false;
@@ -116,6 +121,8 @@ void MotionChain::CloseLeg(Passage passage, const Corner& corner, double cap) {
   Leg& leg = legs_.back();
   leg.passage = passage;
   leg.corner = corner;
+  // A curve must not reach over a jump of curvature, although without a limit on jerk it is passed.
+  leg.ends_run = passage != Passage::kThrough || corner.passage() == Passage::kBlend;
   leg.cap = IsStop(passage) ? 0.0 : cap;
   running_.Push(leg.length, moves_[leg.first_move].limits, leg.cap);
 }
@@ -156,7 +163,7 @@ std::optional<double> MotionChain::LengthAfter(Number leg, double enough,
     length += legs_[k].length;
     if (length >= enough) return length;
     const bool closed = k + 1 < legs_.end() || !open_;
-    if (closed && legs_[k].passage != Passage::kThrough) return length;
+    if (closed && legs_[k].ends_run) return length;
   }
   if (accept_what_is_there) return length;
   return std::nullopt;
@@ -168,7 +175,7 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
   Leg& leg = legs_[number];
   const double wanted = running_.speed();
   const double total = run_length_ + leg.length;
-  if (leg.passage == Passage::kThrough) {
+  if (!leg.ends_run) {
     leg.cap = std::min(leg.cap, wanted);
     run_length_ = total;
     ++resolving_;
@@ -181,7 +188,9 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
   closing.report.wanted_speed = wanted;
   double cut = 0.0;
   double speed_cap = 0.0;
-  if (!IsStop(leg.passage)) {
+  if (leg.passage == Passage::kThrough) {
+    speed_cap = wanted;
+  } else if (!IsStop(leg.passage)) {
     const double want = std::min(leg.corner.CutFor(wanted, machine_), leg.corner.cut_max_mm());
     const std::optional<double> after = LengthAfter(number, 2.0 * want, accept_what_is_there);
     if (!after) return false;
@@ -222,7 +231,16 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
 }
 
 void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
-  // The place at the distance `cut` before the corner, and behind it.
+  if (leg.corner.plain()) {
+    const PathPiece& in = moves_[leg.last_move].path;
+    span.curve =
+        CornerCurve(in.to(), in.Tangent(0.0), moves_[leg.last_move + 1].path.Tangent(0.0), cut);
+    span.curve_length = leg.corner.PlainLength(cut);
+    span.curve_middle = 0.5;
+    span.report.deviation_mm = leg.corner.PlainDeviation(cut);
+    return;
+  }
+  // The place at the distance `cut` before the corner, and behind it; both may lie some moves away.
   Number before = leg.last_move;
   double left = cut;
   while (left > moves_[before].path.length() && before > moves_.first()) {
@@ -239,16 +257,10 @@ void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
   const PathPiece& out = moves_[after].path;
   span.curve = CornerCurve(EndAt(in, std::max(in.length() - left, 0.0)),
                            EndAt(out, std::min(right, out.length())), cut);
-  if (leg.corner.plain()) {
-    span.curve_length = leg.corner.PlainLength(cut);
-    span.curve_middle = 0.5;
-    span.report.deviation_mm = leg.corner.PlainDeviation(cut);
-  } else {
-    span.curve.Measure();
-    span.curve_length = span.curve.Length();
-    span.curve_middle = span.curve.ParameterAt(0.5 * span.curve_length);
-    span.report.deviation_mm = span.curve.DistanceFrom(moves_[leg.last_move].path.to().tip);
-  }
+  span.curve.Measure();
+  span.curve_length = span.curve.Length();
+  span.curve_middle = span.curve.ParameterAt(0.5 * span.curve_length);
+  span.report.deviation_mm = span.curve.DistanceFrom(moves_[leg.last_move].path.to().tip);
 }
 
 // The legs from the start of the run to `last_leg`, less what the curves at both ends take, become

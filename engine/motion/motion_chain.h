@@ -59,6 +59,7 @@ class MotionChain {
     double length = 0.0;
     Corner corner{};  // at its end
     Passage passage = Passage::kStop;
+    bool ends_run = true;
     double cap = 0.0;  // OVERSH x the lower limit of both sides
   };
   // From place x_from of one move to place x_to of another, and what ends it.
