@@ -34,7 +34,7 @@ int Distance(std::string_view a, std::string_view b) {
 
 std::string NearestWord(std::string_view word, std::span<const std::string_view> candidates) {
   if (word.size() > kLongest) return {};
-  int best = static_cast<int>(std::max<std::size_t>(1, word.size() / 3)) + 1;
+  int best = static_cast<int>(word.size() / 3) + 1;
   std::string_view nearest;
   for (const std::string_view candidate : candidates) {
     if (candidate.size() > kLongest || candidate.empty()) continue;

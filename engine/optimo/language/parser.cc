@@ -34,7 +34,8 @@ void Parser::ParseStatement() {
   nesting_ = 0;
   slash_separates_ = false;
   first_ = Peek();
-  if (first_.kind == TokenKind::kNumber) {
+  labelled_ = first_.kind == TokenKind::kNumber;
+  if (labelled_) {
     AddLabel(Take());
     if (Is(TokenKind::kEnd)) return;
     first_ = Peek();
@@ -75,7 +76,8 @@ void Parser::ParseStatement() {
     program_.node_places.resize(nodes);
     module_.expressions.resize(instruction_.first_expression);
     module_.targets.resize(instruction_.first_target);
-    const bool named = instruction_.op == Op::kDeclare && instruction_.name != kNoName;
+    const bool named = instruction_.op == Op::kDeclare && instruction_.name != kNoName &&
+                       !declared_[instruction_.name];
     if (named) program_.broken_names[instruction_.name] = true;  // spares its uses a second error
     const std::uint32_t step = instruction_.step;
     instruction_ = Instruction{};
@@ -100,7 +102,8 @@ void Parser::FinishStatement(bool good) {
   module_.instructions.push_back(instruction_);
   const Token& end = at_ > 0 ? lexer_.At(at_ - 1) : first_;
   const std::uint32_t behind = end.kind == TokenKind::kEnd ? end.offset : end.offset + end.length;
-  program_.statements.push_back({first_.offset, std::max(behind, first_.offset + first_.length)});
+  program_.statements.push_back({first_.offset, std::max(behind, first_.offset + first_.length),
+                                 static_cast<std::uint32_t>(at_) - (labelled_ ? 1U : 0U)});
 }
 
 // Attributes stand in any order in the text and in one order in the module. OPT-2.43

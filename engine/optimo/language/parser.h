@@ -116,6 +116,7 @@ class Parser {
   };
   std::vector<AttributePart> attribute_parts_;
   std::uint32_t steps_ = 0;
+  bool labelled_ = false;  // the statement has a sequence number on its line
   int nesting_ = 0;
   bool slash_separates_ = false;  // inside the list of TCP, OPT-B.85
   bool too_many_names_ = false;

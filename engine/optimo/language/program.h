@@ -15,6 +15,7 @@ namespace rmlcell::optimo {
 struct Statement {
   std::uint32_t begin = 0;  // byte offset of its first token
   std::uint32_t end = 0;    // behind its last token
+  std::uint32_t tokens = 0;
 };
 // Where a literal or name stands; parallel to Module::nodes. Operators have the place of their
 // sign.
