@@ -47,7 +47,7 @@ struct MotionDone {
   double profile_start_s = 0.0;   // time within motion->speed at `start`
   double programmed_mm_s = 0.0;   // feed rate asked for, override included; 0: as fast as the axes can
   bool beam_on = false;
-  PowerBySpeed power{};             // laser: in force while the beam is on
+  PowerBySpeed power{};           // laser: in force while the beam is on
 };
 
 // A MOVE (or coordinate set) carried out: where the tool now is.

@@ -106,9 +106,10 @@ void PathSketch::Coarsen() {
   const double first = std::max(Size(box_) * kFirstShare, 1e-9);
   tolerance_mm_ = std::max(first, tolerance_mm_);
   // With a tolerance of the whole size everything is alike: this ends.
-  for (; elements_.size() > elements_max_ / 2; tolerance_mm_ *= kCoarser) {
+  for (;; tolerance_mm_ *= kCoarser) {
     MergeStraight(elements_, tolerance_mm_);
     DropAlike(elements_, tolerance_mm_);
+    if (elements_.size() <= elements_max_ / 2) break;
   }
   PackCircles();
 }

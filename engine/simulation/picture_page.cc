@@ -14,7 +14,7 @@ namespace {
 constexpr double kMargin = 36.0;
 constexpr double kHeader = 92.0;
 constexpr double kRulerLeft = 58.0;
-constexpr double kRulerBelow = 42.0;
+constexpr double kRulerBelow = 44.0;
 constexpr double kColumn = 282.0;  // beside the panels
 constexpr double kColumnGap = 34.0;
 constexpr double kFooter = 30.0;
@@ -22,7 +22,7 @@ constexpr int kWidthMin = 640;
 constexpr int kWidthMax = 8192;
 constexpr std::size_t kTitleMax = 60;  // characters of a title that fit
 
-std::string Length(double mm) { return FixedText(mm, mm < 100.0 ? 3 : 1) + " mm"; }
+std::string Length(double mm) { return FixedText(mm, mm == 0.0 ? 0 : mm < 100.0 ? 3 : 1) + " mm"; }
 
 std::string Cut(std::string_view text, std::size_t length) {
   if (text.size() <= length) return std::string(text);
@@ -43,7 +43,7 @@ class Page {
     }
     depth_ = DepthOf(frames);
     const double panels_width = width_ - 2.0 * kMargin - kRulerLeft - kColumn - kColumnGap;
-    layout_ = LayOut(frames, BoxToShow(sketch),
+    layout_ = LayOut(frames, BoxToShow(sketch, shape.travel),
                      {kMargin + kRulerLeft, kHeader + kMargin, panels_width, 0.0});
     column_x_ = width_ - kMargin - kColumn;
   }
@@ -227,7 +227,9 @@ class Page {
           pierce ? "fill=\"#e8590c\"" : "fill=\"#ffffff\" stroke=\"#e8590c\" stroke-width=\"1.2\"");
       name(pierce ? "pierce" : "plunge");
     }
-    if (!sketch_.tools().empty()) {
+    const bool in_space = std::any_of(layout_.panels.begin(), layout_.panels.end(),
+                                      [](const Panel& p) { return p.frame.across.empty(); });
+    if (!sketch_.tools().empty() && in_space) {
       AppendLine(body_, {x + 8.0, y + 5.0}, {x + 36.0, y - 5.0},
                  "stroke=\"#0f8a5f\" stroke-width=\"1\"");
       name("direction of the head");

@@ -143,19 +143,18 @@ void DrawStartAndEnd(const PanelContent& content, const Panel& panel, std::strin
   }
 }
 
+// Below the panel: nothing of the path lies under it.
 void DrawScaleBar(const Panel& panel, std::string& out) {
   const double length_mm = NiceStep(kScaleBar_px / panel.scale);
   const double length = length_mm * panel.scale;
-  const double x = panel.rect.x + 16.0;
-  const double y = panel.rect.y + panel.rect.height - 16.0;
-  const std::string text = TickText(length_mm, length_mm) + " mm";
-  AppendRect(out, {x - 8.0, y - 22.0, length + 16.0, 30.0},
-             "fill=\"#ffffff\" fill-opacity=\"0.85\" rx=\"4\"");
+  const double x = panel.rect.x;
+  const double y = panel.rect.y + panel.rect.height + 27.0;
   const std::string style = Stroke(kInk, 1.6);
   AppendLine(out, {x, y}, {x + length, y}, style);
   AppendLine(out, {x, y - 4.0}, {x, y + 4.0}, style);
   AppendLine(out, {x + length, y - 4.0}, {x + length, y + 4.0}, style);
-  AppendText(out, {x + 0.5 * length, y - 7.0}, text, {.size = 11.5, .anchor = "middle"});
+  AppendText(out, {x + length + 9.0, y + 4.0}, TickText(length_mm, length_mm) + " mm",
+             {.size = 11.5});
 }
 
 // The three axes in a corner of an oblique view.
@@ -184,7 +183,8 @@ std::size_t DrawPanel(const PanelContent& content, const Panel& panel, int id, s
   out += "<clipPath id=\"" + name + "-clip\">";
   AppendRect(out, panel.rect, {});
   out += "</clipPath>\n<g clip-path=\"url(#" + name + "-clip)\">\n";
-  if (!content.shape.travel.empty()) {
+  // In space its edges would only confuse.
+  if (!content.shape.travel.empty() && !panel.frame.across.empty()) {
     DrawBox(content.shape.travel, panel, Stroke("#b0894a", 1.3, "stroke-dasharray=\"14 4 2 4\""),
             out);
   }
@@ -195,6 +195,10 @@ std::size_t DrawPanel(const PanelContent& content, const Panel& panel, int id, s
   DrawWorkOrigin(content, panel, out);
   DrawStartAndEnd(content, panel, out);
   out += "</g>\n";
+  if (!content.sketch.moved()) {
+    AppendText(out, {panel.rect.x + 0.5 * panel.rect.width, panel.rect.y + 0.5 * panel.rect.height},
+               "nothing moved", {.size = 20.0, .colour = kFaint, .anchor = "middle"});
+  }
   AppendRect(out, panel.rect, "fill=\"none\" " + Stroke("#9aa7b2", 1.0));
   AppendText(out, {panel.rect.x + 2.0, panel.rect.y - 8.0}, panel.frame.title,
              {.size = 13.0, .colour = kFaint});

@@ -21,7 +21,7 @@ constexpr double kArcStep_rad = 2.5;     // longest piece of arc: its ends stay 
 constexpr double kCoarser = 1.6;
 constexpr std::size_t kSegmentsPerPath = 1000;  // browsers draw long paths slowly
 constexpr double kFinest_px = 0.35;
-constexpr double kBoldest_px = 2.2;
+constexpr double kBoldest_px = 2.0;
 
 // Pieces of one style.
 enum class Layer { kTravel, kCut };
@@ -198,7 +198,7 @@ class PathDrawing {
       if (element.cuts) length += Distance(element.from, element.to);
     }
     const double area = panel_.rect.width * panel_.rect.height;
-    return std::clamp(length > 0.0 ? 0.35 * area / length : kBoldest_px, kFinest_px, kBoldest_px);
+    return std::clamp(length > 0.0 ? 0.5 * area / length : kBoldest_px, kFinest_px, kBoldest_px);
   }
 
   void WriteLayer(Layer layer, std::string& out) const {

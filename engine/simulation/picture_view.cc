@@ -16,7 +16,7 @@ constexpr double kThinnest = 0.04;      // of the larger extent: a line gets som
 constexpr double kSmallest_mm = 0.05;
 constexpr double kGap_px = 64.0;  // between panels: the rulers of the next one
 constexpr double kPanelMin_px = 230.0;
-constexpr double kPanelHeightMax_px = 1080.0;  // of all rows
+constexpr double kPanelHeightMax_px = 900.0;  // of all rows
 
 Vec3 Unit(const Vec3& v) {
   const double length = Norm(v);
@@ -121,7 +121,7 @@ PanelLayout LayOut(const std::vector<ViewFrame>& frames, const machine::Box& box
     double heights[2] = {0.0, 0.0};
     for (std::size_t r = 0; r < (frames.size() + 1) / 2; ++r) {
       heights[r] = std::clamp(std::max(rows[r], kThinnest * largest) * scale, kPanelMin_px,
-                              0.6 * kPanelHeightMax_px);
+                              0.72 * kPanelHeightMax_px);
     }
     const bool two_rows = frames.size() > 2;
     for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -150,10 +150,11 @@ PanelLayout LayOut(const std::vector<ViewFrame>& frames, const machine::Box& box
   return layout;
 }
 
-machine::Box BoxToShow(const PathSketch& sketch) {
+machine::Box BoxToShow(const PathSketch& sketch, const machine::Box& travel) {
   const bool whole =
       sketch.cut_box().empty() || Size(sketch.box()) <= kWholeIfWithin * Size(sketch.cut_box());
   machine::Box box = whole ? sketch.box() : sketch.cut_box();
+  if (box.empty()) box = travel;
   if (box.empty()) box.Add(Vec3{});
   const Vec3 size = box.max - box.min;
   const double largest = std::max({size.x, size.y, size.z, kSmallest_mm});

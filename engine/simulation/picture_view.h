@@ -62,8 +62,8 @@ PanelLayout LayOut(const std::vector<ViewFrame>& frames, const machine::Box& box
                    const ScreenRect& area);
 
 // What the panels show: the cut with a margin; all of the path when that is not much more, or when
-// nothing was cut. Never without extent.
-machine::Box BoxToShow(const PathSketch& sketch);
+// nothing was cut; the travel of the machine when nothing moved. Never without extent.
+machine::Box BoxToShow(const PathSketch& sketch, const machine::Box& travel);
 
 // 1, 2 or 5 times a power of ten, at least `least`.
 double NiceStep(double least);

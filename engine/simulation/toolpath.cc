@@ -63,7 +63,7 @@ class BlockReader {
   }
 
  private:
-  static constexpr std::uint64_t kTimeMax = std::numeric_limits<std::int64_t>::max() / 1000;
+  static constexpr std::uint64_t kTimeMax = std::numeric_limits<std::int64_t>::max() / 1000 + 1;
 
   static bool Step(std::int32_t& value, std::int64_t by) {
     std::int64_t sum = 0;

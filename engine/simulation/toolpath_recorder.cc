@@ -28,7 +28,9 @@ ToolpathPoint PointOf(const Vec3& tip) {
   return {Micrometres(tip.x), Micrometres(tip.y), Micrometres(tip.z)};
 }
 
-std::int64_t Microseconds(SimTime time) { return (time.count() + 500) / 1000; }
+std::int64_t Microseconds(SimTime time) {
+  return time.count() / 1000 + (time.count() % 1000 >= 500 ? 1 : 0);
+}
 
 // When the motion is at `s`: the profile is monotone, so halving finds it.
 SimTime TimeAt(const machine::MotionDone& done, double s) {
