@@ -1,11 +1,12 @@
 #include "engine/optimo/control/optimo_family.h"
 
-#include <algorithm>
 #include <array>
 
 #include "engine/optimo/control/optimo_run.h"
 #include "engine/optimo/language/compiler.h"
 #include "engine/optimo/language/linker.h"
+#include "engine/optimo/offline/project.h"
+#include "engine/optimo/offline/translate.h"
 
 namespace rmlcell::optimo {
 namespace {
@@ -22,30 +23,6 @@ constexpr std::array kFigures = {
     machine::FigureInfo{"executables_made", "", "executables that the run had to make"},
 };
 
-bool HasExtension(std::string_view name, std::string_view extension) {
-  if (name.size() < extension.size()) return false;
-  return std::ranges::equal(name.substr(name.size() - extension.size()), extension, [](char a, char b) {
-    return (a >= 'a' && a <= 'z' ? static_cast<char>(a - 'a' + 'A') : a) == b;
-  });
-}
-
-machine::Translation TranslateObject(const machine::SourceFile& file, const Result<Module>& module) {
-  machine::Translation translation;
-  if (!module) {
-    translation.diagnostics.push_back({.code = module.error().code,
-                                       .severity = Lookup(module.error().code).severity,
-                                       .detail = module.error().detail,
-                                       .rule = "OPT-B.71",
-                                       .file = std::string(file.name)});
-    return translation;
-  }
-  translation.ok = true;
-  translation.object = std::string(file.bytes);
-  translation.figures = {{"steps", "", static_cast<double>(module->step_count)},
-                         {"object_bytes", "bytes", static_cast<double>(file.bytes.size())}};
-  return translation;
-}
-
 class Family final : public machine::MachineFamily {
  public:
   const machine::FamilyInfo& info() const override { return kInfo; }
@@ -58,26 +35,13 @@ class Family final : public machine::MachineFamily {
 
   machine::Translation Translate(const machine::SourceFile& file, const machine::Parameters& parameters,
                                  const machine::CheckOptions& options) const override {
-    if (HasExtension(file.name, ".O")) return TranslateObject(file, DecodeObject(file.bytes));
-    Compilation compiled = Compile(file.bytes, file.name,
-                                   {.object_limit = static_cast<std::uint32_t>(Resolve(parameters).object_limit),
-                                    .advice = options.advice,
-                                    .inch = HasExtension(file.name, ".SI"),
-                                    .diagnostics_max = machine::kDiagnosticsMax});
-    machine::Translation translation;
-    translation.ok = compiled.ok;
-    translation.object = std::move(compiled.object);
-    translation.diagnostics = std::move(compiled.diagnostics);
-    translation.diagnostics_dropped = compiled.diagnostics_dropped;
-    if (translation.ok) {
-      translation.figures = {{"steps", "", static_cast<double>(compiled.module.step_count)},
-                             {"object_bytes", "bytes", static_cast<double>(translation.object.size())}};
-    }
-    return translation;
+    return TranslateOptimo(file, options, static_cast<std::uint32_t>(Resolve(parameters).object_limit));
   }
 
   machine::TransferPlan PlanTransfer(const machine::ProjectBundle& project, const machine::Parameters& parameters,
-                                     const machine::TransferOptions& options) const override;
+                                     const machine::TransferOptions& options) const override {
+    return optimo::PlanTransfer(project, options, static_cast<std::uint32_t>(Resolve(parameters).object_limit));
+  }
 
   Result<std::string> Decompile(std::string_view object) const override { return ObjectToSource(object); }
 
@@ -96,11 +60,6 @@ class Family final : public machine::MachineFamily {
     return std::unique_ptr<machine::Run>(std::make_unique<OptimoRun>(resolved, std::move(setup), observer));
   }
 };
-
-machine::TransferPlan Family::PlanTransfer(const machine::ProjectBundle&, const machine::Parameters&,
-                                           const machine::TransferOptions&) const {
-  return {};
-}
 
 }  // namespace
 
