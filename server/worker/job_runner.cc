@@ -174,7 +174,7 @@ class Attempt {
     }
     for (const Diagnostic& diagnostic : made->diagnostics) events_.OnDiagnostic(SimTime(0), diagnostic);
     const machine::MachineFamily& family = *simulation::FindFamily(assignment_.family());
-    simulation::InputDescription inputs = simulation::Describe(family, *made->setup);
+    simulation::InputDescription inputs = simulation::DescribeInputs(family, *made->setup);
     simulation::Products products;
     if (options.trace()) {
       products.trace = [this](const simulation::TraceRecord& record) {
