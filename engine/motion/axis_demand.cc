@@ -105,6 +105,16 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
   const bool turns = path.a_rate() != 0.0 || path.b_rate() != 0.0;
   const bool arc = path.kind() == PathPiece::Kind::kArc;
   const bool constant = path.kind() == PathPiece::Kind::kJoint || (!arc && !turns);
+  if (!arc && !turns && path.kind() == PathPiece::Kind::kLine) {
+    // No axis is asked for more than the tip: most lines end here.
+    bool enough = true;
+    for (std::size_t i = 0; i < 3; ++i) {
+      enough = enough && shares.speed * axes.speed[i] >= limits.speed &&
+               shares.acceleration * axes.acceleration[i] >= limits.acceleration &&
+               shares.acceleration * axes.jerk[i] >= limits.jerk;
+    }
+    if (enough) return limits;
+  }
   const AxisDerivatives bounds = constant ? DerivativesAt(path, head, 0.0) : Bounds(path, head);
   const double by_bound = SpeedAllowed(bounds, axes, shares);
   if (constant || by_bound >= limits.speed) {

@@ -97,7 +97,7 @@ class PlainTable {
       const auto i = static_cast<std::size_t>(k);
       const double q = kFirst + kStep * k;
       const double cosine = std::min(q * q, 1.0);
-      length_[i] = PlainCurve(std::sqrt(1.0 - cosine * cosine), cosine).Length();
+      length_[i] = CornerLength(PlainCurve(std::sqrt(1.0 - cosine * cosine), cosine)).total();
       const double half_turn = std::max(kHalfTurnMax * k / (kNodes - 1), 1e-7);
       const double s = std::sin(half_turn);
       const double c = std::cos(half_turn);
