@@ -94,6 +94,37 @@ PathDerivatives CornerCurve::SecondByLength(double u) const {
           (e.b - d.b * along) * square};
 }
 
+CornerCurve::Bounds CornerCurve::DerivativeBounds() const {
+  // Control points of the first derivative (degree 4) and the second (degree 3).
+  const auto first = [](const auto& c) {
+    return std::array{c[1], c[1] + c[2] * 0.5, c[1] + c[2] + c[3] * 0.5,
+                      c[1] + c[2] * 1.5 + c[3] * 1.5 + c[4], First(c, 1.0)};
+  };
+  const auto second = [](const auto& c) {
+    return std::array{c[2] * 2.0, c[2] * 2.0 + c[3] * 2.0, c[2] * 2.0 + c[3] * 4.0 + c[4] * 4.0,
+                      Second(c, 1.0)};
+  };
+  const auto largest = [](const auto& values) {
+    double most = 0.0;
+    for (const double value : values) most = std::max(most, std::abs(value));
+    return most;
+  };
+  Bounds bounds;
+  const std::array<Vec3, 5> tip = first(tip_);
+  const Vec3 sum = tip[0] + tip[4];  // along the bisector: both ends have the same length
+  const double along = Norm(sum);
+  bounds.slowest = HUGE_VAL;
+  for (const Vec3& control : tip)
+    bounds.slowest = std::min(bounds.slowest, Dot(control, sum) / along);
+  for (const Vec3& control : second(tip_))
+    bounds.tip_second = std::max(bounds.tip_second, Norm(control));
+  bounds.a_first = largest(first(a_));
+  bounds.b_first = largest(first(b_));
+  bounds.a_second = largest(second(a_));
+  bounds.b_second = largest(second(b_));
+  return bounds;
+}
+
 double CornerCurve::Speed(double u) const { return Norm(First(tip_, u)); }
 
 double CornerCurve::Integral(double from, double to) const {

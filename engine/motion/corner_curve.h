@@ -46,6 +46,17 @@ class CornerCurve {
   PathDerivatives FirstByLength(double u) const;
   PathDerivatives SecondByLength(double u) const;
 
+  // Bounds of the derivatives by u, from control points: cheap, and good on gentle curves.
+  struct Bounds {
+    double slowest = 0.0;     // of |dp/du|, from below; at most 0 when nothing is known
+    double tip_second = 0.0;  // the rest from above
+    double a_first = 0.0;
+    double b_first = 0.0;
+    double a_second = 0.0;
+    double b_second = 0.0;
+  };
+  Bounds DerivativeBounds() const;
+
   // Distance of `point` from the curve, and from its nearest place.
   double DistanceFrom(const Vec3& point) const;
 

@@ -204,11 +204,16 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
       speed_cap = wanted;
       MakeCurve(closing, leg, cut);
       const Head& head = moves_[leg.last_move].head;
-      if (!leg.corner.plain() || !axes_keep_up_) {
-        speed_cap = std::min(speed_cap, SpeedOnCurve(closing.curve, head, machine_));
-      } else if (capped) {
+      if (leg.corner.lines() && capped) {
         speed_cap = std::min(speed_cap, leg.corner.PlainSpeed(cut, machine_));
       }
+      const bool axes_follow =
+          leg.corner.plain()
+              ? axes_keep_up_
+              : leg.corner.lines() && AxesFollow(closing.curve, head, machine_, speed_cap,
+                                                 leg.corner.PlainCurvature(cut));
+      if (!axes_follow)
+        speed_cap = std::min(speed_cap, SpeedOnCurve(closing.curve, head, machine_));
       if (speed_cap < wanted) closing.report.passage = Passage::kBlendCapped;
       // Points passed straight on that the curve swallows keep their speed.
       double beyond = 0.0;
@@ -257,6 +262,13 @@ void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
   const PathPiece& out = moves_[after].path;
   span.curve = CornerCurve(EndAt(in, std::max(in.length() - left, 0.0)),
                            EndAt(out, std::min(right, out.length())), cut);
+  if (leg.corner.lines()) {
+    // The tip's way is the same whether the head turns or not.
+    span.curve_length = leg.corner.PlainLength(cut);
+    span.curve_middle = 0.5;
+    span.report.deviation_mm = leg.corner.PlainDeviation(cut);
+    return;
+  }
   const CornerLength length(span.curve);
   span.curve_length = length.total();
   span.curve_middle = length.ParameterAt(span.curve, 0.5 * span.curve_length);
