@@ -94,6 +94,37 @@ PathDerivatives CornerCurve::SecondByLength(double u) const {
           (e.b - d.b * along) * square};
 }
 
+CornerCurve::Bounds CornerCurve::DerivativeBounds() const {
+  // Control points of the first derivative (degree 4) and the second (degree 3).
+  const auto first = [](const auto& c) {
+    return std::array{c[1], c[1] + c[2] * 0.5, c[1] + c[2] + c[3] * 0.5,
+                      c[1] + c[2] * 1.5 + c[3] * 1.5 + c[4], First(c, 1.0)};
+  };
+  const auto second = [](const auto& c) {
+    return std::array{c[2] * 2.0, c[2] * 2.0 + c[3] * 2.0, c[2] * 2.0 + c[3] * 4.0 + c[4] * 4.0,
+                      Second(c, 1.0)};
+  };
+  const auto largest = [](const auto& values) {
+    double most = 0.0;
+    for (const double value : values) most = std::max(most, std::abs(value));
+    return most;
+  };
+  Bounds bounds;
+  const std::array<Vec3, 5> tip = first(tip_);
+  const Vec3 sum = tip[0] + tip[4];  // along the bisector: both ends have the same length
+  const double along = Norm(sum);
+  bounds.slowest = HUGE_VAL;
+  for (const Vec3& control : tip)
+    bounds.slowest = std::min(bounds.slowest, Dot(control, sum) / along);
+  for (const Vec3& control : second(tip_))
+    bounds.tip_second = std::max(bounds.tip_second, Norm(control));
+  bounds.a_first = largest(first(a_));
+  bounds.b_first = largest(first(b_));
+  bounds.a_second = largest(second(a_));
+  bounds.b_second = largest(second(b_));
+  return bounds;
+}
+
 double CornerCurve::Speed(double u) const { return Norm(First(tip_, u)); }
 
 double CornerCurve::Integral(double from, double to) const {
@@ -106,14 +137,14 @@ double CornerCurve::Integral(double from, double to) const {
   return half * sum;
 }
 
-void CornerCurve::ChoosePanels() {
+void CornerLength::ChoosePanels(const CornerCurve& curve) {
   constexpr int kSamples = 16;
   constexpr double kNearCusp = 0.25;  // of the mean: above, equal panels are good to 1e-12
   double slowest = HUGE_VAL;
   double sum = 0.0;
   double where = 0.5;
   for (int k = 0; k <= kSamples; ++k) {
-    const double speed = Speed(static_cast<double>(k) / kSamples);
+    const double speed = curve.Speed(static_cast<double>(k) / kSamples);
     sum += speed;
     if (speed < slowest) {
       slowest = speed;
@@ -127,8 +158,9 @@ void CornerCurve::ChoosePanels() {
   }
   // Newton on d|p'|^2 / du, which has a simple root near a cusp.
   for (int step = 0; step < 8; ++step) {
-    const Vec3 first = First(tip_, where), second = Second(tip_, where);
-    const double slope = Dot(second, second) + Dot(first, Third(tip_, where));
+    const Vec3 first = curve.Derivative(where, 1).tip;
+    const Vec3 second = curve.Derivative(where, 2).tip;
+    const double slope = Dot(second, second) + Dot(first, curve.Derivative(where, 3).tip);
     if (!(slope > 0.0)) break;
     where = std::clamp(where - Dot(first, second) / slope, 0.0, 1.0);
   }
@@ -144,28 +176,15 @@ void CornerCurve::ChoosePanels() {
   edge_[kSide] = where;
 }
 
-void CornerCurve::Measure() {
-  ChoosePanels();
-  reached_[0] = 0.0;
+CornerLength::CornerLength(const CornerCurve& curve) {
+  ChoosePanels(curve);
   for (std::size_t k = 0; k < panels_; ++k) {
-    reached_[k + 1] =
-        reached_[k] + (edge_[k + 1] > edge_[k] ? Integral(edge_[k], edge_[k + 1]) : 0.0);
+    const bool wide = edge_[k + 1] > edge_[k];
+    reached_[k + 1] = reached_[k] + (wide ? curve.Integral(edge_[k], edge_[k + 1]) : 0.0);
   }
 }
 
-double CornerCurve::Length() const {
-  if (panels_ > 0) return reached_[panels_];
-  CornerCurve measured = *this;
-  measured.Measure();
-  return measured.Length();
-}
-
-double CornerCurve::ParameterAt(double s) const {
-  if (panels_ == 0) {
-    CornerCurve measured = *this;
-    measured.Measure();
-    return measured.ParameterAt(s);
-  }
+double CornerLength::ParameterAt(const CornerCurve& curve, double s) const {
   if (!(s > 0.0)) return 0.0;
   if (s >= reached_[panels_]) return 1.0;
   std::size_t panel = 0;
@@ -176,8 +195,8 @@ double CornerCurve::ParameterAt(double s) const {
   double u = from + (to - from) * wanted / (reached_[panel + 1] - reached_[panel]);
   constexpr int kSteps = 4;  // quadratic from a guess within a panel: 1e-2, 1e-4, 1e-8, 1e-16
   for (int step = 0; step < kSteps; ++step) {
-    const double miss = Integral(from, u) - wanted;
-    u = std::clamp(u - miss / Speed(u), from, to);
+    const double miss = curve.Integral(from, u) - wanted;
+    u = std::clamp(u - miss / curve.Speed(u), from, to);
     if (std::abs(miss) <= 1e-15 * reached_[panels_]) break;
   }
   return u;

@@ -46,30 +46,46 @@ class CornerCurve {
   PathDerivatives FirstByLength(double u) const;
   PathDerivatives SecondByLength(double u) const;
 
-  // Arc length by Gauss-Legendre on eight panels; on sixteen, narrower towards the place where the
-  // curve is sharpest, when it nearly has a cusp. Measure() once, then LengthTo and ParameterAt are
-  // cheap; they measure for themselves when it was not called.
-  void Measure();
-  double Length() const;
-  double ParameterAt(double s) const;  // 0 <= s <= Length()
+  // Bounds of the derivatives by u, from control points: cheap, and good on gentle curves.
+  struct Bounds {
+    double slowest = 0.0;     // of |dp/du|, from below; at most 0 when nothing is known
+    double tip_second = 0.0;  // the rest from above
+    double a_first = 0.0;
+    double b_first = 0.0;
+    double a_second = 0.0;
+    double b_second = 0.0;
+  };
+  Bounds DerivativeBounds() const;
 
   // Distance of `point` from the curve, and from its nearest place.
   double DistanceFrom(const Vec3& point) const;
 
-  static constexpr std::size_t kPanels = 8;
-  static constexpr std::size_t kPanelsMax = 16;
+  double Speed(double u) const;                       // |dp/du|
+  double Integral(double u_from, double u_to) const;  // arc length, one panel
 
  private:
   static double Scale(const Vec3& tangent_in, const Vec3& tangent_out, double cut_mm);
-  double Speed(double u) const;
-  double Integral(double from, double to) const;
-  void ChoosePanels();
-
   // Coefficients of u^0 .. u^5.
   std::array<Vec3, 6> tip_{};
   std::array<double, 6> a_{};
   std::array<double, 6> b_{};
-  std::size_t panels_ = 0;                        // 0: not measured
+};
+
+// Arc length along a corner curve by Gauss-Legendre on eight panels; on sixteen, narrower towards
+// the place where the curve is sharpest, when it nearly has a cusp.
+class CornerLength {
+ public:
+  explicit CornerLength(const CornerCurve& curve);
+
+  double total() const { return reached_[panels_]; }
+  double ParameterAt(const CornerCurve& curve, double s) const;  // 0 <= s <= total()
+
+ private:
+  static constexpr std::size_t kPanels = 8;
+  static constexpr std::size_t kPanelsMax = 16;
+  void ChoosePanels(const CornerCurve& curve);
+
+  std::size_t panels_ = 0;
   std::array<double, kPanelsMax + 1> edge_{};     // u
   std::array<double, kPanelsMax + 1> reached_{};  // arc length there
 };

@@ -204,11 +204,16 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
       speed_cap = wanted;
       MakeCurve(closing, leg, cut);
       const Head& head = moves_[leg.last_move].head;
-      if (!leg.corner.plain() || !axes_keep_up_) {
-        speed_cap = std::min(speed_cap, SpeedOnCurve(closing.curve, head, machine_));
-      } else if (capped) {
+      if (leg.corner.lines() && capped) {
         speed_cap = std::min(speed_cap, leg.corner.PlainSpeed(cut, machine_));
       }
+      const bool axes_follow =
+          leg.corner.plain()
+              ? axes_keep_up_
+              : leg.corner.lines() && AxesFollow(closing.curve, head, machine_, speed_cap,
+                                                 leg.corner.PlainCurvature(cut));
+      if (!axes_follow)
+        speed_cap = std::min(speed_cap, SpeedOnCurve(closing.curve, head, machine_));
       if (speed_cap < wanted) closing.report.passage = Passage::kBlendCapped;
       // Points passed straight on that the curve swallows keep their speed.
       double beyond = 0.0;
@@ -257,18 +262,24 @@ void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
   const PathPiece& out = moves_[after].path;
   span.curve = CornerCurve(EndAt(in, std::max(in.length() - left, 0.0)),
                            EndAt(out, std::min(right, out.length())), cut);
-  span.curve.Measure();
-  span.curve_length = span.curve.Length();
-  span.curve_middle = span.curve.ParameterAt(0.5 * span.curve_length);
+  if (leg.corner.lines()) {
+    // The tip's way is the same whether the head turns or not.
+    span.curve_length = leg.corner.PlainLength(cut);
+    span.curve_middle = 0.5;
+    span.report.deviation_mm = leg.corner.PlainDeviation(cut);
+    return;
+  }
+  const CornerLength length(span.curve);
+  span.curve_length = length.total();
+  span.curve_middle = length.ParameterAt(span.curve, 0.5 * span.curve_length);
   span.report.deviation_mm = span.curve.DistanceFrom(moves_[leg.last_move].path.to().tip);
 }
 
 // The legs from the start of the run to `last_leg`, less what the curves at both ends take, become
 // spans.
-void MotionChain::CloseRun(Number last_leg, double total, Span closing, double speed_cap) {
+void MotionChain::CloseRun(Number last_leg, double total, const Span& closing, double speed_cap) {
   const double begin = run_cut_;
   const double end = std::max(total - closing.report.cut_mm, begin);
-  closing.corner_move = legs_[last_leg].last_move;
   double leg_start = 0.0;
   for (Number k = legs_.first(); k <= last_leg; ++k) {
     Leg& leg = legs_[k];
@@ -281,15 +292,16 @@ void MotionChain::CloseRun(Number last_leg, double total, Span closing, double s
     if (!closes && !(to > from)) {  // swallowed by the curve before
       continue;
     }
-    Span span;
+    Span& span = spans_.PushSlot();
     if (closes) {
       span = closing;
+      span.corner_move = legs_[last_leg].last_move;
       for (Number rest = k; rest < last_leg; ++rest)
         speed_cap = std::min(speed_cap, legs_[rest].cap);
     } else {
       span.corner_move = leg.last_move;
-      span.report.passage = Passage::kThrough;
-      span.report.wanted_speed = leg.cap;
+      span.settling_s = 0.0;
+      span.report = {.passage = Passage::kThrough, .wanted_speed = leg.cap};
     }
     span.length = std::max(to - from, 0.0);
     // Which moves the interval covers; places within the first and the last one.
@@ -308,14 +320,9 @@ void MotionChain::CloseRun(Number last_leg, double total, Span closing, double s
     const double last_length = moves_[span.last_move].path.length();
     span.x_to = to == leg_end ? last_length : std::min(to - x, last_length);
     span.limits = moves_[leg.first_move].limits;
-    PushSpan(span, closes ? speed_cap : leg.cap);
+    speeds_.Push(span.length, span.limits, closes ? speed_cap : leg.cap);
     if (closes) break;
   }
-}
-
-void MotionChain::PushSpan(const Span& span, double cap) {
-  spans_.Push(span);
-  speeds_.Push(span.length, span.limits, cap);
 }
 
 }  // namespace rmlcell::motion

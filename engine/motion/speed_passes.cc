@@ -38,9 +38,8 @@ std::size_t SpeedPasses::Settle() {
     Knot& knot = knots_[--k];
     const double from_high = Reachable(high, after.length, after.limits, knot.forward);
     const double from_low = Reachable(low, after.length, after.limits, knot.forward);
-    const double least = std::min(
-        {knot.forward, from_low, from_high,
-         std::max(low, ReachMinimum(high, after.length, after.limits))});
+    const double least = std::min({knot.forward, from_low, from_high,
+                                   std::max(low, ReachMinimum(high, after.length, after.limits))});
     knot.speed = least;  // from here any future can be met: for Accept
     high = std::max(from_low, from_high);
     low = least;

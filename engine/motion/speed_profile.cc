@@ -117,16 +117,17 @@ double Reach(double v0, double length, const PathLimits& limits) {
     const double c = v0 * b - v0 * v0 - 2.0 * a * length;
     return 0.5 * (std::sqrt(b * b - 4.0 * c) - b);
   }
-  // y^3 + 2 v0 y = length sqrt(j): Newton from above, where the cubic is convex. Both guesses are
-  // upper bounds, and the lower of the two is within a factor 1.5 of the root.
+  // y^3 + 2 v0 y = length sqrt(j): Newton from above, where the cubic is convex. Leaving out either
+  // term gives an upper bound, and the lower of the two is within a factor 1.5 of the root.
   const double want = length * std::sqrt(j);
-  double y = std::cbrt(want);
+  double y = v0 > 0.0 ? want / (2.0 * v0) : HUGE_VAL;
+  if (!(y * y <= 2.0 * v0)) y = std::cbrt(want);
   if (v0 > 0.0) {
-    y = std::min(y, want / (2.0 * v0));
     constexpr int kStepsMax = 8;  // 5 do, with the guess above
     for (int step = 0; step < kStepsMax; ++step) {
-      const double next = y - (y * y * y + 2.0 * v0 * y - want) / (3.0 * y * y + 2.0 * v0);
-      const bool done = std::abs(next - y) <= 2e-16 * y;
+      const double square = y * y;
+      const double next = (2.0 * square * y + want) / (3.0 * square + 2.0 * v0);
+      const bool done = std::abs(next - y) <= 1e-15 * y;
       y = next;
       if (done) break;
     }

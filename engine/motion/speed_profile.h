@@ -25,13 +25,15 @@ struct PathState {
 class SpeedProfile {
  public:
   struct Phase {
-    double duration_s = 0.0;
-    double jerk = 0.0;
+    double duration_s;
+    double jerk;
     PathState start;
   };
   static constexpr int kPhasesMax = 8;  // From: one more than a span
 
   SpeedProfile() = default;  // takes no time
+  SpeedProfile(const SpeedProfile& other) { *this = other; }
+  SpeedProfile& operator=(const SpeedProfile& other);  // only the phases there are
 
   // Precondition: length >= 0, limits above zero, v0 and v1 within limits.speed, and the change
   // from v0 to v1 fits into the length (see Reach).
@@ -75,12 +77,23 @@ class SpeedProfile {
   void AddRamp(PathState& state, double change, double sign, double to_speed,
                const PathLimits& limits);
 
-  std::array<Phase, kPhasesMax> phases_{};
+  std::array<Phase, kPhasesMax> phases_;  // the first count_
   int count_ = 0;
   double duration_s_ = 0.0;
   double peak_speed_ = 0.0;
   PathState end_;
 };
+
+inline SpeedProfile& SpeedProfile::operator=(const SpeedProfile& other) {
+  count_ = other.count_;
+  duration_s_ = other.duration_s_;
+  peak_speed_ = other.peak_speed_;
+  end_ = other.end_;
+  for (int k = 0; k < count_; ++k) {
+    phases_[static_cast<std::size_t>(k)] = other.phases_[static_cast<std::size_t>(k)];
+  }
+  return *this;
+}
 
 // The highest speed that can be reached from `v0` within `length`. motion.md 5.2.
 double Reach(double v0, double length, const PathLimits& limits);
