@@ -18,7 +18,9 @@ add_compile_options(-ffp-contract=off)
 
 add_library(rmlcell_warnings INTERFACE)
 target_compile_options(rmlcell_warnings INTERFACE
-  -Wall -Wextra -Wconversion -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Werror)
+  -Wall -Wextra -Wconversion -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Werror
+  # Designated initialisers leave members at their defaults on purpose.
+  -Wno-missing-field-initializers)
 
 set(RMLCELL_SANITIZE "" CACHE STRING "Sanitizers, as -fsanitize= takes them: address,undefined or thread")
 if(RMLCELL_SANITIZE)

@@ -22,28 +22,44 @@ struct Place {
 // What a motion is for. Families map their own notions onto it; pictures and lengths depend on it.
 enum class MotionUse { kTravel, kCut, kPlunge, kRetract };
 
-// One timed motion, when it is over (or was stopped on the way).
+// How the power of a laser follows the tip speed, in percent of its rated power (motion.md 8.1):
+// P = clamp(constant + per_mm_s * v, 0, 100). WORKDEF 0 and 2: a constant. WORKDEF 1: a line
+// through zero.
+struct PowerBySpeed {
+  double constant_percent = 0.0;
+  double percent_per_mm_s = 0.0;
+
+  bool operator==(const PowerBySpeed&) const = default;
+};
+
+// One timed motion, when it is over, or a part of one. Whoever runs a motion tells it in parts where
+// something happens on the way: a STOP (the part before, then the ramp to rest as a profile of its
+// own), the beam switched during the motion. Parts, motions and waits never overlap in time; what
+// none of them covers is standstill.
 struct MotionDone {
   SimTime start{0};
   SimTime end{0};
-  Place place;
+  Place place{};
   MotionUse use = MotionUse::kTravel;
   const motion::PlannedMotion* motion = nullptr;  // valid during the call
-  double travelled = 0.0;         // along motion->path; less than its length when stopped
+  double from = 0.0;              // along motion->path, at `start`
+  double travelled = 0.0;         // along motion->path, at `end`; short of its length when stopped
+  double profile_start_s = 0.0;   // time within motion->speed at `start`
   double programmed_mm_s = 0.0;   // feed rate asked for, override included; 0: as fast as the axes can
-  double power_percent = 0.0;     // laser: power at cruising speed; 0 with the beam off
+  bool beam_on = false;
+  PowerBySpeed power{};           // laser: in force while the beam is on
 };
 
 // A MOVE (or coordinate set) carried out: where the tool now is.
 struct MoveDone {
   SimTime at{0};
-  Place place;
-  motion::TipPose tip;             // machine frame; work units of a mill are in the family's figures
-  motion::AxisPose axes;
-  motion::Vec3 program_point;      // as programmed: program frame, or device units of a stream
+  Place place{};
+  motion::TipPose tip{};             // machine frame; work units of a mill are in the family's figures
+  motion::AxisPose axes{};
+  motion::Vec3 program_point{};      // as programmed: program frame, or device units of a stream
   double rotary_a = 0.0;           // as programmed: rad, or degrees of a stream
   double feed_mm_s = 0.0;          // speed limit of the motion
-  std::string_view path;           // "LIN", "CIR", "PU" ...
+  std::string_view path{};           // "LIN", "CIR", "PU" ...
 };
 
 // A state that outsiders can see: an output, the beam, a spindle.
@@ -61,7 +77,7 @@ enum class Signal {
 };
 struct SignalChange {
   SimTime at{0};
-  Place place;
+  Place place{};
   Signal signal = Signal::kOutput;
   int index = 0;
   double value = 0.0;
@@ -72,17 +88,17 @@ enum class WaitKind { kDwell, kPierce, kSpinUp, kCondition, kOperator, kLoad };
 struct Wait {
   SimTime start{0};
   SimTime end{0};
-  Place place;
+  Place place{};
   WaitKind kind = WaitKind::kDwell;
   bool beam_on = false;
-  double power_percent = 0.0;
+  double power_percent = 0.0;  // laser: while the beam is on
 };
 
 // A halt of the run: PAUSE, STOP, HOLD, breakpoint, !NR.
 struct Halt {
   SimTime at{0};
-  Place place;
-  std::string_view why;  // "STOP"
+  Place place{};
+  std::string_view why{};  // "STOP"
 };
 
 // Told everything that a run does, in order of virtual time. Structs are valid during the call only.

@@ -48,9 +48,7 @@ double JerkAllowed(const AxisDerivatives& q, const AxisLimits& axes, const AxisS
 
 // Upper bounds of both derivatives over the whole piece, cheap: enough for most moves.
 AxisDerivatives Bounds(const PathPiece& path, const Head& head) {
-  const double arm =
-      std::sqrt(head.tool.x_mm * head.tool.x_mm + head.tool.y_mm * head.tool.y_mm +
-                (head.length_mm - head.tool.z_mm) * (head.length_mm - head.tool.z_mm));
+  const double arm = head.arm_mm();
   const double a = std::abs(path.a_rate());
   const double b = std::abs(path.b_rate());
   const double swing = arm * (a + b);
@@ -105,6 +103,16 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
   const bool turns = path.a_rate() != 0.0 || path.b_rate() != 0.0;
   const bool arc = path.kind() == PathPiece::Kind::kArc;
   const bool constant = path.kind() == PathPiece::Kind::kJoint || (!arc && !turns);
+  if (!arc && !turns && path.kind() == PathPiece::Kind::kLine) {
+    // No axis is asked for more than the tip: most lines end here.
+    bool enough = true;
+    for (std::size_t i = 0; i < 3; ++i) {
+      enough = enough && shares.speed * axes.speed[i] >= limits.speed &&
+               shares.acceleration * axes.acceleration[i] >= limits.acceleration &&
+               shares.acceleration * axes.jerk[i] >= limits.jerk;
+    }
+    if (enough) return limits;
+  }
   const AxisDerivatives bounds = constant ? DerivativesAt(path, head, 0.0) : Bounds(path, head);
   const double by_bound = SpeedAllowed(bounds, axes, shares);
   if (constant || by_bound >= limits.speed) {
@@ -114,6 +122,28 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
     if (constant || (acceleration >= limits.acceleration && jerk >= limits.jerk)) {
       limits.acceleration = std::min(limits.acceleration, acceleration);
       if (std::isfinite(limits.jerk)) limits.jerk = std::min(limits.jerk, jerk);
+      return limits;
+    }
+  }
+
+  if (!arc) {
+    // A short turn: the place in the middle, and how far the derivatives can get away from it.
+    // Within 1 %.
+    constexpr double kRoom = 0.004;
+    const double half = 0.5 * path.length();
+    const double rate = std::abs(path.a_rate()) + std::abs(path.b_rate());
+    const double drift = half * head.arm_mm() * rate * rate;
+    if (drift <= kRoom * Norm(path.Tangent(0.0)) && half * rate <= kRoom) {
+      AxisDerivatives q = DerivativesAt(path, head, half);
+      for (std::size_t i = 0; i < 3; ++i) {
+        q.first[i] = std::abs(q.first[i]) + drift;
+        q.second[i] = std::abs(q.second[i]) + drift * rate;
+      }
+      limits.speed = std::min(limits.speed, SpeedAllowed(q, axes, shares));
+      limits.acceleration =
+          std::min(limits.acceleration, AccelerationAllowed(q, axes, shares, limits.speed));
+      if (std::isfinite(limits.jerk))
+        limits.jerk = std::min(limits.jerk, JerkAllowed(q, axes, shares));
       return limits;
     }
   }

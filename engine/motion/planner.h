@@ -105,6 +105,8 @@ class Planner {
   std::uint64_t lookahead_starved() const;
 
  private:
+  Status AppendChecked(const MoveCommand& move);
+
   std::unique_ptr<MotionChain> chain_;
 };
 

@@ -40,9 +40,14 @@ void Halve(const CornerCurve& curve, double u0, double u1, const Vec3& p0, const
 }  // namespace
 
 TrajectoryPoint PointAt(const PathPiece& path, const Head& head, const PathState& state) {
-  const TipPose pose = path.At(state.s);
-  const PathDerivatives first = path.First(state.s);
-  const PathDerivatives second = path.Second(state.s);
+  return PointAt({path.kind(), path.At(state.s), path.First(state.s), path.Second(state.s)}, head,
+                 state);
+}
+
+TrajectoryPoint PointAt(const PathPlace& place, const Head& head, const PathState& state) {
+  const TipPose& pose = place.pose;
+  const PathDerivatives& first = place.first;
+  const PathDerivatives& second = place.second;
   const PathDerivatives velocity = Scaled(first, state.speed);
   const PathDerivatives acceleration =
       Sum(Scaled(first, state.acceleration), Scaled(second, state.speed * state.speed));
@@ -54,7 +59,7 @@ TrajectoryPoint PointAt(const PathPiece& path, const Head& head, const PathState
       ColumnPart(AxisSecondRates(head, pose.a_rad, pose.b_rad, turning, turning_more));
 
   TrajectoryPoint point;
-  if (path.kind() == PathPiece::Kind::kJoint) {  // the piece holds the column
+  if (place.kind == PathPiece::Kind::kJoint) {  // the piece holds the column
     const AxisPose axes{pose.tip, pose.a_rad, pose.b_rad};
     point.tip = head.TipOf(axes);
     point.tip_velocity = velocity.tip - swing;
@@ -78,17 +83,27 @@ MotionView::MotionView(const PlannedMotion& motion)
       head_(motion.head),
       speed_(motion.speed),
       duration_s_(motion.duration_s()) {
-  path_.Prepare();
+  if (path_.kind() == PathPiece::Kind::kBlend) curve_length_.emplace(path_.curve());
+}
+
+double MotionView::Parameter(double s) const {
+  return curve_length_->ParameterAt(path_.curve(), path_.curve_start() + s);
 }
 
 TrajectoryPoint MotionView::At(double t_s) const {
   PathState state = speed_.At(t_s);
   if (t_s > speed_.duration_s()) state.speed = state.acceleration = 0.0;
-  return PointAt(path_, head_, state);
+  if (!curve_length_) return PointAt(path_, head_, state);
+  const double u = Parameter(state.s);
+  const CornerCurve& curve = path_.curve();
+  return PointAt({path_.kind(), curve.At(u), curve.FirstByLength(u), curve.SecondByLength(u)},
+                 head_, state);
 }
 
 TipPose MotionView::PoseAt(double t_s) const {
-  const TipPose pose = path_.At(speed_.At(t_s).s);
+  const double s = speed_.At(t_s).s;
+  if (curve_length_) return path_.curve().At(Parameter(s));
+  const TipPose pose = path_.At(s);
   if (path_.kind() != PathPiece::Kind::kJoint) return pose;
   return head_.TipOf({pose.tip, pose.a_rad, pose.b_rad});
 }
@@ -108,10 +123,10 @@ void AppendPolyline(const PathPiece& path, double tolerance_mm, std::vector<Vec3
     const int chords = static_cast<int>(std::clamp(wanted, 1.0, static_cast<double>(kChordsMax)));
     for (int k = 1; k < chords; ++k) points.push_back(path.At(path.length() * k / chords).tip);
   } else if (path.kind() == PathPiece::Kind::kBlend) {
-    const PathPiece::CurveRange range = path.curve_range();
-    const Vec3 first = path.from().tip;
-    const Vec3 last = path.to().tip;
-    Halve(path.curve(), range.from, range.to, first, last, tolerance_mm, 0, points);
+    const CornerLength length(path.curve());
+    const double from = length.ParameterAt(path.curve(), path.curve_start());
+    const double to = length.ParameterAt(path.curve(), path.curve_start() + path.length());
+    Halve(path.curve(), from, to, path.from().tip, path.to().tip, tolerance_mm, 0, points);
     return;
   }
   if (path.length() > 0.0 && path.kind() != PathPiece::Kind::kRotary)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "engine/motion/planner.h"
@@ -19,7 +20,15 @@ struct TrajectoryPoint {
   double tip_speed() const { return Norm(tip_velocity); }
 };
 
-// The state along a piece of path; motion.md 2.4.
+// The state of a path with these derivatives by s, where it is passed as `state` says. For a kJoint
+// piece `pose` and the derivatives are those of the column. motion.md 2.4.
+struct PathPlace {
+  PathPiece::Kind kind = PathPiece::Kind::kLine;
+  TipPose pose;
+  PathDerivatives first;
+  PathDerivatives second;
+};
+TrajectoryPoint PointAt(const PathPlace& place, const Head& head, const PathState& state);
 TrajectoryPoint PointAt(const PathPiece& path, const Head& head, const PathState& state);
 
 // One motion, ready to be looked at many times.
@@ -33,7 +42,10 @@ class MotionView {
   double duration_s() const { return duration_s_; }
 
  private:
+  double Parameter(double s) const;
+
   PathPiece path_;
+  std::optional<CornerLength> curve_length_;  // of a blend
   Head head_;
   SpeedProfile speed_;
   double duration_s_;

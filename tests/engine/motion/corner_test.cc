@@ -73,12 +73,12 @@ TEST(Corner, UncappedCornersNeedNoBound) {
 TEST(Corner, LengthAndTriangle) {
   for (double degrees = 0.3; degrees < 175.0; degrees += 2.9) {
     const Bend bend = Of(degrees);
-    EXPECT_NEAR(bend.corner.PlainLength(1.0), bend.curve.Length(), 1e-10) << degrees;
+    EXPECT_NEAR(bend.corner.PlainLength(1.0), CornerLength(bend.curve).total(), 1e-10) << degrees;
     double chords = 0.0;
     for (int k = 1; k <= 20000; ++k) {
       chords += Distance(bend.curve.At((k - 1) / 20000.0).tip, bend.curve.At(k / 20000.0).tip);
     }
-    EXPECT_NEAR(bend.curve.Length(), chords, 2e-8) << degrees;
+    EXPECT_NEAR(CornerLength(bend.curve).total(), chords, 2e-8) << degrees;
     const double turn = degrees * kPi / 180.0;
     for (int k = 0; k <= 100; ++k) {
       const Vec3 p = bend.curve.At(k / 100.0).tip;
@@ -95,14 +95,14 @@ TEST(Corner, LengthAndTriangle) {
 // u(s) inverts the arc length to 1e-9 mm, also in sharp corners. motion.md section 9
 TEST(CornerCurve, ParameterInvertsTheLength) {
   for (const double degrees : {1.0, 90.0, 150.0, 174.9}) {
-    CornerCurve curve = Of(degrees, 30.0).curve;
-    curve.Measure();
+    const CornerCurve curve = Of(degrees, 30.0).curve;
+    const CornerLength length(curve);
     Vec3 last = curve.At(0.0).tip;
     const int steps = 3000;
     for (int k = 1; k <= steps; ++k) {
-      const Vec3 here = curve.At(curve.ParameterAt(curve.Length() * k / steps)).tip;
+      const Vec3 here = curve.At(length.ParameterAt(curve, length.total() * k / steps)).tip;
       // Chord against arc: kappa^2 s^3 / 24, with kappa at most 18 / 30 and s of 0.02.
-      EXPECT_NEAR(Distance(last, here), curve.Length() / steps, 2e-7) << degrees << " " << k;
+      EXPECT_NEAR(Distance(last, here), length.total() / steps, 2e-7) << degrees << " " << k;
       last = here;
     }
   }

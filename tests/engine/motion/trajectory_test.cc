@@ -95,8 +95,7 @@ TEST(Polyline, StaysWithinItsTolerance) {
       ASSERT_GE(points.size(), 2u);
       EXPECT_EQ(points.front(), motion.path.from().tip);
       EXPECT_EQ(points.back(), motion.path.to().tip);
-      PathPiece path = motion.path;
-      path.Prepare();
+      const PathPiece& path = motion.path;
       for (int k = 1; k < 60; ++k) {
         const Vec3 p = path.At(path.length() * k / 60).tip;
         double nearest = HUGE_VAL;

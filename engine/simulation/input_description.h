@@ -1,0 +1,30 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/machine/family.h"
+
+namespace rmlcell::simulation {
+
+// Everything a run depends on, in short: same description, same result.
+struct InputDescription {
+  std::string family;
+  std::string title;  // name of the main program
+  std::string hash;   // 32 hexadecimal digits
+  std::map<std::string, std::string> changed_parameters;
+  std::vector<SimTime> input_times;  // when scripted inputs act, in order
+};
+
+// The hash is FNV-1a with 128 bits over family, engine version and every field of the setup, each
+// with its length. A fingerprint to tell runs apart, not a protection against forgery: the engine
+// has no cryptography, and who needs proof of the bytes has the SHA-256 of the store.
+InputDescription DescribeInputs(const machine::MachineFamily& family,
+                                const machine::RunSetup& setup);
+
+// FNV-1a, 128 bits, as 32 lower-case hexadecimal digits.
+std::string Fnv1a128(std::string_view bytes);
+
+}  // namespace rmlcell::simulation

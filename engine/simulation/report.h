@@ -1,0 +1,185 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/diagnostic.h"
+#include "engine/core/units.h"
+#include "engine/machine/run.h"
+#include "engine/machine/shape.h"
+
+// What a run did, in figures. Plain values: copy, compare and convert them freely. motion.md 8.2.
+// Lengths mm, speeds mm/s, angles rad, energy J, times in virtual nanoseconds.
+namespace rmlcell::simulation {
+
+// Steps with figures of their own; what later steps do is added up in RunReport::rest. A stream
+// counts every command as a step, and no reader looks at ten thousand of them one by one.
+inline constexpr std::size_t kReportedStepsMax = 10'000;
+inline constexpr std::size_t kReportedProgramsMax = 128;  // slots 1..99 and 0 fit
+
+// Where virtual time went. The parts add up to the cycle time exactly.
+struct TimeParts {
+  SimTime motion{0};
+  SimTime settling{0};       // standing still after a motion, as part of it
+  SimTime dwell{0};          // DELAY; W and !DW
+  SimTime pierce{0};         // delay of WORK 1
+  SimTime condition{0};      // waiting for an input: /START, WAIT
+  SimTime operator_wait{0};  // waiting for a key; halts
+  SimTime spin_up{0};
+  SimTime load{0};        // loading a CALLed program
+  SimTime standstill{0};  // none of these
+
+  SimTime total() const;
+  bool operator==(const TimeParts&) const = default;
+};
+
+// What a job, a program or a step did.
+struct WorkFigures {
+  std::uint64_t steps = 0;  // executed
+  TimeParts time;
+  double tip_path_mm = 0.0;  // = cut + travel
+  double cut_mm = 0.0;       // beam on; tool in the material: cuts and plunges
+  double travel_mm = 0.0;    // the rest
+  double plunge_mm = 0.0;    // part of cut_mm
+  SimTime beam_on{0};
+  std::uint64_t beam_switches = 0;  // off to on
+  std::uint64_t pierces = 0;        // beam on while standing: WORK 1 with delay, DELAY after WORK 0
+  std::uint64_t plunges = 0;
+  double cut_energy_j = 0.0;     // of motion with the beam on
+  double pierce_energy_j = 0.0;  // of the beam on a standing tip
+
+  double energy_j() const { return cut_energy_j + pierce_energy_j; }
+  // Mean over the cut; 0 without one.
+  double energy_j_per_mm() const { return cut_mm > 0.0 ? cut_energy_j / cut_mm : 0.0; }
+
+  bool operator==(const WorkFigures&) const = default;
+};
+
+struct StepFigures {
+  int program = 0;
+  int step = 0;
+  int line = 0;  // 0: not known
+  WorkFigures figures;
+
+  bool operator==(const StepFigures&) const = default;
+};
+
+// Position of tool and axes. Machine frame, but program_point is as the program wrote it.
+struct FinalPosition {
+  motion::TipPose tip;
+  motion::AxisPose axes;
+  motion::Vec3 program_point;
+  double program_a = 0.0;  // rad, or degrees of a stream
+  double program_b = 0.0;
+
+  bool operator==(const FinalPosition&) const = default;
+};
+
+// One axis, or the tip, over the run. mm and mm/s, or rad and rad/s.
+struct AxisFigures {
+  std::string name;  // "X"; "tip"
+  bool rotary = false;
+  double travel = 0.0;   // sum of what it moved
+  double minimum = 0.0;  // of its position; 0 for the tip
+  double maximum = 0.0;
+  double peak_speed = 0.0;
+  double peak_acceleration = 0.0;
+  double speed_limit = 0.0;  // 0: not known
+  double acceleration_limit = 0.0;
+  std::uint64_t reversals = 0;
+
+  bool operator==(const AxisFigures&) const = default;
+};
+
+// Moves that never reached the feed rate asked for: too short, or held back by an axis or a radius.
+struct SpeedShortfall {
+  std::uint64_t moves = 0;
+  machine::Place worst;  // least share of what was asked
+  double wanted_mm_s = 0.0;
+  double reached_mm_s = 0.0;
+
+  bool operator==(const SpeedShortfall&) const = default;
+};
+
+// How long the beam was on at which speed and power; both add up to the beam-on time.
+inline constexpr int kSpeedBins = 21;  // standing; then 5 % each of the highest tip speed
+inline constexpr int kPowerBins = 20;  // 5 % each: [0,5) ... [95,100]
+struct BeamHistogram {
+  std::array<SimTime, kSpeedBins> by_speed{};
+  std::array<SimTime, kPowerBins> by_power{};
+
+  bool operator==(const BeamHistogram&) const = default;
+};
+
+// A finding of the run; the same finding at the same step is counted, not repeated.
+struct Finding {
+  Diagnostic diagnostic;
+  SimTime first_at{0};
+  std::uint64_t count = 1;
+
+  bool operator==(const Finding&) const = default;
+};
+
+// How far a product went before its budget was used up.
+struct ProductState {
+  bool made = false;
+  bool complete = true;       // false: cut off at the budget
+  std::uint64_t records = 0;  // trace records; toolpath points; picture elements
+  std::uint64_t bytes = 0;    // toolpath
+  std::uint64_t dropped = 0;  // records that did not fit
+
+  bool operator==(const ProductState&) const = default;
+};
+
+enum class Timing { kExact, kExactStopUpperBound };
+std::string_view TimingText(Timing timing);  // "exact"; "exact stop, upper bound"
+
+std::string_view OutcomeText(machine::OutcomeKind kind);  // "completed", "budget_exceeded" ...
+
+struct RunReport {
+  std::string family;  // "optimo"
+  std::string title;   // of the program: its name
+  std::string engine_version;
+  std::string inputs_hash;  // of everything the run depends on; see input_description.h
+  std::map<std::string, std::string> changed_parameters;  // those that differ from the defaults
+
+  bool finished = false;     // false: a report on the way
+  machine::Outcome outcome;  // meaningless before
+  Timing timing = Timing::kExact;
+  SimTime cycle_time{0};
+  std::uint64_t steps_executed = 0;
+  std::uint64_t halts = 0;
+  FinalPosition final_position;
+
+  WorkFigures total;  // time.total() == cycle_time
+  SimTime shutter_open{0};
+  double energy_j_per_mm_max = 0.0;  // highest mean of a step
+  BeamHistogram beam;
+  SpeedShortfall shortfall;
+
+  machine::Box programmed;  // points as the program wrote them
+  machine::Box tip;         // where the tip was, machine frame; true extremes of arcs
+  machine::Box cut;         // where it cut
+  machine::Box column;      // gantry: the column; mill: the same as the tip
+  AxisFigures tip_figures;
+  std::vector<AxisFigures> axes;
+
+  std::map<int, WorkFigures> programs;  // by slot; at most kReportedProgramsMax
+  std::vector<StepFigures> steps;       // by program and step; the first kReportedStepsMax that ran
+  WorkFigures rest;                     // of all other steps
+
+  std::vector<Finding> findings;  // in order of first occurrence; at most machine::kDiagnosticsMax
+  std::uint64_t findings_dropped = 0;
+  std::vector<machine::Figure> figures;  // the family's own
+
+  ProductState trace;
+  ProductState toolpath;
+  ProductState picture;
+};
+
+}  // namespace rmlcell::simulation
