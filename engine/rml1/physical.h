@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "engine/machine/run.h"
 #include "engine/rml1/device.h"
@@ -28,29 +27,32 @@ class Physical {
 
   void OnDwell(double time_s, const Registers& registers);
   void OnSpindleWait(double time_s, const Registers& registers);
-  void OnHalt(double time_s) { halted_s_ += time_s; }
+  void OnHalt(double time_s) { totals_.halted_s += time_s; }
 
-  // All figures of a run: these, the registers and counts of the device, and the programmed ones.
-  std::vector<machine::Figure> Figures(const Device& device) const;
+  struct Totals {
+    std::uint64_t motions = 0;
+    std::uint64_t plunges = 0;
+    double cut_mm = 0.0;
+    double travel_mm = 0.0;
+    double up_s = 0.0;  // motions and waits, by tool state
+    double down_s = 0.0;
+    double motion_s = 0.0;
+    double dwell_s = 0.0;
+    double spindle_s = 0.0;
+    double halted_s = 0.0;
+    Extent x;  // work coordinates, device units
+    Extent y;
+    Extent z;
+    Extent a;  // degrees
+  };
+  const Totals& totals() const { return totals_; }
+  const Profile& profile() const { return *profile_; }
 
  private:
   void AddToState(double time_s, const Registers& registers);
 
   const Profile* profile_;
-  std::uint64_t motions_ = 0;
-  std::uint64_t plunges_ = 0;
-  double cut_mm_ = 0.0;
-  double travel_mm_ = 0.0;
-  double up_s_ = 0.0;
-  double down_s_ = 0.0;
-  double motion_s_ = 0.0;
-  double dwell_s_ = 0.0;
-  double spindle_s_ = 0.0;
-  double halted_s_ = 0.0;
-  Extent x_;  // work coordinates, device units
-  Extent y_;
-  Extent z_;
-  Extent a_;
+  Totals totals_;
 };
 
 }  // namespace rmlcell::rml1

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/core/number_text.h"
+#include "engine/rml1/figures.h"
 #include "engine/rml1/machine_state.h"
 #include "engine/rml1/variables.h"
 
@@ -378,7 +379,7 @@ std::optional<std::string> MillRun::ReadVariable(std::string_view name) const {
 }
 
 std::vector<machine::Figure> MillRun::figures() const {
-  return state_.physical.Figures(state_.device);
+  return FiguresOf(state_.device, state_.physical);
 }
 
 // A run that was cut short leaves the tool where it stands, and the spindle off.

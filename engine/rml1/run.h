@@ -50,8 +50,7 @@ class MillRun final : public machine::Run {
     bool first_leg = true;
     double feed_mm_s = 0.0;
     motion::PlannedMotion leg;
-    std::optional<motion::PlannedMotion> next_leg;
-    bool stopping = false;  // the leg ends in a halt, the rest follows with START
+    bool stopping = false;  // the leg is a ramp to rest, and something is left behind it
     bool joins = false;     // a planner with look-ahead would not have stopped before it
   };
 

@@ -20,15 +20,6 @@ double SpeedOn(const motion::PathPiece& path, const motion::PathPiece& old_path,
   return ByAngle(path) ? speed * Turn(old_path) / Turn(path) : speed;
 }
 
-// A part of the path of `plan`, with its limits and speeds taken over.
-motion::PlannedMotion RideOn(const motion::PathPiece& part, const MotionPlan& plan, double v0,
-                             double v1) {
-  const double scale = ByAngle(plan.path) && ByAngle(part) ? Turn(plan.path) / Turn(part) : 1.0;
-  const motion::PathLimits limits = {.speed = plan.limits.speed * scale,
-                                     .acceleration = plan.limits.acceleration * scale};
-  return Ride(part, v0 * scale, v1 * scale, limits);
-}
-
 }  // namespace
 
 using machine::Signal;
@@ -68,7 +59,6 @@ void MillRun::BeginMotion(const Action& action) {
   s.motion.stopping = false;
   s.motion.feed_mm_s = plan.feed_mm_s;
   s.motion.joins = action.chain != Chain::kAlone && action.chain == s.chain;
-  s.motion.next_leg.reset();
   s.motion.leg = Ride(plan.path, 0.0, 0.0, plan.limits);
   s.chain = action.chain;
   StartLeg();
@@ -115,17 +105,13 @@ void MillRun::EndWait() {
 
 void MillRun::EndLeg() {
   State& s = state_;
-  ReportLeg(s.motion.leg.path.length());
+  ReportLeg(s.motion.leg.speed.end().s);
   s.busy = Busy::kNothing;
-  if (s.motion.next_leg) {
-    s.motion.leg = *s.motion.next_leg;
-    s.motion.next_leg.reset();
-    if (!s.motion.stopping) return StartLeg();
+  if (s.motion.stopping) {
     s.rest_left = true;
-    s.tool = ToolAt(s.motion.leg.path.from());
+    s.tool = ToolAt(s.motion.leg.path.At(s.motion.leg.speed.end().s));
     return;
   }
-  s.motion.stopping = false;
   s.tool = s.motion.action.to;
   const motion::TipPose tip = s.motion.leg.path.to();
   observer_.OnMove({.at = s.now,
@@ -142,10 +128,12 @@ void MillRun::EndLeg() {
 // The leg is over, or as much of it as was ridden.
 void MillRun::ReportLeg(double travelled) {
   State& s = state_;
+  const bool not_begun = s.now == s.busy_from && travelled < s.motion.leg.path.length();
+  if (not_begun) return;
   const Motion& m = s.motion;
   const motion::PathPiece& path = m.leg.path;
   const Point from = m.first_leg ? m.from : ToolAt(path.from());
-  const bool to_end = travelled >= path.length() && !m.next_leg;
+  const bool to_end = travelled >= path.length() && !m.stopping;
   const Point to = to_end ? m.action.to : ToolAt(path.At(travelled));
   s.physical.OnRide({.from = from,
                      .to = to,
@@ -164,8 +152,8 @@ void MillRun::ReportLeg(double travelled) {
   s.motion.first_leg = false;
 }
 
-// STOP: a ramp to rest, and the rest of the path from standstill. Override: a ramp down where the
-// new speed is lower, and the rest of the path at the new speed. motion.md section 6.
+// STOP: a ramp to rest at once; the rest of the path follows with START. Override: over to the new
+// speed on the rest of the path. motion.md section 6.
 void MillRun::CutMotion(bool stop) {
   State& s = state_;
   const motion::PathState along = s.motion.leg.speed.At(ElapsedInLeg());
@@ -174,28 +162,28 @@ void MillRun::CutMotion(bool stop) {
   s.clock.Set(s.now);
   s.tool = ToolAt(old_path.At(along.s));
   const MotionPlan plan = PlanMotion(profile(), s.tool, s.motion.action, s.override_percent);
-  const double speed = SpeedOn(plan.path, old_path, along.speed);
-  const double v1 = stop ? 0.0 : std::min(speed, plan.limits.speed);
-  const double ramp = motion::RampLength(speed, v1, plan.limits);
-  const bool parts = ramp < plan.path.length();  // something is left behind the ramp
+  const double length = plan.path.length();
+  // Rounding must not leave it too fast to stop within what is left.
+  const double speed =
+      std::min(SpeedOn(plan.path, old_path, along.speed), motion::Reach(0.0, length, plan.limits));
   s.motion.feed_mm_s = plan.feed_mm_s;
   s.motion.joins = false;
-  s.motion.next_leg.reset();
-  s.motion.stopping = stop && parts;
-  if (stop && !(speed > 0.0)) {
+  s.motion.leg = {};
+  s.motion.leg.path = plan.path;
+  s.motion.leg.limits = plan.limits;
+  const double ramp = motion::RampLength(speed, 0.0, plan.limits);
+  s.motion.stopping = stop && ramp < length;
+  if (s.motion.stopping && !(ramp > 0.0)) {  // it had not begun to move
+    s.motion.stopping = false;
     s.busy = Busy::kNothing;
     s.rest_left = true;
-  } else if (!parts || !(ramp > 0.0)) {
-    s.motion.leg = Ride(plan.path, speed, 0.0, plan.limits);
-    StartLeg();
-  } else {
-    const motion::TipPose middle = plan.path.At(ramp);
-    const auto first = motion::PathPiece::Line(plan.path.from(), middle);
-    const auto second = motion::PathPiece::Line(middle, plan.path.to());
-    s.motion.leg = RideOn(first, plan, speed, v1);
-    s.motion.next_leg = RideOn(second, plan, v1, 0.0);
-    StartLeg();
+    return;
   }
+  motion::PathLimits limits = plan.limits;
+  if (s.motion.stopping) limits.speed = speed;  // no faster, only down
+  s.motion.leg.speed = motion::SpeedProfile::From({.s = 0.0, .speed = speed, .acceleration = 0.0},
+                                                  s.motion.stopping ? ramp : length, 0.0, limits);
+  StartLeg();
 }
 
 // From where STOP left the tool, with the override of now.
@@ -206,7 +194,6 @@ void MillRun::ResumeMotion() {
   const MotionPlan plan = PlanMotion(profile(), s.tool, s.motion.action, s.override_percent);
   s.motion.feed_mm_s = plan.feed_mm_s;
   s.motion.leg = Ride(plan.path, 0.0, 0.0, plan.limits);
-  s.motion.next_leg.reset();
   StartLeg();
 }
 

@@ -1,7 +1,7 @@
 #include "tests/conformance/rml1_bench.h"
 
 #include "engine/core/number_text.h"
-#include "engine/rml1/family.h"
+#include "engine/rml1/rml1_family.h"
 #include "engine/rml1/variables.h"
 
 namespace rmlcell::rml1::conformance {

@@ -6,7 +6,7 @@
 
 #include "engine/core/check.h"
 #include "engine/rml1/device.h"
-#include "engine/rml1/family.h"
+#include "engine/rml1/rml1_family.h"
 #include "engine/rml1/profile.h"
 
 namespace rmlcell::rml1 {

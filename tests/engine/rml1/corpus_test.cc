@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "engine/core/number_text.h"
-#include "engine/rml1/family.h"
+#include "engine/rml1/rml1_family.h"
 #include "tests/engine/rml1/run_support.h"
 
 namespace rmlcell::rml1 {

@@ -5,7 +5,7 @@
 #include <new>
 #include <random>
 
-#include "engine/rml1/family.h"
+#include "engine/rml1/rml1_family.h"
 #include "tests/engine/rml1/run_support.h"
 
 namespace {

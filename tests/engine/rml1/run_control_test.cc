@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "engine/rml1/family.h"
+#include "engine/rml1/rml1_family.h"
 #include "tests/engine/rml1/run_support.h"
 
 namespace rmlcell::rml1 {
@@ -182,8 +182,8 @@ TEST(MillRunControl, StopsTheClockOfADwell) {
               {{.at = 400ms, .kind = InputKind::kStop}, {.at = 10s, .kind = InputKind::kStart}});
   ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
   EXPECT_NEAR(run.time_s(), 10 + 0.6 + TrapezoidTime(20, 2), 1e-8);
-  EXPECT_NEAR(run.figures().at("time.dwell"), 1.0, 1e-9);
-  EXPECT_NEAR(run.figures().at("time.halted"), 9.6, 1e-9);
+  EXPECT_NEAR(run.figures().at("dwell_time"), 1.0, 1e-9);
+  EXPECT_NEAR(run.figures().at("halted_time"), 9.6, 1e-9);
 }
 
 // A STOP and the START that takes it back before the tool stands: the rest is ridden from rest.
@@ -358,7 +358,7 @@ TEST(MillRunControl, KeepsTheMachineBetweenJobs) {
 
 // Setups that make no sense are refused; a missing program ends the run.
 TEST(MillRunControl, RefusesImpossibleSetups) {
-  const Rml1Family family;
+  const machine::MachineFamily& family = Rml1Family();
   machine::RunObserver observer;
   machine::RunSetup dry = SetupOf(ParametersOf("t1"), "PU;");
   dry.simul = machine::ProgramStep{.program = 1, .step = 1};

@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "engine/core/check.h"
-#include "engine/rml1/family.h"
+#include "engine/rml1/rml1_family.h"
 
 namespace rmlcell::rml1 {
 
@@ -29,7 +29,7 @@ TestRun::TestRun(const machine::Parameters& parameters, std::string stream,
       }()) {}
 
 machine::Parameters ParametersOf(std::string_view profile_id) {
-  const Rml1Family family;
+  const machine::MachineFamily& family = Rml1Family();
   machine::Parameters parameters(family.parameters());
   for (const machine::MachineProfile& profile : family.profiles()) {
     if (profile.id == profile_id) {

@@ -63,7 +63,7 @@ TEST(MillRun, WaitsForTheSpindle) {
                   "move 0.0,0.0,500.0", "step 3 !MC", "stop", "spindle wait 1.5", "step 4 !MC",
                   "step 5 PD", "spin 4500", "spindle wait 2.0", "move 0.0,0.0,0.0", "step 6 IN",
                   "move 0.0,0.0,500.0", "stop"));
-  EXPECT_DOUBLE_EQ(run.figures().at("time.spindle"), 5.5);
+  EXPECT_DOUBLE_EQ(run.figures().at("spindle_time"), 5.5);
 }
 
 // RML1-3A.56: dwell is standstill for as long as it says.
@@ -71,7 +71,7 @@ TEST(MillRun, DwellsForMilliseconds) {
   TestRun run(ParametersOf("t1"), "!MC0;W250;PD1000,0;");
   run.AdvanceToEnd();
   EXPECT_NEAR(run.time_s(), 0.5 + TrapezoidTime(20, 2, 200) + TrapezoidTime(10, 2, 200), 1e-8);
-  EXPECT_DOUBLE_EQ(run.figures().at("time.dwell"), 0.5);
+  EXPECT_DOUBLE_EQ(run.figures().at("dwell_time"), 0.5);
 }
 
 // RML1-3D.29: the rotary axis turns in step and slows the group: 90 degrees at 60 deg/s and 200
@@ -222,7 +222,7 @@ TEST(MillRun, ResumesByScript) {
   ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
   EXPECT_NEAR(run.time_s(), 20.0 + TrapezoidTime(1, 60, 200), 1e-8);
   EXPECT_EQ(run.seen().CountOf(ErrorCode::kRml1PausedAtEnd), 0);
-  EXPECT_NEAR(run.figures().at("time.halted"), 20.0 - TrapezoidTime(15, 2, 200), 1e-8);
+  EXPECT_NEAR(run.figures().at("halted_time"), 20.0 - TrapezoidTime(15, 2, 200), 1e-8);
 }
 
 // RML1-4.09, RML1-7.06: while it is paused the sender fills the buffer, and ESC.K empties it.

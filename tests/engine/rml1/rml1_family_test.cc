@@ -1,6 +1,9 @@
-#include "engine/rml1/family.h"
+#include "engine/rml1/rml1_family.h"
 
 #include <gtest/gtest.h>
+
+#include <map>
+#include <set>
 
 #include "tests/engine/rml1/run_support.h"
 
@@ -13,12 +16,68 @@ machine::Translation TranslateText(std::string_view bytes, bool advice = true) {
 }
 
 TEST(Rml1Family, TellsWhatItIs) {
-  const Rml1Family family;
+  const machine::MachineFamily& family = Rml1Family();
   EXPECT_EQ(family.info().id, "rml1");
   EXPECT_FALSE(family.info().has_executables);
   EXPECT_FALSE(family.info().has_schedules);
   EXPECT_FALSE(family.parameters().empty());
   EXPECT_FALSE(family.profiles().empty());
+}
+
+// Every figure that a run gives stands in the table of the family, with its unit; and every figure
+// of the table can be given.
+TEST(Rml1Family, ListsItsFigures) {
+  std::map<std::string, std::string> listed;
+  for (const machine::FigureInfo& info : Rml1Family().figures()) {
+    EXPECT_FALSE(info.text.empty()) << info.name;
+    EXPECT_TRUE(listed.emplace(info.name, info.unit).second) << info.name;
+  }
+  machine::Parameters parameters = ParametersOf("t1a");
+  ASSERT_TRUE(parameters.Set("SEQUENCES", "ALL").ok());
+  ASSERT_TRUE(parameters.Set("SKIP", "VPANEL").ok());
+  ASSERT_TRUE(parameters.Set("BUFFER", 256.0).ok());
+  std::set<std::string> given;
+  const auto collect = [&](const std::vector<machine::Figure>& figures) {
+    for (const machine::Figure& figure : figures) {
+      ASSERT_TRUE(listed.contains(figure.name)) << figure.name;
+      EXPECT_EQ(listed[figure.name], figure.unit) << figure.name;
+      given.insert(figure.name);
+    }
+  };
+  TestRun run(
+      parameters,
+      "D1,1;F;H;I;M;R;V;W;Z1,1,1;@;^PA;DF;IN;PA;PD;PR;PU;VS;!DW;!MC;!NR;!PZ;!RC;!VZ;!ZM;!ZO;"
+      "!ZZ;!ZE A5;J;!CO;!SL;!SP;!RD;X;5;W-1;"
+      "\x1b.k;\x1b.T-\x1b.T70000:\x1b.T1;2;3;4;5;:");
+  run.AdvanceToEnd();
+  run.Press(machine::InputKind::kStart);
+  run.AdvanceToEnd();
+  collect(run->figures());
+  ASSERT_TRUE(parameters.Set("SKIP", "PNC3000").ok());
+  TestRun older(parameters, "!1;!0;");
+  older.AdvanceToEnd();
+  collect(older->figures());
+  std::set<std::string> never;
+  for (const auto& [name, unit] : listed) {
+    if (!given.contains(name)) never.insert(name);
+  }
+  // A stored program meets no line error, and its sender heeds flow control.
+  EXPECT_EQ(never, (std::set<std::string>{"communication_errors.15", "communication_errors.16"}));
+}
+
+// RML1-1.08, RML1-9.10: what reports and pictures need, in mm.
+TEST(Rml1Family, TellsTheShapeOfAMachine) {
+  machine::Parameters parameters = ParametersOf("mdx-40a-rotary");
+  const machine::MachineShape shape = Rml1Family().Shape(parameters);
+  EXPECT_EQ(shape.travel.min, (motion::Vec3{34, 0, -68}));
+  EXPECT_EQ(shape.travel.max, (motion::Vec3{305, 305, 0}));
+  EXPECT_TRUE(shape.has_work_origin);
+  EXPECT_EQ(shape.work_origin, (motion::Vec3{34, 0, -20}));
+  EXPECT_FALSE(shape.five_axis);
+  EXPECT_EQ(shape.laser_watts, 0.0);
+  ASSERT_TRUE(shape.limits.has_value());
+  EXPECT_EQ(shape.limits->axes.speed[2], 30.0);
+  EXPECT_EQ(shape.limits->tip_speed_mm_s, 50.0);
 }
 
 // The object is the raw stream, whatever is in it.

@@ -1,7 +1,10 @@
-#include "engine/rml1/family.h"
+#include "engine/rml1/rml1_family.h"
 
+#include <algorithm>
+#include <limits>
 #include <set>
 
+#include "engine/rml1/figures.h"
 #include "engine/rml1/physical.h"
 #include "engine/rml1/run.h"
 
@@ -88,7 +91,7 @@ class Rehearsal {
                         "RML1-9.42", {.length = 1, .byte_offset = device_.pending_offset()}, 0);
   }
 
-  std::vector<machine::Figure> Figures() const { return physical_.Figures(device_); }
+  std::vector<machine::Figure> Figures() const { return FiguresOf(device_, physical_); }
 
  private:
   void CarryOut() {
@@ -121,13 +124,49 @@ class Rehearsal {
   int pauses_told_ = 0;
 };
 
-}  // namespace
+class MillFamily final : public machine::MachineFamily {
+ public:
+  const machine::FamilyInfo& info() const override { return kInfo; }
+  std::span<const machine::ParameterInfo> parameters() const override { return ParameterTable(); }
+  std::span<const machine::MachineProfile> profiles() const override { return MachineProfiles(); }
+  std::span<const machine::FigureInfo> figures() const override { return FigureTable(); }
+  machine::MachineShape Shape(const machine::Parameters& parameters) const override;
+  machine::Translation Translate(const machine::SourceFile& file,
+                                 const machine::Parameters& parameters,
+                                 const machine::CheckOptions& options) const override;
+  machine::TransferPlan PlanTransfer(const machine::ProjectBundle& project,
+                                     const machine::Parameters& parameters,
+                                     const machine::TransferOptions& options) const override;
+  Result<std::unique_ptr<machine::Run>> NewRun(machine::RunSetup setup,
+                                               machine::RunObserver& observer) const override;
+};
 
-const machine::FamilyInfo& Rml1Family::info() const { return kInfo; }
-std::span<const machine::ParameterInfo> Rml1Family::parameters() const { return ParameterTable(); }
-std::span<const machine::MachineProfile> Rml1Family::profiles() const { return MachineProfiles(); }
+machine::MachineShape MillFamily::Shape(const machine::Parameters& parameters) const {
+  const Result<Profile> made = MakeProfile(parameters);
+  if (!made) return {};
+  const Profile& p = *made;
+  const auto mm = [&p](double x, double y, double z) {
+    return motion::Vec3{x, y, z} * (1.0 / p.units_per_mm);
+  };
+  machine::MachineShape shape;
+  shape.travel.Add(mm(p.x.low, p.y.low, p.z.low));
+  shape.travel.Add(mm(p.x.high, p.y.high, p.z.high));
+  shape.has_work_origin = true;
+  shape.work_origin = mm(p.origin_x, p.origin_y, p.z0);
+  const double xy = std::max(p.xy_speeds.maximum_mm_s, p.travel_speed);
+  const double a = p.acceleration_mm_s2;
+  motion::MachineLimits limits;
+  limits.tip_speed_mm_s = xy;
+  limits.tip_acceleration_mm_s2 = a;
+  limits.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
+  limits.settling_s = 0.0;
+  limits.axes.speed = {xy, xy, p.z_speeds.maximum_mm_s, p.rotary_speed_deg_s * kRadPerDegree, 0.0};
+  limits.axes.acceleration = {a, a, a, p.rotary_acceleration_deg_s2 * kRadPerDegree, 0.0};
+  shape.limits = limits;
+  return shape;
+}
 
-machine::Translation Rml1Family::Translate(const machine::SourceFile& file,
+machine::Translation MillFamily::Translate(const machine::SourceFile& file,
                                            const machine::Parameters& parameters,
                                            const machine::CheckOptions& options) const {
   machine::Translation translation;
@@ -151,7 +190,7 @@ machine::Translation Rml1Family::Translate(const machine::SourceFile& file,
   return translation;
 }
 
-machine::TransferPlan Rml1Family::PlanTransfer(const machine::ProjectBundle& project,
+machine::TransferPlan MillFamily::PlanTransfer(const machine::ProjectBundle& project,
                                                const machine::Parameters& parameters,
                                                const machine::TransferOptions& /*options*/) const {
   machine::TransferPlan plan;
@@ -189,11 +228,18 @@ machine::TransferPlan Rml1Family::PlanTransfer(const machine::ProjectBundle& pro
   return plan;
 }
 
-Result<std::unique_ptr<machine::Run>> Rml1Family::NewRun(machine::RunSetup setup,
+Result<std::unique_ptr<machine::Run>> MillFamily::NewRun(machine::RunSetup setup,
                                                          machine::RunObserver& observer) const {
   Result<std::unique_ptr<MillRun>> run = MillRun::Make(std::move(setup), observer);
   if (!run) return run.error();
   return std::unique_ptr<machine::Run>(std::move(*run));
+}
+
+}  // namespace
+
+const machine::MachineFamily& Rml1Family() {
+  static const MillFamily family;
+  return family;
 }
 
 }  // namespace rmlcell::rml1
