@@ -71,7 +71,7 @@ machine::RunPhase Control::Advance(SimTime until) {
 
 bool Control::MayFetch() const {
   return s_.phase == machine::RunPhase::kRunning && s_.pending.kind == Pending::Kind::kNone &&
-         (!Busy() || s_.background);
+         (!Busy() || s_.background || (s_.stop_requested && s_.passing));
 }
 
 // The next tick of the system cycle after now, counted from `since`. OPT-B.30
@@ -86,7 +86,7 @@ SimTime Control::NextEvent(SimTime until) const {
   if (s_.active) {
     next = std::min(next, s_.active->end);
     if (s_.watched_move && s_.active->motion.tag == *s_.watched_move &&
-        s_.active->rest == ActiveMotion::Rest::kNo) {
+        !s_.active->ended) {
       if (s_.end_condition) next = std::min(next, NextTick(s_.watched_since));
       if (s_.time_label) next = std::min(next, std::max(s_.now, s_.time_due));
     }
@@ -124,9 +124,13 @@ void Control::ActOnTime() {
   if (s_.phase != machine::RunPhase::kRunning) return;
   if (!s_.active && !s_.timeline.empty()) StartNextItem();
   if (s_.phase != machine::RunPhase::kRunning) return;
-  if (s_.stop_requested && s_.active && CanHaltHere()) {
-    s_.stop_requested = false;
-    BringToRest(ActiveMotion::Rest::kHalt);
+  if (s_.halting && !Busy()) {
+    s_.halting = false;
+    return Halt("STOP");
+  }
+  if (s_.stop_requested && s_.active && BringToHalt() && !Busy()) {
+    s_.halting = false;
+    return Halt("STOP");
   }
   WatchMove();
   Pending& pending = s_.pending;
@@ -169,7 +173,7 @@ void Control::ActOnTime() {
     case Pending::Kind::kTakeOver:
       if (s_.now < pending.until) break;
       pending = {.kind = Pending::Kind::kStandstill};
-      if (s_.active) BringToRest(ActiveMotion::Rest::kEnded);
+      if (s_.active) EndMotionHere();
       s_.timeline.clear();
       break;
     case Pending::Kind::kNone: break;
@@ -212,10 +216,14 @@ void Control::Apply(const machine::InputChange& input) {
       break;
     case machine::InputKind::kStop:
       if (s_.phase != machine::RunPhase::kRunning) break;
+      if (s_.halting) break;
       if (!Busy() && !s_.passing) {
         Halt("STOP");
-      } else if (s_.active && CanHaltHere()) {
-        BringToRest(ActiveMotion::Rest::kHalt);
+      } else if (s_.active && !s_.active->ended && BringToHalt()) {
+        if (!Busy()) {
+          s_.halting = false;
+          Halt("STOP");
+        }
       } else {
         s_.stop_requested = true;
       }
@@ -265,7 +273,8 @@ void Control::Resume() {
     s_.beam_returns = false;
     BeamOn(s_.beam.power);
   }
-  if (s_.interrupted) GoOnAfterHalt();
+  s_.timeline.insert(s_.timeline.begin(), s_.interrupted.begin(), s_.interrupted.end());
+  s_.interrupted.clear();
 }
 
 // The state freezes: no motion is modelled after it (motion.md 6).
@@ -292,7 +301,7 @@ void Control::End(machine::OutcomeKind kind, ErrorCode code) {
 // Beam off, shutter closed, whatever the reason (OPT-3.16, 3.18, B.54).
 void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail) {
   s_.timeline.clear();
-  s_.interrupted.reset();
+  s_.interrupted.clear();
   BeamOff();
   CloseShutter();
   s_.beam_returns = false;

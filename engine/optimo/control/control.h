@@ -53,9 +53,9 @@ class Control : private VariableAccess {
   void StartNextItem();
   void TellMotion(SimTime until);
   void ArriveAtEnd();
-  void BringToRest(ActiveMotion::Rest rest);
-  bool CanHaltHere() const;
-  void GoOnAfterHalt();
+  void BeginProfile();
+  void EndMotionHere();
+  bool BringToHalt();
   void ChangeOverride(double percent);
   void StopMotions();
   motion::TipPose TipNow() const;

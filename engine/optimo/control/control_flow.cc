@@ -28,11 +28,12 @@ void Control::Fetch() {
   const auto slot = linked().slot;
   std::uint32_t at = index().SkipDeclares(frame().next);
   const bool at_end = at >= module().instructions.size();
-  if (s_.hold_requested || s_.stop_requested || s_.halt_after_step) {
+  const bool stop_here = s_.stop_requested && !s_.passing;
+  if (s_.hold_requested || stop_here || s_.halt_after_step) {
     if (stand_first()) return;
     const bool over = at_end && s_.programs.size() == 1 && program().frames.size() == 1;
     if (!(s_.halt_after_step && over)) {
-      return Halt(s_.halt_after_step ? s_.halt_reason : s_.stop_requested ? "STOP" : "HOLD");
+      return Halt(s_.halt_after_step ? s_.halt_reason : stop_here ? "STOP" : "HOLD");
     }
     s_.halt_after_step = false;
   }
@@ -497,7 +498,7 @@ void Control::Raise(ErrorCode code, std::string detail) {
   const Error error{code, std::move(detail), {}};
   if (s_.deferred) return;
   if (s_.passing || Busy()) {
-    if (s_.background && s_.active) BringToRest(ActiveMotion::Rest::kEnded);
+    if (s_.background && s_.active) EndMotionHere();
     StopMotions();
     s_.deferred = error;
     s_.pending = {.kind = Pending::Kind::kStandstill};

@@ -83,6 +83,9 @@ bool Control::AppendMotion(const motion::PathPiece& path, const Instruction& i, 
   command.settles = settles;
   command.tag = s_.next_tag++;
   MoveNote kept = note;
+  kept.kind = command.kind;
+  kept.speed_percent = modal().speed_percent;
+  kept.accel_fraction = command.acceleration_fraction;
   if (!path.by_sigma()) kept.feed_mm_s = command.speed_fraction * parameters_.limits.tip_speed_mm_s;
   if (command.kind != motion::MoveCommand::Kind::kContour) kept.feed_mm_s = 0.0;
   if (path.length() <= 0.0) {

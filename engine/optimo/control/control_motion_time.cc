@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <span>
 
+#include "engine/motion/interruption.h"
 #include "engine/optimo/control/control.h"
 
 // Motions as time passes: from the planner to the observer.
@@ -34,25 +36,32 @@ void Control::DrainPlanner() {
 // Marks take effect at once, motions begin.
 void Control::StartNextItem() {
   while (!s_.active && !s_.timeline.empty()) {
-    motion::PlannedItem item = std::move(s_.timeline.front());
-    s_.timeline.pop_front();
-    if (const auto* mark = std::get_if<motion::PlannedMark>(&item)) {
-      if (const PassageEffect* effect = FindTag(s_.effects, mark->tag)) Carry(*effect);
-      while (!s_.effects.empty() && s_.effects.front().first <= mark->tag) s_.effects.pop_front();
+    motion::PlannedItem& next = s_.timeline.front();
+    if (const auto* mark = std::get_if<motion::PlannedMark>(&next)) {
+      const std::uint64_t tag = mark->tag;
+      s_.timeline.pop_front();
+      if (const PassageEffect* effect = FindTag(s_.effects, tag)) Carry(*effect);
+      while (!s_.effects.empty() && s_.effects.front().first <= tag) s_.effects.pop_front();
       continue;
     }
-    auto& planned = std::get<motion::PlannedMotion>(item);
-    ActiveMotion active;
-    if (const MoveNote* note = FindTag(s_.notes, planned.tag)) active.note = *note;
-    while (!s_.notes.empty() && s_.notes.front().first < planned.tag) s_.notes.pop_front();
-    active.motion = std::move(planned);
-    active.start = s_.now;
-    active.told = s_.now;
-    active.arrival = s_.now + FromSeconds(active.motion.speed.duration_s());
-    active.end = active.arrival + FromSeconds(active.motion.settling_s);
-    s_.active = std::move(active);
+    s_.active.emplace();
+    ActiveMotion& active = *s_.active;
+    active.motion = std::get<motion::PlannedMotion>(next);
+    s_.timeline.pop_front();
+    if (const MoveNote* note = FindTag(s_.notes, active.motion.tag)) active.note = *note;
+    while (!s_.notes.empty() && s_.notes.front().first < active.motion.tag) s_.notes.pop_front();
+    BeginProfile();
   }
   if (!Busy()) s_.background = false;
+}
+
+// The profile of the motion under way begins now.
+void Control::BeginProfile() {
+  ActiveMotion& active = *s_.active;
+  active.start = s_.now;
+  active.told = s_.now;
+  active.arrival = s_.now + FromSeconds(active.motion.speed.duration_s());
+  active.end = active.arrival + FromSeconds(active.motion.settling_s);
 }
 
 // Reports the part of the motion under way from what was told up to `until`.
@@ -80,13 +89,7 @@ void Control::ArriveAtEnd() {
   const bool joint = active.motion.path.kind() == motion::PathPiece::Kind::kJoint;
   const motion::TipPose pose = PoseOn(active.motion, active.s_at(active.arrival));
   s_.machine.axes = joint ? motion::AxisPose{pose.tip, pose.a_rad, pose.b_rad} : active.motion.head.ColumnOf(pose);
-  if (active.rest == ActiveMotion::Rest::kHalt) {
-    s_.interrupted = active;
-    s_.interrupted->offset = active.s_at(active.arrival);
-    Halt("STOP");
-    return;
-  }
-  if (active.rest == ActiveMotion::Rest::kEnded) {
+  if (active.ended) {
     s_.timeline.clear();
     s_.planned_axes = s_.machine.axes;
   } else if (!active.motion.ends_move) {
@@ -96,7 +99,7 @@ void Control::ArriveAtEnd() {
   if (corner.passage == motion::Passage::kStopReversal) {
     Warn(ErrorCode::kFlyReversal, "the path turns back: the machine stops at the target", "OPT-B.25");
   }
-  if (active.note.last || active.rest == ActiveMotion::Rest::kEnded) {
+  if (active.note.last || active.ended) {
     observer_.OnMove({.at = s_.now,
                       .place = active.note.place,
                       .tip = HeadNow().TipOf(s_.machine.axes),
@@ -118,102 +121,94 @@ void Control::ArriveAtEnd() {
   }
 }
 
-// The motion under way leaves its profile and comes to rest on its path, at once.
-void Control::BringToRest(ActiveMotion::Rest rest) {
+// The motion under way comes to rest on its path, at once, and its move is over where it stands: /END, /TIME,
+// a MOVE that takes over. Such moves end in a stop, so the ramp never leaves their path.
+void Control::EndMotionHere() {
   ActiveMotion& active = *s_.active;
   if (s_.now >= active.arrival) return;  // it stands already
-  const double t_s = ToSeconds(s_.now - active.start);
-  const motion::SpeedProfile ramp = active.motion.speed.StopFrom(t_s, active.motion.limits);
+  const motion::SpeedProfile ramp = active.motion.speed.StopFrom(ToSeconds(s_.now - active.start), active.motion.limits);
+  const double here = active.s_at(s_.now);
+  const double rest = std::min(ramp.end().s, active.motion.path.length());
   TellMotion(s_.now);
-  active.motion.speed = ramp;
+  active.ended = true;
   active.motion.settling_s = 0.0;
-  active.rest = rest;
-  active.start = s_.now;
-  active.told = s_.now;
-  active.arrival = s_.now + FromSeconds(ramp.duration_s());
-  active.end = active.arrival;
-}
-
-// True when the motion under way can come to rest on its piece of path and get up to its end speed again
-// from there. On a blend, or close before one, a STOP waits for the next piece that can.
-bool Control::CanHaltHere() const {
-  const ActiveMotion& active = *s_.active;
-  if (active.rest != ActiveMotion::Rest::kNo || s_.now >= active.arrival) return false;
-  const double t_s = ToSeconds(s_.now - active.start);
-  const double rest_at = active.offset + active.motion.speed.StopFrom(t_s, active.motion.limits).end().s;
-  const double left = active.motion.path.length() - rest_at;
-  if (left < 0.0) return false;
-  const double end_speed = active.motion.speed.end().speed;
-  return motion::Reach(0.0, left, active.motion.limits) >= end_speed;
-}
-
-// START after STOP: from rest to the end of the same piece of path (OPT-4.18).
-void Control::GoOnAfterHalt() {
-  ActiveMotion active = std::move(*s_.interrupted);
-  s_.interrupted.reset();
-  const double left = std::max(0.0, active.motion.path.length() - active.offset);
-  // The profile that was left knew the speed at the end of the piece; a piece that ends in a blend has one
-  // above zero, which CanHaltHere has seen to be in reach.
-  const double end_speed = s_.timeline.empty() ? 0.0 : [&] {
-    for (const motion::PlannedItem& item : s_.timeline) {
-      if (const auto* next = std::get_if<motion::PlannedMotion>(&item)) return next->speed.At(0.0).speed;
-    }
-    return 0.0;
-  }();
-  active.motion.speed = motion::SpeedProfile::Span(left, 0.0, end_speed, active.motion.limits);
-  active.motion.settling_s = end_speed > 0.0 || active.note.fly ? 0.0 : parameters_.limits.settling_s;
-  active.rest = ActiveMotion::Rest::kNo;
-  active.start = s_.now;
-  active.told = s_.now;
-  active.arrival = s_.now + FromSeconds(active.motion.speed.duration_s());
-  active.end = active.arrival + FromSeconds(active.motion.settling_s);
-  s_.active = std::move(active);
-}
-
-// Acts on motions that are not planned yet, and on the one under way when it cruises and ends in a stop.
-void Control::ChangeOverride(double percent) {
-  if (!(percent > 0.0)) percent = 1.0;
-  const double before = s_.override_percent;
-  s_.override_percent = percent;
-  if (!s_.active || s_.active->rest != ActiveMotion::Rest::kNo || before == percent) return;
-  ActiveMotion& active = *s_.active;
-  if (s_.now >= active.arrival || active.motion.speed.end().speed > 0.0) return;
-  const motion::PathState here = active.motion.speed.At(ToSeconds(s_.now - active.start));
-  if (here.acceleration != 0.0 || here.speed <= 0.0) return;
-  motion::PathLimits limits = active.motion.limits;
-  const double left = active.motion.path.length() - active.offset - here.s;
-  const double wanted = std::min(limits.speed * percent / before,
-                                 active.motion.path.by_sigma() ? limits.speed * 1.45
-                                                               : parameters_.limits.tip_speed_mm_s);
-  limits.speed = std::max(wanted, here.speed);
-  if (motion::RampLength(here.speed, 0.0, limits) > left) return;
-  TellMotion(s_.now);
-  if (wanted < here.speed) {
-    // Down to the new speed first; what remains follows as a motion of its own.
-    const double ramp = motion::RampLength(here.speed, wanted, limits);
-    if (ramp + motion::RampLength(wanted, 0.0, limits) > left) return;
-    motion::PlannedMotion rest = active.motion;
-    const double s_rest = active.offset + here.s + ramp;
-    active.motion.speed = motion::SpeedProfile::Span(ramp, here.speed, wanted, limits);
-    active.motion.settling_s = 0.0;
-    active.motion.ends_move = false;
-    if (!rest.path.by_sigma()) {
-      active.motion.path = rest.path.Part(0.0, s_rest);
-      rest.path = rest.path.Part(s_rest, rest.path.length());
-      limits.speed = wanted;
-      rest.limits = limits;
-      rest.speed = motion::SpeedProfile::Span(rest.path.length(), wanted, 0.0, limits);
-      s_.timeline.emplace_front(std::move(rest));
-    }
+  if (rest > here) {
+    active.motion.path = active.motion.path.Part(here, rest);
+    active.motion.speed = ramp.Part(here, rest);
   } else {
-    active.motion.limits = limits;
-    active.motion.speed = motion::SpeedProfile::Span(left, here.speed, 0.0, limits);
+    active.motion.path = motion::PathPiece::Line(active.motion.path.At(here), active.motion.path.At(here));
+    active.motion.speed = motion::SpeedProfile();
   }
-  active.offset += here.s;
-  active.start = s_.now;
-  active.told = s_.now;
-  active.arrival = s_.now + FromSeconds(active.motion.speed.duration_s());
-  active.end = active.arrival + FromSeconds(active.motion.settling_s);
+  BeginProfile();
+}
+
+// STOP: the machine comes to rest along the planned path, over as many motions as that takes, and START goes
+// on from there over the same path (OPT-4.18, motion.md 6). False: not enough is planned yet to come to rest
+// on; the program runs ahead a little more.
+bool Control::BringToHalt() {
+  std::vector<motion::PlannedMotion> ahead{s_.active->motion};
+  std::vector<std::pair<std::size_t, motion::PlannedMark>> marks;  // each behind a motion
+  for (const motion::PlannedItem& item : s_.timeline) {
+    if (const auto* planned = std::get_if<motion::PlannedMotion>(&item)) {
+      ahead.push_back(*planned);
+    } else {
+      marks.emplace_back(ahead.size() - 1, std::get<motion::PlannedMark>(item));
+    }
+  }
+  const motion::StopOnPath stop = motion::StopAlong(ahead, ToSeconds(s_.now - s_.active->start));
+  if (!stop.complete) return false;
+  TellMotion(s_.now);
+  s_.machine.axes = AxesNow();
+  s_.active.reset();
+  s_.timeline.clear();
+  const auto add_marks = [&](std::size_t behind, std::deque<motion::PlannedItem>& items) {
+    for (const auto& [place, mark] : marks) {
+      if (place == behind) items.emplace_back(mark);
+    }
+  };
+  const std::size_t first = stop.index + 1 - std::min(stop.motions.size(), stop.index + 1);
+  for (std::size_t n = 0; n < stop.motions.size(); ++n) {
+    s_.timeline.emplace_back(stop.motions[n]);
+    if (first + n < stop.index) add_marks(first + n, s_.timeline);
+  }
+  const std::span<const motion::PlannedMotion> left = std::span(ahead).subspan(stop.index);
+  const std::vector<motion::PlannedMotion> restart = motion::RestartAlong(left, stop.s);
+  s_.interrupted.clear();
+  // RestartAlong leaves out the first motion when the machine stands at its end.
+  const std::size_t dropped = left.size() - restart.size();
+  for (std::size_t k = 0; k < left.size(); ++k) {
+    if (k >= dropped) s_.interrupted.emplace_back(restart[k - dropped]);
+    add_marks(stop.index + k, s_.interrupted);
+  }
+  s_.halting = true;
+  s_.stop_requested = false;
+  StartNextItem();
+  return true;
+}
+
+// Acts on motions that are not planned yet, and on the one under way when it ends in a stop (motion.md 6).
+void Control::ChangeOverride(double percent) {
+  const double before = s_.override_percent;
+  if (!(percent > 0.0) || percent == before) return;
+  s_.override_percent = percent;
+  if (!s_.active || s_.active->ended || s_.halting || s_.now >= s_.active->arrival) return;
+  ActiveMotion& active = *s_.active;
+  if (active.motion.speed.end().speed > 0.0 || active.note.speed_percent <= 0.0) return;
+  motion::MoveCommand command;
+  command.kind = active.note.kind;
+  command.path = active.motion.path;
+  command.head = active.motion.head;
+  command.speed_fraction = std::min(1.0, active.note.speed_percent * percent * 1e-4);
+  command.acceleration_fraction = active.note.accel_fraction;
+  const motion::PathLimits limits = motion::LimitsOf(command, parameters_.limits);
+  const motion::PathState here = active.motion.speed.At(ToSeconds(s_.now - active.start));
+  TellMotion(s_.now);
+  const double length = active.motion.path.length();
+  motion::SpeedProfile changed = motion::SpeedProfile::From(here, length, 0.0, limits);
+  active.motion.limits = limits;
+  active.motion.path = active.motion.path.Part(here.s, length);
+  active.motion.speed = changed.Part(here.s, length);
+  BeginProfile();
 }
 
 // /END and /TIME of the move under way: at its start, at each tick, when time runs out. OPT-2.54 to 2.58
@@ -232,17 +227,17 @@ void Control::WatchMove() {
     }
     if (s_.active && s_.watched_move == s_.active->motion.tag) {
       s_.time_ran_out = true;
-      BringToRest(ActiveMotion::Rest::kEnded);
+      EndMotionHere();
       return;
     }
   }
   if (!s_.end_condition || !s_.active || s_.watched_move != s_.active->motion.tag ||
-      s_.active->rest != ActiveMotion::Rest::kNo) {
+      s_.active->ended) {
     return;
   }
   if ((s_.now - s_.watched_since) % FromSeconds(parameters_.cycle_s) != SimTime(0)) return;
   const std::optional<bool> met = Truth(*s_.end_condition);
-  if (met && *met) BringToRest(ActiveMotion::Rest::kEnded);
+  if (met && *met) EndMotionHere();
 }
 
 // An error or the end of the run: whatever moves comes to rest, nothing more begins.

@@ -75,22 +75,22 @@ struct MoveNote {
   PathType path = PathType::kPtp;
   bool last = true;  // of its MOVE; false: the lead of a hole
   bool fly = false;
+  motion::MoveCommand::Kind kind = motion::MoveCommand::Kind::kContour;
+  double speed_percent = 0.0;  // as programmed; for a change of the override on the way
+  double accel_fraction = 1.0;
 };
 
-// A motion under way. Its path variable is offset + speed.At(t).s.
+// A motion under way.
 struct ActiveMotion {
   motion::PlannedMotion motion{};
   MoveNote note{};
-  double offset = 0.0;
   SimTime start{0};
   SimTime arrival{0};  // end of the profile
   SimTime end{0};      // with settling
   SimTime told{0};     // parts up to here were reported
-  enum class Rest { kNo, kHalt, kEnded };
-  Rest rest = Rest::kNo;  // the profile is a ramp to rest: of STOP (more comes after START), or of /END,
-                          // /TIME, or a MOVE that takes over (the move is over where it stands)
+  bool ended = false;  // brought to rest by /END, /TIME or a MOVE that takes over
 
-  double s_at(SimTime time) const { return offset + motion.speed.At(ToSeconds(time - start)).s; }
+  double s_at(SimTime time) const { return motion.speed.At(ToSeconds(time - start)).s; }
 };
 
 // Something visible that happens between two motions (planner marks).
@@ -150,7 +150,8 @@ struct ControlState {
   std::deque<std::pair<std::uint64_t, PassageEffect>> effects{};
   std::deque<motion::PlannedItem> timeline{};
   std::optional<ActiveMotion> active{};
-  std::optional<ActiveMotion> interrupted{};  // STOP: the rest of it follows at START
+  std::deque<motion::PlannedItem> interrupted{};  // STOP: what follows at START
+  bool halting = false;  // coming to rest for a STOP
   bool passing = false;     // the planner may hold a /FLY motion back
   bool background = false;  // the motion under way is one of /NEXT
   bool condition_met = false;  // /START of the instruction in execution was true
