@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/core/units.h"
+#include "engine/motion/least.h"
 
 namespace rmlcell::motion {
 namespace {
@@ -12,7 +13,6 @@ namespace {
 constexpr double kSampleAngle_rad = 0.05;  // motion.md 5.1: at most this much turning per interval
 constexpr int kIntervalsMin = 16;
 constexpr int kIntervalsMax = 4096;  // 200 rad of turning: 16 turns of the widest head
-constexpr double kCandidate = 0.95;  // sample maxima below this share of the best cannot win
 
 std::size_t At(int axis) { return static_cast<std::size_t>(axis); }
 
@@ -48,9 +48,7 @@ double JerkAllowed(const AxisDerivatives& q, const AxisLimits& axes, const AxisS
 
 // Upper bounds of both derivatives over the whole piece, cheap: enough for most moves.
 AxisDerivatives Bounds(const PathPiece& path, const Head& head) {
-  const double arm =
-      std::sqrt(head.tool.x_mm * head.tool.x_mm + head.tool.y_mm * head.tool.y_mm +
-                (head.length_mm - head.tool.z_mm) * (head.length_mm - head.tool.z_mm));
+  const double arm = head.arm_mm();
   const double a = std::abs(path.a_rate());
   const double b = std::abs(path.b_rate());
   const double swing = arm * (a + b);
@@ -69,75 +67,35 @@ AxisDerivatives Bounds(const PathPiece& path, const Head& head) {
   return q;
 }
 
-// The least value of `f` over [0, length], given its values at equal steps: every sample minimum
-// that could win is refined by golden sections.
-template <class F, class Samples>
-double Minimum(F f, const Samples& samples, int intervals, double length) {
-  double best = HUGE_VAL;
-  for (int k = 0; k <= intervals; ++k) best = std::min(best, f(samples(k)));
-  const double worth_a_look = best / kCandidate;
-  for (int k = 0; k <= intervals; ++k) {
-    const double here = f(samples(k));
-    if (here > worth_a_look) continue;
-    if (k > 0 && f(samples(k - 1)) < here) continue;
-    if (k < intervals && f(samples(k + 1)) < here) continue;
-    double low = length * std::max(k - 1, 0) / intervals;
-    double high = length * std::min(k + 1, intervals) / intervals;
-    constexpr double kGolden = 0.6180339887498949;
-    constexpr int kSections = 40;  // 0.618^40 = 4e-9 of the bracket; the value is flat there
-    double left = high - kGolden * (high - low);
-    double right = low + kGolden * (high - low);
-    double at_left = f.At(left);
-    double at_right = f.At(right);
-    for (int section = 0; section < kSections; ++section) {
-      if (at_left < at_right) {
-        high = right;
-        right = left;
-        at_right = at_left;
-        left = high - kGolden * (high - low);
-        at_left = f.At(left);
-      } else {
-        low = left;
-        left = right;
-        at_left = at_right;
-        right = low + kGolden * (high - low);
-        at_right = f.At(right);
-      }
-    }
-    best = std::min({best, at_left, at_right});
-  }
-  return best;
-}
-
-// A limit as a function of the derivatives, also callable at a place of the path.
-template <class Limit>
-struct AlongPath {
-  const PathPiece& path;
-  const Head& head;
-  Limit limit;
-  double operator()(const AxisDerivatives& q) const { return limit(q); }
-  double At(double s) const { return limit(DerivativesAt(path, head, s)); }
-};
-
 }  // namespace
 
+double SpeedWithinAxes(const AxisDerivatives& q, const AxisLimits& axes) {
+  return Least([&](std::size_t i) {
+    const double by_speed = axes.speed[i] / std::abs(q.first[i]);
+    if (q.second[i] == 0.0) return by_speed;
+    return std::min(by_speed, std::sqrt(axes.acceleration[i] / std::abs(q.second[i])));
+  });
+}
+
 AxisDerivatives DerivativesAt(const PathPiece& path, const Head& head, double s) {
-  const TipRates first{path.Tangent(s), path.a_rate(), path.b_rate()};
-  AxisDerivatives q;
+  const PathDerivatives first = path.First(s);
   if (path.kind() == PathPiece::Kind::kJoint) {
-    q.first = {first.tip.x, first.tip.y, first.tip.z, first.a, first.b};
-    return q;
+    return {.first = {first.tip.x, first.tip.y, first.tip.z, first.a, first.b}, .second = {}};
   }
-  const TipRates second{path.Curvature(s), 0.0, 0.0};
-  if (first.a == 0.0 && first.b == 0.0) {
-    q.first = {first.tip.x, first.tip.y, first.tip.z, 0.0, 0.0};
-    q.second = {second.tip.x, second.tip.y, second.tip.z, 0.0, 0.0};
-    return q;
+  const PathDerivatives second = path.Second(s);
+  if (first.a == 0.0 && first.b == 0.0 && second.a == 0.0 && second.b == 0.0) {
+    return {.first = {first.tip.x, first.tip.y, first.tip.z, 0.0, 0.0},
+            .second = {second.tip.x, second.tip.y, second.tip.z, 0.0, 0.0}};
   }
-  const TipPose pose = path.At(s);
-  q.first = AxisRates(head, pose.a_rad, pose.b_rad, first);
-  q.second = AxisSecondRates(head, pose.a_rad, pose.b_rad, first, second);
-  return q;
+  return ThroughHead(head, path.At(s), first, second);
+}
+
+AxisDerivatives ThroughHead(const Head& head, const TipPose& pose, const PathDerivatives& first,
+                            const PathDerivatives& second) {
+  const TipRates rates{first.tip, first.a, first.b};
+  return {.first = AxisRates(head, pose.a_rad, pose.b_rad, rates),
+          .second = AxisSecondRates(head, pose.a_rad, pose.b_rad, rates,
+                                    {second.tip, second.a, second.b})};
 }
 
 PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits& axes,
@@ -145,6 +103,16 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
   const bool turns = path.a_rate() != 0.0 || path.b_rate() != 0.0;
   const bool arc = path.kind() == PathPiece::Kind::kArc;
   const bool constant = path.kind() == PathPiece::Kind::kJoint || (!arc && !turns);
+  if (!arc && !turns && path.kind() == PathPiece::Kind::kLine) {
+    // No axis is asked for more than the tip: most lines end here.
+    bool enough = true;
+    for (std::size_t i = 0; i < 3; ++i) {
+      enough = enough && shares.speed * axes.speed[i] >= limits.speed &&
+               shares.acceleration * axes.acceleration[i] >= limits.acceleration &&
+               shares.acceleration * axes.jerk[i] >= limits.jerk;
+    }
+    if (enough) return limits;
+  }
   const AxisDerivatives bounds = constant ? DerivativesAt(path, head, 0.0) : Bounds(path, head);
   const double by_bound = SpeedAllowed(bounds, axes, shares);
   if (constant || by_bound >= limits.speed) {
@@ -158,29 +126,46 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
     }
   }
 
+  if (!arc) {
+    // A short turn: the place in the middle, and how far the derivatives can get away from it.
+    // Within 1 %.
+    constexpr double kRoom = 0.004;
+    const double half = 0.5 * path.length();
+    const double rate = std::abs(path.a_rate()) + std::abs(path.b_rate());
+    const double drift = half * head.arm_mm() * rate * rate;
+    if (drift <= kRoom * Norm(path.Tangent(0.0)) && half * rate <= kRoom) {
+      AxisDerivatives q = DerivativesAt(path, head, half);
+      for (std::size_t i = 0; i < 3; ++i) {
+        q.first[i] = std::abs(q.first[i]) + drift;
+        q.second[i] = std::abs(q.second[i]) + drift * rate;
+      }
+      limits.speed = std::min(limits.speed, SpeedAllowed(q, axes, shares));
+      limits.acceleration =
+          std::min(limits.acceleration, AccelerationAllowed(q, axes, shares, limits.speed));
+      if (std::isfinite(limits.jerk))
+        limits.jerk = std::min(limits.jerk, JerkAllowed(q, axes, shares));
+      return limits;
+    }
+  }
+
   const double turning = std::abs(path.to().a_rad - path.from().a_rad) +
                          std::abs(path.to().b_rad - path.from().b_rad) +
                          (arc ? path.sweep_rad() : 0.0);
   const double wanted = std::ceil(turning / kSampleAngle_rad);
   const int intervals = static_cast<int>(
       std::clamp(wanted, static_cast<double>(kIntervalsMin), static_cast<double>(kIntervalsMax)));
-  const auto sample = [&](int k) {
-    return DerivativesAt(path, head, path.length() * k / intervals);
+  const auto least = [&](auto limit) {
+    return LeastAlong([&](double s) { return limit(DerivativesAt(path, head, s)); }, path.length(),
+                      intervals);
   };
-
-  const auto speed = [&](const AxisDerivatives& q) { return SpeedAllowed(q, axes, shares); };
-  limits.speed = std::min(limits.speed, Minimum(AlongPath<decltype(speed)>{path, head, speed},
-                                                sample, intervals, path.length()));
-  const auto acceleration = [&](const AxisDerivatives& q) {
-    return AccelerationAllowed(q, axes, shares, limits.speed);
-  };
-  limits.acceleration = std::min(
-      limits.acceleration, Minimum(AlongPath<decltype(acceleration)>{path, head, acceleration},
-                                   sample, intervals, path.length()));
+  limits.speed = std::min(
+      limits.speed, least([&](const AxisDerivatives& q) { return SpeedAllowed(q, axes, shares); }));
+  limits.acceleration = std::min(limits.acceleration, least([&](const AxisDerivatives& q) {
+                                   return AccelerationAllowed(q, axes, shares, limits.speed);
+                                 }));
   if (std::isfinite(limits.jerk)) {
-    const auto jerk = [&](const AxisDerivatives& q) { return JerkAllowed(q, axes, shares); };
-    limits.jerk = std::min(limits.jerk, Minimum(AlongPath<decltype(jerk)>{path, head, jerk}, sample,
-                                                intervals, path.length()));
+    limits.jerk = std::min(
+        limits.jerk, least([&](const AxisDerivatives& q) { return JerkAllowed(q, axes, shares); }));
   }
   return limits;
 }

@@ -13,6 +13,14 @@ struct AxisDerivatives {
 };
 AxisDerivatives DerivativesAt(const PathPiece& path, const Head& head, double s);
 
+// The same from the derivatives of the pose.
+AxisDerivatives ThroughHead(const Head& head, const TipPose& pose, const PathDerivatives& first,
+                            const PathDerivatives& second);
+
+// The highest constant speed along a path that the axes allow where its derivatives are `q`: all of
+// their acceleration may go into the bend.
+double SpeedWithinAxes(const AxisDerivatives& q, const AxisLimits& axes);
+
 // `limits` lowered until no axis is asked for more than it can, anywhere on the piece: the last two
 // lines of motion.md 5.1. Speeds of the axes count times `speed_share`, accelerations and jerks
 // times `acceleration_share` (PTP; 1 on contours). Extremes along the piece are found to 1e-9.

@@ -89,44 +89,68 @@ Result<PathPiece::Arc3> PathPiece::ArcThrough(const TipPose& from, const Vec3& v
   piece.kind_ = Kind::kArc;
   piece.from_ = from;
   piece.to_ = to;
-  piece.normal_ = Cross(chord_unit, up);
   piece.tangent_ = chord_unit * cosine - up * sine;
-  piece.inward_ = chord_unit * sine + up * cosine;
-  piece.radius_mm_ = radius;
-  piece.sweep_rad_ = 2.0 * std::atan2(0.5 * chord, rise);
-  piece.length_ = radius * piece.sweep_rad_;
-  piece.centre_ = from.tip + chord_unit * (0.5 * chord) + up * rise;
+  const ArcShape shape{.centre = from.tip + chord_unit * (0.5 * chord) + up * rise,
+                       .normal = Cross(chord_unit, up),
+                       .inward = chord_unit * sine + up * cosine,
+                       .radius_mm = radius,
+                       .sweep_rad = 2.0 * std::atan2(0.5 * chord, rise)};
+  piece.length_ = radius * shape.sweep_rad;
+  piece.shape_ = shape;
   return arc;
 }
 
 PathPiece PathPiece::Circle(const TipPose& from, const Vec3& centre, const Vec3& normal,
                             double sweep_rad, double a_to_rad, double b_to_rad) {
+  const Vec3 inward = centre - from.tip;
+  const double radius = Norm(inward);
+  const ArcShape shape{.centre = centre,
+                       .normal = normal,
+                       .inward = inward * (1.0 / radius),
+                       .radius_mm = radius,
+                       .sweep_rad = sweep_rad};
   PathPiece piece;
   piece.kind_ = Kind::kArc;
+  piece.length_ = radius * sweep_rad;
   piece.from_ = from;
-  piece.centre_ = centre;
-  piece.normal_ = normal;
-  const Vec3 inward = centre - from.tip;
-  piece.radius_mm_ = Norm(inward);
-  piece.inward_ = inward * (1.0 / piece.radius_mm_);
-  piece.tangent_ = Cross(piece.inward_, normal);
-  piece.sweep_rad_ = sweep_rad;
-  piece.length_ = piece.radius_mm_ * sweep_rad;
   piece.to_ = {from.tip, a_to_rad, b_to_rad};
+  piece.tangent_ = Cross(shape.inward, normal);
+  piece.shape_ = shape;
   if (sweep_rad != kTurn) piece.to_.tip = piece.ArcPoint(sweep_rad);
   return piece;
+}
+
+PathPiece PathPiece::Corner(const CornerCurve& curve, double length) {
+  PathPiece piece;
+  piece.kind_ = Kind::kBlend;
+  piece.length_ = length;
+  piece.from_ = curve.At(0.0);
+  piece.to_ = curve.At(1.0);
+  piece.shape_ = CurvePart{curve, 0.0};
+  return piece;
+}
+
+PathPiece::Halves PathPiece::CornerHalves(const CornerCurve& curve, double length, double middle) {
+  Halves halves{Corner(curve, length), {}};
+  halves.first.length_ = 0.5 * length;
+  halves.second = halves.first;
+  halves.first.to_ = halves.second.from_ = curve.At(middle);
+  std::get_if<CurvePart>(&halves.second.shape_)->start = 0.5 * length;
+  return halves;
 }
 
 PathPiece PathPiece::Part(double s_from, double s_to) const {
   PathPiece part = *this;
   part.from_ = At(s_from);
   part.to_ = At(s_to);
-  if (kind_ == Kind::kArc) {
+  part.length_ = s_to - s_from;
+  if (auto* arc_shape = std::get_if<ArcShape>(&part.shape_)) {
     part.tangent_ = Tangent(s_from);
-    part.inward_ = Curvature(s_from) * radius_mm_;
-    part.sweep_rad_ = (s_to - s_from) / radius_mm_;
+    arc_shape->inward = Curvature(s_from) * arc_shape->radius_mm;
+    arc_shape->sweep_rad = part.length_ / arc_shape->radius_mm;
+  } else if (auto* curve_part = std::get_if<CurvePart>(&part.shape_)) {
+    curve_part->start += s_from;
   }
-  if (!by_sigma()) part.length_ = s_to - s_from;
   return part;
 }
 
@@ -135,41 +159,45 @@ double PathPiece::tip_length_mm() const { return by_sigma() ? 0.0 : length_; }
 Vec3 PathPiece::ArcPoint(double angle) const {
   // From the start point, not from the centre: a radius of 1e8 mm then costs no digits.
   const double half_sine = std::sin(0.5 * angle);
-  return from_.tip + tangent_ * (radius_mm_ * std::sin(angle)) +
-         inward_ * (radius_mm_ * 2.0 * half_sine * half_sine);
+  const double radius = arc().radius_mm;
+  return from_.tip + tangent_ * (radius * std::sin(angle)) +
+         arc().inward * (radius * 2.0 * half_sine * half_sine);
 }
 
 TipPose PathPiece::At(double s) const {
   if (!(s > 0.0)) return from_;
   if (s >= length_) return to_;
+  if (const auto* part = std::get_if<CurvePart>(&shape_)) {
+    return part->curve.At(part->Parameter(s));
+  }
   const double share = s / length_;
   TipPose pose;
   pose.a_rad = from_.a_rad + (to_.a_rad - from_.a_rad) * share;
   pose.b_rad = from_.b_rad + (to_.b_rad - from_.b_rad) * share;
-  pose.tip = kind_ == Kind::kArc ? ArcPoint(s / radius_mm_) : Between(from_.tip, to_.tip, share);
+  pose.tip = kind_ == Kind::kArc ? ArcPoint(s / radius_mm()) : Between(from_.tip, to_.tip, share);
   return pose;
 }
 
-Vec3 PathPiece::Tangent(double s) const {
-  if (kind_ == Kind::kArc) {
-    const double angle = s / radius_mm_;
-    return tangent_ * std::cos(angle) + inward_ * std::sin(angle);
+PathDerivatives PathPiece::First(double s) const {
+  if (const auto* part = std::get_if<CurvePart>(&shape_)) {
+    return part->curve.FirstByLength(part->Parameter(s));
   }
-  if (kind_ == Kind::kLine) return tangent_;
-  return to_.tip - from_.tip;
+  Vec3 tip = kind_ == Kind::kLine ? tangent_ : to_.tip - from_.tip;
+  if (kind_ == Kind::kArc) {
+    const double angle = s / radius_mm();
+    tip = tangent_ * std::cos(angle) + arc().inward * std::sin(angle);
+  }
+  return {tip, a_rate(), b_rate()};
 }
 
-Vec3 PathPiece::Curvature(double s) const {
+PathDerivatives PathPiece::Second(double s) const {
+  if (const auto* part = std::get_if<CurvePart>(&shape_)) {
+    return part->curve.SecondByLength(part->Parameter(s));
+  }
   if (kind_ != Kind::kArc) return {};
-  const double angle = s / radius_mm_;
-  return (inward_ * std::cos(angle) - tangent_ * std::sin(angle)) * (1.0 / radius_mm_);
-}
-
-double PathPiece::a_rate() const {
-  return length_ > 0.0 ? (to_.a_rad - from_.a_rad) / length_ : 0.0;
-}
-double PathPiece::b_rate() const {
-  return length_ > 0.0 ? (to_.b_rad - from_.b_rad) / length_ : 0.0;
+  const double angle = s / radius_mm();
+  return {(arc().inward * std::cos(angle) - tangent_ * std::sin(angle)) * (1.0 / radius_mm()), 0.0,
+          0.0};
 }
 
 }  // namespace rmlcell::motion

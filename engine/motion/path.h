@@ -1,19 +1,12 @@
 #pragma once
 
+#include <variant>
+
 #include "engine/core/result.h"
-#include "engine/motion/vec3.h"
+#include "engine/motion/corner_curve.h"
+#include "engine/motion/pose.h"
 
 namespace rmlcell::motion {
-
-// Tool tip in the machine frame (mm) and the two head angles (rad). Mills use the tip alone, and
-// a_rad for their rotary axis.
-struct TipPose {
-  Vec3 tip;
-  double a_rad = 0.0;
-  double b_rad = 0.0;
-
-  bool operator==(const TipPose&) const = default;
-};
 
 // Tolerances of motion.md section 1, used everywhere and nowhere else.
 inline constexpr double kTipLengthZero_mm = 1e-6;
@@ -58,35 +51,70 @@ class PathPiece {
   double length() const { return length_; }  // mm, or 1 for sigma pieces; 0: nothing to do
   double tip_length_mm() const;              // 0 for kRotary; for kJoint not known here, 0
   bool by_sigma() const { return kind_ == Kind::kRotary || kind_ == Kind::kJoint; }
+  double a_rate() const {
+    return RateOf(from_.a_rad, to_.a_rad);
+  }  // rad per unit of s; kBlend: mean
+  double b_rate() const { return RateOf(from_.b_rad, to_.b_rad); }
   const TipPose& from() const { return from_; }
   const TipPose& to() const { return to_; }
 
+  // A corner curve of the given length, which is its arc length; `middle` is u at half of it.
+  static PathPiece Corner(const CornerCurve& curve, double length);
+  struct Halves;
+  static Halves CornerHalves(const CornerCurve& curve, double length, double middle);
+
   // Outside 0..length() the nearer end; the ends are from() and to() to the last bit.
+  // On a kBlend piece this measures the curve each time; MotionView does it once.
   TipPose At(double s) const;
-  Vec3 Tangent(double s) const;    // derivative of the tip by s: unit, or per sigma
-  Vec3 Curvature(double s) const;  // second derivative of the tip by s, 1/mm
-  double a_rate() const;           // rad per unit of s
-  double b_rate() const;
+
+  // Derivatives of the pose by s: the unit tangent and the curvature vector (1/mm), or by sigma.
+  PathDerivatives First(double s) const;
+  PathDerivatives Second(double s) const;
+  Vec3 Tangent(double s) const { return First(s).tip; }
+  Vec3 Curvature(double s) const { return Second(s).tip; }
+
+  // The same places by u for kBlend pieces, whose s must be turned into u first: see CornerLength.
+  double curve_start() const { return std::get_if<CurvePart>(&shape_)->start; }
 
   // Arcs only.
-  const Vec3& centre() const { return centre_; }
-  const Vec3& normal() const { return normal_; }
-  double radius_mm() const { return radius_mm_; }
-  double sweep_rad() const { return sweep_rad_; }
+  const Vec3& centre() const { return arc().centre; }
+  const Vec3& normal() const { return arc().normal; }
+  double radius_mm() const { return arc().radius_mm; }
+  double sweep_rad() const { return arc().sweep_rad; }
+
+  // Blends only: the whole curve of the corner, of which this piece may be a part.
+  const CornerCurve& curve() const { return std::get_if<CurvePart>(&shape_)->curve; }
 
  private:
+  struct ArcShape {
+    Vec3 centre;
+    Vec3 normal;
+    Vec3 inward;  // unit vector from the start to the centre
+    double radius_mm = 0.0;
+    double sweep_rad = 0.0;
+  };
+  struct CurvePart {
+    CornerCurve curve;
+    double start = 0.0;  // arc length of the curve before this piece
+    double Parameter(double s) const { return CornerLength(curve).ParameterAt(curve, start + s); }
+  };
+  const ArcShape& arc() const { return *std::get_if<ArcShape>(&shape_); }
   Vec3 ArcPoint(double angle) const;
+  double RateOf(double from, double to) const {
+    return length_ > 0.0 ? (to - from) / length_ : 0.0;
+  }
 
   Kind kind_ = Kind::kLine;
   double length_ = 0.0;
   TipPose from_;
   TipPose to_;
-  Vec3 centre_;
-  Vec3 normal_;
-  Vec3 tangent_;  // arcs: unit tangent at the start
-  Vec3 inward_;   // arcs: unit vector from the start to the centre
-  double radius_mm_ = 0.0;
-  double sweep_rad_ = 0.0;
+  Vec3 tangent_;  // lines and arcs: unit tangent at the start
+  std::variant<std::monostate, ArcShape, CurvePart> shape_;
+};
+
+struct PathPiece::Halves {
+  PathPiece first;
+  PathPiece second;
 };
 
 struct PathPiece::Arc3 {

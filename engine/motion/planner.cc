@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/core/number_text.h"
+#include "engine/motion/motion_chain.h"
 
 namespace rmlcell::motion {
 namespace {
@@ -15,71 +16,66 @@ bool IsFinite(const TipPose& pose) {
          std::isfinite(pose.a_rad) && std::isfinite(pose.b_rad);
 }
 
+// Moves too short to be made leave a gap between where the machine is and where the next move
+// believes it begins: a line begins where the machine is.
+bool NeedsAnchor(const PathPiece& path, const TipPose* end) {
+  constexpr double kGap_mm = 1e-3;  // a thousand such moves
+  if (end == nullptr || path.from() == *end) return false;
+  const bool straight = path.kind() == PathPiece::Kind::kLine ||
+                        path.kind() == PathPiece::Kind::kRotary || !(path.length() > 0.0);
+  return straight && Distance(end->tip, path.from().tip) <= kGap_mm &&
+         end->a_rad == path.from().a_rad && end->b_rad == path.from().b_rad;
+}
+
 }  // namespace
 
-Planner::Planner(const MachineLimits& limits) : limits_(limits) {}
+Planner::Planner(const MachineLimits& limits, std::size_t window)
+    : chain_(std::make_unique<MotionChain>(limits, window)) {}
+Planner::~Planner() = default;
+Planner::Planner(const Planner& other) : chain_(std::make_unique<MotionChain>(*other.chain_)) {}
+Planner& Planner::operator=(const Planner& other) {
+  if (this != &other) chain_ = std::make_unique<MotionChain>(*other.chain_);
+  return *this;
+}
+Planner::Planner(Planner&&) noexcept = default;
+Planner& Planner::operator=(Planner&&) noexcept = default;
 
 Status Planner::Append(const MoveCommand& move) {
   if (!IsFinite(move.path.from()) || !IsFinite(move.path.to()) ||
       !std::isfinite(move.path.length())) {
     return Error{ErrorCode::kTargetOutOfTravel, "a coordinate is not a finite number", {}};
   }
-  if (!(move.path.length() > 0.0)) return {};
+  if (NeedsAnchor(move.path, chain_->end())) {
+    MoveCommand anchored = move;
+    anchored.path = PathPiece::Line(*chain_->end(), move.path.to());
+    return AppendChecked(anchored);
+  }
+  return AppendChecked(move);
+}
+
+Status Planner::AppendChecked(const MoveCommand& move) {
+  if (!(move.path.length() > 0.0)) {
+    chain_->Nothing(move.path.from(), move.fly);
+    return {};
+  }
   if (!(move.speed_fraction > 0.0)) return Error{ErrorCode::kNoMotion, "the speed is 0", {}};
   if (!(move.acceleration_fraction >= kAccelerationFractionMin)) {
     return Error{ErrorCode::kNoMotion,
                  "the acceleration is " + ShortestText(100.0 * move.acceleration_fraction) + " %",
                  {}};
   }
-  const PathLimits limits = LimitsOf(move, limits_);
+  const PathLimits limits = LimitsOf(move, chain_->machine());
   if (!(limits.speed > 0.0) || !(limits.acceleration > 0.0) || !(limits.jerk > 0.0)) {
     return Error{ErrorCode::kNoMotion, "the speed is too low to ever arrive", {}};
   }
-  Release(0.0);
-  PlannedMotion motion;
-  motion.tag = move.tag;
-  motion.path = move.path;
-  motion.head = move.head;
-  motion.limits = limits;
-  motion.speed = SpeedProfile::Span(move.path.length(), 0.0, 0.0, limits);
-  motion.settling_s = move.settles ? limits_.settling_s : 0.0;
-  motion.upper_bound = move.fly && move.overshoot_fraction > 0.0;
-  if (move.fly) {
-    passing_ = std::move(motion);
-  } else {
-    final_.emplace_back(std::move(motion));
-  }
+  chain_->Append(move, limits);
   return {};
 }
 
-void Planner::Mark(std::uint64_t tag) {
-  if (passing_) {
-    marks_.push_back({tag});
-  } else {
-    final_.emplace_back(PlannedMark{tag});
-  }
-}
-
-void Planner::Stop() {
-  if (!passing_) return;
-  passing_->upper_bound = false;  // the machine does stand here
-  Release(passing_->settling_s);
-}
-
-void Planner::Release(double settling_s) {
-  if (!passing_) return;
-  passing_->settling_s = settling_s;
-  final_.emplace_back(*std::move(passing_));
-  passing_.reset();
-  for (const PlannedMark& mark : marks_) final_.emplace_back(mark);
-  marks_.clear();
-}
-
-std::optional<PlannedItem> Planner::Next() {
-  if (final_.empty()) return std::nullopt;
-  PlannedItem item = std::move(final_.front());
-  final_.pop_front();
-  return item;
-}
+void Planner::Mark(std::uint64_t tag) { chain_->Mark(tag); }
+void Planner::Stop() { chain_->Stop(); }
+std::optional<PlannedItem> Planner::Next() { return chain_->Next(); }
+const MachineLimits& Planner::limits() const { return chain_->machine(); }
+std::uint64_t Planner::lookahead_starved() const { return chain_->starved(); }
 
 }  // namespace rmlcell::motion

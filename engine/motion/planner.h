@@ -1,29 +1,18 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
+#include <memory>
 #include <optional>
 #include <variant>
-#include <vector>
 
 #include "engine/core/result.h"
+#include "engine/motion/corner.h"
 #include "engine/motion/kinematics.h"
+#include "engine/motion/machine_limits.h"
 #include "engine/motion/path.h"
 #include "engine/motion/speed_profile.h"
 
 namespace rmlcell::motion {
-
-// What the machine can do; motion.md section 1.
-struct MachineLimits {
-  double tip_speed_mm_s = 500.0;
-  double tip_acceleration_mm_s2 = 2000.0;
-  double tip_jerk_mm_s3 = 40000.0;
-  double curve_normal = 0.8;  // shares of the tip limits on curved pieces
-  double curve_tangential = 0.6;
-  double curve_jerk = 0.8;
-  double settling_s = 0.048;  // after a move without /FLY
-  AxisLimits axes;
-};
 
 // One commanded motion. Fractions are already resolved from percentages: 0..1.
 struct MoveCommand {
@@ -39,7 +28,18 @@ struct MoveCommand {
   std::uint64_t tag = 0;            // given back with the result
 };
 
-// A motion with its timing. Emitted in order; each begins where the last one ended.
+// How a move ended, for reports and warnings.
+struct CornerReport {
+  Passage passage = Passage::kStop;
+  double cut_mm = 0.0;        // a blend begins this far before the corner
+  double deviation_mm = 0.0;  // distance of the path from the target
+  double wanted_speed = 0.0;  // OVERSH x the lower running speed, as far as it can be reached
+  double speed = 0.0;         // at the passage
+};
+
+// A motion with its timing. Emitted in order; each begins where the last one ended. A commanded
+// move comes out as one motion, or as several with the same tag: what is left of its path between
+// two blends, and the halves of the blends (split at half of their arc length).
 struct PlannedMotion {
   std::uint64_t tag = 0;
   PathPiece path{};
@@ -47,7 +47,9 @@ struct PlannedMotion {
   SpeedProfile speed;
   PathLimits limits;         // those in force, for a STOP on the way
   double settling_s = 0.0;   // standstill after the motion
+  bool ends_move = true;     // the last motion of its move
   bool upper_bound = false;  // a /FLY passage was planned as a stop: time is an upper bound
+  CornerReport corner;       // when ends_move
   double duration_s() const { return speed.duration_s() + settling_s; }
 };
 
@@ -60,18 +62,31 @@ struct PlannedMark {
 
 using PlannedItem = std::variant<PlannedMotion, PlannedMark>;
 
-// Turns commanded motions into timed ones, in bounded memory whatever the length of the program.
-// Items are held back until no later motion can change them: call Stop() wherever the machine
-// stands before the next motion (a dwell, a wait, the end), and what was appended comes out. This
-// version plans from exact stop to exact stop and holds back only a motion with /FLY, which costs
-// no settling when another motion follows, and settles when Stop() follows (OPT-2.47).
+class MotionChain;
+
+// Turns commanded motions into timed ones with look-ahead over /FLY passages: motion.md sections 4
+// and 5, level 1. Memory is bounded whatever the length of the program, and the result depends
+// neither on when Next is called nor on the inner batches, as long as look-ahead needs no more than
+// kWindow knots. Items are held back until no later motion can change them: call Stop() wherever
+// the machine stands before the next motion (a dwell, a wait, the end), and what was appended comes
+// out.
 class Planner {
  public:
-  explicit Planner(const MachineLimits& limits);
+  // Knots that may wait for a decision: 75 mm of braking distance in steps of 1 um (motion.md 5.5).
+  static constexpr std::size_t kWindow = 65536;
+
+  // `window` below kWindow only in tests.
+  explicit Planner(const MachineLimits& limits, std::size_t window = kWindow);
+  ~Planner();
+  Planner(const Planner& other);  // a copy goes on by itself: snapshots of a run
+  Planner& operator=(const Planner& other);
+  Planner(Planner&&) noexcept;
+  Planner& operator=(Planner&&) noexcept;
 
   // Errors: NoMotion (7307) when speed or acceleration is too low to ever arrive. On error the
   // planner is unchanged; TargetOutOfTravel (7301) when a coordinate is not a finite number. A path
-  // of length zero is not an error and adds nothing.
+  // of length zero is not an error and adds nothing; without /FLY it makes the passage before it a
+  // stop.
   Status Append(const MoveCommand& move);
 
   // Something that takes effect after the motions appended so far, see PlannedMark.
@@ -83,19 +98,17 @@ class Planner {
   // The next final item, or nothing when more input is needed.
   std::optional<PlannedItem> Next();
 
-  const MachineLimits& limits() const { return limits_; }
+  const MachineLimits& limits() const;
+
+  // How often the window was full and knots had to be decided too early: slower than need be,
+  // legal.
+  std::uint64_t lookahead_starved() const;
 
  private:
-  void Release(double settling_s);
+  Status AppendChecked(const MoveCommand& move);
 
-  MachineLimits limits_;
-  std::deque<PlannedItem> final_;
-  std::optional<PlannedMotion> passing_;  // the last motion, when it has /FLY
-  std::vector<PlannedMark> marks_;        // after it
+  std::unique_ptr<MotionChain> chain_;
 };
-
-// Stands for "no limit" where a finite figure is needed.
-inline constexpr double kLargest = 1e12;
 
 // The limits of one motion by itself: motion.md 5.1 and 3.4, 3.5.
 PathLimits LimitsOf(const MoveCommand& move, const MachineLimits& machine);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "tests/engine/motion/standard_machine.h"
 
@@ -54,14 +55,13 @@ TEST(Planner, FlySettlesOnlyWhereTheMachineStands) {
   ASSERT_TRUE(planner.Append(LineTo({}, {10, 0, 0}, 1, true)));
   ASSERT_TRUE(planner.Append(LineTo({10, 0, 0}, {10, 10, 0}, 2, true)));
   planner.Stop();
-  double settling[2] = {-1.0, -1.0};
-  for (double& s : settling) {
-    const std::optional<PlannedItem> item = planner.Next();
-    ASSERT_TRUE(item);
-    s = std::get<PlannedMotion>(*item).settling_s;
+  std::vector<double> settling(3, -1.0);
+  while (const std::optional<PlannedItem> item = planner.Next()) {
+    const auto& motion = std::get<PlannedMotion>(*item);
+    if (motion.ends_move) settling[motion.tag] = motion.settling_s;
   }
-  EXPECT_EQ(settling[0], 0.0);
-  EXPECT_EQ(settling[1], 0.048);
+  EXPECT_EQ(settling[1], 0.0);
+  EXPECT_EQ(settling[2], 0.048);
 }
 
 TEST(Planner, KeepsTheOrderOfMotionsAndMarks) {
@@ -73,6 +73,7 @@ TEST(Planner, KeepsTheOrderOfMotionsAndMarks) {
   ASSERT_TRUE(planner.Append(LineTo({10, 0, 0}, {20, 0, 0}, 2)));
   planner.Mark(12);
   planner.Stop();
+  // Straight on with equal limits: nothing between the two but the marks.
   EXPECT_EQ(Drain(planner), "m9 1 m10 m11 2 m12");
 }
 
@@ -111,6 +112,124 @@ TEST(Planner, RefusesWhatIsNotANumber) {
               ErrorCode::kTargetOutOfTravel);
   }
   EXPECT_FALSE(planner.Next());
+}
+
+// A mark between two /FLY moves comes out between the halves of the blend. OPT-B.28, OPT-2.49
+TEST(Planner, MarksActHalfWayThroughTheBlend) {
+  Planner planner(StandardMachine());
+  ASSERT_TRUE(planner.Append(LineTo({}, {10, 0, 0}, 1, true)));
+  planner.Mark(7);
+  ASSERT_TRUE(planner.Append(LineTo({10, 0, 0}, {10, 10, 0}, 2)));
+  EXPECT_EQ(Drain(planner), "1 1 m7 2 2");
+}
+
+// The halves meet at the point of the curve nearest to the corner: OPT-B.24 gives its
+// distance, 1.3588 mm, at 50 mm/s in a right angle, and 4.0505 mm for the cut.
+TEST(Planner, BlendOfARightAngle) {
+  Planner planner(StandardMachine());
+  ASSERT_TRUE(planner.Append(LineTo({}, {100, 0, 0}, 1, true)));
+  ASSERT_TRUE(planner.Append(LineTo({100, 0, 0}, {100, 100, 0}, 2)));
+  std::vector<PlannedMotion> motions;
+  while (const std::optional<PlannedItem> item = planner.Next()) {
+    motions.push_back(std::get<PlannedMotion>(*item));
+  }
+  ASSERT_EQ(motions.size(), 4u);
+  EXPECT_NEAR(motions[0].path.to().tip.x, 100.0 - 4.0505, 5e-5);
+  EXPECT_FALSE(motions[0].ends_move);
+  EXPECT_TRUE(motions[1].ends_move);
+  EXPECT_EQ(motions[1].corner.passage, Passage::kBlend);
+  EXPECT_NEAR(Distance(motions[1].path.to().tip, {100, 0, 0}), 1.3588, 5e-5);
+  EXPECT_EQ(motions[1].path.to(), motions[2].path.from());
+  EXPECT_DOUBLE_EQ(motions[1].speed.duration_s(), motions[1].path.length() / 50.0);
+  EXPECT_EQ(motions[2].tag, 2u);
+  EXPECT_EQ(motions[3].path.to().tip, (Vec3{100, 100, 0}));
+  EXPECT_FALSE(motions[1].upper_bound);
+}
+
+// What stands against a blend; motion.md 4.4. OPT-B.25, OPT-B.27, OPT-2.39
+TEST(Planner, PassagesThatAreNotBlended) {
+  const auto passage = [](MoveCommand first, const MoveCommand& second) {
+    first.fly = true;
+    Planner planner(StandardMachine());
+    EXPECT_TRUE(planner.Append(first));
+    EXPECT_TRUE(planner.Append(second));
+    planner.Stop();
+    while (const std::optional<PlannedItem> item = planner.Next()) {
+      const auto& motion = std::get<PlannedMotion>(*item);
+      if (motion.ends_move && motion.tag == 1) {
+        EXPECT_EQ(motion.settling_s, motion.corner.passage == Passage::kStop ? 0.048 : 0.0);
+        if (IsStop(motion.corner.passage)) {
+          EXPECT_EQ(motion.speed.end().speed, 0.0);
+        }
+        return motion.corner.passage;
+      }
+    }
+    return Passage::kStop;
+  };
+  const MoveCommand east = LineTo({}, {10, 0, 0}, 1);
+  const MoveCommand north = LineTo({10, 0, 0}, {10, 10, 0}, 2);
+  EXPECT_EQ(passage(east, north), Passage::kBlend);
+  EXPECT_EQ(passage(east, LineTo({10, 0, 0}, {20, 0, 0}, 2)), Passage::kThrough);
+  // 174.9 and 175.1 degrees.
+  EXPECT_TRUE(IsBlend(passage(east, LineTo({10, 0, 0}, {10 - 9.96041, 0.88894, 0}, 2))));
+  EXPECT_EQ(passage(east, LineTo({10, 0, 0}, {10 - 9.96346, 0.85417, 0}, 2)),
+            Passage::kStopReversal);
+  MoveCommand still = east;
+  still.overshoot_fraction = 0.0;
+  EXPECT_EQ(passage(still, north), Passage::kStopNoSpeed);
+  MoveCommand turn = north;
+  turn.path = PathPiece::Line({{10, 0, 0}, 0, 0}, {{10, 0, 0}, 1, 0});
+  EXPECT_EQ(passage(east, turn), Passage::kStopNeighbour);
+  MoveCommand other_tool = north;
+  other_tool.head.tool.z_mm = 3.0;
+  EXPECT_EQ(passage(east, other_tool), Passage::kStop);  // as if /FLY were absent, OPT-2.48
+  // A short neighbour: at most half of it, so the bend is slower than the 50 mm/s of both moves.
+  EXPECT_EQ(passage(east, LineTo({10, 0, 0}, {10, 1, 0}, 2)), Passage::kBlendCapped);
+  EXPECT_EQ(passage(east, LineTo({10, 0, 0}, {10, 1.9e-4, 0}, 2)), Passage::kStopShort);
+}
+
+// A move that goes nowhere is dropped; without /FLY it makes the passage before it a stop.
+// motion.md 3.1
+TEST(Planner, MoveToWhereTheMachineIs) {
+  for (const bool fly : {true, false}) {
+    Planner planner(StandardMachine());
+    ASSERT_TRUE(planner.Append(LineTo({}, {10, 0, 0}, 1, true)));
+    ASSERT_TRUE(planner.Append(LineTo({10, 0, 0}, {10, 0, 0}, 2, fly)));
+    ASSERT_TRUE(planner.Append(LineTo({10, 0, 0}, {10, 10, 0}, 3)));
+    EXPECT_EQ(Drain(planner), fly ? "1 1 3 3" : "1 3");
+  }
+}
+
+// Steps below 1e-6 mm add up: a thousand of them are a way of 1e-4 mm.
+TEST(Planner, TinyStepsAreNotLost) {
+  Planner planner(StandardMachine());
+  Vec3 at;
+  for (int k = 1; k <= 1000; ++k) {
+    const Vec3 to{1e-7 * k, 0, 0};
+    ASSERT_TRUE(planner.Append(LineTo(at, to, 1, true)));
+    at = to;
+  }
+  planner.Stop();
+  double length = 0.0;
+  TipPose last;
+  while (const std::optional<PlannedItem> item = planner.Next()) {
+    const PathPiece& path = std::get<PlannedMotion>(*item).path;
+    EXPECT_LE(Distance(path.from().tip, last.tip), 1e-15);
+    last = path.to();
+    length += path.length();
+  }
+  EXPECT_NEAR(length, 1e-4, 1.1e-6);  // the last step of up to 1e-6 mm is dropped
+}
+
+// A copy goes on by itself.
+TEST(Planner, CopyIsASnapshot) {
+  Planner planner(StandardMachine());
+  ASSERT_TRUE(planner.Append(LineTo({}, {10, 0, 0}, 1, true)));
+  Planner copy = planner;
+  ASSERT_TRUE(planner.Append(LineTo({10, 0, 0}, {10, 10, 0}, 2)));
+  copy.Stop();
+  EXPECT_EQ(Drain(planner), "1 1 2 2");
+  EXPECT_EQ(Drain(copy), "1");
 }
 
 }  // namespace

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "engine/motion/pose.h"
+
+namespace rmlcell::motion {
+
+// Where a corner curve leaves or joins a path: pose, unit tangent, curvature vector (1/mm) and the
+// rates of the head (rad/mm).
+struct CurveEnd {
+  TipPose pose;
+  Vec3 tangent;
+  Vec3 curvature;
+  double a_rate = 0.0;
+  double b_rate = 0.0;
+};
+
+// Derivatives of a path by its own variable.
+struct PathDerivatives {
+  Vec3 tip;
+  double a = 0.0;
+  double b = 0.0;
+};
+
+// The curve of a /FLY passage: a quintic in X Y Z A B whose position, tangent, curvature and head
+// rates meet those of both pieces. motion.md 4.2. A value of fixed size.
+class CornerCurve {
+ public:
+  CornerCurve() = default;
+
+  // Both ends are cut at the distance `cut_mm` from the corner.
+  CornerCurve(const CurveEnd& from, const CurveEnd& to, double cut_mm);
+
+  // Between two lines without head rotation: from the corner itself, so that a curve of 1e-3 mm far
+  // from the origin keeps its digits.
+  CornerCurve(const TipPose& corner, const Vec3& tangent_in, const Vec3& tangent_out,
+              double cut_mm);
+
+  // u runs from 0 to 1.
+  TipPose At(double u) const;
+  PathDerivatives Derivative(double u, int order) const;  // by u; order 1 to 3
+
+  // Derivatives by arc length: first (the tangent), second (the curvature vector).
+  PathDerivatives FirstByLength(double u) const;
+  PathDerivatives SecondByLength(double u) const;
+
+  // Bounds of the derivatives by u, from control points: cheap, and good on gentle curves.
+  struct Bounds {
+    double slowest = 0.0;     // of |dp/du|, from below; at most 0 when nothing is known
+    double tip_second = 0.0;  // the rest from above
+    double a_first = 0.0;
+    double b_first = 0.0;
+    double a_second = 0.0;
+    double b_second = 0.0;
+  };
+  Bounds DerivativeBounds() const;
+
+  // Distance of `point` from the curve, and from its nearest place.
+  double DistanceFrom(const Vec3& point) const;
+
+  double Speed(double u) const;                       // |dp/du|
+  double Integral(double u_from, double u_to) const;  // arc length, one panel
+
+ private:
+  static double Scale(const Vec3& tangent_in, const Vec3& tangent_out, double cut_mm);
+  // Coefficients of u^0 .. u^5.
+  std::array<Vec3, 6> tip_{};
+  std::array<double, 6> a_{};
+  std::array<double, 6> b_{};
+};
+
+// Arc length along a corner curve by Gauss-Legendre on eight panels; on sixteen, narrower towards
+// the place where the curve is sharpest, when it nearly has a cusp.
+class CornerLength {
+ public:
+  explicit CornerLength(const CornerCurve& curve);
+
+  double total() const { return reached_[panels_]; }
+  double ParameterAt(const CornerCurve& curve, double s) const;  // 0 <= s <= total()
+
+ private:
+  static constexpr std::size_t kPanels = 8;
+  static constexpr std::size_t kPanelsMax = 16;
+  void ChoosePanels(const CornerCurve& curve);
+
+  std::size_t panels_ = 0;
+  std::array<double, kPanelsMax + 1> edge_{};     // u
+  std::array<double, kPanelsMax + 1> reached_{};  // arc length there
+};
+
+}  // namespace rmlcell::motion

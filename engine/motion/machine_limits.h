@@ -1,0 +1,28 @@
+#pragma once
+
+#include "engine/motion/kinematics.h"
+
+namespace rmlcell::motion {
+
+// What the machine can do; motion.md section 1.
+struct MachineLimits {
+  double tip_speed_mm_s = 500.0;
+  double tip_acceleration_mm_s2 = 2000.0;
+  double tip_jerk_mm_s3 = 40000.0;  // infinite: trapezoids
+  double curve_normal = 0.8;        // shares of the tip limits on curved pieces
+  double curve_tangential = 0.6;
+  double curve_jerk = 0.8;
+  double settling_s = 0.048;  // after a move without /FLY
+  // Above 0: a mill. Polylines are kept exactly, and a vertex is passed at the speed at which no
+  // axis has to jump by more than this (motion.md section 7). 0: corners are passed on curves.
+  double junction_jump_mm_s = 0.0;
+  AxisLimits axes;
+
+  double normal_acceleration() const { return curve_normal * tip_acceleration_mm_s2; }
+  double normal_jerk() const { return curve_jerk * tip_jerk_mm_s3; }
+};
+
+// Stands for "no limit" where a finite figure is needed.
+inline constexpr double kLargest = 1e12;
+
+}  // namespace rmlcell::motion

@@ -1,0 +1,328 @@
+#include "engine/motion/motion_chain.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rmlcell::motion {
+namespace {
+
+constexpr std::size_t kBatchMin = 32;  // knots before a backward pass is worth its while
+constexpr double kCutMin_mm = 1e-4;    // a smaller curve is a stop, motion.md 4.4
+constexpr double kEqualLimits = 1e-9;  // relative
+constexpr double kContiguous_mm = 1e-6;
+
+bool Equal(double a, double b) { return a == b || std::abs(a - b) <= kEqualLimits * std::abs(b); }
+bool Equal(const PathLimits& a, const PathLimits& b) {
+  return Equal(a.speed, b.speed) && Equal(a.acceleration, b.acceleration) && Equal(a.jerk, b.jerk);
+}
+
+bool Contiguous(const TipPose& a, const TipPose& b) {
+  return Distance(a.tip, b.tip) <= kContiguous_mm && a.a_rad == b.a_rad && a.b_rad == b.b_rad;
+}
+
+bool AxesKeepUp(const MachineLimits& machine) {
+  bool enough = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    enough = enough && machine.axes.speed[i] >= machine.tip_speed_mm_s &&
+             machine.axes.acceleration[i] >= machine.normal_acceleration();
+  }
+  return enough;
+}
+
+}  // namespace
+
+MotionChain::MotionChain(const MachineLimits& machine, std::size_t window)
+    : machine_(machine), window_(std::max(window, kBatchMin)), axes_keep_up_(AxesKeepUp(machine)) {}
+
+void MotionChain::Append(const MoveCommand& move, const PathLimits& limits) {
+  const bool merged = open_ && !Join(move, limits);
+  const Number number = moves_.end();
+  Move& slot = moves_.PushSlot();
+  slot.path = move.path;
+  slot.head = move.head;
+  slot.limits = limits;
+  slot.overshoot = move.overshoot_fraction;
+  slot.settling_s = move.settles ? machine_.settling_s : 0.0;
+  slot.tag = move.tag;
+  slot.fly = move.fly;
+  end_ = move.path.to();
+  end_known_ = true;
+  open_ = true;
+  if (merged) {
+    legs_.back().last_move = number;
+    legs_.back().length += move.path.length();
+  } else {
+    legs_.Push({.first_move = number, .last_move = number, .length = move.path.length()});
+  }
+  if (!move.fly) {
+    CloseLeg(Passage::kStop, Corner{}, 0.0);
+    open_ = false;
+  }
+  if (!merged || !open_ || number % kBatchMin == 0) Work();
+}
+
+// Decides how the last move passes into this one. False when both are one leg.
+bool MotionChain::Join(const MoveCommand& move, const PathLimits& limits) {
+  const Move& before = moves_.back();
+  Passage passage = Passage::kStop;
+  Corner corner;
+  double cap = 0.0;
+  if (before.overshoot <= 0.0 || stands_) {
+    passage = Passage::kStopNoSpeed;
+  } else if (before.path.by_sigma() || move.path.by_sigma()) {
+    passage = Passage::kStopNeighbour;
+  } else if (SameTip(before.head, move.head) && Contiguous(before.path.to(), move.path.from())) {
+    const bool mill = machine_.junction_jump_mm_s > 0.0;
+    if (!mill) corner = Corner::Between(before.path, move.path);
+    passage = mill ? Passage::kThrough : corner.passage();
+    if (passage == Passage::kBlend && corner.straight() && std::isinf(machine_.tip_jerk_mm_s3)) {
+      passage = Passage::kThrough;  // without a limit on jerk a jump of curvature needs no curve
+    }
+    if (!IsStop(passage)) cap = before.overshoot * std::min(before.limits.speed, limits.speed);
+    if (mill) {
+      cap = std::min(cap, JunctionSpeed(before.path.Tangent(before.path.length()),
+                                        move.path.Tangent(0.0), machine_.junction_jump_mm_s));
+    }
+  }
+  stands_ = false;
+  if (passage == Passage::kThrough && Equal(before.limits, limits) && Equal(cap, limits.speed)) {
+    // A line without end must not fill the window as one leg.
+    const Leg& leg = legs_.back();
+    if (leg.last_move - leg.first_move < window_ / 2) return false;
+    ++starved_;
+  }
+  CloseLeg(passage, corner, cap);
+  return true;
+}
+
+void MotionChain::Nothing(const TipPose& here, bool fly) {
+  if (!end_known_) end_ = here;
+  end_known_ = true;
+  if (open_ && !fly) stands_ = true;
+}
+
+void MotionChain::Mark(std::uint64_t tag) {
+  if (!open_ && moves_.empty()) {
+    items_.Push(PlannedMark{tag});
+  } else {
+    marks_.Push({tag, moves_.end() - 1});
+  }
+}
+
+void MotionChain::Stop() {
+  if (!open_) return;
+  CloseLeg(Passage::kStop, Corner{}, 0.0);
+  open_ = false;
+  stands_ = false;
+  Work();
+}
+
+void MotionChain::CloseLeg(Passage passage, const Corner& corner, double cap) {
+  Leg& leg = legs_.back();
+  leg.passage = passage;
+  leg.corner = corner;
+  // A curve must not reach over a jump of curvature, although without a limit on jerk it is passed.
+  leg.ends_run = passage != Passage::kThrough || corner.passage() == Passage::kBlend;
+  leg.cap = IsStop(passage) ? 0.0 : cap;
+  running_.Push(leg.length, moves_[leg.first_move].limits, leg.cap);
+}
+
+void MotionChain::Work() {
+  const auto open_knots = [](const SpeedPasses& passes) {
+    return passes.size() - passes.final_count();
+  };
+  if (running_.ends_at_rest() || open_knots(running_) >= running_next_) {
+    running_.Settle();
+    running_next_ = std::max(kBatchMin, 2 * open_knots(running_));
+  }
+  while (Resolve(false)) {
+  }
+  if (speeds_.ends_at_rest() || open_knots(speeds_) >= speeds_next_) {
+    speeds_.Settle();
+    speeds_next_ = std::max(kBatchMin, 2 * open_knots(speeds_));
+  }
+  if (open_knots(running_) + open_knots(speeds_) >= window_) Starve();
+}
+
+void MotionChain::Starve() {
+  ++starved_;
+  running_.Settle();
+  running_.Accept(running_.size() / 2);
+  while (Resolve(true)) {
+  }
+  speeds_.Settle();
+  speeds_.Accept(speeds_.size() / 2);
+}
+
+// The length of the run that begins behind `leg`, or at least `enough` of it; nothing when that is
+// not known yet.
+std::optional<double> MotionChain::LengthAfter(Number leg, double enough,
+                                               bool accept_what_is_there) {
+  double length = 0.0;
+  for (Number k = leg + 1; k < legs_.end(); ++k) {
+    length += legs_[k].length;
+    if (length >= enough) return length;
+    const bool closed = k + 1 < legs_.end() || !open_;
+    if (closed && legs_[k].ends_run) return length;
+  }
+  if (accept_what_is_there) return length;
+  return std::nullopt;
+}
+
+bool MotionChain::Resolve(bool accept_what_is_there) {
+  if (running_.final_count() == 0) return false;
+  const Number number = resolving_;
+  Leg& leg = legs_[number];
+  const double wanted = running_.speed();
+  const double total = run_length_ + leg.length;
+  if (!leg.ends_run) {
+    leg.cap = std::min(leg.cap, wanted);
+    run_length_ = total;
+    ++resolving_;
+    running_.Pop();
+    return true;
+  }
+
+  Span closing;
+  closing.report.passage = leg.passage;
+  closing.report.wanted_speed = wanted;
+  double cut = 0.0;
+  double speed_cap = 0.0;
+  if (leg.passage == Passage::kThrough) {
+    speed_cap = wanted;
+  } else if (!IsStop(leg.passage)) {
+    const double want = std::min(leg.corner.CutFor(wanted, machine_), leg.corner.cut_max_mm());
+    const std::optional<double> after = LengthAfter(number, 2.0 * want, accept_what_is_there);
+    if (!after) return false;
+    cut = std::min({want, 0.5 * total, 0.5 * *after});
+    const bool capped = cut < leg.corner.CutFor(wanted, machine_);
+    if (cut < kCutMin_mm) {
+      cut = 0.0;
+      closing.report.passage = Passage::kStopShort;
+    } else {
+      closing.report.passage = capped ? Passage::kBlendCapped : Passage::kBlend;
+      speed_cap = wanted;
+      MakeCurve(closing, leg, cut);
+      const Head& head = moves_[leg.last_move].head;
+      if (leg.corner.lines() && capped) {
+        speed_cap = std::min(speed_cap, leg.corner.PlainSpeed(cut, machine_));
+      }
+      const bool axes_follow =
+          leg.corner.plain()
+              ? axes_keep_up_
+              : leg.corner.lines() && AxesFollow(closing.curve, head, machine_, speed_cap,
+                                                 leg.corner.PlainCurvature(cut));
+      if (!axes_follow)
+        speed_cap = std::min(speed_cap, SpeedOnCurve(closing.curve, head, machine_));
+      if (speed_cap < wanted) closing.report.passage = Passage::kBlendCapped;
+      // Points passed straight on that the curve swallows keep their speed.
+      double beyond = 0.0;
+      for (Number k = number + 1; k < legs_.end() && beyond + legs_[k].length < cut; ++k) {
+        beyond += legs_[k].length;
+        speed_cap = std::min(speed_cap, legs_[k].cap);
+      }
+    }
+  }
+  closing.report.cut_mm = cut;
+  if (closing.report.passage == Passage::kStop)
+    closing.settling_s = moves_[leg.last_move].settling_s;
+  running_.Pop();
+  CloseRun(number, total, closing, speed_cap);
+  run_length_ = 0.0;
+  run_cut_ = cut;
+  ++resolving_;
+  while (legs_.first() < resolving_) legs_.PopFront();
+  return true;
+}
+
+void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
+  if (leg.corner.plain()) {
+    const PathPiece& in = moves_[leg.last_move].path;
+    span.curve =
+        CornerCurve(in.to(), in.Tangent(0.0), moves_[leg.last_move + 1].path.Tangent(0.0), cut);
+    span.curve_length = leg.corner.PlainLength(cut);
+    span.curve_middle = 0.5;
+    span.report.deviation_mm = leg.corner.PlainDeviation(cut);
+    return;
+  }
+  // The place at the distance `cut` before the corner, and behind it; both may lie some moves away.
+  Number before = leg.last_move;
+  double left = cut;
+  while (left > moves_[before].path.length() && before > moves_.first()) {
+    left -= moves_[before].path.length();
+    --before;
+  }
+  const PathPiece& in = moves_[before].path;
+  Number after = leg.last_move + 1;
+  double right = cut;
+  while (right > moves_[after].path.length() && after + 1 < moves_.end()) {
+    right -= moves_[after].path.length();
+    ++after;
+  }
+  const PathPiece& out = moves_[after].path;
+  span.curve = CornerCurve(EndAt(in, std::max(in.length() - left, 0.0)),
+                           EndAt(out, std::min(right, out.length())), cut);
+  if (leg.corner.lines()) {
+    // The tip's way is the same whether the head turns or not.
+    span.curve_length = leg.corner.PlainLength(cut);
+    span.curve_middle = 0.5;
+    span.report.deviation_mm = leg.corner.PlainDeviation(cut);
+    return;
+  }
+  const CornerLength length(span.curve);
+  span.curve_length = length.total();
+  span.curve_middle = length.ParameterAt(span.curve, 0.5 * span.curve_length);
+  span.report.deviation_mm = span.curve.DistanceFrom(moves_[leg.last_move].path.to().tip);
+}
+
+// The legs from the start of the run to `last_leg`, less what the curves at both ends take, become
+// spans.
+void MotionChain::CloseRun(Number last_leg, double total, const Span& closing, double speed_cap) {
+  const double begin = run_cut_;
+  const double end = std::max(total - closing.report.cut_mm, begin);
+  double leg_start = 0.0;
+  for (Number k = legs_.first(); k <= last_leg; ++k) {
+    Leg& leg = legs_[k];
+    const double leg_end = k == last_leg ? total : leg_start + leg.length;
+    const double from = std::max(leg_start, begin);
+    const double to = std::min(leg_end, end);
+    const bool closes = k == last_leg || leg_end >= end;
+    const double start = leg_start;
+    leg_start = leg_end;
+    if (!closes && !(to > from)) {  // swallowed by the curve before
+      continue;
+    }
+    Span& span = spans_.PushSlot();
+    if (closes) {
+      span = closing;
+      span.corner_move = legs_[last_leg].last_move;
+      for (Number rest = k; rest < last_leg; ++rest)
+        speed_cap = std::min(speed_cap, legs_[rest].cap);
+    } else {
+      span.corner_move = leg.last_move;
+      span.settling_s = 0.0;
+      span.report = {.passage = Passage::kThrough, .wanted_speed = leg.cap};
+    }
+    span.length = std::max(to - from, 0.0);
+    // Which moves the interval covers; places within the first and the last one.
+    span.first_move = leg.first_move;
+    double x = start;
+    while (span.first_move < leg.last_move && x + moves_[span.first_move].path.length() <= from) {
+      x += moves_[span.first_move].path.length();
+      ++span.first_move;
+    }
+    span.x_from = from - x;
+    span.last_move = span.first_move;
+    while (span.last_move < leg.last_move && x + moves_[span.last_move].path.length() < to) {
+      x += moves_[span.last_move].path.length();
+      ++span.last_move;
+    }
+    const double last_length = moves_[span.last_move].path.length();
+    span.x_to = to == leg_end ? last_length : std::min(to - x, last_length);
+    span.limits = moves_[leg.first_move].limits;
+    speeds_.Push(span.length, span.limits, closes ? speed_cap : leg.cap);
+    if (closes) break;
+  }
+}
+
+}  // namespace rmlcell::motion

@@ -1,0 +1,129 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "engine/motion/planner.h"
+#include "engine/motion/ring.h"
+#include "engine/motion/speed_passes.h"
+
+namespace rmlcell::motion {
+
+// The inside of the planner. Moves pass three stages, each a queue:
+//
+//   legs   moves that are one to the speed passes: a line split by points that change nothing. The
+//   first
+//          pair of passes runs over legs at their full length and gives each corner its running
+//          speed w, and with it the size of its curve (motion.md 4.3).
+//   spans  what the curves leave of the legs, each with the curve behind it. The second pair of
+//   passes
+//          gives the speeds of the knots.
+//   items  spans cut back into moves, on demand.
+//
+// A run is a sequence of legs joined by passages straight on; a curve may take up to half of a run,
+// hence more than the leg next to it.
+class MotionChain {
+ public:
+  MotionChain(const MachineLimits& machine, std::size_t window);
+
+  // The move has passed all checks and has a length above zero.
+  void Append(const MoveCommand& move, const PathLimits& limits);
+
+  // A move that goes nowhere stood here: the passage before it is a stop unless it had /FLY itself.
+  void Nothing(const TipPose& here, bool fly);
+  void Mark(std::uint64_t tag);
+  void Stop();
+  std::optional<PlannedItem> Next();
+
+  const MachineLimits& machine() const { return machine_; }
+  std::uint64_t starved() const { return starved_; }
+
+  // Where the last accepted move ended; null before the first.
+  const TipPose* end() const { return end_known_ ? &end_ : nullptr; }
+
+ private:
+  using Number = std::uint64_t;
+
+  struct Move {
+    PathPiece path;
+    Head head;
+    PathLimits limits;
+    double overshoot = 0.0;
+    double settling_s = 0.0;
+    std::uint64_t tag = 0;
+    bool fly = false;
+  };
+  struct Leg {
+    Number first_move = 0;
+    Number last_move = 0;
+    double length = 0.0;
+    Corner corner{};  // at its end
+    Passage passage = Passage::kStop;
+    bool ends_run = true;
+    double cap = 0.0;  // OVERSH x the lower limit of both sides
+  };
+  // From place x_from of one move to place x_to of another, and what ends it.
+  struct Span {
+    Number first_move = 0;
+    Number last_move = 0;
+    double x_from = 0.0;
+    double x_to = 0.0;
+    double length = 0.0;
+    PathLimits limits;
+    Number corner_move = 0;  // the last move before the passage; differs from last_move when the
+                             // curve begins in an earlier one
+    double settling_s = 0.0;
+    CornerReport report;
+    double curve_length = 0.0;
+    double curve_middle = 0.5;
+    CornerCurve curve{};  // when the report says blend
+  };
+  struct WaitingMark {
+    std::uint64_t tag = 0;
+    Number after_move = 0;
+  };
+
+  bool Join(const MoveCommand& move, const PathLimits& limits);
+  void CloseLeg(Passage passage, const Corner& corner, double cap);
+  void Work();
+  void Starve();
+  bool Resolve(bool accept_what_is_there);
+  std::optional<double> LengthAfter(Number leg, double enough, bool accept_what_is_there);
+  void MakeCurve(Span& span, const Leg& leg, double cut);
+  void CloseRun(Number last_leg, double total, const Span& closing, double speed_cap);
+
+  void EmitSpan();
+  void EmitCurve(const Span& span);
+  void EmitCurvePart(const Span& span, const PathPiece& piece, Number move, double s_from,
+                     double s_to, bool ends_move);
+  PlannedMotion& NewMotion(const Span& span, Number move);
+  void FinishMotion(const Span& span, Number move, PlannedMotion& motion, bool ends_move);
+
+  MachineLimits machine_;
+  std::size_t window_;
+  bool axes_keep_up_;  // the axes allow whatever the tip may do on a curve without head rotation
+  std::uint64_t starved_ = 0;
+
+  Ring<Move> moves_;
+  bool open_ = false;    // the last leg may still grow, the chain goes on
+  bool stands_ = false;  // although the last move has /FLY: a move that goes nowhere came after it
+  TipPose end_;
+  bool end_known_ = false;
+
+  Ring<Leg> legs_;                // from the first leg of the present run on
+  SpeedPasses running_;           // over legs
+  std::size_t running_next_ = 0;  // settle again at this many open knots
+  Number resolving_ = 0;          // the leg whose end is to be decided next
+  double run_length_ = 0.0;       // of the legs before it in its run
+  double run_cut_ = 0.0;          // what the curve at the start of the run takes of it
+
+  Ring<Span> spans_;
+  SpeedPasses speeds_;  // over spans
+  std::size_t speeds_next_ = 0;
+  double last_speed_ = 0.0;  // at the end of the last emitted span
+
+  Ring<WaitingMark> marks_;
+  Ring<PlannedItem> items_;
+};
+
+}  // namespace rmlcell::motion
