@@ -38,21 +38,52 @@ struct Rates {
   AxisValues axes_second{};
 };
 
+// The axes go as the tip does.
+void FollowTip(Rates& rates, const PathPiece& path) {
+  rates.axes = {rates.tip.x, rates.tip.y, rates.tip.z, path.a_rate(), path.b_rate()};
+  rates.axes_second = {rates.tip_second.x, rates.tip_second.y, rates.tip_second.z, 0.0, 0.0};
+}
+
 Rates RatesAt(const motion::PlannedMotion& motion, bool five_axis, double s) {
   const PathPiece& path = motion.path;
   Rates rates;
   rates.tip = TipRate(path, motion.head, s);
   rates.tip_second = TipSecondRate(path, motion.head, s);
-  if (five_axis) {
+  if (five_axis && Turns(path)) {
     const motion::AxisDerivatives axes = motion::DerivativesAt(path, motion.head, s);
     rates.axes = axes.first;
     rates.axes_second = axes.second;
   } else {
-    rates.axes = {rates.tip.x, rates.tip.y, rates.tip.z, path.a_rate(), path.b_rate()};
-    rates.axes_second = {rates.tip_second.x, rates.tip_second.y, rates.tip_second.z, 0.0, 0.0};
+    FollowTip(rates, path);
   }
   return rates;
 }
+
+// The same on an arc whose axes go as the tip does: what does not change is worked out once.
+class ArcRates {
+ public:
+  explicit ArcRates(const PathPiece& path)
+      : path_(path),
+        along_(path.Tangent(0.0)),
+        inward_(path.Curvature(0.0) * path.radius_mm()),
+        per_radius_(1.0 / path.radius_mm()) {}
+
+  Rates At(double s) const {
+    const double sine = std::sin(s * per_radius_);
+    const double cosine = std::cos(s * per_radius_);
+    Rates rates;
+    rates.tip = along_ * cosine + inward_ * sine;
+    rates.tip_second = (inward_ * cosine - along_ * sine) * per_radius_;
+    FollowTip(rates, path_);
+    return rates;
+  }
+
+ private:
+  const PathPiece& path_;
+  Vec3 along_;
+  Vec3 inward_;
+  double per_radius_;
+};
 
 void AddSample(MotionPeaks& peaks, const Rates& rates, double speed, double acceleration) {
   const double squared = speed * speed;
@@ -99,21 +130,27 @@ MotionPeaks PeaksOf(const motion::PlannedMotion& motion, bool five_axis, double 
       path.kind() == PathPiece::Kind::kArc || path.kind() == PathPiece::Kind::kBlend;
   if (!curved && !(five_axis && Turns(path))) return Straight(motion, five_axis, from_s, to_s);
 
-  const double turning = std::abs(path.a_rate()) + std::abs(path.b_rate()) +
-                         (path.kind() == PathPiece::Kind::kArc ? 1.0 / path.radius_mm() : 0.0);
-  MotionPeaks peaks;
-  ForEachPhase(motion.speed, from_s, to_s, [&](const PhasePart& part) {
-    const double way = part.PlaceAt(part.duration_s) - part.start.s;
-    const int samples =
-        static_cast<int>(std::clamp(std::ceil(turning * std::abs(way) / kPeakSampleAngle_rad),
-                                    double{kSamplesMin}, double{kSamplesMax}));
-    for (int k = 0; k <= samples; ++k) {
-      const double t = part.duration_s * k / samples;
-      AddSample(peaks, RatesAt(motion, five_axis, part.PlaceAt(t)), part.SpeedAt(t),
-                part.AccelerationAt(t));
-    }
-  });
-  return peaks;
+  const auto over_all = [&](auto rates_at) {
+    const double turning = std::abs(path.a_rate()) + std::abs(path.b_rate()) +
+                           (path.kind() == PathPiece::Kind::kArc ? 1.0 / path.radius_mm() : 0.0);
+    MotionPeaks peaks;
+    ForEachPhase(motion.speed, from_s, to_s, [&](const PhasePart& part) {
+      const double way = part.PlaceAt(part.duration_s) - part.start.s;
+      const double wanted = std::ceil(turning * std::abs(way) / kPeakSampleAngle_rad);
+      const int samples =
+          static_cast<int>(std::clamp(wanted, double{kSamplesMin}, double{kSamplesMax}));
+      for (int k = 0; k <= samples; ++k) {
+        const double t = part.duration_s * k / samples;
+        AddSample(peaks, rates_at(part.PlaceAt(t)), part.SpeedAt(t), part.AccelerationAt(t));
+      }
+    });
+    return peaks;
+  };
+  if (path.kind() == PathPiece::Kind::kArc && !(five_axis && Turns(path))) {
+    const ArcRates arc(path);
+    return over_all([&](double s) { return arc.At(s); });
+  }
+  return over_all([&](double s) { return RatesAt(motion, five_axis, s); });
 }
 
 }  // namespace rmlcell::simulation

@@ -192,15 +192,22 @@ PointSweep TipSweep(const PathPart& part) {
 PointSweep ColumnSweep(const PathPart& part) {
   const PathPiece& path = part.path;
   const auto position = [&](double s) { return ColumnAt(path, part.head, s); };
-  const bool joint = path.kind() == PathPiece::Kind::kJoint;
-  if (joint || (path.kind() == PathPiece::Kind::kLine && !Turns(path))) {
+  if (path.kind() == PathPiece::Kind::kJoint) {
     return Straight(position(part.from), position(part.to));
   }
-  return Curved(part, path.kind() == PathPiece::Kind::kArc && !Turns(path), position,
-                [&](double s) {
-                  const auto rate = motion::DerivativesAt(path, part.head, s).first;
-                  return Vec3{rate[0], rate[1], rate[2]};
-                });
+  if (!Turns(path)) {  // as the tip goes, somewhere above it
+    const Vec3 arm = position(0.0) - path.from().tip;
+    PointSweep sweep = TipSweep(part);
+    for (std::size_t i = 0; i < 3; ++i) {
+      sweep[i].minimum += arm.*kCoordinates[i];
+      sweep[i].maximum += arm.*kCoordinates[i];
+    }
+    return sweep;
+  }
+  return Curved(part, false, position, [&](double s) {
+    const auto rate = motion::DerivativesAt(path, part.head, s).first;
+    return Vec3{rate[0], rate[1], rate[2]};
+  });
 }
 
 double TipLength(const PathPart& part) {
