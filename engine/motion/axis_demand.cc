@@ -127,23 +127,33 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
   }
 
   if (!arc) {
-    // A short turn: the place in the middle, and how far the derivatives can get away from it.
-    // Within 1 %.
+    // A short turn: places in the middle of a few parts, and how far the derivatives can get away
+    // from them. Within 1 %.
     constexpr double kRoom = 0.004;
-    const double half = 0.5 * path.length();
+    constexpr std::size_t kPartsMax = 8;
     const double rate = std::abs(path.a_rate()) + std::abs(path.b_rate());
+    const double half = 0.5 * path.length();
     const double drift = half * head.arm_mm() * rate * rate;
-    if (drift <= kRoom * Norm(path.Tangent(0.0)) && half * rate <= kRoom) {
-      AxisDerivatives q = DerivativesAt(path, head, half);
-      for (std::size_t i = 0; i < 3; ++i) {
-        q.first[i] = std::abs(q.first[i]) + drift;
-        q.second[i] = std::abs(q.second[i]) + drift * rate;
+    const double wanted = std::ceil(std::max(drift / Norm(path.Tangent(0.0)), half * rate) / kRoom);
+    if (wanted <= static_cast<double>(kPartsMax)) {
+      const auto parts = static_cast<std::size_t>(std::max(wanted, 1.0));
+      const double share = 1.0 / static_cast<double>(parts);
+      std::array<AxisDerivatives, kPartsMax> at;
+      for (std::size_t k = 0; k < parts; ++k) {
+        AxisDerivatives& q = at[k];
+        q = DerivativesAt(path, head, path.length() * (static_cast<double>(k) + 0.5) * share);
+        for (std::size_t i = 0; i < 3; ++i) {
+          q.first[i] = std::abs(q.first[i]) + drift * share;
+          q.second[i] = std::abs(q.second[i]) + drift * share * rate;
+        }
+        limits.speed = std::min(limits.speed, SpeedAllowed(q, axes, shares));
+        if (std::isfinite(limits.jerk))
+          limits.jerk = std::min(limits.jerk, JerkAllowed(q, axes, shares));
       }
-      limits.speed = std::min(limits.speed, SpeedAllowed(q, axes, shares));
-      limits.acceleration =
-          std::min(limits.acceleration, AccelerationAllowed(q, axes, shares, limits.speed));
-      if (std::isfinite(limits.jerk))
-        limits.jerk = std::min(limits.jerk, JerkAllowed(q, axes, shares));
+      for (std::size_t k = 0; k < parts; ++k) {
+        limits.acceleration =
+            std::min(limits.acceleration, AccelerationAllowed(at[k], axes, shares, limits.speed));
+      }
       return limits;
     }
   }
