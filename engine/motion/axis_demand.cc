@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kSampleAngle_rad = 0.05;  // motion.md 5.1: at most this much turning per interval
 constexpr int kIntervalsMin = 16;
-constexpr int kIntervalsMax = 4096;  // 200 rad of turning: 16 turns of the widest head
+constexpr double kTurningMax_rad =
+    60.0;  // more than any travel: bounds will do, a search would last
 
 std::size_t At(int axis) { return static_cast<std::size_t>(axis); }
 
@@ -161,9 +162,16 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
   const double turning = std::abs(path.to().a_rad - path.from().a_rad) +
                          std::abs(path.to().b_rad - path.from().b_rad) +
                          (arc ? path.sweep_rad() : 0.0);
-  const double wanted = std::ceil(turning / kSampleAngle_rad);
-  const int intervals = static_cast<int>(
-      std::clamp(wanted, static_cast<double>(kIntervalsMin), static_cast<double>(kIntervalsMax)));
+  if (!(turning <= kTurningMax_rad)) {
+    limits.speed = std::min(limits.speed, by_bound);
+    limits.acceleration =
+        std::min(limits.acceleration, AccelerationAllowed(bounds, axes, shares, limits.speed));
+    if (std::isfinite(limits.jerk))
+      limits.jerk = std::min(limits.jerk, JerkAllowed(bounds, axes, shares));
+    return limits;
+  }
+  const int intervals =
+      std::max(static_cast<int>(std::ceil(turning / kSampleAngle_rad)), kIntervalsMin);
   const auto least = [&](auto limit) {
     return LeastAlong([&](double s) { return limit(DerivativesAt(path, head, s)); }, path.length(),
                       intervals);
