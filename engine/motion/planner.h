@@ -84,9 +84,9 @@ class Planner {
   Planner& operator=(Planner&&) noexcept;
 
   // Errors: NoMotion (7307) when speed or acceleration is too low to ever arrive. On error the
-  // planner is unchanged; TargetOutOfTravel (7301) when a coordinate is not a finite number. A path
-  // of length zero is not an error and adds nothing; without /FLY it makes the passage before it a
-  // stop.
+  // planner is unchanged; TargetOutOfTravel (7301) when a coordinate is not a number or beyond
+  // 1e12. A path of length zero is not an error and adds nothing; without /FLY it makes the passage
+  // before it a stop.
   Status Append(const MoveCommand& move);
 
   // Something that takes effect after the motions appended so far, see PlannedMark.
