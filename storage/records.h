@@ -1,10 +1,12 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/core/catalogue.h"
@@ -15,31 +17,39 @@ namespace rmlcell::storage {
 
 using WallTime = std::chrono::sys_time<std::chrono::microseconds>;
 
-// Counts the changes of one record, from 1. 0 as an expectation means "must not exist yet";
-// kAnyRevision means "whatever is there".
+// Counts the changes of one record, from 1. A record that was deleted and is made again goes on counting,
+// so that what was expected of the old one never fits the new one. 0 as an expectation means "must not
+// exist yet"; kAnyRevision means "whatever is there".
 using Revision = std::int64_t;
 inline constexpr Revision kAnyRevision = -1;
 
+// The largest program that is taken, as source, object or executable (design.md section 6).
+inline constexpr std::size_t kProgramBytesMax = std::size_t{256} << 20;
+// A watcher gets an event in one message, and those of gRPC end at 4 MiB.
+inline constexpr std::size_t kEventPayloadBytesMax = std::size_t{3} << 20;
+inline constexpr int kScheduleMin = 1;
+inline constexpr int kScheduleMax = 63;
+
 struct MachineRecord {
-  std::string id;  // "optimo-1"
-  std::string family;
-  std::string title;
-  std::string profile;  // empty: the defaults of the family
-  std::map<std::string, std::string> parameters;  // what differs from the profile
-  std::string state;  // engine bytes kept between jobs; empty: a new machine
+  std::string id{};  // "optimo-1"
+  std::string family{};
+  std::string title{};
+  std::string profile{};  // empty: the defaults of the family
+  std::map<std::string, std::string> parameters{};  // what differs from the profile
+  std::string state{};  // engine bytes kept between jobs; empty: a new machine
   Revision revision = 0;
   WallTime created_at{};
   WallTime updated_at{};
 };
 
 struct ProgramRecord {
-  std::string machine;
+  std::string machine{};
   int slot = 0;  // 1..99
-  std::string name;
-  std::string object;
-  std::optional<std::string> source;      // where the program was stored from text
-  std::string source_name;                // file name of the source
-  std::optional<std::string> executable;  // at slot + 100
+  std::string name{};
+  std::string object{};
+  std::optional<std::string> source{};      // where the program was stored from text
+  std::string source_name{};                // file name of the source
+  std::optional<std::string> executable{};  // at slot + 100
   Revision revision = 0;                  // of the object; an executable made of an older one is gone
   WallTime created_at{};
   WallTime updated_at{};
@@ -48,8 +58,8 @@ struct ProgramRecord {
 // A program without its bytes, for lists.
 struct ProgramSummary {
   int slot = 0;
-  std::string name;
-  std::string source_name;
+  std::string name{};
+  std::string source_name{};
   std::int64_t object_bytes = 0;
   std::int64_t source_bytes = -1;      // -1: no source
   std::int64_t executable_bytes = -1;  // -1: no executable
@@ -60,69 +70,80 @@ struct ProgramSummary {
 };
 
 struct ScheduleRecord {
-  std::string machine;
+  std::string machine{};
   int number = 0;  // 1..63
-  std::string name;
-  std::string mode;
+  std::string name{};
+  std::string mode{};
   double power_percent = 100.0;
   Revision revision = 0;
   WallTime updated_at{};
 };
 
 struct ProjectRecord {
-  std::string id;
-  std::string title;
-  std::string body;  // opaque
+  std::string id{};
+  std::string title{};
+  std::string body{};  // opaque
   Revision revision = 0;
   WallTime created_at{};
   WallTime updated_at{};
 };
+
+// The kind of the jobs that move a machine: they are never attempted again by themselves.
+inline constexpr std::string_view kRunKind = "RUN";
 
 enum class JobState { kQueued, kRunning, kSucceeded, kFailed, kCancelled, kInterrupted };
 inline bool IsFinal(JobState state) { return state != JobState::kQueued && state != JobState::kRunning; }
 
 struct JobOutcome {
   JobState state = JobState::kSucceeded;
-  std::optional<ErrorCode> code;
-  std::string detail;
+  std::optional<ErrorCode> code{};
+  std::string detail{};
   int program = 0;  // where it ended, 0: not known
   int step = 0;
 };
 
 struct JobRecord {
   std::int64_t id = 0;       // counts up; the order of submission
-  std::string request_id;    // unique; made by the store when the client gave none
-  std::string request_hash;  // of what was asked for: the same request_id with another request is refused
-  std::string machine;
-  std::string kind;          // "CHECK", "SIMULATE", "RUN"
-  std::string title;
-  std::string caller;
-  std::string specification;  // opaque
+  std::string request_id{};    // unique; made by the store when the client gave none
+  std::string request_hash{};  // of what was asked for: the same request_id with another request is refused
+  std::string machine{};
+  std::string kind{};          // "CHECK", "SIMULATE", kRunKind
+  std::string title{};
+  std::string caller{};
+  std::string specification{};  // opaque
   JobState state = JobState::kQueued;
   bool cancel_requested = false;
-  int attempts = 0;
+  int attempts = 0;  // begun and not handed back; the number of an attempt stands in its lease
   int attempts_max = 2;
-  std::optional<JobOutcome> outcome;
-  std::int64_t last_sequence = 0;  // of its newest event
+  std::optional<JobOutcome> outcome{};
+  std::int64_t last_sequence = 0;      // of its newest event
+  std::int64_t events_gone_until = 0;  // its events up to this sequence number were removed
   WallTime created_at{};
-  std::optional<WallTime> started_at;
-  std::optional<WallTime> finished_at;
+  std::optional<WallTime> started_at{};  // of the first attempt
+  std::optional<WallTime> finished_at{};
+};
+
+struct JobCounts {
+  std::int64_t queued = 0;
+  std::int64_t running = 0;
 };
 
 struct AttemptRecord {
   std::int64_t job = 0;
   int number = 0;  // from 1
-  std::string worker;
+  std::string worker{};
   std::int64_t fence = 0;
   WallTime started_at{};
-  std::optional<WallTime> ended_at;
-  std::string how_it_ended;  // "succeeded", "failed", "lease ran out", "handed back"
+  std::optional<WallTime> ended_at{};
+  // "succeeded", "failed", "cancelled", "interrupted", "handed back", "abandoned", "lease ran out";
+  // empty while it runs.
+  std::string how_it_ended{};
 };
 
 // One line of a job's durable log.
 struct NewEvent {
-  std::string kind;  // "state", "step", "alarm" ...: for filters and people
-  std::string payload;  // opaque
+  std::string kind{};  // "state", "step", "alarm" ...: for filters and people
+  std::string payload{};  // opaque
 };
 struct EventRecord {
   std::int64_t position = 0;  // over all jobs, counts up
@@ -130,20 +151,21 @@ struct EventRecord {
   std::int64_t sequence = 0;  // within the job, from 1 without a gap
   int attempt = 0;            // 0: from the server, outside an attempt
   WallTime at{};
-  std::string kind;
-  std::string payload;
+  std::string kind{};
+  std::string payload{};
 };
 
 // A product of a job: report, toolpath, picture. Bytes are kept once by content, compressed.
 struct NewArtifact {
-  std::string name;  // "report", "toolpath", "picture.svg"
-  std::string media_type;
-  std::string bytes;
+  std::string name{};  // "report", "toolpath", "picture.svg"
+  std::string media_type{};
+  std::string bytes{};
+  std::string existing_sha256;  // not empty: content that the store has already; `bytes` is not looked at
 };
 struct ArtifactRecord {
   std::int64_t job = 0;
-  std::string name;
-  std::string media_type;
+  std::string name{};
+  std::string media_type{};
   std::string sha256;  // lower-case hexadecimal, of the uncompressed bytes
   std::int64_t size = 0;
 };

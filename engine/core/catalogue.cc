@@ -99,6 +99,19 @@ std::string CodeText(ErrorCode code) {
   return std::string(FamilyPrefix(entry.family)) + "-E" + std::to_string(entry.number);
 }
 
+std::string ConstantName(ErrorCode code) {
+  std::string name;
+  char before = 0;
+  for (const char c : Lookup(code).symbol) {
+    const bool starts_word = (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9' && before >= 'a');
+    const bool inside_family = name == "RML";  // RML1 is one word
+    if (starts_word && !name.empty() && !inside_family) name += '_';
+    name += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    before = c;
+  }
+  return name;
+}
+
 std::vector<const CatalogueEntry*> FindByText(std::string_view text) {
   std::vector<const CatalogueEntry*> found;
   const std::size_t dash = text.find('-');
@@ -113,7 +126,10 @@ std::vector<const CatalogueEntry*> FindByText(std::string_view text) {
   for (const CatalogueEntry& entry : kCatalogue) {
     const bool same_family = family.empty() || EqualIgnoringCase(family, FamilyPrefix(entry.family));
     const bool same_number = number && *number == entry.number && same_family;
-    if (same_number || EqualIgnoringCase(text, entry.symbol)) found.push_back(&entry);
+    if (same_number || EqualIgnoringCase(text, entry.symbol) ||
+        EqualIgnoringCase(text, ConstantName(entry.code))) {
+      found.push_back(&entry);
+    }
   }
   return found;
 }

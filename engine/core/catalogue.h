@@ -59,8 +59,12 @@ std::string_view SeverityEffect(Severity severity);
 
 std::string CodeText(ErrorCode code);  // "OPT-E348"
 
-// The rows that a person may mean by "OPT-E348", "rml1-e2", "348" or "HoleRadiusZero", in the order of
-// the catalogue; empty when there is none. A bare number may name rows of several families.
+// The symbol as a constant of the API: "HOLE_RADIUS_ZERO", "GAS_3_NOT_FITTED".
+std::string ConstantName(ErrorCode code);
+
+// The rows that a person may mean by "OPT-E348", "rml1-e2", "348", "HoleRadiusZero" or
+// "HOLE_RADIUS_ZERO", in the order of the catalogue; empty when there is none. A bare number may name
+// rows of several families.
 std::vector<const CatalogueEntry*> FindByText(std::string_view text);
 
 }  // namespace rmlcell

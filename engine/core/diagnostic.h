@@ -12,7 +12,7 @@ namespace rmlcell {
 struct Fix {
   std::int64_t byte_offset = 0;
   int length = 0;
-  std::string text;
+  std::string text{};
 
   bool operator==(const Fix&) const = default;
 };
@@ -21,13 +21,13 @@ struct Fix {
 struct Diagnostic {
   ErrorCode code;
   Severity severity;     // normally that of the catalogue row; CHECK may lower or raise it
-  std::string detail;    // "radius is 0"
-  std::string rule;      // "OPT-2.27"; empty when the code says all
-  std::string file;      // as the user named it; empty for a stored program
-  SourceSpan where;      // line 0: no text is known
+  std::string detail{};    // "radius is 0"
+  std::string rule{};      // "OPT-2.27"; empty when the code says all
+  std::string file{};      // as the user named it; empty for a stored program
+  SourceSpan where{};      // line 0: no text is known
   int program = 0;       // slot; 0 when the program has none
   int step = 0;          // as the control counts; 0 when it belongs to no step
-  std::vector<Fix> fixes;
+  std::vector<Fix> fixes{};
 
   bool operator==(const Diagnostic&) const = default;
 };

@@ -24,8 +24,8 @@ struct SourceSpan {
 // What went wrong: a row of the catalogue, what was observed, and where.
 struct Error {
   ErrorCode code;
-  std::string detail;               // "radius is 0": lower case, no full stop
-  std::optional<SourceSpan> where;  // when there is program text
+  std::string detail{};               // "radius is 0": lower case, no full stop
+  std::optional<SourceSpan> where{};  // when there is program text
 
   bool operator==(const Error&) const = default;
 };

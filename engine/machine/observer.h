@@ -53,13 +53,13 @@ struct MotionDone {
 // A MOVE (or coordinate set) carried out: where the tool now is.
 struct MoveDone {
   SimTime at{0};
-  Place place;
-  motion::TipPose tip;             // machine frame; work units of a mill are in the family's figures
-  motion::AxisPose axes;
-  motion::Vec3 program_point;      // as programmed: program frame, or device units of a stream
+  Place place{};
+  motion::TipPose tip{};             // machine frame; work units of a mill are in the family's figures
+  motion::AxisPose axes{};
+  motion::Vec3 program_point{};      // as programmed: program frame, or device units of a stream
   double rotary_a = 0.0;           // as programmed: rad, or degrees of a stream
   double feed_mm_s = 0.0;          // speed limit of the motion
-  std::string_view path;           // "LIN", "CIR", "PU" ...
+  std::string_view path{};           // "LIN", "CIR", "PU" ...
 };
 
 // A state that outsiders can see: an output, the beam, a spindle.
@@ -77,7 +77,7 @@ enum class Signal {
 };
 struct SignalChange {
   SimTime at{0};
-  Place place;
+  Place place{};
   Signal signal = Signal::kOutput;
   int index = 0;
   double value = 0.0;
@@ -88,7 +88,7 @@ enum class WaitKind { kDwell, kPierce, kSpinUp, kCondition, kOperator, kLoad };
 struct Wait {
   SimTime start{0};
   SimTime end{0};
-  Place place;
+  Place place{};
   WaitKind kind = WaitKind::kDwell;
   bool beam_on = false;
   double power_percent = 0.0;  // laser: while the beam is on
@@ -97,8 +97,8 @@ struct Wait {
 // A halt of the run: PAUSE, STOP, HOLD, breakpoint, !NR.
 struct Halt {
   SimTime at{0};
-  Place place;
-  std::string_view why;  // "STOP"
+  Place place{};
+  std::string_view why{};  // "STOP"
 };
 
 // Told everything that a run does, in order of virtual time. Structs are valid during the call only.

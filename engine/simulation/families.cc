@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "engine/optimo/control/optimo_family.h"
+#include "engine/rml1/rml1_family.h"
+
 namespace rmlcell::simulation {
 namespace {
 
@@ -25,7 +28,10 @@ std::string_view ExtensionOf(std::string_view name) {
 
 // The registration of the machine families: one line each.
 std::span<const machine::MachineFamily* const> Families() {
-  static const std::vector<const machine::MachineFamily*> families = {};
+  static const std::vector<const machine::MachineFamily*> families = {
+      &optimo::OptimoFamily(),
+      &rml1::Rml1Family(),
+  };
   return families;
 }
 

@@ -1,0 +1,188 @@
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "engine/machine/run.h"
+#include "engine/motion/planner.h"
+#include "engine/optimo/control/laser_unit.h"
+#include "engine/optimo/control/machine_state.h"
+#include "engine/optimo/language/linker.h"
+
+// Everything that the control is at while it runs a program. One copyable value: a snapshot of a run is a
+// copy of it. Programs are shared and never change (OPT-B.65).
+namespace rmlcell::optimo {
+
+// An executable as it was loaded.
+struct LoadedProgram {
+  Executable executable{};
+  std::vector<ModuleIndex> index{};  // parallel to executable.modules
+
+  int slot() const { return executable.modules.front().slot; }
+};
+using Loaded = std::shared_ptr<const LoadedProgram>;
+Loaded Load(Executable executable);
+
+// One activation of a module: main, or a FUNCTION.
+struct Frame {
+  int module = 0;                        // of the executable
+  std::uint32_t next = 0;                // instruction
+  std::vector<std::uint32_t> returns{};    // of GOSUB
+  std::optional<int> error_label{};        // ERR, OPT-3.57
+  std::array<float, kParameterCount> parameters{};
+};
+
+// Values that hold until they are changed; common to the modules of an executable (OPT-9.16).
+struct Modal {
+  CoordType coord = CoordType::kRobot;
+  PathType path = PathType::kPtp;
+  double hole_radius_mm = 0.0;
+  double speed_percent = 70.0;
+  double accel_percent = 100.0;
+  double oversh_percent = 100.0;
+  std::uint8_t updated = kAllGroups;  // UPDATE ON
+  std::uint8_t imaged = 0;            // IMAGE
+};
+
+struct ProgramTimer {
+  SimTime due{0};
+  SimTime period{0};
+  int label = 0;
+  bool repeats = false;
+};
+
+// A program that runs or waits for the one that it CALLed.
+struct ProgramContext {
+  Loaded program{};
+  std::vector<Frame> frames{};  // main module first
+  Modal modal{};
+  Processes processes{};
+  std::optional<ProgramTimer> timer{};
+  SimTime timer_left{0};  // stands still while a CALLed program runs, OPT-B.89
+};
+
+// What is told when a motion is over.
+struct MoveNote {
+  machine::Place place{};
+  motion::Vec3 program_point{};
+  double program_a = 0.0;
+  double program_b = 0.0;
+  double feed_mm_s = 0.0;
+  PathType path = PathType::kPtp;
+  bool last = true;  // of its MOVE; false: the lead of a hole
+  bool fly = false;
+  motion::MoveCommand::Kind kind = motion::MoveCommand::Kind::kContour;
+  double speed_percent = 0.0;  // as programmed; for a change of the override on the way
+  double accel_fraction = 1.0;
+};
+
+// A motion under way.
+struct ActiveMotion {
+  motion::PlannedMotion motion{};
+  MoveNote note{};
+  SimTime start{0};
+  SimTime arrival{0};  // end of the profile
+  SimTime end{0};      // with settling
+  SimTime told{0};     // parts up to here were reported
+  bool ended = false;  // brought to rest by /END, /TIME or a MOVE that takes over
+
+  double s_at(SimTime time) const { return motion.speed.At(ToSeconds(time - start)).s; }
+};
+
+// Something visible that happens between two motions (planner marks).
+struct PassageEffect {
+  enum class Kind { kOutput, kAnalogue, kBeamOn, kBeamOff, kSchedule, kTable };
+  Kind kind = Kind::kOutput;
+  machine::Place place{};
+  int index = 0;
+  double value = 0.0;
+  machine::PowerBySpeed power{};
+};
+
+// What the control waits for before it goes on with the program.
+struct Pending {
+  enum class Kind {
+    kNone,
+    kStandstill,  // motions to be over, then the program goes on at the same instruction
+    kTime,        // until `until`
+    kCondition,   // until the expression of the instruction is true, then it is carried out
+    kTakeOver,    // the next tick, when the /NEXT motion is brought to rest
+  };
+  Kind kind = Kind::kNone;
+  SimTime since{0};
+  SimTime until{0};
+  machine::WaitKind wait = machine::WaitKind::kDwell;
+  double power_percent = 0.0;    // kTime: of the beam meanwhile
+  std::uint32_t expression = 0;  // kCondition: of the module of the innermost frame
+};
+
+// Dry run up to a step, OPT-6.12 to 6.30.
+struct Simulated {
+  bool active = false;
+  machine::ProgramStep until{};
+  Bits ol_changed{};
+  int schedule = 0;
+};
+
+struct ControlState {
+  MachineState machine{};
+  machine::RunPhase phase = machine::RunPhase::kRunning;
+  machine::Outcome outcome{};
+  machine::Mode mode = machine::Mode::kCycle;
+  double override_percent = 100.0;
+  std::optional<machine::ProgramStep> breakpoint{};
+  Simulated simulated{};
+
+  SimTime now{0};
+  std::uint64_t steps = 0;
+  std::size_t next_input = 0;  // of the script
+  std::vector<ProgramContext> programs{};  // innermost last
+  Pending pending{};
+
+  motion::Planner planner;
+  motion::AxisPose planned_axes{};  // after everything that was appended
+  std::uint64_t next_tag = 1;
+  std::deque<std::pair<std::uint64_t, MoveNote>> notes{};
+  std::deque<std::pair<std::uint64_t, PassageEffect>> effects{};
+  std::deque<motion::PlannedItem> timeline{};
+  std::optional<ActiveMotion> active{};
+  std::deque<motion::PlannedItem> interrupted{};  // STOP: what follows at START
+  bool halting = false;  // coming to rest for a STOP
+  bool passing = false;     // the planner may hold a /FLY motion back
+  bool background = false;  // the motion under way is one of /NEXT
+  bool condition_met = false;  // /START of the instruction in execution was true
+  SimTime instruction_since{0};
+  int run_ahead = 0;        // instructions executed since the last motion
+
+  std::optional<std::uint64_t> watched_move{};   // tag of the motion with /END or /TIME
+  std::optional<std::uint32_t> end_condition{};  // expression of /END, module of the innermost frame
+  std::optional<int> time_label{};               // GOSUB of /TIME
+  SimTime time_due{0};
+  SimTime watched_since{0};
+  bool time_ran_out = false;
+
+  bool hold_requested = false;
+  bool stop_requested = false;   // STOP on a motion that cannot be left just now
+  bool halt_after_step = false;  // SINGLE, breakpoint
+  bool beam_returns = false;     // START brings it back (OPT-B.34)
+  std::string_view halt_reason{};
+  SimTime halted_at{0};
+  std::optional<Error> deferred{};  // raised ahead of motion: handled when it is over
+  machine::Place place{};  // of the instruction in execution
+  Op op = Op::kInvalid;
+
+  Beam beam{};
+  machine::PowerBySpeed power_before_pierce{};
+  int gas = 1;
+  std::map<int, std::string> made_executables{};
+  std::map<int, Loaded> loaded{};  // executables of this run, by slot
+  bool speed_limited_told = false;
+
+  explicit ControlState(const motion::MachineLimits& limits) : planner(limits) {}
+};
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,131 @@
+#include "engine/optimo/control/machine_state.h"
+
+#include <bit>
+#include <cstring>
+
+namespace rmlcell::optimo {
+namespace {
+
+// First bytes of a saved state; the last is its version.
+constexpr std::string_view kMagic{"OPTSTATE\x01", 9};
+
+// Numbers are written least significant byte first, the same on every platform.
+class Writer {
+ public:
+  void Byte(std::uint8_t value) { bytes_ += static_cast<char>(value); }
+  template <class T>
+  void Number(T value) {
+    using Raw = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
+    const auto raw = std::bit_cast<Raw>(value);
+    for (std::size_t i = 0; i < sizeof(T); ++i) Byte(static_cast<std::uint8_t>(raw >> (8 * i)));
+  }
+  template <class Array>
+  void All(const Array& values) {
+    for (const auto& value : values) Number(value);
+  }
+  void All(const Bits& values) {
+    for (const bool value : values) Byte(value ? 1 : 0);
+  }
+  std::string Take() { return std::move(bytes_); }
+
+ private:
+  std::string bytes_{kMagic};
+};
+
+class Reader {
+ public:
+  explicit Reader(std::string_view bytes) : rest_(bytes) {}
+  std::uint8_t Byte() {
+    if (rest_.empty()) {
+      good_ = false;
+      return 0;
+    }
+    const auto value = static_cast<std::uint8_t>(rest_.front());
+    rest_.remove_prefix(1);
+    return value;
+  }
+  template <class T>
+  void Number(T& value) {
+    using Raw = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
+    Raw raw = 0;
+    for (std::size_t i = 0; i < sizeof(T); ++i) raw |= static_cast<Raw>(Byte()) << (8 * i);
+    value = std::bit_cast<T>(raw);
+    if constexpr (std::is_floating_point_v<T>) {
+      if (value != value) good_ = false;  // a machine never stands at "not a number"
+    }
+  }
+  template <class Array>
+  void All(Array& values) {
+    for (auto& value : values) Number(value);
+  }
+  void All(Bits& values) {
+    for (bool& value : values) value = Byte() != 0;
+  }
+  bool good() const { return good_ && rest_.empty(); }
+
+ private:
+  std::string_view rest_;
+  bool good_ = true;
+};
+
+// One list of members for both directions.
+template <class Archive, class State>
+void Visit(Archive& archive, State& state) {
+  auto& data = state.data;
+  archive.All(data.vr);
+  archive.All(data.vi);
+  archive.All(data.vl);
+  archive.All(data.il);
+  archive.All(data.ol);
+  archive.All(data.ia);
+  archive.All(data.oa);
+  archive.All(data.il_physical);
+  archive.All(data.ia_physical);
+  archive.All(data.ol_physical);
+  archive.All(data.oa_physical);
+  archive.Number(state.axes.column.x);
+  archive.Number(state.axes.column.y);
+  archive.Number(state.axes.column.z);
+  archive.Number(state.axes.a_rad);
+  archive.Number(state.axes.b_rad);
+  archive.Number(state.tool.offset.x_mm);
+  archive.Number(state.tool.offset.y_mm);
+  archive.Number(state.tool.offset.z_mm);
+  archive.All(state.tool.reference);
+  archive.All(state.work_offset.values);
+  archive.Number(state.schedule);
+  archive.Number(state.table_deg);
+}
+
+}  // namespace
+
+MachineState NewMachine(const OptimoParameters& parameters) {
+  MachineState state;
+  state.axes = parameters.home;
+  return state;
+}
+
+std::string EncodeMachineState(const MachineState& state) {
+  Writer writer;
+  Visit(writer, state);
+  writer.Byte(static_cast<std::uint8_t>((state.work_offset.active ? 1 : 0) | (state.zeroed ? 2 : 0) |
+                                        (state.door_open ? 4 : 0)));
+  return writer.Take();
+}
+
+Result<MachineState> DecodeMachineState(std::string_view bytes) {
+  if (!bytes.starts_with(kMagic)) {
+    return Error{ErrorCode::kCellBadText, "these bytes are no state of an Optimo of this version", {}};
+  }
+  Reader reader(bytes.substr(kMagic.size()));
+  MachineState state;
+  Visit(reader, state);
+  const std::uint8_t flags = reader.Byte();
+  state.work_offset.active = (flags & 1) != 0;
+  state.zeroed = (flags & 2) != 0;
+  state.door_open = (flags & 4) != 0;
+  if (!reader.good()) return Error{ErrorCode::kCellBadText, "the state of the machine is damaged", {}};
+  return state;
+}
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "engine/core/result.h"
+#include "engine/motion/kinematics.h"
+#include "engine/optimo/control/optimo_parameters.h"
+#include "engine/optimo/language/ast.h"
+
+namespace rmlcell::optimo {
+
+inline constexpr int kVariableCount = kVariableIndexMax + 1;
+using Numbers = std::array<float, kVariableCount>;
+using Bits = std::array<bool, kVariableCount>;
+
+// Variables, images and physical I/O. OPT-7.59 to 7.64, OPT-7.96 to 7.101
+struct DataArea {
+  Numbers vr{};
+  Numbers vi{};  // whole numbers
+  Bits vl{};
+  Bits il{};  // images
+  Bits ol{};
+  Numbers ia{};
+  Numbers oa{};
+  Bits il_physical{};  // as the script of inputs sets them
+  Numbers ia_physical{};
+  Bits ol_physical{};
+  Numbers oa_physical{};
+};
+
+// SYSDEF in force. OPT-7.28 to 7.40
+struct WorkOffsetState {
+  bool active = false;
+  std::array<double, 6> values{};  // dx dy dz, rz ry rx
+
+  motion::WorkOffset transform() const {
+    if (!active) return {};
+    return {{values[0], values[1], values[2]}, values[3], values[4], values[5]};
+  }
+};
+
+// TCP in force: tool offset, and the reference point that decides the jog direction. OPT-4.64
+struct ToolState {
+  motion::ToolOffset offset{};
+  std::array<double, 3> reference{0.0, 0.0, -5.0};  // OPT-4.68
+};
+
+// All that a machine keeps from one run to the next. A value.
+struct MachineState {
+  DataArea data{};
+  motion::AxisPose axes{};
+  ToolState tool{};
+  WorkOffsetState work_offset{};
+  int schedule = 0;  // active laser schedule; 0: none was selected, OPT-3.26
+  bool zeroed = true;
+  bool door_open = false;
+  double table_deg = 0.0;  // rotary table of FUNCTION 99
+};
+
+// As it leaves the factory. OPT-B.02
+MachineState NewMachine(const OptimoParameters& parameters);
+
+std::string EncodeMachineState(const MachineState& state);
+// Errors: CellBadText: not bytes of EncodeMachineState, or of a newer version.
+Result<MachineState> DecodeMachineState(std::string_view bytes);
+
+}  // namespace rmlcell::optimo

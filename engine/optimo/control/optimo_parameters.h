@@ -1,0 +1,42 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/machine/parameters.h"
+#include "engine/machine/shape.h"
+#include "engine/motion/planner.h"
+#include "engine/optimo/language/ast.h"
+
+namespace rmlcell::optimo {
+
+enum class Laser { kArrow, kEfa51 };  // OPT-3.14, OPT-3.15
+
+// The machine parameters of optimo.md B.1, as values. OPT-B.01
+struct OptimoParameters {
+  motion::MachineLimits limits;
+  double head_length_mm = 300.0;
+  motion::AxisPose home;
+  motion::AxisPose mechanical_zero;
+  double cycle_s = 0.048;
+  CoordType coord_default = CoordType::kRobot;
+  PathType path_default = PathType::kPtp;
+  Laser laser = Laser::kArrow;
+  int gas_channels = 2;
+  bool teach_simulator = false;
+  bool rotary_table = false;
+  int object_limit = 34'000;
+  int executable_limit = 32'768;
+  int gosub_depth = 16;
+  double call_time_s = 0.0;
+  double laser_w = 1500.0;
+};
+
+std::span<const machine::ParameterInfo> OptimoParameterTable();
+const std::vector<machine::MachineProfile>& OptimoProfiles();
+
+// Precondition: `parameters` are of OptimoParameterTable.
+OptimoParameters Resolve(const machine::Parameters& parameters);
+machine::MachineShape ShapeOf(const OptimoParameters& parameters);
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/result.h"
+#include "engine/optimo/language/program.h"
+
+// Source to object and back (optimo.md 1.1, B.6).
+namespace rmlcell::optimo {
+
+inline constexpr std::uint32_t kObjectLimitStandard = 34'000;  // OPT-1.08
+
+struct CompileOptions {
+  std::uint32_t object_limit =
+      kObjectLimitStandard;  // bytes; machine parameter OBJECT_LIMIT; 0: none
+  bool advice = true;        // static warnings and advice
+  bool inch = false;         // the text is an inch source: 7030 (OPT-2.04)
+  std::size_t diagnostics_max = 1000;
+};
+
+struct Compilation {
+  bool ok = false;
+  std::string object;                   // empty when not ok
+  Module module;                        // checked; complete only when ok
+  std::vector<Diagnostic> diagnostics;  // in order of place
+  std::uint64_t diagnostics_dropped = 0;
+};
+
+// Never fails: bad programs are diagnostics. `file` is only a name for them.
+Compilation Compile(std::string_view text, std::string_view file, const CompileOptions& options);
+
+// Object bytes of a checked module without errors. Identical on every platform (OPT-B.69).
+std::string EncodeObject(const Module& module);
+
+// Reads an object. Safe on hostile bytes. The module is checked: every index, type and range is
+// valid. Errors: ObjectCorrupt (7034); ObjectTooLong is not tested here.
+Result<Module> DecodeObject(std::string_view bytes);
+
+// Canonical source of a module, lines ended by LF (OPT-B.40). Compiles to the same object.
+std::string Decompile(const Module& module);
+
+// Decodes and decompiles. Errors: ObjectCorrupt.
+Result<std::string> ObjectToSource(std::string_view object);
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,167 @@
+#include "proto/bridge/files.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <memory>
+#include <toml++/toml.h>
+
+#include "engine/core/number_text.h"
+#include "rmlcell/v1/job.pb.h"
+
+namespace rmlcell::bridge {
+namespace {
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+Error BadText(const std::string& name, int line, int column, const std::string& what) {
+  return {ErrorCode::kCellBadText, name + ":" + std::to_string(line) + ": " + what,
+          SourceSpan{.line = line, .column = column}};
+}
+
+std::string Upper(std::string_view text) {
+  std::string upper(text);
+  std::ranges::transform(upper, upper.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return upper;
+}
+
+std::string_view Trim(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+// ON, OPEN, TRUE, YES are 1; OFF, CLOSED, FALSE, NO are 0; else a number.
+std::optional<double> ValueOf(std::string_view text) {
+  const std::string word = Upper(text);
+  if (word == "ON" || word == "OPEN" || word == "TRUE" || word == "YES") return 1.0;
+  if (word == "OFF" || word == "CLOSED" || word == "FALSE" || word == "NO") return 0.0;
+  return ParseDouble(text);
+}
+
+// Fills kind and index from "IL[20]", "START" ...; false: no such thing.
+bool SetKind(std::string_view what, v1::ScriptedInput& input) {
+  const std::string word = Upper(what);
+  if (word == "START" || word == "RESUME") {
+    input.set_kind(v1::ScriptedInput::KIND_START);
+  } else if (word == "HOLD") {
+    input.set_kind(v1::ScriptedInput::KIND_HOLD);
+  } else if (word == "STOP") {
+    input.set_kind(v1::ScriptedInput::KIND_STOP);
+  } else if (word == "EMERGENCY") {
+    input.set_kind(v1::ScriptedInput::KIND_EMERGENCY_STOP);
+  } else if (word == "OVERRIDE") {
+    input.set_kind(v1::ScriptedInput::KIND_OVERRIDE);
+  } else if (word == "DOOR") {
+    input.set_kind(v1::ScriptedInput::KIND_DOOR);
+  } else if ((word.starts_with("IL[") || word.starts_with("IA[")) && word.ends_with(']')) {
+    const auto index = ParseInteger(std::string_view(word).substr(3, word.size() - 4));
+    if (!index || *index < 0 || *index > 99) return false;
+    input.set_kind(word[1] == 'L' ? v1::ScriptedInput::KIND_LOGICAL_INPUT
+                                  : v1::ScriptedInput::KIND_ANALOGUE_INPUT);
+    input.set_index(static_cast<int>(*index));
+  } else {
+    return false;
+  }
+  return true;
+}
+
+bool NeedsValue(v1::ScriptedInput::Kind kind) {
+  return kind == v1::ScriptedInput::KIND_LOGICAL_INPUT || kind == v1::ScriptedInput::KIND_ANALOGUE_INPUT ||
+         kind == v1::ScriptedInput::KIND_OVERRIDE || kind == v1::ScriptedInput::KIND_DOOR;
+}
+
+}  // namespace
+
+Result<std::string> ReadFile(const std::string& path, std::int64_t limit) {
+  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
+  if (file == nullptr) return Error{ErrorCode::kCellFileUnreadable, path, {}};
+  std::string text;
+  char room[1 << 16];
+  for (std::size_t n = 0; (n = std::fread(room, 1, sizeof room, file.get())) > 0;) {
+    text.append(room, n);
+    if (static_cast<std::int64_t>(text.size()) > limit) {
+      return Error{ErrorCode::kCellTooLarge, path + " is larger than " + std::to_string(limit) + " bytes", {}};
+    }
+  }
+  // A directory opens but cannot be read.
+  if (std::ferror(file.get()) != 0) return Error{ErrorCode::kCellFileUnreadable, path, {}};
+  return text;
+}
+
+Result<MachineFile> ParseMachineFile(std::string_view text, const std::string& name) {
+  try {
+    const toml::table table = toml::parse(text, name);
+    MachineFile machine;
+    for (const auto& [key, node] : table) {
+      const int line = static_cast<int>(node.source().begin.line);
+      if ((key == "family" || key == "profile") && node.is_string()) {
+        (key == "family" ? machine.family : machine.profile) = node.as_string()->get();
+      } else if (key == "parameters" && node.is_table()) {
+        for (const auto& [parameter, value] : *node.as_table()) {
+          const std::string named(parameter);
+          if (const auto* word = value.as_string()) {
+            machine.parameters[named] = word->get();
+          } else if (const auto* integer = value.as_integer()) {
+            machine.parameters[named] = std::to_string(integer->get());
+          } else if (const auto* number = value.as_floating_point()) {
+            machine.parameters[named] = ShortestText(number->get());
+          } else {
+            return BadText(name, static_cast<int>(value.source().begin.line), 0,
+                           "parameter " + named + " takes a number or a text");
+          }
+        }
+      } else {
+        return BadText(name, line, 0,
+                       "unknown key " + std::string(key) + "; there are family, profile, [parameters]");
+      }
+    }
+    return machine;
+  } catch (const toml::parse_error& error) {
+    return BadText(name, static_cast<int>(error.source().begin.line),
+                   static_cast<int>(error.source().begin.column), std::string(error.description()));
+  }
+}
+
+Status ParseInputFile(std::string_view text, const std::string& name, v1::SimulationOptions& options) {
+  int line_number = 0;
+  while (!text.empty()) {
+    ++line_number;
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    line = Trim(line.substr(0, line.find('#')));
+    if (line.empty()) continue;
+    const std::size_t blank = line.find_first_of(" \t");
+    const auto at = ParseDouble(line.substr(0, blank));
+    if (!at || !(*at >= 0.0) || blank == std::string_view::npos) {
+      return BadText(name, line_number, 1, "a line begins with the time in seconds, from 0: 0.5 IL[20] = 1");
+    }
+    std::string_view rest = Trim(line.substr(blank));
+    const std::size_t equals = rest.find('=');
+    const std::string_view what = Trim(rest.substr(0, equals));
+    v1::ScriptedInput input;
+    input.set_at_s(*at);
+    if (!SetKind(what, input)) {
+      return BadText(name, line_number, static_cast<int>(blank) + 2,
+                     "'" + std::string(what.substr(0, 40)) +
+                         "' is none of IL[n], IA[n], DOOR, START, HOLD, STOP, EMERGENCY, OVERRIDE");
+    }
+    if (NeedsValue(input.kind()) != (equals != std::string_view::npos)) {
+      return BadText(name, line_number, static_cast<int>(blank) + 2,
+                     std::string(what) + (equals == std::string_view::npos ? " needs '= VALUE'" : " takes no value"));
+    }
+    if (equals != std::string_view::npos) {
+      const auto value = ValueOf(Trim(rest.substr(equals + 1)));
+      if (!value) return BadText(name, line_number, 0, "the value is no number, ON, OFF, OPEN or CLOSED");
+      input.set_value(*value);
+    }
+    *options.add_inputs() = input;
+  }
+  return {};
+}
+
+}  // namespace rmlcell::bridge

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "engine/core/result.h"
+
+namespace rmlcell::v1 {
+class SimulationOptions;
+}
+
+// Readers of the small files that go with a program. The forms are described in docs/files.md.
+namespace rmlcell::bridge {
+
+// A whole file. Errors: CellFileUnreadable; CellTooLarge above `limit` bytes.
+Result<std::string> ReadFile(const std::string& path, std::int64_t limit);
+
+// Machine file (TOML): family, profile and a table [parameters].
+struct MachineFile {
+  std::string family;
+  std::string profile;
+  std::map<std::string, std::string> parameters;
+};
+Result<MachineFile> ParseMachineFile(std::string_view text, const std::string& name);
+
+// Input file: one change a line, "SECONDS WHAT [= VALUE]", # begins a comment:
+//   0.5 IL[20] = 1      2.0 START      3.25 OVERRIDE = 55      4 DOOR = OPEN
+// Appends to options.inputs. Errors: CellBadText with line and column.
+Status ParseInputFile(std::string_view text, const std::string& name, v1::SimulationOptions& options);
+
+}  // namespace rmlcell::bridge

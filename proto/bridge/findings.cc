@@ -1,0 +1,256 @@
+#include "proto/bridge/findings.h"
+
+#include <google/protobuf/any.pb.h>
+
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
+#include "rmlcell/v1/common.pb.h"
+#include "rmlcell/v1/program.pb.h"
+#include "rmlcell/v1/report.pb.h"
+
+namespace rmlcell::bridge {
+namespace {
+
+v1::Severity SeverityToProto(Severity severity) {
+  switch (severity) {
+    case Severity::kAdvice: return v1::SEVERITY_ADVICE;
+    case Severity::kWarning: return v1::SEVERITY_WARNING;
+    case Severity::kCompile: return v1::SEVERITY_COMPILE;
+    case Severity::kProgram: return v1::SEVERITY_PROGRAM;
+    case Severity::kFatal: return v1::SEVERITY_FATAL;
+    case Severity::kAlarm: return v1::SEVERITY_ALARM;
+    case Severity::kMessage: return v1::SEVERITY_MESSAGE;
+    case Severity::kTool: return v1::SEVERITY_TOOL;
+    case Severity::kBudget: return v1::SEVERITY_BUDGET;
+    case Severity::kDevice: return v1::SEVERITY_DEVICE;
+    case Severity::kRequest: return v1::SEVERITY_REQUEST;
+  }
+  return v1::SEVERITY_UNSPECIFIED;
+}
+
+Severity SeverityFromProto(v1::Severity severity) {
+  switch (severity) {
+    case v1::SEVERITY_ADVICE: return Severity::kAdvice;
+    case v1::SEVERITY_WARNING: return Severity::kWarning;
+    case v1::SEVERITY_COMPILE: return Severity::kCompile;
+    case v1::SEVERITY_PROGRAM: return Severity::kProgram;
+    case v1::SEVERITY_FATAL: return Severity::kFatal;
+    case v1::SEVERITY_ALARM: return Severity::kAlarm;
+    case v1::SEVERITY_MESSAGE: return Severity::kMessage;
+    case v1::SEVERITY_TOOL: return Severity::kTool;
+    case v1::SEVERITY_BUDGET: return Severity::kBudget;
+    case v1::SEVERITY_DEVICE: return Severity::kDevice;
+    default: return Severity::kRequest;
+  }
+}
+
+void SetSpan(const SourceSpan& where, v1::SourcePlace& place) {
+  place.set_line(where.line);
+  place.set_column(where.column);
+  place.set_length(where.length);
+  if (where.byte_offset >= 0) place.set_byte_offset(where.byte_offset);
+}
+
+// Text that came from a program may hold any bytes; protobuf strings must be UTF-8.
+std::string Utf8(const std::string& text) {
+  std::string out;
+  out.reserve(text.size());
+  for (std::size_t i = 0; i < text.size();) {
+    const auto lead = static_cast<unsigned char>(text[i]);
+    std::size_t size = lead < 0x80 ? 1 : lead >= 0xC2 && lead < 0xE0 ? 2 : lead >= 0xE0 && lead < 0xF0 ? 3
+                     : lead >= 0xF0 && lead < 0xF5 ? 4 : 0;
+    bool good = size > 0 && i + size <= text.size();
+    for (std::size_t k = 1; good && k < size; ++k) {
+      good = (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
+    }
+    if (good && size > 2) {  // overlong forms, surrogates, beyond U+10FFFF
+      const auto second = static_cast<unsigned char>(text[i + 1]);
+      good = !(lead == 0xE0 && second < 0xA0) && !(lead == 0xED && second > 0x9F) &&
+             !(lead == 0xF0 && second < 0x90) && !(lead == 0xF4 && second > 0x8F);
+    }
+    if (good) {
+      out.append(text, i, size);
+      i += size;
+    } else {
+      out += '?';
+      ++i;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+v1::Diagnostic ToProto(const Diagnostic& diagnostic) {
+  const CatalogueEntry& entry = Lookup(diagnostic.code);
+  v1::Diagnostic message;
+  message.set_code(CodeText(diagnostic.code));
+  message.set_symbol(ConstantName(diagnostic.code));
+  message.set_severity(SeverityToProto(diagnostic.severity));
+  message.set_message(diagnostic.detail.empty() ? std::string(entry.when) : Utf8(diagnostic.detail));
+  message.set_advice(std::string(entry.advice));
+  message.set_rule(diagnostic.rule);
+  message.set_count(1);
+  v1::SourcePlace& place = *message.mutable_place();
+  place.set_file(Utf8(diagnostic.file));
+  place.set_program(diagnostic.program);
+  place.set_step(diagnostic.step);
+  SetSpan(diagnostic.where, place);
+  for (const Fix& fix : diagnostic.fixes) {
+    v1::TextFix& made = *message.add_fixes();
+    made.set_byte_offset(fix.byte_offset);
+    made.set_length(fix.length);
+    made.set_text(Utf8(fix.text));
+  }
+  return message;
+}
+
+v1::Figure ToProto(const machine::Figure& figure) {
+  v1::Figure message;
+  message.set_name(figure.name);
+  message.set_unit(figure.unit);
+  message.set_value(figure.value);
+  return message;
+}
+
+v1::Outcome ToProto(const machine::Outcome& outcome) {
+  v1::Outcome message;
+  switch (outcome.kind) {
+    case machine::OutcomeKind::kCompleted: message.set_kind(v1::Outcome::KIND_COMPLETED); break;
+    case machine::OutcomeKind::kStopped: message.set_kind(v1::Outcome::KIND_STOPPED); break;
+    case machine::OutcomeKind::kFailed: message.set_kind(v1::Outcome::KIND_FAILED); break;
+    case machine::OutcomeKind::kCancelled: message.set_kind(v1::Outcome::KIND_CANCELLED); break;
+    case machine::OutcomeKind::kBudgetExceeded: message.set_kind(v1::Outcome::KIND_BUDGET_EXCEEDED); break;
+  }
+  message.set_message(Utf8(outcome.detail));
+  if (outcome.code) {
+    const CatalogueEntry& entry = Lookup(*outcome.code);
+    message.set_code(CodeText(*outcome.code));
+    message.set_symbol(ConstantName(*outcome.code));
+    message.set_advice(std::string(entry.advice));
+    if (outcome.detail.empty()) message.set_message(std::string(entry.when));
+  }
+  v1::SourcePlace& place = *message.mutable_place();
+  place.set_program(outcome.place.program);
+  place.set_step(outcome.place.step);
+  place.set_line(outcome.place.line);
+  if (outcome.place.byte_offset >= 0) place.set_byte_offset(outcome.place.byte_offset);
+  return message;
+}
+
+v1::ErrorExplanation Explain(const CatalogueEntry& entry) {
+  v1::ErrorExplanation message;
+  message.set_code(CodeText(entry.code));
+  message.set_symbol(ConstantName(entry.code));
+  message.set_severity(SeverityToProto(entry.severity));
+  message.set_when(std::string(entry.when));
+  message.set_effect(std::string(SeverityEffect(entry.severity)));
+  message.set_advice(std::string(entry.advice));
+  return message;
+}
+
+v1::Findings FindingsOf(bool ok, const std::vector<Diagnostic>& diagnostics, std::uint64_t dropped,
+                        const std::vector<machine::Figure>& figures) {
+  v1::Findings message;
+  message.set_ok(ok);
+  for (const Diagnostic& diagnostic : diagnostics) *message.add_diagnostics() = ToProto(diagnostic);
+  message.set_diagnostics_dropped(static_cast<std::int64_t>(dropped));
+  for (const machine::Figure& figure : figures) *message.add_figures() = ToProto(figure);
+  return message;
+}
+
+Diagnostic FromProto(const v1::Diagnostic& message) {
+  Diagnostic diagnostic{.code = ErrorCode::kCellInternal,
+                        .severity = SeverityFromProto(message.severity()),
+                        .detail = message.message(),
+                        .rule = message.rule(),
+                        .file = message.place().file(),
+                        .where = {.line = message.place().line(),
+                                  .column = message.place().column(),
+                                  .length = message.place().length(),
+                                  .byte_offset = message.place().has_byte_offset()
+                                                     ? message.place().byte_offset()
+                                                     : -1},
+                        .program = message.place().program(),
+                        .step = message.place().step(),
+                        .fixes = {}};
+  const auto found = FindByText(message.code());
+  if (found.empty()) {
+    diagnostic.detail = message.code() + ": " + diagnostic.detail;
+  } else {
+    diagnostic.code = found.front()->code;
+  }
+  for (const v1::TextFix& fix : message.fixes()) {
+    diagnostic.fixes.push_back({.byte_offset = fix.byte_offset(), .length = fix.length(), .text = fix.text()});
+  }
+  return diagnostic;
+}
+
+int RpcCode(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::kCellInternal:
+    case ErrorCode::kCellStoreFailed: return 13;  // INTERNAL
+    case ErrorCode::kCellStoreCorrupt: return 15;  // DATA_LOSS
+    case ErrorCode::kCellUnavailable:
+    case ErrorCode::kCellStoreBusy: return 14;  // UNAVAILABLE
+    case ErrorCode::kCellNotFound:
+    case ErrorCode::kCellUnknownMachine:
+    case ErrorCode::kProgramMissing: return 5;  // NOT_FOUND
+    case ErrorCode::kCellAlreadyExists:
+    case ErrorCode::kCellRequestIdReused: return 6;  // ALREADY_EXISTS
+    case ErrorCode::kCellEtagMismatch:
+    case ErrorCode::kCellLeaseLost: return 10;  // ABORTED
+    case ErrorCode::kCellPermission: return 7;
+    case ErrorCode::kCellUnauthenticated:
+    case ErrorCode::kCellJoinRefused: return 16;
+    case ErrorCode::kCellUnimplemented: return 12;
+    case ErrorCode::kCellPrecondition:
+    case ErrorCode::kCellVersionMismatch:
+    case ErrorCode::kProgramInUse: return 9;  // FAILED_PRECONDITION
+    case ErrorCode::kCellResourceExhausted:
+    case ErrorCode::kCellTooLarge:
+    case ErrorCode::kCmosFull: return 8;  // RESOURCE_EXHAUSTED
+    case ErrorCode::kCellEventsGone: return 11;  // OUT_OF_RANGE
+    default: return 3;  // INVALID_ARGUMENT: a program or a request that is wrong in itself
+  }
+}
+
+std::string ErrorText(const Error& error) {
+  const CatalogueEntry& entry = Lookup(error.code);
+  const std::string what = error.detail.empty() ? std::string(entry.when) : error.detail;
+  return CodeText(error.code) + ": " + Utf8(what) + "; " + std::string(entry.advice);
+}
+
+google::rpc::Status ToRpcStatus(const Error& error, const std::vector<Diagnostic>& diagnostics,
+                                std::uint64_t dropped) {
+  const CatalogueEntry& entry = Lookup(error.code);
+  google::rpc::Status status;
+  status.set_code(RpcCode(error.code));
+  status.set_message(ErrorText(error));
+
+  google::rpc::ErrorInfo info;
+  info.set_reason(ConstantName(error.code));
+  info.set_domain("rmlcell");
+  (*info.mutable_metadata())["code"] = CodeText(error.code);
+  status.add_details()->PackFrom(info);
+
+  v1::ErrorDetail detail;
+  detail.set_code(CodeText(error.code));
+  detail.set_symbol(ConstantName(error.code));
+  detail.set_number(entry.number);
+  detail.set_message(error.detail.empty() ? std::string(entry.when) : Utf8(error.detail));
+  detail.set_advice(std::string(entry.advice));
+  if (error.where) SetSpan(*error.where, *detail.mutable_place());
+  // The place of the first error stands for all, for clients that look no further.
+  for (const Diagnostic& diagnostic : diagnostics) {
+    if (!detail.has_place() && IsError(diagnostic.severity)) {
+      *detail.mutable_place() = ToProto(diagnostic).place();
+    }
+    *detail.add_diagnostics() = ToProto(diagnostic);
+  }
+  detail.set_diagnostics_dropped(static_cast<std::int64_t>(dropped));
+  status.add_details()->PackFrom(detail);
+  return status;
+}
+
+}  // namespace rmlcell::bridge

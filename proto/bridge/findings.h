@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/core/diagnostic.h"
+#include "engine/machine/family.h"
+
+namespace google::rpc {
+class Status;
+}
+namespace rmlcell::v1 {
+class Diagnostic;
+class ErrorDetail;
+class Findings;
+class Figure;
+class SourcePlace;
+class ErrorExplanation;
+class Outcome;
+}  // namespace rmlcell::v1
+
+namespace rmlcell::bridge {
+
+v1::Diagnostic ToProto(const Diagnostic& diagnostic);
+v1::Figure ToProto(const machine::Figure& figure);
+v1::Outcome ToProto(const machine::Outcome& outcome);
+v1::ErrorExplanation Explain(const CatalogueEntry& entry);
+
+// The findings of a translation or a transfer.
+v1::Findings FindingsOf(bool ok, const std::vector<Diagnostic>& diagnostics, std::uint64_t dropped,
+                        const std::vector<machine::Figure>& figures);
+
+// Back to engine values, for those that print findings which came over the wire. Unknown codes become
+// CellInternal with the code in the text: a newer server may know more.
+Diagnostic FromProto(const v1::Diagnostic& diagnostic);
+
+// The value of google.rpc.Code that an error stands for: 3 INVALID_ARGUMENT, 5 NOT_FOUND ...
+int RpcCode(ErrorCode code);
+
+// Status with ErrorInfo (reason = constant name, domain "rmlcell") and our ErrorDetail, which carries
+// the findings when there are any.
+google::rpc::Status ToRpcStatus(const Error& error, const std::vector<Diagnostic>& diagnostics = {},
+                                std::uint64_t dropped = 0);
+
+// "OPT-E348: radius is 0; give PATH HOLE a radius above zero"
+std::string ErrorText(const Error& error);
+
+}  // namespace rmlcell::bridge

@@ -1,0 +1,214 @@
+#include "proto/bridge/report.h"
+
+#include "proto/bridge/findings.h"
+#include "rmlcell/v1/job.pb.h"
+#include "rmlcell/v1/report.pb.h"
+
+namespace rmlcell::bridge {
+namespace {
+
+v1::Point ToProto(const motion::Vec3& point) {
+  v1::Point message;
+  message.set_x(point.x);
+  message.set_y(point.y);
+  message.set_z(point.z);
+  return message;
+}
+
+v1::Position PositionOf(const motion::TipPose& tip, const motion::AxisPose& axes) {
+  v1::Position message;
+  *message.mutable_tip() = ToProto(tip.tip);
+  *message.mutable_column() = ToProto(axes.column);
+  message.set_a(axes.a_rad);
+  message.set_b(axes.b_rad);
+  return message;
+}
+
+void SetPlace(const machine::Place& place, v1::SourcePlace& message) {
+  message.set_program(place.program);
+  message.set_step(place.step);
+  message.set_line(place.line);
+  if (place.byte_offset >= 0) message.set_byte_offset(place.byte_offset);
+}
+
+void SetBox(const machine::Box& box, v1::Box* (v1::RunReport::*mutable_box)(), v1::RunReport& report) {
+  if (box.empty()) return;
+  v1::Box& message = *(report.*mutable_box)();
+  *message.mutable_low() = ToProto(box.min);
+  *message.mutable_high() = ToProto(box.max);
+}
+
+v1::WorkFigures ToProto(const simulation::WorkFigures& figures) {
+  v1::WorkFigures message;
+  message.set_steps(static_cast<std::int64_t>(figures.steps));
+  v1::RunTimes& times = *message.mutable_times();
+  times.set_cycle_s(ToSeconds(figures.time.total()));
+  times.set_motion_s(ToSeconds(figures.time.motion));
+  times.set_settling_s(ToSeconds(figures.time.settling));
+  times.set_dwell_s(ToSeconds(figures.time.dwell));
+  times.set_pierce_s(ToSeconds(figures.time.pierce));
+  times.set_condition_s(ToSeconds(figures.time.condition));
+  times.set_operator_s(ToSeconds(figures.time.operator_wait));
+  times.set_spin_up_s(ToSeconds(figures.time.spin_up));
+  times.set_load_s(ToSeconds(figures.time.load));
+  times.set_standstill_s(ToSeconds(figures.time.standstill));
+  message.set_path_length_mm(figures.tip_path_mm);
+  message.set_cut_length_mm(figures.cut_mm);
+  message.set_travel_length_mm(figures.travel_mm);
+  message.set_plunge_length_mm(figures.plunge_mm);
+  message.set_beam_on_s(ToSeconds(figures.beam_on));
+  message.set_beam_switches(static_cast<std::int64_t>(figures.beam_switches));
+  message.set_pierces(static_cast<std::int64_t>(figures.pierces));
+  message.set_plunges(static_cast<std::int64_t>(figures.plunges));
+  message.set_energy_j(figures.energy_j());
+  message.set_energy_j_per_mm(figures.energy_j_per_mm());
+  return message;
+}
+
+v1::AxisFigures ToProto(const simulation::AxisFigures& axis) {
+  v1::AxisFigures message;
+  message.set_axis(axis.name);
+  message.set_rotary(axis.rotary);
+  message.set_travel(axis.travel);
+  message.set_minimum(axis.minimum);
+  message.set_maximum(axis.maximum);
+  message.set_peak_speed(axis.peak_speed);
+  message.set_speed_limit(axis.speed_limit);
+  message.set_peak_acceleration(axis.peak_acceleration);
+  message.set_acceleration_limit(axis.acceleration_limit);
+  message.set_reversals(static_cast<std::int64_t>(axis.reversals));
+  return message;
+}
+
+v1::ProductState ToProto(const simulation::ProductState& product) {
+  v1::ProductState message;
+  message.set_made(product.made);
+  message.set_complete(product.complete);
+  message.set_records(static_cast<std::int64_t>(product.records));
+  message.set_dropped(static_cast<std::int64_t>(product.dropped));
+  return message;
+}
+
+}  // namespace
+
+v1::RunReport ToProto(const simulation::RunReport& report,
+                      const std::map<std::string, std::string>& variables) {
+  v1::RunReport message;
+  message.set_family(report.family);
+  message.set_title(report.title);
+  *message.mutable_outcome() = ToProto(report.outcome);
+  message.set_timing(std::string(simulation::TimingText(report.timing)));
+  *message.mutable_total() = ToProto(report.total);
+  *message.mutable_final_position() = PositionOf(report.final_position.tip, report.final_position.axes);
+  *message.mutable_final_program_point() = ToProto(report.final_position.program_point);
+  message.add_final_program_angles(report.final_position.program_a);
+  message.add_final_program_angles(report.final_position.program_b);
+  message.set_shutter_open_s(ToSeconds(report.shutter_open));
+  message.set_energy_j_per_mm_max(report.energy_j_per_mm_max);
+  message.set_halts(static_cast<std::int64_t>(report.halts));
+  if (report.shortfall.moves > 0) {
+    v1::SpeedShortfall& shortfall = *message.mutable_shortfall();
+    shortfall.set_moves(static_cast<std::int64_t>(report.shortfall.moves));
+    SetPlace(report.shortfall.worst, *shortfall.mutable_worst());
+    shortfall.set_wanted_mm_s(report.shortfall.wanted_mm_s);
+    shortfall.set_reached_mm_s(report.shortfall.reached_mm_s);
+  }
+  SetBox(report.programmed, &v1::RunReport::mutable_program_box, message);
+  SetBox(report.tip, &v1::RunReport::mutable_tip_box, message);
+  SetBox(report.cut, &v1::RunReport::mutable_cut_box, message);
+  SetBox(report.column, &v1::RunReport::mutable_column_box, message);
+  *message.add_axes() = ToProto(report.tip_figures);
+  for (const simulation::AxisFigures& axis : report.axes) *message.add_axes() = ToProto(axis);
+  for (const auto& [slot, figures] : report.programs) {
+    v1::ProgramFigures& program = *message.add_programs();
+    program.set_program(slot);
+    *program.mutable_figures() = ToProto(figures);
+  }
+  for (const simulation::StepFigures& step : report.steps) {
+    v1::StepFigures& made = *message.add_steps();
+    made.set_program(step.program);
+    made.set_step(step.step);
+    made.set_line(step.line);
+    *made.mutable_figures() = ToProto(step.figures);
+  }
+  if (report.rest.steps > 0) *message.mutable_other_steps() = ToProto(report.rest);
+  for (const simulation::Finding& finding : report.findings) {
+    v1::Diagnostic& diagnostic = *message.add_diagnostics();
+    diagnostic = ToProto(finding.diagnostic);
+    diagnostic.set_count(static_cast<std::int64_t>(finding.count));
+  }
+  message.set_diagnostics_dropped(static_cast<std::int64_t>(report.findings_dropped));
+  for (const machine::Figure& figure : report.figures) *message.add_figures() = ToProto(figure);
+  for (const auto& [name, value] : variables) (*message.mutable_variables())[name] = value;
+  for (const auto& [name, value] : report.changed_parameters) (*message.mutable_parameters())[name] = value;
+  message.set_inputs_hash(report.inputs_hash);
+  message.set_engine_version(report.engine_version);
+  *message.mutable_trace() = ToProto(report.trace);
+  *message.mutable_toolpath() = ToProto(report.toolpath);
+  *message.mutable_picture() = ToProto(report.picture);
+  return message;
+}
+
+v1::TraceRecord ToProto(const simulation::TraceRecord& record) {
+  using simulation::TraceKind;
+  v1::TraceRecord message;
+  message.set_number(static_cast<std::int64_t>(record.number));
+  message.set_kind(std::string(simulation::TraceKindName(record.kind)));
+  message.set_time_s(ToSeconds(record.at));
+  SetPlace(record.place, *message.mutable_place());
+  switch (record.kind) {
+    case TraceKind::kMove:
+      message.set_text(std::string(record.text));
+      *message.mutable_point() = ToProto(record.program_point);
+      message.add_angles(record.program_a);
+      message.add_angles(record.program_b);
+      *message.mutable_position() = PositionOf(record.tip, record.axes);
+      message.set_feed_mm_s(record.feed_mm_s);
+      break;
+    case TraceKind::kSignal:
+      message.set_text(std::string(simulation::SignalName(record.signal)));
+      message.set_index(record.index);
+      message.set_value(record.value);
+      message.set_detail(record.detail);
+      break;
+    case TraceKind::kWait:
+      message.set_text(std::string(simulation::WaitKindName(record.wait)));
+      message.set_duration_s(ToSeconds(record.duration));
+      break;
+    case TraceKind::kProgram:
+      message.set_text(std::string(record.text));
+      message.set_index(record.index);
+      break;
+    case TraceKind::kFinding:
+    case TraceKind::kEnd: {
+      Diagnostic finding{.code = record.code.value_or(ErrorCode::kCellInternal),
+                         .severity = record.severity,
+                         .detail = std::string(record.text)};
+      const v1::Diagnostic made = ToProto(finding);
+      message.set_text(record.kind == TraceKind::kEnd ? std::string(simulation::OutcomeText(record.outcome))
+                                                      : made.message());
+      if (record.code) message.set_code(made.code());
+      if (record.kind == TraceKind::kFinding) message.set_severity(made.severity());
+      break;
+    }
+    default: message.set_text(std::string(record.text));
+  }
+  return message;
+}
+
+v1::JobProgress ToProto(const machine::RunState& state, std::uint64_t steps) {
+  v1::JobProgress message;
+  message.set_virtual_time_ns(state.time.count());
+  message.set_steps(static_cast<std::int64_t>(steps));
+  SetPlace(state.place, *message.mutable_place());
+  message.set_instruction(std::string(state.instruction));
+  *message.mutable_position() = PositionOf(state.tip, state.axes);
+  message.set_speed_mm_s(state.tip_speed_mm_s);
+  message.set_override_percent(state.override_percent);
+  message.set_tool_on(state.beam_on || state.spindle_on);
+  message.set_held(state.phase == machine::RunPhase::kHalted);
+  if (state.progress >= 0.0) message.set_progress(state.progress);
+  return message;
+}
+
+}  // namespace rmlcell::bridge

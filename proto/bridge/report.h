@@ -1,0 +1,23 @@
+#pragma once
+
+#include "engine/simulation/report.h"
+#include "engine/simulation/trace.h"
+
+namespace rmlcell::v1 {
+class JobProgress;
+class Position;
+class RunReport;
+class TraceRecord;
+}  // namespace rmlcell::v1
+
+namespace rmlcell::bridge {
+
+// The report as its message; `variables` are those that were asked for.
+v1::RunReport ToProto(const simulation::RunReport& report,
+                      const std::map<std::string, std::string>& variables);
+v1::TraceRecord ToProto(const simulation::TraceRecord& record);
+
+// Where a run is, without the job's name.
+v1::JobProgress ToProto(const machine::RunState& state, std::uint64_t steps);
+
+}  // namespace rmlcell::bridge

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/machine/family.h"
+
+namespace rmlcell::v1 {
+class Budget;
+class ScriptedInput;
+class SimulationOptions;
+}  // namespace rmlcell::v1
+
+// What a simulation is asked for, as the setup of a run: the same for jobs of the queue and for the
+// command on a laptop.
+namespace rmlcell::bridge {
+
+struct ProgramInput {
+  int slot = 0;
+  std::string name;       // for people
+  std::string file_name;  // decides units and form of a source
+  machine::Bytes bytes;
+  bool is_source = false;  // false: an object (or a stream that was stored)
+  machine::Bytes executable;
+};
+
+struct SetupInput {
+  const machine::MachineFamily* family = nullptr;
+  std::string profile;
+  std::map<std::string, std::string> parameters;  // over the profile
+  std::vector<ProgramInput> programs;             // a later one of the same slot replaces an earlier one
+  int main_program = 0;
+  std::optional<std::vector<machine::LaserSchedule>> schedules;  // nothing: all at their defaults
+  std::string machine_state;
+  machine::Mode default_mode = machine::Mode::kRemote;  // jobs; the command takes CYCLE
+};
+
+// A setup, or what stopped a program from being translated.
+struct SetupOutcome {
+  std::optional<machine::RunSetup> setup;
+  std::vector<Diagnostic> diagnostics;  // of every program that was translated, each with its slot
+  std::uint64_t diagnostics_dropped = 0;
+};
+
+// Errors: CellUnknownParameter, CellParameterRange, CellInvalidArgument: the request itself is wrong.
+Result<SetupOutcome> MakeSetup(const SetupInput& input, const v1::SimulationOptions& options,
+                               const v1::Budget& budget);
+
+// Parameters of a machine: defaults of the family, then the profile, then single values.
+Result<machine::Parameters> MakeParameters(const machine::MachineFamily& family, const std::string& profile,
+                                           const std::map<std::string, std::string>& parameters);
+
+machine::InputChange FromProto(const v1::ScriptedInput& input);
+
+// True when the name says that the bytes are an object: ".O".
+bool IsObjectFileName(const std::string& file_name);
+
+// "VR[0..9]", "VI[99]", "Z1" -> the single names, at most 1,000. Error: CellInvalidArgument.
+Result<std::vector<std::string>> ExpandVariables(const std::vector<std::string>& names);
+
+}  // namespace rmlcell::bridge

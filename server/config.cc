@@ -1,0 +1,382 @@
+#include "server/config.h"
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+#include <sstream>
+#include <toml++/toml.h>
+
+#include "engine/core/number_text.h"
+
+namespace rmlcell::server {
+namespace {
+
+Error Wrong(const std::string& detail) { return {ErrorCode::kCellConfiguration, detail, {}}; }
+
+std::string Quoted(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    if (static_cast<unsigned char>(c) < 0x20) {
+      out += ' ';
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+Result<std::int64_t> Integer(const std::string& text, std::int64_t low, std::int64_t high) {
+  const auto value = ParseInteger(text);
+  if (!value) return Wrong("takes a whole number, not '" + text + "'");
+  if (*value < low || *value > high) {
+    return Wrong("is " + text + ", allowed are " + std::to_string(low) + " to " + std::to_string(high));
+  }
+  return std::int64_t{*value};
+}
+
+Result<double> Number(const std::string& text, double low, double high) {
+  const auto value = ParseDouble(text);
+  if (!value) return Wrong("takes a number, not '" + text + "'");
+  if (!(*value >= low && *value <= high)) {
+    return Wrong("is " + text + ", allowed are " + ShortestText(low) + " to " + ShortestText(high));
+  }
+  return *value;
+}
+
+std::vector<std::string> SplitList(const std::string& text) {
+  std::vector<std::string> parts;
+  std::stringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) {
+    const auto first = part.find_first_not_of(" \t");
+    if (first == std::string::npos) continue;
+    parts.push_back(part.substr(first, part.find_last_not_of(" \t") - first + 1));
+  }
+  return parts;
+}
+
+std::string ListText(const std::vector<std::string>& parts) {
+  std::string out = "[";
+  for (const std::string& part : parts) out += (out.size() > 1 ? ", " : "") + Quoted(part);
+  return out + "]";
+}
+
+Status OneOf(const std::string& text, std::initializer_list<std::string_view> words, std::string& target) {
+  if (std::ranges::find(words, text) == words.end()) {
+    std::string all;
+    for (const std::string_view word : words) all += (all.empty() ? "" : ", ") + std::string(word);
+    return Wrong("is '" + text + "', allowed are " + all);
+  }
+  target = text;
+  return {};
+}
+
+// The setters and getters of one member, so that the table below stays one line a key.
+#define RMLCELL_INTEGER(member, low, high)                                        \
+  [](Config& config, const std::string& text) -> Status {                        \
+    const auto value = Integer(text, low, high);                                  \
+    if (!value) return value.error();                                             \
+    config.member = *value;                                                       \
+    return {};                                                                    \
+  },                                                                              \
+      [](const Config& config) { return std::to_string(config.member); }
+#define RMLCELL_NUMBER(member, low, high)                                         \
+  [](Config& config, const std::string& text) -> Status {                        \
+    const auto value = Number(text, low, high);                                   \
+    if (!value) return value.error();                                             \
+    config.member = *value;                                                       \
+    return {};                                                                    \
+  },                                                                              \
+      [](const Config& config) { return TrimmedText(config.member, 3); }
+#define RMLCELL_TEXT(member)                                                      \
+  [](Config& config, const std::string& text) -> Status {                        \
+    config.member = text;                                                         \
+    return {};                                                                    \
+  },                                                                              \
+      [](const Config& config) { return Quoted(config.member); }
+#define RMLCELL_LIST(member)                                                      \
+  [](Config& config, const std::string& text) -> Status {                        \
+    config.member = SplitList(text);                                              \
+    return {};                                                                    \
+  },                                                                              \
+      [](const Config& config) { return ListText(config.member); }
+#define RMLCELL_WORD(member, ...)                                                 \
+  [](Config& config, const std::string& text) -> Status {                        \
+    return OneOf(text, {__VA_ARGS__}, config.member);                             \
+  },                                                                              \
+      [](const Config& config) { return Quoted(config.member); }
+
+constexpr std::int64_t kMiB = 1 << 20;
+
+std::vector<ConfigKey> MakeKeys() {
+  return {
+      {"listen.grpc", "gRPC addresses: host:port or unix:/path; loopback and unix sockets only",
+       RMLCELL_LIST(listen_grpc)},
+      {"listen.web", "web address host:port (page, JSON, gRPC-Web, event streams); empty: none; loopback only",
+       RMLCELL_TEXT(listen_web)},
+      {"web.origins", "other web origins that may call the web port, such as http://localhost:5173",
+       RMLCELL_LIST(web_origins)},
+      {"web.connections_max", "open web connections, 10 to 100000",
+       RMLCELL_INTEGER(web_connections_max, 10, 100'000)},
+      {"state.directory", "where the store is kept; empty: $XDG_STATE_HOME/rmlcell or ~/.local/state/rmlcell",
+       RMLCELL_TEXT(state_directory)},
+      {"workers.count", "engine workers that the server starts, 0 to 256; -1: one per processor core",
+       RMLCELL_INTEGER(workers_count, -1, 256)},
+      {"workers.program", "path of rmlcell-worker; empty: beside the server", RMLCELL_TEXT(workers_program)},
+      {"workers.join_token", "what a worker must know to join; empty: made anew at each start",
+       RMLCELL_TEXT(workers_join_token)},
+      {"workers.lease_ms", "how long a worker may be silent before its job is given to another, 500 to 600000 ms",
+       RMLCELL_INTEGER(workers_lease_ms, 500, 600'000)},
+      {"jobs.attempts", "how often a job is tried when its worker dies, 1 to 10",
+       RMLCELL_INTEGER(jobs_attempts, 1, 10)},
+      {"jobs.queued_max", "jobs that may wait, 1 to 10000000; more are refused",
+       RMLCELL_INTEGER(jobs_queued_max, 1, 10'000'000)},
+      {"jobs.keep_finished", "finished jobs that are kept with their events and products, 0 to 10000000; 0: all",
+       RMLCELL_INTEGER(jobs_keep_finished, 0, 10'000'000)},
+      {"limits.message_bytes", "largest message of a call, 65536 to 67108864 bytes",
+       RMLCELL_INTEGER(limit_message_bytes, 65'536, 64 * kMiB)},
+      {"limits.program_bytes", "largest program, 1024 to 268435456 bytes",
+       RMLCELL_INTEGER(limit_program_bytes, 1024, 256 * kMiB)},
+      {"limits.steps", "executed steps of a job, 1 to 10^12",
+       RMLCELL_INTEGER(limit_steps, 1, 1'000'000'000'000)},
+      {"limits.virtual_time_s", "virtual time of a job, 0.001 to 31536000 s",
+       RMLCELL_NUMBER(limit_virtual_time_s, 0.001, 31'536'000.0)},
+      {"limits.memory_bytes", "memory of a job in its worker, 16777216 bytes (16 MiB) to 1 TiB",
+       RMLCELL_INTEGER(limit_memory_bytes, 16 * kMiB, std::int64_t{1} << 40)},
+      {"limits.processor_s", "processor time of a job, 0.1 to 86400 s",
+       RMLCELL_NUMBER(limit_processor_s, 0.1, 86'400.0)},
+      {"limits.output_bytes", "report, trace, toolpath, pictures and events of a job, 65536 bytes to 16 GiB",
+       RMLCELL_INTEGER(limit_output_bytes, 65'536, std::int64_t{16} << 30)},
+      {"log.level", "trace, debug, info, warning, error or off",
+       RMLCELL_WORD(log_level, "trace", "debug", "info", "warning", "error", "off")},
+      {"log.format", "text or json", RMLCELL_WORD(log_format, "text", "json")},
+      {"log.file", "file to write the log to; empty: standard error", RMLCELL_TEXT(log_file)},
+      {"shutdown.timeout_s", "how long a stop waits for calls that run, 0 to 60 s",
+       RMLCELL_NUMBER(shutdown_timeout_s, 0.0, 60.0)},
+  };
+}
+
+const ConfigKey* FindKey(std::string_view name) {
+  const auto& keys = ConfigKeys();
+  const auto found = std::ranges::find_if(keys, [&](const ConfigKey& key) { return key.name == name; });
+  return found == keys.end() ? nullptr : &*found;
+}
+
+// The TOML value as the text that a setter takes; nothing for tables and dates.
+std::optional<std::string> ValueText(const toml::node& node) {
+  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* integer = node.as_integer()) return std::to_string(integer->get());
+  if (const auto* number = node.as_floating_point()) return ShortestText(number->get());
+  if (const auto* boolean = node.as_boolean()) return boolean->get() ? "true" : "false";
+  if (const auto* list = node.as_array()) {
+    std::string joined;
+    for (const toml::node& item : *list) {
+      const auto text = ValueText(item);
+      if (!text) return std::nullopt;
+      joined += (joined.empty() ? "" : ",") + *text;
+    }
+    return joined;
+  }
+  return std::nullopt;
+}
+
+std::string PlaceText(const std::string& file, const toml::node& node) {
+  return file + ":" + std::to_string(node.source().begin.line) + ": ";
+}
+
+// The key whose name is nearest, for a hint; empty when none is near.
+std::string NearestKey(std::string_view name) {
+  std::string best;
+  std::size_t best_common = 3;
+  for (const ConfigKey& key : ConfigKeys()) {
+    const auto mismatch = std::ranges::mismatch(key.name, name);
+    const auto common = static_cast<std::size_t>(mismatch.in1 - key.name.begin());
+    if (common > best_common) {
+      best_common = common;
+      best = key.name;
+    }
+  }
+  return best;
+}
+
+Status ReadMachine(const toml::table& table, const std::string& file, std::vector<MachineConfig>& machines) {
+  MachineConfig machine;
+  for (const auto& [key, node] : table) {
+    const auto* text = node.as_string();
+    if (text == nullptr) return Wrong(PlaceText(file, node) + "machine." + std::string(key) + " takes a text");
+    if (key == "id") {
+      machine.id = text->get();
+    } else if (key == "family") {
+      machine.family = text->get();
+    } else if (key == "profile") {
+      machine.profile = text->get();
+    } else if (key == "title") {
+      machine.title = text->get();
+    } else {
+      return Wrong(PlaceText(file, node) + "unknown key machine." + std::string(key) +
+                   "; there are id, family, profile, title");
+    }
+  }
+  machines.push_back(std::move(machine));
+  return {};
+}
+
+bool IsLoopback(std::string_view host) {
+  return host == "localhost" || host == "::1" || host == "[::1]" || host.starts_with("127.");
+}
+
+Status ValidateAddress(std::string_view key, const std::string& address) {
+  if (address.starts_with("unix:") && key == "listen.grpc") {
+    if (address.size() > 5) return {};
+    return Wrong(std::string(key) + " names no socket file after unix:");
+  }
+  const std::size_t colon = address.rfind(':');
+  const auto port = colon == std::string::npos ? std::nullopt : ParseInteger(address.substr(colon + 1));
+  if (!port || *port < 0 || *port > 65535) {
+    return Wrong(std::string(key) + " is '" + address + "': write host:port with a port from 0 to 65535");
+  }
+  if (!IsLoopback(address.substr(0, colon))) {
+    return Error{ErrorCode::kCellUnsafeListen, std::string(key) + " is '" + address + "'", {}};
+  }
+  return {};
+}
+
+bool IsResourceId(std::string_view id) {
+  if (id.empty() || id.size() > 63 || id.front() < 'a' || id.front() > 'z') return false;
+  return std::ranges::all_of(
+      id, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-'; });
+}
+
+}  // namespace
+
+const std::vector<ConfigKey>& ConfigKeys() {
+  static const std::vector<ConfigKey> keys = MakeKeys();
+  return keys;
+}
+
+Status ReadConfigText(std::string_view text, const std::string& name, Config& config) {
+  const toml::parse_result parsed = [&]() -> toml::parse_result {
+    return toml::parse(text, name);
+  }();
+  Config changed = config;
+  bool machines_replaced = false;
+  for (const auto& [section_key, section] : parsed) {
+    const std::string section_name(section_key);
+    if (section_name == "machine") {
+      const auto* list = section.as_array();
+      if (list == nullptr || !list->is_homogeneous<toml::table>()) {
+        return Wrong(PlaceText(name, section) + "write machines as [[machine]] tables");
+      }
+      if (!machines_replaced) changed.machines.clear();
+      machines_replaced = true;
+      for (const toml::node& node : *list) {
+        const Status read = ReadMachine(*node.as_table(), name, changed.machines);
+        if (!read) return read;
+      }
+      continue;
+    }
+    const auto* table = section.as_table();
+    if (table == nullptr) {
+      return Wrong(PlaceText(name, section) + "unknown key " + section_name + "; keys stand in sections");
+    }
+    for (const auto& [key, node] : *table) {
+      const std::string full = section_name + "." + std::string(key);
+      const ConfigKey* found = FindKey(full);
+      if (found == nullptr) {
+        const std::string near = NearestKey(full);
+        return Wrong(PlaceText(name, node) + "unknown key " + full +
+                     (near.empty() ? "" : "; did you mean " + near + "?"));
+      }
+      const auto value = ValueText(node);
+      if (!value) return Wrong(PlaceText(name, node) + full + " has a value of a wrong type");
+      const Status set = found->set(changed, *value);
+      if (!set) return Wrong(PlaceText(name, node) + full + " " + set.error().detail);
+    }
+  }
+  config = std::move(changed);
+  return {};
+}
+
+Status ReadConfigFile(const std::string& path, Config& config) {
+  // toml++ throws on text that is not TOML; nothing else of it leaves this file.
+  try {
+    std::string text;
+    {
+      std::FILE* file = std::fopen(path.c_str(), "rb");
+      if (file == nullptr) return Error{ErrorCode::kCellConfiguration, "cannot read " + path, {}};
+      char room[4096];
+      for (std::size_t n = 0; (n = std::fread(room, 1, sizeof room, file)) > 0;) text.append(room, n);
+      std::fclose(file);
+    }
+    return ReadConfigText(text, path, config);
+  } catch (const toml::parse_error& error) {
+    return Wrong(path + ":" + std::to_string(error.source().begin.line) + ":" +
+                 std::to_string(error.source().begin.column) + ": " + std::string(error.description()));
+  }
+}
+
+Status ReadConfigEnvironment(const std::map<std::string, std::string>& environment, Config& config) {
+  for (const ConfigKey& key : ConfigKeys()) {
+    std::string variable = "RMLCELL_";
+    for (const char c : key.name) {
+      variable += c == '.' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    }
+    const auto found = environment.find(variable);
+    if (found == environment.end()) continue;
+    const Status set = key.set(config, found->second);
+    if (!set) return Wrong(variable + " " + set.error().detail);
+  }
+  return {};
+}
+
+Status ValidateConfig(const Config& config) {
+  if (config.listen_grpc.empty()) return Wrong("listen.grpc is empty: nobody could call");
+  for (const std::string& address : config.listen_grpc) {
+    const Status valid = ValidateAddress("listen.grpc", address);
+    if (!valid) return valid;
+  }
+  if (!config.listen_web.empty()) {
+    const Status valid = ValidateAddress("listen.web", config.listen_web);
+    if (!valid) return valid;
+  }
+  std::set<std::string> ids;
+  for (const MachineConfig& machine : config.machines) {
+    if (!IsResourceId(machine.id)) {
+      return Wrong("machine id '" + machine.id + "': use a-z, 0-9 and '-', beginning with a letter, at most 63");
+    }
+    if (!ids.insert(machine.id).second) return Wrong("machine id '" + machine.id + "' stands twice");
+  }
+  return {};
+}
+
+std::string PrintConfig(const Config& config) {
+  std::string out;
+  std::string section;
+  for (const ConfigKey& key : ConfigKeys()) {
+    const std::size_t dot = key.name.find('.');
+    if (key.name.substr(0, dot) != section) {
+      section = key.name.substr(0, dot);
+      out += (out.empty() ? "[" : "\n[") + section + "]\n";
+    }
+    out += "# " + std::string(key.text) + "\n";
+    out += std::string(key.name.substr(dot + 1)) + " = " + key.get(config) + "\n";
+  }
+  for (const MachineConfig& machine : config.machines) {
+    out += "\n# a virtual machine, made when the store has none of this id\n[[machine]]\n";
+    out += "id = " + Quoted(machine.id) + "\nfamily = " + Quoted(machine.family) +
+           "\nprofile = " + Quoted(machine.profile) + "\ntitle = " + Quoted(machine.title) + "\n";
+  }
+  return out;
+}
+
+std::string DefaultStateDirectory(const std::map<std::string, std::string>& environment) {
+  const auto value = [&](const char* name) {
+    const auto found = environment.find(name);
+    return found == environment.end() ? std::string() : found->second;
+  };
+  if (const std::string state = value("XDG_STATE_HOME"); !state.empty()) return state + "/rmlcell";
+  if (const std::string home = value("HOME"); !home.empty()) return home + "/.local/state/rmlcell";
+  return "/var/lib/rmlcell";
+}
+
+}  // namespace rmlcell::server

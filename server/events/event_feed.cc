@@ -1,0 +1,188 @@
+#include "server/events/event_feed.h"
+
+#include <algorithm>
+#include <set>
+
+namespace rmlcell::server {
+namespace {
+
+// Another server may write to the same store: look without a hint that often.
+constexpr std::chrono::seconds kPollInterval{1};
+constexpr int kReadBatch = 1000;
+
+}  // namespace
+
+struct EventFeed::Watcher {
+  std::function<void()> wake;
+  std::mutex calling;  // held during a call, so that the handle's destructor can wait for it
+  bool gone = false;
+};
+
+class EventFeed::Handle : public EventFeed::Subscription {
+ public:
+  Handle(EventFeed& feed, std::int64_t key, std::shared_ptr<Watcher> watcher)
+      : feed_(feed), key_(key), watcher_(std::move(watcher)) {}
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  ~Handle() override {
+    {
+      const std::lock_guard lock(feed_.mutex_);
+      const auto [first, last] = feed_.watchers_.equal_range(key_);
+      const auto found = std::find_if(first, last, [&](const auto& row) { return row.second == watcher_; });
+      if (found != last) feed_.watchers_.erase(found);
+    }
+    const std::lock_guard calling(watcher_->calling);
+    watcher_->gone = true;
+  }
+
+ private:
+  EventFeed& feed_;
+  std::int64_t key_;
+  std::shared_ptr<Watcher> watcher_;
+};
+
+EventFeed::EventFeed(storage::Store& store) : store_(store) {
+  const Result<std::int64_t> last = store_.LastPosition();
+  if (last) position_ = *last;
+  store_watch_ = store_.Watch([this] {
+    const std::lock_guard lock(mutex_);
+    hinted_ = true;
+    wake_.notify_one();
+  });
+  thread_ = std::jthread([this](const std::stop_token& stop) { Run(stop); });
+}
+
+EventFeed::~EventFeed() {
+  store_watch_.reset();
+  thread_.request_stop();
+  wake_.notify_all();
+}
+
+std::unique_ptr<EventFeed::Subscription> EventFeed::Subscribe(std::optional<std::int64_t> job,
+                                                              std::function<void()> wake) {
+  auto watcher = std::make_shared<Watcher>();
+  watcher->wake = std::move(wake);
+  const std::int64_t key = job.value_or(0);
+  {
+    const std::lock_guard lock(mutex_);
+    watchers_.emplace(key, watcher);
+  }
+  return std::make_unique<Handle>(*this, key, std::move(watcher));
+}
+
+Result<std::vector<storage::EventRecord>> EventFeed::EventsAfter(std::int64_t position, int limit) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (position >= position_) return std::vector<storage::EventRecord>();
+    if (!recent_.empty() && recent_.front().position <= position + 1) {
+      const auto first = std::ranges::upper_bound(recent_, position, {}, &storage::EventRecord::position);
+      const auto count = std::min<std::ptrdiff_t>(limit, recent_.end() - first);
+      return std::vector<storage::EventRecord>(first, first + count);
+    }
+  }
+  return store_.AllEvents(position, limit);
+}
+
+void EventFeed::PublishProgress(std::int64_t job, std::string bytes) {
+  auto shared = std::make_shared<const std::string>(std::move(bytes));
+  const std::lock_guard lock(mutex_);
+  progress_[job] = {.job = job, .version = ++version_, .bytes = std::move(shared)};
+}
+
+void EventFeed::ForgetProgress(std::int64_t job) {
+  const std::lock_guard lock(mutex_);
+  progress_.erase(job);
+}
+
+std::optional<ProgressText> EventFeed::ProgressAfter(std::int64_t job, std::uint64_t seen) {
+  const std::lock_guard lock(mutex_);
+  const auto found = progress_.find(job);
+  if (found == progress_.end() || found->second.version <= seen) return std::nullopt;
+  return found->second;
+}
+
+std::vector<ProgressText> EventFeed::AllProgressAfter(std::uint64_t seen) {
+  std::vector<ProgressText> newer;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [job, progress] : progress_) {
+      if (progress.version > seen) newer.push_back(progress);
+    }
+  }
+  std::ranges::sort(newer, {}, &ProgressText::version);
+  return newer;
+}
+
+std::int64_t EventFeed::position() {
+  const std::lock_guard lock(mutex_);
+  return position_;
+}
+
+void EventFeed::Run(const std::stop_token& stop) {
+  auto next_poll = std::chrono::steady_clock::now();
+  while (!stop.stop_requested()) {
+    bool read = false;
+    std::vector<std::int64_t> moved;
+    {
+      std::unique_lock lock(mutex_);
+      // Positions are looked at each interval while there are any; else the thread sleeps until a hint.
+      wake_.wait_for(lock, stop, progress_.empty() ? kPollInterval : kProgressInterval,
+                     [this] { return hinted_; });
+      const auto now = std::chrono::steady_clock::now();
+      read = hinted_ || now >= next_poll;
+      hinted_ = false;
+      if (read) next_poll = now + kPollInterval;
+      if (version_ > told_version_) {
+        for (const auto& [job, progress] : progress_) {
+          if (progress.version > told_version_) moved.push_back(job);
+        }
+        told_version_ = version_;
+      }
+    }
+    if (stop.stop_requested()) return;
+    if (read) ReadNewEvents();
+    if (!moved.empty()) Wake(moved, true);
+  }
+}
+
+void EventFeed::ReadNewEvents() {
+  for (;;) {
+    std::int64_t after = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      after = position_;
+    }
+    Result<std::vector<storage::EventRecord>> events = store_.AllEvents(after, kReadBatch);
+    if (!events || events->empty()) return;  // a failing store is tried again at the next poll
+    std::set<std::int64_t> touched;
+    for (const storage::EventRecord& event : *events) touched.insert(event.job);
+    const bool more = events->size() == kReadBatch;
+    {
+      const std::lock_guard lock(mutex_);
+      position_ = events->back().position;
+      for (storage::EventRecord& event : *events) recent_.push_back(std::move(event));
+      while (recent_.size() > kRecentEvents) recent_.pop_front();
+    }
+    Wake({touched.begin(), touched.end()}, true);
+    if (!more) return;
+  }
+}
+
+void EventFeed::Wake(const std::vector<std::int64_t>& jobs, bool everything_watchers) {
+  std::vector<std::shared_ptr<Watcher>> woken;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto add = [&](std::int64_t key) {
+      const auto [first, last] = watchers_.equal_range(key);
+      for (auto row = first; row != last; ++row) woken.push_back(row->second);
+    };
+    for (const std::int64_t job : jobs) add(job);
+    if (everything_watchers) add(0);
+  }
+  for (const std::shared_ptr<Watcher>& watcher : woken) {
+    const std::lock_guard calling(watcher->calling);
+    if (!watcher->gone) watcher->wake();
+  }
+}
+
+}  // namespace rmlcell::server

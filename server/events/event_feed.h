@@ -1,0 +1,91 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "storage/store.h"
+
+namespace rmlcell::server {
+
+// The newest position of a running job, as serialised rmlcell.v1.JobProgress.
+struct ProgressText {
+  std::int64_t job = 0;
+  std::uint64_t version = 0;  // grows with every update of any job
+  std::shared_ptr<const std::string> bytes;
+};
+
+// Wakes watchers when there is something for them. Durable events are never handed over here: a watcher
+// keeps a cursor and reads the log when its writer is free, so one that does not read costs a cursor.
+// Positions are latest-wins and told at most every kProgressInterval.
+//
+// Knows no gRPC: the race detector sees all of it. Thread-safe. Lock order: mutex_ is a leaf; neither the
+// store nor a watcher is called under it.
+class EventFeed {
+ public:
+  static constexpr std::chrono::milliseconds kProgressInterval{50};
+  // Events kept in memory, so that a hundred watchers of everything read the log once.
+  static constexpr std::size_t kRecentEvents = 4096;
+
+  explicit EventFeed(storage::Store& store);
+  ~EventFeed();
+  EventFeed(const EventFeed&) = delete;
+  EventFeed& operator=(const EventFeed&) = delete;
+
+  // What a watcher is woken for; may be called from any thread, late, or for nothing. Must be quick and
+  // must not block. Ends when the handle is destroyed; then no call is under way or comes.
+  class Subscription {
+   public:
+    virtual ~Subscription() = default;
+  };
+  std::unique_ptr<Subscription> Subscribe(std::optional<std::int64_t> job, std::function<void()> wake);
+
+  // Events of the whole cell after a position; from memory when it reaches back that far.
+  Result<std::vector<storage::EventRecord>> EventsAfter(std::int64_t position, int limit);
+
+  // Events of one job after a sequence number, from the log.
+  Result<std::vector<storage::EventRecord>> JobEvents(std::int64_t job, std::int64_t after_sequence, int limit) {
+    return store_.JobEvents(job, after_sequence, limit);
+  }
+
+  void PublishProgress(std::int64_t job, std::string bytes);
+  void ForgetProgress(std::int64_t job);
+  // The newest position of the job when it is newer than `seen`.
+  std::optional<ProgressText> ProgressAfter(std::int64_t job, std::uint64_t seen);
+  // The same for all jobs, in order of version.
+  std::vector<ProgressText> AllProgressAfter(std::uint64_t seen);
+
+  // Events are told to watchers up to here.
+  std::int64_t position();
+
+ private:
+  struct Watcher;
+  class Handle;
+
+  void Run(const std::stop_token& stop);
+  void ReadNewEvents();
+  void Wake(const std::vector<std::int64_t>& jobs, bool everything_watchers);
+
+  storage::Store& store_;
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  bool hinted_ = true;
+  std::uint64_t version_ = 0;
+  std::uint64_t told_version_ = 0;
+  std::int64_t position_ = 0;
+  std::deque<storage::EventRecord> recent_;
+  std::map<std::int64_t, ProgressText> progress_;
+  std::multimap<std::int64_t, std::shared_ptr<Watcher>> watchers_;  // key 0: of everything
+  std::unique_ptr<storage::Store::Subscription> store_watch_;
+  std::jthread thread_;
+};
+
+}  // namespace rmlcell::server

@@ -1,0 +1,150 @@
+#include "server/jobs/assignment.h"
+
+#include "engine/simulation/families.h"
+#include "server/config.h"
+#include "server/jobs/job_book.h"
+#include "server/names.h"
+
+namespace rmlcell::server {
+namespace {
+
+// What is larger follows in messages of its own; all programs of an assignment together stay below the
+// limit of one message.
+constexpr std::size_t kInlineBytes = 64 << 10;
+constexpr std::size_t kInlineTotal = 1 << 20;
+
+template <class T>
+T Least(T wanted, T allowed) {
+  return wanted > T{0} && wanted < allowed ? wanted : allowed;
+}
+
+v1::Budget BudgetOf(const v1::Budget& wanted, const Config& config) {
+  v1::Budget budget;
+  budget.set_steps(Least<std::int64_t>(wanted.steps(), config.limit_steps));
+  budget.set_virtual_time_s(Least(wanted.virtual_time_s(), config.limit_virtual_time_s));
+  budget.set_memory_bytes(Least<std::int64_t>(wanted.memory_bytes(), config.limit_memory_bytes));
+  budget.set_processor_s(Least(wanted.processor_s(), config.limit_processor_s));
+  budget.set_output_bytes(Least<std::int64_t>(wanted.output_bytes(), config.limit_output_bytes));
+  return budget;
+}
+
+class ProgramsOfAssignment {
+ public:
+  ProgramsOfAssignment(v1::WorkerAssignment& assignment, AssignmentMessages& messages)
+      : assignment_(assignment), messages_(messages) {}
+
+  // A later program of the same slot replaces an earlier one.
+  void Add(int slot, const std::string& title, const std::string& file_name, std::string bytes, bool is_source,
+           const std::optional<std::string>& executable) {
+    v1::AssignedProgram program;
+    program.set_slot(slot);
+    program.set_title(title);
+    program.set_file_name(file_name);
+    program.set_is_source(is_source);
+    program.set_size(static_cast<std::int64_t>(bytes.size()));
+    if (executable) program.set_executable(*executable);
+    if (bytes.size() <= kInlineBytes && inline_total_ + bytes.size() <= kInlineTotal) {
+      inline_total_ += bytes.size();
+      program.set_content(std::move(bytes));
+    } else {
+      large_[slot] = std::make_shared<const std::string>(std::move(bytes));
+    }
+    by_slot_[slot] = std::move(program);
+  }
+
+  void Finish() {
+    for (auto& [slot, program] : by_slot_) {
+      if (program.content().empty() && large_.contains(slot)) messages_.programs.emplace_back(slot, large_[slot]);
+      *assignment_.add_programs() = std::move(program);
+    }
+  }
+
+ private:
+  v1::WorkerAssignment& assignment_;
+  AssignmentMessages& messages_;
+  std::map<int, v1::AssignedProgram> by_slot_;
+  std::map<int, std::shared_ptr<const std::string>> large_;
+  std::size_t inline_total_ = 0;
+};
+
+}  // namespace
+
+Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& config,
+                                          const storage::LeasedJob& leased) {
+  const auto machine = store.GetMachine(leased.job.machine);
+  if (!machine) return machine.error();
+  AssignmentMessages messages;
+  v1::WorkerAssignment& assignment = *messages.first.mutable_assignment();
+  v1::Job& job = *assignment.mutable_job();
+  if (!job.ParseFromString(leased.job.specification)) {
+    return Error{ErrorCode::kCellStoreCorrupt, "the specification of " + JobName(leased.job.id), {}};
+  }
+  job.set_name(JobName(leased.job.id));
+  assignment.set_family(machine->family);
+  assignment.set_profile(machine->profile);
+  for (const auto& [name, value] : machine->parameters) (*assignment.mutable_parameters())[name] = value;
+  assignment.set_machine_state(machine->state);
+  *assignment.mutable_budget() = BudgetOf(job.budget(), config);
+
+  // The attached bytes count for the program that is started: its slot may have been stored again.
+  const auto attached = [&](std::string_view name) -> Result<std::string> {
+    const auto artifact = store.GetArtifact(leased.job.id, name);
+    if (!artifact) return artifact.error();
+    return store.ReadBlob(artifact->sha256);
+  };
+  Result<std::string> main_bytes = attached(kMainAttachment);
+  if (!main_bytes) return main_bytes.error();
+
+  ProgramsOfAssignment programs(assignment, messages);
+  int main_slot = job.inline_slot() > 0 ? job.inline_slot() : 1;
+  const bool stored_main = job.program_source_case() == v1::Job::kProgram;
+  if (stored_main) {
+    const auto name = ParseProgramName(job.program());
+    if (!name) return name.error();
+    main_slot = name->slot;
+  }
+  std::string main_title;
+  std::optional<std::string> main_executable;
+  const machine::MachineFamily* family = simulation::FindFamily(machine->family);
+  // A mill runs one stream; only a family whose programs call each other needs the whole memory.
+  if (family != nullptr && family->info().has_executables && job.kind() != v1::JOB_KIND_CHECK) {
+    auto memory = store.GetProgramMemory(leased.job.machine);
+    if (!memory) return memory.error();
+    for (storage::ProgramRecord& program : *memory) {
+      if (program.slot == main_slot && stored_main && program.object == *main_bytes) {
+        main_title = program.name;
+        main_executable = std::move(program.executable);
+        messages.object_revisions[program.slot] = program.revision;
+      } else if (program.slot != main_slot) {
+        messages.object_revisions[program.slot] = program.revision;
+        programs.Add(program.slot, program.name, {}, std::move(program.object), false, program.executable);
+      }
+    }
+  }
+  const std::string file_name = stored_main ? std::string() : job.inline_program().file_name();
+  const bool is_source = !stored_main && job.inline_program().form() != v1::PROGRAM_FORM_OBJECT;
+  programs.Add(main_slot, main_title, file_name, std::move(*main_bytes), is_source, main_executable);
+  for (const v1::SlotProgram& further : job.simulation().programs()) {
+    Result<std::string> bytes = attached(AttachmentName(further.slot()));
+    if (!bytes) return bytes.error();
+    messages.object_revisions.erase(further.slot());
+    programs.Add(further.slot(), {}, further.program().file_name(), std::move(*bytes),
+                 further.program().form() != v1::PROGRAM_FORM_OBJECT, std::nullopt);
+  }
+  programs.Finish();
+  assignment.set_main_program(main_slot);
+
+  const auto schedules = store.ListSchedules(leased.job.machine);
+  if (!schedules) return schedules.error();
+  assignment.set_default_schedules(schedules->empty());
+  for (const storage::ScheduleRecord& schedule : *schedules) {
+    v1::AssignedSchedule& made = *assignment.add_schedules();
+    made.set_number(schedule.number);
+    made.set_title(schedule.name);
+    made.set_mode(schedule.mode);
+    made.set_power_percent(schedule.power_percent);
+  }
+  return messages;
+}
+
+}  // namespace rmlcell::server

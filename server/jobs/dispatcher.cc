@@ -1,0 +1,452 @@
+#include "server/jobs/dispatcher.h"
+
+#include <spdlog/spdlog.h>
+
+#include "proto/bridge/findings.h"
+#include "server/config.h"
+#include "server/events/event_feed.h"
+#include "server/executor.h"
+#include "server/jobs/assignment.h"
+#include "server/jobs/job_messages.h"
+#include "server/names.h"
+#include "server/version.h"
+
+namespace rmlcell::server {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Events that a worker may send before the first of them is durable.
+constexpr int kEventsWindow = 256;
+
+bool SameLease(const storage::Lease& lease, const v1::WorkerLease& other) {
+  return lease.job == other.job() && lease.attempt == other.attempt() && lease.fence == other.fence();
+}
+
+v1::WorkerLease ToProto(const storage::Lease& lease) {
+  v1::WorkerLease message;
+  message.set_job(lease.job);
+  message.set_attempt(lease.attempt);
+  message.set_fence(lease.fence);
+  return message;
+}
+
+v1::WorkResponse ControlMessage(const storage::Lease& lease, v1::WorkerControl::Kind kind, double value) {
+  v1::WorkResponse message;
+  v1::WorkerControl& control = *message.mutable_control();
+  *control.mutable_lease() = ToProto(lease);
+  control.set_kind(kind);
+  control.set_value(value);
+  return message;
+}
+
+}  // namespace
+
+// What a worker is at. Touched only by work posted for this worker, which runs in order.
+struct Dispatcher::Assignment {
+  storage::Lease lease;
+  Clock::time_point renewed_at;
+  std::map<std::string, storage::NewArtifact> artifacts;
+  std::int64_t collected_bytes = 0;
+  bool over_budget = false;
+  std::map<int, storage::Revision> object_revisions;  // of the programs of its memory
+  std::string machine;
+  std::shared_ptr<std::atomic<std::int64_t>> events_stored = std::make_shared<std::atomic<std::int64_t>>(0);
+};
+
+struct Dispatcher::Worker {
+  WorkerId id = 0;
+  std::string name;
+  std::shared_ptr<WorkerLine> line;
+  std::vector<std::string> kinds;
+  std::optional<Assignment> assignment;
+
+  // Guarded by Dispatcher::mutex_.
+  std::deque<std::function<void()>> queue;
+  bool working = false;
+  bool gone = false;
+  bool idle = true;
+  std::int64_t job = 0;               // 0: none; for Control
+  std::optional<storage::Lease> lease;  // the same, for Control
+};
+
+Dispatcher::Dispatcher(storage::Store& store, EventFeed& feed, const Config& config, Executor& executor,
+                       std::string join_token)
+    : store_(store), feed_(feed), config_(config), executor_(executor), join_token_(std::move(join_token)) {
+  store_watch_ = store_.Watch([this] { WakeIdle(); });
+  sweeper_ = std::jthread([this](const std::stop_token& stop) { SweepLeases(stop); });
+}
+
+Dispatcher::~Dispatcher() {
+  store_watch_.reset();
+  sweeper_.request_stop();
+  changed_.notify_all();
+}
+
+Result<Dispatcher::WorkerId> Dispatcher::Join(std::shared_ptr<WorkerLine> line, const v1::WorkerHello& hello) {
+  if (hello.join_token() != join_token_) return Error{ErrorCode::kCellJoinRefused, {}, {}};
+  if (hello.version() != kVersion) {
+    return Error{ErrorCode::kCellVersionMismatch,
+                 "the worker is " + hello.version() + ", the server " + std::string(kVersion), {}};
+  }
+  auto worker = std::make_shared<Worker>();
+  worker->name = hello.worker();
+  worker->line = std::move(line);
+  for (const int kind : hello.kinds()) {
+    if (kind == v1::JOB_KIND_CHECK) worker->kinds.emplace_back("CHECK");
+    if (kind == v1::JOB_KIND_SIMULATE) worker->kinds.emplace_back("SIMULATE");
+  }
+  v1::WorkResponse message;
+  message.mutable_welcome()->set_lease_ms(config_.workers_lease_ms);
+  message.mutable_welcome()->set_events_window(kEventsWindow);
+  worker->line->Send(std::move(message));
+  {
+    const std::lock_guard lock(mutex_);
+    worker->id = next_worker_++;
+    workers_.emplace(worker->id, worker);
+  }
+  spdlog::info("worker {} joined (process {})", worker->name, hello.process_id());
+  Post(worker, [this, worker] { Assign(worker); });
+  return worker->id;
+}
+
+std::shared_ptr<Dispatcher::Worker> Dispatcher::Find(WorkerId id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = workers_.find(id);
+  return found == workers_.end() ? nullptr : found->second;
+}
+
+void Dispatcher::Receive(WorkerId id, v1::WorkRequest message) {
+  const std::shared_ptr<Worker> worker = Find(id);
+  if (worker == nullptr) return;
+  auto shared = std::make_shared<v1::WorkRequest>(std::move(message));
+  Post(worker, [this, worker, shared] { Handle(worker, *shared); });
+}
+
+void Dispatcher::Leave(WorkerId id) {
+  std::shared_ptr<Worker> worker;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = workers_.find(id);
+    if (found == workers_.end()) return;
+    worker = found->second;
+    worker->gone = true;
+    workers_.erase(found);
+  }
+  Post(worker, [this, worker] {
+    if (worker->assignment) {
+      spdlog::warn("worker {} is gone in the middle of {}", worker->name, JobName(worker->assignment->lease.job));
+      Lose(worker->assignment->lease);
+      feed_.ForgetProgress(worker->assignment->lease.job);
+      worker->assignment.reset();
+    }
+    changed_.notify_all();
+    WakeIdle();
+  });
+}
+
+int Dispatcher::workers() const {
+  const std::lock_guard lock(mutex_);
+  return static_cast<int>(workers_.size());
+}
+
+// Runs `work` after everything posted for this worker before, never two at once.
+void Dispatcher::Post(const std::shared_ptr<Worker>& worker, std::function<void()> work) {
+  {
+    const std::lock_guard lock(mutex_);
+    worker->queue.push_back(std::move(work));
+    if (worker->working) return;
+    worker->working = true;
+  }
+  executor_.Post([this, worker] {
+    for (;;) {
+      std::function<void()> next;
+      {
+        const std::lock_guard lock(mutex_);
+        if (worker->queue.empty()) {
+          worker->working = false;
+          return;
+        }
+        next = std::move(worker->queue.front());
+        worker->queue.pop_front();
+      }
+      next();
+    }
+  });
+}
+
+void Dispatcher::WakeIdle() {
+  if (draining_) return;
+  std::vector<std::shared_ptr<Worker>> idle;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, worker] : workers_) {
+      // A worker with work in its queue looks for a job by itself when it has come to the end of it.
+      if (worker->idle && !worker->working) idle.push_back(worker);
+    }
+  }
+  for (const auto& worker : idle) {
+    Post(worker, [this, worker] { Assign(worker); });
+  }
+}
+
+void Dispatcher::Assign(const std::shared_ptr<Worker>& worker) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (worker->gone || draining_) return;
+  }
+  if (worker->assignment) return;
+  const auto leased = store_.Acquire(worker->name, worker->kinds,
+                                     std::chrono::milliseconds(config_.workers_lease_ms),
+                                     {StateEvent(storage::JobState::kRunning)});
+  if (!leased) {
+    spdlog::error("no job could be leased: {}", bridge::ErrorText(leased.error()));
+    return;
+  }
+  if (!leased->has_value()) return;
+  const storage::LeasedJob& job = **leased;
+  worker->assignment.emplace();
+  worker->assignment->lease = job.lease;
+  worker->assignment->renewed_at = Clock::now();
+  worker->assignment->machine = job.job.machine;
+  {
+    const std::lock_guard lock(mutex_);
+    worker->idle = false;
+    worker->job = job.lease.job;
+    worker->lease = job.lease;
+  }
+  spdlog::debug("{} attempt {} goes to worker {}", JobName(job.lease.job), job.lease.attempt, worker->name);
+  if (const Status sent = SendAssignment(*worker, job); !sent) {
+    // The job itself cannot be worked on: it fails, and the worker is free for the next.
+    const v1::Outcome outcome = ToProto(storage::JobOutcome{
+        .state = storage::JobState::kFailed, .code = sent.error().code, .detail = sent.error().detail});
+    (void)store_.Finish(job.lease, OutcomeOf(outcome), {}, {EndedEvent(outcome)});
+    EndAssignment(*worker, false);
+    Post(worker, [this, worker] { Assign(worker); });
+  }
+}
+
+Status Dispatcher::SendAssignment(Worker& worker, const storage::LeasedJob& leased) {
+  Result<AssignmentMessages> made = MakeAssignment(store_, config_, leased);
+  if (!made) return made.error();
+  *made->first.mutable_assignment()->mutable_lease() = ToProto(leased.lease);
+  worker.assignment->object_revisions = std::move(made->object_revisions);
+  worker.line->Send(std::move(made->first));
+  for (auto& [slot, bytes] : made->programs) worker.line->SendProgram(slot, std::move(bytes));
+  return {};
+}
+
+void Dispatcher::Handle(const std::shared_ptr<Worker>& worker, v1::WorkRequest& message) {
+  const auto holds = [&](const v1::WorkerLease& lease) {
+    return worker->assignment && SameLease(worker->assignment->lease, lease);
+  };
+  switch (message.message_case()) {
+    case v1::WorkRequest::kHeartbeat:
+      if (holds(message.heartbeat().lease())) Heartbeat(*worker, message.heartbeat());
+      break;
+    case v1::WorkRequest::kEvents:
+      if (holds(message.events().lease())) AppendEvents(*worker, message.events());
+      break;
+    case v1::WorkRequest::kArtifact:
+      if (holds(message.artifact().lease())) Collect(*worker, *message.mutable_artifact());
+      break;
+    case v1::WorkRequest::kFinish:
+      if (!holds(message.finish().lease())) break;
+      Finish(*worker, *message.mutable_finish());
+      Assign(worker);
+      break;
+    case v1::WorkRequest::kHandBack:
+      if (!holds(message.hand_back().lease())) break;
+      (void)store_.HandBack(worker->assignment->lease, {StateEvent(storage::JobState::kQueued)});
+      EndAssignment(*worker, false);
+      Assign(worker);
+      break;
+    case v1::WorkRequest::kHello:
+    case v1::WorkRequest::MESSAGE_NOT_SET: break;
+  }
+}
+
+void Dispatcher::Heartbeat(Worker& worker, const v1::WorkerHeartbeat& heartbeat) {
+  Assignment& assignment = *worker.assignment;
+  if (heartbeat.has_progress()) {
+    v1::JobProgress progress = heartbeat.progress();
+    progress.set_job(JobName(assignment.lease.job));
+    progress.set_attempt(assignment.lease.attempt);
+    feed_.PublishProgress(assignment.lease.job, progress.SerializeAsString());
+  }
+  const auto third = std::chrono::milliseconds(config_.workers_lease_ms / 3);
+  if (Clock::now() - assignment.renewed_at < third) return;
+  assignment.renewed_at = Clock::now();
+  const auto renewed = store_.Renew(assignment.lease, std::chrono::milliseconds(config_.workers_lease_ms));
+  if (renewed) {
+    // Another server may have been asked to cancel it.
+    if (renewed->cancel_requested) {
+      worker.line->Send(ControlMessage(assignment.lease, v1::WorkerControl::KIND_CANCEL, 0.0));
+    }
+  } else if (renewed.error().code == ErrorCode::kCellLeaseLost) {
+    spdlog::warn("worker {} lost its lease of {}", worker.name, JobName(assignment.lease.job));
+    EndAssignment(worker, false);
+  }
+}
+
+void Dispatcher::AppendEvents(Worker& worker, const v1::WorkerEvents& events) {
+  std::vector<storage::NewEvent> records;
+  records.reserve(static_cast<std::size_t>(events.events_size()));
+  for (const v1::JobEvent& event : events.events()) records.push_back(ToRecord(event));
+  const auto count = static_cast<std::int64_t>(records.size());
+  const storage::Lease lease = worker.assignment->lease;
+  store_.Append(lease, std::move(records),
+                [line = worker.line, lease, count, stored = worker.assignment->events_stored](
+                    const Result<std::int64_t>& written) {
+                  if (!written) {
+                    spdlog::warn("events of {}: {}", JobName(lease.job), bridge::ErrorText(written.error()));
+                    return;
+                  }
+                  v1::WorkResponse message;
+                  *message.mutable_events_stored()->mutable_lease() = ToProto(lease);
+                  message.mutable_events_stored()->set_count(stored->fetch_add(count) + count);
+                  line->Send(std::move(message));
+                });
+}
+
+void Dispatcher::Collect(Worker& worker, v1::WorkerArtifact& artifact) {
+  Assignment& assignment = *worker.assignment;
+  assignment.collected_bytes += static_cast<std::int64_t>(artifact.chunk().size());
+  // The worker keeps to the job's budget; this bound holds against a worker that does not.
+  if (assignment.collected_bytes > config_.limit_output_bytes + (1 << 20)) {
+    assignment.over_budget = true;
+    assignment.artifacts.clear();
+    return;
+  }
+  storage::NewArtifact& made = assignment.artifacts[artifact.name()];
+  made.name = artifact.name();
+  made.media_type = artifact.media_type();
+  made.bytes += artifact.chunk();
+}
+
+void Dispatcher::Finish(Worker& worker, v1::WorkerFinish& finish) {
+  Assignment& assignment = *worker.assignment;
+  if (assignment.over_budget) {
+    *finish.mutable_outcome() = ToProto(storage::JobOutcome{.state = storage::JobState::kFailed,
+                                                            .code = ErrorCode::kCellOutputBudget,
+                                                            .detail = {}});
+  }
+  std::vector<storage::NewArtifact> artifacts;
+  for (auto& [name, artifact] : assignment.artifacts) artifacts.push_back(std::move(artifact));
+  const storage::Lease lease = assignment.lease;
+  const auto finished =
+      store_.Finish(lease, OutcomeOf(finish.outcome()), artifacts, {EndedEvent(finish.outcome())});
+  if (!finished) {
+    spdlog::warn("{} of worker {}: {}", JobName(lease.job), worker.name, bridge::ErrorText(finished.error()));
+    // A full disk must not leave the job without an owner until its lease runs out.
+    if (finished.error().code != ErrorCode::kCellLeaseLost) Lose(lease);
+  } else {
+    spdlog::info("{} {} {}", JobName(lease.job), v1::Job::State_Name(ToProto(finished->state)),
+                 finish.outcome().code());
+  }
+  for (const auto& [slot, executable] : finish.executables()) {
+    const auto revision = assignment.object_revisions.find(slot);
+    if (revision == assignment.object_revisions.end()) continue;
+    (void)store_.PutExecutable(assignment.machine, slot, revision->second, executable);
+  }
+  EndAssignment(worker, finished.has_value());
+}
+
+void Dispatcher::EndAssignment(Worker& worker, bool stored) {
+  v1::WorkResponse message;
+  *message.mutable_release()->mutable_lease() = ToProto(worker.assignment->lease);
+  message.mutable_release()->set_stored(stored);
+  worker.line->Send(std::move(message));
+  feed_.ForgetProgress(worker.assignment->lease.job);
+  worker.assignment.reset();
+  {
+    const std::lock_guard lock(mutex_);
+    worker.idle = true;
+    worker.job = 0;
+    worker.lease.reset();
+  }
+  changed_.notify_all();
+}
+
+storage::LossPolicy Dispatcher::PolicyForLoss(const std::string& why) const {
+  v1::JobEvent lost;
+  lost.set_message(why);
+  const storage::JobOutcome outcome = WorkerDiedOutcome();
+  return {.outcome = outcome,
+          .requeued = {ToRecord(lost), StateEvent(storage::JobState::kQueued)},
+          .ended = {ToRecord(lost), EndedEvent(ToProto(outcome))}};
+}
+
+void Dispatcher::Lose(const storage::Lease& lease) {
+  const auto changed = store_.Abandon(lease, PolicyForLoss("the worker of attempt " +
+                                                           std::to_string(lease.attempt) + " died"));
+  if (!changed && changed.error().code != ErrorCode::kCellLeaseLost) {
+    spdlog::error("{} could not be given back: {}", JobName(lease.job), bridge::ErrorText(changed.error()));
+  }
+}
+
+void Dispatcher::SweepLeases(const std::stop_token& stop) {
+  const auto interval = std::chrono::milliseconds(config_.workers_lease_ms / 2);
+  while (!stop.stop_requested()) {
+    const auto expired = store_.Expire(PolicyForLoss("the lease of its worker ran out"));
+    if (!expired) {
+      spdlog::error("leases could not be looked at: {}", bridge::ErrorText(expired.error()));
+    } else {
+      for (const storage::JobRecord& job : *expired) spdlog::warn("the lease of {} ran out", JobName(job.id));
+    }
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, stop, interval, [] { return false; });
+  }
+}
+
+Status Dispatcher::Control(std::int64_t job, v1::WorkerControl::Kind kind, double value) {
+  std::shared_ptr<WorkerLine> line;
+  std::optional<storage::Lease> lease;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, worker] : workers_) {
+      if (worker->job == job) {
+        line = worker->line;
+        lease = worker->lease;
+      }
+    }
+  }
+  if (line != nullptr && lease) {
+    line->Send(ControlMessage(*lease, kind, value));
+    return {};
+  }
+  const auto record = store_.GetJob(job);
+  if (!record) return record.error();
+  return Error{ErrorCode::kCellPrecondition, JobName(job) + " does not run", {}};
+}
+
+Result<storage::JobRecord> Dispatcher::Cancel(std::int64_t job) {
+  const v1::Outcome outcome = ToProto(storage::JobOutcome{
+      .state = storage::JobState::kCancelled, .code = ErrorCode::kCellCancelled, .detail = {}});
+  auto cancelled = store_.RequestCancel(job, {EndedEvent(outcome)});
+  if (cancelled && cancelled->state == storage::JobState::kRunning) {
+    // When the worker finishes at this moment there is nobody to tell, and nothing to do.
+    (void)Control(job, v1::WorkerControl::KIND_CANCEL, 0.0);
+  }
+  return cancelled;
+}
+
+void Dispatcher::Drain(std::chrono::milliseconds patience) {
+  draining_ = true;
+  std::vector<std::shared_ptr<Worker>> all;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, worker] : workers_) all.push_back(worker);
+  }
+  for (const auto& worker : all) {
+    v1::WorkResponse message;
+    message.mutable_stop()->set_reason("the server stops");
+    worker->line->Send(std::move(message));
+  }
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, patience, [this] {
+    return std::ranges::all_of(workers_, [](const auto& row) { return row.second->idle; });
+  });
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "rmlcell/v1/worker.pb.h"
+#include "storage/store.h"
+
+namespace rmlcell::server {
+
+class EventFeed;
+class Executor;
+struct Config;
+
+// The line to one worker, as the dispatcher sees it: no gRPC here. Never blocks; after Close nothing is sent.
+class WorkerLine {
+ public:
+  virtual ~WorkerLine() = default;
+  virtual void Send(v1::WorkResponse message) = 0;
+  // The bytes of one program, cut into messages as the line takes them.
+  virtual void SendProgram(int slot, std::shared_ptr<const std::string> bytes) = 0;
+  virtual void Close(const Error& why) = 0;
+};
+
+// Leases jobs to workers, takes their events and results, and sees to it that no job is lost with its
+// worker (design.md section 3, steps 3 to 9). A lease is held by one worker; what a worker sends after it
+// lost its lease is refused by the fence.
+//
+// Thread-safe; calls from the lines return at once: messages of one worker are worked through in order on
+// the executor. Lock order: mutex_ is a leaf.
+class Dispatcher {
+ public:
+  Dispatcher(storage::Store& store, EventFeed& feed, const Config& config, Executor& executor,
+             std::string join_token);
+  ~Dispatcher();
+  Dispatcher(const Dispatcher&) = delete;
+  Dispatcher& operator=(const Dispatcher&) = delete;
+
+  using WorkerId = std::int64_t;
+  // Errors: CellJoinRefused, CellVersionMismatch.
+  Result<WorkerId> Join(std::shared_ptr<WorkerLine> line, const v1::WorkerHello& hello);
+  void Receive(WorkerId worker, v1::WorkRequest message);
+  void Leave(WorkerId worker);  // the line is gone: its job is attempted again by its policy
+
+  // Orders for a job that runs. CellPrecondition when no worker of this server has it.
+  Status Control(std::int64_t job, v1::WorkerControl::Kind kind, double value);
+
+  // Ends a job: at once when it waits, else through its worker.
+  Result<storage::JobRecord> Cancel(std::int64_t job);
+
+  // Gives out no more work and asks for what is under way to be handed back. Returns when that is done, or
+  // after `patience`.
+  void Drain(std::chrono::milliseconds patience);
+
+  int workers() const;
+
+ private:
+  struct Worker;
+  struct Assignment;
+
+  void Post(const std::shared_ptr<Worker>& worker, std::function<void()> work);
+  void WakeIdle();
+  void Assign(const std::shared_ptr<Worker>& worker);
+  Status SendAssignment(Worker& worker, const storage::LeasedJob& leased);
+  void Handle(const std::shared_ptr<Worker>& worker, v1::WorkRequest& message);
+  void Heartbeat(Worker& worker, const v1::WorkerHeartbeat& heartbeat);
+  void AppendEvents(Worker& worker, const v1::WorkerEvents& events);
+  void Collect(Worker& worker, v1::WorkerArtifact& artifact);
+  void Finish(Worker& worker, v1::WorkerFinish& finish);
+  void EndAssignment(Worker& worker, bool stored);
+  void Lose(const storage::Lease& lease);
+  void SweepLeases(const std::stop_token& stop);
+  storage::LossPolicy PolicyForLoss(const std::string& why) const;
+  std::shared_ptr<Worker> Find(WorkerId id) const;
+
+  storage::Store& store_;
+  EventFeed& feed_;
+  const Config& config_;
+  Executor& executor_;
+  std::string join_token_;
+  std::atomic<bool> draining_ = false;
+
+  mutable std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::map<WorkerId, std::shared_ptr<Worker>> workers_;
+  WorkerId next_worker_ = 1;
+  std::unique_ptr<storage::Store::Subscription> store_watch_;
+  std::jthread sweeper_;
+};
+
+}  // namespace rmlcell::server

@@ -1,0 +1,281 @@
+#include "server/jobs/job_book.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/number_text.h"
+#include "engine/core/units.h"
+#include "engine/simulation/families.h"
+#include "server/config.h"
+#include "server/jobs/job_filter.h"
+#include "server/jobs/job_messages.h"
+#include "server/names.h"
+
+namespace rmlcell::server {
+namespace {
+
+constexpr int kPageDefault = 50;
+constexpr int kPageMax = 1000;
+constexpr int kSnapshotJobs = 200;
+constexpr std::size_t kTitleMax = 200;
+constexpr std::size_t kRequestIdMax = 64;
+constexpr double kOverrideMax = 145.0;
+
+Error Invalid(const std::string& detail) { return {ErrorCode::kCellInvalidArgument, detail, {}}; }
+
+std::string_view KindName(v1::JobKind kind) {
+  switch (kind) {
+    case v1::JOB_KIND_CHECK: return "CHECK";
+    case v1::JOB_KIND_SIMULATE: return "SIMULATE";
+    case v1::JOB_KIND_RUN: return "RUN";
+    default: return "";
+  }
+}
+
+Status CheckBudget(const v1::Budget& budget) {
+  if (budget.steps() < 0) return Invalid("job.budget.steps is below 0");
+  if (budget.memory_bytes() < 0) return Invalid("job.budget.memory_bytes is below 0");
+  if (budget.output_bytes() < 0) return Invalid("job.budget.output_bytes is below 0");
+  if (!(budget.virtual_time_s() >= 0.0)) return Invalid("job.budget.virtual_time_s is below 0");
+  if (!(budget.processor_s() >= 0.0)) return Invalid("job.budget.processor_s is below 0");
+  return {};
+}
+
+Status CheckStepPlace(const v1::StepPlace& place, const std::string& field) {
+  if (place.program() != 0 && !IsSlot(place.program())) {
+    return Error{ErrorCode::kProgramNumber, field + ".program is " + std::to_string(place.program()), {}};
+  }
+  if (place.step() < 1) return Invalid(field + ".step is below 1");
+  return {};
+}
+
+Status CheckSimulation(const v1::SimulationOptions& options) {
+  const double override_percent = options.override_percent();
+  if (!(override_percent >= 0.0 && override_percent <= kOverrideMax)) {
+    return Invalid("job.simulation.override_percent is " + ShortestText(override_percent) +
+                   ", allowed are above 0 to 145");
+  }
+  if (!(options.toolpath_tolerance_mm() >= 0.0 && options.toolpath_tolerance_mm() <= 100.0)) {
+    return Invalid("job.simulation.toolpath_tolerance_mm: allowed are 0 to 100");
+  }
+  if (options.has_breakpoint()) {
+    const Status valid = CheckStepPlace(options.breakpoint(), "job.simulation.breakpoint");
+    if (!valid) return valid;
+  }
+  if (options.has_simul()) {
+    const Status valid = CheckStepPlace(options.simul(), "job.simulation.simul");
+    if (!valid) return valid;
+  }
+  for (const v1::ScriptedInput& input : options.inputs()) {
+    if (!(input.at_s() >= 0.0 && std::isfinite(input.at_s()))) {
+      return Invalid("job.simulation.inputs: at_s must be 0 or later");
+    }
+    if (input.kind() == v1::ScriptedInput::KIND_UNSPECIFIED || !v1::ScriptedInput::Kind_IsValid(input.kind())) {
+      return Invalid("job.simulation.inputs: kind is not given");
+    }
+    if (input.index() < 0 || input.index() > 99) return Invalid("job.simulation.inputs: index is 0 to 99");
+  }
+  for (const v1::SlotProgram& program : options.programs()) {
+    if (!IsSlot(program.slot())) {
+      return Error{ErrorCode::kProgramNumber, "job.simulation.programs: slot is " + std::to_string(program.slot()), {}};
+    }
+    if (program.program().content().empty()) {
+      return Error{ErrorCode::kCellEmptyProgram, "program for slot " + std::to_string(program.slot()), {}};
+    }
+  }
+  return {};
+}
+
+// Two requests of one request_id must ask for the same. FNV-1a, since only equality matters.
+std::string HashOf(const std::string& text) {
+  std::uint64_t hash = 0xCBF29CE484222325U;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3U;
+  return std::to_string(hash);
+}
+
+}  // namespace
+
+std::string AttachmentName(int slot) { return "program-" + std::to_string(slot); }
+
+Status JobBook::AttachProgram(const v1::Job& job, const storage::MachineRecord& machine, storage::NewJob& made,
+                              v1::Job& specification) {
+  const machine::MachineFamily* family = simulation::FindFamily(machine.family);
+  if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine.family, {}};
+  switch (job.program_source_case()) {
+    case v1::Job::kInlineProgram: {
+      if (job.inline_program().content().empty()) return Error{ErrorCode::kCellEmptyProgram, {}, {}};
+      if (job.inline_slot() != 0 && !IsSlot(job.inline_slot())) {
+        return Error{ErrorCode::kProgramNumber, "job.inline_slot is " + std::to_string(job.inline_slot()), {}};
+      }
+      const machine::MachineFamily* named = simulation::FamilyOfFileName(job.inline_program().file_name());
+      if (named != nullptr && named != family) {
+        return Invalid(job.inline_program().file_name() + " is a program for " + std::string(named->info().title) +
+                       ", machines/" + machine.id + " is of family " + machine.family);
+      }
+      made.attachments.push_back({std::string(kMainAttachment), "application/octet-stream",
+                                  job.inline_program().content(), {}});
+      specification.mutable_inline_program()->clear_content();
+      return {};
+    }
+    case v1::Job::kProgram: {
+      const Result<ProgramName> name = ParseProgramName(job.program());
+      if (!name) return name.error();
+      if (name->machine != machine.id) return Invalid("job.program is not a program of job.machine");
+      if (name->executable) return Error{ErrorCode::kProgramNumber, "an executable is started by its object", {}};
+      const auto found = store_.ListPrograms(machine.id, name->slot - 1, 1);
+      if (!found) return found.error();
+      if (found->empty() || found->front().slot != name->slot) {
+        return Error{ErrorCode::kProgramMissing, NameOfProgram(machine.id, name->slot), {}};
+      }
+      made.attachments.push_back(
+          {std::string(kMainAttachment), "application/octet-stream", {}, found->front().object_sha256});
+      return {};
+    }
+    case v1::Job::PROGRAM_SOURCE_NOT_SET: break;
+  }
+  return Invalid("job.program or job.inline_program is missing");
+}
+
+Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, const std::string& caller) {
+  const v1::Job& job = request.job();
+  const std::string_view kind = KindName(job.kind());
+  if (kind.empty()) return Invalid("job.kind is missing: CHECK or SIMULATE");
+  if (job.kind() == v1::JOB_KIND_RUN) {
+    return Error{ErrorCode::kCellUnimplemented, "jobs of kind RUN", {}};
+  }
+  if (request.request_id().size() > kRequestIdMax) return Invalid("request_id is longer than 64 characters");
+  if (job.title().size() > kTitleMax) return Invalid("job.title is longer than 200 characters");
+  if (job.attempts_max() < 0 || job.attempts_max() > 10) return Invalid("job.attempts_max: allowed are 1 to 10");
+  if (Status valid = CheckBudget(job.budget()); !valid) return valid.error();
+  if (Status valid = CheckSimulation(job.simulation()); !valid) return valid.error();
+
+  const Result<std::string> machine_id = ParseMachineName(job.machine());
+  if (!machine_id) return machine_id.error();
+  const Result<storage::MachineRecord> machine = store_.GetMachine(*machine_id);
+  if (!machine) return machine.error();
+
+  storage::NewJob made{.request_id = request.request_id(),
+                       .request_hash = request.request_id().empty() ? "" : HashOf(job.SerializeAsString()),
+                       .machine = *machine_id,
+                       .kind = std::string(kind),
+                       .title = job.title(),
+                       .caller = caller,
+                       .specification = {},
+                       .attempts_max = job.attempts_max() > 0 ? job.attempts_max()
+                                                              : static_cast<int>(config_.jobs_attempts),
+                       .attachments = {},
+                       .events = {StateEvent(storage::JobState::kQueued)}};
+  v1::Job specification = job;
+  if (Status attached = AttachProgram(job, *machine, made, specification); !attached) return attached.error();
+  const machine::MachineFamily& family = *simulation::FindFamily(machine->family);
+  machine::Parameters parameters(family.parameters());
+  for (const auto& [name, value] : job.simulation().parameters()) {
+    if (Status set = parameters.Set(name, std::string_view(value)); !set) return set.error();
+  }
+  for (v1::SlotProgram& program : *specification.mutable_simulation()->mutable_programs()) {
+    made.attachments.push_back({AttachmentName(program.slot()), "application/octet-stream",
+                                std::move(*program.mutable_program()->mutable_content()), {}});
+    program.mutable_program()->clear_content();
+  }
+  if (!job.has_simulation()) specification.clear_simulation();
+  made.specification = specification.SerializeAsString();
+  return made;
+}
+
+void JobBook::Submit(const v1::SubmitJobRequest& request, const std::string& caller,
+                     std::function<void(Result<v1::Job>)> done) {
+  Result<storage::NewJob> made = Prepare(request, caller);
+  if (!made) return done(made.error());
+  if (request.validate_only()) {
+    v1::Job job = request.job();
+    job.clear_name();
+    return done(std::move(job));
+  }
+  const Result<storage::JobCounts> counts = store_.CountJobs();
+  if (!counts) return done(counts.error());
+  if (counts->queued >= config_.jobs_queued_max) {
+    return done(Error{ErrorCode::kCellResourceExhausted,
+                      std::to_string(counts->queued) + " jobs wait (jobs.queued_max)", {}});
+  }
+  store_.Submit(std::move(*made), [done = std::move(done)](const Result<storage::SubmittedJob>& submitted) {
+    if (!submitted) return done(submitted.error());
+    done(ToProto(submitted->job));
+  });
+}
+
+Result<v1::Job> JobBook::Get(std::string_view name) {
+  const Result<std::int64_t> id = ParseJobName(name);
+  if (!id) return id.error();
+  const Result<storage::JobRecord> record = store_.GetJob(*id);
+  if (!record) return record.error();
+  v1::Job job = ToProto(*record);
+  const auto artifacts = store_.ListArtifacts(*id);
+  if (!artifacts) return artifacts.error();
+  for (const storage::ArtifactRecord& artifact : *artifacts) *job.add_artifacts() = ToProto(artifact);
+  return job;
+}
+
+Result<v1::ListJobsResponse> JobBook::List(const v1::ListJobsRequest& request) {
+  storage::JobQuery query;
+  if (request.page_size() < 0) return Invalid("page_size is below 0");
+  const int size = request.page_size() == 0 ? kPageDefault : std::min(request.page_size(), kPageMax);
+  query.limit = size + 1;  // one more tells whether there is a next page
+  if (Status applied = ApplyFilter(request.filter(), query); !applied) return applied.error();
+  if (!request.page_token().empty()) {
+    const auto before = ParseInteger(request.page_token());
+    if (!before || *before <= 0) return Error{ErrorCode::kCellBadPageToken, {}, {}};
+    query.before_id = *before;
+  }
+  const Result<std::vector<storage::JobRecord>> records = store_.ListJobs(query);
+  if (!records) return records.error();
+  v1::ListJobsResponse response;
+  for (const storage::JobRecord& record : *records) {
+    if (response.jobs_size() == size) {
+      response.set_next_page_token(std::to_string((*records)[static_cast<std::size_t>(size) - 1].id));
+      break;
+    }
+    *response.add_jobs() = ToProto(record);
+  }
+  return response;
+}
+
+Result<storage::ArtifactRecord> JobBook::FindArtifact(std::int64_t job, std::string_view name) {
+  Result<storage::ArtifactRecord> artifact = store_.GetArtifact(job, name);
+  if (artifact || artifact.error().code != ErrorCode::kCellNotFound) return artifact;
+  const Result<storage::JobRecord> record = store_.GetJob(job);
+  if (!record) return record.error();
+  if (!storage::IsFinal(record->state)) {
+    return Error{ErrorCode::kCellPrecondition,
+                 JobName(job) + " has not ended: its " + std::string(name) + " is made at its end", {}};
+  }
+  return Error{ErrorCode::kCellNotFound, JobName(job) + " has no " + std::string(name), {}};
+}
+
+Result<std::string> JobBook::ReadArtifact(std::int64_t job, std::string_view name) {
+  const Result<storage::ArtifactRecord> artifact = FindArtifact(job, name);
+  if (!artifact) return artifact.error();
+  return store_.ReadBlob(artifact->sha256);
+}
+
+Result<v1::CellSnapshot> JobBook::Snapshot() {
+  // The position first: what happens between the reads is then told twice, never left out.
+  const Result<std::int64_t> position = store_.LastPosition();
+  if (!position) return position.error();
+  v1::CellSnapshot snapshot;
+  snapshot.set_sequence(*position);
+  for (const bool finished : {false, true}) {
+    storage::JobQuery query;
+    query.finished = finished;
+    query.limit = kSnapshotJobs - snapshot.jobs_size();
+    if (query.limit <= 0) break;
+    const Result<std::vector<storage::JobRecord>> records = store_.ListJobs(query);
+    if (!records) return records.error();
+    for (const storage::JobRecord& record : *records) *snapshot.add_jobs() = ToProto(record);
+  }
+  std::ranges::sort(*snapshot.mutable_jobs(), [](const v1::Job& a, const v1::Job& b) {
+    return *ParseJobName(a.name()) > *ParseJobName(b.name());
+  });
+  return snapshot;
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/core/result.h"
+#include "rmlcell/v1/job.pb.h"
+#include "storage/store.h"
+
+namespace rmlcell::server {
+
+struct Config;
+
+// Submission, lists and products of jobs. What runs them is the Dispatcher.
+// Thread-safe; reads block on the store.
+class JobBook {
+ public:
+  // `store` and `config` outlive this.
+  JobBook(storage::Store& store, const Config& config) : store_(store), config_(config) {}
+
+  // Checks everything that can be checked before work begins, makes the job durable, then calls `done`,
+  // from a thread of the store or before it returns. Bytes of programs are kept with the job, so that a
+  // slot that is stored again meanwhile changes nothing.
+  // Errors: CellInvalidArgument, CellUnknownMachine, ProgramNumber, ProgramMissing, CellEmptyProgram,
+  // CellParameterRange, CellUnimplemented (RUN), CellRequestIdReused, CellResourceExhausted.
+  void Submit(const v1::SubmitJobRequest& request, const std::string& caller,
+              std::function<void(Result<v1::Job>)> done);
+
+  Result<v1::Job> Get(std::string_view name);  // with artifacts
+  Result<v1::ListJobsResponse> List(const v1::ListJobsRequest& request);
+
+  // A product, and what is known of it. CellNotFound with what there is.
+  Result<storage::ArtifactRecord> FindArtifact(std::int64_t job, std::string_view name);
+  Result<std::string> ReadArtifact(std::int64_t job, std::string_view name);
+
+  // Unfinished jobs and the newest finished ones, for a watcher that begins.
+  Result<v1::CellSnapshot> Snapshot();
+
+ private:
+  Result<storage::NewJob> Prepare(const v1::SubmitJobRequest& request, const std::string& caller);
+  Status AttachProgram(const v1::Job& job, const storage::MachineRecord& machine, storage::NewJob& made,
+                       v1::Job& specification);
+
+  storage::Store& store_;
+  const Config& config_;
+};
+
+// The names under which the programs of a job are kept with it: "program" for the one that is started,
+// "program-46" for a further one.
+std::string AttachmentName(int slot);
+inline constexpr std::string_view kMainAttachment = "program";
+
+}  // namespace rmlcell::server

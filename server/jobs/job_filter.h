@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string_view>
+
+#include "storage/store.h"
+
+namespace rmlcell::server {
+
+// "state = FAILED AND machine = machines/optimo-1": comparisons with "=" joined by AND, a subset of the
+// common filter grammar. Fields: state, machine, kind, caller, finished. Error: CellBadFilter.
+Status ApplyFilter(std::string_view filter, storage::JobQuery& query);
+
+}  // namespace rmlcell::server

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "rmlcell/v1/job.pb.h"
+#include "storage/records.h"
+
+// Between records of the store and messages of the API.
+namespace rmlcell::server {
+
+google::protobuf::Timestamp ToProto(storage::WallTime time);
+
+v1::Job::State ToProto(storage::JobState state);
+
+// The job without its artifacts.
+v1::Job ToProto(const storage::JobRecord& record);
+v1::Artifact ToProto(const storage::ArtifactRecord& record);
+
+// With sequence, job, attempt and time of the record.
+v1::JobEvent ToProto(const storage::EventRecord& record);
+
+// An event for the log; its kind follows from what it tells.
+storage::NewEvent ToRecord(const v1::JobEvent& event);
+storage::NewEvent StateEvent(storage::JobState state);
+storage::NewEvent EndedEvent(const v1::Outcome& outcome);
+
+// How a run ended, as the state of its job.
+storage::JobOutcome OutcomeOf(const v1::Outcome& outcome);
+v1::Outcome ToProto(const storage::JobOutcome& outcome);
+
+// The outcome of a job whose worker died once more than its policy allows.
+storage::JobOutcome WorkerDiedOutcome();
+
+}  // namespace rmlcell::server

@@ -1,0 +1,100 @@
+#include "server/names.h"
+
+#include <algorithm>
+
+#include "engine/core/number_text.h"
+#include "engine/core/units.h"
+
+namespace rmlcell::server {
+namespace {
+
+Error Malformed(std::string_view name, std::string_view expected) {
+  // A hostile name may be of any length and content; the error shows a readable beginning.
+  std::string shown(name.substr(0, 80));
+  std::ranges::replace_if(
+      shown, [](unsigned char c) { return c < 0x20 || c > 0x7E; }, '?');
+  return {ErrorCode::kCellInvalidArgument,
+          "name is '" + shown + "', expected is " + std::string(expected), {}};
+}
+
+// The part after "collection/", or nothing.
+std::optional<std::string_view> After(std::string_view name, std::string_view collection) {
+  if (!name.starts_with(collection)) return std::nullopt;
+  return name.substr(collection.size());
+}
+
+bool IsId(std::string_view id) {
+  if (id.empty() || id.size() > 63 || id.front() < 'a' || id.front() > 'z') return false;
+  return std::ranges::all_of(
+      id, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-'; });
+}
+
+}  // namespace
+
+Status CheckResourceId(std::string_view id, std::string_view field) {
+  if (IsId(id)) return {};
+  return Error{ErrorCode::kCellInvalidArgument,
+               std::string(field) + ": use 1 to 63 characters a-z, 0-9 and '-', beginning with a letter", {}};
+}
+
+Result<std::string> ParseMachineName(std::string_view name) {
+  const auto id = After(name, "machines/");
+  if (!id || !IsId(*id)) return Malformed(name, "machines/ID");
+  return std::string(*id);
+}
+
+Result<std::string> ParseProjectName(std::string_view name) {
+  const auto id = After(name, "projects/");
+  if (!id || !IsId(*id)) return Malformed(name, "projects/ID");
+  return std::string(*id);
+}
+
+Result<std::int64_t> ParseJobName(std::string_view name) {
+  const auto id = After(name, "jobs/");
+  const auto number = id ? ParseInteger(*id) : std::nullopt;
+  if (!number || *number <= 0) return Malformed(name, "jobs/NUMBER");
+  return std::int64_t{*number};
+}
+
+Result<ProgramName> ParseProgramName(std::string_view name) {
+  constexpr std::string_view kForm = "machines/ID/programs/NUMBER";
+  const std::size_t slash = name.find('/', name.find('/') + 1);
+  if (slash == std::string_view::npos) return Malformed(name, kForm);
+  const Result<std::string> machine = ParseMachineName(name.substr(0, slash));
+  const auto rest = After(name.substr(slash), "/programs/");
+  const auto number = rest ? ParseInteger(*rest) : std::nullopt;
+  if (!machine || !number) return Malformed(name, kForm);
+  if (*number >= kSlotMin + kExecutableOffset && *number <= kSlotMax + kExecutableOffset) {
+    return ProgramName{*machine, static_cast<int>(*number) - kExecutableOffset, true};
+  }
+  if (*number < kSlotMin || *number > kSlotMax) {
+    return Error{ErrorCode::kProgramNumber, "program number is " + std::to_string(*number), {}};
+  }
+  return ProgramName{*machine, static_cast<int>(*number), false};
+}
+
+Result<ScheduleName> ParseScheduleName(std::string_view name) {
+  constexpr std::string_view kForm = "machines/ID/laserSchedules/NUMBER";
+  const std::size_t slash = name.find('/', name.find('/') + 1);
+  if (slash == std::string_view::npos) return Malformed(name, kForm);
+  const Result<std::string> machine = ParseMachineName(name.substr(0, slash));
+  const auto rest = After(name.substr(slash), "/laserSchedules/");
+  const auto number = rest ? ParseInteger(*rest) : std::nullopt;
+  if (!machine || !number) return Malformed(name, kForm);
+  if (*number < 1 || *number > 63) {
+    return Error{ErrorCode::kScheduleRange, "laser schedule is " + std::to_string(*number), {}};
+  }
+  return ScheduleName{*machine, static_cast<int>(*number)};
+}
+
+std::string MachineName(std::string_view id) { return "machines/" + std::string(id); }
+std::string ProjectName(std::string_view id) { return "projects/" + std::string(id); }
+std::string JobName(std::int64_t id) { return "jobs/" + std::to_string(id); }
+std::string NameOfProgram(std::string_view machine, int slot) {
+  return MachineName(machine) + "/programs/" + std::to_string(slot);
+}
+std::string NameOfSchedule(std::string_view machine, int number) {
+  return MachineName(machine) + "/laserSchedules/" + std::to_string(number);
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "engine/core/result.h"
+
+// Resource names of the API (proto/rmlcell/v1). Errors: CellInvalidArgument with the form expected.
+namespace rmlcell::server {
+
+// 1 to 63 characters: a-z, 0-9, '-', beginning with a letter.
+Status CheckResourceId(std::string_view id, std::string_view field);
+
+Result<std::string> ParseMachineName(std::string_view name);  // "machines/optimo-1" -> "optimo-1"
+Result<std::string> ParseProjectName(std::string_view name);  // "projects/bracket"
+Result<std::int64_t> ParseJobName(std::string_view name);     // "jobs/17"
+
+// "machines/optimo-1/programs/45". Errors also: ProgramNumber (7101) for a number outside 1..99, and
+// outside 101..199 when executables are meant.
+struct ProgramName {
+  std::string machine;
+  int slot = 0;             // 1..99
+  bool executable = false;  // named as slot + 100
+};
+Result<ProgramName> ParseProgramName(std::string_view name);
+
+struct ScheduleName {
+  std::string machine;
+  int number = 0;  // 1..63
+};
+Result<ScheduleName> ParseScheduleName(std::string_view name);  // ".../laserSchedules/11"
+
+std::string MachineName(std::string_view id);
+std::string ProjectName(std::string_view id);
+std::string JobName(std::int64_t id);
+std::string NameOfProgram(std::string_view machine, int slot);
+std::string NameOfSchedule(std::string_view machine, int number);
+
+}  // namespace rmlcell::server

@@ -1,0 +1,54 @@
+#include "server/services/call.h"
+
+#include "google/rpc/status.pb.h"
+#include "proto/bridge/findings.h"
+
+namespace rmlcell::server {
+namespace {
+
+// gRPC sends details in a header, and clients take 8 KiB of headers: more findings are left out.
+constexpr std::size_t kDetailsMax = 6 << 10;
+
+}  // namespace
+
+grpc::Status ToGrpcStatus(const Error& error, const std::vector<Diagnostic>& diagnostics,
+                          std::uint64_t dropped) {
+  std::vector<Diagnostic> shown = diagnostics;
+  google::rpc::Status rich = bridge::ToRpcStatus(error, shown, dropped);
+  while (rich.ByteSizeLong() > kDetailsMax && !shown.empty()) {
+    const std::size_t keep = shown.size() / 2;
+    dropped += shown.size() - keep;
+    shown.resize(keep);
+    rich = bridge::ToRpcStatus(error, shown, dropped);
+  }
+  return {static_cast<grpc::StatusCode>(rich.code()), rich.message(), rich.SerializeAsString()};
+}
+
+Result<Caller> Admit(const Gate& gate, const grpc::ServerContextBase& context, std::string_view method) {
+  CallFacts facts{.method = std::string(method), .peer = context.peer(), .metadata = {}};
+  for (const auto& [key, value] : context.client_metadata()) {
+    facts.metadata.emplace(std::string(key.data(), key.size()), std::string(value.data(), value.size()));
+  }
+  return gate.Admit(facts);
+}
+
+void LogCall(std::string_view method, const Caller& caller, const grpc::Status& status,
+             std::chrono::steady_clock::duration took) {
+  const auto us = std::chrono::duration_cast<std::chrono::microseconds>(took).count();
+  if (status.ok()) {
+    spdlog::debug("{} ok in {} us, caller {} at {} request {}", method, us, caller.identity, caller.peer,
+                  caller.request_id);
+  } else {
+    spdlog::info("{} {} in {} us, caller {} at {} request {}: {}", method, static_cast<int>(status.error_code()),
+                 us, caller.identity, caller.peer, caller.request_id, status.error_message());
+  }
+}
+
+grpc::ServerUnaryReactor* NotYet(const CallRoom& room, grpc::CallbackServerContext* context,
+                                 std::string_view method) {
+  return Answer(room, context, method, [method = std::string(method)](const Caller&) {
+    return ToGrpcStatus(Error{ErrorCode::kCellUnimplemented, method, {}});
+  });
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <string>
+
+#include "rmlcell/v1/job.grpc.pb.h"
+#include "server/services/call.h"
+#include "server/services/pull_stream.h"
+
+namespace rmlcell::server {
+
+class Dispatcher;
+class EventFeed;
+class JobBook;
+
+// Converts, calls, converts: the rules live in server/jobs.
+class JobService final : public v1::JobService::CallbackService {
+ public:
+  JobService(CallRoom room, JobBook& book, Dispatcher& dispatcher, EventFeed& feed, OpenStreams& open,
+             std::string instance_id)
+      : room_(room), book_(book), dispatcher_(dispatcher), feed_(feed), open_(open),
+        instance_id_(std::move(instance_id)) {}
+
+  grpc::ServerUnaryReactor* SubmitJob(grpc::CallbackServerContext* context, const v1::SubmitJobRequest* request,
+                                      v1::Job* response) override;
+  grpc::ServerUnaryReactor* GetJob(grpc::CallbackServerContext* context, const v1::GetJobRequest* request,
+                                   v1::Job* response) override;
+  grpc::ServerUnaryReactor* ListJobs(grpc::CallbackServerContext* context, const v1::ListJobsRequest* request,
+                                     v1::ListJobsResponse* response) override;
+  grpc::ServerUnaryReactor* CancelJob(grpc::CallbackServerContext* context, const v1::CancelJobRequest* request,
+                                      v1::Job* response) override;
+  grpc::ServerUnaryReactor* HoldJob(grpc::CallbackServerContext* context, const v1::HoldJobRequest* request,
+                                    v1::Job* response) override;
+  grpc::ServerUnaryReactor* ResumeJob(grpc::CallbackServerContext* context, const v1::ResumeJobRequest* request,
+                                      v1::Job* response) override;
+  grpc::ServerUnaryReactor* SetJobOverride(grpc::CallbackServerContext* context,
+                                           const v1::SetJobOverrideRequest* request, v1::Job* response) override;
+  grpc::ServerWriteReactor<v1::WatchJobResponse>* WatchJob(grpc::CallbackServerContext* context,
+                                                           const v1::WatchJobRequest* request) override;
+  grpc::ServerWriteReactor<v1::WatchJobsResponse>* WatchJobs(grpc::CallbackServerContext* context,
+                                                             const v1::WatchJobsRequest* request) override;
+  grpc::ServerUnaryReactor* GetJobReport(grpc::CallbackServerContext* context,
+                                         const v1::GetJobReportRequest* request,
+                                         v1::RunReport* response) override;
+  grpc::ServerWriteReactor<v1::StreamJobToolpathResponse>* StreamJobToolpath(
+      grpc::CallbackServerContext* context, const v1::StreamJobToolpathRequest* request) override;
+  grpc::ServerUnaryReactor* GetJobPicture(grpc::CallbackServerContext* context,
+                                          const v1::GetJobPictureRequest* request,
+                                          v1::GetJobPictureResponse* response) override;
+  grpc::ServerWriteReactor<v1::StreamJobTraceResponse>* StreamJobTrace(
+      grpc::CallbackServerContext* context, const v1::StreamJobTraceRequest* request) override;
+
+ private:
+  grpc::ServerUnaryReactor* Order(grpc::CallbackServerContext* context, std::string_view method,
+                                  const std::string& name, int kind, double value,
+                                  v1::Job* response);
+
+  CallRoom room_;
+  JobBook& book_;
+  Dispatcher& dispatcher_;
+  EventFeed& feed_;
+  OpenStreams& open_;
+  std::string instance_id_;
+};
+
+}  // namespace rmlcell::server

@@ -1,0 +1,276 @@
+#include "server/services/job_streams.h"
+
+#include <algorithm>
+#include <deque>
+#include <set>
+
+#include "engine/core/number_text.h"
+#include "server/events/event_feed.h"
+#include "server/jobs/framing.h"
+#include "server/jobs/job_book.h"
+#include "server/jobs/job_messages.h"
+#include "server/names.h"
+
+namespace rmlcell::server {
+namespace {
+
+// Events read from the log at once; all that a watcher ever holds.
+constexpr int kReadAhead = 64;
+
+// A snapshot first, then the job's events in order, then positions while nothing else is to be told; the
+// end of the job ends the stream.
+class JobWatch final : public PullStream<v1::WatchJobResponse> {
+ public:
+  JobWatch(const JobStreamRoom& room, const v1::WatchJobRequest& request)
+      : PullStream(room.executor, room.open), room_(room), request_(request), cursor_(request.after_sequence()) {}
+
+ private:
+  Next Make(v1::WatchJobResponse& message, grpc::Status& status) override {
+    message.set_instance_id(room_.instance_id);
+    if (!begun_) {
+      begun_ = true;
+      return MakeSnapshot(message, status);
+    }
+    if (read_ahead_.empty() && !ReadEvents(status)) return Next::kEnd;
+    if (!read_ahead_.empty()) {
+      storage::EventRecord event = std::move(read_ahead_.front());
+      read_ahead_.pop_front();
+      cursor_ = event.sequence;
+      message.set_sequence(event.sequence);
+      *message.mutable_event() = ToProto(event);
+      ended_ = message.event().has_ended();
+      return Next::kMessage;
+    }
+    if (ended_ || Gone(status)) return Next::kEnd;
+    if (!request_.events_only()) {
+      if (const auto progress = room_.feed.ProgressAfter(job_, progress_seen_)) {
+        progress_seen_ = progress->version;
+        message.mutable_progress()->ParseFromString(*progress->bytes);
+        return Next::kMessage;
+      }
+    }
+    return Next::kNothing;
+  }
+
+  Next MakeSnapshot(v1::WatchJobResponse& message, grpc::Status& status) {
+    if (cursor_ < 0) {
+      status = ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument, "after_sequence is below 0", {}});
+      return Next::kEnd;
+    }
+    Result<v1::Job> job = room_.book.Get(request_.name());
+    if (!job) {
+      status = ToGrpcStatus(job.error());
+      return Next::kEnd;
+    }
+    job_ = *ParseJobName(request_.name());
+    // Subscribed before the log is read: what comes in between wakes us again.
+    subscription_ = room_.feed.Subscribe(job_, [this] { Wake(); });
+    final_sequence_ = job->has_end_time() ? job->last_sequence() : -1;
+    *message.mutable_snapshot() = std::move(*job);
+    return Next::kMessage;
+  }
+
+  bool ReadEvents(grpc::Status& status) {
+    auto events = room_.feed.JobEvents(job_, cursor_, kReadAhead);
+    if (!events) {
+      status = ToGrpcStatus(events.error());
+      return false;
+    }
+    for (storage::EventRecord& event : *events) read_ahead_.push_back(std::move(event));
+    return true;
+  }
+
+  // The job had ended before, and the client has its last event already.
+  bool Gone(grpc::Status&) const { return final_sequence_ >= 0 && cursor_ >= final_sequence_; }
+
+  bool MakeGoodbye(v1::WatchJobResponse& message) override {
+    message.set_instance_id(room_.instance_id);
+    message.set_reconnect("the server stops; watch again after sequence " + std::to_string(cursor_));
+    return true;
+  }
+
+  void Closed() override { subscription_.reset(); }
+
+  JobStreamRoom room_;
+  v1::WatchJobRequest request_;
+  std::int64_t cursor_;
+  std::int64_t job_ = 0;
+  std::int64_t final_sequence_ = -1;
+  std::uint64_t progress_seen_ = 0;
+  bool begun_ = false;
+  bool ended_ = false;
+  std::deque<storage::EventRecord> read_ahead_;
+  std::unique_ptr<EventFeed::Subscription> subscription_;
+};
+
+// The same for all jobs, or some: the sequence is the position in the log of the cell.
+class JobsWatch final : public PullStream<v1::WatchJobsResponse> {
+ public:
+  JobsWatch(const JobStreamRoom& room, const v1::WatchJobsRequest& request)
+      : PullStream(room.executor, room.open), room_(room), request_(request), cursor_(request.after_sequence()) {}
+
+ private:
+  Next Make(v1::WatchJobsResponse& message, grpc::Status& status) override {
+    message.set_instance_id(room_.instance_id);
+    if (!begun_) {
+      begun_ = true;
+      return MakeSnapshot(message, status);
+    }
+    for (;;) {
+      if (read_ahead_.empty()) {
+        auto events = room_.feed.EventsAfter(cursor_, kReadAhead);
+        if (!events) {
+          status = ToGrpcStatus(events.error());
+          return Next::kEnd;
+        }
+        for (storage::EventRecord& event : *events) read_ahead_.push_back(std::move(event));
+        if (read_ahead_.empty()) break;
+      }
+      storage::EventRecord event = std::move(read_ahead_.front());
+      read_ahead_.pop_front();
+      cursor_ = event.position;
+      if (!Wanted(event.job)) continue;
+      message.set_sequence(event.position);
+      *message.mutable_event() = ToProto(event);
+      return Next::kMessage;
+    }
+    if (!request_.events_only() && MakeProgress(message)) return Next::kMessage;
+    return Next::kNothing;
+  }
+
+  Next MakeSnapshot(v1::WatchJobsResponse& message, grpc::Status& status) {
+    for (const std::string& name : request_.names()) {
+      const Result<std::int64_t> id = ParseJobName(name);
+      if (!id) {
+        status = ToGrpcStatus(id.error());
+        return Next::kEnd;
+      }
+      jobs_.insert(*id);
+    }
+    subscription_ = room_.feed.Subscribe(std::nullopt, [this] { Wake(); });
+    Result<v1::CellSnapshot> snapshot = room_.book.Snapshot();
+    if (!snapshot) {
+      status = ToGrpcStatus(snapshot.error());
+      return Next::kEnd;
+    }
+    if (cursor_ <= 0 || cursor_ > snapshot->sequence()) cursor_ = snapshot->sequence();
+    *message.mutable_snapshot() = std::move(*snapshot);
+    return Next::kMessage;
+  }
+
+  bool Wanted(std::int64_t job) const { return jobs_.empty() || jobs_.contains(job); }
+
+  bool MakeProgress(v1::WatchJobsResponse& message) {
+    if (progress_.empty()) {
+      for (ProgressText& progress : room_.feed.AllProgressAfter(progress_seen_)) {
+        if (Wanted(progress.job)) progress_.push_back(std::move(progress));
+      }
+    }
+    if (progress_.empty()) return false;
+    progress_seen_ = progress_.front().version;
+    message.mutable_progress()->ParseFromString(*progress_.front().bytes);
+    progress_.pop_front();
+    return true;
+  }
+
+  bool MakeGoodbye(v1::WatchJobsResponse& message) override {
+    message.set_instance_id(room_.instance_id);
+    message.set_reconnect("the server stops; watch again after sequence " + std::to_string(cursor_));
+    return true;
+  }
+
+  void Closed() override { subscription_.reset(); }
+
+  JobStreamRoom room_;
+  v1::WatchJobsRequest request_;
+  std::int64_t cursor_;
+  std::uint64_t progress_seen_ = 0;
+  bool begun_ = false;
+  std::set<std::int64_t> jobs_;
+  std::deque<storage::EventRecord> read_ahead_;
+  std::deque<ProgressText> progress_;  // at most one per running job
+  std::unique_ptr<EventFeed::Subscription> subscription_;
+};
+
+// Products that are a series of frames (server/jobs/framing.h), some frames a message.
+template <class Response>
+class FramesStream : public PullStream<Response> {
+ public:
+  using typename PullStream<Response>::Next;
+  FramesStream(const JobStreamRoom& room, std::string job_name, std::string artifact)
+      : PullStream<Response>(room.executor, room.open), room_(room), job_name_(std::move(job_name)),
+        artifact_(std::move(artifact)) {}
+
+ protected:
+  // Adds one frame; false: the message is full with it.
+  virtual bool Add(std::string_view frame, Response& message) = 0;
+
+ private:
+  Next Make(Response& message, grpc::Status& status) override {
+    if (!begun_) {
+      begun_ = true;
+      const Result<std::int64_t> job = ParseJobName(job_name_);
+      Result<std::string> bytes = job ? room_.book.ReadArtifact(*job, artifact_) : Result<std::string>(job.error());
+      if (!bytes) {
+        status = ToGrpcStatus(bytes.error());
+        return Next::kEnd;
+      }
+      bytes_ = std::move(*bytes);
+      rest_ = bytes_;
+    }
+    bool any = false;
+    while (const auto frame = TakeFrame(rest_)) {
+      any = true;
+      if (!Add(*frame, message)) break;
+    }
+    return any ? Next::kMessage : Next::kEnd;
+  }
+
+  JobStreamRoom room_;
+  std::string job_name_;
+  std::string artifact_;
+  bool begun_ = false;
+  std::string bytes_;
+  std::string_view rest_;
+};
+
+class ToolpathStream final : public FramesStream<v1::StreamJobToolpathResponse> {
+  using FramesStream::FramesStream;
+  bool Add(std::string_view frame, v1::StreamJobToolpathResponse& message) override {
+    message.set_block(std::string(frame));
+    return false;
+  }
+};
+
+class TraceStream final : public FramesStream<v1::StreamJobTraceResponse> {
+  using FramesStream::FramesStream;
+  static constexpr int kRecordsPerMessage = 500;
+  bool Add(std::string_view frame, v1::StreamJobTraceResponse& message) override {
+    message.add_records()->ParseFromArray(frame.data(), static_cast<int>(frame.size()));
+    return message.records_size() < kRecordsPerMessage;
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<PullStream<v1::WatchJobResponse>> MakeJobWatch(const JobStreamRoom& room,
+                                                               const v1::WatchJobRequest& request) {
+  return std::make_shared<JobWatch>(room, request);
+}
+
+std::shared_ptr<PullStream<v1::WatchJobsResponse>> MakeJobsWatch(const JobStreamRoom& room,
+                                                                 const v1::WatchJobsRequest& request) {
+  return std::make_shared<JobsWatch>(room, request);
+}
+
+std::shared_ptr<PullStream<v1::StreamJobToolpathResponse>> MakeToolpathStream(const JobStreamRoom& room,
+                                                                              const std::string& job_name) {
+  return std::make_shared<ToolpathStream>(room, job_name, "toolpath");
+}
+
+std::shared_ptr<PullStream<v1::StreamJobTraceResponse>> MakeTraceStream(const JobStreamRoom& room,
+                                                                        const std::string& job_name) {
+  return std::make_shared<TraceStream>(room, job_name, "trace");
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "rmlcell/v1/job.pb.h"
+#include "server/services/pull_stream.h"
+
+namespace rmlcell::server {
+
+class EventFeed;
+class JobBook;
+
+// What a stream of jobs works with.
+struct JobStreamRoom {
+  Executor& executor;
+  OpenStreams& open;
+  JobBook& book;
+  EventFeed& feed;
+  std::string instance_id;
+};
+
+std::shared_ptr<PullStream<v1::WatchJobResponse>> MakeJobWatch(const JobStreamRoom& room,
+                                                               const v1::WatchJobRequest& request);
+std::shared_ptr<PullStream<v1::WatchJobsResponse>> MakeJobsWatch(const JobStreamRoom& room,
+                                                                 const v1::WatchJobsRequest& request);
+std::shared_ptr<PullStream<v1::StreamJobToolpathResponse>> MakeToolpathStream(const JobStreamRoom& room,
+                                                                              const std::string& job_name);
+std::shared_ptr<PullStream<v1::StreamJobTraceResponse>> MakeTraceStream(const JobStreamRoom& room,
+                                                                        const std::string& job_name);
+
+// A stream that ends at once, for calls that are refused.
+template <class Response>
+class RefusedStream final : public grpc::ServerWriteReactor<Response> {
+ public:
+  explicit RefusedStream(const grpc::Status& status) { this->Finish(status); }
+  void OnDone() override { delete this; }
+};
+
+}  // namespace rmlcell::server

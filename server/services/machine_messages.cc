@@ -1,0 +1,110 @@
+#include "server/services/machine_messages.h"
+
+#include <sstream>
+
+#include "engine/core/number_text.h"
+#include "engine/machine/family.h"
+#include "engine/simulation/families.h"
+#include "proto/bridge/setup.h"
+#include "server/jobs/job_messages.h"
+#include "server/names.h"
+
+namespace rmlcell::server {
+namespace {
+
+std::vector<std::string> Words(std::string_view text) {
+  std::vector<std::string> words;
+  std::istringstream stream{std::string(text)};
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+v1::ParameterInfo ToProto(const machine::ParameterInfo& info) {
+  v1::ParameterInfo message;
+  message.set_name(std::string(info.name));
+  message.set_unit(std::string(info.unit));
+  message.set_description(std::string(info.text));
+  if (info.choices.empty()) {
+    message.set_default_value(ShortestText(info.standard));
+    message.set_minimum(info.minimum);
+    message.set_maximum(info.maximum);
+  } else {
+    for (const std::string& word : Words(info.choices)) message.add_choices(word);
+    message.set_default_value(message.choices(0));
+  }
+  return message;
+}
+
+}  // namespace
+
+v1::Family ToProto(const machine::MachineFamily& family) {
+  const machine::FamilyInfo& info = family.info();
+  v1::Family message;
+  message.set_id(std::string(info.id));
+  message.set_title(std::string(info.title));
+  for (const std::string& extension : Words(info.extensions)) message.add_extensions(extension);
+  for (const std::string& axis : Words(info.axes)) message.add_axes(axis);
+  message.set_has_executables(info.has_executables);
+  message.set_has_schedules(info.has_schedules);
+  for (const machine::ParameterInfo& parameter : family.parameters()) *message.add_parameters() = ToProto(parameter);
+  for (const machine::MachineProfile& profile : family.profiles()) {
+    v1::MachineProfile& made = *message.add_profiles();
+    made.set_id(std::string(profile.id));
+    made.set_title(std::string(profile.title));
+    for (const machine::ParameterValue& value : profile.values) {
+      (*made.mutable_parameters())[std::string(value.name)] =
+          value.word.empty() ? ShortestText(value.number) : std::string(value.word);
+    }
+  }
+  return message;
+}
+
+v1::Machine ToProto(const storage::MachineRecord& record) {
+  v1::Machine message;
+  message.set_name(MachineName(record.id));
+  message.set_family(record.family);
+  message.set_title(record.title);
+  message.set_profile(record.profile);
+  for (const auto& [name, value] : record.parameters) (*message.mutable_parameters())[name] = value;
+  message.set_is_virtual(true);
+  message.mutable_state()->set_activity(v1::MachineState::ACTIVITY_IDLE);
+  message.set_etag(std::to_string(record.revision));
+  *message.mutable_create_time() = ToProto(record.created_at);
+  *message.mutable_update_time() = ToProto(record.updated_at);
+  return message;
+}
+
+v1::LaserSchedule ToProto(const storage::ScheduleRecord& record) {
+  v1::LaserSchedule message;
+  message.set_name(NameOfSchedule(record.machine, record.number));
+  message.set_title(record.name);
+  message.set_mode(record.mode);
+  message.set_power_percent(record.power_percent);
+  message.set_etag(std::to_string(record.revision));
+  return message;
+}
+
+Status CheckMachine(const storage::MachineRecord& machine) {
+  const machine::MachineFamily* family = simulation::FindFamily(machine.family);
+  if (family == nullptr) {
+    std::string known;
+    for (const machine::MachineFamily* one : simulation::Families()) known += " " + std::string(one->info().id);
+    return Error{ErrorCode::kCellUnknownFamily, "'" + machine.family + "'; there are" + known, {}};
+  }
+  if (machine.title.size() > 200) {
+    return Error{ErrorCode::kCellInvalidArgument, "title is longer than 200 characters", {}};
+  }
+  const auto parameters = bridge::MakeParameters(*family, machine.profile, machine.parameters);
+  if (!parameters) return parameters.error();
+  return {};
+}
+
+Result<storage::Revision> ParseEtag(const std::string& etag) {
+  if (etag.empty()) return storage::kAnyRevision;
+  if (etag == "none") return storage::Revision{0};
+  const auto revision = ParseInteger(etag);
+  if (!revision || *revision <= 0) return Error{ErrorCode::kCellEtagMismatch, "etag is not one of ours", {}};
+  return storage::Revision{*revision};
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,33 @@
+#include "server/services/pull_stream.h"
+
+namespace rmlcell::server {
+
+void OpenStreams::Add(Stream* stream) {
+  bool stopping = false;
+  {
+    const std::lock_guard lock(mutex_);
+    streams_.insert(stream);
+    stopping = stopping_;
+  }
+  if (stopping) stream->ServerStops();
+}
+
+void OpenStreams::Remove(Stream* stream) {
+  const std::lock_guard lock(mutex_);
+  streams_.erase(stream);
+}
+
+void OpenStreams::StopAll() {
+  // ServerStops does not block and does not come back here, so the lock can be held: it keeps a stream
+  // from going away in the middle.
+  const std::lock_guard lock(mutex_);
+  stopping_ = true;
+  for (Stream* stream : streams_) stream->ServerStops();
+}
+
+std::size_t OpenStreams::count() const {
+  const std::lock_guard lock(mutex_);
+  return streams_.size();
+}
+
+}  // namespace rmlcell::server
