@@ -77,7 +77,7 @@ class Crossings {
 
 // Seconds to whole nanoseconds with a given sum: rounding errors go to the greatest.
 template <std::size_t N>
-std::array<SimTime, N> Rounded(const std::array<CompensatedSum, N>& sums, SimTime total) {
+std::array<SimTime, N> Rounded(const std::array<motion::LongSum, N>& sums, SimTime total) {
   std::array<SimTime, N> times{};
   SimTime left = total;
   for (std::size_t i = 0; i < N; ++i) {
@@ -92,7 +92,7 @@ std::array<SimTime, N> Rounded(const std::array<CompensatedSum, N>& sums, SimTim
 
 double BeamWork::Moving(const motion::SpeedProfile& profile, double from_s, double to_s,
                         double tip_per_s, const machine::PowerBySpeed& power) {
-  CompensatedSum percent_s;
+  motion::LongSum percent_s;
   ForEachPhase(profile, from_s, to_s, [&](const PhasePart& part) {
     Crossings crossings(part);
     if (tip_per_s > 0.0) {

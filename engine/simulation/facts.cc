@@ -45,6 +45,7 @@ class Table {
     AddRun();
     AddTimes();
     AddWork();
+    AddCorners();
     AddPositions();
     AddBox("programmed", "", "points as the program wrote them", &RunReport::programmed);
     AddBox("tip", "mm", "tip", &RunReport::tip);
@@ -79,6 +80,7 @@ class Table {
   void AddRun();
   void AddTimes();
   void AddWork();
+  void AddCorners();
   void AddPositions();
   void AddPoint(const std::string& name, const std::string& unit, const std::string& text,
                 std::function<Vec3(const RunReport&)> point);
@@ -194,6 +196,27 @@ void Table::AddWork() {
       [](const RunReport& r) { return Real(r.energy_j_per_mm_max); });
   Add("feed_not_reached", "", "motions that never reached the feed rate asked for",
       [](const RunReport& r) { return Count(r.shortfall.moves); });
+}
+
+void Table::AddCorners() {
+  const auto count = [this](std::string key, std::string text,
+                            std::uint64_t CornerFigures::*figure) {
+    Add(std::move(key), "", std::move(text),
+        [figure](const RunReport& r) { return Count(r.corners.*figure); });
+  };
+  count("corners_stopped", "moves that ended in a stop", &CornerFigures::stops);
+  count("corners_stopped_with_fly", "moves with /FLY that ended in a stop, without settling",
+        &CornerFigures::stops_with_fly);
+  count("corners_reversed", "moves with /FLY at a turn of more than 175 degrees: a stop",
+        &CornerFigures::reversals);
+  count("corners_through", "moves that went straight on, or through the vertex of a polyline",
+        &CornerFigures::through);
+  count("corners_blended", "corners passed on a curve at the speed asked for",
+        &CornerFigures::blended);
+  count("corners_capped", "corners passed slower: a short neighbour or an axis",
+        &CornerFigures::capped);
+  Add("corners_deviation_max_mm", "mm", "largest distance of the path from a target",
+      [](const RunReport& r) { return Real(r.corners.deviation_mm_max); });
 }
 
 void Table::AddPoint(const std::string& name, const std::string& unit, const std::string& text,
