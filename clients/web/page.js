@@ -85,6 +85,10 @@ function takeSnapshot(snapshot) {
 function takeEvent(event) {
   const job = jobs.get(event.job);
   if (job && event.state) job.state = event.state;
+  if (job && event.ended) {
+    job.outcome = event.ended;
+    job.state = ENDED[event.ended.kind] ?? "STATE_FAILED";
+  }
   if (event.ended) progress.delete(event.job);
   if (!job || event.ended || (event.state && isFinished(event.state))) refresh(event.job);
   scheduleDraw();
@@ -147,6 +151,9 @@ const OUTCOMES = {
   KIND_BUDGET_EXCEEDED: "Needed more than its budget",
 };
 
+// Until the job itself is read again.
+const ENDED = { KIND_COMPLETED: "STATE_SUCCEEDED", KIND_STOPPED: "STATE_SUCCEEDED", KIND_CANCELLED: "STATE_CANCELLED" };
+
 const isFinished = (state) => state !== "STATE_QUEUED" && state !== "STATE_RUNNING";
 const lastPart = (name) => (name ?? "").split("/").pop();
 const numberOf = (job) => Number(lastPart(job.name)) || 0;
@@ -181,8 +188,9 @@ function timeTexts(job) {
   const date = new Date(begun);
   const today = date.toDateString() === new Date().toDateString();
   const shown = today ? date.toLocaleTimeString() : date.toLocaleDateString();
-  const took = job.startTime && job.endTime ? duration((new Date(job.endTime) - date) / 1000) : "";
-  return [shown, took && `took ${took}`, date.toLocaleString()];
+  let note = job.startTime ? "" : "submitted";
+  if (job.startTime && job.endTime) note = `took ${duration((new Date(job.endTime) - date) / 1000)}`;
+  return [shown, note, date.toLocaleString()];
 }
 
 // --- drawing --------------------------------------------------------------------------------------------

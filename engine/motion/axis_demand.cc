@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kSampleAngle_rad = 0.05;  // motion.md 5.1: at most this much turning per interval
 constexpr int kIntervalsMin = 16;
-constexpr int kIntervalsMax = 4096;  // 200 rad of turning: 16 turns of the widest head
+constexpr double kTurningMax_rad =
+    60.0;  // more than any travel: bounds will do, a search would last
 
 std::size_t At(int axis) { return static_cast<std::size_t>(axis); }
 
@@ -127,23 +128,33 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
   }
 
   if (!arc) {
-    // A short turn: the place in the middle, and how far the derivatives can get away from it.
-    // Within 1 %.
+    // A short turn: places in the middle of a few parts, and how far the derivatives can get away
+    // from them. Within 1 %.
     constexpr double kRoom = 0.004;
-    const double half = 0.5 * path.length();
+    constexpr std::size_t kPartsMax = 8;
     const double rate = std::abs(path.a_rate()) + std::abs(path.b_rate());
+    const double half = 0.5 * path.length();
     const double drift = half * head.arm_mm() * rate * rate;
-    if (drift <= kRoom * Norm(path.Tangent(0.0)) && half * rate <= kRoom) {
-      AxisDerivatives q = DerivativesAt(path, head, half);
-      for (std::size_t i = 0; i < 3; ++i) {
-        q.first[i] = std::abs(q.first[i]) + drift;
-        q.second[i] = std::abs(q.second[i]) + drift * rate;
+    const double wanted = std::ceil(std::max(drift / Norm(path.Tangent(0.0)), half * rate) / kRoom);
+    if (wanted <= static_cast<double>(kPartsMax)) {
+      const auto parts = static_cast<std::size_t>(std::max(wanted, 1.0));
+      const double share = 1.0 / static_cast<double>(parts);
+      std::array<AxisDerivatives, kPartsMax> at;
+      for (std::size_t k = 0; k < parts; ++k) {
+        AxisDerivatives& q = at[k];
+        q = DerivativesAt(path, head, path.length() * (static_cast<double>(k) + 0.5) * share);
+        for (std::size_t i = 0; i < 3; ++i) {
+          q.first[i] = std::abs(q.first[i]) + drift * share;
+          q.second[i] = std::abs(q.second[i]) + drift * share * rate;
+        }
+        limits.speed = std::min(limits.speed, SpeedAllowed(q, axes, shares));
+        if (std::isfinite(limits.jerk))
+          limits.jerk = std::min(limits.jerk, JerkAllowed(q, axes, shares));
       }
-      limits.speed = std::min(limits.speed, SpeedAllowed(q, axes, shares));
-      limits.acceleration =
-          std::min(limits.acceleration, AccelerationAllowed(q, axes, shares, limits.speed));
-      if (std::isfinite(limits.jerk))
-        limits.jerk = std::min(limits.jerk, JerkAllowed(q, axes, shares));
+      for (std::size_t k = 0; k < parts; ++k) {
+        limits.acceleration =
+            std::min(limits.acceleration, AccelerationAllowed(at[k], axes, shares, limits.speed));
+      }
       return limits;
     }
   }
@@ -151,9 +162,16 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
   const double turning = std::abs(path.to().a_rad - path.from().a_rad) +
                          std::abs(path.to().b_rad - path.from().b_rad) +
                          (arc ? path.sweep_rad() : 0.0);
-  const double wanted = std::ceil(turning / kSampleAngle_rad);
-  const int intervals = static_cast<int>(
-      std::clamp(wanted, static_cast<double>(kIntervalsMin), static_cast<double>(kIntervalsMax)));
+  if (!(turning <= kTurningMax_rad)) {
+    limits.speed = std::min(limits.speed, by_bound);
+    limits.acceleration =
+        std::min(limits.acceleration, AccelerationAllowed(bounds, axes, shares, limits.speed));
+    if (std::isfinite(limits.jerk))
+      limits.jerk = std::min(limits.jerk, JerkAllowed(bounds, axes, shares));
+    return limits;
+  }
+  const int intervals =
+      std::max(static_cast<int>(std::ceil(turning / kSampleAngle_rad)), kIntervalsMin);
   const auto least = [&](auto limit) {
     return LeastAlong([&](double s) { return limit(DerivativesAt(path, head, s)); }, path.length(),
                       intervals);

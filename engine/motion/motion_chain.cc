@@ -90,6 +90,9 @@ bool MotionChain::Join(const MoveCommand& move, const PathLimits& limits) {
     const Leg& leg = legs_.back();
     if (leg.last_move - leg.first_move < window_ / 2) return false;
     ++starved_;
+    CloseLeg(passage, corner, cap);
+    legs_.back().ends_run = true;
+    return true;
   }
   CloseLeg(passage, corner, cap);
   return true;
@@ -141,7 +144,11 @@ void MotionChain::Work() {
     speeds_.Settle();
     speeds_next_ = std::max(kBatchMin, 2 * open_knots(speeds_));
   }
-  if (open_knots(running_) + open_knots(speeds_) >= window_) Starve();
+  const Number decided = speeds_.final_count();
+  const Number oldest = decided < spans_.size() ? spans_[spans_.first() + decided].first_move
+                        : legs_.empty()         ? moves_.end()
+                                                : legs_.front().first_move;
+  if (moves_.end() - oldest >= window_) Starve();
 }
 
 void MotionChain::Starve() {
@@ -175,6 +182,10 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
   Leg& leg = legs_[number];
   const double wanted = running_.speed();
   const double total = run_length_ + leg.length;
+  if (!leg.ends_run && number - legs_.first() >= window_ / 2) {  // nor may a run fill it
+    leg.ends_run = true;
+    ++starved_;
+  }
   if (!leg.ends_run) {
     leg.cap = std::min(leg.cap, wanted);
     run_length_ = total;

@@ -11,10 +11,15 @@ namespace {
 // ACCEL below 0.1 % would take hours to arrive: "little or no motion" in the manual. motion.md 5.1.
 constexpr double kAccelerationFractionMin = 0.001;
 
-bool IsFinite(const TipPose& pose) {
-  return std::isfinite(pose.tip.x) && std::isfinite(pose.tip.y) && std::isfinite(pose.tip.z) &&
-         std::isfinite(pose.a_rad) && std::isfinite(pose.b_rad);
+// Lengths in mm or angles in rad that no machine can have would only overflow later.
+bool IsUsable(double value) { return std::abs(value) <= kLargest; }
+bool IsUsable(const TipPose& pose) {
+  return IsUsable(pose.tip.x) && IsUsable(pose.tip.y) && IsUsable(pose.tip.z) &&
+         IsUsable(pose.a_rad) && IsUsable(pose.b_rad);
 }
+
+// A motion of more than 30 years is one that never arrives.
+constexpr double kDurationMax_s = 1e9;
 
 // Moves too short to be made leave a gap between where the machine is and where the next move
 // believes it begins: a line begins where the machine is.
@@ -41,9 +46,8 @@ Planner::Planner(Planner&&) noexcept = default;
 Planner& Planner::operator=(Planner&&) noexcept = default;
 
 Status Planner::Append(const MoveCommand& move) {
-  if (!IsFinite(move.path.from()) || !IsFinite(move.path.to()) ||
-      !std::isfinite(move.path.length())) {
-    return Error{ErrorCode::kTargetOutOfTravel, "a coordinate is not a finite number", {}};
+  if (!IsUsable(move.path.from()) || !IsUsable(move.path.to()) || !IsUsable(move.path.length())) {
+    return Error{ErrorCode::kTargetOutOfTravel, "a coordinate is not a usable number", {}};
   }
   if (NeedsAnchor(move.path, chain_->end())) {
     MoveCommand anchored = move;
@@ -65,7 +69,8 @@ Status Planner::AppendChecked(const MoveCommand& move) {
                  {}};
   }
   const PathLimits limits = LimitsOf(move, chain_->machine());
-  if (!(limits.speed > 0.0) || !(limits.acceleration > 0.0) || !(limits.jerk > 0.0)) {
+  if (!(move.path.length() <= limits.speed * kDurationMax_s) || !(limits.speed > 0.0) ||
+      !(limits.acceleration > 0.0) || !(limits.jerk > 0.0)) {
     return Error{ErrorCode::kNoMotion, "the speed is too low to ever arrive", {}};
   }
   chain_->Append(move, limits);

@@ -10,11 +10,6 @@ namespace {
 constexpr std::array<std::string_view, motion::kAxisCount> kAxisNames = {"X", "Y", "Z", "A", "B"};
 constexpr std::size_t kFirstRotary = 3;
 
-CoordinateSweep Turned(double from, double to) {
-  const int sign = to > from ? 1 : to < from ? -1 : 0;
-  return {std::min(from, to), std::max(from, to), std::abs(to - from), 0, sign, sign};
-}
-
 }  // namespace
 
 void AxisLog::AddSweep(Axis& axis, const CoordinateSweep& sweep) {
@@ -30,8 +25,8 @@ void AxisLog::AddSweep(Axis& axis, const CoordinateSweep& sweep) {
 
 void AxisLog::Add(const Motion& motion) {
   for (std::size_t i = 0; i < kFirstRotary; ++i) AddSweep(axes_[i], motion.xyz[i]);
-  AddSweep(axes_[3], Turned(motion.from.a_rad, motion.to.a_rad));
-  AddSweep(axes_[4], Turned(motion.from.b_rad, motion.to.b_rad));
+  AddSweep(axes_[3], motion.ab[0]);
+  AddSweep(axes_[4], motion.ab[1]);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     axes_[i].peak_speed = std::max(axes_[i].peak_speed, motion.peaks.axis_speed[i]);
     axes_[i].peak_acceleration =

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "engine/machine/shape.h"
-#include "engine/simulation/compensated_sum.h"
+#include "engine/motion/trajectory.h"
 #include "engine/simulation/motion_peaks.h"
 #include "engine/simulation/path_extent.h"
 #include "engine/simulation/report.h"
@@ -16,9 +16,8 @@ class AxisLog {
   explicit AxisLog(const machine::MachineShape& shape) : shape_(shape) {}
 
   struct Motion {
-    const PointSweep& xyz;        // of the column of a gantry, else of the tip
-    const motion::TipPose& from;  // for the rotary axes
-    const motion::TipPose& to;
+    const PointSweep& xyz;  // of the column of a gantry, else of the tip
+    const std::array<CoordinateSweep, 2>& ab;
     const MotionPeaks& peaks;
     double tip_path_mm = 0.0;
   };
@@ -33,7 +32,7 @@ class AxisLog {
     bool seen = false;
     double minimum = 0.0;
     double maximum = 0.0;
-    CompensatedSum travel;
+    motion::LongSum travel;
     int last_sign = 0;
     std::uint64_t reversals = 0;
     double peak_speed = 0.0;
@@ -43,7 +42,7 @@ class AxisLog {
 
   machine::MachineShape shape_;
   std::array<Axis, motion::kAxisCount> axes_{};
-  CompensatedSum tip_path_;
+  motion::LongSum tip_path_;
   double tip_peak_speed_ = 0.0;
   double tip_peak_acceleration_ = 0.0;
 };

@@ -46,6 +46,13 @@ class Crossings {
     if (q != 0.0) Keep(c / q);
   }
 
+  // The values first + k * step for k in 0..count-1. Precondition: step > 0.
+  void AddGrid(double first, double step, int count) {
+    const double begin = std::max(0.0, std::ceil((low_ - first) / step));
+    const double end = std::min(count - 1.0, std::floor((high_ - first) / step));
+    for (double k = begin; k <= end; ++k) Add(first + step * k);
+  }
+
   // In order.
   std::span<const double> Sorted() {
     std::sort(times_.begin(), times_.begin() + static_cast<std::ptrdiff_t>(count_));
@@ -70,7 +77,7 @@ class Crossings {
 
 // Seconds to whole nanoseconds with a given sum: rounding errors go to the greatest.
 template <std::size_t N>
-std::array<SimTime, N> Rounded(const std::array<CompensatedSum, N>& sums, SimTime total) {
+std::array<SimTime, N> Rounded(const std::array<motion::LongSum, N>& sums, SimTime total) {
   std::array<SimTime, N> times{};
   SimTime left = total;
   for (std::size_t i = 0; i < N; ++i) {
@@ -85,19 +92,17 @@ std::array<SimTime, N> Rounded(const std::array<CompensatedSum, N>& sums, SimTim
 
 double BeamWork::Moving(const motion::SpeedProfile& profile, double from_s, double to_s,
                         double tip_per_s, const machine::PowerBySpeed& power) {
-  CompensatedSum percent_s;
+  motion::LongSum percent_s;
   ForEachPhase(profile, from_s, to_s, [&](const PhasePart& part) {
     Crossings crossings(part);
     if (tip_per_s > 0.0) {
-      for (int bin = 1; bin < kSpeedBins - 1; ++bin) {
-        crossings.Add(speed_max_ * kBin_percent / kFull_percent * bin / tip_per_s);
-      }
-      if (power.percent_per_mm_s != 0.0) {
-        for (int bin = 0; bin <= kPowerBins; ++bin) {
-          crossings.Add((kBin_percent * bin - power.constant_percent) / power.percent_per_mm_s /
-                        tip_per_s);
-        }
-      }
+      const double class_width = speed_max_ * kBin_percent / kFull_percent / tip_per_s;
+      if (class_width > 0.0) crossings.AddGrid(class_width, class_width, kSpeedBins - 2);
+      const double slope = power.percent_per_mm_s * tip_per_s;
+      const double width = kBin_percent / std::abs(slope);
+      const double zero = -power.constant_percent / slope;
+      if (slope > 0.0) crossings.AddGrid(zero, width, kPowerBins + 1);
+      if (slope < 0.0) crossings.AddGrid(zero - kPowerBins * width, width, kPowerBins + 1);
     }
     double begin = 0.0;
     const auto stretch = [&](double end) {

@@ -4,7 +4,7 @@
 
 #include "engine/core/units.h"
 #include "engine/machine/observer.h"
-#include "engine/simulation/compensated_sum.h"
+#include "engine/motion/trajectory.h"
 #include "engine/simulation/report.h"
 
 namespace rmlcell::simulation {
@@ -34,8 +34,8 @@ class BeamWork {
 
   double watts_;
   double speed_max_;
-  std::array<CompensatedSum, kSpeedBins> by_speed_{};
-  std::array<CompensatedSum, kPowerBins> by_power_{};
+  std::array<motion::LongSum, kSpeedBins> by_speed_{};
+  std::array<motion::LongSum, kPowerBins> by_power_{};
 };
 
 }  // namespace rmlcell::simulation

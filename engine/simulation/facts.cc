@@ -45,11 +45,12 @@ class Table {
     AddRun();
     AddTimes();
     AddWork();
+    AddCorners();
     AddPositions();
     AddBox("programmed", "", "points as the program wrote them", &RunReport::programmed);
-    AddBox("tip", "mm", "tip, machine frame", &RunReport::tip);
-    AddBox("cut", "mm", "tip while it cut, machine frame", &RunReport::cut);
-    AddBox("column", "mm", "column of a gantry; of a mill the tip", &RunReport::column);
+    AddBox("tip", "mm", "tip", &RunReport::tip);
+    AddBox("cut", "mm", "tip while it cut", &RunReport::cut);
+    AddBox("column", "mm", "column of a gantry, or the tip of a mill", &RunReport::column);
     AddAxes();
     AddFindings();
     AddProducts();
@@ -79,6 +80,7 @@ class Table {
   void AddRun();
   void AddTimes();
   void AddWork();
+  void AddCorners();
   void AddPositions();
   void AddPoint(const std::string& name, const std::string& unit, const std::string& text,
                 std::function<Vec3(const RunReport&)> point);
@@ -102,6 +104,13 @@ std::string Unit(std::string_view unit) {
   std::string suffix(unit.empty() ? "" : "_");
   suffix += unit;
   return suffix;
+}
+
+// "_x" -> "X of the ".
+std::string CoordinateName(std::string_view suffix) {
+  std::string name(1, static_cast<char>(suffix.back() - 'a' + 'A'));
+  name += " of the ";
+  return name;
 }
 
 void Table::AddRun() {
@@ -189,12 +198,33 @@ void Table::AddWork() {
       [](const RunReport& r) { return Count(r.shortfall.moves); });
 }
 
+void Table::AddCorners() {
+  const auto count = [this](std::string key, std::string text,
+                            std::uint64_t CornerFigures::*figure) {
+    Add(std::move(key), "", std::move(text),
+        [figure](const RunReport& r) { return Count(r.corners.*figure); });
+  };
+  count("corners_stopped", "moves that ended in a stop", &CornerFigures::stops);
+  count("corners_stopped_with_fly", "moves with /FLY that ended in a stop, without settling",
+        &CornerFigures::stops_with_fly);
+  count("corners_reversed", "moves with /FLY at a turn of more than 175 degrees: a stop",
+        &CornerFigures::reversals);
+  count("corners_through", "moves that went straight on, or through the vertex of a polyline",
+        &CornerFigures::through);
+  count("corners_blended", "corners passed on a curve at the speed asked for",
+        &CornerFigures::blended);
+  count("corners_capped", "corners passed slower: a short neighbour or an axis",
+        &CornerFigures::capped);
+  Add("corners_deviation_max_mm", "mm", "largest distance of the path from a target",
+      [](const RunReport& r) { return Real(r.corners.deviation_mm_max); });
+}
+
 void Table::AddPoint(const std::string& name, const std::string& unit, const std::string& text,
                      std::function<Vec3(const RunReport&)> point) {
   constexpr std::pair<const char*, double Vec3::*> kCoordinates[] = {
       {"_x", &Vec3::x}, {"_y", &Vec3::y}, {"_z", &Vec3::z}};
   for (const auto& [suffix, coordinate] : kCoordinates) {
-    Add(name + suffix + Unit(unit), unit, text,
+    Add(name + suffix + Unit(unit), unit, CoordinateName(suffix) + text,
         [point, coordinate = coordinate](const RunReport& r) {
           return Real(point(r).*coordinate);
         });
@@ -202,9 +232,9 @@ void Table::AddPoint(const std::string& name, const std::string& unit, const std
 }
 
 void Table::AddPositions() {
-  AddPoint("final_tip", "mm", "tip at the end, machine frame",
+  AddPoint("final_tip", "mm", "tip at the end",
            [](const RunReport& r) { return r.final_position.tip.tip; });
-  AddPoint("final_column", "mm", "column at the end; of a mill the tip",
+  AddPoint("final_column", "mm", "column at the end, or the tip of a mill",
            [](const RunReport& r) { return r.final_position.axes.column; });
   Add("final_a_rad", "rad", "A at the end; of a mill the rotary axis",
       [](const RunReport& r) { return Real(r.final_position.axes.a_rad); });
@@ -221,7 +251,7 @@ void Table::AddBox(const std::string& name, const std::string& unit, const std::
   for (const auto& [suffix, coordinate] : kCoordinates) {
     for (const bool low : {true, false}) {
       Add(name + suffix + (low ? "_min" : "_max") + Unit(unit), unit,
-          std::string(low ? "least: " : "greatest: ") + text,
+          (low ? "least " : "greatest ") + CoordinateName(suffix) + text,
           [box, low, coordinate = coordinate](const RunReport& r) {
             const machine::Box& b = r.*box;
             if (b.empty()) return std::string(kNone);
@@ -344,13 +374,14 @@ std::string FactsText(const RunReport& report) {
 std::string FactsPage() {
   std::string page =
       "# Facts of a run\n\n"
-      "`rmlcell simulate --facts` prints one `key: value` a line. Keys and units stand below and "
-      "never change\nmeaning; new keys may appear at any place, so look for the key and not for "
-      "the line. Numbers have up\nto six decimals and a point, in every locale; `none` means that "
-      "there is nothing to say. Lengths and\npositions are in the machine frame unless the key "
-      "says otherwise.\n\n"
-      "This page is made from the table in `engine/simulation/facts.cc` and the figures of the "
-      "machine\nfamilies; a test compares it.\n\n"
+      "`rmlcell simulate --facts` prints one `key: value` a line. Keys and units stand below and\n"
+      "never change meaning; new keys may appear at any place, so look for the key and not for "
+      "the\n"
+      "line. Numbers have up to six decimals and a point, in every locale; `none` means that "
+      "there\n"
+      "is nothing to say. Positions are in the machine frame unless the key says otherwise.\n\n"
+      "This page is made from the table in `engine/simulation/facts.cc` and the figures of the\n"
+      "machine families; a test compares it.\n\n"
       "| key | unit | meaning |\n| --- | --- | --- |\n";
   const auto row = [&page](std::string_view key, std::string_view unit, std::string_view text) {
     page += "| `";

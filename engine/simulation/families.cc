@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/optimo/control/optimo_family.h"
+#include "engine/rml1/rml1_family.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -29,6 +30,7 @@ std::string_view ExtensionOf(std::string_view name) {
 std::span<const machine::MachineFamily* const> Families() {
   static const std::vector<const machine::MachineFamily*> families = {
       &optimo::OptimoFamily(),
+      &rml1::Rml1Family(),
   };
   return families;
 }

@@ -4,12 +4,10 @@
 #include <cmath>
 
 #include "engine/core/units.h"
-#include "engine/motion/axis_demand.h"
 
 namespace rmlcell::simulation {
 namespace {
 
-using motion::Head;
 using motion::PathPiece;
 using motion::Vec3;
 
@@ -30,36 +28,26 @@ constexpr int kBisections = 40;  // halves an interval until the extreme is exac
 constexpr double kStanding = 1e-12;
 
 struct TurningPoints {
-  std::array<double, kTurningPointsMax> s{};
+  std::array<double, kTurningPointsMax> p{};
   std::size_t count = 0;
 
   void Add(double at) {
-    if (count < s.size()) s[count++] = at;
+    if (count < p.size()) p[count++] = at;
   }
 };
 
-double RotaryAngle(const PathPart& part) {
-  return (std::abs(part.path.a_rate()) + std::abs(part.path.b_rate())) * (part.to - part.from);
-}
-
-int Intervals(const PathPart& part) {
-  double angle = RotaryAngle(part);
-  if (part.path.kind() == PathPiece::Kind::kArc)
-    angle += (part.to - part.from) / part.path.radius_mm();
-  const double wanted = std::ceil(angle / kSampleAngle_rad);
+int Intervals(const PartCurve& curve) {
+  const double wanted = std::ceil(curve.turning_rad() / kSampleAngle_rad);
   return static_cast<int>(std::clamp(wanted, double{kIntervalsMin}, double{kIntervalsMax}));
 }
 
-// A straight way between two points.
+CoordinateSweep Straight(double from, double to) {
+  const int sign = to > from ? 1 : to < from ? -1 : 0;
+  return {std::min(from, to), std::max(from, to), std::abs(to - from), 0, sign, sign};
+}
+
 PointSweep Straight(const Vec3& from, const Vec3& to) {
-  PointSweep sweep;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double a = from.*kCoordinates[i];
-    const double b = to.*kCoordinates[i];
-    const int sign = b > a ? 1 : b < a ? -1 : 0;
-    sweep[i] = {std::min(a, b), std::max(a, b), std::abs(b - a), 0, sign, sign};
-  }
-  return sweep;
+  return {Straight(from.x, to.x), Straight(from.y, to.y), Straight(from.z, to.z)};
 }
 
 // Arcs have closed forms: the derivative of a coordinate is t cos x + c sin x.
@@ -81,39 +69,38 @@ TurningPoints ArcTurns(const PathPart& part, double Vec3::*coordinate) {
 
 // Everything else: sign changes of the derivative, bisected.
 template <class Rate>
-TurningPoints SampledTurns(const PathPart& part, double Vec3::*coordinate, Rate rate) {
+TurningPoints SampledTurns(const PartCurve& curve, Rate rate) {
   TurningPoints turning;
-  const int intervals = Intervals(part);
-  const double step = (part.to - part.from) / intervals;
-  double s = part.from;
-  double here = rate(s).*coordinate;
+  const int intervals = Intervals(curve);
+  const double step = (curve.end() - curve.begin()) / intervals;
+  double p = curve.begin();
+  double here = rate(p);
   for (int k = 1; k <= intervals; ++k) {
-    const double next_s = k == intervals ? part.to : part.from + step * k;
-    const double next = rate(next_s).*coordinate;
+    const double next_p = k == intervals ? curve.end() : curve.begin() + step * k;
+    const double next = rate(next_p);
     if ((here < 0.0 && next > 0.0) || (here > 0.0 && next < 0.0)) {
-      double low = s;
-      double high = next_s;
+      double low = p;
+      double high = next_p;
       for (int i = 0; i < kBisections; ++i) {
         const double middle = 0.5 * (low + high);
-        const double value = rate(middle).*coordinate;
-        ((value > 0.0) == (here > 0.0) ? low : high) = middle;
+        ((rate(middle) > 0.0) == (here > 0.0) ? low : high) = middle;
       }
       turning.Add(0.5 * (low + high));
     }
-    s = next_s;
+    p = next_p;
     if (next != 0.0) here = next;
   }
   return turning;
 }
 
-template <class Position>
-CoordinateSweep SweepOver(const PathPart& part, const TurningPoints& turning,
-                          double Vec3::*coordinate, Position position) {
+// From `begin` over the turning points to `end`.
+template <class Value>
+CoordinateSweep SweepOver(double begin, const TurningPoints& turning, double end, Value value) {
   CoordinateSweep sweep;
-  double last = position(part.from).*coordinate;
+  double last = value(begin);
   sweep.minimum = sweep.maximum = last;
   for (std::size_t k = 0; k <= turning.count; ++k) {
-    const double next = position(k < turning.count ? turning.s[k] : part.to).*coordinate;
+    const double next = value(k < turning.count ? turning.p[k] : end);
     const int sign = next > last ? 1 : next < last ? -1 : 0;
     if (sign != 0) {
       if (sweep.first_sign == 0) sweep.first_sign = sign;
@@ -129,19 +116,25 @@ CoordinateSweep SweepOver(const PathPart& part, const TurningPoints& turning,
 }
 
 template <class Position, class Rate>
-PointSweep Curved(const PathPart& part, bool plain_arc, Position position, Rate rate) {
+PointSweep Sampled(const PartCurve& curve, Position position, Rate rate) {
   PointSweep sweep;
   for (std::size_t i = 0; i < 3; ++i) {
+    double Vec3::*const coordinate = kCoordinates[i];
     const TurningPoints turning =
-        plain_arc ? ArcTurns(part, kCoordinates[i]) : SampledTurns(part, kCoordinates[i], rate);
-    sweep[i] = SweepOver(part, turning, kCoordinates[i], position);
+        SampledTurns(curve, [&](double p) { return rate(p).*coordinate; });
+    sweep[i] = SweepOver(curve.begin(), turning, curve.end(),
+                         [&](double p) { return position(p).*coordinate; });
   }
   return sweep;
 }
 
-Vec3 ColumnAt(const PathPiece& path, const Head& head, double s) {
-  const motion::TipPose pose = path.At(s);
-  return path.kind() == PathPiece::Kind::kJoint ? pose.tip : head.ColumnOf(pose).column;
+PointSweep ArcSweep(const PathPart& part) {
+  PointSweep sweep;
+  for (std::size_t i = 0; i < 3; ++i) {
+    sweep[i] = SweepOver(part.from, ArcTurns(part, kCoordinates[i]), part.to,
+                         [&](double s) { return part.path.At(s).tip.*kCoordinates[i]; });
+  }
+  return sweep;
 }
 
 }  // namespace
@@ -153,54 +146,49 @@ machine::Box BoxOf(const PointSweep& sweep) {
   return box;
 }
 
-bool Turns(const PathPiece& path) { return path.a_rate() != 0.0 || path.b_rate() != 0.0; }
-
-Vec3 TipAt(const PathPiece& path, const Head& head, double s) {
-  const motion::TipPose pose = path.At(s);
-  if (path.kind() != PathPiece::Kind::kJoint) return pose.tip;
-  return head.TipOf({pose.tip, pose.a_rad, pose.b_rad}).tip;
-}
-
-Vec3 TipRate(const PathPiece& path, const Head& head, double s) {
-  if (path.kind() == PathPiece::Kind::kRotary) return {};
-  const Vec3 rate = path.Tangent(s);
-  if (path.kind() != PathPiece::Kind::kJoint) return rate;
-  const motion::TipPose pose = path.At(s);
-  const motion::AxisValues swing =
-      motion::AxisRates(head, pose.a_rad, pose.b_rad, {{}, path.a_rate(), path.b_rate()});
-  return rate - Vec3{swing[0], swing[1], swing[2]};
-}
-
 PointSweep TipSweep(const PathPart& part) {
-  const PathPiece& path = part.path;
-  const auto position = [&](double s) { return TipAt(path, part.head, s); };
-  switch (path.kind()) {
-    case PathPiece::Kind::kLine:
-    case PathPiece::Kind::kRotary:
-      return Straight(position(part.from), position(part.to));
-    case PathPiece::Kind::kJoint:
-      if (!Turns(path)) return Straight(position(part.from), position(part.to));
-      break;
-    case PathPiece::Kind::kArc:
-    case PathPiece::Kind::kBlend:
-      break;
+  const PathPiece::Kind kind = part.path.kind();
+  if (kind == PathPiece::Kind::kArc) return ArcSweep(part);
+  const bool bows = kind == PathPiece::Kind::kJoint && Turns(part.path);
+  if (!bows && kind != PathPiece::Kind::kBlend) {
+    return Straight(TipAt(part.path, part.head, part.from), TipAt(part.path, part.head, part.to));
   }
-  return Curved(part, path.kind() == PathPiece::Kind::kArc, position,
-                [&](double s) { return TipRate(path, part.head, s); });
+  const PartCurve curve(part);
+  return Sampled(
+      curve, [&](double p) { return curve.Tip(p); }, [&](double p) { return curve.TipRate(p); });
 }
 
 PointSweep ColumnSweep(const PathPart& part) {
   const PathPiece& path = part.path;
-  const auto position = [&](double s) { return ColumnAt(path, part.head, s); };
-  const bool joint = path.kind() == PathPiece::Kind::kJoint;
-  if (joint || (path.kind() == PathPiece::Kind::kLine && !Turns(path))) {
-    return Straight(position(part.from), position(part.to));
+  if (path.kind() == PathPiece::Kind::kJoint) {
+    return Straight(path.At(part.from).tip, path.At(part.to).tip);
   }
-  return Curved(part, path.kind() == PathPiece::Kind::kArc && !Turns(path), position,
-                [&](double s) {
-                  const auto rate = motion::DerivativesAt(path, part.head, s).first;
-                  return Vec3{rate[0], rate[1], rate[2]};
-                });
+  if (!Turns(path)) {  // as the tip goes, somewhere above it
+    const Vec3 arm = part.head.ColumnOf(path.from()).column - path.from().tip;
+    PointSweep sweep = TipSweep(part);
+    for (std::size_t i = 0; i < 3; ++i) {
+      sweep[i].minimum += arm.*kCoordinates[i];
+      sweep[i].maximum += arm.*kCoordinates[i];
+    }
+    return sweep;
+  }
+  const PartCurve curve(part);
+  return Sampled(
+      curve, [&](double p) { return curve.Column(p); },
+      [&](double p) { return curve.ColumnRate(p); });
+}
+
+std::array<CoordinateSweep, 2> RotarySweep(const PathPart& part) {
+  if (part.path.kind() != PathPiece::Kind::kBlend || !Turns(part.path)) {
+    const motion::TipPose from = part.path.At(part.from);
+    const motion::TipPose to = part.path.At(part.to);
+    return {Straight(from.a_rad, to.a_rad), Straight(from.b_rad, to.b_rad)};
+  }
+  const PartCurve curve(part);
+  const TurningPoints a = SampledTurns(curve, [&](double p) { return curve.Rate(p).a; });
+  const TurningPoints b = SampledTurns(curve, [&](double p) { return curve.Rate(p).b; });
+  return {SweepOver(curve.begin(), a, curve.end(), [&](double p) { return curve.Pose(p).a_rad; }),
+          SweepOver(curve.begin(), b, curve.end(), [&](double p) { return curve.Pose(p).b_rad; })};
 }
 
 double TipLength(const PathPart& part) {
@@ -212,14 +200,13 @@ double TipLength(const PathPart& part) {
   // length, unless the tip all but stands somewhere.
   constexpr std::array kNodes = {0.0, 0.5384693101056831, 0.9061798459386640};
   constexpr std::array kWeights = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
-  const int panels = Intervals(part);
+  const PartCurve curve(part);
+  const int panels = Intervals(curve);
   const double half = 0.5 * (part.to - part.from) / panels;
   double length = 0.0;
   for (int k = 0; k < panels; ++k) {
     const double middle = part.from + half * (2.0 * k + 1.0);
-    const auto speed = [&](double node) {
-      return Norm(TipRate(path, part.head, middle + half * node));
-    };
+    const auto speed = [&](double node) { return Norm(curve.TipRate(middle + half * node)); };
     length += half * kWeights[0] * speed(0.0);
     for (std::size_t i = 1; i < kNodes.size(); ++i) {
       length += half * kWeights[i] * (speed(kNodes[i]) + speed(-kNodes[i]));

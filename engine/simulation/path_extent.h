@@ -3,7 +3,7 @@
 #include <array>
 
 #include "engine/machine/shape.h"
-#include "engine/motion/kinematics.h"
+#include "engine/simulation/part_curve.h"
 
 // How far a part of a path reaches, exactly: where a coordinate turns round is solved for, not
 // sampled.
@@ -22,26 +22,14 @@ using PointSweep = std::array<CoordinateSweep, 3>;  // x y z
 
 machine::Box BoxOf(const PointSweep& sweep);
 
-// A part of a path piece, 0 <= from <= to <= path.length(), with the tool that it is for.
-struct PathPart {
-  const motion::PathPiece& path;
-  const motion::Head& head;
-  double from = 0.0;
-  double to = 0.0;
-};
-
 // Of the tip, machine frame.
 PointSweep TipSweep(const PathPart& part);
 // Of the column of a gantry.
 PointSweep ColumnSweep(const PathPart& part);
+// Of A and B.
+std::array<CoordinateSweep, 2> RotarySweep(const PathPart& part);
+
 // Length of the tip's way, mm; to 1e-9 where the tip bows because the head turns (COORD ROBOT).
 double TipLength(const PathPart& part);
-
-// The tip at `s`, and its first derivative by s, for every kind of piece.
-motion::Vec3 TipAt(const motion::PathPiece& path, const motion::Head& head, double s);
-motion::Vec3 TipRate(const motion::PathPiece& path, const motion::Head& head, double s);
-
-// Whether A or B turn along the piece.
-bool Turns(const motion::PathPiece& path);
 
 }  // namespace rmlcell::simulation

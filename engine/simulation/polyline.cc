@@ -33,19 +33,18 @@ int ChordCount(double radius_mm, double sweep_rad, double tolerance_mm) {
   return static_cast<int>(std::clamp(wanted, 1.0, double{kChordsMax}));
 }
 
-double CurveCutter::NextCut(double s) const {
-  const motion::PathPiece& path = part_.path;
-  const double rate = std::abs(path.a_rate()) + std::abs(path.b_rate());
-  double step = part_.to - part_.from;
-  if (rate > 0.0) step = std::min(step, kFirstChord_rad / rate);
-  const double shortest = (part_.to - part_.from) / (1 << kHalvingsMax);
-  const Vec3 from = TipAt(path, part_.head, s);
+double CurveCutter::NextCut(double p) const {
+  const double whole = curve_.end() - curve_.begin();
+  double step = whole;
+  if (curve_.turning_rad() > kFirstChord_rad) step *= kFirstChord_rad / curve_.turning_rad();
+  const double shortest = whole / (1 << kHalvingsMax);
+  const Vec3 from = curve_.Tip(p);
   for (;; step *= 0.5) {
-    const double end = s + step >= part_.to - 0.5 * shortest ? part_.to : s + step;
+    const double end = p + step >= curve_.end() - 0.5 * shortest ? curve_.end() : p + step;
     if (step <= shortest) return end;
-    const Vec3 to = TipAt(path, part_.head, end);
+    const Vec3 to = curve_.Tip(end);
     const auto off = [&](double share) {
-      return DistanceToSegment(TipAt(path, part_.head, s + (end - s) * share), from, to);
+      return DistanceToSegment(curve_.Tip(p + (end - p) * share), from, to);
     };
     // Three points tell a bow from an S; a quarter more for what lies between them.
     if (1.25 * std::max({off(0.25), off(0.5), off(0.75)}) <= tolerance_mm_) return end;

@@ -96,6 +96,21 @@ struct AxisFigures {
   bool operator==(const AxisFigures&) const = default;
 };
 
+// How the moves of a program passed into each other; motion.md 4, 8.2. Every move counts once.
+struct CornerFigures {
+  std::uint64_t stops = 0;           // without /FLY, or where the program stands
+  std::uint64_t stops_with_fly = 0;  // OVERSH 0, a neighbour or a length that allows no blend
+  std::uint64_t reversals = 0;       // /FLY at a turn of more than 175 degrees: a stop
+  std::uint64_t through = 0;         // straight on, or at the vertex of a polyline
+  std::uint64_t blended = 0;         // at the speed that OVERSH asks for
+  std::uint64_t capped = 0;          // blended slower, because of a short neighbour or an axis
+  double deviation_mm_max = 0.0;     // of the path from a target
+  machine::Place deviation_place;
+  motion::Vec3 deviation_point;  // the tip in the middle of that corner
+
+  bool operator==(const CornerFigures&) const = default;
+};
+
 // Moves that never reached the feed rate asked for: too short, or held back by an axis or a radius.
 struct SpeedShortfall {
   std::uint64_t moves = 0;
@@ -160,6 +175,7 @@ struct RunReport {
   SimTime shutter_open{0};
   double energy_j_per_mm_max = 0.0;  // highest mean of a step
   BeamHistogram beam;
+  CornerFigures corners;
   SpeedShortfall shortfall;
 
   machine::Box programmed;  // points as the program wrote them

@@ -9,9 +9,6 @@ using machine::MotionUse;
 using machine::Signal;
 using machine::WaitKind;
 
-// A motion reached its feed rate when it came this near: rounding is no shortfall.
-constexpr double kReached = 1.0 - 1e-6;
-
 double TipSpeedMax(const machine::MachineShape& shape) {
   return shape.limits ? shape.limits->tip_speed_mm_s : 0.0;
 }
@@ -110,7 +107,7 @@ void ReportRecorder::OnMotion(const machine::MotionDone& done) {
     work.cut_energy_j += beam_.Standing(ToSeconds(work.time.settling), done.power.constant_percent);
   }
   AddShape(done, profile_end_s, length);
-  AddShortfall(done);
+  corners_.Add(done);
   stands_since_beam_on_ = false;
   work_.Add(done.place, work);
 }
@@ -140,26 +137,9 @@ void ReportRecorder::AddShape(const machine::MotionDone& done, double profile_en
       shape_.laser_watts <= 0.0 && (done.use == MotionUse::kCut || done.use == MotionUse::kPlunge);
   if (done.beam_on || tool_in) cut_.Add(box);
   axes_.Add({.xyz = column,
-             .from = motion.path.At(done.from),
-             .to = motion.path.At(done.travelled),
+             .ab = RotarySweep(part),
              .peaks = PeaksOf(motion, shape_.five_axis, done.profile_start_s, profile_end_s),
              .tip_path_mm = length});
-}
-
-void ReportRecorder::AddShortfall(const machine::MotionDone& done) {
-  const motion::PathPiece& path = done.motion->path;
-  // A motion told in parts counts once, and one that was stopped had no chance.
-  const bool whole = done.from == 0.0 && done.travelled >= path.length();
-  if (!whole || path.by_sigma() || done.programmed_mm_s <= 0.0) return;
-  const double reached = done.motion->speed.peak_speed();
-  if (reached >= done.programmed_mm_s * kReached) return;
-  if (shortfall_.moves == 0 ||
-      reached * shortfall_.wanted_mm_s < shortfall_.reached_mm_s * done.programmed_mm_s) {
-    shortfall_.worst = done.place;
-    shortfall_.wanted_mm_s = done.programmed_mm_s;
-    shortfall_.reached_mm_s = reached;
-  }
-  ++shortfall_.moves;
 }
 
 void ReportRecorder::OnMove(const machine::MoveDone& move) {
@@ -249,7 +229,8 @@ RunReport ReportRecorder::Report(const machine::Run& run) const {
   report.shutter_open =
       shutter_time_ + (shutter_open_ ? counted_until_ - shutter_since_ : SimTime::zero());
   report.beam = beam_.Histogram(report.total.beam_on);
-  report.shortfall = shortfall_;
+  report.corners = corners_.corners();
+  report.shortfall = corners_.shortfall();
   report.programmed = programmed_;
   report.tip = tip_;
   report.cut = cut_;

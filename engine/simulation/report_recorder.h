@@ -3,6 +3,7 @@
 #include "engine/machine/observer.h"
 #include "engine/simulation/axis_log.h"
 #include "engine/simulation/beam_work.h"
+#include "engine/simulation/corner_log.h"
 #include "engine/simulation/finding_list.h"
 #include "engine/simulation/report.h"
 #include "engine/simulation/work_table.h"
@@ -42,12 +43,12 @@ class ReportRecorder final : public machine::RunObserver {
   void FillStandstill(SimTime until);
   void AddLengths(const machine::MotionDone& done, double length, WorkFigures& work);
   void AddShape(const machine::MotionDone& done, double profile_end_s, double length);
-  void AddShortfall(const machine::MotionDone& done);
 
   machine::MachineShape shape_;
   WorkTable work_;
   AxisLog axes_;
   BeamWork beam_;
+  CornerLog corners_;
   FindingList findings_;
   SimTime counted_until_{0};
   machine::Place place_;
@@ -67,7 +68,6 @@ class ReportRecorder final : public machine::RunObserver {
   machine::Box tip_;
   machine::Box cut_;
   machine::Box column_;
-  SpeedShortfall shortfall_;
   FinalPosition last_;
 };
 

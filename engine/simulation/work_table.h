@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "engine/simulation/compensated_sum.h"
+#include "engine/motion/trajectory.h"
 #include "engine/simulation/report.h"
 
 namespace rmlcell::simulation {
@@ -26,7 +26,7 @@ class WorkTable {
   // Sums of a million small lengths keep their digits.
   struct Sum {
     WorkFigures counts;
-    CompensatedSum tip_path, cut, travel, plunge, cut_energy, pierce_energy;
+    motion::LongSum tip_path, cut, travel, plunge, cut_energy, pierce_energy;
 
     void Add(const WorkFigures& work);
     WorkFigures Total() const;

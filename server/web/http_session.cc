@@ -35,7 +35,9 @@ namespace {
 
 constexpr std::size_t kReadBytes = std::size_t{64} << 10U;  // at a time, of a body
 constexpr int kSendBufferBytes = 256 << 10;
-constexpr std::chrono::seconds kLinger{2};  // to take in what a refused client still sends
+constexpr std::chrono::milliseconds kLingerDraining{
+    200};                                           // a stop does not wait for silent clients
+constexpr std::chrono::milliseconds kLinger{2000};  // to take in what a refused client still sends
 constexpr std::chrono::seconds kPipelinedLook{1};
 
 std::string View(beast::string_view text) { return std::string(text.data(), text.size()); }
@@ -412,7 +414,7 @@ class HttpSession : public Connection, public std::enable_shared_from_this<HttpS
     error_code ignored;
     socket_.shutdown(tcp::socket::shutdown_send, ignored);
     reading_ = Reading::kLinger;
-    Arm(kLinger);
+    Arm(setting_.draining ? kLingerDraining : kLinger);
     piece_.resize(kReadBytes);
     ReadAndForget();
   }

@@ -177,7 +177,7 @@ class Programs(WithCell):
                      "CELL-E9017")
         self.refused(stub.PutProgram, self.put("optimo-1", 47, "cut.S", "SPEED 5 ".encode() + b"\xc3"),
                      grpc.StatusCode.INVALID_ARGUMENT, "OPT-E7001")
-        self.refused(stub.PutProgram, self.put("optimo-1", 47, "binary.S", os.urandom(20_000)),
+        self.refused(stub.PutProgram, self.put("optimo-1", 47, "binary.S", b"\x00\xff\xfe\x80" * 5_000),
                      grpc.StatusCode.INVALID_ARGUMENT, "OPT-E7001")
         self.refused(stub.PutProgram, self.put("no-such", 47, "a.S", "SPEED 5\n"), grpc.StatusCode.NOT_FOUND,
                      "CELL-E9009")

@@ -64,6 +64,8 @@ machine::RunPhase Control::Advance(SimTime until) {
       return s_.phase;
     }
     LetTimePass(next);
+    ApplyScripted();  // an input of this instant is seen by the conditions of this instant
+    if (s_.phase != machine::RunPhase::kRunning) continue;
     ActOnTime();
     if (s_.now >= until && !MayFetch() && NextEvent(until) > until) return s_.phase;
   }
@@ -109,6 +111,7 @@ SimTime Control::NextEvent(SimTime until) const {
   const bool quiet = s_.pending.kind == Pending::Kind::kCondition && !Busy() && !s_.time_label &&
                      s_.next_input >= setup_.inputs.size();
   if (quiet) next = kForever;
+  if (s_.input_changed && s_.pending.kind == Pending::Kind::kCondition) next = s_.now;
   return std::min(next, std::max(setup_.budget.virtual_time, s_.now + SimTime(1)) <= until
                             ? setup_.budget.virtual_time
                             : kForever);
@@ -156,6 +159,7 @@ void Control::ActOnTime() {
       pending = {};
       break;
     case Pending::Kind::kCondition: {
+      s_.input_changed = false;
       const std::optional<bool> met = Truth(pending.expression);
       if (!met || !*met) break;
       if (s_.now > pending.since) {
@@ -194,6 +198,7 @@ void Control::ApplyScripted() {
 
 void Control::Apply(const machine::InputChange& input) {
   if (s_.phase == machine::RunPhase::kFinished) return;
+  s_.input_changed = true;
   const auto index = static_cast<std::size_t>(std::clamp(input.index, 0, kVariableIndexMax));
   switch (input.kind) {
     case machine::InputKind::kLogical: s_.machine.data.il_physical[index] = input.value != 0.0; break;

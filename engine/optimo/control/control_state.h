@@ -165,6 +165,7 @@ struct ControlState {
   SimTime watched_since{0};
   bool time_ran_out = false;
 
+  bool input_changed = false;  // conditions are to be tested again
   bool hold_requested = false;
   bool stop_requested = false;   // STOP on a motion that cannot be left just now
   bool halt_after_step = false;  // SINGLE, breakpoint

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/optimo/language/flow_advice.h"
 #include "engine/optimo/language/units_of_variables.h"
 
 namespace rmlcell::optimo {
@@ -95,8 +96,10 @@ class Adviser {
     for (int v = 0; v < 6; ++v) {
       if (Known(i, v) != 0.0) return;
     }
-    Warn(i, ErrorCode::kSysdefAllZero, "SYSDEF with six zeros; SYSDEF alone cancels the offset",
-         "OPT-7.37");
+    const Place at = program_.At(i);
+    findings_.Add(ErrorCode::kSysdefAllZero, at,
+                  "SYSDEF with six zeros; SYSDEF alone cancels the offset", "OPT-7.37",
+                  {{at.offset, at.length, "SYSDEF"}});
   }
 
   void AdviseTcp(const Instruction& i) {
@@ -136,6 +139,9 @@ class Adviser {
 
 }  // namespace
 
-void Advise(const ParsedProgram& program, Findings& findings) { Adviser(program, findings).Run(); }
+void Advise(const ParsedProgram& program, Findings& findings) {
+  Adviser(program, findings).Run();
+  AdviseOnFlow(program, findings);
+}
 
 }  // namespace rmlcell::optimo

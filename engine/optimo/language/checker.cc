@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/optimo/language/fixes.h"
 #include "engine/optimo/language/typing.h"
 
 namespace rmlcell::optimo {
@@ -26,7 +27,7 @@ constexpr int kAssignWidthMax = 16;  // OPT-7.102
 class Checker {
  public:
   Checker(Module& module, const ParsedProgram* places, Findings& findings)
-      : module_(module), findings_(findings), typing_(module, places, findings) {}
+      : module_(module), places_(places), findings_(findings), typing_(module, places, findings) {}
 
   void Run() {
     std::uint32_t step = 0;
@@ -85,6 +86,7 @@ class Checker {
   }
 
   Module& module_;
+  const ParsedProgram* places_;
   Findings& findings_;
   Typing typing_;
 };
@@ -240,7 +242,13 @@ void Checker::CheckAttributes(const Instruction& i) {
     }
     if (i.op == Op::kWork) Warn(ErrorCode::kWordIgnored, "/TIME of WORK has no effect", "OPT-3.38");
   }
-  if (i.Has(kInf)) Warn(ErrorCode::kWordIgnored, "/INF has no effect", "OPT-2.61");
+  if (!i.Has(kInf)) return;
+  std::vector<Fix> fixes;
+  if (places_ != nullptr) {
+    if (const auto fix = AttributeRemoval(*places_, i, Word::kInf)) fixes.push_back(*fix);
+  }
+  findings_.Add(ErrorCode::kWordIgnored, typing_.PlaceOfStatement(), "/INF has no effect",
+                "OPT-2.61", std::move(fixes));
 }
 
 // Jumps to nowhere are errors only when they are taken. OPT-7.16

@@ -5,17 +5,19 @@
 #include "engine/optimo/language/advice.h"
 #include "engine/optimo/language/checker.h"
 #include "engine/optimo/language/printer.h"
+#include "engine/optimo/language/silence.h"
 
 namespace rmlcell::optimo {
 
 Compilation Compile(std::string_view text, std::string_view file, const CompileOptions& options) {
   Compilation result;
   Findings findings(options.diagnostics_max);
+  ParsedProgram program;
   if (options.inch) {
     findings.Add(ErrorCode::kSourceIsInch, {}, "convert the inch source to metric first",
                  "OPT-2.04");
   } else {
-    ParsedProgram program = Parse(text, findings);
+    program = Parse(text, findings);
     Check(program, findings);
     if (options.advice) Advise(program, findings);
     if (findings.error_count() == 0) {
@@ -29,11 +31,12 @@ Compilation Compile(std::string_view text, std::string_view file, const CompileO
         result.object.clear();
       }
     }
-    result.module = std::move(program.module);
   }
   result.ok = findings.error_count() == 0;
   result.diagnostics_dropped = findings.dropped();
   result.diagnostics = findings.Take(text, file);
+  Silence(program, result.diagnostics);
+  result.module = std::move(program.module);
   return result;
 }
 

@@ -21,7 +21,23 @@ Parser::Parser(std::string_view text, ParsedProgram& program, Findings& findings
       findings_(findings),
       lexer_(text, program.comments) {}
 
+// Room for what a text of this size most likely holds, so that large programs are not copied while
+// they grow. Untouched room costs no memory; the bound keeps it small for a text that is mostly
+// comment.
+void Parser::Reserve() {
+  constexpr std::size_t kElementsMax = std::size_t{1} << 23;
+  const auto lines = static_cast<std::size_t>(std::count(text_.begin(), text_.end(), '\n'));
+  const std::size_t instructions = std::min(lines + 1, kElementsMax);
+  const std::size_t values = std::min(text_.size() / 7, kElementsMax);
+  module_.instructions.reserve(instructions);
+  program_.statements.reserve(instructions);
+  module_.expressions.reserve(values);
+  module_.nodes.reserve(values);
+  program_.node_places.reserve(values);
+}
+
 void Parser::Run() {
+  Reserve();
   while (lexer_.NextStatement()) ParseStatement();
   module_.end_labels = pending_labels_;
   program_.end_label_places = pending_label_places_;
@@ -232,8 +248,9 @@ std::uint16_t Parser::InternName(const Token& token) {
   if (token.length > kNameLength && !long_form_reported_[name]) {
     long_form_reported_[name] = true;
     char room[kNameLength];
-    Report(token, ErrorCode::kNameTruncated,
-           Quoted(token) + " counts as " + std::string(UnpackName(token.key, room)), "OPT-7.46");
+    std::string eight(UnpackName(token.key, room));
+    findings_.Add(ErrorCode::kNameTruncated, PlaceOf(token), Quoted(token) + " counts as " + eight,
+                  "OPT-7.46");
   }
   return name;
 }

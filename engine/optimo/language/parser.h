@@ -23,6 +23,8 @@ class Parser {
   void Run();
 
  private:
+  void Reserve();
+
   // Statements, parser.cc. They return false when the statement was given up; the error is
   // reported.
   void ParseStatement();

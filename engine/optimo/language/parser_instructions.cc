@@ -329,7 +329,8 @@ bool Parser::ParseDefine() {
       return FailAt(index, ErrorCode::kIndexRange, "PAR has the indices 0..7", "OPT-9.21");
     }
   } else {
-    Report(what, ErrorCode::kDefineWithoutIndex, "DEFINE PAR means PAR[0]", "OPT-9.24");
+    findings_.Add(ErrorCode::kDefineWithoutIndex, PlaceOf(what), "DEFINE PAR means PAR[0]",
+                  "OPT-9.24", {{what.offset, static_cast<int>(what.length), "PAR[0]"}});
   }
   if (!Expect(TokenKind::kEqual, "'='")) return false;
   const Token type = Peek();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -11,6 +13,7 @@
 
 #include "engine/machine/family.h"
 #include "engine/motion/planner.h"
+#include "tests/engine/motion/standard_machine.h"
 
 // A run that does what a test scripts, through the same observer that real machines use.
 namespace rmlcell::simulation {
@@ -33,6 +36,30 @@ inline motion::PlannedMotion Planned(const motion::PathPiece& path,
 
 inline motion::PathPiece LineFrom(const motion::Vec3& from, const motion::Vec3& to) {
   return motion::PathPiece::Line({from}, {to});
+}
+
+// Two lines with a /FLY corner between them, planned with look-ahead at SPEED 10 of the machine of
+// motion.md section 1: what is left of the lines, and two halves of a curve.
+inline std::vector<motion::PlannedMotion> PlannedCorner(const motion::TipPose& from,
+                                                        const motion::TipPose& corner,
+                                                        const motion::TipPose& to) {
+  motion::Planner planner(motion::StandardMachine());
+  motion::MoveCommand move;
+  move.speed_fraction = 0.1;
+  move.path = motion::PathPiece::Line(from, corner);
+  move.fly = true;
+  move.tag = 1;
+  EXPECT_TRUE(planner.Append(move));
+  move.path = motion::PathPiece::Line(corner, to);
+  move.fly = false;
+  move.tag = 2;
+  EXPECT_TRUE(planner.Append(move));
+  planner.Stop();
+  std::vector<motion::PlannedMotion> motions;
+  while (const auto item = planner.Next()) {
+    motions.push_back(std::get<motion::PlannedMotion>(*item));
+  }
+  return motions;
 }
 
 // How a scripted motion is used.

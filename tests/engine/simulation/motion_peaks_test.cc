@@ -74,6 +74,24 @@ TEST(MotionPeaks, ColumnIsSwungByTheHead) {
   EXPECT_NEAR(peaks.axis_acceleration[1], 23.323043094, 1e-4);
 }
 
+// C01: on the curve of the corner the tip keeps 50 mm/s and is accelerated by v2 K/d, with the K of
+// motion.md 4.2 for 90 degrees (rho = 2 sqrt(cos 45)) and d = 4.050462937 mm.
+TEST(MotionPeaks, CurveOfACorner) {
+  const auto motions = PlannedCorner({{0, 0, 0}}, {{100, 0, 0}}, {{100, 100, 0}});
+  ASSERT_EQ(motions.size(), 4u);
+  const double half = std::sqrt(0.5);  // sine and cosine of half the turn
+  const double rho = 2.0 * std::sqrt(half);
+  const double whole = 15.0 / 8.0 - 7.0 * rho / 16.0;
+  const double bend = 0.75 * rho * half / (half * whole * half * whole);
+  double acceleration = 0.0;
+  for (std::size_t k = 1; k <= 2; ++k) {
+    const MotionPeaks peaks = Whole(motions[k], true);
+    EXPECT_NEAR(peaks.tip_speed, 50.0, 1e-6);
+    acceleration = std::max(acceleration, peaks.tip_acceleration);
+  }
+  EXPECT_NEAR(acceleration, 2500.0 * bend / 4.050462937, 1e-3);
+}
+
 // COORD ROBOT, B turns at 1 rad/s about a standing column: the tip goes at 300 mm/s on a circle,
 // and is accelerated by w2 L = 300 mm/s2 towards the column.
 TEST(MotionPeaks, TipIsSwungInRobotCoordinates) {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "engine/core/units.h"
+#include "tests/engine/simulation/fake_run.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -132,6 +133,29 @@ TEST(PathExtent, TipTurnsRoundInTheMiddleOfABow) {
   EXPECT_NEAR(tip[2].maximum, -300.0 * std::cos(1.0), 1e-9);
   EXPECT_EQ(tip[2].turns, 1);
   EXPECT_NEAR(TipLength(part), 600.0, 1e-9);
+}
+
+// A curve that bulges: at a corner of 135 degrees between lines along +X and (-1,1)/sqrt(2) the tip
+// goes beyond neither line, and X turns round once, on the curve.
+TEST(PathExtent, CurveTurnsRound) {
+  double farthest = 0.0;
+  int turns = 0;
+  for (const motion::PlannedMotion& planned :
+       PlannedCorner({{0, 0, 0}}, {{100, 0, 0}}, {{0, 100, 0}})) {
+    const PointSweep sweep = TipSweep({planned.path, Head{}, 0.0, planned.path.length()});
+    double sampled = -1e9;
+    for (int k = 0; k <= 5000; ++k) {
+      sampled = std::max(sampled, planned.path.At(planned.path.length() * k / 5000).tip.x);
+    }
+    EXPECT_GE(sweep[0].maximum, sampled - 1e-12);
+    EXPECT_NEAR(sweep[0].maximum, sampled, 1e-6);
+    farthest = std::max(farthest, sweep[0].maximum);
+    turns += sweep[0].turns;
+    EXPECT_EQ(sweep[1].turns, 0);
+    EXPECT_GE(sweep[1].minimum, 0.0);
+  }
+  EXPECT_EQ(turns, 1);
+  EXPECT_LT(farthest, 100.0);
 }
 
 // A straight move in COORD ROBOT without a turn: the tip goes as the column does.

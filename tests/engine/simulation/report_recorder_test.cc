@@ -256,6 +256,50 @@ TEST(ReportRecorder, AxisFigures) {
   EXPECT_TRUE(laser.tip.max == Vec3{} && laser.tip.min == Vec3{});
 }
 
+// Cases C01 and C03 of motion.md 12: a corner of 90 degrees between legs of 100 mm at SPEED 10. The
+// steps share the curve at half of its arc length.
+TEST(ReportRecorder, CornerOfTheReference) {
+  Script script;
+  const auto motions = PlannedCorner({{0, 0, 0}}, {{100, 0, 0}}, {{100, 100, 0}});
+  ASSERT_EQ(motions.size(), 4u);
+  for (const motion::PlannedMotion& planned : motions) {
+    script.Step(1, static_cast<int>(planned.tag));
+    script.Motion(planned, {.use = MotionUse::kCut, .beam_on = true, .programmed_mm_s = 50.0});
+  }
+  const RunReport report = ReportOf(script, Laser());
+  EXPECT_NEAR(ToSeconds(report.cycle_time), 4.089999848, 1e-6);
+  EXPECT_NEAR(report.total.tip_path_mm, 198.564458478, 1e-6);
+  EXPECT_EQ(report.corners.blended, 1u);
+  EXPECT_EQ(report.corners.stops, 1u);  // the end
+  EXPECT_NEAR(report.corners.deviation_mm_max, 1.358847515, 1e-6);
+  EXPECT_EQ(report.corners.deviation_place.step, 1);
+  const double off = 1.358847515 / std::sqrt(2.0);
+  EXPECT_NEAR(report.corners.deviation_point.x, 100.0 - off, 1e-6);
+  EXPECT_NEAR(report.corners.deviation_point.y, off, 1e-6);
+  EXPECT_NEAR(report.steps[0].figures.tip_path_mm, 0.5 * 198.564458478, 1e-6);
+  EXPECT_EQ(report.shortfall.moves, 0u);
+  EXPECT_EQ(report.timing, Timing::kExact);
+  EXPECT_NEAR(report.tip.max.x, 100.0, 1e-9);
+  EXPECT_NEAR(report.tip.min.y, 0.0, 1e-9);
+}
+
+// A head that turns to a corner and back again has the same angle at both ends of the curve; it
+// does not get as far as programmed, and the range says how far it got.
+TEST(ReportRecorder, HeadTurnsBackOnACurve) {
+  Script script;
+  for (const motion::PlannedMotion& planned :
+       PlannedCorner({{0, 0, 0}, 0.0, 0.0}, {{100, 0, 0}, 0.5, 0.0}, {{200, 0, 0}, 0.0, 0.0})) {
+    script.Motion(planned);
+  }
+  const RunReport report = ReportOf(script, Laser());
+  EXPECT_EQ(report.corners.blended + report.corners.capped, 1u);
+  const AxisFigures& a = report.axes[3];
+  EXPECT_LT(a.maximum, 0.5);
+  EXPECT_GT(a.maximum, 0.45);
+  EXPECT_EQ(a.reversals, 1u);
+  EXPECT_NEAR(a.travel, 2.0 * a.maximum, 1e-9);
+}
+
 // A circle makes the box of the tip as large as it is, though it ends where it began.
 TEST(ReportRecorder, BoxOfACircle) {
   Script script;

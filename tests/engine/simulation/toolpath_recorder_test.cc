@@ -162,6 +162,20 @@ TEST(ToolpathRecorder, KeepsWithinTheTolerance) {
   }
 }
 
+// The same on the curves of a /FLY corner, also one where the head turns.
+TEST(ToolpathRecorder, KeepsWithinTheToleranceOnCurves) {
+  const motion::TipPose corner{{100, 0, 0}, 0.3, 0.2};
+  for (const double tolerance : {0.001, 0.01, 0.3}) {
+    for (const motion::PlannedMotion& planned :
+         PlannedCorner({{0, 0, 0}}, corner, {{100, 80, 30}, 0.5, 0.1})) {
+      const Recorded recorded =
+          Record(Script().Step(1, 1).Motion(planned), {.tolerance_mm = tolerance});
+      ASSERT_EQ(recorded.blocks.size(), 1u);
+      EXPECT_LE(WorstDistance(planned.path, {}, recorded.blocks[0]), tolerance + 0.001);
+    }
+  }
+}
+
 // Merging must not add up: a slow bend of 1000 short moves within one step, each almost straight
 // on.
 TEST(ToolpathRecorder, MergingStaysWithinTheTolerance) {
@@ -216,7 +230,8 @@ TEST(ToolpathRecorder, BlocksFollowEachOther) {
 // One arc with more points than a block: the run goes on in the next block, and times grow with the
 // way: at half of the way of a motion from rest to rest half of the time is over.
 TEST(ToolpathRecorder, LongArcGoesOnInTheNextBlock) {
-  const PathPiece circle = PathPiece::Circle({{20000, 0, 0}}, {0, 0, 0}, {0, 0, 1}, kTurn, 0.0, 0.0);
+  const PathPiece circle =
+      PathPiece::Circle({{20000, 0, 0}}, {0, 0, 0}, {0, 0, 1}, kTurn, 0.0, 0.0);
   const Recorded recorded =
       Record(Script().Step(1, 1).Motion(Planned(circle)), {.tolerance_mm = 0.001});
   ASSERT_GE(recorded.blocks.size(), 2u);

@@ -5,6 +5,7 @@
 
 namespace rmlcell::v1 {
 class ExplainErrorResponse;
+class Job;
 class WatchJobsResponse;
 }  // namespace rmlcell::v1
 
@@ -23,6 +24,9 @@ class DemoStory {
   std::int64_t sequence_;
   int tick_ = 0;
 };
+
+// The running job of the story when it has ended.
+void EndOfDemoJob(v1::Job& job);
 
 // Rows of the real catalogue, as the server gives them.
 void Explain(const std::string& code, v1::ExplainErrorResponse& response);

@@ -194,7 +194,7 @@ TEST(SlowReader, SlowsItsProducerOnly) {
   // Messages of 100 kB; the buffers of a loopback connection hold some megabytes at most.
   EXPECT_LT(produced, 100);
   EXPECT_EQ(Exchange(cell.port(), Get("/healthz")).status, 200);
-  for (int i = 0; i < 200; ++i) ASSERT_NE(client.ReadUntil("\n\nid: ").size(), 0U);
+  for (int i = 0; i < 200; ++i) ASSERT_NE(client.ReadUntil("\r\nid: ").size(), 0U);
   EXPECT_GE(cell.counters().produced, 200);  // it went on when it was read
 }
 
