@@ -113,7 +113,8 @@ class Run {
   virtual ~Run() = default;
 
   // Goes on until virtual time `until`, a halt, or the end, whichever comes first. A motion that spans
-  // `until` is left in the middle. Scripted inputs act at their times.
+  // `until` is left in the middle. Scripted inputs act at their times. After much work in one call it
+  // may come back earlier, with kRunning: call again.
   virtual RunPhase Advance(SimTime until) = 0;
 
   // An input or key at the present time, as if scripted for it.

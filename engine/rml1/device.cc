@@ -1,5 +1,7 @@
 #include "engine/rml1/device.h"
 
+#include <algorithm>
+
 namespace rmlcell::rml1 {
 namespace {
 
@@ -52,6 +54,11 @@ Device::Device(const Profile& profile)
 
 void Device::Restore(const Registers& registers, const Point& at) {
   registers_ = registers;
+  registers_.z0 = std::clamp(registers.z0, profile_->z.low, profile_->z.high);
+  registers_.xy_speed = profile_->xy_speeds.Nearest(registers.xy_speed);
+  registers_.z_speed = profile_->z_speeds.Nearest(registers.z_speed);
+  registers_.rpm =
+      std::clamp(registers.rpm, profile_->spindle_min_rpm, profile_->spindle_max_rpm);
   carriage_.Place(at);
 }
 

@@ -78,7 +78,8 @@ class Device {
   std::uint64_t commands_done() const { return commands_done_; }  // executed to their end
   std::uint64_t speeds_limited() const { return speeds_limited_; }
 
-  // The state of an earlier run (machine_state.h). Only before the first byte.
+  // The state of an earlier run (machine_state.h), limited to what this profile can do. Only before
+  // the first byte.
   void Restore(const Registers& registers, const Point& at);
 
  private:

@@ -73,7 +73,9 @@ Result<std::unique_ptr<MillRun>> MillRun::Make(machine::RunSetup setup,
 MillRun::MillRun(machine::RunSetup setup, std::shared_ptr<const Profile> profile,
                  machine::RunObserver& observer)
     : setup_(std::move(setup)), observer_(observer), state_(std::move(profile)) {
-  state_.override_percent = std::clamp(setup_.override_percent, kOverrideMin, kOverrideMax);
+  if (!std::isnan(setup_.override_percent)) {
+    state_.override_percent = std::clamp(setup_.override_percent, kOverrideMin, kOverrideMax);
+  }
   state_.tool = state_.device.carriage().physical();
   state_.place.program = setup_.main_program;
   const auto found = setup_.programs.find(setup_.main_program);
@@ -96,6 +98,7 @@ SimTime MillRun::NextInputTime() const {
 // caller then comes first, as a scripted one of that time would.
 RunPhase MillRun::Advance(SimTime until) {
   State& s = state_;
+  const std::size_t stop_at = s.cursor + kBytesPerAdvance;
   const SimTime limit =
       setup_.budget.virtual_time > SimTime::zero() ? setup_.budget.virtual_time : kForever;
   while (s.phase != RunPhase::kFinished) {
@@ -123,15 +126,17 @@ RunPhase MillRun::Advance(SimTime until) {
       Handle(setup_.inputs[s.next_input++]);
     } else if (s.busy != Busy::kNothing) {
       EndBusy();
+    } else if (s.cursor < stop_at) {
+      Proceed(stop_at - s.cursor);
     } else {
-      Proceed();
+      return s.phase = RunPhase::kRunning;
     }
   }
   return s.phase;
 }
 
 // The next thing that takes no time, or the start of one that does.
-void MillRun::Proceed() {
+void MillRun::Proceed(std::size_t bytes_max) {
   State& s = state_;
   if (s.halt_wanted != HaltCause::kNone) {
     BeginHalt(s.halt_wanted);
@@ -167,11 +172,11 @@ void MillRun::Proceed() {
     if (at_breakpoint) return BeginHalt(HaltCause::kBreakpoint);
     if (setup_.mode == machine::Mode::kSingle) return BeginHalt(HaltCause::kSingle);
   }
-  Interpret();
+  Interpret(bytes_max);
 }
 
-// Bytes, until one of them makes something happen.
-void MillRun::Interpret() {
+// Bytes, until one of them makes something happen, or so many of them.
+void MillRun::Interpret(std::size_t bytes_max) {
   State& s = state_;
   Listener listener(*this);
   for (;;) {
@@ -179,6 +184,7 @@ void MillRun::Interpret() {
       if (!s.device.actions().empty() || s.device.commands_done() != s.commands_seen) return;
     }
     if (s.cursor == program_->size()) return Finish();
+    if (bytes_max-- == 0) return;
     FeedOneByte(listener);
   }
 }

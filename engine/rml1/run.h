@@ -39,6 +39,10 @@ class MillRun final : public machine::Run {
   void Restore(const machine::RunSnapshot& snapshot) override;
 
  private:
+  // Bytes of the stream that one call of Advance reads at most, whatever time they take, so that
+  // whoever runs a file of nonsense hears of it every tenth of a second.
+  static constexpr std::size_t kBytesPerAdvance = std::size_t{1} << 20;
+
   enum class Busy : std::uint8_t { kNothing, kMotion, kWait };
   enum class HaltCause : std::uint8_t { kNone, kPause, kHold, kStop, kSingle, kBreakpoint };
 
@@ -96,8 +100,8 @@ class MillRun final : public machine::Run {
 
   // run.cc: the course of time.
   SimTime NextInputTime() const;
-  void Proceed();
-  void Interpret();
+  void Proceed(std::size_t bytes_max);
+  void Interpret(std::size_t bytes_max);
   void FeedOneByte(DeviceListener& listener);
   void Finish();
   void Handle(const machine::InputChange& input);

@@ -356,6 +356,33 @@ TEST(MillRunControl, KeepsTheMachineBetweenJobs) {
   EXPECT_EQ(second->SaveMachine(), first->SaveMachine());
 }
 
+// A machine that was changed since: what it kept is limited to what it can do now.
+TEST(MillRunControl, LimitsAKeptStateToTheMachine) {
+  TestRun first(ParametersOf("t1"), "!ZO-5500;VS60;V60;!RC15;PU20000,15000;");
+  first.AdvanceToEnd();
+  machine::RunSetup setup = SetupOf(ParametersOf("srm-20"), ";");
+  ASSERT_TRUE(setup.parameters.Set("X_MAX", 100.0).ok());
+  ASSERT_TRUE(setup.parameters.Set("Z_MIN", -40.0).ok());
+  setup.machine_state = first->SaveMachine();
+  TestRun second(std::move(setup));
+  second.AdvanceToEnd();
+  EXPECT_EQ(second.variable("X"), "10000");
+  EXPECT_EQ(second.variable("Z0"), "-4000");
+  EXPECT_EQ(second.variable("VS"), "30");
+  EXPECT_EQ(second.variable("VZ"), "30");
+  EXPECT_EQ(second.variable("RPM"), "7000");
+}
+
+// An override that is no number changes nothing.
+TEST(MillRunControl, IgnoresAnOverrideThatIsNoNumber) {
+  machine::RunSetup setup = SetupOf(ParametersOf("t1"), "PD100,0;");
+  setup.override_percent = std::nan("");
+  TestRun run(std::move(setup));
+  run.Press(InputKind::kOverride, std::nan(""));
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_EQ(run->state().override_percent, 100.0);
+}
+
 // Setups that make no sense are refused; a missing program ends the run.
 TEST(MillRunControl, RefusesImpossibleSetups) {
   const machine::MachineFamily& family = Rml1Family();

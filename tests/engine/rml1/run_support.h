@@ -20,7 +20,12 @@ class TestRun {
 
   machine::Run* operator->() { return run_.get(); }
   machine::Run& operator*() { return *run_; }
-  machine::RunPhase AdvanceToEnd() { return run_->Advance(kForever); }
+  // To the end, or a halt that no script ends.
+  machine::RunPhase AdvanceToEnd() {
+    machine::RunPhase phase = machine::RunPhase::kRunning;
+    while (phase == machine::RunPhase::kRunning) phase = run_->Advance(kForever);
+    return phase;
+  }
   void Press(machine::InputKind key, double value = 0.0) {
     run_->Apply({.at = run_->state().time, .kind = key, .index = 0, .value = value});
   }
