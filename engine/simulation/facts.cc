@@ -1,6 +1,7 @@
 #include "engine/simulation/facts.h"
 
 #include <functional>
+#include <map>
 #include <utility>
 
 #include "engine/core/number_text.h"
@@ -357,11 +358,21 @@ std::span<const FactKey> FactKeys() { return TheTable().keys(); }
 
 std::vector<Fact> Facts(const RunReport& report) {
   std::vector<Fact> facts;
-  facts.reserve(TheTable().rows().size() + report.figures.size());
   for (const Row& row : TheTable().rows()) facts.push_back({row.key, row.value(report)});
-  for (const machine::Figure& figure : report.figures) {
-    facts.push_back({report.family + '.' + figure.name, Real(figure.value)});
+  const auto add = [&](std::string_view figure, std::string value) {
+    facts.push_back({report.family + '.' + std::string(figure), std::move(value)});
+  };
+  // Every figure that the family declares, so that a reader finds the same keys every time.
+  std::map<std::string_view, double> left;
+  for (const machine::Figure& figure : report.figures) left.emplace(figure.name, figure.value);
+  if (const machine::MachineFamily* family = FindFamily(report.family)) {
+    for (const machine::FigureInfo& info : family->figures()) {
+      const auto known = left.find(info.name);
+      add(info.name, known != left.end() ? Real(known->second) : std::string(kNone));
+      if (known != left.end()) left.erase(known);
+    }
   }
+  for (const auto& [name, value] : left) add(name, Real(value));
   return facts;
 }
 
