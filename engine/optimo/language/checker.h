@@ -10,4 +10,9 @@ namespace rmlcell::optimo {
 // and Evaluate presume.
 void Check(ParsedProgram& program, Findings& findings);
 
+// The same for a module without text, as it comes from an object: findings have no place.
+// Precondition: every index of the module points into its pools, every run of nodes is one
+// expression.
+void CheckModule(Module& module, Findings& findings);
+
 }  // namespace rmlcell::optimo

@@ -26,6 +26,7 @@ class Findings {
   void AddAs(Severity severity, ErrorCode code, Place place, std::string detail,
              std::string_view rule = {}, std::vector<Fix> fixes = {});
 
+  bool full() const { return found_.size() >= limit_; }
   // Errors so far, those that were not kept included.
   std::uint64_t error_count() const { return errors_; }
   std::uint64_t dropped() const { return dropped_; }

@@ -15,6 +15,7 @@ namespace rmlcell::optimo {
 struct Statement {
   std::uint32_t begin = 0;  // byte offset of its first token
   std::uint32_t end = 0;    // behind its last token
+  std::uint32_t tokens = 0;
 };
 // Where a literal or name stands; parallel to Module::nodes. Operators have the place of their
 // sign.
@@ -37,6 +38,7 @@ struct ParsedProgram {
   std::vector<NodePlace> label_places;      // parallel to Module::labels
   std::vector<NodePlace> end_label_places;  // parallel to Module::end_labels
   std::vector<Comment> comments;
+  std::vector<bool> broken_names;  // parallel to Module::names: its DECLARE has an error
 
   Place At(const Instruction& instruction) const;  // the whole statement
 };

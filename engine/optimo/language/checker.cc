@@ -1,0 +1,277 @@
+#include "engine/optimo/language/checker.h"
+
+#include <bitset>
+#include <string>
+#include <utility>
+
+#include "engine/optimo/language/fixes.h"
+#include "engine/optimo/language/typing.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+struct Range {
+  double min, max;
+  std::string_view text;
+  std::string_view rule;
+  bool above_min = false;  // the minimum itself is outside
+};
+constexpr double kNoMax = 1e30;
+constexpr Range kPercent{0.0, 100.0, "0 to 100", "OPT-2.35"};
+constexpr Range kSpeedAbove0{0.0, 100.0, "above 0 to 100", "OPT-3.08", true};
+constexpr Range kSeconds{0.0, kNoMax, "0 or more seconds", "OPT-3.45"};
+constexpr Range kProgram{1.0, 99.0, "1 to 99", "OPT-7.06"};
+constexpr Range kErrorNumber{1.0, 9999.0, "1 to 9999", "OPT-3.61"};
+constexpr int kAssignWidthMax = 16;  // OPT-7.102
+
+class Checker {
+ public:
+  Checker(Module& module, const ParsedProgram* places, Findings& findings)
+      : module_(module), places_(places), findings_(findings), typing_(module, places, findings) {}
+
+  void Run() {
+    std::uint32_t step = 0;
+    for (Instruction& instruction : module_.instructions) {
+      if (instruction.op != Op::kDeclare && !IsBrokenDeclare(instruction)) ++step;
+      instruction.step = instruction.op == Op::kDeclare || IsBrokenDeclare(instruction) ? 0 : step;
+      if (instruction.op == Op::kInvalid) continue;
+      typing_.BeginStep(instruction);
+      CheckInstruction(instruction);
+      instruction.reads_machine = typing_.reads_machine();
+    }
+    module_.step_count = step;
+    CheckLabels();
+  }
+
+ private:
+  // A DECLARE that could not be parsed is no step either; the parser gave it none.
+  bool IsBrokenDeclare(const Instruction& i) const { return i.op == Op::kInvalid && i.step == 0; }
+
+  void CheckInstruction(Instruction& i);
+  void CheckWorkdef(const Instruction& i);
+  void CheckAssign(const Instruction& i);
+  void CheckFunction(Instruction& i);
+  void CheckLet(const Instruction& i);
+  void CheckAttributes(const Instruction& i);
+  void CheckLabels();
+
+  bool Numeric(const Instruction& i, int position) {
+    return typing_.Type(i.first_expression + static_cast<std::uint32_t>(position),
+                        Wanted::kNumeric);
+  }
+  void AllNumeric(const Instruction& i) {
+    for (int v = 0; v < i.value_count; ++v) Numeric(i, v);
+  }
+  void Arguments(const Instruction& i) {
+    for (std::uint32_t v = 1; v < i.value_count; ++v)
+      typing_.Type(i.first_expression + v, Wanted::kAny);
+  }
+  void InRange(const Instruction& i, int position, const Range& range,
+               ErrorCode code = ErrorCode::kLiteralRange) {
+    if (Numeric(i, position))
+      LiteralInRange(i.first_expression + static_cast<std::uint32_t>(position), range, code);
+  }
+  // A literal, or the name of one; computed values are the control's business (OPT-B.36).
+  void LiteralInRange(std::uint32_t expression, const Range& range, ErrorCode code) {
+    const Expression nodes = module_.expression(expression);
+    if (nodes.size() != 1 || nodes[0].op == Node::kVariable) return;
+    const auto value = static_cast<double>(nodes[0].number);
+    const bool above = range.above_min ? value > range.min : value >= range.min;
+    if (above && value <= range.max) return;
+    findings_.Add(code, typing_.PlaceOfNode(module_.expressions[expression].first),
+                  "the value must be " + std::string(range.text), range.rule);
+  }
+  void Warn(ErrorCode code, std::string detail, std::string_view rule) {
+    findings_.Add(code, typing_.PlaceOfStatement(), std::move(detail), rule);
+  }
+
+  Module& module_;
+  const ParsedProgram* places_;
+  Findings& findings_;
+  Typing typing_;
+};
+
+void Checker::CheckInstruction(Instruction& i) {
+  switch (i.op) {
+    case Op::kMove:
+    case Op::kSysdef:
+    case Op::kTcp:
+    case Op::kGotoTable:
+      AllNumeric(i);
+      break;
+    case Op::kPath:
+      if (i.value_count > 0) Numeric(i, 0);
+      break;
+    case Op::kSpeed:
+    case Op::kAccel:
+    case Op::kOversh:
+      InRange(i, 0, kPercent);
+      break;
+    case Op::kDelay:
+      InRange(i, 0, kSeconds);
+      break;
+    case Op::kSeterr:
+      InRange(i, 0, kErrorNumber);
+      break;
+    case Op::kTimer:
+      if (i.value_count > 0) InRange(i, 0, kSeconds);
+      break;
+    case Op::kIf:
+    case Op::kWait:
+      typing_.Type(i.first_expression, Wanted::kAny);
+      break;
+    case Op::kWorkdef:
+      CheckWorkdef(i);
+      break;
+    case Op::kGo:
+      InRange(i, 0, kProgram);
+      break;
+    case Op::kCall:
+      InRange(i, 0, kProgram);
+      Arguments(i);
+      break;
+    case Op::kFunction:
+      CheckFunction(i);
+      break;
+    case Op::kLet:
+      CheckLet(i);
+      break;
+    case Op::kAssign:
+      CheckAssign(i);
+      break;
+    case Op::kDeclare:
+      typing_.Declare(i);
+      break;
+    case Op::kDefine:
+      typing_.Define(i);
+      break;
+    case Op::kTask:
+      if (i.numbers[0] != 1) Warn(ErrorCode::kWordIgnored, "only TASK 1 has a meaning", "OPT-W.44");
+      break;
+    case Op::kIgnored: {
+      const std::string& text = module_.texts[i.name];
+      Warn(ErrorCode::kWordIgnored, text.substr(0, text.find(' ')) + " has no effect",
+           "OPT-E.7023");
+      break;
+    }
+    default:
+      break;
+  }
+  CheckAttributes(i);
+}
+
+// OPT-3.06, OPT-3.08
+void Checker::CheckWorkdef(const Instruction& i) {
+  constexpr Range kSchedule{1.0, 63.999, "1 to 63",
+                            "OPT-3.06"};  // REAL numbers are truncated, OPT-3.07
+  if (i.numbers[0] == 1) {
+    InRange(i, 0, kSpeedAbove0);
+    InRange(i, 1, {0.0, 100.0, "0 to 100", "OPT-3.08"});
+    InRange(i, 2, {0.0, kNoMax, "0 or more seconds", "OPT-3.08"});
+    InRange(i, 3, {0.0, 100.0, "0 to 100", "OPT-3.08"});
+    if (i.value_count == 5) InRange(i, 4, kSchedule, ErrorCode::kScheduleRange);
+  } else if (i.numbers[0] == 2) {
+    InRange(i, 0, kSchedule, ErrorCode::kScheduleRange);
+  }
+}
+
+// A number or the name of one. OPT-9.01
+void Checker::CheckFunction(Instruction& i) {
+  const bool typed = Numeric(i, 0);
+  Arguments(i);
+  if (!typed) return;
+  const Expression number = module_.Value(i, 0);
+  if (number[0].op != Node::kInteger) {
+    findings_.Add(ErrorCode::kFunctionNumber,
+                  typing_.PlaceOfNode(module_.expressions[i.first_expression].first),
+                  "FUNCTION takes a number or a declared constant", "OPT-9.01");
+    return;
+  }
+  LiteralInRange(i.first_expression, {1.0, 99.0, "1 to 99", "OPT-9.01"}, ErrorCode::kLiteralRange);
+  if (number[0].number >= 1.0F && number[0].number <= 99.0F) {
+    i.numbers[0] = static_cast<std::uint16_t>(number[0].number);
+  }
+}
+
+// OPT-7.92, OPT-7.93
+void Checker::CheckLet(const Instruction& i) {
+  const bool known = typing_.ResolveTarget(i.first_expression);
+  const ValueType type = module_.Value(i, 0)[0].type;
+  const Wanted wanted = !known                        ? Wanted::kAny
+                        : type == ValueType::kLogical ? Wanted::kLogical
+                                                      : Wanted::kNumeric;
+  typing_.Type(i.first_expression + 1, wanted);
+}
+
+// OPT-7.102, OPT-7.103
+void Checker::CheckAssign(const Instruction& i) {
+  const bool known = typing_.ResolveTarget(i.first_expression);
+  const bool typed = Numeric(i, 1);
+  const int width = i.numbers[0];
+  if (width < 1 || width > kAssignWidthMax) {
+    return Warn(ErrorCode::kLiteralRange, "ASSIGN writes 1 to 16 places", "OPT-7.102");
+  }
+  const std::size_t value_at = module_.expressions[i.first_expression + 1].first;
+  const ExprNode& value = module_.nodes[value_at];
+  if (typed && value.op != Node::kVariable &&
+      (value.number < 0.0F || value.number >= static_cast<float>(1 << width))) {
+    findings_.Add(ErrorCode::kAssignGroup, typing_.PlaceOfNode(value_at),
+                  "the value does not fit into " + std::to_string(width) + " places", "OPT-7.103");
+  }
+  if (!known) return;
+  const ExprNode& target = module_.Value(i, 0)[0];
+  if (target.type != ValueType::kLogical) {
+    Warn(ErrorCode::kTypeMismatch, "ASSIGN writes logical outputs or variables", "OPT-7.102");
+  } else if (target.index + width - 1 >
+             (target.group == VariableGroup::kPar ? kParameterCount - 1 : kVariableIndexMax)) {
+    Warn(ErrorCode::kAssignGroup, "the group runs past the last index", "OPT-7.103");
+  }
+}
+
+void Checker::CheckAttributes(const Instruction& i) {
+  if (i.attributes == 0) return;
+  std::uint32_t at = i.first_expression + i.value_count;
+  if (i.Has(kVia)) {
+    for (int v = 0; v < 5; ++v) typing_.Type(at++, Wanted::kNumeric);
+  }
+  if (i.Has(kStart)) typing_.Type(at++, Wanted::kAny);
+  if (i.Has(kEnd)) typing_.Type(at++, Wanted::kAny);
+  if (i.Has(kTime)) {
+    if (typing_.Type(at, Wanted::kNumeric)) {
+      LiteralInRange(at, {0.0, kNoMax, "0 or more seconds", "OPT-2.54"}, ErrorCode::kLiteralRange);
+    }
+    if (i.op == Op::kWork) Warn(ErrorCode::kWordIgnored, "/TIME of WORK has no effect", "OPT-3.38");
+  }
+  if (!i.Has(kInf)) return;
+  std::vector<Fix> fixes;
+  if (places_ != nullptr) {
+    if (const auto fix = AttributeRemoval(*places_, i, Word::kInf)) fixes.push_back(*fix);
+  }
+  findings_.Add(ErrorCode::kWordIgnored, typing_.PlaceOfStatement(), "/INF has no effect",
+                "OPT-2.61", std::move(fixes));
+}
+
+// Jumps to nowhere are errors only when they are taken. OPT-7.16
+void Checker::CheckLabels() {
+  std::bitset<10000> known;
+  for (const std::uint16_t label : module_.labels) known.set(label);
+  for (const std::uint16_t label : module_.end_labels) known.set(label);
+  for (const Instruction& i : module_.instructions) {
+    for (std::uint16_t t = 0; t < i.target_count; ++t) {
+      const std::uint16_t label = module_.targets[i.first_target + t];
+      if (known.test(label)) continue;
+      typing_.BeginStep(i);
+      Warn(ErrorCode::kLabelMissing, "no sequence number " + std::to_string(label), "OPT-7.16");
+    }
+  }
+}
+
+}  // namespace
+
+void Check(ParsedProgram& program, Findings& findings) {
+  Checker(program.module, &program, findings).Run();
+}
+
+void CheckModule(Module& module, Findings& findings) { Checker(module, nullptr, findings).Run(); }
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,63 @@
+#include "engine/optimo/language/compiler.h"
+
+#include <utility>
+
+#include "engine/optimo/language/advice.h"
+#include "engine/optimo/language/checker.h"
+#include "engine/optimo/language/printer.h"
+#include "engine/optimo/language/silence.h"
+
+namespace rmlcell::optimo {
+
+Compilation Compile(std::string_view text, std::string_view file, const CompileOptions& options) {
+  Compilation result;
+  Findings findings(options.diagnostics_max);
+  ParsedProgram program;
+  if (options.inch) {
+    findings.Add(ErrorCode::kSourceIsInch, {}, "convert the inch source to metric first",
+                 "OPT-2.04");
+  } else {
+    program = Parse(text, findings);
+    Check(program, findings);
+    if (options.advice) Advise(program, findings);
+    if (findings.error_count() == 0) {
+      result.object = EncodeObject(program.module);
+      if (options.object_limit > 0 && result.object.size() > options.object_limit) {
+        findings.Add(ErrorCode::kObjectTooLong, {},
+                     "the object has " + std::to_string(result.object.size()) + " bytes; at most " +
+                         std::to_string(options.object_limit) +
+                         " fit; split the program and CALL its parts",
+                     "OPT-1.08");
+        result.object.clear();
+      }
+    }
+  }
+  result.ok = findings.error_count() == 0;
+  result.diagnostics_dropped = findings.dropped();
+  result.diagnostics = findings.Take(text, file);
+  Silence(program, result.diagnostics);
+  result.module = std::move(program.module);
+  return result;
+}
+
+std::string Decompile(const Module& module) {
+  std::string out;
+  const auto lone = [&out](std::uint16_t label) { out += std::to_string(label) + '\n'; };
+  for (const Instruction& instruction : module.instructions) {
+    const auto labels = module.Labels(instruction);
+    for (std::size_t l = 0; l + 1 < labels.size(); ++l) lone(labels[l]);
+    PrintLabelColumns(labels.empty() ? kNoLabel : labels.back(), out);
+    PrintStatement(module, instruction, out);
+    out += '\n';
+  }
+  for (const std::uint16_t label : module.end_labels) lone(label);
+  return out;
+}
+
+Result<std::string> ObjectToSource(std::string_view object) {
+  const Result<Module> module = DecodeObject(object);
+  if (!module) return module.error();
+  return Decompile(*module);
+}
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,192 @@
+#include "engine/optimo/language/evaluate.h"
+
+#include <cmath>
+#include <cstddef>
+
+namespace rmlcell::optimo {
+namespace {
+
+struct Outcome {
+  float number = 0.0F;
+  bool good = true;
+  ErrorCode code = ErrorCode::kDomain;
+};
+
+Outcome Fail(ErrorCode code) { return {0.0F, false, code}; }
+
+// Functions are computed in double precision and rounded once (OPT-B.38).
+Outcome Round(double value) {
+  if (std::isnan(value)) return Fail(ErrorCode::kDomain);
+  const auto rounded = static_cast<float>(value);
+  const double magnitude = std::fabs(static_cast<double>(rounded));
+  if (!(magnitude <= kRealMax)) return Fail(ErrorCode::kRealOverflow);
+  if (magnitude < kRealMin) return {0.0F};
+  return {rounded};
+}
+
+// OPT-7.81: any base with an integer exponent; 0^0 is 1.
+Outcome Power(double base, double exponent) {
+  if (base == 0.0 && exponent < 0.0) return Fail(ErrorCode::kDivisionByZero);
+  if (base < 0.0 && exponent != std::trunc(exponent)) return Fail(ErrorCode::kDomain);
+  return Round(std::pow(base, exponent));
+}
+
+// OPT-7.80: the sign of a. fmod is exact: a - b * trunc(a / b) without rounding between.
+Outcome Modulo(double a, double b) {
+  if (b == 0.0) return Fail(ErrorCode::kDivisionByZero);
+  return Round(std::fmod(a, b));
+}
+
+Outcome Function(Node op, double x) {
+  switch (op) {
+    case Node::kSin:
+      return Round(std::sin(x));
+    case Node::kCos:
+      return Round(std::cos(x));
+    case Node::kTan:
+      return Round(std::tan(x));
+    case Node::kAsin:
+      return x < -1.0 || x > 1.0 ? Fail(ErrorCode::kDomain) : Round(std::asin(x));
+    case Node::kAcos:
+      return x < -1.0 || x > 1.0 ? Fail(ErrorCode::kDomain) : Round(std::acos(x));
+    case Node::kAtan:
+      return Round(std::atan(x));
+    case Node::kSqrt:
+      return x < 0.0 ? Fail(ErrorCode::kDomain) : Round(std::sqrt(x));
+    case Node::kExp:
+      return x < -32.0 || x > 32.0 ? Fail(ErrorCode::kDomain) : Round(std::exp(x));
+    case Node::kLn:
+      return x <= 0.0 ? Fail(ErrorCode::kDomain) : Round(std::log(x));
+    case Node::kLog:
+      return x <= 0.0 ? Fail(ErrorCode::kDomain) : Round(std::log10(x));
+    case Node::kAbs:
+      return {static_cast<float>(std::fabs(x))};
+    default:
+      return {static_cast<float>(std::trunc(x))};
+  }
+}
+
+Outcome Binary(Node op, double a, double b) {
+  const auto truth = [](bool value) { return Outcome{value ? 1.0F : 0.0F}; };
+  switch (op) {
+    case Node::kPower:
+      return Power(a, b);
+    // The double product, quotient, sum and difference of two floats, rounded to 24 bits, are the
+    // rightly rounded ones: 53 >= 2 * 24 + 2.
+    case Node::kMultiply:
+      return Round(a * b);
+    case Node::kDivide:
+      return b == 0.0 ? Fail(ErrorCode::kDivisionByZero) : Round(a / b);
+    case Node::kMod:
+      return Modulo(a, b);
+    case Node::kAdd:
+      return Round(a + b);
+    case Node::kSubtract:
+      return Round(a - b);
+    case Node::kLess:
+      return truth(a < b);
+    case Node::kLessEqual:
+      return truth(a <= b);
+    case Node::kEqual:
+      return truth(a == b);
+    case Node::kGreaterEqual:
+      return truth(a >= b);
+    case Node::kGreater:
+      return truth(a > b);
+    case Node::kNotEqual:
+      return truth(a != b);
+    case Node::kAnd:
+      return truth(a != 0.0 && b != 0.0);
+    case Node::kOr:
+      return truth(a != 0.0 || b != 0.0);
+    default:
+      return truth((a != 0.0) != (b != 0.0));
+  }
+}
+
+std::string DetailOf(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::kDivisionByZero:
+      return "division by zero";
+    case ErrorCode::kRealOverflow:
+      return "a result beyond 2^63";
+    default:
+      return "an argument outside its domain";
+  }
+}
+
+}  // namespace
+
+Result<Value> Evaluate(Expression expression, VariableAccess& variables) {
+  float stack[kOperandStackMax];
+  std::size_t top = 0;
+  for (const ExprNode& node : expression) {
+    Outcome outcome;
+    switch (Arity(node.op)) {
+      case 0:
+        RMLCELL_CHECK(top < kOperandStackMax);
+        outcome.number = node.op == Node::kVariable ? variables.Read(node.variable()) : node.number;
+        break;
+      case 1: {
+        RMLCELL_CHECK(top >= 1);
+        const float operand = stack[--top];
+        if (node.op == Node::kNegate) {
+          outcome.number = operand == 0.0F ? 0.0F : -operand;
+        } else if (node.op == Node::kNot) {
+          outcome.number = operand == 0.0F ? 1.0F : 0.0F;
+        } else {
+          outcome = Function(node.op, static_cast<double>(operand));
+        }
+        break;
+      }
+      default: {
+        RMLCELL_CHECK(top >= 2);
+        top -= 2;
+        outcome =
+            Binary(node.op, static_cast<double>(stack[top]), static_cast<double>(stack[top + 1]));
+        break;
+      }
+    }
+    if (!outcome.good) return Error{outcome.code, DetailOf(outcome.code), {}};
+    stack[top++] = outcome.number;
+  }
+  RMLCELL_CHECK(top == 1);
+  return Value{expression.back().type, stack[0]};
+}
+
+bool IsConstant(Expression expression) {
+  for (const ExprNode& node : expression) {
+    if (node.op == Node::kVariable || node.op == Node::kName) return false;
+  }
+  return true;
+}
+
+Result<int> TruncateToInteger(float number) {
+  const float whole = std::trunc(number);
+  if (!(whole >= static_cast<float>(kIntegerMin) && whole <= static_cast<float>(kIntegerMax))) {
+    return Error{ErrorCode::kIntegerOverflow, "a value outside -32768..32767", {}};
+  }
+  return static_cast<int>(whole);
+}
+
+Result<float> ConvertTo(ValueType type, Value value) {
+  switch (type) {
+    case ValueType::kLogical:
+      return value.truth() ? 1.0F : 0.0F;
+    case ValueType::kReal:
+      return value.number;
+    case ValueType::kInteger:
+      break;
+  }
+  const Result<int> whole = TruncateToInteger(value.number);
+  if (!whole) return whole.error();
+  return static_cast<float>(*whole);
+}
+
+Result<float> RoundToReal(double value) {
+  const Outcome outcome = Round(value);
+  if (!outcome.good) return Error{outcome.code, DetailOf(outcome.code), {}};
+  return outcome.number;
+}
+
+}  // namespace rmlcell::optimo

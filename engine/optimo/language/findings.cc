@@ -1,0 +1,50 @@
+#include "engine/optimo/language/findings.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace rmlcell::optimo {
+
+void Findings::Add(ErrorCode code, Place place, std::string detail, std::string_view rule,
+                   std::vector<Fix> fixes) {
+  AddAs(Lookup(code).severity, code, place, std::move(detail), rule, std::move(fixes));
+}
+
+void Findings::AddAs(Severity severity, ErrorCode code, Place place, std::string detail,
+                     std::string_view rule, std::vector<Fix> fixes) {
+  if (IsError(severity)) ++errors_;
+  if (full()) {
+    ++dropped_;
+    return;
+  }
+  Diagnostic& diagnostic = found_.emplace_back();
+  diagnostic.code = code;
+  diagnostic.severity = severity;
+  diagnostic.detail = std::move(detail);
+  diagnostic.rule = rule;
+  diagnostic.where.byte_offset = place.offset;
+  diagnostic.where.length = place.length;
+  diagnostic.step = place.step;
+  diagnostic.fixes = std::move(fixes);
+}
+
+std::vector<Diagnostic> Findings::Take(std::string_view text, std::string_view file) {
+  std::stable_sort(found_.begin(), found_.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    return a.where.byte_offset < b.where.byte_offset;
+  });
+  int line = 1;
+  std::size_t line_begin = 0;
+  for (Diagnostic& diagnostic : found_) {
+    diagnostic.file = file;
+    if (diagnostic.where.byte_offset < 0) continue;
+    const auto offset =
+        std::min(static_cast<std::size_t>(diagnostic.where.byte_offset), text.size());
+    for (std::size_t end; (end = text.find('\n', line_begin)) < offset; line_begin = end + 1)
+      ++line;
+    diagnostic.where.line = line;
+    diagnostic.where.column = static_cast<int>(offset - line_begin) + 1;
+  }
+  return std::exchange(found_, {});
+}
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "engine/core/diagnostic.h"
+#include "engine/optimo/language/program.h"
+
+namespace rmlcell::optimo {
+
+// The change that takes an attribute out of a statement, with its '/' and the blanks before it;
+// nothing when the statement does not have it.
+std::optional<Fix> AttributeRemoval(const ParsedProgram& program, const Instruction& instruction,
+                                    Word word);
+
+// The text with the fixes of these findings applied. Of fixes that overlap the first is taken.
+std::string ApplyFixes(std::string_view text, std::span<const Diagnostic> diagnostics);
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,91 @@
+#include "engine/optimo/language/flow_graph.h"
+
+#include <algorithm>
+
+namespace rmlcell::optimo {
+
+FlowGraph::FlowGraph(const Module& module)
+    : module_(module), index_(module), leaders_(module.instructions.size() + 1) {
+  std::vector<Successor> room;
+  leaders_[index_.entry()] = true;
+  for (std::uint32_t i = 0; i < size(); ++i) {
+    const std::vector<Successor>& successors = From(i, room);
+    const bool straight = successors.size() == 1 && successors[0].edge == Edge::kNext;
+    for (const Successor& successor : successors) {
+      if (!straight) leaders_[successor.to] = true;
+      if (successor.edge == Edge::kCall) subroutines_.push_back(successor.to);
+    }
+  }
+  std::ranges::sort(subroutines_);
+  subroutines_.erase(std::ranges::unique(subroutines_).begin(), subroutines_.end());
+}
+
+const std::vector<Successor>& FlowGraph::From(std::uint32_t at,
+                                              std::vector<Successor>& room) const {
+  room.clear();
+  const Instruction& i = module_.instructions[at];
+  const auto jump = [&](std::uint16_t label, Edge edge) {
+    if (const auto to = index_.FindLabel(label)) room.push_back({*to, edge});
+  };
+  const Successor next{at + 1, Edge::kNext};
+  const auto targets = module_.Targets(i);
+  switch (i.op) {
+    case Op::kGoto:
+      jump(targets[0], Edge::kJump);
+      break;
+    case Op::kGotoTable:
+      room.push_back(next);
+      for (const std::uint16_t label : targets) jump(label, Edge::kJump);
+      break;
+    case Op::kIf:
+      jump(targets[0], Edge::kJump);
+      if (targets.size() == 2) {
+        jump(targets[1], Edge::kJump);
+      } else {
+        room.push_back(next);
+      }
+      break;
+    case Op::kGosub:
+      room.push_back(next);
+      jump(targets[0], Edge::kCall);
+      break;
+    case Op::kErr:
+      room.push_back(next);
+      jump(targets[0], Edge::kHandler);
+      break;
+    case Op::kTimer:
+      room.push_back(next);
+      if (!targets.empty()) jump(targets[0], Edge::kTimed);
+      break;
+    case Op::kReturn:
+    case Op::kEndtask:
+    case Op::kGo:
+      break;
+    default:
+      room.push_back(next);
+      break;
+  }
+  if (i.Has(kTime) && i.op == Op::kMove) jump(module_.TimeLabel(i), Edge::kTimed);
+  return room;
+}
+
+std::vector<bool> FlowGraph::ReachOnLevel(std::uint32_t from) const {
+  std::vector<bool> reached(size() + 1U);
+  std::vector<std::uint32_t> open = {from};
+  std::vector<Successor> room;
+  reached[from] = true;
+  while (!open.empty()) {
+    const std::uint32_t at = open.back();
+    open.pop_back();
+    if (at == size()) continue;
+    for (const Successor& successor : From(at, room)) {
+      if (successor.edge == Edge::kCall || successor.edge == Edge::kTimed || reached[successor.to])
+        continue;
+      reached[successor.to] = true;
+      open.push_back(successor.to);
+    }
+  }
+  return reached;
+}
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,193 @@
+#include "engine/optimo/language/move_advice.h"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "engine/core/number_text.h"
+#include "engine/core/units.h"
+#include "engine/optimo/language/fixes.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+// OPT-5.46, in percent of machine speed.
+constexpr float kRapidMax = 70.0F, kApproachMax = 10.0F, kCuttingMin = 5.0F, kCuttingMax = 15.0F,
+                kLeavingMax = 20.0F;
+constexpr double kHoleTiltMax_rad = 30.0 * kRadPerDegree;  // OPT-5.48
+
+std::string SpeedText(float speed) { return "SPEED " + ShortestText(static_cast<double>(speed)); }
+
+}  // namespace
+
+void MoveAdviser::Warn(const Instruction& i, ErrorCode code, std::string detail,
+                       std::string_view rule) {
+  findings_.AddAs(Severity::kWarning, code, p_.At(i), std::move(detail), rule);
+}
+
+void MoveAdviser::Note(const Instruction& i, ErrorCode code, std::string detail,
+                       std::string_view rule) {
+  findings_.AddAs(Severity::kAdvice, code, p_.At(i), std::move(detail), rule);
+}
+
+void MoveAdviser::Advise(std::uint32_t at, const FlowState& state) {
+  const Instruction& i = module_.instructions[at];
+  AdvisePath(i, state);
+  AdviseSpeed(at, state);
+  AdviseFly(at, state);
+  AdviseShortFly(at, state);
+  AdviseHole(i, state);
+  if (state.coord) placed_.push_back({at, *state.coord});
+}
+
+void MoveAdviser::AdvisePath(const Instruction& i, const FlowState& state) {
+  const bool contour = state.path && *state.path != PathType::kPtp;
+  if (contour && state.coord == CoordType::kRobot) {
+    Warn(i, ErrorCode::kPathNeedsAbsol, "COORD ROBOT has PATH PTP only; this MOVE will fail",
+         "OPT-2.08");
+  }
+  if ((state.path == PathType::kCir || state.path == PathType::kHole) && !i.Has(kVia)) {
+    Warn(i, ErrorCode::kViaMissing, "CIR and HOLE without /VIA move in a straight line",
+         state.path == PathType::kCir ? "OPT-2.21" : "OPT-2.29");
+  }
+  if (state.path == PathType::kPtp && state.beam == Known::kYes) {
+    Warn(i, ErrorCode::kPracticeAdvice,
+         "a contour in PATH PTP with the beam on: its speed is not controlled", "OPT-5.45");
+  }
+}
+
+void MoveAdviser::AdviseSpeed(std::uint32_t at, const FlowState& state) {
+  const Instruction& i = module_.instructions[at];
+  if (state.unpierced == Known::kYes && state.path && *state.path != PathType::kPtp) {
+    Note(i, ErrorCode::kPracticeAdvice, "the beam was switched on without a dwell to pierce",
+         "OPT-3.20");
+  }
+  if (!state.speed) return;
+  const float speed = *state.speed;
+  const bool before_on =
+      at + 1 < module_.instructions.size() && module_.instructions[at + 1].op == Op::kWork &&
+      module_.instructions[at + 1].Has(kOn) && module_.instructions[at + 1].numbers[0] != 2;
+  if (state.beam == Known::kYes) {
+    if (speed > kCuttingMax || speed < kCuttingMin) {
+      Warn(i, ErrorCode::kPracticeAdvice,
+           SpeedText(speed) + " with the beam on; cutting takes 5 to 15 %", "OPT-5.46");
+    }
+  } else if (speed > kRapidMax) {
+    Warn(i, ErrorCode::kPracticeAdvice, SpeedText(speed) + "; rapid moves take at most 70 %",
+         "OPT-5.46");
+  } else if (before_on && speed > kApproachMax) {
+    Note(i, ErrorCode::kPracticeAdvice,
+         SpeedText(speed) + " to the pierce point; the approach takes 10 %", "OPT-5.46");
+  } else if (state.after_off == Known::kYes && speed > kLeavingMax) {
+    Note(i, ErrorCode::kPracticeAdvice,
+         SpeedText(speed) + " away from the part; leaving takes at most 20 %", "OPT-5.46");
+  }
+}
+
+std::vector<Fix> MoveAdviser::RemoveAttribute(const Instruction& i, Word word) const {
+  if (const auto fix = AttributeRemoval(p_, i, word)) return {*fix};
+  return {};
+}
+
+void MoveAdviser::AdviseFly(std::uint32_t at, const FlowState& state) {
+  const Instruction& i = module_.instructions[at];
+  if (!i.Has(kFly)) return;
+  const std::uint8_t ahead = chain_.Behind(at);
+  std::string detail;
+  std::string_view rule;
+  if (state.path == PathType::kHole) {
+    detail = "/FLY on a hole move";
+    rule = "OPT-2.53";
+  } else if (ahead == (kMotionAhead | kHoleAhead)) {
+    detail = "/FLY on the move to a hole";
+    rule = "OPT-2.53";
+  } else if (ahead == kStopAhead) {
+    const std::uint32_t stop = chain_.StopBehind(at);
+    if (stop >= module_.instructions.size() || module_.instructions[stop].op == Op::kEndtask) {
+      detail = "/FLY on the last MOVE of the program: the machine stops at the target";
+      rule = "OPT-2.47";
+    } else {
+      const Instruction& cause = module_.instructions[stop];
+      rule = cause.op == Op::kGo || cause.op == Op::kCall ? "OPT-2.47" : "OPT-2.48";
+      const std::string where =
+          std::string(Describe(cause.op).name) + " at step " + std::to_string(cause.step);
+      detail = "/FLY, but " + where + " needs standstill";
+      if (cause.op == Op::kCoord && state.coord &&
+          *state.coord != static_cast<CoordType>(cause.choice)) {
+        return findings_.AddAs(
+            Severity::kWarning, ErrorCode::kFlyBeforeCoord, p_.At(i),
+            "/FLY before the change of coordinates at step " + std::to_string(cause.step),
+            "OPT-2.45", RemoveAttribute(i, Word::kFly));
+      }
+    }
+  }
+  if (detail.empty()) return;
+  findings_.AddAs(Severity::kWarning, ErrorCode::kFlyAdvice, p_.At(i), std::move(detail), rule,
+                  RemoveAttribute(i, Word::kFly));
+}
+
+// OPT-2.51, OPT-2.52
+void MoveAdviser::AdviseShortFly(std::uint32_t at, const FlowState& state) {
+  const Instruction& i = module_.instructions[at];
+  if (!i.Has(kFly)) {
+    if (state.short_fly == kNoIndex) return;
+    const Instruction& before = module_.instructions[state.short_fly];
+    return Warn(before, ErrorCode::kShortFly,
+                "/FLY on a move shorter than 1 mm, and the next move stops", "OPT-2.51");
+  }
+  if (state.tiny_moves < 2 || !state.target) return;
+  const auto target = LiteralTarget(module_, i);
+  if (target && Distance(*target, *state.target) < kTinyFly_mm) {
+    Warn(i, ErrorCode::kShortFly, "/FLY on several moves in a row shorter than 0.01 mm",
+         "OPT-2.52");
+  }
+}
+
+// The angle between C to N and the tool axis u(A, B); program coordinates must not be turned.
+// OPT-5.48
+void MoveAdviser::AdviseHole(const Instruction& i, const FlowState& state) {
+  if (state.path != PathType::kHole || !i.Has(kVia) || state.rotated != Known::kNo) return;
+  double c[5], n[3];
+  for (int v = 0; v < 5; ++v) {
+    const auto value = LiteralValueOf(module_.Value(i, v));
+    if (!value) return;
+    c[v] = static_cast<double>(*value);
+  }
+  for (int v = 0; v < 3; ++v) {
+    const auto value = LiteralValueOf(module_.Via(i, v));
+    if (!value) return;
+    n[v] = static_cast<double>(*value) - c[v];
+  }
+  const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  if (length == 0.0) return;
+  const double u[3] = {std::sin(c[3]) * std::sin(c[4]), -std::cos(c[3]) * std::sin(c[4]),
+                       std::cos(c[4])};
+  const double cosine = (n[0] * u[0] + n[1] * u[1] + n[2] * u[2]) / length;
+  const double angle = std::acos(std::fmin(1.0, std::fmax(-1.0, cosine)));
+  if (angle <= kHoleTiltMax_rad) return;
+  Warn(i, ErrorCode::kPracticeAdvice,
+       "the axis of the hole is " + FixedText(angle / kRadPerDegree, 2) +
+           " degrees off the tool axis: a wrong normal point?",
+       "OPT-5.48");
+}
+
+// OPT-7.109: with SYSDEF, ROBOT moves belong only to the first approach and the last retract.
+void MoveAdviser::AdviseRobotMoves() {
+  bool uses_sysdef = false;
+  for (const Instruction& i : module_.instructions)
+    uses_sysdef = uses_sysdef || (i.op == Op::kSysdef && i.value_count > 0);
+  if (!uses_sysdef) return;
+  std::size_t first = placed_.size(), last = 0;
+  for (std::size_t m = 0; m < placed_.size(); ++m) {
+    if (placed_[m].coord != CoordType::kAbsol) continue;
+    first = std::min(first, m);
+    last = m;
+  }
+  for (std::size_t m = first; m < last; ++m) {
+    if (placed_[m].coord != CoordType::kRobot) continue;
+    Warn(module_.instructions[placed_[m].at], ErrorCode::kPracticeAdvice,
+         "a ROBOT move between ABSOL moves is not shifted by SYSDEF", "OPT-7.109");
+  }
+}
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,312 @@
+#include <algorithm>
+#include <bitset>
+#include <cmath>
+#include <string>
+
+#include "engine/optimo/language/byte_stream.h"
+#include "engine/optimo/language/checker.h"
+#include "engine/optimo/language/compiler.h"
+#include "engine/optimo/language/evaluate.h"
+#include "engine/optimo/language/object_form.h"
+#include "engine/optimo/language/parser.h"
+#include "engine/optimo/language/printer.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+constexpr int kLabelMax = 9999;
+constexpr std::uint64_t kTargetsMax = 10'000;
+
+// Accepts exactly what EncodeObject can write: so what was accepted, decompiled and compiled again
+// is the same object.
+class Reader {
+ public:
+  explicit Reader(std::string_view bytes) : in_(bytes) {}
+
+  bool Read(Module& module) {
+    module_ = &module;
+    const std::uint64_t records = in_.Whole(kSourceBytesMax);
+    ReadNames();
+    ReadLabels(module.end_labels);
+    for (std::uint64_t r = 0; r < records && !in_.bad(); ++r) ReadRecord();
+    return !in_.bad() && in_.AtEnd() && next_name_ == module.names.size();
+  }
+
+ private:
+  void ReadNames();
+  void ReadLabels(std::vector<std::uint16_t>& labels);
+  void ReadRecord();
+  void ReadIgnored(Instruction& i);
+  void ReadExpression();
+  void ReadLeaf(unsigned tag, ExprNode& node);
+  void RequireForm(const Instruction& i);
+  bool IsVariable(const Instruction& i, int position) const;
+  bool IsWholeNumber(const Instruction& i, int position) const;
+  void Require(bool condition) {
+    if (!condition) in_.Refuse();
+  }
+
+  ByteReader in_;
+  Module* module_ = nullptr;
+  std::bitset<kLabelMax + 1> labels_;
+  std::size_t next_name_ = 0;
+  std::vector<ExprNode> reversed_;
+};
+
+void Reader::ReadNames() {
+  const std::uint64_t count = in_.Whole(kNoName - 1U);
+  std::vector<NameKey> keys;
+  for (std::uint64_t n = 0; n < count && !in_.bad(); ++n) {
+    const std::string_view text = in_.Text(kNameLength);
+    bool good = !text.empty() && text[0] >= 'A' && text[0] <= 'Z';
+    for (const char c : text) good = good && ((c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'));
+    const NameKey key = PackName(text);
+    Require(good && FindWord(key) == Word::kNone);
+    keys.push_back(key);
+    module_->names.push_back({.key = key, .declared = false, .value = {}});
+  }
+  std::ranges::sort(keys);
+  Require(std::ranges::adjacent_find(keys) == keys.end());
+}
+
+void Reader::ReadLabels(std::vector<std::uint16_t>& labels) {
+  const std::uint64_t count = in_.Whole(kLabelMax + 1);
+  for (std::uint64_t n = 0; n < count && !in_.bad(); ++n) {
+    const unsigned label = in_.Fixed16();
+    if (label > kLabelMax || labels_.test(label)) return in_.Refuse();
+    labels_.set(label);
+    labels.push_back(static_cast<std::uint16_t>(label));
+  }
+}
+
+void Reader::ReadRecord() {
+  const unsigned code = in_.Byte();
+  const unsigned op = code & kCodeMask;
+  if (op == 0 || op >= static_cast<unsigned>(kOpCount)) return in_.Refuse();
+  Instruction i;
+  i.op = static_cast<Op>(op);
+  i.first_expression = static_cast<std::uint32_t>(module_->expressions.size());
+  i.first_target = static_cast<std::uint32_t>(module_->targets.size());
+  i.first_label = static_cast<std::uint32_t>(module_->labels.size());
+  if ((code & kLabelsFlag) != 0) {
+    ReadLabels(module_->labels);
+    i.label_count = static_cast<std::uint16_t>(module_->labels.size() - i.first_label);
+    Require(i.label_count > 0);
+  }
+  if ((code & kAttributesFlag) != 0) {
+    i.attributes = static_cast<std::uint16_t>(in_.Whole(0xFFFF));
+    Require(i.attributes != 0 && (i.attributes & ~Describe(i.op).attributes) == 0);
+  }
+  if (i.op == Op::kIgnored) return ReadIgnored(i);
+  const ObjectForm form = FormOf(i.op);
+  if (form.choice) i.choice = static_cast<std::uint8_t>(in_.Byte());
+  for (std::size_t n = 0; n < form.numbers; ++n)
+    i.numbers[n] = static_cast<std::uint16_t>(in_.Whole(0xFFFF));
+  if (form.name) {
+    i.name = static_cast<std::uint16_t>(in_.Whole(kNoName - 1U));
+    Require(i.name == next_name_++ && i.name < module_->names.size());
+  }
+  i.value_count = form.value_count;
+  if (form.values == ValueCount::kCounted) {
+    i.value_count = static_cast<std::uint8_t>(in_.Byte());
+    Require(i.value_count <= form.value_count);
+  }
+  const std::uint32_t expressions = module_->ExpressionCount(i);
+  for (std::uint32_t e = 0; e < expressions && !in_.bad(); ++e) ReadExpression();
+  std::uint64_t targets = i.Has(kTime) ? 1 : 0;
+  if (form.targets == TargetCount::kOne) ++targets;
+  if (form.targets == TargetCount::kWithValue) targets += i.value_count;
+  if (form.targets == TargetCount::kCounted) targets = in_.Whole(kTargetsMax);
+  for (std::uint64_t t = 0; t < targets && !in_.bad(); ++t) {
+    const unsigned label = in_.Fixed16();
+    Require(label <= kLabelMax);
+    module_->targets.push_back(static_cast<std::uint16_t>(label));
+  }
+  i.target_count = static_cast<std::uint16_t>(targets);
+  if (!in_.bad()) RequireForm(i);
+  module_->instructions.push_back(i);
+}
+
+void Reader::ReadIgnored(Instruction& i) {
+  const std::string_view text = in_.Text(kSourceBytesMax);
+  const std::size_t blank = std::min(text.find(' '), text.size());
+  const std::string_view word_text = text.substr(0, blank);
+  const Word word = word_text.size() <= kNameLength ? FindWord(PackName(word_text)) : Word::kNone;
+  Require(word != Word::kNone && Describe(word).group == WordGroup::kIgnored &&
+          module_->texts.size() < kNoName);
+  if (in_.bad()) return;
+  const std::string_view rest = text.substr(std::min(blank + 1, text.size()));
+  Require(IgnoredText(word, rest) == text &&
+          text.find_first_of("\n\r;\x1A") == std::string_view::npos);
+  i.name = static_cast<std::uint16_t>(module_->texts.size());
+  module_->texts.emplace_back(text);
+  module_->instructions.push_back(i);
+}
+
+void Reader::ReadLeaf(unsigned tag, ExprNode& node) {
+  switch (tag) {
+    case kTagInteger:
+      node.number = static_cast<float>(static_cast<std::int16_t>(in_.Fixed16()));
+      return;
+    case kTagReal: {
+      node.op = Node::kReal;
+      node.number = in_.Real();
+      const double magnitude = std::fabs(static_cast<double>(node.number));
+      const bool zero = std::bit_cast<std::uint32_t>(node.number) == 0;
+      return Require(zero || (magnitude >= kRealMin && magnitude <= kRealMax));
+    }
+    case kTagOff:
+    case kTagOn:
+      node.op = Node::kLogical;
+      node.number = tag == kTagOn ? 1.0F : 0.0F;
+      return;
+    case kTagPi:
+      node.op = Node::kPi;
+      node.number = kPiLanguage;
+      return;
+    case kTagName:
+      node.op = Node::kName;
+      node.name = static_cast<std::uint16_t>(in_.Whole(kNoName - 1U));
+      return Require(node.name < module_->names.size());
+    default:
+      break;
+  }
+  const unsigned group = tag & 7U;
+  node.op = Node::kVariable;
+  node.group = static_cast<VariableGroup>(group);
+  if (tag >= kTagNamedIndex) {
+    node.index_name = static_cast<std::uint16_t>(in_.Whole(kNoName - 1U));
+    return Require(node.index_name < module_->names.size());
+  }
+  const unsigned index = in_.Byte();
+  Require(index <= static_cast<unsigned>(node.group == VariableGroup::kPar ? kParameterCount - 1
+                                                                           : kVariableIndexMax));
+  node.index = static_cast<std::uint8_t>(index);
+}
+
+void Reader::ReadExpression() {
+  reversed_.clear();
+  for (std::uint64_t needed = 1; needed > 0 && !in_.bad();) {
+    const unsigned tag = in_.Byte();
+    ExprNode node;
+    if (tag >= kTagOperator) {
+      const unsigned op = tag - kTagOperator;
+      if (op < static_cast<unsigned>(Node::kNegate) || op >= static_cast<unsigned>(kNodeCount))
+        return in_.Refuse();
+      node.op = static_cast<Node>(op);
+      needed += static_cast<std::uint64_t>(Arity(node.op));
+    } else {
+      if ((tag > kTagName && tag < kTagVariable) || tag == 0) return in_.Refuse();
+      ReadLeaf(tag, node);
+    }
+    --needed;
+    reversed_.push_back(node);
+  }
+  if (in_.bad()) return;
+  module_->expressions.push_back({static_cast<std::uint32_t>(module_->nodes.size()),
+                                  static_cast<std::uint32_t>(reversed_.size())});
+  module_->nodes.insert(module_->nodes.end(), reversed_.rbegin(), reversed_.rend());
+}
+
+bool Reader::IsVariable(const Instruction& i, int position) const {
+  const Expression value = module_->Value(i, position);
+  return value.size() == 1 && (value[0].op == Node::kVariable || value[0].op == Node::kName);
+}
+
+bool Reader::IsWholeNumber(const Instruction& i, int position) const {
+  const Expression value = module_->Value(i, position);
+  return value.size() == 1 && value[0].op == Node::kInteger && value[0].number >= 0.0F;
+}
+
+// What the grammar demands and the checker takes for granted.
+void Reader::RequireForm(const Instruction& i) {
+  for (std::uint32_t e = 0; e < module_->ExpressionCount(i); ++e) {
+    Require(PrintedNesting(module_->expression(i.first_expression + e), i.op == Op::kTcp) <=
+            kNestingMax);
+  }
+  const bool on = i.Has(kOn), off = i.Has(kOff);
+  switch (i.op) {
+    case Op::kCoord:
+      return Require(i.choice <= 1);
+    case Op::kPath:
+      return Require(i.choice <= 3 && (i.choice == static_cast<std::uint8_t>(PathType::kHole)) ==
+                                          (i.value_count == 1));
+    case Op::kSysdef:
+      return Require(i.value_count == 0 || i.value_count == 6);
+    case Op::kWorkdef: {
+      const unsigned kind = i.numbers[0], count = i.value_count;
+      const bool fits = kind == 0 ? count == 0 : kind == 1 ? count == 4 || count == 5 : count == 1;
+      return Require(kind <= 2 && i.numbers[1] <= 9 && fits);
+    }
+    case Op::kWork:
+      return Require(i.numbers[0] <= 2 && i.numbers[1] <= 9 && on != off);
+    case Op::kGo:
+      Require((i.attributes & (i.attributes - 1)) == 0);
+      return Require(IsVariable(i, 0) || IsWholeNumber(i, 0));
+    case Op::kCall:
+      return Require(i.value_count >= 1 && (IsVariable(i, 0) || IsWholeNumber(i, 0)));
+    case Op::kFunction: {
+      if (i.value_count < 1) return in_.Refuse();
+      const Expression number = module_->Value(i, 0);
+      return Require(number.size() == 1 && (number[0].op == Node::kName || IsWholeNumber(i, 0)));
+    }
+    case Op::kGotoTable:
+      return Require(IsVariable(i, 0) && i.target_count >= 1);
+    case Op::kIf:
+      return Require(i.target_count == 1 || i.target_count == 2);
+    case Op::kTimer:
+      return Require(i.value_count == 1 ? !i.Has(kDis) : i.attributes == kDis);
+    case Op::kLet:
+      return Require(IsVariable(i, 0));
+    case Op::kDeclare: {
+      const Expression value = module_->Value(i, 0);
+      return Require(value.size() == 1 && value[0].op != Node::kName);
+    }
+    case Op::kDefine:
+      return Require(i.numbers[0] < kParameterCount && i.choice <= 2);
+    case Op::kAssign: {
+      const Expression value = module_->Value(i, 1);
+      return Require(IsVariable(i, 0) && value.size() == 1 &&
+                     (IsVariable(i, 1) || value[0].op == Node::kInteger));
+    }
+    case Op::kUpdate:
+      return Require(i.choice >= 1 && i.choice <= kAllGroups && on != off);
+    case Op::kImage:
+    case Op::kReal:
+      return Require(i.choice >= 1 && i.choice <= kAllGroups);
+    case Op::kBreak:
+    case Op::kSimul:
+      return Require(i.numbers[0] >= 1 && i.numbers[0] <= 9999 && i.numbers[1] <= 99);
+    default:
+      return;
+  }
+}
+
+Error Corrupt(std::string detail) { return {ErrorCode::kObjectCorrupt, std::move(detail), {}}; }
+
+}  // namespace
+
+Result<Module> DecodeObject(std::string_view bytes) {
+  constexpr std::size_t kHead = kObjectMagic.size() + 1, kTail = 4;
+  if (bytes.size() < kHead + kTail || bytes.substr(0, kObjectMagic.size()) != kObjectMagic) {
+    return Corrupt("this is no object");
+  }
+  const auto version = static_cast<unsigned char>(bytes[kObjectMagic.size()]);
+  if (version != kObjectVersion)
+    return Corrupt("object version " + std::to_string(version) + " is not known");
+  const std::string_view body = bytes.substr(0, bytes.size() - kTail);
+  if (ByteReader(bytes.substr(body.size())).Fixed32() != Checksum(body))
+    return Corrupt("the checksum is wrong");
+  Module module;
+  if (!Reader(body.substr(kHead)).Read(module)) return Corrupt("a record is damaged");
+  Findings findings(1);
+  CheckModule(module, findings);
+  if (findings.error_count() == 0) return module;
+  for (const Diagnostic& found : findings.Take({}, {})) {
+    if (IsError(found.severity))
+      return Corrupt(CodeText(found.code) + " at step " + std::to_string(found.step));
+  }
+  return Corrupt("the program has errors");
+}
+
+}  // namespace rmlcell::optimo

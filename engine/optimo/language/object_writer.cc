@@ -1,0 +1,114 @@
+#include <array>
+
+#include "engine/optimo/language/byte_stream.h"
+#include "engine/optimo/language/compiler.h"
+#include "engine/optimo/language/object_form.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+constexpr std::array<std::uint32_t, 256> MakeCrcTable() {
+  std::array<std::uint32_t, 256> table{};
+  for (std::uint32_t i = 0; i < 256; ++i) {
+    std::uint32_t value = i;
+    for (int bit = 0; bit < 8; ++bit)
+      value = (value & 1U) != 0 ? 0xEDB88320U ^ value >> 1 : value >> 1;
+    table[i] = value;
+  }
+  return table;
+}
+constexpr std::array<std::uint32_t, 256> kCrcTable = MakeCrcTable();
+
+void WriteLeaf(const ExprNode& node, ByteWriter& out) {
+  const auto group = static_cast<unsigned>(node.group);
+  if (node.name != kNoName) {
+    out.Byte(kTagName);
+    out.Whole(node.name);
+    return;
+  }
+  switch (node.op) {
+    case Node::kInteger:
+      out.Byte(kTagInteger);
+      out.Fixed16(static_cast<unsigned>(static_cast<int>(node.number)) & 0xFFFF);
+      return;
+    case Node::kReal:
+      out.Byte(kTagReal);
+      out.Real(node.number);
+      return;
+    case Node::kLogical:
+      return out.Byte(node.number != 0.0F ? kTagOn : kTagOff);
+    case Node::kPi:
+      return out.Byte(kTagPi);
+    default:
+      break;
+  }
+  if (node.index_name != kNoName) {
+    out.Byte(kTagNamedIndex + group);
+    out.Whole(node.index_name);
+  } else {
+    out.Byte(kTagVariable + group);
+    out.Byte(node.index);
+  }
+}
+
+void WriteExpression(Expression expression, ByteWriter& out) {
+  for (std::size_t i = expression.size(); i-- > 0;) {
+    const ExprNode& node = expression[i];
+    if (Arity(node.op) == 0) {
+      WriteLeaf(node, out);
+    } else {
+      out.Byte(kTagOperator + static_cast<unsigned>(node.op));
+    }
+  }
+}
+
+void WriteLabels(std::span<const std::uint16_t> labels, ByteWriter& out) {
+  out.Whole(labels.size());
+  for (const std::uint16_t label : labels) out.Fixed16(label);
+}
+
+void WriteRecord(const Module& module, const Instruction& i, ByteWriter& out) {
+  out.Byte(Describe(i.op).object_code | (i.label_count > 0 ? kLabelsFlag : 0U) |
+           (i.attributes != 0 ? kAttributesFlag : 0U));
+  if (i.label_count > 0) WriteLabels(module.Labels(i), out);
+  if (i.attributes != 0) out.Whole(i.attributes);
+  if (i.op == Op::kIgnored) return out.Text(module.texts[i.name]);
+  const ObjectForm form = FormOf(i.op);
+  if (form.choice) out.Byte(i.choice);
+  for (std::size_t n = 0; n < form.numbers; ++n) out.Whole(i.numbers[n]);
+  if (form.name) out.Whole(i.name);
+  if (form.values == ValueCount::kCounted) out.Byte(i.value_count);
+  const std::uint32_t expressions = module.ExpressionCount(i);
+  for (std::uint32_t e = 0; e < expressions; ++e)
+    WriteExpression(module.expression(i.first_expression + e), out);
+  if (form.targets == TargetCount::kCounted) out.Whole(i.target_count);
+  for (std::uint32_t t = 0; t < i.target_count; ++t)
+    out.Fixed16(module.targets[i.first_target + t]);
+}
+
+}  // namespace
+
+std::uint32_t Checksum(std::string_view bytes) {
+  std::uint32_t sum = 0xFFFF'FFFFU;
+  for (const char c : bytes)
+    sum = kCrcTable[(sum ^ static_cast<unsigned char>(c)) & 0xFF] ^ sum >> 8;
+  return ~sum;
+}
+
+std::string EncodeObject(const Module& module) {
+  ByteWriter out;
+  out.Raw(kObjectMagic);
+  out.Byte(kObjectVersion);
+  out.Whole(module.instructions.size());
+  out.Whole(module.names.size());
+  for (const DeclaredName& name : module.names) {
+    char room[kNameLength];
+    out.Text(UnpackName(name.key, room));
+  }
+  WriteLabels(module.end_labels, out);
+  for (const Instruction& instruction : module.instructions) WriteRecord(module, instruction, out);
+  out.Fixed32(Checksum(out.bytes()));
+  return out.Take();
+}
+
+}  // namespace rmlcell::optimo

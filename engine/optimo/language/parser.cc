@@ -1,0 +1,363 @@
+#include "engine/optimo/language/parser.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/optimo/language/nearest_word.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+constexpr std::size_t kNamesMax = kNoName;      // names have 16-bit numbers
+constexpr std::size_t kQuotedMax = 40;          // of a token in a message
+constexpr std::size_t kProposalNamesMax = 500;  // names compared with a mistyped one
+
+}  // namespace
+
+Parser::Parser(std::string_view text, ParsedProgram& program, Findings& findings)
+    : text_(text),
+      program_(program),
+      module_(program.module),
+      findings_(findings),
+      lexer_(text, program.comments) {}
+
+// Room for what a text of this size most likely holds, so that large programs are not copied while
+// they grow. Untouched room costs no memory; the bound keeps it small for a text that is mostly
+// comment.
+void Parser::Reserve() {
+  constexpr std::size_t kElementsMax = std::size_t{1} << 23;
+  const auto lines = static_cast<std::size_t>(std::count(text_.begin(), text_.end(), '\n'));
+  const std::size_t instructions = std::min(lines + 1, kElementsMax);
+  const std::size_t values = std::min(text_.size() / 7, kElementsMax);
+  module_.instructions.reserve(instructions);
+  program_.statements.reserve(instructions);
+  module_.expressions.reserve(values);
+  module_.nodes.reserve(values);
+  program_.node_places.reserve(values);
+}
+
+void Parser::Run() {
+  Reserve();
+  while (lexer_.NextStatement()) ParseStatement();
+  module_.end_labels = pending_labels_;
+  program_.end_label_places = pending_label_places_;
+  module_.step_count = steps_;
+}
+
+// line := [ label ] [ statement ]                                               OPT-1.27
+void Parser::ParseStatement() {
+  at_ = 0;
+  nesting_ = 0;
+  slash_separates_ = false;
+  first_ = Peek();
+  labelled_ = first_.kind == TokenKind::kNumber;
+  if (labelled_) {
+    AddLabel(Take());
+    if (Is(TokenKind::kEnd)) return;
+    first_ = Peek();
+  }
+  instruction_ = Instruction{};
+  instruction_.first_expression = static_cast<std::uint32_t>(module_.expressions.size());
+  instruction_.first_target = static_cast<std::uint32_t>(module_.targets.size());
+  attribute_parts_.clear();
+  const bool steps = first_.word != Word::kDeclare;
+  if (steps) ++steps_;
+  instruction_.step = steps ? steps_ : 0;
+  const std::size_t nodes = module_.nodes.size();
+
+  const WordGroup group = first_.kind != TokenKind::kWord || first_.word == Word::kNone
+                              ? WordGroup::kNone
+                              : Describe(first_.word).group;
+  bool good = false;
+  if (first_.kind == TokenKind::kWord &&
+      (group == WordGroup::kNone || group == WordGroup::kVariable)) {
+    good = ParseAssignment(false);
+  } else if (group == WordGroup::kInstruction) {
+    good = ParseInstruction(first_.word);
+  } else if (group == WordGroup::kIgnored) {
+    ParseIgnored(first_.word);
+    good = true;
+  } else if (group == WordGroup::kUnavailable) {
+    FailAt(first_, ErrorCode::kWordUnavailable, Quoted(first_) + " is not available on the Optimo",
+           Describe(first_.word).rule);
+  } else {
+    Fail("an instruction");
+  }
+  if (good && instruction_.op != Op::kIgnored) {
+    good = ParseAttributes();
+    if (good && !Is(TokenKind::kEnd)) good = Fail("the end of the statement");
+  }
+  if (!good) {
+    module_.nodes.resize(nodes);
+    program_.node_places.resize(nodes);
+    module_.expressions.resize(instruction_.first_expression);
+    module_.targets.resize(instruction_.first_target);
+    const bool named = instruction_.op == Op::kDeclare && instruction_.name != kNoName &&
+                       !declared_[instruction_.name];
+    if (named) program_.broken_names[instruction_.name] = true;  // spares its uses a second error
+    const std::uint32_t step = instruction_.step;
+    instruction_ = Instruction{};
+    instruction_.step = step;
+    instruction_.first_expression = static_cast<std::uint32_t>(module_.expressions.size());
+    instruction_.first_target = static_cast<std::uint32_t>(module_.targets.size());
+  }
+  FinishStatement(good);
+}
+
+void Parser::FinishStatement(bool good) {
+  if (good && attribute_parts_.size() > 1) OrderAttributeParts();
+  instruction_.first_label = static_cast<std::uint32_t>(module_.labels.size());
+  instruction_.label_count = static_cast<std::uint16_t>(pending_labels_.size());
+  if (!pending_labels_.empty()) {
+    module_.labels.insert(module_.labels.end(), pending_labels_.begin(), pending_labels_.end());
+    program_.label_places.insert(program_.label_places.end(), pending_label_places_.begin(),
+                                 pending_label_places_.end());
+    pending_labels_.clear();
+    pending_label_places_.clear();
+  }
+  module_.instructions.push_back(instruction_);
+  const Token& end = at_ > 0 ? lexer_.At(at_ - 1) : first_;
+  const std::uint32_t behind = end.kind == TokenKind::kEnd ? end.offset : end.offset + end.length;
+  program_.statements.push_back({first_.offset, std::max(behind, first_.offset + first_.length),
+                                 static_cast<std::uint32_t>(at_) - (labelled_ ? 1U : 0U)});
+}
+
+// Attributes stand in any order in the text and in one order in the module. OPT-2.43
+void Parser::OrderAttributeParts() {
+  if (std::ranges::is_sorted(attribute_parts_, {}, &AttributePart::attribute)) return;
+  const std::vector<ExprRange> written(
+      module_.expressions.begin() + instruction_.first_expression + instruction_.value_count,
+      module_.expressions.end());
+  const std::uint32_t base = instruction_.first_expression + instruction_.value_count;
+  std::ranges::stable_sort(attribute_parts_, {}, &AttributePart::attribute);
+  std::size_t to = base;
+  for (const AttributePart& part : attribute_parts_) {
+    for (std::uint32_t i = 0; i < part.count; ++i) {
+      module_.expressions[to++] = written[part.first - base + i];
+    }
+  }
+}
+
+void Parser::AddLabel(const Token& token) {
+  if (token.digits > 9999 || token.length > 4) {
+    return Report(token, ErrorCode::kLabelRange, "sequence numbers go from 0 to 9999", "OPT-1.23");
+  }
+  std::uint32_t& line = label_line_[token.digits];
+  if (line != 0) {
+    return Report(token, ErrorCode::kLabelDuplicate,
+                  "sequence number " + std::to_string(token.digits) + " stands on line " +
+                      std::to_string(line) + " already",
+                  "OPT-1.25");
+  }
+  line = lexer_.line();
+  pending_labels_.push_back(static_cast<std::uint16_t>(token.digits));
+  pending_label_places_.push_back({token.offset, token.length});
+}
+
+// [ "LET" ] target "=" expr                                                     OPT-7.91
+bool Parser::ParseAssignment(bool after_let) {
+  instruction_.op = Op::kLet;
+  const Token target = Peek();
+  if (!after_let && target.word == Word::kNone && Peek(1).kind != TokenKind::kEqual) {
+    const auto known = names_.find(target.key);
+    if (known == names_.end() || !declared_[known->second]) return FailUnknown(target);
+  }
+  if (!ParseTarget("a variable or name") || !Expect(TokenKind::kEqual, "'='") ||
+      !ParseExpression()) {
+    return false;
+  }
+  instruction_.value_count = 2;
+  return true;
+}
+
+std::string IgnoredText(Word word, std::string_view rest) {
+  std::string text(Describe(word).text);
+  bool blank = true;
+  for (const char c : rest) {
+    const bool is_blank = c == ' ' || c == '\t';
+    if (!is_blank) {
+      if (blank) text += ' ';
+      text += c >= 'a' && c <= 'z' ? static_cast<char>(c - ('a' - 'A')) : c;
+    }
+    blank = is_blank;
+  }
+  return text;
+}
+
+// The words that are accepted without effect; what follows on the line is kept and not examined.
+void Parser::ParseIgnored(Word word) {
+  instruction_.op = Op::kIgnored;
+  Take();
+  std::string text = IgnoredText(word, lexer_.RestOfLine(first_));
+  if (module_.texts.size() >= kNamesMax) {
+    ReportStatement(ErrorCode::kObjectTooLong,
+                    "more instructions without effect than an object can hold");
+    instruction_.name = 0;
+    return;
+  }
+  instruction_.name = static_cast<std::uint16_t>(module_.texts.size());
+  module_.texts.push_back(std::move(text));
+}
+
+// The nearest instruction word or declared name is proposed. OPT-7.91
+bool Parser::FailUnknown(const Token& name) {
+  if (findings_.full()) return FailAt(name, ErrorCode::kNameUndeclared, {});
+  std::vector<std::string_view> candidates;
+  for (const WordInfo& row : ReservedWords()) {
+    if (row.group == WordGroup::kInstruction || row.group == WordGroup::kIgnored)
+      candidates.push_back(row.text);
+  }
+  std::string names;
+  names.reserve(kProposalNamesMax * kNameLength);
+  for (std::size_t i = 0; i < module_.names.size() && i < kProposalNamesMax; ++i) {
+    if (!declared_[i]) continue;
+    char room[kNameLength];
+    const std::size_t begin = names.size();
+    names += UnpackName(module_.names[i].key, room);
+    candidates.push_back(std::string_view(names).substr(begin));
+  }
+  const std::string nearest = NearestWord(lexer_.TextOf(name), candidates);
+  std::string detail = Quoted(name) + " is no instruction and no declared name";
+  std::vector<Fix> fixes;
+  if (!nearest.empty()) {
+    detail += "; did you mean " + nearest + "?";
+    fixes.push_back({name.offset, static_cast<int>(name.length), nearest});
+  }
+  findings_.Add(ErrorCode::kNameUndeclared, PlaceOf(name), std::move(detail), "OPT-7.91",
+                std::move(fixes));
+  return false;
+}
+
+std::uint16_t Parser::InternName(const Token& token) {
+  const auto [entry, added] =
+      names_.try_emplace(token.key, static_cast<std::uint16_t>(module_.names.size()));
+  if (added) {
+    if (module_.names.size() >= kNamesMax) {
+      names_.erase(entry);
+      if (!std::exchange(too_many_names_, true)) {
+        Report(token, ErrorCode::kObjectTooLong, "more names than an object can hold");
+      }
+      return 0;
+    }
+    module_.names.push_back({.key = token.key, .declared = false, .value = {}});
+    declared_.push_back(false);
+    program_.broken_names.push_back(false);
+    long_form_reported_.push_back(false);
+  }
+  const std::uint16_t name = entry->second;
+  if (token.length > kNameLength && !long_form_reported_[name]) {
+    long_form_reported_[name] = true;
+    char room[kNameLength];
+    std::string eight(UnpackName(token.key, room));
+    findings_.Add(ErrorCode::kNameTruncated, PlaceOf(token), Quoted(token) + " counts as " + eight,
+                  "OPT-7.46");
+  }
+  return name;
+}
+
+bool Parser::TryTake(TokenKind kind) {
+  if (!Is(kind)) return false;
+  ++at_;
+  return true;
+}
+
+bool Parser::Expect(TokenKind kind, std::string_view expected) {
+  return TryTake(kind) || Fail(expected);
+}
+
+bool Parser::TakeWord(Word word) {
+  if (Peek().kind != TokenKind::kWord || Peek().word != word) return false;
+  ++at_;
+  return true;
+}
+
+bool Parser::ExpectWord(Word word, std::string_view expected) {
+  return TakeWord(word) || Fail(expected);
+}
+
+bool Parser::Fail(std::string_view expected) {
+  const Token token = Peek();
+  switch (token.kind) {
+    case TokenKind::kEnd:
+      if (lexer_.unfinished()) {
+        return FailAt(token, ErrorCode::kUnexpectedEnd,
+                      "expected " + std::string(expected) + " before the end of the text");
+      }
+      return FailAt(token, ErrorCode::kSyntax, "expected " + std::string(expected));
+    case TokenKind::kBadCharacter:
+      return FailAt(token, ErrorCode::kBadCharacter, Quoted(token) + " cannot stand here",
+                    "OPT-1.32");
+    case TokenKind::kBadNumber:
+      return FailAt(token, ErrorCode::kBadNumber, Quoted(token) + " is no number", "OPT-B.42");
+    case TokenKind::kTooLong:
+      return FailAt(token, ErrorCode::kSyntax, "the statement is too long");
+    case TokenKind::kWord:
+      if (token.word != Word::kNone && Describe(token.word).group == WordGroup::kUnavailable) {
+        return FailAt(token, ErrorCode::kWordUnavailable,
+                      Quoted(token) + " is not available on the Optimo", Describe(token.word).rule);
+      }
+      break;
+    default:
+      break;
+  }
+  return FailAt(token, ErrorCode::kSyntax,
+                "expected " + std::string(expected) + ", found " + Quoted(token));
+}
+
+bool Parser::FailAt(const Token& token, ErrorCode code, std::string detail, std::string_view rule) {
+  Report(token, code, std::move(detail), rule);
+  // The line may be a statement of its own behind one that forgot a parenthesis.
+  if (token.first_on_line && token.offset > first_.offset &&
+      lexer_.BeginsAssignment(token.offset)) {
+    lexer_.ResumeAt(token);
+  }
+  return false;
+}
+
+void Parser::Report(const Token& token, ErrorCode code, std::string detail, std::string_view rule) {
+  findings_.Add(code, PlaceOf(token), std::move(detail), rule);
+}
+
+void Parser::ReportStatement(ErrorCode code, std::string detail, std::string_view rule) {
+  Report(first_, code, std::move(detail), rule);
+}
+
+Place Parser::PlaceOf(const Token& token) const {
+  return {token.offset, static_cast<int>(token.length), static_cast<int>(instruction_.step)};
+}
+
+std::string Parser::Quoted(const Token& token) const {
+  std::string text = "'";
+  for (const char c : lexer_.TextOf(token).substr(0, kQuotedMax)) {
+    const auto byte = static_cast<unsigned char>(c);
+    constexpr std::string_view kDigits = "0123456789ABCDEF";
+    if (byte >= 0x20 && byte < 0x7F) {
+      text += c;
+    } else {
+      text += {'\\', 'x', kDigits[byte >> 4], kDigits[byte & 15]};
+    }
+  }
+  if (token.length > kQuotedMax) text += "...";
+  return text + "'";
+}
+
+Place ParsedProgram::At(const Instruction& instruction) const {
+  const Statement& statement =
+      statements[static_cast<std::size_t>(&instruction - module.instructions.data())];
+  return {statement.begin, static_cast<int>(statement.end - statement.begin),
+          static_cast<int>(instruction.step)};
+}
+
+ParsedProgram Parse(std::string_view text, Findings& findings) {
+  ParsedProgram program;
+  text = text.substr(0, text.find('\x1A'));
+  if (text.size() > kSourceBytesMax) {
+    findings.Add(ErrorCode::kCellTooLarge, {}, "a program has at most 1 GiB");
+    return program;
+  }
+  program.text = text;
+  Parser(text, program, findings).Run();
+  return program;
+}
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "engine/optimo/language/lexer.h"
+#include "engine/optimo/language/program.h"
+
+// The parser behind Parse() (program.h): one production of optimo.md B.9, one function. Private to
+// the folder.
+namespace rmlcell::optimo {
+
+// "CONT 3": the word and what follows it on its line, in upper case with single blanks.
+std::string IgnoredText(Word word, std::string_view rest);
+
+class Parser {
+ public:
+  Parser(std::string_view text, ParsedProgram& program, Findings& findings);
+  void Run();
+
+ private:
+  void Reserve();
+
+  // Statements, parser.cc. They return false when the statement was given up; the error is
+  // reported.
+  void ParseStatement();
+  bool ParseInstruction(Word word);
+  bool ParseAssignment(bool after_let);
+  void ParseIgnored(Word word);
+  void AddLabel(const Token& token);
+  void FinishStatement(bool good);
+  void OrderAttributeParts();
+
+  // Instructions, parser_instructions.cc
+  bool ParseMove();
+  bool ParseCoord();
+  bool ParsePath();
+  bool ParseOneValue();
+  bool ParseSysdef();
+  bool ParseTcp();
+  bool ParseWorkdef();
+  bool ParseCall();
+  bool ParseFunction();
+  bool ParseGoto();
+  bool ParseIf();
+  bool ParseTask();
+  bool ParseTimer();
+  bool ParseDeclare();
+  bool ParseDefine();
+  bool ParseAssign();
+  bool ParseImage();
+  bool ParseBreak();
+  bool ParseGroups();
+  bool ParseProcess();
+  bool ParseProgramNumber();
+  bool ParseArguments();
+  bool ParseAttributes();
+  bool ParseAttribute(const Token& word, Attribute attribute);
+  bool ParseTimeAndLabel(std::string_view what);
+
+  // Values, parser_expression.cc
+  bool ParseExpression();     // appends one ExprRange
+  bool ParseParenthesised();  // "(" expr ")"
+  bool ParseList(int& count, int keep_max, int slash_after = 0);
+  bool ParseBinary(int level);
+  bool ParseSigned();
+  bool ParsePrimary(bool negative, const Token& sign);
+  bool ParseVariable();                         // group [ index ], appended as a node
+  bool ParseTarget(std::string_view expected);  // variable | par | name, as one ExprRange
+  bool ParseLiteral(bool negative, const Token& sign);
+  bool ParseJumpLabel();
+  bool ParseWhole(std::string_view what, std::uint16_t& value);
+  int LevelOf(const Token& token) const;
+  bool EndsExpression(const Token& slash_follower) const;
+  void Emit(Node op, std::uint32_t offset, std::uint32_t length);
+  void EndExpression(std::uint32_t first);
+
+  // Tokens
+  const Token& Peek(std::size_t ahead = 0) { return lexer_.At(at_ + ahead); }
+  Token Take() { return lexer_.At(at_++); }
+  bool Is(TokenKind kind) { return Peek().kind == kind; }
+  bool TryTake(TokenKind kind);
+  bool Expect(TokenKind kind, std::string_view expected);
+  bool TakeWord(Word word);
+  bool ExpectWord(Word word, std::string_view expected);
+
+  // Reports at the next token. `expected` completes "expected ...".
+  bool Fail(std::string_view expected);
+  bool FailAt(const Token& token, ErrorCode code, std::string detail, std::string_view rule = {});
+  void Report(const Token& token, ErrorCode code, std::string detail, std::string_view rule = {});
+  void ReportStatement(ErrorCode code, std::string detail, std::string_view rule = {});
+  bool FailUnknown(const Token& name);
+  Place PlaceOf(const Token& token) const;
+  std::string Quoted(const Token& token) const;
+  std::uint16_t InternName(const Token& token);
+
+  std::string_view text_;
+  ParsedProgram& program_;
+  Module& module_;
+  Findings& findings_;
+  Lexer lexer_;
+  std::size_t at_ = 0;       // next token of the statement
+  Token first_;              // of the statement, behind its label
+  Instruction instruction_;  // under construction
+  std::unordered_map<NameKey, std::uint16_t> names_;
+  std::vector<bool> declared_;  // by name, as far as the text was read
+  std::vector<bool> long_form_reported_;
+  std::array<std::uint32_t, 10000> label_line_{};  // where it stands; 0: nowhere yet
+  std::vector<NodePlace> pending_label_places_;    // of the instruction to come
+  std::vector<std::uint16_t> pending_labels_;
+  struct AttributePart {
+    Attribute attribute;
+    std::uint32_t first, count;  // in Module::expressions, as written
+  };
+  std::vector<AttributePart> attribute_parts_;
+  std::uint32_t steps_ = 0;
+  bool labelled_ = false;  // the statement has a sequence number on its line
+  int nesting_ = 0;
+  bool slash_separates_ = false;  // inside the list of TCP, OPT-B.85
+  bool too_many_names_ = false;
+};
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,475 @@
+#include <string>
+
+#include "engine/optimo/language/nearest_word.h"
+#include "engine/optimo/language/parser.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+std::string CountText(std::string_view what, int count, std::string_view needed) {
+  return std::string(what) + " has " + std::to_string(count) + (count == 1 ? " value" : " values") +
+         ", needs " + std::string(needed);
+}
+
+}  // namespace
+
+bool Parser::ParseInstruction(Word word) {
+  Take();
+  instruction_.op = OpOf(word);
+  switch (instruction_.op) {
+    case Op::kMove:
+      return ParseMove();
+    case Op::kCoord:
+      return ParseCoord();
+    case Op::kPath:
+      return ParsePath();
+    case Op::kSpeed:
+    case Op::kAccel:
+    case Op::kOversh:
+    case Op::kDelay:
+    case Op::kSeterr:
+    case Op::kWait:
+      return ParseOneValue();
+    case Op::kSysdef:
+      return ParseSysdef();
+    case Op::kTcp:
+      return ParseTcp();
+    case Op::kWorkdef:
+      return ParseWorkdef();
+    case Op::kWork:
+      return ParseProcess();
+    case Op::kGo:
+      return ParseProgramNumber();
+    case Op::kCall:
+      return ParseCall();
+    case Op::kFunction:
+      return ParseFunction();
+    case Op::kGoto:
+      return ParseGoto();
+    case Op::kGosub:
+    case Op::kErr:
+      return ParseJumpLabel();
+    case Op::kIf:
+      return ParseIf();
+    case Op::kTask:
+      return ParseTask();
+    case Op::kTimer:
+      return ParseTimer();
+    case Op::kLet:
+      return ParseAssignment(true);
+    case Op::kDeclare:
+      return ParseDeclare();
+    case Op::kDefine:
+      return ParseDefine();
+    case Op::kAssign:
+      return ParseAssign();
+    case Op::kUpdate:
+      return ParseGroups();
+    case Op::kImage:
+    case Op::kReal:
+      return ParseImage();
+    case Op::kBreak:
+    case Op::kSimul:
+      return ParseBreak();
+    default:
+      return true;  // RETURN ENDTASK PAUSE STOP NOERR ZERO stand alone
+  }
+}
+
+// "MOVE" vec5 { "/" moveattr }                                                  OPT-2.01
+bool Parser::ParseMove() {
+  if (!Is(TokenKind::kOpen))
+    return FailAt(first_, ErrorCode::kArgumentCount, CountText("MOVE", 0, "5"), "OPT-2.01");
+  int count = 0;
+  if (!ParseList(count, 5)) return false;
+  if (count != 5)
+    return FailAt(first_, ErrorCode::kArgumentCount, CountText("MOVE", count, "5"), "OPT-2.01");
+  instruction_.value_count = 5;
+  return true;
+}
+
+bool Parser::ParseCoord() {
+  const bool absol = TakeWord(Word::kAbsol);
+  if (!absol && !TakeWord(Word::kRobot)) return Fail("ABSOL or ROBOT");
+  instruction_.choice = static_cast<std::uint8_t>(absol ? CoordType::kAbsol : CoordType::kRobot);
+  return true;
+}
+
+// "PATH" ( "PTP" | "LIN" | "CIR" | "HOLE" "(" expr ")" )                        OPT-2.12
+bool Parser::ParsePath() {
+  PathType path = PathType::kHole;
+  if (TakeWord(Word::kPtp)) {
+    path = PathType::kPtp;
+  } else if (TakeWord(Word::kLin)) {
+    path = PathType::kLin;
+  } else if (TakeWord(Word::kCir)) {
+    path = PathType::kCir;
+  } else if (!TakeWord(Word::kHole)) {
+    return Fail("PTP, LIN, CIR or HOLE");
+  }
+  instruction_.choice = static_cast<std::uint8_t>(path);
+  if (path != PathType::kHole) return true;
+  instruction_.value_count = 1;
+  return ParseParenthesised();
+}
+
+bool Parser::ParseOneValue() {
+  instruction_.value_count = 1;
+  return ParseExpression();
+}
+
+bool Parser::ParseSysdef() {
+  if (!Is(TokenKind::kOpen)) return true;
+  int count = 0;
+  if (!ParseList(count, 6)) return false;
+  if (count != 6) {
+    return FailAt(first_, ErrorCode::kArgumentCount, CountText("SYSDEF", count, "6 or none"),
+                  "OPT-7.38");
+  }
+  instruction_.value_count = 6;
+  return true;
+}
+
+// "TCP" "(" three values ( "/" | "," ) three values ")"                         OPT-4.64
+bool Parser::ParseTcp() {
+  int count = 0;
+  if (Is(TokenKind::kOpen) && !ParseList(count, 6, 3)) return false;
+  if (count == 6) {
+    instruction_.value_count = 6;
+    return true;
+  }
+  return FailAt(
+      first_, ErrorCode::kArgumentCount,
+      count < 0
+          ? "TCP has '/' only between the third and the fourth value; a division needs parentheses"
+          : CountText("TCP", count, "6"),
+      count < 0 ? "OPT-B.85" : "OPT-4.72");
+}
+
+// integer "," integer                                                           OPT-3.01, OPT-3.13
+bool Parser::ParseProcess() {
+  const Token kind = Peek();
+  if (!ParseWhole("the kind 0, 1 or 2", instruction_.numbers[0])) return false;
+  if (!Expect(TokenKind::kComma, "',' and the process number")) return false;
+  const Token process = Peek();
+  if (!ParseWhole("a process number", instruction_.numbers[1])) return false;
+  if (instruction_.numbers[0] > 2) {
+    return FailAt(kind, ErrorCode::kProcessNumber, "the kind of a process is 0, 1 or 2",
+                  "OPT-3.02");
+  }
+  if (instruction_.numbers[1] > 9) {
+    return FailAt(process, ErrorCode::kProcessNumber, "process numbers go from 0 to 9", "OPT-3.02");
+  }
+  return true;
+}
+
+bool Parser::ParseWorkdef() {
+  if (!ParseProcess()) return false;
+  int count = 0;
+  const bool comma = TryTake(TokenKind::kComma);
+  if (comma && !Is(TokenKind::kOpen)) return Fail("'(' and the parameters");
+  if (Is(TokenKind::kOpen)) {
+    if (!ParseList(count, 5)) return false;
+    if (count == 0)
+      return FailAt(first_, ErrorCode::kArgumentCount,
+                    CountText("WORKDEF", 0, "some between its parentheses"), "OPT-3.01");
+  }
+  const int kind = instruction_.numbers[0];
+  const bool fits = kind == 0 ? count == 0 : kind == 1 ? count == 4 || count == 5 : count == 1;
+  if (!fits) {
+    const char* needed = kind == 0   ? "none"
+                         : kind == 1 ? "4 or 5: speed, power, delay, peak [, schedule]"
+                                     : "1: the laser schedule";
+    return FailAt(first_, ErrorCode::kArgumentCount,
+                  CountText("WORKDEF " + std::to_string(kind), count, needed),
+                  kind == 0   ? "OPT-3.03"
+                  : kind == 1 ? "OPT-3.04"
+                              : "OPT-3.06");
+  }
+  instruction_.value_count = static_cast<std::uint8_t>(count);
+  return true;
+}
+
+// prog := integer | target                                                      OPT-7.01, OPT-7.07
+bool Parser::ParseProgramNumber() {
+  instruction_.value_count = 1;
+  if (!Is(TokenKind::kNumber)) return ParseTarget("a program number");
+  if (!Peek().whole) return Fail("a whole program number");
+  const auto first = static_cast<std::uint32_t>(module_.nodes.size());
+  if (!ParseLiteral(false, Token{})) return false;
+  EndExpression(first);
+  return true;
+}
+
+// args := "(" expr { "," expr } ")"                                             OPT-9.20
+bool Parser::ParseArguments() {
+  if (!Is(TokenKind::kOpen)) return true;
+  int count = 0;
+  if (!ParseList(count, kParameterCount)) return false;
+  if (count == 0) {
+    --at_;
+    return Fail("a parameter");
+  }
+  if (count > kParameterCount) {
+    return FailAt(first_, ErrorCode::kTooManyParameters,
+                  std::to_string(count) + " parameters; at most eight are passed", "OPT-9.20");
+  }
+  instruction_.value_count = static_cast<std::uint8_t>(1 + count);
+  return true;
+}
+
+bool Parser::ParseCall() { return ParseProgramNumber() && ParseArguments(); }
+
+bool Parser::ParseFunction() {
+  const Token number = Peek();
+  if (number.kind == TokenKind::kWord && number.word != Word::kNone &&
+      Describe(number.word).group == WordGroup::kVariable) {
+    return FailAt(number, ErrorCode::kFunctionNumber,
+                  "FUNCTION takes a number or a declared constant", "OPT-9.01");
+  }
+  return ParseProgramNumber() && ParseArguments();
+}
+
+// "GOTO" ( label | target "(" label { "," label } ")" )                         OPT-7.15, OPT-7.17
+bool Parser::ParseGoto() {
+  if (!Is(TokenKind::kWord)) return ParseJumpLabel();
+  instruction_.op = Op::kGotoTable;
+  instruction_.value_count = 1;
+  if (!ParseTarget("a sequence number or a variable")) return false;
+  if (!Expect(TokenKind::kOpen, "'(' and sequence numbers")) return false;
+  do {
+    if (!ParseJumpLabel()) return false;
+  } while (TryTake(TokenKind::kComma));
+  return Expect(TokenKind::kClose, "',' or ')'");
+}
+
+// "IF" expr "THEN" label [ "ELSE" label ]                                       OPT-7.23
+bool Parser::ParseIf() {
+  instruction_.value_count = 1;
+  return ParseExpression() && ExpectWord(Word::kThen, "THEN") && ParseJumpLabel() &&
+         (!TakeWord(Word::kElse) || ParseJumpLabel());
+}
+
+bool Parser::ParseTask() { return ParseWhole("a task number", instruction_.numbers[0]); }
+
+// "(" expr "," label ")"
+bool Parser::ParseTimeAndLabel(std::string_view what) {
+  if (!Expect(TokenKind::kOpen, "'(' and a time")) return false;
+  return ParseExpression() && Expect(TokenKind::kComma, "',' and a sequence number") &&
+         ParseJumpLabel() && Expect(TokenKind::kClose, what);
+}
+
+// "TIMER" ( "(" expr "," label ")" [ "/" "AUTO" ] | "/" "DIS" )                 OPT-B.59
+bool Parser::ParseTimer() {
+  if (Is(TokenKind::kSlash)) {
+    Take();
+    if (!TakeWord(Word::kDis)) return Fail("DIS, or the time before '/'");
+    instruction_.attributes = kDis;
+    return true;
+  }
+  instruction_.value_count = 1;
+  return ParseTimeAndLabel("')'");
+}
+
+// "DECLARE" name "=" ( [ sign ] number | logical | "PI" | variable | par )      OPT-7.41
+bool Parser::ParseDeclare() {
+  if (!Is(TokenKind::kWord)) return Fail("a name");
+  const Token name = Take();
+  if (FindWord(name.key) != Word::kNone) {
+    return FailAt(name, ErrorCode::kNameReserved,
+                  Quoted(name) + " is reserved" +
+                      (name.word == Word::kNone ? ": eight characters count" : ""),
+                  "OPT-7.48");
+  }
+  instruction_.name = InternName(name);
+  instruction_.value_count = 1;
+  if (!Expect(TokenKind::kEqual, "'='")) return false;
+  if (Is(TokenKind::kEnd)) return Fail("a number, a constant or a variable");
+  const auto first = static_cast<std::uint32_t>(module_.nodes.size());
+  const Token value = Peek();
+  const bool group = value.kind == TokenKind::kWord && value.word != Word::kNone &&
+                     (Describe(value.word).group == WordGroup::kVariable ||
+                      Describe(value.word).group == WordGroup::kConstant);
+  const bool sign = value.kind == TokenKind::kMinus || value.kind == TokenKind::kPlus;
+  const bool number =
+      value.kind == TokenKind::kNumber || (sign && Peek(1).kind == TokenKind::kNumber);
+  if (value.kind == TokenKind::kBadNumber || value.kind == TokenKind::kBadCharacter)
+    return Fail("a value");
+  if (!group && !number) {
+    return FailAt(value, ErrorCode::kDeclareValue,
+                  "DECLARE takes a number, a constant or a variable", "OPT-7.42");
+  }
+  if (!ParseSigned()) return false;
+  EndExpression(first);
+  const Token& next = Peek();
+  if (LevelOf(next) != 0) {
+    return FailAt(next, ErrorCode::kDeclareValue, "DECLARE takes no expression", "OPT-7.42");
+  }
+  if (declared_[instruction_.name]) {
+    char room[kNameLength];
+    return FailAt(name, ErrorCode::kNameDuplicate,
+                  std::string(UnpackName(name.key, room)) + " is declared already", "OPT-7.49");
+  }
+  declared_[instruction_.name] = true;
+  return true;
+}
+
+// "DEFINE" "PAR" [ "[" integer "]" ] "=" ( "FLOAT" | "INT" | "LOGIC" )          OPT-9.22
+bool Parser::ParseDefine() {
+  const Token what = Peek();
+  if (!TakeWord(Word::kPar)) {
+    if (what.kind != TokenKind::kWord) return Fail("PAR");
+    return FailAt(what, ErrorCode::kDefineInvalid, "DEFINE gives the type of a PAR", "OPT-9.23");
+  }
+  if (TryTake(TokenKind::kOpenIndex)) {
+    const Token index = Peek();
+    if (!ParseWhole("an index", instruction_.numbers[0])) return false;
+    if (!Expect(TokenKind::kCloseIndex, "']'")) return false;
+    if (instruction_.numbers[0] >= kParameterCount) {
+      return FailAt(index, ErrorCode::kIndexRange, "PAR has the indices 0..7", "OPT-9.21");
+    }
+  } else {
+    findings_.Add(ErrorCode::kDefineWithoutIndex, PlaceOf(what), "DEFINE PAR means PAR[0]",
+                  "OPT-9.24", {{what.offset, static_cast<int>(what.length), "PAR[0]"}});
+  }
+  if (!Expect(TokenKind::kEqual, "'='")) return false;
+  const Token type = Peek();
+  if (TakeWord(Word::kFloat)) {
+    instruction_.choice = static_cast<std::uint8_t>(ValueType::kReal);
+  } else if (TakeWord(Word::kInt)) {
+    instruction_.choice = static_cast<std::uint8_t>(ValueType::kInteger);
+  } else if (TakeWord(Word::kLogic)) {
+    instruction_.choice = static_cast<std::uint8_t>(ValueType::kLogical);
+  } else if (type.kind == TokenKind::kWord) {
+    return FailAt(type, ErrorCode::kDefineInvalid, "a type is FLOAT, INT or LOGIC", "OPT-9.23");
+  } else {
+    return Fail("FLOAT, INT or LOGIC");
+  }
+  return true;
+}
+
+// "ASSIGN" target "=" ( integer | target ) "/" integer                          OPT-7.102
+bool Parser::ParseAssign() {
+  instruction_.value_count = 2;
+  if (!ParseTarget("a variable or name") || !Expect(TokenKind::kEqual, "'='")) return false;
+  const Token& value = Peek();
+  const Token& follower = Peek(1);
+  if (value.kind == TokenKind::kNumber ||
+      (value.kind == TokenKind::kMinus && follower.kind == TokenKind::kNumber)) {
+    const auto first = static_cast<std::uint32_t>(module_.nodes.size());
+    if (!ParseSigned()) return false;
+    if (module_.nodes.back().op != Node::kInteger) {
+      at_ -= 1;
+      return Fail("a whole number up to 32767");
+    }
+    EndExpression(first);
+  } else if (!ParseTarget("a number or a variable")) {
+    return false;
+  }
+  return Expect(TokenKind::kSlash, "'/' and the number of outputs") &&
+         ParseWhole("the number of outputs", instruction_.numbers[0]);
+}
+
+// group { "," group }                                                           OPT-7.98, OPT-B.61
+bool Parser::ParseGroups() {
+  do {
+    if (TakeWord(Word::kIl)) {
+      instruction_.choice |= kGroupIl;
+    } else if (TakeWord(Word::kOl)) {
+      instruction_.choice |= kGroupOl;
+    } else if (TakeWord(Word::kIa)) {
+      instruction_.choice |= kGroupIa;
+    } else if (TakeWord(Word::kOa)) {
+      instruction_.choice |= kGroupOa;
+    } else {
+      return Fail("IL, OL, IA or OA");
+    }
+  } while (TryTake(TokenKind::kComma));
+  return true;
+}
+
+bool Parser::ParseImage() {
+  if (!Is(TokenKind::kEnd) && !Is(TokenKind::kSlash)) return ParseGroups();
+  instruction_.choice = kAllGroups;
+  return true;
+}
+
+// ( "BREAK" | "SIMUL" ) integer [ "," integer ]                                 OPT-6.11, OPT-6.16
+bool Parser::ParseBreak() {
+  const Token step = Peek();
+  if (!ParseWhole("a step number", instruction_.numbers[0])) return false;
+  if (instruction_.numbers[0] < 1 || instruction_.numbers[0] > 9999) {
+    return FailAt(step, ErrorCode::kLiteralRange, "steps go from 1 to 9999", "OPT-6.15");
+  }
+  if (!TryTake(TokenKind::kComma)) return true;
+  const Token program = Peek();
+  if (!ParseWhole("a program number", instruction_.numbers[1])) return false;
+  if (instruction_.numbers[1] > 99) {
+    return FailAt(program, ErrorCode::kLiteralRange, "program numbers go from 1 to 99", "OPT-6.15");
+  }
+  return true;
+}
+
+// { "/" attribute }, in any order, each once                                    OPT-2.43
+bool Parser::ParseAttributes() {
+  const InstructionInfo& row = Describe(instruction_.op);
+  while (TryTake(TokenKind::kSlash)) {
+    const Token word = Peek();
+    const AttributeInfo* found = nullptr;
+    for (const AttributeInfo& info : kAttributes) {
+      if (word.kind == TokenKind::kWord && word.word == info.word) found = &info;
+    }
+    if (found == nullptr) return Fail("an attribute behind '/'");
+    const bool late_dis = found->bit == kDis && instruction_.value_count > 0;
+    if ((row.attributes & found->bit) == 0 || late_dis) {
+      return FailAt(
+          word, ErrorCode::kAttributeNotAllowed,
+          std::string(row.name) + " has no attribute " + std::string(Describe(word.word).text),
+          "OPT-2.43");
+    }
+    const std::uint16_t exclusive = instruction_.op == Op::kGo      ? row.attributes
+                                    : instruction_.op == Op::kTimer ? row.attributes
+                                    : (found->bit & (kOn | kOff)) != 0
+                                        ? static_cast<std::uint16_t>(kOn | kOff)
+                                        : static_cast<std::uint16_t>(found->bit);
+    if ((instruction_.attributes & exclusive) != 0) {
+      const bool same = instruction_.Has(found->bit);
+      return FailAt(word, ErrorCode::kAttributeDuplicate,
+                    Quoted(word) + (same ? " stands twice" : " contradicts another attribute"),
+                    "OPT-2.43");
+    }
+    Take();
+    if (!ParseAttribute(word, found->bit)) return false;
+    instruction_.attributes |= found->bit;
+  }
+  const bool switches = instruction_.op == Op::kWork || instruction_.op == Op::kUpdate;
+  if (switches && !instruction_.Has(kOn) && !instruction_.Has(kOff)) return Fail("/ON or /OFF");
+  return true;
+}
+
+bool Parser::ParseAttribute(const Token& word, Attribute attribute) {
+  const auto first = static_cast<std::uint32_t>(module_.expressions.size());
+  switch (attribute) {
+    case kVia: {
+      int count = 0;
+      if (Is(TokenKind::kOpen) && !ParseList(count, 5)) return false;
+      if (count != 5)
+        return FailAt(word, ErrorCode::kArgumentCount, CountText("/VIA", count, "5"), "OPT-2.31");
+      break;
+    }
+    case kStart:
+    case kEnd:
+      if (!ParseParenthesised()) return false;
+      break;
+    case kTime:
+      if (!ParseTimeAndLabel("')'")) return false;
+      break;
+    default:
+      return true;
+  }
+  attribute_parts_.push_back(
+      {attribute, first, static_cast<std::uint32_t>(module_.expressions.size()) - first});
+  return true;
+}
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,282 @@
+#include "engine/optimo/language/typing.h"
+
+#include <utility>
+
+#include "engine/optimo/language/evaluate.h"
+#include "engine/optimo/language/nearest_word.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+constexpr std::size_t kProposalNamesMax = 500;
+
+std::string NameText(const Module& module, std::uint16_t name) {
+  char room[kNameLength];
+  return std::string(UnpackName(module.names[name].key, room));
+}
+
+bool IsArithmetic(Node op) { return op >= Node::kPower && op <= Node::kSubtract; }
+bool IsLogicalOperator(Node op) { return op >= Node::kAnd; }
+
+}  // namespace
+
+Place Typing::PlaceOfStatement() const {
+  if (places_ == nullptr) return {-1, 0, static_cast<int>(instruction_->step)};
+  return places_->At(*instruction_);
+}
+
+Place Typing::PlaceOfNode(std::size_t node) const {
+  if (places_ == nullptr) return PlaceOfStatement();
+  const NodePlace& place = places_->node_places[node];
+  return {place.offset, static_cast<int>(place.length), static_cast<int>(instruction_->step)};
+}
+
+void Typing::Report(ErrorCode code, std::size_t node, std::string detail, std::string_view rule) {
+  findings_.Add(code, PlaceOfNode(node), std::move(detail), rule);
+}
+
+void Typing::ReportUndeclared(std::uint16_t name, std::size_t node) {
+  if (places_ != nullptr && places_->broken_names[name]) return;
+  if (findings_.full()) return Report(ErrorCode::kNameUndeclared, node, {}, {});
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < module_.names.size() && i < kProposalNamesMax; ++i) {
+    if (module_.names[i].declared)
+      names.push_back(NameText(module_, static_cast<std::uint16_t>(i)));
+  }
+  const std::vector<std::string_view> candidates(names.begin(), names.end());
+  const std::string text = NameText(module_, name);
+  const std::string nearest = NearestWord(text, candidates);
+  std::string detail = text + " is not declared";
+  std::vector<Fix> fixes;
+  if (!nearest.empty()) {
+    detail += "; did you mean " + nearest + "?";
+    if (places_ != nullptr) {
+      const NodePlace& place = places_->node_places[node];
+      fixes.push_back({place.offset, static_cast<int>(place.length), nearest});
+    }
+  }
+  findings_.Add(ErrorCode::kNameUndeclared, PlaceOfNode(node), std::move(detail), "OPT-7.50",
+                std::move(fixes));
+}
+
+void Typing::UseVariable(const ExprNode& node) {
+  if (node.group == VariableGroup::kPar) parameter_used_[node.index] = true;
+  if (node.group == VariableGroup::kIl || node.group == VariableGroup::kIa ||
+      (node.group == VariableGroup::kOa && node.index == 0)) {
+    reads_machine_ = true;
+  }
+}
+
+// An index by name: an INTEGER constant inside the range. OPT-7.60
+bool Typing::ResolveIndex(std::size_t at) {
+  ExprNode& node = module_.nodes[at];
+  if (node.index_name == kNoName) return true;
+  const DeclaredName& name = module_.names[node.index_name];
+  if (!name.declared) {
+    ReportUndeclared(node.index_name, at);
+    return false;
+  }
+  const int max = node.group == VariableGroup::kPar ? kParameterCount - 1 : kVariableIndexMax;
+  const float value = name.value.number;
+  if (name.value.op != Node::kInteger || value < 0.0F || value > static_cast<float>(max)) {
+    Report(ErrorCode::kIndexRange, at,
+           NameText(module_, node.index_name) + " is no INTEGER constant from 0 to " +
+               std::to_string(max),
+           "OPT-7.60");
+    return false;
+  }
+  node.index = static_cast<std::uint8_t>(value);
+  return true;
+}
+
+bool Typing::ResolveNode(std::size_t at) {
+  ExprNode& node = module_.nodes[at];
+  if (node.op == Node::kVariable && node.name == kNoName) {
+    if (!ResolveIndex(at)) return false;
+    UseVariable(node);
+    return true;
+  }
+  if (node.op != Node::kName) return true;
+  const DeclaredName& name = module_.names[node.name];
+  if (!name.declared) {
+    ReportUndeclared(node.name, at);
+    return false;
+  }
+  const std::uint16_t keep = node.name;
+  node = name.value;
+  node.name = keep;
+  if (node.op == Node::kVariable) UseVariable(node);
+  return true;
+}
+
+ValueType Typing::TypeOfVariable(const ExprNode& node) const {
+  return node.group == VariableGroup::kPar ? module_.parameter_types[node.index]
+                                           : TypeOf(node.group);
+}
+
+// 0 and 1 are logical where a logical value is wanted. OPT-B.45
+bool Typing::MakeLogical(Operand& operand) {
+  if (operand.type == ValueType::kLogical) return true;
+  ExprNode& node = module_.nodes[operand.node];
+  if (node.op != Node::kInteger || (node.number != 0.0F && node.number != 1.0F)) return false;
+  node.type = operand.type = ValueType::kLogical;
+  return true;
+}
+
+bool Typing::NeedNumeric(const Operand& operand) {
+  if (operand.unknown) return false;
+  if (operand.type != ValueType::kLogical) return true;
+  Report(ErrorCode::kTypeMismatch, operand.node, "a logical value where a number is needed",
+         "OPT-7.89");
+  return false;
+}
+
+bool Typing::NeedLogical(Operand& operand) {
+  if (operand.unknown) return false;
+  if (MakeLogical(operand)) return true;
+  Report(ErrorCode::kTypeMismatch, operand.node, "a number where a logical value is needed",
+         "OPT-7.89");
+  return false;
+}
+
+bool Typing::TypeBinary(std::size_t at, Operand& a, Operand& b) {
+  ExprNode& node = module_.nodes[at];
+  if (IsLogicalOperator(node.op)) {
+    node.type = ValueType::kLogical;
+    const bool first = NeedLogical(a);
+    return NeedLogical(b) && first;
+  }
+  node.type = IsArithmetic(node.op) ? ValueType::kReal : ValueType::kLogical;
+  const bool equality = node.op == Node::kEqual || node.op == Node::kNotEqual;
+  const bool logical = a.type == ValueType::kLogical || b.type == ValueType::kLogical;
+  if (equality && logical && !a.unknown && !b.unknown) {  // OPT-7.85
+    if (MakeLogical(a) && MakeLogical(b)) return true;
+    Report(ErrorCode::kTypeMismatch, at, "a logical value is compared with a number", "OPT-7.85");
+    return false;
+  }
+  const bool first = NeedNumeric(a);
+  return NeedNumeric(b) && first;
+}
+
+bool Typing::Type(std::uint32_t expression, Wanted wanted) {
+  const ExprRange range = module_.expressions[expression];
+  stack_.clear();
+  bool good = true;
+  for (std::size_t at = range.first; at < range.first + range.count; ++at) {
+    const Node op = module_.nodes[at].op;
+    const int arity = Arity(op);
+    if (arity == 0) {
+      Operand operand{at, ValueType::kReal, !ResolveNode(at)};
+      ExprNode& node = module_.nodes[at];
+      switch (node.op) {
+        case Node::kInteger:
+          node.type = ValueType::kInteger;
+          break;
+        case Node::kLogical:
+          node.type = ValueType::kLogical;
+          break;
+        case Node::kVariable:
+          node.type = TypeOfVariable(node);
+          break;
+        default:
+          node.type = ValueType::kReal;
+          break;
+      }
+      operand.type = node.type;
+      good = good && !operand.unknown;
+      stack_.push_back(operand);
+      if (stack_.size() > kOperandStackMax) {
+        Report(ErrorCode::kSyntax, at, "the expression has too many pending operands; split it",
+               {});
+        return false;
+      }
+      continue;
+    }
+    Operand result{at, ValueType::kReal, false};
+    if (arity == 1) {
+      module_.nodes[at].type = op == Node::kNot ? ValueType::kLogical : ValueType::kReal;
+      result.unknown = op == Node::kNot ? !NeedLogical(stack_.back()) : !NeedNumeric(stack_.back());
+      stack_.pop_back();
+    } else {
+      Operand second = stack_.back();
+      stack_.pop_back();
+      result.unknown = !TypeBinary(at, stack_.back(), second);
+      stack_.pop_back();
+    }
+    result.type = module_.nodes[at].type;
+    good = good && !result.unknown;
+    stack_.push_back(result);
+  }
+  Operand& root = stack_.back();
+  if (root.unknown || wanted == Wanted::kAny) return good;
+  return (wanted == Wanted::kNumeric ? NeedNumeric(root) : NeedLogical(root)) && good;
+}
+
+bool Typing::ResolveTarget(std::uint32_t expression) {
+  const std::size_t at = module_.expressions[expression].first;
+  const bool reads = reads_machine_;
+  if (!ResolveNode(at)) return false;
+  reads_machine_ = reads;  // writing is not reading
+  ExprNode& node = module_.nodes[at];
+  if (node.op != Node::kVariable) {
+    Report(ErrorCode::kConstantAssigned, at, NameText(module_, node.name) + " is a constant",
+           "OPT-7.43");
+    return false;
+  }
+  node.type = TypeOfVariable(node);
+  if (IsReadOnly(node.variable())) {
+    Report(ErrorCode::kReadOnly, at,
+           std::string(GroupName(node.group)) + "[" + std::to_string(node.index) +
+               "] can only be read",
+           "OPT-7.66");
+    return false;
+  }
+  return true;
+}
+
+void Typing::Declare(const Instruction& instruction) {
+  DeclaredName& name = module_.names[instruction.name];
+  const std::size_t at = module_.expressions[instruction.first_expression].first;
+  if (!ResolveNode(at)) {
+    if (places_ == nullptr) Report(ErrorCode::kNameUndeclared, at, {}, {});
+    return;
+  }
+  if (name.declared) {
+    Report(ErrorCode::kNameDuplicate, at,
+           NameText(module_, instruction.name) + " is declared already", "OPT-7.49");
+    return;
+  }
+  ExprNode& node = module_.nodes[at];
+  switch (node.op) {
+    case Node::kInteger:
+      node.type = ValueType::kInteger;
+      break;
+    case Node::kLogical:
+      node.type = ValueType::kLogical;
+      break;
+    case Node::kVariable:
+      node.type = TypeOfVariable(node);
+      break;
+    default:
+      node.type = ValueType::kReal;
+      break;
+  }
+  name.declared = true;
+  name.value = node;
+  name.value.index_name = kNoName;
+}
+
+void Typing::Define(const Instruction& instruction) {
+  const std::size_t index = instruction.numbers[0];
+  const std::string par = "PAR[" + std::to_string(index) + "]";
+  if (std::exchange(parameter_defined_[index], true)) {
+    findings_.Add(ErrorCode::kDefineInvalid, PlaceOfStatement(), par + " is defined already",
+                  "OPT-B.88");
+  } else if (parameter_used_[index]) {
+    findings_.Add(ErrorCode::kDefineAfterUse, PlaceOfStatement(), par + " was used before",
+                  "OPT-9.25");
+  }
+  module_.parameter_types[index] = static_cast<ValueType>(instruction.choice);
+}
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/optimo/language/program.h"
+
+// Names and types of expressions (OPT-7.41 to 7.60, 7.72 to 7.94, B.45, B.46). Private to the
+// folder.
+namespace rmlcell::optimo {
+
+// What the place of an expression takes.
+enum class Wanted : std::uint8_t {
+  kNumeric,
+  kLogical,
+  kAny,  // a condition or a parameter: logical or numeric
+};
+
+class Typing {
+ public:
+  // `places` may be null: then findings have no place.
+  Typing(Module& module, const ParsedProgram* places, Findings& findings)
+      : module_(module), places_(places), findings_(findings) {}
+
+  // Resolves the names of the expression and sets its types. False when something is wrong or
+  // unknown; it is reported then.
+  bool Type(std::uint32_t expression, Wanted wanted);
+
+  // The first node of an expression that must be a variable: assignment targets. Reports 7015,
+  // 7011.
+  bool ResolveTarget(std::uint32_t expression);
+
+  void Declare(const Instruction& instruction);
+  void Define(const Instruction& instruction);
+
+  void BeginStep(const Instruction& instruction) {
+    instruction_ = &instruction;
+    reads_machine_ = false;
+  }
+  bool reads_machine() const { return reads_machine_; }
+
+  Place PlaceOfNode(std::size_t node) const;
+  Place PlaceOfStatement() const;
+
+ private:
+  struct Operand {
+    std::size_t node = 0;
+    ValueType type = ValueType::kReal;
+    bool unknown = false;  // has an error already
+  };
+  bool ResolveNode(std::size_t node);
+  bool ResolveIndex(std::size_t node);
+  void UseVariable(const ExprNode& node);
+  ValueType TypeOfVariable(const ExprNode& node) const;
+  bool MakeLogical(Operand& operand);
+  bool NeedNumeric(const Operand& operand);
+  bool NeedLogical(Operand& operand);
+  bool TypeBinary(std::size_t node, Operand& a, Operand& b);
+  void ReportUndeclared(std::uint16_t name, std::size_t node);
+  void Report(ErrorCode code, std::size_t node, std::string detail, std::string_view rule);
+
+  Module& module_;
+  const ParsedProgram* places_;
+  Findings& findings_;
+  const Instruction* instruction_ = nullptr;
+  bool reads_machine_ = false;
+  std::array<bool, kParameterCount> parameter_used_{};
+  std::array<bool, kParameterCount> parameter_defined_{};
+  std::vector<Operand> stack_;
+};
+
+}  // namespace rmlcell::optimo

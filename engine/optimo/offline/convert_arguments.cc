@@ -1,0 +1,98 @@
+#include <cctype>
+
+#include "engine/optimo/offline/convert.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+std::string Lower(std::string_view text) {
+  std::string lower;
+  for (const char c : text) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return lower;
+}
+
+// Place of the point of the extension; npos when the name has none.
+std::size_t ExtensionAt(std::string_view name) {
+  const std::size_t point = name.rfind('.');
+  const std::size_t folder = name.find_last_of("/\\");
+  if (point == std::string_view::npos) return point;
+  if (folder != std::string_view::npos && folder > point) return std::string_view::npos;
+  return point;
+}
+std::string_view ExtensionOf(std::string_view name) {
+  const std::size_t at = ExtensionAt(name);
+  return at == std::string_view::npos ? std::string_view() : name.substr(at);
+}
+
+bool IsSwitch(std::string_view argument) {
+  return !argument.empty() && argument[0] == '/' &&
+         argument.find('/', 1) == std::string_view::npos &&
+         argument.find('.') == std::string_view::npos;
+}
+
+bool IsUpper(std::string_view extension) {
+  for (const char c : extension) {
+    if (std::islower(static_cast<unsigned char>(c)) != 0) return false;
+  }
+  return extension.size() > 1;
+}
+
+Error Refuse(ErrorCode code, std::string detail) { return {code, std::move(detail), {}}; }
+
+}  // namespace
+
+Result<std::optional<ConvertRequest>> ReadConvertArguments(std::span<const std::string> arguments) {
+  if (arguments.empty()) return std::optional<ConvertRequest>();
+  std::optional<Direction> wanted;
+  std::vector<std::string> names;
+  for (const std::string& argument : arguments) {
+    if (!IsSwitch(argument)) {
+      names.push_back(argument);
+      continue;
+    }
+    const std::string letter = Lower(argument);
+    if (letter != "/i" && letter != "/m")
+      return Refuse(ErrorCode::kConvertSwitch, "Illegal Switch: " + argument);
+    const Direction direction = letter == "/i" ? Direction::kToInch : Direction::kToMetric;
+    if (wanted && *wanted != direction) {
+      return Refuse(ErrorCode::kConvertConflict, "Conflict With Filenames and Switches: /i and /m");
+    }
+    wanted = direction;
+  }
+  if (names.empty()) return Refuse(ErrorCode::kConvertTooFew, "Not Enough Arguments: no file name");
+  if (names.size() > 2)
+    return Refuse(ErrorCode::kConvertTooMany, "Too Many Arguments: more than two file names");
+
+  const std::string extension = Lower(ExtensionOf(names[0]));
+  std::optional<Direction> by_name;
+  if (extension == ".s") by_name = Direction::kToInch;
+  if (extension == ".si") by_name = Direction::kToMetric;
+  if (wanted && by_name && *wanted != *by_name) {
+    return Refuse(ErrorCode::kConvertConflict, "Conflict With Filenames and Switches: " + names[0]);
+  }
+  if (!wanted && !by_name) {
+    return Refuse(ErrorCode::kConvertDirection,
+                  "Must Specify Conversion Required: " + names[0] + " is neither .S nor .SI");
+  }
+  ConvertRequest request;
+  request.input = names[0];
+  request.direction = wanted ? *wanted : *by_name;
+  const bool inch = request.direction == Direction::kToInch;
+  const bool upper = IsUpper(ExtensionOf(names[0]));
+  const std::string standard = upper ? (inch ? ".SI" : ".S") : (inch ? ".si" : ".s");
+  if (names.size() == 1) {
+    const std::size_t at = ExtensionAt(names[0]);
+    request.output = names[0].substr(0, at) + standard;
+  } else {
+    request.output = names[1];
+    const std::string output_extension = Lower(ExtensionOf(names[1]));
+    if (output_extension.empty()) request.output += standard;
+    if (output_extension == (inch ? ".s" : ".si")) {
+      return Refuse(ErrorCode::kConvertConflict,
+                    "Conflict With Filenames and Switches: " + names[0] + " and " + names[1]);
+    }
+  }
+  return std::optional<ConvertRequest>(std::move(request));
+}
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,82 @@
+#include "engine/optimo/offline/translate.h"
+
+#include <cctype>
+#include <utility>
+
+namespace rmlcell::optimo {
+namespace {
+
+bool EndsWith(std::string_view name, std::string_view upper_case) {
+  if (name.size() < upper_case.size()) return false;
+  const std::string_view tail = name.substr(name.size() - upper_case.size());
+  for (std::size_t i = 0; i < tail.size(); ++i) {
+    if (std::toupper(static_cast<unsigned char>(tail[i])) != upper_case[i]) return false;
+  }
+  return true;
+}
+
+void AddFigures(const Module& module, std::size_t source_bytes, machine::Translation& to) {
+  const auto count = [](std::size_t value) { return static_cast<double>(value); };
+  to.figures = {{"steps", "", count(module.step_count)},
+                {"source_bytes", "", count(source_bytes)},
+                {"object_bytes", "", count(to.object.size())},
+                {"sequence_numbers", "", count(module.labels.size() + module.end_labels.size())},
+                {"names", "", count(module.names.size())}};
+}
+
+machine::Translation Refuse(ErrorCode code, std::string detail, const std::string& file) {
+  machine::Translation refused;
+  refused.diagnostics.push_back({.code = code,
+                                 .severity = Lookup(code).severity,
+                                 .detail = std::move(detail),
+                                 .rule = {},
+                                 .file = file,
+                                 .where = {},
+                                 .fixes = {}});
+  return refused;
+}
+
+}  // namespace
+
+FileForm FormOfFile(std::string_view name, std::string_view bytes) {
+  if (EndsWith(name, ".SI")) return FileForm::kInchSource;
+  if (EndsWith(name, ".S") || EndsWith(name, ".CMP")) return FileForm::kMetricSource;
+  constexpr std::string_view kObjectBegin("LMR\x01", 4);
+  return EndsWith(name, ".O") || bytes.starts_with(kObjectBegin) ? FileForm::kObject
+                                                                 : FileForm::kMetricSource;
+}
+
+machine::Translation TranslateOptimo(const machine::SourceFile& file,
+                                     const machine::CheckOptions& options,
+                                     std::uint32_t object_limit) {
+  if (file.bytes.empty())
+    return Refuse(ErrorCode::kCellEmptyProgram, "the file is empty", file.name);
+  const FileForm form = FormOfFile(file.name, file.bytes);
+  if (form == FileForm::kObject) {
+    const Result<Module> module = DecodeObject(file.bytes);
+    if (!module) return Refuse(module.error().code, module.error().detail, file.name);
+    if (object_limit > 0 && file.bytes.size() > object_limit) {
+      return Refuse(ErrorCode::kObjectTooLong,
+                    "the object has " + std::to_string(file.bytes.size()) + " bytes", file.name);
+    }
+    machine::Translation accepted;
+    accepted.ok = true;
+    accepted.object = std::string(file.bytes);
+    AddFigures(*module, 0, accepted);
+    return accepted;
+  }
+  Compilation compiled = Compile(file.bytes, file.name,
+                                 {.object_limit = object_limit,
+                                  .advice = options.advice,
+                                  .inch = form == FileForm::kInchSource,
+                                  .diagnostics_max = machine::kDiagnosticsMax});
+  machine::Translation translation;
+  translation.ok = compiled.ok;
+  translation.object = std::move(compiled.object);
+  translation.diagnostics = std::move(compiled.diagnostics);
+  translation.diagnostics_dropped = compiled.diagnostics_dropped;
+  if (compiled.ok) AddFigures(compiled.module, file.bytes.size(), translation);
+  return translation;
+}
+
+}  // namespace rmlcell::optimo

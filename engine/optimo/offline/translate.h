@@ -1,0 +1,20 @@
+#pragma once
+
+#include "engine/machine/family.h"
+#include "engine/optimo/language/compiler.h"
+
+namespace rmlcell::optimo {
+
+// Unit and form of a file by its name: .S .CMP metric source, .SI inch source, .O object
+// (OPT-8.72). Anything else is metric source, unless its bytes begin like an object.
+enum class FileForm { kMetricSource, kInchSource, kObject };
+FileForm FormOfFile(std::string_view name, std::string_view bytes);
+
+// What the control would store: a source is checked and compiled, an object is checked and taken as
+// it is. An inch source is refused with 7030 (OPT-2.04), an empty file with CellEmptyProgram.
+// Figures: "steps", "source_bytes", "object_bytes", "sequence_numbers", "names".
+machine::Translation TranslateOptimo(const machine::SourceFile& file,
+                                     const machine::CheckOptions& options,
+                                     std::uint32_t object_limit = kObjectLimitStandard);
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,31 @@
+;=== reserved variables (advice)
+; OPT-7.104 OPT-7.105 OPT-E.7413
+VR[50] = 1.              ; expect 7413
+VR[98] = 1.              ; expect 7413
+VR[42] = 1.
+VR[60] = 1.
+VI[75] = 1               ; expect 7413
+VI[69] = 1
+VL[80] = ON              ; expect 7413
+VL[79] = ON
+
+;=== outputs of the system (advice)
+; OPT-7.106 OPT-E.7412
+OL[20] = ON              ; expect 7412
+OL[8] = ON
+OL[11] = ON
+OL[16] = ON
+OL[32] = ON
+ASSIGN OL[16] = 0 /2     ; expect 7412
+
+;=== offsets and tools that mean nothing (advice)
+; OPT-7.37 OPT-4.70 OPT-4.71 OPT-4.55 OPT-E.7311
+SYSDEF (0.0,0.0,0.0,0.0,0.0,0.0)     ; expect 7311
+TCP (8.68,0,0.72/0,1.77,0)           ; expect 7313
+TCP (0,0,0/0,0,0)                    ; expect 7312
+TCP (0,0,0/0,0,5)                    ; expect 7315
+
+;=== the rotary table turns in degrees (advice)
+; OPT-8.78
+FUNCTION 99 (VR[3])      ; expect 7033
+FUNCTION 99 (VR[26])

@@ -1,0 +1,239 @@
+;=== a WORK without WORKDEF (advice)
+; OPT-3.09 OPT-3.10 OPT-E.7401
+; rmlcell: allow 7033 in file
+WORK 0,0/ON
+WORK 0,0/OFF
+WORK 1,3 /ON             ; expect 7401
+WORK 1,3 /OFF
+
+;=== a WORKDEF on one path only (advice)
+; OPT-3.09 OPT-3.11
+; rmlcell: allow 7033 in file
+IF VL[1] THEN 10
+WORKDEF 1,0 (8., 75., 1., 50.)
+10 WORK 1,0 /ON          ; expect 7401
+WORK 1,0 /OFF
+WORKDEF 1,0 (8., 75., 1., 50.)
+WORK 1,0 /ON
+WORK 1,0 /OFF
+
+;=== a process that is ON at the end or at a CALL (advice)
+; OPT-3.33 OPT-3.34 OPT-E.7407 OPT-E.7408
+; rmlcell: allow 7033 in file
+WORK 0,0/ON
+CALL 2                   ; expect 7407
+WORK 0,1/ON              ; expect 7401
+SPEED 10                 ; expect 7408
+
+;=== WORK 2 OFF with the beam on (advice)
+; OPT-3.24 OPT-E.7411
+; rmlcell: allow 7033 in file
+WORKDEF 2,5 (15)
+WORK 2,5/ON
+WORK 0,0/ON
+WORK 2,5/OFF             ; expect 7411
+WORK 0,0/OFF
+
+;=== a subroutine may switch the process (advice)
+; OPT-3.36
+; rmlcell: allow 7033 in file
+WORK 0,0/ON
+GOSUB 100
+CALL 2
+ENDTASK
+100 WORK 0,0/OFF
+RETURN
+
+;=== /FLY where the machine must stop (advice)
+; OPT-2.47 OPT-2.48 OPT-2.49 OPT-E.7032 OPT-2.45
+COORD ABSOL
+PATH LIN
+MOVE (1.,2.,3.,0.,0.)/FLY
+SPEED 10
+OL[11] = ON
+MOVE (10.,2.,3.,0.,0.)/FLY           ; expect 7032
+DELAY 1
+MOVE (20.,2.,3.,0.,0.)/FLY           ; expect 7032
+VR[0] = IA[0]
+MOVE (30.,2.,3.,0.,0.)/FLY           ; expect 7032
+MOVE (40.,2.,3.,0.,0.)/START (IL[16])
+MOVE (50.,2.,3.,0.,0.)/FLY           ; expect 7303
+COORD ROBOT
+PATH PTP
+MOVE (60.,2.,3.,0.,0.)/FLY           ; expect 7032
+
+;=== /FLY in a loop with a counter is fine (advice)
+; OPT-B.29 OPT-2.49
+COORD ABSOL
+PATH LIN
+SPEED 50
+VI[2] = 0
+10 MOVE (10.,2.,3.,0.,0.)/FLY
+VI[2] = VI[2] + 1
+MOVE (20.,2.,3.,0.,0.)/FLY
+IF VI[2] < 5 THEN 10
+MOVE (30.,2.,3.,0.,0.)
+
+;=== /FLY before WORK with and without a dwell (advice)
+; OPT-2.50 OPT-3.21
+COORD ABSOL
+PATH LIN
+SPEED 10
+OL[11] = ON
+WORKDEF 1,0 (8., 75., 1., 50.)
+WORKDEF 1,1 (8., 75., 0., 50.)
+MOVE (10.,2.,3.,0.,0.)/FLY           ; expect 7032
+WORK 1,0/ON
+MOVE (20.,2.,3.,0.,0.)
+WORK 1,0/OFF
+MOVE (30.,2.,3.,0.,0.)/FLY
+WORK 1,1/ON
+MOVE (40.,2.,3.,0.,0.)
+WORK 1,1/OFF
+
+;=== /FLY around a hole (advice)
+; OPT-2.53
+COORD ABSOL
+PATH LIN
+SPEED 10
+MOVE (10.,2.,3.,0.,0.)/FLY           ; expect 7032
+PATH HOLE (5.)
+MOVE (20.,2.,3.,0.,0.)/VIA (20.,2.,9.,0.,0.)/FLY     ; expect 7032
+PATH LIN
+MOVE (30.,2.,3.,0.,0.)
+
+;=== short moves with /FLY (advice)
+; OPT-2.51 OPT-2.52 OPT-E.7314
+COORD ABSOL
+PATH LIN
+SPEED 10
+MOVE (10.,2.,3.,0.,0.)/FLY
+MOVE (10.5,2.,3.,0.,0.)/FLY          ; expect 7314
+MOVE (20.,2.,3.,0.,0.)
+MOVE (20.005,2.,3.,0.,0.)/FLY
+MOVE (20.010,2.,3.,0.,0.)/FLY
+MOVE (20.015,2.,3.,0.,0.)/FLY        ; expect 7314
+MOVE (30.,2.,3.,0.,0.)/FLY
+MOVE (40.,2.,3.,0.,0.)
+
+;=== contour paths in COORD ROBOT, and arcs without /VIA (advice)
+; OPT-2.08 OPT-2.21 OPT-2.29 OPT-E.7308 OPT-E.7302
+COORD ROBOT
+PATH LIN
+SPEED 10
+MOVE (10.,2.,3.,0.,0.)               ; expect 7302
+PATH PTP
+MOVE (10.,2.,3.,0.,0.)
+COORD ABSOL
+PATH CIR
+MOVE (20.,2.,3.,0.,0.)               ; expect 7308
+PATH HOLE (5.)
+MOVE (30.,2.,3.,0.,0.)               ; expect 7308
+
+;=== speeds, path and sensor of a cut (advice)
+; OPT-5.45 OPT-5.46 OPT-5.47 OPT-E.7033
+COORD ABSOL
+PATH PTP
+SPEED 90.
+MOVE (10.,2.,3.,0.,0.)               ; expect 7033
+SPEED 10
+MOVE (20.,2.,3.,0.,0.)
+WORK 0,0/ON                          ; expect 7033
+DELAY .5
+MOVE (30.,2.,3.,0.,0.)               ; expect 7033
+WORK 0,0/OFF
+PATH LIN
+OL[11] = ON
+WORK 0,0/ON
+DELAY .5
+SPEED 30
+MOVE (40.,2.,3.,0.,0.)               ; expect 7033
+WORK 0,0/OFF
+
+;=== pierce without dwell, fast approach and retract (advice)
+; OPT-3.20 OPT-5.46
+COORD ABSOL
+PATH LIN
+OL[11] = ON
+SPEED 30
+MOVE (10.,2.,3.,0.,0.)               ; expect 7033
+WORK 0,0/ON
+SPEED 10
+MOVE (20.,2.,3.,0.,0.)               ; expect 7033
+WORK 0,0/OFF
+SPEED 30
+MOVE (30.,2.,3.,0.,0.)               ; expect 7033
+MOVE (40.,2.,3.,0.,0.)
+
+;=== a wrong normal point (advice)
+; OPT-5.48
+COORD ABSOL
+PATH HOLE (5.)
+MOVE (20.,2.,3.,0.,0.)/VIA (20.,2.,9.,0.,0.)
+MOVE (20.,2.,3.,0.,0.)/VIA (29.,2.,9.,0.,0.)     ; expect 7033
+MOVE (20.,2.,3.,0.,0.)/VIA (23.,2.,9.,0.,0.)
+MOVE (0.0, 0.0, 1016.0, -2.871643, -1.570796)/via(0.0, -254.0, 1016.0, -2.871643, -1.570796)
+
+;=== ROBOT moves inside a program with SYSDEF (advice)
+; OPT-7.109
+SYSDEF (1.,2.,3.,0.,0.,0.)
+PATH PTP
+COORD ROBOT
+MOVE (10.,2.,3.,0.,0.)
+COORD ABSOL
+MOVE (20.,2.,3.,0.,0.)
+COORD ROBOT
+MOVE (30.,2.,3.,0.,0.)               ; expect 7033
+COORD ABSOL
+MOVE (40.,2.,3.,0.,0.)
+COORD ROBOT
+MOVE (50.,2.,3.,0.,0.)
+
+;=== one assist gas at a time (advice)
+; OPT-5.40 OPT-E.7409
+OL[8] = ON
+OL[9] = ON                           ; expect 7409
+OL[8] = OFF
+OL[9] = OFF
+OL[8] = ON
+
+;=== code that is never reached (advice)
+; OPT-3.47
+GOTO 20
+SPEED 5                              ; expect 7033
+SPEED 6
+20 ENDTASK
+
+;=== subroutines and their returns (advice)
+; OPT-7.20 OPT-7.22 OPT-E.7504
+GOSUB 100
+GOSUB 200
+100 SPEED 5
+RETURN                               ; expect 7504
+200 SPEED 6                          ; expect 7033
+ENDTASK
+
+;=== ENDTASK keeps the program out of its subroutine (advice)
+; OPT-3.47 OPT-7.20
+GOSUB 100
+ENDTASK
+100 SPEED 5
+RETURN
+
+;=== variables that are read before the program sets them (advice)
+; OPT-1.17
+SPEED VR[64]
+VR[0] = VR[1]                        ; expect 7033
+IF VL[1] THEN 10
+VR[1] = 5.
+10 VR[2] = VR[1]                     ; expect 7033
+VR[3] = VR[2]
+
+;=== comments silence findings, never errors (advice)
+; OPT-1.18
+OL[20] = ON              ; rmlcell: allow 7412
+OL[20] = ON              ; rmlcell: allow 7413, expect 7412
+; rmlcell: allow 7412
+OL[20] = ON
+OL[20] = ON              ; expect 7412
+SPEED 101                ; rmlcell: allow 7004, expect 7004

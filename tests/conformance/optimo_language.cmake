@@ -1,0 +1,4 @@
+# Part programs as tests of the Optimo language: the expectation stands on the line that causes it.
+rmlcell_test(optimo_language_conformance_test conformance
+  SOURCES optimo_convert_test.cc optimo_corpus_test.cc optimo_programs_test.cc
+  LINKS rmlcell::engine_optimo_language rmlcell::engine_optimo_offline)

@@ -1,0 +1,170 @@
+#include "engine/optimo/language/evaluate.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "tests/engine/optimo/language/compile_text.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+class Variables : public VariableAccess {
+ public:
+  float Read(Variable variable) override { return values_[{variable.group, variable.index}]; }
+  void Set(VariableGroup group, int index, float value) {
+    values_[{group, static_cast<std::uint8_t>(index)}] = value;
+  }
+
+ private:
+  std::map<std::pair<VariableGroup, std::uint8_t>, float> values_;
+};
+
+// The value of `text` as the right-hand side of an assignment to `target`.
+Result<Value> ValueOf(const std::string& text, const std::string& target = "VR[0]") {
+  static Variables variables;
+  const Compilation compiled = MustCompile(target + " = " + text + "\n");
+  if (!compiled.ok) return Error{ErrorCode::kSyntax, "did not compile", {}};
+  return Evaluate(compiled.module.Value(compiled.module.instructions[0], 1), variables);
+}
+float Number(const std::string& text) {
+  const Result<Value> value = ValueOf(text);
+  EXPECT_TRUE(value) << text;
+  return value ? value->number : -12345.0F;
+}
+bool Truth(const std::string& text) {
+  const Result<Value> value = ValueOf(text, "VL[0]");
+  EXPECT_TRUE(value) << text;
+  return value && value->truth();
+}
+int ErrorOf(const std::string& text) {
+  const Result<Value> value = ValueOf(text);
+  return value ? 0 : Lookup(value.error().code).number;
+}
+
+// OPT-7.72, OPT-7.73, OPT-7.75
+TEST(Evaluate, PrioritiesAreThoseOfTheManual) {
+  EXPECT_EQ(Number("2+3*4"), 14.0F);
+  EXPECT_EQ(Number("+5"), 5.0F);
+  EXPECT_EQ(Number("-2^2"), 4.0F);
+  EXPECT_EQ(Number("0-2^2"), -4.0F);
+  EXPECT_EQ(Number("2^-1"), 0.5F);
+  EXPECT_EQ(Number("2^(3^2)"), 512.0F);
+}
+
+// OPT-7.74
+TEST(Evaluate, EqualPrioritiesGoFromTheLeft) {
+  EXPECT_EQ(Number("2^3^2"), 64.0F);
+  EXPECT_EQ(Number("8/4/2"), 1.0F);
+  EXPECT_EQ(Number("7-3-2"), 2.0F);
+  EXPECT_EQ(Number("10 MOD 4*3"), 6.0F);
+}
+
+// OPT-7.76, OPT-7.80
+TEST(Evaluate, NumericOperatorsWorkInReal) {
+  EXPECT_EQ(Number("7/2"), 3.5F);
+  EXPECT_EQ(Number("7 MOD 3"), 1.0F);
+  EXPECT_EQ(Number("-7 MOD 3"), -1.0F);
+  EXPECT_EQ(Number("7.5 MOD 2"), 1.5F);
+}
+
+// OPT-7.77, OPT-7.78
+TEST(Evaluate, AssignmentToIntegerTruncates) {
+  EXPECT_EQ(*ConvertTo(ValueType::kInteger, *ValueOf("7/2")), 3.0F);
+  EXPECT_EQ(*ConvertTo(ValueType::kInteger, *ValueOf("-7/2")), -3.0F);
+  EXPECT_EQ(*ConvertTo(ValueType::kInteger, *ValueOf("2.9")), 2.0F);
+  const Result<float> over = ConvertTo(ValueType::kInteger, *ValueOf("32767+1"));
+  ASSERT_FALSE(over);
+  EXPECT_EQ(over.error().code, ErrorCode::kIntegerOverflow);
+  EXPECT_TRUE(ConvertTo(ValueType::kInteger, {ValueType::kReal, -32768.9F}));
+  EXPECT_FALSE(ConvertTo(ValueType::kInteger, {ValueType::kReal, -32769.0F}));
+}
+
+// OPT-9.27
+TEST(Evaluate, ParametersAreConverted) {
+  EXPECT_EQ(*ConvertTo(ValueType::kInteger, {ValueType::kReal, 2.7F}), 2.0F);
+  EXPECT_EQ(*ConvertTo(ValueType::kLogical, {ValueType::kReal, -0.5F}), 1.0F);
+  EXPECT_EQ(*ConvertTo(ValueType::kReal, {ValueType::kLogical, 1.0F}), 1.0F);
+}
+
+// OPT-7.79, OPT-7.81, OPT-E.7201
+TEST(Evaluate, DivisionByZeroIsAnError) {
+  EXPECT_EQ(ErrorOf("1/0"), 7201);
+  EXPECT_EQ(ErrorOf("5 MOD 0"), 7201);
+  EXPECT_EQ(ErrorOf("0^-1"), 7201);
+  EXPECT_EQ(Number("0^0"), 1.0F);
+}
+
+// OPT-7.81, OPT-7.83, OPT-E.7204
+TEST(Evaluate, FunctionsHaveDomains) {
+  EXPECT_EQ(Number("(-2)^3"), -8.0F);
+  EXPECT_EQ(ErrorOf("(-8)^(1/3)"), 7204);
+  for (const char* text :
+       {"SQRT(-1)", "ASIN(2)", "ACOS(-2)", "LN(0)", "LOG(0)", "EXP(33)", "EXP(-33)"}) {
+    EXPECT_EQ(ErrorOf(text), 7204) << text;
+  }
+  EXPECT_EQ(Number("SQRT(0)"), 0.0F);
+  EXPECT_EQ(ErrorOf("EXP(32)"), 0);
+}
+
+// OPT-7.82, OPT-7.57, OPT-B.38
+TEST(Evaluate, FunctionsTakeRadians) {
+  EXPECT_EQ(Number("PI/2"), 1.570795F);
+  EXPECT_EQ(Number("SIN(PI/2)"), 1.0F);
+  EXPECT_EQ(Number("LOG(1000)"), 3.0F);
+  EXPECT_EQ(Number("INT(-2.7)"), -2.0F);
+  EXPECT_EQ(Number("ABS(-3)"), 3.0F);
+  EXPECT_EQ(Number("ATAN(1)"), 0.785398163F);
+  EXPECT_EQ(Number("EXP(1)"), 2.71828183F);
+}
+
+// OPT-B.37, OPT-7.62, OPT-E.7202
+TEST(Evaluate, RealHasTwentyFourBits) {
+  EXPECT_EQ(Number("16777216.+1."), 16777216.0F);
+  EXPECT_EQ(Number("0.1+0.2"), 0.3F);
+  EXPECT_EQ(ErrorOf("1E18*100."), 7202);
+  EXPECT_EQ(Number("1E-15*1E-15"), 0.0F);
+  EXPECT_EQ(Number("4.6E18+4.6E18"), 9.2E18F);
+}
+
+// OPT-7.87, OPT-7.86, OPT-7.85
+TEST(Evaluate, LogicalOperators) {
+  EXPECT_TRUE(Truth("1 OR 1 AND 0"));
+  EXPECT_TRUE(Truth("1 XOR 1 OR 1"));
+  EXPECT_FALSE(Truth("NOT VR[1] = 0."));
+  EXPECT_TRUE(Truth("VR[1] = 0."));
+  EXPECT_FALSE(Truth("VR[1] >< 0."));
+  EXPECT_FALSE(Truth("1 AND 0"));
+}
+
+// OPT-7.90
+TEST(Evaluate, LogicalOperatorsTakeNoShortCut) {
+  const Result<Value> value = ValueOf("ON OR (1/0 > 0)", "VL[0]");
+  ASSERT_FALSE(value);
+  EXPECT_EQ(value.error().code, ErrorCode::kDivisionByZero);
+}
+
+// OPT-B.52
+TEST(Evaluate, ComparisonOfRealsIsExact) {
+  Variables variables;
+  variables.Set(VariableGroup::kVr, 0, 0.1F);
+  const Compilation compiled = MustCompile("5 IF VR[0] = 0.1 THEN 5\n");
+  const Result<Value> value =
+      Evaluate(compiled.module.Value(compiled.module.instructions[0], 0), variables);
+  ASSERT_TRUE(value);
+  EXPECT_TRUE(value->truth());
+  EXPECT_EQ(value->type, ValueType::kLogical);
+}
+
+// OPT-7.95, OPT-7.57
+TEST(Evaluate, NamesStandForTheirValues) {
+  Variables variables;
+  const Compilation compiled =
+      MustCompile("DECLARE X = VR[0]\nDECLARE XHOME = 10.5\nX = XHOME + 200.0\n");
+  const Instruction& let = compiled.module.instructions[2];
+  EXPECT_EQ(compiled.module.Value(let, 0)[0].variable(), (Variable{VariableGroup::kVr, 0}));
+  EXPECT_EQ(Evaluate(compiled.module.Value(let, 1), variables)->number, 210.5F);
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo

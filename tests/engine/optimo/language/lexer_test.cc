@@ -1,0 +1,77 @@
+#include "engine/optimo/language/lexer.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <string>
+
+#include "tests/engine/optimo/language/compile_text.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+std::string Kinds(std::string_view text) {
+  std::vector<Comment> comments;
+  Lexer lexer(text, comments);
+  std::string out;
+  while (lexer.NextStatement()) {
+    for (std::size_t i = 0; lexer.At(i).kind != TokenKind::kEnd; ++i) {
+      out += std::string(lexer.TextOf(lexer.At(i))) + "|";
+    }
+    out += "\n";
+  }
+  return out;
+}
+
+// OPT-1.30
+TEST(Lexer, StatementsReachOverLines) {
+  EXPECT_EQ(Kinds("MOVE (1.,\n; c\n\n2.)\n/FLY\nSPEED 5"), "MOVE|(|1.|,|2.|)|/|FLY|\nSPEED|5|\n");
+  EXPECT_EQ(Kinds("VR[1] = 2. +\n3.\nSTOP"), "VR|[|1|]|=|2.|+|3.|\nSTOP|\n");
+  EXPECT_EQ(Kinds("15\n(1)\n"), "15|\n(|1|)|\n");
+}
+
+// An instruction word ends whatever was left open.
+TEST(Lexer, InstructionWordsBeginAStatement) {
+  EXPECT_EQ(Kinds("MOVE (1.,\n20 SPEED 5\n"), "MOVE|(|1.|,|\n20|SPEED|5|\n");
+}
+
+// OPT-7.55, OPT-B.41
+TEST(Lexer, ExponentsMayHaveBlanks) {
+  EXPECT_EQ(Kinds("X = .256 E -3"), "X|=|.256 E -3|\n");
+  EXPECT_EQ(Kinds("X = 5 EX"), "X|=|5|EX|\n");
+  EXPECT_EQ(Kinds("X = 5 E + 3"), "X|=|5 E + 3|\n");
+}
+
+// OPT-7.56, OPT-B.37: literals are rounded once, to the nearest of 24 bits.
+TEST(Lexer, LiteralsAreRoundedOnce) {
+  const auto literal = [](const std::string& text) {
+    const Compilation compiled = MustCompile("VR[0] = " + text + "\n");
+    return compiled.module.Value(compiled.module.instructions[0], 1)[0].number;
+  };
+  EXPECT_EQ(literal("1262.139005"), 1262.139005F);
+  EXPECT_EQ(literal("16777217."), 16777216.0F);               // half way: to even
+  EXPECT_EQ(literal("16777217.0000000000001"), 16777218.0F);  // a little more than half way
+  EXPECT_EQ(literal("16777219."), 16777220.0F);
+  EXPECT_EQ(literal("0.1"), 0.1F);
+  EXPECT_EQ(literal("123456789012345678."), 123456789012345678.0F);
+  EXPECT_EQ(literal("0." + std::string(60, '0') + "5"), 0.0F);
+  EXPECT_EQ(literal("1E-50"), 0.0F);
+}
+
+// Work is linear in the text, whatever is wrong with it.
+TEST(Lexer, HostileTextIsReadInLinearTime) {
+  const auto begin = std::chrono::steady_clock::now();
+  std::string text;
+  for (int i = 0; i < 200'000; ++i) text += "X = (1\n";
+  EXPECT_FALSE(Compile(text, "", {}).ok);
+  EXPECT_FALSE(Compile(std::string(20'000'000, '('), "", {}).ok);
+  EXPECT_FALSE(Compile("X = " + std::string(20'000'000, '-') + "1", "", {}).ok);
+  EXPECT_FALSE(Compile(std::string(20'000'000, 'A'), "", {}).ok);
+  EXPECT_FALSE(Compile(std::string(20'000'000, '\xC3'), "", {}).ok);
+  EXPECT_TRUE(Compile(std::string(20'000'000, '\n'), "", {}).ok);
+  // Seconds on the slowest machine; a quadratic reader needs hours.
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo

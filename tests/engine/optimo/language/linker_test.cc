@@ -1,0 +1,152 @@
+#include "engine/optimo/language/linker.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "tests/engine/optimo/language/compile_text.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+class Linker : public testing::Test {
+ protected:
+  void Store(int slot, const std::string& text) { objects_[slot] = MustCompile(text).object; }
+  ObjectLookup Lookup() {
+    return [this](int slot) -> std::optional<std::string_view> {
+      const auto found = objects_.find(slot);
+      return found == objects_.end() ? std::nullopt
+                                     : std::optional<std::string_view>(found->second);
+    };
+  }
+  int ErrorOfLinking(int slot, const LinkOptions& options = {}) {
+    const Result<Executable> executable = Link(slot, Lookup(), options);
+    return executable ? 0 : rmlcell::Lookup(executable.error().code).number;
+  }
+  std::map<int, std::string> objects_;
+};
+
+// OPT-9.02
+TEST_F(Linker, FunctionsAreAppendedOnceWithReturns) {
+  Store(32, "FUNCTION 44\nFUNCTION 44\nFUNCTION 45\nENDTASK\n");
+  Store(44, "SPEED 5\nENDTASK\n");
+  Store(45, "FUNCTION 44\nFUNCTION 46\n");
+  Store(46, "SPEED 6\n");
+  const Result<Executable> executable = Link(32, Lookup(), {});
+  ASSERT_TRUE(executable);
+  std::vector<int> slots;
+  for (const LinkedModule& module : executable->modules) slots.push_back(module.slot);
+  EXPECT_EQ(slots, (std::vector<int>{32, 44, 45, 46}));
+  EXPECT_EQ(executable->modules[0].module.instructions[3].op, Op::kEndtask);
+  EXPECT_EQ(executable->Find(44)->module.instructions[1].op, Op::kReturn);
+}
+
+// OPT-9.03, OPT-9.04, OPT-E.7103
+TEST_F(Linker, MissingFunctionsAreErrors) {
+  Store(32, "FUNCTION 44\n");
+  EXPECT_EQ(ErrorOfLinking(32), 7103);
+  EXPECT_EQ(ErrorOfLinking(33), 7102);
+}
+
+// OPT-9.06, OPT-E.7104
+TEST_F(Linker, AFunctionIsNotTheMainProgram) {
+  Store(25, "FUNCTION 25\n");
+  EXPECT_EQ(ErrorOfLinking(25), 7104);
+  Store(32, "FUNCTION 44\n");
+  Store(44, "FUNCTION 32\n");
+  EXPECT_EQ(ErrorOfLinking(32), 7104);
+}
+
+// OPT-9.07
+TEST_F(Linker, AFunctionMayCallItself) {
+  Store(32, "FUNCTION 44\n");
+  Store(44, "IF VL[1] THEN 10\nFUNCTION 44\n10 RETURN\n");
+  EXPECT_EQ(ErrorOfLinking(32), 0);
+}
+
+// OPT-9.05, OPT-E.7105
+TEST_F(Linker, ThirtyTwoFunctionsFit) {
+  std::string main;
+  for (int f = 1; f <= 32; ++f) {
+    Store(f, "SPEED 5\n");
+    main += "FUNCTION " + std::to_string(f) + "\n";
+  }
+  Store(99, main);
+  EXPECT_EQ(ErrorOfLinking(99), 0);
+  Store(33, "SPEED 5\n");
+  Store(99, main + "FUNCTION 33\n");
+  EXPECT_EQ(ErrorOfLinking(99), 7105);
+}
+
+// OPT-9.11, OPT-E.7108
+TEST_F(Linker, FunctionsEnterAtTaskOne) {
+  Store(32, "FUNCTION 44\n");
+  Store(44, "TASK 2\n");
+  EXPECT_EQ(ErrorOfLinking(32), 7108);
+  Store(44, "TASK 2\nTASK 1\n");
+  EXPECT_EQ(ErrorOfLinking(32), 0);
+  Store(44, "SPEED 5\n");
+  EXPECT_EQ(ErrorOfLinking(32), 0);
+}
+
+// OPT-9.19
+TEST_F(Linker, TheRotaryTableIsBuiltIn) {
+  Store(32, "FUNCTION 99 (90.)\n");
+  EXPECT_EQ(ErrorOfLinking(32), 7103);
+  EXPECT_EQ(ErrorOfLinking(32, {.rotary_table = true}), 0);
+}
+
+// OPT-B.72: 16, and 4 for the end of the module; a MOVE with five REAL literals and /FLY has 30.
+TEST_F(Linker, SizesFollowTheModel) {
+  const auto size = [this](const std::string& text) {
+    Store(32, text);
+    return ExecutableSize(*Link(32, Lookup(), {}));
+  };
+  EXPECT_EQ(size(""), 20U);
+  EXPECT_EQ(size("MOVE (1.,2.,3.,0.,0.)/FLY\n") - 20U, 30U);
+  EXPECT_EQ(size("VR[1] = VR[2] + 5\n") - 20U, 4U + 2U + 2U + 3U + 1U);
+  EXPECT_EQ(size("10 GOTO 10\n") - 20U, 4U + 3U);
+  EXPECT_EQ(size("DECLARE X = VR[1]\n"), 20U);
+  Store(44, "");
+  EXPECT_EQ(size("FUNCTION 44\n"), 20U + 4U + 3U + 8U + 4U);
+}
+
+// OPT-9.10, OPT-E.7106: smaller than the limit.
+TEST_F(Linker, TheExecutableStaysBelowTheLimit) {
+  Store(32, "MOVE (1.,2.,3.,0.,0.)/FLY\n");
+  EXPECT_EQ(ErrorOfLinking(32, {.executable_limit = 51}), 0);
+  EXPECT_EQ(ErrorOfLinking(32, {.executable_limit = 50}), 7106);
+  EXPECT_EQ(LinkOptions{}.executable_limit, 32768U);
+}
+
+// OPT-1.13, OPT-E.7110
+TEST_F(Linker, ChangedFunctionsAreStale) {
+  Store(32, "FUNCTION 44\nFUNCTION 45\n");
+  Store(44, "SPEED 5\n");
+  Store(45, "SPEED 6\n");
+  const Result<Executable> executable = Link(32, Lookup(), {});
+  ASSERT_TRUE(executable);
+  EXPECT_TRUE(StaleFunctions(*executable, Lookup()).empty());
+  Store(44, "SPEED 7\n");
+  objects_.erase(45);
+  EXPECT_EQ(StaleFunctions(*executable, Lookup()), (std::vector<int>{44, 45}));
+}
+
+// OPT-1.15, OPT-B.71
+TEST_F(Linker, ExecutablesAreBytes) {
+  Store(32, "FUNCTION 44 (7.)\n");
+  Store(44, "DEFINE PAR[0] = INT\nVI[2] = PAR[0]\nENDTASK\n");
+  const std::string bytes = EncodeExecutable(*Link(32, Lookup(), {}));
+  const Result<Executable> again = DecodeExecutable(bytes);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(EncodeExecutable(*again), bytes);
+  EXPECT_TRUE(StaleFunctions(*again, Lookup()).empty());
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ 0x20);
+    EXPECT_FALSE(DecodeExecutable(damaged)) << at;
+  }
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo

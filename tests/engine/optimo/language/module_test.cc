@@ -1,0 +1,66 @@
+#include <gtest/gtest.h>
+
+#include "tests/engine/optimo/language/compile_text.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+// OPT-2.43: attributes come out in one order, whatever their order in the text.
+TEST(Module, AttributesAreFoundByKind) {
+  const Compilation compiled = MustCompile(
+      "900 MOVE (1.,2.,3.,4.,5.) /TIME (2.5, 900) /END (IL[20]) /VIA (6.,7.,8.,9.,10.) /START "
+      "(IL[16]) /FLY\n");
+  const Module& module = compiled.module;
+  const Instruction& move = module.instructions[0];
+  EXPECT_EQ(module.Value(move, 4)[0].number, 5.0F);
+  EXPECT_EQ(module.Via(move, 0)[0].number, 6.0F);
+  EXPECT_EQ(module.Via(move, 4)[0].number, 10.0F);
+  EXPECT_EQ(module.Start(move)[0].variable(), (Variable{VariableGroup::kIl, 16}));
+  EXPECT_EQ(module.End(move)[0].variable(), (Variable{VariableGroup::kIl, 20}));
+  EXPECT_EQ(module.Time(move)[0].number, 2.5F);
+  EXPECT_EQ(module.TimeLabel(move), 900);
+  EXPECT_TRUE(module.Targets(move).empty());
+  EXPECT_TRUE(move.Has(kFly));
+  EXPECT_FALSE(move.Has(kNext));
+}
+
+// OPT-2.48: reads of IL, IA and OA[0] need standstill; writing and other variables do not.
+TEST(Module, KnowsWhatReadsTheMachine) {
+  const Compilation compiled = MustCompile(
+      "VR[0] = IA[0]\nVR[0] = OA[0]\nVR[0] = OA[5]\nOL[11] = ON\nVL[1] = IL[3]\nSPEED VR[1]\n");
+  std::vector<bool> reads;
+  for (const Instruction& i : compiled.module.instructions) reads.push_back(i.reads_machine);
+  EXPECT_EQ(reads, (std::vector<bool>{true, true, false, false, true, false}));
+}
+
+// OPT-9.12, OPT-6.43
+TEST(ModuleIndex, StartsAtTaskOneOrTheFirstInstruction) {
+  const Compilation task = MustCompile("VI[2] = 1\nTASK 1\nVI[3] = 1\n");
+  EXPECT_EQ(ModuleIndex(task.module).entry(), 1U);
+  const Compilation plain = MustCompile("DECLARE X = VR[1]\nX = 1.\n");
+  EXPECT_EQ(ModuleIndex(plain.module).entry(), 1U);
+  EXPECT_EQ(ModuleIndex(plain.module).FindStep(1), 1U);
+  EXPECT_EQ(ModuleIndex(plain.module).FindStep(2), std::nullopt);
+}
+
+// OPT-7.17, OPT-7.23
+TEST(Module, KeepsTheTargetsOfJumps) {
+  const Compilation compiled =
+      MustCompile("20 GOTO VI[2] (20,30,40)\n30 IF VL[1] THEN 20 ELSE 40\n40\n");
+  const Module& module = compiled.module;
+  const auto table = module.Targets(module.instructions[0]);
+  EXPECT_EQ(std::vector<int>(table.begin(), table.end()), (std::vector<int>{20, 30, 40}));
+  const auto branches = module.Targets(module.instructions[1]);
+  EXPECT_EQ(std::vector<int>(branches.begin(), branches.end()), (std::vector<int>{20, 40}));
+}
+
+// OPT-9.22, OPT-9.30
+TEST(Module, ParametersHaveTheirTypes) {
+  const Compilation compiled = MustCompile("DEFINE PAR[1] = LOGIC\nDEFINE PAR[2] = INT\n");
+  EXPECT_EQ(compiled.module.parameter_types[0], ValueType::kReal);
+  EXPECT_EQ(compiled.module.parameter_types[1], ValueType::kLogical);
+  EXPECT_EQ(compiled.module.parameter_types[2], ValueType::kInteger);
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo

@@ -1,0 +1,215 @@
+#include "engine/optimo/offline/convert.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "engine/optimo/language/program.h"
+#include "tests/engine/optimo/language/random_program.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+std::string Metric(const std::string& text) { return Convert(text, Direction::kToMetric).text; }
+std::string Inch(const std::string& text) { return Convert(text, Direction::kToInch).text; }
+std::vector<int> FindingsOf(const std::string& text) {
+  std::vector<int> numbers;
+  for (const Diagnostic& d : Convert(text, Direction::kToMetric).diagnostics)
+    numbers.push_back(Lookup(d.code).number);
+  return numbers;
+}
+
+// OPT-8.26, OPT-8.40
+TEST(Convert, OnlyMeasurementsChange) {
+  for (const char* text :
+       {"SPEED 30", "ACCEL 50", "OVERSH 50", "DELAY 2.", "WORKDEF 1,0 (6.5, 80., 1.5, 95)",
+        "VR[0] = SQRT(2)", "VR[3] = ASIN(0.5)", "CALL 2 (1.5)", "FUNCTION 44 (7.)", "GOTO 20",
+        "VI[2] = 5", "OL[11] = 1", "; MOVE (1,0,0,0,0)", "WAIT IA[0] > 10."}) {
+    EXPECT_EQ(Metric(text), text);
+  }
+}
+
+// OPT-8.27, OPT-8.28
+TEST(Convert, NumbersHaveUpToSixDecimals) {
+  EXPECT_EQ(Metric("VR[0] = 45"), "VR[0] = 1143.0");
+  EXPECT_EQ(Metric("VR[0] = 0"), "VR[0] = 0.0");
+  EXPECT_EQ(Metric("VR[0] = -0.0"), "VR[0] = 0.0");
+  EXPECT_EQ(Metric("VR[3] = -164.533"), "VR[3] = -2.871643");
+  EXPECT_EQ(Metric("VR[0] = .5"), "VR[0] = 12.7");
+  EXPECT_EQ(Metric("VR[0] = 40.739"), "VR[0] = 1034.7706");
+}
+
+// OPT-8.29
+TEST(Convert, RepeatedConversionMayMoveANumber) {
+  EXPECT_EQ(Inch("VR[0] = 420.5"), "VR[0] = 16.555118");
+  EXPECT_EQ(Metric("VR[0] = 16.555118"), "VR[0] = 420.499997");
+}
+
+// OPT-8.30, OPT-8.31, OPT-8.32
+TEST(Convert, VariablesHaveTheirUnits) {
+  for (const int n : {0, 1, 2, 5, 7, 10, 12, 15, 17, 20, 22, 80, 88, 92, 94}) {
+    const std::string target = "VR[" + std::to_string(n) + "] = ";
+    EXPECT_EQ(Metric(target + "1"), target + "25.4");
+  }
+  for (const int n : {3, 4, 8, 9, 13, 14, 18, 19, 23, 24, 89, 91, 95, 97}) {
+    const std::string target = "VR[" + std::to_string(n) + "] = ";
+    EXPECT_EQ(Metric(target + "180"), target + "3.141593");
+  }
+  for (const char* target :
+       {"VR[25] = ", "VR[26] = ", "VR[79] = ", "VR[98] = ", "VI[0] = ", "OA[0] = ", "PAR[0] = "}) {
+    EXPECT_EQ(Metric(target + std::string("1")), target + std::string("1"));
+  }
+}
+
+// OPT-8.33, OPT-8.34, OPT-8.36
+TEST(Convert, NamesHaveTheUnitOfTheirVariable) {
+  EXPECT_EQ(Metric("DECLARE YNEAR = VR[15]\nYNEAR = 230\n"),
+            "DECLARE YNEAR = VR[15]\nYNEAR = 5842.0\n");
+  EXPECT_EQ(Metric("DECLARE N = 3\nLET VR[N] = 1.5\n"), "DECLARE N = 3\nLET VR[N] = 0.02618\n");
+  EXPECT_EQ(Metric("DECLARE EPSILON = 0.001\n"), "DECLARE EPSILON = 0.001\n");
+}
+
+// OPT-8.35, OPT-E.7710
+TEST(Convert, ConstantsWhereAUnitBelongsAreReported) {
+  const std::string text = "DECLARE XHOME = 10.5\nMOVE (XHOME,0.,0.,0.,0.)\n";
+  EXPECT_EQ(Metric(text), "DECLARE XHOME = 10.5\nMOVE (XHOME,0.0,0.0,0.0,0.0)\n");
+  EXPECT_EQ(FindingsOf(text), (std::vector<int>{7710}));
+  EXPECT_TRUE(FindingsOf("DECLARE FEED = 10.5\nSPEED FEED\n").empty());
+}
+
+// OPT-8.37, OPT-8.38, OPT-8.50
+TEST(Convert, ParametersHaveTheirUnits) {
+  EXPECT_EQ(Metric("MOVE (1,1,1,180,180)/VIA(1,1,1,180,180)"),
+            "MOVE (25.4,25.4,25.4,3.141593,3.141593)/VIA(25.4,25.4,25.4,3.141593,3.141593)");
+  EXPECT_EQ(Metric("SYSDEF (1,1,1,180,180,180)"),
+            "SYSDEF (25.4,25.4,25.4,3.141593,3.141593,3.141593)");
+  EXPECT_EQ(Metric("path hole (.5)"), "path hole (12.7)");
+  EXPECT_EQ(Metric("TCP (8.68, 0, 0.72/0, 1.77, 0)"),
+            "TCP (220.472, 0.0, 18.288/0.0, 44.958, 0.0)");
+  EXPECT_EQ(Metric("VR[26] = SIN(90) "), "VR[26] = SIN(1.570796) ");
+}
+
+// OPT-8.39, OPT-8.01
+TEST(Convert, DirectivesHaveALength) {
+  EXPECT_EQ(Metric("15 ;$DIA=0.020\n;$rad = 0.01 beam\n;$left\n;$dia=x\n"),
+            "15 ;$DIA=0.508\n;$rad = 0.254 beam\n;$left\n;$dia=x\n");
+}
+
+// OPT-8.41
+TEST(Convert, TheRotaryTableStaysInDegrees) {
+  EXPECT_EQ(Metric("FUNCTION 99 (90.)"), "FUNCTION 99 (90.)");
+  EXPECT_EQ(Metric("FUNCTION 99 (SIN(90.))"), "FUNCTION 99 (SIN(90.))");
+  EXPECT_EQ(Metric("FUNCTION 44 (SIN(90.))"), "FUNCTION 44 (SIN(1.570796))");
+}
+
+// OPT-8.42, OPT-8.43, OPT-8.48
+TEST(Convert, ANumberTakesTheUnitOfTheOtherOperand) {
+  EXPECT_EQ(Metric("VR[26] = VR[0] + 1"), "VR[26] = VR[0] + 25.4");
+  EXPECT_EQ(Metric("VR[0] = VR[3] - 180"), "VR[0] = VR[3] - 3.141593");
+  EXPECT_EQ(Metric("MOVE (VR[40] + 1, 0, 0, 0, 0)"), "MOVE (VR[40] + 25.4, 0.0, 0.0, 0.0, 0.0)");
+  EXPECT_EQ(Metric("VR[0] = 2 + 3"), "VR[0] = 50.8 + 76.2");
+  EXPECT_EQ(Metric("DECLARE XP = VR[0]\nDECLARE YP = VR[1]\nMOVE (XP + 1, YP * 2, 3, 0, 0)\n"),
+            "DECLARE XP = VR[0]\nDECLARE YP = VR[1]\nMOVE (XP + 25.4, YP * 2, 76.2, 0.0, 0.0)\n");
+}
+
+// OPT-8.44, OPT-8.47
+TEST(Convert, RelationsConvertLabelsDoNot) {
+  EXPECT_EQ(Metric("IF VR[5] > 100 THEN 50 ELSE 60"), "IF VR[5] > 2540.0 THEN 50 ELSE 60");
+  EXPECT_EQ(Metric("WAIT VR[5] = 1"), "WAIT VR[5] = 25.4");
+  EXPECT_EQ(Inch("MOVE (0.0, 0.0, 0.0, 0.0, 0.0)/END (VR[3] > 6.182)"),
+            "MOVE (0.0, 0.0, 0.0, 0.0, 0.0)/END (VR[3] > 354.202509)");
+  EXPECT_EQ(Metric("IF VL[1] = 1 THEN 5"), "IF VL[1] = 1 THEN 5");
+  EXPECT_EQ(Metric("WAIT 1"), "WAIT 1");
+}
+
+// OPT-8.45
+TEST(Convert, ProductsAreNotConverted) {
+  for (const char* text :
+       {"VR[0] = VR[1] * 2", "VR[0] = VR[1] / 2", "VR[0] = VR[1] ^ 2", "VR[0] = VR[1] MOD 2"}) {
+    EXPECT_EQ(Metric(text), text);
+    EXPECT_TRUE(FindingsOf(text).empty());
+  }
+}
+
+// OPT-8.46, OPT-E.7709
+TEST(Convert, SeveralOperatorsAreLeftAloneAndReported) {
+  EXPECT_EQ(Metric("VR[0] = VR[1] + 2 + 3"), "VR[0] = VR[1] + 2 + 3");
+  EXPECT_EQ(FindingsOf("VR[0] = VR[1] + 2 + 3"), (std::vector<int>{7709}));
+  EXPECT_EQ(FindingsOf("VR[0] = (VR[1] + 2) * 3"), (std::vector<int>{7709}));
+  EXPECT_TRUE(FindingsOf("VR[0] = VR[1] + VR[2] + VR[3]").empty());
+  EXPECT_EQ(Metric("VR[1] = -230"), "VR[1] = -5842.0");
+  EXPECT_EQ(Metric("VR[0] = VR[1] + SIN(90)"), "VR[0] = VR[1] + SIN(1.570796)");
+  EXPECT_EQ(Metric("IF VR[5] > 100 AND IL[3] THEN 50"), "IF VR[5] > 2540.0 AND IL[3] THEN 50");
+  EXPECT_EQ(Metric("IF 1 AND VR[5] > 100 THEN 50"), "IF 1 AND VR[5] > 2540.0 THEN 50");
+}
+
+// OPT-8.49
+TEST(Convert, ExponentsBecomePlainDecimals) {
+  EXPECT_EQ(Metric("VR[0] = 1.5E2"), "VR[0] = 3810.0");
+  EXPECT_EQ(Metric("VR[0] = 1.5 E -2"), "VR[0] = 0.381");
+  EXPECT_EQ(Metric("VR[26] = 1.5E2"), "VR[26] = 1.5E2");
+}
+
+// OPT-8.51, OPT-B.78, OPT-B.77
+TEST(Convert, TheHeaderIsTheFirstLine) {
+  const FileNames names{"a.si", "a.s", "Tue Apr 20 13:37:22 1993"};
+  EXPECT_EQ(Convert("; old\n", Direction::kToMetric, names).text,
+            "; Metric File a.s Created From Inch File a.si - Tue Apr 20 13:37:22 1993\n; old\n");
+  EXPECT_EQ(Convert("; old\r\n", Direction::kToInch, FileNames{"a.s", "a.si", "now"}).text,
+            "; Inch File a.si Created From Metric File a.s - now\r\n; old\r\n");
+}
+
+// OPT-8.52
+TEST(Convert, LinesStay) {
+  EXPECT_EQ(Metric("MOVE (1,0,0,0,0)/ ; c\n\nVIA(2,0,0,0,0)\n"),
+            "MOVE (25.4,0.0,0.0,0.0,0.0)/ ; c\n\nVIA(50.8,0.0,0.0,0.0,0.0)\n");
+}
+
+// OPT-8.53, OPT-E.7711
+TEST(Convert, LinesThatAreNoRmlAreCopied) {
+  const std::string text = "MOVE (1,2\nMOVE (1,0,0,0,0)\nVR[0] = 1 2\n";
+  EXPECT_EQ(Metric(text), "MOVE (1,2\nMOVE (25.4,0.0,0.0,0.0,0.0)\nVR[0] = 1 2\n");
+  EXPECT_EQ(FindingsOf(text), (std::vector<int>{7711, 7711}));
+}
+
+// OPT-8.65, OPT-E.7708: VR [ 26 ] = 1 + ... : 5 tokens and two for each further term.
+TEST(Convert, StatementsOfMoreThanTwoHundredTokensAreCopied) {
+  const auto sum = [](int terms) {
+    std::string text = "VR[26] = VR[0]";
+    for (int t = 0; t < terms; ++t) text += "+1";
+    return text;
+  };
+  const std::string call = "MOVE (1,0,0,0,0)\n";
+  EXPECT_EQ(FindingsOf(sum(95) + "\n"), (std::vector<int>{7709}));         // 9 + 190 = 199
+  EXPECT_EQ(FindingsOf(sum(96) + "\n" + call), (std::vector<int>{7708}));  // 201
+  EXPECT_EQ(Metric(sum(96) + "\n" + call), sum(96) + "\nMOVE (25.4,0.0,0.0,0.0,0.0)\n");
+}
+
+// What 1Ah and behind it is stays.
+TEST(Convert, TextBehindItsEndStays) {
+  EXPECT_EQ(Metric("VR[0] = 1\n\x1A VR[0] = 1"), "VR[0] = 25.4\n\x1A VR[0] = 1");
+}
+
+// There and back within 1e-6, and nothing but numbers touched. OPT-8.26
+TEST(Convert, ThereAndBackIsTheSame) {
+  for (std::uint32_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const std::string text = RandomProgram(seed).Make(40);
+    const std::string inch = Inch(text);
+    const std::string back = Metric(inch);
+    Findings none(0);
+    const ParsedProgram a = Parse(text, none), b = Parse(back, none);
+    ASSERT_EQ(a.module.nodes.size(), b.module.nodes.size());
+    ASSERT_EQ(a.module.labels, b.module.labels);
+    for (std::size_t n = 0; n < a.module.nodes.size(); ++n) {
+      const double before = static_cast<double>(a.module.nodes[n].number);
+      const double after = static_cast<double>(b.module.nodes[n].number);
+      // Half a digit of the sixth decimal, times 25.4 on the way back.
+      ASSERT_NEAR(before, after, 2e-5 + 1e-6 * std::fabs(before)) << n;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo

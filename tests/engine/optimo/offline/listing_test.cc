@@ -1,0 +1,29 @@
+#include "engine/optimo/offline/listing.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/optimo/language/compile_text.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+// OPT-8.73, OPT-6.02: the first seven lines of the manual's table of steps.
+TEST(Listing, NumbersLinesAndSteps) {
+  const std::string text =
+      "DECLARE XAXIS = VR[0]\nDECLARE YAXIS = VR[1]\nDECLARE ZAXIS = VR[2]\nDECLARE RAPID = "
+      "VR[64]\n"
+      "DECLARE APPROACH = VR[69]\nDECLARE FEED = VR[74]\nXAXIS = 500.0\n20 SPEED RAPID\n";
+  const std::string list = List(MustCompile(text).module);
+  EXPECT_NE(list.find("    1     0       DECLARE XAXIS = VR[0]\n"), std::string::npos);
+  EXPECT_NE(list.find("    7     1       LET XAXIS = 500.0\n"), std::string::npos);
+  EXPECT_NE(list.find("    8     2  20   SPEED RAPID\n"), std::string::npos);
+}
+
+// OPT-8.73, OPT-1.27: a lone number has a line and no step.
+TEST(Listing, LoneNumbersAreNoSteps) {
+  EXPECT_EQ(List(MustCompile("15\n16 SPEED 5\n17\n").module),
+            "    1     0  15\n    2     1  16   SPEED 5\n    3     0  17\n");
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo

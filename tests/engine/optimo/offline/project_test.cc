@@ -1,0 +1,183 @@
+#include "engine/optimo/offline/project.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/optimo/language/compile_text.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+class Project : public testing::Test {
+ protected:
+  void Add(int slot, std::string_view text, bool inch = false) {
+    bundle_.programs.push_back({slot, {std::to_string(slot) + (inch ? ".SI" : ".S"), text}, inch});
+  }
+  void AddSchedule(int number) { bundle_.schedules.push_back({.number = number, .name = {}}); }
+  void Define(int kind, int process, std::vector<double> values) {
+    bundle_.processes.push_back({kind, process, std::move(values), ""});
+  }
+  machine::TransferPlan Plan(bool insert = false) {
+    return PlanTransfer(bundle_, {.insert_missing_definitions = insert});
+  }
+  // Numbers of the findings, without advice that is not about the project.
+  std::vector<int> Findings(bool insert = false) {
+    std::vector<int> numbers;
+    for (const Diagnostic& d : Plan(insert).diagnostics) {
+      const int number = Lookup(d.code).number;
+      if (number != 7033 || d.rule == "OPT-7.39") numbers.push_back(number);
+    }
+    return numbers;
+  }
+  machine::ProjectBundle bundle_;
+};
+
+// OPT-8.69, OPT-8.68
+TEST_F(Project, InchProgramsAreConverted) {
+  Add(45, "PATH HOLE (.5)\n", true);
+  Add(46, "PATH HOLE (12.7)\n");
+  const machine::TransferPlan plan = Plan();
+  ASSERT_TRUE(plan.ok);
+  ASSERT_EQ(plan.programs.size(), 2U);
+  EXPECT_EQ(plan.programs[0].source, "PATH HOLE (12.7)\n");
+  EXPECT_EQ(plan.programs[0].object, plan.programs[1].object);
+}
+
+// OPT-8.71
+TEST_F(Project, OneWrongProgramStopsAll) {
+  Add(45, "SPEED 5\n");
+  Add(46, "SPEED 101\n");
+  Add(47, "SPEED 6\n");
+  const machine::TransferPlan plan = Plan();
+  EXPECT_FALSE(plan.ok);
+  EXPECT_TRUE(plan.programs.empty());
+  ASSERT_EQ(plan.diagnostics.size(), 1U);
+  EXPECT_EQ(plan.diagnostics[0].program, 46);
+  EXPECT_EQ(plan.diagnostics[0].where.line, 1);
+}
+
+// OPT-E.7861, OPT-1.10, OPT-E.7101
+TEST_F(Project, NumbersAreUniqueAndInRange) {
+  Add(45, "SPEED 5\n");
+  Add(45, "SPEED 6\n");
+  Add(100, "SPEED 7\n");
+  EXPECT_EQ(Findings(), (std::vector<int>{7861, 7101}));
+  EXPECT_FALSE(Plan().ok);
+}
+
+// OPT-E.7862
+TEST_F(Project, SchedulesMustBeThere) {
+  AddSchedule(11);
+  Add(45,
+      "WORKDEF 2,0 (11)\nWORKDEF 2,1 (12)\nWORKDEF 1,0 (8.,75.,1.,50.,13)\nWORKDEF 2,2 (VR[26])\n");
+  EXPECT_EQ(Findings(), (std::vector<int>{7862, 7862}));
+  EXPECT_FALSE(Plan().ok);
+}
+
+// OPT-3.01, OPT-3.02, OPT-3.06, OPT-3.08
+TEST_F(Project, DefinitionsAreChecked) {
+  const auto errors = [](int kind, int process, std::vector<double> values) {
+    std::vector<int> numbers;
+    for (const Diagnostic& d : CheckProcess({kind, process, std::move(values), ""}))
+      numbers.push_back(Lookup(d.code).number);
+    return numbers;
+  };
+  EXPECT_TRUE(errors(1, 0, {6.5, 80, 1.5, 95}).empty());
+  EXPECT_TRUE(errors(1, 9, {6.5, 80, 1.5, 95, 63}).empty());
+  EXPECT_TRUE(errors(0, 0, {}).empty());
+  EXPECT_EQ(errors(3, 0, {}), (std::vector<int>{7402}));
+  EXPECT_EQ(errors(1, 10, {6.5, 80, 1.5, 95}), (std::vector<int>{7402}));
+  EXPECT_EQ(errors(0, 0, {5}), (std::vector<int>{7019}));
+  EXPECT_EQ(errors(1, 0, {5}), (std::vector<int>{7019}));
+  EXPECT_EQ(errors(2, 0, {64}), (std::vector<int>{7403}));
+  EXPECT_EQ(errors(2, 0, {0}), (std::vector<int>{7403}));
+  EXPECT_EQ(errors(1, 0, {0, 80, 1.5, 95}), (std::vector<int>{7004}));
+  EXPECT_EQ(errors(1, 0, {8, 101, -1, 95}), (std::vector<int>{7004, 7004}));
+}
+
+// OPT-3.11, OPT-E.7863
+TEST_F(Project, DifferencesAreReported) {
+  Define(1, 0, {6.5, 80, 1.5, 95});
+  Add(45, "WORKDEF 1,0 (6.5, 80., 1.5, 95)\nWORKDEF 1,1 (1.,2.,3.,4.)\n");
+  Add(46, "SPEED 5\nWORKDEF 1,0 (6.5, 81., 1.5, 95)\n");
+  Add(47, "WORKDEF 1,0 (VR[65], 80., 1.5, 95)\n");
+  const machine::TransferPlan plan = Plan();
+  EXPECT_TRUE(plan.ok);
+  ASSERT_EQ(plan.diagnostics.size(), 2U);
+  EXPECT_EQ(plan.diagnostics[0].program, 45);
+  EXPECT_EQ(plan.diagnostics[0].where.line, 2);
+  EXPECT_EQ(plan.diagnostics[1].program, 46);
+  EXPECT_EQ(plan.diagnostics[1].where.line, 2);
+  EXPECT_EQ(plan.diagnostics[1].code, ErrorCode::kProjectProcess);
+}
+
+// OPT-3.09, OPT-3.10
+TEST_F(Project, AWorkNeedsADefinition) {
+  Add(45, "WORK 0,0/ON\nWORK 0,0/OFF\n");
+  EXPECT_TRUE(Plan().ok);
+  Add(46, "SPEED 5\nWORK 1,3/ON\nWORK 1,3/OFF\n");
+  const machine::TransferPlan plan = Plan();
+  EXPECT_FALSE(plan.ok);
+  ASSERT_FALSE(plan.diagnostics.empty());
+  EXPECT_EQ(plan.diagnostics[0].code, ErrorCode::kWorkdefMissing);
+  EXPECT_EQ(plan.diagnostics[0].where.line, 2);
+}
+
+// OPT-3.09: inserted before the first WORK, behind its sequence number; comments stay.
+TEST_F(Project, MissingDefinitionsAreInserted) {
+  Define(1, 3, {6.5, 80, 1.5, 95});
+  AddSchedule(11);
+  Define(2, 0, {11});
+  Add(45,
+      "; part\nSPEED 5 ; slow\n10   WORK 1,3 /ON ; cut\nWORK 1,3/OFF\n  WORK 2,0/ON\nWORK "
+      "1,3/ON\n");
+  const machine::TransferPlan plan = Plan(true);
+  ASSERT_TRUE(plan.ok);
+  EXPECT_EQ(plan.programs[0].source,
+            "; part\nSPEED 5 ; slow\n10   WORKDEF 1,3 (6.5, 80.0, 1.5, 95.0)\n     WORK 1,3 /ON ; "
+            "cut\nWORK 1,3/OFF\n"
+            "  WORKDEF 2,0 (11)\n  WORK 2,0/ON\nWORK 1,3/ON\n");
+  EXPECT_EQ(plan.programs[0].object, MustCompile(plan.programs[0].source).object);
+  const machine::TransferPlan without = Plan(false);
+  EXPECT_TRUE(without.ok);
+  EXPECT_EQ(without.programs[0].source.find("WORKDEF"), std::string::npos);
+}
+
+// OPT-3.12: a FUNCTION shares the WORKDEFs of its callers.
+TEST_F(Project, FunctionsShareDefinitions) {
+  Add(32, "WORKDEF 1,0 (6.5, 80., 1.5, 95)\nFUNCTION 44\n");
+  Add(44, "WORK 1,0/ON\nWORK 1,0/OFF\n");
+  EXPECT_TRUE(Plan().ok);
+  Add(45, "WORK 1,0/ON\nWORK 1,0/OFF\n");
+  EXPECT_FALSE(Plan().ok);
+}
+
+// OPT-7.39
+TEST_F(Project, AllProgramsOrNoneUseSysdef) {
+  Add(45, "COORD ABSOL\nSYSDEF (1.,2.,3.,0.,0.,0.)\nMOVE (1.,2.,3.,0.,0.)\n");
+  Add(46, "COORD ABSOL\nMOVE (1.,2.,3.,0.,0.)\n");
+  const machine::TransferPlan plan = Plan();
+  EXPECT_TRUE(plan.ok);
+  int found = 0;
+  for (const Diagnostic& d : plan.diagnostics) {
+    if (d.rule != "OPT-7.39") continue;
+    ++found;
+    EXPECT_EQ(d.program, 46);
+  }
+  EXPECT_EQ(found, 1);
+}
+
+// OPT-10.17, OPT-E.7413
+TEST_F(Project, AmadasNumbersAreReserved) {
+  Add(5, "SPEED 5\n");
+  EXPECT_EQ(Findings(), (std::vector<int>{7413}));
+  EXPECT_TRUE(Plan().ok);
+}
+
+// OPT-E.7862
+TEST_F(Project, AProgramHasText) {
+  Add(45, "");
+  EXPECT_EQ(Findings(), (std::vector<int>{7862}));
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo
