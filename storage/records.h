@@ -63,7 +63,7 @@ struct ProgramSummary {
   std::int64_t object_bytes = 0;
   std::int64_t source_bytes = -1;      // -1: no source
   std::int64_t executable_bytes = -1;  // -1: no executable
-  std::string object_sha256;           // lower-case hexadecimal
+  std::string object_sha256{};           // lower-case hexadecimal
   Revision revision = 0;
   WallTime created_at{};
   WallTime updated_at{};
@@ -160,13 +160,13 @@ struct NewArtifact {
   std::string name{};  // "report", "toolpath", "picture.svg"
   std::string media_type{};
   std::string bytes{};
-  std::string existing_sha256;  // not empty: content that the store has already; `bytes` is not looked at
+  std::string existing_sha256{};  // not empty: content that the store has already; `bytes` is not looked at
 };
 struct ArtifactRecord {
   std::int64_t job = 0;
   std::string name{};
   std::string media_type{};
-  std::string sha256;  // lower-case hexadecimal, of the uncompressed bytes
+  std::string sha256{};  // lower-case hexadecimal, of the uncompressed bytes
   std::int64_t size = 0;
 };
 

@@ -147,7 +147,7 @@ class Store {
   // twice; CellTooLarge: an event beyond kEventPayloadBytesMax; CellResourceExhausted: too many writes wait
   // already, told at once by the calling thread.
   virtual void Submit(NewJob job, std::function<void(Result<SubmittedJob>)> done) = 0;
-  Result<SubmittedJob> SubmitAndWait(NewJob job);
+  virtual Result<SubmittedJob> SubmitAndWait(NewJob job);
 
   virtual Result<JobRecord> GetJob(std::int64_t id) = 0;
   virtual Result<std::vector<JobRecord>> ListJobs(const JobQuery& query) = 0;
@@ -175,7 +175,7 @@ class Store {
   // called as that of Submit(). What one thread appends is written in the order of its calls.
   virtual void Append(const Lease& lease, std::vector<NewEvent> events,
                       std::function<void(Result<std::int64_t>)> done) = 0;
-  Result<std::int64_t> AppendAndWait(const Lease& lease, std::vector<NewEvent> events);
+  virtual Result<std::int64_t> AppendAndWait(const Lease& lease, std::vector<NewEvent> events);
   // Ends the job. Artifacts and events are written with it. CellLeaseLost; CellNotFound: an artifact names
   // content that is not there; CellInvalidArgument: a state that is not final, an artifact's name that the
   // job has already.

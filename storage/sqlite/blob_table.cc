@@ -168,6 +168,7 @@ Result<bool> BlobTable::Sweep(int blobs_max, int chunks_max) {
     if (chunks_max <= 0) return true;  // it may have more
     const Status removed = remove_.With(*blob).Run();
     if (!removed) return removed.error();
+    if (remove_.changes() != 1) return Damaged(*blob, "is not there");
   }
   return true;
 }

@@ -118,7 +118,11 @@ Status Housekeeping::RemoveOldEvents(WriteContext& context) const {
     count += of_job.count;
     newest = std::max(newest, of_job.position);
   }
+  const std::int64_t before = context.counters.events_trimmed_until;
   context.counters.events_trimmed_until = count < kEventsPerSlice ? until : newest;
+  if (context.counters.events_trimmed_until <= before) {
+    return Error{ErrorCode::kCellStoreCorrupt, "old events cannot be removed", {}};
+  }
   return {};
 }
 

@@ -202,6 +202,9 @@ Result<std::optional<std::int64_t>> JobTable::OldestFinished() {
 Result<std::optional<std::int64_t>> JobTable::Remove(std::int64_t id) {
   const Status removed = remove_.With(id).Run();
   if (!removed) return removed.error();
+  if (remove_.changes() != 1) {
+    return Error{ErrorCode::kCellStoreCorrupt, "job " + std::to_string(id) + " is not there", {}};
+  }
   Query query = remove_specification_.With(id);
   const Result<bool> row = query.Step();
   if (!row) return row.error();
@@ -294,6 +297,9 @@ Result<std::vector<std::string>> JobTable::KindsOf(JobState state) {
   std::vector<std::string> kinds;
   Result<std::optional<std::string>> kind = FirstRow<std::string>(first.With(), text);
   while (kind && *kind) {
+    if (!kinds.empty() && **kind <= kinds.back()) {  // a damaged index must not lead in circles
+      return Error{ErrorCode::kCellStoreCorrupt, "the index of unfinished jobs is out of order", {}};
+    }
     kinds.push_back(**std::move(kind));
     kind = FirstRow<std::string>(next.With(kinds.back()), text);
   }

@@ -78,6 +78,9 @@ Error Named(Error error, const std::string& path) {
 }
 
 Result<std::unique_ptr<Store>> Open(const SqliteOptions& options, Clock clock) {
+  if (options.path.empty()) {
+    return Error{ErrorCode::kCellStoreFailed, "no file is named for the store", {}};
+  }
   const Status directory = MakeDirectoryOf(options.path);
   if (!directory) return directory.error();
   Result<StoreLock> lock = StoreLock::Take(options.path + ".lock");

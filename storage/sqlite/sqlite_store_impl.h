@@ -58,6 +58,7 @@ class SqliteStore final : public Store {
   Status DeleteProject(std::string_view id, Revision expected) override;
 
   void Submit(NewJob job, std::function<void(Result<SubmittedJob>)> done) override;
+  Result<SubmittedJob> SubmitAndWait(NewJob job) override;
   Result<JobRecord> GetJob(std::int64_t id) override;
   Result<std::vector<JobRecord>> ListJobs(const JobQuery& query) override;
   Result<std::vector<AttemptRecord>> ListAttempts(std::int64_t job) override;
@@ -71,6 +72,7 @@ class SqliteStore final : public Store {
   Result<JobRecord> Renew(const Lease& lease, std::chrono::milliseconds duration) override;
   void Append(const Lease& lease, std::vector<NewEvent> events,
               std::function<void(Result<std::int64_t>)> done) override;
+  Result<std::int64_t> AppendAndWait(const Lease& lease, std::vector<NewEvent> events) override;
   Result<JobRecord> Finish(const Lease& lease, const JobOutcome& outcome,
                            const std::vector<NewArtifact>& artifacts,
                            const std::vector<NewEvent>& events) override;

@@ -26,14 +26,13 @@ std::size_t BytesOf(const std::vector<NewEvent>& events) {
   return bytes;
 }
 
-// The hot path: what the answer needs is moved from the request, not copied.
-class SubmitOperation final : public WriteOperation {
+// A job with all that is made ready on the thread of the caller.
+class Submission {
  public:
-  using Done = std::function<void(Result<SubmittedJob>)>;
+  explicit Submission(NewJob job) : job_(std::move(job)) {}
+  Submission(const Submission&) = delete;
+  Submission& operator=(const Submission&) = delete;
 
-  SubmitOperation(NewJob job, Done done) : job_(std::move(job)), done_(std::move(done)) {}
-
-  // On the thread of the caller.
   Status Prepare(Writer& writer, RequestIds& ids, const Clock& clock) {
     contents_.request_id = job_.request_id.empty() ? ids.Make(clock()) : job_.request_id;
     staged_.reserve(job_.attachments.size() + 1);
@@ -49,24 +48,19 @@ class SubmitOperation final : public WriteOperation {
     return {};
   }
 
+  Result<SubmittedJob> Run(WriteContext& context) { return SubmitJob(context, job_, contents_); }
+
+  // After the last Run(): what the answer needs is moved from the request, not copied.
+  void Complete(SubmittedJob& submitted) {
+    if (!submitted.already_there) submitted.job.specification = std::move(job_.specification);
+  }
+
   std::size_t bytes() const {
     std::size_t bytes = sizeof(*this) + job_.specification.size() + BytesOf(job_.events);
     for (const NewArtifact& attachment : job_.attachments) {
       bytes += sizeof(attachment) + attachment.bytes.size();
     }
     return bytes;
-  }
-
-  Status Run(WriteContext& context) override {
-    submitted_ = SubmitJob(context, job_, contents_);
-    return submitted_ ? Status() : Status(submitted_.error());
-  }
-
-  void Answer(const Status& status) override {
-    staged_.clear();
-    if (!status) return done_(status.error());
-    if (!submitted_->already_there) submitted_->job.specification = std::move(job_.specification);
-    done_(std::move(submitted_));
   }
 
  private:
@@ -77,9 +71,32 @@ class SubmitOperation final : public WriteOperation {
   }
 
   NewJob job_;
-  Done done_;
   std::vector<StagedContent> staged_;
   JobContents contents_{};
+};
+
+class SubmitOperation final : public WriteOperation {
+ public:
+  using Done = std::function<void(Result<SubmittedJob>)>;
+
+  SubmitOperation(NewJob job, Done done) : submission_(std::move(job)), done_(std::move(done)) {}
+
+  Submission& submission() { return submission_; }
+
+  Status Run(WriteContext& context) override {
+    submitted_ = submission_.Run(context);
+    return submitted_ ? Status() : Status(submitted_.error());
+  }
+
+  void Answer(const Status& status) override {
+    if (!status) return done_(status.error());
+    submission_.Complete(*submitted_);
+    done_(std::move(submitted_));
+  }
+
+ private:
+  Submission submission_;
+  Done done_;
   Result<SubmittedJob> submitted_ = SubmittedJob{};
 };
 
@@ -136,10 +153,20 @@ SqliteStore::SqliteStore(Parts parts)
 
 void SqliteStore::Submit(NewJob job, std::function<void(Result<SubmittedJob>)> done) {
   auto operation = std::make_unique<SubmitOperation>(std::move(job), std::move(done));
-  const Status prepared = operation->Prepare(writer_, request_ids_, clock_);
+  const Status prepared = operation->submission().Prepare(writer_, request_ids_, clock_);
   if (!prepared) return operation->Answer(prepared);
-  const std::size_t bytes = operation->bytes();
+  const std::size_t bytes = operation->submission().bytes();
   writer_.Post(std::move(operation), bytes);
+}
+
+Result<SubmittedJob> SqliteStore::SubmitAndWait(NewJob job) {
+  Submission submission(std::move(job));
+  const Status prepared = submission.Prepare(writer_, request_ids_, clock_);
+  if (!prepared) return prepared.error();
+  Result<SubmittedJob> submitted =
+      writer_.Do([&](WriteContext& context) { return submission.Run(context); });
+  if (submitted) submission.Complete(*submitted);
+  return submitted;
 }
 
 Result<JobRecord> SqliteStore::GetJob(std::int64_t id) {
@@ -204,6 +231,10 @@ void SqliteStore::Append(const Lease& lease, std::vector<NewEvent> events,
   auto operation = std::make_unique<AppendOperation>(lease, std::move(events), std::move(done));
   const std::size_t bytes = operation->bytes();
   writer_.Post(std::move(operation), bytes);
+}
+
+Result<std::int64_t> SqliteStore::AppendAndWait(const Lease& lease, std::vector<NewEvent> events) {
+  return writer_.Do([&](WriteContext& context) { return AppendEvents(context, lease, events); });
 }
 
 Result<JobRecord> SqliteStore::Finish(const Lease& lease, const JobOutcome& outcome,
