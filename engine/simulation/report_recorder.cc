@@ -54,31 +54,30 @@ std::string_view OutcomeText(machine::OutcomeKind kind) {
 }
 
 ReportRecorder::ReportRecorder(const machine::MachineShape& shape)
-    : shape_(shape), axes_(shape), beam_(shape.laser_watts, TipSpeedMax(shape)) {}
+    : shape_(shape),
+      time_([this](const TimeLedger::Gap& gap) { CountStandstill(gap); }),
+      axes_(shape),
+      beam_(shape.laser_watts, TipSpeedMax(shape)) {}
 
-ReportRecorder::Interval ReportRecorder::Claim(SimTime start, SimTime end) {
-  FillStandstill(start);
-  const Interval interval{std::max(start, counted_until_), std::max(end, counted_until_)};
-  counted_until_ = interval.end;
-  return interval;
+void ReportRecorder::CountStandstill(const TimeLedger::Gap& gap) {
+  WorkFigures work;
+  (gap.halted ? work.time.operator_wait : work.time.standstill) = gap.length();
+  if (gap.beam_on) {
+    work.beam_on = gap.length();
+    work.pierce_energy_j = beam_.Standing(ToSeconds(gap.length()), 0.0);
+  }
+  work_.Add(gap.place, work);
 }
 
-void ReportRecorder::FillStandstill(SimTime until) {
-  if (until <= counted_until_) return;
-  const SimTime length = until - counted_until_;
-  WorkFigures work;
-  (halted_ ? work.time.operator_wait : work.time.standstill) = length;
-  if (beam_on_) {
-    work.beam_on = length;
-    work.pierce_energy_j = beam_.Standing(ToSeconds(length), 0.0);
-  }
-  work_.Add(place_, work);
-  counted_until_ = until;
+// The beam cuts, or the tool of a machine without one.
+bool ReportRecorder::Cuts(const machine::MotionDone& done) const {
+  const bool tool_in = done.use == MotionUse::kCut || done.use == MotionUse::kPlunge;
+  return done.beam_on || (shape_.laser_watts <= 0.0 && tool_in);
 }
 
 void ReportRecorder::OnStep(SimTime at, const machine::Place& place,
                             std::string_view /*instruction*/) {
-  FillStandstill(at);
+  time_.Leave(at, Now());
   place_ = place;
   WorkFigures work;
   work.steps = 1;
@@ -88,19 +87,19 @@ void ReportRecorder::OnStep(SimTime at, const machine::Place& place,
 void ReportRecorder::OnMotion(const machine::MotionDone& done) {
   const motion::PlannedMotion& motion = *done.motion;
   upper_bound_ = upper_bound_ || motion.upper_bound;
-  const Interval interval = Claim(done.start, done.end);
+  const SimTime claimed = time_.Claim(done.start, done.end, Now());
 
   WorkFigures work;
   const double profile_left_s = std::max(0.0, motion.speed.duration_s() - done.profile_start_s);
-  work.time.motion = std::min(FromSeconds(profile_left_s), interval.length());
-  work.time.settling = interval.length() - work.time.motion;
+  work.time.motion = std::min(FromSeconds(profile_left_s), claimed);
+  work.time.settling = claimed - work.time.motion;
 
   const double profile_end_s =
       done.profile_start_s + std::min(profile_left_s, ToSeconds(done.end - done.start));
   const double length = TipLength({motion.path, motion.head, done.from, done.travelled});
   AddLengths(done, length, work);
   if (done.beam_on) {
-    work.beam_on = interval.length();
+    work.beam_on = claimed;
     const double way = done.travelled - done.from;
     work.cut_energy_j = beam_.Moving(motion.speed, done.profile_start_s, profile_end_s,
                                      way > 0.0 ? length / way : 0.0, done.power);
@@ -113,11 +112,8 @@ void ReportRecorder::OnMotion(const machine::MotionDone& done) {
 }
 
 void ReportRecorder::AddLengths(const machine::MotionDone& done, double length, WorkFigures& work) {
-  const bool tool_in =
-      shape_.laser_watts <= 0.0 && (done.use == MotionUse::kCut || done.use == MotionUse::kPlunge);
-  const bool cuts = done.beam_on || tool_in;
   work.tip_path_mm = length;
-  (cuts ? work.cut_mm : work.travel_mm) = length;
+  (Cuts(done) ? work.cut_mm : work.travel_mm) = length;
   const bool plunge = done.use == MotionUse::kPlunge;
   if (plunge) work.plunge_mm = length;
   if (plunge && !plunging_) work.plunges = 1;
@@ -133,9 +129,7 @@ void ReportRecorder::AddShape(const machine::MotionDone& done, double profile_en
   const machine::Box box = BoxOf(tip);
   tip_.Add(box);
   column_.Add(BoxOf(column));
-  const bool tool_in =
-      shape_.laser_watts <= 0.0 && (done.use == MotionUse::kCut || done.use == MotionUse::kPlunge);
-  if (done.beam_on || tool_in) cut_.Add(box);
+  if (Cuts(done)) cut_.Add(box);
   axes_.Add({.xyz = column,
              .ab = RotarySweep(part),
              .peaks = PeaksOf(motion, shape_.five_axis, done.profile_start_s, profile_end_s),
@@ -154,7 +148,7 @@ void ReportRecorder::OnMove(const machine::MoveDone& move) {
 void ReportRecorder::OnSignal(const machine::SignalChange& change) {
   const bool on = change.value != 0.0;
   if (change.signal == Signal::kBeam) {
-    FillStandstill(change.at);  // before the beam changes
+    time_.Leave(change.at, Now());  // before the beam changes
     if (on && !beam_on_) {
       WorkFigures work;
       work.beam_switches = 1;
@@ -175,12 +169,12 @@ void ReportRecorder::OnSignal(const machine::SignalChange& change) {
 }
 
 void ReportRecorder::OnWait(const machine::Wait& wait) {
-  const Interval interval = Claim(wait.start, wait.end);
+  const SimTime claimed = time_.Claim(wait.start, wait.end, Now());
   WorkFigures work;
-  PartOf(work.time, wait.kind) = interval.length();
+  PartOf(work.time, wait.kind) = claimed;
   if (wait.beam_on) {
-    work.beam_on = interval.length();
-    work.pierce_energy_j = beam_.Standing(ToSeconds(interval.length()), wait.power_percent);
+    work.beam_on = claimed;
+    work.pierce_energy_j = beam_.Standing(ToSeconds(claimed), wait.power_percent);
     const bool pierces =
         wait.kind == WaitKind::kPierce || (wait.kind == WaitKind::kDwell && stands_since_beam_on_);
     if (pierces && !pierce_counted_ && wait.end > wait.start) {
@@ -192,13 +186,13 @@ void ReportRecorder::OnWait(const machine::Wait& wait) {
 }
 
 void ReportRecorder::OnHalt(const machine::Halt& halt) {
-  FillStandstill(halt.at);
+  time_.Leave(halt.at, Now());
   halted_ = true;
   ++halts_;
 }
 
 void ReportRecorder::OnResume(SimTime at, const machine::Place& /*place*/) {
-  FillStandstill(at);
+  time_.Leave(at, Now());
   halted_ = false;
 }
 
@@ -207,7 +201,8 @@ void ReportRecorder::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
 }
 
 void ReportRecorder::Finish(SimTime at) {
-  FillStandstill(at);
+  time_.Leave(at, Now());
+  time_.Close();
   if (!shutter_open_) return;
   shutter_time_ += at - shutter_since_;
   shutter_open_ = false;
@@ -219,7 +214,7 @@ RunReport ReportRecorder::Report(const machine::Run& run) const {
   report.finished = state.phase == machine::RunPhase::kFinished;
   if (report.finished) report.outcome = run.outcome();
   report.timing = upper_bound_ ? Timing::kExactStopUpperBound : Timing::kExact;
-  report.cycle_time = counted_until_;
+  report.cycle_time = time_.reached();
   report.steps_executed = run.steps_executed();
   report.halts = halts_;
   report.final_position = last_;
@@ -227,7 +222,7 @@ RunReport ReportRecorder::Report(const machine::Run& run) const {
   report.final_position.axes = state.axes;
   work_.WriteTo(report);
   report.shutter_open =
-      shutter_time_ + (shutter_open_ ? counted_until_ - shutter_since_ : SimTime::zero());
+      shutter_time_ + (shutter_open_ ? time_.reached() - shutter_since_ : SimTime::zero());
   report.beam = beam_.Histogram(report.total.beam_on);
   report.corners = corners_.corners();
   report.shortfall = corners_.shortfall();

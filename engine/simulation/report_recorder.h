@@ -6,6 +6,7 @@
 #include "engine/simulation/corner_log.h"
 #include "engine/simulation/finding_list.h"
 #include "engine/simulation/report.h"
+#include "engine/simulation/time_ledger.h"
 #include "engine/simulation/work_table.h"
 
 namespace rmlcell::simulation {
@@ -33,24 +34,20 @@ class ReportRecorder final : public machine::RunObserver {
   RunReport Report(const machine::Run& run) const;
 
  private:
-  // The part of [start, end] that nothing was counted for yet.
-  struct Interval {
-    SimTime start{0};
-    SimTime end{0};
-    SimTime length() const { return end - start; }
-  };
-  Interval Claim(SimTime start, SimTime end);
-  void FillStandstill(SimTime until);
+  // What goes on now, for time that nothing is told about.
+  TimeLedger::Gap Now() const { return {{}, {}, place_, beam_on_, halted_}; }
+  void CountStandstill(const TimeLedger::Gap& gap);
+  bool Cuts(const machine::MotionDone& done) const;
   void AddLengths(const machine::MotionDone& done, double length, WorkFigures& work);
   void AddShape(const machine::MotionDone& done, double profile_end_s, double length);
 
   machine::MachineShape shape_;
+  TimeLedger time_;
   WorkTable work_;
   AxisLog axes_;
   BeamWork beam_;
   CornerLog corners_;
   FindingList findings_;
-  SimTime counted_until_{0};
   machine::Place place_;
   bool halted_ = false;
   std::uint64_t halts_ = 0;

@@ -147,8 +147,9 @@ Status AddSpecification(Tables& tables, JobRecord& job) {
 SqliteStore::SqliteStore(Parts parts)
     : lock_(std::move(parts.lock)),
       clock_(parts.clock),
+      connection_(std::move(parts.connection)),
       readers_(std::move(parts.readers)),
-      writer_(std::move(parts.connection), parts.counters, parts.writer, std::move(parts.clock),
+      writer_(*connection_, parts.counters, parts.writer, std::move(parts.clock),
               [this] { watchers_.Notify(); }) {}
 
 void SqliteStore::Submit(NewJob job, std::function<void(Result<SubmittedJob>)> done) {

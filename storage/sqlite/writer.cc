@@ -48,13 +48,13 @@ class WaitingOperation final : public WriteOperation {
 
 }  // namespace
 
-Writer::Writer(std::unique_ptr<Connection> connection, const Counters& counters,
+Writer::Writer(Connection& connection, const Counters& counters,
                const Options& options, Clock clock, std::function<void()> changed)
     : options_(options),
       clock_(std::move(clock)),
       changed_(std::move(changed)),
       housekeeping_(options.keep),
-      connection_(std::move(connection)),
+      connection_(connection),
       counters_(counters),
       queued_jobs_(counters.queued_jobs),
       running_jobs_(counters.running_jobs),
@@ -179,13 +179,13 @@ Writer::Outcome Writer::TryBatch(std::span<Pending> batch, Undo undo) {
     return Outcome::kLost;
   };
   Result<Transaction> transaction =
-      Transaction::Begin(connection_->transactions, Transaction::Kind::kWrite);
+      Transaction::Begin(connection_.transactions, Transaction::Kind::kWrite);
   if (!transaction) {
     lose(transaction.error());
     return Outcome::kCommitted;  // not the fault of any of them, and each alone would wait as long
                                  // again
   }
-  WriteContext context{.tables = connection_->tables, .counters = counters_, .now = {}};
+  WriteContext context{.tables = connection_.tables, .counters = counters_, .now = {}};
   for (Pending& pending : batch) {
     const Status sound = RunOne(pending, context, undo);
     if (!sound) return lose(sound.error());
@@ -209,10 +209,10 @@ Writer::Outcome Writer::TryBatch(std::span<Pending> batch, Undo undo) {
 Status Writer::RunOne(Pending& pending, WriteContext& context, Undo undo) {
   context.now = clock_();
   const Counters before = counters_;
-  const std::int64_t changes = connection_->database.total_changes();
+  const std::int64_t changes = connection_.database.total_changes();
   std::optional<Savepoint> savepoint;
   if (undo == Undo::kAlone) {
-    Result<Savepoint> begun = Savepoint::Begin(connection_->transactions);
+    Result<Savepoint> begun = Savepoint::Begin(connection_.transactions);
     if (!begun) return begun.error();
     savepoint.emplace(*std::move(begun));
   }
@@ -222,7 +222,7 @@ Status Writer::RunOne(Pending& pending, WriteContext& context, Undo undo) {
     // Out of memory: that write fails, not the process.
     pending.status = Error{ErrorCode::kCellInternal, exception.what(), {}};
   }
-  pending.wrote = connection_->database.total_changes() != changes;
+  pending.wrote = connection_.database.total_changes() != changes;
   if (!pending.status) counters_ = before;
   if (!savepoint) return {};
   return pending.status ? savepoint->Keep() : savepoint->Undo();
@@ -243,9 +243,9 @@ void Writer::Tidy() {
   const Counters before = counters_;
   const auto slice = [&]() -> Result<bool> {
     Result<Transaction> transaction =
-        Transaction::Begin(connection_->transactions, Transaction::Kind::kWrite);
+        Transaction::Begin(connection_.transactions, Transaction::Kind::kWrite);
     if (!transaction) return transaction.error();
-    WriteContext context{.tables = connection_->tables, .counters = counters_, .now = clock_()};
+    WriteContext context{.tables = connection_.tables, .counters = counters_, .now = clock_()};
     const Result<bool> more = housekeeping_.RunSlice(context);
     if (!more) return more;
     const Status committed = transaction->Commit();
@@ -267,14 +267,14 @@ void Writer::PublishCounts() {
 }
 
 void Writer::CheckpointWhenLarge() {
-  const int pages = connection_->database.log_pages();
+  const int pages = connection_.database.log_pages();
   if (pages < pages_at_checkpoint_) pages_at_checkpoint_ = 0;  // the log began anew
   const int limit = IsIdle() ? kCheckpointPages : kCheckpointPagesWhenBusy;
   // After one that a reader kept from its end the next comes as many pages later, not at once.
   if (pages - pages_at_checkpoint_ < limit) return;
   pages_at_checkpoint_ = pages;
   // A failure costs nothing but space; trouble with the disk is told to those who write.
-  static_cast<void>(connection_->database.Checkpoint());
+  static_cast<void>(connection_.database.Checkpoint());
 }
 
 bool Writer::IsIdle() {

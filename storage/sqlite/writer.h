@@ -32,7 +32,7 @@ class Writer {
   };
 
   // `changed` is called on the writer thread after a commit that changed jobs or events.
-  Writer(std::unique_ptr<Connection> connection, const Counters& counters, const Options& options,
+  Writer(Connection& connection, const Counters& counters, const Options& options,
          Clock clock, std::function<void()> changed);
 
   // Runs and answers what waits, then stops the thread.
@@ -89,7 +89,7 @@ class Writer {
   const Housekeeping housekeeping_;
 
   // Used by the writer thread only.
-  std::unique_ptr<Connection> connection_;
+  Connection& connection_;
   Counters counters_;
   std::deque<Pending> answers_;  // committed or failed, to be answered
   bool tidy_ = true;             // there may be something to remove

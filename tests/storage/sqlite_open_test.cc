@@ -167,7 +167,7 @@ TEST(SqliteOpen, ForeignFilesAreRefusedAndNotTouched) {
        {database,
         std::string("<html>not a database, but long enough to be read as one</html>") +
             std::string(2'000, ' '),
-        std::string("x"), Noise(10'000, 9), std::string(8'192, '\0')}) {
+        std::string("xy"), Noise(10'000, 9), std::string(8'192, '\0')}) {
     WriteFile(path, foreign);
     const auto refused = OpenAt(path);
     ASSERT_FALSE(refused) << foreign.substr(0, 20);
