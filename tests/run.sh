@@ -35,13 +35,21 @@ prepare_node() {
     mkdir -p build/buf
     (cd build/buf && npm install --silent --no-save --no-audit --no-fund @bufbuild/buf@1.50.0 >/dev/null)
   fi
+  mkdir -p build/web-clients
+  if ! cmp -s tests/integration/web/package-lock.json build/web-clients/package-lock.json; then
+    cp tests/integration/web/package.json build/web-clients/
+    (cd build/web-clients && cp ../../tests/integration/web/package-lock.json . &&
+      npm ci --silent --no-audit --no-fund >/dev/null) || { rm -f build/web-clients/package-lock.json; return 1; }
+  fi
   export PATH RMLCELL_BUF="$PWD/build/buf/node_modules/.bin/buf"
+  export RMLCELL_NODE_MODULES="$PWD/build/web-clients/node_modules"
 }
 
 run_ctest() {  # build directory, report file, ctest arguments
   local directory=$1 report=$2
   shift 2
-  ctest --test-dir "$directory" --output-on-failure --no-tests=error -j "$jobs" --output-junit "$report" "$@"
+  ctest --test-dir "$directory" --output-on-failure --no-tests=error -j "$jobs" \
+    --test-output-truncation head --output-junit "$report" "$@"
 }
 
 step "release build"

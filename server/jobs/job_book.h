@@ -36,8 +36,9 @@ class JobBook {
   Result<storage::ArtifactRecord> FindArtifact(std::int64_t job, std::string_view name);
   Result<std::string> ReadArtifact(std::int64_t job, std::string_view name);
 
-  // Unfinished jobs and the newest finished ones, for a watcher that begins.
+  // Unfinished jobs and the newest finished ones, for a watcher that begins; without machines.
   Result<v1::CellSnapshot> Snapshot();
+  Result<std::vector<storage::MachineRecord>> Machines() { return store_.ListMachines(); }
 
  private:
   Result<storage::NewJob> Prepare(const v1::SubmitJobRequest& request, const std::string& caller);

@@ -10,6 +10,7 @@
 #include "server/jobs/job_book.h"
 #include "server/jobs/job_messages.h"
 #include "server/names.h"
+#include "server/services/machine_messages.h"
 
 namespace rmlcell::server {
 namespace {
@@ -153,6 +154,12 @@ class JobsWatch final : public PullStream<v1::WatchJobsResponse> {
       status = ToGrpcStatus(snapshot.error());
       return Next::kEnd;
     }
+    const auto machines = room_.book.Machines();
+    if (!machines) {
+      status = ToGrpcStatus(machines.error());
+      return Next::kEnd;
+    }
+    for (const storage::MachineRecord& machine : *machines) *snapshot->add_machines() = ToProto(machine);
     if (cursor_ <= 0 || cursor_ > snapshot->sequence()) cursor_ = snapshot->sequence();
     *message.mutable_snapshot() = std::move(*snapshot);
     return Next::kMessage;

@@ -150,6 +150,7 @@ TEST(SqliteWriter, FileHeldByAnotherProgramIsBusy) {
   SqliteBed bed(options);
   sqlite3* other = nullptr;
   ASSERT_EQ(sqlite3_open(bed.path().c_str(), &other), SQLITE_OK);
+  sqlite3_busy_timeout(other, 5'000);  // the store may be tidying up
   ASSERT_EQ(sqlite3_exec(other, "BEGIN IMMEDIATE", nullptr, nullptr, nullptr), SQLITE_OK);
   EXPECT_EQ(CodeOf(bed.store().SubmitAndWait({.kind = "CHECK"})), ErrorCode::kCellStoreBusy);
   EXPECT_EQ(Must(bed.store().ListJobs({})).size(), 0U);
