@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 say() { printf '\n\033[1m%s\033[0m\n' "$*"; }
-show() { printf '\033[2m$ %s\033[0m\n' "$*"; "$@"; }
+show() { printf '\033[2m$ %s\033[0m\n' "$*" >&2; "$@"; }
 
 say "1/4  what is missing is installed"
 bash deploy/setup.sh
@@ -44,10 +44,10 @@ show rmlcell machines
 say "4/4  two jobs, watched live"
 mkdir -p build/quickstart
 job() {  # machine, slot, program, picture
-  show rmlcell put "$1" "$2" "$3"
-  show rmlcell submit "$1" --slot "$2" --watch | tee "$state/submitted"
   local name
-  name=$(head -n 1 "$state/submitted")
+  show rmlcell put "$1" "$2" "$3"
+  name=$(show rmlcell submit "$1" --slot "$2")
+  show rmlcell watch "$name"
   show rmlcell report "$name"
   show rmlcell picture "$name" -o "$4"
   curl -sf "${web}v1/$name/artifacts/report" >/dev/null

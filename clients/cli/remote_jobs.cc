@@ -63,6 +63,8 @@ bool WatchOnce(const Remote& remote, v1::JobService::Stub& stub, const std::stri
       if (message.event().has_ended()) {
         ended = true;
         exit_code = ExitOf(message.event().ended());
+        // A short job is over before its first position: the bar says all the same how far it came.
+        if (!remote.json && exit_code == kGood) progress.Leave(1.0, name);
       }
     } else if (message.has_progress()) {
       const v1::JobProgress& at = message.progress();

@@ -96,6 +96,12 @@ void ProgressLine::Show(double share, std::string_view text) {
   shown_ = true;
 }
 
+void ProgressLine::Leave(double share, std::string_view text) {
+  Show(share, text);
+  if (shown_) std::fputs("\n", stderr);
+  shown_ = false;
+}
+
 void ProgressLine::Clear() {
   if (shown_) std::fputs("\r\x1b[K", stderr);
   shown_ = false;

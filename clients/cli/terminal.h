@@ -33,6 +33,8 @@ class ProgressLine {
   // `share` 0..1; below 0: not known, a moving mark is shown.
   void Show(double share, std::string_view text);
   void Clear();
+  // Shows it once more and goes on below.
+  void Leave(double share, std::string_view text);
 
  private:
   bool shown_ = false;
