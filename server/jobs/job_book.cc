@@ -208,8 +208,12 @@ Result<v1::Job> JobBook::Get(std::string_view name) {
   if (!id) return id.error();
   const Result<storage::JobRecord> record = store_.GetJob(*id);
   if (!record) return record.error();
-  v1::Job job = ToProto(*record);
-  const auto artifacts = store_.ListArtifacts(*id);
+  return WithArtifacts(*record);
+}
+
+Result<v1::Job> JobBook::WithArtifacts(const storage::JobRecord& record) {
+  v1::Job job = ToProto(record);
+  const auto artifacts = store_.ListArtifacts(record.id);
   if (!artifacts) return artifacts.error();
   for (const storage::ArtifactRecord& artifact : *artifacts) *job.add_artifacts() = ToProto(artifact);
   return job;
@@ -234,7 +238,9 @@ Result<v1::ListJobsResponse> JobBook::List(const v1::ListJobsRequest& request) {
       response.set_next_page_token(std::to_string((*records)[static_cast<std::size_t>(size) - 1].id));
       break;
     }
-    *response.add_jobs() = ToProto(record);
+    Result<v1::Job> job = WithArtifacts(record);
+    if (!job) return job.error();
+    *response.add_jobs() = *std::move(job);
   }
   return response;
 }
@@ -270,7 +276,11 @@ Result<v1::CellSnapshot> JobBook::Snapshot() {
     if (query.limit <= 0) break;
     const Result<std::vector<storage::JobRecord>> records = store_.ListJobs(query);
     if (!records) return records.error();
-    for (const storage::JobRecord& record : *records) *snapshot.add_jobs() = ToProto(record);
+    for (const storage::JobRecord& record : *records) {
+      Result<v1::Job> job = WithArtifacts(record);
+      if (!job) return job.error();
+      *snapshot.add_jobs() = *std::move(job);
+    }
   }
   std::ranges::sort(*snapshot.mutable_jobs(), [](const v1::Job& a, const v1::Job& b) {
     return *ParseJobName(a.name()) > *ParseJobName(b.name());

@@ -29,7 +29,7 @@ class JobBook {
   void Submit(const v1::SubmitJobRequest& request, const std::string& caller,
               std::function<void(Result<v1::Job>)> done);
 
-  Result<v1::Job> Get(std::string_view name);  // with artifacts
+  Result<v1::Job> Get(std::string_view name);
   Result<v1::ListJobsResponse> List(const v1::ListJobsRequest& request);
 
   // A product, and what is known of it. CellNotFound with what there is.
@@ -42,6 +42,7 @@ class JobBook {
 
  private:
   Result<storage::NewJob> Prepare(const v1::SubmitJobRequest& request, const std::string& caller);
+  Result<v1::Job> WithArtifacts(const storage::JobRecord& record);
   Status AttachProgram(const v1::Job& job, const storage::MachineRecord& machine, storage::NewJob& made,
                        v1::Job& specification);
 

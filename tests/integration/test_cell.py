@@ -124,6 +124,18 @@ class Jobs(WithCell):
                 break
         self.assertEqual(len(seen), len(set(seen)))
         self.assertLessEqual(set(names), set(seen))
+
+        # A job is the same resource wherever it is read.
+        one = stub.GetJob(job_pb2.GetJobRequest(name=names[0]))
+        self.assertLessEqual({"report", "toolpath", "picture.svg"}, {artifact.name for artifact in one.artifacts})
+        listed = stub.ListJobs(job_pb2.ListJobsRequest(filter="machine = machines/mill-1", page_size=1000)).jobs
+        self.assertIn(one, listed)
+        watch = stub.WatchJobs(job_pb2.WatchJobsRequest(), timeout=30)
+        snapshot = next(iter(watch)).snapshot
+        watch.cancel()
+        self.assertIn(one, snapshot.jobs)
+        machines = self.cell.machines().ListMachines(machine_pb2.ListMachinesRequest()).machines
+        self.assertEqual(list(snapshot.machines), list(machines))
         self.refused(stub.ListJobs, job_pb2.ListJobsRequest(filter="colour = red"),
                      grpc.StatusCode.INVALID_ARGUMENT, "CELL-E9107")
 
