@@ -210,21 +210,51 @@ int GetProject(const Remote& remote, const std::string& project) {
   return kGood;
 }
 
-int CreateProject(const Remote& remote, const std::string& project, const std::string& json_file) {
+namespace {
+
+Result<v1::Project> ReadProject(const std::string& json_file) {
   const Result<std::string> text = bridge::ReadFile(json_file, kFileBytesMax);
-  if (!text) return RefuseFile(text.error());
+  if (!text) return text.error();
+  v1::Project project;
+  const auto parsed = google::protobuf::util::JsonStringToMessage(*text, &project);
+  if (!parsed.ok()) {
+    return Error{ErrorCode::kCellBadText, json_file + ": " + std::string(parsed.message()), {}};
+  }
+  return project;
+}
+
+int Stored(const Remote& remote, const grpc::Status& status, const v1::Project& project, std::string_view what) {
+  if (!status.ok()) return Refused(status, remote);
+  Print(remote.json ? Json(project) : project.name() + " " + std::string(what));
+  return kGood;
+}
+
+}  // namespace
+
+int CreateProject(const Remote& remote, const std::string& project, const std::string& json_file) {
+  Result<v1::Project> made = ReadProject(json_file);
+  if (!made) return RefuseFile(made.error());
   v1::CreateProjectRequest request;
   request.set_project_id(project);
-  const auto parsed = google::protobuf::util::JsonStringToMessage(*text, request.mutable_project());
-  if (!parsed.ok()) return RefuseFile({ErrorCode::kCellBadText, json_file + ": " + std::string(parsed.message()), {}});
+  *request.mutable_project() = *std::move(made);
   const auto stub = v1::ProjectService::NewStub(Connect(remote));
   grpc::ClientContext context;
   Prepare(context);
   v1::Project response;
-  const grpc::Status status = stub->CreateProject(&context, request, &response);
-  if (!status.ok()) return Refused(status, remote);
-  Print(remote.json ? Json(response) : response.name() + " made");
-  return kGood;
+  return Stored(remote, stub->CreateProject(&context, request, &response), response, "made");
+}
+
+int UpdateProject(const Remote& remote, const std::string& project, const std::string& json_file) {
+  Result<v1::Project> changed = ReadProject(json_file);
+  if (!changed) return RefuseFile(changed.error());
+  v1::UpdateProjectRequest request;
+  *request.mutable_project() = *std::move(changed);
+  request.mutable_project()->set_name(FullName("projects", project));
+  const auto stub = v1::ProjectService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  v1::Project response;
+  return Stored(remote, stub->UpdateProject(&context, request, &response), response, "updated");
 }
 
 int DeleteProject(const Remote& remote, const std::string& project) {
