@@ -1,0 +1,7 @@
+find_package(SQLite3 3.40 REQUIRED)
+if(NOT RMLCELL_ENGINE_ONLY)
+  rmlcell_executable(bench_cell_submit
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/cell_submit.cc
+    LINKS rmlcell::proto SQLite::SQLite3)
+  set_property(TARGET bench_cell_submit PROPERTY LINK_LIBRARY_OVERRIDE "WHOLE_ARCHIVE,rmlcell_proto")
+endif()

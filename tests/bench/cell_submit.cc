@@ -1,0 +1,249 @@
+// What a durable job costs over gRPC, against what it cannot be cheaper than: a commit of SQLite that waits
+// for the disk, and a call that does nothing. All in one run, turn by turn, so that only ratios count.
+//   bench_cell_submit RMLCELLD [FOLDER [ROUNDS]]
+#include <grpcpp/grpcpp.h>
+#include <signal.h>
+#include <sqlite3.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "grpc/health/v1/health.grpc.pb.h"
+#include "rmlcell/v1/job.grpc.pb.h"
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr int kCallsOfARound = 150;
+constexpr int kClients = 64;
+constexpr auto kRateTime = std::chrono::milliseconds(1000);
+constexpr int kJobsToTheEnd = 400;
+
+double SecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// rmlcelld on a free port, with its own state.
+class Server {
+ public:
+  Server(const std::string& program, const std::filesystem::path& folder, int workers) : folder_(folder) {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+    const std::string log = (folder_ / "log").string();
+    process_ = fork();
+    if (process_ == 0) {
+      execl(program.c_str(), program.c_str(), "--state.directory", (folder_ / "store").c_str(), "--listen.grpc",
+            "127.0.0.1:0", "--listen.web", "127.0.0.1:0", "--log.file", log.c_str(), "--jobs.queued_max", "1000000",
+            "--workers.count", std::to_string(workers).c_str(), nullptr);
+      _exit(127);
+    }
+    for (int tries = 0; tries < 300 && address_.empty(); ++tries) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      std::ifstream in(log);
+      const std::string text{std::istreambuf_iterator<char>(in), {}};
+      const std::size_t at = text.find("gRPC on ");
+      if (text.find("is ready") == std::string::npos || at == std::string::npos) continue;
+      address_ = text.substr(at + 8, text.find_first_of(" \n", at + 8) - at - 8);
+    }
+    if (address_.empty()) throw std::runtime_error("the server did not start");
+  }
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+  ~Server() {
+    kill(process_, SIGTERM);
+    waitpid(process_, nullptr, 0);
+    std::filesystem::remove_all(folder_);
+  }
+
+  // A connection of its own, as a client on another machine has.
+  std::shared_ptr<grpc::Channel> Connect() const {
+    grpc::ChannelArguments arguments;
+    arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+    return grpc::CreateCustomChannel(address_, grpc::InsecureChannelCredentials(), arguments);
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::string address_;
+  pid_t process_ = 0;
+};
+
+// One durable row of the size of a small job.
+class RawStore {
+ public:
+  explicit RawStore(const std::filesystem::path& folder) {
+    std::filesystem::create_directories(folder);
+    sqlite3_open((folder / "raw.db").c_str(), &handle_);
+    Execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; CREATE TABLE IF NOT EXISTS row (content BLOB)");
+    sqlite3_prepare_v2(handle_, "INSERT INTO row VALUES (zeroblob(400))", -1, &insert_, nullptr);
+  }
+  RawStore(const RawStore&) = delete;
+  RawStore& operator=(const RawStore&) = delete;
+  ~RawStore() {
+    sqlite3_finalize(insert_);
+    sqlite3_close(handle_);
+  }
+  void Commit() {
+    if (sqlite3_step(insert_) != SQLITE_DONE) throw std::runtime_error(sqlite3_errmsg(handle_));
+    sqlite3_reset(insert_);
+  }
+
+ private:
+  void Execute(const char* sql) {
+    if (sqlite3_exec(handle_, sql, nullptr, nullptr, nullptr) != SQLITE_OK) {
+      throw std::runtime_error(sqlite3_errmsg(handle_));
+    }
+  }
+  sqlite3* handle_ = nullptr;
+  sqlite3_stmt* insert_ = nullptr;
+};
+
+struct Client {
+  explicit Client(const std::shared_ptr<grpc::Channel>& channel)
+      : jobs(rmlcell::v1::JobService::NewStub(channel)), health(grpc::health::v1::Health::NewStub(channel)) {}
+
+  std::string Submit() {
+    rmlcell::v1::SubmitJobRequest request;
+    rmlcell::v1::Job& job = *request.mutable_job();
+    job.set_kind(rmlcell::v1::JOB_KIND_SIMULATE);
+    job.set_machine("machines/mill-1");
+    job.mutable_inline_program()->set_file_name("square.rml");
+    job.mutable_inline_program()->set_content("PA;PA;VS8;!VZ4;!PZ0,200;!MC1;PU100,100;PD900,100,900,900;PU0,0;H;");
+    grpc::ClientContext context;
+    rmlcell::v1::Job made;
+    Must(jobs->SubmitJob(&context, request, &made));
+    return made.name();
+  }
+  void Empty() {
+    grpc::ClientContext context;
+    grpc::health::v1::HealthCheckResponse response;
+    Must(health->Check(&context, {}, &response));
+  }
+  static void Must(const grpc::Status& status) {
+    if (!status.ok()) throw std::runtime_error(status.error_message());
+  }
+
+  std::unique_ptr<rmlcell::v1::JobService::Stub> jobs;
+  std::unique_ptr<grpc::health::v1::Health::Stub> health;
+};
+
+double MedianSeconds(const std::function<void()>& work) {
+  std::vector<double> times;
+  for (int i = 0; i < kCallsOfARound; ++i) {
+    const auto start = Clock::now();
+    work();
+    times.push_back(SecondsSince(start));
+  }
+  return Median(std::move(times));
+}
+
+double RateOfClients(std::vector<Client>& clients, const std::function<void(Client&)>& work) {
+  std::vector<std::thread> threads;
+  std::vector<std::int64_t> counts(clients.size());
+  const auto start = Clock::now();
+  for (std::size_t i = 0; i < clients.size(); ++i) {
+    threads.emplace_back([&, i] {
+      while (Clock::now() - start < kRateTime) {
+        work(clients[i]);
+        ++counts[i];
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  std::int64_t all = 0;
+  for (const std::int64_t count : counts) all += count;
+  return static_cast<double>(all) / SecondsSince(start);
+}
+
+double RateOfCommits(RawStore& raw) {
+  const auto start = Clock::now();
+  int count = 0;
+  while (Clock::now() - start < kRateTime) {
+    raw.Commit();
+    ++count;
+  }
+  return count / SecondsSince(start);
+}
+
+// From the first submission to the end of the last job, report and picture included.
+double JobsToTheEnd(const Server& server) {
+  Client client(server.Connect());
+  const auto start = Clock::now();
+  std::string last;
+  for (int i = 0; i < kJobsToTheEnd; ++i) last = client.Submit();
+  for (;;) {
+    grpc::ClientContext context;
+    rmlcell::v1::ListJobsRequest request;
+    request.set_filter("finished = false");
+    request.set_page_size(1);
+    rmlcell::v1::ListJobsResponse response;
+    Client::Must(client.jobs->ListJobs(&context, request, &response));
+    if (response.jobs_size() == 0) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return kJobsToTheEnd / SecondsSince(start);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: %s RMLCELLD [FOLDER [ROUNDS]]\n", argv[0]);
+    return 2;
+  }
+  const std::filesystem::path folder = argc > 2 ? argv[2] : "bench-state";
+  const int rounds = argc > 3 ? std::max(1, std::atoi(argv[3])) : 7;
+  RawStore raw(folder / "raw");
+  std::vector<double> latency, share_of_empty, share_of_commits, to_the_end;
+  {
+    const Server server(argv[1], folder / "cell", 0);
+    Client one(server.Connect());
+    std::vector<Client> many;
+    for (int i = 0; i < kClients; ++i) many.emplace_back(server.Connect());
+    std::printf("round  commit us  empty us  submit us  ratio | 64 clients: empty/s  submit/s  commits/s  ratio\n");
+    for (int round = 0; round < rounds; ++round) {
+      const double commit = MedianSeconds([&] { raw.Commit(); });
+      const double empty = MedianSeconds([&] { one.Empty(); });
+      const double submit = MedianSeconds([&] { one.Submit(); });
+      const double empties = RateOfClients(many, [](Client& client) { client.Empty(); });
+      const double submits = RateOfClients(many, [](Client& client) { client.Submit(); });
+      const double commits = RateOfCommits(raw);
+      latency.push_back(submit / (commit + empty));
+      share_of_empty.push_back(submits / empties);
+      share_of_commits.push_back(submits / commits);
+      std::printf("%5d  %9.0f  %8.0f  %9.0f  %5.2f | %19.0f  %8.0f  %9.0f  %5.2f\n", round + 1, commit * 1e6, empty * 1e6,
+                  submit * 1e6, latency.back(), empties, submits, commits, share_of_empty.back());
+    }
+  }
+  for (int round = 0; round < rounds; ++round) {
+    const Server server(argv[1], folder / "cell", 2);
+    const double commits = RateOfCommits(raw);
+    const double jobs = JobsToTheEnd(server);
+    to_the_end.push_back(jobs / commits);
+    std::printf("round %d: %.0f durable jobs/s to the end, %.0f commits/s\n", round + 1, jobs, commits);
+  }
+  std::printf("submit latency / (commit + empty call)      %.2f   goal: at most 1.2\n", Median(latency));
+  std::printf("submit rate / empty calls, 64 clients       %.2f   goal: at least 0.8\n", Median(share_of_empty));
+  std::printf("submit rate / single commits, 64 clients    %.2f\n", Median(share_of_commits));
+  std::printf("durable jobs to the end / single commits    %.2f\n", Median(to_the_end));
+  std::filesystem::remove_all(folder);
+  return 0;
+}
