@@ -3,7 +3,8 @@
 A block ```sh is run by bash, in a folder of its own for each page, with a fresh server; the addresses of
 the page stand for those of that server. A block ```text right below it lists lines, or parts of
 lines, that the output must have in this order; "..." stands for any. `grpcurl` stands for itself where it is installed, else
-for `buf curl`; where there is neither, blocks with it are skipped and counted.
+for `buf curl`; where there is neither, blocks with it are skipped and counted. `sqlite3` stands for
+Python's own module where it is missing.
 
 Environment: RMLCELL_BIN, the folder of the binaries; RMLCELL_BUF, buf, when it is not on the path.
 """
@@ -37,6 +38,15 @@ grpcurl() {
   else
     "$RMLCELL_BUF" curl --protocol grpc --http2-prior-knowledge ${data:+-d "$data"} "http://$host/$method"
   fi
+}
+"""
+
+
+# sqlite3 FILE ".backup 'COPY'" by Python.
+SQLITE_BY_PYTHON = r"""
+sqlite3() {
+  /usr/bin/python3 -c 'import sqlite3, sys
+sqlite3.connect(sys.argv[1]).backup(sqlite3.connect(sys.argv[2].split("\x27")[1]))' "$@"
 }
 """
 
@@ -93,11 +103,14 @@ class Documents(unittest.TestCase):
         if shutil.which("grpcurl") is None and BUF:
             environment["RMLCELL_BUF"] = BUF
             prelude += GRPCURL_BY_BUF
+        if shutil.which("sqlite3") is None:
+            prelude += SQLITE_BY_PYTHON
         for line, commands, expected in examples(page):
             with self.subTest(page=page.name, line=line):
                 if "grpcurl" in commands and not (shutil.which("grpcurl") or BUF):
                     self.skipTest("neither grpcurl nor buf is here")
-                script = commands.replace("127.0.0.1:50051", server.grpc).replace("127.0.0.1:50080", server.web)
+                script = commands.replace("/var/lib/rmlcell", str(server.folder / "store"))
+                script = script.replace("127.0.0.1:50051", server.grpc).replace("127.0.0.1:50080", server.web)
                 done = subprocess.run(["bash", "-c", prelude + script], cwd=folder, env=environment, text=True,
                                       capture_output=True, timeout=120, errors="replace")
                 self.assertEqual(done.returncode, 0, commands + done.stdout + done.stderr)
