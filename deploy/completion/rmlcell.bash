@@ -140,7 +140,7 @@ _rmlcell_positional() {
 }
 
 _rmlcell() {
-  local cur=${COMP_WORDS[COMP_CWORD]} verb= server= option= i word
+  local cur=${COMP_WORDS[COMP_CWORD]} verb='' server='' option='' i word
   local -a given=()
   COMPREPLY=()
 
@@ -166,7 +166,7 @@ _rmlcell() {
       fi
       continue
     fi
-    option=
+    option=''
     if [[ -z $verb ]]; then
       verb=$word
     elif [[ $verb == projects && ${#given[@]} -eq 0 && $word =~ ^(show|create|delete|transfer)$ ]]; then
@@ -178,7 +178,7 @@ _rmlcell() {
 
   # A value behind "--option ", "--option=" or "44=".
   local back=1
-  [[ $cur == "=" ]] && cur= && back=0
+  [[ $cur == "=" ]] && cur='' && back=0
   local before=${COMP_WORDS[COMP_CWORD - back]}
   if [[ $before == "=" ]]; then
     before=${COMP_WORDS[COMP_CWORD - back - 1]}
