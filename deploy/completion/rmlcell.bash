@@ -62,7 +62,7 @@ _rmlcell_options() {
     watch) echo "$remote --after" ;;
     jobs) echo "$remote --filter --limit" ;;
     picture) echo "$remote --output" ;;
-    "projects show" | "projects create" | "projects delete") echo "--help" ;;
+    "projects show" | "projects create" | "projects update" | "projects delete") echo "--help" ;;
     "projects transfer") echo "--help --insert --check-only" ;;
   esac
 }
@@ -128,9 +128,14 @@ _rmlcell_positional() {
     watch | job) [[ $count -eq 0 ]] && _rmlcell_jobs ;;
     cancel) [[ $count -eq 0 ]] && _rmlcell_jobs "finished = false" ;;
     report | picture) [[ $count -eq 0 ]] && _rmlcell_jobs "finished = true" ;;
-    projects) [[ $count -eq 0 ]] && _rmlcell_offer show create delete transfer ;;
+    projects) [[ $count -eq 0 ]] && _rmlcell_offer show create update delete transfer ;;
     "projects show" | "projects delete") [[ $count -eq 0 ]] && _rmlcell_projects ;;
     "projects create") [[ $count -eq 1 ]] && _rmlcell_files .json ;;
+    "projects update")
+      case $count in
+        0) _rmlcell_projects ;;
+        1) _rmlcell_files .json ;;
+      esac ;;
     "projects transfer")
       case $count in
         0) _rmlcell_projects ;;
@@ -169,7 +174,7 @@ _rmlcell() {
     option=''
     if [[ -z $verb ]]; then
       verb=$word
-    elif [[ $verb == projects && ${#given[@]} -eq 0 && $word =~ ^(show|create|delete|transfer)$ ]]; then
+    elif [[ $verb == projects && ${#given[@]} -eq 0 && $word =~ ^(show|create|update|delete|transfer)$ ]]; then
       verb="projects $word"
     else
       given+=("$word")

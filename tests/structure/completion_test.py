@@ -28,7 +28,7 @@ def run(*words, **environment):
 def help_text(program, *verb):
     done = run(BIN / program, *verb, "--help")
     assert done.returncode == 0, done.stderr
-    return done.stdout.split("\nexamples:")[0]
+    return done.stdout
 
 
 def section(text, name):

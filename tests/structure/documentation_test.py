@@ -8,6 +8,8 @@ Python's own module where it is missing.
 
 Environment: RMLCELL_BIN, the folder of the binaries; RMLCELL_BUF, buf, when it is not on the path.
 """
+import json
+import math
 import os
 import pathlib
 import re
@@ -16,6 +18,8 @@ import subprocess
 import tempfile
 import time
 import unittest
+import urllib.error
+import urllib.request
 
 BIN = pathlib.Path(os.environ["RMLCELL_BIN"])
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -132,6 +136,42 @@ class Documents(unittest.TestCase):
     def test_operations(self):
         self.run_page(ROOT / "docs" / "operations.md")
 
+    def test_the_change_log_lists_the_methods_that_this_version_lacks_and_no_others(self):
+        server = Server()
+        self.addCleanup(server.close)
+        lacking = set()
+        methods = 0
+        for proto in sorted((ROOT / "proto" / "rmlcell" / "v1").glob("*.proto")):
+            service = re.search(r"^service (\w+) ", proto.read_text(), re.MULTILINE)
+            if not service or service.group(1) == "WorkerService":
+                continue
+            for method, client_stream in re.findall(r"^  rpc (\w+)\((stream )?", proto.read_text(), re.MULTILINE):
+                if client_stream:
+                    continue  # not on the web port
+                methods += 1
+                request = urllib.request.Request(
+                    f"http://{server.web}/rmlcell.v1.{service.group(1)}/{method}", data=b"{}",
+                    headers={"Content-Type": "application/json"})
+                try:
+                    with urllib.request.urlopen(request, timeout=30) as answer:
+                        # A stream that is refused has begun: its first event is the error.
+                        stream = answer.headers.get_content_type() == "text/event-stream"
+                        if stream and answer.readline() == b"event: error\n" and b"CELL-E9014" in answer.readline():
+                            lacking.add(f"{service.group(1)}.{method}")
+                except urllib.error.HTTPError as error:
+                    if error.code == 501:
+                        lacking.add(f"{service.group(1)}.{method}")
+        self.assertGreater(methods, 50)
+        section = re.search(r"^### Not yet\n(.*?)(?=^#|\Z)", (ROOT / "CHANGELOG.md").read_text(),
+                            re.DOTALL | re.MULTILINE)
+        listed = re.sub(r"\s+", " ", section.group(1))
+        for name in lacking:
+            service, method = name.split(".")
+            self.assertIn(service if service == "HandboxService" else f"`{method}`", listed)
+        known = {name.split(".")[1] for name in lacking}
+        for method in re.findall(r"`([A-Z]\w+)`", listed):
+            self.assertIn(method, known)
+
     def test_the_block_of_the_toolpath_page_is_read_by_its_reader(self):
         page = (ROOT / "docs" / "toolpath.md").read_text()
         reader = {}
@@ -147,9 +187,6 @@ class Documents(unittest.TestCase):
             list(reader["runs"](b"T\2" + block[2:]))
 
     def test_the_reader_finds_the_lengths_of_the_report_in_the_toolpath_of_a_job(self):
-        import json
-        import math
-        import urllib.request
         reader = {}
         exec(re.search(r"```python\n(.*?)```", (ROOT / "docs" / "toolpath.md").read_text(), re.DOTALL).group(1),
              reader)
