@@ -101,6 +101,12 @@ class Documents(unittest.TestCase):
         folder = pathlib.Path(tempfile.mkdtemp(prefix="rmlcell-page-"))
         self.addCleanup(shutil.rmtree, folder, ignore_errors=True)
         shutil.copytree(ROOT / "deploy" / "examples", folder, dirs_exist_ok=True)
+        if page.name == "README.md":
+            shutil.copy(folder / "bracket.S", folder / "part.S")
+            shutil.copy(folder / "coaster.rml", folder / "part.rml")
+            (folder / "32.S").write_text("CALL 44\n")
+            (folder / "progs").mkdir()
+            (folder / "progs" / "44.S").write_text("VI[2] = 1\n")
         environment = {"PATH": f"{BIN}:{os.environ['PATH']}", "HOME": str(folder), "NO_COLOR": "1",
                        "RMLCELL_SERVER": server.grpc}
         prelude = "set -euo pipefail\n"
@@ -113,7 +119,9 @@ class Documents(unittest.TestCase):
             with self.subTest(page=page.name, line=line):
                 if "grpcurl" in commands and not (shutil.which("grpcurl") or BUF):
                     self.skipTest("neither grpcurl nor buf is here")
-                script = commands.replace("/var/lib/rmlcell", str(server.folder / "store"))
+                # The server of the page runs already.
+                script = re.sub(r"^rmlcelld  .*\n", "", commands, flags=re.MULTILINE)
+                script = script.replace("/var/lib/rmlcell", str(server.folder / "store"))
                 script = script.replace("127.0.0.1:50051", server.grpc).replace("127.0.0.1:50080", server.web)
                 done = subprocess.run(["bash", "-c", prelude + script], cwd=folder, env=environment, text=True,
                                       capture_output=True, timeout=120, errors="replace")
@@ -127,6 +135,9 @@ class Documents(unittest.TestCase):
                                             f"{done.stdout}{done.stderr}")
                     at = found + len(wanted.strip())
 
+    def test_readme(self):
+        self.run_page(ROOT / "README.md")
+
     def test_files(self):
         self.run_page(ROOT / "docs" / "files.md")
 
@@ -135,6 +146,29 @@ class Documents(unittest.TestCase):
 
     def test_operations(self):
         self.run_page(ROOT / "docs" / "operations.md")
+
+    def test_every_link_leads_somewhere(self):
+        links = 0
+        for page in [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("[a-z]*/**/README.md")]:
+            if "build" in page.parts or "node_modules" in page.parts:
+                continue
+            text = re.sub(r"```.*?```", "", page.read_text(), flags=re.DOTALL)
+            for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text):
+                links += 1
+                self.assertTrue((page.parent / target).exists(), f"{page.relative_to(ROOT)}: {target}")
+        self.assertGreater(links, 10)
+
+    def test_every_document_that_the_code_names_is_there(self):
+        named = 0
+        for folder in ("clients", "cmake", "deploy", "engine", "proto", "server", "storage", "tests"):
+            for path in (ROOT / folder).rglob("*"):
+                if path.suffix not in (".h", ".cc", ".proto", ".py", ".sh", ".cmake", ".md", ".1", ".8") or \
+                        "node_modules" in path.parts:
+                    continue
+                for document in re.findall(r"\bdocs/[\w./-]+\.md\b", path.read_text(errors="replace")):
+                    named += 1
+                    self.assertTrue((ROOT / document).exists(), f"{path.relative_to(ROOT)} names {document}")
+        self.assertGreater(named, 5)
 
     def test_the_change_log_lists_the_methods_that_this_version_lacks_and_no_others(self):
         server = Server()
