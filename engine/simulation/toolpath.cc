@@ -6,7 +6,7 @@
 #include "engine/core/check.h"
 #include "engine/simulation/varint.h"
 
-// Layout: toolpath_format.md.
+// Layout: docs/toolpath.md.
 namespace rmlcell::simulation {
 namespace {
 

@@ -8,8 +8,8 @@
 #include "engine/core/units.h"
 #include "engine/machine/observer.h"
 
-// The tip's way as a compact polyline for viewers. Layout of the bytes: toolpath_format.md beside
-// this file. motion.md section 9.
+// The tip's way as a compact polyline for viewers. Layout of the bytes: docs/toolpath.md.
+// motion.md section 9.
 namespace rmlcell::simulation {
 
 inline constexpr int kToolpathVersion = 1;

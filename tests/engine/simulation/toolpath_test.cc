@@ -38,7 +38,7 @@ void ExpectEqual(const ToolpathBlock& a, const ToolpathBlock& b) {
   EXPECT_EQ(a.runs, b.runs);
 }
 
-// toolpath_format.md, byte by byte.
+// docs/toolpath.md, byte by byte.
 TEST(ToolpathBlock, BytesAreAsDocumented) {
   ToolpathBlock block;
   block.points = {{1, -1, 0}, {3, -1, 0}};

@@ -1,0 +1,210 @@
+# bash completion for rmlcell. Installed as share/bash-completion/completions/rmlcell; or: source this file.
+# Needs nothing but bash. Names of machines, programs, projects and jobs come from the server, when one
+# answers within a second. tests/structure/completion_test.py compares it with `rmlcell --help`.
+
+# Adds the words that begin with what is typed.
+_rmlcell_offer() {
+  local word
+  for word in "$@"; do
+    [[ $word == "$cur"* ]] && COMPREPLY+=("$word")
+  done
+}
+
+# Files whose name ends with one of the patterns, in capitals or not, and folders; no pattern: all files.
+_rmlcell_files() {
+  local file pattern
+  compopt -o filenames 2>/dev/null
+  while IFS= read -r file; do
+    if [[ -d $file ]]; then
+      COMPREPLY+=("$file")
+      continue
+    fi
+    [[ $# -eq 0 ]] && COMPREPLY+=("$file")
+    for pattern in "$@"; do
+      [[ ${file,,} == *"$pattern" ]] && COMPREPLY+=("$file") && break
+    done
+  done < <(compgen -f -- "$cur")
+}
+
+_rmlcell_programs_files() { _rmlcell_files .s .si .cmp .o .rml .prn; }
+
+# First column of a table that the server answers with, without its head.
+_rmlcell_ask() {
+  RMLCELL_SERVER=${server:-${RMLCELL_SERVER:-}} timeout 1 "${COMP_WORDS[0]}" "$@" 2>/dev/null |
+    sed -e 1d -e 's/ .*//'
+}
+
+_rmlcell_machines() { _rmlcell_offer $(_rmlcell_ask machines); }
+_rmlcell_projects() { _rmlcell_offer $(_rmlcell_ask projects); }
+_rmlcell_slots() { _rmlcell_offer $(_rmlcell_ask programs "$1"); }
+_rmlcell_jobs() { _rmlcell_offer $(_rmlcell_ask jobs --limit 50 ${1:+--filter "$1"}); }
+
+# Codes and symbols of the catalogue: OPT-E348, HOLE_RADIUS_ZERO.
+_rmlcell_codes() {
+  _rmlcell_offer $("${COMP_WORDS[0]}" explain 2>/dev/null | sed -E 's/^([^ ]+)  ([A-Z0-9_]+):.*/\1 \2/')
+}
+
+# Options of a verb.
+_rmlcell_options() {
+  local remote="--help --server --json"
+  case $1 in
+    "") echo "--help --version" ;;
+    check) echo "--help --family --machine --errors-only --json" ;;
+    simulate)
+      echo "--help --slot --main --executable --family --profile --machine --inputs --mode --override --simul" \
+        "--break --budget --vars --svg --state-in --state-out --trace --facts --json" ;;
+    explain) echo "--help --json" ;;
+    machines | programs | delete | projects | job | cancel | report) echo "$remote" ;;
+    put) echo "$remote --etag --check-only" ;;
+    get) echo "$remote --form --output" ;;
+    submit)
+      echo "$remote --slot --kind --title --request-id --override --inputs --trace --watch" ;;
+    watch) echo "$remote --after" ;;
+    jobs) echo "$remote --filter --limit" ;;
+    picture) echo "$remote --output" ;;
+    "projects show" | "projects create" | "projects update" | "projects delete") echo "--help" ;;
+    "projects transfer") echo "--help --insert --check-only" ;;
+  esac
+}
+
+# True when an option takes a value in the next word.
+_rmlcell_takes_value() {
+  case $1 in
+    --slot | --main | --executable | --family | --profile | --machine | --inputs | --mode | --override | \
+      --simul | --break | --budget | --vars | --svg | --state-in | --state-out | --server | --etag | --form | \
+      --output | -o | --kind | --title | --request-id | --after | --filter | --limit) return 0 ;;
+  esac
+  return 1
+}
+
+# Values of an option; false: it has none that can be offered.
+_rmlcell_values() {
+  case $1 in
+    --family) _rmlcell_offer optimo rml1 ;;
+    --profile)
+      _rmlcell_offer standard mc-1000ipm pw-1993 efa-51 t1 t1a t1n t1s t1f srm-20 mdx-15 mdx-20 mdx-40a \
+        mdx-40a-rotary mdx-50 mdx-540 pnc-3200 ;;
+    --mode) _rmlcell_offer cycle remote single repeat ;;
+    --kind) _rmlcell_offer simulate check run ;;
+    --form) _rmlcell_offer source object executable listing ;;
+    --override) _rmlcell_offer 10 25 40 55 70 85 100 115 130 145 ;;
+    --etag) _rmlcell_offer none ;;
+    --budget)
+      compopt -o nospace 2>/dev/null
+      _rmlcell_offer steps= time= ;;
+    --filter)
+      compopt -o nospace 2>/dev/null
+      _rmlcell_offer state= machine= kind= caller= finished= ;;
+    --machine) _rmlcell_files .toml ;;
+    --svg) _rmlcell_files .svg ;;
+    --inputs | --state-in | --state-out | --output | -o) _rmlcell_files ;;
+    --slot) [[ $verb == submit && -n ${given[0]:-} ]] && _rmlcell_slots "${given[0]}" ;;
+  esac
+}
+
+# What stands where: `given` holds the words that are neither verb nor option.
+_rmlcell_positional() {
+  local count=${#given[@]}
+  case $verb in
+    check | simulate) _rmlcell_programs_files ;;
+    explain) _rmlcell_codes ;;
+    programs) [[ $count -eq 0 ]] && _rmlcell_machines ;;
+    put)
+      case $count in
+        0) _rmlcell_machines ;;
+        1) [[ -n $cur ]] || _rmlcell_slots "${given[0]}" ;;
+        2) _rmlcell_programs_files ;;
+      esac ;;
+    get | delete)
+      case $count in
+        0) _rmlcell_machines ;;
+        1) _rmlcell_slots "${given[0]}" ;;
+      esac ;;
+    submit)
+      case $count in
+        0) _rmlcell_machines ;;
+        1) _rmlcell_programs_files ;;
+      esac ;;
+    watch | job) [[ $count -eq 0 ]] && _rmlcell_jobs ;;
+    cancel) [[ $count -eq 0 ]] && _rmlcell_jobs "finished = false" ;;
+    report | picture) [[ $count -eq 0 ]] && _rmlcell_jobs "finished = true" ;;
+    projects) [[ $count -eq 0 ]] && _rmlcell_offer show create update delete transfer ;;
+    "projects show" | "projects delete") [[ $count -eq 0 ]] && _rmlcell_projects ;;
+    "projects create") [[ $count -eq 1 ]] && _rmlcell_files .json ;;
+    "projects update")
+      case $count in
+        0) _rmlcell_projects ;;
+        1) _rmlcell_files .json ;;
+      esac ;;
+    "projects transfer")
+      case $count in
+        0) _rmlcell_projects ;;
+        1) _rmlcell_machines ;;
+      esac ;;
+  esac
+}
+
+_rmlcell() {
+  local cur=${COMP_WORDS[COMP_CWORD]} verb='' server='' option='' i word
+  local -a given=()
+  COMPREPLY=()
+
+  # Words up to the present one. readline splits at = and : too: "--kind=run" is three words, and so are
+  # "44=FILE" and "host:port".
+  for ((i = 1; i < COMP_CWORD; ++i)); do
+    word=${COMP_WORDS[i]}
+    if [[ $word == [=:]* ]]; then
+      [[ $word == : && $option == --server ]] && server+=":${COMP_WORDS[i + 1]}"
+      ((i + 1 < COMP_CWORD)) && ((++i))
+      continue
+    fi
+    if [[ $word == -* ]]; then
+      option=$word
+      if _rmlcell_takes_value "$option"; then
+        if [[ ${COMP_WORDS[i + 1]:-} == "=" ]]; then
+          ((++i))
+        fi
+        if ((i + 1 < COMP_CWORD)); then
+          ((++i))
+          [[ $option == --server ]] && server=${COMP_WORDS[i]}
+        fi
+      fi
+      continue
+    fi
+    option=''
+    if [[ -z $verb ]]; then
+      verb=$word
+    elif [[ $verb == projects && ${#given[@]} -eq 0 && $word =~ ^(show|create|update|delete|transfer)$ ]]; then
+      verb="projects $word"
+    else
+      given+=("$word")
+    fi
+  done
+
+  # A value behind "--option ", "--option=" or "44=".
+  local back=1
+  [[ $cur == "=" ]] && cur='' && back=0
+  local before=${COMP_WORDS[COMP_CWORD - back]}
+  if [[ $before == "=" ]]; then
+    before=${COMP_WORDS[COMP_CWORD - back - 1]}
+    if [[ $before != -* ]]; then  # --slot 44=FILE, --executable 44=FILE, --budget steps=
+      [[ ${COMP_WORDS[COMP_CWORD - back - 2]:-} =~ ^--(slot|executable)$ ]] && _rmlcell_programs_files
+      return
+    fi
+  fi
+  if [[ -n $verb ]] && _rmlcell_takes_value "$before"; then
+    _rmlcell_values "$before"
+    return
+  fi
+
+  if [[ $cur == -* ]]; then
+    _rmlcell_offer $(_rmlcell_options "$verb")
+  elif [[ -z $verb ]]; then
+    _rmlcell_offer check simulate explain machines programs put get delete projects submit watch jobs job \
+      cancel report picture
+  else
+    _rmlcell_positional
+  fi
+}
+
+complete -F _rmlcell rmlcell
