@@ -1,7 +1,12 @@
 #include "server/config.h"
 
+#include <arpa/inet.h>
+
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <set>
 #include <sstream>
 #include <toml++/toml.h>
@@ -13,15 +18,20 @@ namespace {
 
 Error Wrong(const std::string& detail) { return {ErrorCode::kCellConfiguration, detail, {}}; }
 
+// A basic string of TOML, which may hold control characters only as escapes.
 std::string Quoted(std::string_view text) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
   std::string out = "\"";
   for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    if (static_cast<unsigned char>(c) < 0x20) {
-      out += ' ';
-    } else {
-      out += c;
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7F) {
+      out += "\\u00";
+      out += kDigits[byte >> 4];
+      out += kDigits[byte & 15U];
+      continue;
     }
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
   }
   return out + '"';
 }
@@ -61,6 +71,13 @@ std::string ListText(const std::vector<std::string>& parts) {
   return out + "]";
 }
 
+// A float of TOML, with every digit that reads back to the same value.
+std::string NumberText(double value) {
+  std::string text = ShortestText(value);
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";
+  return text;
+}
+
 Status OneOf(const std::string& text, std::initializer_list<std::string_view> words, std::string& target) {
   if (std::ranges::find(words, text) == words.end()) {
     std::string all;
@@ -73,6 +90,7 @@ Status OneOf(const std::string& text, std::initializer_list<std::string_view> wo
 
 // The setters and getters of one member, so that the table below stays one line a key.
 #define RMLCELL_INTEGER(member, low, high)                                        \
+  ConfigKind::kInteger,                                                           \
   [](Config& config, const std::string& text) -> Status {                        \
     const auto value = Integer(text, low, high);                                  \
     if (!value) return value.error();                                             \
@@ -81,32 +99,37 @@ Status OneOf(const std::string& text, std::initializer_list<std::string_view> wo
   },                                                                              \
       [](const Config& config) { return std::to_string(config.member); }
 #define RMLCELL_NUMBER(member, low, high)                                         \
+  ConfigKind::kNumber,                                                            \
   [](Config& config, const std::string& text) -> Status {                        \
     const auto value = Number(text, low, high);                                   \
     if (!value) return value.error();                                             \
     config.member = *value;                                                       \
     return {};                                                                    \
   },                                                                              \
-      [](const Config& config) { return TrimmedText(config.member, 3); }
+      [](const Config& config) { return NumberText(config.member); }
 #define RMLCELL_TEXT(member)                                                      \
+  ConfigKind::kText,                                                              \
   [](Config& config, const std::string& text) -> Status {                        \
     config.member = text;                                                         \
     return {};                                                                    \
   },                                                                              \
       [](const Config& config) { return Quoted(config.member); }
 #define RMLCELL_LIST(member)                                                      \
+  ConfigKind::kList,                                                              \
   [](Config& config, const std::string& text) -> Status {                        \
     config.member = SplitList(text);                                              \
     return {};                                                                    \
   },                                                                              \
       [](const Config& config) { return ListText(config.member); }
 #define RMLCELL_WORD(member, ...)                                                 \
+  ConfigKind::kText,                                                              \
   [](Config& config, const std::string& text) -> Status {                        \
     return OneOf(text, {__VA_ARGS__}, config.member);                             \
   },                                                                              \
       [](const Config& config) { return Quoted(config.member); }
 
 constexpr std::int64_t kMiB = 1 << 20;
+constexpr std::size_t kFileBytesMax = 1 << 20;  // a configuration has some kilobytes
 
 std::vector<ConfigKey> MakeKeys() {
   return {
@@ -162,22 +185,45 @@ const ConfigKey* FindKey(std::string_view name) {
   return found == keys.end() ? nullptr : &*found;
 }
 
-// The TOML value as the text that a setter takes; nothing for tables and dates.
-std::optional<std::string> ValueText(const toml::node& node) {
-  if (const auto* text = node.as_string()) return text->get();
-  if (const auto* integer = node.as_integer()) return std::to_string(integer->get());
-  if (const auto* number = node.as_floating_point()) return ShortestText(number->get());
-  if (const auto* boolean = node.as_boolean()) return boolean->get() ? "true" : "false";
-  if (const auto* list = node.as_array()) {
-    std::string joined;
-    for (const toml::node& item : *list) {
-      const auto text = ValueText(item);
-      if (!text) return std::nullopt;
-      joined += (joined.empty() ? "" : ",") + *text;
-    }
-    return joined;
+// What a value of TOML is, for people.
+std::string_view TypeName(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::string: return "a text";
+    case toml::node_type::integer: return "a whole number";
+    case toml::node_type::floating_point: return "a number";
+    case toml::node_type::boolean: return "a truth value";
+    case toml::node_type::array: return "a list";
+    case toml::node_type::table: return "a section";
+    default: return "a date or time";
   }
-  return std::nullopt;
+}
+
+// The TOML value as the text that a setter takes.
+Result<std::string> ValueText(const toml::node& node, ConfigKind kind) {
+  switch (kind) {
+    case ConfigKind::kInteger:
+      if (const auto* integer = node.as_integer()) return std::to_string(integer->get());
+      return Wrong("takes a whole number, not " + std::string(TypeName(node)));
+    case ConfigKind::kNumber:
+      if (const auto* integer = node.as_integer()) return std::to_string(integer->get());
+      if (const auto* number = node.as_floating_point()) return ShortestText(number->get());
+      return Wrong("takes a number, not " + std::string(TypeName(node)));
+    case ConfigKind::kText:
+      if (const auto* text = node.as_string()) return text->get();
+      return Wrong("takes a text, not " + std::string(TypeName(node)));
+    case ConfigKind::kList: break;
+  }
+  const auto* list = node.as_array();
+  if (list == nullptr) return Wrong("takes a list of texts, not " + std::string(TypeName(node)));
+  std::string joined;
+  for (const toml::node& item : *list) {
+    const auto* text = item.as_string();
+    if (text == nullptr) return Wrong("takes a list of texts; one of them is " + std::string(TypeName(item)));
+    // The environment and the flags have no other way to separate the parts of a list.
+    if (text->get().find(',') != std::string::npos) return Wrong("has a comma in '" + text->get() + "'");
+    joined += (joined.empty() ? "" : ",") + text->get();
+  }
+  return joined;
 }
 
 std::string PlaceText(const std::string& file, const toml::node& node) {
@@ -221,8 +267,51 @@ Status ReadMachine(const toml::table& table, const std::string& file, std::vecto
   return {};
 }
 
-bool IsLoopback(std::string_view host) {
-  return host == "localhost" || host == "::1" || host == "[::1]" || host.starts_with("127.");
+Status ApplyTable(const toml::table& parsed, const std::string& name, Config& config) {
+  Config changed = config;
+  bool machines_replaced = false;
+  for (const auto& [section_key, section] : parsed) {
+    const std::string section_name(section_key);
+    if (section_name == "machine") {
+      const auto* list = section.as_array();
+      if (list == nullptr || (!list->empty() && !list->is_homogeneous<toml::table>())) {
+        return Wrong(PlaceText(name, section) + "write machines as [[machine]] tables");
+      }
+      if (!machines_replaced) changed.machines.clear();
+      machines_replaced = true;
+      for (const toml::node& node : *list) {
+        const Status read = ReadMachine(*node.as_table(), name, changed.machines);
+        if (!read) return read;
+      }
+      continue;
+    }
+    const auto* table = section.as_table();
+    if (table == nullptr) {
+      return Wrong(PlaceText(name, section) + "unknown key " + section_name + "; keys stand in sections");
+    }
+    for (const auto& [key, node] : *table) {
+      const std::string full = section_name + "." + std::string(key);
+      const ConfigKey* found = FindKey(full);
+      if (found == nullptr) {
+        const std::string near = NearestKey(full);
+        return Wrong(PlaceText(name, node) + "unknown key " + full +
+                     (near.empty() ? "" : "; did you mean " + near + "?"));
+      }
+      const auto value = ValueText(node, found->kind);
+      if (!value) return Wrong(PlaceText(name, node) + full + " " + value.error().detail);
+      const Status set = found->set(changed, *value);
+      if (!set) return Wrong(PlaceText(name, node) + full + " " + set.error().detail);
+    }
+  }
+  config = std::move(changed);
+  return {};
+}
+
+// By the address, not by its look: a name such as 127.0.0.1.example may lead anywhere.
+bool IsLoopback(const std::string& host) {
+  if (host == "localhost" || host == "[::1]") return true;
+  in_addr address{};
+  return ::inet_pton(AF_INET, host.c_str(), &address) == 1 && (ntohl(address.s_addr) >> 24) == 127;
 }
 
 Status ValidateAddress(std::string_view key, const std::string& address) {
@@ -254,65 +343,30 @@ const std::vector<ConfigKey>& ConfigKeys() {
   return keys;
 }
 
+// toml++ throws on text that is not TOML; nothing else of it leaves this file.
 Status ReadConfigText(std::string_view text, const std::string& name, Config& config) {
-  const toml::parse_result parsed = [&]() -> toml::parse_result {
-    return toml::parse(text, name);
-  }();
-  Config changed = config;
-  bool machines_replaced = false;
-  for (const auto& [section_key, section] : parsed) {
-    const std::string section_name(section_key);
-    if (section_name == "machine") {
-      const auto* list = section.as_array();
-      if (list == nullptr || !list->is_homogeneous<toml::table>()) {
-        return Wrong(PlaceText(name, section) + "write machines as [[machine]] tables");
-      }
-      if (!machines_replaced) changed.machines.clear();
-      machines_replaced = true;
-      for (const toml::node& node : *list) {
-        const Status read = ReadMachine(*node.as_table(), name, changed.machines);
-        if (!read) return read;
-      }
-      continue;
-    }
-    const auto* table = section.as_table();
-    if (table == nullptr) {
-      return Wrong(PlaceText(name, section) + "unknown key " + section_name + "; keys stand in sections");
-    }
-    for (const auto& [key, node] : *table) {
-      const std::string full = section_name + "." + std::string(key);
-      const ConfigKey* found = FindKey(full);
-      if (found == nullptr) {
-        const std::string near = NearestKey(full);
-        return Wrong(PlaceText(name, node) + "unknown key " + full +
-                     (near.empty() ? "" : "; did you mean " + near + "?"));
-      }
-      const auto value = ValueText(node);
-      if (!value) return Wrong(PlaceText(name, node) + full + " has a value of a wrong type");
-      const Status set = found->set(changed, *value);
-      if (!set) return Wrong(PlaceText(name, node) + full + " " + set.error().detail);
-    }
+  try {
+    return ApplyTable(toml::parse(text, name), name, config);
+  } catch (const toml::parse_error& error) {
+    return Wrong(name + ":" + std::to_string(error.source().begin.line) + ":" +
+                 std::to_string(error.source().begin.column) + ": " + std::string(error.description()));
   }
-  config = std::move(changed);
-  return {};
 }
 
 Status ReadConfigFile(const std::string& path, Config& config) {
-  // toml++ throws on text that is not TOML; nothing else of it leaves this file.
-  try {
-    std::string text;
-    {
-      std::FILE* file = std::fopen(path.c_str(), "rb");
-      if (file == nullptr) return Error{ErrorCode::kCellConfiguration, "cannot read " + path, {}};
-      char room[4096];
-      for (std::size_t n = 0; (n = std::fread(room, 1, sizeof room, file)) > 0;) text.append(room, n);
-      std::fclose(file);
-    }
-    return ReadConfigText(text, path, config);
-  } catch (const toml::parse_error& error) {
-    return Wrong(path + ":" + std::to_string(error.source().begin.line) + ":" +
-                 std::to_string(error.source().begin.column) + ": " + std::string(error.description()));
+  const auto unreadable = [&](const std::string& why) { return Wrong("cannot read " + path + ": " + why); };
+  std::FILE* file = std::fopen(path.c_str(), "rb");
+  if (file == nullptr) return unreadable(std::strerror(errno));
+  std::string text;
+  char room[4096];
+  for (std::size_t n = 0; (n = std::fread(room, 1, sizeof room, file)) > 0 && text.size() <= kFileBytesMax;) {
+    text.append(room, n);
   }
+  const int failed = std::ferror(file) != 0 ? errno : 0;  // a directory can be opened, not read
+  std::fclose(file);
+  if (failed != 0) return unreadable(std::strerror(failed));
+  if (text.size() > kFileBytesMax) return unreadable("it is longer than 1 MiB, no configuration");
+  return ReadConfigText(text, path, config);
 }
 
 Status ReadConfigEnvironment(const std::map<std::string, std::string>& environment, Config& config) {
@@ -351,6 +405,7 @@ Status ValidateConfig(const Config& config) {
 
 std::string PrintConfig(const Config& config) {
   std::string out;
+  if (config.machines.empty()) out = "# no virtual machine is made\nmachine = []\n";
   std::string section;
   for (const ConfigKey& key : ConfigKeys()) {
     const std::size_t dot = key.name.find('.');

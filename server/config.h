@@ -56,15 +56,19 @@ struct Config {
 
 // One key of the configuration: how it is called everywhere and what it means. The same table reads the
 // file, the environment and the flags, checks, prints, and makes docs/configuration.md.
+enum class ConfigKind { kInteger, kNumber, kText, kList };
 struct ConfigKey {
   std::string_view name;  // "workers.count"; environment RMLCELL_WORKERS_COUNT; flag --workers.count
   std::string_view text;  // meaning, unit and range
+  ConfigKind kind;        // in the file; environment and flags give text, lists with commas
   Status (*set)(Config& config, const std::string& text);
   std::string (*get)(const Config& config);  // as TOML value
 };
 const std::vector<ConfigKey>& ConfigKeys();
 
-// The file is TOML. Unknown keys, wrong types and values out of range are errors with line and key.
+// The file is TOML. Unknown keys, wrong types and values out of range are errors with line and key; nothing
+// is changed then. A file with machines replaces those that were there; `machine = []` leaves none.
+// Error: CellConfiguration, as in all of this file but ValidateConfig.
 Status ReadConfigFile(const std::string& path, Config& config);
 Status ReadConfigText(std::string_view text, const std::string& name, Config& config);
 
@@ -72,6 +76,7 @@ Status ReadConfigText(std::string_view text, const std::string& name, Config& co
 Status ReadConfigEnvironment(const std::map<std::string, std::string>& environment, Config& config);
 
 // What holds together only as a whole: addresses that may be listened on, machine ids.
+// Errors: CellConfiguration; CellUnsafeListen for an address that other hosts can reach.
 Status ValidateConfig(const Config& config);
 
 // The effective configuration as a file that reads back to the same, with a comment for each key.

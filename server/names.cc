@@ -4,23 +4,27 @@
 
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
+#include "server/readable.h"
 
 namespace rmlcell::server {
 namespace {
 
 Error Malformed(std::string_view name, std::string_view expected) {
-  // A hostile name may be of any length and content; the error shows a readable beginning.
-  std::string shown(name.substr(0, 80));
-  std::ranges::replace_if(
-      shown, [](unsigned char c) { return c < 0x20 || c > 0x7E; }, '?');
   return {ErrorCode::kCellInvalidArgument,
-          "name is '" + shown + "', expected is " + std::string(expected), {}};
+          "name is '" + Readable(name) + "', expected is " + std::string(expected), {}};
 }
 
 // The part after "collection/", or nothing.
 std::optional<std::string_view> After(std::string_view name, std::string_view collection) {
   if (!name.starts_with(collection)) return std::nullopt;
   return name.substr(collection.size());
+}
+
+// A number as this server writes it: each thing has one name, and "jobs/017" is none.
+std::optional<std::int64_t> Number(std::string_view text) {
+  const auto number = ParseInteger(text);
+  if (!number || std::to_string(*number) != text) return std::nullopt;
+  return std::int64_t{*number};
 }
 
 bool IsId(std::string_view id) {
@@ -51,9 +55,9 @@ Result<std::string> ParseProjectName(std::string_view name) {
 
 Result<std::int64_t> ParseJobName(std::string_view name) {
   const auto id = After(name, "jobs/");
-  const auto number = id ? ParseInteger(*id) : std::nullopt;
+  const auto number = id ? Number(*id) : std::nullopt;
   if (!number || *number <= 0) return Malformed(name, "jobs/NUMBER");
-  return std::int64_t{*number};
+  return *number;
 }
 
 Result<ProgramName> ParseProgramName(std::string_view name) {
@@ -62,7 +66,7 @@ Result<ProgramName> ParseProgramName(std::string_view name) {
   if (slash == std::string_view::npos) return Malformed(name, kForm);
   const Result<std::string> machine = ParseMachineName(name.substr(0, slash));
   const auto rest = After(name.substr(slash), "/programs/");
-  const auto number = rest ? ParseInteger(*rest) : std::nullopt;
+  const auto number = rest ? Number(*rest) : std::nullopt;
   if (!machine || !number) return Malformed(name, kForm);
   if (*number >= kSlotMin + kExecutableOffset && *number <= kSlotMax + kExecutableOffset) {
     return ProgramName{*machine, static_cast<int>(*number) - kExecutableOffset, true};
@@ -79,12 +83,20 @@ Result<ScheduleName> ParseScheduleName(std::string_view name) {
   if (slash == std::string_view::npos) return Malformed(name, kForm);
   const Result<std::string> machine = ParseMachineName(name.substr(0, slash));
   const auto rest = After(name.substr(slash), "/laserSchedules/");
-  const auto number = rest ? ParseInteger(*rest) : std::nullopt;
+  const auto number = rest ? Number(*rest) : std::nullopt;
   if (!machine || !number) return Malformed(name, kForm);
   if (*number < 1 || *number > 63) {
     return Error{ErrorCode::kScheduleRange, "laser schedule is " + std::to_string(*number), {}};
   }
   return ScheduleName{*machine, static_cast<int>(*number)};
+}
+
+Result<storage::Revision> ParseEtag(std::string_view etag) {
+  if (etag.empty()) return storage::kAnyRevision;
+  if (etag == "none") return storage::Revision{0};
+  const auto revision = Number(etag);
+  if (!revision || *revision <= 0) return Error{ErrorCode::kCellEtagMismatch, "etag is not one of ours", {}};
+  return storage::Revision{*revision};
 }
 
 std::string MachineName(std::string_view id) { return "machines/" + std::string(id); }

@@ -5,8 +5,10 @@
 #include <string_view>
 
 #include "engine/core/result.h"
+#include "storage/records.h"
 
-// Resource names of the API (proto/rmlcell/v1). Errors: CellInvalidArgument with the form expected.
+// Resource names and etags of the API (proto/rmlcell/v1). Errors: CellInvalidArgument with the form expected.
+// A thing has exactly one name: numbers have no sign and no leading zero.
 namespace rmlcell::server {
 
 // 1 to 63 characters: a-z, 0-9, '-', beginning with a letter.
@@ -16,8 +18,8 @@ Result<std::string> ParseMachineName(std::string_view name);  // "machines/optim
 Result<std::string> ParseProjectName(std::string_view name);  // "projects/bracket"
 Result<std::int64_t> ParseJobName(std::string_view name);     // "jobs/17"
 
-// "machines/optimo-1/programs/45". Errors also: ProgramNumber (7101) for a number outside 1..99, and
-// outside 101..199 when executables are meant.
+// "machines/optimo-1/programs/45", an executable by its own number. Errors also: ProgramNumber (7101) for a
+// number that is neither 1..99 nor 101..199.
 struct ProgramName {
   std::string machine;
   int slot = 0;             // 1..99
@@ -29,7 +31,11 @@ struct ScheduleName {
   std::string machine;
   int number = 0;  // 1..63
 };
-Result<ScheduleName> ParseScheduleName(std::string_view name);  // ".../laserSchedules/11"
+Result<ScheduleName> ParseScheduleName(std::string_view name);  // ".../laserSchedules/11"; error also: ScheduleRange
+
+// Etags are revisions in decimal. Empty: whatever is there. "none": must not exist yet.
+// Error: CellEtagMismatch for anything else: it cannot be one of ours.
+Result<storage::Revision> ParseEtag(std::string_view etag);
 
 std::string MachineName(std::string_view id);
 std::string ProjectName(std::string_view id);

@@ -10,6 +10,8 @@ namespace {
 constexpr std::chrono::seconds kPollInterval{1};
 constexpr int kReadBatch = 1000;
 
+constexpr std::int64_t kEverything = 0;  // no job has this number
+
 }  // namespace
 
 struct EventFeed::Watcher {
@@ -62,7 +64,7 @@ std::unique_ptr<EventFeed::Subscription> EventFeed::Subscribe(std::optional<std:
                                                               std::function<void()> wake) {
   auto watcher = std::make_shared<Watcher>();
   watcher->wake = std::move(wake);
-  const std::int64_t key = job.value_or(0);
+  const std::int64_t key = job.value_or(kEverything);
   {
     const std::lock_guard lock(mutex_);
     watchers_.emplace(key, watcher);
@@ -86,11 +88,14 @@ Result<std::vector<storage::EventRecord>> EventFeed::EventsAfter(std::int64_t po
 void EventFeed::PublishProgress(std::int64_t job, std::string bytes) {
   auto shared = std::make_shared<const std::string>(std::move(bytes));
   const std::lock_guard lock(mutex_);
-  progress_[job] = {.job = job, .version = ++version_, .bytes = std::move(shared)};
+  const bool first = arriving_.empty();
+  arriving_[job] = std::move(shared);
+  if (first) wake_.notify_one();  // the thread may have gone to sleep until the next poll
 }
 
 void EventFeed::ForgetProgress(std::int64_t job) {
   const std::lock_guard lock(mutex_);
+  arriving_.erase(job);
   progress_.erase(job);
 }
 
@@ -119,41 +124,45 @@ std::int64_t EventFeed::position() {
 }
 
 void EventFeed::Run(const std::stop_token& stop) {
-  auto next_poll = std::chrono::steady_clock::now();
+  using Clock = std::chrono::steady_clock;
+  auto next_poll = Clock::now();
+  auto next_progress = Clock::now();
   while (!stop.stop_requested()) {
     bool read = false;
     std::vector<std::int64_t> moved;
     {
       std::unique_lock lock(mutex_);
-      // Positions are looked at each interval while there are any; else the thread sleeps until a hint.
-      wake_.wait_for(lock, stop, progress_.empty() ? kPollInterval : kProgressInterval,
-                     [this] { return hinted_; });
-      const auto now = std::chrono::steady_clock::now();
+      const bool quiet = arriving_.empty();
+      wake_.wait_until(lock, stop, quiet ? next_poll : std::min(next_poll, next_progress),
+                       [&] { return hinted_ || (quiet && !arriving_.empty()); });
+      const auto now = Clock::now();
       read = hinted_ || now >= next_poll;
       hinted_ = false;
       if (read) next_poll = now + kPollInterval;
-      if (version_ > told_version_) {
-        for (const auto& [job, progress] : progress_) {
-          if (progress.version > told_version_) moved.push_back(job);
+      // Watchers see positions only from here on: one that is woken by many events gets no more of them.
+      if (!arriving_.empty() && now >= next_progress) {
+        next_progress = now + kProgressInterval;
+        for (auto& [job, bytes] : arriving_) {
+          progress_[job] = {.job = job, .version = ++version_, .bytes = std::move(bytes)};
+          moved.push_back(job);
         }
-        told_version_ = version_;
+        arriving_.clear();
       }
     }
     if (stop.stop_requested()) return;
-    if (read) ReadNewEvents();
-    if (!moved.empty()) Wake(moved, true);
+    if (read) ReadNewEvents(stop);
+    if (!moved.empty()) Wake(moved);
   }
 }
 
-void EventFeed::ReadNewEvents() {
-  for (;;) {
-    std::int64_t after = 0;
-    {
-      const std::lock_guard lock(mutex_);
-      after = position_;
+void EventFeed::ReadNewEvents(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    Result<std::vector<storage::EventRecord>> events = store_.AllEvents(position(), kReadBatch);
+    if (!events) {
+      if (events.error().code == ErrorCode::kCellEventsGone && SkipGoneEvents()) continue;
+      return;  // a failing store is tried again at the next poll
     }
-    Result<std::vector<storage::EventRecord>> events = store_.AllEvents(after, kReadBatch);
-    if (!events || events->empty()) return;  // a failing store is tried again at the next poll
+    if (events->empty()) return;
     std::set<std::int64_t> touched;
     for (const storage::EventRecord& event : *events) touched.insert(event.job);
     const bool more = events->size() == kReadBatch;
@@ -163,12 +172,28 @@ void EventFeed::ReadNewEvents() {
       for (storage::EventRecord& event : *events) recent_.push_back(std::move(event));
       while (recent_.size() > kRecentEvents) recent_.pop_front();
     }
-    Wake({touched.begin(), touched.end()}, true);
+    Wake({touched.begin(), touched.end()});
     if (!more) return;
   }
 }
 
-void EventFeed::Wake(const std::vector<std::int64_t>& jobs, bool everything_watchers) {
+// The store removed events before they were read here (it keeps so many, and more were written at once).
+// Whom they would have woken is not known: everybody looks, and a watcher that misses some is told so.
+bool EventFeed::SkipGoneEvents() {
+  const Result<std::int64_t> gone = store_.EventsGoneUntil();
+  std::vector<std::shared_ptr<Watcher>> all;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!gone || *gone <= position_) return false;
+    position_ = *gone;
+    recent_.clear();
+    for (const auto& [job, watcher] : watchers_) all.push_back(watcher);
+  }
+  Call(all);
+  return true;
+}
+
+void EventFeed::Wake(const std::vector<std::int64_t>& jobs) {
   std::vector<std::shared_ptr<Watcher>> woken;
   {
     const std::lock_guard lock(mutex_);
@@ -177,8 +202,12 @@ void EventFeed::Wake(const std::vector<std::int64_t>& jobs, bool everything_watc
       for (auto row = first; row != last; ++row) woken.push_back(row->second);
     };
     for (const std::int64_t job : jobs) add(job);
-    if (everything_watchers) add(0);
+    add(kEverything);
   }
+  Call(woken);
+}
+
+void EventFeed::Call(const std::vector<std::shared_ptr<Watcher>>& woken) {
   for (const std::shared_ptr<Watcher>& watcher : woken) {
     const std::lock_guard calling(watcher->calling);
     if (!watcher->gone) watcher->wake();

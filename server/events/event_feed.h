@@ -19,13 +19,13 @@ namespace rmlcell::server {
 // The newest position of a running job, as serialised rmlcell.v1.JobProgress.
 struct ProgressText {
   std::int64_t job = 0;
-  std::uint64_t version = 0;  // grows with every update of any job
+  std::uint64_t version = 0;  // grows with every update of any job that is told
   std::shared_ptr<const std::string> bytes;
 };
 
 // Wakes watchers when there is something for them. Durable events are never handed over here: a watcher
 // keeps a cursor and reads the log when its writer is free, so one that does not read costs a cursor.
-// Positions are latest-wins and told at most every kProgressInterval.
+// Positions are latest-wins and change, as watchers see them, at most every kProgressInterval.
 //
 // Knows no gRPC: the race detector sees all of it. Thread-safe. Lock order: mutex_ is a leaf; neither the
 // store nor a watcher is called under it.
@@ -48,7 +48,8 @@ class EventFeed {
   };
   std::unique_ptr<Subscription> Subscribe(std::optional<std::int64_t> job, std::function<void()> wake);
 
-  // Events of the whole cell after a position; from memory when it reaches back that far.
+  // Events of the whole cell after a position; from memory when it reaches back that far. Not beyond
+  // position(). Errors: those of the store, CellEventsGone among them.
   Result<std::vector<storage::EventRecord>> EventsAfter(std::int64_t position, int limit);
 
   // Events of one job after a sequence number, from the log.
@@ -56,6 +57,7 @@ class EventFeed {
     return store_.JobEvents(job, after_sequence, limit);
   }
 
+  // Seen by watchers at the next interval; at once when there was none for a while.
   void PublishProgress(std::int64_t job, std::string bytes);
   void ForgetProgress(std::int64_t job);
   // The newest position of the job when it is newer than `seen`.
@@ -71,19 +73,21 @@ class EventFeed {
   class Handle;
 
   void Run(const std::stop_token& stop);
-  void ReadNewEvents();
-  void Wake(const std::vector<std::int64_t>& jobs, bool everything_watchers);
+  void ReadNewEvents(const std::stop_token& stop);
+  bool SkipGoneEvents();
+  void Wake(const std::vector<std::int64_t>& jobs);  // and those of everything
+  static void Call(const std::vector<std::shared_ptr<Watcher>>& woken);
 
   storage::Store& store_;
   std::mutex mutex_;
   std::condition_variable_any wake_;
   bool hinted_ = true;
   std::uint64_t version_ = 0;
-  std::uint64_t told_version_ = 0;
   std::int64_t position_ = 0;
   std::deque<storage::EventRecord> recent_;
+  std::map<std::int64_t, std::shared_ptr<const std::string>> arriving_;  // not told yet, by job
   std::map<std::int64_t, ProgressText> progress_;
-  std::multimap<std::int64_t, std::shared_ptr<Watcher>> watchers_;  // key 0: of everything
+  std::multimap<std::int64_t, std::shared_ptr<Watcher>> watchers_;  // by job; 0: of everything
   std::unique_ptr<storage::Store::Subscription> store_watch_;
   std::jthread thread_;
 };

@@ -19,6 +19,9 @@ using Clock = std::chrono::steady_clock;
 // Events that a worker may send before the first of them is durable.
 constexpr int kEventsWindow = 256;
 
+// What a worker may send over its budget until it has noticed.
+constexpr std::int64_t kOutputSlack = 1 << 20;
+
 bool SameLease(const storage::Lease& lease, const v1::WorkerLease& other) {
   return lease.job == other.job() && lease.attempt == other.attempt() && lease.fence == other.fence();
 }
@@ -29,6 +32,16 @@ v1::WorkerLease ToProto(const storage::Lease& lease) {
   message.set_attempt(lease.attempt);
   message.set_fence(lease.fence);
   return message;
+}
+
+void SendStop(WorkerLine& line) {
+  v1::WorkResponse message;
+  message.mutable_stop()->set_reason("the server stops");
+  line.Send(std::move(message));
+}
+
+storage::JobOutcome CancelledOutcome() {
+  return {.state = storage::JobState::kCancelled, .code = ErrorCode::kCellCancelled, .detail = {}};
 }
 
 v1::WorkResponse ControlMessage(const storage::Lease& lease, v1::WorkerControl::Kind kind, double value) {
@@ -42,6 +55,12 @@ v1::WorkResponse ControlMessage(const storage::Lease& lease, v1::WorkerControl::
 
 }  // namespace
 
+// What became of the events of an assignment; told by threads of the store, which may outlive it.
+struct Dispatcher::Delivery {
+  std::atomic<std::int64_t> stored = 0;
+  std::atomic<bool> failed = false;
+};
+
 // What a worker is at. Touched only by work posted for this worker, which runs in order.
 struct Dispatcher::Assignment {
   storage::Lease lease;
@@ -51,7 +70,7 @@ struct Dispatcher::Assignment {
   bool over_budget = false;
   std::map<int, storage::Revision> object_revisions;  // of the programs of its memory
   std::string machine;
-  std::shared_ptr<std::atomic<std::int64_t>> events_stored = std::make_shared<std::atomic<std::int64_t>>(0);
+  std::shared_ptr<Delivery> delivery = std::make_shared<Delivery>();
 };
 
 struct Dispatcher::Worker {
@@ -60,6 +79,7 @@ struct Dispatcher::Worker {
   std::shared_ptr<WorkerLine> line;
   std::vector<std::string> kinds;
   std::optional<Assignment> assignment;
+  bool leaving = false;  // it handed its job back, since it ends; as `assignment`
 
   // Guarded by Dispatcher::mutex_.
   std::deque<std::function<void()>> queue;
@@ -67,8 +87,10 @@ struct Dispatcher::Worker {
   bool gone = false;
   bool idle = true;
   bool will_look = false;  // a look for a job is in the queue and has not begun
-  std::int64_t job = 0;               // 0: none; for Control
+  bool looking = false;    // it has begun, and may find one; for Drain
+  std::int64_t job = 0;                 // 0: none; for Control
   std::optional<storage::Lease> lease;  // the same, for Control
+  std::shared_ptr<Delivery> delivery;   // the same, for the sweeper
 };
 
 Dispatcher::Dispatcher(storage::Store& store, EventFeed& feed, const Config& config, Executor& executor,
@@ -107,6 +129,7 @@ Result<Dispatcher::WorkerId> Dispatcher::Join(std::shared_ptr<WorkerLine> line, 
     workers_.emplace(worker->id, worker);
   }
   spdlog::info("worker {} joined (process {})", worker->name, hello.process_id());
+  if (draining_) SendStop(*worker->line);
   PostLook(worker);
   return worker->id;
 }
@@ -205,39 +228,63 @@ void Dispatcher::WakeIdle() {
 }
 
 void Dispatcher::Assign(const std::shared_ptr<Worker>& worker) {
+  if (worker->assignment || worker->leaving) return;
   {
     const std::lock_guard lock(mutex_);
     if (worker->gone || draining_) return;
+    worker->looking = true;
   }
-  if (worker->assignment) return;
   const auto leased = store_.Acquire(worker->name, worker->kinds,
                                      std::chrono::milliseconds(config_.workers_lease_ms),
                                      {StateEvent(storage::JobState::kRunning)});
-  if (!leased) {
-    spdlog::error("no job could be leased: {}", bridge::ErrorText(leased.error()));
-    return;
+  const bool found = leased && leased->has_value();
+  if (found) {
+    worker->assignment.emplace();
+    worker->assignment->lease = (*leased)->lease;
+    worker->assignment->renewed_at = Clock::now();
+    worker->assignment->machine = (*leased)->job.machine;
   }
-  if (!leased->has_value()) return;
-  const storage::LeasedJob& job = **leased;
-  worker->assignment.emplace();
-  worker->assignment->lease = job.lease;
-  worker->assignment->renewed_at = Clock::now();
-  worker->assignment->machine = job.job.machine;
   {
     const std::lock_guard lock(mutex_);
-    worker->idle = false;
-    worker->job = job.lease.job;
-    worker->lease = job.lease;
+    worker->looking = false;
+    if (found) {
+      worker->idle = false;
+      worker->job = worker->assignment->lease.job;
+      worker->lease = worker->assignment->lease;
+      worker->delivery = worker->assignment->delivery;
+    }
   }
+  changed_.notify_all();
+  if (!leased) spdlog::error("no job could be leased: {}", bridge::ErrorText(leased.error()));
+  if (found) Begin(worker, **leased);
+}
+
+void Dispatcher::Begin(const std::shared_ptr<Worker>& worker, const storage::LeasedJob& job) {
+  // A job whose cancel came while its first worker gave it back: there is nothing to begin.
+  if (job.job.cancel_requested) return EndWithoutWork(worker, CancelledOutcome());
   spdlog::debug("{} attempt {} goes to worker {}", JobName(job.lease.job), job.lease.attempt, worker->name);
   if (const Status sent = SendAssignment(*worker, job); !sent) {
     // The job itself cannot be worked on: it fails, and the worker is free for the next.
-    const v1::Outcome outcome = ToProto(storage::JobOutcome{
-        .state = storage::JobState::kFailed, .code = sent.error().code, .detail = sent.error().detail});
-    (void)store_.Finish(job.lease, OutcomeOf(outcome), {}, {EndedEvent(outcome)});
-    EndAssignment(*worker, false);
-    PostLook(worker);
+    return EndWithoutWork(worker, {.state = storage::JobState::kFailed,
+                                   .code = sent.error().code,
+                                   .detail = sent.error().detail});
   }
+  // A worker that was told to stop before the job came to it drops the job and ends.
+  if (draining_) GiveBack(*worker);
+}
+
+void Dispatcher::EndWithoutWork(const std::shared_ptr<Worker>& worker, const storage::JobOutcome& how) {
+  const v1::Outcome outcome = ToProto(how);
+  const auto ended = store_.Finish(worker->assignment->lease, OutcomeOf(outcome), {}, {EndedEvent(outcome)});
+  if (!ended) spdlog::error("{}: {}", JobName(worker->assignment->lease.job), bridge::ErrorText(ended.error()));
+  EndAssignment(*worker, false);
+  PostLook(worker);
+}
+
+void Dispatcher::GiveBack(Worker& worker) {
+  (void)store_.HandBack(worker.assignment->lease, {StateEvent(storage::JobState::kQueued)});
+  worker.leaving = true;
+  EndAssignment(worker, false);
 }
 
 Status Dispatcher::SendAssignment(Worker& worker, const storage::LeasedJob& leased) {
@@ -256,7 +303,9 @@ void Dispatcher::Handle(const std::shared_ptr<Worker>& worker, v1::WorkRequest& 
   };
   switch (message.message_case()) {
     case v1::WorkRequest::kHeartbeat:
-      if (holds(message.heartbeat().lease())) Heartbeat(*worker, message.heartbeat());
+      if (!holds(message.heartbeat().lease())) break;
+      Heartbeat(*worker, message.heartbeat());
+      Assign(worker);  // the lease may have been lost
       break;
     case v1::WorkRequest::kEvents:
       if (holds(message.events().lease())) AppendEvents(*worker, message.events());
@@ -270,10 +319,8 @@ void Dispatcher::Handle(const std::shared_ptr<Worker>& worker, v1::WorkRequest& 
       Assign(worker);
       break;
     case v1::WorkRequest::kHandBack:
-      if (!holds(message.hand_back().lease())) break;
-      (void)store_.HandBack(worker->assignment->lease, {StateEvent(storage::JobState::kQueued)});
-      EndAssignment(*worker, false);
-      Assign(worker);
+      // It gives back since it ends: others take the job.
+      if (holds(message.hand_back().lease())) GiveBack(*worker);
       break;
     case v1::WorkRequest::kHello:
     case v1::WorkRequest::MESSAGE_NOT_SET: break;
@@ -310,15 +357,16 @@ void Dispatcher::AppendEvents(Worker& worker, const v1::WorkerEvents& events) {
   const auto count = static_cast<std::int64_t>(records.size());
   const storage::Lease lease = worker.assignment->lease;
   store_.Append(lease, std::move(records),
-                [line = worker.line, lease, count, stored = worker.assignment->events_stored](
+                [line = worker.line, lease, count, delivery = worker.assignment->delivery](
                     const Result<std::int64_t>& written) {
                   if (!written) {
                     spdlog::warn("events of {}: {}", JobName(lease.job), bridge::ErrorText(written.error()));
+                    delivery->failed = true;
                     return;
                   }
                   v1::WorkResponse message;
                   *message.mutable_events_stored()->mutable_lease() = ToProto(lease);
-                  message.mutable_events_stored()->set_count(stored->fetch_add(count) + count);
+                  message.mutable_events_stored()->set_count(delivery->stored.fetch_add(count) + count);
                   line->Send(std::move(message));
                 });
 }
@@ -326,8 +374,11 @@ void Dispatcher::AppendEvents(Worker& worker, const v1::WorkerEvents& events) {
 void Dispatcher::Collect(Worker& worker, v1::WorkerArtifact& artifact) {
   Assignment& assignment = *worker.assignment;
   assignment.collected_bytes += static_cast<std::int64_t>(artifact.chunk().size());
+  if (!assignment.artifacts.contains(artifact.name())) {
+    assignment.collected_bytes += static_cast<std::int64_t>(sizeof(storage::NewArtifact) + artifact.name().size());
+  }
   // The worker keeps to the job's budget; this bound holds against a worker that does not.
-  if (assignment.collected_bytes > config_.limit_output_bytes + (1 << 20)) {
+  if (assignment.collected_bytes > config_.limit_output_bytes + kOutputSlack) {
     assignment.over_budget = true;
     assignment.artifacts.clear();
     return;
@@ -358,9 +409,10 @@ void Dispatcher::Finish(Worker& worker, v1::WorkerFinish& finish) {
     spdlog::info("{} {} {}", JobName(lease.job), v1::Job::State_Name(ToProto(finished->state)),
                  finish.outcome().code());
   }
+  // Of a worker that lost its lease nothing is kept.
   for (const auto& [slot, executable] : finish.executables()) {
     const auto revision = assignment.object_revisions.find(slot);
-    if (revision == assignment.object_revisions.end()) continue;
+    if (!finished || revision == assignment.object_revisions.end()) continue;
     (void)store_.PutExecutable(assignment.machine, slot, revision->second, executable);
   }
   EndAssignment(worker, finished.has_value());
@@ -378,6 +430,7 @@ void Dispatcher::EndAssignment(Worker& worker, bool stored) {
     worker.idle = true;
     worker.job = 0;
     worker.lease.reset();
+    worker.delivery.reset();
   }
   changed_.notify_all();
 }
@@ -388,7 +441,8 @@ storage::LossPolicy Dispatcher::PolicyForLoss(const std::string& why) const {
   const storage::JobOutcome outcome = WorkerDiedOutcome();
   return {.outcome = outcome,
           .requeued = {ToRecord(lost), StateEvent(storage::JobState::kQueued)},
-          .ended = {ToRecord(lost), EndedEvent(ToProto(outcome))}};
+          .ended = {ToRecord(lost), EndedEvent(ToProto(outcome))},
+          .cancelled = {ToRecord(lost), EndedEvent(ToProto(CancelledOutcome()))}};
 }
 
 void Dispatcher::Lose(const storage::Lease& lease) {
@@ -408,8 +462,29 @@ void Dispatcher::SweepLeases(const std::stop_token& stop) {
     } else {
       for (const storage::JobRecord& job : *expired) spdlog::warn("the lease of {} ran out", JobName(job.id));
     }
+    EndFailedDeliveries();
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, stop, interval, [] { return false; });
+  }
+}
+
+// A worker waits until its events are durable. When they cannot be made so it is told to forget the job, or
+// it would wait for ever.
+void Dispatcher::EndFailedDeliveries() {
+  std::vector<std::pair<std::shared_ptr<Worker>, std::shared_ptr<Delivery>>> failed;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, worker] : workers_) {
+      if (worker->delivery != nullptr && worker->delivery->failed) failed.emplace_back(worker, worker->delivery);
+    }
+  }
+  for (auto& [worker, delivery] : failed) {
+    Post(worker, [this, worker = worker, delivery = delivery] {
+      if (!worker->assignment || worker->assignment->delivery != delivery) return;
+      Lose(worker->assignment->lease);
+      EndAssignment(*worker, false);
+      Assign(worker);
+    });
   }
 }
 
@@ -435,9 +510,7 @@ Status Dispatcher::Control(std::int64_t job, v1::WorkerControl::Kind kind, doubl
 }
 
 Result<storage::JobRecord> Dispatcher::Cancel(std::int64_t job) {
-  const v1::Outcome outcome = ToProto(storage::JobOutcome{
-      .state = storage::JobState::kCancelled, .code = ErrorCode::kCellCancelled, .detail = {}});
-  auto cancelled = store_.RequestCancel(job, {EndedEvent(outcome)});
+  auto cancelled = store_.RequestCancel(job, {EndedEvent(ToProto(CancelledOutcome()))});
   if (cancelled && cancelled->state == storage::JobState::kRunning) {
     // When the worker finishes at this moment there is nobody to tell, and nothing to do.
     (void)Control(job, v1::WorkerControl::KIND_CANCEL, 0.0);
@@ -452,15 +525,18 @@ void Dispatcher::Drain(std::chrono::milliseconds patience) {
     const std::lock_guard lock(mutex_);
     for (const auto& [id, worker] : workers_) all.push_back(worker);
   }
-  for (const auto& worker : all) {
-    v1::WorkResponse message;
-    message.mutable_stop()->set_reason("the server stops");
-    worker->line->Send(std::move(message));
+  for (const auto& worker : all) SendStop(*worker->line);
+  {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, patience, [this] {
+      return std::ranges::all_of(workers_,
+                                 [](const auto& row) { return row.second->idle && !row.second->looking; });
+    });
   }
-  std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, patience, [this] {
-    return std::ranges::all_of(workers_, [](const auto& row) { return row.second->idle; });
-  });
+  // From here on nothing is posted but what lines still say.
+  store_watch_.reset();
+  sweeper_.request_stop();
+  if (sweeper_.joinable()) sweeper_.join();
 }
 
 }  // namespace rmlcell::server

@@ -57,7 +57,7 @@ class Dispatcher {
   Result<storage::JobRecord> Cancel(std::int64_t job);
 
   // Gives out no more work and asks for what is under way to be handed back. Returns when that is done, or
-  // after `patience`.
+  // after `patience`. For good: leases are not looked after any more.
   void Drain(std::chrono::milliseconds patience);
 
   int workers() const;
@@ -65,11 +65,15 @@ class Dispatcher {
  private:
   struct Worker;
   struct Assignment;
+  struct Delivery;
 
   void Post(const std::shared_ptr<Worker>& worker, std::function<void()> work);
   void PostLook(const std::shared_ptr<Worker>& worker);
   void WakeIdle();
   void Assign(const std::shared_ptr<Worker>& worker);
+  void Begin(const std::shared_ptr<Worker>& worker, const storage::LeasedJob& job);
+  void EndWithoutWork(const std::shared_ptr<Worker>& worker, const storage::JobOutcome& how);
+  void GiveBack(Worker& worker);
   Status SendAssignment(Worker& worker, const storage::LeasedJob& leased);
   void Handle(const std::shared_ptr<Worker>& worker, v1::WorkRequest& message);
   void Heartbeat(Worker& worker, const v1::WorkerHeartbeat& heartbeat);
@@ -79,6 +83,7 @@ class Dispatcher {
   void EndAssignment(Worker& worker, bool stored);
   void Lose(const storage::Lease& lease);
   void SweepLeases(const std::stop_token& stop);
+  void EndFailedDeliveries();
   storage::LossPolicy PolicyForLoss(const std::string& why) const;
   std::shared_ptr<Worker> Find(WorkerId id) const;
 

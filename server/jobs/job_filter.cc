@@ -2,29 +2,41 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
 #include <vector>
 
 #include "server/names.h"
+#include "server/readable.h"
 
 namespace rmlcell::server {
 namespace {
 
+// Each of the five fields once, with "=", a value and AND.
+constexpr std::size_t kWordsMax = 19;
+
 Error Bad(const std::string& detail) { return {ErrorCode::kCellBadFilter, detail, {}}; }
 
-// Words and "=" signs; a text in double quotes is one word.
-Result<std::vector<std::string>> Words(std::string_view filter) {
-  std::vector<std::string> words;
+struct Word {
+  std::string text;
+  bool quoted = false;
+
+  bool Is(std::string_view sign) const { return !quoted && text == sign; }
+};
+
+// Words and "=" signs; a text in double quotes is one word and no sign.
+Result<std::vector<Word>> Words(std::string_view filter) {
+  std::vector<Word> words;
   for (std::size_t i = 0; i < filter.size();) {
     const char c = filter[i];
     if (std::isspace(static_cast<unsigned char>(c)) != 0) {
       ++i;
     } else if (c == '=') {
-      words.emplace_back("=");
+      words.push_back({.text = "="});
       ++i;
     } else if (c == '"') {
       const std::size_t end = filter.find('"', i + 1);
       if (end == std::string_view::npos) return Bad("a quoted text has no end");
-      words.emplace_back(filter.substr(i + 1, end - i - 1));
+      words.push_back({.text = std::string(filter.substr(i + 1, end - i - 1)), .quoted = true});
       i = end + 1;
     } else {
       std::size_t end = i;
@@ -32,9 +44,10 @@ Result<std::vector<std::string>> Words(std::string_view filter) {
              std::isspace(static_cast<unsigned char>(filter[end])) == 0) {
         ++end;
       }
-      words.emplace_back(filter.substr(i, end - i));
+      words.push_back({.text = std::string(filter.substr(i, end - i))});
       i = end;
     }
+    if (words.size() > kWordsMax) return Bad("the filter has too many words");
   }
   return words;
 }
@@ -62,7 +75,7 @@ Status Apply(const std::string& field, const std::string& value, storage::JobQue
     } else if (state == "INTERRUPTED") {
       query.state = JobState::kInterrupted;
     } else {
-      return Bad("no state '" + value + "'; there are QUEUED, RUNNING, SUCCEEDED, FAILED, CANCELLED, INTERRUPTED");
+      return Bad("no state '" + Readable(value) + "'; there are QUEUED, RUNNING, SUCCEEDED, FAILED, CANCELLED, INTERRUPTED");
     }
   } else if (field == "machine") {
     const Result<std::string> id = ParseMachineName(value.find('/') == std::string::npos ? MachineName(value) : value);
@@ -72,16 +85,17 @@ Status Apply(const std::string& field, const std::string& value, storage::JobQue
     std::string kind = Upper(value);
     if (kind.starts_with("JOB_KIND_")) kind.erase(0, 9);
     if (kind != "CHECK" && kind != "SIMULATE" && kind != "RUN") {
-      return Bad("no kind '" + value + "'; there are CHECK, SIMULATE, RUN");
+      return Bad("no kind '" + Readable(value) + "'; there are CHECK, SIMULATE, RUN");
     }
     query.kind = kind;
   } else if (field == "caller") {
+    if (value.empty()) return Bad("caller is empty");
     query.caller = value;
   } else if (field == "finished") {
-    if (value != "true" && value != "false") return Bad("finished is true or false, not '" + value + "'");
+    if (value != "true" && value != "false") return Bad("finished is true or false, not '" + Readable(value) + "'");
     query.finished = value == "true";
   } else {
-    return Bad("no field '" + field + "'; there are state, machine, kind, caller, finished");
+    return Bad("no field '" + Readable(field) + "'; there are state, machine, kind, caller, finished");
   }
   return {};
 }
@@ -89,18 +103,26 @@ Status Apply(const std::string& field, const std::string& value, storage::JobQue
 }  // namespace
 
 Status ApplyFilter(std::string_view filter, storage::JobQuery& query) {
-  const Result<std::vector<std::string>> words = Words(filter);
+  const Result<std::vector<Word>> words = Words(filter);
   if (!words) return words.error();
+  storage::JobQuery changed = query;
+  std::set<std::string_view> fields;
   for (std::size_t i = 0; i < words->size(); i += 4) {
-    if (i + 2 >= words->size() || (*words)[i + 1] != "=") {
-      return Bad("expected is FIELD = VALUE after '" + (i > 0 ? (*words)[i - 1] : std::string()) + "'");
+    const Word* const word = &(*words)[i];
+    const std::size_t left = words->size() - i;
+    if (left < 3 || word[0].quoted || word[0].Is("=") || !word[1].Is("=") || word[2].Is("=")) {
+      return Bad("expected is FIELD = VALUE, found '" + Readable(word[0].text) + "'");
     }
-    const Status applied = Apply((*words)[i], (*words)[i + 2], query);
-    if (!applied) return applied;
-    if (i + 3 < words->size() && (Upper((*words)[i + 3]) != "AND" || i + 4 >= words->size())) {
-      return Bad("comparisons are joined by AND, found '" + (*words)[i + 3] + "'");
+    if (!fields.insert(word[0].text).second) {
+      return Bad("'" + Readable(word[0].text) + "' stands twice");
+    }
+    if (const Status applied = Apply(word[0].text, word[2].text, changed); !applied) return applied;
+    if (left == 3) break;
+    if (word[3].quoted || Upper(word[3].text) != "AND" || left == 4) {
+      return Bad("comparisons are joined by AND, found '" + Readable(word[3].text) + "'");
     }
   }
+  query = std::move(changed);
   return {};
 }
 

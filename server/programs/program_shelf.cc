@@ -11,7 +11,6 @@
 #include "server/jobs/job_messages.h"
 #include "server/names.h"
 #include "proto/bridge/sha256.h"
-#include "server/services/machine_messages.h"
 
 namespace rmlcell::server {
 namespace {

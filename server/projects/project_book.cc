@@ -9,7 +9,6 @@
 #include "proto/bridge/setup.h"
 #include "server/jobs/job_messages.h"
 #include "server/names.h"
-#include "server/services/machine_messages.h"
 
 namespace rmlcell::server {
 namespace {

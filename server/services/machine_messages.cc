@@ -99,12 +99,4 @@ Status CheckMachine(const storage::MachineRecord& machine) {
   return {};
 }
 
-Result<storage::Revision> ParseEtag(const std::string& etag) {
-  if (etag.empty()) return storage::kAnyRevision;
-  if (etag == "none") return storage::Revision{0};
-  const auto revision = ParseInteger(etag);
-  if (!revision || *revision <= 0) return Error{ErrorCode::kCellEtagMismatch, "etag is not one of ours", {}};
-  return storage::Revision{*revision};
-}
-
 }  // namespace rmlcell::server

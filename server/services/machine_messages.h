@@ -18,8 +18,4 @@ v1::LaserSchedule ToProto(const storage::ScheduleRecord& record);
 // Errors: CellUnknownFamily, CellInvalidArgument, CellUnknownParameter, CellParameterRange.
 Status CheckMachine(const storage::MachineRecord& machine);
 
-// Etags are revisions in decimal. Empty: whatever is there. "none": must not exist yet.
-// Error: CellEtagMismatch for anything else: it cannot be one of ours.
-Result<storage::Revision> ParseEtag(const std::string& etag);
-
 }  // namespace rmlcell::server

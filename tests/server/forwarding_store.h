@@ -1,0 +1,140 @@
+#pragma once
+
+#include "storage/store.h"
+
+namespace rmlcell::server {
+
+// Hands every call on to another store. Tests override what shall happen at a certain moment.
+class ForwardingStore : public storage::Store {
+ public:
+  explicit ForwardingStore(storage::Store& store) : store_(store) {}
+
+  Result<std::vector<storage::MachineRecord>> ListMachines() override {
+    return store_.ListMachines();
+  }
+  Result<storage::MachineRecord> GetMachine(std::string_view id) override {
+    return store_.GetMachine(id);
+  }
+  Result<storage::MachineRecord> PutMachine(const storage::MachineRecord& machine,
+                                            storage::Revision expected) override {
+    return store_.PutMachine(machine, expected);
+  }
+  Result<std::vector<storage::ProgramSummary>> ListPrograms(std::string_view machine, int after,
+                                                            int limit) override {
+    return store_.ListPrograms(machine, after, limit);
+  }
+  Result<storage::ProgramRecord> GetProgram(std::string_view machine, int slot) override {
+    return store_.GetProgram(machine, slot);
+  }
+  Result<std::vector<storage::ProgramRecord>> GetProgramMemory(std::string_view machine) override {
+    return store_.GetProgramMemory(machine);
+  }
+  Result<std::vector<storage::ProgramSummary>> PutPrograms(
+      std::string_view machine, const std::vector<storage::ProgramWrite>& programs,
+      const std::vector<storage::ScheduleRecord>& schedules) override {
+    return store_.PutPrograms(machine, programs, schedules);
+  }
+  Status DeleteProgram(std::string_view machine, int slot, storage::Revision expected) override {
+    return store_.DeleteProgram(machine, slot, expected);
+  }
+  Result<bool> PutExecutable(std::string_view machine, int slot, storage::Revision object_revision,
+                             std::string_view executable) override {
+    return store_.PutExecutable(machine, slot, object_revision, executable);
+  }
+  Status DeleteExecutable(std::string_view machine, int slot) override {
+    return store_.DeleteExecutable(machine, slot);
+  }
+  Result<std::vector<storage::ScheduleRecord>> ListSchedules(std::string_view machine) override {
+    return store_.ListSchedules(machine);
+  }
+  Result<storage::ScheduleRecord> PutSchedule(const storage::ScheduleRecord& schedule,
+                                              storage::Revision expected) override {
+    return store_.PutSchedule(schedule, expected);
+  }
+  Status DeleteSchedule(std::string_view machine, int number) override {
+    return store_.DeleteSchedule(machine, number);
+  }
+  Result<std::vector<storage::ProjectRecord>> ListProjects(std::string_view after,
+                                                           int limit) override {
+    return store_.ListProjects(after, limit);
+  }
+  Result<storage::ProjectRecord> GetProject(std::string_view id) override {
+    return store_.GetProject(id);
+  }
+  Result<storage::ProjectRecord> PutProject(const storage::ProjectRecord& project,
+                                            storage::Revision expected) override {
+    return store_.PutProject(project, expected);
+  }
+  Status DeleteProject(std::string_view id, storage::Revision expected) override {
+    return store_.DeleteProject(id, expected);
+  }
+  void Submit(storage::NewJob job,
+              std::function<void(Result<storage::SubmittedJob>)> done) override {
+    store_.Submit(std::move(job), std::move(done));
+  }
+  Result<storage::JobRecord> GetJob(std::int64_t id) override { return store_.GetJob(id); }
+  Result<std::vector<storage::JobRecord>> ListJobs(const storage::JobQuery& query) override {
+    return store_.ListJobs(query);
+  }
+  Result<std::vector<storage::AttemptRecord>> ListAttempts(std::int64_t job) override {
+    return store_.ListAttempts(job);
+  }
+  Result<storage::JobCounts> CountJobs() override { return store_.CountJobs(); }
+  Result<storage::JobRecord> RequestCancel(std::int64_t job,
+                                           const std::vector<storage::NewEvent>& events) override {
+    return store_.RequestCancel(job, events);
+  }
+  Result<std::optional<storage::LeasedJob>> Acquire(
+      std::string_view worker, const std::vector<std::string>& kinds,
+      std::chrono::milliseconds duration, const std::vector<storage::NewEvent>& events) override {
+    return store_.Acquire(worker, kinds, duration, events);
+  }
+  Result<storage::JobRecord> Renew(const storage::Lease& lease,
+                                   std::chrono::milliseconds duration) override {
+    return store_.Renew(lease, duration);
+  }
+  void Append(const storage::Lease& lease, std::vector<storage::NewEvent> events,
+              std::function<void(Result<std::int64_t>)> done) override {
+    store_.Append(lease, std::move(events), std::move(done));
+  }
+  Result<storage::JobRecord> Finish(const storage::Lease& lease, const storage::JobOutcome& outcome,
+                                    const std::vector<storage::NewArtifact>& artifacts,
+                                    const std::vector<storage::NewEvent>& events) override {
+    return store_.Finish(lease, outcome, artifacts, events);
+  }
+  Status HandBack(const storage::Lease& lease,
+                  const std::vector<storage::NewEvent>& events) override {
+    return store_.HandBack(lease, events);
+  }
+  Result<storage::JobRecord> Abandon(const storage::Lease& lease,
+                                     const storage::LossPolicy& policy) override {
+    return store_.Abandon(lease, policy);
+  }
+  Result<std::vector<storage::JobRecord>> Expire(const storage::LossPolicy& policy) override {
+    return store_.Expire(policy);
+  }
+  Result<std::vector<storage::EventRecord>> JobEvents(std::int64_t job, std::int64_t after,
+                                                      int limit) override {
+    return store_.JobEvents(job, after, limit);
+  }
+  Result<std::vector<storage::EventRecord>> AllEvents(std::int64_t after, int limit) override {
+    return store_.AllEvents(after, limit);
+  }
+  Result<std::int64_t> LastPosition() override { return store_.LastPosition(); }
+  Result<std::int64_t> EventsGoneUntil() override { return store_.EventsGoneUntil(); }
+  Result<std::vector<storage::ArtifactRecord>> ListArtifacts(std::int64_t job) override {
+    return store_.ListArtifacts(job);
+  }
+  Result<storage::ArtifactRecord> GetArtifact(std::int64_t job, std::string_view name) override {
+    return store_.GetArtifact(job, name);
+  }
+  Result<std::string> ReadBlob(std::string_view sha256) override { return store_.ReadBlob(sha256); }
+  std::unique_ptr<Subscription> Watch(std::function<void()> changed) override {
+    return store_.Watch(std::move(changed));
+  }
+
+ protected:
+  storage::Store& store_;
+};
+
+}  // namespace rmlcell::server

@@ -1,0 +1,143 @@
+#include "tests/server/jobs/dispatcher_bed.h"
+
+namespace rmlcell::server {
+
+void FakeLine::Send(v1::WorkResponse message) {
+  const std::lock_guard lock(mutex_);
+  messages_.push_back(std::move(message));
+  changed_.notify_all();
+}
+
+void FakeLine::SendProgram(int slot, std::shared_ptr<const std::string> bytes) {
+  const std::lock_guard lock(mutex_);
+  programs_[slot] = *bytes;
+}
+
+v1::WorkResponse FakeLine::Next(v1::WorkResponse::MessageCase kind,
+                                std::chrono::milliseconds patience) {
+  std::unique_lock lock(mutex_);
+  const auto until = std::chrono::steady_clock::now() + patience;
+  for (;;) {
+    while (!messages_.empty()) {
+      v1::WorkResponse message = std::move(messages_.front());
+      messages_.pop_front();
+      if (message.message_case() == kind) return message;
+    }
+    if (!changed_.wait_until(lock, until, [&] { return !messages_.empty(); })) return {};
+  }
+}
+
+std::map<int, std::string> FakeLine::programs() {
+  const std::lock_guard lock(mutex_);
+  return programs_;
+}
+
+v1::WorkerHello Hello(const std::string& name) {
+  v1::WorkerHello hello;
+  hello.set_join_token(std::string(kToken));
+  hello.set_worker(name);
+  hello.set_version(std::string(kVersion));
+  hello.add_kinds(v1::JOB_KIND_CHECK);
+  hello.add_kinds(v1::JOB_KIND_SIMULATE);
+  return hello;
+}
+
+FakeWorker::FakeWorker(Dispatcher& dispatcher, const v1::WorkerHello& hello)
+    : dispatcher_(dispatcher) {
+  id_ = Must(dispatcher_.Join(line_, hello));
+}
+
+bool FakeWorker::Take(std::chrono::milliseconds patience) {
+  v1::WorkResponse message = line_->Next(v1::WorkResponse::kAssignment, patience);
+  if (!message.has_assignment()) return false;
+  assignment_ = std::move(*message.mutable_assignment());
+  return true;
+}
+
+void FakeWorker::Heartbeat() {
+  v1::WorkRequest message;
+  *message.mutable_heartbeat()->mutable_lease() = assignment_.lease();
+  Send(std::move(message));
+}
+
+void FakeWorker::Position(std::int64_t time_ns) {
+  v1::WorkRequest message;
+  *message.mutable_heartbeat()->mutable_lease() = assignment_.lease();
+  message.mutable_heartbeat()->mutable_progress()->set_virtual_time_ns(time_ns);
+  Send(std::move(message));
+}
+
+void FakeWorker::Events(int count, const std::string& text) {
+  v1::WorkRequest message;
+  *message.mutable_events()->mutable_lease() = assignment_.lease();
+  for (int i = 0; i < count; ++i) message.mutable_events()->add_events()->set_message(text);
+  Send(std::move(message));
+}
+
+void FakeWorker::Artifact(const std::string& name, const std::string& bytes) {
+  v1::WorkRequest message;
+  *message.mutable_artifact()->mutable_lease() = assignment_.lease();
+  message.mutable_artifact()->set_name(name);
+  message.mutable_artifact()->set_media_type("text/plain");
+  message.mutable_artifact()->set_chunk(bytes);
+  Send(std::move(message));
+}
+
+void FakeWorker::Finish(v1::Outcome::Kind kind, const std::map<int, std::string>& executables) {
+  v1::WorkRequest message;
+  *message.mutable_finish()->mutable_lease() = assignment_.lease();
+  message.mutable_finish()->mutable_outcome()->set_kind(kind);
+  for (const auto& [slot, bytes] : executables)
+    (*message.mutable_finish()->mutable_executables())[slot] = bytes;
+  Send(std::move(message));
+}
+
+void FakeWorker::HandBack() {
+  v1::WorkRequest message;
+  *message.mutable_hand_back()->mutable_lease() = assignment_.lease();
+  Send(std::move(message));
+}
+
+std::optional<bool> FakeWorker::Released() {
+  const v1::WorkResponse message = line_->Next(v1::WorkResponse::kRelease);
+  if (!message.has_release() || message.release().lease().fence() != assignment_.lease().fence())
+    return std::nullopt;
+  return message.release().stored();
+}
+
+v1::WorkerControl FakeWorker::Ordered() {
+  return line_->Next(v1::WorkResponse::kControl).control();
+}
+
+Dispatcher& DispatcherBed::dispatcher() {
+  if (dispatcher_ == nullptr) {
+    executor_ = std::make_unique<Executor>(4);
+    feed_ = std::make_unique<EventFeed>(hooks);
+    dispatcher_ =
+        std::make_unique<Dispatcher>(hooks, *feed_, config, *executor_, std::string(kToken));
+  }
+  return *dispatcher_;
+}
+
+EventFeed& DispatcherBed::feed() {
+  dispatcher();
+  return *feed_;
+}
+
+void DispatcherBed::End() {
+  if (dispatcher_ == nullptr) return;
+  dispatcher_->Drain(std::chrono::milliseconds(0));
+  executor_.reset();
+  dispatcher_.reset();
+  feed_.reset();
+}
+
+std::vector<v1::JobEvent> DispatcherBed::Events(std::int64_t id) {
+  std::vector<v1::JobEvent> events;
+  for (const storage::EventRecord& record : Must(server.store().JobEvents(id, 0, 1000))) {
+    events.push_back(ToProto(record));
+  }
+  return events;
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,570 @@
+#include "server/jobs/dispatcher.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/names.h"
+#include "tests/server/jobs/dispatcher_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using std::chrono::milliseconds;
+using storage::JobState;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+// Long enough for what must not come to come.
+constexpr milliseconds kAWhile{120};
+
+TEST(DispatcherJoin, RefusesWrongTokensAndOtherVersions) {
+  DispatcherBed bed;
+  for (const std::string token : {"", "the toke", "the tokens", "THE TOKEN"}) {
+    v1::WorkerHello hello = Hello("w");
+    hello.set_join_token(token);
+    EXPECT_EQ(CodeOf(bed.dispatcher().Join(std::make_shared<FakeLine>(), hello)),
+              ErrorCode::kCellJoinRefused);
+  }
+  v1::WorkerHello hello = Hello("w");
+  hello.set_version("0.0.0");
+  const auto joined = bed.dispatcher().Join(std::make_shared<FakeLine>(), hello);
+  EXPECT_EQ(CodeOf(joined), ErrorCode::kCellVersionMismatch);
+  EXPECT_THAT(joined.error().detail, testing::HasSubstr("0.0.0"));
+  EXPECT_EQ(bed.dispatcher().workers(), 0);
+}
+
+TEST(DispatcherJoin, WelcomesAndCountsWorkers) {
+  DispatcherBed bed;
+  bed.config.workers_lease_ms = 7'000;
+  FakeWorker one(bed.dispatcher(), "one");
+  const v1::WorkResponse welcome = one.line().Next(v1::WorkResponse::kWelcome);
+  EXPECT_EQ(welcome.welcome().lease_ms(), 7'000);
+  EXPECT_GT(welcome.welcome().events_window(), 0);
+  FakeWorker two(bed.dispatcher(), "two");
+  EXPECT_EQ(bed.dispatcher().workers(), 2);
+  one.Leave();
+  EXPECT_EQ(bed.dispatcher().workers(), 1);
+  one.Leave();  // twice is not an error
+  EXPECT_EQ(bed.dispatcher().workers(), 1);
+}
+
+TEST(DispatcherAssign, GivesTheOldestJobFirstWithAllThatItNeeds) {
+  DispatcherBed bed;
+  const std::int64_t first = bed.server.SubmitCheck("STOP\n");
+  const std::int64_t second = bed.server.SubmitCheck("DELAY 1.0\n");
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  EXPECT_EQ(worker.job(), first);
+  EXPECT_EQ(worker.assignment().lease().attempt(), 1);
+  EXPECT_EQ(worker.assignment().family(), "optimo");
+  EXPECT_EQ(worker.assignment().job().name(), JobName(first));
+  EXPECT_EQ(worker.assignment().budget().steps(), bed.config.limit_steps);
+  ASSERT_EQ(worker.assignment().programs_size(), 1);
+  EXPECT_EQ(worker.assignment().programs(0).content(), "STOP\n");
+  EXPECT_TRUE(worker.assignment().programs(0).is_source());
+  EXPECT_EQ(bed.Job(first).state, JobState::kRunning);
+  EXPECT_EQ(bed.Job(second).state, JobState::kQueued);  // one at a time
+  worker.Finish();
+  ASSERT_TRUE(worker.Take());
+  EXPECT_EQ(worker.job(), second);
+  EXPECT_TRUE(bed.Becomes(first, JobState::kSucceeded));
+}
+
+TEST(DispatcherAssign, GivesAJobThatComesLaterAndOnlyOfItsKinds) {
+  DispatcherBed bed;
+  v1::WorkerHello hello = Hello("simulator");
+  hello.clear_kinds();
+  hello.add_kinds(v1::JOB_KIND_SIMULATE);
+  FakeWorker simulator(bed.dispatcher(), hello);
+  FakeWorker checker(bed.dispatcher(), "checker");
+  const std::int64_t job = bed.server.SubmitCheck();
+  ASSERT_TRUE(checker.Take());
+  EXPECT_EQ(checker.job(), job);
+  EXPECT_FALSE(simulator.Take(kAWhile));
+}
+
+TEST(DispatcherAssign, SendsALargeProgramAfterTheAssignment) {
+  DispatcherBed bed;
+  const std::string source(1 << 20, 'x');
+  bed.server.SubmitCheck(source);
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  EXPECT_EQ(worker.assignment().programs(0).content(), "");
+  EXPECT_EQ(worker.assignment().programs(0).size(), 1 << 20);
+  ASSERT_TRUE(Eventually([&] { return worker.line().programs().size() == 1; }));
+  EXPECT_EQ(worker.line().programs().at(1), source);
+}
+
+// A worker that looks and finds nothing must look again when a job was stored meanwhile.
+TEST(DispatcherAssign, AJobStoredDuringALookIsGivenOut) {
+  DispatcherBed bed;
+  std::atomic<bool> done = false;
+  std::atomic<int> hints = 0;
+  const auto watch = bed.server.store().Watch([&] { ++hints; });
+  bed.hooks.after_acquire = [&](bool found) {
+    if (found || done.exchange(true)) return;
+    const int before = hints;
+    bed.server.SubmitCheck();
+    Eventually(
+        [&] { return hints > before; });  // the dispatcher was told, and the look is not over
+    std::this_thread::sleep_for(milliseconds(20));
+  };
+  FakeWorker worker(bed.dispatcher(), "w");
+  EXPECT_TRUE(worker.Take());
+}
+
+TEST(DispatcherAssign, AJobThatCannotBeWorkedOnFailsAndTheNextIsGiven) {
+  DispatcherBed bed;
+  const std::int64_t broken =
+      Must(bed.server.store().SubmitAndWait(
+               {.machine = "optimo-1", .kind = "CHECK", .specification = "\xFF\xFF no message"}))
+          .job.id;
+  const std::int64_t good = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  EXPECT_EQ(worker.job(), good);
+  EXPECT_EQ(bed.Job(broken).state, JobState::kFailed);
+  EXPECT_EQ(bed.Job(broken).outcome->code, ErrorCode::kCellStoreCorrupt);
+  EXPECT_TRUE(bed.Events(broken).back().has_ended());
+}
+
+TEST(DispatcherFinish, StoresOutcomeProductsAndLastEventTogether) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  worker.Artifact("report", "first ");
+  worker.Artifact("report", "second");
+  worker.Artifact("empty", "");
+  worker.Finish(v1::Outcome::KIND_COMPLETED);
+  EXPECT_EQ(worker.Released(), true);
+  EXPECT_EQ(bed.Job(job).state, JobState::kSucceeded);
+  const auto report = Must(bed.server.store().GetArtifact(job, "report"));
+  EXPECT_EQ(Must(bed.server.store().ReadBlob(report.sha256)), "first second");
+  EXPECT_EQ(report.media_type, "text/plain");
+  EXPECT_EQ(Must(bed.server.store().GetArtifact(job, "empty")).size, 0);
+  const std::vector<v1::JobEvent> events = bed.Events(job);
+  ASSERT_TRUE(events.back().has_ended());
+  EXPECT_EQ(events.back().ended().kind(), v1::Outcome::KIND_COMPLETED);
+}
+
+// OPT-1.11: the executable is stored under n + 100; OPT-1.12: not when the object changed
+// meanwhile.
+TEST(DispatcherFinish, KeepsExecutablesOfObjectsThatAreStillTheSame) {
+  DispatcherBed bed;
+  storage::Store& store = bed.server.store();
+  Must(store.PutPrograms(
+      "optimo-1", {{.slot = 32, .object = "object 32"}, {.slot = 44, .object = "object 44"}}, {}));
+  v1::Job specification;
+  specification.set_kind(v1::JOB_KIND_SIMULATE);
+  specification.set_program("machines/optimo-1/programs/32");
+  Must(store.SubmitAndWait({.machine = "optimo-1",
+                            .kind = "SIMULATE",
+                            .specification = specification.SerializeAsString(),
+                            .attachments = {{.name = "program", .bytes = "object 32"}}}));
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  EXPECT_EQ(worker.assignment().main_program(), 32);
+  EXPECT_EQ(worker.assignment().programs_size(), 2);
+  Must(store.PutPrograms("optimo-1", {{.slot = 44, .object = "new 44"}}, {}));
+  worker.Finish(v1::Outcome::KIND_COMPLETED,
+                {{32, "executable 32"}, {44, "executable 44"}, {50, "none"}});
+  EXPECT_EQ(worker.Released(), true);
+  EXPECT_EQ(Must(store.GetProgram("optimo-1", 32)).executable, "executable 32");
+  EXPECT_EQ(Must(store.GetProgram("optimo-1", 44)).executable, std::nullopt);
+  EXPECT_EQ(CodeOf(store.GetProgram("optimo-1", 50)), ErrorCode::kCellNotFound);
+}
+
+TEST(DispatcherEvents, AreStoredInOrderAndConfirmed) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  worker.Events(3, "a");
+  worker.Events(2, "b");
+  EXPECT_EQ(worker.line().Next(v1::WorkResponse::kEventsStored).events_stored().count(), 3);
+  EXPECT_EQ(worker.line().Next(v1::WorkResponse::kEventsStored).events_stored().count(), 5);
+  std::vector<std::string> texts;
+  std::int64_t sequence = 0;
+  for (const v1::JobEvent& event : bed.Events(job)) {
+    EXPECT_EQ(event.sequence(), ++sequence);
+    if (!event.has_message()) continue;
+    texts.push_back(event.message());
+    EXPECT_EQ(event.attempt(), 1);
+    EXPECT_EQ(event.job(), JobName(job));
+  }
+  EXPECT_THAT(texts, ElementsAre("a", "a", "a", "b", "b"));
+}
+
+// A worker waits for the confirmation of its events: when it cannot come the job is taken from it.
+TEST(DispatcherEvents, ThatCannotBeStoredTakeTheJobFromTheWorker) {
+  DispatcherBed bed;
+  bed.config.workers_lease_ms = 500;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  worker.Events(1, std::string(storage::kEventPayloadBytesMax + 1, 'x'));
+  EXPECT_EQ(worker.Released(), false);
+  ASSERT_TRUE(worker.Take());
+  EXPECT_EQ(worker.job(), job);
+  EXPECT_EQ(worker.assignment().lease().attempt(), 2);
+  worker.Finish();
+  EXPECT_TRUE(bed.Becomes(job, JobState::kSucceeded));
+}
+
+TEST(DispatcherLease, IsRenewedByHeartbeatsAndLostWithoutThem) {
+  DispatcherBed bed;
+  bed.config.workers_lease_ms = 600;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker alive(bed.dispatcher(), "alive");
+  ASSERT_TRUE(alive.Take());
+  FakeWorker other(bed.dispatcher(), "other");
+  for (int i = 0; i < 5; ++i) {  // far beyond the lease, by the clock of the store
+    std::this_thread::sleep_for(
+        milliseconds(210));  // a heartbeat renews after a third of the lease
+    alive.Heartbeat();
+    std::this_thread::sleep_for(milliseconds(30));
+    bed.server.clock().Advance(milliseconds(400));
+  }
+  EXPECT_FALSE(other.Take(milliseconds(0)));
+  EXPECT_EQ(bed.Job(job).attempts, 1);
+  bed.server.clock().Advance(milliseconds(601));
+  ASSERT_TRUE(other.Take());
+  EXPECT_EQ(other.job(), job);
+  EXPECT_EQ(other.assignment().lease().attempt(), 2);
+}
+
+TEST(DispatcherLease, NothingOfAStaleWorkerIsKept) {
+  DispatcherBed bed;
+  bed.config.workers_lease_ms = 300;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker stale(bed.dispatcher(), "stale");
+  ASSERT_TRUE(stale.Take());
+  FakeWorker second(bed.dispatcher(), "second");
+  bed.server.clock().Advance(milliseconds(301));
+  ASSERT_TRUE(second.Take());
+  EXPECT_GT(second.assignment().lease().fence(), stale.assignment().lease().fence());
+  stale.Events(1, "stale");
+  stale.Artifact("report", "stale");
+  stale.Finish(v1::Outcome::KIND_FAILED);
+  EXPECT_EQ(stale.Released(), false);
+  EXPECT_EQ(bed.Job(job).state, JobState::kRunning);
+  second.Artifact("report", "good");
+  second.Finish();
+  EXPECT_EQ(second.Released(), true);
+  EXPECT_EQ(bed.Job(job).state, JobState::kSucceeded);
+  const auto report = Must(bed.server.store().GetArtifact(job, "report"));
+  EXPECT_EQ(Must(bed.server.store().ReadBlob(report.sha256)), "good");
+  for (const v1::JobEvent& event : bed.Events(job)) EXPECT_NE(event.message(), "stale");
+}
+
+// A message with a lease that the worker does not hold changes nothing at all.
+TEST(DispatcherLease, MessagesForAnotherLeaseAreDropped) {
+  DispatcherBed bed;
+  const std::int64_t first = bed.server.SubmitCheck();
+  FakeWorker one(bed.dispatcher(), "one");
+  ASSERT_TRUE(one.Take());
+  const std::int64_t second = bed.server.SubmitCheck();
+  FakeWorker two(bed.dispatcher(), "two");
+  ASSERT_TRUE(two.Take());
+  // What `one` did is over, and it sends the same again; `two` holds another job.
+  one.Finish();
+  EXPECT_EQ(one.Released(), true);
+  one.Finish(v1::Outcome::KIND_FAILED);
+  one.Events(5);
+  one.HandBack();
+  EXPECT_FALSE(one.line().Next(v1::WorkResponse::kRelease, kAWhile).has_release());
+  EXPECT_EQ(bed.Job(first).state, JobState::kSucceeded);
+  EXPECT_EQ(bed.Job(second).state, JobState::kRunning);
+}
+
+// The only worker lost its lease without dying: it must be given work again, the lost job included.
+TEST(DispatcherLease, AWorkerThatLostItsLeaseIsGivenTheNextJob) {
+  DispatcherBed bed;
+  bed.config.workers_lease_ms = 300;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  bed.server.clock().Advance(milliseconds(301));
+  ASSERT_TRUE(bed.Becomes(job, JobState::kQueued));
+  std::this_thread::sleep_for(milliseconds(150));  // so that the next heartbeat renews
+  worker.Heartbeat();
+  EXPECT_EQ(worker.Released(), false);
+  ASSERT_TRUE(worker.Take());
+  EXPECT_EQ(worker.job(), job);
+  EXPECT_EQ(worker.assignment().lease().attempt(), 2);
+}
+
+TEST(DispatcherLoss, AJobIsTriedAgainAndThenFailsWithACodeThatSaysSo) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck("STOP\n", 2);
+  for (int attempt = 1; attempt <= 2; ++attempt) {
+    FakeWorker worker(bed.dispatcher(), "w" + std::to_string(attempt));
+    ASSERT_TRUE(worker.Take());
+    EXPECT_EQ(worker.assignment().lease().attempt(), attempt);
+    worker.Leave();
+    ASSERT_TRUE(bed.Becomes(job, attempt < 2 ? JobState::kQueued : JobState::kFailed));
+  }
+  EXPECT_EQ(bed.Job(job).outcome->code, ErrorCode::kCellWorkerDied);
+  const std::vector<v1::JobEvent> events = bed.Events(job);
+  ASSERT_TRUE(events.back().has_ended());
+  EXPECT_EQ(events.back().ended().code(), CodeText(ErrorCode::kCellWorkerDied));
+  EXPECT_FALSE(events.back().ended().advice().empty());
+  // Others go on.
+  const std::int64_t next = bed.server.SubmitCheck();
+  FakeWorker healthy(bed.dispatcher(), "healthy");
+  ASSERT_TRUE(healthy.Take());
+  EXPECT_EQ(healthy.job(), next);
+}
+
+TEST(DispatcherLoss, AJobWithOneAttemptFailsAtOnce) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck("STOP\n", 1);
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  worker.Leave();
+  ASSERT_TRUE(bed.Becomes(job, JobState::kFailed));
+  EXPECT_EQ(bed.Job(job).attempts, 1);
+}
+
+TEST(DispatcherCancel, AWaitingJobEndsAtOnce) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  const storage::JobRecord cancelled = Must(bed.dispatcher().Cancel(job));
+  EXPECT_EQ(cancelled.state, JobState::kCancelled);
+  EXPECT_TRUE(bed.Events(job).back().has_ended());
+  EXPECT_EQ(bed.Events(job).back().ended().kind(), v1::Outcome::KIND_CANCELLED);
+  FakeWorker worker(bed.dispatcher(), "w");
+  EXPECT_FALSE(worker.Take(kAWhile));
+  EXPECT_EQ(CodeOf(bed.dispatcher().Cancel(job + 1)), ErrorCode::kCellNotFound);
+  EXPECT_EQ(Must(bed.dispatcher().Cancel(job)).state,
+            JobState::kCancelled);  // twice is not an error
+}
+
+TEST(DispatcherCancel, ARunningJobIsEndedByItsWorker) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  EXPECT_EQ(Must(bed.dispatcher().Cancel(job)).state, JobState::kRunning);
+  const v1::WorkerControl order = worker.Ordered();
+  EXPECT_EQ(order.kind(), v1::WorkerControl::KIND_CANCEL);
+  EXPECT_EQ(order.lease().fence(), worker.assignment().lease().fence());
+  worker.Finish(v1::Outcome::KIND_CANCELLED);
+  EXPECT_EQ(worker.Released(), true);
+  EXPECT_EQ(bed.Job(job).state, JobState::kCancelled);
+}
+
+// The worker died, or gave the job back: a job that nobody wants any more is not begun again.
+TEST(DispatcherCancel, ACancelledJobIsNotBegunAgain) {
+  for (const bool dies : {true, false}) {
+    DispatcherBed bed;
+    const std::int64_t job = bed.server.SubmitCheck();
+    FakeWorker worker(bed.dispatcher(), "w");
+    ASSERT_TRUE(worker.Take());
+    Must(bed.dispatcher().Cancel(job));
+    if (dies) {
+      worker.Leave();
+    } else {
+      worker.HandBack();
+    }
+    FakeWorker next(bed.dispatcher(), "next");
+    ASSERT_TRUE(bed.Becomes(job, JobState::kCancelled)) << dies;
+    EXPECT_EQ(bed.Job(job).outcome->code, ErrorCode::kCellCancelled);
+    EXPECT_EQ(bed.Events(job).back().ended().kind(), v1::Outcome::KIND_CANCELLED);
+    EXPECT_FALSE(next.Take(kAWhile));
+    // The worker is free for another.
+    bed.server.SubmitCheck();
+    EXPECT_TRUE(next.Take());
+  }
+}
+
+TEST(DispatcherControl, OrdersReachTheWorkerThatHasTheJob) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  EXPECT_EQ(CodeOf(bed.dispatcher().Control(job, v1::WorkerControl::KIND_HOLD, 0)),
+            ErrorCode::kCellPrecondition);
+  EXPECT_EQ(CodeOf(bed.dispatcher().Control(job + 1, v1::WorkerControl::KIND_HOLD, 0)),
+            ErrorCode::kCellNotFound);
+  FakeWorker idle(bed.dispatcher(), "idle");
+  FakeWorker worker(bed.dispatcher(), "w");
+  FakeWorker& holder = idle.Take(kAWhile) ? idle : worker;
+  if (&holder == &worker) {
+    ASSERT_TRUE(worker.Take());
+  }
+  for (const auto kind : {v1::WorkerControl::KIND_HOLD, v1::WorkerControl::KIND_RESUME,
+                          v1::WorkerControl::KIND_STOP}) {
+    EXPECT_TRUE(bed.dispatcher().Control(job, kind, 0));
+    EXPECT_EQ(holder.Ordered().kind(), kind);
+  }
+  EXPECT_TRUE(bed.dispatcher().Control(job, v1::WorkerControl::KIND_OVERRIDE, 42.5));
+  EXPECT_EQ(holder.Ordered().value(), 42.5);
+  holder.Finish();
+  EXPECT_EQ(holder.Released(), true);
+  EXPECT_EQ(CodeOf(bed.dispatcher().Control(job, v1::WorkerControl::KIND_HOLD, 0)),
+            ErrorCode::kCellPrecondition);
+}
+
+// A worker that gives its job back is about to end: the job goes to another, and no attempt is
+// lost.
+TEST(DispatcherHandBack, GivesTheJobToAnotherAndCountsNoAttempt) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck("STOP\n", 1);
+  FakeWorker ending(bed.dispatcher(), "ending");
+  ASSERT_TRUE(ending.Take());
+  ending.HandBack();
+  EXPECT_EQ(ending.Released(), false);
+  EXPECT_FALSE(ending.Take(kAWhile));
+  EXPECT_EQ(bed.Job(job).state, JobState::kQueued);
+  EXPECT_EQ(bed.Job(job).attempts, 0);
+  FakeWorker other(bed.dispatcher(), "other");
+  ASSERT_TRUE(other.Take());
+  EXPECT_EQ(other.job(), job);
+  ending.Leave();
+  other.Finish();
+  EXPECT_EQ(other.Released(), true);
+  EXPECT_EQ(bed.Job(job).state, JobState::kSucceeded);
+}
+
+TEST(DispatcherDrain, AsksForEverythingBackAndGivesOutNothingMore) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker busy(bed.dispatcher(), "busy");
+  ASSERT_TRUE(busy.Take());
+  FakeWorker idle(bed.dispatcher(), "idle");
+  std::jthread server([&] { bed.dispatcher().Drain(kPatience); });
+  EXPECT_TRUE(busy.line().Next(v1::WorkResponse::kStop).has_stop());
+  EXPECT_TRUE(idle.line().Next(v1::WorkResponse::kStop).has_stop());
+  busy.HandBack();
+  server.join();
+  EXPECT_EQ(bed.Job(job).state, JobState::kQueued);
+  EXPECT_EQ(bed.Job(job).attempts, 0);
+  bed.server.SubmitCheck();
+  EXPECT_FALSE(idle.Take(kAWhile));
+  FakeWorker late(bed.dispatcher(), "late");
+  EXPECT_TRUE(late.line().Next(v1::WorkResponse::kStop).has_stop());
+  EXPECT_FALSE(late.Take(kAWhile));
+}
+
+TEST(DispatcherDrain, WaitsNoLongerThanItsPatience) {
+  DispatcherBed bed;
+  bed.server.SubmitCheck();
+  FakeWorker stubborn(bed.dispatcher(), "stubborn");
+  ASSERT_TRUE(stubborn.Take());
+  const auto begin = std::chrono::steady_clock::now();
+  bed.dispatcher().Drain(milliseconds(100));
+  const auto took = std::chrono::steady_clock::now() - begin;
+  EXPECT_GE(took, milliseconds(100));
+  EXPECT_LT(took, std::chrono::seconds(5));
+}
+
+// The server stops while a job is on its way to a worker that is told to stop as well.
+TEST(DispatcherDrain, AJobOnItsWayToAWorkerGoesBack) {
+  DispatcherBed bed;
+  std::atomic<bool> found_one = false;
+  std::atomic<bool> go_on = false;
+  bed.hooks.after_acquire = [&](bool found) {
+    if (!found) return;
+    found_one = true;
+    Eventually([&] { return go_on.load(); });
+  };
+  const std::int64_t job = bed.server.SubmitCheck("STOP\n", 1);
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(Eventually([&] { return found_one.load(); }));
+  std::atomic<bool> drained = false;
+  std::jthread server([&] {
+    bed.dispatcher().Drain(kPatience);
+    drained = true;
+  });
+  EXPECT_TRUE(worker.line().Next(v1::WorkResponse::kStop).has_stop());
+  std::this_thread::sleep_for(milliseconds(30));
+  EXPECT_FALSE(drained);
+  go_on = true;
+  server.join();
+  EXPECT_EQ(bed.Job(job).state, JobState::kQueued);
+  EXPECT_EQ(bed.Job(job).attempts, 0);
+}
+
+TEST(DispatcherBudget, AWorkerThatSendsTooMuchFailsItsJob) {
+  DispatcherBed bed;
+  bed.config.limit_output_bytes = 65'536;
+  const std::int64_t fits = bed.server.SubmitCheck();
+  const std::int64_t large = bed.server.SubmitCheck();
+  const std::int64_t many = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  worker.Artifact("report", std::string(65'536, 'a'));
+  worker.Finish();
+  ASSERT_TRUE(bed.Becomes(fits, JobState::kSucceeded));
+  ASSERT_TRUE(worker.Take());
+  for (int i = 0; i < 20; ++i) worker.Artifact("report", std::string(65'536, 'a'));  // 1.25 MiB
+  worker.Finish();
+  ASSERT_TRUE(bed.Becomes(large, JobState::kFailed));
+  EXPECT_EQ(bed.Job(large).outcome->code, ErrorCode::kCellOutputBudget);
+  EXPECT_THAT(Must(bed.server.store().ListArtifacts(large)), testing::SizeIs(1));  // its program
+  ASSERT_TRUE(worker.Take());
+  for (int i = 0; i < 1500; ++i) worker.Artifact(std::to_string(i) + std::string(1024, 'n'), "");
+  worker.Finish();
+  ASSERT_TRUE(bed.Becomes(many, JobState::kFailed));
+  EXPECT_EQ(bed.Job(many).outcome->code, ErrorCode::kCellOutputBudget);
+}
+
+TEST(DispatcherProgress, IsTheNewestAndEndsWithTheJob) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  for (int i = 1; i <= 100; ++i) worker.Position(i);
+  v1::JobProgress progress;
+  ASSERT_TRUE(Eventually([&] {
+    const auto newest = bed.feed().ProgressAfter(job, 0);
+    return newest && progress.ParseFromString(*newest->bytes) && progress.virtual_time_ns() == 100;
+  }));
+  EXPECT_EQ(progress.job(), JobName(job));
+  EXPECT_EQ(progress.attempt(), 1);
+  worker.Finish();
+  EXPECT_EQ(worker.Released(), true);
+  EXPECT_TRUE(Eventually([&] { return !bed.feed().ProgressAfter(job, 0); }));
+}
+
+// Workers come, work, die and come again while clients submit: every job ends once, as it should.
+TEST(Dispatcher, EveryJobEndsOnceAmongWorkersThatDie) {
+  constexpr int kJobs = 60;
+  DispatcherBed bed;
+  Dispatcher& dispatcher = bed.dispatcher();
+  std::atomic<bool> stop = false;
+  std::atomic<int> finished = 0;
+  std::vector<std::jthread> threads;
+  for (int number = 0; number < 4; ++number) {
+    threads.emplace_back([&, number] {
+      for (int life = 0; !stop; ++life) {
+        FakeWorker worker(dispatcher, "w" + std::to_string(number) + "-" + std::to_string(life));
+        while (!stop) {
+          if (!worker.Take(milliseconds(20))) continue;
+          worker.Position(1);
+          worker.Events(2);
+          // The first attempt at every fifth job kills its worker.
+          if (worker.job() % 5 == 0 && worker.assignment().lease().attempt() == 1) break;
+          worker.Finish();
+          if (worker.Released() == true) ++finished;
+        }
+        worker.Leave();
+      }
+    });
+  }
+  std::vector<std::int64_t> jobs;
+  for (int i = 0; i < kJobs; ++i) jobs.push_back(bed.server.SubmitCheck());
+  for (const std::int64_t job : jobs) ASSERT_TRUE(bed.Becomes(job, JobState::kSucceeded)) << job;
+  ASSERT_TRUE(Eventually([&] { return finished == kJobs; }));
+  stop = true;
+  threads.clear();
+  for (const std::int64_t job : jobs) {
+    EXPECT_EQ(bed.Job(job).attempts, job % 5 == 0 ? 2 : 1);
+    int ends = 0;
+    for (const v1::JobEvent& event : bed.Events(job)) ends += event.has_ended() ? 1 : 0;
+    EXPECT_EQ(ends, 1);
+  }
+}
+
+}  // namespace
+}  // namespace rmlcell::server

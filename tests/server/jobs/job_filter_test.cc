@@ -1,0 +1,123 @@
+#include "server/jobs/job_filter.h"
+
+#include <gtest/gtest.h>
+
+namespace rmlcell::server {
+namespace {
+
+using storage::JobQuery;
+using storage::JobState;
+
+JobQuery Applied(std::string_view filter) {
+  JobQuery query;
+  const Status applied = ApplyFilter(filter, query);
+  EXPECT_TRUE(applied) << filter << ": " << applied.error().detail;
+  return query;
+}
+
+TEST(JobFilter, AnEmptyOneAsksForAll) {
+  for (const std::string_view filter : {"", " ", "\t\n"}) {
+    const JobQuery query = Applied(filter);
+    EXPECT_EQ(query.machine, "");
+    EXPECT_EQ(query.kind, "");
+    EXPECT_EQ(query.caller, "");
+    EXPECT_FALSE(query.state);
+    EXPECT_FALSE(query.finished);
+  }
+}
+
+TEST(JobFilter, ComparesEachField) {
+  const std::vector<std::pair<std::string, JobState>> states = {
+      {"QUEUED", JobState::kQueued},       {"RUNNING", JobState::kRunning},
+      {"SUCCEEDED", JobState::kSucceeded}, {"FAILED", JobState::kFailed},
+      {"CANCELLED", JobState::kCancelled}, {"INTERRUPTED", JobState::kInterrupted}};
+  for (const auto& [name, state] : states) {
+    EXPECT_EQ(Applied("state = " + name).state, state);
+    EXPECT_EQ(Applied("state=STATE_" + name).state, state);
+  }
+  EXPECT_EQ(Applied("state = failed").state, JobState::kFailed);
+  EXPECT_EQ(Applied("machine = machines/optimo-1").machine, "optimo-1");
+  EXPECT_EQ(Applied("machine = optimo-1").machine, "optimo-1");
+  EXPECT_EQ(Applied("machine = \"machines/optimo-1\"").machine, "optimo-1");
+  for (const std::string kind : {"CHECK", "SIMULATE", "RUN"}) {
+    EXPECT_EQ(Applied("kind = " + kind).kind, kind);
+    EXPECT_EQ(Applied("kind = JOB_KIND_" + kind).kind, kind);
+  }
+  EXPECT_EQ(Applied("caller = \"a person = AND more\"").caller, "a person = AND more");
+  EXPECT_EQ(Applied("caller = \"=\"").caller, "=");
+  EXPECT_EQ(Applied("finished = true").finished, true);
+  EXPECT_EQ(Applied("finished=false").finished, false);
+}
+
+TEST(JobFilter, JoinsComparisonsByAnd) {
+  const JobQuery query =
+      Applied("state=FAILED AND machine=m and kind = CHECK And caller = c AND finished = true");
+  EXPECT_EQ(query.state, JobState::kFailed);
+  EXPECT_EQ(query.machine, "m");
+  EXPECT_EQ(query.kind, "CHECK");
+  EXPECT_EQ(query.caller, "c");
+  EXPECT_EQ(query.finished, true);
+}
+
+// A filter that is not understood must not ask for something else.
+TEST(JobFilter, RefusesWhatItDoesNotUnderstandAndLeavesTheQueryAsItWas) {
+  for (const std::string filter : {"state",
+                                   "state =",
+                                   "= FAILED",
+                                   "state FAILED",
+                                   "state == FAILED",
+                                   "state != FAILED",
+                                   "state > FAILED",
+                                   "state = LOST",
+                                   "state = \"\"",
+                                   "kind = MOVE",
+                                   "kind = \"\"",
+                                   "machine = machines/A",
+                                   "machine = \"\"",
+                                   "machine = projects/a",
+                                   "finished = maybe",
+                                   "finished = TRUE",
+                                   "caller = \"\"",
+                                   "caller = \"open",
+                                   "user = a",
+                                   "STATE = FAILED",
+                                   "state = FAILED AND",
+                                   "AND state = FAILED",
+                                   "state = FAILED kind = CHECK",
+                                   "state = FAILED OR kind = CHECK",
+                                   "state = FAILED \"AND\" kind = CHECK",
+                                   "state = FAILED AND state = QUEUED",
+                                   "NOT state = FAILED",
+                                   "(state = FAILED)",
+                                   "state \"=\" FAILED",
+                                   "\"state\" = FAILED",
+                                   "state = FAILED,QUEUED"}) {
+    JobQuery query{.machine = "before"};
+    const Status applied = ApplyFilter(filter, query);
+    ASSERT_FALSE(applied) << filter;
+    EXPECT_EQ(applied.error().code, ErrorCode::kCellBadFilter) << filter;
+    EXPECT_EQ(query.machine, "before") << filter;
+    EXPECT_FALSE(query.state) << filter;
+    EXPECT_EQ(query.kind, "") << filter;
+  }
+}
+
+TEST(JobFilter, AnErrorStaysShortAndReadable) {
+  for (const std::string& filter :
+       {"state = " + std::string(1 << 20, 'x'), std::string(1 << 20, 'x') + " = 1",
+        "machine = " + std::string(1 << 20, 'x'), std::string("state = \xFF\x01\x1B[2J"),
+        "state = FAILED " + std::string(1 << 20, 'y') + " kind = RUN"}) {
+    JobQuery query;
+    const Status applied = ApplyFilter(filter, query);
+    ASSERT_FALSE(applied);
+    EXPECT_LT(applied.error().detail.size(), 300U);
+    for (const char c : applied.error().detail) EXPECT_TRUE(c >= 0x20 && c < 0x7F);
+  }
+  std::string many = "state = FAILED";
+  for (int i = 0; i < 100'000; ++i) many += " AND state = FAILED";
+  JobQuery query;
+  EXPECT_FALSE(ApplyFilter(many, query));
+}
+
+}  // namespace
+}  // namespace rmlcell::server

@@ -1,0 +1,119 @@
+#include "server/names.h"
+
+#include <gtest/gtest.h>
+
+namespace rmlcell::server {
+namespace {
+
+template <class T>
+std::optional<ErrorCode> CodeOf(const Result<T>& result) {
+  return result ? std::nullopt : std::optional(result.error().code);
+}
+constexpr auto kInvalid = ErrorCode::kCellInvalidArgument;
+
+TEST(Names, IdsHaveOneToSixtyThreeLettersDigitsAndDashes) {
+  EXPECT_TRUE(CheckResourceId("a", "id"));
+  EXPECT_TRUE(CheckResourceId("optimo-1", "id"));
+  EXPECT_TRUE(CheckResourceId("a" + std::string(62, '9'), "id"));
+  for (const std::string id : {"", "A", "1", "-a", "a_b", "a.b", "a/b", "a b", "\xC3\xA4", "a\n"}) {
+    const Status checked = CheckResourceId(id, "project_id");
+    ASSERT_FALSE(checked) << id;
+    EXPECT_EQ(checked.error().code, kInvalid);
+    EXPECT_TRUE(checked.error().detail.starts_with("project_id: ")) << checked.error().detail;
+  }
+  EXPECT_FALSE(CheckResourceId("a" + std::string(63, '9'), "id"));
+}
+
+TEST(Names, AreReadBackFromWhatIsWritten) {
+  EXPECT_EQ(*ParseMachineName(MachineName("optimo-1")), "optimo-1");
+  EXPECT_EQ(*ParseProjectName(ProjectName("bracket")), "bracket");
+  EXPECT_EQ(*ParseJobName(JobName(17)), 17);
+  EXPECT_EQ(*ParseJobName("jobs/9223372036854775807"), INT64_MAX);
+  const Result<ProgramName> program = ParseProgramName(NameOfProgram("m", 45));
+  ASSERT_TRUE(program);
+  EXPECT_EQ(program->machine, "m");
+  EXPECT_EQ(program->slot, 45);
+  EXPECT_FALSE(program->executable);
+  const Result<ScheduleName> schedule = ParseScheduleName(NameOfSchedule("m", 63));
+  ASSERT_TRUE(schedule);
+  EXPECT_EQ(schedule->machine, "m");
+  EXPECT_EQ(schedule->number, 63);
+}
+
+TEST(Names, OfAnotherFormAreRefused) {
+  for (const std::string name :
+       {"", "machines/", "machine/a", "machines/A", "machines/a/", "machines/a/b", "/machines/a",
+        "machines//a", " machines/a", "projects/a"}) {
+    EXPECT_EQ(CodeOf(ParseMachineName(name)), kInvalid) << name;
+  }
+  for (const std::string name : {"", "projects/", "projects/a/b", "projects/..", "machines/a"}) {
+    EXPECT_EQ(CodeOf(ParseProjectName(name)), kInvalid) << name;
+  }
+  for (const std::string name :
+       {"", "jobs/", "jobs/0", "jobs/-1", "jobs/+1", "jobs/01", "jobs/1 ", "jobs/1.0", "jobs/a",
+        "jobs/9223372036854775808", "jobs/1/events", "job/1"}) {
+    EXPECT_EQ(CodeOf(ParseJobName(name)), kInvalid) << name;
+  }
+  for (const std::string name :
+       {"", "programs/1", "machines/a/programs/", "machines/a/programs/x", "machines/a/programs/01",
+        "machines/A/programs/1", "machines/a/program/1", "machines/a/programs/1/x", "machines/a",
+        "machines//programs/1", "machines/a/laserSchedules/1"}) {
+    EXPECT_EQ(CodeOf(ParseProgramName(name)), kInvalid) << name;
+  }
+  for (const std::string name : {"", "machines/a/laserSchedules/", "machines/a/laserSchedules/x",
+                                 "machines/a/programs/1", "machines/a/laserSchedules/011"}) {
+    EXPECT_EQ(CodeOf(ParseScheduleName(name)), kInvalid) << name;
+  }
+}
+
+// OPT-1.10, OPT-1.11: slots 1 to 99, the executable of slot n at n + 100.
+TEST(Names, ProgramNumbersAreSlotsOrTheirExecutables) {
+  struct Case {
+    int number;
+    int slot;  // 0: refused
+    bool executable;
+  };
+  for (const Case& one :
+       {Case{0, 0, false}, Case{1, 1, false}, Case{99, 99, false}, Case{100, 0, false},
+        Case{101, 1, true}, Case{199, 99, true}, Case{200, 0, false}, Case{-1, 0, false}}) {
+    const Result<ProgramName> name =
+        ParseProgramName("machines/m/programs/" + std::to_string(one.number));
+    if (one.slot == 0) {
+      EXPECT_EQ(CodeOf(name), ErrorCode::kProgramNumber) << one.number;
+    } else {
+      ASSERT_TRUE(name) << one.number;
+      EXPECT_EQ(name->slot, one.slot);
+      EXPECT_EQ(name->executable, one.executable);
+    }
+  }
+}
+
+// OPT-3.44: laser schedules 1 to 63.
+TEST(Names, ScheduleNumbersAreOneToSixtyThree) {
+  EXPECT_TRUE(ParseScheduleName("machines/m/laserSchedules/1"));
+  EXPECT_TRUE(ParseScheduleName("machines/m/laserSchedules/63"));
+  EXPECT_EQ(CodeOf(ParseScheduleName("machines/m/laserSchedules/0")), ErrorCode::kScheduleRange);
+  EXPECT_EQ(CodeOf(ParseScheduleName("machines/m/laserSchedules/64")), ErrorCode::kScheduleRange);
+}
+
+TEST(Names, AnErrorShowsAReadableBeginningOnly) {
+  const Result<std::string> name =
+      ParseMachineName("machines/\x1B[2J\xFF" + std::string(1 << 20, 'x'));
+  ASSERT_FALSE(name);
+  EXPECT_LT(name.error().detail.size(), 200U);
+  for (const char c : name.error().detail) EXPECT_TRUE(c >= 0x20 && c < 0x7F);
+}
+
+TEST(Names, EtagsAreRevisionsOfOurs) {
+  EXPECT_EQ(*ParseEtag(""), storage::kAnyRevision);
+  EXPECT_EQ(*ParseEtag("none"), 0);
+  EXPECT_EQ(*ParseEtag("1"), 1);
+  EXPECT_EQ(*ParseEtag("9223372036854775807"), INT64_MAX);
+  for (const std::string etag :
+       {"0", "-1", "01", "+1", "1 ", "NONE", "\"1\"", "W/1", "*", "9223372036854775808"}) {
+    EXPECT_EQ(CodeOf(ParseEtag(etag)), ErrorCode::kCellEtagMismatch) << etag;
+  }
+}
+
+}  // namespace
+}  // namespace rmlcell::server
