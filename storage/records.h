@@ -1,10 +1,12 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/core/catalogue.h"
@@ -15,10 +17,18 @@ namespace rmlcell::storage {
 
 using WallTime = std::chrono::sys_time<std::chrono::microseconds>;
 
-// Counts the changes of one record, from 1. 0 as an expectation means "must not exist yet";
-// kAnyRevision means "whatever is there".
+// Counts the changes of one record, from 1. A record that was deleted and is made again goes on counting,
+// so that what was expected of the old one never fits the new one. 0 as an expectation means "must not
+// exist yet"; kAnyRevision means "whatever is there".
 using Revision = std::int64_t;
 inline constexpr Revision kAnyRevision = -1;
+
+// The largest program that is taken, as source, object or executable (design.md section 6).
+inline constexpr std::size_t kProgramBytesMax = std::size_t{256} << 20;
+// A watcher gets an event in one message, and those of gRPC end at 4 MiB.
+inline constexpr std::size_t kEventPayloadBytesMax = std::size_t{3} << 20;
+inline constexpr int kScheduleMin = 1;
+inline constexpr int kScheduleMax = 63;
 
 struct MachineRecord {
   std::string id{};  // "optimo-1"
@@ -53,7 +63,7 @@ struct ProgramSummary {
   std::int64_t object_bytes = 0;
   std::int64_t source_bytes = -1;      // -1: no source
   std::int64_t executable_bytes = -1;  // -1: no executable
-  std::string object_sha256;           // lower-case hexadecimal
+  std::string object_sha256{};           // lower-case hexadecimal
   Revision revision = 0;
   WallTime created_at{};
   WallTime updated_at{};
@@ -78,6 +88,9 @@ struct ProjectRecord {
   WallTime updated_at{};
 };
 
+// The kind of the jobs that move a machine: they are never attempted again by themselves.
+inline constexpr std::string_view kRunKind = "RUN";
+
 enum class JobState { kQueued, kRunning, kSucceeded, kFailed, kCancelled, kInterrupted };
 inline bool IsFinal(JobState state) { return state != JobState::kQueued && state != JobState::kRunning; }
 
@@ -94,18 +107,19 @@ struct JobRecord {
   std::string request_id{};    // unique; made by the store when the client gave none
   std::string request_hash{};  // of what was asked for: the same request_id with another request is refused
   std::string machine{};
-  std::string kind{};          // "CHECK", "SIMULATE", "RUN"
+  std::string kind{};          // "CHECK", "SIMULATE", kRunKind
   std::string title{};
   std::string caller{};
   std::string specification{};  // opaque
   JobState state = JobState::kQueued;
   bool cancel_requested = false;
-  int attempts = 0;
+  int attempts = 0;  // begun and not handed back; the number of an attempt stands in its lease
   int attempts_max = 2;
   std::optional<JobOutcome> outcome{};
-  std::int64_t last_sequence = 0;  // of its newest event
+  std::int64_t last_sequence = 0;      // of its newest event
+  std::int64_t events_gone_until = 0;  // its events up to this sequence number were removed
   WallTime created_at{};
-  std::optional<WallTime> started_at{};
+  std::optional<WallTime> started_at{};  // of the first attempt
   std::optional<WallTime> finished_at{};
 };
 
@@ -121,7 +135,9 @@ struct AttemptRecord {
   std::int64_t fence = 0;
   WallTime started_at{};
   std::optional<WallTime> ended_at{};
-  std::string how_it_ended{};  // "succeeded", "failed", "lease ran out", "handed back"
+  // "succeeded", "failed", "cancelled", "interrupted", "handed back", "abandoned", "lease ran out";
+  // empty while it runs.
+  std::string how_it_ended{};
 };
 
 // One line of a job's durable log.
@@ -144,13 +160,13 @@ struct NewArtifact {
   std::string name{};  // "report", "toolpath", "picture.svg"
   std::string media_type{};
   std::string bytes{};
-  std::string existing_sha256;  // not empty: content that the store has already; `bytes` is not looked at
+  std::string existing_sha256{};  // not empty: content that the store has already; `bytes` is not looked at
 };
 struct ArtifactRecord {
   std::int64_t job = 0;
   std::string name{};
   std::string media_type{};
-  std::string sha256;  // lower-case hexadecimal, of the uncompressed bytes
+  std::string sha256{};  // lower-case hexadecimal, of the uncompressed bytes
   std::int64_t size = 0;
 };
 

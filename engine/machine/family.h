@@ -12,27 +12,27 @@
 namespace rmlcell::machine {
 
 struct FamilyInfo {
-  std::string_view id;          // "optimo"
-  std::string_view title;       // "Amada OPTIMO 5-axis laser"
-  std::string_view extensions;  // ".S .SI .CMP .O", space separated, compared without case
-  std::string_view axes;        // "X Y Z A B"
+  std::string_view id{};          // "optimo"
+  std::string_view title{};       // "Amada OPTIMO 5-axis laser"
+  std::string_view extensions{};  // ".S .SI .CMP .O", space separated, compared without case
+  std::string_view axes{};        // "X Y Z A B"
   bool has_executables = false; // makes executables at slot + 100
   bool has_schedules = false;   // laser schedules and process definitions
 };
 
 // A program text or stream as it comes from a user.
 struct SourceFile {
-  std::string name;  // decides units: .SI is inch
-  std::string_view bytes;
+  std::string name{};  // decides units: .SI is inch
+  std::string_view bytes{};
 };
 
 // What the machine would store, and what there is to say about it.
 struct Translation {
   bool ok = false;                      // false: nothing may be stored
-  std::string object;
-  std::vector<Diagnostic> diagnostics;  // in order of place; at most kDiagnosticsMax
+  std::string object{};
+  std::vector<Diagnostic> diagnostics{};  // in order of place; at most kDiagnosticsMax
   std::uint64_t diagnostics_dropped = 0;
-  std::vector<Figure> figures;          // "steps", "object_bytes" ...
+  std::vector<Figure> figures{};          // "steps", "object_bytes" ...
 };
 inline constexpr std::size_t kDiagnosticsMax = 1000;
 
@@ -44,21 +44,21 @@ struct CheckOptions {
 struct ProcessDefinition {
   int kind = 0;     // n
   int process = 0;  // p
-  std::vector<double> values;
-  std::string note;
+  std::vector<double> values{};
+  std::string note{};
 
   bool operator==(const ProcessDefinition&) const = default;
 };
 
 struct ProjectProgram {
   int slot = 0;
-  SourceFile file;
+  SourceFile file{};
   bool inch = false;
 };
 struct ProjectBundle {
-  std::vector<ProjectProgram> programs;
-  std::vector<LaserSchedule> schedules;
-  std::vector<ProcessDefinition> processes;
+  std::vector<ProjectProgram> programs{};
+  std::vector<LaserSchedule> schedules{};
+  std::vector<ProcessDefinition> processes{};
 };
 struct TransferOptions {
   bool insert_missing_definitions = false;  // put WORKDEFs of the project before the first WORK
@@ -71,15 +71,15 @@ struct TransferPlan {
     std::string source;  // as compiled: metric, with inserted definitions
     std::string object;
   };
-  std::vector<Program> programs;
-  std::vector<Diagnostic> diagnostics;
+  std::vector<Program> programs{};
+  std::vector<Diagnostic> diagnostics{};
 };
 
 // A figure that runs of a family may give (Run::figures): its name never changes meaning.
 struct FigureInfo {
-  std::string_view name;  // "programmed.cut_length"
-  std::string_view unit;  // "mm"; empty for counts
-  std::string_view text;  // what it means, one sentence
+  std::string_view name{};  // "programmed.cut_length"
+  std::string_view unit{};  // "mm"; empty for counts
+  std::string_view text{};  // what it means, one sentence
 };
 
 // One machine family. A new family is one folder under engine/ and one line in
@@ -105,6 +105,13 @@ class MachineFamily {
   // Checks a project and makes what its transfer would store.
   virtual TransferPlan PlanTransfer(const ProjectBundle& project, const Parameters& parameters,
                                     const TransferOptions& options) const = 0;
+
+  // Canonical source of an object. A family without objects of its own gives the bytes back.
+  // Errors: ObjectCorrupt (7034).
+  virtual Result<std::string> Decompile(std::string_view object) const { return std::string(object); }
+
+  // Whether bytes are an executable of this family. Errors: ObjectCorrupt (7034).
+  virtual Status CheckExecutable(std::string_view /*executable*/) const { return {}; }
 
   // Errors: ProgramMissing (7102), ObjectCorrupt (7034), the link errors 7103..7108 and the like are not
   // errors here: the run ends with them. Only a setup that makes no sense is refused.

@@ -25,11 +25,11 @@ enum class MotionUse { kTravel, kCut, kPlunge, kRetract };
 // How the power of a laser follows the tip speed, in percent of its rated power (motion.md 8.1):
 // P = clamp(constant + per_mm_s * v, 0, 100). WORKDEF 0 and 2: a constant. WORKDEF 1: a line
 // through zero.
-struct PowerLaw {
+struct PowerBySpeed {
   double constant_percent = 0.0;
   double percent_per_mm_s = 0.0;
 
-  bool operator==(const PowerLaw&) const = default;
+  bool operator==(const PowerBySpeed&) const = default;
 };
 
 // One timed motion, when it is over, or a part of one. Whoever runs a motion tells it in parts where
@@ -39,7 +39,7 @@ struct PowerLaw {
 struct MotionDone {
   SimTime start{0};
   SimTime end{0};
-  Place place;
+  Place place{};
   MotionUse use = MotionUse::kTravel;
   const motion::PlannedMotion* motion = nullptr;  // valid during the call
   double from = 0.0;              // along motion->path, at `start`
@@ -47,19 +47,19 @@ struct MotionDone {
   double profile_start_s = 0.0;   // time within motion->speed at `start`
   double programmed_mm_s = 0.0;   // feed rate asked for, override included; 0: as fast as the axes can
   bool beam_on = false;
-  PowerLaw power;                 // laser: in force while the beam is on
+  PowerBySpeed power{};           // laser: in force while the beam is on
 };
 
 // A MOVE (or coordinate set) carried out: where the tool now is.
 struct MoveDone {
   SimTime at{0};
-  Place place;
-  motion::TipPose tip;             // machine frame; work units of a mill are in the family's figures
-  motion::AxisPose axes;
-  motion::Vec3 program_point;      // as programmed: program frame, or device units of a stream
+  Place place{};
+  motion::TipPose tip{};             // machine frame; work units of a mill are in the family's figures
+  motion::AxisPose axes{};
+  motion::Vec3 program_point{};      // as programmed: program frame, or device units of a stream
   double rotary_a = 0.0;           // as programmed: rad, or degrees of a stream
   double feed_mm_s = 0.0;          // speed limit of the motion
-  std::string_view path;           // "LIN", "CIR", "PU" ...
+  std::string_view path{};           // "LIN", "CIR", "PU" ...
 };
 
 // A state that outsiders can see: an output, the beam, a spindle.
@@ -77,7 +77,7 @@ enum class Signal {
 };
 struct SignalChange {
   SimTime at{0};
-  Place place;
+  Place place{};
   Signal signal = Signal::kOutput;
   int index = 0;
   double value = 0.0;
@@ -88,7 +88,7 @@ enum class WaitKind { kDwell, kPierce, kSpinUp, kCondition, kOperator, kLoad };
 struct Wait {
   SimTime start{0};
   SimTime end{0};
-  Place place;
+  Place place{};
   WaitKind kind = WaitKind::kDwell;
   bool beam_on = false;
   double power_percent = 0.0;  // laser: while the beam is on
@@ -97,8 +97,8 @@ struct Wait {
 // A halt of the run: PAUSE, STOP, HOLD, breakpoint, !NR.
 struct Halt {
   SimTime at{0};
-  Place place;
-  std::string_view why;  // "STOP"
+  Place place{};
+  std::string_view why{};  // "STOP"
 };
 
 // Told everything that a run does, in order of virtual time. Structs are valid during the call only.

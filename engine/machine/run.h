@@ -20,14 +20,14 @@ namespace rmlcell::machine {
 using Bytes = std::shared_ptr<const std::string>;
 
 struct StoredProgram {
-  std::string name;
-  Bytes object;
-  Bytes executable;  // at slot + 100; null when none was made
+  std::string name{};
+  Bytes object{};
+  Bytes executable{};  // at slot + 100; null when none was made
 };
 
 struct LaserSchedule {
   int number = 0;  // 1..63
-  std::string name;
+  std::string name{};
   std::string mode = "CW";
   double power_percent = 100.0;
 
@@ -52,16 +52,16 @@ struct RunSetup {
   explicit RunSetup(Parameters machine_parameters) : parameters(std::move(machine_parameters)) {}
 
   Parameters parameters;
-  std::map<int, StoredProgram> programs;                 // by slot 1..99
+  std::map<int, StoredProgram> programs{};                 // by slot 1..99
   int main_program = 0;                                  // slot to start
-  std::optional<std::vector<LaserSchedule>> schedules;   // none: all that the machine can have
-  std::string machine_state;                             // from SaveMachine; empty: a new machine
+  std::optional<std::vector<LaserSchedule>> schedules{};   // none: all that the machine can have
+  std::string machine_state{};                             // from SaveMachine; empty: a new machine
   Mode mode = Mode::kCycle;
   double override_percent = 100.0;
-  std::optional<ProgramStep> breakpoint;                 // halt after this step
-  std::optional<ProgramStep> simul;                      // dry run up to this step
-  InputScript inputs;
-  RunBudget budget;
+  std::optional<ProgramStep> breakpoint{};                 // halt after this step
+  std::optional<ProgramStep> simul{};                      // dry run up to this step
+  InputScript inputs{};
+  RunBudget budget{};
 };
 
 enum class RunPhase {
@@ -73,19 +73,19 @@ enum class RunPhase {
 enum class OutcomeKind { kCompleted, kStopped, kFailed, kCancelled, kBudgetExceeded };
 struct Outcome {
   OutcomeKind kind = OutcomeKind::kCompleted;
-  std::optional<ErrorCode> code;  // the machine's own; none when completed
-  std::string detail;
-  Place place;                    // of the last step, or where it failed
+  std::optional<ErrorCode> code{};  // the machine's own; none when completed
+  std::string detail{};
+  Place place{};                    // of the last step, or where it failed
 };
 
 // For people who watch: where the run is now.
 struct RunState {
   SimTime time{0};
   RunPhase phase = RunPhase::kRunning;
-  Place place;
-  std::string_view instruction;
-  motion::TipPose tip;
-  motion::AxisPose axes;
+  Place place{};
+  std::string_view instruction{};
+  motion::TipPose tip{};
+  motion::AxisPose axes{};
   double tip_speed_mm_s = 0.0;
   double override_percent = 100.0;
   bool beam_on = false;
@@ -95,8 +95,8 @@ struct RunState {
 
 // A figure that a family computes about a finished run, with a stable name.
 struct Figure {
-  std::string name;   // "programmed.cut_length"
-  std::string unit;   // "mm"; empty for counts
+  std::string name{};   // "programmed.cut_length"
+  std::string unit{};   // "mm"; empty for counts
   double value = 0.0;
 };
 
@@ -113,7 +113,8 @@ class Run {
   virtual ~Run() = default;
 
   // Goes on until virtual time `until`, a halt, or the end, whichever comes first. A motion that spans
-  // `until` is left in the middle. Scripted inputs act at their times.
+  // `until` is left in the middle. Scripted inputs act at their times. After much work in one call it
+  // may come back earlier, with kRunning: call again.
   virtual RunPhase Advance(SimTime until) = 0;
 
   // An input or key at the present time, as if scripted for it.

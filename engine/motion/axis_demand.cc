@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kSampleAngle_rad = 0.05;  // motion.md 5.1: at most this much turning per interval
 constexpr int kIntervalsMin = 16;
-constexpr int kIntervalsMax = 4096;  // 200 rad of turning: 16 turns of the widest head
+constexpr double kTurningMax_rad =
+    60.0;  // more than any travel: bounds will do, a search would last
 
 std::size_t At(int axis) { return static_cast<std::size_t>(axis); }
 
@@ -48,9 +49,7 @@ double JerkAllowed(const AxisDerivatives& q, const AxisLimits& axes, const AxisS
 
 // Upper bounds of both derivatives over the whole piece, cheap: enough for most moves.
 AxisDerivatives Bounds(const PathPiece& path, const Head& head) {
-  const double arm =
-      std::sqrt(head.tool.x_mm * head.tool.x_mm + head.tool.y_mm * head.tool.y_mm +
-                (head.length_mm - head.tool.z_mm) * (head.length_mm - head.tool.z_mm));
+  const double arm = head.arm_mm();
   const double a = std::abs(path.a_rate());
   const double b = std::abs(path.b_rate());
   const double swing = arm * (a + b);
@@ -105,6 +104,16 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
   const bool turns = path.a_rate() != 0.0 || path.b_rate() != 0.0;
   const bool arc = path.kind() == PathPiece::Kind::kArc;
   const bool constant = path.kind() == PathPiece::Kind::kJoint || (!arc && !turns);
+  if (!arc && !turns && path.kind() == PathPiece::Kind::kLine) {
+    // No axis is asked for more than the tip: most lines end here.
+    bool enough = true;
+    for (std::size_t i = 0; i < 3; ++i) {
+      enough = enough && shares.speed * axes.speed[i] >= limits.speed &&
+               shares.acceleration * axes.acceleration[i] >= limits.acceleration &&
+               shares.acceleration * axes.jerk[i] >= limits.jerk;
+    }
+    if (enough) return limits;
+  }
   const AxisDerivatives bounds = constant ? DerivativesAt(path, head, 0.0) : Bounds(path, head);
   const double by_bound = SpeedAllowed(bounds, axes, shares);
   if (constant || by_bound >= limits.speed) {
@@ -118,12 +127,51 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
     }
   }
 
+  if (!arc) {
+    // A short turn: places in the middle of a few parts, and how far the derivatives can get away
+    // from them. Within 1 %.
+    constexpr double kRoom = 0.004;
+    constexpr std::size_t kPartsMax = 8;
+    const double rate = std::abs(path.a_rate()) + std::abs(path.b_rate());
+    const double half = 0.5 * path.length();
+    const double drift = half * head.arm_mm() * rate * rate;
+    const double wanted = std::ceil(std::max(drift / Norm(path.Tangent(0.0)), half * rate) / kRoom);
+    if (wanted <= static_cast<double>(kPartsMax)) {
+      const auto parts = static_cast<std::size_t>(std::max(wanted, 1.0));
+      const double share = 1.0 / static_cast<double>(parts);
+      std::array<AxisDerivatives, kPartsMax> at;
+      for (std::size_t k = 0; k < parts; ++k) {
+        AxisDerivatives& q = at[k];
+        q = DerivativesAt(path, head, path.length() * (static_cast<double>(k) + 0.5) * share);
+        for (std::size_t i = 0; i < 3; ++i) {
+          q.first[i] = std::abs(q.first[i]) + drift * share;
+          q.second[i] = std::abs(q.second[i]) + drift * share * rate;
+        }
+        limits.speed = std::min(limits.speed, SpeedAllowed(q, axes, shares));
+        if (std::isfinite(limits.jerk))
+          limits.jerk = std::min(limits.jerk, JerkAllowed(q, axes, shares));
+      }
+      for (std::size_t k = 0; k < parts; ++k) {
+        limits.acceleration =
+            std::min(limits.acceleration, AccelerationAllowed(at[k], axes, shares, limits.speed));
+      }
+      return limits;
+    }
+  }
+
   const double turning = std::abs(path.to().a_rad - path.from().a_rad) +
                          std::abs(path.to().b_rad - path.from().b_rad) +
                          (arc ? path.sweep_rad() : 0.0);
-  const double wanted = std::ceil(turning / kSampleAngle_rad);
-  const int intervals = static_cast<int>(
-      std::clamp(wanted, static_cast<double>(kIntervalsMin), static_cast<double>(kIntervalsMax)));
+  if (!(turning <= kTurningMax_rad)) {
+    limits.speed = std::min(limits.speed, by_bound);
+    limits.acceleration =
+        std::min(limits.acceleration, AccelerationAllowed(bounds, axes, shares, limits.speed));
+    if (std::isfinite(limits.jerk))
+      limits.jerk = std::min(limits.jerk, JerkAllowed(bounds, axes, shares));
+    return limits;
+  }
+  const int intervals =
+      std::max(static_cast<int>(std::ceil(turning / kSampleAngle_rad)), kIntervalsMin);
   const auto least = [&](auto limit) {
     return LeastAlong([&](double s) { return limit(DerivativesAt(path, head, s)); }, path.length(),
                       intervals);

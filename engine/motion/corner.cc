@@ -19,8 +19,8 @@ double Rho(double half_cosine) { return 2.0 * std::sqrt(half_cosine); }
 // Peak curvature times cut between two lines; motion.md 4.2.
 double Bend(double half_sine, double half_cosine) {
   const double rho = Rho(half_cosine);
-  const double middle = 15.0 / 8.0 - 7.0 * rho / 16.0;
-  return 0.75 * rho * half_sine / (half_cosine * middle * middle);
+  const double middle = half_cosine * (15.0 / 8.0 - 7.0 * rho / 16.0);
+  return 0.75 * rho * half_sine / (middle * middle);
 }
 
 // sqrt(kappa'^2 + kappa^4) at u: path jerk per speed cubed.
@@ -90,14 +90,14 @@ class PlainTable {
   static constexpr double kFirst = 0.2088;  // sqrt(cos 87.5 degrees), rounded down
   static constexpr double kStep = (1.0 - kFirst) / (kNodes - 1);
   static constexpr double kHalfTurnMax = 1.5272;  // 87.5 degrees, rounded up
-  static constexpr double kRoom = 3e-7;           // what straight lines between nodes may lack
+  static constexpr double kRoom = 1e-6;           // what straight lines between nodes may lack
 
   PlainTable() {
     for (int k = 0; k < kNodes; ++k) {
       const auto i = static_cast<std::size_t>(k);
       const double q = kFirst + kStep * k;
       const double cosine = std::min(q * q, 1.0);
-      length_[i] = PlainCurve(std::sqrt(1.0 - cosine * cosine), cosine).Length();
+      length_[i] = CornerLength(PlainCurve(std::sqrt(1.0 - cosine * cosine), cosine)).total();
       const double half_turn = std::max(kHalfTurnMax * k / (kNodes - 1), 1e-7);
       const double s = std::sin(half_turn);
       const double c = std::cos(half_turn);
@@ -155,6 +155,7 @@ Corner Corner::Between(const PathPiece& before, const PathPiece& after) {
     return corner;
   }
   corner.passage_ = Passage::kBlend;
+  corner.lines_ = lines;
   corner.plain_ = lines && in.a == 0.0 && in.b == 0.0 && out.a == 0.0 && out.b == 0.0;
   corner.bend_ = Bend(corner.half_sine_, corner.half_cosine_);
   corner.jerk_ = PlainTable::Jerk(corner.half_sine_, corner.half_cosine_, corner.bend_);
@@ -194,6 +195,11 @@ double Corner::PlainSpeed(double cut_mm, const MachineLimits& machine) const {
   return std::min(by_acceleration, std::cbrt(machine.normal_jerk() * cut_mm * cut_mm / jerk));
 }
 
+double JunctionSpeed(const Vec3& tangent_in, const Vec3& tangent_out, double jump_mm_s) {
+  const Vec3 turn = tangent_out - tangent_in;
+  return jump_mm_s / std::max({std::abs(turn.x), std::abs(turn.y), std::abs(turn.z)});
+}
+
 CurveEnd EndAt(const PathPiece& path, double s) {
   const PathDerivatives first = path.First(s);
   return {.pose = path.At(s),
@@ -201,6 +207,29 @@ CurveEnd EndAt(const PathPiece& path, double s) {
           .curvature = path.Second(s).tip,
           .a_rate = first.a,
           .b_rate = first.b};
+}
+
+bool AxesFollow(const CornerCurve& curve, const Head& head, const MachineLimits& machine,
+                double speed, double bend_per_mm) {
+  const CornerCurve::Bounds by_u = curve.DerivativeBounds();
+  if (!(by_u.slowest > 0.0)) return false;
+  const double per_mm = 1.0 / by_u.slowest;
+  const double stretch = by_u.tip_second * per_mm;  // of (p' p'') / |p'|
+  const double a = by_u.a_first * per_mm;
+  const double b = by_u.b_first * per_mm;
+  const double aa = (by_u.a_second + by_u.a_first * stretch) * per_mm * per_mm;
+  const double bb = (by_u.b_second + by_u.b_first * stretch) * per_mm * per_mm;
+  const double arm = head.arm_mm();
+  const double first = 1.0 + arm * (a + b);
+  const double second = bend_per_mm + arm * (aa + bb + (a + b) * (a + b));
+  const AxisLimits& axes = machine.axes;
+  const double square = speed * speed;
+  bool enough = a * speed <= axes.speed[3] && b * speed <= axes.speed[4] &&
+                aa * square <= axes.acceleration[3] && bb * square <= axes.acceleration[4];
+  for (std::size_t i = 0; i < 3; ++i) {
+    enough = enough && first * speed <= axes.speed[i] && second * square <= axes.acceleration[i];
+  }
+  return enough;
 }
 
 double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLimits& machine) {

@@ -46,15 +46,20 @@ class Corner {
   // The cap by half the radius of a neighbouring arc; infinite without one.
   double cut_max_mm() const { return cut_max_mm_; }
 
-  // Plain corners: length, distance from the corner, and highest speed of the curve cut at
+  // Both pieces are lines; the head may turn.
+  bool lines() const { return lines_; }
+
+  // Corners of lines: length, distance from the corner, and highest speed of the curve cut at
   // `cut_mm`.
   double PlainLength(double cut_mm) const;
   double PlainDeviation(double cut_mm) const;
   double PlainSpeed(double cut_mm, const MachineLimits& machine) const;
+  double PlainCurvature(double cut_mm) const { return bend_ / cut_mm; }
 
  private:
   Passage passage_ = Passage::kStop;
   bool plain_ = false;
+  bool lines_ = false;
   bool straight_ = false;
   double half_sine_ = 0.0;  // of the turn
   double half_cosine_ = 1.0;
@@ -66,8 +71,18 @@ class Corner {
   double cut_max_mm_ = 0.0;
 };
 
+// The speed at which the direction may change from one to the other when no axis may jump by more
+// than `jump_mm_s`; infinite straight on. motion.md section 7.
+double JunctionSpeed(const Vec3& tangent_in, const Vec3& tangent_out, double jump_mm_s);
+
 // The end of a piece at `s`, as a curve meets it.
 CurveEnd EndAt(const PathPiece& path, double s);
+
+// Whether a curve between two lines, whose tip may be as fast as `speed`, can be passed at that
+// speed by the axes too: by bounds, so no is only a maybe. `bend_per_mm` is the peak of its
+// curvature.
+bool AxesFollow(const CornerCurve& curve, const Head& head, const MachineLimits& machine,
+                double speed, double bend_per_mm);
 
 // The highest speed at which a curve can be passed: normal acceleration, jerk and axes.
 // motion.md 4.3; to 1e-9.

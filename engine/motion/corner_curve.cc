@@ -13,11 +13,11 @@ constexpr std::array<double, 4> kNode{0.1834346424956498, 0.5255324099163290, 0.
 constexpr std::array<double, 4> kWeight{0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
                                         0.1012285362903763};
 
-// The quintic with these values, first and second derivatives at u = 0 and 1; motion.md 4.2.
+// The quintic from p0 to p0 + h with these first and second derivatives at u = 0 and 1;
+// motion.md 4.2.
 template <class T>
-void Fit(std::array<T, 6>& c, const T& p0, const T& p1, const T& v0, const T& v1, const T& c0,
+void Fit(std::array<T, 6>& c, const T& p0, const T& h, const T& v0, const T& v1, const T& c0,
          const T& c1) {
-  const T h = p1 - p0;
   c[0] = p0;
   c[1] = v0;
   c[2] = c0 * 0.5;
@@ -45,15 +45,30 @@ T Third(const std::array<T, 6>& c, double u) {
 
 }  // namespace
 
-CornerCurve::CornerCurve(const CurveEnd& from, const CurveEnd& to, double cut_mm) {
+double CornerCurve::Scale(const Vec3& tangent_in, const Vec3& tangent_out, double cut_mm) {
   // rho = 2 sqrt(cos(theta/2)) keeps the peak of curvature low at every angle.
-  const double half_cosine = std::sqrt(std::max(0.0, 0.5 * (1.0 + Dot(from.tangent, to.tangent))));
-  const double scale = 2.0 * std::sqrt(half_cosine) * cut_mm;
+  const double half_cosine = std::sqrt(std::max(0.0, 0.5 * (1.0 + Dot(tangent_in, tangent_out))));
+  return 2.0 * std::sqrt(half_cosine) * cut_mm;
+}
+
+CornerCurve::CornerCurve(const CurveEnd& from, const CurveEnd& to, double cut_mm) {
+  const double scale = Scale(from.tangent, to.tangent, cut_mm);
   const double square = scale * scale;
-  Fit(tip_, from.pose.tip, to.pose.tip, from.tangent * scale, to.tangent * scale,
+  Fit(tip_, from.pose.tip, to.pose.tip - from.pose.tip, from.tangent * scale, to.tangent * scale,
       from.curvature * square, to.curvature * square);
-  Fit(a_, from.pose.a_rad, to.pose.a_rad, from.a_rate * scale, to.a_rate * scale, 0.0, 0.0);
-  Fit(b_, from.pose.b_rad, to.pose.b_rad, from.b_rate * scale, to.b_rate * scale, 0.0, 0.0);
+  Fit(a_, from.pose.a_rad, to.pose.a_rad - from.pose.a_rad, from.a_rate * scale, to.a_rate * scale,
+      0.0, 0.0);
+  Fit(b_, from.pose.b_rad, to.pose.b_rad - from.pose.b_rad, from.b_rate * scale, to.b_rate * scale,
+      0.0, 0.0);
+}
+
+CornerCurve::CornerCurve(const TipPose& corner, const Vec3& tangent_in, const Vec3& tangent_out,
+                         double cut_mm) {
+  const double scale = Scale(tangent_in, tangent_out, cut_mm);
+  Fit(tip_, corner.tip - tangent_in * cut_mm, (tangent_in + tangent_out) * cut_mm,
+      tangent_in * scale, tangent_out * scale, Vec3{}, Vec3{});
+  a_[0] = corner.a_rad;
+  b_[0] = corner.b_rad;
 }
 
 TipPose CornerCurve::At(double u) const { return {Value(tip_, u), Value(a_, u), Value(b_, u)}; }
@@ -79,6 +94,37 @@ PathDerivatives CornerCurve::SecondByLength(double u) const {
           (e.b - d.b * along) * square};
 }
 
+CornerCurve::Bounds CornerCurve::DerivativeBounds() const {
+  // Control points of the first derivative (degree 4) and the second (degree 3).
+  const auto first = [](const auto& c) {
+    return std::array{c[1], c[1] + c[2] * 0.5, c[1] + c[2] + c[3] * 0.5,
+                      c[1] + c[2] * 1.5 + c[3] * 1.5 + c[4], First(c, 1.0)};
+  };
+  const auto second = [](const auto& c) {
+    return std::array{c[2] * 2.0, c[2] * 2.0 + c[3] * 2.0, c[2] * 2.0 + c[3] * 4.0 + c[4] * 4.0,
+                      Second(c, 1.0)};
+  };
+  const auto largest = [](const auto& values) {
+    double most = 0.0;
+    for (const double value : values) most = std::max(most, std::abs(value));
+    return most;
+  };
+  Bounds bounds;
+  const std::array<Vec3, 5> tip = first(tip_);
+  const Vec3 sum = tip[0] + tip[4];  // along the bisector: both ends have the same length
+  const double along = Norm(sum);
+  bounds.slowest = HUGE_VAL;
+  for (const Vec3& control : tip)
+    bounds.slowest = std::min(bounds.slowest, Dot(control, sum) / along);
+  for (const Vec3& control : second(tip_))
+    bounds.tip_second = std::max(bounds.tip_second, Norm(control));
+  bounds.a_first = largest(first(a_));
+  bounds.b_first = largest(first(b_));
+  bounds.a_second = largest(second(a_));
+  bounds.b_second = largest(second(b_));
+  return bounds;
+}
+
 double CornerCurve::Speed(double u) const { return Norm(First(tip_, u)); }
 
 double CornerCurve::Integral(double from, double to) const {
@@ -91,37 +137,67 @@ double CornerCurve::Integral(double from, double to) const {
   return half * sum;
 }
 
-void CornerCurve::Measure() {
-  for (int k = 0; k < kPanels; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    reached_[i + 1] = reached_[i] + Integral(static_cast<double>(k) / kPanels, (k + 1.0) / kPanels);
+void CornerLength::ChoosePanels(const CornerCurve& curve) {
+  constexpr int kSamples = 16;
+  constexpr double kNearCusp = 0.25;  // of the mean: above, equal panels are good to 1e-12
+  double slowest = HUGE_VAL;
+  double sum = 0.0;
+  double where = 0.5;
+  for (int k = 0; k <= kSamples; ++k) {
+    const double speed = curve.Speed(static_cast<double>(k) / kSamples);
+    sum += speed;
+    if (speed < slowest) {
+      slowest = speed;
+      where = static_cast<double>(k) / kSamples;
+    }
+  }
+  if (slowest * (kSamples + 1) > kNearCusp * sum) {
+    panels_ = kPanels;
+    for (std::size_t k = 0; k <= kPanels; ++k) edge_[k] = static_cast<double>(k) / kPanels;
+    return;
+  }
+  // Newton on d|p'|^2 / du, which has a simple root near a cusp.
+  for (int step = 0; step < 8; ++step) {
+    const Vec3 first = curve.Derivative(where, 1).tip;
+    const Vec3 second = curve.Derivative(where, 2).tip;
+    const double slope = Dot(second, second) + Dot(first, curve.Derivative(where, 3).tip);
+    if (!(slope > 0.0)) break;
+    where = std::clamp(where - Dot(first, second) / slope, 0.0, 1.0);
+  }
+  panels_ = kPanelsMax;
+  constexpr std::size_t kSide = kPanelsMax / 2;
+  constexpr double kShrink = 0.3;
+  double share = 1.0;
+  for (std::size_t k = 0; k < kSide; ++k) {
+    edge_[k] = where * (1.0 - share);
+    edge_[kPanelsMax - k] = where + (1.0 - where) * share;
+    share *= kShrink;
+  }
+  edge_[kSide] = where;
+}
+
+CornerLength::CornerLength(const CornerCurve& curve) {
+  ChoosePanels(curve);
+  for (std::size_t k = 0; k < panels_; ++k) {
+    const bool wide = edge_[k + 1] > edge_[k];
+    reached_[k + 1] = reached_[k] + (wide ? curve.Integral(edge_[k], edge_[k + 1]) : 0.0);
   }
 }
 
-double CornerCurve::Length() const {
-  if (reached_[kPanels] > 0.0) return reached_[kPanels];
-  CornerCurve measured = *this;
-  measured.Measure();
-  return measured.reached_[kPanels];
-}
-
-double CornerCurve::ParameterAt(double s) const {
-  if (!(reached_[kPanels] > 0.0)) {
-    CornerCurve measured = *this;
-    measured.Measure();
-    if (!(measured.reached_[kPanels] > 0.0)) return 0.0;
-    return measured.ParameterAt(s);
-  }
-  if (s <= 0.0) return 0.0;
-  if (s >= reached_[kPanels]) return 1.0;
+double CornerLength::ParameterAt(const CornerCurve& curve, double s) const {
+  if (!(s > 0.0)) return 0.0;
+  if (s >= reached_[panels_]) return 1.0;
   std::size_t panel = 0;
   while (s > reached_[panel + 1]) ++panel;
-  const double from = static_cast<double>(panel) / kPanels;
+  const double from = edge_[panel];
+  const double to = edge_[panel + 1];
   const double wanted = s - reached_[panel];
-  double u = from + wanted / (reached_[panel + 1] - reached_[panel]) / kPanels;
-  constexpr int kSteps = 3;  // quadratic from a guess within a panel: 1e-2, 1e-4, 1e-8, 1e-16
+  double u = from + (to - from) * wanted / (reached_[panel + 1] - reached_[panel]);
+  constexpr int kSteps = 4;  // quadratic from a guess within a panel: 1e-2, 1e-4, 1e-8, 1e-16
   for (int step = 0; step < kSteps; ++step) {
-    u = std::clamp(u - (Integral(from, u) - wanted) / Speed(u), from, from + 1.0 / kPanels);
+    const double miss = curve.Integral(from, u) - wanted;
+    u = std::clamp(u - miss / curve.Speed(u), from, to);
+    if (std::abs(miss) <= 1e-15 * reached_[panels_]) break;
   }
   return u;
 }

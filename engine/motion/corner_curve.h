@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "engine/motion/pose.h"
 
@@ -32,6 +33,11 @@ class CornerCurve {
   // Both ends are cut at the distance `cut_mm` from the corner.
   CornerCurve(const CurveEnd& from, const CurveEnd& to, double cut_mm);
 
+  // Between two lines without head rotation: from the corner itself, so that a curve of 1e-3 mm far
+  // from the origin keeps its digits.
+  CornerCurve(const TipPose& corner, const Vec3& tangent_in, const Vec3& tangent_out,
+              double cut_mm);
+
   // u runs from 0 to 1.
   TipPose At(double u) const;
   PathDerivatives Derivative(double u, int order) const;  // by u; order 1 to 3
@@ -40,26 +46,48 @@ class CornerCurve {
   PathDerivatives FirstByLength(double u) const;
   PathDerivatives SecondByLength(double u) const;
 
-  // Arc length by Gauss-Legendre on eight panels. Measure() once, then LengthTo and ParameterAt are
-  // cheap; they measure for themselves when it was not called.
-  void Measure();
-  double Length() const;
-  double ParameterAt(double s) const;  // 0 <= s <= Length()
+  // Bounds of the derivatives by u, from control points: cheap, and good on gentle curves.
+  struct Bounds {
+    double slowest = 0.0;     // of |dp/du|, from below; at most 0 when nothing is known
+    double tip_second = 0.0;  // the rest from above
+    double a_first = 0.0;
+    double b_first = 0.0;
+    double a_second = 0.0;
+    double b_second = 0.0;
+  };
+  Bounds DerivativeBounds() const;
 
   // Distance of `point` from the curve, and from its nearest place.
   double DistanceFrom(const Vec3& point) const;
 
-  static constexpr int kPanels = 8;
+  double Speed(double u) const;                       // |dp/du|
+  double Integral(double u_from, double u_to) const;  // arc length, one panel
 
  private:
-  double Speed(double u) const;
-  double Integral(double from, double to) const;
-
+  static double Scale(const Vec3& tangent_in, const Vec3& tangent_out, double cut_mm);
   // Coefficients of u^0 .. u^5.
   std::array<Vec3, 6> tip_{};
   std::array<double, 6> a_{};
   std::array<double, 6> b_{};
-  std::array<double, kPanels + 1> reached_{};  // arc length at u = k / kPanels; all 0: not measured
+};
+
+// Arc length along a corner curve by Gauss-Legendre on eight panels; on sixteen, narrower towards
+// the place where the curve is sharpest, when it nearly has a cusp.
+class CornerLength {
+ public:
+  explicit CornerLength(const CornerCurve& curve);
+
+  double total() const { return reached_[panels_]; }
+  double ParameterAt(const CornerCurve& curve, double s) const;  // 0 <= s <= total()
+
+ private:
+  static constexpr std::size_t kPanels = 8;
+  static constexpr std::size_t kPanelsMax = 16;
+  void ChoosePanels(const CornerCurve& curve);
+
+  std::size_t panels_ = 0;
+  std::array<double, kPanelsMax + 1> edge_{};     // u
+  std::array<double, kPanelsMax + 1> reached_{};  // arc length there
 };
 
 }  // namespace rmlcell::motion

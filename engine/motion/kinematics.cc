@@ -61,6 +61,8 @@ ToolAxes AxesOfTool(double a_rad, double b_rad) {
           .u = {sin_a * sin_b, -cos_a * sin_b, cos_b}};
 }
 
+double Head::arm_mm() const { return Norm({tool.x_mm, tool.y_mm, length_mm - tool.z_mm}); }
+
 AxisPose Head::ColumnOf(const TipPose& pose) const {
   return {pose.tip + HeadVector(*this, pose.a_rad, pose.b_rad).Value(), pose.a_rad, pose.b_rad};
 }

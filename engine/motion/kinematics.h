@@ -50,6 +50,9 @@ struct Head {
   double length_mm = 300.0;
   ToolOffset tool{};
 
+  // Distance from the tip to the crossing of the axes.
+  double arm_mm() const;
+
   AxisPose ColumnOf(const TipPose& pose) const;
   TipPose TipOf(const AxisPose& pose) const;
 };

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 namespace rmlcell::motion {
 
@@ -14,14 +16,23 @@ double LeastAlong(F f, double length, int intervals) {
   constexpr double kGolden = 0.6180339887498949;
   constexpr int kSections = 40;  // 0.618^40 = 4e-9 of the bracket; the value is flat there
   const auto place = [&](int k) { return length * k / intervals; };
+  constexpr int kKept = 64;  // samples kept for the second look; the others are taken again
+  std::array<double, kKept + 1> kept;
   double best = HUGE_VAL;
-  for (int k = 0; k <= intervals; ++k) best = std::min(best, f(place(k)));
+  for (int k = 0; k <= intervals; ++k) {
+    const double value = f(place(k));
+    if (k <= kKept) kept[static_cast<std::size_t>(k)] = value;
+    best = std::min(best, value);
+  }
+  const auto sample = [&](int k) {
+    return k <= kKept ? kept[static_cast<std::size_t>(k)] : f(place(k));
+  };
   const double worth_a_look = best / kCandidate;
 
   double before = HUGE_VAL;
-  double here = f(place(0));
+  double here = sample(0);
   for (int k = 0; k <= intervals; ++k) {
-    const double after = k < intervals ? f(place(k + 1)) : HUGE_VAL;
+    const double after = k < intervals ? sample(k + 1) : HUGE_VAL;
     if (here <= worth_a_look && here <= before && here <= after) {
       double low = place(std::max(k - 1, 0));
       double high = place(std::min(k + 1, intervals));

@@ -13,6 +13,9 @@ struct MachineLimits {
   double curve_tangential = 0.6;
   double curve_jerk = 0.8;
   double settling_s = 0.048;  // after a move without /FLY
+  // Above 0: a mill. Polylines are kept exactly, and a vertex is passed at the speed at which no
+  // axis has to jump by more than this (motion.md section 7). 0: corners are passed on curves.
+  double junction_jump_mm_s = 0.0;
   AxisLimits axes;
 
   double normal_acceleration() const { return curve_normal * tip_acceleration_mm_s2; }

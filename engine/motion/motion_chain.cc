@@ -72,19 +72,27 @@ bool MotionChain::Join(const MoveCommand& move, const PathLimits& limits) {
   } else if (before.path.by_sigma() || move.path.by_sigma()) {
     passage = Passage::kStopNeighbour;
   } else if (SameTip(before.head, move.head) && Contiguous(before.path.to(), move.path.from())) {
-    corner = Corner::Between(before.path, move.path);
-    passage = corner.passage();
+    const bool mill = machine_.junction_jump_mm_s > 0.0;
+    if (!mill) corner = Corner::Between(before.path, move.path);
+    passage = mill ? Passage::kThrough : corner.passage();
     if (passage == Passage::kBlend && corner.straight() && std::isinf(machine_.tip_jerk_mm_s3)) {
       passage = Passage::kThrough;  // without a limit on jerk a jump of curvature needs no curve
     }
     if (!IsStop(passage)) cap = before.overshoot * std::min(before.limits.speed, limits.speed);
+    if (mill) {
+      cap = std::min(cap, JunctionSpeed(before.path.Tangent(before.path.length()),
+                                        move.path.Tangent(0.0), machine_.junction_jump_mm_s));
+    }
   }
   stands_ = false;
-  if (passage == Passage::kThrough && before.overshoot >= 1.0 && Equal(before.limits, limits)) {
+  if (passage == Passage::kThrough && Equal(before.limits, limits) && Equal(cap, limits.speed)) {
     // A line without end must not fill the window as one leg.
     const Leg& leg = legs_.back();
     if (leg.last_move - leg.first_move < window_ / 2) return false;
     ++starved_;
+    CloseLeg(passage, corner, cap);
+    legs_.back().ends_run = true;
+    return true;
   }
   CloseLeg(passage, corner, cap);
   return true;
@@ -116,6 +124,8 @@ void MotionChain::CloseLeg(Passage passage, const Corner& corner, double cap) {
   Leg& leg = legs_.back();
   leg.passage = passage;
   leg.corner = corner;
+  // A curve must not reach over a jump of curvature, although without a limit on jerk it is passed.
+  leg.ends_run = passage != Passage::kThrough || corner.passage() == Passage::kBlend;
   leg.cap = IsStop(passage) ? 0.0 : cap;
   running_.Push(leg.length, moves_[leg.first_move].limits, leg.cap);
 }
@@ -134,7 +144,11 @@ void MotionChain::Work() {
     speeds_.Settle();
     speeds_next_ = std::max(kBatchMin, 2 * open_knots(speeds_));
   }
-  if (open_knots(running_) + open_knots(speeds_) >= window_) Starve();
+  const Number decided = speeds_.final_count();
+  const Number oldest = decided < spans_.size() ? spans_[spans_.first() + decided].first_move
+                        : legs_.empty()         ? moves_.end()
+                                                : legs_.front().first_move;
+  if (moves_.end() - oldest >= window_) Starve();
 }
 
 void MotionChain::Starve() {
@@ -156,7 +170,7 @@ std::optional<double> MotionChain::LengthAfter(Number leg, double enough,
     length += legs_[k].length;
     if (length >= enough) return length;
     const bool closed = k + 1 < legs_.end() || !open_;
-    if (closed && legs_[k].passage != Passage::kThrough) return length;
+    if (closed && legs_[k].ends_run) return length;
   }
   if (accept_what_is_there) return length;
   return std::nullopt;
@@ -168,7 +182,11 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
   Leg& leg = legs_[number];
   const double wanted = running_.speed();
   const double total = run_length_ + leg.length;
-  if (leg.passage == Passage::kThrough) {
+  if (!leg.ends_run && number - legs_.first() >= window_ / 2) {  // nor may a run fill it
+    leg.ends_run = true;
+    ++starved_;
+  }
+  if (!leg.ends_run) {
     leg.cap = std::min(leg.cap, wanted);
     run_length_ = total;
     ++resolving_;
@@ -181,7 +199,9 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
   closing.report.wanted_speed = wanted;
   double cut = 0.0;
   double speed_cap = 0.0;
-  if (!IsStop(leg.passage)) {
+  if (leg.passage == Passage::kThrough) {
+    speed_cap = wanted;
+  } else if (!IsStop(leg.passage)) {
     const double want = std::min(leg.corner.CutFor(wanted, machine_), leg.corner.cut_max_mm());
     const std::optional<double> after = LengthAfter(number, 2.0 * want, accept_what_is_there);
     if (!after) return false;
@@ -195,11 +215,16 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
       speed_cap = wanted;
       MakeCurve(closing, leg, cut);
       const Head& head = moves_[leg.last_move].head;
-      if (!leg.corner.plain() || !axes_keep_up_) {
-        speed_cap = std::min(speed_cap, SpeedOnCurve(closing.curve, head, machine_));
-      } else if (capped) {
+      if (leg.corner.lines() && capped) {
         speed_cap = std::min(speed_cap, leg.corner.PlainSpeed(cut, machine_));
       }
+      const bool axes_follow =
+          leg.corner.plain()
+              ? axes_keep_up_
+              : leg.corner.lines() && AxesFollow(closing.curve, head, machine_, speed_cap,
+                                                 leg.corner.PlainCurvature(cut));
+      if (!axes_follow)
+        speed_cap = std::min(speed_cap, SpeedOnCurve(closing.curve, head, machine_));
       if (speed_cap < wanted) closing.report.passage = Passage::kBlendCapped;
       // Points passed straight on that the curve swallows keep their speed.
       double beyond = 0.0;
@@ -222,7 +247,16 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
 }
 
 void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
-  // The place at the distance `cut` before the corner, and behind it.
+  if (leg.corner.plain()) {
+    const PathPiece& in = moves_[leg.last_move].path;
+    span.curve =
+        CornerCurve(in.to(), in.Tangent(0.0), moves_[leg.last_move + 1].path.Tangent(0.0), cut);
+    span.curve_length = leg.corner.PlainLength(cut);
+    span.curve_middle = 0.5;
+    span.report.deviation_mm = leg.corner.PlainDeviation(cut);
+    return;
+  }
+  // The place at the distance `cut` before the corner, and behind it; both may lie some moves away.
   Number before = leg.last_move;
   double left = cut;
   while (left > moves_[before].path.length() && before > moves_.first()) {
@@ -239,24 +273,24 @@ void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
   const PathPiece& out = moves_[after].path;
   span.curve = CornerCurve(EndAt(in, std::max(in.length() - left, 0.0)),
                            EndAt(out, std::min(right, out.length())), cut);
-  if (leg.corner.plain()) {
+  if (leg.corner.lines()) {
+    // The tip's way is the same whether the head turns or not.
     span.curve_length = leg.corner.PlainLength(cut);
     span.curve_middle = 0.5;
     span.report.deviation_mm = leg.corner.PlainDeviation(cut);
-  } else {
-    span.curve.Measure();
-    span.curve_length = span.curve.Length();
-    span.curve_middle = span.curve.ParameterAt(0.5 * span.curve_length);
-    span.report.deviation_mm = span.curve.DistanceFrom(moves_[leg.last_move].path.to().tip);
+    return;
   }
+  const CornerLength length(span.curve);
+  span.curve_length = length.total();
+  span.curve_middle = length.ParameterAt(span.curve, 0.5 * span.curve_length);
+  span.report.deviation_mm = span.curve.DistanceFrom(moves_[leg.last_move].path.to().tip);
 }
 
 // The legs from the start of the run to `last_leg`, less what the curves at both ends take, become
 // spans.
-void MotionChain::CloseRun(Number last_leg, double total, Span closing, double speed_cap) {
+void MotionChain::CloseRun(Number last_leg, double total, const Span& closing, double speed_cap) {
   const double begin = run_cut_;
   const double end = std::max(total - closing.report.cut_mm, begin);
-  closing.corner_move = legs_[last_leg].last_move;
   double leg_start = 0.0;
   for (Number k = legs_.first(); k <= last_leg; ++k) {
     Leg& leg = legs_[k];
@@ -269,15 +303,16 @@ void MotionChain::CloseRun(Number last_leg, double total, Span closing, double s
     if (!closes && !(to > from)) {  // swallowed by the curve before
       continue;
     }
-    Span span;
+    Span& span = spans_.PushSlot();
     if (closes) {
       span = closing;
+      span.corner_move = legs_[last_leg].last_move;
       for (Number rest = k; rest < last_leg; ++rest)
         speed_cap = std::min(speed_cap, legs_[rest].cap);
     } else {
       span.corner_move = leg.last_move;
-      span.report.passage = Passage::kThrough;
-      span.report.wanted_speed = leg.cap;
+      span.settling_s = 0.0;
+      span.report = {.passage = Passage::kThrough, .wanted_speed = leg.cap};
     }
     span.length = std::max(to - from, 0.0);
     // Which moves the interval covers; places within the first and the last one.
@@ -296,14 +331,9 @@ void MotionChain::CloseRun(Number last_leg, double total, Span closing, double s
     const double last_length = moves_[span.last_move].path.length();
     span.x_to = to == leg_end ? last_length : std::min(to - x, last_length);
     span.limits = moves_[leg.first_move].limits;
-    PushSpan(span, closes ? speed_cap : leg.cap);
+    speeds_.Push(span.length, span.limits, closes ? speed_cap : leg.cap);
     if (closes) break;
   }
-}
-
-void MotionChain::PushSpan(const Span& span, double cap) {
-  spans_.Push(span);
-  speeds_.Push(span.length, span.limits, cap);
 }
 
 }  // namespace rmlcell::motion

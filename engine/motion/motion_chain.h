@@ -59,6 +59,7 @@ class MotionChain {
     double length = 0.0;
     Corner corner{};  // at its end
     Passage passage = Passage::kStop;
+    bool ends_run = true;
     double cap = 0.0;  // OVERSH x the lower limit of both sides
   };
   // From place x_from of one move to place x_to of another, and what ends it.
@@ -89,12 +90,14 @@ class MotionChain {
   bool Resolve(bool accept_what_is_there);
   std::optional<double> LengthAfter(Number leg, double enough, bool accept_what_is_there);
   void MakeCurve(Span& span, const Leg& leg, double cut);
-  void CloseRun(Number last_leg, double total, Span closing, double speed_cap);
-  void PushSpan(const Span& span, double cap);
+  void CloseRun(Number last_leg, double total, const Span& closing, double speed_cap);
 
   void EmitSpan();
-  void EmitCurve(const Span& span, double speed);
-  void EmitMotion(PlannedMotion&& motion, const Span& span, Number move, bool ends_move);
+  void EmitCurve(const Span& span);
+  void EmitCurvePart(const Span& span, const PathPiece& piece, Number move, double s_from,
+                     double s_to, bool ends_move);
+  PlannedMotion& NewMotion(const Span& span, Number move);
+  void FinishMotion(const Span& span, Number move, PlannedMotion& motion, bool ends_move);
 
   MachineLimits machine_;
   std::size_t window_;

@@ -154,10 +154,6 @@ PathPiece PathPiece::Part(double s_from, double s_to) const {
   return part;
 }
 
-void PathPiece::Prepare() {
-  if (auto* part = std::get_if<CurvePart>(&shape_)) part->curve.Measure();
-}
-
 double PathPiece::tip_length_mm() const { return by_sigma() ? 0.0 : length_; }
 
 Vec3 PathPiece::ArcPoint(double angle) const {
@@ -172,7 +168,7 @@ TipPose PathPiece::At(double s) const {
   if (!(s > 0.0)) return from_;
   if (s >= length_) return to_;
   if (const auto* part = std::get_if<CurvePart>(&shape_)) {
-    return part->curve.At(part->curve.ParameterAt(part->start + s));
+    return part->curve.At(part->Parameter(s));
   }
   const double share = s / length_;
   TipPose pose;
@@ -184,7 +180,7 @@ TipPose PathPiece::At(double s) const {
 
 PathDerivatives PathPiece::First(double s) const {
   if (const auto* part = std::get_if<CurvePart>(&shape_)) {
-    return part->curve.FirstByLength(part->curve.ParameterAt(part->start + s));
+    return part->curve.FirstByLength(part->Parameter(s));
   }
   Vec3 tip = kind_ == Kind::kLine ? tangent_ : to_.tip - from_.tip;
   if (kind_ == Kind::kArc) {
@@ -196,7 +192,7 @@ PathDerivatives PathPiece::First(double s) const {
 
 PathDerivatives PathPiece::Second(double s) const {
   if (const auto* part = std::get_if<CurvePart>(&shape_)) {
-    return part->curve.SecondByLength(part->curve.ParameterAt(part->start + s));
+    return part->curve.SecondByLength(part->Parameter(s));
   }
   if (kind_ != Kind::kArc) return {};
   const double angle = s / radius_mm();

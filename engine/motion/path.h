@@ -64,6 +64,7 @@ class PathPiece {
   static Halves CornerHalves(const CornerCurve& curve, double length, double middle);
 
   // Outside 0..length() the nearer end; the ends are from() and to() to the last bit.
+  // On a kBlend piece this measures the curve each time; MotionView does it once.
   TipPose At(double s) const;
 
   // Derivatives of the pose by s: the unit tangent and the curvature vector (1/mm), or by sigma.
@@ -72,8 +73,8 @@ class PathPiece {
   Vec3 Tangent(double s) const { return First(s).tip; }
   Vec3 Curvature(double s) const { return Second(s).tip; }
 
-  // Does once what At would do each time on a kBlend piece; worth it before many samples.
-  void Prepare();
+  // The same places by u for kBlend pieces, whose s must be turned into u first: see CornerLength.
+  double curve_start() const { return std::get_if<CurvePart>(&shape_)->start; }
 
   // Arcs only.
   const Vec3& centre() const { return arc().centre; }
@@ -95,6 +96,7 @@ class PathPiece {
   struct CurvePart {
     CornerCurve curve;
     double start = 0.0;  // arc length of the curve before this piece
+    double Parameter(double s) const { return CornerLength(curve).ParameterAt(curve, start + s); }
   };
   const ArcShape& arc() const { return *std::get_if<ArcShape>(&shape_); }
   Vec3 ArcPoint(double angle) const;

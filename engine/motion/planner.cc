@@ -11,23 +11,25 @@ namespace {
 // ACCEL below 0.1 % would take hours to arrive: "little or no motion" in the manual. motion.md 5.1.
 constexpr double kAccelerationFractionMin = 0.001;
 
-bool IsFinite(const TipPose& pose) {
-  return std::isfinite(pose.tip.x) && std::isfinite(pose.tip.y) && std::isfinite(pose.tip.z) &&
-         std::isfinite(pose.a_rad) && std::isfinite(pose.b_rad);
+// Lengths in mm or angles in rad that no machine can have would only overflow later.
+bool IsUsable(double value) { return std::abs(value) <= kLargest; }
+bool IsUsable(const TipPose& pose) {
+  return IsUsable(pose.tip.x) && IsUsable(pose.tip.y) && IsUsable(pose.tip.z) &&
+         IsUsable(pose.a_rad) && IsUsable(pose.b_rad);
 }
+
+// A motion of more than 30 years is one that never arrives.
+constexpr double kDurationMax_s = 1e9;
 
 // Moves too short to be made leave a gap between where the machine is and where the next move
 // believes it begins: a line begins where the machine is.
-PathPiece Anchored(const PathPiece& path, const TipPose* end) {
+bool NeedsAnchor(const PathPiece& path, const TipPose* end) {
   constexpr double kGap_mm = 1e-3;  // a thousand such moves
-  if (end == nullptr || path.from() == *end) return path;
+  if (end == nullptr || path.from() == *end) return false;
   const bool straight = path.kind() == PathPiece::Kind::kLine ||
                         path.kind() == PathPiece::Kind::kRotary || !(path.length() > 0.0);
-  if (!straight || Distance(end->tip, path.from().tip) > kGap_mm ||
-      end->a_rad != path.from().a_rad || end->b_rad != path.from().b_rad) {
-    return path;
-  }
-  return PathPiece::Line(*end, path.to());
+  return straight && Distance(end->tip, path.from().tip) <= kGap_mm &&
+         end->a_rad == path.from().a_rad && end->b_rad == path.from().b_rad;
 }
 
 }  // namespace
@@ -44,13 +46,20 @@ Planner::Planner(Planner&&) noexcept = default;
 Planner& Planner::operator=(Planner&&) noexcept = default;
 
 Status Planner::Append(const MoveCommand& move) {
-  if (!IsFinite(move.path.from()) || !IsFinite(move.path.to()) ||
-      !std::isfinite(move.path.length())) {
-    return Error{ErrorCode::kTargetOutOfTravel, "a coordinate is not a finite number", {}};
+  if (!IsUsable(move.path.from()) || !IsUsable(move.path.to()) || !IsUsable(move.path.length())) {
+    return Error{ErrorCode::kTargetOutOfTravel, "a coordinate is not a usable number", {}};
   }
-  const PathPiece path = Anchored(move.path, chain_->end());
-  if (!(path.length() > 0.0)) {
-    chain_->Nothing(path.from(), move.fly);
+  if (NeedsAnchor(move.path, chain_->end())) {
+    MoveCommand anchored = move;
+    anchored.path = PathPiece::Line(*chain_->end(), move.path.to());
+    return AppendChecked(anchored);
+  }
+  return AppendChecked(move);
+}
+
+Status Planner::AppendChecked(const MoveCommand& move) {
+  if (!(move.path.length() > 0.0)) {
+    chain_->Nothing(move.path.from(), move.fly);
     return {};
   }
   if (!(move.speed_fraction > 0.0)) return Error{ErrorCode::kNoMotion, "the speed is 0", {}};
@@ -59,13 +68,12 @@ Status Planner::Append(const MoveCommand& move) {
                  "the acceleration is " + ShortestText(100.0 * move.acceleration_fraction) + " %",
                  {}};
   }
-  MoveCommand anchored = move;
-  anchored.path = path;
-  const PathLimits limits = LimitsOf(anchored, chain_->machine());
-  if (!(limits.speed > 0.0) || !(limits.acceleration > 0.0) || !(limits.jerk > 0.0)) {
+  const PathLimits limits = LimitsOf(move, chain_->machine());
+  if (!(move.path.length() <= limits.speed * kDurationMax_s) || !(limits.speed > 0.0) ||
+      !(limits.acceleration > 0.0) || !(limits.jerk > 0.0)) {
     return Error{ErrorCode::kNoMotion, "the speed is too low to ever arrive", {}};
   }
-  chain_->Append(anchored, limits);
+  chain_->Append(move, limits);
   return {};
 }
 

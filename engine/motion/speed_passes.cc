@@ -22,21 +22,35 @@ void SpeedPasses::Push(double length, const PathLimits& limits, double cap) {
 }
 
 std::size_t SpeedPasses::Settle() {
-  double next = 0.0;
-  for (std::size_t k = knots_.size(); k > first_ + final_; --k) {
-    Knot& knot = knots_[k - 1];
-    const bool last = k == knots_.size();
-    knot.speed = last ? std::min(knot.forward, next)
-                      : Reachable(next, knots_[k].length, knots_[k].limits, knot.forward);
-    next = knot.speed;
+  if (size() == final_) return final_;
+  // What later knots may still make of the last one: anything from rest to its forward speed.
+  // Backward from there the bounds of each knot; where they meet it is final, and so are all before
+  // it. The lower bound is not what standing at the end would give: Reach has its least value at a
+  // speed above 0 (ReachMinimum).
+  Knot& last = knots_.back();
+  double low = 0.0;
+  double high = last.forward;
+  last.speed = 0.0;
+  std::size_t k = knots_.size() - 1;
+  const std::size_t open = first_ + final_;
+  while (low != high && k > open) {
+    const Knot& after = knots_[k];
+    Knot& knot = knots_[--k];
+    const double from_high = Reachable(high, after.length, after.limits, knot.forward);
+    const double from_low = Reachable(low, after.length, after.limits, knot.forward);
+    const double least = std::min({knot.forward, from_low, from_high,
+                                   std::max(low, ReachMinimum(high, after.length, after.limits))});
+    knot.speed = least;  // from here any future can be met: for Accept
+    high = std::max(from_low, from_high);
+    low = least;
   }
-  // Whatever comes later can only raise what this pass assumed: a knot that keeps its forward speed
-  // even so is final, and so are all before it.
-  for (std::size_t k = knots_.size(); k > first_ + final_; --k) {
-    if (knots_[k - 1].speed == knots_[k - 1].forward) {
-      final_ = k - first_;
-      break;
-    }
+  if (low != high) return final_;
+  knots_[k].speed = high;
+  final_ = k + 1 - first_;
+  while (k > open) {
+    const Knot& after = knots_[k];
+    Knot& knot = knots_[--k];
+    knot.speed = Reachable(after.speed, after.length, after.limits, knot.forward);
   }
   return final_;
 }

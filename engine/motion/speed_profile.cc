@@ -117,16 +117,17 @@ double Reach(double v0, double length, const PathLimits& limits) {
     const double c = v0 * b - v0 * v0 - 2.0 * a * length;
     return 0.5 * (std::sqrt(b * b - 4.0 * c) - b);
   }
-  // y^3 + 2 v0 y = length sqrt(j): Newton from above, where the cubic is convex. Both guesses are
-  // upper bounds, and the lower of the two is within a factor 1.5 of the root.
+  // y^3 + 2 v0 y = length sqrt(j): Newton from above, where the cubic is convex. Leaving out either
+  // term gives an upper bound, and the lower of the two is within a factor 1.5 of the root.
   const double want = length * std::sqrt(j);
-  double y = std::cbrt(want);
+  double y = v0 > 0.0 ? want / (2.0 * v0) : HUGE_VAL;
+  if (!(y * y <= 2.0 * v0)) y = std::cbrt(want);
   if (v0 > 0.0) {
-    y = std::min(y, want / (2.0 * v0));
     constexpr int kStepsMax = 8;  // 5 do, with the guess above
     for (int step = 0; step < kStepsMax; ++step) {
-      const double next = y - (y * y * y + 2.0 * v0 * y - want) / (3.0 * y * y + 2.0 * v0);
-      const bool done = std::abs(next - y) <= 2e-16 * y;
+      const double square = y * y;
+      const double next = (2.0 * square * y + want) / (3.0 * square + 2.0 * v0);
+      const bool done = std::abs(next - y) <= 1e-15 * y;
       y = next;
       if (done) break;
     }
@@ -134,21 +135,84 @@ double Reach(double v0, double length, const PathLimits& limits) {
   return v0 + y * y;
 }
 
+double ReachMinimum(double v0_high, double length, const PathLimits& limits) {
+  const double a = limits.acceleration;
+  const double j = limits.jerk;
+  if (std::isinf(j)) return Reach(0.0, length, limits);
+  const double b = a * a / j;
+  // Where the derivative of Reach by v0 is 0: y^2 = 2 v0 in the short regime, v0 = b / 2 in the
+  // other.
+  double worst = 0.5 * b;
+  if (length < b * 2.0 * a / j) {
+    const double y = std::cbrt(0.5 * length * std::sqrt(j));
+    worst = 0.5 * y * y;
+  }
+  return Reach(std::min(worst, v0_high), length, limits);
+}
+
 SpeedProfile SpeedProfile::Span(double length, double v0, double v1, const PathLimits& limits) {
   SpeedProfile profile;
   profile.end_ = {std::max(length, 0.0), v1, 0.0};
-  if (!(length > 0.0)) return profile;
+  PathState state{0.0, v0, 0.0};
+  if (length > 0.0) profile.AddSpan(state, length, v1, limits);
+  return profile;
+}
+
+SpeedProfile SpeedProfile::From(const PathState& state, double end_s, double v1,
+                                const PathLimits& limits) {
+  SpeedProfile profile;
+  profile.end_ = {end_s, v1, 0.0};
+  profile.peak_speed_ = state.speed;
+  PathState now = state;
+  if (now.acceleration != 0.0 && std::isfinite(limits.jerk)) {
+    const double sign = now.acceleration > 0.0 ? 1.0 : -1.0;
+    profile.AddPhase(now, sign * now.acceleration / limits.jerk, now.acceleration,
+                     -sign * limits.jerk);
+  }
+  now.acceleration = 0.0;
+  PathLimits span = limits;
+  const double left = end_s - now.s;
+  const double slow = limits.speed;
+  if (now.speed > slow) {
+    const double down = RampLength(now.speed, slow, limits);
+    if (down + RampLength(slow, v1, limits) <= left) {
+      // The last part is one ramp more, of which the cruise at the new speed takes what is left.
+      profile.AddRamp(now, now.speed - slow, -1.0, slow, limits);
+    } else {
+      span.speed = now.speed;
+    }
+  }
+  if (end_s > now.s) profile.AddSpan(now, end_s, v1, span);
+  return profile;
+}
+
+// From state.s, with acceleration zero, to end_s.
+void SpeedProfile::AddSpan(PathState& state, double end_s, double v1, const PathLimits& limits) {
+  const double length = end_s - state.s;
+  const double v0 = state.speed;
   const double top = std::max(v0, v1);
   const double drop = std::abs(v1 - v0);
-  PathState state{0.0, v0, 0.0};
   const double direct = RampLength(v0, v1, limits);
   if (direct > length * (1.0 + kRoundingRoom)) {
-    // Speeds that differ in their last digits over a length that is nearly nothing: the ramp
-    // between two neighbouring numbers near 500 mm/s is longer than 1e-6 mm.
-    profile.peak_speed_ = top;
+    // The ends come from Reach, and a ramp this short hangs on the last digits of their difference
+    // (the ramp between two neighbouring numbers near 500 mm/s is longer than 1e-6 mm): the same
+    // ramp in the time that there is.
+    peak_speed_ = std::max(peak_speed_, top);
     const double time = 2.0 * length / (v0 + v1);
-    profile.AddPhase(state, time, (v1 - v0) / time, 0.0);
-    return profile;
+    const Ramp ramp = RampOf(drop, limits);
+    const double squeeze = time / ramp.duration_s;
+    constexpr double kSameShape = 0.99;  // below, the difference is nothing but rounding
+    const double sign = v1 > v0 ? 1.0 : -1.0;
+    if (ramp.edge_s == 0.0 || squeeze < kSameShape) {
+      AddPhase(state, time, sign * drop / time, 0.0);
+      return;
+    }
+    const double edge = ramp.edge_s * squeeze;
+    const double a = sign * ramp.acceleration / squeeze;
+    AddPhase(state, edge, 0.0, a / edge);
+    AddPhase(state, time - 2.0 * edge, a, 0.0);
+    AddPhase(state, edge, a, -a / edge);
+    return;
   }
 
   // The peak as a rise above the higher end: where the two are close, their difference has no
@@ -161,13 +225,12 @@ SpeedProfile SpeedProfile::Span(double length, double v0, double v1, const PathL
     cruise = 0.0;
   }
   const double peak = top + rise;
-  profile.peak_speed_ = peak;
-  if (!(peak > 0.0)) return profile;  // a length that underflows
+  peak_speed_ = std::max(peak_speed_, peak);
+  if (!(peak > 0.0)) return;  // a length that underflows
 
-  profile.AddRamp(state, v0 < v1 ? drop + rise : rise, 1.0, peak, limits);
-  if (cruise > kRoundingRoom * length) profile.AddPhase(state, cruise / peak, 0.0, 0.0);
-  profile.AddRamp(state, v0 < v1 ? rise : drop + rise, -1.0, v1, limits);
-  return profile;
+  AddRamp(state, v0 < v1 ? drop + rise : rise, 1.0, peak, limits);
+  if (cruise > kRoundingRoom * length) AddPhase(state, cruise / peak, 0.0, 0.0);
+  AddRamp(state, v0 < v1 ? rise : drop + rise, -1.0, v1, limits);
 }
 
 void SpeedProfile::AddPhase(PathState& state, double duration_s, double acceleration, double jerk) {

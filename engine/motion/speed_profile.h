@@ -25,17 +25,27 @@ struct PathState {
 class SpeedProfile {
  public:
   struct Phase {
-    double duration_s = 0.0;
-    double jerk = 0.0;
+    double duration_s;
+    double jerk;
     PathState start;
   };
-  static constexpr int kPhasesMax = 7;
+  static constexpr int kPhasesMax = 8;  // From: one more than a span
 
   SpeedProfile() = default;  // takes no time
+  SpeedProfile(const SpeedProfile& other) { *this = other; }
+  SpeedProfile& operator=(const SpeedProfile& other);  // only the phases there are
 
   // Precondition: length >= 0, limits above zero, v0 and v1 within limits.speed, and the change
   // from v0 to v1 fits into the length (see Reach).
   static SpeedProfile Span(double length, double v0, double v1, const PathLimits& limits);
+
+  // From any state on, to speed `v1` at `end_s`: first the acceleration is brought to zero, then
+  // over to the speed of `limits`, which may be below the present one (feed override, motion.md
+  // section 6). Where the way left is too short for that the present speed is kept for as long as
+  // it can be. Precondition: v1 can be reached, and it is not above limits.speed nor the present
+  // speed.
+  static SpeedProfile From(const PathState& state, double end_s, double v1,
+                           const PathLimits& limits);
 
   // `length` at one speed above 0.
   static SpeedProfile Steady(double length, double speed);
@@ -63,18 +73,35 @@ class SpeedProfile {
 
  private:
   void AddPhase(PathState& state, double duration_s, double acceleration, double jerk);
+  void AddSpan(PathState& state, double end_s, double v1, const PathLimits& limits);
   void AddRamp(PathState& state, double change, double sign, double to_speed,
                const PathLimits& limits);
 
-  std::array<Phase, kPhasesMax> phases_{};
+  std::array<Phase, kPhasesMax> phases_;  // the first count_
   int count_ = 0;
   double duration_s_ = 0.0;
   double peak_speed_ = 0.0;
   PathState end_;
 };
 
+inline SpeedProfile& SpeedProfile::operator=(const SpeedProfile& other) {
+  count_ = other.count_;
+  duration_s_ = other.duration_s_;
+  peak_speed_ = other.peak_speed_;
+  end_ = other.end_;
+  for (int k = 0; k < count_; ++k) {
+    phases_[static_cast<std::size_t>(k)] = other.phases_[static_cast<std::size_t>(k)];
+  }
+  return *this;
+}
+
 // The highest speed that can be reached from `v0` within `length`. motion.md 5.2.
 double Reach(double v0, double length, const PathLimits& limits);
+
+// The least of Reach over all starting speeds up to `v0_high`. It is not at 0: who starts from rest
+// has more time on the way, and with a limit on jerk time is worth more than speed until y^2 = 2 v0
+// (see Reach); at most 6 % below Reach(0).
+double ReachMinimum(double v0_high, double length, const PathLimits& limits);
 
 // Time and length of the ramp between two speeds.
 double RampTime(double v0, double v1, const PathLimits& limits);

@@ -16,4 +16,7 @@ const machine::MachineFamily* FindFamily(std::string_view id);
 // By the extension of a file name, compared without case: "part.SI". Null when no family claims it.
 const machine::MachineFamily* FamilyOfFileName(std::string_view name);
 
+// Whether a family reads files with this extension (".si").
+bool ClaimsExtension(const machine::FamilyInfo& info, std::string_view extension);
+
 }  // namespace rmlcell::simulation

@@ -13,10 +13,10 @@ namespace rmlcell::simulation {
 
 // What to make of a run besides its report.
 struct Products {
-  TraceSink trace;  // empty: no trace
+  TraceSink trace{};  // empty: no trace
   std::uint64_t trace_records_max = kTraceRecordsMax;
-  ToolpathSink toolpath;  // empty: no toolpath
-  ToolpathOptions toolpath_options;
+  ToolpathSink toolpath{};  // empty: no toolpath
+  ToolpathOptions toolpath_options{};
   bool picture = false;
   machine::RunObserver* also = nullptr;  // told everything too, before the products; may be null
 };

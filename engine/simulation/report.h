@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -95,6 +96,21 @@ struct AxisFigures {
   bool operator==(const AxisFigures&) const = default;
 };
 
+// How the moves of a program passed into each other; motion.md 4, 8.2. Every move counts once.
+struct CornerFigures {
+  std::uint64_t stops = 0;           // without /FLY, or where the program stands
+  std::uint64_t stops_with_fly = 0;  // OVERSH 0, a neighbour or a length that allows no blend
+  std::uint64_t reversals = 0;       // /FLY at a turn of more than 175 degrees: a stop
+  std::uint64_t through = 0;         // straight on, or at the vertex of a polyline
+  std::uint64_t blended = 0;         // at the speed that OVERSH asks for
+  std::uint64_t capped = 0;          // blended slower, because of a short neighbour or an axis
+  double deviation_mm_max = 0.0;     // of the path from a target
+  machine::Place deviation_place;
+  motion::Vec3 deviation_point;  // the tip in the middle of that corner
+
+  bool operator==(const CornerFigures&) const = default;
+};
+
 // Moves that never reached the feed rate asked for: too short, or held back by an axis or a radius.
 struct SpeedShortfall {
   std::uint64_t moves = 0;
@@ -103,6 +119,16 @@ struct SpeedShortfall {
   double reached_mm_s = 0.0;
 
   bool operator==(const SpeedShortfall&) const = default;
+};
+
+// How long the beam was on at which speed and power; both add up to the beam-on time.
+inline constexpr int kSpeedBins = 21;  // standing; then 5 % each of the highest tip speed
+inline constexpr int kPowerBins = 20;  // 5 % each: [0,5) ... [95,100]
+struct BeamHistogram {
+  std::array<SimTime, kSpeedBins> by_speed{};
+  std::array<SimTime, kPowerBins> by_power{};
+
+  bool operator==(const BeamHistogram&) const = default;
 };
 
 // A finding of the run; the same finding at the same step is counted, not repeated.
@@ -137,7 +163,8 @@ struct RunReport {
   std::string inputs_hash;  // of everything the run depends on; see input_description.h
   std::map<std::string, std::string> changed_parameters;  // those that differ from the defaults
 
-  machine::Outcome outcome;
+  bool finished = false;     // false: a report on the way
+  machine::Outcome outcome;  // meaningless before
   Timing timing = Timing::kExact;
   SimTime cycle_time{0};
   std::uint64_t steps_executed = 0;
@@ -147,6 +174,8 @@ struct RunReport {
   WorkFigures total;  // time.total() == cycle_time
   SimTime shutter_open{0};
   double energy_j_per_mm_max = 0.0;  // highest mean of a step
+  BeamHistogram beam;
+  CornerFigures corners;
   SpeedShortfall shortfall;
 
   machine::Box programmed;  // points as the program wrote them
@@ -159,7 +188,6 @@ struct RunReport {
   std::map<int, WorkFigures> programs;  // by slot; at most kReportedProgramsMax
   std::vector<StepFigures> steps;       // by program and step; the first kReportedStepsMax that ran
   WorkFigures rest;                     // of all other steps
-  std::uint64_t rest_steps = 0;         // executions counted there
 
   std::vector<Finding> findings;  // in order of first occurrence; at most machine::kDiagnosticsMax
   std::uint64_t findings_dropped = 0;

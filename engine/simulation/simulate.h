@@ -16,7 +16,7 @@ namespace rmlcell::simulation {
 //
 //   Simulation simulation(run, recorder);
 //   while (simulation.Step(slice) == machine::RunPhase::kRunning) Publish(simulation.state());
-//   SimulationResult result = simulation.Finish();
+//   RunReport report = simulation.Finish();
 //
 // Cutting virtual time into other slices changes nothing in the products.
 class Simulation {
@@ -38,6 +38,8 @@ class Simulation {
   machine::RunPhase phase() const { return phase_; }
   bool finished() const { return phase_ == machine::RunPhase::kFinished; }
   machine::RunState state() const { return run_.state(); }
+  std::uint64_t steps_executed() const { return run_.steps_executed(); }
+  bool cut_off() const { return recorder_.cut_off(); }  // a product is over its budget
 
   // The report so far, for people who watch.
   RunReport Report() const { return recorder_.Report(run_); }

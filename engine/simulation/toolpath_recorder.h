@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string_view>
 
@@ -37,13 +38,40 @@ class ToolpathRecorder final : public machine::RunObserver {
   bool complete() const { return !closed_; }
 
  private:
-  void AddPoint(const motion::Vec3& tip);
-  void Flush();
+  // What makes one run of motions: as long as it stays the same and time goes on without a pause,
+  // straight neighbours are merged.
+  struct Key {
+    int program = 0;
+    int step = 0;
+    machine::MotionUse use = machine::MotionUse::kTravel;
+    bool beam_on = false;
+    int speed_class = 0;
+    bool operator==(const Key&) const = default;
+  };
+  // The straight stretch that the last vertex belongs to.
+  struct Stretch {
+    motion::Vec3 anchor;     // its first vertex
+    motion::Vec3 direction;  // unit; zero while nothing was merged
+    motion::Vec3 last;       // its last vertex, which is the last point of the block
+    bool open = false;       // false: the last vertex stays, whatever comes
+  };
 
-  machine::MachineShape shape_;
-  ToolpathOptions options_;
+  void Vertex(const motion::Vec3& tip, SimTime at);
+  bool Merges(const motion::Vec3& tip);
+  void DropEmptyRun();
+  void OpenRun(const Key& key, const motion::Vec3& first, std::int64_t start_us);
+  void Flush();
+  int SpeedClassOf(const machine::MotionDone& done) const;
+
+  double speed_max_mm_s_;
+  double chord_tolerance_mm_;
+  double merge_tolerance_mm_;
+  std::uint64_t bytes_max_;
   ToolpathSink sink_;
   ToolpathBlock block_;
+  Key key_;
+  Stretch stretch_;
+  bool run_open_ = false;
   std::uint64_t points_ = 0;
   std::uint64_t bytes_ = 0;
   std::uint64_t blocks_ = 0;

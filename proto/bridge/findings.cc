@@ -242,9 +242,11 @@ google::rpc::Status ToRpcStatus(const Error& error, const std::vector<Diagnostic
   detail.set_advice(std::string(entry.advice));
   if (error.where) SetSpan(*error.where, *detail.mutable_place());
   // The place of the first error stands for all, for clients that look no further.
+  bool placed = false;
   for (const Diagnostic& diagnostic : diagnostics) {
-    if (!detail.has_place() && IsError(diagnostic.severity)) {
+    if (!placed && IsError(diagnostic.severity)) {
       *detail.mutable_place() = ToProto(diagnostic).place();
+      placed = true;
     }
     *detail.add_diagnostics() = ToProto(diagnostic);
   }

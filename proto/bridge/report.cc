@@ -131,7 +131,7 @@ v1::RunReport ToProto(const simulation::RunReport& report,
     made.set_line(step.line);
     *made.mutable_figures() = ToProto(step.figures);
   }
-  if (report.rest_steps > 0) *message.mutable_other_steps() = ToProto(report.rest);
+  if (report.rest.steps > 0) *message.mutable_other_steps() = ToProto(report.rest);
   for (const simulation::Finding& finding : report.findings) {
     v1::Diagnostic& diagnostic = *message.add_diagnostics();
     diagnostic = ToProto(finding.diagnostic);

@@ -66,6 +66,7 @@ struct Dispatcher::Worker {
   bool working = false;
   bool gone = false;
   bool idle = true;
+  bool will_look = false;  // a look for a job is in the queue and has not begun
   std::int64_t job = 0;               // 0: none; for Control
   std::optional<storage::Lease> lease;  // the same, for Control
 };
@@ -106,7 +107,7 @@ Result<Dispatcher::WorkerId> Dispatcher::Join(std::shared_ptr<WorkerLine> line, 
     workers_.emplace(worker->id, worker);
   }
   spdlog::info("worker {} joined (process {})", worker->name, hello.process_id());
-  Post(worker, [this, worker] { Assign(worker); });
+  PostLook(worker);
   return worker->id;
 }
 
@@ -175,19 +176,32 @@ void Dispatcher::Post(const std::shared_ptr<Worker>& worker, std::function<void(
   });
 }
 
+// A look that has not begun sees every job stored until now; one that has begun may have missed the last.
+void Dispatcher::PostLook(const std::shared_ptr<Worker>& worker) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (worker->will_look) return;
+    worker->will_look = true;
+  }
+  Post(worker, [this, worker] {
+    {
+      const std::lock_guard lock(mutex_);
+      worker->will_look = false;
+    }
+    Assign(worker);
+  });
+}
+
 void Dispatcher::WakeIdle() {
   if (draining_) return;
   std::vector<std::shared_ptr<Worker>> idle;
   {
     const std::lock_guard lock(mutex_);
     for (const auto& [id, worker] : workers_) {
-      // A worker with work in its queue looks for a job by itself when it has come to the end of it.
-      if (worker->idle && !worker->working) idle.push_back(worker);
+      if (worker->idle) idle.push_back(worker);
     }
   }
-  for (const auto& worker : idle) {
-    Post(worker, [this, worker] { Assign(worker); });
-  }
+  for (const auto& worker : idle) PostLook(worker);
 }
 
 void Dispatcher::Assign(const std::shared_ptr<Worker>& worker) {
@@ -222,7 +236,7 @@ void Dispatcher::Assign(const std::shared_ptr<Worker>& worker) {
         .state = storage::JobState::kFailed, .code = sent.error().code, .detail = sent.error().detail});
     (void)store_.Finish(job.lease, OutcomeOf(outcome), {}, {EndedEvent(outcome)});
     EndAssignment(*worker, false);
-    Post(worker, [this, worker] { Assign(worker); });
+    PostLook(worker);
   }
 }
 

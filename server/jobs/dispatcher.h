@@ -67,6 +67,7 @@ class Dispatcher {
   struct Assignment;
 
   void Post(const std::shared_ptr<Worker>& worker, std::function<void()> work);
+  void PostLook(const std::shared_ptr<Worker>& worker);
   void WakeIdle();
   void Assign(const std::shared_ptr<Worker>& worker);
   Status SendAssignment(Worker& worker, const storage::LeasedJob& leased);

@@ -1,6 +1,7 @@
 #include "tests/conformance/motion_case_kinds.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "engine/motion/feed_steps.h"
@@ -274,6 +275,87 @@ Figures Cut(const json& input) {
           {"T", beam_on}};
 }
 
+// One line from rest at ACCEL 100, without settling.
+PlannedMotion Cruise(const json& input, double percent) {
+  MoveCommand move;
+  move.path = PathPiece::Line({}, {{Number(input, "dist"), 0.0, 0.0}});
+  move.speed_fraction = Number(input, "speed") / 100.0 * percent / 100.0;
+  move.settles = false;
+  return Single(move);
+}
+
+Figures OverrideChange(const json& input) {
+  const double t = Number(input, "t");
+  const PlannedMotion before = Cruise(input, Number(input, "override0"));
+  const PlannedMotion wanted = Cruise(input, Number(input, "override1"));
+  const SpeedProfile rest =
+      SpeedProfile::From(before.speed.At(t), before.path.length(), 0.0, wanted.limits);
+  // The reference's peak is the speed that it settles to: the one half way through what is left.
+  return {{"T", t + rest.duration_s()}, {"v_peak", rest.At(0.5 * rest.duration_s()).speed}};
+}
+
+Figures StopResume(const json& input) {
+  const double t = Number(input, "t");
+  const PlannedMotion motion = Cruise(input, 100.0);
+  const SpeedProfile stop = motion.speed.StopFrom(t, motion.limits);
+  const double s = stop.end().s;
+  const SpeedProfile rest = SpeedProfile::Span(motion.path.length() - s, 0.0, 0.0, motion.limits);
+  return {{"T", t + stop.duration_s() + Number(input, "wait") + rest.duration_s()}, {"s_stop", s}};
+}
+
+Figures EndCondition(const json& input) {
+  constexpr double kTick_s = 0.048;
+  const double seen = std::ceil(Number(input, "t_true") / kTick_s - 1e-9) * kTick_s;
+  const PlannedMotion motion = Cruise(input, 100.0);
+  const SpeedProfile stop = motion.speed.StopFrom(seen, motion.limits);
+  return {{"t_seen", seen}, {"s_stop", stop.end().s}, {"T", seen + stop.duration_s()}};
+}
+
+// The motion test profile of motion.md section 7.
+MachineLimits TestMill() {
+  MachineLimits mill;
+  mill.tip_speed_mm_s = 15.0;
+  mill.tip_acceleration_mm_s2 = 200.0;
+  mill.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
+  mill.settling_s = 0.0;
+  mill.junction_jump_mm_s = 3.0;
+  mill.axes.speed.fill(kLargest);
+  mill.axes.acceleration.fill(kLargest);
+  mill.axes.jerk.fill(kLargest);
+  return mill;
+}
+
+// One chain from rest to rest; with a dwell before each move every vertex is a stop.
+Figures MillPath(const json& input, double speed, double dwell) {
+  const json& points = input.at("points");
+  Planner planner(TestMill());
+  double time = 0.0;
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    MoveCommand move;
+    move.path = PathPiece::Line({Point(points.at(k - 1))}, {Point(points.at(k))});
+    move.speed_fraction = speed / planner.limits().tip_speed_mm_s;
+    move.fly = dwell == 0.0;
+    move.tag = k;
+    if (!planner.Append(move)) return {{"kind", -1.0}};
+    time += dwell;
+  }
+  planner.Stop();
+  Figures figures;
+  while (const std::optional<PlannedItem> item = planner.Next()) {
+    const auto& motion = std::get<PlannedMotion>(*item);
+    time += motion.duration_s();
+    if (motion.ends_move) figures[Numbered("v", motion.tag)] = motion.corner.speed;
+  }
+  figures["T"] = time;
+  return figures;
+}
+
+Figures MillJob(const json& input) {
+  double time = Number(input, "spin_up");
+  for (const json& leg : input.at("legs")) time += MillPath(leg, Number(leg, "speed"), 0.0)["T"];
+  return {{"T", time}};
+}
+
 }  // namespace
 
 std::optional<Figures> Compute(const json& input) {
@@ -293,6 +375,11 @@ std::optional<Figures> Compute(const json& input) {
   if (f == "cut") return Cut(input);
   if (f == "quant") return Figures{{"v", FeedSteps{}.Nearest(Number(input, "value"))}};
   if (f == "plan") return PlanCase(input);
+  if (f == "override_change") return OverrideChange(input);
+  if (f == "stop_resume") return StopResume(input);
+  if (f == "end_condition") return EndCondition(input);
+  if (f == "rml_path") return MillPath(input, Number(input, "speed"), Number(input, "dwell"));
+  if (f == "rml_job") return MillJob(input);
   return std::nullopt;
 }
 

@@ -19,8 +19,8 @@ namespace rmlcell::optimo {
 
 // An executable as it was loaded.
 struct LoadedProgram {
-  Executable executable;
-  std::vector<ModuleIndex> index;  // parallel to executable.modules
+  Executable executable{};
+  std::vector<ModuleIndex> index{};  // parallel to executable.modules
 
   int slot() const { return executable.modules.front().slot; }
 };
@@ -31,8 +31,8 @@ Loaded Load(Executable executable);
 struct Frame {
   int module = 0;                        // of the executable
   std::uint32_t next = 0;                // instruction
-  std::vector<std::uint32_t> returns;    // of GOSUB
-  std::optional<int> error_label;        // ERR, OPT-3.57
+  std::vector<std::uint32_t> returns{};    // of GOSUB
+  std::optional<int> error_label{};        // ERR, OPT-3.57
   std::array<float, kParameterCount> parameters{};
 };
 
@@ -57,122 +57,130 @@ struct ProgramTimer {
 
 // A program that runs or waits for the one that it CALLed.
 struct ProgramContext {
-  Loaded program;
-  std::vector<Frame> frames;  // main module first
-  Modal modal;
-  Processes processes;
-  std::optional<ProgramTimer> timer;
+  Loaded program{};
+  std::vector<Frame> frames{};  // main module first
+  Modal modal{};
+  Processes processes{};
+  std::optional<ProgramTimer> timer{};
   SimTime timer_left{0};  // stands still while a CALLed program runs, OPT-B.89
 };
 
 // What is told when a motion is over.
 struct MoveNote {
-  machine::Place place;
-  motion::Vec3 program_point;
+  machine::Place place{};
+  motion::Vec3 program_point{};
   double program_a = 0.0;
   double program_b = 0.0;
   double feed_mm_s = 0.0;
   PathType path = PathType::kPtp;
-  bool last = true;      // of its MOVE
-  bool has_end = false;  // /END: may end on the way
+  bool last = true;  // of its MOVE; false: the lead of a hole
+  bool fly = false;
+  motion::MoveCommand::Kind kind = motion::MoveCommand::Kind::kContour;
+  double speed_percent = 0.0;  // as programmed; for a change of the override on the way
+  double accel_fraction = 1.0;
 };
 
-// A motion under way. Its path variable is offset + speed.At(t).s.
+// A motion under way.
 struct ActiveMotion {
-  motion::PlannedMotion motion;
-  MoveNote note;
-  double offset = 0.0;
+  motion::PlannedMotion motion{};
+  MoveNote note{};
   SimTime start{0};
-  SimTime arrival{0};   // end of the profile
-  SimTime end{0};       // with settling
-  SimTime told{0};      // parts up to here were reported
-  bool arrived = false;
-  bool halting = false;  // the profile is a ramp to rest of STOP: more is to come after START
-  bool ended = false;    // brought to rest by /END, /TIME or a MOVE that takes over
+  SimTime arrival{0};  // end of the profile
+  SimTime end{0};      // with settling
+  SimTime told{0};     // parts up to here were reported
+  bool ended = false;  // brought to rest by /END, /TIME or a MOVE that takes over
+
+  double s_at(SimTime time) const { return motion.speed.At(ToSeconds(time - start)).s; }
 };
 
 // Something visible that happens between two motions (planner marks).
-struct Effect {
+struct PassageEffect {
   enum class Kind { kOutput, kAnalogue, kBeamOn, kBeamOff, kSchedule, kTable };
   Kind kind = Kind::kOutput;
-  machine::Place place;
+  machine::Place place{};
   int index = 0;
   double value = 0.0;
-  machine::PowerLaw power;
+  machine::PowerBySpeed power{};
 };
 
 // What the control waits for before it goes on with the program.
 struct Pending {
   enum class Kind {
     kNone,
-    kStandstill,   // motions to be over, then the instruction is carried out
-    kTime,         // until `until`
-    kCondition,    // until the expression is true
-    kMotion,       // the foreground motion to be over
-    kTakeOver,     // the /NEXT motion to come to rest, then the MOVE is made
+    kStandstill,  // motions to be over, then the program goes on at the same instruction
+    kTime,        // until `until`
+    kCondition,   // until the expression of the instruction is true, then it is carried out
+    kTakeOver,    // the next tick, when the /NEXT motion is brought to rest
   };
   Kind kind = Kind::kNone;
   SimTime since{0};
   SimTime until{0};
   machine::WaitKind wait = machine::WaitKind::kDwell;
-  bool told_power = false;
-  double power_percent = 0.0;
-  std::uint32_t expression = 0;  // kCondition: of the module of the frame
-  bool after_start = false;      // kCondition of /START: the condition was met
+  double power_percent = 0.0;    // kTime: of the beam meanwhile
+  std::uint32_t expression = 0;  // kCondition: of the module of the innermost frame
 };
 
 // Dry run up to a step, OPT-6.12 to 6.30.
 struct Simulated {
   bool active = false;
-  machine::ProgramStep until;
+  machine::ProgramStep until{};
   Bits ol_changed{};
   int schedule = 0;
 };
 
 struct ControlState {
-  MachineState machine;
+  MachineState machine{};
   machine::RunPhase phase = machine::RunPhase::kRunning;
-  machine::Outcome outcome;
+  machine::Outcome outcome{};
   machine::Mode mode = machine::Mode::kCycle;
   double override_percent = 100.0;
-  std::optional<machine::ProgramStep> breakpoint;
-  Simulated simulated;
+  std::optional<machine::ProgramStep> breakpoint{};
+  Simulated simulated{};
 
   SimTime now{0};
   std::uint64_t steps = 0;
   std::size_t next_input = 0;  // of the script
-  std::vector<ProgramContext> programs;  // innermost last
-  Pending pending;
+  std::vector<ProgramContext> programs{};  // innermost last
+  Pending pending{};
 
   motion::Planner planner;
-  motion::AxisPose planned_axes;  // after everything that was appended
+  motion::AxisPose planned_axes{};  // after everything that was appended
   std::uint64_t next_tag = 1;
-  std::deque<std::pair<std::uint64_t, MoveNote>> notes;
-  std::deque<std::pair<std::uint64_t, Effect>> effects;
-  std::deque<motion::PlannedItem> timeline;
-  std::optional<ActiveMotion> active;
-  std::optional<ActiveMotion> interrupted;  // STOP: the rest of it follows at START
-  bool background = false;                  // the motion under way is one of /NEXT
-  SimTime move_since{0};                    // of the MOVE in the foreground
-  int transparent = 0;                      // instructions executed ahead of a motion
+  std::deque<std::pair<std::uint64_t, MoveNote>> notes{};
+  std::deque<std::pair<std::uint64_t, PassageEffect>> effects{};
+  std::deque<motion::PlannedItem> timeline{};
+  std::optional<ActiveMotion> active{};
+  std::deque<motion::PlannedItem> interrupted{};  // STOP: what follows at START
+  bool halting = false;  // coming to rest for a STOP
+  bool passing = false;     // the planner may hold a /FLY motion back
+  bool background = false;  // the motion under way is one of /NEXT
+  bool condition_met = false;  // /START of the instruction in execution was true
+  SimTime instruction_since{0};
+  int run_ahead = 0;        // instructions executed since the last motion
 
-  std::optional<int> move_time_label;  // /TIME armed
-  SimTime move_time_due{0};
-  std::optional<std::uint32_t> move_end;  // /END: instruction of the innermost frame
+  std::optional<std::uint64_t> watched_move{};   // tag of the motion with /END or /TIME
+  std::optional<std::uint32_t> end_condition{};  // expression of /END, module of the innermost frame
+  std::optional<int> time_label{};               // GOSUB of /TIME
+  SimTime time_due{0};
+  SimTime watched_since{0};
+  bool time_ran_out = false;
 
+  bool input_changed = false;  // conditions are to be tested again
   bool hold_requested = false;
-  bool single_step_done = false;
-  bool after_break = false;
-  std::string_view halt_reason;
+  bool stop_requested = false;   // STOP on a motion that cannot be left just now
+  bool halt_after_step = false;  // SINGLE, breakpoint
+  bool beam_returns = false;     // START brings it back (OPT-B.34)
+  std::string_view halt_reason{};
   SimTime halted_at{0};
-  machine::Place place;  // of the instruction in execution
+  std::optional<Error> deferred{};  // raised ahead of motion: handled when it is over
+  machine::Place place{};  // of the instruction in execution
   Op op = Op::kInvalid;
 
-  Beam beam;
-  double programmed_power_percent = 0.0;
+  Beam beam{};
+  machine::PowerBySpeed power_before_pierce{};
   int gas = 1;
-  std::map<int, std::string> made_executables;
-  std::map<int, Loaded> loaded;  // executables of this run, by slot
+  std::map<int, std::string> made_executables{};
+  std::map<int, Loaded> loaded{};  // executables of this run, by slot
   bool speed_limited_told = false;
 
   explicit ControlState(const motion::MachineLimits& limits) : planner(limits) {}

@@ -12,7 +12,7 @@ bool Processes::flag(int process) const {
   return std::ranges::any_of(on, [&](const auto& kind) { return kind[static_cast<std::size_t>(process)]; });
 }
 
-machine::PowerLaw RampedPower(const WorkDefinition& definition, double tip_speed_max_mm_s) {
+machine::PowerBySpeed RampedPower(const WorkDefinition& definition, double tip_speed_max_mm_s) {
   return {.constant_percent = 0.0,
           .percent_per_mm_s = definition.power_percent * 100.0 / (definition.speed_percent * tip_speed_max_mm_s)};
 }

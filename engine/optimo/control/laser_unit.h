@@ -23,7 +23,7 @@ struct WorkDefinition {
 // The WORKDEFs of one program and which processes it has ON. OPT-3.11, 3.12
 struct Processes {
   using Table = std::array<std::array<std::optional<WorkDefinition>, kProcessesPerKind>, kProcessKinds>;
-  Table definitions;
+  Table definitions{};
   std::array<std::array<bool, kProcessesPerKind>, kProcessKinds> on{};
 
   bool any_on() const;
@@ -34,13 +34,12 @@ struct Processes {
 // What the beam does: of the laser itself, one per machine. Times and events are the caller's.
 struct Beam {
   bool on = false;
-  bool suspended = false;  // off while motion is held; comes back with START (OPT-B.34)
-  machine::PowerLaw power;
+  machine::PowerBySpeed power{};
   bool shutter_open = false;
   bool shutter_was_open = false;  // closed by the door; START opens it again (OPT-3.62)
 };
 
 // WORKDEF 1 after its dwell: proportional to the tip speed (OPT-3.39, motion.md 8.1).
-machine::PowerLaw RampedPower(const WorkDefinition& definition, double tip_speed_max_mm_s);
+machine::PowerBySpeed RampedPower(const WorkDefinition& definition, double tip_speed_max_mm_s);
 
 }  // namespace rmlcell::optimo

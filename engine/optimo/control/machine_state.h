@@ -43,16 +43,16 @@ struct WorkOffsetState {
 
 // TCP in force: tool offset, and the reference point that decides the jog direction. OPT-4.64
 struct ToolState {
-  motion::ToolOffset offset;
+  motion::ToolOffset offset{};
   std::array<double, 3> reference{0.0, 0.0, -5.0};  // OPT-4.68
 };
 
 // All that a machine keeps from one run to the next. A value.
 struct MachineState {
-  DataArea data;
-  motion::AxisPose axes;
-  ToolState tool;
-  WorkOffsetState work_offset;
+  DataArea data{};
+  motion::AxisPose axes{};
+  ToolState tool{};
+  WorkOffsetState work_offset{};
   int schedule = 0;  // active laser schedule; 0: none was selected, OPT-3.26
   bool zeroed = true;
   bool door_open = false;

@@ -1,0 +1,332 @@
+#include "clients/cli/local.h"
+
+#include <cstdio>
+#include <map>
+
+#include "clients/cli/messages.h"
+#include "clients/cli/program_files.h"
+#include "clients/cli/terminal.h"
+#include "engine/core/number_text.h"
+#include "engine/simulation/facts.h"
+#include "engine/simulation/simulate.h"
+#include "proto/bridge/files.h"
+#include "proto/bridge/findings.h"
+#include "proto/bridge/report.h"
+#include "proto/bridge/setup.h"
+
+namespace rmlcell::cli {
+namespace {
+
+// A wrong use or an unreadable file; the exit code tells which.
+int Refuse(const Error& error) {
+  Complain(bridge::ErrorText(error));
+  return kUsage;
+}
+
+Result<bridge::MachineFile> ReadMachine(const std::string& path) {
+  if (path.empty()) return bridge::MachineFile{};
+  const Result<std::string> text = bridge::ReadFile(path, kFileBytesMax);
+  if (!text) return text.error();
+  return bridge::ParseMachineFile(*text, path);
+}
+
+Status WriteFile(const std::string& path, std::string_view bytes) {
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  if (file == nullptr) return Error{ErrorCode::kCellFileUnwritable, path, {}};
+  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+  const bool closed = std::fclose(file) == 0;
+  if (!written || !closed) return Error{ErrorCode::kCellFileUnwritable, path, {}};
+  return {};
+}
+
+void PrintDiagnostics(const std::vector<Diagnostic>& diagnostics, std::uint64_t dropped, std::string_view source) {
+  for (const Diagnostic& diagnostic : diagnostics) {
+    const std::string text = FormatDiagnostic(diagnostic, source);
+    const Colour colour = IsError(diagnostic.severity) ? Colour::kRed : Colour::kYellow;
+    const std::size_t line_end = text.find('\n');
+    Print(Paint(text.substr(0, line_end), colour, ColourOnOutput()) +
+          (line_end == std::string::npos ? "" : text.substr(line_end)));
+  }
+  if (dropped > 0) Print("and " + std::to_string(dropped) + " more findings");
+}
+
+Result<v1::StepPlace> ParseStepPlace(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  const auto program = slash == std::string::npos ? std::optional<long long>(0) : ParseInteger(text.substr(0, slash));
+  const auto step = ParseInteger(slash == std::string::npos ? text : text.substr(slash + 1));
+  if (!program || !step || *program < 0 || *program > 99 || *step < 1 || *step > 1'000'000'000) {
+    return Error{ErrorCode::kCellUsage, "'" + text + "': write PROGRAM/STEP, such as 45/7", {}};
+  }
+  v1::StepPlace place;
+  place.set_program(static_cast<int>(*program));
+  place.set_step(static_cast<int>(*step));
+  return place;
+}
+
+Result<v1::OperatingMode> ParseMode(const std::string& text) {
+  const std::map<std::string, v1::OperatingMode> modes = {{"cycle", v1::OPERATING_MODE_CYCLE},
+                                                          {"remote", v1::OPERATING_MODE_REMOTE},
+                                                          {"single", v1::OPERATING_MODE_SINGLE},
+                                                          {"repeat", v1::OPERATING_MODE_REPEAT}};
+  const auto found = modes.find(text);
+  if (found != modes.end()) return found->second;
+  return Error{ErrorCode::kCellUsage, "'" + text + "': modes are cycle, remote, single, repeat", {}};
+}
+
+// "steps=1000,time=60"
+Status ParseBudget(const std::string& text, v1::Budget& budget) {
+  std::string_view rest = text;
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find(','), rest.size());
+    const std::string_view part = rest.substr(0, end);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    const std::size_t equals = part.find('=');
+    const auto value = equals == std::string_view::npos ? std::nullopt : ParseDouble(part.substr(equals + 1));
+    if (value && *value > 0.0 && part.substr(0, equals) == "steps") {
+      budget.set_steps(static_cast<std::int64_t>(*value));
+    } else if (value && *value > 0.0 && part.substr(0, equals) == "time") {
+      budget.set_virtual_time_s(*value);
+    } else {
+      return Error{ErrorCode::kCellUsage, "'" + std::string(part) + "': write steps=N,time=SECONDS", {}};
+    }
+  }
+  return {};
+}
+
+std::vector<std::string> SplitCommas(const std::string& text) {
+  std::vector<std::string> parts;
+  std::string_view rest = text;
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find(','), rest.size());
+    if (end > 0) parts.emplace_back(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return parts;
+}
+
+// The options of the command line as the message that jobs have too.
+Result<v1::SimulationOptions> OptionsMessage(const SimulateOptions& options) {
+  v1::SimulationOptions message;
+  const Result<v1::OperatingMode> mode = ParseMode(options.mode);
+  if (!mode) return mode.error();
+  message.set_mode(*mode);
+  if (!(options.override_percent > 0.0 && options.override_percent <= 145.0)) {
+    return Error{ErrorCode::kCellUsage, "--override: allowed are above 0 to 145", {}};
+  }
+  message.set_override_percent(options.override_percent);
+  if (!options.simul.empty()) {
+    const Result<v1::StepPlace> place = ParseStepPlace(options.simul);
+    if (!place) return place.error();
+    *message.mutable_simul() = *place;
+  }
+  if (!options.breakpoint.empty()) {
+    const Result<v1::StepPlace> place = ParseStepPlace(options.breakpoint);
+    if (!place) return place.error();
+    *message.mutable_breakpoint() = *place;
+  }
+  if (!options.inputs_file.empty()) {
+    const Result<std::string> text = bridge::ReadFile(options.inputs_file, kFileBytesMax);
+    if (!text) return text.error();
+    if (Status parsed = bridge::ParseInputFile(*text, options.inputs_file, message); !parsed) return parsed.error();
+  }
+  return message;
+}
+
+// --executable 44 makes the executable of program 44 beforehand; --executable 44=FILE brings one.
+Status AddExecutables(const SimulateOptions& options, const machine::MachineFamily& family,
+                      std::vector<bridge::ProgramInput>& programs, std::vector<int>& to_make) {
+  for (const std::string& text : options.executables) {
+    const Result<std::pair<int, std::string>> named = ParseSlotFile(text);
+    if (!named) return named.error();
+    if (named->second.empty()) {
+      to_make.push_back(named->first);
+      continue;
+    }
+    Result<std::string> bytes = bridge::ReadFile(named->second, kFileBytesMax);
+    if (!bytes) return bytes.error();
+    if (const Status good = family.CheckExecutable(*bytes); !good) return good;
+    for (bridge::ProgramInput& program : programs) {
+      if (program.slot == named->first) program.executable = std::make_shared<const std::string>(*bytes);
+    }
+  }
+  return {};
+}
+
+// Runs program `slot` far enough to make its executable: the control makes it at START (OPT-1.11).
+Status MakeExecutable(const machine::MachineFamily& family, machine::RunSetup& setup, int slot) {
+  machine::RunSetup short_setup = setup;
+  short_setup.main_program = slot;
+  machine::RunObserver nobody;
+  const Result<std::unique_ptr<machine::Run>> run = family.NewRun(std::move(short_setup), nobody);
+  if (!run) return run.error();
+  const std::map<int, std::string> made = (*run)->made_executables();
+  const auto found = made.find(slot);
+  if (found == made.end()) {
+    return Error{(*run)->outcome().code.value_or(ErrorCode::kProgramMissing), (*run)->outcome().detail, {}};
+  }
+  setup.programs[slot].executable = std::make_shared<const std::string>(found->second);
+  return {};
+}
+
+}  // namespace
+
+int Check(const CheckOptions& options) {
+  const Result<bridge::MachineFile> machine = ReadMachine(options.machine_file);
+  if (!machine) return Refuse(machine.error());
+  int exit_code = kGood;
+  for (const std::string& file : options.files) {
+    const auto family = FamilyFor(options.family.empty() ? machine->family : options.family, file);
+    if (!family) return Refuse(family.error());
+    const auto parameters = bridge::MakeParameters(**family, machine->profile, machine->parameters);
+    if (!parameters) return Refuse(parameters.error());
+    const Result<std::string> text = bridge::ReadFile(file, kFileBytesMax);
+    if (!text) return Refuse(text.error());
+    if (text->empty()) return Refuse({ErrorCode::kCellEmptyProgram, file, {}});
+    const machine::Translation translation =
+        (*family)->Translate({.name = file, .bytes = *text}, *parameters, {.advice = !options.errors_only});
+    if (!translation.ok) exit_code = kProgramErrors;
+    if (options.json) {
+      Print(Json(bridge::FindingsOf(translation.ok, translation.diagnostics, translation.diagnostics_dropped,
+                                    translation.figures)));
+      continue;
+    }
+    PrintDiagnostics(translation.diagnostics, translation.diagnostics_dropped, *text);
+    std::string line = file + ": " + (translation.ok ? "good" : "has errors");
+    for (const machine::Figure& figure : translation.figures) {
+      line += ", " + figure.name + " " + ShortestText(figure.value) + (figure.unit.empty() ? "" : " " + figure.unit);
+    }
+    Print(line);
+  }
+  return exit_code;
+}
+
+int Simulate(const SimulateOptions& options) {
+  const Result<bridge::MachineFile> machine = ReadMachine(options.machine_file);
+  if (!machine) return Refuse(machine.error());
+  Result<LoadedFiles> loaded = LoadFiles(options.files, options.slots, options.main_slot,
+                                         options.family.empty() ? machine->family : options.family);
+  if (!loaded) return Refuse(loaded.error());
+  const Result<v1::SimulationOptions> message = OptionsMessage(options);
+  if (!message) return Refuse(message.error());
+  v1::Budget budget;
+  if (Status parsed = ParseBudget(options.budget, budget); !parsed) return Refuse(parsed.error());
+  const auto variables = bridge::ExpandVariables(SplitCommas(options.variables));
+  if (!variables) return Refuse(variables.error());
+  std::vector<int> executables_to_make;
+  if (Status added = AddExecutables(options, *loaded->family, loaded->programs, executables_to_make); !added) {
+    return Refuse(added.error());
+  }
+  std::string state;
+  if (!options.state_in.empty()) {
+    Result<std::string> bytes = bridge::ReadFile(options.state_in, kFileBytesMax);
+    if (!bytes) return Refuse(bytes.error());
+    state = std::move(*bytes);
+  }
+
+  const bridge::SetupInput input{.family = loaded->family,
+                                 .profile = options.profile.empty() ? machine->profile : options.profile,
+                                 .parameters = machine->parameters,
+                                 .programs = loaded->programs,
+                                 .main_program = loaded->main_slot,
+                                 .schedules = std::nullopt,
+                                 .machine_state = state,
+                                 .default_mode = machine::Mode::kCycle};
+  Result<bridge::SetupOutcome> outcome = bridge::MakeSetup(input, *message, budget);
+  if (!outcome) return Refuse(outcome.error());
+  if (!outcome->setup) {
+    if (options.json) {
+      Print(Json(bridge::FindingsOf(false, outcome->diagnostics, outcome->diagnostics_dropped, {})));
+    } else {
+      std::string_view source;
+      if (loaded->programs.size() == 1) source = *loaded->programs.front().bytes;
+      PrintDiagnostics(outcome->diagnostics, outcome->diagnostics_dropped, source);
+    }
+    return kProgramErrors;
+  }
+  for (const int slot : executables_to_make) {
+    if (Status made = MakeExecutable(*loaded->family, *outcome->setup, slot); !made) return Refuse(made.error());
+  }
+
+  simulation::SimulationRequest request;
+  v1::RunReport traced;
+  if (options.trace && options.json) {
+    request.products.trace = [&](const simulation::TraceRecord& record) {
+      *traced.add_trace_records() = bridge::ToProto(record);
+      return true;
+    };
+  } else if (options.trace) {
+    request.products.trace = [](const simulation::TraceRecord& record) {
+      Print(simulation::TraceText(record));
+      return true;
+    };
+  }
+  request.products.picture = !options.svg.empty();
+  request.variables = *variables;
+  ProgressLine progress;
+  request.options.slice = std::chrono::seconds(10);
+  int slices = 0;
+  request.options.progress = [&](const simulation::Progress& here) {
+    if (++slices % 16 == 0 && !options.json) {
+      progress.Show(here.state.progress, Fixed(ToSeconds(here.state.time), 1) + " s of virtual time");
+    }
+    return true;
+  };
+  const Result<simulation::SimulationResult> result =
+      simulation::Simulate(*loaded->family, std::move(*outcome->setup), std::move(request));
+  progress.Clear();
+  if (!result) return Refuse(result.error());
+
+  if (!options.svg.empty()) {
+    if (Status written = WriteFile(options.svg, result->svg); !written) return Refuse(written.error());
+  }
+  if (!options.state_out.empty()) {
+    if (Status written = WriteFile(options.state_out, result->machine_state); !written) return Refuse(written.error());
+  }
+  v1::RunReport report = bridge::ToProto(result->report, result->variables);
+  if (options.json) {
+    report.mutable_trace_records()->Swap(traced.mutable_trace_records());
+    Print(Json(report));
+  } else if (options.facts) {
+    PrintRaw(simulation::FactsText(result->report));
+    for (const auto& [name, value] : result->variables) Print("variable." + name + ": " + value);
+  } else {
+    PrintDiagnostics(outcome->diagnostics, outcome->diagnostics_dropped, {});
+    PrintRaw(ReportText(report));
+  }
+  const machine::OutcomeKind kind = result->report.outcome.kind;
+  return kind == machine::OutcomeKind::kCompleted || kind == machine::OutcomeKind::kStopped ? kGood : kProgramErrors;
+}
+
+int Explain(const std::vector<std::string>& codes, bool json) {
+  int exit_code = kGood;
+  std::vector<const CatalogueEntry*> entries;
+  if (codes.empty()) {
+    for (const CatalogueEntry& entry : Catalogue()) entries.push_back(&entry);
+  }
+  for (const std::string& code : codes) {
+    const auto found = FindByText(code);
+    if (found.empty()) {
+      Complain("no error '" + code + "'; rmlcell explain without a code lists them all");
+      exit_code = kUsage;
+    }
+    entries.insert(entries.end(), found.begin(), found.end());
+  }
+  for (const CatalogueEntry* entry : entries) {
+    if (json) {
+      Print(Json(bridge::Explain(*entry)));
+      continue;
+    }
+    if (codes.empty()) {
+      Print(CodeText(entry->code) + "  " + ConstantName(entry->code) + ": " + std::string(entry->when));
+      continue;
+    }
+    Print(Paint(CodeText(entry->code), Colour::kBold, ColourOnOutput()) + "  " + ConstantName(entry->code) + "  (" +
+          std::string(SeverityName(entry->severity)) + ")");
+    Print("  what happened:  " + std::string(entry->when));
+    Print("  the machine:    " + std::string(SeverityEffect(entry->severity)));
+    Print("  what to do:     " + std::string(entry->advice));
+  }
+  return exit_code;
+}
+
+}  // namespace rmlcell::cli

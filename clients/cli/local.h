@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace rmlcell::cli {
+
+// Verbs that need no server.
+struct CheckOptions {
+  std::vector<std::string> files;
+  std::string family;
+  std::string machine_file;
+  bool errors_only = false;
+  bool json = false;
+};
+int Check(const CheckOptions& options);
+
+struct SimulateOptions {
+  std::vector<std::string> files;      // programs and folders; the first program is started
+  std::vector<std::string> slots;      // "44=FILE"
+  std::vector<std::string> executables;  // "44", or "44=FILE"
+  int main_slot = 0;                   // 0: from the file name, else 1
+  std::string family;
+  std::string profile;
+  std::string machine_file;
+  std::string inputs_file;
+  std::string mode = "cycle";
+  double override_percent = 100.0;
+  std::string simul;       // "P/S"
+  std::string breakpoint;  // "P/S"
+  std::string budget;      // "steps=N,time=S"
+  std::string variables;   // "VR[0..9],VI[99]"
+  std::string svg;
+  std::string state_in;
+  std::string state_out;
+  bool trace = false;
+  bool facts = false;
+  bool json = false;
+};
+int Simulate(const SimulateOptions& options);
+
+int Explain(const std::vector<std::string>& codes, bool json);
+
+}  // namespace rmlcell::cli

@@ -1,0 +1,199 @@
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+
+#include "clients/cli/local.h"
+#include "clients/cli/remote.h"
+#include "clients/cli/terminal.h"
+#include "clients/cli/version.h"
+
+// The rmlcell command: what it can do, and nothing of how.
+namespace {
+
+using namespace rmlcell::cli;  // NOLINT: this file is nothing but the wiring of that folder
+
+constexpr const char* kExamples = R"(examples:
+  rmlcell check part.S                          what is wrong with a program, and where
+  rmlcell simulate part.rml --svg part.svg      time, lengths and a picture, without a server
+  rmlcell simulate 32.S progs/ --trace          progs/44.S and the like fill the program memory
+  rmlcell explain 348                           what an error code means
+  rmlcell put mill-1 7 part.rml                 store a program in slot 7 of a machine
+  rmlcell submit mill-1 --slot 7 --watch        run it as a job and watch it live
+  rmlcell submit optimo-1 part.S --watch        run a file without storing it
+  rmlcell report 17; rmlcell picture 17 -o p.svg
+
+Each verb has its own --help. Verbs that need a server take --server HOST:PORT or unix:/PATH
+(environment: RMLCELL_SERVER). Exit codes: 0 good, 1 the program has errors, 2 wrong use, 3 server.)";
+
+void AddLocalVerbs(CLI::App& app, int& exit_code) {
+  {
+    auto options = std::make_shared<CheckOptions>();
+    CLI::App* verb = app.add_subcommand("check", "Say what is wrong with programs, without running them");
+    verb->add_option("FILES", options->files, "programs")->required();
+    verb->add_option("--family", options->family, "optimo or rml1; default: from the file name");
+    verb->add_option("--machine", options->machine_file, "machine file (TOML): family, profile, [parameters]");
+    verb->add_flag("--errors-only", options->errors_only, "leave warnings and advice out");
+    verb->add_flag("--json", options->json, "print findings as JSON, one line a file");
+    verb->callback([options, &exit_code] { exit_code = Check(*options); });
+  }
+  {
+    auto options = std::make_shared<SimulateOptions>();
+    CLI::App* verb = app.add_subcommand("simulate", "Run a program in virtual time and report");
+    verb->add_option("FILES", options->files, "the program, then further ones or folders of 12.S, 44.S ...");
+    verb->add_option("--slot", options->slots, "44=FILE: a further program of the memory")->expected(-1)->allow_extra_args(false);
+    verb->add_option("--main", options->main_slot, "slot of the program that is started")->check(CLI::Range(1, 99));
+    verb->add_option("--executable", options->executables,
+                     "44: make the executable of program 44 beforehand; 44=FILE: bring one")->allow_extra_args(false);
+    verb->add_option("--family", options->family, "optimo or rml1; default: from the file name");
+    verb->add_option("--profile", options->profile, "named machine, such as srm-20 or pw-1993");
+    verb->add_option("--machine", options->machine_file, "machine file (TOML): family, profile, [parameters]");
+    verb->add_option("--inputs", options->inputs_file, "external inputs and keys over time, a line each: 0.5 IL[20] = 1");
+    verb->add_option("--mode", options->mode, "cycle (START given once), remote, single, repeat");
+    verb->add_option("--override", options->override_percent, "feed override, percent");
+    verb->add_option("--simul", options->simul, "P/S: dry run up to step S of program P");
+    verb->add_option("--break", options->breakpoint, "P/S: halt after step S of program P");
+    verb->add_option("--budget", options->budget, "steps=N,time=SECONDS: end the run when it needs more");
+    verb->add_option("--vars", options->variables, "variables to show at the end: VR[0..9],VI[99]");
+    verb->add_option("--svg", options->svg, "write a picture of the toolpath");
+    verb->add_option("--state-in", options->state_in, "machine state of an earlier run");
+    verb->add_option("--state-out", options->state_out, "keep the machine state for a later run");
+    verb->add_flag("--trace", options->trace, "list all that was observable, in order");
+    verb->add_flag("--facts", options->facts, "key: value lines for scripts (docs/facts.md)");
+    verb->add_flag("--json", options->json, "print the report as JSON");
+    verb->callback([options, &exit_code] { exit_code = Simulate(*options); });
+  }
+  {
+    auto codes = std::make_shared<std::vector<std::string>>();
+    auto json = std::make_shared<bool>(false);
+    CLI::App* verb = app.add_subcommand("explain", "Say what an error code means and what to do about it");
+    verb->add_option("CODES", *codes, "348, OPT-E348, HOLE_RADIUS_ZERO; none: list all");
+    verb->add_flag("--json", *json, "as JSON, one line each");
+    verb->callback([codes, json, &exit_code] { exit_code = Explain(*codes, *json); });
+  }
+}
+
+CLI::App* RemoteVerb(CLI::App& app, const char* name, const char* text, Remote& remote) {
+  CLI::App* verb = app.add_subcommand(name, text);
+  verb->add_option("--server", remote.server, "host:port or unix:/path")->envname("RMLCELL_SERVER");
+  verb->add_flag("--json", remote.json, "print messages as JSON, one line each");
+  return verb;
+}
+
+void AddProgramVerbs(CLI::App& app, Remote& remote, int& exit_code) {
+  static std::string machine, file, form, output, etag;
+  static int slot = 0;
+  static bool check_only = false;
+  RemoteVerb(app, "machines", "List the machines of the cell", remote)->callback([&] { exit_code = Machines(remote); });
+  CLI::App* programs = RemoteVerb(app, "programs", "List the programs of a machine", remote);
+  programs->add_option("MACHINE", machine)->required();
+  programs->callback([&] { exit_code = Programs(remote, machine); });
+  CLI::App* put = RemoteVerb(app, "put", "Store a program in a slot of a machine", remote);
+  put->add_option("MACHINE", machine)->required();
+  put->add_option("SLOT", slot, "1 to 99; 101 to 199 for an executable")->required();
+  put->add_option("FILE", file)->required();
+  put->add_option("--etag", etag, "only if the program still has this etag; none: only if the slot is empty");
+  put->add_flag("--check-only", check_only, "say what would be stored");
+  put->callback([&] { exit_code = PutProgram(remote, machine, slot, file, etag, check_only); });
+  CLI::App* get = RemoteVerb(app, "get", "Get a program of a machine", remote);
+  get->add_option("MACHINE", machine)->required();
+  get->add_option("SLOT", slot)->required();
+  get->add_option("--form", form, "source, object, executable, listing")
+      ->check(CLI::IsMember({"source", "object", "executable", "listing"}));
+  get->add_option("-o,--output", output, "file; default: standard output");
+  get->callback([&] { exit_code = GetProgram(remote, machine, slot, form, output); });
+  CLI::App* remove = RemoteVerb(app, "delete", "Delete a program, or the executable of slot - 100", remote);
+  remove->add_option("MACHINE", machine)->required();
+  remove->add_option("SLOT", slot)->required();
+  remove->callback([&] { exit_code = DeleteProgram(remote, machine, slot); });
+}
+
+void AddProjectVerbs(CLI::App& app, Remote& remote, int& exit_code) {
+  static std::string project, machine, file;
+  static bool insert = false;
+  static bool check_only = false;
+  CLI::App* projects = RemoteVerb(app, "projects", "List, make, show, delete and transfer projects", remote);
+  projects->require_subcommand(0, 1);
+  projects->callback([&, projects] {
+    if (projects->get_subcommands().empty()) exit_code = Projects(remote);
+  });
+  CLI::App* show = projects->add_subcommand("show", "Print a project as JSON");
+  show->add_option("PROJECT", project)->required();
+  show->callback([&] { exit_code = GetProject(remote, project); });
+  CLI::App* create = projects->add_subcommand("create", "Make a project of a JSON file (message Project)");
+  create->add_option("PROJECT", project)->required();
+  create->add_option("FILE", file)->required();
+  create->callback([&] { exit_code = CreateProject(remote, project, file); });
+  CLI::App* remove = projects->add_subcommand("delete", "Delete a project");
+  remove->add_option("PROJECT", project)->required();
+  remove->callback([&] { exit_code = DeleteProject(remote, project); });
+  CLI::App* transfer = projects->add_subcommand("transfer", "Compile and store a project on a machine: all or nothing");
+  transfer->add_option("PROJECT", project)->required();
+  transfer->add_option("MACHINE", machine)->required();
+  transfer->add_flag("--insert", insert, "insert missing WORKDEFs of the project");
+  transfer->add_flag("--check-only", check_only, "say what would be stored");
+  transfer->callback([&] { exit_code = TransferProject(remote, project, machine, insert, check_only); });
+}
+
+void AddJobVerbs(CLI::App& app, Remote& remote, int& exit_code) {
+  static SubmitRequest submit;
+  static std::string job, filter, output;
+  static int limit = 20;
+  static std::int64_t after = 0;
+  CLI::App* verb = RemoteVerb(app, "submit", "Submit a job", remote);
+  verb->add_option("MACHINE", submit.machine)->required();
+  verb->add_option("FILE", submit.file, "a program for this job only; or give --slot");
+  verb->add_option("--slot", submit.slot, "slot of a stored program, or where FILE goes")->check(CLI::Range(1, 99));
+  verb->add_option("--kind", submit.kind, "simulate or check")->check(CLI::IsMember({"simulate", "check", "run"}));
+  verb->add_option("--title", submit.title);
+  verb->add_option("--request-id", submit.request_id, "repeating it gives the same job");
+  verb->add_option("--override", submit.override_percent, "feed override, percent");
+  verb->add_option("--inputs", submit.inputs_file, "external inputs and keys over time");
+  verb->add_flag("--trace", submit.trace, "keep a trace");
+  verb->add_flag("--watch", submit.watch, "watch the job to its end");
+  verb->callback([&] {
+    if (submit.file.empty() && submit.slot == 0) throw CLI::ValidationError("submit", "give a FILE or --slot");
+    exit_code = SubmitJob(remote, submit);
+  });
+  CLI::App* watch = RemoteVerb(app, "watch", "Watch a job live to its end", remote);
+  watch->add_option("JOB", job)->required();
+  watch->add_option("--after", after, "events after this sequence number only");
+  watch->callback([&] { exit_code = WatchJob(remote, job, after); });
+  CLI::App* jobs = RemoteVerb(app, "jobs", "List jobs, newest first", remote);
+  jobs->add_option("--filter", filter, "state = FAILED AND machine = machines/mill-1");
+  jobs->add_option("--limit", limit)->check(CLI::Range(1, 1000));
+  jobs->callback([&] { exit_code = Jobs(remote, filter, limit); });
+  CLI::App* show = RemoteVerb(app, "job", "Show one job", remote);
+  show->add_option("JOB", job)->required();
+  show->callback([&] { exit_code = ShowJob(remote, job); });
+  CLI::App* cancel = RemoteVerb(app, "cancel", "Cancel a job", remote);
+  cancel->add_option("JOB", job)->required();
+  cancel->callback([&] { exit_code = CancelJob(remote, job); });
+  CLI::App* report = RemoteVerb(app, "report", "Show the report of a job", remote);
+  report->add_option("JOB", job)->required();
+  report->callback([&] { exit_code = JobReport(remote, job); });
+  CLI::App* picture = RemoteVerb(app, "picture", "Get the picture of a job (SVG)", remote);
+  picture->add_option("JOB", job)->required();
+  picture->add_option("-o,--output", output, "file; default: standard output");
+  picture->callback([&] { exit_code = JobPicture(remote, job, output); });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Programs for machines: check, simulate, store, run as jobs, watch.", "rmlcell"};
+  app.set_version_flag("--version", std::string(kVersion));
+  app.require_subcommand(1);
+  app.footer(kExamples);
+  Remote remote;
+  int exit_code = kGood;
+  AddLocalVerbs(app, exit_code);
+  AddProgramVerbs(app, remote, exit_code);
+  AddProjectVerbs(app, remote, exit_code);
+  AddJobVerbs(app, remote, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int shown = app.exit(error);
+    return shown == 0 ? kGood : kUsage;
+  }
+  return exit_code;
+}

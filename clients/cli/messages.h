@@ -1,0 +1,23 @@
+#pragma once
+
+#include <google/protobuf/message.h>
+
+#include <string>
+
+#include "rmlcell/v1/job.pb.h"
+
+// Messages as JSON and as text for people.
+namespace rmlcell::cli {
+
+// One line; zero values are shown, since people look for them.
+std::string Json(const google::protobuf::Message& message);
+
+std::string ReportText(const v1::RunReport& report);
+std::string OutcomeLine(const v1::Outcome& outcome);
+std::string EventLine(const v1::JobEvent& event);
+std::string StateName(v1::Job::State state);  // "running"
+
+// A finding as the local checks print it, without source line.
+std::string FindingLine(const v1::Diagnostic& diagnostic);
+
+}  // namespace rmlcell::cli

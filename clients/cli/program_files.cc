@@ -1,0 +1,119 @@
+#include "clients/cli/program_files.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "engine/core/number_text.h"
+#include "engine/core/units.h"
+#include "engine/simulation/families.h"
+#include "proto/bridge/files.h"
+
+namespace rmlcell::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// "12" of "dir/12.S"; nothing when the name is not a slot number.
+std::optional<int> SlotFromName(const fs::path& path) {
+  const auto number = ParseInteger(path.stem().string());
+  if (!number || !IsSlot(static_cast<int>(std::clamp<long long>(*number, -1, 1000)))) return std::nullopt;
+  return static_cast<int>(*number);
+}
+
+Result<bridge::ProgramInput> ReadProgram(const std::string& file, int slot) {
+  Result<std::string> bytes = bridge::ReadFile(file, kFileBytesMax);
+  if (!bytes) return bytes.error();
+  if (bytes->empty()) return Error{ErrorCode::kCellEmptyProgram, file, {}};
+  return bridge::ProgramInput{.slot = slot,
+                              .name = fs::path(file).stem().string(),
+                              .file_name = file,
+                              .bytes = std::make_shared<const std::string>(std::move(*bytes)),
+                              .is_source = true,
+                              .executable = nullptr};
+}
+
+}  // namespace
+
+Result<const machine::MachineFamily*> FamilyFor(const std::string& id, const std::string& file_name) {
+  if (!id.empty()) {
+    if (const machine::MachineFamily* family = simulation::FindFamily(id)) return family;
+    std::string known;
+    for (const machine::MachineFamily* one : simulation::Families()) known += " " + std::string(one->info().id);
+    return Error{ErrorCode::kCellUnknownFamily, "'" + id + "'; there are" + known, {}};
+  }
+  if (const machine::MachineFamily* family = simulation::FamilyOfFileName(file_name)) return family;
+  return Error{ErrorCode::kCellFamilyUnknownFromName, "'" + file_name + "': give --family", {}};
+}
+
+Result<std::pair<int, std::string>> ParseSlotFile(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const auto number = ParseInteger(text.substr(0, equals));
+  if (!number) return Error{ErrorCode::kCellUsage, "'" + text + "': write 44=FILE", {}};
+  if (*number < kSlotMin || *number > kSlotMax) {
+    return Error{ErrorCode::kProgramNumber, "program number is " + std::to_string(*number), {}};
+  }
+  return std::pair(static_cast<int>(*number), equals == std::string::npos ? std::string() : text.substr(equals + 1));
+}
+
+Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files, const std::vector<std::string>& slots,
+                              int main_slot, const std::string& family_id) {
+  std::vector<std::pair<int, std::string>> found;  // slot 0: to be chosen
+  std::string first_file;
+  for (const std::string& file : files) {
+    std::error_code error;
+    if (!fs::is_directory(file, error)) {
+      if (first_file.empty()) first_file = file;
+      found.emplace_back(SlotFromName(file).value_or(0), file);
+      continue;
+    }
+    std::vector<fs::path> inside;
+    for (const fs::directory_entry& entry : fs::directory_iterator(file, error)) inside.push_back(entry.path());
+    std::ranges::sort(inside);
+    for (const fs::path& path : inside) {
+      const auto slot = SlotFromName(path);
+      const machine::MachineFamily* family = simulation::FamilyOfFileName(path.string());
+      if (slot && family != nullptr && (family_id.empty() || family->info().id == family_id)) {
+        found.emplace_back(*slot, path.string());
+      }
+    }
+  }
+  for (const std::string& text : slots) {
+    Result<std::pair<int, std::string>> named = ParseSlotFile(text);
+    if (!named) return named.error();
+    if (named->second.empty()) return Error{ErrorCode::kCellUsage, "'" + text + "': write 44=FILE", {}};
+    found.push_back(std::move(*named));
+  }
+  if (found.empty()) return Error{ErrorCode::kCellUsage, "no program: give a file, or a folder with files like 12.S", {}};
+
+  std::set<int> used;
+  for (const auto& [slot, file] : found) used.insert(slot);
+  LoadedFiles loaded;
+  const Result<const machine::MachineFamily*> family = FamilyFor(family_id, first_file.empty() ? found.front().second : first_file);
+  if (!family) return family.error();
+  loaded.family = *family;
+  int free_slot = 1;
+  for (auto& [slot, file] : found) {
+    if (slot == 0) {
+      if (file == first_file && main_slot > 0) {
+        slot = main_slot;
+      } else {
+        while (used.contains(free_slot) || free_slot == main_slot) ++free_slot;
+        slot = free_slot++;
+      }
+    }
+    if (!IsSlot(slot)) return Error{ErrorCode::kProgramNumber, "program number is " + std::to_string(slot), {}};
+    Result<bridge::ProgramInput> program = ReadProgram(file, slot);
+    if (!program) return program.error();
+    if (file == first_file) loaded.main_slot = slot;
+    loaded.programs.push_back(std::move(*program));
+  }
+  if (main_slot > 0) loaded.main_slot = main_slot;
+  if (loaded.main_slot == 0 && loaded.programs.size() == 1) loaded.main_slot = loaded.programs.front().slot;
+  if (loaded.main_slot == 0) {
+    return Error{ErrorCode::kCellUsage, "several programs: say which one is started, --main 12", {}};
+  }
+  return loaded;
+}
+
+}  // namespace rmlcell::cli

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/machine/family.h"
+#include "proto/bridge/setup.h"
+
+namespace rmlcell::cli {
+
+// The largest file that the command reads; the same as a server takes.
+inline constexpr std::int64_t kFileBytesMax = std::int64_t{256} << 20;
+
+struct LoadedFiles {
+  const machine::MachineFamily* family = nullptr;
+  std::vector<bridge::ProgramInput> programs;
+  int main_slot = 0;
+};
+
+// Files and folders given to a local run. Folders bring their numbered programs ("12.S", "44.rml");
+// "SLOT=FILE" a program each. The main program is the first file, or `main_slot`.
+// Errors: CellFileUnreadable, CellUnknownFamily, CellFamilyUnknownFromName, CellUsage, ProgramNumber.
+Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files, const std::vector<std::string>& slots,
+                              int main_slot, const std::string& family_id);
+
+// "44=FILE" -> 44, FILE; "44" -> 44 and nothing.
+Result<std::pair<int, std::string>> ParseSlotFile(const std::string& text);
+
+// The family by id, or by the file name.
+Result<const machine::MachineFamily*> FamilyFor(const std::string& id, const std::string& file_name);
+
+}  // namespace rmlcell::cli

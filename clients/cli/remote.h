@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace rmlcell::cli {
+
+// Verbs that speak to a server.
+struct Remote {
+  std::string server = "127.0.0.1:50051";  // host:port or unix:/path
+  bool json = false;
+};
+
+int Machines(const Remote& remote);
+int Programs(const Remote& remote, const std::string& machine);
+int PutProgram(const Remote& remote, const std::string& machine, int slot, const std::string& file,
+               const std::string& etag, bool check_only);
+int GetProgram(const Remote& remote, const std::string& machine, int slot, const std::string& form,
+               const std::string& output);
+int DeleteProgram(const Remote& remote, const std::string& machine, int slot);
+
+int Projects(const Remote& remote);
+int GetProject(const Remote& remote, const std::string& project);
+int CreateProject(const Remote& remote, const std::string& project, const std::string& json_file);
+int DeleteProject(const Remote& remote, const std::string& project);
+int TransferProject(const Remote& remote, const std::string& project, const std::string& machine, bool insert,
+                    bool check_only);
+
+struct SubmitRequest {
+  std::string machine;
+  std::string file;  // a file, or empty
+  int slot = 0;      // of a stored program, or where the file goes
+  std::string kind = "simulate";
+  std::string title;
+  std::string request_id;
+  std::string inputs_file;
+  double override_percent = 0.0;
+  bool trace = false;
+  bool watch = false;
+};
+int SubmitJob(const Remote& remote, const SubmitRequest& request);
+int WatchJob(const Remote& remote, const std::string& job, std::int64_t after);
+int Jobs(const Remote& remote, const std::string& filter, int limit);
+int ShowJob(const Remote& remote, const std::string& job);
+int CancelJob(const Remote& remote, const std::string& job);
+int JobReport(const Remote& remote, const std::string& job);
+int JobPicture(const Remote& remote, const std::string& job, const std::string& output);
+
+}  // namespace rmlcell::cli

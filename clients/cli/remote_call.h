@@ -1,0 +1,23 @@
+#pragma once
+
+#include <grpcpp/grpcpp.h>
+
+#include <memory>
+#include <string>
+
+#include "clients/cli/remote.h"
+
+namespace rmlcell::cli {
+
+std::shared_ptr<grpc::Channel> Connect(const Remote& remote);
+
+// A context with a deadline: unary calls never hang.
+void Prepare(grpc::ClientContext& context);
+
+// Prints what the server said, findings included. Returns the exit code that fits.
+int Refused(const grpc::Status& status, const Remote& remote);
+
+// "17" or "jobs/17" -> "jobs/17"; the same for machines and projects.
+std::string FullName(const std::string& collection, const std::string& name);
+
+}  // namespace rmlcell::cli

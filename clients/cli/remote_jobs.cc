@@ -1,0 +1,253 @@
+#include <filesystem>
+#include <random>
+#include <thread>
+
+#include "clients/cli/messages.h"
+#include "clients/cli/program_files.h"
+#include "clients/cli/remote_call.h"
+#include "clients/cli/terminal.h"
+#include "proto/bridge/files.h"
+#include "proto/bridge/findings.h"
+#include "rmlcell/v1/job.grpc.pb.h"
+
+namespace rmlcell::cli {
+namespace {
+
+int RefuseFile(const Error& error) {
+  Complain(bridge::ErrorText(error));
+  return kUsage;
+}
+
+int ExitOf(const v1::Outcome& outcome) {
+  return outcome.kind() == v1::Outcome::KIND_COMPLETED || outcome.kind() == v1::Outcome::KIND_STOPPED ? kGood
+                                                                                                     : kProgramErrors;
+}
+
+// A random id, so that a repeated submission after a lost answer gives the same job.
+std::string NewRequestId() {
+  std::random_device device;
+  std::string id;
+  for (int i = 0; i < 4; ++i) {
+    char room[16];
+    std::snprintf(room, sizeof room, "%08x", device());
+    id += room;
+  }
+  return id;
+}
+
+std::string When(const google::protobuf::Timestamp& time) {
+  const std::time_t seconds = time.seconds();
+  std::tm parts{};
+  localtime_r(&seconds, &parts);
+  char room[32];
+  const std::size_t size = std::strftime(room, sizeof room, "%F %T", &parts);
+  return {room, size};
+}
+
+// One connection of a watch. Moves `after` on; true: the job ended, and `exit_code` is set.
+bool WatchOnce(const Remote& remote, v1::JobService::Stub& stub, const std::string& name, std::int64_t& after,
+               int& exit_code, grpc::Status& status) {
+  grpc::ClientContext context;
+  v1::WatchJobRequest request;
+  request.set_name(name);
+  request.set_after_sequence(after);
+  const auto reader = stub.WatchJob(&context, request);
+  ProgressLine progress;
+  v1::WatchJobResponse message;
+  bool ended = false;
+  while (reader->Read(&message)) {
+    if (message.has_event()) {
+      after = message.sequence();
+      progress.Clear();
+      Print(remote.json ? Json(message) : EventLine(message.event()));
+      if (message.event().has_ended()) {
+        ended = true;
+        exit_code = ExitOf(message.event().ended());
+      }
+    } else if (message.has_progress()) {
+      const v1::JobProgress& at = message.progress();
+      if (remote.json) {
+        Print(Json(message));
+      } else {
+        progress.Show(at.has_progress() ? at.progress() : -1.0,
+                      Fixed(static_cast<double>(at.virtual_time_ns()) * 1e-9, 1) + " s  " + at.instruction() +
+                          "  X " + Fixed(at.position().tip().x(), 2) + " Y " + Fixed(at.position().tip().y(), 2) +
+                          " Z " + Fixed(at.position().tip().z(), 2));
+      }
+    } else if (message.has_snapshot()) {
+      const v1::Job& job = message.snapshot();
+      if (remote.json) Print(Json(message));
+      if (job.has_end_time() && job.last_sequence() <= after) {
+        ended = true;
+        exit_code = ExitOf(job.outcome());
+      }
+    }
+  }
+  status = reader->Finish();
+  return ended;
+}
+
+}  // namespace
+
+int WatchJob(const Remote& remote, const std::string& job, std::int64_t after) {
+  const auto stub = v1::JobService::NewStub(Connect(remote));
+  const std::string name = FullName("jobs", job);
+  // A server that restarts is waited for, and nothing is missed or told twice.
+  constexpr int kTriesMax = 60;
+  for (int tries = 0; tries < kTriesMax; ++tries) {
+    int exit_code = kGood;
+    grpc::Status status;
+    const std::int64_t before = after;
+    if (WatchOnce(remote, *stub, name, after, exit_code, status)) return exit_code;
+    if (!status.ok() && status.error_code() != grpc::StatusCode::UNAVAILABLE) return Refused(status, remote);
+    if (after > before) tries = 0;
+    if (tries == 0) Complain("the server is away; watching again when it is back");
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  }
+  return Refused({grpc::StatusCode::UNAVAILABLE, "gave up after 30 s"}, remote);
+}
+
+int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
+  v1::SubmitJobRequest request;
+  v1::Job& job = *request.mutable_job();
+  job.set_kind(wanted.kind == "check" ? v1::JOB_KIND_CHECK : wanted.kind == "run" ? v1::JOB_KIND_RUN
+                                                                                   : v1::JOB_KIND_SIMULATE);
+  job.set_machine(FullName("machines", wanted.machine));
+  job.set_title(wanted.title);
+  if (wanted.file.empty()) {
+    job.set_program(job.machine() + "/programs/" + std::to_string(wanted.slot));
+  } else {
+    Result<std::string> bytes = bridge::ReadFile(wanted.file, kFileBytesMax);
+    if (!bytes) return RefuseFile(bytes.error());
+    job.mutable_inline_program()->set_file_name(std::filesystem::path(wanted.file).filename().string());
+    job.mutable_inline_program()->set_content(std::move(*bytes));
+    job.set_inline_slot(wanted.slot);
+    if (job.title().empty()) job.set_title(job.inline_program().file_name());
+  }
+  v1::SimulationOptions& options = *job.mutable_simulation();
+  options.set_override_percent(wanted.override_percent);
+  options.set_trace(wanted.trace);
+  if (!wanted.inputs_file.empty()) {
+    const Result<std::string> text = bridge::ReadFile(wanted.inputs_file, kFileBytesMax);
+    if (!text) return RefuseFile(text.error());
+    if (Status parsed = bridge::ParseInputFile(*text, wanted.inputs_file, options); !parsed) {
+      return RefuseFile(parsed.error());
+    }
+  }
+  request.set_request_id(wanted.request_id.empty() ? NewRequestId() : wanted.request_id);
+
+  const auto stub = v1::JobService::NewStub(Connect(remote));
+  v1::Job made;
+  grpc::Status status;
+  // Repeating is safe: the request id gives the same job.
+  for (int tries = 0; tries < 3; ++tries) {
+    grpc::ClientContext context;
+    Prepare(context);
+    status = stub->SubmitJob(&context, request, &made);
+    if (status.error_code() != grpc::StatusCode::UNAVAILABLE) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  }
+  if (!status.ok()) return Refused(status, remote);
+  Print(remote.json ? Json(made) : made.name());
+  return wanted.watch ? WatchJob(remote, made.name(), 0) : kGood;
+}
+
+int Jobs(const Remote& remote, const std::string& filter, int limit) {
+  const auto stub = v1::JobService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  v1::ListJobsRequest request;
+  request.set_filter(filter);
+  request.set_page_size(limit);
+  v1::ListJobsResponse response;
+  const grpc::Status status = stub->ListJobs(&context, request, &response);
+  if (!status.ok()) return Refused(status, remote);
+  if (remote.json) {
+    for (const v1::Job& job : response.jobs()) Print(Json(job));
+    return kGood;
+  }
+  std::vector<std::vector<std::string>> rows = {{"JOB", "STATE", "KIND", "MACHINE", "TITLE", "SUBMITTED", "CODE"}};
+  for (const v1::Job& job : response.jobs()) {
+    const std::string kind = v1::JobKind_Name(job.kind());
+    rows.push_back({job.name().substr(5), StateName(job.state()), kind.substr(std::min<std::size_t>(9, kind.size())),
+                    job.machine().substr(std::min<std::size_t>(9, job.machine().size())),
+                    job.title().empty() ? job.program() : job.title(), When(job.create_time()), job.outcome().code()});
+  }
+  PrintRaw(Table(rows));
+  return kGood;
+}
+
+int ShowJob(const Remote& remote, const std::string& job) {
+  const auto stub = v1::JobService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  v1::GetJobRequest request;
+  request.set_name(FullName("jobs", job));
+  v1::Job response;
+  const grpc::Status status = stub->GetJob(&context, request, &response);
+  if (!status.ok()) return Refused(status, remote);
+  if (remote.json) {
+    Print(Json(response));
+    return kGood;
+  }
+  Print(response.name() + "  " + StateName(response.state()) + "  " + response.machine() + "  " + response.title());
+  if (response.has_outcome()) Print("outcome   " + OutcomeLine(response.outcome()));
+  for (const v1::Artifact& artifact : response.artifacts()) {
+    Print("product   " + artifact.name() + "  " + Bytes(artifact.size()) + "  " + artifact.url_path());
+  }
+  return kGood;
+}
+
+int CancelJob(const Remote& remote, const std::string& job) {
+  const auto stub = v1::JobService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  v1::CancelJobRequest request;
+  request.set_name(FullName("jobs", job));
+  v1::Job response;
+  const grpc::Status status = stub->CancelJob(&context, request, &response);
+  if (!status.ok()) return Refused(status, remote);
+  Print(remote.json ? Json(response) : response.name() + " " + StateName(response.state()));
+  return kGood;
+}
+
+int JobReport(const Remote& remote, const std::string& job) {
+  const auto stub = v1::JobService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  v1::GetJobReportRequest request;
+  request.set_name(FullName("jobs", job));
+  v1::RunReport report;
+  const grpc::Status status = stub->GetJobReport(&context, request, &report);
+  if (!status.ok()) return Refused(status, remote);
+  if (remote.json) {
+    Print(Json(report));
+  } else {
+    PrintRaw(ReportText(report));
+  }
+  return kGood;
+}
+
+int JobPicture(const Remote& remote, const std::string& job, const std::string& output) {
+  const auto stub = v1::JobService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  v1::GetJobPictureRequest request;
+  request.set_name(FullName("jobs", job));
+  v1::GetJobPictureResponse response;
+  const grpc::Status status = stub->GetJobPicture(&context, request, &response);
+  if (!status.ok()) return Refused(status, remote);
+  if (output.empty() || output == "-") {
+    PrintRaw(response.content());
+    return kGood;
+  }
+  std::FILE* file = std::fopen(output.c_str(), "wb");
+  const std::string& bytes = response.content();
+  const bool written = file != nullptr && std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+  if (file == nullptr || std::fclose(file) != 0 || !written) {
+    return RefuseFile({ErrorCode::kCellFileUnwritable, output, {}});
+  }
+  return kGood;
+}
+
+}  // namespace rmlcell::cli

@@ -1,0 +1,263 @@
+#include <filesystem>
+
+#include <google/protobuf/util/json_util.h>
+
+#include "clients/cli/messages.h"
+#include "clients/cli/program_files.h"
+#include "clients/cli/remote_call.h"
+#include "clients/cli/terminal.h"
+#include "proto/bridge/files.h"
+#include "proto/bridge/findings.h"
+#include "rmlcell/v1/machine.grpc.pb.h"
+#include "rmlcell/v1/program.grpc.pb.h"
+#include "rmlcell/v1/project.grpc.pb.h"
+#include "proto/bridge/sha256.h"
+
+namespace rmlcell::cli {
+namespace {
+
+constexpr std::size_t kUnaryBytes = 3 << 20;
+constexpr std::size_t kChunkBytes = 512 << 10;
+
+int RefuseFile(const Error& error) {
+  Complain(bridge::ErrorText(error));
+  return kUsage;
+}
+
+std::string ProgramName(const std::string& machine, int slot) {
+  return FullName("machines", machine) + "/programs/" + std::to_string(slot);
+}
+
+void PrintFindings(const v1::Findings& findings) {
+  for (const v1::Diagnostic& diagnostic : findings.diagnostics()) Print(FindingLine(diagnostic));
+  if (findings.diagnostics_dropped() > 0) {
+    Print("and " + std::to_string(findings.diagnostics_dropped()) + " more findings");
+  }
+}
+
+int PrintStored(const Remote& remote, const v1::Program& program, bool check_only) {
+  if (remote.json) {
+    Print(Json(program));
+    return kGood;
+  }
+  PrintFindings(program.findings());
+  Print(program.name() + (check_only ? " would be stored: " : " stored: ") + program.title() + ", object " +
+        Bytes(program.object_bytes()));
+  return kGood;
+}
+
+grpc::Status Upload(v1::ProgramService::Stub& stub, const v1::UploadProgramRequest::Header& header,
+                    const std::string& bytes, v1::Program& program) {
+  grpc::ClientContext context;
+  const auto writer = stub.UploadProgram(&context, &program);
+  v1::UploadProgramRequest message;
+  *message.mutable_header() = header;
+  bool open = writer->Write(message);
+  for (std::size_t sent = 0; open && sent < bytes.size(); sent += kChunkBytes) {
+    message.set_chunk(bytes.substr(sent, kChunkBytes));
+    open = writer->Write(message);
+  }
+  writer->WritesDone();
+  return writer->Finish();
+}
+
+}  // namespace
+
+int Machines(const Remote& remote) {
+  const auto stub = v1::MachineService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  v1::ListMachinesResponse response;
+  const grpc::Status status = stub->ListMachines(&context, {}, &response);
+  if (!status.ok()) return Refused(status, remote);
+  if (remote.json) {
+    for (const v1::Machine& machine : response.machines()) Print(Json(machine));
+    return kGood;
+  }
+  std::vector<std::vector<std::string>> rows = {{"MACHINE", "FAMILY", "PROFILE", "TITLE"}};
+  for (const v1::Machine& machine : response.machines()) {
+    rows.push_back({machine.name().substr(9), machine.family(), machine.profile().empty() ? "-" : machine.profile(),
+                    machine.title()});
+  }
+  PrintRaw(Table(rows));
+  return kGood;
+}
+
+int Programs(const Remote& remote, const std::string& machine) {
+  const auto stub = v1::ProgramService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  v1::ListProgramsRequest request;
+  request.set_parent(FullName("machines", machine));
+  v1::ListProgramsResponse response;
+  const grpc::Status status = stub->ListPrograms(&context, request, &response);
+  if (!status.ok()) return Refused(status, remote);
+  if (remote.json) {
+    for (const v1::Program& program : response.programs()) Print(Json(program));
+    return kGood;
+  }
+  std::vector<std::vector<std::string>> rows = {{"SLOT", "TITLE", "SOURCE", "OBJECT", "EXECUTABLE", "ETAG"}};
+  for (const v1::Program& program : response.programs()) {
+    rows.push_back({program.name().substr(program.name().rfind('/') + 1), program.title(),
+                    program.file_name().empty() ? "-" : program.file_name(), Bytes(program.object_bytes()),
+                    program.has_executable_bytes() ? Bytes(program.executable_bytes()) : "-", program.etag()});
+  }
+  PrintRaw(Table(rows));
+  return kGood;
+}
+
+int PutProgram(const Remote& remote, const std::string& machine, int slot, const std::string& file,
+               const std::string& etag, bool check_only) {
+  const Result<std::string> bytes = bridge::ReadFile(file, kFileBytesMax);
+  if (!bytes) return RefuseFile(bytes.error());
+  const auto stub = v1::ProgramService::NewStub(Connect(remote));
+  const std::string base = std::filesystem::path(file).filename().string();
+  v1::Program program;
+  grpc::Status status;
+  if (bytes->size() <= kUnaryBytes) {
+    grpc::ClientContext context;
+    Prepare(context);
+    v1::PutProgramRequest request;
+    request.set_name(ProgramName(machine, slot));
+    request.mutable_program()->set_file_name(base);
+    request.mutable_program()->set_content(*bytes);
+    request.set_etag(etag);
+    request.set_validate_only(check_only);
+    status = stub->PutProgram(&context, request, &program);
+  } else {
+    v1::UploadProgramRequest::Header header;
+    header.set_name(ProgramName(machine, slot));
+    header.set_file_name(base);
+    header.set_etag(etag);
+    header.set_size(static_cast<std::int64_t>(bytes->size()));
+    header.set_sha256(bridge::Sha256Hex(*bytes));
+    header.set_validate_only(check_only);
+    status = Upload(*stub, header, *bytes, program);
+  }
+  if (!status.ok()) return Refused(status, remote);
+  return PrintStored(remote, program, check_only);
+}
+
+int GetProgram(const Remote& remote, const std::string& machine, int slot, const std::string& form,
+               const std::string& output) {
+  const auto stub = v1::ProgramService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  v1::DownloadProgramRequest request;
+  request.set_name(ProgramName(machine, slot));
+  if (form == "source") request.set_form(v1::PROGRAM_FORM_SOURCE);
+  if (form == "object") request.set_form(v1::PROGRAM_FORM_OBJECT);
+  if (form == "executable") request.set_form(v1::PROGRAM_FORM_EXECUTABLE);
+  if (form == "listing") request.set_form(v1::PROGRAM_FORM_LISTING);
+  const auto reader = stub->DownloadProgram(&context, request);
+  std::string bytes;
+  v1::DownloadProgramResponse part;
+  while (reader->Read(&part)) bytes += part.chunk();
+  const grpc::Status status = reader->Finish();
+  if (!status.ok()) return Refused(status, remote);
+  if (output.empty() || output == "-") {
+    PrintRaw(bytes);
+    return kGood;
+  }
+  std::FILE* file = std::fopen(output.c_str(), "wb");
+  const bool written = file != nullptr && std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+  if (file == nullptr || std::fclose(file) != 0 || !written) {
+    return RefuseFile({ErrorCode::kCellFileUnwritable, output, {}});
+  }
+  return kGood;
+}
+
+int DeleteProgram(const Remote& remote, const std::string& machine, int slot) {
+  const auto stub = v1::ProgramService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  v1::DeleteProgramRequest request;
+  request.set_name(ProgramName(machine, slot));
+  google::protobuf::Empty response;
+  const grpc::Status status = stub->DeleteProgram(&context, request, &response);
+  return status.ok() ? int{kGood} : Refused(status, remote);
+}
+
+int Projects(const Remote& remote) {
+  const auto stub = v1::ProjectService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  v1::ListProjectsResponse response;
+  const grpc::Status status = stub->ListProjects(&context, {}, &response);
+  if (!status.ok()) return Refused(status, remote);
+  if (remote.json) {
+    for (const v1::Project& project : response.projects()) Print(Json(project));
+    return kGood;
+  }
+  std::vector<std::vector<std::string>> rows = {{"PROJECT", "TITLE", "PROGRAMS", "SCHEDULES", "PROCESSES"}};
+  for (const v1::Project& project : response.projects()) {
+    rows.push_back({project.name().substr(9), project.title(), std::to_string(project.programs_size()),
+                    std::to_string(project.laser_schedules_size()), std::to_string(project.processes_size())});
+  }
+  PrintRaw(Table(rows));
+  return kGood;
+}
+
+int GetProject(const Remote& remote, const std::string& project) {
+  const auto stub = v1::ProjectService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  v1::GetProjectRequest request;
+  request.set_name(FullName("projects", project));
+  v1::Project response;
+  const grpc::Status status = stub->GetProject(&context, request, &response);
+  if (!status.ok()) return Refused(status, remote);
+  Print(Json(response));
+  return kGood;
+}
+
+int CreateProject(const Remote& remote, const std::string& project, const std::string& json_file) {
+  const Result<std::string> text = bridge::ReadFile(json_file, kFileBytesMax);
+  if (!text) return RefuseFile(text.error());
+  v1::CreateProjectRequest request;
+  request.set_project_id(project);
+  const auto parsed = google::protobuf::util::JsonStringToMessage(*text, request.mutable_project());
+  if (!parsed.ok()) return RefuseFile({ErrorCode::kCellBadText, json_file + ": " + std::string(parsed.message()), {}});
+  const auto stub = v1::ProjectService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  v1::Project response;
+  const grpc::Status status = stub->CreateProject(&context, request, &response);
+  if (!status.ok()) return Refused(status, remote);
+  Print(remote.json ? Json(response) : response.name() + " made");
+  return kGood;
+}
+
+int DeleteProject(const Remote& remote, const std::string& project) {
+  const auto stub = v1::ProjectService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  v1::DeleteProjectRequest request;
+  request.set_name(FullName("projects", project));
+  google::protobuf::Empty response;
+  const grpc::Status status = stub->DeleteProject(&context, request, &response);
+  return status.ok() ? int{kGood} : Refused(status, remote);
+}
+
+int TransferProject(const Remote& remote, const std::string& project, const std::string& machine, bool insert,
+                    bool check_only) {
+  const auto stub = v1::ProjectService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  v1::TransferProjectRequest request;
+  request.set_name(FullName("projects", project));
+  request.set_machine(FullName("machines", machine));
+  request.set_insert_missing_definitions(insert);
+  request.set_validate_only(check_only);
+  v1::TransferProjectResponse response;
+  const grpc::Status status = stub->TransferProject(&context, request, &response);
+  if (!status.ok()) return Refused(status, remote);
+  if (remote.json) {
+    Print(Json(response));
+    return kGood;
+  }
+  PrintFindings(response.findings());
+  for (const v1::Program& program : response.programs()) PrintStored(remote, program, check_only);
+  return kGood;
+}
+
+}  // namespace rmlcell::cli

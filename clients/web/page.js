@@ -1,0 +1,398 @@
+// The live page: one event stream (rmlcell.v1.JobService/WatchJobs) shows all machines and jobs. A browser
+// opens only six connections to a host, over all its tabs, so this page never opens a second stream.
+// Text from the server only ever becomes text nodes.
+"use strict";
+
+const WATCH = "/rmlcell.v1.JobService/WatchJobs?message=%7B%7D";
+const RETRY_MS = [1000, 2000, 4000, 8000, 15000]; // then again and again the last
+const CALL_MS = 15000; // patience for one answer
+const FINISHED_SHOWN = 200;
+
+const jobs = new Map(); // by name
+const progress = new Map(); // by name of the job
+const rows = new Map(); // by name of the job: the elements of its row
+let machines = [];
+let filter = "all";
+let retries = 0;
+
+const byId = (id) => document.getElementById(id);
+
+function element(tag, properties = {}, ...children) {
+  const made = Object.assign(document.createElement(tag), properties);
+  made.append(...children);
+  return made;
+}
+
+// Writes only what differs, so that a selection or the focus stays where it is.
+function setText(node, text) {
+  if (node.textContent !== text) node.textContent = text;
+}
+
+// --- the stream -----------------------------------------------------------------------------------------
+
+function showLink(state, text) {
+  const link = byId("link");
+  link.dataset.state = state;
+  setText(link, text);
+}
+
+function connect() {
+  const source = new EventSource(WATCH);
+  let over = false;
+
+  const again = (why) => {
+    if (over) return;
+    over = true;
+    source.close();
+    const wait = RETRY_MS[Math.min(retries++, RETRY_MS.length - 1)];
+    showLink("lost", `${why} \u2013 trying again in ${Math.round(wait / 1000)} s`);
+    setTimeout(connect, wait);
+  };
+
+  source.onmessage = (event) => {
+    const message = JSON.parse(event.data);
+    if (message.snapshot) {
+      retries = 0;
+      showLink("live", "Live");
+      takeSnapshot(message.snapshot);
+    } else if (message.event) {
+      takeEvent(message.event);
+    } else if (message.progress) {
+      progress.set(message.progress.job, message.progress);
+      scheduleDraw();
+    } else if (message.reconnect !== undefined) {
+      again("The server is stopping");
+    }
+  };
+  source.addEventListener("reconnect", () => again("The server is stopping"));
+  source.addEventListener("end", () => again("The stream has ended"));
+  source.addEventListener("error", (event) => {
+    // Our own event has data; without, the browser lost the connection.
+    if (event.data) again(`The server says: ${JSON.parse(event.data).message}`);
+    else again("Connection lost");
+  });
+}
+
+function takeSnapshot(snapshot) {
+  jobs.clear();
+  progress.clear();
+  for (const job of snapshot.jobs ?? []) jobs.set(job.name, job);
+  machines = snapshot.machines ?? [];
+  scheduleDraw();
+}
+
+// What an event says about a job is little; what is not known from it is asked for.
+function takeEvent(event) {
+  const job = jobs.get(event.job);
+  if (job && event.state) job.state = event.state;
+  if (job && event.ended) {
+    job.outcome = event.ended;
+    job.state = ENDED[event.ended.kind] ?? "STATE_FAILED";
+  }
+  if (event.ended) progress.delete(event.job);
+  if (!job || event.ended || (event.state && isFinished(event.state))) refresh(event.job);
+  scheduleDraw();
+}
+
+const asking = new Map(); // by name: whether to ask once more
+
+async function refresh(name) {
+  if (asking.has(name)) {
+    asking.set(name, true);
+    return;
+  }
+  asking.set(name, false);
+  try {
+    jobs.set(name, await call("JobService/GetJob", { name }));
+    if (isFinished(jobs.get(name).state)) progress.delete(name);
+    scheduleDraw();
+  } catch {
+    // The stream tells when the connection is gone; a snapshot follows.
+  }
+  const again = asking.get(name);
+  asking.delete(name);
+  if (again) refresh(name);
+}
+
+async function call(method, request) {
+  const response = await fetch(`/rmlcell.v1.${method}`, {
+    method: "POST",
+    headers: { "Content-Type": "application/json" },
+    body: JSON.stringify(request),
+    signal: AbortSignal.timeout(CALL_MS),
+  });
+  const answer = await response.json();
+  if (!response.ok) throw new Error(answer.message);
+  return answer;
+}
+
+// --- words ----------------------------------------------------------------------------------------------
+
+const STATES = {
+  STATE_QUEUED: ["Queued", "wait"],
+  STATE_RUNNING: ["Running", "run"],
+  STATE_SUCCEEDED: ["Succeeded", "good"],
+  STATE_FAILED: ["Failed", "bad"],
+  STATE_CANCELLED: ["Cancelled", "off"],
+  STATE_INTERRUPTED: ["Interrupted", "bad"],
+};
+const KINDS = { JOB_KIND_CHECK: "check", JOB_KIND_SIMULATE: "simulation", JOB_KIND_RUN: "run" };
+const ACTIVITIES = {
+  ACTIVITY_IDLE: ["Idle", "off"],
+  ACTIVITY_RUNNING: ["Running", "run"],
+  ACTIVITY_HELD: ["Held", "wait"],
+  ACTIVITY_ALARM: ["Alarm", "bad"],
+};
+const OUTCOMES = {
+  KIND_COMPLETED: "Ran to its end",
+  KIND_STOPPED: "Stopped where nothing starts it again",
+  KIND_FAILED: "Ended by an error",
+  KIND_CANCELLED: "Cancelled",
+  KIND_BUDGET_EXCEEDED: "Needed more than its budget",
+};
+
+// Until the job itself is read again.
+const ENDED = { KIND_COMPLETED: "STATE_SUCCEEDED", KIND_STOPPED: "STATE_SUCCEEDED", KIND_CANCELLED: "STATE_CANCELLED" };
+
+const isFinished = (state) => state !== "STATE_QUEUED" && state !== "STATE_RUNNING";
+const lastPart = (name) => (name ?? "").split("/").pop();
+const numberOf = (job) => Number(lastPart(job.name)) || 0;
+
+function titleOf(job) {
+  if (job.title) return job.title;
+  if (job.program) return `Program ${lastPart(job.program)}`;
+  return job.inlineProgram?.fileName || "Untitled";
+}
+
+function placeText(place) {
+  if (!place) return "";
+  const parts = [];
+  if (place.program) parts.push(`program ${place.program}`);
+  if (place.step) parts.push(`step ${place.step}`);
+  else if (place.line) parts.push(`line ${place.line}`);
+  return parts.join(", ");
+}
+
+function duration(seconds) {
+  if (seconds < 60) return `${seconds.toFixed(1)} s`;
+  const whole = Math.round(seconds);
+  const two = (n) => String(n).padStart(2, "0");
+  const hours = Math.floor(whole / 3600);
+  const minutes = Math.floor(whole / 60) % 60;
+  return hours ? `${hours}:${two(minutes)}:${two(whole % 60)} h` : `${minutes}:${two(whole % 60)} min`;
+}
+
+function timeTexts(job) {
+  const begun = job.startTime ?? job.createTime;
+  if (!begun) return ["", "", ""];
+  const date = new Date(begun);
+  const today = date.toDateString() === new Date().toDateString();
+  const shown = today ? date.toLocaleTimeString() : date.toLocaleDateString();
+  let note = job.startTime ? "" : "submitted";
+  if (job.startTime && job.endTime) note = `took ${duration((new Date(job.endTime) - date) / 1000)}`;
+  return [shown, note, date.toLocaleString()];
+}
+
+// --- drawing --------------------------------------------------------------------------------------------
+
+let drawing = false;
+function scheduleDraw() {
+  if (drawing) return;
+  drawing = true;
+  requestAnimationFrame(() => {
+    drawing = false;
+    draw();
+  });
+}
+
+const FILTERS = {
+  all: () => true,
+  active: (job) => !isFinished(job.state),
+  failed: (job) => job.state === "STATE_FAILED" || job.state === "STATE_INTERRUPTED",
+};
+
+function draw() {
+  const ordered = [...jobs.values()].sort((a, b) => numberOf(b) - numberOf(a));
+  ordered.filter((job) => isFinished(job.state)).slice(FINISHED_SHOWN).forEach((job) => jobs.delete(job.name));
+  const kept = ordered.filter((job) => jobs.has(job.name));
+  drawMachines(kept);
+  for (const button of document.querySelectorAll("[data-filter]")) {
+    button.setAttribute("aria-pressed", String(button.dataset.filter === filter));
+    setText(button.querySelector("span"), String(kept.filter(FILTERS[button.dataset.filter]).length));
+  }
+  const shown = kept.filter(FILTERS[filter]);
+  drawRows(shown);
+  byId("empty").hidden = shown.length > 0;
+  setText(byId("empty"), kept.length ? "No such job." : "No jobs yet. Submit one with: rmlcell submit FILE");
+}
+
+function drawMachines(all) {
+  const list = byId("machines");
+  const items = machines.map((machine) => {
+    const active = all.filter((job) => job.machine === machine.name && !isFinished(job.state)).length;
+    const [word, tone] = ACTIVITIES[machine.state?.activity] ?? ["Unknown", "off"];
+    const chip = element("span", { className: "chip" }, word);
+    chip.dataset.tone = tone;
+    const jobsText = active === 0 ? "no job" : active === 1 ? "1 job" : `${active} jobs`;
+    return element("li", { className: "machine" },
+      element("div", {}, element("strong", {}, machine.title || lastPart(machine.name)), chip),
+      element("p", {}, `${lastPart(machine.name)} \u00b7 ${machine.family}${machine.profile ? ` ${machine.profile}` : ""}`),
+      element("p", {}, `${machine.isVirtual ? "Virtual" : "Real"} \u00b7 ${jobsText}`));
+  });
+  const text = items.map((item) => item.textContent).join("|");
+  if (list.dataset.text === text) return;
+  list.dataset.text = text;
+  list.replaceChildren(...items);
+}
+
+function makeRow() {
+  const row = {
+    tr: element("tr"),
+    title: element("div", { className: "title" }),
+    sub: element("div", { className: "sub" }),
+    machine: element("td"),
+    chip: element("span", { className: "chip" }),
+    outcome: element("td"),
+    time: element("div"),
+    took: element("div", { className: "sub" }),
+    results: element("div", { className: "results" }),
+    bar: element("progress", { max: 1 }),
+    percent: element("span", { className: "number" }),
+    where: element("div", { className: "sub" }),
+  };
+  row.barLine = element("div", { className: "progress" }, row.bar, row.percent);
+  row.tr.append(element("td", {}, row.title, row.sub), row.machine, element("td", {}, row.chip), row.outcome,
+    element("td", {}, row.time, row.took), element("td", {}, row.results));
+  return row;
+}
+
+function drawRows(shown) {
+  const body = byId("rows");
+  const names = new Set(shown.map((job) => job.name));
+  for (const [name, row] of rows) {
+    if (names.has(name)) continue;
+    row.tr.remove();
+    rows.delete(name);
+  }
+  let before = body.firstElementChild;
+  for (const job of shown) {
+    let row = rows.get(job.name);
+    if (!row) rows.set(job.name, (row = makeRow()));
+    fillRow(row, job);
+    if (row.tr === before) before = before.nextElementSibling;
+    else body.insertBefore(row.tr, before);
+  }
+}
+
+function fillRow(row, job) {
+  setText(row.title, titleOf(job));
+  row.title.title = titleOf(job);
+  const tries = job.attempts > 1 ? ` \u00b7 attempt ${job.attempts}` : "";
+  setText(row.sub, `#${lastPart(job.name)} \u00b7 ${KINDS[job.kind] ?? "job"}${tries}`);
+  setText(row.machine, lastPart(job.machine));
+  const [word, tone] = STATES[job.state] ?? ["Unknown", "off"];
+  const held = progress.get(job.name)?.held && job.state === "STATE_RUNNING";
+  setText(row.chip, held ? "Held" : word);
+  row.chip.dataset.tone = held ? "wait" : tone;
+  const [time, took, full] = timeTexts(job);
+  setText(row.time, time);
+  row.time.title = full;
+  setText(row.took, took);
+  if (job.state === "STATE_RUNNING") drawProgress(row, job);
+  else drawOutcome(row, job);
+  drawResults(row, job);
+}
+
+function drawProgress(row, job) {
+  const now = progress.get(job.name) ?? {};
+  const name = `Progress of job ${lastPart(job.name)}`;
+  if (row.bar.getAttribute("aria-label") !== name) row.bar.setAttribute("aria-label", name);
+  if (now.progress === undefined) row.bar.removeAttribute("value");
+  else row.bar.value = now.progress;
+  setText(row.percent, now.progress === undefined ? "" : `${Math.floor(now.progress * 100)} %`);
+  const parts = [placeText(now.place), now.instruction];
+  if (now.virtualTimeNs) parts.push(duration(Number(now.virtualTimeNs) / 1e9));
+  if (now.speedMmS) parts.push(`${now.speedMmS.toFixed(1)} mm/s`);
+  const tip = now.position?.tip;
+  if (tip) parts.push(`X ${tip.x.toFixed(2)}  Y ${tip.y.toFixed(2)}  Z ${tip.z.toFixed(2)}`);
+  setText(row.where, parts.filter(Boolean).join(" \u00b7 "));
+  if (row.outcome.firstChild !== row.barLine) row.outcome.replaceChildren(row.barLine, row.where);
+  delete row.outcome.dataset.key;
+}
+
+function drawOutcome(row, job) {
+  const outcome = job.outcome;
+  const key = JSON.stringify([job.state, outcome ?? null]);
+  if (row.outcome.dataset.key === key) return;
+  row.outcome.dataset.key = key;
+  row.outcome.replaceChildren();
+  if (!outcome) return;
+  const words = OUTCOMES[outcome.kind] ?? "";
+  if (!outcome.code) {
+    row.outcome.append(words);
+    return;
+  }
+  row.outcome.append(explainLink(outcome.code), ` ${outcome.message || words}`,
+    element("div", { className: "sub" }, placeText(outcome.place)));
+}
+
+function drawResults(row, job) {
+  const artifacts = (job.artifacts ?? []).filter((one) => one.urlPath?.startsWith("/v1/"));
+  const key = artifacts.map((one) => one.urlPath).join(" ");
+  if (row.results.dataset.key === key) return;
+  row.results.dataset.key = key;
+  row.results.replaceChildren(...artifacts.map((one) => {
+    const word = one.name.startsWith("picture") ? "Picture" : one.name[0].toUpperCase() + one.name.slice(1);
+    const link = element("a", { href: one.urlPath, target: "_blank", rel: "noopener" }, word);
+    link.setAttribute("aria-label", `${word} of job ${lastPart(job.name)}, opens in a new tab`);
+    return link;
+  }));
+}
+
+// --- explanations ---------------------------------------------------------------------------------------
+
+// Works as a plain link too: the address gives the same as JSON.
+function explainLink(code) {
+  const query = encodeURIComponent(JSON.stringify({ code }));
+  const link = element("a", { className: "code", href: `/rmlcell.v1.ProgramService/ExplainError?message=${query}` }, code);
+  link.title = `What ${code} means`;
+  link.addEventListener("click", (event) => {
+    if (event.ctrlKey || event.metaKey || event.shiftKey) return;
+    event.preventDefault();
+    explain(code);
+  });
+  return link;
+}
+
+const severityWord = (severity) =>
+  severity === "SEVERITY_UNSPECIFIED" ? "" : severity.replace("SEVERITY_", "").toLowerCase();
+
+async function explain(code) {
+  const body = byId("explain-body");
+  setText(byId("explain-title"), code);
+  body.replaceChildren("Asking the server");
+  byId("explain").showModal();
+  try {
+    const answer = await call("ProgramService/ExplainError", { code });
+    body.replaceChildren(...(answer.errors ?? []).map((error) => {
+      const list = element("dl");
+      for (const [word, text] of [["What happened", error.when], ["The machine", error.effect],
+        ["What helps", error.advice], ["Symbol", error.symbol], ["Severity", severityWord(error.severity)]]) {
+        if (text) list.append(element("dt", {}, word), element("dd", {}, text));
+      }
+      return list;
+    }));
+    if (!body.childNodes.length) setText(body, "The catalogue has no such code.");
+  } catch (error) {
+    setText(body, `The server cannot be asked: ${error.message}`);
+  }
+}
+
+document.querySelector(".filters").addEventListener("click", (event) => {
+  const button = event.target.closest("[data-filter]");
+  if (!button) return;
+  filter = button.dataset.filter;
+  draw();
+});
+
+connect();

@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# Installs every Debian package that rmlcell needs: to build (always), to test (with --tests).
+# As root, or by sudo. Quiet and quick when nothing is missing.
+set -euo pipefail
+
+packages() {
+  sed -e 's/#.*//' -e '/^[[:space:]]*$/d' <<'LIST'
+# --- build
+g++                     # the compiler, 12 or later
+cmake                   # build description, 3.25 or later
+ninja-build             # build
+ccache                  # a second build takes seconds
+lld                     # links in a third of the time
+pkg-config              # finds zstd, which has no CMake file
+ca-certificates         # for package managers
+# --- libraries
+libgrpc++-dev           # calls and streams
+protobuf-compiler-grpc  # generates the services
+libprotobuf-dev         # messages
+protobuf-compiler       # generates the messages
+libsqlite3-dev          # the embedded store
+libzstd-dev             # compresses what the store keeps
+libssl-dev              # SHA-256 of programs and products
+libspdlog-dev           # logs
+libfmt-dev              # spdlog's formatting
+libcli11-dev            # command lines
+libtomlplusplus-dev     # configuration and machine files
+nlohmann-json3-dev      # JSON of error details on the web port
+libboost-dev            # Beast and Asio: the web port and the thread pool (headers only)
+LIST
+}
+
+test_packages() {
+  sed -e 's/#.*//' -e '/^[[:space:]]*$/d' <<'LIST'
+libgtest-dev            # the test framework
+libgmock-dev            # its matchers
+librapidcheck-dev       # properties over random inputs
+libbenchmark-dev        # benchmarks
+python3-grpcio          # a client in another language
+python3-protobuf        # its messages
+curl                    # the web port as people use it
+nodejs                  # runs the web clients; too old for some, see tests/run.sh
+npm                     # brings buf and the web clients
+LIST
+}
+
+wanted=$(packages)
+if [ "${1:-}" = "--tests" ]; then wanted+=" $(test_packages)"; fi
+
+missing=()
+for package in $wanted; do
+  case $package in
+    # A newer Node may have been installed by other means.
+    nodejs) command -v node >/dev/null && continue ;;
+    npm) command -v npm >/dev/null && continue ;;
+  esac
+  dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q '^install ok installed$' || missing+=("$package")
+done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+echo "installing: ${missing[*]}"
+sudo=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "setup.sh: run as root, or install sudo" >&2; exit 1; }
+  sudo=(sudo)
+fi
+export DEBIAN_FRONTEND=noninteractive
+"${sudo[@]}" apt-get update -qq
+"${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null

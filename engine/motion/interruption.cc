@@ -1,0 +1,98 @@
+#include "engine/motion/interruption.h"
+
+#include <algorithm>
+
+namespace rmlcell::motion {
+namespace {
+
+PathPiece PartOf(const PathPiece& path, double s_from, double s_to) {
+  if (s_from == 0.0 && s_to == path.length()) return path;
+  return path.Part(s_from, s_to);
+}
+
+// How many motions the way from the start of ahead[0] to `s` touches.
+std::size_t Touched(std::span<const PlannedMotion> ahead, double s) {
+  std::size_t count = 1;
+  double end = ahead[0].path.length();
+  while (end < s && count < ahead.size()) end += ahead[count++].path.length();
+  return count;
+}
+
+double SpeedAtEnd(const PlannedMotion& motion) { return motion.speed.end().speed; }
+
+}  // namespace
+
+StopOnPath StopAlong(std::span<const PlannedMotion> ahead, double t_s) {
+  StopOnPath stop;
+  const double s_from = ahead[0].speed.At(t_s).s;
+  if (t_s >= ahead[0].speed.duration_s() && SpeedAtEnd(ahead[0]) == 0.0) {  // it settles already
+    stop.s = ahead[0].path.length();
+    return stop;
+  }
+  // The weakest of the motions on the way sets the ramp, and a weaker ramp may reach one motion
+  // more.
+  PathLimits limits = ahead[0].limits;
+  SpeedProfile ramp = ahead[0].speed.StopFrom(t_s, limits);
+  for (std::size_t seen = 1; seen < Touched(ahead, ramp.end().s); ++seen) {
+    limits.acceleration = std::min(limits.acceleration, ahead[seen].limits.acceleration);
+    limits.jerk = std::min(limits.jerk, ahead[seen].limits.jerk);
+    ramp = ahead[0].speed.StopFrom(t_s, limits);
+  }
+  const double s_to = ramp.end().s;
+  double begin = 0.0;  // of the motion, from the start of ahead[0]
+  for (std::size_t k = 0; k < ahead.size(); ++k) {
+    const double length = ahead[k].path.length();
+    const double from = std::max(s_from, begin);
+    const double to = std::min(s_to, begin + length);
+    if (to > from) {
+      PlannedMotion part = ahead[k];
+      part.path = PartOf(ahead[k].path, from - begin, std::min(to - begin, length));
+      part.speed = ramp.Part(from, to);
+      part.settling_s = 0.0;
+      part.ends_move = ahead[k].ends_move && to == begin + length;
+      stop.motions.push_back(part);
+    }
+    stop.index = k;
+    stop.s = std::clamp(to - begin, 0.0, length);
+    if (s_to <= begin + length) return stop;
+    begin += length;
+  }
+  stop.complete = false;
+  return stop;
+}
+
+std::vector<PlannedMotion> RestartAlong(std::span<const PlannedMotion> ahead, double s) {
+  std::vector<PlannedMotion> motions;
+  double speed = 0.0;
+  bool as_planned = false;  // from here on nothing differs
+  for (std::size_t k = 0; k < ahead.size(); ++k) {
+    PlannedMotion motion = ahead[k];
+    const double from = k == 0 ? s : 0.0;
+    const double left = motion.path.length() - from;
+    if (!as_planned) {
+      const double planned = SpeedAtEnd(ahead[k]);
+      double end = planned;
+      if (planned > speed && RampLength(speed, planned, motion.limits) > left) {
+        end = std::min(planned, Reach(speed, left, motion.limits));
+      }
+      if (left > 0.0) {
+        motion.path = PartOf(ahead[k].path, from, motion.path.length());
+        motion.speed = SpeedProfile::Span(left, speed, end, motion.limits);
+      } else {
+        motion.path = PathPiece::Line(ahead[k].path.to(), ahead[k].path.to());
+        motion.speed = SpeedProfile();  // it stood at the end: only its settling is left
+      }
+      if (motion.ends_move) motion.corner.speed = end;
+      if (left <= 0.0 && motion.settling_s == 0.0) {
+        speed = end = 0.0;
+        continue;
+      }
+      as_planned = end == planned;
+      speed = end;
+    }
+    motions.push_back(motion);
+  }
+  return motions;
+}
+
+}  // namespace rmlcell::motion

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "engine/motion/planner.h"
+
+namespace rmlcell::motion {
+
+// What becomes of planned motions when the machine is stopped on its way. motion.md section 6.
+struct StopOnPath {
+  std::vector<PlannedMotion> motions;  // from the instant of the STOP to rest; no settling
+  std::size_t index = 0;               // the machine rests on this one of `ahead`
+  double s = 0.0;                      // at this place of its path
+  bool complete = true;                // false: `ahead` ends before the machine stands
+};
+
+// The ramp to rest along the planned path that begins at `t_s` of ahead[0]: at once, with the
+// limits of the motions that it touches. Precondition: ahead is not empty.
+StopOnPath StopAlong(std::span<const PlannedMotion> ahead, double t_s);
+
+// The motions that lead from rest at the place `s` of ahead[0] over the same path. Speeds at knots
+// are those planned, as soon as they can be reached again. Precondition: ahead is not empty.
+std::vector<PlannedMotion> RestartAlong(std::span<const PlannedMotion> ahead, double s);
+
+}  // namespace rmlcell::motion

@@ -1,0 +1,331 @@
+#include "engine/optimo/control/control.h"
+
+#include <algorithm>
+
+#include "engine/core/number_text.h"
+
+namespace rmlcell::optimo {
+
+Loaded Load(Executable executable) {
+  auto loaded = std::make_shared<LoadedProgram>();
+  loaded->executable = std::move(executable);
+  loaded->index.reserve(loaded->executable.modules.size());
+  for (const LinkedModule& linked : loaded->executable.modules) loaded->index.emplace_back(linked.module);
+  return loaded;
+}
+
+Control::Control(OptimoParameters parameters, machine::RunSetup setup, machine::RunObserver& observer)
+    : parameters_(std::move(parameters)), setup_(std::move(setup)), observer_(observer),
+      s_(parameters_.limits) {
+  s_.machine = NewMachine(parameters_);
+  if (!setup_.machine_state.empty()) {
+    if (Result<MachineState> state = DecodeMachineState(setup_.machine_state)) s_.machine = *state;
+  }
+  s_.planned_axes = s_.machine.axes;
+  s_.mode = setup_.mode;
+  s_.override_percent = setup_.override_percent;
+  s_.breakpoint = setup_.breakpoint;
+  if (setup_.simul) s_.simulated = {.active = true, .until = *setup_.simul, .ol_changed = {}, .schedule = 0};
+  StartMain();
+}
+
+// START: the program begins, in SINGLE with its first step (OPT-6.31).
+void Control::StartMain() {
+  const std::optional<Loaded> main = Acquire(setup_.main_program, false);
+  if (!main) return;
+  Begin(*main, {});
+  s_.machine.data.vi[98] += 1.0F;  // OPT-7.70
+}
+
+machine::RunPhase Control::Advance(SimTime until) {
+  int carried_out = 0;
+  for (;;) {
+    if (s_.phase == machine::RunPhase::kFinished) return s_.phase;
+    ApplyScripted();
+    if (s_.phase == machine::RunPhase::kHalted) {
+      // Time stands for the program; the next scripted key may come.
+      const bool more = s_.next_input < setup_.inputs.size() && setup_.inputs[s_.next_input].at <= until;
+      if (!more) {
+        if (s_.next_input < setup_.inputs.size()) s_.now = std::max(s_.now, until);
+        return s_.phase;
+      }
+      s_.now = std::max(s_.now, setup_.inputs[s_.next_input].at);
+      continue;
+    }
+    if (s_.phase == machine::RunPhase::kFinished) return s_.phase;
+    if (MayFetch()) {
+      if (++carried_out > kStepsPerAdvance) return s_.phase;
+      Fetch();
+      continue;
+    }
+    const SimTime next = NextEvent(until);
+    if (next > until) {
+      LetTimePass(until);
+      return s_.phase;
+    }
+    LetTimePass(next);
+    ApplyScripted();  // an input of this instant is seen by the conditions of this instant
+    if (s_.phase != machine::RunPhase::kRunning) continue;
+    ActOnTime();
+    if (s_.now >= until && !MayFetch() && NextEvent(until) > until) return s_.phase;
+  }
+}
+
+bool Control::MayFetch() const {
+  return s_.phase == machine::RunPhase::kRunning && s_.pending.kind == Pending::Kind::kNone &&
+         (!Busy() || s_.background || (s_.stop_requested && s_.passing));
+}
+
+// The next tick of the system cycle after now, counted from `since`. OPT-B.30
+SimTime Control::NextTick(SimTime since) const {
+  const SimTime cycle = FromSeconds(parameters_.cycle_s);
+  return since + ((s_.now - since) / cycle + 1) * cycle;
+}
+
+SimTime Control::NextEvent(SimTime until) const {
+  SimTime next = kForever;
+  if (s_.next_input < setup_.inputs.size()) next = std::max(s_.now, setup_.inputs[s_.next_input].at);
+  if (s_.active) {
+    next = std::min(next, s_.active->end);
+    if (s_.watched_move && s_.active->motion.tag == *s_.watched_move &&
+        !s_.active->ended) {
+      if (s_.end_condition) next = std::min(next, NextTick(s_.watched_since));
+      if (s_.time_label) next = std::min(next, std::max(s_.now, s_.time_due));
+    }
+  } else if (!s_.timeline.empty()) {
+    next = s_.now;
+  }
+  switch (s_.pending.kind) {
+    case Pending::Kind::kTime: next = std::min(next, s_.pending.until); break;
+    case Pending::Kind::kCondition:
+      if (s_.time_label) next = std::min(next, std::max(s_.now, s_.time_due));
+      next = std::min(next, NextTick(s_.pending.since));
+      break;
+    case Pending::Kind::kTakeOver: next = std::min(next, s_.pending.until); break;
+    case Pending::Kind::kStandstill:
+      if (!Busy()) next = s_.now;
+      break;
+    case Pending::Kind::kNone: break;
+  }
+  // Nothing outside can change a condition any more, and no motion either: ticks would show nothing new.
+  const bool quiet = s_.pending.kind == Pending::Kind::kCondition && !Busy() && !s_.time_label &&
+                     s_.next_input >= setup_.inputs.size();
+  if (quiet) next = kForever;
+  if (s_.input_changed && s_.pending.kind == Pending::Kind::kCondition) next = s_.now;
+  return std::min(next, std::max(setup_.budget.virtual_time, s_.now + SimTime(1)) <= until
+                            ? setup_.budget.virtual_time
+                            : kForever);
+}
+
+void Control::LetTimePass(SimTime to) {
+  s_.now = std::max(s_.now, std::min(to, setup_.budget.virtual_time));
+}
+
+// Whatever is due now, in a fixed order: motion first, then what waits for it.
+void Control::ActOnTime() {
+  if (s_.active && s_.now >= s_.active->end) ArriveAtEnd();
+  if (s_.phase != machine::RunPhase::kRunning) return;
+  if (!s_.active && !s_.timeline.empty()) StartNextItem();
+  if (s_.phase != machine::RunPhase::kRunning) return;
+  if (s_.halting && !Busy()) {
+    s_.halting = false;
+    return Halt("STOP");
+  }
+  if (s_.stop_requested && s_.active && BringToHalt() && !Busy()) {
+    s_.halting = false;
+    return Halt("STOP");
+  }
+  WatchMove();
+  Pending& pending = s_.pending;
+  switch (pending.kind) {
+    case Pending::Kind::kStandstill:
+      if (Busy()) break;
+      pending = {};
+      if (s_.deferred) {
+        const Error error = *s_.deferred;
+        s_.deferred.reset();
+        HandleError(error);
+      }
+      break;
+    case Pending::Kind::kTime:
+      if (s_.now < pending.until) break;
+      observer_.OnWait({.start = pending.since,
+                        .end = s_.now,
+                        .place = s_.place,
+                        .kind = pending.wait,
+                        .beam_on = s_.beam.on,
+                        .power_percent = pending.power_percent});
+      if (pending.wait == machine::WaitKind::kPierce) s_.beam.power = s_.power_before_pierce;
+      pending = {};
+      break;
+    case Pending::Kind::kCondition: {
+      s_.input_changed = false;
+      const std::optional<bool> met = Truth(pending.expression);
+      if (!met || !*met) break;
+      if (s_.now > pending.since) {
+        observer_.OnWait({.start = pending.since,
+                          .end = s_.now,
+                          .place = s_.place,
+                          .kind = machine::WaitKind::kCondition,
+                          .beam_on = s_.beam.on,
+                          .power_percent = s_.beam.power.constant_percent});
+      }
+      pending = {};
+      s_.condition_met = true;
+      break;
+    }
+    case Pending::Kind::kTakeOver:
+      if (s_.now < pending.until) break;
+      pending = {.kind = Pending::Kind::kStandstill};
+      if (s_.active) EndMotionHere();
+      s_.timeline.clear();
+      break;
+    case Pending::Kind::kNone: break;
+  }
+  if (s_.phase == machine::RunPhase::kRunning && s_.now >= setup_.budget.virtual_time) {
+    Finish(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kTimeBudget,
+           "the run takes longer than " + ShortestText(ToSeconds(setup_.budget.virtual_time)) + " s");
+  }
+}
+
+void Control::ApplyScripted() {
+  while (s_.next_input < setup_.inputs.size() && setup_.inputs[s_.next_input].at <= s_.now &&
+         s_.phase != machine::RunPhase::kFinished) {
+    const machine::InputChange input = setup_.inputs[s_.next_input++];
+    Apply(input);
+  }
+}
+
+void Control::Apply(const machine::InputChange& input) {
+  if (s_.phase == machine::RunPhase::kFinished) return;
+  s_.input_changed = true;
+  const auto index = static_cast<std::size_t>(std::clamp(input.index, 0, kVariableIndexMax));
+  switch (input.kind) {
+    case machine::InputKind::kLogical: s_.machine.data.il_physical[index] = input.value != 0.0; break;
+    case machine::InputKind::kAnalogue: s_.machine.data.ia_physical[index] = static_cast<float>(input.value); break;
+    case machine::InputKind::kOverride: ChangeOverride(input.value); break;
+    case machine::InputKind::kDoor:
+      s_.machine.door_open = input.value != 0.0;
+      if (!s_.machine.door_open) break;
+      // An open door acts as STOP, and the shutter closes (OPT-B.34, OPT-3.17).
+      if (s_.phase == machine::RunPhase::kRunning) Apply({.at = s_.now, .kind = machine::InputKind::kStop});
+      SuspendBeam();
+      if (s_.beam.shutter_open) {
+        s_.beam.shutter_was_open = true;
+        CloseShutter();
+      }
+      break;
+    case machine::InputKind::kStart: Resume(); break;
+    case machine::InputKind::kHold:
+      if (s_.mode != machine::Mode::kRemote) s_.hold_requested = true;
+      break;
+    case machine::InputKind::kStop:
+      if (s_.phase != machine::RunPhase::kRunning) break;
+      if (s_.halting) break;
+      if (!Busy() && !s_.passing) {
+        Halt("STOP");
+      } else if (s_.active && !s_.active->ended && BringToHalt()) {
+        if (!Busy()) {
+          s_.halting = false;
+          Halt("STOP");
+        }
+      } else {
+        s_.stop_requested = true;
+      }
+      break;
+    case machine::InputKind::kEmergencyStop: EmergencyStop(); break;
+  }
+}
+
+void Control::Halt(std::string_view why) {
+  s_.phase = machine::RunPhase::kHalted;
+  s_.halt_reason = why;
+  s_.halted_at = s_.now;
+  s_.hold_requested = false;
+  s_.stop_requested = false;
+  s_.halt_after_step = false;
+  SuspendBeam();
+  observer_.OnHalt({.at = s_.now, .place = s_.place, .why = why});
+}
+
+void Control::Resume() {
+  if (s_.phase != machine::RunPhase::kHalted) return;
+  if (s_.machine.door_open && (s_.beam_returns || s_.beam.shutter_was_open)) {
+    Warn(ErrorCode::kShutterInterlock, "START with the operator door open", "OPT-3.17");
+    return;
+  }
+  if (s_.now > s_.halted_at) {
+    observer_.OnWait({.start = s_.halted_at,
+                      .end = s_.now,
+                      .place = s_.place,
+                      .kind = machine::WaitKind::kOperator,
+                      .beam_on = false,
+                      .power_percent = 0.0});
+  }
+  // A wait that was under way lasts as long as before: time stood still for it.
+  const SimTime stood = s_.now - s_.halted_at;
+  if (s_.pending.kind != Pending::Kind::kNone) {
+    s_.pending.since = s_.now;
+    s_.pending.until += stood;
+  }
+  s_.phase = machine::RunPhase::kRunning;
+  observer_.OnResume(s_.now, s_.place);
+  if (s_.beam.shutter_was_open) {
+    s_.beam.shutter_was_open = false;
+    OpenShutter();
+  }
+  if (s_.beam_returns) {
+    s_.beam_returns = false;
+    BeamOn(s_.beam.power);
+  }
+  s_.timeline.insert(s_.timeline.begin(), s_.interrupted.begin(), s_.interrupted.end());
+  s_.interrupted.clear();
+}
+
+// The state freezes: no motion is modelled after it (motion.md 6).
+void Control::EmergencyStop() {
+  if (s_.active) {
+    TellMotion(s_.now);
+    s_.machine.axes = AxesNow();
+    s_.active.reset();
+  }
+  s_.machine.data.vi[99] = 7610.0F;
+  Finish(machine::OutcomeKind::kFailed, ErrorCode::kEmergencyStop, {});
+}
+
+void Control::End(machine::OutcomeKind kind, ErrorCode code) {
+  if (s_.phase == machine::RunPhase::kFinished) return;
+  if (s_.active) {
+    TellMotion(s_.now);
+    s_.machine.axes = AxesNow();
+    s_.active.reset();
+  }
+  Finish(kind, code, {});
+}
+
+// Beam off, shutter closed, whatever the reason (OPT-3.16, 3.18, B.54).
+void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail) {
+  s_.timeline.clear();
+  s_.interrupted.clear();
+  BeamOff();
+  CloseShutter();
+  s_.beam_returns = false;
+  s_.phase = machine::RunPhase::kFinished;
+  s_.outcome = {.kind = kind, .code = code, .detail = std::move(detail), .place = s_.place};
+}
+
+machine::RunState Control::Snapshot() const {
+  machine::RunState state;
+  state.time = s_.now;
+  state.phase = s_.phase;
+  state.place = s_.active ? s_.active->note.place : s_.place;
+  state.instruction = Describe(s_.op).name;
+  state.tip = TipNow();
+  state.axes = AxesNow();
+  state.tip_speed_mm_s = TipSpeedNow();
+  state.override_percent = s_.override_percent;
+  state.beam_on = s_.beam.on;
+  return state;
+}
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,152 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "engine/optimo/control/control_state.h"
+#include "engine/optimo/language/evaluate.h"
+
+namespace rmlcell::optimo {
+
+// The control (CRG): fetches instructions and carries them out in virtual time.
+//
+// Between two /FLY moves the program runs ahead of the motion, through instructions that need no
+// standstill (OPT-2.49); what they change outside is told as an Effect when the tip passes the corner.
+// Everything else waits until the motion is over. Time passes in Advance only.
+class Control : private VariableAccess {
+ public:
+  // Instructions that one Advance carries out at most, so that its caller can look around even when a
+  // program never lets time pass.
+  static constexpr int kStepsPerAdvance = 20'000;
+
+  Control(OptimoParameters parameters, machine::RunSetup setup, machine::RunObserver& observer);
+
+  machine::RunPhase Advance(SimTime until);
+  void Apply(const machine::InputChange& input);
+  void End(machine::OutcomeKind kind, ErrorCode code);
+
+  machine::RunState Snapshot() const;
+  std::optional<std::string> ReadVariable(std::string_view name) const;
+
+  const ControlState& state() const { return s_; }
+  void Restore(const ControlState& state) { s_ = state; }
+
+ private:
+  // --- control.cc: start, time, inputs, halts ---
+  void StartMain();
+  bool MayFetch() const;
+  void Fetch();
+  SimTime NextEvent(SimTime until) const;
+  void LetTimePass(SimTime to);
+  void ActOnTime();
+  void ApplyScripted();
+  void Halt(std::string_view why);
+  void Resume();
+  void EmergencyStop();
+  void Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail);
+  SimTime NextTick(SimTime since) const;
+
+  // --- control_motion_time.cc: motions in time ---
+  bool Busy() const { return s_.active || !s_.timeline.empty(); }
+  void DrainPlanner();
+  void StartNextItem();
+  void TellMotion(SimTime until);
+  void ArriveAtEnd();
+  void BeginProfile();
+  void EndMotionHere();
+  bool BringToHalt();
+  void ChangeOverride(double percent);
+  void StopMotions();
+  motion::TipPose TipNow() const;
+  motion::AxisPose AxesNow() const;
+  double TipSpeedNow() const;
+  bool Moving() const;
+  void WatchMove();
+
+  // --- control_motion.cc: what MOVE and its kin do ---
+  void Move(const Instruction& i);
+  std::optional<motion::TipPose> Target(const Instruction& i, bool via);
+  bool AppendMotion(const motion::PathPiece& path, const Instruction& i, const MoveNote& note, bool settles);
+  bool InTravel(const motion::PathPiece& path);
+  void MoveHole(const Instruction& i, const motion::TipPose& from, const motion::TipPose& target, MoveNote note);
+  void SetCoord(CoordType coord);
+  void SetPath(const Instruction& i);
+  void SetPercent(const Instruction& i);
+  void SetWorkOffset(const Instruction& i);
+  void SetTool(const Instruction& i);
+  void ZeroAxes();
+  motion::Head HeadNow() const;
+
+  // --- control_process.cc: laser, outputs ---
+  void DefineWork(const Instruction& i);
+  void Work(const Instruction& i);
+  void WorkOn(int kind, int process);
+  void WorkOff(int kind, int process);
+  bool SelectSchedule(int number);
+  double SchedulePower() const;
+  void Show(PassageEffect effect);
+  void Carry(const PassageEffect& effect);
+  void BeamOn(const machine::PowerBySpeed& power);
+  void BeamOff();
+  void OpenShutter();
+  void CloseShutter();
+  void SuspendBeam();
+  bool SetOutput(int index, bool on);
+  void ConnectOutputs();
+  void TellSignal(machine::Signal signal, int index, double value, double detail = 0.0);
+
+  // --- control_flow.cc: instructions and jumps ---
+  void Execute(const Instruction& i);
+  bool NeedsStandstill(const Instruction& i);
+  void Jump(int label);
+  void Gosub(int label);
+  void Return();
+  void EndModule();
+  void EndProgram();
+  void CallFunction(const Instruction& i);
+  void CallProgram(const Instruction& i);
+  void GoTo(const Instruction& i);
+  std::optional<Loaded> Acquire(int slot, bool must_be_executable);
+  void Begin(Loaded program, const std::array<float, kParameterCount>& parameters);
+  std::optional<int> ProgramNumber(Expression expression);
+  bool PassParameters(const Instruction& i, const Module& callee, std::array<float, kParameterCount>& out);
+  void Pause(std::string_view name);
+  void SetTimer(const Instruction& i);
+  void Wait(Pending pending);
+  void Raise(ErrorCode code, std::string detail = {});
+  void HandleError(const Error& error);
+  void Warn(ErrorCode code, std::string detail, std::string_view rule);
+
+  // --- control_data.cc: variables ---
+  float Read(Variable variable) override;
+  bool Write(Variable variable, float number);
+  void Let(const Instruction& i);
+  void Assign(const Instruction& i);
+  void SetGroups(const Instruction& i);
+  std::optional<Value> Eval(Expression expression);
+  std::optional<double> Real(Expression expression);
+  std::optional<bool> Truth(std::uint32_t expression);
+  double InputNow(VariableGroup group, int index) const;
+  bool Connected(std::uint8_t group) const;
+
+  ProgramContext& program() { return s_.programs.back(); }
+  const ProgramContext& program() const { return s_.programs.back(); }
+  Frame& frame() { return program().frames.back(); }
+  const Frame& frame() const { return program().frames.back(); }
+  const LinkedModule& linked() const {
+    return program().program->executable.modules[static_cast<std::size_t>(frame().module)];
+  }
+  const Module& module() const { return linked().module; }
+  const ModuleIndex& index() const { return program().program->index[static_cast<std::size_t>(frame().module)]; }
+  Modal& modal() { return program().modal; }
+  const Modal& modal() const { return program().modal; }
+  bool simulating() const { return s_.simulated.active; }
+
+  OptimoParameters parameters_;
+  machine::RunSetup setup_;
+  machine::RunObserver& observer_;
+  ControlState s_;
+};
+
+}  // namespace rmlcell::optimo

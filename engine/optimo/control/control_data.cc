@@ -1,0 +1,182 @@
+#include <cmath>
+
+#include "engine/core/number_text.h"
+#include "engine/optimo/control/control.h"
+
+// Variables, images and expressions.
+namespace rmlcell::optimo {
+namespace {
+
+constexpr int kFirstWorkFlag = 87;  // IL[87 + p], OPT-3.37
+constexpr int kLastWorkFlag = 94;
+constexpr int kMotionFlag = 95;  // OPT-7.68
+
+}  // namespace
+
+// UPDATE ON and no IMAGE: the images follow the outside. OPT-7.98, 7.100; in simulation nothing is read
+// or written (OPT-6.24, 6.25).
+bool Control::Connected(std::uint8_t group) const {
+  return (modal().updated & group) != 0 && (modal().imaged & group) == 0 && !simulating();
+}
+
+// The outside as it is now.
+double Control::InputNow(VariableGroup group, int index) const {
+  if (group == VariableGroup::kIl) {
+    if (index >= kFirstWorkFlag && index <= kLastWorkFlag) {
+      return program().processes.flag(index - kFirstWorkFlag) ? 1.0 : 0.0;
+    }
+    if (index == kMotionFlag) return Moving() || !s_.timeline.empty() ? 1.0 : 0.0;
+    return s_.machine.data.il_physical[static_cast<std::size_t>(index)] ? 1.0 : 0.0;
+  }
+  if (index <= 2) {
+    const motion::Vec3 point = modal().coord == CoordType::kAbsol ? TipNow().tip : AxesNow().column;
+    return index == 0 ? point.x : index == 1 ? point.y : point.z;
+  }
+  if (index == 3) return AxesNow().a_rad;
+  if (index == 4) return AxesNow().b_rad;
+  return s_.machine.data.ia_physical[static_cast<std::size_t>(index)];
+}
+
+float Control::Read(Variable variable) {
+  DataArea& data = s_.machine.data;
+  const auto n = static_cast<std::size_t>(variable.index);
+  switch (variable.group) {
+    case VariableGroup::kVr: return data.vr[n];
+    case VariableGroup::kVi: return data.vi[n];
+    case VariableGroup::kVl: return data.vl[n] ? 1.0F : 0.0F;
+    case VariableGroup::kIl:
+      // Work and motion flags are the control's own: they hold in simulation too (OPT-6.20).
+      if (Connected(kGroupIl) || (n >= kFirstWorkFlag && n <= kMotionFlag)) {
+        data.il[n] = InputNow(variable.group, variable.index) != 0.0;
+      }
+      return data.il[n] ? 1.0F : 0.0F;
+    case VariableGroup::kOl: return data.ol[n] ? 1.0F : 0.0F;
+    case VariableGroup::kIa:
+      if (Connected(kGroupIa)) data.ia[n] = static_cast<float>(InputNow(variable.group, variable.index));
+      return data.ia[n];
+    case VariableGroup::kOa:
+      if (n == 0) return static_cast<float>(TipSpeedNow() * parameters_.cycle_s);  // OPT-7.69
+      return data.oa[n];
+    case VariableGroup::kPar: return frame().parameters[n % kParameterCount];
+  }
+  return 0.0F;
+}
+
+// False: an error was raised, and nothing was written.
+bool Control::Write(Variable variable, float number) {
+  DataArea& data = s_.machine.data;
+  const auto n = static_cast<std::size_t>(variable.index);
+  switch (variable.group) {
+    case VariableGroup::kVr: data.vr[n] = number; return true;
+    case VariableGroup::kVi: data.vi[n] = number; return true;
+    case VariableGroup::kVl: data.vl[n] = number != 0.0F; return true;
+    case VariableGroup::kOl: return SetOutput(variable.index, number != 0.0F);
+    case VariableGroup::kOa:
+      data.oa[n] = number;
+      if (Connected(kGroupOa)) {
+        Show({.kind = PassageEffect::Kind::kAnalogue, .place = s_.place, .index = variable.index, .value = number});
+      }
+      return true;
+    case VariableGroup::kPar: frame().parameters[n % kParameterCount] = number; return true;
+    case VariableGroup::kIl:
+    case VariableGroup::kIa: break;  // refused by the checker (OPT-7.66)
+  }
+  return true;
+}
+
+std::optional<Value> Control::Eval(Expression expression) {
+  const Result<Value> value = Evaluate(expression, *this);
+  if (value) return *value;
+  Raise(value.error().code, value.error().detail);
+  return std::nullopt;
+}
+
+std::optional<double> Control::Real(Expression expression) {
+  const std::optional<Value> value = Eval(expression);
+  if (!value) return std::nullopt;
+  return static_cast<double>(value->number);
+}
+
+// The condition whose nodes begin at `first` of the module in execution.
+std::optional<bool> Control::Truth(std::uint32_t first) {
+  for (const ExprRange& range : module().expressions) {
+    if (range.first != first) continue;
+    const std::optional<Value> value = Eval({module().nodes.data() + range.first, range.count});
+    if (!value) return std::nullopt;
+    return value->truth();
+  }
+  return std::nullopt;
+}
+
+void Control::Let(const Instruction& i) {
+  const ExprNode& target = module().Value(i, 0).back();
+  const std::optional<Value> value = Eval(module().Value(i, 1));
+  if (!value) return;
+  const ValueType type = target.group == VariableGroup::kPar ? module().parameter_types[target.index]
+                                                             : TypeOf(target.group);
+  const Result<float> converted = ConvertTo(type, *value);
+  if (!converted) return Raise(converted.error().code, converted.error().detail);
+  Write(target.variable(), *converted);
+}
+
+// ASSIGN v = value / n: the value in binary, least significant bit first. OPT-7.102, 7.103
+void Control::Assign(const Instruction& i) {
+  const ExprNode& target = module().Value(i, 0).back();
+  const std::optional<double> value = Real(module().Value(i, 1));
+  if (!value) return;
+  const Result<int> number = TruncateToInteger(static_cast<float>(*value));
+  if (!number) return Raise(number.error().code, number.error().detail);
+  const int width = i.numbers[0];
+  if (*number < 0 || (width < 16 && *number >= (1 << width)) || target.index + width > kVariableCount) {
+    return Raise(ErrorCode::kAssignGroup, std::to_string(*number) + " into " + std::to_string(width) +
+                                              " places from " + std::string(GroupName(target.group)) + "[" +
+                                              std::to_string(target.index) + "]");
+  }
+  for (int bit = 0; bit < width; ++bit) {
+    const Variable place{target.group, static_cast<std::uint8_t>(target.index + bit)};
+    if (!Write(place, static_cast<float>(*number >> bit & 1))) return;
+  }
+}
+
+// UPDATE, IMAGE, REAL. Outputs that become connected are set from their images at that moment.
+void Control::SetGroups(const Instruction& i) {
+  const bool were_connected = Connected(kGroupOl);
+  if (i.op == Op::kUpdate) {
+    if (i.Has(kOn)) {
+      modal().updated = static_cast<std::uint8_t>(modal().updated | i.choice);
+    } else {
+      modal().updated = static_cast<std::uint8_t>(modal().updated & ~i.choice);
+    }
+  } else if (i.op == Op::kImage) {
+    modal().imaged = static_cast<std::uint8_t>(modal().imaged | i.choice);
+  } else {
+    modal().imaged = static_cast<std::uint8_t>(modal().imaged & ~i.choice);
+  }
+  const bool asked = (i.choice & (kGroupOl | kGroupOa)) != 0;
+  if (asked && (Connected(kGroupOl) || Connected(kGroupOa)) && (!were_connected || i.op == Op::kUpdate)) {
+    ConnectOutputs();
+  }
+}
+
+std::optional<std::string> Control::ReadVariable(std::string_view name) const {
+  const std::size_t open = name.find('[');
+  if (open == std::string_view::npos || !name.ends_with(']')) return std::nullopt;
+  const auto number = ParseInteger(name.substr(open + 1, name.size() - open - 2));
+  if (!number || *number < 0 || *number > kVariableIndexMax) return std::nullopt;
+  const auto n = static_cast<std::size_t>(*number);
+  const DataArea& data = s_.machine.data;
+  const auto group = name.substr(0, open);
+  const auto is = [&](std::string_view word) {
+    return group.size() == 2 && (group[0] & ~0x20) == word[0] && (group[1] & ~0x20) == word[1];
+  };
+  if (is("VR")) return TrimmedText(data.vr[n], 6);
+  if (is("VI")) return std::to_string(static_cast<int>(data.vi[n]));
+  if (is("VL")) return data.vl[n] ? "1" : "0";
+  if (is("IL")) return data.il[n] ? "1" : "0";
+  if (is("OL")) return data.ol[n] ? "1" : "0";
+  if (is("IA")) return TrimmedText(data.ia[n], 6);
+  if (is("OA")) return TrimmedText(data.oa[n], 6);
+  return std::nullopt;
+}
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,344 @@
+#include <cmath>
+
+#include "engine/core/number_text.h"
+#include "engine/motion/hole.h"
+#include "engine/optimo/control/control.h"
+
+// MOVE and the instructions that decide how it moves.
+namespace rmlcell::optimo {
+namespace {
+
+constexpr double kPercent = 0.01;
+constexpr double kAccelLeast_percent = 0.1;  // OPT-B.22
+
+motion::MoveCommand::Kind KindOf(PathType path, CoordType coord) {
+  if (coord == CoordType::kRobot) return motion::MoveCommand::Kind::kPointToPointAxes;
+  return path == PathType::kPtp ? motion::MoveCommand::Kind::kPointToPointTip
+                                : motion::MoveCommand::Kind::kContour;
+}
+
+std::string_view AxisName(int axis) {
+  constexpr std::array<std::string_view, motion::kAxisCount> kNames = {"X", "Y", "Z", "A", "B"};
+  return kNames[static_cast<std::size_t>(axis)];
+}
+
+}  // namespace
+
+motion::Head Control::HeadNow() const {
+  return {.length_mm = parameters_.head_length_mm, .tool = s_.machine.tool.offset};
+}
+
+// The five coordinates of a MOVE or its /VIA: a machine-frame tip in COORD ABSOL, a column in COORD ROBOT.
+std::optional<motion::TipPose> Control::Target(const Instruction& i, bool via) {
+  std::array<double, 5> v{};
+  for (int n = 0; n < 5; ++n) {
+    const std::optional<double> value = Real(via ? module().Via(i, n) : module().Value(i, n));
+    if (!value) return std::nullopt;
+    v[static_cast<std::size_t>(n)] = *value;
+  }
+  motion::TipPose pose{.tip = {v[0], v[1], v[2]}, .a_rad = v[3], .b_rad = v[4]};
+  if (modal().coord == CoordType::kAbsol) pose.tip = s_.machine.work_offset.transform().ToMachine(pose.tip);
+  return pose;
+}
+
+bool Control::InTravel(const motion::PathPiece& path) {
+  const motion::AxisLimits& axes = parameters_.limits.axes;
+  const motion::TipPose& to = path.to();
+  const bool joint = path.kind() == motion::PathPiece::Kind::kJoint;
+  const motion::AxisPose target =
+      joint ? motion::AxisPose{to.tip, to.a_rad, to.b_rad} : HeadNow().ColumnOf(to);
+  motion::TravelExcess worst = motion::WorstExcess(target, axes);
+  const bool at_target = worst.axis >= 0;
+  if (!at_target) worst = motion::WorstExcess(path, HeadNow(), axes);
+  if (worst.axis < 0) return true;
+  Raise(ErrorCode::kTargetOutOfTravel,
+        std::string(AxisName(worst.axis)) + (at_target ? " of the target" : " on the way") + " leaves its travel by " +
+            FixedText(worst.excess, 3) + (worst.axis < 3 ? " mm" : " rad"));
+  return false;
+}
+
+bool Control::AppendMotion(const motion::PathPiece& path, const Instruction& i, const MoveNote& note,
+                           bool settles) {
+  double speed = modal().speed_percent * kPercent * s_.override_percent * kPercent;
+  if (speed > 1.0) {
+    speed = 1.0;
+    if (!s_.speed_limited_told) {
+      s_.speed_limited_told = true;
+      Warn(ErrorCode::kSpeedLimited, "SPEED x override is over 100 %", "OPT-4.38");
+    }
+  }
+  if ((modal().speed_percent <= 0.0 || modal().accel_percent < kAccelLeast_percent) && path.length() > 0.0 &&
+      !i.Has(kTime)) {
+    Raise(ErrorCode::kNoMotion, modal().speed_percent <= 0.0 ? "SPEED is 0" : "ACCEL is below 0.1");
+    return false;
+  }
+  motion::MoveCommand command;
+  command.kind = KindOf(note.path, modal().coord);
+  command.path = path;
+  command.head = HeadNow();
+  command.speed_fraction = std::max(speed, 1e-6);
+  command.acceleration_fraction = std::max(modal().accel_percent, kAccelLeast_percent) * kPercent;
+  command.overshoot_fraction = modal().oversh_percent * kPercent;
+  command.fly = note.fly;
+  command.settles = settles;
+  command.tag = s_.next_tag++;
+  MoveNote kept = note;
+  kept.kind = command.kind;
+  kept.speed_percent = modal().speed_percent;
+  kept.accel_fraction = command.acceleration_fraction;
+  if (!path.by_sigma()) kept.feed_mm_s = command.speed_fraction * parameters_.limits.tip_speed_mm_s;
+  if (command.kind != motion::MoveCommand::Kind::kContour) kept.feed_mm_s = 0.0;
+  if (path.length() <= 0.0) {
+    // Nothing moves; the planner must know that the passage before is a stop, unless this one flies too.
+    if (!note.fly) StopMotions();
+    if (note.last && !s_.passing) {
+      observer_.OnMove({.at = s_.now,
+                        .place = note.place,
+                        .tip = TipNow(),
+                        .axes = AxesNow(),
+                        .program_point = note.program_point,
+                        .rotary_a = note.program_a,
+                        .feed_mm_s = kept.feed_mm_s,
+                        .path = note.path == PathType::kPtp ? "PTP" : "LIN"});
+    }
+    return true;
+  }
+  s_.notes.emplace_back(command.tag, kept);
+  if (const Status appended = s_.planner.Append(command); !appended) {
+    s_.notes.pop_back();
+    Raise(appended.error().code, appended.error().detail);
+    return false;
+  }
+  const motion::TipPose& to = path.to();
+  s_.planned_axes = path.kind() == motion::PathPiece::Kind::kJoint ? motion::AxisPose{to.tip, to.a_rad, to.b_rad}
+                                                                   : command.head.ColumnOf(to);
+  s_.passing = note.fly;
+  s_.run_ahead = 0;
+  DrainPlanner();
+  return true;
+}
+
+void Control::Move(const Instruction& i) {
+  if (!s_.condition_met) {
+    if (i.Has(kTime)) {
+      const std::optional<double> seconds = Real(module().Time(i));
+      if (!seconds) return;
+      if (*seconds < 0.0) return Raise(ErrorCode::kValueRange, "/TIME is " + ShortestText(*seconds));
+      if (!simulating()) {
+        s_.time_label = module().TimeLabel(i);
+        s_.time_due = s_.instruction_since + FromSeconds(*seconds);
+        s_.time_ran_out = false;
+      }
+    }
+    if (i.Has(kStart) && !simulating()) {
+      const std::uint32_t expression = static_cast<std::uint32_t>(module().Start(i).data() - module().nodes.data());
+      const std::optional<bool> met = Truth(expression);
+      if (!met) return;
+      if (!*met) {
+        return Wait({.kind = Pending::Kind::kCondition, .since = s_.now, .expression = expression});
+      }
+    }
+  }
+  const Modal& m = modal();
+  if (m.coord == CoordType::kRobot && m.path != PathType::kPtp) {
+    return Raise(ErrorCode::kPathNeedsAbsol, "PATH LIN, CIR and HOLE need COORD ABSOL");
+  }
+  if (!s_.machine.zeroed && !simulating()) return Raise(ErrorCode::kNotZeroed, {});
+  const std::optional<motion::TipPose> target = Target(i, false);
+  if (!target) return;
+  if (simulating()) return;  // no motion, and the position does not change: OPT-6.18
+
+  MoveNote note{.place = s_.place, .path = m.path};
+  std::array<double, 5> programmed{};
+  for (int n = 0; n < 5; ++n) programmed[static_cast<std::size_t>(n)] = *Real(module().Value(i, n));
+  note.program_point = {programmed[0], programmed[1], programmed[2]};
+  note.program_a = programmed[3];
+  note.program_b = programmed[4];
+  const bool halts = s_.mode == machine::Mode::kSingle || s_.hold_requested ||
+                     (s_.breakpoint && s_.breakpoint->program == s_.place.program &&
+                      s_.breakpoint->step == s_.place.step);
+  note.fly = i.Has(kFly) && !halts && !i.Has(kEnd) && !i.Has(kTime) && !i.Has(kNext);
+
+  if (i.Has(kEnd)) {
+    const std::uint32_t expression = static_cast<std::uint32_t>(module().End(i).data() - module().nodes.data());
+    const std::optional<bool> met = Truth(expression);
+    if (!met) return;
+    if (*met) {
+      s_.time_label.reset();
+      return;  // true at the start: no motion at all
+    }
+    s_.end_condition = expression;
+  }
+
+  motion::PathPiece path;
+  if (m.coord == CoordType::kRobot) {
+    const motion::AxisPose& from = s_.planned_axes;
+    path = motion::PathPiece::Joint({from.column, from.a_rad, from.b_rad}, *target);
+  } else {
+    const motion::TipPose from = HeadNow().TipOf(s_.planned_axes);
+    if (m.path == PathType::kHole) return MoveHole(i, from, *target, note);
+    path = motion::PathPiece::Line(from, *target);
+    if (m.path == PathType::kCir && !i.Has(kVia)) {
+      Warn(ErrorCode::kViaMissing, "CIR without /VIA is a straight line", "OPT-2.21");
+    } else if (m.path == PathType::kCir) {
+      const std::optional<motion::TipPose> via = Target(i, true);
+      if (!via) return;
+      const Result<motion::PathPiece::Arc3> arc = motion::PathPiece::ArcThrough(from, via->tip, *target);
+      if (!arc) return Raise(arc.error().code, arc.error().detail);
+      path = arc->path;
+      if (arc->kind == motion::PathPiece::ArcCase::kLineWarned) {
+        Warn(ErrorCode::kArcIsStraight, "the three points lie on a line", "OPT-B.16");
+      }
+    }
+  }
+  if (!InTravel(path) || !AppendMotion(path, i, note, true)) {
+    s_.end_condition.reset();
+    s_.time_label.reset();
+    return;
+  }
+  if (i.Has(kEnd) || i.Has(kTime)) {
+    if (path.length() > 0.0) {
+      s_.watched_move = s_.next_tag - 1;
+      s_.watched_since = s_.now;
+    } else {
+      s_.end_condition.reset();
+      s_.time_label.reset();
+    }
+  }
+  if (i.Has(kNext)) {
+    StopMotions();
+    s_.background = Busy();
+    if (!s_.active && !s_.timeline.empty()) StartNextItem();
+  }
+}
+
+// motion.md 3.3: a line to the circle, a stop, one full turn.
+void Control::MoveHole(const Instruction& i, const motion::TipPose& from, const motion::TipPose& target,
+                       MoveNote note) {
+  if (!i.Has(kVia)) {
+    if (modal().hole_radius_mm <= 0.0) {
+      return Raise(ErrorCode::kHoleRadiusZero, "radius is " + ShortestText(modal().hole_radius_mm));
+    }
+    Warn(ErrorCode::kViaMissing, "HOLE without /VIA is a straight line to the centre", "OPT-2.29");
+    const motion::PathPiece line = motion::PathPiece::Line(from, target);
+    if (InTravel(line)) AppendMotion(line, i, note, true);
+    return;
+  }
+  const std::optional<motion::TipPose> normal = Target(i, true);
+  if (!normal) return;
+  const motion::WorkOffset frame = s_.machine.work_offset.transform();
+  const Result<motion::HolePath> hole =
+      motion::HoleThrough({.from = from,
+                           .centre = target,
+                           .normal_point = normal->tip,
+                           .radius_mm = modal().hole_radius_mm,
+                           .program_x = frame.DirectionToMachine({1.0, 0.0, 0.0}),
+                           .program_y = frame.DirectionToMachine({0.0, 1.0, 0.0})});
+  if (!hole) return Raise(hole.error().code, hole.error().detail);
+  if (hole->starts_on_axis && parameters_.teach_simulator) {
+    return Raise(ErrorCode::kHoleStartOnAxis, "the hole starts on the line from centre to normal point");
+  }
+  if (!InTravel(hole->lead) || !InTravel(hole->circle)) return;
+  MoveNote lead = note;
+  lead.last = false;
+  lead.fly = false;
+  if (hole->lead.length() > 0.0 && !AppendMotion(hole->lead, i, lead, false)) return;
+  AppendMotion(hole->circle, i, note, true);
+}
+
+void Control::SetCoord(CoordType coord) { modal().coord = coord; }
+
+void Control::SetPath(const Instruction& i) {
+  const auto path = static_cast<PathType>(i.choice);
+  if (path == PathType::kHole) {
+    const std::optional<double> radius = Real(module().Value(i, 0));
+    if (!radius) return;
+    modal().hole_radius_mm = *radius;
+  }
+  modal().path = path;
+}
+
+// SPEED, ACCEL, OVERSH: outside 0 to 100 the old value stays (OPT-2.35).
+void Control::SetPercent(const Instruction& i) {
+  const std::optional<double> value = Real(module().Value(i, 0));
+  if (!value) return;
+  if (!(*value >= 0.0 && *value <= 100.0)) {
+    return Raise(ErrorCode::kValueRange,
+                 std::string(Describe(i.op).name) + " is " + ShortestText(*value) + ", allowed are 0 to 100");
+  }
+  double& target = i.op == Op::kSpeed   ? modal().speed_percent
+                   : i.op == Op::kAccel ? modal().accel_percent
+                                        : modal().oversh_percent;
+  target = *value;
+}
+
+void Control::SetWorkOffset(const Instruction& i) {
+  WorkOffsetState offset;
+  if (i.value_count == 6) {
+    bool all_zero = true;
+    for (int n = 0; n < 6; ++n) {
+      const std::optional<double> value = Real(module().Value(i, n));
+      if (!value) return;
+      offset.values[static_cast<std::size_t>(n)] = *value;
+      all_zero = all_zero && *value == 0.0;
+    }
+    offset.active = true;
+    if (all_zero) Warn(ErrorCode::kSysdefAllZero, "SYSDEF with six zeros", "OPT-7.37");
+  }
+  s_.machine.work_offset = offset;
+}
+
+void Control::SetTool(const Instruction& i) {
+  std::array<double, 6> v{};
+  for (int n = 0; n < 6; ++n) {
+    const std::optional<double> value = Real(module().Value(i, n));
+    if (!value) return;
+    v[static_cast<std::size_t>(n)] = *value;
+  }
+  const bool same_point = v[0] == v[3] && v[1] == v[4] && v[2] == v[5];
+  if (same_point) {
+    Warn(ErrorCode::kTcpAxisUndefined, "both points of TCP are equal", "OPT-4.71");
+  } else if (v[2] < v[5]) {
+    Warn(ErrorCode::kTcpReversed, "Z0 is below Z1: jogging along the tool is reversed", "OPT-4.55");
+  }
+  if (v[0] != 0.0 || v[1] != 0.0 || v[3] != 0.0 || v[4] != 0.0) {
+    Warn(ErrorCode::kTcpOffAxis, "X or Y of TCP is not zero: applied as a tool offset", "OPT-4.70");
+  }
+  s_.machine.tool = {.offset = {v[0], v[1], v[2]}, .reference = {v[3], v[4], v[5]}};
+}
+
+// Z, then A and B, then X and Y, each to its mechanical zero: OPT-4.49, OPT-B.60. In virtual time each
+// group is a joint motion.
+void Control::ZeroAxes() {
+  if (simulating()) return;
+  motion::AxisPose pose = s_.planned_axes;
+  const motion::AxisPose& zero = parameters_.mechanical_zero;
+  const auto move = [&](const motion::AxisPose& to) {
+    const motion::PathPiece path = motion::PathPiece::Joint({pose.column, pose.a_rad, pose.b_rad},
+                                                            {to.column, to.a_rad, to.b_rad});
+    pose = to;
+    if (path.length() <= 0.0) return;
+    motion::MoveCommand command;
+    command.kind = motion::MoveCommand::Kind::kPointToPointAxes;
+    command.path = path;
+    command.head = HeadNow();
+    command.speed_fraction = 0.1;  // no override: OPT-4.51
+    command.tag = s_.next_tag++;
+    s_.notes.emplace_back(command.tag, MoveNote{.place = s_.place, .path = PathType::kPtp, .last = false});
+    if (const Status appended = s_.planner.Append(command); !appended) s_.notes.pop_back();
+  };
+  motion::AxisPose to = pose;
+  to.column.z = zero.column.z;
+  move(to);
+  to.a_rad = zero.a_rad;
+  to.b_rad = zero.b_rad;
+  move(to);
+  to.column.x = zero.column.x;
+  to.column.y = zero.column.y;
+  move(to);
+  s_.planned_axes = to;
+  s_.machine.zeroed = true;
+  StopMotions();
+}
+
+}  // namespace rmlcell::optimo

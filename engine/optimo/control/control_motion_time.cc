@@ -1,0 +1,277 @@
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "engine/motion/interruption.h"
+#include "engine/optimo/control/control.h"
+
+// Motions as time passes: from the planner to the observer.
+namespace rmlcell::optimo {
+namespace {
+
+template <class Queue>
+const typename Queue::value_type::second_type* FindTag(const Queue& queue, std::uint64_t tag) {
+  const auto found = std::ranges::lower_bound(queue, tag, {}, [](const auto& row) { return row.first; });
+  return found != queue.end() && found->first == tag ? &found->second : nullptr;
+}
+
+std::string_view PathName(PathType path) {
+  switch (path) {
+    case PathType::kPtp: return "PTP";
+    case PathType::kLin: return "LIN";
+    case PathType::kCir: return "CIR";
+    case PathType::kHole: return "HOLE";
+  }
+  return "";
+}
+
+motion::TipPose PoseOn(const motion::PlannedMotion& motion, double s) { return motion.path.At(s); }
+
+}  // namespace
+
+void Control::DrainPlanner() {
+  while (std::optional<motion::PlannedItem> item = s_.planner.Next()) s_.timeline.push_back(std::move(*item));
+}
+
+// Marks take effect at once, motions begin.
+void Control::StartNextItem() {
+  while (!s_.active && !s_.timeline.empty()) {
+    motion::PlannedItem& next = s_.timeline.front();
+    if (const auto* mark = std::get_if<motion::PlannedMark>(&next)) {
+      const std::uint64_t tag = mark->tag;
+      s_.timeline.pop_front();
+      if (const PassageEffect* effect = FindTag(s_.effects, tag)) Carry(*effect);
+      while (!s_.effects.empty() && s_.effects.front().first <= tag) s_.effects.pop_front();
+      continue;
+    }
+    s_.active.emplace();
+    ActiveMotion& active = *s_.active;
+    active.motion = std::get<motion::PlannedMotion>(next);
+    s_.timeline.pop_front();
+    if (const MoveNote* note = FindTag(s_.notes, active.motion.tag)) active.note = *note;
+    while (!s_.notes.empty() && s_.notes.front().first < active.motion.tag) s_.notes.pop_front();
+    BeginProfile();
+  }
+  if (!Busy()) s_.background = false;
+}
+
+// The profile of the motion under way begins now.
+void Control::BeginProfile() {
+  ActiveMotion& active = *s_.active;
+  active.start = s_.now;
+  active.told = s_.now;
+  active.arrival = s_.now + FromSeconds(active.motion.speed.duration_s());
+  active.end = active.arrival + FromSeconds(active.motion.settling_s);
+}
+
+// Reports the part of the motion under way from what was told up to `until`.
+void Control::TellMotion(SimTime until) {
+  ActiveMotion& active = *s_.active;
+  if (until <= active.told && until < active.end) return;
+  observer_.OnMotion({.start = active.told,
+                      .end = until,
+                      .place = active.note.place,
+                      .use = s_.beam.on ? machine::MotionUse::kCut : machine::MotionUse::kTravel,
+                      .motion = &active.motion,
+                      .from = active.s_at(std::min(active.told, active.arrival)),
+                      .travelled = active.s_at(std::min(until, active.arrival)),
+                      .profile_start_s = ToSeconds(active.told - active.start),
+                      .programmed_mm_s = active.note.feed_mm_s,
+                      .beam_on = s_.beam.on,
+                      .power = s_.beam.power});
+  active.told = until;
+}
+
+void Control::ArriveAtEnd() {
+  TellMotion(s_.active->end);
+  const ActiveMotion active = std::move(*s_.active);
+  s_.active.reset();
+  const bool joint = active.motion.path.kind() == motion::PathPiece::Kind::kJoint;
+  const motion::TipPose pose = PoseOn(active.motion, active.s_at(active.arrival));
+  s_.machine.axes = joint ? motion::AxisPose{pose.tip, pose.a_rad, pose.b_rad} : active.motion.head.ColumnOf(pose);
+  if (active.ended) {
+    s_.timeline.clear();
+    s_.planned_axes = s_.machine.axes;
+  } else if (!active.motion.ends_move) {
+    return;
+  }
+  const motion::CornerReport& corner = active.motion.corner;
+  if (corner.passage == motion::Passage::kStopReversal) {
+    Warn(ErrorCode::kFlyReversal, "the path turns back: the machine stops at the target", "OPT-B.25");
+  }
+  if (active.note.last || active.ended) {
+    observer_.OnMove({.at = s_.now,
+                      .place = active.note.place,
+                      .tip = HeadNow().TipOf(s_.machine.axes),
+                      .axes = s_.machine.axes,
+                      .program_point = active.note.program_point,
+                      .rotary_a = active.note.program_a,
+                      .feed_mm_s = active.note.feed_mm_s,
+                      .path = PathName(active.note.path)});
+    if (s_.watched_move == active.motion.tag) {
+      s_.watched_move.reset();
+      s_.end_condition.reset();
+      const std::optional<int> label = s_.time_label;
+      s_.time_label.reset();
+      if (s_.time_ran_out && label) {
+        s_.time_ran_out = false;
+        Gosub(*label);
+      }
+    }
+  }
+}
+
+// The motion under way comes to rest on its path, at once, and its move is over where it stands: /END, /TIME,
+// a MOVE that takes over. Such moves end in a stop, so the ramp never leaves their path.
+void Control::EndMotionHere() {
+  ActiveMotion& active = *s_.active;
+  if (s_.now >= active.arrival) return;  // it stands already
+  const motion::SpeedProfile ramp = active.motion.speed.StopFrom(ToSeconds(s_.now - active.start), active.motion.limits);
+  const double here = active.s_at(s_.now);
+  const double rest = std::min(ramp.end().s, active.motion.path.length());
+  TellMotion(s_.now);
+  active.ended = true;
+  active.motion.settling_s = 0.0;
+  if (rest > here) {
+    active.motion.path = active.motion.path.Part(here, rest);
+    active.motion.speed = ramp.Part(here, rest);
+  } else {
+    active.motion.path = motion::PathPiece::Line(active.motion.path.At(here), active.motion.path.At(here));
+    active.motion.speed = motion::SpeedProfile();
+  }
+  BeginProfile();
+}
+
+// STOP: the machine comes to rest along the planned path, over as many motions as that takes, and START goes
+// on from there over the same path (OPT-4.18, motion.md 6). False: not enough is planned yet to come to rest
+// on; the program runs ahead a little more.
+bool Control::BringToHalt() {
+  std::vector<motion::PlannedMotion> ahead{s_.active->motion};
+  std::vector<std::pair<std::size_t, motion::PlannedMark>> marks;  // each behind a motion
+  for (const motion::PlannedItem& item : s_.timeline) {
+    if (const auto* planned = std::get_if<motion::PlannedMotion>(&item)) {
+      ahead.push_back(*planned);
+    } else {
+      marks.emplace_back(ahead.size() - 1, std::get<motion::PlannedMark>(item));
+    }
+  }
+  const motion::StopOnPath stop = motion::StopAlong(ahead, ToSeconds(s_.now - s_.active->start));
+  if (!stop.complete) return false;
+  TellMotion(s_.now);
+  s_.machine.axes = AxesNow();
+  s_.active.reset();
+  s_.timeline.clear();
+  const auto add_marks = [&](std::size_t behind, std::deque<motion::PlannedItem>& items) {
+    for (const auto& [place, mark] : marks) {
+      if (place == behind) items.emplace_back(mark);
+    }
+  };
+  const std::size_t first = stop.index + 1 - std::min(stop.motions.size(), stop.index + 1);
+  for (std::size_t n = 0; n < stop.motions.size(); ++n) {
+    s_.timeline.emplace_back(stop.motions[n]);
+    if (first + n < stop.index) add_marks(first + n, s_.timeline);
+  }
+  const std::span<const motion::PlannedMotion> left = std::span(ahead).subspan(stop.index);
+  const std::vector<motion::PlannedMotion> restart = motion::RestartAlong(left, stop.s);
+  s_.interrupted.clear();
+  // RestartAlong leaves out the first motion when the machine stands at its end.
+  const std::size_t dropped = left.size() - restart.size();
+  for (std::size_t k = 0; k < left.size(); ++k) {
+    if (k >= dropped) s_.interrupted.emplace_back(restart[k - dropped]);
+    add_marks(stop.index + k, s_.interrupted);
+  }
+  s_.halting = true;
+  s_.stop_requested = false;
+  StartNextItem();
+  return true;
+}
+
+// Acts on motions that are not planned yet, and on the one under way when it ends in a stop (motion.md 6).
+void Control::ChangeOverride(double percent) {
+  const double before = s_.override_percent;
+  if (!(percent > 0.0) || percent == before) return;
+  s_.override_percent = percent;
+  if (!s_.active || s_.active->ended || s_.halting || s_.now >= s_.active->arrival) return;
+  ActiveMotion& active = *s_.active;
+  if (active.motion.speed.end().speed > 0.0 || active.note.speed_percent <= 0.0) return;
+  motion::MoveCommand command;
+  command.kind = active.note.kind;
+  command.path = active.motion.path;
+  command.head = active.motion.head;
+  command.speed_fraction = std::min(1.0, active.note.speed_percent * percent * 1e-4);
+  command.acceleration_fraction = active.note.accel_fraction;
+  const motion::PathLimits limits = motion::LimitsOf(command, parameters_.limits);
+  const motion::PathState here = active.motion.speed.At(ToSeconds(s_.now - active.start));
+  TellMotion(s_.now);
+  const double length = active.motion.path.length();
+  motion::SpeedProfile changed = motion::SpeedProfile::From(here, length, 0.0, limits);
+  active.motion.limits = limits;
+  active.motion.path = active.motion.path.Part(here.s, length);
+  active.motion.speed = changed.Part(here.s, length);
+  BeginProfile();
+}
+
+// /END and /TIME of the move under way: at its start, at each tick, when time runs out. OPT-2.54 to 2.58
+void Control::WatchMove() {
+  if (s_.time_label && s_.now >= s_.time_due && !s_.time_ran_out) {
+    if (s_.pending.kind == Pending::Kind::kCondition) {
+      // Time ran out while /START was waited for: no motion is made.
+      const int label = *s_.time_label;
+      s_.pending = {};
+      s_.time_label.reset();
+      s_.end_condition.reset();
+      s_.watched_move.reset();
+      ++frame().next;
+      Gosub(label);
+      return;
+    }
+    if (s_.active && s_.watched_move == s_.active->motion.tag) {
+      s_.time_ran_out = true;
+      EndMotionHere();
+      return;
+    }
+  }
+  if (!s_.end_condition || !s_.active || s_.watched_move != s_.active->motion.tag ||
+      s_.active->ended) {
+    return;
+  }
+  if ((s_.now - s_.watched_since) % FromSeconds(parameters_.cycle_s) != SimTime(0)) return;
+  const std::optional<bool> met = Truth(*s_.end_condition);
+  if (met && *met) EndMotionHere();
+}
+
+// An error or the end of the run: whatever moves comes to rest, nothing more begins.
+void Control::StopMotions() {
+  s_.planner.Stop();
+  s_.passing = false;
+  DrainPlanner();
+}
+
+bool Control::Moving() const { return s_.active && s_.now < s_.active->arrival; }
+
+motion::TipPose Control::TipNow() const {
+  if (!s_.active) return HeadNow().TipOf(s_.machine.axes);
+  const motion::TipPose pose = PoseOn(s_.active->motion, s_.active->s_at(s_.now));
+  if (s_.active->motion.path.kind() != motion::PathPiece::Kind::kJoint) return pose;
+  return s_.active->motion.head.TipOf({pose.tip, pose.a_rad, pose.b_rad});
+}
+
+motion::AxisPose Control::AxesNow() const {
+  if (!s_.active) return s_.machine.axes;
+  const motion::TipPose pose = PoseOn(s_.active->motion, s_.active->s_at(s_.now));
+  if (s_.active->motion.path.kind() == motion::PathPiece::Kind::kJoint) {
+    return {pose.tip, pose.a_rad, pose.b_rad};
+  }
+  return s_.active->motion.head.ColumnOf(pose);
+}
+
+double Control::TipSpeedNow() const {
+  if (!Moving()) return 0.0;
+  const motion::PathState here = s_.active->motion.speed.At(ToSeconds(s_.now - s_.active->start));
+  const motion::PathPiece& path = s_.active->motion.path;
+  if (!path.by_sigma()) return here.speed;
+  if (path.kind() == motion::PathPiece::Kind::kRotary) return 0.0;
+  return here.speed * motion::Norm(path.Tangent(s_.active->s_at(s_.now)));
+}
+
+}  // namespace rmlcell::optimo

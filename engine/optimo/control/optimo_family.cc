@@ -1,0 +1,71 @@
+#include "engine/optimo/control/optimo_family.h"
+
+#include <array>
+
+#include "engine/optimo/control/optimo_run.h"
+#include "engine/optimo/language/compiler.h"
+#include "engine/optimo/language/linker.h"
+#include "engine/optimo/offline/project.h"
+#include "engine/optimo/offline/translate.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+constexpr machine::FamilyInfo kInfo = {.id = "optimo",
+                                       .title = "Amada OPTIMO 5-axis laser",
+                                       .extensions = ".S .SI .CMP .O",
+                                       .axes = "X Y Z A B",
+                                       .has_executables = true,
+                                       .has_schedules = true};
+
+constexpr std::array kFigures = {
+    machine::FigureInfo{"lookahead_starved", "", "knots that the planner had to decide before it could see enough"},
+    machine::FigureInfo{"executables_made", "", "executables that the run had to make"},
+};
+
+class Family final : public machine::MachineFamily {
+ public:
+  const machine::FamilyInfo& info() const override { return kInfo; }
+  std::span<const machine::ParameterInfo> parameters() const override { return OptimoParameterTable(); }
+  std::span<const machine::MachineProfile> profiles() const override { return OptimoProfiles(); }
+  std::span<const machine::FigureInfo> figures() const override { return kFigures; }
+  machine::MachineShape Shape(const machine::Parameters& parameters) const override {
+    return ShapeOf(Resolve(parameters));
+  }
+
+  machine::Translation Translate(const machine::SourceFile& file, const machine::Parameters& parameters,
+                                 const machine::CheckOptions& options) const override {
+    return TranslateOptimo(file, options, static_cast<std::uint32_t>(Resolve(parameters).object_limit));
+  }
+
+  machine::TransferPlan PlanTransfer(const machine::ProjectBundle& project, const machine::Parameters& parameters,
+                                     const machine::TransferOptions& options) const override {
+    return optimo::PlanTransfer(project, options, static_cast<std::uint32_t>(Resolve(parameters).object_limit));
+  }
+
+  Result<std::string> Decompile(std::string_view object) const override { return ObjectToSource(object); }
+
+  Status CheckExecutable(std::string_view executable) const override {
+    const Result<Executable> decoded = DecodeExecutable(executable);
+    if (!decoded) return decoded.error();
+    return {};
+  }
+
+  Result<std::unique_ptr<machine::Run>> NewRun(machine::RunSetup setup,
+                                               machine::RunObserver& observer) const override {
+    if (!setup.machine_state.empty()) {
+      if (const Result<MachineState> state = DecodeMachineState(setup.machine_state); !state) return state.error();
+    }
+    const OptimoParameters resolved = Resolve(setup.parameters);
+    return std::unique_ptr<machine::Run>(std::make_unique<OptimoRun>(resolved, std::move(setup), observer));
+  }
+};
+
+}  // namespace
+
+const machine::MachineFamily& OptimoFamily() {
+  static const Family family;
+  return family;
+}
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+
+#include "engine/machine/run.h"
+#include "engine/optimo/control/control.h"
+
+namespace rmlcell::optimo {
+
+// A run of the control behind the interface of all machines.
+class OptimoRun final : public machine::Run {
+ public:
+  OptimoRun(OptimoParameters parameters, machine::RunSetup setup, machine::RunObserver& observer)
+      : control_(std::move(parameters), std::move(setup), observer) {}
+
+  machine::RunPhase Advance(SimTime until) override { return control_.Advance(until); }
+  void Apply(const machine::InputChange& input) override { control_.Apply(input); }
+  void End(machine::OutcomeKind kind, ErrorCode code) override { control_.End(kind, code); }
+  machine::RunState state() const override { return control_.Snapshot(); }
+  const machine::Outcome& outcome() const override { return control_.state().outcome; }
+  std::uint64_t steps_executed() const override { return control_.state().steps; }
+  std::optional<std::string> ReadVariable(std::string_view name) const override {
+    return control_.ReadVariable(name);
+  }
+  std::vector<machine::Figure> figures() const override;
+  std::string SaveMachine() const override { return EncodeMachineState(control_.state().machine); }
+  std::map<int, std::string> made_executables() const override { return control_.state().made_executables; }
+  std::unique_ptr<machine::RunSnapshot> Save() const override;
+  void Restore(const machine::RunSnapshot& snapshot) override;
+
+ private:
+  Control control_;
+};
+
+}  // namespace rmlcell::optimo

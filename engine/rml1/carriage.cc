@@ -1,0 +1,271 @@
+#include "engine/rml1/carriage.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/motion/path.h"
+
+namespace rmlcell::rml1 {
+namespace {
+
+using machine::MotionUse;
+
+// Z alone: down is a plunge where it goes into the work, and only then.
+MotionUse UseOfHeight(double from_z, double to_z, bool into_work) {
+  if (to_z > from_z) return MotionUse::kRetract;
+  return into_work ? MotionUse::kPlunge : MotionUse::kTravel;
+}
+
+// Three-axis motion says nothing about its purpose: below Z0 there is material.
+MotionUse UseOfThreeAxis(const Point& from, const Point& to, bool same_xy, double z0) {
+  if (same_xy && to.z < from.z) return to.z < z0 ? MotionUse::kPlunge : MotionUse::kTravel;
+  if (same_xy && to.z > from.z) return from.z < z0 ? MotionUse::kRetract : MotionUse::kTravel;
+  return std::min(from.z, to.z) < z0 ? MotionUse::kCut : MotionUse::kTravel;
+}
+
+}  // namespace
+
+double LimitedSpeed(const Profile& profile, const Point& from, const Point& to,
+                    double wanted_mm_s) {
+  const double length = DistanceXYZ(from, to);
+  if (!(length > 0.0)) return wanted_mm_s;
+  double speed = wanted_mm_s;
+  const auto limit = [&](double way, double highest) {
+    if (std::abs(way) * speed > highest * length) speed = highest * length / std::abs(way);
+  };
+  const double xy_highest = std::max(profile.xy_speeds.maximum_mm_s, profile.travel_speed);
+  limit(to.x - from.x, xy_highest);
+  limit(to.y - from.y, xy_highest);
+  limit(to.z - from.z, profile.z_speeds.maximum_mm_s);
+  // The rotary axis turns in step: degrees per mm of path, RML1-3D.29.
+  limit((to.a - from.a) * profile.units_per_mm, profile.rotary_speed_deg_s);
+  return speed;
+}
+
+Carriage::Carriage(const Profile& profile)
+    : range_{profile.x, profile.y, profile.z},
+      zero_(motion::kTipLengthZero_mm * profile.units_per_mm) {
+  Place({profile.origin_x, profile.origin_y, profile.z.high, 0.0});
+}
+
+void Carriage::Place(const Point& at) {
+  physical_ = logical_ = range_.Nearest(at);
+  outside_ = parked_ = false;
+}
+
+void Carriage::ToToolHeight(const Context& context) {
+  const Registers& registers = context.registers;
+  const double z = registers.tool_z(context.profile);
+  logical_.z = z;
+  if (!range_.HasXY(logical_)) return;
+  Point to = range_.Nearest(logical_);
+  to.a = physical_.a;
+  if (SameXY(physical_, to)) {
+    Go(context, to,
+       {.speed_mm_s = registers.z_speed,
+        .use = UseOfHeight(physical_.z, z, registers.tool_down),
+        .dwells = true});
+  } else {
+    bool no_dwell = false;
+    const double pass_z = parked_ ? registers.up_z(context.profile) : range_.top();
+    Recover(context, to, {.pass_z = pass_z, .to_tool_height = true}, no_dwell);
+  }
+  parked_ = false;
+  PauseAtEntry(context, registers.z0 + registers.z2 <= range_.top());
+}
+
+void Carriage::MoveXY(const Context& context, double x, double y) {
+  const Registers& registers = context.registers;
+  const Point from = logical_;
+  const Point to{x, y, from.z, from.a};
+  logical_ = to;
+  const double length = DistanceXYZ(from, to);
+  const Share share = ShareInXY(range_, from, to);
+  const bool follows = !share.empty() && (share.high - share.low) * length > zero_;
+  if (follows) {
+    const Point entry = range_.Nearest(Between(from, to, share.low));
+    if (share.low > 0.0) {
+      bool no_dwell = false;
+      const double pass_z = parked_ ? registers.up_z(context.profile) : range_.top();
+      Recover(context, {entry.x, entry.y, entry.z, physical_.a},
+              {.pass_z = pass_z, .to_tool_height = true}, no_dwell);
+      parked_ = false;
+      PauseAtEntry(context, registers.z0 + registers.z2 <= range_.top());
+    }
+    Point end = range_.Nearest(Between(from, to, share.high));
+    end.a = physical_.a;
+    if (registers.tool_down) {
+      Go(context, end,
+         {.speed_mm_s = registers.xy_speed,
+          .use = MotionUse::kCut,
+          .chain = Chain::kToolDown,
+          .dwells = true});
+    } else {
+      Go(context, end,
+         {.speed_mm_s = context.profile.travel_speed, .chain = Chain::kToolUp, .rapid = true});
+    }
+  }
+  if (range_.HasXY(to)) {
+    if (share.low > 0.0) NoteClipped(share.low * length);
+    return;
+  }
+  NoteClipped(follows ? length * (1.0 - share.high + share.low) : length);
+  if (follows || range_.HasXY(from)) LeaveXY(context);
+}
+
+// The tool goes up at the boundary, so that it can come back over the work (RML1-5A.30, 5A.32).
+void Carriage::LeaveXY(const Context& context) {
+  outside_ = true;
+  parked_ = true;
+  if (!context.registers.tool_down) return;
+  Point up = physical_;
+  up.z = std::max(physical_.z, context.registers.up_z(context.profile));
+  Go(context, up,
+     {.speed_mm_s = context.registers.z_speed, .use = MotionUse::kRetract, .dwells = true});
+}
+
+void Carriage::MoveXYZ(const Context& context, const Point& to) {
+  const Pieces pieces = Pieces::Cut(range_, logical_, to, zero_);
+  logical_ = to;
+  parked_ = false;
+  bool dwell = true;  // one wait before the first motion of the set (RML1-3A.69)
+  double beyond = 0.0;
+  for (const Piece& piece : pieces.all()) {
+    if (piece.region == Region::kInside) {
+      Follow(context, piece, dwell);
+      continue;
+    }
+    outside_ = true;
+    beyond += DistanceXYZ(piece.from, piece.to);
+    if (piece.region == Region::kBelow) Follow(context, piece, dwell);
+  }
+  TurnRotary(context, to.a, dwell);
+  if (beyond > 0.0) NoteClipped(beyond);
+}
+
+// A piece that the tool follows: inside, or sliding along the bottom.
+void Carriage::Follow(const Context& context, const Piece& piece, bool& dwell) {
+  const Registers& registers = context.registers;
+  const Point begin = range_.Nearest(piece.from);
+  const Point end = range_.Nearest(piece.to);
+  TurnRotary(context, begin.a, dwell);
+  Recover(context, begin, {.pass_z = range_.top(), .to_tool_height = false}, dwell);
+  if (piece.region == Region::kInside) PauseAtEntry(context, true);
+  const bool moved =
+      Go(context, end,
+         {.speed_mm_s = registers.z_speed,
+          .use = UseOfThreeAxis(physical_, end, SameXY(physical_, end), registers.z0),
+          .chain = Chain::kThreeAxis,
+          .dwells = dwell});
+  dwell = dwell && !moved;
+}
+
+// While the tool stands outside, A has fallen behind the line; it turns alone (RML1-9.30).
+void Carriage::TurnRotary(const Context& context, double a, bool& dwell) {
+  if (std::abs(physical_.a - a) <= kSameAngle_deg) return;
+  Point to = physical_;
+  to.a = a;
+  const Registers& registers = context.registers;
+  Go(context, to,
+     {.speed_mm_s = registers.z_speed,
+      .use = to.z < registers.z0 ? MotionUse::kCut : MotionUse::kTravel,
+      .dwells = dwell});
+  dwell = false;
+}
+
+// Recovery of section 5A: Z alone where X and Y are right, else up to `pass_z`, across, and down.
+// Up and across at the travel speed, down at the Z speed (RML1-9.28). `dwell`: a wait is due before
+// the first motion. Two-dimensional commands wait before the one that ends at the tool height.
+void Carriage::Recover(const Context& context, const Point& to, const Recovery& recovery,
+                       bool& dwell) {
+  const Registers& registers = context.registers;
+  const double travel = context.profile.travel_speed;
+  const auto go = [&](const Point& next, Stroke stroke) {
+    stroke.dwells = stroke.dwells || dwell;
+    if (Go(context, next, stroke)) dwell = false;
+  };
+  if (!SameXY(physical_, to)) {
+    const double z = std::max(physical_.z, recovery.pass_z);
+    go({physical_.x, physical_.y, z, physical_.a},
+       {.speed_mm_s = travel, .use = MotionUse::kRetract, .rapid = true});
+    go({to.x, to.y, z, physical_.a}, {.speed_mm_s = travel, .rapid = true});
+  }
+  const bool up = to.z > physical_.z;
+  const bool into_work = recovery.to_tool_height ? registers.tool_down : to.z < registers.z0;
+  go(to, {.speed_mm_s = up ? travel : registers.z_speed,
+          .use = UseOfHeight(physical_.z, to.z, into_work),
+          .rapid = up,
+          .dwells = recovery.to_tool_height});
+}
+
+void Carriage::MoveZ(const Context& context, double z) {
+  Point to = physical_;
+  to.z = z;
+  Go(context, to,
+     {.speed_mm_s = context.registers.z_speed,
+      .use = UseOfThreeAxis(physical_, to, true, context.registers.z0)});
+  logical_.z = z;
+  parked_ = false;
+}
+
+void Carriage::RaiseForInitialise(const Context& context) {
+  Point to = physical_;
+  to.z = context.registers.up_z(context.profile);
+  Go(context, to,
+     {.speed_mm_s = context.registers.z_speed,
+      .use = UseOfHeight(physical_.z, to.z, false),
+      .starts_spindle = false});
+  Place(physical_);
+}
+
+void Carriage::GoHome(const Context& context) {
+  const double travel = context.profile.travel_speed;
+  Point to = physical_;
+  to.z = range_.top();
+  Go(context, to,
+     {.speed_mm_s = travel, .use = MotionUse::kRetract, .rapid = true, .starts_spindle = false});
+  to = range_.Nearest({context.profile.origin_x, context.profile.origin_y, to.z, to.a});
+  Go(context, to, {.speed_mm_s = travel, .rapid = true, .starts_spindle = false});
+  Place(physical_);
+}
+
+// Returns whether there was a motion.
+bool Carriage::Go(const Context& context, const Point& to, const Stroke& stroke) {
+  if (SamePoint(physical_, to, zero_)) return false;
+  Registers& registers = context.registers;
+  if (stroke.starts_spindle && registers.rotation && !registers.spindle_on) {
+    registers.spindle_on = true;
+    context.queue.Push(Action::Kind::kSpindleStart).rpm = registers.rpm;
+  }
+  if (stroke.dwells && registers.dwell_ms > 0) {
+    context.queue.Push(Action::Kind::kDwell).dwell_ms = registers.dwell_ms;
+  }
+  Action& action = context.queue.Push(Action::Kind::kMotion);
+  action.to = to;
+  action.speed_mm_s = LimitedSpeed(context.profile, physical_, to, stroke.speed_mm_s);
+  action.rapid = stroke.rapid;
+  action.use = stroke.use;
+  action.chain = stroke.chain;
+  physical_ = to;
+  return true;
+}
+
+// The commands are back in the range: RML1-5A.35, RML1-5A.36.
+void Carriage::PauseAtEntry(const Context& context, bool allowed) {
+  if (outside_ && allowed && context.profile.pause_outside) {
+    context.queue.Push(Action::Kind::kPause).outside = true;
+  }
+  outside_ = false;
+}
+
+void Carriage::NoteClipped(double length) {
+  if (!(length > zero_)) return;
+  clipped_length_ += length;
+  ++clipped_sets_;
+}
+
+bool Carriage::SameXY(const Point& a, const Point& b) const {
+  return std::abs(a.x - b.x) <= zero_ && std::abs(a.y - b.y) <= zero_;
+}
+
+}  // namespace rmlcell::rml1

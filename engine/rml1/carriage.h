@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+
+#include "engine/rml1/action.h"
+#include "engine/rml1/clipping.h"
+#include "engine/rml1/registers.h"
+
+namespace rmlcell::rml1 {
+
+// The axes of the device: turns commanded points into physical motions.
+//
+// It keeps two positions, in device units from the machine's zero. The logical one follows the
+// commands and may lie anywhere; the physical one never leaves the cutting range (section 5A).
+// Every method appends what happens to the queue of its context, with the start of the spindle (5B)
+// and the dwells (RML1-9.34) in their places, and leaves the positions as they are when that is
+// done. Motions of length zero are not appended (RML1-9.49).
+class Carriage {
+ public:
+  // Power-on: at the XY work origin, as far as the travel reaches, with Z at the top (RML1-9.07).
+  explicit Carriage(const Profile& profile);
+
+  struct Context {
+    const Profile& profile;
+    Registers& registers;
+    ActionQueue& queue;
+  };
+
+  // Two-dimensional commands: brings the tool to the height of its state. While X or Y lies
+  // outside, only the logical height changes (RML1-5A.33, 5A.37).
+  void ToToolHeight(const Context& context);
+  // Then to one point, at the height and speed of the tool state (RML1-5A.30 to 5A.32).
+  void MoveXY(const Context& context, double x, double y);
+
+  // Three-axis commands: one set, clipped at the six faces (RML1-5A.01 to 5A.29, 5A.34).
+  void MoveXYZ(const Context& context, const Point& to);
+
+  // !ZM (RML1-3C.25, 3C.37).
+  void MoveZ(const Context& context, double z);
+
+  // IN: to the tool-up height where it is. H: to the top, then to the XY work origin. Both without
+  // dwell and without starting the spindle; the logical position becomes the physical one.
+  void RaiseForInitialise(const Context& context);
+  void GoHome(const Context& context);
+
+  const Point& logical() const { return logical_; }
+  const Point& physical() const { return physical_; }
+  void Place(const Point& at);  // a machine state of an earlier run; limited to the travel
+
+  // Logical way that the tool could not follow, in device units, and the sets concerned.
+  double clipped_length() const { return clipped_length_; }
+  std::uint64_t clipped_sets() const { return clipped_sets_; }
+
+ private:
+  struct Stroke {
+    double speed_mm_s = 0.0;
+    machine::MotionUse use = machine::MotionUse::kTravel;
+    Chain chain = Chain::kAlone;
+    bool rapid = false;
+    bool dwells = false;  // a wait right before it
+    bool starts_spindle = true;
+  };
+
+  bool Go(const Context& context, const Point& to, const Stroke& stroke);
+  struct Recovery {
+    double pass_z = 0.0;          // height of the way across
+    bool to_tool_height = false;  // of a two-dimensional command
+  };
+  void Recover(const Context& context, const Point& to, const Recovery& recovery, bool& dwell);
+  void Follow(const Context& context, const Piece& piece, bool& dwell);
+  void TurnRotary(const Context& context, double a, bool& dwell);
+  void LeaveXY(const Context& context);
+  void PauseAtEntry(const Context& context, bool allowed);
+  void NoteClipped(double length);
+  bool SameXY(const Point& a, const Point& b) const;
+
+  CuttingRange range_;
+  double zero_;  // device units: shorter motions are none
+  Point logical_;
+  Point physical_;
+  bool outside_ = false;  // the commands have left the range and not come back to it
+  bool parked_ = false;   // a two-axis motion left the tool at its boundary, at a safe height
+  double clipped_length_ = 0.0;
+  std::uint64_t clipped_sets_ = 0;
+};
+
+// The highest speed up to `wanted` at which no axis exceeds its own; motion.md section 7.
+double LimitedSpeed(const Profile& profile, const Point& from, const Point& to, double wanted_mm_s);
+
+}  // namespace rmlcell::rml1

@@ -1,0 +1,257 @@
+#include "engine/rml1/command_reader.h"
+
+#include <algorithm>
+
+namespace rmlcell::rml1 {
+namespace {
+
+constexpr unsigned char kCarriageReturn = '\r';
+constexpr unsigned char kLineFeed = '\n';
+
+bool IsBlank(unsigned char byte) { return byte == ' ' || byte == '\t'; }
+bool IsTerminator(unsigned char byte) {
+  return byte == ';' || byte == kCarriageReturn || byte == kLineFeed;
+}
+
+// The letter in upper case, or 0. Bytes of 0x80 or more are no letters (RML1-1.09, RML1-1.10).
+char LetterOf(unsigned char byte) {
+  const auto upper = static_cast<char>(byte >= 'a' && byte <= 'z' ? byte - 'a' + 'A' : byte);
+  return byte < 0x80 && upper >= 'A' && upper <= 'Z' ? upper : char{0};
+}
+
+// Blanks between the letters count; a stream of nothing else must not overflow the figure.
+int LengthFrom(std::int64_t first, std::int64_t last) {
+  constexpr std::int64_t kLengthMax = 1'000'000'000;
+  return static_cast<int>(std::min(last - first + 1, kLengthMax));
+}
+
+Reading Nothing() { return {}; }
+Reading Again(Reading::Kind kind) { return {kind, false}; }
+
+}  // namespace
+
+Reading CommandReader::Put(unsigned char byte, std::int64_t offset) {
+  switch (state_) {
+    case State::kSearch:
+      return Search(byte, offset);
+    case State::kLetter:
+      return SecondLetter(byte, offset);
+    case State::kMark:
+      return AfterMark(byte, offset);
+    case State::kMarkLetter:
+      return AfterMarkLetter(byte, offset);
+    case State::kBetween:
+      return Between(byte);
+    case State::kNumber:
+      return InNumber(byte);
+    case State::kAfterNumber:
+      return AfterNumber(byte);
+    case State::kListOver:
+    case State::kAxisEnd:
+      return EndList();
+    case State::kAxis:
+      return Axis(byte, offset);
+    case State::kAxisGap:
+      return AxisGap(byte, offset);
+    case State::kAxisNumber:
+      return InAxisNumber(byte, offset);
+    case State::kAxisSkip:
+      return IsTerminator(byte) ? EndList() : Nothing();
+  }
+  return Nothing();
+}
+
+void CommandReader::SkipGroups() { state_ = State::kAxisSkip; }
+
+void CommandReader::Drop() {
+  state_ = State::kSearch;
+  in_call_ = false;
+}
+
+// The command search (RML1-2.01 to 2.06, 3A.29 to 3A.36).
+Reading CommandReader::Search(unsigned char byte, std::int64_t offset) {
+  if (byte <= 0x20 || byte == ';') {
+    return {IsTerminator(byte) ? Reading::Kind::kStatementEnd : Reading::Kind::kNothing, true};
+  }
+  const bool mode1 = set_.setting != CommandSetting::kMode2 && !in_call_;
+  if (const char letter = LetterOf(byte); letter != 0) {
+    letter_ = letter;
+    command_offset_ = offset;
+    const bool only_mode1 = mode1 && set_.setting == CommandSetting::kMode1;
+    const CommandRow* row = mode1 ? FindMode1(letter, set_.skipped) : nullptr;
+    if (row != nullptr && (only_mode1 || !BeginsMode2(letter))) return Found(*row, true);
+    if (only_mode1) return Refuse(ReadError::kUnknownName, offset, 1, true);
+    state_ = State::kLetter;
+    return Nothing();
+  }
+  if (byte == '!') {  // ends an open call, whatever name follows (RML1-3A.34)
+    in_call_ = false;
+    command_offset_ = offset;
+    state_ = State::kMark;
+    return Nothing();
+  }
+  if (NumberReader::CanBegin(byte)) return Refuse(ReadError::kStrayNumber, offset, 1, true);
+  if (mode1 && byte == '@') {
+    command_offset_ = offset;
+    return Found(RowOf(Op::kAt), true);
+  }
+  if (mode1 && byte == '^') {
+    in_call_ = true;
+    call_offset_ = offset;
+    return {Reading::Kind::kCall, true};
+  }
+  return Refuse(ReadError::kForeignCharacter, offset, 1, true);
+}
+
+// A held letter meets the next byte (RML1-2.07 to 2.16, 3A.35). Both readings of auto: the pair
+// wins.
+Reading CommandReader::SecondLetter(unsigned char byte, std::int64_t offset) {
+  if (IsBlank(byte)) return Nothing();
+  const char second = LetterOf(byte);
+  const CommandRow* pair = second != 0 ? FindMode2(letter_, second) : nullptr;
+  if (pair != nullptr) return Found(*pair, true);
+  const int length = LengthFrom(command_offset_, offset);
+  if (in_call_) return Refuse(ReadError::kUnknownCall, command_offset_, length, true);
+  if (set_.setting == CommandSetting::kMode2) {
+    return Refuse(ReadError::kUnknownName, command_offset_, length, true);
+  }
+  const CommandRow* alone = FindMode1(letter_, set_.skipped);
+  if (second == 0) {
+    if (alone != nullptr) return Found(*alone, false);
+    return Refuse(ReadError::kUnknownName, command_offset_, 1, false);
+  }
+  if (alone != nullptr && FindMode1(second, set_.skipped) != nullptr) return Found(*alone, false);
+  return Refuse(ReadError::kUnknownName, command_offset_, length, true);
+}
+
+// RML1-2.17, RML1-2.18.
+Reading CommandReader::AfterMark(unsigned char byte, std::int64_t offset) {
+  if (IsBlank(byte)) return Nothing();
+  const CommandRow* vendor = FindCommonDigit(static_cast<char>(byte), set_.skipped);
+  if (vendor != nullptr) return Found(*vendor, true);
+  letter_ = LetterOf(byte);
+  if (letter_ != 0) {
+    state_ = State::kMarkLetter;
+    return Nothing();
+  }
+  const int length = LengthFrom(command_offset_, offset);
+  return Refuse(ReadError::kUnknownName, command_offset_, length, true);
+}
+
+// RML1-2.17, RML1-2.19.
+Reading CommandReader::AfterMarkLetter(unsigned char byte, std::int64_t offset) {
+  if (IsBlank(byte)) return Nothing();
+  const char second = LetterOf(byte);
+  const CommandRow* row = second != 0 ? FindCommon(letter_, second, set_.skipped) : nullptr;
+  if (row != nullptr && (row->op != Op::kZE || set_.axis_command)) return Found(*row, true);
+  const int length = LengthFrom(command_offset_, offset);
+  return Refuse(ReadError::kUnknownName, command_offset_, length, true);
+}
+
+Reading CommandReader::Found(const CommandRow& row, bool taken) {
+  row_ = &row;
+  in_call_ = false;
+  comma_ = false;
+  count_ = 0;
+  axes_named_ = 0;
+  state_ = row.shape == Shape::kAxes ? State::kAxis : State::kBetween;
+  return {Reading::Kind::kCommand, taken};
+}
+
+// rml1.md 0.4 rule 1.
+Reading CommandReader::Between(unsigned char byte) {
+  if (IsBlank(byte)) return Nothing();
+  if (HasAll()) return EndList();
+  if (byte == ',' && count_ > 0 && !comma_) {
+    comma_ = true;
+    return Nothing();
+  }
+  if (!NumberReader::CanBegin(byte)) return EndList();
+  reader_.Begin(byte);
+  state_ = State::kNumber;
+  return Nothing();
+}
+
+// rml1.md 0.4 rule 2.
+Reading CommandReader::InNumber(unsigned char byte) {
+  if (reader_.Take(byte)) return Nothing();
+  if (!reader_.has_digit() && !reader_.has_period()) return EndList();  // a lone sign (RML1-2.28)
+  number_ = reader_.value();
+  state_ =
+      reader_.has_digit() ? State::kAfterNumber : State::kListOver;  // a lone period: RML1-2.31
+  comma_ = false;
+  if (count_ < 2) ++count_;
+  return Again(Reading::Kind::kParameter);
+}
+
+// A number must be followed by a separator before the next one (RML1-2.29, RML1-2.30).
+Reading CommandReader::AfterNumber(unsigned char byte) {
+  if (!IsBlank(byte) && byte != ',') return EndList();
+  state_ = State::kBetween;
+  return Between(byte);
+}
+
+// !ZE: axis letter expected (RML1-3D.08, 3D.15 to 3D.22).
+Reading CommandReader::Axis(unsigned char byte, std::int64_t offset) {
+  if (IsBlank(byte)) return Nothing();
+  if (byte == ':') {
+    axes_named_ = 0;
+    return {Reading::Kind::kGroup, true};
+  }
+  if (IsTerminator(byte)) {
+    state_ = State::kAxisEnd;
+    return Again(Reading::Kind::kGroup);
+  }
+  const char letter = LetterOf(byte);
+  if (letter == 0) return RefuseAxis(ReadError::kAxisLetter, offset, byte);
+  const std::uint32_t bit = std::uint32_t{1} << (letter - 'A');
+  if ((axes_named_ & bit) != 0) return RefuseAxis(ReadError::kAxisTwice, offset, byte);
+  axes_named_ |= bit;
+  axis_ = letter;
+  state_ = State::kAxisGap;
+  return Nothing();
+}
+
+// !ZE: the number of an axis expected (RML1-3D.16, RML1-3D.18).
+Reading CommandReader::AxisGap(unsigned char byte, std::int64_t offset) {
+  if (IsBlank(byte)) return Nothing();
+  if (!NumberReader::CanBegin(byte)) return RefuseAxis(ReadError::kAxisValue, offset, byte);
+  reader_.Begin(byte);
+  state_ = State::kAxisNumber;
+  return Nothing();
+}
+
+// RML1-3D.24: here a lone sign or period is a missing value.
+Reading CommandReader::InAxisNumber(unsigned char byte, std::int64_t offset) {
+  if (reader_.Take(byte)) return Nothing();
+  if (!reader_.has_digit()) return RefuseAxis(ReadError::kAxisValue, offset, byte);
+  number_ = reader_.value();
+  state_ = State::kAxis;
+  return Again(Reading::Kind::kAxisValue);
+}
+
+Reading CommandReader::EndList() {
+  state_ = State::kSearch;
+  return Again(Reading::Kind::kEnd);
+}
+
+Reading CommandReader::Refuse(ReadError error, std::int64_t offset, int length, bool taken) {
+  error_ = error;
+  error_offset_ = offset;
+  error_length_ = length;
+  state_ = State::kSearch;
+  in_call_ = false;
+  return {Reading::Kind::kError, taken};
+}
+
+// The rest up to the terminator is skipped without further errors (RML1-3D.25); a terminator in the
+// place of the fault is left to end the command.
+Reading CommandReader::RefuseAxis(ReadError error, std::int64_t offset, unsigned char byte) {
+  error_ = error;
+  error_offset_ = offset;
+  error_length_ = 1;
+  state_ = State::kAxisSkip;
+  return {Reading::Kind::kError, !IsTerminator(byte)};
+}
+
+}  // namespace rmlcell::rml1

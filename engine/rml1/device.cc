@@ -1,0 +1,233 @@
+#include "engine/rml1/device.h"
+
+#include <algorithm>
+
+namespace rmlcell::rml1 {
+namespace {
+
+FindingKind KindOf(ReadError error) {
+  switch (error) {
+    case ReadError::kForeignCharacter:
+      return FindingKind::kForeignCharacter;
+    case ReadError::kUnknownName:
+      return FindingKind::kUnknownName;
+    case ReadError::kStrayNumber:
+      return FindingKind::kStrayNumber;
+    case ReadError::kUnknownCall:
+      return FindingKind::kUnknownCall;
+    case ReadError::kAxisTwice:
+      return FindingKind::kAxisTwice;
+    case ReadError::kAxisValue:
+      return FindingKind::kAxisValue;
+    case ReadError::kAxisLetter:
+      return FindingKind::kAxisLetter;
+  }
+  return FindingKind::kForeignCharacter;
+}
+
+FindingKind KindOf(LinkError error) {
+  switch (error) {
+    case LinkError::kBadParameter:
+      return FindingKind::kBadSequenceParameter;
+    case LinkError::kParameterOverflow:
+      return FindingKind::kSequenceParameterRange;
+    case LinkError::kTooManyParameters:
+      return FindingKind::kTooManySequenceParameters;
+    case LinkError::kLine:
+      return FindingKind::kLineError;
+    case LinkError::kOverflow:
+      return FindingKind::kBufferOverflow;
+    default:
+      return FindingKind::kBadSequence;
+  }
+}
+
+}  // namespace
+
+Device::Device(const Profile& profile)
+    : profile_(&profile),
+      path_(profile.seven_bits, profile.all_sequences),
+      buffer_(profile.buffer_bytes),
+      reader_(profile.commands),
+      registers_(profile),
+      carriage_(profile) {}
+
+void Device::Restore(const Registers& registers, const Point& at) {
+  registers_ = registers;
+  registers_.z0 = std::clamp(registers.z0, profile_->z.low, profile_->z.high);
+  registers_.xy_speed = profile_->xy_speeds.Nearest(registers.xy_speed);
+  registers_.z_speed = profile_->z_speeds.Nearest(registers.z_speed);
+  registers_.rpm =
+      std::clamp(registers.rpm, profile_->spindle_min_rpm, profile_->spindle_max_rpm);
+  carriage_.Place(at);
+}
+
+void Device::Receive(unsigned char byte, std::int64_t offset, DeviceListener& listener) {
+  last_offset_ = offset;
+  if (const std::optional<unsigned char> plain = path_.Plain(byte)) {
+    ToBuffer(*plain, offset, listener);
+    return;
+  }
+  const Received received = path_.Put(byte);
+  if (received.abort) {  // RML1-4.08 to 4.12: what has run stays, what has not is forgotten
+    buffer_.Clear();
+    reader_.Drop();
+    return;
+  }
+  for (const LinkError error : received.errors) {
+    if (error == LinkError::kNone) continue;
+    Log(link_errors_, {.kind = KindOf(error), .offset = offset, .byte = byte}, listener);
+  }
+  for (std::uint8_t i = 0; i < received.count; ++i) {
+    ToBuffer(received.bytes[i].byte, offset - received.bytes[i].back, listener);
+  }
+}
+
+void Device::ToBuffer(unsigned char byte, std::int64_t offset, DeviceListener& listener) {
+  if (buffer_.Push(byte, offset)) return;
+  Log(link_errors_, {.kind = FindingKind::kBufferOverflow, .offset = offset, .byte = byte},
+      listener);
+}
+
+void Device::ReportLineError(std::int64_t offset, DeviceListener& listener) {
+  Log(link_errors_, {.kind = FindingKind::kLineError, .offset = offset}, listener);
+}
+
+bool Device::Step(DeviceListener& listener) {
+  if (buffer_.empty()) return false;
+  const DataBuffer::Entry entry = buffer_.front();
+  const Reading reading = reader_.Put(entry.byte, entry.offset);
+  if (reading.taken) buffer_.Pop();
+  if (reading.kind != Reading::Kind::kNothing) OnReading(reading, entry, listener);
+  return true;
+}
+
+void Device::OnReading(const Reading& reading, const DataBuffer::Entry& at,
+                       DeviceListener& listener) {
+  switch (reading.kind) {
+    case Reading::Kind::kNothing:
+      break;
+    case Reading::Kind::kCommand:
+      ++command_.number;
+      command_.offset = reader_.command_offset();
+      command_.op = reader_.row().op;
+      operands_ = {};
+      told_ = false;
+      ClearGroup();
+      break;
+    case Reading::Kind::kCall:
+      programmed_.OnCommand(Op::kCall);
+      break;
+    case Reading::Kind::kParameter:
+      OnParameter(listener);
+      break;
+    case Reading::Kind::kAxisValue:
+      OnAxisValue(listener);
+      break;
+    case Reading::Kind::kGroup:
+      OnGroup(listener);
+      break;
+    case Reading::Kind::kEnd:
+      OnEnd(listener);
+      break;
+    case Reading::Kind::kError:
+      OnReadError(at, listener);
+      break;
+    case Reading::Kind::kStatementEnd:
+      programmed_.OnStatementEnd();
+      break;
+  }
+}
+
+void Device::OnReadError(const DataBuffer::Entry& at, DeviceListener& listener) {
+  const ReadError error = reader_.error();
+  const bool in_axes = error == ReadError::kAxisTwice || error == ReadError::kAxisValue ||
+                       error == ReadError::kAxisLetter;
+  if (in_axes) {
+    BeginCommand(listener);
+  } else {
+    programmed_.OnDiscarded(error == ReadError::kUnknownName || error == ReadError::kUnknownCall);
+  }
+  Log(command_errors_,
+      {.kind = KindOf(error),
+       .offset = reader_.error_offset(),
+       .length = reader_.error_length(),
+       .step = in_axes ? static_cast<int>(command_.number) : 0,
+       .byte = at.byte,
+       .op = command_.op},
+      listener);
+}
+
+void Device::OnParameter(DeviceListener& listener) {
+  operands_.any = true;
+  const CommandRow& row = reader_.row();
+  if (row.shape == Shape::kFixed) {
+    operands_.fixed[static_cast<std::size_t>(operands_.count++)] = reader_.number();
+    return;
+  }
+  if (row.shape != Shape::kSets || operands_.dropped) return;
+  if (!TakeCoordinate(listener)) {
+    operands_.dropped = true;
+    return;
+  }
+  if (operands_.count < row.values) return;
+  BeginCommand(listener);
+  RunSet(listener);
+  operands_.ran = true;
+  operands_.count = 0;
+}
+
+// The parameter list is over.
+void Device::OnEnd(DeviceListener& listener) {
+  BeginCommand(listener);
+  const CommandRow& row = reader_.row();
+  if (row.shape == Shape::kFixed) {
+    RunFixed(listener);
+  } else if (row.shape == Shape::kAny) {
+    Advise(FindingKind::kSkippedName, listener);
+  } else if (row.shape == Shape::kSets) {
+    if (!operands_.any) {
+      RunBare();
+    } else if (operands_.count > 0 && !operands_.dropped) {
+      Report(FindingKind::kLeftOver, listener);  // RML1-9.15, RML1-9.16
+    }
+  }
+  ++commands_done_;
+}
+
+void Device::Report(FindingKind kind, DeviceListener& listener, double value) {
+  BeginCommand(listener);
+  Log(command_errors_,
+      {.kind = kind,
+       .offset = command_.offset,
+       .length = static_cast<int>(RowOf(command_.op).name.size()),
+       .step = static_cast<int>(command_.number),
+       .op = command_.op,
+       .value = value},
+      listener);
+}
+
+void Device::Log(ErrorLog& log, Finding finding, DeviceListener& listener) {
+  const bool was_cut = log.cut();
+  const int number = Lookup(RowOf(finding.kind).code).number;
+  if (log.Add(number, finding.offset)) {
+    listener.OnFinding(finding);
+  } else if (!was_cut) {
+    finding.kind = FindingKind::kLogCut;
+    listener.OnFinding(finding);
+  }
+}
+
+void Device::Advise(FindingKind kind, DeviceListener& listener, double value) {
+  int& told = advised_[static_cast<std::size_t>(kind)];
+  if (told >= kAdviceMax) return;
+  ++told;
+  listener.OnFinding({.kind = kind,
+                      .offset = command_.offset,
+                      .length = static_cast<int>(RowOf(command_.op).name.size()),
+                      .step = static_cast<int>(command_.number),
+                      .op = command_.op,
+                      .value = value});
+}
+
+}  // namespace rmlcell::rml1

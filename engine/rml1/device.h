@@ -1,0 +1,162 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "engine/rml1/action.h"
+#include "engine/rml1/carriage.h"
+#include "engine/rml1/command_reader.h"
+#include "engine/rml1/data_buffer.h"
+#include "engine/rml1/error_log.h"
+#include "engine/rml1/finding.h"
+#include "engine/rml1/programmed.h"
+#include "engine/rml1/receive_path.h"
+#include "engine/rml1/registers.h"
+
+namespace rmlcell::rml1 {
+
+// Where the command in progress stands in the stream.
+struct CommandPlace {
+  std::uint64_t number = 0;  // of the command, from 1; 0 before the first
+  std::int64_t offset = 0;   // of the first byte of its name
+  Op op = Op::kCall;
+};
+
+// Told what the device notices. No method may call back into the device.
+class DeviceListener {
+ public:
+  virtual ~DeviceListener() = default;
+  virtual void OnCommand(const CommandPlace&) {}  // right before its first effect
+  virtual void OnFinding(const Finding&) {}       // errors up to the bound of the log, and advice
+};
+
+// A mill or engraver without its clock: bytes go in, and out come actions, each to be carried out
+// before the next byte is looked at. A value: a copy is a snapshot. It owns what section 7 lists as
+// power-on state, and nothing of it grows without bound (RML1-7.07).
+//
+// To run it: Receive a byte, then call Step until it returns false, carrying out and popping the
+// actions after each step. An action kPause stays at the front until the resume key is pressed:
+// bytes that are received meanwhile wait in the buffer (RML1-3C.08).
+class Device {
+ public:
+  // `profile` must outlive the device and its copies.
+  explicit Device(const Profile& profile);
+
+  // Takes one byte from the link through the receive path into the buffer. When the buffer is full
+  // the byte is lost with communication error 16; room() is what flow control tells a sender.
+  void Receive(unsigned char byte, std::int64_t offset, DeviceListener& listener);
+  std::size_t room() const { return buffer_.room(); }
+  std::size_t waiting() const { return buffer_.size(); }  // bytes received and not interpreted
+
+  // A framing, parity or overrun error that the transport reports: error 15, and the byte is lost.
+  void ReportLineError(std::int64_t offset, DeviceListener& listener);
+
+  // Interprets as far as the next thing that happens; at most one byte. False when the buffer is
+  // empty. Precondition: no action is waiting.
+  bool Step(DeviceListener& listener);
+
+  ActionQueue& actions() { return actions_; }
+  const ActionQueue& actions() const { return actions_; }
+  bool paused() const { return !actions_.empty() && actions_.front().kind == Action::Kind::kPause; }
+
+  // A command, a name, a call or a control sequence is unfinished.
+  bool pending() const { return reader_.pending() || path_.pending(); }
+  std::int64_t pending_offset() const {
+    return reader_.pending() ? reader_.pending_offset() : last_offset_;
+  }
+
+  // The stream is over: its last statement counts although nothing ended it (RML1-7.04).
+  void EndOfData() { programmed_.Finish(); }
+
+  const Registers& registers() const { return registers_; }
+  const Carriage& carriage() const { return carriage_; }
+  const Programmed& programmed() const { return programmed_; }
+  const ErrorLog& command_errors() const { return command_errors_; }
+  const ErrorLog& link_errors() const { return link_errors_; }
+  const ReceivePath& path() const { return path_; }
+  const CommandPlace& command() const { return command_; }
+  std::uint64_t commands_done() const { return commands_done_; }  // executed to their end
+  std::uint64_t speeds_limited() const { return speeds_limited_; }
+
+  // The state of an earlier run (machine_state.h), limited to what this profile can do. Only before
+  // the first byte.
+  void Restore(const Registers& registers, const Point& at);
+
+ private:
+  // A set in progress of a command with sets, or the numbers of a fixed one.
+  struct Operands {
+    std::array<double, 3> set{};    // numbers of the set in progress
+    std::array<Number, 2> fixed{};  // parameters of a fixed command
+    int count = 0;                  // of the set or the list
+    bool any = false;               // a parameter was read
+    bool ran = false;               // a set was executed
+    bool dropped = false;           // a value was out of range: the rest of the list is dropped
+  };
+  // The group of !ZE in progress.
+  struct Group {
+    Point to;
+    bool has_y = false;
+    bool has_a = false;
+    Programmed::AxisGroup named;
+  };
+
+  Carriage::Context context() { return {*profile_, registers_, actions_}; }
+  void ToBuffer(unsigned char byte, std::int64_t offset, DeviceListener& listener);
+  void OnReading(const Reading& reading, const DataBuffer::Entry& at, DeviceListener& listener);
+  void OnReadError(const DataBuffer::Entry& at, DeviceListener& listener);
+  void OnParameter(DeviceListener& listener);
+  void OnEnd(DeviceListener& listener);
+
+  // device_commands.cc
+  void BeginCommand(DeviceListener& listener);
+  void ApplyEffects(const CommandRow& row);
+  void NoteClipping(std::uint64_t sets_before, DeviceListener& listener);
+  bool TakeCoordinate(DeviceListener& listener);
+  void RunSet(DeviceListener& listener);
+  void RunBare();
+  void RunFixed(DeviceListener& listener);
+  void OnAxisValue(DeviceListener& listener);
+  void OnGroup(DeviceListener& listener);
+  void ClearGroup();
+  void SetXYSpeed(DeviceListener& listener);
+  void SetZSpeed(DeviceListener& listener);
+  double NearestSpeed(const motion::FeedSteps& steps, DeviceListener& listener);
+  void SetHeights(DeviceListener& listener);
+  void SetDwell(DeviceListener& listener);
+  void SetRotation();
+  void SetSpindleSpeed(DeviceListener& listener);
+  void MoveMachineZ(DeviceListener& listener);
+  void SetZ0(DeviceListener& listener);
+  void RestoreDefaults();
+  void StopSpindle(bool waits);
+
+  // Errors of commands: the register, the log and the listener.
+  void Report(FindingKind kind, DeviceListener& listener, double value = 0.0);
+  void Log(ErrorLog& log, Finding finding, DeviceListener& listener);
+  void Advise(FindingKind kind, DeviceListener& listener, double value = 0.0);
+
+  // Advice of one kind is told so many times; then it is only counted in the figures.
+  static constexpr int kAdviceMax = 1000;
+
+  const Profile* profile_;
+  ReceivePath path_;
+  DataBuffer buffer_;
+  CommandReader reader_;
+  Registers registers_;
+  Carriage carriage_;
+  ActionQueue actions_;
+  Programmed programmed_;
+  ErrorLog command_errors_;
+  ErrorLog link_errors_;
+  CommandPlace command_;
+  Operands operands_;
+  Group group_;
+  bool told_ = false;             // OnCommand was called for the command in progress
+  std::uint64_t clip_told_ = 0;   // number of the last command with advice on clipping
+  std::int64_t last_offset_ = 0;  // of the byte received last
+  std::uint64_t commands_done_ = 0;
+  std::uint64_t speeds_limited_ = 0;
+  std::array<int, kFindingKindCount> advised_{};
+};
+
+}  // namespace rmlcell::rml1

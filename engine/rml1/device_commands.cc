@@ -1,0 +1,348 @@
+// What each command does, from its parameters (rml1.md sections 3A to 3E).
+#include <algorithm>
+#include <array>
+
+#include "engine/rml1/device.h"
+
+namespace rmlcell::rml1 {
+namespace {
+
+bool InFloatRange(double value) {
+  return value >= static_cast<double>(kFloatMin) && value <= static_cast<double>(kFloatMax);
+}
+
+// 16 stages, evenly spaced; higher ones count as the last (RML1-9.31).
+int StageSpeed(const Profile& profile, std::int64_t stage) {
+  constexpr int kLastStage = 15;
+  const int n = static_cast<int>(std::min<std::int64_t>(stage, kLastStage));
+  const int span = profile.spindle_max_rpm - profile.spindle_min_rpm;
+  return profile.spindle_min_rpm + static_cast<int>(std::int64_t{span} * n / kLastStage);
+}
+
+}  // namespace
+
+// Right before the first effect, so that a name that is dropped again was never a command.
+void Device::BeginCommand(DeviceListener& listener) {
+  if (told_) return;
+  told_ = true;
+  programmed_.OnCommand(command_.op);
+  listener.OnCommand(command_);
+}
+
+void Device::ApplyEffects(const CommandRow& row) {
+  if (row.mode != ModeChange::kNone) registers_.absolute = row.mode == ModeChange::kAbsolute;
+  if (row.tool != ToolChange::kNone) registers_.tool_down = row.tool == ToolChange::kDown;
+}
+
+// One number of a set. False: it is out of range, and so are its set and the later ones
+// (RML1-2.34, RML1-2.35).
+bool Device::TakeCoordinate(DeviceListener& listener) {
+  const CommandRow& row = reader_.row();
+  const Number& number = reader_.number();
+  const bool relative =
+      row.mode == ModeChange::kNone ? !registers_.absolute : row.mode == ModeChange::kRelative;
+  const Point& logical = carriage_.logical();
+  const std::array<double, 3> present = {logical.x - profile_->origin_x,
+                                         logical.y - profile_->origin_y, logical.z - registers_.z0};
+  const auto index = static_cast<std::size_t>(operands_.count);
+  const double result = number.single + (relative ? present[index] : 0.0);
+  if (!number.Within(kFloatMin, kFloatMax) || !InFloatRange(result)) {
+    Report(FindingKind::kValueRange, listener, relative ? result : number.decimal);
+    return false;
+  }
+  operands_.set[index] = number.single;
+  ++operands_.count;
+  return true;
+}
+
+void Device::RunSet(DeviceListener& listener) {
+  const CommandRow& row = reader_.row();
+  const auto [a, b, c] = operands_.set;
+  const std::uint64_t clipped = carriage_.clipped_sets();
+  ApplyEffects(row);
+  const Point& logical = carriage_.logical();
+  const bool absolute = registers_.absolute;
+  const double x = a + (absolute ? profile_->origin_x : logical.x);
+  double y = b + (absolute ? profile_->origin_y : logical.y);
+  if (!profile_->has_y) y = logical.y;
+  if (row.values == 3) {
+    const double z = c + (absolute ? registers_.z0 : logical.z);
+    programmed_.OnSetXYZ(a, b, c);
+    carriage_.MoveXYZ(context(), {x, y, z, logical.a});
+  } else {
+    programmed_.OnSetXY(row, a, b);
+    carriage_.ToToolHeight(context());
+    carriage_.MoveXY(context(), x, y);
+  }
+  NoteClipping(clipped, listener);
+}
+
+// A command with sets, without any parameter.
+void Device::RunBare() {
+  const CommandRow& row = reader_.row();
+  ApplyEffects(row);
+  programmed_.OnBare(row);
+  if (row.tool != ToolChange::kNone) carriage_.ToToolHeight(context());
+}
+
+void Device::NoteClipping(std::uint64_t sets_before, DeviceListener& listener) {
+  if (carriage_.clipped_sets() == sets_before || clip_told_ == command_.number) return;
+  clip_told_ = command_.number;
+  Advise(FindingKind::kClipped, listener);
+}
+
+void Device::RunFixed(DeviceListener& listener) {
+  const CommandRow& row = reader_.row();
+  switch (row.op) {
+    case Op::kF:
+    case Op::kVS:
+      SetXYSpeed(listener);
+      break;
+    case Op::kV:
+    case Op::kVZ:
+      SetZSpeed(listener);
+      break;
+    case Op::kW:
+    case Op::kDW:
+      SetDwell(listener);
+      break;
+    case Op::kAt:
+    case Op::kPZ:
+      SetHeights(listener);
+      break;
+    case Op::kMC:
+      SetRotation();
+      break;
+    case Op::kRC:
+      SetSpindleSpeed(listener);
+      break;
+    case Op::kZM:
+      MoveMachineZ(listener);
+      break;
+    case Op::kZO:
+      SetZ0(listener);
+      break;
+    case Op::kNR:
+      actions_.Push(Action::Kind::kPause);
+      break;
+    case Op::kDF:
+      programmed_.OnBare(row);
+      RestoreDefaults();
+      break;
+    case Op::kIN:
+      programmed_.OnBare(row);
+      RestoreDefaults();
+      ApplyEffects(row);
+      carriage_.RaiseForInitialise(context());
+      command_errors_.ClearRegister();
+      StopSpindle(false);
+      break;
+    case Op::kH:
+      programmed_.OnBare(row);
+      ApplyEffects(row);
+      carriage_.GoHome(context());
+      command_errors_.ClearRegister();
+      StopSpindle(false);
+      break;
+    default:
+      break;
+  }
+}
+
+void Device::ClearGroup() {
+  group_ = {.to = carriage_.logical(), .has_y = false, .has_a = false, .named = {}};
+}
+
+// One axis of a group of !ZE. Axes that the model lacks are read and ignored (RML1-3D.10).
+void Device::OnAxisValue(DeviceListener& listener) {
+  const Number& number = reader_.number();
+  const Point& logical = carriage_.logical();
+  double* target = nullptr;
+  double origin = 0.0;
+  double present = 0.0;
+  switch (reader_.axis()) {
+    case 'X':
+      target = &group_.to.x;
+      origin = profile_->origin_x;
+      present = logical.x;
+      group_.named.has_x = true;
+      group_.named.x = number.single;
+      break;
+    case 'Y':
+      group_.named.has_y = true;
+      group_.named.y = number.single;
+      if (!profile_->has_y) break;
+      group_.has_y = true;
+      target = &group_.to.y;
+      origin = profile_->origin_y;
+      present = logical.y;
+      break;
+    case 'Z':
+      target = &group_.to.z;
+      origin = registers_.z0;
+      present = logical.z;
+      group_.named.has_z = true;
+      group_.named.z = number.single;
+      break;
+    case 'A':
+      if (!profile_->has_rotary) break;
+      group_.has_a = true;
+      target = &group_.to.a;
+      present = logical.a;
+      break;
+    default:
+      break;
+  }
+  const double machine = number.single + (registers_.absolute ? origin : present);
+  const bool in_range =
+      number.Within(kFloatMin, kFloatMax) && (target == nullptr || InFloatRange(machine - origin));
+  if (in_range) {
+    if (target != nullptr) *target = machine;
+    return;
+  }
+  Report(FindingKind::kValueRange, listener, number.decimal);
+  reader_.SkipGroups();
+}
+
+void Device::OnGroup(DeviceListener& listener) {
+  BeginCommand(listener);
+  if (group_.has_y && group_.has_a && !profile_->y_with_rotary) {
+    Report(FindingKind::kAxesTogether, listener);
+    reader_.SkipGroups();
+    return;
+  }
+  const Programmed::AxisGroup& named = group_.named;
+  if (named.has_x || named.has_y || named.has_z) programmed_.OnGroup(named);
+  const std::uint64_t clipped = carriage_.clipped_sets();
+  if (!(group_.to == carriage_.logical())) carriage_.MoveXYZ(context(), group_.to);
+  NoteClipping(clipped, listener);
+  ClearGroup();
+}
+
+double Device::NearestSpeed(const motion::FeedSteps& steps, DeviceListener& listener) {
+  const double wanted = operands_.fixed[0].decimal;
+  if (wanted < steps.minimum_mm_s || wanted > steps.maximum_mm_s) {
+    ++speeds_limited_;
+    Advise(FindingKind::kSpeedLimited, listener, wanted);
+  }
+  return steps.Nearest(wanted);
+}
+
+// F, VS: never an error (RML1-3A.46, RML1-3B.28).
+void Device::SetXYSpeed(DeviceListener& listener) {
+  registers_.xy_speed =
+      operands_.count == 0 ? profile_->xy_speed : NearestSpeed(profile_->xy_speeds, listener);
+}
+
+// V, !VZ: an error outside int (RML1-3A.52).
+void Device::SetZSpeed(DeviceListener& listener) {
+  if (operands_.count == 0) {
+    registers_.z_speed = profile_->z_speed;
+  } else if (!operands_.fixed[0].Within(kIntMin, kIntMax)) {
+    Report(FindingKind::kSettingRange, listener, operands_.fixed[0].decimal);
+  } else {
+    registers_.z_speed = NearestSpeed(profile_->z_speeds, listener);
+  }
+}
+
+void Device::SetDwell(DeviceListener& listener) {
+  const std::int64_t wanted = operands_.count == 0 ? 0 : operands_.fixed[0].truncated();
+  if (wanted < 0 || wanted > kIntMax) {
+    Report(FindingKind::kSettingRange, listener, static_cast<double>(wanted));
+    return;
+  }
+  registers_.dwell_ms = static_cast<int>(wanted);
+}
+
+// @, !PZ: each height is set or refused by itself (RML1-3A.01 to 3A.09).
+void Device::SetHeights(DeviceListener& listener) {
+  programmed_.OnHeights(operands_.count, operands_.fixed[0], operands_.fixed[1]);
+  if (operands_.count == 0) {
+    registers_.z1 = profile_->z1;
+    registers_.z2 = profile_->z2;
+    return;
+  }
+  const auto z1 = static_cast<double>(operands_.fixed[0].truncated());
+  const double lowest = profile_->z.low - registers_.z0;
+  if (z1 > 0.0 || z1 < lowest - CuttingRange::kFaceTolerance) {
+    Report(FindingKind::kHeightRange, listener, z1);
+  } else {
+    registers_.z1 = z1;
+  }
+  if (operands_.count < 2) return;
+  const std::int64_t z2 = operands_.fixed[1].truncated();
+  if (z2 < 0 || z2 > kFloatMax) {
+    Report(FindingKind::kHeightRange, listener, static_cast<double>(z2));
+  } else {
+    registers_.z2 = static_cast<double>(z2);
+  }
+}
+
+// !MC: never an error; a value beyond int is not 0 (RML1-3C.07).
+void Device::SetRotation() {
+  registers_.rotation = operands_.count == 0 || operands_.fixed[0].truncated() != 0;
+  if (!registers_.rotation) StopSpindle(true);
+}
+
+void Device::SetSpindleSpeed(DeviceListener& listener) {
+  if (operands_.count == 0 || profile_->spindle_control == SpindleControl::kNone) return;
+  const std::int64_t wanted = operands_.fixed[0].truncated();
+  if (wanted < 0 || wanted > kFloatMax) {
+    Report(FindingKind::kSettingRange, listener, static_cast<double>(wanted));
+    return;
+  }
+  constexpr std::int64_t kFirstRpm = 100;  // below, it is a stage
+  int rpm = StageSpeed(*profile_, wanted);
+  if (wanted >= kFirstRpm && profile_->spindle_control == SpindleControl::kRpm) {
+    const int step = profile_->spindle_step_rpm;
+    rpm = std::clamp(static_cast<int>(wanted) / step * step, profile_->spindle_min_rpm,
+                     profile_->spindle_max_rpm);
+  }
+  if (rpm == registers_.rpm) return;  // RML1-3C.39
+  registers_.rpm = rpm;
+  if (registers_.spindle_on) actions_.Push(Action::Kind::kSpindleSpeed).rpm = rpm;
+}
+
+void Device::MoveMachineZ(DeviceListener& listener) {
+  if (operands_.count == 0) return;
+  const auto wanted = static_cast<double>(operands_.fixed[0].truncated());
+  const double z = wanted + (registers_.absolute ? 0.0 : carriage_.logical().z);
+  if (z < profile_->z.low || z > profile_->z.high) {
+    Report(FindingKind::kTravelRange, listener, z);
+  } else {
+    carriage_.MoveZ(context(), z);
+  }
+}
+
+void Device::SetZ0(DeviceListener& listener) {
+  if (operands_.count == 0) {
+    registers_.z0 = profile_->z0;
+    return;
+  }
+  const auto wanted = static_cast<double>(operands_.fixed[0].truncated());
+  const double z = wanted + (registers_.absolute ? 0.0 : carriage_.logical().z);
+  if (z < profile_->z.low || z > profile_->z.high) {
+    Report(FindingKind::kTravelRange, listener, z);
+  } else {
+    registers_.z0 = z;
+  }
+}
+
+// DF (RML1-3B.01).
+void Device::RestoreDefaults() {
+  registers_.absolute = true;
+  registers_.xy_speed = profile_->xy_speed;
+  registers_.z_speed = profile_->z_speed;
+  registers_.dwell_ms = 0;
+  registers_.rotation = true;
+  registers_.z1 = profile_->z1;
+  registers_.z2 = profile_->z2;
+}
+
+void Device::StopSpindle(bool waits) {
+  if (!registers_.spindle_on) return;
+  registers_.spindle_on = false;
+  actions_.Push(Action::Kind::kSpindleStop).waits = waits;
+}
+
+}  // namespace rmlcell::rml1

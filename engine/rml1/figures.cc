@@ -1,0 +1,166 @@
+#include "engine/rml1/figures.h"
+
+#include <array>
+#include <optional>
+
+namespace rmlcell::rml1 {
+namespace {
+
+struct Source {
+  const Device& device;
+  const Physical::Totals& tool;
+  double mm;  // of one device unit
+  bool rotary;
+};
+
+using Value = std::optional<double>;
+
+double Count(std::uint64_t count) { return static_cast<double>(count); }
+
+// Nothing where nothing was added: an extent of 0 would be a claim.
+Value Low(const Extent& extent, double factor = 1.0) {
+  return extent.known ? Value(extent.low * factor) : std::nullopt;
+}
+Value High(const Extent& extent, double factor = 1.0) {
+  return extent.known ? Value(extent.high * factor) : std::nullopt;
+}
+Value IfAny(std::uint64_t count) { return count > 0 ? Value(Count(count)) : std::nullopt; }
+
+template <int kNumber>
+Value Errors(const Source& s) {
+  return IfAny(s.device.command_errors().count(kNumber));
+}
+template <int kNumber>
+Value LinkErrors(const Source& s) {
+  return IfAny(s.device.link_errors().count(kNumber));
+}
+template <Op kOp>
+Value Commands(const Source& s) {
+  return IfAny(s.device.programmed().count(kOp));
+}
+
+struct Row {
+  machine::FigureInfo info;
+  Value (*value)(const Source&);
+};
+
+// clang-format off
+constexpr std::array kRows = {
+    Row{{"commands", "", "commands carried out to their end"}, [](const Source& s) -> Value { return Count(s.device.commands_done()); }},
+    Row{{"motions", "", "motions of the tool"}, [](const Source& s) -> Value { return Count(s.tool.motions); }},
+    Row{{"cut_length", "mm", "way of the tool in the work: cuts and plunges"}, [](const Source& s) -> Value { return s.tool.cut_mm; }},
+    Row{{"travel_length", "mm", "the rest of its way"}, [](const Source& s) -> Value { return s.tool.travel_mm; }},
+    Row{{"plunges", "", "times that the tool went down into the work by itself"}, [](const Source& s) -> Value { return Count(s.tool.plunges); }},
+    Row{{"motion_time", "s", "moving"}, [](const Source& s) -> Value { return s.tool.motion_s; }},
+    Row{{"tool_up_time", "s", "moving or waiting in tool state up"}, [](const Source& s) -> Value { return s.tool.up_s; }},
+    Row{{"tool_down_time", "s", "moving or waiting in tool state down"}, [](const Source& s) -> Value { return s.tool.down_s; }},
+    Row{{"dwell_time", "s", "waits of W and !DW"}, [](const Source& s) -> Value { return s.tool.dwell_s; }},
+    Row{{"spindle_time", "s", "waits for the spindle to turn steadily or to stand"}, [](const Source& s) -> Value { return s.tool.spindle_s; }},
+    Row{{"halted_time", "s", "waits for a key"}, [](const Source& s) -> Value { return s.tool.halted_s; }},
+    Row{{"box.xmin", "units", "least X of the tool, work coordinates"}, [](const Source& s) -> Value { return Low(s.tool.x); }},
+    Row{{"box.xmax", "units", "greatest X of the tool, work coordinates"}, [](const Source& s) -> Value { return High(s.tool.x); }},
+    Row{{"box.ymin", "units", "least Y of the tool, work coordinates"}, [](const Source& s) -> Value { return Low(s.tool.y); }},
+    Row{{"box.ymax", "units", "greatest Y of the tool, work coordinates"}, [](const Source& s) -> Value { return High(s.tool.y); }},
+    Row{{"box.zmin", "units", "least Z of the tool, work coordinates"}, [](const Source& s) -> Value { return Low(s.tool.z); }},
+    Row{{"box.zmax", "units", "greatest Z of the tool, work coordinates"}, [](const Source& s) -> Value { return High(s.tool.z); }},
+    Row{{"box_mm.xmin", "mm", "least X of the tool, work coordinates"}, [](const Source& s) -> Value { return Low(s.tool.x, s.mm); }},
+    Row{{"box_mm.xmax", "mm", "greatest X of the tool, work coordinates"}, [](const Source& s) -> Value { return High(s.tool.x, s.mm); }},
+    Row{{"box_mm.ymin", "mm", "least Y of the tool, work coordinates"}, [](const Source& s) -> Value { return Low(s.tool.y, s.mm); }},
+    Row{{"box_mm.ymax", "mm", "greatest Y of the tool, work coordinates"}, [](const Source& s) -> Value { return High(s.tool.y, s.mm); }},
+    Row{{"box_mm.zmin", "mm", "least Z of the tool, work coordinates"}, [](const Source& s) -> Value { return Low(s.tool.z, s.mm); }},
+    Row{{"box_mm.zmax", "mm", "greatest Z of the tool, work coordinates"}, [](const Source& s) -> Value { return High(s.tool.z, s.mm); }},
+    Row{{"box.amin", "deg", "least angle of the rotary axis"}, [](const Source& s) -> Value { return s.rotary ? Low(s.tool.a) : std::nullopt; }},
+    Row{{"box.amax", "deg", "greatest angle of the rotary axis"}, [](const Source& s) -> Value { return s.rotary ? High(s.tool.a) : std::nullopt; }},
+    Row{{"clipped_length", "mm", "programmed way beyond the cutting range"}, [](const Source& s) -> Value { return s.device.carriage().clipped_length() * s.mm; }},
+    Row{{"clipped_sets", "", "coordinate sets that led beyond it"}, [](const Source& s) -> Value { return Count(s.device.carriage().clipped_sets()); }},
+    Row{{"speed_clamps", "", "speed words beyond the machine"}, [](const Source& s) -> Value { return Count(s.device.speeds_limited()); }},
+    Row{{"error_register", "", "command error register"}, [](const Source& s) -> Value { return static_cast<double>(s.device.command_errors().value()); }},
+    Row{{"communication_register", "", "communication error register"}, [](const Source& s) -> Value { return static_cast<double>(s.device.link_errors().value()); }},
+    Row{{"errors", "", "command errors"}, [](const Source& s) -> Value { return Count(s.device.command_errors().total()); }},
+    Row{{"errors.1", "", "command errors 1"}, Errors<1>},
+    Row{{"errors.2", "", "command errors 2"}, Errors<2>},
+    Row{{"errors.3", "", "command errors 3"}, Errors<3>},
+    Row{{"errors.cut", "", "1 when the error log was full and later ones were only counted"}, [](const Source& s) -> Value { return s.device.command_errors().cut() ? 1.0 : 0.0; }},
+    Row{{"communication_errors", "", "communication errors"}, [](const Source& s) -> Value { return Count(s.device.link_errors().total()); }},
+    Row{{"communication_errors.11", "", "communication errors 11"}, LinkErrors<11>},
+    Row{{"communication_errors.12", "", "communication errors 12"}, LinkErrors<12>},
+    Row{{"communication_errors.13", "", "communication errors 13"}, LinkErrors<13>},
+    Row{{"communication_errors.14", "", "communication errors 14"}, LinkErrors<14>},
+    Row{{"communication_errors.15", "", "communication errors 15"}, LinkErrors<15>},
+    Row{{"communication_errors.16", "", "communication errors 16"}, LinkErrors<16>},
+    Row{{"communication_errors.cut", "", "1 when their log was full"}, [](const Source& s) -> Value { return s.device.link_errors().cut() ? 1.0 : 0.0; }},
+    Row{{"programmed.commands", "", "commands of the program, without ^"}, [](const Source& s) -> Value { return Count(s.device.programmed().commands()); }},
+    Row{{"programmed.count.D", "", "commands D"}, Commands<Op::kD>},
+    Row{{"programmed.count.F", "", "commands F"}, Commands<Op::kF>},
+    Row{{"programmed.count.H", "", "commands H"}, Commands<Op::kH>},
+    Row{{"programmed.count.I", "", "commands I"}, Commands<Op::kI>},
+    Row{{"programmed.count.M", "", "commands M"}, Commands<Op::kM>},
+    Row{{"programmed.count.R", "", "commands R"}, Commands<Op::kR>},
+    Row{{"programmed.count.V", "", "commands V"}, Commands<Op::kV>},
+    Row{{"programmed.count.W", "", "commands W"}, Commands<Op::kW>},
+    Row{{"programmed.count.Z", "", "commands Z"}, Commands<Op::kZ>},
+    Row{{"programmed.count.@", "", "commands @"}, Commands<Op::kAt>},
+    Row{{"programmed.count.^", "", "calls ^"}, Commands<Op::kCall>},
+    Row{{"programmed.count.DF", "", "commands DF"}, Commands<Op::kDF>},
+    Row{{"programmed.count.IN", "", "commands IN"}, Commands<Op::kIN>},
+    Row{{"programmed.count.PA", "", "commands PA"}, Commands<Op::kPA>},
+    Row{{"programmed.count.PD", "", "commands PD"}, Commands<Op::kPD>},
+    Row{{"programmed.count.PR", "", "commands PR"}, Commands<Op::kPR>},
+    Row{{"programmed.count.PU", "", "commands PU"}, Commands<Op::kPU>},
+    Row{{"programmed.count.VS", "", "commands VS"}, Commands<Op::kVS>},
+    Row{{"programmed.count.!DW", "", "commands !DW"}, Commands<Op::kDW>},
+    Row{{"programmed.count.!MC", "", "commands !MC"}, Commands<Op::kMC>},
+    Row{{"programmed.count.!NR", "", "commands !NR"}, Commands<Op::kNR>},
+    Row{{"programmed.count.!PZ", "", "commands !PZ"}, Commands<Op::kPZ>},
+    Row{{"programmed.count.!RC", "", "commands !RC"}, Commands<Op::kRC>},
+    Row{{"programmed.count.!VZ", "", "commands !VZ"}, Commands<Op::kVZ>},
+    Row{{"programmed.count.!ZM", "", "commands !ZM"}, Commands<Op::kZM>},
+    Row{{"programmed.count.!ZO", "", "commands !ZO"}, Commands<Op::kZO>},
+    Row{{"programmed.count.!ZZ", "", "commands !ZZ"}, Commands<Op::kZZ>},
+    Row{{"programmed.count.!ZE", "", "commands !ZE"}, Commands<Op::kZE>},
+    Row{{"programmed.count.J", "", "commands J"}, Commands<Op::kToolChange>},
+    Row{{"programmed.count.!CO", "", "commands !CO"}, Commands<Op::kVendorCO>},
+    Row{{"programmed.count.!SL", "", "commands !SL"}, Commands<Op::kVendorSL>},
+    Row{{"programmed.count.!SP", "", "commands !SP"}, Commands<Op::kVendorSP>},
+    Row{{"programmed.count.!RD", "", "commands !RD"}, Commands<Op::kVendorRD>},
+    Row{{"programmed.count.!1", "", "commands !1"}, Commands<Op::kVendorOne>},
+    Row{{"programmed.count.!0", "", "commands !0"}, Commands<Op::kVendorZero>},
+    Row{{"programmed.other", "", "statements that are no command"}, [](const Source& s) -> Value { return Count(s.device.programmed().other()); }},
+    Row{{"programmed.xmin", "units", "least X that the program asks for"}, [](const Source& s) -> Value { return Low(s.device.programmed().x()); }},
+    Row{{"programmed.xmax", "units", "greatest X that the program asks for"}, [](const Source& s) -> Value { return High(s.device.programmed().x()); }},
+    Row{{"programmed.ymin", "units", "least Y that the program asks for"}, [](const Source& s) -> Value { return Low(s.device.programmed().y()); }},
+    Row{{"programmed.ymax", "units", "greatest Y that the program asks for"}, [](const Source& s) -> Value { return High(s.device.programmed().y()); }},
+    Row{{"programmed.zmin", "units", "least Z that the program asks for"}, [](const Source& s) -> Value { return Low(s.device.programmed().z()); }},
+    Row{{"programmed.zmax", "units", "greatest Z that the program asks for"}, [](const Source& s) -> Value { return High(s.device.programmed().z()); }},
+    Row{{"programmed.cut_length", "units", "way asked for with an end below Z 0, or in X and Y with the tool down"}, [](const Source& s) -> Value { return s.device.programmed().cut_length(); }},
+    Row{{"programmed.travel_length", "units", "the rest of the way asked for"}, [](const Source& s) -> Value { return s.device.programmed().travel_length(); }},
+};
+// clang-format on
+
+}  // namespace
+
+std::span<const machine::FigureInfo> FigureTable() {
+  static const auto infos = [] {
+    std::array<machine::FigureInfo, kRows.size()> made;
+    for (std::size_t i = 0; i < kRows.size(); ++i) made[i] = kRows[i].info;
+    return made;
+  }();
+  return infos;
+}
+
+std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& physical) {
+  const Profile& profile = physical.profile();
+  const Source source{.device = device,
+                      .tool = physical.totals(),
+                      .mm = 1.0 / profile.units_per_mm,
+                      .rotary = profile.has_rotary};
+  std::vector<machine::Figure> figures;
+  for (const Row& row : kRows) {
+    const Value value = row.value(source);
+    if (!value) continue;
+    figures.push_back({std::string(row.info.name), std::string(row.info.unit), *value});
+  }
+  return figures;
+}
+
+}  // namespace rmlcell::rml1

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/machine/family.h"
+#include "engine/rml1/device.h"
+#include "engine/rml1/physical.h"
+
+namespace rmlcell::rml1 {
+
+// Every figure that a run or a check can give, in the order of giving. Names never change meaning.
+std::span<const machine::FigureInfo> FigureTable();
+
+// The figures of a device and of what its tool did; those that have nothing to say (an extent of no
+// points, a command that did not occur) are left out.
+std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& physical);
+
+}  // namespace rmlcell::rml1

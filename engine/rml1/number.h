@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace rmlcell::rml1 {
+
+// The range of a coordinate or angle, RML1-2.32; a value is compared as it is written, before it is
+// rounded (RML1-9.50).
+inline constexpr std::int64_t kFloatMin = -8388608;
+inline constexpr std::int64_t kFloatMax = 8388607;
+inline constexpr std::int64_t kIntMin = -32768;
+inline constexpr std::int64_t kIntMax = 32767;
+
+// A parameter as it was read.
+struct Number {
+  double single = 0.0;         // the nearest 4-byte IEEE value (RML1-9.21): coordinates
+  double decimal = 0.0;        // the nearest double: speeds, so that 0.7 is seven steps of 0.1
+  std::int64_t magnitude = 0;  // whole part without sign, at most kMagnitudeMax
+  bool negative = false;
+  bool fraction = false;  // a digit other than 0 behind the period, however far behind
+
+  // Beyond every range of the language; larger numbers saturate here.
+  static constexpr std::int64_t kMagnitudeMax = 1'000'000'000;
+
+  // The fraction cut off, towards zero (RML1-2.63, RML1-9.13).
+  std::int64_t truncated() const { return negative ? -magnitude : magnitude; }
+
+  // low <= value <= high, of the decimal value as written (RML1-9.50).
+  bool Within(std::int64_t low, std::int64_t high) const {
+    const std::int64_t away = magnitude + (fraction ? 1 : 0);  // next whole number from zero
+    return negative ? -away >= low && -magnitude <= high : magnitude >= low && away <= high;
+  }
+};
+
+// Reads one number byte by byte in constant memory, however many digits come (RML1-7.07).
+// Form: optional sign, digits with at most one period among them (RML1-2.25).
+class NumberReader {
+ public:
+  static bool CanBegin(unsigned char byte) {
+    return IsDigit(byte) || byte == '+' || byte == '-' || byte == '.';
+  }
+
+  // Precondition: CanBegin(first).
+  void Begin(unsigned char first);
+
+  // Takes a digit or the first period; false: the number ended before this byte.
+  bool Take(unsigned char byte) {
+    if (IsDigit(byte)) {
+      TakeDigit(byte);
+      return true;
+    }
+    if (byte != '.' || period_) return false;
+    period_ = true;
+    return true;
+  }
+
+  bool has_digit() const { return has_digit_; }
+  bool has_period() const { return period_; }
+
+  // The value read; 0 when no digit came, as a lone period counts (RML1-2.31).
+  Number value() const;
+
+ private:
+  static bool IsDigit(unsigned char byte) { return byte >= '0' && byte <= '9'; }
+  void TakeDigit(unsigned char byte);
+  void ConvertExactly(Number& number) const;
+
+  // A decimal halfway between two 4-byte values has at most 113 significant digits: with that many
+  // kept, and one bit for the rest, every number is rounded right.
+  static constexpr int kDirectDigits = 18;  // fit into 64 bits
+  static constexpr int kMoreDigits = 96;
+  static constexpr int kScaleMax = 1'000'000;  // such a value is 0 in every format
+
+  std::uint64_t digits_ = 0;  // the first significant ones
+  int direct_ = 0;            // how many these are
+  int more_ = 0;              // how many follow in more_digits_
+  int scale_ = 0;             // how many of all these stand behind the period, zeros in front too
+  std::int64_t magnitude_ = 0;
+  bool negative_ = false;
+  bool period_ = false;
+  bool has_digit_ = false;
+  bool fraction_ = false;
+  bool rest_ = false;  // a digit other than 0 was not kept
+  std::array<char, kMoreDigits> more_digits_{};
+};
+
+}  // namespace rmlcell::rml1

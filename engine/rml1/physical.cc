@@ -1,0 +1,41 @@
+#include "engine/rml1/physical.h"
+
+namespace rmlcell::rml1 {
+
+using machine::MotionUse;
+
+void Physical::OnRide(const Ride& ride, const Registers& registers) {
+  const bool first_ever = !totals_.x.known;
+  const auto add_point = [&](const Point& p) {
+    totals_.x.Add(p.x - profile_->origin_x);
+    totals_.y.Add(p.y - profile_->origin_y);
+    totals_.z.Add(p.z - registers.z0);
+    totals_.a.Add(p.a);
+  };
+  if (first_ever) add_point(ride.from);
+  add_point(ride.to);
+  if (ride.first) {
+    ++totals_.motions;
+    if (ride.use == MotionUse::kPlunge) ++totals_.plunges;
+  }
+  const bool in_work = ride.use == MotionUse::kCut || ride.use == MotionUse::kPlunge;
+  (in_work ? totals_.cut_mm : totals_.travel_mm) += ride.length_mm;
+  totals_.motion_s += ride.time_s;
+  AddToState(ride.time_s, registers);
+}
+
+void Physical::OnDwell(double time_s, const Registers& registers) {
+  totals_.dwell_s += time_s;
+  AddToState(time_s, registers);
+}
+
+void Physical::OnSpindleWait(double time_s, const Registers& registers) {
+  totals_.spindle_s += time_s;
+  AddToState(time_s, registers);
+}
+
+void Physical::AddToState(double time_s, const Registers& registers) {
+  (registers.tool_down ? totals_.down_s : totals_.up_s) += time_s;
+}
+
+}  // namespace rmlcell::rml1

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+
+#include "engine/machine/run.h"
+#include "engine/rml1/device.h"
+
+namespace rmlcell::rml1 {
+
+// What the physical tool did: lengths in mm, times in s. Fed by whoever carries out the actions of
+// a device, one motion (or part of one) after the other.
+class Physical {
+ public:
+  explicit Physical(const Profile& profile) : profile_(&profile) {}
+
+  struct Ride {
+    Point from;
+    Point to;
+    machine::MotionUse use = machine::MotionUse::kTravel;
+    double length_mm = 0.0;
+    double time_s = 0.0;
+    bool first = true;  // of its motion; false: the rest of one that was cut
+  };
+  // Cut length is what the tool did in the work, cuts and plunges, as in every report of the cell;
+  // travel length is the rest.
+  void OnRide(const Ride& ride, const Registers& registers);
+
+  void OnDwell(double time_s, const Registers& registers);
+  void OnSpindleWait(double time_s, const Registers& registers);
+  void OnHalt(double time_s) { totals_.halted_s += time_s; }
+
+  struct Totals {
+    std::uint64_t motions = 0;
+    std::uint64_t plunges = 0;
+    double cut_mm = 0.0;
+    double travel_mm = 0.0;
+    double up_s = 0.0;  // motions and waits, by tool state
+    double down_s = 0.0;
+    double motion_s = 0.0;
+    double dwell_s = 0.0;
+    double spindle_s = 0.0;
+    double halted_s = 0.0;
+    Extent x;  // work coordinates, device units
+    Extent y;
+    Extent z;
+    Extent a;  // degrees
+  };
+  const Totals& totals() const { return totals_; }
+  const Profile& profile() const { return *profile_; }
+
+ private:
+  void AddToState(double time_s, const Registers& registers);
+
+  const Profile* profile_;
+  Totals totals_;
+};
+
+}  // namespace rmlcell::rml1

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "engine/rml1/command_table.h"
+#include "engine/rml1/number.h"
+
+namespace rmlcell::rml1 {
+
+// Lowest and highest of what was added.
+struct Extent {
+  double low = 0.0;
+  double high = 0.0;
+  bool known = false;
+
+  void Add(double value) {
+    if (!known || value < low) low = value;
+    if (!known || value > high) high = value;
+    known = true;
+  }
+};
+
+// What a program asks for, whatever machine runs it: command counts, extents and lengths in the
+// units of the stream. It keeps a position and a mode of its own, fed with the commands that the
+// device carries out, and knows no travel, no clipping and no limit of a model.
+//
+// Conventions (they are those of a plain splitter, so that programs can be compared across tools):
+// the position starts at 0,0,0, absolute, tool up, both tool heights 0. D I PD and M R PU go to
+// their tool height first and then to X and Y, PA and PR to that of the tool state; a motion of
+// length zero counts nothing. DF and IN set the heights to 0 and absolute, IN also the tool up; H
+// sets X = Y = 0, absolute, tool up and leaves Z; the ways of H, IN and !ZM do not count. Cut
+// length is what has an end below Z 0, and two-axis motion with the tool down; the rest is travel.
+// A statement, up to a semicolon or line end, that begins with or contains something that is no
+// command (".. R", "MC0") counts as `other`, and nothing of it counts as a command; surplus behind
+// the parameters of a command ("VS5,6") leaves the command as it is.
+class Programmed {
+ public:
+  // A name was read, and the command behind it begins.
+  void OnCommand(Op op) {
+    ++now_.counts[static_cast<std::size_t>(op)];
+    begun_ = true;
+  }
+
+  // A complete set of a two-dimensional or three-axis command, as numbers of the stream.
+  void OnSetXY(const CommandRow& row, double x, double y);
+  void OnSetXYZ(double x, double y, double z);
+  // !ZE: the axes that are named.
+  struct AxisGroup {
+    bool has_x = false;
+    bool has_y = false;
+    bool has_z = false;
+    double x = 0.0;
+    double y = 0.0;
+    double z = 0.0;
+  };
+  void OnGroup(const AxisGroup& group);
+
+  // A command that ran without sets: D I M R PA PD PR PU with nothing, DF, IN, H.
+  void OnBare(const CommandRow& row);
+  // @ and !PZ with `count` parameters as written.
+  void OnHeights(int count, const Number& z1, const Number& z2);
+
+  // The command search discarded letters, or something else. A statement ended.
+  void OnDiscarded(bool letters) { spoilt_ = spoilt_ || letters || !begun_; }
+  void OnStatementEnd();
+  // The end of the data ends the last statement too.
+  void Finish() { OnStatementEnd(); }
+
+  std::uint64_t commands() const;  // without ^, which is counted beside them
+  std::uint64_t count(Op op) const { return now_.counts[static_cast<std::size_t>(op)]; }
+  std::uint64_t other() const { return other_; }
+  const Extent& x() const { return now_.x_extent; }
+  const Extent& y() const { return now_.y_extent; }
+  const Extent& z() const { return now_.z_extent; }
+  double cut_length() const { return now_.cut_length; }
+  double travel_length() const { return now_.travel_length; }
+
+ private:
+  struct State {
+    double x = 0.0;
+    double y = 0.0;
+    double z = 0.0;
+    double z1 = 0.0;
+    double z2 = 0.0;
+    bool absolute = true;
+    bool tool_down = false;
+    double cut_length = 0.0;
+    double travel_length = 0.0;
+    Extent x_extent;
+    Extent y_extent;
+    Extent z_extent;
+    std::array<std::uint64_t, kOpCount> counts{};
+  };
+
+  void ApplyEffects(const CommandRow& row);
+  void ToToolHeight();
+  void GoTo(double x, double y, double z, bool two_axis_cut);
+
+  State now_;
+  State at_statement_;   // what a spoilt statement falls back to
+  bool begun_ = false;   // the statement has a command
+  bool spoilt_ = false;  // it has something that is no command
+  std::uint64_t other_ = 0;
+};
+
+}  // namespace rmlcell::rml1

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <algorithm>
+
+#include "engine/rml1/profile.h"
+
+namespace rmlcell::rml1 {
+
+// What commands set and a new command set reads (RML1-7.08). Heights in device units: z0 from the
+// machine's zero, z1 and z2 from z0 and as they were given, beyond the range too (RML1-9.23).
+struct Registers {
+  explicit Registers(const Profile& profile)
+      : xy_speed(profile.xy_speed),
+        z_speed(profile.z_speed),
+        z0(profile.z0),
+        z1(profile.z1),
+        z2(profile.z2),
+        rpm(profile.spindle_min_rpm) {}
+
+  bool absolute = true;
+  bool tool_down = false;
+  double xy_speed;  // F, VS: mm/s
+  double z_speed;   // V, !VZ: mm/s
+  int dwell_ms = 0;
+  double z0;
+  double z1;
+  double z2;
+  bool rotation = true;  // !MC
+  bool spindle_on = false;
+  int rpm;
+
+  // The heights that are really used, from the machine's zero (RML1-3A.07, RML1-3B.18).
+  double down_z(const Profile& profile) const { return std::max(z0 + z1, profile.z.low); }
+  double up_z(const Profile& profile) const { return std::min(z0 + z2, profile.z.high); }
+  double tool_z(const Profile& profile) const {
+    return tool_down ? down_z(profile) : up_z(profile);
+  }
+};
+
+}  // namespace rmlcell::rml1

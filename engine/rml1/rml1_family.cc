@@ -1,0 +1,245 @@
+#include "engine/rml1/rml1_family.h"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "engine/rml1/figures.h"
+#include "engine/rml1/physical.h"
+#include "engine/rml1/run.h"
+
+namespace rmlcell::rml1 {
+namespace {
+
+constexpr machine::FamilyInfo kInfo = {.id = "rml1",
+                                       .title = "Roland mill or engraver, RML-1",
+                                       .extensions = ".RML .PRN",
+                                       .axes = "X Y Z A",
+                                       .has_executables = false,
+                                       .has_schedules = false};
+
+Diagnostic Plain(ErrorCode code, std::string detail) {
+  return {.code = code,
+          .severity = Lookup(code).severity,
+          .detail = std::move(detail),
+          .rule = {},
+          .file = {},
+          .where = {},
+          .program = 0,
+          .step = 0,
+          .fixes = {}};
+}
+
+// The diagnostics of one stream, as many as a translation holds.
+class Findings final : public DeviceListener {
+ public:
+  Findings(const machine::SourceFile& file, bool advice, machine::Translation& translation)
+      : file_(file), advice_(advice), translation_(translation) {}
+
+  void OnFinding(const Finding& finding) override {
+    if (!Wants(RowOf(finding.kind).code)) return;
+    Add(ToDiagnostic(finding, file_.bytes, lines_));
+  }
+
+  void AddAdvice(ErrorCode code, std::string detail, std::string rule, const SourceSpan& at,
+                 int step) {
+    if (!Wants(code)) return;
+    Diagnostic diagnostic = Plain(code, std::move(detail));
+    diagnostic.rule = std::move(rule);
+    diagnostic.where = lines_.At(file_.bytes, at.byte_offset, at.length);
+    diagnostic.step = step;
+    Add(std::move(diagnostic));
+  }
+
+ private:
+  bool Wants(ErrorCode code) {
+    if (!advice_ && Lookup(code).severity == Severity::kAdvice) return false;
+    if (translation_.diagnostics.size() < machine::kDiagnosticsMax) return true;
+    ++translation_.diagnostics_dropped;
+    return false;
+  }
+  void Add(Diagnostic diagnostic) {
+    diagnostic.file = file_.name;
+    translation_.diagnostics.push_back(std::move(diagnostic));
+  }
+
+  const machine::SourceFile& file_;
+  bool advice_;
+  machine::Translation& translation_;
+  LineCounter lines_;
+};
+
+// Runs a stream through a device at once, whatever time its actions would take.
+class Rehearsal {
+ public:
+  Rehearsal(const Profile& profile, Findings& findings)
+      : profile_(profile), findings_(findings), device_(profile), physical_(profile) {
+    tool_ = device_.carriage().physical();
+  }
+
+  void Run(std::string_view stream) {
+    std::int64_t offset = 0;
+    for (const char c : stream) {
+      device_.Receive(static_cast<unsigned char>(c), offset++, findings_);
+      while (device_.Step(findings_)) {
+        while (!device_.actions().empty()) CarryOut();
+      }
+    }
+    device_.EndOfData();
+    if (!device_.pending()) return;
+    findings_.AddAdvice(ErrorCode::kRml1IncompleteCommand, "incomplete command at end of data",
+                        "RML1-9.42", {.length = 1, .byte_offset = device_.pending_offset()}, 0);
+  }
+
+  std::vector<machine::Figure> Figures() const { return FiguresOf(device_, physical_); }
+
+ private:
+  void CarryOut() {
+    const Action action = device_.actions().front();
+    device_.actions().Pop();
+    if (action.kind == Action::Kind::kMotion) {
+      physical_.OnRide({.from = tool_,
+                        .to = action.to,
+                        .use = action.use,
+                        .length_mm = DistanceXYZ(tool_, action.to) / profile_.units_per_mm},
+                       device_.registers());
+      tool_ = action.to;
+    } else if (action.kind == Action::Kind::kPause && pauses_told_ < kPausesMax) {
+      ++pauses_told_;
+      const CommandPlace& place = device_.command();
+      findings_.AddAdvice(ErrorCode::kRml1PausedAtEnd, "the machine waits for its resume key here",
+                          "RML1-3C.08", {.length = 3, .byte_offset = place.offset},
+                          static_cast<int>(place.number));
+    }
+  }
+
+  // As the device does with advice of its own.
+  static constexpr int kPausesMax = 1000;
+
+  const Profile& profile_;
+  Findings& findings_;
+  Device device_;
+  Physical physical_;
+  Point tool_;
+  int pauses_told_ = 0;
+};
+
+class MillFamily final : public machine::MachineFamily {
+ public:
+  const machine::FamilyInfo& info() const override { return kInfo; }
+  std::span<const machine::ParameterInfo> parameters() const override { return ParameterTable(); }
+  std::span<const machine::MachineProfile> profiles() const override { return MachineProfiles(); }
+  std::span<const machine::FigureInfo> figures() const override { return FigureTable(); }
+  machine::MachineShape Shape(const machine::Parameters& parameters) const override;
+  machine::Translation Translate(const machine::SourceFile& file,
+                                 const machine::Parameters& parameters,
+                                 const machine::CheckOptions& options) const override;
+  machine::TransferPlan PlanTransfer(const machine::ProjectBundle& project,
+                                     const machine::Parameters& parameters,
+                                     const machine::TransferOptions& options) const override;
+  Result<std::unique_ptr<machine::Run>> NewRun(machine::RunSetup setup,
+                                               machine::RunObserver& observer) const override;
+};
+
+machine::MachineShape MillFamily::Shape(const machine::Parameters& parameters) const {
+  const Result<Profile> made = MakeProfile(parameters);
+  if (!made) return {};
+  const Profile& p = *made;
+  const auto mm = [&p](double x, double y, double z) {
+    return motion::Vec3{x, y, z} * (1.0 / p.units_per_mm);
+  };
+  machine::MachineShape shape;
+  shape.travel.Add(mm(p.x.low, p.y.low, p.z.low));
+  shape.travel.Add(mm(p.x.high, p.y.high, p.z.high));
+  shape.has_work_origin = true;
+  shape.work_origin = mm(p.origin_x, p.origin_y, p.z0);
+  const double xy = std::max(p.xy_speeds.maximum_mm_s, p.travel_speed);
+  const double a = p.acceleration_mm_s2;
+  motion::MachineLimits limits;
+  limits.tip_speed_mm_s = xy;
+  limits.tip_acceleration_mm_s2 = a;
+  limits.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
+  limits.settling_s = 0.0;
+  limits.axes.speed = {xy, xy, p.z_speeds.maximum_mm_s, p.rotary_speed_deg_s * kRadPerDegree, 0.0};
+  limits.axes.acceleration = {a, a, a, p.rotary_acceleration_deg_s2 * kRadPerDegree, 0.0};
+  shape.limits = limits;
+  return shape;
+}
+
+machine::Translation MillFamily::Translate(const machine::SourceFile& file,
+                                           const machine::Parameters& parameters,
+                                           const machine::CheckOptions& options) const {
+  machine::Translation translation;
+  const auto refuse = [&](ErrorCode code, std::string detail) {
+    translation.diagnostics.push_back(Plain(code, std::move(detail)));
+    translation.diagnostics.back().file = file.name;
+    return translation;
+  };
+  if (file.bytes.empty()) return refuse(ErrorCode::kCellEmptyProgram, "the stream has no bytes");
+  const Result<Profile> profile = MakeProfile(parameters);
+  if (!profile) return refuse(profile.error().code, profile.error().detail);
+
+  Findings findings(file, options.advice, translation);
+  Rehearsal rehearsal(*profile, findings);
+  rehearsal.Run(file.bytes);
+  translation.ok = true;
+  translation.object = std::string(file.bytes);
+  translation.figures = rehearsal.Figures();
+  translation.figures.push_back(
+      {.name = "object_bytes", .unit = "bytes", .value = static_cast<double>(file.bytes.size())});
+  return translation;
+}
+
+machine::TransferPlan MillFamily::PlanTransfer(const machine::ProjectBundle& project,
+                                               const machine::Parameters& parameters,
+                                               const machine::TransferOptions& /*options*/) const {
+  machine::TransferPlan plan;
+  const auto refuse = [&plan](std::string detail, const std::string& file, int slot) {
+    plan.diagnostics.push_back(Plain(ErrorCode::kCellInvalidArgument, std::move(detail)));
+    plan.diagnostics.back().file = file;
+    plan.diagnostics.back().program = slot;
+    plan.ok = false;
+  };
+  plan.ok = true;
+  if (!project.schedules.empty()) refuse("a mill has no laser schedules", {}, 0);
+  if (!project.processes.empty()) refuse("a mill has no process definitions", {}, 0);
+  std::set<int> slots;
+  for (const machine::ProjectProgram& program : project.programs) {
+    const std::string& name = program.file.name;
+    const int slot = program.slot;
+    if (!IsSlot(slot))
+      refuse("slot " + std::to_string(slot) + " is not one of 1 to 99", name, slot);
+    if (!slots.insert(slot).second) {
+      refuse("slot " + std::to_string(slot) + " has two programs", name, slot);
+    }
+    if (program.inch) refuse("a stream is in units of its machine, not in inches", name, slot);
+    machine::Translation translation = Translate(program.file, parameters, {});
+    for (Diagnostic& diagnostic : translation.diagnostics) {
+      diagnostic.program = slot;
+      if (plan.diagnostics.size() < machine::kDiagnosticsMax) {
+        plan.diagnostics.push_back(std::move(diagnostic));
+      }
+    }
+    plan.ok = plan.ok && translation.ok;
+    plan.programs.push_back(
+        {.slot = slot, .source = translation.object, .object = std::move(translation.object)});
+  }
+  if (!plan.ok) plan.programs.clear();  // every program or none
+  return plan;
+}
+
+Result<std::unique_ptr<machine::Run>> MillFamily::NewRun(machine::RunSetup setup,
+                                                         machine::RunObserver& observer) const {
+  Result<std::unique_ptr<MillRun>> run = MillRun::Make(std::move(setup), observer);
+  if (!run) return run.error();
+  return std::unique_ptr<machine::Run>(std::move(*run));
+}
+
+}  // namespace
+
+const machine::MachineFamily& Rml1Family() {
+  static const MillFamily family;
+  return family;
+}
+
+}  // namespace rmlcell::rml1

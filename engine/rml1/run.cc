@@ -1,0 +1,406 @@
+#include "engine/rml1/run.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/number_text.h"
+#include "engine/rml1/figures.h"
+#include "engine/rml1/machine_state.h"
+#include "engine/rml1/variables.h"
+
+namespace rmlcell::rml1 {
+namespace {
+
+using machine::InputKind;
+using machine::OutcomeKind;
+using machine::RunPhase;
+
+}  // namespace
+
+class MillRun::Snapshot final : public machine::RunSnapshot {
+ public:
+  explicit Snapshot(State kept) : state(std::move(kept)) {}
+  State state;
+};
+
+// What the device notices becomes steps and diagnostics of the run.
+class MillRun::Listener final : public DeviceListener {
+ public:
+  explicit Listener(MillRun& run) : run_(run) {}
+
+  void OnCommand(const CommandPlace& command) override {
+    State& state = run_.state_;
+    const SourceSpan where = state.lines.At(run_.stream(), command.offset, 0);
+    state.place = {.program = run_.setup_.main_program,
+                   .step = static_cast<int>(command.number),
+                   .line = where.line,
+                   .byte_offset = command.offset};
+    run_.observer_.OnStep(state.now, state.place, RowOf(command.op).name);
+  }
+
+  void OnFinding(const Finding& finding) override {
+    State& state = run_.state_;
+    Diagnostic diagnostic = ToDiagnostic(finding, run_.stream(), state.lines);
+    diagnostic.program = run_.setup_.main_program;
+    run_.observer_.OnDiagnostic(state.now, diagnostic);
+  }
+
+ private:
+  MillRun& run_;
+};
+
+Result<std::unique_ptr<MillRun>> MillRun::Make(machine::RunSetup setup,
+                                               machine::RunObserver& observer) {
+  if (setup.simul) {
+    return Error{ErrorCode::kCellUnimplemented, "a mill has no dry run up to a step", {}};
+  }
+  if (setup.mode == machine::Mode::kRepeat) {
+    return Error{ErrorCode::kCellUnimplemented, "a mill has no mode REPEAT", {}};
+  }
+  const Result<Profile> profile = MakeProfile(setup.parameters);
+  if (!profile) return profile.error();
+  std::unique_ptr<MillRun> run(
+      new MillRun(std::move(setup), std::make_shared<const Profile>(*profile), observer));
+  if (!run->setup_.machine_state.empty()) {
+    const Result<MachineState> kept = ReadMachineState(run->setup_.machine_state, *profile);
+    if (!kept) return kept.error();
+    run->state_.device.Restore(kept->registers, kept->at);
+    run->state_.tool = run->state_.device.carriage().physical();
+  }
+  return run;
+}
+
+MillRun::MillRun(machine::RunSetup setup, std::shared_ptr<const Profile> profile,
+                 machine::RunObserver& observer)
+    : setup_(std::move(setup)), observer_(observer), state_(std::move(profile)) {
+  if (!std::isnan(setup_.override_percent)) {
+    state_.override_percent = std::clamp(setup_.override_percent, kOverrideMin, kOverrideMax);
+  }
+  state_.tool = state_.device.carriage().physical();
+  state_.place.program = setup_.main_program;
+  const auto found = setup_.programs.find(setup_.main_program);
+  if (found != setup_.programs.end()) program_ = found->second.object;
+  if (program_ == nullptr) {
+    CloseWith(OutcomeKind::kFailed, ErrorCode::kCellNotFound,
+              "no program in slot " + std::to_string(setup_.main_program));
+  }
+}
+
+std::string_view MillRun::stream() const {
+  return program_ == nullptr ? std::string_view() : std::string_view(*program_);
+}
+
+SimTime MillRun::NextInputTime() const {
+  return state_.next_input < setup_.inputs.size() ? setup_.inputs[state_.next_input].at : kForever;
+}
+
+// Things that happen exactly at `until` belong to the next call, so that an input applied by the
+// caller then comes first, as a scripted one of that time would.
+RunPhase MillRun::Advance(SimTime until) {
+  State& s = state_;
+  const std::size_t stop_at = s.cursor + kBytesPerAdvance;
+  const SimTime limit =
+      setup_.budget.virtual_time > SimTime::zero() ? setup_.budget.virtual_time : kForever;
+  while (s.phase != RunPhase::kFinished) {
+    const bool halted = s.halt != HaltCause::kNone;
+    const bool scripted = s.next_input < setup_.inputs.size();
+    if (halted && !scripted) return s.phase = RunPhase::kHalted;
+    const SimTime input_at = NextInputTime();
+    SimTime next = s.now;  // of what happens next
+    if (halted) {
+      next = std::max(s.now, input_at);
+    } else if (s.busy != Busy::kNothing) {
+      next = std::max(s.now, std::min(input_at, s.busy_until));
+    }
+    if (next > limit && limit < until) {
+      s.now = std::max(s.now, limit);
+      End(OutcomeKind::kBudgetExceeded, ErrorCode::kCellTimeBudget);
+      break;
+    }
+    if (next >= until) {
+      s.now = std::max(s.now, until == kForever ? s.now : until);
+      return s.phase = RunPhase::kRunning;
+    }
+    s.now = next;
+    if (scripted && input_at <= s.now) {
+      Handle(setup_.inputs[s.next_input++]);
+    } else if (s.busy != Busy::kNothing) {
+      EndBusy();
+    } else if (s.cursor < stop_at) {
+      Proceed(stop_at - s.cursor);
+    } else {
+      return s.phase = RunPhase::kRunning;
+    }
+  }
+  return s.phase;
+}
+
+// The next thing that takes no time, or the start of one that does.
+void MillRun::Proceed(std::size_t bytes_max) {
+  State& s = state_;
+  if (s.halt_wanted != HaltCause::kNone) {
+    BeginHalt(s.halt_wanted);
+    return;
+  }
+  if (s.rest_left) return ResumeMotion();
+  if (s.wait_left > SimTime::zero()) {
+    BeginWait(s.wait_kind, ToSeconds(s.wait_left));
+    s.wait_left = SimTime::zero();
+    return;
+  }
+  if (!s.device.actions().empty()) {
+    const Action action = s.device.actions().front();
+    if (action.kind == Action::Kind::kPause) {
+      FillBuffer();
+      BeginHalt(HaltCause::kPause);
+      return;
+    }
+    s.device.actions().Pop();
+    Begin(action);
+    return;
+  }
+  const std::uint64_t done = s.device.commands_done();
+  if (done != s.commands_seen) {
+    s.commands_seen = done;
+    if (setup_.budget.steps > 0 && done > setup_.budget.steps) {
+      End(OutcomeKind::kBudgetExceeded, ErrorCode::kCellStepBudget);
+      return;
+    }
+    const bool at_breakpoint = setup_.breakpoint &&
+                               setup_.breakpoint->program == setup_.main_program &&
+                               setup_.breakpoint->step == s.place.step;
+    if (at_breakpoint) return BeginHalt(HaltCause::kBreakpoint);
+    if (setup_.mode == machine::Mode::kSingle) return BeginHalt(HaltCause::kSingle);
+  }
+  Interpret(bytes_max);
+}
+
+// Bytes, until one of them makes something happen, or so many of them.
+void MillRun::Interpret(std::size_t bytes_max) {
+  State& s = state_;
+  Listener listener(*this);
+  for (;;) {
+    while (s.device.Step(listener)) {
+      if (!s.device.actions().empty() || s.device.commands_done() != s.commands_seen) return;
+    }
+    if (s.cursor == program_->size()) return Finish();
+    if (bytes_max-- == 0) return;
+    FeedOneByte(listener);
+  }
+}
+
+void MillRun::FeedOneByte(DeviceListener& listener) {
+  State& s = state_;
+  const auto byte = static_cast<unsigned char>((*program_)[s.cursor]);
+  s.device.Receive(byte, static_cast<std::int64_t>(s.cursor), listener);
+  ++s.cursor;
+}
+
+// While the device is paused the sender goes on until flow control stops it. Two places are kept
+// free: a byte behind ESC may bring the ESC with it.
+void MillRun::FillBuffer() {
+  constexpr std::size_t kSpare = 2;
+  Listener listener(*this);
+  while (state_.cursor < program_->size() && state_.device.room() >= kSpare) {
+    FeedOneByte(listener);
+  }
+}
+
+void MillRun::Finish() {
+  State& s = state_;
+  s.device.EndOfData();
+  if (s.device.pending()) {
+    const ErrorCode code = ErrorCode::kRml1IncompleteCommand;
+    Diagnostic diagnostic{.code = code,
+                          .severity = Lookup(code).severity,
+                          .detail = "incomplete command at end of data",
+                          .rule = "RML1-9.42",
+                          .file = {},
+                          .where = s.lines.At(stream(), s.device.pending_offset(), 1),
+                          .program = setup_.main_program,
+                          .step = 0,
+                          .fixes = {}};
+    observer_.OnDiagnostic(s.now, diagnostic);
+  }
+  CloseWith(OutcomeKind::kCompleted, std::nullopt, {});
+}
+
+void MillRun::Apply(const machine::InputChange& input) {
+  if (state_.phase != RunPhase::kFinished) Handle(input);
+}
+
+void MillRun::Handle(const machine::InputChange& input) {
+  State& s = state_;
+  switch (input.kind) {
+    case InputKind::kStart:
+      PressStart();
+      break;
+    case InputKind::kHold:
+      if (s.halt == HaltCause::kNone && s.halt_wanted == HaltCause::kNone) {
+        s.halt_wanted = HaltCause::kHold;
+      }
+      break;
+    case InputKind::kStop:
+      PressStop();
+      break;
+    case InputKind::kOverride: {
+      if (std::isnan(input.value)) break;
+      const double before = s.override_percent;
+      s.override_percent = std::clamp(input.value, kOverrideMin, kOverrideMax);
+      const bool changes = s.busy == Busy::kMotion && !s.motion.stopping &&
+                           !s.motion.action.rapid && s.override_percent != before;
+      if (changes) CutMotion(false);
+      break;
+    }
+    case InputKind::kEmergencyStop:
+      Freeze();
+      CloseWith(OutcomeKind::kStopped, std::nullopt, "emergency stop");  // it has no number
+      break;
+    case InputKind::kLogical:
+    case InputKind::kAnalogue:
+    case InputKind::kDoor:
+      break;  // a mill has no inputs
+  }
+}
+
+void MillRun::PressStart() {
+  State& s = state_;
+  if (s.halt != HaltCause::kNone) {
+    EndHalt();
+  } else {
+    s.halt_wanted = HaltCause::kNone;  // takes back a HOLD or STOP that has not halted it yet
+  }
+}
+
+// Brakes on the path, or stops the clock of a wait; standing still it is a HOLD.
+void MillRun::PressStop() {
+  State& s = state_;
+  if (s.halt != HaltCause::kNone) return;
+  s.halt_wanted = HaltCause::kStop;
+  if (s.busy == Busy::kMotion && !s.motion.stopping) {
+    CutMotion(true);
+  } else if (s.busy == Busy::kWait) {
+    s.wait_left = s.busy_until - s.now;
+    EndWait();
+    s.clock.Set(s.now);
+  }
+}
+
+void MillRun::BeginHalt(HaltCause cause) {
+  State& s = state_;
+  static constexpr std::array<std::string_view, 6> kWhy = {"",     "!NR",    "HOLD",
+                                                           "STOP", "SINGLE", "BREAKPOINT"};
+  std::string_view why = kWhy[static_cast<std::size_t>(cause)];
+  if (cause == HaltCause::kPause && s.device.actions().front().outside) why = "OVER_AREA";
+  s.halt = cause;
+  s.halt_wanted = HaltCause::kNone;
+  s.halted_at = s.now;
+  s.chain = Chain::kAlone;
+  observer_.OnHalt({.at = s.now, .place = s.place, .why = why});
+  const bool for_ever = cause == HaltCause::kPause && s.next_input == setup_.inputs.size();
+  if (!for_ever) return;
+  const ErrorCode code = ErrorCode::kRml1PausedAtEnd;
+  Diagnostic diagnostic{.code = code,
+                        .severity = Lookup(code).severity,
+                        .detail = "the machine waits for its resume key",
+                        .rule = "RML1-3C.08",
+                        .file = {},
+                        .where = s.lines.At(stream(), s.place.byte_offset, 3),
+                        .program = setup_.main_program,
+                        .step = s.place.step,
+                        .fixes = {}};
+  observer_.OnDiagnostic(s.now, diagnostic);
+}
+
+void MillRun::EndHalt() {
+  State& s = state_;
+  if (s.halt == HaltCause::kPause) s.device.actions().Pop();
+  if (s.now > s.halted_at) {
+    observer_.OnWait({.start = s.halted_at,
+                      .end = s.now,
+                      .place = s.place,
+                      .kind = machine::WaitKind::kOperator});
+    s.physical.OnHalt(ToSeconds(s.now - s.halted_at));
+  }
+  s.halt = HaltCause::kNone;
+  s.phase = RunPhase::kRunning;
+  s.clock.Set(s.now);
+  observer_.OnResume(s.now, s.place);
+}
+
+void MillRun::End(OutcomeKind kind, ErrorCode code) {
+  State& s = state_;
+  if (s.phase == RunPhase::kFinished) return;
+  Freeze();
+  CloseWith(kind, code, {});
+}
+
+// The tool stands where it is, and the spindle stops.
+void MillRun::Freeze() {
+  State& s = state_;
+  if (s.busy == Busy::kMotion) {
+    const double travelled = s.motion.leg.speed.At(ElapsedInLeg()).s;
+    const Point stopped_at = ToolAt(TipNow());
+    ReportLeg(travelled);
+    s.tool = stopped_at;
+  } else if (s.busy == Busy::kWait) {
+    EndWait();
+  }
+  s.busy = Busy::kNothing;
+  if (s.device.registers().spindle_on) EmitSignal(machine::Signal::kSpindle, 0.0, 0.0);
+}
+
+bool MillRun::SpindleTurns() const {
+  return state_.device.registers().spindle_on && state_.outcome.kind == OutcomeKind::kCompleted;
+}
+
+void MillRun::CloseWith(OutcomeKind kind, std::optional<ErrorCode> code, std::string detail) {
+  state_.phase = RunPhase::kFinished;
+  state_.outcome = {.kind = kind, .code = code, .detail = std::move(detail), .place = state_.place};
+}
+
+machine::RunState MillRun::state() const {
+  const State& s = state_;
+  machine::RunState state;
+  state.time = s.now;
+  state.phase = s.phase;
+  state.place = s.place;
+  if (s.place.step > 0) state.instruction = RowOf(s.device.command().op).name;
+  state.tip = TipNow();
+  state.axes = {.column = state.tip.tip, .a_rad = state.tip.a_rad, .b_rad = 0.0};
+  if (s.busy == Busy::kMotion) {
+    const double along = s.motion.leg.speed.At(ElapsedInLeg()).speed;
+    const bool turns_only = s.motion.leg.path.kind() == motion::PathPiece::Kind::kRotary;
+    if (!turns_only) state.tip_speed_mm_s = along;
+  }
+  state.override_percent = s.override_percent;
+  state.spindle_on = SpindleTurns();
+  const double size = static_cast<double>(stream().size());
+  state.progress = size > 0.0 ? static_cast<double>(s.cursor - s.device.waiting()) / size : 1.0;
+  return state;
+}
+
+std::optional<std::string> MillRun::ReadVariable(std::string_view name) const {
+  return ReadRegister(state_.device, profile(), ToolAt(TipNow()), name);
+}
+
+std::vector<machine::Figure> MillRun::figures() const {
+  return FiguresOf(state_.device, state_.physical);
+}
+
+// A run that was cut short leaves the tool where it stands, and the spindle off.
+std::string MillRun::SaveMachine() const {
+  MachineState kept{.registers = state_.device.registers(), .at = ToolAt(TipNow())};
+  kept.registers.spindle_on = SpindleTurns();
+  return WriteMachineState(kept);
+}
+
+std::unique_ptr<machine::RunSnapshot> MillRun::Save() const {
+  return std::make_unique<Snapshot>(state_);
+}
+
+void MillRun::Restore(const machine::RunSnapshot& snapshot) {
+  state_ = static_cast<const Snapshot&>(snapshot).state;
+}
+
+}  // namespace rmlcell::rml1

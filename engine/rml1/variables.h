@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "engine/rml1/device.h"
+
+namespace rmlcell::rml1 {
+
+// The present value of a register of the device by name, as a person would write it: X Y Z A (where
+// the tool is, work units), LX LY LZ (where the program is), VS VZ F V mm/s, DW W ms, MC RPM
+// SPINDLE, Z0 Z1 Z2, MODE TOOL, ERR COM, XSTEPS YSTEPS ZSTEPS ASTEPS, ESC.M ESC.T. Nothing for
+// other names.
+std::optional<std::string> ReadRegister(const Device& device, const Profile& profile,
+                                        const Point& tool, std::string_view name);
+
+}  // namespace rmlcell::rml1

@@ -1,0 +1,70 @@
+#include "engine/simulation/axis_log.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace rmlcell::simulation {
+namespace {
+
+constexpr std::array<std::string_view, motion::kAxisCount> kAxisNames = {"X", "Y", "Z", "A", "B"};
+constexpr std::size_t kFirstRotary = 3;
+
+}  // namespace
+
+void AxisLog::AddSweep(Axis& axis, const CoordinateSweep& sweep) {
+  axis.minimum = axis.seen ? std::min(axis.minimum, sweep.minimum) : sweep.minimum;
+  axis.maximum = axis.seen ? std::max(axis.maximum, sweep.maximum) : sweep.maximum;
+  axis.seen = true;
+  if (sweep.travel == 0.0) return;
+  axis.travel.Add(sweep.travel);
+  axis.reversals += static_cast<std::uint64_t>(sweep.turns);
+  if (sweep.first_sign != 0 && axis.last_sign == -sweep.first_sign) ++axis.reversals;
+  if (sweep.last_sign != 0) axis.last_sign = sweep.last_sign;
+}
+
+void AxisLog::Add(const Motion& motion) {
+  for (std::size_t i = 0; i < kFirstRotary; ++i) AddSweep(axes_[i], motion.xyz[i]);
+  AddSweep(axes_[3], motion.ab[0]);
+  AddSweep(axes_[4], motion.ab[1]);
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    axes_[i].peak_speed = std::max(axes_[i].peak_speed, motion.peaks.axis_speed[i]);
+    axes_[i].peak_acceleration =
+        std::max(axes_[i].peak_acceleration, motion.peaks.axis_acceleration[i]);
+  }
+  tip_path_.Add(motion.tip_path_mm);
+  tip_peak_speed_ = std::max(tip_peak_speed_, motion.peaks.tip_speed);
+  tip_peak_acceleration_ = std::max(tip_peak_acceleration_, motion.peaks.tip_acceleration);
+}
+
+void AxisLog::WriteTo(RunReport& report) const {
+  report.axes.clear();
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const Axis& axis = axes_[i];
+    const bool rotary = i >= kFirstRotary;
+    if (rotary && !shape_.five_axis && axis.travel.value() == 0.0) continue;
+    AxisFigures figures{.name = std::string(kAxisNames[i]),
+                        .rotary = rotary,
+                        .travel = axis.travel.value(),
+                        .minimum = axis.minimum,
+                        .maximum = axis.maximum,
+                        .peak_speed = axis.peak_speed,
+                        .peak_acceleration = axis.peak_acceleration,
+                        .reversals = axis.reversals};
+    if (shape_.limits) {
+      figures.speed_limit = shape_.limits->axes.speed[i];
+      figures.acceleration_limit = shape_.limits->axes.acceleration[i];
+    }
+    report.axes.push_back(std::move(figures));
+  }
+  report.tip_figures = {.name = "tip",
+                        .travel = tip_path_.value(),
+                        .peak_speed = tip_peak_speed_,
+                        .peak_acceleration = tip_peak_acceleration_};
+  if (shape_.limits) {
+    report.tip_figures.speed_limit = shape_.limits->tip_speed_mm_s;
+    report.tip_figures.acceleration_limit = shape_.limits->tip_acceleration_mm_s2;
+  }
+}
+
+}  // namespace rmlcell::simulation

@@ -1,0 +1,76 @@
+#include "engine/simulation/part_curve.h"
+
+#include <cmath>
+
+#include "engine/core/units.h"
+
+namespace rmlcell::simulation {
+
+using motion::PathPiece;
+using motion::Vec3;
+
+bool Turns(const PathPiece& path) {
+  if (path.a_rate() != 0.0 || path.b_rate() != 0.0) return true;
+  if (path.kind() != PathPiece::Kind::kBlend) return false;
+  // A corner where the head turns back has the same angles at both ends.
+  const motion::PathDerivatives in = path.curve().Derivative(0.0, 1);
+  const motion::PathDerivatives out = path.curve().Derivative(1.0, 1);
+  return in.a != 0.0 || in.b != 0.0 || out.a != 0.0 || out.b != 0.0;
+}
+
+Vec3 TipAt(const PathPiece& path, const motion::Head& head, double s) {
+  const motion::TipPose pose = path.At(s);
+  if (path.kind() != PathPiece::Kind::kJoint) return pose.tip;
+  return head.TipOf({pose.tip, pose.a_rad, pose.b_rad}).tip;
+}
+
+PartCurve::PartCurve(const PathPart& part) : part_(part), begin_(part.from), end_(part.to) {
+  const PathPiece& path = part.path;
+  turning_rad_ = (std::abs(path.a_rate()) + std::abs(path.b_rate())) * (part.to - part.from);
+  if (path.kind() == PathPiece::Kind::kArc)
+    turning_rad_ += (part.to - part.from) / path.radius_mm();
+  if (blend()) {
+    turning_rad_ += kPi;
+    const motion::CornerLength length(path.curve());
+    begin_ = length.ParameterAt(path.curve(), path.curve_start() + part.from);
+    end_ = length.ParameterAt(path.curve(), path.curve_start() + part.to);
+  }
+}
+
+motion::TipPose PartCurve::Pose(double p) const {
+  return blend() ? part_.path.curve().At(p) : part_.path.At(p);
+}
+
+motion::PathDerivatives PartCurve::Rate(double p) const {
+  if (part_.path.kind() == PathPiece::Kind::kRotary) {
+    return {{}, part_.path.a_rate(), part_.path.b_rate()};
+  }
+  return blend() ? part_.path.curve().Derivative(p, 1) : part_.path.First(p);
+}
+
+// What the turning of the head adds to the motion of the column over that of the tip.
+Vec3 PartCurve::Swing(double p) const {
+  const motion::PathDerivatives rate = Rate(p);
+  const motion::TipPose pose = Pose(p);
+  const motion::AxisValues swing =
+      motion::AxisRates(part_.head, pose.a_rad, pose.b_rad, {{}, rate.a, rate.b});
+  return {swing[0], swing[1], swing[2]};
+}
+
+Vec3 PartCurve::Tip(double p) const {
+  const motion::TipPose pose = Pose(p);
+  return joint() ? part_.head.TipOf({pose.tip, pose.a_rad, pose.b_rad}).tip : pose.tip;
+}
+
+Vec3 PartCurve::Column(double p) const {
+  const motion::TipPose pose = Pose(p);
+  return joint() ? pose.tip : part_.head.ColumnOf(pose).column;
+}
+
+Vec3 PartCurve::TipRate(double p) const { return joint() ? Rate(p).tip - Swing(p) : Rate(p).tip; }
+
+Vec3 PartCurve::ColumnRate(double p) const {
+  return joint() ? Rate(p).tip : Rate(p).tip + Swing(p);
+}
+
+}  // namespace rmlcell::simulation

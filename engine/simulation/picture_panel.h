@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "engine/simulation/path_sketch.h"
+#include "engine/simulation/picture_path.h"
+#include "engine/simulation/picture_view.h"
+
+namespace rmlcell::simulation {
+
+// What all panels of a page have in common.
+struct PanelContent {
+  const PathSketch& sketch;
+  const machine::MachineShape& shape;
+  DepthRange depth;
+  bool completed = true;
+  std::size_t elements_max = 0;  // of one panel
+};
+
+// Appends one panel: frame, grid and rulers, envelope of the machine, path, dots, start and end,
+// scale bar. `id` is unique on the page. Returns the number of path elements.
+std::size_t DrawPanel(const PanelContent& content, const Panel& panel, int id, std::string& out);
+
+}  // namespace rmlcell::simulation

@@ -1,0 +1,245 @@
+#include "engine/simulation/report_recorder.h"
+
+#include <algorithm>
+
+namespace rmlcell::simulation {
+namespace {
+
+using machine::MotionUse;
+using machine::Signal;
+using machine::WaitKind;
+
+double TipSpeedMax(const machine::MachineShape& shape) {
+  return shape.limits ? shape.limits->tip_speed_mm_s : 0.0;
+}
+
+SimTime& PartOf(TimeParts& parts, WaitKind kind) {
+  switch (kind) {
+    case WaitKind::kDwell:
+      return parts.dwell;
+    case WaitKind::kPierce:
+      return parts.pierce;
+    case WaitKind::kSpinUp:
+      return parts.spin_up;
+    case WaitKind::kCondition:
+      return parts.condition;
+    case WaitKind::kOperator:
+      return parts.operator_wait;
+    case WaitKind::kLoad:
+      return parts.load;
+  }
+  return parts.standstill;
+}
+
+}  // namespace
+
+std::string_view TimingText(Timing timing) {
+  return timing == Timing::kExact ? "exact" : "exact stop, upper bound";
+}
+
+std::string_view OutcomeText(machine::OutcomeKind kind) {
+  switch (kind) {
+    case machine::OutcomeKind::kCompleted:
+      return "completed";
+    case machine::OutcomeKind::kStopped:
+      return "stopped";
+    case machine::OutcomeKind::kFailed:
+      return "failed";
+    case machine::OutcomeKind::kCancelled:
+      return "cancelled";
+    case machine::OutcomeKind::kBudgetExceeded:
+      return "budget_exceeded";
+  }
+  return "unknown";
+}
+
+ReportRecorder::ReportRecorder(const machine::MachineShape& shape)
+    : shape_(shape), axes_(shape), beam_(shape.laser_watts, TipSpeedMax(shape)) {}
+
+ReportRecorder::Interval ReportRecorder::Claim(SimTime start, SimTime end) {
+  FillStandstill(start);
+  const Interval interval{std::max(start, counted_until_), std::max(end, counted_until_)};
+  counted_until_ = interval.end;
+  return interval;
+}
+
+void ReportRecorder::FillStandstill(SimTime until) {
+  if (until <= counted_until_) return;
+  const SimTime length = until - counted_until_;
+  WorkFigures work;
+  (halted_ ? work.time.operator_wait : work.time.standstill) = length;
+  if (beam_on_) {
+    work.beam_on = length;
+    work.pierce_energy_j = beam_.Standing(ToSeconds(length), 0.0);
+  }
+  work_.Add(place_, work);
+  counted_until_ = until;
+}
+
+void ReportRecorder::OnStep(SimTime at, const machine::Place& place,
+                            std::string_view /*instruction*/) {
+  FillStandstill(at);
+  place_ = place;
+  WorkFigures work;
+  work.steps = 1;
+  work_.Add(place, work);
+}
+
+void ReportRecorder::OnMotion(const machine::MotionDone& done) {
+  const motion::PlannedMotion& motion = *done.motion;
+  upper_bound_ = upper_bound_ || motion.upper_bound;
+  const Interval interval = Claim(done.start, done.end);
+
+  WorkFigures work;
+  const double profile_left_s = std::max(0.0, motion.speed.duration_s() - done.profile_start_s);
+  work.time.motion = std::min(FromSeconds(profile_left_s), interval.length());
+  work.time.settling = interval.length() - work.time.motion;
+
+  const double profile_end_s =
+      done.profile_start_s + std::min(profile_left_s, ToSeconds(done.end - done.start));
+  const double length = TipLength({motion.path, motion.head, done.from, done.travelled});
+  AddLengths(done, length, work);
+  if (done.beam_on) {
+    work.beam_on = interval.length();
+    const double way = done.travelled - done.from;
+    work.cut_energy_j = beam_.Moving(motion.speed, done.profile_start_s, profile_end_s,
+                                     way > 0.0 ? length / way : 0.0, done.power);
+    work.cut_energy_j += beam_.Standing(ToSeconds(work.time.settling), done.power.constant_percent);
+  }
+  AddShape(done, profile_end_s, length);
+  corners_.Add(done);
+  stands_since_beam_on_ = false;
+  work_.Add(done.place, work);
+}
+
+void ReportRecorder::AddLengths(const machine::MotionDone& done, double length, WorkFigures& work) {
+  const bool tool_in =
+      shape_.laser_watts <= 0.0 && (done.use == MotionUse::kCut || done.use == MotionUse::kPlunge);
+  const bool cuts = done.beam_on || tool_in;
+  work.tip_path_mm = length;
+  (cuts ? work.cut_mm : work.travel_mm) = length;
+  const bool plunge = done.use == MotionUse::kPlunge;
+  if (plunge) work.plunge_mm = length;
+  if (plunge && !plunging_) work.plunges = 1;
+  plunging_ = plunge;
+}
+
+void ReportRecorder::AddShape(const machine::MotionDone& done, double profile_end_s,
+                              double length) {
+  const motion::PlannedMotion& motion = *done.motion;
+  const PathPart part{motion.path, motion.head, done.from, done.travelled};
+  const PointSweep tip = TipSweep(part);
+  const PointSweep column = shape_.five_axis ? ColumnSweep(part) : tip;
+  const machine::Box box = BoxOf(tip);
+  tip_.Add(box);
+  column_.Add(BoxOf(column));
+  const bool tool_in =
+      shape_.laser_watts <= 0.0 && (done.use == MotionUse::kCut || done.use == MotionUse::kPlunge);
+  if (done.beam_on || tool_in) cut_.Add(box);
+  axes_.Add({.xyz = column,
+             .ab = RotarySweep(part),
+             .peaks = PeaksOf(motion, shape_.five_axis, done.profile_start_s, profile_end_s),
+             .tip_path_mm = length});
+}
+
+void ReportRecorder::OnMove(const machine::MoveDone& move) {
+  programmed_.Add(move.program_point);
+  last_ = {.tip = move.tip,
+           .axes = move.axes,
+           .program_point = move.program_point,
+           .program_a = move.rotary_a,
+           .program_b = move.tip.b_rad};
+}
+
+void ReportRecorder::OnSignal(const machine::SignalChange& change) {
+  const bool on = change.value != 0.0;
+  if (change.signal == Signal::kBeam) {
+    FillStandstill(change.at);  // before the beam changes
+    if (on && !beam_on_) {
+      WorkFigures work;
+      work.beam_switches = 1;
+      work_.Add(change.place, work);
+      stands_since_beam_on_ = true;
+      pierce_counted_ = false;
+    }
+    beam_on_ = on;
+  }
+  if (change.signal == Signal::kShutter && on != shutter_open_) {
+    if (on) {
+      shutter_since_ = change.at;
+    } else {
+      shutter_time_ += change.at - shutter_since_;
+    }
+    shutter_open_ = on;
+  }
+}
+
+void ReportRecorder::OnWait(const machine::Wait& wait) {
+  const Interval interval = Claim(wait.start, wait.end);
+  WorkFigures work;
+  PartOf(work.time, wait.kind) = interval.length();
+  if (wait.beam_on) {
+    work.beam_on = interval.length();
+    work.pierce_energy_j = beam_.Standing(ToSeconds(interval.length()), wait.power_percent);
+    const bool pierces =
+        wait.kind == WaitKind::kPierce || (wait.kind == WaitKind::kDwell && stands_since_beam_on_);
+    if (pierces && !pierce_counted_ && wait.end > wait.start) {
+      work.pierces = 1;
+      pierce_counted_ = true;
+    }
+  }
+  work_.Add(wait.place, work);
+}
+
+void ReportRecorder::OnHalt(const machine::Halt& halt) {
+  FillStandstill(halt.at);
+  halted_ = true;
+  ++halts_;
+}
+
+void ReportRecorder::OnResume(SimTime at, const machine::Place& /*place*/) {
+  FillStandstill(at);
+  halted_ = false;
+}
+
+void ReportRecorder::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
+  findings_.Add(at, diagnostic);
+}
+
+void ReportRecorder::Finish(SimTime at) {
+  FillStandstill(at);
+  if (!shutter_open_) return;
+  shutter_time_ += at - shutter_since_;
+  shutter_open_ = false;
+}
+
+RunReport ReportRecorder::Report(const machine::Run& run) const {
+  const machine::RunState state = run.state();
+  RunReport report;
+  report.finished = state.phase == machine::RunPhase::kFinished;
+  if (report.finished) report.outcome = run.outcome();
+  report.timing = upper_bound_ ? Timing::kExactStopUpperBound : Timing::kExact;
+  report.cycle_time = counted_until_;
+  report.steps_executed = run.steps_executed();
+  report.halts = halts_;
+  report.final_position = last_;
+  report.final_position.tip = state.tip;
+  report.final_position.axes = state.axes;
+  work_.WriteTo(report);
+  report.shutter_open =
+      shutter_time_ + (shutter_open_ ? counted_until_ - shutter_since_ : SimTime::zero());
+  report.beam = beam_.Histogram(report.total.beam_on);
+  report.corners = corners_.corners();
+  report.shortfall = corners_.shortfall();
+  report.programmed = programmed_;
+  report.tip = tip_;
+  report.cut = cut_;
+  report.column = column_;
+  axes_.WriteTo(report);
+  report.findings = findings_.findings();
+  report.findings_dropped = findings_.dropped();
+  report.figures = run.figures();
+  return report;
+}
+
+}  // namespace rmlcell::simulation

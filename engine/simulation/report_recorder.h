@@ -1,0 +1,74 @@
+#pragma once
+
+#include "engine/machine/observer.h"
+#include "engine/simulation/axis_log.h"
+#include "engine/simulation/beam_work.h"
+#include "engine/simulation/corner_log.h"
+#include "engine/simulation/finding_list.h"
+#include "engine/simulation/report.h"
+#include "engine/simulation/work_table.h"
+
+namespace rmlcell::simulation {
+
+// Adds up what a run tells into the figures of its report, in bounded memory. Every nanosecond of
+// virtual time is counted once: under the motion or wait that covers it, else as standstill (or as
+// waiting for the operator, while halted).
+class ReportRecorder final : public machine::RunObserver {
+ public:
+  explicit ReportRecorder(const machine::MachineShape& shape);
+
+  void OnStep(SimTime at, const machine::Place& place, std::string_view instruction) override;
+  void OnMotion(const machine::MotionDone& done) override;
+  void OnMove(const machine::MoveDone& move) override;
+  void OnSignal(const machine::SignalChange& change) override;
+  void OnWait(const machine::Wait& wait) override;
+  void OnHalt(const machine::Halt& halt) override;
+  void OnResume(SimTime at, const machine::Place& place) override;
+  void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override;
+
+  // Once, when the run is over: what nothing was told about since is standstill.
+  void Finish(SimTime at);
+
+  // The figures of what was told so far; a motion under way is not in them.
+  RunReport Report(const machine::Run& run) const;
+
+ private:
+  // The part of [start, end] that nothing was counted for yet.
+  struct Interval {
+    SimTime start{0};
+    SimTime end{0};
+    SimTime length() const { return end - start; }
+  };
+  Interval Claim(SimTime start, SimTime end);
+  void FillStandstill(SimTime until);
+  void AddLengths(const machine::MotionDone& done, double length, WorkFigures& work);
+  void AddShape(const machine::MotionDone& done, double profile_end_s, double length);
+
+  machine::MachineShape shape_;
+  WorkTable work_;
+  AxisLog axes_;
+  BeamWork beam_;
+  CornerLog corners_;
+  FindingList findings_;
+  SimTime counted_until_{0};
+  machine::Place place_;
+  bool halted_ = false;
+  std::uint64_t halts_ = 0;
+  bool upper_bound_ = false;
+
+  bool beam_on_ = false;
+  bool stands_since_beam_on_ = false;  // no motion yet: a dwell is a pierce
+  bool pierce_counted_ = false;
+  bool shutter_open_ = false;
+  SimTime shutter_since_{0};
+  SimTime shutter_time_{0};
+  bool plunging_ = false;
+
+  machine::Box programmed_;
+  machine::Box tip_;
+  machine::Box cut_;
+  machine::Box column_;
+  FinalPosition last_;
+};
+
+}  // namespace rmlcell::simulation

@@ -1,0 +1,91 @@
+#include "engine/simulation/work_table.h"
+
+#include <algorithm>
+
+namespace rmlcell::simulation {
+
+SimTime TimeParts::total() const {
+  return motion + settling + dwell + pierce + condition + operator_wait + spin_up + load +
+         standstill;
+}
+
+void WorkTable::Sum::Add(const WorkFigures& work) {
+  counts.steps += work.steps;
+  counts.time.motion += work.time.motion;
+  counts.time.settling += work.time.settling;
+  counts.time.dwell += work.time.dwell;
+  counts.time.pierce += work.time.pierce;
+  counts.time.condition += work.time.condition;
+  counts.time.operator_wait += work.time.operator_wait;
+  counts.time.spin_up += work.time.spin_up;
+  counts.time.load += work.time.load;
+  counts.time.standstill += work.time.standstill;
+  counts.beam_on += work.beam_on;
+  counts.beam_switches += work.beam_switches;
+  counts.pierces += work.pierces;
+  counts.plunges += work.plunges;
+  tip_path.Add(work.tip_path_mm);
+  cut.Add(work.cut_mm);
+  travel.Add(work.travel_mm);
+  plunge.Add(work.plunge_mm);
+  cut_energy.Add(work.cut_energy_j);
+  pierce_energy.Add(work.pierce_energy_j);
+}
+
+WorkFigures WorkTable::Sum::Total() const {
+  WorkFigures figures = counts;
+  figures.tip_path_mm = tip_path.value();
+  figures.cut_mm = cut.value();
+  figures.travel_mm = travel.value();
+  figures.plunge_mm = plunge.value();
+  figures.cut_energy_j = cut_energy.value();
+  figures.pierce_energy_j = pierce_energy.value();
+  return figures;
+}
+
+WorkTable::Sum* WorkTable::StepOf(const machine::Place& place) {
+  const std::pair key{place.program, place.step};
+  if (last_sum_ != nullptr && key == last_step_) return last_sum_;
+  auto found = steps_.find(key);
+  if (found == steps_.end()) {
+    if (steps_.size() >= kReportedStepsMax) return nullptr;
+    found = steps_.emplace(key, Step{.line = place.line, .sum = {}}).first;
+  }
+  last_step_ = key;
+  last_sum_ = &found->second.sum;
+  return last_sum_;
+}
+
+WorkTable::Sum* WorkTable::ProgramOf(int program) {
+  if (last_program_sum_ != nullptr && program == last_program_) return last_program_sum_;
+  if (!programs_.contains(program) && programs_.size() >= kReportedProgramsMax) return nullptr;
+  last_program_ = program;
+  last_program_sum_ = &programs_[program];
+  return last_program_sum_;
+}
+
+void WorkTable::Add(const machine::Place& place, const WorkFigures& work) {
+  total_.Add(work);
+  Sum* step = StepOf(place);
+  (step != nullptr ? *step : rest_).Add(work);
+  if (Sum* program = ProgramOf(place.program); program != nullptr) program->Add(work);
+}
+
+void WorkTable::WriteTo(RunReport& report) const {
+  report.total = total_.Total();
+  report.rest = rest_.Total();
+  report.programs.clear();
+  for (const auto& [program, sum] : programs_) report.programs[program] = sum.Total();
+  report.steps.clear();
+  report.steps.reserve(steps_.size());
+  report.energy_j_per_mm_max = 0.0;
+  for (const auto& [key, step] : steps_) {
+    report.steps.push_back(
+        {.program = key.first, .step = key.second, .line = step.line, .figures = step.sum.Total()});
+    report.energy_j_per_mm_max =
+        std::max(report.energy_j_per_mm_max, report.steps.back().figures.energy_j_per_mm());
+  }
+  report.energy_j_per_mm_max = std::max(report.energy_j_per_mm_max, report.rest.energy_j_per_mm());
+}
+
+}  // namespace rmlcell::simulation

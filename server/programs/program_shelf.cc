@@ -1,0 +1,283 @@
+#include "server/programs/program_shelf.h"
+
+#include <algorithm>
+
+#include "engine/core/number_text.h"
+#include "engine/core/units.h"
+#include "engine/simulation/families.h"
+#include "proto/bridge/findings.h"
+#include "proto/bridge/setup.h"
+#include "server/config.h"
+#include "server/jobs/job_messages.h"
+#include "server/names.h"
+#include "proto/bridge/sha256.h"
+#include "server/services/machine_messages.h"
+
+namespace rmlcell::server {
+namespace {
+
+constexpr std::size_t kTitleMax = 200;
+constexpr std::size_t kFileNameMax = 255;
+
+Error Invalid(const std::string& detail) { return {ErrorCode::kCellInvalidArgument, detail, {}}; }
+
+std::string BaseName(const std::string& file_name) {
+  const std::size_t slash = file_name.find_last_of("/\\");
+  return slash == std::string::npos ? file_name : file_name.substr(slash + 1);
+}
+
+std::string TitleFrom(const std::string& file_name) {
+  const std::string base = BaseName(file_name);
+  return base.substr(0, base.find_last_of('.'));
+}
+
+v1::Program MessageOf(const std::string& machine, const storage::ProgramSummary& summary) {
+  v1::Program program;
+  program.set_name(NameOfProgram(machine, summary.slot));
+  program.set_title(summary.name);
+  program.set_file_name(summary.source_name);
+  program.set_object_bytes(summary.object_bytes);
+  if (summary.source_bytes >= 0) program.set_source_bytes(summary.source_bytes);
+  if (summary.executable_bytes >= 0) program.set_executable_bytes(summary.executable_bytes);
+  program.set_object_sha256(summary.object_sha256);
+  program.set_etag(std::to_string(summary.revision));
+  *program.mutable_create_time() = ToProto(summary.created_at);
+  *program.mutable_update_time() = ToProto(summary.updated_at);
+  return program;
+}
+
+// The first error of a translation stands for all; its diagnostics go along.
+ProgramError FirstError(const machine::Translation& translation) {
+  ProgramError wrong{.error = {ErrorCode::kCellBadText, {}, {}},
+                     .diagnostics = translation.diagnostics,
+                     .dropped = translation.diagnostics_dropped};
+  std::size_t errors = 0;
+  for (const Diagnostic& diagnostic : translation.diagnostics) {
+    if (!IsError(diagnostic.severity)) continue;
+    if (errors++ == 0) {
+      wrong.error = {diagnostic.code, diagnostic.detail, diagnostic.where};
+      if (diagnostic.where.line > 0) {
+        wrong.error.detail = "line " + std::to_string(diagnostic.where.line) + ": " + diagnostic.detail;
+      }
+    }
+  }
+  const std::uint64_t more = errors - std::min<std::size_t>(errors, 1) + translation.diagnostics_dropped;
+  if (more > 0) wrong.error.detail += " (and " + std::to_string(more) + " more)";
+  return wrong;
+}
+
+}  // namespace
+
+std::int64_t ProgramShelf::program_bytes_max() const { return config_.limit_program_bytes; }
+
+ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
+  const Result<ProgramName> name = ParseProgramName(put.name);
+  if (!name) return name.error();
+  if (put.bytes.empty()) return Error{ErrorCode::kCellEmptyProgram, put.file_name, {}};
+  if (static_cast<std::int64_t>(put.bytes.size()) > config_.limit_program_bytes) {
+    return Error{ErrorCode::kCellTooLarge,
+                 std::to_string(put.bytes.size()) + " bytes; limits.program_bytes is " +
+                     std::to_string(config_.limit_program_bytes),
+                 {}};
+  }
+  if (put.title.size() > kTitleMax) return Invalid("title is longer than 200 characters");
+  if (put.file_name.size() > kFileNameMax) return Invalid("file_name is longer than 255 characters");
+  if (name->executable || put.form == v1::PROGRAM_FORM_EXECUTABLE) {
+    return StoreExecutable(put, name->machine, name->slot);
+  }
+  const Result<storage::MachineRecord> machine = store_.GetMachine(name->machine);
+  if (!machine) return machine.error();
+  const machine::MachineFamily* family = simulation::FindFamily(machine->family);
+  if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
+  const machine::MachineFamily* named = simulation::FamilyOfFileName(put.file_name);
+  if (named != nullptr && named != family) {
+    return Invalid(BaseName(put.file_name) + " is a program for " + std::string(named->info().title) + ", not for " +
+                   std::string(family->info().title));
+  }
+  const Result<storage::Revision> expected = ParseEtag(put.etag);
+  if (!expected) return expected.error();
+  const Result<machine::Parameters> parameters =
+      bridge::MakeParameters(*family, machine->profile, machine->parameters);
+  if (!parameters) return parameters.error();
+
+  const bool is_object = put.form == v1::PROGRAM_FORM_OBJECT || bridge::IsObjectFileName(put.file_name);
+  machine::Translation translation = family->Translate(
+      {.name = is_object ? "program.O" : BaseName(put.file_name), .bytes = put.bytes}, *parameters, {});
+  if (!translation.ok) return FirstError(translation);
+  v1::Findings findings = bridge::FindingsOf(true, translation.diagnostics, translation.diagnostics_dropped,
+                                             translation.figures);
+  storage::ProgramWrite write{.slot = name->slot,
+                              .name = put.title.empty() ? TitleFrom(put.file_name) : put.title,
+                              .object = std::move(translation.object),
+                              .source = {},
+                              .source_name = is_object ? std::string() : BaseName(put.file_name),
+                              .expected = *expected};
+  // A stream is its own object: kept once.
+  if (!is_object && write.object != put.bytes) write.source = std::move(put.bytes);
+  if (put.validate_only) {
+    v1::Program program;
+    program.set_name(put.name);
+    program.set_title(write.name);
+    program.set_file_name(write.source_name);
+    program.set_object_bytes(static_cast<std::int64_t>(write.object.size()));
+    *program.mutable_findings() = std::move(findings);
+    return program;
+  }
+  const auto stored = store_.PutPrograms(name->machine, {std::move(write)}, {});
+  if (!stored) return stored.error();
+  v1::Program program = MessageOf(name->machine, stored->front());
+  *program.mutable_findings() = std::move(findings);
+  return program;
+}
+
+ProgramResult<v1::Program> ProgramShelf::StoreExecutable(const Put& put, const std::string& machine_id, int slot) {
+  const Result<storage::MachineRecord> machine = store_.GetMachine(machine_id);
+  if (!machine) return machine.error();
+  const machine::MachineFamily* family = simulation::FindFamily(machine->family);
+  if (family == nullptr || !family->info().has_executables) {
+    return Error{ErrorCode::kProgramNumber, "this machine has no executables: use a slot from 1 to 99", {}};
+  }
+  const auto found = store_.ListPrograms(machine_id, slot - 1, 1);
+  if (!found) return found.error();
+  if (found->empty() || found->front().slot != slot) {
+    return Error{ErrorCode::kProgramMissing, "an executable needs its object: " + NameOfProgram(machine_id, slot), {}};
+  }
+  if (const Status good = family->CheckExecutable(put.bytes); !good) return good.error();
+  if (!put.validate_only) {
+    const auto kept = store_.PutExecutable(machine_id, slot, found->front().revision, put.bytes);
+    if (!kept) return kept.error();
+    if (!*kept) return Error{ErrorCode::kCellEtagMismatch, "the object was stored again meanwhile", {}};
+  }
+  v1::Program program = MessageOf(machine_id, found->front());
+  program.set_executable_bytes(static_cast<std::int64_t>(put.bytes.size()));
+  return program;
+}
+
+Result<v1::Program> ProgramShelf::Get(std::string_view name) {
+  const Result<ProgramName> parsed = ParseProgramName(name);
+  if (!parsed) return parsed.error();
+  if (const auto machine = store_.GetMachine(parsed->machine); !machine) return machine.error();
+  const auto found = store_.ListPrograms(parsed->machine, parsed->slot - 1, 1);
+  if (!found) return found.error();
+  const bool there = !found->empty() && found->front().slot == parsed->slot &&
+                     (!parsed->executable || found->front().executable_bytes >= 0);
+  if (!there) return Error{ErrorCode::kProgramMissing, std::string(name), {}};
+  return MessageOf(parsed->machine, found->front());
+}
+
+Result<ProgramShelf::Content> ProgramShelf::Read(std::string_view name, v1::ProgramForm form) {
+  const Result<ProgramName> parsed = ParseProgramName(name);
+  if (!parsed) return parsed.error();
+  const auto machine = store_.GetMachine(parsed->machine);
+  if (!machine) return machine.error();
+  Result<storage::ProgramRecord> program = store_.GetProgram(parsed->machine, parsed->slot);
+  if (!program) {
+    if (program.error().code != ErrorCode::kCellNotFound) return program.error();
+    return Error{ErrorCode::kProgramMissing, std::string(name), {}};
+  }
+  if (parsed->executable) form = v1::PROGRAM_FORM_EXECUTABLE;
+  const machine::MachineFamily* family = simulation::FindFamily(machine->family);
+  const bool has_objects = family != nullptr && family->info().has_executables;
+  const std::string base = program->source_name.empty() ? std::to_string(parsed->slot) : TitleFrom(program->source_name);
+  Content content;
+  switch (form) {
+    case v1::PROGRAM_FORM_EXECUTABLE:
+      if (!program->executable) {
+        return Error{ErrorCode::kProgramMissing, "no executable was made of " + std::string(name), {}};
+      }
+      content = {.bytes = std::move(*program->executable), .form = form, .file_name = base + ".X", .sha256 = {}};
+      break;
+    case v1::PROGRAM_FORM_OBJECT:
+      content = {.bytes = std::move(program->object), .form = form, .file_name = base + ".O", .sha256 = {}};
+      break;
+    case v1::PROGRAM_FORM_LISTING:
+      return Error{ErrorCode::kCellUnimplemented, "listings", {}};
+    default:
+      if (program->source || !has_objects) {
+        content = {.bytes = program->source ? std::move(*program->source) : std::move(program->object),
+                   .form = v1::PROGRAM_FORM_SOURCE,
+                   .file_name = program->source_name,
+                   .sha256 = {}};
+      } else if (form == v1::PROGRAM_FORM_SOURCE) {
+        Result<std::string> source = family->Decompile(program->object);
+        if (!source) return source.error();
+        content = {.bytes = std::move(*source), .form = form, .file_name = base + ".S", .sha256 = {}};
+      } else {
+        content = {.bytes = std::move(program->object),
+                   .form = v1::PROGRAM_FORM_OBJECT,
+                   .file_name = base + ".O",
+                   .sha256 = {}};
+      }
+  }
+  content.sha256 = bridge::Sha256Hex(content.bytes);
+  return content;
+}
+
+Result<v1::ListProgramsResponse> ProgramShelf::List(const v1::ListProgramsRequest& request) {
+  const Result<std::string> machine = ParseMachineName(request.parent());
+  if (!machine) return machine.error();
+  if (const auto known = store_.GetMachine(*machine); !known) return known.error();
+  if (request.page_size() < 0) return Invalid("page_size is below 0");
+  const int size = request.page_size() == 0 ? kSlotMax : std::min(request.page_size(), kSlotMax);
+  int after = 0;
+  if (!request.page_token().empty()) {
+    const auto token = ParseInteger(request.page_token());
+    if (!token || !IsSlot(static_cast<int>(*token))) return Error{ErrorCode::kCellBadPageToken, {}, {}};
+    after = static_cast<int>(*token);
+  }
+  const auto programs = store_.ListPrograms(*machine, after, size + 1);
+  if (!programs) return programs.error();
+  v1::ListProgramsResponse response;
+  for (const storage::ProgramSummary& program : *programs) {
+    if (response.programs_size() == size) {
+      response.set_next_page_token(std::to_string((*programs)[static_cast<std::size_t>(size) - 1].slot));
+      break;
+    }
+    *response.add_programs() = MessageOf(*machine, program);
+  }
+  return response;
+}
+
+Status ProgramShelf::Delete(const v1::DeleteProgramRequest& request) {
+  const Result<ProgramName> name = ParseProgramName(request.name());
+  if (!name) return name.error();
+  if (const auto machine = store_.GetMachine(name->machine); !machine) return machine.error();
+  const Result<storage::Revision> expected = ParseEtag(request.etag());
+  if (!expected) return expected.error();
+  const Status deleted = name->executable ? store_.DeleteExecutable(name->machine, name->slot)
+                                          : store_.DeleteProgram(name->machine, name->slot, *expected);
+  if (!deleted && deleted.error().code == ErrorCode::kCellNotFound) {
+    return Error{ErrorCode::kProgramMissing, request.name(), {}};
+  }
+  return deleted;
+}
+
+Result<machine::Translation> ProgramShelf::Check(const std::string& family_id, const std::string& machine_name,
+                                                 const v1::ProgramText& program, bool advice) {
+  const machine::MachineFamily* family = nullptr;
+  std::string profile;
+  std::map<std::string, std::string> values;
+  if (!machine_name.empty()) {
+    const Result<std::string> id = ParseMachineName(machine_name);
+    if (!id) return id.error();
+    const auto machine = store_.GetMachine(*id);
+    if (!machine) return machine.error();
+    family = simulation::FindFamily(machine->family);
+    profile = machine->profile;
+    values = machine->parameters;
+  } else if (!family_id.empty()) {
+    family = simulation::FindFamily(family_id);
+    if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, family_id, {}};
+  } else {
+    family = simulation::FamilyOfFileName(program.file_name());
+  }
+  if (family == nullptr) return Error{ErrorCode::kCellFamilyUnknownFromName, program.file_name(), {}};
+  if (program.content().empty()) return Error{ErrorCode::kCellEmptyProgram, program.file_name(), {}};
+  const Result<machine::Parameters> parameters = bridge::MakeParameters(*family, profile, values);
+  if (!parameters) return parameters.error();
+  const bool is_object = program.form() == v1::PROGRAM_FORM_OBJECT;
+  return family->Translate({.name = is_object ? "program.O" : program.file_name(), .bytes = program.content()},
+                           *parameters, {.advice = advice});
+}
+
+}  // namespace rmlcell::server

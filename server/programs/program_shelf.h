@@ -1,0 +1,77 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/machine/family.h"
+#include "rmlcell/v1/program.pb.h"
+#include "storage/store.h"
+
+namespace rmlcell::server {
+
+struct Config;
+
+// An error with what there is to say about the program.
+struct ProgramError {
+  Error error;
+  std::vector<Diagnostic> diagnostics;
+  std::uint64_t dropped = 0;
+};
+
+template <class T>
+struct ProgramResult {
+  std::optional<T> value;
+  ProgramError error{};  // when there is no value
+
+  ProgramResult(T made) : value(std::move(made)) {}                                     // NOLINT: implicit
+  ProgramResult(Error wrong) : error{std::move(wrong), {}, 0} {}                        // NOLINT: implicit
+  ProgramResult(ProgramError wrong) : error(std::move(wrong)) {}                        // NOLINT: implicit
+  explicit operator bool() const { return value.has_value(); }
+};
+
+// The program memory of machines: translation, checks and storage of programs.
+// Thread-safe; blocks on the store and on compilation.
+class ProgramShelf {
+ public:
+  ProgramShelf(storage::Store& store, const Config& config) : store_(store), config_(config) {}
+
+  struct Put {
+    std::string name;  // resource name
+    std::string file_name;
+    v1::ProgramForm form = v1::PROGRAM_FORM_UNSPECIFIED;
+    std::string title;
+    std::string etag;
+    std::string bytes;
+    bool validate_only = false;
+  };
+  // All or nothing. Errors: CellEmptyProgram, CellTooLarge, ProgramNumber (7101), the first compile error,
+  // CellEtagMismatch, CellUnknownMachine, ProgramMissing for an executable without its object (OPT-1.15).
+  ProgramResult<v1::Program> Store(Put put);
+
+  Result<v1::Program> Get(std::string_view name);
+
+  struct Content {
+    std::string bytes;
+    v1::ProgramForm form = v1::PROGRAM_FORM_SOURCE;
+    std::string file_name;
+    std::string sha256;
+  };
+  Result<Content> Read(std::string_view name, v1::ProgramForm form);
+
+  Result<v1::ListProgramsResponse> List(const v1::ListProgramsRequest& request);
+  Status Delete(const v1::DeleteProgramRequest& request);
+
+  // Translates without storing. Errors: CellUnknownFamily and what names machine or family wrongly.
+  Result<machine::Translation> Check(const std::string& family, const std::string& machine,
+                                     const v1::ProgramText& program, bool advice);
+
+  std::int64_t program_bytes_max() const;
+
+ private:
+  ProgramResult<v1::Program> StoreExecutable(const Put& put, const std::string& machine, int slot);
+
+  storage::Store& store_;
+  const Config& config_;
+};
+
+}  // namespace rmlcell::server

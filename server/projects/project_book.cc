@@ -1,0 +1,260 @@
+#include "server/projects/project_book.h"
+
+#include <algorithm>
+#include <set>
+
+#include "engine/core/units.h"
+#include "engine/simulation/families.h"
+#include "proto/bridge/findings.h"
+#include "proto/bridge/setup.h"
+#include "server/jobs/job_messages.h"
+#include "server/names.h"
+#include "server/services/machine_messages.h"
+
+namespace rmlcell::server {
+namespace {
+
+constexpr int kPageDefault = 100;
+constexpr int kPageMax = 1000;
+constexpr std::size_t kTitleMax = 200;
+constexpr std::size_t kNotesMax = 64 << 10;
+
+Error Invalid(const std::string& detail) { return {ErrorCode::kCellInvalidArgument, detail, {}}; }
+
+// What can be said without a machine. Languages are checked when the project is transferred.
+Status CheckProject(const v1::Project& project) {
+  if (project.title().size() > kTitleMax) return Invalid("title is longer than 200 characters");
+  if (project.notes().size() > kNotesMax) return Invalid("notes are longer than 64 KiB");
+  std::set<int> slots;
+  for (const v1::ProjectProgram& program : project.programs()) {
+    const std::string slot = std::to_string(program.slot());
+    if (!IsSlot(program.slot())) return Error{ErrorCode::kProgramNumber, "slot is " + slot, {}};
+    if (!slots.insert(program.slot()).second) return Error{ErrorCode::kProjectDuplicate, "slot " + slot, {}};
+    if (program.source().content().empty()) {
+      return Error{ErrorCode::kProjectSource, "the program of slot " + slot + " has no source", {}};
+    }
+  }
+  std::set<int> schedules;
+  for (const v1::ProjectLaserSchedule& schedule : project.laser_schedules()) {
+    const std::string number = std::to_string(schedule.number());
+    if (schedule.number() < 1 || schedule.number() > 63) {
+      return Error{ErrorCode::kScheduleRange, "laser schedule " + number, {}};
+    }
+    if (!schedules.insert(schedule.number()).second) return Invalid("laser schedule " + number + " stands twice");
+    if (!schedule.mode().empty() && schedule.mode() != "CW" && schedule.mode() != "PULSE") {
+      return Invalid("laser schedule " + number + ": mode is CW or PULSE");
+    }
+    if (!(schedule.power_percent() >= 0.0 && schedule.power_percent() <= 100.0)) {
+      return Invalid("laser schedule " + number + ": power_percent: allowed are 0 to 100");
+    }
+  }
+  std::set<std::pair<int, int>> processes;
+  for (const v1::ProjectProcess& process : project.processes()) {
+    const std::string name = std::to_string(process.kind()) + "," + std::to_string(process.process());
+    if (process.kind() < 0 || process.kind() > 2 || process.process() < 0 || process.process() > 9) {
+      return Error{ErrorCode::kProcessNumber, "process " + name, {}};
+    }
+    if (!processes.insert({process.kind(), process.process()}).second) {
+      return Invalid("process " + name + " stands twice");
+    }
+  }
+  return {};
+}
+
+v1::Project ProjectOf(const storage::ProjectRecord& record) {
+  v1::Project project;
+  if (!project.ParseFromString(record.body)) project.Clear();
+  project.set_name(ProjectName(record.id));
+  project.set_title(record.title);
+  project.set_etag(std::to_string(record.revision));
+  *project.mutable_create_time() = ToProto(record.created_at);
+  *project.mutable_update_time() = ToProto(record.updated_at);
+  return project;
+}
+
+storage::ProjectRecord RecordOf(const std::string& id, v1::Project project) {
+  const std::string title = project.title();
+  // Kept in columns of their own.
+  project.clear_name();
+  project.clear_title();
+  project.clear_etag();
+  project.clear_create_time();
+  project.clear_update_time();
+  return {.id = id, .title = title, .body = project.SerializeAsString()};
+}
+
+machine::ProjectBundle BundleOf(const v1::Project& project) {
+  machine::ProjectBundle bundle;
+  for (const v1::ProjectProgram& program : project.programs()) {
+    const std::string& file_name = program.source().file_name();
+    const bool inch_name = file_name.ends_with(".SI") || file_name.ends_with(".si");
+    bundle.programs.push_back({.slot = program.slot(),
+                               .file = {.name = file_name, .bytes = program.source().content()},
+                               .inch = program.units() == v1::UNITS_INCH ||
+                                       (program.units() == v1::UNITS_UNSPECIFIED && inch_name)});
+  }
+  for (const v1::ProjectLaserSchedule& schedule : project.laser_schedules()) {
+    bundle.schedules.push_back({.number = schedule.number(),
+                                .name = schedule.title(),
+                                .mode = schedule.mode().empty() ? "CW" : schedule.mode(),
+                                .power_percent = schedule.power_percent()});
+  }
+  for (const v1::ProjectProcess& process : project.processes()) {
+    bundle.processes.push_back({.kind = process.kind(),
+                                .process = process.process(),
+                                .values = {process.values().begin(), process.values().end()},
+                                .note = process.note()});
+  }
+  return bundle;
+}
+
+const v1::ProjectProgram* FindProgram(const v1::Project& project, int slot) {
+  const auto found = std::ranges::find_if(project.programs(),
+                                          [&](const v1::ProjectProgram& program) { return program.slot() == slot; });
+  return found == project.programs().end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+Result<v1::Project> ProjectBook::Create(const v1::CreateProjectRequest& request) {
+  if (Status id = CheckResourceId(request.project_id(), "project_id"); !id) return id.error();
+  if (Status good = CheckProject(request.project()); !good) return good.error();
+  storage::ProjectRecord record = RecordOf(request.project_id(), request.project());
+  if (request.validate_only()) {
+    v1::Project project = request.project();
+    project.set_name(ProjectName(request.project_id()));
+    return project;
+  }
+  const auto stored = store_.PutProject(record, 0);
+  if (!stored) return stored.error();
+  return ProjectOf(*stored);
+}
+
+Result<v1::Project> ProjectBook::Get(std::string_view name) {
+  const Result<std::string> id = ParseProjectName(name);
+  if (!id) return id.error();
+  const auto record = store_.GetProject(*id);
+  if (!record) return record.error();
+  return ProjectOf(*record);
+}
+
+Result<v1::ListProjectsResponse> ProjectBook::List(const v1::ListProjectsRequest& request) {
+  if (request.page_size() < 0) return Invalid("page_size is below 0");
+  const int size = request.page_size() == 0 ? kPageDefault : std::min(request.page_size(), kPageMax);
+  const auto records = store_.ListProjects(request.page_token(), size + 1);
+  if (!records) return records.error();
+  v1::ListProjectsResponse response;
+  for (const storage::ProjectRecord& record : *records) {
+    if (response.projects_size() == size) {
+      response.set_next_page_token((*records)[static_cast<std::size_t>(size) - 1].id);
+      break;
+    }
+    v1::Project& project = *response.add_projects();
+    project = ProjectOf(record);
+    for (v1::ProjectProgram& program : *project.mutable_programs()) program.mutable_source()->clear_content();
+  }
+  return response;
+}
+
+Result<v1::Project> ProjectBook::Update(const v1::UpdateProjectRequest& request) {
+  const Result<std::string> id = ParseProjectName(request.project().name());
+  if (!id) return id.error();
+  const Result<storage::Revision> expected = ParseEtag(request.project().etag());
+  if (!expected) return expected.error();
+  const auto record = store_.GetProject(*id);
+  if (!record) return record.error();
+  v1::Project project = ProjectOf(*record);
+  const v1::Project& wanted = request.project();
+  const auto& paths = request.update_mask().paths();
+  const auto named = [&](std::string_view field) {
+    return paths.empty() || std::ranges::find(paths, field) != paths.end();
+  };
+  for (const std::string& path : paths) {
+    if (path != "title" && path != "notes" && path != "programs" && path != "laser_schedules" &&
+        path != "processes") {
+      return Invalid("update_mask: '" + path + "' is none of title, notes, programs, laser_schedules, processes");
+    }
+  }
+  if (named("title")) project.set_title(wanted.title());
+  if (named("notes")) project.set_notes(wanted.notes());
+  if (named("programs")) *project.mutable_programs() = wanted.programs();
+  if (named("laser_schedules")) *project.mutable_laser_schedules() = wanted.laser_schedules();
+  if (named("processes")) *project.mutable_processes() = wanted.processes();
+  if (Status good = CheckProject(project); !good) return good.error();
+  if (request.validate_only()) return project;
+  const auto stored = store_.PutProject(RecordOf(*id, project),
+                                        *expected == storage::kAnyRevision ? record->revision : *expected);
+  if (!stored) return stored.error();
+  return ProjectOf(*stored);
+}
+
+Status ProjectBook::Delete(const v1::DeleteProjectRequest& request) {
+  const Result<std::string> id = ParseProjectName(request.name());
+  if (!id) return id.error();
+  const Result<storage::Revision> expected = ParseEtag(request.etag());
+  if (!expected) return expected.error();
+  return store_.DeleteProject(*id, *expected);
+}
+
+ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(const v1::TransferProjectRequest& request) {
+  const Result<v1::Project> project = Get(request.name());
+  if (!project) return project.error();
+  const Result<std::string> machine_id = ParseMachineName(request.machine());
+  if (!machine_id) return machine_id.error();
+  const auto machine = store_.GetMachine(*machine_id);
+  if (!machine) return machine.error();
+  const machine::MachineFamily* family = simulation::FindFamily(machine->family);
+  if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
+  const auto parameters = bridge::MakeParameters(*family, machine->profile, machine->parameters);
+  if (!parameters) return parameters.error();
+  if (project->programs().empty()) return Error{ErrorCode::kProjectSource, "the project has no program", {}};
+
+  machine::TransferPlan plan =
+      family->PlanTransfer(BundleOf(*project), *parameters,
+                           {.insert_missing_definitions = request.insert_missing_definitions()});
+  if (!plan.ok) {
+    ProgramError wrong{.error = {ErrorCode::kProjectSource, {}, {}}, .diagnostics = plan.diagnostics};
+    const auto first = std::ranges::find_if(plan.diagnostics,
+                                            [](const Diagnostic& d) { return IsError(d.severity); });
+    if (first != plan.diagnostics.end()) {
+      wrong.error = {first->code, "program " + std::to_string(first->program) + ": " + first->detail, first->where};
+    }
+    return wrong;
+  }
+  v1::TransferProjectResponse response;
+  *response.mutable_findings() = bridge::FindingsOf(true, plan.diagnostics, 0, {});
+  std::vector<storage::ProgramWrite> writes;
+  for (machine::TransferPlan::Program& program : plan.programs) {
+    const v1::ProjectProgram* source = FindProgram(*project, program.slot);
+    v1::Program& made = *response.add_programs();
+    made.set_name(NameOfProgram(*machine_id, program.slot));
+    made.set_title(source != nullptr ? source->title() : std::string());
+    made.set_object_bytes(static_cast<std::int64_t>(program.object.size()));
+    storage::ProgramWrite write{.slot = program.slot,
+                                .name = made.title(),
+                                .object = std::move(program.object),
+                                .source = {},
+                                .source_name = source != nullptr ? source->source().file_name() : std::string()};
+    if (!program.source.empty() && program.source != write.object) write.source = std::move(program.source);
+    writes.push_back(std::move(write));
+  }
+  if (request.validate_only()) return response;
+  std::vector<storage::ScheduleRecord> schedules;
+  for (const v1::ProjectLaserSchedule& schedule : project->laser_schedules()) {
+    schedules.push_back({.machine = *machine_id,
+                         .number = schedule.number(),
+                         .name = schedule.title(),
+                         .mode = schedule.mode().empty() ? "CW" : schedule.mode(),
+                         .power_percent = schedule.power_percent()});
+  }
+  const auto stored = store_.PutPrograms(*machine_id, writes, schedules);
+  if (!stored) return stored.error();
+  for (int i = 0; i < response.programs_size() && static_cast<std::size_t>(i) < stored->size(); ++i) {
+    const storage::ProgramSummary& summary = (*stored)[static_cast<std::size_t>(i)];
+    response.mutable_programs(i)->set_etag(std::to_string(summary.revision));
+    response.mutable_programs(i)->set_object_sha256(summary.object_sha256);
+  }
+  return response;
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string_view>
+
+#include "rmlcell/v1/project.pb.h"
+#include "server/programs/program_shelf.h"
+#include "storage/store.h"
+
+namespace rmlcell::server {
+
+// Projects: kept as one record each, transferred to a machine as one. Thread-safe; blocks on the store.
+class ProjectBook {
+ public:
+  explicit ProjectBook(storage::Store& store) : store_(store) {}
+
+  Result<v1::Project> Create(const v1::CreateProjectRequest& request);
+  Result<v1::Project> Get(std::string_view name);
+  Result<v1::ListProjectsResponse> List(const v1::ListProjectsRequest& request);
+  Result<v1::Project> Update(const v1::UpdateProjectRequest& request);
+  Status Delete(const v1::DeleteProjectRequest& request);
+
+  // Converts, compiles and checks everything in the engine, then stores all programs and schedules in one
+  // transaction; on any error nothing is stored (OPT-8.71). Errors: ProjectDuplicate (7861),
+  // ProjectSource (7862), the first error of the programs.
+  ProgramResult<v1::TransferProjectResponse> Transfer(const v1::TransferProjectRequest& request);
+
+ private:
+  storage::Store& store_;
+};
+
+}  // namespace rmlcell::server

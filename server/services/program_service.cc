@@ -1,0 +1,303 @@
+#include "server/services/program_service.h"
+
+#include <chrono>
+
+#include "engine/simulation/families.h"
+#include "proto/bridge/findings.h"
+#include "server/programs/program_shelf.h"
+#include "proto/bridge/sha256.h"
+#include "server/services/job_streams.h"
+
+namespace rmlcell::server {
+namespace {
+
+constexpr std::size_t kChunkBytes = 256 << 10;
+constexpr std::size_t kUnaryBytes = 3 << 20;
+
+grpc::Status StatusOf(const ProgramError& wrong) {
+  return ToGrpcStatus(wrong.error, wrong.diagnostics, wrong.dropped);
+}
+
+v1::Findings FindingsOf(const machine::Translation& translation) {
+  return bridge::FindingsOf(translation.ok, translation.diagnostics, translation.diagnostics_dropped,
+                            translation.figures);
+}
+
+// Takes a program in chunks. Bytes are kept in memory up to the announced size, which is checked against
+// the limit before the first chunk; they are stored when all are there and the digest is right.
+class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
+ public:
+  Upload(const CallRoom& room, ProgramShelf& shelf, Caller caller, v1::Program* response)
+      : room_(room), shelf_(shelf), caller_(std::move(caller)), response_(response) {
+    StartRead(&message_);
+  }
+
+ private:
+  void OnReadDone(bool ok) override {
+    if (finished_) return;
+    if (!ok) return Store();
+    if (message_.has_header()) {
+      if (begun_) return End(Error{ErrorCode::kCellInvalidArgument, "a second header", {}});
+      begun_ = true;
+      header_ = message_.header();
+      if (header_.size() <= 0) return End(Error{ErrorCode::kCellEmptyProgram, header_.file_name(), {}});
+      if (header_.size() > shelf_.program_bytes_max()) {
+        return End(Error{ErrorCode::kCellTooLarge, std::to_string(header_.size()) + " bytes", {}});
+      }
+    } else {
+      if (!begun_) return End(Error{ErrorCode::kCellInvalidArgument, "the first message must be the header", {}});
+      if (bytes_.size() + message_.chunk().size() > static_cast<std::size_t>(header_.size())) {
+        return End(Error{ErrorCode::kCellChecksum, "more bytes than the header says", {}});
+      }
+      digest_.Add(message_.chunk());
+      bytes_ += message_.chunk();
+    }
+    StartRead(&message_);
+  }
+
+  void Store() {
+    if (!begun_) return End(Error{ErrorCode::kCellInvalidArgument, "no header", {}});
+    if (bytes_.size() != static_cast<std::size_t>(header_.size())) {
+      return End(Error{ErrorCode::kCellChecksum,
+                       std::to_string(bytes_.size()) + " bytes came, " + std::to_string(header_.size()) +
+                           " were announced",
+                       {}});
+    }
+    if (digest_.Hex() != header_.sha256()) return End(Error{ErrorCode::kCellChecksum, "SHA-256 differs", {}});
+    finished_ = true;
+    room_.executor.Post([this] {
+      const ProgramResult<v1::Program> stored = shelf_.Store({.name = header_.name(),
+                                                              .file_name = header_.file_name(),
+                                                              .form = header_.form(),
+                                                              .title = header_.title(),
+                                                              .etag = header_.etag(),
+                                                              .bytes = std::move(bytes_),
+                                                              .validate_only = header_.validate_only()});
+      if (stored) *response_ = *stored.value;
+      const grpc::Status status = stored ? grpc::Status::OK : StatusOf(stored.error);
+      LogCall("ProgramService/UploadProgram", caller_, status, std::chrono::steady_clock::now() - begin_);
+      Finish(status);
+    });
+  }
+
+  void End(const Error& error) {
+    finished_ = true;
+    const grpc::Status status = ToGrpcStatus(error);
+    LogCall("ProgramService/UploadProgram", caller_, status, std::chrono::steady_clock::now() - begin_);
+    Finish(status);
+  }
+
+  void OnDone() override { delete this; }
+
+  CallRoom room_;
+  ProgramShelf& shelf_;
+  Caller caller_;
+  v1::Program* response_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  v1::UploadProgramRequest message_;
+  v1::UploadProgramRequest::Header header_;
+  bridge::Sha256 digest_;
+  std::string bytes_;
+  bool begun_ = false;
+  bool finished_ = false;
+};
+
+class RefusedUpload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
+ public:
+  explicit RefusedUpload(const grpc::Status& status) { Finish(status); }
+  void OnDone() override { delete this; }
+};
+
+class Download final : public PullStream<v1::DownloadProgramResponse> {
+ public:
+  Download(Executor& executor, OpenStreams& open, ProgramShelf& shelf, const v1::DownloadProgramRequest& request)
+      : PullStream(executor, open), shelf_(shelf), request_(request) {}
+
+ private:
+  Next Make(v1::DownloadProgramResponse& message, grpc::Status& status) override {
+    if (!begun_) {
+      begun_ = true;
+      Result<ProgramShelf::Content> content = shelf_.Read(request_.name(), request_.form());
+      if (!content) {
+        status = ToGrpcStatus(content.error());
+        return Next::kEnd;
+      }
+      content_ = std::move(*content);
+      message.mutable_header()->set_size(static_cast<std::int64_t>(content_.bytes.size()));
+      message.mutable_header()->set_sha256(content_.sha256);
+      message.mutable_header()->set_form(content_.form);
+      message.mutable_header()->set_file_name(content_.file_name);
+      return Next::kMessage;
+    }
+    if (sent_ >= content_.bytes.size()) return Next::kEnd;
+    message.set_chunk(content_.bytes.substr(sent_, kChunkBytes));
+    sent_ += message.chunk().size();
+    return Next::kMessage;
+  }
+
+  ProgramShelf& shelf_;
+  v1::DownloadProgramRequest request_;
+  ProgramShelf::Content content_;
+  bool begun_ = false;
+  std::size_t sent_ = 0;
+};
+
+
+}  // namespace
+
+grpc::ServerUnaryReactor* ProgramService::PutProgram(grpc::CallbackServerContext* context,
+                                                     const v1::PutProgramRequest* request, v1::Program* response) {
+  return Answer(room_, context, "ProgramService/PutProgram", [this, request, response](const Caller&) {
+    const ProgramResult<v1::Program> stored = shelf_.Store({.name = request->name(),
+                                                            .file_name = request->program().file_name(),
+                                                            .form = request->program().form(),
+                                                            .title = request->title(),
+                                                            .etag = request->etag(),
+                                                            .bytes = request->program().content(),
+                                                            .validate_only = request->validate_only()});
+    if (!stored) return StatusOf(stored.error);
+    *response = *stored.value;
+    return grpc::Status::OK;
+  });
+}
+
+grpc::ServerReadReactor<v1::UploadProgramRequest>* ProgramService::UploadProgram(
+    grpc::CallbackServerContext* context, v1::Program* response) {
+  Result<Caller> caller = Admit(room_.gate, *context, "ProgramService/UploadProgram");
+  if (!caller) return new RefusedUpload(ToGrpcStatus(caller.error()));
+  return new Upload(room_, shelf_, std::move(*caller), response);
+}
+
+grpc::ServerUnaryReactor* ProgramService::GetProgram(grpc::CallbackServerContext* context,
+                                                     const v1::GetProgramRequest* request, v1::Program* response) {
+  return Answer(room_, context, "ProgramService/GetProgram", [this, request, response](const Caller&) {
+    Result<v1::Program> program = shelf_.Get(request->name());
+    if (!program) return ToGrpcStatus(program.error());
+    *response = std::move(*program);
+    return grpc::Status::OK;
+  });
+}
+
+grpc::ServerUnaryReactor* ProgramService::GetProgramContent(grpc::CallbackServerContext* context,
+                                                            const v1::GetProgramContentRequest* request,
+                                                            v1::GetProgramContentResponse* response) {
+  return Answer(room_, context, "ProgramService/GetProgramContent", [this, request, response](const Caller&) {
+    Result<ProgramShelf::Content> content = shelf_.Read(request->name(), request->form());
+    if (!content) return ToGrpcStatus(content.error());
+    if (content->bytes.size() > kUnaryBytes) {
+      return ToGrpcStatus(Error{ErrorCode::kCellTooLarge,
+                                std::to_string(content->bytes.size()) + " bytes: use DownloadProgram", {}});
+    }
+    response->set_content(std::move(content->bytes));
+    response->set_form(content->form);
+    response->set_file_name(content->file_name);
+    response->set_sha256(content->sha256);
+    return grpc::Status::OK;
+  });
+}
+
+grpc::ServerWriteReactor<v1::DownloadProgramResponse>* ProgramService::DownloadProgram(
+    grpc::CallbackServerContext* context, const v1::DownloadProgramRequest* request) {
+  const Result<Caller> caller = Admit(room_.gate, *context, "ProgramService/DownloadProgram");
+  if (!caller) return new RefusedStream<v1::DownloadProgramResponse>(ToGrpcStatus(caller.error()));
+  return std::make_shared<Download>(room_.executor, open_, shelf_, *request)->Begin();
+}
+
+grpc::ServerUnaryReactor* ProgramService::ListPrograms(grpc::CallbackServerContext* context,
+                                                       const v1::ListProgramsRequest* request,
+                                                       v1::ListProgramsResponse* response) {
+  return Answer(room_, context, "ProgramService/ListPrograms", [this, request, response](const Caller&) {
+    Result<v1::ListProgramsResponse> programs = shelf_.List(*request);
+    if (!programs) return ToGrpcStatus(programs.error());
+    *response = std::move(*programs);
+    return grpc::Status::OK;
+  });
+}
+
+grpc::ServerUnaryReactor* ProgramService::DeleteProgram(grpc::CallbackServerContext* context,
+                                                        const v1::DeleteProgramRequest* request,
+                                                        google::protobuf::Empty*) {
+  return Answer(room_, context, "ProgramService/DeleteProgram", [this, request](const Caller&) {
+    const Status deleted = shelf_.Delete(*request);
+    return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
+  });
+}
+
+grpc::ServerUnaryReactor* ProgramService::CheckProgram(grpc::CallbackServerContext* context,
+                                                       const v1::CheckProgramRequest* request,
+                                                       v1::CheckProgramResponse* response) {
+  return Answer(room_, context, "ProgramService/CheckProgram", [this, request, response](const Caller&) {
+    const auto translation =
+        shelf_.Check(request->family(), request->machine(), request->program(), !request->errors_only());
+    if (!translation) return ToGrpcStatus(translation.error());
+    *response->mutable_findings() = FindingsOf(*translation);
+    return grpc::Status::OK;
+  });
+}
+
+grpc::ServerUnaryReactor* ProgramService::CompileProgram(grpc::CallbackServerContext* context,
+                                                         const v1::CompileProgramRequest* request,
+                                                         v1::CompileProgramResponse* response) {
+  return Answer(room_, context, "ProgramService/CompileProgram", [this, request, response](const Caller&) {
+    auto translation = shelf_.Check(request->family(), {}, request->program(), true);
+    if (!translation) return ToGrpcStatus(translation.error());
+    *response->mutable_findings() = FindingsOf(*translation);
+    if (translation->ok) response->set_object(std::move(translation->object));
+    return grpc::Status::OK;
+  });
+}
+
+grpc::ServerUnaryReactor* ProgramService::FormatProgram(grpc::CallbackServerContext* context,
+                                                        const v1::FormatProgramRequest*,
+                                                        v1::FormatProgramResponse*) {
+  return NotYet(room_, context, "ProgramService/FormatProgram");
+}
+
+grpc::ServerUnaryReactor* ProgramService::DecompileProgram(grpc::CallbackServerContext* context,
+                                                           const v1::DecompileProgramRequest* request,
+                                                           v1::DecompileProgramResponse* response) {
+  return Answer(room_, context, "ProgramService/DecompileProgram", [request, response](const Caller&) {
+    const machine::MachineFamily* family = simulation::FindFamily("optimo");
+    if (family == nullptr) return ToGrpcStatus(Error{ErrorCode::kCellUnknownFamily, "optimo", {}});
+    Result<std::string> source = family->Decompile(request->object());
+    if (!source) return ToGrpcStatus(source.error());
+    response->set_content(std::move(*source));
+    return grpc::Status::OK;
+  });
+}
+
+grpc::ServerUnaryReactor* ProgramService::ConvertProgram(grpc::CallbackServerContext* context,
+                                                         const v1::ConvertProgramRequest*,
+                                                         v1::ConvertProgramResponse*) {
+  return NotYet(room_, context, "ProgramService/ConvertProgram");
+}
+
+grpc::ServerUnaryReactor* ProgramService::CompensateProgram(grpc::CallbackServerContext* context,
+                                                            const v1::CompensateProgramRequest*,
+                                                            v1::CompensateProgramResponse*) {
+  return NotYet(room_, context, "ProgramService/CompensateProgram");
+}
+
+grpc::ServerUnaryReactor* ProgramService::TransformProgram(grpc::CallbackServerContext* context,
+                                                           const v1::TransformProgramRequest*,
+                                                           v1::TransformProgramResponse*) {
+  return NotYet(room_, context, "ProgramService/TransformProgram");
+}
+
+grpc::ServerUnaryReactor* ProgramService::ExplainError(grpc::CallbackServerContext* context,
+                                                       const v1::ExplainErrorRequest* request,
+                                                       v1::ExplainErrorResponse* response) {
+  return Answer(room_, context, "ProgramService/ExplainError", [request, response](const Caller&) {
+    if (request->code().empty()) {
+      for (const CatalogueEntry& entry : Catalogue()) *response->add_errors() = bridge::Explain(entry);
+      return grpc::Status::OK;
+    }
+    for (const CatalogueEntry* entry : FindByText(request->code())) {
+      *response->add_errors() = bridge::Explain(*entry);
+    }
+    if (response->errors_size() > 0) return grpc::Status::OK;
+    return ToGrpcStatus(Error{ErrorCode::kCellNotFound, "no error '" + request->code().substr(0, 80) + "'", {}});
+  });
+}
+
+}  // namespace rmlcell::server

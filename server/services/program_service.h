@@ -1,0 +1,66 @@
+#pragma once
+
+#include <string>
+
+#include "rmlcell/v1/program.grpc.pb.h"
+#include "server/services/call.h"
+#include "server/services/pull_stream.h"
+
+namespace rmlcell::server {
+
+class ProgramShelf;
+
+// Converts, calls, converts: the rules live in ProgramShelf and in the engine.
+class ProgramService final : public v1::ProgramService::CallbackService {
+ public:
+  ProgramService(CallRoom room, ProgramShelf& shelf, OpenStreams& open) : room_(room), shelf_(shelf), open_(open) {}
+
+  grpc::ServerUnaryReactor* PutProgram(grpc::CallbackServerContext* context, const v1::PutProgramRequest* request,
+                                       v1::Program* response) override;
+  grpc::ServerReadReactor<v1::UploadProgramRequest>* UploadProgram(grpc::CallbackServerContext* context,
+                                                                   v1::Program* response) override;
+  grpc::ServerUnaryReactor* GetProgram(grpc::CallbackServerContext* context, const v1::GetProgramRequest* request,
+                                       v1::Program* response) override;
+  grpc::ServerUnaryReactor* GetProgramContent(grpc::CallbackServerContext* context,
+                                              const v1::GetProgramContentRequest* request,
+                                              v1::GetProgramContentResponse* response) override;
+  grpc::ServerWriteReactor<v1::DownloadProgramResponse>* DownloadProgram(
+      grpc::CallbackServerContext* context, const v1::DownloadProgramRequest* request) override;
+  grpc::ServerUnaryReactor* ListPrograms(grpc::CallbackServerContext* context,
+                                         const v1::ListProgramsRequest* request,
+                                         v1::ListProgramsResponse* response) override;
+  grpc::ServerUnaryReactor* DeleteProgram(grpc::CallbackServerContext* context,
+                                          const v1::DeleteProgramRequest* request,
+                                          google::protobuf::Empty* response) override;
+  grpc::ServerUnaryReactor* CheckProgram(grpc::CallbackServerContext* context,
+                                         const v1::CheckProgramRequest* request,
+                                         v1::CheckProgramResponse* response) override;
+  grpc::ServerUnaryReactor* CompileProgram(grpc::CallbackServerContext* context,
+                                           const v1::CompileProgramRequest* request,
+                                           v1::CompileProgramResponse* response) override;
+  grpc::ServerUnaryReactor* FormatProgram(grpc::CallbackServerContext* context,
+                                          const v1::FormatProgramRequest* request,
+                                          v1::FormatProgramResponse* response) override;
+  grpc::ServerUnaryReactor* DecompileProgram(grpc::CallbackServerContext* context,
+                                             const v1::DecompileProgramRequest* request,
+                                             v1::DecompileProgramResponse* response) override;
+  grpc::ServerUnaryReactor* ConvertProgram(grpc::CallbackServerContext* context,
+                                           const v1::ConvertProgramRequest* request,
+                                           v1::ConvertProgramResponse* response) override;
+  grpc::ServerUnaryReactor* CompensateProgram(grpc::CallbackServerContext* context,
+                                              const v1::CompensateProgramRequest* request,
+                                              v1::CompensateProgramResponse* response) override;
+  grpc::ServerUnaryReactor* TransformProgram(grpc::CallbackServerContext* context,
+                                             const v1::TransformProgramRequest* request,
+                                             v1::TransformProgramResponse* response) override;
+  grpc::ServerUnaryReactor* ExplainError(grpc::CallbackServerContext* context,
+                                         const v1::ExplainErrorRequest* request,
+                                         v1::ExplainErrorResponse* response) override;
+
+ private:
+  CallRoom room_;
+  ProgramShelf& shelf_;
+  OpenStreams& open_;
+};
+
+}  // namespace rmlcell::server

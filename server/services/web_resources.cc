@@ -1,0 +1,133 @@
+#include "server/services/web_resources.h"
+
+#include <google/protobuf/util/json_util.h>
+
+#include "google/rpc/status.pb.h"
+#include "proto/bridge/findings.h"
+#include "proto/bridge/sha256.h"
+#include "rmlcell/v1/report.pb.h"
+#include "server/jobs/job_book.h"
+#include "server/names.h"
+#include "server/programs/program_shelf.h"
+
+namespace rmlcell::server {
+namespace {
+
+Result<Caller> Admit(const Gate& gate, const web::WebCallerMetadata& metadata, const std::string& method) {
+  CallFacts facts{.method = method, .peer = "web", .metadata = {}};
+  for (const auto& [key, value] : metadata) facts.metadata.emplace(key, value);
+  return gate.Admit(facts);
+}
+
+// The report is kept as a message and shown as JSON, which people and curl read.
+Result<std::string> ReportAsJson(const std::string& bytes) {
+  v1::RunReport report;
+  std::string json;
+  google::protobuf::util::JsonPrintOptions options;
+  options.always_print_primitive_fields = true;
+  options.add_whitespace = true;
+  if (!report.ParseFromString(bytes) ||
+      !google::protobuf::util::MessageToJsonString(report, &json, options).ok()) {
+    return Error{ErrorCode::kCellStoreCorrupt, "the report cannot be read", {}};
+  }
+  return json;
+}
+
+Result<web::Resource> FindArtifact(JobBook& book, const web::ArtifactPath& path) {
+  const Result<std::int64_t> job = ParseJobName("jobs/" + path.job);
+  if (!job) return job.error();
+  const auto artifact = book.FindArtifact(*job, path.artifact);
+  if (!artifact) return artifact.error();
+  Result<std::string> bytes = book.ReadArtifact(*job, path.artifact);
+  if (!bytes) return bytes.error();
+  web::Resource resource{.media_type = artifact->media_type, .etag = artifact->sha256};
+  if (path.artifact == "report") {
+    Result<std::string> json = ReportAsJson(*bytes);
+    if (!json) return json.error();
+    resource.media_type = "application/json";
+    resource.bytes = std::move(*json);
+  } else {
+    resource.bytes = std::move(*bytes);
+  }
+  return resource;
+}
+
+v1::ProgramForm FormOf(const std::string& word) {
+  if (word == "source") return v1::PROGRAM_FORM_SOURCE;
+  if (word == "object") return v1::PROGRAM_FORM_OBJECT;
+  if (word == "executable") return v1::PROGRAM_FORM_EXECUTABLE;
+  if (word == "listing") return v1::PROGRAM_FORM_LISTING;
+  return v1::PROGRAM_FORM_UNSPECIFIED;
+}
+
+class Sink final : public web::UploadSink {
+ public:
+  Sink(ProgramShelf& shelf, const web::UploadHeader& header) : shelf_(shelf), header_(header) {}
+
+  Status Append(std::string_view chunk) override {
+    if (bytes_.size() + chunk.size() > static_cast<std::size_t>(shelf_.program_bytes_max())) {
+      return Error{ErrorCode::kCellTooLarge, "limits.program_bytes", {}};
+    }
+    digest_.Add(chunk);
+    bytes_ += chunk;
+    return {};
+  }
+
+  web::UploadEnd Finish() override {
+    if (!header_.sha256.empty() && digest_.Hex() != header_.sha256) {
+      return Refused(bridge::ToRpcStatus({ErrorCode::kCellChecksum, "SHA-256 differs", {}}));
+    }
+    const ProgramResult<v1::Program> stored =
+        shelf_.Store({.name = "machines/" + header_.path.machine + "/programs/" + std::to_string(header_.path.slot),
+                      .file_name = header_.file_name,
+                      .form = FormOf(header_.path.form),
+                      .title = header_.title,
+                      .etag = header_.etag,
+                      .bytes = std::move(bytes_),
+                      .validate_only = header_.validate_only});
+    if (!stored) {
+      return Refused(bridge::ToRpcStatus(stored.error.error, stored.error.diagnostics, stored.error.dropped));
+    }
+    return {.message_type = "rmlcell.v1.Program", .message = stored.value->SerializeAsString(), .status = {}};
+  }
+
+ private:
+  static web::UploadEnd Refused(const google::rpc::Status& status) {
+    return {.message_type = {}, .message = {}, .status = status.SerializeAsString()};
+  }
+
+  ProgramShelf& shelf_;
+  web::UploadHeader header_;
+  bridge::Sha256 digest_;
+  std::string bytes_;
+};
+
+}  // namespace
+
+Result<web::Resource> WebResources::Find(const web::ResourcePath& path, const web::WebCallerMetadata& metadata) {
+  const Result<Caller> caller = Admit(gate_, metadata, "GET");
+  if (!caller) return caller.error();
+  if (const auto* artifact = std::get_if<web::ArtifactPath>(&path)) return FindArtifact(book_, *artifact);
+  const auto& program = std::get<web::ProgramContentPath>(path);
+  Result<ProgramShelf::Content> content =
+      shelf_.Read("machines/" + program.machine + "/programs/" + std::to_string(program.slot), FormOf(program.form));
+  if (!content) return content.error();
+  web::Resource resource{.media_type = content->form == v1::PROGRAM_FORM_SOURCE ? "text/plain; charset=utf-8"
+                                                                                : "application/octet-stream",
+                         .etag = content->sha256,
+                         .file_name = content->file_name};
+  resource.bytes = std::move(content->bytes);
+  return resource;
+}
+
+Result<std::unique_ptr<web::UploadSink>> WebResources::BeginUpload(const web::UploadHeader& header,
+                                                                   const web::WebCallerMetadata& metadata) {
+  const Result<Caller> caller = Admit(gate_, metadata, "POST");
+  if (!caller) return caller.error();
+  if (header.size > shelf_.program_bytes_max()) {
+    return Error{ErrorCode::kCellTooLarge, std::to_string(header.size) + " bytes", {}};
+  }
+  return std::unique_ptr<web::UploadSink>(std::make_unique<Sink>(shelf_, header));
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,70 @@
+// Server-sent events: for EventSource, fetch and `curl -N`.
+#include <google/protobuf/descriptor.h>
+
+#include "server/web/rpc_codec.h"
+#include "server/web/rpc_json.h"
+
+namespace rmlcell::web {
+namespace {
+
+// How long EventSource waits before it comes back, ms. Short, since a stopping server is back soon.
+constexpr std::string_view kRetry = "retry: 2000\n";
+
+class Events : public RpcCodec {
+ public:
+  explicit Events(const RpcRoute& route) : route_(route) {}
+
+  bool streams() const override { return true; }
+
+  HttpResponse Head() const override {
+    HttpResponse response;
+    AddNoCache(response);
+    response.headers.emplace_back("Content-Type", "text/event-stream; charset=utf-8");
+    response.headers.emplace_back("X-Accel-Buffering", "no");  // nginx would hold events back
+    return response;
+  }
+
+  // JSON has no line ends in it, so one data line holds a message.
+  Result<std::string> Message(std::string_view bytes) override {
+    const Result<JsonMessage> message = BytesToJson(*route_.method->output_type(), bytes);
+    if (!message) return message.error();
+    std::string event;
+    if (message->sequence != 0) event += "id: " + std::to_string(message->sequence) + "\n";
+    event += "data: ";
+    event += message->json;
+    event += "\n\n";
+    return event;
+  }
+
+  // A server that stops says so: the client comes back with the last id, nothing is lost.
+  std::string End(const RpcStatus& status, const HeaderList&) override {
+    if (status.ok()) return "event: end\ndata: {}\n\n";
+    if (status.code == kCodeUnavailable) {
+      return std::string(kRetry) + "event: reconnect\ndata: " + PlainErrorJson(status) + "\n\n";
+    }
+    return "event: error\ndata: " + PlainErrorJson(status) + "\n\n";
+  }
+
+  std::string_view Quiet() const override { return ": quiet\n\n"; }
+
+  HttpResponse Whole(const RpcStatus& status, std::string_view, const HeaderList&,
+                     const HeaderList&) override {
+    return Refusal({.status = status, .headers = {}});
+  }
+
+  // Before the call an error has its HTTP status: EventSource then stops coming back.
+  HttpResponse Refusal(const RpcRefusal& refusal) override {
+    return JsonRefusal(refusal, route_.connect_client);
+  }
+
+ private:
+  RpcRoute route_;
+};
+
+}  // namespace
+
+std::unique_ptr<RpcCodec> MakeEvents(const RpcRoute& route) {
+  return std::make_unique<Events>(route);
+}
+
+}  // namespace rmlcell::web

@@ -1,0 +1,181 @@
+#include "server/web/web_server.h"
+
+#include <algorithm>
+#include <atomic>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ip/v6_only.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/strand.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <future>
+#include <thread>
+#include <vector>
+
+#include "server/web/http_session.h"
+
+namespace rmlcell::web {
+
+namespace asio = boost::asio;
+using tcp = asio::ip::tcp;
+using boost::system::error_code;
+
+namespace {
+
+constexpr int kThreadsMax = 64;
+// Connections beyond the limit that are being told so; more are closed without a word.
+constexpr std::size_t kRefusalsMax = 100;
+constexpr std::chrono::milliseconds kAcceptPause{100};  // when the process is out of descriptors
+constexpr std::chrono::minutes kEver{10};
+
+Result<tcp::endpoint> EndpointOf(const WebOptions& options) {
+  error_code error;
+  const std::string address = options.address == "localhost" ? "127.0.0.1" : options.address;
+  const asio::ip::address parsed = asio::ip::make_address(address, error);
+  if (error || options.port < 0 || options.port > 65535) {
+    return Error{ErrorCode::kCellConfiguration,
+                 "web address " + options.address + ":" + std::to_string(options.port) +
+                     " is no literal address with a port",
+                 {}};
+  }
+  return tcp::endpoint(parsed, static_cast<unsigned short>(options.port));
+}
+
+GuardRules RulesOf(const WebOptions& options) {
+  GuardRules rules{.address = options.address,
+                   .host_names = options.host_names,
+                   .origins = options.origins,
+                   .forwarded = options.forwarded_headers,
+                   .secret = options.secret};
+  for (std::string& name : rules.forwarded) name = LowerCase(name);
+  return rules;
+}
+
+}  // namespace
+
+struct WebServer::Core {
+  Core(WebOptions options, std::shared_ptr<grpc::Channel> channel, ResourceSource& resources,
+       WebLogger web_logger)
+      : gateway{.options = options,
+                .rules = RulesOf(options),
+                .page = StaticPage(options.web_dir),
+                .channel = std::move(channel),
+                .resources = &resources,
+                .run_blocking = {}},
+        logger(std::move(web_logger)),
+        io(std::clamp(options.io_threads, 1, kThreadsMax)),
+        blocking(static_cast<std::size_t>(std::clamp(options.blocking_threads, 1, kThreadsMax))),
+        acceptor(asio::make_strand(io)),
+        accept_pause(acceptor.get_executor()) {
+    gateway.run_blocking = [this](std::function<void()> task) {
+      asio::post(blocking, std::move(task));
+    };
+  }
+
+  Status Listen() {
+    const Result<tcp::endpoint> endpoint = EndpointOf(gateway.options);
+    if (!endpoint) return endpoint.error();
+    error_code error;
+    acceptor.open(endpoint->protocol(), error);
+    if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
+    if (!error) acceptor.bind(*endpoint, error);
+    if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+    if (!error) port = acceptor.local_endpoint(error).port();
+    if (!error) return {};
+    return Error{ErrorCode::kCellPortUsed,
+                 "web port " + gateway.options.address + ":" +
+                     std::to_string(gateway.options.port) + ": " + error.message(),
+                 {}};
+  }
+
+  void Accept() {
+    acceptor.async_accept(asio::make_strand(io), [this](error_code error, auto socket) {
+      if (draining) return;
+      if (error) {
+        accept_pause.expires_after(kAcceptPause);
+        accept_pause.async_wait([this](error_code stopped) {
+          if (!stopped && !draining) Accept();
+        });
+        return;
+      }
+      const std::size_t open = table.size();
+      const bool refused = open >= gateway.options.connections_max;
+      if (open < gateway.options.connections_max + kRefusalsMax) {
+        StartSession({gateway, logger, table, draining}, tcp::socket(std::move(socket)), refused);
+      }
+      Accept();
+    });
+  }
+
+  void RunThreads() {
+    work.emplace(io.get_executor());
+    const int count = std::clamp(gateway.options.io_threads, 1, kThreadsMax);
+    for (int i = 0; i < count; ++i) threads.emplace_back([this] { io.run(); });
+  }
+
+  void StopAccepting() {
+    if (draining.exchange(true)) return;
+    std::promise<void> closed;
+    asio::post(acceptor.get_executor(), [&] {
+      error_code ignored;
+      acceptor.close(ignored);
+      accept_pause.cancel();
+      closed.set_value();
+    });
+    closed.get_future().wait();
+    table.EndAll(false);
+  }
+
+  void Stop(std::chrono::milliseconds grace) {
+    if (threads.empty()) return;
+    StopAccepting();
+    if (!table.WaitUntilEmpty(grace)) {
+      table.EndAll(true);
+      // Calls end as soon as they are cancelled, and what blocks in ResourceSource is waited for.
+      while (!table.WaitUntilEmpty(kEver)) {
+      }
+    }
+    work.reset();
+    blocking.join();
+    for (std::thread& thread : threads) thread.join();
+    threads.clear();
+  }
+
+  Gateway gateway;
+  WebLogger logger;
+  SessionTable table;
+  std::atomic<bool> draining = false;
+  int port = 0;
+  asio::io_context io;
+  asio::thread_pool blocking;
+  tcp::acceptor acceptor;
+  asio::steady_timer accept_pause;
+  std::optional<asio::executor_work_guard<asio::io_context::executor_type>> work;
+  std::vector<std::thread> threads;
+};
+
+WebServer::WebServer(std::unique_ptr<Core> core) : core_(std::move(core)) {}
+
+Result<std::unique_ptr<WebServer>> WebServer::Start(WebOptions options,
+                                                    std::shared_ptr<grpc::Channel> in_process,
+                                                    ResourceSource& resources, WebLogger logger) {
+  auto core = std::make_unique<Core>(std::move(options), std::move(in_process), resources,
+                                     std::move(logger));
+  if (Status status = core->Listen(); !status) return status.error();
+  core->Accept();
+  core->RunThreads();
+  return std::unique_ptr<WebServer>(new WebServer(std::move(core)));
+}
+
+WebServer::~WebServer() { Stop(std::chrono::milliseconds(0)); }
+
+int WebServer::port() const { return core_->port; }
+
+std::size_t WebServer::connections() const { return core_->table.size(); }
+
+void WebServer::StopAccepting() { core_->StopAccepting(); }
+
+void WebServer::Stop(std::chrono::milliseconds grace) { core_->Stop(grace); }
+
+}  // namespace rmlcell::web

@@ -1,0 +1,100 @@
+#include "server/worker/job_events.h"
+
+#include "engine/simulation/trace.h"
+#include "proto/bridge/findings.h"
+
+namespace rmlcell::server {
+namespace {
+
+// Signals that belong into the log; outputs in plenty are in the trace.
+bool IsLogged(machine::Signal signal) {
+  switch (signal) {
+    case machine::Signal::kShutter:
+    case machine::Signal::kBeam:
+    case machine::Signal::kSchedule:
+    case machine::Signal::kGas:
+    case machine::Signal::kSpindle:
+    case machine::Signal::kSpindleSpeed: return true;
+    default: return false;
+  }
+}
+
+// Findings that are kept apart for the log; more of them are in the report.
+constexpr std::size_t kFindingsTold = 200;
+
+}  // namespace
+
+void JobEvents::Tell(v1::JobEvent event) {
+  if (count_ >= kEventsMax) {
+    if (cut_) return;
+    cut_ = true;
+    event.set_message("more happened than the log of a job takes; the report and the trace have the rest");
+  }
+  ++count_;
+  *batch_.add_events() = std::move(event);
+  if (batch_.events_size() >= kBatch) Flush();
+}
+
+void JobEvents::Flush() {
+  if (batch_.events().empty()) return;
+  send_(batch_);
+  batch_.clear_events();
+}
+
+void JobEvents::OnSignal(const machine::SignalChange& change) {
+  if (!IsLogged(change.signal)) return;
+  v1::JobEvent event;
+  event.set_virtual_time_ns(change.at.count());
+  v1::TraceRecord& signal = *event.mutable_signal();
+  signal.set_kind("signal");
+  signal.set_time_s(ToSeconds(change.at));
+  signal.mutable_place()->set_program(change.place.program);
+  signal.mutable_place()->set_step(change.place.step);
+  signal.set_text(std::string(simulation::SignalName(change.signal)));
+  signal.set_index(change.index);
+  signal.set_value(change.value);
+  signal.set_detail(change.detail);
+  Tell(std::move(event));
+}
+
+void JobEvents::OnHalt(const machine::Halt& halt) {
+  v1::JobEvent event;
+  event.set_virtual_time_ns(halt.at.count());
+  event.set_halted(std::string(halt.why));
+  Tell(std::move(event));
+  Flush();
+}
+
+void JobEvents::OnResume(SimTime at, const machine::Place&) {
+  v1::JobEvent event;
+  event.set_virtual_time_ns(at.count());
+  event.set_resumed("START");
+  Tell(std::move(event));
+  Flush();
+}
+
+void JobEvents::OnProgram(SimTime at, const machine::Place&, std::string_view what, int program) {
+  v1::JobEvent event;
+  event.set_virtual_time_ns(at.count());
+  event.set_milestone(std::string(what) + " program " + std::to_string(program));
+  Tell(std::move(event));
+}
+
+void JobEvents::OnMessage(SimTime at, const machine::Place&, std::string_view text) {
+  v1::JobEvent event;
+  event.set_virtual_time_ns(at.count());
+  event.set_message(std::string(text));
+  Tell(std::move(event));
+}
+
+void JobEvents::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
+  const std::string key = std::to_string(static_cast<int>(diagnostic.code)) + "/" +
+                          std::to_string(diagnostic.program) + "/" + std::to_string(diagnostic.step);
+  if (told_.size() >= kFindingsTold || !told_.insert(key).second) return;
+  v1::JobEvent event;
+  event.set_virtual_time_ns(at.count());
+  *event.mutable_diagnostic() = bridge::ToProto(diagnostic);
+  Tell(std::move(event));
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <set>
+#include <string>
+
+#include "engine/machine/observer.h"
+#include "rmlcell/v1/worker.pb.h"
+
+namespace rmlcell::server {
+
+// Chooses what of a run goes into the durable log of its job: what people would look for afterwards.
+// Moves and steps are in the trace, positions are latest-wins.
+class JobEvents final : public machine::RunObserver {
+ public:
+  // Events of one job at most; a program that switches an output a million times does not fill the log.
+  static constexpr std::int64_t kEventsMax = 10'000;
+  static constexpr int kBatch = 64;
+
+  explicit JobEvents(std::function<void(const v1::WorkerEvents&)> send) : send_(std::move(send)) {}
+
+  void OnSignal(const machine::SignalChange& change) override;
+  void OnHalt(const machine::Halt& halt) override;
+  void OnResume(SimTime at, const machine::Place& place) override;
+  void OnProgram(SimTime at, const machine::Place& place, std::string_view what, int program) override;
+  void OnMessage(SimTime at, const machine::Place& place, std::string_view text) override;
+  void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override;
+
+  void Tell(v1::JobEvent event);
+  void Flush();
+
+ private:
+  std::function<void(const v1::WorkerEvents&)> send_;
+  v1::WorkerEvents batch_;
+  std::int64_t count_ = 0;
+  bool cut_ = false;
+  std::set<std::string> told_;  // findings, each once per step
+};
+
+}  // namespace rmlcell::server

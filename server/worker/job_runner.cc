@@ -1,0 +1,374 @@
+#include "server/worker/job_runner.h"
+
+#include <spdlog/spdlog.h>
+#include <time.h>
+
+#include <algorithm>
+#include <new>
+
+#include "engine/simulation/families.h"
+#include "engine/simulation/simulate.h"
+#include "proto/bridge/findings.h"
+#include "proto/bridge/report.h"
+#include "proto/bridge/setup.h"
+#include "server/jobs/framing.h"
+#include "server/worker/job_events.h"
+#include "server/worker/memory_budget.h"
+
+namespace rmlcell::server {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kChunkBytes = 1 << 20;
+constexpr std::chrono::milliseconds kPositionInterval{50};  // at most 20 positions a second
+// Virtual time of one step of the simulation: it adapts, so that a step takes about this long.
+constexpr std::chrono::milliseconds kStepTarget{5};
+constexpr SimTime kSliceMin = std::chrono::milliseconds(10);
+constexpr SimTime kSliceMax = std::chrono::hours(10);
+
+double ProcessorTime_s() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
+}
+
+v1::Outcome OutcomeFor(machine::OutcomeKind kind, ErrorCode code, std::string detail = {}) {
+  return bridge::ToProto(machine::Outcome{.kind = kind, .code = code, .detail = std::move(detail)});
+}
+
+// One attempt.
+class Attempt {
+ public:
+  Attempt(ServerLine& line, v1::WorkerAssignment assignment, const std::atomic<bool>& stopping)
+      : line_(line), assignment_(std::move(assignment)), stopping_(stopping),
+        events_([this](const v1::WorkerEvents& events) { SendEvents(events); }),
+        started_s_(ProcessorTime_s()) {}
+
+  enum class End { kFinished, kHandBack, kLost };
+
+  End Run() {
+    if (!ReceivePrograms()) return End::kLost;
+    const End end = assignment_.job().kind() == v1::JOB_KIND_CHECK ? Check() : Simulate();
+    if (end == End::kFinished) {
+      events_.Flush();
+      Finish();
+    }
+    return end;
+  }
+
+  // For what left the job by an exception.
+  void Fail(const v1::Outcome& outcome) {
+    outcome_ = outcome;
+    Finish();
+  }
+
+  bool stop_asked() const { return stop_asked_; }
+
+ private:
+  // Programs that were too large for the assignment follow in parts.
+  bool ReceivePrograms() {
+    for (v1::AssignedProgram& program : *assignment_.mutable_programs()) {
+      while (static_cast<std::int64_t>(program.content().size()) < program.size()) {
+        std::optional<v1::WorkResponse> message = line_.Receive(std::chrono::seconds(60));
+        if (!message) return false;
+        if (message->has_blob() && message->blob().slot() == program.slot()) {
+          program.mutable_content()->append(message->blob().chunk());
+        } else {
+          Obey(*message);
+        }
+        if (released_) return false;
+      }
+    }
+    return true;
+  }
+
+  bridge::SetupInput Input() {
+    bridge::SetupInput input{.family = simulation::FindFamily(assignment_.family()),
+                             .profile = assignment_.profile(),
+                             .parameters = {assignment_.parameters().begin(), assignment_.parameters().end()},
+                             .main_program = assignment_.main_program(),
+                             .machine_state = assignment_.machine_state(),
+                             .default_mode = machine::Mode::kRemote};
+    for (v1::AssignedProgram& program : *assignment_.mutable_programs()) {
+      bridge::ProgramInput made{.slot = program.slot(),
+                                .name = program.title(),
+                                .file_name = program.file_name(),
+                                .bytes = std::make_shared<const std::string>(std::move(*program.mutable_content())),
+                                .is_source = program.is_source()};
+      if (!program.executable().empty()) made.executable = std::make_shared<const std::string>(program.executable());
+      input.programs.push_back(std::move(made));
+    }
+    if (!assignment_.default_schedules()) {
+      input.schedules.emplace();
+      for (const v1::AssignedSchedule& schedule : assignment_.schedules()) {
+        input.schedules->push_back({.number = schedule.number(),
+                                    .name = schedule.title(),
+                                    .mode = schedule.mode(),
+                                    .power_percent = schedule.power_percent()});
+      }
+    }
+    return input;
+  }
+
+  // A translation that fails ends the job with its first error; the findings are its report.
+  void ReportFindings(const bridge::SetupOutcome& made) {
+    v1::RunReport report;
+    report.set_family(assignment_.family());
+    for (const Diagnostic& diagnostic : made.diagnostics) {
+      *report.add_diagnostics() = bridge::ToProto(diagnostic);
+      events_.OnDiagnostic(SimTime(0), diagnostic);
+    }
+    report.set_diagnostics_dropped(static_cast<std::int64_t>(made.diagnostics_dropped));
+    const auto first = std::ranges::find_if(made.diagnostics, [](const Diagnostic& d) { return IsError(d.severity); });
+    outcome_ = OutcomeFor(machine::OutcomeKind::kCompleted, ErrorCode::kCellInternal);
+    outcome_ = v1::Outcome();
+    outcome_.set_kind(v1::Outcome::KIND_COMPLETED);
+    if (first != made.diagnostics.end()) {
+      outcome_ = OutcomeFor(machine::OutcomeKind::kFailed, first->code, first->detail);
+      outcome_.mutable_place()->set_program(first->program);
+      outcome_.mutable_place()->set_step(first->step);
+      outcome_.mutable_place()->set_line(first->where.line);
+      outcome_.mutable_place()->set_column(first->where.column);
+    }
+    *report.mutable_outcome() = outcome_;
+    SendArtifact("report", "application/x-protobuf", report.SerializeAsString());
+  }
+
+  End Check() {
+    bridge::SetupInput input = Input();
+    // Checking is translating: what was stored as an object is read as one.
+    for (bridge::ProgramInput& program : input.programs) {
+      if (!program.is_source) program.file_name = std::string(input.family->info().has_executables ? "program.O" : "program.rml");
+      program.is_source = true;
+    }
+    const auto parameters = bridge::MakeParameters(*input.family, input.profile, input.parameters);
+    if (!parameters) return Refuse(parameters.error());
+    bridge::SetupOutcome made;
+    for (const bridge::ProgramInput& program : input.programs) {
+      if (program.slot != input.main_program) continue;
+      machine::Translation translation =
+          input.family->Translate({.name = program.file_name, .bytes = *program.bytes}, *parameters, {});
+      for (Diagnostic& diagnostic : translation.diagnostics) diagnostic.program = program.slot;
+      made.diagnostics = std::move(translation.diagnostics);
+      made.diagnostics_dropped = translation.diagnostics_dropped;
+    }
+    ReportFindings(made);
+    return End::kFinished;
+  }
+
+  End Refuse(const Error& error) {
+    outcome_ = OutcomeFor(machine::OutcomeKind::kFailed, error.code, error.detail);
+    return End::kFinished;
+  }
+
+  End Simulate() {
+    const v1::SimulationOptions& options = assignment_.job().simulation();
+    const auto variables = bridge::ExpandVariables({options.variables().begin(), options.variables().end()});
+    if (!variables) return Refuse(variables.error());
+    Result<bridge::SetupOutcome> made = bridge::MakeSetup(Input(), options, assignment_.budget());
+    if (!made) return Refuse(made.error());
+    if (!made->setup) {
+      ReportFindings(*made);
+      return End::kFinished;
+    }
+    for (const Diagnostic& diagnostic : made->diagnostics) events_.OnDiagnostic(SimTime(0), diagnostic);
+    const machine::MachineFamily& family = *simulation::FindFamily(assignment_.family());
+    simulation::InputDescription inputs = simulation::DescribeInputs(family, *made->setup);
+    simulation::Products products;
+    if (options.trace()) {
+      products.trace = [this](const simulation::TraceRecord& record) {
+        AddFrame(bridge::ToProto(record).SerializeAsString(), trace_);
+        return Fits();
+      };
+    }
+    products.toolpath = [this](std::string_view block) {
+      AddFrame(block, toolpath_);
+      return Fits();
+    };
+    if (options.toolpath_tolerance_mm() > 0.0) {
+      products.toolpath_options.tolerance_mm = options.toolpath_tolerance_mm();
+    }
+    products.picture = true;
+    products.also = &events_;
+    simulation::Recorder recorder(family.Shape(made->setup->parameters), std::move(inputs), std::move(products));
+    Result<std::unique_ptr<machine::Run>> run = family.NewRun(std::move(*made->setup), recorder);
+    if (!run) return Refuse(run.error());
+    simulation::Simulation simulation(**run, recorder);
+    if (const End end = Drive(**run, simulation, recorder); end != End::kFinished) return end;
+
+    const simulation::RunReport report = simulation.Finish();
+    std::map<std::string, std::string> values;
+    for (const std::string& name : *variables) {
+      if (const auto value = (*run)->ReadVariable(name)) values[name] = *value;
+    }
+    v1::RunReport message = bridge::ToProto(report, values);
+    for (const Diagnostic& diagnostic : made->diagnostics) *message.add_diagnostics() = bridge::ToProto(diagnostic);
+    outcome_ = message.outcome();
+    executables_ = (*run)->made_executables();
+    SendArtifact("report", "application/x-protobuf", message.SerializeAsString());
+    SendArtifact("toolpath", "application/octet-stream", toolpath_);
+    if (options.trace()) SendArtifact("trace", "application/octet-stream", trace_);
+    SendArtifact("picture.svg", "image/svg+xml", recorder.Svg(report, {}));
+    return End::kFinished;
+  }
+
+  End Drive(machine::Run& run, simulation::Simulation& simulation, const simulation::Recorder& recorder) {
+    SimTime slice = std::chrono::milliseconds(100);
+    Clock::time_point last_position = Clock::now();
+    SendPosition(run);
+    while (!simulation.finished()) {
+      const Clock::time_point begin = Clock::now();
+      const machine::RunPhase phase = simulation.Step(slice);
+      const auto took = Clock::now() - begin;
+      if (took < kStepTarget / 2) slice = std::min(slice * 2, kSliceMax);
+      if (took > kStepTarget) slice = std::max(slice / 2, kSliceMin);
+      // Held by a client: wait for orders, not for the clock of the program.
+      const bool held = phase == machine::RunPhase::kHalted;
+      if (held && !hold_ordered_) {
+        simulation.End(machine::OutcomeKind::kStopped, ErrorCode::kCellWaitsForever);
+        break;
+      }
+      const auto patience = held ? std::chrono::milliseconds(20) : std::chrono::milliseconds(0);
+      while (std::optional<v1::WorkResponse> message = line_.Receive(patience)) {
+        Obey(*message, &simulation);
+        if (released_) return End::kLost;
+        if (simulation.finished()) break;
+      }
+      if (line_.gone()) return End::kLost;
+      if (stopping_ || stop_asked_) return End::kHandBack;
+      if (Clock::now() - last_position >= kPositionInterval) {
+        last_position = Clock::now();
+        events_.Flush();
+        SendPosition(run);
+      }
+      if (simulation.finished()) break;
+      if (recorder.cut_off() || !Fits()) {
+        simulation.End(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellOutputBudget);
+      } else if (ProcessorTime_s() - started_s_ > assignment_.budget().processor_s()) {
+        simulation.End(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellProcessorBudget);
+      }
+    }
+    return End::kFinished;
+  }
+
+  void Obey(const v1::WorkResponse& message, simulation::Simulation* simulation = nullptr) {
+    const auto mine = [&](const v1::WorkerLease& lease) {
+      return lease.job() == assignment_.lease().job() && lease.fence() == assignment_.lease().fence();
+    };
+    if (message.has_stop()) {
+      stop_asked_ = true;
+    } else if (message.has_release() && mine(message.release().lease())) {
+      released_ = true;
+    } else if (message.has_events_stored() && mine(message.events_stored().lease())) {
+      events_stored_ = message.events_stored().count();
+    } else if (message.has_control() && mine(message.control().lease()) && simulation != nullptr) {
+      const SimTime now = simulation->state().time;
+      switch (message.control().kind()) {
+        case v1::WorkerControl::KIND_HOLD:
+          hold_ordered_ = true;
+          simulation->Apply({.at = now, .kind = machine::InputKind::kHold});
+          break;
+        case v1::WorkerControl::KIND_STOP:
+          hold_ordered_ = true;
+          simulation->Apply({.at = now, .kind = machine::InputKind::kStop});
+          break;
+        case v1::WorkerControl::KIND_RESUME:
+          hold_ordered_ = false;
+          simulation->Apply({.at = now, .kind = machine::InputKind::kStart});
+          break;
+        case v1::WorkerControl::KIND_OVERRIDE:
+          simulation->Apply({.at = now, .kind = machine::InputKind::kOverride, .value = message.control().value()});
+          break;
+        case v1::WorkerControl::KIND_CANCEL: simulation->Cancel(); break;
+        default: break;
+      }
+    }
+  }
+
+  bool Fits() const {
+    return static_cast<std::int64_t>(trace_.size() + toolpath_.size()) < assignment_.budget().output_bytes();
+  }
+
+  // At most a window of events is under way: a store that is slow slows the run, not the memory.
+  void SendEvents(const v1::WorkerEvents& events) {
+    v1::WorkRequest message;
+    *message.mutable_events() = events;
+    *message.mutable_events()->mutable_lease() = assignment_.lease();
+    if (!line_.Send(message)) return;
+    events_sent_ += events.events_size();
+    while (events_sent_ - events_stored_ > line_.events_window() && !line_.gone() && !released_) {
+      if (std::optional<v1::WorkResponse> answer = line_.Receive(std::chrono::milliseconds(100))) Obey(*answer);
+    }
+  }
+
+  void SendPosition(const machine::Run& run) {
+    v1::WorkRequest message;
+    *message.mutable_heartbeat()->mutable_lease() = assignment_.lease();
+    *message.mutable_heartbeat()->mutable_progress() = bridge::ToProto(run.state(), run.steps_executed());
+    line_.Send(message);
+  }
+
+  void SendArtifact(const std::string& name, const std::string& media_type, const std::string& bytes) {
+    for (std::size_t sent = 0; sent == 0 || sent < bytes.size(); sent += kChunkBytes) {
+      v1::WorkRequest message;
+      v1::WorkerArtifact& artifact = *message.mutable_artifact();
+      *artifact.mutable_lease() = assignment_.lease();
+      artifact.set_name(name);
+      artifact.set_media_type(media_type);
+      artifact.set_chunk(bytes.substr(sent, kChunkBytes));
+      if (!line_.Send(message)) return;
+    }
+  }
+
+  void Finish() {
+    v1::WorkRequest message;
+    v1::WorkerFinish& finish = *message.mutable_finish();
+    *finish.mutable_lease() = assignment_.lease();
+    *finish.mutable_outcome() = outcome_;
+    for (const auto& [slot, executable] : executables_) (*finish.mutable_executables())[slot] = executable;
+    line_.Send(message);
+  }
+
+  ServerLine& line_;
+  v1::WorkerAssignment assignment_;
+  const std::atomic<bool>& stopping_;
+  JobEvents events_;
+  double started_s_;
+  v1::Outcome outcome_;
+  std::map<int, std::string> executables_;
+  std::string trace_;
+  std::string toolpath_;
+  std::int64_t events_sent_ = 0;
+  std::int64_t events_stored_ = 0;
+  bool hold_ordered_ = false;
+  bool released_ = false;
+  bool stop_asked_ = false;
+};
+
+}  // namespace
+
+bool JobRunner::Work(v1::WorkerAssignment assignment) {
+  const v1::WorkerLease lease = assignment.lease();
+  const std::int64_t memory = assignment.budget().memory_bytes();
+  Attempt attempt(line_, std::move(assignment), stopping_);
+  Attempt::End end = Attempt::End::kFinished;
+  // The outermost frame of a job: whatever leaves it fails this job and not the worker.
+  try {
+    const MemoryBudget budget(memory);
+    end = attempt.Run();
+  } catch (const std::bad_alloc&) {
+    attempt.Fail(OutcomeFor(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellMemoryBudget));
+  } catch (const std::exception& error) {
+    spdlog::error("job {}: an exception left its folder: {}", lease.job(), error.what());
+    attempt.Fail(OutcomeFor(machine::OutcomeKind::kFailed, ErrorCode::kCellInternal, error.what()));
+  }
+  if (end == Attempt::End::kHandBack) {
+    v1::WorkRequest message;
+    *message.mutable_hand_back()->mutable_lease() = lease;
+    line_.Send(message);
+  }
+  return !attempt.stop_asked();
+}
+
+}  // namespace rmlcell::server

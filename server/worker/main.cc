@@ -1,0 +1,98 @@
+#include <signal.h>
+#include <spdlog/spdlog.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <cstdlib>
+#include <thread>
+
+#include "proto/bridge/findings.h"
+#include "server/log.h"
+#include "server/version.h"
+#include "server/worker/job_runner.h"
+#include "server/worker/server_line.h"
+
+namespace {
+
+using namespace rmlcell;          // NOLINT: this file is the wiring of the worker
+using namespace rmlcell::server;  // NOLINT
+
+std::atomic<bool> stopping = false;
+std::atomic<double> processor_limit_s = 0.0;  // of the job under way; 0: none
+std::atomic<double> processor_begin_s = 0.0;
+clockid_t job_clock;
+
+double JobProcessorTime_s() {
+  timespec time{};
+  clock_gettime(job_clock, &time);
+  return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
+}
+
+// A job that hangs inside one step cannot end itself. Long after its budget the process is ended, and the
+// server attempts the job again by its policy.
+void Guard() {
+  for (;;) {
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    const double limit = processor_limit_s;
+    if (limit > 0.0 && JobProcessorTime_s() - processor_begin_s > limit * 1.5 + 10.0) {
+      spdlog::critical("the job does not end although its processor time is used up");
+      _exit(70);
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"An engine worker: joins a server and works on its jobs.", "rmlcell-worker"};
+  std::string server = "127.0.0.1:50051";
+  std::string name = "worker-" + std::to_string(::getpid());
+  std::string log_level = "info";
+  std::string log_format = "text";
+  app.set_version_flag("--version", std::string(kVersion));
+  app.add_option("--server", server, "host:port or unix:/path");
+  app.add_option("--name", name, "unique among the workers of the server");
+  app.add_option("--log-level", log_level);
+  app.add_option("--log-format", log_format, "text or json");
+  app.footer("The join token of the server is taken from the environment: RMLCELL_JOIN_TOKEN.");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 64;
+  }
+  if (Status log = StartLog(name, log_level, log_format, {}); !log) return 69;
+  ::signal(SIGPIPE, SIG_IGN);
+  // Only noted: the job is handed back by the thread that works on it.
+  struct sigaction action {};
+  action.sa_handler = [](int) { stopping = true; };
+  ::sigaction(SIGTERM, &action, nullptr);
+  ::sigaction(SIGINT, &action, nullptr);
+  const char* token = std::getenv("RMLCELL_JOIN_TOKEN");
+  auto line = ServerLine::Join({.server = server, .join_token = token != nullptr ? token : "", .name = name});
+  if (!line) {
+    spdlog::error("{}", bridge::ErrorText(line.error()));
+    return 69;
+  }
+  pthread_getcpuclockid(pthread_self(), &job_clock);
+  std::thread(Guard).detach();
+  JobRunner runner(**line, stopping);
+  while (!stopping && !(*line)->gone()) {
+    std::optional<v1::WorkResponse> message = (*line)->Receive(std::chrono::milliseconds(200));
+    if (!message) continue;
+    if (message->has_stop()) break;
+    if (!message->has_assignment()) continue;
+    processor_begin_s = JobProcessorTime_s();
+    processor_limit_s = message->assignment().budget().processor_s();
+    const bool go_on = runner.Work(std::move(*message->mutable_assignment()));
+    processor_limit_s = 0.0;
+    if (!go_on) break;
+  }
+  (*line)->Close();
+  spdlog::debug("worker {} ends", name);
+  spdlog::shutdown();
+  // Static destructors of gRPC may wait for threads that wait for the server: there is nothing to save.
+  _exit(0);
+}

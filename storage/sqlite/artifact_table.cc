@@ -1,0 +1,56 @@
+#include "storage/sqlite/artifact_table.h"
+
+#include "storage/sqlite/content.h"
+
+namespace rmlcell::storage::sqlite {
+namespace {
+
+std::string Select(const std::string& which) {
+  return "SELECT artifact.job, artifact.name, artifact.media_type, blob.sha256, blob.size"
+         " FROM artifact LEFT JOIN blob ON blob.id = artifact.blob WHERE artifact.job = ?1 " +
+         which;
+}
+
+Result<ArtifactRecord> Read(const Query& row) {
+  if (row.IsNull(3)) {
+    return Error{
+        ErrorCode::kCellStoreCorrupt,
+        "the bytes of artifact " + row.Text(1) + " of job " + row.Text(0) + " are not there",
+        {}};
+  }
+  return ArtifactRecord{.job = row.Integer(0),
+                        .name = row.Text(1),
+                        .media_type = row.Text(2),
+                        .sha256 = HexText(row.View(3)),
+                        .size = row.Integer(4)};
+}
+
+}  // namespace
+
+ArtifactTable::ArtifactTable(Database& database)
+    : add_(database,
+           "INSERT INTO artifact (job, name, media_type, blob) VALUES (?1, ?2, ?3, ?4)"
+           " ON CONFLICT DO NOTHING"),
+      list_(database, Select("ORDER BY artifact.name")),
+      get_(database, Select("AND artifact.name = ?2")),
+      remove_(database, "DELETE FROM artifact WHERE job = ?1 RETURNING blob") {}
+
+Result<bool> ArtifactTable::Add(std::int64_t job, const NewArtifact& artifact, std::int64_t blob) {
+  const Status added = add_.With(job, artifact.name, artifact.media_type, blob).Run();
+  if (!added) return added.error();
+  return add_.changes() == 1;
+}
+
+Result<std::vector<ArtifactRecord>> ArtifactTable::List(std::int64_t job) {
+  return AllRows<ArtifactRecord>(list_.With(job), Read);
+}
+
+Result<std::optional<ArtifactRecord>> ArtifactTable::Get(std::int64_t job, std::string_view name) {
+  return FirstRow<ArtifactRecord>(get_.With(job, name), Read);
+}
+
+Result<std::vector<std::int64_t>> ArtifactTable::RemoveOf(std::int64_t job) {
+  return AllRows<std::int64_t>(remove_.With(job), [](const Query& row) { return row.Integer(0); });
+}
+
+}  // namespace rmlcell::storage::sqlite

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "engine/core/result.h"
+
+// Contents as they lie in the store: named by their SHA-256, cut into chunks of kChunkBytes, each
+// chunk encoded for itself.
+namespace rmlcell::storage::sqlite {
+
+// One row of the database holds one chunk. Large enough that rows are few, small enough that
+// neither reader nor writer has to hold or write a whole program of 256 MiB at once.
+inline constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
+
+// An encoded content up to this size lies in the row that names it: a page of the database holds
+// it, and rows of its own would be one more page to write with each job.
+inline constexpr std::size_t kContentInRowMax = std::size_t{2} << 10;
+
+// A specification, state or body up to this size is kept in its record, not shared and not
+// compressed.
+inline constexpr std::size_t kContentInRecordMax = std::size_t{16} << 10;
+
+inline std::size_t ChunkCount(std::size_t bytes) { return (bytes + kChunkBytes - 1) / kChunkBytes; }
+inline std::string_view Chunk(std::string_view content, std::size_t number) {
+  return content.substr(number * kChunkBytes, kChunkBytes);
+}
+
+std::string Sha256(std::string_view content);  // 32 bytes
+
+std::string HexText(std::string_view bytes);                         // lower case
+std::optional<std::string> BytesOfHex(std::string_view lower_case);  // nothing: not hexadecimal
+
+// One chunk as a zstd frame, or as it is where that is not smaller or would not pay. So what has
+// the size of the chunk is the chunk. Errors: CellStoreFailed, out of memory.
+Result<std::string> Encode(std::string_view chunk);
+
+// Appends a chunk of `size` bytes. CellStoreCorrupt when `encoded` is not one; then `content` is as
+// before.
+Status Decode(std::string_view encoded, std::size_t size, std::string& content);
+
+}  // namespace rmlcell::storage::sqlite

@@ -1,0 +1,129 @@
+#include "storage/sqlite/housekeeping.h"
+
+#include <algorithm>
+
+namespace rmlcell::storage::sqlite {
+namespace {
+
+// What one slice removes at most: a few milliseconds of work.
+constexpr int kJobsPerSlice = 64;
+constexpr int kEventsPerSlice = 1'000;
+constexpr int kBlobsPerSlice = 256;
+constexpr int kChunksPerSlice = 8;  // of up to 1 MiB each
+
+// Events are removed many at a time, so this many more than the limit may be there for a while.
+std::int64_t EventSlack(std::int64_t limit) {
+  return std::min<std::int64_t>(limit / 8, kEventsPerSlice);
+}
+
+// The rows that the numbers were last given to may go now: the numbers must not come again.
+Status KeepCounters(WriteContext& context) {
+  MarkTable& marks = context.tables.marks;
+  const Status job = marks.Set(MarkTable::kJob, context.counters.job);
+  if (!job) return job;
+  const Status position = marks.Set(MarkTable::kPosition, context.counters.position);
+  if (!position) return position;
+  return marks.Set(MarkTable::kFence, context.counters.fence);
+}
+
+// From now on a reader that asks for these events is told that they are gone.
+Status NoteGone(WriteContext& context, const EventTable::Removed& removed) {
+  context.changed = true;
+  const Status job = context.tables.jobs.SetEventsGoneUntil(removed.job, removed.sequence);
+  if (!job) return job;
+  const Result<std::int64_t> before = context.tables.marks.Get(MarkTable::kEventsGoneUntil);
+  if (!before) return before.error();
+  return context.tables.marks.Set(MarkTable::kEventsGoneUntil, std::max(*before, removed.position));
+}
+
+Status RemoveJob(WriteContext& context, std::int64_t job) {
+  Tables& tables = context.tables;
+  const Result<std::vector<std::int64_t>> artifacts = tables.artifacts.RemoveOf(job);
+  if (!artifacts) return artifacts.error();
+  for (const std::int64_t blob : *artifacts) {
+    const Status dropped = tables.blobs.Drop(blob);
+    if (!dropped) return dropped;
+  }
+  const Status attempts = tables.attempts.RemoveOf(job);
+  if (!attempts) return attempts;
+  const Result<std::optional<std::int64_t>> specification = tables.jobs.Remove(job);
+  if (!specification) return specification.error();
+  context.counters.finished_jobs -= 1;
+  context.changed = true;
+  return tables.blobs.Drop(*specification);
+}
+
+}  // namespace
+
+bool Housekeeping::IsDue(const Counters& counters) const {
+  return HasOldJobs(counters) || HasOldEvents(counters);
+}
+
+bool Housekeeping::HasOldJobs(const Counters& counters) const {
+  return limits_.finished_jobs > 0 && counters.finished_jobs > limits_.finished_jobs;
+}
+
+bool Housekeeping::HasOldEvents(const Counters& counters) const {
+  return limits_.events > 0 && counters.position - counters.events_trimmed_until >
+                                   limits_.events + EventSlack(limits_.events);
+}
+
+Result<bool> Housekeeping::RunSlice(WriteContext& context) const {
+  if (IsDue(context.counters)) {
+    const Status kept = KeepCounters(context);
+    if (!kept) return kept.error();
+    const Status jobs = RemoveOldJobs(context);
+    if (!jobs) return jobs.error();
+    const Status events = RemoveOldEvents(context);
+    if (!events) return events.error();
+  }
+  const Result<bool> swept = context.tables.blobs.Sweep(kBlobsPerSlice, kChunksPerSlice);
+  if (!swept) return swept.error();
+  return *swept || IsDue(context.counters);
+}
+
+Status Housekeeping::RemoveOldJobs(WriteContext& context) const {
+  int events_left = kEventsPerSlice;
+  for (int i = 0; i < kJobsPerSlice && HasOldJobs(context.counters); ++i) {
+    const Result<std::optional<std::int64_t>> job = context.tables.jobs.OldestFinished();
+    if (!job) return job.error();
+    if (!*job) return {};
+    // Events first: a job with very many takes several slices and is there until the last of them.
+    const Result<std::optional<EventTable::Removed>> removed =
+        context.tables.events.RemoveOfJob(**job, events_left);
+    if (!removed) return removed.error();
+    if (*removed) {
+      const Status noted = NoteGone(context, **removed);
+      if (!noted) return noted;
+      events_left -= static_cast<int>((*removed)->count);
+      if (events_left <= 0) return {};
+    }
+    const Status gone = RemoveJob(context, **job);
+    if (!gone) return gone;
+  }
+  return {};
+}
+
+Status Housekeeping::RemoveOldEvents(WriteContext& context) const {
+  if (!HasOldEvents(context.counters)) return {};
+  const std::int64_t until = context.counters.position - limits_.events;
+  const Result<std::vector<EventTable::Removed>> removed =
+      context.tables.events.RemoveUntil(until, kEventsPerSlice);
+  if (!removed) return removed.error();
+  std::int64_t count = 0;
+  std::int64_t newest = 0;
+  for (const EventTable::Removed& of_job : *removed) {
+    const Status noted = NoteGone(context, of_job);
+    if (!noted) return noted;
+    count += of_job.count;
+    newest = std::max(newest, of_job.position);
+  }
+  const std::int64_t before = context.counters.events_trimmed_until;
+  context.counters.events_trimmed_until = count < kEventsPerSlice ? until : newest;
+  if (context.counters.events_trimmed_until <= before) {
+    return Error{ErrorCode::kCellStoreCorrupt, "old events cannot be removed", {}};
+  }
+  return {};
+}
+
+}  // namespace rmlcell::storage::sqlite

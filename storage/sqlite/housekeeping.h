@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+
+#include "storage/sqlite/write_context.h"
+
+namespace rmlcell::storage::sqlite {
+
+// How much is kept of what is over. 0: all of it.
+struct KeepLimits {
+  std::int64_t finished_jobs = 0;
+  std::int64_t events = 0;  // by position, those of unfinished jobs as well
+};
+
+// Removes what is no longer wanted: blobs that nobody names, finished jobs and events beyond the
+// limits. In slices, so that no write waits long behind it.
+class Housekeeping {
+ public:
+  explicit Housekeeping(const KeepLimits& limits) : limits_(limits) {}
+
+  // Whether a slice would find jobs or events to remove; blobs are told by WriteContext::garbage.
+  bool IsDue(const Counters& counters) const;
+
+  // One slice, inside a transaction of the writer. Returns whether there is more to do.
+  Result<bool> RunSlice(WriteContext& context) const;
+
+ private:
+  bool HasOldJobs(const Counters& counters) const;
+  bool HasOldEvents(const Counters& counters) const;
+  Status RemoveOldJobs(WriteContext& context) const;
+  Status RemoveOldEvents(WriteContext& context) const;
+
+  KeepLimits limits_;
+};
+
+}  // namespace rmlcell::storage::sqlite

@@ -1,0 +1,361 @@
+#include "storage/sqlite/job_life.h"
+
+#include <algorithm>
+
+#include "engine/core/check.h"
+
+namespace rmlcell::storage::sqlite {
+namespace {
+
+constexpr int kOutsideAnAttempt = 0;
+
+Error Invalid(std::string detail) {
+  return Error{ErrorCode::kCellInvalidArgument, std::move(detail), {}};
+}
+
+Error LeaseLost(const Lease& lease, const std::string& why) {
+  return Error{ErrorCode::kCellLeaseLost, "job " + std::to_string(lease.job) + " " + why, {}};
+}
+
+Status CheckFinal(const JobOutcome& outcome) {
+  if (IsFinal(outcome.state)) return {};
+  return Invalid("an outcome has to be final");
+}
+
+Status CheckSizes(const std::vector<NewEvent>& events) {
+  for (const NewEvent& event : events) {
+    if (event.payload.size() > kEventPayloadBytesMax) {
+      return Error{ErrorCode::kCellTooLarge,
+                   "an event of " + std::to_string(event.payload.size()) + " bytes",
+                   {}};
+    }
+  }
+  return {};
+}
+
+// Never beyond what a WallTime can say.
+WallTime After(WallTime now, std::chrono::milliseconds duration) {
+  constexpr auto kLongest = std::chrono::hours(24 * 366);
+  return now +
+         std::clamp<std::chrono::milliseconds>(duration, std::chrono::milliseconds(0), kLongest);
+}
+
+// Numbers and writes events; the job has the new last sequence, its row not yet.
+Status WriteEvents(WriteContext& context, JobRecord& job, int attempt,
+                   const std::vector<NewEvent>& events) {
+  const Status small_enough = CheckSizes(events);
+  if (!small_enough) return small_enough;
+  for (const NewEvent& event : events) {
+    const EventTable::Place place{.position = ++context.counters.position,
+                                  .job = job.id,
+                                  .sequence = ++job.last_sequence,
+                                  .attempt = attempt,
+                                  .at = context.now};
+    const Status added = context.tables.events.Add(place, event);
+    if (!added) return added;
+  }
+  context.changed = true;
+  return {};
+}
+
+// The end of every change of a job: its events, then its row.
+Status WriteChange(WriteContext& context, JobRow& row, int attempt,
+                   const std::vector<NewEvent>& events) {
+  const Status written = WriteEvents(context, row.job, attempt, events);
+  if (!written) return written;
+  context.changed = true;
+  return context.tables.jobs.Update(row);
+}
+
+Result<JobRow> GetRow(WriteContext& context, std::int64_t id) {
+  Result<std::optional<JobRow>> row = context.tables.jobs.Get(id);
+  if (!row) return row.error();
+  if (!*row) return Error{ErrorCode::kCellNotFound, "job " + std::to_string(id), {}};
+  return **std::move(row);
+}
+
+// The lease as the store has it, when it is still this one.
+Status CheckHolder(WriteContext& context, const Lease& lease) {
+  const Result<std::optional<Lease>> held = context.tables.leases.Find(lease.job);
+  if (!held) return held.error();
+  if (!*held) return LeaseLost(lease, "is not leased");
+  const Lease& now = **held;
+  if (now.fence != lease.fence || now.attempt != lease.attempt) {
+    return LeaseLost(lease,
+                     "is leased to " + now.worker + " as attempt " + std::to_string(now.attempt));
+  }
+  return {};
+}
+
+Result<JobRow> GetHeldRow(WriteContext& context, const Lease& lease) {
+  const Status held = CheckHolder(context, lease);
+  if (!held) return held.error();
+  return GetRow(context, lease.job);
+}
+
+Status EndAttempt(WriteContext& context, const Lease& lease, std::string_view how) {
+  const Status ended = context.tables.attempts.End(lease.job, lease.attempt, context.now, how);
+  if (!ended) return ended;
+  return context.tables.leases.Remove(lease.job);
+}
+
+void SetState(WriteContext& context, JobRecord& job, JobState state) {
+  context.counters.JobsIn(job.state) -= 1;
+  context.counters.JobsIn(state) += 1;
+  job.state = state;
+}
+
+void EndJob(WriteContext& context, JobRecord& job, const JobOutcome& outcome) {
+  SetState(context, job, outcome.state);
+  job.outcome = outcome;
+  job.finished_at = context.now;
+}
+
+JobOutcome Cancelled() {
+  return JobOutcome{.state = JobState::kCancelled, .code = ErrorCode::kCellCancelled, .detail = {}};
+}
+
+std::string_view HowItEnded(JobState state) {
+  switch (state) {
+    case JobState::kSucceeded:
+      return "succeeded";
+    case JobState::kFailed:
+      return "failed";
+    case JobState::kCancelled:
+      return "cancelled";
+    case JobState::kInterrupted:
+      return "interrupted";
+    case JobState::kQueued:
+    case JobState::kRunning:
+      break;
+  }
+  RMLCELL_CHECK(false);  // CheckFinal() was asked
+  return {};
+}
+
+// The holder is gone without an outcome.
+Result<JobRecord> LoseAttempt(WriteContext& context, const Lease& lease, std::string_view how,
+                              const LossPolicy& policy) {
+  Result<JobRow> row = GetRow(context, lease.job);
+  if (!row) return row.error();
+  const Status ended = EndAttempt(context, lease, how);
+  if (!ended) return ended.error();
+  JobRecord& job = row->job;
+  const std::vector<NewEvent>* events = &policy.ended;
+  if (job.kind == kRunKind) {
+    // The machine may have moved: a person decides, also when a cancel was wanted.
+    JobOutcome interrupted = policy.outcome;
+    interrupted.state = JobState::kInterrupted;
+    EndJob(context, job, interrupted);
+  } else if (job.cancel_requested && !policy.cancelled.empty()) {
+    EndJob(context, job, Cancelled());
+    events = &policy.cancelled;
+  } else if (job.attempts < job.attempts_max) {
+    SetState(context, job, JobState::kQueued);
+    events = &policy.requeued;
+  } else {
+    EndJob(context, job, policy.outcome);
+  }
+  const Status written = WriteChange(context, *row, kOutsideAnAttempt, *events);
+  if (!written) return written.error();
+  return std::move(job);
+}
+
+// The bytes first, then the rows that name them.
+Status AddArtifacts(WriteContext& context, std::int64_t job,
+                    const std::vector<NewArtifact>& artifacts,
+                    const std::vector<const PreparedContent*>& contents) {
+  for (std::size_t i = 0; i < artifacts.size(); ++i) {
+    const Result<std::int64_t> blob = context.tables.blobs.PutBlob(*contents[i]);
+    if (!blob) return blob.error();
+    const Result<bool> added = context.tables.artifacts.Add(job, artifacts[i], *blob);
+    if (!added) return added.error();
+    if (!*added) return Invalid("two artifacts named " + artifacts[i].name);
+  }
+  return {};
+}
+
+// The first job, as it is by now; for the same request only.
+Result<SubmittedJob> KnownJob(WriteContext& context, const NewJob& job,
+                              const JobContents& contents) {
+  Result<std::optional<JobRow>> known = context.tables.jobs.FindByRequest(contents.request_id);
+  if (!known) return known.error();
+  if (!*known) return Error{ErrorCode::kCellStoreCorrupt, "a request id without its job", {}};
+  JobRecord& first = (*known)->job;
+  if (first.request_hash != job.request_hash) {
+    return Error{ErrorCode::kCellRequestIdReused, "it made job " + std::to_string(first.id), {}};
+  }
+  Result<std::string> specification = context.tables.jobs.Specification(first.id);
+  if (!specification) return specification.error();
+  first.specification = *std::move(specification);
+  return SubmittedJob{.job = std::move(first), .already_there = true};
+}
+
+}  // namespace
+
+Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
+                               const JobContents& contents) {
+  if (job.attempts_max < 1) return Invalid("a job needs at least one attempt");
+  JobRecord record{.id = context.counters.job + 1,
+                   .request_id = contents.request_id,
+                   .request_hash = job.request_hash,
+                   .machine = job.machine,
+                   .kind = job.kind,
+                   .title = job.title,
+                   .caller = job.caller,
+                   .specification = {},
+                   .attempts_max = job.attempts_max,
+                   .outcome = {},
+                   .last_sequence = static_cast<std::int64_t>(job.events.size()),
+                   .created_at = context.now,
+                   .started_at = {},
+                   .finished_at = {}};
+  const Result<bool> inserted = context.tables.jobs.Insert(record);
+  if (!inserted) return inserted.error();
+  if (!*inserted) return KnownJob(context, job, contents);
+  context.counters.job = record.id;
+  context.counters.queued_jobs += 1;
+  if (!job.specification.empty()) {
+    const Result<ContentColumns> columns = context.tables.blobs.Put(*contents.specification);
+    if (!columns) return columns.error();
+    const Status put = context.tables.jobs.PutSpecification(record.id, *columns);
+    if (!put) return put.error();
+  }
+  const Status attached = AddArtifacts(context, record.id, job.attachments, contents.attachments);
+  if (!attached) return attached.error();
+  record.last_sequence = 0;
+  const Status written = WriteEvents(context, record, kOutsideAnAttempt, job.events);
+  if (!written) return written.error();
+  return SubmittedJob{.job = std::move(record), .already_there = false};
+}
+
+Result<JobRecord> CancelJob(WriteContext& context, std::int64_t id,
+                            const std::vector<NewEvent>& events) {
+  Result<JobRow> row = GetRow(context, id);
+  if (!row) return row.error();
+  JobRecord& job = row->job;
+  if (IsFinal(job.state)) return std::move(job);
+  if (job.state == JobState::kQueued) {
+    job.cancel_requested = true;
+    EndJob(context, job, Cancelled());
+    const Status written = WriteChange(context, *row, kOutsideAnAttempt, events);
+    if (!written) return written.error();
+  } else if (!job.cancel_requested) {
+    job.cancel_requested = true;
+    const Status written = WriteChange(context, *row, kOutsideAnAttempt, {});
+    if (!written) return written.error();
+  }
+  return std::move(job);
+}
+
+Result<std::optional<LeasedJob>> AcquireJob(WriteContext& context, std::string_view worker,
+                                            const std::vector<std::string>& kinds,
+                                            std::chrono::milliseconds duration,
+                                            const std::vector<NewEvent>& events) {
+  std::optional<std::int64_t> oldest;
+  for (const std::string& kind : kinds) {
+    const Result<std::optional<std::int64_t>> of_kind = context.tables.jobs.OldestQueued(kind);
+    if (!of_kind) return of_kind.error();
+    if (*of_kind && (!oldest || **of_kind < *oldest)) oldest = *of_kind;
+  }
+  if (!oldest) return std::optional<LeasedJob>();
+  Result<JobRow> row = GetRow(context, *oldest);
+  if (!row) return row.error();
+  JobRecord& job = row->job;
+  SetState(context, job, JobState::kRunning);
+  job.attempts += 1;
+  row->attempts_begun += 1;
+  if (!job.started_at) job.started_at = context.now;
+  Lease lease{.job = job.id,
+              .attempt = row->attempts_begun,
+              .fence = ++context.counters.fence,
+              .worker = std::string(worker),
+              .until = After(context.now, duration)};
+  const Status leased = context.tables.leases.Add(lease);
+  if (!leased) return leased.error();
+  const Status begun = context.tables.attempts.Add({.job = job.id,
+                                                    .number = lease.attempt,
+                                                    .worker = lease.worker,
+                                                    .fence = lease.fence,
+                                                    .started_at = context.now,
+                                                    .ended_at = {},
+                                                    .how_it_ended = {}});
+  if (!begun) return begun.error();
+  const Status written = WriteChange(context, *row, lease.attempt, events);
+  if (!written) return written.error();
+  return std::optional(LeasedJob{.lease = std::move(lease), .job = std::move(job)});
+}
+
+Result<JobRecord> RenewLease(WriteContext& context, const Lease& lease,
+                             std::chrono::milliseconds duration) {
+  Result<JobRow> row = GetHeldRow(context, lease);
+  if (!row) return row.error();
+  const Status prolonged = context.tables.leases.Prolong(lease.job, After(context.now, duration));
+  if (!prolonged) return prolonged.error();
+  return std::move(row->job);
+}
+
+Result<std::int64_t> AppendEvents(WriteContext& context, const Lease& lease,
+                                  const std::vector<NewEvent>& events) {
+  Result<JobRow> row = GetHeldRow(context, lease);
+  if (!row) return row.error();
+  if (events.empty()) return row->job.last_sequence;
+  const Status written = WriteEvents(context, row->job, lease.attempt, events);
+  if (!written) return written.error();
+  const Status noted = context.tables.jobs.SetLastSequence(row->job.id, row->job.last_sequence);
+  if (!noted) return noted.error();
+  return row->job.last_sequence;
+}
+
+Result<JobRecord> FinishJob(WriteContext& context, const Lease& lease, const JobOutcome& outcome,
+                            const std::vector<NewArtifact>& artifacts,
+                            const std::vector<const PreparedContent*>& contents,
+                            const std::vector<NewEvent>& events) {
+  const Status final_state = CheckFinal(outcome);
+  if (!final_state) return final_state.error();
+  Result<JobRow> row = GetHeldRow(context, lease);
+  if (!row) return row.error();
+  const Status added = AddArtifacts(context, lease.job, artifacts, contents);
+  if (!added) return added.error();
+  const Status ended = EndAttempt(context, lease, HowItEnded(outcome.state));
+  if (!ended) return ended.error();
+  EndJob(context, row->job, outcome);
+  const Status written = WriteChange(context, *row, lease.attempt, events);
+  if (!written) return written.error();
+  return std::move(row->job);
+}
+
+Result<JobRecord> HandBackJob(WriteContext& context, const Lease& lease,
+                              const std::vector<NewEvent>& events) {
+  Result<JobRow> row = GetHeldRow(context, lease);
+  if (!row) return row.error();
+  const Status ended = EndAttempt(context, lease, "handed back");
+  if (!ended) return ended.error();
+  row->job.attempts -= 1;
+  SetState(context, row->job, JobState::kQueued);
+  const Status written = WriteChange(context, *row, lease.attempt, events);
+  if (!written) return written.error();
+  return std::move(row->job);
+}
+
+Result<JobRecord> AbandonJob(WriteContext& context, const Lease& lease, const LossPolicy& policy) {
+  const Status final_state = CheckFinal(policy.outcome);
+  if (!final_state) return final_state.error();
+  const Status held = CheckHolder(context, lease);
+  if (!held) return held.error();
+  return LoseAttempt(context, lease, "abandoned", policy);
+}
+
+Result<std::optional<JobRecord>> ExpireLease(WriteContext& context, const Lease& lease,
+                                             const LossPolicy& policy) {
+  const Result<std::optional<Lease>> held = context.tables.leases.Find(lease.job);
+  if (!held) return held.error();
+  if (!*held || (*held)->fence != lease.fence || (*held)->until > context.now) {
+    return std::optional<JobRecord>();
+  }
+  Result<JobRecord> job = LoseAttempt(context, lease, "lease ran out", policy);
+  if (!job) return job.error();
+  return std::optional(*std::move(job));
+}
+
+}  // namespace rmlcell::storage::sqlite

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "storage/sqlite/write_context.h"
+#include "storage/store.h"
+
+// What happens to a job from its submission to its end: each function is the content of one write,
+// and the contract of each is that of the method of Store with this name. Jobs are returned without
+// their specification.
+namespace rmlcell::storage::sqlite {
+
+// What a job brings along, made ready outside of the writer.
+struct JobContents {
+  std::string request_id;  // that of the job; one of our own when the client gave none
+  const PreparedContent* specification;
+  std::vector<const PreparedContent*> attachments;  // those of the job, one by one
+};
+Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
+                               const JobContents& contents);
+
+Result<JobRecord> CancelJob(WriteContext& context, std::int64_t id,
+                            const std::vector<NewEvent>& events);
+
+Result<std::optional<LeasedJob>> AcquireJob(WriteContext& context, std::string_view worker,
+                                            const std::vector<std::string>& kinds,
+                                            std::chrono::milliseconds duration,
+                                            const std::vector<NewEvent>& events);
+
+Result<JobRecord> RenewLease(WriteContext& context, const Lease& lease,
+                             std::chrono::milliseconds duration);
+
+// The last sequence number written.
+Result<std::int64_t> AppendEvents(WriteContext& context, const Lease& lease,
+                                  const std::vector<NewEvent>& events);
+
+// `contents` belong to `artifacts`, one by one.
+Result<JobRecord> FinishJob(WriteContext& context, const Lease& lease, const JobOutcome& outcome,
+                            const std::vector<NewArtifact>& artifacts,
+                            const std::vector<const PreparedContent*>& contents,
+                            const std::vector<NewEvent>& events);
+
+Result<JobRecord> HandBackJob(WriteContext& context, const Lease& lease,
+                              const std::vector<NewEvent>& events);
+
+Result<JobRecord> AbandonJob(WriteContext& context, const Lease& lease, const LossPolicy& policy);
+
+// Store::Expire() for one job. Nothing when its lease is no longer this one, or has time again.
+Result<std::optional<JobRecord>> ExpireLease(WriteContext& context, const Lease& lease,
+                                             const LossPolicy& policy);
+
+}  // namespace rmlcell::storage::sqlite

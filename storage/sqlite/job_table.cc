@@ -1,0 +1,310 @@
+#include "storage/sqlite/job_table.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace rmlcell::storage::sqlite {
+namespace {
+
+// The columns in the order of Read().
+std::string Select(const std::string& from) {
+  return "SELECT id, request_id, request_hash, machine, kind, title, caller, state,"
+         " cancel_requested, attempts, attempts_max, attempts_begun, last_sequence,"
+         " events_gone_until, created_at, started_at, finished_at, outcome_code, outcome_detail,"
+         " outcome_program, outcome_step FROM job " +
+         from;
+}
+
+// The code is kept as people write it: its place in the catalogue moves from version to version.
+std::optional<std::string> TextOf(const std::optional<ErrorCode>& code) {
+  return code ? std::optional(CodeText(*code)) : std::nullopt;
+}
+
+void SetCode(JobOutcome& outcome, const std::string& text) {
+  const std::vector<const CatalogueEntry*> found = FindByText(text);
+  if (!found.empty()) {
+    outcome.code = found.front()->code;
+    return;
+  }
+  // Written by another version. The job must stay readable, and the code must not get lost.
+  outcome.code = ErrorCode::kCellInternal;
+  outcome.detail = text + ", which this version does not know: " + outcome.detail;
+}
+
+Result<JobRow> Read(const Query& row) {
+  const std::int64_t state = row.Integer(7);
+  if (state < 0 || state > static_cast<int>(JobState::kInterrupted)) {
+    return Error{ErrorCode::kCellStoreCorrupt,
+                 "job " + row.Text(0) + " has state " + std::to_string(state),
+                 {}};
+  }
+  JobRow result{.job = {.id = row.Integer(0),
+                        .request_id = row.Text(1),
+                        .request_hash = row.Text(2),
+                        .machine = row.Text(3),
+                        .kind = row.Text(4),
+                        .title = row.Text(5),
+                        .caller = row.Text(6),
+                        .specification = {},
+                        .state = static_cast<JobState>(state),
+                        .cancel_requested = row.Integer(8) != 0,
+                        .attempts = row.Small(9),
+                        .attempts_max = row.Small(10),
+                        .outcome = {},
+                        .last_sequence = row.Integer(12),
+                        .events_gone_until = row.Integer(13),
+                        .created_at = row.Time(14),
+                        .started_at = row.OptionalTime(15),
+                        .finished_at = row.OptionalTime(16)},
+                .attempts_begun = row.Small(11)};
+  if (IsFinal(result.job.state)) {
+    result.job.outcome = JobOutcome{.state = result.job.state,
+                                    .code = {},
+                                    .detail = row.Text(18),
+                                    .program = row.Small(19),
+                                    .step = row.Small(20)};
+    if (!row.IsNull(17)) SetCode(*result.job.outcome, row.Text(17));
+  }
+  return result;
+}
+
+Result<JobRecord> ReadRecord(const Query& query) {
+  Result<JobRow> row = Read(query);
+  if (!row) return row.error();
+  return std::move(row->job);
+}
+
+std::string Number(JobState state) { return std::to_string(static_cast<int>(state)); }
+
+}  // namespace
+
+// The states stand as numbers in the statements below: SQLite sees only then that a partial index
+// fits.
+static_assert(static_cast<int>(JobState::kQueued) == 0);
+static_assert(static_cast<int>(JobState::kRunning) == 1);
+
+JobTable::JobTable(Database& database, BlobTable& blobs)
+    : database_(database),
+      blobs_(blobs),
+      insert_(database,
+              "INSERT INTO job (id, request_id, request_hash, machine, kind, title, caller, state,"
+              " cancel_requested, attempts, attempts_max, attempts_begun, last_sequence,"
+              " events_gone_until, created_at)"
+              " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, 0, 0, 0, ?8, 0, ?9, 0, ?10)"
+              " ON CONFLICT (request_id) DO NOTHING"),
+      get_(database, Select("WHERE id = ?1")),
+      find_by_request_(database, Select("WHERE request_id = ?1")),
+      oldest_queued_(
+          database,
+          "SELECT id FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = 0 AND kind = ?1"
+          " ORDER BY id LIMIT 1"),
+      update_(
+          database,
+          "UPDATE job SET state = ?2, cancel_requested = ?3, attempts = ?4, attempts_begun = ?5,"
+          " last_sequence = ?6, started_at = ?7, finished_at = ?8, outcome_code = ?9,"
+          " outcome_detail = ?10, outcome_program = ?11, outcome_step = ?12 WHERE id = ?1"),
+      set_last_sequence_(database, "UPDATE job SET last_sequence = ?2 WHERE id = ?1"),
+      set_events_gone_(database, "UPDATE job SET events_gone_until = ?2 WHERE id = ?1"),
+      put_specification_(database,
+                         "INSERT INTO job_specification (job, specification, specification_blob)"
+                         " VALUES (?1, ?2, ?3)"),
+      specification_(
+          database,
+          "SELECT specification, specification_blob FROM job_specification WHERE job = ?1"),
+      last_id_(database, "SELECT ifnull(max(id), 0) FROM job"),
+      count_queued_(
+          database,
+          "SELECT count(*) FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = 0"),
+      count_running_(
+          database,
+          "SELECT count(*) FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = 1"),
+      count_finished_(database,
+                      "SELECT count(*) FROM job INDEXED BY job_finished_by_time WHERE state >= 2"),
+      oldest_finished_(database,
+                       "SELECT id FROM job INDEXED BY job_finished_by_time WHERE state >= 2"
+                       " ORDER BY finished_at, id LIMIT 1"),
+      remove_(database, "DELETE FROM job WHERE id = ?1"),
+      remove_specification_(database,
+                            "DELETE FROM job_specification WHERE job = ?1"
+                            " RETURNING specification_blob") {}
+
+Result<bool> JobTable::Insert(const JobRecord& job) {
+  const Status inserted =
+      insert_
+          .With(job.id, job.request_id, job.request_hash, job.machine, job.kind, job.title,
+                job.caller, job.attempts_max, job.last_sequence, job.created_at)
+          .Run();
+  if (!inserted) return inserted.error();
+  return insert_.changes() == 1;
+}
+
+Result<std::optional<JobRow>> JobTable::Get(std::int64_t id) {
+  return FirstRow<JobRow>(get_.With(id), Read);
+}
+
+Result<std::optional<JobRow>> JobTable::FindByRequest(std::string_view request_id) {
+  return FirstRow<JobRow>(find_by_request_.With(request_id), Read);
+}
+
+Result<std::optional<std::int64_t>> JobTable::OldestQueued(std::string_view kind) {
+  return FirstRow<std::int64_t>(oldest_queued_.With(kind),
+                                [](const Query& row) { return row.Integer(0); });
+}
+
+Status JobTable::Update(const JobRow& row) {
+  const JobRecord& job = row.job;
+  const JobOutcome none;
+  const JobOutcome& outcome = job.outcome ? *job.outcome : none;
+  const std::optional<std::string> code = TextOf(outcome.code);
+  return update_
+      .With(job.id, static_cast<int>(job.state), job.cancel_requested, job.attempts,
+            row.attempts_begun, job.last_sequence, job.started_at, job.finished_at, code,
+            outcome.detail, outcome.program, outcome.step)
+      .Run();
+}
+
+Status JobTable::SetLastSequence(std::int64_t id, std::int64_t sequence) {
+  return set_last_sequence_.With(id, sequence).Run();
+}
+
+Status JobTable::SetEventsGoneUntil(std::int64_t id, std::int64_t sequence) {
+  return set_events_gone_.With(id, sequence).Run();
+}
+
+Status JobTable::PutSpecification(std::int64_t id, const ContentColumns& specification) {
+  return put_specification_.With(id, specification.bytes, specification.blob).Run();
+}
+
+Result<std::string> JobTable::Specification(std::int64_t id) {
+  Result<std::optional<std::string>> found = FirstRow<std::string>(
+      specification_.With(id), [this](const Query& row) { return blobs_.Content(row, 0); });
+  if (!found) return found.error();
+  return *found ? **std::move(found) : std::string();
+}
+
+Result<std::int64_t> JobTable::LastId() { return FirstInteger(last_id_.With()); }
+
+Result<JobTable::Counts> JobTable::Count() {
+  const Result<std::int64_t> queued = FirstInteger(count_queued_.With());
+  if (!queued) return queued.error();
+  const Result<std::int64_t> running = FirstInteger(count_running_.With());
+  if (!running) return running.error();
+  const Result<std::int64_t> finished = FirstInteger(count_finished_.With());
+  if (!finished) return finished.error();
+  return Counts{.queued = *queued, .running = *running, .finished = *finished};
+}
+
+Result<std::optional<std::int64_t>> JobTable::OldestFinished() {
+  return FirstRow<std::int64_t>(oldest_finished_.With(),
+                                [](const Query& row) { return row.Integer(0); });
+}
+
+Result<std::optional<std::int64_t>> JobTable::Remove(std::int64_t id) {
+  const Status removed = remove_.With(id).Run();
+  if (!removed) return removed.error();
+  if (remove_.changes() != 1) {
+    return Error{ErrorCode::kCellStoreCorrupt, "job " + std::to_string(id) + " is not there", {}};
+  }
+  Query query = remove_specification_.With(id);
+  const Result<bool> row = query.Step();
+  if (!row) return row.error();
+  return *row ? query.OptionalInteger(0) : std::nullopt;
+}
+
+// A list is put together of lanes, each of which an index gives in the order wanted, so that a page
+// costs the same however many jobs there are: one lane of finished jobs, and for those that wait or
+// run one for each state and kind.
+Result<std::vector<JobRecord>> JobTable::List(const JobQuery& query) {
+  std::vector<JobRecord> jobs;
+  if (query.limit < 1) return jobs;
+  const auto wants = [&](JobState state) {
+    return (!query.state || *query.state == state) &&
+           (!query.finished || *query.finished == IsFinal(state));
+  };
+  const auto add = [&](Result<std::vector<JobRecord>> lane) -> Status {
+    if (!lane) return lane.error();
+    std::move(lane->begin(), lane->end(), std::back_inserter(jobs));
+    return {};
+  };
+  for (const JobState state : {JobState::kQueued, JobState::kRunning}) {
+    if (!wants(state)) continue;
+    const Status added = add(ListUnfinished(state, query));
+    if (!added) return added.error();
+  }
+  const bool wants_finished =
+      query.state ? wants(*query.state) && IsFinal(*query.state) : query.finished.value_or(true);
+  if (wants_finished) {
+    const Status added = add(ListFinished(query));
+    if (!added) return added.error();
+  }
+  std::ranges::sort(jobs, std::greater(), &JobRecord::id);
+  if (jobs.size() > static_cast<std::size_t>(query.limit)) {
+    jobs.erase(jobs.begin() + query.limit, jobs.end());
+  }
+  return jobs;
+}
+
+Result<std::vector<JobRecord>> JobTable::ListUnfinished(JobState state, const JobQuery& query) {
+  const std::string lane = "INDEXED BY job_unfinished WHERE state < 2 AND state = " + Number(state);
+  if (!query.kind.empty()) return ListLane(lane, query, query.kind);
+  const Result<std::vector<std::string>> kinds = KindsOf(state);
+  if (!kinds) return kinds.error();
+  std::vector<JobRecord> jobs;
+  for (const std::string& kind : *kinds) {
+    Result<std::vector<JobRecord>> of_kind = ListLane(lane, query, kind);
+    if (!of_kind) return of_kind;
+    std::move(of_kind->begin(), of_kind->end(), std::back_inserter(jobs));
+  }
+  return jobs;
+}
+
+Result<std::vector<JobRecord>> JobTable::ListFinished(const JobQuery& query) {
+  // Of several indexes the one that promises fewest rows; most jobs succeed.
+  const bool rare = query.state && *query.state != JobState::kSucceeded;
+  std::string index = "NOT INDEXED";
+  if (query.state) index = "INDEXED BY job_finished_by_state";
+  if (!query.machine.empty() && !rare) index = "INDEXED BY job_finished_by_machine";
+  if (!query.caller.empty() && !rare) index = "INDEXED BY job_finished_by_caller";
+  std::string lane = index + " WHERE state >= 2";
+  if (query.state) lane += " AND state = " + Number(*query.state);
+  return ListLane(lane, query, {});
+}
+
+Result<std::vector<JobRecord>> JobTable::ListLane(const std::string& lane, const JobQuery& query,
+                                                  std::optional<std::string_view> lane_kind) {
+  // A parameter that is not looked at still has to be named.
+  std::string sql = Select(lane);
+  sql += lane_kind ? " AND kind = ?1" : " AND (?1 = '' OR kind = ?1)";
+  sql += query.machine.empty() ? " AND ?2 = ''" : " AND machine = ?2";
+  sql += query.caller.empty() ? " AND ?3 = ''" : " AND caller = ?3";
+  sql += " AND id < ?4 ORDER BY id DESC LIMIT ?5";
+  const std::int64_t before = query.before_id > 0 ? query.before_id : INT64_MAX;
+  Statement statement(database_, std::move(sql));
+  return AllRows<JobRecord>(statement.With(lane_kind.value_or(query.kind), query.machine,
+                                           query.caller, before, query.limit),
+                            ReadRecord);
+}
+
+Result<std::vector<std::string>> JobTable::KindsOf(JobState state) {
+  // Each step jumps to the next kind in the index: the cost is that of the kinds, not of the jobs.
+  Statement next(database_,
+                 "SELECT kind FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = " +
+                     Number(state) + " AND kind > ?1 ORDER BY kind LIMIT 1");
+  Statement first(database_,
+                  "SELECT kind FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = " +
+                      Number(state) + " ORDER BY kind LIMIT 1");
+  const auto text = [](const Query& row) { return row.Text(0); };
+  std::vector<std::string> kinds;
+  Result<std::optional<std::string>> kind = FirstRow<std::string>(first.With(), text);
+  while (kind && *kind) {
+    if (!kinds.empty() && **kind <= kinds.back()) {  // a damaged index must not lead in circles
+      return Error{ErrorCode::kCellStoreCorrupt, "the index of unfinished jobs is out of order", {}};
+    }
+    kinds.push_back(**std::move(kind));
+    kind = FirstRow<std::string>(next.With(kinds.back()), text);
+  }
+  if (!kind) return kind.error();
+  return kinds;
+}
+
+}  // namespace rmlcell::storage::sqlite

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "storage/sqlite/blob_table.h"
+#include "storage/store.h"
+
+namespace rmlcell::storage::sqlite {
+
+// A job without its specification.
+struct JobRow {
+  JobRecord job;
+  int attempts_begun = 0;  // handed back ones included: the number of the newest attempt
+};
+
+class JobTable {
+ public:
+  JobTable(Database& database, BlobTable& blobs);
+
+  // False, and nothing inserted, when there is a job with this request_id.
+  Result<bool> Insert(const JobRecord& job);
+  Result<std::optional<JobRow>> Get(std::int64_t id);
+  Result<std::optional<JobRow>> FindByRequest(std::string_view request_id);
+  Result<std::optional<std::int64_t>> OldestQueued(std::string_view kind);
+  Result<std::vector<JobRecord>> List(const JobQuery& query);
+
+  Status Update(const JobRow& row);  // all that changes in the life of a job
+  Status SetLastSequence(std::int64_t id, std::int64_t sequence);
+  Status SetEventsGoneUntil(std::int64_t id, std::int64_t sequence);
+
+  Status PutSpecification(std::int64_t id, const ContentColumns& specification);
+  Result<std::string> Specification(std::int64_t id);  // empty when there is none
+
+  // Dear: all of the index is read.
+  struct Counts {
+    std::int64_t queued = 0;
+    std::int64_t running = 0;
+    std::int64_t finished = 0;
+  };
+  Result<Counts> Count();
+  Result<std::int64_t> LastId();
+
+  // For the bound on finished jobs.
+  Result<std::optional<std::int64_t>> OldestFinished();  // by the time it ended
+  // Returns the blob of its specification, whose reference is the caller's affair.
+  Result<std::optional<std::int64_t>> Remove(std::int64_t id);
+
+ private:
+  Result<std::vector<JobRecord>> ListLane(const std::string& lane, const JobQuery& query,
+                                          std::optional<std::string_view> lane_kind);
+  Result<std::vector<JobRecord>> ListUnfinished(JobState state, const JobQuery& query);
+  Result<std::vector<JobRecord>> ListFinished(const JobQuery& query);
+  Result<std::vector<std::string>> KindsOf(JobState state);
+
+  Database& database_;
+  BlobTable& blobs_;
+  Statement insert_;
+  Statement get_;
+  Statement find_by_request_;
+  Statement oldest_queued_;
+  Statement update_;
+  Statement set_last_sequence_;
+  Statement set_events_gone_;
+  Statement put_specification_;
+  Statement specification_;
+  Statement last_id_;
+  Statement count_queued_;
+  Statement count_running_;
+  Statement count_finished_;
+  Statement oldest_finished_;
+  Statement remove_;
+  Statement remove_specification_;
+};
+
+}  // namespace rmlcell::storage::sqlite

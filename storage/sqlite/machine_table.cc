@@ -1,0 +1,89 @@
+#include "storage/sqlite/machine_table.h"
+
+namespace rmlcell::storage::sqlite {
+namespace {
+
+std::string Select(const std::string& which) {
+  return "SELECT id, family, title, profile, revision, created_at, updated_at, state, state_blob"
+         " FROM machine " +
+         which;
+}
+
+}  // namespace
+
+MachineTable::MachineTable(Database& database, BlobTable& blobs)
+    : blobs_(blobs),
+      find_(database, "SELECT revision, created_at, state_blob FROM machine WHERE id = ?1"),
+      get_(database, Select("WHERE id = ?1")),
+      list_(database, Select("ORDER BY id")),
+      put_(database,
+           "INSERT OR REPLACE INTO machine"
+           " (id, family, title, profile, revision, created_at, updated_at, state, state_blob)"
+           " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)"),
+      parameters_(database, "SELECT name, value FROM machine_parameter WHERE machine = ?1"),
+      remove_parameters_(database, "DELETE FROM machine_parameter WHERE machine = ?1"),
+      add_parameter_(database,
+                     "INSERT INTO machine_parameter (machine, name, value) VALUES (?1, ?2, ?3)") {}
+
+Result<std::optional<MachineTable::Facts>> MachineTable::Find(std::string_view id) {
+  return FirstRow<Facts>(find_.With(id), [](const Query& row) {
+    return Facts{.revision = row.Integer(0),
+                 .created_at = row.Time(1),
+                 .state_blob = row.OptionalInteger(2)};
+  });
+}
+
+Result<std::optional<MachineRecord>> MachineTable::Get(std::string_view id) {
+  return FirstRow<MachineRecord>(get_.With(id), [this](const Query& row) { return Read(row); });
+}
+
+Result<std::vector<MachineRecord>> MachineTable::List() {
+  return AllRows<MachineRecord>(list_.With(), [this](const Query& row) { return Read(row); });
+}
+
+Status MachineTable::Put(const MachineRecord& machine, const Stamp& stamp,
+                         const ContentColumns& state) {
+  const Status put =
+      put_.With(machine.id, machine.family, machine.title, machine.profile, stamp.revision,
+                stamp.created_at, stamp.updated_at, state.bytes, state.blob)
+          .Run();
+  if (!put) return put;
+  const Status removed = remove_parameters_.With(machine.id).Run();
+  if (!removed) return removed;
+  for (const auto& [name, value] : machine.parameters) {
+    const Status added = add_parameter_.With(machine.id, name, value).Run();
+    if (!added) return added;
+  }
+  return {};
+}
+
+Result<MachineRecord> MachineTable::Read(const Query& row) {
+  Result<std::string> state = blobs_.Content(row, 7);
+  if (!state) return state.error();
+  MachineRecord machine{.id = row.Text(0),
+                        .family = row.Text(1),
+                        .title = row.Text(2),
+                        .profile = row.Text(3),
+                        .parameters = {},
+                        .state = *std::move(state),
+                        .revision = row.Integer(4),
+                        .created_at = row.Time(5),
+                        .updated_at = row.Time(6)};
+  Result<std::map<std::string, std::string>> parameters = Parameters(machine.id);
+  if (!parameters) return parameters.error();
+  machine.parameters = *std::move(parameters);
+  return machine;
+}
+
+Result<std::map<std::string, std::string>> MachineTable::Parameters(std::string_view machine) {
+  std::map<std::string, std::string> parameters;
+  Query query = parameters_.With(machine);
+  for (;;) {
+    const Result<bool> row = query.Step();
+    if (!row) return row.error();
+    if (!*row) return parameters;
+    parameters.emplace(query.Text(0), query.Text(1));
+  }
+}
+
+}  // namespace rmlcell::storage::sqlite

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "storage/sqlite/statement.h"
+
+namespace rmlcell::storage::sqlite {
+
+// Counters that must not fall back when the rows they came from are removed.
+class MarkTable {
+ public:
+  static constexpr std::string_view kJob = "job";
+  static constexpr std::string_view kPosition = "position";
+  static constexpr std::string_view kFence = "fence";
+  static constexpr std::string_view kEventsGoneUntil = "events gone until";
+
+  explicit MarkTable(Database& database);
+  Result<std::int64_t> Get(std::string_view name);  // 0: never set
+  Status Set(std::string_view name, std::int64_t value);
+
+ private:
+  Statement get_;
+  Statement set_;
+};
+
+// The last revisions of deleted records.
+class BuriedTable {
+ public:
+  enum class Kind { kProgram = 1, kSchedule = 2, kProject = 3 };
+
+  explicit BuriedTable(Database& database);
+  Status Bury(Kind kind, std::string_view owner, std::string_view name, Revision revision);
+  // The revision that a new record counts on from, 0 when there was none; forgets it.
+  Result<Revision> DigUp(Kind kind, std::string_view owner, std::string_view name);
+
+ private:
+  Statement bury_;
+  Statement dig_up_;
+};
+
+}  // namespace rmlcell::storage::sqlite

@@ -1,0 +1,81 @@
+#include "storage/sqlite/migrations.h"
+
+#include "engine/core/check.h"
+#include "storage/sqlite/schema.h"
+#include "storage/sqlite/transaction.h"
+
+namespace rmlcell::storage::sqlite {
+namespace {
+
+constexpr Migration kMigrations[] = {
+    {1, "machines, programs, schedules, projects, jobs, events, artifacts", kFirstSchema},
+};
+
+// In the transaction of the first step, so that a file is either empty or known as ours.
+std::string FoundingSql() {
+  return "PRAGMA application_id = " + std::to_string(kApplicationId) +
+         "; CREATE TABLE migration"
+         " (number INTEGER PRIMARY KEY, what TEXT NOT NULL, at INTEGER NOT NULL);";
+}
+
+Status Apply(Database& database, TransactionStatements& statements, const Migration& migration,
+             WallTime now) {
+  Result<Transaction> transaction = Transaction::Begin(statements, Transaction::Kind::kWrite);
+  if (!transaction) return transaction.error();
+  const std::string founding = migration.number == 1 ? FoundingSql() : std::string();
+  const Status done = database.Execute(founding + std::string(migration.sql));
+  if (!done) return done;
+  Statement note(database, "INSERT INTO migration (number, what, at) VALUES (?1, ?2, ?3)");
+  const Status noted = note.With(migration.number, migration.what, now).Run();
+  if (!noted) return noted;
+  const Status numbered =
+      database.Execute("PRAGMA user_version = " + std::to_string(migration.number));
+  if (!numbered) return numbered;
+  return transaction->Commit();
+}
+
+}  // namespace
+
+std::span<const Migration> Migrations() { return kMigrations; }
+
+Result<int> StoreNumber(Database& database, std::span<const Migration> migrations) {
+  const Result<std::int64_t> number = database.Number("PRAGMA user_version");
+  if (!number) return number.error();
+  const Result<std::int64_t> application = database.Number("PRAGMA application_id");
+  if (!application) return application.error();
+  const Result<std::int64_t> tables = database.Number("SELECT count(*) FROM sqlite_master");
+  if (!tables) return tables.error();
+  const bool empty = *tables == 0 && *number == 0 && *application == 0;
+  if (!empty && (*application != kApplicationId || *number < 1)) {
+    return Error{ErrorCode::kCellStoreCorrupt, "the file is a database of another program", {}};
+  }
+  const auto newest = static_cast<std::int64_t>(migrations.size());
+  if (*number > newest) {
+    return Error{ErrorCode::kCellStoreNewer,
+                 "the store has version " + std::to_string(*number) +
+                     ", this program knows up to " + std::to_string(newest),
+                 {}};
+  }
+  return static_cast<int>(*number);
+}
+
+Status Migrate(Database& database, std::span<const Migration> migrations, const std::string& path,
+               WallTime now) {
+  const Result<int> number = StoreNumber(database, migrations);
+  if (!number) return number.error();
+  const auto done = static_cast<std::size_t>(*number);
+  if (done == migrations.size()) return {};
+  if (done > 0) {
+    const Status copied = database.CopyTo(path + ".version-" + std::to_string(done));
+    if (!copied) return copied;
+  }
+  TransactionStatements statements(database);
+  for (std::size_t i = done; i < migrations.size(); ++i) {
+    RMLCELL_CHECK(migrations[i].number == static_cast<int>(i) + 1);
+    const Status applied = Apply(database, statements, migrations[i], now);
+    if (!applied) return applied;
+  }
+  return {};
+}
+
+}  // namespace rmlcell::storage::sqlite

@@ -1,0 +1,133 @@
+#include "storage/sqlite/sqlite_store.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "storage/sqlite/migrations.h"
+#include "storage/sqlite/sqlite_store_impl.h"
+
+namespace rmlcell::storage {
+namespace sqlite {
+namespace {
+
+// The writer touches a random page of the index of request ids with each job; the more of it stays
+// in memory, the fewer reads it waits for.
+constexpr int kWriterCacheKib = 64 * 1'024;
+// A log that grew by a large program is cut back to this when it begins anew.
+constexpr std::int64_t kLogBytesKept = std::int64_t{64} << 20;
+
+Status CheckWholeFile(Database& database) {
+  const Result<std::string> found = database.Text("PRAGMA quick_check(1)");
+  if (!found) return found.error();
+  if (*found == "ok") return {};
+  return Error{ErrorCode::kCellStoreCorrupt, *found, {}};
+}
+
+Status Prepare(Database& database, const SqliteOptions& options, WallTime now) {
+  // First of all: a file that is not ours, or newer, must not be touched.
+  const Result<int> number = StoreNumber(database, Migrations());
+  if (!number) return number.error();
+  if (options.check_whole_file) {
+    const Status whole = CheckWholeFile(database);
+    if (!whole) return whole;
+  }
+  const Result<std::string> mode = database.Text("PRAGMA journal_mode = WAL");
+  if (!mode) return mode.error();
+  if (*mode != "wal") {
+    return Error{
+        ErrorCode::kCellStoreFailed,
+        "the file system cannot share memory between processes (journal mode " + *mode + ")",
+        {}};
+  }
+  const Status set = database.Execute("PRAGMA secure_delete = OFF; PRAGMA journal_size_limit = " +
+                                      std::to_string(kLogBytesKept));
+  if (!set) return set;
+  return Migrate(database, Migrations(), options.path, now);
+}
+
+// The larger of what the rows say and what was noted when the newest rows were removed.
+Status Raise(Result<std::int64_t> from_rows, Result<std::int64_t> mark, std::int64_t& counter) {
+  if (!from_rows) return from_rows.error();
+  if (!mark) return mark.error();
+  counter = std::max(*from_rows, *mark);
+  return {};
+}
+
+Result<Counters> ReadCounters(Tables& tables) {
+  Counters counters;
+  MarkTable& marks = tables.marks;
+  const Status job = Raise(tables.jobs.LastId(), marks.Get(MarkTable::kJob), counters.job);
+  if (!job) return job.error();
+  const Status position =
+      Raise(tables.events.LastPosition(), marks.Get(MarkTable::kPosition), counters.position);
+  if (!position) return position.error();
+  const Status fence =
+      Raise(tables.attempts.LastFence(), marks.Get(MarkTable::kFence), counters.fence);
+  if (!fence) return fence.error();
+  const Result<JobTable::Counts> jobs = tables.jobs.Count();
+  if (!jobs) return jobs.error();
+  counters.queued_jobs = jobs->queued;
+  counters.running_jobs = jobs->running;
+  counters.finished_jobs = jobs->finished;
+  return counters;
+}
+
+Error Named(Error error, const std::string& path) {
+  error.detail = path + ": " + error.detail;
+  return error;
+}
+
+Result<std::unique_ptr<Store>> Open(const SqliteOptions& options, Clock clock) {
+  if (options.path.empty()) {
+    return Error{ErrorCode::kCellStoreFailed, "no file is named for the store", {}};
+  }
+  const Status directory = MakeDirectoryOf(options.path);
+  if (!directory) return directory.error();
+  Result<StoreLock> lock = StoreLock::Take(options.path + ".lock");
+  if (!lock) return lock.error();
+  // Under the lock: closing a file drops the locks that SQLite has on it elsewhere in this process.
+  const Status file = MakePrivateFile(options.path);
+  if (!file) return file.error();
+
+  ConnectionOptions for_writer{
+      .vfs = options.vfs, .busy_timeout = options.busy_timeout, .cache_kib = kWriterCacheKib};
+  Result<Database> database =
+      Database::Open(options.path, Database::Access::kReadWrite, for_writer);
+  if (!database) return Named(database.error(), options.path);
+  const Status prepared = Prepare(*database, options, clock());
+  if (!prepared) return Named(prepared.error(), options.path);
+
+  auto connection = std::make_unique<Connection>(*std::move(database));
+  const Status released = connection->tables.blobs.ReleaseAll();
+  if (!released) return Named(released.error(), options.path);
+  const Result<Counters> counters = ReadCounters(connection->tables);
+  if (!counters) return Named(counters.error(), options.path);
+  Result<std::unique_ptr<ReaderPool>> readers = ReaderPool::Open(
+      options.path, {.vfs = options.vfs, .busy_timeout = options.busy_timeout}, options.readers);
+  if (!readers) return Named(readers.error(), options.path);
+
+  return std::unique_ptr<Store>(std::make_unique<SqliteStore>(SqliteStore::Parts{
+      .lock = *std::move(lock),
+      .clock = std::move(clock),
+      .connection = std::move(connection),
+      .readers = *std::move(readers),
+      .counters = *counters,
+      .writer = {
+          .keep = {.finished_jobs = options.keep_finished_jobs, .events = options.keep_events},
+          .waiting_operations_max = options.waiting_operations_max,
+          .waiting_bytes_max = options.waiting_bytes_max,
+          .group_window = options.group_window}}));
+}
+
+}  // namespace
+}  // namespace sqlite
+
+WallTime SystemTime() {
+  return std::chrono::floor<std::chrono::microseconds>(std::chrono::system_clock::now());
+}
+
+Result<std::unique_ptr<Store>> OpenSqliteStore(const SqliteOptions& options, Clock clock) {
+  return sqlite::Open(options, std::move(clock));
+}
+
+}  // namespace rmlcell::storage

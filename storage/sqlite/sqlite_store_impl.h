@@ -1,0 +1,107 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "storage/sqlite/reader_pool.h"
+#include "storage/sqlite/request_ids.h"
+#include "storage/sqlite/sqlite_store.h"
+#include "storage/sqlite/store_files.h"
+#include "storage/sqlite/watchers.h"
+#include "storage/sqlite/writer.h"
+
+namespace rmlcell::storage::sqlite {
+
+// What must not yet be done to a record: see Store on `expected`. `current` is empty when there is
+// none.
+Status CheckRevision(std::optional<Revision> current, Revision expected, const std::string& what,
+                     ErrorCode when_missing = ErrorCode::kCellNotFound);
+
+// Reads go to the pool, writes to the writer; the rules of jobs stand in job_life.h.
+class SqliteStore final : public Store {
+ public:
+  struct Parts {
+    StoreLock lock;
+    Clock clock;
+    std::unique_ptr<Connection> connection;
+    std::unique_ptr<ReaderPool> readers;
+    Counters counters;
+    Writer::Options writer;
+  };
+  explicit SqliteStore(Parts parts);
+
+  Result<std::vector<MachineRecord>> ListMachines() override;
+  Result<MachineRecord> GetMachine(std::string_view id) override;
+  Result<MachineRecord> PutMachine(const MachineRecord& machine, Revision expected) override;
+
+  Result<std::vector<ProgramSummary>> ListPrograms(std::string_view machine, int after_slot,
+                                                   int limit) override;
+  Result<ProgramRecord> GetProgram(std::string_view machine, int slot) override;
+  Result<std::vector<ProgramRecord>> GetProgramMemory(std::string_view machine) override;
+  Result<std::vector<ProgramSummary>> PutPrograms(
+      std::string_view machine, const std::vector<ProgramWrite>& programs,
+      const std::vector<ScheduleRecord>& schedules) override;
+  Status DeleteProgram(std::string_view machine, int slot, Revision expected) override;
+  Result<bool> PutExecutable(std::string_view machine, int slot, Revision object_revision,
+                             std::string_view executable) override;
+  Status DeleteExecutable(std::string_view machine, int slot) override;
+
+  Result<std::vector<ScheduleRecord>> ListSchedules(std::string_view machine) override;
+  Result<ScheduleRecord> PutSchedule(const ScheduleRecord& schedule, Revision expected) override;
+  Status DeleteSchedule(std::string_view machine, int number) override;
+
+  Result<std::vector<ProjectRecord>> ListProjects(std::string_view after_id, int limit) override;
+  Result<ProjectRecord> GetProject(std::string_view id) override;
+  Result<ProjectRecord> PutProject(const ProjectRecord& project, Revision expected) override;
+  Status DeleteProject(std::string_view id, Revision expected) override;
+
+  void Submit(NewJob job, std::function<void(Result<SubmittedJob>)> done) override;
+  Result<SubmittedJob> SubmitAndWait(NewJob job) override;
+  Result<JobRecord> GetJob(std::int64_t id) override;
+  Result<std::vector<JobRecord>> ListJobs(const JobQuery& query) override;
+  Result<std::vector<AttemptRecord>> ListAttempts(std::int64_t job) override;
+  Result<JobCounts> CountJobs() override;
+  Result<JobRecord> RequestCancel(std::int64_t job, const std::vector<NewEvent>& events) override;
+
+  Result<std::optional<LeasedJob>> Acquire(std::string_view worker,
+                                           const std::vector<std::string>& kinds,
+                                           std::chrono::milliseconds duration,
+                                           const std::vector<NewEvent>& events) override;
+  Result<JobRecord> Renew(const Lease& lease, std::chrono::milliseconds duration) override;
+  void Append(const Lease& lease, std::vector<NewEvent> events,
+              std::function<void(Result<std::int64_t>)> done) override;
+  Result<std::int64_t> AppendAndWait(const Lease& lease, std::vector<NewEvent> events) override;
+  Result<JobRecord> Finish(const Lease& lease, const JobOutcome& outcome,
+                           const std::vector<NewArtifact>& artifacts,
+                           const std::vector<NewEvent>& events) override;
+  Status HandBack(const Lease& lease, const std::vector<NewEvent>& events) override;
+  Result<JobRecord> Abandon(const Lease& lease, const LossPolicy& policy) override;
+  Result<std::vector<JobRecord>> Expire(const LossPolicy& policy) override;
+
+  Result<std::vector<EventRecord>> JobEvents(std::int64_t job, std::int64_t after_sequence,
+                                             int limit) override;
+  Result<std::vector<EventRecord>> AllEvents(std::int64_t after_position, int limit) override;
+  Result<std::int64_t> LastPosition() override;
+  Result<std::int64_t> EventsGoneUntil() override;
+  Result<std::vector<ArtifactRecord>> ListArtifacts(std::int64_t job) override;
+  Result<ArtifactRecord> GetArtifact(std::int64_t job, std::string_view name) override;
+  Result<std::string> ReadBlob(std::string_view sha256) override;
+
+  std::unique_ptr<Subscription> Watch(std::function<void()> changed) override;
+
+ private:
+  // `job` with its specification, read on this thread.
+  Result<JobRecord> WithSpecification(Result<JobRecord> job);
+
+  // Destroyed from the last to the first: the writer answers what waits while all else is there.
+  const StoreLock lock_;
+  const Clock clock_;
+  RequestIds request_ids_;
+  const std::unique_ptr<ReaderPool> readers_;
+  Watchers watchers_;
+  Writer writer_;
+};
+
+}  // namespace rmlcell::storage::sqlite

@@ -1,0 +1,377 @@
+// Jobs, leases, events and artifacts.
+#include <algorithm>
+
+#include "storage/sqlite/content.h"
+#include "storage/sqlite/content_staging.h"
+#include "storage/sqlite/job_life.h"
+#include "storage/sqlite/sqlite_store_impl.h"
+
+namespace rmlcell::storage::sqlite {
+namespace {
+
+Error NoJob(std::int64_t id) {
+  return Error{ErrorCode::kCellNotFound, "job " + std::to_string(id), {}};
+}
+
+Error EventsGone(const std::string& what, std::int64_t until) {
+  return Error{ErrorCode::kCellEventsGone,
+               "those " + what + " up to " + std::to_string(until) + " were removed; watch from " +
+                   std::to_string(until),
+               {}};
+}
+
+std::size_t BytesOf(const std::vector<NewEvent>& events) {
+  std::size_t bytes = 0;
+  for (const NewEvent& event : events) bytes += sizeof(event) + event.payload.size();
+  return bytes;
+}
+
+// A job with all that is made ready on the thread of the caller.
+class Submission {
+ public:
+  explicit Submission(NewJob job) : job_(std::move(job)) {}
+  Submission(const Submission&) = delete;
+  Submission& operator=(const Submission&) = delete;
+
+  Status Prepare(Writer& writer, RequestIds& ids, const Clock& clock) {
+    contents_.request_id = job_.request_id.empty() ? ids.Make(clock()) : job_.request_id;
+    staged_.reserve(job_.attachments.size() + 1);
+    const Status specification = Stage(
+        StagedContent::Make(writer, job_.specification, StagedContent::Place::kRecordWhenSmall));
+    if (!specification) return specification;
+    contents_.specification = &staged_.back().content();
+    for (const NewArtifact& attachment : job_.attachments) {
+      const Status attached = Stage(StagedContent::Of(writer, attachment));
+      if (!attached) return attached;
+      contents_.attachments.push_back(&staged_.back().content());
+    }
+    return {};
+  }
+
+  Result<SubmittedJob> Run(WriteContext& context) { return SubmitJob(context, job_, contents_); }
+
+  // After the last Run(): what the answer needs is moved from the request, not copied.
+  void Complete(SubmittedJob& submitted) {
+    if (!submitted.already_there) submitted.job.specification = std::move(job_.specification);
+  }
+
+  std::size_t bytes() const {
+    std::size_t bytes = sizeof(*this) + job_.specification.size() + BytesOf(job_.events);
+    for (const NewArtifact& attachment : job_.attachments) {
+      bytes += sizeof(attachment) + attachment.bytes.size();
+    }
+    return bytes;
+  }
+
+ private:
+  Status Stage(Result<StagedContent> content) {
+    if (!content) return content.error();
+    staged_.push_back(*std::move(content));
+    return {};
+  }
+
+  NewJob job_;
+  std::vector<StagedContent> staged_;
+  JobContents contents_{};
+};
+
+class SubmitOperation final : public WriteOperation {
+ public:
+  using Done = std::function<void(Result<SubmittedJob>)>;
+
+  SubmitOperation(NewJob job, Done done) : submission_(std::move(job)), done_(std::move(done)) {}
+
+  Submission& submission() { return submission_; }
+
+  Status Run(WriteContext& context) override {
+    submitted_ = submission_.Run(context);
+    return submitted_ ? Status() : Status(submitted_.error());
+  }
+
+  void Answer(const Status& status) override {
+    if (!status) return done_(status.error());
+    submission_.Complete(*submitted_);
+    done_(std::move(submitted_));
+  }
+
+ private:
+  Submission submission_;
+  Done done_;
+  Result<SubmittedJob> submitted_ = SubmittedJob{};
+};
+
+class AppendOperation final : public WriteOperation {
+ public:
+  using Done = std::function<void(Result<std::int64_t>)>;
+
+  AppendOperation(Lease lease, std::vector<NewEvent> events, Done done)
+      : lease_(std::move(lease)), events_(std::move(events)), done_(std::move(done)) {}
+
+  std::size_t bytes() const { return sizeof(*this) + BytesOf(events_); }
+
+  Status Run(WriteContext& context) override {
+    const Result<std::int64_t> last = AppendEvents(context, lease_, events_);
+    if (!last) return last.error();
+    last_sequence_ = *last;
+    return {};
+  }
+
+  void Answer(const Status& status) override {
+    if (!status) return done_(status.error());
+    done_(last_sequence_);
+  }
+
+ private:
+  Lease lease_;
+  std::vector<NewEvent> events_;
+  Done done_;
+  std::int64_t last_sequence_ = 0;
+};
+
+Result<JobRow> GetRow(Tables& tables, std::int64_t id) {
+  Result<std::optional<JobRow>> row = tables.jobs.Get(id);
+  if (!row) return row.error();
+  if (!*row) return NoJob(id);
+  return **std::move(row);
+}
+
+Status AddSpecification(Tables& tables, JobRecord& job) {
+  Result<std::string> specification = tables.jobs.Specification(job.id);
+  if (!specification) return specification.error();
+  job.specification = *std::move(specification);
+  return {};
+}
+
+}  // namespace
+
+SqliteStore::SqliteStore(Parts parts)
+    : lock_(std::move(parts.lock)),
+      clock_(parts.clock),
+      readers_(std::move(parts.readers)),
+      writer_(std::move(parts.connection), parts.counters, parts.writer, std::move(parts.clock),
+              [this] { watchers_.Notify(); }) {}
+
+void SqliteStore::Submit(NewJob job, std::function<void(Result<SubmittedJob>)> done) {
+  auto operation = std::make_unique<SubmitOperation>(std::move(job), std::move(done));
+  const Status prepared = operation->submission().Prepare(writer_, request_ids_, clock_);
+  if (!prepared) return operation->Answer(prepared);
+  const std::size_t bytes = operation->submission().bytes();
+  writer_.Post(std::move(operation), bytes);
+}
+
+Result<SubmittedJob> SqliteStore::SubmitAndWait(NewJob job) {
+  Submission submission(std::move(job));
+  const Status prepared = submission.Prepare(writer_, request_ids_, clock_);
+  if (!prepared) return prepared.error();
+  Result<SubmittedJob> submitted =
+      writer_.Do([&](WriteContext& context) { return submission.Run(context); });
+  if (submitted) submission.Complete(*submitted);
+  return submitted;
+}
+
+Result<JobRecord> SqliteStore::GetJob(std::int64_t id) {
+  return readers_->Read([&](Tables& tables) -> Result<JobRecord> {
+    Result<JobRow> row = GetRow(tables, id);
+    if (!row) return row.error();
+    const Status whole = AddSpecification(tables, row->job);
+    if (!whole) return whole.error();
+    return std::move(row->job);
+  });
+}
+
+Result<std::vector<JobRecord>> SqliteStore::ListJobs(const JobQuery& query) {
+  return readers_->Read([&](Tables& tables) -> Result<std::vector<JobRecord>> {
+    Result<std::vector<JobRecord>> jobs = tables.jobs.List(query);
+    if (!jobs) return jobs;
+    for (JobRecord& job : *jobs) {
+      const Status whole = AddSpecification(tables, job);
+      if (!whole) return whole.error();
+    }
+    return jobs;
+  });
+}
+
+Result<std::vector<AttemptRecord>> SqliteStore::ListAttempts(std::int64_t job) {
+  return readers_->Read([&](Tables& tables) -> Result<std::vector<AttemptRecord>> {
+    const Result<JobRow> row = GetRow(tables, job);
+    if (!row) return row.error();
+    return tables.attempts.List(job);
+  });
+}
+
+Result<JobCounts> SqliteStore::CountJobs() { return writer_.job_counts(); }
+
+Result<JobRecord> SqliteStore::RequestCancel(std::int64_t job,
+                                             const std::vector<NewEvent>& events) {
+  return WithSpecification(
+      writer_.Do([&](WriteContext& context) { return CancelJob(context, job, events); }));
+}
+
+Result<std::optional<LeasedJob>> SqliteStore::Acquire(std::string_view worker,
+                                                      const std::vector<std::string>& kinds,
+                                                      std::chrono::milliseconds duration,
+                                                      const std::vector<NewEvent>& events) {
+  // Idle workers ask at every commit; most find nothing, and that must not keep the writer busy.
+  if (writer_.job_counts().queued == 0) return std::optional<LeasedJob>();
+  Result<std::optional<LeasedJob>> leased = writer_.Do(
+      [&](WriteContext& context) { return AcquireJob(context, worker, kinds, duration, events); });
+  if (!leased || !*leased) return leased;
+  Result<JobRecord> whole = WithSpecification(std::move((*leased)->job));
+  if (!whole) return whole.error();
+  (*leased)->job = *std::move(whole);
+  return leased;
+}
+
+Result<JobRecord> SqliteStore::Renew(const Lease& lease, std::chrono::milliseconds duration) {
+  return writer_.Do([&](WriteContext& context) { return RenewLease(context, lease, duration); });
+}
+
+void SqliteStore::Append(const Lease& lease, std::vector<NewEvent> events,
+                         std::function<void(Result<std::int64_t>)> done) {
+  auto operation = std::make_unique<AppendOperation>(lease, std::move(events), std::move(done));
+  const std::size_t bytes = operation->bytes();
+  writer_.Post(std::move(operation), bytes);
+}
+
+Result<std::int64_t> SqliteStore::AppendAndWait(const Lease& lease, std::vector<NewEvent> events) {
+  return writer_.Do([&](WriteContext& context) { return AppendEvents(context, lease, events); });
+}
+
+Result<JobRecord> SqliteStore::Finish(const Lease& lease, const JobOutcome& outcome,
+                                      const std::vector<NewArtifact>& artifacts,
+                                      const std::vector<NewEvent>& events) {
+  std::vector<StagedContent> staged;
+  std::vector<const PreparedContent*> contents;
+  staged.reserve(artifacts.size());
+  for (const NewArtifact& artifact : artifacts) {
+    Result<StagedContent> content = StagedContent::Of(writer_, artifact);
+    if (!content) return content.error();
+    staged.push_back(*std::move(content));
+    contents.push_back(&staged.back().content());
+  }
+  return WithSpecification(writer_.Do([&](WriteContext& context) {
+    return FinishJob(context, lease, outcome, artifacts, contents, events);
+  }));
+}
+
+Status SqliteStore::HandBack(const Lease& lease, const std::vector<NewEvent>& events) {
+  const Result<JobRecord> job =
+      writer_.Do([&](WriteContext& context) { return HandBackJob(context, lease, events); });
+  return job ? Status() : Status(job.error());
+}
+
+Result<JobRecord> SqliteStore::Abandon(const Lease& lease, const LossPolicy& policy) {
+  return WithSpecification(
+      writer_.Do([&](WriteContext& context) { return AbandonJob(context, lease, policy); }));
+}
+
+// One write for each lease: a job that cannot be read must not keep the others from going on.
+Result<std::vector<JobRecord>> SqliteStore::Expire(const LossPolicy& policy) {
+  if (!IsFinal(policy.outcome.state)) {
+    return Error{ErrorCode::kCellInvalidArgument, "an outcome has to be final", {}};
+  }
+  const WallTime now = clock_();
+  const Result<std::vector<Lease>> leases =
+      readers_->Read([&](Tables& tables) { return tables.leases.RunOut(now); });
+  if (!leases) return leases.error();
+  std::vector<JobRecord> changed;
+  std::optional<Error> failure;
+  for (const Lease& lease : *leases) {
+    Result<std::optional<JobRecord>> job =
+        writer_.Do([&](WriteContext& context) { return ExpireLease(context, lease, policy); });
+    if (!job) {
+      failure = job.error();
+    } else if (*job) {
+      Result<JobRecord> whole = WithSpecification(**std::move(job));
+      changed.push_back(*std::move(whole));
+    }
+  }
+  if (failure && changed.empty()) return *failure;
+  return changed;
+}
+
+Result<std::vector<EventRecord>> SqliteStore::JobEvents(std::int64_t job,
+                                                        std::int64_t after_sequence, int limit) {
+  return readers_->Read([&](Tables& tables) -> Result<std::vector<EventRecord>> {
+    const Result<JobRow> row = GetRow(tables, job);
+    if (!row) return row.error();
+    const std::int64_t gone = row->job.events_gone_until;
+    if (after_sequence < gone) return EventsGone("of job " + std::to_string(job), gone);
+    return tables.events.OfJob(job, after_sequence, std::max(limit, 0));
+  });
+}
+
+Result<std::vector<EventRecord>> SqliteStore::AllEvents(std::int64_t after_position, int limit) {
+  return readers_->Read([&](Tables& tables) -> Result<std::vector<EventRecord>> {
+    const Result<std::int64_t> gone = tables.marks.Get(MarkTable::kEventsGoneUntil);
+    if (!gone) return gone.error();
+    if (after_position < *gone) return EventsGone("at positions", *gone);
+    return tables.events.All(after_position, std::max(limit, 0));
+  });
+}
+
+Result<std::int64_t> SqliteStore::LastPosition() {
+  return readers_->Read([](Tables& tables) -> Result<std::int64_t> {
+    const Result<std::int64_t> there = tables.events.LastPosition();
+    if (!there) return there;
+    const Result<std::int64_t> mark = tables.marks.Get(MarkTable::kPosition);
+    if (!mark) return mark;
+    return std::max(*there, *mark);
+  });
+}
+
+Result<std::int64_t> SqliteStore::EventsGoneUntil() {
+  return readers_->Read(
+      [](Tables& tables) { return tables.marks.Get(MarkTable::kEventsGoneUntil); });
+}
+
+Result<std::vector<ArtifactRecord>> SqliteStore::ListArtifacts(std::int64_t job) {
+  return readers_->Read([&](Tables& tables) -> Result<std::vector<ArtifactRecord>> {
+    const Result<JobRow> row = GetRow(tables, job);
+    if (!row) return row.error();
+    return tables.artifacts.List(job);
+  });
+}
+
+Result<ArtifactRecord> SqliteStore::GetArtifact(std::int64_t job, std::string_view name) {
+  return readers_->Read([&](Tables& tables) -> Result<ArtifactRecord> {
+    const Result<std::optional<ArtifactRecord>> artifact = tables.artifacts.Get(job, name);
+    if (!artifact) return artifact.error();
+    if (*artifact) return **artifact;
+    const Result<JobRow> row = GetRow(tables, job);
+    if (!row) return row.error();
+    return Error{ErrorCode::kCellNotFound,
+                 "job " + std::to_string(job) + " has no artifact " + std::string(name),
+                 {}};
+  });
+}
+
+Result<std::string> SqliteStore::ReadBlob(std::string_view sha256) {
+  const auto unknown = [&] {
+    return Error{ErrorCode::kCellNotFound, "no content with SHA-256 " + std::string(sha256), {}};
+  };
+  const std::optional<std::string> name = BytesOfHex(sha256);
+  if (!name) return unknown();
+  return readers_->Read([&](Tables& tables) -> Result<std::string> {
+    const Result<std::optional<std::int64_t>> blob = tables.blobs.Find(*name);
+    if (!blob) return blob.error();
+    if (!*blob) return unknown();
+    return tables.blobs.Read(**blob);
+  });
+}
+
+std::unique_ptr<Store::Subscription> SqliteStore::Watch(std::function<void()> changed) {
+  return watchers_.Add(std::move(changed));
+}
+
+Result<JobRecord> SqliteStore::WithSpecification(Result<JobRecord> job) {
+  if (!job) return job;
+  const Status whole =
+      readers_->Read([&](Tables& tables) -> Status { return AddSpecification(tables, *job); });
+  // The change is durable by now, and that is what the caller has to know. Whoever needs the
+  // specification meets the damage with GetJob().
+  if (!whole) job->specification.clear();
+  return job;
+}
+
+}  // namespace rmlcell::storage::sqlite

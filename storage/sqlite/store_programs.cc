@@ -1,0 +1,340 @@
+// Programs and laser schedules: the program memory of machines.
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "engine/core/units.h"
+#include "storage/sqlite/content_staging.h"
+#include "storage/sqlite/sqlite_store_impl.h"
+
+namespace rmlcell::storage::sqlite {
+namespace {
+
+Error Invalid(std::string detail) {
+  return Error{ErrorCode::kCellInvalidArgument, std::move(detail), {}};
+}
+
+std::string SlotText(std::string_view machine, int slot) {
+  return "slot " + std::to_string(slot) + " of " + std::string(machine);
+}
+
+Error NoProgram(std::string_view machine, int slot) {
+  return Error{ErrorCode::kCellNotFound, SlotText(machine, slot) + " is empty", {}};
+}
+
+Status CheckMachine(Tables& tables, std::string_view machine) {
+  const Result<std::optional<MachineTable::Facts>> found = tables.machines.Find(machine);
+  if (!found) return found.error();
+  if (!*found) return Error{ErrorCode::kCellUnknownMachine, std::string(machine), {}};
+  return {};
+}
+
+Status CheckSize(std::size_t bytes, const std::string& what) {
+  if (bytes <= kProgramBytesMax) return {};
+  return Error{ErrorCode::kCellTooLarge, what + " has " + std::to_string(bytes) + " bytes", {}};
+}
+
+Status CheckSchedule(const ScheduleRecord& schedule) {
+  if (schedule.number < kScheduleMin || schedule.number > kScheduleMax) {
+    return Invalid("laser schedule " + std::to_string(schedule.number));
+  }
+  // The database would make NULL of a NaN.
+  if (!std::isfinite(schedule.power_percent)) return Invalid("power_percent is not a number");
+  return {};
+}
+
+Status CheckWrites(const std::vector<ProgramWrite>& programs,
+                   const std::vector<ScheduleRecord>& schedules) {
+  std::set<int> slots;
+  for (const ProgramWrite& program : programs) {
+    const std::string slot = "slot " + std::to_string(program.slot);
+    if (!IsSlot(program.slot)) return Invalid(slot);
+    if (!slots.insert(program.slot).second) return Invalid(slot + " is written twice");
+    const Status object = CheckSize(program.object.size(), "the object for " + slot);
+    if (!object) return object;
+    const Status source =
+        CheckSize(program.source ? program.source->size() : 0, "the source for " + slot);
+    if (!source) return source;
+  }
+  std::set<int> numbers;
+  for (const ScheduleRecord& schedule : schedules) {
+    const Status good = CheckSchedule(schedule);
+    if (!good) return good;
+    if (!numbers.insert(schedule.number).second) {
+      return Invalid("laser schedule " + std::to_string(schedule.number) + " is written twice");
+    }
+  }
+  return {};
+}
+
+struct StagedProgram {
+  StagedContent object;
+  std::optional<StagedContent> source;
+};
+
+Result<std::vector<StagedProgram>> StageAll(Writer& writer,
+                                            const std::vector<ProgramWrite>& programs) {
+  constexpr auto kPlace = StagedContent::Place::kBlob;
+  std::vector<StagedProgram> staged;
+  for (const ProgramWrite& program : programs) {
+    Result<StagedContent> object = StagedContent::Make(writer, program.object, kPlace);
+    if (!object) return object.error();
+    staged.push_back({.object = *std::move(object), .source = {}});
+    if (!program.source) continue;
+    Result<StagedContent> source = StagedContent::Make(writer, *program.source, kPlace);
+    if (!source) return source.error();
+    staged.back().source.emplace(*std::move(source));
+  }
+  return staged;
+}
+
+// One reference less for each blob of a program.
+Status DropBlobs(WriteContext& context, const ProgramTable::Row& row) {
+  context.garbage = true;
+  for (const std::optional<std::int64_t>& blob :
+       {std::optional(row.object_blob), row.source_blob, row.executable_blob}) {
+    const Status dropped = context.tables.blobs.Drop(blob);
+    if (!dropped) return dropped;
+  }
+  return {};
+}
+
+Result<ProgramSummary> PutProgramRow(WriteContext& context, std::string_view machine,
+                                     const ProgramWrite& program, const StagedProgram& staged) {
+  Tables& tables = context.tables;
+  const Result<std::optional<ProgramTable::Row>> found =
+      tables.programs.Find(machine, program.slot);
+  if (!found) return found.error();
+  const std::optional<ProgramTable::Row>& before = *found;
+  const Status fits = CheckRevision(before ? std::optional(before->revision) : std::nullopt,
+                                    program.expected, SlotText(machine, program.slot));
+  if (!fits) return fits.error();
+  Revision last = before ? before->revision : 0;
+  if (!before) {
+    const Result<Revision> buried =
+        tables.buried.DigUp(BuriedTable::Kind::kProgram, machine, std::to_string(program.slot));
+    if (!buried) return buried.error();
+    last = *buried;
+  }
+  // Without executable: altering an object deletes it, OPT-1.12.
+  ProgramTable::Row row{.revision = last + 1,
+                        .created_at = before ? before->created_at : context.now,
+                        .updated_at = context.now,
+                        .object_blob = 0,
+                        .source_blob = {},
+                        .executable_blob = {}};
+  const Result<std::int64_t> object = tables.blobs.PutBlob(staged.object.content());
+  if (!object) return object.error();
+  row.object_blob = *object;
+  if (staged.source) {
+    const Result<std::int64_t> source = tables.blobs.PutBlob(staged.source->content());
+    if (!source) return source.error();
+    row.source_blob = *source;
+  }
+  const Status put =
+      tables.programs.Put(machine, program.slot, program.name, program.source_name, row);
+  if (!put) return put.error();
+  if (before) {
+    const Status dropped = DropBlobs(context, *before);
+    if (!dropped) return dropped.error();
+  }
+  const Result<std::optional<ProgramSummary>> summary =
+      tables.programs.Summary(machine, program.slot);
+  if (!summary) return summary.error();
+  if (!*summary) return NoProgram(machine, program.slot);
+  return **summary;
+}
+
+Result<ScheduleRecord> PutScheduleRow(WriteContext& context, ScheduleRecord schedule,
+                                      Revision expected) {
+  Tables& tables = context.tables;
+  const Result<std::optional<ScheduleRecord>> before =
+      tables.schedules.Get(schedule.machine, schedule.number);
+  if (!before) return before.error();
+  const std::string what =
+      "laser schedule " + std::to_string(schedule.number) + " of " + schedule.machine;
+  const Status fits =
+      CheckRevision(*before ? std::optional((*before)->revision) : std::nullopt, expected, what);
+  if (!fits) return fits.error();
+  if (*before) {
+    schedule.revision = (*before)->revision + 1;
+  } else {
+    const Result<Revision> buried = tables.buried.DigUp(
+        BuriedTable::Kind::kSchedule, schedule.machine, std::to_string(schedule.number));
+    if (!buried) return buried.error();
+    schedule.revision = *buried + 1;
+  }
+  schedule.updated_at = context.now;
+  const Status put = tables.schedules.Put(schedule);
+  if (!put) return put.error();
+  return schedule;
+}
+
+Status RemoveProgram(WriteContext& context, std::string_view machine, int slot, Revision expected) {
+  Tables& tables = context.tables;
+  const Status known = CheckMachine(tables, machine);
+  if (!known) return known;
+  const Result<std::optional<ProgramTable::Row>> found = tables.programs.Find(machine, slot);
+  if (!found) return found.error();
+  if (!*found) return NoProgram(machine, slot);
+  const ProgramTable::Row& row = **found;
+  const Status fits = CheckRevision(row.revision, expected, SlotText(machine, slot));
+  if (!fits) return fits;
+  const Status removed = tables.programs.Remove(machine, slot);
+  if (!removed) return removed;
+  const Status buried =
+      tables.buried.Bury(BuriedTable::Kind::kProgram, machine, std::to_string(slot), row.revision);
+  if (!buried) return buried;
+  return DropBlobs(context, row);
+}
+
+Result<bool> PutExecutableBlob(WriteContext& context, std::string_view machine, int slot,
+                               Revision object_revision, const PreparedContent& executable) {
+  Tables& tables = context.tables;
+  const Result<std::optional<ProgramTable::Row>> found = tables.programs.Find(machine, slot);
+  if (!found) return found.error();
+  if (!*found || (*found)->revision != object_revision) return false;
+  const Result<std::int64_t> blob = tables.blobs.PutBlob(executable);
+  if (!blob) return blob.error();
+  const Status put = tables.programs.PutExecutable(machine, slot, *blob);
+  if (!put) return put.error();
+  context.garbage = true;
+  const Status dropped = tables.blobs.Drop((*found)->executable_blob);
+  if (!dropped) return dropped.error();
+  return true;
+}
+
+Status RemoveExecutable(WriteContext& context, std::string_view machine, int slot) {
+  Tables& tables = context.tables;
+  const Status known = CheckMachine(tables, machine);
+  if (!known) return known;
+  const Result<std::optional<ProgramTable::Row>> found = tables.programs.Find(machine, slot);
+  if (!found) return found.error();
+  if (!*found) return NoProgram(machine, slot);
+  if (!(*found)->executable_blob) {
+    return Error{ErrorCode::kCellNotFound, SlotText(machine, slot) + " has no executable", {}};
+  }
+  const Status removed = tables.programs.PutExecutable(machine, slot, {});
+  if (!removed) return removed;
+  context.garbage = true;
+  return tables.blobs.Drop((*found)->executable_blob);
+}
+
+Status RemoveSchedule(WriteContext& context, std::string_view machine, int number) {
+  Tables& tables = context.tables;
+  const Status known = CheckMachine(tables, machine);
+  if (!known) return known;
+  const Result<std::optional<ScheduleRecord>> found = tables.schedules.Get(machine, number);
+  if (!found) return found.error();
+  if (!*found) {
+    return Error{ErrorCode::kCellNotFound,
+                 "laser schedule " + std::to_string(number) + " of " + std::string(machine),
+                 {}};
+  }
+  const Status removed = tables.schedules.Remove(machine, number);
+  if (!removed) return removed;
+  return tables.buried.Bury(BuriedTable::Kind::kSchedule, machine, std::to_string(number),
+                            (*found)->revision);
+}
+
+}  // namespace
+
+Result<std::vector<ProgramSummary>> SqliteStore::ListPrograms(std::string_view machine,
+                                                              int after_slot, int limit) {
+  return readers_->Read([&](Tables& tables) -> Result<std::vector<ProgramSummary>> {
+    const Status known = CheckMachine(tables, machine);
+    if (!known) return known.error();
+    return tables.programs.List(machine, after_slot, std::max(limit, 0));
+  });
+}
+
+Result<ProgramRecord> SqliteStore::GetProgram(std::string_view machine, int slot) {
+  return readers_->Read([&](Tables& tables) -> Result<ProgramRecord> {
+    const Status known = CheckMachine(tables, machine);
+    if (!known) return known.error();
+    Result<std::optional<ProgramRecord>> program = tables.programs.Get(machine, slot);
+    if (!program) return program.error();
+    if (!*program) return NoProgram(machine, slot);
+    return **std::move(program);
+  });
+}
+
+Result<std::vector<ProgramRecord>> SqliteStore::GetProgramMemory(std::string_view machine) {
+  return readers_->Read([&](Tables& tables) -> Result<std::vector<ProgramRecord>> {
+    const Status known = CheckMachine(tables, machine);
+    if (!known) return known.error();
+    return tables.programs.Memory(machine, ProgramTable::Parts::kWithoutSource);
+  });
+}
+
+Result<std::vector<ProgramSummary>> SqliteStore::PutPrograms(
+    std::string_view machine, const std::vector<ProgramWrite>& programs,
+    const std::vector<ScheduleRecord>& schedules) {
+  const Status good = CheckWrites(programs, schedules);
+  if (!good) return good.error();
+  const Result<std::vector<StagedProgram>> staged = StageAll(writer_, programs);
+  if (!staged) return staged.error();
+  return writer_.Do([&](WriteContext& context) -> Result<std::vector<ProgramSummary>> {
+    const Status known = CheckMachine(context.tables, machine);
+    if (!known) return known.error();
+    std::vector<ProgramSummary> summaries;
+    for (std::size_t i = 0; i < programs.size(); ++i) {
+      Result<ProgramSummary> put = PutProgramRow(context, machine, programs[i], (*staged)[i]);
+      if (!put) return put.error();
+      summaries.push_back(*std::move(put));
+    }
+    for (ScheduleRecord schedule : schedules) {
+      schedule.machine = machine;
+      const Result<ScheduleRecord> put = PutScheduleRow(context, std::move(schedule), kAnyRevision);
+      if (!put) return put.error();
+    }
+    return summaries;
+  });
+}
+
+Status SqliteStore::DeleteProgram(std::string_view machine, int slot, Revision expected) {
+  return writer_.Do(
+      [&](WriteContext& context) { return RemoveProgram(context, machine, slot, expected); });
+}
+
+Result<bool> SqliteStore::PutExecutable(std::string_view machine, int slot,
+                                        Revision object_revision, std::string_view executable) {
+  const Status good = CheckSize(executable.size(), "the executable");
+  if (!good) return good.error();
+  const Result<StagedContent> staged =
+      StagedContent::Make(writer_, executable, StagedContent::Place::kBlob);
+  if (!staged) return staged.error();
+  return writer_.Do([&](WriteContext& context) {
+    return PutExecutableBlob(context, machine, slot, object_revision, staged->content());
+  });
+}
+
+Status SqliteStore::DeleteExecutable(std::string_view machine, int slot) {
+  return writer_.Do(
+      [&](WriteContext& context) { return RemoveExecutable(context, machine, slot); });
+}
+
+Result<std::vector<ScheduleRecord>> SqliteStore::ListSchedules(std::string_view machine) {
+  return readers_->Read([&](Tables& tables) -> Result<std::vector<ScheduleRecord>> {
+    const Status known = CheckMachine(tables, machine);
+    if (!known) return known.error();
+    return tables.schedules.List(machine);
+  });
+}
+
+Result<ScheduleRecord> SqliteStore::PutSchedule(const ScheduleRecord& schedule, Revision expected) {
+  const Status good = CheckSchedule(schedule);
+  if (!good) return good.error();
+  return writer_.Do([&](WriteContext& context) -> Result<ScheduleRecord> {
+    const Status known = CheckMachine(context.tables, schedule.machine);
+    if (!known) return known.error();
+    return PutScheduleRow(context, schedule, expected);
+  });
+}
+
+Status SqliteStore::DeleteSchedule(std::string_view machine, int number) {
+  return writer_.Do(
+      [&](WriteContext& context) { return RemoveSchedule(context, machine, number); });
+}
+
+}  // namespace rmlcell::storage::sqlite

@@ -1,0 +1,171 @@
+// Machines and projects.
+#include "storage/sqlite/content_staging.h"
+#include "storage/sqlite/sqlite_store_impl.h"
+
+namespace rmlcell::storage::sqlite {
+namespace {
+
+Error Invalid(std::string detail) {
+  return Error{ErrorCode::kCellInvalidArgument, std::move(detail), {}};
+}
+
+Error NoProject(std::string_view id) {
+  return Error{ErrorCode::kCellNotFound, "project " + std::string(id), {}};
+}
+
+template <class Record>
+void SetStamp(Record& record, const Stamp& stamp) {
+  record.revision = stamp.revision;
+  record.created_at = stamp.created_at;
+  record.updated_at = stamp.updated_at;
+}
+
+Result<Stamp> PutMachineRow(WriteContext& context, const MachineRecord& machine, Revision expected,
+                            const PreparedContent& state) {
+  const Result<std::optional<MachineTable::Facts>> found = context.tables.machines.Find(machine.id);
+  if (!found) return found.error();
+  const std::optional<MachineTable::Facts>& before = *found;
+  const Status fits =
+      CheckRevision(before ? std::optional(before->revision) : std::nullopt, expected,
+                    "machine " + machine.id, ErrorCode::kCellUnknownMachine);
+  if (!fits) return fits.error();
+  const Stamp stamp{.revision = before ? before->revision + 1 : 1,
+                    .created_at = before ? before->created_at : context.now,
+                    .updated_at = context.now};
+  const Result<ContentColumns> columns = context.tables.blobs.Put(state);
+  if (!columns) return columns.error();
+  const Status put = context.tables.machines.Put(machine, stamp, *columns);
+  if (!put) return put.error();
+  if (before) {
+    const Status dropped = context.tables.blobs.Drop(before->state_blob);
+    if (!dropped) return dropped.error();
+  }
+  context.garbage = true;
+  return stamp;
+}
+
+Result<Stamp> PutProjectRow(WriteContext& context, const ProjectRecord& project, Revision expected,
+                            const PreparedContent& body) {
+  const Result<std::optional<ProjectTable::Facts>> found = context.tables.projects.Find(project.id);
+  if (!found) return found.error();
+  const std::optional<ProjectTable::Facts>& before = *found;
+  const Status fits = CheckRevision(before ? std::optional(before->revision) : std::nullopt,
+                                    expected, "project " + project.id);
+  if (!fits) return fits.error();
+  Revision last = before ? before->revision : 0;
+  if (!before) {
+    const Result<Revision> buried =
+        context.tables.buried.DigUp(BuriedTable::Kind::kProject, "", project.id);
+    if (!buried) return buried.error();
+    last = *buried;
+  }
+  const Stamp stamp{.revision = last + 1,
+                    .created_at = before ? before->created_at : context.now,
+                    .updated_at = context.now};
+  const Result<ContentColumns> columns = context.tables.blobs.Put(body);
+  if (!columns) return columns.error();
+  const Status put = context.tables.projects.Put(project, stamp, *columns);
+  if (!put) return put.error();
+  if (before) {
+    const Status dropped = context.tables.blobs.Drop(before->body_blob);
+    if (!dropped) return dropped.error();
+  }
+  context.garbage = true;
+  return stamp;
+}
+
+Status RemoveProject(WriteContext& context, std::string_view id, Revision expected) {
+  const Result<std::optional<ProjectTable::Facts>> found = context.tables.projects.Find(id);
+  if (!found) return found.error();
+  if (!*found) return NoProject(id);
+  const ProjectTable::Facts& before = **found;
+  const Status fits = CheckRevision(before.revision, expected, "project " + std::string(id));
+  if (!fits) return fits;
+  const Status removed = context.tables.projects.Remove(id);
+  if (!removed) return removed;
+  const Status buried =
+      context.tables.buried.Bury(BuriedTable::Kind::kProject, "", id, before.revision);
+  if (!buried) return buried;
+  context.garbage = true;
+  return context.tables.blobs.Drop(before.body_blob);
+}
+
+}  // namespace
+
+Status CheckRevision(std::optional<Revision> current, Revision expected, const std::string& what,
+                     ErrorCode when_missing) {
+  if (expected == kAnyRevision) return {};
+  if (expected < 0) return Invalid("expected revision " + std::to_string(expected));
+  if (expected == 0) {
+    if (!current) return {};
+    return Error{
+        ErrorCode::kCellAlreadyExists, what + " has revision " + std::to_string(*current), {}};
+  }
+  if (!current) return Error{when_missing, what, {}};
+  if (*current == expected) return {};
+  return Error{
+      ErrorCode::kCellEtagMismatch,
+      what + " has revision " + std::to_string(*current) + ", expected " + std::to_string(expected),
+      {}};
+}
+
+Result<std::vector<MachineRecord>> SqliteStore::ListMachines() {
+  return readers_->Read([](Tables& tables) { return tables.machines.List(); });
+}
+
+Result<MachineRecord> SqliteStore::GetMachine(std::string_view id) {
+  return readers_->Read([&](Tables& tables) -> Result<MachineRecord> {
+    Result<std::optional<MachineRecord>> machine = tables.machines.Get(id);
+    if (!machine) return machine.error();
+    if (!*machine) return Error{ErrorCode::kCellUnknownMachine, std::string(id), {}};
+    return **std::move(machine);
+  });
+}
+
+Result<MachineRecord> SqliteStore::PutMachine(const MachineRecord& machine, Revision expected) {
+  if (machine.id.empty()) return Invalid("a machine needs an id");
+  const Result<StagedContent> state =
+      StagedContent::Make(writer_, machine.state, StagedContent::Place::kRecordWhenSmall);
+  if (!state) return state.error();
+  const Result<Stamp> stamp = writer_.Do([&](WriteContext& context) {
+    return PutMachineRow(context, machine, expected, state->content());
+  });
+  if (!stamp) return stamp.error();
+  MachineRecord put = machine;
+  SetStamp(put, *stamp);
+  return put;
+}
+
+Result<std::vector<ProjectRecord>> SqliteStore::ListProjects(std::string_view after_id, int limit) {
+  return readers_->Read(
+      [&](Tables& tables) { return tables.projects.List(after_id, std::max(limit, 0)); });
+}
+
+Result<ProjectRecord> SqliteStore::GetProject(std::string_view id) {
+  return readers_->Read([&](Tables& tables) -> Result<ProjectRecord> {
+    Result<std::optional<ProjectRecord>> project = tables.projects.Get(id);
+    if (!project) return project.error();
+    if (!*project) return NoProject(id);
+    return **std::move(project);
+  });
+}
+
+Result<ProjectRecord> SqliteStore::PutProject(const ProjectRecord& project, Revision expected) {
+  if (project.id.empty()) return Invalid("a project needs an id");
+  const Result<StagedContent> body =
+      StagedContent::Make(writer_, project.body, StagedContent::Place::kRecordWhenSmall);
+  if (!body) return body.error();
+  const Result<Stamp> stamp = writer_.Do([&](WriteContext& context) {
+    return PutProjectRow(context, project, expected, body->content());
+  });
+  if (!stamp) return stamp.error();
+  ProjectRecord put = project;
+  SetStamp(put, *stamp);
+  return put;
+}
+
+Status SqliteStore::DeleteProject(std::string_view id, Revision expected) {
+  return writer_.Do([&](WriteContext& context) { return RemoveProject(context, id, expected); });
+}
+
+}  // namespace rmlcell::storage::sqlite

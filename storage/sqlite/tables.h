@@ -1,0 +1,59 @@
+#pragma once
+
+#include "storage/sqlite/artifact_table.h"
+#include "storage/sqlite/blob_table.h"
+#include "storage/sqlite/event_table.h"
+#include "storage/sqlite/job_table.h"
+#include "storage/sqlite/lease_table.h"
+#include "storage/sqlite/machine_table.h"
+#include "storage/sqlite/mark_table.h"
+#include "storage/sqlite/program_table.h"
+#include "storage/sqlite/project_table.h"
+#include "storage/sqlite/schedule_table.h"
+#include "storage/sqlite/transaction.h"
+
+namespace rmlcell::storage::sqlite {
+
+// All tables as one connection sees them. SQL stands in these classes and in the migrations only.
+struct Tables {
+  explicit Tables(Database& database)
+      : blobs(database),
+        machines(database, blobs),
+        programs(database, blobs),
+        schedules(database),
+        projects(database, blobs),
+        jobs(database, blobs),
+        leases(database),
+        attempts(database),
+        events(database),
+        artifacts(database),
+        marks(database),
+        buried(database) {}
+
+  BlobTable blobs;
+  MachineTable machines;
+  ProgramTable programs;
+  ScheduleTable schedules;
+  ProjectTable projects;
+  JobTable jobs;
+  LeaseTable leases;
+  AttemptTable attempts;
+  EventTable events;
+  ArtifactTable artifacts;
+  MarkTable marks;
+  BuriedTable buried;
+};
+
+// A connection with its statements. Stays where it is: the tables refer to the database.
+struct Connection {
+  explicit Connection(Database opened)
+      : database(std::move(opened)), transactions(database), tables(database) {}
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  Database database;
+  TransactionStatements transactions;
+  Tables tables;
+};
+
+}  // namespace rmlcell::storage::sqlite

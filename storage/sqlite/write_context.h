@@ -1,0 +1,44 @@
+#pragma once
+
+#include "storage/sqlite/tables.h"
+
+namespace rmlcell::storage::sqlite {
+
+// The newest numbers given out, and counts that would be dear to look up. Kept by the writer in
+// memory and put back when what took them is rolled back.
+struct Counters {
+  std::int64_t job = 0;
+  std::int64_t position = 0;
+  std::int64_t fence = 0;
+  std::int64_t queued_jobs = 0;
+  std::int64_t running_jobs = 0;
+  std::int64_t finished_jobs = 0;
+  std::int64_t events_trimmed_until =
+      0;  // a position; all older events were removed for their number
+
+  std::int64_t& JobsIn(JobState state) {
+    if (IsFinal(state)) return finished_jobs;
+    return state == JobState::kQueued ? queued_jobs : running_jobs;
+  }
+};
+
+// What one write works with, inside its transaction.
+struct WriteContext {
+  Tables& tables;
+  Counters& counters;
+  WallTime now;          // of this write: leases, events and records all get this one time
+  bool changed = false;  // set: jobs or events changed, watchers want to know
+  bool garbage = false;  // set: a blob may have lost its last reference or hold
+};
+
+// One write. Run() is called on the writer thread inside a transaction and is undone when it gives
+// an error; it may be called again when that transaction could not be committed. Then Answer() is
+// called once, after the commit, with an error of Run() or of the commit.
+class WriteOperation {
+ public:
+  virtual ~WriteOperation() = default;
+  virtual Status Run(WriteContext& context) = 0;
+  virtual void Answer(const Status& status) = 0;
+};
+
+}  // namespace rmlcell::storage::sqlite

@@ -1,0 +1,285 @@
+#include "storage/sqlite/writer.h"
+
+#include <algorithm>
+#include <exception>
+#include <iterator>
+#include <string>
+
+namespace rmlcell::storage::sqlite {
+namespace {
+
+// Operations in one transaction at most, so that the first of them is not kept waiting for the last
+// of a long queue.
+constexpr std::size_t kBatchMax = 1'024;
+
+// Log size at which it is moved into the database file: 16 MiB when the writer has nothing else to
+// do, so that a commit seldom has to wait for it; four times that when it is busy, as pages that
+// are written over and over are moved once only.
+constexpr int kCheckpointPages = 4'096;
+constexpr int kCheckpointPagesWhenBusy = 4 * kCheckpointPages;
+
+// A caller that waits for its write on its own stack.
+struct Waiter {
+  std::mutex mutex;
+  std::condition_variable answered;
+  bool done = false;
+  Status status;
+};
+
+class WaitingOperation final : public WriteOperation {
+ public:
+  WaitingOperation(std::function<Status(WriteContext&)> run, Waiter& waiter)
+      : run_(std::move(run)), waiter_(waiter) {}
+
+  Status Run(WriteContext& context) override { return run_(context); }
+
+  void Answer(const Status& status) override {
+    // Told under the lock: the waiter, and its mutex, are gone as soon as it sees `done`.
+    const std::lock_guard lock(waiter_.mutex);
+    waiter_.status = status;
+    waiter_.done = true;
+    waiter_.answered.notify_one();
+  }
+
+ private:
+  std::function<Status(WriteContext&)> run_;
+  Waiter& waiter_;
+};
+
+}  // namespace
+
+Writer::Writer(std::unique_ptr<Connection> connection, const Counters& counters,
+               const Options& options, Clock clock, std::function<void()> changed)
+    : options_(options),
+      clock_(std::move(clock)),
+      changed_(std::move(changed)),
+      housekeeping_(options.keep),
+      connection_(std::move(connection)),
+      counters_(counters),
+      queued_jobs_(counters.queued_jobs),
+      running_jobs_(counters.running_jobs),
+      thread_([this] { Loop(); }) {}
+
+Writer::~Writer() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  work_.notify_one();
+  thread_.join();
+}
+
+void Writer::Post(std::unique_ptr<WriteOperation> operation, std::size_t bytes) {
+  bool enough = false;
+  {
+    const std::lock_guard lock(mutex_);
+    const bool full = queue_.size() >= options_.waiting_operations_max ||
+                      waiting_bytes_ + bytes > options_.waiting_bytes_max;
+    // One operation is always taken, however large: else it could never be written.
+    if (bytes == 0 || !full || queue_.empty()) {
+      waiting_bytes_ += bytes;
+      queue_.push_back({.operation = std::move(operation), .bytes = bytes, .status = {}});
+    }
+    enough = queue_.size() >= wanted_;
+  }
+  if (operation != nullptr) {
+    operation->Answer(Error{ErrorCode::kCellResourceExhausted,
+                            "more writes wait for the disk than the store takes",
+                            {}});
+    return;
+  }
+  if (enough) work_.notify_one();
+}
+
+Status Writer::RunAndWait(Run run) {
+  Waiter waiter;
+  auto operation = std::make_unique<WaitingOperation>(std::move(run), waiter);
+  if (std::this_thread::get_id() == thread_.get_id()) return RunFromAnswer(std::move(operation));
+  Post(std::move(operation), 0);
+  std::unique_lock lock(waiter.mutex);
+  waiter.answered.wait(lock, [&] { return waiter.done; });
+  return waiter.status;
+}
+
+// An answer that writes: there is nobody else who could. What was queued before goes first; its
+// answers wait until the one that is being given returns.
+Status Writer::RunFromAnswer(std::unique_ptr<WriteOperation> operation) {
+  const WriteOperation* const own = operation.get();
+  Post(std::move(operation), 0);
+  for (;;) {
+    RunBatch(Take());
+    const auto found = std::ranges::find_if(
+        answers_, [own](const Pending& pending) { return pending.operation.get() == own; });
+    if (found != answers_.end()) {
+      Status status = std::move(found->status);
+      answers_.erase(found);
+      return status;
+    }
+  }
+}
+
+void Writer::Loop() {
+  while (WaitForWork()) {
+    RunBatch(Take());
+    AnswerAll();
+    Tidy();
+    CheckpointWhenLarge();
+  }
+}
+
+// False: there is nothing more to do, for ever.
+bool Writer::WaitForWork() {
+  std::unique_lock lock(mutex_);
+  const auto enough = [this] { return queue_.size() >= wanted_ || stopping_; };
+  if (!tidy_) work_.wait(lock, enough);
+  // Callers that were answered together come back one by one, and the first of them would get a
+  // commit, and a sync of the disk, of its own.
+  if (last_batch_ > 1 && queue_.size() < last_batch_ && options_.group_window.count() > 0) {
+    wanted_ = last_batch_;
+    work_.wait_for(lock, options_.group_window, enough);
+    wanted_ = 1;
+  }
+  return !queue_.empty() || !stopping_;
+}
+
+Writer::Batch Writer::Take() {
+  Batch batch;
+  const std::lock_guard lock(mutex_);
+  const std::size_t count = std::min(queue_.size(), kBatchMax);
+  batch.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    waiting_bytes_ -= queue_.front().bytes;
+    batch.push_back(std::move(queue_.front()));
+    queue_.pop_front();
+  }
+  last_batch_ = count;
+  return batch;
+}
+
+void Writer::RunBatch(Batch batch) {
+  if (batch.empty()) return;
+  Outcome outcome = TryBatch(batch, Undo::kWithAll);
+  // One failed in the middle of its writes: again, and this time each can be undone alone.
+  if (outcome == Outcome::kSpoilt) outcome = TryBatch(batch, Undo::kAlone);
+  if (outcome == Outcome::kLost && batch.size() > 1) {
+    // One of them may be to blame, such as a program that no longer fits on the disk: each for
+    // itself.
+    for (Pending& pending : batch) TryBatch(std::span(&pending, 1), Undo::kAlone);
+  }
+  std::move(batch.begin(), batch.end(), std::back_inserter(answers_));
+}
+
+// One transaction. kCommitted: every operation has its own status. Else nothing of it is there;
+// when it was lost, every operation has the reason as its status.
+Writer::Outcome Writer::TryBatch(std::span<Pending> batch, Undo undo) {
+  const Counters before = counters_;
+  const auto lose = [&](const Error& reason) {
+    counters_ = before;
+    for (Pending& pending : batch) pending.status = reason;
+    return Outcome::kLost;
+  };
+  Result<Transaction> transaction =
+      Transaction::Begin(connection_->transactions, Transaction::Kind::kWrite);
+  if (!transaction) {
+    lose(transaction.error());
+    return Outcome::kCommitted;  // not the fault of any of them, and each alone would wait as long
+                                 // again
+  }
+  WriteContext context{.tables = connection_->tables, .counters = counters_, .now = {}};
+  for (Pending& pending : batch) {
+    const Status sound = RunOne(pending, context, undo);
+    if (!sound) return lose(sound.error());
+    if (pending.status) continue;
+    // SQLite has ended the transaction: what followed would each be a transaction of its own.
+    if (!transaction->alive()) return lose(Error(pending.status.error()));
+    if (undo == Undo::kWithAll && pending.wrote) {
+      counters_ = before;
+      return Outcome::kSpoilt;
+    }
+  }
+  const Status committed = transaction->Commit();
+  if (!committed) return lose(committed.error());
+  PublishCounts();
+  tidy_ = tidy_ || context.garbage || housekeeping_.IsDue(counters_);
+  if (context.changed) changed_();
+  return Outcome::kCommitted;
+}
+
+// An error: the transaction cannot go on.
+Status Writer::RunOne(Pending& pending, WriteContext& context, Undo undo) {
+  context.now = clock_();
+  const Counters before = counters_;
+  const std::int64_t changes = connection_->database.total_changes();
+  std::optional<Savepoint> savepoint;
+  if (undo == Undo::kAlone) {
+    Result<Savepoint> begun = Savepoint::Begin(connection_->transactions);
+    if (!begun) return begun.error();
+    savepoint.emplace(*std::move(begun));
+  }
+  try {
+    pending.status = pending.operation->Run(context);
+  } catch (const std::exception& exception) {
+    // Out of memory: that write fails, not the process.
+    pending.status = Error{ErrorCode::kCellInternal, exception.what(), {}};
+  }
+  pending.wrote = connection_->database.total_changes() != changes;
+  if (!pending.status) counters_ = before;
+  if (!savepoint) return {};
+  return pending.status ? savepoint->Keep() : savepoint->Undo();
+}
+
+void Writer::AnswerAll() {
+  // One by one: an answer may write and so add to the list.
+  while (!answers_.empty()) {
+    const Pending pending = std::move(answers_.front());
+    answers_.pop_front();
+    pending.operation->Answer(pending.status);
+  }
+}
+
+void Writer::Tidy() {
+  if (!tidy_) return;
+  tidy_ = false;
+  const Counters before = counters_;
+  const auto slice = [&]() -> Result<bool> {
+    Result<Transaction> transaction =
+        Transaction::Begin(connection_->transactions, Transaction::Kind::kWrite);
+    if (!transaction) return transaction.error();
+    WriteContext context{.tables = connection_->tables, .counters = counters_, .now = clock_()};
+    const Result<bool> more = housekeeping_.RunSlice(context);
+    if (!more) return more;
+    const Status committed = transaction->Commit();
+    if (!committed) return committed.error();
+    if (context.changed) changed_();
+    return more;
+  };
+  const Result<bool> more = slice();
+  // Trouble with the disk is told to those who write; the next write that leaves garbage tries
+  // again.
+  if (!more) counters_ = before;
+  tidy_ = more && *more;
+}
+
+// Before anybody is told of the change: whoever is, finds it here.
+void Writer::PublishCounts() {
+  queued_jobs_ = counters_.queued_jobs;
+  running_jobs_ = counters_.running_jobs;
+}
+
+void Writer::CheckpointWhenLarge() {
+  const int pages = connection_->database.log_pages();
+  if (pages < pages_at_checkpoint_) pages_at_checkpoint_ = 0;  // the log began anew
+  const int limit = IsIdle() ? kCheckpointPages : kCheckpointPagesWhenBusy;
+  // After one that a reader kept from its end the next comes as many pages later, not at once.
+  if (pages - pages_at_checkpoint_ < limit) return;
+  pages_at_checkpoint_ = pages;
+  // A failure costs nothing but space; trouble with the disk is told to those who write.
+  static_cast<void>(connection_->database.Checkpoint());
+}
+
+bool Writer::IsIdle() {
+  const std::lock_guard lock(mutex_);
+  return queue_.empty();
+}
+
+}  // namespace rmlcell::storage::sqlite

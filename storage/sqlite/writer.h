@@ -1,0 +1,123 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "storage/sqlite/housekeeping.h"
+#include "storage/sqlite/sqlite_store.h"
+#include "storage/sqlite/write_context.h"
+
+namespace rmlcell::storage::sqlite {
+
+// The one thread that writes. Operations that wait are run together in one transaction and answered
+// after its commit; one that fails is undone alone. A lone operation does not wait for company.
+class Writer {
+ public:
+  struct Options {
+    KeepLimits keep;
+    std::size_t waiting_operations_max;
+    std::size_t waiting_bytes_max;
+    std::chrono::microseconds group_window;
+  };
+
+  // `changed` is called on the writer thread after a commit that changed jobs or events.
+  Writer(std::unique_ptr<Connection> connection, const Counters& counters, const Options& options,
+         Clock clock, std::function<void()> changed);
+
+  // Runs and answers what waits, then stops the thread.
+  ~Writer();
+
+  // Queues the operation. `bytes` is the memory that it holds: when too much waits, it is answered
+  // with CellResourceExhausted instead, by this thread. 0: never refused.
+  void Post(std::unique_ptr<WriteOperation> operation, std::size_t bytes);
+
+  // As of the newest commit.
+  JobCounts job_counts() const { return {.queued = queued_jobs_, .running = running_jobs_}; }
+
+  // Runs `work`, from WriteContext& to a Result or Status, and returns what it gave once it is
+  // durable. Also from within an answer, on the writer thread: what was queued before is then run
+  // first.
+  template <class Work>
+  auto Do(Work work) -> std::invoke_result_t<Work&, WriteContext&>;
+
+ private:
+  struct Pending {
+    std::unique_ptr<WriteOperation> operation;
+    std::size_t bytes = 0;
+    Status status;
+    bool wrote = false;  // it changed rows, also when it failed then
+  };
+  using Batch = std::vector<Pending>;
+
+  // How an operation that fails is undone. A savepoint for each costs a quarter of the time of a
+  // small write, and almost every failure is seen before the first row is touched, where nothing is
+  // to undo. So a batch goes without; when one fails later, all of it is rolled back and run again
+  // with savepoints.
+  enum class Undo { kWithAll, kAlone };
+  enum class Outcome { kCommitted, kSpoilt, kLost };
+
+  void Loop();
+  bool WaitForWork();
+  Batch Take();
+  void RunBatch(Batch batch);
+  Outcome TryBatch(std::span<Pending> batch, Undo undo);
+  Status RunOne(Pending& pending, WriteContext& context, Undo undo);
+  void AnswerAll();
+  void Tidy();
+  void PublishCounts();
+  void CheckpointWhenLarge();
+  bool IsIdle();
+
+  using Run = std::function<Status(WriteContext&)>;
+  Status RunAndWait(Run run);
+  Status RunFromAnswer(std::unique_ptr<WriteOperation> operation);
+
+  const Options options_;
+  const Clock clock_;
+  const std::function<void()> changed_;
+  const Housekeeping housekeeping_;
+
+  // Used by the writer thread only.
+  std::unique_ptr<Connection> connection_;
+  Counters counters_;
+  std::deque<Pending> answers_;  // committed or failed, to be answered
+  bool tidy_ = true;             // there may be something to remove
+  std::size_t last_batch_ = 0;   // operations taken together the last time
+  int pages_at_checkpoint_ = 0;  // size of the log when it was last moved
+
+  std::atomic<std::int64_t> queued_jobs_;
+  std::atomic<std::int64_t> running_jobs_;
+
+  std::mutex mutex_;
+  std::condition_variable work_;
+  std::deque<Pending> queue_;      // guarded by mutex_
+  std::size_t waiting_bytes_ = 0;  // guarded by mutex_
+  std::size_t wanted_ = 1;         // guarded by mutex_; operations that are worth waking up for
+  bool stopping_ = false;          // guarded by mutex_
+
+  std::thread thread_;  // last: it uses all of the above
+};
+
+template <class Work>
+auto Writer::Do(Work work) -> std::invoke_result_t<Work&, WriteContext&> {
+  std::optional<std::invoke_result_t<Work&, WriteContext&>> answer;  // of the newest run
+  const Status durable = RunAndWait([&](WriteContext& context) -> Status {
+    answer.emplace(work(context));
+    return *answer ? Status() : Status(answer->error());
+  });
+  if (!durable) return durable.error();
+  return *std::move(answer);
+}
+
+}  // namespace rmlcell::storage::sqlite

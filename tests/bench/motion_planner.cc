@@ -1,0 +1,159 @@
+// How many segments a second the planner takes, against a bare two-pass loop in the same run
+// (rounds interleaved, medians), and whether cost and memory stay flat with the length of the
+// program. Run by hand:
+//   motion_planner_bench [--flat]
+// Prints one JSON object a line.
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "engine/motion/speed_passes.h"
+#include "tests/engine/motion/random_chain.h"
+
+namespace rmlcell::motion {
+namespace {
+
+// Processor time of this process: other work on the machine then disturbs less.
+double Now() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double Median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+// A closed wavy contour in short lines, as a CAD system writes it; with `head` the beam follows the
+// normal.
+std::vector<MoveCommand> Contour(int count, bool head) {
+  std::vector<MoveCommand> chain;
+  const auto at = [&](int k) {
+    const double t = kTurn * k / 600.0;
+    const double r = 200.0 + 20.0 * std::sin(7 * t);
+    TipPose pose{
+        {1000.0 + r * std::cos(t), 900.0 + r * std::sin(t), -200.0 + 5.0 * std::sin(3 * t)}, 0, 0};
+    if (head) {
+      pose.a_rad = 0.3 * std::sin(2 * t);
+      pose.b_rad = 0.5 + 0.2 * std::cos(3 * t);
+    }
+    return pose;
+  };
+  for (int k = 0; k < count; ++k) {
+    MoveCommand move;
+    move.path = PathPiece::Line(at(k), at(k + 1));
+    move.speed_fraction = 0.06;
+    move.fly = true;
+    move.tag = static_cast<std::uint64_t>(k);
+    chain.push_back(move);
+  }
+  return chain;
+}
+
+double PlanRate(const std::vector<MoveCommand>& chain, const MachineLimits& machine, double& sum) {
+  const double begin = Now();
+  Planner planner(machine);
+  const auto drain = [&] {
+    while (const std::optional<PlannedItem> item = planner.Next()) {
+      sum += std::get<PlannedMotion>(*item).speed.duration_s();
+    }
+  };
+  for (const MoveCommand& move : chain) {
+    if (planner.Append(move)) drain();
+  }
+  planner.Stop();
+  drain();
+  return static_cast<double>(chain.size()) / (Now() - begin);
+}
+
+// What any jerk-limited look-ahead must at least do: corner speed from the angle, forward and
+// backward pass, duration of every span.
+double BareRate(const std::vector<MoveCommand>& chain, double& sum) {
+  const double begin = Now();
+  const PathLimits limits{30.0, 2000.0, 40000.0};
+  std::vector<double> speed(chain.size() + 1, 0.0);
+  const auto reachable = [&](double from, double length, double cap) {
+    if (cap <= from || RampLength(from, cap, limits) <= length) return cap;
+    return std::min(cap, Reach(from, length, limits));
+  };
+  for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
+    const Vec3 in = chain[k].path.to().tip - chain[k].path.from().tip;
+    const Vec3 out = chain[k + 1].path.to().tip - chain[k + 1].path.from().tip;
+    const double cosine = Dot(in, out) / std::sqrt(Dot(in, in) * Dot(out, out));
+    const double corner = 30.0 * std::sqrt(std::max(0.0, 0.5 * (1.0 + cosine)));
+    speed[k + 1] = reachable(speed[k], chain[k].path.length(), corner);
+  }
+  for (std::size_t k = chain.size(); k-- > 0;) {
+    speed[k] = reachable(speed[k + 1], chain[k].path.length(), speed[k]);
+    sum += SpeedProfile::Span(chain[k].path.length(), speed[k], speed[k + 1], limits).duration_s();
+  }
+  return static_cast<double>(chain.size()) / (Now() - begin);
+}
+
+long PeakMemory_KiB() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
+}
+
+void Rates() {
+  constexpr int kSegments = 50'000;
+  constexpr int kRounds = 7;
+  const std::vector<MoveCommand> three = Contour(kSegments, false);
+  const std::vector<MoveCommand> five = Contour(kSegments, true);
+  MachineLimits trapezoid = StandardMachine();
+  trapezoid.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
+  std::vector<double> bare, jerk, flat, axes;
+  double sum = 0.0;
+  for (int round = 0; round < kRounds; ++round) {
+    bare.push_back(BareRate(three, sum));
+    jerk.push_back(PlanRate(three, StandardMachine(), sum));
+    flat.push_back(PlanRate(three, trapezoid, sum));
+    axes.push_back(PlanRate(five, StandardMachine(), sum));
+  }
+  std::printf(
+      "{\"bare_per_s\": %.0f, \"jerk_3axis_per_s\": %.0f, \"trapezoid_3axis_per_s\": %.0f, "
+      "\"five_axis_per_s\": %.0f, \"jerk_to_bare\": %.3f, \"rounds\": %d, \"sum\": %.9g}\n",
+      Median(bare), Median(jerk), Median(flat), Median(axes), Median(jerk) / Median(bare), kRounds,
+      sum);
+}
+
+// The same loop of the contour again and again, without keeping it.
+void Flat() {
+  const std::vector<MoveCommand> loop = Contour(600, false);
+  for (const int segments : {1'000, 10'000, 100'000, 1'000'000, 10'000'000}) {
+    Planner planner(StandardMachine());
+    const double begin = Now();
+    double sum = 0.0;
+    for (int k = 0; k < segments; ++k) {
+      if (!planner.Append(loop[static_cast<std::size_t>(k) % loop.size()])) return;
+      while (const std::optional<PlannedItem> item = planner.Next()) {
+        sum += std::get<PlannedMotion>(*item).speed.duration_s();
+      }
+    }
+    std::printf(
+        "{\"segments\": %d, \"ns_per_segment\": %.1f, \"peak_KiB\": %ld, \"starved\": %llu}\n",
+        segments, 1e9 * (Now() - begin) / segments, PeakMemory_KiB(),
+        static_cast<unsigned long long>(planner.lookahead_starved()));
+    std::fflush(stdout);
+  }
+}
+
+}  // namespace
+}  // namespace rmlcell::motion
+
+int main(int argc, char** argv) {
+  if (argc > 1 && std::strcmp(argv[1], "--flat") == 0) {
+    rmlcell::motion::Flat();
+  } else {
+    rmlcell::motion::Rates();
+  }
+}

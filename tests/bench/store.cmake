@@ -1,0 +1,4 @@
+find_package(SQLite3 3.40 REQUIRED)
+rmlcell_executable(bench_store_submit
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/store_submit.cc
+  LINKS rmlcell::storage_sqlite SQLite::SQLite3)

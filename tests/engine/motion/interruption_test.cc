@@ -1,0 +1,80 @@
+#include "engine/motion/interruption.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/motion/trajectory.h"
+#include "tests/engine/motion/plan_check.h"
+#include "tests/engine/motion/random_chain.h"
+
+namespace rmlcell::motion {
+namespace {
+
+double Length(const std::vector<PlannedMotion>& motions) {
+  double sum = 0.0;
+  for (const PlannedMotion& motion : motions) sum += motion.path.length();
+  return sum;
+}
+
+// Two lines with a right angle at 50 mm/s; STOP 1 mm before the bend, in which the machine brakes
+// with 0.6 * 2000 at most: 50/1200 + 1200/40000 s at 25 mm/s on average, 1.7917 mm. motion.md
+// section 6, OPT-B.31
+TEST(StopAlong, BrakesIntoTheBend) {
+  MoveCommand east, north;
+  east.path = PathPiece::Line({}, {{100, 0, 0}});
+  east.speed_fraction = north.speed_fraction = 0.1;
+  east.fly = true;
+  north.path = PathPiece::Line({{100, 0, 0}}, {{100, 100, 0}});
+  north.tag = 1;
+  const std::vector<PlannedMotion> plan = Plan({east, north});
+  const double t = plan[0].speed.TimeAt(plan[0].path.length() - 1.0);
+  const StopOnPath stop = StopAlong(plan, t);
+  ASSERT_TRUE(stop.complete);
+  ASSERT_EQ(stop.motions.size(), 2u);
+  EXPECT_EQ(stop.index, 1u);
+  const double time = 50.0 / 1200.0 + 1200.0 / 40000.0;
+  const double way = 25.0 * time;
+  EXPECT_NEAR(Length(stop.motions), way, 1e-9);
+  EXPECT_NEAR(stop.s, way - 1.0, 1e-9);
+  EXPECT_NEAR(stop.motions[0].duration_s() + stop.motions[1].duration_s(), time, 1e-9);
+  EXPECT_EQ(stop.motions[1].speed.end().speed, 0.0);
+}
+
+// Stopped anywhere and started again: the same path, every limit kept, the end at rest at the
+// target. motion.md section 10, property 12
+TEST(RestartAlong, GoesOnOverTheSamePath) {
+  const MachineLimits machine = StandardMachine();
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const std::vector<MoveCommand> chain =
+        RandomChain(seed, 8, {.head = false, .all_fly = true, .shortest_mm = 0.1});
+    const std::vector<PlannedMotion> plan = Plan(chain);
+    Dice dice(seed);
+    const auto at = static_cast<std::size_t>(dice.Uniform(0.0, static_cast<double>(plan.size())));
+    const double t = dice.Uniform(0.0, plan[at].speed.duration_s());
+    const std::span<const PlannedMotion> ahead = std::span(plan).subspan(at);
+    const StopOnPath stop = StopAlong(ahead, t);
+    ASSERT_TRUE(stop.complete) << seed;
+    const std::vector<PlannedMotion> rest = RestartAlong(ahead.subspan(stop.index), stop.s);
+
+    const double before = plan[at].speed.At(t).s;
+    double whole = -before;
+    for (const PlannedMotion& motion : ahead) whole += motion.path.length();
+    EXPECT_NEAR(Length(stop.motions) + Length(rest), whole, 1e-8) << seed;
+    if (rest.empty()) continue;
+    const PlanCheck check{chain, rest, machine};
+    for (const std::string& violation : check.Violations()) {
+      ADD_FAILURE() << "seed " << seed << ": " << violation;
+    }
+    EXPECT_EQ(rest.back().path.to(), plan.back().path.to());
+    EXPECT_EQ(rest.back().speed.end().speed, 0.0);
+    if (!stop.motions.empty()) {
+      const MotionView last(stop.motions.back());
+      const MotionView next(rest.front());
+      EXPECT_LE(Distance(last.PoseAt(last.duration_s()).tip, next.PoseAt(0.0).tip), 1e-9) << seed;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rmlcell::motion

@@ -1,0 +1,166 @@
+#include "tests/engine/motion/plan_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rmlcell::motion {
+namespace {
+
+constexpr std::size_t kEnough = 10;
+
+class Checker {
+ public:
+  explicit Checker(const PlanCheck& plan) : plan_(plan) {}
+
+  std::vector<std::string> Run() {
+    std::size_t move = 0;  // of the chain
+    for (std::size_t k = 0; k < plan_.motions.size() && found_.size() < kEnough; ++k) {
+      const PlannedMotion& motion = plan_.motions[k];
+      while (move < plan_.chain.size() && plan_.chain[move].tag != motion.tag) ++move;
+      if (move == plan_.chain.size()) {
+        Say(motion, "a tag out of order", 0, 0);
+        break;
+      }
+      Seam(k);
+      Inside(motion, plan_.chain[move]);
+      if (motion.ends_move) Target(motion, plan_.chain[move]);
+    }
+    return std::move(found_);
+  }
+
+ private:
+  void Say(const PlannedMotion& motion, const std::string& what, double value, double limit) {
+    found_.push_back("move " + std::to_string(motion.tag) + ": " + what + " " +
+                     std::to_string(value) + " against " + std::to_string(limit));
+  }
+  void Most(const PlannedMotion& motion, const std::string& what, double value, double limit,
+            double room) {
+    if (!(value <= limit * (1 + 1e-6) + room)) Say(motion, what, value, limit);
+  }
+
+  // Each motion begins where and how the last one ended.
+  void Seam(std::size_t k) {
+    const PlannedMotion& here = plan_.motions[k];
+    const MotionView view(here);
+    const TrajectoryPoint begin = view.At(0.0);
+    if (k > 0) {
+      const PlannedMotion& before = plan_.motions[k - 1];
+      // Relative to 1 m: chains may wander far from the origin.
+      const double far = std::max(1.0, Norm(begin.tip.tip) / 1000.0);
+      Most(here, "jump of place in nm", 1e6 * Distance(last_.tip.tip, begin.tip.tip), 0.0,
+           1e-3 * far);
+      Most(here, "jump of A", std::abs(last_.tip.a_rad - begin.tip.a_rad), 0.0, 1e-10);
+      Most(here, "jump of velocity", Distance(last_.tip_velocity, begin.tip_velocity), 0.0,
+           1e-6 + 1e-6 * begin.tip_speed());
+      const bool stood = begin.tip_speed() == 0.0;
+      if (std::isfinite(plan_.machine.tip_jerk_mm_s3) && !stood) {
+        Most(here, "jump of acceleration", Distance(last_.tip_acceleration, begin.tip_acceleration),
+             0.0, 1e-3 + 1e-6 * plan_.machine.tip_acceleration_mm_s2);
+      }
+      Most(here, "jump of path speed",
+           std::abs(before.speed.end().speed - here.speed.At(0.0).speed), 0.0, 1e-6);
+    } else {
+      Most(here, "speed at the start", begin.tip_speed(), 0.0, 0.0);
+    }
+    last_ = view.At(here.speed.duration_s());
+    if (here.settling_s > 0.0) Most(here, "speed before settling", last_.tip_speed(), 0.0, 0.0);
+  }
+
+  void Inside(const PlannedMotion& motion, const MoveCommand& move) {
+    const MotionView view(motion);
+    const bool blend = motion.path.kind() == PathPiece::Kind::kBlend;
+    const bool contour = move.kind == MoveCommand::Kind::kContour && !motion.path.by_sigma();
+    const double moving = motion.speed.duration_s();
+    if (!(moving >= 0.0)) Say(motion, "duration", moving, 0.0);
+    const MachineLimits& m = plan_.machine;
+    // Second differences of places near 1e3 mm are good to 1e-12 / h^2: leave out what is shorter.
+    const double h = std::min(1e-4, moving / 8);
+    if (h < 2e-6) return;
+    const double room = 8e-12 / (h * h);
+    const bool planar = !plan_.arcs;
+    double phase_start = 0.0;
+    double last_s = -1.0;
+    for (int k = 0; k < motion.speed.phase_count(); ++k) {
+      const double duration = motion.speed.phase(k).duration_s;
+      const int last = k + 1 == motion.speed.phase_count() ? plan_.samples_per_phase
+                                                           : plan_.samples_per_phase - 1;
+      for (int i = 0; i <= last; ++i) {
+        const double t =
+            std::clamp(phase_start + duration * i / plan_.samples_per_phase, h, moving - h);
+        const TipPose p0 = view.PoseAt(t - h), p1 = view.PoseAt(t), p2 = view.PoseAt(t + h);
+        const double s = motion.speed.At(t).s;
+        Most(motion, "way back", last_s - s, 0.0, 1e-9);
+        last_s = s;
+        const double speed = 0.5 / h * Distance(p2.tip, p0.tip);
+        const double acceleration = Norm(p2.tip - p1.tip * 2.0 + p0.tip) / (h * h);
+        if (contour) {
+          Most(motion, "tip speed", speed,
+               std::min(move.speed_fraction * m.tip_speed_mm_s, motion.limits.speed),
+               1e-6 + 1e-12 / h);
+          Most(motion, "tip acceleration", acceleration, m.tip_acceleration_mm_s2, room);
+        }
+        if (blend) {
+          Most(motion, "acceleration in a blend", acceleration, m.normal_acceleration(), room);
+          // Third differences over four places; the tip's jerk at constant speed. Out of a plane
+          // the curve's torsion adds what motion.md 4.3 does not count.
+          const double q = 5e-5;
+          if (planar && std::isfinite(m.tip_jerk_mm_s3) && t > 3 * q && t + 3 * q < moving) {
+            const Vec3 third = view.PoseAt(t + 3 * q).tip - view.PoseAt(t + q).tip * 3.0 +
+                               view.PoseAt(t - q).tip * 3.0 - view.PoseAt(t - 3 * q).tip;
+            Most(motion, "jerk in a blend", Norm(third) / (8 * q * q * q), m.normal_jerk(),
+                 8e-12 / (q * q * q));
+          }
+        }
+        const AxisPose a0 = motion.head.ColumnOf(p0), a1 = motion.head.ColumnOf(p1),
+                       a2 = motion.head.ColumnOf(p2);
+        const auto axis = [](const AxisPose& a, std::size_t n) {
+          return n == 0   ? a.column.x
+                 : n == 1 ? a.column.y
+                 : n == 2 ? a.column.z
+                 : n == 3 ? a.a_rad
+                          : a.b_rad;
+        };
+        for (std::size_t n = 0; n < kAxisCount; ++n) {
+          const std::string name = std::string("axis ") + "XYZAB"[n];
+          const double v = 0.5 / h * std::abs(axis(a2, n) - axis(a0, n));
+          const double w = std::abs(axis(a2, n) - 2 * axis(a1, n) + axis(a0, n)) / (h * h);
+          const double digits = n < 3 ? 1.0 : 1e-3;
+          Most(motion, name + " speed", v, m.axes.speed[n], 1e-6);
+          Most(motion, name + " acceleration", w, m.axes.acceleration[n], room * digits);
+        }
+      }
+      phase_start += duration;
+    }
+  }
+
+  // Stops meet their target; the way round a /FLY target keeps the distance that is reported.
+  void Target(const PlannedMotion& motion, const MoveCommand& move) {
+    const Vec3& target = move.path.to().tip;
+    const double gap = Distance(motion.path.to().tip, target);
+    if (!IsBlend(motion.corner.passage)) {
+      if (motion.path.kind() != PathPiece::Kind::kBlend)
+        Most(motion, "distance from the target", gap, 0.0, 1e-9);
+      return;
+    }
+    if (motion.path.kind() != PathPiece::Kind::kBlend) {
+      Say(motion, "no blend at the passage", 0, 0);
+      return;
+    }
+    Most(motion, "reported deviation", motion.corner.deviation_mm, gap, 1e-9);
+    Most(motion, "deviation", motion.path.curve().DistanceFrom(target), motion.corner.deviation_mm,
+         1e-8);
+    Most(motion, "speed of the bend", motion.corner.speed,
+         move.overshoot_fraction * move.speed_fraction * plan_.machine.tip_speed_mm_s, 0.0);
+  }
+
+  const PlanCheck& plan_;
+  TrajectoryPoint last_;
+  std::vector<std::string> found_;
+};
+
+}  // namespace
+
+std::vector<std::string> PlanCheck::Violations() const { return Checker(*this).Run(); }
+
+}  // namespace rmlcell::motion

@@ -1,0 +1,120 @@
+#include "engine/motion/trajectory.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/core/units.h"
+#include "tests/engine/motion/random_chain.h"
+
+namespace rmlcell::motion {
+namespace {
+
+void ExpectNear(const Vec3& got, const Vec3& want, double tolerance) {
+  EXPECT_NEAR(got.x, want.x, tolerance);
+  EXPECT_NEAR(got.y, want.y, tolerance);
+  EXPECT_NEAR(got.z, want.z, tolerance);
+}
+
+// Velocities and accelerations of tip and axes are the derivatives of the positions, on every kind
+// of piece. motion.md 2.4
+TEST(MotionView, DerivativesAgreeWithPositions) {
+  std::vector<MoveCommand> chain = RandomChain(7, 30, {.shortest_mm = 1.0});
+  MoveCommand joint;
+  joint.kind = MoveCommand::Kind::kPointToPointAxes;
+  joint.path = PathPiece::Joint({{0, 0, 0}, 0, 0}, {{100, 50, -20}, 1.0, 0.7});
+  chain.push_back(joint);
+  const double h = 1e-4;
+  for (const PlannedMotion& motion : Plan(chain)) {
+    const MotionView view(motion);
+    const double moving = motion.speed.duration_s();
+    if (moving < 10 * h) continue;
+    for (const double share : {0.13, 0.5, 0.77}) {
+      const double t = share * moving;
+      const TrajectoryPoint before = view.At(t - h), here = view.At(t), after = view.At(t + h);
+      // A jerk of 40000 over h = 1e-4: speeds are off by 7e-5, accelerations at a phase edge by 4.
+      ExpectNear(here.tip_velocity, (after.tip.tip - before.tip.tip) * (0.5 / h), 1e-3);
+      ExpectNear(here.tip_acceleration,
+                 (after.tip.tip - here.tip.tip * 2.0 + before.tip.tip) * (1.0 / (h * h)), 8.0);
+      for (std::size_t i = 0; i < kAxisCount; ++i) {
+        EXPECT_NEAR(here.axis_velocity[i], (after.axes[i] - before.axes[i]) * 0.5 / h, 1e-2);
+        EXPECT_NEAR(here.axis_acceleration[i],
+                    (after.axis_velocity[i] - before.axis_velocity[i]) * 0.5 / h, 10.0);
+      }
+      ExpectNear(view.PoseAt(t).tip, here.tip.tip, 1e-12);
+    }
+  }
+}
+
+TEST(MotionView, StandsWhileItSettles) {
+  const std::vector<PlannedMotion> motions = Plan(RandomChain(1, 1));
+  const MotionView view(motions[0]);
+  EXPECT_EQ(view.At(view.duration_s()).tip_speed(), 0.0);
+  EXPECT_EQ(view.At(view.duration_s() - 0.02).tip, motions[0].path.to());
+}
+
+// Adding 0.1 ten million times loses 1.6e-4 in plain arithmetic.
+TEST(LongSum, LosesNothing) {
+  LongSum sum;
+  for (int k = 0; k < 10'000'000; ++k) sum.Add(0.1);
+  EXPECT_NEAR(sum.value(), 1e6, 1e-9);
+}
+
+// Samples lie at k / rate whatever the durations; none is lost or doubled at a seam. motion.md
+// section 9
+TEST(SampleTimes, AreExactMultiples) {
+  SampleTimes times(1000.0);
+  std::vector<double> seen;
+  double end = 0.0;
+  for (const double duration : {0.0105, 0.0, 0.0003, 0.0004, 0.0288, 0.001}) {
+    end += duration;
+    times.Through(duration, [&](double time, double t) {
+      EXPECT_GE(t, 0.0);
+      EXPECT_LE(t, duration);
+      seen.push_back(time);
+    });
+  }
+  ASSERT_EQ(seen.size(), 41u);  // 0 .. 0.040, the end at 0.041 excluded
+  for (std::size_t k = 0; k < seen.size(); ++k) EXPECT_EQ(seen[k], static_cast<double>(k) / 1000.0);
+  EXPECT_NEAR(times.elapsed_s(), end, 1e-15);
+}
+
+double DistanceToChord(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 ab = b - a;
+  const double square = Dot(ab, ab);
+  const double share = square > 0.0 ? std::clamp(Dot(p - a, ab) / square, 0.0, 1.0) : 0.0;
+  return Distance(p, a + ab * share);
+}
+
+// The polyline keeps its tolerance on lines, arcs and blends, and ends where the path ends.
+TEST(Polyline, StaysWithinItsTolerance) {
+  for (const double tolerance : {0.001, 0.01, 0.5}) {
+    for (const PlannedMotion& motion : Plan(RandomChain(11, 40, {.shortest_mm = 0.1}))) {
+      std::vector<Vec3> points;
+      AppendPolyline(motion.path, tolerance, points);
+      ASSERT_GE(points.size(), 2u);
+      EXPECT_EQ(points.front(), motion.path.from().tip);
+      EXPECT_EQ(points.back(), motion.path.to().tip);
+      const PathPiece& path = motion.path;
+      for (int k = 1; k < 60; ++k) {
+        const Vec3 p = path.At(path.length() * k / 60).tip;
+        double nearest = HUGE_VAL;
+        for (std::size_t i = 1; i < points.size(); ++i) {
+          nearest = std::min(nearest, DistanceToChord(p, points[i - 1], points[i]));
+        }
+        EXPECT_LE(nearest, 1.05 * tolerance);
+      }
+    }
+  }
+}
+
+// ceil(phi / (2 acos(1 - tol/R))): a circle of radius 100 at 0.01 needs 223 chords.
+TEST(Polyline, ArcHasAsManyChordsAsNeeded) {
+  std::vector<Vec3> points;
+  AppendPolyline(PathPiece::Circle({{100, 0, 0}}, {0, 0, 0}, {0, 0, 1}, kTurn, 0, 0), 0.01, points);
+  EXPECT_EQ(points.size(),
+            1 + static_cast<std::size_t>(std::ceil(kTurn / (2 * std::acos(1 - 1e-4)))));
+}
+
+}  // namespace
+}  // namespace rmlcell::motion

@@ -1,0 +1,74 @@
+#include "engine/rml1/clipping.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace rmlcell::rml1 {
+namespace {
+
+constexpr CuttingRange kRange{{0.0, 20000.0}, {0.0, 15000.0}, {-6000.0, 0.0}};
+constexpr double kZero = 1e-4;
+
+Region RegionOf(const Point& p) {
+  const bool in_xy = p.x >= 0.0 && p.x <= 20000.0 && p.y >= 0.0 && p.y <= 15000.0;
+  if (!in_xy) return Region::kOutside;
+  if (p.z > 0.0) return Region::kAbove;
+  return p.z < -6000.0 ? Region::kBelow : Region::kInside;
+}
+
+// RML1-5A.01: the pieces of any line join up, and the middle of each lies in its region.
+TEST(Pieces, PartitionAnyLineByRegion) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> x(-20000.0, 40000.0);
+  std::uniform_real_distribution<double> y(-15000.0, 30000.0);
+  std::uniform_real_distribution<double> z(-12000.0, 6000.0);
+  for (int i = 0; i < 50000; ++i) {
+    const Point from{x(random), y(random), z(random), 0.0};
+    const Point to{x(random), y(random), z(random), 90.0};
+    const Pieces pieces = Pieces::Cut(kRange, from, to, kZero);
+    ASSERT_FALSE(pieces.all().empty());
+    EXPECT_EQ(pieces.all().front().from, from);
+    EXPECT_EQ(pieces.all().back().to, to);
+    double length = 0.0;
+    for (std::size_t k = 0; k < pieces.all().size(); ++k) {
+      const Piece& piece = pieces.all()[k];
+      length += DistanceXYZ(piece.from, piece.to);
+      if (k > 0) {
+        EXPECT_LT(DistanceXYZ(pieces.all()[k - 1].to, piece.from), 2 * kZero);
+        EXPECT_NE(piece.region, pieces.all()[k - 1].region);
+      }
+      const Point middle = Between(piece.from, piece.to, 0.5);
+      EXPECT_EQ(piece.region, RegionOf(middle));
+    }
+    EXPECT_NEAR(length, DistanceXYZ(from, to), 1e-6);
+  }
+}
+
+// RML1-5A.26: touching an edge from outside leaves one piece outside.
+TEST(Pieces, DropWhatOnlyTouches) {
+  const Pieces pieces = Pieces::Cut(kRange, {-1000, 1000, -100, 0}, {1000, -1000, -100, 0}, kZero);
+  for (const Piece& piece : pieces.all()) EXPECT_EQ(piece.region, Region::kOutside);
+}
+
+// RML1-5A.01: faces belong to the range; a line in a face stays inside.
+TEST(Pieces, CountFacesAsInside) {
+  const Pieces face = Pieces::Cut(kRange, {0, 0, 0, 0}, {20000, 0, -6000, 0}, kZero);
+  ASSERT_EQ(face.all().size(), 1U);
+  EXPECT_EQ(face.all()[0].region, Region::kInside);
+  // The rounding error of a sum of relative motions does not lose a whole cut.
+  const Pieces noisy = Pieces::Cut(kRange, {-1e-9, 5, -100, 0}, {-1e-9, 9000, -100, 0}, kZero);
+  ASSERT_EQ(noisy.all().size(), 1U);
+  EXPECT_EQ(noisy.all()[0].region, Region::kInside);
+}
+
+// RML1-5A.34: angles are shared out along the line.
+TEST(Pieces, ShareTheRotaryAxisAlongTheLine) {
+  const Pieces pieces = Pieces::Cut(kRange, {0, 0, 0, 0}, {25000, 0, 0, 100}, kZero);
+  ASSERT_EQ(pieces.all().size(), 2U);
+  EXPECT_NEAR(pieces.all()[0].to.a, 80.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace rmlcell::rml1

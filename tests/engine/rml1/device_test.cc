@@ -1,0 +1,201 @@
+#include "engine/rml1/device.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/rml1/run_support.h"
+
+namespace rmlcell::rml1 {
+namespace {
+
+// A device without a clock that a test can feed, and whose findings it keeps.
+class TestDevice final : public DeviceListener {
+ public:
+  explicit TestDevice(const machine::Parameters& parameters)
+      : profile_(MakeProfile(parameters).value()), device_(profile_) {}
+
+  void Feed(std::string_view bytes) {
+    for (const char c : bytes) {
+      device_.Receive(static_cast<unsigned char>(c), offset_++, *this);
+      Work();
+    }
+  }
+  void Work() {
+    for (;;) {
+      while (!device_.actions().empty()) {
+        if (device_.paused()) return;
+        device_.actions().Pop();
+      }
+      if (!device_.Step(*this)) return;
+    }
+  }
+  void OnFinding(const Finding& finding) override { findings_.push_back(finding); }
+
+  Device& operator*() { return device_; }
+  Device* operator->() { return &device_; }
+  const std::vector<Finding>& findings() const { return findings_; }
+  int CountOf(FindingKind kind) const {
+    int count = 0;
+    for (const Finding& finding : findings_) count += finding.kind == kind ? 1 : 0;
+    return count;
+  }
+
+ private:
+  Profile profile_;
+  Device device_;
+  std::int64_t offset_ = 0;
+  std::vector<Finding> findings_;
+};
+
+// RML1-6.10: 100,000 entries with their place, the rest counted, the cut told once, the register
+// kept.
+TEST(Device, BoundsItsErrorLog) {
+  TestDevice device(ParametersOf("t1"));
+  device.Feed("$");
+  device.Feed(std::string(100'004, '5'));
+  device.Feed(",");
+  const ErrorLog& log = device->command_errors();
+  EXPECT_EQ(log.entries().size(), 100'000U);
+  EXPECT_EQ(log.entries()[0], (ErrorLog::Entry{.offset = 0, .number = 1}));
+  EXPECT_EQ(log.entries()[99'999], (ErrorLog::Entry{.offset = 99'999, .number = 2}));
+  EXPECT_EQ(log.total(), 100'006U);
+  EXPECT_EQ(log.count(1), 2U);
+  EXPECT_EQ(log.count(2), 100'004U);
+  EXPECT_TRUE(log.cut());
+  EXPECT_EQ(log.value(), 1);
+  EXPECT_EQ(device.findings().size(), 100'001U);
+  EXPECT_EQ(device.CountOf(FindingKind::kLogCut), 1);
+  device.Feed("H;5");
+  EXPECT_EQ(log.value(), 2);  // the register works on as ever
+}
+
+// RML1-6.10: exactly full is not cut.
+TEST(Device, TellsACutLogOnlyWhenSomethingIsMissing) {
+  TestDevice device(ParametersOf("t1"));
+  device.Feed(std::string(100'000, '5'));
+  EXPECT_FALSE(device->command_errors().cut());
+  EXPECT_EQ(device.CountOf(FindingKind::kLogCut), 0);
+}
+
+// RML1-4.23: a line error that the transport reports is error 15.
+TEST(Device, NotesLineErrorsOfTheTransport) {
+  TestDevice device(ParametersOf("t1"));
+  device.Feed("PU1");
+  device->ReportLineError(3, device);
+  EXPECT_EQ(device->link_errors().value(), 15);
+  device.Feed(",2;");  // the damaged byte is lost, nothing else
+  EXPECT_EQ(device->carriage().logical().x, 1.0);
+  EXPECT_EQ(device->carriage().logical().y, 2.0);
+  EXPECT_EQ(device->command_errors().value(), 0);
+}
+
+// RML1-4.23: a sender that ignores flow control overruns the buffer: error 16, the bytes are lost.
+TEST(Device, LosesBytesBeyondItsBuffer) {
+  machine::Parameters parameters = ParametersOf("t1");
+  ASSERT_TRUE(parameters.Set("BUFFER", 256.0).ok());
+  TestDevice device(parameters);
+  device.Feed("!NR;");  // the semicolon that ended it waits in the buffer
+  ASSERT_TRUE(device->paused());
+  EXPECT_EQ(device->room(), 255U);
+  device.Feed(std::string(249, ';') + "PU1,2;");
+  EXPECT_EQ(device->room(), 0U);
+  EXPECT_EQ(device->link_errors().value(), 0);
+  device.Feed("PD7,8;");
+  EXPECT_EQ(device->link_errors().value(), 16);
+  EXPECT_EQ(device->link_errors().count(16), 6U);
+  device->actions().Pop();  // the resume key
+  device.Work();
+  EXPECT_EQ(device->carriage().logical().x, 1.0);
+  EXPECT_FALSE(device->registers().tool_down);
+}
+
+// RML1-4.20: errors 10, 17 and 18 cannot be raised by any byte.
+TEST(Device, NeverRaisesTheOtherCommunicationErrors) {
+  TestDevice device(ParametersOf("t1"));
+  for (int byte = 0; byte < 256; ++byte) {
+    device.Feed(std::string("\x1b.") + static_cast<char>(byte));
+  }
+  EXPECT_EQ(device->link_errors().total(), device->link_errors().count(11));
+  EXPECT_EQ(device->link_errors().count(10) + device->link_errors().count(17) +
+                device->link_errors().count(18),
+            0U);
+}
+
+// RML1-9.48: names that the profile skips go with all of their parameters, with advice, and move
+// nothing.
+TEST(Device, SkipsVendorNames) {
+  machine::Parameters parameters = ParametersOf("t1");
+  ASSERT_TRUE(parameters.Set("SKIP", "VPANEL").ok());
+  TestDevice device(parameters);
+  device.Feed("J3;!CO1,2,3;!SL;!SP 4 5;!RD.;PU5,5;");
+  EXPECT_EQ(device->command_errors().total(), 0U);
+  EXPECT_EQ(device.CountOf(FindingKind::kSkippedName), 5);
+  EXPECT_EQ(device->carriage().logical().x, 5.0);
+
+  ASSERT_TRUE(parameters.Set("SKIP", "PNC3000").ok());
+  TestDevice older(parameters);
+  older.Feed("!1;!0;!2;");
+  EXPECT_EQ(older->command_errors().count(1), 1U);
+  EXPECT_EQ(older.CountOf(FindingKind::kSkippedName), 2);
+}
+
+// A PNC-3200 takes all commands but !ZE (rml1-profiles.md): its name is unknown there, RML1-2.19.
+TEST(Device, LacksAxisCommandsWhereTheProfileSaysSo) {
+  TestDevice device(ParametersOf("pnc-3200"));
+  device.Feed("!ZE;!ZZ1,1,-1;");
+  EXPECT_EQ(device->command_errors().total(), 1U);
+  EXPECT_EQ(device->command_errors().count(1), 1U);
+}
+
+// RML1-3D.10: a machine without Y moves nothing there, whatever command asks.
+TEST(Device, KeepsYWhereThereIsNone) {
+  TestDevice device(ParametersOf("t1n"));
+  device.Feed("PU100,200;Z5,6,-7;PR;PD1,1;");
+  EXPECT_EQ(device->carriage().logical().y, 0.0);
+  EXPECT_EQ(device->carriage().logical().x, 6.0);
+}
+
+// RML1-3A.46, RML1-3A.51: a speed beyond the machine is limited and told, not an error.
+TEST(Device, AdvisesOnSpeedsBeyondTheMachine) {
+  TestDevice device(ParametersOf("t1"));
+  device.Feed("F60;V0.5;F61;V0.4;VS-3;");
+  EXPECT_EQ(device->command_errors().total(), 0U);
+  EXPECT_EQ(device->speeds_limited(), 3U);
+  ASSERT_EQ(device.CountOf(FindingKind::kSpeedLimited), 3);
+  EXPECT_EQ(device.findings()[0].value, 61.0);
+  EXPECT_EQ(device.findings()[0].step, 3);
+}
+
+// RML1-5A.01: what the tool could not follow is told once a command, and measured.
+TEST(Device, AdvisesOnClippedMotion) {
+  TestDevice device(ParametersOf("t1"));
+  device.Feed("PU25000,0,26000,0;PU0,0;Z0,0,2500,0,0,2000;");
+  EXPECT_EQ(device.CountOf(FindingKind::kClipped), 3);
+  EXPECT_EQ(device->carriage().clipped_sets(), 5U);
+  // Out: 5000, 1000; back: 6000; above the top: up 500 and down 500.
+  EXPECT_NEAR(device->carriage().clipped_length(), 13000.0, 1e-6);
+}
+
+// Advice is bounded: RML1-9.06.
+TEST(Device, BoundsItsAdvice) {
+  TestDevice device(ParametersOf("t1"));
+  for (int i = 0; i < 5000; ++i) device.Feed("F99;");
+  EXPECT_EQ(device.CountOf(FindingKind::kSpeedLimited), 1000);
+  EXPECT_EQ(device->speeds_limited(), 5000U);
+}
+
+// RML1-4.08: a copy of a device is a snapshot and goes on by itself.
+TEST(Device, IsAValue) {
+  TestDevice device(ParametersOf("t1"));
+  device.Feed("PU100,2");
+  Device copy = *device;
+  device.Feed("00;");
+  copy.Receive(';', 7, device);
+  while (copy.Step(device)) {
+    while (!copy.actions().empty()) copy.actions().Pop();
+  }
+  EXPECT_EQ(device->carriage().logical().y, 200.0);
+  EXPECT_EQ(copy.carriage().logical().y, 2.0);
+}
+
+}  // namespace
+}  // namespace rmlcell::rml1

@@ -1,0 +1,114 @@
+#include "engine/rml1/number.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <random>
+#include <string>
+
+#include "engine/core/number_text.h"
+
+namespace rmlcell::rml1 {
+namespace {
+
+NumberReader Read(std::string_view text) {
+  NumberReader reader;
+  reader.Begin(static_cast<unsigned char>(text[0]));
+  for (const char c : text.substr(1)) EXPECT_TRUE(reader.Take(static_cast<unsigned char>(c)));
+  return reader;
+}
+Number ValueOf(std::string_view text) { return Read(text).value(); }
+
+// RML1-2.25: sign, digits and period in every permitted place.
+TEST(NumberReader, ReadsEveryForm) {
+  EXPECT_EQ(ValueOf("100").single, 100.0);
+  EXPECT_EQ(ValueOf("+.5").single, 0.5);
+  EXPECT_EQ(ValueOf("200.").single, 200.0);
+  EXPECT_EQ(ValueOf("-12.25").single, -12.25);
+  EXPECT_EQ(ValueOf("-0").single, 0.0);
+  EXPECT_FALSE(std::signbit(ValueOf("-0").single));
+}
+
+// RML1-2.28, RML1-2.31: what has no digit.
+TEST(NumberReader, TellsALonePeriodFromALoneSign) {
+  EXPECT_FALSE(Read("-").has_digit());
+  EXPECT_FALSE(Read("-").has_period());
+  EXPECT_FALSE(Read("+.").has_digit());
+  EXPECT_TRUE(Read("+.").has_period());
+  EXPECT_EQ(ValueOf("+.").single, 0.0);
+}
+
+// RML1-2.26, RML1-2.30: a letter, a sign and a second period do not belong to a number.
+TEST(NumberReader, EndsAtForeignBytes) {
+  NumberReader reader = Read("1.5");
+  for (const char foreign : {'.', '-', '+', 'E', ' ', ',', '\0', '\x7F', '\xB0'}) {
+    EXPECT_FALSE(reader.Take(static_cast<unsigned char>(foreign)));
+  }
+  EXPECT_EQ(reader.value().single, 1.5);
+}
+
+// RML1-2.63, RML1-9.13: cut towards zero.
+TEST(NumberReader, CutsFractionsTowardsZero) {
+  EXPECT_EQ(ValueOf("10.9").truncated(), 10);
+  EXPECT_EQ(ValueOf("-10.9").truncated(), -10);
+  EXPECT_EQ(ValueOf("-.9").truncated(), 0);
+}
+
+// RML1-9.50: the range holds for the decimal value as it is written.
+TEST(NumberReader, ComparesTheWrittenValue) {
+  EXPECT_TRUE(ValueOf("8388607").Within(kFloatMin, kFloatMax));
+  EXPECT_TRUE(ValueOf("8388607.000").Within(kFloatMin, kFloatMax));
+  EXPECT_FALSE(ValueOf("8388607.0001").Within(kFloatMin, kFloatMax));
+  EXPECT_TRUE(ValueOf("-8388608").Within(kFloatMin, kFloatMax));
+  EXPECT_FALSE(ValueOf("-8388608." + std::string(500, '0') + "1").Within(kFloatMin, kFloatMax));
+  EXPECT_FALSE(ValueOf("8388608").Within(kFloatMin, kFloatMax));
+  EXPECT_FALSE(ValueOf("-0.5").Within(0, 10));
+  EXPECT_TRUE(ValueOf("-0.0").Within(0, 10));
+  EXPECT_FALSE(ValueOf("0.5").Within(1, 10));
+}
+
+// RML1-9.21: the nearest 4-byte value, as the C library finds it, for any decimal.
+TEST(NumberReader, RoundsToTheNearestSingle) {
+  std::mt19937 random(20260101);
+  for (int i = 0; i < 20000; ++i) {
+    std::string text = i % 2 == 0 ? "-" : "";
+    const int whole = static_cast<int>(random() % 8);
+    const int fraction = static_cast<int>(random() % 45);
+    for (int d = 0; d < whole; ++d) text += static_cast<char>('0' + random() % 10);
+    text += '.';
+    for (int d = 0; d <= fraction; ++d) text += static_cast<char>('0' + random() % 10);
+    const Number number = ValueOf(text);
+    EXPECT_EQ(number.single, static_cast<double>(std::strtof(text.c_str(), nullptr))) << text;
+    EXPECT_EQ(number.decimal, std::strtod(text.c_str(), nullptr)) << text;
+  }
+}
+
+// RML1-9.21: decimals exactly halfway between two values, and a hair beside them. 16777217 lies
+// halfway above 2^24; 8388607.75 is halfway between two values half a unit apart.
+TEST(NumberReader, RoundsHalfwayCasesRight) {
+  EXPECT_EQ(ValueOf("8388607.25").single, 8388607.0);
+  EXPECT_EQ(ValueOf("8388607.75").single, 8388608.0);
+  EXPECT_EQ(ValueOf("8388607.2500000000000000000000000001").single, 8388607.5);
+  EXPECT_EQ(ValueOf("8388606.75").single, 8388607.0);
+  EXPECT_EQ(ValueOf("8388606.7499999999999999999999999").single, 8388606.5);
+  // Halfway between 1 and the next value, 1 + 2^-24, then the same with a digit very far behind.
+  const std::string halfway = "1.000000059604644775390625";
+  EXPECT_EQ(ValueOf(halfway).single, 1.0);
+  const double next = std::nextafterf(1.0F, 2.0F);
+  EXPECT_EQ(ValueOf(halfway + std::string(300, '0') + "1").single, next);
+}
+
+// RML1-7.07: a number of any length in the same room.
+TEST(NumberReader, ReadsAMillionDigits) {
+  EXPECT_EQ(ValueOf(std::string(1'000'000, '0') + "100").single, 100.0);
+  EXPECT_EQ(ValueOf("." + std::string(1'500'000, '0') + "1").single, 0.0);
+  EXPECT_TRUE(ValueOf("." + std::string(1'500'000, '0') + "1").fraction);
+  const Number huge = ValueOf(std::string(1'000'000, '9'));
+  EXPECT_EQ(huge.magnitude, Number::kMagnitudeMax);
+  EXPECT_FALSE(huge.Within(kFloatMin, kFloatMax));
+  EXPECT_EQ(ValueOf("-" + std::string(1'000'000, '9')).decimal, -1e9);
+}
+
+}  // namespace
+}  // namespace rmlcell::rml1

@@ -1,0 +1,79 @@
+#include "engine/rml1/programmed.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/rml1/run_support.h"
+
+// The conventions are those of shared/corpus/rml1/SOURCES.md; corpus_test.cc compares whole
+// programs.
+namespace rmlcell::rml1 {
+namespace {
+
+Figures FiguresOf(const std::string& stream, const char* machine = "t1") {
+  TestRun run(ParametersOf(machine), stream);
+  run.AdvanceToEnd();
+  return run.figures();
+}
+
+// Tool heights first, then X and Y: 3 up, 4 across; then 3 down to Z1 = 0, 4 cut back; the tool
+// motion from 3 to 0 ends not below 0, so it is travel.
+TEST(Programmed, GoesToTheToolHeightFirst) {
+  const Figures figures = FiguresOf("@0,3;PU4,0;PD0,0;");
+  EXPECT_DOUBLE_EQ(figures.at("programmed.travel_length"), 3 + 4 + 3);
+  EXPECT_DOUBLE_EQ(figures.at("programmed.cut_length"), 4);
+  EXPECT_EQ(figures.at("programmed.zmin"), 0);
+  EXPECT_EQ(figures.at("programmed.zmax"), 3);
+}
+
+// A segment with an end below Z 0 is cut length, the whole of it.
+TEST(Programmed, CountsWhatEndsBelowZeroAsCut) {
+  const Figures figures = FiguresOf("Z0,0,10,3,4,10,3,4,-2,3,4,10,0,0,10;");
+  EXPECT_DOUBLE_EQ(figures.at("programmed.cut_length"), 12 + 12);
+  EXPECT_DOUBLE_EQ(figures.at("programmed.travel_length"), 10 + 5 + 5);
+}
+
+// The ways of H, IN and !ZM do not count, and H leaves Z where it is.
+TEST(Programmed, LeavesOutTheWaysHome) {
+  const Figures figures = FiguresOf("Z30,40,0;H;!ZM-100;IN;Z3,4,0;");
+  EXPECT_DOUBLE_EQ(figures.at("programmed.travel_length"), 50 + 5);
+}
+
+// A machine that is too small, or counts other units, changes nothing of what a program asks for.
+TEST(Programmed, KnowsNoMachine) {
+  const std::string stream = "@-7000,9000;PU-5,90000;PD8000000,1;PR;Z1,1,1;!RC9;!ZE X1A90;F1000;";
+  Figures small = FiguresOf(stream, "mdx-15");
+  Figures large = FiguresOf(stream, "mdx-540");
+  std::erase_if(small, [](const auto& f) { return !f.first.starts_with("programmed."); });
+  std::erase_if(large, [](const auto& f) { return !f.first.starts_with("programmed."); });
+  EXPECT_EQ(small, large);
+  EXPECT_EQ(small.at("programmed.zmin"), -7000);
+  EXPECT_EQ(small.at("programmed.zmax"), 9000);
+  EXPECT_EQ(small.at("programmed.ymax"), 90000);
+}
+
+// A statement that is no command counts as such, and nothing in it as a command: M runs in the
+// first one (RML1-2.11), R in the second, yet neither was meant.
+TEST(Programmed, CountsSpoiltStatementsAsOther) {
+  const Figures figures = FiguresOf("Z9,9,9;MC0;\n..R;Z9,9,9;");
+  EXPECT_EQ(figures.at("programmed.other"), 2);
+  EXPECT_EQ(figures.at("programmed.commands"), 2);
+  EXPECT_FALSE(figures.contains("programmed.count.M"));
+  EXPECT_FALSE(figures.contains("programmed.count.R"));
+}
+
+// Surplus behind good parameters leaves the command.
+TEST(Programmed, KeepsCommandsWithSurplus) {
+  const Figures figures = FiguresOf("VS5,6;@-1,2,3;^PA;");
+  EXPECT_EQ(figures.at("programmed.other"), 0);
+  EXPECT_EQ(figures.at("programmed.commands"), 3);
+  EXPECT_EQ(figures.at("programmed.count.^"), 1);
+}
+
+// A command that nothing ends is not executed (RML1-7.04), and not counted.
+TEST(Programmed, CountsWhatRan) {
+  EXPECT_EQ(FiguresOf("PU1,1;PU2,2").at("programmed.commands"), 1);
+  EXPECT_EQ(FiguresOf("PU1,1;PU2,2,").at("programmed.commands"), 2);
+}
+
+}  // namespace
+}  // namespace rmlcell::rml1

@@ -1,0 +1,200 @@
+#include "engine/rml1/rml1_family.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "tests/engine/rml1/run_support.h"
+
+namespace rmlcell::rml1 {
+namespace {
+
+machine::Translation TranslateText(std::string_view bytes, bool advice = true) {
+  return Rml1Family().Translate({.name = "part.rml", .bytes = bytes}, ParametersOf("t1"),
+                                {.advice = advice});
+}
+
+TEST(Rml1Family, TellsWhatItIs) {
+  const machine::MachineFamily& family = Rml1Family();
+  EXPECT_EQ(family.info().id, "rml1");
+  EXPECT_FALSE(family.info().has_executables);
+  EXPECT_FALSE(family.info().has_schedules);
+  EXPECT_FALSE(family.parameters().empty());
+  EXPECT_FALSE(family.profiles().empty());
+}
+
+// Every figure that a run gives stands in the table of the family, with its unit; and every figure
+// of the table can be given.
+TEST(Rml1Family, ListsItsFigures) {
+  std::map<std::string, std::string> listed;
+  for (const machine::FigureInfo& info : Rml1Family().figures()) {
+    EXPECT_FALSE(info.text.empty()) << info.name;
+    EXPECT_TRUE(listed.emplace(info.name, info.unit).second) << info.name;
+  }
+  machine::Parameters parameters = ParametersOf("t1a");
+  ASSERT_TRUE(parameters.Set("SEQUENCES", "ALL").ok());
+  ASSERT_TRUE(parameters.Set("SKIP", "VPANEL").ok());
+  ASSERT_TRUE(parameters.Set("BUFFER", 256.0).ok());
+  std::set<std::string> given;
+  const auto collect = [&](const std::vector<machine::Figure>& figures) {
+    for (const machine::Figure& figure : figures) {
+      ASSERT_TRUE(listed.contains(figure.name)) << figure.name;
+      EXPECT_EQ(listed[figure.name], figure.unit) << figure.name;
+      given.insert(figure.name);
+    }
+  };
+  TestRun run(
+      parameters,
+      "D1,1;F;H;I;M;R;V;W;Z1,1,1;@;^PA;DF;IN;PA;PD;PR;PU;VS;!DW;!MC;!NR;!PZ;!RC;!VZ;!ZM;!ZO;"
+      "!ZZ;!ZE A5;J;!CO;!SL;!SP;!RD;X;5;W-1;"
+      "\x1b.k;\x1b.T-\x1b.T70000:\x1b.T1;2;3;4;5;:");
+  run.AdvanceToEnd();
+  run.Press(machine::InputKind::kStart);
+  run.AdvanceToEnd();
+  collect(run->figures());
+  ASSERT_TRUE(parameters.Set("SKIP", "PNC3000").ok());
+  TestRun older(parameters, "!1;!0;");
+  older.AdvanceToEnd();
+  collect(older->figures());
+  std::set<std::string> never;
+  for (const auto& [name, unit] : listed) {
+    if (!given.contains(name)) never.insert(name);
+  }
+  // A stored program meets no line error, and its sender heeds flow control.
+  EXPECT_EQ(never, (std::set<std::string>{"communication_errors.15", "communication_errors.16"}));
+}
+
+// RML1-1.08, RML1-9.10: what reports and pictures need, in mm.
+TEST(Rml1Family, TellsTheShapeOfAMachine) {
+  machine::Parameters parameters = ParametersOf("mdx-40a-rotary");
+  const machine::MachineShape shape = Rml1Family().Shape(parameters);
+  EXPECT_EQ(shape.travel.min, (motion::Vec3{34, 0, -68}));
+  EXPECT_EQ(shape.travel.max, (motion::Vec3{305, 305, 0}));
+  EXPECT_TRUE(shape.has_work_origin);
+  EXPECT_EQ(shape.work_origin, (motion::Vec3{34, 0, -20}));
+  EXPECT_FALSE(shape.five_axis);
+  EXPECT_EQ(shape.laser_watts, 0.0);
+  ASSERT_TRUE(shape.limits.has_value());
+  EXPECT_EQ(shape.limits->axes.speed[2], 30.0);
+  EXPECT_EQ(shape.limits->tip_speed_mm_s, 50.0);
+}
+
+// The object is the raw stream, whatever is in it.
+TEST(Rml1Family, TranslatesAnyBytesToThemselves) {
+  std::string bytes;
+  for (int byte = 0; byte < 256; ++byte) bytes += static_cast<char>(byte);
+  const machine::Translation translation = TranslateText(bytes);
+  EXPECT_TRUE(translation.ok);
+  EXPECT_EQ(translation.object, bytes);
+}
+
+TEST(Rml1Family, RefusesAnEmptyStream) {
+  const machine::Translation translation = TranslateText("");
+  EXPECT_FALSE(translation.ok);
+  ASSERT_EQ(translation.diagnostics.size(), 1U);
+  EXPECT_EQ(translation.diagnostics[0].code, ErrorCode::kCellEmptyProgram);
+}
+
+// RML1-6.07: each finding has code, place and rule; RML1-2.05, RML1-2.19, RML1-3C.01.
+TEST(Rml1Family, TellsFindingsWithTheirPlace) {
+  const machine::Translation translation = TranslateText("PU1,1;\n  $ !XY;\nW-1;\n\x9f");
+  ASSERT_EQ(translation.diagnostics.size(), 4U);
+  const auto& found = translation.diagnostics;
+  EXPECT_EQ(FormatDiagnostic(found[0], "").substr(0, 78),
+            "part.rml:2:3: device error RML1-E1: '$' begins no command [RML1-2.05]; correct");
+  EXPECT_EQ(found[0].where, (SourceSpan{.line = 2, .column = 3, .length = 1, .byte_offset = 9}));
+  EXPECT_EQ(found[1].where, (SourceSpan{.line = 2, .column = 5, .length = 3, .byte_offset = 11}));
+  EXPECT_EQ(found[2].code, ErrorCode::kRml1ParameterRange);
+  EXPECT_EQ(found[2].detail, "W -1");
+  EXPECT_EQ(found[2].where.line, 3);
+  EXPECT_EQ(found[2].step, 2);
+  EXPECT_EQ(found[3].detail, "0x9F begins no command");
+}
+
+// At most kDiagnosticsMax are listed, the rest is counted.
+TEST(Rml1Family, BoundsItsDiagnostics) {
+  const machine::Translation translation = TranslateText(std::string(10'000, '5'));
+  EXPECT_EQ(translation.diagnostics.size(), machine::kDiagnosticsMax);
+  EXPECT_EQ(translation.diagnostics_dropped, 9'000U);
+  EXPECT_EQ(TranslateText(std::string(1000, '5')).diagnostics_dropped, 0U);
+}
+
+// RML1-9.42, RML1-3C.08, RML1-3A.46: advice, and silence where none is wanted.
+TEST(Rml1Family, AdvisesWhereWanted) {
+  const std::string stream = "F99;!NR;PU30000,0;PU1,1";
+  std::vector<ErrorCode> codes;
+  for (const Diagnostic& d : TranslateText(stream).diagnostics) codes.push_back(d.code);
+  EXPECT_EQ(codes,
+            (std::vector<ErrorCode>{ErrorCode::kRml1SpeedClamped, ErrorCode::kRml1PausedAtEnd,
+                                    ErrorCode::kRml1Clipped, ErrorCode::kRml1IncompleteCommand}));
+  EXPECT_TRUE(TranslateText(stream, false).diagnostics.empty());
+  EXPECT_EQ(TranslateText("5;", false).diagnostics.size(), 1U);  // errors are no advice
+}
+
+// Lines and columns stay right, and the check linear, in a file that is one line of a megabyte with
+// link errors in the middle of commands.
+TEST(Rml1Family, FindsPlacesInLongLines) {
+  std::string stream = "\n";
+  for (int i = 0; i < 100'000; ++i) stream += "PU1\x1b.B,2;";
+  const machine::Translation translation = TranslateText(stream);
+  ASSERT_GT(translation.diagnostics.size(), 3U);
+  EXPECT_EQ(translation.diagnostics[0].code, ErrorCode::kRml1BadSequence);
+  EXPECT_EQ(translation.diagnostics[0].where.line, 2);
+  EXPECT_EQ(translation.diagnostics[0].where.column, 6);
+  EXPECT_EQ(translation.diagnostics[1].code,
+            ErrorCode::kRml1WrongParameters);  // PU with one number
+  EXPECT_EQ(translation.diagnostics[1].where.column, 1);
+}
+
+machine::ProjectBundle BundleOf(int slot, std::string_view bytes) {
+  machine::ProjectBundle bundle;
+  bundle.programs.push_back({.slot = slot, .file = {.name = "a.rml", .bytes = bytes}});
+  return bundle;
+}
+
+machine::TransferPlan PlanOf(const machine::ProjectBundle& bundle) {
+  return Rml1Family().PlanTransfer(bundle, ParametersOf("t1"), {});
+}
+
+TEST(Rml1Family, PlansTheTransferOfPrograms) {
+  machine::ProjectBundle bundle = BundleOf(1, "PU1,1;");
+  bundle.programs.push_back({.slot = 99, .file = {.name = "b.rml", .bytes = "XX;"}});
+  const machine::TransferPlan plan = PlanOf(bundle);
+  ASSERT_TRUE(plan.ok);
+  ASSERT_EQ(plan.programs.size(), 2U);
+  EXPECT_EQ(plan.programs[0].object, "PU1,1;");
+  EXPECT_EQ(plan.programs[0].source, "PU1,1;");
+  EXPECT_EQ(plan.programs[1].slot, 99);
+  ASSERT_EQ(plan.diagnostics.size(), 1U);  // a device error does not refuse it
+  EXPECT_EQ(plan.diagnostics[0].program, 99);
+  EXPECT_EQ(plan.diagnostics[0].file, "b.rml");
+}
+
+// Every program or none: whatever a mill cannot take is refused with its reason.
+TEST(Rml1Family, RefusesWhatAMillCannotTake) {
+  const auto refusal = [](const machine::ProjectBundle& bundle) {
+    const machine::TransferPlan plan = PlanOf(bundle);
+    EXPECT_FALSE(plan.ok);
+    EXPECT_TRUE(plan.programs.empty());
+    return plan.diagnostics.at(0).detail;
+  };
+  machine::ProjectBundle schedules = BundleOf(1, "PU;");
+  schedules.schedules.push_back({.number = 1, .name = "x"});
+  EXPECT_EQ(refusal(schedules), "a mill has no laser schedules");
+  machine::ProjectBundle processes = BundleOf(1, "PU;");
+  processes.processes.push_back({.kind = 1, .process = 1, .values = {}, .note = {}});
+  EXPECT_EQ(refusal(processes), "a mill has no process definitions");
+  machine::ProjectBundle inch = BundleOf(1, "PU;");
+  inch.programs[0].inch = true;
+  EXPECT_EQ(refusal(inch), "a stream is in units of its machine, not in inches");
+  EXPECT_EQ(refusal(BundleOf(0, "PU;")), "slot 0 is not one of 1 to 99");
+  EXPECT_EQ(refusal(BundleOf(100, "PU;")), "slot 100 is not one of 1 to 99");
+  machine::ProjectBundle twice = BundleOf(7, "PU;");
+  twice.programs.push_back(twice.programs[0]);
+  EXPECT_EQ(refusal(twice), "slot 7 has two programs");
+  EXPECT_EQ(refusal(BundleOf(1, "")), "the stream has no bytes");
+}
+
+}  // namespace
+}  // namespace rmlcell::rml1

@@ -1,0 +1,412 @@
+// Keys, override, budgets, snapshots and the division of time.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "engine/rml1/rml1_family.h"
+#include "tests/engine/rml1/run_support.h"
+
+namespace rmlcell::rml1 {
+namespace {
+
+using machine::InputKind;
+using machine::InputScript;
+using machine::OutcomeKind;
+using machine::RunPhase;
+using namespace std::chrono_literals;
+
+constexpr double kAcceleration = 200.0;  // of T1
+
+double TrapezoidTime(double length, double speed) {
+  if (length < speed * speed / kAcceleration) return 2.0 * std::sqrt(length / kAcceleration);
+  return length / speed + speed / kAcceleration;
+}
+
+// A program with everything that takes time, for properties.
+const std::string kVaried =
+    "!MC1;VS20;V10;PU1000,1000;PD3000,1000,3000,3000;W30;PD1000,3000;!RC15;W0;Z500,500,-300,"
+    "900,900,-100;PU25000,0;PD19000,500;XX;!ZE X5000Z-50;!MC0;IN;PU0,0;H;";
+
+machine::Parameters VariedMachine() {
+  machine::Parameters parameters = ParametersOf("t1");
+  EXPECT_TRUE(parameters.Set("SPIN_UP", 0.7).ok());
+  EXPECT_TRUE(parameters.Set("SPIN_DOWN", 0.3).ok());
+  return parameters;
+}
+
+const InputScript kVariedInputs = {
+    {.at = 300ms, .kind = InputKind::kHold},
+    {.at = 2s, .kind = InputKind::kStart},
+    {.at = 2500ms, .kind = InputKind::kOverride, .index = 0, .value = 50.0},
+    {.at = 4s, .kind = InputKind::kStop},
+    {.at = 5s, .kind = InputKind::kStart},
+    {.at = 6s, .kind = InputKind::kOverride, .index = 0, .value = 180.0},
+    {.at = 7s, .kind = InputKind::kStop},
+    {.at = 7001ms, .kind = InputKind::kStart},
+    {.at = 9s, .kind = InputKind::kOverride, .index = 0, .value = 30.0}};
+
+// How time is divided into calls of Advance changes nothing that is told: RML1-7.01.
+TEST(MillRunControl, DependsNotOnTheCallsOfAdvance) {
+  TestRun whole(VariedMachine(), kVaried, kVariedInputs);
+  ASSERT_EQ(whole.AdvanceToEnd(), RunPhase::kFinished);
+  std::mt19937 random(11);
+  for (int round = 0; round < 30; ++round) {
+    TestRun parts(VariedMachine(), kVaried, kVariedInputs);
+    SimTime until{0};
+    while (parts->Advance(until) != RunPhase::kFinished) {
+      until += std::chrono::microseconds(1 + random() % (round < 3 ? 3000 : 2'000'000));
+    }
+    ASSERT_EQ(parts.seen().text(), whole.seen().text());
+    EXPECT_EQ(parts.figures(), whole.figures());
+    EXPECT_EQ(parts->SaveMachine(), whole->SaveMachine());
+  }
+}
+
+// Inputs applied by the caller act as scripted ones of the same time do.
+TEST(MillRunControl, TreatsAppliedInputsAsScripted) {
+  const InputScript inputs = {
+      {.at = 2500ms, .kind = InputKind::kOverride, .index = 0, .value = 50.0},
+      {.at = 6s, .kind = InputKind::kOverride, .index = 0, .value = 180.0}};
+  TestRun scripted(VariedMachine(), kVaried, inputs);
+  scripted.AdvanceToEnd();
+  TestRun applied(VariedMachine(), kVaried);
+  for (const machine::InputChange& input : inputs) {
+    applied->Advance(input.at);
+    ASSERT_EQ(applied->state().time, input.at);
+    applied->Apply(input);
+  }
+  ASSERT_EQ(applied.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_EQ(applied.seen().text(), scripted.seen().text());
+}
+
+// A snapshot taken anywhere, restored into the same run or an equal one, goes on the same way, also
+// when the run it came from is gone.
+TEST(MillRunControl, GoesOnFromASnapshot) {
+  TestRun whole(VariedMachine(), kVaried, kVariedInputs);
+  whole.AdvanceToEnd();
+  std::mt19937 random(12);
+  const double total = whole.time_s();
+  for (int round = 0; round < 40; ++round) {
+    const SimTime at = FromSeconds(total * static_cast<double>(random() % 1000) / 1000.0);
+    auto first = std::make_unique<TestRun>(VariedMachine(), kVaried, kVariedInputs);
+    (*first)->Advance(at);
+    const std::string before = first->seen().text();
+    const std::unique_ptr<machine::RunSnapshot> snapshot = (*first)->Save();
+    first->AdvanceToEnd();
+    EXPECT_EQ(first->seen().text(), whole.seen().text());
+    first.reset();
+    TestRun second(VariedMachine(), kVaried, kVariedInputs);
+    second->Restore(*snapshot);
+    EXPECT_EQ(second->state().time, at);
+    second.AdvanceToEnd();
+    ASSERT_EQ(before + second.seen().text(), whole.seen().text());
+    EXPECT_EQ(second.figures(), whole.figures());
+  }
+}
+
+// What watchers see between events: the tool never jumps, never exceeds the feed, and stays in the
+// travel; progress only grows.
+TEST(MillRunControl, MovesSteadilyBetweenEvents) {
+  TestRun run(VariedMachine(), kVaried, kVariedInputs);
+  constexpr SimTime kTick = 1ms;
+  machine::RunState last = run->state();
+  double fastest = 0.0;
+  while (run->Advance(last.time + kTick) != RunPhase::kFinished) {
+    const machine::RunState now = run->state();
+    const double step = motion::Distance(now.tip.tip, last.tip.tip);
+    ASSERT_LE(step, 60.0 * ToSeconds(now.time - last.time) + 1e-9);
+    fastest = std::max(fastest, now.tip_speed_mm_s);
+    EXPECT_GE(now.tip.tip.x, 0.0);
+    EXPECT_LE(now.tip.tip.x, 200.0);
+    EXPECT_LE(now.tip.tip.z, 0.0);
+    EXPECT_GE(now.progress, last.progress);
+    last = now;
+  }
+  EXPECT_NEAR(fastest, 60.0, 0.2);
+  EXPECT_EQ(run->state().progress, 1.0);
+  EXPECT_FALSE(run->state().spindle_on);
+}
+
+// HOLD: the motion in progress ends, then the run stands.
+TEST(MillRunControl, HoldsAtTheEndOfTheMotion) {
+  TestRun run(ParametersOf("t1"), "!MC0;PU6000,0,6000,6000;");
+  const double lower = TrapezoidTime(15, 2);
+  run->Advance(FromSeconds(lower + 0.1));
+  run.Press(InputKind::kHold);
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
+  EXPECT_NEAR(run.time_s(), lower + TrapezoidTime(60, 60), 1e-8);
+  EXPECT_EQ(run.variable("X"), "6000");
+  EXPECT_EQ(run->state().tip_speed_mm_s, 0.0);
+  run.Press(InputKind::kStart);
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_NEAR(run.time_s(), lower + 2 * TrapezoidTime(60, 60), 1e-8);
+}
+
+// STOP: braking begins at once, v2/2a = 9 mm at 60 mm/s; START goes on from there on the same path.
+TEST(MillRunControl, StopsOnThePath) {
+  TestRun run(ParametersOf("t1"), "!MC0;PU6000,0;");
+  const double lower = TrapezoidTime(15, 2);
+  run->Advance(FromSeconds(lower + 0.5));  // 0.3 s to speed and 9 mm, 0.2 s at speed
+  run.Press(InputKind::kStop);
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
+  EXPECT_NEAR(run.time_s(), lower + 0.5 + 0.3, 1e-6);
+  EXPECT_NEAR(run->state().tip.tip.x, 9 + 12 + 9, 1e-5);
+  run.Press(InputKind::kStart);
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_NEAR(run.time_s(), lower + 0.8 + TrapezoidTime(30, 60), 1e-6);
+  EXPECT_EQ(run.variable("X"), "6000");
+  ASSERT_EQ(run.seen().moves().size(), 2U);  // one motion for who counts motions
+  EXPECT_EQ(run.figures().at("motions"), 2);
+  EXPECT_NEAR(run.figures().at("travel_length"), 75.0, 1e-9);
+}
+
+// A STOP in the last ramp ends where the motion would have ended.
+TEST(MillRunControl, StopsNoLaterThanTheMotionItself) {
+  TestRun run(ParametersOf("t1"), "!MC0;PU6000,0;PU0,0;");
+  const double end = TrapezoidTime(15, 2) + TrapezoidTime(60, 60);
+  run->Advance(FromSeconds(end - 0.01));
+  run.Press(InputKind::kStop);
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
+  EXPECT_NEAR(run->state().tip.tip.x, 60.0, 1e-6);
+  EXPECT_NEAR(run.time_s(), end, 1e-6);
+  run.Press(InputKind::kStart);
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_EQ(run.seen().moves().size(), 3U);
+}
+
+// A STOP in a dwell stops its clock.
+TEST(MillRunControl, StopsTheClockOfADwell) {
+  TestRun run(ParametersOf("t1"), "!MC0;W1000;PD;",
+              {{.at = 400ms, .kind = InputKind::kStop}, {.at = 10s, .kind = InputKind::kStart}});
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_NEAR(run.time_s(), 10 + 0.6 + TrapezoidTime(20, 2), 1e-8);
+  EXPECT_NEAR(run.figures().at("dwell_time"), 1.0, 1e-9);
+  EXPECT_NEAR(run.figures().at("halted_time"), 9.6, 1e-9);
+}
+
+// A STOP and the START that takes it back before the tool stands: the rest is ridden from rest.
+TEST(MillRunControl, TakesBackAStop) {
+  TestRun run(ParametersOf("t1"), "!MC0;PU6000,0;");
+  run->Advance(FromSeconds(TrapezoidTime(15, 2) + 0.5));
+  run.Press(InputKind::kStop);
+  run->Advance(run->state().time + 10ms);
+  run.Press(InputKind::kStart);
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_NEAR(run.time_s(), TrapezoidTime(15, 2) + 0.8 + TrapezoidTime(30, 60), 1e-6);
+}
+
+// Override scales F and V speeds, not the travel speed, and stays within the machine.
+TEST(MillRunControl, ScalesFeedsByTheOverride) {
+  machine::RunSetup setup =
+      SetupOf(ParametersOf("t1"), "!MC0;VS20;V40;PU1000,0;PD3000,0;F60;PD5000,0;");
+  setup.override_percent = 50.0;
+  TestRun run(std::move(setup));
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  std::vector<double> feeds;
+  for (const machine::MoveDone& move : run.seen().moves()) feeds.push_back(move.feed_mm_s);
+  EXPECT_EQ(feeds, (std::vector<double>{20, 60, 20, 10, 30}));
+  EXPECT_EQ(run.seen().motions()[1].programmed_mm_s, 0.0);  // as fast as the axes can
+  EXPECT_EQ(run.seen().motions()[3].programmed_mm_s, 10.0);
+
+  machine::RunSetup fast = SetupOf(ParametersOf("t1"), "!MC0;VS50;PD3000,0;");
+  fast.override_percent = 1000.0;  // 200 at most, and the axes allow 60
+  TestRun limited(std::move(fast));
+  limited.AdvanceToEnd();
+  EXPECT_EQ(limited->state().override_percent, 200.0);
+  EXPECT_EQ(limited.seen().moves().back().feed_mm_s, 60.0);
+}
+
+// An override in the middle of a motion: 20 mm at 10 mm/s; after 1.025 s, at 10 mm, the speed goes
+// to 5 mm/s (0.025 s, 0.1875 mm), then 9.8125 mm with the last ramp.
+TEST(MillRunControl, ChangesSpeedInTheMiddleOfAMotion) {
+  TestRun run(ParametersOf("t1"), "!MC0;VS10;PD2000,0;");
+  const double lower = TrapezoidTime(20, 2);
+  run->Advance(FromSeconds(lower + 1.025));
+  EXPECT_NEAR(run->state().tip.tip.x, 10.0, 1e-6);
+  run.Press(InputKind::kOverride, 50.0);
+  run->Advance(FromSeconds(lower + 1.5));
+  EXPECT_NEAR(run->state().tip_speed_mm_s, 5.0, 1e-9);
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  const double rest = 20.0 - 10.0 - 0.1875;
+  const double last_ramp = 5.0 * 5.0 / (2 * kAcceleration);
+  EXPECT_NEAR(run.time_s(), lower + 1.025 + 0.025 + (rest - last_ramp) / 5.0 + 0.025, 1e-6);
+  double ridden = 0.0;
+  for (std::size_t i = 1; i < run.seen().motions().size(); ++i) {
+    ridden += run.seen().motions()[i].travelled;
+  }
+  EXPECT_NEAR(ridden, 20.0, 1e-9);
+  EXPECT_EQ(run.seen().moves().size(), 2U);
+
+  TestRun faster(ParametersOf("t1"), "!MC0;VS10;PD2000,0;");
+  faster->Advance(FromSeconds(lower + 1.025));
+  faster.Press(InputKind::kOverride, 200.0);  // 10 mm left: up 0.75, down 1 with the last ramp
+  ASSERT_EQ(faster.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_NEAR(faster.time_s(), lower + 1.025 + 0.05 + (10 - 0.75 - 1.0) / 20 + 0.1, 1e-6);
+}
+
+// A turn of the rotary axis alone is stopped and resumed too.
+TEST(MillRunControl, StopsATurn) {
+  TestRun run(ParametersOf("t1a"), "!MC0;!ZE A90;");
+  run->Advance(900ms);  // 9 degrees of ramp, then 36 at 60 deg/s: 45
+  run.Press(InputKind::kStop);
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
+  EXPECT_NEAR(run->state().tip.a_rad / kRadPerDegree, 45.0 + 9.0, 1e-6);
+  run.Press(InputKind::kStart);
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_NEAR(run.time_s(), 0.9 + 0.3 + 36.0 / 60 + 0.3, 1e-6);
+  EXPECT_EQ(run.variable("A"), "90");
+}
+
+// An emergency stop freezes the run where it is; the spindle stops.
+TEST(MillRunControl, FreezesOnAnEmergencyStop) {
+  TestRun run(ParametersOf("t1"), "PU6000,0;");
+  run->Advance(FromSeconds(TrapezoidTime(15, 2) + 0.5));
+  run.Press(InputKind::kEmergencyStop);
+  EXPECT_EQ(run->state().phase, RunPhase::kFinished);
+  EXPECT_EQ(run->outcome().kind, OutcomeKind::kStopped);
+  EXPECT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_NEAR(run->state().tip.tip.x, 21.0, 1e-6);
+  EXPECT_FALSE(run->state().spindle_on);
+  EXPECT_EQ(run.seen().Events().back(), "stop");
+  EXPECT_NEAR(run.seen().motions().back().travelled, 21.0, 1e-6);
+}
+
+// End: a cancelled job leaves the tool where it stands.
+TEST(MillRunControl, EndsAtOnce) {
+  TestRun run(ParametersOf("t1"), "PD6000,0;");
+  run->Advance(11s);
+  run->End(OutcomeKind::kCancelled, ErrorCode::kCellCancelled);
+  EXPECT_EQ(run->outcome().code, ErrorCode::kCellCancelled);
+  EXPECT_EQ(run->outcome().place.step, 1);
+  run->End(OutcomeKind::kFailed, ErrorCode::kCellInternal);  // it has ended: nothing changes
+  EXPECT_EQ(run->outcome().kind, OutcomeKind::kCancelled);
+  run.Press(InputKind::kStart);
+  EXPECT_EQ(run->state().phase, RunPhase::kFinished);
+}
+
+// Budgets of the setup: one command or one nanosecond more ends the run.
+TEST(MillRunControl, KeepsItsBudgets) {
+  machine::RunSetup exact = SetupOf(ParametersOf("t1"), "PU;PD;PU;");
+  exact.budget.steps = 3;
+  TestRun fits(std::move(exact));
+  fits.AdvanceToEnd();
+  EXPECT_EQ(fits->outcome().kind, OutcomeKind::kCompleted);
+  const SimTime whole = fits->state().time;
+
+  machine::RunSetup fewer = SetupOf(ParametersOf("t1"), "PU;PD;PU;");
+  fewer.budget.steps = 2;
+  TestRun steps(std::move(fewer));
+  steps.AdvanceToEnd();
+  EXPECT_EQ(steps->outcome().kind, OutcomeKind::kBudgetExceeded);
+  EXPECT_EQ(steps->outcome().code, ErrorCode::kCellStepBudget);
+
+  machine::RunSetup in_time = SetupOf(ParametersOf("t1"), "PU;PD;PU;");
+  in_time.budget.virtual_time = whole;
+  TestRun timely(std::move(in_time));
+  timely.AdvanceToEnd();
+  EXPECT_EQ(timely->outcome().kind, OutcomeKind::kCompleted);
+
+  machine::RunSetup shorter = SetupOf(ParametersOf("t1"), "PU;PD;PU;");
+  shorter.budget.virtual_time = whole - 1ns;
+  TestRun late(std::move(shorter));
+  late.AdvanceToEnd();
+  EXPECT_EQ(late->outcome().code, ErrorCode::kCellTimeBudget);
+  EXPECT_EQ(late->state().time, whole - 1ns);
+}
+
+// Single steps and a breakpoint halt between commands.
+TEST(MillRunControl, HaltsBetweenCommands) {
+  machine::RunSetup single = SetupOf(ParametersOf("t1"), "PU1,1;XX;VS5;PD2,2,3,3;");
+  single.mode = machine::Mode::kSingle;
+  TestRun run(std::move(single));
+  std::vector<int> steps;
+  while (run.AdvanceToEnd() == RunPhase::kHalted) {
+    steps.push_back(run->state().place.step);
+    run.Press(InputKind::kStart);
+  }
+  EXPECT_EQ(steps, (std::vector<int>{1, 2, 3}));
+  EXPECT_EQ(run.variable("X"), "3");
+
+  machine::RunSetup to_break = SetupOf(ParametersOf("t1"), "PU1,1;VS5;PD2,2;");
+  to_break.breakpoint = machine::ProgramStep{.program = 1, .step = 2};
+  TestRun halted(std::move(to_break));
+  ASSERT_EQ(halted.AdvanceToEnd(), RunPhase::kHalted);
+  EXPECT_EQ(halted.variable("VS"), "5");
+  EXPECT_EQ(halted.variable("X"), "1");
+  halted.Press(InputKind::kStart);
+  EXPECT_EQ(halted.AdvanceToEnd(), RunPhase::kFinished);
+}
+
+// RML1-9.11, RML1-3B.06: what a machine keeps between jobs.
+TEST(MillRunControl, KeepsTheMachineBetweenJobs) {
+  TestRun first(ParametersOf("t1a"), "PR;!ZO-500;@-3,7;VS9;V8;W6;!RC15;PD100,200;!ZE A30;XX;");
+  first.AdvanceToEnd();
+  EXPECT_EQ(first.variable("ERR"), "1");
+  machine::RunSetup setup = SetupOf(ParametersOf("t1a"), ";");
+  setup.machine_state = first->SaveMachine();
+  TestRun second(std::move(setup));
+  second.AdvanceToEnd();
+  for (const char* name : {"X", "Y", "Z", "A", "LX", "LY", "LZ", "Z0", "Z1", "Z2", "VS", "VZ", "DW",
+                           "RPM", "MC", "MODE", "TOOL", "SPINDLE"}) {
+    EXPECT_EQ(second.variable(name), first.variable(name)) << name;
+  }
+  EXPECT_EQ(second.variable("ERR"), "0");
+  EXPECT_EQ(second->SaveMachine(), first->SaveMachine());
+}
+
+// A machine that was changed since: what it kept is limited to what it can do now.
+TEST(MillRunControl, LimitsAKeptStateToTheMachine) {
+  TestRun first(ParametersOf("t1"), "!ZO-5500;VS60;V60;!RC15;PU20000,15000;");
+  first.AdvanceToEnd();
+  machine::RunSetup setup = SetupOf(ParametersOf("srm-20"), ";");
+  ASSERT_TRUE(setup.parameters.Set("X_MAX", 100.0).ok());
+  ASSERT_TRUE(setup.parameters.Set("Z_MIN", -40.0).ok());
+  setup.machine_state = first->SaveMachine();
+  TestRun second(std::move(setup));
+  second.AdvanceToEnd();
+  EXPECT_EQ(second.variable("X"), "10000");
+  EXPECT_EQ(second.variable("Z0"), "-4000");
+  EXPECT_EQ(second.variable("VS"), "30");
+  EXPECT_EQ(second.variable("VZ"), "30");
+  EXPECT_EQ(second.variable("RPM"), "7000");
+}
+
+// An override that is no number changes nothing.
+TEST(MillRunControl, IgnoresAnOverrideThatIsNoNumber) {
+  machine::RunSetup setup = SetupOf(ParametersOf("t1"), "PD100,0;");
+  setup.override_percent = std::nan("");
+  TestRun run(std::move(setup));
+  run.Press(InputKind::kOverride, std::nan(""));
+  ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
+  EXPECT_EQ(run->state().override_percent, 100.0);
+}
+
+// Setups that make no sense are refused; a missing program ends the run.
+TEST(MillRunControl, RefusesImpossibleSetups) {
+  const machine::MachineFamily& family = Rml1Family();
+  machine::RunObserver observer;
+  machine::RunSetup dry = SetupOf(ParametersOf("t1"), "PU;");
+  dry.simul = machine::ProgramStep{.program = 1, .step = 1};
+  EXPECT_EQ(family.NewRun(dry, observer).error().code, ErrorCode::kCellUnimplemented);
+  machine::RunSetup repeat = SetupOf(ParametersOf("t1"), "PU;");
+  repeat.mode = machine::Mode::kRepeat;
+  EXPECT_EQ(family.NewRun(repeat, observer).error().code, ErrorCode::kCellUnimplemented);
+  machine::RunSetup narrow = SetupOf(ParametersOf("t1"), "PU;");
+  ASSERT_TRUE(narrow.parameters.Set("X_MAX", -5.0).ok());
+  EXPECT_EQ(family.NewRun(narrow, observer).error().code, ErrorCode::kCellParameterRange);
+  machine::RunSetup foreign = SetupOf(ParametersOf("t1"), "PU;");
+  foreign.machine_state = "something else";
+  EXPECT_EQ(family.NewRun(foreign, observer).error().code, ErrorCode::kCellBadText);
+
+  machine::RunSetup empty = SetupOf(ParametersOf("t1"), "PU;");
+  empty.main_program = 2;
+  const auto run = family.NewRun(empty, observer).value();
+  EXPECT_EQ(run->Advance(kForever), RunPhase::kFinished);
+  EXPECT_EQ(run->outcome().kind, OutcomeKind::kFailed);
+  EXPECT_EQ(run->outcome().code, ErrorCode::kCellNotFound);
+}
+
+}  // namespace
+}  // namespace rmlcell::rml1

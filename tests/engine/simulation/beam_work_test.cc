@@ -1,0 +1,118 @@
+#include "engine/simulation/beam_work.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "tests/engine/simulation/fake_run.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+constexpr double kWatts = 1500.0;
+constexpr double kSpeedMax = 500.0;
+
+// motion.md 8.1: the line through the origin and (speed, power); both in percent.
+machine::PowerBySpeed Workdef1(double speed_percent, double power_percent) {
+  return {.constant_percent = 0.0,
+          .percent_per_mm_s = power_percent / (speed_percent / 100.0 * kSpeedMax)};
+}
+
+double EnergyOf(const motion::PathLimits& limits, double length, machine::PowerBySpeed power) {
+  BeamWork beam(kWatts, kSpeedMax);
+  const auto profile = motion::SpeedProfile::Span(length, 0.0, 0.0, limits);
+  return beam.Moving(profile, 0.0, profile.duration_s(), 1.0, power);
+}
+
+// motion.md 8.1 and case W03: 200 mm at SPEED 8 with (8, 75): 1500 * 0.75 / 40 = 28.125 J/mm at any
+// speed, ramps included.
+TEST(BeamWork, EnergyPerMillimetreIsConstantWithoutSaturation) {
+  const motion::PathLimits limits{.speed = 40.0, .acceleration = 2000.0, .jerk = 40000.0};
+  EXPECT_NEAR(EnergyOf(limits, 200.0, Workdef1(8.0, 75.0)), 28.125 * 200.0, 1e-9);
+  EXPECT_NEAR(EnergyOf(limits, 0.05, Workdef1(8.0, 75.0)), 28.125 * 0.05, 1e-12);
+}
+
+// Case W04: 200 mm at SPEED 10 with (6.5, 80): saturated above 40.625 mm/s; 6014.484172383 J.
+TEST(BeamWork, EnergyWithSaturation) {
+  EXPECT_NEAR(EnergyOf(kSlowLimits, 200.0, Workdef1(6.5, 80.0)), 6014.484172383, 1e-6);
+}
+
+// WORKDEF 0: constant power, so energy is power times time, whatever the speed.
+TEST(BeamWork, ConstantPower) {
+  const auto profile = motion::SpeedProfile::Span(100.0, 0.0, 0.0, kSlowLimits);
+  EXPECT_NEAR(EnergyOf(kSlowLimits, 100.0, {.constant_percent = 60.0}),
+              kWatts * 0.6 * profile.duration_s(), 1e-9);
+}
+
+// A constant and a slope together saturate where c + k v = 100.
+TEST(BeamWork, ConstantAndSlope) {
+  // Trapezoid: 1 s up to 10 mm/s, 1 s down. P = 50 + 10 v reaches 100 at v = 5, after half a
+  // second. Each ramp: half a second from 50 to 100 %, half a second at 100 %.
+  const motion::PathLimits limits{.speed = 10.0, .acceleration = 10.0};
+  const double expected = kWatts * 2.0 * (0.5 * 0.75 + 0.5 * 1.0);
+  EXPECT_NEAR(EnergyOf(limits, 10.0, {.constant_percent = 50.0, .percent_per_mm_s = 10.0}),
+              expected, 1e-9);
+}
+
+// motion.md 8.2: time by speed, classes of 5 % of 500 mm/s = 25 mm/s. A trapezoid with 100 mm/s2 to
+// 60 mm/s over 96 mm: 0.6 s up, 1 s at 60, 0.6 s down. By class: 0..25 0.25 s twice, 25..50 0.25 s
+// twice, 50..75 0.1 s twice and the second at 60.
+TEST(BeamWork, TimeBySpeed) {
+  BeamWork beam(kWatts, kSpeedMax);
+  const motion::PathLimits limits{.speed = 60.0, .acceleration = 100.0};
+  const auto profile = motion::SpeedProfile::Span(96.0, 0.0, 0.0, limits);
+  ASSERT_NEAR(profile.duration_s(), 2.2, 1e-12);
+  beam.Moving(profile, 0.0, profile.duration_s(), 1.0, {.constant_percent = 100.0});
+  beam.Standing(0.5, 0.0);
+  const SimTime total = FromSeconds(2.7);
+  const BeamHistogram histogram = beam.Histogram(total);
+  EXPECT_EQ(histogram.by_speed[0], FromSeconds(0.5));
+  EXPECT_NEAR(ToSeconds(histogram.by_speed[1]), 0.5, 1e-8);
+  EXPECT_NEAR(ToSeconds(histogram.by_speed[2]), 0.5, 1e-8);
+  EXPECT_NEAR(ToSeconds(histogram.by_speed[3]), 1.2, 1e-8);
+  EXPECT_EQ(std::reduce(histogram.by_speed.begin(), histogram.by_speed.end()), total);
+  EXPECT_EQ(histogram.by_power[0], FromSeconds(0.5));
+  EXPECT_EQ(histogram.by_power[19], FromSeconds(2.2));
+}
+
+// Under WORKDEF 1 with 1 % per mm/s the classes of power are of 5 mm/s: on the ramps of 0.6 s each
+// takes 0.05 s twice, and the second at 60 mm/s falls into [60, 65).
+TEST(BeamWork, TimeByPower) {
+  BeamWork beam(kWatts, kSpeedMax);
+  const motion::PathLimits limits{.speed = 60.0, .acceleration = 100.0};
+  const auto profile = motion::SpeedProfile::Span(96.0, 0.0, 0.0, limits);
+  beam.Moving(profile, 0.0, profile.duration_s(), 1.0, {.percent_per_mm_s = 1.0});
+  const BeamHistogram histogram = beam.Histogram(FromSeconds(2.2));
+  for (std::size_t bin = 0; bin < 12; ++bin) {
+    EXPECT_NEAR(ToSeconds(histogram.by_power[bin]), 0.1, 1e-8) << bin;
+  }
+  EXPECT_NEAR(ToSeconds(histogram.by_power[12]), 1.0, 1e-8);
+  EXPECT_EQ(histogram.by_power[13], SimTime::zero());
+}
+
+// A tip that stands while A and B turn gets the power of speed 0.
+TEST(BeamWork, StandingTipWhileTheHeadTurns) {
+  BeamWork beam(kWatts, kSpeedMax);
+  const motion::PathLimits limits{.speed = 1.0, .acceleration = 10.0};
+  const auto profile = motion::SpeedProfile::Span(1.0, 0.0, 0.0, limits);
+  EXPECT_EQ(beam.Moving(profile, 0.0, profile.duration_s(), 0.0, Workdef1(8.0, 75.0)), 0.0);
+  const BeamHistogram histogram = beam.Histogram(FromSeconds(profile.duration_s()));
+  EXPECT_EQ(histogram.by_speed[0], FromSeconds(profile.duration_s()));
+}
+
+// Parts of a profile add up to the whole.
+TEST(BeamWork, PartsAddUp) {
+  BeamWork beam(kWatts, kSpeedMax);
+  const auto profile = motion::SpeedProfile::Span(200.0, 0.0, 0.0, kSlowLimits);
+  const machine::PowerBySpeed power = Workdef1(6.5, 80.0);
+  double sum = 0.0;
+  for (int k = 0; k < 10; ++k) {
+    sum += beam.Moving(profile, profile.duration_s() * k / 10, profile.duration_s() * (k + 1) / 10,
+                       1.0, power);
+  }
+  EXPECT_NEAR(sum, 6014.484172383, 1e-6);
+}
+
+}  // namespace
+}  // namespace rmlcell::simulation

@@ -1,0 +1,144 @@
+#include "engine/simulation/facts.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+#include <string>
+
+#include "engine/simulation/families.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+RunReport SomeReport() {
+  RunReport report;
+  report.family = "rml1";
+  report.title = "two\nlines";
+  report.finished = true;
+  report.outcome = {.kind = machine::OutcomeKind::kFailed,
+                    .code = ErrorCode::kHoleRadiusZero,
+                    .detail = "radius is 0",
+                    .place = {.program = 45, .step = 7, .line = 9}};
+  report.timing = Timing::kExactStopUpperBound;
+  report.cycle_time = FromSeconds(12.5);
+  report.total.time.motion = FromSeconds(10.25);
+  report.total.cut_mm = 264.1421356237;
+  report.total.pierces = 3;
+  report.total.cut_energy_j = 5625.0;
+  report.total.pierce_energy_j = 750.0;
+  report.tip.Add(motion::Vec3{-1, 2, 3});
+  report.changed_parameters = {{"LASER", "EFA51"}, {"VMAX", "423.333"}};
+  AxisFigures a{.name = "A", .rotary = true, .travel = 6.28, .minimum = -3.14, .maximum = 3.14};
+  report.axes = {a};
+  Finding finding;
+  finding.diagnostic.code = ErrorCode::kSpeedLimited;
+  finding.diagnostic.severity = Severity::kWarning;
+  finding.diagnostic.program = 45;
+  finding.diagnostic.step = 2;
+  finding.count = 4;
+  report.findings = {finding};
+  report.figures = {{"programmed.cut_length", "mm", 617.412}};
+  return report;
+}
+
+std::map<std::string, std::string> MapOf(const RunReport& report) {
+  std::map<std::string, std::string> map;
+  for (const Fact& fact : Facts(report)) {
+    EXPECT_TRUE(map.emplace(fact.key, fact.value).second) << fact.key << " twice";
+    EXPECT_FALSE(fact.value.empty()) << fact.key;
+    EXPECT_EQ(fact.value.find('\n'), std::string::npos) << fact.key;
+  }
+  return map;
+}
+
+TEST(Facts, ValuesInTheUnitsOfTheirKeys) {
+  auto facts = MapOf(SomeReport());
+  EXPECT_EQ(facts["outcome"], "failed");
+  EXPECT_EQ(facts["outcome_code"], "OPT-E348");
+  EXPECT_EQ(facts["outcome_program"], "45");
+  EXPECT_EQ(facts["outcome_step"], "7");
+  EXPECT_EQ(facts["outcome_line"], "9");
+  EXPECT_EQ(facts["timing"], "exact stop, upper bound");
+  EXPECT_EQ(facts["cycle_time_s"], "12.5");
+  EXPECT_EQ(facts["motion_time_s"], "10.25");
+  EXPECT_EQ(facts["cut_length_mm"], "264.142136");
+  EXPECT_EQ(facts["pierces"], "3");
+  EXPECT_EQ(facts["energy_j"], "6375.0");
+  EXPECT_EQ(facts["tip_x_min_mm"], "-1.0");
+  EXPECT_EQ(facts["cut_x_min_mm"], "none");
+  EXPECT_EQ(facts["axis_a_max_rad"], "3.14");
+  EXPECT_EQ(facts["axis_b_max_rad"], "none");
+  EXPECT_EQ(facts["warnings"], "4");
+  EXPECT_EQ(facts["errors"], "0");
+  EXPECT_EQ(facts["findings"], "OPT-E7320@45/2x4");
+  EXPECT_EQ(facts["changed_parameters"], "LASER=EFA51 VMAX=423.333");
+  EXPECT_EQ(facts["title"], "two lines");
+  EXPECT_EQ(facts["rml1.programmed.cut_length"], "617.412");
+}
+
+TEST(Facts, RunOnTheWay) {
+  auto facts = MapOf(RunReport{});
+  EXPECT_EQ(facts["outcome"], "running");
+  EXPECT_EQ(facts["outcome_code"], "none");
+  EXPECT_EQ(facts["outcome_line"], "none");
+}
+
+TEST(Facts, TextIsOneFactALine) {
+  const std::string text = FactsText(SomeReport());
+  EXPECT_NE(text.find("\ncycle_time_s: 12.5\n"), std::string::npos);
+  EXPECT_EQ(text.back(), '\n');
+}
+
+std::string PageOfTheDocuments() {
+  std::ifstream file(RMLCELL_SOURCE_DIR "/docs/facts.md");
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// Issue 2: keys and units stand in docs/facts.md. The page lists exactly the keys that can be
+// printed: those of the table and those that families declare.
+TEST(Facts, DocumentListsExactlyTheKeys) {
+  std::set<std::string> printed;
+  for (const Fact& fact : Facts(RunReport{})) printed.insert(fact.key);
+  for (const machine::MachineFamily* family : Families()) {
+    for (const machine::FigureInfo& figure : family->figures()) {
+      printed.insert(std::string(family->info().id) + '.' + std::string(figure.name));
+    }
+  }
+  std::set<std::string> listed;
+  const std::string page = PageOfTheDocuments();
+  const std::string begin = "\n| `";
+  for (std::size_t at = page.find(begin); at != std::string::npos; at = page.find(begin, at + 1)) {
+    const std::size_t key = at + begin.size();
+    EXPECT_TRUE(listed.insert(page.substr(key, page.find('`', key) - key)).second);
+  }
+  EXPECT_EQ(listed, printed);
+  EXPECT_GT(listed.size(), 100u);
+}
+
+// The page is made from the table. When this fails, facts.md beside the test binary is the new
+// page.
+TEST(Facts, DocumentIsUpToDate) {
+  const std::string page = FactsPage();
+  const bool same = PageOfTheDocuments() == page;
+  if (!same) std::ofstream("facts.md") << page;
+  EXPECT_TRUE(same) << "copy facts.md from the folder of this run to docs/";
+}
+
+// The unit of a key is the end of its name, so that a reader cannot mix them up.
+TEST(Facts, UnitsEndTheKeys) {
+  const std::map<std::string_view, std::string_view> endings = {
+      {"s", "_s"},           {"mm", "_mm"},      {"J", "_j"},         {"J/mm", "_j_per_mm"},
+      {"rad", "_rad"},       {"mm/s", "_mm_s"},  {"mm/s2", "_mm_s2"}, {"rad/s", "_rad_s"},
+      {"rad/s2", "_rad_s2"}, {"bytes", "_bytes"}};
+  for (const FactKey& key : FactKeys()) {
+    if (key.unit.empty()) continue;
+    ASSERT_TRUE(endings.contains(key.unit)) << key.unit;
+    EXPECT_TRUE(key.key.ends_with(endings.at(key.unit))) << key.key;
+  }
+}
+
+}  // namespace
+}  // namespace rmlcell::simulation

@@ -1,0 +1,56 @@
+#include "engine/simulation/families.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string>
+
+#include "engine/simulation/version.h"
+#include "tests/engine/simulation/fake_family.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+TEST(Families, ExtensionsAreComparedWithoutCase) {
+  const machine::FamilyInfo& info = FakeFamily().info();
+  EXPECT_TRUE(ClaimsExtension(info, ".fk"));
+  EXPECT_TRUE(ClaimsExtension(info, ".FAKE"));
+  EXPECT_FALSE(ClaimsExtension(info, ".fak"));
+  EXPECT_FALSE(ClaimsExtension(info, ""));
+  EXPECT_FALSE(ClaimsExtension(info, "fk"));
+}
+
+TEST(Families, NamesOfNobody) {
+  EXPECT_EQ(FindFamily("no such family"), nullptr);
+  EXPECT_EQ(FamilyOfFileName("part.xyz"), nullptr);
+  EXPECT_EQ(FamilyOfFileName("part"), nullptr);
+  EXPECT_EQ(FamilyOfFileName(""), nullptr);
+  EXPECT_EQ(FamilyOfFileName("old.rml/part"), nullptr);  // the extension of a folder
+}
+
+// A family is found by its own id and by each of its extensions, and no two share one.
+TEST(Families, EachIsFoundByIdAndExtension) {
+  std::set<std::string_view> ids;
+  for (const machine::MachineFamily* family : Families()) {
+    ASSERT_NE(family, nullptr);
+    EXPECT_TRUE(ids.insert(family->info().id).second);
+    EXPECT_EQ(FindFamily(family->info().id), family);
+    const std::string extensions(family->info().extensions);
+    const std::string first = extensions.substr(0, extensions.find(' '));
+    EXPECT_EQ(FamilyOfFileName("folder.d/part" + first), family);
+  }
+}
+
+// The version in reports is that of the project.
+TEST(Version, IsThatOfTheProject) {
+  std::ifstream file(RMLCELL_SOURCE_DIR "/CMakeLists.txt");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::string wanted = "VERSION ";
+  wanted += kEngineVersion;
+  EXPECT_NE(text.find(wanted + ' '), std::string::npos);
+}
+
+}  // namespace
+}  // namespace rmlcell::simulation

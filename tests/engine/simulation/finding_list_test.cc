@@ -1,0 +1,49 @@
+#include "engine/simulation/finding_list.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/machine/family.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+Diagnostic Warning(int step, std::string detail = {}) {
+  Diagnostic diagnostic{};
+  diagnostic.code = ErrorCode::kSpeedLimited;
+  diagnostic.severity = Severity::kWarning;
+  diagnostic.detail = std::move(detail);
+  diagnostic.program = 3;
+  diagnostic.step = step;
+  return diagnostic;
+}
+
+TEST(FindingList, SameFindingAtTheSameStepIsCounted) {
+  FindingList list;
+  list.Add(SimTime(10), Warning(5, "first"));
+  list.Add(SimTime(20), Warning(6));
+  list.Add(SimTime(30), Warning(5, "second"));
+  ASSERT_EQ(list.findings().size(), 2u);
+  EXPECT_EQ(list.findings()[0].count, 2u);
+  EXPECT_EQ(list.findings()[0].first_at, SimTime(10));
+  EXPECT_EQ(list.findings()[0].diagnostic.detail, "first");
+  EXPECT_EQ(list.findings()[1].count, 1u);
+  Diagnostic other = Warning(5);
+  other.code = ErrorCode::kFlyCancelled;
+  list.Add(SimTime(40), other);
+  EXPECT_EQ(list.findings().size(), 3u);
+}
+
+// Bounded: kDiagnosticsMax are kept, the others counted; known ones go on counting.
+TEST(FindingList, FindingsPastTheLimitAreCounted) {
+  FindingList list;
+  const int limit = static_cast<int>(machine::kDiagnosticsMax);
+  for (int step = 1; step <= limit + 2; ++step) list.Add(SimTime(step), Warning(step));
+  EXPECT_EQ(list.findings().size(), machine::kDiagnosticsMax);
+  EXPECT_EQ(list.dropped(), 2u);
+  list.Add(SimTime(1), Warning(1));
+  EXPECT_EQ(list.findings().front().count, 2u);
+  EXPECT_EQ(list.dropped(), 2u);
+}
+
+}  // namespace
+}  // namespace rmlcell::simulation

@@ -1,0 +1,110 @@
+#include "engine/simulation/motion_peaks.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/core/units.h"
+#include "tests/engine/simulation/fake_run.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+using motion::PathPiece;
+
+MotionPeaks Whole(const motion::PlannedMotion& planned, bool five_axis) {
+  return PeaksOf(planned, five_axis, 0.0, planned.speed.duration_s());
+}
+
+// motion.md 12, S01: 100 mm at 50 mm/s reach 50 mm/s; the ramp is short (50 <= a2/j = 100), so the
+// acceleration peaks at sqrt(50 * 40000). The move is along (3,4,0)/5.
+TEST(MotionPeaks, LineSharesItsSpeedAmongTheAxes) {
+  const auto planned = Planned(LineFrom({0, 0, 0}, {60, 80, 0}));
+  const MotionPeaks peaks = Whole(planned, false);
+  const double acceleration = std::sqrt(50.0 * 40000.0);
+  EXPECT_NEAR(peaks.tip_speed, 50.0, 1e-9);
+  EXPECT_NEAR(peaks.tip_acceleration, acceleration, 1e-6);
+  EXPECT_NEAR(peaks.axis_speed[0], 30.0, 1e-9);
+  EXPECT_NEAR(peaks.axis_speed[1], 40.0, 1e-9);
+  EXPECT_EQ(peaks.axis_speed[2], 0.0);
+  EXPECT_NEAR(peaks.axis_acceleration[1], 0.8 * acceleration, 1e-6);
+}
+
+// S02: 30 mm never reach 350 mm/s; the peak is 200 mm/s, half way.
+TEST(MotionPeaks, PeakBetweenTwoPhasesIsSeen) {
+  const auto planned = Planned(LineFrom({0, 0, 0}, {0, 0, 30}),
+                               {.speed = 350.0, .acceleration = 2000.0, .jerk = 40000.0});
+  EXPECT_NEAR(Whole(planned, false).axis_speed[2], 200.0, 1e-6);
+}
+
+// Up to a time within the profile only: after 1 ms with 40000 mm/s3 the speed is j t2/2 = 0.02.
+TEST(MotionPeaks, PartOfTheProfile) {
+  const auto planned = Planned(LineFrom({0, 0, 0}, {100, 0, 0}));
+  const MotionPeaks peaks = PeaksOf(planned, false, 0.0, 0.001);
+  EXPECT_NEAR(peaks.tip_speed, 0.02, 1e-12);
+  EXPECT_NEAR(peaks.tip_acceleration, 40.0, 1e-9);
+}
+
+// At constant speed v on a circle of radius R the tip is accelerated by v2/R; motion.md 5.1.
+TEST(MotionPeaks, CircleAcceleratesAcross) {
+  const auto circle =
+      Planned(PathPiece::Circle({{20, 0, 0}}, {0, 0, 0}, {0, 0, 1}, kTurn, 0.0, 0.0));
+  const MotionPeaks peaks = Whole(circle, false);
+  EXPECT_NEAR(peaks.tip_speed, 50.0, 1e-9);
+  // Tangential ramps and v2/R = 125 never act together in full.
+  EXPECT_GE(peaks.tip_acceleration, std::sqrt(50.0 * 40000.0) * (1 - 1e-9));
+  EXPECT_NEAR(peaks.axis_speed[0], 50.0, 50.0 * 0.002);
+  EXPECT_LE(peaks.axis_speed[0], 50.0 + 1e-9);
+  const MotionPeaks cruise = PeaksOf(circle, false, 0.5, 2.0);
+  EXPECT_NEAR(cruise.tip_acceleration, 2500.0 / 20.0, 1e-9);
+}
+
+// K07: at A = 0.528, B = 1.5708 a tip speed of 50 along X with A' = 0.3 gives the column 127.743 in
+// X and 45.343 in Y. Here the move does that at its start: 50 mm/s, 0.3 rad/s, i.e. 0.006 rad/mm.
+TEST(MotionPeaks, ColumnIsSwungByTheHead) {
+  motion::PlannedMotion planned;
+  planned.path = PathPiece::Line({{0, 0, 0}, 0.528, 1.5708}, {{1, 0, 0}, 0.534, 1.5708});
+  planned.head = {.length_mm = 300.0};
+  planned.speed = motion::SpeedProfile::Span(1.0, 50.0, 50.0, kSlowLimits);
+  const MotionPeaks peaks = PeaksOf(planned, true, 0.0, 1e-9);
+  EXPECT_NEAR(peaks.axis_speed[0], 127.743476981, 1e-5);
+  EXPECT_NEAR(peaks.axis_speed[1], 45.342604543, 1e-5);
+  EXPECT_NEAR(peaks.axis_speed[3], 0.3, 1e-9);
+  EXPECT_NEAR(peaks.axis_acceleration[0], 13.602781363, 1e-4);
+  EXPECT_NEAR(peaks.axis_acceleration[1], 23.323043094, 1e-4);
+}
+
+// C01: on the curve of the corner the tip keeps 50 mm/s and is accelerated by v2 K/d, with the K of
+// motion.md 4.2 for 90 degrees (rho = 2 sqrt(cos 45)) and d = 4.050462937 mm.
+TEST(MotionPeaks, CurveOfACorner) {
+  const auto motions = PlannedCorner({{0, 0, 0}}, {{100, 0, 0}}, {{100, 100, 0}});
+  ASSERT_EQ(motions.size(), 4u);
+  const double half = std::sqrt(0.5);  // sine and cosine of half the turn
+  const double rho = 2.0 * std::sqrt(half);
+  const double whole = 15.0 / 8.0 - 7.0 * rho / 16.0;
+  const double bend = 0.75 * rho * half / (half * whole * half * whole);
+  double acceleration = 0.0;
+  for (std::size_t k = 1; k <= 2; ++k) {
+    const MotionPeaks peaks = Whole(motions[k], true);
+    EXPECT_NEAR(peaks.tip_speed, 50.0, 1e-6);
+    acceleration = std::max(acceleration, peaks.tip_acceleration);
+  }
+  EXPECT_NEAR(acceleration, 2500.0 * bend / 4.050462937, 1e-3);
+}
+
+// COORD ROBOT, B turns at 1 rad/s about a standing column: the tip goes at 300 mm/s on a circle,
+// and is accelerated by w2 L = 300 mm/s2 towards the column.
+TEST(MotionPeaks, TipIsSwungInRobotCoordinates) {
+  motion::PlannedMotion planned;
+  planned.path = PathPiece::Joint({{0, 0, 0}, 0.0, 0.0}, {{0, 0, 0}, 0.0, 1.0});
+  planned.head = {.length_mm = 300.0};
+  const motion::PathLimits limits{.speed = 1.0, .acceleration = 10.0, .jerk = 100.0};
+  planned.speed = motion::SpeedProfile::Span(1.0, 1.0, 1.0, limits);
+  const MotionPeaks peaks = Whole(planned, true);
+  EXPECT_NEAR(peaks.tip_speed, 300.0, 1e-6);
+  EXPECT_NEAR(peaks.tip_acceleration, 300.0, 1e-3);
+  EXPECT_NEAR(peaks.axis_speed[4], 1.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace rmlcell::simulation

@@ -1,0 +1,169 @@
+#include "engine/simulation/path_extent.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/core/units.h"
+#include "tests/engine/simulation/fake_run.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+using motion::Head;
+using motion::PathPiece;
+using motion::Vec3;
+
+constexpr double kHalfRoot2 = std::numbers::sqrt2 / 2.0;
+
+PathPiece CircleXY(double sweep) {
+  return PathPiece::Circle({{10, 0, 0}}, {0, 0, 0}, {0, 0, 1}, sweep, 0.0, 0.0);
+}
+
+// motion.md 8.2: the box of an arc reaches its true extremes. Three quarters from (10,0)
+// counter-clockwise end at (0,-10): X reaches -10 and Y reaches 10 on the way.
+TEST(PathExtent, ArcReachesItsQuadrants) {
+  const PathPiece arc = CircleXY(1.5 * kPi);
+  const PointSweep sweep = TipSweep({arc, Head{}, 0.0, arc.length()});
+  EXPECT_NEAR(sweep[0].minimum, -10.0, 1e-12);
+  EXPECT_NEAR(sweep[0].maximum, 10.0, 1e-12);
+  EXPECT_NEAR(sweep[1].minimum, -10.0, 1e-12);
+  EXPECT_NEAR(sweep[1].maximum, 10.0, 1e-12);
+  // X goes 10 -> -10 -> 0, Y goes 0 -> 10 -> -10.
+  EXPECT_NEAR(sweep[0].travel, 30.0, 1e-12);
+  EXPECT_NEAR(sweep[1].travel, 30.0, 1e-12);
+  EXPECT_EQ(sweep[0].turns, 1);
+  EXPECT_EQ(sweep[1].turns, 1);
+  EXPECT_EQ(sweep[0].first_sign, -1);
+  EXPECT_EQ(sweep[0].last_sign, 1);
+  EXPECT_EQ(sweep[2].travel, 0.0);
+}
+
+// Only the part that was travelled counts: from 45 to 135 degrees Y turns at the top, X does not.
+TEST(PathExtent, PartOfAnArc) {
+  const PathPiece arc = CircleXY(kTurn);
+  const double eighth = 10.0 * kPi / 4.0;
+  const PointSweep sweep = TipSweep({arc, Head{}, eighth, 3.0 * eighth});
+  EXPECT_NEAR(sweep[0].minimum, -10.0 * kHalfRoot2, 1e-12);
+  EXPECT_NEAR(sweep[0].maximum, 10.0 * kHalfRoot2, 1e-12);
+  EXPECT_EQ(sweep[0].turns, 0);
+  EXPECT_NEAR(sweep[1].maximum, 10.0, 1e-12);
+  EXPECT_NEAR(sweep[1].minimum, 10.0 * kHalfRoot2, 1e-12);
+  EXPECT_NEAR(sweep[1].travel, 20.0 * (1.0 - kHalfRoot2), 1e-12);
+  EXPECT_EQ(sweep[1].turns, 1);
+}
+
+// A circle about (1,1,1)/sqrt(3): in every coordinate it reaches R sqrt(1 - 1/3) from its centre.
+TEST(PathExtent, TiltedCircle) {
+  const double third = 1.0 / std::sqrt(3.0);
+  const Vec3 start{20.0 + 3.0 / std::sqrt(2.0), 30.0 - 3.0 / std::sqrt(2.0), 40.0};
+  const PathPiece circle =
+      PathPiece::Circle({start}, {20, 30, 40}, {third, third, third}, kTurn, 0.0, 0.0);
+  const PointSweep sweep = TipSweep({circle, Head{}, 0.0, circle.length()});
+  const double reach = 3.0 * std::sqrt(2.0 / 3.0);
+  const double centre[3] = {20, 30, 40};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(sweep[i].minimum, centre[i] - reach, 1e-12) << i;
+    EXPECT_NEAR(sweep[i].maximum, centre[i] + reach, 1e-12) << i;
+    EXPECT_NEAR(sweep[i].travel, 4.0 * reach, 1e-11) << i;
+  }
+}
+
+// motion.md 3.2: near-straight arcs (case A04) keep their digits: the chord is 100 mm long, the bow
+// 0.01 mm high.
+TEST(PathExtent, NearlyStraightArc) {
+  const auto arc = PathPiece::ArcThrough({{0, 0, 0}}, {50, 0.01, 0}, {{100, 0, 0}});
+  ASSERT_TRUE(arc);
+  const PointSweep sweep = TipSweep({arc->path, Head{}, 0.0, arc->path.length()});
+  EXPECT_NEAR(sweep[1].maximum, 0.01, 1e-9);
+  EXPECT_NEAR(sweep[1].minimum, 0.0, 1e-9);
+  EXPECT_NEAR(sweep[0].maximum, 100.0, 1e-9);
+}
+
+// motion.md 2.2: with A = 0 and B from -pi/2 to pi/2 about a standing tip the column swings along
+// -sin B in Y and cos B in Z, 300 mm long: Y from 300 to -300, Z up to 300 and down again.
+TEST(PathExtent, ColumnSwingsAboutAStandingTip) {
+  const PathPiece turn = PathPiece::Line({{0, 0, 0}, 0.0, -kPi / 2}, {{0, 0, 0}, 0.0, kPi / 2});
+  const Head head{.length_mm = 300.0};
+  const PathPart part{turn, head, 0.0, 1.0};
+  const PointSweep column = ColumnSweep(part);
+  EXPECT_NEAR(column[1].maximum, 300.0, 1e-9);
+  EXPECT_NEAR(column[1].minimum, -300.0, 1e-9);
+  EXPECT_NEAR(column[1].travel, 600.0, 1e-9);
+  EXPECT_EQ(column[1].turns, 0);
+  EXPECT_NEAR(column[2].maximum, 300.0, 1e-9);
+  EXPECT_NEAR(column[2].minimum, 0.0, 1e-9);
+  EXPECT_NEAR(column[2].travel, 600.0, 1e-9);
+  EXPECT_EQ(column[2].turns, 1);
+  const PointSweep tip = TipSweep(part);
+  EXPECT_EQ(tip[0].travel + tip[1].travel + tip[2].travel, 0.0);
+  EXPECT_EQ(TipLength(part), 0.0);
+}
+
+// Without a turn of the head the column goes as the tip does, 300 mm above.
+TEST(PathExtent, ColumnFollowsAnArcOfTheTip) {
+  const PathPiece arc = CircleXY(1.5 * kPi);
+  const PointSweep column = ColumnSweep({arc, Head{.length_mm = 300.0}, 0.0, arc.length()});
+  EXPECT_NEAR(column[0].minimum, -10.0, 1e-9);
+  EXPECT_NEAR(column[1].maximum, 10.0, 1e-9);
+  EXPECT_NEAR(column[2].minimum, 300.0, 1e-9);
+  EXPECT_NEAR(column[2].maximum, 300.0, 1e-9);
+}
+
+// COORD ROBOT: the column stands while B turns a quarter, so the tip goes a quarter circle of 300
+// mm radius: 471.2389 mm, from below the column to beside it.
+TEST(PathExtent, TipBowsWhenTheHeadTurnsInRobotCoordinates) {
+  const PathPiece joint = PathPiece::Joint({{0, 0, 0}, 0.0, 0.0}, {{0, 0, 0}, 0.0, kPi / 2});
+  const PathPart part{joint, Head{.length_mm = 300.0}, 0.0, 1.0};
+  EXPECT_NEAR(TipLength(part), 300.0 * kPi / 2, 1e-9);
+  const PointSweep tip = TipSweep(part);
+  EXPECT_NEAR(tip[2].minimum, -300.0, 1e-9);
+  EXPECT_NEAR(tip[2].maximum, 0.0, 1e-9);
+  EXPECT_NEAR(tip[1].maximum, 300.0, 1e-9);  // u = (0, -1, 0): the tip is on the other side
+  EXPECT_EQ(ColumnSweep(part)[1].travel, 0.0);
+}
+
+// From B = -1 to B = 1 the tip passes the lowest point of its circle, which no end of the move is.
+TEST(PathExtent, TipTurnsRoundInTheMiddleOfABow) {
+  const PathPiece joint = PathPiece::Joint({{0, 0, 0}, 0.0, -1.0}, {{0, 0, 0}, 0.0, 1.0});
+  const PathPart part{joint, Head{.length_mm = 300.0}, 0.0, 1.0};
+  const PointSweep tip = TipSweep(part);
+  EXPECT_NEAR(tip[2].minimum, -300.0, 1e-9);
+  EXPECT_NEAR(tip[2].maximum, -300.0 * std::cos(1.0), 1e-9);
+  EXPECT_EQ(tip[2].turns, 1);
+  EXPECT_NEAR(TipLength(part), 600.0, 1e-9);
+}
+
+// A curve that bulges: at a corner of 135 degrees between lines along +X and (-1,1)/sqrt(2) the tip
+// goes beyond neither line, and X turns round once, on the curve.
+TEST(PathExtent, CurveTurnsRound) {
+  double farthest = 0.0;
+  int turns = 0;
+  for (const motion::PlannedMotion& planned :
+       PlannedCorner({{0, 0, 0}}, {{100, 0, 0}}, {{0, 100, 0}})) {
+    const PointSweep sweep = TipSweep({planned.path, Head{}, 0.0, planned.path.length()});
+    double sampled = -1e9;
+    for (int k = 0; k <= 5000; ++k) {
+      sampled = std::max(sampled, planned.path.At(planned.path.length() * k / 5000).tip.x);
+    }
+    EXPECT_GE(sweep[0].maximum, sampled - 1e-12);
+    EXPECT_NEAR(sweep[0].maximum, sampled, 1e-6);
+    farthest = std::max(farthest, sweep[0].maximum);
+    turns += sweep[0].turns;
+    EXPECT_EQ(sweep[1].turns, 0);
+    EXPECT_GE(sweep[1].minimum, 0.0);
+  }
+  EXPECT_EQ(turns, 1);
+  EXPECT_LT(farthest, 100.0);
+}
+
+// A straight move in COORD ROBOT without a turn: the tip goes as the column does.
+TEST(PathExtent, StraightJointMove) {
+  const PathPiece joint = PathPiece::Joint({{0, 0, 0}, 1.0, 0.5}, {{30, 40, 0}, 1.0, 0.5});
+  EXPECT_NEAR(TipLength({joint, Head{}, 0.0, 1.0}), 50.0, 1e-12);
+  EXPECT_NEAR(TipLength({joint, Head{}, 0.25, 0.75}), 25.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace rmlcell::simulation

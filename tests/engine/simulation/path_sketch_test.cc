@@ -1,0 +1,148 @@
+#include "engine/simulation/path_sketch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/core/units.h"
+#include "tests/engine/simulation/fake_run.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+using machine::MotionUse;
+using motion::PathPiece;
+using motion::Vec3;
+
+void AddLine(PathSketch& sketch, const Vec3& from, const Vec3& to,
+             MotionUse use = MotionUse::kCut) {
+  motion::PlannedMotion planned;
+  planned.path = LineFrom(from, to);
+  sketch.Add({.use = use, .motion = &planned, .travelled = planned.path.length()});
+}
+
+// Up to the limit the sketch is exact; one more and it is coarser, but bounded. Both sides.
+TEST(PathSketch, IsExactUpToItsLimit) {
+  constexpr std::size_t kLimit = 100;
+  PathSketch sketch({}, kLimit);
+  const auto corner = [](std::size_t k) {
+    return Vec3{static_cast<double>(k), k % 2 == 0 ? 0.0 : 1.0, 0};
+  };
+  for (std::size_t k = 0; k < kLimit; ++k) AddLine(sketch, corner(k), corner(k + 1));
+  EXPECT_EQ(sketch.elements().size(), kLimit);
+  EXPECT_EQ(sketch.tolerance_mm(), 0.0);
+  AddLine(sketch, corner(kLimit), corner(kLimit + 1));
+  EXPECT_LE(sketch.elements().size(), kLimit / 2 + 1);
+  EXPECT_GT(sketch.tolerance_mm(), 0.0);
+}
+
+// A million moves of a relief keep its box to the last digit and its look to a share of it.
+TEST(PathSketch, LongPathsStayInBounds) {
+  constexpr std::size_t kLimit = 20'000;
+  PathSketch sketch({}, kLimit);
+  Vec3 at{0, 0, 0};
+  for (int row = 0; row < 1000; ++row) {
+    for (int k = 1; k <= 1000; ++k) {
+      const double x = row % 2 == 0 ? 0.1 * k : 100.0 - 0.1 * k;
+      const Vec3 next{x, 0.1 * row, -std::abs(std::sin(0.05 * x))};
+      AddLine(sketch, at, next);
+      at = next;
+    }
+  }
+  EXPECT_LE(sketch.elements().size(), kLimit);
+  EXPECT_NEAR(sketch.cut_box().max.x, 100.0, 1e-9);
+  EXPECT_NEAR(sketch.cut_box().max.y, 99.9, 1e-9);
+  machine::Box kept;
+  for (const SketchElement& element : sketch.elements()) {
+    kept.Add(element.from);
+    kept.Add(element.to);
+  }
+  EXPECT_NEAR(kept.max.x, 100.0, 3 * sketch.tolerance_mm());
+  EXPECT_NEAR(kept.max.y, 99.9, 3 * sketch.tolerance_mm());
+  EXPECT_LT(sketch.tolerance_mm(), 2.0);
+}
+
+// Repeated passes lie on top of each other: coarsening drops the copies first.
+TEST(PathSketch, CopiesAreDropped) {
+  PathSketch sketch({}, 100);
+  for (int pass = 0; pass < 100; ++pass) {
+    for (int k = 0; k < 40; ++k) {
+      const double a = kTurn * k / 40;
+      const double b = kTurn * (k + 1) / 40;
+      AddLine(sketch, {50 * std::cos(a), 50 * std::sin(a), 0},
+              {50 * std::cos(b), 50 * std::sin(b), 0});
+    }
+  }
+  EXPECT_LE(sketch.elements().size(), 100u);
+  EXPECT_LT(sketch.tolerance_mm(), 0.1);
+}
+
+TEST(PathSketch, KeepsArcsPlungesAndPierces) {
+  PathSketch sketch({}, 1000);
+  motion::PlannedMotion planned;
+  planned.path = PathPiece::Circle({{12, 0, 0}}, {0, 0, 0}, {0, 0, 1}, kTurn, 0.0, 0.0);
+  sketch.Add({.use = MotionUse::kCut, .motion = &planned, .travelled = planned.path.length()});
+  AddLine(sketch, {12, 0, 0}, {12, 0, -3}, MotionUse::kPlunge);
+  sketch.AddPierce();
+  ASSERT_EQ(sketch.elements().size(), 2u);
+  ASSERT_EQ(sketch.elements()[0].arc, 0);
+  EXPECT_EQ(sketch.circle(0).radius_mm, 12.0);
+  EXPECT_NEAR(sketch.elements()[0].middle.x, -12.0, 1e-12);
+  EXPECT_NEAR(sketch.box().min.x, -12.0, 1e-12);
+  ASSERT_EQ(sketch.dots().size(), 2u);
+  EXPECT_FALSE(sketch.dots()[0].pierce);
+  EXPECT_TRUE(sketch.dots()[1].pierce);
+  EXPECT_EQ(sketch.dots()[1].at, (Vec3{12, 0, -3}));
+}
+
+TEST(PathSketch, NonsensePositionsAreLeftOut) {
+  PathSketch sketch({}, 100);
+  AddLine(sketch, {0, 0, 0}, {std::nan(""), 0, 0});
+  AddLine(sketch, {0, 0, 0}, {HUGE_VAL, 0, 0});
+  EXPECT_TRUE(sketch.elements().empty());
+  EXPECT_TRUE(sketch.box().empty() || sketch.box().max == Vec3{});
+}
+
+// The head's direction is kept for some of the cuts, however many there are.
+TEST(PathSketch, ToolDirectionsAreBounded) {
+  machine::MachineShape shape;
+  shape.five_axis = true;
+  shape.laser_watts = 1500.0;
+  PathSketch sketch(shape, 1000);
+  motion::PlannedMotion planned;
+  planned.path = PathPiece::Line({{0, 0, 0}, 0.0, kPi / 2}, {{1, 0, 0}, 0.0, kPi / 2});
+  for (int k = 0; k < 50'000; ++k) {
+    sketch.Add({.use = MotionUse::kCut, .motion = &planned, .travelled = 1.0, .beam_on = true});
+  }
+  EXPECT_LE(sketch.tools().size(), 4096u);
+  EXPECT_GE(sketch.tools().size(), 2000u);
+  EXPECT_NEAR(sketch.tools()[0].towards_head.y, -1.0, 1e-12);  // u at A = 0, B = pi/2
+}
+
+// Neighbours that go straight on are one; no vertex is farther off than twice the tolerance.
+TEST(MergeStraight, MergesWithinTheTolerance) {
+  std::vector<SketchElement> elements;
+  for (int k = 0; k < 100; ++k) {
+    elements.push_back(
+        {.from = {1.0 * k, 0.001 * (k % 2), 0}, .to = {1.0 * (k + 1), 0.001 * ((k + 1) % 2), 0}});
+  }
+  elements.push_back({.from = {100, 0, 0}, .to = {100, 10, 0}});
+  elements.push_back({.from = {100, 10, 0}, .to = {100, 5, 0}});  // back: not straight on
+  MergeStraight(elements, 0.2);
+  ASSERT_EQ(elements.size(), 3u);
+  EXPECT_EQ(elements[0].to, (Vec3{100, 0, 0}));
+}
+
+TEST(DropAlike, DropsCopiesFromEitherEnd) {
+  std::vector<SketchElement> elements = {
+      {.from = {0, 0, 0}, .to = {10, 0, 0}},
+      {.from = {10.001, 0, 0}, .to = {0, 0.001, 0}},        // the way back
+      {.from = {0, 0, 0}, .to = {10, 0, 0}, .cuts = true},  // looks different
+      {.from = {0, 0, 0}, .to = {10, 0, 0}, .middle = {5, 3, 0}, .arc = 0},
+      {.from = {0, 0, 0}, .to = {10, 0, 0}, .middle = {5, -3, 0}, .arc = 1}};
+  DropAlike(elements, 0.1);
+  EXPECT_EQ(elements.size(), 4u);
+}
+
+}  // namespace
+}  // namespace rmlcell::simulation

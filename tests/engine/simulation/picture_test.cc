@@ -1,0 +1,301 @@
+#include "engine/simulation/picture.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "engine/core/units.h"
+#include "engine/simulation/picture_page.h"
+#include "tests/engine/motion/standard_machine.h"
+#include "tests/engine/simulation/fake_run.h"
+#include "tests/engine/simulation/xml_check.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+using machine::MotionUse;
+using motion::PathPiece;
+using motion::Vec3;
+
+machine::MachineShape Mill() {
+  machine::MachineShape shape;
+  shape.travel.Add(Vec3{0, 0, -60});
+  shape.travel.Add(Vec3{200, 150, 0});
+  shape.has_work_origin = true;
+  shape.work_origin = {10, 10, -20};
+  return shape;
+}
+
+machine::MachineShape Laser() {
+  machine::MachineShape shape;
+  shape.five_axis = true;
+  shape.limits = motion::StandardMachine();
+  shape.laser_watts = 1500.0;
+  shape.travel.Add(Vec3{-600, -600, -1300});
+  shape.travel.Add(Vec3{3600, 3100, 1100});
+  return shape;
+}
+
+RunReport Completed() {
+  RunReport report;
+  report.finished = true;
+  report.title = "part";
+  return report;
+}
+
+std::string SvgOf(const Script& script, const machine::MachineShape& shape,
+                  const RunReport& report = Completed(), const PictureOptions& options = {}) {
+  PictureRecorder recorder(shape);
+  FakeRun run(script, recorder);
+  run.Advance(kForever);
+  return recorder.Svg(report, options);
+}
+
+std::size_t CountOf(std::string_view text, std::string_view what) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(what); at != std::string_view::npos;
+       at = text.find(what, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
+// All path data of a document, one after the other.
+std::string PathsOf(std::string_view svg) {
+  std::string data;
+  const std::string_view begin = " d=\"";
+  for (std::size_t at = svg.find(begin); at != std::string_view::npos;
+       at = svg.find(begin, at + 1)) {
+    const std::size_t from = at + begin.size();
+    data += svg.substr(from, svg.find('"', from) - from);
+    data += '\n';
+  }
+  return data;
+}
+
+Script SomeMilling() {
+  Script script;
+  script.Line({10, 10, -15}, {40, 40, -15})
+      .Line({40, 40, -15}, {40, 40, -21}, {.use = MotionUse::kPlunge});
+  script.Line({40, 40, -21}, {80, 40, -21}, {.use = MotionUse::kCut});
+  script.Line({80, 40, -21}, {80, 70, -22}, {.use = MotionUse::kCut});
+  script.Line({80, 70, -22}, {80, 70, -15}, {.use = MotionUse::kRetract});
+  return script;
+}
+
+Script SomeLaserWork() {
+  Script script;
+  const MotionOptions cut{
+      .use = MotionUse::kCut, .beam_on = true, .power = {.constant_percent = 100}};
+  script.Motion(Planned(PathPiece::Line({{21, 2201, -350}}, {{1312, 700, -300}, 0.0, 0.3})));
+  script.Signal(machine::Signal::kBeam, 1).Wait(machine::WaitKind::kPierce, 1.0, true, 50);
+  script.Motion(Planned(PathPiece::Circle({{1312, 700, -300}, 0.0, 0.3}, {1300, 700, -300},
+                                          {0, 0, 1}, kTurn, kTurn, 0.3)),
+                cut);
+  script.Signal(machine::Signal::kBeam, 0);
+  return script;
+}
+
+// A standalone document: well-formed, nothing that runs, nothing from outside.
+TEST(Picture, IsStandaloneAndWellFormed) {
+  for (const std::string& svg : {SvgOf(SomeMilling(), Mill()), SvgOf(SomeLaserWork(), Laser()),
+                                 SvgOf(Script(), Mill()), SvgOf(Script(), {})}) {
+    EXPECT_EQ(XmlFault(svg), "");
+    EXPECT_TRUE(svg.starts_with("<?xml"));
+    EXPECT_EQ(CountOf(svg, "<svg"), 1u);
+    EXPECT_EQ(CountOf(svg, "<script"), 0u);
+    EXPECT_EQ(CountOf(svg, "href"), 0u);
+    EXPECT_EQ(CountOf(svg, "<image"), 0u);
+    EXPECT_EQ(CountOf(svg, "http"), 1u);  // the name space
+    EXPECT_EQ(CountOf(svg, "url("), CountOf(svg, "url(#"));
+    EXPECT_EQ(CountOf(svg, "nan"), 0u);
+    EXPECT_EQ(CountOf(svg, "inf"), 0u);
+  }
+}
+
+// Names come from users.
+TEST(Picture, TextIsEscaped) {
+  RunReport report = Completed();
+  report.title = "</title><script>alert(1)</script>&\xFF\x01\"";
+  report.family = "<b>";
+  report.inputs_hash = "\"><x";
+  report.engine_version = "&";
+  report.outcome.kind = machine::OutcomeKind::kFailed;
+  report.outcome.code = ErrorCode::kHoleRadiusZero;
+  const std::string svg = SvgOf(SomeMilling(), Mill(), report);
+  EXPECT_EQ(XmlFault(svg), "");
+  EXPECT_EQ(CountOf(svg, "<script"), 0u);
+  EXPECT_EQ(CountOf(svg, "<b>"), 0u);
+}
+
+// A title that does not fit is cut between characters.
+TEST(Picture, LongTitlesAreCut) {
+  RunReport report = Completed();
+  for (int k = 0; k < 100; ++k) report.title += "ö";
+  EXPECT_EQ(XmlFault(SvgOf(SomeMilling(), Mill(), report)), "");
+}
+
+// One view for a mill, four panels for five axes, or what is asked for.
+TEST(Picture, ViewsOfTheMachine) {
+  const std::string mill = SvgOf(SomeMilling(), Mill());
+  EXPECT_EQ(CountOf(mill, "<clipPath"), 1u);
+  EXPECT_EQ(CountOf(mill, ">XY from above<"), 1u);
+  const std::string laser = SvgOf(SomeLaserWork(), Laser());
+  EXPECT_EQ(CountOf(laser, "<clipPath"), 4u);
+  for (const char* view :
+       {">XY from above<", ">XZ from the front<", ">YZ from the right<", ">in space<"}) {
+    EXPECT_EQ(CountOf(laser, view), 1u) << view;
+  }
+  const std::string asked =
+      SvgOf(SomeLaserWork(), Laser(), Completed(), {.views = {PictureView::kXZ, PictureView::kYZ}});
+  EXPECT_EQ(CountOf(asked, "<clipPath"), 2u);
+}
+
+// Cut and travel in different strokes, plunges and pierces as dots; legend, scale, envelope.
+TEST(Picture, ShowsWhatTheIssueAsksFor) {
+  const std::string mill = SvgOf(SomeMilling(), Mill());
+  EXPECT_EQ(CountOf(mill, "<path"), 1u + 2u);  // travel; two depths of cut
+  for (const char* word : {">travel<", ">plunge<", ">start<", ">end<", ">travel of the machine<",
+                           ">X mm<", ">Y mm<", ">completed<"}) {
+    EXPECT_GE(CountOf(mill, word), 1u) << word;
+  }
+  const std::string laser = SvgOf(SomeLaserWork(), Laser());
+  EXPECT_GE(CountOf(laser, ">pierce<"), 1u);
+  EXPECT_GE(CountOf(laser, ">beam on<"), 1u);
+  EXPECT_GE(CountOf(laser, ">direction of the head<"), 1u);
+}
+
+// Issue 2: the picture says when the time is an upper bound.
+TEST(Picture, TimingNote) {
+  RunReport report = Completed();
+  report.cycle_time = FromSeconds(12.5);
+  EXPECT_EQ(CountOf(SvgOf(SomeMilling(), Mill(), report), "upper bound"), 0u);
+  report.timing = Timing::kExactStopUpperBound;
+  const std::string svg = SvgOf(SomeMilling(), Mill(), report);
+  EXPECT_GE(CountOf(svg, ">timing: exact stop, upper bound<"), 1u);
+  EXPECT_GE(CountOf(svg, "≤ 12.500 s"), 1u);
+}
+
+// A failed run says so, with code and place.
+TEST(Picture, FailureIsShown) {
+  RunReport report = Completed();
+  report.outcome = {.kind = machine::OutcomeKind::kFailed,
+                    .code = ErrorCode::kHoleRadiusZero,
+                    .detail = "",
+                    .place = {.program = 45, .step = 7}};
+  const std::string svg = SvgOf(SomeMilling(), Mill(), report);
+  EXPECT_GE(CountOf(svg, "failed  OPT-E348  at 45/7"), 1u);
+  EXPECT_GE(CountOf(svg, ">where it ended<"), 1u);
+}
+
+// motion.md 9: a program without blends gives real arcs. A full circle seen from above is arcs of
+// equal radii, and they end where they began; no line is drawn for it.
+TEST(Picture, ArcsAreArcs) {
+  Script script;
+  script.Motion(Planned(PathPiece::Circle({{112, 50, 0}}, {100, 50, 0}, {0, 0, 1}, kTurn, 0, 0)),
+                {.use = MotionUse::kCut});
+  const std::string paths = PathsOf(SvgOf(script, {}));
+  EXPECT_EQ(CountOf(paths, "a"), 3u);  // pieces of at most 2.5 rad
+  EXPECT_EQ(CountOf(paths, "l"), 0u);
+  const std::size_t arc = paths.find('a') + 1;
+  const std::size_t blank = paths.find(' ', arc);
+  const double rx = std::stod(paths.substr(arc, blank - arc));
+  const double ry = std::stod(paths.substr(blank + 1));
+  EXPECT_EQ(rx, ry);
+  EXPECT_GT(rx, 100.0);  // a good part of the picture
+}
+
+// The scale bar is as long as it says: its millimetres have as many pixels as those of the circle.
+TEST(Picture, ScaleBarIsTrue) {
+  Script script;
+  script.Motion(Planned(PathPiece::Circle({{112, 50, 0}}, {100, 50, 0}, {0, 0, 1}, kTurn, 0, 0)),
+                {.use = MotionUse::kCut});
+  const std::string svg = SvgOf(script, {});
+  const std::string paths = PathsOf(svg);
+  const double pixels_per_mm = std::stod(paths.substr(paths.find('a') + 1)) / 12.0;
+  const std::size_t label = svg.find("font-size=\"11.5\"");
+  const std::size_t text = svg.find('>', label) + 1;
+  const double label_mm = std::stod(svg.substr(text));
+  const auto attribute = [&](const char* name) {
+    const std::size_t line = svg.rfind(name, svg.rfind("<line", svg.rfind("<line", label) - 1));
+    return std::stod(svg.substr(line + 4));
+  };
+  EXPECT_NEAR((attribute("x2=\"") - attribute("x1=\"")) / label_mm, pixels_per_mm, 0.01);
+}
+
+// A circle that leans by 60 degrees is seen as an ellipse, half as high as it is wide; one that is
+// seen from its edge is a line to and fro.
+TEST(Picture, LeaningCirclesAreEllipses) {
+  Script script;
+  const double sine = std::sqrt(0.75);
+  script.Motion(Planned(PathPiece::Circle({{12, 0, 0}}, {0, 0, 0}, {0, -sine, 0.5}, kTurn, 0, 0)),
+                {.use = MotionUse::kCut});
+  const std::string paths = PathsOf(SvgOf(script, {}, Completed(), {.views = {PictureView::kXY}}));
+  const std::size_t arc = paths.find('a') + 1;
+  const std::size_t blank = paths.find(' ', arc);
+  const double rx = std::stod(paths.substr(arc, blank - arc));
+  const double ry = std::stod(paths.substr(blank + 1));
+  EXPECT_NEAR(ry / rx, 0.5, 1e-3);
+
+  Script flat;
+  flat.Motion(Planned(PathPiece::Circle({{12, 0, 0}}, {0, 0, 0}, {0, 0, 1}, kTurn, 0, 0)),
+              {.use = MotionUse::kCut});
+  const std::string edge = PathsOf(SvgOf(flat, {}, Completed(), {.views = {PictureView::kXZ}}));
+  EXPECT_EQ(CountOf(edge, "a"), 0u);
+  EXPECT_GE(CountOf(edge, "l"), 1u);
+}
+
+// The same picture, whatever else is drawn: an arc of the page passes through the projected middle
+// of the arc of the path. Checked from the numbers in the document.
+TEST(Picture, ArcTurnsTheRightWay) {
+  Script script;  // a quarter from +X to +Y about +Z: counter-clockwise on the page, flag 0
+  script.Motion(Planned(PathPiece::Circle({{10, 0, 0}}, {0, 0, 0}, {0, 0, 1}, kPi / 2, 0, 0)),
+                {.use = MotionUse::kCut});
+  EXPECT_EQ(CountOf(PathsOf(SvgOf(script, {})), " 0 0 0 "), 1u);
+  Script back;
+  back.Motion(Planned(PathPiece::Circle({{10, 0, 0}}, {0, 0, 0}, {0, 0, -1}, kPi / 2, 0, 0)),
+              {.use = MotionUse::kCut});
+  EXPECT_EQ(CountOf(PathsOf(SvgOf(back, {})), " 0 0 1 "), 1u);
+}
+
+// Bounded: a million moves give a picture of bounded size that says it is coarser, in bounded
+// memory.
+TEST(Picture, MillionMovesGiveABoundedPicture) {
+  PictureRecorder recorder(Mill());
+  motion::PlannedMotion planned;
+  Vec3 at{0, 0, -21};
+  // Scattered lines that cannot be merged: the worst case.
+  std::uint64_t state = 1;
+  const auto next = [&state](double range) {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return range * static_cast<double>(state >> 40) / static_cast<double>(1 << 24);
+  };
+  for (int k = 0; k < 1'000'000; ++k) {
+    const Vec3 to{next(200.0), next(150.0), -21.0 - next(5.0)};
+    planned.path = LineFrom(at, to);
+    recorder.OnMotion({.use = k % 3 == 0 ? MotionUse::kTravel : MotionUse::kCut,
+                       .motion = &planned,
+                       .travelled = planned.path.length()});
+    at = to;
+  }
+  EXPECT_LE(recorder.elements(), kPictureElementsMax);
+  EXPECT_FALSE(recorder.exact());
+  const std::string svg = recorder.Svg(Completed(), {});
+  EXPECT_LT(svg.size(), 24 * kPictureElementsMax);
+  EXPECT_GE(CountOf(svg, "drawn coarser"), 1u);
+  EXPECT_EQ(XmlFault(svg), "");
+}
+
+// Nothing moved: the travel of the machine, and a word.
+TEST(Picture, NothingMoved) { EXPECT_GE(CountOf(SvgOf(Script(), Mill()), ">nothing moved<"), 1u); }
+
+TEST(DurationText, ForPeople) {
+  EXPECT_EQ(DurationText(FromSeconds(12.3456)), "12.346 s");
+  EXPECT_EQ(DurationText(FromSeconds(245.17)), "4 min 05.2 s");
+  EXPECT_EQ(DurationText(FromSeconds(60.0)), "1 min 00.0 s");
+  EXPECT_EQ(DurationText(FromSeconds(7384.0)), "2 h 03 min 04 s");
+}
+
+}  // namespace
+}  // namespace rmlcell::simulation

@@ -1,0 +1,191 @@
+#include "engine/simulation/simulate.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "engine/simulation/facts.h"
+#include "tests/engine/simulation/fake_family.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+using machine::RunPhase;
+
+Script Square() {
+  Script script;
+  const motion::Vec3 corners[] = {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}, {0, 0, 0}};
+  for (int k = 1; k < 5; ++k) {
+    script.Step(1, k).Line(corners[k - 1], corners[k], {.use = machine::MotionUse::kCut});
+    script.Move(corners[k], 50.0, "LIN").Wait(machine::WaitKind::kDwell, 0.1);
+  }
+  return script;
+}
+
+// One call for everything.
+TEST(Simulate, RunsToTheEndAndMakesTheProducts) {
+  std::string trace;
+  SimulationRequest request;
+  request.products.trace = [&](const TraceRecord& record) {
+    trace += TraceText(record) + '\n';
+    return true;
+  };
+  request.products.picture = true;
+  request.variables = {"VR[5]", "VR[6]"};
+  const FakeFamily family(Square());
+  const Result<SimulationResult> result = Simulate(family, FakeFamily::Setup(), std::move(request));
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->report.outcome.kind, machine::OutcomeKind::kCompleted);
+  EXPECT_NEAR(result->report.total.cut_mm, 40.0, 1e-12);
+  EXPECT_EQ(result->report.family, "fake");
+  EXPECT_EQ(result->report.title, "part.FK");
+  EXPECT_EQ(result->machine_state, "state");
+  EXPECT_EQ(result->executables.at(12), "executable");
+  EXPECT_EQ(result->variables, (std::map<std::string, std::string>{{"VR[5]", "7.0"}}));
+  EXPECT_NE(result->svg.find("</svg>"), std::string::npos);
+  EXPECT_NE(trace.find("end completed"), std::string::npos);
+}
+
+TEST(Simulate, SetupThatMakesNoSenseIsRefused) {
+  machine::RunSetup setup = FakeFamily::Setup();
+  setup.main_program = 99;
+  const Result<SimulationResult> result = Simulate(FakeFamily(), std::move(setup), {});
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().code, ErrorCode::kCellInvalidArgument);
+}
+
+// Design section 4: how time is cut into slices changes no byte of any product.
+TEST(Simulation, SlicesChangeNothing) {
+  std::vector<std::string> products;
+  for (const SimTime slice :
+       {SimTime(std::chrono::milliseconds(7)), SimTime(std::chrono::hours(1))}) {
+    std::string bytes;
+    SimulationRequest request;
+    request.products.trace = [&](const TraceRecord& record) {
+      bytes += TraceText(record);
+      return true;
+    };
+    request.products.toolpath = [&](std::string_view block) {
+      bytes += block;
+      return true;
+    };
+    request.products.picture = true;
+    request.options.slice = slice;
+    const Result<SimulationResult> result =
+        Simulate(FakeFamily(Square()), FakeFamily::Setup(), std::move(request));
+    ASSERT_TRUE(result);
+    products.push_back(bytes + FactsText(result->report) + result->svg);
+  }
+  EXPECT_EQ(products[0], products[1]);
+}
+
+// A worker steps, looks, and goes on; time moves by the slice.
+TEST(Simulation, StepsBySlices) {
+  Recorder recorder({}, {}, {});
+  FakeRun run(Square(), recorder);
+  Simulation simulation(run, recorder);
+  EXPECT_EQ(simulation.Step(FromSeconds(0.2)), RunPhase::kRunning);
+  EXPECT_EQ(simulation.state().time, FromSeconds(0.2));
+  EXPECT_EQ(simulation.Step(SimTime::zero()), RunPhase::kRunning);
+  EXPECT_EQ(simulation.state().time, FromSeconds(0.2) + SimTime(1));  // never stands still
+  EXPECT_FALSE(simulation.Report().finished);
+  while (simulation.Step(FromSeconds(0.1)) != RunPhase::kFinished) {
+  }
+  EXPECT_TRUE(simulation.finished());
+  EXPECT_EQ(simulation.Step(FromSeconds(1)), RunPhase::kFinished);
+  EXPECT_TRUE(simulation.Finish().finished);
+}
+
+// CELL-E9307: a job that is cancelled ends where it is.
+TEST(Simulation, CanBeCancelledFromTheProgressCall) {
+  SimulationRequest request;
+  int calls = 0;
+  SimTime last{0};
+  request.options.slice = FromSeconds(0.3);
+  request.options.progress = [&](const Progress& progress) {
+    EXPECT_GT(progress.state.time, last);
+    last = progress.state.time;
+    return ++calls < 3;
+  };
+  const Result<SimulationResult> result =
+      Simulate(FakeFamily(Square()), FakeFamily::Setup(), std::move(request));
+  ASSERT_TRUE(result);
+  EXPECT_EQ(calls, 3);
+  EXPECT_EQ(result->report.outcome.kind, machine::OutcomeKind::kCancelled);
+  EXPECT_EQ(result->report.outcome.code, ErrorCode::kCellCancelled);
+  EXPECT_EQ(result->report.cycle_time, FromSeconds(0.9));
+}
+
+Script WithHalt() {
+  Script script;
+  script.Step(1, 1).Halt("STOP").Step(1, 2).Wait(machine::WaitKind::kDwell, 1.0);
+  return script;
+}
+
+// CELL-E9308: nobody presses START.
+TEST(Simulation, HaltWithoutStartEndsTheRun) {
+  const Result<SimulationResult> result = Simulate(FakeFamily(WithHalt()), FakeFamily::Setup(), {});
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->report.outcome.kind, machine::OutcomeKind::kStopped);
+  EXPECT_EQ(result->report.outcome.code, ErrorCode::kCellWaitsForever);
+  EXPECT_EQ(result->report.outcome.place.step, 1);
+  EXPECT_EQ(result->report.steps_executed, 1u);
+}
+
+TEST(Simulation, StartCanBeGivenEveryTime) {
+  SimulationRequest request;
+  request.options.at_halt = AtHalt::kStart;
+  const Result<SimulationResult> result =
+      Simulate(FakeFamily(WithHalt()), FakeFamily::Setup(), std::move(request));
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->report.outcome.kind, machine::OutcomeKind::kCompleted);
+  EXPECT_EQ(result->report.halts, 1u);
+  EXPECT_EQ(result->report.cycle_time, FromSeconds(1.0));
+}
+
+// A scripted START acts at its time, however far away, and the wait is the operator's.
+TEST(Simulation, ScriptedStartEndsAHalt) {
+  machine::RunSetup setup = FakeFamily::Setup();
+  setup.inputs = {{FromSeconds(3600.0), machine::InputKind::kStart, 0, 1.0}};
+  const Result<SimulationResult> result = Simulate(FakeFamily(WithHalt()), std::move(setup), {});
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->report.outcome.kind, machine::OutcomeKind::kCompleted);
+  EXPECT_EQ(result->report.total.time.operator_wait, FromSeconds(3600.0));
+}
+
+// A START that has no effect (an emergency stop, an open door) must not be given for ever.
+TEST(Simulation, StartWithoutEffectEndsTheRun) {
+  Recorder recorder({}, {}, {});
+  FakeRun run(WithHalt(), recorder);
+  run.MakeDeaf();
+  Simulation simulation(run, recorder);
+  SimulationOptions options;
+  options.at_halt = AtHalt::kStart;
+  const RunReport report = RunToEnd(simulation, options);
+  EXPECT_EQ(report.outcome.code, ErrorCode::kCellWaitsForever);
+}
+
+// CELL-E9306, when the caller wants it; else the product is cut off and the run goes on.
+TEST(Simulation, OutputBudget) {
+  for (const bool ends : {true, false}) {
+    SimulationRequest request;
+    request.products.trace = [](const TraceRecord&) { return true; };
+    request.products.trace_records_max = 2;
+    request.options.end_when_cut_off = ends;
+    request.options.slice = FromSeconds(0.1);
+    const Result<SimulationResult> result =
+        Simulate(FakeFamily(Square()), FakeFamily::Setup(), std::move(request));
+    ASSERT_TRUE(result);
+    EXPECT_FALSE(result->report.trace.complete);
+    if (ends) {
+      EXPECT_EQ(result->report.outcome.kind, machine::OutcomeKind::kBudgetExceeded);
+      EXPECT_EQ(result->report.outcome.code, ErrorCode::kCellOutputBudget);
+    } else {
+      EXPECT_EQ(result->report.outcome.kind, machine::OutcomeKind::kCompleted);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rmlcell::simulation

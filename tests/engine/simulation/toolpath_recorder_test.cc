@@ -1,0 +1,293 @@
+#include "engine/simulation/toolpath_recorder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "engine/core/units.h"
+#include "tests/engine/motion/standard_machine.h"
+#include "tests/engine/simulation/fake_run.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+using machine::MotionUse;
+using motion::PathPiece;
+using motion::Vec3;
+
+struct Recorded {
+  std::vector<ToolpathBlock> blocks;
+  std::uint64_t bytes = 0;
+  bool complete = true;
+};
+
+Recorded Record(const Script& script, ToolpathOptions options = {}) {
+  machine::MachineShape shape;
+  shape.limits = motion::StandardMachine();
+  Recorded recorded;
+  ToolpathRecorder recorder(shape, options, [&](std::string_view bytes) {
+    Result<ToolpathBlock> block = DecodeToolpathBlock(bytes);
+    EXPECT_TRUE(block);
+    if (block) recorded.blocks.push_back(*std::move(block));
+    return true;
+  });
+  FakeRun run(script, recorder);
+  run.Advance(kForever);
+  recorder.Finish();
+  recorded.bytes = recorder.bytes();
+  recorded.complete = recorder.complete();
+  return recorded;
+}
+
+double DistanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 along = b - a;
+  const double squared = Dot(along, along);
+  const double t = squared > 0.0 ? std::clamp(Dot(p - a, along) / squared, 0.0, 1.0) : 0.0;
+  return Distance(p, a + along * t);
+}
+
+Vec3 Millimetres(const ToolpathPoint& p) {
+  return {p.x_um / 1000.0, p.y_um / 1000.0, p.z_um / 1000.0};
+}
+
+// The farthest that any point of the path is from the polyline of the first block.
+double WorstDistance(const PathPiece& path, const motion::Head& head, const ToolpathBlock& block) {
+  double worst = 0.0;
+  for (int k = 0; k <= 2000; ++k) {
+    const double s = path.length() * k / 2000;
+    Vec3 tip = path.At(s).tip;
+    if (path.kind() == PathPiece::Kind::kJoint) {
+      const motion::TipPose pose = path.At(s);
+      tip = head.TipOf({pose.tip, pose.a_rad, pose.b_rad}).tip;
+    }
+    double best = HUGE_VAL;
+    for (std::size_t i = 1; i < block.points.size(); ++i) {
+      best = std::min(best, DistanceToSegment(tip, Millimetres(block.points[i - 1]),
+                                              Millimetres(block.points[i])));
+    }
+    worst = std::max(worst, best);
+  }
+  return worst;
+}
+
+// motion.md 9: a line is two points; step, use, beam, speed class and times of a run. SPEED 10 of
+// 500 mm/s is class 2. 10 mm with 10 mm/s2 to 10 mm/s take 2 s.
+TEST(ToolpathRecorder, LineIsTwoPoints) {
+  const motion::PathLimits limits{.speed = 10.0, .acceleration = 10.0};
+  Script script;
+  script.Step(45, 7).Nothing(0.5);
+  script.Motion(Planned(LineFrom({1, 2, 3}, {11, 2, 3}), limits),
+                {.use = MotionUse::kCut, .beam_on = true, .programmed_mm_s = 50.0});
+  const Recorded recorded = Record(script);
+  ASSERT_EQ(recorded.blocks.size(), 1u);
+  const ToolpathBlock& block = recorded.blocks[0];
+  ASSERT_EQ(block.runs.size(), 1u);
+  EXPECT_EQ(block.points, (std::vector<ToolpathPoint>{{1000, 2000, 3000}, {11000, 2000, 3000}}));
+  const ToolpathRun& run = block.runs[0];
+  EXPECT_EQ(run.program, 45);
+  EXPECT_EQ(run.step, 7);
+  EXPECT_EQ(run.use, MotionUse::kCut);
+  EXPECT_TRUE(run.beam_on);
+  EXPECT_EQ(run.speed_class, 2);
+  EXPECT_EQ(run.start_us, 500'000);
+  EXPECT_EQ(run.end_us, 2'500'000);
+}
+
+// motion.md 9: collinear neighbours of the same step, use, beam and speed class are one; any
+// difference keeps the vertex.
+TEST(ToolpathRecorder, MergesWhatGoesStraightOnInOneStep) {
+  Script script;
+  script.Step(1, 1);
+  for (int k = 0; k < 10; ++k) script.Line({1.0 * k, 0, 0}, {1.0 * (k + 1), 0, 0});
+  script.Line({10, 0, 0}, {10, 5, 0});  // a corner
+  script.Line({10, 5, 0}, {10, 4, 0});  // straight back
+  script.Line({10, 4, 0}, {10, 3, 0}, {.use = MotionUse::kCut});
+  script.Step(1, 2).Line({10, 3, 0}, {10, 2, 0}, {.use = MotionUse::kCut});
+  script.Line({10, 2, 0}, {10, 1, 0}, {.use = MotionUse::kCut, .beam_on = true});
+  const Recorded recorded = Record(script);
+  ASSERT_EQ(recorded.blocks.size(), 1u);
+  const ToolpathBlock& block = recorded.blocks[0];
+  const std::vector<ToolpathPoint> expected = {{0, 0, 0},        {10000, 0, 0},    {10000, 5000, 0},
+                                               {10000, 4000, 0}, {10000, 3000, 0}, {10000, 2000, 0},
+                                               {10000, 1000, 0}};
+  EXPECT_EQ(block.points, expected);
+  EXPECT_EQ(block.runs.size(), 4u);
+  EXPECT_EQ(block.runs[0].point_count, 4u);
+  EXPECT_EQ(block.runs[1].first_point, 3u);  // shares the vertex
+  EXPECT_EQ(block.runs[0].end_us, block.runs[1].start_us);
+}
+
+// A pause keeps runs apart: their times differ.
+TEST(ToolpathRecorder, PauseBeginsANewRun) {
+  Script script;
+  script.Step(1, 1).Line({0, 0, 0}, {1, 0, 0}).Nothing(1.0).Line({1, 0, 0}, {2, 0, 0});
+  const Recorded recorded = Record(script);
+  ASSERT_EQ(recorded.blocks[0].runs.size(), 2u);
+  EXPECT_EQ(recorded.blocks[0].runs[1].start_us - recorded.blocks[0].runs[0].end_us, 1'000'000);
+}
+
+// motion.md 9: an arc is ceil(sweep / (2 acos(1 - tol/R))) chords. For a full turn of R = 10 and
+// the chord share of the tolerance, 0.0095 mm: 2 pi / (2 * 0.04359...) = 72.07 -> 73.
+TEST(ToolpathRecorder, ArcIsAsManyChordsAsTheToleranceNeeds) {
+  const PathPiece circle = PathPiece::Circle({{10, 0, 0}}, {0, 0, 0}, {0, 0, 1}, kTurn, 0.0, 0.0);
+  const Recorded recorded = Record(Script().Motion(Planned(circle)), {.tolerance_mm = 0.01});
+  ASSERT_EQ(recorded.blocks.size(), 1u);
+  const double chord = 2.0 * std::acos(1.0 - 0.0095 / 10.0);
+  EXPECT_EQ(recorded.blocks[0].points.size(),
+            static_cast<std::size_t>(std::ceil(kTurn / chord)) + 1);
+  EXPECT_LE(WorstDistance(circle, {}, recorded.blocks[0]), 0.01 + 0.001);
+}
+
+// motion.md 9, the property: distance between polyline and path at most tolerance + 1 um, for every
+// kind of piece and any tolerance.
+TEST(ToolpathRecorder, KeepsWithinTheTolerance) {
+  const motion::Head head{.length_mm = 300.0};
+  const std::vector<PathPiece> paths = {
+      PathPiece::Circle({{3, 0, 0}}, {0, 0, 0}, {0, 0.6, 0.8}, 5.0, 0.0, 0.0),
+      PathPiece::ArcThrough({{0, 0, 0}}, {50, 0.01, 0}, {{100, 0, 0}}).value().path,
+      PathPiece::Joint({{100, 0, 0}, 0.0, -1.0}, {{160, 30, 10}, 2.0, 1.5}),
+      PathPiece::Line({{0, 0, 0}}, {{1.23456789, 9.87654321, -5.55555555}})};
+  for (const double tolerance : {0.001, 0.01, 0.3, 5.0}) {
+    for (const PathPiece& path : paths) {
+      const Recorded recorded =
+          Record(Script().Motion(Planned(path, {.speed = 1.0, .acceleration = 10.0}, 0.0, head)),
+                 {.tolerance_mm = tolerance});
+      ASSERT_EQ(recorded.blocks.size(), 1u);
+      EXPECT_LE(WorstDistance(path, head, recorded.blocks[0]), tolerance + 0.001)
+          << tolerance << ' ' << static_cast<int>(path.kind());
+    }
+  }
+}
+
+// The same on the curves of a /FLY corner, also one where the head turns.
+TEST(ToolpathRecorder, KeepsWithinTheToleranceOnCurves) {
+  const motion::TipPose corner{{100, 0, 0}, 0.3, 0.2};
+  for (const double tolerance : {0.001, 0.01, 0.3}) {
+    for (const motion::PlannedMotion& planned :
+         PlannedCorner({{0, 0, 0}}, corner, {{100, 80, 30}, 0.5, 0.1})) {
+      const Recorded recorded =
+          Record(Script().Step(1, 1).Motion(planned), {.tolerance_mm = tolerance});
+      ASSERT_EQ(recorded.blocks.size(), 1u);
+      EXPECT_LE(WorstDistance(planned.path, {}, recorded.blocks[0]), tolerance + 0.001);
+    }
+  }
+}
+
+// Merging must not add up: a slow bend of 1000 short moves within one step, each almost straight
+// on.
+TEST(ToolpathRecorder, MergingStaysWithinTheTolerance) {
+  const double tolerance = 0.05;
+  std::vector<Vec3> vertices;
+  Script script;
+  script.Step(1, 1);
+  for (int k = 0; k <= 1000; ++k) {
+    const double a = 0.0005 * k;
+    vertices.push_back({200.0 * std::sin(a), 200.0 * (1.0 - std::cos(a)), 0.0});
+    if (k > 0) script.Line(vertices[vertices.size() - 2], vertices.back());
+  }
+  const Recorded recorded = Record(script, {.tolerance_mm = tolerance});
+  const ToolpathBlock& block = recorded.blocks[0];
+  EXPECT_LT(block.points.size(), 200u);
+  double worst = 0.0;
+  for (const Vec3& vertex : vertices) {
+    double best = HUGE_VAL;
+    for (std::size_t i = 1; i < block.points.size(); ++i) {
+      best = std::min(best, DistanceToSegment(vertex, Millimetres(block.points[i - 1]),
+                                              Millimetres(block.points[i])));
+    }
+    worst = std::max(worst, best);
+  }
+  EXPECT_LE(worst, tolerance + 0.001);
+}
+
+// Blocks of at most 4096 points each, without a gap in place or time between them.
+TEST(ToolpathRecorder, BlocksFollowEachOther) {
+  Script script;
+  constexpr int kMoves = 20'000;
+  for (int k = 0; k < kMoves; ++k) {
+    script.Step(1, k + 1);
+    script.Line({0.1 * k, k % 2 * 1.0, 0}, {0.1 * (k + 1), (k + 1) % 2 * 1.0, 0});
+  }
+  const Recorded recorded = Record(script);
+  ASSERT_EQ(recorded.blocks.size(), 5u);  // 20001 points, 4095 of each block are new
+  int step = 0;
+  for (std::size_t b = 0; b < recorded.blocks.size(); ++b) {
+    const ToolpathBlock& block = recorded.blocks[b];
+    EXPECT_LE(block.points.size(), kToolpathBlockPoints);
+    for (const ToolpathRun& run : block.runs) EXPECT_EQ(run.step, ++step);
+    if (b == 0) continue;
+    EXPECT_EQ(block.points.front(), recorded.blocks[b - 1].points.back());
+    EXPECT_EQ(block.runs.front().start_us, recorded.blocks[b - 1].runs.back().end_us);
+  }
+  EXPECT_EQ(step, kMoves);
+  // Each move: flags, step, three bytes of duration, five of point: ten, and a header a block.
+  EXPECT_LT(recorded.bytes, 11u * kMoves);
+}
+
+// One arc with more points than a block: the run goes on in the next block, and times grow with the
+// way: at half of the way of a motion from rest to rest half of the time is over.
+TEST(ToolpathRecorder, LongArcGoesOnInTheNextBlock) {
+  const PathPiece circle =
+      PathPiece::Circle({{20000, 0, 0}}, {0, 0, 0}, {0, 0, 1}, kTurn, 0.0, 0.0);
+  const Recorded recorded =
+      Record(Script().Step(1, 1).Motion(Planned(circle)), {.tolerance_mm = 0.001});
+  ASSERT_GE(recorded.blocks.size(), 2u);
+  const double whole_s = ToSeconds(FromSeconds(Planned(circle).duration_s()));
+  const auto seconds = [](std::int64_t us) { return static_cast<double>(us) * 1e-6; };
+  double way = 0.0;
+  std::int64_t last_us = 0;
+  for (const ToolpathBlock& block : recorded.blocks) {
+    ASSERT_EQ(block.runs.size(), 1u);
+    EXPECT_EQ(block.runs[0].start_us, last_us);
+    last_us = block.runs[0].end_us;
+    for (std::size_t i = 1; i < block.points.size(); ++i) {
+      way += Distance(Millimetres(block.points[i - 1]), Millimetres(block.points[i]));
+    }
+    if (&block == &recorded.blocks.back()) break;
+    // All of the way is at 50 mm/s but the first ramp, which costs half its time: 0.0354 s.
+    EXPECT_NEAR(seconds(last_us), way / 50.0 + 0.0354, 0.01);
+  }
+  EXPECT_NEAR(seconds(last_us), whole_s, 1e-6);
+}
+
+// A million moves of a nanometre in one step come to two points; positions do not drift.
+TEST(ToolpathRecorder, TinyMovesMerge) {
+  Script script;
+  script.Step(1, 1);
+  constexpr int kMoves = 100'000;
+  for (int k = 0; k < kMoves; ++k) script.Line({1e-5 * k, 0, 0}, {1e-5 * (k + 1), 0, 0});
+  const Recorded recorded = Record(script);
+  ASSERT_EQ(recorded.blocks.size(), 1u);
+  EXPECT_LE(recorded.blocks[0].points.size(), 3u);
+  EXPECT_EQ(recorded.blocks[0].points.back(), (ToolpathPoint{1000, 0, 0}));
+}
+
+// What no machine reaches does not overflow; what is no number does not hang.
+TEST(ToolpathRecorder, NonsensePositionsAreHarmless) {
+  const Recorded far = Record(Script().Step(1, 1).Line({-1e30, 0, 0}, {1e30, 1e30, 0}));
+  ASSERT_EQ(far.blocks.size(), 1u);
+  EXPECT_EQ(far.blocks[0].points[0].x_um, -2'000'000'000);
+  EXPECT_EQ(far.blocks[0].points[1].x_um, 2'000'000'000);
+  motion::PlannedMotion broken = Planned(LineFrom({}, {1, 0, 0}));
+  broken.path = PathPiece::Joint({{0, 0, 0}, 0, 0}, {{std::nan(""), 0, 0}, 1.0, 1.0});
+  const Recorded none = Record(Script().Step(1, 2).Motion(broken));
+  EXPECT_LE(none.blocks.size(), 20u);
+}
+
+// The budget of bytes: blocks that fit are handed out, then no more.
+TEST(ToolpathRecorder, IsCutOffAtItsBudget) {
+  Script script;
+  for (int k = 0; k < 20'000; ++k) {
+    script.Step(1, k + 1).Line({0.1 * k, k % 2 * 1.0, 0}, {0.1 * (k + 1), (k + 1) % 2 * 1.0, 0});
+  }
+  const Recorded recorded = Record(script, {.bytes_max = 100'000});
+  EXPECT_FALSE(recorded.complete);
+  EXPECT_LE(recorded.bytes, 100'000u);
+  EXPECT_GE(recorded.blocks.size(), 1u);
+}
+
+}  // namespace
+}  // namespace rmlcell::simulation

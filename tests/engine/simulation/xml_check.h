@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace rmlcell::simulation {
+
+// What is wrong with a document as XML, or nothing: one root, tags that match, attributes in quotes
+// and each once, no bare & or <, only characters that XML has. No DTD, no comments: ours need none.
+std::string XmlFault(std::string_view document);
+
+}  // namespace rmlcell::simulation

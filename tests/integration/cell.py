@@ -1,0 +1,164 @@
+"""A real server in a folder of its own, on free ports, for the integration tests.
+
+The binaries and generated stubs come from the environment that CMake sets: RMLCELL_BIN, RMLCELL_STUBS.
+"""
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+BIN = pathlib.Path(os.environ["RMLCELL_BIN"])
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SHARED = pathlib.Path(os.environ.get("RMLCELL_SHARED", ROOT.parent / "shared"))
+sys.path.insert(0, os.environ["RMLCELL_STUBS"])
+
+import grpc  # noqa: E402
+from google.rpc import status_pb2  # noqa: E402
+from rmlcell.v1 import (  # noqa: E402
+    common_pb2,
+    job_pb2,
+    job_pb2_grpc,
+    machine_pb2,
+    machine_pb2_grpc,
+    program_pb2,
+    program_pb2_grpc,
+    project_pb2,
+    project_pb2_grpc,
+)
+
+OPTIONS = [("grpc.max_receive_message_length", -1), ("grpc.max_send_message_length", -1)]
+
+
+class Cell:
+    """One server. Its state survives stop() and kill() until close()."""
+
+    def __init__(self, *flags, workers=2):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="rmlcell-"))
+        self.flags = list(flags)
+        self.workers = workers
+        self.process = None
+        self.grpc_port = 0
+        self.web_port = 0
+
+    def start(self):
+        log = self.folder / "log"
+        log.write_text("")
+        self.process = subprocess.Popen(
+            [BIN / "rmlcelld", "--state.directory", self.folder / "store",
+             "--listen.grpc", f"127.0.0.1:{self.grpc_port}", "--listen.web", f"127.0.0.1:{self.web_port}",
+             "--workers.count", str(self.workers), "--log.file", log, "--log.level", "debug", *self.flags])
+        until = time.monotonic() + 60
+        while "is ready" not in log.read_text(errors="replace"):
+            if self.process.poll() is not None or time.monotonic() > until:
+                raise RuntimeError("the server did not start:\n" + log.read_text(errors="replace")[-3000:])
+            time.sleep(0.02)
+        text = log.read_text(errors="replace")
+        # The same ports again after a restart, as a real server has.
+        self.grpc_port = int(re.search(r"gRPC on 127\.0\.0\.1:(\d+)", text).group(1))
+        self.web_port = int(re.search(r"web on http://127\.0\.0\.1:(\d+)/", text).group(1))
+        return self
+
+    @property
+    def address(self):
+        return f"127.0.0.1:{self.grpc_port}"
+
+    def channel(self):
+        return grpc.insecure_channel(self.address, OPTIONS)
+
+    def log(self):
+        return (self.folder / "log").read_text(errors="replace")
+
+    def kill(self):
+        self.process.send_signal(signal.SIGKILL)
+        self.process.wait()
+
+    def stop(self):
+        self.process.send_signal(signal.SIGTERM)
+        return self.process.wait(timeout=15)
+
+    def close(self):
+        if self.process is not None and self.process.poll() is None:
+            self.process.terminate()
+            try:
+                self.process.wait(timeout=10)
+            except subprocess.TimeoutExpired:
+                self.process.kill()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def worker_processes(self):
+        """Process ids of this server's workers."""
+        found = []
+        for entry in pathlib.Path("/proc").iterdir():
+            try:
+                if entry.name.isdigit() and int((entry / "stat").read_text().rsplit(")", 1)[1].split()[1]) == self.process.pid:
+                    found.append(int(entry.name))
+            except (OSError, IndexError, ValueError):
+                pass
+        return found
+
+    # --- shorthands -----------------------------------------------------------------------------------
+    def jobs(self):
+        return job_pb2_grpc.JobServiceStub(self.channel())
+
+    def programs(self):
+        return program_pb2_grpc.ProgramServiceStub(self.channel())
+
+    def machines(self):
+        return machine_pb2_grpc.MachineServiceStub(self.channel())
+
+    def projects(self):
+        return project_pb2_grpc.ProjectServiceStub(self.channel())
+
+    def command(self, *words, check=True):
+        done = subprocess.run([BIN / "rmlcell", *map(str, words)], capture_output=True, text=True, timeout=120,
+                              env={**os.environ, "RMLCELL_SERVER": self.address})
+        if check and done.returncode != 0:
+            raise AssertionError(f"rmlcell {words} ended with {done.returncode}:\n{done.stdout}{done.stderr}")
+        return done
+
+
+def inline_job(machine, file_name, content, kind=job_pb2.JOB_KIND_SIMULATE, **more):
+    job = job_pb2.Job(kind=kind, machine=f"machines/{machine}", **more)
+    job.inline_program.file_name = file_name
+    job.inline_program.content = content if isinstance(content, bytes) else content.encode()
+    return job
+
+
+def submit(stub, job, request_id=""):
+    return stub.SubmitJob(job_pb2.SubmitJobRequest(job=job, request_id=request_id), timeout=30)
+
+
+def wait_for_end(stub, name, seconds=120):
+    """Events of the job up to its end, in order."""
+    events = []
+    for message in stub.WatchJob(job_pb2.WatchJobRequest(name=name, events_only=True), timeout=seconds):
+        if message.HasField("event"):
+            events.append(message.event)
+    return events
+
+
+def detail_of(error):
+    """Our ErrorDetail of a refused call."""
+    rich = status_pb2.Status()
+    for key, value in error.trailing_metadata() or ():
+        if key == "grpc-status-details-bin":
+            rich.ParseFromString(value)
+    for any_detail in rich.details:
+        detail = common_pb2.ErrorDetail()
+        if any_detail.Is(detail.DESCRIPTOR):
+            any_detail.Unpack(detail)
+            return detail
+    return None
+
+
+SQUARE = "PA;PA;VS8;!VZ4;!PZ0,200;!MC1;PU1000,1000;Z1000,1000,-50;Z2000,1000,-50;Z2000,2000,-50;PU0,0;H;"
+# Runs for as long as its budget lets it, in zero virtual time.
+ENDLESS = "10 VI[2] = VI[3]\nGOTO 10\n"
+# Much virtual time and many steps: about a second of a worker's time for each 100,000 rounds.
+LONG = "COORD ABSOL\nPATH LIN\nSPEED 20\nVR[0] = 0.\n10 MOVE (1000. + VR[1], 1000., -400., 0., 0.)\n" \
+       "MOVE (1010., 1000., -400., 0., 0.)\nVR[0] = VR[0] + 1.\nIF VR[0] < {rounds}. THEN 10\n"

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace rmlcell::v1 {
+class ExplainErrorResponse;
+class Job;
+class WatchJobsResponse;
+}  // namespace rmlcell::v1
+
+namespace rmlcell::web::testing {
+
+// What WatchJobs tells: a snapshot with two machines and jobs in every state, then a running job
+// that makes progress and ends.
+class DemoStory {
+ public:
+  explicit DemoStory(std::int64_t after_sequence) : sequence_(after_sequence) {}
+
+  // False: nothing to tell just now.
+  bool Next(v1::WatchJobsResponse& response);
+
+ private:
+  std::int64_t sequence_;
+  int tick_ = 0;
+};
+
+// The running job of the story when it has ended.
+void EndOfDemoJob(v1::Job& job);
+
+// Rows of the real catalogue, as the server gives them.
+void Explain(const std::string& code, v1::ExplainErrorResponse& response);
+
+}  // namespace rmlcell::web::testing

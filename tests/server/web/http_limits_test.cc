@@ -1,0 +1,261 @@
+// Hostile and unusual HTTP, limits, and connections that are used again.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/server/web/fake_cell.h"
+#include "tests/server/web/raw_client.h"
+
+namespace rmlcell::web::testing {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::string_view kGetJob = "/rmlcell.v1.JobService/GetJob";
+constexpr std::string_view kJob1 = R"({"name":"jobs/1"})";
+
+WebOptions Small() {
+  WebOptions options;
+  options.port = 0;
+  options.header_bytes_max = 2048;
+  options.call_bytes_max = 1000;
+  options.upload_bytes_max = 100'000;
+  options.connections_max = 4;
+  options.read_timeout = milliseconds(400);
+  options.idle_timeout = milliseconds(500);
+  return options;
+}
+
+class HttpLimits : public ::testing::Test {
+ protected:
+  void ExpectStillWell() {
+    EXPECT_TRUE(FakeCell::Eventually([&] {
+      return Exchange(cell_.port(), Post(kGetJob, "application/json", kJob1)).status == 200;
+    }));
+  }
+  FakeCell cell_{Small()};
+};
+
+TEST_F(HttpLimits, MalformedRequestsGet400AndClose) {
+  for (const std::string_view text :
+       {"\r\n\r\n\r\n", "GET\r\n\r\n", "GET / HTTP/1.1\nHost: localhost\n\n",
+        "GET / HTTP/1.1\r\nHost localhost\r\n\r\n",
+        "GET / HTTP/1.1\r\n: x\r\nHost: localhost\r\n\r\n",
+        "GET /\x01 HTTP/1.1\r\nHost: localhost\r\n\r\n",
+        "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1x\r\n\r\n",
+        "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: -1\r\n\r\n",
+        "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\nTransfer-Encoding: "
+        "chunked\r\n\r\n",
+        "POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\nContent-Length: "
+        "5\r\n\r\n",
+        "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\nContent-Length: 6\r\n\r\n",
+        "GET / HTTP/1.1\r\nHost: localhost\r\nHost: localhost\r\n\r\n", "GET / HTTP/1.1\r\n\r\n",
+        "\x16\x03\x01\x02\x00\x01\x00\x01\xFC\x03\x03 TLS\r\n\r\n"}) {
+    RawClient client(cell_.port());
+    client.Send(text);
+    const RawResponse response = client.Read();
+    EXPECT_EQ(response.status, 400) << text;
+    EXPECT_EQ(response.Header("connection"), "close") << text;
+    EXPECT_TRUE(client.AtEnd()) << text;
+  }
+  ExpectStillWell();
+}
+
+TEST_F(HttpLimits, OtherVersions) {
+  EXPECT_EQ(Exchange(cell_.port(), "GET / HTTP/3.0\r\nHost: localhost\r\n\r\n").status, 505);
+  // A gRPC client that took the wrong port.
+  EXPECT_EQ(Exchange(cell_.port(), "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n").status, 505);
+}
+
+TEST_F(HttpLimits, Http10) {
+  RawClient client(cell_.port());
+  client.Send("GET /healthz HTTP/1.0\r\n\r\n");
+  const RawResponse response = client.Read();
+  EXPECT_EQ(response.status, 200);
+  EXPECT_EQ(response.Header("connection"), "close");
+  EXPECT_TRUE(client.AtEnd());
+  // A stream of HTTP/1.0 ends with its connection, not with chunks.
+  const RawResponse stream = Exchange(
+      cell_.port(),
+      "GET /rmlcell.v1.JobService/WatchJob?message={%22name%22:%22jobs/1%22} HTTP/1.0\r\n\r\n");
+  EXPECT_EQ(stream.Header("transfer-encoding"), "");
+  EXPECT_TRUE(stream.body.starts_with("data: "));
+  EXPECT_TRUE(stream.body.ends_with("event: end\ndata: {}\n\n"));
+  RawClient kept(cell_.port());
+  kept.Send("GET /healthz HTTP/1.0\r\nConnection: keep-alive\r\n\r\n");
+  EXPECT_EQ(kept.Read().Header("connection"), "keep-alive");
+}
+
+TEST_F(HttpLimits, AbsoluteTargetsAndForeignHosts) {
+  EXPECT_EQ(
+      Exchange(cell_.port(), "GET http://localhost:1/healthz HTTP/1.1\r\nHost: x.example\r\n\r\n")
+          .status,
+      200);
+  EXPECT_EQ(
+      Exchange(cell_.port(), "GET http://evil.example/healthz HTTP/1.1\r\nHost: localhost\r\n\r\n")
+          .status,
+      403);
+  EXPECT_EQ(Exchange(cell_.port(), "GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n").status, 403);
+}
+
+TEST_F(HttpLimits, PipelinedRequestsAreAnsweredInOrder) {
+  RawClient client(cell_.port());
+  std::string requests;
+  for (int i = 0; i < 20; ++i) {
+    requests += i % 2 == 0 ? Post(kGetJob, "application/json", kJob1) : Get("/favicon.svg");
+  }
+  client.Send(requests);
+  for (int i = 0; i < 20; ++i) {
+    const RawResponse response = client.Read();
+    ASSERT_EQ(response.status, 200) << i;
+    EXPECT_EQ(response.Header("content-type"), i % 2 == 0 ? "application/json" : "image/svg+xml")
+        << i;
+  }
+}
+
+// A request after a stream on the same connection is not swallowed while the stream runs.
+TEST_F(HttpLimits, PipelinedBehindAStream) {
+  RawClient client(cell_.port());
+  client.Send(Get("/rmlcell.v1.JobService/WatchJob?message={%22name%22:%22jobs/1%22}") +
+              Get("/healthz"));
+  EXPECT_TRUE(client.Read().body.ends_with("event: end\ndata: {}\n\n"));
+  EXPECT_EQ(client.Read().body, "{\"status\":\"SERVING\"}\n");
+}
+
+TEST_F(HttpLimits, ByteByByte) {
+  RawClient client(cell_.port());
+  for (const char byte : Post(kGetJob, "application/json", kJob1))
+    client.Send(std::string(1, byte));
+  EXPECT_EQ(client.Read().status, 200);
+}
+
+TEST_F(HttpLimits, ChunkedBodies) {
+  RawClient client(cell_.port());
+  const std::string head = "POST " + std::string(kGetJob) +
+                           " HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+                           "Transfer-Encoding: chunked\r\n\r\n";
+  client.Send(head + "4;x=y\r\n{\"na\r\nD\r\nme\":\"jobs/1\"}\r\n0\r\nTrailer: t\r\n\r\n");
+  EXPECT_EQ(client.Read().status, 200);
+  client.Send(head + "zz\r\n");
+  EXPECT_EQ(client.Read().status, 400);
+  EXPECT_TRUE(client.AtEnd());
+}
+
+// Limits on both sides: the last size that is taken, and one more.
+TEST_F(HttpLimits, BodyOfACall) {
+  const auto body = [](std::size_t size) {
+    return "{\"name\":\"jobs/1\"" + std::string(size - 17, ' ') + "}";
+  };
+  EXPECT_EQ(Exchange(cell_.port(), Post(kGetJob, "application/json", body(1000))).status, 200);
+  const RawResponse large = Exchange(cell_.port(), Post(kGetJob, "application/json", body(1001)));
+  EXPECT_EQ(large.status, 413);
+  EXPECT_EQ(nlohmann::json::parse(large.body)["details"][1]["code"], "CELL-E9007");
+  // Chunks do not say beforehand how many there will be.
+  std::string chunked = "POST " + std::string(kGetJob) +
+                        " HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+                        "Transfer-Encoding: chunked\r\n\r\n";
+  for (int i = 0; i < 100; ++i) chunked += "10\r\n                \r\n";
+  EXPECT_EQ(Exchange(cell_.port(), chunked + "0\r\n\r\n").status, 413);
+  EXPECT_EQ(Exchange(cell_.port(),
+                     "GET /rmlcell.v1.JobService/GetJob HTTP/1.1\r\nHost: localhost\r\n"
+                     "Content-Length: 1\r\n\r\nx")
+                .status,
+            413);
+  ExpectStillWell();
+}
+
+// A client that sends all before it reads still gets its answer.
+TEST_F(HttpLimits, RefusalReachesAClientThatGoesOnSending) {
+  RawClient client(cell_.port());
+  client.Send(Post(kGetJob, "application/json", std::string(3'000'000, ' ')));
+  EXPECT_EQ(client.Read().status, 413);
+}
+
+TEST_F(HttpLimits, Headers) {
+  EXPECT_EQ(Exchange(cell_.port(), Get("/healthz", "X: " + std::string(1500, 'x') + "\r\n")).status,
+            200);
+  EXPECT_EQ(Exchange(cell_.port(), Get("/healthz", "X: " + std::string(2100, 'x') + "\r\n")).status,
+            431);
+  EXPECT_EQ(Exchange(cell_.port(), Get("/" + std::string(5000, 'x'))).status, 431);
+  std::string many;
+  for (int i = 0; i < 1000; ++i) many += "a: b\r\n";
+  EXPECT_EQ(Exchange(cell_.port(), Get("/healthz", many)).status, 431);
+}
+
+TEST_F(HttpLimits, SlowRequestsAreEnded) {
+  RawClient header(cell_.port());
+  header.Send("GET / HTTP/1.1\r\nHost: loc");
+  EXPECT_EQ(header.Read().status, 408);
+  RawClient body(cell_.port());
+  body.Send("POST " + std::string(kGetJob) +
+            " HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: "
+            "20\r\n\r\n{");
+  EXPECT_EQ(body.Read().status, 408);
+  // One byte now and then does not help.
+  RawClient drip(cell_.port());
+  for (int i = 0; i < 12; ++i) {
+    drip.Send("G");
+    std::this_thread::sleep_for(milliseconds(50));
+  }
+  EXPECT_EQ(drip.Read().status, 408);
+}
+
+TEST_F(HttpLimits, IdleConnectionsAreClosed) {
+  RawClient silent(cell_.port());
+  EXPECT_TRUE(silent.AtEnd());  // waits for the end
+  RawClient kept(cell_.port());
+  kept.Send(Get("/healthz"));
+  EXPECT_EQ(kept.Read().status, 200);
+  EXPECT_TRUE(kept.AtEnd());
+}
+
+TEST_F(HttpLimits, TooManyConnectionsGet503) {
+  std::vector<std::unique_ptr<RawClient>> clients;
+  for (int i = 0; i < 4; ++i) {
+    clients.push_back(std::make_unique<RawClient>(cell_.port()));
+    clients.back()->Send(
+        Get("/rmlcell.v1.JobService/WatchJob?message={%22name%22:%22jobs/idle%22}"));
+    EXPECT_EQ(clients.back()->ReadHead().status, 200);
+  }
+  RawClient fifth(cell_.port());
+  const RawResponse refused = fifth.Read();
+  EXPECT_EQ(refused.status, 503);
+  EXPECT_EQ(refused.Header("retry-after"), "2");
+  EXPECT_TRUE(fifth.AtEnd());
+  clients.clear();
+  ExpectStillWell();
+}
+
+TEST_F(HttpLimits, Expectations) {
+  RawClient client(cell_.port());
+  const std::string head = "POST " + std::string(kGetJob) +
+                           " HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n";
+  client.Send(head + "Content-Length: 17\r\nExpect: 100-continue\r\n\r\n");
+  EXPECT_EQ(client.ReadUntil("\r\n\r\n"), "HTTP/1.1 100 Continue\r\n\r\n");
+  client.Send(kJob1);
+  EXPECT_EQ(client.Read().status, 200);
+  EXPECT_EQ(Exchange(cell_.port(), head + "Content-Length: 0\r\nExpect: magic\r\n\r\n").status,
+            417);
+  // Refused before the body is sent.
+  EXPECT_EQ(
+      Exchange(cell_.port(), head + "Content-Length: 5000\r\nExpect: 100-continue\r\n\r\n").status,
+      413);
+}
+
+// A second server on the same port is an error that names it.
+TEST_F(HttpLimits, UsedPortIsRefused) {
+  WebOptions options;
+  options.port = cell_.port();
+  FakeResources resources;
+  const auto second = WebServer::Start(options, nullptr, resources);
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().code, ErrorCode::kCellPortUsed);
+  EXPECT_NE(second.error().detail.find(std::to_string(cell_.port())), std::string::npos);
+  options.address = "shop.example";
+  const auto named = WebServer::Start(options, nullptr, resources);
+  ASSERT_FALSE(named);
+  EXPECT_EQ(named.error().code, ErrorCode::kCellConfiguration);
+}
+
+}  // namespace
+}  // namespace rmlcell::web::testing

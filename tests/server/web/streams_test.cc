@@ -1,0 +1,221 @@
+// Streams that are slow, quiet, left or ended: nothing leaks, nobody else waits.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <iterator>
+
+#include "server/web/envelope.h"
+#include "tests/server/web/fake_cell.h"
+#include "tests/server/web/raw_client.h"
+
+namespace rmlcell::web::testing {
+namespace {
+
+using std::chrono::milliseconds;
+
+std::string Watch(std::string_view job) {
+  return Get("/rmlcell.v1.JobService/WatchJob?message={%22name%22:%22jobs/" + std::string(job) +
+             "%22}");
+}
+
+WebOptions Quick() {
+  WebOptions options;
+  options.port = 0;
+  options.quiet_interval = milliseconds(200);
+  options.write_timeout = milliseconds(1500);
+  return options;
+}
+
+std::ptrdiff_t OpenDescriptors() {
+  return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
+}
+
+class Streams : public ::testing::Test {
+ protected:
+  bool AllEnded() {
+    return FakeCell::Eventually(
+        [&] { return cell_.counters().open == 0 && cell_.web().connections() == 0; });
+  }
+  FakeCell cell_{Quick()};
+};
+
+// The head comes at once, the first message with it, and quiet streams get comment lines.
+TEST_F(Streams, QuietStreamsAreKeptAlive) {
+  RawClient client(cell_.port());
+  client.Send(Watch("idle"));
+  EXPECT_EQ(client.ReadHead().status, 200);
+  EXPECT_NE(client.ReadUntil("\n\n\r\n").find("\"snapshot\""), std::string::npos);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NE(client.ReadUntil(": quiet\n\n").find(": quiet"), std::string::npos);
+}
+
+// A closed tab is noticed while nothing is sent, long before a comment line would fail.
+TEST_F(Streams, ClosedTabCancelsTheCall) {
+  for (const bool reset : {false, true}) {
+    const int before = cell_.counters().cancelled;
+    RawClient client(cell_.port());
+    client.Send(Watch("idle"));
+    client.ReadUntil("\"snapshot\"");
+    EXPECT_EQ(cell_.counters().open, 1);
+    reset ? client.Reset() : client.Close();
+    EXPECT_TRUE(AllEnded());
+    EXPECT_EQ(cell_.counters().cancelled, before + 1);
+  }
+}
+
+// The end of the connection is noticed also behind a request that waits its turn.
+TEST_F(Streams, ClosedTabBehindAPipelinedRequest) {
+  RawClient client(cell_.port());
+  client.Send(Watch("idle") + Get("/healthz"));
+  client.ReadUntil("\"snapshot\"");
+  client.Close();
+  EXPECT_TRUE(AllEnded());
+  EXPECT_EQ(cell_.counters().cancelled, 1);
+}
+
+TEST_F(Streams, AbandonedUnaryCallIsCancelled) {
+  RawClient client(cell_.port());
+  client.Send(Post("/rmlcell.v1.JobService/GetJob", "application/json", R"({"name":"jobs/slow"})"));
+  EXPECT_TRUE(FakeCell::Eventually([&] { return cell_.counters().open == 1; }));
+  client.Close();
+  EXPECT_TRUE(AllEnded());
+  EXPECT_EQ(cell_.counters().cancelled, 1);
+}
+
+// A reader that never reads is dropped after the write timeout; it may come back and resume.
+TEST_F(Streams, StuckReaderIsDropped) {
+  RawClient client(cell_.port(), 4096);
+  client.Send(Watch("flood"));
+  EXPECT_EQ(client.ReadHead().status, 200);
+  EXPECT_TRUE(AllEnded());
+  EXPECT_EQ(cell_.counters().cancelled, 1);
+}
+
+// platform.md 2, pitfalls: at the stop handlers end their streams; event clients are told to come
+// back, the others get the status.
+TEST_F(Streams, StopTellsClientsToComeBack) {
+  RawClient events(cell_.port());
+  events.Send(Watch("stop"));
+  events.ReadUntil("\"snapshot\"");
+  RawClient connect(cell_.port());
+  connect.Send(Post("/rmlcell.v1.JobService/WatchJob", "application/connect+json",
+                    MakeEnvelope(0, R"({"name":"jobs/stop"})")));
+  connect.ReadUntil("\"snapshot\"");
+  RawClient idle(cell_.port());
+  idle.Send(Get("/healthz"));
+  EXPECT_EQ(idle.Read().status, 200);
+
+  cell_.SetServing(false);
+  EXPECT_EQ(Exchange(cell_.port(), Get("/healthz")).status, 503);
+  cell_.web().StopAccepting();
+  EXPECT_TRUE(idle.AtEnd());
+  EXPECT_EQ(RawClient(cell_.port()).Send("x") && RawClient(cell_.port()).Read().status != 0, false);
+  cell_.StopStreams();
+  EXPECT_NE(events.ReadUntil("0\r\n\r\n").find("event: reconnect\ndata: {\"code\":\"unavailable\""),
+            std::string::npos);
+  EXPECT_NE(connect.ReadUntil("0\r\n\r\n").find("{\"error\":{\"code\":\"unavailable\""),
+            std::string::npos);
+  const auto begun = std::chrono::steady_clock::now();
+  cell_.web().Stop(milliseconds(3000));
+  EXPECT_LT(std::chrono::steady_clock::now() - begun, milliseconds(2900));
+  EXPECT_EQ(cell_.counters().open, 0);
+}
+
+// Streams that do not end are cut off when the grace is over.
+TEST_F(Streams, StopEndsWhatDoesNotEnd) {
+  RawClient idle(cell_.port());
+  idle.Send(Watch("idle"));
+  idle.ReadUntil("\"snapshot\"");
+  RawClient flood(cell_.port(), 4096);
+  flood.Send(Watch("flood"));
+  flood.ReadHead();
+  RawClient half(cell_.port());
+  half.Send("GET / HTT");
+  const auto begun = std::chrono::steady_clock::now();
+  cell_.web().Stop(milliseconds(300));
+  EXPECT_LT(std::chrono::steady_clock::now() - begun, milliseconds(2000));
+  EXPECT_TRUE(FakeCell::Eventually([&] { return cell_.counters().open == 0; }));
+  EXPECT_EQ(cell_.web().connections(), 0U);
+}
+
+// Hundreds of streams that leave in every way: all calls are cancelled, no descriptor is left.
+TEST_F(Streams, NothingLeaks) {
+  EXPECT_TRUE(AllEnded());
+  const std::ptrdiff_t before = OpenDescriptors();
+  for (int round = 0; round < 4; ++round) {
+    std::vector<std::unique_ptr<RawClient>> clients;
+    for (int i = 0; i < 60; ++i) {
+      clients.push_back(std::make_unique<RawClient>(cell_.port()));
+      clients.back()->Send(Watch(i % 3 == 0 ? "flood" : i % 3 == 1 ? "idle" : "1"));
+    }
+    for (std::size_t i = 0; i < clients.size(); ++i) {
+      if (i % 2 == 0) clients[i]->ReadHead();
+      if (i % 5 == 0) clients[i]->Reset();
+    }
+  }
+  EXPECT_TRUE(AllEnded());
+  EXPECT_EQ(cell_.counters().calls - cell_.counters().open, cell_.counters().calls);
+  EXPECT_LE(OpenDescriptors(), before + 2);
+}
+
+// Many streams on one thread, each with its own events in order.
+TEST_F(Streams, ManyAtOnce) {
+  std::vector<std::unique_ptr<RawClient>> clients;
+  for (int i = 0; i < 300; ++i) {
+    clients.push_back(std::make_unique<RawClient>(cell_.port()));
+    clients.back()->Send(Watch("1"));
+  }
+  for (const auto& client : clients) {
+    const RawResponse response = client->Read();
+    ASSERT_TRUE(response.complete);
+    std::size_t at = 0;
+    for (int id = 1; id <= 5; ++id) {
+      at = response.body.find("id: " + std::to_string(id) + "\n", at);
+      ASSERT_NE(at, std::string::npos);
+    }
+  }
+}
+
+// The next message is made only when the socket took the last: a reader that does not read stops
+// its producer after what the buffers of the system hold, and others are served meanwhile.
+TEST(SlowReader, SlowsItsProducerOnly) {
+  FakeCell cell;
+  RawClient client(cell.port(), 65536);
+  client.Send(Watch("flood"));
+  EXPECT_EQ(client.ReadHead().status, 200);
+  int produced = -1;
+  EXPECT_TRUE(FakeCell::Eventually([&] {
+    std::this_thread::sleep_for(milliseconds(100));
+    const int before = produced;
+    produced = cell.counters().produced;
+    return produced > 0 && produced == before;
+  }));
+  // Messages of 100 kB; the buffers of a loopback connection hold some megabytes at most.
+  EXPECT_LT(produced, 100);
+  EXPECT_EQ(Exchange(cell.port(), Get("/healthz")).status, 200);
+  for (int i = 0; i < 200; ++i) ASSERT_NE(client.ReadUntil("\r\nid: ").size(), 0U);
+  EXPECT_GE(cell.counters().produced, 200);  // it went on when it was read
+}
+
+// Several threads of the gateway serve the same requests.
+TEST(StreamsOnThreads, FourThreads) {
+  WebOptions options = Quick();
+  options.io_threads = 4;
+  FakeCell cell(options);
+  std::vector<std::thread> threads;
+  std::atomic<int> good{0};
+  for (int t = 0; t < 8; ++t) {
+    threads.emplace_back([&] {
+      for (int i = 0; i < 30; ++i) {
+        good +=
+            Exchange(cell.port(), Watch("1")).body.ends_with("event: end\ndata: {}\n\n") ? 1 : 0;
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(good, 240);
+}
+
+}  // namespace
+}  // namespace rmlcell::web::testing

@@ -1,0 +1,174 @@
+// Contents in the embedded store: kept once, compressed, in chunks, and removed when nobody names
+// them.
+#include <gmock/gmock.h>
+
+#include <functional>
+#include <thread>
+
+#include "storage/sqlite/content.h"
+#include "tests/storage/sqlite_bed.h"
+
+namespace rmlcell::storage::sqlite {
+namespace {
+
+constexpr std::size_t kMiB = std::size_t{1} << 20;
+
+// Removal happens beside the writes: waits until it is done.
+void WaitUntil(const std::function<bool()>& done) {
+  for (int i = 0; i < 4'000 && !done(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_TRUE(done());
+}
+
+class SqliteContents : public testing::Test {
+ protected:
+  Store& store() { return bed_.store(); }
+  std::int64_t Count(const std::string& from) {
+    return NumberIn(bed_.path(), "SELECT count(*) FROM " + from);
+  }
+  void PutProgram(int slot, const std::string& object) {
+    Must(store().PutPrograms("m", {{.slot = slot, .object = object}}, {}));
+  }
+
+  SqliteBed bed_;
+};
+
+// FIPS 180-2, appendix B.1.
+TEST(Content, Sha256IsThatOfTheStandard) {
+  EXPECT_EQ(HexText(Sha256("abc")),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST(Content, HexadecimalIsReadStrictly) {
+  EXPECT_EQ(BytesOfHex("00ff7a"), std::string("\x00\xFF\x7A", 3));
+  EXPECT_EQ(BytesOfHex(""), "");
+  for (const char* bad : {"0", "0g", "FF", " 00", "0x00"}) EXPECT_EQ(BytesOfHex(bad), std::nullopt);
+}
+
+TEST(Content, ChunksComeBackAsTheyWereEncoded) {
+  for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{511}, std::size_t{512},
+                                 std::size_t{100'000}, kChunkBytes}) {
+    for (const std::string& chunk : {Noise(size, 1), PlotText(size)}) {
+      const std::string encoded = Must(Encode(chunk));
+      EXPECT_LE(encoded.size(), chunk.size());
+      std::string content = "before ";
+      Must(Decode(encoded, chunk.size(), content));
+      EXPECT_TRUE(content == "before " + chunk) << size;
+    }
+  }
+}
+
+// Toolpaths shrink, noise is kept as it is.
+TEST(Content, TextIsCompressed) {
+  EXPECT_LT(Must(Encode(PlotText(kMiB))).size(), kMiB / 3);
+  EXPECT_EQ(Must(Encode(Noise(kMiB, 1))).size(), kMiB);
+}
+
+TEST(Content, DamagedChunkIsToldAndChangesNothing) {
+  const std::string chunk = PlotText(10'000);
+  const std::string encoded = Must(Encode(chunk));
+  std::string content = "before";
+  EXPECT_EQ(CodeOf(Decode(encoded, chunk.size() - 1, content)), ErrorCode::kCellStoreCorrupt);
+  EXPECT_EQ(CodeOf(Decode(encoded, chunk.size() + 1, content)), ErrorCode::kCellStoreCorrupt);
+  EXPECT_EQ(CodeOf(Decode(encoded.substr(1), chunk.size(), content)), ErrorCode::kCellStoreCorrupt);
+  EXPECT_EQ(CodeOf(Decode("", chunk.size(), content)), ErrorCode::kCellStoreCorrupt);
+  EXPECT_EQ(content, "before");
+}
+
+// Brief: the same content is kept once, rows are at most about 1 MB.
+TEST_F(SqliteContents, SameContentIsKeptOnce) {
+  Must(store().PutMachine({.id = "m"}, 0));
+  const std::string object = Noise(3 * kMiB + 5, 1);
+  for (int slot = 1; slot <= 4; ++slot) PutProgram(slot, object);
+  EXPECT_EQ(Count("blob"), 1);
+  EXPECT_EQ(Count("blob_chunk"), 4);
+  EXPECT_EQ(NumberIn(bed_.path(), "SELECT refs FROM blob"), 4);
+  EXPECT_EQ(NumberIn(bed_.path(), "SELECT max(length(content)) FROM blob_chunk"),
+            static_cast<std::int64_t>(kChunkBytes));
+}
+
+TEST_F(SqliteContents, SmallContentsLieInTheirRow) {
+  Must(store().PutMachine({.id = "m"}, 0));
+  PutProgram(1, Noise(kContentInRowMax, 1));
+  EXPECT_EQ(Count("blob_chunk"), 0);
+  PutProgram(2, Noise(kContentInRowMax + 1, 2));
+  EXPECT_EQ(Count("blob_chunk"), 1);
+}
+
+// A content goes with the last record that names it, and not before.
+TEST_F(SqliteContents, ContentGoesWithItsLastName) {
+  Must(store().PutMachine({.id = "m"}, 0));
+  const std::string object = Noise(12 * kMiB, 1);  // takes several slices to remove
+  PutProgram(1, object);
+  PutProgram(2, object);
+  Must(store().PutExecutable("m", 2, 1, "executable"));
+  Must(store().DeleteProgram("m", 1, kAnyRevision));
+  EXPECT_TRUE(Must(store().GetProgram("m", 2)).object == object);
+  PutProgram(2, "another");
+  WaitUntil([&] { return Count("blob") == 1 && Count("blob_chunk") == 0; });
+  EXPECT_EQ(Must(store().GetProgram("m", 2)).object, "another");
+}
+
+TEST_F(SqliteContents, EveryKindOfRecordLetsItsContentGo) {
+  const std::string large = Noise(kContentInRecordMax + 1, 1);
+  Must(store().PutMachine({.id = "m", .state = large + "m"}, 0));
+  Must(store().PutMachine({.id = "m"}, 1));
+  Must(store().PutProject({.id = "p", .body = large + "1"}, 0));
+  Must(store().PutProject({.id = "p", .body = large + "2"}, 1));
+  Must(store().DeleteProject("p", kAnyRevision));
+  Must(store().PutPrograms("m", {{.slot = 1, .object = large + "o", .source = large + "s"}}, {}));
+  Must(store().PutExecutable("m", 1, 1, large + "e"));
+  Must(store().PutExecutable("m", 1, 1, large + "f"));
+  Must(store().DeleteExecutable("m", 1));
+  Must(store().DeleteProgram("m", 1, kAnyRevision));
+  WaitUntil([&] { return Count("blob") == 0 && Count("blob_chunk") == 0; });
+}
+
+// What a refused write had brought along goes again.
+TEST_F(SqliteContents, RefusedWriteLeavesNothing) {
+  Must(store().PutMachine({.id = "m"}, 0));
+  const std::string object = Noise(3 * kMiB, 1);
+  EXPECT_EQ(CodeOf(store().PutPrograms("m", {{.slot = 1, .object = object, .expected = 3}}, {})),
+            ErrorCode::kCellNotFound);
+  EXPECT_EQ(CodeOf(store().PutPrograms("none", {{.slot = 1, .object = object}}, {})),
+            ErrorCode::kCellUnknownMachine);
+  EXPECT_EQ(CodeOf(store().Finish({.job = 1}, {}, {{.name = "r", .bytes = object}}, {})),
+            ErrorCode::kCellLeaseLost);
+  WaitUntil([&] { return Count("blob") == 0 && Count("blob_chunk") == 0; });
+}
+
+// What a process had written ahead when it was killed goes at the next start.
+TEST_F(SqliteContents, LeftoversOfAKilledProcessGoAtTheNextStart) {
+  Must(store().PutMachine({.id = "m"}, 0));
+  PutProgram(1, Noise(2 * kMiB, 1));
+  bed_.Close();
+  ExecuteIn(bed_.path(),
+            "INSERT INTO blob (id, sha256, size, refs, holds) VALUES (77, NULL, 5000000, 0, 1);"
+            "INSERT INTO blob_chunk VALUES (77, 0, zeroblob(1000000)), (77, 1, zeroblob(1000000));"
+            "UPDATE blob SET holds = 1 WHERE id = 1");
+  bed_.Reopen();
+  WaitUntil([&] { return Count("blob") == 1 && Count("blob_chunk") == 2; });
+  EXPECT_EQ(NumberIn(bed_.path(), "SELECT holds FROM blob"), 0);
+  EXPECT_TRUE(Must(store().GetProgram("m", 1)).object == Noise(2 * kMiB, 1));
+}
+
+// A large program goes in piece by piece: small writes get in between.
+TEST_F(SqliteContents, LargeProgramDoesNotHoldUpSmallWrites) {
+  Must(store().PutMachine({.id = "m"}, 0));
+  const std::string object = Noise(64 * kMiB, 1);
+  std::atomic<bool> done = false;
+  std::jthread writer([&] {
+    PutProgram(1, object);
+    done = true;
+  });
+  int between = 0;
+  while (!done) {
+    Must(store().SubmitAndWait({.kind = "CHECK"}));
+    if (!done) ++between;
+  }
+  EXPECT_GE(between, 8);  // of at least 16 pieces of 4 MiB
+}
+
+}  // namespace
+}  // namespace rmlcell::storage::sqlite

@@ -1,0 +1,198 @@
+// A disk that is full or fails: writes end with CellStoreFailed, what was acknowledged stays, reads
+// go on, and so do writes as soon as the cause is gone.
+#include <gmock/gmock.h>
+#include <sqlite3.h>
+
+#include <functional>
+#include <future>
+#include <thread>
+
+#include "tests/storage/faulty_disk.h"
+#include "tests/storage/sqlite_bed.h"
+
+namespace rmlcell::storage {
+namespace {
+
+constexpr auto kFailed = ErrorCode::kCellStoreFailed;
+
+SqliteOptions OnFaultyDisk() {
+  faulty_disk::Register();
+  faulty_disk::Heal();
+  SqliteOptions options;
+  options.vfs = faulty_disk::kName;
+  return options;
+}
+
+class SqliteFaults : public testing::Test {
+ protected:
+  ~SqliteFaults() override { faulty_disk::Heal(); }
+  Store& store() { return bed_.store(); }
+  Result<SubmittedJob> Submit(const std::string& request_id) {
+    return store().SubmitAndWait({.request_id = request_id, .kind = "SIMULATE"});
+  }
+  std::size_t JobCount() { return Must(store().ListJobs({.limit = 10'000})).size(); }
+
+  SqliteBed bed_{OnFaultyDisk()};
+};
+
+TEST_F(SqliteFaults, FullDiskFailsWritesUntilThereIsRoom) {
+  Must(Submit("before"));
+  faulty_disk::Fail({.on_write = SQLITE_FULL});
+  EXPECT_EQ(CodeOf(Submit("full")), kFailed);
+  EXPECT_EQ(CodeOf(store().PutMachine({.id = "m"}, 0)), kFailed);
+  EXPECT_EQ(JobCount(), 1U);  // reads go on
+  EXPECT_EQ(Must(store().CountJobs()).queued, 1);
+  faulty_disk::Heal();
+  EXPECT_EQ(Must(Submit("full")).job.id, 2);
+  Must(store().PutMachine({.id = "m"}, 0));
+  bed_.Reopen();
+  EXPECT_EQ(JobCount(), 2U);
+}
+
+TEST_F(SqliteFaults, FailedSyncIsNotAcknowledged) {
+  faulty_disk::Fail({.on_sync = SQLITE_IOERR_FSYNC});
+  const auto failed = Submit("r");
+  ASSERT_FALSE(failed);
+  EXPECT_EQ(failed.error().code, kFailed);
+  EXPECT_EQ(JobCount(), 0U);
+  faulty_disk::Heal();
+  EXPECT_FALSE(Must(Submit("r")).already_there);
+  EXPECT_EQ(JobCount(), 1U);
+}
+
+// Every single operation of a script fails once, at every operation of the disk that it makes;
+// after each failure the store is as before or as after that step, and goes on.
+TEST_F(SqliteFaults, EveryStepSurvivesAFailureAtEveryOperation) {
+  for (const int code : {SQLITE_FULL, SQLITE_IOERR_WRITE}) {
+    int failures = 0;
+    for (std::int64_t after = 0;; ++after) {
+      SCOPED_TRACE(after);
+      const std::string name = Numbered(Numbered("", code) + ".", after);
+      bool failed = false;
+      faulty_disk::Fail({.on_write = code, .on_sync = code, .after = after});
+      // Tries until it works; the disk heals after the first failure.
+      const auto insist = [&](const std::function<Status()>& step) {
+        Status status = step();
+        if (!status) {
+          EXPECT_EQ(status.error().code, kFailed) << status.error().detail;
+          failed = true;
+          faulty_disk::Heal();
+          status = step();
+        }
+        Must(status);
+      };
+      const auto status_of = [](const auto& result) {
+        return result ? Status() : Status(result.error());
+      };
+      std::int64_t id = 0;
+      insist([&] {
+        const auto submitted = Submit(name);
+        if (submitted) id = submitted->job.id;
+        return status_of(submitted);
+      });
+      std::optional<LeasedJob> leased;
+      insist([&] {
+        const auto acquired = store().Acquire("w", {"SIMULATE"}, kLease, {{.kind = "running"}});
+        if (acquired) leased = *acquired;
+        return status_of(acquired);
+      });
+      ASSERT_TRUE(leased);
+      EXPECT_EQ(leased->job.id, id);
+      insist([&] { return status_of(store().AppendAndWait(leased->lease, {{.kind = "e"}})); });
+      insist([&] {
+        return status_of(
+            store().PutProject({.id = "p", .body = Noise(1'300'000, 1)}, kAnyRevision));
+      });
+      insist([&] {
+        return status_of(store().Finish(leased->lease, {}, {{.name = "r", .bytes = name}}, {}));
+      });
+      insist([&] { return store().DeleteProject("p", kAnyRevision); });
+      const JobRecord job = Must(store().GetJob(id));
+      EXPECT_EQ(job.state, JobState::kSucceeded);
+      EXPECT_EQ(job.last_sequence, 2);
+      if (!failed) break;  // so many operations go well: none is left to fail
+      ++failures;
+      if (testing::Test::HasFailure()) return;
+    }
+    EXPECT_GT(failures, 20);
+    faulty_disk::Heal();
+  }
+}
+
+// One write that does not fit must not take those down that share its commit.
+TEST_F(SqliteFaults, OthersInTheSameCommitAreNotTakenDown) {
+  Must(store().PutMachine({.id = "m"}, 0));
+  Must(store().SubmitAndWait({.kind = "SIMULATE"}));
+  const Lease lease = Must(store().Acquire("w", {"SIMULATE"}, kLease, {}))->lease;
+  // The disk has room for some pages: small events fit, the large one does not.
+  std::atomic<int> good = 0;
+  std::atomic<int> bad = 0;
+  std::atomic<int> answered = 0;
+  std::promise<void> blocked;
+  std::promise<void> release;
+  store().Append(lease, {{.kind = "first"}}, [&](const Result<std::int64_t>&) {
+    blocked.set_value();
+    release.get_future().wait();  // holds the writer until all the others wait
+  });
+  blocked.get_future().wait();
+  constexpr int kSmall = 5;
+  const auto answer = [&](const Result<std::int64_t>& last) {
+    ++(last ? good : bad);
+    ++answered;
+  };
+  for (int i = 0; i < kSmall; ++i) store().Append(lease, {{.kind = "small"}}, answer);
+  store().Append(lease, {{.kind = "large", .payload = Noise(1'000'000, 1)}}, answer);
+  faulty_disk::OnlyFilesEndingWith("-wal");
+  const auto log = static_cast<std::int64_t>(std::filesystem::file_size(bed_.path() + "-wal"));
+  faulty_disk::Fail({.on_write = SQLITE_FULL, .beyond = log + 200'000});
+  release.set_value();
+  while (answered < kSmall + 1) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_EQ(good, kSmall);
+  EXPECT_EQ(bad, 1);
+  faulty_disk::Heal();
+  EXPECT_EQ(Must(store().GetJob(lease.job)).last_sequence, kSmall + 1);
+}
+
+// The log cannot be moved into the database: nothing is lost, it is tried again later.
+TEST_F(SqliteFaults, FailedCheckpointLosesNothing) {
+  Must(store().PutMachine({.id = "m"}, 0));
+  faulty_disk::OnlyFilesEndingWith("cell.db");
+  faulty_disk::Fail({.on_write = SQLITE_IOERR_WRITE, .on_sync = SQLITE_IOERR_FSYNC});
+  const std::string object = Noise(24 << 20, 1);  // more than the log is let grow to
+  Must(store().PutPrograms("m", {{.slot = 1, .object = object}}, {}));
+  for (int i = 0; i < 10; ++i) Must(store().SubmitAndWait({.kind = "SIMULATE"}));
+  faulty_disk::Heal();
+  bed_.Reopen();
+  EXPECT_TRUE(Must(store().GetProgram("m", 1)).object == object);
+  EXPECT_EQ(JobCount(), 10U);
+}
+
+// Watchers and counts tell nothing of what was not committed.
+TEST_F(SqliteFaults, NothingIsToldOfAFailedCommit) {
+  std::atomic<int> hints = 0;
+  const auto watch = store().Watch([&] { ++hints; });
+  faulty_disk::Fail({.on_sync = SQLITE_IOERR_FSYNC});
+  EXPECT_EQ(CodeOf(Submit("r")), kFailed);
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  EXPECT_EQ(hints, 0);
+  EXPECT_EQ(Must(store().CountJobs()).queued, 0);
+  EXPECT_FALSE(Must(store().Acquire("w", {"SIMULATE"}, kLease, {})));
+}
+
+TEST_F(SqliteFaults, OpeningOnAFullDiskIsAnError) {
+  bed_.Close();
+  std::filesystem::remove(bed_.path());
+  for (std::int64_t after = 0; after < 1'000; after += 3) {
+    faulty_disk::Fail({.on_write = SQLITE_FULL, .on_sync = SQLITE_FULL, .after = after});
+    const auto opened = bed_.Open();
+    faulty_disk::Heal();
+    if (opened) break;
+    EXPECT_EQ(opened.error().code, kFailed) << opened.error().detail;
+    ASSERT_LT(after, 990);
+  }
+  bed_.Reopen();  // what a failed start left behind is no obstacle
+  Must(Submit("r"));
+}
+
+}  // namespace
+}  // namespace rmlcell::storage

@@ -1,0 +1,204 @@
+// The bounds on what the embedded store keeps of what is over: off by default.
+#include <gmock/gmock.h>
+
+#include <thread>
+
+#include "tests/storage/sqlite_bed.h"
+
+namespace rmlcell::storage {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class SqliteKeep : public testing::Test {
+ protected:
+  void Open(std::int64_t keep_finished_jobs, std::int64_t keep_events) {
+    SqliteOptions options;
+    options.keep_finished_jobs = keep_finished_jobs;
+    options.keep_events = keep_events;
+    bed_.emplace(options);
+  }
+  Store& store() { return bed_->store(); }
+
+  std::int64_t Submit() {
+    return Must(store().SubmitAndWait(
+                    {.kind = "SIMULATE",
+                     .attachments = {{.name = "main", .bytes = Numbered("program ", ++submitted_)}},
+                     .events = {{.kind = "queued", .payload = ""}}}))
+        .job.id;
+  }
+  Lease Acquire() { return Must(store().Acquire("w", {"SIMULATE"}, kLease, {}))->lease; }
+  // Queued, leased, ended: two events.
+  std::int64_t RunJob() {
+    Submit();
+    const Lease lease = Acquire();
+    Finish(lease);
+    return lease.job;
+  }
+  void Finish(const Lease& lease) {
+    bed_->clock().Advance(std::chrono::milliseconds(1));
+    Must(store().Finish(lease, {}, {{.name = "report", .bytes = Numbered("report ", lease.job)}},
+                        {{.kind = "ended", .payload = ""}}));
+  }
+  std::vector<std::int64_t> Jobs() {
+    std::vector<std::int64_t> ids;
+    for (const JobRecord& job : Must(store().ListJobs({.limit = 1000}))) ids.push_back(job.id);
+    return ids;
+  }
+  std::int64_t Count(const std::string& from) {
+    return NumberIn(bed_->path(), "SELECT count(*) FROM " + from);
+  }
+  // Removal happens beside the writes.
+  void WaitForCount(const std::string& from, std::int64_t count) {
+    for (int i = 0; i < 4'000 && Count(from) != count; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    EXPECT_EQ(Count(from), count) << from;
+  }
+
+  std::optional<SqliteBed> bed_;
+
+ private:
+  int submitted_ = 0;
+};
+
+TEST_F(SqliteKeep, EverythingIsKeptByDefault) {
+  Open(0, 0);
+  for (int i = 0; i < 60; ++i) RunJob();
+  bed_->Reopen();
+  EXPECT_EQ(Jobs().size(), 60U);
+  EXPECT_EQ(Must(store().AllEvents(0, 1000)).size(), 120U);
+  EXPECT_EQ(Must(store().EventsGoneUntil()), 0);
+}
+
+// Those that ended last stay; the others go with all that belongs to them.
+TEST_F(SqliteKeep, OldFinishedJobsGo) {
+  Open(3, 0);
+  for (int i = 0; i < 10; ++i) RunJob();
+  WaitForCount("job", 3);
+  EXPECT_THAT(Jobs(), ElementsAre(10, 9, 8));
+  EXPECT_EQ(CodeOf(store().GetJob(7)), ErrorCode::kCellNotFound);
+  EXPECT_EQ(CodeOf(store().JobEvents(7, 0, 10)), ErrorCode::kCellNotFound);
+  EXPECT_EQ(Count("event"), 6);
+  EXPECT_EQ(Count("attempt"), 3);
+  EXPECT_EQ(Count("artifact"), 6);
+  WaitForCount("blob", 6);
+  EXPECT_EQ(Must(store().ReadBlob(Must(store().GetArtifact(8, "report")).sha256)), "report 8");
+}
+
+// By the time of the end, not of the submission; what waits or runs is not counted and does not go.
+TEST_F(SqliteKeep, JobThatEndedLastStays) {
+  Open(2, 0);
+  Submit();
+  const Lease longest = Acquire();
+  const std::int64_t waiting = Submit();
+  ASSERT_EQ(waiting, 2);
+  const Lease other = Acquire();  // the waiting one; from here on a third waits
+  Submit();
+  for (int i = 0; i < 5; ++i) {
+    Submit();
+    Finish(Acquire());  // the oldest that waits
+  }
+  Finish(longest);
+  WaitForCount("job WHERE state >= 2", 2);
+  const std::vector<std::int64_t> jobs = Jobs();
+  EXPECT_THAT(jobs, testing::Contains(longest.job));
+  EXPECT_THAT(jobs, testing::Contains(other.job));
+  EXPECT_EQ(Must(store().GetJob(longest.job)).state, JobState::kSucceeded);
+  EXPECT_EQ(Must(store().CountJobs()).running, 1);
+  EXPECT_EQ(Must(store().CountJobs()).queued, 1);
+}
+
+// Numbers of jobs, fences and positions go on, also when the rows that had the highest are gone.
+TEST_F(SqliteKeep, NumbersAreNotGivenAgain) {
+  Open(1, 0);
+  Submit();
+  const Lease first = Acquire();
+  Submit();
+  const Lease second = Acquire();
+  Finish(second);  // ends first, so that it goes although it has the highest numbers
+  Finish(first);
+  WaitForCount("job", 1);
+  const std::int64_t position = Must(store().LastPosition());
+  EXPECT_EQ(position, 4);
+  bed_->Reopen();
+  EXPECT_EQ(Must(store().LastPosition()), position);
+  EXPECT_EQ(Submit(), 3);
+  EXPECT_GT(Acquire().fence, second.fence);
+  EXPECT_EQ(Must(store().LastPosition()), position + 1);
+}
+
+// 9021: who asks for events that are gone is told so, with the number to go on from; nothing is
+// skipped silently (conventions.md, streams).
+TEST_F(SqliteKeep, ReaderOfRemovedEventsIsTold) {
+  Open(2, 0);
+  for (int i = 0; i < 5; ++i) RunJob();
+  WaitForCount("job", 2);
+  const auto refused = store().AllEvents(0, 100);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kCellEventsGone);
+  EXPECT_THAT(refused.error().detail, HasSubstr("watch from 6"));
+  const std::int64_t gone = Must(store().EventsGoneUntil());
+  EXPECT_EQ(gone, 6);  // three jobs of two events each
+  EXPECT_EQ(CodeOf(store().AllEvents(gone - 1, 100)), ErrorCode::kCellEventsGone);
+  EXPECT_EQ(Must(store().AllEvents(gone, 100)).size(), 4U);
+}
+
+TEST_F(SqliteKeep, OldEventsGo) {
+  Open(0, 80);
+  Submit();
+  const Lease lease = Acquire();
+  for (int i = 2; i <= 500; ++i) {
+    Must(store().AppendAndWait(lease, {{.kind = "e", .payload = std::to_string(i)}}));
+  }
+  for (int i = 0; i < 4'000 && Count("event") > 90; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  const std::int64_t kept = Count("event");
+  EXPECT_GE(kept, 80);
+  EXPECT_LE(kept, 90);  // an eighth more than the limit at most
+  const JobRecord job = Must(store().GetJob(lease.job));
+  EXPECT_EQ(job.last_sequence, 500);
+  EXPECT_EQ(job.events_gone_until, 500 - kept);
+  EXPECT_EQ(Must(store().EventsGoneUntil()), 500 - kept);
+  EXPECT_EQ(CodeOf(store().JobEvents(lease.job, 0, 1000)), ErrorCode::kCellEventsGone);
+  EXPECT_EQ(CodeOf(store().JobEvents(lease.job, job.events_gone_until - 1, 10)),
+            ErrorCode::kCellEventsGone);
+  const auto events = Must(store().JobEvents(lease.job, job.events_gone_until, 1000));
+  ASSERT_EQ(events.size(), static_cast<std::size_t>(kept));
+  EXPECT_EQ(events.front().sequence, job.events_gone_until + 1);
+  EXPECT_EQ(events.back().payload, "500");
+  Finish(lease);
+}
+
+// A bound that is set later reduces what is there, in many slices.
+TEST_F(SqliteKeep, BoundAppliesToWhatIsThere) {
+  Open(0, 0);
+  Submit();
+  const Lease lease = Acquire();
+  std::vector<NewEvent> many(2'500, NewEvent{.kind = "e", .payload = ""});
+  Must(store().AppendAndWait(lease, many));
+  Finish(lease);
+  for (int i = 0; i < 200; ++i) RunJob();
+  bed_->options().keep_finished_jobs = 5;
+  bed_->Reopen();
+  WaitForCount("job", 5);
+  WaitForCount("event", 10);
+  WaitForCount("artifact", 10);
+  EXPECT_THAT(Jobs(), ElementsAre(201, 200, 199, 198, 197));
+}
+
+// A request id goes with its job: then it makes a new one.
+TEST_F(SqliteKeep, RequestIdGoesWithItsJob) {
+  Open(1, 0);
+  const NewJob job{.request_id = "r", .request_hash = "h", .kind = "SIMULATE"};
+  Must(store().SubmitAndWait(job));
+  Finish(Acquire());
+  RunJob();
+  WaitForCount("job", 1);
+  EXPECT_FALSE(Must(store().SubmitAndWait(job)).already_there);
+}
+
+}  // namespace
+}  // namespace rmlcell::storage

@@ -1,0 +1,281 @@
+// How the embedded store takes writes: many in one commit, bounded waiting, answers that write,
+// other programs that hold the file, and its end.
+#include <gmock/gmock.h>
+#include <sqlite3.h>
+
+#include <future>
+#include <set>
+#include <thread>
+
+#include "storage/sqlite/request_ids.h"
+#include "storage/sqlite/statement.h"
+#include "tests/storage/faulty_disk.h"
+#include "tests/storage/sqlite_bed.h"
+
+namespace rmlcell::storage {
+namespace {
+
+// Holds the writer inside an answer until it is let go.
+class WriterHold {
+ public:
+  explicit WriterHold(Store& store) {
+    store.Submit({.kind = "CHECK"}, [this](const Result<SubmittedJob>&) {
+      held_.set_value();
+      release_.get_future().wait();
+    });
+    held_.get_future().wait();
+  }
+  void Release() { release_.set_value(); }
+
+ private:
+  std::promise<void> held_;
+  std::promise<void> release_;
+};
+
+class Answers {
+ public:
+  std::function<void(Result<SubmittedJob>)> Next() {
+    return [this](const Result<SubmittedJob>& submitted) {
+      if (submitted)
+        ++good;
+      else if (submitted.error().code == ErrorCode::kCellResourceExhausted)
+        ++refused;
+      ++all;
+    };
+  }
+  void WaitFor(int count) const {
+    while (all < count) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  std::atomic<int> good = 0;
+  std::atomic<int> refused = 0;
+  std::atomic<int> all = 0;
+};
+
+// platform.md 5, group commit: what waits shares one commit, that is, one sync of the log.
+TEST(SqliteWriter, WaitingWritesShareOneCommit) {
+  faulty_disk::Register();
+  faulty_disk::Heal();
+  SqliteOptions options;
+  options.vfs = faulty_disk::kName;
+  SqliteBed bed(options);
+  WriterHold hold(bed.store());
+  Answers answers;
+  constexpr int kJobs = 500;
+  for (int i = 0; i < kJobs; ++i) bed.store().Submit({.kind = "CHECK"}, answers.Next());
+  const std::int64_t before = NumberIn(bed.path(), "SELECT count(*) FROM job");
+  EXPECT_EQ(before, 1);
+  faulty_disk::Fail({});  // counts from here
+  hold.Release();
+  answers.WaitFor(kJobs);
+  EXPECT_EQ(answers.good, kJobs);
+  // A commit of its own would be at least two writes for each job.
+  EXPECT_LT(faulty_disk::Operations(), kJobs);
+}
+
+// What is too much is refused at once, what was taken is done.
+TEST(SqliteWriter, TooManyWaitingWritesAreRefused) {
+  SqliteOptions options;
+  options.waiting_operations_max = 10;
+  SqliteBed bed(options);
+  WriterHold hold(bed.store());
+  Answers answers;
+  for (int i = 0; i < 15; ++i) bed.store().Submit({.kind = "CHECK"}, answers.Next());
+  EXPECT_EQ(answers.all, 5);  // told by this thread
+  EXPECT_EQ(answers.refused, 5);
+  hold.Release();
+  answers.WaitFor(15);
+  EXPECT_EQ(answers.good, 10);
+  EXPECT_TRUE(bed.store().SubmitAndWait({.kind = "CHECK"}).has_value());
+}
+
+TEST(SqliteWriter, TooManyWaitingBytesAreRefused) {
+  SqliteOptions options;
+  options.waiting_bytes_max = 1'000'000;
+  SqliteBed bed(options);
+  WriterHold hold(bed.store());
+  Answers answers;
+  const auto submit = [&] {
+    bed.store().Submit(
+        {.kind = "CHECK", .events = {{.kind = "e", .payload = std::string(600'000, 'x')}}},
+        answers.Next());
+  };
+  submit();
+  submit();
+  EXPECT_EQ(answers.refused, 1);
+  hold.Release();
+  answers.WaitFor(2);
+  EXPECT_EQ(answers.good, 1);
+  // One that is larger than the bound alone is taken when nothing waits.
+  bed.store().Submit(
+      {.kind = "CHECK", .events = {{.kind = "e", .payload = std::string(2'000'000, 'x')}}},
+      answers.Next());
+  answers.WaitFor(3);
+  EXPECT_EQ(answers.good, 2);
+}
+
+// An answer that writes runs what was queued before it first, and the answers of those come after
+// it.
+TEST(SqliteWriter, AnswerThatWritesKeepsTheOrder) {
+  SqliteBed bed;
+  Must(bed.store().SubmitAndWait({.kind = "CHECK"}));
+  const Lease lease = Must(bed.store().Acquire("w", {"CHECK"}, kLease, {}))->lease;
+  std::mutex mutex;
+  std::vector<std::string> order;
+  const auto note = [&](const std::string& what) {
+    const std::lock_guard lock(mutex);
+    order.push_back(what);
+  };
+  std::promise<void> queued;
+  std::promise<void> all;
+  bed.store().Append(lease, {{.kind = "1"}}, [&](const Result<std::int64_t>& last) {
+    note(Numbered("answer ", Must(last)));
+    queued.get_future().wait();
+    const auto written = bed.store().AppendAndWait(lease, {{.kind = "3"}});
+    note(Numbered("inside ", Must(written)));
+  });
+  bed.store().Append(lease, {{.kind = "2"}}, [&](const Result<std::int64_t>& last) {
+    note(Numbered("answer ", Must(last)));
+    all.set_value();
+  });
+  queued.set_value();
+  all.get_future().wait();
+  EXPECT_THAT(order, testing::ElementsAre("answer 1", "inside 3", "answer 2"));
+}
+
+// Another program that holds the file: the write waits, then ends with CellStoreBusy, and works
+// later.
+TEST(SqliteWriter, FileHeldByAnotherProgramIsBusy) {
+  SqliteOptions options;
+  options.busy_timeout = std::chrono::milliseconds(50);
+  SqliteBed bed(options);
+  sqlite3* other = nullptr;
+  ASSERT_EQ(sqlite3_open(bed.path().c_str(), &other), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(other, "BEGIN IMMEDIATE", nullptr, nullptr, nullptr), SQLITE_OK);
+  EXPECT_EQ(CodeOf(bed.store().SubmitAndWait({.kind = "CHECK"})), ErrorCode::kCellStoreBusy);
+  EXPECT_EQ(Must(bed.store().ListJobs({})).size(), 0U);
+  ASSERT_EQ(sqlite3_exec(other, "ROLLBACK", nullptr, nullptr, nullptr), SQLITE_OK);
+  sqlite3_close(other);
+  EXPECT_EQ(CodeOf(bed.store().SubmitAndWait({.kind = "CHECK"})), std::nullopt);
+}
+
+// A reader that stays for long: writers and other readers go on, and it sees what was when it
+// began.
+TEST(SqliteWriter, LongReadersHoldNobodyUp) {
+  SqliteBed bed;
+  Must(bed.store().SubmitAndWait({.kind = "CHECK"}));
+  sqlite3* reader = nullptr;
+  ASSERT_EQ(sqlite3_open(bed.path().c_str(), &reader), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(reader, "BEGIN; SELECT count(*) FROM job", nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  Must(bed.store().PutMachine({.id = "m"}, 0));
+  for (int slot = 1; slot <= 3; ++slot) {  // more than the log is let grow to
+    Must(bed.store().PutPrograms(
+        "m", {{.slot = slot, .object = Noise(20 << 20, static_cast<std::uint64_t>(slot))}}, {}));
+  }
+  Must(bed.store().SubmitAndWait({.kind = "CHECK"}));
+  EXPECT_EQ(Must(bed.store().ListJobs({})).size(), 2U);
+  std::string seen;
+  const auto take = [](void* into, int, char** values, char**) {
+    *static_cast<std::string*>(into) = values[0];
+    return 0;
+  };
+  sqlite3_exec(reader, "SELECT count(*) FROM job", take, &seen, nullptr);
+  EXPECT_EQ(seen, "1");
+  sqlite3_close(reader);
+}
+
+// More readers than connections, all of them while others write.
+TEST(SqliteWriter, ManyReadersShareFewConnections) {
+  SqliteOptions options;
+  options.readers = 2;
+  SqliteBed bed(options);
+  std::atomic<int> bad = 0;
+  {
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < 16; ++i) {
+      threads.emplace_back([&] {
+        for (int turn = 0; turn < 40; ++turn) {
+          const auto submitted = bed.store().SubmitAndWait({.kind = "CHECK"});
+          if (!submitted || !bed.store().GetJob(submitted->job.id)) ++bad;
+          const auto listed = bed.store().ListJobs({.limit = 20});
+          if (!listed || listed->empty()) ++bad;
+        }
+      });
+    }
+  }
+  EXPECT_EQ(bad, 0);
+}
+
+// The end of the store: what waits is written and answered.
+TEST(SqliteWriter, WaitingWritesAreDoneAtTheEnd) {
+  SqliteBed bed;
+  Answers answers;
+  for (int i = 0; i < 200; ++i) bed.store().Submit({.kind = "CHECK"}, answers.Next());
+  bed.Close();
+  EXPECT_EQ(answers.good, 200);
+  bed.Reopen();
+  EXPECT_EQ(Must(bed.store().ListJobs({.limit = 1000})).size(), 200U);
+}
+
+// The clock of the store is that of its records, to the microsecond.
+TEST(SqliteWriter, TimesAreThoseOfTheClock) {
+  SqliteBed bed;
+  const WallTime before = bed.clock().Now();
+  bed.clock().Advance(std::chrono::hours(24 * 365 * 30));
+  EXPECT_EQ(Must(bed.store().SubmitAndWait({.kind = "CHECK"})).job.created_at,
+            before + std::chrono::hours(24 * 365 * 30));
+  const Lease lease =
+      Must(bed.store().Acquire("w", {"CHECK"}, std::chrono::milliseconds::max(), {}))->lease;
+  EXPECT_GT(lease.until, bed.clock().Now());  // and not beyond what a time can say
+  const Lease renewed = lease;
+  Must(bed.store().Renew(renewed, std::chrono::milliseconds(-5)));
+  EXPECT_EQ(Must(bed.store().Expire(PolicyOfTests())).size(), 1U);
+}
+
+TEST(SqliteWriter, SystemTimeIsNow) {
+  const auto now = std::chrono::system_clock::now();
+  EXPECT_LT(std::chrono::abs(SystemTime() - now), std::chrono::seconds(5));
+}
+
+// RFC 9562, UUID of version 7: the time first, version and variant at their places, no two alike.
+TEST(RequestIds, AreUuidsOfVersion7) {
+  sqlite::RequestIds ids;
+  const WallTime time{std::chrono::milliseconds(0x0123456789ABLL)};
+  std::set<std::string> made;
+  for (int i = 0; i < 10'000; ++i) {
+    const std::string id = ids.Make(time);
+    ASSERT_EQ(id.size(), 36U);
+    EXPECT_EQ(id.substr(0, 15), "01234567-89ab-7");
+    EXPECT_EQ(id[18], '-');
+    EXPECT_TRUE(std::string("89ab").find(id[19]) != std::string::npos) << id;
+    EXPECT_EQ(id[23], '-');
+    EXPECT_EQ(id.find_first_not_of("0123456789abcdef-"), std::string::npos) << id;
+    made.insert(id);
+  }
+  EXPECT_EQ(made.size(), 10'000U);
+  EXPECT_FALSE(made.contains(sqlite::RequestIds().Make(time)));
+}
+
+// A statement tells what went wrong at its first step, and can be used again.
+TEST(SqliteStatement, TellsErrorsAndGoesOn) {
+  const TestDirectory directory;
+  const std::string path = directory.File("x.db");
+  ExecuteIn(path, "CREATE TABLE t (a INTEGER PRIMARY KEY, b BLOB NOT NULL)");
+  sqlite::Database database =
+      Must(sqlite::Database::Open(path, sqlite::Database::Access::kReadWrite, {}));
+  sqlite::Statement insert(database, "INSERT INTO t (a, b) VALUES (?1, ?2)");
+  Must(insert.With(1, "one").Run());
+  EXPECT_EQ(CodeOf(insert.With(1, "again").Run()), ErrorCode::kCellStoreFailed);
+  EXPECT_EQ(CodeOf(insert.With(2, std::nullopt).Run()), ErrorCode::kCellStoreFailed);
+  Must(insert.With(2, std::string_view()).Run());
+  sqlite::Statement wrong(database, "SELECT nonsense FROM t");
+  EXPECT_EQ(CodeOf(wrong.With().Run()), ErrorCode::kCellStoreFailed);
+  sqlite::Statement count(database, "SELECT count(*) FROM t WHERE b = ?1");
+  EXPECT_EQ(Must(sqlite::FirstInteger(count.With(""))), 1);
+  sqlite3_limit(database.handle(), SQLITE_LIMIT_LENGTH, 1'000);
+  const std::string large(2'000, 'x');
+  EXPECT_EQ(CodeOf(insert.With(3, large).Run()), ErrorCode::kCellTooLarge);
+}
+
+}  // namespace
+}  // namespace rmlcell::storage
