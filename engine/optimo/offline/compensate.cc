@@ -80,7 +80,8 @@ class Compensator {
   bool hole_advice_given_ = false;
   HolePath hole_;
   ProgramFrame frame_;
-  std::optional<Vec3> at_;  // where the tip is, as far as it is known
+  std::optional<Vec3> at_;                       // where the tip is, as far as it is known
+  std::optional<double> head_a_at_, head_b_at_;  // rad
   Vec3 tool_at_{0.0, 0.0, 1.0};
   std::vector<Leg> chain_;
   std::vector<const Instruction*> chain_moves_;
@@ -192,8 +193,7 @@ void Compensator::PassWork(const Instruction& i) {
     return;
   }
   if (i.numbers[0] == 2) return;
-  FinishChain();
-  beam_ = true;
+  beam_ = true;  // a second ON on the way leaves the corner a corner
   if (side_ != Side::kNone && !amount_) {
     Report(ErrorCode::kCompIncomplete, i, "a side is set, but no amount; nothing is compensated",
            "OPT-8.10");
@@ -227,8 +227,10 @@ void Compensator::PassMove(const Instruction& i) {
     at_ = coord_ == CoordType::kAbsol && path_ != PathType::kHole ? Point(i.first_expression)
                                                                   : std::nullopt;
   }
-  const auto a = Literal(i.first_expression + 3), b = Literal(i.first_expression + 4);
-  if (a && b) tool_at_ = frame_.DirectionToProgram(ToolDirection(*a, *b));
+  head_a_at_ = Literal(i.first_expression + 3);
+  head_b_at_ = Literal(i.first_expression + 4);
+  if (head_a_at_ && head_b_at_)
+    tool_at_ = frame_.DirectionToProgram(ToolDirection(*head_a_at_, *head_b_at_));
 }
 
 // Left enlarges a hole although the motion runs counter-clockwise. OPT-8.12 to 8.14, OPT-B.91
@@ -274,11 +276,19 @@ void Compensator::AddLeg(const Instruction& i) {
   leg.tool_via = leg.tool_to;
   if (path_ == PathType::kCir && i.Has(kVia)) {
     leg.via = Vec3{*values[5], *values[6], *values[7]};
-    leg.tool_via = frame_.DirectionToProgram(ToolDirection(*values[8], *values[9]));
   }
-  // The head at the start of the first leg: that of the pierce point; LeftNormal looks at the
-  // corner.
   Prepare(leg);
+  if (leg.via) {
+    // The machine ignores the angles of the via point: the head turns evenly along the arc
+    // (OPT-2.20). Only where the angles at the start are not known, those written there count.
+    const double share = ShareAtVia(leg);
+    const auto on_the_way = [&](const std::optional<double>& from, double to, double via) {
+      return from ? *from + share * (to - *from) : via;
+    };
+    leg.tool_via =
+        frame_.DirectionToProgram(ToolDirection(on_the_way(head_a_at_, *values[3], *values[8]),
+                                                on_the_way(head_b_at_, *values[4], *values[9])));
+  }
   chain_offset_ = SignedOffset();
   chain_.push_back(leg);
   chain_moves_.push_back(&i);
@@ -293,7 +303,12 @@ void Compensator::FinishChain() {
     Report(moved.error().code, *chain_moves_[failed], moved.error().detail, "OPT-8.19");
   } else {
     for (std::size_t k = 0; k < chain_.size(); ++k) Rewrite(*chain_moves_[k], (*moved)[k]);
-    for (const Crossing& crossing : FindCrossings(chain_, *moved, chain_offset_)) {
+    const Crossings crossings = FindCrossings(chain_, *moved, chain_offset_);
+    if (!crossings.complete) {
+      findings_.AddAs(Severity::kAdvice, ErrorCode::kCompGouge, p_.At(*chain_moves_.front()),
+                      "the contour is too long to be looked through for crossings", "OPT-8.19");
+    }
+    for (const Crossing& crossing : crossings.found) {
       Report(ErrorCode::kCompGouge, *chain_moves_[crossing.leg],
              crossing.itself ? "the compensated path crosses itself"
                              : "the compensated path crosses the contour",

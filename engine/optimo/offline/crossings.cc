@@ -10,7 +10,9 @@ namespace {
 constexpr double kSameTool = 1.0 - 1e-6;                      // cosine
 constexpr double kStep_rad = 5.0 * std::numbers::pi / 180.0;  // arcs as chords of this angle
 constexpr double kTouch = 1e-9;                               // end points that touch do not cross
-constexpr std::size_t kSegmentsMax = 200'000;
+// Bounds memory, and the work on contours whose pieces all lie above each other: about a second.
+constexpr std::size_t kSegmentsMax = 1'000'000;
+constexpr std::size_t kPairsMax = 100'000'000;
 
 struct Segment {
   double x1, y1, x2, y2;
@@ -70,17 +72,22 @@ std::optional<std::pair<double, double>> CrossingPoint(const Segment& a, const S
 
 }  // namespace
 
-std::vector<Crossing> FindCrossings(const std::vector<Leg>& legs,
-                                    const std::vector<OffsetLeg>& offset_legs, double offset) {
-  if (legs.empty()) return {};
+Crossings FindCrossings(const std::vector<Leg>& legs, const std::vector<OffsetLeg>& offset_legs,
+                        double offset) {
+  Crossings crossings;
+  if (legs.empty()) return crossings;
   const Vec3 tool = legs.front().tool_from;
   for (const Leg& leg : legs) {
-    if (motion::Dot(leg.tool_to, tool) < kSameTool) return {};
+    if (motion::Dot(leg.tool_to, tool) < kSameTool) return crossings;
   }
   const Plane plane(tool);
   std::vector<Segment> segments;
   Vec3 at = legs.front().from;
-  for (std::size_t k = 0; k < legs.size() && segments.size() < kSegmentsMax; ++k) {
+  for (std::size_t k = 0; k < legs.size(); ++k) {
+    if (segments.size() >= kSegmentsMax) {
+      crossings.complete = false;
+      break;
+    }
     plane.Add(legs[k], k, true, segments);
     Leg moved = legs[k];
     moved.from = at;
@@ -94,9 +101,14 @@ std::vector<Crossing> FindCrossings(const std::vector<Leg>& legs,
   const double px = plane.x(legs.front().from), py = plane.y(legs.front().from);
   const double lead_in = 2.0 * std::fabs(offset) + kTouch;
   std::vector<std::optional<bool>> found(legs.size());
-  for (std::size_t i = 0; i < segments.size(); ++i) {
+  std::size_t pairs = 0;
+  for (std::size_t i = 0; i < segments.size() && crossings.complete; ++i) {
     for (std::size_t j = i + 1; j < segments.size() && segments[j].min_x() <= segments[i].max_x();
          ++j) {
+      if (++pairs > kPairsMax) {
+        crossings.complete = false;
+        break;
+      }
       const Segment& a = segments[i];
       const Segment& b = segments[j];
       if (a.programmed && b.programmed) continue;
@@ -110,9 +122,8 @@ std::vector<Crossing> FindCrossings(const std::vector<Leg>& legs,
       if (!found[leg]) found[leg] = itself;
     }
   }
-  std::vector<Crossing> crossings;
   for (std::size_t k = 0; k < found.size(); ++k) {
-    if (found[k]) crossings.push_back({k, *found[k]});
+    if (found[k]) crossings.found.push_back({k, *found[k]});
   }
   return crossings;
 }

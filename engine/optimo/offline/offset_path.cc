@@ -1,6 +1,7 @@
 #include "engine/optimo/offline/offset_path.h"
 
 #include <cmath>
+#include <numbers>
 #include <string>
 
 namespace rmlcell::optimo {
@@ -9,6 +10,7 @@ namespace {
 constexpr double kTiny = 1e-9;           // lengths and sines that count as zero
 constexpr double kTurnsBack = -0.99;     // n1 . n2, OPT-8.19
 constexpr double kTangent = 1.0 - 1e-9;  // n1 . n2 of a joint without a corner
+constexpr double kNoRadius = 5e-6;       // half of the last decimal written (OPT-8.11)
 constexpr double kInPlane = 1.0 - 1e-6;  // cosine between the axis of an arc and the tool
 
 Vec3 Unit(const Vec3& v) {
@@ -117,11 +119,11 @@ std::optional<Vec3> Corner(const Leg& before, const Leg& after, double offset) {
 
 bool ArcIsConsumed(const Leg& leg, double offset) {
   if (!leg.is_arc) return false;
-  for (const auto& [at, tool, tangent] : {std::tuple(leg.from, leg.tool_from, leg.tangent_from),
-                                          std::tuple(leg.to, leg.tool_to, leg.tangent_to)}) {
-    if (OffsetRadius(leg, at, LeftNormal(tool, tangent), offset) <= 0.0) return true;
-  }
-  return false;
+  const auto consumed = [&](const Vec3& at, const Vec3& tool, const Vec3& tangent) {
+    return OffsetRadius(leg, at, LeftNormal(tool, tangent), offset) <= kNoRadius;
+  };
+  return consumed(leg.from, leg.tool_from, leg.tangent_from) ||
+         consumed(leg.to, leg.tool_to, leg.tangent_to);
 }
 
 }  // namespace
@@ -144,7 +146,7 @@ void Prepare(Leg& leg) {
     const double area2 = motion::Dot(normal, normal);
     if (std::sqrt(area2) > kTiny * (1.0 + motion::Norm(p) * motion::Norm(q))) {
       const Vec3 to_centre =
-          motion::Cross(q * motion::Dot(p, p) - p * motion::Dot(q, q), normal) * (-0.5 / area2);
+          motion::Cross(normal, p * motion::Dot(q, q) - q * motion::Dot(p, p)) * (0.5 / area2);
       leg.is_arc = true;
       leg.centre = leg.from + to_centre;
       leg.axis = Unit(normal);
@@ -159,6 +161,17 @@ void Prepare(Leg& leg) {
     }
   }
   leg.tangent_from = leg.tangent_to = leg.tangent_via = Unit(leg.to - leg.from);
+}
+
+double ShareAtVia(const Leg& leg) {
+  if (!leg.is_arc) return 0.5;
+  const Vec3 e = Unit(leg.from - leg.centre), f = motion::Cross(leg.axis, e);
+  const auto angle = [&](const Vec3& at) {
+    const double turned =
+        std::atan2(motion::Dot(at - leg.centre, f), motion::Dot(at - leg.centre, e));
+    return turned > 0.0 ? turned : turned + 2.0 * std::numbers::pi;
+  };
+  return angle(*leg.via) / angle(leg.to);
 }
 
 Result<std::vector<OffsetLeg>> OffsetChain(const std::vector<Leg>& legs, double offset,

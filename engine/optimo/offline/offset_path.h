@@ -28,6 +28,8 @@ struct Leg {
   double radius = 0.0;
 };
 void Prepare(Leg& leg);
+// Share of a prepared leg's length that lies before its via point.
+double ShareAtVia(const Leg& leg);
 
 // Side of the path at a point: u x d, to the left of the cut; zero when d is zero or along u.
 // OPT-8.15
@@ -48,10 +50,14 @@ struct Crossing {
   std::size_t leg = 0;  // of the offset path
   bool itself = false;
 };
-// The first crossing of each leg, ascending. Empty when the tool direction changes along the chain:
-// then the path does not lie in one surface to look at. Crossings within twice the offset of the
-// pierce point belong to the lead-in and are left out. Legs next to each other meet by design.
-std::vector<Crossing> FindCrossings(const std::vector<Leg>& legs,
-                                    const std::vector<OffsetLeg>& offset_legs, double offset);
+struct Crossings {
+  std::vector<Crossing> found;  // the first one of each leg, ascending
+  bool complete = true;         // false: the contour is too long to look at all of it
+};
+// Empty when the tool direction changes along the chain: then the path does not lie in one surface
+// to look at. Crossings within twice the offset of the pierce point belong to the lead-in and are
+// left out. Legs next to each other meet by design.
+Crossings FindCrossings(const std::vector<Leg>& legs, const std::vector<OffsetLeg>& offset_legs,
+                        double offset);
 
 }  // namespace rmlcell::optimo

@@ -77,6 +77,28 @@ TEST(Compensate, ATiltedHeadTiltsTheOffset) {
             "MOVE (10.00000,0.00000,1.00000,0.00000,1.57080)\n");
 }
 
+// OPT-2.20, OPT-8.18: along an arc the head turns evenly from the start to the target, whatever the
+// via point says. A half circle about (0,0,0) from (10,0,0), A from pi/2 to 3 pi/2, B = pi/2: at
+// the via point A is pi and u = (0,1,0), along the radius (the head stands on a cylinder); left of
+// the cut (-1,0,0) is u x d = (0,0,1).
+TEST(Compensate, TheHeadTurnsEvenlyAlongAnArc) {
+  const std::string head =
+      ";$rad=1\n;$left\nPATH CIR\nMOVE (10,0,0,1.5707963268,1.5707963268)\nWORK 0,0/ON\n";
+  const Compensation result = Compensate(
+      head + "MOVE (-10,0,0,4.7123889804,1.5707963268)/VIA (0,10,0,0,0)\nWORK 0,0/OFF\n");
+  ASSERT_TRUE(result.ok);
+  EXPECT_EQ(result.text.substr(head.size()),
+            "MOVE (-10.00000,0.00000,1.00000,4.71239,1.57080)/VIA "
+            "(0.00000,10.00000,1.00000,0.00000,0.00000)\nWORK 0,0/OFF\n");
+}
+
+// OPT-8.16: WORK ON while the beam is on already does not end the contour.
+TEST(Compensate, ASecondBeamOnLeavesTheCornerACorner) {
+  EXPECT_EQ(Contour(";$rad=1\n;$left\n", "MOVE (10,0,0,0,0)\nWORK 0,0/ON\nMOVE (10,10,0,0,0)\n"),
+            "MOVE (9.00000,1.00000,0.00000,0.00000,0.00000)\nWORK 0,0/ON\nMOVE "
+            "(9.00000,10.00000,0.00000,0.00000,0.00000)\n");
+}
+
 // OPT-8.79
 TEST(Compensate, MovesWithoutDirectionTakeTheNormalOfTheOther) {
   const std::string head = ";$rad=1\n;$left\nPATH LIN\nMOVE (0.,0.,5.,0.,0.)\nWORK 0,0/ON\n";
@@ -118,7 +140,7 @@ TEST(Compensate, HolesChangeTheirRadius) {
   };
   const Compensation right = hole(";$dia=0.508\n;$right\n", "12.7");
   EXPECT_EQ(right.text.find("path hole (12.44600)\nwork 0,0/on\nMOVE (0,0,0,0,0)/via(0,0,9,0,0)"),
-            21U);
+            20U);  // behind the directives
   EXPECT_EQ(FindingsOf(right), (std::vector<int>{7033}));
   EXPECT_NE(hole(";$dia=0.508\n;$left\n", "12.7").text.find("(12.95400)"), std::string::npos);
   EXPECT_EQ(FindingsOf(hole(";$rad=0.254\n;$right\n", "0.2")), (std::vector<int>{7807}));
