@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/optimo/offline/compensate.h"
 #include "engine/optimo/offline/convert.h"
 
 namespace rmlcell::optimo {
@@ -77,6 +78,17 @@ TEST(OptimoConvertCases, SampleThreeBecomesTheMetricListing) {
       Convert(ReadFile(corpus / "sample3.SI"), Direction::kToMetric, names);
   EXPECT_EQ(converted.text, ReadFile(corpus / "sample3.S"));
   EXPECT_TRUE(converted.diagnostics.empty());
+}
+
+// OPT-10.10, OPT-8.12, OPT-8.24: only the radius of the hole changes.
+TEST(OptimoConvertCases, SampleThreeBecomesTheCompensatedListing) {
+  const std::filesystem::path corpus = std::filesystem::path(RMLCELL_SHARED_DIR) / "corpus/optimo";
+  if (!std::filesystem::exists(corpus)) GTEST_SKIP() << "the shared corpus is not here";
+  const FileNames names{"C:\\CST\\CCTEST\\17MAR93E.S", "C:\\CST\\CCTEST\\17MAR93E.CMP",
+                        "Tue Apr 20 13:37:33 1993"};
+  const Compensation compensated = Compensate(ReadFile(corpus / "sample3.S"), names);
+  EXPECT_TRUE(compensated.ok);
+  EXPECT_EQ(compensated.text, ReadFile(corpus / "sample3.CMP"));
 }
 
 }  // namespace

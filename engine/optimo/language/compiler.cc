@@ -20,6 +20,8 @@ Compilation Compile(std::string_view text, std::string_view file, const CompileO
     program = Parse(text, findings);
     Check(program, findings);
     if (options.advice) Advise(program, findings);
+    if (options.advice && options.further_advice && findings.error_count() == 0)
+      options.further_advice(program, findings);
     if (findings.error_count() == 0) {
       result.object = EncodeObject(program.module);
       if (options.object_limit > 0 && result.object.size() > options.object_limit) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,8 @@ struct CompileOptions {
   bool advice = true;        // static warnings and advice
   bool inch = false;         // the text is an inch source: 7030 (OPT-2.04)
   std::size_t diagnostics_max = 1000;
+  // What others have to say about a program without errors: asked when `advice` is.
+  std::function<void(const ParsedProgram&, Findings&)> further_advice{};
 };
 
 struct Compilation {

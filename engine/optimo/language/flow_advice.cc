@@ -10,6 +10,7 @@
 #include "engine/optimo/language/flow_graph.h"
 #include "engine/optimo/language/flow_state.h"
 #include "engine/optimo/language/fly_chain.h"
+#include "engine/optimo/language/gosub_depth.h"
 #include "engine/optimo/language/move_advice.h"
 
 namespace rmlcell::optimo {
@@ -47,6 +48,7 @@ class FlowAdviser {
     AdviseEnds();
     AdviseUnreachable();
     AdviseReturns();
+    AdviseNesting();
   }
 
  private:
@@ -61,6 +63,7 @@ class FlowAdviser {
   void AdviseEnds();
   void AdviseUnreachable();
   void AdviseReturns();
+  void AdviseNesting();
 
   // Calls visit(instruction, state before it) for everything that can be reached, in program order.
   template <class Visit>
@@ -89,15 +92,22 @@ class FlowAdviser {
     return false;
   }
 
-  std::uint16_t TouchedInSubroutine(std::uint32_t gosub) {
+  // The subroutine that a GOSUB calls; nothing for other instructions and missing numbers.
+  std::optional<std::size_t> Called(std::uint32_t at) const {
+    if (module_.instructions[at].op != Op::kGosub) return std::nullopt;
     std::vector<Successor> room;
-    for (const Successor& s : graph_.From(gosub, room)) {
+    for (const Successor& s : graph_.From(at, room)) {
       if (s.edge != Edge::kCall) continue;
       const auto found = std::ranges::lower_bound(graph_.subroutines(), s.to);
-      if (touched_.empty()) return kTouchesAll;
-      return touched_[static_cast<std::size_t>(found - graph_.subroutines().begin())];
+      return static_cast<std::size_t>(found - graph_.subroutines().begin());
     }
-    return 0;
+    return std::nullopt;
+  }
+
+  std::uint16_t TouchedInSubroutine(std::uint32_t gosub) const {
+    const auto called = Called(gosub);
+    if (!called) return 0;
+    return touched_.empty() ? std::uint16_t{kTouchesAll} : touched_[*called];
   }
 
   void Warn(const Instruction& i, ErrorCode code, std::string detail, std::string_view rule) {
@@ -111,9 +121,10 @@ class FlowAdviser {
   const Module& module_;
   Findings& findings_;
   FlowGraph graph_;
-  std::vector<FlowState> states_;       // of leaders; the last one is the end of the program
-  std::vector<std::uint16_t> touched_;  // by subroutine; empty: not known
-  std::vector<bool> returns_;           // by subroutine: it reaches a RETURN
+  std::vector<FlowState> states_;              // of leaders; the last one is the end of the program
+  std::vector<std::uint16_t> touched_;         // by subroutine; empty: not known
+  std::vector<bool> returns_;                  // by subroutine: it reaches a RETURN
+  std::vector<std::vector<GosubCall>> calls_;  // by subroutine
   std::vector<bool> hole_moves_;
   std::bitset<kOwnVariables> assigned_;  // somewhere in the program
   std::vector<Successor> room_;
@@ -123,8 +134,7 @@ class FlowAdviser {
 void FlowAdviser::FollowSubroutines() {
   const auto& subroutines = graph_.subroutines();
   if (subroutines.size() * std::uint64_t{graph_.size()} > kSubroutineWorkMax) return;
-  std::vector<std::vector<std::size_t>> calls(subroutines.size());
-  std::vector<Successor> room;
+  calls_.resize(subroutines.size());
   for (std::size_t s = 0; s < subroutines.size(); ++s) {
     std::uint16_t touched = 0;
     bool returns = false;
@@ -134,21 +144,16 @@ void FlowAdviser::FollowSubroutines() {
       const Instruction& i = module_.instructions[at];
       touched |= TouchedBy(i);
       returns = returns || i.op == Op::kReturn;
-      if (i.op != Op::kGosub) continue;
-      for (const Successor& successor : graph_.From(at, room)) {
-        if (successor.edge != Edge::kCall) continue;
-        calls[s].push_back(static_cast<std::size_t>(
-            std::ranges::lower_bound(subroutines, successor.to) - subroutines.begin()));
-      }
+      if (const auto called = Called(at)) calls_[s].push_back({at, *called});
     }
     touched_.push_back(touched);
     returns_.push_back(returns);
   }
   for (bool changed = true; changed;) {
     changed = false;
-    for (std::size_t s = 0; s < calls.size(); ++s) {
-      for (const std::size_t called : calls[s]) {
-        const auto merged = static_cast<std::uint16_t>(touched_[s] | touched_[called]);
+    for (std::size_t s = 0; s < calls_.size(); ++s) {
+      for (const GosubCall& call : calls_[s]) {
+        const auto merged = static_cast<std::uint16_t>(touched_[s] | touched_[call.to]);
         changed = changed || merged != touched_[s];
         touched_[s] = merged;
       }
@@ -308,6 +313,29 @@ void FlowAdviser::AdviseReturns() {
     if (returns_[s] || at == graph_.size()) continue;
     Note(module_.instructions[at], ErrorCode::kPracticeAdvice,
          "this subroutine never comes to a RETURN", "OPT-7.20");
+  }
+}
+
+// OPT-7.21. The depth of a ring depends on its conditions, so that is only said.
+void FlowAdviser::AdviseNesting() {
+  if (returns_.size() != graph_.subroutines().size()) return;  // not followed
+  std::vector<GosubCall> main;
+  const std::vector<bool> level = graph_.ReachOnLevel(graph_.entry());
+  for (std::uint32_t at = 0; at < graph_.size(); ++at) {
+    if (!level[at]) continue;
+    if (const auto called = Called(at)) main.push_back({at, *called});
+  }
+  const GosubNesting nesting = FindNesting(main, calls_);
+  for (const std::uint32_t at : nesting.too_deep) {
+    Warn(module_.instructions[at], ErrorCode::kGosubTooDeep,
+         "this GOSUB can be the " + std::to_string(kGosubDepthStandard + 1) + "th inside another",
+         "OPT-7.21");
+  }
+  for (const std::uint32_t at : nesting.recursive) {
+    Note(module_.instructions[at], ErrorCode::kGosubTooDeep,
+         "the subroutine calls itself here; at most " + std::to_string(kGosubDepthStandard) +
+             " GOSUBs run inside each other",
+         "OPT-7.21");
   }
 }
 

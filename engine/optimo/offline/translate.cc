@@ -48,7 +48,8 @@ FileForm FormOfFile(std::string_view name, std::string_view bytes) {
 
 machine::Translation TranslateOptimo(const machine::SourceFile& file,
                                      const machine::CheckOptions& options,
-                                     std::uint32_t object_limit) {
+                                     std::uint32_t object_limit,
+                                     const ContourMachine& contour_machine) {
   if (file.bytes.empty())
     return Refuse(ErrorCode::kCellEmptyProgram, "the file is empty", file.name);
   const FileForm form = FormOfFile(file.name, file.bytes);
@@ -65,11 +66,15 @@ machine::Translation TranslateOptimo(const machine::SourceFile& file,
     AddFigures(*module, 0, accepted);
     return accepted;
   }
-  Compilation compiled = Compile(file.bytes, file.name,
-                                 {.object_limit = object_limit,
-                                  .advice = options.advice,
-                                  .inch = form == FileForm::kInchSource,
-                                  .diagnostics_max = machine::kDiagnosticsMax});
+  Compilation compiled =
+      Compile(file.bytes, file.name,
+              {.object_limit = object_limit,
+               .advice = options.advice,
+               .inch = form == FileForm::kInchSource,
+               .diagnostics_max = machine::kDiagnosticsMax,
+               .further_advice = [&](const ParsedProgram& program, Findings& findings) {
+                 AdviseOnContours(program, contour_machine, findings);
+               }});
   machine::Translation translation;
   translation.ok = compiled.ok;
   translation.object = std::move(compiled.object);

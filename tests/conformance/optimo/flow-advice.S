@@ -237,3 +237,53 @@ OL[20] = ON              ; rmlcell: allow 7413, expect 7412
 OL[20] = ON
 OL[20] = ON              ; expect 7412
 SPEED 101                ; rmlcell: allow 7004, expect 7004
+
+;=== a subroutine that calls itself (advice)
+; OPT-7.21 OPT-E.7503
+GOSUB 100
+ENDTASK
+100 IF VL[1] THEN 110
+GOSUB 200
+110 RETURN
+200 GOSUB 100            ; expect 7503
+RETURN
+
+;=== sixteen GOSUBs inside each other fit, seventeen do not (advice)
+; OPT-7.21 OPT-E.7503
+GOSUB 1
+GOSUB 2
+ENDTASK
+1 GOSUB 2
+RETURN
+2 GOSUB 3
+RETURN
+3 GOSUB 4
+RETURN
+4 GOSUB 5
+RETURN
+5 GOSUB 6
+RETURN
+6 GOSUB 7
+RETURN
+7 GOSUB 8
+RETURN
+8 GOSUB 9
+RETURN
+9 GOSUB 10
+RETURN
+10 GOSUB 11
+RETURN
+11 GOSUB 12
+RETURN
+12 GOSUB 13
+RETURN
+13 GOSUB 14
+RETURN
+14 GOSUB 15
+RETURN
+15 GOSUB 16
+RETURN
+16 GOSUB 17              ; expect 7503
+RETURN
+17 SPEED 5
+RETURN

@@ -1,0 +1,362 @@
+#include "engine/optimo/offline/compensate.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <utility>
+
+#include "engine/core/number_text.h"
+#include "engine/optimo/language/program.h"
+#include "engine/optimo/offline/literal_text.h"
+#include "engine/optimo/offline/offset_path.h"
+#include "engine/optimo/offline/program_frame.h"
+#include "engine/optimo/offline/text_edits.h"
+#include "engine/optimo/offline/translate.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+constexpr int kDecimals = 5;  // OPT-8.11
+
+enum class Side { kNone, kLeft, kRight };
+
+class Compensator {
+ public:
+  Compensator(const ParsedProgram& program, Findings& findings)
+      : p_(program), module_(program.module), findings_(findings) {}
+
+  // Directives and statements in the order of the text.
+  std::vector<Fix> Run() {
+    std::size_t comment = 0;
+    for (std::size_t s = 0; s < module_.instructions.size(); ++s) {
+      for (; comment < p_.comments.size() && p_.comments[comment].begin < p_.statements[s].begin;
+           ++comment) {
+        ReadDirective(p_.comments[comment]);
+      }
+      Pass(module_.instructions[s]);
+    }
+    for (; comment < p_.comments.size(); ++comment) ReadDirective(p_.comments[comment]);
+    FinishChain();
+    std::ranges::stable_sort(edits_, {}, &Fix::byte_offset);
+    return std::move(edits_);
+  }
+
+ private:
+  struct HolePath {  // the PATH HOLE in force, until its first MOVE
+    const Instruction* instruction = nullptr;
+  };
+
+  void ReadDirective(const Comment& comment);
+  void SetAmount(std::string_view text, double factor, const Place& place);
+  void SetSide(Side side, const Place& place);
+  void Pass(const Instruction& i);
+  void PassMove(const Instruction& i);
+  void PassWork(const Instruction& i);
+  void CompensateHole(const Instruction& move);
+  void AddLeg(const Instruction& i);
+  void FinishChain();
+  void Rewrite(const Instruction& i, const OffsetLeg& moved);
+  void RewriteNumber(std::uint32_t node, double value);
+  std::optional<double> Literal(std::uint32_t expression) const;
+  std::optional<Vec3> Point(std::uint32_t first_expression) const;
+
+  bool Wanted() const { return beam_ && amount_ && side_ != Side::kNone; }
+  bool Active() const { return Wanted() && path_ != PathType::kPtp; }
+  double SignedOffset() const { return side_ == Side::kLeft ? *amount_ : -*amount_; }
+  void Report(ErrorCode code, const Instruction& i, std::string detail, std::string_view rule) {
+    findings_.Add(code, p_.At(i), std::move(detail), rule);
+  }
+
+  const ParsedProgram& p_;
+  const Module& module_;
+  Findings& findings_;
+  std::vector<Fix> edits_;
+  std::optional<double> amount_;
+  Side side_ = Side::kNone;
+  PathType path_ = PathType::kPtp;
+  CoordType coord_ = CoordType::kAbsol;
+  bool beam_ = false;
+  bool hole_advice_given_ = false;
+  HolePath hole_;
+  ProgramFrame frame_;
+  std::optional<Vec3> at_;                       // where the tip is, as far as it is known
+  std::optional<double> head_a_at_, head_b_at_;  // rad
+  Vec3 tool_at_{0.0, 0.0, 1.0};
+  std::vector<Leg> chain_;
+  std::vector<const Instruction*> chain_moves_;
+  double chain_offset_ = 0.0;
+};
+
+// OPT-8.02 to 8.05
+void Compensator::ReadDirective(const Comment& comment) {
+  const std::string_view text = p_.text.substr(comment.begin, comment.end - comment.begin);
+  if (text.size() < 2 || text[1] != '$') return;
+  const Place place{comment.begin, static_cast<int>(text.size()), 0};
+  std::string word;
+  std::size_t at = 2;
+  for (; at < text.size() && std::isalpha(static_cast<unsigned char>(text[at])) != 0; ++at) {
+    word += static_cast<char>(std::tolower(static_cast<unsigned char>(text[at])));
+  }
+  std::string_view rest = text.substr(at);
+  while (!rest.empty() && std::isspace(static_cast<unsigned char>(rest.front())) != 0)
+    rest.remove_prefix(1);
+  while (!rest.empty() && std::isspace(static_cast<unsigned char>(rest.back())) != 0)
+    rest.remove_suffix(1);
+  if ((word == "dia" || word == "rad") && !rest.empty() && rest.front() == '=') {
+    return SetAmount(rest.substr(1), word == "dia" ? 0.5 : 1.0, place);
+  }
+  if (word.size() > 1 && (word[0] == 'c' || word[0] == 's')) word.erase(0, 1);  // cleft, sright
+  if (rest.empty() && word == "left") return SetSide(Side::kLeft, place);
+  if (rest.empty() && word == "right") return SetSide(Side::kRight, place);
+  if (rest.empty() && word == "none") return SetSide(Side::kNone, place);
+  findings_.Add(ErrorCode::kCompDirective, place, "unknown directive", "OPT-8.05");
+}
+
+void Compensator::SetAmount(std::string_view text, double factor, const Place& place) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  const std::optional<double> value = LiteralValue(text.substr(0, text.find_first_of(" \t")));
+  if (!value || !(*value >= 0.0) || !std::isfinite(*value)) {
+    findings_.Add(ErrorCode::kCompDirective, place, "the amount is no number of at least 0",
+                  "OPT-8.05");
+    return;
+  }
+  const double amount = *value * factor;
+  if (beam_ && amount_ != amount) {
+    findings_.Add(ErrorCode::kCompChangeActive, place, "the amount changes while the beam is on",
+                  "OPT-8.09");
+  }
+  amount_ = amount;
+}
+
+void Compensator::SetSide(Side side, const Place& place) {
+  if (beam_ && side_ != side) {
+    findings_.Add(ErrorCode::kCompChangeActive, place, "the side changes while the beam is on",
+                  "OPT-8.09");
+  }
+  side_ = side;
+}
+
+void Compensator::Pass(const Instruction& i) {
+  switch (i.op) {
+    case Op::kPath:
+      path_ = static_cast<PathType>(i.choice);
+      hole_.instruction = path_ == PathType::kHole ? &i : nullptr;
+      if (path_ == PathType::kPtp || path_ == PathType::kHole) FinishChain();
+      break;
+    case Op::kCoord:
+      if (coord_ != static_cast<CoordType>(i.choice)) {
+        FinishChain();
+        at_.reset();
+      }
+      coord_ = static_cast<CoordType>(i.choice);
+      break;
+    case Op::kSysdef:
+    case Op::kTcp: {
+      FinishChain();
+      at_.reset();
+      if (i.op == Op::kTcp) break;
+      if (!frame_.Set(p_, i)) {
+        Report(ErrorCode::kCompSysdef, i, "a rotation of SYSDEF is no number; it is taken as 0",
+               "OPT-8.23");
+      }
+      break;
+    }
+    case Op::kWork:
+      PassWork(i);
+      break;
+    case Op::kMove:
+      PassMove(i);
+      break;
+    case Op::kGoto:
+    case Op::kGotoTable:
+    case Op::kGosub:
+    case Op::kIf:
+    case Op::kCall:
+    case Op::kGo:
+    case Op::kFunction:
+    case Op::kReturn:
+      if (Active()) {
+        Report(ErrorCode::kCompFlow, i,
+               "the path is followed from top to bottom, not along jumps and calls", "OPT-8.22");
+      }
+      break;
+    default:
+      break;
+  }
+}
+
+void Compensator::PassWork(const Instruction& i) {
+  if (i.Has(kOff)) {
+    FinishChain();
+    beam_ = false;  // any OFF, OPT-8.07
+    return;
+  }
+  if (i.numbers[0] == 2) return;
+  beam_ = true;  // a second ON on the way leaves the corner a corner
+  if (side_ != Side::kNone && !amount_) {
+    Report(ErrorCode::kCompIncomplete, i, "a side is set, but no amount; nothing is compensated",
+           "OPT-8.10");
+  }
+}
+
+std::optional<double> Compensator::Literal(std::uint32_t expression) const {
+  const ExprRange range = module_.expressions[expression];
+  const Node op = module_.nodes[range.first].op;
+  if (range.count != 1 || (op != Node::kInteger && op != Node::kReal)) return std::nullopt;
+  const NodePlace& place = p_.node_places[range.first];
+  return LiteralValue(p_.text.substr(place.offset, place.length));
+}
+
+std::optional<Vec3> Compensator::Point(std::uint32_t first) const {
+  const auto x = Literal(first), y = Literal(first + 1), z = Literal(first + 2);
+  if (!x || !y || !z) return std::nullopt;
+  return Vec3{*x, *y, *z};
+}
+
+void Compensator::PassMove(const Instruction& i) {
+  if (path_ == PathType::kHole && hole_.instruction != nullptr) CompensateHole(i);
+  if (Active() && coord_ == CoordType::kRobot) {
+    return Report(ErrorCode::kCompRobot, i, "a MOVE in COORD ROBOT cannot be compensated",
+                  "OPT-8.21");
+  }
+  if (Active() && path_ != PathType::kHole) {
+    AddLeg(i);
+  } else {
+    FinishChain();
+    at_ = coord_ == CoordType::kAbsol && path_ != PathType::kHole ? Point(i.first_expression)
+                                                                  : std::nullopt;
+  }
+  head_a_at_ = Literal(i.first_expression + 3);
+  head_b_at_ = Literal(i.first_expression + 4);
+  if (head_a_at_ && head_b_at_)
+    tool_at_ = frame_.DirectionToProgram(ToolDirection(*head_a_at_, *head_b_at_));
+}
+
+// Left enlarges a hole although the motion runs counter-clockwise. OPT-8.12 to 8.14, OPT-B.91
+void Compensator::CompensateHole(const Instruction& move) {
+  const Instruction& path = *std::exchange(hole_.instruction, nullptr);
+  if (!Wanted()) return;
+  const std::optional<double> radius = Literal(path.first_expression);
+  if (!radius)
+    return Report(ErrorCode::kCompVariable, path, "the radius is no plain number", "OPT-8.20");
+  const double compensated = *radius + SignedOffset();
+  if (compensated <= 0.0)
+    return Report(ErrorCode::kCompHole, path, "the hole is not larger than the beam", "OPT-8.14");
+  RewriteNumber(module_.expressions[path.first_expression].first, compensated);
+  if (!std::exchange(hole_advice_given_, true)) {
+    findings_.AddAs(
+        Severity::kAdvice, ErrorCode::kPracticeAdvice, p_.At(move),
+        "at holes left means larger and right smaller, although the machine runs counter-clockwise",
+        "OPT-B.91");
+  }
+}
+
+void Compensator::AddLeg(const Instruction& i) {
+  std::array<std::optional<double>, 10> values;
+  const std::uint32_t count = i.Has(kVia) ? 10 : 5;
+  bool plain = true;
+  for (std::uint32_t v = 0; v < count; ++v) {
+    values[v] = Literal(i.first_expression + v);
+    plain = plain && values[v].has_value();
+  }
+  if (!plain || !at_) {
+    Report(ErrorCode::kCompVariable, i,
+           plain ? "the point where this move starts is not known as numbers"
+                 : "a coordinate is no plain number",
+           "OPT-8.20");
+    at_ = plain ? std::optional<Vec3>({*values[0], *values[1], *values[2]}) : std::nullopt;
+    return;
+  }
+  Leg leg;
+  leg.from = *at_;
+  leg.to = {*values[0], *values[1], *values[2]};
+  leg.tool_from = tool_at_;
+  leg.tool_to = frame_.DirectionToProgram(ToolDirection(*values[3], *values[4]));
+  leg.tool_via = leg.tool_to;
+  if (path_ == PathType::kCir && i.Has(kVia)) {
+    leg.via = Vec3{*values[5], *values[6], *values[7]};
+  }
+  Prepare(leg);
+  if (leg.via) {
+    // The machine ignores the angles of the via point: the head turns evenly along the arc
+    // (OPT-2.20). Only where the angles at the start are not known, those written there count.
+    const double share = ShareAtVia(leg);
+    const auto on_the_way = [&](const std::optional<double>& from, double to, double via) {
+      return from ? *from + share * (to - *from) : via;
+    };
+    leg.tool_via =
+        frame_.DirectionToProgram(ToolDirection(on_the_way(head_a_at_, *values[3], *values[8]),
+                                                on_the_way(head_b_at_, *values[4], *values[9])));
+  }
+  chain_offset_ = SignedOffset();
+  chain_.push_back(leg);
+  chain_moves_.push_back(&i);
+  at_ = leg.to;
+}
+
+void Compensator::FinishChain() {
+  if (chain_.empty()) return;
+  std::size_t failed = 0;
+  const Result<std::vector<OffsetLeg>> moved = OffsetChain(chain_, chain_offset_, failed);
+  if (!moved) {
+    Report(moved.error().code, *chain_moves_[failed], moved.error().detail, "OPT-8.19");
+  } else {
+    for (std::size_t k = 0; k < chain_.size(); ++k) Rewrite(*chain_moves_[k], (*moved)[k]);
+    const Crossings crossings = FindCrossings(chain_, *moved, chain_offset_);
+    if (!crossings.complete) {
+      findings_.AddAs(Severity::kAdvice, ErrorCode::kCompGouge, p_.At(*chain_moves_.front()),
+                      "the contour is too long to be looked through for crossings", "OPT-8.19");
+    }
+    for (const Crossing& crossing : crossings.found) {
+      Report(ErrorCode::kCompGouge, *chain_moves_[crossing.leg],
+             crossing.itself ? "the compensated path crosses itself"
+                             : "the compensated path crosses the contour",
+             "OPT-8.19");
+    }
+  }
+  chain_.clear();
+  chain_moves_.clear();
+}
+
+void Compensator::Rewrite(const Instruction& i, const OffsetLeg& moved) {
+  const std::uint32_t count = i.Has(kVia) ? 10 : 5;
+  for (std::uint32_t v = 0; v < count; ++v) {
+    double value = *Literal(i.first_expression + v);
+    const Vec3* point = v < 3 ? &moved.to : v >= 5 && v < 8 && moved.via ? &*moved.via : nullptr;
+    if (point != nullptr) value = v % 5 == 0 ? point->x : v % 5 == 1 ? point->y : point->z;
+    RewriteNumber(module_.expressions[i.first_expression + v].first, value);
+  }
+}
+
+void Compensator::RewriteNumber(std::uint32_t node, double value) {
+  const NodePlace& place = p_.node_places[node];
+  edits_.push_back({place.offset, static_cast<int>(place.length), FixedText(value, kDecimals)});
+}
+
+}  // namespace
+
+Compensation Compensate(std::string_view text, const std::optional<FileNames>& names, bool inch) {
+  Compensation result;
+  Findings findings;
+  std::vector<Fix> edits;
+  if (inch || (names && FormOfFile(names->input, {}) == FileForm::kInchSource)) {
+    findings.Add(ErrorCode::kCompNotMetric, {}, "convert the source to metric first", "OPT-8.01");
+  } else {
+    const ParsedProgram program = Parse(text, findings);
+    if (findings.error_count() == 0) edits = Compensator(program, findings).Run();
+  }
+  result.ok = findings.error_count() == 0;
+  if (result.ok) {
+    if (names) {
+      result.text =
+          "; File " + names->output + " Created From File " + names->input + " - " + names->date;
+      result.text += LineEndOf(text);
+    }
+    result.text += ApplyEdits(text, edits);
+  }
+  result.diagnostics = findings.Take(text, names ? names->input : "");
+  return result;
+}
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,206 @@
+#include "engine/optimo/offline/offset_path.h"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace rmlcell::optimo {
+namespace {
+
+constexpr double kTiny = 1e-9;           // lengths and sines that count as zero
+constexpr double kTurnsBack = -0.99;     // n1 . n2, OPT-8.19
+constexpr double kTangent = 1.0 - 1e-9;  // n1 . n2 of a joint without a corner
+constexpr double kNoRadius = 5e-6;       // half of the last decimal written (OPT-8.11)
+constexpr double kInPlane = 1.0 - 1e-6;  // cosine between the axis of an arc and the tool
+
+Vec3 Unit(const Vec3& v) {
+  const double norm = motion::Norm(v);
+  return norm < kTiny ? Vec3{} : v * (1.0 / norm);
+}
+bool IsZero(const Vec3& v) { return v == Vec3{}; }
+
+// A leg's offset curve in the plane normal to the tool, about the corner as origin.
+struct PlaneCurve {
+  bool circle = false;
+  double x = 0.0, y = 0.0;    // a point of the line, or the centre
+  double dx = 0.0, dy = 0.0;  // direction of the line
+  double radius = 0.0;
+};
+
+// One of the points where both curves meet, the nearest to the origin; nothing when they do not.
+std::optional<std::pair<double, double>> NearestMeeting(const PlaneCurve& a, const PlaneCurve& b) {
+  std::vector<std::pair<double, double>> points;
+  if (!a.circle && !b.circle) {
+    const double cross = a.dx * b.dy - a.dy * b.dx;
+    if (std::fabs(cross) < kTiny) return std::nullopt;
+    const double t = ((b.x - a.x) * b.dy - (b.y - a.y) * b.dx) / cross;
+    points.emplace_back(a.x + t * a.dx, a.y + t * a.dy);
+  } else if (a.circle != b.circle) {
+    const PlaneCurve& line = a.circle ? b : a;
+    const PlaneCurve& circle = a.circle ? a : b;
+    const double along = (circle.x - line.x) * line.dx + (circle.y - line.y) * line.dy;
+    const double fx = line.x + along * line.dx, fy = line.y + along * line.dy;
+    const double away2 = (fx - circle.x) * (fx - circle.x) + (fy - circle.y) * (fy - circle.y);
+    const double half2 = circle.radius * circle.radius - away2;
+    if (half2 < 0.0) return std::nullopt;
+    const double half = std::sqrt(half2);
+    points.emplace_back(fx + half * line.dx, fy + half * line.dy);
+    points.emplace_back(fx - half * line.dx, fy - half * line.dy);
+  } else {
+    const double dx = b.x - a.x, dy = b.y - a.y, distance = std::hypot(dx, dy);
+    if (distance < kTiny) return std::nullopt;
+    const double along =
+        (distance * distance + a.radius * a.radius - b.radius * b.radius) / (2.0 * distance);
+    const double half2 = a.radius * a.radius - along * along;
+    if (half2 < 0.0) return std::nullopt;
+    const double half = std::sqrt(half2), ux = dx / distance, uy = dy / distance;
+    points.emplace_back(a.x + along * ux - half * uy, a.y + along * uy + half * ux);
+    points.emplace_back(a.x + along * ux + half * uy, a.y + along * uy - half * ux);
+  }
+  std::pair<double, double> best = points.front();
+  for (const auto& point : points) {
+    if (std::hypot(point.first, point.second) < std::hypot(best.first, best.second)) best = point;
+  }
+  return best;
+}
+
+// Towards the centre: the offset makes the arc smaller.
+double OffsetRadius(const Leg& arc, const Vec3& at, const Vec3& normal, double offset) {
+  const Vec3 inward = Unit(arc.centre - at);
+  return arc.radius - offset * motion::Dot(normal, inward);
+}
+
+PlaneCurve CurveOf(const Leg& leg, const Vec3& corner, const Vec3& tangent, const Vec3& normal,
+                   const Vec3& ex, const Vec3& ey, double offset) {
+  PlaneCurve curve;
+  if (leg.is_arc) {
+    curve.circle = true;
+    const Vec3 to_centre = leg.centre - corner;
+    curve.x = motion::Dot(to_centre, ex);
+    curve.y = motion::Dot(to_centre, ey);
+    curve.radius = OffsetRadius(leg, corner, normal, offset);
+  } else {
+    const Vec3 shift = normal * offset;
+    curve.x = motion::Dot(shift, ex);
+    curve.y = motion::Dot(shift, ey);
+    curve.dx = motion::Dot(tangent, ex);
+    curve.dy = motion::Dot(tangent, ey);
+  }
+  return curve;
+}
+
+bool InPlane(const Leg& leg, const Vec3& tangent, const Vec3& tool) {
+  if (leg.is_arc) return std::fabs(motion::Dot(leg.axis, tool)) > kInPlane;
+  return std::fabs(motion::Dot(tangent, tool)) < 1e-6;
+}
+
+// The new place of the corner between two legs. OPT-8.16, OPT-8.79, OPT-B.79
+std::optional<Vec3> Corner(const Leg& before, const Leg& after, double offset) {
+  const Vec3& tool = before.tool_to;
+  Vec3 n1 = LeftNormal(tool, before.tangent_to),
+       n2 = LeftNormal(after.tool_from, after.tangent_from);
+  if (IsZero(n1)) n1 = n2;
+  if (IsZero(n2)) n2 = n1;
+  if (IsZero(n1)) return before.to;
+  const double cosine = motion::Dot(n1, n2);
+  if (cosine < kTurnsBack) return std::nullopt;
+  const bool arc = before.is_arc || after.is_arc;
+  if (arc && cosine < kTangent && InPlane(before, before.tangent_to, tool) &&
+      InPlane(after, after.tangent_from, tool)) {
+    const Vec3 ex = Unit(before.tangent_to), ey = motion::Cross(tool, ex);
+    const auto meeting =
+        NearestMeeting(CurveOf(before, before.to, before.tangent_to, n1, ex, ey, offset),
+                       CurveOf(after, before.to, after.tangent_from, n2, ex, ey, offset));
+    if (!meeting) return std::nullopt;
+    return before.to + ex * meeting->first + ey * meeting->second;
+  }
+  return before.to + (n1 + n2) * (offset / (1.0 + cosine));
+}
+
+bool ArcIsConsumed(const Leg& leg, double offset) {
+  if (!leg.is_arc) return false;
+  const auto consumed = [&](const Vec3& at, const Vec3& tool, const Vec3& tangent) {
+    return OffsetRadius(leg, at, LeftNormal(tool, tangent), offset) <= kNoRadius;
+  };
+  return consumed(leg.from, leg.tool_from, leg.tangent_from) ||
+         consumed(leg.to, leg.tool_to, leg.tangent_to);
+}
+
+}  // namespace
+
+Vec3 ToolDirection(double a, double b) {
+  return {std::sin(a) * std::sin(b), -std::cos(a) * std::sin(b), std::cos(b)};
+}
+
+Vec3 LeftNormal(const Vec3& tool, const Vec3& tangent) {
+  const Vec3 side = motion::Cross(tool, tangent);
+  return motion::Norm(side) < 1e-6 ? Vec3{} : Unit(side);
+}
+
+void Prepare(Leg& leg) {
+  leg.is_arc = false;
+  if (leg.via) {
+    // Centre of the circle through three points, from the first one.
+    const Vec3 p = *leg.via - leg.from, q = leg.to - leg.from;
+    const Vec3 normal = motion::Cross(p, q);
+    const double area2 = motion::Dot(normal, normal);
+    if (std::sqrt(area2) > kTiny * (1.0 + motion::Norm(p) * motion::Norm(q))) {
+      const Vec3 to_centre =
+          motion::Cross(normal, p * motion::Dot(q, q) - q * motion::Dot(p, p)) * (0.5 / area2);
+      leg.is_arc = true;
+      leg.centre = leg.from + to_centre;
+      leg.axis = Unit(normal);
+      leg.radius = motion::Norm(to_centre);
+      const auto tangent = [&](const Vec3& at) {
+        return Unit(motion::Cross(leg.axis, at - leg.centre));
+      };
+      leg.tangent_from = tangent(leg.from);
+      leg.tangent_via = tangent(*leg.via);
+      leg.tangent_to = tangent(leg.to);
+      return;
+    }
+  }
+  leg.tangent_from = leg.tangent_to = leg.tangent_via = Unit(leg.to - leg.from);
+}
+
+double ShareAtVia(const Leg& leg) {
+  if (!leg.is_arc) return 0.5;
+  const Vec3 e = Unit(leg.from - leg.centre), f = motion::Cross(leg.axis, e);
+  const auto angle = [&](const Vec3& at) {
+    const double turned =
+        std::atan2(motion::Dot(at - leg.centre, f), motion::Dot(at - leg.centre, e));
+    return turned > 0.0 ? turned : turned + 2.0 * std::numbers::pi;
+  };
+  return angle(*leg.via) / angle(leg.to);
+}
+
+Result<std::vector<OffsetLeg>> OffsetChain(const std::vector<Leg>& legs, double offset,
+                                           std::size_t& failed) {
+  std::vector<OffsetLeg> result;
+  result.reserve(legs.size());
+  for (std::size_t k = 0; k < legs.size(); ++k) {
+    const Leg& leg = legs[k];
+    failed = k;
+    if (ArcIsConsumed(leg, offset)) {
+      return Error{
+          ErrorCode::kCompArc,
+          "the arc of radius " + std::to_string(leg.radius) + " is not larger than the offset",
+          {}};
+    }
+    OffsetLeg moved;
+    if (k + 1 < legs.size()) {
+      const std::optional<Vec3> corner = Corner(leg, legs[k + 1], offset);
+      if (!corner)
+        return Error{
+            ErrorCode::kCompCorner, "the path turns back, or the offset curves do not meet", {}};
+      moved.to = *corner;
+    } else {
+      moved.to = leg.to + LeftNormal(leg.tool_to, leg.tangent_to) * offset;
+    }
+    if (leg.via) moved.via = *leg.via + LeftNormal(leg.tool_via, leg.tangent_via) * offset;
+    result.push_back(moved);
+  }
+  return result;
+}
+
+}  // namespace rmlcell::optimo

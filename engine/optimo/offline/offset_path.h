@@ -1,0 +1,63 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/core/result.h"
+#include "engine/motion/vec3.h"
+
+// The sideways offset of a cut path in space (optimo.md 8.1). Private to the folder. mm; directions
+// are unit vectors.
+namespace rmlcell::optimo {
+
+using motion::Vec3;
+
+// u(A, B), from the tip towards the head. OPT-B.03
+Vec3 ToolDirection(double a_rad, double b_rad);
+
+// One cutting move, as programmed.
+struct Leg {
+  Vec3 from, to;
+  std::optional<Vec3> via;  // an arc, when the three points are no line
+  Vec3 tool_from, tool_to, tool_via;
+
+  // Filled by Prepare.
+  Vec3 tangent_from, tangent_to, tangent_via;  // zero when there is no motion
+  bool is_arc = false;
+  Vec3 centre, axis;  // the arc runs counter-clockwise about `axis`
+  double radius = 0.0;
+};
+void Prepare(Leg& leg);
+// Share of a prepared leg's length that lies before its via point.
+double ShareAtVia(const Leg& leg);
+
+// Side of the path at a point: u x d, to the left of the cut; zero when d is zero or along u.
+// OPT-8.15
+Vec3 LeftNormal(const Vec3& tool, const Vec3& tangent);
+
+struct OffsetLeg {
+  Vec3 to;
+  std::optional<Vec3> via;
+};
+
+// Offsets a chain of legs by `offset`, positive to the left; the first leg starts at its programmed
+// point (OPT-8.17). Errors: CompArc 7806, CompCorner 7808; `failed` tells the leg.
+Result<std::vector<OffsetLeg>> OffsetChain(const std::vector<Leg>& legs, double offset,
+                                           std::size_t& failed);
+
+// A crossing of the offset path with itself or with the programmed path.
+struct Crossing {
+  std::size_t leg = 0;  // of the offset path
+  bool itself = false;
+};
+struct Crossings {
+  std::vector<Crossing> found;  // the first one of each leg, ascending
+  bool complete = true;         // false: the contour is too long to look at all of it
+};
+// Empty when the tool direction changes along the chain: then the path does not lie in one surface
+// to look at. Crossings within twice the offset of the pierce point belong to the lead-in and are
+// left out. Legs next to each other meet by design.
+Crossings FindCrossings(const std::vector<Leg>& legs, const std::vector<OffsetLeg>& offset_legs,
+                        double offset);
+
+}  // namespace rmlcell::optimo

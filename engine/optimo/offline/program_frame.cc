@@ -1,0 +1,34 @@
+#include "engine/optimo/offline/program_frame.h"
+
+#include <cmath>
+
+#include "engine/optimo/offline/literal_text.h"
+
+namespace rmlcell::optimo {
+
+std::array<motion::Vec3, 3> RotationColumns(double rz, double ry, double rx) {
+  const double cz = std::cos(rz), sz = std::sin(rz), cy = std::cos(ry), sy = std::sin(ry),
+               cx = std::cos(rx), sx = std::sin(rx);
+  return {motion::Vec3{cz * cy, sz * cy, -sy},
+          motion::Vec3{cz * sy * sx - sz * cx, sz * sy * sx + cz * cx, cy * sx},
+          motion::Vec3{cz * sy * cx + sz * sx, sz * sy * cx - cz * sx, cy * cx}};
+}
+
+bool ProgramFrame::Set(const ParsedProgram& program, const Instruction& sysdef) {
+  std::array<double, 3> angles{};
+  bool known = true;
+  for (std::uint32_t v = 0; v < 3 && sysdef.value_count == 6; ++v) {
+    const ExprRange range = program.module.expressions[sysdef.first_expression + 3 + v];
+    const Node op = program.module.nodes[range.first].op;
+    const bool literal = range.count == 1 && (op == Node::kInteger || op == Node::kReal);
+    const NodePlace& place = program.node_places[range.first];
+    const auto value =
+        literal ? LiteralValue(program.text.substr(place.offset, place.length)) : std::nullopt;
+    known = known && value.has_value();
+    angles[v] = value.value_or(0.0);
+  }
+  columns_ = RotationColumns(angles[0], angles[1], angles[2]);
+  return known;
+}
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/diagnostic.h"
+#include "engine/motion/vec3.h"
+
+// TRANSFOR and RMLSHIFT: moving a program by rewriting its numbers (optimo.md 8.4).
+namespace rmlcell::optimo {
+
+// p' = translation + R p, with R given by its columns.
+struct RigidMotion {
+  motion::Vec3 translation;  // mm
+  std::array<motion::Vec3, 3> columns = {motion::Vec3{1, 0, 0}, motion::Vec3{0, 1, 0},
+                                         motion::Vec3{0, 0, 1}};
+
+  // Angles in the order of SYSDEF: Rz(rz) Ry(ry) Rx(rx), rad.
+  static RigidMotion Of(const motion::Vec3& translation, double rz, double ry, double rx);
+  RigidMotion Inverse() const;
+  motion::Vec3 Turn(const motion::Vec3& direction) const;
+  motion::Vec3 Move(const motion::Vec3& point) const { return translation + Turn(point); }
+};
+
+struct HeadAngles {
+  double a = 0.0, b = 0.0;  // rad
+};
+// The angles at which the tool points where the turned old tool points: of the two solutions the
+// one nearest to the old angles, A nearest to the old A; straight down A turns by the rotation
+// about Z (OPT-B.80).
+HeadAngles TurnHead(const HeadAngles& old, const RigidMotion& motion);
+
+struct Rewriting {
+  bool ok = false;  // false: the text is empty, nothing may be written
+  std::string text;
+  std::vector<Diagnostic> diagnostics;
+};
+
+// TRANSFOR: every MOVE and /VIA, head angles included; numbers get up to six decimals, the rest of
+// the text stays (OPT-8.76, OPT-8.77). Errors: 7851 for a coordinate, or a rotation of SYSDEF, that
+// is no plain number; those of the parser.
+Rewriting Transform(std::string_view text, const RigidMotion& motion);
+
+// RMLSHIFT: adds to the plain numbers that the program assigns to VR[86] to VR[91]: X, Y, Z, rz,
+// ry, rx (OPT-8.74, OPT-B.81). Errors: 7852 when there is none.
+Rewriting Shift(std::string_view text, const std::array<double, 6>& offset);
+
+}  // namespace rmlcell::optimo

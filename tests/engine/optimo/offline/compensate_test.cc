@@ -1,0 +1,213 @@
+#include "engine/optimo/offline/compensate.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace rmlcell::optimo {
+namespace {
+
+std::vector<int> FindingsOf(const Compensation& compensation) {
+  std::vector<int> numbers;
+  for (const Diagnostic& d : compensation.diagnostics) numbers.push_back(Lookup(d.code).number);
+  return numbers;
+}
+
+// A contour from the pierce point (0,0,0) with the given moves, compensated; its MOVE lines.
+std::string Contour(const std::string& directives, const std::string& moves) {
+  const std::string head = directives + "PATH LIN\nMOVE (0.,0.,0.,0.,0.)\nWORK 0,0/ON\n";
+  const Compensation result = Compensate(head + moves + "WORK 0,0/OFF\n");
+  if (!result.ok) {
+    std::string errors;
+    for (const int number : FindingsOf(result)) errors += std::to_string(number) + " ";
+    return errors;
+  }
+  EXPECT_EQ(result.text.substr(0, head.size()), head);  // the pierce point stays
+  return result.text.substr(head.size(), result.text.size() - head.size() - 13);
+}
+
+// OPT-8.11, OPT-8.15, OPT-8.17, OPT-8.03
+TEST(Compensate, ALineMovesSideways) {
+  EXPECT_EQ(Contour(";$dia=0.508\n;$left\n", "MOVE (10.0,0.0,-5.0,0.0,0.0)/FLY ; cut\n")
+                .find("MOVE (10.00000,"),
+            0U);
+  EXPECT_EQ(Contour(";$rad=0.254\n;$left\n", "MOVE (10.0,0.0,0.0,0.0,0.0)/FLY\n"),
+            "MOVE (10.00000,0.25400,0.00000,0.00000,0.00000)/FLY\n");
+  EXPECT_EQ(Contour(";$DIA=0.508\n;$Sright\n", "MOVE (10.0,0.0,0.0,0.0,0.0)\n"),
+            "MOVE (10.00000,-0.25400,0.00000,0.00000,0.00000)\n");
+}
+
+// OPT-8.16: the intersection of the two offset lines.
+TEST(Compensate, CornersAreTheMeetingOfTheOffsetLines) {
+  const std::string moves = "MOVE (10,0,0,0,0)\nMOVE (10,10,0,0,0)\n";
+  EXPECT_EQ(Contour(";$rad=1\n;$left\n", moves),
+            "MOVE (9.00000,1.00000,0.00000,0.00000,0.00000)\nMOVE "
+            "(9.00000,10.00000,0.00000,0.00000,0.00000)\n");
+  EXPECT_EQ(Contour(";$rad=1\n;$right\n", moves),
+            "MOVE (11.00000,-1.00000,0.00000,0.00000,0.00000)\nMOVE "
+            "(11.00000,10.00000,0.00000,0.00000,0.00000)\n");
+}
+
+// OPT-8.18, OPT-B.79: a tangent arc of radius 5 about (10,5), left 1: it starts at (10,1) and has
+// radius 4.
+TEST(Compensate, TangentArcsBecomeConcentric) {
+  EXPECT_EQ(Contour(";$rad=1\n;$left\n",
+                    "MOVE (10,0,0,0,0)\nPATH CIR\nMOVE (15,5,0,0,0)/VIA "
+                    "(13.53553390593,1.46446609407,0,0,0)\n"),
+            "MOVE (10.00000,1.00000,0.00000,0.00000,0.00000)\nPATH CIR\n"
+            "MOVE (14.00000,5.00000,0.00000,0.00000,0.00000)/VIA "
+            "(12.82843,2.17157,0.00000,0.00000,0.00000)\n");
+}
+
+// OPT-B.79: a line that meets an arc at a corner. The arc about (10,0) of radius 5 goes from (15,0)
+// over (10,5) to (5,0); left 1 makes its radius 4. The offset line y = 1 meets it at x = 10 +
+// sqrt(15).
+TEST(Compensate, CornersWithAnArcMeetTheConcentricCircle) {
+  EXPECT_EQ(Contour(";$rad=1\n;$left\n",
+                    "MOVE (15,0,0,0,0)\nPATH CIR\nMOVE (5,0,0,0,0)/VIA (10,5,0,0,0)\n"),
+            "MOVE (13.87298,1.00000,0.00000,0.00000,0.00000)\nPATH CIR\n"
+            "MOVE (6.00000,0.00000,0.00000,0.00000,0.00000)/VIA "
+            "(10.00000,4.00000,0.00000,0.00000,0.00000)\n");
+}
+
+// OPT-8.15: a head that is tilted by B about X tilts the offset. d = +X, u = (0,-sin B,cos B):
+// u x d = (0, cos B, sin B).
+TEST(Compensate, ATiltedHeadTiltsTheOffset) {
+  EXPECT_EQ(Contour(";$rad=1\n;$left\n", "MOVE (10,0,0,0,1.5707963268)\n"),
+            "MOVE (10.00000,0.00000,1.00000,0.00000,1.57080)\n");
+}
+
+// OPT-2.20, OPT-8.18: along an arc the head turns evenly from the start to the target, whatever the
+// via point says. A half circle about (0,0,0) from (10,0,0), A from pi/2 to 3 pi/2, B = pi/2: at
+// the via point A is pi and u = (0,1,0), along the radius (the head stands on a cylinder); left of
+// the cut (-1,0,0) is u x d = (0,0,1).
+TEST(Compensate, TheHeadTurnsEvenlyAlongAnArc) {
+  const std::string head =
+      ";$rad=1\n;$left\nPATH CIR\nMOVE (10,0,0,1.5707963268,1.5707963268)\nWORK 0,0/ON\n";
+  const Compensation result = Compensate(
+      head + "MOVE (-10,0,0,4.7123889804,1.5707963268)/VIA (0,10,0,0,0)\nWORK 0,0/OFF\n");
+  ASSERT_TRUE(result.ok);
+  EXPECT_EQ(result.text.substr(head.size()),
+            "MOVE (-10.00000,0.00000,1.00000,4.71239,1.57080)/VIA "
+            "(0.00000,10.00000,1.00000,0.00000,0.00000)\nWORK 0,0/OFF\n");
+}
+
+// OPT-8.16: WORK ON while the beam is on already does not end the contour.
+TEST(Compensate, ASecondBeamOnLeavesTheCornerACorner) {
+  EXPECT_EQ(Contour(";$rad=1\n;$left\n", "MOVE (10,0,0,0,0)\nWORK 0,0/ON\nMOVE (10,10,0,0,0)\n"),
+            "MOVE (9.00000,1.00000,0.00000,0.00000,0.00000)\nWORK 0,0/ON\nMOVE "
+            "(9.00000,10.00000,0.00000,0.00000,0.00000)\n");
+}
+
+// OPT-8.79
+TEST(Compensate, MovesWithoutDirectionTakeTheNormalOfTheOther) {
+  const std::string head = ";$rad=1\n;$left\nPATH LIN\nMOVE (0.,0.,5.,0.,0.)\nWORK 0,0/ON\n";
+  const Compensation result =
+      Compensate(head + "MOVE (0,0,0,0,0)\nMOVE (10,0,0,0,0)\nWORK 0,0/OFF\n");
+  ASSERT_TRUE(result.ok);
+  EXPECT_EQ(result.text.substr(head.size()),
+            "MOVE (0.00000,1.00000,0.00000,0.00000,0.00000)\nMOVE "
+            "(10.00000,1.00000,0.00000,0.00000,0.00000)\nWORK 0,0/OFF\n");
+}
+
+// OPT-8.06, OPT-8.07, OPT-8.08, OPT-8.10
+TEST(Compensate, ItIsActiveOnlyWhileEverythingHolds) {
+  const auto unchanged = [](const std::string& text) { return Compensate(text).text == text; };
+  EXPECT_TRUE(unchanged(";$rad=1\n;$left\nWORK 0,0/ON\nMOVE (10,0,0,0,0)\nWORK 0,0/OFF\n"));  // PTP
+  EXPECT_TRUE(unchanged(
+      ";$rad=1\n;$left\nPATH LIN\nWORKDEF 2,0 (11)\nWORK 2,0/ON\nMOVE (10,0,0,0,0)\n"));  // schedule
+                                                                                          // only
+  EXPECT_TRUE(unchanged(
+      ";$rad=1\nPATH LIN\nMOVE (0,0,0,0,0)\nWORK 0,0/ON\nMOVE (10,0,0,0,0)\n"));  // no side
+  EXPECT_TRUE(unchanged(
+      ";$rad=1\n;$left\n;$none\nPATH LIN\nMOVE (0,0,0,0,0)\nWORK 0,0/ON\nMOVE (10,0,0,0,0)\n"));
+  const Compensation side_only = Compensate(";$left\nPATH LIN\nWORK 0,0/ON\nMOVE (10,0,0,0,0)\n");
+  EXPECT_TRUE(side_only.ok);
+  EXPECT_EQ(FindingsOf(side_only), (std::vector<int>{7804}));
+  const Compensation two = Compensate(
+      ";$rad=1\n;$left\nPATH LIN\nMOVE (0,0,0,0,0)\nWORK 0,0/ON\nMOVE (10,0,0,0,0)\nWORK 2,1/OFF\n"
+      "MOVE (0,50,0,0,0)\nWORK 0,0/ON\nMOVE (10,50,0,0,0)\nWORK 0,0/OFF\n");
+  EXPECT_NE(two.text.find("MOVE (10.00000,1.00000,"), std::string::npos);
+  EXPECT_NE(two.text.find("MOVE (0,50,0,0,0)"), std::string::npos);
+  EXPECT_NE(two.text.find("MOVE (10.00000,51.00000,"), std::string::npos);
+}
+
+// OPT-8.12, OPT-8.13, OPT-8.14, OPT-B.91
+TEST(Compensate, HolesChangeTheirRadius) {
+  const auto hole = [](const std::string& directives, const std::string& radius) {
+    return Compensate(directives + "path hole (" + radius +
+                      ")\nwork 0,0/on\nMOVE (0,0,0,0,0)/via(0,0,9,0,0)\nwork 0,0/off\n");
+  };
+  const Compensation right = hole(";$dia=0.508\n;$right\n", "12.7");
+  EXPECT_EQ(right.text.find("path hole (12.44600)\nwork 0,0/on\nMOVE (0,0,0,0,0)/via(0,0,9,0,0)"),
+            20U);  // behind the directives
+  EXPECT_EQ(FindingsOf(right), (std::vector<int>{7033}));
+  EXPECT_NE(hole(";$dia=0.508\n;$left\n", "12.7").text.find("(12.95400)"), std::string::npos);
+  EXPECT_EQ(FindingsOf(hole(";$rad=0.254\n;$right\n", "0.2")), (std::vector<int>{7807}));
+}
+
+// OPT-8.04, OPT-8.05, OPT-8.09, OPT-8.01
+TEST(Compensate, WrongDirectivesStop) {
+  EXPECT_EQ(FindingsOf(Compensate(";$middle\n")), (std::vector<int>{7802}));
+  EXPECT_EQ(FindingsOf(Compensate(";$dia=x\n")), (std::vector<int>{7802}));
+  EXPECT_EQ(FindingsOf(Compensate(";$rad=-1\n")), (std::vector<int>{7802}));
+  EXPECT_EQ(FindingsOf(Compensate(";$rad=1\n;$left\nWORK 0,0/ON\n;$right\n")),
+            (std::vector<int>{7803}));
+  const Compensation inch = Compensate("SPEED 5\n", FileNames{"a.SI", "a.CMP", "now"});
+  EXPECT_EQ(FindingsOf(inch), (std::vector<int>{7801}));
+  EXPECT_FALSE(inch.ok);
+  EXPECT_TRUE(inch.text.empty());
+}
+
+// OPT-8.19, OPT-8.20, OPT-8.21, OPT-8.22
+TEST(Compensate, WhatCannotBeOffsetStops) {
+  const std::string left = ";$rad=1\n;$left\n";
+  EXPECT_EQ(Contour(left, "MOVE (10,0,0,0,0)\nMOVE (0,0,0,0,0)\n"), "7808 ");
+  EXPECT_EQ(
+      Contour(left, "PATH CIR\nMOVE (1,1,0,0,0)/VIA (0.7071067811865,0.2928932188135,0,0,0)\n"),
+      "7806 ");
+  EXPECT_EQ(Contour(left, "MOVE (VR[1],0,0,0,0)\n"), "7805 ");
+  EXPECT_EQ(Contour(left, "COORD ROBOT\nMOVE (10,0,0,0,0)\n"), "7810 ");
+  EXPECT_EQ(FindingsOf(Compensate(left + "PATH LIN\nWORK 0,0/ON\n20 GOTO 20\n")),
+            (std::vector<int>{7809}));
+}
+
+// OPT-8.23: a system that is turned by 90 degrees about Z does not change u for a head straight
+// down, but for a tilted head u is turned back.
+TEST(Compensate, SysdefTurnsTheToolBack) {
+  const std::string head =
+      ";$rad=1\n;$left\nPATH LIN\nSYSDEF (0,0,0,1.5707963268,0,0)\nMOVE "
+      "(0,0,0,1.5707963268,1.5707963268)\nWORK 0,0/ON\n";
+  const Compensation result = Compensate(head + "MOVE (10,0,0,1.5707963268,1.5707963268)\n");
+  ASSERT_TRUE(result.ok);
+  // u(pi/2, pi/2) = (1,0,0) in the machine is (0,-1,0) in the program; u x (1,0,0) = (0,0,1).
+  EXPECT_EQ(result.text.substr(head.size()), "MOVE (10.00000,0.00000,1.00000,1.57080,1.57080)\n");
+  EXPECT_EQ(FindingsOf(Compensate("SYSDEF (0,0,0,VR[1],0,0)\n")), (std::vector<int>{7811}));
+}
+
+// OPT-8.24, OPT-8.25
+TEST(Compensate, TheHeaderIsTheFirstLine) {
+  EXPECT_EQ(Compensate("; old\n", FileNames{"a.S", "a.CMP", "Tue Apr 20 13:37:33 1993"}).text,
+            "; File a.CMP Created From File a.S - Tue Apr 20 13:37:33 1993\n; old\n");
+}
+
+// A slot narrower than the beam: the offset sides cross each other.
+TEST(Compensate, GougesAreReported) {
+  const std::string moves =
+      "MOVE (20,0,0,0,0)\nMOVE (20,-20,0,0,0)\nMOVE (21,-20,0,0,0)\nMOVE (21,0,0,0,0)\nMOVE "
+      "(40,0,0,0,0)\n";
+  const Compensation result = Compensate(
+      ";$rad=2\n;$left\nPATH LIN\nMOVE (0.,0.,0.,0.,0.)\nWORK 0,0/ON\n" + moves + "WORK 0,0/OFF\n");
+  ASSERT_TRUE(result.ok);
+  const std::vector<int> numbers = FindingsOf(result);
+  ASSERT_FALSE(numbers.empty());
+  for (const int number : numbers) EXPECT_EQ(number, 7812);
+  // The same contour with a beam that fits.
+  EXPECT_TRUE(
+      FindingsOf(
+          Compensate(";$rad=0.1\n;$left\nPATH LIN\nMOVE (0.,0.,0.,0.,0.)\nWORK 0,0/ON\n" + moves))
+          .empty());
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo

@@ -1,0 +1,111 @@
+#include "engine/optimo/offline/contour_advice.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "engine/core/number_text.h"
+#include "engine/optimo/offline/translate.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+// The findings of one number, by line and detail.
+struct Told {
+  int line;
+  std::string detail;
+};
+std::vector<Told> Findings(const std::string& text, ErrorCode code) {
+  std::vector<Told> told;
+  for (const Diagnostic& d : TranslateOptimo({"a.S", text}, {}).diagnostics) {
+    if (d.code == code) told.push_back({d.where.line, d.detail});
+  }
+  return told;
+}
+
+// A corner at (100,0,0) that turns by `degrees` to the left, on line 6, cut at SPEED 10.
+std::string CornerOf(double degrees, const std::string& before = "", bool beam = true) {
+  const double x = 100.0 + 100.0 * std::cos(degrees * M_PI / 180.0);
+  const double y = 100.0 * std::sin(degrees * M_PI / 180.0);
+  return "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (0,0,0,0,0)\n" +
+         std::string(beam ? "WORK 0,0/ON\n" : "OL[11]=ON\n") + "MOVE (100,0,0,0,0)/FLY\n" + before +
+         "MOVE (" + FixedText(x, 6) + "," + FixedText(y, 6) + ",0,0,0)\nWORK 0,0/OFF\n";
+}
+
+// OPT-2.62, OPT-E.7317: motion.md C01: 90 degrees at 50 mm/s: 1.3588 mm from the corner.
+TEST(ContourAdvice, SharpCornersAreToldWithTheirDistance) {
+  const auto told = Findings(CornerOf(90), ErrorCode::kFlySharp);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].line, 6);
+  EXPECT_EQ(told[0].detail,
+            "the contour turns by 90.0 degrees; the path stays 1.359 mm away from the corner");
+  EXPECT_TRUE(Findings(CornerOf(59.9), ErrorCode::kFlySharp).empty());
+  EXPECT_EQ(Findings(CornerOf(60.1), ErrorCode::kFlySharp).size(), 1U);
+}
+
+// OPT-2.42, OPT-2.62: OVERSH 50 halves the speed; case C13: 0.480 mm.
+TEST(ContourAdvice, OvershotCornersAreMeasuredAtTheirSpeed) {
+  const std::string text = CornerOf(90);
+  const auto told = Findings("OVERSH 50\n" + text, ErrorCode::kFlySharp);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_NE(told[0].detail.find("stays 0.480 mm"), std::string::npos) << told[0].detail;
+}
+
+// OPT-2.62: OVERSH 0, beam off, or a corner that is no passage: nothing to say.
+TEST(ContourAdvice, HarmlessCornersAreNotTold) {
+  EXPECT_TRUE(Findings("OVERSH 0\n" + CornerOf(90), ErrorCode::kFlySharp).empty());
+  EXPECT_TRUE(Findings(CornerOf(90, "", false), ErrorCode::kFlySharp).empty());
+  EXPECT_TRUE(Findings(CornerOf(90, "DELAY 1\n"), ErrorCode::kFlySharp).empty());
+  // What is not known cannot be told: a speed from a variable, a corner that a jump comes to.
+  EXPECT_TRUE(Findings(CornerOf(90, "SPEED VR[64]\n"), ErrorCode::kFlySharp).empty());
+  EXPECT_TRUE(Findings(CornerOf(90, "10\n") + "GOTO 10\n", ErrorCode::kFlySharp).empty());
+  EXPECT_EQ(Findings(CornerOf(90, "OL[16]=ON\n"), ErrorCode::kFlySharp).size(), 1U);
+}
+
+// OPT-E.7318: a leg of 1 mm allows a cut of 0.5 mm at both of its corners of 90 degrees. There
+// K = 0.9719 and J = 4.2 (motion.md 4.2, 4.3), a_n = 1600 and j_n = 32000: sqrt(a_n d/K) = 28.7,
+// (j_n d^2/J)^(1/3) = 12.4 mm/s, and the bound J lies at most 6 % too high: v <= 12.64.
+TEST(ContourAdvice, ShortNeighboursCostSpeed) {
+  const auto told = Findings(
+      "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (0,0,0,0,0)\nMOVE (100,0,0,0,0)/FLY\n"
+      "MOVE (100,1,0,0,0)/FLY\nMOVE (200,1,0,0,0)\n",
+      ErrorCode::kFlyCapped);
+  ASSERT_EQ(told.size(), 2U);
+  EXPECT_EQ(told[0].line, 5);
+  EXPECT_EQ(told[1].line, 6);
+  const std::string before = "a short neighbour limits the bend to ",
+                    after = " mm/s instead of 50.0";
+  ASSERT_TRUE(told[0].detail.starts_with(before));
+  ASSERT_TRUE(told[0].detail.ends_with(after)) << told[0].detail;
+  const double speed = *ParseDouble(
+      std::string_view(told[0].detail)
+          .substr(before.size(), told[0].detail.size() - before.size() - after.size()));
+  EXPECT_GE(speed, 12.35);
+  EXPECT_LE(speed, 12.65);
+  // With room for the whole bend (4.05 mm of cut, case C01) it costs nothing.
+  EXPECT_TRUE(Findings("COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (0,0,0,0,0)\nMOVE (100,0,0,0,0)/FLY\n"
+                       "MOVE (100,8.2,0,0,0)/FLY\nMOVE (200,8.2,0,0,0)\n",
+                       ErrorCode::kFlyCapped)
+                  .empty());
+}
+
+// OPT-E.7319: B = 0.5 degrees is 0.008727 rad, 31 degrees are 0.541052 rad, 29 are 0.506145.
+TEST(ContourAdvice, AHeadThatSwingsWhileStraightDown) {
+  const auto count = [](const std::string& from, const std::string& to) {
+    return Findings("COORD ABSOL\nPATH LIN\nMOVE (0,0,0," + from + ")\nMOVE (100,0,0," + to + ")\n",
+                    ErrorCode::kHeadSingular)
+        .size();
+  };
+  EXPECT_EQ(count("0,0.008727", "0.541052,0.008727"), 1U);
+  EXPECT_EQ(count("0,0.008727", "0.506145,0.008727"), 0U);
+  EXPECT_EQ(count("0,0.0192", "0.541052,0.0192"), 0U);   // 1.1 degrees
+  EXPECT_EQ(count("0,0.785398", "3.14,-0.785398"), 1U);  // passes through B = 0
+  EXPECT_EQ(Findings("COORD ABSOL\nPATH PTP\nMOVE (0,0,0,0,0)\nMOVE (100,0,0,1,0)\n",
+                     ErrorCode::kHeadSingular)
+                .size(),
+            0U);  // no contour
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo

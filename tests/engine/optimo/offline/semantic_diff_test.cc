@@ -1,0 +1,118 @@
+#include "engine/optimo/offline/semantic_diff.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/optimo/language/compile_text.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+using Kind = StepChange::Kind;
+using Texts = std::vector<std::string>;
+
+ProgramDiff DiffOf(const std::string& a, const std::string& b) {
+  return Diff(MustCompile(a).module, MustCompile(b).module);
+}
+
+constexpr const char* kContour =
+    "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (0,0,0,0,0)\nWORK 0,0/ON\nMOVE (10,0,0,0,0)/FLY\n"
+    "MOVE (10,10,0,0,0)\nWORK 0,0/OFF\n";
+
+// OPT-1.04, OPT-1.29, OPT-7.41, OPT-7.91: how it is written does not count.
+TEST(SemanticDiff, WritingDoesNotCount) {
+  EXPECT_TRUE(DiffOf(kContour, kContour).equal());
+  EXPECT_TRUE(DiffOf(kContour,
+                     "; other text\ndeclare EDGE = 10.0\ncoord absol\nPath Lin\nspeed 10.\n"
+                     "5 move(0.,0.,0.,0.,0.)\nwork 0,00 /on\nmove (EDGE,0,0,0,0) /fly\n"
+                     "MOVE (EDGE,\n EDGE,0,-0.0,0)\nwork 0,0/off ; end\n")
+                  .equal());
+  EXPECT_TRUE(
+      DiffOf("VR[0] = VR[1] + 5\nOL[1] = 1\n", "LET VR[00] = VR[1] + 5.0\nOL[1] = ON\n").equal());
+  EXPECT_FALSE(DiffOf("VR[0] = VR[1] + 5\n", "VR[0] = VR[1] - 5\n").equal());
+}
+
+// OPT-7.43, OPT-7.44: the same words with names that stand for something else.
+TEST(SemanticDiff, NamesCountByWhatTheyStandFor) {
+  EXPECT_TRUE(DiffOf("DECLARE P = VR[1]\nP = 2.\n", "DECLARE Q = VR[1]\nQ = 2.\n").equal());
+  const ProgramDiff constant = DiffOf("DECLARE T = 1.5\nDELAY T\n", "DECLARE T = 2.5\nDELAY T\n");
+  ASSERT_EQ(constant.steps.size(), 1U);
+  EXPECT_EQ(constant.steps[0].what, (Texts{"1.5 -> 2.5"}));
+  const ProgramDiff source = DiffOf("DECLARE XP = VR[1]\nMOVE (XP+1,0,0,0,0)\n",
+                                    "DECLARE XP = VR[2]\nMOVE (XP+1,0,0,0,0)\n");
+  ASSERT_EQ(source.steps.size(), 1U);
+  EXPECT_EQ(source.steps[0].what, (Texts{"X VR[1] + 1 -> VR[2] + 1"}));
+}
+
+// OPT-2.10, OPT-2.34: modal values count where a MOVE uses them.
+TEST(SemanticDiff, ModalValuesCountWhereTheyAreUsed) {
+  EXPECT_TRUE(DiffOf("SPEED 70\nMOVE (1,2,3,0,0)\n", "MOVE (1,2,3,0,0)\nSPEED 5\n").equal());
+  const ProgramDiff faster = DiffOf("SPEED 10\nMOVE (1,2,3,0,0)\nMOVE (2,2,3,0,0)\n",
+                                    "SPEED 10\nMOVE (1,2,3,0,0)\nSPEED 12\nMOVE (2,2,3,0,0)\n");
+  ASSERT_EQ(faster.steps.size(), 1U);
+  EXPECT_EQ(faster.steps[0].kind, Kind::kChanged);
+  EXPECT_EQ(faster.steps[0].step_a, 3);
+  EXPECT_EQ(faster.steps[0].step_b, 4);
+  EXPECT_EQ(faster.steps[0].what, (Texts{"SPEED 10.0 -> 12.0"}));
+  EXPECT_EQ(AspectText(faster.aspects), "time");
+  // With a jump it is not known which MOVE uses it: the instruction itself has changed.
+  const ProgramDiff jumping = DiffOf("10 SPEED 10\nMOVE (1,2,3,0,0)\nIF VL[0] THEN 10\n",
+                                     "10 SPEED 12\nMOVE (1,2,3,0,0)\nIF VL[0] THEN 10\n");
+  ASSERT_EQ(jumping.steps.size(), 1U);
+  EXPECT_EQ(jumping.steps[0].what, (Texts{"SPEED 10 -> SPEED 12"}));
+}
+
+// A target that moved by (3, 4, 0): 5 mm; an attribute; the path type.
+TEST(SemanticDiff, MovesTellWhatChanged) {
+  const ProgramDiff moved =
+      DiffOf("PATH LIN\nMOVE (1,2,3,0,0)/FLY\n", "PATH CIR\nMOVE (4,6,3,0,0)\n");
+  ASSERT_EQ(moved.steps.size(), 1U);
+  EXPECT_EQ(moved.steps[0].what,
+            (Texts{"PATH LIN -> PATH CIR", "/FLY removed", "X 1.0 -> 4.0", "Y 2.0 -> 6.0"}));
+  EXPECT_DOUBLE_EQ(moved.steps[0].target_moved_mm, 5.0);
+  EXPECT_EQ(AspectText(moved.aspects), "path, time");
+}
+
+TEST(SemanticDiff, StepsThatComeAndGo) {
+  const ProgramDiff diff =
+      DiffOf("OL[11]=ON\nVR[1]=2.\nDELAY 1\n", "VR[1]=2.\nWORKDEF 2,0 (11)\nDELAY 2\n");
+  ASSERT_EQ(diff.steps.size(), 3U);
+  EXPECT_EQ(diff.steps[0].kind, Kind::kRemoved);
+  EXPECT_EQ(diff.steps[0].before, "LET OL[11] = ON");
+  EXPECT_EQ(diff.steps[0].aspects, unsigned{kAspectOutputs});
+  EXPECT_EQ(diff.steps[1].kind, Kind::kAdded);
+  EXPECT_EQ(diff.steps[1].after, "WORKDEF 2,0 (11)");
+  EXPECT_EQ(diff.steps[1].aspects, unsigned{kAspectPower});
+  EXPECT_EQ(diff.steps[2].what, (Texts{"DELAY 1 -> DELAY 2"}));
+  EXPECT_EQ(AspectText(diff.aspects), "time, power, outputs");
+}
+
+// OPT-1.25, OPT-7.15: jumps are compared by where they come to.
+TEST(SemanticDiff, JumpsAreComparedByTheirTarget) {
+  const std::string program = "GOTO 20\n10 VI[2]=1\n20 VI[3]=1\n";
+  EXPECT_TRUE(DiffOf(program, "GOTO 7\n1 VI[2]=1\n7 VI[3]=1\n").equal());
+  const ProgramDiff other = DiffOf(program, "GOTO 10\n10 VI[2]=1\n20 VI[3]=1\n");
+  ASSERT_EQ(other.steps.size(), 1U);
+  EXPECT_EQ(other.steps[0].what, (Texts{"goes to step 3 -> step 2"}));
+  EXPECT_EQ(other.aspects, unsigned{kAspectFlow});
+  EXPECT_TRUE(DiffOf("GOTO 99\n", "GOTO 99\n").equal());
+  EXPECT_FALSE(DiffOf("GOTO 99\n", "GOTO 98\n").equal());
+  // A step that is new before the target is the only change.
+  EXPECT_EQ(DiffOf(program, "GOTO 20\n10 VI[2]=1\nVI[5]=1\n20 VI[3]=1\n").steps.size(), 1U);
+}
+
+TEST(SemanticDiff, FiguresOfRunsAreCompared) {
+  const Module module = MustCompile("SPEED 5\n").module;
+  const ProgramDiff diff =
+      Diff(module, module, {{"time", "s", 10.0}, {"cut", "mm", 5.0}, {"pierces", "", 1.0}},
+           {{"time", "s", 12.5}, {"cut", "mm", 5.0 * (1 + 1e-12)}});
+  ASSERT_EQ(diff.figures.size(), 2U);
+  EXPECT_EQ(diff.figures[0].name, "pierces");
+  EXPECT_EQ(diff.figures[0].after, 0.0);
+  EXPECT_EQ(diff.figures[1].name, "time");
+  EXPECT_EQ(diff.figures[1].before, 10.0);
+  EXPECT_EQ(diff.figures[1].after, 12.5);
+  EXPECT_FALSE(diff.equal());
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo
