@@ -124,7 +124,7 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   book = std::make_unique<JobBook>(*store, config);
   shelf = std::make_unique<ProgramShelf>(*store, config);
   projects = std::make_unique<ProjectBook>(*store);
-  const CallRoom room{gate, *executor};
+  const CallRoom room{gate, *executor, config.limit_message_bytes};
   job_service = std::make_unique<JobService>(room, *book, *dispatcher, *feed, open, instance_id);
   machine_service = std::make_unique<MachineService>(room, *store, *dispatcher, config, instance_id);
   program_service = std::make_unique<ProgramService>(room, *shelf, open);
@@ -140,7 +140,7 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveTime_ms);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeout_ms);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
-  builder.SetMaxReceiveMessageSize(static_cast<int>(config.limit_message_bytes));
+  builder.SetMaxReceiveMessageSize(static_cast<int>(config.limit_message_bytes + kRefusalBytes));
   builder.SetMaxSendMessageSize(-1);
   std::vector<int> ports(config.listen_grpc.size(), 0);
   for (std::size_t i = 0; i < ports.size(); ++i) {

@@ -120,7 +120,7 @@ CLI::App* RemoteVerb(CLI::App& app, const char* name, const char* text, const st
                      Remote& remote) {
   CLI::App* verb = app.add_subcommand(name, text);
   verb->footer("Examples:\n" + examples);
-  verb->add_option("--server", remote.server, "host:port or unix:/path")->envname("RMLCELL_SERVER");
+  verb->add_option("--server", remote.server, "host:port or unix:/path; default: RMLCELL_SERVER, or 127.0.0.1:50051");
   verb->add_flag("--json", remote.json, "print messages as JSON, one line each");
   return verb;
 }
@@ -284,6 +284,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(kExamples);
   Remote remote;
+  // Not by the option itself: the library would let the environment win over the flag of another verb.
+  if (const char* server = std::getenv("RMLCELL_SERVER"); server != nullptr && *server != '\0') remote.server = server;
   int exit_code = kGood;
   AddLocalVerbs(app, exit_code);
   AddProgramVerbs(app, remote, exit_code);

@@ -1,11 +1,11 @@
 #include "clients/cli/messages.h"
 
-#include <google/protobuf/util/json_util.h>
 
 #include <algorithm>
 
 #include "clients/cli/terminal.h"
 #include "engine/core/diagnostic.h"
+#include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
 
 namespace rmlcell::cli {
@@ -26,11 +26,7 @@ std::string PlaceText(const v1::SourcePlace& place) {
 }  // namespace
 
 std::string Json(const google::protobuf::Message& message) {
-  google::protobuf::util::JsonPrintOptions options;
-  options.always_print_primitive_fields = true;
-  std::string json;
-  const auto status = google::protobuf::util::MessageToJsonString(message, &json, options);
-  return status.ok() ? json : "{}";
+  return bridge::StableJson(message).value_or("{}");
 }
 
 std::string StateName(v1::Job::State state) {

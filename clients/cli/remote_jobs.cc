@@ -101,7 +101,10 @@ int WatchJob(const Remote& remote, const std::string& job, std::int64_t after) {
     grpc::Status status;
     const std::int64_t before = after;
     if (WatchOnce(remote, *stub, name, after, exit_code, status)) return exit_code;
-    if (!status.ok() && status.error_code() != grpc::StatusCode::UNAVAILABLE) return Refused(status, remote);
+    // A server that stops cancels what it cannot end in time.
+    const bool away = status.ok() || status.error_code() == grpc::StatusCode::UNAVAILABLE ||
+                      status.error_code() == grpc::StatusCode::CANCELLED;
+    if (!away) return Refused(status, remote);
     if (after > before) tries = 0;
     if (tries == 0) Complain("the server is away; watching again when it is back");
     std::this_thread::sleep_for(std::chrono::milliseconds(500));

@@ -217,8 +217,9 @@ int RpcCode(ErrorCode code) {
 
 std::string ErrorText(const Error& error) {
   const CatalogueEntry& entry = Lookup(error.code);
-  const std::string what = error.detail.empty() ? std::string(entry.when) : error.detail;
-  return CodeText(error.code) + ": " + Utf8(what) + "; " + std::string(entry.advice);
+  std::string what(entry.when);
+  if (!error.detail.empty()) what += ": " + Utf8(error.detail);
+  return CodeText(error.code) + ": " + what + "; " + std::string(entry.advice);
 }
 
 google::rpc::Status ToRpcStatus(const Error& error, const std::vector<Diagnostic>& diagnostics,

@@ -49,7 +49,8 @@ EventFeed::EventFeed(storage::Store& store) : store_(store) {
   store_watch_ = store_.Watch([this] {
     const std::lock_guard lock(mutex_);
     hinted_ = true;
-    wake_.notify_one();
+    // With nobody to tell, waking up for each commit would only take time from the next one.
+    if (!watchers_.empty()) wake_.notify_one();
   });
   thread_ = std::jthread([this](const std::stop_token& stop) { Run(stop); });
 }
@@ -68,6 +69,7 @@ std::unique_ptr<EventFeed::Subscription> EventFeed::Subscribe(std::optional<std:
   {
     const std::lock_guard lock(mutex_);
     watchers_.emplace(key, watcher);
+    if (hinted_) wake_.notify_one();
   }
   return std::make_unique<Handle>(*this, key, std::move(watcher));
 }

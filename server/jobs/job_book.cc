@@ -6,6 +6,7 @@
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
 #include "engine/simulation/families.h"
+#include "proto/bridge/encoding.h"
 #include "server/config.h"
 #include "server/jobs/job_filter.h"
 #include "server/jobs/job_messages.h"
@@ -155,7 +156,7 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, co
   if (!machine) return machine.error();
 
   storage::NewJob made{.request_id = request.request_id(),
-                       .request_hash = request.request_id().empty() ? "" : HashOf(job.SerializeAsString()),
+                       .request_hash = request.request_id().empty() ? "" : HashOf(bridge::StableBytes(job)),
                        .machine = *machine_id,
                        .kind = std::string(kind),
                        .title = job.title(),
@@ -178,7 +179,7 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, co
     program.mutable_program()->clear_content();
   }
   if (!job.has_simulation()) specification.clear_simulation();
-  made.specification = specification.SerializeAsString();
+  made.specification = bridge::StableBytes(specification);
   return made;
 }
 

@@ -24,6 +24,15 @@ grpc::Status ToGrpcStatus(const Error& error, const std::vector<Diagnostic>& dia
   return {static_cast<grpc::StatusCode>(rich.code()), rich.message(), rich.SerializeAsString()};
 }
 
+Status CheckSize(const CallRoom& room, const google::protobuf::Message& request) {
+  const auto size = static_cast<std::int64_t>(request.ByteSizeLong());
+  if (size <= room.message_bytes_max) return {};
+  return Error{ErrorCode::kCellTooLarge,
+               "the message has " + std::to_string(size) + " bytes, one call takes " +
+                   std::to_string(room.message_bytes_max),
+               {}};
+}
+
 Result<Caller> Admit(const Gate& gate, const grpc::ServerContextBase& context, std::string_view method) {
   CallFacts facts{.method = std::string(method), .peer = context.peer(), .metadata = {}};
   for (const auto& [key, value] : context.client_metadata()) {

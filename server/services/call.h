@@ -1,5 +1,6 @@
 #pragma once
 
+#include <google/protobuf/message.h>
 #include <grpcpp/grpcpp.h>
 #include <spdlog/spdlog.h>
 
@@ -19,11 +20,18 @@ namespace rmlcell::server {
 struct CallRoom {
   const Gate& gate;
   Executor& executor;
+  std::int64_t message_bytes_max;  // limits.message_bytes
 };
 
 Result<Caller> Admit(const Gate& gate, const grpc::ServerContextBase& context, std::string_view method);
 void LogCall(std::string_view method, const Caller& caller, const grpc::Status& status,
              std::chrono::steady_clock::duration took);
+
+// gRPC refuses an oversized message without a word of ours. It is told to let this much more in, so that
+// whoever is a little over gets the code and the advice; larger ones are not worth the memory.
+inline constexpr std::int64_t kRefusalBytes = 16 << 20;
+// Error: CellTooLarge.
+Status CheckSize(const CallRoom& room, const google::protobuf::Message& request);
 
 // Runs `work(caller)`, which returns a grpc::Status, on the executor and finishes the call with it.
 template <class Work>
@@ -48,6 +56,16 @@ grpc::ServerUnaryReactor* Answer(const CallRoom& room, grpc::CallbackServerConte
     reactor->Finish(status);
   });
   return reactor;
+}
+
+// The same for a request that may be of any size.
+template <class Work>
+grpc::ServerUnaryReactor* Answer(const CallRoom& room, grpc::CallbackServerContext* context,
+                                 const google::protobuf::Message& request, std::string_view method, Work work) {
+  const Status size = CheckSize(room, request);
+  if (size) return Answer(room, context, method, std::move(work));
+  return Answer(room, context, method,
+                [error = size.error()](const Caller&) { return ToGrpcStatus(error); });
 }
 
 // A method of a later version.

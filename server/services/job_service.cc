@@ -16,8 +16,9 @@ grpc::ServerUnaryReactor* JobService::SubmitJob(grpc::CallbackServerContext* con
                                                 const v1::SubmitJobRequest* request, v1::Job* response) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   const Result<Caller> caller = Admit(room_.gate, *context, "JobService/SubmitJob");
-  if (!caller) {
-    reactor->Finish(ToGrpcStatus(caller.error()));
+  const Status size = CheckSize(room_, *request);
+  if (!caller || !size) {
+    reactor->Finish(ToGrpcStatus(caller ? size.error() : caller.error()));
     return reactor;
   }
   const auto begin = std::chrono::steady_clock::now();
@@ -36,7 +37,7 @@ grpc::ServerUnaryReactor* JobService::SubmitJob(grpc::CallbackServerContext* con
 
 grpc::ServerUnaryReactor* JobService::GetJob(grpc::CallbackServerContext* context,
                                              const v1::GetJobRequest* request, v1::Job* response) {
-  return Answer(room_, context, "JobService/GetJob", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "JobService/GetJob", [this, request, response](const Caller&) {
     Result<v1::Job> job = book_.Get(request->name());
     if (!job) return ToGrpcStatus(job.error());
     *response = std::move(*job);
@@ -47,7 +48,7 @@ grpc::ServerUnaryReactor* JobService::GetJob(grpc::CallbackServerContext* contex
 grpc::ServerUnaryReactor* JobService::ListJobs(grpc::CallbackServerContext* context,
                                                const v1::ListJobsRequest* request,
                                                v1::ListJobsResponse* response) {
-  return Answer(room_, context, "JobService/ListJobs", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "JobService/ListJobs", [this, request, response](const Caller&) {
     Result<v1::ListJobsResponse> jobs = book_.List(*request);
     if (!jobs) return ToGrpcStatus(jobs.error());
     *response = std::move(*jobs);
@@ -57,7 +58,7 @@ grpc::ServerUnaryReactor* JobService::ListJobs(grpc::CallbackServerContext* cont
 
 grpc::ServerUnaryReactor* JobService::CancelJob(grpc::CallbackServerContext* context,
                                                 const v1::CancelJobRequest* request, v1::Job* response) {
-  return Answer(room_, context, "JobService/CancelJob", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "JobService/CancelJob", [this, request, response](const Caller&) {
     const Result<std::int64_t> id = ParseJobName(request->name());
     if (!id) return ToGrpcStatus(id.error());
     const auto job = dispatcher_.Cancel(*id);
@@ -99,7 +100,7 @@ grpc::ServerUnaryReactor* JobService::SetJobOverride(grpc::CallbackServerContext
                                                      v1::Job* response) {
   const double percent = request->override_percent();
   if (!(percent > 0.0 && percent <= 145.0)) {
-    return Answer(room_, context, "JobService/SetJobOverride", [](const Caller&) {
+    return Answer(room_, context, *request, "JobService/SetJobOverride", [](const Caller&) {
       return ToGrpcStatus(
           Error{ErrorCode::kCellInvalidArgument, "override_percent: allowed are above 0 to 145", {}});
     });
@@ -136,7 +137,7 @@ grpc::ServerWriteReactor<v1::WatchJobsResponse>* JobService::WatchJobs(grpc::Cal
 grpc::ServerUnaryReactor* JobService::GetJobReport(grpc::CallbackServerContext* context,
                                                    const v1::GetJobReportRequest* request,
                                                    v1::RunReport* response) {
-  return Answer(room_, context, "JobService/GetJobReport", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "JobService/GetJobReport", [this, request, response](const Caller&) {
     const Result<std::int64_t> id = ParseJobName(request->name());
     if (!id) return ToGrpcStatus(id.error());
     const Result<std::string> bytes = book_.ReadArtifact(*id, "report");
@@ -157,7 +158,7 @@ grpc::ServerWriteReactor<v1::StreamJobToolpathResponse>* JobService::StreamJobTo
 grpc::ServerUnaryReactor* JobService::GetJobPicture(grpc::CallbackServerContext* context,
                                                     const v1::GetJobPictureRequest* request,
                                                     v1::GetJobPictureResponse* response) {
-  return Answer(room_, context, "JobService/GetJobPicture", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "JobService/GetJobPicture", [this, request, response](const Caller&) {
     const Result<std::int64_t> id = ParseJobName(request->name());
     if (!id) return ToGrpcStatus(id.error());
     const Result<std::string> bytes = book_.ReadArtifact(*id, "picture.svg");

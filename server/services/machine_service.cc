@@ -66,7 +66,7 @@ grpc::ServerUnaryReactor* MachineService::ListFamilies(grpc::CallbackServerConte
 grpc::ServerUnaryReactor* MachineService::CreateMachine(grpc::CallbackServerContext* context,
                                                         const v1::CreateMachineRequest* request,
                                                         v1::Machine* response) {
-  return Answer(room_, context, "MachineService/CreateMachine", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "MachineService/CreateMachine", [this, request, response](const Caller&) {
     if (Status id = CheckResourceId(request->machine_id(), "machine_id"); !id) return ToGrpcStatus(id.error());
     const storage::MachineRecord record = FromProto(request->machine(), request->machine_id());
     if (Status good = CheckMachine(record); !good) return ToGrpcStatus(good.error());
@@ -85,7 +85,7 @@ grpc::ServerUnaryReactor* MachineService::CreateMachine(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* MachineService::GetMachine(grpc::CallbackServerContext* context,
                                                      const v1::GetMachineRequest* request,
                                                      v1::Machine* response) {
-  return Answer(room_, context, "MachineService/GetMachine", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "MachineService/GetMachine", [this, request, response](const Caller&) {
     const auto id = ParseMachineName(request->name());
     if (!id) return ToGrpcStatus(id.error());
     const auto machine = store_.GetMachine(*id);
@@ -98,7 +98,7 @@ grpc::ServerUnaryReactor* MachineService::GetMachine(grpc::CallbackServerContext
 grpc::ServerUnaryReactor* MachineService::ListMachines(grpc::CallbackServerContext* context,
                                                        const v1::ListMachinesRequest* request,
                                                        v1::ListMachinesResponse* response) {
-  return Answer(room_, context, "MachineService/ListMachines", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "MachineService/ListMachines", [this, request, response](const Caller&) {
     if (request->page_size() < 0) {
       return ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument, "page_size is below 0", {}});
     }
@@ -120,7 +120,7 @@ grpc::ServerUnaryReactor* MachineService::ListMachines(grpc::CallbackServerConte
 grpc::ServerUnaryReactor* MachineService::UpdateMachine(grpc::CallbackServerContext* context,
                                                         const v1::UpdateMachineRequest* request,
                                                         v1::Machine* response) {
-  return Answer(room_, context, "MachineService/UpdateMachine", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "MachineService/UpdateMachine", [this, request, response](const Caller&) {
     const auto id = ParseMachineName(request->machine().name());
     if (!id) return ToGrpcStatus(id.error());
     const auto expected = ParseEtag(request->machine().etag());
@@ -161,7 +161,7 @@ grpc::ServerUnaryReactor* MachineService::UpdateMachine(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* MachineService::ListLaserSchedules(grpc::CallbackServerContext* context,
                                                              const v1::ListLaserSchedulesRequest* request,
                                                              v1::ListLaserSchedulesResponse* response) {
-  return Answer(room_, context, "MachineService/ListLaserSchedules", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "MachineService/ListLaserSchedules", [this, request, response](const Caller&) {
     const auto id = ParseMachineName(request->parent());
     if (!id) return ToGrpcStatus(id.error());
     if (const auto machine = store_.GetMachine(*id); !machine) return ToGrpcStatus(machine.error());
@@ -177,7 +177,7 @@ grpc::ServerUnaryReactor* MachineService::ListLaserSchedules(grpc::CallbackServe
 grpc::ServerUnaryReactor* MachineService::PutLaserSchedule(grpc::CallbackServerContext* context,
                                                            const v1::PutLaserScheduleRequest* request,
                                                            v1::LaserSchedule* response) {
-  return Answer(room_, context, "MachineService/PutLaserSchedule", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "MachineService/PutLaserSchedule", [this, request, response](const Caller&) {
     const v1::LaserSchedule& wanted = request->laser_schedule();
     const auto name = ParseScheduleName(wanted.name());
     if (!name) return ToGrpcStatus(name.error());
@@ -211,7 +211,7 @@ grpc::ServerUnaryReactor* MachineService::PutLaserSchedule(grpc::CallbackServerC
 grpc::ServerUnaryReactor* MachineService::DeleteLaserSchedule(grpc::CallbackServerContext* context,
                                                               const v1::DeleteLaserScheduleRequest* request,
                                                               google::protobuf::Empty*) {
-  return Answer(room_, context, "MachineService/DeleteLaserSchedule", [this, request](const Caller&) {
+  return Answer(room_, context, *request, "MachineService/DeleteLaserSchedule", [this, request](const Caller&) {
     const auto name = ParseScheduleName(request->name());
     if (!name) return ToGrpcStatus(name.error());
     const Status deleted = store_.DeleteSchedule(name->machine, name->number);

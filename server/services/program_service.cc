@@ -147,7 +147,7 @@ class Download final : public PullStream<v1::DownloadProgramResponse> {
 
 grpc::ServerUnaryReactor* ProgramService::PutProgram(grpc::CallbackServerContext* context,
                                                      const v1::PutProgramRequest* request, v1::Program* response) {
-  return Answer(room_, context, "ProgramService/PutProgram", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "ProgramService/PutProgram", [this, request, response](const Caller&) {
     const ProgramResult<v1::Program> stored = shelf_.Store({.name = request->name(),
                                                             .file_name = request->program().file_name(),
                                                             .form = request->program().form(),
@@ -170,7 +170,7 @@ grpc::ServerReadReactor<v1::UploadProgramRequest>* ProgramService::UploadProgram
 
 grpc::ServerUnaryReactor* ProgramService::GetProgram(grpc::CallbackServerContext* context,
                                                      const v1::GetProgramRequest* request, v1::Program* response) {
-  return Answer(room_, context, "ProgramService/GetProgram", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "ProgramService/GetProgram", [this, request, response](const Caller&) {
     Result<v1::Program> program = shelf_.Get(request->name());
     if (!program) return ToGrpcStatus(program.error());
     *response = std::move(*program);
@@ -181,7 +181,7 @@ grpc::ServerUnaryReactor* ProgramService::GetProgram(grpc::CallbackServerContext
 grpc::ServerUnaryReactor* ProgramService::GetProgramContent(grpc::CallbackServerContext* context,
                                                             const v1::GetProgramContentRequest* request,
                                                             v1::GetProgramContentResponse* response) {
-  return Answer(room_, context, "ProgramService/GetProgramContent", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "ProgramService/GetProgramContent", [this, request, response](const Caller&) {
     Result<ProgramShelf::Content> content = shelf_.Read(request->name(), request->form());
     if (!content) return ToGrpcStatus(content.error());
     if (content->bytes.size() > kUnaryBytes) {
@@ -206,7 +206,7 @@ grpc::ServerWriteReactor<v1::DownloadProgramResponse>* ProgramService::DownloadP
 grpc::ServerUnaryReactor* ProgramService::ListPrograms(grpc::CallbackServerContext* context,
                                                        const v1::ListProgramsRequest* request,
                                                        v1::ListProgramsResponse* response) {
-  return Answer(room_, context, "ProgramService/ListPrograms", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "ProgramService/ListPrograms", [this, request, response](const Caller&) {
     Result<v1::ListProgramsResponse> programs = shelf_.List(*request);
     if (!programs) return ToGrpcStatus(programs.error());
     *response = std::move(*programs);
@@ -217,7 +217,7 @@ grpc::ServerUnaryReactor* ProgramService::ListPrograms(grpc::CallbackServerConte
 grpc::ServerUnaryReactor* ProgramService::DeleteProgram(grpc::CallbackServerContext* context,
                                                         const v1::DeleteProgramRequest* request,
                                                         google::protobuf::Empty*) {
-  return Answer(room_, context, "ProgramService/DeleteProgram", [this, request](const Caller&) {
+  return Answer(room_, context, *request, "ProgramService/DeleteProgram", [this, request](const Caller&) {
     const Status deleted = shelf_.Delete(*request);
     return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
   });
@@ -226,7 +226,7 @@ grpc::ServerUnaryReactor* ProgramService::DeleteProgram(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* ProgramService::CheckProgram(grpc::CallbackServerContext* context,
                                                        const v1::CheckProgramRequest* request,
                                                        v1::CheckProgramResponse* response) {
-  return Answer(room_, context, "ProgramService/CheckProgram", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "ProgramService/CheckProgram", [this, request, response](const Caller&) {
     const auto translation =
         shelf_.Check(request->family(), request->machine(), request->program(), !request->errors_only());
     if (!translation) return ToGrpcStatus(translation.error());
@@ -238,7 +238,7 @@ grpc::ServerUnaryReactor* ProgramService::CheckProgram(grpc::CallbackServerConte
 grpc::ServerUnaryReactor* ProgramService::CompileProgram(grpc::CallbackServerContext* context,
                                                          const v1::CompileProgramRequest* request,
                                                          v1::CompileProgramResponse* response) {
-  return Answer(room_, context, "ProgramService/CompileProgram", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "ProgramService/CompileProgram", [this, request, response](const Caller&) {
     auto translation = shelf_.Check(request->family(), {}, request->program(), true);
     if (!translation) return ToGrpcStatus(translation.error());
     *response->mutable_findings() = FindingsOf(*translation);
@@ -256,7 +256,7 @@ grpc::ServerUnaryReactor* ProgramService::FormatProgram(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* ProgramService::DecompileProgram(grpc::CallbackServerContext* context,
                                                            const v1::DecompileProgramRequest* request,
                                                            v1::DecompileProgramResponse* response) {
-  return Answer(room_, context, "ProgramService/DecompileProgram", [request, response](const Caller&) {
+  return Answer(room_, context, *request, "ProgramService/DecompileProgram", [request, response](const Caller&) {
     const machine::MachineFamily* family = simulation::FindFamily("optimo");
     if (family == nullptr) return ToGrpcStatus(Error{ErrorCode::kCellUnknownFamily, "optimo", {}});
     Result<std::string> source = family->Decompile(request->object());
@@ -287,7 +287,7 @@ grpc::ServerUnaryReactor* ProgramService::TransformProgram(grpc::CallbackServerC
 grpc::ServerUnaryReactor* ProgramService::ExplainError(grpc::CallbackServerContext* context,
                                                        const v1::ExplainErrorRequest* request,
                                                        v1::ExplainErrorResponse* response) {
-  return Answer(room_, context, "ProgramService/ExplainError", [request, response](const Caller&) {
+  return Answer(room_, context, *request, "ProgramService/ExplainError", [request, response](const Caller&) {
     if (request->code().empty()) {
       for (const CatalogueEntry& entry : Catalogue()) *response->add_errors() = bridge::Explain(entry);
       return grpc::Status::OK;

@@ -9,7 +9,7 @@ namespace rmlcell::server {
 grpc::ServerUnaryReactor* ProjectService::CreateProject(grpc::CallbackServerContext* context,
                                                         const v1::CreateProjectRequest* request,
                                                         v1::Project* response) {
-  return Answer(room_, context, "ProjectService/CreateProject", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "ProjectService/CreateProject", [this, request, response](const Caller&) {
     Result<v1::Project> project = book_.Create(*request);
     if (!project) return ToGrpcStatus(project.error());
     *response = std::move(*project);
@@ -19,7 +19,7 @@ grpc::ServerUnaryReactor* ProjectService::CreateProject(grpc::CallbackServerCont
 
 grpc::ServerUnaryReactor* ProjectService::GetProject(grpc::CallbackServerContext* context,
                                                      const v1::GetProjectRequest* request, v1::Project* response) {
-  return Answer(room_, context, "ProjectService/GetProject", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "ProjectService/GetProject", [this, request, response](const Caller&) {
     Result<v1::Project> project = book_.Get(request->name());
     if (!project) return ToGrpcStatus(project.error());
     *response = std::move(*project);
@@ -30,7 +30,7 @@ grpc::ServerUnaryReactor* ProjectService::GetProject(grpc::CallbackServerContext
 grpc::ServerUnaryReactor* ProjectService::ListProjects(grpc::CallbackServerContext* context,
                                                        const v1::ListProjectsRequest* request,
                                                        v1::ListProjectsResponse* response) {
-  return Answer(room_, context, "ProjectService/ListProjects", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "ProjectService/ListProjects", [this, request, response](const Caller&) {
     Result<v1::ListProjectsResponse> projects = book_.List(*request);
     if (!projects) return ToGrpcStatus(projects.error());
     *response = std::move(*projects);
@@ -41,7 +41,7 @@ grpc::ServerUnaryReactor* ProjectService::ListProjects(grpc::CallbackServerConte
 grpc::ServerUnaryReactor* ProjectService::UpdateProject(grpc::CallbackServerContext* context,
                                                         const v1::UpdateProjectRequest* request,
                                                         v1::Project* response) {
-  return Answer(room_, context, "ProjectService/UpdateProject", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "ProjectService/UpdateProject", [this, request, response](const Caller&) {
     Result<v1::Project> project = book_.Update(*request);
     if (!project) return ToGrpcStatus(project.error());
     *response = std::move(*project);
@@ -52,7 +52,7 @@ grpc::ServerUnaryReactor* ProjectService::UpdateProject(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* ProjectService::DeleteProject(grpc::CallbackServerContext* context,
                                                         const v1::DeleteProjectRequest* request,
                                                         google::protobuf::Empty*) {
-  return Answer(room_, context, "ProjectService/DeleteProject", [this, request](const Caller&) {
+  return Answer(room_, context, *request, "ProjectService/DeleteProject", [this, request](const Caller&) {
     const Status deleted = book_.Delete(*request);
     return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
   });
@@ -61,7 +61,7 @@ grpc::ServerUnaryReactor* ProjectService::DeleteProject(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* ProjectService::TransferProject(grpc::CallbackServerContext* context,
                                                           const v1::TransferProjectRequest* request,
                                                           v1::TransferProjectResponse* response) {
-  return Answer(room_, context, "ProjectService/TransferProject", [this, request, response](const Caller&) {
+  return Answer(room_, context, *request, "ProjectService/TransferProject", [this, request, response](const Caller&) {
     ProgramResult<v1::TransferProjectResponse> transferred = book_.Transfer(*request);
     if (!transferred) {
       return ToGrpcStatus(transferred.error.error, transferred.error.diagnostics, transferred.error.dropped);

@@ -1,8 +1,7 @@
 #include "server/services/web_resources.h"
 
-#include <google/protobuf/util/json_util.h>
-
 #include "google/rpc/status.pb.h"
+#include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/sha256.h"
 #include "rmlcell/v1/report.pb.h"
@@ -22,15 +21,10 @@ Result<Caller> Admit(const Gate& gate, const web::WebCallerMetadata& metadata, c
 // The report is kept as a message and shown as JSON, which people and curl read.
 Result<std::string> ReportAsJson(const std::string& bytes) {
   v1::RunReport report;
-  std::string json;
-  google::protobuf::util::JsonPrintOptions options;
-  options.always_print_primitive_fields = true;
-  options.add_whitespace = true;
-  if (!report.ParseFromString(bytes) ||
-      !google::protobuf::util::MessageToJsonString(report, &json, options).ok()) {
-    return Error{ErrorCode::kCellStoreCorrupt, "the report cannot be read", {}};
-  }
-  return json;
+  std::optional<std::string> json;
+  if (report.ParseFromString(bytes)) json = bridge::StableJson(report, true);
+  if (!json) return Error{ErrorCode::kCellStoreCorrupt, "the report cannot be read", {}};
+  return *std::move(json);
 }
 
 Result<web::Resource> FindArtifact(JobBook& book, const web::ArtifactPath& path) {

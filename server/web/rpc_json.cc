@@ -7,6 +7,8 @@
 #include <limits>
 #include <memory>
 
+#include "proto/bridge/encoding.h"
+
 namespace rmlcell::web {
 namespace {
 
@@ -60,13 +62,10 @@ Result<JsonMessage> BytesToJson(const Descriptor& type, std::string_view bytes) 
       !message->ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
     return Error{ErrorCode::kCellInternal, "an answer is no " + type.full_name(), {}};
   }
-  google::protobuf::util::JsonPrintOptions options;
-  options.always_print_primitive_fields = true;
+  std::optional<std::string> json = bridge::StableJson(*message);
+  if (!json) return Error{ErrorCode::kCellInternal, "an answer cannot be written as JSON", {}};
   JsonMessage out;
-  const auto status = google::protobuf::util::MessageToJsonString(*message, &out.json, options);
-  if (!status.ok()) {
-    return Error{ErrorCode::kCellInternal, "an answer cannot be written as JSON", {}};
-  }
+  out.json = *std::move(json);
   const FieldDescriptor* field = Int64Field(type, "sequence");
   if (field != nullptr) out.sequence = message->GetReflection()->GetInt64(*message, field);
   return out;

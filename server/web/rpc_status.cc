@@ -1,11 +1,11 @@
 #include "server/web/rpc_status.h"
 
 #include <google/protobuf/any.pb.h>
-#include <google/protobuf/util/json_util.h>
 
 #include <array>
 
 #include "google/rpc/status.pb.h"
+#include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
 #include "server/web/base64.h"
 
@@ -74,11 +74,7 @@ std::string TypeName(const std::string& type_url) {
 
 // JSON of a detail with its "@type"; nothing when the type is not known or the bytes are not of it.
 std::string DetailJson(const google::protobuf::Any& detail) {
-  google::protobuf::util::JsonPrintOptions options;
-  options.always_print_primitive_fields = true;
-  std::string json;
-  const auto status = google::protobuf::util::MessageToJsonString(detail, &json, options);
-  return status.ok() ? json : std::string();
+  return bridge::StableJson(detail).value_or("");
 }
 
 std::string PlainDetail(const google::protobuf::Any& detail) {

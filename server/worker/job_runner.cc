@@ -8,6 +8,7 @@
 
 #include "engine/simulation/families.h"
 #include "engine/simulation/simulate.h"
+#include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/report.h"
 #include "proto/bridge/setup.h"
@@ -132,7 +133,7 @@ class Attempt {
       outcome_.mutable_place()->set_column(first->where.column);
     }
     *report.mutable_outcome() = outcome_;
-    SendArtifact("report", "application/x-protobuf", report.SerializeAsString());
+    SendArtifact("report", "application/x-protobuf", bridge::StableBytes(report));
   }
 
   End Check() {
@@ -206,7 +207,7 @@ class Attempt {
     for (const Diagnostic& diagnostic : made->diagnostics) *message.add_diagnostics() = bridge::ToProto(diagnostic);
     outcome_ = message.outcome();
     executables_ = (*run)->made_executables();
-    SendArtifact("report", "application/x-protobuf", message.SerializeAsString());
+    SendArtifact("report", "application/x-protobuf", bridge::StableBytes(message));
     SendArtifact("toolpath", "application/octet-stream", toolpath_);
     if (options.trace()) SendArtifact("trace", "application/octet-stream", trace_);
     SendArtifact("picture.svg", "image/svg+xml", recorder.Svg(report, {}));

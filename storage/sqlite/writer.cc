@@ -122,6 +122,7 @@ void Writer::Loop() {
   while (WaitForWork()) {
     RunBatch(Take());
     AnswerAll();
+    if (std::exchange(untold_, false)) changed_();  // after the answers: they are waited for
     Tidy();
     CheckpointWhenLarge();
   }
@@ -201,7 +202,7 @@ Writer::Outcome Writer::TryBatch(std::span<Pending> batch, Undo undo) {
   if (!committed) return lose(committed.error());
   PublishCounts();
   tidy_ = tidy_ || context.garbage || housekeeping_.IsDue(counters_);
-  if (context.changed) changed_();
+  untold_ = untold_ || context.changed;
   return Outcome::kCommitted;
 }
 

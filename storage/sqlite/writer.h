@@ -92,6 +92,7 @@ class Writer {
   Connection& connection_;
   Counters counters_;
   std::deque<Pending> answers_;  // committed or failed, to be answered
+  bool untold_ = false;          // watchers do not know yet of a commit
   bool tidy_ = true;             // there may be something to remove
   std::size_t last_batch_ = 0;   // operations taken together the last time
   int pages_at_checkpoint_ = 0;  // size of the log when it was last moved

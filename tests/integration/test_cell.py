@@ -196,6 +196,10 @@ class Programs(WithCell):
         with self.assertRaises(grpc.RpcError) as caught:
             stub.PutProgram(self.put("optimo-1", 47, "big.S", b";" * 5_000_000))
         self.assertEqual(caught.exception.code(), grpc.StatusCode.RESOURCE_EXHAUSTED)
+        self.assertEqual(detail_of(caught.exception).code, "CELL-E9007")
+        self.refused(self.cell.jobs().SubmitJob,
+                     job_pb2.SubmitJobRequest(job=inline_job("mill-1", "big.rml", b";" * 5_000_000)),
+                     grpc.StatusCode.RESOURCE_EXHAUSTED, "CELL-E9007")
         self.assertEqual(self.cell.machines().GetCell(machine_pb2.GetCellRequest()).version, "0.1.0")
 
     def upload(self, name, file_name, data, sha256=None, size=None):
