@@ -118,6 +118,7 @@ std::vector<const CatalogueEntry*> FindByText(std::string_view text) {
   std::string_view family;
   std::string_view digits = text;
   if (dash != std::string_view::npos) {
+    if (dash == 0) return found;
     family = text.substr(0, dash);
     digits = text.substr(dash + 1);
   }

@@ -1,5 +1,6 @@
 #include "engine/core/number_text.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -7,15 +8,17 @@
 namespace rmlcell {
 namespace {
 
-// 1e308 with decimals needs 309 digits, a sign, a point and the decimals.
-constexpr std::size_t kLongestFixed = 400;
+// 1e308 needs 309 digits, a sign and a point; the decimals come on top.
+constexpr std::size_t kLongestWhole = 311;
+// No double has more decimals that are not zero, and nobody reads so many.
+constexpr int kDecimalsMax = 100;
 
 }  // namespace
 
 std::string FixedText(double value, int decimals) {
-  std::array<char, kLongestFixed> room{};
-  const auto end =
-      std::to_chars(room.data(), room.data() + room.size(), value, std::chars_format::fixed, decimals);
+  std::array<char, kLongestWhole + kDecimalsMax> room{};
+  const auto end = std::to_chars(room.data(), room.data() + room.size(), value, std::chars_format::fixed,
+                                 std::clamp(decimals, 0, kDecimalsMax));
   std::string text(room.data(), end.ptr);
   if (!text.empty() && text.front() == '-' && text.find_first_not_of("-0.") == std::string::npos) {
     text.erase(0, 1);
@@ -42,6 +45,7 @@ std::optional<double> ParseDouble(std::string_view text) {
   double value = 0.0;
   const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
   if (end.ec != std::errc() || end.ptr != text.data() + text.size()) return std::nullopt;
+  if (!std::isfinite(value)) return std::nullopt;  // from_chars reads "inf" and "nan" as well
   return value;
 }
 

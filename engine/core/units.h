@@ -18,11 +18,12 @@ inline constexpr double kTurn = 2.0 * std::numbers::pi;  // rad
 inline constexpr double kMmPerInch = 25.4;
 inline constexpr double kRadPerDegree = kPi / 180.0;
 
-// The nearest nanosecond; saturates at kForever, and NaN counts as kForever: a run never gets shorter
-// by a figure that cannot be represented.
+// The nearest nanosecond; saturates at kForever and -kForever, and NaN counts as kForever: a run never
+// gets shorter by a figure that cannot be represented.
 inline SimTime FromSeconds(double seconds) {
   constexpr double kLongest_s = 9.0e9;  // about 285 years, inside the range of 64-bit nanoseconds
   if (!(seconds < kLongest_s)) return kForever;
+  if (seconds <= -kLongest_s) return -kForever;
   return SimTime(std::llround(seconds * 1e9));
 }
 inline double ToSeconds(SimTime time) { return static_cast<double>(time.count()) * 1e-9; }

@@ -95,8 +95,14 @@ std::string_view Parameters::Word(std::string_view name) const {
 }
 
 std::map<std::string, std::string> Parameters::Changed() const {
-  std::map<std::string, std::string> changed(words_.begin(), words_.end());
-  for (const auto& [name, value] : numbers_) changed.emplace(name, ShortestText(value));
+  std::map<std::string, std::string> changed;
+  for (const auto& [name, word] : words_) {
+    const std::string_view choices = Find(name)->choices;
+    if (word != choices.substr(0, choices.find(' '))) changed.emplace(name, word);
+  }
+  for (const auto& [name, value] : numbers_) {
+    if (value != Find(name)->standard) changed.emplace(name, ShortestText(value));
+  }
   return changed;
 }
 

@@ -1,7 +1,9 @@
 #include "server/jobs/job_book.h"
 
+
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
@@ -80,9 +82,6 @@ Status CheckSimulation(const v1::SimulationOptions& options) {
     if (!IsSlot(program.slot())) {
       return Error{ErrorCode::kProgramNumber, "job.simulation.programs: slot is " + std::to_string(program.slot()), {}};
     }
-    if (program.program().content().empty()) {
-      return Error{ErrorCode::kCellEmptyProgram, "program for slot " + std::to_string(program.slot()), {}};
-    }
   }
   return {};
 }
@@ -104,7 +103,7 @@ Status JobBook::AttachProgram(const v1::Job& job, const storage::MachineRecord& 
   if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine.family, {}};
   switch (job.program_source_case()) {
     case v1::Job::kInlineProgram: {
-      if (job.inline_program().content().empty()) return Error{ErrorCode::kCellEmptyProgram, {}, {}};
+      if (Status fits = CheckSize(job.inline_program().content(), "job.inline_program"); !fits) return fits;
       if (job.inline_slot() != 0 && !IsSlot(job.inline_slot())) {
         return Error{ErrorCode::kProgramNumber, "job.inline_slot is " + std::to_string(job.inline_slot()), {}};
       }
@@ -135,6 +134,15 @@ Status JobBook::AttachProgram(const v1::Job& job, const storage::MachineRecord& 
     case v1::Job::PROGRAM_SOURCE_NOT_SET: break;
   }
   return Invalid("job.program or job.inline_program is missing");
+}
+
+Status JobBook::CheckSize(const std::string& content, const std::string& what) const {
+  if (content.empty()) return Error{ErrorCode::kCellEmptyProgram, what, {}};
+  if (static_cast<std::int64_t>(content.size()) <= config_.limit_program_bytes) return {};
+  return Error{ErrorCode::kCellTooLarge,
+               what + " has " + std::to_string(content.size()) + " bytes; limits.program_bytes is " +
+                   std::to_string(config_.limit_program_bytes),
+               {}};
 }
 
 Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, const std::string& caller) {
@@ -173,7 +181,11 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, co
   for (const auto& [name, value] : job.simulation().parameters()) {
     if (Status set = parameters.Set(name, std::string_view(value)); !set) return set.error();
   }
+  std::set<int> further;
   for (v1::SlotProgram& program : *specification.mutable_simulation()->mutable_programs()) {
+    const std::string what = "job.simulation.programs of slot " + std::to_string(program.slot());
+    if (Status fits = CheckSize(program.program().content(), what); !fits) return fits.error();
+    if (!further.insert(program.slot()).second) return Invalid(what + " stands twice");
     made.attachments.push_back({AttachmentName(program.slot()), "application/octet-stream",
                                 std::move(*program.mutable_program()->mutable_content()), {}});
     program.mutable_program()->clear_content();

@@ -3,10 +3,11 @@
 #include <signal.h>
 #include <spawn.h>
 #include <spdlog/spdlog.h>
-#include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstring>
 #include <memory>
 #include <set>
@@ -24,9 +25,14 @@ constexpr std::chrono::milliseconds kDelayMax{10'000};  // between starts of one
 }  // namespace
 
 Result<std::unique_ptr<WorkerProcesses>> WorkerProcesses::Start(Options options) {
-  if (options.count > 0 && ::access(options.program.c_str(), X_OK) != 0) {
-    return Error{ErrorCode::kCellConfiguration,
-                 "workers.program " + options.program + ": " + std::strerror(errno), {}};
+  if (options.count > 0) {
+    struct stat file {};
+    int failed = ::access(options.program.c_str(), X_OK) != 0 || ::stat(options.program.c_str(), &file) != 0 ? errno : 0;
+    if (failed == 0 && !S_ISREG(file.st_mode)) failed = EACCES;
+    if (failed != 0) {
+      return Error{ErrorCode::kCellConfiguration,
+                   "workers.program " + options.program + ": " + std::strerror(failed), {}};
+    }
   }
   std::unique_ptr<WorkerProcesses> processes(new WorkerProcesses(std::move(options)));
   processes->watcher_ = std::jthread([raw = processes.get()](const std::stop_token& stop) { raw->Watch(stop); });
@@ -59,8 +65,14 @@ pid_t WorkerProcesses::Spawn(int number) const {
   sigset_t none;
   sigemptyset(&none);
   posix_spawnattr_setsigmask(&attributes, &none);
+  // Sockets of the server stay with it: a copy in a worker would keep a port taken, or a connection of a
+  // client open, after the server closed it.
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
   const int failed =
-      posix_spawn(&process, options_.program.c_str(), nullptr, &attributes, arguments.data(), environment.data());
+      posix_spawn(&process, options_.program.c_str(), &actions, &attributes, arguments.data(), environment.data());
+  posix_spawn_file_actions_destroy(&actions);
   posix_spawnattr_destroy(&attributes);
   if (failed != 0) {
     spdlog::error("worker {} cannot be started: {}", name, std::strerror(failed));

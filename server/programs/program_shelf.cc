@@ -7,10 +7,10 @@
 #include "engine/simulation/families.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/setup.h"
+#include "proto/bridge/sha256.h"
 #include "server/config.h"
 #include "server/jobs/job_messages.h"
 #include "server/names.h"
-#include "proto/bridge/sha256.h"
 
 namespace rmlcell::server {
 namespace {
@@ -28,6 +28,11 @@ std::string BaseName(const std::string& file_name) {
 std::string TitleFrom(const std::string& file_name) {
   const std::string base = BaseName(file_name);
   return base.substr(0, base.find_last_of('.'));
+}
+
+// ".S" of ".S .SI .CMP .O".
+std::string_view FirstExtension(const machine::FamilyInfo& info) {
+  return info.extensions.substr(0, info.extensions.find(' '));
 }
 
 v1::Program MessageOf(const std::string& machine, const storage::ProgramSummary& summary) {
@@ -114,6 +119,7 @@ ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
   // A stream is its own object: kept once.
   if (!is_object && write.object != put.bytes) write.source = std::move(put.bytes);
   if (put.validate_only) {
+    if (const auto fits = FindExpected(name->machine, name->slot, *expected); !fits) return fits.error();
     v1::Program program;
     program.set_name(put.name);
     program.set_title(write.name);
@@ -129,6 +135,21 @@ ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
   return program;
 }
 
+// What the store would say to a change of this slot, before it is made: nothing when the slot is empty.
+Result<std::optional<storage::ProgramSummary>> ProgramShelf::FindExpected(const std::string& machine, int slot,
+                                                                          storage::Revision expected) {
+  auto found = store_.ListPrograms(machine, slot - 1, 1);
+  if (!found) return found.error();
+  const bool there = !found->empty() && found->front().slot == slot;
+  if (expected == 0 && there) return Error{ErrorCode::kCellAlreadyExists, NameOfProgram(machine, slot), {}};
+  if (expected > 0 && !there) return Error{ErrorCode::kCellNotFound, NameOfProgram(machine, slot), {}};
+  if (expected > 0 && found->front().revision != expected) {
+    return Error{ErrorCode::kCellEtagMismatch, NameOfProgram(machine, slot), {}};
+  }
+  if (!there) return std::optional<storage::ProgramSummary>();
+  return std::optional(std::move(found->front()));
+}
+
 ProgramResult<v1::Program> ProgramShelf::StoreExecutable(const Put& put, const std::string& machine_id, int slot) {
   const Result<storage::MachineRecord> machine = store_.GetMachine(machine_id);
   if (!machine) return machine.error();
@@ -136,18 +157,24 @@ ProgramResult<v1::Program> ProgramShelf::StoreExecutable(const Put& put, const s
   if (family == nullptr || !family->info().has_executables) {
     return Error{ErrorCode::kProgramNumber, "this machine has no executables: use a slot from 1 to 99", {}};
   }
-  const auto found = store_.ListPrograms(machine_id, slot - 1, 1);
+  const Result<storage::Revision> expected = ParseEtag(put.etag);
+  if (!expected) return expected.error();
+  // An etag is that of the object: an executable has none of its own.
+  const auto found = FindExpected(machine_id, slot, *expected == 0 ? storage::kAnyRevision : *expected);
   if (!found) return found.error();
-  if (found->empty() || found->front().slot != slot) {
+  if (!*found) {
     return Error{ErrorCode::kProgramMissing, "an executable needs its object: " + NameOfProgram(machine_id, slot), {}};
+  }
+  if (*expected == 0 && (*found)->executable_bytes >= 0) {
+    return Error{ErrorCode::kCellAlreadyExists, "an executable of " + NameOfProgram(machine_id, slot), {}};
   }
   if (const Status good = family->CheckExecutable(put.bytes); !good) return good.error();
   if (!put.validate_only) {
-    const auto kept = store_.PutExecutable(machine_id, slot, found->front().revision, put.bytes);
+    const auto kept = store_.PutExecutable(machine_id, slot, (*found)->revision, put.bytes);
     if (!kept) return kept.error();
     if (!*kept) return Error{ErrorCode::kCellEtagMismatch, "the object was stored again meanwhile", {}};
   }
-  v1::Program program = MessageOf(machine_id, found->front());
+  v1::Program program = MessageOf(machine_id, **found);
   program.set_executable_bytes(static_cast<std::int64_t>(put.bytes.size()));
   return program;
 }
@@ -195,7 +222,9 @@ Result<ProgramShelf::Content> ProgramShelf::Read(std::string_view name, v1::Prog
       if (program->source || !has_objects) {
         content = {.bytes = program->source ? std::move(*program->source) : std::move(program->object),
                    .form = v1::PROGRAM_FORM_SOURCE,
-                   .file_name = program->source_name,
+                   .file_name = program->source_name.empty() && family != nullptr
+                                    ? base + std::string(FirstExtension(family->info()))
+                                    : program->source_name,
                    .sha256 = {}};
       } else if (form == v1::PROGRAM_FORM_SOURCE) {
         Result<std::string> source = family->Decompile(program->object);
@@ -221,7 +250,7 @@ Result<v1::ListProgramsResponse> ProgramShelf::List(const v1::ListProgramsReques
   int after = 0;
   if (!request.page_token().empty()) {
     const auto token = ParseInteger(request.page_token());
-    if (!token || !IsSlot(static_cast<int>(*token))) return Error{ErrorCode::kCellBadPageToken, {}, {}};
+    if (!token || *token < kSlotMin || *token > kSlotMax) return Error{ErrorCode::kCellBadPageToken, {}, {}};
     after = static_cast<int>(*token);
   }
   const auto programs = store_.ListPrograms(*machine, after, size + 1);
@@ -243,6 +272,11 @@ Status ProgramShelf::Delete(const v1::DeleteProgramRequest& request) {
   if (const auto machine = store_.GetMachine(name->machine); !machine) return machine.error();
   const Result<storage::Revision> expected = ParseEtag(request.etag());
   if (!expected) return expected.error();
+  if (name->executable) {
+    if (const auto fits = FindExpected(name->machine, name->slot, *expected); !fits) {
+      if (fits.error().code != ErrorCode::kCellNotFound) return fits.error();
+    }
+  }
   const Status deleted = name->executable ? store_.DeleteExecutable(name->machine, name->slot)
                                           : store_.DeleteProgram(name->machine, name->slot, *expected);
   if (!deleted && deleted.error().code == ErrorCode::kCellNotFound) {

@@ -68,6 +68,8 @@ class ProgramShelf {
   std::int64_t program_bytes_max() const;
 
  private:
+  Result<std::optional<storage::ProgramSummary>> FindExpected(const std::string& machine, int slot,
+                                                              storage::Revision expected);
   ProgramResult<v1::Program> StoreExecutable(const Put& put, const std::string& machine, int slot);
 
   storage::Store& store_;

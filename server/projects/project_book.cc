@@ -60,9 +60,11 @@ Status CheckProject(const v1::Project& project) {
   return {};
 }
 
-v1::Project ProjectOf(const storage::ProjectRecord& record) {
+Result<v1::Project> ProjectOf(const storage::ProjectRecord& record) {
   v1::Project project;
-  if (!project.ParseFromString(record.body)) project.Clear();
+  if (!project.ParseFromString(record.body)) {
+    return Error{ErrorCode::kCellStoreCorrupt, "the body of " + ProjectName(record.id), {}};
+  }
   project.set_name(ProjectName(record.id));
   project.set_title(record.title);
   project.set_etag(std::to_string(record.revision));
@@ -82,11 +84,18 @@ storage::ProjectRecord RecordOf(const std::string& id, v1::Project project) {
   return {.id = id, .title = title, .body = project.SerializeAsString()};
 }
 
+// OPT-8.72; extensions are compared without case.
+bool IsInchName(std::string_view file_name) {
+  if (file_name.size() < 3) return false;
+  const std::string_view end = file_name.substr(file_name.size() - 3);
+  return end[0] == '.' && (end[1] == 'S' || end[1] == 's') && (end[2] == 'I' || end[2] == 'i');
+}
+
 machine::ProjectBundle BundleOf(const v1::Project& project) {
   machine::ProjectBundle bundle;
   for (const v1::ProjectProgram& program : project.programs()) {
     const std::string& file_name = program.source().file_name();
-    const bool inch_name = file_name.ends_with(".SI") || file_name.ends_with(".si");
+    const bool inch_name = IsInchName(file_name);
     bundle.programs.push_back({.slot = program.slot(),
                                .file = {.name = file_name, .bytes = program.source().content()},
                                .inch = program.units() == v1::UNITS_INCH ||
@@ -120,6 +129,9 @@ Result<v1::Project> ProjectBook::Create(const v1::CreateProjectRequest& request)
   if (Status good = CheckProject(request.project()); !good) return good.error();
   storage::ProjectRecord record = RecordOf(request.project_id(), request.project());
   if (request.validate_only()) {
+    const auto there = store_.GetProject(request.project_id());
+    if (there) return Error{ErrorCode::kCellAlreadyExists, ProjectName(request.project_id()), {}};
+    if (there.error().code != ErrorCode::kCellNotFound) return there.error();
     v1::Project project = request.project();
     project.set_name(ProjectName(request.project_id()));
     return project;
@@ -140,6 +152,9 @@ Result<v1::Project> ProjectBook::Get(std::string_view name) {
 Result<v1::ListProjectsResponse> ProjectBook::List(const v1::ListProjectsRequest& request) {
   if (request.page_size() < 0) return Invalid("page_size is below 0");
   const int size = request.page_size() == 0 ? kPageDefault : std::min(request.page_size(), kPageMax);
+  if (!request.page_token().empty() && !CheckResourceId(request.page_token(), "page_token")) {
+    return Error{ErrorCode::kCellBadPageToken, {}, {}};
+  }
   const auto records = store_.ListProjects(request.page_token(), size + 1);
   if (!records) return records.error();
   v1::ListProjectsResponse response;
@@ -148,9 +163,10 @@ Result<v1::ListProjectsResponse> ProjectBook::List(const v1::ListProjectsRequest
       response.set_next_page_token((*records)[static_cast<std::size_t>(size) - 1].id);
       break;
     }
-    v1::Project& project = *response.add_projects();
-    project = ProjectOf(record);
-    for (v1::ProjectProgram& program : *project.mutable_programs()) program.mutable_source()->clear_content();
+    Result<v1::Project> project = ProjectOf(record);
+    if (!project) return project.error();
+    for (v1::ProjectProgram& program : *project->mutable_programs()) program.mutable_source()->clear_content();
+    *response.add_projects() = *std::move(project);
   }
   return response;
 }
@@ -162,7 +178,12 @@ Result<v1::Project> ProjectBook::Update(const v1::UpdateProjectRequest& request)
   if (!expected) return expected.error();
   const auto record = store_.GetProject(*id);
   if (!record) return record.error();
-  v1::Project project = ProjectOf(*record);
+  if (*expected != storage::kAnyRevision && *expected != record->revision) {
+    return Error{ErrorCode::kCellEtagMismatch, ProjectName(*id), {}};
+  }
+  Result<v1::Project> kept = ProjectOf(*record);
+  if (!kept) return kept.error();
+  v1::Project& project = *kept;
   const v1::Project& wanted = request.project();
   const auto& paths = request.update_mask().paths();
   const auto named = [&](std::string_view field) {
@@ -181,8 +202,8 @@ Result<v1::Project> ProjectBook::Update(const v1::UpdateProjectRequest& request)
   if (named("processes")) *project.mutable_processes() = wanted.processes();
   if (Status good = CheckProject(project); !good) return good.error();
   if (request.validate_only()) return project;
-  const auto stored = store_.PutProject(RecordOf(*id, project),
-                                        *expected == storage::kAnyRevision ? record->revision : *expected);
+  // Another change between the two is not overwritten.
+  const auto stored = store_.PutProject(RecordOf(*id, project), record->revision);
   if (!stored) return stored.error();
   return ProjectOf(*stored);
 }

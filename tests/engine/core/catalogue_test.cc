@@ -1,0 +1,218 @@
+#include "engine/core/catalogue.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "engine/core/number_text.h"
+
+namespace rmlcell {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+// A code as a specification gives it.
+struct SpecCode {
+  std::string family;
+  int number = 0;
+  std::string constant;  // empty: the specification has no name for it
+  std::string severity;
+
+  auto operator<=>(const SpecCode&) const = default;
+};
+
+std::vector<std::string> Split(const std::string& line, const std::string& separator) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (std::size_t end = 0; (end = line.find(separator, begin)) != std::string::npos;) {
+    parts.push_back(line.substr(begin, end - begin));
+    begin = end + separator.size();
+  }
+  parts.push_back(line.substr(begin));
+  return parts;
+}
+
+std::vector<SpecCode> CommittedCodes() {
+  std::ifstream file(RMLCELL_SOURCE_DIR "/tests/conformance/catalogue_codes.csv");
+  std::vector<SpecCode> codes;
+  for (std::string line; std::getline(file, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    const std::vector<std::string> parts = Split(line, ",");
+    codes.push_back({parts.at(0), std::stoi(parts.at(1)), parts.at(2), parts.at(3)});
+  }
+  return codes;
+}
+
+// The rows "| OPT-E.60 | LABEL_NOT_FOUND | when | program; fatal when ... | notes | page |".
+std::vector<SpecCode> CodesOfTheSpecification(std::istream& text) {
+  std::vector<SpecCode> codes;
+  for (std::string line; std::getline(text, line);) {
+    if (!line.starts_with("| OPT-E.")) continue;
+    const std::vector<std::string> cells = Split(line, " | ");
+    const std::string severity = cells.at(3).substr(0, cells.at(3).find_first_of(";, "));
+    codes.push_back({"OPT", std::stoi(cells.at(0).substr(8)), cells.at(1), severity});
+  }
+  return codes;
+}
+
+std::string SeverityWord(Severity severity) {
+  switch (severity) {
+    case Severity::kAdvice:
+      return "advice";
+    case Severity::kWarning:
+      return "warning";
+    case Severity::kCompile:
+      return "compile";
+    case Severity::kProgram:
+      return "program";
+    case Severity::kFatal:
+      return "fatal";
+    case Severity::kAlarm:
+      return "alarm";
+    case Severity::kMessage:
+      return "message";
+    case Severity::kTool:
+      return "tool";
+    case Severity::kBudget:
+      return "budget";
+    case Severity::kDevice:
+      return "device";
+    case Severity::kRequest:
+      return "request";
+  }
+  return "";
+}
+
+// optimo.md section C, rml1.md 4.20 and 6.01 to 6.03.
+TEST(Catalogue, HasEveryCodeOfTheSpecificationsWithItsNameAndSeverity) {
+  const std::map<std::string, ErrorFamily> families = {{"OPT", ErrorFamily::kOptimo},
+                                                       {"RML1", ErrorFamily::kRml1}};
+  const std::vector<SpecCode> codes = CommittedCodes();
+  EXPECT_EQ(codes.size(), 127U + 11U);
+  for (const SpecCode& spec : codes) {
+    const std::optional<ErrorCode> code = FindError(families.at(spec.family), spec.number);
+    ASSERT_TRUE(code) << spec.family << spec.number;
+    if (!spec.constant.empty()) {
+      EXPECT_EQ(ConstantName(*code), spec.constant);
+    }
+    EXPECT_EQ(SeverityWord(Lookup(*code).severity), spec.severity) << spec.family << spec.number;
+  }
+}
+
+TEST(Catalogue, TheCommittedCodesAreThoseOfTheSpecification) {
+  std::ifstream text(RMLCELL_SHARED_DIR "/spec/optimo.md");
+  if (!text) GTEST_SKIP() << "no specification at hand";
+  std::vector<SpecCode> committed = CommittedCodes();
+  std::erase_if(committed, [](const SpecCode& code) { return code.family != "OPT"; });
+  EXPECT_EQ(CodesOfTheSpecification(text), committed);
+}
+
+// design.md section 5: 7000-7999 ours for the Optimo, 8000-8999 advice of RML-1, 9000-9999 the
+// cell.
+TEST(Catalogue, NumbersAreThoseOfTheirFamilyAndUnique) {
+  std::set<std::pair<ErrorFamily, int>> numbers;
+  const std::set<int> of_the_manual = {60, 129, 348, 931};
+  for (const CatalogueEntry& entry : Catalogue()) {
+    EXPECT_TRUE(numbers.insert({entry.family, entry.number}).second) << entry.symbol;
+    switch (entry.family) {
+      case ErrorFamily::kOptimo:
+        EXPECT_TRUE(of_the_manual.contains(entry.number) ||
+                    (entry.number >= 7000 && entry.number <= 7999))
+            << entry.symbol;
+        break;
+      case ErrorFamily::kRml1:
+        EXPECT_TRUE(entry.number <= 18 || (entry.number >= 8000 && entry.number <= 8999))
+            << entry.symbol;
+        EXPECT_EQ(entry.severity == Severity::kDevice, entry.number <= 18) << entry.symbol;
+        break;
+      case ErrorFamily::kCell:
+        EXPECT_TRUE(entry.number >= 9000 && entry.number <= 9999) << entry.symbol;
+        break;
+    }
+  }
+}
+
+TEST(Catalogue, SymbolsConstantsAndCodesAreUnique) {
+  std::set<std::string> names;
+  for (const CatalogueEntry& entry : Catalogue()) {
+    EXPECT_TRUE(names.insert(std::string(entry.symbol)).second) << entry.symbol;
+    EXPECT_TRUE(names.insert(ConstantName(entry.code)).second ||
+                ConstantName(entry.code) == entry.symbol)
+        << entry.symbol;
+    EXPECT_TRUE(names.insert(CodeText(entry.code)).second) << entry.symbol;
+    for (const char c : ConstantName(entry.code)) {
+      EXPECT_TRUE((c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_') << entry.symbol;
+    }
+  }
+}
+
+// style.md section 4: lower case, no full stop; every row says what happened and what can be done.
+TEST(Catalogue, EveryRowSaysWhatHappenedAndWhatCanBeDone) {
+  for (const CatalogueEntry& entry : Catalogue()) {
+    EXPECT_EQ(&Lookup(entry.code), &entry);
+    EXPECT_GE(entry.when.size(), 4U) << entry.symbol;
+    EXPECT_GE(entry.advice.size(), 8U) << entry.symbol;
+    EXPECT_NE(entry.when, entry.advice) << entry.symbol;
+    for (const std::string_view text : {entry.when, entry.advice}) {
+      EXPECT_NE(text.back(), '.') << entry.symbol;
+      EXPECT_FALSE(text.front() == ' ' || text.back() == ' ') << entry.symbol;
+      for (const char c : text) EXPECT_TRUE(c >= 0x20 && c < 0x7F) << entry.symbol;
+    }
+    EXPECT_TRUE(entry.advice.front() >= 'a' && entry.advice.front() <= 'z') << entry.symbol;
+  }
+}
+
+TEST(Catalogue, SeveritiesHaveAnameAndAnEffect) {
+  std::set<std::string_view> names;
+  std::set<std::string_view> effects;
+  for (int i = 0; i <= static_cast<int>(Severity::kRequest); ++i) {
+    EXPECT_TRUE(names.insert(SeverityName(static_cast<Severity>(i))).second) << i;
+    EXPECT_TRUE(effects.insert(SeverityEffect(static_cast<Severity>(i))).second) << i;
+    EXPECT_TRUE(SeverityEffect(static_cast<Severity>(i)).ends_with('.'));
+  }
+  EXPECT_FALSE(names.contains(""));
+}
+
+TEST(Catalogue, CodesAreWrittenWithTheirFamily) {
+  EXPECT_EQ(CodeText(ErrorCode::kHoleRadiusZero), "OPT-E348");
+  EXPECT_EQ(CodeText(ErrorCode::kRml1WrongParameters), "RML1-E2");
+  EXPECT_EQ(CodeText(ErrorCode::kCellWorkerDied), "CELL-E9301");
+  EXPECT_EQ(ConstantName(ErrorCode::kHoleRadiusZero), "HOLE_RADIUS_ZERO");
+  EXPECT_EQ(ConstantName(ErrorCode::kGas3NotFitted), "GAS_3_NOT_FITTED");
+  EXPECT_EQ(ConstantName(ErrorCode::kRml1UnknownCommand), "RML1_UNKNOWN_COMMAND");
+}
+
+std::vector<std::string> Found(std::string_view text) {
+  std::vector<std::string> codes;
+  for (const CatalogueEntry* entry : FindByText(text)) codes.push_back(CodeText(entry->code));
+  return codes;
+}
+
+TEST(Catalogue, IsSearchedByWhatAPersonMayWrite) {
+  for (const std::string_view text :
+       {"OPT-E348", "opt-e348", "OPT-348", "348", "E348", "e348", "HoleRadiusZero",
+        "holeradiuszero", "HOLE_RADIUS_ZERO", "hole_radius_zero"}) {
+    EXPECT_THAT(Found(text), ElementsAre("OPT-E348")) << text;
+  }
+  EXPECT_THAT(Found("rml1-e2"), ElementsAre("RML1-E2"));
+  EXPECT_THAT(Found("2"), ElementsAre("RML1-E2"));
+  for (const std::string_view text :
+       {"", "-", "E", "OPT-", "OPT-E", "0", "-348", "OPT-E-348", "348 ", " 348", "348.0",
+        "99999999999999999999", "RML1-E348", "FOO-E348", "HOLE"}) {
+    EXPECT_THAT(Found(text), IsEmpty()) << text;
+  }
+  for (const CatalogueEntry& entry : Catalogue()) {
+    EXPECT_THAT(Found(CodeText(entry.code)), ElementsAre(CodeText(entry.code)));
+    EXPECT_THAT(Found(ConstantName(entry.code)), ElementsAre(CodeText(entry.code)));
+    EXPECT_EQ(FindError(entry.family, entry.number), entry.code);
+  }
+  EXPECT_EQ(FindError(ErrorFamily::kCell, 348), std::nullopt);
+}
+
+}  // namespace
+}  // namespace rmlcell

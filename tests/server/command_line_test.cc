@@ -1,0 +1,101 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <fstream>
+
+#include "server/config.h"
+#include "tests/storage/sqlite_bed.h"
+
+// The program itself, asked for its configuration: what is set where, and what it says about
+// mistakes.
+namespace rmlcell::server {
+namespace {
+
+using testing::HasSubstr;
+
+struct Answer {
+  int status = -1;
+  std::string text;  // of both streams
+};
+
+// `words` go through the shell; the environment is empty but for `variables`.
+Answer Ask(const std::string& variables, const std::string& words) {
+  const std::string line =
+      "env -i HOME=/home/nobody " + variables + " " + RMLCELL_SERVER + " " + words + " 2>&1";
+  std::FILE* pipe = ::popen(line.c_str(), "r");
+  if (pipe == nullptr) throw std::runtime_error("no shell");
+  Answer answer;
+  char room[4096];
+  for (std::size_t n = 0; (n = std::fread(room, 1, sizeof room, pipe)) > 0;)
+    answer.text.append(room, n);
+  const int status = ::pclose(pipe);
+  answer.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return answer;
+}
+
+Config Printed(const std::string& variables, const std::string& words) {
+  const Answer answer = Ask(variables, "--print-config " + words);
+  EXPECT_EQ(answer.status, 0) << answer.text;
+  Config config;
+  const Status read = ReadConfigText(answer.text, "printed", config);
+  EXPECT_TRUE(read) << read.error().detail << "\n" << answer.text;
+  EXPECT_EQ(PrintConfig(config), answer.text);
+  return config;
+}
+
+TEST(CommandLine, PrintsTheDefaultsWithTheStateDirectoryOfTheUser) {
+  EXPECT_EQ(Printed("", "").state_directory, "/home/nobody/.local/state/rmlcell");
+  EXPECT_EQ(Printed("XDG_STATE_HOME=/x", "").state_directory, "/x/rmlcell");
+}
+
+// conventions.md, command line: a flag goes over the environment, that over the file, that over the
+// default.
+TEST(CommandLine, AFlagGoesOverTheEnvironmentAndThatOverTheFile) {
+  const storage::TestDirectory folder;
+  const std::string file = folder.File("a.toml");
+  std::ofstream(file) << "[jobs]\nattempts = 3\nqueued_max = 4\nkeep_finished = 5\n";
+  const Config config = Printed("RMLCELL_JOBS_ATTEMPTS=6 RMLCELL_JOBS_QUEUED_MAX=7",
+                                "--config " + file + " --jobs.attempts 8");
+  EXPECT_EQ(config.jobs_attempts, 8);
+  EXPECT_EQ(config.jobs_queued_max, 7);
+  EXPECT_EQ(config.jobs_keep_finished, 5);
+  EXPECT_EQ(config.workers_count, -1);
+  EXPECT_EQ(Printed("RMLCELL_CONFIG=" + file, "").jobs_attempts, 3);
+}
+
+TEST(CommandLine, EveryKeyIsAFlag) {
+  const std::string help = Ask("", "--help").text;
+  for (const ConfigKey& key : ConfigKeys())
+    EXPECT_THAT(help, HasSubstr("--" + std::string(key.name)));
+  const Config config =
+      Printed("", "--listen.grpc 127.0.0.1:0,unix:/tmp/x --listen.web \"\" --log.level off");
+  EXPECT_EQ(config.listen_grpc, (std::vector<std::string>{"127.0.0.1:0", "unix:/tmp/x"}));
+  EXPECT_EQ(config.listen_web, "");
+  EXPECT_EQ(config.log_level, "off");
+}
+
+// sysexits.h: 64 wrong use, 78 wrong configuration.
+TEST(CommandLine, AMistakeIsNamedAndEndsTheProgram) {
+  const std::vector<std::tuple<std::string, std::string, int, std::string>> cases = {
+      {"", "--jobs.attempts 11", 78, "--jobs.attempts is 11, allowed are 1 to 10"},
+      {"", "--log.level loud", 78, "--log.level is 'loud'"},
+      {"RMLCELL_JOBS_ATTEMPTS=x", "", 78, "RMLCELL_JOBS_ATTEMPTS takes a whole number"},
+      {"", "--config /nowhere.toml", 78, "/nowhere.toml"},
+      {"", "--config /tmp", 78, "/tmp"},
+      {"", "--listen.grpc 0.0.0.0:1", 78, "0.0.0.0:1"},
+      {"", "--listen.web 127.0.0.1.example.com:1", 78, "127.0.0.1.example.com:1"},
+      {"", "--listen.grpc \"\"", 78, "listen.grpc is empty"},
+      {"", "--jobs.attempt 1", 64, "--jobs.attempt"},
+      {"", "something", 64, "something"},
+  };
+  for (const auto& [variables, words, status, text] : cases) {
+    const Answer answer = Ask(variables, words + " --print-config");
+    EXPECT_EQ(answer.status, status) << words;
+    EXPECT_THAT(answer.text, HasSubstr(text)) << words;
+  }
+}
+
+}  // namespace
+}  // namespace rmlcell::server

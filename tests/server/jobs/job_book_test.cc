@@ -1,0 +1,290 @@
+#include "server/jobs/job_book.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/core/number_text.h"
+#include "engine/simulation/families.h"
+#include "server/config.h"
+#include "server/names.h"
+#include "tests/server/server_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using storage::JobState;
+
+class JobBookTest : public testing::Test {
+ protected:
+  Result<v1::Job> Submit(const v1::SubmitJobRequest& request) {
+    std::optional<Result<v1::Job>> answer;
+    std::atomic<bool> done = false;
+    book.Submit(request, "tester", [&](Result<v1::Job> job) {
+      answer = std::move(job);
+      done = true;
+    });
+    if (!Eventually([&] { return done.load(); })) throw std::runtime_error("no answer");
+    return *std::move(answer);
+  }
+  v1::SubmitJobRequest Simulate(const std::string& source = "STOP\n") {
+    v1::SubmitJobRequest request;
+    request.mutable_job()->set_kind(v1::JOB_KIND_SIMULATE);
+    request.mutable_job()->set_machine("machines/optimo-1");
+    request.mutable_job()->mutable_inline_program()->set_file_name("part.S");
+    request.mutable_job()->mutable_inline_program()->set_content(source);
+    return request;
+  }
+  std::int64_t Number(const v1::Job& job) { return Must(ParseJobName(job.name())); }
+  std::int64_t Jobs() {
+    return static_cast<std::int64_t>(Must(bed.store().ListJobs({.limit = 1000})).size());
+  }
+
+  ServerBed bed;
+  Config config;
+  JobBook book{bed.store(), config};
+};
+
+TEST_F(JobBookTest, AnAcknowledgedJobIsDurableWithItsProgram) {
+  const v1::Job job = Must(Submit(Simulate("DELAY 1.0\n")));
+  EXPECT_EQ(job.state(), v1::Job::STATE_QUEUED);
+  EXPECT_EQ(job.machine(), "machines/optimo-1");
+  const storage::JobRecord record = Must(bed.store().GetJob(Number(job)));
+  EXPECT_EQ(record.caller, "tester");
+  EXPECT_EQ(record.attempts_max, 2);  // jobs.attempts
+  const auto program = Must(bed.store().GetArtifact(Number(job), kMainAttachment));
+  EXPECT_EQ(Must(bed.store().ReadBlob(program.sha256)), "DELAY 1.0\n");
+  EXPECT_EQ(record.specification.find("DELAY"), std::string::npos);  // the bytes are kept once
+  EXPECT_EQ(Must(book.Get(job.name())).artifacts_size(), 1);
+}
+
+// Issue "Jobs": submit is idempotent by request_id.
+TEST_F(JobBookTest, TheSameRequestIdIsTheSameJob) {
+  v1::SubmitJobRequest request = Simulate();
+  request.set_request_id("r-1");
+  const v1::Job first = Must(Submit(request));
+  EXPECT_EQ(Must(Submit(request)).name(), first.name());
+  EXPECT_EQ(Jobs(), 1);
+  request.mutable_job()->set_title("another");
+  EXPECT_EQ(CodeOf(Submit(request)), ErrorCode::kCellRequestIdReused);
+  request.set_request_id("r-2");
+  EXPECT_NE(Must(Submit(request)).name(), first.name());
+  EXPECT_EQ(Jobs(), 2);
+}
+
+// The entries of a map have no order: a repeated request is the same whatever order they come in.
+TEST_F(JobBookTest, TheSameRequestIsRecognisedWithManyParameters) {
+  std::vector<std::pair<std::string, std::string>> parameters;
+  for (const machine::ParameterInfo& info : simulation::FindFamily("optimo")->parameters()) {
+    if (info.choices.empty()) parameters.emplace_back(info.name, ShortestText(info.standard));
+  }
+  ASSERT_GE(parameters.size(), 8U);
+  std::string name;
+  for (int round = 0; round < 20; ++round) {
+    v1::SubmitJobRequest request = Simulate();
+    request.set_request_id("r");
+    for (const auto& [key, value] : parameters) {
+      (*request.mutable_job()->mutable_simulation()->mutable_parameters())[key] = value;
+    }
+    std::ranges::rotate(parameters, parameters.begin() + 3);
+    v1::SubmitJobRequest received;  // as from the wire
+    ASSERT_TRUE(received.ParseFromString(request.SerializeAsString()));
+    const Result<v1::Job> job = Submit(received);
+    ASSERT_TRUE(job) << round;
+    if (name.empty()) name = job->name();
+    EXPECT_EQ(job->name(), name);
+  }
+}
+
+TEST_F(JobBookTest, ChecksWhatCanBeCheckedBeforeWorkBegins) {
+  using Change = std::function<void(v1::SubmitJobRequest&)>;
+  constexpr auto kInvalid = ErrorCode::kCellInvalidArgument;
+  const std::vector<std::tuple<std::string, ErrorCode, Change>> cases = {
+      {"no kind", kInvalid, [](auto& r) { r.mutable_job()->clear_kind(); }},
+      {"unknown kind", kInvalid,
+       [](auto& r) { r.mutable_job()->set_kind(static_cast<v1::JobKind>(99)); }},
+      {"RUN", ErrorCode::kCellUnimplemented,
+       [](auto& r) { r.mutable_job()->set_kind(v1::JOB_KIND_RUN); }},
+      {"long request_id", kInvalid, [](auto& r) { r.set_request_id(std::string(65, 'r')); }},
+      {"long title", kInvalid, [](auto& r) { r.mutable_job()->set_title(std::string(201, 't')); }},
+      {"attempts -1", kInvalid, [](auto& r) { r.mutable_job()->set_attempts_max(-1); }},
+      {"attempts 11", kInvalid, [](auto& r) { r.mutable_job()->set_attempts_max(11); }},
+      {"steps -1", kInvalid, [](auto& r) { r.mutable_job()->mutable_budget()->set_steps(-1); }},
+      {"time NaN", kInvalid,
+       [](auto& r) { r.mutable_job()->mutable_budget()->set_virtual_time_s(std::nan("")); }},
+      {"override 146", kInvalid,
+       [](auto& r) { r.mutable_job()->mutable_simulation()->set_override_percent(146); }},
+      {"breakpoint slot 100", ErrorCode::kProgramNumber,
+       [](auto& r) {
+         r.mutable_job()->mutable_simulation()->mutable_breakpoint()->set_program(100);
+         r.mutable_job()->mutable_simulation()->mutable_breakpoint()->set_step(1);
+       }},
+      {"breakpoint step 0", kInvalid,
+       [](auto& r) {
+         r.mutable_job()->mutable_simulation()->mutable_breakpoint()->set_program(1);
+       }},
+      {"input without kind", kInvalid,
+       [](auto& r) { r.mutable_job()->mutable_simulation()->add_inputs(); }},
+      {"no machine", kInvalid, [](auto& r) { r.mutable_job()->clear_machine(); }},
+      {"unknown machine", ErrorCode::kCellUnknownMachine,
+       [](auto& r) { r.mutable_job()->set_machine("machines/none"); }},
+      {"no program", kInvalid, [](auto& r) { r.mutable_job()->clear_inline_program(); }},
+      {"empty program", ErrorCode::kCellEmptyProgram,
+       [](auto& r) { r.mutable_job()->mutable_inline_program()->clear_content(); }},
+      {"program over the limit", ErrorCode::kCellTooLarge,
+       [](auto& r) {
+         r.mutable_job()->mutable_inline_program()->set_content(std::string(2049, ';'));
+       }},
+      {"inline slot 100", ErrorCode::kProgramNumber,
+       [](auto& r) { r.mutable_job()->set_inline_slot(100); }},
+      {"program of a mill", kInvalid,
+       [](auto& r) { r.mutable_job()->mutable_inline_program()->set_file_name("a.rml"); }},
+      {"empty slot", ErrorCode::kProgramMissing,
+       [](auto& r) { r.mutable_job()->set_program("machines/optimo-1/programs/45"); }},
+      {"slot 0", ErrorCode::kProgramNumber,
+       [](auto& r) { r.mutable_job()->set_program("machines/optimo-1/programs/0"); }},
+      {"executable", ErrorCode::kProgramNumber,
+       [](auto& r) { r.mutable_job()->set_program("machines/optimo-1/programs/145"); }},
+      {"slot of another machine", kInvalid,
+       [](auto& r) { r.mutable_job()->set_program("machines/mill-1/programs/1"); }},
+      {"unknown parameter", ErrorCode::kCellUnknownParameter,
+       [](auto& r) {
+         (*r.mutable_job()->mutable_simulation()->mutable_parameters())["NOPE"] = "1";
+       }},
+      {"further program in slot 0", ErrorCode::kProgramNumber,
+       [](auto& r) { r.mutable_job()->mutable_simulation()->add_programs(); }},
+      {"further program without bytes", ErrorCode::kCellEmptyProgram,
+       [](auto& r) { r.mutable_job()->mutable_simulation()->add_programs()->set_slot(4); }},
+      {"further program over the limit", ErrorCode::kCellTooLarge,
+       [](auto& r) {
+         v1::SlotProgram& program = *r.mutable_job()->mutable_simulation()->add_programs();
+         program.set_slot(4);
+         program.mutable_program()->set_content(std::string(2049, ';'));
+       }},
+      {"further program twice", kInvalid,
+       [](auto& r) {
+         for (int i = 0; i < 2; ++i) {
+           v1::SlotProgram& program = *r.mutable_job()->mutable_simulation()->add_programs();
+           program.set_slot(4);
+           program.mutable_program()->set_content("STOP\n");
+         }
+       }},
+  };
+  config.limit_program_bytes = 2048;
+  for (const auto& [what, code, change] : cases) {
+    for (const bool validate_only : {false, true}) {
+      v1::SubmitJobRequest request = Simulate();
+      change(request);
+      request.set_validate_only(validate_only);
+      EXPECT_EQ(CodeOf(Submit(request)), code) << what;
+    }
+  }
+  EXPECT_EQ(Jobs(), 0);
+  EXPECT_TRUE(Submit(Simulate(std::string(2047, ';') + "\n")));
+}
+
+TEST_F(JobBookTest, AskingOnlyStoresNothing) {
+  v1::SubmitJobRequest request = Simulate();
+  request.set_validate_only(true);
+  EXPECT_EQ(Must(Submit(request)).name(), "");
+  EXPECT_EQ(Jobs(), 0);
+}
+
+TEST_F(JobBookTest, SoManyJobsMayWaitAndNoMore) {
+  config.jobs_queued_max = 3;
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(Submit(Simulate()));
+  EXPECT_EQ(CodeOf(Submit(Simulate())), ErrorCode::kCellResourceExhausted);
+  Must(bed.store().Acquire("w", {"SIMULATE"}, std::chrono::hours(1), {}));
+  EXPECT_TRUE(Submit(Simulate()));
+}
+
+TEST_F(JobBookTest, ListsPagesNewestFirst) {
+  for (int i = 0; i < 7; ++i) Must(Submit(Simulate()));
+  v1::ListJobsRequest request;
+  request.set_page_size(3);
+  std::vector<std::int64_t> ids;
+  std::vector<int> sizes;
+  for (;;) {
+    const v1::ListJobsResponse page = Must(book.List(request));
+    sizes.push_back(page.jobs_size());
+    for (const v1::Job& job : page.jobs()) ids.push_back(Number(job));
+    if (page.next_page_token().empty()) break;
+    request.set_page_token(page.next_page_token());
+  }
+  EXPECT_THAT(sizes, testing::ElementsAre(3, 3, 1));
+  ASSERT_EQ(ids.size(), 7U);
+  EXPECT_TRUE(std::ranges::is_sorted(ids, std::greater<>()));
+  request.clear_page_token();
+  request.set_page_size(7);  // exactly all: there is no next page
+  EXPECT_EQ(Must(book.List(request)).next_page_token(), "");
+  for (const std::string token : {"x", "0", "-1", "1 ", "99999999999999999999"}) {
+    request.set_page_token(token);
+    EXPECT_EQ(CodeOf(book.List(request)), ErrorCode::kCellBadPageToken) << token;
+  }
+  request.clear_page_token();
+  request.set_page_size(-1);
+  EXPECT_EQ(CodeOf(book.List(request)), ErrorCode::kCellInvalidArgument);
+  request.set_page_size(0);
+  request.set_filter("kind = CHECK");
+  EXPECT_EQ(Must(book.List(request)).jobs_size(), 0);
+  request.set_filter("state = queued AND machine = machines/optimo-1 AND caller = tester");
+  EXPECT_EQ(Must(book.List(request)).jobs_size(), 7);
+  request.set_filter("nothing");
+  EXPECT_EQ(CodeOf(book.List(request)), ErrorCode::kCellBadFilter);
+}
+
+// Issue "Watch": a snapshot first; with the events after its sequence nothing is missing.
+TEST_F(JobBookTest, ASnapshotAndTheEventsAfterItAreComplete) {
+  Must(Submit(Simulate()));
+  std::atomic<bool> stop = false;
+  std::jthread client([&] {
+    while (!stop)
+      Must(bed.store().SubmitAndWait(
+          {.machine = "optimo-1", .kind = "CHECK", .events = {{.kind = "state"}}}));
+  });
+  for (int round = 0; round < 20; ++round) {
+    const v1::CellSnapshot snapshot = Must(book.Snapshot());
+    std::set<std::int64_t> known;
+    for (const v1::Job& job : snapshot.jobs()) known.insert(Number(job));
+    for (const auto& event : Must(bed.store().AllEvents(snapshot.sequence(), 10'000)))
+      known.insert(event.job);
+    const std::int64_t newest = *known.rbegin();
+    // Unfinished jobs beyond the snapshot's size are the older ones.
+    for (std::int64_t id = std::max<std::int64_t>(1, newest - 100); id <= newest; ++id) {
+      EXPECT_TRUE(known.contains(id)) << id;
+    }
+  }
+  stop = true;
+}
+
+TEST_F(JobBookTest, ASnapshotHasWhatIsUnfinishedFirst) {
+  const std::int64_t running = Number(Must(Submit(Simulate())));
+  Must(bed.store().Acquire("w", {"SIMULATE"}, std::chrono::hours(1), {}));
+  for (int i = 0; i < 210; ++i) {
+    Must(Submit(Simulate()));
+    const auto leased = Must(bed.store().Acquire("w", {"SIMULATE"}, std::chrono::hours(1), {}));
+    Must(bed.store().Finish(leased->lease, {.state = JobState::kSucceeded}, {}, {}));
+  }
+  const v1::CellSnapshot snapshot = Must(book.Snapshot());
+  EXPECT_EQ(snapshot.jobs_size(), 200);
+  EXPECT_EQ(Number(snapshot.jobs(snapshot.jobs_size() - 1)), running);
+  for (int i = 1; i < snapshot.jobs_size(); ++i)
+    EXPECT_GT(Number(snapshot.jobs(i - 1)), Number(snapshot.jobs(i)));
+}
+
+TEST_F(JobBookTest, AProductThatIsNotThereSaysWhy) {
+  const std::int64_t job = Number(Must(Submit(Simulate())));
+  EXPECT_EQ(CodeOf(book.ReadArtifact(job, "report")), ErrorCode::kCellPrecondition);  // not yet
+  const auto leased = Must(bed.store().Acquire("w", {"SIMULATE"}, std::chrono::hours(1), {}));
+  Must(bed.store().Finish(leased->lease, {.state = JobState::kSucceeded},
+                          {{.name = "report", .media_type = "m", .bytes = "the report"}}, {}));
+  EXPECT_EQ(Must(book.ReadArtifact(job, "report")), "the report");
+  EXPECT_EQ(CodeOf(book.ReadArtifact(job, "trace")), ErrorCode::kCellNotFound);
+  EXPECT_EQ(CodeOf(book.ReadArtifact(job + 1, "report")), ErrorCode::kCellNotFound);
+  EXPECT_EQ(CodeOf(book.Get(JobName(job + 1))), ErrorCode::kCellNotFound);
+  EXPECT_EQ(CodeOf(book.Get("jobs/x")), ErrorCode::kCellInvalidArgument);
+}
+
+}  // namespace
+}  // namespace rmlcell::server

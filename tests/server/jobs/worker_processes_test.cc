@@ -1,0 +1,148 @@
+#include "server/jobs/worker_processes.h"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <memory>
+#include <sstream>
+
+#include "tests/server/server_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+// A worker in place of the real one: a shell script that notes that it lives, then does `what`.
+class WorkerProcessesTest : public testing::Test {
+ protected:
+  WorkerProcesses::Options Options(const std::string& what, int count = 1) {
+    const std::string path = folder_.File("worker");
+    std::ofstream(path) << "#!/bin/sh\necho $$ >> " << lives() << "\n" << what << "\n";
+    ::chmod(path.c_str(), 0700);
+    return {.program = path,
+            .server = "127.0.0.1:1",
+            .join_token = "secret",
+            .log_level = "info",
+            .log_format = "json",
+            .count = count};
+  }
+  std::string lives() { return folder_.File("lives"); }
+  std::string Text(const std::string& name) {
+    std::ifstream file(folder_.File(name));
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+  // Process ids of all that were started, in order.
+  std::vector<pid_t> Lives() {
+    std::istringstream text(Text("lives"));
+    std::vector<pid_t> lives;
+    for (pid_t process = 0; text >> process;) lives.push_back(process);
+    return lives;
+  }
+  static bool IsAlive(pid_t process) { return ::kill(process, 0) == 0; }
+
+  storage::TestDirectory folder_;
+};
+
+TEST_F(WorkerProcessesTest, StartsSoManyAndEndsThemInOrder) {
+  auto processes = Must(WorkerProcesses::Start(Options("exec sleep 60", 3)));
+  ASSERT_TRUE(Eventually([&] { return Lives().size() == 3; }));
+  for (const pid_t process : Lives()) EXPECT_TRUE(IsAlive(process));
+  const auto begin = std::chrono::steady_clock::now();
+  processes->Stop(std::chrono::seconds(10));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin,
+            std::chrono::seconds(5));  // SIGTERM was enough
+  for (const pid_t process : Lives()) EXPECT_FALSE(IsAlive(process));
+  EXPECT_EQ(Lives().size(), 3U);
+}
+
+// Issue "Server and workers": restarts what dies.
+TEST_F(WorkerProcessesTest, StartsAnotherForOneThatWasKilled) {
+  auto processes = Must(WorkerProcesses::Start(Options("exec sleep 60")));
+  ASSERT_TRUE(Eventually([&] { return Lives().size() == 1; }));
+  ::kill(Lives()[0], SIGKILL);
+  ASSERT_TRUE(Eventually([&] { return Lives().size() == 2; }));
+  EXPECT_NE(Lives()[0], Lives()[1]);
+  ::kill(Lives()[1], SIGKILL);
+  ASSERT_TRUE(Eventually([&] { return Lives().size() == 3; }));
+  processes->Stop(std::chrono::seconds(10));
+  EXPECT_FALSE(IsAlive(Lives()[2]));
+}
+
+TEST_F(WorkerProcessesTest, StartsOneThatFailsAtOnceMoreAndMoreSlowly) {
+  auto processes = Must(WorkerProcesses::Start(Options("exit 3")));
+  ASSERT_TRUE(Eventually([&] { return Lives().size() >= 3; }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  // Waits of 0.1, 0.3, 0.7, 1.5 s: at most five within the time, and not a busy loop of hundreds.
+  EXPECT_LE(Lives().size(), 6U);
+  processes->Stop(std::chrono::milliseconds(0));
+  const std::size_t at_stop = Lives().size();
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_EQ(Lives().size(), at_stop);
+}
+
+TEST_F(WorkerProcessesTest, KillsWhatDoesNotEnd) {
+  auto processes =
+      Must(WorkerProcesses::Start(Options("trap '' TERM\nwhile :; do sleep 0.05; done")));
+  ASSERT_TRUE(Eventually([&] { return Lives().size() == 1; }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));  // until it has its trap
+  const auto begin = std::chrono::steady_clock::now();
+  processes->Stop(std::chrono::milliseconds(200));
+  const auto took = std::chrono::steady_clock::now() - begin;
+  EXPECT_GE(took, std::chrono::milliseconds(200));
+  EXPECT_LT(took, std::chrono::seconds(5));
+  EXPECT_FALSE(IsAlive(Lives()[0]));
+}
+
+TEST_F(WorkerProcessesTest, HandsTheTokenOverInTheEnvironmentAlone) {
+  ::setenv("RMLCELL_WORKERS_JOIN_TOKEN", "of the server", 1);
+  const auto options = Options("echo \"$@\" > " + folder_.File("arguments") + "\nenv > " +
+                               folder_.File("environment") + "\nexec sleep 60");
+  auto processes = Must(WorkerProcesses::Start(options));
+  ASSERT_TRUE(Eventually([&] {
+    return Text("environment").find("RMLCELL_JOIN_TOKEN=secret\n") != std::string::npos;
+  }));
+  ::unsetenv("RMLCELL_WORKERS_JOIN_TOKEN");
+  EXPECT_THAT(Text("arguments"), HasSubstr("--server 127.0.0.1:1"));
+  EXPECT_THAT(Text("arguments"), HasSubstr("--log-format json"));
+  EXPECT_THAT(Text("arguments"), Not(HasSubstr("secret")));
+  EXPECT_THAT(Text("environment"), Not(HasSubstr("of the server")));
+}
+
+// A copy of a socket in a worker would keep the port taken, or the line to a client open.
+TEST_F(WorkerProcessesTest, AWorkerHasNoFilesOfTheServer) {
+  const int file =
+      ::open("/dev/null", O_RDONLY);  // without O_CLOEXEC, as some libraries open theirs
+  ASSERT_GE(file, 3);
+  auto processes =
+      Must(WorkerProcesses::Start(Options("ls -l /proc/$$/fd > " + folder_.File("files") +
+                                          "\necho > " + folder_.File("done") + "\nexec sleep 60")));
+  ASSERT_TRUE(Eventually([&] { return !Text("done").empty(); }));
+  ::close(file);
+  EXPECT_THAT(Text("files"), Not(HasSubstr(" " + std::to_string(file) + " -> /dev/null")));
+}
+
+TEST_F(WorkerProcessesTest, RefusesAProgramThatIsNone) {
+  WorkerProcesses::Options options = Options("");
+  for (const std::string& path : {folder_.File("nothing"), folder_.File(""), lives()}) {
+    std::ofstream(lives()) << "no program";
+    options.program = path;
+    const auto started = WorkerProcesses::Start(options);
+    ASSERT_FALSE(started) << path;
+    EXPECT_EQ(started.error().code, ErrorCode::kCellConfiguration);
+    EXPECT_THAT(started.error().detail, HasSubstr(path));
+  }
+  options.count = 0;  // none of its own: it does not matter
+  EXPECT_TRUE(WorkerProcesses::Start(options));
+}
+
+}  // namespace
+}  // namespace rmlcell::server

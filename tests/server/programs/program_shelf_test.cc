@@ -1,0 +1,249 @@
+#include "server/programs/program_shelf.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/config.h"
+#include "tests/server/engine_bytes.h"
+#include "tests/server/server_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using storage::CodeOf;
+template <class T>
+std::optional<ErrorCode> CodeOf(const ProgramResult<T>& result) {
+  return result ? std::nullopt : std::optional(result.error.error.code);
+}
+
+class ProgramShelfTest : public testing::Test {
+ protected:
+  using Put = ProgramShelf::Put;
+  static std::string Name(int number, const std::string& machine = "optimo-1") {
+    return "machines/" + machine + "/programs/" + std::to_string(number);
+  }
+  ProgramResult<v1::Program> Store(int number, const std::string& source,
+                                   const std::string& etag = {}) {
+    return shelf.Store(
+        {.name = Name(number), .file_name = "part.S", .etag = etag, .bytes = source});
+  }
+  ProgramResult<v1::Program> StoreExecutable(int number, const std::string& bytes,
+                                             const std::string& etag = {}) {
+    return shelf.Store(
+        {.name = Name(number), .form = v1::PROGRAM_FORM_EXECUTABLE, .etag = etag, .bytes = bytes});
+  }
+  v1::Program Get(int number) { return Must(shelf.Get(Name(number))); }
+  Status Delete(int number, const std::string& etag = {}) {
+    v1::DeleteProgramRequest request;
+    request.set_name(Name(number));
+    request.set_etag(etag);
+    return shelf.Delete(request);
+  }
+
+  ServerBed bed;
+  Config config;
+  ProgramShelf shelf{bed.store(), config};
+};
+
+// OPT-1.10: objects under numbers 1 to 99.
+TEST_F(ProgramShelfTest, StoresSourceAsObjectAndGivesBothBack) {
+  const auto stored = Store(45, "SPEED 5\nSTOP\n");
+  ASSERT_TRUE(stored) << stored.error.error.detail;
+  EXPECT_EQ(stored.value->name(), Name(45));
+  EXPECT_EQ(stored.value->title(), "part");
+  EXPECT_EQ(stored.value->file_name(), "part.S");
+  EXPECT_EQ(stored.value->source_bytes(), 13);
+  EXPECT_FALSE(stored.value->has_executable_bytes());
+  const auto source = Must(shelf.Read(Name(45), v1::PROGRAM_FORM_SOURCE));
+  EXPECT_EQ(source.bytes, "SPEED 5\nSTOP\n");
+  EXPECT_EQ(source.file_name, "part.S");
+  const auto object = Must(shelf.Read(Name(45), v1::PROGRAM_FORM_OBJECT));
+  EXPECT_EQ(object.file_name, "part.O");
+  EXPECT_EQ(object.bytes, ObjectOf("SPEED 5\nSTOP\n"));
+  // The object stored elsewhere decompiles to a source that compiles to it again.
+  ASSERT_TRUE(
+      shelf.Store({.name = Name(46), .form = v1::PROGRAM_FORM_OBJECT, .bytes = object.bytes}));
+  const auto decompiled = Must(shelf.Read(Name(46), v1::PROGRAM_FORM_SOURCE));
+  EXPECT_EQ(decompiled.file_name, "46.S");
+  EXPECT_EQ(ObjectOf(decompiled.bytes), object.bytes);
+}
+
+// OPT-1.10: 0, 100 and 200 are no program numbers.
+TEST_F(ProgramShelfTest, RefusesOtherNumbersAndBadBytes) {
+  for (const int number : {0, 100, 200, -1})
+    EXPECT_EQ(CodeOf(Store(number, "STOP\n")), ErrorCode::kProgramNumber);
+  EXPECT_EQ(CodeOf(Store(1, "")), ErrorCode::kCellEmptyProgram);
+  config.limit_program_bytes = 1024;
+  EXPECT_EQ(CodeOf(Store(1, std::string(1025, ';'))), ErrorCode::kCellTooLarge);
+  EXPECT_EQ(CodeOf(shelf.Store({.name = "machines/none/programs/1", .bytes = "STOP\n"})),
+            ErrorCode::kCellUnknownMachine);
+  EXPECT_EQ(CodeOf(shelf.Store({.name = "programs/1", .bytes = "STOP\n"})),
+            ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(CodeOf(shelf.Store({.name = Name(1), .file_name = "a.rml", .bytes = "IN;"})),
+            ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(
+      CodeOf(shelf.Store({.name = Name(1), .form = v1::PROGRAM_FORM_OBJECT, .bytes = "no object"})),
+      ErrorCode::kObjectCorrupt);
+  EXPECT_EQ(
+      CodeOf(shelf.Store({.name = Name(1), .title = std::string(201, 't'), .bytes = "STOP\n"})),
+      ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(Must(bed.store().ListPrograms("optimo-1", 0, 100)).size(), 0U);
+}
+
+// A program with errors is not stored, and the one that was there stays with its executable.
+TEST_F(ProgramShelfTest, AProgramWithErrorsChangesNothing) {
+  ASSERT_TRUE(Store(45, "STOP\n"));
+  ASSERT_TRUE(StoreExecutable(145, ExecutableOf(45, "STOP\n")));
+  const v1::Program before = Get(45);
+  const auto wrong = Store(45, "STOP\nSPEED 101\nMOVE (1.0)\n");
+  EXPECT_EQ(CodeOf(wrong), ErrorCode::kLiteralRange);
+  EXPECT_THAT(wrong.error.error.detail, testing::StartsWith("line 2: "));
+  EXPECT_THAT(wrong.error.error.detail, testing::HasSubstr("(and 1 more)"));
+  EXPECT_EQ(wrong.error.diagnostics.size(), 2U);
+  EXPECT_EQ(Get(45).SerializeAsString(), before.SerializeAsString());
+}
+
+TEST_F(ProgramShelfTest, AnEtagThatDoesNotFitChangesNothing) {
+  const std::string first = Store(45, "STOP\n").value->etag();
+  const std::string second = Store(45, "SPEED 5\n", first).value->etag();
+  EXPECT_NE(first, second);
+  for (const bool validate_only : {true, false}) {
+    const auto put = [&](int slot, const std::string& etag) {
+      return CodeOf(shelf.Store({.name = Name(slot),
+                                 .file_name = "a.S",
+                                 .etag = etag,
+                                 .bytes = "SPEED 6\n",
+                                 .validate_only = validate_only}));
+    };
+    EXPECT_EQ(put(45, first), ErrorCode::kCellEtagMismatch);
+    EXPECT_EQ(put(45, "none"), ErrorCode::kCellAlreadyExists);
+    EXPECT_EQ(put(46, second), ErrorCode::kCellNotFound);
+    EXPECT_EQ(put(45, "junk"), ErrorCode::kCellEtagMismatch);
+  }
+  EXPECT_EQ(Delete(45, first).error().code, ErrorCode::kCellEtagMismatch);
+  EXPECT_EQ(Must(shelf.Read(Name(45), v1::PROGRAM_FORM_SOURCE)).bytes, "SPEED 5\n");
+  EXPECT_TRUE(Store(46, "STOP\n", "none"));
+  EXPECT_TRUE(Delete(45, second));
+}
+
+TEST_F(ProgramShelfTest, AskingOnlyStoresNothing) {
+  const auto asked =
+      shelf.Store({.name = Name(45), .file_name = "a.S", .bytes = "STOP\n", .validate_only = true});
+  ASSERT_TRUE(asked);
+  EXPECT_GT(asked.value->object_bytes(), 0);
+  EXPECT_EQ(CodeOf(shelf.Get(Name(45))), ErrorCode::kProgramMissing);
+}
+
+// OPT-1.12: altering or deleting an object deletes its executable, and OPT-1.13: no other one.
+TEST_F(ProgramShelfTest, AnAlteredObjectLosesItsExecutableAndOthersKeepTheirs) {
+  for (const int slot : {32, 44}) {
+    ASSERT_TRUE(Store(slot, "STOP\n"));
+    ASSERT_TRUE(StoreExecutable(slot + 100, ExecutableOf(slot, "STOP\n")));
+    ASSERT_TRUE(Get(slot).has_executable_bytes());
+  }
+  ASSERT_TRUE(Store(44, "SPEED 5\nSTOP\n"));
+  EXPECT_FALSE(Get(44).has_executable_bytes());
+  EXPECT_EQ(CodeOf(shelf.Get(Name(144))), ErrorCode::kProgramMissing);
+  EXPECT_TRUE(Get(32).has_executable_bytes());
+  EXPECT_TRUE(shelf.Get(Name(132)));
+  ASSERT_TRUE(Delete(44));
+  EXPECT_EQ(CodeOf(shelf.Get(Name(44))), ErrorCode::kProgramMissing);
+  EXPECT_TRUE(Get(32).has_executable_bytes());
+  ASSERT_TRUE(Delete(32));
+  EXPECT_EQ(CodeOf(shelf.Get(Name(132))), ErrorCode::kProgramMissing);
+}
+
+// OPT-1.14: an executable can be deleted on its own; the object stays.
+TEST_F(ProgramShelfTest, AnExecutableIsDeletedOnItsOwn) {
+  const std::string etag = Store(32, "STOP\n").value->etag();
+  ASSERT_TRUE(StoreExecutable(132, ExecutableOf(32, "STOP\n")));
+  EXPECT_EQ(Delete(132, "99").error().code, ErrorCode::kCellEtagMismatch);
+  EXPECT_TRUE(Get(32).has_executable_bytes());
+  ASSERT_TRUE(Delete(132, etag));
+  EXPECT_FALSE(Get(32).has_executable_bytes());
+  EXPECT_EQ(Get(32).etag(), etag);  // the object is as it was
+  EXPECT_EQ(Delete(132).error().code, ErrorCode::kProgramMissing);
+  EXPECT_EQ(Delete(33).error().code, ErrorCode::kProgramMissing);
+}
+
+// OPT-1.15: an executable made off-line is stored under n + 100 if object n is there.
+TEST_F(ProgramShelfTest, AnExecutableNeedsItsObject) {
+  const std::string executable = ExecutableOf(32, "STOP\n");
+  EXPECT_EQ(CodeOf(StoreExecutable(132, executable)), ErrorCode::kProgramMissing);
+  EXPECT_EQ(CodeOf(StoreExecutable(200, executable)), ErrorCode::kProgramNumber);
+  const std::string etag = Store(32, "STOP\n").value->etag();
+  EXPECT_EQ(CodeOf(StoreExecutable(132, "no executable")), ErrorCode::kObjectCorrupt);
+  EXPECT_EQ(CodeOf(StoreExecutable(132, executable, "99")), ErrorCode::kCellEtagMismatch);
+  EXPECT_FALSE(Get(32).has_executable_bytes());
+  ASSERT_TRUE(StoreExecutable(132, executable, etag));
+  EXPECT_EQ(CodeOf(StoreExecutable(132, executable, "none")), ErrorCode::kCellAlreadyExists);
+  EXPECT_TRUE(StoreExecutable(32, executable));  // the form says which one is meant
+  const auto read = Must(shelf.Read(Name(132), v1::PROGRAM_FORM_UNSPECIFIED));
+  EXPECT_EQ(read.bytes, executable);
+  EXPECT_EQ(read.form, v1::PROGRAM_FORM_EXECUTABLE);
+  EXPECT_EQ(Get(32).etag(), etag);
+}
+
+// A mill keeps the stream itself, and has no executables.
+TEST_F(ProgramShelfTest, AStreamIsItsOwnObject) {
+  const auto stored =
+      shelf.Store({.name = Name(7, "mill-1"), .file_name = "a.rml", .bytes = "IN;PU0,0;"});
+  ASSERT_TRUE(stored);
+  EXPECT_FALSE(stored.value->has_source_bytes());  // kept once
+  EXPECT_EQ(Must(shelf.Read(Name(7, "mill-1"), v1::PROGRAM_FORM_SOURCE)).bytes, "IN;PU0,0;");
+  EXPECT_EQ(Must(shelf.Read(Name(7, "mill-1"), v1::PROGRAM_FORM_SOURCE)).file_name, "a.rml");
+  EXPECT_EQ(CodeOf(shelf.Store({.name = Name(107, "mill-1"), .bytes = "IN;"})),
+            ErrorCode::kProgramNumber);
+  ASSERT_TRUE(
+      shelf.Store({.name = Name(8, "mill-1"), .form = v1::PROGRAM_FORM_OBJECT, .bytes = "IN;"}));
+  EXPECT_EQ(Must(shelf.Read(Name(8, "mill-1"), v1::PROGRAM_FORM_SOURCE)).file_name,
+            "8.RML");  // as the family writes its extension
+}
+
+TEST_F(ProgramShelfTest, ListsSlotsInPages) {
+  for (const int slot : {99, 1, 45, 44, 7}) ASSERT_TRUE(Store(slot, "STOP\n"));
+  v1::ListProgramsRequest request;
+  request.set_parent("machines/optimo-1");
+  request.set_page_size(2);
+  std::vector<std::string> names;
+  int pages = 0;
+  for (; pages < 10; ++pages) {
+    const v1::ListProgramsResponse page = Must(shelf.List(request));
+    for (const v1::Program& program : page.programs()) names.push_back(program.name());
+    request.set_page_token(page.next_page_token());
+    if (page.next_page_token().empty()) break;
+  }
+  EXPECT_EQ(pages, 2);
+  EXPECT_THAT(names, testing::ElementsAre(Name(1), Name(7), Name(44), Name(45), Name(99)));
+  for (const std::string token : {"x", "0", "100", "-1", "4294967297", "18446744073709551617"}) {
+    request.set_page_token(token);
+    EXPECT_EQ(CodeOf(shelf.List(request)), ErrorCode::kCellBadPageToken) << token;
+  }
+  request.clear_page_token();
+  request.set_page_size(-1);
+  EXPECT_EQ(CodeOf(shelf.List(request)), ErrorCode::kCellInvalidArgument);
+  request.set_page_size(0);
+  EXPECT_EQ(Must(shelf.List(request)).programs_size(), 5);
+  request.set_parent("machines/none");
+  EXPECT_EQ(CodeOf(shelf.List(request)), ErrorCode::kCellUnknownMachine);
+}
+
+TEST_F(ProgramShelfTest, ChecksWithoutAMachineToo) {
+  v1::ProgramText text;
+  text.set_file_name("a.S");
+  text.set_content("SPEED 101\n");
+  EXPECT_FALSE(Must(shelf.Check("", "", text, true)).ok);
+  EXPECT_FALSE(Must(shelf.Check("optimo", "", text, true)).ok);
+  EXPECT_FALSE(Must(shelf.Check("", "machines/optimo-1", text, true)).ok);
+  text.set_content("SPEED 100\n");
+  EXPECT_TRUE(Must(shelf.Check("", "", text, true)).ok);
+  EXPECT_EQ(CodeOf(shelf.Check("lathe", "", text, true)), ErrorCode::kCellUnknownFamily);
+  EXPECT_EQ(CodeOf(shelf.Check("", "machines/none", text, true)), ErrorCode::kCellUnknownMachine);
+  text.set_file_name("a.txt");
+  EXPECT_EQ(CodeOf(shelf.Check("", "", text, true)), ErrorCode::kCellFamilyUnknownFromName);
+  text.clear_content();
+  EXPECT_EQ(CodeOf(shelf.Check("optimo", "", text, true)), ErrorCode::kCellEmptyProgram);
+}
+
+}  // namespace
+}  // namespace rmlcell::server

@@ -1,0 +1,186 @@
+#!/usr/bin/env python3
+"""Guards the walls of the house: which room may include which, what a header may bring in, what the
+engine may touch, how long a file may be, what nothing may be called.
+
+    check_structure.py [ROOT]     prints one line for each breach and ends with 1 when there is any
+
+The tables below are docs/ARCHITECTURE.md as a program reads it: a wall that moves moves in both.
+"""
+import os
+import re
+import sys
+
+# A room is a folder, or single files of it where they stand on another level than the rest. Of each: the
+# rooms whose headers it may include, apart from its own. A room that is not listed is a breach.
+ENGINE = ["engine/core", "engine/motion", "engine/machine"]
+MAY_INCLUDE = {
+    "engine/core": [],
+    "engine/motion": ["engine/core"],
+    "engine/machine": ["engine/core", "engine/motion"],
+    "engine/rml1": ENGINE,
+    "engine/optimo/language": ["engine/core"],
+    "engine/optimo/offline": ["engine/core", "engine/machine", "engine/optimo/language"],
+    "engine/optimo/control": ENGINE + ["engine/optimo/language", "engine/optimo/offline"],
+    "engine/simulation": ENGINE + ["engine/rml1", "engine/optimo/control"],
+    "storage": ["engine/core"],
+    "storage/sqlite": ["engine/core", "storage"],
+    "proto/bridge": ["engine/core", "engine/machine", "engine/simulation", "proto"],
+    # config, names, executor, log: what every room of the server may use.
+    "server": ["engine/core", "storage"],
+    "server/auth": ["engine/core"],
+    "server/events": ["engine/core", "storage"],
+    "server/jobs": ["engine/core", "engine/machine", "engine/simulation", "proto", "proto/bridge", "server",
+                    "server/events", "storage"],
+    "server/programs": ["engine/core", "engine/machine", "engine/simulation", "proto", "proto/bridge",
+                        "server", "server/jobs", "storage"],
+    "server/projects": ["engine/core", "engine/machine", "engine/simulation", "proto", "proto/bridge",
+                        "server", "server/jobs", "server/programs", "storage"],
+    "server/web": ["engine/core", "proto", "proto/bridge"],
+    "server/services": ["engine/core", "engine/machine", "engine/simulation", "proto", "proto/bridge",
+                        "server", "server/auth", "server/events", "server/jobs", "server/programs",
+                        "server/projects", "server/web", "storage"],
+    # The engine worker: a process of its own, without the store.
+    "server/worker": ["engine/core", "engine/machine", "engine/simulation", "proto", "proto/bridge",
+                      "server", "server/jobs"],
+    # The wiring of the server.
+    "server/cell": ["engine/core", "proto/bridge", "server", "server/auth", "server/events", "server/jobs",
+                    "server/programs", "server/projects", "server/services", "server/web", "storage",
+                    "storage/sqlite"],
+    "clients/cli": ["engine/core", "engine/machine", "engine/simulation", "proto", "proto/bridge"],
+}
+ROOM_OF_FILE = {"server/cell.h": "server/cell", "server/cell.cc": "server/cell", "server/main.cc": "server/cell"}
+# Headers made of the .proto files.
+PROTO_HEADERS = ("rmlcell/v1/", "google/rpc/", "google/api/", "grpc/health/")
+
+# Headers that take seconds to read: only sources, and the few headers whose business they are.
+HEAVY = re.compile(r"^(grpc|grpcpp|grpc\+\+|boost/beast|boost/asio|Eigen)([/.]|$)")
+HEAVY_HEADERS = {
+    "server/services": "grpc",       # the services are gRPC
+    "clients/cli/remote_call.h": "grpc",
+    "server/web/http_session.h": "boost/asio",
+}
+
+# The engine is a function of its inputs (design.md section 4).
+ENGINE_HEADERS = {"thread", "mutex", "shared_mutex", "condition_variable", "future", "atomic", "stop_token",
+                  "semaphore", "latch", "barrier", "fstream", "iostream", "filesystem", "ctime", "random",
+                  "csignal", "syncstream", "pthread.h", "unistd.h", "time.h", "sys/time.h", "fcntl.h"}
+ENGINE_WORDS = re.compile(
+    r"\b(steady_clock|system_clock|high_resolution_clock|clock_gettime|gettimeofday|this_thread|thread_local"
+    r"|std::(thread|jthread|async|mutex|atomic|cout|cerr|clog|cin|ifstream|ofstream|fstream|random_device)"
+    r"|(f|v|vf)?printf|fopen|fwrite|fputs|getenv|std::rand|setlocale)\b")
+ENGINE_EXCEPTIONS = {"engine/core/check.cc": {"fprintf"}}  # the last words of a process that is wrong
+# A variable at namespace scope or static in a function that can change. Constants are fine.
+ENGINE_GLOBAL = re.compile(r"^\s*(inline\s+)?static\s+(?!const\b|constexpr\b|_assert|inline\s+const)"
+                           r"[\w:<>,\s*&]+\s[\w]+\s*(=|\{|;)")
+
+LINES_MAX = 600
+# Longer ones that are known; none may grow.
+LINES_KNOWN = {"server/web/http_session.cc": 607}
+
+BAD_NAME = re.compile(r"(^|[_.-])(utils?|helpers?|misc|managers?)([_.-]|$)", re.IGNORECASE)
+BAD_TYPE = re.compile(r"^\s*(?:class|struct)\s+(\w*(?:Manager|Utils?|Helpers?))\b")
+
+SOURCES = ("engine", "storage", "proto/bridge", "server", "clients")
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+
+
+def room_of(path):
+    return ROOM_OF_FILE.get(path) or os.path.dirname(path)
+
+
+def room_of_header(header):
+    """The room whose header this is; None for one of the system."""
+    if header.startswith(PROTO_HEADERS) or header.endswith(".pb.h"):
+        return "proto"
+    if header.split("/")[0] in ("engine", "storage", "proto", "server", "clients", "tests"):
+        return room_of(header)
+    return None
+
+
+def without_comments(text):
+    """The text with comments and string contents blanked, line by line as before."""
+    pattern = r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\''
+    return re.sub(pattern, lambda found: re.sub(r"[^\n]", " ", found.group()), text, flags=re.DOTALL)
+
+
+def check_includes(path, lines, breaches):
+    room = room_of(path)
+    if room not in MAY_INCLUDE:
+        breaches.append(f"{path}:1: the room {room} does not stand in the table of tests/structure")
+        return
+    for number, line in enumerate(lines, 1):
+        found = INCLUDE.match(line)
+        if not found:
+            continue
+        header = found.group(2)
+        other = room_of_header(header)
+        if other is not None and other != room and other not in MAY_INCLUDE[room]:
+            breaches.append(f"{path}:{number}: {room} may not include {header}")
+        if path.endswith(".h") and HEAVY.match(header):
+            allowed = HEAVY_HEADERS.get(path) or HEAVY_HEADERS.get(room)
+            if allowed is None or not header.startswith(allowed):
+                breaches.append(f"{path}:{number}: a header may not include {header}")
+        if path.startswith("engine/") and header in ENGINE_HEADERS:
+            breaches.append(f"{path}:{number}: the engine may not include {header}")
+
+
+def check_purity(path, text, breaches):
+    allowed = ENGINE_EXCEPTIONS.get(path, set())
+    for number, line in enumerate(without_comments(text).splitlines(), 1):
+        for found in ENGINE_WORDS.finditer(line):
+            if found.group() not in allowed:
+                breaches.append(f"{path}:{number}: the engine may not use {found.group()}")
+        if ENGINE_GLOBAL.match(line) and "(" not in line.split("=")[0]:
+            breaches.append(f"{path}:{number}: the engine may not keep state outside its objects")
+
+
+def check_names(path, text, breaches):
+    for part in path.split("/"):
+        if BAD_NAME.search(os.path.splitext(part)[0]):
+            breaches.append(f"{path}: '{part}' does not say what it does")
+    for number, line in enumerate(text.splitlines(), 1):
+        found = BAD_TYPE.match(line)
+        if found:
+            breaches.append(f"{path}:{number}: '{found.group(1)}' does not say what it does")
+
+
+def files_under(root):
+    for top in SOURCES + ("tests", "cmake", "deploy", "docs"):
+        for folder, names, files in os.walk(os.path.join(root, top)):
+            names[:] = sorted(n for n in names if n not in ("build", "corpus", "node_modules", "__pycache__"))
+            for name in sorted(files):
+                yield os.path.relpath(os.path.join(folder, name), root).replace(os.sep, "/")
+
+
+def check(root):
+    breaches = []
+    for path in files_under(root):
+        if not path.endswith((".h", ".cc", ".py", ".cmake", ".sh", ".js")):
+            check_names(path, "", breaches)
+            continue
+        with open(os.path.join(root, path), encoding="utf-8", errors="replace") as file:
+            text = file.read()
+        lines = text.splitlines()
+        check_names(path, text, breaches)
+        if path.endswith((".h", ".cc")):
+            limit = LINES_KNOWN.get(path, LINES_MAX)
+            if len(lines) > limit:
+                breaches.append(f"{path}: {len(lines)} lines, at most {limit}")
+            if path.startswith(tuple(top + "/" for top in SOURCES)):
+                check_includes(path, lines, breaches)
+            if path.startswith("engine/"):
+                check_purity(path, text, breaches)
+    return breaches
+
+
+def main():
+    here = os.path.dirname(os.path.abspath(__file__))
+    root = sys.argv[1] if len(sys.argv) > 1 else os.path.join(here, "..", "..")
+    breaches = check(root)
+    for breach in breaches:
+        print(breach)
+    return 1 if breaches else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
