@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "engine/core/number_text.h"
+#include "engine/optimo/control/machine_state.h"
 #include "engine/optimo/control/optimo_family.h"
 #include "engine/optimo/language/compiler.h"
 
@@ -205,6 +206,12 @@ OptimoMachine& OptimoMachine::Delete(int slot) {
 }
 OptimoMachine& OptimoMachine::Schedules(std::vector<machine::LaserSchedule> only) {
   schedules_ = std::move(only);
+  return *this;
+}
+OptimoMachine& OptimoMachine::LoseZero() {
+  MachineState state = NewMachine(Resolve(parameters_));
+  state.zeroed = false;
+  state_ = EncodeMachineState(state);
   return *this;
 }
 bool OptimoMachine::HasExecutable(int slot) const {

@@ -75,6 +75,7 @@ class OptimoMachine {
   OptimoMachine& StoreExecutable(int slot, const std::string& bytes);
   OptimoMachine& Delete(int slot);
   OptimoMachine& Schedules(std::vector<machine::LaserSchedule> only);  // no others are stored
+  OptimoMachine& LoseZero();  // as a power cycle does, OPT-B.02
   // Executables that runs made are kept, as the cell does.
   bool HasExecutable(int slot) const;
 

@@ -259,5 +259,41 @@ TEST(OptimoRunProcess, SeterrOnlyShowsItsNumber) {
   EXPECT_EQ(OptimoMachine().Run("VR[1]=10000.\nSETERR VR[1]\n").code(), 7505);
 }
 
+// OPT-B.07: the sensor is shown and moves nothing.
+TEST(OptimoRunProcess, TheSensorMovesNothing) {
+  const Ran ran = OptimoMachine().Run("OL[11]=ON\nDELAY 1\nOL[11]=OFF\n");
+  EXPECT_THAT(ran.Events(),
+              ElementsAre("OL[11] 1", "sensor 1", "wait dwell 1.0", "OL[11] 0", "sensor 0"));
+  EXPECT_TRUE(ran.motions.empty());
+}
+
+// OPT-5.41, OPT-E.931: an alarm: ERR is not taken, the shutter closes, the image stays set.
+TEST(OptimoRunProcess, TheThirdGasIsAnAlarm) {
+  const Ran ran =
+      OptimoMachine().Run("ERR 900\nWORK 0,0/ON\nDELAY 1\nOL[9]=ON\nENDTASK\n900 VI[2]=1\n");
+  EXPECT_EQ(ran.code(), 931);
+  EXPECT_EQ(ran.Var("VI[2]"), "0");
+  EXPECT_EQ(ran.Var("OL[9]"), "1");
+  EXPECT_TRUE(ran.Has("shutter closed"));
+  EXPECT_FALSE(ran.Has("gas 3"));
+}
+
+// OPT-B.67, OPT-E.7901, OPT-E.7902, OPT-E.7610: what ends a run from outside.
+TEST(OptimoRunProcess, BudgetsAndTheEmergencyStop) {
+  const std::string loop = "WORK 0,0/ON\n10 DELAY 1\nGOTO 10\n";
+  const Ran steps = OptimoMachine().Run(loop, {.budget = {.steps = 50}});
+  EXPECT_EQ(steps.code(), 7901);
+  EXPECT_TRUE(steps.Has("beam off"));
+  EXPECT_TRUE(steps.Has("shutter closed"));
+  const Ran time = OptimoMachine().Run(
+      loop, {.budget = {.steps = 1000, .virtual_time = std::chrono::seconds(5)}});
+  EXPECT_EQ(time.code(), 7902);
+  EXPECT_NEAR(time.time_s(), 5.0, 1e-6);
+  const Ran stop =
+      OptimoMachine().Run(loop, {.inputs = {{At(2.5), InputKind::kEmergencyStop, 0, 1.0}}});
+  EXPECT_EQ(stop.code(), 7610);
+  EXPECT_NEAR(stop.Find("beam off")->at_s, 2.5, 1e-6);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing

@@ -204,6 +204,30 @@ TEST(OptimoRunProgram, WhatStartsAnewAndWhatStays) {
   EXPECT_EQ(ran.code(), 7201);
 }
 
+// OPT-1.16: variables are apart from the programs.
+TEST(OptimoRunProgram, StoringProgramsLeavesTheVariables) {
+  OptimoMachine machine;
+  machine.Run("VR[5]=7.\nVL[3]=ON\nVI[7]=-3\n");
+  machine.Delete(1).Store(1, "VI[8]=1\n").Store(2, "SPEED 5\n");
+  const Ran ran = machine.Run(1);
+  EXPECT_EQ(ran.Var("VR[5]"), "7.0");
+  EXPECT_EQ(ran.Var("VL[3]"), "1");
+  EXPECT_EQ(ran.Var("VI[7]"), "-3");
+}
+
+// OPT-4.48, OPT-E.7310: without its zero the machine does not move; ZERO finds it.
+TEST(OptimoRunProgram, AnUnzeroedMachineDoesNotMove) {
+  OptimoMachine machine;
+  machine.LoseZero();
+  const Ran refused =
+      machine.Run("VI[2]=1\nMOVE (100.,100.,-60.,0.,0.)\n", {.mode = machine::Mode::kRemote});
+  EXPECT_EQ(refused.code(), 7310);
+  EXPECT_EQ(refused.run().outcome().place.step, 2);
+  EXPECT_EQ(refused.Var("VI[2]"), "1");
+  EXPECT_TRUE(machine.Run("ZERO\nMOVE (100.,100.,-60.,0.,0.)\n", {.mode = machine::Mode::kRemote})
+                  .completed());
+}
+
 // OPT-B.60: ZERO performs the zero procedure and stands at the mechanical zero.
 TEST(OptimoRunProgram, ZeroStandsAtTheMechanicalZero) {
   const Ran ran = OptimoMachine().Run("ZERO\nVR[0]=IA[0]\nVR[1]=IA[1]\nVR[2]=IA[2]\nVR[3]=IA[3]\n");
