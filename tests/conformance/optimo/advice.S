@@ -19,7 +19,7 @@ OL[32] = ON
 ASSIGN OL[16] = 0 /2     ; expect 7412
 
 ;=== offsets and tools that mean nothing (advice)
-; OPT-7.37 OPT-4.70 OPT-4.71 OPT-4.55 OPT-E.7311
+; OPT-7.37 OPT-E.7311 OPT-E.7312 OPT-E.7313 OPT-E.7315
 SYSDEF (0.0,0.0,0.0,0.0,0.0,0.0)     ; expect 7311
 TCP (8.68,0,0.72/0,1.77,0)           ; expect 7313
 TCP (0,0,0/0,0,0)                    ; expect 7312
@@ -29,3 +29,9 @@ TCP (0,0,0/0,0,5)                    ; expect 7315
 ; OPT-8.78
 FUNCTION 99 (VR[3])      ; expect 7033
 FUNCTION 99 (VR[26])
+
+;=== tools that are off the axis, and without one (advice)
+; OPT-4.55 OPT-4.70 OPT-4.71 OPT-B.90
+TCP (0,0,3/0,1,3)                    ; expect 7313
+TCP (0,0,3/0,0,3)                    ; expect 7312
+TCP (0,0,3/0,0,3.5)                  ; expect 7315

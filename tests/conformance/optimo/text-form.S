@@ -1,5 +1,5 @@
 ;=== one instruction a line
-; OPT-1.01 OPT-1.19
+; OPT-1.01 OPT-1.19 OPT-E.7003
 SPEED 20
 SPEED 20 PATH LIN        ; expect 7003
 SPEED 20 slow            ; expect 7003
@@ -11,7 +11,7 @@ Coord absol
 MOVE (1.e1, 2.E1, 3., 0., 0.)/fly
 
 ;=== a comment runs to the end of the line and may hold any byte
-; OPT-1.18 OPT-1.32
+; OPT-1.18 OPT-1.32 OPT-E.7001
 SPEED 20 ; #slow# {}~
   ; ° alone
 SPEED 20#                ; expect 7001
@@ -26,7 +26,7 @@ WORK 0, 00 /ON
 work	0	,	0	/	off
 
 ;=== every error of a file is reported once
-; OPT-1.33
+; OPT-1.33 OPT-E.7004
 SPEED 101                ; expect 7004
 FOO 3                    ; expect 7011
 MOVE (1.,2.,3.,0.)       ; expect 7019

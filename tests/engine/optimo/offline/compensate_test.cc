@@ -110,7 +110,7 @@ TEST(Compensate, MovesWithoutDirectionTakeTheNormalOfTheOther) {
             "(10.00000,1.00000,0.00000,0.00000,0.00000)\nWORK 0,0/OFF\n");
 }
 
-// OPT-8.06, OPT-8.07, OPT-8.08, OPT-8.10
+// OPT-8.06, OPT-8.07, OPT-8.08, OPT-8.10, OPT-E.7804
 TEST(Compensate, ItIsActiveOnlyWhileEverythingHolds) {
   const auto unchanged = [](const std::string& text) { return Compensate(text).text == text; };
   EXPECT_TRUE(unchanged(";$rad=1\n;$left\nWORK 0,0/ON\nMOVE (10,0,0,0,0)\nWORK 0,0/OFF\n"));  // PTP
@@ -132,7 +132,7 @@ TEST(Compensate, ItIsActiveOnlyWhileEverythingHolds) {
   EXPECT_NE(two.text.find("MOVE (10.00000,51.00000,"), std::string::npos);
 }
 
-// OPT-8.12, OPT-8.13, OPT-8.14, OPT-B.91
+// OPT-8.12, OPT-8.13, OPT-8.14, OPT-B.91, OPT-E.7807
 TEST(Compensate, HolesChangeTheirRadius) {
   const auto hole = [](const std::string& directives, const std::string& radius) {
     return Compensate(directives + "path hole (" + radius +
@@ -146,34 +146,48 @@ TEST(Compensate, HolesChangeTheirRadius) {
   EXPECT_EQ(FindingsOf(hole(";$rad=0.254\n;$right\n", "0.2")), (std::vector<int>{7807}));
 }
 
-// OPT-8.04, OPT-8.05, OPT-8.09, OPT-8.01
+// OPT-8.05, OPT-8.09, OPT-E.7802, OPT-E.7803
 TEST(Compensate, WrongDirectivesStop) {
   EXPECT_EQ(FindingsOf(Compensate(";$middle\n")), (std::vector<int>{7802}));
   EXPECT_EQ(FindingsOf(Compensate(";$dia=x\n")), (std::vector<int>{7802}));
   EXPECT_EQ(FindingsOf(Compensate(";$rad=-1\n")), (std::vector<int>{7802}));
   EXPECT_EQ(FindingsOf(Compensate(";$rad=1\n;$left\nWORK 0,0/ON\n;$right\n")),
             (std::vector<int>{7803}));
+}
+
+// OPT-8.01, OPT-E.7801
+TEST(Compensate, InchSourcesStop) {
   const Compensation inch = Compensate("SPEED 5\n", FileNames{"a.SI", "a.CMP", "now"});
   EXPECT_EQ(FindingsOf(inch), (std::vector<int>{7801}));
   EXPECT_FALSE(inch.ok);
   EXPECT_TRUE(inch.text.empty());
 }
 
-// OPT-8.19, OPT-8.20, OPT-8.21, OPT-8.22
-TEST(Compensate, WhatCannotBeOffsetStops) {
+// OPT-8.19, OPT-E.7806, OPT-E.7808
+TEST(Compensate, PathsThatAreTooTightStop) {
   const std::string left = ";$rad=1\n;$left\n";
   EXPECT_EQ(Contour(left, "MOVE (10,0,0,0,0)\nMOVE (0,0,0,0,0)\n"), "7808 ");
   EXPECT_EQ(
       Contour(left, "PATH CIR\nMOVE (1,1,0,0,0)/VIA (0.7071067811865,0.2928932188135,0,0,0)\n"),
       "7806 ");
-  EXPECT_EQ(Contour(left, "MOVE (VR[1],0,0,0,0)\n"), "7805 ");
-  EXPECT_EQ(Contour(left, "COORD ROBOT\nMOVE (10,0,0,0,0)\n"), "7810 ");
-  EXPECT_EQ(FindingsOf(Compensate(left + "PATH LIN\nWORK 0,0/ON\n20 GOTO 20\n")),
-            (std::vector<int>{7809}));
 }
 
-// OPT-8.23: a system that is turned by 90 degrees about Z does not change u for a head straight
-// down, but for a tilted head u is turned back.
+// OPT-8.20, OPT-8.21, OPT-E.7805, OPT-E.7810
+TEST(Compensate, MovesThatCannotBeOffsetStop) {
+  const std::string left = ";$rad=1\n;$left\n";
+  EXPECT_EQ(Contour(left, "MOVE (VR[1],0,0,0,0)\n"), "7805 ");
+  EXPECT_EQ(Contour(left, "COORD ROBOT\nMOVE (10,0,0,0,0)\n"), "7810 ");
+}
+
+// OPT-8.22, OPT-E.7809
+TEST(Compensate, JumpsAreReported) {
+  const Compensation jump = Compensate(";$rad=1\n;$left\nPATH LIN\nWORK 0,0/ON\n20 GOTO 20\n");
+  EXPECT_EQ(FindingsOf(jump), (std::vector<int>{7809}));
+  EXPECT_TRUE(jump.ok);
+}
+
+// OPT-8.23, OPT-E.7811: a system that is turned by 90 degrees about Z does not change u for a head
+// straight down, but for a tilted head u is turned back.
 TEST(Compensate, SysdefTurnsTheToolBack) {
   const std::string head =
       ";$rad=1\n;$left\nPATH LIN\nSYSDEF (0,0,0,1.5707963268,0,0)\nMOVE "
@@ -183,6 +197,16 @@ TEST(Compensate, SysdefTurnsTheToolBack) {
   // u(pi/2, pi/2) = (1,0,0) in the machine is (0,-1,0) in the program; u x (1,0,0) = (0,0,1).
   EXPECT_EQ(result.text.substr(head.size()), "MOVE (10.00000,0.00000,1.00000,1.57080,1.57080)\n");
   EXPECT_EQ(FindingsOf(Compensate("SYSDEF (0,0,0,VR[1],0,0)\n")), (std::vector<int>{7811}));
+}
+
+// OPT-8.02, OPT-8.04: directives in any case, behind a sequence number, with blanks behind them;
+// other comments are none.
+TEST(Compensate, DirectivesAreComments) {
+  for (const std::string side : {"15 ;$cleft", ";$LEFT  ", "15;$Sleft", ";$left"}) {
+    EXPECT_EQ(Contour("; left\n; $right\n;$Rad= 1\n" + side + "\n", "MOVE (10,0,0,0,0)\n"),
+              "MOVE (10.00000,1.00000,0.00000,0.00000,0.00000)\n")
+        << side;
+  }
 }
 
 // OPT-8.24, OPT-8.25

@@ -44,10 +44,14 @@ TEST(ConvertArguments, ContradictionsAreRefused) {
   EXPECT_EQ(Read({"a.old", "/i", "/m"}), "7701");
 }
 
-// OPT-8.59, OPT-8.61, OPT-8.62, OPT-8.64
-TEST(ConvertArguments, OtherMistakesHaveTheirCodes) {
+// OPT-8.59, OPT-8.61, OPT-E.7702, OPT-E.7704
+TEST(ConvertArguments, SwitchesAndDirectionsThatAreNone) {
   EXPECT_EQ(Read({"a.s", "/x"}), "7702");
   EXPECT_EQ(Read({"optimo.old"}), "7704");
+}
+
+// OPT-8.62, OPT-8.64, OPT-E.7705, OPT-E.7707
+TEST(ConvertArguments, TooFewAndTooManyNames) {
   EXPECT_EQ(Read({"/i"}), "7705");
   EXPECT_EQ(Read({"a.s", "b.si", "c"}), "7707");
 }

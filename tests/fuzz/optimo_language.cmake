@@ -1,0 +1,12 @@
+# Parser, object decoder, converter and compensation; their seeds are replayed by
+# optimo_language_conformance_test.
+foreach(target IN ITEMS text:TryText object:TryObject convert:TryConvert compensate:TryCompensate)
+  string(REPLACE ":" ";" parts ${target})
+  list(GET parts 0 name)
+  list(GET parts 1 input)
+  rmlcell_executable(optimo_${name}_fuzz
+    SOURCES optimo_target.cc optimo_language_input.cc LINKS rmlcell::engine_optimo_offline)
+  target_compile_definitions(optimo_${name}_fuzz PRIVATE RMLCELL_FUZZ_INPUT=${input})
+  target_compile_options(optimo_${name}_fuzz PRIVATE -fsanitize=fuzzer)
+  target_link_options(optimo_${name}_fuzz PRIVATE -fsanitize=fuzzer)
+endforeach()
