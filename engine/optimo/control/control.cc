@@ -10,12 +10,16 @@ Loaded Load(Executable executable) {
   auto loaded = std::make_shared<LoadedProgram>();
   loaded->executable = std::move(executable);
   loaded->index.reserve(loaded->executable.modules.size());
-  for (const LinkedModule& linked : loaded->executable.modules) loaded->index.emplace_back(linked.module);
+  for (const LinkedModule& linked : loaded->executable.modules)
+    loaded->index.emplace_back(linked.module);
   return loaded;
 }
 
-Control::Control(OptimoParameters parameters, machine::RunSetup setup, machine::RunObserver& observer)
-    : parameters_(std::move(parameters)), setup_(std::move(setup)), observer_(observer),
+Control::Control(OptimoParameters parameters, machine::RunSetup setup,
+                 machine::RunObserver& observer)
+    : parameters_(std::move(parameters)),
+      setup_(std::move(setup)),
+      observer_(observer),
       s_(parameters_.limits) {
   s_.machine = NewMachine(parameters_);
   if (!setup_.machine_state.empty()) {
@@ -24,8 +28,13 @@ Control::Control(OptimoParameters parameters, machine::RunSetup setup, machine::
   s_.planned_axes = s_.machine.axes;
   s_.mode = setup_.mode;
   s_.override_percent = setup_.override_percent;
-  s_.breakpoint = setup_.breakpoint;
-  if (setup_.simul) s_.simulated = {.active = true, .until = *setup_.simul, .ol_changed = {}, .schedule = 0};
+  s_.breakpoint = setup_.breakpoint ? setup_.breakpoint : s_.machine.breakpoint;
+  if (setup_.simul) {
+    s_.simulated = {.active = true, .until = *setup_.simul};
+  } else if (s_.machine.simul) {
+    s_.simulated = {.active = true, .until = *s_.machine.simul, .armed = true};
+    s_.machine.simul.reset();
+  }
   StartMain();
 }
 
@@ -34,7 +43,21 @@ void Control::StartMain() {
   const std::optional<Loaded> main = Acquire(setup_.main_program, false);
   if (!main) return;
   Begin(*main, {});
-  s_.machine.data.vi[98] += 1.0F;  // OPT-7.70
+  CountExecution(setup_.main_program);
+}
+
+// VI[98]: executions of the main program since it was selected. OPT-7.70, OPT-B.63
+void Control::CountExecution(int slot) {
+  float& count = s_.machine.data.vi[98];
+  if (s_.machine.selected != slot) count = 0.0F;
+  s_.machine.selected = slot;
+  if (count < kIntegerMax) count += 1.0F;
+}
+
+// The instant so many seconds from now; far beyond any run when there is no such instant.
+SimTime Control::After(double seconds) const {
+  constexpr SimTime kLongest = std::chrono::hours(24 * 365 * 200);
+  return std::min(s_.now, kLongest / 8) + std::min(FromSeconds(seconds), kLongest);
 }
 
 machine::RunPhase Control::Advance(SimTime until) {
@@ -44,7 +67,8 @@ machine::RunPhase Control::Advance(SimTime until) {
     ApplyScripted();
     if (s_.phase == machine::RunPhase::kHalted) {
       // Time stands for the program; the next scripted key may come.
-      const bool more = s_.next_input < setup_.inputs.size() && setup_.inputs[s_.next_input].at <= until;
+      const bool more =
+          s_.next_input < setup_.inputs.size() && setup_.inputs[s_.next_input].at <= until;
       if (!more) {
         if (s_.next_input < setup_.inputs.size()) s_.now = std::max(s_.now, until);
         return s_.phase;
@@ -73,7 +97,7 @@ machine::RunPhase Control::Advance(SimTime until) {
 
 bool Control::MayFetch() const {
   return s_.phase == machine::RunPhase::kRunning && s_.pending.kind == Pending::Kind::kNone &&
-         (!Busy() || s_.background || (s_.stop_requested && s_.passing));
+         !s_.halting && (!Busy() || s_.background || (s_.stop_requested && s_.passing));
 }
 
 // The next tick of the system cycle after now, counted from `since`. OPT-B.30
@@ -84,33 +108,41 @@ SimTime Control::NextTick(SimTime since) const {
 
 SimTime Control::NextEvent(SimTime until) const {
   SimTime next = kForever;
-  if (s_.next_input < setup_.inputs.size()) next = std::max(s_.now, setup_.inputs[s_.next_input].at);
+  if (s_.next_input < setup_.inputs.size())
+    next = std::max(s_.now, setup_.inputs[s_.next_input].at);
   if (s_.active) {
     next = std::min(next, s_.active->end);
-    if (s_.watched_move && s_.active->motion.tag == *s_.watched_move &&
-        !s_.active->ended) {
+    if (Watching()) {
       if (s_.end_condition) next = std::min(next, NextTick(s_.watched_since));
-      if (s_.time_label) next = std::min(next, std::max(s_.now, s_.time_due));
+      if (s_.time_gosub) next = std::min(next, std::max(s_.now, s_.time_due));
     }
   } else if (!s_.timeline.empty()) {
     next = s_.now;
   }
+  const bool times_out = s_.pending.of_move && s_.time_gosub;
   switch (s_.pending.kind) {
-    case Pending::Kind::kTime: next = std::min(next, s_.pending.until); break;
+    case Pending::Kind::kTime:
+      next = std::min(next, s_.pending.until);
+      break;
     case Pending::Kind::kCondition:
-      if (s_.time_label) next = std::min(next, std::max(s_.now, s_.time_due));
+      if (times_out) next = std::min(next, std::max(s_.now, s_.time_due));
       next = std::min(next, NextTick(s_.pending.since));
       break;
-    case Pending::Kind::kTakeOver: next = std::min(next, s_.pending.until); break;
+    case Pending::Kind::kTakeOver:
+      next = std::min(next, Busy() ? s_.pending.until : s_.now);
+      break;
     case Pending::Kind::kStandstill:
       if (!Busy()) next = s_.now;
       break;
-    case Pending::Kind::kNone: break;
+    case Pending::Kind::kNone:
+      break;
   }
-  // Nothing outside can change a condition any more, and no motion either: ticks would show nothing new.
-  const bool quiet = s_.pending.kind == Pending::Kind::kCondition && !Busy() && !s_.time_label &&
+  // Nothing outside can change a condition any more, and no motion either: ticks would show nothing
+  // new.
+  const bool quiet = s_.pending.kind == Pending::Kind::kCondition && !Busy() && !times_out &&
                      s_.next_input >= setup_.inputs.size();
   if (quiet) next = kForever;
+  next = std::min(next, NextTask());
   if (s_.input_changed && s_.pending.kind == Pending::Kind::kCondition) next = s_.now;
   return std::min(next, std::max(setup_.budget.virtual_time, s_.now + SimTime(1)) <= until
                             ? setup_.budget.virtual_time
@@ -136,6 +168,8 @@ void Control::ActOnTime() {
     return Halt("STOP");
   }
   WatchMove();
+  RunTasks();
+  if (s_.phase != machine::RunPhase::kRunning) return;
   Pending& pending = s_.pending;
   switch (pending.kind) {
     case Pending::Kind::kStandstill:
@@ -144,17 +178,13 @@ void Control::ActOnTime() {
       if (s_.deferred) {
         const Error error = *s_.deferred;
         s_.deferred.reset();
+        s_.place = s_.deferred_place;
         HandleError(error);
       }
       break;
     case Pending::Kind::kTime:
       if (s_.now < pending.until) break;
-      observer_.OnWait({.start = pending.since,
-                        .end = s_.now,
-                        .place = s_.place,
-                        .kind = pending.wait,
-                        .beam_on = s_.beam.on,
-                        .power_percent = pending.power_percent});
+      TellWait();
       if (pending.wait == machine::WaitKind::kPierce) s_.beam.power = s_.power_before_pierce;
       pending = {};
       break;
@@ -162,29 +192,28 @@ void Control::ActOnTime() {
       s_.input_changed = false;
       const std::optional<bool> met = Truth(pending.expression);
       if (!met || !*met) break;
-      if (s_.now > pending.since) {
-        observer_.OnWait({.start = pending.since,
-                          .end = s_.now,
-                          .place = s_.place,
-                          .kind = machine::WaitKind::kCondition,
-                          .beam_on = s_.beam.on,
-                          .power_percent = s_.beam.power.constant_percent});
-      }
+      TellWait();
       pending = {};
       s_.condition_met = true;
       break;
     }
     case Pending::Kind::kTakeOver:
+      if (!Busy()) {  // it came to its end before
+        pending = {};
+        break;
+      }
       if (s_.now < pending.until) break;
       pending = {.kind = Pending::Kind::kStandstill};
       if (s_.active) EndMotionHere();
       s_.timeline.clear();
       break;
-    case Pending::Kind::kNone: break;
+    case Pending::Kind::kNone:
+      break;
   }
   if (s_.phase == machine::RunPhase::kRunning && s_.now >= setup_.budget.virtual_time) {
-    Finish(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kTimeBudget,
-           "the run takes longer than " + ShortestText(ToSeconds(setup_.budget.virtual_time)) + " s");
+    Finish(
+        machine::OutcomeKind::kBudgetExceeded, ErrorCode::kTimeBudget,
+        "the run takes longer than " + ShortestText(ToSeconds(setup_.budget.virtual_time)) + " s");
   }
 }
 
@@ -199,23 +228,34 @@ void Control::ApplyScripted() {
 void Control::Apply(const machine::InputChange& input) {
   if (s_.phase == machine::RunPhase::kFinished) return;
   s_.input_changed = true;
+  s_.tasks_input = true;
+  if (!s_.programs.empty()) MarkTasks();
   const auto index = static_cast<std::size_t>(std::clamp(input.index, 0, kVariableIndexMax));
   switch (input.kind) {
-    case machine::InputKind::kLogical: s_.machine.data.il_physical[index] = input.value != 0.0; break;
-    case machine::InputKind::kAnalogue: s_.machine.data.ia_physical[index] = static_cast<float>(input.value); break;
-    case machine::InputKind::kOverride: ChangeOverride(input.value); break;
+    case machine::InputKind::kLogical:
+      s_.machine.data.il_physical[index] = input.value != 0.0;
+      break;
+    case machine::InputKind::kAnalogue:
+      s_.machine.data.ia_physical[index] = static_cast<float>(input.value);
+      break;
+    case machine::InputKind::kOverride:
+      ChangeOverride(input.value);
+      break;
     case machine::InputKind::kDoor:
       s_.machine.door_open = input.value != 0.0;
       if (!s_.machine.door_open) break;
       // An open door acts as STOP, and the shutter closes (OPT-B.34, OPT-3.17).
-      if (s_.phase == machine::RunPhase::kRunning) Apply({.at = s_.now, .kind = machine::InputKind::kStop});
+      if (s_.phase == machine::RunPhase::kRunning)
+        Apply({.at = s_.now, .kind = machine::InputKind::kStop});
       SuspendBeam();
       if (s_.beam.shutter_open) {
         s_.beam.shutter_was_open = true;
         CloseShutter();
       }
       break;
-    case machine::InputKind::kStart: Resume(); break;
+    case machine::InputKind::kStart:
+      Resume();
+      break;
     case machine::InputKind::kHold:
       if (s_.mode != machine::Mode::kRemote) s_.hold_requested = true;
       break;
@@ -233,11 +273,31 @@ void Control::Apply(const machine::InputChange& input) {
         s_.stop_requested = true;
       }
       break;
-    case machine::InputKind::kEmergencyStop: EmergencyStop(); break;
+    case machine::InputKind::kEmergencyStop:
+      EmergencyStop();
+      break;
   }
 }
 
+// Reports what was not yet reported of the wait under way. While a motion goes on (/NEXT) there is
+// nothing to report: that time is the motion's.
+void Control::TellWait() {
+  Pending& pending = s_.pending;
+  const bool timed = pending.kind == Pending::Kind::kTime;
+  if (!timed && pending.kind != Pending::Kind::kCondition) return;
+  if (!s_.active && s_.now > pending.told) {
+    observer_.OnWait({.start = pending.told,
+                      .end = s_.now,
+                      .place = s_.place,
+                      .kind = timed ? pending.wait : machine::WaitKind::kCondition,
+                      .beam_on = s_.beam.on,
+                      .power_percent = s_.beam.on ? s_.beam.power.constant_percent : 0.0});
+  }
+  pending.told = s_.now;
+}
+
 void Control::Halt(std::string_view why) {
+  TellWait();
   s_.phase = machine::RunPhase::kHalted;
   s_.halt_reason = why;
   s_.halted_at = s_.now;
@@ -266,7 +326,12 @@ void Control::Resume() {
   const SimTime stood = s_.now - s_.halted_at;
   if (s_.pending.kind != Pending::Kind::kNone) {
     s_.pending.since = s_.now;
+    s_.pending.told = s_.now;
     s_.pending.until += stood;
+  }
+  for (WorkTask& task : program().work_tasks) {
+    task.since += stood;
+    task.until += stood;
   }
   s_.phase = machine::RunPhase::kRunning;
   observer_.OnResume(s_.now, s_.place);
@@ -310,6 +375,9 @@ void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, s
   BeamOff();
   CloseShutter();
   s_.beam_returns = false;
+  if (s_.simulated.active && s_.simulated.armed && !s_.machine.simul) {
+    s_.machine.simul = s_.simulated.until;  // its step was not reached: OPT-6.14
+  }
   s_.phase = machine::RunPhase::kFinished;
   s_.outcome = {.kind = kind, .code = code, .detail = std::move(detail), .place = s_.place};
 }

@@ -12,12 +12,12 @@ namespace rmlcell::optimo {
 // The control (CRG): fetches instructions and carries them out in virtual time.
 //
 // Between two /FLY moves the program runs ahead of the motion, through instructions that need no
-// standstill (OPT-2.49); what they change outside is told as an Effect when the tip passes the corner.
-// Everything else waits until the motion is over. Time passes in Advance only.
+// standstill (OPT-2.49); what they change outside is told as an Effect when the tip passes the
+// corner. Everything else waits until the motion is over. Time passes in Advance only.
 class Control : private VariableAccess {
  public:
-  // Instructions that one Advance carries out at most, so that its caller can look around even when a
-  // program never lets time pass.
+  // Instructions that one Advance carries out at most, so that its caller can look around even when
+  // a program never lets time pass.
   static constexpr int kStepsPerAdvance = 20'000;
 
   Control(OptimoParameters parameters, machine::RunSetup setup, machine::RunObserver& observer);
@@ -42,6 +42,9 @@ class Control : private VariableAccess {
   void ActOnTime();
   void ApplyScripted();
   void Halt(std::string_view why);
+  void TellWait();
+  SimTime After(double seconds) const;
+  void CountExecution(int slot);
   void Resume();
   void EmergencyStop();
   void Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail);
@@ -62,14 +65,19 @@ class Control : private VariableAccess {
   motion::AxisPose AxesNow() const;
   double TipSpeedNow() const;
   bool Moving() const;
+  bool Watching() const;
+  void Unwatch();
   void WatchMove();
 
   // --- control_motion.cc: what MOVE and its kin do ---
   void Move(const Instruction& i);
   std::optional<motion::TipPose> Target(const Instruction& i, bool via);
-  bool AppendMotion(const motion::PathPiece& path, const Instruction& i, const MoveNote& note, bool settles);
+  bool AppendMotion(const motion::PathPiece& path, const Instruction& i, const MoveNote& note,
+                    bool settles);
   bool InTravel(const motion::PathPiece& path);
-  void MoveHole(const Instruction& i, const motion::TipPose& from, const motion::TipPose& target, MoveNote note);
+  bool MoveHole(const Instruction& i, const motion::TipPose& from, const motion::TipPose& target,
+                MoveNote note);
+  void WatchAndGoOn(const Instruction& i, std::uint64_t first_tag, bool ran_ahead);
   void SetCoord(CoordType coord);
   void SetPath(const Instruction& i);
   void SetPercent(const Instruction& i);
@@ -78,14 +86,25 @@ class Control : private VariableAccess {
   void ZeroAxes();
   motion::Head HeadNow() const;
 
-  // --- control_process.cc: laser, outputs ---
+  // --- control_work.cc: WORK, also while the program goes on ---
+  // At the passage that the program has run ahead to, or now: a WORK that goes on in the
+  // background.
+  enum class When { kPassage, kNow };
   void DefineWork(const Instruction& i);
   void Work(const Instruction& i);
-  void WorkOn(int kind, int process);
-  void WorkOff(int kind, int process);
-  bool SelectSchedule(int number);
+  void SwitchWork(WorkTask task, bool dwell_in_background, When when);
+  bool WorkOn(const WorkTask& task, bool dwell_in_background, When when);
+  void WorkOff(int kind, int process, When when);
+  void DropTasks(int kind, int process);
+  SimTime NextTask() const;
+  void RunTasks();
+  bool RunTask(std::size_t n);
+  void MarkTasks();
+
+  // --- control_process.cc: laser, outputs ---
+  bool SelectSchedule(int number, When when);
   double SchedulePower() const;
-  void Show(PassageEffect effect);
+  void Show(PassageEffect effect, When when = When::kPassage);
   void Carry(const PassageEffect& effect);
   void BeamOn(const machine::PowerBySpeed& power);
   void BeamOff();
@@ -96,21 +115,26 @@ class Control : private VariableAccess {
   void ConnectOutputs();
   void TellSignal(machine::Signal signal, int index, double value, double detail = 0.0);
 
-  // --- control_flow.cc: instructions and jumps ---
+  // --- control_flow.cc: instructions and jumps; control_calls.cc; control_errors.cc ---
   void Execute(const Instruction& i);
   bool NeedsStandstill(const Instruction& i);
+  bool MakeDueGosub();
+  bool LetPollingTakeTime(const Instruction& i, std::uint32_t at);
   void Jump(int label);
   void Gosub(int label);
   void Return();
   void EndModule();
   void EndProgram();
+  void RepeatMain();
   void CallFunction(const Instruction& i);
   void CallProgram(const Instruction& i);
   void GoTo(const Instruction& i);
   std::optional<Loaded> Acquire(int slot, bool must_be_executable);
+  bool HasRoomFor(std::size_t bytes) const;
   void Begin(Loaded program, const std::array<float, kParameterCount>& parameters);
   std::optional<int> ProgramNumber(Expression expression);
-  bool PassParameters(const Instruction& i, const Module& callee, std::array<float, kParameterCount>& out);
+  bool PassParameters(const Instruction& i, const Module& callee,
+                      std::array<float, kParameterCount>& out);
   void Pause(std::string_view name);
   void SetTimer(const Instruction& i);
   void Wait(Pending pending);
@@ -126,7 +150,10 @@ class Control : private VariableAccess {
   void SetGroups(const Instruction& i);
   std::optional<Value> Eval(Expression expression);
   std::optional<double> Real(Expression expression);
-  std::optional<bool> Truth(std::uint32_t expression);
+  std::optional<bool> Truth(ExprRange expression);
+  std::optional<bool> Truth(const Condition& condition);
+  ExprRange RangeOf(Expression expression) const;
+  Condition ConditionOf(Expression expression) const;
   double InputNow(VariableGroup group, int index) const;
   bool Connected(std::uint8_t group) const;
 
@@ -138,7 +165,9 @@ class Control : private VariableAccess {
     return program().program->executable.modules[static_cast<std::size_t>(frame().module)];
   }
   const Module& module() const { return linked().module; }
-  const ModuleIndex& index() const { return program().program->index[static_cast<std::size_t>(frame().module)]; }
+  const ModuleIndex& index() const {
+    return program().program->index[static_cast<std::size_t>(frame().module)];
+  }
   Modal& modal() { return program().modal; }
   const Modal& modal() const { return program().modal; }
   bool simulating() const { return s_.simulated.active; }

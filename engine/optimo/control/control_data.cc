@@ -11,10 +11,25 @@ constexpr int kFirstWorkFlag = 87;  // IL[87 + p], OPT-3.37
 constexpr int kLastWorkFlag = 94;
 constexpr int kMotionFlag = 95;  // OPT-7.68
 
+// PAR of an activation that need not be the innermost any more.
+class WithParameters final : public VariableAccess {
+ public:
+  WithParameters(VariableAccess& others, const std::array<float, kParameterCount>& parameters)
+      : others_(others), parameters_(parameters) {}
+  float Read(Variable variable) override {
+    if (variable.group != VariableGroup::kPar) return others_.Read(variable);
+    return parameters_[variable.index % kParameterCount];
+  }
+
+ private:
+  VariableAccess& others_;
+  const std::array<float, kParameterCount>& parameters_;
+};
+
 }  // namespace
 
-// UPDATE ON and no IMAGE: the images follow the outside. OPT-7.98, 7.100; in simulation nothing is read
-// or written (OPT-6.24, 6.25).
+// UPDATE ON and no IMAGE: the images follow the outside. OPT-7.98, 7.100; in simulation nothing is
+// read or written (OPT-6.24, 6.25).
 bool Control::Connected(std::uint8_t group) const {
   return (modal().updated & group) != 0 && (modal().imaged & group) == 0 && !simulating();
 }
@@ -41,23 +56,29 @@ float Control::Read(Variable variable) {
   DataArea& data = s_.machine.data;
   const auto n = static_cast<std::size_t>(variable.index);
   switch (variable.group) {
-    case VariableGroup::kVr: return data.vr[n];
-    case VariableGroup::kVi: return data.vi[n];
-    case VariableGroup::kVl: return data.vl[n] ? 1.0F : 0.0F;
+    case VariableGroup::kVr:
+      return data.vr[n];
+    case VariableGroup::kVi:
+      return data.vi[n];
+    case VariableGroup::kVl:
+      return data.vl[n] ? 1.0F : 0.0F;
     case VariableGroup::kIl:
       // Work and motion flags are the control's own: they hold in simulation too (OPT-6.20).
       if (Connected(kGroupIl) || (n >= kFirstWorkFlag && n <= kMotionFlag)) {
         data.il[n] = InputNow(variable.group, variable.index) != 0.0;
       }
       return data.il[n] ? 1.0F : 0.0F;
-    case VariableGroup::kOl: return data.ol[n] ? 1.0F : 0.0F;
+    case VariableGroup::kOl:
+      return data.ol[n] ? 1.0F : 0.0F;
     case VariableGroup::kIa:
-      if (Connected(kGroupIa)) data.ia[n] = static_cast<float>(InputNow(variable.group, variable.index));
+      if (Connected(kGroupIa))
+        data.ia[n] = static_cast<float>(InputNow(variable.group, variable.index));
       return data.ia[n];
     case VariableGroup::kOa:
       if (n == 0) return static_cast<float>(TipSpeedNow() * parameters_.cycle_s);  // OPT-7.69
       return data.oa[n];
-    case VariableGroup::kPar: return frame().parameters[n % kParameterCount];
+    case VariableGroup::kPar:
+      return frame().parameters[n % kParameterCount];
   }
   return 0.0F;
 }
@@ -67,19 +88,32 @@ bool Control::Write(Variable variable, float number) {
   DataArea& data = s_.machine.data;
   const auto n = static_cast<std::size_t>(variable.index);
   switch (variable.group) {
-    case VariableGroup::kVr: data.vr[n] = number; return true;
-    case VariableGroup::kVi: data.vi[n] = number; return true;
-    case VariableGroup::kVl: data.vl[n] = number != 0.0F; return true;
-    case VariableGroup::kOl: return SetOutput(variable.index, number != 0.0F);
+    case VariableGroup::kVr:
+      data.vr[n] = number;
+      return true;
+    case VariableGroup::kVi:
+      data.vi[n] = number;
+      return true;
+    case VariableGroup::kVl:
+      data.vl[n] = number != 0.0F;
+      return true;
+    case VariableGroup::kOl:
+      return SetOutput(variable.index, number != 0.0F);
     case VariableGroup::kOa:
       data.oa[n] = number;
       if (Connected(kGroupOa)) {
-        Show({.kind = PassageEffect::Kind::kAnalogue, .place = s_.place, .index = variable.index, .value = number});
+        Show({.kind = PassageEffect::Kind::kAnalogue,
+              .place = s_.place,
+              .index = variable.index,
+              .value = number});
       }
       return true;
-    case VariableGroup::kPar: frame().parameters[n % kParameterCount] = number; return true;
+    case VariableGroup::kPar:
+      frame().parameters[n % kParameterCount] = number;
+      return true;
     case VariableGroup::kIl:
-    case VariableGroup::kIa: break;  // refused by the checker (OPT-7.66)
+    case VariableGroup::kIa:
+      break;  // refused by the checker (OPT-7.66)
   }
   return true;
 }
@@ -97,14 +131,33 @@ std::optional<double> Control::Real(Expression expression) {
   return static_cast<double>(value->number);
 }
 
-// The condition whose nodes begin at `first` of the module in execution.
-std::optional<bool> Control::Truth(std::uint32_t first) {
-  for (const ExprRange& range : module().expressions) {
-    if (range.first != first) continue;
-    const std::optional<Value> value = Eval({module().nodes.data() + range.first, range.count});
-    if (!value) return std::nullopt;
-    return value->truth();
-  }
+ExprRange Control::RangeOf(Expression expression) const {
+  return {.first = static_cast<std::uint32_t>(expression.data() - module().nodes.data()),
+          .count = static_cast<std::uint32_t>(expression.size())};
+}
+
+Condition Control::ConditionOf(Expression expression) const {
+  return {.program = program().program,
+          .module = frame().module,
+          .expression = RangeOf(expression),
+          .parameters = frame().parameters};
+}
+
+// Of the module in execution. Nothing: an error was raised.
+std::optional<bool> Control::Truth(ExprRange range) {
+  const std::optional<Value> value = Eval({module().nodes.data() + range.first, range.count});
+  if (!value) return std::nullopt;
+  return value->truth();
+}
+
+std::optional<bool> Control::Truth(const Condition& condition) {
+  const Module& owner =
+      condition.program->executable.modules[static_cast<std::size_t>(condition.module)].module;
+  WithParameters variables(*this, condition.parameters);
+  const Result<Value> value = Evaluate(
+      {owner.nodes.data() + condition.expression.first, condition.expression.count}, variables);
+  if (value) return value->truth();
+  Raise(value.error().code, value.error().detail);
   return std::nullopt;
 }
 
@@ -112,8 +165,9 @@ void Control::Let(const Instruction& i) {
   const ExprNode& target = module().Value(i, 0).back();
   const std::optional<Value> value = Eval(module().Value(i, 1));
   if (!value) return;
-  const ValueType type = target.group == VariableGroup::kPar ? module().parameter_types[target.index]
-                                                             : TypeOf(target.group);
+  const ValueType type = target.group == VariableGroup::kPar
+                             ? module().parameter_types[target.index]
+                             : TypeOf(target.group);
   const Result<float> converted = ConvertTo(type, *value);
   if (!converted) return Raise(converted.error().code, converted.error().detail);
   Write(target.variable(), *converted);
@@ -127,9 +181,11 @@ void Control::Assign(const Instruction& i) {
   const Result<int> number = TruncateToInteger(static_cast<float>(*value));
   if (!number) return Raise(number.error().code, number.error().detail);
   const int width = i.numbers[0];
-  if (*number < 0 || (width < 16 && *number >= (1 << width)) || target.index + width > kVariableCount) {
-    return Raise(ErrorCode::kAssignGroup, std::to_string(*number) + " into " + std::to_string(width) +
-                                              " places from " + std::string(GroupName(target.group)) + "[" +
+  if (*number < 0 || (width < 16 && *number >= (1 << width)) ||
+      target.index + width > kVariableCount) {
+    return Raise(ErrorCode::kAssignGroup, std::to_string(*number) + " into " +
+                                              std::to_string(width) + " places from " +
+                                              std::string(GroupName(target.group)) + "[" +
                                               std::to_string(target.index) + "]");
   }
   for (int bit = 0; bit < width; ++bit) {
@@ -153,7 +209,8 @@ void Control::SetGroups(const Instruction& i) {
     modal().imaged = static_cast<std::uint8_t>(modal().imaged & ~i.choice);
   }
   const bool asked = (i.choice & (kGroupOl | kGroupOa)) != 0;
-  if (asked && (Connected(kGroupOl) || Connected(kGroupOa)) && (!were_connected || i.op == Op::kUpdate)) {
+  if (asked && (Connected(kGroupOl) || Connected(kGroupOa)) &&
+      (!were_connected || i.op == Op::kUpdate)) {
     ConnectOutputs();
   }
 }

@@ -28,7 +28,8 @@ motion::Head Control::HeadNow() const {
   return {.length_mm = parameters_.head_length_mm, .tool = s_.machine.tool.offset};
 }
 
-// The five coordinates of a MOVE or its /VIA: a machine-frame tip in COORD ABSOL, a column in COORD ROBOT.
+// The five coordinates of a MOVE or its /VIA: a machine-frame tip in COORD ABSOL, a column in COORD
+// ROBOT.
 std::optional<motion::TipPose> Control::Target(const Instruction& i, bool via) {
   std::array<double, 5> v{};
   for (int n = 0; n < 5; ++n) {
@@ -37,7 +38,8 @@ std::optional<motion::TipPose> Control::Target(const Instruction& i, bool via) {
     v[static_cast<std::size_t>(n)] = *value;
   }
   motion::TipPose pose{.tip = {v[0], v[1], v[2]}, .a_rad = v[3], .b_rad = v[4]};
-  if (modal().coord == CoordType::kAbsol) pose.tip = s_.machine.work_offset.transform().ToMachine(pose.tip);
+  if (modal().coord == CoordType::kAbsol)
+    pose.tip = s_.machine.work_offset.transform().ToMachine(pose.tip);
   return pose;
 }
 
@@ -51,14 +53,15 @@ bool Control::InTravel(const motion::PathPiece& path) {
   const bool at_target = worst.axis >= 0;
   if (!at_target) worst = motion::WorstExcess(path, HeadNow(), axes);
   if (worst.axis < 0) return true;
-  Raise(ErrorCode::kTargetOutOfTravel,
-        std::string(AxisName(worst.axis)) + (at_target ? " of the target" : " on the way") + " leaves its travel by " +
-            FixedText(worst.excess, 3) + (worst.axis < 3 ? " mm" : " rad"));
+  Raise(ErrorCode::kTargetOutOfTravel, std::string(AxisName(worst.axis)) +
+                                           (at_target ? " of the target" : " on the way") +
+                                           " leaves its travel by " + FixedText(worst.excess, 3) +
+                                           (worst.axis < 3 ? " mm" : " rad"));
   return false;
 }
 
-bool Control::AppendMotion(const motion::PathPiece& path, const Instruction& i, const MoveNote& note,
-                           bool settles) {
+bool Control::AppendMotion(const motion::PathPiece& path, const Instruction& i,
+                           const MoveNote& note, bool settles) {
   double speed = modal().speed_percent * kPercent * s_.override_percent * kPercent;
   if (speed > 1.0) {
     speed = 1.0;
@@ -67,8 +70,8 @@ bool Control::AppendMotion(const motion::PathPiece& path, const Instruction& i, 
       Warn(ErrorCode::kSpeedLimited, "SPEED x override is over 100 %", "OPT-4.38");
     }
   }
-  if ((modal().speed_percent <= 0.0 || modal().accel_percent < kAccelLeast_percent) && path.length() > 0.0 &&
-      !i.Has(kTime)) {
+  if ((modal().speed_percent <= 0.0 || modal().accel_percent < kAccelLeast_percent) &&
+      path.length() > 0.0 && !i.Has(kTime)) {
     Raise(ErrorCode::kNoMotion, modal().speed_percent <= 0.0 ? "SPEED is 0" : "ACCEL is below 0.1");
     return false;
   }
@@ -89,7 +92,8 @@ bool Control::AppendMotion(const motion::PathPiece& path, const Instruction& i, 
   if (!path.by_sigma()) kept.feed_mm_s = command.speed_fraction * parameters_.limits.tip_speed_mm_s;
   if (command.kind != motion::MoveCommand::Kind::kContour) kept.feed_mm_s = 0.0;
   if (path.length() <= 0.0) {
-    // Nothing moves; the planner must know that the passage before is a stop, unless this one flies too.
+    // Nothing moves; the planner must know that the passage before is a stop, unless this one flies
+    // too.
     if (!note.fly) StopMotions();
     if (note.last && !s_.passing) {
       observer_.OnMove({.at = s_.now,
@@ -110,8 +114,9 @@ bool Control::AppendMotion(const motion::PathPiece& path, const Instruction& i, 
     return false;
   }
   const motion::TipPose& to = path.to();
-  s_.planned_axes = path.kind() == motion::PathPiece::Kind::kJoint ? motion::AxisPose{to.tip, to.a_rad, to.b_rad}
-                                                                   : command.head.ColumnOf(to);
+  s_.planned_axes = path.kind() == motion::PathPiece::Kind::kJoint
+                        ? motion::AxisPose{to.tip, to.a_rad, to.b_rad}
+                        : command.head.ColumnOf(to);
   s_.passing = note.fly;
   s_.run_ahead = 0;
   DrainPlanner();
@@ -123,19 +128,24 @@ void Control::Move(const Instruction& i) {
     if (i.Has(kTime)) {
       const std::optional<double> seconds = Real(module().Time(i));
       if (!seconds) return;
-      if (*seconds < 0.0) return Raise(ErrorCode::kValueRange, "/TIME is " + ShortestText(*seconds));
+      if (*seconds < 0.0)
+        return Raise(ErrorCode::kValueRange, "/TIME is " + ShortestText(*seconds));
       if (!simulating()) {
-        s_.time_label = module().TimeLabel(i);
-        s_.time_due = s_.instruction_since + FromSeconds(*seconds);
+        s_.time_gosub = DueGosub{.label = module().TimeLabel(i), .level = program().frames.size()};
+        s_.time_due = After(*seconds);
+        s_.time_limit_s = *seconds;
         s_.time_ran_out = false;
       }
     }
     if (i.Has(kStart) && !simulating()) {
-      const std::uint32_t expression = static_cast<std::uint32_t>(module().Start(i).data() - module().nodes.data());
+      const ExprRange expression = RangeOf(module().Start(i));
       const std::optional<bool> met = Truth(expression);
       if (!met) return;
       if (!*met) {
-        return Wait({.kind = Pending::Kind::kCondition, .since = s_.now, .expression = expression});
+        return Wait({.kind = Pending::Kind::kCondition,
+                     .since = s_.now,
+                     .expression = expression,
+                     .of_move = true});
       }
     }
   }
@@ -157,17 +167,24 @@ void Control::Move(const Instruction& i) {
   const bool halts = s_.mode == machine::Mode::kSingle || s_.hold_requested ||
                      (s_.breakpoint && s_.breakpoint->program == s_.place.program &&
                       s_.breakpoint->step == s_.place.step);
-  note.fly = i.Has(kFly) && !halts && !i.Has(kEnd) && !i.Has(kTime) && !i.Has(kNext);
+  // How a MOVE with /END or /TIME ends is not known before: the program cannot run ahead of it.
+  const bool may_end_early = i.Has(kEnd) || i.Has(kTime);
+  note.fly = i.Has(kFly) && !halts && !may_end_early && !i.Has(kNext);
+  if (i.Has(kFly) && !halts && may_end_early) {
+    Warn(ErrorCode::kFlyCancelled, "/FLY with /END or /TIME: the machine stops at the target",
+         "OPT-2.48");
+  }
+  const bool ran_ahead = s_.passing;
+  const std::uint64_t first_tag = s_.next_tag;
 
   if (i.Has(kEnd)) {
-    const std::uint32_t expression = static_cast<std::uint32_t>(module().End(i).data() - module().nodes.data());
-    const std::optional<bool> met = Truth(expression);
+    const std::optional<bool> met = Truth(RangeOf(module().End(i)));
     if (!met) return;
     if (*met) {
-      s_.time_label.reset();
+      s_.time_gosub.reset();
       return;  // true at the start: no motion at all
     }
-    s_.end_condition = expression;
+    s_.end_condition = ConditionOf(module().End(i));
   }
 
   motion::PathPiece path;
@@ -176,14 +193,18 @@ void Control::Move(const Instruction& i) {
     path = motion::PathPiece::Joint({from.column, from.a_rad, from.b_rad}, *target);
   } else {
     const motion::TipPose from = HeadNow().TipOf(s_.planned_axes);
-    if (m.path == PathType::kHole) return MoveHole(i, from, *target, note);
+    if (m.path == PathType::kHole) {
+      if (!MoveHole(i, from, *target, note)) return Unwatch();
+      return WatchAndGoOn(i, first_tag, ran_ahead);
+    }
     path = motion::PathPiece::Line(from, *target);
     if (m.path == PathType::kCir && !i.Has(kVia)) {
       Warn(ErrorCode::kViaMissing, "CIR without /VIA is a straight line", "OPT-2.21");
     } else if (m.path == PathType::kCir) {
       const std::optional<motion::TipPose> via = Target(i, true);
       if (!via) return;
-      const Result<motion::PathPiece::Arc3> arc = motion::PathPiece::ArcThrough(from, via->tip, *target);
+      const Result<motion::PathPiece::Arc3> arc =
+          motion::PathPiece::ArcThrough(from, via->tip, *target);
       if (!arc) return Raise(arc.error().code, arc.error().detail);
       path = arc->path;
       if (arc->kind == motion::PathPiece::ArcCase::kLineWarned) {
@@ -191,19 +212,17 @@ void Control::Move(const Instruction& i) {
       }
     }
   }
-  if (!InTravel(path) || !AppendMotion(path, i, note, true)) {
-    s_.end_condition.reset();
-    s_.time_label.reset();
-    return;
-  }
+  if (!InTravel(path) || !AppendMotion(path, i, note, true)) return Unwatch();
+  if (path.length() <= 0.0) return Unwatch();
+  WatchAndGoOn(i, first_tag, ran_ahead);
+}
+
+// The motions of a MOVE are on their way: /END and /TIME watch them, /NEXT goes on meanwhile.
+void Control::WatchAndGoOn(const Instruction& i, std::uint64_t first_tag, bool ran_ahead) {
   if (i.Has(kEnd) || i.Has(kTime)) {
-    if (path.length() > 0.0) {
-      s_.watched_move = s_.next_tag - 1;
-      s_.watched_since = s_.now;
-    } else {
-      s_.end_condition.reset();
-      s_.time_label.reset();
-    }
+    s_.watched = {.first = first_tag, .last = s_.next_tag - 1};
+    s_.watched_since = s_.now;
+    s_.watch_begins = ran_ahead;
   }
   if (i.Has(kNext)) {
     StopMotions();
@@ -213,19 +232,20 @@ void Control::Move(const Instruction& i) {
 }
 
 // motion.md 3.3: a line to the circle, a stop, one full turn.
-void Control::MoveHole(const Instruction& i, const motion::TipPose& from, const motion::TipPose& target,
-                       MoveNote note) {
+// False: an error was raised.
+bool Control::MoveHole(const Instruction& i, const motion::TipPose& from,
+                       const motion::TipPose& target, MoveNote note) {
   if (!i.Has(kVia)) {
     if (modal().hole_radius_mm <= 0.0) {
-      return Raise(ErrorCode::kHoleRadiusZero, "radius is " + ShortestText(modal().hole_radius_mm));
+      Raise(ErrorCode::kHoleRadiusZero, "radius is " + ShortestText(modal().hole_radius_mm));
+      return false;
     }
     Warn(ErrorCode::kViaMissing, "HOLE without /VIA is a straight line to the centre", "OPT-2.29");
     const motion::PathPiece line = motion::PathPiece::Line(from, target);
-    if (InTravel(line)) AppendMotion(line, i, note, true);
-    return;
+    return InTravel(line) && AppendMotion(line, i, note, true);
   }
   const std::optional<motion::TipPose> normal = Target(i, true);
-  if (!normal) return;
+  if (!normal) return false;
   const motion::WorkOffset frame = s_.machine.work_offset.transform();
   const Result<motion::HolePath> hole =
       motion::HoleThrough({.from = from,
@@ -234,16 +254,20 @@ void Control::MoveHole(const Instruction& i, const motion::TipPose& from, const 
                            .radius_mm = modal().hole_radius_mm,
                            .program_x = frame.DirectionToMachine({1.0, 0.0, 0.0}),
                            .program_y = frame.DirectionToMachine({0.0, 1.0, 0.0})});
-  if (!hole) return Raise(hole.error().code, hole.error().detail);
-  if (hole->starts_on_axis && parameters_.teach_simulator) {
-    return Raise(ErrorCode::kHoleStartOnAxis, "the hole starts on the line from centre to normal point");
+  if (!hole) {
+    Raise(hole.error().code, hole.error().detail);
+    return false;
   }
-  if (!InTravel(hole->lead) || !InTravel(hole->circle)) return;
+  if (hole->starts_on_axis && parameters_.teach_simulator) {
+    Raise(ErrorCode::kHoleStartOnAxis, "the hole starts on the line from centre to normal point");
+    return false;
+  }
+  if (!InTravel(hole->lead) || !InTravel(hole->circle)) return false;
   MoveNote lead = note;
   lead.last = false;
   lead.fly = false;
-  if (hole->lead.length() > 0.0 && !AppendMotion(hole->lead, i, lead, false)) return;
-  AppendMotion(hole->circle, i, note, true);
+  if (hole->lead.length() > 0.0 && !AppendMotion(hole->lead, i, lead, false)) return false;
+  return AppendMotion(hole->circle, i, note, true);
 }
 
 void Control::SetCoord(CoordType coord) { modal().coord = coord; }
@@ -263,8 +287,8 @@ void Control::SetPercent(const Instruction& i) {
   const std::optional<double> value = Real(module().Value(i, 0));
   if (!value) return;
   if (!(*value >= 0.0 && *value <= 100.0)) {
-    return Raise(ErrorCode::kValueRange,
-                 std::string(Describe(i.op).name) + " is " + ShortestText(*value) + ", allowed are 0 to 100");
+    return Raise(ErrorCode::kValueRange, std::string(Describe(i.op).name) + " is " +
+                                             ShortestText(*value) + ", allowed are 0 to 100");
   }
   double& target = i.op == Op::kSpeed   ? modal().speed_percent
                    : i.op == Op::kAccel ? modal().accel_percent
@@ -307,8 +331,8 @@ void Control::SetTool(const Instruction& i) {
   s_.machine.tool = {.offset = {v[0], v[1], v[2]}, .reference = {v[3], v[4], v[5]}};
 }
 
-// Z, then A and B, then X and Y, each to its mechanical zero: OPT-4.49, OPT-B.60. In virtual time each
-// group is a joint motion.
+// Z, then A and B, then X and Y, each to its mechanical zero: OPT-4.49, OPT-B.60. In virtual time
+// each group is a joint motion.
 void Control::ZeroAxes() {
   if (simulating()) return;
   motion::AxisPose pose = s_.planned_axes;
@@ -324,7 +348,8 @@ void Control::ZeroAxes() {
     command.head = HeadNow();
     command.speed_fraction = 0.1;  // no override: OPT-4.51
     command.tag = s_.next_tag++;
-    s_.notes.emplace_back(command.tag, MoveNote{.place = s_.place, .path = PathType::kPtp, .last = false});
+    s_.notes.emplace_back(command.tag,
+                          MoveNote{.place = s_.place, .path = PathType::kPtp, .last = false});
     if (const Status appended = s_.planner.Append(command); !appended) s_.notes.pop_back();
   };
   motion::AxisPose to = pose;

@@ -11,16 +11,21 @@ namespace {
 
 template <class Queue>
 const typename Queue::value_type::second_type* FindTag(const Queue& queue, std::uint64_t tag) {
-  const auto found = std::ranges::lower_bound(queue, tag, {}, [](const auto& row) { return row.first; });
+  const auto found =
+      std::ranges::lower_bound(queue, tag, {}, [](const auto& row) { return row.first; });
   return found != queue.end() && found->first == tag ? &found->second : nullptr;
 }
 
 std::string_view PathName(PathType path) {
   switch (path) {
-    case PathType::kPtp: return "PTP";
-    case PathType::kLin: return "LIN";
-    case PathType::kCir: return "CIR";
-    case PathType::kHole: return "HOLE";
+    case PathType::kPtp:
+      return "PTP";
+    case PathType::kLin:
+      return "LIN";
+    case PathType::kCir:
+      return "CIR";
+    case PathType::kHole:
+      return "HOLE";
   }
   return "";
 }
@@ -30,7 +35,8 @@ motion::TipPose PoseOn(const motion::PlannedMotion& motion, double s) { return m
 }  // namespace
 
 void Control::DrainPlanner() {
-  while (std::optional<motion::PlannedItem> item = s_.planner.Next()) s_.timeline.push_back(std::move(*item));
+  while (std::optional<motion::PlannedItem> item = s_.planner.Next())
+    s_.timeline.push_back(std::move(*item));
 }
 
 // Marks take effect at once, motions begin.
@@ -62,6 +68,11 @@ void Control::BeginProfile() {
   active.told = s_.now;
   active.arrival = s_.now + FromSeconds(active.motion.speed.duration_s());
   active.end = active.arrival + FromSeconds(active.motion.settling_s);
+  if (s_.watch_begins && Watching()) {
+    s_.watch_begins = false;
+    s_.watched_since = s_.now;
+    s_.time_due = After(s_.time_limit_s);
+  }
 }
 
 // Reports the part of the motion under way from what was told up to `until`.
@@ -86,9 +97,13 @@ void Control::ArriveAtEnd() {
   TellMotion(s_.active->end);
   const ActiveMotion active = std::move(*s_.active);
   s_.active.reset();
+  if (!Busy()) s_.background = false;
+  s_.pending.told = s_.now;  // a wait during a /NEXT motion is told from here on
+  MarkTasks();
   const bool joint = active.motion.path.kind() == motion::PathPiece::Kind::kJoint;
   const motion::TipPose pose = PoseOn(active.motion, active.s_at(active.arrival));
-  s_.machine.axes = joint ? motion::AxisPose{pose.tip, pose.a_rad, pose.b_rad} : active.motion.head.ColumnOf(pose);
+  s_.machine.axes = joint ? motion::AxisPose{pose.tip, pose.a_rad, pose.b_rad}
+                          : active.motion.head.ColumnOf(pose);
   if (active.ended) {
     s_.timeline.clear();
     s_.planned_axes = s_.machine.axes;
@@ -97,7 +112,8 @@ void Control::ArriveAtEnd() {
   }
   const motion::CornerReport& corner = active.motion.corner;
   if (corner.passage == motion::Passage::kStopReversal) {
-    Warn(ErrorCode::kFlyReversal, "the path turns back: the machine stops at the target", "OPT-B.25");
+    Warn(ErrorCode::kFlyReversal, "the path turns back: the machine stops at the target",
+         "OPT-B.25");
   }
   if (active.note.last || active.ended) {
     observer_.OnMove({.at = s_.now,
@@ -108,25 +124,21 @@ void Control::ArriveAtEnd() {
                       .rotary_a = active.note.program_a,
                       .feed_mm_s = active.note.feed_mm_s,
                       .path = PathName(active.note.path)});
-    if (s_.watched_move == active.motion.tag) {
-      s_.watched_move.reset();
-      s_.end_condition.reset();
-      const std::optional<int> label = s_.time_label;
-      s_.time_label.reset();
-      if (s_.time_ran_out && label) {
-        s_.time_ran_out = false;
-        Gosub(*label);
-      }
+    if (s_.watched && active.motion.tag >= s_.watched->first) {
+      if (s_.time_ran_out) program().due_gosub = s_.time_gosub;
+      Unwatch();
     }
   }
 }
 
-// The motion under way comes to rest on its path, at once, and its move is over where it stands: /END, /TIME,
-// a MOVE that takes over. Such moves end in a stop, so the ramp never leaves their path.
+// The motion under way comes to rest on its path, at once, and its move is over where it stands:
+// /END, /TIME, a MOVE that takes over. Such moves end in a stop, so the ramp never leaves their
+// path.
 void Control::EndMotionHere() {
   ActiveMotion& active = *s_.active;
   if (s_.now >= active.arrival) return;  // it stands already
-  const motion::SpeedProfile ramp = active.motion.speed.StopFrom(ToSeconds(s_.now - active.start), active.motion.limits);
+  const motion::SpeedProfile ramp =
+      active.motion.speed.StopFrom(ToSeconds(s_.now - active.start), active.motion.limits);
   const double here = active.s_at(s_.now);
   const double rest = std::min(ramp.end().s, active.motion.path.length());
   TellMotion(s_.now);
@@ -136,15 +148,16 @@ void Control::EndMotionHere() {
     active.motion.path = active.motion.path.Part(here, rest);
     active.motion.speed = ramp.Part(here, rest);
   } else {
-    active.motion.path = motion::PathPiece::Line(active.motion.path.At(here), active.motion.path.At(here));
+    active.motion.path =
+        motion::PathPiece::Line(active.motion.path.At(here), active.motion.path.At(here));
     active.motion.speed = motion::SpeedProfile();
   }
   BeginProfile();
 }
 
-// STOP: the machine comes to rest along the planned path, over as many motions as that takes, and START goes
-// on from there over the same path (OPT-4.18, motion.md 6). False: not enough is planned yet to come to rest
-// on; the program runs ahead a little more.
+// STOP: the machine comes to rest along the planned path, over as many motions as that takes, and
+// START goes on from there over the same path (OPT-4.18, motion.md 6). False: not enough is planned
+// yet to come to rest on; the program runs ahead a little more.
 bool Control::BringToHalt() {
   std::vector<motion::PlannedMotion> ahead{s_.active->motion};
   std::vector<std::pair<std::size_t, motion::PlannedMark>> marks;  // each behind a motion
@@ -186,7 +199,8 @@ bool Control::BringToHalt() {
   return true;
 }
 
-// Acts on motions that are not planned yet, and on the one under way when it ends in a stop (motion.md 6).
+// Acts on motions that are not planned yet, and on the one under way when it ends in a stop
+// (motion.md 6).
 void Control::ChangeOverride(double percent) {
   const double before = s_.override_percent;
   if (!(percent > 0.0) || percent == before) return;
@@ -211,33 +225,44 @@ void Control::ChangeOverride(double percent) {
   BeginProfile();
 }
 
-// /END and /TIME of the move under way: at its start, at each tick, when time runs out. OPT-2.54 to 2.58
+// A motion with /END or /TIME is under way, and nothing has ended it yet.
+bool Control::Watching() const {
+  return s_.watched && s_.active && !s_.active->ended &&
+         s_.active->motion.tag >= s_.watched->first && s_.active->motion.tag <= s_.watched->last;
+}
+
+void Control::Unwatch() {
+  s_.watched.reset();
+  s_.end_condition.reset();
+  s_.time_gosub.reset();
+  s_.time_ran_out = false;
+  s_.watch_begins = false;
+}
+
+// /END and /TIME of the move under way: at its start, at each tick, when time runs out. OPT-2.54
+// to 2.58
 void Control::WatchMove() {
-  if (s_.time_label && s_.now >= s_.time_due && !s_.time_ran_out) {
-    if (s_.pending.kind == Pending::Kind::kCondition) {
+  if (s_.deferred) return;
+  if (s_.time_gosub && s_.now >= s_.time_due && !s_.time_ran_out) {
+    if (s_.pending.kind == Pending::Kind::kCondition && s_.pending.of_move) {
       // Time ran out while /START was waited for: no motion is made.
-      const int label = *s_.time_label;
+      TellWait();
+      program().due_gosub = s_.time_gosub;
       s_.pending = {};
-      s_.time_label.reset();
-      s_.end_condition.reset();
-      s_.watched_move.reset();
+      Unwatch();
       ++frame().next;
-      Gosub(label);
       return;
     }
-    if (s_.active && s_.watched_move == s_.active->motion.tag) {
+    if (Watching()) {
       s_.time_ran_out = true;
       EndMotionHere();
       return;
     }
   }
-  if (!s_.end_condition || !s_.active || s_.watched_move != s_.active->motion.tag ||
-      s_.active->ended) {
-    return;
-  }
+  if (!s_.end_condition || !Watching()) return;
   if ((s_.now - s_.watched_since) % FromSeconds(parameters_.cycle_s) != SimTime(0)) return;
   const std::optional<bool> met = Truth(*s_.end_condition);
-  if (met && *met) EndMotionHere();
+  if (!met || *met) EndMotionHere();
 }
 
 // An error or the end of the run: whatever moves comes to rest, nothing more begins.

@@ -13,8 +13,8 @@
 #include "engine/optimo/control/machine_state.h"
 #include "engine/optimo/language/linker.h"
 
-// Everything that the control is at while it runs a program. One copyable value: a snapshot of a run is a
-// copy of it. Programs are shared and never change (OPT-B.65).
+// Everything that the control is at while it runs a program. One copyable value: a snapshot of a
+// run is a copy of it. Programs are shared and never change (OPT-B.65).
 namespace rmlcell::optimo {
 
 // An executable as it was loaded.
@@ -31,8 +31,8 @@ Loaded Load(Executable executable);
 struct Frame {
   int module = 0;                        // of the executable
   std::uint32_t next = 0;                // instruction
-  std::vector<std::uint32_t> returns{};    // of GOSUB
-  std::optional<int> error_label{};        // ERR, OPT-3.57
+  std::vector<std::uint32_t> returns{};  // of GOSUB
+  std::optional<int> error_label{};      // ERR, OPT-3.57
   std::array<float, kParameterCount> parameters{};
 };
 
@@ -48,11 +48,45 @@ struct Modal {
   std::uint8_t imaged = 0;            // IMAGE
 };
 
+// TIMER. It belongs to the activation that set it: sequence numbers are local to a module.
 struct ProgramTimer {
   SimTime due{0};
   SimTime period{0};
   int label = 0;
   bool repeats = false;
+  std::size_t level = 0;    // ProgramContext::frames.size() where it was set
+  std::size_t running = 0;  // depth of its GOSUB while that runs; 0: it does not
+};
+
+// A GOSUB that is made between two instructions: /TIME of a /NEXT motion.
+struct DueGosub {
+  int label = 0;
+  std::size_t level = 0;
+};
+
+// An expression that is tested while the program goes on: with the PAR of its own activation.
+struct Condition {
+  Loaded program{};
+  int module = 0;
+  ExprRange expression{};
+  std::array<float, kParameterCount> parameters{};
+};
+
+// A WORK that is not over when the program goes on: /START with /NEXT, the dwell with /NEXT, /END.
+// OPT-3.38
+struct WorkTask {
+  enum class Stage { kStart, kDwell, kEnd };
+  Stage stage = Stage::kStart;
+  machine::Place place{};
+  int kind = 0;
+  int process = 0;
+  bool on = true;
+  bool stale = true;              // something happened since its condition was tested last
+  SimTime since{0};               // of the instruction; conditions are tested each CYCLE from here
+  SimTime until{0};               // kDwell
+  machine::PowerBySpeed after{};  // kDwell: the power then
+  std::optional<Condition> start{};
+  std::optional<Condition> end{};
 };
 
 // A program that runs or waits for the one that it CALLed.
@@ -63,6 +97,8 @@ struct ProgramContext {
   Processes processes{};
   std::optional<ProgramTimer> timer{};
   SimTime timer_left{0};  // stands still while a CALLed program runs, OPT-B.89
+  std::optional<DueGosub> due_gosub{};
+  std::vector<WorkTask> work_tasks{};  // stand still while a CALLed program runs
 };
 
 // What is told when a motion is over.
@@ -115,15 +151,27 @@ struct Pending {
   Kind kind = Kind::kNone;
   SimTime since{0};
   SimTime until{0};
+  SimTime told{0};  // reported up to here
   machine::WaitKind wait = machine::WaitKind::kDwell;
-  double power_percent = 0.0;    // kTime: of the beam meanwhile
-  std::uint32_t expression = 0;  // kCondition: of the module of the innermost frame
+  ExprRange expression{};  // kCondition: of the module of the innermost frame
+  bool of_move = false;    // kCondition: /START of a MOVE, whose /TIME counts the wait
+};
+
+// A loop that reads an input again and again, and lets no time pass by itself.
+struct Polling {
+  int program = 0;
+  std::uint32_t instruction = 0;
+  SimTime at{-1};     // when it was read last
+  int count = 0;      // how often at that instant
+  bool slow = false;  // each further time takes a CYCLE
 };
 
 // Dry run up to a step, OPT-6.12 to 6.30.
 struct Simulated {
   bool active = false;
   machine::ProgramStep until{};
+  bool armed =
+      false;  // by the instruction SIMUL of an earlier run: stays when its step is not reached
   Bits ol_changed{};
   int schedule = 0;
 };
@@ -139,7 +187,7 @@ struct ControlState {
 
   SimTime now{0};
   std::uint64_t steps = 0;
-  std::size_t next_input = 0;  // of the script
+  std::size_t next_input = 0;              // of the script
   std::vector<ProgramContext> programs{};  // innermost last
   Pending pending{};
 
@@ -151,21 +199,30 @@ struct ControlState {
   std::deque<motion::PlannedItem> timeline{};
   std::optional<ActiveMotion> active{};
   std::deque<motion::PlannedItem> interrupted{};  // STOP: what follows at START
-  bool halting = false;  // coming to rest for a STOP
-  bool passing = false;     // the planner may hold a /FLY motion back
-  bool background = false;  // the motion under way is one of /NEXT
-  bool condition_met = false;  // /START of the instruction in execution was true
+  bool halting = false;                           // coming to rest for a STOP
+  bool passing = false;                           // the planner may hold a /FLY motion back
+  bool background = false;                        // the motion under way is one of /NEXT
+  bool condition_met = false;                     // /START of the instruction in execution was true
   SimTime instruction_since{0};
-  int run_ahead = 0;        // instructions executed since the last motion
+  Polling polling{};
+  int run_ahead = 0;  // instructions executed since the last motion
 
-  std::optional<std::uint64_t> watched_move{};   // tag of the motion with /END or /TIME
-  std::optional<std::uint32_t> end_condition{};  // expression of /END, module of the innermost frame
-  std::optional<int> time_label{};               // GOSUB of /TIME
+  // The motions of the MOVE with /END or /TIME, by tag.
+  struct Watched {
+    std::uint64_t first = 0;
+    std::uint64_t last = 0;
+  };
+  std::optional<Watched> watched{};
+  std::optional<Condition> end_condition{};  // of /END
+  std::optional<DueGosub> time_gosub{};      // of /TIME
   SimTime time_due{0};
+  double time_limit_s = 0.0;
   SimTime watched_since{0};
+  bool watch_begins = false;  // with the motion: the program ran ahead through a /FLY passage
   bool time_ran_out = false;
 
   bool input_changed = false;  // conditions are to be tested again
+  bool tasks_input = false;    // the same for the /START of WORK in the background
   bool hold_requested = false;
   bool stop_requested = false;   // STOP on a motion that cannot be left just now
   bool halt_after_step = false;  // SINGLE, breakpoint
@@ -173,6 +230,7 @@ struct ControlState {
   std::string_view halt_reason{};
   SimTime halted_at{0};
   std::optional<Error> deferred{};  // raised ahead of motion: handled when it is over
+  machine::Place deferred_place{};
   machine::Place place{};  // of the instruction in execution
   Op op = Op::kInvalid;
 
@@ -182,6 +240,7 @@ struct ControlState {
   std::map<int, std::string> made_executables{};
   std::map<int, Loaded> loaded{};  // executables of this run, by slot
   bool speed_limited_told = false;
+  std::uint64_t steps_at_repeat = 0;  // REPEAT: executed before this repetition
 
   explicit ControlState(const motion::MachineLimits& limits) : planner(limits) {}
 };

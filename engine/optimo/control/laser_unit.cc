@@ -5,16 +5,19 @@
 namespace rmlcell::optimo {
 
 bool Processes::any_on() const {
-  return std::ranges::any_of(on, [](const auto& kind) { return std::ranges::any_of(kind, [](bool b) { return b; }); });
+  return std::ranges::any_of(
+      on, [](const auto& kind) { return std::ranges::any_of(kind, [](bool b) { return b; }); });
 }
 
 bool Processes::flag(int process) const {
-  return std::ranges::any_of(on, [&](const auto& kind) { return kind[static_cast<std::size_t>(process)]; });
+  return std::ranges::any_of(
+      on, [&](const auto& kind) { return kind[static_cast<std::size_t>(process)]; });
 }
 
 machine::PowerBySpeed RampedPower(const WorkDefinition& definition, double tip_speed_max_mm_s) {
   return {.constant_percent = 0.0,
-          .percent_per_mm_s = definition.power_percent * 100.0 / (definition.speed_percent * tip_speed_max_mm_s)};
+          .percent_per_mm_s =
+              definition.power_percent * 100.0 / (definition.speed_percent * tip_speed_max_mm_s)};
 }
 
 }  // namespace rmlcell::optimo

@@ -8,7 +8,7 @@
 
 namespace rmlcell::optimo {
 
-inline constexpr int kProcessKinds = 3;     // WORK n
+inline constexpr int kProcessKinds = 3;       // WORK n
 inline constexpr int kProcessesPerKind = 10;  // p
 
 // A WORKDEF in force: its values at the time when it was executed (OPT-3.07). Percent and seconds.
@@ -22,7 +22,8 @@ struct WorkDefinition {
 
 // The WORKDEFs of one program and which processes it has ON. OPT-3.11, 3.12
 struct Processes {
-  using Table = std::array<std::array<std::optional<WorkDefinition>, kProcessesPerKind>, kProcessKinds>;
+  using Table =
+      std::array<std::array<std::optional<WorkDefinition>, kProcessesPerKind>, kProcessKinds>;
   Table definitions{};
   std::array<std::array<bool, kProcessesPerKind>, kProcessKinds> on{};
 

@@ -6,8 +6,9 @@
 namespace rmlcell::optimo {
 namespace {
 
-// First bytes of a saved state; the last is its version.
-constexpr std::string_view kMagic{"OPTSTATE\x01", 9};
+// First bytes of a saved state, then its version.
+constexpr std::string_view kMagic{"OPTSTATE"};
+constexpr std::uint8_t kVersion = 2;  // 1: without the counted program, BREAK and SIMUL
 
 // Numbers are written least significant byte first, the same on every platform.
 class Writer {
@@ -29,7 +30,7 @@ class Writer {
   std::string Take() { return std::move(bytes_); }
 
  private:
-  std::string bytes_{kMagic};
+  std::string bytes_ = std::string(kMagic) + static_cast<char>(kVersion);
 };
 
 class Reader {
@@ -97,6 +98,19 @@ void Visit(Archive& archive, State& state) {
   archive.Number(state.table_deg);
 }
 
+void WriteStep(Writer& writer, const std::optional<machine::ProgramStep>& step) {
+  writer.Number(step ? step->program : 0);
+  writer.Number(step ? step->step : 0);
+}
+
+std::optional<machine::ProgramStep> ReadStep(Reader& reader) {
+  machine::ProgramStep step;
+  reader.Number(step.program);
+  reader.Number(step.step);
+  if (step.program == 0) return std::nullopt;
+  return step;
+}
+
 }  // namespace
 
 MachineState NewMachine(const OptimoParameters& parameters) {
@@ -108,23 +122,35 @@ MachineState NewMachine(const OptimoParameters& parameters) {
 std::string EncodeMachineState(const MachineState& state) {
   Writer writer;
   Visit(writer, state);
-  writer.Byte(static_cast<std::uint8_t>((state.work_offset.active ? 1 : 0) | (state.zeroed ? 2 : 0) |
-                                        (state.door_open ? 4 : 0)));
+  writer.Byte(static_cast<std::uint8_t>((state.work_offset.active ? 1 : 0) |
+                                        (state.zeroed ? 2 : 0) | (state.door_open ? 4 : 0)));
+  writer.Number(state.selected);
+  WriteStep(writer, state.breakpoint);
+  WriteStep(writer, state.simul);
   return writer.Take();
 }
 
 Result<MachineState> DecodeMachineState(std::string_view bytes) {
-  if (!bytes.starts_with(kMagic)) {
-    return Error{ErrorCode::kCellBadText, "these bytes are no state of an Optimo of this version", {}};
+  const auto version =
+      static_cast<std::uint8_t>(bytes.size() > kMagic.size() ? bytes[kMagic.size()] : 0);
+  if (!bytes.starts_with(kMagic) || version < 1 || version > kVersion) {
+    return Error{
+        ErrorCode::kCellBadText, "these bytes are no state of an Optimo of this version", {}};
   }
-  Reader reader(bytes.substr(kMagic.size()));
+  Reader reader(bytes.substr(kMagic.size() + 1));
   MachineState state;
   Visit(reader, state);
   const std::uint8_t flags = reader.Byte();
   state.work_offset.active = (flags & 1) != 0;
   state.zeroed = (flags & 2) != 0;
   state.door_open = (flags & 4) != 0;
-  if (!reader.good()) return Error{ErrorCode::kCellBadText, "the state of the machine is damaged", {}};
+  if (version >= 2) {
+    reader.Number(state.selected);
+    state.breakpoint = ReadStep(reader);
+    state.simul = ReadStep(reader);
+  }
+  if (!reader.good())
+    return Error{ErrorCode::kCellBadText, "the state of the machine is damaged", {}};
   return state;
 }
 

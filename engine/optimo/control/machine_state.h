@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "engine/core/result.h"
+#include "engine/machine/run.h"
 #include "engine/motion/kinematics.h"
 #include "engine/optimo/control/optimo_parameters.h"
 #include "engine/optimo/language/ast.h"
@@ -57,6 +59,9 @@ struct MachineState {
   bool zeroed = true;
   bool door_open = false;
   double table_deg = 0.0;  // rotary table of FUNCTION 99
+  int selected = 0;        // program whose executions VI[98] counts, OPT-B.63
+  std::optional<machine::ProgramStep> breakpoint{};  // of the instruction BREAK, OPT-6.08
+  std::optional<machine::ProgramStep> simul{};       // of SIMUL: arms the next start, OPT-6.16
 };
 
 // As it leaves the factory. OPT-B.02

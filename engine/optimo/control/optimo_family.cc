@@ -19,31 +19,40 @@ constexpr machine::FamilyInfo kInfo = {.id = "optimo",
                                        .has_schedules = true};
 
 constexpr std::array kFigures = {
-    machine::FigureInfo{"lookahead_starved", "", "knots that the planner had to decide before it could see enough"},
+    machine::FigureInfo{"lookahead_starved", "",
+                        "knots that the planner had to decide before it could see enough"},
     machine::FigureInfo{"executables_made", "", "executables that the run had to make"},
 };
 
 class Family final : public machine::MachineFamily {
  public:
   const machine::FamilyInfo& info() const override { return kInfo; }
-  std::span<const machine::ParameterInfo> parameters() const override { return OptimoParameterTable(); }
+  std::span<const machine::ParameterInfo> parameters() const override {
+    return OptimoParameterTable();
+  }
   std::span<const machine::MachineProfile> profiles() const override { return OptimoProfiles(); }
   std::span<const machine::FigureInfo> figures() const override { return kFigures; }
   machine::MachineShape Shape(const machine::Parameters& parameters) const override {
     return ShapeOf(Resolve(parameters));
   }
 
-  machine::Translation Translate(const machine::SourceFile& file, const machine::Parameters& parameters,
+  machine::Translation Translate(const machine::SourceFile& file,
+                                 const machine::Parameters& parameters,
                                  const machine::CheckOptions& options) const override {
-    return TranslateOptimo(file, options, static_cast<std::uint32_t>(Resolve(parameters).object_limit));
+    return TranslateOptimo(file, options,
+                           static_cast<std::uint32_t>(Resolve(parameters).object_limit));
   }
 
-  machine::TransferPlan PlanTransfer(const machine::ProjectBundle& project, const machine::Parameters& parameters,
+  machine::TransferPlan PlanTransfer(const machine::ProjectBundle& project,
+                                     const machine::Parameters& parameters,
                                      const machine::TransferOptions& options) const override {
-    return optimo::PlanTransfer(project, options, static_cast<std::uint32_t>(Resolve(parameters).object_limit));
+    return optimo::PlanTransfer(project, options,
+                                static_cast<std::uint32_t>(Resolve(parameters).object_limit));
   }
 
-  Result<std::string> Decompile(std::string_view object) const override { return ObjectToSource(object); }
+  Result<std::string> Decompile(std::string_view object) const override {
+    return ObjectToSource(object);
+  }
 
   Status CheckExecutable(std::string_view executable) const override {
     const Result<Executable> decoded = DecodeExecutable(executable);
@@ -54,10 +63,12 @@ class Family final : public machine::MachineFamily {
   Result<std::unique_ptr<machine::Run>> NewRun(machine::RunSetup setup,
                                                machine::RunObserver& observer) const override {
     if (!setup.machine_state.empty()) {
-      if (const Result<MachineState> state = DecodeMachineState(setup.machine_state); !state) return state.error();
+      if (const Result<MachineState> state = DecodeMachineState(setup.machine_state); !state)
+        return state.error();
     }
     const OptimoParameters resolved = Resolve(setup.parameters);
-    return std::unique_ptr<machine::Run>(std::make_unique<OptimoRun>(resolved, std::move(setup), observer));
+    return std::unique_ptr<machine::Run>(
+        std::make_unique<OptimoRun>(resolved, std::move(setup), observer));
   }
 };
 

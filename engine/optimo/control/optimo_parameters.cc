@@ -10,8 +10,9 @@ namespace {
 
 using machine::ParameterInfo;
 
-constexpr ParameterInfo Number(std::string_view name, std::string_view unit, double standard, double low,
-                               double high, std::string_view text, std::string_view rule = "OPT-B.01") {
+constexpr ParameterInfo Number(std::string_view name, std::string_view unit, double standard,
+                               double low, double high, std::string_view text,
+                               std::string_view rule = "OPT-B.01") {
   return {name, unit, standard, low, high, {}, text, rule};
 }
 constexpr ParameterInfo Word(std::string_view name, std::string_view choices, std::string_view text,
@@ -45,7 +46,8 @@ constexpr std::array kTable = {
     Number("TRAVEL_Y_MAX", "mm", 3100, -100'000, 100'000, "greatest Y of the column", "OPT-B.08"),
     Number("TRAVEL_Z_MIN", "mm", -1300, -100'000, 100'000, "least Z of the column", "OPT-B.08"),
     Number("TRAVEL_Z_MAX", "mm", 1100, -100'000, 100'000, "greatest Z of the column", "OPT-B.08"),
-    Number("TRAVEL_A_MIN", "rad", -12.6, -1000, 1000, "least A; never reduced by a turn", "OPT-B.06"),
+    Number("TRAVEL_A_MIN", "rad", -12.6, -1000, 1000, "least A; never reduced by a turn",
+           "OPT-B.06"),
     Number("TRAVEL_A_MAX", "rad", 12.6, -1000, 1000, "greatest A", "OPT-B.06"),
     Number("TRAVEL_B_MIN", "rad", -2.4, -1000, 1000, "least B", "OPT-B.06"),
     Number("TRAVEL_B_MAX", "rad", 2.4, -1000, 1000, "greatest B", "OPT-B.06"),
@@ -59,16 +61,19 @@ constexpr std::array kTable = {
     Number("MECH_ZERO_Z", "mm", 0, -100'000, 100'000, "mechanical zero, column Z", "OPT-B.60"),
     Number("MECH_ZERO_A", "rad", 0, -1000, 1000, "mechanical zero, A", "OPT-B.60"),
     Number("MECH_ZERO_B", "rad", 0, -1000, 1000, "mechanical zero, B", "OPT-B.60"),
-    Number("CYCLE", "s", 0.048, 0.001, 1, "system cycle: OA[0], sampling of conditions", "OPT-7.69"),
+    Number("CYCLE", "s", 0.048, 0.001, 1, "system cycle: OA[0], sampling of conditions",
+           "OPT-7.69"),
     Number("SETTLE", "s", 0.048, 0, 1, "standstill after a MOVE without /FLY", "OPT-B.20"),
     Word("COORD_DEFAULT", "ROBOT ABSOL", "COORD at program start", "OPT-2.09"),
     Word("PATH_DEFAULT", "PTP LIN", "PATH at program start", "OPT-2.10"),
     Word("LASER", "ARROW EFA51", "kind of laser: how shutter and beam behave", "OPT-3.14"),
     Number("GAS_CHANNELS", "", 2, 2, 3, "assist gases fitted", "OPT-5.41"),
-    Word("TEACH_SIM", "OFF ON", "the old teach simulator: a hole cannot start on its axis", "OPT-2.28"),
+    Word("TEACH_SIM", "OFF ON", "the old teach simulator: a hole cannot start on its axis",
+         "OPT-2.28"),
     Word("ROTARY_TABLE", "OFF ON", "FUNCTION 99 turns a rotary table", "OPT-9.19"),
     Number("OBJECT_LIMIT", "characters", 34'000, 100, 10'000'000, "largest object", "OPT-1.08"),
-    Number("EXECUTABLE_LIMIT", "bytes", 32'768, 100, 10'000'000, "executables are smaller", "OPT-9.10"),
+    Number("EXECUTABLE_LIMIT", "bytes", 32'768, 100, 10'000'000, "executables are smaller",
+           "OPT-9.10"),
     Number("CMOS_SIZE", "bytes", 1'048'576, 1000, 1e12, "all objects and executables", "OPT-B.73"),
     Number("GOSUB_DEPTH", "", 16, 1, 1000, "GOSUBs inside each other", "OPT-7.21"),
     Number("CALL_TIME", "s", 0, 0, 600, "loading a CALLed program", "OPT-7.11"),
@@ -98,7 +103,8 @@ const std::vector<machine::MachineProfile>& OptimoProfiles() {
   static const std::vector<machine::MachineProfile> profiles = {
       {"standard", "Optimo of 30 m/min with ARROW laser", {}},
       {"mc-1000ipm", "MC series, 1000 inch/min", {{"VMAX", 423.333, {}}}},
-      {"pw-1993", "customer machine that starts in COORD ABSOL, PATH LIN",
+      {"pw-1993",
+       "customer machine that starts in COORD ABSOL, PATH LIN",
        {{"COORD_DEFAULT", 0.0, "ABSOL"}, {"PATH_DEFAULT", 0.0, "LIN"}}},
       {"efa-51", "Optimo with EFA-51 laser", {{"LASER", 0.0, "EFA51"}}},
   };
@@ -120,7 +126,8 @@ OptimoParameters Resolve(const machine::Parameters& parameters) {
   made.home = PoseOf(PerAxis(parameters, "HOME_", ""));
   made.mechanical_zero = PoseOf(PerAxis(parameters, "MECH_ZERO_", ""));
   made.cycle_s = parameters.Number("CYCLE");
-  made.coord_default = parameters.Word("COORD_DEFAULT") == "ABSOL" ? CoordType::kAbsol : CoordType::kRobot;
+  made.coord_default =
+      parameters.Word("COORD_DEFAULT") == "ABSOL" ? CoordType::kAbsol : CoordType::kRobot;
   made.path_default = parameters.Word("PATH_DEFAULT") == "LIN" ? PathType::kLin : PathType::kPtp;
   made.laser = parameters.Word("LASER") == "EFA51" ? Laser::kEfa51 : Laser::kArrow;
   made.gas_channels = static_cast<int>(parameters.Number("GAS_CHANNELS"));
@@ -128,6 +135,7 @@ OptimoParameters Resolve(const machine::Parameters& parameters) {
   made.rotary_table = parameters.Word("ROTARY_TABLE") == "ON";
   made.object_limit = static_cast<int>(parameters.Number("OBJECT_LIMIT"));
   made.executable_limit = static_cast<int>(parameters.Number("EXECUTABLE_LIMIT"));
+  made.cmos_bytes = parameters.Number("CMOS_SIZE");
   made.gosub_depth = static_cast<int>(parameters.Number("GOSUB_DEPTH"));
   made.call_time_s = parameters.Number("CALL_TIME");
   made.laser_w = parameters.Number("LASER_POWER");

@@ -27,6 +27,7 @@ struct OptimoParameters {
   bool rotary_table = false;
   int object_limit = 34'000;
   int executable_limit = 32'768;
+  double cmos_bytes = 1'048'576.0;
   int gosub_depth = 16;
   double call_time_s = 0.0;
   double laser_w = 1500.0;

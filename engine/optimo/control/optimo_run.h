@@ -24,7 +24,9 @@ class OptimoRun final : public machine::Run {
   }
   std::vector<machine::Figure> figures() const override;
   std::string SaveMachine() const override { return EncodeMachineState(control_.state().machine); }
-  std::map<int, std::string> made_executables() const override { return control_.state().made_executables; }
+  std::map<int, std::string> made_executables() const override {
+    return control_.state().made_executables;
+  }
   std::unique_ptr<machine::RunSnapshot> Save() const override;
   void Restore(const machine::RunSnapshot& snapshot) override;
 

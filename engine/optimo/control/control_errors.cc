@@ -1,0 +1,68 @@
+#include "engine/optimo/control/control.h"
+
+// Errors: whether a program goes on after one, and where.
+namespace rmlcell::optimo {
+
+void Control::Warn(ErrorCode code, std::string detail, std::string_view rule) {
+  observer_.OnDiagnostic(s_.now, {.code = code,
+                                  .severity = Lookup(code).severity,
+                                  .detail = std::move(detail),
+                                  .rule = std::string(rule),
+                                  .program = s_.place.program,
+                                  .step = s_.place.step});
+}
+
+// The failing instruction has no effect. What moves comes to rest first; an error that was raised
+// ahead of a motion is handled when that motion is over.
+void Control::Raise(ErrorCode code, std::string detail) {
+  const Error error{code, std::move(detail), {}};
+  if (s_.deferred) return;
+  if (s_.passing || Busy()) {
+    if (s_.background && s_.active) EndMotionHere();
+    StopMotions();
+    s_.deferred = error;
+    s_.deferred_place = s_.place;
+    s_.pending = {.kind = Pending::Kind::kStandstill};
+    return;
+  }
+  HandleError(error);
+}
+
+void Control::HandleError(const Error& error) {
+  const CatalogueEntry& entry = Lookup(error.code);
+  s_.machine.data.vi[99] = static_cast<float>(entry.number);
+  s_.pending = {};
+  s_.condition_met = false;
+  Unwatch();
+  BeamOff();
+  Severity severity = entry.severity;
+  std::optional<std::uint32_t> handler;
+  std::size_t catching = 0;
+  if (!s_.programs.empty()) {
+    program().processes.AllOff();
+    program().work_tasks.clear();
+    program().due_gosub.reset();
+    // The innermost module with an armed ERR, up to the main module of this executable (OPT-3.57).
+    std::vector<Frame>& frames = program().frames;
+    for (std::size_t n = frames.size(); severity == Severity::kProgram && n-- > 0;) {
+      if (!frames[n].error_label) continue;
+      catching = n;
+      handler = program().program->index[static_cast<std::size_t>(frames[n].module)].FindLabel(
+          *frames[n].error_label);
+      if (!handler) {
+        Warn(error.code, error.detail, {});
+        s_.machine.data.vi[99] = 60.0F;
+        return Finish(machine::OutcomeKind::kFailed, ErrorCode::kLabelNotFound,
+                      "no sequence number " + std::to_string(*frames[n].error_label) + " for ERR");
+      }
+      break;
+    }
+  }
+  Warn(error.code, error.detail, {});
+  if (!handler) return Finish(machine::OutcomeKind::kFailed, error.code, error.detail);
+  program().frames.resize(catching + 1);
+  frame().error_label.reset();  // taking the handler disarms it, OPT-3.55
+  frame().next = *handler;
+}
+
+}  // namespace rmlcell::optimo
