@@ -1,6 +1,5 @@
 #include "server/jobs/job_book.h"
 
-
 #include <algorithm>
 #include <cmath>
 #include <set>

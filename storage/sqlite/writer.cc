@@ -4,6 +4,7 @@
 #include <exception>
 #include <iterator>
 #include <string>
+#include <utility>
 
 namespace rmlcell::storage::sqlite {
 namespace {

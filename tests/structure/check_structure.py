@@ -19,7 +19,7 @@ MAY_INCLUDE = {
     "engine/machine": ["engine/core", "engine/motion"],
     "engine/rml1": ENGINE,
     "engine/optimo/language": ["engine/core"],
-    "engine/optimo/offline": ["engine/core", "engine/machine", "engine/optimo/language"],
+    "engine/optimo/offline": ENGINE + ["engine/optimo/language"],
     "engine/optimo/control": ENGINE + ["engine/optimo/language", "engine/optimo/offline"],
     "engine/simulation": ENGINE + ["engine/rml1", "engine/optimo/control"],
     "storage": ["engine/core"],
