@@ -1,8 +1,9 @@
 #include "clients/cli/local.h"
 
-#include <cstdio>
+#include <algorithm>
 #include <map>
 
+#include "clients/cli/findings_text.h"
 #include "clients/cli/messages.h"
 #include "clients/cli/program_files.h"
 #include "clients/cli/terminal.h"
@@ -28,26 +29,6 @@ Result<bridge::MachineFile> ReadMachine(const std::string& path) {
   const Result<std::string> text = bridge::ReadFile(path, kFileBytesMax);
   if (!text) return text.error();
   return bridge::ParseMachineFile(*text, path);
-}
-
-Status WriteFile(const std::string& path, std::string_view bytes) {
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  if (file == nullptr) return Error{ErrorCode::kCellFileUnwritable, path, {}};
-  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  const bool closed = std::fclose(file) == 0;
-  if (!written || !closed) return Error{ErrorCode::kCellFileUnwritable, path, {}};
-  return {};
-}
-
-void PrintDiagnostics(const std::vector<Diagnostic>& diagnostics, std::uint64_t dropped, std::string_view source) {
-  for (const Diagnostic& diagnostic : diagnostics) {
-    const std::string text = FormatDiagnostic(diagnostic, source);
-    const Colour colour = IsError(diagnostic.severity) ? Colour::kRed : Colour::kYellow;
-    const std::size_t line_end = text.find('\n');
-    Print(Paint(text.substr(0, line_end), colour, ColourOnOutput()) +
-          (line_end == std::string::npos ? "" : text.substr(line_end)));
-  }
-  if (dropped > 0) Print("and " + std::to_string(dropped) + " more findings");
 }
 
 Result<v1::StepPlace> ParseStepPlace(const std::string& text) {
@@ -139,15 +120,20 @@ Status AddExecutables(const SimulateOptions& options, const machine::MachineFami
     const Result<std::pair<int, std::string>> named = ParseSlotFile(text);
     if (!named) return named.error();
     if (named->second.empty()) {
+      if (std::ranges::find(programs, named->first, &bridge::ProgramInput::slot) == programs.end()) {
+        return Error{ErrorCode::kCellUsage, "--executable " + text + ": there is no such program", {}};
+      }
       to_make.push_back(named->first);
       continue;
     }
     Result<std::string> bytes = bridge::ReadFile(named->second, kFileBytesMax);
     if (!bytes) return bytes.error();
     if (const Status good = family.CheckExecutable(*bytes); !good) return good;
-    for (bridge::ProgramInput& program : programs) {
-      if (program.slot == named->first) program.executable = std::make_shared<const std::string>(*bytes);
+    const auto program = std::ranges::find(programs, named->first, &bridge::ProgramInput::slot);
+    if (program == programs.end()) {
+      return Error{ErrorCode::kCellUsage, "--executable " + text + ": there is no program " + std::to_string(named->first), {}};
     }
+    program->executable = std::make_shared<const std::string>(*std::move(bytes));
   }
   return {};
 }
@@ -190,9 +176,10 @@ int Check(const CheckOptions& options) {
                                     translation.figures)));
       continue;
     }
-    PrintDiagnostics(translation.diagnostics, translation.diagnostics_dropped, *text);
+    PrintFindings(translation.diagnostics, translation.diagnostics_dropped, *text);
     std::string line = file + ": " + (translation.ok ? "good" : "has errors");
     for (const machine::Figure& figure : translation.figures) {
+      if (figure.value == 0.0) continue;
       line += ", " + figure.name + " " + ShortestText(figure.value) + (figure.unit.empty() ? "" : " " + figure.unit);
     }
     Print(line);
@@ -208,6 +195,13 @@ int Simulate(const SimulateOptions& options) {
   if (!loaded) return Refuse(loaded.error());
   const Result<v1::SimulationOptions> message = OptionsMessage(options);
   if (!message) return Refuse(message.error());
+  for (const v1::StepPlace* place : {&message->simul(), &message->breakpoint()}) {
+    const bool there = place->program() == 0 || std::ranges::find(loaded->programs, place->program(),
+                                                                  &bridge::ProgramInput::slot) != loaded->programs.end();
+    if (!there) {
+      return Refuse({ErrorCode::kCellUsage, "--simul, --break: there is no program " + std::to_string(place->program()), {}});
+    }
+  }
   v1::Budget budget;
   if (Status parsed = ParseBudget(options.budget, budget); !parsed) return Refuse(parsed.error());
   const auto variables = bridge::ExpandVariables(SplitCommas(options.variables));
@@ -239,7 +233,7 @@ int Simulate(const SimulateOptions& options) {
     } else {
       std::string_view source;
       if (loaded->programs.size() == 1) source = *loaded->programs.front().bytes;
-      PrintDiagnostics(outcome->diagnostics, outcome->diagnostics_dropped, source);
+      PrintFindings(outcome->diagnostics, outcome->diagnostics_dropped, source);
     }
     return kProgramErrors;
   }
@@ -277,10 +271,17 @@ int Simulate(const SimulateOptions& options) {
   if (!result) return Refuse(result.error());
 
   if (!options.svg.empty()) {
-    if (Status written = WriteFile(options.svg, result->svg); !written) return Refuse(written.error());
+    if (options.svg == "-") {
+      PrintRaw(result->svg);
+      return kGood;
+    }
+    if (Status written = WriteWholeFile(options.svg, result->svg); !written) return Refuse(written.error());
   }
   if (!options.state_out.empty()) {
-    if (Status written = WriteFile(options.state_out, result->machine_state); !written) return Refuse(written.error());
+    if (Status written = WriteWholeFile(options.state_out, result->machine_state); !written) return Refuse(written.error());
+  }
+  for (const std::string& name : *variables) {
+    if (!result->variables.contains(name)) Complain("the machine has no variable " + name);
   }
   v1::RunReport report = bridge::ToProto(result->report, result->variables);
   if (options.json) {
@@ -290,7 +291,7 @@ int Simulate(const SimulateOptions& options) {
     PrintRaw(simulation::FactsText(result->report));
     for (const auto& [name, value] : result->variables) Print("variable." + name + ": " + value);
   } else {
-    PrintDiagnostics(outcome->diagnostics, outcome->diagnostics_dropped, {});
+    PrintFindings(outcome->diagnostics, outcome->diagnostics_dropped, {});
     PrintRaw(ReportText(report));
   }
   const machine::OutcomeKind kind = result->report.outcome.kind;

@@ -4,6 +4,7 @@
 #include "clients/cli/local.h"
 #include "clients/cli/remote.h"
 #include "clients/cli/terminal.h"
+#include "clients/cli/verbs.h"
 #include "clients/cli/version.h"
 
 // The rmlcell command: what it can do, and nothing of how.
@@ -96,8 +97,8 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
     verb->add_option("--state-in", options->state_in, "machine state of an earlier run");
     verb->add_option("--state-out", options->state_out, "keep the machine state for a later run");
     verb->add_flag("--trace", options->trace, "list all that was observable, in order");
-    verb->add_flag("--facts", options->facts, "key: value lines for scripts (docs/facts.md)");
-    verb->add_flag("--json", options->json, "print the report as JSON");
+    CLI::Option* facts = verb->add_flag("--facts", options->facts, "key: value lines for scripts (docs/facts.md)");
+    verb->add_flag("--json", options->json, "print the report as JSON")->excludes(facts);
     verb->callback([options, &exit_code] { exit_code = Simulate(*options); });
   }
   {
@@ -288,9 +289,15 @@ int main(int argc, char** argv) {
   if (const char* server = std::getenv("RMLCELL_SERVER"); server != nullptr && *server != '\0') remote.server = server;
   int exit_code = kGood;
   AddLocalVerbs(app, exit_code);
+  AddOfficeVerbs(app, exit_code);
   AddProgramVerbs(app, remote, exit_code);
   AddProjectVerbs(app, remote, exit_code);
   AddJobVerbs(app, remote, exit_code);
+  const auto named = [&](CLI::App* verb) { return argc > 1 && verb->get_name() == argv[1]; };
+  if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(named).empty()) {
+    Complain("there is no verb '" + std::string(argv[1]) + "'; rmlcell --help lists them");
+    return kUsage;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,8 +1,17 @@
 #include "clients/cli/program_files.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
-#include <set>
+#include <fstream>
+#include <map>
+#include <system_error>
 
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
@@ -35,6 +44,41 @@ Result<bridge::ProgramInput> ReadProgram(const std::string& file, int slot) {
 
 }  // namespace
 
+Status WriteWholeFile(const std::string& path, std::string_view bytes) {
+  const auto failed = [&](int error) {
+    return Error{ErrorCode::kCellFileUnwritable, path + ": " + std::generic_category().message(error), {}};
+  };
+  std::error_code ignored;
+  // Into a pipe or a device as it is; a link stays a link.
+  if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
+    std::ofstream to(path, std::ios::binary);
+    to.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    to.flush();
+    return to ? Status() : failed(errno);
+  }
+  const std::string target = fs::is_symlink(path, ignored) ? fs::canonical(path, ignored).string() : path;
+  std::string temporary = target + ".XXXXXX";
+  const int file = mkstemp(temporary.data());
+  if (file < 0) return failed(errno);
+  struct stat before {};
+  const mode_t mask = umask(0);
+  umask(mask);
+  const mode_t mode = stat(target.c_str(), &before) == 0 ? before.st_mode & 07777U : 0666U & ~mask;
+  bool good = fchmod(file, mode) == 0;
+  while (good && !bytes.empty()) {
+    const ssize_t written = write(file, bytes.data(), bytes.size());
+    good = written > 0;
+    if (good) bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  good = good && fsync(file) == 0;
+  int error = errno;
+  good = close(file) == 0 && good;
+  if (good && std::rename(temporary.c_str(), target.c_str()) == 0) return {};
+  if (good) error = errno;
+  unlink(temporary.c_str());
+  return failed(error);
+}
+
 Result<const machine::MachineFamily*> FamilyFor(const std::string& id, const std::string& file_name) {
   if (!id.empty()) {
     if (const machine::MachineFamily* family = simulation::FindFamily(id)) return family;
@@ -60,6 +104,16 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files, const std::
                               int main_slot, const std::string& family_id) {
   std::vector<std::pair<int, std::string>> found;  // slot 0: to be chosen
   std::string first_file;
+  // A folder may hold programs of several machines: only those of the family of the first file count.
+  std::error_code ignored;
+  const auto named_file =
+      std::ranges::find_if(files, [&](const std::string& file) { return !fs::is_directory(file, ignored); });
+  const machine::MachineFamily* wanted = nullptr;
+  if (!family_id.empty() || named_file != files.end()) {
+    const auto family = FamilyFor(family_id, named_file != files.end() ? *named_file : std::string());
+    if (!family) return family.error();
+    wanted = *family;
+  }
   for (const std::string& file : files) {
     std::error_code error;
     if (!fs::is_directory(file, error)) {
@@ -73,7 +127,8 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files, const std::
     for (const fs::path& path : inside) {
       const auto slot = SlotFromName(path);
       const machine::MachineFamily* family = simulation::FamilyOfFileName(path.string());
-      if (slot && family != nullptr && (family_id.empty() || family->info().id == family_id)) {
+      if (slot && family != nullptr && (wanted == nullptr || family == wanted) && fs::is_regular_file(path, error)) {
+        wanted = family;
         found.emplace_back(*slot, path.string());
       }
     }
@@ -86,12 +141,21 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files, const std::
   }
   if (found.empty()) return Error{ErrorCode::kCellUsage, "no program: give a file, or a folder with files like 12.S", {}};
 
-  std::set<int> used;
-  for (const auto& [slot, file] : found) used.insert(slot);
+  std::map<int, std::string> used;
+  for (const auto& [slot, file] : found) {
+    const auto [row, is_new] = used.emplace(slot, file);
+    if (!is_new && slot != 0) {
+      return Error{ErrorCode::kCellUsage,
+                   "program " + std::to_string(slot) + " comes from two files: " + row->second + " and " + file, {}};
+    }
+  }
   LoadedFiles loaded;
-  const Result<const machine::MachineFamily*> family = FamilyFor(family_id, first_file.empty() ? found.front().second : first_file);
-  if (!family) return family.error();
-  loaded.family = *family;
+  if (wanted == nullptr) {
+    const auto family = FamilyFor(family_id, found.front().second);
+    if (!family) return family.error();
+    wanted = *family;
+  }
+  loaded.family = wanted;
   int free_slot = 1;
   for (auto& [slot, file] : found) {
     if (slot == 0) {

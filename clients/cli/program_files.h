@@ -26,6 +26,10 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files, const std::
 // "44=FILE" -> 44, FILE; "44" -> 44 and nothing.
 Result<std::pair<int, std::string>> ParseSlotFile(const std::string& text);
 
+// Writes a file whole or not at all: what stood under this name before is there until the new one is on the
+// disk, and keeps its mode. Error: CellFileUnwritable.
+Status WriteWholeFile(const std::string& path, std::string_view bytes);
+
 // The family by id, or by the file name.
 Result<const machine::MachineFamily*> FamilyFor(const std::string& id, const std::string& file_name);
 

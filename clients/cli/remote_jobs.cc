@@ -118,13 +118,13 @@ int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
   job.set_kind(wanted.kind == "check" ? v1::JOB_KIND_CHECK : wanted.kind == "run" ? v1::JOB_KIND_RUN
                                                                                    : v1::JOB_KIND_SIMULATE);
   job.set_machine(FullName("machines", wanted.machine));
-  job.set_title(wanted.title);
+  job.set_title(bridge::Utf8(wanted.title));
   if (wanted.file.empty()) {
     job.set_program(job.machine() + "/programs/" + std::to_string(wanted.slot));
   } else {
     Result<std::string> bytes = bridge::ReadFile(wanted.file, kFileBytesMax);
     if (!bytes) return RefuseFile(bytes.error());
-    job.mutable_inline_program()->set_file_name(std::filesystem::path(wanted.file).filename().string());
+    job.mutable_inline_program()->set_file_name(bridge::Utf8(std::filesystem::path(wanted.file).filename().string()));
     job.mutable_inline_program()->set_content(std::move(*bytes));
     job.set_inline_slot(wanted.slot);
     if (job.title().empty()) job.set_title(job.inline_program().file_name());
@@ -246,12 +246,7 @@ int JobPicture(const Remote& remote, const std::string& job, const std::string& 
     PrintRaw(response.content());
     return kGood;
   }
-  std::FILE* file = std::fopen(output.c_str(), "wb");
-  const std::string& bytes = response.content();
-  const bool written = file != nullptr && std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  if (file == nullptr || std::fclose(file) != 0 || !written) {
-    return RefuseFile({ErrorCode::kCellFileUnwritable, output, {}});
-  }
+  if (const Status written = WriteWholeFile(output, response.content()); !written) return RefuseFile(written.error());
   return kGood;
 }
 

@@ -119,7 +119,7 @@ int PutProgram(const Remote& remote, const std::string& machine, int slot, const
     Prepare(context);
     v1::PutProgramRequest request;
     request.set_name(ProgramName(machine, slot));
-    request.mutable_program()->set_file_name(base);
+    request.mutable_program()->set_file_name(bridge::Utf8(base));
     request.mutable_program()->set_content(*bytes);
     request.set_etag(etag);
     request.set_validate_only(check_only);
@@ -127,7 +127,7 @@ int PutProgram(const Remote& remote, const std::string& machine, int slot, const
   } else {
     v1::UploadProgramRequest::Header header;
     header.set_name(ProgramName(machine, slot));
-    header.set_file_name(base);
+    header.set_file_name(bridge::Utf8(base));
     header.set_etag(etag);
     header.set_size(static_cast<std::int64_t>(bytes->size()));
     header.set_sha256(bridge::Sha256Hex(*bytes));
@@ -158,11 +158,7 @@ int GetProgram(const Remote& remote, const std::string& machine, int slot, const
     PrintRaw(bytes);
     return kGood;
   }
-  std::FILE* file = std::fopen(output.c_str(), "wb");
-  const bool written = file != nullptr && std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  if (file == nullptr || std::fclose(file) != 0 || !written) {
-    return RefuseFile({ErrorCode::kCellFileUnwritable, output, {}});
-  }
+  if (const Status written = WriteWholeFile(output, bytes); !written) return RefuseFile(written.error());
   return kGood;
 }
 

@@ -53,7 +53,12 @@ _rmlcell_options() {
     simulate)
       echo "--help --slot --main --executable --family --profile --machine --inputs --mode --override --simul" \
         "--break --budget --vars --svg --state-in --state-out --trace --facts --json" ;;
-    explain) echo "--help --json" ;;
+    explain | diff) echo "--help --json" ;;
+    compile | decompile | compensate | list) echo "--help --output" ;;
+    link) echo "--help --slot --main --output" ;;
+    format) echo "--help --check" ;;
+    convert) echo "--help" ;;
+    transform) echo "--help --move --turn --shift --output" ;;
     machines | programs | delete | projects | job | cancel | report) echo "$remote" ;;
     put) echo "$remote --etag --check-only" ;;
     get) echo "$remote --form --output" ;;
@@ -72,7 +77,7 @@ _rmlcell_takes_value() {
   case $1 in
     --slot | --main | --executable | --family | --profile | --machine | --inputs | --mode | --override | \
       --simul | --break | --budget | --vars | --svg | --state-in | --state-out | --server | --etag | --form | \
-      --output | -o | --kind | --title | --request-id | --after | --filter | --limit) return 0 ;;
+      --output | -o | --kind | --title | --request-id | --after | --filter | --limit | --move | --turn | --shift) return 0 ;;
   esac
   return 1
 }
@@ -106,7 +111,9 @@ _rmlcell_values() {
 _rmlcell_positional() {
   local count=${#given[@]}
   case $verb in
-    check | simulate) _rmlcell_programs_files ;;
+    check | simulate | link) _rmlcell_programs_files ;;
+    decompile) _rmlcell_files .o ;;
+    compile | format | convert | compensate | transform | list | diff) _rmlcell_files .s .si .cmp .o ;;
     explain) _rmlcell_codes ;;
     programs) [[ $count -eq 0 ]] && _rmlcell_machines ;;
     put)
@@ -200,8 +207,8 @@ _rmlcell() {
   if [[ $cur == -* ]]; then
     _rmlcell_offer $(_rmlcell_options "$verb")
   elif [[ -z $verb ]]; then
-    _rmlcell_offer check simulate explain machines programs put get delete projects submit watch jobs job \
-      cancel report picture
+    _rmlcell_offer check simulate explain compile decompile link format convert compensate transform list \
+      diff machines programs put get delete projects submit watch jobs job cancel report picture
   else
     _rmlcell_positional
   fi

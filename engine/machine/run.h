@@ -23,6 +23,8 @@ struct StoredProgram {
   std::string name{};
   Bytes object{};
   Bytes executable{};  // at slot + 100; null when none was made
+  // The line, from 1, of each step of the source; null when no source is known.
+  std::shared_ptr<const std::vector<int>> step_lines{};
 };
 
 struct LaserSchedule {

@@ -51,7 +51,8 @@ void SetSpan(const SourceSpan& where, v1::SourcePlace& place) {
   if (where.byte_offset >= 0) place.set_byte_offset(where.byte_offset);
 }
 
-// Text that came from a program may hold any bytes; protobuf strings must be UTF-8.
+}  // namespace
+
 std::string Utf8(const std::string& text) {
   std::string out;
   out.reserve(text.size());
@@ -78,8 +79,6 @@ std::string Utf8(const std::string& text) {
   }
   return out;
 }
-
-}  // namespace
 
 v1::Diagnostic ToProto(const Diagnostic& diagnostic) {
   const CatalogueEntry& entry = Lookup(diagnostic.code);

@@ -22,6 +22,10 @@ class Outcome;
 namespace rmlcell::bridge {
 
 v1::Diagnostic ToProto(const Diagnostic& diagnostic);
+// Text from programs and file names may hold any bytes; protobuf strings must be UTF-8. What is not becomes
+// "?".
+std::string Utf8(const std::string& text);
+
 v1::Figure ToProto(const machine::Figure& figure);
 v1::Outcome ToProto(const machine::Outcome& outcome);
 v1::ErrorExplanation Explain(const CatalogueEntry& entry);

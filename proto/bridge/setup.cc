@@ -33,7 +33,7 @@ bool AddProgram(const SetupInput& input, const ProgramInput& program, machine::R
   if (program.is_source && !IsObjectFileName(program.file_name)) {
     machine::Translation translation =
         input.family->Translate({.name = program.file_name, .bytes = *program.bytes}, setup.parameters,
-                                {.advice = program.slot == input.main_program});
+                                {.advice = program.slot == input.main_program, .step_lines = true});
     for (Diagnostic& diagnostic : translation.diagnostics) {
       if (outcome.diagnostics.size() >= machine::kDiagnosticsMax) {
         ++outcome.diagnostics_dropped;
@@ -45,6 +45,7 @@ bool AddProgram(const SetupInput& input, const ProgramInput& program, machine::R
     outcome.diagnostics_dropped += translation.diagnostics_dropped;
     if (!translation.ok) return false;
     stored.object = std::make_shared<const std::string>(std::move(translation.object));
+    stored.step_lines = std::make_shared<const std::vector<int>>(std::move(translation.step_lines));
   }
   setup.programs[program.slot] = std::move(stored);
   return true;

@@ -123,7 +123,8 @@ v1::Outcome ToProto(const storage::JobOutcome& outcome) {
       break;
     case storage::JobState::kCancelled: message.set_kind(v1::Outcome::KIND_CANCELLED); break;
     default: {
-      const bool budget = outcome.code && Lookup(*outcome.code).severity == Severity::kBudget;
+      const bool budget = outcome.code && Lookup(*outcome.code).severity == Severity::kBudget &&
+                          *outcome.code != ErrorCode::kCellWorkerDied;
       message.set_kind(budget ? v1::Outcome::KIND_BUDGET_EXCEEDED : v1::Outcome::KIND_FAILED);
     }
   }

@@ -8,6 +8,7 @@
 #include "proto/bridge/findings.h"
 #include "proto/bridge/setup.h"
 #include "proto/bridge/sha256.h"
+#include "server/programs/program_office.h"
 #include "server/config.h"
 #include "server/jobs/job_messages.h"
 #include "server/names.h"
@@ -216,8 +217,15 @@ Result<ProgramShelf::Content> ProgramShelf::Read(std::string_view name, v1::Prog
     case v1::PROGRAM_FORM_OBJECT:
       content = {.bytes = std::move(program->object), .form = form, .file_name = base + ".O", .sha256 = {}};
       break;
-    case v1::PROGRAM_FORM_LISTING:
-      return Error{ErrorCode::kCellUnimplemented, "listings", {}};
+    case v1::PROGRAM_FORM_LISTING: {
+      if (!has_objects) {
+        return Error{ErrorCode::kCellPrecondition, "a " + machine->family + " program has no steps to list", {}};
+      }
+      Result<std::string> listing = ListingOf(program->object);
+      if (!listing) return listing.error();
+      content = {.bytes = *std::move(listing), .form = form, .file_name = base + ".LST", .sha256 = {}};
+      break;
+    }
     default:
       if (program->source || !has_objects) {
         content = {.bytes = program->source ? std::move(*program->source) : std::move(program->object),

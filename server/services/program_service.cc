@@ -4,8 +4,9 @@
 
 #include "engine/simulation/families.h"
 #include "proto/bridge/findings.h"
-#include "server/programs/program_shelf.h"
 #include "proto/bridge/sha256.h"
+#include "server/programs/program_office.h"
+#include "server/programs/program_shelf.h"
 #include "server/services/job_streams.h"
 
 namespace rmlcell::server {
@@ -248,9 +249,14 @@ grpc::ServerUnaryReactor* ProgramService::CompileProgram(grpc::CallbackServerCon
 }
 
 grpc::ServerUnaryReactor* ProgramService::FormatProgram(grpc::CallbackServerContext* context,
-                                                        const v1::FormatProgramRequest*,
-                                                        v1::FormatProgramResponse*) {
-  return NotYet(room_, context, "ProgramService/FormatProgram");
+                                                        const v1::FormatProgramRequest* request,
+                                                        v1::FormatProgramResponse* response) {
+  return Answer(room_, context, *request, "ProgramService/FormatProgram", [request, response](const Caller&) {
+    auto made = FormatText(*request);
+    if (!made) return ToGrpcStatus(made.error());
+    *response = *std::move(made);
+    return grpc::Status::OK;
+  });
 }
 
 grpc::ServerUnaryReactor* ProgramService::DecompileProgram(grpc::CallbackServerContext* context,
@@ -267,21 +273,36 @@ grpc::ServerUnaryReactor* ProgramService::DecompileProgram(grpc::CallbackServerC
 }
 
 grpc::ServerUnaryReactor* ProgramService::ConvertProgram(grpc::CallbackServerContext* context,
-                                                         const v1::ConvertProgramRequest*,
-                                                         v1::ConvertProgramResponse*) {
-  return NotYet(room_, context, "ProgramService/ConvertProgram");
+                                                         const v1::ConvertProgramRequest* request,
+                                                         v1::ConvertProgramResponse* response) {
+  return Answer(room_, context, *request, "ProgramService/ConvertProgram", [request, response](const Caller&) {
+    auto made = ConvertText(*request, HeaderDate());
+    if (!made) return ToGrpcStatus(made.error());
+    *response = *std::move(made);
+    return grpc::Status::OK;
+  });
 }
 
 grpc::ServerUnaryReactor* ProgramService::CompensateProgram(grpc::CallbackServerContext* context,
-                                                            const v1::CompensateProgramRequest*,
-                                                            v1::CompensateProgramResponse*) {
-  return NotYet(room_, context, "ProgramService/CompensateProgram");
+                                                            const v1::CompensateProgramRequest* request,
+                                                            v1::CompensateProgramResponse* response) {
+  return Answer(room_, context, *request, "ProgramService/CompensateProgram", [request, response](const Caller&) {
+    auto made = CompensateText(*request, HeaderDate());
+    if (!made) return ToGrpcStatus(made.error());
+    *response = *std::move(made);
+    return grpc::Status::OK;
+  });
 }
 
 grpc::ServerUnaryReactor* ProgramService::TransformProgram(grpc::CallbackServerContext* context,
-                                                           const v1::TransformProgramRequest*,
-                                                           v1::TransformProgramResponse*) {
-  return NotYet(room_, context, "ProgramService/TransformProgram");
+                                                           const v1::TransformProgramRequest* request,
+                                                           v1::TransformProgramResponse* response) {
+  return Answer(room_, context, *request, "ProgramService/TransformProgram", [request, response](const Caller&) {
+    auto made = TransformText(*request);
+    if (!made) return ToGrpcStatus(made.error());
+    *response = *std::move(made);
+    return grpc::Status::OK;
+  });
 }
 
 grpc::ServerUnaryReactor* ProgramService::ExplainError(grpc::CallbackServerContext* context,

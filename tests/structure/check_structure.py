@@ -31,7 +31,8 @@ MAY_INCLUDE = {
     "server/events": ["engine/core", "storage"],
     "server/jobs": ["engine/core", "engine/machine", "engine/simulation", "proto", "proto/bridge", "server",
                     "server/events", "storage"],
-    "server/programs": ["engine/core", "engine/machine", "engine/simulation", "proto", "proto/bridge",
+    "server/programs": ["engine/core", "engine/machine", "engine/motion", "engine/optimo/language",
+                        "engine/optimo/offline", "engine/simulation", "proto", "proto/bridge",
                         "server", "server/jobs", "storage"],
     "server/projects": ["engine/core", "engine/machine", "engine/simulation", "proto", "proto/bridge",
                         "server", "server/jobs", "server/programs", "storage"],
@@ -46,7 +47,8 @@ MAY_INCLUDE = {
     "server/cell": ["engine/core", "proto/bridge", "server", "server/auth", "server/events", "server/jobs",
                     "server/programs", "server/projects", "server/services", "server/web", "storage",
                     "storage/sqlite"],
-    "clients/cli": ["engine/core", "engine/machine", "engine/simulation", "proto", "proto/bridge"],
+    "clients/cli": ["engine/core", "engine/machine", "engine/optimo/language", "engine/optimo/offline",
+                    "engine/simulation", "proto", "proto/bridge"],
 }
 ROOM_OF_FILE = {"server/cell.h": "server/cell", "server/cell.cc": "server/cell", "server/main.cc": "server/cell"}
 # Headers made of the .proto files.

@@ -21,6 +21,9 @@ Control::Control(OptimoParameters parameters, machine::RunSetup setup,
       setup_(std::move(setup)),
       observer_(observer),
       s_(parameters_.limits) {
+  for (const auto& [slot, program] : setup_.programs) {
+    if (IsSlot(slot)) step_lines_[static_cast<std::size_t>(slot)] = program.step_lines.get();
+  }
   s_.machine = NewMachine(parameters_);
   if (!setup_.machine_state.empty()) {
     if (Result<MachineState> state = DecodeMachineState(setup_.machine_state)) s_.machine = *state;
@@ -36,6 +39,11 @@ Control::Control(OptimoParameters parameters, machine::RunSetup setup,
     s_.machine.simul.reset();
   }
   StartMain();
+}
+
+int Control::LineOf(int slot, std::uint32_t step) const {
+  const std::vector<int>* lines = step_lines_[static_cast<std::size_t>(slot)];
+  return lines != nullptr && step >= 1 && step <= lines->size() ? (*lines)[step - 1] : 0;
 }
 
 // START: the program begins, in SINGLE with its first step (OPT-6.31).

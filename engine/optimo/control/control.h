@@ -69,6 +69,9 @@ class Control : private VariableAccess {
   void Unwatch();
   void WatchMove();
 
+  // 0: no source is known.
+  int LineOf(int slot, std::uint32_t step) const;
+
   // --- control_motion.cc: what MOVE and its kin do ---
   void Move(const Instruction& i);
   std::optional<motion::TipPose> Target(const Instruction& i, bool via);
@@ -174,6 +177,7 @@ class Control : private VariableAccess {
 
   OptimoParameters parameters_;
   machine::RunSetup setup_;
+  std::array<const std::vector<int>*, kSlotMax + 1> step_lines_{};  // null: no source is known
   machine::RunObserver& observer_;
   ControlState s_;
 };

@@ -57,7 +57,7 @@ void Control::Fetch() {
     return Finish(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kStepBudget,
                   std::to_string(s_.steps) + " steps were executed");
   }
-  s_.place = {.program = slot, .step = static_cast<int>(i.step)};
+  s_.place = {.program = slot, .step = static_cast<int>(i.step), .line = LineOf(slot, i.step)};
   s_.op = i.op;
   if (s_.passing || Busy()) {
     if (s_.passing && i.op == Op::kCoord && static_cast<CoordType>(i.choice) != modal().coord) {

@@ -3,6 +3,8 @@
 #include <cctype>
 #include <utility>
 
+#include "engine/optimo/language/source_map.h"
+
 namespace rmlcell::optimo {
 namespace {
 
@@ -81,6 +83,7 @@ machine::Translation TranslateOptimo(const machine::SourceFile& file,
   translation.diagnostics = std::move(compiled.diagnostics);
   translation.diagnostics_dropped = compiled.diagnostics_dropped;
   if (compiled.ok) AddFigures(compiled.module, file.bytes.size(), translation);
+  if (compiled.ok && options.step_lines) translation.step_lines = LinesOfSteps(file.bytes);
   return translation;
 }
 

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace rmlcell::cli {
+
+// The tools of the programming office: they read and write files of Optimo programs and need no server.
+// An `output` of "-" is standard output; empty: the name that the tool gives it. Files are written whole
+// or not at all.
+
+int Compile(const std::string& file, const std::string& output);
+int Decompile(const std::string& file, const std::string& output);
+
+// The executable of a main program with the FUNCTIONs that it needs, from files and folders as simulate
+// takes them.
+int Link(const std::vector<std::string>& files, const std::vector<std::string>& slots, int main_slot,
+         const std::string& output);
+
+// In place. `check_only`: says which files are not in canonical layout, and changes none.
+int Format(const std::vector<std::string>& files, bool check_only);
+
+// The arguments of CONVERT: file, optional output, /i or /m (OPT-8.54 to 8.67).
+int Convert(const std::vector<std::string>& arguments);
+
+int Compensate(const std::string& file, const std::string& output);
+
+// X, Y, Z in mm; turns about Z, Y, X in rad.
+int Transform(const std::string& file, const std::array<double, 3>& move, const std::array<double, 3>& turn,
+              const std::string& output);
+int Shift(const std::string& file, const std::array<double, 6>& by, const std::string& output);
+
+int List(const std::string& file, const std::string& output);
+
+// What two programs do differently. Exit code 1 when they differ.
+int Diff(const std::string& a, const std::string& b, bool json);
+
+
+}  // namespace rmlcell::cli
