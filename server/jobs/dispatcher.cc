@@ -419,18 +419,23 @@ void Dispatcher::Finish(Worker& worker, v1::WorkerFinish& finish) {
 }
 
 void Dispatcher::EndAssignment(Worker& worker, bool stored) {
-  v1::WorkResponse message;
-  *message.mutable_release()->mutable_lease() = ToProto(worker.assignment->lease);
-  message.mutable_release()->set_stored(stored);
-  worker.line->Send(std::move(message));
-  feed_.ForgetProgress(worker.assignment->lease.job);
+  const storage::Lease lease = worker.assignment->lease;
   worker.assignment.reset();
+  feed_.ForgetProgress(lease.job);
   {
+    // Before the worker hears of it: an order for a job that is over is refused from then on.
     const std::lock_guard lock(mutex_);
-    worker.idle = true;
     worker.job = 0;
     worker.lease.reset();
     worker.delivery.reset();
+  }
+  v1::WorkResponse message;
+  *message.mutable_release()->mutable_lease() = ToProto(lease);
+  message.mutable_release()->set_stored(stored);
+  worker.line->Send(std::move(message));
+  {
+    const std::lock_guard lock(mutex_);
+    worker.idle = true;
   }
   changed_.notify_all();
 }

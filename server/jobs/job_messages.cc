@@ -123,8 +123,9 @@ v1::Outcome ToProto(const storage::JobOutcome& outcome) {
       break;
     case storage::JobState::kCancelled: message.set_kind(v1::Outcome::KIND_CANCELLED); break;
     default: {
-      const bool budget = outcome.code && Lookup(*outcome.code).severity == Severity::kBudget &&
-                          *outcome.code != ErrorCode::kCellWorkerDied;
+      // That a worker died says nothing about what the job needed.
+      const bool budget = outcome.code && *outcome.code != ErrorCode::kCellWorkerDied &&
+                          Lookup(*outcome.code).severity == Severity::kBudget;
       message.set_kind(budget ? v1::Outcome::KIND_BUDGET_EXCEEDED : v1::Outcome::KIND_FAILED);
     }
   }

@@ -451,6 +451,8 @@ TEST(DispatcherDrain, WaitsNoLongerThanItsPatience) {
   bed.server.SubmitCheck();
   FakeWorker stubborn(bed.dispatcher(), "stubborn");
   ASSERT_TRUE(stubborn.Take());
+  stubborn.Events(1);  // answered when the server is done with giving out the job
+  ASSERT_TRUE(stubborn.line().Next(v1::WorkResponse::kEventsStored).has_events_stored());
   const auto begin = std::chrono::steady_clock::now();
   bed.dispatcher().Drain(milliseconds(100));
   const auto took = std::chrono::steady_clock::now() - begin;
