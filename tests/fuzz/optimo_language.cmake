@@ -1,5 +1,9 @@
 # Parser, object decoder, converter and compensation; their seeds are replayed by
 # optimo_language_conformance_test.
+# What is aimed at tells the fuzzer where it has been.
+foreach(library IN ITEMS engine_optimo_language engine_optimo_offline)
+  target_compile_options(rmlcell_${library} PRIVATE -fsanitize=fuzzer-no-link)
+endforeach()
 foreach(target IN ITEMS text:TryText object:TryObject convert:TryConvert compensate:TryCompensate)
   string(REPLACE ":" ";" parts ${target})
   list(GET parts 0 name)

@@ -11,14 +11,18 @@ namespace rmlcell::optimo {
 
 class ByteWriter {
  public:
+  ByteWriter() = default;
+  explicit ByteWriter(std::size_t room) { bytes_.reserve(room); }
+
   void Byte(unsigned value) { bytes_ += static_cast<char>(value); }
   void Fixed16(unsigned value) {
-    Byte(value & 0xFF);
-    Byte(value >> 8 & 0xFF);
+    const char bytes[2] = {static_cast<char>(value), static_cast<char>(value >> 8)};
+    bytes_.append(bytes, sizeof bytes);
   }
   void Fixed32(std::uint32_t value) {
-    Fixed16(value & 0xFFFF);
-    Fixed16(value >> 16);
+    const char bytes[4] = {static_cast<char>(value), static_cast<char>(value >> 8),
+                           static_cast<char>(value >> 16), static_cast<char>(value >> 24)};
+    bytes_.append(bytes, sizeof bytes);
   }
   void Fixed64(std::uint64_t value) {
     Fixed32(static_cast<std::uint32_t>(value));

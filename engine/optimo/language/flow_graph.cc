@@ -17,7 +17,7 @@ FlowGraph::FlowGraph(const Module& module)
     }
   }
   std::ranges::sort(subroutines_);
-  subroutines_.erase(std::ranges::unique(subroutines_).begin(), subroutines_.end());
+  subroutines_.erase(std::unique(subroutines_.begin(), subroutines_.end()), subroutines_.end());
 }
 
 const std::vector<Successor>& FlowGraph::From(std::uint32_t at,

@@ -9,7 +9,7 @@ enum class Visit : std::uint8_t { kNew, kOpen, kDone };
 
 void SortOnce(std::vector<std::uint32_t>& places) {
   std::ranges::sort(places);
-  places.erase(std::ranges::unique(places).begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
 }
 
 // Depth first from the program's own GOSUBs: marks the calls that lead back into the chain that is

@@ -8,7 +8,7 @@ namespace {
 
 // Priorities of optimo.md B.9, lowest first.
 constexpr int kOrLevel = 1, kAndLevel = 2, kNotLevel = 3, kRelationLevel = 4, kSumLevel = 5,
-              kTermLevel = 6, kPowerLevel = 7, kSignedLevel = 8;
+              kTermLevel = 6, kPowerLevel = 7;
 constexpr int kNoLevel = 0;
 
 Node BinaryNode(const Token& token) {

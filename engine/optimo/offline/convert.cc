@@ -45,10 +45,15 @@ class Converter {
       }
       instruction_ = &i;
       reported_ = false;
+      const auto own = static_cast<std::ptrdiff_t>(edits_.size());
       ConvertInstruction(i);
+      // Arguments of functions come first. Only here, so that all of it stays linear.
+      std::ranges::sort(edits_.begin() + own, edits_.end(), {}, &Fix::byte_offset);
     }
+    const auto statements = static_cast<std::ptrdiff_t>(edits_.size());
     ConvertDirectives();
-    std::ranges::stable_sort(edits_, {}, &Fix::byte_offset);
+    std::inplace_merge(edits_.begin(), edits_.begin() + statements, edits_.end(),
+                       [](const Fix& a, const Fix& b) { return a.byte_offset < b.byte_offset; });
     return std::move(edits_);
   }
 

@@ -2,7 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
 #include <string>
+#include <utility>
+
+#include "engine/core/number_text.h"
+#include "engine/optimo/language/program.h"
 
 namespace rmlcell::optimo {
 namespace {
@@ -213,6 +219,51 @@ TEST(Compensate, DirectivesAreComments) {
 TEST(Compensate, TheHeaderIsTheFirstLine) {
   EXPECT_EQ(Compensate("; old\n", FileNames{"a.S", "a.CMP", "Tue Apr 20 13:37:33 1993"}).text,
             "; File a.CMP Created From File a.S - Tue Apr 20 13:37:33 1993\n; old\n");
+}
+
+// OPT-8.16, OPT-8.17: another way to the same: every side of an offset polygon lies beside its
+// programmed side, at the distance of the offset, on the side asked for.
+TEST(Compensate, SidesOfRandomPolygonsKeepTheirDistance) {
+  std::mt19937 random(11);
+  for (int round = 0; round < 100; ++round) {
+    const int corners = 3 + static_cast<int>(random() % 9);
+    const double offset = 0.05 + static_cast<double>(random() % 1000) / 1000.0;
+    const bool left = random() % 2 == 0;
+    std::vector<std::pair<double, double>> points;  // convex, counter-clockwise
+    for (int c = 0; c <= corners; ++c) {
+      const double angle =
+          2.0 * M_PI * (c + 0.3 * static_cast<double>(random() % 100) / 100.0) / (corners + 1);
+      points.emplace_back(50.0 * std::cos(angle), 50.0 * std::sin(angle));
+    }
+    std::string text =
+        ";$rad=" + FixedText(offset, 6) + (left ? "\n;$left" : "\n;$right") + "\nPATH LIN\n";
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      if (n == 1) text += "WORK 0,0/ON\n";
+      text += "MOVE (" + FixedText(points[n].first, 6) + "," + FixedText(points[n].second, 6) +
+              ",0,0,0)\n";
+    }
+    const Compensation result = Compensate(text + "WORK 0,0/OFF\n");
+    ASSERT_TRUE(result.ok) << text;
+    Findings none;
+    const ParsedProgram moved = Parse(result.text, none);
+    std::vector<std::pair<double, double>> offsets;
+    for (const Instruction& i : moved.module.instructions) {
+      if (i.op != Op::kMove) continue;
+      offsets.emplace_back(static_cast<double>(moved.module.Value(i, 0)[0].number),
+                           static_cast<double>(moved.module.Value(i, 1)[0].number));
+    }
+    ASSERT_EQ(offsets.size(), points.size());
+    // From the second side on: the first leads from the pierce point to its offset.
+    for (std::size_t n = 1; n + 1 < points.size(); ++n) {
+      const double dx = points[n + 1].first - points[n].first,
+                   dy = points[n + 1].second - points[n].second, length = std::hypot(dx, dy);
+      for (const auto& end : {offsets[n], offsets[n + 1]}) {
+        const double beside =
+            (dx * (end.second - points[n].second) - dy * (end.first - points[n].first)) / length;
+        EXPECT_NEAR(beside, left ? offset : -offset, 2e-5) << text;
+      }
+    }
+  }
 }
 
 // A slot narrower than the beam: the offset sides cross each other.

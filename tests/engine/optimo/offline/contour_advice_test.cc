@@ -63,6 +63,15 @@ TEST(ContourAdvice, HarmlessCornersAreNotTold) {
   EXPECT_EQ(Findings(CornerOf(90, "OL[16]=ON\n"), ErrorCode::kFlySharp).size(), 1U);
 }
 
+// OPT-2.62: a comment allows it, as any other advice.
+TEST(ContourAdvice, CommentsSilenceIt) {
+  const std::string text = CornerOf(90);
+  const std::size_t corner = text.find("/FLY") + 4;
+  EXPECT_TRUE(Findings(text.substr(0, corner) + " ; rmlcell: allow 7317" + text.substr(corner),
+                       ErrorCode::kFlySharp)
+                  .empty());
+}
+
 // OPT-E.7318: a leg of 1 mm allows a cut of 0.5 mm at both of its corners of 90 degrees. There
 // K = 0.9719 and J = 4.2 (motion.md 4.2, 4.3), a_n = 1600 and j_n = 32000: sqrt(a_n d/K) = 28.7,
 // (j_n d^2/J)^(1/3) = 12.4 mm/s, and the bound J lies at most 6 % too high: v <= 12.64.

@@ -1,0 +1,1 @@
+rmlcell_executable(optimo_language_bench SOURCES optimo_language.cc LINKS rmlcell::engine_optimo_offline)
