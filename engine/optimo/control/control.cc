@@ -1,6 +1,7 @@
 #include "engine/optimo/control/control.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/core/number_text.h"
 
@@ -66,6 +67,12 @@ void Control::CountExecution(int slot) {
 SimTime Control::After(double seconds) const {
   constexpr SimTime kLongest = std::chrono::hours(24 * 365 * 200);
   return std::min(s_.now, kLongest / 8) + std::min(FromSeconds(seconds), kLongest);
+}
+
+// The first tick of the system cycle, counted from now, at which so many seconds are over. OPT-B.30
+SimTime Control::TickAfter(double seconds) const {
+  constexpr double kSame = 1e-9;  // of a cycle: a whole number of cycles stays one
+  return After(std::ceil(seconds / parameters_.cycle_s - kSame) * parameters_.cycle_s);
 }
 
 machine::RunPhase Control::Advance(SimTime until) {

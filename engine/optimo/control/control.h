@@ -44,6 +44,7 @@ class Control : private VariableAccess {
   void Halt(std::string_view why);
   void TellWait();
   SimTime After(double seconds) const;
+  SimTime TickAfter(double seconds) const;
   void CountExecution(int slot);
   void Resume();
   void EmergencyStop();

@@ -12,6 +12,11 @@ namespace {
 // run ahead for ever; a passage that needs more than this becomes a stop.
 constexpr int kRunAheadMax = 10'000;
 
+// What a repeated timer missed meanwhile is not made up for.
+void SkipMissed(ProgramTimer& timer, SimTime now) {
+  if (timer.due <= now) timer.due += ((now - timer.due) / timer.period + 1) * timer.period;
+}
+
 }  // namespace
 
 // Carries out the next instruction, or finds out that the machine must stand first.
@@ -131,8 +136,7 @@ bool Control::MakeDueGosub() {
   if (s_.now < timer.due || timer.running > 0) return false;
   const int label = timer.label;
   if (timer.repeats) {
-    // What was missed meanwhile is not made up for.
-    timer.due += ((s_.now - timer.due) / timer.period + 1) * timer.period;
+    SkipMissed(timer, s_.now);
     timer.running = frame().returns.size() + 1;
   } else {
     context.timer.reset();
@@ -366,6 +370,7 @@ void Control::Return() {
     if (timer && timer->level == program().frames.size() &&
         timer->running >= frame().returns.size()) {
       timer->running = 0;
+      SkipMissed(*timer, s_.now);  // else a handler longer than its period would be all that runs
     }
     frame().next = frame().returns.back();
     frame().returns.pop_back();
@@ -402,7 +407,7 @@ void Control::SetTimer(const Instruction& i) {
   if (simulating()) return;
   // A period below one cycle would never let the program go on.
   const SimTime period = After(std::max(*seconds, parameters_.cycle_s)) - s_.now;
-  program().timer = ProgramTimer{.due = After(*seconds),
+  program().timer = ProgramTimer{.due = TickAfter(*seconds),
                                  .period = period,
                                  .label = module().Targets(i)[0],
                                  .repeats = i.Has(kAuto),

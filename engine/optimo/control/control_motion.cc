@@ -132,7 +132,7 @@ void Control::Move(const Instruction& i) {
         return Raise(ErrorCode::kValueRange, "/TIME is " + ShortestText(*seconds));
       if (!simulating()) {
         s_.time_gosub = DueGosub{.label = module().TimeLabel(i), .level = program().frames.size()};
-        s_.time_due = After(*seconds);
+        s_.time_due = TickAfter(*seconds);
         s_.time_limit_s = *seconds;
         s_.time_ran_out = false;
       }

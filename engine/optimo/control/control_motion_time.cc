@@ -71,7 +71,7 @@ void Control::BeginProfile() {
   if (s_.watch_begins && Watching()) {
     s_.watch_begins = false;
     s_.watched_since = s_.now;
-    s_.time_due = After(s_.time_limit_s);
+    s_.time_due = TickAfter(s_.time_limit_s);
   }
 }
 

@@ -6,9 +6,9 @@
 namespace rmlcell::optimo::testing {
 namespace {
 
-using ::testing::ElementsAre;
 using machine::InputKind;
 using machine::OutcomeKind;
+using ::testing::ElementsAre;
 
 constexpr const char* kAbsol = "COORD ABSOL\nPATH LIN\n";
 
@@ -39,14 +39,16 @@ TEST(Motion, LinNeedsAbsolWhenTheMoveIsExecuted) {
 
 // OPT-2.27, OPT-B.15: radius zero is 348, before an undefined normal; no motion.
 TEST(Motion, HoleOfRadiusZeroIs348) {
-  const Ran ran = RunText("COORD ABSOL\nPATH HOLE (0.)\nMOVE (100.,50.,-550.,0.,0.)/VIA (100.,50.,-550.,0.,0.)\n");
+  const Ran ran = RunText(
+      "COORD ABSOL\nPATH HOLE (0.)\nMOVE (100.,50.,-550.,0.,0.)/VIA (100.,50.,-550.,0.,0.)\n");
   EXPECT_EQ(CodeOf(ran), 348);
   EXPECT_TRUE(ran.moves.empty());
 }
 
 // OPT-2.23: the tip goes to the nearest point of the circle, round it, and stops there.
 TEST(Motion, HoleEndsWhereItEntered) {
-  const Ran ran = RunText(std::string(kAbsol) + "MOVE (130.,50.,-540.,0.,0.)\nPATH HOLE (25.)\n"
+  const Ran ran = RunText(std::string(kAbsol) +
+                          "MOVE (130.,50.,-540.,0.,0.)\nPATH HOLE (25.)\n"
                           "MOVE (100.,50.,-550.,0.,0.)/VIA (100.,50.,-450.,0.,0.)\n");
   EXPECT_NEAR(ran.end.tip.tip.x, 125.0, 1e-6);
   EXPECT_NEAR(ran.end.tip.tip.y, 50.0, 1e-6);
@@ -60,10 +62,12 @@ TEST(Motion, ComputedSpeedOutOfRangeIs7205) {
 
 // OPT-B.20: 500 mm at SPEED 10: 10 s, the ramps of the jerk limit, settling.
 TEST(Motion, AMoveWithoutFlySettles) {
-  const Ran ran = RunText(std::string(kAbsol) + "SPEED 100\nMOVE (1000.,1000.,-400.,0.,0.)\nVR[0] = 1.\nSPEED 10\n"
+  const Ran ran = RunText(std::string(kAbsol) +
+                          "SPEED 100\nMOVE (1000.,1000.,-400.,0.,0.)\nVR[0] = 1.\nSPEED 10\n"
                           "MOVE (1500.,1000.,-400.,0.,0.)\n");
   ASSERT_EQ(ran.moves.size(), 2U);
-  EXPECT_NEAR(ToSeconds(ran.moves[1].at - ran.moves[0].at), 500.0 / 50.0 + 2.0 * std::sqrt(50.0 / 40000.0) + 0.048, 1e-6);
+  EXPECT_NEAR(ToSeconds(ran.moves[1].at - ran.moves[0].at),
+              500.0 / 50.0 + 2.0 * std::sqrt(50.0 / 40000.0) + 0.048, 1e-6);
 }
 
 // OPT-B.08: a target outside the travel is refused before anything moves.
@@ -75,7 +79,8 @@ TEST(Motion, TargetOutsideTheTravelIs7301WithoutMotion) {
 
 // OPT-2.45, OPT-2.46, OPT-2.47: /FLY before COORD and before the end.
 TEST(Motion, FlyBeforeCoordAndBeforeTheEnd) {
-  const std::string fly = std::string(kAbsol) + "MOVE (1000.,1000.,-400.,0.,0.)\nMOVE (1100.,1000.,-400.,0.,0.)/FLY\n";
+  const std::string fly =
+      std::string(kAbsol) + "MOVE (1000.,1000.,-400.,0.,0.)\nMOVE (1100.,1000.,-400.,0.,0.)/FLY\n";
   EXPECT_EQ(CodeOf(RunText(fly + "COORD ROBOT\n")), 7303);
   EXPECT_TRUE(RunText(fly + "COORD ABSOL\n").Told("E7304"));
   const Ran end = RunText(fly);
@@ -83,13 +88,15 @@ TEST(Motion, FlyBeforeCoordAndBeforeTheEnd) {
   EXPECT_NEAR(end.end.tip.tip.x, 1100.0, 1e-9);
 }
 
-// OPT-2.54, OPT-2.55: when /TIME runs out the motion is abandoned, the GOSUB made, RETURN goes on after it.
+// OPT-2.54, OPT-2.55: when /TIME runs out the motion is abandoned, the GOSUB made, RETURN goes on
+// after it.
 TEST(Motion, TimeRunsOut) {
-  const Ran ran = RunText(std::string(kAbsol) +
-                          "SPEED 100\nMOVE (1000.,1000.,-400.,0.,0.)\nSPEED 10\n"
-                          "MOVE (1500.,1000.,-400.,0.,0.)/TIME (2., 900)\nVI[3] = VI[2] + 1\nENDTASK\n"
-                          "900 VI[2] = 5\nRETURN\n",
-                          {.variables = {"VI[2]", "VI[3]"}});
+  const Ran ran =
+      RunText(std::string(kAbsol) +
+                  "SPEED 100\nMOVE (1000.,1000.,-400.,0.,0.)\nSPEED 10\n"
+                  "MOVE (1500.,1000.,-400.,0.,0.)/TIME (2., 900)\nVI[3] = VI[2] + 1\nENDTASK\n"
+                  "900 VI[2] = 5\nRETURN\n",
+              {.variables = {"VI[2]", "VI[3]"}});
   EXPECT_EQ(ran.variables.at("VI[2]"), "5");
   EXPECT_EQ(ran.variables.at("VI[3]"), "6");
   EXPECT_NEAR(ran.end.tip.tip.x, 1100.0, 5.0);
@@ -100,17 +107,19 @@ TEST(Motion, StartAndEndConditions) {
   const Ran start = RunText(std::string(kAbsol) + "MOVE (1000.,1000.,-400.,0.,0.)/START (IL[16])\n",
                             {.inputs = {{At(3.0), InputKind::kLogical, 16, 1.0}}});
   EXPECT_TRUE(start.Told("wait condition 3.0"));
-  const Ran end = RunText(std::string(kAbsol) + "MOVE (1000.,1000.,-400.,0.,0.)/END (IL[20])\nVI[2] = 1\n",
-                          {.inputs = {{At(0.0), InputKind::kLogical, 20, 1.0}}, .variables = {"VI[2]"}});
+  const Ran end =
+      RunText(std::string(kAbsol) + "MOVE (1000.,1000.,-400.,0.,0.)/END (IL[20])\nVI[2] = 1\n",
+              {.inputs = {{At(0.0), InputKind::kLogical, 20, 1.0}}, .variables = {"VI[2]"}});
   EXPECT_NEAR(end.end.axes.column.x, 21.02, 1e-9);
   EXPECT_EQ(end.variables.at("VI[2]"), "1");
 }
 
 // OPT-2.60: while a /NEXT move runs IL[95] is 1; a program can wait for its end.
 TEST(Motion, NextGoesOnWhileTheMachineMoves) {
-  const Ran ran = RunText(std::string(kAbsol) +
-                          "MOVE (1000.,1000.,-400.,0.,0.)/NEXT\nVL[0] = IL[95]\nWAIT (NOT IL[95])\nVR[0] = IA[0]\n",
-                          {.variables = {"VL[0]", "VR[0]"}});
+  const Ran ran = RunText(
+      std::string(kAbsol) +
+          "MOVE (1000.,1000.,-400.,0.,0.)/NEXT\nVL[0] = IL[95]\nWAIT (NOT IL[95])\nVR[0] = IA[0]\n",
+      {.variables = {"VL[0]", "VR[0]"}});
   EXPECT_EQ(ran.variables.at("VL[0]"), "1");
   EXPECT_EQ(ran.variables.at("VR[0]"), "1000.0");
 }
@@ -124,16 +133,18 @@ TEST(Motion, StopAndStartReachTheTarget) {
   EXPECT_NEAR(ran.end.tip.tip.x, 500.0, 1e-9);
 }
 
-// OPT-3.14: ARROW: the shutter opens at the first ON and closes at the end; later only the beam switches.
+// OPT-3.14: ARROW: the shutter opens at the first ON and closes at the end; later only the beam
+// switches.
 TEST(Laser, ArrowShutterStaysOpen) {
   EXPECT_THAT(RunText("WORK 0,0/ON\nWORK 0,0/OFF\nWORK 0,0/ON\nWORK 0,0/OFF\n").told,
-              ElementsAre("compiling 1", "shutter open", "beam on 100.0", "beam off", "beam on 100.0", "beam off",
-                          "shutter closed"));
+              ElementsAre("compiling 1", "shutter open", "beam on 100.0", "beam off",
+                          "beam on 100.0", "beam off", "shutter closed"));
 }
 
 // OPT-3.15: EFA-51: every ON opens and every OFF closes the shutter.
 TEST(Laser, Efa51ShutterFollowsTheBeam) {
-  const Ran ran = RunText("WORK 0,0/ON\nWORK 0,0/OFF\nWORK 0,0/ON\nWORK 0,0/OFF\n", {.parameters = {{"LASER", "EFA51"}}});
+  const Ran ran = RunText("WORK 0,0/ON\nWORK 0,0/OFF\nWORK 0,0/ON\nWORK 0,0/OFF\n",
+                          {.parameters = {{"LASER", "EFA51"}}});
   EXPECT_EQ(ran.Count("shutter open"), 2);
   EXPECT_EQ(ran.Count("shutter closed"), 2);
 }
@@ -141,8 +152,8 @@ TEST(Laser, Efa51ShutterFollowsTheBeam) {
 // OPT-3.21: WORK 1 dwells at PEAK power.
 TEST(Laser, PierceDwellsAtPeak) {
   const Ran ran = RunText("WORKDEF 1,0 (6.5,80.,1.5,95.)\nWORK 1,0/ON\nWORK 1,0/OFF\n");
-  EXPECT_THAT(ran.told, ElementsAre("compiling 1", "shutter open", "beam on 95.0", "wait pierce 1.5", "beam off",
-                                    "shutter closed"));
+  EXPECT_THAT(ran.told, ElementsAre("compiling 1", "shutter open", "beam on 95.0",
+                                    "wait pierce 1.5", "beam off", "shutter closed"));
   EXPECT_NEAR(ran.time_s, 1.5, 1e-9);
 }
 
@@ -154,10 +165,13 @@ TEST(Laser, WorkNeedsItsDefinition) {
 
 // OPT-3.30: the manual's third example of WORK: two schedules, one beam.
 TEST(Laser, SchedulesChangeUnderTheBeam) {
-  EXPECT_THAT(RunText("WORKDEF 2,5 (15)\nWORKDEF 2,6 (16)\nWORKDEF 0,0\nWORK 2,5/ON\nWORK 0,0/ON\nDELAY 0.5\n"
-                      "WORK 2,6/ON\nWORK 0,0/OFF\nWORK 2,5/OFF\nWORK 2,6/OFF\n").told,
-              ElementsAre("compiling 1", "schedule 15", "shutter open", "beam on 100.0", "wait dwell 0.5",
-                          "schedule 16", "beam off", "shutter closed"));
+  EXPECT_THAT(
+      RunText(
+          "WORKDEF 2,5 (15)\nWORKDEF 2,6 (16)\nWORKDEF 0,0\nWORK 2,5/ON\nWORK 0,0/ON\nDELAY 0.5\n"
+          "WORK 2,6/ON\nWORK 0,0/OFF\nWORK 2,5/OFF\nWORK 2,6/OFF\n")
+          .told,
+      ElementsAre("compiling 1", "schedule 15", "shutter open", "beam on 100.0", "wait dwell 0.5",
+                  "schedule 16", "beam off", "shutter closed"));
 }
 
 // OPT-3.24: WORK 2 OFF switches the beam off, with a warning.
@@ -202,10 +216,15 @@ TEST(Control, ErrCatchesOnce) {
   EXPECT_EQ(CodeOf(ran), 7201);
 }
 
-// OPT-3.57: an error in a FUNCTION without ERR is passed to its caller; OPT-B.58: not out of a CALL.
+// OPT-3.57: an error in a FUNCTION without ERR is passed to its caller; OPT-B.58: not out of a
+// CALL.
 TEST(Control, ErrorsClimbFunctionsButNotCalls) {
-  EXPECT_EQ(Value("ERR 900\nFUNCTION 44\nENDTASK\n900 VI[2]=7\n", "VI[2]", {.programs = {{44, "VR[0]=1/0\n"}}}), "7");
-  EXPECT_EQ(CodeOf(RunText("ERR 900\nCALL 45\nENDTASK\n900 VI[2]=7\n", {.programs = {{45, "VR[0]=1/0\n"}}})), 7201);
+  EXPECT_EQ(Value("ERR 900\nFUNCTION 44\nENDTASK\n900 VI[2]=7\n", "VI[2]",
+                  {.programs = {{44, "VR[0]=1/0\n"}}}),
+            "7");
+  EXPECT_EQ(CodeOf(RunText("ERR 900\nCALL 45\nENDTASK\n900 VI[2]=7\n",
+                           {.programs = {{45, "VR[0]=1/0\n"}}})),
+            7201);
 }
 
 // OPT-3.59: the label of ERR is looked up when an error occurs.
@@ -243,9 +262,11 @@ TEST(Control, FunctionNestsFourDeep) {
 
 // OPT-9.21, OPT-9.27, OPT-9.28: parameters by position, converted; those not passed are 0.
 TEST(Control, ParametersAreConvertedCopies) {
-  const Ran ran = RunText("VR[1]=2.7\nFUNCTION 44 (VR[1], ON)\n",
-                          {.programs = {{44, "DEFINE PAR[0] = INT\nVI[2]=PAR[0]\nVR[2]=PAR[1]\nVR[3]=PAR[2]\nPAR[0]=9\n"}},
-                           .variables = {"VI[2]", "VR[2]", "VR[3]", "VR[1]"}});
+  const Ran ran = RunText(
+      "VR[1]=2.7\nFUNCTION 44 (VR[1], ON)\n",
+      {.programs = {{44,
+                     "DEFINE PAR[0] = INT\nVI[2]=PAR[0]\nVR[2]=PAR[1]\nVR[3]=PAR[2]\nPAR[0]=9\n"}},
+       .variables = {"VI[2]", "VR[2]", "VR[3]", "VR[1]"}});
   EXPECT_EQ(ran.variables.at("VI[2]"), "2");
   EXPECT_EQ(ran.variables.at("VR[2]"), "1.0");
   EXPECT_EQ(ran.variables.at("VR[3]"), "0.0");
@@ -256,36 +277,45 @@ TEST(Control, ParametersAreConvertedCopies) {
 TEST(Control, JumpsGoWhereTheySay) {
   EXPECT_EQ(Value("GOTO 20\n10 VI[2]=1\n20 VI[3]=1\n", "VI[2]"), "0");
   EXPECT_EQ(CodeOf(RunText("VL[1]=ON\nIF VL[1] THEN 99\n")), 60);
-  EXPECT_EQ(Value("VR[2]=2.9\nGOTO VR[2] (20,30,40)\nVI[3]=9\nENDTASK\n20 VI[3]=2\nENDTASK\n30 VI[3]=3\nENDTASK\n40 VI[3]=4\n", "VI[3]"), "3");
+  EXPECT_EQ(Value("VR[2]=2.9\nGOTO VR[2] (20,30,40)\nVI[3]=9\nENDTASK\n20 VI[3]=2\nENDTASK\n30 "
+                  "VI[3]=3\nENDTASK\n40 VI[3]=4\n",
+                  "VI[3]"),
+            "3");
   EXPECT_EQ(Value("VI[2]=-1\nGOTO VI[2] (20)\nVI[3]=9\nENDTASK\n20 VI[3]=2\n", "VI[3]"), "9");
 }
 
 // OPT-7.21, OPT-7.22: GOSUB 16 deep; RETURN with nothing to return to.
 TEST(Control, GosubDepthAndStrayReturn) {
   EXPECT_EQ(CodeOf(RunText("10 VI[2]=VI[2]+1\nIF VI[2] > 16 THEN 20\nGOSUB 10\n20 ENDTASK\n")), 0);
-  EXPECT_EQ(CodeOf(RunText("10 VI[2]=VI[2]+1\nIF VI[2] > 17 THEN 20\nGOSUB 10\n20 ENDTASK\n")), 7503);
+  EXPECT_EQ(CodeOf(RunText("10 VI[2]=VI[2]+1\nIF VI[2] > 17 THEN 20\nGOSUB 10\n20 ENDTASK\n")),
+            7503);
   EXPECT_EQ(CodeOf(RunText("RETURN\n")), 7504);
 }
 
 // OPT-7.29: translation and rotation of SYSDEF.
 TEST(Control, SysdefRotatesAboutZThenYThenX) {
-  const Ran z = RunText("COORD ABSOL\nSYSDEF (1000.,1000.,-500.,1.570796,0,0)\nMOVE (10.,0.,0.,0.,0.)\n");
+  const Ran z =
+      RunText("COORD ABSOL\nSYSDEF (1000.,1000.,-500.,1.570796,0,0)\nMOVE (10.,0.,0.,0.,0.)\n");
   EXPECT_NEAR(z.end.tip.tip.y, 1010.0, 1e-4);
-  const Ran zx = RunText("COORD ABSOL\nSYSDEF (1000.,1000.,-500.,1.570796,0,1.570796)\nMOVE (0.,10.,0.,0.,0.)\n");
+  const Ran zx = RunText(
+      "COORD ABSOL\nSYSDEF (1000.,1000.,-500.,1.570796,0,1.570796)\nMOVE (0.,10.,0.,0.,0.)\n");
   EXPECT_NEAR(zx.end.tip.tip.z, -490.0, 1e-4);
 }
 
 // OPT-7.98, OPT-7.101: UPDATE OFF disconnects the images; ON sets the outputs from them.
 TEST(Control, UpdateConnectsOutputs) {
-  const Ran ran = RunText("UPDATE OL /OFF\nOL[16]=ON\nVL[0]=OL[16]\nDELAY 1\nUPDATE OL /ON\n", {.variables = {"VL[0]"}});
+  const Ran ran = RunText("UPDATE OL /OFF\nOL[16]=ON\nVL[0]=OL[16]\nDELAY 1\nUPDATE OL /ON\n",
+                          {.variables = {"VL[0]"}});
   EXPECT_EQ(ran.variables.at("VL[0]"), "1");
   EXPECT_THAT(ran.told, ElementsAre("compiling 1", "wait dwell 1.0", "OL[16] 1"));
 }
 
 // OPT-7.102, OPT-7.103: ASSIGN writes binary, least significant bit first.
 TEST(Control, AssignWritesBits) {
-  const Ran ran = RunText("ASSIGN VL[22] = 5 /8\n", {.variables = {"VL[22]", "VL[23]", "VL[24]", "VL[25]"}});
-  EXPECT_EQ(ran.variables.at("VL[22]") + ran.variables.at("VL[23]") + ran.variables.at("VL[24]"), "101");
+  const Ran ran =
+      RunText("ASSIGN VL[22] = 5 /8\n", {.variables = {"VL[22]", "VL[23]", "VL[24]", "VL[25]"}});
+  EXPECT_EQ(ran.variables.at("VL[22]") + ran.variables.at("VL[23]") + ran.variables.at("VL[24]"),
+            "101");
   EXPECT_EQ(CodeOf(RunText("VI[2]=16\nASSIGN VL[12]=VI[2] /4\n")), 7206);
 }
 
@@ -299,7 +329,8 @@ TEST(Control, StopInCycleAndInRemote) {
 
 // OPT-3.52: the beam is off while halted and comes back with START.
 TEST(Control, BeamReturnsWithStart) {
-  const Ran ran = RunText("WORK 0,0/ON\nSTOP\nWORK 0,0/OFF\n", {.inputs = {{At(4.0), InputKind::kStart}}});
+  const Ran ran =
+      RunText("WORK 0,0/ON\nSTOP\nWORK 0,0/OFF\n", {.inputs = {{At(4.0), InputKind::kStart}}});
   EXPECT_EQ(ran.Count("beam on 100.0"), 2);
   EXPECT_EQ(ran.Count("beam off"), 2);
 }
@@ -316,15 +347,19 @@ TEST(Control, SingleTakesOneStartForEachStep) {
 // OPT-6.07, OPT-6.10: a breakpoint halts after its step, each time.
 TEST(Control, BreakpointHaltsAfterItsStep) {
   const Ran ran = RunText("10 VI[2]=VI[2]+1\nIF VI[2] < 3 THEN 10\n",
-                          {.inputs = {{At(1.0), InputKind::kStart}, {At(2.0), InputKind::kStart}, {At(3.0), InputKind::kStart}},
+                          {.inputs = {{At(1.0), InputKind::kStart},
+                                      {At(2.0), InputKind::kStart},
+                                      {At(3.0), InputKind::kStart}},
                            .breakpoint = machine::ProgramStep{.program = 1, .step = 1}});
   EXPECT_EQ(ran.Count("halt BREAK"), 3);
 }
 
-// OPT-6.13, OPT-6.18, OPT-6.23, OPT-6.24: simulated steps move nothing and take no time; outputs follow at the end.
+// OPT-6.13, OPT-6.18, OPT-6.23, OPT-6.24: simulated steps move nothing and take no time; outputs
+// follow at the end.
 TEST(Control, SimulRunsDryUpToItsStep) {
-  const Ran ran = RunText(std::string(kAbsol) + "OL[16]=ON\nDELAY 5\nMOVE (1000.,1000.,-400.,0.,0.)\nVI[2]=1\n",
-                          {.variables = {"VI[2]"}, .simul = machine::ProgramStep{.program = 1, .step = 6}});
+  const Ran ran =
+      RunText(std::string(kAbsol) + "OL[16]=ON\nDELAY 5\nMOVE (1000.,1000.,-400.,0.,0.)\nVI[2]=1\n",
+              {.variables = {"VI[2]"}, .simul = machine::ProgramStep{.program = 1, .step = 6}});
   EXPECT_TRUE(ran.moves.empty());
   EXPECT_EQ(ran.time_s, 0.0);
   EXPECT_TRUE(ran.Told("OL[16] 1"));
@@ -333,13 +368,17 @@ TEST(Control, SimulRunsDryUpToItsStep) {
 
 // OPT-B.59: TIMER makes its GOSUB between two instructions.
 TEST(Control, TimerMakesItsGosubOnce) {
-  EXPECT_EQ(Value("TIMER (2., 900)\nDELAY 5\nVI[3]=VI[2]\nENDTASK\n900 VI[2]=VI[2]+1\nRETURN\n", "VI[3]"), "1");
+  EXPECT_EQ(
+      Value("TIMER (2., 900)\nDELAY 5\nVI[3]=VI[2]\nENDTASK\n900 VI[2]=VI[2]+1\nRETURN\n", "VI[3]"),
+      "1");
 }
 
 // OPT-B.67: budgets of steps and of virtual time.
 TEST(Control, BudgetsEndTheRun) {
   EXPECT_EQ(CodeOf(RunText("10 GOTO 10\n", {.budget = {.steps = 1000}})), 7901);
-  EXPECT_EQ(CodeOf(RunText("WAIT IL[20]\n", {.budget = {.steps = 1000, .virtual_time = std::chrono::seconds(5)}})), 7902);
+  EXPECT_EQ(CodeOf(RunText("WAIT IL[20]\n",
+                           {.budget = {.steps = 1000, .virtual_time = std::chrono::seconds(5)}})),
+            7902);
 }
 
 // OPT-B.68: DECLARE and the implied ENDTASK are not executed steps; a written ENDTASK is.
@@ -349,14 +388,17 @@ TEST(Control, StepsAreCountedAsExecuted) {
 
 // How time is cut into calls of Advance changes nothing that is told.
 TEST(Control, SlicesChangeNothing) {
-  const std::string text = std::string(kAbsol) + "SPEED 20\nMOVE (1000.,1000.,-400.,0.,0.)/FLY\nOL[16]=ON\n"
-                           "MOVE (1100.,1100.,-400.,0.,0.)/FLY\nMOVE (1200.,1000.,-400.,0.,0.)\nDELAY .3\n";
+  const std::string text =
+      std::string(kAbsol) +
+      "SPEED 20\nMOVE (1000.,1000.,-400.,0.,0.)/FLY\nOL[16]=ON\n"
+      "MOVE (1100.,1100.,-400.,0.,0.)/FLY\nMOVE (1200.,1000.,-400.,0.,0.)\nDELAY .3\n";
   const Ran whole = RunText(text);
   const Ran sliced = RunText(text, {.slice = std::chrono::milliseconds(7)});
   EXPECT_EQ(whole.told, sliced.told);
   EXPECT_EQ(whole.end.time, sliced.end.time);
   ASSERT_EQ(whole.moves.size(), sliced.moves.size());
-  for (std::size_t n = 0; n < whole.moves.size(); ++n) EXPECT_EQ(whole.moves[n].at, sliced.moves[n].at);
+  for (std::size_t n = 0; n < whole.moves.size(); ++n)
+    EXPECT_EQ(whole.moves[n].at, sliced.moves[n].at);
 }
 
 }  // namespace

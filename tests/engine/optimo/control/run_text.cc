@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/core/number_text.h"
 #include "engine/optimo/control/optimo_family.h"
@@ -14,37 +15,78 @@ namespace {
 class Listener final : public machine::RunObserver {
  public:
   explicit Listener(Ran& ran) : ran_(ran) {}
+  void OnStep(SimTime, const machine::Place& place, std::string_view) override {
+    ran_.steps_begun.push_back(place.step);
+  }
+  void OnMotion(const machine::MotionDone& done) override {
+    ran_.parts.push_back({.motion = *done.motion, .done = done});
+    ran_.parts.back().done.motion = nullptr;
+  }
   void OnMove(const machine::MoveDone& move) override { ran_.moves.push_back(move); }
   void OnSignal(const machine::SignalChange& change) override {
     using machine::Signal;
     const std::string value = TrimmedText(change.value, 3);
+    const auto Tell = [&](std::string what) {
+      this->Tell(std::move(what), change.at, change.place);
+    };
     switch (change.signal) {
       case Signal::kBeam:
         Tell(change.value != 0.0 ? "beam on " + TrimmedText(change.detail, 3) : "beam off");
         break;
-      case Signal::kShutter: Tell(change.value != 0.0 ? "shutter open" : "shutter closed"); break;
-      case Signal::kSchedule: Tell("schedule " + std::to_string(static_cast<int>(change.value))); break;
-      case Signal::kOutput: Tell("OL[" + std::to_string(change.index) + "] " + std::to_string(static_cast<int>(change.value))); break;
-      case Signal::kGas: Tell("gas " + std::to_string(static_cast<int>(change.value))); break;
-      case Signal::kRotaryTable: Tell("table " + value); break;
-      default: break;
+      case Signal::kShutter:
+        Tell(change.value != 0.0 ? "shutter open" : "shutter closed");
+        break;
+      case Signal::kSchedule:
+        Tell("schedule " + std::to_string(static_cast<int>(change.value)));
+        break;
+      case Signal::kOutput:
+        Tell("OL[" + std::to_string(change.index) + "] " +
+             std::to_string(static_cast<int>(change.value)));
+        break;
+      case Signal::kGas:
+        Tell("gas " + std::to_string(static_cast<int>(change.value)));
+        break;
+      case Signal::kRotaryTable:
+        Tell("table " + value);
+        break;
+      case Signal::kAnalogue:
+        Tell("OA[" + std::to_string(change.index) + "] " + value);
+        break;
+      case Signal::kSensor:
+        Tell(change.value != 0.0 ? "sensor on" : "sensor off");
+        break;
+      default:
+        break;
     }
   }
   void OnWait(const machine::Wait& wait) override {
+    ran_.waits.push_back(wait);
     const char* kinds[] = {"dwell", "pierce", "spin-up", "condition", "operator", "load"};
-    Tell(std::string("wait ") + kinds[static_cast<int>(wait.kind)] + " " + TrimmedText(ToSeconds(wait.end - wait.start), 3));
+    Tell(std::string("wait ") + kinds[static_cast<int>(wait.kind)] + " " +
+             TrimmedText(ToSeconds(wait.end - wait.start), 3),
+         wait.end, wait.place);
   }
-  void OnHalt(const machine::Halt& halt) override { Tell("halt " + std::string(halt.why)); }
-  void OnProgram(SimTime, const machine::Place&, std::string_view what, int program) override {
-    Tell(std::string(what) + " " + std::to_string(program));
+  void OnHalt(const machine::Halt& halt) override {
+    Tell("halt " + std::string(halt.why), halt.at, halt.place);
   }
-  void OnMessage(SimTime, const machine::Place&, std::string_view text) override { Tell(std::string(text)); }
-  void OnDiagnostic(SimTime, const Diagnostic& diagnostic) override {
-    Tell("E" + std::to_string(Lookup(diagnostic.code).number));
+  void OnProgram(SimTime at, const machine::Place& place, std::string_view what,
+                 int program) override {
+    Tell(std::string(what) + " " + std::to_string(program), at, place);
+  }
+  void OnMessage(SimTime at, const machine::Place& place, std::string_view text) override {
+    Tell(std::string(text), at, place);
+  }
+  void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override {
+    Tell("E" + std::to_string(Lookup(diagnostic.code).number), at,
+         {.program = diagnostic.program, .step = diagnostic.step});
   }
 
  private:
-  void Tell(std::string what) { ran_.told.push_back(std::move(what)); }
+  void Tell(std::string what, SimTime at, const machine::Place& place) {
+    ran_.events.push_back(
+        {.what = what, .at_s = ToSeconds(at), .program = place.program, .step = place.step});
+    ran_.told.push_back(std::move(what));
+  }
   Ran& ran_;
 };
 
@@ -59,13 +101,77 @@ machine::Bytes ObjectOf(const std::string& text) {
 }  // namespace
 
 bool Ran::Told(const std::string& what) const { return Count(what) > 0; }
-int Ran::Count(const std::string& what) const { return static_cast<int>(std::ranges::count(told, what)); }
+int Ran::Count(const std::string& what) const {
+  return static_cast<int>(std::ranges::count(told, what));
+}
 
-Ran RunText(const std::string& main, const RunOptions& options) {
-  Ran ran;
-  Listener listener(ran);
+double Ran::Part::SpeedAt(double t_s) const {
+  return motion.speed.At(done.profile_start_s + t_s).speed;
+}
+
+double Ran::Part::PowerAt(double t_s) const {
+  if (!done.beam_on) return 0.0;
+  const double power = done.power.constant_percent + done.power.percent_per_mm_s * SpeedAt(t_s);
+  return std::clamp(power, 0.0, 100.0);
+}
+
+const Ran::Event& Ran::First(const std::string& what) const {
+  const auto found = std::ranges::find(events, what, &Event::what);
+  if (found != events.end()) return *found;
+  ADD_FAILURE() << "never told: " << what;
+  static const Event none;
+  return none;
+}
+
+double Ran::DistanceTo(const motion::Vec3& point) const {
+  constexpr int kSamples = 512;  // of a part; the best of them is refined by thirds
+  constexpr int kThirds = 80;
+  double best = HUGE_VAL;
+  for (const Part& part : parts) {
+    const auto distance = [&](double s) {
+      const motion::TipPose pose = part.motion.path.At(s);
+      const bool joint = part.motion.path.kind() == motion::PathPiece::Kind::kJoint;
+      const motion::TipPose tip =
+          joint ? part.motion.head.TipOf({pose.tip, pose.a_rad, pose.b_rad}) : pose;
+      return motion::Norm(tip.tip - point);
+    };
+    const double from = part.done.from;
+    const double step = (part.done.travelled - from) / kSamples;
+    double at = from;
+    for (int n = 0; n <= kSamples; ++n) {
+      if (distance(from + n * step) < distance(at)) at = from + n * step;
+    }
+    double low = std::max(from, at - step);
+    double high = std::min(part.done.travelled, at + step);
+    for (int n = 0; n < kThirds; ++n) {
+      const double third = (high - low) / 3.0;
+      if (distance(low + third) < distance(high - third)) {
+        high -= third;
+      } else {
+        low += third;
+      }
+    }
+    best = std::min({best, distance(low), distance(at)});
+  }
+  return best;
+}
+
+double Ran::BeamOnLength() const {
+  double length = 0.0;
+  for (const Part& part : parts) {
+    if (part.done.beam_on) length += part.done.travelled - part.done.from;
+  }
+  return length;
+}
+
+machine::RunSetup SetupOf(const std::string& main, const RunOptions& options) {
   const machine::MachineFamily& family = OptimoFamily();
   machine::Parameters parameters(family.parameters());
+  for (const machine::MachineProfile& profile : family.profiles()) {
+    if (profile.id == options.profile) {
+      EXPECT_TRUE(parameters.Apply(profile).ok());
+    }
+  }
   for (const auto& [name, value] : options.parameters) {
     EXPECT_TRUE(parameters.Set(name, std::string_view(value)).ok()) << name;
   }
@@ -81,6 +187,19 @@ Ran RunText(const std::string& main, const RunOptions& options) {
   setup.simul = options.simul;
   setup.override_percent = options.override_percent;
   setup.budget = options.budget;
+  setup.machine_state = options.machine_state;
+  setup.schedules = options.schedules;
+  for (const auto& [slot, bytes] : options.executables) {
+    setup.programs[slot].executable = std::make_shared<const std::string>(bytes);
+  }
+  return setup;
+}
+
+Ran RunText(const std::string& main, const RunOptions& options) {
+  Ran ran;
+  Listener listener(ran);
+  const machine::MachineFamily& family = OptimoFamily();
+  machine::RunSetup setup = SetupOf(main, options);
   Result<std::unique_ptr<machine::Run>> run = family.NewRun(std::move(setup), listener);
   if (!run) {
     ADD_FAILURE() << run.error().detail;
@@ -98,6 +217,8 @@ Ran RunText(const std::string& main, const RunOptions& options) {
   ran.end = (*run)->state();
   ran.time_s = ToSeconds(ran.end.time);
   ran.steps = (*run)->steps_executed();
+  ran.machine_state = (*run)->SaveMachine();
+  ran.executables = (*run)->made_executables();
   for (const std::string& name : options.variables) {
     ran.variables[name] = (*run)->ReadVariable(name).value_or("?");
   }

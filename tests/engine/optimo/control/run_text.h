@@ -8,12 +8,35 @@
 
 namespace rmlcell::optimo::testing {
 
-// What a run told, as words in order: "beam on 95", "shutter open", "OL[11] 1", "schedule 11", "wait pierce 1.5",
-// "halt STOP", "E7408" ...
+// What a run told, as words in order: "beam on 95", "shutter open", "OL[11] 1", "schedule 11",
+// "wait pierce 1.5", "halt STOP", "E7408" ...
 struct Ran {
+  // Where and when something was told.
+  struct Event {
+    std::string what;
+    double at_s = 0.0;
+    int program = 0;
+    int step = 0;
+  };
+  // A motion, or a part of one.
+  struct Part {
+    motion::PlannedMotion motion;
+    machine::MotionDone done;  // its `motion` is null: use the copy
+
+    double SpeedAt(double t_s) const;  // mm/s, t_s after `done.start`
+    double PowerAt(double t_s) const;  // percent; 0 while the beam is off
+    double duration_s() const { return ToSeconds(done.end - done.start); }
+  };
+
   machine::Outcome outcome;
   std::vector<std::string> told;
+  std::vector<Event> events;  // parallel to `told`
   std::vector<machine::MoveDone> moves;
+  std::vector<Part> parts;
+  std::vector<machine::Wait> waits;
+  std::vector<int> steps_begun;                  // step numbers in order, of whatever program
+  std::string machine_state;                     // as the run left it
+  std::map<int, std::string> executables;        // made by the run
   std::map<std::string, std::string> variables;  // those asked for
   double time_s = 0.0;
   std::uint64_t steps = 0;
@@ -21,6 +44,10 @@ struct Ran {
 
   bool Told(const std::string& what) const;
   int Count(const std::string& what) const;
+  // Precondition: it was told.
+  const Event& First(const std::string& what) const;
+  double DistanceTo(const motion::Vec3& point) const;  // of the tip path, where it comes nearest
+  double BeamOnLength() const;                         // mm of tip path with the beam on
 };
 
 struct RunOptions {
@@ -33,8 +60,15 @@ struct RunOptions {
   std::optional<machine::ProgramStep> simul;
   double override_percent = 100.0;
   machine::RunBudget budget;
+  std::string profile;
+  std::string machine_state;
+  std::optional<std::vector<machine::LaserSchedule>> schedules;
+  std::map<int, std::string> executables;      // by slot
   SimTime slice = std::chrono::seconds(1000);  // of one Advance
 };
+
+// A setup of `main` as program 1, to be run by hand.
+machine::RunSetup SetupOf(const std::string& main, const RunOptions& options = {});
 
 // Compiles `main` as program 1 and runs it to its end, or until nothing more happens.
 Ran RunText(const std::string& main, const RunOptions& options = {});

@@ -1,0 +1,387 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <ostream>
+
+#include "engine/optimo/control/machine_state.h"
+#include "engine/optimo/control/optimo_family.h"
+#include "tests/engine/optimo/control/run_text.h"
+
+// Each code that the control raises while a program runs: by a small program, told with its place.
+namespace rmlcell::optimo::testing {
+namespace {
+
+using machine::InputKind;
+using machine::OutcomeKind;
+
+const std::string kAbsol =
+    "COORD ABSOL\nPATH LIN\nMOVE (1000.,1000.,-400.,0.,0.)\n";  // steps 1 to 3
+
+struct Row {
+  const char* name;
+  int code;
+  int step;
+  std::string text;
+  RunOptions options{};
+  int program = 1;
+
+  friend void PrintTo(const Row& row, std::ostream* out) { *out << row.name; }
+};
+
+std::string NameOf(const ::testing::TestParamInfo<Row>& row) { return row.param.name; }
+
+void ExpectTold(const Row& row, const Ran& ran) {
+  const Ran::Event& told = ran.First("E" + std::to_string(row.code));
+  EXPECT_EQ(told.program, row.program);
+  EXPECT_EQ(told.step, row.step);
+}
+
+// Errors and alarms: the run ends with the code, at the place.
+class EndsTheRun : public ::testing::TestWithParam<Row> {};
+
+TEST_P(EndsTheRun, WithItsCodeAndPlace) {
+  const Row& row = GetParam();
+  const Ran ran = RunText(row.text, row.options);
+  EXPECT_EQ(ran.outcome.kind, OutcomeKind::kFailed);
+  ASSERT_TRUE(ran.outcome.code.has_value());
+  EXPECT_EQ(Lookup(*ran.outcome.code).number, row.code);
+  EXPECT_EQ(ran.outcome.place.program, row.program);
+  EXPECT_EQ(ran.outcome.place.step, row.step);
+  ExpectTold(row, ran);
+  const Result<MachineState> state = DecodeMachineState(ran.machine_state);
+  ASSERT_TRUE(bool(state));
+  EXPECT_EQ(static_cast<int>(state->data.vi[99]), row.code);  // OPT-3.54
+  EXPECT_FALSE(ran.end.beam_on);
+}
+
+std::string Functions(int count) {
+  std::string text;
+  for (int n = 0; n < count; ++n) text += "FUNCTION " + std::to_string(2 + n) + "\n";
+  return text;
+}
+
+std::map<int, std::string> Slots(int first, int count, const std::string& text) {
+  std::map<int, std::string> programs;
+  for (int n = 0; n < count; ++n) programs[first + n] = text;
+  return programs;
+}
+
+std::string NotZeroed() {
+  machine::Parameters parameters(OptimoParameterTable());
+  MachineState state = NewMachine(Resolve(parameters));
+  state.zeroed = false;
+  return EncodeMachineState(state);
+}
+
+std::string Lines(int count) {
+  std::string text;
+  for (int n = 0; n < count; ++n) text += "VR[0]=VR[1]+1.5\n";
+  return text;
+}
+
+// OPT-E.60, OPT-E.129, OPT-E.348, OPT-E.931: the manual's own numbers.
+INSTANTIATE_TEST_SUITE_P(
+    Manual, EndsTheRun,
+    ::testing::Values(
+        Row{"goto", 60, 2, "VI[2]=1\nGOTO 77\n"}, Row{"gosub", 60, 1, "GOSUB 77\n"},
+        Row{"computed_goto", 60, 2, "VI[2]=2\nGOTO VI[2] (20,77)\n20 VI[3]=1\n"},
+        Row{"timer", 60, 2, "TIMER (1.,77)\nDELAY 2\nVI[2]=1\n"},
+        Row{"time", 60, 4, kAbsol + "MOVE (1400.,1000.,-400.,0.,0.)/TIME (.1,77)\n"},
+        Row{"hole_on_axis",
+            129,
+            5,
+            kAbsol +
+                "PATH HOLE (5.)\nMOVE (1000.,1000.,-400.,0.,0.)/VIA (1000.,1000.,-300.,0.,0.)\n",
+            {.parameters = {{"TEACH_SIM", "ON"}}}},
+        Row{"hole_radius", 348, 5,
+            kAbsol +
+                "PATH HOLE (0.)\nMOVE (1000.,1000.,-400.,0.,0.)/VIA (1000.,1000.,-300.,0.,0.)\n"},
+        Row{"gas_three", 931, 3, "ERR 900\nVI[2]=1\nOL[9]=ON\n900 VI[3]=1\n"}),
+    NameOf);
+
+// OPT-E.7101, OPT-E.7102, OPT-E.7103, OPT-E.7104, OPT-E.7105
+INSTANTIATE_TEST_SUITE_P(
+    Programs, EndsTheRun,
+    ::testing::Values(
+        Row{"number", 7101, 2, "VI[2]=145\nCALL VI[2]\n"}, Row{"missing", 7102, 1, "CALL 77\n"},
+        Row{"function_missing", 7103, 1, "CALL 45\n", {.programs = {{45, "FUNCTION 44\n"}}}},
+        Row{"function_is_main",
+            7104,
+            1,
+            "CALL 45\n",
+            {.programs = {{45, "FUNCTION 44\n"}, {44, "FUNCTION 45\n"}}}},
+        Row{"functions", 7105, 1, "CALL 99\n",
+            [] {
+              RunOptions options{.programs = Slots(2, 33, "VI[2]=1\n")};
+              options.programs[99] = Functions(33);
+              return options;
+            }()}),
+    NameOf);
+
+// OPT-E.7106, OPT-E.7107, OPT-E.7108
+INSTANTIATE_TEST_SUITE_P(
+    Executables, EndsTheRun,
+    ::testing::Values(
+        Row{"too_long",
+            7106,
+            1,
+            "CALL 45\n",
+            {.programs = {{45, Lines(200)}}, .parameters = {{"EXECUTABLE_LIMIT", "1000"}}}},
+        Row{"fourth_level",
+            7107,
+            1,
+            "CALL 11\n",
+            {.programs =
+                 {{11, "CALL 12\n"}, {12, "CALL 13\n"}, {13, "CALL 14\n"}, {14, "VI[2]=1\n"}}},
+            13},
+        Row{"entry",
+            7108,
+            1,
+            "CALL 45\n",
+            {.programs = {{45, "FUNCTION 44\n"}, {44, "TASK 2\nVI[2]=1\n"}}}}),
+    NameOf);
+
+// OPT-E.7201, OPT-E.7202, OPT-E.7203, OPT-E.7204
+INSTANTIATE_TEST_SUITE_P(
+    Arithmetic, EndsTheRun,
+    ::testing::Values(Row{"division", 7201, 1, "VR[0]=1/VR[1]\n"},
+                      Row{"modulo", 7201, 1, "VI[2]=5 MOD VI[3]\n"},
+                      Row{"no_short_cut", 7201, 2,
+                          "VL[0]=ON\nIF VL[0] OR (1/VR[0] > 0) THEN 5\n5 VI[2]=1\n"},
+                      Row{"real_overflow", 7202, 2, "VR[1]=1E18\nVR[0]=VR[1]*100.\n"},
+                      Row{"integer_overflow", 7203, 2, "VI[2]=32767\nVI[2]=VI[2]+1\n"},
+                      Row{"parameter_overflow",
+                          7203,
+                          2,
+                          "VR[0]=40000.\nFUNCTION 44 (VR[0])\n",
+                          {.programs = {{44, "DEFINE PAR[0] = INT\nVI[2]=PAR[0]\n"}}}},
+                      Row{"domain", 7204, 2, "VR[1]=-1.\nVR[0]=SQRT(VR[1])\n"},
+                      Row{"condition", 7204, 1, "WAIT ASIN(VR[0]+2.) > 0.\n"}),
+    NameOf);
+
+// OPT-E.7205, OPT-E.7206
+INSTANTIATE_TEST_SUITE_P(
+    Values, EndsTheRun,
+    ::testing::Values(Row{"speed", 7205, 2, "VR[64]=100.5\nSPEED VR[64]\n"},
+                      Row{"accel", 7205, 2, "VR[64]=-1.\nACCEL VR[64]\n"},
+                      Row{"oversh", 7205, 2, "VR[64]=101.\nOVERSH VR[64]\n"},
+                      Row{"delay", 7205, 2, "VR[64]=-1.\nDELAY VR[64]\n"},
+                      Row{"workdef", 7205, 1, "WORKDEF 1,0 (VR[0],80.,1.,90.)\n"},
+                      Row{"time", 7205, 5,
+                          kAbsol + "VR[0]=-1.\nMOVE (1100.,1000.,-400.,0.,0.)/TIME (VR[0],900)\n"},
+                      Row{"assign", 7206, 2, "VI[2]=16\nASSIGN OL[12]=VI[2] /4\n"}),
+    NameOf);
+
+// OPT-E.7301, OPT-E.7302, OPT-E.7303, OPT-E.7305, OPT-E.7307
+INSTANTIATE_TEST_SUITE_P(
+    Motion, EndsTheRun,
+    ::testing::Values(
+        Row{"target", 7301, 1, "MOVE (9000.,0.,0.,0.,0.)\n"},
+        Row{"way", 7301, 4,
+            "COORD ABSOL\nPATH CIR\nMOVE (100.,3000.,-400.,0.,0.)\n"
+            "MOVE (900.,3000.,-400.,0.,0.)/VIA (500.,3400.,-400.,0.,0.)\n"},
+        Row{"lin_in_robot", 7302, 3, "COORD ROBOT\nPATH LIN\nMOVE (0.,0.,0.,0.,0.)\n"},
+        Row{"fly_before_coord", 7303, 6,
+            kAbsol + "VI[2]=1\nMOVE (1100.,1000.,-400.,0.,0.)/FLY\nCOORD ROBOT\n"},
+        Row{"arc", 7305, 5,
+            kAbsol + "PATH CIR\nMOVE (1010.,1000.,-400.,0.,0.)/VIA (1020.,1000.,-400.,0.,0.)\n"},
+        Row{"no_speed", 7307, 5, kAbsol + "SPEED 0\nMOVE (1100.,1000.,-400.,0.,0.)\n"}),
+    NameOf);
+
+// OPT-E.7309, OPT-E.7310, OPT-E.7401, OPT-E.7403, OPT-E.7404
+INSTANTIATE_TEST_SUITE_P(
+    MotionAndLaser, EndsTheRun,
+    ::testing::Values(
+        Row{"normal", 7309, 5,
+            kAbsol +
+                "PATH HOLE (5.)\nMOVE (1000.,1000.,-400.,0.,0.)/VIA (1000.,1000.,-400.,0.,0.)\n"},
+        Row{"not_zeroed",
+            7310,
+            2,
+            "VI[2]=1\nMOVE (0.,0.,0.,0.,0.)\n",
+            {.machine_state = NotZeroed()}},
+        Row{"workdef_missing", 7401, 1, "WORK 1,3/ON\n"},
+        Row{"schedule_range", 7403, 2, "VR[0]=64.\nWORKDEF 2,0 (VR[0])\n"},
+        Row{"schedule_missing",
+            7404,
+            2,
+            "WORKDEF 2,0 (12)\nWORK 2,0/ON\n",
+            {.schedules = std::vector<machine::LaserSchedule>{{.number = 11}}}}),
+    NameOf);
+
+// OPT-E.7405, OPT-E.7406, OPT-E.7407, OPT-E.7410
+INSTANTIATE_TEST_SUITE_P(
+    Laser, EndsTheRun,
+    ::testing::Values(
+        Row{"schedules_of_efa", 7405, 2, "WORKDEF 2,0 (12)\nWORK 2,0/ON\n", {.profile = "efa-51"}},
+        Row{"ramp",
+            7406,
+            3,
+            "WORKDEF 1,0 (8.,75.,0.,50.)\nOL[2]=ON\nWORK 1,0/ON\n",
+            {.profile = "efa-51"}},
+        Row{"go_with_work", 7407, 2, "WORK 0,0/ON\nGO 2\n", {.programs = {{2, "VI[2]=1\n"}}}},
+        Row{"call_with_work", 7407, 2, "WORK 0,0/ON\nCALL 2\n", {.programs = {{2, "VI[2]=1\n"}}}},
+        Row{"door",
+            7410,
+            2,
+            "DELAY 1\nWORK 0,0/ON\n",
+            {.inputs = {{SimTime(0), InputKind::kDoor, 0, 1.0},
+                        {FromSeconds(1), InputKind::kStart}}}}),
+    NameOf);
+
+const std::string kRecursive = "VI[2]=VI[2]+1\nFUNCTION 44\n";
+
+// OPT-E.7501, OPT-E.7502, OPT-E.7503, OPT-E.7504, OPT-E.7505
+INSTANTIATE_TEST_SUITE_P(
+    Nesting, EndsTheRun,
+    ::testing::Values(
+        Row{"call", 7501, 1, "CALL 1\n"},
+        Row{"function", 7502, 2, "FUNCTION 44\n", {.programs = {{44, kRecursive}}}, 44},
+        Row{"gosub", 7503, 1, "10 GOSUB 10\n"}, Row{"return", 7504, 1, "RETURN\n"},
+        Row{"seterr", 7505, 1, "SETERR VI[2]\n"},
+        Row{"seterr_high", 7505, 2, "VI[2]=10000\nSETERR VI[2]\n"}),
+    NameOf);
+
+// Warnings: told at the place, and the run goes on to its end.
+class OnlyWarns : public ::testing::TestWithParam<Row> {};
+
+TEST_P(OnlyWarns, AtItsPlace) {
+  const Row& row = GetParam();
+  const Ran ran = RunText(row.text, row.options);
+  EXPECT_EQ(ran.outcome.kind, OutcomeKind::kCompleted);
+  ExpectTold(row, ran);
+  const Result<MachineState> state = DecodeMachineState(ran.machine_state);
+  ASSERT_TRUE(bool(state));
+  EXPECT_EQ(state->data.vi[99], 0.0F);
+}
+
+// OPT-E.7304, OPT-E.7306, OPT-E.7308, OPT-E.7311, OPT-E.7312
+INSTANTIATE_TEST_SUITE_P(
+    Motion, OnlyWarns,
+    ::testing::Values(
+        Row{"fly_cancelled", 7304, 5, kAbsol + "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nDELAY 1\n"},
+        Row{"straight_arc", 7306, 5,
+            kAbsol + "PATH CIR\nMOVE (1010.,1000.,-400.,0.,0.)/VIA (1010.,1000.,-400.,0.,0.)\n"},
+        Row{"no_via", 7308, 5, kAbsol + "PATH CIR\nMOVE (1010.,1000.,-400.,0.,0.)\n"},
+        Row{"hole_without_via", 7308, 5,
+            kAbsol + "PATH HOLE (5.)\nMOVE (1010.,1000.,-400.,0.,0.)\n"},
+        Row{"zero_sysdef", 7311, 2, "VI[2]=1\nSYSDEF (0.0,0.0,0.0,0.0,0.0,0.0)\n"},
+        Row{"tcp_axis", 7312, 1, "TCP (0,0,0/0,0,0)\n"}),
+    NameOf);
+
+// OPT-E.7313, OPT-E.7315, OPT-E.7316, OPT-E.7320, OPT-B.90
+INSTANTIATE_TEST_SUITE_P(
+    Tool, OnlyWarns,
+    ::testing::Values(
+        Row{"off_axis", 7313, 1, "TCP (8.68,0,0.72/0,1.77,0)\n"},
+        Row{"beside", 7313, 1, "TCP (0,0,3/0,1,3)\n"},
+        Row{"reversed", 7315, 1, "TCP (0,0,0/0,0,5)\n"},
+        Row{"reversal", 7316, 6,
+            kAbsol +
+                "SPEED 20\nMOVE (1100.,1000.,-400.,0.,0.)/FLY\nMOVE (1000.,1000.,-400.,0.,0.)\n"},
+        Row{"limited",
+            7320,
+            4,
+            "COORD ABSOL\nPATH LIN\nSPEED 100\nMOVE (1000.,1000.,-400.,0.,0.)\nMOVE "
+            "(1100.,1000.,-400.,0.,0.)\n",
+            {.override_percent = 145.0}}),
+    NameOf);
+
+// OPT-E.7408, OPT-E.7409, OPT-E.7411
+INSTANTIATE_TEST_SUITE_P(
+    Laser, OnlyWarns,
+    ::testing::Values(
+        Row{"work_at_end", 7408, 1, "WORK 0,0/ON\n"},
+        Row{"gas", 7409, 2, "OL[8]=ON\nOL[9]=ON\n", {.parameters = {{"GAS_CHANNELS", "3"}}}},
+        Row{"schedule_off", 7411, 3,
+            "WORKDEF 2,5 (15)\nWORK 0,0/ON\nWORK 2,5/OFF\nWORK 0,0/OFF\n"}),
+    NameOf);
+
+int CodeOf(const Ran& ran) { return ran.outcome.code ? Lookup(*ran.outcome.code).number : 0; }
+
+// OPT-E.7303, OPT-B.56: a fatal error, and an alarm, are not caught by ERR.
+TEST(ErrorRules, FatalErrorsAreNotCaught) {
+  const Ran ran =
+      RunText("ERR 900\n" + kAbsol +
+                  "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nCOORD ROBOT\nENDTASK\n900 VI[2]=1\n",
+              {.variables = {"VI[2]"}});
+  EXPECT_EQ(CodeOf(ran), 7303);
+  EXPECT_EQ(ran.variables.at("VI[2]"), "0");
+  EXPECT_EQ(CodeOf(RunText("ERR 900\n10 GOSUB 10\n900 VI[2]=1\n")), 7503);
+  EXPECT_EQ(CodeOf(RunText("ERR 900\nMOVE (9000.,0.,0.,0.,0.)\n900 VI[2]=1\n")), 7301);
+}
+
+// OPT-E.7310, OPT-6.22: a simulated MOVE needs no zero; ZERO makes the machine ready.
+TEST(ErrorRules, ZeroMakesTheMachineReady) {
+  const RunOptions cold{.machine_state = NotZeroed()};
+  EXPECT_EQ(CodeOf(RunText("ZERO\nMOVE (10.,0.,0.,0.,0.)\n", cold)), 0);
+  RunOptions dry = cold;
+  dry.simul = machine::ProgramStep{.program = 1, .step = 3};
+  EXPECT_EQ(CodeOf(RunText("ZERO\nMOVE (10.,0.,0.,0.,0.)\nVI[2]=1\n", dry)), 0);
+  const Ran real = RunText("ZERO\nVI[2]=1\nMOVE (10.,0.,0.,0.,0.)\n", dry);
+  EXPECT_EQ(CodeOf(real), 7310);
+  EXPECT_EQ(real.outcome.place.step, 3);
+}
+
+// OPT-E.7610: the emergency stop ends the run where it is: motion, beam, shutter.
+TEST(ErrorRules, EmergencyStop) {
+  const Ran ran =
+      RunText("COORD ABSOL\nPATH LIN\nSPEED 10\nWORK 0,0/ON\nMOVE (521.02,2201.2,-350.,0.,0.)\n",
+              {.inputs = {{FromSeconds(2.0), InputKind::kEmergencyStop}}, .variables = {"VI[99]"}});
+  EXPECT_EQ(CodeOf(ran), 7610);
+  EXPECT_EQ(ran.outcome.place.step, 5);
+  EXPECT_NEAR(ran.time_s, 2.0, 1e-9);
+  EXPECT_EQ(ran.variables.at("VI[99]"), "7610");
+  EXPECT_EQ(ran.Count("beam off"), 1);
+  EXPECT_EQ(ran.Count("shutter closed"), 1);
+  // 2 s at 50 mm/s, less half of the ramp.
+  EXPECT_NEAR(ran.end.tip.tip.x, 21.02 + 100.0 - 50.0 * std::sqrt(50.0 / 40000.0), 1e-6);
+}
+
+// OPT-E.7901, OPT-E.7902, OPT-E.7904: what the cell ends: beam off and shutter closed.
+TEST(ErrorRules, BudgetsAndCancelling) {
+  const Ran steps = RunText("WORK 0,0/ON\n10 GOTO 10\n", {.budget = {.steps = 1000}});
+  EXPECT_EQ(steps.outcome.kind, OutcomeKind::kBudgetExceeded);
+  EXPECT_EQ(CodeOf(steps), 7901);
+  EXPECT_EQ(steps.steps, 1000U);
+  EXPECT_EQ(steps.outcome.place.step, 2);
+  EXPECT_EQ(steps.Count("shutter closed"), 1);
+  const Ran time =
+      RunText("WORK 0,0/ON\nDELAY 100\n", {.budget = {.virtual_time = std::chrono::seconds(5)}});
+  EXPECT_EQ(CodeOf(time), 7902);
+  EXPECT_NEAR(time.time_s, 5.0, 1e-9);
+  EXPECT_EQ(time.Count("shutter closed"), 1);
+
+  machine::RunObserver nobody;
+  Result<std::unique_ptr<machine::Run>> run = OptimoFamily().NewRun(SetupOf("DELAY 100\n"), nobody);
+  ASSERT_TRUE(bool(run));
+  (*run)->Advance(std::chrono::seconds(3));
+  (*run)->End(OutcomeKind::kCancelled, ErrorCode::kCancelled);
+  EXPECT_EQ((*run)->Advance(std::chrono::seconds(9)), machine::RunPhase::kFinished);
+  EXPECT_EQ(Lookup(*(*run)->outcome().code).number, 7904);
+  EXPECT_EQ((*run)->state().time, std::chrono::seconds(3));
+}
+
+// OPT-E.7205, OPT-3.08: the old value stays when a computed one is refused.
+TEST(ErrorRules, ARefusedValueChangesNothing) {
+  const Ran ran = RunText(
+      "COORD ABSOL\nPATH LIN\nSPEED 10\nVR[64]=150.\nERR 900\nSPEED VR[64]\nENDTASK\n900 MOVE "
+      "(221.02,2201.2,-350.,0.,0.)\n");
+  ASSERT_EQ(ran.parts.size(), 1U);
+  EXPECT_NEAR(ran.parts[0].SpeedAt(ran.parts[0].duration_s() / 2), 50.0, 1e-9);
+}
+
+// A delay or a time beyond all figures is a long one, not a short one.
+TEST(ErrorRules, EndlessTimesAreLong) {
+  const machine::RunBudget hour{.steps = 1000, .virtual_time = std::chrono::hours(1)};
+  EXPECT_EQ(CodeOf(RunText("VR[0]=9E18\nDELAY VR[0]\n", {.budget = hour})), 7902);
+  EXPECT_EQ(CodeOf(RunText("VR[0]=9E18\nTIMER (VR[0],900) /AUTO\nDELAY 1\n900 VI[2]=1\n",
+                           {.budget = hour})),
+            0);
+  EXPECT_EQ(CodeOf(RunText(kAbsol + "VR[0]=9E18\nMOVE (1100.,1000.,-400.,0.,0.)/TIME (VR[0],900)\n",
+                           {.budget = hour})),
+            0);
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo::testing
