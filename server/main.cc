@@ -1,10 +1,13 @@
 #include <signal.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstring>
 #include <map>
+#include <chrono>
+#include <thread>
 
 #include "proto/bridge/findings.h"
 #include "server/cell.h"
@@ -105,6 +108,13 @@ Every key of the configuration is a flag too, and a variable of the environment:
   int signal = 0;
   sigwait(&signals, &signal);
   spdlog::info("stopping on {}", strsignal(signal));
+  // All that was acknowledged is on the disk: a call that does not end keeps nobody from stopping.
+  std::thread([patience = config.shutdown_timeout_s + 2.0] {
+    std::this_thread::sleep_for(std::chrono::duration<double>(patience));
+    spdlog::error("a call does not end; stopping without it");
+    spdlog::shutdown();
+    _exit(0);
+  }).detach();
   (*cell)->Stop();
   spdlog::info("stopped");
   return 0;

@@ -4,7 +4,10 @@
 #include <time.h>
 
 #include <algorithm>
+#include <condition_variable>
+#include <mutex>
 #include <new>
+#include <thread>
 
 #include "engine/simulation/families.h"
 #include "engine/simulation/simulate.h"
@@ -354,6 +357,23 @@ bool JobRunner::Work(v1::WorkerAssignment assignment) {
   const std::int64_t memory = assignment.budget().memory_bytes();
   Attempt attempt(line_, std::move(assignment), stopping_);
   Attempt::End end = Attempt::End::kFinished;
+  // Translating a large program, a picture of a long path or a slow store may take longer than a lease.
+  const std::jthread heart([&](const std::stop_token& stop) {
+    std::mutex mutex;
+    std::condition_variable_any wake;
+    v1::WorkRequest message;
+    *message.mutable_heartbeat()->mutable_lease() = lease;
+    for (;;) {
+      std::unique_lock lock(mutex);
+      wake.wait_for(lock, stop, std::chrono::milliseconds(line_.lease_ms() / 3), [] { return false; });
+      if (stop.stop_requested()) return;
+      try {
+        line_.Send(message);
+      } catch (const std::bad_alloc&) {
+        // The job is at its memory budget, and ends by itself.
+      }
+    }
+  });
   // The outermost frame of a job: whatever leaves it fails this job and not the worker.
   try {
     const MemoryBudget budget(memory);

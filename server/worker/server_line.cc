@@ -97,7 +97,10 @@ bool ServerLine::gone() const {
   return gone_ && inbox_.empty();
 }
 
-bool ServerLine::Send(const v1::WorkRequest& message) { return stream_->line->Write(message); }
+bool ServerLine::Send(const v1::WorkRequest& message) {
+  const std::lock_guard lock(sending_);
+  return stream_->line->Write(message);
+}
 
 void ServerLine::Close() { stream_->line->WritesDone(); }
 

@@ -46,6 +46,7 @@ class ServerLine {
   std::unique_ptr<Stream> stream_;
   std::int64_t lease_ms_ = 0;
   std::int64_t events_window_ = 1;
+  std::mutex sending_;  // a job and its heartbeat
   mutable std::mutex mutex_;
   std::condition_variable arrived_;
   std::deque<v1::WorkResponse> inbox_;

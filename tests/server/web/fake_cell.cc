@@ -1,6 +1,8 @@
 #include "tests/server/web/fake_cell.h"
 
 #include <google/protobuf/any.pb.h>
+#include <grpcpp/create_channel.h>
+#include <grpcpp/security/credentials.h>
 #include <grpcpp/health_check_service_interface.h>
 #include <grpcpp/server_builder.h>
 
@@ -236,13 +238,15 @@ FakeCell::FakeCell(WebOptions options) : services_(std::make_unique<Services>(co
   builder.RegisterService(&services_->programs);
   builder.RegisterService(&services_->workers);
   builder.SetMaxReceiveMessageSize(-1);
+  int grpc_port = 0;
+  builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &grpc_port);
   server_ = builder.BuildAndStart();
   SetServing(true);
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);
   options.secret = std::string(kSecret);
   Result<std::unique_ptr<WebServer>> web = WebServer::Start(
-      options, server_->InProcessChannel(arguments), resources_, [this](const WebLogEntry& entry) {
+      options, grpc::CreateCustomChannel("127.0.0.1:" + std::to_string(grpc_port), grpc::InsecureChannelCredentials(), arguments), resources_, [this](const WebLogEntry& entry) {
         const std::lock_guard lock(mutex_);
         log_.push_back(entry);
       });

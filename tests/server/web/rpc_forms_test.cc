@@ -138,7 +138,7 @@ TEST_F(RpcForms, UnaryByGet) {
   EXPECT_EQ(Json::parse(json.body)["name"], "jobs/1");
   const RawResponse events =
       Exchange(cell_.port(), Get(target, "Accept: text/html, text/event-stream;q=0.9\r\n"));
-  EXPECT_TRUE(events.body.starts_with("data: {"));
+  EXPECT_TRUE(events.body.starts_with("data: {")) << events.status << " " << events.body;
   EXPECT_TRUE(events.body.ends_with("event: end\ndata: {}\n\n"));
   // Connect's own GET: base64 and a binary message.
   const RawResponse binary = Exchange(
