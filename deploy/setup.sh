@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs every Debian package that rmlcell needs: to build (always), to test (with --tests).
+# Installs every Debian package that rmlcell needs: to build (always), to test (--tests), to fuzz (--fuzz).
 # As root, or by sudo. Quiet and quick when nothing is missing.
 set -euo pipefail
 
@@ -44,8 +44,18 @@ npm                     # brings buf and the web clients
 LIST
 }
 
+fuzz_packages() {
+  sed -e 's/#.*//' -e '/^[[:space:]]*$/d' <<'LIST'
+clang                   # libFuzzer
+llvm                    # symbols in its findings
+LIST
+}
+
 wanted=$(packages)
-if [ "${1:-}" = "--tests" ]; then wanted+=" $(test_packages)"; fi
+case ${1:-} in
+  --tests) wanted+=" $(test_packages)" ;;
+  --fuzz) wanted+=" $(test_packages) $(fuzz_packages)" ;;
+esac
 
 missing=()
 for package in $wanted; do

@@ -1,21 +1,91 @@
 #!/usr/bin/env bash
-# The kill and crash tests again and again: what a rare interleaving would break shows here.
-#   ROUNDS=200 bash tests/long.sh      needs build/release, as tests/run.sh leaves it
+# What takes hours: rare interleavings, races, and inputs that nobody thought of. Writes a summary to
+# tests/results/long.txt. Needs build/release, as tests/run.sh leaves it.
+#   [ROUNDS=100] [FUZZ_SECONDS=600] bash tests/long.sh [kills] [crashes] [races] [fuzz]      default: all
 set -euo pipefail
 cd "$(dirname "$0")/.."
 rounds=${ROUNDS:-100}
+seconds=${FUZZ_SECONDS:-600}
+parts=${*:-kills crashes races fuzz}
 export RMLCELL_BIN=$PWD/build/release/bin RMLCELL_STUBS=$PWD/build/release/tests/integration/stubs
 export RMLCELL_SHARED=${RMLCELL_SHARED:-$PWD/../shared}
 
+mkdir -p tests/results build/long
+summary=tests/results/long.txt
 failed=0
-log=$(mktemp)
-trap 'rm -f "$log"' EXIT
-for round in $(seq "$rounds"); do
-  if ! /usr/bin/python3 -B tests/integration/test_cell.py >"$log" 2>&1; then
-    failed=$((failed + 1))
-    echo "round $round failed:"
-    tail -n 30 "$log"
+note() { echo "$*" | tee -a "$summary"; }
+fail() { failed=1; note "FAILED: $*"; }
+
+# The server and its workers are killed in the middle of jobs and submissions.
+kills() {
+  local bad=0
+  for round in $(seq "$rounds"); do
+    if ! /usr/bin/python3 -B tests/integration/test_cell.py >build/long/kills.log 2>&1; then
+      bad=$((bad + 1))
+      cp build/long/kills.log "build/long/kills-$round.log"
+      tail -n 30 build/long/kills.log
+    fi
+  done
+  note "kills: $rounds rounds against the real server and its workers, $bad failed"
+  [ $bad -eq 0 ] || fail kills
+}
+
+# The store at every operation of the disk.
+crashes() {
+  if RMLCELL_LONG=1 build/release/tests/storage_sqlite_crash_test >build/long/crashes.log 2>&1; then
+    note "crashes: $(tail -n 1 build/long/crashes.log), a crash at every operation of the disk"
+  else
+    fail crashes, see build/long/crashes.log
   fi
+}
+
+# What has threads under ThreadSanitizer.
+races() {
+  local targets=(server_events_test server_jobs_test storage_sqlite_test storage_sqlite_conformance_test)
+  cmake --preset tsan >/dev/null
+  ninja -C build/tsan "${targets[@]}" >build/long/tsan.log
+  for target in "${targets[@]}"; do
+    if "build/tsan/tests/$target" >"build/long/$target.log" 2>&1; then
+      note "races: $target, $(grep 'PASSED' "build/long/$target.log" | tail -n 1)"
+    else
+      fail "races in $target, see build/long/$target.log"
+    fi
+  done
+}
+
+# Each decoder of foreign bytes, from its committed seeds. What is found is kept beside the log.
+fuzz() {
+  command -v clang++ >/dev/null || bash deploy/setup.sh --fuzz
+  cmake --preset fuzz >/dev/null
+  local targets=(motion_planner_fuzz optimo_text_fuzz optimo_object_fuzz optimo_convert_fuzz optimo_compensate_fuzz
+                 rml1_device_fuzz)
+  ninja -C build/fuzz "${targets[@]}" >build/long/fuzz_build.log
+  for target in "${targets[@]}"; do
+    local program seeds=tests/fuzz/corpus/$target found=build/long/$target
+    program=$(find build/fuzz -name "$target" -type f -perm -u+x | head -n 1)
+    case $target in
+      optimo_*) seeds=tests/fuzz/corpus/optimo-$(echo "$target" | cut -d_ -f2) ;;
+      rml1_*) seeds=tests/fuzz/corpus/rml1 ;;
+    esac
+    mkdir -p "$found"
+    local inputs=("$found")
+    [ -d "$seeds" ] && inputs+=("$seeds")
+    if "$program" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 -print_final_stats=1 \
+        -artifact_prefix="build/long/$target-" "${inputs[@]}" >"build/long/$target.log" 2>&1; then
+      note "fuzz: $target, $seconds s, $(sed -n 's/.*number_of_executed_units: *//p' "build/long/$target.log") inputs, nothing found"
+    else
+      fail "$target, see build/long/$target.log"
+    fi
+  done
+}
+
+{
+  echo "Long tests of $(git rev-parse --short HEAD 2>/dev/null || echo unknown), $(date -u +%F), $(nproc) cores"
+} >"$summary"
+for part in $parts; do
+  case $part in
+    kills | crashes | races | fuzz) $part ;;
+    *) echo "usage: bash tests/long.sh [kills] [crashes] [races] [fuzz]" >&2; exit 2 ;;
+  esac
 done
-echo "$rounds rounds against the real server and its workers, $failed failed"
-[ "$failed" -eq 0 ]
+exit $failed
