@@ -177,7 +177,9 @@ Status Cell::Parts::ListenWeb() {
                                         .connections_max = static_cast<std::size_t>(config.web_connections_max),
                                         .origins = config.web_origins,
                                         .secret = gate.web_secret()},
-                                       server->InProcessChannel(arguments), *resources,
+                                       grpc::CreateCustomChannel(grpc_addresses.front(), grpc::InsecureChannelCredentials(),
+                                                                 arguments),
+                                       *resources,
                                        [](const web::WebLogEntry& entry) {
                                          spdlog::debug("{} {} {} {} bytes in {} us, {}", entry.method, entry.path,
                                                        entry.http_status, entry.bytes_sent, entry.duration.count(),

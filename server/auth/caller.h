@@ -26,7 +26,7 @@ struct CallFacts {
 };
 
 // The one place that admits or refuses calls, whatever way they came in: TCP, unix socket, or the web
-// gateway over the in-process channel. For now every caller is the local administrator, since the server
+// gateway over its channel. For now every caller is the local administrator, since the server
 // listens on loopback and unix sockets only.
 class Gate {
  public:

@@ -7,7 +7,7 @@
 
 namespace rmlcell::web {
 
-// Answers one call: reads the request, makes the call over the in-process channel, writes what
+// Answers one call: reads the request, makes the call over the channel to the server, writes what
 // comes. The next message is asked for only when the socket took the last; a client that leaves
 // cancels it.
 std::shared_ptr<Exchange> MakeRpcExchange(const Gateway& gateway, const RpcRoute& route,

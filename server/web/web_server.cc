@@ -158,9 +158,9 @@ struct WebServer::Core {
 WebServer::WebServer(std::unique_ptr<Core> core) : core_(std::move(core)) {}
 
 Result<std::unique_ptr<WebServer>> WebServer::Start(WebOptions options,
-                                                    std::shared_ptr<grpc::Channel> in_process,
+                                                    std::shared_ptr<grpc::Channel> channel,
                                                     ResourceSource& resources, WebLogger logger) {
-  auto core = std::make_unique<Core>(std::move(options), std::move(in_process), resources,
+  auto core = std::make_unique<Core>(std::move(options), std::move(channel), resources,
                                      std::move(logger));
   if (Status status = core->Listen(); !status) return status.error();
   core->Accept();

@@ -63,16 +63,14 @@ using WebLogger = std::function<void(const WebLogEntry&)>;
 // No header of a browser whose name begins with "rmlcell-" is ever sent on.
 //
 // To stop: let health say NOT_SERVING, StopAccepting(), end the streams from their handlers
-// (UNAVAILABLE becomes an event "reconnect"), Stop(), and only then the gRPC server: its in-process
-// transport closes streams at once.
+// (UNAVAILABLE becomes an event "reconnect"), Stop(), and only then the gRPC server.
 class WebServer {
  public:
-  // `in_process` must be a callback-capable channel of the server (Server::InProcessChannel) made
-  // with GRPC_ARG_MAX_RECEIVE_MESSAGE_LENGTH -1, or large answers fail. `resources` outlives the
+  // `channel` leads to the gRPC server and has GRPC_ARG_MAX_RECEIVE_MESSAGE_LENGTH -1, or large answers fail. `resources` outlives the
   // WebServer. `logger` runs on threads of the gateway and must be thread-safe; it may be empty.
   // Errors: CellPortUsed, CellConfiguration.
   static Result<std::unique_ptr<WebServer>> Start(WebOptions options,
-                                                  std::shared_ptr<grpc::Channel> in_process,
+                                                  std::shared_ptr<grpc::Channel> channel,
                                                   ResourceSource& resources, WebLogger logger = {});
 
   // Stops at once, as Stop(0).
