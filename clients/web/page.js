@@ -187,7 +187,7 @@ function timeTexts(job) {
   if (!begun) return ["", "", ""];
   const date = new Date(begun);
   const today = date.toDateString() === new Date().toDateString();
-  const shown = today ? date.toLocaleTimeString() : date.toLocaleDateString();
+  const shown = today ? date.toLocaleTimeString([], { hour12: false }) : date.toLocaleDateString();
   let note = job.startTime ? "" : "submitted";
   if (job.startTime && job.endTime) note = `took ${duration((new Date(job.endTime) - date) / 1000)}`;
   return [shown, note, date.toLocaleString()];

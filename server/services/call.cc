@@ -8,18 +8,25 @@ namespace {
 
 // gRPC sends details in a header, and clients take 8 KiB of headers: more findings are left out.
 constexpr std::size_t kDetailsMax = 6 << 10;
+// The text stands in them twice, and once in the message: with a name of a megabyte in it nothing would arrive.
+constexpr std::size_t kErrorTextMax = 1000;
 
 }  // namespace
 
 grpc::Status ToGrpcStatus(const Error& error, const std::vector<Diagnostic>& diagnostics,
                           std::uint64_t dropped) {
   std::vector<Diagnostic> shown = diagnostics;
-  google::rpc::Status rich = bridge::ToRpcStatus(error, shown, dropped);
+  Error shortened = error;
+  if (shortened.detail.size() > kErrorTextMax) {
+    shortened.detail.resize(kErrorTextMax);
+    shortened.detail += "...";
+  }
+  google::rpc::Status rich = bridge::ToRpcStatus(shortened, shown, dropped);
   while (rich.ByteSizeLong() > kDetailsMax && !shown.empty()) {
     const std::size_t keep = shown.size() / 2;
     dropped += shown.size() - keep;
     shown.resize(keep);
-    rich = bridge::ToRpcStatus(error, shown, dropped);
+    rich = bridge::ToRpcStatus(shortened, shown, dropped);
   }
   return {static_cast<grpc::StatusCode>(rich.code()), rich.message(), rich.SerializeAsString()};
 }

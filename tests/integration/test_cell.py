@@ -197,6 +197,8 @@ class Programs(WithCell):
             stub.PutProgram(self.put("optimo-1", 47, "big.S", b";" * 5_000_000))
         self.assertEqual(caught.exception.code(), grpc.StatusCode.RESOURCE_EXHAUSTED)
         self.assertEqual(detail_of(caught.exception).code, "CELL-E9007")
+        self.refused(self.cell.jobs().GetJob, job_pb2.GetJobRequest(name="jobs/" + "9" * 1_000_000),
+                     grpc.StatusCode.INVALID_ARGUMENT, "CELL-E9003")
         self.refused(self.cell.jobs().SubmitJob,
                      job_pb2.SubmitJobRequest(job=inline_job("mill-1", "big.rml", b";" * 5_000_000)),
                      grpc.StatusCode.RESOURCE_EXHAUSTED, "CELL-E9007")
