@@ -127,9 +127,9 @@ SimTime Control::NextEvent(SimTime until) const {
     next = std::max(s_.now, setup_.inputs[s_.next_input].at);
   if (s_.active) {
     next = std::min(next, s_.active->end);
-    if (Watching()) {
+    if (Watching() && !s_.deferred) {
       if (s_.end_condition) next = std::min(next, NextTick(s_.watched_since));
-      if (s_.time_gosub) next = std::min(next, std::max(s_.now, s_.time_due));
+      if (s_.time_gosub && !s_.time_ran_out) next = std::min(next, std::max(s_.now, s_.time_due));
     }
   } else if (!s_.timeline.empty()) {
     next = s_.now;
@@ -176,7 +176,10 @@ void Control::ActOnTime() {
   if (s_.phase != machine::RunPhase::kRunning) return;
   if (s_.halting && !Busy()) {
     s_.halting = false;
-    return Halt("STOP");
+    if (s_.held.empty()) return Halt("STOP");
+    s_.place_ahead = s_.place;
+    s_.place = s_.halted_behind;
+    return Halt("HOLD");
   }
   if (s_.stop_requested && s_.active && BringToHalt() && !Busy()) {
     s_.halting = false;
@@ -272,7 +275,9 @@ void Control::Apply(const machine::InputChange& input) {
       Resume();
       break;
     case machine::InputKind::kHold:
-      if (s_.mode != machine::Mode::kRemote) s_.hold_requested = true;
+      if (s_.mode == machine::Mode::kRemote) break;
+      s_.hold_requested = true;
+      if (s_.phase == machine::RunPhase::kRunning) EndAtATarget();
       break;
     case machine::InputKind::kStop:
       if (s_.phase != machine::RunPhase::kRunning) break;
@@ -360,6 +365,7 @@ void Control::Resume() {
   }
   s_.timeline.insert(s_.timeline.begin(), s_.interrupted.begin(), s_.interrupted.end());
   s_.interrupted.clear();
+  PlanHeld();
 }
 
 // The state freezes: no motion is modelled after it (motion.md 6).
@@ -386,6 +392,7 @@ void Control::End(machine::OutcomeKind kind, ErrorCode code) {
 // Beam off, shutter closed, whatever the reason (OPT-3.16, 3.18, B.54).
 void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail) {
   s_.timeline.clear();
+  s_.held.clear();
   s_.interrupted.clear();
   BeamOff();
   CloseShutter();

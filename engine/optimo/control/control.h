@@ -61,6 +61,7 @@ class Control : private VariableAccess {
   void EndMotionHere();
   bool BringToHalt();
   void ChangeOverride(double percent);
+  const MoveNote* NoteOf(std::uint64_t tag) const;
   void StopMotions();
   motion::TipPose TipNow() const;
   motion::AxisPose AxesNow() const;
@@ -72,6 +73,13 @@ class Control : private VariableAccess {
 
   // 0: no source is known.
   int LineOf(int slot, std::uint32_t step) const;
+
+  // --- control_hold.cc: HOLD inside a chain of passages ---
+  const motion::MoveCommand* Appended(std::uint64_t tag) const;
+  bool EndAtATarget();
+  void HoldBehind(const motion::PlannedMotion& exact, const std::vector<motion::PlannedItem>& kept,
+                  bool under_way);
+  void PlanHeld();
 
   // --- control_motion.cc: what MOVE and its kin do ---
   void Move(const Instruction& i);

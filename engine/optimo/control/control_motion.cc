@@ -117,6 +117,7 @@ bool Control::AppendMotion(const motion::PathPiece& path, const Instruction& i,
   s_.planned_axes = path.kind() == motion::PathPiece::Kind::kJoint
                         ? motion::AxisPose{to.tip, to.a_rad, to.b_rad}
                         : command.head.ColumnOf(to);
+  if (note.fly || s_.passing) s_.appended.push_back({.tag = command.tag, .move = command});
   s_.passing = note.fly;
   s_.run_ahead = 0;
   DrainPlanner();

@@ -39,6 +39,8 @@ void Control::DrainPlanner() {
     s_.timeline.push_back(std::move(*item));
 }
 
+const MoveNote* Control::NoteOf(std::uint64_t tag) const { return FindTag(s_.notes, tag); }
+
 // Marks take effect at once, motions begin.
 void Control::StartNextItem() {
   while (!s_.active && !s_.timeline.empty()) {
@@ -56,6 +58,9 @@ void Control::StartNextItem() {
     s_.timeline.pop_front();
     if (const MoveNote* note = FindTag(s_.notes, active.motion.tag)) active.note = *note;
     while (!s_.notes.empty() && s_.notes.front().first < active.motion.tag) s_.notes.pop_front();
+    while (!s_.appended.empty() && s_.appended.front().tag < active.motion.tag) {
+      s_.appended.pop_front();
+    }
     BeginProfile();
   }
   if (!Busy()) s_.background = false;

@@ -29,6 +29,7 @@ void Control::Show(PassageEffect effect, When when) {
   if (!s_.passing || when == When::kNow) return Carry(effect);
   const std::uint64_t tag = s_.next_tag++;
   s_.effects.emplace_back(tag, effect);
+  s_.appended.push_back({.tag = tag, .move = std::nullopt});
   s_.planner.Mark(tag);
   DrainPlanner();
 }

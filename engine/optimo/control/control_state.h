@@ -101,6 +101,12 @@ struct ProgramContext {
   std::vector<WorkTask> work_tasks{};  // stand still while a CALLed program runs
 };
 
+// A command as the planner got it, kept until its motion is over; without a move: a mark.
+struct AppendedItem {
+  std::uint64_t tag = 0;
+  std::optional<motion::MoveCommand> move{};
+};
+
 // What is told when a motion is over.
 struct MoveNote {
   machine::Place place{};
@@ -199,10 +205,14 @@ struct ControlState {
   std::deque<motion::PlannedItem> timeline{};
   std::optional<ActiveMotion> active{};
   std::deque<motion::PlannedItem> interrupted{};  // STOP: what follows at START
-  bool halting = false;                           // coming to rest for a STOP
-  bool passing = false;                           // the planner may hold a /FLY motion back
-  bool background = false;                        // the motion under way is one of /NEXT
-  bool condition_met = false;                     // /START of the instruction in execution was true
+  std::deque<AppendedItem> appended{};            // while /FLY passages are open
+  std::deque<AppendedItem> held{};                // HOLD: what follows at START
+  machine::Place halted_behind{};                 // the move that HOLD made exact
+  machine::Place place_ahead{};  // where the program was when HOLD halted the motion
+  bool halting = false;          // coming to rest for a STOP, or a HOLD inside a chain
+  bool passing = false;          // the planner may hold a /FLY motion back
+  bool background = false;       // the motion under way is one of /NEXT
+  bool condition_met = false;    // /START of the instruction in execution was true
   SimTime instruction_since{0};
   Polling polling{};
   int run_ahead = 0;  // instructions executed since the last motion

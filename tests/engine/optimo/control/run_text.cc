@@ -205,14 +205,26 @@ Ran RunText(const std::string& main, const RunOptions& options) {
     ADD_FAILURE() << run.error().detail;
     return ran;
   }
-  for (int n = 0; n < 100'000; ++n) {
-    const machine::RunPhase phase = (*run)->Advance((*run)->state().time + options.slice);
-    if (phase == machine::RunPhase::kFinished) break;
-    if (phase == machine::RunPhase::kHalted &&
-        (options.inputs.empty() || options.inputs.back().at <= (*run)->state().time)) {
-      break;
+  const auto go_on = [&](SimTime until) {
+    for (int n = 0; n < 100'000 && (*run)->state().time < until; ++n) {
+      const SimTime to = std::min(until, (*run)->state().time + options.slice);
+      const machine::RunPhase phase = (*run)->Advance(to);
+      if (phase == machine::RunPhase::kFinished) break;
+      if (phase == machine::RunPhase::kHalted &&
+          (options.inputs.empty() || options.inputs.back().at <= (*run)->state().time)) {
+        break;
+      }
     }
+  };
+  if (options.restore_at) {
+    go_on(*options.restore_at);
+    const std::unique_ptr<machine::RunSnapshot> saved = (*run)->Save();
+    const Ran told_before = ran;
+    go_on(kForever);
+    (*run)->Restore(*saved);
+    ran = told_before;
   }
+  go_on(kForever);
   ran.outcome = (*run)->outcome();
   ran.end = (*run)->state();
   ran.time_s = ToSeconds(ran.end.time);

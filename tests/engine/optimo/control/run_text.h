@@ -61,6 +61,9 @@ struct RunOptions {
   double override_percent = 100.0;
   machine::RunBudget budget;
   std::string profile;
+  // The run is saved then, goes on to its end, and is restored and goes on again: the second end
+  // counts.
+  std::optional<SimTime> restore_at;
   std::string machine_state;
   std::optional<std::vector<machine::LaserSchedule>> schedules;
   std::map<int, std::string> executables;      // by slot

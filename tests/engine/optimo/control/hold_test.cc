@@ -1,0 +1,74 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/engine/optimo/control/run_text.h"
+
+// HOLD inside a chain of /FLY moves: motion.md 6. Two legs of 100 mm at SPEED 10 with a corner of
+// 90 degrees, from rest to rest, are case C01: 4.089999848 s.
+namespace rmlcell::optimo::testing {
+namespace {
+
+using machine::InputKind;
+
+constexpr double kTwoLegs_s = 4.089999848;
+constexpr double kDeviation_mm = 1.358847515;
+const std::string kThere =
+    "COORD ABSOL\nPATH LIN\nMOVE (1000.,1000.,-400.,0.,0.)\nSPEED 10\n";  // steps 1 to 4
+const std::string kChain =
+    kThere +
+    "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nMOVE (1100.,1100.,-400.,0.,0.)/FLY\n"
+    "OL[16]=ON\nMOVE (1200.,1100.,-400.,0.,0.)/FLY\nMOVE (1200.,1200.,-400.,0.,0.)\n";
+
+// When the chain begins.
+double BeginOf(const std::string& text) { return ToSeconds(RunText(text).moves.front().at); }
+
+Ran Held(const std::string& text, double hold_s, double start_s) {
+  return RunText(text, {.inputs = {{FromSeconds(hold_s), InputKind::kHold},
+                                   {FromSeconds(start_s), InputKind::kStart}}});
+}
+
+// OPT-4.17: on the second leg, whose bend is not begun: its own target is reached exactly, and
+// settled.
+TEST(Hold, MakesTheMoveUnderWayExact) {
+  const double begin = BeginOf(kChain);
+  const Ran ran = Held(kChain, begin + 3.0, begin + 20.0);
+  EXPECT_EQ(ran.First("halt HOLD").step, 6);
+  EXPECT_NEAR(ran.First("halt HOLD").at_s, begin + kTwoLegs_s, 1e-6);
+  EXPECT_LT(ran.DistanceTo({1100.0, 1100.0, -400.0}), 1e-9);
+  EXPECT_NEAR(ran.DistanceTo({1100.0, 1000.0, -400.0}), kDeviation_mm, 1e-6);
+  EXPECT_NEAR(ran.DistanceTo({1200.0, 1100.0, -400.0}), kDeviation_mm, 1e-6);
+  // What stood between the moves comes with START, and the other two legs from rest.
+  EXPECT_NEAR(ran.First("OL[16] 1").at_s, begin + 20.0, 1e-9);
+  EXPECT_NEAR(ran.time_s, begin + 20.0 + kTwoLegs_s, 1e-6);
+}
+
+// OPT-4.17: on the first leg the first target; 100 mm from rest to rest.
+TEST(Hold, HaltsAtTheFirstTarget) {
+  const double begin = BeginOf(kChain);
+  const Ran ran = Held(kChain, begin + 1.0, begin + 20.0);
+  EXPECT_EQ(ran.First("halt HOLD").step, 5);
+  EXPECT_NEAR(ran.First("halt HOLD").at_s,
+              begin + 100.0 / 50.0 + 2.0 * std::sqrt(50.0 / 40000.0) + 0.048, 1e-6);
+  EXPECT_LT(ran.DistanceTo({1100.0, 1000.0, -400.0}), 1e-9);
+  EXPECT_NEAR(ran.end.tip.tip.y, 1200.0, 1e-4);
+}
+
+// OPT-4.17: inside the bend the next move is finished too.
+TEST(Hold, FinishesTheBendAndTheNextMove) {
+  const Ran free = RunText(kChain);
+  const double begin = ToSeconds(free.moves.front().at);
+  double in_bend = 0.0;
+  for (const Ran::Part& part : free.parts) {
+    if (part.motion.path.kind() != motion::PathPiece::Kind::kBlend) continue;
+    in_bend = ToSeconds(part.done.start) + 0.01;
+    break;
+  }
+  ASSERT_GT(in_bend, begin);
+  const Ran ran = Held(kChain, in_bend, begin + 20.0);
+  EXPECT_EQ(ran.First("halt HOLD").step, 6);
+  EXPECT_NEAR(ran.First("halt HOLD").at_s, begin + kTwoLegs_s, 1e-6);
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo::testing
