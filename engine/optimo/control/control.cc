@@ -216,11 +216,10 @@ void Control::ActOnTime() {
       break;
     }
     case Pending::Kind::kTakeOver:
-      if (!Busy()) {  // it came to its end before
-        pending = {};
-        break;
-      }
-      if (s_.now < pending.until) break;
+      if (Busy() && s_.now < pending.until) break;
+      s_.background = false;  // from here on it is a motion like any other that is waited for
+      pending = {};
+      if (!Busy()) break;  // it came to its end before
       pending = {.kind = Pending::Kind::kStandstill};
       if (s_.active) EndMotionHere();
       s_.timeline.clear();

@@ -9,7 +9,7 @@
 namespace rmlcell::optimo::testing {
 namespace {
 
-constexpr int kPrograms = 155;
+constexpr int kPrograms = 300;
 constexpr int kCalled = 2;  // slots 2 and 3: CALL and FUNCTION
 
 class Generator {

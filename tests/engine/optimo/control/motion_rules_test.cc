@@ -149,6 +149,20 @@ TEST(MotionRules, AMoveTakesOverFromNext) {
   EXPECT_NEAR(ran.end.tip.tip.x, 21.02, kReal_mm);
 }
 
+// OPT-2.59, OPT-7.68: the move that takes over is waited for like any other, and so is a chain behind it.
+TEST(MotionRules, AMoveThatTookOverIsWaitedFor) {
+  const Ran ran = RunText(kAbsol +
+                              "SPEED 10\nMOVE (521.02,2201.2,-350.,0.,0.)/NEXT\n"
+                              "MOVE (21.02,2101.2,-350.,0.,0.)\nVL[0] = IL[95]\n"
+                              "MOVE (21.02,2001.2,-350.,0.,0.)/NEXT\nMOVE (21.02,2051.2,-350.,0.,0.)/FLY\n"
+                              "MOVE (21.02,2101.2,-350.,0.,0.)\nVL[1] = IL[95]\n",
+                          {.variables = {"VL[0]", "VL[1]"}});
+  EXPECT_EQ(CodeOf(ran), 0);
+  EXPECT_EQ(ran.variables.at("VL[0]"), "0");
+  EXPECT_EQ(ran.variables.at("VL[1]"), "0");
+  EXPECT_NEAR(ran.end.tip.tip.y, 2101.2, kReal_mm);
+}
+
 // OPT-2.60, OPT-B.89: CALL, and the end of the program, wait for the end of a /NEXT move.
 TEST(MotionRules, CallWaitsForTheNextMove) {
   const Ran ran = RunText("MOVE (521.02,2201.2,-50.,0.,0.)/NEXT\nCALL 46\n",
