@@ -35,7 +35,7 @@ Result<v1::StepPlace> ParseStepPlace(const std::string& text) {
   const std::size_t slash = text.find('/');
   const auto program = slash == std::string::npos ? std::optional<long long>(0) : ParseInteger(text.substr(0, slash));
   const auto step = ParseInteger(slash == std::string::npos ? text : text.substr(slash + 1));
-  if (!program || !step || *program < 0 || *program > 99 || *step < 1 || *step > 1'000'000'000) {
+  if (!program || !step || *program < 0 || *program > 99 || (slash != std::string::npos && *program < 1) || *step < 1 || *step > 1'000'000'000) {
     return Error{ErrorCode::kCellUsage, "'" + text + "': write PROGRAM/STEP, such as 45/7", {}};
   }
   v1::StepPlace place;
@@ -177,7 +177,9 @@ int Check(const CheckOptions& options) {
       continue;
     }
     PrintFindings(translation.diagnostics, translation.diagnostics_dropped, *text);
-    std::string line = file + ": " + (translation.ok ? "good" : "has errors");
+    const std::size_t findings = translation.diagnostics.size() + translation.diagnostics_dropped;
+    std::string line = file + ": " + (!translation.ok ? "has errors" : findings == 0 ? "good" : "can be stored");
+    if (findings > 0) line += ", " + std::to_string(findings) + (findings == 1 ? " finding" : " findings");
     for (const machine::Figure& figure : translation.figures) {
       if (figure.value == 0.0) continue;
       line += ", " + figure.name + " " + ShortestText(figure.value) + (figure.unit.empty() ? "" : " " + figure.unit);
@@ -280,9 +282,9 @@ int Simulate(const SimulateOptions& options) {
   if (!options.state_out.empty()) {
     if (Status written = WriteWholeFile(options.state_out, result->machine_state); !written) return Refuse(written.error());
   }
-  for (const std::string& name : *variables) {
-    if (!result->variables.contains(name)) Complain("the machine has no variable " + name);
-  }
+  const auto unknown = std::ranges::find_if(
+      *variables, [&](const std::string& name) { return !result->variables.contains(name); });
+  if (unknown != variables->end()) Complain("the machine has no variable " + *unknown);
   v1::RunReport report = bridge::ToProto(result->report, result->variables);
   if (options.json) {
     report.mutable_trace_records()->Swap(traced.mutable_trace_records());

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <cstdlib>
 
 #include "clients/cli/local.h"
@@ -303,6 +304,11 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const int shown = app.exit(error);
     return shown == 0 ? kGood : kUsage;
+  }
+  // A full disk or a closed pipe: what was asked for did not arrive.
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    Complain("standard output could not be written");
+    return kUsage;
   }
   return exit_code;
 }

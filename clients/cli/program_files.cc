@@ -129,7 +129,10 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files, const std::
       const machine::MachineFamily* family = simulation::FamilyOfFileName(path.string());
       if (slot && family != nullptr && (wanted == nullptr || family == wanted) && fs::is_regular_file(path, error)) {
         wanted = family;
-        found.emplace_back(*slot, path.string());
+        // The main program may lie in the folder, too.
+        const bool again = std::ranges::any_of(
+            found, [&](const auto& one) { return one.first == *slot && fs::equivalent(one.second, path, ignored); });
+        if (!again) found.emplace_back(*slot, path.string());
       }
     }
   }

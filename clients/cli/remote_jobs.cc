@@ -44,6 +44,9 @@ std::string When(const google::protobuf::Timestamp& time) {
   return {room, size};
 }
 
+// What a job may bring along in one message; larger programs are stored first.
+constexpr std::size_t kInlineBytesMax = 3 << 20;
+
 // One connection of a watch. Moves `after` on; true: the job ended, and `exit_code` is set.
 bool WatchOnce(const Remote& remote, v1::JobService::Stub& stub, const std::string& name, std::int64_t& after,
                int& exit_code, grpc::Status& status) {
@@ -124,6 +127,12 @@ int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
   } else {
     Result<std::string> bytes = bridge::ReadFile(wanted.file, kFileBytesMax);
     if (!bytes) return RefuseFile(bytes.error());
+    if (bytes->size() > kInlineBytesMax) {
+      return RefuseFile({ErrorCode::kCellTooLarge,
+                         wanted.file + " has " + std::to_string(bytes->size()) + " bytes, a job takes " +
+                             std::to_string(kInlineBytesMax) + " with it",
+                         {}});
+    }
     job.mutable_inline_program()->set_file_name(bridge::Utf8(std::filesystem::path(wanted.file).filename().string()));
     job.mutable_inline_program()->set_content(std::move(*bytes));
     job.set_inline_slot(wanted.slot);

@@ -6,9 +6,11 @@
 namespace rmlcell::server {
 namespace {
 
-// Signals that belong into the log; outputs in plenty are in the trace.
+// Signals that belong into the log; analogue outputs and sensors, which change all the time, are in the trace.
 bool IsLogged(machine::Signal signal) {
   switch (signal) {
+    case machine::Signal::kOutput:
+    case machine::Signal::kRotaryTable:
     case machine::Signal::kShutter:
     case machine::Signal::kBeam:
     case machine::Signal::kSchedule:

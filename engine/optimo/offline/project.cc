@@ -294,20 +294,20 @@ void Planner::RequireDefinitions(Draft& draft) {
     }
   }
   if (insertions.empty()) return;
-  // The WORKDEF takes the place of the WORK, behind its sequence number: so jumps reach it too. The
-  // WORK goes on the next line in the same column.
+  // At the beginning, behind the declarations: every way to a WORK leads through there, jumps and
+  // subroutines included.
   std::ranges::sort(insertions, {}, &Insertion::work);
-  std::vector<Fix> edits;
+  const ParsedProgram& parsed = draft.parsed;
+  std::size_t first = 0;
+  const auto declares = [&](Op op) { return op == Op::kDeclare || op == Op::kDefine || op == Op::kTask; };
+  while (first + 1 < parsed.statements.size() && declares(parsed.module.instructions[first].op)) ++first;
+  const std::size_t begin = parsed.statements[first].begin;
+  const std::size_t line = begin == 0 ? 0 : draft.text.rfind('\n', begin - 1) + 1;  // npos + 1 is 0
+  std::string text;
   for (const Insertion& insertion : insertions) {
-    const Place at = draft.parsed.At(*insertion.work);
-    const std::string_view before =
-        std::string_view(draft.text).substr(0, static_cast<std::size_t>(at.offset));
-    const std::size_t column = before.size() - (before.rfind('\n') + 1);  // npos + 1 is 0
-    std::string text = WorkdefText(*insertion.definition);
-    text += LineEndOf(draft.text);
-    text.append(column, ' ');
-    edits.push_back({at.offset, 0, std::move(text)});
+    text += "     " + WorkdefText(*insertion.definition) + std::string(LineEndOf(draft.text));
   }
+  const std::vector<Fix> edits = {{static_cast<std::int64_t>(line), 0, std::move(text)}};
   draft.text = ApplyEdits(draft.text, edits);
 }
 

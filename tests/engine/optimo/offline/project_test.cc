@@ -122,24 +122,31 @@ TEST_F(Project, AWorkNeedsADefinition) {
   EXPECT_EQ(plan.diagnostics[0].where.line, 2);
 }
 
-// OPT-3.09: inserted before the first WORK, behind its sequence number; comments stay.
+// OPT-3.09: inserted at the beginning, so that every way to a WORK leads through it; comments stay.
 TEST_F(Project, MissingDefinitionsAreInserted) {
   Define(1, 3, {6.5, 80, 1.5, 95});
   AddSchedule(11);
   Define(2, 0, {11});
   Add(45,
-      "; part\nSPEED 5 ; slow\n10   WORK 1,3 /ON ; cut\nWORK 1,3/OFF\n  WORK 2,0/ON\nWORK "
-      "1,3/ON\n");
+      "; part\nDECLARE V = 5\n7    SPEED V ; slow\n10   WORK 1,3 /ON ; cut\nWORK 1,3/OFF\n  WORK 2,0/ON\n");
   const machine::TransferPlan plan = Plan(true);
   ASSERT_TRUE(plan.ok);
   EXPECT_EQ(plan.programs[0].source,
-            "; part\nSPEED 5 ; slow\n10   WORKDEF 1,3 (6.5, 80.0, 1.5, 95.0)\n     WORK 1,3 /ON ; "
-            "cut\nWORK 1,3/OFF\n"
-            "  WORKDEF 2,0 (11)\n  WORK 2,0/ON\nWORK 1,3/ON\n");
+            "; part\nDECLARE V = 5\n     WORKDEF 1,3 (6.5, 80.0, 1.5, 95.0)\n     WORKDEF 2,0 (11)\n"
+            "7    SPEED V ; slow\n10   WORK 1,3 /ON ; cut\nWORK 1,3/OFF\n  WORK 2,0/ON\n");
   EXPECT_EQ(plan.programs[0].object, MustCompile(plan.programs[0].source).object);
   const machine::TransferPlan without = Plan(false);
   EXPECT_TRUE(without.ok);
   EXPECT_EQ(without.programs[0].source.find("WORKDEF"), std::string::npos);
+}
+
+// OPT-3.09: the first WORK of the text is not the first that runs.
+TEST_F(Project, InsertedDefinitionsAreReachedByJumps) {
+  Define(1, 0, {8, 75, 1, 50});
+  Add(61, "GOSUB 100\nENDTASK\n50 WORK 1,0/ON\nWORK 1,0/OFF\nRETURN\n100 WORK 1,0/ON\nWORK 1,0/OFF\nRETURN\n");
+  const machine::TransferPlan plan = Plan(true);
+  ASSERT_TRUE(plan.ok);
+  EXPECT_EQ(plan.programs[0].source.find("     WORKDEF 1,0 (8.0, 75.0, 1.0, 50.0)\nGOSUB 100"), 0U);
 }
 
 // OPT-3.12: a FUNCTION shares the WORKDEFs of its callers.
