@@ -10,6 +10,9 @@ namespace {
 constexpr std::chrono::seconds kPollInterval{1};
 constexpr int kReadBatch = 1000;
 
+// Many watchers of one job read the same events at about the same time: once from the store is enough.
+constexpr std::size_t kTailEvents = 1024;
+
 constexpr std::int64_t kEverything = 0;  // no job has this number
 
 }  // namespace
@@ -32,6 +35,7 @@ class EventFeed::Handle : public EventFeed::Subscription {
       const auto [first, last] = feed_.watchers_.equal_range(key_);
       const auto found = std::find_if(first, last, [&](const auto& row) { return row.second == watcher_; });
       if (found != last) feed_.watchers_.erase(found);
+      if (!feed_.watchers_.contains(key_)) feed_.tails_.erase(key_);
     }
     const std::lock_guard calling(watcher_->calling);
     watcher_->gone = true;
@@ -85,6 +89,18 @@ Result<std::vector<storage::EventRecord>> EventFeed::EventsAfter(std::int64_t po
     }
   }
   return store_.AllEvents(position, limit);
+}
+
+std::optional<std::vector<storage::EventRecord>> EventFeed::FromTail(std::int64_t job, std::int64_t after_sequence,
+                                                                     int limit) {
+  const std::lock_guard lock(mutex_);
+  const auto found = tails_.find(job);
+  if (found == tails_.end() || found->second.empty()) return std::nullopt;
+  const std::deque<storage::EventRecord>& tail = found->second;
+  if (tail.front().sequence > after_sequence + 1) return std::nullopt;
+  // What is newer than the tail wakes its watchers when it has been read.
+  const auto first = std::ranges::upper_bound(tail, after_sequence, {}, &storage::EventRecord::sequence);
+  return std::vector<storage::EventRecord>(first, first + std::min<std::ptrdiff_t>(limit, tail.end() - first));
 }
 
 void EventFeed::PublishProgress(std::int64_t job, std::string bytes) {
@@ -171,6 +187,12 @@ void EventFeed::ReadNewEvents(const std::stop_token& stop) {
     {
       const std::lock_guard lock(mutex_);
       position_ = events->back().position;
+      for (const storage::EventRecord& event : *events) {
+        if (!watchers_.contains(event.job)) continue;
+        std::deque<storage::EventRecord>& tail = tails_[event.job];
+        tail.push_back(event);
+        if (tail.size() > kTailEvents) tail.pop_front();
+      }
       for (storage::EventRecord& event : *events) recent_.push_back(std::move(event));
       while (recent_.size() > kRecentEvents) recent_.pop_front();
     }
@@ -189,6 +211,7 @@ bool EventFeed::SkipGoneEvents() {
     if (!gone || *gone <= position_) return false;
     position_ = *gone;
     recent_.clear();
+    tails_.clear();
     for (const auto& [job, watcher] : watchers_) all.push_back(watcher);
   }
   Call(all);

@@ -52,8 +52,9 @@ class EventFeed {
   // position(). Errors: those of the store, CellEventsGone among them.
   Result<std::vector<storage::EventRecord>> EventsAfter(std::int64_t position, int limit);
 
-  // Events of one job after a sequence number, from the log.
+  // Events of one job after a sequence number; from memory when it reaches back that far.
   Result<std::vector<storage::EventRecord>> JobEvents(std::int64_t job, std::int64_t after_sequence, int limit) {
+    if (auto events = FromTail(job, after_sequence, limit)) return *std::move(events);
     return store_.JobEvents(job, after_sequence, limit);
   }
 
@@ -76,6 +77,8 @@ class EventFeed {
   void ReadNewEvents(const std::stop_token& stop);
   bool SkipGoneEvents();
   void Wake(const std::vector<std::int64_t>& jobs);  // and those of everything
+  // Nothing when memory does not reach back that far.
+  std::optional<std::vector<storage::EventRecord>> FromTail(std::int64_t job, std::int64_t after_sequence, int limit);
   static void Call(const std::vector<std::shared_ptr<Watcher>>& woken);
 
   storage::Store& store_;
@@ -85,6 +88,7 @@ class EventFeed {
   std::uint64_t version_ = 0;
   std::int64_t position_ = 0;
   std::deque<storage::EventRecord> recent_;
+  std::map<std::int64_t, std::deque<storage::EventRecord>> tails_;  // of jobs that are watched
   std::map<std::int64_t, std::shared_ptr<const std::string>> arriving_;  // not told yet, by job
   std::map<std::int64_t, ProgressText> progress_;
   std::multimap<std::int64_t, std::shared_ptr<Watcher>> watchers_;  // by job; 0: of everything

@@ -156,6 +156,35 @@ TEST(EventFeed, WakesTheWatchersOfTheJobAndThoseOfEverything) {
   EXPECT_EQ(two, 1);  // one commit wakes once, whatever it holds
 }
 
+// The fake log answers no question about one job: what comes, comes from memory. Issue "Watch": many
+// watchers of a job cost the store no more than one.
+TEST(EventFeed, ServesTheWatchersOfAJobFromMemory) {
+  FakeLog log;
+  EventFeed feed(log);
+  std::atomic<int> woken = 0;
+  auto first = feed.Subscribe(1, [&] { ++woken; });
+  auto second = feed.Subscribe(1, [&] { ++woken; });
+  log.Write(1, 3);
+  ASSERT_TRUE(Eventually([&] { return woken >= 2; }));
+  const Result<std::vector<EventRecord>> all = feed.JobEvents(1, 0, 100);
+  ASSERT_TRUE(all);
+  ExpectPositions(*all, 1, 3);
+  const Result<std::vector<EventRecord>> rest = feed.JobEvents(1, 1, 1);
+  ASSERT_TRUE(rest);
+  ExpectPositions(*rest, 2, 1);
+  EXPECT_TRUE(feed.JobEvents(1, 3, 100)->empty());
+
+  log.Write(1, 2'000);  // more than memory keeps: who is that far behind asks the store
+  ASSERT_TRUE(Eventually([&] { return woken >= 4 && feed.position() == 2'003; }));
+  EXPECT_FALSE(feed.JobEvents(1, 3, 100));
+  EXPECT_TRUE(feed.JobEvents(1, 2'000, 100));
+
+  first.reset();
+  EXPECT_TRUE(feed.JobEvents(1, 2'000, 100));
+  second.reset();
+  EXPECT_FALSE(feed.JobEvents(1, 2'000, 100));  // nobody watches: nothing is kept
+}
+
 // Another server may write to the same store: then there is no hint.
 TEST(EventFeed, FindsEventsWithoutAHint) {
   FakeLog log;
