@@ -272,11 +272,8 @@ int Simulate(const SimulateOptions& options) {
   progress.Clear();
   if (!result) return Refuse(result.error());
 
-  if (!options.svg.empty()) {
-    if (options.svg == "-") {
-      PrintRaw(result->svg);
-      return kGood;
-    }
+  const bool picture_on_output = options.svg == "-";
+  if (!options.svg.empty() && !picture_on_output) {
     if (Status written = WriteWholeFile(options.svg, result->svg); !written) return Refuse(written.error());
   }
   if (!options.state_out.empty()) {
@@ -286,7 +283,9 @@ int Simulate(const SimulateOptions& options) {
       *variables, [&](const std::string& name) { return !result->variables.contains(name); });
   if (unknown != variables->end()) Complain("the machine has no variable " + *unknown);
   v1::RunReport report = bridge::ToProto(result->report, result->variables);
-  if (options.json) {
+  if (picture_on_output) {
+    PrintRaw(result->svg);  // in place of the report: it is to be a file of its own
+  } else if (options.json) {
     report.mutable_trace_records()->Swap(traced.mutable_trace_records());
     Print(Json(report));
   } else if (options.facts) {

@@ -36,5 +36,4 @@ int List(const std::string& file, const std::string& output);
 // What two programs do differently. Exit code 1 when they differ.
 int Diff(const std::string& a, const std::string& b, bool json);
 
-
 }  // namespace rmlcell::cli

@@ -55,6 +55,13 @@ class Local(unittest.TestCase):
         self.assertEqual(report["variables"], {"VI[2]": "7"})
         self.assertAlmostEqual(report["total"]["times"]["conditionS"], 2.5, places=6)
 
+    def test_the_picture_goes_to_standard_output_and_the_run_keeps_its_exit_code(self):
+        state = self.folder / "state"
+        done = run("simulate", self.file("bad.S", "SPEED 20\nVR[0] = 1. / VR[1]\n"), "--svg", "-", "--state-out", state)
+        self.assertTrue(done.stdout.lstrip().startswith("<"), done.stdout[:80])
+        self.assertEqual(done.returncode, 1)
+        self.assertGreater(state.stat().st_size, 0)
+
     def test_the_picture_is_written(self):
         picture = self.folder / "p.svg"
         self.assertEqual(run("simulate", self.file("square.rml", SQUARE), "--svg", picture).returncode, 0)

@@ -94,7 +94,7 @@ TEST_F(Project, DefinitionsAreChecked) {
   EXPECT_EQ(errors(1, 0, {8, 101, -1, 95}), (std::vector<int>{7004, 7004}));
 }
 
-// OPT-3.11, OPT-E.7863
+// OPT-3.11; 7863 is a code of our own
 TEST_F(Project, DifferencesAreReported) {
   Define(1, 0, {6.5, 80, 1.5, 95});
   Add(45, "WORKDEF 1,0 (6.5, 80., 1.5, 95)\nWORKDEF 1,1 (1.,2.,3.,4.)\n");
