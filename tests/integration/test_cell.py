@@ -347,8 +347,9 @@ class Kills(unittest.TestCase):
 
     def running(self, stub, name):
         until = time.monotonic() + 60
-        while stub.GetJob(job_pb2.GetJobRequest(name=name)).state != job_pb2.Job.STATE_RUNNING:
-            self.assertLess(time.monotonic(), until)
+        while (job := stub.GetJob(job_pb2.GetJobRequest(name=name))).state != job_pb2.Job.STATE_RUNNING:
+            self.assertEqual(job.state, job_pb2.Job.STATE_QUEUED, job)
+            self.assertLess(time.monotonic(), until, job)
             time.sleep(0.02)
 
     def test_a_job_survives_the_death_of_its_worker(self):
