@@ -1,8 +1,8 @@
 // Lines a second from source to tree, to checked tree, to object and to formatted text, for
 // programs of 1,000, 100,000 and 1,000,000 lines, whether the cost per line stays flat, and the
-// peak of memory per line. Where LinuxCNC's interpreter is at hand (Debian package
-// linuxcnc-uspace), the equivalent G-code is read by `rs274 -g` in the same rounds, for a ratio.
-// Run by hand:
+// peak of memory per line. With --rs274 the equivalent G-code is read by LinuxCNC's interpreter in
+// the same rounds, for a ratio: PROGRAM is called with the name of the file; rs274_ratio.sh brings
+// one. Run by hand:
 //   optimo_language_bench [--rounds N] [--rs274 PROGRAM]
 // Prints one JSON object a line.
 #include <sys/resource.h>
@@ -17,6 +17,7 @@
 #include <fstream>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/optimo/language/checker.h"
@@ -95,6 +96,54 @@ double Measure(const std::function<void()>& work, int whose = RUSAGE_SELF) {
   return Now(whose) - start;
 }
 
+// What the figures depend on: the machine, and what else it was doing.
+void PrintMachine(const char* when) {
+  std::string model = "unknown";
+  std::ifstream processors("/proc/cpuinfo");
+  for (std::string line; std::getline(processors, line);) {
+    if (line.rfind("model name", 0) != 0) continue;
+    model = line.substr(line.find(':') + 2);
+    break;
+  }
+  double load[3] = {};
+  getloadavg(load, 3);
+  std::printf("{\"%s\":{\"processor\":\"%s\",\"cores\":%ld,\"load\":[%.2f,%.2f,%.2f]}}\n", when,
+              model.c_str(), sysconf(_SC_NPROCESSORS_ONLN), load[0], load[1], load[2]);
+  std::fflush(stdout);
+}
+
+// LinuxCNC's interpreter on the equivalent G-code.
+class Rival {
+ public:
+  // An empty program: there is none.
+  explicit Rival(std::string program) : program_(std::move(program)) {
+    if (!present()) return;
+    std::ofstream(kLong) << Gcode(kLines);
+    std::ofstream(kShort) << Gcode(2);
+  }
+  bool present() const { return !program_.empty(); }
+
+  // Seconds a line, without what the program takes to start and to end. Zero: it failed.
+  double SecondsPerLine() const {
+    const double whole = Read(kLong), empty = Read(kShort);
+    return whole <= 0.0 || empty <= 0.0 ? 0.0 : (whole - empty) / kLines;
+  }
+
+ private:
+  static constexpr int kLines = 100'000;
+  static constexpr const char* kLong = "/tmp/optimo_language_bench.ngc";
+  static constexpr const char* kShort = "/tmp/optimo_language_bench_empty.ngc";
+
+  double Read(const char* file) const {
+    const std::string command = program_ + " " + file + " > /dev/null 2>&1";
+    int status = 0;
+    const double time = Measure([&] { status = std::system(command.c_str()); }, RUSAGE_CHILDREN);
+    return status == 0 ? time : 0.0;
+  }
+
+  std::string program_;
+};
+
 struct Stage {
   const char* name;
   std::function<bool(const std::string&)> run;  // false: it did not do its work
@@ -124,17 +173,42 @@ std::vector<Stage> Stages() {
   };
 }
 
-int Run(int rounds, const std::string& rs274) {
+using Times = std::vector<double>;  // seconds a line, one for each round
+
+void PrintStage(const char* name, const std::vector<int>& sizes, const std::vector<Times>& times,
+                const Times& rival) {
+  double least = 1e9, most = 0.0;
+  std::printf("{\"stage\":\"%s\"", name);
+  for (std::size_t s = 0; s < sizes.size(); ++s) {
+    const double median = Median(times[s]);
+    // Flatness by the best round: what disturbs a round makes it dearer, never cheaper.
+    const auto [best, worst] = std::ranges::minmax_element(times[s]);
+    least = std::min(least, *best);
+    most = std::max(most, *best);
+    std::printf(
+        ",\"%d_lines\":{\"ns_per_line\":%.1f,\"least\":%.1f,\"most\":%.1f,\"lines_per_s\":%.0f}",
+        sizes[s], median * 1e9, *best * 1e9, *worst * 1e9, 1.0 / median);
+  }
+  std::printf(",\"best_dearest_over_cheapest\":%.3f", most / least);
+  if (!rival.empty()) {
+    // Round by round: what slows one down slows the other down.
+    Times ratios;
+    for (std::size_t round = 0; round < rival.size(); ++round)
+      ratios.push_back(rival[round] / times[1][round]);
+    const auto [worst, best] = std::ranges::minmax_element(ratios);
+    std::printf(",\"times_as_fast_as_rs274\":{\"median\":%.2f,\"least\":%.2f,\"most\":%.2f}",
+                Median(ratios), *worst, *best);
+  }
+  std::printf("}\n");
+}
+
+int Run(int rounds, const Rival& rival) {
   const std::vector<int> sizes = {1'000, 100'000, 1'000'000};
   const std::vector<Stage> stages = Stages();
   std::vector<std::string> texts;
   for (const int size : sizes) texts.push_back(Program(size));
-  // seconds per line, by stage and size
-  std::vector<std::vector<std::vector<double>>> seconds(
-      stages.size(), std::vector<std::vector<double>>(sizes.size()));
-  std::vector<double> rival;
-  const std::string gcode = "/tmp/optimo_language_bench.ngc";
-  if (!rs274.empty()) std::ofstream(gcode) << Gcode(100'000);
+  std::vector<std::vector<Times>> times(stages.size(), std::vector<Times>(sizes.size()));
+  Times rival_times;
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t s = 0; s < sizes.size(); ++s) {
       // As many lines at each size, so that the short programs are measured as well as the long.
@@ -148,37 +222,24 @@ int Run(int rounds, const std::string& rs274) {
           std::fprintf(stderr, "%s did not do its work\n", stages[stage].name);
           return 1;
         }
-        seconds[stage][s].push_back(time / repeats / sizes[s]);
+        times[stage][s].push_back(time / repeats / sizes[s]);
       }
-      if (s == 1 && !rs274.empty()) {
-        const std::string command = rs274 + " -g " + gcode + " > /dev/null";
-        rival.push_back(Measure(
-                            [&] {
-                              if (std::system(command.c_str()) != 0)
-                                std::fprintf(stderr, "rs274 failed\n");
-                            },
-                            RUSAGE_CHILDREN) /
-                        100'000);
+      if (s == 1 && rival.present()) {
+        rival_times.push_back(rival.SecondsPerLine());
+        if (rival_times.back() <= 0.0) {
+          std::fprintf(stderr, "rs274 did not do its work\n");
+          return 1;
+        }
       }
     }
   }
-  for (std::size_t stage = 0; stage < stages.size(); ++stage) {
-    double least = 1e9, most = 0.0;
-    std::printf("{\"stage\":\"%s\"", stages[stage].name);
-    for (std::size_t s = 0; s < sizes.size(); ++s) {
-      const double median = Median(seconds[stage][s]);
-      // Flatness by the best round: what disturbs a round makes it dearer, never cheaper.
-      const double best = *std::ranges::min_element(seconds[stage][s]);
-      least = std::min(least, best);
-      most = std::max(most, best);
-      std::printf(",\"ns_per_line_%d\":%.1f,\"lines_per_s_%d\":%.0f", sizes[s], median * 1e9,
-                  sizes[s], 1.0 / median);
-    }
-    std::printf(",\"best_dearest_over_cheapest\":%.3f", most / least);
-    if (!rival.empty())
-      std::printf(",\"times_as_fast_as_rs274\":%.2f", Median(rival) / Median(seconds[stage][1]));
-    std::printf("}\n");
+  if (rival.present()) {
+    const auto [least, most] = std::ranges::minmax_element(rival_times);
+    std::printf("{\"rs274\":{\"ns_per_line\":%.1f,\"least\":%.1f,\"most\":%.1f}}\n",
+                Median(rival_times) * 1e9, *least * 1e9, *most * 1e9);
   }
+  for (std::size_t stage = 0; stage < stages.size(); ++stage)
+    PrintStage(stages[stage].name, sizes, times[stage], rival_times);
   return 0;
 }
 
@@ -217,6 +278,9 @@ int main(int argc, char** argv) {
     if (std::strcmp(argv[n], "--rounds") == 0) rounds = std::max(1, std::atoi(argv[n + 1]));
     if (std::strcmp(argv[n], "--rs274") == 0) rs274 = argv[n + 1];
   }
-  const int failed = rmlcell::optimo::Memory();
-  return failed != 0 ? failed : rmlcell::optimo::Run(rounds, rs274);
+  rmlcell::optimo::PrintMachine("before");
+  int failed = rmlcell::optimo::Memory();
+  if (failed == 0) failed = rmlcell::optimo::Run(rounds, rmlcell::optimo::Rival(rs274));
+  rmlcell::optimo::PrintMachine("after");
+  return failed;
 }
