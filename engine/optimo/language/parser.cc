@@ -26,7 +26,8 @@ Parser::Parser(std::string_view text, ParsedProgram& program, Findings& findings
 // comment.
 void Parser::Reserve() {
   constexpr std::size_t kElementsMax = std::size_t{1} << 23;
-  const auto lines = static_cast<std::size_t>(std::count(text_.begin(), text_.end(), '\n'));
+  std::size_t lines = 0;
+  for (std::size_t at = 0; (at = text_.find('\n', at)) != std::string_view::npos; ++at) ++lines;
   const std::size_t instructions = std::min(lines + 1, kElementsMax);
   const std::size_t values = std::min(text_.size() / 7, kElementsMax);
   module_.instructions.reserve(instructions);
@@ -253,26 +254,6 @@ std::uint16_t Parser::InternName(const Token& token) {
                   "OPT-7.46");
   }
   return name;
-}
-
-bool Parser::TryTake(TokenKind kind) {
-  if (!Is(kind)) return false;
-  ++at_;
-  return true;
-}
-
-bool Parser::Expect(TokenKind kind, std::string_view expected) {
-  return TryTake(kind) || Fail(expected);
-}
-
-bool Parser::TakeWord(Word word) {
-  if (Peek().kind != TokenKind::kWord || Peek().word != word) return false;
-  ++at_;
-  return true;
-}
-
-bool Parser::ExpectWord(Word word, std::string_view expected) {
-  return TakeWord(word) || Fail(expected);
 }
 
 bool Parser::Fail(std::string_view expected) {

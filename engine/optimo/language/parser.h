@@ -72,21 +72,30 @@ class Parser {
   bool ParseVariable();                         // group [ index ], appended as a node
   bool ParseTarget(std::string_view expected);  // variable | par | name, as one ExprRange
   bool ParseLiteral(bool negative, const Token& sign);
+  bool IsNumberAlone();
   bool ParseJumpLabel();
   bool ParseWhole(std::string_view what, std::uint16_t& value);
   int LevelOf(const Token& token) const;
   bool EndsExpression(const Token& slash_follower) const;
-  void Emit(Node op, std::uint32_t offset, std::uint32_t length);
+  ExprNode& Emit(Node op, std::uint32_t offset, std::uint32_t length);
   void EndExpression(std::uint32_t first);
 
   // Tokens
   const Token& Peek(std::size_t ahead = 0) { return lexer_.At(at_ + ahead); }
   Token Take() { return lexer_.At(at_++); }
   bool Is(TokenKind kind) { return Peek().kind == kind; }
-  bool TryTake(TokenKind kind);
-  bool Expect(TokenKind kind, std::string_view expected);
-  bool TakeWord(Word word);
-  bool ExpectWord(Word word, std::string_view expected);
+  bool TryTake(TokenKind kind) {
+    const bool there = Is(kind);
+    at_ += there ? 1 : 0;
+    return there;
+  }
+  bool TakeWord(Word word) {
+    const bool there = Peek().word == word;
+    at_ += there ? 1 : 0;
+    return there;
+  }
+  bool Expect(TokenKind kind, std::string_view expected) { return TryTake(kind) || Fail(expected); }
+  bool ExpectWord(Word word, std::string_view expected) { return TakeWord(word) || Fail(expected); }
 
   // Reports at the next token. `expected` completes "expected ...".
   bool Fail(std::string_view expected);

@@ -50,10 +50,12 @@ class Typing {
     ValueType type = ValueType::kReal;
     bool unknown = false;  // has an error already
   };
+  Operand TypeLeaf(std::size_t node);
   bool ResolveNode(std::size_t node);
   bool ResolveIndex(std::size_t node);
   void UseVariable(const ExprNode& node);
-  ValueType TypeOfVariable(const ExprNode& node) const;
+  ValueType TypeOfLeaf(const ExprNode& node) const;
+  bool HasType(Operand& root, Wanted wanted);
   bool MakeLogical(Operand& operand);
   bool NeedNumeric(const Operand& operand);
   bool NeedLogical(Operand& operand);
