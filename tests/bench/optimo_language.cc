@@ -155,12 +155,12 @@ std::vector<Stage> Stages() {
       {"parse",
        [](const std::string& text) {
          Findings findings;
-         return Parse(text, findings).module.instructions.size() > 100;
+         return Parse(text, findings, Places::kStatements).module.instructions.size() > 100;
        }},
       {"check",
        [](const std::string& text) {
          Findings findings;
-         ParsedProgram program = Parse(text, findings);
+         ParsedProgram program = Parse(text, findings, Places::kStatements);
          Check(program, findings);
          return findings.error_count() == 0;
        }},

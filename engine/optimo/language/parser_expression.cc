@@ -106,12 +106,8 @@ constexpr std::string_view kValueExpected = "a number, a variable, a name or '('
 
 // Appends a node; what else it has is set by the caller.
 ExprNode& Parser::Emit(Node op, std::uint32_t offset, std::uint32_t length) {
-  program_.node_places.push_back({offset, length});
+  if (places_ == Places::kNodes) program_.node_places.push_back({offset, length});
   return module_.nodes.emplace_back(ExprNode{.op = op});
-}
-
-void Parser::EndExpression(std::uint32_t first) {
-  module_.expressions.push_back({first, static_cast<std::uint32_t>(module_.nodes.size()) - first});
 }
 
 // [ "-" ] number with nothing behind that could join it: nearly every value of a program that a CAD
@@ -124,14 +120,13 @@ bool Parser::IsNumberAlone() {
 }
 
 bool Parser::ParseExpression() {
-  const auto first = static_cast<std::uint32_t>(module_.nodes.size());
   if (IsNumberAlone()) {
     const Token sign = Peek();
     if (!ParseLiteral(TryTake(TokenKind::kMinus), sign)) return false;
   } else if (!ParseBinary(kOrLevel)) {
     return false;
   }
-  EndExpression(first);
+  module_.EndExpression();
   return true;
 }
 
@@ -148,13 +143,9 @@ bool Parser::ParseList(int& count, int keep_max, int slash_after) {
   const bool outer = slash_separates_;
   slash_separates_ = slash_after > 0;
   do {
-    const std::size_t nodes = module_.nodes.size();
     if (!ParseExpression()) return false;
-    if (++count > keep_max) {
-      module_.nodes.resize(nodes);
-      program_.node_places.resize(nodes);
-      module_.expressions.pop_back();
-    }
+    if (++count > keep_max)
+      DropExpressions(static_cast<std::uint32_t>(module_.expression_ends.size()) - 1);
     if (slash_after > 0 && Is(TokenKind::kSlash)) {
       if (count != slash_after) count = -1;  // "/" elsewhere: the wrong number of values, OPT-B.85
       Take();
@@ -373,7 +364,6 @@ bool Parser::ParseVariable() {
 
 bool Parser::ParseTarget(std::string_view expected) {
   const Token& next = Peek();
-  const auto first = static_cast<std::uint32_t>(module_.nodes.size());
   if (next.kind != TokenKind::kWord) return Fail(expected);
   if (next.word == Word::kNone) {
     const Token name = Take();
@@ -383,7 +373,7 @@ bool Parser::ParseTarget(std::string_view expected) {
   } else {
     return Fail(expected);
   }
-  EndExpression(first);
+  module_.EndExpression();
   return true;
 }
 

@@ -25,9 +25,17 @@ Place Typing::PlaceOfStatement() const {
   return places_->At(*instruction_);
 }
 
-Place Typing::PlaceOfNode(std::size_t node) const {
+// The places of one statement are asked for as long as it has findings.
+NodePlace Typing::NodePlaceOf(std::size_t node) {
+  if (placed_ != instruction_) node_places_ = places_->NodePlacesOf(*instruction_);
+  placed_ = instruction_;
+  return node_places_[node - module_.FirstNode(instruction_->first_expression)];
+}
+
+Place Typing::PlaceOfNode(std::size_t node) {
   if (places_ == nullptr) return PlaceOfStatement();
-  const NodePlace& place = places_->node_places[node];
+  if (findings_.full()) return {};  // it is only counted
+  const NodePlace place = NodePlaceOf(node);
   return {place.offset, static_cast<int>(place.length), static_cast<int>(instruction_->step)};
 }
 
@@ -51,7 +59,7 @@ void Typing::ReportUndeclared(std::uint16_t name, std::size_t node) {
   if (!nearest.empty()) {
     detail += "; did you mean " + nearest + "?";
     if (places_ != nullptr) {
-      const NodePlace& place = places_->node_places[node];
+      const NodePlace place = NodePlaceOf(node);
       fixes.push_back({place.offset, static_cast<int>(place.length), nearest});
     }
   }
@@ -180,7 +188,7 @@ bool Typing::HasType(Operand& root, Wanted wanted) {
 }
 
 bool Typing::Type(std::uint32_t expression, Wanted wanted) {
-  const ExprRange range = module_.expressions[expression];
+  const ExprRange range = module_.Range(expression);
   if (range.count == 1) {
     Operand leaf = TypeLeaf(range.first);
     return HasType(leaf, wanted);
@@ -220,7 +228,7 @@ bool Typing::Type(std::uint32_t expression, Wanted wanted) {
 }
 
 bool Typing::ResolveTarget(std::uint32_t expression) {
-  const std::size_t at = module_.expressions[expression].first;
+  const std::size_t at = module_.FirstNode(expression);
   const bool reads = reads_machine_;
   if (!ResolveNode(at)) return false;
   reads_machine_ = reads;  // writing is not reading
@@ -243,7 +251,7 @@ bool Typing::ResolveTarget(std::uint32_t expression) {
 
 void Typing::Declare(const Instruction& instruction) {
   DeclaredName& name = module_.names[instruction.name];
-  const std::size_t at = module_.expressions[instruction.first_expression].first;
+  const std::size_t at = module_.FirstNode(instruction.first_expression);
   if (!ResolveNode(at)) {
     if (places_ == nullptr) Report(ErrorCode::kNameUndeclared, at, {}, {});
     return;

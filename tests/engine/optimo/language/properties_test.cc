@@ -79,6 +79,29 @@ TEST(Properties, ParsePrintParseIsIdentity) {
   }
 }
 
+// The places of nodes that were not kept are found again, statement by statement. OPT-B.35,
+// OPT-2.43
+TEST(Properties, PlacesOfNodesAreFoundAgain) {
+  for (std::uint32_t seed = 1; seed <= kRounds; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const std::string text = RandomProgram(seed).Make(40);
+    Findings findings;
+    const ParsedProgram kept = Parse(text, findings, Places::kNodes);
+    const ParsedProgram bare = Parse(text, findings, Places::kStatements);
+    ASSERT_TRUE(bare.node_places.empty());
+    ASSERT_EQ(kept.node_places.size(), bare.module.nodes.size());
+    std::size_t node = 0;
+    for (const Instruction& instruction : bare.module.instructions) {
+      for (const NodePlace& place : bare.NodePlacesOf(instruction)) {
+        ASSERT_EQ(place.offset, kept.node_places[node].offset) << node;
+        ASSERT_EQ(place.length, kept.node_places[node].length) << node;
+        ++node;
+      }
+    }
+    ASSERT_EQ(node, kept.node_places.size());
+  }
+}
+
 // OPT-B.40
 TEST(Properties, FormattingIsIdempotentAndChangesNothing) {
   for (std::uint32_t seed = 1; seed <= kRounds; ++seed) {

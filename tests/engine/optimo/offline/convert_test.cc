@@ -201,12 +201,15 @@ struct Literals {
 Literals LiteralsOf(const std::string& text) {
   Findings none(0);
   const ParsedProgram program = Parse(text, none);
-  Literals literals;
-  std::size_t at = 0;
+  std::vector<NodePlace> places;
   for (std::size_t n = 0; n < program.module.nodes.size(); ++n) {
     const Node op = program.module.nodes[n].op;
-    const NodePlace& place = program.node_places[n];
-    if ((op != Node::kInteger && op != Node::kReal) || place.offset < at) continue;
+    if (op == Node::kInteger || op == Node::kReal) places.push_back(program.node_places[n]);
+  }
+  std::ranges::sort(places, {}, &NodePlace::offset);
+  Literals literals;
+  std::size_t at = 0;
+  for (const NodePlace& place : places) {
     literals.texts.push_back(text.substr(place.offset, place.length));
     literals.rest += text.substr(at, place.offset - at) + '#';
     at = place.offset + place.length;

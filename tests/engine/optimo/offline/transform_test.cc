@@ -125,7 +125,7 @@ MoveNumbers NumbersOf(const std::string& text) {
   for (const Instruction& i : program.module.instructions) {
     if (i.op != Op::kMove) continue;
     for (std::uint32_t e = 0; e < program.module.ExpressionCount(i); ++e) {
-      const ExprRange range = program.module.expressions[i.first_expression + e];
+      const ExprRange range = program.module.Range(i.first_expression + e);
       const NodePlace& place = program.node_places[range.first];
       if (e % 5 == 0) found.poses.emplace_back();
       found.poses.back()[e % 5] = std::stod(text.substr(place.offset, place.length));
