@@ -34,4 +34,15 @@ cmake --preset release -B build/bench -DRMLCELL_ENGINE_ONLY=ON -DRMLCELL_BENCH=O
 nice ninja -C build/bench optimo_language_bench >/dev/null
 mkdir -p tests/results
 bench=$(find build/bench -name optimo_language_bench -type f -perm -u+x | head -n 1)
-"$bench" --rounds "$rounds" --rs274 "$place/rs274" | tee tests/results/optimo_language.json
+{
+  "$bench" --rounds "$rounds" --rs274 "$place/rs274"
+  # What no load of the machine can disturb.
+  if command -v valgrind >/dev/null; then
+    for lines in 1000 10000 100000; do
+      counted=$(valgrind --tool=callgrind --callgrind-out-file=/dev/null \
+        --toggle-collect='rmlcell::optimo::Compile(*' "$bench" --once compile "$lines" 2>&1 |
+        sed -n 's/.*Collected : //p')
+      echo "{\"compile_instructions_per_line\":{\"lines\":$lines,\"instructions\":$((counted / lines))}}"
+    done
+  fi
+} | tee tests/results/optimo_language.json
