@@ -64,7 +64,7 @@ Result<RecoveredSource> RecoverSource(std::string_view object,
 
 std::vector<int> LinesOfSteps(std::string_view text) {
   Findings findings(0);
-  ParsedProgram program = Parse(text, findings);
+  ParsedProgram program = Parse(text, findings, Places::kStatements);
   Check(program, findings);
   std::vector<int> lines;
   int line = 1;
