@@ -135,7 +135,7 @@ class Page {
                {.size = 26.0, .bold = true});
     AppendText(body_, {kMargin, 70.0},
                same_path() ? "both run along the same path"
-                           : "what the second does not run along, and what it adds",
+                           : "removed: the first alone runs there; added: the second alone",
                {.size = 14.0, .colour = kFaint});
   }
 
@@ -178,7 +178,7 @@ class Page {
   // Legend, figures and notes, from `y` on; returns where they end.
   double DrawColumn(double y) {
     y = DrawLegend(y + 10.0);
-    y = DrawFigures(y + 22.0);
+    y = DrawFigures(y + 40.0);
     return DrawNotes(y + 14.0);
   }
 
@@ -213,8 +213,10 @@ class Page {
       std::ranges::replace(name, '_', ' ');
       const bool same = figure.before == figure.after;
       AppendText(body_, {column_x_, y}, name, {.size = 13.0, .colour = kFaint});
-      const std::string value = TrimmedText(figure.before, 3) +
-                                (same ? "" : " → " + TrimmedText(figure.after, 3)) +
+      const auto number = [&](double of) {
+        return figure.unit.empty() ? FixedText(of, 0) : TrimmedText(of, 3);
+      };
+      const std::string value = number(figure.before) + (same ? "" : " → " + number(figure.after)) +
                                 (figure.unit.empty() ? "" : " " + figure.unit);
       AppendText(body_, {column_x_ + kColumn, y}, value,
                  {.size = 13.0, .anchor = "end", .bold = !same});

@@ -23,7 +23,12 @@ std::optional<Fix> AttributeRemoval(const ParsedProgram& program, const Instruct
     std::size_t from = slash.offset;
     while (from > 0 && (text[from - 1] == ' ' || text[from - 1] == '\t')) --from;
     const std::size_t end = lexer.At(t).offset + lexer.At(t).length;
-    return Fix{static_cast<std::int64_t>(begin + from), static_cast<int>(end - from), ""};
+    // A statement goes on behind a '/' at the end of a line: comments in between stay.
+    const std::size_t behind = slash.offset + slash.length;
+    std::string_view between = text.substr(behind, lexer.At(t).offset - behind);
+    if (between.find_first_not_of(" \t") == std::string_view::npos) between = {};
+    return Fix{static_cast<std::int64_t>(begin + from), static_cast<int>(end - from),
+               std::string(between)};
   }
   return std::nullopt;
 }
