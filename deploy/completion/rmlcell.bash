@@ -55,6 +55,7 @@ _rmlcell_options() {
         "--break --budget --vars --svg --state-in --state-out --trace --facts --json" ;;
     explain) echo "--help --json" ;;
     diff) echo "--help --svg --json" ;;
+    parameters) echo "--help --profile" ;;
     compile | decompile | compensate | list) echo "--help --output" ;;
     link) echo "--help --slot --main --output" ;;
     format) echo "--help --check" ;;
@@ -68,7 +69,7 @@ _rmlcell_options() {
     watch) echo "$remote --after" ;;
     jobs) echo "$remote --filter --limit" ;;
     picture) echo "$remote --output" ;;
-    "projects show" | "projects create" | "projects update" | "projects delete") echo "--help" ;;
+    "projects list" | "projects show" | "projects create" | "projects update" | "projects delete") echo "--help" ;;
     "projects transfer") echo "--help --insert --check-only" ;;
   esac
 }
@@ -116,6 +117,7 @@ _rmlcell_positional() {
     decompile) _rmlcell_files .o ;;
     compile | format | convert | compensate | transform | list | diff) _rmlcell_files .s .si .cmp .o ;;
     explain) _rmlcell_codes ;;
+    parameters) [[ $count -eq 0 ]] && _rmlcell_offer optimo rml1 ;;
     programs | stale) [[ $count -eq 0 ]] && _rmlcell_machines ;;
     put)
       case $count in
@@ -136,7 +138,7 @@ _rmlcell_positional() {
     watch | job) [[ $count -eq 0 ]] && _rmlcell_jobs ;;
     cancel) [[ $count -eq 0 ]] && _rmlcell_jobs "finished = false" ;;
     report | picture) [[ $count -eq 0 ]] && _rmlcell_jobs "finished = true" ;;
-    projects) [[ $count -eq 0 ]] && _rmlcell_offer show create update delete transfer ;;
+    projects) [[ $count -eq 0 ]] && _rmlcell_offer list show create update delete transfer ;;
     "projects show" | "projects delete") [[ $count -eq 0 ]] && _rmlcell_projects ;;
     "projects create") [[ $count -eq 1 ]] && _rmlcell_files .json ;;
     "projects update")
@@ -182,7 +184,7 @@ _rmlcell() {
     option=''
     if [[ -z $verb ]]; then
       verb=$word
-    elif [[ $verb == projects && ${#given[@]} -eq 0 && $word =~ ^(show|create|update|delete|transfer)$ ]]; then
+    elif [[ $verb == projects && ${#given[@]} -eq 0 && $word =~ ^(list|show|create|update|delete|transfer)$ ]]; then
       verb="projects $word"
     else
       given+=("$word")
@@ -208,7 +210,7 @@ _rmlcell() {
   if [[ $cur == -* ]]; then
     _rmlcell_offer $(_rmlcell_options "$verb")
   elif [[ -z $verb ]]; then
-    _rmlcell_offer check simulate explain compile decompile link format convert compensate transform list \
+    _rmlcell_offer check simulate parameters explain compile decompile link format convert compensate transform list \
       diff machines programs put get delete stale projects submit watch jobs job cancel report picture
   else
     _rmlcell_positional

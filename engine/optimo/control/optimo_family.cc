@@ -61,6 +61,10 @@ class Family final : public machine::MachineFamily {
                            {.limits = resolved.limits, .head_length_mm = resolved.head_length_mm});
   }
 
+  std::vector<Diagnostic> CheckProcess(const machine::ProcessDefinition& definition) const override {
+    return optimo::CheckProcess(definition);
+  }
+
   machine::TransferPlan PlanTransfer(const machine::ProjectBundle& project,
                                      const machine::Parameters& parameters,
                                      const machine::TransferOptions& options) const override {
