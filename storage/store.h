@@ -109,6 +109,8 @@ class Store {
   // The program memory of the machine for a run, slots in order: every program with its object and
   // executable, without its source.
   virtual Result<std::vector<ProgramRecord>> GetProgramMemory(std::string_view machine) = 0;
+  // Slots that held a program once and are empty now, in order (OPT-1.13: deleting counts as altering).
+  virtual Result<std::vector<int>> ListDeletedPrograms(std::string_view machine) = 0;
   // Replaces objects, deletes the executables of these slots and no others (OPT-1.12, OPT-1.13), stores
   // schedules (whatever is there; their `machine` is not looked at). Summaries in the order of
   // `programs`. CellInvalidArgument: a slot or number out of range or twice; CellTooLarge:
