@@ -30,8 +30,9 @@ class SpeedPasses {
   std::size_t final_count() const { return final_; }
   bool ends_at_rest() const { return size() > 0 && knots_.back().forward == 0.0; }
 
-  // Of the oldest knot that was not popped. Precondition: it is final.
+  // Of the oldest knot that was not popped, and of those after it. Precondition: it is final.
   double speed() const { return knots_[first_].speed; }
+  double speed(std::size_t index) const { return knots_[first_ + index].speed; }
   void Pop();
 
  private:

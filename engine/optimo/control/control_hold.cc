@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -22,6 +23,15 @@ double PlaceOn(const motion::PathPiece& whole, const motion::Vec3& point) {
       std::atan2(motion::Dot(whole.normal(), motion::Cross(start, here)), motion::Dot(start, here));
   if (angle < 0.0) angle += kTurn;
   return angle * whole.radius_mm();
+}
+
+// The way to rest when the acceleration is first brought to zero.
+double RoomToRest(const motion::PathState& state, const motion::PathLimits& limits) {
+  const double a = state.acceleration;
+  if (a == 0.0 || std::isinf(limits.jerk)) return motion::RampLength(state.speed, 0.0, limits);
+  const double time = std::abs(a) / limits.jerk;
+  const double level = std::max(state.speed + 0.5 * a * time, 0.0);
+  return time * (state.speed + a * time / 3.0) + motion::RampLength(level, 0.0, limits);
 }
 
 bool LineOrArc(const motion::PathPiece& path) {
@@ -55,13 +65,7 @@ bool Control::EndAtATarget() {
     if (LineOrArc(exact.path) && LineOrArc(command->path)) {
       const double begin = PlaceOn(command->path, exact.path.from().tip);
       const double way = command->path.length() - begin - state.s;
-      const bool stops =
-          under_way
-              ? exact.speed.StopFrom(ToSeconds(s_.now - s_.active->start), exact.limits).end().s -
-                        state.s <=
-                    way * kReaches
-              : motion::RampLength(state.speed, 0.0, exact.limits) <= way * kReaches;
-      if (way > 0.0 && stops) {
+      if (way > 0.0 && RoomToRest(state, exact.limits) <= way * kReaches) {
         exact.path = command->path.Part(begin + state.s, command->path.length());
         const double length = exact.path.length();
         exact.speed = motion::SpeedProfile::From(
@@ -75,7 +79,8 @@ bool Control::EndAtATarget() {
       }
     }
     if (!under_way) kept.emplace_back(exact);
-    state = {.s = 0.0, .speed = exact.speed.end().speed, .acceleration = 0.0};
+    state = exact.speed.end();
+    state.s = 0.0;
     for (; next != s_.timeline.end() && std::holds_alternative<motion::PlannedMark>(*next);
          ++next) {
       kept.push_back(*next);
