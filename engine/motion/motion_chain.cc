@@ -117,6 +117,12 @@ void MotionChain::Nothing(const TipPose& here, bool fly) {
   if (open_ && !fly) stands_ = true;
 }
 
+void MotionChain::BeginMoving(double speed) {
+  running_.BeginAt(speed);
+  speeds_.BeginAt(speed);
+  last_speed_ = speed;
+}
+
 void MotionChain::Mark(std::uint64_t tag) {
   if (!open_ && moves_.empty()) {
     items_.Push(PlannedMark{tag});

@@ -34,6 +34,8 @@ class MotionChain {
 
   // A move that goes nowhere stood here: the passage before it is a stop unless it had /FLY itself.
   void Nothing(const TipPose& here, bool fly);
+  void BeginMoving(double speed);
+  bool starts_too_fast() const { return starts_too_fast_; }
   void Mark(std::uint64_t tag);
   void Stop();
   std::optional<PlannedItem> Next();
@@ -144,6 +146,7 @@ class MotionChain {
   SpeedPasses speeds_;  // over spans
   std::size_t speeds_next_ = 0;
   double last_speed_ = 0.0;       // at the end of the last emitted span
+  bool starts_too_fast_ = false;
   std::size_t section_seen_ = 0;  // spans known not to end the next section
   bool axes_follow_ramps_;        // on curves without head rotation, whatever the tip does
   std::vector<RampCell> cells_;

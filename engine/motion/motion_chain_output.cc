@@ -48,6 +48,13 @@ bool MotionChain::EndsSection(std::size_t index) {
 }
 
 void MotionChain::EmitSection(std::size_t count) {
+  // Only a chain that begins moving can be too fast: the passes see to the rest.
+  constexpr double kRoom = 1.0 + 1e-9;
+  const Span& first = spans_.front();
+  if (last_speed_ > speeds_.speed() * kRoom &&
+      RampLength(last_speed_, speeds_.speed(), first.limits) > first.length * kRoom) {
+    starts_too_fast_ = true;
+  }
   if (count == 1) {
     const Span& span = spans_.front();
     SpeedProfile profile;

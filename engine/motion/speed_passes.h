@@ -14,7 +14,10 @@ namespace rmlcell::motion {
 // Settle is called after at least as many pushes as there are knots left open.
 class SpeedPasses {
  public:
-  // A knot reached over a span of `length` from the knot before it (the chain begins at rest). It
+  // The chain begins at this speed instead of at rest. Before the first Push.
+  void BeginAt(double speed) { last_forward_ = speed; }
+
+  // A knot reached over a span of `length` from the knot before it (the chain begins at rest, see BeginAt). It
   // is passed at `cap` at most; 0 is a stop. `limits` are those of the span.
   void Push(double length, const PathLimits& limits, double cap);
 

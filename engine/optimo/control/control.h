@@ -60,7 +60,6 @@ class Control : private VariableAccess {
   void BeginProfile();
   void EndMotionHere();
   bool BringToHalt();
-  void ChangeOverride(double percent);
   const MoveNote* NoteOf(std::uint64_t tag) const;
   void StopMotions();
   motion::TipPose TipNow() const;
@@ -73,6 +72,18 @@ class Control : private VariableAccess {
 
   // 0: no source is known.
   int LineOf(int slot, std::uint32_t step) const;
+
+  // --- control_override.cc: the feed override changed on the way ---
+  struct ChainPlace {
+    motion::PlannedMotion motion;
+    motion::PathState state;
+    bool under_way = false;
+  };
+  void ChangeOverride(double percent);
+  double FractionOf(const MoveNote& note) const;
+  void AdaptToOverride(AppendedItem& item);
+  bool ReplanChain();
+  bool ReplanFrom(const ChainPlace& place, const std::vector<motion::PlannedItem>& kept);
 
   // --- control_hold.cc: HOLD inside a chain of passages ---
   const motion::MoveCommand* Appended(std::uint64_t tag) const;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "engine/optimo/control/control.h"
+#include "engine/optimo/control/motion_place.h"
 
 // HOLD inside a chain of /FLY passages: the move under way becomes exact. The program has run ahead
 // by then; what it appended behind that move waits, and is planned anew at START. motion.md 6,
@@ -12,19 +13,6 @@ namespace {
 
 constexpr double kReaches = 1.0 + 1e-9;  // rounding, where braking takes just the way that is left
 
-// How far along `whole`, a line or an arc, the point of it lies.
-double PlaceOn(const motion::PathPiece& whole, const motion::Vec3& point) {
-  if (whole.kind() == motion::PathPiece::Kind::kLine) {
-    return motion::Norm(point - whole.from().tip);
-  }
-  const motion::Vec3 start = whole.from().tip - whole.centre();
-  const motion::Vec3 here = point - whole.centre();
-  double angle =
-      std::atan2(motion::Dot(whole.normal(), motion::Cross(start, here)), motion::Dot(start, here));
-  if (angle < 0.0) angle += kTurn;
-  return angle * whole.radius_mm();
-}
-
 // The way to rest when the acceleration is first brought to zero.
 double RoomToRest(const motion::PathState& state, const motion::PathLimits& limits) {
   const double a = state.acceleration;
@@ -32,11 +20,6 @@ double RoomToRest(const motion::PathState& state, const motion::PathLimits& limi
   const double time = std::abs(a) / limits.jerk;
   const double level = std::max(state.speed + 0.5 * a * time, 0.0);
   return time * (state.speed + a * time / 3.0) + motion::RampLength(level, 0.0, limits);
-}
-
-bool LineOrArc(const motion::PathPiece& path) {
-  return path.kind() == motion::PathPiece::Kind::kLine ||
-         path.kind() == motion::PathPiece::Kind::kArc;
 }
 
 }  // namespace
