@@ -35,6 +35,9 @@ namespace {
 // Threads for work that may block: the store mostly, so there are more of them than cores.
 constexpr int kExecutorThreads = 8;
 
+// What the log of the store grows to between two checkpoints of a cell that is not busy.
+constexpr std::int64_t kLogBytesPrepared = 17 << 20;
+
 // Keepalive for shop-floor networks: a client that is gone without a word is noticed within a minute.
 constexpr int kKeepaliveTime_ms = 40'000;
 constexpr int kKeepaliveTimeout_ms = 15'000;
@@ -95,7 +98,9 @@ struct Cell::Parts {
 
 Status Cell::Parts::OpenStore() {
   auto opened = storage::OpenSqliteStore(
-      {.path = config.state_directory + "/cell.db", .keep_finished_jobs = config.jobs_keep_finished});
+      {.path = config.state_directory + "/cell.db",
+       .keep_finished_jobs = config.jobs_keep_finished,
+       .log_bytes_prepared = kLogBytesPrepared});
   if (!opened) return opened.error();
   store = std::move(*opened);
   return MakeMachines();

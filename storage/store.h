@@ -22,6 +22,7 @@ struct NewJob {
   std::string caller{};
   std::string specification{};
   int attempts_max = 2;
+  std::int64_t queued_max = 0;  // refused when so many jobs wait already; 0: never
   // What the job works on, as artifacts of it: kept with it, whatever happens to slots.
   std::vector<NewArtifact> attachments{};
   std::vector<NewEvent> events{};          // written in the transaction that makes the job
@@ -144,8 +145,8 @@ class Store {
   // store. Attachments are hashed and compressed by the calling thread before that.
   // CellRequestIdReused when request_id is known with another request_hash; CellNotFound: an attachment
   // names content that is not there; CellInvalidArgument: attempts_max below 1, an attachment's name
-  // twice; CellTooLarge: an event beyond kEventPayloadBytesMax; CellResourceExhausted: too many writes wait
-  // already, told at once by the calling thread.
+  // twice; CellTooLarge: an event beyond kEventPayloadBytesMax; CellResourceExhausted: queued_max jobs wait
+  // and the request_id is new; or too many writes wait already, told at once by the calling thread.
   virtual void Submit(NewJob job, std::function<void(Result<SubmittedJob>)> done) = 0;
   virtual Result<SubmittedJob> SubmitAndWait(NewJob job);
 

@@ -40,6 +40,9 @@ struct SimulateOptions {
 };
 int Simulate(const SimulateOptions& options);
 
+// Without a family: families and their profiles. Else all parameters as a machine file.
+int ListParameters(const std::string& family_id, const std::string& profile_id);
+
 int Explain(const std::vector<std::string>& codes, bool json);
 
 }  // namespace rmlcell::cli

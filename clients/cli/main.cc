@@ -107,6 +107,20 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
     verb->callback([options, &exit_code] { exit_code = Simulate(*options); });
   }
   {
+    auto family = std::make_shared<std::string>();
+    auto profile = std::make_shared<std::string>();
+    CLI::App* verb =
+        app.add_subcommand("parameters", "List machine parameters: meaning, range and value, as a machine file");
+    verb->footer(
+        "Examples:\n"
+        "  rmlcell parameters                                    families and their profiles\n"
+        "  rmlcell parameters optimo > mine.toml                 a file for --machine, to be changed\n"
+        "  rmlcell parameters rml1 --profile srm-20 | less");
+    verb->add_option("FAMILY", *family, "optimo or rml1; none: list the families");
+    verb->add_option("--profile", *profile, "values of this profile");
+    verb->callback([family, profile, &exit_code] { exit_code = ListParameters(*family, *profile); });
+  }
+  {
     auto codes = std::make_shared<std::vector<std::string>>();
     auto json = std::make_shared<bool>(false);
     CLI::App* verb =
@@ -183,6 +197,7 @@ void AddProjectVerbs(CLI::App& app, Remote& remote, int& exit_code) {
   static bool check_only = false;
   CLI::App* projects = RemoteVerb(app, "projects", "List, make, show, update, delete and transfer projects",
                                   "  rmlcell projects                               all of them\n"
+                                  "  rmlcell projects create door door/             12.S, 44.SI ... and project.json of a folder\n"
                                   "  rmlcell projects create door door.json\n"
                                   "  rmlcell projects transfer door optimo-1 --check-only\n"
                                   "  rmlcell projects transfer door optimo-1 --insert",
@@ -191,18 +206,20 @@ void AddProjectVerbs(CLI::App& app, Remote& remote, int& exit_code) {
   projects->callback([&, projects] {
     if (projects->get_subcommands().empty()) exit_code = Projects(remote);
   });
+  CLI::App* list = projects->add_subcommand("list", "List the projects");
+  list->callback([&] { exit_code = Projects(remote); });
   CLI::App* show = projects->add_subcommand("show", "Print a project as JSON");
   show->add_option("PROJECT", project)->required();
   show->callback([&] { exit_code = GetProject(remote, project); });
   CLI::App* create =
-      projects->add_subcommand("create", "Make a project of a JSON file (message Project)");
+      projects->add_subcommand("create", "Make a project of a folder or of a JSON file (message Project)");
   create->add_option("PROJECT", project)->required();
-  create->add_option("FILE", file)->required();
+  create->add_option("PATH", file, "folder with files like 12.S, or JSON file")->required();
   create->callback([&] { exit_code = CreateProject(remote, project, file); });
   CLI::App* update =
-      projects->add_subcommand("update", "Put a JSON file (message Project) in place of a project");
+      projects->add_subcommand("update", "Put a folder or a JSON file (message Project) in place of a project");
   update->add_option("PROJECT", project)->required();
-  update->add_option("FILE", file)->required();
+  update->add_option("PATH", file, "folder with files like 12.S, or JSON file")->required();
   update->callback([&] { exit_code = UpdateProject(remote, project, file); });
   CLI::App* remove = projects->add_subcommand("delete", "Delete a project");
   remove->add_option("PROJECT", project)->required();

@@ -1,9 +1,8 @@
 #include <filesystem>
 
-#include <google/protobuf/util/json_util.h>
-
 #include "clients/cli/messages.h"
 #include "clients/cli/program_files.h"
+#include "clients/cli/project_files.h"
 #include "clients/cli/remote_call.h"
 #include "clients/cli/terminal.h"
 #include "proto/bridge/files.h"
@@ -208,17 +207,6 @@ int GetProject(const Remote& remote, const std::string& project) {
 
 namespace {
 
-Result<v1::Project> ReadProject(const std::string& json_file) {
-  const Result<std::string> text = bridge::ReadFile(json_file, kFileBytesMax);
-  if (!text) return text.error();
-  v1::Project project;
-  const auto parsed = google::protobuf::util::JsonStringToMessage(*text, &project);
-  if (!parsed.ok()) {
-    return Error{ErrorCode::kCellBadText, json_file + ": " + std::string(parsed.message()), {}};
-  }
-  return project;
-}
-
 int Stored(const Remote& remote, const grpc::Status& status, const v1::Project& project, std::string_view what) {
   if (!status.ok()) return Refused(status, remote);
   Print(remote.json ? Json(project) : project.name() + " " + std::string(what));
@@ -227,8 +215,8 @@ int Stored(const Remote& remote, const grpc::Status& status, const v1::Project& 
 
 }  // namespace
 
-int CreateProject(const Remote& remote, const std::string& project, const std::string& json_file) {
-  Result<v1::Project> made = ReadProject(json_file);
+int CreateProject(const Remote& remote, const std::string& project, const std::string& path) {
+  Result<v1::Project> made = ReadProject(path);
   if (!made) return RefuseFile(made.error());
   v1::CreateProjectRequest request;
   request.set_project_id(project);
@@ -240,8 +228,8 @@ int CreateProject(const Remote& remote, const std::string& project, const std::s
   return Stored(remote, stub->CreateProject(&context, request, &response), response, "made");
 }
 
-int UpdateProject(const Remote& remote, const std::string& project, const std::string& json_file) {
-  Result<v1::Project> changed = ReadProject(json_file);
+int UpdateProject(const Remote& remote, const std::string& project, const std::string& path) {
+  Result<v1::Project> changed = ReadProject(path);
   if (!changed) return RefuseFile(changed.error());
   v1::UpdateProjectRequest request;
   *request.mutable_project() = *std::move(changed);

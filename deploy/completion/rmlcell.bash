@@ -54,6 +54,7 @@ _rmlcell_options() {
       echo "--help --slot --main --executable --family --profile --machine --inputs --mode --override --simul" \
         "--break --budget --vars --svg --plot --state-in --state-out --trace --facts --json" ;;
     explain | diff) echo "--help --json" ;;
+    parameters) echo "--help --profile" ;;
     compile | decompile | compensate | list) echo "--help --output" ;;
     link) echo "--help --slot --main --output" ;;
     format) echo "--help --check" ;;
@@ -67,7 +68,7 @@ _rmlcell_options() {
     watch) echo "$remote --after" ;;
     jobs) echo "$remote --filter --limit" ;;
     picture) echo "$remote --output" ;;
-    "projects show" | "projects create" | "projects update" | "projects delete") echo "--help" ;;
+    "projects list" | "projects show" | "projects create" | "projects update" | "projects delete") echo "--help" ;;
     "projects transfer") echo "--help --insert --check-only" ;;
   esac
 }
@@ -118,6 +119,7 @@ _rmlcell_positional() {
     decompile) _rmlcell_files .o ;;
     compile | format | convert | compensate | transform | list | diff) _rmlcell_files .s .si .cmp .o ;;
     explain) _rmlcell_codes ;;
+    parameters) [[ $count -eq 0 ]] && _rmlcell_offer optimo rml1 ;;
     programs) [[ $count -eq 0 ]] && _rmlcell_machines ;;
     put)
       case $count in
@@ -138,7 +140,7 @@ _rmlcell_positional() {
     watch | job) [[ $count -eq 0 ]] && _rmlcell_jobs ;;
     cancel) [[ $count -eq 0 ]] && _rmlcell_jobs "finished = false" ;;
     report | picture) [[ $count -eq 0 ]] && _rmlcell_jobs "finished = true" ;;
-    projects) [[ $count -eq 0 ]] && _rmlcell_offer show create update delete transfer ;;
+    projects) [[ $count -eq 0 ]] && _rmlcell_offer list show create update delete transfer ;;
     "projects show" | "projects delete") [[ $count -eq 0 ]] && _rmlcell_projects ;;
     "projects create") [[ $count -eq 1 ]] && _rmlcell_files .json ;;
     "projects update")
@@ -185,7 +187,7 @@ _rmlcell() {
     option=''
     if [[ -z $verb ]]; then
       verb=$word
-    elif [[ $verb == projects && ${#given[@]} -eq 0 && $word =~ ^(show|create|update|delete|transfer)$ ]]; then
+    elif [[ $verb == projects && ${#given[@]} -eq 0 && $word =~ ^(list|show|create|update|delete|transfer)$ ]]; then
       verb="projects $word"
     else
       given+=("$word")
@@ -215,7 +217,7 @@ _rmlcell() {
   if [[ $cur == -* ]]; then
     _rmlcell_offer $(_rmlcell_options "$verb")
   elif [[ -z $verb ]]; then
-    _rmlcell_offer check simulate explain compile decompile link format convert compensate transform list \
+    _rmlcell_offer check simulate parameters explain compile decompile link format convert compensate transform list \
       diff machines programs put get delete projects submit watch jobs job cancel report picture
   else
     _rmlcell_positional

@@ -104,6 +104,9 @@ class MachineFamily {
   virtual Translation Translate(const SourceFile& file, const Parameters& parameters,
                                 const CheckOptions& options) const = 0;
 
+  // What is wrong with a process definition by itself, whatever the programs say (OPT-3.01 to 3.08).
+  virtual std::vector<Diagnostic> CheckProcess(const ProcessDefinition& /*definition*/) const { return {}; }
+
   // Checks a project and makes what its transfer would store.
   virtual TransferPlan PlanTransfer(const ProjectBundle& project, const Parameters& parameters,
                                     const TransferOptions& options) const = 0;

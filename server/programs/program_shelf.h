@@ -5,29 +5,12 @@
 
 #include "engine/machine/family.h"
 #include "rmlcell/v1/program.pb.h"
+#include "server/programs/program_result.h"
 #include "storage/store.h"
 
 namespace rmlcell::server {
 
 struct Config;
-
-// An error with what there is to say about the program.
-struct ProgramError {
-  Error error;
-  std::vector<Diagnostic> diagnostics;
-  std::uint64_t dropped = 0;
-};
-
-template <class T>
-struct ProgramResult {
-  std::optional<T> value;
-  ProgramError error{};  // when there is no value
-
-  ProgramResult(T made) : value(std::move(made)) {}                                     // NOLINT: implicit
-  ProgramResult(Error wrong) : error{std::move(wrong), {}, 0} {}                        // NOLINT: implicit
-  ProgramResult(ProgramError wrong) : error(std::move(wrong)) {}                        // NOLINT: implicit
-  explicit operator bool() const { return value.has_value(); }
-};
 
 // The program memory of machines: translation, checks and storage of programs.
 // Thread-safe; blocks on the store and on compilation.

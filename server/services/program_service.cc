@@ -15,10 +15,6 @@ namespace {
 constexpr std::size_t kChunkBytes = 256 << 10;
 constexpr std::size_t kUnaryBytes = 3 << 20;
 
-grpc::Status StatusOf(const ProgramError& wrong) {
-  return ToGrpcStatus(wrong.error, wrong.diagnostics, wrong.dropped);
-}
-
 v1::Findings FindingsOf(const machine::Translation& translation) {
   return bridge::FindingsOf(translation.ok, translation.diagnostics, translation.diagnostics_dropped,
                             translation.figures);
@@ -75,7 +71,7 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
                                                               .bytes = std::move(bytes_),
                                                               .validate_only = header_.validate_only()});
       if (stored) *response_ = *stored.value;
-      const grpc::Status status = stored ? grpc::Status::OK : StatusOf(stored.error);
+      const grpc::Status status = stored ? grpc::Status::OK : ToGrpcStatus(stored.error);
       LogCall("ProgramService/UploadProgram", caller_, status, std::chrono::steady_clock::now() - begin_);
       Finish(status);
     });
@@ -156,7 +152,7 @@ grpc::ServerUnaryReactor* ProgramService::PutProgram(grpc::CallbackServerContext
                                                             .etag = request->etag(),
                                                             .bytes = request->program().content(),
                                                             .validate_only = request->validate_only()});
-    if (!stored) return StatusOf(stored.error);
+    if (!stored) return ToGrpcStatus(stored.error);
     *response = *stored.value;
     return grpc::Status::OK;
   });

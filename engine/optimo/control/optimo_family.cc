@@ -43,6 +43,10 @@ class Family final : public machine::MachineFamily {
                            static_cast<std::uint32_t>(Resolve(parameters).object_limit));
   }
 
+  std::vector<Diagnostic> CheckProcess(const machine::ProcessDefinition& definition) const override {
+    return optimo::CheckProcess(definition);
+  }
+
   machine::TransferPlan PlanTransfer(const machine::ProjectBundle& project,
                                      const machine::Parameters& parameters,
                                      const machine::TransferOptions& options) const override {
