@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -101,67 +102,97 @@ bool Control::ReplanChain() {
 
 // False: not from this motion. Nothing has changed then.
 bool Control::ReplanFrom(const ChainPlace& place, const std::vector<motion::PlannedItem>& kept) {
-  const motion::PlannedMotion& here = place.motion;
-  const auto own = std::ranges::find(s_.appended, here.tag, &AppendedItem::tag);
-  if (own == s_.appended.end() || !own->move) return false;
-  if (!LineOrArc(here.path) || !LineOrArc(own->move->path)) return false;
-  AppendedItem rest = *own;
+  const motion::MoveCommand* command = Appended(place.motion.tag);
+  if (command == nullptr) return false;
+  AppendedItem rest{.tag = place.motion.tag, .move = *command};
   AdaptToOverride(rest);
   const double speed = motion::LimitsOf(*rest.move, parameters_.limits).speed;
-  const Lead lead = LeadFrom(place.state, here.limits, speed);
-  const double end = place.state.s + lead.length;
-  const double begin = PlaceOn(own->move->path, here.path.from().tip) + end;
-  constexpr double kLeft_mm = 1e-3;  // less of a move is not worth a plan
-  if (end > here.path.length() || begin > own->move->path.length() - kLeft_mm) return false;
-
+  const std::optional<Onward> onward = OnwardFrom(place, *rest.move, speed);
+  if (!onward) return false;
+  const auto own = s_.appended.begin() + static_cast<std::ptrdiff_t>(onward->own);
   std::vector<AppendedItem> later(std::next(own), s_.appended.end());
   for (AppendedItem& item : later) AdaptToOverride(item);
+  std::optional<motion::Planner> planner = PlanOnward(*onward, later);
+  if (!planner) return false;
+  if (!s_.passing) planner->Stop();
+  std::copy(later.begin(), later.end(), std::next(own));
+  *own = rest;
+  GoOnward(place, *onward, kept);
+  s_.planner = *std::move(planner);
+  DrainPlanner();
+  if (!s_.active) StartNextItem();
+  return true;
+}
+
+// How the chain could go on from here under `command`, not faster than `speed`; nothing when it
+// cannot.
+std::optional<Control::Onward> Control::OnwardFrom(const ChainPlace& place,
+                                                   const motion::MoveCommand& command,
+                                                   double speed) const {
+  const motion::PlannedMotion& here = place.motion;
+  const auto own = std::ranges::find(s_.appended, here.tag, &AppendedItem::tag);
+  if (own == s_.appended.end() || !LineOrArc(here.path) || !LineOrArc(command.path)) {
+    return std::nullopt;
+  }
+  const Lead lead = LeadFrom(place.state, here.limits, speed);
+  const double end = place.state.s + lead.length;
+  const double begin = PlaceOn(command.path, here.path.from().tip) + end;
+  constexpr double kLeft_mm = 1e-3;  // less of a move is not worth a plan
+  if (end > here.path.length() || begin > command.path.length() - kLeft_mm) return std::nullopt;
+  Onward onward{.own = static_cast<std::size_t>(own - s_.appended.begin()),
+                .lead_length = lead.length,
+                .speed = lead.speed,
+                .first = command};
+  onward.first.path = command.path.Part(begin, command.path.length());
+  return onward;
+}
+
+// Nothing when what follows cannot be met from there, even if the chain ended with `later`.
+std::optional<motion::Planner> Control::PlanOnward(const Onward& onward,
+                                                   std::span<const AppendedItem> later) const {
   motion::Planner planner(parameters_.limits);
-  planner.BeginMoving(lead.speed);
-  motion::MoveCommand first = *rest.move;
-  first.path = own->move->path.Part(begin, own->move->path.length());
-  if (!planner.Append(first)) return false;
+  planner.BeginMoving(onward.speed);
+  if (!planner.Append(onward.first)) return std::nullopt;
   for (const AppendedItem& item : later) {
     if (!item.move) {
       planner.Mark(item.tag);
     } else if (!planner.Append(*item.move)) {
-      return false;
+      return std::nullopt;
     }
   }
-  if (!s_.passing) planner.Stop();
-  motion::Planner trial = planner;  // as if nothing came after what is known
+  motion::Planner trial = planner;
   trial.Stop();
-  if (!trial.Next() || trial.starts_too_fast()) return false;
+  if (!trial.Next() || trial.starts_too_fast()) return std::nullopt;
+  return planner;
+}
 
-  std::copy(later.begin(), later.end(), std::next(own));
-  *own = rest;
+// The way to the place where the new plan begins takes the place of what was planned.
+void Control::GoOnward(const ChainPlace& place, const Onward& onward,
+                       const std::vector<motion::PlannedItem>& kept) {
   if (place.under_way) TellMotion(s_.now);
   s_.timeline.assign(kept.begin(), kept.end());
-  if (lead.length > 0.0) {
-    motion::PlannedMotion down = here;
-    down.path = here.path.Part(place.state.s, end);
+  if (onward.lead_length > 0.0) {
+    const motion::PlannedMotion& here = place.motion;
+    motion::PlannedMotion lead = here;
+    lead.path = here.path.Part(place.state.s, place.state.s + onward.lead_length);
     motion::PathLimits limits = here.limits;
-    limits.speed = lead.speed;
+    limits.speed = onward.speed;
     motion::PathState state = place.state;
     state.s = 0.0;
-    down.speed = motion::SpeedProfile::From(state, lead.length, lead.speed, limits);
-    down.settling_s = 0.0;
-    down.ends_move = false;
-    down.corner = {};
+    lead.speed = motion::SpeedProfile::From(state, onward.lead_length, onward.speed, limits);
+    lead.settling_s = 0.0;
+    lead.ends_move = false;
+    lead.corner = {};
     if (place.under_way) {
-      s_.active->motion = down;
+      s_.active->motion = lead;
       BeginProfile();
     } else {
-      s_.timeline.emplace_back(down);
+      s_.timeline.emplace_back(lead);
     }
   } else if (place.under_way) {
     s_.machine.axes = AxesNow();
     s_.active.reset();
   }
-  s_.planner = std::move(planner);
-  DrainPlanner();
-  if (!s_.active) StartNextItem();
-  return true;
 }
 
 }  // namespace rmlcell::optimo
