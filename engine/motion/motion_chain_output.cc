@@ -8,8 +8,7 @@
 namespace rmlcell::motion {
 namespace {
 
-// Spans timed together: each gives at most two cells. Longer stretches of speed-up are rare, and
-// cut here they are as good as level 1.
+// Spans timed together: each gives at most two cells.
 constexpr std::size_t kSectionMax = RampPlan::kCellsMax / 2;
 
 }  // namespace
@@ -20,7 +19,8 @@ std::optional<PlannedItem> MotionChain::Next() {
     if (count == 0) return std::nullopt;
     EmitSection(count);
   }
-  PlannedItem item = std::move(items_.front());
+  std::optional<PlannedItem> item(std::in_place,
+                                  std::move(items_.front()));  // one copy: they are large
   items_.PopFront();
   return item;
 }

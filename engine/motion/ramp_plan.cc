@@ -24,6 +24,11 @@ double PlaceOfPeak(const SpeedProfile& profile) {
   return place;
 }
 
+double Reachable(double from, const RampCell& cell, double cap) {
+  if (cap <= from || RampLength(from, cap, cell.limits) <= cell.length) return cap;
+  return std::min(cap, Reach(from, cell.length, cell.limits));
+}
+
 double SpeedAt(const SpeedProfile& profile, double s) {
   return profile.At(profile.TimeAt(s)).speed;
 }
@@ -47,7 +52,24 @@ void RampPlan::Plan(std::span<const RampCell> cells, double start_speed) {
   ramps_.clear();
   last_cell_.clear();
   timing_.clear();
-  Best(0, cells.size() - 1);
+  if (Pass()) {
+    double time = 0.0;
+    std::size_t first = 0;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      if (k + 1 < cells.size() && speeds_[k] < CapAfter(k) * (1.0 - kRoom)) continue;
+      time += Best(first, k);
+      first = k + 1;
+    }
+    double level_one = 0.0;
+    double speed = start_speed;
+    for (const RampCell& each : cells) {
+      level_one += SpeedProfile::Span(each.length, speed, each.end_speed, each.limits).duration_s();
+      speed = each.end_speed;
+    }
+    if (time > level_one) LevelOne();
+  } else {
+    LevelOne();
+  }
   std::size_t cell = 0;
   for (std::size_t ramp = 0; ramp < ramps_.size(); ++ramp) {
     double at = 0.0;
@@ -56,6 +78,39 @@ void RampPlan::Plan(std::span<const RampCell> cells, double start_speed) {
       timing_.push_back({ramp, at, end});
       at = end;
     }
+  }
+}
+
+double RampPlan::CapAfter(std::size_t cell) const {
+  return std::min({cells_[cell].limits.speed, cells_[cell + 1].limits.speed, cells_[cell].end_cap});
+}
+
+// Forward and backward over all cells. False: the ends are not met, by the last digits, or because
+// Reach is not quite monotone.
+bool RampPlan::Pass() {
+  const std::size_t count = cells_.size();
+  const double end_speed = cells_.back().end_speed;
+  speeds_.resize(count);
+  double speed = start_speed_;
+  for (std::size_t k = 0; k < count; ++k) {
+    speed = speeds_[k] = Reachable(speed, cells_[k], k + 1 < count ? CapAfter(k) : end_speed);
+  }
+  if (speed < end_speed) return false;
+  for (std::size_t k = count - 1; k > 0; --k) {
+    speeds_[k - 1] = Reachable(speeds_[k], cells_[k], speeds_[k - 1]);
+  }
+  return start_speed_ <= speeds_[0] ||
+         RampLength(start_speed_, speeds_[0], cells_[0].limits) <= cells_[0].length * (1.0 + kRoom);
+}
+
+void RampPlan::LevelOne() {
+  ramps_.clear();
+  last_cell_.clear();
+  double speed = start_speed_;
+  for (std::size_t k = 0; k < cells_.size(); ++k) {
+    const RampCell& cell = cells_[k];
+    Append(SpeedProfile::Span(cell.length, speed, cell.end_speed, cell.limits), k);
+    speed = cell.end_speed;
   }
 }
 
@@ -69,7 +124,7 @@ double RampPlan::Best(std::size_t first, std::size_t last) {
   if (last - first < kExactMax) return BestOfAll(first, last);
   const Try together = Together(first, last);
   const bool broken = together.worst != Try::kNone;
-  if (!broken && together.time <= LevelOneTime(first, last)) {
+  if (!broken && together.time <= TimeApart(first, last)) {
     Append(together.profile, last);
     return together.time;
   }
@@ -90,7 +145,7 @@ double RampPlan::Best(std::size_t first, std::size_t last) {
   return together.time;
 }
 
-double RampPlan::LevelOneTime(std::size_t first, std::size_t last) const {
+double RampPlan::TimeApart(std::size_t first, std::size_t last) const {
   double time = 0.0;
   for (std::size_t k = first; k <= last; ++k) time += Together(k, k).time;
   return time;
@@ -126,13 +181,13 @@ double RampPlan::BestOfAll(std::size_t first, std::size_t last) {
 RampPlan::Try RampPlan::Together(std::size_t first, std::size_t last) const {
   Try whole;
   const double start_speed = SpeedBefore(first);
-  if (first == last) {  // as level 1 has it
+  const double end_speed = speeds_[last];
+  if (first == last) {
     const RampCell& cell = cells_[first];
-    whole.profile = SpeedProfile::Span(cell.length, start_speed, cell.end_speed, cell.limits);
+    whole.profile = SpeedProfile::Span(cell.length, start_speed, end_speed, cell.limits);
     whole.time = whole.profile.duration_s();
     return whole;
   }
-  const double end_speed = cells_[last].end_speed;
   PathLimits limits = cells_[first].limits;
   double length = 0.0;
   for (std::size_t k = first; k <= last; ++k) {

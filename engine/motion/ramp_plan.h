@@ -20,15 +20,16 @@ struct RampCell {
   static constexpr double kNoCap = std::numeric_limits<double>::infinity();
 };
 
-// Ramps that run across the ends of stretches: level 2 of motion.md 5.4. Where one ramp over
-// several stretches keeps the limits of each, it takes the place of theirs. Up to kExactMax
-// stretches all ways to join neighbours are tried; longer ways are split at the stretch that one
-// ramp breaks most. Never slower than level 1, and no speed at the ends of the whole way changes.
-// Reused for many ways: it keeps its memory.
+// Ramps that run across the ends of stretches: level 2 of motion.md 5.4. First the two passes
+// again, with every stretch free to change its speed, curves too. Between the ends that are then
+// passed as fast as they may be, one ramp takes the place of several wherever it keeps the limits
+// of each: up to kExactMax stretches all ways to join neighbours are tried, longer ways are split
+// at the stretch that one ramp breaks most. Never slower than level 1, and no speed at the ends of
+// the whole way changes. Reused for many ways: it keeps its memory.
 class RampPlan {
  public:
-  // Stretches to look at together: the work may grow with their square.
-  static constexpr std::size_t kCellsMax = 256;
+  // Stretches looked at together: 2 m of lines of 2 mm with their curves, more than any ramp takes.
+  static constexpr std::size_t kCellsMax = 2048;
 
   struct Timing {
     std::size_t ramp = 0;  // of ramps()
@@ -46,17 +47,21 @@ class RampPlan {
   static constexpr std::size_t kExactMax = 8;  // the work grows with the cube
 
   struct Try;
+  bool Pass();
+  void LevelOne();
   double Best(std::size_t first, std::size_t last);
   double BestOfAll(std::size_t first, std::size_t last);
   Try Together(std::size_t first, std::size_t last) const;
-  double LevelOneTime(std::size_t first, std::size_t last) const;
+  double TimeApart(std::size_t first, std::size_t last) const;
+  double CapAfter(std::size_t cell) const;
   void Append(const SpeedProfile& ramp, std::size_t last);
   double SpeedBefore(std::size_t cell) const {
-    return cell == 0 ? start_speed_ : cells_[cell - 1].end_speed;
+    return cell == 0 ? start_speed_ : speeds_[cell - 1];
   }
 
   std::span<const RampCell> cells_;
   double start_speed_ = 0.0;
+  std::vector<double> speeds_;  // at the end of each cell
   std::vector<SpeedProfile> ramps_;
   std::vector<std::size_t> last_cell_;  // of each ramp
   std::vector<Timing> timing_;

@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 build=${1:-build/release}
 peer=$build/linuxcnc
-ninja -C "$build" motion_linuxcnc_bench >/dev/null
+nice ninja -C "$build" motion_linuxcnc_bench >/dev/null
 
 if [ ! -e "$peer/tpmod.so" ]; then
   mkdir -p "$peer/packages"

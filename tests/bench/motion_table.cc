@@ -166,6 +166,9 @@ void Table() {
       Polyline(Legs(8, 5.0, 3.0 * degree, false), 0.20));
   Row("zigzag of three 2 mm legs, 90 degrees, SPEED 30",
       Polyline(Legs(3, 2.0, 90.0 * degree, true), 0.30));
+  std::vector<MoveCommand> contour = Contour(1200, false, 0.30);
+  contour.back().fly = false;
+  Row("wavy contour of 2.5 mm lines, SPEED 30", contour);
   Row("rising zigzag of forty 4.3 mm legs, 140 degrees, SPEED 25",
       Polyline(Legs(40, 4.2, 140.0 * degree, true, 0.9), 0.25));
 }
