@@ -49,18 +49,19 @@ _rmlcell_options() {
   local remote="--help --server --json"
   case $1 in
     "") echo "--help --version" ;;
-    check) echo "--help --family --machine --errors-only --json" ;;
+    check) echo "--help --family --machine --errors-only --fix --dry-run --json" ;;
     simulate)
       echo "--help --slot --main --executable --family --profile --machine --inputs --mode --override --simul" \
-        "--break --budget --vars --svg --state-in --state-out --trace --facts --json" ;;
-    explain | diff) echo "--help --json" ;;
+        "--break --budget --vars --svg --plot --state-in --state-out --trace --facts --json" ;;
+    explain) echo "--help --json" ;;
+    diff) echo "--help --svg --json" ;;
     parameters) echo "--help --profile" ;;
     compile | decompile | compensate | list) echo "--help --output" ;;
     link) echo "--help --slot --main --output" ;;
     format) echo "--help --check" ;;
     convert) echo "--help" ;;
     transform) echo "--help --move --turn --shift --output" ;;
-    machines | programs | delete | projects | job | cancel | report) echo "$remote" ;;
+    machines | programs | delete | stale | projects | job | cancel | report) echo "$remote" ;;
     put) echo "$remote --etag --check-only" ;;
     get) echo "$remote --form --output" ;;
     submit)
@@ -77,7 +78,7 @@ _rmlcell_options() {
 _rmlcell_takes_value() {
   case $1 in
     --slot | --main | --executable | --family | --profile | --machine | --inputs | --mode | --override | \
-      --simul | --break | --budget | --vars | --svg | --state-in | --state-out | --server | --etag | --form | \
+      --simul | --break | --budget | --vars | --svg | --plot | --state-in | --state-out | --server | --etag | --form | \
       --output | -o | --kind | --title | --request-id | --after | --filter | --limit | --move | --turn | --shift) return 0 ;;
   esac
   return 1
@@ -103,6 +104,9 @@ _rmlcell_values() {
       _rmlcell_offer state= machine= kind= caller= finished= ;;
     --machine) _rmlcell_files .toml ;;
     --svg) _rmlcell_files .svg ;;
+    --plot)
+      compopt -o nospace 2>/dev/null
+      _rmlcell_offer speed power axes speed,power,axes ;;
     --inputs | --state-in | --state-out | --output | -o) _rmlcell_files ;;
     --slot) [[ $verb == submit && -n ${given[0]:-} ]] && _rmlcell_slots "${given[0]}" ;;
   esac
@@ -117,7 +121,7 @@ _rmlcell_positional() {
     compile | format | convert | compensate | transform | list | diff) _rmlcell_files .s .si .cmp .o ;;
     explain) _rmlcell_codes ;;
     parameters) [[ $count -eq 0 ]] && _rmlcell_offer optimo rml1 ;;
-    programs) [[ $count -eq 0 ]] && _rmlcell_machines ;;
+    programs | stale) [[ $count -eq 0 ]] && _rmlcell_machines ;;
     put)
       case $count in
         0) _rmlcell_machines ;;
@@ -176,6 +180,7 @@ _rmlcell() {
         if ((i + 1 < COMP_CWORD)); then
           ((++i))
           [[ $option == --server ]] && server=${COMP_WORDS[i]}
+          [[ $option == --plot ]] && ((i + 1 < COMP_CWORD)) && ((++i))  # its file
         fi
       fi
       continue
@@ -201,6 +206,10 @@ _rmlcell() {
       return
     fi
   fi
+  if [[ ${COMP_WORDS[COMP_CWORD - 2]:-} == --plot && $COMP_CWORD -gt 2 ]]; then
+    _rmlcell_files .svg
+    return
+  fi
   if [[ -n $verb ]] && _rmlcell_takes_value "$before"; then
     _rmlcell_values "$before"
     return
@@ -210,7 +219,7 @@ _rmlcell() {
     _rmlcell_offer $(_rmlcell_options "$verb")
   elif [[ -z $verb ]]; then
     _rmlcell_offer check simulate parameters explain compile decompile link format convert compensate transform list \
-      diff machines programs put get delete projects submit watch jobs job cancel report picture
+      diff machines programs put get delete stale projects submit watch jobs job cancel report picture
   else
     _rmlcell_positional
   fi
