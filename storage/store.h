@@ -142,7 +142,8 @@ class Store {
   virtual Status DeleteProject(std::string_view id, Revision expected) = 0;  // CellNotFound
 
   // --- jobs -----------------------------------------------------------------------------------------
-  // Durable before `done` is called, from a thread of the store: many submissions share one commit.
+  // Durable before `done` is called, from a thread of the store or before Submit() returns: many submissions
+  // share one commit.
   // `done` is called once, does not throw, and is brief, as the next commit waits for it; it may call this
   // store. Attachments are hashed and compressed by the calling thread before that.
   // CellRequestIdReused when request_id is known with another request_hash; CellNotFound: an attachment

@@ -269,6 +269,12 @@ int Simulate(const SimulateOptions& options) {
     };
   }
   request.products.picture = !options.svg.empty();
+  if (!options.plot.empty()) {
+    Result<std::vector<simulation::PlotCurve>> curves = simulation::ParsePlotCurves(options.plot[0]);
+    if (!curves) return Refuse(curves.error());
+    request.products.plot = true;
+    request.plot.curves = *std::move(curves);
+  }
   request.variables = *variables;
   ProgressLine progress;
   request.options.slice = std::chrono::seconds(10);
@@ -284,6 +290,11 @@ int Simulate(const SimulateOptions& options) {
   progress.Clear();
   if (!result) return Refuse(result.error());
 
+  const std::string plot_file = options.plot.empty() ? std::string() : options.plot[1];
+  const bool plot_on_output = plot_file == "-";
+  if (!plot_file.empty() && !plot_on_output) {
+    if (Status written = WriteWholeFile(plot_file, result->plot); !written) return Refuse(written.error());
+  }
   const bool picture_on_output = options.svg == "-";
   if (!options.svg.empty() && !picture_on_output) {
     if (Status written = WriteWholeFile(options.svg, result->svg); !written) return Refuse(written.error());
@@ -297,6 +308,8 @@ int Simulate(const SimulateOptions& options) {
   v1::RunReport report = bridge::ToProto(result->report, result->variables);
   if (picture_on_output) {
     PrintRaw(result->svg);  // in place of the report: it is to be a file of its own
+  } else if (plot_on_output) {
+    PrintRaw(result->plot);
   } else if (options.json) {
     report.mutable_trace_records()->Swap(traced.mutable_trace_records());
     Print(Json(report));

@@ -69,6 +69,7 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
     verb->footer(
         "Examples:\n"
         "  rmlcell simulate part.rml --svg part.svg       figures, and a picture\n"
+        "  rmlcell simulate 45.S --plot speed,power t.svg curves over time\n"
         "  rmlcell simulate 32.S progs/ --trace           progs/44.S and the like fill the program "
         "memory\n"
         "  rmlcell simulate part.S --simul 12/40          dry up to step 40 of program 12, real "
@@ -99,6 +100,9 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
                      "steps=N,time=SECONDS: end the run when it needs more");
     verb->add_option("--vars", options->variables, "variables to show at the end: VR[0..9],VI[99]");
     verb->add_option("--svg", options->svg, "write a picture of the toolpath");
+    verb->add_option("--plot", options->plot,
+                     "CURVES FILE: write curves over time, of speed,power,axes")
+        ->expected(2);
     verb->add_option("--state-in", options->state_in, "machine state of an earlier run");
     verb->add_option("--state-out", options->state_out, "keep the machine state for a later run");
     verb->add_flag("--trace", options->trace, "list all that was observable, in order");

@@ -84,6 +84,13 @@ class Local(unittest.TestCase):
         self.assertEqual(run("simulate", self.file("square.rml", SQUARE), "--svg", picture).returncode, 0)
         self.assertIn("<svg", picture.read_text())
 
+    def test_curves_over_time_are_written(self):
+        plot = self.folder / "t.svg"
+        done = run("simulate", "--plot", "axes,speed", plot, self.file("square.rml", SQUARE))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("tip speed", plot.read_text())
+        self.assertEqual(run("simulate", "--plot", "torque", plot, self.file("square.rml", SQUARE)).returncode, 2)
+
     def test_wrong_use_and_missing_files_are_told_apart_from_program_errors(self):
         self.assertEqual(run("simulate", self.folder / "none.S").returncode, 2)
         self.assertEqual(run("nonsense").returncode, 2)

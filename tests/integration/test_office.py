@@ -111,6 +111,38 @@ class CommandLine(unittest.TestCase):
         run("convert", source, "/m", code=2)
         self.assertEqual(os.listdir(self.folder), ["part.S"])
 
+    def refused_conversion(self, *words):
+        """The message of a call of convert that must end as wrong use."""
+        done = subprocess.run([BIN / "rmlcell", "convert", *map(str, words)], capture_output=True, text=True,
+                              timeout=120, env={**os.environ, "NO_COLOR": "1"})
+        self.assertEqual(done.returncode, 2, done)
+        self.assertEqual(done.stdout, "")
+        return done.stderr
+
+    # OPT-8.60, OPT-8.66, OPT-E.7703
+    def test_convert_says_that_the_input_cannot_be_opened(self):
+        said = self.refused_conversion(self.folder / "none.S")
+        self.assertIn("OPT-E7703", said)
+        self.assertIn("Input File Could Not be Opened", said)
+        self.assertIn("none.S", said)
+        self.assertEqual(os.listdir(self.folder), [])
+
+    # OPT-8.63, OPT-8.66, OPT-E.7706
+    def test_convert_says_that_the_output_cannot_be_opened(self):
+        source = self.file("part.S", LINE)
+        said = self.refused_conversion(source, self.folder / "no-such-folder" / "part.SI")
+        self.assertIn("OPT-E7706", said)
+        self.assertIn("Output File Could Not be Opened", said)
+        self.assertEqual(os.listdir(self.folder), ["part.S"])
+
+    # OPT-8.59, OPT-8.61, OPT-8.62, OPT-8.64, OPT-8.66
+    def test_convert_names_each_wrong_call(self):
+        source, old = self.file("part.S", LINE), self.file("part.old", LINE)
+        for words, code in [([source, "/x"], "OPT-E7702"), ([old], "OPT-E7704"), (["/i"], "OPT-E7705"),
+                            ([source, self.folder / "b.SI", "c"], "OPT-E7707")]:
+            self.assertIn(code, self.refused_conversion(*words))
+        self.assertEqual(sorted(os.listdir(self.folder)), ["part.S", "part.old"])
+
     # OPT-8.11, OPT-8.15
     def test_compensate_moves_the_cut_by_the_radius(self):
         source = self.file("part.S", ";$dia=0.508\n;$left\nPATH LIN\nMOVE (0.,0.,0.,0.,0.)\nWORK 0,0/ON\n"

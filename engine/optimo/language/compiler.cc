@@ -18,7 +18,7 @@ Compilation Compile(std::string_view text, std::string_view file, const CompileO
     findings.Add(ErrorCode::kSourceIsInch, {}, "convert the inch source to metric first",
                  "OPT-2.04");
   } else {
-    program = Parse(text, findings);
+    program = Parse(text, findings, Places::kStatements);
     Check(program, findings);
     if (options.advice) Advise(program, findings);
     if (options.advice && options.further_advice && findings.error_count() == 0)

@@ -63,7 +63,7 @@ Result<RecoveredSource> RecoverSource(std::string_view object,
 
 std::vector<int> LinesOfSteps(std::string_view text) {
   Findings findings(0);
-  ParsedProgram program = Parse(text, findings);
+  ParsedProgram program = Parse(text, findings, Places::kStatements);
   Check(program, findings);
   return LinesOfSteps(program);
 }
