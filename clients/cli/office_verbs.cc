@@ -27,15 +27,19 @@ CLI::App* FileVerb(CLI::App& app, const char* name, const char* text, const char
 void AddOfficeVerbs(CLI::App& app, int& exit_code) {
   {
     auto arguments = std::make_shared<FileArguments>();
-    FileVerb(app, "compile", "Compile a source to its object",
-             "  rmlcell compile 12.S                 writes 12.O\n"
-             "  rmlcell compile 12.S -o - | xxd      the bytes",
-             arguments, "file of the object, - for standard output; default: FILE with .O")
-        ->callback([arguments, &exit_code] { exit_code = Compile(arguments->file, arguments->output); });
+    auto map = std::make_shared<bool>(false);
+    CLI::App* verb = FileVerb(app, "compile", "Compile a source to its object",
+                              "  rmlcell compile 12.S                 writes 12.O\n"
+                              "  rmlcell compile 12.S --map           and 12.MAP: comments and layout for decompile\n"
+                              "  rmlcell compile 12.S -o - | xxd      the bytes",
+                              arguments, "file of the object, - for standard output; default: FILE with .O");
+    verb->add_flag("--map", *map, "write a source map beside the object, .MAP for its extension");
+    verb->callback([arguments, map, &exit_code] { exit_code = Compile(arguments->file, arguments->output, *map); });
   }
   {
     auto arguments = std::make_shared<FileArguments>();
-    FileVerb(app, "decompile", "Give the source of an object", "  rmlcell decompile 12.O -o 12.S", arguments,
+    FileVerb(app, "decompile", "Give the source of an object: its own text where 12.MAP beside it has it",
+             "  rmlcell decompile 12.O -o 12.S", arguments,
              "file of the source; default: standard output")
         ->callback([arguments, &exit_code] { exit_code = Decompile(arguments->file, arguments->output); });
   }

@@ -56,7 +56,8 @@ _rmlcell_options() {
     explain) echo "--help --json" ;;
     diff) echo "--help --svg --json" ;;
     parameters) echo "--help --profile" ;;
-    compile | decompile | compensate | list) echo "--help --output" ;;
+    compile) echo "--help --map --output" ;;
+    decompile | compensate | list) echo "--help --output" ;;
     link) echo "--help --slot --main --output" ;;
     format) echo "--help --check" ;;
     convert) echo "--help" ;;
