@@ -16,6 +16,7 @@
 #include "server/jobs/dispatcher.h"
 #include "server/jobs/job_book.h"
 #include "server/jobs/worker_processes.h"
+#include "server/programs/memory_office.h"
 #include "server/programs/program_shelf.h"
 #include "server/projects/project_book.h"
 #include "server/services/handbox_service.h"
@@ -75,6 +76,7 @@ struct Cell::Parts {
   Gate gate{RandomText()};
   std::unique_ptr<JobBook> book;
   std::unique_ptr<ProgramShelf> shelf;
+  std::unique_ptr<MemoryOffice> office;
   std::unique_ptr<ProjectBook> projects;
   std::unique_ptr<JobService> job_service;
   std::unique_ptr<MachineService> machine_service;
@@ -128,11 +130,12 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   dispatcher = std::make_unique<Dispatcher>(*store, *feed, config, *executor, join_token);
   book = std::make_unique<JobBook>(*store, config);
   shelf = std::make_unique<ProgramShelf>(*store, config);
+  office = std::make_unique<MemoryOffice>(*store, *shelf);
   projects = std::make_unique<ProjectBook>(*store);
   const CallRoom room{gate, *executor, config.limit_message_bytes};
   job_service = std::make_unique<JobService>(room, *book, *dispatcher, *feed, open, instance_id);
   machine_service = std::make_unique<MachineService>(room, *store, *dispatcher, config, instance_id);
-  program_service = std::make_unique<ProgramService>(room, *shelf, open);
+  program_service = std::make_unique<ProgramService>(room, *shelf, *office, open);
   project_service = std::make_unique<ProjectService>(room, *projects);
   handbox_service = std::make_unique<HandboxService>(room);
   worker_service = std::make_unique<WorkerService>(room, *dispatcher);

@@ -109,6 +109,8 @@ class Store {
   // The program memory of the machine for a run, slots in order: every program with its object and
   // executable, without its source.
   virtual Result<std::vector<ProgramRecord>> GetProgramMemory(std::string_view machine) = 0;
+  // Slots that held a program once and are empty now, in order (OPT-1.13: deleting counts as altering).
+  virtual Result<std::vector<int>> ListDeletedPrograms(std::string_view machine) = 0;
   // Replaces objects, deletes the executables of these slots and no others (OPT-1.12, OPT-1.13), stores
   // schedules (whatever is there; their `machine` is not looked at). Summaries in the order of
   // `programs`. CellInvalidArgument: a slot or number out of range or twice; CellTooLarge:
@@ -140,7 +142,8 @@ class Store {
   virtual Status DeleteProject(std::string_view id, Revision expected) = 0;  // CellNotFound
 
   // --- jobs -----------------------------------------------------------------------------------------
-  // Durable before `done` is called, from a thread of the store: many submissions share one commit.
+  // Durable before `done` is called, from a thread of the store or before Submit() returns: many submissions
+  // share one commit.
   // `done` is called once, does not throw, and is brief, as the next commit waits for it; it may call this
   // store. Attachments are hashed and compressed by the calling thread before that.
   // CellRequestIdReused when request_id is known with another request_hash; CellNotFound: an attachment

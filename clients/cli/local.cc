@@ -5,6 +5,7 @@
 #include <map>
 
 #include "clients/cli/findings_text.h"
+#include "clients/cli/fix.h"
 #include "clients/cli/messages.h"
 #include "clients/cli/program_files.h"
 #include "clients/cli/terminal.h"
@@ -169,8 +170,19 @@ int Check(const CheckOptions& options) {
     const Result<std::string> text = bridge::ReadFile(file, kFileBytesMax);
     if (!text) return Refuse(text.error());
     if (text->empty()) return Refuse({ErrorCode::kCellEmptyProgram, file, {}});
-    const machine::Translation translation =
-        (*family)->Translate({.name = file, .bytes = *text}, *parameters, {.advice = !options.errors_only});
+    const auto check = [&](const machine::SourceFile& source) {
+      return (*family)->Translate(source, *parameters, {.advice = !options.errors_only});
+    };
+    if (options.fix) {
+      if (!(*family)->info().has_executables) {
+        return Refuse({ErrorCode::kCellUsage, file + ": a stream of " + std::string((*family)->info().title) +
+                                                  " has nothing to fix", {}});
+      }
+      exit_code = std::max(exit_code, FixFile(file, *text, check, {options.dry_run, options.json}));
+      if (exit_code > kProgramErrors) return exit_code;
+      continue;
+    }
+    const machine::Translation translation = check({.name = file, .bytes = *text});
     if (!translation.ok) exit_code = kProgramErrors;
     if (options.json) {
       Print(Json(bridge::FindingsOf(translation.ok, translation.diagnostics, translation.diagnostics_dropped,

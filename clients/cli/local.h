@@ -11,6 +11,8 @@ struct CheckOptions {
   std::string family;
   std::string machine_file;
   bool errors_only = false;
+  bool fix = false;      // repair the files, and check what comes out
+  bool dry_run = false;  // with fix: show what would change, and write nothing
   bool json = false;
 };
 int Check(const CheckOptions& options);

@@ -50,12 +50,16 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
         "  rmlcell check part.S                    one program: errors, warnings, advice, each "
         "with place and rule\n"
         "  rmlcell check progs/*.S --errors-only   errors alone; exit code 1 when there is one\n"
+        "  rmlcell check part.S --fix              apply the fixes; layout and comments stay\n"
+        "  rmlcell check part.S --fix --dry-run    show them as a patch\n"
         "  rmlcell check part.S --json             for an editor or a script");
     verb->add_option("FILES", options->files, "programs")->required();
     verb->add_option("--family", options->family, "optimo or rml1; default: from the file name");
     verb->add_option("--machine", options->machine_file,
                      "machine file (TOML): family, profile, [parameters]");
     verb->add_flag("--errors-only", options->errors_only, "leave warnings and advice out");
+    CLI::Option* fix = verb->add_flag("--fix", options->fix, "repair what has one obvious repair, in the files");
+    verb->add_flag("--dry-run", options->dry_run, "with --fix: show the changes as a patch; write nothing")->needs(fix);
     verb->add_flag("--json", options->json, "print findings as JSON, one line a file");
     verb->callback([options, &exit_code] { exit_code = Check(*options); });
   }
@@ -192,6 +196,13 @@ void AddProgramVerbs(CLI::App& app, Remote& remote, int& exit_code) {
   remove->add_option("MACHINE", machine)->required();
   remove->add_option("SLOT", slot)->required();
   remove->callback([&] { exit_code = DeleteProgram(remote, machine, slot); });
+  CLI::App* stale = RemoteVerb(app, "stale", "Say which executables of a machine are older than its programs, and why",
+                               "  rmlcell stale optimo-1                         they run the old FUNCTION code until "
+                               "they are deleted\n"
+                               "  rmlcell delete optimo-1 132                    the next run of 32 links again",
+                               remote);
+  stale->add_option("MACHINE", machine)->required();
+  stale->callback([&] { exit_code = StaleExecutables(remote, machine); });
 }
 
 void AddProjectVerbs(CLI::App& app, Remote& remote, int& exit_code) {

@@ -19,6 +19,7 @@ int PutProgram(const Remote& remote, const std::string& machine, int slot, const
 int GetProgram(const Remote& remote, const std::string& machine, int slot, const std::string& form,
                const std::string& output);
 int DeleteProgram(const Remote& remote, const std::string& machine, int slot);
+int StaleExecutables(const Remote& remote, const std::string& machine);
 
 int Projects(const Remote& remote);
 int GetProject(const Remote& remote, const std::string& project);

@@ -5,6 +5,8 @@
 #include "clients/cli/project_files.h"
 #include "clients/cli/remote_call.h"
 #include "clients/cli/terminal.h"
+#include "engine/core/number_text.h"
+#include "engine/core/units.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
 #include "rmlcell/v1/machine.grpc.pb.h"
@@ -40,8 +42,10 @@ int PrintStored(const Remote& remote, const v1::Program& program, bool check_onl
     return kGood;
   }
   PrintFindings(program.findings());
-  Print(program.name() + (check_only ? " would be stored: " : " stored: ") + program.title() + ", object " +
-        Bytes(program.object_bytes()));
+  const auto slot = ParseInteger(program.name().substr(program.name().rfind('/') + 1));
+  const bool executable = slot && *slot > kExecutableOffset;
+  Print(program.name() + (check_only ? " would be stored: " : " stored: ") + program.title() +
+        (executable ? ", executable " + Bytes(program.executable_bytes()) : ", object " + Bytes(program.object_bytes())));
   return kGood;
 }
 
@@ -170,6 +174,34 @@ int DeleteProgram(const Remote& remote, const std::string& machine, int slot) {
   google::protobuf::Empty response;
   const grpc::Status status = stub->DeleteProgram(&context, request, &response);
   return status.ok() ? int{kGood} : Refused(status, remote);
+}
+
+int StaleExecutables(const Remote& remote, const std::string& machine) {
+  const auto stub = v1::ProgramService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  v1::ListStaleExecutablesRequest request;
+  request.set_parent(FullName("machines", machine));
+  v1::ListStaleExecutablesResponse response;
+  const grpc::Status status = stub->ListStaleExecutables(&context, request, &response);
+  if (!status.ok()) return Refused(status, remote);
+  if (remote.json) {
+    for (const v1::StaleExecutable& stale : response.executables()) Print(Json(stale));
+    return kGood;
+  }
+  if (response.executables().empty()) {
+    Print("every executable is what a new link would give");
+    return kGood;
+  }
+  const auto number = [](const std::string& name) { return name.substr(name.rfind('/') + 1); };
+  std::vector<std::vector<std::string>> rows = {{"EXECUTABLE", "BECAUSE OF", "WHY"}};
+  for (const v1::StaleExecutable& stale : response.executables()) {
+    for (const v1::StaleExecutable::Part& part : stale.parts()) {
+      rows.push_back({number(stale.name()), number(part.program()), part.text()});
+    }
+  }
+  PrintRaw(Table(rows));
+  return kGood;
 }
 
 int Projects(const Remote& remote) {

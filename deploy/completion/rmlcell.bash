@@ -49,18 +49,19 @@ _rmlcell_options() {
   local remote="--help --server --json"
   case $1 in
     "") echo "--help --version" ;;
-    check) echo "--help --family --machine --errors-only --json" ;;
+    check) echo "--help --family --machine --errors-only --fix --dry-run --json" ;;
     simulate)
       echo "--help --slot --main --executable --family --profile --machine --inputs --mode --override --simul" \
         "--break --budget --vars --svg --samples --plot --state-in --state-out --trace --facts --json" ;;
-    explain | diff) echo "--help --json" ;;
+    explain) echo "--help --json" ;;
+    diff) echo "--help --svg --json" ;;
     parameters) echo "--help --profile" ;;
     compile | decompile | compensate | list) echo "--help --output" ;;
     link) echo "--help --slot --main --output" ;;
     format) echo "--help --check" ;;
     convert) echo "--help" ;;
     transform) echo "--help --move --turn --shift --output" ;;
-    machines | programs | delete | projects | job | cancel | report) echo "$remote" ;;
+    machines | programs | delete | stale | projects | job | cancel | report) echo "$remote" ;;
     put) echo "$remote --etag --check-only" ;;
     get) echo "$remote --form --output" ;;
     submit)
@@ -121,7 +122,7 @@ _rmlcell_positional() {
     compile | format | convert | compensate | transform | list | diff) _rmlcell_files .s .si .cmp .o ;;
     explain) _rmlcell_codes ;;
     parameters) [[ $count -eq 0 ]] && _rmlcell_offer optimo rml1 ;;
-    programs) [[ $count -eq 0 ]] && _rmlcell_machines ;;
+    programs | stale) [[ $count -eq 0 ]] && _rmlcell_machines ;;
     put)
       case $count in
         0) _rmlcell_machines ;;
@@ -223,7 +224,7 @@ _rmlcell() {
     _rmlcell_offer $(_rmlcell_options "$verb")
   elif [[ -z $verb ]]; then
     _rmlcell_offer check simulate parameters explain compile decompile link format convert compensate transform list \
-      diff machines programs put get delete projects submit watch jobs job cancel report picture
+      diff machines programs put get delete stale projects submit watch jobs job cancel report picture
   else
     _rmlcell_positional
   fi

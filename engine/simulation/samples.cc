@@ -7,6 +7,7 @@
 #include "engine/core/check.h"
 #include "engine/core/number_text.h"
 #include "engine/motion/trajectory.h"
+#include "engine/simulation/profile_phases.h"
 #include "engine/simulation/trace.h"
 
 namespace rmlcell::simulation {
@@ -112,14 +113,14 @@ void SampleRecorder::OnMotion(const machine::MotionDone& done) {
   s.StandUntil(start);
   s.place = done.place;
   for (; s.NextTime() < end && !s.closed; ++s.next) {
-    s.Look(view.At(done.profile_start_s + (s.NextTime() - start)));
+    s.Look(view.At(TimeWithin(*done.motion, done.profile_start_s + (s.NextTime() - start))));
     s.power = done.beam_on
                   ? std::clamp(done.power.constant_percent + done.power.percent_per_mm_s * s.speed,
                                0.0, 100.0)
                   : 0.0;
     s.Line(s.NextTime(), {});
   }
-  s.Look(view.At(done.profile_start_s + (end - start)));
+  s.Look(view.At(TimeWithin(*done.motion, done.profile_start_s + (end - start))));
 }
 
 void SampleRecorder::OnWait(const machine::Wait& wait) {

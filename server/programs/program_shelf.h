@@ -38,6 +38,8 @@ class ProgramShelf {
     v1::ProgramForm form = v1::PROGRAM_FORM_SOURCE;
     std::string file_name;
     std::string sha256;
+    bool own_text = false;      // a source as it was stored, not made of the object
+    std::string object_sha256{};  // of the object that it belongs to
   };
   Result<Content> Read(std::string_view name, v1::ProgramForm form);
 

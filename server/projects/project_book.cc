@@ -1,6 +1,7 @@
 #include "server/projects/project_book.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <optional>
 #include <set>
@@ -280,7 +281,18 @@ ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(const v1::Trans
                                 .object = std::move(program.object),
                                 .source = {},
                                 .source_name = source != nullptr ? source->source().file_name() : std::string()};
-    if (!program.source.empty() && program.source != write.object) write.source = std::move(program.source);
+    if (program.own_text && source != nullptr) {
+      write.source = source->source().content();  // the programmer's own text, inch where it is inch
+    } else if (!program.source.empty() && program.source != write.object) {
+      // Another text than that of the project: its name must not say inch, or object.
+      if (source != nullptr && program.source != source->source().content()) {
+        const std::string_view extensions = family->info().extensions;
+        write.source_name = std::filesystem::path(write.source_name)
+                                .replace_extension(extensions.substr(0, extensions.find(' ')))
+                                .string();
+      }
+      write.source = std::move(program.source);
+    }
     writes.push_back(std::move(write));
   }
   if (request.validate_only()) return response;

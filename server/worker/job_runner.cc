@@ -91,6 +91,8 @@ class Attempt {
     bridge::SetupInput input{.family = simulation::FindFamily(assignment_.family()),
                              .profile = assignment_.profile(),
                              .parameters = {assignment_.parameters().begin(), assignment_.parameters().end()},
+                             .deleted_programs = {assignment_.deleted_programs().begin(),
+                                                  assignment_.deleted_programs().end()},
                              .main_program = assignment_.main_program(),
                              .machine_state = assignment_.machine_state(),
                              .default_mode = machine::Mode::kRemote};

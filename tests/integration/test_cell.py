@@ -252,9 +252,14 @@ class Projects(WithCell):
             project_id="good", project=self.project((20, "a.SI", inch), (21, "b.S", "SPEED 5\n"), schedules=(11,))))
         done = stub.TransferProject(project_pb2.TransferProjectRequest(name="projects/good", machine="machines/optimo-1"))
         self.assertEqual([p.name for p in done.programs], ["machines/optimo-1/programs/20", "machines/optimo-1/programs/21"])
-        source = self.cell.programs().GetProgramContent(
-            program_pb2.GetProgramContentRequest(name="machines/optimo-1/programs/20")).content.decode()
-        self.assertIn("MOVE (25.4, 0.0, 0.0, 0.0, 0.0)", source)
+        # The object is metric; the source is the programmer's own, under a name that says inch.
+        name = "machines/optimo-1/programs/20"
+        own = self.cell.programs().GetProgramContent(program_pb2.GetProgramContentRequest(name=name))
+        self.assertEqual((own.content.decode(), own.file_name), (inch, "a.SI"))
+        object_bytes = self.cell.programs().GetProgramContent(
+            program_pb2.GetProgramContentRequest(name=name, form=program_pb2.PROGRAM_FORM_OBJECT)).content
+        metric = self.cell.programs().DecompileProgram(program_pb2.DecompileProgramRequest(object=object_bytes))
+        self.assertIn("MOVE (25.4, 0.0, 0.0, 0.0, 0.0)", metric.content.decode())
         stub.CreateProject(project_pb2.CreateProjectRequest(
             project_id="bad", project=self.project((22, "a.S", "SPEED 5\n"), (23, "b.S", "SPEED 101\n"))))
         self.refused(stub.TransferProject,

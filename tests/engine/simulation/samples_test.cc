@@ -71,6 +71,18 @@ TEST(Samples, LineAtEvenTimes) {
   EXPECT_EQ(Number(rows[22], 9), 0.0);
 }
 
+// C01: through a corner at 50 mm/s: no sample between the ramps is slower, wherever motions meet.
+TEST(Samples, CornerIsPassedWithoutADip) {
+  Script script;
+  script.Step(1, 1);
+  for (const motion::PlannedMotion& each :
+       PlannedCorner({{0, 0, 0}}, {{100, 0, 0}}, {{100, 100, 0}})) {
+    script.Motion(each);
+  }
+  const std::vector<Row> rows = Sampled(script, 10'000.0);
+  for (std::size_t k = 1001; k < 39'000; ++k) ASSERT_NEAR(Number(rows[k], 9), 50.0, 1e-5) << k;
+}
+
 // A third of a second is no number of nanoseconds: the thousandth sample is still at 1000 / 3.
 TEST(Samples, TimesAreNotAddedUp) {
   Script script;

@@ -340,6 +340,28 @@ TEST_F(ProjectBookTest, InchProgramsAreConverted) {
   }
 }
 
+// OPT-8.70, OPT-8.72: the programmer gets his own text back, under a name that tells its units. A text
+// that the transfer had to write is metric, whatever the name in the project says.
+TEST_F(ProjectBookTest, TheStoredSourceIsThatOfTheProgrammer) {
+  v1::Project project;
+  Add(project, 45, "PATH HOLE (.5)  ; inches\n", "45.SI");
+  Add(project, 46, "PATH HOLE (.5)  ; inches\n", "46.S");
+  project.mutable_programs(1)->set_units(v1::UNITS_INCH);
+  Add(project, 47, "path hole (12.7)  ; mm\n", "47.S");
+  Add(project, 48, "WORK 1,3 /ON\nWORK 1,3 /OFF\n", "48.SI");
+  Define(project, 1, 3, {6.5, 80, 1.5, 95});
+  Must(Create("a", project));
+  ASSERT_TRUE(Transfer("a", true));
+  const auto source = [&](int slot) { return Must(bed.store().GetProgram("optimo-1", slot)); };
+  EXPECT_EQ(source(45).source, "PATH HOLE (.5)  ; inches\n");
+  EXPECT_EQ(source(45).source_name, "45.SI");
+  EXPECT_EQ(source(46).source, "PATH HOLE (12.7)  ; inches\n");
+  EXPECT_EQ(source(46).source_name, "46.S");
+  EXPECT_EQ(source(47).source, "path hole (12.7)  ; mm\n");
+  EXPECT_THAT(source(48).source.value(), testing::HasSubstr("WORKDEF 1,3"));
+  EXPECT_EQ(source(48).source_name, "48.S");
+}
+
 // OPT-3.09, OPT-3.11: differences are told, a WORK with neither is refused, a missing one is
 // inserted.
 TEST_F(ProjectBookTest, ProcessDefinitionsAreComparedAndInserted) {
