@@ -172,7 +172,9 @@ TEST(Plot, SpeedDoesNotDipWhereMotionsMeet) {
   const double top = HeightAt(speed, 0.2);
   for (const ScreenPoint& point : speed) {
     const double share = (point.x - speed.front().x) / (speed.back().x - speed.front().x);
-    if (share > 0.05 && share < 0.95) EXPECT_NEAR(point.y, top, 0.05) << share;
+    if (share > 0.05 && share < 0.95) {
+      EXPECT_NEAR(point.y, top, 0.05) << share;
+    }
   }
 }
 
