@@ -1,6 +1,7 @@
 #include "clients/cli/local.h"
 
 #include <algorithm>
+#include <fstream>
 #include <map>
 
 #include "clients/cli/findings_text.h"
@@ -269,6 +270,17 @@ int Simulate(const SimulateOptions& options) {
     };
   }
   request.products.picture = !options.svg.empty();
+  std::ofstream samples;
+  if (!options.samples.empty()) {
+    const Result<double> rate = simulation::ParseSampleRate(options.samples[0]);
+    if (!rate) return Refuse(rate.error());
+    samples.open(options.samples[1], std::ios::binary | std::ios::trunc);
+    if (!samples) return Refuse({ErrorCode::kCellFileUnwritable, options.samples[1] + ": cannot be written", {}});
+    request.products.samples_hz = *rate;
+    request.products.samples = [&samples](std::string_view lines) {
+      return static_cast<bool>(samples.write(lines.data(), static_cast<std::streamsize>(lines.size())));
+    };
+  }
   if (!options.plot.empty()) {
     Result<std::vector<simulation::PlotCurve>> curves = simulation::ParsePlotCurves(options.plot[0]);
     if (!curves) return Refuse(curves.error());
@@ -290,6 +302,10 @@ int Simulate(const SimulateOptions& options) {
   progress.Clear();
   if (!result) return Refuse(result.error());
 
+  if (samples.is_open()) {
+    samples.close();
+    if (!samples) return Refuse({ErrorCode::kCellFileUnwritable, options.samples[1] + ": not written to its end", {}});
+  }
   const std::string plot_file = options.plot.empty() ? std::string() : options.plot[1];
   const bool plot_on_output = plot_file == "-";
   if (!plot_file.empty() && !plot_on_output) {

@@ -33,6 +33,7 @@ struct SimulateOptions {
   std::string budget;      // "steps=N,time=S"
   std::string variables;   // "VR[0..9],VI[99]"
   std::string svg;
+  std::vector<std::string> samples;  // rate and file; empty: none
   std::vector<std::string> plot;  // curves and file; empty: none
   std::string state_in;
   std::string state_out;

@@ -100,6 +100,9 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
                      "steps=N,time=SECONDS: end the run when it needs more");
     verb->add_option("--vars", options->variables, "variables to show at the end: VR[0..9],VI[99]");
     verb->add_option("--svg", options->svg, "write a picture of the toolpath");
+    verb->add_option("--samples", options->samples,
+                     "RATE FILE: write where the machine is, RATE times a second, as CSV")
+        ->expected(2);
     verb->add_option("--plot", options->plot,
                      "CURVES FILE: write curves over time, of speed,power,axes")
         ->expected(2);

@@ -52,7 +52,7 @@ _rmlcell_options() {
     check) echo "--help --family --machine --errors-only --fix --dry-run --json" ;;
     simulate)
       echo "--help --slot --main --executable --family --profile --machine --inputs --mode --override --simul" \
-        "--break --budget --vars --svg --plot --state-in --state-out --trace --facts --json" ;;
+        "--break --budget --vars --svg --samples --plot --state-in --state-out --trace --facts --json" ;;
     explain) echo "--help --json" ;;
     diff) echo "--help --svg --json" ;;
     parameters) echo "--help --profile" ;;
@@ -79,7 +79,7 @@ _rmlcell_options() {
 _rmlcell_takes_value() {
   case $1 in
     --slot | --main | --executable | --family | --profile | --machine | --inputs | --mode | --override | \
-      --simul | --break | --budget | --vars | --svg | --plot | --state-in | --state-out | --server | --etag | --form | \
+      --simul | --break | --budget | --vars | --svg | --samples | --plot | --state-in | --state-out | --server | --etag | --form | \
       --output | -o | --kind | --title | --request-id | --after | --filter | --limit | --move | --turn | --shift) return 0 ;;
   esac
   return 1
@@ -105,6 +105,7 @@ _rmlcell_values() {
       _rmlcell_offer state= machine= kind= caller= finished= ;;
     --machine) _rmlcell_files .toml ;;
     --svg) _rmlcell_files .svg ;;
+    --samples) _rmlcell_offer 10 100 1000 10000 ;;
     --plot)
       compopt -o nospace 2>/dev/null
       _rmlcell_offer speed power axes speed,power,axes ;;
@@ -181,7 +182,7 @@ _rmlcell() {
         if ((i + 1 < COMP_CWORD)); then
           ((++i))
           [[ $option == --server ]] && server=${COMP_WORDS[i]}
-          [[ $option == --plot ]] && ((i + 1 < COMP_CWORD)) && ((++i))  # its file
+          [[ $option =~ ^--(plot|samples)$ ]] && ((i + 1 < COMP_CWORD)) && ((++i))  # its file
         fi
       fi
       continue
@@ -206,6 +207,10 @@ _rmlcell() {
       [[ ${COMP_WORDS[COMP_CWORD - back - 2]:-} =~ ^--(slot|executable)$ ]] && _rmlcell_programs_files
       return
     fi
+  fi
+  if [[ $COMP_CWORD -gt 2 && ${COMP_WORDS[COMP_CWORD - 2]} == --samples ]]; then
+    _rmlcell_files
+    return
   fi
   if [[ ${COMP_WORDS[COMP_CWORD - 2]:-} == --plot && $COMP_CWORD -gt 2 ]]; then
     _rmlcell_files .svg

@@ -84,7 +84,7 @@ void MotionChain::EmitSection(std::size_t count) {
           .jerk = std::min(span.limits.jerk, after.jerk)},
          speed});
   }
-  ramps_.Plan(cells_, last_speed_);
+  if (!cells_.empty()) ramps_.Plan(cells_, last_speed_);
   std::size_t cell = 0;
   const auto next = [&] {
     const RampPlan::Timing& timing = ramps_.timing()[cell++];

@@ -49,7 +49,8 @@ struct PlotRecorder::State {
   }
 
   void Look(const machine::MotionDone& done, const motion::MotionView& view, double t_s) {
-    const motion::TrajectoryPoint point = view.At(done.profile_start_s + t_s);
+    const motion::TrajectoryPoint point =
+        view.At(TimeWithin(*done.motion, done.profile_start_s + t_s));
     const double speed = point.tip_speed();
     values[PlotPage::kSpeed] = speed;
     values[PlotPage::kFeed] = done.programmed_mm_s;

@@ -3,9 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/motion/speed_profile.h"
+#include "engine/motion/planner.h"
 
 namespace rmlcell::simulation {
+
+// A time of the motion's profile. A run tells times in whole nanoseconds, which may lie behind the
+// end of a profile: a motion that passes on does not stand there.
+inline double TimeWithin(const motion::PlannedMotion& motion, double t_s) {
+  return motion.speed.end().speed > 0.0 ? std::min(t_s, motion.speed.duration_s()) : t_s;
+}
 
 // A stretch of a speed profile with constant jerk, from its own time zero on.
 struct PhasePart {

@@ -22,6 +22,9 @@ struct Recorder::State {
     }
     if (products.picture) Join(&picture.emplace(shape));
     if (products.plot) Join(&plot.emplace(shape));
+    if (products.samples) {
+      Join(&samples.emplace(shape, products.samples_hz, std::move(products.samples)));
+    }
   }
 
   void Join(machine::RunObserver* observer) {
@@ -39,7 +42,8 @@ struct Recorder::State {
   std::optional<ToolpathRecorder> toolpath;
   std::optional<PictureRecorder> picture;
   std::optional<PlotRecorder> plot;
-  std::array<machine::RunObserver*, 6> observers{};
+  std::optional<SampleRecorder> samples;
+  std::array<machine::RunObserver*, 7> observers{};
   std::size_t count = 0;
 };
 
@@ -92,6 +96,7 @@ void Recorder::Finish(const machine::Run& run) {
   state_->report.Finish(at);
   if (state_->trace) state_->trace->End(at, run.outcome());
   if (state_->toolpath) state_->toolpath->Finish();
+  if (state_->samples) state_->samples->Finish(at);
 }
 
 RunReport Recorder::Report(const machine::Run& run) const {

@@ -7,6 +7,7 @@
 #include "engine/simulation/picture.h"
 #include "engine/simulation/plot.h"
 #include "engine/simulation/report.h"
+#include "engine/simulation/samples.h"
 #include "engine/simulation/toolpath_recorder.h"
 #include "engine/simulation/trace.h"
 
@@ -20,6 +21,8 @@ struct Products {
   ToolpathOptions toolpath_options{};
   bool picture = false;
   bool plot = false;
+  SampleSink samples{};  // empty: no samples
+  double samples_hz = 1000.0;
   machine::RunObserver* also = nullptr;  // told everything too, before the products; may be null
 };
 

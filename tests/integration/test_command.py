@@ -91,6 +91,16 @@ class Local(unittest.TestCase):
         self.assertIn("tip speed", plot.read_text())
         self.assertEqual(run("simulate", "--plot", "torque", plot, self.file("square.rml", SQUARE)).returncode, 2)
 
+    def test_samples_are_written(self):
+        samples = self.folder / "s.csv"
+        done = run("simulate", self.file("square.rml", SQUARE), "--samples", "100", samples)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        lines = samples.read_text().splitlines()
+        self.assertTrue(lines[0].startswith("t_s,"))
+        self.assertTrue(lines[-1].endswith(",end"))
+        self.assertEqual(lines[2].split(",")[0], "0.010000000")
+        self.assertEqual(run("simulate", self.file("square.rml", SQUARE), "--samples", "0", samples).returncode, 2)
+
     def test_wrong_use_and_missing_files_are_told_apart_from_program_errors(self):
         self.assertEqual(run("simulate", self.folder / "none.S").returncode, 2)
         self.assertEqual(run("nonsense").returncode, 2)

@@ -158,6 +158,26 @@ TEST(Plot, PowerFollowsTheSpeedAndIsOffWhenNothingHappens) {
   EXPECT_NEAR((off - cut) / (off - pierce), 37.5 / 50.0, 1e-3);
 }
 
+// C01: through a corner at 50 mm/s without a dip, although times are told in whole nanoseconds and
+// the motions do not last a whole number of them.
+TEST(Plot, SpeedDoesNotDipWhereMotionsMeet) {
+  Script script;
+  script.Step(1, 1);
+  for (const motion::PlannedMotion& each :
+       PlannedCorner({{0, 0, 0}}, {{100, 0, 0}}, {{100, 100, 0}})) {
+    script.Motion(each);
+  }
+  const Drawn drawn = Draw(script, machine::MachineShape{}, "speed");
+  const std::vector<ScreenPoint> speed = Curve(drawn.svg, 1);
+  const double top = HeightAt(speed, 0.2);
+  for (const ScreenPoint& point : speed) {
+    const double share = (point.x - speed.front().x) / (speed.back().x - speed.front().x);
+    if (share > 0.05 && share < 0.95) {
+      EXPECT_NEAR(point.y, top, 0.05) << share;
+    }
+  }
+}
+
 // Only what moved has a panel, and a mill has no beam.
 TEST(Plot, LeavesOutWhatThereIsNot) {
   Script script;

@@ -1,0 +1,147 @@
+#include "engine/simulation/samples.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "engine/core/number_text.h"
+#include "engine/motion/trajectory.h"
+#include "tests/engine/simulation/fake_run.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+using Row = std::vector<std::string>;
+
+// Lines of a run, cut at commas; the headings first.
+std::vector<Row> Sampled(const Script& script, double rate_hz,
+                         const machine::MachineShape& shape = {}) {
+  std::string text;
+  SampleRecorder recorder(shape, rate_hz, [&](std::string_view lines) {
+    text += lines;
+    return true;
+  });
+  FakeRun run(script, recorder);
+  run.Advance(kForever);
+  recorder.Finish(run.state().time);
+  std::vector<Row> rows(1, Row(1));
+  for (const char c : text) {
+    if (c == '\n') {
+      rows.emplace_back(1);
+    } else if (c == ',') {
+      rows.back().emplace_back();
+    } else {
+      rows.back().back() += c;
+    }
+  }
+  rows.pop_back();
+  return rows;
+}
+
+double Number(const Row& row, std::size_t column) { return *ParseDouble(row[column]); }
+
+TEST(Samples, RateHasLimits) {
+  EXPECT_EQ(*ParseSampleRate("1000"), 1000.0);
+  for (const char* wrong : {"0.5", "10001", "", "fast", "nan"}) {
+    EXPECT_FALSE(ParseSampleRate(wrong)) << wrong;
+  }
+}
+
+// motion.md 12, S01: 100 mm at 50 mm/s take 2.0707 s; after the ramp of 0.0707 s the place is 50
+// mm/s times the time less half of the ramp.
+TEST(Samples, LineAtEvenTimes) {
+  Script script;
+  script.Step(7, 3).Line({0, 0, 0}, {100, 0, 0});
+  const std::vector<Row> rows = Sampled(script, 10.0);
+  EXPECT_EQ(rows[0][0], "t_s");
+  ASSERT_EQ(rows.size(), 1u + 21u + 1u);  // 0.0 to 2.0, and the end
+  const double ramp = 2.0 * std::sqrt(50.0 / 40000.0);
+  EXPECT_EQ(rows[1][0], "0.000000000");
+  EXPECT_EQ(Number(rows[1], 1), 0.0);
+  EXPECT_EQ(rows[11][0], "1.000000000");
+  EXPECT_NEAR(Number(rows[11], 1), 50.0 * (1.0 - 0.5 * ramp), 1e-6);
+  EXPECT_NEAR(Number(rows[11], 6), 50.0 * (1.0 - 0.5 * ramp), 1e-6);
+  EXPECT_EQ(rows[11][9], "50.000000");
+  EXPECT_EQ(rows[11][11], "7");
+  EXPECT_EQ(rows[11][12], "3");
+  EXPECT_EQ(rows[22][13], "end");
+  EXPECT_EQ(Number(rows[22], 1), 100.0);
+  EXPECT_EQ(Number(rows[22], 9), 0.0);
+}
+
+// C01: through a corner at 50 mm/s: no sample between the ramps is slower, wherever motions meet.
+TEST(Samples, CornerIsPassedWithoutADip) {
+  Script script;
+  script.Step(1, 1);
+  for (const motion::PlannedMotion& each :
+       PlannedCorner({{0, 0, 0}}, {{100, 0, 0}}, {{100, 100, 0}})) {
+    script.Motion(each);
+  }
+  const std::vector<Row> rows = Sampled(script, 10'000.0);
+  for (std::size_t k = 1001; k < 39'000; ++k) ASSERT_NEAR(Number(rows[k], 9), 50.0, 1e-5) << k;
+}
+
+// A third of a second is no number of nanoseconds: the thousandth sample is still at 1000 / 3.
+TEST(Samples, TimesAreNotAddedUp) {
+  Script script;
+  script.Step(1, 1).Line({0, 0, 0}, {1, 0, 0}).Wait(machine::WaitKind::kDwell, 400.0);
+  const std::vector<Row> rows = Sampled(script, 3.0);
+  EXPECT_EQ(rows[1001][0], FixedText(1000.0 / 3.0, 9));
+}
+
+// motion.md 8.1: standing with the beam on at 50 %, then off; an output in between has a line of
+// its own.
+TEST(Samples, WaitsAndEventsHaveTheirLines) {
+  Script script;
+  script.Step(1, 1)
+      .Line({0, 0, 0}, {1, 2, 3})
+      .Wait(machine::WaitKind::kPierce, 1.0, true, 50.0)
+      .Signal(machine::Signal::kOutput, 1.0, 0.0, 16)
+      .Nothing(1.0);
+  const std::vector<Row> rows = Sampled(script, 4.0);
+  int at_fifty = 0;
+  int events = 0;
+  for (const Row& row : rows) {
+    if (row[10] == "50.0000" && row[13].empty()) ++at_fifty;
+    if (row[13] == "output 16 = 1") {
+      ++events;
+      EXPECT_EQ(Number(row, 3), 3.0);
+    }
+  }
+  EXPECT_EQ(at_fifty, 4);
+  EXPECT_EQ(events, 1);
+  EXPECT_EQ(rows.back()[10], "0.0000");
+}
+
+// The head of the gantry: axes and tip are different points; K03 has L = 300 along u.
+TEST(Samples, AxesOfTheGantryAreThoseOfTheColumn) {
+  machine::MachineShape gantry;
+  gantry.five_axis = true;
+  Script script;
+  const auto path =
+      motion::PathPiece::Line({{0, 0, 0}, 0.0, 0.5 * kPi}, {{10, 0, 0}, 0.0, 0.5 * kPi});
+  script.Step(1, 1).Motion(Planned(path));
+  const std::vector<Row> rows = Sampled(script, 1.0, gantry);
+  // u(0, pi/2) = (0, -1, 0): motion.md 2.1.
+  EXPECT_NEAR(Number(rows.back(), 1), 10.0, 1e-6);
+  EXPECT_NEAR(Number(rows.back(), 2), -300.0, 1e-6);
+  EXPECT_NEAR(Number(rows.back(), 7), 0.0, 1e-6);
+  EXPECT_NEAR(Number(rows.back(), 5), 0.5 * kPi, 1e-9);
+}
+
+TEST(Samples, EndsWhenTheSinkTakesNoMore) {
+  int calls = 0;
+  SampleRecorder recorder({}, 10'000.0, [&](std::string_view) { return ++calls < 2; });
+  Script script;
+  script.Step(1, 1).Line({0, 0, 0}, {100, 0, 0}).Wait(machine::WaitKind::kDwell, 100.0);
+  FakeRun run(script, recorder);
+  run.Advance(kForever);
+  recorder.Finish(run.state().time);
+  EXPECT_EQ(calls, 2);
+  EXPECT_FALSE(recorder.complete());
+}
+
+}  // namespace
+}  // namespace rmlcell::simulation
