@@ -1,8 +1,11 @@
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
 
 #include "clients/cli/office.h"
 #include "clients/cli/verbs.h"
+#include "clients/lsp/stdio.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -133,6 +136,16 @@ void AddOfficeVerbs(CLI::App& app, int& exit_code) {
     verb->add_option("B", arguments->b, "another one")->required();
     verb->add_flag("--json", arguments->json, "as JSON");
     verb->callback([arguments, &exit_code] { exit_code = Diff(arguments->a, arguments->b, arguments->json); });
+  }
+  {
+    CLI::App* verb =
+        app.add_subcommand("lsp", "Serve an editor: findings, fixes, hover, jumps, names (language server protocol)");
+    verb->footer("Examples:\n"
+                 "  rmlcell lsp                          on standard input and output; editors start it\n"
+                 "clients/vscode has an extension; any editor with a language server client will do.");
+    auto stdio = std::make_shared<bool>(false);
+    verb->add_flag("--stdio", *stdio, "what it does anyway; some editors say it");
+    verb->callback([stdio, &exit_code] { exit_code = lsp::RunOnDescriptors(STDIN_FILENO, STDOUT_FILENO); });
   }
 }
 
