@@ -38,6 +38,7 @@ librapidcheck-dev       # properties over random inputs
 libbenchmark-dev        # benchmarks
 python3-grpcio          # a client in another language
 python3-protobuf        # its messages
+valgrind                # counts instructions: the gate of the planner's cost
 curl                    # the web port as people use it
 nodejs                  # runs the web clients; too old for some, see tests/run.sh
 npm                     # brings buf and the web clients

@@ -16,6 +16,7 @@
 #include "server/jobs/dispatcher.h"
 #include "server/jobs/job_book.h"
 #include "server/jobs/worker_processes.h"
+#include "server/programs/memory_office.h"
 #include "server/programs/program_shelf.h"
 #include "server/projects/project_book.h"
 #include "server/services/handbox_service.h"
@@ -34,6 +35,9 @@ namespace {
 
 // Threads for work that may block: the store mostly, so there are more of them than cores.
 constexpr int kExecutorThreads = 8;
+
+// What the log of the store grows to between two checkpoints of a cell that is not busy.
+constexpr std::int64_t kLogBytesPrepared = 17 << 20;
 
 // Keepalive for shop-floor networks: a client that is gone without a word is noticed within a minute.
 constexpr int kKeepaliveTime_ms = 40'000;
@@ -72,6 +76,7 @@ struct Cell::Parts {
   Gate gate{RandomText()};
   std::unique_ptr<JobBook> book;
   std::unique_ptr<ProgramShelf> shelf;
+  std::unique_ptr<MemoryOffice> office;
   std::unique_ptr<ProjectBook> projects;
   std::unique_ptr<JobService> job_service;
   std::unique_ptr<MachineService> machine_service;
@@ -95,7 +100,9 @@ struct Cell::Parts {
 
 Status Cell::Parts::OpenStore() {
   auto opened = storage::OpenSqliteStore(
-      {.path = config.state_directory + "/cell.db", .keep_finished_jobs = config.jobs_keep_finished});
+      {.path = config.state_directory + "/cell.db",
+       .keep_finished_jobs = config.jobs_keep_finished,
+       .log_bytes_prepared = kLogBytesPrepared});
   if (!opened) return opened.error();
   store = std::move(*opened);
   return MakeMachines();
@@ -123,11 +130,12 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   dispatcher = std::make_unique<Dispatcher>(*store, *feed, config, *executor, join_token);
   book = std::make_unique<JobBook>(*store, config);
   shelf = std::make_unique<ProgramShelf>(*store, config);
+  office = std::make_unique<MemoryOffice>(*store, *shelf);
   projects = std::make_unique<ProjectBook>(*store);
   const CallRoom room{gate, *executor, config.limit_message_bytes};
   job_service = std::make_unique<JobService>(room, *book, *dispatcher, *feed, open, instance_id);
   machine_service = std::make_unique<MachineService>(room, *store, *dispatcher, config, instance_id);
-  program_service = std::make_unique<ProgramService>(room, *shelf, open);
+  program_service = std::make_unique<ProgramService>(room, *shelf, *office, open);
   project_service = std::make_unique<ProjectService>(room, *projects);
   handbox_service = std::make_unique<HandboxService>(room);
   worker_service = std::make_unique<WorkerService>(room, *dispatcher);

@@ -230,6 +230,17 @@ std::string PlaceText(const std::string& file, const toml::node& node) {
   return file + ":" + std::to_string(node.source().begin.line) + ": ";
 }
 
+constexpr std::string_view kVariablePrefix = "RMLCELL_";
+
+// "workers.count" is RMLCELL_WORKERS_COUNT.
+std::string VariableOf(std::string_view key) {
+  std::string variable(kVariablePrefix);
+  for (const char c : key) {
+    variable += c == '.' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  }
+  return variable;
+}
+
 // The key whose name is nearest, for a hint; empty when none is near.
 std::string NearestKey(std::string_view name) {
   std::string best;
@@ -371,16 +382,28 @@ Status ReadConfigFile(const std::string& path, Config& config) {
 
 Status ReadConfigEnvironment(const std::map<std::string, std::string>& environment, Config& config) {
   for (const ConfigKey& key : ConfigKeys()) {
-    std::string variable = "RMLCELL_";
-    for (const char c : key.name) {
-      variable += c == '.' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    }
+    const std::string variable = VariableOf(key.name);
     const auto found = environment.find(variable);
     if (found == environment.end()) continue;
     const Status set = key.set(config, found->second);
     if (!set) return Wrong(variable + " " + set.error().detail);
   }
   return {};
+}
+
+std::vector<std::string> MistypedVariables(const std::map<std::string, std::string>& environment) {
+  std::vector<std::string> found;
+  for (const auto& [variable, value] : environment) {
+    if (!variable.starts_with(kVariablePrefix)) continue;
+    std::string name = variable.substr(kVariablePrefix.size());
+    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::size_t section = name.find('_');
+    if (section != std::string::npos) name[section] = '.';
+    if (const std::string near = NearestKey(name); !near.empty() && near != name) {
+      found.push_back(variable + " is no key of the configuration; there is " + VariableOf(near));
+    }
+  }
+  return found;
 }
 
 Status ValidateConfig(const Config& config) {

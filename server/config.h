@@ -75,6 +75,10 @@ Status ReadConfigText(std::string_view text, const std::string& name, Config& co
 // Variables RMLCELL_<KEY> with dots as underscores, in capitals. Errors name the variable.
 Status ReadConfigEnvironment(const std::map<std::string, std::string>& environment, Config& config);
 
+// Variables that look like one of those and are none, such as RMLCELL_WORKER_COUNT, each with what was
+// meant: a typing error must not leave a limit at its default in silence.
+std::vector<std::string> MistypedVariables(const std::map<std::string, std::string>& environment);
+
 // What holds together only as a whole: addresses that may be listened on, machine ids.
 // Errors: CellConfiguration; CellUnsafeListen for an address that other hosts can reach.
 Status ValidateConfig(const Config& config);

@@ -93,6 +93,7 @@ Every key of the configuration is a flag too, and a variable of the environment:
   if (Status log = StartLog("rmlcelld", config.log_level, config.log_format, config.log_file); !log) {
     return Refuse(log.error());
   }
+  for (const std::string& hint : MistypedVariables(Environment())) spdlog::warn("{}", hint);
   // Signals are taken by this thread alone, and only here: a handler must not stop a server.
   sigset_t signals;
   sigemptyset(&signals);

@@ -22,6 +22,7 @@ struct NewJob {
   std::string caller{};
   std::string specification{};
   int attempts_max = 2;
+  std::int64_t queued_max = 0;  // refused when so many jobs wait already; 0: never
   // What the job works on, as artifacts of it: kept with it, whatever happens to slots.
   std::vector<NewArtifact> attachments{};
   std::vector<NewEvent> events{};          // written in the transaction that makes the job
@@ -108,6 +109,8 @@ class Store {
   // The program memory of the machine for a run, slots in order: every program with its object and
   // executable, without its source.
   virtual Result<std::vector<ProgramRecord>> GetProgramMemory(std::string_view machine) = 0;
+  // Slots that held a program once and are empty now, in order (OPT-1.13: deleting counts as altering).
+  virtual Result<std::vector<int>> ListDeletedPrograms(std::string_view machine) = 0;
   // Replaces objects, deletes the executables of these slots and no others (OPT-1.12, OPT-1.13), stores
   // schedules (whatever is there; their `machine` is not looked at). Summaries in the order of
   // `programs`. CellInvalidArgument: a slot or number out of range or twice; CellTooLarge:
@@ -139,13 +142,14 @@ class Store {
   virtual Status DeleteProject(std::string_view id, Revision expected) = 0;  // CellNotFound
 
   // --- jobs -----------------------------------------------------------------------------------------
-  // Durable before `done` is called, from a thread of the store: many submissions share one commit.
+  // Durable before `done` is called, from a thread of the store or before Submit() returns: many submissions
+  // share one commit.
   // `done` is called once, does not throw, and is brief, as the next commit waits for it; it may call this
   // store. Attachments are hashed and compressed by the calling thread before that.
   // CellRequestIdReused when request_id is known with another request_hash; CellNotFound: an attachment
   // names content that is not there; CellInvalidArgument: attempts_max below 1, an attachment's name
-  // twice; CellTooLarge: an event beyond kEventPayloadBytesMax; CellResourceExhausted: too many writes wait
-  // already, told at once by the calling thread.
+  // twice; CellTooLarge: an event beyond kEventPayloadBytesMax; CellResourceExhausted: queued_max jobs wait
+  // and the request_id is new; or too many writes wait already, told at once by the calling thread.
   virtual void Submit(NewJob job, std::function<void(Result<SubmittedJob>)> done) = 0;
   virtual Result<SubmittedJob> SubmitAndWait(NewJob job);
 

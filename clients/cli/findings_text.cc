@@ -33,8 +33,4 @@ void ComplainOf(const std::vector<Diagnostic>& findings, std::uint64_t dropped, 
   std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
-bool HasErrors(const std::vector<Diagnostic>& findings) {
-  return std::ranges::any_of(findings, [](const Diagnostic& finding) { return IsError(finding.severity); });
-}
-
 }  // namespace rmlcell::cli

@@ -14,6 +14,4 @@ void PrintFindings(const std::vector<Diagnostic>& findings, std::uint64_t droppe
 // To standard error: something else was asked for.
 void ComplainOf(const std::vector<Diagnostic>& findings, std::uint64_t dropped, std::string_view source);
 
-bool HasErrors(const std::vector<Diagnostic>& findings);
-
 }  // namespace rmlcell::cli

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "clients/cli/findings_text.h"
+#include "clients/cli/fix.h"
 #include "clients/cli/messages.h"
 #include "clients/cli/program_files.h"
 #include "clients/cli/terminal.h"
@@ -168,8 +169,19 @@ int Check(const CheckOptions& options) {
     const Result<std::string> text = bridge::ReadFile(file, kFileBytesMax);
     if (!text) return Refuse(text.error());
     if (text->empty()) return Refuse({ErrorCode::kCellEmptyProgram, file, {}});
-    const machine::Translation translation =
-        (*family)->Translate({.name = file, .bytes = *text}, *parameters, {.advice = !options.errors_only});
+    const auto check = [&](const machine::SourceFile& source) {
+      return (*family)->Translate(source, *parameters, {.advice = !options.errors_only});
+    };
+    if (options.fix) {
+      if (!(*family)->info().has_executables) {
+        return Refuse({ErrorCode::kCellUsage, file + ": a stream of " + std::string((*family)->info().title) +
+                                                  " has nothing to fix", {}});
+      }
+      exit_code = std::max(exit_code, FixFile(file, *text, check, {options.dry_run, options.json}));
+      if (exit_code > kProgramErrors) return exit_code;
+      continue;
+    }
+    const machine::Translation translation = check({.name = file, .bytes = *text});
     if (!translation.ok) exit_code = kProgramErrors;
     if (options.json) {
       Print(Json(bridge::FindingsOf(translation.ok, translation.diagnostics, translation.diagnostics_dropped,
@@ -257,6 +269,12 @@ int Simulate(const SimulateOptions& options) {
     };
   }
   request.products.picture = !options.svg.empty();
+  if (!options.plot.empty()) {
+    Result<std::vector<simulation::PlotCurve>> curves = simulation::ParsePlotCurves(options.plot[0]);
+    if (!curves) return Refuse(curves.error());
+    request.products.plot = true;
+    request.plot.curves = *std::move(curves);
+  }
   request.variables = *variables;
   ProgressLine progress;
   request.options.slice = std::chrono::seconds(10);
@@ -272,6 +290,11 @@ int Simulate(const SimulateOptions& options) {
   progress.Clear();
   if (!result) return Refuse(result.error());
 
+  const std::string plot_file = options.plot.empty() ? std::string() : options.plot[1];
+  const bool plot_on_output = plot_file == "-";
+  if (!plot_file.empty() && !plot_on_output) {
+    if (Status written = WriteWholeFile(plot_file, result->plot); !written) return Refuse(written.error());
+  }
   const bool picture_on_output = options.svg == "-";
   if (!options.svg.empty() && !picture_on_output) {
     if (Status written = WriteWholeFile(options.svg, result->svg); !written) return Refuse(written.error());
@@ -285,6 +308,8 @@ int Simulate(const SimulateOptions& options) {
   v1::RunReport report = bridge::ToProto(result->report, result->variables);
   if (picture_on_output) {
     PrintRaw(result->svg);  // in place of the report: it is to be a file of its own
+  } else if (plot_on_output) {
+    PrintRaw(result->plot);
   } else if (options.json) {
     report.mutable_trace_records()->Swap(traced.mutable_trace_records());
     Print(Json(report));

@@ -11,6 +11,8 @@ struct CheckOptions {
   std::string family;
   std::string machine_file;
   bool errors_only = false;
+  bool fix = false;      // repair the files, and check what comes out
+  bool dry_run = false;  // with fix: show what would change, and write nothing
   bool json = false;
 };
 int Check(const CheckOptions& options);
@@ -31,6 +33,7 @@ struct SimulateOptions {
   std::string budget;      // "steps=N,time=S"
   std::string variables;   // "VR[0..9],VI[99]"
   std::string svg;
+  std::vector<std::string> plot;  // curves and file; empty: none
   std::string state_in;
   std::string state_out;
   bool trace = false;
@@ -38,6 +41,9 @@ struct SimulateOptions {
   bool json = false;
 };
 int Simulate(const SimulateOptions& options);
+
+// Without a family: families and their profiles. Else all parameters as a machine file.
+int ListParameters(const std::string& family_id, const std::string& profile_id);
 
 int Explain(const std::vector<std::string>& codes, bool json);
 

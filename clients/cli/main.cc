@@ -50,12 +50,16 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
         "  rmlcell check part.S                    one program: errors, warnings, advice, each "
         "with place and rule\n"
         "  rmlcell check progs/*.S --errors-only   errors alone; exit code 1 when there is one\n"
+        "  rmlcell check part.S --fix              apply the fixes; layout and comments stay\n"
+        "  rmlcell check part.S --fix --dry-run    show them as a patch\n"
         "  rmlcell check part.S --json             for an editor or a script");
     verb->add_option("FILES", options->files, "programs")->required();
     verb->add_option("--family", options->family, "optimo or rml1; default: from the file name");
     verb->add_option("--machine", options->machine_file,
                      "machine file (TOML): family, profile, [parameters]");
     verb->add_flag("--errors-only", options->errors_only, "leave warnings and advice out");
+    CLI::Option* fix = verb->add_flag("--fix", options->fix, "repair what has one obvious repair, in the files");
+    verb->add_flag("--dry-run", options->dry_run, "with --fix: show the changes as a patch; write nothing")->needs(fix);
     verb->add_flag("--json", options->json, "print findings as JSON, one line a file");
     verb->callback([options, &exit_code] { exit_code = Check(*options); });
   }
@@ -65,6 +69,7 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
     verb->footer(
         "Examples:\n"
         "  rmlcell simulate part.rml --svg part.svg       figures, and a picture\n"
+        "  rmlcell simulate 45.S --plot speed,power t.svg curves over time\n"
         "  rmlcell simulate 32.S progs/ --trace           progs/44.S and the like fill the program "
         "memory\n"
         "  rmlcell simulate part.S --simul 12/40          dry up to step 40 of program 12, real "
@@ -95,12 +100,29 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
                      "steps=N,time=SECONDS: end the run when it needs more");
     verb->add_option("--vars", options->variables, "variables to show at the end: VR[0..9],VI[99]");
     verb->add_option("--svg", options->svg, "write a picture of the toolpath");
+    verb->add_option("--plot", options->plot,
+                     "CURVES FILE: write curves over time, of speed,power,axes")
+        ->expected(2);
     verb->add_option("--state-in", options->state_in, "machine state of an earlier run");
     verb->add_option("--state-out", options->state_out, "keep the machine state for a later run");
     verb->add_flag("--trace", options->trace, "list all that was observable, in order");
     CLI::Option* facts = verb->add_flag("--facts", options->facts, "key: value lines for scripts (docs/facts.md)");
     verb->add_flag("--json", options->json, "print the report as JSON")->excludes(facts);
     verb->callback([options, &exit_code] { exit_code = Simulate(*options); });
+  }
+  {
+    auto family = std::make_shared<std::string>();
+    auto profile = std::make_shared<std::string>();
+    CLI::App* verb =
+        app.add_subcommand("parameters", "List machine parameters: meaning, range and value, as a machine file");
+    verb->footer(
+        "Examples:\n"
+        "  rmlcell parameters                                    families and their profiles\n"
+        "  rmlcell parameters optimo > mine.toml                 a file for --machine, to be changed\n"
+        "  rmlcell parameters rml1 --profile srm-20 | less");
+    verb->add_option("FAMILY", *family, "optimo or rml1; none: list the families");
+    verb->add_option("--profile", *profile, "values of this profile");
+    verb->callback([family, profile, &exit_code] { exit_code = ListParameters(*family, *profile); });
   }
   {
     auto codes = std::make_shared<std::vector<std::string>>();
@@ -171,6 +193,13 @@ void AddProgramVerbs(CLI::App& app, Remote& remote, int& exit_code) {
   remove->add_option("MACHINE", machine)->required();
   remove->add_option("SLOT", slot)->required();
   remove->callback([&] { exit_code = DeleteProgram(remote, machine, slot); });
+  CLI::App* stale = RemoteVerb(app, "stale", "Say which executables of a machine are older than its programs, and why",
+                               "  rmlcell stale optimo-1                         they run the old FUNCTION code until "
+                               "they are deleted\n"
+                               "  rmlcell delete optimo-1 132                    the next run of 32 links again",
+                               remote);
+  stale->add_option("MACHINE", machine)->required();
+  stale->callback([&] { exit_code = StaleExecutables(remote, machine); });
 }
 
 void AddProjectVerbs(CLI::App& app, Remote& remote, int& exit_code) {
@@ -179,6 +208,7 @@ void AddProjectVerbs(CLI::App& app, Remote& remote, int& exit_code) {
   static bool check_only = false;
   CLI::App* projects = RemoteVerb(app, "projects", "List, make, show, update, delete and transfer projects",
                                   "  rmlcell projects                               all of them\n"
+                                  "  rmlcell projects create door door/             12.S, 44.SI ... and project.json of a folder\n"
                                   "  rmlcell projects create door door.json\n"
                                   "  rmlcell projects transfer door optimo-1 --check-only\n"
                                   "  rmlcell projects transfer door optimo-1 --insert",
@@ -187,18 +217,20 @@ void AddProjectVerbs(CLI::App& app, Remote& remote, int& exit_code) {
   projects->callback([&, projects] {
     if (projects->get_subcommands().empty()) exit_code = Projects(remote);
   });
+  CLI::App* list = projects->add_subcommand("list", "List the projects");
+  list->callback([&] { exit_code = Projects(remote); });
   CLI::App* show = projects->add_subcommand("show", "Print a project as JSON");
   show->add_option("PROJECT", project)->required();
   show->callback([&] { exit_code = GetProject(remote, project); });
   CLI::App* create =
-      projects->add_subcommand("create", "Make a project of a JSON file (message Project)");
+      projects->add_subcommand("create", "Make a project of a folder or of a JSON file (message Project)");
   create->add_option("PROJECT", project)->required();
-  create->add_option("FILE", file)->required();
+  create->add_option("PATH", file, "folder with files like 12.S, or JSON file")->required();
   create->callback([&] { exit_code = CreateProject(remote, project, file); });
   CLI::App* update =
-      projects->add_subcommand("update", "Put a JSON file (message Project) in place of a project");
+      projects->add_subcommand("update", "Put a folder or a JSON file (message Project) in place of a project");
   update->add_option("PROJECT", project)->required();
-  update->add_option("FILE", file)->required();
+  update->add_option("PATH", file, "folder with files like 12.S, or JSON file")->required();
   update->callback([&] { exit_code = UpdateProject(remote, project, file); });
   CLI::App* remove = projects->add_subcommand("delete", "Delete a project");
   remove->add_option("PROJECT", project)->required();

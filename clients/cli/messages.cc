@@ -61,11 +61,14 @@ std::string OutcomeLine(const v1::Outcome& outcome) {
   return text;
 }
 
-std::string ReportText(const v1::RunReport& report) {
+namespace {
+
+using Rows = std::vector<std::pair<std::string, std::string>>;
+
+// What a run did; a job that only checks has none of it.
+void AddFigures(const v1::RunReport& report, Rows& rows) {
   const v1::WorkFigures& total = report.total();
   const v1::RunTimes& times = total.times();
-  std::vector<std::pair<std::string, std::string>> rows;
-  rows.emplace_back("outcome", OutcomeLine(report.outcome()));
   rows.emplace_back("cycle time", Duration(times.cycle_s()) +
                                       (report.timing() == "exact" ? "" : "  (" + report.timing() + ")"));
   std::string parts;
@@ -102,6 +105,14 @@ std::string ReportText(const v1::RunReport& report) {
     rows.emplace_back("tip box", PointText(report.tip_box().low()) + "  to  " + PointText(report.tip_box().high()));
   }
   for (const auto& [name, value] : report.variables()) rows.emplace_back(name, value);
+}
+
+}  // namespace
+
+std::string ReportText(const v1::RunReport& report) {
+  Rows rows;
+  rows.emplace_back("outcome", OutcomeLine(report.outcome()));
+  if (report.has_total()) AddFigures(report, rows);
   std::string text;
   for (const auto& [name, value] : rows) {
     text += Paint(name + std::string(14 - std::min<std::size_t>(13, name.size()), ' '), Colour::kDim,

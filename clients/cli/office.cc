@@ -1,7 +1,5 @@
 #include "clients/cli/office.h"
 
-#include <chrono>
-#include <ctime>
 #include <filesystem>
 
 #include "clients/cli/findings_text.h"
@@ -18,6 +16,7 @@
 #include "engine/optimo/offline/translate.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
+#include "proto/bridge/header_date.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -31,19 +30,9 @@ std::string WithExtension(const std::string& file, const char* extension) {
   return std::filesystem::path(file).replace_extension(extension).string();
 }
 
-// "Tue Apr 20 13:37:33 1993", as the headers of the tools have it.
-std::string DateText() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm local{};
-  localtime_r(&now, &local);
-  std::array<char, 40> text{};
-  const std::size_t size = std::strftime(text.data(), text.size(), "%a %b %d %H:%M:%S %Y", &local);
-  return {text.data(), size};
-}
-
 optimo::FileNames Names(const std::string& input, const std::string& output) {
   const auto name = [](const std::string& path) { return std::filesystem::path(path).filename().string(); };
-  return {.input = name(input), .output = output == "-" ? name(input) : name(output), .date = DateText()};
+  return {.input = name(input), .output = output == "-" ? name(input) : name(output), .date = bridge::HeaderDate()};
 }
 
 // The result of a tool: to a file with a word about it, or to standard output without.

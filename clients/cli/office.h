@@ -34,6 +34,12 @@ int Shift(const std::string& file, const std::array<double, 6>& by, const std::s
 int List(const std::string& file, const std::string& output);
 
 // What two programs do differently. Exit code 1 when they differ.
-int Diff(const std::string& a, const std::string& b, bool json);
+struct DiffOptions {
+  std::string before;
+  std::string after;
+  std::string svg;  // file of a picture of both paths; -: standard output, in place of the text
+  bool json = false;
+};
+int Diff(const DiffOptions& options);
 
 }  // namespace rmlcell::cli

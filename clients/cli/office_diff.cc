@@ -1,137 +1,97 @@
-#include <nlohmann/json.hpp>
+#include <algorithm>
+#include <array>
+#include <cctype>
 
 #include "clients/cli/findings_text.h"
+#include "clients/cli/messages.h"
 #include "clients/cli/office.h"
 #include "clients/cli/program_files.h"
 #include "clients/cli/terminal.h"
 #include "engine/core/number_text.h"
-#include "engine/optimo/offline/semantic_diff.h"
-#include "engine/optimo/offline/translate.h"
-#include "engine/simulation/simulate.h"
-#include "proto/bridge/files.h"
+#include "proto/bridge/comparison.h"
 #include "proto/bridge/findings.h"
-#include "proto/bridge/setup.h"
-#include "rmlcell/v1/job.pb.h"
 
 namespace rmlcell::cli {
 namespace {
 
-struct Side {
-  optimo::Module module;
-  std::vector<machine::Figure> figures;  // none when it does not run to its end by itself
-};
+using Response = v1::DiffProgramsResponse;
 
-// Time, lengths and beam of a run from a new machine; a program that calls others, or waits, has none.
-std::vector<machine::Figure> FiguresOfRun(const LoadedFiles& loaded) {
-  const bridge::SetupInput input{.family = loaded.family, .programs = loaded.programs, .main_program = loaded.main_slot};
-  v1::SimulationOptions options;
-  options.set_override_percent(100.0);
-  v1::Budget budget;
-  Result<bridge::SetupOutcome> made = bridge::MakeSetup(input, options, budget);
-  if (!made || !made->setup) return {};
-  const auto result = simulation::Simulate(*loaded.family, *std::move(made->setup), {});
-  if (!result || result->report.outcome.kind != machine::OutcomeKind::kCompleted) return {};
-  const simulation::RunReport& report = result->report;
-  return {{"cycle_time", "s", ToSeconds(report.cycle_time)},
-          {"cut_length", "mm", report.total.cut_mm},
-          {"travel_length", "mm", report.total.travel_mm},
-          {"beam_on_time", "s", ToSeconds(report.total.beam_on)},
-          {"pierces", "", static_cast<double>(report.total.pierces)},
-          {"beam_energy", "J", report.total.energy_j()}};
+int Refuse(const Error& error) {
+  Complain(bridge::ErrorText(error));
+  return kUsage;
 }
 
-// Nothing when it has errors; they are printed.
-Result<std::optional<Side>> ReadSide(const std::string& file) {
-  const Result<std::string> bytes = bridge::ReadFile(file, kFileBytesMax);
-  if (!bytes) return bytes.error();
-  const optimo::FileForm form = optimo::FormOfFile(file, *bytes);
-  Side side;
-  if (form == optimo::FileForm::kObject) {
-    Result<optimo::Module> module = optimo::DecodeObject(*bytes);
-    if (!module) return module.error();
-    side.module = *std::move(module);
-  } else {
-    optimo::Compilation compiled =
-        optimo::Compile(*bytes, file, {.advice = false, .inch = form == optimo::FileForm::kInchSource});
-    ComplainOf(compiled.diagnostics, compiled.diagnostics_dropped, *bytes);
-    if (!compiled.ok) return std::optional<Side>();
-    side.module = std::move(compiled.module);
-  }
+Result<bridge::ComparedProgram> ReadProgram(const std::string& file) {
   const Result<LoadedFiles> loaded = LoadFiles({file}, {}, 0, "optimo");
   if (!loaded) return loaded.error();
-  side.figures = FiguresOfRun(*loaded);
-  return std::optional<Side>(std::move(side));
+  return bridge::ComparedProgram{
+      .file_name = file, .bytes = loaded->programs.front().bytes, .slot = loaded->main_slot};
+}
+
+// "path, time"
+std::string AspectText(const google::protobuf::RepeatedField<int>& aspects) {
+  std::string text;
+  for (const int aspect : aspects) {
+    std::string name = v1::DiffAspect_Name(aspect).substr(std::string_view("DIFF_ASPECT_").size());
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    text += (text.empty() ? "" : ", ") + name;
+  }
+  return text;
 }
 
 std::string StepText(int step) { return step > 0 ? std::to_string(step) : "-"; }
 
-void PrintText(const optimo::ProgramDiff& diff) {
-  for (const optimo::StepChange& change : diff.steps) {
-    Print(Paint("step " + StepText(change.step_a) + " -> " + StepText(change.step_b), Colour::kBold, ColourOnOutput()) +
-          "  " + optimo::AspectText(change.aspects));
-    if (!change.before.empty()) Print(Paint("  - " + change.before, Colour::kRed, ColourOnOutput()));
-    if (!change.after.empty()) Print(Paint("  + " + change.after, Colour::kGreen, ColourOnOutput()));
-    for (const std::string& what : change.what) Print("    " + what);
-    if (change.target_moved_mm > 0.0) Print("    target moved by " + Fixed(change.target_moved_mm, 3) + " mm");
+void PrintText(const Response& diff) {
+  const bool colour = ColourOnOutput();
+  for (const Response::StepChange& change : diff.steps()) {
+    Print(Paint("step " + StepText(change.step_before()) + " -> " + StepText(change.step_after()), Colour::kBold,
+                colour) +
+          "  " + AspectText(change.aspects()));
+    if (!change.before().empty()) Print(Paint("  - " + change.before(), Colour::kRed, colour));
+    if (!change.after().empty()) Print(Paint("  + " + change.after(), Colour::kGreen, colour));
+    for (const std::string& what : change.what()) Print("    " + what);
+    if (change.target_moved_mm() > 0.0) {
+      Print("    target moved by " + Fixed(change.target_moved_mm(), 3) + " mm");
+    }
   }
-  for (const optimo::FigureChange& figure : diff.figures) {
-    Print(figure.name + "  " + ShortestText(figure.before) + " -> " + ShortestText(figure.after) +
-          (figure.unit.empty() ? "" : " " + figure.unit));
+  if (diff.steps_dropped() > 0) Print("and " + std::to_string(diff.steps_dropped()) + " more steps");
+  for (const Response::FigureChange& figure : diff.figures()) {
+    Print(figure.name() + "  " + ShortestText(figure.before()) + " -> " + ShortestText(figure.after()) +
+          (figure.unit().empty() ? "" : " " + figure.unit()));
   }
   if (diff.equal()) Print("they do the same");
 }
 
-void PrintJson(const optimo::ProgramDiff& diff) {
-  nlohmann::ordered_json json;
-  json["equal"] = diff.equal();
-  json["aspects"] = optimo::AspectText(diff.aspects);
-  json["steps"] = nlohmann::ordered_json::array();
-  for (const optimo::StepChange& change : diff.steps) {
-    nlohmann::ordered_json step;
-    step["step_a"] = change.step_a;
-    step["step_b"] = change.step_b;
-    step["aspects"] = optimo::AspectText(change.aspects);
-    step["before"] = change.before;
-    step["after"] = change.after;
-    step["what"] = change.what;
-    step["target_moved_mm"] = change.target_moved_mm;
-    json["steps"].push_back(std::move(step));
-  }
-  json["figures"] = nlohmann::ordered_json::array();
-  for (const optimo::FigureChange& figure : diff.figures) {
-    nlohmann::ordered_json one;
-    one["name"] = figure.name;
-    one["unit"] = figure.unit;
-    one["before"] = figure.before;
-    one["after"] = figure.after;
-    json["figures"].push_back(std::move(one));
-  }
-  // Text of a program may have any bytes.
-  Print(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-}
-
 }  // namespace
 
-int Diff(const std::string& a, const std::string& b, bool json) {
-  std::array<std::optional<Side>, 2> sides;
+int Diff(const DiffOptions& options) {
+  const std::array<std::string, 2> files = {options.before, options.after};
+  std::array<bridge::ComparedProgram, 2> programs;
   for (std::size_t i = 0; i < 2; ++i) {
-    Result<std::optional<Side>> side = ReadSide(i == 0 ? a : b);
-    if (!side) {
-      Complain(bridge::ErrorText(side.error()));
-      return kUsage;
-    }
-    if (!*side) return kProgramErrors;
-    sides[i] = *std::move(side);
+    Result<bridge::ComparedProgram> program = ReadProgram(files[i]);
+    if (!program) return Refuse(program.error());
+    programs[i] = *std::move(program);
   }
-  const bool both_ran = !sides[0]->figures.empty() && !sides[1]->figures.empty();
-  const std::vector<machine::Figure> none;
-  const optimo::ProgramDiff diff =
-      optimo::Diff(sides[0]->module, sides[1]->module, both_ran ? sides[0]->figures : none, both_ran ? sides[1]->figures : none);
-  if (json) {
-    PrintJson(diff);
+  const Result<bridge::ComparisonOutcome> made =
+      bridge::ComparePrograms(programs[0], programs[1], {.picture = !options.svg.empty()});
+  if (!made) return Refuse(made.error());
+  for (std::size_t i = 0; i < 2; ++i) ComplainOf(made->diagnostics[i], made->dropped[i], *programs[i].bytes);
+  if (!made->ok) return kProgramErrors;
+  const Response& diff = made->response;
+  if (!options.svg.empty() && options.svg != "-") {
+    if (const Status written = WriteWholeFile(options.svg, diff.picture_svg()); !written) {
+      return Refuse(written.error());
+    }
+  }
+  if (options.svg == "-") {
+    PrintRaw(diff.picture_svg());  // in place of the text: it is to be a file of its own
+  } else if (options.json) {
+    Print(Json(diff));
   } else {
     PrintText(diff);
-    if (!both_ran) Complain("no figures: a program does not run to its end by itself");
+  }
+  if (!options.json && !diff.compared_runs()) {
+    Complain("no figures: a program does not run to its end by itself");
   }
   return diff.equal() ? kGood : kProgramErrors;
 }

@@ -123,19 +123,17 @@ void AddOfficeVerbs(CLI::App& app, int& exit_code) {
         ->callback([arguments, &exit_code] { exit_code = List(arguments->file, arguments->output); });
   }
   {
-    struct Arguments {
-      std::string a, b;
-      bool json = false;
-    };
-    auto arguments = std::make_shared<Arguments>();
+    auto options = std::make_shared<DiffOptions>();
     CLI::App* verb = app.add_subcommand("diff", "Say what two programs do differently: path, time, power, outputs");
     verb->footer("Examples:\n"
                  "  rmlcell diff old.S new.S             exit code 1 when they differ\n"
-                 "  rmlcell diff 12.S 12.O               layout, comments and names do not count");
-    verb->add_option("A", arguments->a, "a program")->required();
-    verb->add_option("B", arguments->b, "another one")->required();
-    verb->add_flag("--json", arguments->json, "as JSON");
-    verb->callback([arguments, &exit_code] { exit_code = Diff(arguments->a, arguments->b, arguments->json); });
+                 "  rmlcell diff 12.S 12.O               layout, comments and names do not count\n"
+                 "  rmlcell diff old.S new.S --svg d.svg  both paths: removed, added, common");
+    verb->add_option("A", options->before, "a program")->required();
+    verb->add_option("B", options->after, "another one")->required();
+    verb->add_option("--svg", options->svg, "write a picture of both paths, - for standard output");
+    verb->add_flag("--json", options->json, "as JSON");
+    verb->callback([options, &exit_code] { exit_code = Diff(*options); });
   }
   {
     CLI::App* verb =

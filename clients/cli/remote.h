@@ -19,11 +19,12 @@ int PutProgram(const Remote& remote, const std::string& machine, int slot, const
 int GetProgram(const Remote& remote, const std::string& machine, int slot, const std::string& form,
                const std::string& output);
 int DeleteProgram(const Remote& remote, const std::string& machine, int slot);
+int StaleExecutables(const Remote& remote, const std::string& machine);
 
 int Projects(const Remote& remote);
 int GetProject(const Remote& remote, const std::string& project);
-int CreateProject(const Remote& remote, const std::string& project, const std::string& json_file);
-int UpdateProject(const Remote& remote, const std::string& project, const std::string& json_file);
+int CreateProject(const Remote& remote, const std::string& project, const std::string& path);
+int UpdateProject(const Remote& remote, const std::string& project, const std::string& path);
 int DeleteProject(const Remote& remote, const std::string& project);
 int TransferProject(const Remote& remote, const std::string& project, const std::string& machine, bool insert,
                     bool check_only);

@@ -1,11 +1,12 @@
 #include <filesystem>
 
-#include <google/protobuf/util/json_util.h>
-
 #include "clients/cli/messages.h"
 #include "clients/cli/program_files.h"
+#include "clients/cli/project_files.h"
 #include "clients/cli/remote_call.h"
 #include "clients/cli/terminal.h"
+#include "engine/core/number_text.h"
+#include "engine/core/units.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
 #include "rmlcell/v1/machine.grpc.pb.h"
@@ -41,8 +42,10 @@ int PrintStored(const Remote& remote, const v1::Program& program, bool check_onl
     return kGood;
   }
   PrintFindings(program.findings());
-  Print(program.name() + (check_only ? " would be stored: " : " stored: ") + program.title() + ", object " +
-        Bytes(program.object_bytes()));
+  const auto slot = ParseInteger(program.name().substr(program.name().rfind('/') + 1));
+  const bool executable = slot && *slot > kExecutableOffset;
+  Print(program.name() + (check_only ? " would be stored: " : " stored: ") + program.title() +
+        (executable ? ", executable " + Bytes(program.executable_bytes()) : ", object " + Bytes(program.object_bytes())));
   return kGood;
 }
 
@@ -173,6 +176,34 @@ int DeleteProgram(const Remote& remote, const std::string& machine, int slot) {
   return status.ok() ? int{kGood} : Refused(status, remote);
 }
 
+int StaleExecutables(const Remote& remote, const std::string& machine) {
+  const auto stub = v1::ProgramService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  Prepare(context);
+  v1::ListStaleExecutablesRequest request;
+  request.set_parent(FullName("machines", machine));
+  v1::ListStaleExecutablesResponse response;
+  const grpc::Status status = stub->ListStaleExecutables(&context, request, &response);
+  if (!status.ok()) return Refused(status, remote);
+  if (remote.json) {
+    for (const v1::StaleExecutable& stale : response.executables()) Print(Json(stale));
+    return kGood;
+  }
+  if (response.executables().empty()) {
+    Print("every executable is what a new link would give");
+    return kGood;
+  }
+  const auto number = [](const std::string& name) { return name.substr(name.rfind('/') + 1); };
+  std::vector<std::vector<std::string>> rows = {{"EXECUTABLE", "BECAUSE OF", "WHY"}};
+  for (const v1::StaleExecutable& stale : response.executables()) {
+    for (const v1::StaleExecutable::Part& part : stale.parts()) {
+      rows.push_back({number(stale.name()), number(part.program()), part.text()});
+    }
+  }
+  PrintRaw(Table(rows));
+  return kGood;
+}
+
 int Projects(const Remote& remote) {
   const auto stub = v1::ProjectService::NewStub(Connect(remote));
   grpc::ClientContext context;
@@ -208,17 +239,6 @@ int GetProject(const Remote& remote, const std::string& project) {
 
 namespace {
 
-Result<v1::Project> ReadProject(const std::string& json_file) {
-  const Result<std::string> text = bridge::ReadFile(json_file, kFileBytesMax);
-  if (!text) return text.error();
-  v1::Project project;
-  const auto parsed = google::protobuf::util::JsonStringToMessage(*text, &project);
-  if (!parsed.ok()) {
-    return Error{ErrorCode::kCellBadText, json_file + ": " + std::string(parsed.message()), {}};
-  }
-  return project;
-}
-
 int Stored(const Remote& remote, const grpc::Status& status, const v1::Project& project, std::string_view what) {
   if (!status.ok()) return Refused(status, remote);
   Print(remote.json ? Json(project) : project.name() + " " + std::string(what));
@@ -227,8 +247,8 @@ int Stored(const Remote& remote, const grpc::Status& status, const v1::Project& 
 
 }  // namespace
 
-int CreateProject(const Remote& remote, const std::string& project, const std::string& json_file) {
-  Result<v1::Project> made = ReadProject(json_file);
+int CreateProject(const Remote& remote, const std::string& project, const std::string& path) {
+  Result<v1::Project> made = ReadProject(path);
   if (!made) return RefuseFile(made.error());
   v1::CreateProjectRequest request;
   request.set_project_id(project);
@@ -240,8 +260,8 @@ int CreateProject(const Remote& remote, const std::string& project, const std::s
   return Stored(remote, stub->CreateProject(&context, request, &response), response, "made");
 }
 
-int UpdateProject(const Remote& remote, const std::string& project, const std::string& json_file) {
-  Result<v1::Project> changed = ReadProject(json_file);
+int UpdateProject(const Remote& remote, const std::string& project, const std::string& path) {
+  Result<v1::Project> changed = ReadProject(path);
   if (!changed) return RefuseFile(changed.error());
   v1::UpdateProjectRequest request;
   *request.mutable_project() = *std::move(changed);

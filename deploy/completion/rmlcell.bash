@@ -49,18 +49,20 @@ _rmlcell_options() {
   local remote="--help --server --json"
   case $1 in
     "") echo "--help --version" ;;
-    check) echo "--help --family --machine --errors-only --json" ;;
+    check) echo "--help --family --machine --errors-only --fix --dry-run --json" ;;
     simulate)
       echo "--help --slot --main --executable --family --profile --machine --inputs --mode --override --simul" \
-        "--break --budget --vars --svg --state-in --state-out --trace --facts --json" ;;
-    explain | diff) echo "--help --json" ;;
+        "--break --budget --vars --svg --plot --state-in --state-out --trace --facts --json" ;;
+    explain) echo "--help --json" ;;
+    diff) echo "--help --svg --json" ;;
+    parameters) echo "--help --profile" ;;
     compile | decompile | compensate | list) echo "--help --output" ;;
     link) echo "--help --slot --main --output" ;;
     format) echo "--help --check" ;;
     convert) echo "--help" ;;
     lsp) echo "--help --stdio" ;;
     transform) echo "--help --move --turn --shift --output" ;;
-    machines | programs | delete | projects | job | cancel | report) echo "$remote" ;;
+    machines | programs | delete | stale | projects | job | cancel | report) echo "$remote" ;;
     put) echo "$remote --etag --check-only" ;;
     get) echo "$remote --form --output" ;;
     submit)
@@ -68,7 +70,7 @@ _rmlcell_options() {
     watch) echo "$remote --after" ;;
     jobs) echo "$remote --filter --limit" ;;
     picture) echo "$remote --output" ;;
-    "projects show" | "projects create" | "projects update" | "projects delete") echo "--help" ;;
+    "projects list" | "projects show" | "projects create" | "projects update" | "projects delete") echo "--help" ;;
     "projects transfer") echo "--help --insert --check-only" ;;
   esac
 }
@@ -77,7 +79,7 @@ _rmlcell_options() {
 _rmlcell_takes_value() {
   case $1 in
     --slot | --main | --executable | --family | --profile | --machine | --inputs | --mode | --override | \
-      --simul | --break | --budget | --vars | --svg | --state-in | --state-out | --server | --etag | --form | \
+      --simul | --break | --budget | --vars | --svg | --plot | --state-in | --state-out | --server | --etag | --form | \
       --output | -o | --kind | --title | --request-id | --after | --filter | --limit | --move | --turn | --shift) return 0 ;;
   esac
   return 1
@@ -103,6 +105,9 @@ _rmlcell_values() {
       _rmlcell_offer state= machine= kind= caller= finished= ;;
     --machine) _rmlcell_files .toml ;;
     --svg) _rmlcell_files .svg ;;
+    --plot)
+      compopt -o nospace 2>/dev/null
+      _rmlcell_offer speed power axes speed,power,axes ;;
     --inputs | --state-in | --state-out | --output | -o) _rmlcell_files ;;
     --slot) [[ $verb == submit && -n ${given[0]:-} ]] && _rmlcell_slots "${given[0]}" ;;
   esac
@@ -116,7 +121,8 @@ _rmlcell_positional() {
     decompile) _rmlcell_files .o ;;
     compile | format | convert | compensate | transform | list | diff) _rmlcell_files .s .si .cmp .o ;;
     explain) _rmlcell_codes ;;
-    programs) [[ $count -eq 0 ]] && _rmlcell_machines ;;
+    parameters) [[ $count -eq 0 ]] && _rmlcell_offer optimo rml1 ;;
+    programs | stale) [[ $count -eq 0 ]] && _rmlcell_machines ;;
     put)
       case $count in
         0) _rmlcell_machines ;;
@@ -136,7 +142,7 @@ _rmlcell_positional() {
     watch | job) [[ $count -eq 0 ]] && _rmlcell_jobs ;;
     cancel) [[ $count -eq 0 ]] && _rmlcell_jobs "finished = false" ;;
     report | picture) [[ $count -eq 0 ]] && _rmlcell_jobs "finished = true" ;;
-    projects) [[ $count -eq 0 ]] && _rmlcell_offer show create update delete transfer ;;
+    projects) [[ $count -eq 0 ]] && _rmlcell_offer list show create update delete transfer ;;
     "projects show" | "projects delete") [[ $count -eq 0 ]] && _rmlcell_projects ;;
     "projects create") [[ $count -eq 1 ]] && _rmlcell_files .json ;;
     "projects update")
@@ -175,6 +181,7 @@ _rmlcell() {
         if ((i + 1 < COMP_CWORD)); then
           ((++i))
           [[ $option == --server ]] && server=${COMP_WORDS[i]}
+          [[ $option == --plot ]] && ((i + 1 < COMP_CWORD)) && ((++i))  # its file
         fi
       fi
       continue
@@ -182,7 +189,7 @@ _rmlcell() {
     option=''
     if [[ -z $verb ]]; then
       verb=$word
-    elif [[ $verb == projects && ${#given[@]} -eq 0 && $word =~ ^(show|create|update|delete|transfer)$ ]]; then
+    elif [[ $verb == projects && ${#given[@]} -eq 0 && $word =~ ^(list|show|create|update|delete|transfer)$ ]]; then
       verb="projects $word"
     else
       given+=("$word")
@@ -200,6 +207,10 @@ _rmlcell() {
       return
     fi
   fi
+  if [[ ${COMP_WORDS[COMP_CWORD - 2]:-} == --plot && $COMP_CWORD -gt 2 ]]; then
+    _rmlcell_files .svg
+    return
+  fi
   if [[ -n $verb ]] && _rmlcell_takes_value "$before"; then
     _rmlcell_values "$before"
     return
@@ -208,8 +219,8 @@ _rmlcell() {
   if [[ $cur == -* ]]; then
     _rmlcell_offer $(_rmlcell_options "$verb")
   elif [[ -z $verb ]]; then
-    _rmlcell_offer check simulate explain compile decompile link format convert compensate transform list \
-      diff lsp machines programs put get delete projects submit watch jobs job cancel report picture
+    _rmlcell_offer check simulate parameters explain compile decompile link format convert compensate transform list \
+      diff lsp machines programs put get delete stale projects submit watch jobs job cancel report picture
   else
     _rmlcell_positional
   fi

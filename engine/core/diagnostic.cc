@@ -45,6 +45,11 @@ bool IsError(Severity severity) {
          severity != Severity::kMessage && severity != Severity::kDevice;
 }
 
+bool HasErrors(std::span<const Diagnostic> findings) {
+  return std::ranges::any_of(
+      findings, [](const Diagnostic& finding) { return IsError(finding.severity); });
+}
+
 std::string FormatDiagnostic(const Diagnostic& diagnostic, std::string_view source) {
   const CatalogueEntry& entry = Lookup(diagnostic.code);
   std::string text = diagnostic.file.empty() && diagnostic.program > 0

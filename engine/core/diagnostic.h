@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +35,7 @@ struct Diagnostic {
 
 // An error stops a program from being stored or from going on; warnings and advice do not.
 bool IsError(Severity severity);
+bool HasErrors(std::span<const Diagnostic> findings);
 
 // "part.S:12:6: error OPT-E7019: MOVE has 4 values, needs 5 [OPT-2.01]", then, when `source` is not
 // empty and the line is known, that line and a caret line below it. No line end after the last line.

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -72,6 +74,8 @@ struct TransferPlan {
     int slot = 0;
     std::string source;  // as compiled: metric, with inserted definitions
     std::string object;
+    // The text of the project, whatever its units, says the same: it may be kept beside the object.
+    bool own_text = false;
   };
   std::vector<Program> programs{};
   std::vector<Diagnostic> diagnostics{};
@@ -82,6 +86,28 @@ struct FigureInfo {
   std::string_view name{};  // "programmed.cut_length"
   std::string_view unit{};  // "mm"; empty for counts
   std::string_view text{};  // what it means, one sentence
+};
+
+// Why an executable is no longer what a new link of the stored objects would give (OPT-1.12 to 1.15).
+enum class StaleReason {
+  kObjectChanged,    // the object of its program is another one
+  kObjectMissing,    // the object of its program is gone
+  kFunctionChanged,  // a FUNCTION that it contains is stored with another object
+  kFunctionDeleted,  // a FUNCTION that it contains was deleted
+  kDamaged,          // it cannot be read
+};
+struct StalePart {
+  int slot = 0;  // 1..99, of the object concerned
+  StaleReason reason = StaleReason::kFunctionChanged;
+  std::string text{};  // the reason, for people
+
+  bool operator==(const StalePart&) const = default;
+};
+struct StaleExecutable {
+  int slot = 0;                    // of its program; the executable lies in slot + 100
+  std::vector<StalePart> parts{};  // its own object first, then FUNCTIONs in order of first use
+
+  bool operator==(const StaleExecutable&) const = default;
 };
 
 // One machine family. A new family is one folder under engine/ and one line in
@@ -104,6 +130,9 @@ class MachineFamily {
   virtual Translation Translate(const SourceFile& file, const Parameters& parameters,
                                 const CheckOptions& options) const = 0;
 
+  // What is wrong with a process definition by itself, whatever the programs say (OPT-3.01 to 3.08).
+  virtual std::vector<Diagnostic> CheckProcess(const ProcessDefinition& /*definition*/) const { return {}; }
+
   // Checks a project and makes what its transfer would store.
   virtual TransferPlan PlanTransfer(const ProjectBundle& project, const Parameters& parameters,
                                     const TransferOptions& options) const = 0;
@@ -114,6 +143,12 @@ class MachineFamily {
 
   // Whether bytes are an executable of this family. Errors: ObjectCorrupt (7034).
   virtual Status CheckExecutable(std::string_view /*executable*/) const { return {}; }
+
+  // Which executables of a program memory are stale, by slot. `deleted` as in RunSetup.
+  virtual std::vector<StaleExecutable> FindStaleExecutables(
+      const std::map<int, StoredProgram>& /*programs*/, const std::set<int>& /*deleted*/) const {
+    return {};
+  }
 
   // Errors: ProgramMissing (7102), ObjectCorrupt (7034), the link errors 7103..7108 and the like are not
   // errors here: the run ends with them. Only a setup that makes no sense is refused.

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,6 +56,8 @@ struct RunSetup {
 
   Parameters parameters;
   std::map<int, StoredProgram> programs{};                 // by slot 1..99
+  // Slots that held a program once and are empty now: deleting counts as altering (OPT-1.13).
+  std::set<int> deleted_programs{};
   int main_program = 0;                                  // slot to start
   std::optional<std::vector<LaserSchedule>> schedules{};   // none: all that the machine can have
   std::string machine_state{};                             // from SaveMachine; empty: a new machine

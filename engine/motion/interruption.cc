@@ -62,36 +62,45 @@ StopOnPath StopAlong(std::span<const PlannedMotion> ahead, double t_s) {
 }
 
 std::vector<PlannedMotion> RestartAlong(std::span<const PlannedMotion> ahead, double s) {
+  const auto left_of = [&](std::size_t k) { return ahead[k].path.length() - (k == 0 ? s : 0.0); };
   std::vector<PlannedMotion> motions;
+  std::vector<double> caps(ahead.size());  // of the speeds at the ends
   double speed = 0.0;
+  std::size_t next = 0;
   bool as_planned = false;  // from here on nothing differs
-  for (std::size_t k = 0; k < ahead.size(); ++k) {
-    PlannedMotion motion = ahead[k];
-    const double from = k == 0 ? s : 0.0;
-    const double left = motion.path.length() - from;
-    if (!as_planned) {
-      const double planned = SpeedAtEnd(ahead[k]);
-      double end = planned;
-      if (planned > speed && RampLength(speed, planned, motion.limits) > left) {
-        end = std::min(planned, Reach(speed, left, motion.limits));
+  while (next < ahead.size() && !as_planned) {
+    // Up to the next place where the plan neither speeds up nor slows down: the ramps of the plan
+    // run across the ends of motions, those from rest end at each of them.
+    std::size_t last = next;
+    while (last + 1 < ahead.size() && ahead[last].speed.end().acceleration != 0.0) ++last;
+    for (std::size_t k = last + 1; k-- > next;) {
+      caps[k] = SpeedAtEnd(ahead[k]);
+      if (k == last || caps[k] <= caps[k + 1]) continue;
+      caps[k] = std::min(caps[k], Reach(caps[k + 1], left_of(k + 1), ahead[k + 1].limits));
+    }
+    for (; next <= last; ++next) {
+      PlannedMotion motion = ahead[next];
+      const double left = left_of(next);
+      double end = caps[next];
+      if (end > speed && RampLength(speed, end, motion.limits) > left) {
+        end = std::min(end, Reach(speed, left, motion.limits));
       }
       if (left > 0.0) {
-        motion.path = PartOf(ahead[k].path, from, motion.path.length());
+        if (next == 0) motion.path = PartOf(ahead[0].path, s, motion.path.length());
         motion.speed = SpeedProfile::Span(left, speed, end, motion.limits);
       } else {
-        motion.path = PathPiece::Line(ahead[k].path.to(), ahead[k].path.to());
+        motion.path = PathPiece::Line(ahead[next].path.to(), ahead[next].path.to());
         motion.speed = SpeedProfile();  // it stood at the end: only its settling is left
+        end = 0.0;
       }
       if (motion.ends_move) motion.corner.speed = end;
-      if (left <= 0.0 && motion.settling_s == 0.0) {
-        speed = end = 0.0;
-        continue;
-      }
-      as_planned = end == planned;
       speed = end;
+      if (left <= 0.0 && motion.settling_s == 0.0) continue;
+      motions.push_back(motion);
     }
-    motions.push_back(motion);
+    as_planned = speed == SpeedAtEnd(ahead[last]) && ahead[last].speed.end().acceleration == 0.0;
   }
+  motions.insert(motions.end(), ahead.begin() + static_cast<std::ptrdiff_t>(next), ahead.end());
   return motions;
 }
 

@@ -16,6 +16,9 @@ struct MachineLimits {
   // Above 0: a mill. Polylines are kept exactly, and a vertex is passed at the speed at which no
   // axis has to jump by more than this (motion.md section 7). 0: corners are passed on curves.
   double junction_jump_mm_s = 0.0;
+  // Ramps run across the passages between moves (level 2 of motion.md 5.4). False: the acceleration
+  // is zero at each of them (level 1, the reference); never faster.
+  bool ramps_across_passages = true;
   AxisLimits axes;
 
   double normal_acceleration() const { return curve_normal * tip_acceleration_mm_s2; }

@@ -29,10 +29,23 @@ bool AxesKeepUp(const MachineLimits& machine) {
   return enough;
 }
 
+// The tip's acceleration is at most that of the machine, whatever its speed does on a curve.
+bool AxesFollowRamps(const MachineLimits& machine) {
+  bool enough = AxesKeepUp(machine);
+  for (std::size_t i = 0; i < 3; ++i) {
+    enough = enough && machine.axes.acceleration[i] >= machine.tip_acceleration_mm_s2 &&
+             machine.axes.jerk[i] >= machine.tip_jerk_mm_s3;
+  }
+  return enough;
+}
+
 }  // namespace
 
 MotionChain::MotionChain(const MachineLimits& machine, std::size_t window)
-    : machine_(machine), window_(std::max(window, kBatchMin)), axes_keep_up_(AxesKeepUp(machine)) {}
+    : machine_(machine),
+      window_(std::max(window, kBatchMin)),
+      axes_keep_up_(AxesKeepUp(machine)),
+      axes_follow_ramps_(AxesFollowRamps(machine)) {}
 
 void MotionChain::Append(const MoveCommand& move, const PathLimits& limits) {
   const bool merged = open_ && !Join(move, limits);
@@ -104,6 +117,12 @@ void MotionChain::Nothing(const TipPose& here, bool fly) {
   if (open_ && !fly) stands_ = true;
 }
 
+void MotionChain::BeginMoving(double speed) {
+  running_.BeginAt(speed);
+  speeds_.BeginAt(speed);
+  last_speed_ = speed;
+}
+
 void MotionChain::Mark(std::uint64_t tag) {
   if (!open_ && moves_.empty()) {
     items_.Push(PlannedMark{tag});
@@ -126,7 +145,7 @@ void MotionChain::CloseLeg(Passage passage, const Corner& corner, double cap) {
   leg.corner = corner;
   // A curve must not reach over a jump of curvature, although without a limit on jerk it is passed.
   leg.ends_run = passage != Passage::kThrough || corner.passage() == Passage::kBlend;
-  leg.cap = IsStop(passage) ? 0.0 : cap;
+  leg.cap = leg.limit = IsStop(passage) ? 0.0 : cap;
   running_.Push(leg.length, moves_[leg.first_move].limits, leg.cap);
 }
 
@@ -230,7 +249,10 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
       double beyond = 0.0;
       for (Number k = number + 1; k < legs_.end() && beyond + legs_[k].length < cut; ++k) {
         beyond += legs_[k].length;
-        speed_cap = std::min(speed_cap, legs_[k].cap);
+        const auto index = static_cast<std::size_t>(k - number);
+        const bool known = index < running_.final_count();
+        if (!known && !accept_what_is_there) return false;
+        speed_cap = std::min(speed_cap, known ? running_.speed(index) : legs_[k].cap);
       }
     }
   }
@@ -271,6 +293,8 @@ void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
     ++after;
   }
   const PathPiece& out = moves_[after].path;
+  span.curve_may_vary =
+      in.a_rate() == 0.0 && in.b_rate() == 0.0 && out.a_rate() == 0.0 && out.b_rate() == 0.0;
   span.curve = CornerCurve(EndAt(in, std::max(in.length() - left, 0.0)),
                            EndAt(out, std::min(right, out.length())), cut);
   if (leg.corner.lines()) {
@@ -312,6 +336,7 @@ void MotionChain::CloseRun(Number last_leg, double total, const Span& closing, d
     } else {
       span.corner_move = leg.last_move;
       span.settling_s = 0.0;
+      span.curve_may_vary = true;
       span.report = {.passage = Passage::kThrough, .wanted_speed = leg.cap};
     }
     span.length = std::max(to - from, 0.0);
@@ -331,7 +356,10 @@ void MotionChain::CloseRun(Number last_leg, double total, const Span& closing, d
     const double last_length = moves_[span.last_move].path.length();
     span.x_to = to == leg_end ? last_length : std::min(to - x, last_length);
     span.limits = moves_[leg.first_move].limits;
-    speeds_.Push(span.length, span.limits, closes ? speed_cap : leg.cap);
+    const double cap = closes ? speed_cap : leg.cap;
+    // Straight on the shape of the path does not hang on what level 1 reaches.
+    span.cap = span.report.passage == Passage::kThrough ? legs_[closes ? last_leg : k].limit : cap;
+    speeds_.Push(span.length, span.limits, cap);
     if (closes) break;
   }
 }

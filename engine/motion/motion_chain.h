@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "engine/motion/planner.h"
+#include "engine/motion/ramp_plan.h"
 #include "engine/motion/ring.h"
 #include "engine/motion/speed_passes.h"
 
@@ -18,7 +20,8 @@ namespace rmlcell::motion {
 //   spans  what the curves leave of the legs, each with the curve behind it. The second pair of
 //   passes
 //          gives the speeds of the knots.
-//   items  spans cut back into moves, on demand.
+//   items  spans cut back into moves, on demand. Spans between two knots that are passed as fast as
+//          they may be are timed together: ramps run across the knots between (motion.md 5.4).
 //
 // A run is a sequence of legs joined by passages straight on; a curve may take up to half of a run,
 // hence more than the leg next to it.
@@ -31,6 +34,8 @@ class MotionChain {
 
   // A move that goes nowhere stood here: the passage before it is a stop unless it had /FLY itself.
   void Nothing(const TipPose& here, bool fly);
+  void BeginMoving(double speed);
+  bool starts_too_fast() const { return starts_too_fast_; }
   void Mark(std::uint64_t tag);
   void Stop();
   std::optional<PlannedItem> Next();
@@ -60,7 +65,8 @@ class MotionChain {
     Corner corner{};  // at its end
     Passage passage = Passage::kStop;
     bool ends_run = true;
-    double cap = 0.0;  // OVERSH x the lower limit of both sides
+    double cap = 0.0;    // OVERSH x the lower limit of both sides, lowered to what level 1 reaches
+    double limit = 0.0;  // not lowered
   };
   // From place x_from of one move to place x_to of another, and what ends it.
   struct Span {
@@ -73,6 +79,8 @@ class MotionChain {
     Number corner_move = 0;  // the last move before the passage; differs from last_move when the
                              // curve begins in an earlier one
     double settling_s = 0.0;
+    double cap = 0.0;            // of the speed at its end, and on the curve behind it
+    bool curve_may_vary = true;  // the curve behind it may be passed with changing speed
     CornerReport report;
     double curve_length = 0.0;
     double curve_middle = 0.5;
@@ -92,10 +100,27 @@ class MotionChain {
   void MakeCurve(Span& span, const Leg& leg, double cut);
   void CloseRun(Number last_leg, double total, const Span& closing, double speed_cap);
 
-  void EmitSpan();
-  void EmitCurve(const Span& span);
-  void EmitCurvePart(const Span& span, const PathPiece& piece, Number move, double s_from,
-                     double s_to, bool ends_move);
+  // Part of a speed profile, for a span or a curve.
+  struct Timing {
+    const SpeedProfile* profile = nullptr;  // null: steady
+    double from = 0.0;
+    double to = 0.0;
+    SpeedProfile Part(double s_from, double s_to, double length, double speed) const;
+  };
+  struct CurvePart {
+    const PathPiece* half = nullptr;
+    double s_from = 0.0;
+    double s_to = 0.0;
+    double begin = 0.0;  // of the half on the curve
+    bool ends_move = false;
+  };
+
+  std::size_t SectionSize();
+  bool EndsSection(std::size_t index);
+  void EmitSection(std::size_t count);
+  void EmitSpan(const Timing& timing, const Timing& on_curve);
+  void EmitCurve(const Span& span, const Timing& timing);
+  void EmitCurvePart(const Span& span, Number move, const CurvePart& part, const Timing& timing);
   PlannedMotion& NewMotion(const Span& span, Number move);
   void FinishMotion(const Span& span, Number move, PlannedMotion& motion, bool ends_move);
 
@@ -120,7 +145,12 @@ class MotionChain {
   Ring<Span> spans_;
   SpeedPasses speeds_;  // over spans
   std::size_t speeds_next_ = 0;
-  double last_speed_ = 0.0;  // at the end of the last emitted span
+  double last_speed_ = 0.0;       // at the end of the last emitted span
+  bool starts_too_fast_ = false;
+  std::size_t section_seen_ = 0;  // spans known not to end the next section
+  bool axes_follow_ramps_;        // on curves without head rotation, whatever the tip does
+  std::vector<RampCell> cells_;
+  RampPlan ramps_;
 
   Ring<WaitingMark> marks_;
   Ring<PlannedItem> items_;

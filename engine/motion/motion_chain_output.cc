@@ -1,27 +1,121 @@
 // The last stage of the chain: spans with their final speeds become motions and marks.
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "engine/motion/motion_chain.h"
 
 namespace rmlcell::motion {
+namespace {
+
+// Spans timed together: each gives at most two cells.
+constexpr std::size_t kSectionMax = RampPlan::kCellsMax / 2;
+
+}  // namespace
 
 std::optional<PlannedItem> MotionChain::Next() {
   while (items_.empty()) {
-    if (speeds_.final_count() == 0) return std::nullopt;
-    EmitSpan();
+    const std::size_t count = SectionSize();
+    if (count == 0) return std::nullopt;
+    EmitSection(count);
   }
-  PlannedItem item = std::move(items_.front());
+  std::optional<PlannedItem> item(std::in_place,
+                                  std::move(items_.front()));  // one copy: they are large
   items_.PopFront();
   return item;
 }
 
-void MotionChain::EmitSpan() {
+// How many spans are timed together next; 0 when that is not known yet.
+std::size_t MotionChain::SectionSize() {
+  const std::size_t known = speeds_.final_count();
+  while (section_seen_ < known) {
+    const std::size_t index = section_seen_++;
+    const Number moves = spans_[spans_.first() + index].last_move - spans_.front().first_move;
+    if (EndsSection(index) || section_seen_ == kSectionMax || moves >= window_ / 2) {
+      return std::exchange(section_seen_, 0);
+    }
+  }
+  return 0;
+}
+
+// A knot that is passed as fast as it may be: the speed has no slope there in any good plan.
+bool MotionChain::EndsSection(std::size_t index) {
+  if (!machine_.ramps_across_passages || std::isinf(machine_.tip_jerk_mm_s3)) return true;
+  constexpr double kReaches = 1.0 - 1e-12;
+  const Span& span = spans_[spans_.first() + index];
+  if (speeds_.speed(index) >= span.cap * kReaches) return true;
+  return IsBlend(span.report.passage) && !(span.curve_may_vary && axes_follow_ramps_);
+}
+
+void MotionChain::EmitSection(std::size_t count) {
+  // Only a chain that begins moving can be too fast: the passes see to the rest.
+  constexpr double kRoom = 1.0 + 1e-9;
+  const Span& first = spans_.front();
+  if (last_speed_ > speeds_.speed() * kRoom &&
+      RampLength(last_speed_, speeds_.speed(), first.limits) > first.length * kRoom) {
+    starts_too_fast_ = true;
+  }
+  if (count == 1) {
+    const Span& span = spans_.front();
+    SpeedProfile profile;
+    if (span.length > 0.0) {
+      profile = SpeedProfile::Span(span.length, last_speed_, speeds_.speed(), span.limits);
+    }
+    EmitSpan({&profile, 0.0, span.length}, {});
+    return;
+  }
+  // What lies between the knots at both ends, each with the speed of level 1 at its end. The curve
+  // behind the last knot is passed steadily.
+  cells_.clear();
+  for (std::size_t k = 0; k < count; ++k) {
+    const Span& span = spans_[spans_.first() + k];
+    const double speed = speeds_.speed(k);
+    const bool blend = IsBlend(span.report.passage);
+    if (span.length > 0.0) {
+      cells_.push_back({span.length, span.limits, speed, blend ? RampCell::kNoCap : span.cap});
+    }
+    if (k + 1 == count || !blend) continue;
+    const PathLimits& after = spans_[spans_.first() + k + 1].limits;
+    const double along = machine_.curve_tangential * machine_.tip_acceleration_mm_s2;
+    cells_.push_back(
+        {span.curve_length,
+         {.speed = span.cap,
+          .acceleration = std::min({span.limits.acceleration, after.acceleration, along}),
+          .jerk = std::min(span.limits.jerk, after.jerk)},
+         speed});
+  }
+  ramps_.Plan(cells_, last_speed_);
+  std::size_t cell = 0;
+  const auto next = [&] {
+    const RampPlan::Timing& timing = ramps_.timing()[cell++];
+    return Timing{&ramps_.ramps()[timing.ramp], timing.from, timing.to};
+  };
+  for (std::size_t k = 0; k < count; ++k) {
+    const Span& span = spans_.front();
+    const Timing on_span = span.length > 0.0 ? next() : Timing{};
+    const bool varies = k + 1 < count && IsBlend(span.report.passage);
+    EmitSpan(on_span, varies ? next() : Timing{});
+  }
+}
+
+SpeedProfile MotionChain::Timing::Part(double s_from, double s_to, double length,
+                                       double speed) const {
+  if (profile == nullptr) return SpeedProfile::Steady(s_to - s_from, speed);
+  const double end = s_to >= length ? to : std::min(from + s_to, to);
+  if (from + s_from == 0.0 && end == profile->end().s) return *profile;
+  return profile->Part(from + s_from, end);
+}
+
+void MotionChain::EmitSpan(const Timing& timing, const Timing& on_curve) {
   Span& span = spans_.front();
   const double speed = speeds_.speed();
   span.report.speed = speed;
   const bool blend = IsBlend(span.report.passage);
+  if (on_curve.profile != nullptr) {
+    const double middle = on_curve.from + 0.5 * span.curve_length;
+    span.report.speed = on_curve.profile->At(on_curve.profile->TimeAt(middle)).speed;
+  }
   if (span.length > 0.0) {
-    const SpeedProfile profile = SpeedProfile::Span(span.length, last_speed_, speed, span.limits);
     double done = 0.0;
     for (Number k = span.first_move; k <= span.last_move; ++k) {
       const PathPiece& path = moves_[k].path;
@@ -34,17 +128,14 @@ void MotionChain::EmitSpan() {
       } else {
         motion.path = path.Part(from, to);
       }
-      if (span.first_move == span.last_move) {
-        motion.speed = profile;
-      } else {
-        motion.speed = profile.Part(done, k == span.last_move ? span.length : done + (to - from));
-      }
+      const double end = k == span.last_move ? span.length : done + (to - from);
+      motion.speed = timing.Part(done, end, span.length, speed);
       done += to - from;
       const bool reaches_end = to == path.length() && !(blend && k == span.corner_move);
       FinishMotion(span, k, motion, reaches_end);
     }
   }
-  if (blend) EmitCurve(span);
+  if (blend) EmitCurve(span, on_curve);
   last_speed_ = speed;
   spans_.PopFront();
   speeds_.Pop();
@@ -52,7 +143,7 @@ void MotionChain::EmitSpan() {
 
 // The curve is cut where its middle is, and where points that it swallows are: they lie on its
 // halves as they would lie on the straight pieces.
-void MotionChain::EmitCurve(const Span& span) {
+void MotionChain::EmitCurve(const Span& span, const Timing& timing) {
   const double half = 0.5 * span.curve_length;
   const double cut = span.report.cut_mm;
   const PathPiece::Halves halves =
@@ -64,7 +155,7 @@ void MotionChain::EmitCurve(const Span& span) {
   for (Number k = span.last_move; k <= span.corner_move; ++k) {
     if (k > span.last_move) x += moves_[k].path.length();
     const double to = k == span.corner_move ? half : std::min(half * x / cut, half);
-    if (to > s) EmitCurvePart(span, halves.first, k, s, to, true);
+    if (to > s) EmitCurvePart(span, k, {&halves.first, s, to, 0.0, true}, timing);
     s = std::max(s, to);
   }
   // Second half: to the place where the next span begins.
@@ -74,25 +165,26 @@ void MotionChain::EmitCurve(const Span& span) {
     x += moves_[k].path.length();
     const bool last = x >= cut || k + 1 == moves_.end();
     const double to = last ? half : std::min(half * x / cut, half);
-    if (to > s) EmitCurvePart(span, halves.second, k, s, to, !last);
+    if (to > s) EmitCurvePart(span, k, {&halves.second, s, to, half, !last}, timing);
     s = std::max(s, to);
     if (last) break;
   }
 }
 
-void MotionChain::EmitCurvePart(const Span& span, const PathPiece& piece, Number move,
-                                double s_from, double s_to, bool ends_move) {
+void MotionChain::EmitCurvePart(const Span& span, Number move, const CurvePart& part,
+                                const Timing& timing) {
   PlannedMotion& motion = NewMotion(span, move);
-  if (s_from == 0.0 && s_to == piece.length()) {
-    motion.path = piece;
+  if (part.s_from == 0.0 && part.s_to == part.half->length()) {
+    motion.path = *part.half;
   } else {
-    motion.path = piece.Part(s_from, s_to);
+    motion.path = part.half->Part(part.s_from, part.s_to);
   }
-  motion.speed = SpeedProfile::Steady(s_to - s_from, span.report.speed);
-  motion.limits.speed = span.report.speed;
+  motion.speed = timing.Part(part.begin + part.s_from, part.begin + part.s_to, span.curve_length,
+                             span.report.speed);
+  motion.limits.speed = timing.profile != nullptr ? span.cap : span.report.speed;
   motion.limits.acceleration = std::min(
       motion.limits.acceleration, machine_.curve_tangential * machine_.tip_acceleration_mm_s2);
-  FinishMotion(span, move, motion, ends_move);
+  FinishMotion(span, move, motion, part.ends_move);
 }
 
 // Motions are made where they wait to be taken: they are large. The slot holds an old one, so every
@@ -117,6 +209,7 @@ void MotionChain::FinishMotion(const Span& span, Number move, PlannedMotion& mot
   if (!ends_move) return;
   if (move == span.corner_move) {
     motion.corner = span.report;
+    if (!IsBlend(span.report.passage)) motion.corner.speed = motion.speed.end().speed;
     motion.settling_s = span.settling_s;
   } else {
     motion.corner.passage = Passage::kThrough;

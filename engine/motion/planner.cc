@@ -77,6 +77,8 @@ Status Planner::AppendChecked(const MoveCommand& move) {
   return {};
 }
 
+void Planner::BeginMoving(double speed_mm_s) { chain_->BeginMoving(speed_mm_s); }
+bool Planner::starts_too_fast() const { return chain_->starts_too_fast(); }
 void Planner::Mark(std::uint64_t tag) { chain_->Mark(tag); }
 void Planner::Stop() { chain_->Stop(); }
 std::optional<PlannedItem> Planner::Next() { return chain_->Next(); }

@@ -89,6 +89,13 @@ class Planner {
   // before it a stop.
   Status Append(const MoveCommand& move);
 
+  // The machine passes the start of the first move at this speed (mm/s), with acceleration zero,
+  // instead of standing there: a chain that is planned anew on the way (motion.md section 6). Before
+  // the first Append. When what follows cannot be met from that speed, starts_too_fast() says so
+  // once the first items are taken, and they are of no use.
+  void BeginMoving(double speed_mm_s);
+  bool starts_too_fast() const;
+
   // Something that takes effect after the motions appended so far, see PlannedMark.
   void Mark(std::uint64_t tag);
 

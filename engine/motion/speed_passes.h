@@ -14,7 +14,10 @@ namespace rmlcell::motion {
 // Settle is called after at least as many pushes as there are knots left open.
 class SpeedPasses {
  public:
-  // A knot reached over a span of `length` from the knot before it (the chain begins at rest). It
+  // The chain begins at this speed instead of at rest. Before the first Push.
+  void BeginAt(double speed) { last_forward_ = speed; }
+
+  // A knot reached over a span of `length` from the knot before it (the chain begins at rest, see BeginAt). It
   // is passed at `cap` at most; 0 is a stop. `limits` are those of the span.
   void Push(double length, const PathLimits& limits, double cap);
 
@@ -30,8 +33,9 @@ class SpeedPasses {
   std::size_t final_count() const { return final_; }
   bool ends_at_rest() const { return size() > 0 && knots_.back().forward == 0.0; }
 
-  // Of the oldest knot that was not popped. Precondition: it is final.
+  // Of the oldest knot that was not popped, and of those after it. Precondition: it is final.
   double speed() const { return knots_[first_].speed; }
+  double speed(std::size_t index) const { return knots_[first_ + index].speed; }
   void Pop();
 
  private:

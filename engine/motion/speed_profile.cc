@@ -300,6 +300,11 @@ double SpeedProfile::TimeAt(double s) const {
     }
     const double wanted = s - phase.start.s;
     if (wanted <= 0.0) return time;
+    if (phase.jerk == 0.0) {  // closed: most of most profiles
+      const double v = phase.start.speed;
+      const double root = std::sqrt(std::max(v * v + 2.0 * phase.start.acceleration * wanted, 0.0));
+      return time + std::min(v + root > 0.0 ? 2.0 * wanted / (v + root) : duration, duration);
+    }
     const auto travelled = [&](double t) {
       const double speed =
           phase.start.speed + t * (phase.start.acceleration + 0.5 * t * phase.jerk);

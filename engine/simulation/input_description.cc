@@ -70,6 +70,8 @@ void AddPrograms(Fnv1a& hash, const machine::RunSetup& setup) {
     Add(hash, program.object);
     Add(hash, program.executable);
   }
+  hash.Number(setup.deleted_programs.size());
+  for (const int slot : setup.deleted_programs) hash.Integer(slot);
   hash.Integer(setup.main_program);
 }
 

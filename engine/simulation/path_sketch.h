@@ -42,6 +42,7 @@ class PathSketch {
   const SketchCircle& circle(std::int32_t index) const {
     return circles_[static_cast<std::size_t>(index)];
   }
+  const std::vector<SketchCircle>& circles() const { return circles_; }
   const std::vector<SketchDot>& dots() const { return dots_; }
   const std::vector<SketchTool>& tools() const { return tools_; }
   const machine::Box& box() const { return box_; }  // of everything, true extremes

@@ -46,6 +46,8 @@ std::string PictureRecorder::Svg(const RunReport& report, const PictureOptions& 
 
 std::uint64_t PictureRecorder::elements() const { return state_->sketch.elements().size(); }
 
+const PathSketch& PictureRecorder::sketch() const { return state_->sketch; }
+
 bool PictureRecorder::exact() const { return state_->sketch.tolerance_mm() == 0.0; }
 
 }  // namespace rmlcell::simulation

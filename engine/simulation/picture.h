@@ -12,6 +12,8 @@
 // picture.
 namespace rmlcell::simulation {
 
+class PathSketch;
+
 // Path elements kept while a run goes on, and written to a picture. A browser draws this many
 // smoothly; longer programs are drawn coarser, by a tolerance that is still far below a pixel for
 // all but fillings.
@@ -41,6 +43,7 @@ class PictureRecorder final : public machine::RunObserver {
   std::string Svg(const RunReport& report, const PictureOptions& options) const;
 
   std::uint64_t elements() const;
+  const PathSketch& sketch() const;
   bool exact() const;  // false: drawn coarser because of kPictureElementsMax
 
  private:

@@ -37,10 +37,7 @@ class Page {
        const PictureOptions& options)
       : sketch_(sketch), shape_(shape), report_(report) {
     width_ = std::clamp(options.width_px, kWidthMin, kWidthMax);
-    std::vector<ViewFrame> frames;
-    for (const PictureView view : ViewsOf(options)) {
-      frames.push_back(FrameOf(view, options.direction));
-    }
+    const std::vector<ViewFrame> frames = FramesOf(options, shape);
     depth_ = DepthOf(frames);
     const double panels_width = width_ - 2.0 * kMargin - kRulerLeft - kColumn - kColumnGap;
     layout_ = LayOut(frames, BoxToShow(sketch, shape.travel),
@@ -59,15 +56,6 @@ class Page {
   }
 
  private:
-  std::vector<PictureView> ViewsOf(const PictureOptions& options) const {
-    if (!options.views.empty()) {
-      const auto count = std::min<std::size_t>(options.views.size(), 4);
-      return {options.views.begin(), options.views.begin() + static_cast<std::ptrdiff_t>(count)};
-    }
-    if (!shape_.five_axis) return {PictureView::kXY};
-    return {PictureView::kXY, PictureView::kDirection, PictureView::kXZ, PictureView::kYZ};
-  }
-
   // A mill seen from above tells depth by shade.
   DepthRange DepthOf(const std::vector<ViewFrame>& frames) const {
     constexpr double kFlat_mm = 0.01;

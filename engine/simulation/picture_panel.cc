@@ -175,7 +175,7 @@ void DrawTriad(const Panel& panel, std::string& out) {
 
 }  // namespace
 
-std::size_t DrawPanel(const PanelContent& content, const Panel& panel, int id, std::string& out) {
+void BeginPanel(const machine::MachineShape& shape, const Panel& panel, int id, std::string& out) {
   const std::string name = "panel" + std::to_string(id);
   out += "<g id=\"" + name + "\">\n";
   AppendRect(out, panel.rect, "fill=\"#ffffff\"");
@@ -184,18 +184,14 @@ std::size_t DrawPanel(const PanelContent& content, const Panel& panel, int id, s
   AppendRect(out, panel.rect, {});
   out += "</clipPath>\n<g clip-path=\"url(#" + name + "-clip)\">\n";
   // In space its edges would only confuse.
-  if (!content.shape.travel.empty() && !panel.frame.across.empty()) {
-    DrawBox(content.shape.travel, panel, Stroke("#b0894a", 1.3, "stroke-dasharray=\"14 4 2 4\""),
-            out);
+  if (!shape.travel.empty() && !panel.frame.across.empty()) {
+    DrawBox(shape.travel, panel, Stroke("#b0894a", 1.3, "stroke-dasharray=\"14 4 2 4\""), out);
   }
-  DrawTools(content, panel, out);
-  const std::size_t elements =
-      DrawPath(content.sketch, panel, content.depth, content.elements_max, out);
-  DrawDots(content, panel, out);
-  DrawWorkOrigin(content, panel, out);
-  DrawStartAndEnd(content, panel, out);
+}
+
+void EndPanel(const Panel& panel, bool nothing, std::string& out) {
   out += "</g>\n";
-  if (!content.sketch.moved()) {
+  if (nothing) {
     AppendText(out, {panel.rect.x + 0.5 * panel.rect.width, panel.rect.y + 0.5 * panel.rect.height},
                "nothing moved", {.size = 20.0, .colour = kFaint, .anchor = "middle"});
   }
@@ -208,6 +204,17 @@ std::size_t DrawPanel(const PanelContent& content, const Panel& panel, int id, s
     DrawScaleBar(panel, out);
   }
   out += "</g>\n";
+}
+
+std::size_t DrawPanel(const PanelContent& content, const Panel& panel, int id, std::string& out) {
+  BeginPanel(content.shape, panel, id, out);
+  DrawTools(content, panel, out);
+  const std::size_t elements =
+      DrawPath(content.sketch, panel, content.depth, content.elements_max, out);
+  DrawDots(content, panel, out);
+  DrawWorkOrigin(content, panel, out);
+  DrawStartAndEnd(content, panel, out);
+  EndPanel(panel, !content.sketch.moved(), out);
   return elements;
 }
 

@@ -17,6 +17,11 @@ struct PanelContent {
   std::size_t elements_max = 0;  // of one panel
 };
 
+// Opens a panel: paper, grid and rulers, travel of the machine. What is drawn then is clipped to it.
+void BeginPanel(const machine::MachineShape& shape, const Panel& panel, int id, std::string& out);
+// Closes it: frame, title, axes or scale bar. `nothing`: says that nothing moved.
+void EndPanel(const Panel& panel, bool nothing, std::string& out);
+
 // Appends one panel: frame, grid and rulers, envelope of the machine, path, dots, start and end,
 // scale bar. `id` is unique on the page. Returns the number of path elements.
 std::size_t DrawPanel(const PanelContent& content, const Panel& panel, int id, std::string& out);

@@ -69,11 +69,11 @@ ScreenPoint Flat(const Vec3& p) { return {p.x, p.y}; }
 
 class PathDrawing {
  public:
-  PathDrawing(const PathSketch& sketch, const Panel& panel, const DepthRange& depth)
-      : sketch_(sketch), panel_(panel), depth_(depth) {
+  PathDrawing(const PathStrokes& strokes, const Panel& panel, const DepthRange& depth)
+      : strokes_(strokes), panel_(panel), depth_(depth) {
     clip_ = {panel.rect.x - kClipMargin_px, panel.rect.y - kClipMargin_px,
              panel.rect.width + 2 * kClipMargin_px, panel.rect.height + 2 * kClipMargin_px};
-    for (const SketchElement& element : sketch.elements()) Project(element);
+    for (const SketchElement& element : strokes.elements) Project(element);
   }
 
   void Thin(std::size_t elements_max) {
@@ -133,7 +133,7 @@ class PathDrawing {
   }
 
   void ProjectArc(const SketchElement& element, SketchElement flat) {
-    const SketchCircle& circle = sketch_.circle(element.arc);
+    const SketchCircle& circle = CircleOf(element);
     const Vec3 centre = OnPage(circle.centre);
     const double radius = circle.radius_mm * panel_.scale;
     const bool near = centre.x + radius >= clip_.x && centre.x - radius <= clip_.x + clip_.width &&
@@ -171,7 +171,7 @@ class PathDrawing {
 
   // To and fro on a line: as far as the circle reaches.
   void PushEdgeOn(const SketchElement& element, SketchElement flat) {
-    const SketchCircle& circle = sketch_.circle(element.arc);
+    const SketchCircle& circle = CircleOf(element);
     const Vec3 spoke = element.from - circle.centre;
     const Vec3 side = Cross(circle.normal, spoke);
     const Vec3 axis = Cross(circle.normal, panel_.frame.towards_eye);
@@ -204,14 +204,18 @@ class PathDrawing {
   void WriteLayer(Layer layer, std::string& out) const {
     if (layer == Layer::kTravel) {
       out += "<g fill=\"none\" stroke=\"";
-      out += kTravelColour;
+      out += strokes_.travel;
       out += "\" stroke-width=\"0.9\" stroke-dasharray=\"5 3.5\" stroke-opacity=\"0.8\">\n";
       WriteShade(layer, 0, out);
     } else {
       out += "<g fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\" stroke-width=\"";
       out += Pixels(StrokeWidth());
       out += "\" stroke=\"";
-      out += kCutColour;
+      out += strokes_.cut;
+      if (!strokes_.cut_dashes.empty()) {
+        out += "\" stroke-dasharray=\"";
+        out += strokes_.cut_dashes;
+      }
       out += "\">\n";
       for (int shade = 0; shade < (depth_.shaded ? kShades : 1); ++shade) {
         WriteShade(layer, shade, out);
@@ -255,7 +259,11 @@ class PathDrawing {
     data.ArcTo(seen.ellipse, Flat(element.to));
   }
 
-  const PathSketch& sketch_;
+  const SketchCircle& CircleOf(const SketchElement& element) const {
+    return strokes_.circles[static_cast<std::size_t>(element.arc)];
+  }
+
+  const PathStrokes& strokes_;
   const Panel& panel_;
   const DepthRange& depth_;
   ScreenRect clip_;
@@ -272,7 +280,13 @@ int DepthRange::ShadeOf(double z_mm) const {
 
 std::size_t DrawPath(const PathSketch& sketch, const Panel& panel, const DepthRange& depth,
                      std::size_t elements_max, std::string& out) {
-  PathDrawing drawing(sketch, panel, depth);
+  return DrawPath({.elements = sketch.elements(), .circles = sketch.circles()}, panel, depth,
+                  elements_max, out);
+}
+
+std::size_t DrawPath(const PathStrokes& strokes, const Panel& panel, const DepthRange& depth,
+                     std::size_t elements_max, std::string& out) {
+  PathDrawing drawing(strokes, panel, depth);
   drawing.Thin(elements_max);
   drawing.Write(out);
   return drawing.size();

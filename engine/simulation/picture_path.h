@@ -1,6 +1,8 @@
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "engine/simulation/path_sketch.h"
 #include "engine/simulation/picture_view.h"
@@ -21,10 +23,21 @@ struct DepthRange {
   int ShadeOf(double z_mm) const;
 };
 
+// Lines and arcs to draw, and how; both must outlive the drawing.
+struct PathStrokes {
+  std::span<const SketchElement> elements;
+  std::span<const SketchCircle> circles;
+  std::string_view cut = kCutColour;
+  std::string_view cut_dashes{};  // of stroke-dasharray; empty: a solid line
+  std::string_view travel = kTravelColour;
+};
+
 // Appends the path as `panel` shows it: travel thin and dashed below, the cut on top. Arcs are
 // elliptical arcs of the picture, exactly; only where the view sees a circle from its edge they are
 // lines. Nothing that differs by less than a tenth of a pixel is drawn twice. At most
 // `elements_max` elements: longer paths get coarser. Returns the number of elements drawn.
+std::size_t DrawPath(const PathStrokes& strokes, const Panel& panel, const DepthRange& depth,
+                     std::size_t elements_max, std::string& out);
 std::size_t DrawPath(const PathSketch& sketch, const Panel& panel, const DepthRange& depth,
                      std::size_t elements_max, std::string& out);
 

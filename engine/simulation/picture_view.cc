@@ -63,6 +63,19 @@ ViewFrame FrameOf(PictureView view, const Vec3& direction) {
   return frame;
 }
 
+std::vector<ViewFrame> FramesOf(const PictureOptions& options, const machine::MachineShape& shape) {
+  constexpr std::size_t kViewsMax = 4;
+  std::vector<PictureView> views = options.views;
+  if (views.size() > kViewsMax) views.resize(kViewsMax);
+  if (views.empty() && !shape.five_axis) views = {PictureView::kXY};
+  if (views.empty()) {
+    views = {PictureView::kXY, PictureView::kDirection, PictureView::kXZ, PictureView::kYZ};
+  }
+  std::vector<ViewFrame> frames;
+  for (const PictureView view : views) frames.push_back(FrameOf(view, options.direction));
+  return frames;
+}
+
 Extent ExtentOf(const machine::Box& box, const ViewFrame& frame) {
   Extent extent{HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL};
   for (const double x : {box.min.x, box.max.x}) {
@@ -151,9 +164,13 @@ PanelLayout LayOut(const std::vector<ViewFrame>& frames, const machine::Box& box
 }
 
 machine::Box BoxToShow(const PathSketch& sketch, const machine::Box& travel) {
-  const bool whole =
-      sketch.cut_box().empty() || Size(sketch.box()) <= kWholeIfWithin * Size(sketch.cut_box());
-  machine::Box box = whole ? sketch.box() : sketch.cut_box();
+  return BoxToShow(sketch.box(), sketch.cut_box(), travel);
+}
+
+machine::Box BoxToShow(const machine::Box& all, const machine::Box& cut,
+                       const machine::Box& travel) {
+  const bool whole = cut.empty() || Size(all) <= kWholeIfWithin * Size(cut);
+  machine::Box box = whole ? all : cut;
   if (box.empty()) box = travel;
   if (box.empty()) box.Add(Vec3{});
   const Vec3 size = box.max - box.min;

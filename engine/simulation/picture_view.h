@@ -21,6 +21,9 @@ struct ViewFrame {
 };
 ViewFrame FrameOf(PictureView view, const motion::Vec3& direction);
 
+// The views that are wanted, up to four, or those that suit the machine.
+std::vector<ViewFrame> FramesOf(const PictureOptions& options, const machine::MachineShape& shape);
+
 // What a view sees of a box: extent along right and up.
 struct Extent {
   double left = 0.0;
@@ -64,6 +67,9 @@ PanelLayout LayOut(const std::vector<ViewFrame>& frames, const machine::Box& box
 // What the panels show: the cut with a margin; all of the path when that is not much more, or when
 // nothing was cut; the travel of the machine when nothing moved. Never without extent.
 machine::Box BoxToShow(const PathSketch& sketch, const machine::Box& travel);
+// The same of a path that lies in `all` and cuts in `cut`.
+machine::Box BoxToShow(const machine::Box& all, const machine::Box& cut,
+                       const machine::Box& travel);
 
 // 1, 2 or 5 times a power of ten, at least `least`.
 double NiceStep(double least);

@@ -21,6 +21,7 @@ struct Recorder::State {
       Join(&toolpath.emplace(shape, products.toolpath_options, std::move(products.toolpath)));
     }
     if (products.picture) Join(&picture.emplace(shape));
+    if (products.plot) Join(&plot.emplace(shape));
   }
 
   void Join(machine::RunObserver* observer) {
@@ -37,7 +38,8 @@ struct Recorder::State {
   std::optional<TraceRecorder> trace;
   std::optional<ToolpathRecorder> toolpath;
   std::optional<PictureRecorder> picture;
-  std::array<machine::RunObserver*, 5> observers{};
+  std::optional<PlotRecorder> plot;
+  std::array<machine::RunObserver*, 6> observers{};
   std::size_t count = 0;
 };
 
@@ -119,6 +121,10 @@ RunReport Recorder::Report(const machine::Run& run) const {
 
 std::string Recorder::Svg(const RunReport& report, const PictureOptions& options) const {
   return state_->picture ? state_->picture->Svg(report, options) : std::string();
+}
+
+std::string Recorder::PlotSvg(const RunReport& report, const PlotOptions& options) const {
+  return state_->plot ? state_->plot->Svg(report, options) : std::string();
 }
 
 }  // namespace rmlcell::simulation

@@ -5,6 +5,7 @@
 #include "engine/machine/shape.h"
 #include "engine/simulation/input_description.h"
 #include "engine/simulation/picture.h"
+#include "engine/simulation/plot.h"
 #include "engine/simulation/report.h"
 #include "engine/simulation/toolpath_recorder.h"
 #include "engine/simulation/trace.h"
@@ -18,6 +19,7 @@ struct Products {
   ToolpathSink toolpath{};  // empty: no toolpath
   ToolpathOptions toolpath_options{};
   bool picture = false;
+  bool plot = false;
   machine::RunObserver* also = nullptr;  // told everything too, before the products; may be null
 };
 
@@ -52,6 +54,9 @@ class Recorder final : public machine::RunObserver {
 
   // Empty when no picture was asked for.
   std::string Svg(const RunReport& report, const PictureOptions& options) const;
+
+  // Empty when no plot was asked for.
+  std::string PlotSvg(const RunReport& report, const PlotOptions& options) const;
 
  private:
   struct State;

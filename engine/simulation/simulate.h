@@ -79,6 +79,7 @@ RunReport RunToEnd(Simulation& simulation, const SimulationOptions& options);
 struct SimulationResult {
   RunReport report;
   std::string svg;                               // empty when not asked for
+  std::string plot;                              // empty when not asked for
   std::string machine_state;                     // for the next run on this machine
   std::map<int, std::string> executables;        // that the run made, by slot
   std::map<std::string, std::string> variables;  // those asked for and known, by name
@@ -89,6 +90,7 @@ struct SimulationResult {
 struct SimulationRequest {
   Products products;
   PictureOptions picture;
+  PlotOptions plot;
   SimulationOptions options;
   std::vector<std::string> variables;  // to read at the end: "VR[5]"
 };

@@ -100,6 +100,7 @@ Result<SetupOutcome> MakeSetup(const SetupInput& input, const v1::SimulationOpti
   if (!parameters) return parameters.error();
 
   machine::RunSetup setup(std::move(*parameters));
+  setup.deleted_programs = {input.deleted_programs.begin(), input.deleted_programs.end()};
   setup.main_program = input.main_program;
   setup.schedules = input.schedules;
   setup.machine_state = input.machine_state;

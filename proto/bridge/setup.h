@@ -31,6 +31,7 @@ struct SetupInput {
   std::string profile;
   std::map<std::string, std::string> parameters;  // over the profile
   std::vector<ProgramInput> programs;             // a later one of the same slot replaces an earlier one
+  std::vector<int> deleted_programs{};            // slots that are empty now and were not always
   int main_program = 0;
   std::optional<std::vector<machine::LaserSchedule>> schedules;  // nothing: all at their defaults
   std::string machine_state;

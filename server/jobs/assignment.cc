@@ -120,6 +120,9 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
         programs.Add(program.slot, program.name, {}, std::move(program.object), false, program.executable);
       }
     }
+    const auto deleted = store.ListDeletedPrograms(leased.job.machine);
+    if (!deleted) return deleted.error();
+    assignment.mutable_deleted_programs()->Add(deleted->begin(), deleted->end());
   }
   const std::string file_name = stored_main ? std::string() : job.inline_program().file_name();
   const bool is_source = !stored_main && job.inline_program().form() != v1::PROGRAM_FORM_OBJECT;

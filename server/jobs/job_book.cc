@@ -171,6 +171,7 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, co
                        .specification = {},
                        .attempts_max = job.attempts_max() > 0 ? job.attempts_max()
                                                               : static_cast<int>(config_.jobs_attempts),
+                       .queued_max = config_.jobs_queued_max,
                        .attachments = {},
                        .events = {StateEvent(storage::JobState::kQueued)}};
   v1::Job specification = job;
@@ -202,12 +203,6 @@ void JobBook::Submit(const v1::SubmitJobRequest& request, const std::string& cal
     v1::Job job = request.job();
     job.clear_name();
     return done(std::move(job));
-  }
-  const Result<storage::JobCounts> counts = store_.CountJobs();
-  if (!counts) return done(counts.error());
-  if (counts->queued >= config_.jobs_queued_max) {
-    return done(Error{ErrorCode::kCellResourceExhausted,
-                      std::to_string(counts->queued) + " jobs wait (jobs.queued_max)", {}});
   }
   store_.Submit(std::move(*made), [done = std::move(done)](const Result<storage::SubmittedJob>& submitted) {
     if (!submitted) return done(submitted.error());

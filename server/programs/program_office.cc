@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 
 #include "engine/optimo/language/compiler.h"
@@ -21,24 +19,46 @@ namespace {
 
 Error Invalid(std::string detail) { return {ErrorCode::kCellInvalidArgument, std::move(detail), {}}; }
 
-bool HasErrors(const std::vector<Diagnostic>& findings) {
-  return std::ranges::any_of(findings, [](const Diagnostic& finding) { return IsError(finding.severity); });
-}
-
 v1::Findings FindingsOf(const std::vector<Diagnostic>& findings, std::uint64_t dropped = 0) {
   return bridge::FindingsOf(!HasErrors(findings), findings, dropped, {});
 }
 
-Status CheckText(const v1::ProgramText& program) {
-  if (program.content().empty()) return Error{ErrorCode::kCellEmptyProgram, program.file_name(), {}};
-  if (optimo::FormOfFile(program.file_name(), program.content()) == optimo::FileForm::kObject) {
-    return Invalid("an object is no source; DecompileProgram gives its source");
-  }
-  return {};
+bool IsObject(const v1::ProgramText& program) {
+  return program.form() == v1::PROGRAM_FORM_OBJECT ||
+         optimo::FormOfFile(program.file_name(), program.content()) == optimo::FileForm::kObject;
 }
 
 bool IsInch(const v1::ProgramText& program) {
   return optimo::FormOfFile(program.file_name(), program.content()) == optimo::FileForm::kInchSource;
+}
+
+Status CheckText(const v1::ProgramText& program) {
+  if (program.content().empty()) return Error{ErrorCode::kCellEmptyProgram, program.file_name(), {}};
+  if (IsObject(program)) return Invalid("an object is no source; DecompileProgram gives its source");
+  return {};
+}
+
+Status CheckMetricText(const v1::ProgramText& program) {
+  if (const Status good = CheckText(program); !good) return good;
+  if (IsInch(program)) return Error{ErrorCode::kSourceIsInch, program.file_name(), {}};
+  return {};
+}
+
+struct Offset {
+  motion::Vec3 move;               // mm
+  std::array<double, 3> turn{};  // about Z, Y, X, rad
+};
+
+Result<Offset> OffsetOf(const v1::Point& translation, const google::protobuf::RepeatedField<double>& rotation) {
+  if (!rotation.empty() && rotation.size() != 3) {
+    return Invalid("rotation has " + std::to_string(rotation.size()) + " values, needs none or three");
+  }
+  Offset offset{{translation.x(), translation.y(), translation.z()}, {}};
+  std::ranges::copy(rotation, offset.turn.begin());
+  for (const double value : {offset.move.x, offset.move.y, offset.move.z, offset.turn[0], offset.turn[1], offset.turn[2]}) {
+    if (!std::isfinite(value)) return Invalid("translation and rotation must be finite");
+  }
+  return offset;
 }
 
 }  // namespace
@@ -93,22 +113,45 @@ Result<v1::CompensateProgramResponse> CompensateText(const v1::CompensateProgram
 
 Result<v1::TransformProgramResponse> TransformText(const v1::TransformProgramRequest& request) {
   const v1::ProgramText& program = request.program();
-  if (const Status good = CheckText(program); !good) return good.error();
-  if (IsInch(program)) return Error{ErrorCode::kSourceIsInch, program.file_name(), {}};
-  if (request.rotation_size() != 0 && request.rotation_size() != 3) {
-    return Invalid("rotation has " + std::to_string(request.rotation_size()) + " values, needs none or three");
-  }
-  std::array<double, 3> turn{};
-  std::ranges::copy(request.rotation(), turn.begin());
-  const motion::Vec3 move{request.translation().x(), request.translation().y(), request.translation().z()};
-  for (const double value : {move.x, move.y, move.z, turn[0], turn[1], turn[2]}) {
-    if (!std::isfinite(value)) return Invalid("translation and rotation must be finite");
-  }
-  const optimo::Rewriting made =
-      optimo::Transform(program.content(), optimo::RigidMotion::Of(move, turn[0], turn[1], turn[2]));
+  if (const Status good = CheckMetricText(program); !good) return good.error();
+  const Result<Offset> by = OffsetOf(request.translation(), request.rotation());
+  if (!by) return by.error();
+  const optimo::Rewriting made = optimo::Transform(
+      program.content(), optimo::RigidMotion::Of(by->move, by->turn[0], by->turn[1], by->turn[2]));
   v1::TransformProgramResponse response;
   response.set_content(made.text);
   *response.mutable_findings() = FindingsOf(made.diagnostics);
+  return response;
+}
+
+Result<v1::ShiftProgramResponse> ShiftText(const v1::ShiftProgramRequest& request) {
+  const v1::ProgramText& program = request.program();
+  if (const Status good = CheckMetricText(program); !good) return good.error();
+  const Result<Offset> by = OffsetOf(request.translation(), request.rotation());
+  if (!by) return by.error();
+  const optimo::Rewriting made = optimo::Shift(
+      program.content(), {by->move.x, by->move.y, by->move.z, by->turn[0], by->turn[1], by->turn[2]});
+  v1::ShiftProgramResponse response;
+  response.set_content(made.text);
+  *response.mutable_findings() = FindingsOf(made.diagnostics);
+  return response;
+}
+
+Result<v1::MakeListingResponse> ListText(const v1::MakeListingRequest& request) {
+  const v1::ProgramText& program = request.program();
+  if (program.content().empty()) return Error{ErrorCode::kCellEmptyProgram, program.file_name(), {}};
+  v1::MakeListingResponse response;
+  if (IsObject(program)) {
+    Result<std::string> listing = ListingOf(program.content());
+    if (!listing) return listing.error();
+    response.set_content(*std::move(listing));
+    response.mutable_findings()->set_ok(true);
+    return response;
+  }
+  const optimo::Compilation read = optimo::Compile(
+      program.content(), program.file_name(), {.object_limit = 0, .advice = false, .inch = IsInch(program)});
+  if (read.ok) response.set_content(optimo::List(read.module));
+  *response.mutable_findings() = FindingsOf(read.diagnostics, read.diagnostics_dropped);
   return response;
 }
 
@@ -116,15 +159,6 @@ Result<std::string> ListingOf(const std::string& object) {
   const Result<optimo::Module> module = optimo::DecodeObject(object);
   if (!module) return module.error();
   return optimo::List(*module);
-}
-
-std::string HeaderDate() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  std::array<char, 40> text{};
-  const std::size_t size = std::strftime(text.data(), text.size(), "%a %b %d %H:%M:%S %Y", &utc);
-  return {text.data(), size};
 }
 
 }  // namespace rmlcell::server

@@ -24,10 +24,11 @@ Result<v1::CompensateProgramResponse> CompensateText(const v1::CompensateProgram
 // finite.
 Result<v1::TransformProgramResponse> TransformText(const v1::TransformProgramRequest& request);
 
-// OPT-8.73. Errors: ObjectCorrupt (7034).
-Result<std::string> ListingOf(const std::string& object);
+// Error: as TransformText.
+Result<v1::ShiftProgramResponse> ShiftText(const v1::ShiftProgramRequest& request);
 
-// "Tue Apr 20 13:37:33 1993", in UTC, as the headers of the tools have it.
-std::string HeaderDate();
+// OPT-8.73. Errors: ObjectCorrupt (7034).
+Result<v1::MakeListingResponse> ListText(const v1::MakeListingRequest& request);
+Result<std::string> ListingOf(const std::string& object);
 
 }  // namespace rmlcell::server

@@ -176,6 +176,7 @@ ProgramResult<v1::Program> ProgramShelf::StoreExecutable(const Put& put, const s
     if (!*kept) return Error{ErrorCode::kCellEtagMismatch, "the object was stored again meanwhile", {}};
   }
   v1::Program program = MessageOf(machine_id, **found);
+  program.set_name(NameOfProgram(machine_id, slot + kExecutableOffset));
   program.set_executable_bytes(static_cast<std::int64_t>(put.bytes.size()));
   return program;
 }
@@ -189,7 +190,9 @@ Result<v1::Program> ProgramShelf::Get(std::string_view name) {
   const bool there = !found->empty() && found->front().slot == parsed->slot &&
                      (!parsed->executable || found->front().executable_bytes >= 0);
   if (!there) return Error{ErrorCode::kProgramMissing, std::string(name), {}};
-  return MessageOf(parsed->machine, found->front());
+  v1::Program program = MessageOf(parsed->machine, found->front());
+  program.set_name(std::string(name));  // an executable is asked for by its own number
+  return program;
 }
 
 Result<ProgramShelf::Content> ProgramShelf::Read(std::string_view name, v1::ProgramForm form) {
@@ -207,6 +210,7 @@ Result<ProgramShelf::Content> ProgramShelf::Read(std::string_view name, v1::Prog
   const bool has_objects = family != nullptr && family->info().has_executables;
   const std::string base = program->source_name.empty() ? std::to_string(parsed->slot) : TitleFrom(program->source_name);
   Content content;
+  const std::string object_sha256 = bridge::Sha256Hex(program->object);
   switch (form) {
     case v1::PROGRAM_FORM_EXECUTABLE:
       if (!program->executable) {
@@ -233,7 +237,8 @@ Result<ProgramShelf::Content> ProgramShelf::Read(std::string_view name, v1::Prog
                    .file_name = program->source_name.empty() && family != nullptr
                                     ? base + std::string(FirstExtension(family->info()))
                                     : program->source_name,
-                   .sha256 = {}};
+                   .sha256 = {},
+                   .own_text = true};
       } else if (form == v1::PROGRAM_FORM_SOURCE) {
         Result<std::string> source = family->Decompile(program->object);
         if (!source) return source.error();
@@ -246,6 +251,7 @@ Result<ProgramShelf::Content> ProgramShelf::Read(std::string_view name, v1::Prog
       }
   }
   content.sha256 = bridge::Sha256Hex(content.bytes);
+  content.object_sha256 = object_sha256;
   return content;
 }
 

@@ -5,29 +5,12 @@
 
 #include "engine/machine/family.h"
 #include "rmlcell/v1/program.pb.h"
+#include "server/programs/program_result.h"
 #include "storage/store.h"
 
 namespace rmlcell::server {
 
 struct Config;
-
-// An error with what there is to say about the program.
-struct ProgramError {
-  Error error;
-  std::vector<Diagnostic> diagnostics;
-  std::uint64_t dropped = 0;
-};
-
-template <class T>
-struct ProgramResult {
-  std::optional<T> value;
-  ProgramError error{};  // when there is no value
-
-  ProgramResult(T made) : value(std::move(made)) {}                                     // NOLINT: implicit
-  ProgramResult(Error wrong) : error{std::move(wrong), {}, 0} {}                        // NOLINT: implicit
-  ProgramResult(ProgramError wrong) : error(std::move(wrong)) {}                        // NOLINT: implicit
-  explicit operator bool() const { return value.has_value(); }
-};
 
 // The program memory of machines: translation, checks and storage of programs.
 // Thread-safe; blocks on the store and on compilation.
@@ -55,6 +38,8 @@ class ProgramShelf {
     v1::ProgramForm form = v1::PROGRAM_FORM_SOURCE;
     std::string file_name;
     std::string sha256;
+    bool own_text = false;      // a source as it was stored, not made of the object
+    std::string object_sha256{};  // of the object that it belongs to
   };
   Result<Content> Read(std::string_view name, v1::ProgramForm form);
 

@@ -1,6 +1,9 @@
 #include "server/projects/project_book.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <optional>
 #include <set>
 
 #include "engine/core/units.h"
@@ -21,7 +24,7 @@ constexpr std::size_t kNotesMax = 64 << 10;
 Error Invalid(const std::string& detail) { return {ErrorCode::kCellInvalidArgument, detail, {}}; }
 
 // What can be said without a machine. Languages are checked when the project is transferred.
-Status CheckProject(const v1::Project& project) {
+Status CheckParts(const v1::Project& project) {
   if (project.title().size() > kTitleMax) return Invalid("title is longer than 200 characters");
   if (project.notes().size() > kNotesMax) return Invalid("notes are longer than 64 KiB");
   std::set<int> slots;
@@ -50,14 +53,34 @@ Status CheckProject(const v1::Project& project) {
   std::set<std::pair<int, int>> processes;
   for (const v1::ProjectProcess& process : project.processes()) {
     const std::string name = std::to_string(process.kind()) + "," + std::to_string(process.process());
-    if (process.kind() < 0 || process.kind() > 2 || process.process() < 0 || process.process() > 9) {
-      return Error{ErrorCode::kProcessNumber, "process " + name, {}};
-    }
     if (!processes.insert({process.kind(), process.process()}).second) {
-      return Invalid("process " + name + " stands twice");
+      return Error{ErrorCode::kProjectDuplicate, "process " + name, {}};
     }
   }
   return {};
+}
+
+machine::ProcessDefinition DefinitionOf(const v1::ProjectProcess& process) {
+  return {.kind = process.kind(),
+          .process = process.process(),
+          .values = {process.values().begin(), process.values().end()},
+          .note = process.note()};
+}
+
+// What is wrong with a project by itself. Of what its definitions say any family may have an opinion: only
+// one has processes at all (OPT-3.01 to 3.08).
+std::optional<ProgramError> FindFault(const v1::Project& project) {
+  if (const Status good = CheckParts(project); !good) return ProgramError{good.error(), {}, 0};
+  std::vector<Diagnostic> found;
+  for (const machine::MachineFamily* family : simulation::Families()) {
+    for (const v1::ProjectProcess& process : project.processes()) {
+      std::ranges::move(family->CheckProcess(DefinitionOf(process)), std::back_inserter(found));
+    }
+  }
+  const auto first = std::ranges::find_if(found, [](const Diagnostic& d) { return IsError(d.severity); });
+  if (first == found.end()) return std::nullopt;
+  Error error{first->code, first->detail, {}};
+  return ProgramError{std::move(error), std::move(found), 0};
 }
 
 Result<v1::Project> ProjectOf(const storage::ProjectRecord& record) {
@@ -71,6 +94,12 @@ Result<v1::Project> ProjectOf(const storage::ProjectRecord& record) {
   *project.mutable_create_time() = ToProto(record.created_at);
   *project.mutable_update_time() = ToProto(record.updated_at);
   return project;
+}
+
+ProgramResult<v1::Project> Whole(const storage::ProjectRecord& record) {
+  Result<v1::Project> project = ProjectOf(record);
+  if (!project) return project.error();
+  return *std::move(project);
 }
 
 storage::ProjectRecord RecordOf(const std::string& id, v1::Project project) {
@@ -108,10 +137,7 @@ machine::ProjectBundle BundleOf(const v1::Project& project) {
                                 .power_percent = schedule.power_percent()});
   }
   for (const v1::ProjectProcess& process : project.processes()) {
-    bundle.processes.push_back({.kind = process.kind(),
-                                .process = process.process(),
-                                .values = {process.values().begin(), process.values().end()},
-                                .note = process.note()});
+    bundle.processes.push_back(DefinitionOf(process));
   }
   return bundle;
 }
@@ -124,9 +150,9 @@ const v1::ProjectProgram* FindProgram(const v1::Project& project, int slot) {
 
 }  // namespace
 
-Result<v1::Project> ProjectBook::Create(const v1::CreateProjectRequest& request) {
+ProgramResult<v1::Project> ProjectBook::Create(const v1::CreateProjectRequest& request) {
   if (Status id = CheckResourceId(request.project_id(), "project_id"); !id) return id.error();
-  if (Status good = CheckProject(request.project()); !good) return good.error();
+  if (auto fault = FindFault(request.project())) return *std::move(fault);
   storage::ProjectRecord record = RecordOf(request.project_id(), request.project());
   if (request.validate_only()) {
     const auto there = store_.GetProject(request.project_id());
@@ -138,7 +164,7 @@ Result<v1::Project> ProjectBook::Create(const v1::CreateProjectRequest& request)
   }
   const auto stored = store_.PutProject(record, 0);
   if (!stored) return stored.error();
-  return ProjectOf(*stored);
+  return Whole(*stored);
 }
 
 Result<v1::Project> ProjectBook::Get(std::string_view name) {
@@ -171,7 +197,7 @@ Result<v1::ListProjectsResponse> ProjectBook::List(const v1::ListProjectsRequest
   return response;
 }
 
-Result<v1::Project> ProjectBook::Update(const v1::UpdateProjectRequest& request) {
+ProgramResult<v1::Project> ProjectBook::Update(const v1::UpdateProjectRequest& request) {
   const Result<std::string> id = ParseProjectName(request.project().name());
   if (!id) return id.error();
   const Result<storage::Revision> expected = ParseEtag(request.project().etag());
@@ -200,12 +226,12 @@ Result<v1::Project> ProjectBook::Update(const v1::UpdateProjectRequest& request)
   if (named("programs")) *project.mutable_programs() = wanted.programs();
   if (named("laser_schedules")) *project.mutable_laser_schedules() = wanted.laser_schedules();
   if (named("processes")) *project.mutable_processes() = wanted.processes();
-  if (Status good = CheckProject(project); !good) return good.error();
+  if (auto fault = FindFault(project)) return *std::move(fault);
   if (request.validate_only()) return project;
   // Another change between the two is not overwritten.
   const auto stored = store_.PutProject(RecordOf(*id, project), record->revision);
   if (!stored) return stored.error();
-  return ProjectOf(*stored);
+  return Whole(*stored);
 }
 
 Status ProjectBook::Delete(const v1::DeleteProjectRequest& request) {
@@ -255,7 +281,18 @@ ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(const v1::Trans
                                 .object = std::move(program.object),
                                 .source = {},
                                 .source_name = source != nullptr ? source->source().file_name() : std::string()};
-    if (!program.source.empty() && program.source != write.object) write.source = std::move(program.source);
+    if (program.own_text && source != nullptr) {
+      write.source = source->source().content();  // the programmer's own text, inch where it is inch
+    } else if (!program.source.empty() && program.source != write.object) {
+      // Another text than that of the project: its name must not say inch, or object.
+      if (source != nullptr && program.source != source->source().content()) {
+        const std::string_view extensions = family->info().extensions;
+        write.source_name = std::filesystem::path(write.source_name)
+                                .replace_extension(extensions.substr(0, extensions.find(' ')))
+                                .string();
+      }
+      write.source = std::move(program.source);
+    }
     writes.push_back(std::move(write));
   }
   if (request.validate_only()) return response;

@@ -13,10 +13,13 @@ class ProjectBook {
  public:
   explicit ProjectBook(storage::Store& store) : store_(store) {}
 
-  Result<v1::Project> Create(const v1::CreateProjectRequest& request);
+  // Errors: ProgramNumber (7101), ProjectDuplicate (7861), ProjectSource (7862), ScheduleRange, those of
+  // process definitions (7402, 7403, 7004, 7019; OPT-3.01 to 3.08), CellAlreadyExists.
+  ProgramResult<v1::Project> Create(const v1::CreateProjectRequest& request);
   Result<v1::Project> Get(std::string_view name);
   Result<v1::ListProjectsResponse> List(const v1::ListProjectsRequest& request);
-  Result<v1::Project> Update(const v1::UpdateProjectRequest& request);
+  // Errors: as Create, CellEtagMismatch.
+  ProgramResult<v1::Project> Update(const v1::UpdateProjectRequest& request);
   Status Delete(const v1::DeleteProjectRequest& request);
 
   // Converts, compiles and checks everything in the engine, then stores all programs and schedules in one

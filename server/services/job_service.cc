@@ -10,8 +10,8 @@
 
 namespace rmlcell::server {
 
-// The one method that does not go through the executor: it never blocks for long, and the store answers
-// many submissions with one commit.
+// The one method that does not go through the executor. Of callers that come together only the first waits
+// here for the disk; the store answers all others from its own thread, with one commit.
 grpc::ServerUnaryReactor* JobService::SubmitJob(grpc::CallbackServerContext* context,
                                                 const v1::SubmitJobRequest* request, v1::Job* response) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();

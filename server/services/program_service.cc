@@ -2,9 +2,10 @@
 
 #include <chrono>
 
-#include "engine/simulation/families.h"
 #include "proto/bridge/findings.h"
+#include "proto/bridge/header_date.h"
 #include "proto/bridge/sha256.h"
+#include "server/programs/memory_office.h"
 #include "server/programs/program_office.h"
 #include "server/programs/program_shelf.h"
 #include "server/services/job_streams.h"
@@ -14,10 +15,6 @@ namespace {
 
 constexpr std::size_t kChunkBytes = 256 << 10;
 constexpr std::size_t kUnaryBytes = 3 << 20;
-
-grpc::Status StatusOf(const ProgramError& wrong) {
-  return ToGrpcStatus(wrong.error, wrong.diagnostics, wrong.dropped);
-}
 
 v1::Findings FindingsOf(const machine::Translation& translation) {
   return bridge::FindingsOf(translation.ok, translation.diagnostics, translation.diagnostics_dropped,
@@ -75,7 +72,7 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
                                                               .bytes = std::move(bytes_),
                                                               .validate_only = header_.validate_only()});
       if (stored) *response_ = *stored.value;
-      const grpc::Status status = stored ? grpc::Status::OK : StatusOf(stored.error);
+      const grpc::Status status = stored ? grpc::Status::OK : ToGrpcStatus(stored.error);
       LogCall("ProgramService/UploadProgram", caller_, status, std::chrono::steady_clock::now() - begin_);
       Finish(status);
     });
@@ -156,7 +153,7 @@ grpc::ServerUnaryReactor* ProgramService::PutProgram(grpc::CallbackServerContext
                                                             .etag = request->etag(),
                                                             .bytes = request->program().content(),
                                                             .validate_only = request->validate_only()});
-    if (!stored) return StatusOf(stored.error);
+    if (!stored) return ToGrpcStatus(stored.error);
     *response = *stored.value;
     return grpc::Status::OK;
   });
@@ -262,12 +259,76 @@ grpc::ServerUnaryReactor* ProgramService::FormatProgram(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* ProgramService::DecompileProgram(grpc::CallbackServerContext* context,
                                                            const v1::DecompileProgramRequest* request,
                                                            v1::DecompileProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/DecompileProgram", [request, response](const Caller&) {
-    const machine::MachineFamily* family = simulation::FindFamily("optimo");
-    if (family == nullptr) return ToGrpcStatus(Error{ErrorCode::kCellUnknownFamily, "optimo", {}});
-    Result<std::string> source = family->Decompile(request->object());
-    if (!source) return ToGrpcStatus(source.error());
-    response->set_content(std::move(*source));
+  return Answer(room_, context, *request, "ProgramService/DecompileProgram", [this, request, response](const Caller&) {
+    auto made = office_.Decompile(*request);
+    if (!made) return ToGrpcStatus(made.error());
+    *response = *std::move(made);
+    return grpc::Status::OK;
+  });
+}
+
+grpc::ServerUnaryReactor* ProgramService::FixProgram(grpc::CallbackServerContext* context,
+                                                     const v1::FixProgramRequest* request,
+                                                     v1::FixProgramResponse* response) {
+  return Answer(room_, context, *request, "ProgramService/FixProgram", [this, request, response](const Caller&) {
+    auto made = office_.Fix(*request);
+    if (!made) return ToGrpcStatus(made.error());
+    *response = *std::move(made);
+    return grpc::Status::OK;
+  });
+}
+
+grpc::ServerUnaryReactor* ProgramService::LinkProgram(grpc::CallbackServerContext* context,
+                                                      const v1::LinkProgramRequest* request,
+                                                      v1::LinkProgramResponse* response) {
+  return Answer(room_, context, *request, "ProgramService/LinkProgram", [this, request, response](const Caller&) {
+    auto made = office_.Link(*request);
+    if (!made) return ToGrpcStatus(made.error());
+    *response = *std::move(made);
+    return grpc::Status::OK;
+  });
+}
+
+grpc::ServerUnaryReactor* ProgramService::ListStaleExecutables(grpc::CallbackServerContext* context,
+                                                               const v1::ListStaleExecutablesRequest* request,
+                                                               v1::ListStaleExecutablesResponse* response) {
+  return Answer(room_, context, *request, "ProgramService/ListStaleExecutables", [this, request, response](const Caller&) {
+    auto made = office_.ListStale(*request);
+    if (!made) return ToGrpcStatus(made.error());
+    *response = *std::move(made);
+    return grpc::Status::OK;
+  });
+}
+
+grpc::ServerUnaryReactor* ProgramService::ShiftProgram(grpc::CallbackServerContext* context,
+                                                       const v1::ShiftProgramRequest* request,
+                                                       v1::ShiftProgramResponse* response) {
+  return Answer(room_, context, *request, "ProgramService/ShiftProgram", [request, response](const Caller&) {
+    auto made = ShiftText(*request);
+    if (!made) return ToGrpcStatus(made.error());
+    *response = *std::move(made);
+    return grpc::Status::OK;
+  });
+}
+
+grpc::ServerUnaryReactor* ProgramService::MakeListing(grpc::CallbackServerContext* context,
+                                                      const v1::MakeListingRequest* request,
+                                                      v1::MakeListingResponse* response) {
+  return Answer(room_, context, *request, "ProgramService/MakeListing", [request, response](const Caller&) {
+    auto made = ListText(*request);
+    if (!made) return ToGrpcStatus(made.error());
+    *response = *std::move(made);
+    return grpc::Status::OK;
+  });
+}
+
+grpc::ServerUnaryReactor* ProgramService::DiffPrograms(grpc::CallbackServerContext* context,
+                                                       const v1::DiffProgramsRequest* request,
+                                                       v1::DiffProgramsResponse* response) {
+  return Answer(room_, context, *request, "ProgramService/DiffPrograms", [this, request, response](const Caller&) {
+    ProgramResult<v1::DiffProgramsResponse> made = office_.Diff(*request);
+    if (!made) return StatusOf(made.error);
+    *response = *std::move(made.value);
     return grpc::Status::OK;
   });
 }
@@ -276,7 +337,7 @@ grpc::ServerUnaryReactor* ProgramService::ConvertProgram(grpc::CallbackServerCon
                                                          const v1::ConvertProgramRequest* request,
                                                          v1::ConvertProgramResponse* response) {
   return Answer(room_, context, *request, "ProgramService/ConvertProgram", [request, response](const Caller&) {
-    auto made = ConvertText(*request, HeaderDate());
+    auto made = ConvertText(*request, bridge::HeaderDate());
     if (!made) return ToGrpcStatus(made.error());
     *response = *std::move(made);
     return grpc::Status::OK;
@@ -287,7 +348,7 @@ grpc::ServerUnaryReactor* ProgramService::CompensateProgram(grpc::CallbackServer
                                                             const v1::CompensateProgramRequest* request,
                                                             v1::CompensateProgramResponse* response) {
   return Answer(room_, context, *request, "ProgramService/CompensateProgram", [request, response](const Caller&) {
-    auto made = CompensateText(*request, HeaderDate());
+    auto made = CompensateText(*request, bridge::HeaderDate());
     if (!made) return ToGrpcStatus(made.error());
     *response = *std::move(made);
     return grpc::Status::OK;

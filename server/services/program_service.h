@@ -8,12 +8,14 @@
 
 namespace rmlcell::server {
 
+class MemoryOffice;
 class ProgramShelf;
 
-// Converts, calls, converts: the rules live in ProgramShelf and in the engine.
+// Converts, calls, converts: the rules live in ProgramShelf, the offices of server/programs and the engine.
 class ProgramService final : public v1::ProgramService::CallbackService {
  public:
-  ProgramService(CallRoom room, ProgramShelf& shelf, OpenStreams& open) : room_(room), shelf_(shelf), open_(open) {}
+  ProgramService(CallRoom room, ProgramShelf& shelf, MemoryOffice& office, OpenStreams& open)
+      : room_(room), shelf_(shelf), office_(office), open_(open) {}
 
   grpc::ServerUnaryReactor* PutProgram(grpc::CallbackServerContext* context, const v1::PutProgramRequest* request,
                                        v1::Program* response) override;
@@ -44,6 +46,23 @@ class ProgramService final : public v1::ProgramService::CallbackService {
   grpc::ServerUnaryReactor* DecompileProgram(grpc::CallbackServerContext* context,
                                              const v1::DecompileProgramRequest* request,
                                              v1::DecompileProgramResponse* response) override;
+  grpc::ServerUnaryReactor* FixProgram(grpc::CallbackServerContext* context, const v1::FixProgramRequest* request,
+                                       v1::FixProgramResponse* response) override;
+  grpc::ServerUnaryReactor* LinkProgram(grpc::CallbackServerContext* context,
+                                        const v1::LinkProgramRequest* request,
+                                        v1::LinkProgramResponse* response) override;
+  grpc::ServerUnaryReactor* ListStaleExecutables(grpc::CallbackServerContext* context,
+                                                 const v1::ListStaleExecutablesRequest* request,
+                                                 v1::ListStaleExecutablesResponse* response) override;
+  grpc::ServerUnaryReactor* ShiftProgram(grpc::CallbackServerContext* context,
+                                         const v1::ShiftProgramRequest* request,
+                                         v1::ShiftProgramResponse* response) override;
+  grpc::ServerUnaryReactor* MakeListing(grpc::CallbackServerContext* context,
+                                        const v1::MakeListingRequest* request,
+                                        v1::MakeListingResponse* response) override;
+  grpc::ServerUnaryReactor* DiffPrograms(grpc::CallbackServerContext* context,
+                                         const v1::DiffProgramsRequest* request,
+                                         v1::DiffProgramsResponse* response) override;
   grpc::ServerUnaryReactor* ConvertProgram(grpc::CallbackServerContext* context,
                                            const v1::ConvertProgramRequest* request,
                                            v1::ConvertProgramResponse* response) override;
@@ -60,6 +79,7 @@ class ProgramService final : public v1::ProgramService::CallbackService {
  private:
   CallRoom room_;
   ProgramShelf& shelf_;
+  MemoryOffice& office_;
   OpenStreams& open_;
 };
 

@@ -10,9 +10,9 @@ grpc::ServerUnaryReactor* ProjectService::CreateProject(grpc::CallbackServerCont
                                                         const v1::CreateProjectRequest* request,
                                                         v1::Project* response) {
   return Answer(room_, context, *request, "ProjectService/CreateProject", [this, request, response](const Caller&) {
-    Result<v1::Project> project = book_.Create(*request);
-    if (!project) return ToGrpcStatus(project.error());
-    *response = std::move(*project);
+    ProgramResult<v1::Project> project = book_.Create(*request);
+    if (!project) return ToGrpcStatus(project.error);
+    *response = std::move(*project.value);
     return grpc::Status::OK;
   });
 }
@@ -42,9 +42,9 @@ grpc::ServerUnaryReactor* ProjectService::UpdateProject(grpc::CallbackServerCont
                                                         const v1::UpdateProjectRequest* request,
                                                         v1::Project* response) {
   return Answer(room_, context, *request, "ProjectService/UpdateProject", [this, request, response](const Caller&) {
-    Result<v1::Project> project = book_.Update(*request);
-    if (!project) return ToGrpcStatus(project.error());
-    *response = std::move(*project);
+    ProgramResult<v1::Project> project = book_.Update(*request);
+    if (!project) return ToGrpcStatus(project.error);
+    *response = std::move(*project.value);
     return grpc::Status::OK;
   });
 }
@@ -63,9 +63,7 @@ grpc::ServerUnaryReactor* ProjectService::TransferProject(grpc::CallbackServerCo
                                                           v1::TransferProjectResponse* response) {
   return Answer(room_, context, *request, "ProjectService/TransferProject", [this, request, response](const Caller&) {
     ProgramResult<v1::TransferProjectResponse> transferred = book_.Transfer(*request);
-    if (!transferred) {
-      return ToGrpcStatus(transferred.error.error, transferred.error.diagnostics, transferred.error.dropped);
-    }
+    if (!transferred) return ToGrpcStatus(transferred.error);
     *response = std::move(*transferred.value);
     return grpc::Status::OK;
   });

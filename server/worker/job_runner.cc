@@ -91,12 +91,14 @@ class Attempt {
     bridge::SetupInput input{.family = simulation::FindFamily(assignment_.family()),
                              .profile = assignment_.profile(),
                              .parameters = {assignment_.parameters().begin(), assignment_.parameters().end()},
+                             .deleted_programs = {assignment_.deleted_programs().begin(),
+                                                  assignment_.deleted_programs().end()},
                              .main_program = assignment_.main_program(),
                              .machine_state = assignment_.machine_state(),
                              .default_mode = machine::Mode::kRemote};
     for (v1::AssignedProgram& program : *assignment_.mutable_programs()) {
       bridge::ProgramInput made{.slot = program.slot(),
-                                .name = program.title(),
+                                .name = program.title().empty() ? program.file_name() : program.title(),
                                 .file_name = program.file_name(),
                                 .bytes = std::make_shared<const std::string>(std::move(*program.mutable_content())),
                                 .is_source = program.is_source()};
@@ -125,7 +127,6 @@ class Attempt {
     }
     report.set_diagnostics_dropped(static_cast<std::int64_t>(made.diagnostics_dropped));
     const auto first = std::ranges::find_if(made.diagnostics, [](const Diagnostic& d) { return IsError(d.severity); });
-    outcome_ = OutcomeFor(machine::OutcomeKind::kCompleted, ErrorCode::kCellInternal);
     outcome_ = v1::Outcome();
     outcome_.set_kind(v1::Outcome::KIND_COMPLETED);
     if (first != made.diagnostics.end()) {
@@ -157,7 +158,17 @@ class Attempt {
       made.diagnostics = std::move(translation.diagnostics);
       made.diagnostics_dropped = translation.diagnostics_dropped;
     }
+    while (const std::optional<v1::WorkResponse> message = line_.Receive(std::chrono::milliseconds(0))) {
+      Obey(*message);
+      if (released_) return End::kLost;
+    }
+    if (cancel_ordered_) return Cancelled();
     ReportFindings(made);
+    return End::kFinished;
+  }
+
+  End Cancelled() {
+    outcome_ = OutcomeFor(machine::OutcomeKind::kCancelled, ErrorCode::kCellCancelled);
     return End::kFinished;
   }
 
@@ -172,6 +183,7 @@ class Attempt {
     if (!variables) return Refuse(variables.error());
     Result<bridge::SetupOutcome> made = bridge::MakeSetup(Input(), options, assignment_.budget());
     if (!made) return Refuse(made.error());
+    if (cancel_ordered_) return Cancelled();
     if (!made->setup) {
       ReportFindings(*made);
       return End::kFinished;
@@ -266,6 +278,9 @@ class Attempt {
       released_ = true;
     } else if (message.has_events_stored() && mine(message.events_stored().lease())) {
       events_stored_ = message.events_stored().count();
+    } else if (message.has_control() && mine(message.control().lease()) &&
+               message.control().kind() == v1::WorkerControl::KIND_CANCEL && simulation == nullptr) {
+      cancel_ordered_ = true;  // before the run began
     } else if (message.has_control() && mine(message.control().lease()) && simulation != nullptr) {
       const SimTime now = simulation->state().time;
       switch (message.control().kind()) {
@@ -346,6 +361,7 @@ class Attempt {
   std::int64_t events_sent_ = 0;
   std::int64_t events_stored_ = 0;
   bool hold_ordered_ = false;
+  bool cancel_ordered_ = false;
   bool released_ = false;
   bool stop_asked_ = false;
 };

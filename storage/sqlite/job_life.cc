@@ -210,6 +210,15 @@ Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
                    .created_at = context.now,
                    .started_at = {},
                    .finished_at = {}};
+  if (job.queued_max > 0 && context.counters.queued_jobs >= job.queued_max) {
+    // Looked for before anything is written: a refusal in the middle of a batch would undo the batch.
+    const auto known = context.tables.jobs.FindByRequest(contents.request_id);
+    if (!known) return known.error();
+    if (*known) return KnownJob(context, job, contents);
+    return Error{ErrorCode::kCellResourceExhausted,
+                 std::to_string(context.counters.queued_jobs) + " jobs wait",
+                 {}};
+  }
   const Result<bool> inserted = context.tables.jobs.Insert(record);
   if (!inserted) return inserted.error();
   if (!*inserted) return KnownJob(context, job, contents);

@@ -17,7 +17,10 @@ BuriedTable::BuriedTable(Database& database)
             "INSERT OR REPLACE INTO buried (kind, owner, name, revision) VALUES (?1, ?2, ?3, ?4)"),
       dig_up_(database,
               "DELETE FROM buried WHERE kind = ?1 AND owner = ?2 AND name = ?3"
-              " RETURNING revision") {}
+              " RETURNING revision"),
+      numbers_(database,
+               "SELECT CAST(name AS INTEGER) FROM buried WHERE kind = ?1 AND owner = ?2"
+               " ORDER BY 1") {}
 
 Status BuriedTable::Bury(Kind kind, std::string_view owner, std::string_view name,
                          Revision revision) {
@@ -26,6 +29,11 @@ Status BuriedTable::Bury(Kind kind, std::string_view owner, std::string_view nam
 
 Result<Revision> BuriedTable::DigUp(Kind kind, std::string_view owner, std::string_view name) {
   return FirstInteger(dig_up_.With(static_cast<int>(kind), owner, name));
+}
+
+Result<std::vector<int>> BuriedTable::Numbers(Kind kind, std::string_view owner) {
+  return AllRows<int>(numbers_.With(static_cast<int>(kind), owner),
+                      [](const Query& row) { return row.Small(0); });
 }
 
 }  // namespace rmlcell::storage::sqlite

@@ -30,10 +30,13 @@ class BuriedTable {
   Status Bury(Kind kind, std::string_view owner, std::string_view name, Revision revision);
   // The revision that a new record counts on from, 0 when there was none; forgets it.
   Result<Revision> DigUp(Kind kind, std::string_view owner, std::string_view name);
+  // Those of one owner whose names are numbers, in order.
+  Result<std::vector<int>> Numbers(Kind kind, std::string_view owner);
 
  private:
   Statement bury_;
   Statement dig_up_;
+  Statement numbers_;
 };
 
 }  // namespace rmlcell::storage::sqlite

@@ -45,6 +45,17 @@ Status Prepare(Database& database, const SqliteOptions& options, WallTime now) {
   return Migrate(database, Migrations(), options.path, now);
 }
 
+// Pages that do not fit into the cache go to the log before their transaction ends; when it is undone the log
+// forgets them and keeps its length. What goes wrong, such as a full disk, costs the speed only.
+void PrepareLog(Database& database, std::int64_t bytes) {
+  if (bytes <= 0) return;
+  static_cast<void>(database.Execute("PRAGMA cache_size = -256; BEGIN IMMEDIATE;"
+                                     "CREATE TABLE scratch (page); INSERT INTO scratch VALUES (zeroblob(" +
+                                     std::to_string(bytes) + "))"));
+  static_cast<void>(database.Execute("ROLLBACK"));
+  static_cast<void>(database.Execute("PRAGMA cache_size = -" + std::to_string(kWriterCacheKib)));
+}
+
 // The larger of what the rows say and what was noted when the newest rows were removed.
 Status Raise(Result<std::int64_t> from_rows, Result<std::int64_t> mark, std::int64_t& counter) {
   if (!from_rows) return from_rows.error();
@@ -97,6 +108,7 @@ Result<std::unique_ptr<Store>> Open(const SqliteOptions& options, Clock clock) {
   const Status prepared = Prepare(*database, options, clock());
   if (!prepared) return Named(prepared.error(), options.path);
 
+  PrepareLog(*database, options.log_bytes_prepared);
   auto connection = std::make_unique<Connection>(*std::move(database));
   const Status released = connection->tables.blobs.ReleaseAll();
   if (!released) return Named(released.error(), options.path);

@@ -40,6 +40,7 @@ class SqliteStore final : public Store {
                                                    int limit) override;
   Result<ProgramRecord> GetProgram(std::string_view machine, int slot) override;
   Result<std::vector<ProgramRecord>> GetProgramMemory(std::string_view machine) override;
+  Result<std::vector<int>> ListDeletedPrograms(std::string_view machine) override;
   Result<std::vector<ProgramSummary>> PutPrograms(
       std::string_view machine, const std::vector<ProgramWrite>& programs,
       const std::vector<ScheduleRecord>& schedules) override;

@@ -267,6 +267,14 @@ Result<std::vector<ProgramRecord>> SqliteStore::GetProgramMemory(std::string_vie
   });
 }
 
+Result<std::vector<int>> SqliteStore::ListDeletedPrograms(std::string_view machine) {
+  return readers_->Read([&](Tables& tables) -> Result<std::vector<int>> {
+    const Status known = CheckMachine(tables, machine);
+    if (!known) return known.error();
+    return tables.buried.Numbers(BuriedTable::Kind::kProgram, machine);
+  });
+}
+
 Result<std::vector<ProgramSummary>> SqliteStore::PutPrograms(
     std::string_view machine, const std::vector<ProgramWrite>& programs,
     const std::vector<ScheduleRecord>& schedules) {

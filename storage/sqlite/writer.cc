@@ -72,6 +72,7 @@ Writer::~Writer() {
 
 void Writer::Post(std::unique_ptr<WriteOperation> operation, std::size_t bytes) {
   bool enough = false;
+  bool alone = false;
   {
     const std::lock_guard lock(mutex_);
     const bool full = queue_.size() >= options_.waiting_operations_max ||
@@ -81,7 +82,9 @@ void Writer::Post(std::unique_ptr<WriteOperation> operation, std::size_t bytes) 
       waiting_bytes_ += bytes;
       queue_.push_back({.operation = std::move(operation), .bytes = bytes, .status = {}});
     }
-    enough = queue_.size() >= wanted_;
+    alone = operation == nullptr && TakeTurnAlone();
+    // Who has the turn looks at the queue again, unless it waits for callers to come together.
+    enough = !alone && queue_.size() >= wanted_ && (!turn_taken_ || wanted_ > 1);
   }
   if (operation != nullptr) {
     operation->Answer(Error{ErrorCode::kCellResourceExhausted,
@@ -89,13 +92,40 @@ void Writer::Post(std::unique_ptr<WriteOperation> operation, std::size_t bytes) 
                             {}});
     return;
   }
-  if (enough) work_.notify_one();
+  if (alone) {
+    WorkAlone();
+  } else if (enough) {
+    work_.notify_one();
+  }
+}
+
+// Under mutex_.
+bool Writer::TakeTurnAlone() {
+  if (turn_taken_ || stopping_ || chores_ || last_batch_ > 1 || queue_.size() != 1) return false;
+  turn_taken_ = true;
+  has_turn_ = std::this_thread::get_id();
+  return true;
+}
+
+void Writer::WorkAlone() {
+  RunBatch(Take());
+  AnswerAndTell();
+  const bool chores = tidy_ || LogIsLarge(kCheckpointPages);
+  has_turn_ = std::thread::id();
+  bool work = false;
+  {
+    const std::lock_guard lock(mutex_);
+    turn_taken_ = false;
+    chores_ = chores_ || chores;
+    work = chores_ || stopping_ || !queue_.empty();
+  }
+  if (work) work_.notify_one();
 }
 
 Status Writer::RunAndWait(Run run) {
   Waiter waiter;
   auto operation = std::make_unique<WaitingOperation>(std::move(run), waiter);
-  if (std::this_thread::get_id() == thread_.get_id()) return RunFromAnswer(std::move(operation));
+  if (std::this_thread::get_id() == has_turn_.load()) return RunFromAnswer(std::move(operation));
   Post(std::move(operation), 0);
   std::unique_lock lock(waiter.mutex);
   waiter.answered.wait(lock, [&] { return waiter.done; });
@@ -120,10 +150,10 @@ Status Writer::RunFromAnswer(std::unique_ptr<WriteOperation> operation) {
 }
 
 void Writer::Loop() {
+  has_turn_ = std::this_thread::get_id();
   while (WaitForWork()) {
     RunBatch(Take());
-    AnswerAll();
-    if (std::exchange(untold_, false)) changed_();  // after the answers: they are waited for
+    AnswerAndTell();
     Tidy();
     CheckpointWhenLarge();
   }
@@ -132,13 +162,20 @@ void Writer::Loop() {
 // False: there is nothing more to do, for ever.
 bool Writer::WaitForWork() {
   std::unique_lock lock(mutex_);
-  const auto enough = [this] { return queue_.size() >= wanted_ || stopping_; };
-  if (!tidy_) work_.wait(lock, enough);
+  if (!tidy_) {
+    has_turn_ = std::thread::id();
+    turn_taken_ = false;
+    work_.wait(lock, [this] { return !turn_taken_ && (!queue_.empty() || chores_ || stopping_); });
+    turn_taken_ = true;
+    has_turn_ = std::this_thread::get_id();
+  }
+  chores_ = false;
   // Callers that were answered together come back one by one, and the first of them would get a
   // commit, and a sync of the disk, of its own.
   if (last_batch_ > 1 && queue_.size() < last_batch_ && options_.group_window.count() > 0) {
     wanted_ = last_batch_;
-    work_.wait_for(lock, options_.group_window, enough);
+    work_.wait_for(lock, options_.group_window,
+                   [this] { return queue_.size() >= wanted_ || stopping_; });
     wanted_ = 1;
   }
   return !queue_.empty() || !stopping_;
@@ -230,6 +267,11 @@ Status Writer::RunOne(Pending& pending, WriteContext& context, Undo undo) {
   return pending.status ? savepoint->Keep() : savepoint->Undo();
 }
 
+void Writer::AnswerAndTell() {
+  AnswerAll();
+  if (std::exchange(untold_, false)) changed_();  // after the answers: they are waited for
+}
+
 void Writer::AnswerAll() {
   // One by one: an answer may write and so add to the list.
   while (!answers_.empty()) {
@@ -268,13 +310,16 @@ void Writer::PublishCounts() {
   running_jobs_ = counters_.running_jobs;
 }
 
-void Writer::CheckpointWhenLarge() {
-  const int pages = connection_.database.log_pages();
-  if (pages < pages_at_checkpoint_) pages_at_checkpoint_ = 0;  // the log began anew
-  const int limit = IsIdle() ? kCheckpointPages : kCheckpointPagesWhenBusy;
+bool Writer::LogIsLarge(int pages) {
+  const int now = connection_.database.log_pages();
+  if (now < pages_at_checkpoint_) pages_at_checkpoint_ = 0;  // the log began anew
   // After one that a reader kept from its end the next comes as many pages later, not at once.
-  if (pages - pages_at_checkpoint_ < limit) return;
-  pages_at_checkpoint_ = pages;
+  return now - pages_at_checkpoint_ >= pages;
+}
+
+void Writer::CheckpointWhenLarge() {
+  if (!LogIsLarge(IsIdle() ? kCheckpointPages : kCheckpointPagesWhenBusy)) return;
+  pages_at_checkpoint_ = connection_.database.log_pages();
   // A failure costs nothing but space; trouble with the disk is told to those who write.
   static_cast<void>(connection_.database.Checkpoint());
 }

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "engine/motion/speed_passes.h"
-#include "tests/engine/motion/random_chain.h"
+#include "tests/bench/motion_paths.h"
 
 namespace rmlcell::motion {
 namespace {
@@ -30,32 +30,6 @@ double Now() {
 double Median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];
-}
-
-// A closed wavy contour in short lines, as a CAD system writes it; with `head` the beam follows the
-// normal.
-std::vector<MoveCommand> Contour(int count, bool head) {
-  std::vector<MoveCommand> chain;
-  const auto at = [&](int k) {
-    const double t = kTurn * k / 600.0;
-    const double r = 200.0 + 20.0 * std::sin(7 * t);
-    TipPose pose{
-        {1000.0 + r * std::cos(t), 900.0 + r * std::sin(t), -200.0 + 5.0 * std::sin(3 * t)}, 0, 0};
-    if (head) {
-      pose.a_rad = 0.3 * std::sin(2 * t);
-      pose.b_rad = 0.5 + 0.2 * std::cos(3 * t);
-    }
-    return pose;
-  };
-  for (int k = 0; k < count; ++k) {
-    MoveCommand move;
-    move.path = PathPiece::Line(at(k), at(k + 1));
-    move.speed_fraction = 0.06;
-    move.fly = true;
-    move.tag = static_cast<std::uint64_t>(k);
-    chain.push_back(move);
-  }
-  return chain;
 }
 
 double PlanRate(const std::vector<MoveCommand>& chain, const MachineLimits& machine, double& sum) {

@@ -26,7 +26,7 @@ void Replay(const std::string& folder, const std::function<std::string(std::stri
       EXPECT_EQ(input(std::string_view(seed).substr(0, length)), "") << entry.path() << length;
     ++count;
   }
-  EXPECT_GE(count, 4) << folder;
+  EXPECT_GE(count, 8) << folder;
 }
 
 // OPT-1.06, OPT-B.35

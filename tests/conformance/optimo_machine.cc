@@ -191,6 +191,7 @@ OptimoMachine& OptimoMachine::Store(int slot, const std::string& source) {
   Compilation compiled = Compile(source, "program", {.advice = false});
   for (const Diagnostic& d : compiled.diagnostics)
     EXPECT_FALSE(IsError(d.severity)) << FormatDiagnostic(d, source);
+  deleted_.erase(slot);
   programs_[slot] = {.name = "program",
                      .object = std::make_shared<const std::string>(std::move(compiled.object)),
                      .executable = nullptr};
@@ -201,7 +202,7 @@ OptimoMachine& OptimoMachine::StoreExecutable(int slot, const std::string& bytes
   return *this;
 }
 OptimoMachine& OptimoMachine::Delete(int slot) {
-  programs_.erase(slot);
+  if (programs_.erase(slot) > 0) deleted_.insert(slot);
   return *this;
 }
 OptimoMachine& OptimoMachine::Schedules(std::vector<machine::LaserSchedule> only) {
@@ -214,6 +215,7 @@ OptimoMachine& OptimoMachine::LoseZero() {
   state_ = EncodeMachineState(state);
   return *this;
 }
+std::string OptimoMachine::Executable(int slot) const { return *programs_.at(slot).executable; }
 bool OptimoMachine::HasExecutable(int slot) const {
   const auto found = programs_.find(slot);
   return found != programs_.end() && found->second.executable != nullptr;
@@ -223,6 +225,7 @@ Ran OptimoMachine::Run(int slot, const Options& options) {
   Ran ran;
   machine::RunSetup setup(parameters_);
   setup.programs = programs_;
+  setup.deleted_programs = deleted_;
   setup.main_program = slot;
   setup.schedules = schedules_;
   setup.machine_state = state_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <memory>
 #include <optional>
 #include <string>
@@ -78,6 +79,7 @@ class OptimoMachine {
   OptimoMachine& LoseZero();  // as a power cycle does, OPT-B.02
   // Executables that runs made are kept, as the cell does.
   bool HasExecutable(int slot) const;
+  std::string Executable(int slot) const;  // precondition: it has one
 
   struct Options {
     machine::Mode mode = machine::Mode::kCycle;
@@ -96,6 +98,7 @@ class OptimoMachine {
  private:
   machine::Parameters parameters_;
   std::map<int, machine::StoredProgram> programs_;
+  std::set<int> deleted_;
   std::optional<std::vector<machine::LaserSchedule>> schedules_;
   std::string state_;
 };

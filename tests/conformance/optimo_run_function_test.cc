@@ -54,6 +54,34 @@ TEST(OptimoRunFunction, AnAlteredFunctionIsLinkedAgainByItsCallers) {
   EXPECT_FALSE(linked.Has("E7110"));
 }
 
+// OPT-1.13: deleting a FUNCTION counts as altering it. The old code runs, with the warning.
+TEST(OptimoRunFunction, ADeletedFunctionRunsOnInItsCallers) {
+  OptimoMachine machine;
+  machine.Store(44, "VI[2]=1\n").Store(32, "FUNCTION 44\n");
+  machine.Run(32);
+  machine.Delete(44);
+  const Ran old = machine.Run(32);
+  EXPECT_TRUE(old.completed());
+  EXPECT_EQ(old.Var("VI[2]"), "1");
+  EXPECT_TRUE(old.Has("E7110"));
+  machine.Store(44, "VI[2]=1\n");  // the same object again: nothing is older
+  EXPECT_FALSE(machine.Run(32).Has("E7110"));
+}
+
+// OPT-1.15: an executable that was linked off-line works without object 44, which was never here:
+// nothing is older than what is stored, so nothing is warned of.
+TEST(OptimoRunFunction, AnExecutableLinkedElsewhereNeedsNoFunction) {
+  OptimoMachine office;
+  office.Store(44, "VI[2]=1\n").Store(32, "FUNCTION 44\n");
+  office.Run(32);
+  OptimoMachine machine;
+  machine.Store(32, "FUNCTION 44\n").StoreExecutable(32, office.Executable(32));
+  const Ran ran = machine.Run(32);
+  EXPECT_TRUE(ran.completed());
+  EXPECT_EQ(ran.Var("VI[2]"), "1");
+  EXPECT_FALSE(ran.Has("E7110"));
+}
+
 // OPT-9.15, OPT-7.52: sequence numbers and names belong to their module.
 TEST(OptimoRunFunction, LabelsAndNamesAreLocal) {
   OptimoMachine machine;

@@ -9,6 +9,8 @@
 #include "engine/optimo/language/source_map.h"
 #include "engine/optimo/offline/compensate.h"
 #include "engine/optimo/offline/convert.h"
+#include "engine/optimo/offline/fix_program.h"
+#include "engine/optimo/offline/translate.h"
 
 namespace rmlcell::optimo {
 namespace {
@@ -39,6 +41,20 @@ std::string WordsOf(std::string_view text) {
   return words;
 }
 
+// Fixing comes to rest, and harms neither lines nor comments.
+std::string TryFixes(std::string_view bytes) {
+  const ProgramCheck check = [](const machine::SourceFile& file) {
+    return TranslateOptimo(file, {}, 0);
+  };
+  const Fixing fixed = FixProgram({.name = "a.S", .bytes = bytes}, check);
+  if (LinesOf(fixed.text) != LinesOf(bytes)) return "fixing took a line: " + fixed.text;
+  if (std::ranges::count(fixed.text, ';') != std::ranges::count(bytes, ';'))
+    return "fixing took a comment: " + fixed.text;
+  const Fixing again = FixProgram({.name = "a.S", .bytes = fixed.text}, check);
+  if (again.text != fixed.text) return "fixing does not come to rest: " + fixed.text;
+  return {};
+}
+
 }  // namespace
 
 std::string TryText(std::string_view bytes) {
@@ -51,6 +67,11 @@ std::string TryText(std::string_view bytes) {
         return "a fix beyond the text";
       }
     }
+  }
+  const bool fixable =
+      std::ranges::any_of(compiled.diagnostics, [](const Diagnostic& d) { return !d.fixes.empty(); });
+  if (fixable) {
+    if (const std::string wrong = TryFixes(bytes); !wrong.empty()) return wrong;
   }
   const std::string formatted = Format(bytes).text;
   if (Format(formatted).text != formatted) return "format is not idempotent: " + formatted;

@@ -62,10 +62,34 @@ class Local(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertGreater(state.stat().st_size, 0)
 
+    def test_listed_parameters_are_a_machine_file_that_changes_nothing(self):
+        for family, profile, program in (("optimo", "pw-1993", self.file("a.S", "MOVE (100.0, 0.0, 0.0, 0.0, 0.0)\n")),
+                                         ("rml1", "srm-20", self.file("square.rml", SQUARE))):
+            words = ["--profile", profile]
+            listed = run("parameters", family, *words)
+            self.assertEqual(listed.returncode, 0, listed.stderr)
+            machine = self.file(f"{family}.toml", listed.stdout)
+            plain = run("simulate", program, "--facts", *words)
+            self.assertEqual(plain.returncode, 0, plain.stderr)
+            self.assertEqual(run("simulate", program, "--facts", "--machine", machine).stdout, plain.stdout)
+        slow = self.file("slow.toml", (self.folder / "optimo.toml").read_text().replace("\nVMAX = ", "\nVMAX = 1 # "))
+        facts = run("simulate", self.folder / "a.S", "--facts", "--machine", slow).stdout
+        self.assertNotEqual(facts, run("simulate", self.folder / "a.S", "--facts").stdout)
+        self.assertIn("pw-1993", run("parameters").stdout)
+        self.assertEqual(run("parameters", "lathe").returncode, 2)
+        self.assertEqual(run("parameters", "rml1", "--profile", "none").returncode, 2)
+
     def test_the_picture_is_written(self):
         picture = self.folder / "p.svg"
         self.assertEqual(run("simulate", self.file("square.rml", SQUARE), "--svg", picture).returncode, 0)
         self.assertIn("<svg", picture.read_text())
+
+    def test_curves_over_time_are_written(self):
+        plot = self.folder / "t.svg"
+        done = run("simulate", "--plot", "axes,speed", plot, self.file("square.rml", SQUARE))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("tip speed", plot.read_text())
+        self.assertEqual(run("simulate", "--plot", "torque", plot, self.file("square.rml", SQUARE)).returncode, 2)
 
     def test_wrong_use_and_missing_files_are_told_apart_from_program_errors(self):
         self.assertEqual(run("simulate", self.folder / "none.S").returncode, 2)
@@ -95,6 +119,50 @@ class Remote(unittest.TestCase):
             self.assertEqual(run("picture", job, "-o", picture, server=at).returncode, 0)
             self.assertIn("<svg", picture.read_text())
             self.assertIn("succeeded", run("jobs", server=at).stdout)
+
+    def test_a_check_job_reports_findings_and_no_figures(self):
+        with tempfile.TemporaryDirectory() as folder:
+            program = pathlib.Path(folder) / "a.S"
+            program.write_text("SPEED 20\nSPEED 101\n")
+            at = self.cell.address
+            done = run("submit", "optimo-1", program, "--kind", "check", "--watch", server=at)
+            report = run("report", done.stdout.splitlines()[0], server=at).stdout
+            self.assertIn("OPT-E7004", report)
+            self.assertNotIn("cycle time", report)
+
+    def test_a_report_says_of_which_file_it_is(self):
+        with tempfile.TemporaryDirectory() as folder:
+            program = pathlib.Path(folder) / "left-door.rml"
+            program.write_text(SQUARE)
+            at = self.cell.address
+            done = run("submit", "mill-1", program, "--watch", server=at)
+            report = json.loads(run("report", done.stdout.splitlines()[0], "--json", server=at).stdout)
+            self.assertEqual(report["title"], "left-door.rml")
+
+    def test_a_project_is_made_of_a_folder(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder, at = pathlib.Path(name), self.cell.address
+            (folder / "31.S").write_text("SPEED 20\n")
+            (folder / "32.SI").write_text("COORD ABSOL\nMOVE (1.0, 0.0, 0.0, 0.0, 0.0)\n")
+            (folder / "notes.txt").write_text("no program")
+            (folder / "project.json").write_text('{"title": "Door", "laserSchedules": [{"number": 11}]}')
+            done = run("projects", "create", "door", folder, server=at)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("door", run("projects", "list", server=at).stdout)
+            kept = json.loads(run("projects", "show", "door", server=at).stdout)
+            self.assertEqual([p["slot"] for p in kept["programs"]], [31, 32])
+            self.assertEqual(kept["title"], "Door")
+            self.assertEqual(run("projects", "transfer", "door", "optimo-1", server=at).returncode, 0)
+            self.assertIn("MOVE (25.4,", run("get", "optimo-1", 32, server=at).stdout)
+            # Named in the file, and so the only program; its bytes lie beside the file.
+            (folder / "project.json").write_text('{"programs": [{"slot": 40, "source": {"fileName": "31.S"}}]}')
+            self.assertEqual(run("projects", "update", "door", folder, server=at).returncode, 0)
+            kept = json.loads(run("projects", "show", "door", server=at).stdout)
+            self.assertEqual([p["slot"] for p in kept["programs"]], [40])
+            (folder / "project.json").write_text('{"programs": [{"slot": 40, "source": {"fileName": "none.S"}}]}')
+            done = run("projects", "update", "door", folder, server=at)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("none.S", done.stderr)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """The tools of the programming office, from the command line and over gRPC."""
+import datetime
 import json
 import math
 import os
@@ -8,6 +9,7 @@ import re
 import subprocess
 import tempfile
 import unittest
+import xml.etree.ElementTree
 
 from cell import BIN, Cell, detail_of, grpc, program_pb2
 
@@ -96,6 +98,38 @@ class CommandLine(unittest.TestCase):
         run("convert", source, "/m", code=2)
         self.assertEqual(os.listdir(self.folder), ["part.S"])
 
+    def refused_conversion(self, *words):
+        """The message of a call of convert that must end as wrong use."""
+        done = subprocess.run([BIN / "rmlcell", "convert", *map(str, words)], capture_output=True, text=True,
+                              timeout=120, env={**os.environ, "NO_COLOR": "1"})
+        self.assertEqual(done.returncode, 2, done)
+        self.assertEqual(done.stdout, "")
+        return done.stderr
+
+    # OPT-8.60, OPT-8.66, OPT-E.7703
+    def test_convert_says_that_the_input_cannot_be_opened(self):
+        said = self.refused_conversion(self.folder / "none.S")
+        self.assertIn("OPT-E7703", said)
+        self.assertIn("Input File Could Not be Opened", said)
+        self.assertIn("none.S", said)
+        self.assertEqual(os.listdir(self.folder), [])
+
+    # OPT-8.63, OPT-8.66, OPT-E.7706
+    def test_convert_says_that_the_output_cannot_be_opened(self):
+        source = self.file("part.S", LINE)
+        said = self.refused_conversion(source, self.folder / "no-such-folder" / "part.SI")
+        self.assertIn("OPT-E7706", said)
+        self.assertIn("Output File Could Not be Opened", said)
+        self.assertEqual(os.listdir(self.folder), ["part.S"])
+
+    # OPT-8.59, OPT-8.61, OPT-8.62, OPT-8.64, OPT-8.66
+    def test_convert_names_each_wrong_call(self):
+        source, old = self.file("part.S", LINE), self.file("part.old", LINE)
+        for words, code in [([source, "/x"], "OPT-E7702"), ([old], "OPT-E7704"), (["/i"], "OPT-E7705"),
+                            ([source, self.folder / "b.SI", "c"], "OPT-E7707")]:
+            self.assertIn(code, self.refused_conversion(*words))
+        self.assertEqual(sorted(os.listdir(self.folder)), ["part.S", "part.old"])
+
     # OPT-8.11, OPT-8.15
     def test_compensate_moves_the_cut_by_the_radius(self):
         source = self.file("part.S", ";$dia=0.508\n;$left\nPATH LIN\nMOVE (0.,0.,0.,0.,0.)\nWORK 0,0/ON\n"
@@ -124,10 +158,68 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(run("diff", a, same), "they do the same\n")
         other = self.file("c.S", LINE.replace("1010.", "1013."))
         diff = json.loads(run("diff", a, other, "--json", code=1))
-        self.assertEqual([(step["step_a"], step["step_b"]) for step in diff["steps"]], [(5, 5)])
-        self.assertAlmostEqual(diff["steps"][0]["target_moved_mm"], 3.0, places=6)
+        self.assertEqual([(step["stepBefore"], step["stepAfter"]) for step in diff["steps"]], [(5, 5)])
+        self.assertAlmostEqual(diff["steps"][0]["targetMovedMm"], 3.0, places=6)
+        self.assertEqual(diff["aspects"], ["DIFF_ASPECT_PATH"])
         figures = {figure["name"]: figure for figure in diff["figures"]}
         self.assertAlmostEqual(figures["travel_length"]["after"] - figures["travel_length"]["before"], 3.0, places=6)
+
+    def test_diff_draws_both_paths(self):
+        a = self.file("a.S", LINE)
+        other = self.file("c.S", LINE.replace("1010.", "1013."))
+        picture = self.folder / "d.svg"
+        self.assertIn("step 5 -> 5  path", run("diff", a, other, "--svg", picture, code=1))
+        svg = xml.etree.ElementTree.fromstring(picture.read_text())
+        texts = ["".join(text.itertext()) for text in svg.iter("{http://www.w3.org/2000/svg}text")]
+        self.assertIn("0.000 mm cut, 3.000 mm travel", texts)  # added
+        self.assertTrue({"removed", "added", "common"} <= set(texts), texts)
+        self.assertEqual(run("diff", a, other, "--svg", "-", code=1), picture.read_text())
+        run("diff", a, self.file("m.rml", "IN;"), code=2)
+
+    # OPT-7.91, OPT-2.61
+    def test_check_fix_repairs_in_place_and_comes_to_rest(self):
+        wrong = "\tspede   20\t; slow\r\nMOVE (1000.,900.,-500.,0.,0.)/INF ; x\r\n"
+        source = self.folder / "a.S"
+        source.write_bytes(wrong.encode())
+        source.chmod(0o640)
+        patch = run("check", "--fix", "--dry-run", source, code=1)
+        self.assertEqual(source.read_bytes(), wrong.encode())
+        self.assertIn("+\tSPEED   20\t; slow", patch)
+        done = run("check", "--fix", source)
+        self.assertIn("a.S: 2 fixed, 0 left, can be stored", done)
+        self.assertEqual(done.count("fixed  "), 2)
+        self.assertEqual(source.read_bytes(), b"\tSPEED   20\t; slow\r\nMOVE (1000.,900.,-500.,0.,0.) ; x\r\n")
+        self.assertEqual(source.stat().st_mode & 0o777, 0o640)
+        before = source.stat()
+        self.assertIn("0 fixed", run("check", "--fix", source))
+        self.assertEqual((source.stat().st_ino, source.stat().st_mtime_ns), (before.st_ino, before.st_mtime_ns))
+
+    def test_check_fix_leaves_what_it_cannot_repair_and_refuses_binaries(self):
+        source = self.file("a.S", "SPEDE 20\nSPEED 101\n")
+        self.assertIn("1 fixed, 1 left, has errors", run("check", "--fix", source, code=1))
+        self.assertEqual(source.read_text(), "SPEED 20\nSPEED 101\n")
+        answer = json.loads(run("check", "--fix", "--json", self.file("b.S", "SPEDE 20\n")))
+        self.assertEqual([finding["place"]["line"] for finding in answer["fixed"]], [1])
+        self.assertTrue(answer["findings"]["ok"])
+        run("compile", self.file("12.S", LINE))
+        for name in ["12.O", "m.rml", "zero.S"]:
+            path = self.folder / name
+            if not path.exists():
+                path.write_bytes(b"SPEDE 20\n\0")
+            before = path.read_bytes()
+            run("check", "--fix", path, code=2)
+            self.assertEqual(path.read_bytes(), before)
+        run("check", "--dry-run", source, code=2)  # means nothing by itself
+
+    # OPT-B.77: one date for the command and the server, that of where it runs.
+    def test_headers_have_the_local_time(self):
+        source = self.file("part.SI", "MOVE (1.,2.,-3.,90.,0.)\n")
+        env = {**os.environ, "TZ": "XXX-9:30"}
+        subprocess.run([BIN / "rmlcell", "convert", source], env=env, check=True, capture_output=True)
+        header = (self.folder / "part.S").read_text().splitlines()[0]
+        shown = datetime.datetime.strptime(header.rsplit(" - ", 1)[1], "%a %b %d %H:%M:%S %Y")
+        local = datetime.datetime.now(datetime.timezone(datetime.timedelta(hours=9, minutes=30))).replace(tzinfo=None)
+        self.assertLess(abs((local - shown).total_seconds()), 60)
 
     def test_the_place_of_a_failed_run_has_its_line(self):
         source = self.file("hole.S", "COORD ABSOL\n; a comment\nPATH HOLE (0.)\nMOVE (1000.,900.,-500.,0.,0.)\n")
@@ -193,6 +285,96 @@ class Services(unittest.TestCase):
         answer = self.stub.GetProgramContent(program_pb2.GetProgramContentRequest(
             name="machines/optimo-1/programs/12", form=program_pb2.PROGRAM_FORM_LISTING))
         self.assertRegex(answer.content.decode(), r"^    1     1  +COORD ABSOL\n")
+
+    def put(self, slot, name, content):
+        put = program_pb2.PutProgramRequest(name=f"machines/optimo-1/programs/{slot}")
+        put.program.file_name = name
+        put.program.content = content if isinstance(content, bytes) else content.encode()
+        return self.stub.PutProgram(put, timeout=30)
+
+    # OPT-8.74, OPT-8.75
+    def test_shift(self):
+        request = program_pb2.ShiftProgramRequest(program=self.text("part.S", "VR[86] = 0.\nVR[89] = 1.\n"))
+        request.translation.x = 30.0
+        request.rotation.extend([0.5, 0.0, 0.0])
+        self.assertEqual(self.stub.ShiftProgram(request).content, b"VR[86] = 30.0\nVR[89] = 1.5\n")
+        none = self.stub.ShiftProgram(program_pb2.ShiftProgramRequest(program=self.text("part.S", "STOP\n")))
+        self.assertEqual((none.content, none.findings.ok), (b"", False))
+        self.assertEqual(none.findings.diagnostics[0].code, "OPT-E7852")
+        request.rotation.extend([1.0])
+        self.refused(self.stub.ShiftProgram, request, grpc.StatusCode.INVALID_ARGUMENT, "CELL-E9003")
+
+    # OPT-8.73: of a text and of its object the same but for the layout.
+    def test_list_a_text(self):
+        answer = self.stub.MakeListing(program_pb2.MakeListingRequest(program=self.text("a.S", LINE)))
+        self.assertRegex(answer.content.decode(), r"^    1     1  +COORD ABSOL\n")
+        compiled = self.stub.CompileProgram(program_pb2.CompileProgramRequest(program=self.text("a.S", LINE)))
+        request = program_pb2.MakeListingRequest()
+        request.program.content, request.program.form = compiled.object, program_pb2.PROGRAM_FORM_OBJECT
+        self.assertEqual(self.stub.MakeListing(request).content, answer.content)
+        wrong = self.stub.MakeListing(program_pb2.MakeListingRequest(program=self.text("a.S", "SPEED 101\n")))
+        self.assertEqual((wrong.content, wrong.findings.ok), (b"", False))
+
+    def test_fix(self):
+        answer = self.stub.FixProgram(program_pb2.FixProgramRequest(program=self.text("a.S", "SPEDE 20 ; slow\n")))
+        self.assertEqual(answer.content, b"SPEED 20 ; slow\n")
+        self.assertEqual([finding.code for finding in answer.fixed], ["OPT-E7011"])
+        self.assertTrue(answer.findings.ok)
+
+    # OPT-1.13, OPT-1.15: the query, the command and the warning of the run agree.
+    def test_link_and_staleness(self):
+        self.put(74, "74.S", "VI[2]=1\n")
+        self.put(72, "72.S", "FUNCTION 74\n")
+        linked = self.stub.LinkProgram(program_pb2.LinkProgramRequest(slot=72, machine="machines/optimo-1"))
+        self.assertEqual(list(linked.functions), [74])
+        with tempfile.NamedTemporaryFile(suffix=".X") as file:
+            file.write(linked.executable)
+            file.flush()
+            said = self.cell.command("put", "optimo-1", "172", file.name).stdout
+        self.assertIn("programs/172 stored", said)
+        request = program_pb2.ListStaleExecutablesRequest(parent="machines/optimo-1")
+        self.assertEqual(len(self.stub.ListStaleExecutables(request).executables), 0)
+        self.assertIn("every executable", self.cell.command("stale", "optimo-1").stdout)
+        self.put(74, "74.S", "VI[2]=2\n")
+        stale = self.stub.ListStaleExecutables(request).executables
+        self.assertEqual([(one.name, [(part.program, part.reason) for part in one.parts]) for one in stale],
+                         [("machines/optimo-1/programs/172",
+                           [("machines/optimo-1/programs/74", program_pb2.StaleExecutable.REASON_FUNCTION_CHANGED)])])
+        self.assertRegex(self.cell.command("stale", "optimo-1").stdout, r"172 +74 +FUNCTION 74 was altered")
+        self.cell.command("delete", "optimo-1", "172")
+        self.assertIn("every executable", self.cell.command("stale", "optimo-1").stdout)
+
+    # OPT-8.70: comments, names and layout come back while the object is the one that was made of them.
+    def test_own_text_comes_back_until_the_object_is_replaced(self):
+        own = "; mine\nDECLARE   FEED = VR[5]\nfeed  =  20. ; slow\n"
+        self.put(75, "slow.S", own)
+        name = "machines/optimo-1/programs/75"
+        request = program_pb2.DecompileProgramRequest(name=name)
+        answer = self.stub.DecompileProgram(request)
+        self.assertEqual((answer.content.decode(), answer.own_text, answer.file_name), (own, True, "slow.S"))
+        self.assertEqual(self.cell.command("get", "optimo-1", "75").stdout, own)
+        content = self.stub.GetProgramContent(
+            program_pb2.GetProgramContentRequest(name=name, form=program_pb2.PROGRAM_FORM_OBJECT)).content
+        self.put(75, "other.O", content)
+        answer = self.stub.DecompileProgram(request)
+        self.assertFalse(answer.own_text)
+        self.assertNotIn(b"mine", answer.content)
+        again = self.stub.CompileProgram(program_pb2.CompileProgramRequest(
+            program=program_pb2.ProgramText(file_name="75.S", content=answer.content)))
+        self.assertEqual(again.object, content)
+
+    def test_diff(self):
+        self.put(76, "76.S", LINE)
+        request = program_pb2.DiffProgramsRequest(picture=True)
+        request.before.name = "machines/optimo-1/programs/76"
+        request.after.text.CopyFrom(self.text("new.S", LINE.replace("1010.", "1013.")))
+        diff = self.stub.DiffPrograms(request)
+        self.assertEqual([(step.step_before, step.step_after) for step in diff.steps], [(5, 5)])
+        self.assertAlmostEqual(diff.steps[0].target_moved_mm, 3.0, places=6)
+        self.assertIn("travel_length", [figure.name for figure in diff.figures])
+        xml.etree.ElementTree.fromstring(diff.picture_svg)
+        request.after.text.content = b"SPEED 101\n"
+        self.refused(self.stub.DiffPrograms, request, grpc.StatusCode.INVALID_ARGUMENT, "OPT-E7004")
 
 
 if __name__ == "__main__":

@@ -139,6 +139,18 @@ TEST_P(EveryKey, ChangesNothingElse) {
   }
 }
 
+TEST(Config, TellsAVariableThatIsNearlyAKey) {
+  EXPECT_THAT(MistypedVariables({{"RMLCELL_WORKER_COUNT", "4"}}),
+              testing::ElementsAre(testing::AllOf(testing::StartsWith("RMLCELL_WORKER_COUNT is no key"),
+                                                  testing::HasSubstr("RMLCELL_WORKERS_"))));
+  EXPECT_THAT(MistypedVariables({{"RMLCELL_WORKERS_COUNT", "4"},
+                                 {"RMLCELL_LIMITS_MESSAGE_BYTES", "65536"},
+                                 {"RMLCELL_CONFIG", "a.toml"},
+                                 {"RMLCELL_SERVER", "127.0.0.1:1"},
+                                 {"PATH", "/bin"}}),
+              testing::IsEmpty());
+}
+
 TEST_P(EveryKey, RefusesWhatIsOutOfRangeAndNamesItself) {
   for (const std::string& text : GetParam().refused) {
     Config config;

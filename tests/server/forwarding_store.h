@@ -29,6 +29,9 @@ class ForwardingStore : public storage::Store {
   Result<std::vector<storage::ProgramRecord>> GetProgramMemory(std::string_view machine) override {
     return store_.GetProgramMemory(machine);
   }
+  Result<std::vector<int>> ListDeletedPrograms(std::string_view machine) override {
+    return store_.ListDeletedPrograms(machine);
+  }
   Result<std::vector<storage::ProgramSummary>> PutPrograms(
       std::string_view machine, const std::vector<storage::ProgramWrite>& programs,
       const std::vector<storage::ScheduleRecord>& schedules) override {

@@ -110,6 +110,34 @@ TEST_P(StoreConformance, RepeatedRequestGivesTheFirstJob) {
   EXPECT_THAT(IdsOf(Must(store().ListJobs({}))), ElementsAre(first.job.id));
 }
 
+// store.h NewJob::queued_max: jobs that run do not count, a repeated request is no new job, and those
+// submitted in one commit are counted one by one.
+TEST_P(StoreConformance, SoManyJobsMayWait) {
+  const auto job = [](const std::string& id) {
+    return NewJob{.request_id = id, .kind = "SIMULATE", .queued_max = 2};
+  };
+  const SubmittedJob first = Must(store().SubmitAndWait(job("a")));
+  std::vector<std::promise<Result<SubmittedJob>>> answers(5);
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    store().Submit(job("b" + std::to_string(i)),
+                   [&answers, i](Result<SubmittedJob> made) { answers[i].set_value(std::move(made)); });
+  }
+  int taken = 0;
+  for (auto& answer : answers) {
+    const Result<SubmittedJob> made = answer.get_future().get();
+    taken += made ? 1 : 0;
+    if (!made) {
+      EXPECT_EQ(made.error().code, ErrorCode::kCellResourceExhausted);
+    }
+  }
+  EXPECT_EQ(taken, 1);
+  EXPECT_EQ(Must(store().SubmitAndWait(job("a"))).job.id, first.job.id);
+  Acquire();
+  EXPECT_TRUE(store().SubmitAndWait(job("c")));
+  EXPECT_EQ(CodeOf(store().SubmitAndWait(job("d"))), ErrorCode::kCellResourceExhausted);
+  EXPECT_EQ(Must(store().CountJobs()).queued, 2);
+}
+
 // store.h Submit: a request id that is used for something else is refused.
 TEST_P(StoreConformance, RequestIdOfAnotherRequestIsRefused) {
   Must(store().SubmitAndWait({.request_id = "r", .request_hash = "one"}));

@@ -92,6 +92,7 @@ TEST_P(StoreConformance, UnknownMachineHasNoPrograms) {
   EXPECT_EQ(CodeOf(store().GetProgram("none", 1)), kUnknown);
   EXPECT_EQ(CodeOf(store().ListPrograms("none", 0, 10)), kUnknown);
   EXPECT_EQ(CodeOf(store().GetProgramMemory("none")), kUnknown);
+  EXPECT_EQ(CodeOf(store().ListDeletedPrograms("none")), kUnknown);
   EXPECT_EQ(CodeOf(store().DeleteProgram("none", 1, kAnyRevision)), kUnknown);
   EXPECT_EQ(CodeOf(store().DeleteExecutable("none", 1)), kUnknown);
   PutMachine("m");
@@ -121,6 +122,20 @@ TEST_P(StoreConformance, DeletingAnObjectDeletesItsExecutable) {
   EXPECT_EQ(CodeOf(store().GetProgram("m", 45)), ErrorCode::kCellNotFound);
   PutProgram("m", 45, "object");
   EXPECT_EQ(Must(store().GetProgram("m", 45)).executable, std::nullopt);
+}
+
+// OPT-1.13: deleting counts as altering, so a slot that was deleted is not one that never was.
+TEST_P(StoreConformance, DeletedProgramsAreKnownUntilTheirSlotIsUsedAgain) {
+  PutMachine("m");
+  PutMachine("other");
+  for (const int slot : {9, 44, 45, 7}) PutProgram("m", slot, "object");
+  PutProgram("other", 50, "object");
+  EXPECT_EQ(Must(store().ListDeletedPrograms("m")), std::vector<int>{});
+  for (const int slot : {44, 9, 45}) Must(store().DeleteProgram("m", slot, kAnyRevision));
+  Must(store().DeleteProgram("other", 50, kAnyRevision));
+  EXPECT_EQ(Must(store().ListDeletedPrograms("m")), (std::vector<int>{9, 44, 45}));
+  PutProgram("m", 44, "another");
+  EXPECT_EQ(Must(store().ListDeletedPrograms("m")), (std::vector<int>{9, 45}));
 }
 
 // OPT-1.14: an executable can be deleted on its own; the object stays as it is.

@@ -130,9 +130,11 @@ TEST_F(SqliteFaults, OthersInTheSameCommitAreNotTakenDown) {
   std::atomic<int> answered = 0;
   std::promise<void> blocked;
   std::promise<void> release;
-  store().Append(lease, {{.kind = "first"}}, [&](const Result<std::int64_t>&) {
-    blocked.set_value();
-    release.get_future().wait();  // holds the writer until all the others wait
+  const std::jthread holder([&] {
+    store().Append(lease, {{.kind = "first"}}, [&](const Result<std::int64_t>&) {
+      blocked.set_value();
+      release.get_future().wait();  // holds the writer until all the others wait
+    });
   });
   blocked.get_future().wait();
   constexpr int kSmall = 5;

@@ -316,6 +316,30 @@ TEST(SqliteOpen, LogOfAKilledProcessIsRead) {
   EXPECT_EQ(Must(store->GetMachine("m")).title, "in the log only");
 }
 
+// sqlite_store.h log_bytes_prepared: the log is long, the store as small as ever, and what a kill leaves in the
+// log behind the last commit, which was never committed, is no part of it.
+TEST(SqliteOpen, PreparedLogHoldsNothing) {
+  constexpr std::int64_t kBytes = 4 << 20;
+  const TestDirectory directory;
+  const TestDirectory copies;
+  const std::string path = directory.File("cell.db");
+  {
+    const std::unique_ptr<Store> store =
+        Must(OpenSqliteStore({.path = path, .log_bytes_prepared = kBytes}));
+    EXPECT_GE(std::filesystem::file_size(path + "-wal"), kBytes - (1 << 20));
+    Must(store->PutMachine({.id = "m", .title = "after it"}, 0));
+    for (const char* end : {"", "-wal"}) {
+      std::filesystem::copy_file(path + end, copies.File(std::string("cell.db") + end));
+    }
+  }
+  EXPECT_LT(std::filesystem::file_size(path), 1U << 20);
+  for (const std::string& file : {path, copies.File("cell.db")}) {
+    const std::unique_ptr<Store> store =
+        Must(OpenSqliteStore({.path = file, .check_whole_file = true}));
+    EXPECT_EQ(Must(store->GetMachine("m")).title, "after it");
+  }
+}
+
 // A log that was damaged after a crash ends where the damage begins; what was before is there.
 TEST(SqliteOpen, DamagedLogIsReadUpToTheDamage) {
   SqliteBed bed;

@@ -15,14 +15,17 @@
 namespace rmlcell::storage {
 namespace {
 
-// Holds the writer inside an answer until it is let go.
+// Holds the writer inside an answer until it is let go. On a thread of its own: a lone caller may be answered
+// before his call returns.
 class WriterHold {
  public:
-  explicit WriterHold(Store& store) {
-    store.Submit({.kind = "CHECK"}, [this](const Result<SubmittedJob>&) {
-      held_.set_value();
-      release_.get_future().wait();
-    });
+  explicit WriterHold(Store& store)
+      : holder_([this, &store] {
+          store.Submit({.kind = "CHECK"}, [this](const Result<SubmittedJob>&) {
+            held_.set_value();
+            release_.get_future().wait();
+          });
+        }) {
     held_.get_future().wait();
   }
   void Release() { release_.set_value(); }
@@ -30,6 +33,7 @@ class WriterHold {
  private:
   std::promise<void> held_;
   std::promise<void> release_;
+  std::jthread holder_;
 };
 
 class Answers {
@@ -125,14 +129,19 @@ TEST(SqliteWriter, AnswerThatWritesKeepsTheOrder) {
     const std::lock_guard lock(mutex);
     order.push_back(what);
   };
+  std::promise<void> begun;
   std::promise<void> queued;
   std::promise<void> all;
-  bed.store().Append(lease, {{.kind = "1"}}, [&](const Result<std::int64_t>& last) {
-    note(Numbered("answer ", Must(last)));
-    queued.get_future().wait();
-    const auto written = bed.store().AppendAndWait(lease, {{.kind = "3"}});
-    note(Numbered("inside ", Must(written)));
+  const std::jthread first([&] {
+    bed.store().Append(lease, {{.kind = "1"}}, [&](const Result<std::int64_t>& last) {
+      note(Numbered("answer ", Must(last)));
+      begun.set_value();
+      queued.get_future().wait();
+      const auto written = bed.store().AppendAndWait(lease, {{.kind = "3"}});
+      note(Numbered("inside ", Must(written)));
+    });
   });
+  begun.get_future().wait();
   bed.store().Append(lease, {{.kind = "2"}}, [&](const Result<std::int64_t>& last) {
     note(Numbered("answer ", Must(last)));
     all.set_value();
@@ -140,6 +149,43 @@ TEST(SqliteWriter, AnswerThatWritesKeepsTheOrder) {
   queued.set_value();
   all.get_future().wait();
   EXPECT_THAT(order, testing::ElementsAre("answer 1", "inside 3", "answer 2"));
+}
+
+// writer.h: a lone caller commits by himself, many are answered together, and what one of them appends is
+// written in the order of his calls, whoever writes it.
+TEST(SqliteWriter, OrderHoldsWhoeverWrites) {
+  SqliteBed bed;
+  constexpr int kThreads = 4;
+  constexpr int kEvents = 300;
+  std::vector<Lease> leases;
+  for (int i = 0; i < kThreads; ++i) {
+    Must(bed.store().SubmitAndWait({.kind = "CHECK"}));
+    leases.push_back(Must(bed.store().Acquire(Numbered("w", i), {"CHECK"}, kLease, {}))->lease);
+  }
+  std::atomic<int> answered = 0;
+  {
+    std::vector<std::jthread> threads;
+    for (const Lease& lease : leases) {
+      threads.emplace_back([&bed, &answered, lease] {
+        for (int i = 0; i < kEvents; ++i) {
+          bed.store().Append(lease, {{.kind = Numbered("e", i)}},
+                             [&answered](const Result<std::int64_t>& last) {
+                               answered += last ? 1 : 0;
+                             });
+          // Now and then alone, now and then in company.
+          if (i % 16 == 0) std::this_thread::sleep_for(std::chrono::microseconds(i));
+        }
+      });
+    }
+  }
+  while (answered < kThreads * kEvents) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  for (const Lease& lease : leases) {
+    const auto events = Must(bed.store().JobEvents(lease.job, 0, kEvents + 1));
+    ASSERT_EQ(events.size(), kEvents);
+    for (int i = 0; i < kEvents; ++i) {
+      EXPECT_EQ(events[static_cast<std::size_t>(i)].kind, Numbered("e", i));
+    }
+  }
 }
 
 // Another program that holds the file: the write waits, then ends with CellStoreBusy, and works

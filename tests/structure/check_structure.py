@@ -24,7 +24,8 @@ MAY_INCLUDE = {
     "engine/simulation": ENGINE + ["engine/rml1", "engine/optimo/control"],
     "storage": ["engine/core"],
     "storage/sqlite": ["engine/core", "storage"],
-    "proto/bridge": ["engine/core", "engine/machine", "engine/simulation", "proto"],
+    "proto/bridge": ["engine/core", "engine/machine", "engine/optimo/language", "engine/optimo/offline",
+                     "engine/simulation", "proto"],
     # config, names, executor, log: what every room of the server may use.
     "server": ["engine/core", "storage"],
     "server/auth": ["engine/core"],

@@ -140,6 +140,8 @@ class Completion(unittest.TestCase):
             self.assertEqual(complete("rmlcell simulate --machine ", folder), ["m.toml", "progs"])
             self.assertEqual(complete("rmlcell simulate --machine=", folder), ["m.toml", "progs"])
             self.assertEqual(complete("rmlcell simulate --svg ", folder), ["p.svg", "progs"])
+            self.assertEqual(complete("rmlcell simulate --plot speed ", folder), ["p.svg", "progs"])
+            self.assertIn("a.S", complete("rmlcell simulate --plot speed p.svg ", folder))
             self.assertEqual(complete("rmlcell projects create bracket ", folder), ["j.json", "progs"])
             self.assertIn("x.txt", complete("rmlcell simulate --inputs ", folder))
 

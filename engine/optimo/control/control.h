@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -60,7 +61,6 @@ class Control : private VariableAccess {
   void BeginProfile();
   void EndMotionHere();
   bool BringToHalt();
-  void ChangeOverride(double percent);
   const MoveNote* NoteOf(std::uint64_t tag) const;
   void StopMotions();
   motion::TipPose TipNow() const;
@@ -74,11 +74,39 @@ class Control : private VariableAccess {
   // 0: no source is known.
   int LineOf(int slot, std::uint32_t step) const;
 
+  // --- control_override.cc: the feed override changed on the way ---
+  struct ChainPlace {
+    motion::PlannedMotion motion;
+    motion::PathState state;
+    bool under_way = false;
+  };
+  void ChangeOverride(double percent);
+  double FractionOf(const MoveNote& note) const;
+  void AdaptToOverride(AppendedItem& item);
+  // Where a chain that is planned anew goes on: after the way that brings the acceleration to zero,
+  // and the speed down where it must.
+  struct Onward {
+    std::size_t own = 0;       // of s_.appended: the command of that place
+    double lead_length = 0.0;  // of that way, mm
+    double speed = 0.0;        // at its end, mm/s
+    motion::MoveCommand first;  // what is left of the command then
+  };
+  bool ReplanChain();
+  std::optional<Onward> OnwardFrom(const ChainPlace& place, const motion::MoveCommand& command,
+                                   double speed) const;
+  std::optional<motion::Planner> PlanOnward(const Onward& onward,
+                                            std::span<const AppendedItem> later) const;
+  void GoOnward(const ChainPlace& place, const Onward& onward,
+                const std::vector<motion::PlannedItem>& kept);
+  bool ReplanFrom(const ChainPlace& place, const std::vector<motion::PlannedItem>& kept);
+
   // --- control_hold.cc: HOLD inside a chain of passages ---
   const motion::MoveCommand* Appended(std::uint64_t tag) const;
   bool EndAtATarget();
+  bool EndOverManyMoves();
   void HoldBehind(const motion::PlannedMotion& exact, const std::vector<motion::PlannedItem>& kept,
                   bool under_way);
+  void HoldAllBehind(std::uint64_t target);
   void PlanHeld();
 
   // --- control_motion.cc: what MOVE and its kin do ---

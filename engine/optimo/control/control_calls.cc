@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "engine/optimo/control/control.h"
+#include "engine/optimo/language/staleness.h"
 
 // Programs that call programs: FUNCTION, CALL, GO, and where they end.
 namespace rmlcell::optimo {
@@ -194,10 +195,12 @@ std::optional<Loaded> Control::Acquire(int slot, bool must_be_executable) {
       Raise(executable.error().code, "executable " + std::to_string(slot + kExecutableOffset));
       return std::nullopt;
     }
-    for (const int stale : StaleFunctions(*executable, lookup)) {
+    for (const StalePart& part :
+         FindStaleParts(slot, *executable, {lookup, setup_.deleted_programs})) {
+      if (part.slot == slot) continue;  // what was brought ready made counts, OPT-1.15
       Warn(ErrorCode::kExecutableStale,
-           "executable " + std::to_string(slot + kExecutableOffset) + " holds an older FUNCTION " +
-               std::to_string(stale),
+           "executable " + std::to_string(slot + kExecutableOffset) + ": " +
+               ReasonText(part.slot, part.reason) + "; it holds the old one",
            "OPT-1.13");
     }
     return s_.loaded[slot] = Load(std::move(*executable));

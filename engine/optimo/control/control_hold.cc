@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "engine/optimo/control/control.h"
+#include "engine/optimo/control/motion_place.h"
 
 // HOLD inside a chain of /FLY passages: the move under way becomes exact. The program has run ahead
 // by then; what it appended behind that move waits, and is planned anew at START. motion.md 6,
@@ -11,22 +13,13 @@ namespace {
 
 constexpr double kReaches = 1.0 + 1e-9;  // rounding, where braking takes just the way that is left
 
-// How far along `whole`, a line or an arc, the point of it lies.
-double PlaceOn(const motion::PathPiece& whole, const motion::Vec3& point) {
-  if (whole.kind() == motion::PathPiece::Kind::kLine) {
-    return motion::Norm(point - whole.from().tip);
-  }
-  const motion::Vec3 start = whole.from().tip - whole.centre();
-  const motion::Vec3 here = point - whole.centre();
-  double angle =
-      std::atan2(motion::Dot(whole.normal(), motion::Cross(start, here)), motion::Dot(start, here));
-  if (angle < 0.0) angle += kTurn;
-  return angle * whole.radius_mm();
-}
-
-bool LineOrArc(const motion::PathPiece& path) {
-  return path.kind() == motion::PathPiece::Kind::kLine ||
-         path.kind() == motion::PathPiece::Kind::kArc;
+// The way to rest when the acceleration is first brought to zero.
+double RoomToRest(const motion::PathState& state, const motion::PathLimits& limits) {
+  const double a = state.acceleration;
+  if (a == 0.0 || std::isinf(limits.jerk)) return motion::RampLength(state.speed, 0.0, limits);
+  const double time = std::abs(a) / limits.jerk;
+  const double level = std::max(state.speed + 0.5 * a * time, 0.0);
+  return time * (state.speed + a * time / 3.0) + motion::RampLength(level, 0.0, limits);
 }
 
 }  // namespace
@@ -48,20 +41,19 @@ bool Control::EndAtATarget() {
   motion::PlannedMotion exact = s_.active->motion;
   motion::PathState state = exact.speed.At(ToSeconds(s_.now - s_.active->start));
   auto next = s_.timeline.begin();
+  const std::uint64_t own = exact.tag;
+  std::uint64_t following = own;  // the move after it
   for (bool under_way = true;; under_way = false) {
+    if (exact.tag != own && following == own) following = exact.tag;
+    // Neither of the two is long enough: braking takes more of them.
+    if (exact.tag > following) return EndOverManyMoves();
     const bool last = s_.appended.empty() || s_.appended.back().tag <= exact.tag;
     const motion::MoveCommand* command = Appended(exact.tag);
     if (last || command == nullptr || exact.speed.end().speed <= 0.0) return false;
     if (LineOrArc(exact.path) && LineOrArc(command->path)) {
       const double begin = PlaceOn(command->path, exact.path.from().tip);
       const double way = command->path.length() - begin - state.s;
-      const bool stops =
-          under_way
-              ? exact.speed.StopFrom(ToSeconds(s_.now - s_.active->start), exact.limits).end().s -
-                        state.s <=
-                    way * kReaches
-              : motion::RampLength(state.speed, 0.0, exact.limits) <= way * kReaches;
-      if (way > 0.0 && stops) {
+      if (way > 0.0 && RoomToRest(state, exact.limits) <= way * kReaches) {
         exact.path = command->path.Part(begin + state.s, command->path.length());
         const double length = exact.path.length();
         exact.speed = motion::SpeedProfile::From(
@@ -75,7 +67,8 @@ bool Control::EndAtATarget() {
       }
     }
     if (!under_way) kept.emplace_back(exact);
-    state = {.s = 0.0, .speed = exact.speed.end().speed, .acceleration = 0.0};
+    state = exact.speed.end();
+    state.s = 0.0;
     for (; next != s_.timeline.end() && std::holds_alternative<motion::PlannedMark>(*next);
          ++next) {
       kept.push_back(*next);
@@ -83,6 +76,66 @@ bool Control::EndAtATarget() {
     if (next == s_.timeline.end()) return false;
     exact = std::get<motion::PlannedMotion>(*next++);
   }
+}
+
+// Where moves are too short to come to rest on one of them: the first target that can be reached at
+// rest, over as many of them as that takes.
+bool Control::EndOverManyMoves() {
+  std::vector<motion::PlannedItem> kept;
+  motion::PlannedMotion here = s_.active->motion;
+  ChainPlace place{.motion = here,
+                   .state = here.speed.At(ToSeconds(s_.now - s_.active->start)),
+                   .under_way = true};
+  std::optional<Onward> onward;
+  for (auto next = s_.timeline.begin();; ++next) {
+    const motion::MoveCommand* command = Appended(place.motion.tag);
+    if (command == nullptr) return false;
+    onward = OnwardFrom(place, *command, motion::kLargest);
+    if (onward) break;
+    if (!place.under_way) kept.emplace_back(place.motion);
+    for (; next != s_.timeline.end() && std::holds_alternative<motion::PlannedMark>(*next);
+         ++next) {
+      kept.push_back(*next);
+    }
+    if (next == s_.timeline.end()) return false;
+    place = {.motion = std::get<motion::PlannedMotion>(*next), .state = {}, .under_way = false};
+    place.state = place.motion.speed.At(0.0);
+  }
+  // With the chain cut off behind the nth item; the more of them, the easier.
+  const std::vector<AppendedItem> later(
+      s_.appended.begin() + static_cast<std::ptrdiff_t>(onward->own) + 1, s_.appended.end());
+  const auto planned = [&](std::size_t count) {
+    std::vector<AppendedItem> items(later.begin(),
+                                    later.begin() + static_cast<std::ptrdiff_t>(count));
+    if (!items.back().move) return std::optional<motion::Planner>();
+    items.back().move->fly = false;
+    return PlanOnward(*onward, items);
+  };
+  std::size_t too_few = 0;
+  std::size_t enough = 1;
+  while (enough < later.size() && !planned(enough)) {
+    too_few = enough;
+    enough *= 2;
+  }
+  if (enough >= later.size()) return false;  // it ends by itself as soon
+  while (enough - too_few > 1) {
+    const std::size_t middle = too_few + (enough - too_few) / 2;
+    if (!later[middle - 1].move || !planned(middle)) {
+      too_few = middle;
+    } else {
+      enough = middle;
+    }
+  }
+  std::optional<motion::Planner> planner = planned(enough);
+  if (!planner) return false;
+  const std::uint64_t target = later[enough - 1].tag;
+  if (const MoveNote* note = NoteOf(target)) s_.halted_behind = note->place;
+  GoOnward(place, *onward, kept);
+  planner->Stop();
+  while (std::optional<motion::PlannedItem> item = planner->Next()) s_.timeline.push_back(*item);
+  HoldAllBehind(target);
+  if (!s_.active) StartNextItem();
+  return true;
 }
 
 // `exact` is the last motion before the halt; everything that was appended behind it is held back.
@@ -97,8 +150,12 @@ void Control::HoldBehind(const motion::PlannedMotion& exact,
   } else {
     s_.timeline.emplace_back(exact);
   }
+  HoldAllBehind(exact.tag);
+}
+
+void Control::HoldAllBehind(std::uint64_t target) {
   std::erase_if(s_.appended, [&](AppendedItem& item) {
-    if (item.tag <= exact.tag) return false;
+    if (item.tag <= target) return false;
     s_.held.push_back(std::move(item));
     return true;
   });

@@ -204,32 +204,6 @@ bool Control::BringToHalt() {
   return true;
 }
 
-// Acts on motions that are not planned yet, and on the one under way when it ends in a stop
-// (motion.md 6).
-void Control::ChangeOverride(double percent) {
-  const double before = s_.override_percent;
-  if (!(percent > 0.0) || percent == before) return;
-  s_.override_percent = percent;
-  if (!s_.active || s_.active->ended || s_.halting || s_.now >= s_.active->arrival) return;
-  ActiveMotion& active = *s_.active;
-  if (active.motion.speed.end().speed > 0.0 || active.note.speed_percent <= 0.0) return;
-  motion::MoveCommand command;
-  command.kind = active.note.kind;
-  command.path = active.motion.path;
-  command.head = active.motion.head;
-  command.speed_fraction = std::min(1.0, active.note.speed_percent * percent * 1e-4);
-  command.acceleration_fraction = active.note.accel_fraction;
-  const motion::PathLimits limits = motion::LimitsOf(command, parameters_.limits);
-  const motion::PathState here = active.motion.speed.At(ToSeconds(s_.now - active.start));
-  TellMotion(s_.now);
-  const double length = active.motion.path.length();
-  motion::SpeedProfile changed = motion::SpeedProfile::From(here, length, 0.0, limits);
-  active.motion.limits = limits;
-  active.motion.path = active.motion.path.Part(here.s, length);
-  active.motion.speed = changed.Part(here.s, length);
-  BeginProfile();
-}
-
 // A motion with /END or /TIME is under way, and nothing has ended it yet.
 bool Control::Watching() const {
   return s_.watched && s_.active && !s_.active->ended &&

@@ -5,6 +5,7 @@
 #include "engine/optimo/control/optimo_run.h"
 #include "engine/optimo/language/compiler.h"
 #include "engine/optimo/language/linker.h"
+#include "engine/optimo/language/staleness.h"
 #include "engine/optimo/offline/project.h"
 #include "engine/optimo/offline/translate.h"
 
@@ -24,6 +25,22 @@ constexpr std::array kFigures = {
     machine::FigureInfo{"executables_made", "", "executables that the run had to make"},
 };
 
+machine::StaleReason ReasonOf(StaleReason reason) {
+  switch (reason) {
+    case StaleReason::kObjectChanged:
+      return machine::StaleReason::kObjectChanged;
+    case StaleReason::kObjectMissing:
+      return machine::StaleReason::kObjectMissing;
+    case StaleReason::kFunctionChanged:
+      return machine::StaleReason::kFunctionChanged;
+    case StaleReason::kFunctionDeleted:
+      return machine::StaleReason::kFunctionDeleted;
+    case StaleReason::kDamaged:
+      break;
+  }
+  return machine::StaleReason::kDamaged;
+}
+
 class Family final : public machine::MachineFamily {
  public:
   const machine::FamilyInfo& info() const override { return kInfo; }
@@ -39,8 +56,13 @@ class Family final : public machine::MachineFamily {
   machine::Translation Translate(const machine::SourceFile& file,
                                  const machine::Parameters& parameters,
                                  const machine::CheckOptions& options) const override {
-    return TranslateOptimo(file, options,
-                           static_cast<std::uint32_t>(Resolve(parameters).object_limit));
+    const OptimoParameters resolved = Resolve(parameters);
+    return TranslateOptimo(file, options, static_cast<std::uint32_t>(resolved.object_limit),
+                           {.limits = resolved.limits, .head_length_mm = resolved.head_length_mm});
+  }
+
+  std::vector<Diagnostic> CheckProcess(const machine::ProcessDefinition& definition) const override {
+    return optimo::CheckProcess(definition);
   }
 
   machine::TransferPlan PlanTransfer(const machine::ProjectBundle& project,
@@ -58,6 +80,31 @@ class Family final : public machine::MachineFamily {
     const Result<Executable> decoded = DecodeExecutable(executable);
     if (!decoded) return decoded.error();
     return {};
+  }
+
+  std::vector<machine::StaleExecutable> FindStaleExecutables(
+      const std::map<int, machine::StoredProgram>& programs,
+      const std::set<int>& deleted) const override {
+    std::map<int, std::string_view> executables;
+    for (const auto& [slot, program] : programs) {
+      if (program.executable != nullptr) executables[slot] = *program.executable;
+    }
+    const ObjectLookup lookup = [&](int slot) -> std::optional<std::string_view> {
+      const auto found = programs.find(slot);
+      if (found == programs.end() || found->second.object == nullptr) return std::nullopt;
+      return std::string_view(*found->second.object);
+    };
+    std::vector<machine::StaleExecutable> stale;
+    for (const StaleExecutable& one :
+         optimo::FindStaleExecutables(executables, {lookup, deleted})) {
+      machine::StaleExecutable& made = stale.emplace_back();
+      made.slot = one.slot;
+      for (const StalePart& part : one.parts) {
+        made.parts.push_back(
+            {part.slot, ReasonOf(part.reason), ReasonText(part.slot, part.reason)});
+      }
+    }
+    return stale;
   }
 
   Result<std::unique_ptr<machine::Run>> NewRun(machine::RunSetup setup,

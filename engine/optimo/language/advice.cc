@@ -2,6 +2,8 @@
 
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/optimo/language/flow_advice.h"
 #include "engine/optimo/language/units_of_variables.h"
@@ -97,9 +99,15 @@ class Adviser {
       if (Known(i, v) != 0.0) return;
     }
     const Place at = program_.At(i);
+    const std::string_view statement = program_.text.substr(static_cast<std::size_t>(at.offset),
+                                                            static_cast<std::size_t>(at.length));
+    std::vector<Fix> fixes;
+    // Over several lines there may be comments in it, which no fix takes away.
+    if (statement.find('\n') == std::string_view::npos)
+      fixes.push_back({at.offset, at.length, "SYSDEF"});
     findings_.Add(ErrorCode::kSysdefAllZero, at,
                   "SYSDEF with six zeros; SYSDEF alone cancels the offset", "OPT-7.37",
-                  {{at.offset, at.length, "SYSDEF"}});
+                  std::move(fixes));
   }
 
   void AdviseTcp(const Instruction& i) {

@@ -92,6 +92,8 @@ struct ExprNode {
 };
 
 // A run of Module::nodes in postfix order; the last node is the root. Its type is the root's type.
+// Expressions are called by number; they lie one behind the other, so that the end of each is all
+// that is kept (docs/decisions/0005-tree-layout.md).
 struct ExprRange {
   std::uint32_t first = 0;
   std::uint32_t count = 0;
@@ -154,8 +156,10 @@ inline constexpr std::uint32_t kNoIndex = 0xFFFF'FFFF;
 
 struct Module {
   std::vector<Instruction> instructions;  // in program order; DECLARE among them, with step 0
-  std::vector<ExprRange> expressions;     // of an instruction: values, VIA (5), START, END, TIME
   std::vector<ExprNode> nodes;
+  // By number of the expression: the node behind its last one. Of an instruction: values, VIA (5),
+  // START, END, TIME.
+  std::vector<std::uint32_t> expression_ends;
   std::vector<std::uint16_t> labels;      // sequence numbers, in program order
   std::vector<std::uint16_t> targets;     // sequence numbers that are jumped to
   std::vector<std::uint16_t> end_labels;  // at the end of the text: they reach the implied ENDTASK
@@ -164,8 +168,18 @@ struct Module {
   std::array<ValueType, kParameterCount> parameter_types{};  // by DEFINE, else REAL (OPT-9.22)
   std::uint32_t step_count = 0;  // the implied ENDTASK is step_count + 1 (OPT-6.04)
 
+  ExprRange Range(std::uint32_t index) const {
+    const std::uint32_t first = FirstNode(index);
+    return {first, expression_ends[index] - first};
+  }
+  // Of this expression, and of an instruction with this first_expression, if it has any.
+  std::uint32_t FirstNode(std::uint32_t index) const {
+    return index == 0 ? 0 : expression_ends[index - 1];
+  }
+  // The nodes behind the last expression become one.
+  void EndExpression() { expression_ends.push_back(static_cast<std::uint32_t>(nodes.size())); }
   Expression expression(std::uint32_t index) const {
-    const ExprRange range = expressions[index];
+    const ExprRange range = Range(index);
     return {nodes.data() + range.first, range.count};
   }
   Expression Value(const Instruction& i, int position) const {

@@ -78,7 +78,7 @@ class Checker {
     const auto value = static_cast<double>(nodes[0].number);
     const bool above = range.above_min ? value > range.min : value >= range.min;
     if (above && value <= range.max) return;
-    findings_.Add(code, typing_.PlaceOfNode(module_.expressions[expression].first),
+    findings_.Add(code, typing_.PlaceOfNode(module_.FirstNode(expression)),
                   "the value must be " + std::string(range.text), range.rule);
   }
   void Warn(ErrorCode code, std::string detail, std::string_view rule) {
@@ -183,7 +183,7 @@ void Checker::CheckFunction(Instruction& i) {
   const Expression number = module_.Value(i, 0);
   if (number[0].op != Node::kInteger) {
     findings_.Add(ErrorCode::kFunctionNumber,
-                  typing_.PlaceOfNode(module_.expressions[i.first_expression].first),
+                  typing_.PlaceOfNode(module_.FirstNode(i.first_expression)),
                   "FUNCTION takes a number or a declared constant", "OPT-9.01");
     return;
   }
@@ -211,7 +211,7 @@ void Checker::CheckAssign(const Instruction& i) {
   if (width < 1 || width > kAssignWidthMax) {
     return Warn(ErrorCode::kLiteralRange, "ASSIGN writes 1 to 16 places", "OPT-7.102");
   }
-  const std::size_t value_at = module_.expressions[i.first_expression + 1].first;
+  const std::size_t value_at = module_.FirstNode(i.first_expression + 1);
   const ExprNode& value = module_.nodes[value_at];
   if (typed && value.op != Node::kVariable &&
       (value.number < 0.0F || value.number >= static_cast<float>(1 << width))) {

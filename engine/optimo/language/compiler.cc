@@ -6,6 +6,7 @@
 #include "engine/optimo/language/checker.h"
 #include "engine/optimo/language/printer.h"
 #include "engine/optimo/language/silence.h"
+#include "engine/optimo/language/source_map.h"
 
 namespace rmlcell::optimo {
 
@@ -17,7 +18,7 @@ Compilation Compile(std::string_view text, std::string_view file, const CompileO
     findings.Add(ErrorCode::kSourceIsInch, {}, "convert the inch source to metric first",
                  "OPT-2.04");
   } else {
-    program = Parse(text, findings);
+    program = Parse(text, findings, Places::kStatements);
     Check(program, findings);
     if (options.advice) Advise(program, findings);
     if (options.advice && options.further_advice && findings.error_count() == 0)
@@ -38,6 +39,7 @@ Compilation Compile(std::string_view text, std::string_view file, const CompileO
   result.diagnostics_dropped = findings.dropped();
   result.diagnostics = findings.Take(text, file);
   Silence(program, result.diagnostics);
+  if (options.step_lines && result.ok) result.step_lines = LinesOfSteps(program);
   result.module = std::move(program.module);
   return result;
 }

@@ -118,7 +118,7 @@ class Writer {
 
 Formatting Format(std::string_view text) {
   Findings findings(0);
-  const ParsedProgram program = Parse(text, findings);
+  const ParsedProgram program = Parse(text, findings, Places::kStatements);
   if (findings.error_count() > 0) return {std::string(text), false};
   const std::size_t first_end = program.text.find('\n');
   const bool dos =

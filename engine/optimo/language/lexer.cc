@@ -40,10 +40,70 @@ constexpr std::array<Class, 256> MakeClasses() {
 }
 constexpr std::array<Class, 256> kClasses = MakeClasses();
 
+// Marks of one character; '<' and '>' may have a second one.
+constexpr std::array<TokenKind, 256> MakeMarks() {
+  std::array<TokenKind, 256> marks{};
+  marks['('] = TokenKind::kOpen;
+  marks[')'] = TokenKind::kClose;
+  marks['['] = TokenKind::kOpenIndex;
+  marks[']'] = TokenKind::kCloseIndex;
+  marks[','] = TokenKind::kComma;
+  marks['/'] = TokenKind::kSlash;
+  marks['+'] = TokenKind::kPlus;
+  marks['-'] = TokenKind::kMinus;
+  marks['*'] = TokenKind::kTimes;
+  marks['^'] = TokenKind::kPower;
+  marks['='] = TokenKind::kEqual;
+  marks['<'] = TokenKind::kLess;
+  marks['>'] = TokenKind::kGreater;
+  return marks;
+}
+constexpr std::array<TokenKind, 256> kMarks = MakeMarks();
+
 Class ClassOf(char c) { return kClasses[static_cast<unsigned char>(c)]; }
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 bool IsNamePart(char c) { return ClassOf(c) == Class::kDigit || ClassOf(c) == Class::kLetter; }
 bool IsBlank(char c) { return c == ' ' || c == '\t'; }
+
+// `value` with the digits behind it that begin at `end`; it wraps around when they are too many.
+struct DigitRun {
+  std::uint64_t value = 0;
+  std::size_t end = 0;
+};
+DigitRun TakeDigits(std::string_view text, std::size_t at, std::uint64_t value) {
+  for (; at < text.size(); ++at) {
+    const auto digit = static_cast<unsigned char>(text[at] - '0');
+    if (digit > 9) break;
+    value = value * 10 + digit;
+  }
+  return {value, at};
+}
+
+// exponent := blanks "E" blanks [sign] blanks digits                                       OPT-7.55
+// Ends where it began when there is none: E without digits begins a word (OPT-B.41).
+struct Exponent {
+  int value = 0;
+  std::size_t end = 0;
+};
+Exponent TakeExponent(std::string_view text, std::size_t begin) {
+  constexpr int kFar = 1000;  // larger ones count as this, out of every range
+  std::size_t at = begin;
+  const auto next = [&] { return at < text.size() ? text[at] : '\0'; };
+  const auto skip_blanks = [&] {
+    while (IsBlank(next())) ++at;
+  };
+  skip_blanks();
+  if (next() != 'E' && next() != 'e') return {0, begin};
+  ++at;
+  skip_blanks();
+  const bool negative = next() == '-';
+  if (negative || next() == '+') ++at;
+  skip_blanks();
+  if (!IsDigit(next())) return {0, begin};
+  int value = 0;
+  for (; IsDigit(next()); ++at) value = std::min(kFar, value * 10 + (text[at] - '0'));
+  return {negative ? -value : value, at};
+}
 
 // The powers of ten that a double holds exactly.
 constexpr std::array<double, 23> kTens = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
@@ -266,28 +326,15 @@ bool Lexer::BeginsAssignment(std::size_t offset) const {
   return at < end && text_[at] == '=';
 }
 
-void Lexer::Push(TokenKind kind, std::size_t length) {
-  Token& token = tokens_.emplace_back();
-  token.kind = kind;
-  token.first_on_line = line_start_;
-  token.joined = !line_start_ && last_end_ == at_;
-  token.offset = static_cast<std::uint32_t>(at_);
-  token.length = static_cast<std::uint32_t>(length);
-  at_ += length;
-  last_end_ = at_;
-}
-
 void Lexer::ReadToken(char first) {
-  const char second = at_ + 1 < text_.size() ? text_[at_ + 1] : '\0';
   switch (ClassOf(first)) {
     case Class::kLetter:
       return ReadWord();
     case Class::kDigit:
-      return ReadNumber();
     case Class::kPoint:
       return ReadNumber();
     case Class::kMark:
-      break;
+      return ReadMark(first);
     default: {
       // A run of bad bytes is one token: a character of several bytes, or a binary file.
       std::size_t end = at_ + 1;
@@ -295,40 +342,19 @@ void Lexer::ReadToken(char first) {
       return Push(TokenKind::kBadCharacter, end - at_);
     }
   }
-  switch (first) {
-    case '(':
-      ++depth_;
-      return Push(TokenKind::kOpen, 1);
-    case ')':
-      if (depth_ > 0) --depth_;
-      return Push(TokenKind::kClose, 1);
-    case '[':
-      return Push(TokenKind::kOpenIndex, 1);
-    case ']':
-      return Push(TokenKind::kCloseIndex, 1);
-    case ',':
-      return Push(TokenKind::kComma, 1);
-    case '/':
-      return Push(TokenKind::kSlash, 1);
-    case '+':
-      return Push(TokenKind::kPlus, 1);
-    case '-':
-      return Push(TokenKind::kMinus, 1);
-    case '*':
-      return Push(TokenKind::kTimes, 1);
-    case '^':
-      return Push(TokenKind::kPower, 1);
-    case '=':
-      return Push(TokenKind::kEqual, 1);
-    case '<':
-      if (second == '=') return Push(TokenKind::kLessEqual, 2);
-      if (second == '>') return Push(TokenKind::kNotEqual, 2);
-      return Push(TokenKind::kLess, 1);
-    default:  // '>'
-      if (second == '=') return Push(TokenKind::kGreaterEqual, 2);
-      if (second == '<') return Push(TokenKind::kNotEqual, 2);
-      return Push(TokenKind::kGreater, 1);
-  }
+}
+
+// OPT-B.87: a mark of two characters has no blank inside.
+void Lexer::ReadMark(char first) {
+  const TokenKind kind = kMarks[static_cast<unsigned char>(first)];
+  if (kind == TokenKind::kOpen) ++depth_;
+  if (kind == TokenKind::kClose && depth_ > 0) --depth_;
+  if (kind != TokenKind::kLess && kind != TokenKind::kGreater) return Push(kind, 1);
+  const char second = at_ + 1 < text_.size() ? text_[at_ + 1] : '\0';
+  const bool less = kind == TokenKind::kLess;
+  if (second == '=') return Push(less ? TokenKind::kLessEqual : TokenKind::kGreaterEqual, 2);
+  if (second == (less ? '>' : '<')) return Push(TokenKind::kNotEqual, 2);
+  Push(kind, 1);
 }
 
 void Lexer::ReadWord() {
@@ -361,64 +387,38 @@ void Lexer::ReadLabel() {
   tokens_.back().digits = value;
 }
 
-// number := (digits ["." [digits]] | "." digits) [blanks "E" blanks [sign] blanks digits] OPT-7.53
-// to 7.55
+// number := (digits ["." [digits]] | "." digits) [exponent]             OPT-7.53 to 7.55, OPT-B.42
 void Lexer::ReadNumber() {
-  const std::size_t begin = at_;
-  std::size_t end = begin;
-  std::uint64_t mantissa = 0;
-  int scale = 0;      // digits behind the point that the mantissa holds
-  bool exact = true;  // the mantissa holds all digits
-  int points = 0;
-  int digits = 0;
-  for (; end < text_.size(); ++end) {
-    const char c = text_[end];
-    if (c == '.') {
-      ++points;
-      continue;
-    }
-    if (!IsDigit(c)) break;
-    ++digits;
-    if (mantissa > kExactMantissa) {
-      exact = false;
-      continue;
-    }
-    mantissa = mantissa * 10 + static_cast<std::uint64_t>(c - '0');
-    if (points > 0) ++scale;
-  }
-  const std::size_t mantissa_end = end;
-  bool whole = points == 0;
-  int exponent = 0;
-  bool bad = points > 1 || digits == 0;
-  std::size_t look = end;
-  while (look < text_.size() && IsBlank(text_[look])) ++look;
-  if (look < text_.size() && (text_[look] == 'E' || text_[look] == 'e')) {
-    ++look;
-    while (look < text_.size() && IsBlank(text_[look])) ++look;
-    bool negative = false;
-    if (look < text_.size() && (text_[look] == '+' || text_[look] == '-')) {
-      negative = text_[look] == '-';
-      ++look;
-      while (look < text_.size() && IsBlank(text_[look])) ++look;
-    }
-    if (look < text_.size() && IsDigit(text_[look])) {
-      for (; look < text_.size() && IsDigit(text_[look]); ++look) {
-        exponent = std::min(1000, exponent * 10 + (text_[look] - '0'));
-      }
-      bad = bad || exponent > 99;
-      if (negative) exponent = -exponent;
-      whole = false;
-      end = look;
-    }
-  }
-  Push(bad ? TokenKind::kBadNumber : TokenKind::kNumber, end - begin);
+  constexpr std::size_t kExactDigits =
+      19;  // a mantissa of 64 bits holds as many, whatever they are
+  constexpr int kExponentMax = 99;
+  std::size_t first = at_;
+  while (first < text_.size() && text_[first] == '0') ++first;
+  const DigitRun before = TakeDigits(text_, first, 0);
+  const bool point = before.end < text_.size() && text_[before.end] == '.';
+  const DigitRun behind = point ? TakeDigits(text_, before.end + 1, before.value) : before;
+  const std::size_t decimals = point ? behind.end - before.end - 1 : 0;
+  std::size_t mantissa_end = behind.end;
+  bool bad = before.end + decimals == at_;  // not one digit
+  for (;
+       mantissa_end < text_.size() && (text_[mantissa_end] == '.' || IsDigit(text_[mantissa_end]));
+       ++mantissa_end)
+    bad = true;
+  const Exponent exponent = TakeExponent(text_, mantissa_end);
+  bad = bad || std::abs(exponent.value) > kExponentMax;
+  const std::string_view mantissa = text_.substr(at_, mantissa_end - at_);
+  const bool whole = !point && exponent.end == mantissa_end;
+  Push(bad ? TokenKind::kBadNumber : TokenKind::kNumber, exponent.end - at_);
   if (bad) return;
   Token& token = tokens_.back();
   token.whole = whole;
-  if (whole)
-    token.digits = static_cast<std::uint32_t>(std::min<std::uint64_t>(mantissa, kDigitsMax));
-  const std::optional<float> fast = exact ? FastFloat(mantissa, exponent - scale) : std::nullopt;
-  token.number = fast ? *fast : SlowFloat(text_.substr(begin, mantissa_end - begin), exponent);
+  const bool exact = before.end - first + decimals <= kExactDigits;
+  token.digits = exact
+                     ? static_cast<std::uint32_t>(std::min<std::uint64_t>(behind.value, kDigitsMax))
+                     : kDigitsMax;
+  const std::optional<float> fast =
+      exact ? FastFloat(behind.value, exponent.value - static_cast<int>(decimals)) : std::nullopt;
+  token.number = fast ? *fast : SlowFloat(mantissa, exponent.value);
   token.too_large = !(static_cast<double>(token.number) <= kRealMax);
   if (static_cast<double>(token.number) < kRealMin) token.number = 0.0F;
 }

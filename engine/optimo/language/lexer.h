@@ -43,13 +43,13 @@ struct Token {
   TokenKind kind = TokenKind::kEnd;
   Word word = Word::kNone;  // kWord: the reserved word, or kNone for a name
   bool first_on_line = false;
-  bool joined = false;  // no blank between it and the token before
-  bool whole = false;   // kNumber without point and exponent
+  bool joined = false;     // no blank between it and the token before
+  bool whole = false;      // kNumber without point and exponent
+  bool too_large = false;  // kNumber: beyond 2^63
   std::uint32_t offset = 0;
   std::uint32_t length = 0;
   std::uint32_t digits = 0;  // kNumber, whole: its value, at most kDigitsMax
   float number = 0.0F;       // kNumber: rounded to 24 bits
-  bool too_large = false;    // kNumber: beyond 2^63
   NameKey key = 0;           // kWord: first eight characters
 };
 inline constexpr std::uint32_t kDigitsMax = 1'000'000'000;  // larger whole numbers saturate
@@ -98,10 +98,19 @@ class Lexer {
   bool BeginsInstruction(std::size_t offset) const;
   void GoBackTo(std::size_t offset);
   void ReadToken(char first);
+  void ReadMark(char first);
   void ReadNumber();
   void ReadLabel();
   void ReadWord();
-  void Push(TokenKind kind, std::size_t length);
+  void Push(TokenKind kind, std::size_t length) {
+    tokens_.push_back({.kind = kind,
+                       .first_on_line = line_start_,
+                       .joined = !line_start_ && last_end_ == at_,
+                       .offset = static_cast<std::uint32_t>(at_),
+                       .length = static_cast<std::uint32_t>(length)});
+    at_ += length;
+    last_end_ = at_;
+  }
 
   std::string_view text_;
   std::vector<Comment>* comments_;

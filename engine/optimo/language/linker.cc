@@ -188,14 +188,4 @@ Result<Executable> DecodeExecutable(std::string_view bytes) {
   return in.AtEnd() ? Result<Executable>(std::move(executable)) : Result<Executable>(corrupt);
 }
 
-std::vector<int> StaleFunctions(const Executable& executable, const ObjectLookup& lookup) {
-  std::vector<int> stale;
-  for (std::size_t m = 1; m < executable.modules.size(); ++m) {
-    const LinkedModule& module = executable.modules[m];
-    const std::optional<std::string_view> object = lookup(module.slot);
-    if (!object || HashObject(*object) != module.object_hash) stale.push_back(module.slot);
-  }
-  return stale;
-}
-
 }  // namespace rmlcell::optimo

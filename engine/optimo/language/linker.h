@@ -53,8 +53,4 @@ Result<Executable> DecodeExecutable(std::string_view bytes);
 // 64-bit FNV-1a of object bytes; tells whether an executable was made from them.
 std::uint64_t HashObject(std::string_view object);
 
-// Functions of the executable whose stored object is another one now, or gone (warning 7110,
-// OPT-1.13).
-std::vector<int> StaleFunctions(const Executable& executable, const ObjectLookup& lookup);
-
 }  // namespace rmlcell::optimo

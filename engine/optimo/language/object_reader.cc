@@ -85,7 +85,7 @@ void Reader::ReadRecord() {
   if (op == 0 || op >= static_cast<unsigned>(kOpCount)) return in_.Refuse();
   Instruction i;
   i.op = static_cast<Op>(op);
-  i.first_expression = static_cast<std::uint32_t>(module_->expressions.size());
+  i.first_expression = static_cast<std::uint32_t>(module_->expression_ends.size());
   i.first_target = static_cast<std::uint32_t>(module_->targets.size());
   i.first_label = static_cast<std::uint32_t>(module_->labels.size());
   if ((code & kLabelsFlag) != 0) {
@@ -203,9 +203,8 @@ void Reader::ReadExpression() {
     reversed_.push_back(node);
   }
   if (in_.bad()) return;
-  module_->expressions.push_back({static_cast<std::uint32_t>(module_->nodes.size()),
-                                  static_cast<std::uint32_t>(reversed_.size())});
   module_->nodes.insert(module_->nodes.end(), reversed_.rbegin(), reversed_.rend());
+  module_->EndExpression();
 }
 
 bool Reader::IsVariable(const Instruction& i, int position) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/core/check.h"
 #include "engine/optimo/language/nearest_word.h"
 
 namespace rmlcell::optimo {
@@ -14,11 +15,12 @@ constexpr std::size_t kProposalNamesMax = 500;  // names compared with a mistype
 
 }  // namespace
 
-Parser::Parser(std::string_view text, ParsedProgram& program, Findings& findings)
+Parser::Parser(std::string_view text, ParsedProgram& program, Findings& findings, Places places)
     : text_(text),
       program_(program),
       module_(program.module),
       findings_(findings),
+      places_(places),
       lexer_(text, program.comments) {}
 
 // Room for what a text of this size most likely holds, so that large programs are not copied while
@@ -26,14 +28,15 @@ Parser::Parser(std::string_view text, ParsedProgram& program, Findings& findings
 // comment.
 void Parser::Reserve() {
   constexpr std::size_t kElementsMax = std::size_t{1} << 23;
-  const auto lines = static_cast<std::size_t>(std::count(text_.begin(), text_.end(), '\n'));
+  std::size_t lines = 0;
+  for (std::size_t at = 0; (at = text_.find('\n', at)) != std::string_view::npos; ++at) ++lines;
   const std::size_t instructions = std::min(lines + 1, kElementsMax);
   const std::size_t values = std::min(text_.size() / 7, kElementsMax);
   module_.instructions.reserve(instructions);
   program_.statements.reserve(instructions);
-  module_.expressions.reserve(values);
+  module_.expression_ends.reserve(values);
   module_.nodes.reserve(values);
-  program_.node_places.reserve(values);
+  if (places_ == Places::kNodes) program_.node_places.reserve(values);
 }
 
 void Parser::Run() {
@@ -57,13 +60,12 @@ void Parser::ParseStatement() {
     first_ = Peek();
   }
   instruction_ = Instruction{};
-  instruction_.first_expression = static_cast<std::uint32_t>(module_.expressions.size());
+  instruction_.first_expression = static_cast<std::uint32_t>(module_.expression_ends.size());
   instruction_.first_target = static_cast<std::uint32_t>(module_.targets.size());
   attribute_parts_.clear();
   const bool steps = first_.word != Word::kDeclare;
   if (steps) ++steps_;
   instruction_.step = steps ? steps_ : 0;
-  const std::size_t nodes = module_.nodes.size();
 
   const WordGroup group = first_.kind != TokenKind::kWord || first_.word == Word::kNone
                               ? WordGroup::kNone
@@ -88,9 +90,7 @@ void Parser::ParseStatement() {
     if (good && !Is(TokenKind::kEnd)) good = Fail("the end of the statement");
   }
   if (!good) {
-    module_.nodes.resize(nodes);
-    program_.node_places.resize(nodes);
-    module_.expressions.resize(instruction_.first_expression);
+    DropExpressions(instruction_.first_expression);
     module_.targets.resize(instruction_.first_target);
     const bool named = instruction_.op == Op::kDeclare && instruction_.name != kNoName &&
                        !declared_[instruction_.name];
@@ -98,7 +98,7 @@ void Parser::ParseStatement() {
     const std::uint32_t step = instruction_.step;
     instruction_ = Instruction{};
     instruction_.step = step;
-    instruction_.first_expression = static_cast<std::uint32_t>(module_.expressions.size());
+    instruction_.first_expression = static_cast<std::uint32_t>(module_.expression_ends.size());
     instruction_.first_target = static_cast<std::uint32_t>(module_.targets.size());
   }
   FinishStatement(good);
@@ -125,17 +125,31 @@ void Parser::FinishStatement(bool good) {
 // Attributes stand in any order in the text and in one order in the module. OPT-2.43
 void Parser::OrderAttributeParts() {
   if (std::ranges::is_sorted(attribute_parts_, {}, &AttributePart::attribute)) return;
-  const std::vector<ExprRange> written(
-      module_.expressions.begin() + instruction_.first_expression + instruction_.value_count,
-      module_.expressions.end());
-  const std::uint32_t base = instruction_.first_expression + instruction_.value_count;
   std::ranges::stable_sort(attribute_parts_, {}, &AttributePart::attribute);
-  std::size_t to = base;
+  const std::uint32_t base = instruction_.first_expression + instruction_.value_count;
+  const std::uint32_t begin = module_.FirstNode(base);
+  std::vector<ExprNode> nodes;
+  std::vector<NodePlace> places;
+  std::vector<std::uint32_t> ends;
   for (const AttributePart& part : attribute_parts_) {
-    for (std::uint32_t i = 0; i < part.count; ++i) {
-      module_.expressions[to++] = written[part.first - base + i];
+    for (std::uint32_t e = part.first; e < part.first + part.count; ++e) {
+      for (std::uint32_t n = module_.FirstNode(e); n < module_.expression_ends[e]; ++n) {
+        nodes.push_back(module_.nodes[n]);
+        if (places_ == Places::kNodes) places.push_back(program_.node_places[n]);
+      }
+      ends.push_back(begin + static_cast<std::uint32_t>(nodes.size()));
     }
   }
+  std::ranges::copy(nodes, module_.nodes.begin() + begin);
+  std::ranges::copy(ends, module_.expression_ends.begin() + base);
+  if (places_ == Places::kNodes) std::ranges::copy(places, program_.node_places.begin() + begin);
+}
+
+void Parser::DropExpressions(std::uint32_t expressions) {
+  const std::uint32_t nodes = module_.FirstNode(expressions);
+  module_.expression_ends.resize(expressions);
+  module_.nodes.resize(nodes);
+  if (places_ == Places::kNodes) program_.node_places.resize(nodes);
 }
 
 void Parser::AddLabel(const Token& token) {
@@ -255,26 +269,6 @@ std::uint16_t Parser::InternName(const Token& token) {
   return name;
 }
 
-bool Parser::TryTake(TokenKind kind) {
-  if (!Is(kind)) return false;
-  ++at_;
-  return true;
-}
-
-bool Parser::Expect(TokenKind kind, std::string_view expected) {
-  return TryTake(kind) || Fail(expected);
-}
-
-bool Parser::TakeWord(Word word) {
-  if (Peek().kind != TokenKind::kWord || Peek().word != word) return false;
-  ++at_;
-  return true;
-}
-
-bool Parser::ExpectWord(Word word, std::string_view expected) {
-  return TakeWord(word) || Fail(expected);
-}
-
 bool Parser::Fail(std::string_view expected) {
   const Token token = Peek();
   switch (token.kind) {
@@ -348,7 +342,29 @@ Place ParsedProgram::At(const Instruction& instruction) const {
           static_cast<int>(instruction.step)};
 }
 
-ParsedProgram Parse(std::string_view text, Findings& findings) {
+std::string_view ParsedProgram::TextOf(const Instruction& instruction) const {
+  const Place place = At(instruction);
+  return text.substr(static_cast<std::size_t>(place.offset),
+                     static_cast<std::size_t>(place.length));
+}
+
+std::vector<NodePlace> ParsedProgram::NodePlacesOf(const Instruction& instruction) const {
+  const std::uint32_t count = module.ExpressionCount(instruction);
+  if (count == 0) return {};
+  const std::uint32_t first = module.FirstNode(instruction.first_expression);
+  const std::uint32_t last = module.expression_ends[instruction.first_expression + count - 1];
+  if (!node_places.empty()) return {node_places.begin() + first, node_places.begin() + last};
+  // A statement reads the same by itself: what it means depends on others, where its parts stand
+  // does not.
+  Findings none(0);
+  std::vector<NodePlace> places = Parse(TextOf(instruction), none, Places::kNodes).node_places;
+  RMLCELL_CHECK(places.size() == last - first);
+  for (NodePlace& place : places)
+    place.offset += static_cast<std::uint32_t>(At(instruction).offset);
+  return places;
+}
+
+ParsedProgram Parse(std::string_view text, Findings& findings, Places places) {
   ParsedProgram program;
   text = text.substr(0, text.find('\x1A'));
   if (text.size() > kSourceBytesMax) {
@@ -356,7 +372,7 @@ ParsedProgram Parse(std::string_view text, Findings& findings) {
     return program;
   }
   program.text = text;
-  Parser(text, program, findings).Run();
+  Parser(text, program, findings, places).Run();
   return program;
 }
 

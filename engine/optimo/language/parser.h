@@ -19,7 +19,7 @@ std::string IgnoredText(Word word, std::string_view rest);
 
 class Parser {
  public:
-  Parser(std::string_view text, ParsedProgram& program, Findings& findings);
+  Parser(std::string_view text, ParsedProgram& program, Findings& findings, Places places);
   void Run();
 
  private:
@@ -63,30 +63,40 @@ class Parser {
   bool ParseTimeAndLabel(std::string_view what);
 
   // Values, parser_expression.cc
-  bool ParseExpression();     // appends one ExprRange
+  bool ParseExpression();     // appends one expression
   bool ParseParenthesised();  // "(" expr ")"
   bool ParseList(int& count, int keep_max, int slash_after = 0);
   bool ParseBinary(int level);
   bool ParseSigned();
   bool ParsePrimary(bool negative, const Token& sign);
   bool ParseVariable();                         // group [ index ], appended as a node
-  bool ParseTarget(std::string_view expected);  // variable | par | name, as one ExprRange
+  bool ParseTarget(std::string_view expected);  // variable | par | name, as one expression
   bool ParseLiteral(bool negative, const Token& sign);
+  bool IsNumberAlone();
   bool ParseJumpLabel();
   bool ParseWhole(std::string_view what, std::uint16_t& value);
   int LevelOf(const Token& token) const;
   bool EndsExpression(const Token& slash_follower) const;
-  void Emit(Node op, std::uint32_t offset, std::uint32_t length);
-  void EndExpression(std::uint32_t first);
+  ExprNode& Emit(Node op, std::uint32_t offset, std::uint32_t length);
+  // Expressions stay up to the `expressions`th; nodes behind it go, too.
+  void DropExpressions(std::uint32_t expressions);
 
   // Tokens
   const Token& Peek(std::size_t ahead = 0) { return lexer_.At(at_ + ahead); }
   Token Take() { return lexer_.At(at_++); }
   bool Is(TokenKind kind) { return Peek().kind == kind; }
-  bool TryTake(TokenKind kind);
-  bool Expect(TokenKind kind, std::string_view expected);
-  bool TakeWord(Word word);
-  bool ExpectWord(Word word, std::string_view expected);
+  bool TryTake(TokenKind kind) {
+    const bool there = Is(kind);
+    at_ += there ? 1 : 0;
+    return there;
+  }
+  bool TakeWord(Word word) {
+    const bool there = Peek().word == word;
+    at_ += there ? 1 : 0;
+    return there;
+  }
+  bool Expect(TokenKind kind, std::string_view expected) { return TryTake(kind) || Fail(expected); }
+  bool ExpectWord(Word word, std::string_view expected) { return TakeWord(word) || Fail(expected); }
 
   // Reports at the next token. `expected` completes "expected ...".
   bool Fail(std::string_view expected);
@@ -102,6 +112,7 @@ class Parser {
   ParsedProgram& program_;
   Module& module_;
   Findings& findings_;
+  Places places_;
   Lexer lexer_;
   std::size_t at_ = 0;       // next token of the statement
   Token first_;              // of the statement, behind its label
@@ -114,7 +125,7 @@ class Parser {
   std::vector<std::uint16_t> pending_labels_;
   struct AttributePart {
     Attribute attribute;
-    std::uint32_t first, count;  // in Module::expressions, as written
+    std::uint32_t first, count;  // expressions, as written
   };
   std::vector<AttributePart> attribute_parts_;
   std::uint32_t steps_ = 0;

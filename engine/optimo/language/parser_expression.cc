@@ -104,21 +104,29 @@ constexpr std::string_view kValueExpected = "a number, a variable, a name or '('
 
 }  // namespace
 
-void Parser::Emit(Node op, std::uint32_t offset, std::uint32_t length) {
-  ExprNode node;
-  node.op = op;
-  module_.nodes.push_back(node);
-  program_.node_places.push_back({offset, length});
+// Appends a node; what else it has is set by the caller.
+ExprNode& Parser::Emit(Node op, std::uint32_t offset, std::uint32_t length) {
+  if (places_ == Places::kNodes) program_.node_places.push_back({offset, length});
+  return module_.nodes.emplace_back(ExprNode{.op = op});
 }
 
-void Parser::EndExpression(std::uint32_t first) {
-  module_.expressions.push_back({first, static_cast<std::uint32_t>(module_.nodes.size()) - first});
+// [ "-" ] number with nothing behind that could join it: nearly every value of a program that a CAD
+// system wrote. Spares it the walk through the levels.
+bool Parser::IsNumberAlone() {
+  const std::size_t sign = Is(TokenKind::kMinus) ? 1 : 0;
+  if (Peek(sign).kind != TokenKind::kNumber) return false;
+  const TokenKind next = Peek(sign + 1).kind;
+  return next == TokenKind::kComma || next == TokenKind::kClose || next == TokenKind::kEnd;
 }
 
 bool Parser::ParseExpression() {
-  const auto first = static_cast<std::uint32_t>(module_.nodes.size());
-  if (!ParseBinary(kOrLevel)) return false;
-  EndExpression(first);
+  if (IsNumberAlone()) {
+    const Token sign = Peek();
+    if (!ParseLiteral(TryTake(TokenKind::kMinus), sign)) return false;
+  } else if (!ParseBinary(kOrLevel)) {
+    return false;
+  }
+  module_.EndExpression();
   return true;
 }
 
@@ -135,13 +143,9 @@ bool Parser::ParseList(int& count, int keep_max, int slash_after) {
   const bool outer = slash_separates_;
   slash_separates_ = slash_after > 0;
   do {
-    const std::size_t nodes = module_.nodes.size();
     if (!ParseExpression()) return false;
-    if (++count > keep_max) {
-      module_.nodes.resize(nodes);
-      program_.node_places.resize(nodes);
-      module_.expressions.pop_back();
-    }
+    if (++count > keep_max)
+      DropExpressions(static_cast<std::uint32_t>(module_.expression_ends.size()) - 1);
     if (slash_after > 0 && Is(TokenKind::kSlash)) {
       if (count != slash_after) count = -1;  // "/" elsewhere: the wrong number of values, OPT-B.85
       Take();
@@ -267,13 +271,13 @@ bool Parser::ParsePrimary(bool negative, const Token& sign) {
       if (!ParseVariable()) return false;
     } else if (group == WordGroup::kNone) {
       Take();
-      Emit(Node::kName, word.offset, word.length);
-      module_.nodes.back().name = InternName(word);
+      Emit(Node::kName, word.offset, word.length).name = InternName(word);
     } else if (group == WordGroup::kConstant) {
       Take();
-      Emit(word.word == Word::kPi ? Node::kPi : Node::kLogical, word.offset, word.length);
+      const bool pi = word.word == Word::kPi;
       const bool on = word.word == Word::kOn || word.word == Word::kTrue || word.word == Word::kYes;
-      module_.nodes.back().number = word.word == Word::kPi ? kPiLanguage : (on ? 1.0F : 0.0F);
+      Emit(pi ? Node::kPi : Node::kLogical, word.offset, word.length).number =
+          pi ? kPiLanguage : (on ? 1.0F : 0.0F);
     } else if (group == WordGroup::kFunction) {
       if (nesting_ >= kNestingMax)
         return FailAt(word, ErrorCode::kSyntax, "functions are nested too deep");
@@ -317,8 +321,8 @@ bool Parser::ParseLiteral(bool negative, const Token& sign) {
   const std::uint32_t offset = negative ? sign.offset : token.offset;
   const int limit = negative ? -kIntegerMin : kIntegerMax;
   const bool integer = token.whole && token.digits <= static_cast<std::uint32_t>(limit);
-  Emit(integer ? Node::kInteger : Node::kReal, offset, token.offset + token.length - offset);
-  module_.nodes.back().number = negative && token.number != 0.0F ? -token.number : token.number;
+  Emit(integer ? Node::kInteger : Node::kReal, offset, token.offset + token.length - offset)
+      .number = negative && token.number != 0.0F ? -token.number : token.number;
   return true;
 }
 
@@ -354,25 +358,22 @@ bool Parser::ParseVariable() {
   }
   end = Peek().offset + Peek().length;
   if (!Expect(TokenKind::kCloseIndex, "']'")) return false;
-  module_.nodes.push_back(node);
-  program_.node_places.push_back({group.offset, end - group.offset});
+  Emit(Node::kVariable, group.offset, end - group.offset) = node;
   return true;
 }
 
 bool Parser::ParseTarget(std::string_view expected) {
   const Token& next = Peek();
-  const auto first = static_cast<std::uint32_t>(module_.nodes.size());
   if (next.kind != TokenKind::kWord) return Fail(expected);
   if (next.word == Word::kNone) {
     const Token name = Take();
-    Emit(Node::kName, name.offset, name.length);
-    module_.nodes.back().name = InternName(name);
+    Emit(Node::kName, name.offset, name.length).name = InternName(name);
   } else if (Describe(next.word).group == WordGroup::kVariable) {
     if (!ParseVariable()) return false;
   } else {
     return Fail(expected);
   }
-  EndExpression(first);
+  module_.EndExpression();
   return true;
 }
 

@@ -195,9 +195,8 @@ bool Parser::ParseProgramNumber() {
   instruction_.value_count = 1;
   if (!Is(TokenKind::kNumber)) return ParseTarget("a program number");
   if (!Peek().whole) return Fail("a whole program number");
-  const auto first = static_cast<std::uint32_t>(module_.nodes.size());
   if (!ParseLiteral(false, Token{})) return false;
-  EndExpression(first);
+  module_.EndExpression();
   return true;
 }
 
@@ -285,7 +284,6 @@ bool Parser::ParseDeclare() {
   instruction_.value_count = 1;
   if (!Expect(TokenKind::kEqual, "'='")) return false;
   if (Is(TokenKind::kEnd)) return Fail("a number, a constant or a variable");
-  const auto first = static_cast<std::uint32_t>(module_.nodes.size());
   const Token value = Peek();
   const bool group = value.kind == TokenKind::kWord && value.word != Word::kNone &&
                      (Describe(value.word).group == WordGroup::kVariable ||
@@ -300,7 +298,7 @@ bool Parser::ParseDeclare() {
                   "DECLARE takes a number, a constant or a variable", "OPT-7.42");
   }
   if (!ParseSigned()) return false;
-  EndExpression(first);
+  module_.EndExpression();
   const Token& next = Peek();
   if (LevelOf(next) != 0) {
     return FailAt(next, ErrorCode::kDeclareValue, "DECLARE takes no expression", "OPT-7.42");
@@ -356,13 +354,12 @@ bool Parser::ParseAssign() {
   const Token& follower = Peek(1);
   if (value.kind == TokenKind::kNumber ||
       (value.kind == TokenKind::kMinus && follower.kind == TokenKind::kNumber)) {
-    const auto first = static_cast<std::uint32_t>(module_.nodes.size());
     if (!ParseSigned()) return false;
     if (module_.nodes.back().op != Node::kInteger) {
       at_ -= 1;
       return Fail("a whole number up to 32767");
     }
-    EndExpression(first);
+    module_.EndExpression();
   } else if (!ParseTarget("a number or a variable")) {
     return false;
   }
@@ -448,7 +445,7 @@ bool Parser::ParseAttributes() {
 }
 
 bool Parser::ParseAttribute(const Token& word, Attribute attribute) {
-  const auto first = static_cast<std::uint32_t>(module_.expressions.size());
+  const auto first = static_cast<std::uint32_t>(module_.expression_ends.size());
   switch (attribute) {
     case kVia: {
       int count = 0;
@@ -468,7 +465,7 @@ bool Parser::ParseAttribute(const Token& word, Attribute attribute) {
       return true;
   }
   attribute_parts_.push_back(
-      {attribute, first, static_cast<std::uint32_t>(module_.expressions.size()) - first});
+      {attribute, first, static_cast<std::uint32_t>(module_.expression_ends.size()) - first});
   return true;
 }
 

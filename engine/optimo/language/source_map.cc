@@ -7,7 +7,6 @@
 #include "engine/optimo/language/checker.h"
 #include "engine/optimo/language/compiler.h"
 #include "engine/optimo/language/linker.h"
-#include "engine/optimo/language/program.h"
 
 namespace rmlcell::optimo {
 namespace {
@@ -64,8 +63,13 @@ Result<RecoveredSource> RecoverSource(std::string_view object,
 
 std::vector<int> LinesOfSteps(std::string_view text) {
   Findings findings(0);
-  ParsedProgram program = Parse(text, findings);
+  ParsedProgram program = Parse(text, findings, Places::kStatements);
   Check(program, findings);
+  return LinesOfSteps(program);
+}
+
+std::vector<int> LinesOfSteps(const ParsedProgram& program) {
+  const std::string_view text = program.text;
   std::vector<int> lines;
   int line = 1;
   std::size_t at = 0;

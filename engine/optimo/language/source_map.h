@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/core/result.h"
+#include "engine/optimo/language/program.h"
 
 // The source map of an object: what the object itself does not hold. It lies beside the object,
 // outside of its size limit, and gives the programmer his own text back (comments, layout, long
@@ -44,5 +45,7 @@ Result<RecoveredSource> RecoverSource(std::string_view object,
 // ENDTASK (OPT-6.01, OPT-6.04): the line behind the last statement. Text that does not compile is
 // counted as far as it can be read.
 std::vector<int> LinesOfSteps(std::string_view text);
+// The same for a text that was parsed and checked already.
+std::vector<int> LinesOfSteps(const ParsedProgram& program);
 
 }  // namespace rmlcell::optimo

@@ -1,53 +1,55 @@
 #include "engine/optimo/language/staleness.h"
 
+#include <optional>
 #include <utility>
 
 namespace rmlcell::optimo {
-namespace {
 
-std::vector<StalePart> StaleParts(int slot, const Executable& executable,
-                                  const ObjectLookup& lookup) {
+std::string ReasonText(int slot, StaleReason reason) {
+  const std::string number = std::to_string(slot);
+  switch (reason) {
+    case StaleReason::kObjectChanged:
+      return "it was not made of the object of program " + number + " that is stored now";
+    case StaleReason::kObjectMissing:
+      return "program " + number + " is not stored any more";
+    case StaleReason::kFunctionChanged:
+      return "FUNCTION " + number + " was altered since it was made";
+    case StaleReason::kFunctionDeleted:
+      return "FUNCTION " + number + " is not stored any more";
+    case StaleReason::kDamaged:
+      break;
+  }
+  return "it cannot be read";
+}
+
+std::vector<StalePart> FindStaleParts(int slot, const Executable& executable,
+                                      const StoredObjects& stored) {
   std::vector<StalePart> parts;
   for (std::size_t m = 0; m < executable.modules.size(); ++m) {
     const LinkedModule& module = executable.modules[m];
-    const int object_slot = m == 0 ? slot : module.slot;
-    const std::optional<std::string_view> object = lookup(object_slot);
-    if (!object) {
+    const bool main = m == 0;
+    const int object_slot = main ? slot : module.slot;
+    const std::optional<std::string_view> object = stored.lookup(object_slot);
+    if (object) {
+      if (HashObject(*object) == module.object_hash) continue;
       parts.push_back(
-          {object_slot, m == 0 ? StaleReason::kObjectMissing : StaleReason::kFunctionMissing});
-    } else if (HashObject(*object) != module.object_hash) {
-      parts.push_back(
-          {object_slot, m == 0 ? StaleReason::kObjectChanged : StaleReason::kFunctionChanged});
+          {object_slot, main ? StaleReason::kObjectChanged : StaleReason::kFunctionChanged});
+    } else if (main) {
+      parts.push_back({object_slot, StaleReason::kObjectMissing});
+    } else if (stored.deleted.contains(object_slot)) {
+      parts.push_back({object_slot, StaleReason::kFunctionDeleted});
     }
   }
   return parts;
 }
 
-}  // namespace
-
-std::string_view ReasonText(StaleReason reason) {
-  switch (reason) {
-    case StaleReason::kObjectChanged:
-      return "the program was altered since";
-    case StaleReason::kObjectMissing:
-      return "the program is not stored any more";
-    case StaleReason::kFunctionChanged:
-      return "the FUNCTION was altered since";
-    case StaleReason::kFunctionMissing:
-      return "the FUNCTION is not stored";
-    case StaleReason::kDamaged:
-      break;
-  }
-  return "the executable cannot be read";
-}
-
 std::vector<StaleExecutable> FindStaleExecutables(
-    const std::map<int, std::string_view>& executables, const ObjectLookup& lookup) {
+    const std::map<int, std::string_view>& executables, const StoredObjects& stored) {
   std::vector<StaleExecutable> stale;
   for (const auto& [slot, bytes] : executables) {
     const Result<Executable> executable = DecodeExecutable(bytes);
     std::vector<StalePart> parts = executable
-                                       ? StaleParts(slot, *executable, lookup)
+                                       ? FindStaleParts(slot, *executable, stored)
                                        : std::vector<StalePart>{{slot, StaleReason::kDamaged}};
     if (!parts.empty()) stale.push_back({slot, std::move(parts)});
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -14,11 +15,11 @@ enum class StaleReason {
   kObjectChanged,    // the program's own object is another one: OPT-1.12 deletes such an executable
   kObjectMissing,    // the program's own object is gone: OPT-1.12
   kFunctionChanged,  // a FUNCTION that it contains is stored with another object: OPT-1.13
-  kFunctionMissing,  // a FUNCTION that it contains is not stored: OPT-1.13, OPT-1.15
+  kFunctionDeleted,  // a FUNCTION that it contains was deleted, which counts as altering: OPT-1.13
   kDamaged,          // the executable cannot be read
 };
-// "the FUNCTION was altered since", for people.
-std::string_view ReasonText(StaleReason reason);
+// "FUNCTION 44 was altered since the executable was made", for people.
+std::string ReasonText(int slot, StaleReason reason);
 
 struct StalePart {
   int slot = 0;  // 1..99, of the object concerned
@@ -33,8 +34,20 @@ struct StaleExecutable {
   bool operator==(const StaleExecutable&) const = default;
 };
 
+// The program memory as it is now.
+struct StoredObjects {
+  ObjectLookup lookup;
+  // Slots that held an object once and are empty now. A FUNCTION that was never stored makes
+  // nothing stale: its executable was linked off-line and brought (OPT-1.15).
+  std::set<int> deleted{};
+};
+
+// Empty: it is what a new link would give.
+std::vector<StalePart> FindStaleParts(int slot, const Executable& executable,
+                                      const StoredObjects& stored);
+
 // `executables`: bytes by the slot of their program, 1..99. By slot, only those that are stale.
 std::vector<StaleExecutable> FindStaleExecutables(
-    const std::map<int, std::string_view>& executables, const ObjectLookup& lookup);
+    const std::map<int, std::string_view>& executables, const StoredObjects& stored);
 
 }  // namespace rmlcell::optimo

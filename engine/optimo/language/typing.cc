@@ -25,9 +25,17 @@ Place Typing::PlaceOfStatement() const {
   return places_->At(*instruction_);
 }
 
-Place Typing::PlaceOfNode(std::size_t node) const {
+// The places of one statement are asked for as long as it has findings.
+NodePlace Typing::NodePlaceOf(std::size_t node) {
+  if (placed_ != instruction_) node_places_ = places_->NodePlacesOf(*instruction_);
+  placed_ = instruction_;
+  return node_places_[node - module_.FirstNode(instruction_->first_expression)];
+}
+
+Place Typing::PlaceOfNode(std::size_t node) {
   if (places_ == nullptr) return PlaceOfStatement();
-  const NodePlace& place = places_->node_places[node];
+  if (findings_.full()) return {};  // it is only counted
+  const NodePlace place = NodePlaceOf(node);
   return {place.offset, static_cast<int>(place.length), static_cast<int>(instruction_->step)};
 }
 
@@ -51,7 +59,7 @@ void Typing::ReportUndeclared(std::uint16_t name, std::size_t node) {
   if (!nearest.empty()) {
     detail += "; did you mean " + nearest + "?";
     if (places_ != nullptr) {
-      const NodePlace& place = places_->node_places[node];
+      const NodePlace place = NodePlaceOf(node);
       fixes.push_back({place.offset, static_cast<int>(place.length), nearest});
     }
   }
@@ -109,11 +117,6 @@ bool Typing::ResolveNode(std::size_t at) {
   return true;
 }
 
-ValueType Typing::TypeOfVariable(const ExprNode& node) const {
-  return node.group == VariableGroup::kPar ? module_.parameter_types[node.index]
-                                           : TypeOf(node.group);
-}
-
 // 0 and 1 are logical where a logical value is wanted. OPT-B.45
 bool Typing::MakeLogical(Operand& operand) {
   if (operand.type == ValueType::kLogical) return true;
@@ -158,31 +161,45 @@ bool Typing::TypeBinary(std::size_t at, Operand& a, Operand& b) {
   return NeedNumeric(b) && first;
 }
 
+ValueType Typing::TypeOfLeaf(const ExprNode& node) const {
+  switch (node.op) {
+    case Node::kInteger:
+      return ValueType::kInteger;
+    case Node::kLogical:
+      return ValueType::kLogical;
+    case Node::kVariable:
+      return node.group == VariableGroup::kPar ? module_.parameter_types[node.index]
+                                               : TypeOf(node.group);
+    default:
+      return ValueType::kReal;
+  }
+}
+
+Typing::Operand Typing::TypeLeaf(std::size_t at) {
+  const bool known = ResolveNode(at);
+  ExprNode& node = module_.nodes[at];
+  node.type = TypeOfLeaf(node);
+  return {at, node.type, !known};
+}
+
+bool Typing::HasType(Operand& root, Wanted wanted) {
+  if (root.unknown || wanted == Wanted::kAny) return !root.unknown;
+  return wanted == Wanted::kNumeric ? NeedNumeric(root) : NeedLogical(root);
+}
+
 bool Typing::Type(std::uint32_t expression, Wanted wanted) {
-  const ExprRange range = module_.expressions[expression];
+  const ExprRange range = module_.Range(expression);
+  if (range.count == 1) {
+    Operand leaf = TypeLeaf(range.first);
+    return HasType(leaf, wanted);
+  }
   stack_.clear();
   bool good = true;
   for (std::size_t at = range.first; at < range.first + range.count; ++at) {
     const Node op = module_.nodes[at].op;
     const int arity = Arity(op);
     if (arity == 0) {
-      Operand operand{at, ValueType::kReal, !ResolveNode(at)};
-      ExprNode& node = module_.nodes[at];
-      switch (node.op) {
-        case Node::kInteger:
-          node.type = ValueType::kInteger;
-          break;
-        case Node::kLogical:
-          node.type = ValueType::kLogical;
-          break;
-        case Node::kVariable:
-          node.type = TypeOfVariable(node);
-          break;
-        default:
-          node.type = ValueType::kReal;
-          break;
-      }
-      operand.type = node.type;
+      const Operand operand = TypeLeaf(at);
       good = good && !operand.unknown;
       stack_.push_back(operand);
       if (stack_.size() > kOperandStackMax) {
@@ -207,13 +224,11 @@ bool Typing::Type(std::uint32_t expression, Wanted wanted) {
     good = good && !result.unknown;
     stack_.push_back(result);
   }
-  Operand& root = stack_.back();
-  if (root.unknown || wanted == Wanted::kAny) return good;
-  return (wanted == Wanted::kNumeric ? NeedNumeric(root) : NeedLogical(root)) && good;
+  return HasType(stack_.back(), wanted) && good;
 }
 
 bool Typing::ResolveTarget(std::uint32_t expression) {
-  const std::size_t at = module_.expressions[expression].first;
+  const std::size_t at = module_.FirstNode(expression);
   const bool reads = reads_machine_;
   if (!ResolveNode(at)) return false;
   reads_machine_ = reads;  // writing is not reading
@@ -223,7 +238,7 @@ bool Typing::ResolveTarget(std::uint32_t expression) {
            "OPT-7.43");
     return false;
   }
-  node.type = TypeOfVariable(node);
+  node.type = TypeOfLeaf(node);
   if (IsReadOnly(node.variable())) {
     Report(ErrorCode::kReadOnly, at,
            std::string(GroupName(node.group)) + "[" + std::to_string(node.index) +
@@ -236,7 +251,7 @@ bool Typing::ResolveTarget(std::uint32_t expression) {
 
 void Typing::Declare(const Instruction& instruction) {
   DeclaredName& name = module_.names[instruction.name];
-  const std::size_t at = module_.expressions[instruction.first_expression].first;
+  const std::size_t at = module_.FirstNode(instruction.first_expression);
   if (!ResolveNode(at)) {
     if (places_ == nullptr) Report(ErrorCode::kNameUndeclared, at, {}, {});
     return;
@@ -247,20 +262,7 @@ void Typing::Declare(const Instruction& instruction) {
     return;
   }
   ExprNode& node = module_.nodes[at];
-  switch (node.op) {
-    case Node::kInteger:
-      node.type = ValueType::kInteger;
-      break;
-    case Node::kLogical:
-      node.type = ValueType::kLogical;
-      break;
-    case Node::kVariable:
-      node.type = TypeOfVariable(node);
-      break;
-    default:
-      node.type = ValueType::kReal;
-      break;
-  }
+  node.type = TypeOfLeaf(node);
   name.declared = true;
   name.value = node;
   name.value.index_name = kNoName;

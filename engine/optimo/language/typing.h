@@ -41,7 +41,7 @@ class Typing {
   }
   bool reads_machine() const { return reads_machine_; }
 
-  Place PlaceOfNode(std::size_t node) const;
+  Place PlaceOfNode(std::size_t node);
   Place PlaceOfStatement() const;
 
  private:
@@ -50,10 +50,13 @@ class Typing {
     ValueType type = ValueType::kReal;
     bool unknown = false;  // has an error already
   };
+  NodePlace NodePlaceOf(std::size_t node);
+  Operand TypeLeaf(std::size_t node);
   bool ResolveNode(std::size_t node);
   bool ResolveIndex(std::size_t node);
   void UseVariable(const ExprNode& node);
-  ValueType TypeOfVariable(const ExprNode& node) const;
+  ValueType TypeOfLeaf(const ExprNode& node) const;
+  bool HasType(Operand& root, Wanted wanted);
   bool MakeLogical(Operand& operand);
   bool NeedNumeric(const Operand& operand);
   bool NeedLogical(Operand& operand);
@@ -69,6 +72,8 @@ class Typing {
   std::array<bool, kParameterCount> parameter_used_{};
   std::array<bool, kParameterCount> parameter_defined_{};
   std::vector<Operand> stack_;
+  const Instruction* placed_ = nullptr;  // whose places are in node_places_
+  std::vector<NodePlace> node_places_;
 };
 
 }  // namespace rmlcell::optimo

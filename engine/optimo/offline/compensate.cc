@@ -201,7 +201,7 @@ void Compensator::PassWork(const Instruction& i) {
 }
 
 std::optional<double> Compensator::Literal(std::uint32_t expression) const {
-  const ExprRange range = module_.expressions[expression];
+  const ExprRange range = module_.Range(expression);
   const Node op = module_.nodes[range.first].op;
   if (range.count != 1 || (op != Node::kInteger && op != Node::kReal)) return std::nullopt;
   const NodePlace& place = p_.node_places[range.first];
@@ -243,7 +243,7 @@ void Compensator::CompensateHole(const Instruction& move) {
   const double compensated = *radius + SignedOffset();
   if (compensated <= 0.0)
     return Report(ErrorCode::kCompHole, path, "the hole is not larger than the beam", "OPT-8.14");
-  RewriteNumber(module_.expressions[path.first_expression].first, compensated);
+  RewriteNumber(module_.FirstNode(path.first_expression), compensated);
   if (!std::exchange(hole_advice_given_, true)) {
     findings_.AddAs(
         Severity::kAdvice, ErrorCode::kPracticeAdvice, p_.At(move),
@@ -325,7 +325,7 @@ void Compensator::Rewrite(const Instruction& i, const OffsetLeg& moved) {
     double value = *Literal(i.first_expression + v);
     const Vec3* point = v < 3 ? &moved.to : v >= 5 && v < 8 && moved.via ? &*moved.via : nullptr;
     if (point != nullptr) value = v % 5 == 0 ? point->x : v % 5 == 1 ? point->y : point->z;
-    RewriteNumber(module_.expressions[i.first_expression + v].first, value);
+    RewriteNumber(module_.FirstNode(i.first_expression + v), value);
   }
 }
 

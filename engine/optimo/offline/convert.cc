@@ -185,7 +185,7 @@ void Converter::ConvertExpression(std::uint32_t expression, Unit place) {
     std::size_t operators = 0;
     bool convertible = true;  // only + - and relations so far
   };
-  const ExprRange range = module_.expressions[expression];
+  const ExprRange range = module_.Range(expression);
   if (range.count == 1) {  // nearly all
     const ExprNode& node = module_.nodes[range.first];
     const bool constant = node.op == Node::kName && names_[node.name].constant;

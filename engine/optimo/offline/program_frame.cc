@@ -18,7 +18,7 @@ bool ProgramFrame::Set(const ParsedProgram& program, const Instruction& sysdef) 
   std::array<double, 3> angles{};
   bool known = true;
   for (std::uint32_t v = 0; v < 3 && sysdef.value_count == 6; ++v) {
-    const ExprRange range = program.module.expressions[sysdef.first_expression + 3 + v];
+    const ExprRange range = program.module.Range(sysdef.first_expression + 3 + v);
     const Node op = program.module.nodes[range.first].op;
     const bool literal = range.count == 1 && (op == Node::kInteger || op == Node::kReal);
     const NodePlace& place = program.node_places[range.first];

@@ -35,6 +35,7 @@ struct Draft {
   std::array<std::uint32_t, kProcesses> first_on{};  // instruction of its first WORK ON, plus one
   bool uses_sysdef = false;
   std::optional<std::uint32_t> absol_move_without_sysdef;
+  bool own_text = true;  // but for units it is what the project has
 };
 
 class Planner {
@@ -147,9 +148,11 @@ void Planner::AddDraft(const machine::ProjectProgram& program) {
     const Result<std::string> source = ObjectToSource(program.file.bytes);
     if (!source) return Report(source.error().code, source.error().detail, "OPT-B.71", &draft);
     draft.text = *source;
+    draft.own_text = false;
   } else if (program.inch || form == FileForm::kInchSource) {
     Conversion converted = Convert(program.file.bytes, Direction::kToMetric);
     draft.text = std::move(converted.text);
+    draft.own_text = form == FileForm::kInchSource;  // else its name would not tell its units
     for (Diagnostic& found : converted.diagnostics) {
       // What is no legal RML is reported by the compiler, with its own code.
       if (found.code == ErrorCode::kConvertNotRml) continue;
@@ -309,6 +312,7 @@ void Planner::RequireDefinitions(Draft& draft) {
   }
   const std::vector<Fix> edits = {{static_cast<std::int64_t>(line), 0, std::move(text)}};
   draft.text = ApplyEdits(draft.text, edits);
+  draft.own_text = false;
 }
 
 // If one program of a project uses SYSDEF, all should. OPT-7.39
@@ -337,7 +341,8 @@ void Planner::CompileDraft(Draft& draft) {
     Add(std::move(found));
   }
   if (!compiled.ok) return;
-  plan_.programs.push_back({draft.from->slot, std::move(draft.text), std::move(compiled.object)});
+  plan_.programs.push_back({draft.from->slot, std::move(draft.text), std::move(compiled.object),
+                            draft.own_text});
 }
 
 }  // namespace

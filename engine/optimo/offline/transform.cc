@@ -21,7 +21,7 @@ constexpr double kStraightDown = 1e-9;  // of sin B: then A is free
 constexpr int kFirstShiftVariable = 86;
 
 std::optional<double> Literal(const ParsedProgram& program, std::uint32_t expression) {
-  const ExprRange range = program.module.expressions[expression];
+  const ExprRange range = program.module.Range(expression);
   const Node op = program.module.nodes[range.first].op;
   if (range.count != 1 || (op != Node::kInteger && op != Node::kReal) ||
       program.module.nodes[range.first].name != kNoName) {
@@ -32,7 +32,7 @@ std::optional<double> Literal(const ParsedProgram& program, std::uint32_t expres
 }
 
 Fix NumberEdit(const ParsedProgram& program, std::uint32_t expression, double value) {
-  const NodePlace& place = program.node_places[program.module.expressions[expression].first];
+  const NodePlace& place = program.node_places[program.module.FirstNode(expression)];
   return {place.offset, static_cast<int>(place.length), TrimmedText(value, kDecimals)};
 }
 

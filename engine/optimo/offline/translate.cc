@@ -3,8 +3,6 @@
 #include <cctype>
 #include <utility>
 
-#include "engine/optimo/language/source_map.h"
-
 namespace rmlcell::optimo {
 namespace {
 
@@ -73,6 +71,7 @@ machine::Translation TranslateOptimo(const machine::SourceFile& file,
               {.object_limit = object_limit,
                .advice = options.advice,
                .inch = form == FileForm::kInchSource,
+               .step_lines = options.step_lines,
                .diagnostics_max = machine::kDiagnosticsMax,
                .further_advice = [&](const ParsedProgram& program, Findings& findings) {
                  AdviseOnContours(program, contour_machine, findings);
@@ -83,7 +82,7 @@ machine::Translation TranslateOptimo(const machine::SourceFile& file,
   translation.diagnostics = std::move(compiled.diagnostics);
   translation.diagnostics_dropped = compiled.diagnostics_dropped;
   if (compiled.ok) AddFigures(compiled.module, file.bytes.size(), translation);
-  if (compiled.ok && options.step_lines) translation.step_lines = LinesOfSteps(file.bytes);
+  translation.step_lines = std::move(compiled.step_lines);
   return translation;
 }
 

@@ -100,7 +100,16 @@ class Checker {
                1e-6 + 1e-12 / h);
           Most(motion, "tip acceleration", acceleration, m.tip_acceleration_mm_s2, room);
         }
-        if (blend) {
+        if (blend && Varies(motion.speed)) {
+          const Vec3 along = (p2.tip - p0.tip) * (1.0 / std::max(Norm(p2.tip - p0.tip), 1e-300));
+          const Vec3 second = (p2.tip - p1.tip * 2.0 + p0.tip) * (1.0 / (h * h));
+          const double tangential = Dot(second, along);
+          Most(motion, "acceleration across a blend", Norm(second - along * tangential),
+               m.normal_acceleration(), room);
+          Most(motion, "acceleration along a blend", std::abs(tangential),
+               m.curve_tangential * m.tip_acceleration_mm_s2, room);
+          if (planar && std::isfinite(m.tip_jerk_mm_s3)) CurveJerk(motion, s, speed);
+        } else if (blend) {
           Most(motion, "acceleration in a blend", acceleration, m.normal_acceleration(), room);
           // Third differences over four places; the tip's jerk at constant speed. Out of a plane
           // the curve's torsion adds what motion.md 4.3 does not count.
@@ -132,6 +141,21 @@ class Checker {
       }
       phase_start += duration;
     }
+  }
+
+  static bool Varies(const SpeedProfile& speed) {
+    return speed.phase_count() != 1 || speed.phase(0).jerk != 0.0 ||
+           speed.phase(0).start.acceleration != 0.0;
+  }
+
+  // v^3 sqrt(kappa'^2 + kappa^4) of motion.md 4.3, from places along the curve.
+  void CurveJerk(const PlannedMotion& motion, double s, double speed) {
+    const double q = 5e-5 * speed;
+    if (s < 3 * q || s + 3 * q > motion.path.length() || q < 1e-6) return;
+    const auto at = [&](double place) { return motion.path.At(place).tip; };
+    const Vec3 third = at(s + 3 * q) - at(s + q) * 3.0 + at(s - q) * 3.0 - at(s - 3 * q);
+    const double cube = speed * speed * speed / (8 * q * q * q);
+    Most(motion, "jerk in a blend", Norm(third) * cube, plan_.machine.normal_jerk(), 8e-12 * cube);
   }
 
   // Stops meet their target; the way round a /FLY target keeps the distance that is reported.

@@ -40,7 +40,7 @@ namespace rmlcell::rml1 {
 namespace {
 
 // With sanitizers a tenth of the size says as much.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef RMLCELL_SANITIZED
 constexpr std::size_t kHuge = 10'000'000;
 constexpr std::size_t kLarge = 200'000;
 #else

@@ -47,6 +47,8 @@ TEST(DescribeInputs, EveryFieldChangesTheHash) {
       [&](machine::RunSetup& s) { s.programs[1].name.push_back('m'); },
       [&](machine::RunSetup& s) { s.programs[2] = s.programs[1]; },
       [](machine::RunSetup& s) { s.main_program = 2; },
+      [](machine::RunSetup& s) { s.deleted_programs = {44}; },
+      [](machine::RunSetup& s) { s.deleted_programs = {45}; },
       [](machine::RunSetup& s) { s.schedules.emplace(); },
       [](machine::RunSetup& s) { s.schedules = {{.number = 1, .name = "", .mode = "CW"}}; },
       [](machine::RunSetup& s) {

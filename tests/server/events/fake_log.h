@@ -92,6 +92,7 @@ class FakeLog final : public storage::Store {
   Result<std::vector<storage::ProgramRecord>> GetProgramMemory(std::string_view) override {
     return No();
   }
+  Result<std::vector<int>> ListDeletedPrograms(std::string_view) override { return No(); }
   Result<std::vector<storage::ProgramSummary>> PutPrograms(
       std::string_view, const std::vector<storage::ProgramWrite>&,
       const std::vector<storage::ScheduleRecord>&) override {

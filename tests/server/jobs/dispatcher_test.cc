@@ -148,6 +148,25 @@ TEST(DispatcherFinish, StoresOutcomeProductsAndLastEventTogether) {
   EXPECT_EQ(events.back().ended().kind(), v1::Outcome::KIND_COMPLETED);
 }
 
+// OPT-1.13: a run must know which FUNCTIONs were deleted; those that never were are no news.
+TEST(DispatcherAssignment, NamesTheProgramsThatWereDeleted) {
+  DispatcherBed bed;
+  storage::Store& store = bed.server.store();
+  Must(store.PutPrograms(
+      "optimo-1", {{.slot = 32, .object = "object 32"}, {.slot = 44, .object = "object 44"}}, {}));
+  Must(store.DeleteProgram("optimo-1", 44, storage::kAnyRevision));
+  v1::Job specification;
+  specification.set_kind(v1::JOB_KIND_SIMULATE);
+  specification.set_program("machines/optimo-1/programs/32");
+  Must(store.SubmitAndWait({.machine = "optimo-1",
+                            .kind = "SIMULATE",
+                            .specification = specification.SerializeAsString(),
+                            .attachments = {{.name = "program", .bytes = "object 32"}}}));
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  EXPECT_THAT(worker.assignment().deleted_programs(), ElementsAre(44));
+}
+
 // OPT-1.11: the executable is stored under n + 100; OPT-1.12: not when the object changed
 // meanwhile.
 TEST(DispatcherFinish, KeepsExecutablesOfObjectsThatAreStillTheSame) {
@@ -166,6 +185,7 @@ TEST(DispatcherFinish, KeepsExecutablesOfObjectsThatAreStillTheSame) {
   ASSERT_TRUE(worker.Take());
   EXPECT_EQ(worker.assignment().main_program(), 32);
   EXPECT_EQ(worker.assignment().programs_size(), 2);
+  EXPECT_TRUE(worker.assignment().deleted_programs().empty());
   Must(store.PutPrograms("optimo-1", {{.slot = 44, .object = "new 44"}}, {}));
   worker.Finish(v1::Outcome::KIND_COMPLETED,
                 {{32, "executable 32"}, {44, "executable 44"}, {50, "none"}});

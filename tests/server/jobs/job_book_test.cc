@@ -193,8 +193,13 @@ TEST_F(JobBookTest, AskingOnlyStoresNothing) {
 
 TEST_F(JobBookTest, SoManyJobsMayWaitAndNoMore) {
   config.jobs_queued_max = 3;
-  for (int i = 0; i < 3; ++i) EXPECT_TRUE(Submit(Simulate()));
+  v1::SubmitJobRequest again = Simulate();
+  again.set_request_id("again");
+  const v1::Job first = Must(Submit(again));
+  for (int i = 0; i < 2; ++i) EXPECT_TRUE(Submit(Simulate()));
   EXPECT_EQ(CodeOf(Submit(Simulate())), ErrorCode::kCellResourceExhausted);
+  // Who saw no answer and repeats has his job, however full the queue is by now.
+  EXPECT_EQ(Must(Submit(again)).name(), first.name());
   Must(bed.store().Acquire("w", {"SIMULATE"}, std::chrono::hours(1), {}));
   EXPECT_TRUE(Submit(Simulate()));
 }

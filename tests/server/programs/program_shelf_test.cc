@@ -175,7 +175,10 @@ TEST_F(ProgramShelfTest, AnExecutableNeedsItsObject) {
   EXPECT_EQ(CodeOf(StoreExecutable(132, "no executable")), ErrorCode::kObjectCorrupt);
   EXPECT_EQ(CodeOf(StoreExecutable(132, executable, "99")), ErrorCode::kCellEtagMismatch);
   EXPECT_FALSE(Get(32).has_executable_bytes());
-  ASSERT_TRUE(StoreExecutable(132, executable, etag));
+  const auto stored = StoreExecutable(132, executable, etag);
+  ASSERT_TRUE(stored);
+  EXPECT_EQ(stored.value->name(), Name(132));
+  EXPECT_EQ(Get(132).name(), Name(132));
   EXPECT_EQ(CodeOf(StoreExecutable(132, executable, "none")), ErrorCode::kCellAlreadyExists);
   EXPECT_TRUE(StoreExecutable(32, executable));  // the form says which one is meant
   const auto read = Must(shelf.Read(Name(132), v1::PROGRAM_FORM_UNSPECIFIED));

@@ -17,6 +17,12 @@ template <class T>
 std::optional<ErrorCode> CodeOf(const ProgramResult<T>& result) {
   return result ? std::nullopt : std::optional(result.error.error.code);
 }
+using storage::Must;
+template <class T>
+T Must(ProgramResult<T> result) {
+  if (!result) ADD_FAILURE() << result.error.error.detail;
+  return *std::move(result.value);
+}
 constexpr auto kInvalid = ErrorCode::kCellInvalidArgument;
 
 class ProjectBookTest : public testing::Test {
@@ -42,7 +48,7 @@ class ProjectBookTest : public testing::Test {
     process.set_process(number);
     for (const double value : values) process.add_values(value);
   }
-  Result<v1::Project> Create(const std::string& id, const v1::Project& project,
+  ProgramResult<v1::Project> Create(const std::string& id, const v1::Project& project,
                              bool validate_only = false) {
     v1::CreateProjectRequest request;
     request.set_project_id(id);
@@ -119,7 +125,7 @@ TEST_F(ProjectBookTest, ChecksItsPartsBeforeItIsKept) {
        }},
       {"process 3,0", ErrorCode::kProcessNumber, [](auto& p) { Define(p, 3, 0, {}); }},
       {"process 0,10", ErrorCode::kProcessNumber, [](auto& p) { Define(p, 0, 10, {}); }},
-      {"process twice", kInvalid, [](auto& p) { Define(p, 0, 1, {}), Define(p, 0, 1, {}); }},
+      {"process twice", ErrorCode::kProjectDuplicate, [](auto& p) { Define(p, 0, 1, {}), Define(p, 0, 1, {}); }},
   };
   ASSERT_TRUE(Create("kept", {}));
   for (const auto& [what, code, change] : cases) {
@@ -133,6 +139,34 @@ TEST_F(ProjectBookTest, ChecksItsPartsBeforeItIsKept) {
   }
   EXPECT_EQ(CodeOf(book.Get("projects/new")), ErrorCode::kCellNotFound);
   EXPECT_EQ(Must(book.Get("projects/kept")).etag(), "1");
+}
+
+// OPT-3.03, OPT-3.04, OPT-3.06, OPT-3.08: a definition is checked when it is kept, not when it is needed.
+TEST_F(ProjectBookTest, ChecksTheDefinitionsOfItsProcesses) {
+  const std::vector<std::tuple<int, std::initializer_list<double>, ErrorCode>> cases = {
+      {0, {1.0}, ErrorCode::kArgumentCount},
+      {1, {6.5, 80.0, 1.5}, ErrorCode::kArgumentCount},
+      {1, {6.5, 80.0, 1.5, 95.0, 1.0, 1.0}, ErrorCode::kArgumentCount},
+      {2, {}, ErrorCode::kArgumentCount},
+      {2, {64.0}, ErrorCode::kScheduleRange},
+      {1, {0.0, 80.0, 1.5, 95.0}, ErrorCode::kLiteralRange},
+      {1, {6.5, 100.5, 1.5, 95.0}, ErrorCode::kLiteralRange},
+      {1, {6.5, 80.0, -1.0, 95.0}, ErrorCode::kLiteralRange},
+      {1, {6.5, 80.0, 1.5, std::nan("")}, ErrorCode::kLiteralRange},
+  };
+  for (const auto& [kind, values, code] : cases) {
+    v1::Project project;
+    Define(project, 0, 4, {});
+    Define(project, kind, 3, values);
+    const auto made = Create("new", project);
+    EXPECT_EQ(CodeOf(made), code) << kind << ", " << values.size() << " values";
+    ASSERT_EQ(made.error.diagnostics.size(), 1U);
+    EXPECT_THAT(made.error.error.detail, testing::HasSubstr(std::to_string(kind) + ",3"));
+  }
+  v1::Project good;
+  Define(good, 1, 3, {100.0, 0.0, 0.0, 100.0, 63.0});
+  Define(good, 2, 3, {63.0});
+  EXPECT_TRUE(Create("good", good));
 }
 
 TEST_F(ProjectBookTest, AnUpdateChangesWhatItsMaskNames) {
@@ -304,6 +338,28 @@ TEST_F(ProjectBookTest, InchProgramsAreConverted) {
   for (int slot = 45; slot <= 48; ++slot) {
     EXPECT_EQ(Must(bed.store().GetProgram("optimo-1", slot)).object, object) << slot;
   }
+}
+
+// OPT-8.70, OPT-8.72: the programmer gets his own text back, under a name that tells its units. A text
+// that the transfer had to write is metric, whatever the name in the project says.
+TEST_F(ProjectBookTest, TheStoredSourceIsThatOfTheProgrammer) {
+  v1::Project project;
+  Add(project, 45, "PATH HOLE (.5)  ; inches\n", "45.SI");
+  Add(project, 46, "PATH HOLE (.5)  ; inches\n", "46.S");
+  project.mutable_programs(1)->set_units(v1::UNITS_INCH);
+  Add(project, 47, "path hole (12.7)  ; mm\n", "47.S");
+  Add(project, 48, "WORK 1,3 /ON\nWORK 1,3 /OFF\n", "48.SI");
+  Define(project, 1, 3, {6.5, 80, 1.5, 95});
+  Must(Create("a", project));
+  ASSERT_TRUE(Transfer("a", true));
+  const auto source = [&](int slot) { return Must(bed.store().GetProgram("optimo-1", slot)); };
+  EXPECT_EQ(source(45).source, "PATH HOLE (.5)  ; inches\n");
+  EXPECT_EQ(source(45).source_name, "45.SI");
+  EXPECT_EQ(source(46).source, "PATH HOLE (12.7)  ; inches\n");
+  EXPECT_EQ(source(46).source_name, "46.S");
+  EXPECT_EQ(source(47).source, "path hole (12.7)  ; mm\n");
+  EXPECT_THAT(source(48).source.value(), testing::HasSubstr("WORKDEF 1,3"));
+  EXPECT_EQ(source(48).source_name, "48.S");
 }
 
 // OPT-3.09, OPT-3.11: differences are told, a WORK with neither is refused, a missing one is

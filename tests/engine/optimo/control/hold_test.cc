@@ -70,5 +70,36 @@ TEST(Hold, FinishesTheBendAndTheNextMove) {
   EXPECT_NEAR(ran.First("halt HOLD").at_s, begin + kTwoLegs_s, 1e-6);
 }
 
+// OPT-4.17: moves of 1 mm at 200 mm/s, on none of which the machine can come to rest: that takes 15
+// mm (200 / 2000 + 2000 / 40000 s at 100 mm/s in the mean). It halts on a target within the next
+// few more, goes no way twice, and START makes the rest.
+TEST(Hold, HaltsOnATargetWhereMovesAreTooShortToBrake) {
+  std::string text = "COORD ABSOL\nPATH LIN\nMOVE (1000.,1000.,-400.,0.,0.)\nSPEED 40\n";
+  constexpr int kMoves = 200;
+  for (int k = 1; k <= kMoves; ++k) {
+    text += "MOVE (" + std::to_string(1000 + k) + ".,1000.,-400.,0.,0.)";
+    text += k < kMoves ? "/FLY\n" : "\n";
+  }
+  const Ran free = RunText(text);
+  const double begin = ToSeconds(free.moves.front().at);
+  const double hold = begin + 0.5;  // 200 x (0.5 - 0.075) = 85 mm on the way
+  const Ran ran = Held(text, hold, begin + 20.0);
+  const Ran::Event& halt = ran.First("halt HOLD");
+  const int target = halt.step - 4;
+  EXPECT_GE(target, 85 + 15);
+  EXPECT_LE(target, 85 + 15 + 8);
+  EXPECT_GT(halt.at_s, hold + 0.15);
+  EXPECT_LT(halt.at_s, hold + 0.35);
+  EXPECT_NEAR(ran.end.tip.tip.x, 1000.0 + kMoves, 1e-4);
+  double travelled = 0.0;
+  for (const Ran::Part& part : ran.parts) {
+    if (part.motion.path.kind() == motion::PathPiece::Kind::kLine &&
+        part.done.start >= ran.moves.front().at) {
+      travelled += part.done.travelled - part.done.from;
+    }
+  }
+  EXPECT_NEAR(travelled, kMoves, 1e-6);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing

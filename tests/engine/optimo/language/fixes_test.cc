@@ -25,7 +25,22 @@ TEST(Fixes, WhatHasNoEffectIsTakenOut) {
   EXPECT_EQ(Fixed("SYSDEF (0,0,0,0,0,0) ; off\n"), "SYSDEF ; off\n");
 }
 
-// A text without fixes stays as it is; overlapping fixes are applied once.
+// OPT-7.37, OPT-1.30: what would take a comment away is told, but not repaired.
+TEST(Fixes, NoFixTakesACommentAway) {
+  const std::string text = "SYSDEF (0,0,0, ; place\n0,0,0)\n";
+  EXPECT_EQ(Compile(text, "", {}).diagnostics.front().code, ErrorCode::kSysdefAllZero);
+  EXPECT_EQ(Fixed(text), text);
+}
+
+// OPT-1.30, OPT-2.61: an attribute on the next line, with comments on the way.
+TEST(Fixes, CommentsWithinAStatementStay) {
+  EXPECT_EQ(Fixed("MOVE (1.,2.,3.,0.,0.) / ; one\n; two\n  INF ; three\n"),
+            "MOVE (1.,2.,3.,0.,0.) ; one\n; two\n   ; three\n");
+  EXPECT_EQ(Fixed("MOVE (1.,2.,3.,0.,0.)\n  /INF ; three\n"), "MOVE (1.,2.,3.,0.,0.)\n ; three\n");
+}
+
+// A text without fixes stays as it is; of findings whose fixes overlap the first is repaired, and
+// the other one not in parts.
 TEST(Fixes, FirstOfOverlappingFixesWins) {
   EXPECT_EQ(Fixed("SPEED 101\n"), "SPEED 101\n");
   const Diagnostic one{.code = ErrorCode::kSyntax,
@@ -37,7 +52,10 @@ TEST(Fixes, FirstOfOverlappingFixesWins) {
                        .fixes = {{0, 3, "A"}}};
   Diagnostic two = one;
   two.fixes = {{2, 3, "B"}, {5, 1, "C"}};
-  EXPECT_EQ(ApplyFixes("012345678", std::vector<Diagnostic>{one, two}), "A34C678");
+  EXPECT_EQ(ApplyFixes("012345678", std::vector<Diagnostic>{one, two}), "A345678");
+  EXPECT_EQ(ApplyFixes("012345678", std::vector<Diagnostic>{two, one}), "01BC678");
+  two.fixes = {{3, 2, "B"}, {8, 1, "C"}};
+  EXPECT_EQ(ApplyFixes("012345678", std::vector<Diagnostic>{two, one}), "AB567C");
   two.fixes = {{100, 3, "B"}};
   EXPECT_EQ(ApplyFixes("012345678", std::vector<Diagnostic>{one, two}), "A345678");
 }

@@ -119,19 +119,6 @@ TEST_F(Linker, TheExecutableStaysBelowTheLimit) {
   EXPECT_EQ(LinkOptions{}.executable_limit, 32768U);
 }
 
-// OPT-1.13, OPT-E.7110
-TEST_F(Linker, ChangedFunctionsAreStale) {
-  Store(32, "FUNCTION 44\nFUNCTION 45\n");
-  Store(44, "SPEED 5\n");
-  Store(45, "SPEED 6\n");
-  const Result<Executable> executable = Link(32, Lookup(), {});
-  ASSERT_TRUE(executable);
-  EXPECT_TRUE(StaleFunctions(*executable, Lookup()).empty());
-  Store(44, "SPEED 7\n");
-  objects_.erase(45);
-  EXPECT_EQ(StaleFunctions(*executable, Lookup()), (std::vector<int>{44, 45}));
-}
-
 // OPT-1.15, OPT-B.71
 TEST_F(Linker, ExecutablesAreBytes) {
   Store(32, "FUNCTION 44 (7.)\n");
@@ -140,7 +127,7 @@ TEST_F(Linker, ExecutablesAreBytes) {
   const Result<Executable> again = DecodeExecutable(bytes);
   ASSERT_TRUE(again);
   EXPECT_EQ(EncodeExecutable(*again), bytes);
-  EXPECT_TRUE(StaleFunctions(*again, Lookup()).empty());
+  EXPECT_EQ(again->modules[1].object_hash, HashObject(*Lookup()(44)));
   for (std::size_t at = 0; at < bytes.size(); ++at) {
     std::string damaged = bytes;
     damaged[at] = static_cast<char>(damaged[at] ^ 0x20);

@@ -1,8 +1,9 @@
 // Properties over random valid programs; a failure names the seed that replays it.
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <sstream>
 #include <string>
+#include <utility>
 
 #include "engine/optimo/language/formatter.h"
 #include "tests/engine/optimo/language/compile_text.h"
@@ -12,6 +13,45 @@ namespace rmlcell::optimo {
 namespace {
 
 constexpr std::uint32_t kRounds = 400;
+
+void DumpExpression(const Module& module, Expression expression, std::ostream& out) {
+  const auto name = [&](std::uint16_t n) {
+    return n == kNoName ? NameKey{0} : module.names.at(n).key;
+  };
+  for (const ExprNode& node : expression) {
+    out << ' ' << static_cast<int>(node.op) << ':' << static_cast<int>(node.group) << ':'
+        << static_cast<int>(node.index) << ':' << name(node.name) << ':' << name(node.index_name)
+        << ':' << std::hexfloat << node.number;
+  }
+  out << ';';
+}
+
+// All that a tree holds, one instruction a line, written without the printer. Names by what they
+// are called: their numbers depend on the order of the text.
+std::string Dump(const Module& module) {
+  std::ostringstream out;
+  for (const Instruction& i : module.instructions) {
+    for (const std::uint16_t label : module.Labels(i)) out << label << ' ';
+    out << static_cast<int>(i.op) << ' ' << static_cast<int>(i.choice) << ' ' << i.attributes << ' '
+        << i.numbers[0] << ' ' << i.numbers[1] << ' ' << i.step;
+    if (i.op == Op::kDeclare) out << ' ' << module.names.at(i.name).key;
+    if (i.op == Op::kIgnored) out << ' ' << module.texts.at(i.name);
+    for (std::uint16_t t = 0; t < i.target_count; ++t)
+      out << " >" << module.targets.at(i.first_target + t);
+    for (std::uint32_t e = 0; e < module.ExpressionCount(i); ++e)
+      DumpExpression(module, module.expression(i.first_expression + e), out);
+    out << '\n';
+  }
+  for (const std::uint16_t label : module.end_labels) out << label << ' ';
+  return out.str();
+}
+
+Module ParseGood(const std::string& text) {
+  Findings findings;
+  ParsedProgram program = Parse(text, findings);
+  EXPECT_EQ(findings.error_count(), 0U) << text;
+  return std::move(program.module);
+}
 
 // OPT-1.05, OPT-1.06, OPT-B.69
 TEST(Properties, CompileDecompileCompileIsIdentity) {
@@ -25,6 +65,40 @@ TEST(Properties, CompileDecompileCompileIsIdentity) {
     const Compilation again = MustCompile(*source);
     ASSERT_EQ(again.object, compiled.object) << *source;
     ASSERT_EQ(Decompile(again.module), *source);
+  }
+}
+
+// The tree of a text is the tree of what is printed of it. OPT-B.35, OPT-B.39, OPT-B.40, OPT-B.41
+TEST(Properties, ParsePrintParseIsIdentity) {
+  for (std::uint32_t seed = 1; seed <= kRounds; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Module module = ParseGood(RandomProgram(seed).Make(40));
+    const std::string printed = Decompile(module);
+    ASSERT_EQ(Dump(ParseGood(printed)), Dump(module)) << printed;
+    ASSERT_EQ(Decompile(ParseGood(printed)), printed);
+  }
+}
+
+// The places of nodes that were not kept are found again, statement by statement. OPT-B.35,
+// OPT-2.43
+TEST(Properties, PlacesOfNodesAreFoundAgain) {
+  for (std::uint32_t seed = 1; seed <= kRounds; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const std::string text = RandomProgram(seed).Make(40);
+    Findings findings;
+    const ParsedProgram kept = Parse(text, findings, Places::kNodes);
+    const ParsedProgram bare = Parse(text, findings, Places::kStatements);
+    ASSERT_TRUE(bare.node_places.empty());
+    ASSERT_EQ(kept.node_places.size(), bare.module.nodes.size());
+    std::size_t node = 0;
+    for (const Instruction& instruction : bare.module.instructions) {
+      for (const NodePlace& place : bare.NodePlacesOf(instruction)) {
+        ASSERT_EQ(place.offset, kept.node_places[node].offset) << node;
+        ASSERT_EQ(place.length, kept.node_places[node].length) << node;
+        ++node;
+      }
+    }
+    ASSERT_EQ(node, kept.node_places.size());
   }
 }
 

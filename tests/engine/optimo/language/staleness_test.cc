@@ -25,9 +25,14 @@ class Staleness : public testing::Test {
   std::vector<StaleExecutable> Stale() {
     std::map<int, std::string_view> executables;
     for (const auto& [slot, bytes] : bytes_) executables[slot] = bytes;
-    return FindStaleExecutables(executables, Lookup());
+    return FindStaleExecutables(executables, {Lookup(), deleted_});
+  }
+  void Delete(int slot) {
+    objects_.erase(slot);
+    deleted_.insert(slot);
   }
   std::map<int, std::string> objects_, bytes_;
+  std::set<int> deleted_;
 };
 
 // OPT-1.13, OPT-9.13, OPT-E.7110: programs 32 and 68 contain 44, 12 does not.
@@ -42,10 +47,32 @@ TEST_F(Staleness, AnAlteredFunctionAgesAllThatContainIt) {
   Store(44, "SPEED 7\n");
   EXPECT_EQ(Stale(), (std::vector<StaleExecutable>{{32, {{44, StaleReason::kFunctionChanged}}},
                                                    {68, {{44, StaleReason::kFunctionChanged}}}}));
-  objects_.erase(44);  // deleting counts as altering
-  EXPECT_EQ(Stale()[0].parts[0].reason, StaleReason::kFunctionMissing);
+  Delete(44);  // counts as altering
+  EXPECT_EQ(Stale(), (std::vector<StaleExecutable>{{32, {{44, StaleReason::kFunctionDeleted}}},
+                                                   {68, {{44, StaleReason::kFunctionDeleted}}}}));
   Store(44, "SPEED 6\n");  // the old code again
   EXPECT_TRUE(Stale().empty());
+}
+
+// OPT-1.15: linked off-line and brought to a machine that never had FUNCTION 44.
+TEST_F(Staleness, AFunctionThatWasNeverStoredAgesNothing) {
+  Store(32, "FUNCTION 44\n");
+  Store(44, "SPEED 6\n");
+  Make(32);
+  objects_.erase(44);
+  EXPECT_TRUE(Stale().empty());
+}
+
+// OPT-1.13, OPT-9.05: one part for each FUNCTION concerned, in order of first use.
+TEST_F(Staleness, EveryFunctionConcernedIsNamed) {
+  Store(32, "FUNCTION 45\nFUNCTION 44\nFUNCTION 46\n");
+  for (const int slot : {44, 45, 46}) Store(slot, "SPEED 6\n");
+  Make(32);
+  Store(44, "SPEED 7\n");
+  Delete(45);
+  EXPECT_EQ(Stale(), (std::vector<StaleExecutable>{{32,
+                                                    {{45, StaleReason::kFunctionDeleted},
+                                                     {44, StaleReason::kFunctionChanged}}}}));
 }
 
 // OPT-1.12, OPT-1.14, OPT-1.15

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "engine/optimo/language/program.h"
 #include "tests/engine/optimo/language/random_program.h"
@@ -191,24 +193,94 @@ TEST(Convert, TextBehindItsEndStays) {
   EXPECT_EQ(Metric("VR[0] = 1\n\x1A VR[0] = 1"), "VR[0] = 25.4\n\x1A VR[0] = 1");
 }
 
-// There and back within 1e-6, and nothing but numbers touched. OPT-8.26
-TEST(Convert, ThereAndBackIsTheSame) {
-  for (std::uint32_t seed = 1; seed <= 100; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    const std::string text = RandomProgram(seed).Make(40);
-    const std::string inch = Inch(text);
-    const std::string back = Metric(inch);
-    Findings none(0);
-    const ParsedProgram a = Parse(text, none), b = Parse(back, none);
-    ASSERT_EQ(a.module.nodes.size(), b.module.nodes.size());
-    ASSERT_EQ(a.module.labels, b.module.labels);
-    for (std::size_t n = 0; n < a.module.nodes.size(); ++n) {
-      const double before = static_cast<double>(a.module.nodes[n].number);
-      const double after = static_cast<double>(b.module.nodes[n].number);
-      // Half a digit of the sixth decimal, times 25.4 on the way back.
-      ASSERT_NEAR(before, after, 2e-5 + 1e-6 * std::fabs(before)) << n;
+struct Literals {
+  std::vector<std::string> texts;  // of the numbers, in order
+  std::string rest;                // the text with a mark in place of each
+};
+
+Literals LiteralsOf(const std::string& text) {
+  Findings none(0);
+  const ParsedProgram program = Parse(text, none);
+  std::vector<NodePlace> places;
+  for (std::size_t n = 0; n < program.module.nodes.size(); ++n) {
+    const Node op = program.module.nodes[n].op;
+    if (op == Node::kInteger || op == Node::kReal) places.push_back(program.node_places[n]);
+  }
+  std::ranges::sort(places, {}, &NodePlace::offset);
+  Literals literals;
+  std::size_t at = 0;
+  for (const NodePlace& place : places) {
+    literals.texts.push_back(text.substr(place.offset, place.length));
+    literals.rest += text.substr(at, place.offset - at) + '#';
+    at = place.offset + place.length;
+  }
+  literals.rest += text.substr(at);
+  return literals;
+}
+
+// "- .5 E -3" too: signs first, blanks anywhere.
+double ValueOf(const std::string& text) {
+  const std::size_t digits = text.find_first_of(".0123456789");
+  std::string plain = text.substr(digits);
+  std::erase_if(plain, [](char c) { return c == ' ' || c == '\t'; });
+  const auto minus = std::count(text.begin(), text.begin() + static_cast<int>(digits), '-');
+  return (minus % 2 == 0 ? 1.0 : -1.0) * std::stod(plain);
+}
+
+// Half of the last decimal that is written, and what double precision leaves of long numbers.
+constexpr double kHalfDecimal = 0.5e-6;
+double Rounding(double value) { return 1e-15 * std::fabs(value) + 1e-15; }
+
+// What became of one number on the way there and back.
+void CheckNumber(const std::string& before, const std::string& there, const std::string& back,
+                 bool to_inch) {
+  if (there == before) {
+    // Without a unit; or a zero, or too small a number to be seen, that has one.
+    if (std::fabs(ValueOf(before)) > 0.0) {
+      EXPECT_EQ(back, before);
+    }
+    return;
+  }
+  const double a = ValueOf(before), b = ValueOf(there), c = ValueOf(back);
+  const double length = to_inch ? 1.0 / 25.4 : 25.4;
+  const double angle = to_inch ? 180.0 / std::acos(-1.0) : std::acos(-1.0) / 180.0;
+  const bool is_length = std::fabs(b - a * length) <= kHalfDecimal + Rounding(b);
+  const bool is_angle = std::fabs(b - a * angle) <= kHalfDecimal + Rounding(b);
+  ASSERT_TRUE(is_length || is_angle) << before << " became " << there;
+  // The half decimal that was lost on the way there, in the unit of the way back, and another half:
+  // within 1e-6 where the unit there is the finer one (inch to mm, radian to degree).
+  const double factor = is_length && is_angle ? std::min(length, angle)
+                        : is_length           ? length
+                                              : angle;
+  const double bound = kHalfDecimal / factor + kHalfDecimal + Rounding(a) + Rounding(b) / factor;
+  EXPECT_NEAR(c, a, bound) << before << " became " << there << " and " << back;
+  if (factor > 1.0) {
+    EXPECT_NEAR(c, a, 1e-6 + Rounding(a) + Rounding(b) / factor);
+  }
+}
+
+// OPT-8.26, OPT-8.27, OPT-8.28, OPT-8.29
+TEST(Convert, ThereAndBackIsTheSameAndNothingElseIsTouched) {
+  int changed = 0;
+  for (std::uint32_t seed = 1; seed <= 200; ++seed) {
+    for (const bool to_inch : {false, true}) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + (to_inch ? " to inch" : " to metric"));
+      const std::string text = RandomProgram(seed).Make(40);
+      const std::string there = to_inch ? Inch(text) : Metric(text);
+      const std::string back = to_inch ? Metric(there) : Inch(there);
+      const Literals a = LiteralsOf(text), b = LiteralsOf(there), c = LiteralsOf(back);
+      ASSERT_EQ(b.rest, a.rest);
+      ASSERT_EQ(c.rest, a.rest);
+      ASSERT_EQ(b.texts.size(), a.texts.size());
+      ASSERT_EQ(c.texts.size(), a.texts.size());
+      for (std::size_t n = 0; n < a.texts.size(); ++n) {
+        CheckNumber(a.texts[n], b.texts[n], c.texts[n], to_inch);
+        if (HasFatalFailure()) return;
+        changed += b.texts[n] != a.texts[n] ? 1 : 0;
+      }
     }
   }
+  EXPECT_GT(changed, 5000);  // more than ten a program
 }
 
 }  // namespace

@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <random>
+#include <string>
+#include <vector>
 
+#include "engine/core/number_text.h"
 #include "engine/core/units.h"
 #include "engine/optimo/language/program.h"
 #include "engine/optimo/offline/offset_path.h"
@@ -72,6 +77,108 @@ TEST(Transform, TheInverseBringsItBack) {
   ASSERT_EQ(a.module.nodes.size(), b.module.nodes.size());
   for (std::size_t n = 0; n < a.module.nodes.size(); ++n) {
     EXPECT_NEAR(a.module.nodes[n].number, b.module.nodes[n].number, 1.1e-6) << n;
+  }
+}
+
+// A program of moves with six decimals between other lines, as a CAD system would not write it.
+class RandomMoves {
+ public:
+  explicit RandomMoves(std::uint32_t seed) : random_(seed) {}
+
+  // millionths in [-range, range]
+  double Number(int range) {
+    const auto span = static_cast<std::uint32_t>(2 * range) + 1;
+    return (static_cast<double>(static_cast<std::uint32_t>(random_()) % span) - range) * 1e-6;
+  }
+  // The head well away from straight down, where A would be free.
+  std::string Pose() {
+    std::string text;
+    for (int axis = 0; axis < 3; ++axis) text += FixedText(Number(900'000'000), 6) + ", ";
+    const double b = 0.2 + 0.5 * (Number(1'000'000) + 1.0);
+    return "(" + text + FixedText(Number(3'000'000), 6) + "," + FixedText(b, 6) + ")";
+  }
+  std::string Make(int moves) {
+    std::string text = "COORD ABSOL ; start\n";
+    for (int n = 0; n < moves; ++n) {
+      text += std::to_string(n) + "\tMOVE " + Pose() + " /";
+      if (n % 3 == 0) text += "VIA" + Pose() + "/";
+      text += "FLY ; " + std::to_string(n) + "\nSPEED 1.5E1\n";
+    }
+    return text;
+  }
+
+ private:
+  std::mt19937 random_;
+};
+
+struct MoveNumbers {
+  std::vector<std::array<double, 5>> poses;  // targets and via points
+  std::string rest;                          // the text without their numbers
+};
+
+MoveNumbers NumbersOf(const std::string& text) {
+  Findings none;
+  const ParsedProgram program = Parse(text, none);
+  EXPECT_EQ(none.error_count(), 0U);
+  MoveNumbers found;
+  std::size_t at = 0;
+  for (const Instruction& i : program.module.instructions) {
+    if (i.op != Op::kMove) continue;
+    for (std::uint32_t e = 0; e < program.module.ExpressionCount(i); ++e) {
+      const ExprRange range = program.module.Range(i.first_expression + e);
+      const NodePlace& place = program.node_places[range.first];
+      if (e % 5 == 0) found.poses.emplace_back();
+      found.poses.back()[e % 5] = std::stod(text.substr(place.offset, place.length));
+      found.rest += text.substr(at, place.offset - at) + '#';
+      at = place.offset + place.length;
+    }
+  }
+  found.rest += text.substr(at);
+  return found;
+}
+
+// One unit of the sixth decimal: half of one is lost on the way there, the inverse turns that by at
+// most its length (half times the root of three), and the nearest six decimals to what comes back
+// are the old ones or their neighbours.
+constexpr double kOneDecimal = 1e-6 + 1e-9;
+
+// OPT-8.76, OPT-8.77
+TEST(Transform, RandomProgramsComeBackFromTheInverse) {
+  for (std::uint32_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    RandomMoves random(seed);
+    const std::string text = random.Make(20);
+    const motion::Vec3 shift{random.Number(500'000'000), random.Number(500'000'000),
+                             random.Number(500'000'000)};
+    const double turn = random.Number(1'500'000);
+    // About Z alone the head keeps its B, and A turns with the part; else the tool's direction says
+    // whether the head is right.
+    const bool about_z = seed % 2 == 0;
+    const RigidMotion motion =
+        about_z ? RigidMotion::Of(shift, turn, 0, 0)
+                : RigidMotion::Of(shift, turn, random.Number(3'000'000), random.Number(3'000'000));
+    const Rewriting there = Transform(text, motion);
+    ASSERT_TRUE(there.ok);
+    const Rewriting back = Transform(there.text, motion.Inverse());
+    ASSERT_TRUE(back.ok);
+    const MoveNumbers a = NumbersOf(text), b = NumbersOf(there.text), c = NumbersOf(back.text);
+    ASSERT_EQ(b.rest, a.rest);
+    ASSERT_EQ(c.rest, a.rest);
+    ASSERT_EQ(c.poses.size(), a.poses.size());
+    for (std::size_t n = 0; n < a.poses.size(); ++n) {
+      // The distance of two points is that of the moved ones.
+      const auto point = [n](const MoveNumbers& m, std::size_t k) {
+        return motion::Vec3{m.poses[k][0], m.poses[k][1], m.poses[k][2]};
+      };
+      EXPECT_NEAR(motion::Distance(point(b, 0), point(b, n)),
+                  motion::Distance(point(a, 0), point(a, n)), 2e-6);
+      for (std::size_t v = 0; v < (about_z ? 5U : 3U); ++v)
+        EXPECT_NEAR(c.poses[n][v], a.poses[n][v], kOneDecimal) << n << ' ' << v;
+      const motion::Vec3 old = ToolDirection(a.poses[n][3], a.poses[n][4]);
+      const motion::Vec3 turned = ToolDirection(b.poses[n][3], b.poses[n][4]);
+      EXPECT_NEAR(motion::Distance(motion.Turn(old), turned), 0.0, 1e-6);
+      EXPECT_NEAR(motion::Distance(ToolDirection(c.poses[n][3], c.poses[n][4]), old), 0.0, 2e-6);
+    }
   }
 }
 

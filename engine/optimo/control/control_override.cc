@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "engine/optimo/control/control.h"
+#include "engine/optimo/control/motion_place.h"
+
+// The feed override changed while the machine moves. motion.md 6, OPT-4.38
+namespace rmlcell::optimo {
+namespace {
+
+// Where a chain is planned anew: the way to there brings the acceleration to zero and the speed
+// down to the new one.
+struct Lead {
+  double length = 0.0;
+  double speed = 0.0;  // at its end
+};
+
+Lead LeadFrom(const motion::PathState& state, const motion::PathLimits& limits, double speed) {
+  Lead lead{.length = 0.0, .speed = state.speed};
+  const double a = state.acceleration;
+  if (a != 0.0 && std::isfinite(limits.jerk)) {
+    const double time = std::abs(a) / limits.jerk;
+    lead.length = time * (state.speed + a * time / 3.0);
+    lead.speed = std::max(state.speed + 0.5 * a * time, 0.0);
+  }
+  if (lead.speed > speed) {
+    lead.length += motion::RampLength(lead.speed, speed, limits);
+    lead.speed = speed;
+  }
+  return lead;
+}
+
+}  // namespace
+
+// Motions not begun are planned with the new value. The one under way goes over to it from where it
+// is; a bend that has begun, or is too near to slow down before it, keeps its shape and speed.
+void Control::ChangeOverride(double percent) {
+  const double before = s_.override_percent;
+  if (!(percent > 0.0) || percent == before) return;
+  s_.override_percent = percent;
+  for (AppendedItem& item : s_.held) AdaptToOverride(item);
+  if (!s_.active || s_.active->ended || s_.halting || s_.now >= s_.active->arrival) return;
+  if (!s_.interrupted.empty() || ReplanChain()) return;
+  ActiveMotion& active = *s_.active;
+  if (active.motion.speed.end().speed > 0.0 || active.note.speed_percent <= 0.0) return;
+  motion::MoveCommand command;
+  command.kind = active.note.kind;
+  command.path = active.motion.path;
+  command.head = active.motion.head;
+  command.speed_fraction = FractionOf(active.note);
+  command.acceleration_fraction = active.note.accel_fraction;
+  const motion::PathLimits limits = motion::LimitsOf(command, parameters_.limits);
+  const motion::PathState here = active.motion.speed.At(ToSeconds(s_.now - active.start));
+  TellMotion(s_.now);
+  const double length = active.motion.path.length();
+  motion::SpeedProfile changed = motion::SpeedProfile::From(here, length, 0.0, limits);
+  active.motion.limits = limits;
+  active.motion.path = active.motion.path.Part(here.s, length);
+  active.motion.speed = changed.Part(here.s, length);
+  BeginProfile();
+}
+
+double Control::FractionOf(const MoveNote& note) const {
+  return std::clamp(note.speed_percent * s_.override_percent * 1e-4, 1e-6, 1.0);
+}
+
+// A command that was appended with another override, and what is told of its feed rate.
+void Control::AdaptToOverride(AppendedItem& item) {
+  if (!item.move) return;
+  const auto found =
+      std::ranges::lower_bound(s_.notes, item.tag, {}, [](const auto& row) { return row.first; });
+  if (found == s_.notes.end() || found->first != item.tag) return;
+  MoveNote& note = found->second;
+  item.move->speed_fraction = FractionOf(note);
+  if (note.feed_mm_s > 0.0) {
+    note.feed_mm_s = item.move->speed_fraction * parameters_.limits.tip_speed_mm_s;
+  }
+}
+
+// From the first place on where that is possible; false: there is none.
+bool Control::ReplanChain() {
+  std::vector<motion::PlannedItem> kept;  // between the motion under way and that place
+  motion::PlannedMotion here = s_.active->motion;
+  motion::PathState state = here.speed.At(ToSeconds(s_.now - s_.active->start));
+  auto next = s_.timeline.begin();
+  for (bool under_way = true;; under_way = false) {
+    if (ReplanFrom({.motion = here, .state = state, .under_way = under_way}, kept)) return true;
+    if (!under_way) kept.emplace_back(here);
+    state = here.speed.end();
+    state.s = 0.0;
+    for (; next != s_.timeline.end() && std::holds_alternative<motion::PlannedMark>(*next);
+         ++next) {
+      kept.push_back(*next);
+    }
+    if (next == s_.timeline.end()) return false;
+    here = std::get<motion::PlannedMotion>(*next++);
+  }
+}
+
+// False: not from this motion. Nothing has changed then.
+bool Control::ReplanFrom(const ChainPlace& place, const std::vector<motion::PlannedItem>& kept) {
+  const motion::MoveCommand* command = Appended(place.motion.tag);
+  if (command == nullptr) return false;
+  AppendedItem rest{.tag = place.motion.tag, .move = *command};
+  AdaptToOverride(rest);
+  const double speed = motion::LimitsOf(*rest.move, parameters_.limits).speed;
+  const std::optional<Onward> onward = OnwardFrom(place, *rest.move, speed);
+  if (!onward) return false;
+  const auto own = s_.appended.begin() + static_cast<std::ptrdiff_t>(onward->own);
+  std::vector<AppendedItem> later(std::next(own), s_.appended.end());
+  for (AppendedItem& item : later) AdaptToOverride(item);
+  std::optional<motion::Planner> planner = PlanOnward(*onward, later);
+  if (!planner) return false;
+  if (!s_.passing) planner->Stop();
+  std::copy(later.begin(), later.end(), std::next(own));
+  *own = rest;
+  GoOnward(place, *onward, kept);
+  s_.planner = *std::move(planner);
+  DrainPlanner();
+  if (!s_.active) StartNextItem();
+  return true;
+}
+
+// How the chain could go on from here under `command`, not faster than `speed`; nothing when it
+// cannot.
+std::optional<Control::Onward> Control::OnwardFrom(const ChainPlace& place,
+                                                   const motion::MoveCommand& command,
+                                                   double speed) const {
+  const motion::PlannedMotion& here = place.motion;
+  const auto own = std::ranges::find(s_.appended, here.tag, &AppendedItem::tag);
+  if (own == s_.appended.end() || !LineOrArc(here.path) || !LineOrArc(command.path)) {
+    return std::nullopt;
+  }
+  const Lead lead = LeadFrom(place.state, here.limits, speed);
+  const double end = place.state.s + lead.length;
+  const double begin = PlaceOn(command.path, here.path.from().tip) + end;
+  constexpr double kLeft_mm = 1e-3;  // less of a move is not worth a plan
+  if (end > here.path.length() || begin > command.path.length() - kLeft_mm) return std::nullopt;
+  Onward onward{.own = static_cast<std::size_t>(own - s_.appended.begin()),
+                .lead_length = lead.length,
+                .speed = lead.speed,
+                .first = command};
+  onward.first.path = command.path.Part(begin, command.path.length());
+  return onward;
+}
+
+// Nothing when what follows cannot be met from there, even if the chain ended with `later`.
+std::optional<motion::Planner> Control::PlanOnward(const Onward& onward,
+                                                   std::span<const AppendedItem> later) const {
+  motion::Planner planner(parameters_.limits);
+  planner.BeginMoving(onward.speed);
+  if (!planner.Append(onward.first)) return std::nullopt;
+  for (const AppendedItem& item : later) {
+    if (!item.move) {
+      planner.Mark(item.tag);
+    } else if (!planner.Append(*item.move)) {
+      return std::nullopt;
+    }
+  }
+  motion::Planner trial = planner;
+  trial.Stop();
+  if (!trial.Next() || trial.starts_too_fast()) return std::nullopt;
+  return planner;
+}
+
+// The way to the place where the new plan begins takes the place of what was planned.
+void Control::GoOnward(const ChainPlace& place, const Onward& onward,
+                       const std::vector<motion::PlannedItem>& kept) {
+  if (place.under_way) TellMotion(s_.now);
+  s_.timeline.assign(kept.begin(), kept.end());
+  if (onward.lead_length > 0.0) {
+    const motion::PlannedMotion& here = place.motion;
+    motion::PlannedMotion lead = here;
+    lead.path = here.path.Part(place.state.s, place.state.s + onward.lead_length);
+    motion::PathLimits limits = here.limits;
+    limits.speed = onward.speed;
+    motion::PathState state = place.state;
+    state.s = 0.0;
+    lead.speed = motion::SpeedProfile::From(state, onward.lead_length, onward.speed, limits);
+    lead.settling_s = 0.0;
+    lead.ends_move = false;
+    lead.corner = {};
+    if (place.under_way) {
+      s_.active->motion = lead;
+      BeginProfile();
+    } else {
+      s_.timeline.emplace_back(lead);
+    }
+  } else if (place.under_way) {
+    s_.machine.axes = AxesNow();
+    s_.active.reset();
+  }
+}
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,67 @@
+#include "engine/optimo/offline/fix_program.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/optimo/language/compiler.h"
+#include "engine/optimo/language/fixes.h"
+#include "engine/optimo/offline/translate.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+// Each round repairs all that do not touch each other, of the first thousand findings: a text that
+// needs more was not written by hand.
+constexpr int kRoundsMax = 64;
+
+std::size_t ErrorCount(const machine::Translation& translation) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      translation.diagnostics, [](const Diagnostic& found) { return IsError(found.severity); }));
+}
+
+// Advice on an inch source would take its numbers for millimetres.
+machine::Translation CheckForm(const machine::SourceFile& file) {
+  Compilation compiled = Compile(file.bytes, file.name, {.object_limit = 0, .advice = false});
+  machine::Translation form;
+  form.ok = compiled.ok;
+  form.diagnostics = std::move(compiled.diagnostics);
+  form.diagnostics_dropped = compiled.diagnostics_dropped;
+  return form;
+}
+
+}  // namespace
+
+Fixing FixProgram(const machine::SourceFile& file, const ProgramCheck& check) {
+  const bool inch = FormOfFile(file.name, file.bytes) == FileForm::kInchSource;
+  const ProgramCheck look = inch ? ProgramCheck(CheckForm) : check;
+  Fixing fixing{.text = std::string(file.bytes), .fixed = {}, .left = {}};
+  fixing.left = look({file.name, fixing.text});
+  for (int round = 0; round < kRoundsMax; ++round) {
+    const std::vector<Diagnostic>& found = fixing.left.diagnostics;
+    const std::vector<std::size_t> chosen = RepairableFindings(fixing.text, found);
+    if (chosen.empty()) break;
+    std::string text = ApplyFixes(fixing.text, found);
+    if (text == fixing.text) break;
+    machine::Translation after = look({file.name, text});
+    if (ErrorCount(after) > ErrorCount(fixing.left)) break;
+    for (const std::size_t d : chosen) fixing.fixed.push_back(found[d]);
+    fixing.text = std::move(text);
+    fixing.left = std::move(after);
+  }
+  if (inch) fixing.left = check({file.name, fixing.text});
+  return fixing;
+}
+
+Status CheckIsText(std::string_view name, std::string_view bytes) {
+  if (FormOfFile(name, bytes) == FileForm::kObject) {
+    return Error{ErrorCode::kCellBadText, std::string(name) + " is an object, not a source", {}};
+  }
+  // Comments may hold any other byte.
+  const std::size_t zero = bytes.find('\0');
+  if (zero == std::string_view::npos) return {};
+  return Error{ErrorCode::kCellBadText,
+               std::string(name) + " is no text: byte " + std::to_string(zero) + " is zero",
+               {}};
+}
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/machine/family.h"
+#include "engine/simulation/picture.h"
+#include "rmlcell/v1/program.pb.h"
+
+// What two Optimo programs do differently, the same over the wire and on a laptop.
+namespace rmlcell::bridge {
+
+struct ComparedProgram {
+  std::string file_name;  // decides units and form, and is its title
+  machine::Bytes bytes;
+  int slot = 1;  // where it runs, alone in the program memory
+};
+
+struct ComparisonOptions {
+  bool picture = false;
+  std::size_t picture_elements_max = simulation::kPictureElementsMax;
+  std::size_t changes_max = 10'000;  // beyond these changed steps are only counted
+  std::int64_t steps_max = 0;        // of each run; 0: as long as runs may be
+  std::function<bool()> go_on{};     // asked now and then; false: the run is given up, without figures
+};
+
+struct ComparisonOutcome {
+  bool ok = false;  // false: a program has errors
+  v1::DiffProgramsResponse response;
+  // Findings of the program before and of the one after; errors alone stop.
+  std::array<std::vector<Diagnostic>, 2> diagnostics;
+  std::array<std::uint64_t, 2> dropped{};
+};
+
+// Errors: ObjectCorrupt (7034); CellInvalidArgument for a program of another family.
+Result<ComparisonOutcome> ComparePrograms(const ComparedProgram& before, const ComparedProgram& after,
+                                          const ComparisonOptions& options);
+
+}  // namespace rmlcell::bridge

@@ -1,0 +1,298 @@
+#include "server/programs/memory_office.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <utility>
+
+#include "engine/core/units.h"
+#include "engine/optimo/language/compiler.h"
+#include "engine/optimo/language/linker.h"
+#include "engine/optimo/offline/fix_program.h"
+#include "engine/optimo/offline/translate.h"
+#include "engine/simulation/families.h"
+#include "proto/bridge/comparison.h"
+#include "proto/bridge/findings.h"
+#include "proto/bridge/setup.h"
+#include "proto/bridge/sha256.h"
+#include "server/names.h"
+
+namespace rmlcell::server {
+namespace {
+
+// A comparison answers a call: its trial runs end before a client thinks that nobody is there. Loops that
+// never end are cut off by the steps, long programs by the time.
+constexpr std::int64_t kTrialStepsMax = 2'000'000;
+constexpr std::chrono::seconds kTrialTimeMax{15};
+// The picture goes into the same answer: about 1.5 MiB.
+constexpr std::size_t kPictureElementsMax = 60'000;
+// The rest of an answer, within 4 MiB, for changes of ordinary length.
+constexpr std::size_t kChangesMax = 10'000;
+constexpr const char* kFamily = "optimo";
+
+Error Invalid(std::string detail) { return {ErrorCode::kCellInvalidArgument, std::move(detail), {}}; }
+
+bool IsObject(const v1::ProgramText& program) {
+  return program.form() == v1::PROGRAM_FORM_OBJECT ||
+         optimo::FormOfFile(program.file_name(), program.content()) == optimo::FileForm::kObject;
+}
+
+v1::StaleExecutable::Reason ToProto(machine::StaleReason reason) {
+  switch (reason) {
+    case machine::StaleReason::kObjectChanged: return v1::StaleExecutable::REASON_OBJECT_CHANGED;
+    case machine::StaleReason::kObjectMissing: return v1::StaleExecutable::REASON_OBJECT_MISSING;
+    case machine::StaleReason::kFunctionChanged: return v1::StaleExecutable::REASON_FUNCTION_CHANGED;
+    case machine::StaleReason::kFunctionDeleted: return v1::StaleExecutable::REASON_FUNCTION_DELETED;
+    case machine::StaleReason::kDamaged: break;
+  }
+  return v1::StaleExecutable::REASON_DAMAGED;
+}
+
+// The objects that a link may take, and what was said while they were made.
+class LinkMaterial {
+ public:
+  // Those of the request. Error: as MemoryOffice::Link.
+  Status Add(const v1::LinkProgramRequest& request, std::uint32_t object_limit) {
+    for (const v1::LinkProgramRequest::Part& part : request.programs()) {
+      if (!IsSlot(part.slot())) {
+        return Error{ErrorCode::kProgramNumber, "program number is " + std::to_string(part.slot()), {}};
+      }
+      if (objects_.contains(part.slot())) return Invalid("slot " + std::to_string(part.slot()) + " is given twice");
+      const v1::ProgramText& program = part.program();
+      if (program.content().empty()) return Error{ErrorCode::kCellEmptyProgram, program.file_name(), {}};
+      if (IsObject(program)) {
+        objects_[part.slot()] = program.content();
+        continue;
+      }
+      const bool inch =
+          optimo::FormOfFile(program.file_name(), program.content()) == optimo::FileForm::kInchSource;
+      optimo::Compilation compiled = optimo::Compile(
+          program.content(), program.file_name(), {.object_limit = object_limit, .advice = false, .inch = inch});
+      objects_[part.slot()] = std::move(compiled.object);
+      dropped_ += compiled.diagnostics_dropped;
+      for (Diagnostic& finding : compiled.diagnostics) {
+        finding.program = part.slot();
+        findings_.push_back(std::move(finding));
+      }
+    }
+    return {};
+  }
+
+  void AddStored(int slot, std::string object) { objects_.emplace(slot, std::move(object)); }
+
+  // Findings beyond the usual number are counted.
+  void Report(const Error& error) {
+    findings_.push_back({.code = error.code, .severity = Lookup(error.code).severity, .detail = error.detail});
+  }
+  v1::Findings Findings() {
+    const bool good = !HasErrors(findings_);
+    if (findings_.size() > machine::kDiagnosticsMax) {
+      dropped_ += findings_.size() - machine::kDiagnosticsMax;
+      findings_.resize(machine::kDiagnosticsMax);
+    }
+    return bridge::FindingsOf(good, findings_, dropped_, {});
+  }
+  bool good() const { return !HasErrors(findings_); }
+
+  optimo::ObjectLookup Objects() const {
+    return [this](int slot) -> std::optional<std::string_view> {
+      const auto found = objects_.find(slot);
+      if (found == objects_.end()) return std::nullopt;
+      return found->second;
+    };
+  }
+
+ private:
+  std::map<int, std::string> objects_;
+  std::vector<Diagnostic> findings_;
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace
+
+Result<v1::FixProgramResponse> MemoryOffice::Fix(const v1::FixProgramRequest& request) {
+  const v1::ProgramText& program = request.program();
+  // Refuses what names family or machine wrongly before anything is done.
+  const auto first = shelf_.Check(request.family(), request.machine(), program, !request.errors_only());
+  if (!first) return first.error();
+  const machine::MachineFamily* named = simulation::FamilyOfFileName(program.file_name());
+  if (named != nullptr && !named->info().has_executables) {
+    return Invalid("a stream of " + std::string(named->info().title) + " has nothing to fix");
+  }
+  if (IsObject(program)) return Error{ErrorCode::kCellBadText, program.file_name() + " is an object, not a source", {}};
+  if (const Status good = optimo::CheckIsText(program.file_name(), program.content()); !good) return good.error();
+  const auto check = [&](const machine::SourceFile& file) {
+    v1::ProgramText text = program;
+    text.set_content(std::string(file.bytes));
+    auto checked = shelf_.Check(request.family(), request.machine(), text, !request.errors_only());
+    return checked ? *std::move(checked) : *first;  // the machine went away meanwhile: as it was
+  };
+  optimo::Fixing fixing = optimo::FixProgram({.name = program.file_name(), .bytes = program.content()}, check);
+  v1::FixProgramResponse response;
+  response.set_content(std::move(fixing.text));
+  for (const Diagnostic& finding : fixing.fixed) *response.add_fixed() = bridge::ToProto(finding);
+  *response.mutable_findings() = bridge::FindingsOf(fixing.left.ok, fixing.left.diagnostics,
+                                                    fixing.left.diagnostics_dropped, fixing.left.figures);
+  return response;
+}
+
+Result<v1::LinkProgramResponse> MemoryOffice::Link(const v1::LinkProgramRequest& request) {
+  if (!IsSlot(request.slot())) {
+    return Error{ErrorCode::kProgramNumber, "program number is " + std::to_string(request.slot()), {}};
+  }
+  std::uint32_t object_limit = optimo::kObjectLimitStandard;
+  optimo::LinkOptions options;
+  std::vector<storage::ProgramRecord> memory;
+  if (!request.machine().empty()) {
+    const Result<std::string> id = ParseMachineName(request.machine());
+    if (!id) return id.error();
+    const auto machine = store_.GetMachine(*id);
+    if (!machine) return machine.error();
+    if (machine->family != kFamily) {
+      return Error{ErrorCode::kCellPrecondition, "a " + machine->family + " machine has no executables", {}};
+    }
+    const auto parameters =
+        bridge::MakeParameters(*simulation::FindFamily(kFamily), machine->profile, machine->parameters);
+    if (!parameters) return parameters.error();
+    object_limit = static_cast<std::uint32_t>(parameters->Number("OBJECT_LIMIT"));
+    options.executable_limit = static_cast<std::uint32_t>(parameters->Number("EXECUTABLE_LIMIT"));
+    options.rotary_table = parameters->Word("ROTARY_TABLE") == "ON";
+    auto stored = store_.GetProgramMemory(*id);
+    if (!stored) return stored.error();
+    memory = *std::move(stored);
+  }
+  LinkMaterial material;
+  if (const Status added = material.Add(request, object_limit); !added) return added.error();
+  for (storage::ProgramRecord& program : memory) material.AddStored(program.slot, std::move(program.object));
+  v1::LinkProgramResponse response;
+  if (material.good()) {
+    const Result<optimo::Executable> linked = optimo::Link(request.slot(), material.Objects(), options);
+    if (linked) {
+      response.set_executable(optimo::EncodeExecutable(*linked));
+      for (std::size_t i = 1; i < linked->modules.size(); ++i) response.add_functions(linked->modules[i].slot);
+    } else {
+      material.Report(linked.error());
+    }
+  }
+  *response.mutable_findings() = material.Findings();
+  return response;
+}
+
+Result<v1::ListStaleExecutablesResponse> MemoryOffice::ListStale(const v1::ListStaleExecutablesRequest& request) {
+  const Result<std::string> id = ParseMachineName(request.parent());
+  if (!id) return id.error();
+  const auto machine = store_.GetMachine(*id);
+  if (!machine) return machine.error();
+  const machine::MachineFamily* family = simulation::FindFamily(machine->family);
+  v1::ListStaleExecutablesResponse response;
+  if (family == nullptr || !family->info().has_executables) return response;
+  auto memory = store_.GetProgramMemory(*id);
+  if (!memory) return memory.error();
+  const auto deleted = store_.ListDeletedPrograms(*id);
+  if (!deleted) return deleted.error();
+  std::map<int, machine::StoredProgram> programs;
+  for (storage::ProgramRecord& program : *memory) {
+    machine::StoredProgram& stored = programs[program.slot];
+    stored.object = std::make_shared<const std::string>(std::move(program.object));
+    if (program.executable) stored.executable = std::make_shared<const std::string>(*std::move(program.executable));
+  }
+  for (const machine::StaleExecutable& stale :
+       family->FindStaleExecutables(programs, {deleted->begin(), deleted->end()})) {
+    v1::StaleExecutable& made = *response.add_executables();
+    made.set_name(NameOfProgram(*id, stale.slot + kExecutableOffset));
+    for (const machine::StalePart& part : stale.parts) {
+      v1::StaleExecutable::Part& why = *made.add_parts();
+      why.set_program(NameOfProgram(*id, part.slot));
+      why.set_reason(ToProto(part.reason));
+      why.set_text(part.text);
+    }
+  }
+  return response;
+}
+
+Result<v1::DecompileProgramResponse> MemoryOffice::Decompile(const v1::DecompileProgramRequest& request) {
+  v1::DecompileProgramResponse response;
+  if (!request.name().empty()) {
+    const Result<ProgramName> name = ParseProgramName(request.name());
+    if (!name) return name.error();
+    if (name->executable) return Invalid("an executable has no source; its program is " +
+                                         NameOfProgram(name->machine, name->slot));
+    // One read of the record: text and object belong together.
+    Result<ProgramShelf::Content> source = shelf_.Read(request.name(), v1::PROGRAM_FORM_SOURCE);
+    if (!source) return source.error();
+    if (request.object().empty() || source->object_sha256 == bridge::Sha256Hex(request.object())) {
+      response.set_content(std::move(source->bytes));
+      response.set_own_text(source->own_text);
+      response.set_file_name(source->file_name);
+      return response;
+    }
+  } else if (request.object().empty()) {
+    return Error{ErrorCode::kCellEmptyProgram, "give an object, or the name of a program", {}};
+  }
+  Result<std::string> text = simulation::FindFamily(kFamily)->Decompile(request.object());
+  if (!text) return text.error();
+  response.set_content(*std::move(text));
+  return response;
+}
+
+Result<MemoryOffice::StoredObject> MemoryOffice::ObjectOf(const std::string& name) {
+  const Result<ProgramName> parsed = ParseProgramName(name);
+  if (!parsed) return parsed.error();
+  if (parsed->executable) return Invalid("executables are not compared; name the program of its object");
+  const auto machine = store_.GetMachine(parsed->machine);
+  if (!machine) return machine.error();
+  if (machine->family != kFamily) {
+    return Error{ErrorCode::kCellPrecondition, "programs of a " + machine->family + " machine are not compared", {}};
+  }
+  Result<storage::ProgramRecord> program = store_.GetProgram(parsed->machine, parsed->slot);
+  if (!program) {
+    if (program.error().code != ErrorCode::kCellNotFound) return program.error();
+    return Error{ErrorCode::kProgramMissing, name, {}};
+  }
+  const std::string title = program->source_name.empty() ? std::to_string(parsed->slot) : program->source_name;
+  return StoredObject{title.substr(0, title.find_last_of('.')), std::move(program->object)};
+}
+
+ProgramResult<v1::DiffProgramsResponse> MemoryOffice::Diff(const v1::DiffProgramsRequest& request) {
+  const std::array sides = {&request.before(), &request.after()};
+  std::array<bridge::ComparedProgram, 2> programs;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (sides[i]->program_case() == v1::DiffProgramsRequest::Side::kName) {
+      Result<StoredObject> stored = ObjectOf(sides[i]->name());
+      if (!stored) return stored.error();
+      programs[i] = {.file_name = stored->title + ".O",
+                     .bytes = std::make_shared<const std::string>(std::move(stored->object))};
+      continue;
+    }
+    const v1::ProgramText& text = sides[i]->text();
+    if (text.content().empty()) return Error{ErrorCode::kCellEmptyProgram, text.file_name(), {}};
+    const bool object = text.form() == v1::PROGRAM_FORM_OBJECT && !bridge::IsObjectFileName(text.file_name());
+    programs[i] = {.file_name = text.file_name() + (object ? ".O" : ""),
+                   .bytes = std::make_shared<const std::string>(text.content())};
+  }
+  const auto until = std::chrono::steady_clock::now() + kTrialTimeMax;
+  Result<bridge::ComparisonOutcome> made = bridge::ComparePrograms(
+      programs[0], programs[1],
+      {.picture = request.picture(),
+       .picture_elements_max = kPictureElementsMax,
+       .changes_max = kChangesMax,
+       .steps_max = kTrialStepsMax,
+       .go_on = [until] { return std::chrono::steady_clock::now() < until; }});
+  if (!made) return made.error();
+  if (made->ok) return std::move(made->response);
+  ProgramError wrong{.error = {ErrorCode::kCellBadText, {}, {}}};
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (Diagnostic& finding : made->diagnostics[i]) {
+      if (IsError(finding.severity) && wrong.error.detail.empty()) {
+        wrong.error = {finding.code,
+                       finding.file + " line " + std::to_string(finding.where.line) + ": " + finding.detail,
+                       finding.where};
+      }
+      wrong.diagnostics.push_back(std::move(finding));
+    }
+    wrong.dropped += made->dropped[i];
+  }
+  return wrong;
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,71 @@
+// Plans a contour of short lines and nothing else: motion_instructions.py counts what that costs.
+//   motion_count jerk|trapezoid|mill|five_axis|arcs|short LINES
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <string_view>
+
+#include "tests/bench/motion_paths.h"
+
+namespace rmlcell::motion {
+namespace {
+
+// Every line of the contour as an arc that bulges by a hundredth of its length.
+std::vector<MoveCommand> Arcs(int count) {
+  std::vector<MoveCommand> chain = Contour(count, false);
+  for (MoveCommand& move : chain) {
+    const TipPose from = move.path.from(), to = move.path.to();
+    const Vec3 way = to.tip - from.tip;
+    const Vec3 via = from.tip + way * 0.5 + Vec3{-way.y, way.x, 0.0} * 0.01;
+    if (const Result<PathPiece::Arc3> arc = PathPiece::ArcThrough(from, via, to)) {
+      move.path = arc->path;
+    }
+  }
+  return chain;
+}
+
+int Main(std::string_view what, int count) {
+  MachineLimits machine = StandardMachine();
+  std::vector<MoveCommand> loop;
+  if (what == "arcs") {
+    loop = Arcs(600);
+  } else if (what == "short") {  // speeds up and slows down all the time: ramps across many lines
+    loop = Polyline(Legs(600, 0.8, 0.5 * kPi, true), 0.3);
+    loop.back().fly = true;
+  } else {
+    loop = Contour(600, what == "five_axis");
+  }
+  if (what == "trapezoid") {
+    machine.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
+  }
+  if (what == "mill") {  // polylines as they are, acceleration-limited: motion.md section 7
+    machine.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
+    machine.junction_jump_mm_s = 3.0;
+  }
+  Planner planner(machine);
+  double sum = 0.0;
+  const auto drain = [&] {
+    while (const std::optional<PlannedItem> item = planner.Next()) {
+      sum += std::get<PlannedMotion>(*item).speed.duration_s();
+    }
+  };
+  for (int k = 0; k < count; ++k) {
+    if (!planner.Append(loop[static_cast<std::size_t>(k) % loop.size()])) return 1;
+    drain();
+  }
+  planner.Stop();
+  drain();
+  std::printf("%.9g\n", sum);
+  return 0;
+}
+
+}  // namespace
+}  // namespace rmlcell::motion
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: motion_count jerk|trapezoid|mill|five_axis|arcs|short LINES\n");
+    return 2;
+  }
+  return rmlcell::motion::Main(argv[1], std::atoi(argv[2]));
+}

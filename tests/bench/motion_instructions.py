@@ -1,0 +1,39 @@
+"""Instructions that the planner takes for a line, counted by callgrind: the same figure on a busy machine
+as on a quiet one, so that a test can keep it. The cost of starting is taken out by the difference of two
+lengths. Prints one JSON object a line; exits 1 when a figure is above its limit, 77 without valgrind.
+
+  motion_instructions.py FOLDER_OF_MOTION_COUNT
+"""
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+# Measured with g++ 12, and a tenth of room for another compiler. The goal for acceleration-limited plans,
+# 1,000, is not reached: copying motions out and making curves take most of it.
+LIMITS = {"jerk": 5900, "trapezoid": 6100, "mill": 3500, "five_axis": 9800, "arcs": 231000, "short": 6400}
+SHORT, LONG = 2400, 8400
+
+
+def count(program, what, lines):
+    done = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={os.devnull}", program, what,
+                           str(lines)], capture_output=True, text=True, timeout=300, check=True)
+    return int(re.search(r"Collected : (\d+)", done.stderr).group(1))
+
+
+def main():
+    if shutil.which("valgrind") is None:
+        print("no valgrind")
+        return 77
+    program = os.path.join(sys.argv[1], "motion_count")
+    failed = False
+    for what, limit in LIMITS.items():
+        each = (count(program, what, LONG) - count(program, what, SHORT)) / (LONG - SHORT)
+        print(json.dumps({"path": what, "instructions_per_line": round(each, 1), "limit": limit}), flush=True)
+        failed = failed or each > limit
+    return 1 if failed else 0
+
+
+sys.exit(main())

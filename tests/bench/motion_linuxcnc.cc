@@ -1,0 +1,189 @@
+// Our planner beside LinuxCNC's (tpmod.so), the same polylines under the same limits in the same
+// run, rounds interleaved: lines taken a second, machine time of the plan, positions given a
+// second. Started by motion_linuxcnc.sh, which provides the library. LinuxCNC 2.9 limits speed and
+// acceleration, not jerk: our machine time is told for both kinds, the comparison is with
+// trapezoids.
+//   motion_linuxcnc_bench LIBPEER.SO
+// Prints one JSON object a line.
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <limits>
+#include <string>
+
+#include "engine/motion/trajectory.h"
+#include "tests/bench/motion_paths.h"
+
+namespace rmlcell::motion {
+namespace {
+
+double Now() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double Median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+// The functions of linuxcnc_planner.c.
+struct Peer {
+  int (*open)(double cycle_s, double speed, double acceleration, double tolerance,
+              const double* xyz) = nullptr;
+  int (*add_line)(const double* xyz, double speed, double acceleration, int id) = nullptr;
+  void (*run_cycle)(long period_ns) = nullptr;
+  int (*done)() = nullptr;
+  int (*full)() = nullptr;
+  void (*position)(double* xyz) = nullptr;
+};
+
+template <class Function>
+bool Find(void* library, const char* name, Function& function) {
+  void* symbol = dlsym(library, name);
+  // The one conversion from an object pointer that POSIX promises.
+  function = reinterpret_cast<Function>(symbol);
+  return symbol != nullptr;
+}
+
+struct Outcome {
+  double lines_per_s = 0.0;
+  double samples_per_s = 0.0;
+  double machine_time_s = 0.0;
+};
+
+Outcome RunPeer(const Peer& peer, const std::vector<MoveCommand>& chain, double* sum) {
+  constexpr double kCycle_s = 0.001;
+  const Vec3& start = chain.front().path.from().tip;
+  const double xyz[3] = {start.x, start.y, start.z};
+  const MachineLimits machine = StandardMachine();
+  if (peer.open(kCycle_s, machine.tip_speed_mm_s, machine.tip_acceleration_mm_s2, 0.0, xyz) != 0) {
+    return {};
+  }
+  double adding = 0.0;
+  double running = 0.0;
+  long cycles = 0;
+  std::size_t next = 0;
+  for (;;) {
+    double begin = Now();
+    while (next < chain.size() && peer.full() == 0) {
+      const Vec3& to = chain[next].path.to().tip;
+      const double end[3] = {to.x, to.y, to.z};
+      const double speed = chain[next].speed_fraction * machine.tip_speed_mm_s;
+      if (peer.add_line(end, speed, machine.tip_acceleration_mm_s2, static_cast<int>(next)) != 0) {
+        return {};
+      }
+      ++next;
+    }
+    adding += Now() - begin;
+    if (next == chain.size() && peer.done() != 0) break;
+    begin = Now();
+    for (int k = 0; k < 1000 && peer.done() == 0; ++k) {
+      peer.run_cycle(1'000'000);
+      double at[3];
+      peer.position(at);
+      *sum += at[0] + at[1] + at[2];
+      ++cycles;
+    }
+    running += Now() - begin;
+  }
+  return {static_cast<double>(chain.size()) / adding, static_cast<double>(cycles) / running,
+          static_cast<double>(cycles) * kCycle_s};
+}
+
+Outcome RunOurs(const std::vector<MoveCommand>& chain, const MachineLimits& machine, double* sum) {
+  double begin = Now();
+  std::vector<PlannedMotion> motions;
+  motions.reserve(3 * chain.size());
+  Planner planner(machine);
+  const auto drain = [&] {
+    while (const std::optional<PlannedItem> item = planner.Next()) {
+      motions.push_back(std::get<PlannedMotion>(*item));
+    }
+  };
+  for (const MoveCommand& move : chain) {
+    if (planner.Append(move)) drain();
+  }
+  planner.Stop();
+  drain();
+  const double planning = Now() - begin;
+
+  begin = Now();
+  SampleTimes times(1000.0);
+  std::uint64_t samples = 0;
+  for (const PlannedMotion& motion : motions) {
+    const MotionView view(motion);
+    times.Through(motion.speed.duration_s(), [&](double, double t) {
+      const Vec3 tip = view.PoseAt(t).tip;
+      *sum += tip.x + tip.y + tip.z;
+      ++samples;
+    });
+  }
+  const double sampling = Now() - begin;
+  return {static_cast<double>(chain.size()) / planning, static_cast<double>(samples) / sampling,
+          times.elapsed_s()};
+}
+
+void Compare(const Peer& peer, const char* name, const std::vector<MoveCommand>& chain) {
+  constexpr int kRounds = 5;
+  MachineLimits trapezoid = StandardMachine();
+  trapezoid.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
+  std::vector<double> lines[3], samples[3];
+  double time[3] = {};
+  double sum = 0.0;
+  for (int round = 0; round < kRounds; ++round) {
+    const Outcome outcomes[3] = {RunPeer(peer, chain, &sum), RunOurs(chain, trapezoid, &sum),
+                                 RunOurs(chain, StandardMachine(), &sum)};
+    for (int k = 0; k < 3; ++k) {
+      lines[k].push_back(outcomes[k].lines_per_s);
+      samples[k].push_back(outcomes[k].samples_per_s);
+      time[k] = outcomes[k].machine_time_s;
+    }
+  }
+  std::printf(
+      "{\"path\": \"%s\", \"lines\": %zu, \"peer_lines_per_s\": %.0f, \"lines_per_s\": %.0f, "
+      "\"jerk_lines_per_s\": %.0f, \"line_ratio\": %.2f, \"peer_cycles_per_s\": %.0f, "
+      "\"samples_per_s\": %.0f, \"sample_ratio\": %.2f, \"peer_time_s\": %.3f, \"time_s\": %.3f, "
+      "\"jerk_time_s\": %.3f, \"sum\": %.6g}\n",
+      name, chain.size(), Median(lines[0]), Median(lines[1]), Median(lines[2]),
+      Median(lines[1]) / Median(lines[0]), Median(samples[0]), Median(samples[1]),
+      Median(samples[1]) / Median(samples[0]), time[0], time[1], time[2], sum);
+  std::fflush(stdout);
+}
+
+int Main(const char* library_path) {
+  void* library = dlopen(library_path, RTLD_NOW | RTLD_GLOBAL);
+  Peer peer;
+  if (library == nullptr || !Find(library, "peer_open", peer.open) ||
+      !Find(library, "peer_add_line", peer.add_line) ||
+      !Find(library, "peer_run_cycle", peer.run_cycle) || !Find(library, "peer_done", peer.done) ||
+      !Find(library, "peer_full", peer.full) || !Find(library, "peer_position", peer.position)) {
+    std::fprintf(stderr, "motion_linuxcnc_bench: %s\n", dlerror());
+    return 1;
+  }
+  Compare(peer, "contour 2.5 mm, 30 mm/s", Contour(1200, false));
+  Compare(peer, "contour 2.5 mm, 150 mm/s", Contour(3000, false, 0.3));
+  Compare(peer, "square 40 mm, 40 mm/s", Polyline(Legs(400, 40.0, 0.5 * kPi, false), 0.08));
+  Compare(peer, "polygon, 5 mm legs, 3 deg, 100 mm/s",
+          Polyline(Legs(2400, 5.0, 3.0 * kPi / 180.0, false), 0.2));
+  Compare(peer, "long legs 300 mm, 90 deg, 350 mm/s",
+          Polyline(Legs(100, 300.0, 0.5 * kPi, true), 0.7));
+  Compare(peer, "zigzag 2 mm, 90 deg, 150 mm/s", Polyline(Legs(400, 2.0, 0.5 * kPi, true), 0.3));
+  Compare(peer, "zigzag 4.3 mm, 140 deg, 125 mm/s",
+          Polyline(Legs(400, 4.3, 140.0 * kPi / 180.0, true), 0.25));
+  return 0;
+}
+
+}  // namespace
+}  // namespace rmlcell::motion
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: motion_linuxcnc_bench LIBPEER.SO (see motion_linuxcnc.sh)\n");
+    return 2;
+  }
+  return rmlcell::motion::Main(argv[1]);
+}

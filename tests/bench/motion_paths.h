@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "tests/engine/motion/random_chain.h"
+
+// Paths that the benches of the planner share.
+namespace rmlcell::motion {
+
+// A closed wavy contour in short lines, as a CAD system writes it; with `head` the beam follows the
+// normal. 600 lines go round once, 2.5 mm each in the mean.
+inline std::vector<MoveCommand> Contour(int count, bool head, double speed_fraction = 0.06) {
+  std::vector<MoveCommand> chain;
+  const auto at = [&](int k) {
+    const double t = kTurn * k / 600.0;
+    const double r = 200.0 + 20.0 * std::sin(7 * t);
+    TipPose pose{
+        {1000.0 + r * std::cos(t), 900.0 + r * std::sin(t), -200.0 + 5.0 * std::sin(3 * t)}, 0, 0};
+    if (head) {
+      pose.a_rad = 0.3 * std::sin(2 * t);
+      pose.b_rad = 0.5 + 0.2 * std::cos(3 * t);
+    }
+    return pose;
+  };
+  for (int k = 0; k < count; ++k) {
+    MoveCommand move;
+    move.path = PathPiece::Line(at(k), at(k + 1));
+    move.speed_fraction = speed_fraction;
+    move.fly = true;
+    move.tag = static_cast<std::uint64_t>(k);
+    chain.push_back(move);
+  }
+  return chain;
+}
+
+// Through the points, /FLY at each, from rest to rest.
+inline std::vector<MoveCommand> Polyline(const std::vector<Vec3>& points, double speed_fraction) {
+  std::vector<MoveCommand> chain;
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    MoveCommand move;
+    move.path = PathPiece::Line({points[k - 1]}, {points[k]});
+    move.speed_fraction = speed_fraction;
+    move.fly = k + 1 < points.size();
+    move.tag = k;
+    chain.push_back(move);
+  }
+  return chain;
+}
+
+// `legs` of one length, each turned from the last by `turn_rad`, to the same side or in turns.
+inline std::vector<Vec3> Legs(int legs, double length_mm, double turn_rad, bool zigzag,
+                              double rise_mm = 0.0) {
+  std::vector<Vec3> points{{1000.0, 900.0, -200.0}};
+  double direction = zigzag ? -0.5 * turn_rad : 0.0;
+  for (int k = 0; k < legs; ++k) {
+    points.push_back(points.back() + Vec3{length_mm * std::cos(direction),
+                                          length_mm * std::sin(direction), rise_mm});
+    direction += zigzag && k % 2 == 1 ? -turn_rad : turn_rad;
+  }
+  return points;
+}
+
+}  // namespace rmlcell::motion

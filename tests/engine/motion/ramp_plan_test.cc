@@ -1,0 +1,147 @@
+// Level 2 of motion.md 5.4: ramps across the ends of stretches.
+#include "engine/motion/ramp_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "tests/engine/motion/random_chain.h"
+
+namespace rmlcell::motion {
+namespace {
+
+constexpr PathLimits kLimits{.speed = 100.0, .acceleration = 2000.0, .jerk = 40000.0};
+
+// Fills in the speeds of level 1: forward and backward by Reach, from `start` to `end`.
+void TimeByLevelOne(std::vector<RampCell>& cells, double start, double end) {
+  const auto reachable = [](double from, const RampCell& cell, double cap) {
+    if (cap <= from || RampLength(from, cap, cell.limits) <= cell.length) return cap;
+    return std::min(cap, Reach(from, cell.length, cell.limits));
+  };
+  double speed = start;
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    double cap = std::min(cells[k].limits.speed, cells[k].end_cap);
+    if (k + 1 < cells.size()) cap = std::min(cap, cells[k + 1].limits.speed);
+    if (k + 1 == cells.size()) cap = std::min(cap, end);
+    speed = cells[k].end_speed = reachable(speed, cells[k], cap);
+  }
+  for (std::size_t k = cells.size() - 1; k-- > 0;) {
+    cells[k].end_speed = reachable(cells[k + 1].end_speed, cells[k + 1], cells[k].end_speed);
+  }
+}
+
+double LevelOneTime(const std::vector<RampCell>& cells, double start) {
+  double time = 0.0;
+  for (const RampCell& cell : cells) {
+    time += SpeedProfile::Span(cell.length, start, cell.end_speed, cell.limits).duration_s();
+    start = cell.end_speed;
+  }
+  return time;
+}
+
+double TimeOf(const RampPlan& plan) {
+  double time = 0.0;
+  for (const SpeedProfile& ramp : plan.ramps()) time += ramp.duration_s();
+  return time;
+}
+
+// From rest to 100 mm/s takes 5 mm (50 mm/s for 2 sqrt(100/40000) = 0.1 s): over ten stretches of 1
+// mm with one limit that is one ramp and 5 mm at full speed. Level 1 stops speeding up at each end.
+TEST(RampPlan, OneRampOverStretchesOfOneLimit) {
+  std::vector<RampCell> cells(100, RampCell{.length = 1.0, .limits = kLimits, .end_speed = 0.0});
+  TimeByLevelOne(cells, 0.0, 100.0);
+  ASSERT_EQ(cells.back().end_speed, 100.0);
+  RampPlan plan;
+  plan.Plan(cells, 0.0);
+  ASSERT_EQ(plan.ramps().size(), 1u);
+  EXPECT_NEAR(TimeOf(plan), 0.1 + 95.0 / 100.0, 1e-12);
+  EXPECT_GT(LevelOneTime(cells, 0.0), TimeOf(plan) + 0.05);
+  ASSERT_EQ(plan.timing().size(), 100u);
+  EXPECT_EQ(plan.timing()[3].from, 3.0);
+  EXPECT_EQ(plan.timing()[3].to, 4.0);
+  EXPECT_EQ(plan.timing()[99].to, 100.0);
+}
+
+// A stretch in the middle that allows only 20 mm/s is passed at 20, and not at more just before it.
+TEST(RampPlan, SlowStretchIsKept) {
+  std::vector<RampCell> cells(9, RampCell{.length = 2.0, .limits = kLimits, .end_speed = 0.0});
+  cells[4].limits.speed = 20.0;
+  TimeByLevelOne(cells, 0.0, 0.0);
+  RampPlan plan;
+  plan.Plan(cells, 0.0);
+  EXPECT_LE(TimeOf(plan), LevelOneTime(cells, 0.0));
+  const RampPlan::Timing& slow = plan.timing()[4];
+  const SpeedProfile& ramp = plan.ramps()[slow.ramp];
+  for (int k = 0; k <= 20; ++k) {
+    const double s = slow.from + (slow.to - slow.from) * k / 20.0;
+    EXPECT_LE(ramp.At(ramp.TimeAt(s)).speed, 20.0 * (1 + 1e-9));
+  }
+}
+
+// A point between two fast stretches may have a limit of its own (OVERSH straight on).
+TEST(RampPlan, SlowPointIsKept) {
+  std::vector<RampCell> cells(6, RampCell{.length = 3.0, .limits = kLimits, .end_speed = 0.0});
+  cells[2].end_cap = 30.0;
+  TimeByLevelOne(cells, 0.0, 0.0);
+  RampPlan plan;
+  plan.Plan(cells, 0.0);
+  const RampPlan::Timing& before = plan.timing()[2];
+  const SpeedProfile& ramp = plan.ramps()[before.ramp];
+  EXPECT_LE(ramp.At(ramp.TimeAt(before.to)).speed, 30.0 * (1 + 1e-9));
+  EXPECT_LE(TimeOf(plan), LevelOneTime(cells, 0.0));
+}
+
+// Random stretches, limits and points: every limit holds in every stretch, ramps join at equal
+// speeds, nothing is slower than level 1.
+TEST(RampPlan, RandomStretchesKeepTheirLimitsAndAreNeverSlower) {
+  Dice dice(7);
+  RampPlan plan;
+  int faster = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const auto count = static_cast<std::size_t>(dice.Uniform(1.0, 40.0));
+    std::vector<RampCell> cells(count);
+    double acceleration = 2000.0;
+    for (RampCell& cell : cells) {
+      if (dice.Chance(0.1)) acceleration = dice.Magnitude(50.0, 2000.0);
+      cell.length = dice.Magnitude(0.01, 20.0);
+      cell.limits = {dice.Chance(0.6) ? 100.0 : dice.Magnitude(5.0, 300.0), acceleration,
+                     20.0 * acceleration};
+      if (dice.Chance(0.2)) cell.end_cap = dice.Magnitude(2.0, 100.0);
+    }
+    TimeByLevelOne(cells, 0.0, dice.Chance(0.5) ? 0.0 : 50.0);
+    plan.Plan(cells, 0.0);
+    const double level_one = LevelOneTime(cells, 0.0);
+    ASSERT_LE(TimeOf(plan), level_one * (1 + 1e-9)) << round;
+    if (TimeOf(plan) < 0.99 * level_one) ++faster;
+    double speed = 0.0;
+    for (const SpeedProfile& ramp : plan.ramps()) {
+      ASSERT_NEAR(ramp.At(0.0).speed, speed, 1e-9);
+      speed = ramp.end().speed;
+    }
+    ASSERT_NEAR(speed, cells.back().end_speed, 1e-12);
+    for (std::size_t k = 0; k < count; ++k) {
+      const RampPlan::Timing& timing = plan.timing()[k];
+      const SpeedProfile part = plan.ramps()[timing.ramp].Part(timing.from, timing.to);
+      ASSERT_NEAR(part.end().s, cells[k].length, 1e-9 * (1.0 + timing.to));
+      ASSERT_LE(part.end().speed, cells[k].end_cap * (1 + 1e-9));
+      for (int n = 0; n < part.phase_count(); ++n) {
+        const SpeedProfile::Phase& phase = part.phase(n);
+        const double after = phase.start.acceleration + phase.duration_s * phase.jerk;
+        ASSERT_LE(std::max(std::abs(phase.start.acceleration), std::abs(after)),
+                  cells[k].limits.acceleration * (1 + 1e-6) + 1e-6);
+        ASSERT_LE(std::abs(phase.jerk), cells[k].limits.jerk * (1 + 1e-6));
+        for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+          const double t = share * phase.duration_s;
+          const double here =
+              phase.start.speed + t * (phase.start.acceleration + 0.5 * t * phase.jerk);
+          ASSERT_LE(here, cells[k].limits.speed * (1 + 1e-6)) << round << " cell " << k;
+        }
+      }
+    }
+  }
+  EXPECT_GT(faster, 1000);
+}
+
+}  // namespace
+}  // namespace rmlcell::motion

@@ -1,0 +1,136 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/engine/optimo/control/run_text.h"
+
+// The feed override changed while a chain of /FLY moves is under way: motion.md 6. The corners are
+// those of the reference cases C01, C02 and C04 (90 degrees): cut and distance from the corner hang
+// on the speed alone, so both tell with which override a corner was planned. A ramp over a change
+// of speed v takes 2 sqrt(v / j), j = 40,000 mm/s3, and the mean of both speeds.
+namespace rmlcell::optimo::testing {
+namespace {
+
+using machine::InputKind;
+
+constexpr double kSettle_s = 0.048;
+constexpr double kJerk = 40000.0;
+constexpr double kAt50 = 1.358847515;    // C01: distance from the corner at 50 mm/s
+constexpr double kAt25 = 0.480425146;    // C02, 25 mm/s
+constexpr double kAt72 = 2.372590175;    // C04, 72.5 mm/s
+constexpr double kLoss25 = 0.507540572;  // C02: what a corner at 25 mm/s shortens the path by
+constexpr double kLoss72 = 2.506500306;  // C04
+
+// Three legs of 300 mm from home, at 50 mm/s.
+const std::string kChain =
+    "COORD ABSOL\nPATH LIN\nSPEED 10\n"
+    "MOVE (321.02,2201.2,-350.,0.,0.)/FLY\n"
+    "MOVE (321.02,1901.2,-350.,0.,0.)/FLY\n"
+    "MOVE (621.02,1901.2,-350.,0.,0.)\n";
+constexpr motion::Vec3 kFirst{321.02, 2201.2, -350.0};
+constexpr motion::Vec3 kSecond{321.02, 1901.2, -350.0};
+
+Ran ChangedAt(double time_s, double percent, const std::string& text = kChain) {
+  return RunText(text, {.inputs = {{FromSeconds(time_s), InputKind::kOverride, 0, percent}}});
+}
+
+double RampTime(double from, double to) { return 2.0 * std::sqrt(std::abs(to - from) / kJerk); }
+double RampLength(double from, double to) { return 0.5 * (from + to) * RampTime(from, to); }
+
+// Where the machine is after `time_s` of a start from rest at 50 mm/s.
+double Travelled(double time_s) { return 50.0 * (time_s - 0.5 * RampTime(0.0, 50.0)); }
+
+// The tip's place and speed never jump, whatever was told in parts.
+void ExpectSmooth(const Ran& ran) {
+  for (std::size_t k = 1; k < ran.parts.size(); ++k) {
+    const Ran::Part& before = ran.parts[k - 1];
+    const Ran::Part& here = ran.parts[k];
+    const motion::TipPose from = before.motion.path.At(before.done.travelled);
+    const motion::TipPose to = here.motion.path.At(here.done.from);
+    EXPECT_NEAR(motion::Distance(from.tip, to.tip), 0.0, 1e-6) << k;
+    EXPECT_NEAR(before.SpeedAt(before.duration_s()), here.SpeedAt(0.0), 1e-3) << k;
+  }
+}
+
+// OPT-4.38: lower, in the middle of the first leg. Both corners are those of 25 mm/s.
+TEST(OverrideRules, LowerOverrideActsOnTheMoveUnderWayAndOnTheCorners) {
+  const Ran ran = ChangedAt(3.0, 50.0);
+  EXPECT_NEAR(ran.DistanceTo(kFirst), kAt25, 1e-4);
+  EXPECT_NEAR(ran.DistanceTo(kSecond), kAt25, 1e-4);
+  const double left =
+      900.0 - 2.0 * kLoss25 - Travelled(3.0) - RampLength(50.0, 25.0) - RampLength(25.0, 0.0);
+  EXPECT_NEAR(ran.time_s,
+              3.0 + RampTime(50.0, 25.0) + left / 25.0 + RampTime(25.0, 0.0) + kSettle_s, 1e-4);
+  ExpectSmooth(ran);
+}
+
+// OPT-4.38: higher; the corners grow into the path that is still to come.
+TEST(OverrideRules, HigherOverrideActsOnTheMoveUnderWayAndOnTheCorners) {
+  const Ran ran = ChangedAt(3.0, 145.0);
+  EXPECT_NEAR(ran.DistanceTo(kFirst), kAt72, 1e-4);
+  EXPECT_NEAR(ran.DistanceTo(kSecond), kAt72, 1e-4);
+  const double left =
+      900.0 - 2.0 * kLoss72 - Travelled(3.0) - RampLength(50.0, 72.5) - RampLength(72.5, 0.0);
+  EXPECT_NEAR(ran.time_s,
+              3.0 + RampTime(50.0, 72.5) + left / 72.5 + RampTime(72.5, 0.0) + kSettle_s, 1e-4);
+  ExpectSmooth(ran);
+}
+
+// motion.md 6: a bend in progress keeps its shape and speed, the next one is planned anew. The
+// first bend is 4.05 mm before and behind 300 mm.
+TEST(OverrideRules, ABendInProgressKeepsItsShape) {
+  const double in_the_bend = 299.0 / 50.0 + 0.5 * RampTime(0.0, 50.0);
+  const Ran ran = ChangedAt(in_the_bend, 50.0);
+  EXPECT_NEAR(ran.DistanceTo(kFirst), kAt50, 1e-4);
+  EXPECT_NEAR(ran.DistanceTo(kSecond), kAt25, 1e-4);
+  ExpectSmooth(ran);
+}
+
+// One that is nearer than the way to slow down keeps its shape too: 0.5 mm before the bend.
+TEST(OverrideRules, ABendTooNearKeepsItsShape) {
+  const double before_the_bend = 295.4 / 50.0 + 0.5 * RampTime(0.0, 50.0);
+  const Ran ran = ChangedAt(before_the_bend, 10.0);
+  EXPECT_NEAR(ran.DistanceTo(kFirst), kAt50, 1e-4);
+  EXPECT_LT(ran.DistanceTo(kSecond), kAt25);
+  ExpectSmooth(ran);
+}
+
+// Property 12 of motion.md 10: 100 -> x -> 100 with no time between changes nothing.
+TEST(OverrideRules, ThereAndBackAtOnceChangesNothing) {
+  const Ran plain = RunText(kChain);
+  const SimTime at = FromSeconds(3.0);
+  const Ran ran = RunText(kChain, {.inputs = {{at, InputKind::kOverride, 0, 40.0},
+                                              {at, InputKind::kOverride, 0, 100.0}}});
+  EXPECT_NEAR(ran.time_s, plain.time_s, 1e-6);
+  EXPECT_NEAR(ran.DistanceTo(kFirst), plain.DistanceTo(kFirst), 1e-9);
+}
+
+// At any time, on long and on very short moves: nothing jumps, every program ends at its last
+// target.
+TEST(OverrideRules, AnyChangeAtAnyTimeIsSmooth) {
+  std::string wave = "COORD ABSOL\nPATH LIN\nSPEED 20\n";
+  for (int k = 1; k <= 60; ++k) {
+    const double x = 21.02 + 3.0 * k;
+    const double y = 2201.2 + 8.0 * std::sin(0.35 * k);
+    wave += "MOVE (" + std::to_string(x) + "," + std::to_string(y) + ",-350.,0.,0.)" +
+            (k < 60 ? "/FLY\n" : "\n");
+  }
+  for (const std::string& text : {kChain, wave}) {
+    const Ran plain = RunText(text);
+    for (int k = 0; k < 60; ++k) {
+      const double first = plain.time_s * (k + 0.5) / 60.0;
+      const double percent = 10.0 + 15.0 * (k % 10);
+      const Ran ran = RunText(
+          text,
+          {.inputs = {{FromSeconds(first), InputKind::kOverride, 0, percent},
+                      {FromSeconds(first + 0.07), InputKind::kOverride, 0, 145.0 - percent}}});
+      SCOPED_TRACE(first);
+      EXPECT_EQ(ran.outcome.kind, machine::OutcomeKind::kCompleted);
+      EXPECT_NEAR(motion::Distance(ran.end.tip.tip, plain.end.tip.tip), 0.0, 1e-6);
+      ExpectSmooth(ran);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo::testing

@@ -1,0 +1,96 @@
+#include "engine/optimo/offline/fix_program.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/optimo/offline/translate.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+machine::Translation CheckAll(const machine::SourceFile& file) { return TranslateOptimo(file, {}); }
+machine::Translation CheckErrors(const machine::SourceFile& file) {
+  return TranslateOptimo(file, {.advice = false});
+}
+
+Fixing FixText(std::string_view text, const std::string& name = "part.S") {
+  return FixProgram({.name = name, .bytes = text}, CheckAll);
+}
+
+// OPT-7.91, OPT-2.61: two findings, two repairs; blanks, comments and CR LF stay.
+TEST(FixProgram, RepairsAndKeepsLayoutAndComments) {
+  const Fixing fixing =
+      FixText("\tSPEDE   20\t; slow\r\n; alone\r\nMOVE (1.,2.,3.,0.,0.) / INF ; x\r\n");
+  EXPECT_EQ(fixing.text, "\tSPEED   20\t; slow\r\n; alone\r\nMOVE (1.,2.,3.,0.,0.) ; x\r\n");
+  ASSERT_EQ(fixing.fixed.size(), 2U);
+  EXPECT_EQ(fixing.fixed[0].code, ErrorCode::kNameUndeclared);
+  EXPECT_EQ(fixing.fixed[0].where.line, 1);
+  EXPECT_EQ(fixing.fixed[1].code, ErrorCode::kWordIgnored);
+  EXPECT_EQ(fixing.fixed[1].where.line, 3);
+  EXPECT_TRUE(fixing.left.ok);
+}
+
+// OPT-7.91, OPT-2.47: /FLY before the end is seen only when the word before it can be read.
+TEST(FixProgram, RepairsWhatAnEarlierRepairBringsToLight) {
+  const Fixing fixing = FixText("COORD ABSOL\nMOEV (1000.,900.,-500.,0.,0.)/FLY\n");
+  EXPECT_EQ(fixing.text, "COORD ABSOL\nMOVE (1000.,900.,-500.,0.,0.)\n");
+  EXPECT_EQ(fixing.fixed.size(), 2U);
+}
+
+// Fixing again changes nothing, and there is nothing left that could be.
+TEST(FixProgram, ComesToRest) {
+  for (const std::string text : {"SPEDE 20\nMOVE (1.,2.,3.,0.,0.)/FLY/INF\n", "SPEED 101\n", "\n",
+                                 "SYSDEF (0,0,0,0,0,0)\nDEFINE PAR = INT\nXYZZY\n"}) {
+    const Fixing once = FixText(text);
+    const Fixing twice = FixText(once.text);
+    EXPECT_EQ(twice.text, once.text) << text;
+    EXPECT_TRUE(twice.fixed.empty()) << text;
+  }
+}
+
+// OPT-2.12: what has no obvious repair stays as it is, and is told.
+TEST(FixProgram, LeavesWhatItCannotRepair) {
+  const Fixing fixing = FixText("SPEED 101 ; too fast\n");
+  EXPECT_EQ(fixing.text, "SPEED 101 ; too fast\n");
+  EXPECT_TRUE(fixing.fixed.empty());
+  EXPECT_FALSE(fixing.left.ok);
+}
+
+// OPT-2.61: a warning is not repaired when only errors are looked for.
+TEST(FixProgram, RepairsOnlyWhatTheCheckTells) {
+  const std::string text = "SPEDE 20\nMOVE (1.,2.,3.,0.,0.)/FLY\n";
+  EXPECT_EQ(FixProgram({.name = "part.S", .bytes = text}, CheckErrors).text,
+            "SPEED 20\nMOVE (1.,2.,3.,0.,0.)/FLY\n");
+}
+
+// OPT-2.04, OPT-7.91: an inch source is refused, but its form can be repaired; its numbers are not
+// taken for millimetres.
+TEST(FixProgram, RepairsTheFormOfInchSources) {
+  const Fixing fixing = FixText("SPEDE 20\nMOVE (1.,2.,-3.,90.,0.)\n", "part.SI");
+  EXPECT_EQ(fixing.text, "SPEED 20\nMOVE (1.,2.,-3.,90.,0.)\n");
+  ASSERT_EQ(fixing.left.diagnostics.size(), 1U);
+  EXPECT_EQ(fixing.left.diagnostics[0].code, ErrorCode::kSourceIsInch);
+}
+
+// Many repairs in one go, and each finding whole or not at all.
+TEST(FixProgram, RepairsMoreThanOneListOfFindings) {
+  std::string text, wanted;
+  for (int i = 0; i < 2500; ++i) {
+    text += "SPEDE 20\n";
+    wanted += "SPEED 20\n";
+  }
+  const Fixing fixing = FixText(text);
+  EXPECT_EQ(fixing.text, wanted);
+  EXPECT_EQ(fixing.fixed.size(), 2500U);
+}
+
+// OPT-B.69: an object is no text, under whatever name.
+TEST(FixProgram, ObjectsAndBinariesAreNoText) {
+  const std::string object = Compile("SPEED 20\n", "", {}).object;
+  EXPECT_FALSE(CheckIsText("12.O", object));
+  EXPECT_FALSE(CheckIsText("12.S", object));
+  EXPECT_FALSE(CheckIsText("12.S", std::string_view("SPEED 20\n\0", 10)));
+  EXPECT_TRUE(CheckIsText("12.S", "SPEED 20 ; \xE9t\xE9 \x1B\n\x1A"));
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo

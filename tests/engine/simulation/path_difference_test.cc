@@ -1,0 +1,272 @@
+#include "engine/simulation/path_difference.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "engine/core/units.h"
+#include "engine/simulation/box_tree.h"
+#include "engine/simulation/picture_difference.h"
+#include "tests/engine/simulation/fake_run.h"
+#include "tests/engine/simulation/xml_check.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+using machine::MotionUse;
+using motion::PathPiece;
+using motion::Vec3;
+
+class Path {
+ public:
+  Path& Line(const Vec3& from, const Vec3& to, MotionUse use = MotionUse::kCut) {
+    return Add(LineFrom(from, to), use);
+  }
+  // Counter-clockwise about Z, or clockwise where `sweep` is below zero.
+  Path& Arc(const Vec3& centre, double radius, double begin, double sweep) {
+    const Vec3 from = centre + Vec3{radius * std::cos(begin), radius * std::sin(begin), 0};
+    return Add(PathPiece::Circle({from}, centre, {0, 0, sweep < 0 ? -1.0 : 1.0}, std::abs(sweep),
+                                 0.0, 0.0),
+               MotionUse::kCut);
+  }
+  const PathSketch& sketch() const { return sketch_; }
+
+ private:
+  Path& Add(const PathPiece& piece, MotionUse use) {
+    motion::PlannedMotion planned;
+    planned.path = piece;
+    sketch_.Add({.use = use, .motion = &planned, .travelled = planned.path.length()});
+    return *this;
+  }
+  PathSketch sketch_{{}, 10'000};
+};
+
+struct Lengths {
+  double common, removed, added;
+};
+Lengths CutsOf(const Path& before, const Path& after) {
+  const PathDifference difference = Compare(before.sketch(), after.sketch());
+  EXPECT_TRUE(difference.exact);
+  return {difference.common.cut_mm, difference.removed.cut_mm, difference.added.cut_mm};
+}
+
+// The same place, divided elsewhere, run along backwards, and twice.
+TEST(PathDifference, DivisionDirectionAndRepetitionDoNotCount) {
+  Path before, after;
+  before.Line({0, 0, 0}, {30, 40, 0});
+  after.Line({30, 40, 0}, {15, 20, 0}).Line({15, 20, 0}, {0, 0, 0}).Line({0, 0, 0}, {30, 40, 0});
+  const Lengths lengths = CutsOf(before, after);
+  EXPECT_NEAR(lengths.removed, 0.0, 1e-9);
+  EXPECT_NEAR(lengths.added, 0.0, 1e-9);
+  EXPECT_NEAR(lengths.common, 100.0, 1e-9);
+}
+
+// A line that became shorter at one end and longer at the other: 10 mm gone, 5 mm new, 40 mm kept.
+TEST(PathDifference, LinesAreDividedWhereTheyPart) {
+  Path before, after;
+  before.Line({0, 0, 7}, {50, 0, 7});
+  after.Line({10, 0, 7}, {55, 0, 7});
+  const PathDifference difference = Compare(before.sketch(), after.sketch());
+  ASSERT_EQ(difference.removed.elements.size(), 1U);
+  EXPECT_NEAR(Distance(difference.removed.elements[0].to, {10, 0, 7}), 0.0, 1e-9);
+  ASSERT_EQ(difference.added.elements.size(), 1U);
+  EXPECT_NEAR(Distance(difference.added.elements[0].from, {50, 0, 7}), 0.0, 1e-9);
+  EXPECT_NEAR(difference.common.cut_mm, 40.0, 1e-9);
+}
+
+// On both sides of kSamePlace_mm.
+TEST(PathDifference, NearIsTheSameFarIsNot) {
+  Path before, near, far;
+  before.Line({0, 0, 0}, {100, 0, 0});
+  near.Line({0, 0.9 * kSamePlace_mm, 0}, {100, 0, 0});
+  far.Line({0, 1.1 * kSamePlace_mm, 0}, {100, 1.1 * kSamePlace_mm, 0});
+  EXPECT_NEAR(CutsOf(before, near).removed, 0.0, 1e-9);
+  EXPECT_NEAR(CutsOf(before, far).removed, 100.0, 1e-9);
+}
+
+// Parallel, crossing and end to end: no length in common.
+TEST(PathDifference, LinesThatOnlyTouchDiffer) {
+  Path before, after;
+  before.Line({0, 0, 0}, {100, 0, 0});
+  after.Line({50, -50, 0}, {50, 50, 0}).Line({100, 0, 0}, {150, 0, 0}).Line({0, 1, 0}, {100, 1, 0});
+  const Lengths lengths = CutsOf(before, after);
+  EXPECT_NEAR(lengths.common, 0.0, 1e-9);
+  EXPECT_NEAR(lengths.removed, 100.0, 1e-9);
+  EXPECT_NEAR(lengths.added, 250.0, 1e-9);
+}
+
+// A cut where the other one only travels is a cut removed and travel added.
+TEST(PathDifference, CutsAndTravelAreComparedApart) {
+  Path before, after;
+  before.Line({0, 0, 0}, {10, 0, 0}, MotionUse::kCut);
+  after.Line({0, 0, 0}, {10, 0, 0}, MotionUse::kTravel);
+  const PathDifference difference = Compare(before.sketch(), after.sketch());
+  EXPECT_NEAR(difference.removed.cut_mm, 10.0, 1e-9);
+  EXPECT_NEAR(difference.added.travel_mm, 10.0, 1e-9);
+  EXPECT_NEAR(difference.common.cut_mm + difference.common.travel_mm, 0.0, 1e-9);
+}
+
+// Arcs of one circle: a quarter more at the end, against the clock, over the beginning of the
+// other.
+TEST(PathDifference, ArcsAreDividedWhereTheyPart) {
+  const double quarter_mm = 10.0 * kTurn / 4;
+  Path half, most, backwards, over, other;
+  half.Arc({5, 5, 0}, 10, 0.0, kTurn / 2);
+  most.Arc({5, 5, 0}, 10, 0.0, 0.75 * kTurn);
+  backwards.Arc({5, 5, 0}, 10, kTurn / 2, -kTurn / 2);
+  over.Arc({5, 5, 0}, 10, -kTurn / 4, kTurn / 2);
+  other.Arc({5, 5, 0}, 11, 0.0, kTurn / 2);
+  EXPECT_NEAR(CutsOf(half, most).added, quarter_mm, 1e-6);
+  EXPECT_NEAR(CutsOf(half, most).removed, 0.0, 1e-6);
+  EXPECT_NEAR(CutsOf(half, backwards).removed, 0.0, 1e-6);
+  EXPECT_NEAR(CutsOf(half, over).common, quarter_mm, 1e-6);
+  EXPECT_NEAR(CutsOf(half, over).removed, quarter_mm, 1e-6);
+  EXPECT_NEAR(CutsOf(half, other).common, 0.0, 1e-6);
+  const PathDifference difference = Compare(half.sketch(), most.sketch());
+  ASSERT_EQ(difference.added.elements.size(), 1U);
+  EXPECT_NEAR(Distance(difference.added.elements[0].to, {5, -5, 0}), 0.0, 1e-6);
+}
+
+// A full circle against another start of it.
+TEST(PathDifference, CirclesMayBeginAnywhere) {
+  Path before, after;
+  before.Arc({0, 0, 0}, 10, 0.0, kTurn);
+  after.Arc({0, 0, 0}, 10, 1.0, kTurn);
+  EXPECT_NEAR(CutsOf(before, after).removed, 0.0, 1e-6);
+  EXPECT_NEAR(CutsOf(before, after).added, 0.0, 1e-6);
+}
+
+// Property: what both have and what one has alone add up to the whole, whatever the paths are.
+TEST(PathDifference, PartsAddUpToTheWhole) {
+  std::mt19937 random(7);
+  const auto grid = [&] { return static_cast<double>(random() % 12); };
+  for (int round = 0; round < 50; ++round) {
+    Path before, after;
+    double before_mm = 0.0, after_mm = 0.0;
+    for (int k = 0; k < 40; ++k) {
+      for (Path* path : {&before, &after}) {
+        const double x = grid(), y = grid(), length = 1.0 + grid();
+        const bool across = random() % 2 == 0;
+        path->Line({x, y, 0}, across ? Vec3{x + length, y, 0} : Vec3{x, y + length, 0});
+        (path == &before ? before_mm : after_mm) += length;
+      }
+    }
+    const Lengths lengths = CutsOf(before, after);
+    EXPECT_NEAR(lengths.common + lengths.added, after_mm, 1e-6);
+    EXPECT_LE(lengths.removed, before_mm + 1e-6);
+    const Lengths same = CutsOf(before, before);
+    EXPECT_NEAR(same.common, before_mm, 1e-6);
+    EXPECT_EQ(same.removed + same.added, 0.0);
+  }
+}
+
+// Against looking at every box.
+TEST(BoxTree, FindsWhatTouches) {
+  std::mt19937 random(11);
+  const auto number = [&] { return static_cast<double>(random() % 1000); };
+  std::vector<machine::Box> boxes(500);
+  for (machine::Box& box : boxes) {
+    box.Add(Vec3{number(), number(), number()});
+    box.Add(box.min + Vec3{number() * 0.1, number() * 0.1, number() * 0.1});
+  }
+  const BoxTree tree(boxes, 0.5);
+  for (int round = 0; round < 100; ++round) {
+    const machine::Box& wanted = boxes[static_cast<std::size_t>(round)];
+    std::vector<bool> found(boxes.size());
+    tree.Visit(wanted, [&](std::size_t index) {
+      EXPECT_FALSE(found[index]);
+      return found[index] = true;
+    });
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      const machine::Box& b = boxes[i];
+      const bool touches = b.min.x <= wanted.max.x + 0.5 && wanted.min.x <= b.max.x + 0.5 &&
+                           b.min.y <= wanted.max.y + 0.5 && wanted.min.y <= b.max.y + 0.5 &&
+                           b.min.z <= wanted.max.z + 0.5 && wanted.min.z <= b.max.z + 0.5;
+      EXPECT_EQ(found[i], touches) << i;
+    }
+  }
+  int visits = 0;
+  tree.Visit(boxes[0], [&](std::size_t) { return ++visits < 1; });
+  EXPECT_EQ(visits, 1);
+  BoxTree({}, 1.0).Visit(boxes[0], [](std::size_t) {
+    ADD_FAILURE();
+    return true;
+  });
+}
+
+std::size_t CountOf(std::string_view text, std::string_view what) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(what); at != std::string_view::npos; at = text.find(what, at + 1))
+    ++count;
+  return count;
+}
+
+machine::MachineShape Laser() {
+  machine::MachineShape shape;
+  shape.five_axis = true;
+  shape.limits = motion::StandardMachine();
+  shape.laser_watts = 1500.0;
+  return shape;
+}
+
+// A standalone document with all three kinds, a legend with their lengths, and names escaped.
+TEST(PictureOfDifference, ShowsWhatIsRemovedAddedAndCommon) {
+  Path before, after;
+  before.Line({0, 0, 0}, {50, 0, 0});
+  after.Line({10, 0, 0}, {55, 0, 0});
+  const std::string svg =
+      PictureOfDifference({.path = before.sketch(), .title = "<a>&.S"},
+                          {.path = after.sketch(), .title = "b.S", .note = "stopped at 1/7"},
+                          Laser(), {{"cycle_time", "s", 1.5, 2.5}, {"pierces", "", 1.0, 1.0}}, {});
+  EXPECT_EQ(XmlFault(svg), "");
+  EXPECT_EQ(CountOf(svg, "<script"), 0u);
+  EXPECT_EQ(CountOf(svg, "nan"), 0u);
+  EXPECT_EQ(CountOf(svg, "<a>"), 0u);
+  for (const char* kind : {"removed", "added", "common"}) {
+    EXPECT_EQ(CountOf(svg, std::string("<g class=\"") + kind), 4u) << kind;  // one for each panel
+    EXPECT_EQ(CountOf(svg, std::string(">") + kind + "<"), 1u) << kind;      // in the legend
+  }
+  EXPECT_EQ(CountOf(svg, ">10.000 mm cut, 0.000 mm travel<"), 1u);
+  EXPECT_EQ(CountOf(svg, ">5.000 mm cut, 0.000 mm travel<"), 1u);
+  EXPECT_EQ(CountOf(svg, ">40.000 mm cut, 0.000 mm travel<"), 1u);
+  EXPECT_EQ(CountOf(svg, ">1.5 → 2.5 s<"), 1u);
+  EXPECT_EQ(CountOf(svg, ">1<"), 1u);  // the same in both
+  EXPECT_EQ(CountOf(svg, "stopped at 1/7"), 1u);
+}
+
+// A difference that is small in the whole is shown once more, closer.
+TEST(PictureOfDifference, SmallDifferencesAreShownCloser) {
+  Path before, after;
+  before.Line({0, 0, 0}, {500, 0, 0}).Line({500, 0, 0}, {500, 300, 0});
+  after.Line({0, 0, 0}, {500, 0, 0}).Line({500, 0, 0}, {500, 301, 0});
+  const auto picture = [&](const Path& other) {
+    return PictureOfDifference({.path = before.sketch(), .title = "a"},
+                               {.path = other.sketch(), .title = "b"}, Laser(), {}, {});
+  };
+  EXPECT_EQ(CountOf(picture(after), "closer"), 1u);
+  EXPECT_EQ(CountOf(picture(after), "<g class=\"added"), 6u);
+  EXPECT_EQ(CountOf(picture(before), "closer"), 0u);
+  EXPECT_EQ(CountOf(picture(before), "both run along the same path"), 1u);
+}
+
+// Nothing to draw is no trouble, and bounds hold.
+TEST(PictureOfDifference, EmptyAndLongPathsAreDrawn) {
+  const Path empty;
+  Path path;
+  for (int k = 0; k < 3000; ++k)
+    path.Line({k * 0.1, k % 2 * 5.0, 0}, {k * 0.1 + 0.1, (k + 1) % 2 * 5.0, 0});
+  const auto picture = [&](std::size_t elements_max) {
+    return PictureOfDifference({.path = empty.sketch(), .title = "a"},
+                               {.path = path.sketch(), .title = "b"}, Laser(), {}, {},
+                               elements_max);
+  };
+  EXPECT_EQ(XmlFault(picture(kPictureElementsMax)), "");
+  EXPECT_LT(picture(120).size(), picture(kPictureElementsMax).size() / 2);
+  EXPECT_EQ(XmlFault(PictureOfDifference({.path = empty.sketch(), .title = "a"},
+                                         {.path = empty.sketch(), .title = "b"}, {}, {}, {})),
+            "");
+}
+
+}  // namespace
+}  // namespace rmlcell::simulation

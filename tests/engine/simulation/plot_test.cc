@@ -1,0 +1,203 @@
+#include "engine/simulation/plot.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include "engine/simulation/plot_page.h"
+#include "tests/engine/simulation/fake_run.h"
+#include "tests/engine/simulation/xml_check.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+machine::MachineShape Laser() {
+  machine::MachineShape shape;
+  shape.five_axis = true;
+  shape.limits = motion::StandardMachine();
+  shape.laser_watts = 1500.0;
+  return shape;
+}
+
+struct Drawn {
+  std::string svg;
+  SimTime duration{0};
+};
+Drawn Draw(const Script& script, const machine::MachineShape& shape, const std::string& curves) {
+  PlotRecorder recorder(shape);
+  FakeRun run(script, recorder);
+  run.Advance(kForever);
+  RunReport report;
+  report.title = "part";
+  report.cycle_time = run.state().time;
+  const auto parsed = ParsePlotCurves(curves);
+  EXPECT_TRUE(parsed);
+  return {recorder.Svg(report, {.curves = *parsed}), report.cycle_time};
+}
+
+// The corners of the nth curve of the picture, in pixels.
+std::vector<ScreenPoint> Curve(const std::string& svg, int number) {
+  std::size_t at = 0;
+  for (int k = 0; k <= number; ++k) at = svg.find("<path d=\"", at + 1);
+  EXPECT_NE(at, std::string::npos);
+  const char* text = svg.c_str() + at + 9;
+  std::vector<ScreenPoint> points;
+  ScreenPoint here;
+  char command = 'M';
+  while (*text != '"') {
+    if (std::isalpha(static_cast<unsigned char>(*text)) != 0) {
+      command = *text++;
+      continue;
+    }
+    if (*text == ' ' || *text == ',') {
+      ++text;
+      continue;
+    }
+    char* end = nullptr;
+    const double first = std::strtod(text, &end);
+    text = end;
+    const bool pair = command == 'M' || command == 'm' || command == 'L' || command == 'l';
+    double second = 0.0;
+    if (pair) {
+      while (*text == ' ' || *text == ',') ++text;
+      second = std::strtod(text, &end);
+      text = end;
+    }
+    switch (command) {
+      case 'M':
+      case 'L':
+        here = {first, second};
+        break;
+      case 'm':
+      case 'l':
+        here = {here.x + first, here.y + second};
+        break;
+      case 'H':
+        here.x = first;
+        break;
+      case 'h':
+        here.x += first;
+        break;
+      case 'V':
+        here.y = first;
+        break;
+      case 'v':
+        here.y += first;
+        break;
+      default:
+        ADD_FAILURE() << "unknown " << command;
+        return points;
+    }
+    points.push_back(here);
+  }
+  return points;
+}
+
+// The height of a curve at a share of the time across the picture.
+double HeightAt(const std::vector<ScreenPoint>& points, double share) {
+  const double x = points.front().x + share * (points.back().x - points.front().x);
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    if (points[k].x < x) continue;
+    const double part = (x - points[k - 1].x) / std::max(points[k].x - points[k - 1].x, 1e-9);
+    return points[k - 1].y + part * (points[k].y - points[k - 1].y);
+  }
+  return points.back().y;
+}
+
+TEST(Plot, NamesOfCurves) {
+  const auto curves = ParsePlotCurves("axes,speed");
+  ASSERT_TRUE(curves);
+  EXPECT_EQ(*curves, (std::vector{PlotCurve::kAxes, PlotCurve::kSpeed}));
+  for (const char* wrong : {"", "speed,", "speed,speed", "torque", ",power"}) {
+    const auto refused = ParsePlotCurves(wrong);
+    ASSERT_FALSE(refused) << wrong;
+    EXPECT_EQ(refused.error().code, ErrorCode::kCellUsage);
+  }
+}
+
+// motion.md 12, S01: 100 mm at 50 mm/s take 2.0707 s, with ramps of 0.0707 s. In the picture the
+// speed curve stands at its top for all but the ramps, and the axis goes evenly from end to end.
+TEST(Plot, SpeedAndPlaceOfALineAreWhereTheProfileHasThem) {
+  Script script;
+  script.Step(1, 1).Line({0, 0, 0}, {100, 0, 0}, {.programmed_mm_s = 50.0});
+  machine::MachineShape mill;
+  const Drawn drawn = Draw(script, mill, "speed,axes");
+  EXPECT_EQ(XmlFault(drawn.svg), "");
+  const std::vector<ScreenPoint> feed = Curve(drawn.svg, 0);
+  const std::vector<ScreenPoint> speed = Curve(drawn.svg, 1);
+  const std::vector<ScreenPoint> x = Curve(drawn.svg, 2);
+  const double rest = speed.front().y;
+  EXPECT_NEAR(speed.back().y, rest, 0.02);
+  const double top = HeightAt(speed, 0.5);
+  EXPECT_LT(top, rest - 100.0);
+  EXPECT_NEAR(HeightAt(feed, 0.5), top, 0.02);  // it is reached
+  // Half way through the first ramp, 0.0354 s of 2.0707 s, half of the speed is reached.
+  EXPECT_NEAR(HeightAt(speed, 0.5 * std::sqrt(50.0 / 40000.0) * 2.0 / 2.070710678),
+              0.5 * (rest + top), 1.5);
+  EXPECT_NEAR(HeightAt(x, 0.5), 0.5 * (x.front().y + x.back().y), 0.1);
+}
+
+// motion.md 8.1: WORKDEF 1 (8, 75): 40 mm/s are 75 %, 20 mm/s 37.5 %; on a standing tip 0.
+TEST(Plot, PowerFollowsTheSpeedAndIsOffWhenNothingHappens) {
+  const motion::PathLimits limits{.speed = 20.0, .acceleration = 2000.0, .jerk = 40000.0};
+  Script script;
+  script.Step(1, 1)
+      .Wait(machine::WaitKind::kPierce, 1.0, true, 50.0)
+      .Motion(Planned(LineFrom({0, 0, 0}, {40, 0, 0}), limits),
+              {.beam_on = true, .power = {.percent_per_mm_s = 75.0 / 40.0}})
+      .Nothing(1.0);
+  const Drawn drawn = Draw(script, Laser(), "power");
+  const std::vector<ScreenPoint> power = Curve(drawn.svg, 0);
+  const double whole = ToSeconds(drawn.duration);
+  const double off = HeightAt(power, (whole - 0.5) / whole);
+  const double pierce = HeightAt(power, 0.5 / whole);
+  const double cut = HeightAt(power, 2.0 / whole);
+  EXPECT_GT(off - pierce, 50.0);
+  EXPECT_NEAR((off - cut) / (off - pierce), 37.5 / 50.0, 1e-3);
+}
+
+// Only what moved has a panel, and a mill has no beam.
+TEST(Plot, LeavesOutWhatThereIsNot) {
+  Script script;
+  script.Step(1, 1).Line({0, 0, 0}, {0, 30, 0});
+  const std::string svg = Draw(script, machine::MachineShape{}, "speed,power,axes").svg;
+  EXPECT_NE(svg.find(">Y<"), std::string::npos);
+  EXPECT_EQ(svg.find(">X<"), std::string::npos);
+  EXPECT_EQ(svg.find(">power<"), std::string::npos);
+  EXPECT_EQ(XmlFault(Draw(Script(), machine::MachineShape{}, "axes").svg), "");
+}
+
+TEST(Plot, MarksHaltsAndErrorsButNoAdvice) {
+  Script script;
+  script.Step(1, 1)
+      .Line({0, 0, 0}, {10, 0, 0})
+      .Find(ErrorCode::kHoleRadiusZero, "radius is 0")
+      .Line({10, 0, 0}, {0, 0, 0})
+      .Halt("STOP <now>");
+  const std::string svg = Draw(script, Laser(), "speed").svg;
+  EXPECT_EQ(XmlFault(svg), "");
+  EXPECT_NE(svg.find("OPT-E348"), std::string::npos);
+  EXPECT_NE(svg.find("STOP &lt;now&gt;"), std::string::npos);
+}
+
+// A hundred thousand short moves: the picture stays small.
+TEST(Plot, IsOfBoundedSizeHoweverLongTheRun) {
+  PlotRecorder recorder(Laser());
+  const motion::PlannedMotion there = Planned(LineFrom({0, 0, 0}, {1, 0, 0}));
+  const SimTime length = FromSeconds(there.duration_s());
+  SimTime at{0};
+  for (int k = 0; k < 100'000; ++k) {
+    recorder.OnMotion({.start = at, .end = at + length, .motion = &there, .travelled = 1.0});
+    at += length;
+  }
+  RunReport report;
+  report.cycle_time = at;
+  const std::string svg = recorder.Svg(report, {});
+  EXPECT_LT(svg.size(), 600'000u);
+  EXPECT_EQ(XmlFault(svg), "");
+}
+
+}  // namespace
+}  // namespace rmlcell::simulation
