@@ -1,8 +1,11 @@
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
 
 #include "clients/cli/office.h"
 #include "clients/cli/verbs.h"
+#include "clients/lsp/stdio.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -135,6 +138,16 @@ void AddOfficeVerbs(CLI::App& app, int& exit_code) {
     verb->add_option("--svg", options->svg, "write a picture of both paths, - for standard output");
     verb->add_flag("--json", options->json, "as JSON");
     verb->callback([options, &exit_code] { exit_code = Diff(*options); });
+  }
+  {
+    CLI::App* verb =
+        app.add_subcommand("lsp", "Serve an editor: findings, fixes, hover, jumps, names (language server protocol)");
+    verb->footer("Examples:\n"
+                 "  rmlcell lsp                          on standard input and output; editors start it\n"
+                 "clients/vscode has an extension; any editor with a language server client will do.");
+    auto stdio = std::make_shared<bool>(false);
+    verb->add_flag("--stdio", *stdio, "what it does anyway; some editors say it");
+    verb->callback([stdio, &exit_code] { exit_code = lsp::RunOnDescriptors(STDIN_FILENO, STDOUT_FILENO); });
   }
 }
 

@@ -61,6 +61,7 @@ _rmlcell_options() {
     link) echo "--help --slot --main --output" ;;
     format) echo "--help --check" ;;
     convert) echo "--help" ;;
+    lsp) echo "--help --stdio" ;;
     transform) echo "--help --move --turn --shift --output" ;;
     machines | programs | delete | stale | projects | job | cancel | report) echo "$remote" ;;
     put) echo "$remote --etag --check-only" ;;
@@ -225,7 +226,7 @@ _rmlcell() {
     _rmlcell_offer $(_rmlcell_options "$verb")
   elif [[ -z $verb ]]; then
     _rmlcell_offer check simulate parameters explain compile decompile link format convert compensate transform list \
-      diff machines programs put get delete stale projects submit watch jobs job cancel report picture
+      diff lsp machines programs put get delete stale projects submit watch jobs job cancel report picture
   else
     _rmlcell_positional
   fi
