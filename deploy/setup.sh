@@ -25,7 +25,7 @@ libspdlog-dev           # logs
 libfmt-dev              # spdlog's formatting
 libcli11-dev            # command lines
 libtomlplusplus-dev     # configuration and machine files
-nlohmann-json3-dev      # JSON of error details on the web port
+nlohmann-json3-dev      # JSON: error details on the web port, messages of the language server
 libboost-dev            # Beast and Asio: the web port and the thread pool (headers only)
 LIST
 }

@@ -48,7 +48,7 @@ struct Config {
   std::string log_format = "text";
   std::string log_file;  // empty: standard error
 
-  double shutdown_timeout_s = 4.0;
+  double shutdown_timeout_s = 3.5;
 
   std::vector<MachineConfig> machines = {{"optimo-1", "optimo", "", "Virtual Optimo"},
                                          {"mill-1", "rml1", "srm-20", "Virtual SRM-20"}};

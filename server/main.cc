@@ -110,7 +110,7 @@ Every key of the configuration is a flag too, and a variable of the environment:
   sigwait(&signals, &signal);
   spdlog::info("stopping on {}", strsignal(signal));
   // All that was acknowledged is on the disk: a call that does not end keeps nobody from stopping.
-  std::thread([patience = config.shutdown_timeout_s + 2.0] {
+  std::thread([patience = config.shutdown_timeout_s + 1.0] {
     std::this_thread::sleep_for(std::chrono::duration<double>(patience));
     spdlog::error("a call does not end; stopping without it");
     spdlog::shutdown();
@@ -118,5 +118,8 @@ Every key of the configuration is a flag too, and a variable of the environment:
   }).detach();
   (*cell)->Stop();
   spdlog::info("stopped");
-  return 0;
+  spdlog::shutdown();
+  // gRPC takes a second or more to end its own threads; nothing of ours is left to do.
+  cell->release();
+  _exit(0);
 }

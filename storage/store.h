@@ -152,6 +152,9 @@ class Store {
   // and the request_id is new; or too many writes wait already, told at once by the calling thread.
   virtual void Submit(NewJob job, std::function<void(Result<SubmittedJob>)> done) = 0;
   virtual Result<SubmittedJob> SubmitAndWait(NewJob job);
+  // The job that this request made, or nothing. CellRequestIdReused, as of Submit().
+  virtual Result<std::optional<JobRecord>> FindSubmitted(std::string_view request_id,
+                                                         std::string_view request_hash) = 0;
 
   virtual Result<JobRecord> GetJob(std::int64_t id) = 0;
   virtual Result<std::vector<JobRecord>> ListJobs(const JobQuery& query) = 0;

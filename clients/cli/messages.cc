@@ -37,7 +37,7 @@ std::string StateName(v1::Job::State state) {
 }
 
 std::string FindingLine(const v1::Diagnostic& diagnostic) {
-  std::string text = FormatDiagnostic(bridge::FromProto(diagnostic), {});
+  std::string text = Visible(FormatDiagnostic(bridge::FromProto(diagnostic), {}));
   if (diagnostic.count() > 1) text += " (" + std::to_string(diagnostic.count()) + " times)";
   return text;
 }
@@ -54,7 +54,7 @@ std::string OutcomeLine(const v1::Outcome& outcome) {
     default: text = "not ended";
   }
   if (!outcome.code().empty()) text += ", " + outcome.code();
-  if (!outcome.message().empty()) text += ": " + outcome.message();
+  if (!outcome.message().empty()) text += ": " + Visible(outcome.message());
   const std::string place = PlaceText(outcome.place());
   if (!place.empty() && outcome.kind() != v1::Outcome::KIND_COMPLETED) text += " (" + place + ")";
   if (!outcome.advice().empty()) text += "; " + outcome.advice();
@@ -132,7 +132,7 @@ std::string EventLine(const v1::JobEvent& event) {
   switch (event.what_case()) {
     case v1::JobEvent::kState: return text + StateName(event.state());
     case v1::JobEvent::kDiagnostic: return text + FindingLine(event.diagnostic());
-    case v1::JobEvent::kMessage: return text + event.message();
+    case v1::JobEvent::kMessage: return text + Visible(event.message());
     case v1::JobEvent::kHalted: return text + "halted: " + event.halted();
     case v1::JobEvent::kResumed: return text + "resumed";
     case v1::JobEvent::kSignal: {

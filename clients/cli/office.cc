@@ -9,6 +9,7 @@
 #include "engine/optimo/language/compiler.h"
 #include "engine/optimo/language/formatter.h"
 #include "engine/optimo/language/linker.h"
+#include "engine/optimo/language/source_map.h"
 #include "engine/optimo/offline/compensate.h"
 #include "engine/optimo/offline/convert.h"
 #include "engine/optimo/offline/listing.h"
@@ -20,6 +21,8 @@
 
 namespace rmlcell::cli {
 namespace {
+
+constexpr const char* kMapExtension = ".MAP";
 
 int Refuse(const Error& error) {
   Complain(bridge::ErrorText(error));
@@ -75,13 +78,22 @@ std::optional<optimo::Compilation> CompileFile(const std::string& file, const So
 
 }  // namespace
 
-int Compile(const std::string& file, const std::string& output) {
+int Compile(const std::string& file, const std::string& output, bool map) {
   const Result<Source> source = ReadSource(file);
   if (!source) return Refuse(source.error());
   if (source->text.empty()) return Refuse({ErrorCode::kCellEmptyProgram, file, {}});
   const auto compiled = CompileFile(file, *source, true);
   if (!compiled) return kProgramErrors;
-  return Deliver(compiled->object, output.empty() ? WithExtension(file, ".O") : output,
+  const std::string target = output.empty() ? WithExtension(file, ".O") : output;
+  if (map && target == "-") return Refuse({ErrorCode::kCellUsage, "--map: the object goes into no file", {}});
+  if (map) {
+    const std::string bytes =
+        optimo::EncodeSourceMap(optimo::MapSource(source->text, source->inch, compiled->object));
+    if (const Status written = WriteWholeFile(WithExtension(target, kMapExtension), bytes); !written) {
+      return Refuse(written.error());
+    }
+  }
+  return Deliver(compiled->object, target,
                  "object of " + std::to_string(compiled->object.size()) + " bytes, " +
                      std::to_string(compiled->module.step_count) + " steps");
 }
@@ -89,9 +101,12 @@ int Compile(const std::string& file, const std::string& output) {
 int Decompile(const std::string& file, const std::string& output) {
   const Result<std::string> bytes = bridge::ReadFile(file, kFileBytesMax);
   if (!bytes) return Refuse(bytes.error());
-  const Result<std::string> text = optimo::ObjectToSource(*bytes);
-  if (!text) return Refuse(text.error());
-  return Deliver(*text, output.empty() ? "-" : output, "source of " + file);
+  // A map that is not there, cannot be read, or is of another object is passed over.
+  const Result<std::string> map = bridge::ReadFile(WithExtension(file, kMapExtension), kFileBytesMax);
+  const Result<optimo::RecoveredSource> source =
+      optimo::RecoverSource(*bytes, map ? std::optional<std::string_view>(*map) : std::nullopt);
+  if (!source) return Refuse(source.error());
+  return Deliver(source->text, output.empty() ? "-" : output, "source of " + file);
 }
 
 int Link(const std::vector<std::string>& files, const std::vector<std::string>& slots, int main_slot,

@@ -10,7 +10,9 @@ namespace rmlcell::cli {
 // An `output` of "-" is standard output; empty: the name that the tool gives it. Files are written whole
 // or not at all.
 
-int Compile(const std::string& file, const std::string& output);
+// `map`: a source map is written beside the object, .MAP for its extension, from which Decompile gives the
+// programmer's own text back as long as the object is the one that was made of it.
+int Compile(const std::string& file, const std::string& output, bool map);
 int Decompile(const std::string& file, const std::string& output);
 
 // The executable of a main program with the FUNCTIONs that it needs, from files and folders as simulate

@@ -1,8 +1,11 @@
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
 
 #include "clients/cli/office.h"
 #include "clients/cli/verbs.h"
+#include "clients/lsp/stdio.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -27,15 +30,19 @@ CLI::App* FileVerb(CLI::App& app, const char* name, const char* text, const char
 void AddOfficeVerbs(CLI::App& app, int& exit_code) {
   {
     auto arguments = std::make_shared<FileArguments>();
-    FileVerb(app, "compile", "Compile a source to its object",
-             "  rmlcell compile 12.S                 writes 12.O\n"
-             "  rmlcell compile 12.S -o - | xxd      the bytes",
-             arguments, "file of the object, - for standard output; default: FILE with .O")
-        ->callback([arguments, &exit_code] { exit_code = Compile(arguments->file, arguments->output); });
+    auto map = std::make_shared<bool>(false);
+    CLI::App* verb = FileVerb(app, "compile", "Compile a source to its object",
+                              "  rmlcell compile 12.S                 writes 12.O\n"
+                              "  rmlcell compile 12.S --map           and 12.MAP: comments and layout for decompile\n"
+                              "  rmlcell compile 12.S -o - | xxd      the bytes",
+                              arguments, "file of the object, - for standard output; default: FILE with .O");
+    verb->add_flag("--map", *map, "write a source map beside the object, .MAP for its extension");
+    verb->callback([arguments, map, &exit_code] { exit_code = Compile(arguments->file, arguments->output, *map); });
   }
   {
     auto arguments = std::make_shared<FileArguments>();
-    FileVerb(app, "decompile", "Give the source of an object", "  rmlcell decompile 12.O -o 12.S", arguments,
+    FileVerb(app, "decompile", "Give the source of an object: its own text where 12.MAP beside it has it",
+             "  rmlcell decompile 12.O -o 12.S", arguments,
              "file of the source; default: standard output")
         ->callback([arguments, &exit_code] { exit_code = Decompile(arguments->file, arguments->output); });
   }
@@ -131,6 +138,16 @@ void AddOfficeVerbs(CLI::App& app, int& exit_code) {
     verb->add_option("--svg", options->svg, "write a picture of both paths, - for standard output");
     verb->add_flag("--json", options->json, "as JSON");
     verb->callback([options, &exit_code] { exit_code = Diff(*options); });
+  }
+  {
+    CLI::App* verb =
+        app.add_subcommand("lsp", "Serve an editor: findings, fixes, hover, jumps, names (language server protocol)");
+    verb->footer("Examples:\n"
+                 "  rmlcell lsp                          on standard input and output; editors start it\n"
+                 "clients/vscode has an extension; any editor with a language server client will do.");
+    auto stdio = std::make_shared<bool>(false);
+    verb->add_flag("--stdio", *stdio, "what it does anyway; some editors say it");
+    verb->callback([stdio, &exit_code] { exit_code = lsp::RunOnDescriptors(STDIN_FILENO, STDOUT_FILENO); });
   }
 }
 

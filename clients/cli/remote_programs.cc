@@ -206,21 +206,22 @@ int StaleExecutables(const Remote& remote, const std::string& machine) {
 
 int Projects(const Remote& remote) {
   const auto stub = v1::ProjectService::NewStub(Connect(remote));
-  grpc::ClientContext context;
-  Prepare(context);
-  v1::ListProjectsResponse response;
-  const grpc::Status status = stub->ListProjects(&context, {}, &response);
-  if (!status.ok()) return Refused(status, remote);
-  if (remote.json) {
-    for (const v1::Project& project : response.projects()) Print(Json(project));
-    return kGood;
-  }
   std::vector<std::vector<std::string>> rows = {{"PROJECT", "TITLE", "PROGRAMS", "SCHEDULES", "PROCESSES"}};
-  for (const v1::Project& project : response.projects()) {
-    rows.push_back({project.name().substr(9), project.title(), std::to_string(project.programs_size()),
-                    std::to_string(project.laser_schedules_size()), std::to_string(project.processes_size())});
-  }
-  PrintRaw(Table(rows));
+  v1::ListProjectsRequest request;
+  do {
+    grpc::ClientContext context;
+    Prepare(context);
+    v1::ListProjectsResponse response;
+    const grpc::Status status = stub->ListProjects(&context, request, &response);
+    if (!status.ok()) return Refused(status, remote);
+    for (const v1::Project& project : response.projects()) {
+      if (remote.json) Print(Json(project));
+      rows.push_back({project.name().substr(9), project.title(), std::to_string(project.programs_size()),
+                      std::to_string(project.laser_schedules_size()), std::to_string(project.processes_size())});
+    }
+    request.set_page_token(response.next_page_token());
+  } while (!request.page_token().empty());
+  if (!remote.json) PrintRaw(Table(std::move(rows)));
   return kGood;
 }
 

@@ -20,11 +20,14 @@ enum class Colour { kPlain, kRed, kYellow, kGreen, kBlue, kDim, kBold };
 std::string Paint(std::string_view text, Colour colour, bool on);
 
 void Print(std::string_view text);      // to standard output, with a line end
+// Foreign text on one line: bytes that would steer a terminal are shown as \xNN.
+std::string Visible(std::string_view text);
+
 void PrintRaw(std::string_view text);   // to standard output, as it is
 void Complain(std::string_view text);   // to standard error, "rmlcell: ..."
 
 // Columns as wide as they need to be; numbers are not aligned specially. The first row is the heading.
-std::string Table(const std::vector<std::vector<std::string>>& rows);
+std::string Table(std::vector<std::vector<std::string>> rows);
 
 // One line on standard error that is drawn over; draws nothing when standard error is no terminal.
 class ProgressLine {

@@ -56,10 +56,12 @@ _rmlcell_options() {
     explain) echo "--help --json" ;;
     diff) echo "--help --svg --json" ;;
     parameters) echo "--help --profile" ;;
-    compile | decompile | compensate | list) echo "--help --output" ;;
+    compile) echo "--help --map --output" ;;
+    decompile | compensate | list) echo "--help --output" ;;
     link) echo "--help --slot --main --output" ;;
     format) echo "--help --check" ;;
     convert) echo "--help" ;;
+    lsp) echo "--help --stdio" ;;
     transform) echo "--help --move --turn --shift --output" ;;
     machines | programs | delete | stale | projects | job | cancel | report) echo "$remote" ;;
     put) echo "$remote --etag --check-only" ;;
@@ -224,7 +226,7 @@ _rmlcell() {
     _rmlcell_offer $(_rmlcell_options "$verb")
   elif [[ -z $verb ]]; then
     _rmlcell_offer check simulate parameters explain compile decompile link format convert compensate transform list \
-      diff machines programs put get delete stale projects submit watch jobs job cancel report picture
+      diff lsp machines programs put get delete stale projects submit watch jobs job cancel report picture
   else
     _rmlcell_positional
   fi

@@ -5,7 +5,8 @@
 namespace rmlcell::simulation {
 
 void FindingList::Add(SimTime at, const Diagnostic& diagnostic) {
-  const Key key{diagnostic.code, diagnostic.program, diagnostic.step, diagnostic.where.line};
+  const Key key{diagnostic.code, diagnostic.program, diagnostic.step, diagnostic.where.line,
+                diagnostic.where.column};
   if (const auto known = index_.find(key); known != index_.end()) {
     ++findings_[known->second].count;
     return;

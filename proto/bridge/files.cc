@@ -1,5 +1,6 @@
 #include "proto/bridge/files.h"
 
+#include <cmath>
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
@@ -158,8 +159,31 @@ Status ParseInputFile(std::string_view text, const std::string& name, v1::Simula
       const auto value = ValueOf(Trim(rest.substr(equals + 1)));
       if (!value) return BadText(name, line_number, 0, "the value is no number, ON, OFF, OPEN or CLOSED");
       input.set_value(*value);
+      if (const Status valid = CheckInputValue(input); !valid) {
+        return BadText(name, line_number, static_cast<int>(blank) + 2, valid.error().detail);
+      }
     }
     *options.add_inputs() = input;
+  }
+  return {};
+}
+
+Status CheckInputValue(const v1::ScriptedInput& input) {
+  constexpr double kOverrideMax = 145.0;
+  const double value = input.value();
+  const auto wrong = [&](const std::string& allowed) {
+    return Error{ErrorCode::kCellInvalidArgument, "the value is " + ShortestText(value) + "; " + allowed, {}};
+  };
+  switch (input.kind()) {
+    case v1::ScriptedInput::KIND_LOGICAL_INPUT:
+    case v1::ScriptedInput::KIND_DOOR:
+      if (value != 0.0 && value != 1.0) return wrong("allowed are 0 and 1");
+      break;
+    case v1::ScriptedInput::KIND_OVERRIDE:
+      if (!(value > 0.0 && value <= kOverrideMax)) return wrong("allowed are above 0 to 145 %");
+      break;
+    default:
+      if (!std::isfinite(value)) return wrong("a number is needed");
   }
   return {};
 }

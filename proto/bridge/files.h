@@ -7,6 +7,7 @@
 #include "engine/core/result.h"
 
 namespace rmlcell::v1 {
+class ScriptedInput;
 class SimulationOptions;
 }
 
@@ -28,5 +29,9 @@ Result<MachineFile> ParseMachineFile(std::string_view text, const std::string& n
 //   0.5 IL[20] = 1      2.0 START      3.25 OVERRIDE = 55      4 DOOR = OPEN
 // Appends to options.inputs. Errors: CellBadText with line and column.
 Status ParseInputFile(std::string_view text, const std::string& name, v1::SimulationOptions& options);
+
+// Whether the value of an input can be: logical ones and the door are 0 or 1, the feed override is above 0 to
+// 145 %, numbers are finite. Error: CellInvalidArgument.
+Status CheckInputValue(const v1::ScriptedInput& input);
 
 }  // namespace rmlcell::bridge

@@ -130,10 +130,14 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
   for (const v1::SlotProgram& further : job.simulation().programs()) {
     Result<std::string> bytes = attached(AttachmentName(further.slot()));
     if (!bytes) return bytes.error();
-    messages.object_revisions.erase(further.slot());
     programs.Add(further.slot(), {}, further.program().file_name(), std::move(*bytes),
                  further.program().form() != v1::PROGRAM_FORM_OBJECT, std::nullopt);
   }
+  // An executable that is linked while the memory has programs that the machine has not, or not any more, holds
+  // their code: it is for this job only.
+  const bool as_stored = stored_main && job.simulation().programs().empty() &&
+                         messages.object_revisions.contains(main_slot);
+  if (!as_stored) messages.object_revisions.clear();
   programs.Finish();
   assignment.set_main_program(main_slot);
 

@@ -1,4 +1,4 @@
-#include "server/jobs/dispatcher.h"
+#include "server/jobs/dispatcher_worker.h"
 
 #include <spdlog/spdlog.h>
 
@@ -6,7 +6,6 @@
 #include "server/config.h"
 #include "server/events/event_feed.h"
 #include "server/executor.h"
-#include "server/jobs/assignment.h"
 #include "server/jobs/job_messages.h"
 #include "server/names.h"
 #include "server/version.h"
@@ -14,25 +13,8 @@
 namespace rmlcell::server {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 // Events that a worker may send before the first of them is durable.
 constexpr int kEventsWindow = 256;
-
-// What a worker may send over its budget until it has noticed.
-constexpr std::int64_t kOutputSlack = 1 << 20;
-
-bool SameLease(const storage::Lease& lease, const v1::WorkerLease& other) {
-  return lease.job == other.job() && lease.attempt == other.attempt() && lease.fence == other.fence();
-}
-
-v1::WorkerLease ToProto(const storage::Lease& lease) {
-  v1::WorkerLease message;
-  message.set_job(lease.job);
-  message.set_attempt(lease.attempt);
-  message.set_fence(lease.fence);
-  return message;
-}
 
 void SendStop(WorkerLine& line) {
   v1::WorkResponse message;
@@ -40,58 +22,7 @@ void SendStop(WorkerLine& line) {
   line.Send(std::move(message));
 }
 
-storage::JobOutcome CancelledOutcome() {
-  return {.state = storage::JobState::kCancelled, .code = ErrorCode::kCellCancelled, .detail = {}};
-}
-
-v1::WorkResponse ControlMessage(const storage::Lease& lease, v1::WorkerControl::Kind kind, double value) {
-  v1::WorkResponse message;
-  v1::WorkerControl& control = *message.mutable_control();
-  *control.mutable_lease() = ToProto(lease);
-  control.set_kind(kind);
-  control.set_value(value);
-  return message;
-}
-
 }  // namespace
-
-// What became of the events of an assignment; told by threads of the store, which may outlive it.
-struct Dispatcher::Delivery {
-  std::atomic<std::int64_t> stored = 0;
-  std::atomic<bool> failed = false;
-};
-
-// What a worker is at. Touched only by work posted for this worker, which runs in order.
-struct Dispatcher::Assignment {
-  storage::Lease lease;
-  Clock::time_point renewed_at;
-  std::map<std::string, storage::NewArtifact> artifacts;
-  std::int64_t collected_bytes = 0;
-  bool over_budget = false;
-  std::map<int, storage::Revision> object_revisions;  // of the programs of its memory
-  std::string machine;
-  std::shared_ptr<Delivery> delivery = std::make_shared<Delivery>();
-};
-
-struct Dispatcher::Worker {
-  WorkerId id = 0;
-  std::string name;
-  std::shared_ptr<WorkerLine> line;
-  std::vector<std::string> kinds;
-  std::optional<Assignment> assignment;
-  bool leaving = false;  // it handed its job back, since it ends; as `assignment`
-
-  // Guarded by Dispatcher::mutex_.
-  std::deque<std::function<void()>> queue;
-  bool working = false;
-  bool gone = false;
-  bool idle = true;
-  bool will_look = false;  // a look for a job is in the queue and has not begun
-  bool looking = false;    // it has begun, and may find one; for Drain
-  std::int64_t job = 0;                 // 0: none; for Control
-  std::optional<storage::Lease> lease;  // the same, for Control
-  std::shared_ptr<Delivery> delivery;   // the same, for the sweeper
-};
 
 Dispatcher::Dispatcher(storage::Store& store, EventFeed& feed, const Config& config, Executor& executor,
                        std::string join_token)
@@ -227,237 +158,6 @@ void Dispatcher::WakeIdle() {
   for (const auto& worker : idle) PostLook(worker);
 }
 
-void Dispatcher::Assign(const std::shared_ptr<Worker>& worker) {
-  if (worker->assignment || worker->leaving) return;
-  {
-    const std::lock_guard lock(mutex_);
-    if (worker->gone || draining_) return;
-    worker->looking = true;
-  }
-  const auto leased = store_.Acquire(worker->name, worker->kinds,
-                                     std::chrono::milliseconds(config_.workers_lease_ms),
-                                     {StateEvent(storage::JobState::kRunning)});
-  const bool found = leased && leased->has_value();
-  if (found) {
-    worker->assignment.emplace();
-    worker->assignment->lease = (*leased)->lease;
-    worker->assignment->renewed_at = Clock::now();
-    worker->assignment->machine = (*leased)->job.machine;
-  }
-  {
-    const std::lock_guard lock(mutex_);
-    worker->looking = false;
-    if (found) {
-      worker->idle = false;
-      worker->job = worker->assignment->lease.job;
-      worker->lease = worker->assignment->lease;
-      worker->delivery = worker->assignment->delivery;
-    }
-  }
-  changed_.notify_all();
-  if (!leased) spdlog::error("no job could be leased: {}", bridge::ErrorText(leased.error()));
-  if (found) Begin(worker, **leased);
-}
-
-void Dispatcher::Begin(const std::shared_ptr<Worker>& worker, const storage::LeasedJob& job) {
-  // A job whose cancel came while its first worker gave it back: there is nothing to begin.
-  if (job.job.cancel_requested) return EndWithoutWork(worker, CancelledOutcome());
-  spdlog::debug("{} attempt {} goes to worker {}", JobName(job.lease.job), job.lease.attempt, worker->name);
-  if (const Status sent = SendAssignment(*worker, job); !sent) {
-    // The job itself cannot be worked on: it fails, and the worker is free for the next.
-    return EndWithoutWork(worker, {.state = storage::JobState::kFailed,
-                                   .code = sent.error().code,
-                                   .detail = sent.error().detail});
-  }
-  // A worker that was told to stop before the job came to it drops the job and ends.
-  if (draining_) GiveBack(*worker);
-}
-
-void Dispatcher::EndWithoutWork(const std::shared_ptr<Worker>& worker, const storage::JobOutcome& how) {
-  const v1::Outcome outcome = ToProto(how);
-  const auto ended = store_.Finish(worker->assignment->lease, OutcomeOf(outcome), {}, {EndedEvent(outcome)});
-  if (!ended) spdlog::error("{}: {}", JobName(worker->assignment->lease.job), bridge::ErrorText(ended.error()));
-  EndAssignment(*worker, false);
-  PostLook(worker);
-}
-
-void Dispatcher::GiveBack(Worker& worker) {
-  (void)store_.HandBack(worker.assignment->lease, {StateEvent(storage::JobState::kQueued)});
-  worker.leaving = true;
-  EndAssignment(worker, false);
-}
-
-Status Dispatcher::SendAssignment(Worker& worker, const storage::LeasedJob& leased) {
-  Result<AssignmentMessages> made = MakeAssignment(store_, config_, leased);
-  if (!made) return made.error();
-  *made->first.mutable_assignment()->mutable_lease() = ToProto(leased.lease);
-  worker.assignment->object_revisions = std::move(made->object_revisions);
-  worker.line->Send(std::move(made->first));
-  for (auto& [slot, bytes] : made->programs) worker.line->SendProgram(slot, std::move(bytes));
-  return {};
-}
-
-void Dispatcher::Handle(const std::shared_ptr<Worker>& worker, v1::WorkRequest& message) {
-  const auto holds = [&](const v1::WorkerLease& lease) {
-    return worker->assignment && SameLease(worker->assignment->lease, lease);
-  };
-  switch (message.message_case()) {
-    case v1::WorkRequest::kHeartbeat:
-      if (!holds(message.heartbeat().lease())) break;
-      Heartbeat(*worker, message.heartbeat());
-      Assign(worker);  // the lease may have been lost
-      break;
-    case v1::WorkRequest::kEvents:
-      if (holds(message.events().lease())) AppendEvents(*worker, message.events());
-      break;
-    case v1::WorkRequest::kArtifact:
-      if (holds(message.artifact().lease())) Collect(*worker, *message.mutable_artifact());
-      break;
-    case v1::WorkRequest::kFinish:
-      if (!holds(message.finish().lease())) break;
-      Finish(*worker, *message.mutable_finish());
-      Assign(worker);
-      break;
-    case v1::WorkRequest::kHandBack:
-      // It gives back since it ends: others take the job.
-      if (holds(message.hand_back().lease())) GiveBack(*worker);
-      break;
-    case v1::WorkRequest::kHello:
-    case v1::WorkRequest::MESSAGE_NOT_SET: break;
-  }
-}
-
-void Dispatcher::Heartbeat(Worker& worker, const v1::WorkerHeartbeat& heartbeat) {
-  Assignment& assignment = *worker.assignment;
-  if (heartbeat.has_progress()) {
-    v1::JobProgress progress = heartbeat.progress();
-    progress.set_job(JobName(assignment.lease.job));
-    progress.set_attempt(assignment.lease.attempt);
-    feed_.PublishProgress(assignment.lease.job, progress.SerializeAsString());
-  }
-  const auto third = std::chrono::milliseconds(config_.workers_lease_ms / 3);
-  if (Clock::now() - assignment.renewed_at < third) return;
-  assignment.renewed_at = Clock::now();
-  const auto renewed = store_.Renew(assignment.lease, std::chrono::milliseconds(config_.workers_lease_ms));
-  if (renewed) {
-    // Another server may have been asked to cancel it.
-    if (renewed->cancel_requested) {
-      worker.line->Send(ControlMessage(assignment.lease, v1::WorkerControl::KIND_CANCEL, 0.0));
-    }
-  } else if (renewed.error().code == ErrorCode::kCellLeaseLost) {
-    spdlog::warn("worker {} lost its lease of {}", worker.name, JobName(assignment.lease.job));
-    EndAssignment(worker, false);
-  }
-}
-
-void Dispatcher::AppendEvents(Worker& worker, const v1::WorkerEvents& events) {
-  std::vector<storage::NewEvent> records;
-  records.reserve(static_cast<std::size_t>(events.events_size()));
-  for (const v1::JobEvent& event : events.events()) records.push_back(ToRecord(event));
-  const auto count = static_cast<std::int64_t>(records.size());
-  const storage::Lease lease = worker.assignment->lease;
-  store_.Append(lease, std::move(records),
-                [line = worker.line, lease, count, delivery = worker.assignment->delivery](
-                    const Result<std::int64_t>& written) {
-                  if (!written) {
-                    spdlog::warn("events of {}: {}", JobName(lease.job), bridge::ErrorText(written.error()));
-                    delivery->failed = true;
-                    return;
-                  }
-                  v1::WorkResponse message;
-                  *message.mutable_events_stored()->mutable_lease() = ToProto(lease);
-                  message.mutable_events_stored()->set_count(delivery->stored.fetch_add(count) + count);
-                  line->Send(std::move(message));
-                });
-}
-
-void Dispatcher::Collect(Worker& worker, v1::WorkerArtifact& artifact) {
-  Assignment& assignment = *worker.assignment;
-  assignment.collected_bytes += static_cast<std::int64_t>(artifact.chunk().size());
-  if (!assignment.artifacts.contains(artifact.name())) {
-    assignment.collected_bytes += static_cast<std::int64_t>(sizeof(storage::NewArtifact) + artifact.name().size());
-  }
-  // The worker keeps to the job's budget; this bound holds against a worker that does not.
-  if (assignment.collected_bytes > config_.limit_output_bytes + kOutputSlack) {
-    assignment.over_budget = true;
-    assignment.artifacts.clear();
-    return;
-  }
-  storage::NewArtifact& made = assignment.artifacts[artifact.name()];
-  made.name = artifact.name();
-  made.media_type = artifact.media_type();
-  made.bytes += artifact.chunk();
-}
-
-void Dispatcher::Finish(Worker& worker, v1::WorkerFinish& finish) {
-  Assignment& assignment = *worker.assignment;
-  if (assignment.over_budget) {
-    *finish.mutable_outcome() = ToProto(storage::JobOutcome{.state = storage::JobState::kFailed,
-                                                            .code = ErrorCode::kCellOutputBudget,
-                                                            .detail = {}});
-  }
-  std::vector<storage::NewArtifact> artifacts;
-  for (auto& [name, artifact] : assignment.artifacts) artifacts.push_back(std::move(artifact));
-  const storage::Lease lease = assignment.lease;
-  const auto finished =
-      store_.Finish(lease, OutcomeOf(finish.outcome()), artifacts, {EndedEvent(finish.outcome())});
-  if (!finished) {
-    spdlog::warn("{} of worker {}: {}", JobName(lease.job), worker.name, bridge::ErrorText(finished.error()));
-    // A full disk must not leave the job without an owner until its lease runs out.
-    if (finished.error().code != ErrorCode::kCellLeaseLost) Lose(lease);
-  } else {
-    spdlog::info("{} {} {}", JobName(lease.job), v1::Job::State_Name(ToProto(finished->state)),
-                 finish.outcome().code());
-  }
-  // Of a worker that lost its lease nothing is kept.
-  for (const auto& [slot, executable] : finish.executables()) {
-    const auto revision = assignment.object_revisions.find(slot);
-    if (!finished || revision == assignment.object_revisions.end()) continue;
-    (void)store_.PutExecutable(assignment.machine, slot, revision->second, executable);
-  }
-  EndAssignment(worker, finished.has_value());
-}
-
-void Dispatcher::EndAssignment(Worker& worker, bool stored) {
-  const storage::Lease lease = worker.assignment->lease;
-  worker.assignment.reset();
-  feed_.ForgetProgress(lease.job);
-  {
-    // Before the worker hears of it: an order for a job that is over is refused from then on.
-    const std::lock_guard lock(mutex_);
-    worker.job = 0;
-    worker.lease.reset();
-    worker.delivery.reset();
-  }
-  v1::WorkResponse message;
-  *message.mutable_release()->mutable_lease() = ToProto(lease);
-  message.mutable_release()->set_stored(stored);
-  worker.line->Send(std::move(message));
-  {
-    const std::lock_guard lock(mutex_);
-    worker.idle = true;
-  }
-  changed_.notify_all();
-}
-
-storage::LossPolicy Dispatcher::PolicyForLoss(const std::string& why) const {
-  v1::JobEvent lost;
-  lost.set_message(why);
-  const storage::JobOutcome outcome = WorkerDiedOutcome();
-  return {.outcome = outcome,
-          .requeued = {ToRecord(lost), StateEvent(storage::JobState::kQueued)},
-          .ended = {ToRecord(lost), EndedEvent(ToProto(outcome))},
-          .cancelled = {ToRecord(lost), EndedEvent(ToProto(CancelledOutcome()))}};
-}
-
-void Dispatcher::Lose(const storage::Lease& lease) {
-  const auto changed = store_.Abandon(lease, PolicyForLoss("the worker of attempt " +
-                                                           std::to_string(lease.attempt) + " died"));
-  if (!changed && changed.error().code != ErrorCode::kCellLeaseLost) {
-    spdlog::error("{} could not be given back: {}", JobName(lease.job), bridge::ErrorText(changed.error()));
-  }
-}
-
 void Dispatcher::SweepLeases(const std::stop_token& stop) {
   const auto interval = std::chrono::milliseconds(config_.workers_lease_ms / 2);
   while (!stop.stop_requested()) {
@@ -470,26 +170,6 @@ void Dispatcher::SweepLeases(const std::stop_token& stop) {
     EndFailedDeliveries();
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, stop, interval, [] { return false; });
-  }
-}
-
-// A worker waits until its events are durable. When they cannot be made so it is told to forget the job, or
-// it would wait for ever.
-void Dispatcher::EndFailedDeliveries() {
-  std::vector<std::pair<std::shared_ptr<Worker>, std::shared_ptr<Delivery>>> failed;
-  {
-    const std::lock_guard lock(mutex_);
-    for (const auto& [id, worker] : workers_) {
-      if (worker->delivery != nullptr && worker->delivery->failed) failed.emplace_back(worker, worker->delivery);
-    }
-  }
-  for (auto& [worker, delivery] : failed) {
-    Post(worker, [this, worker = worker, delivery = delivery] {
-      if (!worker->assignment || worker->assignment->delivery != delivery) return;
-      Lose(worker->assignment->lease);
-      EndAssignment(*worker, false);
-      Assign(worker);
-    });
   }
 }
 

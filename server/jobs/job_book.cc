@@ -8,6 +8,7 @@
 #include "engine/core/units.h"
 #include "engine/simulation/families.h"
 #include "proto/bridge/encoding.h"
+#include "proto/bridge/files.h"
 #include "server/config.h"
 #include "server/jobs/job_filter.h"
 #include "server/jobs/job_messages.h"
@@ -60,6 +61,7 @@ Status CheckSimulation(const v1::SimulationOptions& options) {
   if (!(options.toolpath_tolerance_mm() >= 0.0 && options.toolpath_tolerance_mm() <= 100.0)) {
     return Invalid("job.simulation.toolpath_tolerance_mm: allowed are 0 to 100");
   }
+  if (!v1::OperatingMode_IsValid(options.mode())) return Invalid("job.simulation.mode is none that there is");
   if (options.has_breakpoint()) {
     const Status valid = CheckStepPlace(options.breakpoint(), "job.simulation.breakpoint");
     if (!valid) return valid;
@@ -76,6 +78,9 @@ Status CheckSimulation(const v1::SimulationOptions& options) {
       return Invalid("job.simulation.inputs: kind is not given");
     }
     if (input.index() < 0 || input.index() > 99) return Invalid("job.simulation.inputs: index is 0 to 99");
+    if (const Status valid = bridge::CheckInputValue(input); !valid) {
+      return Invalid("job.simulation.inputs: " + valid.error().detail);
+    }
   }
   for (const v1::SlotProgram& program : options.programs()) {
     if (!IsSlot(program.slot())) {
@@ -86,7 +91,8 @@ Status CheckSimulation(const v1::SimulationOptions& options) {
 }
 
 // Two requests of one request_id must ask for the same. FNV-1a, since only equality matters.
-std::string HashOf(const std::string& text) {
+std::string RequestHash(const v1::SubmitJobRequest& request) {
+  const std::string text = bridge::StableBytes(request.job());
   std::uint64_t hash = 0xCBF29CE484222325U;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3U;
   return std::to_string(hash);
@@ -163,7 +169,7 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, co
   if (!machine) return machine.error();
 
   storage::NewJob made{.request_id = request.request_id(),
-                       .request_hash = request.request_id().empty() ? "" : HashOf(bridge::StableBytes(job)),
+                       .request_hash = request.request_id().empty() ? "" : RequestHash(request),
                        .machine = *machine_id,
                        .kind = std::string(kind),
                        .title = job.title(),
@@ -186,6 +192,10 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, co
     const std::string what = "job.simulation.programs of slot " + std::to_string(program.slot());
     if (Status fits = CheckSize(program.program().content(), what); !fits) return fits.error();
     if (!further.insert(program.slot()).second) return Invalid(what + " stands twice");
+    const int main_slot = job.inline_slot() > 0 ? job.inline_slot() : 1;
+    if (job.has_inline_program() && program.slot() == main_slot) {
+      return Invalid(what + ": the slot of job.inline_program (inline_slot, 1 when it is not given)");
+    }
     made.attachments.push_back({AttachmentName(program.slot()), "application/octet-stream",
                                 std::move(*program.mutable_program()->mutable_content()), {}});
     program.mutable_program()->clear_content();
@@ -198,7 +208,14 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, co
 void JobBook::Submit(const v1::SubmitJobRequest& request, const std::string& caller,
                      std::function<void(Result<v1::Job>)> done) {
   Result<storage::NewJob> made = Prepare(request, caller);
-  if (!made) return done(made.error());
+  if (!made) {
+    // Repeated after an answer that was lost: what it needed may be gone by now, its job is there.
+    if (request.request_id().empty()) return done(made.error());
+    const auto first = store_.FindSubmitted(request.request_id(), RequestHash(request));
+    if (!first) return done(first.error());
+    if (!*first) return done(made.error());
+    return done(ToProto(**first));
+  }
   if (request.validate_only()) {
     v1::Job job = request.job();
     job.clear_name();

@@ -66,6 +66,13 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
     job_ = *ParseJobName(request_.name());
     // Subscribed before the log is read: what comes in between wakes us again.
     subscription_ = room_.feed.Subscribe(job_, [this] { Wake(); });
+    if (cursor_ > job->last_sequence()) {
+      status = ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument,
+                                  "after_sequence is " + std::to_string(cursor_) + ", the last event of the job is " +
+                                      std::to_string(job->last_sequence()),
+                                  {}});
+      return Next::kEnd;
+    }
     final_sequence_ = job->has_end_time() ? job->last_sequence() : -1;
     *message.mutable_snapshot() = std::move(*job);
     return Next::kMessage;

@@ -327,7 +327,7 @@ grpc::ServerUnaryReactor* ProgramService::DiffPrograms(grpc::CallbackServerConte
                                                        v1::DiffProgramsResponse* response) {
   return Answer(room_, context, *request, "ProgramService/DiffPrograms", [this, request, response](const Caller&) {
     ProgramResult<v1::DiffProgramsResponse> made = office_.Diff(*request);
-    if (!made) return StatusOf(made.error);
+    if (!made) return ToGrpcStatus(made.error);
     *response = *std::move(made.value);
     return grpc::Status::OK;
   });

@@ -443,7 +443,12 @@ class HttpSession : public Connection, public std::enable_shared_from_this<HttpS
     if (error || closed_ || !exchange_ || !body_read_) return;
     char byte = 0;
     const ssize_t size = recv(socket_.native_handle(), &byte, 1, MSG_PEEK | MSG_DONTWAIT);
-    if (size == 0) return Gone();
+    if (size == 0) {
+      // It has said all it wants to say; who waits for a stream that has no end does not half-close.
+      if (exchange_->IsEndless()) return Gone();
+      closing_ = true;
+      return;
+    }
     if (size < 0)
       return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR ? Watch() : Gone();
     // The next request is there already, and hides the end of the connection behind it.

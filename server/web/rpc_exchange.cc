@@ -62,6 +62,8 @@ class RpcExchange : public Exchange, public std::enable_shared_from_this<RpcExch
     }
   }
 
+  bool IsEndless() const override { return streams_; }
+
   void OnGone() override {
     if (call_) call_->Cancel();
     Take();

@@ -56,6 +56,14 @@ Result<std::string> JsonToBytes(const Descriptor& type, std::string_view json,
   return message->SerializeAsString();
 }
 
+Status CheckBytes(const Descriptor& type, std::string_view bytes) {
+  if (bytes.size() <= kMessageBytesMax &&
+      NewMessage(type)->ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
+    return {};
+  }
+  return Error{ErrorCode::kCellInvalidArgument, "the bytes are no " + type.full_name(), {}};
+}
+
 Result<JsonMessage> BytesToJson(const Descriptor& type, std::string_view bytes) {
   const std::unique_ptr<Message> message = NewMessage(type);
   if (bytes.size() > kMessageBytesMax ||

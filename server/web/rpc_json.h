@@ -21,6 +21,9 @@ namespace rmlcell::web {
 Result<std::string> JsonToBytes(const google::protobuf::Descriptor& type, std::string_view json,
                                 std::optional<std::int64_t> after_sequence = std::nullopt);
 
+// Whether bytes are a message of this type. Error: CellInvalidArgument.
+Status CheckBytes(const google::protobuf::Descriptor& type, std::string_view bytes);
+
 struct JsonMessage {
   std::string json;           // on one line; fields with default values are printed, for people
   std::int64_t sequence = 0;  // of the field "sequence"; 0 when there is none

@@ -302,6 +302,11 @@ RpcDecoding DecodeRpc(const RpcRoute& route, const HttpRequest& request) {
                            : route.wire == Wire::kConnectJson || route.wire == Wire::kEvents ||
                                  route.wire == Wire::kConnectStreamJson;
   if (!is_json) {
+    // gRPC answers bytes that are no message with a status that says nothing.
+    if (const Status good = CheckBytes(*route.method->input_type(), content); !good) {
+      out.status = FromError(good.error());
+      return out;
+    }
     out.request.message = std::move(content);
     return out;
   }

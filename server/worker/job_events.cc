@@ -26,8 +26,9 @@ constexpr std::size_t kFindingsTold = 200;
 
 }  // namespace
 
+// What somebody ordered is told however much happened before.
 void JobEvents::Tell(v1::JobEvent event) {
-  if (count_ >= kEventsMax) {
+  if (count_ >= kEventsMax && !event.has_halted() && !event.has_resumed()) {
     if (cut_) return;
     cut_ = true;
     event.set_message("more happened than the log of a job takes; the report and the trace have the rest");
@@ -91,7 +92,8 @@ void JobEvents::OnMessage(SimTime at, const machine::Place&, std::string_view te
 
 void JobEvents::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
   const std::string key = std::to_string(static_cast<int>(diagnostic.code)) + "/" +
-                          std::to_string(diagnostic.program) + "/" + std::to_string(diagnostic.step);
+                          std::to_string(diagnostic.program) + "/" + std::to_string(diagnostic.step) + "/" +
+                          std::to_string(diagnostic.where.line) + "/" + std::to_string(diagnostic.where.column);
   if (told_.size() >= kFindingsTold || !told_.insert(key).second) return;
   v1::JobEvent event;
   event.set_virtual_time_ns(at.count());

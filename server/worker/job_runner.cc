@@ -8,6 +8,8 @@
 #include <mutex>
 #include <new>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "engine/simulation/families.h"
 #include "engine/simulation/simulate.h"
@@ -137,8 +139,13 @@ class Attempt {
       outcome_.mutable_place()->set_column(first->where.column);
     }
     *report.mutable_outcome() = outcome_;
-    SendArtifact("report", "application/x-protobuf", bridge::StableBytes(report));
+    const std::string bytes = bridge::StableBytes(report);
+    if (!Fits(bytes.size())) return ExceedOutput();
+    SendArtifact("report", "application/x-protobuf", bytes);
   }
+
+  void ExceedOutput() { outcome_ = OutcomeFor(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellOutputBudget); }
+
 
   End Check() {
     bridge::SetupInput input = Input();
@@ -163,6 +170,10 @@ class Attempt {
       if (released_) return End::kLost;
     }
     if (cancel_ordered_) return Cancelled();
+    if (ProcessorTime_s() - started_s_ > assignment_.budget().processor_s()) {
+      outcome_ = OutcomeFor(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellProcessorBudget);
+      return End::kFinished;
+    }
     ReportFindings(made);
     return End::kFinished;
   }
@@ -222,10 +233,20 @@ class Attempt {
     for (const Diagnostic& diagnostic : made->diagnostics) *message.add_diagnostics() = bridge::ToProto(diagnostic);
     outcome_ = message.outcome();
     executables_ = (*run)->made_executables();
-    SendArtifact("report", "application/x-protobuf", bridge::StableBytes(message));
+    std::string bytes = bridge::StableBytes(message);
+    const std::string picture = recorder.Svg(report, {});
+    if (!Fits(bytes.size() + picture.size())) {
+      // What there is of it is kept as far as it fits; the report says why the rest is not there.
+      ExceedOutput();
+      *message.mutable_outcome() = outcome_;
+      bytes = bridge::StableBytes(message);
+      if (Fits(bytes.size())) SendArtifact("report", "application/x-protobuf", bytes);
+      return End::kFinished;
+    }
+    SendArtifact("report", "application/x-protobuf", bytes);
     SendArtifact("toolpath", "application/octet-stream", toolpath_);
     if (options.trace()) SendArtifact("trace", "application/octet-stream", trace_);
-    SendArtifact("picture.svg", "image/svg+xml", recorder.Svg(report, {}));
+    SendArtifact("picture.svg", "image/svg+xml", picture);
     return End::kFinished;
   }
 
@@ -235,21 +256,23 @@ class Attempt {
     SendPosition(run);
     while (!simulation.finished()) {
       const Clock::time_point begin = Clock::now();
+      CarryOut(simulation);
+      if (simulation.finished()) break;
       const machine::RunPhase phase = simulation.Step(slice);
       const auto took = Clock::now() - begin;
       if (took < kStepTarget / 2) slice = std::min(slice * 2, kSliceMax);
       if (took > kStepTarget) slice = std::max(slice / 2, kSliceMin);
       // Held by a client: wait for orders, not for the clock of the program.
-      const bool held = phase == machine::RunPhase::kHalted;
+      const bool held = phase == machine::RunPhase::kHalted && orders_.empty();
       if (held && !hold_ordered_) {
         simulation.End(machine::OutcomeKind::kStopped, ErrorCode::kCellWaitsForever);
         break;
       }
       const auto patience = held ? std::chrono::milliseconds(20) : std::chrono::milliseconds(0);
       while (std::optional<v1::WorkResponse> message = line_.Receive(patience)) {
-        Obey(*message, &simulation);
+        Obey(*message);
         if (released_) return End::kLost;
-        if (simulation.finished()) break;
+        if (!orders_.empty()) break;
       }
       if (line_.gone()) return End::kLost;
       if (stopping_ || stop_asked_) return End::kHandBack;
@@ -268,7 +291,8 @@ class Attempt {
     return End::kFinished;
   }
 
-  void Obey(const v1::WorkResponse& message, simulation::Simulation* simulation = nullptr) {
+  // Orders wait until the run is between two steps: they come in while the run itself tells of an event.
+  void Obey(const v1::WorkResponse& message) {
     const auto mine = [&](const v1::WorkerLease& lease) {
       return lease.job() == assignment_.lease().job() && lease.fence() == assignment_.lease().fence();
     };
@@ -278,35 +302,41 @@ class Attempt {
       released_ = true;
     } else if (message.has_events_stored() && mine(message.events_stored().lease())) {
       events_stored_ = message.events_stored().count();
-    } else if (message.has_control() && mine(message.control().lease()) &&
-               message.control().kind() == v1::WorkerControl::KIND_CANCEL && simulation == nullptr) {
-      cancel_ordered_ = true;  // before the run began
-    } else if (message.has_control() && mine(message.control().lease()) && simulation != nullptr) {
-      const SimTime now = simulation->state().time;
-      switch (message.control().kind()) {
+    } else if (message.has_control() && mine(message.control().lease())) {
+      if (message.control().kind() == v1::WorkerControl::KIND_CANCEL) cancel_ordered_ = true;
+      orders_.push_back(message.control());
+    }
+  }
+
+  void CarryOut(simulation::Simulation& simulation) {
+    for (const v1::WorkerControl& order : std::exchange(orders_, {})) {
+      const SimTime now = simulation.state().time;
+      switch (order.kind()) {
         case v1::WorkerControl::KIND_HOLD:
           hold_ordered_ = true;
-          simulation->Apply({.at = now, .kind = machine::InputKind::kHold});
+          simulation.Apply({.at = now, .kind = machine::InputKind::kHold});
           break;
         case v1::WorkerControl::KIND_STOP:
           hold_ordered_ = true;
-          simulation->Apply({.at = now, .kind = machine::InputKind::kStop});
+          simulation.Apply({.at = now, .kind = machine::InputKind::kStop});
           break;
         case v1::WorkerControl::KIND_RESUME:
           hold_ordered_ = false;
-          simulation->Apply({.at = now, .kind = machine::InputKind::kStart});
+          simulation.Apply({.at = now, .kind = machine::InputKind::kStart});
           break;
         case v1::WorkerControl::KIND_OVERRIDE:
-          simulation->Apply({.at = now, .kind = machine::InputKind::kOverride, .value = message.control().value()});
+          simulation.Apply({.at = now, .kind = machine::InputKind::kOverride, .value = order.value()});
           break;
-        case v1::WorkerControl::KIND_CANCEL: simulation->Cancel(); break;
+        case v1::WorkerControl::KIND_CANCEL: simulation.Cancel(); break;
         default: break;
       }
     }
   }
 
-  bool Fits() const {
-    return static_cast<std::int64_t>(trace_.size() + toolpath_.size()) < assignment_.budget().output_bytes();
+  // Whether all that the job has put out stays in its budget, `more` included.
+  bool Fits(std::size_t more = 0) const {
+    const std::size_t all = trace_.size() + toolpath_.size() + event_bytes_ + more;
+    return static_cast<std::int64_t>(all) <= assignment_.budget().output_bytes();
   }
 
   // At most a window of events is under way: a store that is slow slows the run, not the memory.
@@ -314,6 +344,7 @@ class Attempt {
     v1::WorkRequest message;
     *message.mutable_events() = events;
     *message.mutable_events()->mutable_lease() = assignment_.lease();
+    event_bytes_ += events.ByteSizeLong();
     if (!line_.Send(message)) return;
     events_sent_ += events.events_size();
     while (events_sent_ - events_stored_ > line_.events_window() && !line_.gone() && !released_) {
@@ -358,8 +389,10 @@ class Attempt {
   std::map<int, std::string> executables_;
   std::string trace_;
   std::string toolpath_;
+  std::size_t event_bytes_ = 0;
   std::int64_t events_sent_ = 0;
   std::int64_t events_stored_ = 0;
+  std::vector<v1::WorkerControl> orders_;  // not carried out yet
   bool hold_ordered_ = false;
   bool cancel_ordered_ = false;
   bool released_ = false;

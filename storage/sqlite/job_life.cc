@@ -183,7 +183,7 @@ Result<SubmittedJob> KnownJob(WriteContext& context, const NewJob& job,
   if (!*known) return Error{ErrorCode::kCellStoreCorrupt, "a request id without its job", {}};
   JobRecord& first = (*known)->job;
   if (first.request_hash != job.request_hash) {
-    return Error{ErrorCode::kCellRequestIdReused, "it made job " + std::to_string(first.id), {}};
+    return RequestIdReused(first.id);
   }
   Result<std::string> specification = context.tables.jobs.Specification(first.id);
   if (!specification) return specification.error();
@@ -192,6 +192,10 @@ Result<SubmittedJob> KnownJob(WriteContext& context, const NewJob& job,
 }
 
 }  // namespace
+
+Error RequestIdReused(std::int64_t job) {
+  return Error{ErrorCode::kCellRequestIdReused, "it made job " + std::to_string(job), {}};
+}
 
 Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
                                const JobContents& contents) {

@@ -19,6 +19,9 @@ struct JobContents {
   const PreparedContent* specification;
   std::vector<const PreparedContent*> attachments;  // those of the job, one by one
 };
+
+Error RequestIdReused(std::int64_t job);
+
 Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
                                const JobContents& contents);
 

@@ -60,6 +60,8 @@ class SqliteStore final : public Store {
 
   void Submit(NewJob job, std::function<void(Result<SubmittedJob>)> done) override;
   Result<SubmittedJob> SubmitAndWait(NewJob job) override;
+  Result<std::optional<JobRecord>> FindSubmitted(std::string_view request_id,
+                                                 std::string_view request_hash) override;
   Result<JobRecord> GetJob(std::int64_t id) override;
   Result<std::vector<JobRecord>> ListJobs(const JobQuery& query) override;
   Result<std::vector<AttemptRecord>> ListAttempts(std::int64_t job) override;

@@ -170,6 +170,20 @@ Result<SubmittedJob> SqliteStore::SubmitAndWait(NewJob job) {
   return submitted;
 }
 
+Result<std::optional<JobRecord>> SqliteStore::FindSubmitted(std::string_view request_id,
+                                                            std::string_view request_hash) {
+  return readers_->Read([&](Tables& tables) -> Result<std::optional<JobRecord>> {
+    Result<std::optional<JobRow>> known = tables.jobs.FindByRequest(request_id);
+    if (!known) return known.error();
+    if (!*known) return std::optional<JobRecord>();
+    JobRecord& job = (*known)->job;
+    if (job.request_hash != request_hash) return RequestIdReused(job.id);
+    const Status whole = AddSpecification(tables, job);
+    if (!whole) return whole.error();
+    return std::optional<JobRecord>(std::move(job));
+  });
+}
+
 Result<JobRecord> SqliteStore::GetJob(std::int64_t id) {
   return readers_->Read([&](Tables& tables) -> Result<JobRecord> {
     Result<JobRow> row = GetRow(tables, id);

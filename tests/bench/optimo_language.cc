@@ -1,11 +1,11 @@
-// Lines a second from source to tree, to checked tree, to object and to formatted text, for
-// programs of 1,000, 100,000 and 1,000,000 lines, whether the cost per line stays flat, and the
-// peak of memory per line. With --rs274 the equivalent G-code is read by LinuxCNC's interpreter in
-// the same rounds, for a ratio: PROGRAM is called with the name of the file; rs274_ratio.sh brings
-// one. Every program is read in fresh memory, as a process that reads one program has it: else the
-// short ones would be spared the kernel's work for new pages, which the long ones cannot be. How
-// much of the time that is, is told apart. Run by hand:
-//   optimo_language_bench [--rounds N] [--rs274 PROGRAM]
+// Lines a second from source to tree, to checked tree and to object, with --all to formatted and to
+// converted text, too, for programs of 1,000, 100,000 and 1,000,000 lines, whether the cost per
+// line stays flat, and the peak of memory per line. With --rs274 the equivalent G-code is read by
+// LinuxCNC's interpreter in the same rounds, for a ratio: PROGRAM is called with the name of the
+// file; rs274_ratio.sh brings one. Every program is read in fresh memory, as a process that reads
+// one program has it: else the short ones would be spared the kernel's work for new pages, which
+// the long ones cannot be. How much of the time that is, is told apart. Run by hand:
+//   optimo_language_bench [--rounds N] [--rs274 PROGRAM] [--all]
 //   optimo_language_bench --once STAGE LINES         one program once, to count instructions
 // Prints one JSON object a line.
 #include <malloc.h>
@@ -260,10 +260,11 @@ bool RunStage(const Stage& stage, const std::string& text, int lines, int repeat
   return true;
 }
 
-int Run(int rounds, const Rival& rival) {
+int Run(int rounds, const Rival& rival, bool all) {
   const std::vector<int> sizes = {1'000, 100'000, 1'000'000};
   const std::vector<int> repeats = {1'000, 10, 1};  // as many lines at each size
-  const std::vector<Stage> stages = Stages();
+  std::vector<Stage> stages = Stages();
+  if (!all) std::erase_if(stages, [](const Stage& stage) { return !stage.has_rival; });
   std::vector<std::string> texts;
   for (const int size : sizes) texts.push_back(Program(size));
   std::vector<std::vector<Series>> series(stages.size(), std::vector<Series>(sizes.size()));
@@ -333,13 +334,23 @@ int main(int argc, char** argv) {
     return rmlcell::optimo::Once(argv[2], std::max(1, std::atoi(argv[3])));
   int rounds = 5;
   std::string rs274;
-  for (int n = 1; n + 1 < argc; n += 2) {
-    if (std::strcmp(argv[n], "--rounds") == 0) rounds = std::max(1, std::atoi(argv[n + 1]));
-    if (std::strcmp(argv[n], "--rs274") == 0) rs274 = argv[n + 1];
+  bool all = false;
+  for (int n = 1; n < argc; ++n) {
+    const bool last = n + 1 == argc;
+    if (std::strcmp(argv[n], "--all") == 0) {
+      all = true;
+    } else if (!last && std::strcmp(argv[n], "--rounds") == 0) {
+      rounds = std::max(1, std::atoi(argv[++n]));
+    } else if (!last && std::strcmp(argv[n], "--rs274") == 0) {
+      rs274 = argv[++n];
+    } else {
+      std::fprintf(stderr, "what is %s? See the head of optimo_language.cc\n", argv[n]);
+      return 2;
+    }
   }
   rmlcell::optimo::PrintMachine("before");
   int failed = rmlcell::optimo::Memory();
-  if (failed == 0) failed = rmlcell::optimo::Run(rounds, rmlcell::optimo::Rival(rs274));
+  if (failed == 0) failed = rmlcell::optimo::Run(rounds, rmlcell::optimo::Rival(rs274), all);
   rmlcell::optimo::PrintMachine("after");
   return failed;
 }

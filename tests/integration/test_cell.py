@@ -3,6 +3,7 @@ import hashlib
 import json
 import os
 import pathlib
+import socket
 import subprocess
 import threading
 import time
@@ -78,13 +79,68 @@ class Jobs(WithCell):
         self.refused(stub.SubmitJob, job_pb2.SubmitJobRequest(job=inline_job("mill-1", "b.rml", "PU;"), request_id=request_id),
                      grpc.StatusCode.ALREADY_EXISTS, "CELL-E9019")
 
+    def test_a_repeated_request_has_its_job_also_when_the_program_is_gone(self):
+        stub, name = self.cell.jobs(), "machines/mill-1/programs/51"
+        self.cell.programs().PutProgram(program_pb2.PutProgramRequest(
+            name=name, program=program_pb2.ProgramText(file_name="a.rml", content=SQUARE.encode())))
+        job = job_pb2.Job(machine="machines/mill-1", kind=job_pb2.JOB_KIND_SIMULATE, program=name)
+        request_id = str(uuid.uuid4())
+        first = submit(stub, job, request_id)
+        self.cell.programs().DeleteProgram(program_pb2.DeleteProgramRequest(name=name))
+        self.assertEqual(submit(stub, job, request_id).name, first.name)
+        self.refused(stub.SubmitJob, job_pb2.SubmitJobRequest(job=job, request_id=str(uuid.uuid4())),
+                     grpc.StatusCode.NOT_FOUND, "OPT-E7102")
+
+    def test_programs_of_a_job_leave_nothing_behind(self):
+        stub, programs = self.cell.jobs(), self.cell.programs()
+        for slot, text in ((71, "VR[0]=2.\n"), (72, "FUNCTION 71\nDELAY VR[0]\n")):
+            programs.PutProgram(program_pb2.PutProgramRequest(
+                name=f"machines/optimo-1/programs/{slot}",
+                program=program_pb2.ProgramText(file_name=f"{slot}.S", content=text.encode())))
+        other = inline_job("optimo-1", "71.S", "IF VL[9] THEN 5\nVL[9]=ON\nCALL 72\nGOTO 6\n5 VR[0]=7.\n6 VI[5]=1\n")
+        other.inline_slot = 71
+        self.assertEqual(wait_for_end(stub, submit(stub, other).name)[-1].ended.kind, COMPLETED)
+        stored = job_pb2.Job(machine="machines/optimo-1", kind=job_pb2.JOB_KIND_SIMULATE,
+                             program="machines/optimo-1/programs/72")
+        job = submit(stub, stored)
+        wait_for_end(stub, job.name)
+        report = stub.GetJobReport(job_pb2.GetJobReportRequest(name=job.name))
+        self.assertAlmostEqual(report.total.times.dwell_s, 2.0, places=6)
+
+    def test_orders_are_obeyed_while_the_job_tells_of_events(self):
+        stub = self.cell.jobs()
+        talk = "10 OL[20]=ON\nOL[20]=OFF\nDELAY 0.001\nGOTO 10\n"
+        for _ in range(4):
+            job = submit(stub, inline_job("optimo-1", "talk.S", talk))
+            self.running(stub, job.name)
+            stub.HoldJob(job_pb2.HoldJobRequest(name=job.name))
+            until = time.monotonic() + 20
+            held = False
+            while not held and time.monotonic() < until:
+                held = any(m.event.HasField("halted") for m in self.events(stub, job.name))
+            self.assertTrue(held)
+            stub.CancelJob(job_pb2.CancelJobRequest(name=job.name))
+            self.assertEqual(wait_for_end(stub, job.name, 30)[-1].ended.code, "CELL-E9307")
+
+    def events(self, stub, name):
+        last = stub.GetJob(job_pb2.GetJobRequest(name=name)).last_sequence
+        for message in stub.WatchJob(job_pb2.WatchJobRequest(name=name, after_sequence=max(0, last - 100),
+                                                             events_only=True), timeout=30):
+            if message.HasField("event"):
+                yield message
+                if message.event.sequence >= last:
+                    return
+
+    def running(self, stub, name):
+        deadline = time.monotonic() + 30
+        while stub.GetJob(job_pb2.GetJobRequest(name=name)).state != job_pb2.Job.STATE_RUNNING:
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.02)
+
     def test_a_job_is_cancelled_while_it_runs(self):
         stub = self.cell.jobs()
         job = submit(stub, inline_job("optimo-1", "endless.S", ENDLESS))
-        deadline = time.monotonic() + 30
-        while stub.GetJob(job_pb2.GetJobRequest(name=job.name)).state != job_pb2.Job.STATE_RUNNING:
-            self.assertLess(time.monotonic(), deadline)
-            time.sleep(0.02)
+        self.running(stub, job.name)
         stub.CancelJob(job_pb2.CancelJobRequest(name=job.name))
         self.assertEqual(wait_for_end(stub, job.name, 30)[-1].ended.code, "CELL-E9307")
 
@@ -96,6 +152,9 @@ class Jobs(WithCell):
             rest = [m.event.sequence for m in stub.WatchJob(
                 job_pb2.WatchJobRequest(name=job.name, after_sequence=cut, events_only=True)) if m.HasField("event")]
             self.assertEqual(rest, list(range(cut + 1, len(whole) + 1)))
+        with self.assertRaises(grpc.RpcError) as caught:  # of another cell, or mistyped: it would wait for ever
+            list(stub.WatchJob(job_pb2.WatchJobRequest(name=job.name, after_sequence=len(whole) + 1), timeout=20))
+        self.assertEqual(caught.exception.code(), grpc.StatusCode.INVALID_ARGUMENT)
 
     def test_budgets_end_a_job_with_their_own_codes(self):
         stub = self.cell.jobs()
@@ -108,6 +167,10 @@ class Jobs(WithCell):
         job = inline_job("optimo-1", "endless.S", ENDLESS)
         job.budget.processor_s = 0.2
         self.assertEqual(wait_for_end(stub, submit(stub, job).name)[-1].ended.code, "CELL-E9303")
+        # Report and events count as output, too.
+        job = inline_job("mill-1", "square.rml", SQUARE)
+        job.budget.output_bytes = 200
+        self.assertEqual(wait_for_end(stub, submit(stub, job).name)[-1].ended.code, "CELL-E9306")
 
     def test_lists_are_filtered_and_paged(self):
         stub = self.cell.jobs()
@@ -290,6 +353,29 @@ class Web(WithCell):
                                          {"Content-Type": "application/json", **headers})
         with urllib.request.urlopen(request, timeout=30) as answer:
             return json.load(answer)
+
+    def test_a_client_that_ends_its_sending_gets_its_answer(self):
+        body = b"{}"
+        head = ("POST /rmlcell.v1.MachineService/ListMachines HTTP/1.1\r\nHost: localhost\r\n"
+                f"Content-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n").encode()
+        for request in (head + body, b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n"):
+            for _ in range(10):
+                with socket.create_connection(("127.0.0.1", self.cell.web_port), timeout=20) as connection:
+                    connection.sendall(request)
+                    connection.shutdown(socket.SHUT_WR)
+                    answer = b""
+                    while piece := connection.recv(65536):
+                        answer += piece
+                self.assertTrue(answer.startswith(b"HTTP/1.1 200"), answer[:80])
+
+    def test_bytes_that_are_no_message_are_told_so(self):
+        request = urllib.request.Request(
+            f"http://127.0.0.1:{self.cell.web_port}/rmlcell.v1.MachineService/ListMachines", b"\xff\xff",
+            {"Content-Type": "application/proto"})
+        with self.assertRaises(urllib.error.HTTPError) as caught:
+            urllib.request.urlopen(request, timeout=30)
+        self.assertEqual(caught.exception.code, 400)
+        self.assertEqual(json.load(caught.exception)["code"], "invalid_argument")
 
     def test_json_by_post_answers_like_the_call(self):
         machines = self.post("rmlcell.v1.MachineService/ListMachines", {})["machines"]

@@ -50,6 +50,19 @@ class CommandLine(unittest.TestCase):
         run("compile", again, "-o", self.folder / "x.O")
         self.assertEqual((self.folder / "x.O").read_bytes(), first)
 
+    # OPT-8.70: the text of the programmer while the object is the one that was made of it.
+    def test_a_source_map_gives_the_own_text_back(self):
+        own = "; mine\nspeed   20   ; slow\n"
+        source = self.file("12.S", own)
+        run("compile", source, "--map")
+        self.assertEqual(run("decompile", self.folder / "12.O"), own)
+        source.write_text("SPEED 21\n")
+        run("compile", source)  # another object beside the old map
+        self.assertIn("SPEED 21", run("decompile", self.folder / "12.O"))
+        (self.folder / "12.MAP").write_bytes(b"LMS damaged")
+        self.assertIn("SPEED 21", run("decompile", self.folder / "12.O"))
+        run("compile", source, "--map", "-o", "-", code=2)
+
     def test_a_source_with_errors_leaves_the_old_object(self):
         source = self.file("12.S", LINE)
         run("compile", source)

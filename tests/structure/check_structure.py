@@ -48,7 +48,10 @@ MAY_INCLUDE = {
     "server/cell": ["engine/core", "proto/bridge", "server", "server/auth", "server/events", "server/jobs",
                     "server/programs", "server/projects", "server/services", "server/web", "storage",
                     "storage/sqlite"],
-    "clients/cli": ["engine/core", "engine/machine", "engine/optimo/language", "engine/optimo/offline",
+    # The language server: the languages and no server.
+    "clients/lsp": ["engine/core", "engine/machine", "engine/optimo/language", "engine/optimo/offline",
+                    "engine/simulation"],
+    "clients/cli": ["clients/lsp", "engine/core", "engine/machine", "engine/optimo/language", "engine/optimo/offline",
                     "engine/simulation", "proto", "proto/bridge"],
 }
 ROOM_OF_FILE = {"server/cell.h": "server/cell", "server/cell.cc": "server/cell", "server/main.cc": "server/cell"}

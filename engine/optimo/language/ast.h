@@ -93,7 +93,7 @@ struct ExprNode {
 
 // A run of Module::nodes in postfix order; the last node is the root. Its type is the root's type.
 // Expressions are called by number; they lie one behind the other, so that the end of each is all
-// that is kept (docs/decisions/0005-tree-layout.md).
+// that is kept (docs/decisions/0006-tree-layout.md).
 struct ExprRange {
   std::uint32_t first = 0;
   std::uint32_t count = 0;

@@ -298,11 +298,18 @@ void Planner::RequireDefinitions(Draft& draft) {
   }
   if (insertions.empty()) return;
   // At the beginning, behind the declarations: every way to a WORK leads through there, jumps and
-  // subroutines included.
+  // subroutines included. The beginning is TASK 1, where there is one (OPT-9.12).
   std::ranges::sort(insertions, {}, &Insertion::work);
   const ParsedProgram& parsed = draft.parsed;
   std::size_t first = 0;
   const auto declares = [&](Op op) { return op == Op::kDeclare || op == Op::kDefine || op == Op::kTask; };
+  for (std::size_t i = 0; i + 1 < parsed.statements.size(); ++i) {
+    const Instruction& instruction = parsed.module.instructions[i];
+    if (instruction.op == Op::kTask && instruction.numbers[0] == 1) {
+      first = i + 1;
+      break;
+    }
+  }
   while (first + 1 < parsed.statements.size() && declares(parsed.module.instructions[first].op)) ++first;
   const std::size_t begin = parsed.statements[first].begin;
   const std::size_t line = begin == 0 ? 0 : draft.text.rfind('\n', begin - 1) + 1;  // npos + 1 is 0

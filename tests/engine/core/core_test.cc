@@ -115,6 +115,15 @@ TEST(Diagnostic, TellsTheSeverityOfWhatIsNoError) {
               HasSubstr(std::string(Lookup(ErrorCode::kArgumentCount).when)));
 }
 
+// One error among warnings is enough; none, or no findings at all, are none.
+TEST(Diagnostic, AListHasErrorsWhenOneOfThemIs) {
+  Diagnostic warning = At(1, 1);
+  warning.severity = Severity::kWarning;
+  EXPECT_FALSE(HasErrors({}));
+  EXPECT_FALSE(HasErrors(std::vector{warning, warning}));
+  EXPECT_TRUE(HasErrors(std::vector{warning, At(2, 2)}));
+}
+
 TEST(Diagnostic, PlacesOutsideTheTextShowNoLine) {
   for (const auto& [line, column] :
        {std::pair{4, 1}, std::pair{1, 500}, std::pair{1'000'000, 1}, std::pair{3, 0}}) {

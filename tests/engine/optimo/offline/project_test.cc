@@ -149,6 +149,16 @@ TEST_F(Project, InsertedDefinitionsAreReachedByJumps) {
   EXPECT_EQ(plan.programs[0].source.find("     WORKDEF 1,0 (8.0, 75.0, 1.0, 50.0)\nGOSUB 100"), 0U);
 }
 
+// OPT-9.12: what stands before TASK 1 does not run.
+TEST_F(Project, InsertedDefinitionsStandBehindTask1) {
+  Define(1, 0, {8, 75, 1, 50});
+  Add(61, "VI[2]=1\nTASK 1\nWORK 1,0/ON\nWORK 1,0/OFF\n");
+  const machine::TransferPlan plan = Plan(true);
+  ASSERT_TRUE(plan.ok);
+  EXPECT_EQ(plan.programs[0].source,
+            "VI[2]=1\nTASK 1\n     WORKDEF 1,0 (8.0, 75.0, 1.0, 50.0)\nWORK 1,0/ON\nWORK 1,0/OFF\n");
+}
+
 // OPT-3.12: a FUNCTION shares the WORKDEFs of its callers.
 TEST_F(Project, FunctionsShareDefinitions) {
   Add(32, "WORKDEF 1,0 (6.5, 80., 1.5, 95)\nFUNCTION 44\n");

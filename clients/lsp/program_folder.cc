@@ -1,0 +1,149 @@
+#include "clients/lsp/program_folder.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include "engine/core/number_text.h"
+#include "engine/core/units.h"
+
+namespace rmlcell::lsp {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kScheme = "file://";
+// In the order in which one is taken for the program.
+constexpr std::array<std::string_view, 3> kExtensions = {".s", ".si", ".cmp"};
+
+struct Found {
+  int number = 0;
+  std::size_t rank = 0;  // of its extension
+  std::string path;
+};
+
+bool ComesBefore(const Found& a, const Found& b) {
+  if (a.number != b.number) return a.number < b.number;
+  if (a.rank != b.rank) return a.rank < b.rank;
+  return a.path.compare(b.path) < 0;
+}
+
+int HexDigit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+std::optional<std::string> Unescaped(std::string_view text) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (text[at] != '%') {
+      out += text[at];
+      continue;
+    }
+    if (at + 2 >= text.size()) return std::nullopt;
+    const int high = HexDigit(text[at + 1]);
+    const int low = HexDigit(text[at + 2]);
+    if (high < 0 || low < 0 || (high == 0 && low == 0)) return std::nullopt;
+    out += static_cast<char>(high * 16 + low);
+    at += 2;
+  }
+  return out;
+}
+
+std::size_t ExtensionRank(std::string_view name) {
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string_view::npos) return kExtensions.size();
+  std::string lower(name.substr(dot));
+  std::ranges::transform(lower, lower.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  });
+  return static_cast<std::size_t>(std::ranges::find(kExtensions, lower) - kExtensions.begin());
+}
+
+}  // namespace
+
+std::optional<std::string> PathOfUri(std::string_view uri) {
+  if (!uri.starts_with(kScheme)) return std::nullopt;
+  uri.remove_prefix(kScheme.size());
+  const std::size_t slash = uri.find('/');  // behind the name of a host, which is not looked at
+  if (slash == std::string_view::npos) return std::nullopt;
+  uri.remove_prefix(slash);
+  return Unescaped(uri.substr(0, uri.find_first_of("?#")));
+}
+
+std::string UriOfPath(std::string_view path) {
+  constexpr std::string_view kPlain = "-._~/";
+  constexpr std::string_view kHex = "0123456789ABCDEF";
+  std::string uri(kScheme);
+  for (const char c : path) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (letter || kPlain.find(c) != std::string_view::npos) {
+      uri += c;
+    } else {
+      uri += '%';
+      uri += kHex[byte >> 4];
+      uri += kHex[byte & 15];
+    }
+  }
+  return uri;
+}
+
+std::string FileNameOfUri(std::string_view uri) {
+  const std::string whole = Unescaped(uri).value_or(std::string(uri));
+  const std::size_t slash = whole.find_last_of("/\\:");
+  return slash == std::string::npos ? whole : whole.substr(slash + 1);
+}
+
+std::optional<int> ProgramNumberOf(std::string_view uri) {
+  const std::string name = FileNameOfUri(uri);
+  if (ExtensionRank(name) == kExtensions.size()) return std::nullopt;
+  const auto number = ParseInteger(name.substr(0, name.rfind('.')));
+  if (!number || *number < kSlotMin || *number > kSlotMax) return std::nullopt;
+  return static_cast<int>(*number);
+}
+
+std::vector<NumberedFile> DiskFolder::Programs(std::string_view uri) const {
+  const std::optional<std::string> path = PathOfUri(uri);
+  if (!path) return {};
+  std::vector<Found> found;
+  std::error_code error;
+  std::size_t looked_at = 0;
+  for (fs::directory_iterator entry(fs::path(*path).parent_path(), error), end;
+       !error && entry != end && looked_at < kFolderEntriesMax;
+       entry.increment(error), ++looked_at) {
+    const std::string file = entry->path().string();
+    const std::optional<int> number = ProgramNumberOf(file);
+    std::error_code ignored;
+    if (number && entry->is_regular_file(ignored))
+      found.push_back({*number, ExtensionRank(file), file});
+  }
+  std::ranges::sort(found, ComesBefore);
+  std::vector<NumberedFile> programs;
+  for (const Found& one : found) programs.push_back({one.number, UriOfPath(one.path)});
+  return programs;
+}
+
+Result<std::string> DiskFolder::Read(std::string_view uri) const {
+  const std::optional<std::string> path = PathOfUri(uri);
+  if (!path) return Error{ErrorCode::kCellFileUnreadable, std::string(uri) + " is no file", {}};
+  std::error_code error;
+  // A pipe would keep the editor waiting.
+  if (!fs::is_regular_file(*path, error)) return Error{ErrorCode::kCellFileUnreadable, *path, {}};
+  const std::uintmax_t size = fs::file_size(*path, error);
+  if (error) return Error{ErrorCode::kCellFileUnreadable, *path + ": " + error.message(), {}};
+  if (size > kProgramBytesMax) return Error{ErrorCode::kCellTooLarge, *path, {}};
+  std::ifstream file(*path, std::ios::binary);
+  std::string text(static_cast<std::size_t>(size), '\0');
+  file.read(text.data(), static_cast<std::streamsize>(size));
+  if (file.gcount() < 0 || file.bad() || !file.is_open())
+    return Error{ErrorCode::kCellFileUnreadable, *path, {}};
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  return text;
+}
+
+}  // namespace rmlcell::lsp

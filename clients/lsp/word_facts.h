@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "engine/optimo/language/words.h"
+
+// What a programmer wants to know of a reserved word, in a line.
+namespace rmlcell::lsp {
+
+struct WordFact {
+  optimo::Word word = optimo::Word::kNone;
+  std::string_view form{};  // how it is written; empty: as the word itself
+  std::string_view text{};  // what it does
+};
+
+// One row for every reserved word, in the order of words.def.
+std::span<const WordFact> WordFacts();
+// Precondition: word is not kNone.
+const WordFact& FactOf(optimo::Word word);
+
+}  // namespace rmlcell::lsp

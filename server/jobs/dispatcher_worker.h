@@ -1,0 +1,62 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/jobs/dispatcher.h"
+
+// What the dispatcher knows of a worker. Only its own sources include this.
+namespace rmlcell::server {
+
+// What became of the events of an assignment; told by threads of the store, which may outlive it.
+struct Dispatcher::Delivery {
+  std::atomic<std::int64_t> stored = 0;
+  std::atomic<bool> failed = false;
+};
+
+// What a worker is at. Touched only by work posted for this worker, which runs in order.
+struct Dispatcher::Assignment {
+  storage::Lease lease;
+  std::chrono::steady_clock::time_point renewed_at;
+  std::map<std::string, storage::NewArtifact> artifacts;
+  std::int64_t collected_bytes = 0;
+  bool over_budget = false;
+  std::map<int, storage::Revision> object_revisions;  // of the programs of its memory
+  std::string machine;
+  std::shared_ptr<Delivery> delivery = std::make_shared<Delivery>();
+};
+
+struct Dispatcher::Worker {
+  WorkerId id = 0;
+  std::string name;
+  std::shared_ptr<WorkerLine> line;
+  std::vector<std::string> kinds;
+  std::optional<Assignment> assignment;
+  bool leaving = false;  // it handed its job back, since it ends; as `assignment`
+
+  // Guarded by Dispatcher::mutex_.
+  std::deque<std::function<void()>> queue;
+  bool working = false;
+  bool gone = false;
+  bool idle = true;
+  bool will_look = false;  // a look for a job is in the queue and has not begun
+  bool looking = false;    // it has begun, and may find one; for Drain
+  std::int64_t job = 0;                 // 0: none; for Control
+  std::optional<storage::Lease> lease;  // the same, for Control
+  std::shared_ptr<Delivery> delivery;   // the same, for the sweeper
+};
+
+v1::WorkerLease ToProto(const storage::Lease& lease);
+storage::JobOutcome CancelledOutcome();
+// An order for the worker that holds the lease.
+v1::WorkResponse ControlMessage(const storage::Lease& lease, v1::WorkerControl::Kind kind, double value);
+
+}  // namespace rmlcell::server

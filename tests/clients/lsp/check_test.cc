@@ -1,0 +1,103 @@
+#include "clients/lsp/check.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/clients/lsp/editor.h"
+
+namespace rmlcell::lsp {
+namespace {
+
+using testing::HasSubstr;
+
+Json DiagnosticsOf(std::string_view text, std::string_view uri = kUri,
+                   std::string_view language = "optimo-rml") {
+  Editor editor;
+  editor.Open(text, uri, language);
+  return editor.Diagnostics()["diagnostics"];
+}
+
+// OPT-2.35
+TEST(Check, AnErrorHasItsPlaceCodeAndRule) {
+  const Json found = DiagnosticsOf("PATH LIN\n  SPEED 101\n");
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0]["range"], ToJson(Range{{1, 8}, {1, 11}}));
+  EXPECT_EQ(found[0]["severity"], 1);
+  EXPECT_EQ(found[0]["code"], "OPT-E7004");
+  EXPECT_EQ(found[0]["source"], "rmlcell");
+  EXPECT_THAT(found[0]["message"], HasSubstr("[OPT-2.35]"));
+}
+
+// OPT-1.32: behind characters of two and four bytes.
+TEST(Check, PlacesAreUtf16) {
+  const Json found =
+      DiagnosticsOf("SPEED 5 ; \xF0\x9D\x84\x9E\nSPEED \xC3\xA4 5\nVR[0] = 1 ; \xE2\x82\xAC\n");
+  ASSERT_GE(found.size(), 1U);
+  EXPECT_EQ(found[0]["code"], "OPT-E7001");
+  EXPECT_EQ(found[0]["range"]["start"], ToJson(Position{1, 6}));
+}
+
+// OPT-7.105, OPT-2.61
+TEST(Check, SeveritiesAreThoseOfTheCatalogue) {
+  const Json found = DiagnosticsOf("VI[75] = 1\n");
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0]["severity"], 2);
+  EXPECT_EQ(found[0]["code"], "OPT-E7413");
+}
+
+// OPT-3.47
+TEST(Check, CodeThatIsNeverReachedIsGreyed) {
+  const Json found = DiagnosticsOf("ENDTASK\nSPEED 5\n");
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0]["severity"], 3);
+  EXPECT_EQ(found[0]["tags"], Json::array({1}));
+}
+
+// OPT-2.04, OPT-8.26: an inch source is written before it is converted.
+TEST(Check, AnInchSourceIsCheckedAsItStands) {
+  const Json found = DiagnosticsOf("SPEED 101\n", "file:///work/a.SI");
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0]["code"], "OPT-E7030");
+  EXPECT_EQ(found[0]["severity"], 3);
+  EXPECT_EQ(found[1]["code"], "OPT-E7004");
+}
+
+// OPT-2.51: half an inch is more than a millimetre.
+TEST(Check, AdviceInMillimetresIsNotGivenOnInches) {
+  constexpr const char* kText =
+      "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (0.,0.,0.,0.,0.)\nMOVE (.5,0.,0.,0.,0.)/FLY\n"
+      "MOVE (9.,0.,0.,0.,0.)\n";
+  EXPECT_THAT(DiagnosticsOf(kText).dump(), HasSubstr("OPT-E7314"));
+  EXPECT_THAT(DiagnosticsOf(kText, "file:///work/a.SI").dump(),
+              testing::Not(HasSubstr("OPT-E7314")));
+}
+
+TEST(Check, AStreamForAMillHasItsFindings) {
+  const Json found = DiagnosticsOf("PU0,0;QQ5;PD10,10;", "file:///work/a.rml", "rml1");
+  ASSERT_GE(found.size(), 1U);
+  EXPECT_THAT(found[0]["code"], HasSubstr("RML1-E"));
+  EXPECT_EQ(found[0]["range"]["start"]["line"], 0);
+}
+
+TEST(Check, TheExtensionDecidesThenTheLanguage) {
+  const auto family = [](std::string uri, std::string language) {
+    return FamilyOf({std::move(uri), std::move(language), 0, {}, Encoding::kUtf16});
+  };
+  EXPECT_EQ(family("file:///a.PRN", "optimo-rml"), Family::kRml1);
+  EXPECT_EQ(family("file:///a.s", "rml1"), Family::kOptimo);
+  EXPECT_EQ(family("untitled:Untitled-1", "rml1"), Family::kRml1);
+  EXPECT_EQ(family("untitled:Untitled-1", "optimo-rml"), Family::kOptimo);
+}
+
+TEST(Check, AnEmptyTextIsNoError) { EXPECT_EQ(DiagnosticsOf(""), Json::array()); }
+
+TEST(Check, MoreThanAThousandFindingsAreCounted) {
+  std::string text;
+  for (int i = 0; i < 1500; ++i) text += "SPEED 101\n";
+  const Json found = DiagnosticsOf(text);
+  ASSERT_EQ(found.size(), 1001U);
+  EXPECT_EQ(found.back()["message"], "and 500 more findings");
+}
+
+}  // namespace
+}  // namespace rmlcell::lsp

@@ -1,0 +1,97 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <set>
+#include <string>
+
+#include "clients/lsp/rule_facts.h"
+#include "clients/lsp/variable_facts.h"
+#include "clients/lsp/word_facts.h"
+#include "engine/core/catalogue.h"
+#include "engine/optimo/language/instruction_set.h"
+
+namespace rmlcell::lsp {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string ReadText(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  EXPECT_TRUE(file) << path;
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// What a finding or an instruction names, a programmer can look up where he stands.
+TEST(Facts, EveryRuleThatTheCheckerNamesIsExplained) {
+  const fs::path root = RMLCELL_SOURCE_DIR;
+  std::set<std::string> named;
+  const std::regex rule("\"(OPT-[0-9BE]+\\.[0-9]+)\"");
+  std::vector<fs::path> sources = {root / "engine/optimo/offline/contour_advice.cc",
+                                   root / "clients/lsp/variable_facts.cc"};
+  for (const auto& entry : fs::directory_iterator(root / "engine/optimo/language"))
+    sources.push_back(entry.path());
+  for (const fs::path& path : sources) {
+    const std::string text = ReadText(path);
+    for (std::sregex_iterator at(text.begin(), text.end(), rule), end; at != end; ++at)
+      named.insert((*at)[1]);
+  }
+  EXPECT_GT(named.size(), 80U);
+  for (const std::string& id : named) EXPECT_NE(TextOfRule(id), "") << id;
+}
+
+TEST(Facts, RulesOfInstructionsAreExplained) {
+  for (const optimo::InstructionInfo& row : optimo::kInstructionSet) {
+    if (row.rule.empty()) continue;
+    EXPECT_NE(TextOfRule(row.rule), "") << row.rule;
+  }
+}
+
+TEST(Facts, AnUnknownRuleHasNoText) {
+  EXPECT_EQ(TextOfRule("OPT-99.99"), "");
+  EXPECT_EQ(TextOfRule(""), "");
+}
+
+TEST(Facts, TextsAreSentencesInOneLine) {
+  for (const RuleFact& row : RuleFacts()) {
+    EXPECT_EQ(row.text.back(), '.') << row.id;
+    EXPECT_EQ(row.text.find('\n'), std::string_view::npos) << row.id;
+  }
+  for (const WordFact& row : WordFacts()) {
+    EXPECT_EQ(row.text.find('\n'), std::string_view::npos);
+    EXPECT_GT(row.text.size(), 3U);
+  }
+}
+
+// The form of a word has that word in it.
+TEST(Facts, FormsNameTheirWord) {
+  for (const WordFact& row : WordFacts()) {
+    if (row.form.empty()) continue;
+    EXPECT_NE(row.form.find(Describe(row.word).text), std::string_view::npos) << row.form;
+  }
+}
+
+std::string Note(optimo::VariableGroup group, int index) {
+  return VariableNote({group, static_cast<std::uint8_t>(index)});
+}
+
+// OPT-7.66, OPT-7.104, OPT-7.105, OPT-3.37, OPT-8.30
+TEST(Facts, VariablesSayWhatTheyAreKeptFor) {
+  using enum optimo::VariableGroup;
+  EXPECT_NE(Note(kVr, 50).find("Amada"), std::string::npos);
+  EXPECT_EQ(Note(kVr, 42).find("Amada"), std::string::npos);
+  EXPECT_NE(Note(kVr, 86).find("SYSDEF 1"), std::string::npos);
+  EXPECT_NE(Note(kIl, 89).find("number 2 is ON"), std::string::npos);
+  EXPECT_NE(Note(kIl, 95).find("motion"), std::string::npos);
+  EXPECT_EQ(Note(kIl, 50), "");
+  EXPECT_NE(VariableFacts({kVi, 99}).find("OPT-7.66"), std::string::npos);
+  EXPECT_EQ(VariableFacts({kVi, 97}).find("OPT-7.66"), std::string::npos);
+  EXPECT_NE(VariableFacts({kVr, 5}).find("lengths"), std::string::npos);
+  EXPECT_NE(VariableFacts({kVr, 3}).find("angles"), std::string::npos);
+  EXPECT_EQ(VariableFacts({kVr, 26}).find("CONVERT"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace rmlcell::lsp

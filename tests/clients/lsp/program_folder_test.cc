@@ -1,0 +1,79 @@
+#include "clients/lsp/program_folder.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace rmlcell::lsp {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(ProgramFolder, PathsAndUrisGoBothWays) {
+  for (const char* path : {"/work/12.S", "/a b/\xC3\xA4%20?#.S", "/"})
+    EXPECT_EQ(PathOfUri(UriOfPath(path)), path);
+  EXPECT_EQ(UriOfPath("/a b.S"), "file:///a%20b.S");
+  EXPECT_EQ(PathOfUri("file://host/a%2Fb.S"), "/a/b.S");
+  EXPECT_EQ(PathOfUri("file:///a.S?x#y"), "/a.S");
+  EXPECT_EQ(PathOfUri("untitled:Untitled-1"), std::nullopt);
+  EXPECT_EQ(PathOfUri("file:///a%2"), std::nullopt);
+  EXPECT_EQ(PathOfUri("file:///a%zz"), std::nullopt);
+  EXPECT_EQ(PathOfUri("file:///a%00b"), std::nullopt);
+}
+
+// OPT-1.10
+TEST(ProgramFolder, AProgramNumberIsTheWholeNameFrom1To99) {
+  EXPECT_EQ(ProgramNumberOf("file:///work/44.S"), 44);
+  EXPECT_EQ(ProgramNumberOf("/work/007.si"), 7);
+  EXPECT_EQ(ProgramNumberOf("44.CMP"), 44);
+  for (const char* name :
+       {"0.S", "100.S", "44.O", "44.rml", "44", "a44.S", "4 4.S", "-4.S", ".S", ""})
+    EXPECT_EQ(ProgramNumberOf(name), std::nullopt) << name;
+}
+
+class OnDisk : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "lsp-XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  void Write(const std::string& name, std::string_view text) {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+  std::string Uri(const std::string& name) { return UriOfPath((folder_ / name).string()); }
+
+  fs::path folder_;
+  DiskFolder disk_;
+};
+
+TEST_F(OnDisk, ProgramsOfTheFolderAreOrderedByNumberAndForm) {
+  for (const char* name : {"44.CMP", "44.S", "7.SI", "100.S", "notes.txt", "12.O"})
+    Write(name, "x");
+  fs::create_directory(folder_ / "9.S");
+  EXPECT_EQ(disk_.Programs(Uri("12.S")),
+            (std::vector<NumberedFile>{{7, Uri("7.SI")}, {44, Uri("44.S")}, {44, Uri("44.CMP")}}));
+  EXPECT_TRUE(disk_.Programs("untitled:1").empty());
+  EXPECT_TRUE(disk_.Programs(UriOfPath("/nowhere/at/all/12.S")).empty());
+}
+
+TEST_F(OnDisk, FilesAreReadUpToALimitAndNothingElseIs) {
+  Write("44.S", std::string("a\0b\xFF", 4));
+  EXPECT_EQ(*disk_.Read(Uri("44.S")), std::string("a\0b\xFF", 4));
+  Write("45.S", std::string(kProgramBytesMax, 'x'));
+  EXPECT_TRUE(disk_.Read(Uri("45.S")));
+  Write("46.S", std::string(kProgramBytesMax + 1, 'x'));
+  EXPECT_EQ(disk_.Read(Uri("46.S")).error().code, ErrorCode::kCellTooLarge);
+  EXPECT_EQ(disk_.Read(Uri("47.S")).error().code, ErrorCode::kCellFileUnreadable);
+  EXPECT_EQ(disk_.Read(Uri("")).error().code, ErrorCode::kCellFileUnreadable);
+  ASSERT_EQ(mkfifo((folder_ / "48.S").c_str(), 0600), 0);
+  EXPECT_EQ(disk_.Read(Uri("48.S")).error().code,
+            ErrorCode::kCellFileUnreadable);  // and no waiting
+}
+
+}  // namespace
+}  // namespace rmlcell::lsp
