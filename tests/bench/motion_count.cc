@@ -1,5 +1,5 @@
 // Plans a contour of short lines and nothing else: motion_instructions.py counts what that costs.
-//   motion_count jerk|trapezoid|mill|five_axis|arcs|short LINES
+//   motion_count jerk|trapezoid|mill|five_axis|arcs|short|ramps LINES
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
@@ -29,7 +29,9 @@ int Main(std::string_view what, int count) {
   std::vector<MoveCommand> loop;
   if (what == "arcs") {
     loop = Arcs(600);
-  } else if (what == "short") {  // speeds up and slows down all the time: ramps across many lines
+  } else if (what == "ramps") {  // bends use up the lines: the speed changes all the time
+    loop = Contour(600, false, 0.3);
+  } else if (what == "short") {  // sharp bends, all at one low speed
     loop = Polyline(Legs(600, 0.8, 0.5 * kPi, true), 0.3);
     loop.back().fly = true;
   } else {
@@ -64,7 +66,8 @@ int Main(std::string_view what, int count) {
 
 int main(int argc, char** argv) {
   if (argc != 3) {
-    std::fprintf(stderr, "usage: motion_count jerk|trapezoid|mill|five_axis|arcs|short LINES\n");
+    std::fprintf(stderr,
+                 "usage: motion_count jerk|trapezoid|mill|five_axis|arcs|short|ramps LINES\n");
     return 2;
   }
   return rmlcell::motion::Main(argv[1], std::atoi(argv[2]));

@@ -13,7 +13,8 @@ import sys
 
 # Measured with g++ 12, and a tenth of room for another compiler. The goal for acceleration-limited plans,
 # 1,000, is not reached: copying motions out and making curves take most of it.
-LIMITS = {"jerk": 5900, "trapezoid": 6100, "mill": 3500, "five_axis": 9800, "arcs": 231000, "short": 6400}
+LIMITS = {"jerk": 5900, "trapezoid": 6100, "mill": 3500, "five_axis": 9800, "arcs": 231000, "short": 6400,
+          "ramps": 34500}
 SHORT, LONG = 2400, 8400
 
 
