@@ -158,7 +158,7 @@ void Planner::AddDraft(const machine::ProjectProgram& program) {
       if (found.code == ErrorCode::kConvertNotRml) continue;
       found.file = program.file.name;
       found.program = program.slot;
-      // CONVERT goes on after this; a machine must not get lengths that are still inches.
+      // CONVERT goes on after this, and so does the transfer: what may still be inches is told.
       Add(std::move(found));
     }
   } else {
