@@ -58,7 +58,7 @@ fuzz() {
   command -v clang++ >/dev/null || bash deploy/setup.sh --fuzz
   cmake --preset fuzz >/dev/null
   local targets=(motion_planner_fuzz optimo_text_fuzz optimo_object_fuzz optimo_convert_fuzz optimo_compensate_fuzz
-                 rml1_device_fuzz)
+                 rml1_device_fuzz lsp_fuzz)
   ninja -C build/fuzz "${targets[@]}" >build/long/fuzz_build.log
   for target in "${targets[@]}"; do
     local program seeds=tests/fuzz/corpus/$target found=build/long/$target
@@ -66,6 +66,7 @@ fuzz() {
     case $target in
       optimo_*) seeds=tests/fuzz/corpus/optimo-$(echo "$target" | cut -d_ -f2) ;;
       rml1_*) seeds=tests/fuzz/corpus/rml1 ;;
+      lsp_*) seeds=tests/fuzz/corpus/lsp ;;
     esac
     mkdir -p "$found"
     local inputs=("$found")

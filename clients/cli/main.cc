@@ -102,12 +102,12 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
     verb->add_option("--svg", options->svg, "write a picture of the toolpath");
     verb->add_option("--samples", options->samples,
                      "RATE FILE: write where the machine is, RATE times a second, as CSV")
-        ->expected(2)
-        ->allow_extra_args(false);
+        ->type_size(2)
+        ->expected(1);
     verb->add_option("--plot", options->plot,
                      "CURVES FILE: write curves over time, of speed,power,axes")
-        ->expected(2)
-        ->allow_extra_args(false);
+        ->type_size(2)
+        ->expected(1);
     verb->add_option("--state-in", options->state_in, "machine state of an earlier run");
     verb->add_option("--state-out", options->state_out, "keep the machine state for a later run");
     verb->add_flag("--trace", options->trace, "list all that was observable, in order");

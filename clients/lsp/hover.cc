@@ -1,13 +1,16 @@
 #include "clients/lsp/hover.h"
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "clients/lsp/check.h"
+#include "clients/lsp/project_facts.h"
 #include "clients/lsp/rule_facts.h"
 #include "clients/lsp/variable_facts.h"
 #include "clients/lsp/word_facts.h"
+#include "engine/core/number_text.h"
 #include "engine/optimo/language/instruction_set.h"
 #include "engine/optimo/offline/house_programs.h"
 
@@ -88,19 +91,27 @@ class HoverText {
       return other.kind == process.kind && other.process == process.process;
     };
     const std::string name = std::to_string(process.kind) + "," + std::to_string(process.process);
+    std::string text;
     if (process.defines) {
       const auto count = std::ranges::count_if(index_.processes(), [&](const ProcessUse& other) {
         return same(other) && !other.defines && other.on;
       });
-      return "\n\nProcess " + name + ", turned ON " + std::to_string(count) +
+      text = "\n\nProcess " + name + ", turned ON " + std::to_string(count) +
              (count == 1 ? " time." : " times.") +
              Parameters(index_.statements()[process.statement], process.kind);
+    } else {
+      text = DefinitionOf(process, name);
     }
-    std::string text;
-    // The nearest one before, else the first behind.
+    const std::string project = ProcessNote(program_, process.kind, process.process);
+    return project.empty() ? text : text + "\n\nIn project.json: " + project;
+  }
+
+  // The WORKDEF that a WORK most likely follows: the nearest one before, else the first behind.
+  std::string DefinitionOf(const ProcessUse& process, const std::string& name) const {
     const ProcessUse* nearest = nullptr;
     for (const ProcessUse& other : index_.processes()) {
-      if (!other.defines || !same(other)) continue;
+      const bool same = other.kind == process.kind && other.process == process.process;
+      if (!other.defines || !same) continue;
       if (other.statement < process.statement || nearest == nullptr) nearest = &other;
     }
     if (nearest == nullptr) {
@@ -135,12 +146,26 @@ class HoverText {
       if (text[at] == '(') ++depth;
       if (text[at] == ')' && at < close) --depth;
       if (at < close && (text[at] != ',' || depth > 0)) continue;
-      list += "\n- " + std::string(kind == 1 ? kLaser[value] : kSchedule[value]) + ": " +
-              Code(text.substr(begin, at - begin));
+      const std::string_view written = text.substr(begin, at - begin);
+      list +=
+          "\n- " + std::string(kind == 1 ? kLaser[value] : kSchedule[value]) + ": " + Code(written);
+      const bool schedule = kind == 2 || value == kLaser.size() - 1;
+      if (schedule) list += OfSchedule(written);
       ++value;
       begin = at + 1;
     }
     return list.empty() ? list : "\n" + list;
+  }
+
+  // " (PULSE, 50 %)" when the project of the folder has the schedule.
+  std::string OfSchedule(std::string_view written) const {
+    const std::size_t first = written.find_first_not_of(" \t");
+    if (first == std::string_view::npos) return {};
+    const std::size_t last = written.find_last_not_of(" \t");
+    const auto number = ParseDouble(written.substr(first, last - first + 1));
+    if (!number || !(*number >= 1.0 && *number < 64.0)) return {};
+    const std::string note = ScheduleNote(program_, static_cast<int>(*number));
+    return note.empty() ? note : " (" + note + ")";
   }
 
   std::string OfName() const {

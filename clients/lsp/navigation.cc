@@ -102,7 +102,7 @@ Json References(const OpenProgram& program, std::size_t offset, bool with_declar
   for (const NumberedFile& file : program.folder.Programs(program.document.uri())) {
     if (file.number == last || file.uri == program.document.uri()) continue;
     last = file.number;
-    const auto neighbour = FindNeighbour(program, file.number);
+    const auto neighbour = ReadNeighbour(program, file);
     if (!neighbour || neighbour->uri == program.document.uri()) continue;
     const Document other(neighbour->uri, {}, 0, neighbour->text, program.document.encoding());
     const ProgramIndex index(other.text());

@@ -4,13 +4,18 @@
 
 namespace rmlcell::lsp {
 
+std::optional<Neighbour> ReadNeighbour(const OpenProgram& program, const NumberedFile& file) {
+  if (const Document* open = program.open ? program.open(file.uri) : nullptr; open != nullptr)
+    return Neighbour{open->uri(), open->text()};
+  Result<std::string> text = program.folder.Read(file.uri);
+  if (!text) return std::nullopt;
+  return Neighbour{file.uri, *std::move(text)};
+}
+
 std::optional<Neighbour> FindNeighbour(const OpenProgram& program, int number) {
   for (const NumberedFile& file : program.folder.Programs(program.document.uri())) {
     if (file.number != number) continue;
-    if (const Document* open = program.open ? program.open(file.uri) : nullptr; open != nullptr)
-      return Neighbour{open->uri(), open->text()};
-    Result<std::string> text = program.folder.Read(file.uri);
-    if (text) return Neighbour{file.uri, *std::move(text)};
+    if (auto neighbour = ReadNeighbour(program, file)) return neighbour;
   }
   return std::nullopt;
 }

@@ -25,6 +25,8 @@ struct Neighbour {
   std::string uri;
   std::string text;
 };
+// Nothing when the file cannot be read.
+std::optional<Neighbour> ReadNeighbour(const OpenProgram& program, const NumberedFile& file);
 // The source of a program number in the folder of the document; nothing when there is none that can
 // be read.
 std::optional<Neighbour> FindNeighbour(const OpenProgram& program, int number);

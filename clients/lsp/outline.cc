@@ -34,7 +34,7 @@ std::string OneLine(std::string_view text) {
 class Outline {
  public:
   Outline(const Document& document, const ProgramIndex& index)
-      : document_(document), index_(index), positions_(document) {}
+      : index_(index), positions_(document) {}
 
   Json Make() {
     for (const Declaration& declaration : index_.declarations()) {
@@ -105,7 +105,6 @@ class Outline {
     close();
   }
 
-  const Document& document_;
   const ProgramIndex& index_;
   PositionFinder positions_;
   Json symbols_ = Json::array();

@@ -84,7 +84,8 @@ class Session {
 
   // Time until there is something to do besides reading and writing.
   int Timeout() const {
-    if (server_.waiting()) return pending() > kOutputBytesMax ? -1 : 0;
+    if (pending() > kOutputBytesMax) return -1;  // until the client reads
+    if (server_.waiting() || ended_) return 0;
     milliseconds wait = server_.parent_process() ? kParentInterval : milliseconds(-1);
     if (server_.unchecked()) {
       const auto left = std::chrono::ceil<milliseconds>(quiet_since_ + quiet_ - Clock::now());
@@ -98,7 +99,7 @@ class Session {
     const bool reads = !ended_ && server_.waiting_bytes() < kWaitingBytesMax;
     std::array<pollfd, 2> wires{
         {{reads ? input_ : -1, POLLIN, 0}, {pending() > 0 ? output_ : -1, POLLOUT, 0}}};
-    const int ready = poll(wires.data(), wires.size(), ended_ ? 0 : Timeout());
+    const int ready = poll(wires.data(), wires.size(), Timeout());
     if (ready < 0) return errno == EINTR;
     if (ready == 0) return ParentLives();
     if (wires[0].revents != 0 && !Read()) ended_ = true;

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/optimo/language/fixes.h"
 #include "engine/optimo/language/formatter.h"
-#include "engine/optimo/language/lexer.h"
 
 namespace rmlcell::lsp {
 namespace {
@@ -40,7 +40,7 @@ bool Wanted(const Json* only, std::string_view kind) {
   });
 }
 
-// Edits of fixes, ordered; of overlapping ones the first stays.
+// Edits of fixes, in order of place; what touches an earlier one or does not fit is left out.
 Json EditsOf(std::vector<Fix> fixes, PositionFinder& positions, std::size_t text_size) {
   std::ranges::stable_sort(fixes, {}, &Fix::byte_offset);
   Json edits = Json::array();
@@ -82,9 +82,7 @@ class Actions {
   Json Make(const Findings& findings, const Range& range) {
     const std::size_t from = document_.OffsetOf(range.start);
     const std::size_t to = std::max(from, document_.OffsetOf(range.end));
-    std::vector<Fix> all;
     for (const Diagnostic& finding : findings.list) {
-      all.insert(all.end(), finding.fixes.begin(), finding.fixes.end());
       const Marked marked = PlaceOf(finding, document_.text());
       const bool here = finding.where.byte_offset >= 0 && marked.begin <= to && marked.end >= from;
       if (!here || actions_.size() >= kActionsMax || !Wanted(only_, kQuickFix)) continue;
@@ -93,8 +91,13 @@ class Actions {
       if (!IsError(finding.severity) && Lookup(finding.code).family == ErrorFamily::kOptimo)
         AddSilence(finding, marked.begin);
     }
-    if (!all.empty() && Wanted(only_, kFixAll))
-      Add("Apply all fixes of rmlcell", kFixAll, all, nullptr);
+    if (!Wanted(only_, kFixAll)) return std::move(actions_);
+    std::vector<Fix> all;
+    for (const std::size_t at : optimo::RepairableFindings(document_.text(), findings.list)) {
+      const std::vector<Fix>& fixes = findings.list[at].fixes;
+      all.insert(all.end(), fixes.begin(), fixes.end());
+    }
+    if (!all.empty()) Add("Apply all fixes of rmlcell", kFixAll, all, nullptr);
     return std::move(actions_);
   }
 

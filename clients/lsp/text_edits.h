@@ -14,8 +14,8 @@ namespace rmlcell::lsp {
 // cursors and marks of the editor stay; empty when it is, or when it cannot be parsed.
 Json FormattingEdits(const Document& document);
 
-// CodeAction objects for `range`: the fixes of findings there (the first of overlapping ones wins,
-// as in ApplyFixes), all fixes of the text, and a directive that silences a warning on its line.
+// CodeAction objects for `range`: the fixes of findings there, all fixes of the text as `rmlcell
+// check --fix` applies them in one go, and a directive that silences a warning on its line.
 // `only`: kinds of action that are wanted; null or empty: all.
 Json CodeActions(const Document& document, const Findings& findings, const Range& range,
                  const Json* only);

@@ -77,6 +77,12 @@ bool EtagMatches(std::string_view if_none_match, std::string_view etag);
 // Content-Disposition with an ASCII name for old clients and the full one for the others.
 std::string ContentDisposition(std::string_view kind, std::string_view file_name);
 
+// Now, in the form of the Date header. RFC 9110 5.6.7
+std::string HttpDate();
+
+// What stands before a chunk of a body. RFC 9112 7.1
+std::string ChunkHead(std::size_t size);
+
 bool EqualIgnoringCase(std::string_view a, std::string_view b);
 std::string LowerCase(std::string_view text);
 std::string_view Trim(std::string_view text);  // blanks and tabs

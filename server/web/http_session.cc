@@ -39,24 +39,9 @@ constexpr std::chrono::milliseconds kLingerDraining{
     200};                                           // a stop does not wait for silent clients
 constexpr std::chrono::milliseconds kLinger{2000};  // to take in what a refused client still sends
 constexpr std::chrono::seconds kPipelinedLook{1};
+constexpr std::chrono::milliseconds kHalfClosed{2000};  // for the answer of a client that ended its sending
 
 std::string View(beast::string_view text) { return std::string(text.data(), text.size()); }
-
-std::string HttpDate() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  std::array<char, 40> text{};
-  const std::size_t size =
-      std::strftime(text.data(), text.size(), "%a, %d %b %Y %H:%M:%S GMT", &utc);
-  return std::string(text.data(), size);
-}
-
-std::string ChunkHead(std::size_t size) {
-  std::array<char, 16> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), size, 16).ptr;
-  return std::string(digits.data(), end) + "\r\n";
-}
 
 // The first line ends with a version, just not with one of ours.
 bool NamesAVersion(const beast::flat_buffer& buffer) {
@@ -447,6 +432,7 @@ class HttpSession : public Connection, public std::enable_shared_from_this<HttpS
       // It has said all it wants to say; who waits for a stream that has no end does not half-close.
       if (exchange_->IsEndless()) return Gone();
       closing_ = true;
+      Arm(kHalfClosed);  // it may have left altogether, which looks the same
       return;
     }
     if (size < 0)

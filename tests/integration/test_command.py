@@ -163,7 +163,7 @@ class Remote(unittest.TestCase):
             self.assertEqual([p["slot"] for p in kept["programs"]], [31, 32])
             self.assertEqual(kept["title"], "Door")
             self.assertEqual(run("projects", "transfer", "door", "optimo-1", server=at).returncode, 0)
-            self.assertIn("MOVE (25.4,", run("get", "optimo-1", 32, server=at).stdout)
+            self.assertIn("MOVE (1.0,", run("get", "optimo-1", 32, server=at).stdout)  # his own text
             # Named in the file, and so the only program; its bytes lie beside the file.
             (folder / "project.json").write_text('{"programs": [{"slot": 40, "source": {"fileName": "31.S"}}]}')
             self.assertEqual(run("projects", "update", "door", folder, server=at).returncode, 0)

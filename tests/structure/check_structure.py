@@ -81,7 +81,7 @@ ENGINE_GLOBAL = re.compile(r"^\s*(inline\s+)?static\s+(?!const\b|constexpr\b|_as
 
 LINES_MAX = 600
 # Longer ones that are known; none may grow.
-LINES_KNOWN = {"server/web/http_session.cc": 607}
+LINES_KNOWN = {"server/web/http_session.cc": 598}
 
 BAD_NAME = re.compile(r"(^|[_.-])(utils?|helpers?|misc|managers?)([_.-]|$)", re.IGNORECASE)
 BAD_TYPE = re.compile(r"^\s*(?:class|struct)\s+(\w*(?:Manager|Utils?|Helpers?))\b")

@@ -50,7 +50,7 @@ TEST(Facts, RulesOfInstructionsAreExplained) {
 }
 
 TEST(Facts, AnUnknownRuleHasNoText) {
-  EXPECT_EQ(TextOfRule("OPT-99.99"), "");
+  EXPECT_EQ(TextOfRule("OPT-nonsense"), "");
   EXPECT_EQ(TextOfRule(""), "");
 }
 

@@ -84,6 +84,24 @@ TEST(Hover, AWorkShowsTheWorkdefBeforeIt) {
   EXPECT_THAT(HoverAt("WO|RK 0,3/ON\n"), HasSubstr("needs no WORKDEF"));
 }
 
+// OPT-3.05, OPT-3.06
+TEST(Hover, SchedulesAndProcessesOfTheProjectAreShown) {
+  Editor editor;
+  editor.folder.files["file:///work/project.json"] =
+      R"({"laserSchedules": [{"number": 11, "mode": "PULSE", "powerPercent": 50, "title": "fine"}],
+          "processes": [{"kind": 1, "process": 0, "values": [8, 75, 0.5, 60], "note": "steel"}]})";
+  EXPECT_THAT(HoverAt("WORKDEF 2,0 (11)\nWO|RK 2,0/ON\n", editor),
+              AllOf(HasSubstr("laser schedule: `11` (PULSE, 50 %, fine)"),
+                    Not(HasSubstr("In project.json"))));
+  EXPECT_THAT(HoverAt("WORKD|EF 1,0 (8.,75.,.5,60.,12)\n", editor),
+              AllOf(HasSubstr("laser schedule: `12`\n\nIn project.json: 8, 75, 0.5, 60 (steel)")));
+  for (const char* broken :
+       {"", "[]", "{\"laserSchedules\": 5}", "{\"laserSchedules\": [5, {}]}"}) {
+    editor.folder.files["file:///work/project.json"] = broken;
+    EXPECT_THAT(HoverAt("WORKDEF 2,0 (11)\nWO|RK 2,0/ON\n", editor), HasSubstr("`11`"));
+  }
+}
+
 // OPT-9.01, OPT-9.21
 TEST(Hover, ACalledProgramIsTheFileBesideOrTheTextThatIsOpen) {
   Editor editor;

@@ -123,6 +123,9 @@ class FakeLog final : public storage::Store {
   void Submit(storage::NewJob, std::function<void(Result<storage::SubmittedJob>)> done) override {
     done(No());
   }
+  Result<std::optional<storage::JobRecord>> FindSubmitted(std::string_view, std::string_view) override {
+    return No();
+  }
   Result<storage::JobRecord> GetJob(std::int64_t) override { return No(); }
   Result<std::vector<storage::JobRecord>> ListJobs(const storage::JobQuery&) override {
     return No();

@@ -167,7 +167,7 @@ TEST(Transform, RandomProgramsComeBackFromTheInverse) {
     ASSERT_EQ(c.poses.size(), a.poses.size());
     for (std::size_t n = 0; n < a.poses.size(); ++n) {
       // The distance of two points is that of the moved ones.
-      const auto point = [n](const MoveNumbers& m, std::size_t k) {
+      const auto point = [](const MoveNumbers& m, std::size_t k) {
         return motion::Vec3{m.poses[k][0], m.poses[k][1], m.poses[k][2]};
       };
       EXPECT_NEAR(motion::Distance(point(b, 0), point(b, n)),

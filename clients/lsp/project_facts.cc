@@ -1,0 +1,59 @@
+#include "clients/lsp/project_facts.h"
+
+#include <nlohmann/json.hpp>
+
+#include "clients/lsp/protocol.h"
+#include "engine/core/number_text.h"
+
+namespace rmlcell::lsp {
+namespace {
+
+// The rows of a list of the project of this folder.
+std::vector<Json> RowsOf(const OpenProgram& program, std::string_view list) {
+  const std::string& uri = program.document.uri();
+  const std::size_t slash = uri.rfind('/');
+  if (slash == std::string::npos) return {};
+  const Result<std::string> text = program.folder.Read(uri.substr(0, slash + 1) + "project.json");
+  const auto project = text ? ReadJson(*text) : std::nullopt;
+  const Json* rows = project ? Member(*project, {list}) : nullptr;
+  if (rows == nullptr || !rows->is_array()) return {};
+  return {rows->begin(), rows->end()};
+}
+
+std::string NumberText(const Json* number) {
+  return number != nullptr && number->is_number() ? ShortestText(number->get<double>()) : "";
+}
+
+}  // namespace
+
+std::string ScheduleNote(const OpenProgram& program, int number) {
+  for (const Json& row : RowsOf(program, "laserSchedules")) {
+    if (NumberMember(row, {"number"}) != number) continue;
+    std::string note = TextMember(row, {"mode"}).value_or("CW");
+    const std::string power = NumberText(Member(row, {"powerPercent"}));
+    if (!power.empty()) note += ", " + power + " %";
+    if (const auto title = TextMember(row, {"title"}); title && !title->empty())
+      note += ", " + *title;
+    return note;
+  }
+  return {};
+}
+
+std::string ProcessNote(const OpenProgram& program, int kind, int process) {
+  for (const Json& row : RowsOf(program, "processes")) {
+    if (NumberMember(row, {"kind"}).value_or(0) != kind ||
+        NumberMember(row, {"process"}).value_or(0) != process) {
+      continue;
+    }
+    std::string note;
+    if (const Json* values = Member(row, {"values"}); values != nullptr && values->is_array()) {
+      for (const Json& value : *values) note += (note.empty() ? "" : ", ") + NumberText(&value);
+    }
+    if (const auto text = TextMember(row, {"note"}); text && !text->empty())
+      note += (note.empty() ? "" : " ") + ("(" + *text + ")");
+    return note;
+  }
+  return {};
+}
+
+}  // namespace rmlcell::lsp
