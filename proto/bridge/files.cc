@@ -169,7 +169,6 @@ Status ParseInputFile(std::string_view text, const std::string& name, v1::Simula
 }
 
 Status CheckInputValue(const v1::ScriptedInput& input) {
-  constexpr double kOverrideMax = 145.0;
   const double value = input.value();
   const auto wrong = [&](const std::string& allowed) {
     return Error{ErrorCode::kCellInvalidArgument, "the value is " + ShortestText(value) + "; " + allowed, {}};

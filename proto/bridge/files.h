@@ -30,6 +30,8 @@ Result<MachineFile> ParseMachineFile(std::string_view text, const std::string& n
 // Appends to options.inputs. Errors: CellBadText with line and column.
 Status ParseInputFile(std::string_view text, const std::string& name, v1::SimulationOptions& options);
 
+inline constexpr double kOverrideMax = 145.0;  // %
+
 // Whether the value of an input can be: logical ones and the door are 0 or 1, the feed override is above 0 to
 // 145 %, numbers are finite. Error: CellInvalidArgument.
 Status CheckInputValue(const v1::ScriptedInput& input);

@@ -3,6 +3,7 @@
 #include "engine/simulation/families.h"
 #include "server/config.h"
 #include "server/jobs/job_book.h"
+#include "server/jobs/job_messages.h"
 #include "server/names.h"
 
 namespace rmlcell::server {
@@ -96,7 +97,7 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
   if (!main_bytes) return main_bytes.error();
 
   ProgramsOfAssignment programs(assignment, messages);
-  int main_slot = job.inline_slot() > 0 ? job.inline_slot() : 1;
+  int main_slot = InlineSlotOf(job);
   const bool stored_main = job.program_source_case() == v1::Job::kProgram;
   if (stored_main) {
     const auto name = ParseProgramName(job.program());

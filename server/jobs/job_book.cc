@@ -22,7 +22,6 @@ constexpr int kPageMax = 1000;
 constexpr int kSnapshotJobs = 200;
 constexpr std::size_t kTitleMax = 200;
 constexpr std::size_t kRequestIdMax = 64;
-constexpr double kOverrideMax = 145.0;
 
 Error Invalid(const std::string& detail) { return {ErrorCode::kCellInvalidArgument, detail, {}}; }
 
@@ -54,7 +53,7 @@ Status CheckStepPlace(const v1::StepPlace& place, const std::string& field) {
 
 Status CheckSimulation(const v1::SimulationOptions& options) {
   const double override_percent = options.override_percent();
-  if (!(override_percent >= 0.0 && override_percent <= kOverrideMax)) {
+  if (!(override_percent >= 0.0 && override_percent <= bridge::kOverrideMax)) {
     return Invalid("job.simulation.override_percent is " + ShortestText(override_percent) +
                    ", allowed are above 0 to 145");
   }
@@ -192,8 +191,7 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, co
     const std::string what = "job.simulation.programs of slot " + std::to_string(program.slot());
     if (Status fits = CheckSize(program.program().content(), what); !fits) return fits.error();
     if (!further.insert(program.slot()).second) return Invalid(what + " stands twice");
-    const int main_slot = job.inline_slot() > 0 ? job.inline_slot() : 1;
-    if (job.has_inline_program() && program.slot() == main_slot) {
+    if (job.has_inline_program() && program.slot() == InlineSlotOf(job)) {
       return Invalid(what + ": the slot of job.inline_program (inline_slot, 1 when it is not given)");
     }
     made.attachments.push_back({AttachmentName(program.slot()), "application/octet-stream",

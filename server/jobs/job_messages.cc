@@ -1,5 +1,6 @@
 #include "server/jobs/job_messages.h"
 
+#include "engine/core/units.h"
 #include "proto/bridge/findings.h"
 #include "server/names.h"
 
@@ -42,6 +43,8 @@ v1::Job::State ToProto(storage::JobState state) {
   }
   return v1::Job::STATE_UNSPECIFIED;
 }
+
+int InlineSlotOf(const v1::Job& job) { return job.inline_slot() > 0 ? job.inline_slot() : kSlotMin; }
 
 v1::Job ToProto(const storage::JobRecord& record) {
   v1::Job job;

@@ -13,6 +13,9 @@ google::protobuf::Timestamp ToProto(storage::WallTime time);
 
 v1::Job::State ToProto(storage::JobState state);
 
+// The slot that an inline program stands in for its job.
+int InlineSlotOf(const v1::Job& job);
+
 // The job without its artifacts.
 v1::Job ToProto(const storage::JobRecord& record);
 v1::Artifact ToProto(const storage::ArtifactRecord& record);

@@ -1,5 +1,6 @@
 #include "server/services/job_service.h"
 
+#include "proto/bridge/files.h"
 #include "rmlcell/v1/worker.pb.h"
 #include "server/events/event_feed.h"
 #include "server/jobs/dispatcher.h"
@@ -99,7 +100,7 @@ grpc::ServerUnaryReactor* JobService::SetJobOverride(grpc::CallbackServerContext
                                                      const v1::SetJobOverrideRequest* request,
                                                      v1::Job* response) {
   const double percent = request->override_percent();
-  if (!(percent > 0.0 && percent <= 145.0)) {
+  if (!(percent > 0.0 && percent <= bridge::kOverrideMax)) {
     return Answer(room_, context, *request, "JobService/SetJobOverride", [](const Caller&) {
       return ToGrpcStatus(
           Error{ErrorCode::kCellInvalidArgument, "override_percent: allowed are above 0 to 145", {}});

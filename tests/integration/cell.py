@@ -142,6 +142,13 @@ def wait_for_end(stub, name, seconds=120):
     return events
 
 
+def wait_until_it_runs(stub, name, seconds=60):
+    until = time.monotonic() + seconds
+    while (job := stub.GetJob(job_pb2.GetJobRequest(name=name))).state != job_pb2.Job.STATE_RUNNING:
+        assert job.state == job_pb2.Job.STATE_QUEUED and time.monotonic() < until, job
+        time.sleep(0.02)
+
+
 def detail_of(error):
     """Our ErrorDetail of a refused call."""
     rich = status_pb2.Status()

@@ -14,7 +14,7 @@ import urllib.request
 import uuid
 
 from cell import (BIN, ENDLESS, LONG, ROOT, SHARED, SQUARE, Cell, common_pb2, detail_of, grpc, inline_job, job_pb2,
-                  machine_pb2, program_pb2, project_pb2, submit, wait_for_end)
+                  machine_pb2, program_pb2, project_pb2, submit, wait_for_end, wait_until_it_runs)
 
 COMPLETED = 1
 FAILED = 3
@@ -112,7 +112,7 @@ class Jobs(WithCell):
         talk = "10 OL[20]=ON\nOL[20]=OFF\nDELAY 0.001\nGOTO 10\n"
         for _ in range(4):
             job = submit(stub, inline_job("optimo-1", "talk.S", talk))
-            self.running(stub, job.name)
+            wait_until_it_runs(stub, job.name)
             stub.HoldJob(job_pb2.HoldJobRequest(name=job.name))
             until = time.monotonic() + 20
             held = False
@@ -131,16 +131,10 @@ class Jobs(WithCell):
                 if message.event.sequence >= last:
                     return
 
-    def running(self, stub, name):
-        deadline = time.monotonic() + 30
-        while stub.GetJob(job_pb2.GetJobRequest(name=name)).state != job_pb2.Job.STATE_RUNNING:
-            self.assertLess(time.monotonic(), deadline)
-            time.sleep(0.02)
-
     def test_a_job_is_cancelled_while_it_runs(self):
         stub = self.cell.jobs()
         job = submit(stub, inline_job("optimo-1", "endless.S", ENDLESS))
-        self.running(stub, job.name)
+        wait_until_it_runs(stub, job.name)
         stub.CancelJob(job_pb2.CancelJobRequest(name=job.name))
         self.assertEqual(wait_for_end(stub, job.name, 30)[-1].ended.code, "CELL-E9307")
 
@@ -436,17 +430,10 @@ class Kills(unittest.TestCase):
         self.addCleanup(self.cell.close)
         self.cell.start()
 
-    def running(self, stub, name):
-        until = time.monotonic() + 60
-        while (job := stub.GetJob(job_pb2.GetJobRequest(name=name))).state != job_pb2.Job.STATE_RUNNING:
-            self.assertEqual(job.state, job_pb2.Job.STATE_QUEUED, job)
-            self.assertLess(time.monotonic(), until, job)
-            time.sleep(0.02)
-
     def test_a_job_survives_the_death_of_its_worker(self):
         stub = self.cell.jobs()
         job = submit(stub, inline_job("optimo-1", "endless.S", ENDLESS))
-        self.running(stub, job.name)
+        wait_until_it_runs(stub, job.name)
         for process in self.cell.worker_processes():
             os.kill(process, 9)
         other = submit(stub, inline_job("mill-1", "square.rml", SQUARE))
@@ -457,7 +444,7 @@ class Kills(unittest.TestCase):
             time.sleep(0.05)
         # The second attempt may have gone to a worker that was killed a moment later.
         if seen.state != job_pb2.Job.STATE_FAILED:
-            self.running(stub, job.name)
+            wait_until_it_runs(stub, job.name)
             for process in self.cell.worker_processes():
                 os.kill(process, 9)
         ended = wait_for_end(stub, job.name, 60)[-1].ended
@@ -541,7 +528,7 @@ class Kills(unittest.TestCase):
     def test_the_server_stops_in_order_within_five_seconds(self):
         stub = self.cell.jobs()
         job = submit(stub, inline_job("optimo-1", "endless.S", ENDLESS))
-        self.running(stub, job.name)
+        wait_until_it_runs(stub, job.name)
         last = []
         watcher = threading.Thread(target=lambda: self.collect(stub, job.name, last))
         watcher.start()
