@@ -173,25 +173,26 @@ void Dispatcher::SweepLeases(const std::stop_token& stop) {
   }
 }
 
+// An order goes the way of the assignment, or it could reach the worker before the job does.
 Status Dispatcher::Control(std::int64_t job, v1::WorkerControl::Kind kind, double value) {
-  std::shared_ptr<WorkerLine> line;
-  std::optional<storage::Lease> lease;
-  {
-    const std::lock_guard lock(mutex_);
-    for (const auto& [id, worker] : workers_) {
-      if (worker->job == job) {
-        line = worker->line;
-        lease = worker->lease;
-      }
-    }
-  }
-  if (line != nullptr && lease) {
-    line->Send(ControlMessage(*lease, kind, value));
-    return {};
-  }
   const auto record = store_.GetJob(job);
   if (!record) return record.error();
-  return Error{ErrorCode::kCellPrecondition, JobName(job) + " does not run", {}};
+  std::vector<std::shared_ptr<Worker>> bearers;
+  if (record->state == storage::JobState::kRunning) {
+    // Who looks may have leased it a moment ago, and not have said so.
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, worker] : workers_) {
+      if (worker->job == job || worker->looking) bearers.push_back(worker);
+    }
+  }
+  if (bearers.empty()) return Error{ErrorCode::kCellPrecondition, JobName(job) + " does not run", {}};
+  for (const auto& worker : bearers) {
+    Post(worker, [worker, job, kind, value] {
+      if (!worker->assignment || worker->assignment->lease.job != job) return;
+      worker->line->Send(ControlMessage(worker->assignment->lease, kind, value));
+    });
+  }
+  return {};
 }
 
 Result<storage::JobRecord> Dispatcher::Cancel(std::int64_t job) {

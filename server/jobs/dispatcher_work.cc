@@ -69,7 +69,6 @@ void Dispatcher::Assign(const std::shared_ptr<Worker>& worker) {
     if (found) {
       worker->idle = false;
       worker->job = worker->assignment->lease.job;
-      worker->lease = worker->assignment->lease;
       worker->delivery = worker->assignment->delivery;
     }
   }
@@ -245,7 +244,6 @@ void Dispatcher::EndAssignment(Worker& worker, bool stored) {
     // Before the worker hears of it: an order for a job that is over is refused from then on.
     const std::lock_guard lock(mutex_);
     worker.job = 0;
-    worker.lease.reset();
     worker.delivery.reset();
   }
   v1::WorkResponse message;

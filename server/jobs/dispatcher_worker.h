@@ -48,10 +48,9 @@ struct Dispatcher::Worker {
   bool gone = false;
   bool idle = true;
   bool will_look = false;  // a look for a job is in the queue and has not begun
-  bool looking = false;    // it has begun, and may find one; for Drain
-  std::int64_t job = 0;                 // 0: none; for Control
-  std::optional<storage::Lease> lease;  // the same, for Control
-  std::shared_ptr<Delivery> delivery;   // the same, for the sweeper
+  bool looking = false;    // it has begun, and may find one; for Drain and Control
+  std::int64_t job = 0;                // 0: none; for Control
+  std::shared_ptr<Delivery> delivery;  // of the same job, for the sweeper
 };
 
 v1::WorkerLease ToProto(const storage::Lease& lease);

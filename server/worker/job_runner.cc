@@ -169,7 +169,7 @@ class Attempt {
       Obey(*message);
       if (released_) return End::kLost;
     }
-    if (cancel_ordered_) return Cancelled();
+    if (CancelOrdered()) return Cancelled();
     if (ProcessorTime_s() - started_s_ > assignment_.budget().processor_s()) {
       outcome_ = OutcomeFor(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellProcessorBudget);
       return End::kFinished;
@@ -194,7 +194,7 @@ class Attempt {
     if (!variables) return Refuse(variables.error());
     Result<bridge::SetupOutcome> made = bridge::MakeSetup(Input(), options, assignment_.budget());
     if (!made) return Refuse(made.error());
-    if (cancel_ordered_) return Cancelled();
+    if (CancelOrdered()) return Cancelled();
     if (!made->setup) {
       ReportFindings(*made);
       return End::kFinished;
@@ -304,9 +304,12 @@ class Attempt {
     } else if (message.has_events_stored() && mine(message.events_stored().lease())) {
       events_stored_ = message.events_stored().count();
     } else if (message.has_control() && mine(message.control().lease())) {
-      if (message.control().kind() == v1::WorkerControl::KIND_CANCEL) cancel_ordered_ = true;
       orders_.push_back(message.control());
     }
+  }
+
+  bool CancelOrdered() const {
+    return std::ranges::count(orders_, v1::WorkerControl::KIND_CANCEL, &v1::WorkerControl::kind) > 0;
   }
 
   void CarryOut(simulation::Simulation& simulation) {
@@ -397,7 +400,6 @@ class Attempt {
   std::vector<v1::WorkerControl> orders_;  // not carried out yet
   bool hold_ordered_ = false;
   bool remote_ = false;
-  bool cancel_ordered_ = false;
   bool released_ = false;
   bool stop_asked_ = false;
 };

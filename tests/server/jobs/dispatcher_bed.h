@@ -17,6 +17,8 @@
 namespace rmlcell::server {
 
 inline constexpr std::string_view kToken = "the token";
+// Long enough for what must not come to come.
+inline constexpr std::chrono::milliseconds kAWhile{120};
 
 // The line to a worker, as seen from its end. Thread-safe.
 class FakeLine final : public WorkerLine {

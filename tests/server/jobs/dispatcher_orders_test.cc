@@ -1,0 +1,194 @@
+#include "server/jobs/dispatcher.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/names.h"
+#include "tests/server/jobs/dispatcher_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using std::chrono::milliseconds;
+using storage::JobState;
+
+TEST(DispatcherCancel, AWaitingJobEndsAtOnce) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  const storage::JobRecord cancelled = Must(bed.dispatcher().Cancel(job));
+  EXPECT_EQ(cancelled.state, JobState::kCancelled);
+  EXPECT_TRUE(bed.Events(job).back().has_ended());
+  EXPECT_EQ(bed.Events(job).back().ended().kind(), v1::Outcome::KIND_CANCELLED);
+  FakeWorker worker(bed.dispatcher(), "w");
+  EXPECT_FALSE(worker.Take(kAWhile));
+  EXPECT_EQ(CodeOf(bed.dispatcher().Cancel(job + 1)), ErrorCode::kCellNotFound);
+  EXPECT_EQ(Must(bed.dispatcher().Cancel(job)).state,
+            JobState::kCancelled);  // twice is not an error
+}
+
+TEST(DispatcherCancel, ARunningJobIsEndedByItsWorker) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(worker.Take());
+  EXPECT_EQ(Must(bed.dispatcher().Cancel(job)).state, JobState::kRunning);
+  const v1::WorkerControl order = worker.Ordered();
+  EXPECT_EQ(order.kind(), v1::WorkerControl::KIND_CANCEL);
+  EXPECT_EQ(order.lease().fence(), worker.assignment().lease().fence());
+  worker.Finish(v1::Outcome::KIND_CANCELLED);
+  EXPECT_EQ(worker.Released(), true);
+  EXPECT_EQ(bed.Job(job).state, JobState::kCancelled);
+}
+
+// The worker died, or gave the job back: a job that nobody wants any more is not begun again.
+TEST(DispatcherCancel, ACancelledJobIsNotBegunAgain) {
+  for (const bool dies : {true, false}) {
+    DispatcherBed bed;
+    const std::int64_t job = bed.server.SubmitCheck();
+    FakeWorker worker(bed.dispatcher(), "w");
+    ASSERT_TRUE(worker.Take());
+    Must(bed.dispatcher().Cancel(job));
+    if (dies) {
+      worker.Leave();
+    } else {
+      worker.HandBack();
+    }
+    FakeWorker next(bed.dispatcher(), "next");
+    ASSERT_TRUE(bed.Becomes(job, JobState::kCancelled)) << dies;
+    EXPECT_EQ(bed.Job(job).outcome->code, ErrorCode::kCellCancelled);
+    EXPECT_EQ(bed.Events(job).back().ended().kind(), v1::Outcome::KIND_CANCELLED);
+    EXPECT_FALSE(next.Take(kAWhile));
+    // The worker is free for another.
+    bed.server.SubmitCheck();
+    EXPECT_TRUE(next.Take());
+  }
+}
+
+TEST(DispatcherControl, OrdersReachTheWorkerThatHasTheJob) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  EXPECT_EQ(CodeOf(bed.dispatcher().Control(job, v1::WorkerControl::KIND_HOLD, 0)),
+            ErrorCode::kCellPrecondition);
+  EXPECT_EQ(CodeOf(bed.dispatcher().Control(job + 1, v1::WorkerControl::KIND_HOLD, 0)),
+            ErrorCode::kCellNotFound);
+  FakeWorker idle(bed.dispatcher(), "idle");
+  FakeWorker worker(bed.dispatcher(), "w");
+  FakeWorker& holder = idle.Take(kAWhile) ? idle : worker;
+  if (&holder == &worker) {
+    ASSERT_TRUE(worker.Take());
+  }
+  for (const auto kind : {v1::WorkerControl::KIND_HOLD, v1::WorkerControl::KIND_RESUME,
+                          v1::WorkerControl::KIND_STOP}) {
+    EXPECT_TRUE(bed.dispatcher().Control(job, kind, 0));
+    EXPECT_EQ(holder.Ordered().kind(), kind);
+  }
+  EXPECT_TRUE(bed.dispatcher().Control(job, v1::WorkerControl::KIND_OVERRIDE, 42.5));
+  EXPECT_EQ(holder.Ordered().value(), 42.5);
+  holder.Finish();
+  EXPECT_EQ(holder.Released(), true);
+  EXPECT_EQ(CodeOf(bed.dispatcher().Control(job, v1::WorkerControl::KIND_HOLD, 0)),
+            ErrorCode::kCellPrecondition);
+}
+
+// Clients see that a job runs before its worker has heard of it.
+TEST(DispatcherControl, AnOrderForAJobOnItsWayComesAfterTheJob) {
+  DispatcherBed bed;
+  std::optional<ErrorCode> refused;
+  bed.hooks.after_acquire = [&](bool found) {
+    if (!found) return;
+    const auto jobs = Must(bed.server.store().ListJobs({}));
+    const Status ordered =
+        bed.dispatcher().Control(jobs.front().id, v1::WorkerControl::KIND_HOLD, 0);
+    if (!ordered) refused = ordered.error().code;
+  };
+  FakeWorker worker(bed.dispatcher(), "w");
+  bed.server.SubmitCheck();
+  ASSERT_TRUE(worker.Take());
+  EXPECT_EQ(refused, std::nullopt);
+  EXPECT_EQ(worker.Ordered().kind(), v1::WorkerControl::KIND_HOLD);
+}
+
+// A worker that gives its job back is about to end: the job goes to another, and no attempt is
+// lost.
+TEST(DispatcherHandBack, GivesTheJobToAnotherAndCountsNoAttempt) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck("STOP\n", 1);
+  FakeWorker ending(bed.dispatcher(), "ending");
+  ASSERT_TRUE(ending.Take());
+  ending.HandBack();
+  EXPECT_EQ(ending.Released(), false);
+  EXPECT_FALSE(ending.Take(kAWhile));
+  EXPECT_EQ(bed.Job(job).state, JobState::kQueued);
+  EXPECT_EQ(bed.Job(job).attempts, 0);
+  FakeWorker other(bed.dispatcher(), "other");
+  ASSERT_TRUE(other.Take());
+  EXPECT_EQ(other.job(), job);
+  ending.Leave();
+  other.Finish();
+  EXPECT_EQ(other.Released(), true);
+  EXPECT_EQ(bed.Job(job).state, JobState::kSucceeded);
+}
+
+TEST(DispatcherDrain, AsksForEverythingBackAndGivesOutNothingMore) {
+  DispatcherBed bed;
+  const std::int64_t job = bed.server.SubmitCheck();
+  FakeWorker busy(bed.dispatcher(), "busy");
+  ASSERT_TRUE(busy.Take());
+  FakeWorker idle(bed.dispatcher(), "idle");
+  std::jthread server([&] { bed.dispatcher().Drain(kPatience); });
+  EXPECT_TRUE(busy.line().Next(v1::WorkResponse::kStop).has_stop());
+  EXPECT_TRUE(idle.line().Next(v1::WorkResponse::kStop).has_stop());
+  busy.HandBack();
+  server.join();
+  EXPECT_EQ(bed.Job(job).state, JobState::kQueued);
+  EXPECT_EQ(bed.Job(job).attempts, 0);
+  bed.server.SubmitCheck();
+  EXPECT_FALSE(idle.Take(kAWhile));
+  FakeWorker late(bed.dispatcher(), "late");
+  EXPECT_TRUE(late.line().Next(v1::WorkResponse::kStop).has_stop());
+  EXPECT_FALSE(late.Take(kAWhile));
+}
+
+TEST(DispatcherDrain, WaitsNoLongerThanItsPatience) {
+  DispatcherBed bed;
+  bed.server.SubmitCheck();
+  FakeWorker stubborn(bed.dispatcher(), "stubborn");
+  ASSERT_TRUE(stubborn.Take());
+  stubborn.Events(1);  // answered when the server is done with giving out the job
+  ASSERT_TRUE(stubborn.line().Next(v1::WorkResponse::kEventsStored).has_events_stored());
+  const auto begin = std::chrono::steady_clock::now();
+  bed.dispatcher().Drain(milliseconds(100));
+  const auto took = std::chrono::steady_clock::now() - begin;
+  EXPECT_GE(took, milliseconds(100));
+  EXPECT_LT(took, std::chrono::seconds(5));
+}
+
+// The server stops while a job is on its way to a worker that is told to stop as well.
+TEST(DispatcherDrain, AJobOnItsWayToAWorkerGoesBack) {
+  DispatcherBed bed;
+  std::atomic<bool> found_one = false;
+  std::atomic<bool> go_on = false;
+  bed.hooks.after_acquire = [&](bool found) {
+    if (!found) return;
+    found_one = true;
+    Eventually([&] { return go_on.load(); });
+  };
+  const std::int64_t job = bed.server.SubmitCheck("STOP\n", 1);
+  FakeWorker worker(bed.dispatcher(), "w");
+  ASSERT_TRUE(Eventually([&] { return found_one.load(); }));
+  std::atomic<bool> drained = false;
+  std::jthread server([&] {
+    bed.dispatcher().Drain(kPatience);
+    drained = true;
+  });
+  EXPECT_TRUE(worker.line().Next(v1::WorkResponse::kStop).has_stop());
+  std::this_thread::sleep_for(milliseconds(30));
+  EXPECT_FALSE(drained);
+  go_on = true;
+  server.join();
+  EXPECT_EQ(bed.Job(job).state, JobState::kQueued);
+  EXPECT_EQ(bed.Job(job).attempts, 0);
+}
+
+}  // namespace
+}  // namespace rmlcell::server
