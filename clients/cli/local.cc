@@ -20,12 +20,6 @@
 namespace rmlcell::cli {
 namespace {
 
-// A wrong use or an unreadable file; the exit code tells which.
-int Refuse(const Error& error) {
-  Complain(bridge::ErrorText(error));
-  return kUsage;
-}
-
 Result<bridge::MachineFile> ReadMachine(const std::string& path) {
   if (path.empty()) return bridge::MachineFile{};
   const Result<std::string> text = bridge::ReadFile(path, kFileBytesMax);

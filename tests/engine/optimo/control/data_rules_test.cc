@@ -13,13 +13,6 @@ using ::testing::ElementsAre;
 
 constexpr double kReal = 1e-4;  // mm; values have seven digits
 
-SimTime At(double seconds) { return FromSeconds(seconds); }
-
-std::string Value(const std::string& text, const std::string& variable, RunOptions options = {}) {
-  options.variables = {variable};
-  return RunText(text, options).variables[variable];
-}
-
 // OPT-1.16, OPT-1.17, OPT-7.63: variables are the machine's, not the program's: 0 when it is new,
 // kept after.
 TEST(DataRules, VariablesOutliveThePrograms) {
