@@ -8,6 +8,7 @@
 
 #include "engine/core/number_text.h"
 #include "engine/optimo/language/program.h"
+#include "engine/optimo/offline/gouge.h"
 #include "engine/optimo/offline/literal_text.h"
 #include "engine/optimo/offline/offset_path.h"
 #include "engine/optimo/offline/program_frame.h"
@@ -56,6 +57,7 @@ class Compensator {
   void CompensateHole(const Instruction& move);
   void AddLeg(const Instruction& i);
   void FinishChain();
+  void LookForGouges(const std::vector<OffsetLeg>& moved);
   void Rewrite(const Instruction& i, const OffsetLeg& moved);
   void RewriteNumber(std::uint32_t node, double value);
   std::optional<double> Literal(std::uint32_t expression) const;
@@ -303,20 +305,35 @@ void Compensator::FinishChain() {
     Report(moved.error().code, *chain_moves_[failed], moved.error().detail, "OPT-8.19");
   } else {
     for (std::size_t k = 0; k < chain_.size(); ++k) Rewrite(*chain_moves_[k], (*moved)[k]);
-    const Crossings crossings = FindCrossings(chain_, *moved, chain_offset_);
-    if (!crossings.complete) {
-      findings_.AddAs(Severity::kAdvice, ErrorCode::kCompGouge, p_.At(*chain_moves_.front()),
-                      "the contour is too long to be looked through for crossings", "OPT-8.19");
-    }
-    for (const Crossing& crossing : crossings.found) {
-      Report(ErrorCode::kCompGouge, *chain_moves_[crossing.leg],
-             crossing.itself ? "the compensated path crosses itself"
-                             : "the compensated path crosses the contour",
-             "OPT-8.19");
-    }
+    LookForGouges(*moved);
   }
   chain_.clear();
   chain_moves_.clear();
+}
+
+void Compensator::LookForGouges(const std::vector<OffsetLeg>& moved) {
+  const GougeSearch search = FindGouges(chain_, moved, chain_offset_);
+  if (search.unchecked_from) {
+    findings_.AddAs(
+        Severity::kAdvice, ErrorCode::kCompGouge, p_.At(*chain_moves_[*search.unchecked_from]),
+        "not checked from step " + std::to_string(chain_moves_[*search.unchecked_from]->step) +
+            " to " + std::to_string(chain_moves_.back()->step) +
+            ": the contour is too long to be looked through",
+        "OPT-8.19");
+  }
+  for (const Gouge& gouge : search.found) {
+    const double radius = std::fabs(chain_offset_);
+    std::string detail = "the move is shorter than the compensation at its corners needs";
+    if (gouge.kind == Gouge::Kind::kTooNear) {
+      detail = gouge.distance > 0.0
+                   ? "the compensated path comes within " + FixedText(gouge.distance, 3) +
+                         " mm of the contour, and the beam has a radius of " +
+                         TrimmedText(radius, kCompensateDecimals) + " mm: it cuts " +
+                         FixedText(radius - gouge.distance, 3) + " mm into the part"
+                   : "the compensated path crosses the contour";
+    }
+    Report(ErrorCode::kCompGouge, *chain_moves_[gouge.leg], std::move(detail), "OPT-8.19");
+  }
 }
 
 void Compensator::Rewrite(const Instruction& i, const OffsetLeg& moved) {
@@ -331,7 +348,8 @@ void Compensator::Rewrite(const Instruction& i, const OffsetLeg& moved) {
 
 void Compensator::RewriteNumber(std::uint32_t node, double value) {
   const NodePlace& place = p_.node_places[node];
-  edits_.push_back({place.offset, static_cast<int>(place.length), FixedText(value, kCompensateDecimals)});
+  edits_.push_back(
+      {place.offset, static_cast<int>(place.length), FixedText(value, kCompensateDecimals)});
 }
 
 }  // namespace

@@ -45,19 +45,4 @@ struct OffsetLeg {
 Result<std::vector<OffsetLeg>> OffsetChain(const std::vector<Leg>& legs, double offset,
                                            std::size_t& failed);
 
-// A crossing of the offset path with itself or with the programmed path.
-struct Crossing {
-  std::size_t leg = 0;  // of the offset path
-  bool itself = false;
-};
-struct Crossings {
-  std::vector<Crossing> found;  // the first one of each leg, ascending
-  bool complete = true;         // false: the contour is too long to look at all of it
-};
-// Empty when the tool direction changes along the chain: then the path does not lie in one surface
-// to look at. Crossings within twice the offset of the pierce point belong to the lead-in and are
-// left out. Legs next to each other meet by design.
-Crossings FindCrossings(const std::vector<Leg>& legs, const std::vector<OffsetLeg>& offset_legs,
-                        double offset);
-
 }  // namespace rmlcell::optimo
