@@ -60,7 +60,6 @@ class Compensator {
   void LookForGouges(const std::vector<OffsetLeg>& moved);
   void Rewrite(const Instruction& i, const OffsetLeg& moved);
   void RewriteNumber(std::uint32_t node, double value);
-  std::optional<double> Literal(std::uint32_t expression) const;
   std::optional<Vec3> Point(std::uint32_t first_expression) const;
 
   bool Wanted() const { return beam_ && amount_ && side_ != Side::kNone; }
@@ -202,16 +201,9 @@ void Compensator::PassWork(const Instruction& i) {
   }
 }
 
-std::optional<double> Compensator::Literal(std::uint32_t expression) const {
-  const ExprRange range = module_.Range(expression);
-  const Node op = module_.nodes[range.first].op;
-  if (range.count != 1 || (op != Node::kInteger && op != Node::kReal)) return std::nullopt;
-  const NodePlace& place = p_.node_places[range.first];
-  return LiteralValue(p_.text.substr(place.offset, place.length));
-}
-
 std::optional<Vec3> Compensator::Point(std::uint32_t first) const {
-  const auto x = Literal(first), y = Literal(first + 1), z = Literal(first + 2);
+  const auto x = PlainNumber(p_, first), y = PlainNumber(p_, first + 1),
+             z = PlainNumber(p_, first + 2);
   if (!x || !y || !z) return std::nullopt;
   return Vec3{*x, *y, *z};
 }
@@ -229,8 +221,8 @@ void Compensator::PassMove(const Instruction& i) {
     at_ = coord_ == CoordType::kAbsol && path_ != PathType::kHole ? Point(i.first_expression)
                                                                   : std::nullopt;
   }
-  head_a_at_ = Literal(i.first_expression + 3);
-  head_b_at_ = Literal(i.first_expression + 4);
+  head_a_at_ = PlainNumber(p_, i.first_expression + 3);
+  head_b_at_ = PlainNumber(p_, i.first_expression + 4);
   if (head_a_at_ && head_b_at_)
     tool_at_ = frame_.DirectionToProgram(ToolDirection(*head_a_at_, *head_b_at_));
 }
@@ -239,7 +231,7 @@ void Compensator::PassMove(const Instruction& i) {
 void Compensator::CompensateHole(const Instruction& move) {
   const Instruction& path = *std::exchange(hole_.instruction, nullptr);
   if (!Wanted()) return;
-  const std::optional<double> radius = Literal(path.first_expression);
+  const std::optional<double> radius = PlainNumber(p_, path.first_expression);
   if (!radius)
     return Report(ErrorCode::kCompVariable, path, "the radius is no plain number", "OPT-8.20");
   const double compensated = *radius + SignedOffset();
@@ -259,7 +251,7 @@ void Compensator::AddLeg(const Instruction& i) {
   const std::uint32_t count = i.Has(kVia) ? 10 : 5;
   bool plain = true;
   for (std::uint32_t v = 0; v < count; ++v) {
-    values[v] = Literal(i.first_expression + v);
+    values[v] = PlainNumber(p_, i.first_expression + v);
     plain = plain && values[v].has_value();
   }
   if (!plain || !at_) {
@@ -339,7 +331,7 @@ void Compensator::LookForGouges(const std::vector<OffsetLeg>& moved) {
 void Compensator::Rewrite(const Instruction& i, const OffsetLeg& moved) {
   const std::uint32_t count = i.Has(kVia) ? 10 : 5;
   for (std::uint32_t v = 0; v < count; ++v) {
-    double value = *Literal(i.first_expression + v);
+    double value = *PlainNumber(p_, i.first_expression + v);
     const Vec3* point = v < 3 ? &moved.to : v >= 5 && v < 8 && moved.via ? &*moved.via : nullptr;
     if (point != nullptr) value = v % 5 == 0 ? point->x : v % 5 == 1 ? point->y : point->z;
     RewriteNumber(module_.FirstNode(i.first_expression + v), value);

@@ -18,12 +18,7 @@ bool ProgramFrame::Set(const ParsedProgram& program, const Instruction& sysdef) 
   std::array<double, 3> angles{};
   bool known = true;
   for (std::uint32_t v = 0; v < 3 && sysdef.value_count == 6; ++v) {
-    const ExprRange range = program.module.Range(sysdef.first_expression + 3 + v);
-    const Node op = program.module.nodes[range.first].op;
-    const bool literal = range.count == 1 && (op == Node::kInteger || op == Node::kReal);
-    const NodePlace& place = program.node_places[range.first];
-    const auto value =
-        literal ? LiteralValue(program.text.substr(place.offset, place.length)) : std::nullopt;
+    const auto value = PlainNumber(program, sysdef.first_expression + 3 + v);
     known = known && value.has_value();
     angles[v] = value.value_or(0.0);
   }

@@ -20,17 +20,6 @@ constexpr int kTransformDecimals = 6;
 constexpr double kStraightDown = 1e-9;  // of sin B: then A is free
 constexpr int kFirstShiftVariable = 86;
 
-std::optional<double> Literal(const ParsedProgram& program, std::uint32_t expression) {
-  const ExprRange range = program.module.Range(expression);
-  const Node op = program.module.nodes[range.first].op;
-  if (range.count != 1 || (op != Node::kInteger && op != Node::kReal) ||
-      program.module.nodes[range.first].name != kNoName) {
-    return std::nullopt;
-  }
-  const NodePlace& place = program.node_places[range.first];
-  return LiteralValue(program.text.substr(place.offset, place.length));
-}
-
 Fix NumberEdit(const ParsedProgram& program, std::uint32_t expression, double value) {
   const NodePlace& place = program.node_places[program.module.FirstNode(expression)];
   return {place.offset, static_cast<int>(place.length), TrimmedText(value, kTransformDecimals)};
@@ -98,7 +87,8 @@ Rewriting Transform(std::string_view text, const RigidMotion& motion) {
     if (i.op != Op::kMove) continue;
     for (std::uint32_t first = 0; first < (i.Has(kVia) ? 10U : 5U); first += 5) {
       std::array<std::optional<double>, 5> v;
-      for (std::uint32_t n = 0; n < 5; ++n) v[n] = Literal(program, i.first_expression + first + n);
+      for (std::uint32_t n = 0; n < 5; ++n)
+        v[n] = PlainNumber(program, i.first_expression + first + n);
       if (std::ranges::any_of(v, [](const auto& value) { return !value.has_value(); })) {
         findings.Add(ErrorCode::kTransformVariable, program.At(i),
                      "a coordinate is no plain number", "OPT-8.77");
@@ -138,7 +128,7 @@ Rewriting Shift(std::string_view text, const std::array<double, 6>& offset) {
     const int at = target.index - kFirstShiftVariable;
     if (target.op != Node::kVariable || target.group != VariableGroup::kVr || at < 0 || at > 5)
       continue;
-    const std::optional<double> value = Literal(program, i.first_expression + 1);
+    const std::optional<double> value = PlainNumber(program, i.first_expression + 1);
     if (!value) continue;
     found = true;
     const double shift = offset[static_cast<std::size_t>(at)];
