@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <utility>
 
 #include "engine/core/number_text.h"
 #include "engine/optimo/language/program.h"
+#include "engine/optimo/offline/cutter_directive.h"
 #include "engine/optimo/offline/gouge.h"
 #include "engine/optimo/offline/literal_text.h"
 #include "engine/optimo/offline/offset_path.h"
@@ -20,8 +20,6 @@ namespace {
 
 constexpr int kCompensateDecimals = 5;  // OPT-8.11
 
-enum class Side { kNone, kLeft, kRight };
-
 class Compensator {
  public:
   Compensator(const ParsedProgram& program, Findings& findings)
@@ -33,11 +31,11 @@ class Compensator {
     for (std::size_t s = 0; s < module_.instructions.size(); ++s) {
       for (; comment < p_.comments.size() && p_.comments[comment].begin < p_.statements[s].begin;
            ++comment) {
-        ReadDirective(p_.comments[comment]);
+        Obey(p_.comments[comment]);
       }
       Pass(module_.instructions[s]);
     }
-    for (; comment < p_.comments.size(); ++comment) ReadDirective(p_.comments[comment]);
+    for (; comment < p_.comments.size(); ++comment) Obey(p_.comments[comment]);
     FinishChain();
     std::ranges::stable_sort(edits_, {}, &Fix::byte_offset);
     return std::move(edits_);
@@ -48,9 +46,9 @@ class Compensator {
     const Instruction* instruction = nullptr;
   };
 
-  void ReadDirective(const Comment& comment);
-  void SetAmount(std::string_view text, double factor, const Place& place);
-  void SetSide(Side side, const Place& place);
+  void Obey(const Comment& comment);
+  void SetAmount(const CutterDirective& directive, const Place& place);
+  void SetSide(CutSide side, const Place& place);
   void Pass(const Instruction& i);
   void PassMove(const Instruction& i);
   void PassWork(const Instruction& i);
@@ -62,9 +60,9 @@ class Compensator {
   void RewriteNumber(std::uint32_t node, double value);
   std::optional<Vec3> Point(std::uint32_t first_expression) const;
 
-  bool Wanted() const { return beam_ && amount_ && side_ != Side::kNone; }
+  bool Wanted() const { return beam_ && amount_ && side_ != CutSide::kNone; }
   bool Active() const { return Wanted() && path_ != PathType::kPtp; }
-  double SignedOffset() const { return side_ == Side::kLeft ? *amount_ : -*amount_; }
+  double SignedOffset() const { return side_ == CutSide::kLeft ? *amount_ : -*amount_; }
   void Report(ErrorCode code, const Instruction& i, std::string detail, std::string_view rule) {
     findings_.Add(code, p_.At(i), std::move(detail), rule);
   }
@@ -74,7 +72,7 @@ class Compensator {
   Findings& findings_;
   std::vector<Fix> edits_;
   std::optional<double> amount_;
-  Side side_ = Side::kNone;
+  CutSide side_ = CutSide::kNone;
   PathType path_ = PathType::kPtp;
   CoordType coord_ = CoordType::kAbsol;
   bool beam_ = false;
@@ -89,40 +87,30 @@ class Compensator {
   double chain_offset_ = 0.0;
 };
 
-// OPT-8.02 to 8.05
-void Compensator::ReadDirective(const Comment& comment) {
-  const std::string_view text = p_.text.substr(comment.begin, comment.end - comment.begin);
-  if (text.size() < 2 || text[1] != '$') return;
-  const Place place{comment.begin, static_cast<int>(text.size()), 0};
-  std::string word;
-  std::size_t at = 2;
-  for (; at < text.size() && std::isalpha(static_cast<unsigned char>(text[at])) != 0; ++at) {
-    word += static_cast<char>(std::tolower(static_cast<unsigned char>(text[at])));
+void Compensator::Obey(const Comment& comment) {
+  const std::optional<CutterDirective> directive = ReadCutterDirective(p_, comment);
+  if (!directive) return;
+  const Place place{comment.begin, static_cast<int>(comment.end - comment.begin), 0};
+  switch (directive->kind) {
+    case CutterDirective::Kind::kSide:
+      return SetSide(directive->side, place);
+    case CutterDirective::Kind::kDiameter:
+    case CutterDirective::Kind::kRadius:
+      return SetAmount(*directive, place);
+    case CutterDirective::Kind::kUnknown:
+      break;
   }
-  std::string_view rest = text.substr(at);
-  while (!rest.empty() && std::isspace(static_cast<unsigned char>(rest.front())) != 0)
-    rest.remove_prefix(1);
-  while (!rest.empty() && std::isspace(static_cast<unsigned char>(rest.back())) != 0)
-    rest.remove_suffix(1);
-  if ((word == "dia" || word == "rad") && !rest.empty() && rest.front() == '=') {
-    return SetAmount(rest.substr(1), word == "dia" ? 0.5 : 1.0, place);
-  }
-  if (word.size() > 1 && (word[0] == 'c' || word[0] == 's')) word.erase(0, 1);  // cleft, sright
-  if (rest.empty() && word == "left") return SetSide(Side::kLeft, place);
-  if (rest.empty() && word == "right") return SetSide(Side::kRight, place);
-  if (rest.empty() && word == "none") return SetSide(Side::kNone, place);
   findings_.Add(ErrorCode::kCompDirective, place, "unknown directive", "OPT-8.05");
 }
 
-void Compensator::SetAmount(std::string_view text, double factor, const Place& place) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  const std::optional<double> value = LiteralValue(text.substr(0, text.find_first_of(" \t")));
-  if (!value || !(*value >= 0.0) || !std::isfinite(*value)) {
+void Compensator::SetAmount(const CutterDirective& directive, const Place& place) {
+  if (!directive.amount || !(*directive.amount >= 0.0) || !std::isfinite(*directive.amount)) {
     findings_.Add(ErrorCode::kCompDirective, place, "the amount is no number of at least 0",
                   "OPT-8.05");
     return;
   }
-  const double amount = *value * factor;
+  const bool diameter = directive.kind == CutterDirective::Kind::kDiameter;
+  const double amount = *directive.amount * (diameter ? 0.5 : 1.0);
   if (beam_ && amount_ != amount) {
     findings_.Add(ErrorCode::kCompChangeActive, place, "the amount changes while the beam is on",
                   "OPT-8.09");
@@ -130,7 +118,7 @@ void Compensator::SetAmount(std::string_view text, double factor, const Place& p
   amount_ = amount;
 }
 
-void Compensator::SetSide(Side side, const Place& place) {
+void Compensator::SetSide(CutSide side, const Place& place) {
   if (beam_ && side_ != side) {
     findings_.Add(ErrorCode::kCompChangeActive, place, "the side changes while the beam is on",
                   "OPT-8.09");
@@ -195,7 +183,7 @@ void Compensator::PassWork(const Instruction& i) {
   }
   if (i.numbers[0] == 2) return;
   beam_ = true;  // a second ON on the way leaves the corner a corner
-  if (side_ != Side::kNone && !amount_) {
+  if (side_ != CutSide::kNone && !amount_) {
     Report(ErrorCode::kCompIncomplete, i, "a side is set, but no amount; nothing is compensated",
            "OPT-8.10");
   }

@@ -1,13 +1,13 @@
 #include "engine/optimo/offline/convert.h"
 
 #include <algorithm>
-#include <cctype>
 #include <utility>
 
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
 #include "engine/optimo/language/program.h"
 #include "engine/optimo/language/units_of_variables.h"
+#include "engine/optimo/offline/cutter_directive.h"
 #include "engine/optimo/offline/literal_text.h"
 #include "engine/optimo/offline/text_edits.h"
 
@@ -275,21 +275,11 @@ void Converter::ConvertNumber(const Part& part, Unit unit) {
 // ";$DIA=0.020": the amount is a length. OPT-8.39
 void Converter::ConvertDirectives() {
   for (const Comment& comment : p_.comments) {
-    const std::string_view text = p_.text.substr(comment.begin, comment.end - comment.begin);
-    if (text.size() < 6 || text[1] != '$') continue;
-    const auto lower = [&](std::size_t at) {
-      return std::tolower(static_cast<unsigned char>(text[at]));
-    };
-    const bool dia = lower(2) == 'd' && lower(3) == 'i' && lower(4) == 'a';
-    const bool rad = lower(2) == 'r' && lower(3) == 'a' && lower(4) == 'd';
-    std::size_t at = std::min(text.find_first_not_of(" \t", 5), text.size());
-    if (!(dia || rad) || at == text.size() || text[at] != '=') continue;
-    at = std::min(text.find_first_not_of(" \t", at + 1), text.size());
-    const std::size_t end = std::min(text.find_first_of(" \t\r", at), text.size());
-    const std::optional<double> value = LiteralValue(text.substr(at, end - at));
-    if (!value) continue;
-    edits_.push_back({static_cast<std::int64_t>(comment.begin + at), static_cast<int>(end - at),
-                      TrimmedText(Converted(*value, Unit::kLinear), kConvertDecimals)});
+    const std::optional<CutterDirective> directive = ReadCutterDirective(p_, comment);
+    if (!directive || !directive->amount) continue;
+    edits_.push_back({directive->amount_begin,
+                      static_cast<int>(directive->amount_end - directive->amount_begin),
+                      TrimmedText(Converted(*directive->amount, Unit::kLinear), kConvertDecimals)});
   }
 }
 

@@ -215,6 +215,21 @@ TEST(Compensate, DirectivesAreComments) {
   }
 }
 
+// OPT-8.02: directives are comment lines; behind an instruction ";$" begins a comment.
+TEST(Compensate, ACommentBehindAnInstructionIsNoDirective) {
+  EXPECT_EQ(Contour(";$rad=1\n;$left\nSPEED 5 ;$right\nSPEED 5 ;$dia=9\nSPEED 5 ;$middle\n",
+                    "MOVE (10,0,0,0,0) ;$right\n"),
+            "MOVE (10.00000,1.00000,0.00000,0.00000,0.00000) ;$right\n");
+}
+
+// OPT-8.05: the amount is one number.
+TEST(Compensate, AnAmountWithSomethingBehindItStops) {
+  for (const std::string amount : {"1 mm", "1 2", "1mm", "", "1;"}) {
+    EXPECT_EQ(FindingsOf(Compensate(";$dia=" + amount + "\n")), (std::vector<int>{7802})) << amount;
+  }
+  EXPECT_TRUE(Compensate(";$dia = +1.5 \t\n").ok);
+}
+
 // OPT-8.24, OPT-8.25
 TEST(Compensate, TheHeaderIsTheFirstLine) {
   EXPECT_EQ(Compensate("; old\n", FileNames{"a.S", "a.CMP", "Tue Apr 20 13:37:33 1993"}).text,

@@ -94,8 +94,11 @@ TEST(Convert, ParametersHaveTheirUnits) {
 
 // OPT-8.39, OPT-8.01
 TEST(Convert, DirectivesHaveALength) {
-  EXPECT_EQ(Metric("15 ;$DIA=0.020\n;$rad = 0.01 beam\n;$left\n;$dia=x\n"),
-            "15 ;$DIA=0.508\n;$rad = 0.254 beam\n;$left\n;$dia=x\n");
+  EXPECT_EQ(Metric("15 ;$DIA=0.020\n;$rad = 0.01 \n;$left\n;$dia=x\n"),
+            "15 ;$DIA=0.508\n;$rad = 0.254 \n;$left\n;$dia=x\n");
+  // OPT-8.26, OPT-8.02, OPT-8.05: comments stay, and so does what RMLCOMP would not read.
+  for (const std::string text : {"SPEED 5 ;$dia=1\n", ";$dia=1 mm\n"})
+    EXPECT_EQ(Metric(text), text);
 }
 
 // OPT-8.41
