@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/core/number_text.h"
+#include "engine/motion/path.h"
 #include "engine/optimo/language/program.h"
 #include "engine/optimo/offline/cutter_directive.h"
 #include "engine/optimo/offline/gouge.h"
@@ -42,8 +43,9 @@ class Compensator {
   }
 
  private:
-  struct HolePath {  // the PATH HOLE in force, until its first MOVE
-    const Instruction* instruction = nullptr;
+  struct HolePath {                            // the PATH HOLE in force
+    const Instruction* instruction = nullptr;  // until its first MOVE
+    std::optional<double> radius{};            // mm, as it is cut
   };
 
   void Obey(const Comment& comment);
@@ -52,6 +54,9 @@ class Compensator {
   void Pass(const Instruction& i);
   void PassMove(const Instruction& i);
   void PassWork(const Instruction& i);
+  void PassSysdef(const Instruction& i);
+  void TurnTool();
+  std::optional<Vec3> EndOf(const Instruction& i) const;
   void CompensateHole(const Instruction& move);
   void AddLeg(const Instruction& i);
   void FinishChain();
@@ -130,27 +135,21 @@ void Compensator::Pass(const Instruction& i) {
   switch (i.op) {
     case Op::kPath:
       path_ = static_cast<PathType>(i.choice);
-      hole_.instruction = path_ == PathType::kHole ? &i : nullptr;
+      hole_ = {};
+      if (path_ == PathType::kHole) hole_ = {&i, PlainNumber(p_, i.first_expression)};
       if (path_ == PathType::kPtp || path_ == PathType::kHole) FinishChain();
       break;
     case Op::kCoord:
-      if (coord_ != static_cast<CoordType>(i.choice)) {
-        FinishChain();
-        at_.reset();
-      }
+      if (coord_ != static_cast<CoordType>(i.choice)) FinishChain();
       coord_ = static_cast<CoordType>(i.choice);
       break;
     case Op::kSysdef:
-    case Op::kTcp: {
+      PassSysdef(i);
+      break;
+    case Op::kTcp:
       FinishChain();
       at_.reset();
-      if (i.op == Op::kTcp) break;
-      if (!frame_.Set(p_, i)) {
-        Report(ErrorCode::kCompSysdef, i, "a rotation of SYSDEF is no number; it is taken as 0",
-               "OPT-8.23");
-      }
       break;
-    }
     case Op::kWork:
       PassWork(i);
       break;
@@ -173,6 +172,23 @@ void Compensator::Pass(const Instruction& i) {
     default:
       break;
   }
+}
+
+// The head stays where it is: its point gets other coordinates, and its direction, too.
+void Compensator::PassSysdef(const Instruction& i) {
+  FinishChain();
+  const std::optional<Vec3> in_machine = at_ ? frame_.PointToMachine(*at_) : std::nullopt;
+  if (!frame_.Set(p_, i)) {
+    Report(ErrorCode::kCompSysdef, i, "a rotation of SYSDEF is no number; it is taken as 0",
+           "OPT-8.23");
+  }
+  at_ = in_machine ? frame_.PointToProgram(*in_machine) : std::nullopt;
+  TurnTool();
+}
+
+void Compensator::TurnTool() {
+  if (head_a_at_ && head_b_at_)
+    tool_at_ = frame_.DirectionToProgram(ToolDirection(*head_a_at_, *head_b_at_));
 }
 
 void Compensator::PassWork(const Instruction& i) {
@@ -198,6 +214,7 @@ std::optional<Vec3> Compensator::Point(std::uint32_t first) const {
 
 void Compensator::PassMove(const Instruction& i) {
   if (path_ == PathType::kHole && hole_.instruction != nullptr) CompensateHole(i);
+  if (path_ == PathType::kHole) hole_.instruction = nullptr;
   if (Active() && coord_ == CoordType::kRobot) {
     return Report(ErrorCode::kCompRobot, i, "a MOVE in COORD ROBOT cannot be compensated",
                   "OPT-8.21");
@@ -206,25 +223,34 @@ void Compensator::PassMove(const Instruction& i) {
     AddLeg(i);
   } else {
     FinishChain();
-    at_ = coord_ == CoordType::kAbsol && path_ != PathType::kHole ? Point(i.first_expression)
-                                                                  : std::nullopt;
+    at_ = EndOf(i);
   }
   head_a_at_ = PlainNumber(p_, i.first_expression + 3);
   head_b_at_ = PlainNumber(p_, i.first_expression + 4);
-  if (head_a_at_ && head_b_at_)
-    tool_at_ = frame_.DirectionToProgram(ToolDirection(*head_a_at_, *head_b_at_));
+  TurnTool();
+}
+
+// Where the tip is after a move, as programmed, in the coordinates of the program.
+std::optional<Vec3> Compensator::EndOf(const Instruction& i) const {
+  if (coord_ == CoordType::kRobot) return std::nullopt;
+  const std::optional<Vec3> target = Point(i.first_expression);
+  if (path_ != PathType::kHole || !i.Has(kVia)) return target;
+  const std::optional<Vec3> beside = Point(i.first_expression + 5);
+  if (!target || !beside || !at_ || !hole_.radius) return std::nullopt;
+  return HoleEnd(*at_, *target, *beside, *hole_.radius);
 }
 
 // Left enlarges a hole although the motion runs counter-clockwise. OPT-8.12 to 8.14, OPT-B.91
 void Compensator::CompensateHole(const Instruction& move) {
-  const Instruction& path = *std::exchange(hole_.instruction, nullptr);
+  const Instruction& path = *hole_.instruction;
   if (!Wanted()) return;
-  const std::optional<double> radius = PlainNumber(p_, path.first_expression);
+  const std::optional<double> radius = hole_.radius;
   if (!radius)
     return Report(ErrorCode::kCompVariable, path, "the radius is no plain number", "OPT-8.20");
   const double compensated = *radius + SignedOffset();
   if (compensated <= 0.0)
     return Report(ErrorCode::kCompHole, path, "the hole is not larger than the beam", "OPT-8.14");
+  hole_.radius = compensated;
   RewriteNumber(module_.FirstNode(path.first_expression), compensated);
   if (!std::exchange(hole_advice_given_, true)) {
     findings_.AddAs(
@@ -258,6 +284,8 @@ void Compensator::AddLeg(const Instruction& i) {
   leg.tool_via = leg.tool_to;
   if (path_ == PathType::kCir && i.Has(kVia)) {
     leg.via = Vec3{*values[5], *values[6], *values[7]};
+    const auto arc = motion::PathPiece::ArcThrough({leg.from}, *leg.via, {leg.to});
+    if (!arc) Report(arc.error().code, i, arc.error().detail, "OPT-E.7305");
   }
   Prepare(leg);
   if (leg.via) {

@@ -35,6 +35,11 @@ double ShareAtVia(const Leg& leg);
 // OPT-8.15
 Vec3 LeftNormal(const Vec3& tool, const Vec3& tangent);
 
+// Where a hole ends: the point of its circle nearest to `from`, for the axis from `centre` to
+// `beside` (OPT-2.23, OPT-B.10). Nothing without an axis, or on it.
+std::optional<Vec3> HoleEnd(const Vec3& from, const Vec3& centre, const Vec3& beside,
+                            double radius);
+
 struct OffsetLeg {
   Vec3 to;
   std::optional<Vec3> via;
