@@ -79,7 +79,10 @@ Rewriting Transform(std::string_view text, const RigidMotion& motion) {
   const ParsedProgram program = Parse(text, findings);
   const Module& module = program.module;
   ProgramFrame frame;
+  const ProgramFrame machine;
+  bool robot = false;
   for (const Instruction& i : module.instructions) {
+    if (i.op == Op::kCoord) robot = i.choice == static_cast<std::uint8_t>(CoordType::kRobot);
     if (i.op == Op::kSysdef && !frame.Set(program, i)) {
       findings.Add(ErrorCode::kTransformVariable, program.At(i),
                    "a rotation of SYSDEF is no plain number", "OPT-8.77");
@@ -95,15 +98,15 @@ Rewriting Transform(std::string_view text, const RigidMotion& motion) {
         break;
       }
       const motion::Vec3 point = motion.Move({*v[0], *v[1], *v[2]});
-      // The head refers to the machine, the motion to the program's coordinates: turn there and
-      // back.
+      // The head refers to the machine, the motion to the coordinates of the MOVE: turn there and
+      // back. SYSDEF does not act on ROBOT (OPT-7.33).
+      const ProgramFrame& in = robot ? machine : frame;
       RigidMotion in_machine;
       for (std::size_t c = 0; c < 3; ++c) {
         const motion::Vec3 axis = c == 0   ? motion::Vec3{1, 0, 0}
                                   : c == 1 ? motion::Vec3{0, 1, 0}
                                            : motion::Vec3{0, 0, 1};
-        in_machine.columns[c] =
-            frame.DirectionToMachine(motion.Turn(frame.DirectionToProgram(axis)));
+        in_machine.columns[c] = in.DirectionToMachine(motion.Turn(in.DirectionToProgram(axis)));
       }
       const HeadAngles head = TurnHead({*v[3], *v[4]}, in_machine);
       const std::array<double, 5> values = {point.x, point.y, point.z, head.a, head.b};

@@ -56,6 +56,18 @@ TEST(Transform, TheToolTurnsWithThePart) {
   }
 }
 
+// OPT-7.33, OPT-7.34: a system that is turned about Z does not act on ROBOT moves: a turn by 0.5
+// about X tilts the head about the machine's X, to (A,B) = (0,0.5). In ABSOL it is about the
+// system's X, which is the machine's Y: u becomes (sin 0.5, 0, cos 0.5), A = pi/2.
+TEST(Transform, SysdefActsOnAbsolMovesOnly) {
+  const std::string head = "SYSDEF (0,0,0,1.5707963268,0,0)\nCOORD ";
+  const RigidMotion tilt = RigidMotion::Of({}, 0, 0, 0.5);
+  EXPECT_EQ(Transform(head + "ROBOT\nMOVE (100,0,0,1,0)\n", tilt).text,
+            head + "ROBOT\nMOVE (100.0,0.0,0.0,0.0,0.5)\n");
+  EXPECT_EQ(Transform(head + "ABSOL\nMOVE (100,0,0,1,0)\n", tilt).text,
+            head + "ABSOL\nMOVE (100.0,0.0,0.0,1.570796,0.5)\n");
+}
+
 // OPT-8.77, OPT-E.7851
 TEST(Transform, NeedsPlainNumbers) {
   const Rewriting refused = Transform("MOVE (VR[1],0,0,0,0)\n", {});
