@@ -1,6 +1,10 @@
 #include "clients/cli/office.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "clients/cli/findings_text.h"
 #include "clients/cli/program_files.h"
@@ -212,14 +216,25 @@ int Rewrite(const std::string& file, const std::string& output,
 
 }  // namespace
 
-int Transform(const std::string& file, const std::array<double, 3>& move, const std::array<double, 3>& turn,
-              const std::string& output) {
+int Transform(const TransformOptions& options) {
+  for (const auto& [name, values] :
+       {std::pair("--move", &options.move), {"--turn", &options.turn}, {"--shift", &options.shift}}) {
+    if (std::ranges::all_of(*values, [](double value) { return std::isfinite(value); })) continue;
+    return Refuse({ErrorCode::kCellUsage, std::string(name) + ": give finite numbers", {}});
+  }
+  if (!options.shift.empty() && !(options.move.empty() && options.turn.empty())) {
+    return Refuse({ErrorCode::kCellUsage, "--shift changes VR[86] to VR[91], --move and --turn the moves: give one or the other", {}});
+  }
+  if (!options.shift.empty()) {
+    std::array<double, 6> by{};
+    std::ranges::copy(options.shift, by.begin());
+    return Rewrite(options.file, options.output, [&](const std::string& text) { return optimo::Shift(text, by); });
+  }
+  std::array<double, 3> move{}, turn{};
+  std::ranges::copy(options.move, move.begin());
+  std::ranges::copy(options.turn, turn.begin());
   const auto motion = optimo::RigidMotion::Of({move[0], move[1], move[2]}, turn[0], turn[1], turn[2]);
-  return Rewrite(file, output, [&](const std::string& text) { return optimo::Transform(text, motion); });
-}
-
-int Shift(const std::string& file, const std::array<double, 6>& by, const std::string& output) {
-  return Rewrite(file, output, [&](const std::string& text) { return optimo::Shift(text, by); });
+  return Rewrite(options.file, options.output, [&](const std::string& text) { return optimo::Transform(text, motion); });
 }
 
 int List(const std::string& file, const std::string& output) {

@@ -28,10 +28,15 @@ int Convert(const std::vector<std::string>& arguments);
 
 int Compensate(const std::string& file, const std::string& output);
 
-// X, Y, Z in mm; turns about Z, Y, X in rad.
-int Transform(const std::string& file, const std::array<double, 3>& move, const std::array<double, 3>& turn,
-              const std::string& output);
-int Shift(const std::string& file, const std::array<double, 6>& by, const std::string& output);
+// Numbers as they were given; a vector is empty when its option was not. `shift` goes alone.
+struct TransformOptions {
+  std::string file;
+  std::string output;
+  std::vector<double> move;   // X, Y, Z in mm
+  std::vector<double> turn;   // about Z, Y, X in rad
+  std::vector<double> shift;  // X, Y, Z, rz, ry, rx: added to VR[86] to VR[91]
+};
+int Transform(const TransformOptions& options);
 
 int List(const std::string& file, const std::string& output);
 

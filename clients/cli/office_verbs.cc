@@ -94,30 +94,22 @@ void AddOfficeVerbs(CLI::App& app, int& exit_code) {
         ->callback([arguments, &exit_code] { exit_code = Compensate(arguments->file, arguments->output); });
   }
   {
-    struct Arguments : FileArguments {
-      std::vector<double> move{0.0, 0.0, 0.0}, turn{0.0, 0.0, 0.0}, shift;
-    };
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<FileArguments>();
+    auto options = std::make_shared<TransformOptions>();
     CLI::App* verb = FileVerb(app, "transform", "Move and turn a program, head angles included",
                               "  rmlcell transform part.S --move 100,0,0 -o moved.S\n"
                               "  rmlcell transform part.S --turn 1.570796,0,0 -o turned.S\n"
                               "  rmlcell transform part.S --shift 1,0,0,0,0,0     adds to VR[86] to VR[91]",
                               arguments, "file of the result; default: standard output");
-    verb->add_option("--move", arguments->move, "X,Y,Z in mm")->delimiter(',')->expected(3);
-    verb->add_option("--turn", arguments->turn, "about Z,Y,X in rad")->delimiter(',')->expected(3);
-    verb->add_option("--shift", arguments->shift, "X,Y,Z,rz,ry,rx: add to VR[86] to VR[91] instead")
+    verb->add_option("--move", options->move, "X,Y,Z in mm")->delimiter(',')->expected(3);
+    verb->add_option("--turn", options->turn, "about Z,Y,X in rad")->delimiter(',')->expected(3);
+    verb->add_option("--shift", options->shift, "X,Y,Z,rz,ry,rx: add to VR[86] to VR[91] instead")
         ->delimiter(',')
         ->expected(6);
-    verb->callback([arguments, &exit_code] {
-      const auto& m = arguments->move;
-      const auto& t = arguments->turn;
-      if (arguments->shift.empty()) {
-        exit_code = Transform(arguments->file, {m[0], m[1], m[2]}, {t[0], t[1], t[2]}, arguments->output);
-        return;
-      }
-      std::array<double, 6> by{};
-      std::copy_n(arguments->shift.begin(), by.size(), by.begin());
-      exit_code = Shift(arguments->file, by, arguments->output);
+    verb->callback([arguments, options, &exit_code] {
+      options->file = arguments->file;
+      options->output = arguments->output;
+      exit_code = Transform(*options);
     });
   }
   {

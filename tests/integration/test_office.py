@@ -159,6 +159,16 @@ class CommandLine(unittest.TestCase):
         self.assertAlmostEqual(turned[0], -900.0, places=3)
         self.assertAlmostEqual(turned[1], 1000.0, places=3)
 
+    # OPT-8.74, OPT-8.76: what is no number is refused, and so are two ways of moving at once.
+    def test_transform_refuses_what_makes_no_sense(self):
+        source = self.file("part.S", "VR[86] = 1.\n" + LINE)
+        for words in [("--move", "nan,0,0"), ("--move", "0,inf,0"), ("--turn", "nan,0,0"), ("--shift", "nan,0,0,0,0,0"),
+                      ("--shift", "0,0,-inf,0,0,0"), ("--shift", "1,0,0,0,0,0", "--move", "1,2,3"),
+                      ("--shift", "1,0,0,0,0,0", "--turn", "0,0,1")]:
+            self.assertEqual(run("transform", source, *words, "-o", self.folder / "out.S", code=2), "")
+        self.assertFalse((self.folder / "out.S").exists())
+        self.assertIn("VR[86] = 2.0", run("transform", source, "--shift", "1,0,0,0,0,0"))
+
     # OPT-8.73
     def test_list_counts_lines_and_steps(self):
         lines = run("list", self.file("part.S", LINE)).splitlines()

@@ -7,6 +7,7 @@
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
 #include "engine/optimo/language/checker.h"
+#include "engine/optimo/language/evaluate.h"
 #include "engine/optimo/language/program.h"
 #include "engine/optimo/offline/literal_text.h"
 #include "engine/optimo/offline/offset_path.h"
@@ -20,10 +21,23 @@ constexpr int kTransformDecimals = 6;
 constexpr double kStraightDown = 1e-9;  // of sin B: then A is free
 constexpr int kFirstShiftVariable = 86;
 
-Fix NumberEdit(const ParsedProgram& program, std::uint32_t expression, double value) {
-  const NodePlace& place = program.node_places[program.module.FirstNode(expression)];
-  return {place.offset, static_cast<int>(place.length), TrimmedText(value, kTransformDecimals)};
-}
+// New numbers in place of plain ones.
+struct NumberEdits {
+  const ParsedProgram& program;
+  Findings& findings;
+  std::vector<Fix> edits{};
+
+  void Put(const Instruction& i, std::uint32_t expression, double value) {
+    if (!(std::fabs(value) < kRealMax)) {  // NaN, too
+      findings.Add(ErrorCode::kLiteralRange, program.At(i),
+                   "a number would become larger than the control can hold", "OPT-7.62");
+      return;
+    }
+    const NodePlace& place = program.node_places[program.module.FirstNode(expression)];
+    edits.push_back(
+        {place.offset, static_cast<int>(place.length), TrimmedText(value, kTransformDecimals)});
+  }
+};
 
 Rewriting Finish(std::string_view text, std::vector<Fix> edits, Findings& findings) {
   Rewriting result;
@@ -75,8 +89,8 @@ HeadAngles TurnHead(const HeadAngles& old, const RigidMotion& motion) {
 
 Rewriting Transform(std::string_view text, const RigidMotion& motion) {
   Findings findings;
-  std::vector<Fix> edits;
   const ParsedProgram program = Parse(text, findings);
+  NumberEdits edits{program, findings};
   const Module& module = program.module;
   ProgramFrame frame;
   const ProgramFrame machine;
@@ -111,17 +125,17 @@ Rewriting Transform(std::string_view text, const RigidMotion& motion) {
       const HeadAngles head = TurnHead({*v[3], *v[4]}, in_machine);
       const std::array<double, 5> values = {point.x, point.y, point.z, head.a, head.b};
       for (std::uint32_t n = 0; n < 5; ++n) {
-        edits.push_back(NumberEdit(program, i.first_expression + first + n, values[n]));
+        edits.Put(i, i.first_expression + first + n, values[n]);
       }
     }
   }
-  return Finish(text, std::move(edits), findings);
+  return Finish(text, std::move(edits.edits), findings);
 }
 
 Rewriting Shift(std::string_view text, const std::array<double, 6>& offset) {
   Findings findings;
-  std::vector<Fix> edits;
   ParsedProgram program = Parse(text, findings);
+  NumberEdits edits{program, findings};
   Findings names;  // whether the rest of the program is right does not matter here
   Check(program, names);
   bool found = false;
@@ -135,13 +149,13 @@ Rewriting Shift(std::string_view text, const std::array<double, 6>& offset) {
     if (!value) continue;
     found = true;
     const double shift = offset[static_cast<std::size_t>(at)];
-    if (shift != 0.0) edits.push_back(NumberEdit(program, i.first_expression + 1, *value + shift));
+    if (shift != 0.0) edits.Put(i, i.first_expression + 1, *value + shift);
   }
   if (!found && findings.error_count() == 0) {
     findings.Add(ErrorCode::kShiftNothing, {}, "no plain number is assigned to VR[86] to VR[91]",
                  "OPT-8.75");
   }
-  return Finish(text, std::move(edits), findings);
+  return Finish(text, std::move(edits.edits), findings);
 }
 
 }  // namespace rmlcell::optimo

@@ -41,11 +41,12 @@ struct Rewriting {
 
 // TRANSFOR: every MOVE and /VIA, head angles included; numbers get up to six decimals, the rest of
 // the text stays (OPT-8.76, OPT-8.77). Errors: 7851 for a coordinate, or a rotation of SYSDEF, that
-// is no plain number; those of the parser.
+// is no plain number; 7004 where a number would leave the range of REAL, as with a motion that is
+// not finite; those of the parser.
 Rewriting Transform(std::string_view text, const RigidMotion& motion);
 
 // RMLSHIFT: adds to the plain numbers that the program assigns to VR[86] to VR[91]: X, Y, Z, rz,
-// ry, rx (OPT-8.74, OPT-B.81). Errors: 7852 when there is none.
+// ry, rx (OPT-8.74, OPT-B.81). Errors: 7852 when there is none; 7004 as above.
 Rewriting Shift(std::string_view text, const std::array<double, 6>& offset);
 
 }  // namespace rmlcell::optimo

@@ -76,6 +76,19 @@ TEST(Transform, NeedsPlainNumbers) {
   EXPECT_EQ(FirstFinding(refused), 7851);
 }
 
+// OPT-7.62, OPT-E.7004: what the control cannot hold is not written.
+TEST(Transform, NumbersThatAreNoneAreNotWritten) {
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL, 1e19}) {
+    const Rewriting moved = Transform("MOVE (1,2,3,0,0)\n", RigidMotion::Of({bad, 0, 0}, 0, 0, 0));
+    EXPECT_FALSE(moved.ok) << bad;
+    EXPECT_EQ(FirstFinding(moved), 7004) << bad;
+    EXPECT_EQ(FirstFinding(Shift("VR[86] = 1.\n", {bad, 0, 0, 0, 0, 0})), 7004) << bad;
+  }
+  EXPECT_EQ(FirstFinding(Transform("MOVE (1,2,3,0,0)\n", RigidMotion::Of({}, 0, std::nan(""), 0))),
+            7004);
+  EXPECT_TRUE(Shift("VR[86] = 1.\n", {9e18, 0, 0, 0, 0, 0}).ok);
+}
+
 // OPT-8.76: there and back is the same within the rounding of six decimals.
 TEST(Transform, TheInverseBringsItBack) {
   const std::string text =
