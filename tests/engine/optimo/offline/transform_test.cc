@@ -207,6 +207,27 @@ TEST(Transform, RandomProgramsComeBackFromTheInverse) {
   }
 }
 
+// OPT-8.77: near straight down six decimals of B hold A to 1e-6 / sin B only; the tool points where
+// it did all the same. About Z alone A comes back whatever B is.
+TEST(Transform, NearStraightDownTheDirectionComesBack) {
+  for (const std::string b : {"0.1", "0.01", "0.001", "0.000016"}) {
+    const std::string text = "MOVE (100.0,50.0,-20.0,0.7," + b + ")\n";
+    for (const bool about_z : {false, true}) {
+      const RigidMotion motion = about_z ? RigidMotion::Of({1, 2, 3}, 0.5, 0, 0)
+                                         : RigidMotion::Of({1, 2, 3}, 0.5, 0.4, 0.3);
+      const Rewriting back = Transform(Transform(text, motion).text, motion.Inverse());
+      ASSERT_TRUE(back.ok);
+      const std::array<double, 5> pose = NumbersOf(back.text).poses[0];
+      const double old_b = std::stod(b);
+      EXPECT_NEAR(motion::Distance(ToolDirection(pose[3], pose[4]), ToolDirection(0.7, old_b)), 0.0,
+                  2e-6);
+      EXPECT_NEAR(pose[3], 0.7, about_z ? kOneDecimal : 1.5e-6 / std::sin(old_b) + kOneDecimal)
+          << b;
+      EXPECT_NEAR(pose[0], 100.0, kOneDecimal);
+    }
+  }
+}
+
 // OPT-8.74, OPT-B.81
 TEST(Shift, AddsToTheSystemVariables) {
   EXPECT_EQ(Shift("VR[86] = 0. ; X\nVR[87] = 1\nVR[85] = 1\nCALL 45\n", {30, 0.5, 0, 0, 0, 0}).text,
