@@ -181,7 +181,10 @@ int Convert(const std::vector<std::string>& arguments) {
   }
   const optimo::ConvertRequest& wanted = **request;
   const Result<std::string> text = bridge::ReadFile(wanted.input, kFileBytesMax);
-  if (!text) return Refuse({ErrorCode::kConvertInput, wanted.input + ": " + text.error().detail, {}});
+  if (!text) return Refuse({ErrorCode::kConvertInput, text.error().detail, {}});
+  if (optimo::FormOfFile(wanted.input, *text) == optimo::FileForm::kObject) {
+    return Refuse({ErrorCode::kCellBadText, wanted.input + " is an object; rmlcell decompile gives its source", {}});
+  }
   const optimo::Conversion converted =
       optimo::Convert(*text, wanted.direction, Names(wanted.input, wanted.output));
   ComplainOf(converted.diagnostics, 0, *text);

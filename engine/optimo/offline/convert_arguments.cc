@@ -67,6 +67,10 @@ Result<std::optional<ConvertRequest>> ReadConvertArguments(std::span<const std::
   std::optional<Direction> by_name;
   if (extension == ".s") by_name = Direction::kToInch;
   if (extension == ".si") by_name = Direction::kToMetric;
+  if (extension == ".cmp" && wanted == Direction::kToMetric) {
+    return Refuse(ErrorCode::kConvertConflict,
+                  "Conflict With Filenames and Switches: " + names[0] + " is metric");
+  }
   if (wanted && by_name && *wanted != *by_name) {
     return Refuse(ErrorCode::kConvertConflict, "Conflict With Filenames and Switches: " + names[0]);
   }
@@ -90,6 +94,10 @@ Result<std::optional<ConvertRequest>> ReadConvertArguments(std::span<const std::
     if (output_extension == (inch ? ".s" : ".si")) {
       return Refuse(ErrorCode::kConvertConflict,
                     "Conflict With Filenames and Switches: " + names[0] + " and " + names[1]);
+    }
+    if (inch && output_extension == ".cmp") {  // OPT-8.72
+      return Refuse(ErrorCode::kConvertConflict,
+                    "Conflict With Filenames and Switches: " + names[1] + " would not be metric");
     }
   }
   return std::optional<ConvertRequest>(std::move(request));
