@@ -141,8 +141,9 @@ class MachineFamily {
   // Errors: ObjectCorrupt (7034).
   virtual Result<std::string> Decompile(std::string_view object) const { return std::string(object); }
 
-  // Whether bytes are an executable of this family. Errors: ObjectCorrupt (7034).
-  virtual Status CheckExecutable(std::string_view /*executable*/) const { return {}; }
+  // Whether bytes are an executable of this family, made of the program of this slot (1..99).
+  // Errors: ObjectCorrupt (7034), CellInvalidArgument for that of another program.
+  virtual Status CheckExecutable(std::string_view /*executable*/, int /*slot*/) const { return {}; }
 
   // Which executables of a program memory are stale, by slot. `deleted` as in RunSetup.
   virtual std::vector<StaleExecutable> FindStaleExecutables(

@@ -166,7 +166,7 @@ ProgramResult<v1::Program> ProgramShelf::StoreExecutable(const Put& put, const s
   if (*expected == 0 && (*found)->executable_bytes >= 0) {
     return Error{ErrorCode::kCellAlreadyExists, "an executable of " + NameOfProgram(machine_id, slot), {}};
   }
-  if (const Status good = family->CheckExecutable(put.bytes); !good) return good.error();
+  if (const Status good = family->CheckExecutable(put.bytes, slot); !good) return good.error();
   if (!put.validate_only) {
     const auto kept = store_.PutExecutable(machine_id, slot, (*found)->revision, put.bytes);
     if (!kept) return kept.error();

@@ -28,7 +28,8 @@ class ProgramShelf {
     bool validate_only = false;
   };
   // All or nothing. Errors: CellEmptyProgram, CellTooLarge, ProgramNumber (7101), the first compile error,
-  // CellEtagMismatch, CellUnknownMachine, ProgramMissing for an executable without its object (OPT-1.15).
+  // CellEtagMismatch, CellUnknownMachine, ProgramMissing for an executable without its object and
+  // CellInvalidArgument for that of another program (OPT-1.15).
   ProgramResult<v1::Program> Store(Put put);
 
   Result<v1::Program> Get(std::string_view name);

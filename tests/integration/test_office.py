@@ -367,6 +367,17 @@ class Services(unittest.TestCase):
         self.cell.command("delete", "optimo-1", "172")
         self.assertIn("every executable", self.cell.command("stale", "optimo-1").stdout)
 
+    # OPT-1.15: the executable of another program is none of this one.
+    def test_a_foreign_executable_is_refused(self):
+        self.put(64, "64.S", "VI[2]=1\n")
+        self.put(65, "65.S", "VI[2]=2\n")
+        linked = self.stub.LinkProgram(program_pb2.LinkProgramRequest(slot=65, machine="machines/optimo-1"))
+        request = program_pb2.PutProgramRequest(name="machines/optimo-1/programs/164")
+        request.program.content = linked.executable
+        self.refused(self.stub.PutProgram, request, grpc.StatusCode.INVALID_ARGUMENT, "CELL-E9003")
+        request.name = "machines/optimo-1/programs/165"
+        self.stub.PutProgram(request)
+
     # OPT-8.70: comments, names and layout come back while the object is the one that was made of them.
     def test_own_text_comes_back_until_the_object_is_replaced(self):
         own = "; mine\nDECLARE   FEED = VR[5]\nfeed  =  20. ; slow\n"
