@@ -130,6 +130,9 @@ class MachineFamily {
   virtual Translation Translate(const SourceFile& file, const Parameters& parameters,
                                 const CheckOptions& options) const = 0;
 
+  // What there is to say about storing a customer's program in this slot (1..99).
+  virtual std::vector<Diagnostic> CheckSlot(int /*slot*/) const { return {}; }
+
   // What is wrong with a process definition by itself, whatever the programs say (OPT-3.01 to 3.08).
   virtual std::vector<Diagnostic> CheckProcess(const ProcessDefinition& /*definition*/) const { return {}; }
 

@@ -106,6 +106,10 @@ ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
   machine::Translation translation = family->Translate(
       {.name = is_object ? "program.O" : BaseName(put.file_name), .bytes = put.bytes}, *parameters, {});
   if (!translation.ok) return FirstError(translation);
+  for (Diagnostic& found : family->CheckSlot(name->slot)) {
+    found.file = BaseName(put.file_name);
+    translation.diagnostics.push_back(std::move(found));
+  }
   v1::Findings findings = bridge::FindingsOf(true, translation.diagnostics, translation.diagnostics_dropped,
                                              translation.figures);
   storage::ProgramWrite write{.slot = name->slot,

@@ -367,6 +367,17 @@ class Services(unittest.TestCase):
         self.cell.command("delete", "optimo-1", "172")
         self.assertIn("every executable", self.cell.command("stale", "optimo-1").stdout)
 
+    # OPT-10.17, OPT-E.7413: stored, and told of.
+    def test_reserved_numbers_are_told_of(self):
+        codes = [finding.code for finding in self.put(5, "5.S", "VI[2]=1\n").findings.diagnostics]
+        self.assertEqual(codes, ["OPT-E7413"])
+        self.assertEqual(len(self.put(8, "8.S", "VI[2]=1\n").findings.diagnostics), 0)
+        with tempfile.TemporaryDirectory() as folder:
+            source = pathlib.Path(folder) / "5.S"
+            source.write_text("VI[2]=1\n")
+            done = self.cell.command("put", "optimo-1", "5", source)
+        self.assertIn("OPT-E7413", done.stdout + done.stderr)
+
     # OPT-1.15: the executable of another program is none of this one.
     def test_a_foreign_executable_is_refused(self):
         self.put(64, "64.S", "VI[2]=1\n")

@@ -62,6 +62,8 @@ class Family final : public machine::MachineFamily {
                            {.limits = resolved.limits, .head_length_mm = resolved.head_length_mm});
   }
 
+  std::vector<Diagnostic> CheckSlot(int slot) const override { return CheckProgramNumber(slot); }
+
   std::vector<Diagnostic> CheckProcess(const machine::ProcessDefinition& definition) const override {
     return optimo::CheckProcess(definition);
   }

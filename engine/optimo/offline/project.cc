@@ -17,7 +17,6 @@
 namespace rmlcell::optimo {
 namespace {
 
-constexpr int kAmadaProgramMax = 7;     // OPT-10.17
 constexpr std::size_t kProcesses = 30;  // kinds 0..2, numbers 0..9
 
 std::size_t ProcessIndex(const Instruction& i) { return i.numbers[0] * 10U + i.numbers[1]; }
@@ -164,10 +163,8 @@ void Planner::AddDraft(const machine::ProjectProgram& program) {
   } else {
     draft.text = std::string(program.file.bytes);
   }
-  if (program.slot >= 1 && program.slot <= kAmadaProgramMax) {
-    Report(ErrorCode::kReservedVariable, "programs 1 to 7 are reserved for Amada", "OPT-10.17",
-           &draft);
-  }
+  for (const Diagnostic& found : CheckProgramNumber(program.slot))
+    Report(found.code, found.detail, found.rule, &draft);
   Survey(draft);
 }
 
@@ -302,7 +299,9 @@ void Planner::RequireDefinitions(Draft& draft) {
   std::ranges::sort(insertions, {}, &Insertion::work);
   const ParsedProgram& parsed = draft.parsed;
   std::size_t first = 0;
-  const auto declares = [&](Op op) { return op == Op::kDeclare || op == Op::kDefine || op == Op::kTask; };
+  const auto declares = [&](Op op) {
+    return op == Op::kDeclare || op == Op::kDefine || op == Op::kTask;
+  };
   for (std::size_t i = 0; i + 1 < parsed.statements.size(); ++i) {
     const Instruction& instruction = parsed.module.instructions[i];
     if (instruction.op == Op::kTask && instruction.numbers[0] == 1) {
@@ -310,7 +309,8 @@ void Planner::RequireDefinitions(Draft& draft) {
       break;
     }
   }
-  while (first + 1 < parsed.statements.size() && declares(parsed.module.instructions[first].op)) ++first;
+  while (first + 1 < parsed.statements.size() && declares(parsed.module.instructions[first].op))
+    ++first;
   const std::size_t begin = parsed.statements[first].begin;
   const std::size_t line = begin == 0 ? 0 : draft.text.rfind('\n', begin - 1) + 1;  // npos + 1 is 0
   std::string text;
@@ -348,8 +348,8 @@ void Planner::CompileDraft(Draft& draft) {
     Add(std::move(found));
   }
   if (!compiled.ok) return;
-  plan_.programs.push_back({draft.from->slot, std::move(draft.text), std::move(compiled.object),
-                            draft.own_text});
+  plan_.programs.push_back(
+      {draft.from->slot, std::move(draft.text), std::move(compiled.object), draft.own_text});
 }
 
 }  // namespace
