@@ -187,6 +187,18 @@ class CommandLine(unittest.TestCase):
         figures = {figure["name"]: figure for figure in diff["figures"]}
         self.assertAlmostEqual(figures["travel_length"]["after"] - figures["travel_length"]["before"], 3.0, places=6)
 
+    # OPT-3.46; figures as people write them, not as a double holds them.
+    def test_diff_for_people(self):
+        a = self.file("a.S", "SPEED 5\n")
+        self.assertEqual(run("diff", a, self.file("b.S", "SPEED 5\nENDTASK\n")), "they do the same\n")
+        slow, fast = self.file("c.S", LINE), self.file("d.S", LINE.replace("SPEED 10", "SPEED 7"))
+        text = run("diff", slow, fast, code=1)
+        figures = re.findall(r"^([a-z_]+)  (\S+) -> (\S+)", text, re.MULTILINE)
+        self.assertGreater(len(figures), 0, text)
+        for name, before, after in figures:
+            for value in (before, after):
+                self.assertRegex(value, r"^-?[0-9]+(\.[0-9]{1,3})?$", name)
+
     def test_diff_draws_both_paths(self):
         a = self.file("a.S", LINE)
         other = self.file("c.S", LINE.replace("1010.", "1013."))
