@@ -420,6 +420,31 @@ class Services(unittest.TestCase):
             program=program_pb2.ProgramText(file_name="75.S", content=answer.content)))
         self.assertEqual(again.object, content)
 
+    # OPT-8.70: a program that was stored as an object is shown as text; a terminal gets no bytes.
+    def test_get_of_an_object_is_text(self):
+        compiled = self.stub.CompileProgram(program_pb2.CompileProgramRequest(program=self.text("a.S", LINE))).object
+        self.put(77, "77.O", compiled)
+        source = self.cell.command("get", "optimo-1", "77").stdout
+        self.assertIn("COORD ABSOL\n", source)
+        self.assertEqual(source.encode(), self.stub.DecompileProgram(
+            program_pb2.DecompileProgramRequest(object=compiled)).content)
+        with tempfile.TemporaryDirectory() as folder:
+            target = pathlib.Path(folder) / "77.O"
+            self.cell.command("get", "optimo-1", "77", "-o", target)
+            self.assertEqual(target.read_bytes(), compiled)
+            self.cell.command("get", "optimo-1", "77", "-o", target.with_suffix(".S"))
+            self.assertEqual(target.with_suffix(".S").read_text(), source)
+        terminal, inside = os.openpty()
+        try:
+            done = subprocess.run([BIN / "rmlcell", "get", "optimo-1", "77", "--form", "object"], stdout=inside,
+                                  stderr=subprocess.PIPE, text=True, timeout=60,
+                                  env={**os.environ, "RMLCELL_SERVER": self.cell.address})
+        finally:
+            os.close(inside)
+            os.close(terminal)
+        self.assertEqual(done.returncode, 2, done)
+        self.assertIn("-o FILE", done.stderr)
+
     def test_diff(self):
         self.put(76, "76.S", LINE)
         request = program_pb2.DiffProgramsRequest(picture=True)
