@@ -112,24 +112,25 @@ int Link(const std::vector<std::string>& files, const std::vector<std::string>& 
          const std::string& output) {
   const Result<LoadedFiles> loaded = LoadFiles(files, slots, main_slot, "optimo");
   if (!loaded) return Refuse(loaded.error());
+  // Only what is called is compiled (OPT-9.02); the folder may hold programs that are not finished.
   std::map<int, std::string> objects;
-  for (const bridge::ProgramInput& program : loaded->programs) {
-    if (optimo::FormOfFile(program.file_name, *program.bytes) == optimo::FileForm::kObject) {
-      objects[program.slot] = *program.bytes;
-      continue;
-    }
-    const Source source{*program.bytes,
-                        optimo::FormOfFile(program.file_name, *program.bytes) == optimo::FileForm::kInchSource};
-    const auto compiled = CompileFile(program.file_name, source, false);
-    if (!compiled) return kProgramErrors;
-    objects[program.slot] = compiled->object;
-  }
+  bool good = true;
   const auto lookup = [&](int slot) -> std::optional<std::string_view> {
-    const auto found = objects.find(slot);
-    if (found == objects.end()) return std::nullopt;
-    return found->second;
+    if (const auto made = objects.find(slot); made != objects.end()) return made->second;
+    const auto program = std::ranges::find(loaded->programs, slot, &bridge::ProgramInput::slot);
+    if (program == loaded->programs.end()) return std::nullopt;
+    const optimo::FileForm form = optimo::FormOfFile(program->file_name, *program->bytes);
+    if (form == optimo::FileForm::kObject) return objects[slot] = *program->bytes;
+    const auto compiled =
+        CompileFile(program->file_name, {*program->bytes, form == optimo::FileForm::kInchSource}, false);
+    if (!compiled) {
+      good = false;
+      return std::nullopt;
+    }
+    return objects[slot] = compiled->object;
   };
   const Result<optimo::Executable> linked = optimo::Link(loaded->main_slot, lookup, {});
+  if (!good) return kProgramErrors;  // said already
   if (!linked) {
     Complain(bridge::ErrorText(linked.error()));
     return kProgramErrors;

@@ -81,6 +81,25 @@ class CommandLine(unittest.TestCase):
         run("link", main, "-o", self.folder / "no.X", code=1)
         self.assertFalse((self.folder / "no.X").exists())
 
+    # OPT-9.02: only what is called is compiled, near and far.
+    def test_link_leaves_programs_alone_that_nobody_calls(self):
+        main = self.file("90.S", "FUNCTION 44\n")
+        self.file("44.S", "FUNCTION 45\n")
+        self.file("45.S", "VR[0] = 1.\n")
+        self.file("64.S", "SPEED 101\n")
+        self.file("65.S", "VR[50] = 1.\n")  # has a warning
+        done = subprocess.run([BIN / "rmlcell", "link", main, self.folder, "-o", self.folder / "190.X"],
+                              capture_output=True, text=True, timeout=60)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("FUNCTION 44, 45", done.stdout)
+        self.file("45.S", "SPEED 101\n")
+        done = subprocess.run([BIN / "rmlcell", "link", main, self.folder, "-o", self.folder / "no.X"],
+                              capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("45.S", done.stderr)
+        self.assertNotIn("no object", done.stderr)
+        self.assertFalse((self.folder / "no.X").exists())
+
     # OPT-B.40
     def test_format_keeps_comments_and_comes_to_rest(self):
         source = self.file("a.S", "speed   20   ; slow\n\n; alone\nMOVE(1.,2.,3.,0.,0.)\n")
