@@ -129,7 +129,10 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
         "  rmlcell parameters rml1 --profile srm-20 | less");
     verb->add_option("FAMILY", *family, "optimo or rml1; none: list the families");
     verb->add_option("--profile", *profile, "values of this profile");
-    verb->callback([family, profile, &exit_code] { exit_code = ListParameters(*family, *profile); });
+    auto json = std::make_shared<bool>(false);
+    verb->add_flag("--json", *json, "as JSON");
+    verb->callback(
+        [family, profile, json, &exit_code] { exit_code = ListParameters(*family, *profile, *json); });
   }
   {
     auto codes = std::make_shared<std::vector<std::string>>();

@@ -230,6 +230,48 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(run("diff", a, other, "--svg", "-", code=1), picture.read_text())
         run("diff", a, self.file("m.rml", "IN;"), code=2)
 
+    # One object an answer: where the result is, or the result, and the findings as check --json gives them.
+    def test_json_of_the_tools(self):
+        source, bad = self.file("12.S", LINE), self.file("13.S", "SPEED 101\n")
+        target = self.folder / "12.O"
+
+        def answer(*words, code=0):
+            out = run(*words, "--json", code=code)
+            self.assertEqual(out.count("\n"), 1, out)
+            return json.loads(out)
+
+        made = answer("compile", source)
+        self.assertEqual((made["file"], made["ok"], made["output"]), (str(source), True, str(target)))
+        self.assertEqual(made["bytes"], target.stat().st_size)
+        self.assertTrue(made["findings"]["ok"])
+        for words in (["compile", bad], ["list", bad]):
+            wrong = answer(*words, code=1)
+            self.assertEqual((wrong["ok"], wrong["findings"]["diagnostics"][0]["code"]), (False, "OPT-E7004"))
+            self.assertNotIn("output", wrong)
+        run("compile", source, "-o", "-", "--json", code=2)
+        self.assertEqual(answer("decompile", target)["content"], run("decompile", target))
+        self.assertEqual(answer("list", source)["content"], run("list", source))
+        self.assertEqual(answer("transform", source, "--move", "1,2,3")["content"],
+                         run("transform", source, "--move", "1,2,3"))
+        self.assertEqual(answer("convert", source)["output"], str(self.folder / "12.SI"))
+        self.assertEqual(answer("convert", source)["text"], "inches and degrees")
+        slot = self.file("slot.S", ";$rad=1\n;$left\nCOORD ABSOL\nPATH LIN\nMOVE (0,0,0,0,0)\nWORK 0,0/ON\n"
+                                   "MOVE (10,0,0,0,0)\nMOVE (10,1.2,0,0,0)\nMOVE (0,1.2,0,0,0)\nWORK 0,0/OFF\n")
+        cut = answer("compensate", slot)
+        self.assertEqual({finding["code"] for finding in cut["findings"]["diagnostics"]}, {"OPT-E7812"})
+        self.assertEqual(answer("link", source, "-o", self.folder / "112.X")["bytes"],
+                         (self.folder / "112.X").stat().st_size)
+        caller = self.file("14.S", "FUNCTION 44\n")
+        missing = answer("link", caller, "-o", self.folder / "114.X", code=1)
+        self.assertEqual([finding["code"] for finding in missing["findings"]["diagnostics"]], ["OPT-E7103"])
+        crooked = self.file("crooked.S", "speed   20\n")
+        self.assertFalse(answer("format", "--check", crooked, code=1)["ok"])
+        self.assertEqual(answer("format", crooked)["text"], f"{crooked}: formatted")
+        families = answer("parameters")["families"]
+        self.assertEqual([family["family"] for family in families], ["optimo", "rml1"])
+        values = {one["name"]: one for one in answer("parameters", "optimo")["parameters"]}
+        self.assertEqual(values["OBJECT_LIMIT"]["value"], 34000)
+
     # OPT-7.91, OPT-2.61
     def test_check_fix_repairs_in_place_and_comes_to_rest(self):
         wrong = "\tspede   20\t; slow\r\nMOVE (1000.,900.,-500.,0.,0.)/INF ; x\r\n"
