@@ -22,7 +22,7 @@ constexpr double kTouching_mm = 0.005;
 constexpr double kTabMax_mm = 2.0;
 // Bound memory, and the time spent on a contour that lies above itself: about a second.
 constexpr std::size_t kSegmentsMax = 1'000'000;
-constexpr std::size_t kPairsMax = 20'000'000;
+constexpr std::size_t kLookupsMax = 40'000'000;
 
 double SweepOf(const Leg& arc) {
   const Vec3 e = (arc.from - arc.centre) * (1.0 / arc.radius), f = motion::Cross(arc.axis, e);
@@ -90,16 +90,13 @@ std::optional<Closing> FindClosing(const std::vector<PathSegment>& contour, std:
   const SegmentGrid grid(lead, kTouching_mm);
   std::size_t at = contour.size();
   while (at > 0 && contour[at - 1].leg + kLeadLegs >= legs) --at;
-  std::size_t pairs = 0;
+  std::size_t lookups = kLookupsMax;
   for (; at < contour.size(); ++at) {
     std::optional<Closing> closing;
-    grid.ForEachNear(contour[at], [&](std::uint32_t index) {
-      if (++pairs > kPairsMax) return false;
-      if (lead[index].leg + 2 > contour[at].leg || (closing && closing->first <= index))
-        return true;
+    grid.ForEachNear(contour[at], lookups, [&](std::uint32_t index) {
+      if (lead[index].leg + 2 > contour[at].leg || (closing && closing->first <= index)) return;
       const NearestPoints touch = NearestPointsOf(lead[index], contour[at]);
       if (touch.distance <= kTouching_mm) closing = {index, at, touch.on_a, touch.on_b};
-      return true;
     });
     if (closing) return closing;
   }
@@ -190,22 +187,22 @@ GougeSearch FindGouges(const std::vector<Leg>& legs, const std::vector<OffsetLeg
   const SegmentGrid grid(edges.segments, radius);
 
   std::vector<double> nearest(legs.size(), allowed);
-  std::size_t pairs = 0;
+  std::size_t lookups = kLookupsMax;
+  bool whole = true;
   const auto look = [&](const PathSegment& piece) {
-    grid.ForEachNear(piece, [&](std::uint32_t index) {
-      if (++pairs > kPairsMax) return false;
+    const bool all = grid.ForEachNear(piece, lookups, [&](std::uint32_t index) {
       const PathSegment& edge = edges.segments[index];
       const std::size_t apart = edge.leg > piece.leg ? edge.leg - piece.leg : piece.leg - edge.leg;
-      if (apart == 0) return true;  // at the radius by construction
+      if (apart == 0) return;  // at the radius by construction
       // Two lines with a corner come too near only where one runs back, or at the pierce point.
       if (apart == 1 && !legs[piece.leg].is_arc && !legs[edge.leg].is_arc) {
-        if (piece.leg > 0 || edges.start) return true;
+        if (piece.leg > 0 || edges.start) return;
         nearest[0] = std::fmin(nearest[0], NearestPointsOf({start, start, 0}, edge).distance);
-        return true;
+        return;
       }
       nearest[piece.leg] = std::fmin(nearest[piece.leg], NearestPointsOf(piece, edge).distance);
-      return true;
     });
+    whole = whole && all;
   };
   for (const PathSegment& piece : path) {
     if (edges.start) {
@@ -213,7 +210,7 @@ GougeSearch FindGouges(const std::vector<Leg>& legs, const std::vector<OffsetLeg
     } else {
       look(piece);
     }
-    if (pairs > kPairsMax) {
+    if (!whole) {
       search.unchecked_from = std::min(piece.leg, search.unchecked_from.value_or(piece.leg));
       break;
     }

@@ -42,17 +42,17 @@ NearestPoints NearestPointsOf(const PathSegment& a, const PathSegment& b) {
 
 SegmentGrid::SegmentGrid(const std::vector<PathSegment>& segments, double reach) : reach_(reach) {
   if (segments.empty()) return;
-  Vec3 low = segments.front().from, high = low;
+  low_ = high_ = segments.front().from;
   double length = 0.0;
   for (const PathSegment& s : segments) {
     for (const Vec3& p : {s.from, s.to}) {
-      low = {std::fmin(low.x, p.x), std::fmin(low.y, p.y), std::fmin(low.z, p.z)};
-      high = {std::fmax(high.x, p.x), std::fmax(high.y, p.y), std::fmax(high.z, p.z)};
+      low_ = {std::fmin(low_.x, p.x), std::fmin(low_.y, p.y), std::fmin(low_.z, p.z)};
+      high_ = {std::fmax(high_.x, p.x), std::fmax(high_.y, p.y), std::fmax(high_.z, p.z)};
     }
     length += motion::Distance(s.from, s.to);
   }
   std::array<std::pair<double, int>, 3> spread = {
-      {{high.x - low.x, 0}, {high.y - low.y, 1}, {high.z - low.z, 2}}};
+      {{high_.x - low_.x, 0}, {high_.y - low_.y, 1}, {high_.z - low_.z, 2}}};
   std::ranges::stable_sort(spread, [](const auto& a, const auto& b) { return a.first > b.first; });
   axis_u_ = spread[0].second;
   axis_v_ = spread[1].second;
@@ -60,11 +60,31 @@ SegmentGrid::SegmentGrid(const std::vector<PathSegment>& segments, double reach)
   cell_ = std::fmax(2.0 * reach, length / static_cast<double>(segments.size()));
   entries_.reserve(3 * segments.size());
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    Cover(segments[i], 0.0,
-          [&](std::uint64_t cell) { entries_.emplace_back(cell, static_cast<std::uint32_t>(i)); });
+    Cover(segments[i], 0.0, [&](std::uint64_t cell) {
+      entries_.emplace_back(cell, static_cast<std::uint32_t>(i));
+      return true;
+    });
   }
   std::ranges::sort(entries_);
   entries_.erase(std::ranges::unique(entries_).begin(), entries_.end());
+}
+
+PathSegment SegmentGrid::Clipped(const PathSegment& segment) const {
+  const Vec3 along = segment.to - segment.from;
+  double first = 0.0, last = 1.0;
+  for (const int axis : {axis_u_, axis_v_}) {
+    const double from = Coordinate(segment.from, axis), d = Coordinate(along, axis);
+    const double low = Coordinate(low_, axis) - 2.0 * reach_ - from;
+    const double high = Coordinate(high_, axis) + 2.0 * reach_ - from;
+    if (d == 0.0) {
+      if (low > 0.0 || high < 0.0) last = -1.0;
+      continue;
+    }
+    first = std::fmax(first, std::fmin(low / d, high / d));
+    last = std::fmin(last, std::fmax(low / d, high / d));
+  }
+  if (first > last) return {segment.from, segment.from, segment.leg};
+  return {segment.from + along * first, segment.from + along * last, segment.leg};
 }
 
 std::uint32_t SegmentGrid::CellOf(double value) const {
