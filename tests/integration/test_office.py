@@ -159,7 +159,10 @@ class CommandLine(unittest.TestCase):
         source, old = self.file("part.S", LINE), self.file("part.old", LINE)
         for words, code in [([source, "/x"], "OPT-E7702"), ([old], "OPT-E7704"), (["/i"], "OPT-E7705"),
                             ([source, self.folder / "b.SI", "c"], "OPT-E7707")]:
-            self.assertIn(code, self.refused_conversion(*words))
+            said = self.refused_conversion(*words)
+            self.assertIn(code, said)
+            catalogue = re.search(r"'(.+?)'", said).group(1)
+            self.assertEqual(said.count(catalogue), 1, said)
         self.assertEqual(sorted(os.listdir(self.folder)), ["part.S", "part.old"])
 
     # OPT-8.11, OPT-8.15

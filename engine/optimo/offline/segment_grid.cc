@@ -12,6 +12,8 @@ constexpr double kNoLength2 = 1e-18;
 // A coordinate is a cell number between 0 and twice this: 31 bits, far from the ends of a uint32_t.
 constexpr double kCellsMax = 1'000'000'000.0;
 
+constexpr double kCellsPerSegment = 4.0;
+
 double Share(double value) { return std::clamp(value, 0.0, 1.0); }
 
 }  // namespace
@@ -56,8 +58,10 @@ SegmentGrid::SegmentGrid(const std::vector<PathSegment>& segments, double reach)
   std::ranges::stable_sort(spread, [](const auto& a, const auto& b) { return a.first > b.first; });
   axis_u_ = spread[0].second;
   axis_v_ = spread[1].second;
-  // Of the mean length: then there are about as many entries as segments, whatever their lengths.
-  cell_ = std::fmax(2.0 * reach, length / static_cast<double>(segments.size()));
+  // A part of the mean length: then there are a few entries a segment, whatever their lengths, and
+  // long ones that lie side by side do not share all of their cells.
+  cell_ =
+      std::fmax(2.0 * reach, length / (kCellsPerSegment * static_cast<double>(segments.size())));
   entries_.reserve(3 * segments.size());
   for (std::size_t i = 0; i < segments.size(); ++i) {
     Cover(segments[i], 0.0, [&](std::uint64_t cell) {
