@@ -22,7 +22,7 @@ constexpr double kTouching_mm = 0.005;
 constexpr double kTabMax_mm = 2.0;
 // Bound memory, and the time spent on a contour that lies above itself: about a second.
 constexpr std::size_t kSegmentsMax = 1'000'000;
-constexpr std::size_t kLookupsMax = 100'000'000;
+constexpr std::size_t kLookupsMax = 50'000'000;
 
 double SweepOf(const Leg& arc) {
   const Vec3 e = (arc.from - arc.centre) * (1.0 / arc.radius), f = motion::Cross(arc.axis, e);
