@@ -9,6 +9,7 @@
 #include "engine/simulation/families.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/files.h"
+#include "proto/bridge/sha256.h"
 #include "server/config.h"
 #include "server/jobs/job_filter.h"
 #include "server/jobs/job_messages.h"
@@ -86,12 +87,11 @@ Status CheckSimulation(const v1::SimulationOptions& options) {
   return {};
 }
 
-// Two requests of one request_id must ask for the same. FNV-1a, since only equality matters.
+// Two requests of one request_id must ask for the same: by this alone a submission is acknowledged as a job
+// that is there already, so nobody may be able to make two jobs of one hash. A store of an earlier version
+// holds another kind of hash: such a request, repeated, is refused as reused, and nothing is run twice.
 std::string RequestHash(const v1::SubmitJobRequest& request) {
-  const std::string text = bridge::StableBytes(request.job());
-  std::uint64_t hash = 0xCBF29CE484222325U;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3U;
-  return std::to_string(hash);
+  return bridge::Sha256Hex(bridge::StableBytes(request.job()));
 }
 
 }  // namespace
@@ -123,13 +123,13 @@ Status JobBook::AttachProgram(const v1::Job& job, const storage::MachineRecord& 
       if (!name) return name.error();
       if (name->machine != machine.id) return InvalidArgument("job.program is not a program of job.machine");
       if (name->executable) return Error{ErrorCode::kProgramNumber, "an executable is started by its object", {}};
-      const auto found = store_.ListPrograms(machine.id, name->slot - 1, 1);
-      if (!found) return found.error();
-      if (found->empty() || found->front().slot != name->slot) {
+      const auto found = store_.GetProgramSummary(machine.id, name->slot);
+      if (!found) {
+        if (found.error().code != ErrorCode::kCellNotFound) return found.error();
         return Error{ErrorCode::kProgramMissing, NameOfProgram(machine.id, name->slot), {}};
       }
       made.attachments.push_back(
-          {std::string(kMainAttachment), "application/octet-stream", {}, found->front().object_sha256});
+          {std::string(kMainAttachment), "application/octet-stream", {}, found->object_sha256});
       return {};
     }
     case v1::Job::PROGRAM_SOURCE_NOT_SET: break;

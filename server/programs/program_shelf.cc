@@ -8,10 +8,10 @@
 #include "proto/bridge/findings.h"
 #include "proto/bridge/setup.h"
 #include "proto/bridge/sha256.h"
-#include "server/programs/program_office.h"
 #include "server/config.h"
 #include "server/jobs/job_messages.h"
 #include "server/names.h"
+#include "server/programs/program_office.h"
 
 namespace rmlcell::server {
 namespace {
@@ -136,16 +136,16 @@ ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
 // What the store would say to a change of this slot, before it is made: nothing when the slot is empty.
 Result<std::optional<storage::ProgramSummary>> ProgramShelf::FindExpected(const std::string& machine, int slot,
                                                                           storage::Revision expected) {
-  auto found = store_.ListPrograms(machine, slot - 1, 1);
-  if (!found) return found.error();
-  const bool there = !found->empty() && found->front().slot == slot;
+  auto found = store_.GetProgramSummary(machine, slot);
+  const bool there = static_cast<bool>(found);
+  if (!there && found.error().code != ErrorCode::kCellNotFound) return found.error();
   if (expected == 0 && there) return Error{ErrorCode::kCellAlreadyExists, NameOfProgram(machine, slot), {}};
   if (expected > 0 && !there) return Error{ErrorCode::kCellNotFound, NameOfProgram(machine, slot), {}};
-  if (expected > 0 && found->front().revision != expected) {
+  if (expected > 0 && found->revision != expected) {
     return Error{ErrorCode::kCellEtagMismatch, NameOfProgram(machine, slot), {}};
   }
   if (!there) return std::optional<storage::ProgramSummary>();
-  return std::optional(std::move(found->front()));
+  return std::optional(*std::move(found));
 }
 
 ProgramResult<v1::Program> ProgramShelf::StoreExecutable(const Put& put, const std::string& machine_id, int slot) {
@@ -182,12 +182,11 @@ Result<v1::Program> ProgramShelf::Get(std::string_view name) {
   const Result<ProgramName> parsed = ParseProgramName(name);
   if (!parsed) return parsed.error();
   if (const auto machine = store_.GetMachine(parsed->machine); !machine) return machine.error();
-  const auto found = store_.ListPrograms(parsed->machine, parsed->slot - 1, 1);
-  if (!found) return found.error();
-  const bool there = !found->empty() && found->front().slot == parsed->slot &&
-                     (!parsed->executable || found->front().executable_bytes >= 0);
+  const auto found = store_.GetProgramSummary(parsed->machine, parsed->slot);
+  if (!found && found.error().code != ErrorCode::kCellNotFound) return found.error();
+  const bool there = found && (!parsed->executable || found->executable_bytes >= 0);
   if (!there) return Error{ErrorCode::kProgramMissing, std::string(name), {}};
-  v1::Program program = MessageOf(parsed->machine, found->front());
+  v1::Program program = MessageOf(parsed->machine, *found);
   program.set_name(std::string(name));  // an executable is asked for by its own number
   return program;
 }

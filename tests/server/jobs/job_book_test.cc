@@ -7,6 +7,8 @@
 
 #include "engine/core/number_text.h"
 #include "engine/simulation/families.h"
+#include "proto/bridge/encoding.h"
+#include "proto/bridge/sha256.h"
 #include "server/config.h"
 #include "server/names.h"
 #include "tests/server/server_bed.h"
@@ -71,6 +73,35 @@ TEST_F(JobBookTest, TheSameRequestIdIsTheSameJob) {
   request.set_request_id("r-2");
   EXPECT_NE(Must(Submit(request)).name(), first.name());
   EXPECT_EQ(Jobs(), 2);
+}
+
+// What decides whether a submission is another job's repetition is SHA-256, of all that it asks for.
+TEST_F(JobBookTest, ARequestIsKnownByItsSha256) {
+  std::set<std::string> hashes;
+  for (const std::string source : {"STOP\n", "STOP \n"}) {
+    v1::SubmitJobRequest request = Simulate(source);
+    request.set_request_id("of " + source);
+    const std::string hash = Must(bed.store().GetJob(Number(Must(Submit(request))))).request_hash;
+    EXPECT_EQ(hash, bridge::Sha256Hex(bridge::StableBytes(request.job())));
+    EXPECT_EQ(hash.size(), 64U);
+    hashes.insert(hash);
+  }
+  EXPECT_EQ(hashes.size(), 2U);
+}
+
+// Earlier versions kept a number of 64 bits: their jobs are read, and never taken for a new request's.
+TEST_F(JobBookTest, AJobOfAnEarlierVersionIsReadAndItsRequestIdIsUsed) {
+  v1::SubmitJobRequest request = Simulate();
+  request.set_request_id("r");
+  storage::NewJob earlier{.request_id = "r",
+                          .request_hash = "14695981039346656037",
+                          .machine = "optimo-1",
+                          .kind = "SIMULATE",
+                          .specification = request.job().SerializeAsString()};
+  const std::int64_t id = Must(bed.store().SubmitAndWait(std::move(earlier))).job.id;
+  EXPECT_EQ(Must(book.Get(JobName(id))).machine(), "machines/optimo-1");
+  EXPECT_EQ(CodeOf(Submit(request)), ErrorCode::kCellRequestIdReused);
+  EXPECT_EQ(Jobs(), 1);
 }
 
 // The entries of a map have no order: a repeated request is the same whatever order they come in.
