@@ -120,6 +120,11 @@ class MachineFamily {
   virtual std::span<const ParameterInfo> parameters() const = 0;
   virtual std::span<const MachineProfile> profiles() const = 0;
 
+  // Whether the parameters of a machine fit together: what no range of a single one tells. Whoever takes
+  // parameters from outside asks this before anything is kept or run.
+  // Error: CellParameterRange, with both names and values.
+  virtual Status CheckParameters(const Parameters& /*parameters*/) const { return {}; }
+
   // Every figure that Run::figures can hold; docs/facts.md lists them.
   virtual std::span<const FigureInfo> figures() const { return {}; }
 

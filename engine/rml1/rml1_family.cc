@@ -129,6 +129,9 @@ class MillFamily final : public machine::MachineFamily {
   const machine::FamilyInfo& info() const override { return kInfo; }
   std::span<const machine::ParameterInfo> parameters() const override { return ParameterTable(); }
   std::span<const machine::MachineProfile> profiles() const override { return MachineProfiles(); }
+  Status CheckParameters(const machine::Parameters& parameters) const override {
+    return CheckFit(parameters);
+  }
   std::span<const machine::FigureInfo> figures() const override { return FigureTable(); }
   machine::MachineShape Shape(const machine::Parameters& parameters) const override;
   machine::Translation Translate(const machine::SourceFile& file,

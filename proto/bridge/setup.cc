@@ -74,6 +74,7 @@ Result<machine::Parameters> MakeParameters(const machine::MachineFamily& family,
   for (const auto& [name, value] : parameters) {
     if (const Status set = made.Set(name, std::string_view(value)); !set) return set.error();
   }
+  if (const Status fit = family.CheckParameters(made); !fit) return fit.error();
   return made;
 }
 

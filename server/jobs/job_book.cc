@@ -9,6 +9,7 @@
 #include "engine/simulation/families.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/files.h"
+#include "proto/bridge/setup.h"
 #include "proto/bridge/sha256.h"
 #include "server/config.h"
 #include "server/jobs/job_filter.h"
@@ -179,10 +180,10 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, co
   v1::Job specification = job;
   if (Status attached = AttachProgram(job, *machine, made, specification); !attached) return attached.error();
   const machine::MachineFamily& family = *simulation::FindFamily(machine->family);
-  machine::Parameters parameters(family.parameters());
-  for (const auto& [name, value] : job.simulation().parameters()) {
-    if (Status set = parameters.Set(name, std::string_view(value)); !set) return set.error();
-  }
+  std::map<std::string, std::string> values = machine->parameters;
+  for (const auto& [name, value] : job.simulation().parameters()) values[name] = value;
+  const Result<machine::Parameters> parameters = bridge::MakeParameters(family, machine->profile, values);
+  if (!parameters) return parameters.error();
   std::set<int> further;
   for (v1::SlotProgram& program : *specification.mutable_simulation()->mutable_programs()) {
     const std::string what = "job.simulation.programs of slot " + std::to_string(program.slot());

@@ -197,6 +197,27 @@ class Jobs(WithCell):
                      grpc.StatusCode.INVALID_ARGUMENT, "CELL-E9107")
 
 
+class Machines(WithCell):
+    def update(self, name, mask=None, **fields):
+        request = machine_pb2.UpdateMachineRequest(machine=machine_pb2.Machine(name=f"machines/{name}", **fields))
+        if mask is not None:
+            request.update_mask.paths.extend(mask)
+        return request
+
+    def test_travels_that_end_before_they_begin_are_refused(self):
+        stub = self.cell.machines()
+        bad = grpc.StatusCode.INVALID_ARGUMENT, "CELL-E9011"
+        for name, family, low, high in (("optimo-1", "optimo", "TRAVEL_X_MIN", "TRAVEL_X_MAX"),
+                                        ("mill-1", "rml1", "X_MIN", "X_MAX")):
+            parameters = {low: "100", high: "50"}
+            detail = self.refused(stub.UpdateMachine, self.update(name, parameters=parameters), *bad)
+            self.assertIn(f"{low} is 100", detail.message)
+            self.assertTrue(detail.advice)
+            new = machine_pb2.Machine(family=family, parameters=parameters)
+            self.refused(stub.CreateMachine, machine_pb2.CreateMachineRequest(machine_id=f"new-{family}", machine=new), *bad)
+            self.assertEqual(dict(stub.GetMachine(machine_pb2.GetMachineRequest(name=f"machines/{name}")).parameters), {})
+
+
 class Programs(WithCell):
     def put(self, machine, slot, file_name, content, **more):
         request = program_pb2.PutProgramRequest(name=f"machines/{machine}/programs/{slot}", **more)

@@ -48,6 +48,9 @@ class Family final : public machine::MachineFamily {
     return OptimoParameterTable();
   }
   std::span<const machine::MachineProfile> profiles() const override { return OptimoProfiles(); }
+  Status CheckParameters(const machine::Parameters& parameters) const override {
+    return CheckFit(parameters);
+  }
   std::span<const machine::FigureInfo> figures() const override { return kFigures; }
   machine::MachineShape Shape(const machine::Parameters& parameters) const override {
     return ShapeOf(Resolve(parameters));
@@ -109,6 +112,7 @@ class Family final : public machine::MachineFamily {
 
   Result<std::unique_ptr<machine::Run>> NewRun(machine::RunSetup setup,
                                                machine::RunObserver& observer) const override {
+    if (const Status fit = CheckFit(setup.parameters); !fit) return fit.error();
     if (!setup.machine_state.empty()) {
       if (const Result<MachineState> state = DecodeMachineState(setup.machine_state); !state)
         return state.error();

@@ -215,6 +215,26 @@ TEST_F(JobBookTest, ChecksWhatCanBeCheckedBeforeWorkBegins) {
   EXPECT_TRUE(Submit(Simulate(std::string(2047, ';') + "\n")));
 }
 
+// RML1-5A.01, OPT-B.08: the parameters of a job go over those of its machine, and must fit together with them.
+TEST_F(JobBookTest, ParametersOfAJobMustFitThoseOfItsMachine) {
+  Must(bed.store().PutMachine(
+      {.id = "narrow", .family = "rml1", .parameters = {{"X_MIN", "300"}, {"X_MAX", "400"}}}, 0));
+  const auto code = [&](const std::string& machine, const std::string& name, const std::string& value) {
+    v1::SubmitJobRequest request = Simulate();
+    request.mutable_job()->set_machine("machines/" + machine);
+    if (machine != "optimo-1") request.mutable_job()->mutable_inline_program()->set_file_name("a.rml");
+    (*request.mutable_job()->mutable_simulation()->mutable_parameters())[name] = value;
+    return CodeOf(Submit(request));
+  };
+  constexpr auto kRange = ErrorCode::kCellParameterRange;
+  EXPECT_EQ(code("mill-1", "X_MIN", "500"), kRange);  // X_MAX is 200
+  EXPECT_EQ(code("mill-1", "X_MAX", "250"), std::nullopt);
+  EXPECT_EQ(code("narrow", "X_MAX", "250"), kRange);
+  EXPECT_EQ(code("narrow", "X_MIN", "350"), std::nullopt);
+  EXPECT_EQ(code("optimo-1", "TRAVEL_X_MIN", "3601"), kRange);
+  EXPECT_EQ(code("optimo-1", "TRAVEL_X_MIN", "3600"), std::nullopt);
+}
+
 TEST_F(JobBookTest, AskingOnlyStoresNothing) {
   v1::SubmitJobRequest request = Simulate();
   request.set_validate_only(true);
