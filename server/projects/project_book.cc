@@ -1,6 +1,7 @@
 #include "server/projects/project_book.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iterator>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "proto/bridge/setup.h"
 #include "server/jobs/job_messages.h"
 #include "server/names.h"
+#include "server/update_mask.h"
 
 namespace rmlcell::server {
 namespace {
@@ -19,6 +21,7 @@ namespace {
 constexpr int kPageDefault = 100;
 constexpr int kPageMax = 1000;
 constexpr std::size_t kNotesMax = 64 << 10;
+constexpr std::array<std::string_view, 5> kProjectFields = {"title", "notes", "programs", "laser_schedules", "processes"};
 
 // What can be said without a machine. Languages are checked when the project is transferred.
 Status CheckParts(const v1::Project& project) {
@@ -208,21 +211,13 @@ ProgramResult<v1::Project> ProjectBook::Update(const v1::UpdateProjectRequest& r
   if (!kept) return kept.error();
   v1::Project& project = *kept;
   const v1::Project& wanted = request.project();
-  const auto& paths = request.update_mask().paths();
-  const auto named = [&](std::string_view field) {
-    return paths.empty() || std::ranges::find(paths, field) != paths.end();
-  };
-  for (const std::string& path : paths) {
-    if (path != "title" && path != "notes" && path != "programs" && path != "laser_schedules" &&
-        path != "processes") {
-      return InvalidArgument("update_mask: '" + path + "' is none of title, notes, programs, laser_schedules, processes");
-    }
-  }
-  if (named("title")) project.set_title(wanted.title());
-  if (named("notes")) project.set_notes(wanted.notes());
-  if (named("programs")) *project.mutable_programs() = wanted.programs();
-  if (named("laser_schedules")) *project.mutable_laser_schedules() = wanted.laser_schedules();
-  if (named("processes")) *project.mutable_processes() = wanted.processes();
+  const auto named = FieldsToUpdate(request.update_mask(), wanted, kProjectFields);
+  if (!named) return named.error();
+  if (named->contains("title")) project.set_title(wanted.title());
+  if (named->contains("notes")) project.set_notes(wanted.notes());
+  if (named->contains("programs")) *project.mutable_programs() = wanted.programs();
+  if (named->contains("laser_schedules")) *project.mutable_laser_schedules() = wanted.laser_schedules();
+  if (named->contains("processes")) *project.mutable_processes() = wanted.processes();
   if (auto fault = FindFault(project)) return *std::move(fault);
   if (request.validate_only()) return project;
   // Another change between the two is not overwritten.

@@ -204,6 +204,18 @@ class Machines(WithCell):
             request.update_mask.paths.extend(mask)
         return request
 
+    def test_an_update_without_a_mask_changes_what_has_a_value(self):
+        stub = self.cell.machines()
+        before = stub.UpdateMachine(self.update("mill-1", profile="srm-20", parameters={"SPIN_UP": "3"}))
+        after = stub.UpdateMachine(self.update("mill-1", title="By the door", etag=before.etag))
+        self.assertEqual((after.title, after.profile, dict(after.parameters)), ("By the door", "srm-20", {"SPIN_UP": "3"}))
+        self.refused(stub.UpdateMachine, self.update("mill-1", title="late", etag=before.etag),
+                     grpc.StatusCode.ABORTED, "CELL-E9006")
+        self.refused(stub.UpdateMachine, self.update("mill-1", ["colour"]), grpc.StatusCode.INVALID_ARGUMENT, "CELL-E9003")
+        self.assertEqual(stub.UpdateMachine(self.update("mill-1", ["profile"])).profile, "")
+        emptied = stub.UpdateMachine(self.update("mill-1", ["*"], title="Mill"))
+        self.assertEqual((emptied.title, dict(emptied.parameters)), ("Mill", {}))
+
     def test_travels_that_end_before_they_begin_are_refused(self):
         stub = self.cell.machines()
         bad = grpc.StatusCode.INVALID_ARGUMENT, "CELL-E9011"

@@ -194,10 +194,22 @@ TEST_F(ProjectBookTest, AnUpdateChangesWhatItsMaskNames) {
     EXPECT_EQ(CodeOf(book.Update(update)), ErrorCode::kCellEtagMismatch);
   }
   update.mutable_project()->clear_etag();
-  update.clear_update_mask();  // all of it
+  update.clear_update_mask();  // what has a value
+  update.mutable_project()->set_title("third");
+  AddSchedule(*update.mutable_project(), 11);
   const v1::Project third = Must(book.Update(update));
-  EXPECT_EQ(third.notes(), "");
-  EXPECT_EQ(third.programs_size(), 0);
+  EXPECT_EQ(third.title(), "third");
+  EXPECT_EQ(third.laser_schedules_size(), 1);
+  EXPECT_EQ(third.notes(), "old");
+  EXPECT_EQ(third.programs_size(), 1);
+  update.mutable_update_mask()->add_paths("notes");  // named, and empty
+  EXPECT_EQ(Must(book.Update(update)).notes(), "");
+  update.mutable_project()->clear_laser_schedules();
+  *update.mutable_update_mask()->mutable_paths(0) = "*";  // all of it
+  const v1::Project fourth = Must(book.Update(update));
+  EXPECT_EQ(fourth.title(), "third");
+  EXPECT_EQ(fourth.laser_schedules_size(), 0);
+  EXPECT_EQ(fourth.programs_size(), 0);
   update.mutable_update_mask()->add_paths("colour");
   EXPECT_EQ(CodeOf(book.Update(update)), kInvalid);
   update.mutable_project()->set_name("projects/none");
