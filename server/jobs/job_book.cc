@@ -12,6 +12,7 @@
 #include "proto/bridge/setup.h"
 #include "proto/bridge/sha256.h"
 #include "server/config.h"
+#include "server/jobs/file_family.h"
 #include "server/jobs/job_filter.h"
 #include "server/jobs/job_messages.h"
 #include "server/names.h"
@@ -109,11 +110,7 @@ Status JobBook::AttachProgram(const v1::Job& job, const storage::MachineRecord& 
       if (job.inline_slot() != 0 && !IsSlot(job.inline_slot())) {
         return Error{ErrorCode::kProgramNumber, "job.inline_slot is " + std::to_string(job.inline_slot()), {}};
       }
-      const machine::MachineFamily* named = simulation::FamilyOfFileName(job.inline_program().file_name());
-      if (named != nullptr && named != family) {
-        return InvalidArgument(job.inline_program().file_name() + " is a program for " + std::string(named->info().title) +
-                       ", machines/" + machine.id + " is of family " + machine.family);
-      }
+      if (Status fits = CheckFileFamily(job.inline_program().file_name(), *family); !fits) return fits;
       made.attachments.push_back({std::string(kMainAttachment), "application/octet-stream",
                                   job.inline_program().content(), {}});
       specification.mutable_inline_program()->clear_content();
@@ -188,6 +185,7 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, co
   for (v1::SlotProgram& program : *specification.mutable_simulation()->mutable_programs()) {
     const std::string what = "job.simulation.programs of slot " + std::to_string(program.slot());
     if (Status fits = CheckSize(program.program().content(), what); !fits) return fits.error();
+    if (Status fits = CheckFileFamily(program.program().file_name(), family); !fits) return fits.error();
     if (!further.insert(program.slot()).second) return InvalidArgument(what + " stands twice");
     if (job.has_inline_program() && program.slot() == InlineSlotOf(job)) {
       return InvalidArgument(what + ": the slot of job.inline_program (inline_slot, 1 when it is not given)");

@@ -9,6 +9,7 @@
 #include "proto/bridge/setup.h"
 #include "proto/bridge/sha256.h"
 #include "server/config.h"
+#include "server/jobs/file_family.h"
 #include "server/jobs/job_messages.h"
 #include "server/names.h"
 #include "server/programs/program_office.h"
@@ -91,11 +92,7 @@ ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
   if (!machine) return machine.error();
   const machine::MachineFamily* family = simulation::FindFamily(machine->family);
   if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
-  const machine::MachineFamily* named = simulation::FamilyOfFileName(put.file_name);
-  if (named != nullptr && named != family) {
-    return InvalidArgument(BaseName(put.file_name) + " is a program for " + std::string(named->info().title) + ", not for " +
-                   std::string(family->info().title));
-  }
+  if (const Status fits = CheckFileFamily(BaseName(put.file_name), *family); !fits) return fits.error();
   const Result<storage::Revision> expected = ParseEtag(put.etag);
   if (!expected) return expected.error();
   const Result<machine::Parameters> parameters =

@@ -11,6 +11,7 @@
 #include "engine/simulation/families.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/setup.h"
+#include "server/jobs/file_family.h"
 #include "server/jobs/job_messages.h"
 #include "server/names.h"
 #include "server/update_mask.h"
@@ -246,6 +247,13 @@ ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(const v1::Trans
   const auto parameters = bridge::MakeParameters(*family, machine->profile, machine->parameters);
   if (!parameters) return parameters.error();
   if (project->programs().empty()) return Error{ErrorCode::kProjectSource, "the project has no program", {}};
+
+  // A stream takes any bytes: by its translation alone no source of another family would be refused.
+  for (const v1::ProjectProgram& program : project->programs()) {
+    if (const Status fits = CheckFileFamily(program.source().file_name(), *family); !fits) {
+      return InvalidArgument("program " + std::to_string(program.slot()) + ": " + fits.error().detail);
+    }
+  }
 
   machine::TransferPlan plan =
       family->PlanTransfer(BundleOf(*project), *parameters,

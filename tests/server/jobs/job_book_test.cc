@@ -171,6 +171,13 @@ TEST_F(JobBookTest, ChecksWhatCanBeCheckedBeforeWorkBegins) {
        [](auto& r) { r.mutable_job()->set_inline_slot(100); }},
       {"program of a mill", kInvalid,
        [](auto& r) { r.mutable_job()->mutable_inline_program()->set_file_name("a.rml"); }},
+      {"further program of a mill", kInvalid,
+       [](auto& r) {
+         v1::SlotProgram& program = *r.mutable_job()->mutable_simulation()->add_programs();
+         program.set_slot(4);
+         program.mutable_program()->set_file_name("a.RML");
+         program.mutable_program()->set_content("PU;");
+       }},
       {"empty slot", ErrorCode::kProgramMissing,
        [](auto& r) { r.mutable_job()->set_program("machines/optimo-1/programs/45"); }},
       {"slot 0", ErrorCode::kProgramNumber,

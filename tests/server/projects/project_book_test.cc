@@ -272,6 +272,32 @@ TEST_F(ProjectBookTest, DeletesAndListsInPages) {
   EXPECT_EQ(book.Delete(remove).error().code, ErrorCode::kCellNotFound);
 }
 
+// The family follows from the file name: a mill would take the text of a laser program for a stream.
+TEST_F(ProjectBookTest, ATransferTakesNoProgramOfAnotherFamily) {
+  v1::Project project;
+  Add(project, 10, "PU;", "10.rml");
+  Add(project, 11, "SPEED 10\nSPEED 200\n");
+  Must(Create("f", project));
+  v1::TransferProjectRequest request;
+  request.set_name("projects/f");
+  request.set_machine("machines/mill-1");
+  const auto refused = book.Transfer(request);
+  EXPECT_EQ(CodeOf(refused), kInvalid);
+  EXPECT_THAT(refused.error.error.detail, testing::HasSubstr("program 11: 11.S is a program for Amada OPTIMO"));
+  EXPECT_EQ(Must(bed.store().ListPrograms("mill-1", 0, 100)).size(), 0U);
+  request.set_machine("machines/optimo-1");
+  EXPECT_THAT(book.Transfer(request).error.error.detail, testing::HasSubstr("program 10: 10.rml is a program for Roland"));
+  EXPECT_EQ(Programs(), 0U);
+
+  v1::Project mill;
+  Add(mill, 10, "PU;", "10.rml");
+  Add(mill, 11, "PU;", "outline");  // no extension of anybody's
+  Must(Create("mill", mill));
+  request.set_name("projects/mill");
+  request.set_machine("machines/mill-1");
+  EXPECT_EQ(Must(book.Transfer(request)).programs_size(), 2);
+}
+
 // Issue "Projects": compiled, and put into slots together with the schedules.
 TEST_F(ProjectBookTest, ATransferStoresProgramsAndSchedulesTogether) {
   v1::Project project;
