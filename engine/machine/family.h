@@ -125,6 +125,11 @@ class MachineFamily {
   // Error: CellParameterRange, with both names and values.
   virtual Status CheckParameters(const Parameters& /*parameters*/) const { return {}; }
 
+  // Whether Run::ReadVariable knows the name, on a machine with these parameters.
+  virtual bool HasVariable(const Parameters& /*parameters*/, std::string_view /*name*/) const {
+    return false;
+  }
+
   // Every figure that Run::figures can hold; docs/facts.md lists them.
   virtual std::span<const FigureInfo> figures() const { return {}; }
 

@@ -7,6 +7,7 @@
 #include "engine/rml1/figures.h"
 #include "engine/rml1/physical.h"
 #include "engine/rml1/run.h"
+#include "engine/rml1/variables.h"
 
 namespace rmlcell::rml1 {
 namespace {
@@ -131,6 +132,10 @@ class MillFamily final : public machine::MachineFamily {
   std::span<const machine::MachineProfile> profiles() const override { return MachineProfiles(); }
   Status CheckParameters(const machine::Parameters& parameters) const override {
     return CheckFit(parameters);
+  }
+  bool HasVariable(const machine::Parameters& parameters, std::string_view name) const override {
+    const Result<Profile> profile = MakeProfile(parameters);
+    return profile && HasRegister(*profile, name);
   }
   std::span<const machine::FigureInfo> figures() const override { return FigureTable(); }
   machine::MachineShape Shape(const machine::Parameters& parameters) const override;

@@ -16,6 +16,7 @@
 #include "server/jobs/job_filter.h"
 #include "server/jobs/job_messages.h"
 #include "server/names.h"
+#include "server/readable.h"
 
 namespace rmlcell::server {
 namespace {
@@ -61,6 +62,9 @@ Status CheckSimulation(const v1::SimulationOptions& options) {
     return InvalidArgument("job.simulation.toolpath_tolerance_mm: allowed are 0 to 100");
   }
   if (!v1::OperatingMode_IsValid(options.mode())) return InvalidArgument("job.simulation.mode is none that there is");
+  if (options.mode() == v1::OPERATING_MODE_MANUAL) {
+    return InvalidArgument("job.simulation.mode is MANUAL, in which no program runs: use REMOTE, CYCLE, SINGLE or REPEAT");
+  }
   if (options.has_breakpoint()) {
     const Status valid = CheckStepPlace(options.breakpoint(), "job.simulation.breakpoint");
     if (!valid) return valid;
@@ -85,6 +89,18 @@ Status CheckSimulation(const v1::SimulationOptions& options) {
     if (!IsSlot(program.slot())) {
       return Error{ErrorCode::kProgramNumber, "job.simulation.programs: slot is " + std::to_string(program.slot()), {}};
     }
+  }
+  return {};
+}
+
+// Those of a report can be given (Run::ReadVariable) when the run is over.
+Status CheckVariables(const v1::SimulationOptions& options, const machine::MachineFamily& family,
+                      const machine::Parameters& parameters) {
+  const auto names = bridge::ExpandVariables({options.variables().begin(), options.variables().end()});
+  if (!names) return InvalidArgument("job.simulation." + names.error().detail);
+  for (const std::string& name : *names) {
+    if (family.HasVariable(parameters, name)) continue;
+    return InvalidArgument("job.simulation.variables: the machine has no variable " + Readable(name));
   }
   return {};
 }
@@ -181,6 +197,7 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, co
   for (const auto& [name, value] : job.simulation().parameters()) values[name] = value;
   const Result<machine::Parameters> parameters = bridge::MakeParameters(family, machine->profile, values);
   if (!parameters) return parameters.error();
+  if (Status good = CheckVariables(job.simulation(), family, *parameters); !good) return good.error();
   std::set<int> further;
   for (v1::SlotProgram& program : *specification.mutable_simulation()->mutable_programs()) {
     const std::string what = "job.simulation.programs of slot " + std::to_string(program.slot());
@@ -202,15 +219,16 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, co
 void JobBook::Submit(const v1::SubmitJobRequest& request, const std::string& caller,
                      std::function<void(Result<v1::Job>)> done) {
   Result<storage::NewJob> made = Prepare(request, caller);
-  if (!made) {
+  if (!made || request.validate_only()) {
     // Repeated after an answer that was lost: what it needed may be gone by now, its job is there.
-    if (request.request_id().empty()) return done(made.error());
-    const auto first = store_.FindSubmitted(request.request_id(), RequestHash(request));
-    if (!first) return done(first.error());
-    if (!*first) return done(made.error());
-    return done(ToProto(**first));
-  }
-  if (request.validate_only()) {
+    std::optional<storage::JobRecord> first;
+    if (!request.request_id().empty()) {
+      auto found = store_.FindSubmitted(request.request_id(), RequestHash(request));
+      if (!found) return done(found.error());
+      first = *std::move(found);
+    }
+    if (!made && !first) return done(made.error());
+    if (!request.validate_only()) return done(ToProto(*first));
     v1::Job job = request.job();
     job.clear_name();
     return done(std::move(job));

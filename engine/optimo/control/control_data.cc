@@ -216,24 +216,7 @@ void Control::SetGroups(const Instruction& i) {
 }
 
 std::optional<std::string> Control::ReadVariable(std::string_view name) const {
-  const std::size_t open = name.find('[');
-  if (open == std::string_view::npos || !name.ends_with(']')) return std::nullopt;
-  const auto number = ParseInteger(name.substr(open + 1, name.size() - open - 2));
-  if (!number || *number < 0 || *number > kVariableIndexMax) return std::nullopt;
-  const auto n = static_cast<std::size_t>(*number);
-  const DataArea& data = s_.machine.data;
-  const auto group = name.substr(0, open);
-  const auto is = [&](std::string_view word) {
-    return group.size() == 2 && (group[0] & ~0x20) == word[0] && (group[1] & ~0x20) == word[1];
-  };
-  if (is("VR")) return TrimmedText(data.vr[n], 6);
-  if (is("VI")) return std::to_string(static_cast<int>(data.vi[n]));
-  if (is("VL")) return data.vl[n] ? "1" : "0";
-  if (is("IL")) return data.il[n] ? "1" : "0";
-  if (is("OL")) return data.ol[n] ? "1" : "0";
-  if (is("IA")) return TrimmedText(data.ia[n], 6);
-  if (is("OA")) return TrimmedText(data.oa[n], 6);
-  return std::nullopt;
+  return ReadByName(s_.machine.data, name);
 }
 
 }  // namespace rmlcell::optimo

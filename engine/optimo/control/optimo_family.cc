@@ -51,6 +51,9 @@ class Family final : public machine::MachineFamily {
   Status CheckParameters(const machine::Parameters& parameters) const override {
     return CheckFit(parameters);
   }
+  bool HasVariable(const machine::Parameters& /*parameters*/, std::string_view name) const override {
+    return ReadByName(DataArea(), name).has_value();
+  }
   std::span<const machine::FigureInfo> figures() const override { return kFigures; }
   machine::MachineShape Shape(const machine::Parameters& parameters) const override {
     return ShapeOf(Resolve(parameters));

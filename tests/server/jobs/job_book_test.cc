@@ -155,6 +155,18 @@ TEST_F(JobBookTest, ChecksWhatCanBeCheckedBeforeWorkBegins) {
        [](auto& r) {
          r.mutable_job()->mutable_simulation()->mutable_breakpoint()->set_program(1);
        }},
+      {"mode MANUAL", kInvalid,
+       [](auto& r) { r.mutable_job()->mutable_simulation()->set_mode(v1::OPERATING_MODE_MANUAL); }},
+      {"open variable range", kInvalid,
+       [](auto& r) { r.mutable_job()->mutable_simulation()->add_variables("VR[0..9"); }},
+      {"open variable", kInvalid,
+       [](auto& r) { r.mutable_job()->mutable_simulation()->add_variables("VR[0"); }},
+      {"variable of no group", kInvalid,
+       [](auto& r) { r.mutable_job()->mutable_simulation()->add_variables("ZZ[1]"); }},
+      {"variable 100", kInvalid,
+       [](auto& r) { r.mutable_job()->mutable_simulation()->add_variables("VR[95..100]"); }},
+      {"register of a mill", kInvalid,
+       [](auto& r) { r.mutable_job()->mutable_simulation()->add_variables("RPM"); }},
       {"input without kind", kInvalid,
        [](auto& r) { r.mutable_job()->mutable_simulation()->add_inputs(); }},
       {"no machine", kInvalid, [](auto& r) { r.mutable_job()->clear_machine(); }},
@@ -242,11 +254,44 @@ TEST_F(JobBookTest, ParametersOfAJobMustFitThoseOfItsMachine) {
   EXPECT_EQ(code("optimo-1", "TRAVEL_X_MIN", "3600"), std::nullopt);
 }
 
+// OPT-7.96 to 7.101 for the laser; of a mill only what its profile has.
+TEST_F(JobBookTest, AJobMayAskForTheVariablesOfItsMachine) {
+  v1::SubmitJobRequest request = Simulate();
+  for (const std::string name : {"VR[0..99]", "vi[99]", "VL[0]", "IL[1]", "OL[2]", "IA[0]", "OA[3]"}) {
+    request.mutable_job()->mutable_simulation()->add_variables(name);
+  }
+  EXPECT_TRUE(Submit(request));
+  request.mutable_job()->set_machine("machines/mill-1");
+  request.mutable_job()->mutable_inline_program()->set_file_name("a.rml");
+  EXPECT_EQ(CodeOf(Submit(request)), ErrorCode::kCellInvalidArgument);
+  request.mutable_job()->mutable_simulation()->clear_variables();
+  request.mutable_job()->mutable_simulation()->add_variables("ESC.M");
+  EXPECT_TRUE(Submit(request));
+  request.mutable_job()->mutable_simulation()->add_variables("ASTEPS");
+  EXPECT_EQ(CodeOf(Submit(request)), ErrorCode::kCellInvalidArgument);
+  (*request.mutable_job()->mutable_simulation()->mutable_parameters())["AXES"] = "XYZA";
+  EXPECT_TRUE(Submit(request));
+}
+
 TEST_F(JobBookTest, AskingOnlyStoresNothing) {
   v1::SubmitJobRequest request = Simulate();
   request.set_validate_only(true);
   EXPECT_EQ(Must(Submit(request)).name(), "");
   EXPECT_EQ(Jobs(), 0);
+}
+
+// AIP-163: asking gives what doing would, of a request id that is known as well.
+TEST_F(JobBookTest, AskingLooksAtTheRequestId) {
+  v1::SubmitJobRequest request = Simulate();
+  request.set_request_id("r");
+  Must(Submit(request));
+  request.set_validate_only(true);
+  EXPECT_EQ(Must(Submit(request)).name(), "");
+  request.mutable_job()->set_title("another");
+  EXPECT_EQ(CodeOf(Submit(request)), ErrorCode::kCellRequestIdReused);
+  request.mutable_job()->set_machine("machines/none");  // the same, whatever else is wrong
+  EXPECT_EQ(CodeOf(Submit(request)), ErrorCode::kCellRequestIdReused);
+  EXPECT_EQ(Jobs(), 1);
 }
 
 TEST_F(JobBookTest, SoManyJobsMayWaitAndNoMore) {
