@@ -150,6 +150,35 @@ class Jobs(WithCell):
             list(stub.WatchJob(job_pb2.WatchJobRequest(name=job.name, after_sequence=len(whole) + 1), timeout=20))
         self.assertEqual(caught.exception.code(), grpc.StatusCode.INVALID_ARGUMENT)
 
+    def test_a_watcher_of_all_jobs_is_never_set_elsewhere_in_silence(self):
+        stub = self.cell.jobs()
+        job = submit(stub, inline_job("mill-1", "square.rml", SQUARE))
+        wait_for_end(stub, job.name)
+        watch = stub.WatchJobs(job_pb2.WatchJobsRequest(events_only=True), timeout=30)
+        last = next(iter(watch)).snapshot.sequence
+        watch.cancel()
+        self.assertGreater(last, 0)
+        for after in (last + 1_000_000, -1):
+            with self.assertRaises(grpc.RpcError) as caught:
+                list(stub.WatchJobs(job_pb2.WatchJobsRequest(after_sequence=after), timeout=20))
+            self.assertEqual(caught.exception.code(), grpc.StatusCode.INVALID_ARGUMENT)
+            self.assertEqual(detail_of(caught.exception).code, "CELL-E9003")
+        # The last number itself is good: nothing has come since.
+        watch = stub.WatchJobs(job_pb2.WatchJobsRequest(after_sequence=last, events_only=True), timeout=30)
+        self.assertTrue(next(iter(watch)).HasField("snapshot"))
+        watch.cancel()
+        # Over the web port, too.
+        request = urllib.request.Request(f"http://127.0.0.1:{self.cell.web_port}/rmlcell.v1.JobService/WatchJobs", None,
+                                         {"Accept": "text/event-stream", "Last-Event-ID": str(last + 1_000_000)})
+        try:
+            with urllib.request.urlopen(request, timeout=20) as answer:
+                told = answer.read().decode()
+                self.assertIn("event: error", told)
+        except urllib.error.HTTPError as error:
+            self.assertEqual(error.code, 400)
+            told = error.read().decode()
+        self.assertIn("CELL-E9003", told)
+
     def test_budgets_end_a_job_with_their_own_codes(self):
         stub = self.cell.jobs()
         job = inline_job("optimo-1", "endless.S", ENDLESS)
