@@ -71,18 +71,19 @@ ProgramError FirstError(const machine::Translation& translation) {
 
 }  // namespace
 
-std::int64_t ProgramShelf::program_bytes_max() const { return config_.limit_program_bytes; }
+Status ProgramShelf::CheckSize(std::int64_t bytes) const {
+  if (bytes <= config_.limit_program_bytes) return {};
+  return Error{ErrorCode::kCellTooLarge,
+               "the program has " + std::to_string(bytes) + " bytes; limits.program_bytes of the configuration is " +
+                   std::to_string(config_.limit_program_bytes),
+               {}};
+}
 
 ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
   const Result<ProgramName> name = ParseProgramName(put.name);
   if (!name) return name.error();
   if (put.bytes.empty()) return Error{ErrorCode::kCellEmptyProgram, put.file_name, {}};
-  if (static_cast<std::int64_t>(put.bytes.size()) > config_.limit_program_bytes) {
-    return Error{ErrorCode::kCellTooLarge,
-                 std::to_string(put.bytes.size()) + " bytes; limits.program_bytes is " +
-                     std::to_string(config_.limit_program_bytes),
-                 {}};
-  }
+  if (Status fits = CheckSize(static_cast<std::int64_t>(put.bytes.size())); !fits) return fits.error();
   if (const Status good = CheckTitle(put.title, "title"); !good) return good.error();
   if (put.file_name.size() > kFileNameMax) return InvalidArgument("file_name is longer than 255 characters");
   if (name->executable || put.form == v1::PROGRAM_FORM_EXECUTABLE) {

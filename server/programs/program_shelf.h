@@ -50,7 +50,8 @@ class ProgramShelf {
   Result<machine::Translation> Check(const std::string& family, const std::string& machine,
                                      const v1::ProgramText& program, bool advice);
 
-  std::int64_t program_bytes_max() const;
+  // Of a whole program. Error: CellTooLarge, with the limit of the configuration.
+  Status CheckSize(std::int64_t bytes) const;
 
  private:
   Result<std::optional<storage::ProgramSummary>> FindExpected(const std::string& machine, int slot,

@@ -59,9 +59,7 @@ class Sink final : public web::UploadSink {
   Sink(ProgramShelf& shelf, const web::UploadHeader& header) : shelf_(shelf), header_(header) {}
 
   Status Append(std::string_view chunk) override {
-    if (bytes_.size() + chunk.size() > static_cast<std::size_t>(shelf_.program_bytes_max())) {
-      return Error{ErrorCode::kCellTooLarge, "limits.program_bytes", {}};
-    }
+    if (Status fits = shelf_.CheckSize(static_cast<std::int64_t>(bytes_.size() + chunk.size())); !fits) return fits;
     digest_.Add(chunk);
     bytes_ += chunk;
     return {};
@@ -118,9 +116,7 @@ Result<std::unique_ptr<web::UploadSink>> WebResources::BeginUpload(const web::Up
                                                                    const web::WebCallerMetadata& metadata) {
   const Result<Caller> caller = Admit(gate_, metadata, "POST");
   if (!caller) return caller.error();
-  if (header.size > shelf_.program_bytes_max()) {
-    return Error{ErrorCode::kCellTooLarge, std::to_string(header.size) + " bytes", {}};
-  }
+  if (const Status fits = shelf_.CheckSize(header.size); !fits) return fits.error();
   return std::unique_ptr<web::UploadSink>(std::make_unique<Sink>(shelf_, header));
 }
 

@@ -316,6 +316,7 @@ class Programs(WithCell):
             stub.PutProgram(self.put("optimo-1", 47, "big.S", b";" * 5_000_000))
         self.assertEqual(caught.exception.code(), grpc.StatusCode.RESOURCE_EXHAUSTED)
         self.assertEqual(detail_of(caught.exception).code, "CELL-E9007")
+        self.assertIn("UploadProgram", detail_of(caught.exception).message)
         self.refused(self.cell.jobs().GetJob, job_pb2.GetJobRequest(name="jobs/" + "9" * 1_000_000),
                      grpc.StatusCode.INVALID_ARGUMENT, "CELL-E9003")
         self.refused(self.cell.jobs().SubmitJob,
@@ -327,7 +328,7 @@ class Programs(WithCell):
         def parts():
             header = program_pb2.UploadProgramRequest.Header(
                 name=name, file_name=file_name, size=len(data) if size is None else size,
-                sha256=sha256 or hashlib.sha256(data).hexdigest())
+                sha256=hashlib.sha256(data).hexdigest() if sha256 is None else sha256)
             yield program_pb2.UploadProgramRequest(header=header)
             for at in range(0, len(data), 1 << 20):
                 yield program_pb2.UploadProgramRequest(chunk=data[at:at + (1 << 20)])
@@ -344,6 +345,28 @@ class Programs(WithCell):
             self.upload("machines/mill-1/programs/9", "large.rml", data, sha256="0" * 64)
         self.assertEqual(detail_of(caught.exception).code, "CELL-E9016")
         self.assertEqual(self.cell.programs().GetProgram(program_pb2.GetProgramRequest(name=stored.name)).etag, stored.etag)
+
+    def test_the_header_of_an_upload_is_told_what_is_wrong_with_it(self):
+        data = b"PU100,100;"
+        name = "machines/mill-1/programs/10"
+        upper = hashlib.sha256(data).hexdigest().upper()
+        self.assertEqual(self.upload(name, "a.rml", data, sha256=upper).object_bytes, len(data))
+        limit = self.cell.machines().GetCell(machine_pb2.GetCellRequest()).program_bytes_max
+        for sha256, size, code, words in (("junk", None, "CELL-E9003", "64 hexadecimal digits"),
+                                          ("g" * 64, None, "CELL-E9003", "64 hexadecimal digits"),
+                                          ("", None, "CELL-E9003", "sha256 is missing"),
+                                          (None, -1, "CELL-E9003", "size is -1"),
+                                          (None, 0, "CELL-E9003", "size is missing"),
+                                          (None, limit + 1, "CELL-E9007", "limits.program_bytes")):
+            with self.assertRaises(grpc.RpcError) as caught:
+                self.upload(name, "a.rml", data, sha256=sha256, size=size)
+            detail = detail_of(caught.exception)
+            self.assertEqual(detail.code, code)
+            self.assertIn(words, detail.message)
+            self.assertNotIn("UploadProgram", caught.exception.details())
+        with self.assertRaises(grpc.RpcError) as caught:  # a file with nothing in it
+            self.upload(name, "a.rml", b"")
+        self.assertEqual(detail_of(caught.exception).code, "CELL-E9017")
 
     def test_a_hundred_megabytes_of_one_byte_are_answered(self):
         with self.assertRaises(grpc.RpcError) as caught:
