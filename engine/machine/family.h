@@ -20,6 +20,10 @@ struct FamilyInfo {
   std::string_view axes{};        // "X Y Z A B"
   bool has_executables = false; // makes executables at slot + 100
   bool has_schedules = false;   // laser schedules and process definitions
+  // The machine's own codes for a number that is no slot, and for a slot without program. A machine without
+  // program memory has none: the cell keeps its programs, and says so in its own words.
+  ErrorCode no_slot = ErrorCode::kCellInvalidArgument;
+  ErrorCode empty_slot = ErrorCode::kCellNotFound;
 };
 
 // A program text or stream as it comes from a user.

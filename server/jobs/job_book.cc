@@ -15,6 +15,7 @@
 #include "server/jobs/file_family.h"
 #include "server/jobs/job_filter.h"
 #include "server/jobs/job_messages.h"
+#include "server/jobs/program_place.h"
 #include "server/names.h"
 #include "server/readable.h"
 
@@ -44,15 +45,15 @@ Status CheckBudget(const v1::Budget& budget) {
   return {};
 }
 
-Status CheckStepPlace(const v1::StepPlace& place, const std::string& field) {
-  if (place.program() != 0 && !IsSlot(place.program())) {
-    return Error{ErrorCode::kProgramNumber, field + ".program is " + std::to_string(place.program()), {}};
+Status CheckStepPlace(const v1::StepPlace& place, const std::string& field, const machine::MachineFamily& family) {
+  if (place.program() != 0) {
+    if (Status slot = CheckSlot(family, place.program(), field + ".program"); !slot) return slot;
   }
   if (place.step() < 1) return InvalidArgument(field + ".step is below 1");
   return {};
 }
 
-Status CheckSimulation(const v1::SimulationOptions& options) {
+Status CheckSimulation(const v1::SimulationOptions& options, const machine::MachineFamily& family) {
   const double override_percent = options.override_percent();
   if (!(override_percent >= 0.0 && override_percent <= bridge::kOverrideMax)) {
     return InvalidArgument("job.simulation.override_percent is " + ShortestText(override_percent) +
@@ -66,11 +67,11 @@ Status CheckSimulation(const v1::SimulationOptions& options) {
     return InvalidArgument("job.simulation.mode is MANUAL, in which no program runs: use REMOTE, CYCLE, SINGLE or REPEAT");
   }
   if (options.has_breakpoint()) {
-    const Status valid = CheckStepPlace(options.breakpoint(), "job.simulation.breakpoint");
+    const Status valid = CheckStepPlace(options.breakpoint(), "job.simulation.breakpoint", family);
     if (!valid) return valid;
   }
   if (options.has_simul()) {
-    const Status valid = CheckStepPlace(options.simul(), "job.simulation.simul");
+    const Status valid = CheckStepPlace(options.simul(), "job.simulation.simul", family);
     if (!valid) return valid;
   }
   for (const v1::ScriptedInput& input : options.inputs()) {
@@ -86,9 +87,7 @@ Status CheckSimulation(const v1::SimulationOptions& options) {
     }
   }
   for (const v1::SlotProgram& program : options.programs()) {
-    if (!IsSlot(program.slot())) {
-      return Error{ErrorCode::kProgramNumber, "job.simulation.programs: slot is " + std::to_string(program.slot()), {}};
-    }
+    if (Status slot = CheckSlot(family, program.slot(), "job.simulation.programs.slot"); !slot) return slot;
   }
   return {};
 }
@@ -116,17 +115,15 @@ std::string RequestHash(const v1::SubmitJobRequest& request) {
 
 std::string AttachmentName(int slot) { return "program-" + std::to_string(slot); }
 
-Status JobBook::AttachProgram(const v1::Job& job, const storage::MachineRecord& machine, storage::NewJob& made,
+Status JobBook::AttachProgram(const v1::Job& job, const machine::MachineFamily& family, storage::NewJob& made,
                               v1::Job& specification) {
-  const machine::MachineFamily* family = simulation::FindFamily(machine.family);
-  if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine.family, {}};
   switch (job.program_source_case()) {
     case v1::Job::kInlineProgram: {
       if (Status fits = CheckSize(job.inline_program().content(), "job.inline_program"); !fits) return fits;
-      if (job.inline_slot() != 0 && !IsSlot(job.inline_slot())) {
-        return Error{ErrorCode::kProgramNumber, "job.inline_slot is " + std::to_string(job.inline_slot()), {}};
+      if (job.inline_slot() != 0) {
+        if (Status slot = CheckSlot(family, job.inline_slot(), "job.inline_slot"); !slot) return slot;
       }
-      if (Status fits = CheckFileFamily(job.inline_program().file_name(), *family); !fits) return fits;
+      if (Status fits = CheckFileFamily(job.inline_program().file_name(), family); !fits) return fits;
       made.attachments.push_back({std::string(kMainAttachment), "application/octet-stream",
                                   job.inline_program().content(), {}});
       specification.mutable_inline_program()->clear_content();
@@ -135,12 +132,13 @@ Status JobBook::AttachProgram(const v1::Job& job, const storage::MachineRecord& 
     case v1::Job::kProgram: {
       const Result<ProgramName> name = ParseProgramName(job.program());
       if (!name) return name.error();
-      if (name->machine != machine.id) return InvalidArgument("job.program is not a program of job.machine");
-      if (name->executable) return Error{ErrorCode::kProgramNumber, "an executable is started by its object", {}};
-      const auto found = store_.GetProgramSummary(machine.id, name->slot);
+      if (name->machine != made.machine) return InvalidArgument("job.program is not a program of job.machine");
+      if (Status there = CheckNumber(family, *name); !there) return there;
+      if (name->executable) return Error{family.info().no_slot, "an executable is started by its object", {}};
+      const auto found = store_.GetProgramSummary(made.machine, name->slot);
       if (!found) {
         if (found.error().code != ErrorCode::kCellNotFound) return found.error();
-        return Error{ErrorCode::kProgramMissing, NameOfProgram(machine.id, name->slot), {}};
+        return EmptySlot(family, job.program());
       }
       made.attachments.push_back(
           {std::string(kMainAttachment), "application/octet-stream", {}, found->object_sha256});
@@ -171,12 +169,14 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, co
   if (const Status good = CheckTitle(job.title(), "job.title"); !good) return good.error();
   if (job.attempts_max() < 0 || job.attempts_max() > 10) return InvalidArgument("job.attempts_max: allowed are 1 to 10");
   if (Status valid = CheckBudget(job.budget()); !valid) return valid.error();
-  if (Status valid = CheckSimulation(job.simulation()); !valid) return valid.error();
-
   const Result<std::string> machine_id = ParseMachineName(job.machine());
   if (!machine_id) return machine_id.error();
   const Result<storage::MachineRecord> machine = store_.GetMachine(*machine_id);
   if (!machine) return machine.error();
+  const machine::MachineFamily* known = simulation::FindFamily(machine->family);
+  if (known == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
+  const machine::MachineFamily& family = *known;
+  if (Status valid = CheckSimulation(job.simulation(), family); !valid) return valid.error();
 
   storage::NewJob made{.request_id = request.request_id(),
                        .request_hash = request.request_id().empty() ? "" : RequestHash(request),
@@ -191,8 +191,7 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, co
                        .attachments = {},
                        .events = {StateEvent(storage::JobState::kQueued)}};
   v1::Job specification = job;
-  if (Status attached = AttachProgram(job, *machine, made, specification); !attached) return attached.error();
-  const machine::MachineFamily& family = *simulation::FindFamily(machine->family);
+  if (Status attached = AttachProgram(job, family, made, specification); !attached) return attached.error();
   std::map<std::string, std::string> values = machine->parameters;
   for (const auto& [name, value] : job.simulation().parameters()) values[name] = value;
   const Result<machine::Parameters> parameters = bridge::MakeParameters(family, machine->profile, values);

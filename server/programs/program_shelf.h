@@ -11,6 +11,7 @@
 namespace rmlcell::server {
 
 struct Config;
+struct ProgramPlace;
 
 // The program memory of machines: translation, checks and storage of programs.
 // Thread-safe; blocks on the store and on compilation.
@@ -27,8 +28,8 @@ class ProgramShelf {
     std::string bytes;
     bool validate_only = false;
   };
-  // All or nothing. Errors: CellEmptyProgram, CellTooLarge, ProgramNumber (7101), the first compile error,
-  // CellEtagMismatch, CellUnknownMachine, ProgramMissing for an executable without its object (OPT-1.15).
+  // All or nothing. Errors: CellEmptyProgram, CellTooLarge, the first compile error, CellEtagMismatch,
+  // CellUnknownMachine, FamilyInfo::no_slot, empty_slot for an executable without its object (OPT-1.15).
   ProgramResult<v1::Program> Store(Put put);
 
   Result<v1::Program> Get(std::string_view name);
@@ -56,7 +57,7 @@ class ProgramShelf {
  private:
   Result<std::optional<storage::ProgramSummary>> FindExpected(const std::string& machine, int slot,
                                                               storage::Revision expected);
-  ProgramResult<v1::Program> StoreExecutable(const Put& put, const std::string& machine, int slot);
+  ProgramResult<v1::Program> StoreExecutable(const Put& put, const ProgramPlace& place);
 
   storage::Store& store_;
   const Config& config_;

@@ -89,7 +89,7 @@ class Jobs(WithCell):
         self.cell.programs().DeleteProgram(program_pb2.DeleteProgramRequest(name=name))
         self.assertEqual(submit(stub, job, request_id).name, first.name)
         self.refused(stub.SubmitJob, job_pb2.SubmitJobRequest(job=job, request_id=str(uuid.uuid4())),
-                     grpc.StatusCode.NOT_FOUND, "OPT-E7102")
+                     grpc.StatusCode.NOT_FOUND, "CELL-E9004")
 
     def test_programs_of_a_job_leave_nothing_behind(self):
         stub, programs = self.cell.jobs(), self.cell.programs()
@@ -301,6 +301,31 @@ class Programs(WithCell):
                          grpc.StatusCode.INVALID_ARGUMENT, "OPT-E7101")
         # 199 is the executable of 99, which needs its object (OPT-1.15).
         self.refused(stub.PutProgram, self.put("optimo-1", 199, "a.X", b"x"), grpc.StatusCode.NOT_FOUND, "OPT-E7102")
+
+    def test_a_mill_has_no_code_for_slots_and_gets_that_of_the_cell(self):
+        stub, jobs = self.cell.programs(), self.cell.jobs()
+        invalid, missing = grpc.StatusCode.INVALID_ARGUMENT, grpc.StatusCode.NOT_FOUND
+        for slot in (0, 100, 199, 200):
+            name = f"machines/mill-1/programs/{slot}"
+            job = job_pb2.Job(machine="machines/mill-1", kind=job_pb2.JOB_KIND_CHECK, program=name)
+            for call, request in ((stub.PutProgram, self.put("mill-1", slot, "a.rml", "PU;")),
+                                  (stub.GetProgram, program_pb2.GetProgramRequest(name=name)),
+                                  (stub.DeleteProgram, program_pb2.DeleteProgramRequest(name=name)),
+                                  (jobs.SubmitJob, job_pb2.SubmitJobRequest(job=job))):
+                detail = self.refused(call, request, invalid, "CELL-E9003")
+                self.assertIn(f"is {slot}; slots are 1 to 99", detail.message)
+        name = "machines/mill-1/programs/88"
+        job = job_pb2.Job(machine="machines/mill-1", kind=job_pb2.JOB_KIND_CHECK, program=name)
+        for call, request in ((stub.GetProgram, program_pb2.GetProgramRequest(name=name)),
+                              (stub.GetProgramContent, program_pb2.GetProgramContentRequest(name=name)),
+                              (stub.DeleteProgram, program_pb2.DeleteProgramRequest(name=name)),
+                              (jobs.SubmitJob, job_pb2.SubmitJobRequest(job=job))):
+            detail = self.refused(call, request, missing, "CELL-E9004")
+            self.assertIn(name, detail.message)
+            self.assertNotIn("CALL", detail.message + detail.advice)
+        for field in ({"inline_slot": 100}, {"simulation": job_pb2.SimulationOptions(programs=[job_pb2.SlotProgram()])}):
+            job = inline_job("mill-1", "a.rml", "PU;", **field)
+            self.refused(jobs.SubmitJob, job_pb2.SubmitJobRequest(job=job), invalid, "CELL-E9003")
 
     def test_bad_bytes_are_refused_and_the_server_goes_on(self):
         stub = self.cell.programs()

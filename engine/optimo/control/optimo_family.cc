@@ -17,7 +17,9 @@ constexpr machine::FamilyInfo kInfo = {.id = "optimo",
                                        .extensions = ".S .SI .CMP .O",
                                        .axes = "X Y Z A B",
                                        .has_executables = true,
-                                       .has_schedules = true};
+                                       .has_schedules = true,
+                                       .no_slot = ErrorCode::kProgramNumber,
+                                       .empty_slot = ErrorCode::kProgramMissing};
 
 constexpr std::array kFigures = {
     machine::FigureInfo{"lookahead_starved", "",

@@ -187,6 +187,18 @@ TEST_F(ProgramShelfTest, AnExecutableNeedsItsObject) {
   EXPECT_EQ(Get(32).etag(), etag);
 }
 
+// Codes of an Optimo are of an Optimo: a mill has none for slots.
+TEST_F(ProgramShelfTest, SlotsHaveTheCodesOfTheirMachine) {
+  for (const int number : {0, 100, 107, 199}) {
+    EXPECT_EQ(CodeOf(shelf.Get(Name(number, "mill-1"))), ErrorCode::kCellInvalidArgument) << number;
+  }
+  EXPECT_EQ(CodeOf(shelf.Get(Name(7, "mill-1"))), ErrorCode::kCellNotFound);
+  EXPECT_EQ(CodeOf(shelf.Read(Name(7, "mill-1"), v1::PROGRAM_FORM_SOURCE)), ErrorCode::kCellNotFound);
+  EXPECT_EQ(CodeOf(shelf.Get(Name(100))), ErrorCode::kProgramNumber);
+  EXPECT_EQ(CodeOf(shelf.Get(Name(7))), ErrorCode::kProgramMissing);
+  EXPECT_EQ(CodeOf(shelf.Get(Name(100, "none"))), ErrorCode::kCellUnknownMachine);
+}
+
 // A mill keeps the stream itself, and has no executables.
 TEST_F(ProgramShelfTest, AStreamIsItsOwnObject) {
   const auto stored =
@@ -196,7 +208,9 @@ TEST_F(ProgramShelfTest, AStreamIsItsOwnObject) {
   EXPECT_EQ(Must(shelf.Read(Name(7, "mill-1"), v1::PROGRAM_FORM_SOURCE)).bytes, "IN;PU0,0;");
   EXPECT_EQ(Must(shelf.Read(Name(7, "mill-1"), v1::PROGRAM_FORM_SOURCE)).file_name, "a.rml");
   EXPECT_EQ(CodeOf(shelf.Store({.name = Name(107, "mill-1"), .bytes = "IN;"})),
-            ErrorCode::kProgramNumber);
+            ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(CodeOf(shelf.Store({.name = Name(7, "mill-1"), .form = v1::PROGRAM_FORM_EXECUTABLE, .bytes = "IN;"})),
+            ErrorCode::kCellInvalidArgument);
   ASSERT_TRUE(
       shelf.Store({.name = Name(8, "mill-1"), .form = v1::PROGRAM_FORM_OBJECT, .bytes = "IN;"}));
   EXPECT_EQ(Must(shelf.Read(Name(8, "mill-1"), v1::PROGRAM_FORM_SOURCE)).file_name,
