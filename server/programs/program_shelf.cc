@@ -89,6 +89,8 @@ ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
   if (Status fits = CheckSize(static_cast<std::int64_t>(put.bytes.size())); !fits) return fits.error();
   if (const Status good = CheckTitle(put.title, "title"); !good) return good.error();
   if (put.file_name.size() > kFileNameMax) return InvalidArgument("file_name is longer than 255 characters");
+  if (!v1::ProgramForm_IsValid(put.form)) return InvalidArgument("form is none that there is");
+  if (put.form == v1::PROGRAM_FORM_LISTING) return InvalidArgument("a listing is made of a program and cannot be stored");
   if (place->executable || put.form == v1::PROGRAM_FORM_EXECUTABLE) return StoreExecutable(put, *place);
   if (const Status fits = CheckFileFamily(BaseName(put.file_name), family); !fits) return fits.error();
   const Result<storage::Revision> expected = ParseEtag(put.etag);
@@ -183,6 +185,7 @@ Result<v1::Program> ProgramShelf::Get(std::string_view name) {
 }
 
 Result<ProgramShelf::Content> ProgramShelf::Read(std::string_view name, v1::ProgramForm form) {
+  if (!v1::ProgramForm_IsValid(form)) return InvalidArgument("form is none that there is");
   const Result<ProgramPlace> place = FindProgramPlace(store_, name);
   if (!place) return place.error();
   Result<storage::ProgramRecord> program = store_.GetProgram(place->machine.id, place->slot);

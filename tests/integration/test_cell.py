@@ -521,6 +521,26 @@ class Web(WithCell):
         with urllib.request.urlopen(f"http://127.0.0.1:{self.cell.web_port}/") as page:
             self.assertIn(b"<html", page.read())
 
+    def test_a_form_that_is_none_is_refused(self):
+        url = f"http://127.0.0.1:{self.cell.web_port}/v1/machines/optimo-1/programs/61/content"
+        def ask(query, body=None):
+            request = urllib.request.Request(url + query, body, {"Content-Type": "application/octet-stream"} if body else {})
+            try:
+                with urllib.request.urlopen(request, timeout=30) as answer:
+                    return answer.status, answer.read().decode()
+            except urllib.error.HTTPError as error:
+                return error.code, error.read().decode()
+        self.assertEqual(ask("?file_name=a.S", b"SPEED 5\n")[0], 200)
+        for query in ("", "?form=", "?form=source"):
+            self.assertEqual(ask(query), (200, "SPEED 5\n"))
+        self.assertEqual(ask("?form=listing")[0], 200)
+        for query, body in (("?form=bogus", None), ("?form=SOURCE", None), ("?file_name=a.S&form=bogus", b"SPEED 6\n"),
+                            ("?file_name=a.S&form=listing", b"SPEED 6\n")):
+            status, text = ask(query, body)
+            self.assertEqual(status, 400, query)
+            self.assertIn("CELL-E9003", text)
+        self.assertEqual(ask("?form=source"), (200, "SPEED 5\n"))
+
     def test_reflection_alone_is_enough_for_a_client(self):
         buf = os.environ.get("RMLCELL_BUF")
         if not buf:

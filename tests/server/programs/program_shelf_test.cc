@@ -187,6 +187,16 @@ TEST_F(ProgramShelfTest, AnExecutableNeedsItsObject) {
   EXPECT_EQ(Get(32).etag(), etag);
 }
 
+TEST_F(ProgramShelfTest, AFormIsOneThatThereIs) {
+  ASSERT_TRUE(Store(45, "STOP\n"));
+  constexpr auto kNone = static_cast<v1::ProgramForm>(99);
+  EXPECT_EQ(CodeOf(shelf.Read(Name(45), kNone)), ErrorCode::kCellInvalidArgument);
+  for (const v1::ProgramForm form : {kNone, v1::PROGRAM_FORM_LISTING}) {
+    EXPECT_EQ(CodeOf(shelf.Store({.name = Name(46), .form = form, .bytes = "STOP\n"})),
+              ErrorCode::kCellInvalidArgument);
+  }
+}
+
 // Codes of an Optimo are of an Optimo: a mill has none for slots.
 TEST_F(ProgramShelfTest, SlotsHaveTheCodesOfTheirMachine) {
   for (const int number : {0, 100, 107, 199}) {
