@@ -32,6 +32,7 @@ Status CheckParts(const v1::Project& project) {
   for (const v1::ProjectProgram& program : project.programs()) {
     const std::string slot = std::to_string(program.slot());
     if (!IsSlot(program.slot())) return Error{ErrorCode::kProgramNumber, "slot is " + slot, {}};
+    if (Status good = CheckTitle(program.title(), "title of program " + slot); !good) return good;
     if (!slots.insert(program.slot()).second) return Error{ErrorCode::kProjectDuplicate, "slot " + slot, {}};
     if (program.source().content().empty()) {
       return Error{ErrorCode::kProjectSource, "the program of slot " + slot + " has no source", {}};
@@ -43,6 +44,7 @@ Status CheckParts(const v1::Project& project) {
     if (schedule.number() < 1 || schedule.number() > 63) {
       return Error{ErrorCode::kScheduleRange, "laser schedule " + number, {}};
     }
+    if (Status good = CheckTitle(schedule.title(), "title of laser schedule " + number); !good) return good;
     if (!schedules.insert(schedule.number()).second) return InvalidArgument("laser schedule " + number + " stands twice");
     if (!schedule.mode().empty() && schedule.mode() != "CW" && schedule.mode() != "PULSE") {
       return InvalidArgument("laser schedule " + number + ": mode is CW or PULSE");

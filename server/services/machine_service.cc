@@ -184,6 +184,7 @@ grpc::ServerUnaryReactor* MachineService::PutLaserSchedule(grpc::CallbackServerC
     if (family == nullptr || !family->info().has_schedules) {
       return ToGrpcStatus(Error{ErrorCode::kCellPrecondition, "this machine has no laser schedules", {}});
     }
+    if (const Status good = CheckTitle(wanted.title(), "title"); !good) return ToGrpcStatus(good.error());
     const std::string mode = wanted.mode().empty() ? "CW" : wanted.mode();
     if (mode != "CW" && mode != "PULSE") {
       return ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument, "mode is CW or PULSE", {}});

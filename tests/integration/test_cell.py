@@ -245,6 +245,12 @@ class Machines(WithCell):
         emptied = stub.UpdateMachine(self.update("mill-1", ["*"], title="Mill"))
         self.assertEqual((emptied.title, dict(emptied.parameters)), ("Mill", {}))
 
+    def test_a_title_has_two_hundred_characters_of_any_language(self):
+        stub = self.cell.machines()
+        self.assertEqual(stub.UpdateMachine(self.update("mill-1", title="\u5de5" * 200)).title, "\u5de5" * 200)
+        self.refused(stub.UpdateMachine, self.update("mill-1", title="\u5de5" * 201), grpc.StatusCode.INVALID_ARGUMENT,
+                     "CELL-E9003")
+
     def test_travels_that_end_before_they_begin_are_refused(self):
         stub = self.cell.machines()
         bad = grpc.StatusCode.INVALID_ARGUMENT, "CELL-E9011"

@@ -107,6 +107,10 @@ TEST_F(ProjectBookTest, ChecksItsPartsBeforeItIsKept) {
   const std::vector<std::tuple<std::string, ErrorCode, Change>> cases = {
       {"long title", kInvalid, [](auto& p) { p.set_title(std::string(201, 't')); }},
       {"long notes", kInvalid, [](auto& p) { p.set_notes(std::string((64 << 10) + 1, 'n')); }},
+      {"long title of a program", kInvalid,
+       [](auto& p) { Add(p, 1, "STOP\n"), p.mutable_programs(0)->set_title(std::string(201, 't')); }},
+      {"long title of a schedule", kInvalid,
+       [](auto& p) { AddSchedule(p, 1), p.mutable_laser_schedules(0)->set_title(std::string(201, 't')); }},
       {"slot 0", ErrorCode::kProgramNumber, [](auto& p) { Add(p, 0, "STOP\n"); }},
       {"slot 100", ErrorCode::kProgramNumber, [](auto& p) { Add(p, 100, "STOP\n"); }},
       {"slot twice", ErrorCode::kProjectDuplicate,
