@@ -1,6 +1,5 @@
 #include <cmath>
 
-#include "engine/core/number_text.h"
 #include "engine/optimo/control/control.h"
 
 // Variables, images and expressions.
