@@ -2,10 +2,27 @@
 
 // Errors: whether a program goes on after one, and where.
 namespace rmlcell::optimo {
+namespace {
+
+// Some codes have more than one severity (optimo.md section C); the catalogue holds the first. This
+// is the one in a run.
+Severity SeverityInRun(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::kScheduleRange:  // computed; a literal never comes to a run (OPT-B.36)
+      return Severity::kProgram;
+    case ErrorCode::kCmosFull:
+    case ErrorCode::kObjectCorrupt:  // when it is linked or loaded, OPT-B.56
+      return Severity::kFatal;
+    default:
+      return Lookup(code).severity;
+  }
+}
+
+}  // namespace
 
 void Control::Warn(ErrorCode code, std::string detail, std::string_view rule) {
   observer_.OnDiagnostic(s_.now, {.code = code,
-                                  .severity = Lookup(code).severity,
+                                  .severity = SeverityInRun(code),
                                   .detail = std::move(detail),
                                   .rule = std::string(rule),
                                   .program = s_.place.program,
@@ -29,13 +46,12 @@ void Control::Raise(ErrorCode code, std::string detail) {
 }
 
 void Control::HandleError(const Error& error) {
-  const CatalogueEntry& entry = Lookup(error.code);
-  s_.machine.data.vi[99] = static_cast<float>(entry.number);
+  s_.machine.data.vi[99] = static_cast<float>(Lookup(error.code).number);
   s_.pending = {};
   s_.condition_met = false;
   Unwatch();
   BeamOff();
-  Severity severity = entry.severity;
+  const Severity severity = SeverityInRun(error.code);
   std::optional<std::uint32_t> handler;
   std::size_t catching = 0;
   if (!s_.programs.empty()) {

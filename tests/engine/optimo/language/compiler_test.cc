@@ -87,6 +87,16 @@ TEST(Compiler, EveryFindingHasItsPlace) {
   EXPECT_TRUE(compiled.object.empty());
 }
 
+// OPT-E.7206, OPT-E.7403, OPT-B.36: what the compiler refuses is an error of the compiler, also
+// where the same computed value is a program error.
+TEST(Compiler, LiteralsOutOfRangeAreErrorsOfTheCompiler) {
+  for (const char* text : {"ASSIGN OL[12]=16 /4\n", "ASSIGN OL[95]=0 /8\n", "WORKDEF 2,0 (64)\n"}) {
+    const Compilation compiled = Compile(text, "", {.advice = false});
+    ASSERT_EQ(compiled.diagnostics.size(), 1U) << text;
+    EXPECT_EQ(compiled.diagnostics[0].severity, Severity::kCompile) << text;
+  }
+}
+
 // OPT-7.91, OPT-E.7011
 TEST(Compiler, MistypedWordsGetAProposal) {
   const Compilation compiled = Compile("SPED 20\nDECLARE XHOME = VR[1]\nVR[2] = XHOMF\n", "", {});
