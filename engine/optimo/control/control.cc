@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/core/number_text.h"
 
@@ -174,17 +175,8 @@ void Control::ActOnTime() {
   if (s_.phase != machine::RunPhase::kRunning) return;
   if (!s_.active && !s_.timeline.empty()) StartNextItem();
   if (s_.phase != machine::RunPhase::kRunning) return;
-  if (s_.halting && !Busy()) {
-    s_.halting = false;
-    if (s_.held.empty()) return Halt("STOP");
-    s_.place_ahead = s_.place;
-    s_.place = s_.halted_behind;
-    return Halt("HOLD");
-  }
-  if (s_.stop_requested && s_.active && BringToHalt() && !Busy()) {
-    s_.halting = false;
-    return Halt("STOP");
-  }
+  if (s_.halting && !Busy()) return HaltOnPath();
+  if (s_.stop_requested && s_.active && BringToHalt() && !Busy()) return HaltOnPath();
   WatchMove();
   RunTasks();
   if (s_.phase != machine::RunPhase::kRunning) return;
@@ -264,11 +256,7 @@ void Control::Apply(const machine::InputChange& input) {
       // An open door acts as STOP, and the shutter closes (OPT-B.34, OPT-3.17).
       if (s_.phase == machine::RunPhase::kRunning)
         Apply({.at = s_.now, .kind = machine::InputKind::kStop});
-      SuspendBeam();
-      if (s_.beam.shutter_open) {
-        s_.beam.shutter_was_open = true;
-        CloseShutter();
-      }
+      CloseBehindDoor();
       break;
     case machine::InputKind::kStart:
       Resume();
@@ -284,10 +272,7 @@ void Control::Apply(const machine::InputChange& input) {
       if (!Busy() && !s_.passing) {
         Halt("STOP");
       } else if (s_.active && !s_.active->ended && BringToHalt()) {
-        if (!Busy()) {
-          s_.halting = false;
-          Halt("STOP");
-        }
+        if (!Busy()) HaltOnPath();
       } else {
         s_.stop_requested = true;
       }
@@ -296,6 +281,16 @@ void Control::Apply(const machine::InputChange& input) {
       EmergencyStop();
       break;
   }
+}
+
+void Control::CloseBehindDoor() {
+  const machine::Place in_execution = std::exchange(s_.place, PlaceOfMotion());
+  SuspendBeam();
+  if (s_.beam.shutter_open) {
+    s_.beam.shutter_was_open = true;
+    CloseShutter();
+  }
+  s_.place = in_execution;
 }
 
 // Reports what was not yet reported of the wait under way. While a motion goes on (/NEXT) there is
@@ -307,12 +302,25 @@ void Control::TellWait() {
   if (!s_.active && s_.now > pending.told) {
     observer_.OnWait({.start = pending.told,
                       .end = s_.now,
-                      .place = s_.place,
+                      .place = pending.place,
                       .kind = timed ? pending.wait : machine::WaitKind::kCondition,
                       .beam_on = s_.beam.on,
                       .power_percent = s_.beam.on ? s_.beam.power.constant_percent : 0.0});
   }
   pending.told = s_.now;
+}
+
+// The step that the machine is at: the program runs ahead of /FLY moves, but not of one of /NEXT,
+// which goes on beside it.
+machine::Place Control::PlaceOfMotion() const {
+  return s_.active && !s_.background ? s_.active->note.place : s_.place;
+}
+
+// The motions are at rest, and go on at START: the halt belongs to the move that was under way.
+void Control::HaltOnPath() {
+  s_.halting = false;
+  s_.place_ahead = std::exchange(s_.place, s_.halted_behind);
+  Halt(s_.held.empty() ? "STOP" : "HOLD");
 }
 
 void Control::Halt(std::string_view why) {
@@ -365,6 +373,7 @@ void Control::Resume() {
   s_.timeline.insert(s_.timeline.begin(), s_.interrupted.begin(), s_.interrupted.end());
   s_.interrupted.clear();
   PlanHeld();
+  if (s_.place_ahead) s_.place = *std::exchange(s_.place_ahead, std::nullopt);
 }
 
 // The state freezes: no motion is modelled after it (motion.md 6).

@@ -43,6 +43,9 @@ class Control : private VariableAccess {
   void ActOnTime();
   void ApplyScripted();
   void Halt(std::string_view why);
+  void HaltOnPath();
+  machine::Place PlaceOfMotion() const;
+  void CloseBehindDoor();
   void TellWait();
   SimTime After(double seconds) const;
   SimTime TickAfter(double seconds) const;
@@ -86,9 +89,9 @@ class Control : private VariableAccess {
   // Where a chain that is planned anew goes on: after the way that brings the acceleration to zero,
   // and the speed down where it must.
   struct Onward {
-    std::size_t own = 0;       // of s_.appended: the command of that place
-    double lead_length = 0.0;  // of that way, mm
-    double speed = 0.0;        // at its end, mm/s
+    std::size_t own = 0;        // of s_.appended: the command of that place
+    double lead_length = 0.0;   // of that way, mm
+    double speed = 0.0;         // at its end, mm/s
     motion::MoveCommand first;  // what is left of the command then
   };
   bool ReplanChain();
@@ -146,6 +149,7 @@ class Control : private VariableAccess {
   double SchedulePower() const;
   void Show(PassageEffect effect, When when = When::kPassage);
   void Carry(const PassageEffect& effect);
+  void TakeEffect(const PassageEffect& effect);
   void BeamOn(const machine::PowerBySpeed& power);
   void BeamOff();
   void OpenShutter();
@@ -181,6 +185,8 @@ class Control : private VariableAccess {
   void Raise(ErrorCode code, std::string detail = {});
   void HandleError(const Error& error);
   void Warn(ErrorCode code, std::string detail, std::string_view rule);
+  void WarnAt(const machine::Place& place, ErrorCode code, std::string detail,
+              std::string_view rule);
 
   // --- control_data.cc: variables ---
   float Read(Variable variable) override;

@@ -21,12 +21,17 @@ Severity SeverityInRun(ErrorCode code) {
 }  // namespace
 
 void Control::Warn(ErrorCode code, std::string detail, std::string_view rule) {
+  WarnAt(s_.place, code, std::move(detail), rule);
+}
+
+void Control::WarnAt(const machine::Place& place, ErrorCode code, std::string detail,
+                     std::string_view rule) {
   observer_.OnDiagnostic(s_.now, {.code = code,
                                   .severity = SeverityInRun(code),
                                   .detail = std::move(detail),
                                   .rule = std::string(rule),
-                                  .program = s_.place.program,
-                                  .step = s_.place.step});
+                                  .program = place.program,
+                                  .step = place.step});
 }
 
 // The failing instruction has no effect. What moves comes to rest first; an error that was raised

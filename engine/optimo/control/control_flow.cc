@@ -342,6 +342,7 @@ void Control::Execute(const Instruction& i) {
 void Control::Wait(Pending pending) {
   s_.pending = pending;
   s_.pending.told = s_.now;
+  s_.pending.place = s_.place;
 }
 
 void Control::Jump(int label) {

@@ -117,8 +117,8 @@ void Control::ArriveAtEnd() {
   }
   const motion::CornerReport& corner = active.motion.corner;
   if (corner.passage == motion::Passage::kStopReversal) {
-    Warn(ErrorCode::kFlyReversal, "the path turns back: the machine stops at the target",
-         "OPT-B.25");
+    WarnAt(active.note.place, ErrorCode::kFlyReversal,
+           "the path turns back: the machine stops at the target", "OPT-B.25");
   }
   if (active.note.last || active.ended) {
     observer_.OnMove({.at = s_.now,
@@ -197,6 +197,10 @@ bool Control::BringToHalt() {
   for (std::size_t k = 0; k < left.size(); ++k) {
     if (k >= dropped) s_.interrupted.emplace_back(restart[k - dropped]);
     add_marks(stop.index + k, s_.interrupted);
+  }
+  s_.halted_behind = s_.place;  // beside a motion of /NEXT
+  if (const MoveNote* note = NoteOf(left.front().tag); note != nullptr && !s_.background) {
+    s_.halted_behind = note->place;
   }
   s_.halting = true;
   s_.stop_requested = false;

@@ -159,6 +159,7 @@ struct Pending {
   SimTime until{0};
   SimTime told{0};  // reported up to here
   machine::WaitKind wait = machine::WaitKind::kDwell;
+  machine::Place place{};  // of the instruction that waits
   ExprRange expression{};  // kCondition: of the module of the innermost frame
   bool of_move = false;    // kCondition: /START of a MOVE, whose /TIME counts the wait
 };
@@ -207,12 +208,13 @@ struct ControlState {
   std::deque<motion::PlannedItem> interrupted{};  // STOP: what follows at START
   std::deque<AppendedItem> appended{};            // while /FLY passages are open
   std::deque<AppendedItem> held{};                // HOLD: what follows at START
-  machine::Place halted_behind{};                 // the move that HOLD made exact
-  machine::Place place_ahead{};  // where the program was when HOLD halted the motion
-  bool halting = false;          // coming to rest for a STOP, or a HOLD inside a chain
-  bool passing = false;          // the planner may hold a /FLY motion back
-  bool background = false;       // the motion under way is one of /NEXT
-  bool condition_met = false;    // /START of the instruction in execution was true
+  machine::Place halted_behind{};  // the move that HOLD made exact, or that STOP interrupted
+  // Where the program had run ahead to when HOLD or STOP halted the motion; set while halted.
+  std::optional<machine::Place> place_ahead{};
+  bool halting = false;        // coming to rest for a STOP, or a HOLD inside a chain
+  bool passing = false;        // the planner may hold a /FLY motion back
+  bool background = false;     // the motion under way is one of /NEXT
+  bool condition_met = false;  // /START of the instruction in execution was true
   SimTime instruction_since{0};
   Polling polling{};
   int run_ahead = 0;  // instructions executed since the last motion

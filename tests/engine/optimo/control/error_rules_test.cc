@@ -280,7 +280,7 @@ INSTANTIATE_TEST_SUITE_P(
         Row{"off_axis", 7313, 1, "TCP (8.68,0,0.72/0,1.77,0)\n"},
         Row{"beside", 7313, 1, "TCP (0,0,3/0,1,3)\n"},
         Row{"reversed", 7315, 1, "TCP (0,0,0/0,0,5)\n"},
-        Row{"reversal", 7316, 6,
+        Row{"reversal", 7316, 5,
             kAbsolThere +
                 "SPEED 20\nMOVE (1100.,1000.,-400.,0.,0.)/FLY\nMOVE (1000.,1000.,-400.,0.,0.)\n"},
         Row{"limited",
