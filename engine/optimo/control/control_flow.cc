@@ -66,6 +66,9 @@ void Control::Fetch() {
   s_.op = i.op;
   if (s_.passing || Busy()) {
     if (s_.passing && i.op == Op::kCoord && static_cast<CoordType>(i.choice) != modal().coord) {
+      // A failing instruction is an executed step like any other.
+      observer_.OnStep(s_.now, s_.place, Describe(i.op).name);
+      ++s_.steps;
       return Raise(ErrorCode::kFlyBeforeCoord,
                    "COORD changes the coordinate type after a /FLY move");
     }

@@ -313,6 +313,20 @@ TEST(ErrorRules, FatalErrorsAreNotCaught) {
   EXPECT_EQ(CodeOf(RunText("ERR 900\nMOVE (9000.,0.,0.,0.,0.)\n900 VI[2]=1\n")), 7301);
 }
 
+// OPT-B.68: the failing instruction was executed, too, and counts, whatever its error.
+TEST(ErrorRules, AFailingStepCounts) {
+  const std::string three = "COORD ABSOL\nPATH LIN\nMOVE (121.02,2201.2,-350.,0.,0.)";
+  for (const std::string& text :
+       {three + "/FLY\nCOORD ROBOT\n", three + "\nWORK 1,3/ON\n", three + "\nVR[0]=1/0\n",
+        three + "\nMOVE (9000.,0.,0.,0.,0.)\n", three + "/FLY\nMOVE (9000.,0.,0.,0.,0.)\n",
+        three + "/FLY\nGOTO 77\n"}) {
+    const Ran ran = RunText(text);
+    EXPECT_EQ(ran.outcome.place.step, 4) << text;
+    EXPECT_EQ(ran.steps, 4U) << text;
+    EXPECT_EQ(ran.steps_begun.size(), 4U) << text;
+  }
+}
+
 // OPT-E.7403, OPT-3.53, OPT-B.36: a literal schedule out of range is an error of the compiler, a
 // computed one a program error of the WORKDEF, which ERR catches.
 TEST(ErrorRules, AComputedScheduleOutOfRangeIsCaught) {
