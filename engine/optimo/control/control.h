@@ -184,6 +184,8 @@ class Control : private VariableAccess {
   void Wait(Pending pending);
   void Raise(ErrorCode code, std::string detail = {});
   void HandleError(const Error& error);
+  void FailWithoutHandler(int label);
+  void Tell(const Diagnostic& finding);
   void Warn(ErrorCode code, std::string detail, std::string_view rule);
   void WarnAt(const machine::Place& place, ErrorCode code, std::string detail,
               std::string_view rule);

@@ -26,13 +26,15 @@ void Control::Warn(ErrorCode code, std::string detail, std::string_view rule) {
 
 void Control::WarnAt(const machine::Place& place, ErrorCode code, std::string detail,
                      std::string_view rule) {
-  observer_.OnDiagnostic(s_.now, {.code = code,
-                                  .severity = SeverityInRun(code),
-                                  .detail = std::move(detail),
-                                  .rule = std::string(rule),
-                                  .program = place.program,
-                                  .step = place.step});
+  Tell({.code = code,
+        .severity = SeverityInRun(code),
+        .detail = std::move(detail),
+        .rule = std::string(rule),
+        .program = place.program,
+        .step = place.step});
 }
+
+void Control::Tell(const Diagnostic& finding) { observer_.OnDiagnostic(s_.now, finding); }
 
 // The failing instruction has no effect. What moves comes to rest first; an error that was raised
 // ahead of a motion is handled when that motion is over.
@@ -72,9 +74,7 @@ void Control::HandleError(const Error& error) {
           *frames[n].error_label);
       if (!handler) {
         Warn(error.code, error.detail, {});
-        s_.machine.data.vi[99] = 60.0F;
-        return Finish(machine::OutcomeKind::kFailed, ErrorCode::kLabelNotFound,
-                      "no sequence number " + std::to_string(*frames[n].error_label) + " for ERR");
+        return FailWithoutHandler(*frames[n].error_label);
       }
       break;
     }
@@ -84,6 +84,19 @@ void Control::HandleError(const Error& error) {
   program().frames.resize(catching + 1);
   frame().error_label.reset();  // taking the handler disarms it, OPT-3.55
   frame().next = *handler;
+}
+
+// The label of ERR is missing: a second error, which nothing can catch. OPT-3.59, OPT-E.60
+void Control::FailWithoutHandler(int label) {
+  const std::string detail = "no sequence number " + std::to_string(label) + " for ERR";
+  Tell({.code = ErrorCode::kLabelNotFound,
+        .severity = Severity::kFatal,
+        .detail = detail,
+        .rule = "OPT-3.59",
+        .program = s_.place.program,
+        .step = s_.place.step});
+  s_.machine.data.vi[99] = static_cast<float>(Lookup(ErrorCode::kLabelNotFound).number);
+  Finish(machine::OutcomeKind::kFailed, ErrorCode::kLabelNotFound, detail);
 }
 
 }  // namespace rmlcell::optimo

@@ -327,6 +327,21 @@ TEST(ErrorRules, AFailingStepCounts) {
   }
 }
 
+// OPT-3.59, OPT-E.60: an ERR whose label is missing is an error of its own, and fatal; it is told
+// behind the one that it should have caught.
+TEST(ErrorRules, AMissingHandlerIsAFindingOfItsOwn) {
+  const Ran ran = RunText("ERR 5\nVI[2]=1\nFUNCTION 44\n", {.programs = {{44, "VR[0]=1/0\n"}}});
+  EXPECT_EQ(CodeOf(ran), 60);
+  ASSERT_EQ(ran.findings.size(), 2U);
+  EXPECT_EQ(ran.findings[0].code, ErrorCode::kDivisionByZero);
+  EXPECT_EQ(ran.findings[0].severity, Severity::kProgram);
+  EXPECT_EQ(ran.findings[1].code, ErrorCode::kLabelNotFound);
+  EXPECT_EQ(ran.findings[1].severity, Severity::kFatal);
+  EXPECT_EQ(ran.findings[1].program, 44);
+  EXPECT_EQ(ran.findings[1].step, 1);
+  EXPECT_EQ(ran.outcome.place.program, 44);
+}
+
 // OPT-E.7403, OPT-3.53, OPT-B.36: a literal schedule out of range is an error of the compiler, a
 // computed one a program error of the WORKDEF, which ERR catches.
 TEST(ErrorRules, AComputedScheduleOutOfRangeIsCaught) {
