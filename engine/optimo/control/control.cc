@@ -220,7 +220,7 @@ void Control::ActOnTime() {
       break;
   }
   if (s_.phase == machine::RunPhase::kRunning && s_.now >= setup_.budget.virtual_time) {
-    Finish(
+    BreakOff(
         machine::OutcomeKind::kBudgetExceeded, ErrorCode::kTimeBudget,
         "the run takes longer than " + ShortestText(ToSeconds(setup_.budget.virtual_time)) + " s");
   }
@@ -335,20 +335,24 @@ void Control::Halt(std::string_view why) {
   observer_.OnHalt({.at = s_.now, .place = s_.place, .why = why});
 }
 
+// The halt up to now: the operator is waited for.
+void Control::TellHalt() {
+  if (s_.now <= s_.halted_at) return;
+  observer_.OnWait({.start = s_.halted_at,
+                    .end = s_.now,
+                    .place = s_.place,
+                    .kind = machine::WaitKind::kOperator,
+                    .beam_on = false,
+                    .power_percent = 0.0});
+}
+
 void Control::Resume() {
   if (s_.phase != machine::RunPhase::kHalted) return;
   if (s_.machine.door_open && (s_.beam_returns || s_.beam.shutter_was_open)) {
     Warn(ErrorCode::kShutterInterlock, "START with the operator door open", "OPT-3.17");
     return;
   }
-  if (s_.now > s_.halted_at) {
-    observer_.OnWait({.start = s_.halted_at,
-                      .end = s_.now,
-                      .place = s_.place,
-                      .kind = machine::WaitKind::kOperator,
-                      .beam_on = false,
-                      .power_percent = 0.0});
-  }
+  TellHalt();
   // A wait that was under way lasts as long as before: time stood still for it.
   const SimTime stood = s_.now - s_.halted_at;
   if (s_.pending.kind != Pending::Kind::kNone) {
@@ -378,27 +382,33 @@ void Control::Resume() {
 
 // The state freezes: no motion is modelled after it (motion.md 6).
 void Control::EmergencyStop() {
-  if (s_.active) {
-    TellMotion(s_.now);
-    s_.machine.axes = AxesNow();
-    s_.active.reset();
-  }
   s_.machine.data.vi[99] = 7610.0F;
-  Finish(machine::OutcomeKind::kFailed, ErrorCode::kEmergencyStop, {});
+  BreakOff(machine::OutcomeKind::kFailed, ErrorCode::kEmergencyStop, {});
 }
 
 void Control::End(machine::OutcomeKind kind, ErrorCode code) {
-  if (s_.phase == machine::RunPhase::kFinished) return;
+  if (s_.phase != machine::RunPhase::kFinished) BreakOff(kind, code, {});
+}
+
+// From outside, wherever the machine is: at its place, not where the program has run ahead to.
+void Control::BreakOff(machine::OutcomeKind kind, ErrorCode code, std::string detail) {
+  s_.place = PlaceOfMotion();
+  Finish(kind, code, std::move(detail));
+}
+
+// Beam off, shutter closed, whatever the reason (OPT-3.16, 3.18, B.54). What goes on is told up to
+// now.
+void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail) {
+  if (s_.phase == machine::RunPhase::kHalted) {
+    TellHalt();
+  } else {
+    TellWait();
+  }
   if (s_.active) {
     TellMotion(s_.now);
     s_.machine.axes = AxesNow();
     s_.active.reset();
   }
-  Finish(kind, code, {});
-}
-
-// Beam off, shutter closed, whatever the reason (OPT-3.16, 3.18, B.54).
-void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail) {
   s_.timeline.clear();
   s_.held.clear();
   s_.interrupted.clear();

@@ -51,7 +51,9 @@ class Control : private VariableAccess {
   SimTime TickAfter(double seconds) const;
   void CountExecution(int slot);
   void Resume();
+  void TellHalt();
   void EmergencyStop();
+  void BreakOff(machine::OutcomeKind kind, ErrorCode code, std::string detail);
   void Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail);
   SimTime NextTick(SimTime since) const;
 
