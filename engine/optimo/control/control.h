@@ -129,6 +129,7 @@ class Control : private VariableAccess {
   void SetWorkOffset(const Instruction& i);
   void SetTool(const Instruction& i);
   void ZeroAxes();
+  void TellZeroed(int group);
   motion::Head HeadNow() const;
 
   // --- control_work.cc: WORK, also while the program goes on ---

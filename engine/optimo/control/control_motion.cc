@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kPercent = 0.01;
 constexpr double kAccelLeast_percent = 0.1;  // OPT-B.22
+// What ZERO moves at a time, as its moves are told. OPT-4.49
+constexpr std::array<std::string_view, 3> kZeroGroups = {"ZERO_Z", "ZERO_AB", "ZERO_XY"};
 
 motion::MoveCommand::Kind KindOf(PathType path, CoordType coord) {
   if (coord == CoordType::kRobot) return motion::MoveCommand::Kind::kPointToPointAxes;
@@ -332,26 +334,35 @@ void Control::SetTool(const Instruction& i) {
   s_.machine.tool = {.offset = {v[0], v[1], v[2]}, .reference = {v[3], v[4], v[5]}};
 }
 
-// Z, then A and B, then X and Y, each to its mechanical zero: OPT-4.49, OPT-B.60. In virtual time
-// each group is a joint motion.
+// Z, then A and B, then X and Y: OPT-4.49, OPT-B.60. In virtual time each group is a joint motion
+// to its mechanical zero, where its reference is found; each is told, also one that stands there
+// already.
 void Control::ZeroAxes() {
   if (simulating()) return;
   motion::AxisPose pose = s_.planned_axes;
   const motion::AxisPose& zero = parameters_.mechanical_zero;
+  int group = 0;
   const auto move = [&](const motion::AxisPose& to) {
     const motion::PathPiece path = motion::PathPiece::Joint({pose.column, pose.a_rad, pose.b_rad},
                                                             {to.column, to.a_rad, to.b_rad});
     pose = to;
-    if (path.length() <= 0.0) return;
-    motion::MoveCommand command;
-    command.kind = motion::MoveCommand::Kind::kPointToPointAxes;
-    command.path = path;
-    command.head = HeadNow();
-    command.speed_fraction = 0.1;  // no override: OPT-4.51
-    command.tag = s_.next_tag++;
-    s_.notes.emplace_back(command.tag,
-                          MoveNote{.place = s_.place, .path = PathType::kPtp, .last = false});
-    if (const Status appended = s_.planner.Append(command); !appended) s_.notes.pop_back();
+    if (path.length() > 0.0) {
+      motion::MoveCommand command;
+      command.kind = motion::MoveCommand::Kind::kPointToPointAxes;
+      command.path = path;
+      command.head = HeadNow();
+      command.speed_fraction = 0.1;  // no override: OPT-4.51
+      command.tag = s_.next_tag++;
+      s_.notes.emplace_back(command.tag,
+                            MoveNote{.place = s_.place, .path = PathType::kPtp, .last = false});
+      if (const Status appended = s_.planner.Append(command); !appended) s_.notes.pop_back();
+    }
+    const std::uint64_t tag = s_.next_tag++;
+    const int zeroed = group++;
+    s_.effects.emplace_back(
+        tag,
+        PassageEffect{.kind = PassageEffect::Kind::kZeroed, .place = s_.place, .index = zeroed});
+    s_.planner.Mark(tag);
   };
   motion::AxisPose to = pose;
   to.column.z = zero.column.z;
@@ -365,6 +376,18 @@ void Control::ZeroAxes() {
   s_.planned_axes = to;
   s_.machine.zeroed = true;
   StopMotions();
+}
+
+void Control::TellZeroed(int group) {
+  const motion::AxisPose axes = AxesNow();
+  observer_.OnMove({.at = s_.now,
+                    .place = s_.place,
+                    .tip = TipNow(),
+                    .axes = axes,
+                    .program_point = axes.column,
+                    .rotary_a = axes.a_rad,
+                    .path = kZeroGroups[static_cast<std::size_t>(group)],
+                    .programmed = false});
 }
 
 }  // namespace rmlcell::optimo

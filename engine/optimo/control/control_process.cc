@@ -75,6 +75,8 @@ void Control::TakeEffect(const PassageEffect& effect) {
     case PassageEffect::Kind::kTable:
       s_.machine.table_deg = effect.value;
       return TellSignal(machine::Signal::kRotaryTable, 0, effect.value);
+    case PassageEffect::Kind::kZeroed:
+      return TellZeroed(effect.index);
   }
 }
 

@@ -137,7 +137,8 @@ struct ActiveMotion {
 
 // Something visible that happens between two motions (planner marks).
 struct PassageEffect {
-  enum class Kind { kOutput, kAnalogue, kBeamOn, kBeamOff, kSchedule, kTable };
+  // kZeroed: a group of axes stands at its mechanical zero; `index` says which.
+  enum class Kind { kOutput, kAnalogue, kBeamOn, kBeamOff, kSchedule, kTable, kZeroed };
   Kind kind = Kind::kOutput;
   machine::Place place{};
   int index = 0;
