@@ -128,12 +128,16 @@ SimTime Control::NextEvent(SimTime until) const {
     next = std::max(s_.now, setup_.inputs[s_.next_input].at);
   if (s_.active) {
     next = std::min(next, s_.active->end);
-    if (Watching() && !s_.deferred) {
-      if (s_.end_condition) next = std::min(next, NextTick(s_.watched_since));
-      if (s_.time_gosub && !s_.time_ran_out) next = std::min(next, std::max(s_.now, s_.time_due));
-    }
   } else if (!s_.timeline.empty()) {
     next = s_.now;
+  }
+  const bool last_input = s_.next_input >= setup_.inputs.size();
+  if ((Watching() || s_.no_motion) && !s_.deferred) {
+    // Where the program stands and no input is to come, ticks would show nothing new.
+    const bool settled =
+        s_.pending.kind == Pending::Kind::kNoMotion && !Busy() && last_input && !s_.input_changed;
+    if (s_.end_condition && !settled) next = std::min(next, NextTick(s_.watched_since));
+    if (s_.time_gosub && !s_.time_ran_out) next = std::min(next, std::max(s_.now, s_.time_due));
   }
   const bool times_out = s_.pending.of_move && s_.time_gosub;
   switch (s_.pending.kind) {
@@ -150,13 +154,14 @@ SimTime Control::NextEvent(SimTime until) const {
     case Pending::Kind::kStandstill:
       if (!Busy()) next = s_.now;
       break;
+    case Pending::Kind::kNoMotion:
     case Pending::Kind::kNone:
       break;
   }
   // Nothing outside can change a condition any more, and no motion either: ticks would show nothing
   // new.
-  const bool quiet = s_.pending.kind == Pending::Kind::kCondition && !Busy() && !times_out &&
-                     s_.next_input >= setup_.inputs.size();
+  const bool quiet =
+      s_.pending.kind == Pending::Kind::kCondition && !Busy() && !times_out && last_input;
   if (quiet) next = kForever;
   next = std::min(next, NextTask());
   if (s_.input_changed && s_.pending.kind == Pending::Kind::kCondition) next = s_.now;
@@ -216,6 +221,7 @@ void Control::ActOnTime() {
       if (s_.active) EndMotionHere();
       s_.timeline.clear();
       break;
+    case Pending::Kind::kNoMotion:  // WatchMove ends it
     case Pending::Kind::kNone:
       break;
   }
@@ -298,7 +304,9 @@ void Control::CloseBehindDoor() {
 void Control::TellWait() {
   Pending& pending = s_.pending;
   const bool timed = pending.kind == Pending::Kind::kTime;
-  if (!timed && pending.kind != Pending::Kind::kCondition) return;
+  const bool condition =
+      pending.kind == Pending::Kind::kCondition || pending.kind == Pending::Kind::kNoMotion;
+  if (!timed && !condition) return;
   if (!s_.active && s_.now > pending.told) {
     observer_.OnWait({.start = pending.told,
                       .end = s_.now,

@@ -75,6 +75,7 @@ class Control : private VariableAccess {
   bool Watching() const;
   void Unwatch();
   void WatchMove();
+  void EndNoMotion();
 
   // 0: no source is known.
   int LineOf(int slot, std::uint32_t step) const;
@@ -120,6 +121,8 @@ class Control : private VariableAccess {
   bool AppendMotion(const motion::PathPiece& path, const Instruction& i, const MoveNote& note,
                     bool settles);
   bool InTravel(const motion::PathPiece& path);
+  bool NeverMoves() const;
+  void NotUnderWay(const Instruction& i);
   bool MoveHole(const Instruction& i, const motion::TipPose& from, const motion::TipPose& target,
                 MoveNote note);
   void WatchAndGoOn(const Instruction& i, std::uint64_t first_tag, bool ran_ahead);
@@ -165,6 +168,7 @@ class Control : private VariableAccess {
   // --- control_flow.cc: instructions and jumps; control_calls.cc; control_errors.cc ---
   void Execute(const Instruction& i);
   bool NeedsStandstill(const Instruction& i);
+  static bool WaitsForNext(const Instruction& i, bool main);
   bool MakeDueGosub();
   bool LetPollingTakeTime(const Instruction& i, std::uint32_t at);
   void Jump(int label);

@@ -54,6 +54,7 @@ void Control::Raise(ErrorCode code, std::string detail) {
 
 void Control::HandleError(const Error& error) {
   s_.machine.data.vi[99] = static_cast<float>(Lookup(error.code).number);
+  TellWait();
   s_.pending = {};
   s_.condition_met = false;
   Unwatch();

@@ -62,6 +62,12 @@ bool Control::InTravel(const motion::PathPiece& path) {
   return false;
 }
 
+// OPT-B.22
+bool Control::NeverMoves() const {
+  return modal().speed_percent <= 0.0 || modal().accel_percent < kAccelLeast_percent;
+}
+
+// False: an error was raised, or the MOVE stands until its /TIME (no_motion).
 bool Control::AppendMotion(const motion::PathPiece& path, const Instruction& i,
                            const MoveNote& note, bool settles) {
   double speed = modal().speed_percent * kPercent * s_.override_percent * kPercent;
@@ -72,16 +78,22 @@ bool Control::AppendMotion(const motion::PathPiece& path, const Instruction& i,
       Warn(ErrorCode::kSpeedLimited, "SPEED x override is over 100 %", "OPT-4.38");
     }
   }
-  if ((modal().speed_percent <= 0.0 || modal().accel_percent < kAccelLeast_percent) &&
-      path.length() > 0.0 && !i.Has(kTime)) {
-    Raise(ErrorCode::kNoMotion, modal().speed_percent <= 0.0 ? "SPEED is 0" : "ACCEL is below 0.1");
+  const auto never_ends = [&](std::string why) {
+    if (i.Has(kTime)) {
+      s_.no_motion = true;
+    } else {
+      Raise(ErrorCode::kNoMotion, std::move(why));
+    }
     return false;
+  };
+  if (NeverMoves() && path.length() > 0.0) {
+    return never_ends(modal().speed_percent <= 0.0 ? "SPEED is 0" : "ACCEL is below 0.1");
   }
   motion::MoveCommand command;
   command.kind = KindOf(note.path, modal().coord);
   command.path = path;
   command.head = HeadNow();
-  command.speed_fraction = std::max(speed, 1e-6);
+  command.speed_fraction = speed;
   command.acceleration_fraction = std::max(modal().accel_percent, kAccelLeast_percent) * kPercent;
   command.overshoot_fraction = modal().oversh_percent * kPercent;
   command.fly = note.fly;
@@ -112,6 +124,7 @@ bool Control::AppendMotion(const motion::PathPiece& path, const Instruction& i,
   s_.notes.emplace_back(command.tag, kept);
   if (const Status appended = s_.planner.Append(command); !appended) {
     s_.notes.pop_back();
+    if (appended.error().code == ErrorCode::kNoMotion) return never_ends(appended.error().detail);
     Raise(appended.error().code, appended.error().detail);
     return false;
   }
@@ -197,7 +210,7 @@ void Control::Move(const Instruction& i) {
   } else {
     const motion::TipPose from = HeadNow().TipOf(s_.planned_axes);
     if (m.path == PathType::kHole) {
-      if (!MoveHole(i, from, *target, note)) return Unwatch();
+      if (!MoveHole(i, from, *target, note)) return NotUnderWay(i);
       return WatchAndGoOn(i, first_tag, ran_ahead);
     }
     path = motion::PathPiece::Line(from, *target);
@@ -215,9 +228,16 @@ void Control::Move(const Instruction& i) {
       }
     }
   }
-  if (!InTravel(path) || !AppendMotion(path, i, note, true)) return Unwatch();
+  if (!InTravel(path) || !AppendMotion(path, i, note, true)) return NotUnderWay(i);
   if (path.length() <= 0.0) return Unwatch();
   WatchAndGoOn(i, first_tag, ran_ahead);
+}
+
+// A MOVE that came to nothing, or that stands until its /TIME runs out.
+void Control::NotUnderWay(const Instruction& i) {
+  if (!s_.no_motion) return Unwatch();
+  s_.watched_since = s_.now;
+  if (!i.Has(kNext)) Wait({.kind = Pending::Kind::kNoMotion, .since = s_.now});
 }
 
 // The motions of a MOVE are on their way: /END and /TIME watch them, /NEXT goes on meanwhile.

@@ -154,6 +154,7 @@ struct Pending {
     kTime,        // until `until`
     kCondition,   // until the expression of the instruction is true, then it is carried out
     kTakeOver,    // the next tick, when the /NEXT motion is brought to rest
+    kNoMotion,    // the end of ControlState::no_motion
   };
   Kind kind = Kind::kNone;
   SimTime since{0};
@@ -233,6 +234,9 @@ struct ControlState {
   SimTime watched_since{0};
   bool watch_begins = false;  // with the motion: the program ran ahead through a /FLY passage
   bool time_ran_out = false;
+  // A MOVE that could never end (SPEED 0) stands until its /TIME runs out or its /END is true: from
+  // watched_since on. With /NEXT the program goes on meanwhile. OPT-B.22
+  bool no_motion = false;
 
   bool input_changed = false;  // conditions are to be tested again
   bool tasks_input = false;    // the same for the /START of WORK in the background
