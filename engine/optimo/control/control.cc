@@ -122,6 +122,13 @@ SimTime Control::NextTick(SimTime since) const {
   return since + ((s_.now - since) / cycle + 1) * cycle;
 }
 
+// Nothing outside can change the condition any more, and no motion either.
+bool Control::WaitsForEver() const {
+  const bool times_out = s_.pending.of_move && s_.time_gosub;
+  return s_.pending.kind == Pending::Kind::kCondition && !Busy() && !times_out &&
+         s_.next_input >= setup_.inputs.size();
+}
+
 SimTime Control::NextEvent(SimTime until) const {
   SimTime next = kForever;
   if (s_.next_input < setup_.inputs.size())
@@ -158,11 +165,7 @@ SimTime Control::NextEvent(SimTime until) const {
     case Pending::Kind::kNone:
       break;
   }
-  // Nothing outside can change a condition any more, and no motion either: ticks would show nothing
-  // new.
-  const bool quiet =
-      s_.pending.kind == Pending::Kind::kCondition && !Busy() && !times_out && last_input;
-  if (quiet) next = kForever;
+  if (WaitsForEver()) next = kForever;  // ticks would show nothing new
   next = std::min(next, NextTask());
   if (s_.input_changed && s_.pending.kind == Pending::Kind::kCondition) next = s_.now;
   return std::min(next, std::max(setup_.budget.virtual_time, s_.now + SimTime(1)) <= until
@@ -226,9 +229,10 @@ void Control::ActOnTime() {
       break;
   }
   if (s_.phase == machine::RunPhase::kRunning && s_.now >= setup_.budget.virtual_time) {
-    BreakOff(
-        machine::OutcomeKind::kBudgetExceeded, ErrorCode::kTimeBudget,
-        "the run takes longer than " + ShortestText(ToSeconds(setup_.budget.virtual_time)) + " s");
+    std::string detail =
+        "the run takes longer than " + ShortestText(ToSeconds(setup_.budget.virtual_time)) + " s";
+    if (WaitsForEver()) detail += ": it waits for a condition, and no input is to come";
+    BreakOff(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kTimeBudget, std::move(detail));
   }
 }
 

@@ -38,6 +38,7 @@ class Control : private VariableAccess {
   void StartMain();
   bool MayFetch() const;
   void Fetch();
+  bool WaitsForEver() const;
   SimTime NextEvent(SimTime until) const;
   void LetTimePass(SimTime to);
   void ActOnTime();

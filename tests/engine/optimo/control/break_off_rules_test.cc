@@ -49,6 +49,15 @@ TEST(BreakOffRules, TheTimeBudgetCutsWaits) {
                 WaitKind::kCondition, 3.0, 2);
 }
 
+// OPT-B.67, OPT-E.7902: a WAIT that nothing can end lasts until the budget, and the outcome says
+// so; it costs no more than one look.
+TEST(BreakOffRules, AWaitThatNothingCanEnd) {
+  const std::string never = "it waits for a condition, and no input is to come";
+  const RunOptions month = AtMost(std::chrono::hours(24 * 30));
+  EXPECT_TRUE(RunText("WAIT IL[20]\n", month).outcome.detail.ends_with(never));
+  EXPECT_FALSE(RunText("DELAY 9E6\n", month).outcome.detail.ends_with(never));
+}
+
 // OPT-E.7902, OPT-2.49: a motion is told up to the budget; the place is that of the move under way,
 // not of the one that the program has run ahead to.
 TEST(BreakOffRules, TheTimeBudgetCutsAMotion) {
