@@ -17,7 +17,8 @@ constexpr machine::FamilyInfo kInfo = {.id = "optimo",
                                        .extensions = ".S .SI .CMP .O",
                                        .axes = "X Y Z A B",
                                        .has_executables = true,
-                                       .has_schedules = true};
+                                       .has_schedules = true,
+                                       .hold_in_remote = false};  // OPT-4.17
 
 constexpr std::array kFigures = {
     machine::FigureInfo{"lookahead_starved", "",
