@@ -20,11 +20,19 @@ struct FamilyInfo {
   std::string_view axes{};        // "X Y Z A B"
   bool has_executables = false; // makes executables at slot + 100
   bool has_schedules = false;   // laser schedules and process definitions
+  bool hold_in_remote = false;  // the HOLD key works in mode REMOTE, too
   // The machine's own codes for a number that is no slot, and for a slot without program. A machine without
   // program memory has none: the cell keeps its programs, and says so in its own words.
   ErrorCode no_slot = ErrorCode::kCellInvalidArgument;
   ErrorCode empty_slot = ErrorCode::kCellNotFound;
 };
+
+// The key that holds a run from afar: HOLD, after the present instruction; STOP, at once on the
+// path, where HOLD has no effect.
+inline InputKind HoldKey(const FamilyInfo& info, Mode mode) {
+  const bool works = mode != Mode::kRemote || info.hold_in_remote;
+  return works ? InputKind::kHold : InputKind::kStop;
+}
 
 // A program text or stream as it comes from a user.
 struct SourceFile {

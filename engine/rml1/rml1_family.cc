@@ -17,7 +17,8 @@ constexpr machine::FamilyInfo kInfo = {.id = "rml1",
                                        .extensions = ".RML .PRN",
                                        .axes = "X Y Z A",
                                        .has_executables = false,
-                                       .has_schedules = false};
+                                       .has_schedules = false,
+                                       .hold_in_remote = true};  // it has no such mode
 
 Diagnostic Plain(ErrorCode code, std::string detail) {
   return {.code = code,

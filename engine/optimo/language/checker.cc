@@ -215,8 +215,9 @@ void Checker::CheckAssign(const Instruction& i) {
   const ExprNode& value = module_.nodes[value_at];
   if (typed && value.op != Node::kVariable &&
       (value.number < 0.0F || value.number >= static_cast<float>(1 << width))) {
-    findings_.Add(ErrorCode::kAssignGroup, typing_.PlaceOfNode(value_at),
-                  "the value does not fit into " + std::to_string(width) + " places", "OPT-7.103");
+    findings_.AddAs(Severity::kCompile, ErrorCode::kAssignGroup, typing_.PlaceOfNode(value_at),
+                    "the value does not fit into " + std::to_string(width) + " places",
+                    "OPT-7.103");
   }
   if (!known) return;
   const ExprNode& target = module_.Value(i, 0)[0];
@@ -224,7 +225,8 @@ void Checker::CheckAssign(const Instruction& i) {
     Warn(ErrorCode::kTypeMismatch, "ASSIGN writes logical outputs or variables", "OPT-7.102");
   } else if (target.index + width - 1 >
              (target.group == VariableGroup::kPar ? kParameterCount - 1 : kVariableIndexMax)) {
-    Warn(ErrorCode::kAssignGroup, "the group runs past the last index", "OPT-7.103");
+    findings_.AddAs(Severity::kCompile, ErrorCode::kAssignGroup, typing_.PlaceOfStatement(),
+                    "the group runs past the last index", "OPT-7.103");
   }
 }
 

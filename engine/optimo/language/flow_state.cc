@@ -22,6 +22,10 @@ void StepWork(const Instruction& i, FlowState& state) {
   if (i.Has(kOn)) {
     state.on_all |= bit;
     state.on_some |= bit;
+    if (i.Has(kEnd)) {  // switches itself off, whenever that is: nobody has to (OPT-3.38)
+      state.on_all &= ~bit;
+      state.on_some &= ~bit;
+    }
     if (laser) {
       state.beam = Known::kYes;
       state.unpierced = i.numbers[0] == 0 ? Known::kYes : Known::kNo;  // WORK 1 dwells by itself

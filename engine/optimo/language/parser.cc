@@ -55,7 +55,10 @@ void Parser::ParseStatement() {
   first_ = Peek();
   labelled_ = first_.kind == TokenKind::kNumber;
   if (labelled_) {
-    AddLabel(Take());
+    const Token label = Take();
+    // What is said of the number belongs to the instruction that it leads to (OPT-1.27).
+    instruction_.step = Peek().word == Word::kDeclare ? 0 : steps_ + 1;
+    AddLabel(label);
     if (Is(TokenKind::kEnd)) return;
     first_ = Peek();
   }

@@ -302,7 +302,9 @@ void Planner::RequireDefinitions(Draft& draft) {
   std::ranges::sort(insertions, {}, &Insertion::work);
   const ParsedProgram& parsed = draft.parsed;
   std::size_t first = 0;
-  const auto declares = [&](Op op) { return op == Op::kDeclare || op == Op::kDefine || op == Op::kTask; };
+  const auto declares = [&](Op op) {
+    return op == Op::kDeclare || op == Op::kDefine || op == Op::kTask;
+  };
   for (std::size_t i = 0; i + 1 < parsed.statements.size(); ++i) {
     const Instruction& instruction = parsed.module.instructions[i];
     if (instruction.op == Op::kTask && instruction.numbers[0] == 1) {
@@ -310,7 +312,8 @@ void Planner::RequireDefinitions(Draft& draft) {
       break;
     }
   }
-  while (first + 1 < parsed.statements.size() && declares(parsed.module.instructions[first].op)) ++first;
+  while (first + 1 < parsed.statements.size() && declares(parsed.module.instructions[first].op))
+    ++first;
   const std::size_t begin = parsed.statements[first].begin;
   const std::size_t line = begin == 0 ? 0 : draft.text.rfind('\n', begin - 1) + 1;  // npos + 1 is 0
   std::string text;
@@ -331,8 +334,10 @@ void Planner::AdviseSysdef() {
         drafts_, [&](const Draft& other) { return other.functions.contains(draft.from->slot); });
     if (function) continue;  // it moves in the system of its callers
     Report(ErrorCode::kPracticeAdvice,
-           "ABSOL moves without SYSDEF, while other programs of the project use it", "OPT-7.39",
-           nullptr);
+           draft.uses_sysdef
+               ? "ABSOL moves before the first SYSDEF of the program"
+               : "ABSOL moves without SYSDEF, while other programs of the project use it",
+           "OPT-7.39", nullptr);
     Diagnostic& found = plan_.diagnostics.back();
     found.program = draft.from->slot;
     found.file = draft.from->file.name;
@@ -348,8 +353,8 @@ void Planner::CompileDraft(Draft& draft) {
     Add(std::move(found));
   }
   if (!compiled.ok) return;
-  plan_.programs.push_back({draft.from->slot, std::move(draft.text), std::move(compiled.object),
-                            draft.own_text});
+  plan_.programs.push_back(
+      {draft.from->slot, std::move(draft.text), std::move(compiled.object), draft.own_text});
 }
 
 }  // namespace

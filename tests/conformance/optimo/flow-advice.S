@@ -25,6 +25,16 @@ CALL 2                   ; expect 7407
 WORK 0,1/ON              ; expect 7401
 SPEED 10                 ; expect 7408
 
+;=== a WORK with /END switches itself off (advice)
+; OPT-3.34 OPT-3.38 OPT-E.7407 OPT-E.7408
+; rmlcell: allow 7033 in file
+WORK 0,0/ON
+WORK 0,0/ON/END (IL[20])
+WAIT NOT IL[87]
+CALL 2
+WORK 0,0/ON/END (IL[20])
+WAIT NOT IL[87]
+
 ;=== WORK 2 OFF with the beam on (advice)
 ; OPT-3.24 OPT-E.7411
 ; rmlcell: allow 7033 in file
