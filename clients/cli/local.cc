@@ -139,7 +139,7 @@ Status AddExecutables(const SimulateOptions& options, const machine::MachineFami
     }
     Result<std::string> bytes = bridge::ReadFile(named->second, kFileBytesMax);
     if (!bytes) return bytes.error();
-    if (const Status good = family.CheckExecutable(*bytes); !good) return good;
+    if (const Status good = family.CheckExecutable(*bytes, named->first); !good) return good;
     const auto program = std::ranges::find(programs, named->first, &bridge::ProgramInput::slot);
     if (program == programs.end()) {
       return Error{ErrorCode::kCellUsage, "--executable " + text + ": there is no program " + std::to_string(named->first), {}};

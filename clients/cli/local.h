@@ -43,8 +43,8 @@ struct SimulateOptions {
 };
 int Simulate(const SimulateOptions& options);
 
-// Without a family: families and their profiles. Else all parameters as a machine file.
-int ListParameters(const std::string& family_id, const std::string& profile_id);
+// Without a family: families and their profiles. Else all parameters as a machine file, or as JSON.
+int ListParameters(const std::string& family_id, const std::string& profile_id, bool json);
 
 int Explain(const std::vector<std::string>& codes, bool json);
 

@@ -1,4 +1,7 @@
 // The parameters of a family as a machine file: what can be set, what it means, what it is now.
+#include <nlohmann/json.hpp>
+#include <utility>
+
 #include "clients/cli/local.h"
 #include "clients/cli/findings_text.h"
 #include "clients/cli/program_files.h"
@@ -41,20 +44,59 @@ std::string MachineFile(const machine::MachineFamily& family, const std::string&
   return text;
 }
 
+nlohmann::ordered_json FamilyJson(const machine::MachineFamily& family) {
+  nlohmann::ordered_json profiles = nlohmann::ordered_json::array();
+  for (const machine::MachineProfile& profile : family.profiles())
+    profiles.push_back({{"id", profile.id}, {"title", profile.title}});
+  return {{"family", family.info().id}, {"title", family.info().title}, {"profiles", std::move(profiles)}};
+}
+
+nlohmann::ordered_json ParametersJson(const machine::MachineFamily& family, const machine::Parameters& parameters) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const machine::ParameterInfo& parameter : family.parameters()) {
+    nlohmann::ordered_json one = {
+        {"name", parameter.name}, {"text", parameter.text}, {"rule", parameter.rule}};
+    if (parameter.choices.empty()) {
+      one["value"] = parameters.Number(parameter.name);
+      one["minimum"] = parameter.minimum;
+      one["maximum"] = parameter.maximum;
+      if (!parameter.unit.empty()) one["unit"] = parameter.unit;
+    } else {
+      one["value"] = parameters.Word(parameter.name);
+      one["choices"] = parameter.choices;
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
 }  // namespace
 
-int ListParameters(const std::string& family_id, const std::string& profile_id) {
+int ListParameters(const std::string& family_id, const std::string& profile_id, bool json) {
   if (family_id.empty()) {
+    nlohmann::ordered_json families = nlohmann::ordered_json::array();
     for (const machine::MachineFamily* family : simulation::Families()) {
+      if (json) {
+        families.push_back(FamilyJson(*family));
+        continue;
+      }
       Print(std::string(family->info().id) + "  " + std::string(family->info().title));
       PrintRaw(ProfileLines(*family));
     }
+    if (json) Print(nlohmann::ordered_json{{"families", std::move(families)}}.dump());
     return kGood;
   }
   const auto family = FamilyFor(family_id, {});
   if (!family) return Refuse(family.error());
   const Result<machine::Parameters> parameters = bridge::MakeParameters(**family, profile_id, {});
   if (!parameters) return Refuse(parameters.error());
+  if (json) {
+    nlohmann::ordered_json answer = FamilyJson(**family);
+    if (!profile_id.empty()) answer["profile"] = profile_id;
+    answer["parameters"] = ParametersJson(**family, *parameters);
+    Print(answer.dump());
+    return kGood;
+  }
   PrintRaw(MachineFile(**family, profile_id, *parameters));
   return kGood;
 }

@@ -129,7 +129,10 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
         "  rmlcell parameters rml1 --profile srm-20 | less");
     verb->add_option("FAMILY", *family, "optimo or rml1; none: list the families");
     verb->add_option("--profile", *profile, "values of this profile");
-    verb->callback([family, profile, &exit_code] { exit_code = ListParameters(*family, *profile); });
+    auto json = std::make_shared<bool>(false);
+    verb->add_flag("--json", *json, "as JSON");
+    verb->callback(
+        [family, profile, json, &exit_code] { exit_code = ListParameters(*family, *profile, *json); });
   }
   {
     auto codes = std::make_shared<std::vector<std::string>>();
@@ -182,13 +185,14 @@ void AddProgramVerbs(CLI::App& app, Remote& remote, int& exit_code) {
   put->callback([&] { exit_code = PutProgram(remote, machine, slot, file, etag, check_only); });
   CLI::App* get =
       RemoteVerb(app, "get", "Get a program of a machine",
-                 "  rmlcell get optimo-1 44                        its source, as it was stored\n"
+                 "  rmlcell get optimo-1 44                        its source: as it was stored, or decompiled\n"
                  "  rmlcell get optimo-1 44 --form listing         with step numbers\n"
-                 "  rmlcell get optimo-1 44 --form object -o 44.O",
+                 "  rmlcell get optimo-1 44 -o 44.O                its object\n"
+                 "  rmlcell get optimo-1 144 -o 144.X              its executable",
                  remote);
   get->add_option("MACHINE", machine)->required();
   get->add_option("SLOT", slot)->required();
-  get->add_option("--form", form, "source, object, executable, listing")
+  get->add_option("--form", form, "source, object, executable, listing; default: source, object into a file .O")
       ->check(CLI::IsMember({"source", "object", "executable", "listing"}));
   get->add_option("-o,--output", output, "file; default: standard output");
   get->callback([&] { exit_code = GetProgram(remote, machine, slot, form, output); });

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -10,30 +9,51 @@ namespace rmlcell::cli {
 // An `output` of "-" is standard output; empty: the name that the tool gives it. Files are written whole
 // or not at all.
 
+// What most of them take. `json`: the answer as one JSON object (tool_answer.h).
+struct ToolOptions {
+  std::string file;
+  std::string output;
+  bool json = false;
+};
+
 // `map`: a source map is written beside the object, .MAP for its extension, from which Decompile gives the
 // programmer's own text back as long as the object is the one that was made of it.
-int Compile(const std::string& file, const std::string& output, bool map);
-int Decompile(const std::string& file, const std::string& output);
+int Compile(const ToolOptions& options, bool map);
+int Decompile(const ToolOptions& options);
 
 // The executable of a main program with the FUNCTIONs that it needs, from files and folders as simulate
 // takes them.
-int Link(const std::vector<std::string>& files, const std::vector<std::string>& slots, int main_slot,
-         const std::string& output);
+struct LinkOptions {
+  std::vector<std::string> files;
+  std::vector<std::string> slots;  // "44=FILE"
+  int main_slot = 0;
+  std::string output;
+  bool json = false;
+};
+int Link(const LinkOptions& options);
 
-// In place. `check_only`: says which files are not in canonical layout, and changes none.
-int Format(const std::vector<std::string>& files, bool check_only);
+// In place.
+struct FormatOptions {
+  std::vector<std::string> files;
+  bool check_only = false;  // says which files are not in canonical layout, and changes none
+  bool json = false;
+};
+int Format(const FormatOptions& options);
 
 // The arguments of CONVERT: file, optional output, /i or /m (OPT-8.54 to 8.67).
-int Convert(const std::vector<std::string>& arguments);
+int Convert(const std::vector<std::string>& arguments, bool json);
 
-int Compensate(const std::string& file, const std::string& output);
+int Compensate(const ToolOptions& options);
 
-// X, Y, Z in mm; turns about Z, Y, X in rad.
-int Transform(const std::string& file, const std::array<double, 3>& move, const std::array<double, 3>& turn,
-              const std::string& output);
-int Shift(const std::string& file, const std::array<double, 6>& by, const std::string& output);
+// Numbers as they were given; a vector is empty when its option was not. `shift` goes alone.
+struct TransformOptions : ToolOptions {
+  std::vector<double> move;   // X, Y, Z in mm
+  std::vector<double> turn;   // about Z, Y, X in rad
+  std::vector<double> shift;  // X, Y, Z, rz, ry, rx: added to VR[86] to VR[91]
+};
+int Transform(const TransformOptions& options);
 
-int List(const std::string& file, const std::string& output);
+int List(const ToolOptions& options);
 
 // What two programs do differently. Exit code 1 when they differ.
 struct DiffOptions {

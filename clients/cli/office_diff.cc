@@ -34,6 +34,17 @@ std::string AspectText(const google::protobuf::RepeatedField<int>& aspects) {
   return text;
 }
 
+// For people: three decimals, or as many as it takes to tell the two apart; whole numbers without any.
+std::array<std::string, 2> FigureTexts(double before, double after) {
+  std::array<std::string, 2> texts;
+  for (int decimals = 3; decimals <= 12 && texts[0] == texts[1]; decimals += 3)
+    texts = {TrimmedText(before, decimals), TrimmedText(after, decimals)};
+  for (std::string& text : texts) {
+    if (text.ends_with(".0")) text.resize(text.size() - 2);
+  }
+  return texts;
+}
+
 std::string StepText(int step) { return step > 0 ? std::to_string(step) : "-"; }
 
 void PrintText(const Response& diff) {
@@ -51,8 +62,8 @@ void PrintText(const Response& diff) {
   }
   if (diff.steps_dropped() > 0) Print("and " + std::to_string(diff.steps_dropped()) + " more steps");
   for (const Response::FigureChange& figure : diff.figures()) {
-    Print(figure.name() + "  " + ShortestText(figure.before()) + " -> " + ShortestText(figure.after()) +
-          (figure.unit().empty() ? "" : " " + figure.unit()));
+    const auto [before, after] = FigureTexts(figure.before(), figure.after());
+    Print(figure.name() + "  " + before + " -> " + after + (figure.unit().empty() ? "" : " " + figure.unit()));
   }
   if (diff.equal()) Print("they do the same");
 }

@@ -10,18 +10,15 @@
 namespace rmlcell::cli {
 namespace {
 
-// What most of these tools take.
-struct FileArguments {
-  std::string file;
-  std::string output;
-};
+constexpr const char* kJsonText = "answer and findings as one JSON object";
 
 CLI::App* FileVerb(CLI::App& app, const char* name, const char* text, const char* examples,
-                   const std::shared_ptr<FileArguments>& arguments, const char* output_text) {
+                   const std::shared_ptr<ToolOptions>& arguments, const char* output_text) {
   CLI::App* verb = app.add_subcommand(name, text);
   verb->footer(std::string("Examples:\n") + examples);
   verb->add_option("FILE", arguments->file, "a program")->required();
   verb->add_option("-o,--output", arguments->output, output_text);
+  verb->add_flag("--json", arguments->json, kJsonText);
   return verb;
 }
 
@@ -29,7 +26,7 @@ CLI::App* FileVerb(CLI::App& app, const char* name, const char* text, const char
 
 void AddOfficeVerbs(CLI::App& app, int& exit_code) {
   {
-    auto arguments = std::make_shared<FileArguments>();
+    auto arguments = std::make_shared<ToolOptions>();
     auto map = std::make_shared<bool>(false);
     CLI::App* verb = FileVerb(app, "compile", "Compile a source to its object",
                               "  rmlcell compile 12.S                 writes 12.O\n"
@@ -37,22 +34,17 @@ void AddOfficeVerbs(CLI::App& app, int& exit_code) {
                               "  rmlcell compile 12.S -o - | xxd      the bytes",
                               arguments, "file of the object, - for standard output; default: FILE with .O");
     verb->add_flag("--map", *map, "write a source map beside the object, .MAP for its extension");
-    verb->callback([arguments, map, &exit_code] { exit_code = Compile(arguments->file, arguments->output, *map); });
+    verb->callback([arguments, map, &exit_code] { exit_code = Compile(*arguments, *map); });
   }
   {
-    auto arguments = std::make_shared<FileArguments>();
+    auto arguments = std::make_shared<ToolOptions>();
     FileVerb(app, "decompile", "Give the source of an object: its own text where 12.MAP beside it has it",
              "  rmlcell decompile 12.O -o 12.S", arguments,
              "file of the source; default: standard output")
-        ->callback([arguments, &exit_code] { exit_code = Decompile(arguments->file, arguments->output); });
+        ->callback([arguments, &exit_code] { exit_code = Decompile(*arguments); });
   }
   {
-    struct Arguments {
-      std::vector<std::string> files, slots;
-      int main_slot = 0;
-      std::string output;
-    };
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<LinkOptions>();
     CLI::App* verb = app.add_subcommand("link", "Make the executable of a program with the FUNCTIONs it needs");
     verb->footer("Examples:\n"
                  "  rmlcell link 12.S progs/ -o 112.X                FUNCTIONs from progs/44.S and the like\n"
@@ -61,20 +53,19 @@ void AddOfficeVerbs(CLI::App& app, int& exit_code) {
     verb->add_option("--slot", arguments->slots, "44=FILE: a further program")->expected(-1)->allow_extra_args(false);
     verb->add_option("--main", arguments->main_slot, "slot of the program")->check(CLI::Range(1, 99));
     verb->add_option("-o,--output", arguments->output, "file of the executable, - for standard output")->required();
-    verb->callback([arguments, &exit_code] {
-      exit_code = Link(arguments->files, arguments->slots, arguments->main_slot, arguments->output);
-    });
+    verb->add_flag("--json", arguments->json, kJsonText);
+    verb->callback([arguments, &exit_code] { exit_code = Link(*arguments); });
   }
   {
-    auto files = std::make_shared<std::vector<std::string>>();
-    auto check = std::make_shared<bool>(false);
+    auto options = std::make_shared<FormatOptions>();
     CLI::App* verb = app.add_subcommand("format", "Put sources into canonical layout; comments stay");
     verb->footer("Examples:\n"
                  "  rmlcell format progs/*.S\n"
                  "  rmlcell format --check progs/*.S     names the files that are not; changes none");
-    verb->add_option("FILES", *files, "sources")->required();
-    verb->add_flag("--check", *check, "change nothing; exit code 1 when a file is not in canonical layout");
-    verb->callback([files, check, &exit_code] { exit_code = Format(*files, *check); });
+    verb->add_option("FILES", options->files, "sources")->required();
+    verb->add_flag("--check", options->check_only, "change nothing; exit code 1 when a file is not in canonical layout");
+    verb->add_flag("--json", options->json, "one JSON object a file");
+    verb->callback([options, &exit_code] { exit_code = Format(*options); });
   }
   {
     auto arguments = std::make_shared<std::vector<std::string>>();
@@ -84,47 +75,36 @@ void AddOfficeVerbs(CLI::App& app, int& exit_code) {
                  "  rmlcell convert part.S new           writes new.SI\n"
                  "  rmlcell convert old.txt new.S /m     another name: say which way");
     verb->add_option("ARGUMENTS", *arguments, "FILE [OUT] [/i or /m]");
-    verb->callback([arguments, &exit_code] { exit_code = Convert(*arguments); });
+    auto json = std::make_shared<bool>(false);
+    verb->add_flag("--json", *json, kJsonText);
+    verb->callback([arguments, json, &exit_code] { exit_code = Convert(*arguments, *json); });
   }
   {
-    auto arguments = std::make_shared<FileArguments>();
+    auto arguments = std::make_shared<ToolOptions>();
     FileVerb(app, "compensate", "Offset the path by the beam's radius, as the ;$ directives of the source say",
              "  rmlcell compensate part.S            writes part.CMP", arguments,
              "file of the result, - for standard output; default: FILE with .CMP")
-        ->callback([arguments, &exit_code] { exit_code = Compensate(arguments->file, arguments->output); });
+        ->callback([arguments, &exit_code] { exit_code = Compensate(*arguments); });
   }
   {
-    struct Arguments : FileArguments {
-      std::vector<double> move{0.0, 0.0, 0.0}, turn{0.0, 0.0, 0.0}, shift;
-    };
-    auto arguments = std::make_shared<Arguments>();
+    auto options = std::make_shared<TransformOptions>();
     CLI::App* verb = FileVerb(app, "transform", "Move and turn a program, head angles included",
                               "  rmlcell transform part.S --move 100,0,0 -o moved.S\n"
                               "  rmlcell transform part.S --turn 1.570796,0,0 -o turned.S\n"
                               "  rmlcell transform part.S --shift 1,0,0,0,0,0     adds to VR[86] to VR[91]",
-                              arguments, "file of the result; default: standard output");
-    verb->add_option("--move", arguments->move, "X,Y,Z in mm")->delimiter(',')->expected(3);
-    verb->add_option("--turn", arguments->turn, "about Z,Y,X in rad")->delimiter(',')->expected(3);
-    verb->add_option("--shift", arguments->shift, "X,Y,Z,rz,ry,rx: add to VR[86] to VR[91] instead")
+                              options, "file of the result; default: standard output");
+    verb->add_option("--move", options->move, "X,Y,Z in mm")->delimiter(',')->expected(3);
+    verb->add_option("--turn", options->turn, "about Z,Y,X in rad")->delimiter(',')->expected(3);
+    verb->add_option("--shift", options->shift, "X,Y,Z,rz,ry,rx: add to VR[86] to VR[91] instead")
         ->delimiter(',')
         ->expected(6);
-    verb->callback([arguments, &exit_code] {
-      const auto& m = arguments->move;
-      const auto& t = arguments->turn;
-      if (arguments->shift.empty()) {
-        exit_code = Transform(arguments->file, {m[0], m[1], m[2]}, {t[0], t[1], t[2]}, arguments->output);
-        return;
-      }
-      std::array<double, 6> by{};
-      std::copy_n(arguments->shift.begin(), by.size(), by.begin());
-      exit_code = Shift(arguments->file, by, arguments->output);
-    });
+    verb->callback([options, &exit_code] { exit_code = Transform(*options); });
   }
   {
-    auto arguments = std::make_shared<FileArguments>();
+    auto arguments = std::make_shared<ToolOptions>();
     FileVerb(app, "list", "List a program with line numbers and step numbers as the control counts them",
              "  rmlcell list 12.S", arguments, "file of the list; default: standard output")
-        ->callback([arguments, &exit_code] { exit_code = List(arguments->file, arguments->output); });
+        ->callback([arguments, &exit_code] { exit_code = List(*arguments); });
   }
   {
     auto options = std::make_shared<DiffOptions>();

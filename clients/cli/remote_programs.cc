@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <filesystem>
 
 #include "clients/cli/findings_text.h"
@@ -10,6 +12,7 @@
 #include "engine/core/units.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
+#include "proto/bridge/setup.h"
 #include "rmlcell/v1/machine.grpc.pb.h"
 #include "rmlcell/v1/program.grpc.pb.h"
 #include "rmlcell/v1/project.grpc.pb.h"
@@ -137,22 +140,43 @@ int PutProgram(const Remote& remote, const std::string& machine, int slot, const
   return PrintStored(remote, program, check_only);
 }
 
+namespace {
+
+// What is asked for: by name, by the extension of the file, else text.
+v1::ProgramForm FormOf(const std::string& form, const std::string& output) {
+  if (form == "object") return v1::PROGRAM_FORM_OBJECT;
+  if (form == "executable") return v1::PROGRAM_FORM_EXECUTABLE;
+  if (form == "listing") return v1::PROGRAM_FORM_LISTING;
+  if (form.empty() && bridge::IsObjectFileName(output)) return v1::PROGRAM_FORM_OBJECT;
+  return v1::PROGRAM_FORM_SOURCE;
+}
+
+bool IsText(v1::ProgramForm form) {
+  return form == v1::PROGRAM_FORM_SOURCE || form == v1::PROGRAM_FORM_LISTING;
+}
+
+}  // namespace
+
 int GetProgram(const Remote& remote, const std::string& machine, int slot, const std::string& form,
                const std::string& output) {
   const auto stub = v1::ProgramService::NewStub(Connect(remote));
   grpc::ClientContext context;
   v1::DownloadProgramRequest request;
   request.set_name(ProgramName(machine, slot));
-  if (form == "source") request.set_form(v1::PROGRAM_FORM_SOURCE);
-  if (form == "object") request.set_form(v1::PROGRAM_FORM_OBJECT);
-  if (form == "executable") request.set_form(v1::PROGRAM_FORM_EXECUTABLE);
-  if (form == "listing") request.set_form(v1::PROGRAM_FORM_LISTING);
+  request.set_form(FormOf(form, output));
   const auto reader = stub->DownloadProgram(&context, request);
   std::string bytes;
   v1::DownloadProgramResponse part;
-  while (reader->Read(&part)) bytes += part.chunk();
+  bool text = true;
+  while (reader->Read(&part)) {
+    if (part.has_header()) text = IsText(part.header().form());
+    bytes += part.chunk();
+  }
   const grpc::Status status = reader->Finish();
   if (!status.ok()) return Refused(status, remote);
+  if (output.empty() && !text && isatty(STDOUT_FILENO) != 0) {
+    return Refuse({ErrorCode::kCellUsage, "these bytes are no text for a terminal: give -o FILE, or -o - all the same", {}});
+  }
   if (output.empty() || output == "-") {
     PrintRaw(bytes);
     return kGood;

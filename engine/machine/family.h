@@ -152,6 +152,9 @@ class MachineFamily {
   virtual Translation Translate(const SourceFile& file, const Parameters& parameters,
                                 const CheckOptions& options) const = 0;
 
+  // What there is to say about storing a customer's program in this slot (1..99).
+  virtual std::vector<Diagnostic> CheckSlot(int /*slot*/) const { return {}; }
+
   // What is wrong with a process definition by itself, whatever the programs say (OPT-3.01 to 3.08).
   virtual std::vector<Diagnostic> CheckProcess(const ProcessDefinition& /*definition*/) const { return {}; }
 
@@ -163,8 +166,9 @@ class MachineFamily {
   // Errors: ObjectCorrupt (7034).
   virtual Result<std::string> Decompile(std::string_view object) const { return std::string(object); }
 
-  // Whether bytes are an executable of this family. Errors: ObjectCorrupt (7034).
-  virtual Status CheckExecutable(std::string_view /*executable*/) const { return {}; }
+  // Whether bytes are an executable of this family, made of the program of this slot (1..99).
+  // Errors: ObjectCorrupt (7034), CellInvalidArgument for that of another program.
+  virtual Status CheckExecutable(std::string_view /*executable*/, int /*slot*/) const { return {}; }
 
   // Which executables of a program memory are stale, by slot. `deleted` as in RunSetup.
   virtual std::vector<StaleExecutable> FindStaleExecutables(

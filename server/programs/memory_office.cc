@@ -52,28 +52,23 @@ class LinkMaterial {
       if (!IsSlot(part.slot())) {
         return Error{ErrorCode::kProgramNumber, "program number is " + std::to_string(part.slot()), {}};
       }
-      if (objects_.contains(part.slot())) return InvalidArgument("slot " + std::to_string(part.slot()) + " is given twice");
+      if (objects_.contains(part.slot()) || sources_.contains(part.slot())) return GivenTwice(part.slot());
       const v1::ProgramText& program = part.program();
       if (program.content().empty()) return Error{ErrorCode::kCellEmptyProgram, program.file_name(), {}};
       if (IsObject(program)) {
         objects_[part.slot()] = program.content();
         continue;
       }
-      const bool inch =
-          optimo::FormOfFile(program.file_name(), program.content()) == optimo::FileForm::kInchSource;
-      optimo::Compilation compiled = optimo::Compile(
-          program.content(), program.file_name(), {.object_limit = object_limit, .advice = false, .inch = inch});
-      objects_[part.slot()] = std::move(compiled.object);
-      dropped_ += compiled.diagnostics_dropped;
-      for (Diagnostic& finding : compiled.diagnostics) {
-        finding.program = part.slot();
-        findings_.push_back(std::move(finding));
-      }
+      sources_.emplace(part.slot(), &program);
     }
+    object_limit_ = object_limit;
     return {};
   }
 
-  void AddStored(int slot, std::string object) { objects_.emplace(slot, std::move(object)); }
+  // What the request brings goes before what is stored.
+  void AddStored(int slot, std::string object) {
+    if (!sources_.contains(slot)) objects_.emplace(slot, std::move(object));
+  }
 
   // Findings beyond the usual number are counted.
   void Report(const Error& error) {
@@ -89,8 +84,13 @@ class LinkMaterial {
   }
   bool good() const { return !HasErrors(findings_); }
 
-  optimo::ObjectLookup Objects() const {
+  // Compiles what is asked for, and nothing else (OPT-9.02).
+  optimo::ObjectLookup Objects() {
     return [this](int slot) -> std::optional<std::string_view> {
+      if (const auto source = sources_.find(slot); source != sources_.end()) {
+        Compile(slot, *source->second);
+        sources_.erase(source);
+      }
       const auto found = objects_.find(slot);
       if (found == objects_.end()) return std::nullopt;
       return found->second;
@@ -98,6 +98,25 @@ class LinkMaterial {
   }
 
  private:
+  static Error GivenTwice(int slot) {
+    return InvalidArgument("slot " + std::to_string(slot) + " is given twice");
+  }
+
+  void Compile(int slot, const v1::ProgramText& program) {
+    const bool inch =
+        optimo::FormOfFile(program.file_name(), program.content()) == optimo::FileForm::kInchSource;
+    optimo::Compilation compiled = optimo::Compile(
+        program.content(), program.file_name(), {.object_limit = object_limit_, .advice = false, .inch = inch});
+    if (compiled.ok) objects_[slot] = std::move(compiled.object);
+    dropped_ += compiled.diagnostics_dropped;
+    for (Diagnostic& finding : compiled.diagnostics) {
+      finding.program = slot;
+      findings_.push_back(std::move(finding));
+    }
+  }
+
+  std::map<int, const v1::ProgramText*> sources_;  // of the request, not compiled yet
+  std::uint32_t object_limit_ = 0;
   std::map<int, std::string> objects_;
   std::vector<Diagnostic> findings_;
   std::uint64_t dropped_ = 0;
@@ -160,14 +179,12 @@ Result<v1::LinkProgramResponse> MemoryOffice::Link(const v1::LinkProgramRequest&
   if (const Status added = material.Add(request, object_limit); !added) return added.error();
   for (storage::ProgramRecord& program : memory) material.AddStored(program.slot, std::move(program.object));
   v1::LinkProgramResponse response;
-  if (material.good()) {
-    const Result<optimo::Executable> linked = optimo::Link(request.slot(), material.Objects(), options);
-    if (linked) {
-      response.set_executable(optimo::EncodeExecutable(*linked));
-      for (std::size_t i = 1; i < linked->modules.size(); ++i) response.add_functions(linked->modules[i].slot);
-    } else {
-      material.Report(linked.error());
-    }
+  const Result<optimo::Executable> linked = optimo::Link(request.slot(), material.Objects(), options);
+  if (linked) {
+    response.set_executable(optimo::EncodeExecutable(*linked));
+    for (std::size_t i = 1; i < linked->modules.size(); ++i) response.add_functions(linked->modules[i].slot);
+  } else if (material.good()) {  // else the program that could not be compiled is reported
+    material.Report(linked.error());
   }
   *response.mutable_findings() = material.Findings();
   return response;

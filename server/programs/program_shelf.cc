@@ -103,6 +103,10 @@ ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
   machine::Translation translation = family.Translate(
       {.name = is_object ? "program.O" : BaseName(put.file_name), .bytes = put.bytes}, *parameters, {});
   if (!translation.ok) return FirstError(translation);
+  for (Diagnostic& found : family.CheckSlot(place->slot)) {
+    found.file = BaseName(put.file_name);
+    translation.diagnostics.push_back(std::move(found));
+  }
   v1::Findings findings = bridge::FindingsOf(true, translation.diagnostics, translation.diagnostics_dropped,
                                              translation.figures);
   storage::ProgramWrite write{.slot = place->slot,
@@ -160,7 +164,7 @@ ProgramResult<v1::Program> ProgramShelf::StoreExecutable(const Put& put, const P
   if (*expected == 0 && (*found)->executable_bytes >= 0) {
     return Error{ErrorCode::kCellAlreadyExists, "an executable of " + NameOfProgram(machine_id, slot), {}};
   }
-  if (const Status good = place.family->CheckExecutable(put.bytes); !good) return good.error();
+  if (const Status good = place.family->CheckExecutable(put.bytes, slot); !good) return good.error();
   if (!put.validate_only) {
     const auto kept = store_.PutExecutable(machine_id, slot, (*found)->revision, put.bytes);
     if (!kept) return kept.error();

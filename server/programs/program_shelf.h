@@ -29,7 +29,8 @@ class ProgramShelf {
     bool validate_only = false;
   };
   // All or nothing. Errors: CellEmptyProgram, CellTooLarge, the first compile error, CellEtagMismatch,
-  // CellUnknownMachine, FamilyInfo::no_slot, empty_slot for an executable without its object (OPT-1.15).
+  // CellUnknownMachine, FamilyInfo::no_slot, empty_slot for an executable without its object and
+  // CellInvalidArgument for that of another program (OPT-1.15).
   ProgramResult<v1::Program> Store(Put put);
 
   Result<v1::Program> Get(std::string_view name);

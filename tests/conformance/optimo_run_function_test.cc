@@ -6,6 +6,7 @@
 
 #include "engine/core/number_text.h"
 #include "engine/motion/kinematics.h"
+#include "engine/optimo/control/optimo_family.h"
 #include "engine/optimo/language/compiler.h"
 #include "engine/optimo/language/linker.h"
 #include "engine/optimo/offline/compensate.h"
@@ -80,6 +81,22 @@ TEST(OptimoRunFunction, AnExecutableLinkedElsewhereNeedsNoFunction) {
   EXPECT_TRUE(ran.completed());
   EXPECT_EQ(ran.Var("VI[2]"), "1");
   EXPECT_FALSE(ran.Has("E7110"));
+}
+
+// OPT-1.15, OPT-E.7110: n + 100 is the executable of object n. Another one is refused when it is
+// stored, and told of when it is there all the same.
+TEST(OptimoRunFunction, TheExecutableOfAnotherProgramIsNoneOfThisOne) {
+  OptimoMachine office;
+  office.Store(21, "VI[2]=1\n");
+  office.Run(21);
+  const std::string foreign = office.Executable(21);
+  EXPECT_TRUE(OptimoFamily().CheckExecutable(foreign, 21));
+  const Status refused = OptimoFamily().CheckExecutable(foreign, 20);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().detail.find("program 21"), std::string::npos);
+  OptimoMachine machine;
+  machine.Store(20, "VI[2]=2\n").StoreExecutable(20, foreign);
+  EXPECT_TRUE(machine.Run(20).Has("E7110"));
 }
 
 // OPT-9.15, OPT-7.52: sequence numbers and names belong to their module.

@@ -81,6 +81,25 @@ class CommandLine(unittest.TestCase):
         run("link", main, "-o", self.folder / "no.X", code=1)
         self.assertFalse((self.folder / "no.X").exists())
 
+    # OPT-9.02: only what is called is compiled, near and far.
+    def test_link_leaves_programs_alone_that_nobody_calls(self):
+        main = self.file("90.S", "FUNCTION 44\n")
+        self.file("44.S", "FUNCTION 45\n")
+        self.file("45.S", "VR[0] = 1.\n")
+        self.file("64.S", "SPEED 101\n")
+        self.file("65.S", "VR[50] = 1.\n")  # has a warning
+        done = subprocess.run([BIN / "rmlcell", "link", main, self.folder, "-o", self.folder / "190.X"],
+                              capture_output=True, text=True, timeout=60)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("FUNCTION 44, 45", done.stdout)
+        self.file("45.S", "SPEED 101\n")
+        done = subprocess.run([BIN / "rmlcell", "link", main, self.folder, "-o", self.folder / "no.X"],
+                              capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("45.S", done.stderr)
+        self.assertNotIn("no object", done.stderr)
+        self.assertFalse((self.folder / "no.X").exists())
+
     # OPT-B.40
     def test_format_keeps_comments_and_comes_to_rest(self):
         source = self.file("a.S", "speed   20   ; slow\n\n; alone\nMOVE(1.,2.,3.,0.,0.)\n")
@@ -124,7 +143,7 @@ class CommandLine(unittest.TestCase):
         said = self.refused_conversion(self.folder / "none.S")
         self.assertIn("OPT-E7703", said)
         self.assertIn("Input File Could Not be Opened", said)
-        self.assertIn("none.S", said)
+        self.assertEqual(said.count("none.S"), 1, said)
         self.assertEqual(os.listdir(self.folder), [])
 
     # OPT-8.63, OPT-8.66, OPT-E.7706
@@ -140,7 +159,10 @@ class CommandLine(unittest.TestCase):
         source, old = self.file("part.S", LINE), self.file("part.old", LINE)
         for words, code in [([source, "/x"], "OPT-E7702"), ([old], "OPT-E7704"), (["/i"], "OPT-E7705"),
                             ([source, self.folder / "b.SI", "c"], "OPT-E7707")]:
-            self.assertIn(code, self.refused_conversion(*words))
+            said = self.refused_conversion(*words)
+            self.assertIn(code, said)
+            catalogue = re.search(r"'(.+?)'", said).group(1)
+            self.assertEqual(said.count(catalogue), 1, said)
         self.assertEqual(sorted(os.listdir(self.folder)), ["part.S", "part.old"])
 
     # OPT-8.11, OPT-8.15
@@ -158,6 +180,16 @@ class CommandLine(unittest.TestCase):
         turned = numbers(run("transform", source, "--turn", f"{math.pi / 2},0,0"))
         self.assertAlmostEqual(turned[0], -900.0, places=3)
         self.assertAlmostEqual(turned[1], 1000.0, places=3)
+
+    # OPT-8.74, OPT-8.76: what is no number is refused, and so are two ways of moving at once.
+    def test_transform_refuses_what_makes_no_sense(self):
+        source = self.file("part.S", "VR[86] = 1.\n" + LINE)
+        for words in [("--move", "nan,0,0"), ("--move", "0,inf,0"), ("--turn", "nan,0,0"), ("--shift", "nan,0,0,0,0,0"),
+                      ("--shift", "0,0,-inf,0,0,0"), ("--shift", "1,0,0,0,0,0", "--move", "1,2,3"),
+                      ("--shift", "1,0,0,0,0,0", "--turn", "0,0,1")]:
+            self.assertEqual(run("transform", source, *words, "-o", self.folder / "out.S", code=2), "")
+        self.assertFalse((self.folder / "out.S").exists())
+        self.assertIn("VR[86] = 2.0", run("transform", source, "--shift", "1,0,0,0,0,0"))
 
     # OPT-8.73
     def test_list_counts_lines_and_steps(self):
@@ -177,6 +209,18 @@ class CommandLine(unittest.TestCase):
         figures = {figure["name"]: figure for figure in diff["figures"]}
         self.assertAlmostEqual(figures["travel_length"]["after"] - figures["travel_length"]["before"], 3.0, places=6)
 
+    # OPT-3.46; figures as people write them, not as a double holds them.
+    def test_diff_for_people(self):
+        a = self.file("a.S", "SPEED 5\n")
+        self.assertEqual(run("diff", a, self.file("b.S", "SPEED 5\nENDTASK\n")), "they do the same\n")
+        slow, fast = self.file("c.S", LINE), self.file("d.S", LINE.replace("SPEED 10", "SPEED 7"))
+        text = run("diff", slow, fast, code=1)
+        figures = re.findall(r"^([a-z_]+)  (\S+) -> (\S+)", text, re.MULTILINE)
+        self.assertGreater(len(figures), 0, text)
+        for name, before, after in figures:
+            for value in (before, after):
+                self.assertRegex(value, r"^-?[0-9]+(\.[0-9]{1,3})?$", name)
+
     def test_diff_draws_both_paths(self):
         a = self.file("a.S", LINE)
         other = self.file("c.S", LINE.replace("1010.", "1013."))
@@ -188,6 +232,48 @@ class CommandLine(unittest.TestCase):
         self.assertTrue({"removed", "added", "common"} <= set(texts), texts)
         self.assertEqual(run("diff", a, other, "--svg", "-", code=1), picture.read_text())
         run("diff", a, self.file("m.rml", "IN;"), code=2)
+
+    # One object an answer: where the result is, or the result, and the findings as check --json gives them.
+    def test_json_of_the_tools(self):
+        source, bad = self.file("12.S", LINE), self.file("13.S", "SPEED 101\n")
+        target = self.folder / "12.O"
+
+        def answer(*words, code=0):
+            out = run(*words, "--json", code=code)
+            self.assertEqual(out.count("\n"), 1, out)
+            return json.loads(out)
+
+        made = answer("compile", source)
+        self.assertEqual((made["file"], made["ok"], made["output"]), (str(source), True, str(target)))
+        self.assertEqual(made["bytes"], target.stat().st_size)
+        self.assertTrue(made["findings"]["ok"])
+        for words in (["compile", bad], ["list", bad]):
+            wrong = answer(*words, code=1)
+            self.assertEqual((wrong["ok"], wrong["findings"]["diagnostics"][0]["code"]), (False, "OPT-E7004"))
+            self.assertNotIn("output", wrong)
+        run("compile", source, "-o", "-", "--json", code=2)
+        self.assertEqual(answer("decompile", target)["content"], run("decompile", target))
+        self.assertEqual(answer("list", source)["content"], run("list", source))
+        self.assertEqual(answer("transform", source, "--move", "1,2,3")["content"],
+                         run("transform", source, "--move", "1,2,3"))
+        self.assertEqual(answer("convert", source)["output"], str(self.folder / "12.SI"))
+        self.assertEqual(answer("convert", source)["text"], "inches and degrees")
+        slot = self.file("slot.S", ";$rad=1\n;$left\nCOORD ABSOL\nPATH LIN\nMOVE (0,0,0,0,0)\nWORK 0,0/ON\n"
+                                   "MOVE (10,0,0,0,0)\nMOVE (10,1.2,0,0,0)\nMOVE (0,1.2,0,0,0)\nWORK 0,0/OFF\n")
+        cut = answer("compensate", slot)
+        self.assertEqual({finding["code"] for finding in cut["findings"]["diagnostics"]}, {"OPT-E7812"})
+        self.assertEqual(answer("link", source, "-o", self.folder / "112.X")["bytes"],
+                         (self.folder / "112.X").stat().st_size)
+        caller = self.file("14.S", "FUNCTION 44\n")
+        missing = answer("link", caller, "-o", self.folder / "114.X", code=1)
+        self.assertEqual([finding["code"] for finding in missing["findings"]["diagnostics"]], ["OPT-E7103"])
+        crooked = self.file("crooked.S", "speed   20\n")
+        self.assertFalse(answer("format", "--check", crooked, code=1)["ok"])
+        self.assertEqual(answer("format", crooked)["text"], f"{crooked}: formatted")
+        families = answer("parameters")["families"]
+        self.assertEqual([family["family"] for family in families], ["optimo", "rml1"])
+        values = {one["name"]: one for one in answer("parameters", "optimo")["parameters"]}
+        self.assertEqual(values["OBJECT_LIMIT"]["value"], 34000)
 
     # OPT-7.91, OPT-2.61
     def test_check_fix_repairs_in_place_and_comes_to_rest(self):
@@ -357,6 +443,28 @@ class Services(unittest.TestCase):
         self.cell.command("delete", "optimo-1", "172")
         self.assertIn("every executable", self.cell.command("stale", "optimo-1").stdout)
 
+    # OPT-10.17, OPT-E.7413: stored, and told of.
+    def test_reserved_numbers_are_told_of(self):
+        codes = [finding.code for finding in self.put(5, "5.S", "VI[2]=1\n").findings.diagnostics]
+        self.assertEqual(codes, ["OPT-E7413"])
+        self.assertEqual(len(self.put(8, "8.S", "VI[2]=1\n").findings.diagnostics), 0)
+        with tempfile.TemporaryDirectory() as folder:
+            source = pathlib.Path(folder) / "5.S"
+            source.write_text("VI[2]=1\n")
+            done = self.cell.command("put", "optimo-1", "5", source)
+        self.assertIn("OPT-E7413", done.stdout + done.stderr)
+
+    # OPT-1.15: the executable of another program is none of this one.
+    def test_a_foreign_executable_is_refused(self):
+        self.put(64, "64.S", "VI[2]=1\n")
+        self.put(65, "65.S", "VI[2]=2\n")
+        linked = self.stub.LinkProgram(program_pb2.LinkProgramRequest(slot=65, machine="machines/optimo-1"))
+        request = program_pb2.PutProgramRequest(name="machines/optimo-1/programs/164")
+        request.program.content = linked.executable
+        self.refused(self.stub.PutProgram, request, grpc.StatusCode.INVALID_ARGUMENT, "CELL-E9003")
+        request.name = "machines/optimo-1/programs/165"
+        self.stub.PutProgram(request)
+
     # OPT-8.70: comments, names and layout come back while the object is the one that was made of them.
     def test_own_text_comes_back_until_the_object_is_replaced(self):
         own = "; mine\nDECLARE   FEED = VR[5]\nfeed  =  20. ; slow\n"
@@ -375,6 +483,31 @@ class Services(unittest.TestCase):
         again = self.stub.CompileProgram(program_pb2.CompileProgramRequest(
             program=program_pb2.ProgramText(file_name="75.S", content=answer.content)))
         self.assertEqual(again.object, content)
+
+    # OPT-8.70: a program that was stored as an object is shown as text; a terminal gets no bytes.
+    def test_get_of_an_object_is_text(self):
+        compiled = self.stub.CompileProgram(program_pb2.CompileProgramRequest(program=self.text("a.S", LINE))).object
+        self.put(77, "77.O", compiled)
+        source = self.cell.command("get", "optimo-1", "77").stdout
+        self.assertIn("COORD ABSOL\n", source)
+        self.assertEqual(source.encode(), self.stub.DecompileProgram(
+            program_pb2.DecompileProgramRequest(object=compiled)).content)
+        with tempfile.TemporaryDirectory() as folder:
+            target = pathlib.Path(folder) / "77.O"
+            self.cell.command("get", "optimo-1", "77", "-o", target)
+            self.assertEqual(target.read_bytes(), compiled)
+            self.cell.command("get", "optimo-1", "77", "-o", target.with_suffix(".S"))
+            self.assertEqual(target.with_suffix(".S").read_text(), source)
+        terminal, inside = os.openpty()
+        try:
+            done = subprocess.run([BIN / "rmlcell", "get", "optimo-1", "77", "--form", "object"], stdout=inside,
+                                  stderr=subprocess.PIPE, text=True, timeout=60,
+                                  env={**os.environ, "RMLCELL_SERVER": self.cell.address})
+        finally:
+            os.close(inside)
+            os.close(terminal)
+        self.assertEqual(done.returncode, 2, done)
+        self.assertIn("-o FILE", done.stderr)
 
     def test_diff(self):
         self.put(76, "76.S", LINE)

@@ -195,6 +195,12 @@ std::optional<Loaded> Control::Acquire(int slot, bool must_be_executable) {
       Raise(executable.error().code, "executable " + std::to_string(slot + kExecutableOffset));
       return std::nullopt;
     }
+    if (const int made_of = executable->modules.front().slot; made_of != slot) {
+      Warn(ErrorCode::kExecutableStale,
+           "executable " + std::to_string(slot + kExecutableOffset) + " holds program " +
+               std::to_string(made_of) + " instead of " + std::to_string(slot),
+           "OPT-1.15");
+    }
     for (const StalePart& part :
          FindStaleParts(slot, *executable, {lookup, setup_.deleted_programs})) {
       if (part.slot == slot) continue;  // what was brought ready made counts, OPT-1.15

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "engine/core/units.h"
 #include "engine/optimo/control/optimo_run.h"
 #include "engine/optimo/language/compiler.h"
 #include "engine/optimo/language/linker.h"
@@ -70,6 +71,8 @@ class Family final : public machine::MachineFamily {
                            {.limits = resolved.limits, .head_length_mm = resolved.head_length_mm});
   }
 
+  std::vector<Diagnostic> CheckSlot(int slot) const override { return CheckProgramNumber(slot); }
+
   std::vector<Diagnostic> CheckProcess(const machine::ProcessDefinition& definition) const override {
     return optimo::CheckProcess(definition);
   }
@@ -85,10 +88,16 @@ class Family final : public machine::MachineFamily {
     return ObjectToSource(object);
   }
 
-  Status CheckExecutable(std::string_view executable) const override {
+  Status CheckExecutable(std::string_view executable, int slot) const override {
     const Result<Executable> decoded = DecodeExecutable(executable);
     if (!decoded) return decoded.error();
-    return {};
+    const int made_of = decoded->modules.front().slot;
+    if (made_of == slot) return {};
+    return Error{ErrorCode::kCellInvalidArgument,
+                 "the executable is that of program " + std::to_string(made_of) + ", not of " +
+                     std::to_string(slot) + ": store it as " +
+                     std::to_string(made_of + kExecutableOffset),
+                 {}};
   }
 
   std::vector<machine::StaleExecutable> FindStaleExecutables(

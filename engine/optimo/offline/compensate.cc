@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <utility>
 
 #include "engine/core/number_text.h"
+#include "engine/motion/path.h"
 #include "engine/optimo/language/program.h"
+#include "engine/optimo/offline/cutter_directive.h"
+#include "engine/optimo/offline/gouge.h"
 #include "engine/optimo/offline/literal_text.h"
 #include "engine/optimo/offline/offset_path.h"
 #include "engine/optimo/offline/program_frame.h"
@@ -18,8 +20,6 @@ namespace rmlcell::optimo {
 namespace {
 
 constexpr int kCompensateDecimals = 5;  // OPT-8.11
-
-enum class Side { kNone, kLeft, kRight };
 
 class Compensator {
  public:
@@ -32,38 +32,42 @@ class Compensator {
     for (std::size_t s = 0; s < module_.instructions.size(); ++s) {
       for (; comment < p_.comments.size() && p_.comments[comment].begin < p_.statements[s].begin;
            ++comment) {
-        ReadDirective(p_.comments[comment]);
+        Obey(p_.comments[comment]);
       }
       Pass(module_.instructions[s]);
     }
-    for (; comment < p_.comments.size(); ++comment) ReadDirective(p_.comments[comment]);
+    for (; comment < p_.comments.size(); ++comment) Obey(p_.comments[comment]);
     FinishChain();
     std::ranges::stable_sort(edits_, {}, &Fix::byte_offset);
     return std::move(edits_);
   }
 
  private:
-  struct HolePath {  // the PATH HOLE in force, until its first MOVE
-    const Instruction* instruction = nullptr;
+  struct HolePath {                            // the PATH HOLE in force
+    const Instruction* instruction = nullptr;  // until its first MOVE
+    std::optional<double> radius{};            // mm, as it is cut
   };
 
-  void ReadDirective(const Comment& comment);
-  void SetAmount(std::string_view text, double factor, const Place& place);
-  void SetSide(Side side, const Place& place);
+  void Obey(const Comment& comment);
+  void SetAmount(const CutterDirective& directive, const Place& place);
+  void SetSide(CutSide side, const Place& place);
   void Pass(const Instruction& i);
   void PassMove(const Instruction& i);
   void PassWork(const Instruction& i);
+  void PassSysdef(const Instruction& i);
+  void TurnTool();
+  std::optional<Vec3> EndOf(const Instruction& i) const;
   void CompensateHole(const Instruction& move);
   void AddLeg(const Instruction& i);
   void FinishChain();
+  void LookForGouges(const std::vector<OffsetLeg>& moved);
   void Rewrite(const Instruction& i, const OffsetLeg& moved);
   void RewriteNumber(std::uint32_t node, double value);
-  std::optional<double> Literal(std::uint32_t expression) const;
   std::optional<Vec3> Point(std::uint32_t first_expression) const;
 
-  bool Wanted() const { return beam_ && amount_ && side_ != Side::kNone; }
+  bool Wanted() const { return beam_ && amount_ && side_ != CutSide::kNone; }
   bool Active() const { return Wanted() && path_ != PathType::kPtp; }
-  double SignedOffset() const { return side_ == Side::kLeft ? *amount_ : -*amount_; }
+  double SignedOffset() const { return side_ == CutSide::kLeft ? *amount_ : -*amount_; }
   void Report(ErrorCode code, const Instruction& i, std::string detail, std::string_view rule) {
     findings_.Add(code, p_.At(i), std::move(detail), rule);
   }
@@ -73,7 +77,7 @@ class Compensator {
   Findings& findings_;
   std::vector<Fix> edits_;
   std::optional<double> amount_;
-  Side side_ = Side::kNone;
+  CutSide side_ = CutSide::kNone;
   PathType path_ = PathType::kPtp;
   CoordType coord_ = CoordType::kAbsol;
   bool beam_ = false;
@@ -88,40 +92,30 @@ class Compensator {
   double chain_offset_ = 0.0;
 };
 
-// OPT-8.02 to 8.05
-void Compensator::ReadDirective(const Comment& comment) {
-  const std::string_view text = p_.text.substr(comment.begin, comment.end - comment.begin);
-  if (text.size() < 2 || text[1] != '$') return;
-  const Place place{comment.begin, static_cast<int>(text.size()), 0};
-  std::string word;
-  std::size_t at = 2;
-  for (; at < text.size() && std::isalpha(static_cast<unsigned char>(text[at])) != 0; ++at) {
-    word += static_cast<char>(std::tolower(static_cast<unsigned char>(text[at])));
+void Compensator::Obey(const Comment& comment) {
+  const std::optional<CutterDirective> directive = ReadCutterDirective(p_, comment);
+  if (!directive) return;
+  const Place place{comment.begin, static_cast<int>(comment.end - comment.begin), 0};
+  switch (directive->kind) {
+    case CutterDirective::Kind::kSide:
+      return SetSide(directive->side, place);
+    case CutterDirective::Kind::kDiameter:
+    case CutterDirective::Kind::kRadius:
+      return SetAmount(*directive, place);
+    case CutterDirective::Kind::kUnknown:
+      break;
   }
-  std::string_view rest = text.substr(at);
-  while (!rest.empty() && std::isspace(static_cast<unsigned char>(rest.front())) != 0)
-    rest.remove_prefix(1);
-  while (!rest.empty() && std::isspace(static_cast<unsigned char>(rest.back())) != 0)
-    rest.remove_suffix(1);
-  if ((word == "dia" || word == "rad") && !rest.empty() && rest.front() == '=') {
-    return SetAmount(rest.substr(1), word == "dia" ? 0.5 : 1.0, place);
-  }
-  if (word.size() > 1 && (word[0] == 'c' || word[0] == 's')) word.erase(0, 1);  // cleft, sright
-  if (rest.empty() && word == "left") return SetSide(Side::kLeft, place);
-  if (rest.empty() && word == "right") return SetSide(Side::kRight, place);
-  if (rest.empty() && word == "none") return SetSide(Side::kNone, place);
   findings_.Add(ErrorCode::kCompDirective, place, "unknown directive", "OPT-8.05");
 }
 
-void Compensator::SetAmount(std::string_view text, double factor, const Place& place) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  const std::optional<double> value = LiteralValue(text.substr(0, text.find_first_of(" \t")));
-  if (!value || !(*value >= 0.0) || !std::isfinite(*value)) {
+void Compensator::SetAmount(const CutterDirective& directive, const Place& place) {
+  if (!directive.amount || !(*directive.amount >= 0.0) || !std::isfinite(*directive.amount)) {
     findings_.Add(ErrorCode::kCompDirective, place, "the amount is no number of at least 0",
                   "OPT-8.05");
     return;
   }
-  const double amount = *value * factor;
+  const bool diameter = directive.kind == CutterDirective::Kind::kDiameter;
+  const double amount = *directive.amount * (diameter ? 0.5 : 1.0);
   if (beam_ && amount_ != amount) {
     findings_.Add(ErrorCode::kCompChangeActive, place, "the amount changes while the beam is on",
                   "OPT-8.09");
@@ -129,7 +123,7 @@ void Compensator::SetAmount(std::string_view text, double factor, const Place& p
   amount_ = amount;
 }
 
-void Compensator::SetSide(Side side, const Place& place) {
+void Compensator::SetSide(CutSide side, const Place& place) {
   if (beam_ && side_ != side) {
     findings_.Add(ErrorCode::kCompChangeActive, place, "the side changes while the beam is on",
                   "OPT-8.09");
@@ -141,27 +135,21 @@ void Compensator::Pass(const Instruction& i) {
   switch (i.op) {
     case Op::kPath:
       path_ = static_cast<PathType>(i.choice);
-      hole_.instruction = path_ == PathType::kHole ? &i : nullptr;
+      hole_ = {};
+      if (path_ == PathType::kHole) hole_ = {&i, PlainNumber(p_, i.first_expression)};
       if (path_ == PathType::kPtp || path_ == PathType::kHole) FinishChain();
       break;
     case Op::kCoord:
-      if (coord_ != static_cast<CoordType>(i.choice)) {
-        FinishChain();
-        at_.reset();
-      }
+      if (coord_ != static_cast<CoordType>(i.choice)) FinishChain();
       coord_ = static_cast<CoordType>(i.choice);
       break;
     case Op::kSysdef:
-    case Op::kTcp: {
+      PassSysdef(i);
+      break;
+    case Op::kTcp:
       FinishChain();
       at_.reset();
-      if (i.op == Op::kTcp) break;
-      if (!frame_.Set(p_, i)) {
-        Report(ErrorCode::kCompSysdef, i, "a rotation of SYSDEF is no number; it is taken as 0",
-               "OPT-8.23");
-      }
       break;
-    }
     case Op::kWork:
       PassWork(i);
       break;
@@ -186,6 +174,23 @@ void Compensator::Pass(const Instruction& i) {
   }
 }
 
+// The head stays where it is: its point gets other coordinates, and its direction, too.
+void Compensator::PassSysdef(const Instruction& i) {
+  FinishChain();
+  const std::optional<Vec3> in_machine = at_ ? frame_.PointToMachine(*at_) : std::nullopt;
+  if (!frame_.Set(p_, i)) {
+    Report(ErrorCode::kCompSysdef, i, "a rotation of SYSDEF is no number; it is taken as 0",
+           "OPT-8.23");
+  }
+  at_ = in_machine ? frame_.PointToProgram(*in_machine) : std::nullopt;
+  TurnTool();
+}
+
+void Compensator::TurnTool() {
+  if (head_a_at_ && head_b_at_)
+    tool_at_ = frame_.DirectionToProgram(ToolDirection(*head_a_at_, *head_b_at_));
+}
+
 void Compensator::PassWork(const Instruction& i) {
   if (i.Has(kOff)) {
     FinishChain();
@@ -194,28 +199,22 @@ void Compensator::PassWork(const Instruction& i) {
   }
   if (i.numbers[0] == 2) return;
   beam_ = true;  // a second ON on the way leaves the corner a corner
-  if (side_ != Side::kNone && !amount_) {
+  if (side_ != CutSide::kNone && !amount_) {
     Report(ErrorCode::kCompIncomplete, i, "a side is set, but no amount; nothing is compensated",
            "OPT-8.10");
   }
 }
 
-std::optional<double> Compensator::Literal(std::uint32_t expression) const {
-  const ExprRange range = module_.Range(expression);
-  const Node op = module_.nodes[range.first].op;
-  if (range.count != 1 || (op != Node::kInteger && op != Node::kReal)) return std::nullopt;
-  const NodePlace& place = p_.node_places[range.first];
-  return LiteralValue(p_.text.substr(place.offset, place.length));
-}
-
 std::optional<Vec3> Compensator::Point(std::uint32_t first) const {
-  const auto x = Literal(first), y = Literal(first + 1), z = Literal(first + 2);
+  const auto x = PlainNumber(p_, first), y = PlainNumber(p_, first + 1),
+             z = PlainNumber(p_, first + 2);
   if (!x || !y || !z) return std::nullopt;
   return Vec3{*x, *y, *z};
 }
 
 void Compensator::PassMove(const Instruction& i) {
   if (path_ == PathType::kHole && hole_.instruction != nullptr) CompensateHole(i);
+  if (path_ == PathType::kHole) hole_.instruction = nullptr;
   if (Active() && coord_ == CoordType::kRobot) {
     return Report(ErrorCode::kCompRobot, i, "a MOVE in COORD ROBOT cannot be compensated",
                   "OPT-8.21");
@@ -224,25 +223,34 @@ void Compensator::PassMove(const Instruction& i) {
     AddLeg(i);
   } else {
     FinishChain();
-    at_ = coord_ == CoordType::kAbsol && path_ != PathType::kHole ? Point(i.first_expression)
-                                                                  : std::nullopt;
+    at_ = EndOf(i);
   }
-  head_a_at_ = Literal(i.first_expression + 3);
-  head_b_at_ = Literal(i.first_expression + 4);
-  if (head_a_at_ && head_b_at_)
-    tool_at_ = frame_.DirectionToProgram(ToolDirection(*head_a_at_, *head_b_at_));
+  head_a_at_ = PlainNumber(p_, i.first_expression + 3);
+  head_b_at_ = PlainNumber(p_, i.first_expression + 4);
+  TurnTool();
+}
+
+// Where the tip is after a move, as programmed, in the coordinates of the program.
+std::optional<Vec3> Compensator::EndOf(const Instruction& i) const {
+  if (coord_ == CoordType::kRobot) return std::nullopt;
+  const std::optional<Vec3> target = Point(i.first_expression);
+  if (path_ != PathType::kHole || !i.Has(kVia)) return target;
+  const std::optional<Vec3> beside = Point(i.first_expression + 5);
+  if (!target || !beside || !at_ || !hole_.radius) return std::nullopt;
+  return HoleEnd(*at_, *target, *beside, *hole_.radius);
 }
 
 // Left enlarges a hole although the motion runs counter-clockwise. OPT-8.12 to 8.14, OPT-B.91
 void Compensator::CompensateHole(const Instruction& move) {
-  const Instruction& path = *std::exchange(hole_.instruction, nullptr);
+  const Instruction& path = *hole_.instruction;
   if (!Wanted()) return;
-  const std::optional<double> radius = Literal(path.first_expression);
+  const std::optional<double> radius = hole_.radius;
   if (!radius)
     return Report(ErrorCode::kCompVariable, path, "the radius is no plain number", "OPT-8.20");
   const double compensated = *radius + SignedOffset();
   if (compensated <= 0.0)
     return Report(ErrorCode::kCompHole, path, "the hole is not larger than the beam", "OPT-8.14");
+  hole_.radius = compensated;
   RewriteNumber(module_.FirstNode(path.first_expression), compensated);
   if (!std::exchange(hole_advice_given_, true)) {
     findings_.AddAs(
@@ -257,7 +265,7 @@ void Compensator::AddLeg(const Instruction& i) {
   const std::uint32_t count = i.Has(kVia) ? 10 : 5;
   bool plain = true;
   for (std::uint32_t v = 0; v < count; ++v) {
-    values[v] = Literal(i.first_expression + v);
+    values[v] = PlainNumber(p_, i.first_expression + v);
     plain = plain && values[v].has_value();
   }
   if (!plain || !at_) {
@@ -276,6 +284,8 @@ void Compensator::AddLeg(const Instruction& i) {
   leg.tool_via = leg.tool_to;
   if (path_ == PathType::kCir && i.Has(kVia)) {
     leg.via = Vec3{*values[5], *values[6], *values[7]};
+    const auto arc = motion::PathPiece::ArcThrough({leg.from}, *leg.via, {leg.to});
+    if (!arc) Report(arc.error().code, i, arc.error().detail, "OPT-E.7305");
   }
   Prepare(leg);
   if (leg.via) {
@@ -303,26 +313,41 @@ void Compensator::FinishChain() {
     Report(moved.error().code, *chain_moves_[failed], moved.error().detail, "OPT-8.19");
   } else {
     for (std::size_t k = 0; k < chain_.size(); ++k) Rewrite(*chain_moves_[k], (*moved)[k]);
-    const Crossings crossings = FindCrossings(chain_, *moved, chain_offset_);
-    if (!crossings.complete) {
-      findings_.AddAs(Severity::kAdvice, ErrorCode::kCompGouge, p_.At(*chain_moves_.front()),
-                      "the contour is too long to be looked through for crossings", "OPT-8.19");
-    }
-    for (const Crossing& crossing : crossings.found) {
-      Report(ErrorCode::kCompGouge, *chain_moves_[crossing.leg],
-             crossing.itself ? "the compensated path crosses itself"
-                             : "the compensated path crosses the contour",
-             "OPT-8.19");
-    }
+    LookForGouges(*moved);
   }
   chain_.clear();
   chain_moves_.clear();
 }
 
+void Compensator::LookForGouges(const std::vector<OffsetLeg>& moved) {
+  const GougeSearch search = FindGouges(chain_, moved, chain_offset_);
+  if (search.unchecked_from) {
+    findings_.AddAs(
+        Severity::kAdvice, ErrorCode::kCompGouge, p_.At(*chain_moves_[*search.unchecked_from]),
+        "not checked from step " + std::to_string(chain_moves_[*search.unchecked_from]->step) +
+            " to " + std::to_string(chain_moves_.back()->step) +
+            ": the contour is too long to be looked through",
+        "OPT-8.19");
+  }
+  for (const Gouge& gouge : search.found) {
+    const double radius = std::fabs(chain_offset_);
+    std::string detail = "the move is shorter than the compensation at its corners needs";
+    if (gouge.kind == Gouge::Kind::kTooNear) {
+      detail = gouge.distance > 0.0
+                   ? "the compensated path comes within " + FixedText(gouge.distance, 3) +
+                         " mm of the contour, and the beam has a radius of " +
+                         TrimmedText(radius, kCompensateDecimals) + " mm: it cuts " +
+                         FixedText(radius - gouge.distance, 3) + " mm into the part"
+                   : "the compensated path crosses the contour";
+    }
+    Report(ErrorCode::kCompGouge, *chain_moves_[gouge.leg], std::move(detail), "OPT-8.19");
+  }
+}
+
 void Compensator::Rewrite(const Instruction& i, const OffsetLeg& moved) {
   const std::uint32_t count = i.Has(kVia) ? 10 : 5;
   for (std::uint32_t v = 0; v < count; ++v) {
-    double value = *Literal(i.first_expression + v);
+    double value = *PlainNumber(p_, i.first_expression + v);
     const Vec3* point = v < 3 ? &moved.to : v >= 5 && v < 8 && moved.via ? &*moved.via : nullptr;
     if (point != nullptr) value = v % 5 == 0 ? point->x : v % 5 == 1 ? point->y : point->z;
     RewriteNumber(module_.FirstNode(i.first_expression + v), value);
@@ -331,7 +356,8 @@ void Compensator::Rewrite(const Instruction& i, const OffsetLeg& moved) {
 
 void Compensator::RewriteNumber(std::uint32_t node, double value) {
   const NodePlace& place = p_.node_places[node];
-  edits_.push_back({place.offset, static_cast<int>(place.length), FixedText(value, kCompensateDecimals)});
+  edits_.push_back(
+      {place.offset, static_cast<int>(place.length), FixedText(value, kCompensateDecimals)});
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
 #include "engine/optimo/offline/convert.h"
 
 #include <algorithm>
-#include <cctype>
 #include <utility>
 
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
 #include "engine/optimo/language/program.h"
 #include "engine/optimo/language/units_of_variables.h"
+#include "engine/optimo/offline/cutter_directive.h"
 #include "engine/optimo/offline/literal_text.h"
 #include "engine/optimo/offline/text_edits.h"
 
@@ -83,6 +83,9 @@ class Converter {
   void ConvertDirectives();
   void ConvertNumber(const Part& part, Unit unit);
   Unit UnitOfNode(const ExprNode& node) const;
+  bool IsConstant(const ExprNode& node) const {
+    return node.op == Node::kPi || (node.op == Node::kName && names_[node.name].constant);
+  }
   void Declare(const Instruction& i);
   double Factor(Unit unit) const {
     const bool metric = direction_ == Direction::kToMetric;
@@ -160,7 +163,7 @@ void Converter::Declare(const Instruction& i) {
   if (value.op == Node::kVariable) {
     known.unit = UnitOfNode(value);
   } else {
-    known.constant = IsLiteral(value.op);
+    known.constant = IsLiteral(value.op) || value.op == Node::kPi;
     if (value.op == Node::kInteger) known.integer = static_cast<int>(value.number);
   }
 }
@@ -188,7 +191,7 @@ void Converter::ConvertExpression(std::uint32_t expression, Unit place) {
   const ExprRange range = module_.Range(expression);
   if (range.count == 1) {  // nearly all
     const ExprNode& node = module_.nodes[range.first];
-    const bool constant = node.op == Node::kName && names_[node.name].constant;
+    const bool constant = IsConstant(node);
     std::vector<Part> parts;
     if (place != Unit::kNone && (IsLiteral(node.op) || constant)) {
       parts.push_back({range.first, Unit::kNone, IsLiteral(node.op), constant});
@@ -201,8 +204,7 @@ void Converter::ConvertExpression(std::uint32_t expression, Unit place) {
     const ExprNode& node = module_.nodes[at];
     const int arity = Arity(node.op);
     if (arity == 0) {
-      const bool constant = node.op == Node::kName && names_[node.name].constant;
-      stack.push_back({{{at, UnitOfNode(node), IsLiteral(node.op), constant}}, 0, true});
+      stack.push_back({{{at, UnitOfNode(node), IsLiteral(node.op), IsConstant(node)}}, 0, true});
     } else if (arity == 1) {
       if (!IsFunction(node.op)) continue;  // a sign is no operator, NOT is not counted
       Open argument = std::move(stack.back());
@@ -237,9 +239,12 @@ void Converter::ConvertExpression(std::uint32_t expression, Unit place) {
 void Converter::Settle(std::vector<Part>& parts, std::size_t operators, bool convertible,
                        Unit place) {
   Unit unit = place;
-  bool numbers = false;
+  bool numbers = false, measured = false;
   for (const Part& part : parts) {
-    if (part.unit != Unit::kNone) unit = part.unit;
+    if (part.unit != Unit::kNone) {
+      unit = part.unit;
+      measured = true;
+    }
     numbers = numbers || part.literal || part.constant;
   }
   if (unit == Unit::kNone || !numbers) return;
@@ -250,16 +255,20 @@ void Converter::Settle(std::vector<Part>& parts, std::size_t operators, bool con
     }
     return;
   }
-  if (!convertible) return;
+  // A product is as large as its measured side (OPT-8.45). Without one a constant in it is the
+  // measurement: PI / 2 where an angle belongs.
+  if (!convertible && measured) return;
   for (const Part& part : parts) {
-    if (part.literal) ConvertNumber(part, unit);
+    if (part.literal && convertible) ConvertNumber(part, unit);
     if (part.constant) {
       const NodePlace& at = p_.node_places[part.node];
-      findings_.Add(
-          ErrorCode::kConvertConstant,
-          {at.offset, static_cast<int>(at.length), static_cast<int>(instruction_->step)},
-          "a declared constant stands where a measurement belongs; its number is not converted",
-          "OPT-8.35");
+      findings_.Add(ErrorCode::kConvertConstant,
+                    {at.offset, static_cast<int>(at.length), static_cast<int>(instruction_->step)},
+                    module_.nodes[part.node].op == Node::kPi
+                        ? "PI stands where a measurement belongs; it is not converted"
+                        : "a declared constant stands where a measurement belongs; its number is "
+                          "not converted",
+                    "OPT-8.35");
     }
   }
 }
@@ -275,21 +284,11 @@ void Converter::ConvertNumber(const Part& part, Unit unit) {
 // ";$DIA=0.020": the amount is a length. OPT-8.39
 void Converter::ConvertDirectives() {
   for (const Comment& comment : p_.comments) {
-    const std::string_view text = p_.text.substr(comment.begin, comment.end - comment.begin);
-    if (text.size() < 6 || text[1] != '$') continue;
-    const auto lower = [&](std::size_t at) {
-      return std::tolower(static_cast<unsigned char>(text[at]));
-    };
-    const bool dia = lower(2) == 'd' && lower(3) == 'i' && lower(4) == 'a';
-    const bool rad = lower(2) == 'r' && lower(3) == 'a' && lower(4) == 'd';
-    std::size_t at = std::min(text.find_first_not_of(" \t", 5), text.size());
-    if (!(dia || rad) || at == text.size() || text[at] != '=') continue;
-    at = std::min(text.find_first_not_of(" \t", at + 1), text.size());
-    const std::size_t end = std::min(text.find_first_of(" \t\r", at), text.size());
-    const std::optional<double> value = LiteralValue(text.substr(at, end - at));
-    if (!value) continue;
-    edits_.push_back({static_cast<std::int64_t>(comment.begin + at), static_cast<int>(end - at),
-                      TrimmedText(Converted(*value, Unit::kLinear), kConvertDecimals)});
+    const std::optional<CutterDirective> directive = ReadCutterDirective(p_, comment);
+    if (!directive || !directive->amount) continue;
+    edits_.push_back({directive->amount_begin,
+                      static_cast<int>(directive->amount_end - directive->amount_begin),
+                      TrimmedText(Converted(*directive->amount, Unit::kLinear), kConvertDecimals)});
   }
 }
 

@@ -51,28 +51,28 @@ Result<std::optional<ConvertRequest>> ReadConvertArguments(std::span<const std::
       continue;
     }
     const std::string letter = Lower(argument);
-    if (letter != "/i" && letter != "/m")
-      return Refuse(ErrorCode::kConvertSwitch, "Illegal Switch: " + argument);
+    if (letter != "/i" && letter != "/m") return Refuse(ErrorCode::kConvertSwitch, argument);
     const Direction direction = letter == "/i" ? Direction::kToInch : Direction::kToMetric;
     if (wanted && *wanted != direction) {
-      return Refuse(ErrorCode::kConvertConflict, "Conflict With Filenames and Switches: /i and /m");
+      return Refuse(ErrorCode::kConvertConflict, "/i and /m");
     }
     wanted = direction;
   }
-  if (names.empty()) return Refuse(ErrorCode::kConvertTooFew, "Not Enough Arguments: no file name");
-  if (names.size() > 2)
-    return Refuse(ErrorCode::kConvertTooMany, "Too Many Arguments: more than two file names");
+  if (names.empty()) return Refuse(ErrorCode::kConvertTooFew, "no file name");
+  if (names.size() > 2) return Refuse(ErrorCode::kConvertTooMany, "more than two file names");
 
   const std::string extension = Lower(ExtensionOf(names[0]));
   std::optional<Direction> by_name;
   if (extension == ".s") by_name = Direction::kToInch;
   if (extension == ".si") by_name = Direction::kToMetric;
+  if (extension == ".cmp" && wanted == Direction::kToMetric) {
+    return Refuse(ErrorCode::kConvertConflict, names[0] + " is metric");
+  }
   if (wanted && by_name && *wanted != *by_name) {
-    return Refuse(ErrorCode::kConvertConflict, "Conflict With Filenames and Switches: " + names[0]);
+    return Refuse(ErrorCode::kConvertConflict, names[0] + " and its switch");
   }
   if (!wanted && !by_name) {
-    return Refuse(ErrorCode::kConvertDirection,
-                  "Must Specify Conversion Required: " + names[0] + " is neither .S nor .SI");
+    return Refuse(ErrorCode::kConvertDirection, names[0] + " is neither .S nor .SI");
   }
   ConvertRequest request;
   request.input = names[0];
@@ -88,8 +88,10 @@ Result<std::optional<ConvertRequest>> ReadConvertArguments(std::span<const std::
     const std::string output_extension = Lower(ExtensionOf(names[1]));
     if (output_extension.empty()) request.output += standard;
     if (output_extension == (inch ? ".s" : ".si")) {
-      return Refuse(ErrorCode::kConvertConflict,
-                    "Conflict With Filenames and Switches: " + names[0] + " and " + names[1]);
+      return Refuse(ErrorCode::kConvertConflict, names[0] + " and " + names[1]);
+    }
+    if (inch && output_extension == ".cmp") {  // OPT-8.72
+      return Refuse(ErrorCode::kConvertConflict, names[1] + " would not be metric");
     }
   }
   return std::optional<ConvertRequest>(std::move(request));

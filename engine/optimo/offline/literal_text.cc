@@ -23,4 +23,15 @@ std::optional<double> LiteralValue(std::string_view text) {
   return negative ? -*value : *value;
 }
 
+std::optional<double> PlainNumber(const ParsedProgram& program, std::uint32_t expression) {
+  const ExprRange range = program.module.Range(expression);
+  const ExprNode& node = program.module.nodes[range.first];
+  if (range.count != 1 || node.name != kNoName ||
+      (node.op != Node::kInteger && node.op != Node::kReal)) {
+    return std::nullopt;
+  }
+  const NodePlace& place = program.node_places[range.first];
+  return LiteralValue(program.text.substr(place.offset, place.length));
+}
+
 }  // namespace rmlcell::optimo

@@ -174,6 +174,15 @@ double ShareAtVia(const Leg& leg) {
   return angle(*leg.via) / angle(leg.to);
 }
 
+std::optional<Vec3> HoleEnd(const Vec3& from, const Vec3& centre, const Vec3& beside,
+                            double radius) {
+  const Vec3 axis = Unit(beside - centre);
+  const Vec3 out = from - centre;
+  const Vec3 towards = Unit(out - axis * motion::Dot(out, axis));
+  if (IsZero(axis) || IsZero(towards)) return std::nullopt;
+  return centre + towards * radius;
+}
+
 Result<std::vector<OffsetLeg>> OffsetChain(const std::vector<Leg>& legs, double offset,
                                            std::size_t& failed) {
   std::vector<OffsetLeg> result;

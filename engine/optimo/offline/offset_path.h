@@ -35,6 +35,11 @@ double ShareAtVia(const Leg& leg);
 // OPT-8.15
 Vec3 LeftNormal(const Vec3& tool, const Vec3& tangent);
 
+// Where a hole ends: the point of its circle nearest to `from`, for the axis from `centre` to
+// `beside` (OPT-2.23, OPT-B.10). Nothing without an axis, or on it.
+std::optional<Vec3> HoleEnd(const Vec3& from, const Vec3& centre, const Vec3& beside,
+                            double radius);
+
 struct OffsetLeg {
   Vec3 to;
   std::optional<Vec3> via;
@@ -44,20 +49,5 @@ struct OffsetLeg {
 // point (OPT-8.17). Errors: CompArc 7806, CompCorner 7808; `failed` tells the leg.
 Result<std::vector<OffsetLeg>> OffsetChain(const std::vector<Leg>& legs, double offset,
                                            std::size_t& failed);
-
-// A crossing of the offset path with itself or with the programmed path.
-struct Crossing {
-  std::size_t leg = 0;  // of the offset path
-  bool itself = false;
-};
-struct Crossings {
-  std::vector<Crossing> found;  // the first one of each leg, ascending
-  bool complete = true;         // false: the contour is too long to look at all of it
-};
-// Empty when the tool direction changes along the chain: then the path does not lie in one surface
-// to look at. Crossings within twice the offset of the pierce point belong to the lead-in and are
-// left out. Legs next to each other meet by design.
-Crossings FindCrossings(const std::vector<Leg>& legs, const std::vector<OffsetLeg>& offset_legs,
-                        double offset);
 
 }  // namespace rmlcell::optimo

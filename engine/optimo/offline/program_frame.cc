@@ -15,20 +15,18 @@ std::array<motion::Vec3, 3> RotationColumns(double rz, double ry, double rx) {
 }
 
 bool ProgramFrame::Set(const ParsedProgram& program, const Instruction& sysdef) {
-  std::array<double, 3> angles{};
-  bool known = true;
-  for (std::uint32_t v = 0; v < 3 && sysdef.value_count == 6; ++v) {
-    const ExprRange range = program.module.Range(sysdef.first_expression + 3 + v);
-    const Node op = program.module.nodes[range.first].op;
-    const bool literal = range.count == 1 && (op == Node::kInteger || op == Node::kReal);
-    const NodePlace& place = program.node_places[range.first];
-    const auto value =
-        literal ? LiteralValue(program.text.substr(place.offset, place.length)) : std::nullopt;
+  std::array<double, 6> values{};
+  bool moved = true, turned = true;  // by plain numbers
+  for (std::uint32_t v = 0; v < 6 && sysdef.value_count == 6; ++v) {
+    const auto value = PlainNumber(program, sysdef.first_expression + v);
+    bool& known = v < 3 ? moved : turned;
     known = known && value.has_value();
-    angles[v] = value.value_or(0.0);
+    values[v] = value.value_or(0.0);
   }
-  columns_ = RotationColumns(angles[0], angles[1], angles[2]);
-  return known;
+  columns_ = RotationColumns(values[3], values[4], values[5]);
+  translation_.reset();
+  if (moved && turned) translation_ = motion::Vec3{values[0], values[1], values[2]};
+  return turned;
 }
 
 }  // namespace rmlcell::optimo

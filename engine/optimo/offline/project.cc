@@ -17,7 +17,6 @@
 namespace rmlcell::optimo {
 namespace {
 
-constexpr int kAmadaProgramMax = 7;     // OPT-10.17
 constexpr std::size_t kProcesses = 30;  // kinds 0..2, numbers 0..9
 
 std::size_t ProcessIndex(const Instruction& i) { return i.numbers[0] * 10U + i.numbers[1]; }
@@ -164,10 +163,8 @@ void Planner::AddDraft(const machine::ProjectProgram& program) {
   } else {
     draft.text = std::string(program.file.bytes);
   }
-  if (program.slot >= 1 && program.slot <= kAmadaProgramMax) {
-    Report(ErrorCode::kReservedVariable, "programs 1 to 7 are reserved for Amada", "OPT-10.17",
-           &draft);
-  }
+  for (const Diagnostic& found : CheckProgramNumber(program.slot))
+    Report(found.code, found.detail, found.rule, &draft);
   Survey(draft);
 }
 

@@ -8,8 +8,8 @@
 #include "engine/optimo/language/ast.h"
 
 // What two programs do differently: path, time, power, outputs; not lines of text. Layout,
-// comments, names for variables, sequence numbers, the spelling of numbers and (in programs without
-// jumps) modal instructions that change nothing do not count.
+// comments, names for variables, sequence numbers, the spelling of numbers, ENDTASK at the end and
+// (in programs without jumps) modal instructions that change nothing do not count.
 namespace rmlcell::optimo {
 
 // What a change touches; a change may touch several.

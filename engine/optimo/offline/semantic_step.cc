@@ -119,6 +119,17 @@ void TakeModal(const Module& module, const Instruction& i, ModalValues& modal) {
   value = ValueText(module, module.Value(i, 0));
 }
 
+// ENDTASK at the end is assumed where it does not stand. OPT-3.46
+std::size_t EndOfSteps(const Module& module) {
+  std::size_t end = module.instructions.size();
+  while (end > 0 && (module.instructions[end - 1].op == Op::kDeclare ||
+                     module.instructions[end - 1].op == Op::kIgnored ||
+                     module.instructions[end - 1].op == Op::kEndtask)) {
+    --end;
+  }
+  return end;
+}
+
 void Note(StepDifference& to, unsigned aspects, const std::string& name, const std::string& before,
           const std::string& after) {
   if (before == after) return;
@@ -174,7 +185,8 @@ bool CanFold(const Module& a, const Module& b) {
 std::vector<SemanticStep> StepsOf(const Module& module, bool fold) {
   std::vector<SemanticStep> steps;
   ModalValues modal;
-  for (std::uint32_t at = 0; at < module.instructions.size(); ++at) {
+  const std::size_t end = EndOfSteps(module);
+  for (std::uint32_t at = 0; at < end; ++at) {
     const Instruction& i = module.instructions[at];
     if (i.op == Op::kDeclare || i.op == Op::kIgnored) continue;
     if (fold && IsFolded(i.op)) {

@@ -7,6 +7,7 @@
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
 #include "engine/optimo/language/checker.h"
+#include "engine/optimo/language/evaluate.h"
 #include "engine/optimo/language/program.h"
 #include "engine/optimo/offline/literal_text.h"
 #include "engine/optimo/offline/offset_path.h"
@@ -20,21 +21,23 @@ constexpr int kTransformDecimals = 6;
 constexpr double kStraightDown = 1e-9;  // of sin B: then A is free
 constexpr int kFirstShiftVariable = 86;
 
-std::optional<double> Literal(const ParsedProgram& program, std::uint32_t expression) {
-  const ExprRange range = program.module.Range(expression);
-  const Node op = program.module.nodes[range.first].op;
-  if (range.count != 1 || (op != Node::kInteger && op != Node::kReal) ||
-      program.module.nodes[range.first].name != kNoName) {
-    return std::nullopt;
-  }
-  const NodePlace& place = program.node_places[range.first];
-  return LiteralValue(program.text.substr(place.offset, place.length));
-}
+// New numbers in place of plain ones.
+struct NumberEdits {
+  const ParsedProgram& program;
+  Findings& findings;
+  std::vector<Fix> edits{};
 
-Fix NumberEdit(const ParsedProgram& program, std::uint32_t expression, double value) {
-  const NodePlace& place = program.node_places[program.module.FirstNode(expression)];
-  return {place.offset, static_cast<int>(place.length), TrimmedText(value, kTransformDecimals)};
-}
+  void Put(const Instruction& i, std::uint32_t expression, double value) {
+    if (!(std::fabs(value) < kRealMax)) {  // NaN, too
+      findings.Add(ErrorCode::kLiteralRange, program.At(i),
+                   "a number would become larger than the control can hold", "OPT-7.62");
+      return;
+    }
+    const NodePlace& place = program.node_places[program.module.FirstNode(expression)];
+    edits.push_back(
+        {place.offset, static_cast<int>(place.length), TrimmedText(value, kTransformDecimals)});
+  }
+};
 
 Rewriting Finish(std::string_view text, std::vector<Fix> edits, Findings& findings) {
   Rewriting result;
@@ -86,11 +89,14 @@ HeadAngles TurnHead(const HeadAngles& old, const RigidMotion& motion) {
 
 Rewriting Transform(std::string_view text, const RigidMotion& motion) {
   Findings findings;
-  std::vector<Fix> edits;
   const ParsedProgram program = Parse(text, findings);
+  NumberEdits edits{program, findings};
   const Module& module = program.module;
   ProgramFrame frame;
+  const ProgramFrame machine;
+  bool robot = false;
   for (const Instruction& i : module.instructions) {
+    if (i.op == Op::kCoord) robot = i.choice == static_cast<std::uint8_t>(CoordType::kRobot);
     if (i.op == Op::kSysdef && !frame.Set(program, i)) {
       findings.Add(ErrorCode::kTransformVariable, program.At(i),
                    "a rotation of SYSDEF is no plain number", "OPT-8.77");
@@ -98,37 +104,38 @@ Rewriting Transform(std::string_view text, const RigidMotion& motion) {
     if (i.op != Op::kMove) continue;
     for (std::uint32_t first = 0; first < (i.Has(kVia) ? 10U : 5U); first += 5) {
       std::array<std::optional<double>, 5> v;
-      for (std::uint32_t n = 0; n < 5; ++n) v[n] = Literal(program, i.first_expression + first + n);
+      for (std::uint32_t n = 0; n < 5; ++n)
+        v[n] = PlainNumber(program, i.first_expression + first + n);
       if (std::ranges::any_of(v, [](const auto& value) { return !value.has_value(); })) {
         findings.Add(ErrorCode::kTransformVariable, program.At(i),
                      "a coordinate is no plain number", "OPT-8.77");
         break;
       }
       const motion::Vec3 point = motion.Move({*v[0], *v[1], *v[2]});
-      // The head refers to the machine, the motion to the program's coordinates: turn there and
-      // back.
+      // The head refers to the machine, the motion to the coordinates of the MOVE: turn there and
+      // back. SYSDEF does not act on ROBOT (OPT-7.33).
+      const ProgramFrame& in = robot ? machine : frame;
       RigidMotion in_machine;
       for (std::size_t c = 0; c < 3; ++c) {
         const motion::Vec3 axis = c == 0   ? motion::Vec3{1, 0, 0}
                                   : c == 1 ? motion::Vec3{0, 1, 0}
                                            : motion::Vec3{0, 0, 1};
-        in_machine.columns[c] =
-            frame.DirectionToMachine(motion.Turn(frame.DirectionToProgram(axis)));
+        in_machine.columns[c] = in.DirectionToMachine(motion.Turn(in.DirectionToProgram(axis)));
       }
       const HeadAngles head = TurnHead({*v[3], *v[4]}, in_machine);
       const std::array<double, 5> values = {point.x, point.y, point.z, head.a, head.b};
       for (std::uint32_t n = 0; n < 5; ++n) {
-        edits.push_back(NumberEdit(program, i.first_expression + first + n, values[n]));
+        edits.Put(i, i.first_expression + first + n, values[n]);
       }
     }
   }
-  return Finish(text, std::move(edits), findings);
+  return Finish(text, std::move(edits.edits), findings);
 }
 
 Rewriting Shift(std::string_view text, const std::array<double, 6>& offset) {
   Findings findings;
-  std::vector<Fix> edits;
   ParsedProgram program = Parse(text, findings);
+  NumberEdits edits{program, findings};
   Findings names;  // whether the rest of the program is right does not matter here
   Check(program, names);
   bool found = false;
@@ -138,17 +145,17 @@ Rewriting Shift(std::string_view text, const std::array<double, 6>& offset) {
     const int at = target.index - kFirstShiftVariable;
     if (target.op != Node::kVariable || target.group != VariableGroup::kVr || at < 0 || at > 5)
       continue;
-    const std::optional<double> value = Literal(program, i.first_expression + 1);
+    const std::optional<double> value = PlainNumber(program, i.first_expression + 1);
     if (!value) continue;
     found = true;
     const double shift = offset[static_cast<std::size_t>(at)];
-    if (shift != 0.0) edits.push_back(NumberEdit(program, i.first_expression + 1, *value + shift));
+    if (shift != 0.0) edits.Put(i, i.first_expression + 1, *value + shift);
   }
   if (!found && findings.error_count() == 0) {
     findings.Add(ErrorCode::kShiftNothing, {}, "no plain number is assigned to VR[86] to VR[91]",
                  "OPT-8.75");
   }
-  return Finish(text, std::move(edits), findings);
+  return Finish(text, std::move(edits.edits), findings);
 }
 
 }  // namespace rmlcell::optimo

@@ -6,6 +6,8 @@
 namespace rmlcell::optimo {
 namespace {
 
+constexpr int kAmadaProgramMax = 7;  // OPT-10.17
+
 bool EndsWith(std::string_view name, std::string_view upper_case) {
   if (name.size() < upper_case.size()) return false;
   const std::string_view tail = name.substr(name.size() - upper_case.size());
@@ -44,6 +46,16 @@ FileForm FormOfFile(std::string_view name, std::string_view bytes) {
   constexpr std::string_view kObjectBegin("LMR\x01", 4);
   return EndsWith(name, ".O") || bytes.starts_with(kObjectBegin) ? FileForm::kObject
                                                                  : FileForm::kMetricSource;
+}
+
+std::vector<Diagnostic> CheckProgramNumber(int slot) {
+  if (slot < 1 || slot > kAmadaProgramMax) return {};
+  Diagnostic reserved{.code = ErrorCode::kReservedVariable,
+                      .severity = Lookup(ErrorCode::kReservedVariable).severity,
+                      .detail = "programs 1 to 7 are reserved for Amada",
+                      .rule = "OPT-10.17"};
+  reserved.program = slot;
+  return {std::move(reserved)};
 }
 
 machine::Translation TranslateOptimo(const machine::SourceFile& file,

@@ -20,4 +20,7 @@ machine::Translation TranslateOptimo(
     std::uint32_t object_limit = kObjectLimitStandard,
     const ContourMachine& contour_machine = ContourMachine::Standard());
 
+// 7413 for the program numbers that are reserved for Amada (OPT-10.17).
+std::vector<Diagnostic> CheckProgramNumber(int slot);
+
 }  // namespace rmlcell::optimo

@@ -124,6 +124,19 @@ TEST_F(MemoryOfficeTest, AFunctionThatWasNeverStoredMakesNothingStale) {
   EXPECT_THAT(Stale(), ElementsAre("132: 44 FUNCTION_CHANGED"));
 }
 
+// OPT-9.02: what nobody calls is not compiled.
+TEST_F(MemoryOfficeTest, LinksOnlyWhatIsCalled) {
+  const auto linked = Must(office.Link(
+      LinkRequest(32, {{32, "FUNCTION 44\n"}, {44, "VI[2]=1\n"}, {64, "SPEED 101\n"}})));
+  EXPECT_TRUE(linked.findings().ok());
+  EXPECT_EQ(linked.findings().diagnostics_size(), 0);
+  EXPECT_FALSE(linked.executable().empty());
+  const auto wrong = Must(office.Link(LinkRequest(32, {{32, "FUNCTION 64\n"}, {64, "SPEED 101\n"}})));
+  ASSERT_EQ(wrong.findings().diagnostics_size(), 1);
+  EXPECT_EQ(wrong.findings().diagnostics(0).code(), "OPT-E7004");
+  EXPECT_TRUE(wrong.executable().empty());
+}
+
 // OPT-9.02: the FUNCTIONs that it needs in order of first use, from the request before the machine.
 TEST_F(MemoryOfficeTest, LinksWhatIsSentAndWhatIsStored) {
   Store(44, "VI[2]=1\n");

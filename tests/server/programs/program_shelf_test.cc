@@ -134,6 +134,15 @@ TEST_F(ProgramShelfTest, AskingOnlyStoresNothing) {
   EXPECT_EQ(CodeOf(shelf.Get(Name(45))), ErrorCode::kProgramMissing);
 }
 
+// OPT-10.17, OPT-E.7413: stored, and told of.
+TEST_F(ProgramShelfTest, NumbersUpToSevenAreReserved) {
+  const auto reserved = Store(5, "STOP\n");
+  ASSERT_TRUE(reserved);
+  ASSERT_EQ(reserved.value->findings().diagnostics_size(), 1);
+  EXPECT_EQ(reserved.value->findings().diagnostics(0).code(), "OPT-E7413");
+  EXPECT_EQ(Store(8, "STOP\n").value->findings().diagnostics_size(), 0);
+}
+
 // OPT-1.12: altering or deleting an object deletes its executable, and OPT-1.13: no other one.
 TEST_F(ProgramShelfTest, AnAlteredObjectLosesItsExecutableAndOthersKeepTheirs) {
   for (const int slot : {32, 44}) {
@@ -173,6 +182,8 @@ TEST_F(ProgramShelfTest, AnExecutableNeedsItsObject) {
   EXPECT_EQ(CodeOf(StoreExecutable(200, executable)), ErrorCode::kProgramNumber);
   const std::string etag = Store(32, "STOP\n").value->etag();
   EXPECT_EQ(CodeOf(StoreExecutable(132, "no executable")), ErrorCode::kObjectCorrupt);
+  EXPECT_EQ(CodeOf(StoreExecutable(132, ExecutableOf(33, "STOP\n"))),
+            ErrorCode::kCellInvalidArgument);  // that of another program
   EXPECT_EQ(CodeOf(StoreExecutable(132, executable, "99")), ErrorCode::kCellEtagMismatch);
   EXPECT_FALSE(Get(32).has_executable_bytes());
   const auto stored = StoreExecutable(132, executable, etag);

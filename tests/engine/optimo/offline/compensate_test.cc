@@ -185,6 +185,46 @@ TEST(Compensate, MovesThatCannotBeOffsetStop) {
   EXPECT_EQ(Contour(left, "COORD ROBOT\nMOVE (10,0,0,0,0)\n"), "7810 ");
 }
 
+// OPT-2.23, OPT-2.29, OPT-8.15: a hole ends on its circle, at the point nearest to where it began.
+// From (30,0,0), centre (0,0,0), radius 10, axis Z: it ends in (10,0,0), and the cut goes on from
+// there along Y: left 1 is X - 1. Without /VIA it ends in the centre. The hole itself grows to 11:
+// the next cut begins in (11,0,0), and the line to (11,20,0) is parallel to Y.
+TEST(Compensate, AContourGoesOnAfterAHole) {
+  const auto last_move = [](const std::string& hole, const std::string& target) {
+    const Compensation result =
+        Compensate(";$rad=1\n;$left\nPATH PTP\nMOVE (30,0,0,0,0)\nPATH HOLE (10)\n" + hole +
+                   "PATH LIN\nWORK 0,0/ON\nMOVE (" + target + ",0,0,0)\nWORK 0,0/OFF\n");
+    EXPECT_TRUE(result.ok);
+    const std::size_t at = result.text.rfind("MOVE");
+    return result.text.substr(at, result.text.find(",0.00000,0.00000,0.00000)", at) - at);
+  };
+  const std::string hole = "MOVE (0,0,0,0,0)/VIA(0,0,5,0,0)\n";
+  EXPECT_EQ(last_move(hole, "10,20"), "MOVE (9.00000,20.00000");
+  EXPECT_EQ(last_move("MOVE (0,0,0,0,0)\n", "0,20"), "MOVE (-1.00000,20.00000");
+  EXPECT_EQ(last_move("WORK 0,0/ON\n" + hole + "WORK 0,0/OFF\n", "11,20"),
+            "MOVE (10.00000,20.00000");
+}
+
+// OPT-7.29, OPT-7.30, OPT-8.23: the tip stands at (10,20,0) of the machine; in a system that is
+// shifted by (10,0,0) and turned by 90 degrees that is (20,0,0). From there to (20,10,0): left 1.
+TEST(Compensate, AContourGoesOnAfterSysdef) {
+  const std::string head =
+      ";$rad=1\n;$left\nPATH LIN\nMOVE (10,20,0,0,0)\nSYSDEF (10,0,0,1.57079632679,0,0)\n"
+      "WORK 0,0/ON\n";
+  const Compensation result = Compensate(head + "MOVE (20,10,0,0,0)\n");
+  ASSERT_TRUE(result.ok);
+  EXPECT_EQ(result.text.substr(head.size()), "MOVE (19.00000,10.00000,0.00000,0.00000,0.00000)\n");
+  EXPECT_EQ(FindingsOf(Compensate(
+                ";$rad=1\n;$left\nPATH LIN\nMOVE (0,0,0,0,0)\nSYSDEF (VR[86],0,0,0,0,0)\n"
+                "WORK 0,0/ON\nMOVE (20,10,0,0,0)\n")),
+            (std::vector<int>{7805}));
+}
+
+// OPT-E.7305: an arc that ends where it begins is no circle.
+TEST(Compensate, AnArcThatIsNoneStops) {
+  EXPECT_EQ(Contour(";$rad=1\n;$left\n", "PATH CIR\nMOVE (0,0,0,0,0)/VIA (10,0,0,0,0)\n"), "7305 ");
+}
+
 // OPT-8.22, OPT-E.7809
 TEST(Compensate, JumpsAreReported) {
   const Compensation jump = Compensate(";$rad=1\n;$left\nPATH LIN\nWORK 0,0/ON\n20 GOTO 20\n");
@@ -213,6 +253,21 @@ TEST(Compensate, DirectivesAreComments) {
               "MOVE (10.00000,1.00000,0.00000,0.00000,0.00000)\n")
         << side;
   }
+}
+
+// OPT-8.02: directives are comment lines; behind an instruction ";$" begins a comment.
+TEST(Compensate, ACommentBehindAnInstructionIsNoDirective) {
+  EXPECT_EQ(Contour(";$rad=1\n;$left\nSPEED 5 ;$right\nSPEED 5 ;$dia=9\nSPEED 5 ;$middle\n",
+                    "MOVE (10,0,0,0,0) ;$right\n"),
+            "MOVE (10.00000,1.00000,0.00000,0.00000,0.00000) ;$right\n");
+}
+
+// OPT-8.05: the amount is one number.
+TEST(Compensate, AnAmountWithSomethingBehindItStops) {
+  for (const std::string amount : {"1 mm", "1 2", "1mm", "", "1;"}) {
+    EXPECT_EQ(FindingsOf(Compensate(";$dia=" + amount + "\n")), (std::vector<int>{7802})) << amount;
+  }
+  EXPECT_TRUE(Compensate(";$dia = +1.5 \t\n").ok);
 }
 
 // OPT-8.24, OPT-8.25

@@ -44,6 +44,15 @@ TEST(ConvertArguments, ContradictionsAreRefused) {
   EXPECT_EQ(Read({"a.old", "/i", "/m"}), "7701");
 }
 
+// OPT-8.72: .CMP is metric, so inches do not go there, and it is not to become metric.
+TEST(ConvertArguments, CompensatedFilesAreMetric) {
+  EXPECT_EQ(Read({"part1.s", "out.CMP"}), "7701");
+  EXPECT_EQ(Read({"part1.old", "out.cmp", "/i"}), "7701");
+  EXPECT_EQ(Read({"part1.CMP", "/m"}), "7701");
+  EXPECT_NE(Read({"part1.CMP", "/i"}), "7701");
+  EXPECT_NE(Read({"part1.si", "out.CMP"}), "7701");
+}
+
 // OPT-8.59, OPT-8.61, OPT-E.7702, OPT-E.7704
 TEST(ConvertArguments, SwitchesAndDirectionsThatAreNone) {
   EXPECT_EQ(Read({"a.s", "/x"}), "7702");

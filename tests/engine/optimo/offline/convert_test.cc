@@ -80,6 +80,26 @@ TEST(Convert, ConstantsWhereAUnitBelongsAreReported) {
   EXPECT_TRUE(FindingsOf("DECLARE FEED = 10.5\nSPEED FEED\n").empty());
 }
 
+// OPT-8.34, OPT-8.35, OPT-8.37: PI is a constant, by that name and by others: half a turn in
+// radians, a turn, in degrees it is three of them.
+TEST(Convert, PiWhereAnAngleBelongsIsReported) {
+  const std::vector<int> once = {7710};
+  for (const std::string text :
+       {"MOVE (0.0,0.0,0.0,PI,0.0)", "MOVE (0.0,0.0,0.0,-PI,0.0)", "VR[3] = PI", "VR[3] = PI/2",
+        "VR[3] = 2*PI", "VR[0] = SIN(PI)", "VR[0] = SIN(PI/2)", "VR[3] = VR[4] + PI",
+        "DECLARE P = PI\nMOVE (0.0,0.0,0.0,P,0.0)", "DECLARE P = PI\nVR[3] = P/2"}) {
+    EXPECT_EQ(FindingsOf(text), once) << text;
+    EXPECT_EQ(Metric(text), text);
+    EXPECT_EQ(Inch(text), text);
+  }
+  EXPECT_EQ(FindingsOf("VR[3] = VR[4] + PI/2"), (std::vector<int>{7709}));
+  // A factor is none, and where no measurement belongs there is nothing to say.
+  for (const std::string text : {"VR[0] = VR[1] * PI", "VR[3] = VR[4] / PI", "VR[26] = PI",
+                                 "DECLARE P = PI", "SPEED PI", "VR[3] = ASIN(PI/4)"}) {
+    EXPECT_EQ(FindingsOf(text), (std::vector<int>{})) << text;
+  }
+}
+
 // OPT-8.37, OPT-8.38, OPT-8.50
 TEST(Convert, ParametersHaveTheirUnits) {
   EXPECT_EQ(Metric("MOVE (1,1,1,180,180)/VIA(1,1,1,180,180)"),
@@ -94,8 +114,11 @@ TEST(Convert, ParametersHaveTheirUnits) {
 
 // OPT-8.39, OPT-8.01
 TEST(Convert, DirectivesHaveALength) {
-  EXPECT_EQ(Metric("15 ;$DIA=0.020\n;$rad = 0.01 beam\n;$left\n;$dia=x\n"),
-            "15 ;$DIA=0.508\n;$rad = 0.254 beam\n;$left\n;$dia=x\n");
+  EXPECT_EQ(Metric("15 ;$DIA=0.020\n;$rad = 0.01 \n;$left\n;$dia=x\n"),
+            "15 ;$DIA=0.508\n;$rad = 0.254 \n;$left\n;$dia=x\n");
+  // OPT-8.26, OPT-8.02, OPT-8.05: comments stay, and so does what RMLCOMP would not read.
+  for (const std::string text : {"SPEED 5 ;$dia=1\n", ";$dia=1 mm\n"})
+    EXPECT_EQ(Metric(text), text);
 }
 
 // OPT-8.41

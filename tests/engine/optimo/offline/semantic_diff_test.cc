@@ -31,6 +31,16 @@ TEST(SemanticDiff, WritingDoesNotCount) {
   EXPECT_FALSE(DiffOf("VR[0] = VR[1] + 5\n", "VR[0] = VR[1] - 5\n").equal());
 }
 
+// OPT-3.46: ENDTASK at the end is assumed there; before the end it ends the program.
+TEST(SemanticDiff, EndtaskAtTheEndDoesNotCount) {
+  EXPECT_TRUE(DiffOf("SPEED 5\n", "SPEED 5\nENDTASK\n").equal());
+  EXPECT_TRUE(DiffOf("VI[1]=1\nENDTASK ; over\n", "VI[1]=1\n").equal());
+  // A jump to it is a jump to the end.
+  EXPECT_TRUE(
+      DiffOf("IF VL[0] THEN 9\nVI[1]=1\n9\n", "IF VL[0] THEN 9\nVI[1]=1\n9 ENDTASK\n").equal());
+  EXPECT_FALSE(DiffOf("VI[1]=1\nENDTASK\nVI[2]=1\n", "VI[1]=1\nVI[2]=1\n").equal());
+}
+
 // OPT-7.43, OPT-7.44: the same words with names that stand for something else.
 TEST(SemanticDiff, NamesCountByWhatTheyStandFor) {
   EXPECT_TRUE(DiffOf("DECLARE P = VR[1]\nP = 2.\n", "DECLARE Q = VR[1]\nQ = 2.\n").equal());

@@ -56,12 +56,37 @@ TEST(Transform, TheToolTurnsWithThePart) {
   }
 }
 
+// OPT-7.33, OPT-7.34: a system that is turned about Z does not act on ROBOT moves: a turn by 0.5
+// about X tilts the head about the machine's X, to (A,B) = (0,0.5). In ABSOL it is about the
+// system's X, which is the machine's Y: u becomes (sin 0.5, 0, cos 0.5), A = pi/2.
+TEST(Transform, SysdefActsOnAbsolMovesOnly) {
+  const std::string head = "SYSDEF (0,0,0,1.5707963268,0,0)\nCOORD ";
+  const RigidMotion tilt = RigidMotion::Of({}, 0, 0, 0.5);
+  EXPECT_EQ(Transform(head + "ROBOT\nMOVE (100,0,0,1,0)\n", tilt).text,
+            head + "ROBOT\nMOVE (100.0,0.0,0.0,0.0,0.5)\n");
+  EXPECT_EQ(Transform(head + "ABSOL\nMOVE (100,0,0,1,0)\n", tilt).text,
+            head + "ABSOL\nMOVE (100.0,0.0,0.0,1.570796,0.5)\n");
+}
+
 // OPT-8.77, OPT-E.7851
 TEST(Transform, NeedsPlainNumbers) {
   const Rewriting refused = Transform("MOVE (VR[1],0,0,0,0)\n", {});
   EXPECT_FALSE(refused.ok);
   EXPECT_TRUE(refused.text.empty());
   EXPECT_EQ(FirstFinding(refused), 7851);
+}
+
+// OPT-7.62, OPT-E.7004: what the control cannot hold is not written.
+TEST(Transform, NumbersThatAreNoneAreNotWritten) {
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL, 1e19}) {
+    const Rewriting moved = Transform("MOVE (1,2,3,0,0)\n", RigidMotion::Of({bad, 0, 0}, 0, 0, 0));
+    EXPECT_FALSE(moved.ok) << bad;
+    EXPECT_EQ(FirstFinding(moved), 7004) << bad;
+    EXPECT_EQ(FirstFinding(Shift("VR[86] = 1.\n", {bad, 0, 0, 0, 0, 0})), 7004) << bad;
+  }
+  EXPECT_EQ(FirstFinding(Transform("MOVE (1,2,3,0,0)\n", RigidMotion::Of({}, 0, std::nan(""), 0))),
+            7004);
+  EXPECT_TRUE(Shift("VR[86] = 1.\n", {9e18, 0, 0, 0, 0, 0}).ok);
 }
 
 // OPT-8.76: there and back is the same within the rounding of six decimals.
@@ -178,6 +203,27 @@ TEST(Transform, RandomProgramsComeBackFromTheInverse) {
       const motion::Vec3 turned = ToolDirection(b.poses[n][3], b.poses[n][4]);
       EXPECT_NEAR(motion::Distance(motion.Turn(old), turned), 0.0, 1e-6);
       EXPECT_NEAR(motion::Distance(ToolDirection(c.poses[n][3], c.poses[n][4]), old), 0.0, 2e-6);
+    }
+  }
+}
+
+// OPT-8.77: near straight down six decimals of B hold A to 1e-6 / sin B only; the tool points where
+// it did all the same. About Z alone A comes back whatever B is.
+TEST(Transform, NearStraightDownTheDirectionComesBack) {
+  for (const std::string b : {"0.1", "0.01", "0.001", "0.000016"}) {
+    const std::string text = "MOVE (100.0,50.0,-20.0,0.7," + b + ")\n";
+    for (const bool about_z : {false, true}) {
+      const RigidMotion motion = about_z ? RigidMotion::Of({1, 2, 3}, 0.5, 0, 0)
+                                         : RigidMotion::Of({1, 2, 3}, 0.5, 0.4, 0.3);
+      const Rewriting back = Transform(Transform(text, motion).text, motion.Inverse());
+      ASSERT_TRUE(back.ok);
+      const std::array<double, 5> pose = NumbersOf(back.text).poses[0];
+      const double old_b = std::stod(b);
+      EXPECT_NEAR(motion::Distance(ToolDirection(pose[3], pose[4]), ToolDirection(0.7, old_b)), 0.0,
+                  2e-6);
+      EXPECT_NEAR(pose[3], 0.7, about_z ? kOneDecimal : 1.5e-6 / std::sin(old_b) + kOneDecimal)
+          << b;
+      EXPECT_NEAR(pose[0], 100.0, kOneDecimal);
     }
   }
 }

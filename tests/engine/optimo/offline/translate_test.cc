@@ -55,5 +55,18 @@ TEST(Translate, AnEmptyFileIsNoProgram) {
   EXPECT_EQ(empty.diagnostics.at(0).code, ErrorCode::kCellEmptyProgram);
 }
 
+// OPT-10.17, OPT-E.7413
+TEST(Translate, NumbersUpToSevenAreReserved) {
+  for (const int slot : {1, 5, 7}) {
+    const std::vector<Diagnostic> found = CheckProgramNumber(slot);
+    ASSERT_EQ(found.size(), 1U) << slot;
+    EXPECT_EQ(Lookup(found[0].code).number, 7413);
+    EXPECT_EQ(found[0].severity, Severity::kWarning);
+    EXPECT_EQ(found[0].rule, "OPT-10.17");
+  }
+  EXPECT_TRUE(CheckProgramNumber(8).empty());
+  EXPECT_TRUE(CheckProgramNumber(99).empty());
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

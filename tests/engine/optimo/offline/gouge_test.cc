@@ -1,0 +1,198 @@
+#include "engine/optimo/offline/gouge.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "engine/core/number_text.h"
+#include "engine/optimo/offline/compensate.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+std::string Pose(double x, double y, double z = 0.0, double b = 0.0) {
+  return "MOVE (" + FixedText(x, 6) + "," + FixedText(y, 6) + "," + FixedText(z, 6) + ",0," +
+         FixedText(b, 6) + ")\n";
+}
+
+// A contour with the beam on from its first point to its last.
+std::string Cut(const std::string& directives, const std::vector<std::string>& moves) {
+  std::string text = directives + "COORD ABSOL\nPATH LIN\n";
+  for (std::size_t m = 0; m < moves.size(); ++m) {
+    if (m == 1) text += "WORK 0,0/ON\n";
+    text += moves[m];
+  }
+  return text + "WORK 0,0/OFF\n";
+}
+
+// The steps of the moves that cut into the part; -1 for anything else that is said.
+std::vector<int> GougedSteps(const std::string& text) {
+  const Compensation made = Compensate(text);
+  EXPECT_TRUE(made.ok) << text;
+  std::vector<int> steps;
+  for (const Diagnostic& d : made.diagnostics) {
+    const bool gouge = d.code == ErrorCode::kCompGouge && d.severity == Severity::kWarning;
+    steps.push_back(gouge ? d.step : -1);
+  }
+  return steps;
+}
+
+const std::string kLeft = ";$rad=1\n;$left\n", kRight = ";$rad=1\n;$right\n";
+const std::vector<int> kNone;
+
+// Along X, up by the width, and back: steps 3 (pierce point), 5, 6 and 7. The third move may be
+// tilted a little.
+std::string Slot(double width, double b = 0.0) {
+  return Cut(kLeft, {Pose(0, 0), Pose(10, 0), Pose(10, width, 0, b), Pose(0, width)});
+}
+
+// OPT-8.16, OPT-E.7812: a beam of 2 mm needs a slot of 2 mm. In a narrower one the two long moves
+// change places, lie on each other (width 1.2: y = 1 and 0.2), or on the contour (width 1).
+TEST(Gouge, SlotsNarrowerThanTheBeamAreFound) {
+  for (const double width : {0.5, 1.0, 1.2, 1.5, 1.9, 1.99}) {
+    const std::vector<int> steps = GougedSteps(Slot(width));
+    EXPECT_NE(std::find(steps.begin(), steps.end(), 5), steps.end()) << width;
+    EXPECT_NE(std::find(steps.begin(), steps.end(), 7), steps.end()) << width;
+  }
+  EXPECT_EQ(GougedSteps(Slot(2.0)), kNone);
+  EXPECT_EQ(GougedSteps(Slot(2.5)), kNone);
+}
+
+// OPT-8.15: a head that turns does not end the check.
+TEST(Gouge, AHeadThatTurnsIsNoReasonNotToLook) {
+  for (const double b : {0.002, -0.3}) {
+    EXPECT_NE(GougedSteps(Slot(1.5, b)), kNone) << b;
+    EXPECT_EQ(GougedSteps(Slot(2.5, b)), kNone) << b;
+  }
+  // Around a tube of radius 50 about X: u(0, B) is (0, -sin B, cos B), at right angles to it.
+  const auto slot_on_tube = [](double width) {
+    const auto at = [](double x, double along) {
+      return Pose(x, 50.0 * std::sin(along / 50.0), 50.0 * std::cos(along / 50.0), -along / 50.0);
+    };
+    return Cut(kLeft, {at(0, 0), at(10, 0), at(10, width), at(0, width)});
+  };
+  EXPECT_NE(GougedSteps(slot_on_tube(1.5)), kNone);
+  EXPECT_EQ(GougedSteps(slot_on_tube(3.0)), kNone);
+}
+
+// How deep the beam cuts is said: in a slot of 1.5 the offset moves are 0.5 from the other side.
+TEST(Gouge, TheFindingSaysHowDeepItCuts) {
+  const Compensation made = Compensate(Slot(1.5));
+  ASSERT_FALSE(made.diagnostics.empty());
+  EXPECT_NE(made.diagnostics[0].detail.find("within 0.500 mm"), std::string::npos)
+      << made.diagnostics[0].detail;
+  EXPECT_NE(made.diagnostics[0].detail.find("0.500 mm into the part"), std::string::npos);
+}
+
+// OPT-8.17: contours that close, begun at a corner, in the middle of an edge, in the scrap, with a
+// lead-out, with a cut beyond the beginning, or left hanging on a tab.
+TEST(Gouge, ContoursThatFitAreLeftAlone) {
+  const std::vector<std::vector<std::string>> contours = {
+      {Pose(0, 0), Pose(20, 0), Pose(20, 20), Pose(0, 20), Pose(0, 0)},
+      {Pose(10, 0), Pose(20, 0), Pose(20, 20), Pose(0, 20), Pose(0, 0), Pose(10, 0)},
+      {Pose(10, 0), Pose(20, 0), Pose(20, 20), Pose(0, 20), Pose(0, 0), Pose(12, 0)},
+  };
+  for (const auto& contour : contours) {
+    EXPECT_EQ(GougedSteps(Cut(kLeft, contour)), kNone) << contour.size();
+    EXPECT_EQ(GougedSteps(Cut(kRight, contour)), kNone) << contour.size();
+  }
+  const auto with = [](const std::string& pierce, const std::vector<std::string>& end) {
+    std::vector<std::string> moves = {pierce,       Pose(10, 0), Pose(20, 0),
+                                      Pose(20, 20), Pose(0, 20), Pose(0, 0)};
+    moves.insert(moves.end(), end.begin(), end.end());
+    return moves;
+  };
+  const std::string inside = Pose(10, 8), outside = Pose(10, -8);
+  for (const std::vector<std::string>& end : {std::vector<std::string>{Pose(10, 0)},
+                                              {Pose(12, 0)},
+                                              {Pose(10, 0), Pose(10, 8)},
+                                              {Pose(10, 0), Pose(13, 8)},
+                                              {Pose(9.5, 0)}}) {
+    EXPECT_EQ(GougedSteps(Cut(kLeft, with(inside, end))), kNone) << end.back();
+  }
+  for (const std::vector<std::string>& end :
+       {std::vector<std::string>{Pose(10, 0)}, {Pose(10, 0), Pose(13, -8)}, {Pose(9.5, 0)}}) {
+    EXPECT_EQ(GougedSteps(Cut(kRight, with(outside, end))), kNone) << end.back();
+  }
+}
+
+// Pierced 0.4 from the edge, in the scrap: the beam of radius 1 reaches across it.
+TEST(Gouge, APierceTooNearToAnotherEdgeIsFound) {
+  const std::vector<int> steps =
+      GougedSteps(Cut(kLeft, {Pose(10, 19.6), Pose(10, 0), Pose(20, 0), Pose(20, 20), Pose(0, 20),
+                              Pose(0, 0), Pose(10, 0)}));
+  EXPECT_EQ(steps, (std::vector<int>{5}));
+}
+
+// OPT-8.17: a hole that ends in its corner without a way out: the last move ends 1 mm along the
+// first edge, on it.
+TEST(Gouge, AnEndInAnInsideCornerIsFound) {
+  const std::vector<std::string> moves = {Pose(10, 10), Pose(0, 0),  Pose(20, 0),
+                                          Pose(20, 20), Pose(0, 20), Pose(0, 0)};
+  EXPECT_EQ(GougedSteps(Cut(kLeft, moves)), (std::vector<int>{9}));
+  std::vector<std::string> way_out = moves;
+  way_out.push_back(Pose(10, 10));
+  EXPECT_EQ(GougedSteps(Cut(kLeft, way_out)), kNone);
+}
+
+// OPT-8.18: circles of two arcs about (0,0), cut from the middle.
+TEST(Gouge, ArcsAreLookedAtAsArcs) {
+  const auto circle = [](double radius) {
+    const auto arc = [&](double sign) {
+      const std::string r = FixedText(sign * radius, 6);
+      return "MOVE (" + FixedText(-sign * radius, 6) + ",0,0,0,0)/VIA (0," + r + ",0,0,0)\n";
+    };
+    return Cut(kLeft, {Pose(0, 0), Pose(radius, 0), "PATH CIR\n" + arc(1.0), arc(-1.0)});
+  };
+  EXPECT_EQ(GougedSteps(circle(300.0)), kNone);
+  EXPECT_EQ(GougedSteps(circle(5.0)), kNone);
+  // An arc that hangs down to a line: (10,dip) is its lowest point.
+  const auto hanging = [](double dip) {
+    return Cut(kLeft, {Pose(0, 0), Pose(20, 0), Pose(20, 10), Pose(15, 10),
+                       "PATH CIR\nMOVE (5,10,0,0,0)/VIA (10," + FixedText(dip, 6) + ",0,0,0)\n"});
+  };
+  EXPECT_EQ(GougedSteps(hanging(2.5)), kNone);
+  EXPECT_EQ(GougedSteps(hanging(1.5)), (std::vector<int>{5, 9}));
+}
+
+// A last move that is shorter than its corner needs: from (9,1) back to (9,0.5), 0.5 from the edge
+// before it.
+TEST(Gouge, MovesThatRunBackAreFound) {
+  EXPECT_EQ(GougedSteps(Cut(kLeft, {Pose(0, 0), Pose(10, 0), Pose(10, 0.5)})),
+            (std::vector<int>{6}));
+  EXPECT_EQ(GougedSteps(Cut(kLeft, {Pose(0, 0), Pose(10, 0), Pose(10, 1.5)})), kNone);
+}
+
+// A spiral of many short moves: nothing is left out, and nothing is found.
+TEST(Gouge, LongContoursAreLookedAtWhole) {
+  std::vector<std::string> moves;
+  for (int n = 0; n < 20'000; ++n) {
+    const double angle = 0.05 * n, radius = 20.0 + 3.0 * angle / (2.0 * M_PI);
+    moves.push_back(Pose(radius * std::cos(angle), radius * std::sin(angle)));
+  }
+  EXPECT_EQ(GougedSteps(Cut(kLeft, moves)), kNone);
+  EXPECT_GT(GougedSteps(Cut(";$rad=3.2\n;$left\n", moves)).size(), 900U);  // pitch 3: everywhere
+}
+
+// What is left out is said: a triangle that is cut over and over lies in one place.
+TEST(Gouge, WhatIsNotLookedAtIsSaid) {
+  std::vector<std::string> moves = {Pose(2, -3), Pose(2, 0)};
+  for (int n = 0; n < 10'000; ++n) {
+    moves.push_back(Pose(4, 0));
+    moves.push_back(Pose(0, 3));
+    moves.push_back(Pose(0, 0));
+  }
+  const Compensation made = Compensate(Cut(";$rad=0.1\n;$right\n", moves));
+  ASSERT_TRUE(made.ok);
+  ASSERT_EQ(made.diagnostics.size(), 1U);
+  EXPECT_EQ(made.diagnostics[0].severity, Severity::kAdvice);
+  EXPECT_NE(made.diagnostics[0].detail.find("not checked from step"), std::string::npos);
+  EXPECT_NE(made.diagnostics[0].detail.find(" to 30005"), std::string::npos)
+      << made.diagnostics[0].detail;
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo
