@@ -9,9 +9,8 @@
 namespace rmlcell::optimo {
 namespace {
 
-constexpr std::size_t kNamesMax = kNoName;      // names have 16-bit numbers
-constexpr std::size_t kQuotedMax = 40;          // of a token in a message
-constexpr std::size_t kProposalNamesMax = 500;  // names compared with a mistyped one
+constexpr std::size_t kNamesMax = kNoName;  // names have 16-bit numbers
+constexpr std::size_t kQuotedMax = 40;      // of a token in a message
 
 }  // namespace
 
@@ -213,29 +212,62 @@ void Parser::ParseIgnored(Word word) {
   module_.texts.push_back(std::move(text));
 }
 
-// The nearest instruction word or declared name is proposed. OPT-7.91
+// Would the statement be right with `text` in place of this word, its first?
+bool Parser::IsRightWith(const Token& word, std::string_view text) const {
+  constexpr std::size_t kBytesMax = 2000;  // what is longer is left to the programmer
+  std::string repaired(text);
+  repaired += text_.substr(word.offset + word.length, kBytesMax);
+  std::vector<Comment> comments;
+  Lexer lexer(repaired, comments);
+  if (!lexer.NextStatement()) return false;
+  std::size_t count = 1;
+  while (lexer.At(count).kind != TokenKind::kEnd) ++count;
+  const Token last = lexer.At(count - 1);
+  const std::size_t end = last.offset + last.length;
+  if (end >= kBytesMax) return false;
+  Findings none(0);
+  const ParsedProgram program =
+      Parse(std::string_view(repaired).substr(0, end), none, Places::kStatements);
+  return none.error_count() == 0 && program.statements.size() == 1;
+}
+
+// GOTO10: where the digits behind the word of an instruction begin, if a blank there makes it
+// right.
+std::optional<std::uint32_t> Parser::MissingBlank(const Token& name) const {
+  const std::string_view text = lexer_.TextOf(name);
+  const std::size_t letters = text.find_last_not_of("0123456789") + 1;
+  if (letters == text.size() || letters > kNameLength) return std::nullopt;
+  if (OpOf(FindWord(PackName(text.substr(0, letters)))) == Op::kInvalid) return std::nullopt;
+  std::string apart(text);
+  apart.insert(letters, " ");
+  if (!IsRightWith(name, apart)) return std::nullopt;
+  return static_cast<std::uint32_t>(letters);
+}
+
+// The nearest instruction words or declared names are proposed, and put in place when it is sure
+// what was meant. OPT-7.91
 bool Parser::FailUnknown(const Token& name) {
   if (findings_.full()) return FailAt(name, ErrorCode::kNameUndeclared, {});
-  std::vector<std::string_view> candidates;
-  for (const WordInfo& row : ReservedWords()) {
-    if (row.group == WordGroup::kInstruction || row.group == WordGroup::kIgnored)
-      candidates.push_back(row.text);
-  }
-  std::string names;
-  names.reserve(kProposalNamesMax * kNameLength);
-  for (std::size_t i = 0; i < module_.names.size() && i < kProposalNamesMax; ++i) {
-    if (!declared_[i]) continue;
-    char room[kNameLength];
-    const std::size_t begin = names.size();
-    names += UnpackName(module_.names[i].key, room);
-    candidates.push_back(std::string_view(names).substr(begin));
-  }
-  const std::string nearest = NearestWord(lexer_.TextOf(name), candidates);
   std::string detail = Quoted(name) + " is no instruction and no declared name";
   std::vector<Fix> fixes;
-  if (!nearest.empty()) {
-    detail += "; did you mean " + nearest + "?";
-    fixes.push_back({name.offset, static_cast<int>(name.length), nearest});
+  if (const auto blank = MissingBlank(name)) {
+    detail += "; a blank is missing before its digits";
+    fixes.push_back({name.offset + *blank, 0, " "});
+  } else {
+    std::vector<std::string_view> candidates;
+    for (const WordInfo& row : ReservedWords()) {
+      if (row.group == WordGroup::kInstruction || row.group == WordGroup::kIgnored)
+        candidates.push_back(row.text);
+    }
+    const NameCandidates names(module_, declared_names_);
+    names.AppendTo(candidates);
+    const NearWords near = NearestWords(lexer_.TextOf(name), candidates);
+    detail += QuestionFor(near);
+    // Not for a word without effect, nor for a name, behind which no '=' stands.
+    const bool sure = (near.IsSingle(Slip::kOneLetter) || near.IsSingle(Slip::kSwap)) &&
+                      OpOf(FindWord(PackName(near.words.front()))) != Op::kInvalid;
+    if (sure && IsRightWith(name, near.words.front()))
+      fixes.push_back({name.offset, static_cast<int>(name.length), near.words.front()});
   }
   findings_.Add(ErrorCode::kNameUndeclared, PlaceOf(name), std::move(detail), "OPT-7.91",
                 std::move(fixes));

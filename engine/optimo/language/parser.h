@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -104,6 +105,8 @@ class Parser {
   void Report(const Token& token, ErrorCode code, std::string detail, std::string_view rule = {});
   void ReportStatement(ErrorCode code, std::string detail, std::string_view rule = {});
   bool FailUnknown(const Token& name);
+  bool IsRightWith(const Token& word, std::string_view text) const;
+  std::optional<std::uint32_t> MissingBlank(const Token& name) const;
   Place PlaceOf(const Token& token) const;
   std::string Quoted(const Token& token) const;
   std::uint16_t InternName(const Token& token);
@@ -118,7 +121,8 @@ class Parser {
   Token first_;              // of the statement, behind its label
   Instruction instruction_;  // under construction
   std::unordered_map<NameKey, std::uint16_t> names_;
-  std::vector<bool> declared_;  // by name, as far as the text was read
+  std::vector<bool> declared_;                 // by name, as far as the text was read
+  std::vector<std::uint16_t> declared_names_;  // in order
   std::vector<bool> long_form_reported_;
   std::array<std::uint32_t, 10000> label_line_{};  // where it stands; 0: nowhere yet
   std::vector<NodePlace> pending_label_places_;    // of the instruction to come

@@ -309,6 +309,7 @@ bool Parser::ParseDeclare() {
                   std::string(UnpackName(name.key, room)) + " is declared already", "OPT-7.49");
   }
   declared_[instruction_.name] = true;
+  declared_names_.push_back(instruction_.name);
   return true;
 }
 

@@ -93,7 +93,8 @@ TEST(Compiler, MistypedWordsGetAProposal) {
   ASSERT_EQ(compiled.diagnostics.size(), 2U);
   EXPECT_NE(compiled.diagnostics[0].detail.find("SPEED"), std::string::npos);
   EXPECT_EQ(compiled.diagnostics[0].fixes, (std::vector<Fix>{{0, 4, "SPEED"}}));
-  EXPECT_EQ(compiled.diagnostics[1].fixes, (std::vector<Fix>{{38, 5, "XHOME"}}));
+  EXPECT_NE(compiled.diagnostics[1].detail.find("XHOME"), std::string::npos);
+  EXPECT_TRUE(compiled.diagnostics[1].fixes.empty());  // XHOMF may be meant
 }
 
 // Findings are bounded; the rest is counted.
