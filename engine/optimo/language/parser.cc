@@ -52,6 +52,8 @@ void Parser::ParseStatement() {
   nesting_ = 0;
   slash_separates_ = false;
   first_ = Peek();
+  instruction_ = Instruction{};
+  instruction_.step = steps_ + 1;  // that a sequence number leads to, here or on a later line
   labelled_ = first_.kind == TokenKind::kNumber;
   if (labelled_) {
     AddLabel(Take());

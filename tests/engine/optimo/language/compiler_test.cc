@@ -97,6 +97,17 @@ TEST(Compiler, MistypedWordsGetAProposal) {
   EXPECT_TRUE(compiled.diagnostics[1].fixes.empty());  // XHOMF may be meant
 }
 
+// OPT-1.33, OPT-6.01: an error of a sequence number belongs to the step that it leads to.
+TEST(Compiler, SequenceNumbersNameTheirOwnStep) {
+  const Compilation compiled = Compile(
+      "SPEED 5\n10 SPEED 6\n10 SPEED 7\n10000 SPEED 8\n10\nDECLARE X = VR[1]\nX = 1.\n", "", {});
+  std::vector<std::pair<ErrorCode, int>> found;
+  for (const Diagnostic& d : compiled.diagnostics) found.emplace_back(d.code, d.step);
+  EXPECT_EQ(found, (std::vector<std::pair<ErrorCode, int>>{{ErrorCode::kLabelDuplicate, 3},
+                                                           {ErrorCode::kLabelRange, 4},
+                                                           {ErrorCode::kLabelDuplicate, 5}}));
+}
+
 // Findings are bounded; the rest is counted.
 TEST(Compiler, TenThousandErrorsAreCountedNotListed) {
   std::string text;
