@@ -67,7 +67,7 @@ class Adviser {
 
   void AdviseTarget(const Instruction& i, int width) {
     const ExprNode& target = module_.Value(i, 0)[0];
-    if (target.op != Node::kVariable) return;
+    if (target.op != Node::kVariable || IsReadOnly(target.variable())) return;
     const std::string text =
         std::string(GroupName(target.group)) + "[" + std::to_string(target.index) + "]";
     if (IsReserved(target.variable())) {

@@ -64,7 +64,9 @@ void Parser::ParseStatement() {
   instruction_.first_expression = static_cast<std::uint32_t>(module_.expression_ends.size());
   instruction_.first_target = static_cast<std::uint32_t>(module_.targets.size());
   attribute_parts_.clear();
-  const bool steps = first_.word != Word::kDeclare;
+  const bool rest_of_if = std::exchange(broken_if_, false) &&
+                          (first_.word == Word::kThen || first_.word == Word::kElse);
+  const bool steps = first_.word != Word::kDeclare && !rest_of_if;
   if (steps) ++steps_;
   instruction_.step = steps ? steps_ : 0;
 
@@ -72,8 +74,11 @@ void Parser::ParseStatement() {
                               ? WordGroup::kNone
                               : Describe(first_.word).group;
   bool good = false;
-  if (first_.kind == TokenKind::kWord &&
-      (group == WordGroup::kNone || group == WordGroup::kVariable)) {
+  if (rest_of_if) {
+    broken_if_ = true;  // reported where the IF stopped
+  } else if (first_.kind == TokenKind::kWord &&
+             (group == WordGroup::kNone || group == WordGroup::kVariable ||
+              (IsRefused(first_) && Peek(1).kind == TokenKind::kEqual))) {
     good = ParseAssignment(false);
   } else if (group == WordGroup::kInstruction) {
     good = ParseInstruction(first_.word);
@@ -91,6 +96,7 @@ void Parser::ParseStatement() {
     if (good && !Is(TokenKind::kEnd)) good = Fail("the end of the statement");
   }
   if (!good) {
+    broken_if_ = broken_if_ || instruction_.op == Op::kIf;
     DropExpressions(instruction_.first_expression);
     module_.targets.resize(instruction_.first_target);
     const bool named = instruction_.op == Op::kDeclare && instruction_.name != kNoName &&
@@ -289,11 +295,13 @@ std::uint16_t Parser::InternName(const Token& token) {
     }
     module_.names.push_back({.key = token.key, .declared = false, .value = {}});
     declared_.push_back(false);
-    program_.broken_names.push_back(false);
+    program_.broken_names.push_back(IsRefused(token));
     long_form_reported_.push_back(false);
   }
   const std::uint16_t name = entry->second;
-  if (token.length > kNameLength && !long_form_reported_[name]) {
+  // Of a name that nobody declared there is more to say than that it is long.
+  const bool known = declared_[name] || instruction_.op == Op::kDeclare;
+  if (token.length > kNameLength && known && !long_form_reported_[name]) {
     long_form_reported_[name] = true;
     char room[kNameLength];
     std::string eight(UnpackName(token.key, room));
