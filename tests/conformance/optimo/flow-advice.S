@@ -236,7 +236,7 @@ OL[20] = ON              ; rmlcell: allow 7413, expect 7412
 ; rmlcell: allow 7412
 OL[20] = ON
 OL[20] = ON              ; expect 7412
-SPEED 101                ; rmlcell: allow 7004, expect 7004
+SPEED 101                ; rmlcell: allow 7004, expect 7004 7033
 
 ;=== a subroutine that calls itself (advice)
 ; OPT-7.21 OPT-E.7503
