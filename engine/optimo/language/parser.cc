@@ -64,6 +64,7 @@ void Parser::ParseStatement() {
   instruction_.first_expression = static_cast<std::uint32_t>(module_.expression_ends.size());
   instruction_.first_target = static_cast<std::uint32_t>(module_.targets.size());
   attribute_parts_.clear();
+  const std::uint64_t errors = findings_.error_count();
   const bool rest_of_if = std::exchange(broken_if_, false) &&
                           (first_.word == Word::kThen || first_.word == Word::kElse);
   const bool steps = first_.word != Word::kDeclare && !rest_of_if;
@@ -108,6 +109,8 @@ void Parser::ParseStatement() {
     instruction_.first_expression = static_cast<std::uint32_t>(module_.expression_ends.size());
     instruction_.first_target = static_cast<std::uint32_t>(module_.targets.size());
   }
+  if (good && findings_.error_count() != errors)
+    program_.faulty.push_back(static_cast<std::uint32_t>(module_.instructions.size()));
   FinishStatement(good);
 }
 

@@ -34,6 +34,7 @@ TCP (0,0,0/0,0,5)                    ; expect 7315
 
 ;=== the rotary table turns in degrees (advice)
 ; OPT-8.78
+VR[3] = 1.
 FUNCTION 99 (VR[3])      ; expect 7033
 FUNCTION 99 (VR[26])
 
