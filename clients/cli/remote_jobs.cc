@@ -1,3 +1,4 @@
+#include <cstdio>
 #include <filesystem>
 #include <random>
 #include <thread>
@@ -91,6 +92,8 @@ bool WatchOnce(const Remote& remote, v1::JobService::Stub& stub, const std::stri
 }  // namespace
 
 int WatchJob(const Remote& remote, const std::string& job, std::int64_t after) {
+  // What reads from a pipe wants each event when it happens.
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   const auto stub = v1::JobService::NewStub(Connect(remote));
   const std::string name = FullName("jobs", job);
   // A server that restarts is waited for, and nothing is missed or told twice.
