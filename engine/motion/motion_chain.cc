@@ -65,7 +65,9 @@ void MotionChain::Append(const MoveCommand& move, const PathLimits& limits) {
     legs_.back().last_move = number;
     legs_.back().length += move.path.length();
   } else {
-    legs_.Push({.first_move = number, .last_move = number, .length = move.path.length()});
+    Leg& leg = legs_.PushSlot();  // CloseLeg sets the rest
+    leg.first_move = leg.last_move = number;
+    leg.length = move.path.length();
   }
   if (!move.fly) {
     CloseLeg(Passage::kStop, Corner{}, 0.0);
@@ -195,6 +197,21 @@ std::optional<double> MotionChain::LengthAfter(Number leg, double enough,
   return std::nullopt;
 }
 
+// Points passed straight on that the curve of `cut` at the end of `leg` swallows keep their speed: the
+// least of them; nothing when they are not known yet.
+std::optional<double> MotionChain::SpeedWithin(Number leg, double cut, bool accept_what_is_there) {
+  double least = HUGE_VAL;
+  double beyond = 0.0;
+  for (Number k = leg + 1; k < legs_.end() && beyond + legs_[k].length < cut; ++k) {
+    beyond += legs_[k].length;
+    const auto index = static_cast<std::size_t>(k - leg);
+    const bool known = index < running_.final_count();
+    if (!known && !accept_what_is_there) return std::nullopt;
+    least = std::min(least, known ? running_.speed(index) : legs_[k].cap);
+  }
+  return least;
+}
+
 bool MotionChain::Resolve(bool accept_what_is_there) {
   if (running_.final_count() == 0) return false;
   const Number number = resolving_;
@@ -230,6 +247,8 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
       cut = 0.0;
       closing.report.passage = Passage::kStopShort;
     } else {
+      const std::optional<double> swallowed = SpeedWithin(number, cut, accept_what_is_there);
+      if (!swallowed) return false;
       closing.report.passage = capped ? Passage::kBlendCapped : Passage::kBlend;
       speed_cap = wanted;
       MakeCurve(closing, leg, cut);
@@ -240,20 +259,15 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
       const bool axes_follow =
           leg.corner.plain()
               ? axes_keep_up_
-              : leg.corner.lines() && AxesFollow(closing.curve, head, machine_, speed_cap,
+              : leg.corner.lines() && AxesFollow(curves_.back(), head, machine_, speed_cap,
                                                  leg.corner.PlainCurvature(cut));
-      if (!axes_follow)
-        speed_cap = std::min(speed_cap, SpeedOnCurve(closing.curve, head, machine_));
-      if (speed_cap < wanted) closing.report.passage = Passage::kBlendCapped;
-      // Points passed straight on that the curve swallows keep their speed.
-      double beyond = 0.0;
-      for (Number k = number + 1; k < legs_.end() && beyond + legs_[k].length < cut; ++k) {
-        beyond += legs_[k].length;
-        const auto index = static_cast<std::size_t>(k - number);
-        const bool known = index < running_.final_count();
-        if (!known && !accept_what_is_there) return false;
-        speed_cap = std::min(speed_cap, known ? running_.speed(index) : legs_[k].cap);
+      if (!axes_follow) {
+        const CornerCurve curve =
+            closing.plain ? PlainCurve(leg.last_move, cut) : curves_.back();
+        speed_cap = std::min(speed_cap, SpeedOnCurve(curve, head, machine_));
       }
+      if (speed_cap < wanted) closing.report.passage = Passage::kBlendCapped;
+      speed_cap = std::min(speed_cap, *swallowed);
     }
   }
   closing.report.cut_mm = cut;
@@ -268,11 +282,14 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
   return true;
 }
 
+CornerCurve MotionChain::PlainCurve(Number corner_move, double cut) {
+  const PathPiece& in = moves_[corner_move].path;
+  return CornerCurve(in.to(), in.Tangent(0.0), moves_[corner_move + 1].path.Tangent(0.0), cut);
+}
+
 void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
-  if (leg.corner.plain()) {
-    const PathPiece& in = moves_[leg.last_move].path;
-    span.curve =
-        CornerCurve(in.to(), in.Tangent(0.0), moves_[leg.last_move + 1].path.Tangent(0.0), cut);
+  span.plain = leg.corner.plain();
+  if (span.plain) {
     span.curve_length = leg.corner.PlainLength(cut);
     span.curve_middle = 0.5;
     span.report.deviation_mm = leg.corner.PlainDeviation(cut);
@@ -295,8 +312,9 @@ void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
   const PathPiece& out = moves_[after].path;
   span.curve_may_vary =
       in.a_rate() == 0.0 && in.b_rate() == 0.0 && out.a_rate() == 0.0 && out.b_rate() == 0.0;
-  span.curve = CornerCurve(EndAt(in, std::max(in.length() - left, 0.0)),
-                           EndAt(out, std::min(right, out.length())), cut);
+  const CornerCurve curve(EndAt(in, std::max(in.length() - left, 0.0)),
+                          EndAt(out, std::min(right, out.length())), cut);
+  curves_.Push(curve);
   if (leg.corner.lines()) {
     // The tip's way is the same whether the head turns or not.
     span.curve_length = leg.corner.PlainLength(cut);
@@ -304,10 +322,10 @@ void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
     span.report.deviation_mm = leg.corner.PlainDeviation(cut);
     return;
   }
-  const CornerLength length(span.curve);
+  const CornerLength length(curve);
   span.curve_length = length.total();
-  span.curve_middle = length.ParameterAt(span.curve, 0.5 * span.curve_length);
-  span.report.deviation_mm = span.curve.DistanceFrom(moves_[leg.last_move].path.to().tip);
+  span.curve_middle = length.ParameterAt(curve, 0.5 * span.curve_length);
+  span.report.deviation_mm = curve.DistanceFrom(moves_[leg.last_move].path.to().tip);
 }
 
 // The legs from the start of the run to `last_leg`, less what the curves at both ends take, become

@@ -38,7 +38,7 @@ class MotionChain {
   bool starts_too_fast() const { return starts_too_fast_; }
   void Mark(std::uint64_t tag);
   void Stop();
-  std::optional<PlannedItem> Next();
+  const PlannedItem* Next();  // see Planner::NextInPlace
 
   const MachineLimits& machine() const { return machine_; }
   std::uint64_t starved() const { return starved_; }
@@ -82,9 +82,10 @@ class MotionChain {
     double cap = 0.0;            // of the speed at its end, and on the curve behind it
     bool curve_may_vary = true;  // the curve behind it may be passed with changing speed
     CornerReport report;
+    // When the report says blend:
     double curve_length = 0.0;
     double curve_middle = 0.5;
-    CornerCurve curve{};  // when the report says blend
+    bool plain = false;  // the curve follows from the corner and the cut; else it waits in curves_
   };
   struct WaitingMark {
     std::uint64_t tag = 0;
@@ -97,18 +98,30 @@ class MotionChain {
   void Starve();
   bool Resolve(bool accept_what_is_there);
   std::optional<double> LengthAfter(Number leg, double enough, bool accept_what_is_there);
+  std::optional<double> SpeedWithin(Number leg, double cut, bool accept_what_is_there);
   void MakeCurve(Span& span, const Leg& leg, double cut);
+  CornerCurve PlainCurve(Number corner_move, double cut);
   void CloseRun(Number last_leg, double total, const Span& closing, double speed_cap);
 
+  // From where to where on a span or a curve, and the speed of all of it when that is steady.
+  struct CellPart {
+    double from = 0.0;
+    double to = 0.0;
+    double length = 0.0;
+    double speed = 0.0;
+  };
   // Part of a speed profile, for a span or a curve.
   struct Timing {
     const SpeedProfile* profile = nullptr;  // null: steady
     double from = 0.0;
     double to = 0.0;
-    SpeedProfile Part(double s_from, double s_to, double length, double speed) const;
+    void Assign(SpeedProfile& speed_profile, const CellPart& part) const;
   };
   struct CurvePart {
-    const PathPiece* half = nullptr;
+    const CornerCurve* curve = nullptr;
+    const TipPose* from = nullptr;  // of its half
+    const TipPose* to = nullptr;
+    double half = 0.0;  // its length
     double s_from = 0.0;
     double s_to = 0.0;
     double begin = 0.0;  // of the half on the curve
@@ -119,9 +132,10 @@ class MotionChain {
   bool EndsSection(std::size_t index);
   void EmitSection(std::size_t count);
   void EmitSpan(const Timing& timing, const Timing& on_curve);
+  CornerCurve CurveOf(const Span& span);
   void EmitCurve(const Span& span, const Timing& timing);
   void EmitCurvePart(const Span& span, Number move, const CurvePart& part, const Timing& timing);
-  PlannedMotion& NewMotion(const Span& span, Number move);
+  PlannedMotion& NewMotion(const Span& span, const Move& source);
   void FinishMotion(const Span& span, Number move, PlannedMotion& motion, bool ends_move);
 
   MachineLimits machine_;
@@ -143,6 +157,7 @@ class MotionChain {
   double run_cut_ = 0.0;          // what the curve at the start of the run takes of it
 
   Ring<Span> spans_;
+  Ring<CornerCurve> curves_;  // of those spans whose curve is not plain
   SpeedPasses speeds_;  // over spans
   std::size_t speeds_next_ = 0;
   double last_speed_ = 0.0;       // at the end of the last emitted span

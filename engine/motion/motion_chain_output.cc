@@ -13,14 +13,14 @@ constexpr std::size_t kSectionMax = RampPlan::kCellsMax / 2;
 
 }  // namespace
 
-std::optional<PlannedItem> MotionChain::Next() {
+const PlannedItem* MotionChain::Next() {
   while (items_.empty()) {
     const std::size_t count = SectionSize();
-    if (count == 0) return std::nullopt;
+    if (count == 0) return nullptr;
+    items_.Rewind();
     EmitSection(count);
   }
-  std::optional<PlannedItem> item(std::in_place,
-                                  std::move(items_.front()));  // one copy: they are large
+  const PlannedItem* item = &items_.front();  // nothing is written there before the next call
   items_.PopFront();
   return item;
 }
@@ -98,12 +98,17 @@ void MotionChain::EmitSection(std::size_t count) {
   }
 }
 
-SpeedProfile MotionChain::Timing::Part(double s_from, double s_to, double length,
-                                       double speed) const {
-  if (profile == nullptr) return SpeedProfile::Steady(s_to - s_from, speed);
-  const double end = s_to >= length ? to : std::min(from + s_to, to);
-  if (from + s_from == 0.0 && end == profile->end().s) return *profile;
-  return profile->Part(from + s_from, end);
+void MotionChain::Timing::Assign(SpeedProfile& speed_profile, const CellPart& part) const {
+  if (profile == nullptr) {
+    speed_profile = SpeedProfile::Steady(part.to - part.from, part.speed);
+    return;
+  }
+  const double end = part.to >= part.length ? to : std::min(from + part.to, to);
+  if (from + part.from == 0.0 && end == profile->end().s) {
+    speed_profile = *profile;
+  } else {
+    speed_profile = profile->Part(from + part.from, end);
+  }
 }
 
 void MotionChain::EmitSpan(const Timing& timing, const Timing& on_curve) {
@@ -118,18 +123,19 @@ void MotionChain::EmitSpan(const Timing& timing, const Timing& on_curve) {
   if (span.length > 0.0) {
     double done = 0.0;
     for (Number k = span.first_move; k <= span.last_move; ++k) {
-      const PathPiece& path = moves_[k].path;
+      const Move& move = moves_[k];
+      const PathPiece& path = move.path;
       const double from = k == span.first_move ? span.x_from : 0.0;
       const double to = k == span.last_move ? span.x_to : path.length();
       if (!(to > from)) continue;
-      PlannedMotion& motion = NewMotion(span, k);
+      PlannedMotion& motion = NewMotion(span, move);
       if (from == 0.0 && to == path.length()) {
         motion.path = path;
       } else {
-        motion.path = path.Part(from, to);
+        motion.path.AssignPart(path, from, to);
       }
       const double end = k == span.last_move ? span.length : done + (to - from);
-      motion.speed = timing.Part(done, end, span.length, speed);
+      timing.Assign(motion.speed, {done, end, span.length, speed});
       done += to - from;
       const bool reaches_end = to == path.length() && !(blend && k == span.corner_move);
       FinishMotion(span, k, motion, reaches_end);
@@ -141,13 +147,24 @@ void MotionChain::EmitSpan(const Timing& timing, const Timing& on_curve) {
   speeds_.Pop();
 }
 
+// The oldest span's curve. Plain ones, nearly all, are made when they are needed and not carried along.
+CornerCurve MotionChain::CurveOf(const Span& span) {
+  if (span.plain) return PlainCurve(span.corner_move, span.report.cut_mm);
+  const CornerCurve curve = curves_.front();
+  curves_.PopFront();
+  return curve;
+}
+
 // The curve is cut where its middle is, and where points that it swallows are: they lie on its
 // halves as they would lie on the straight pieces.
 void MotionChain::EmitCurve(const Span& span, const Timing& timing) {
   const double half = 0.5 * span.curve_length;
   const double cut = span.report.cut_mm;
-  const PathPiece::Halves halves =
-      PathPiece::CornerHalves(span.curve, span.curve_length, span.curve_middle);
+  const CornerCurve curve = CurveOf(span);
+  const TipPose begin = curve.At(0.0);
+  const TipPose middle = curve.At(span.curve_middle);
+  const TipPose end = curve.At(1.0);
+  CurvePart part{.curve = &curve, .from = &begin, .to = &middle, .half = half, .ends_move = true};
   // First half: from the end of the span to the corner.
   double x = moves_[span.last_move].path.length() - span.x_to;  // way to the end of the move
   if (x <= 0.0 && span.last_move < span.corner_move) x = 0.0;
@@ -155,17 +172,25 @@ void MotionChain::EmitCurve(const Span& span, const Timing& timing) {
   for (Number k = span.last_move; k <= span.corner_move; ++k) {
     if (k > span.last_move) x += moves_[k].path.length();
     const double to = k == span.corner_move ? half : std::min(half * x / cut, half);
-    if (to > s) EmitCurvePart(span, k, {&halves.first, s, to, 0.0, true}, timing);
+    part.s_from = s;
+    part.s_to = to;
+    if (to > s) EmitCurvePart(span, k, part, timing);
     s = std::max(s, to);
   }
   // Second half: to the place where the next span begins.
   x = 0.0;
   s = 0.0;
+  part.from = &middle;
+  part.to = &end;
+  part.begin = half;
   for (Number k = span.corner_move + 1;; ++k) {
     x += moves_[k].path.length();
     const bool last = x >= cut || k + 1 == moves_.end();
     const double to = last ? half : std::min(half * x / cut, half);
-    if (to > s) EmitCurvePart(span, k, {&halves.second, s, to, half, !last}, timing);
+    part.s_from = s;
+    part.s_to = to;
+    part.ends_move = !last;
+    if (to > s) EmitCurvePart(span, k, part, timing);
     s = std::max(s, to);
     if (last) break;
   }
@@ -173,14 +198,13 @@ void MotionChain::EmitCurve(const Span& span, const Timing& timing) {
 
 void MotionChain::EmitCurvePart(const Span& span, Number move, const CurvePart& part,
                                 const Timing& timing) {
-  PlannedMotion& motion = NewMotion(span, move);
-  if (part.s_from == 0.0 && part.s_to == part.half->length()) {
-    motion.path = *part.half;
-  } else {
-    motion.path = part.half->Part(part.s_from, part.s_to);
+  PlannedMotion& motion = NewMotion(span, moves_[move]);
+  motion.path.AssignCorner(*part.curve, part.begin, part.half, *part.from, *part.to);
+  if (part.s_from != 0.0 || part.s_to != part.half) {
+    motion.path = motion.path.Part(part.s_from, part.s_to);
   }
-  motion.speed = timing.Part(part.begin + part.s_from, part.begin + part.s_to, span.curve_length,
-                             span.report.speed);
+  timing.Assign(motion.speed, {part.begin + part.s_from, part.begin + part.s_to, span.curve_length,
+                               span.report.speed});
   motion.limits.speed = timing.profile != nullptr ? span.cap : span.report.speed;
   motion.limits.acceleration = std::min(
       motion.limits.acceleration, machine_.curve_tangential * machine_.tip_acceleration_mm_s2);
@@ -189,11 +213,10 @@ void MotionChain::EmitCurvePart(const Span& span, Number move, const CurvePart& 
 
 // Motions are made where they wait to be taken: they are large. The slot holds an old one, so every
 // member is set here or by the caller (path, speed).
-PlannedMotion& MotionChain::NewMotion(const Span& span, Number move) {
+PlannedMotion& MotionChain::NewMotion(const Span& span, const Move& source) {
   PlannedItem& slot = items_.PushSlot();
   auto* motion = std::get_if<PlannedMotion>(&slot);
   if (motion == nullptr) motion = &slot.emplace<PlannedMotion>();
-  const Move& source = moves_[move];
   motion->tag = source.tag;
   motion->head = source.head;
   motion->limits = span.limits;

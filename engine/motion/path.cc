@@ -120,38 +120,40 @@ PathPiece PathPiece::Circle(const TipPose& from, const Vec3& centre, const Vec3&
   return piece;
 }
 
-PathPiece PathPiece::Corner(const CornerCurve& curve, double length) {
-  PathPiece piece;
-  piece.kind_ = Kind::kBlend;
-  piece.length_ = length;
-  piece.from_ = curve.At(0.0);
-  piece.to_ = curve.At(1.0);
-  piece.shape_ = CurvePart{curve, 0.0};
-  return piece;
-}
-
-PathPiece::Halves PathPiece::CornerHalves(const CornerCurve& curve, double length, double middle) {
-  Halves halves{Corner(curve, length), {}};
-  halves.first.length_ = 0.5 * length;
-  halves.second = halves.first;
-  halves.first.to_ = halves.second.from_ = curve.At(middle);
-  std::get_if<CurvePart>(&halves.second.shape_)->start = 0.5 * length;
-  return halves;
+void PathPiece::AssignCorner(const CornerCurve& curve, double start, double length,
+                             const TipPose& from, const TipPose& to) {
+  kind_ = Kind::kBlend;
+  length_ = length;
+  from_ = from;
+  to_ = to;
+  CurvePart* part = std::get_if<CurvePart>(&shape_);
+  if (part == nullptr) part = &shape_.emplace<CurvePart>();
+  part->curve = curve;
+  part->start = start;
 }
 
 PathPiece PathPiece::Part(double s_from, double s_to) const {
-  PathPiece part = *this;
-  part.from_ = At(s_from);
-  part.to_ = At(s_to);
-  part.length_ = s_to - s_from;
-  if (auto* arc_shape = std::get_if<ArcShape>(&part.shape_)) {
-    part.tangent_ = Tangent(s_from);
-    arc_shape->inward = Curvature(s_from) * arc_shape->radius_mm;
-    arc_shape->sweep_rad = part.length_ / arc_shape->radius_mm;
-  } else if (auto* curve_part = std::get_if<CurvePart>(&part.shape_)) {
-    curve_part->start += s_from;
-  }
+  PathPiece part;
+  part.AssignPart(*this, s_from, s_to);
   return part;
+}
+
+void PathPiece::AssignPart(const PathPiece& whole, double s_from, double s_to) {
+  kind_ = whole.kind_;
+  length_ = s_to - s_from;
+  from_ = whole.At(s_from);
+  to_ = whole.At(s_to);
+  tangent_ = whole.tangent_;
+  if (kind_ == Kind::kArc) {
+    shape_ = whole.shape_;
+    ArcShape& part = *std::get_if<ArcShape>(&shape_);
+    tangent_ = whole.Tangent(s_from);
+    part.inward = whole.Curvature(s_from) * part.radius_mm;
+    part.sweep_rad = length_ / part.radius_mm;
+  } else if (kind_ == Kind::kBlend) {
+    shape_ = whole.shape_;
+    std::get_if<CurvePart>(&shape_)->start += s_from;
+  }
 }
 
 double PathPiece::tip_length_mm() const { return by_sigma() ? 0.0 : length_; }
@@ -167,9 +169,7 @@ Vec3 PathPiece::ArcPoint(double angle) const {
 TipPose PathPiece::At(double s) const {
   if (!(s > 0.0)) return from_;
   if (s >= length_) return to_;
-  if (const auto* part = std::get_if<CurvePart>(&shape_)) {
-    return part->curve.At(part->Parameter(s));
-  }
+  if (kind_ == Kind::kBlend) return curve().At(curve_part().Parameter(s));
   const double share = s / length_;
   TipPose pose;
   pose.a_rad = from_.a_rad + (to_.a_rad - from_.a_rad) * share;
@@ -178,11 +178,9 @@ TipPose PathPiece::At(double s) const {
   return pose;
 }
 
-PathDerivatives PathPiece::First(double s) const {
-  if (const auto* part = std::get_if<CurvePart>(&shape_)) {
-    return part->curve.FirstByLength(part->Parameter(s));
-  }
-  Vec3 tip = kind_ == Kind::kLine ? tangent_ : to_.tip - from_.tip;
+PathDerivatives PathPiece::FirstOffLine(double s) const {
+  if (kind_ == Kind::kBlend) return curve().FirstByLength(curve_part().Parameter(s));
+  Vec3 tip = to_.tip - from_.tip;
   if (kind_ == Kind::kArc) {
     const double angle = s / radius_mm();
     tip = tangent_ * std::cos(angle) + arc().inward * std::sin(angle);
@@ -191,9 +189,7 @@ PathDerivatives PathPiece::First(double s) const {
 }
 
 PathDerivatives PathPiece::Second(double s) const {
-  if (const auto* part = std::get_if<CurvePart>(&shape_)) {
-    return part->curve.SecondByLength(part->Parameter(s));
-  }
+  if (kind_ == Kind::kBlend) return curve().SecondByLength(curve_part().Parameter(s));
   if (kind_ != Kind::kArc) return {};
   const double angle = s / radius_mm();
   return {(arc().inward * std::cos(angle) - tangent_ * std::sin(angle)) * (1.0 / radius_mm()), 0.0,

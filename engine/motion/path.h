@@ -12,7 +12,8 @@ namespace rmlcell::motion {
 inline constexpr double kTipLengthZero_mm = 1e-6;
 inline constexpr double kArcPointTolerance_mm = 1e-4;
 
-// One piece of path. A value: copy it freely, it owns nothing. motion.md section 3.
+// One piece of path. A value: copy it freely, it owns nothing; a line, the most frequent kind, copies
+// a third of what a blend does. motion.md section 3.
 // s runs from 0 to length(); for kRotary and kJoint it is the path variable sigma from 0 to 1.
 // Rotary axes are linear in s and never reduced by a turn.
 class PathPiece {
@@ -26,6 +27,8 @@ class PathPiece {
   };
 
   PathPiece() = default;
+  PathPiece(const PathPiece& other) { *this = other; }
+  PathPiece& operator=(const PathPiece& other);  // only what the kind uses
 
   // kRotary when the tip does not move but an angle does; length 0 when nothing changes.
   static PathPiece Line(const TipPose& from, const TipPose& to);
@@ -47,34 +50,39 @@ class PathPiece {
   // The piece between two values of s, 0 <= s_from < s_to <= length(). Not for sigma pieces.
   PathPiece Part(double s_from, double s_to) const;
 
+  // Makes this piece that part of `whole`, which must be another one: Part without the copies.
+  void AssignPart(const PathPiece& whole, double s_from, double s_to);
+
   Kind kind() const { return kind_; }
   double length() const { return length_; }  // mm, or 1 for sigma pieces; 0: nothing to do
   double tip_length_mm() const;              // 0 for kRotary; for kJoint not known here, 0
   bool by_sigma() const { return kind_ == Kind::kRotary || kind_ == Kind::kJoint; }
-  double a_rate() const {
+  double a_rate() const {  // rad per unit of s; kBlend: mean
     return RateOf(from_.a_rad, to_.a_rad);
-  }  // rad per unit of s; kBlend: mean
+  }
   double b_rate() const { return RateOf(from_.b_rad, to_.b_rad); }
   const TipPose& from() const { return from_; }
   const TipPose& to() const { return to_; }
 
-  // A corner curve of the given length, which is its arc length; `middle` is u at half of it.
-  static PathPiece Corner(const CornerCurve& curve, double length);
-  struct Halves;
-  static Halves CornerHalves(const CornerCurve& curve, double length, double middle);
+  // Makes this piece the half of a corner curve: its arc length, and the poses at its ends. `start` is
+  // the arc length of the curve before it.
+  void AssignCorner(const CornerCurve& curve, double start, double length, const TipPose& from,
+                    const TipPose& to);
 
   // Outside 0..length() the nearer end; the ends are from() and to() to the last bit.
   // On a kBlend piece this measures the curve each time; MotionView does it once.
   TipPose At(double s) const;
 
   // Derivatives of the pose by s: the unit tangent and the curvature vector (1/mm), or by sigma.
-  PathDerivatives First(double s) const;
+  PathDerivatives First(double s) const {
+    return kind_ == Kind::kLine ? PathDerivatives{tangent_, a_rate(), b_rate()} : FirstOffLine(s);
+  }
   PathDerivatives Second(double s) const;
   Vec3 Tangent(double s) const { return First(s).tip; }
   Vec3 Curvature(double s) const { return Second(s).tip; }
 
   // The same places by u for kBlend pieces, whose s must be turned into u first: see CornerLength.
-  double curve_start() const { return std::get_if<CurvePart>(&shape_)->start; }
+  double curve_start() const { return curve_part().start; }
 
   // Arcs only.
   const Vec3& centre() const { return arc().centre; }
@@ -83,7 +91,7 @@ class PathPiece {
   double sweep_rad() const { return arc().sweep_rad; }
 
   // Blends only: the whole curve of the corner, of which this piece may be a part.
-  const CornerCurve& curve() const { return std::get_if<CurvePart>(&shape_)->curve; }
+  const CornerCurve& curve() const { return curve_part().curve; }
 
  private:
   struct ArcShape {
@@ -99,9 +107,11 @@ class PathPiece {
     double Parameter(double s) const { return CornerLength(curve).ParameterAt(curve, start + s); }
   };
   const ArcShape& arc() const { return *std::get_if<ArcShape>(&shape_); }
+  const CurvePart& curve_part() const { return *std::get_if<CurvePart>(&shape_); }
   Vec3 ArcPoint(double angle) const;
+  PathDerivatives FirstOffLine(double s) const;
   double RateOf(double from, double to) const {
-    return length_ > 0.0 ? (to - from) / length_ : 0.0;
+    return to != from && length_ > 0.0 ? (to - from) / length_ : 0.0;
   }
 
   Kind kind_ = Kind::kLine;
@@ -109,13 +119,19 @@ class PathPiece {
   TipPose from_;
   TipPose to_;
   Vec3 tangent_;  // lines and arcs: unit tangent at the start
+  // Of arcs and blends. Other kinds may hold what the piece was before.
   std::variant<std::monostate, ArcShape, CurvePart> shape_;
 };
 
-struct PathPiece::Halves {
-  PathPiece first;
-  PathPiece second;
-};
+inline PathPiece& PathPiece::operator=(const PathPiece& other) {
+  kind_ = other.kind_;
+  length_ = other.length_;
+  from_ = other.from_;
+  to_ = other.to_;
+  tangent_ = other.tangent_;
+  if (kind_ == Kind::kArc || kind_ == Kind::kBlend) shape_ = other.shape_;
+  return *this;
+}
 
 struct PathPiece::Arc3 {
   ArcCase kind = ArcCase::kArc;

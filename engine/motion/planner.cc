@@ -81,7 +81,11 @@ void Planner::BeginMoving(double speed_mm_s) { chain_->BeginMoving(speed_mm_s); 
 bool Planner::starts_too_fast() const { return chain_->starts_too_fast(); }
 void Planner::Mark(std::uint64_t tag) { chain_->Mark(tag); }
 void Planner::Stop() { chain_->Stop(); }
-std::optional<PlannedItem> Planner::Next() { return chain_->Next(); }
+const PlannedItem* Planner::NextInPlace() { return chain_->Next(); }
+std::optional<PlannedItem> Planner::Next() {
+  const PlannedItem* item = chain_->Next();
+  return item == nullptr ? std::nullopt : std::optional<PlannedItem>(*item);
+}
 const MachineLimits& Planner::limits() const { return chain_->machine(); }
 std::uint64_t Planner::lookahead_starved() const { return chain_->starved(); }
 

@@ -105,6 +105,10 @@ class Planner {
   // The next final item, or nothing when more input is needed.
   std::optional<PlannedItem> Next();
 
+  // The same without a copy, for who takes millions: the item is good until the planner is called
+  // again; null when more input is needed.
+  const PlannedItem* NextInPlace();
+
   const MachineLimits& limits() const;
 
   // How often the window was full and knots had to be decided too early: slower than need be,

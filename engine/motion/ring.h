@@ -34,6 +34,11 @@ class Ring {
     return slots_[Slot(end_++)];
   }
   void Push(T value) { PushSlot() = std::move(value); }
+  // Precondition: empty. Numbers begin at 0 again, and so do the slots: few of them stay in the cache.
+  void Rewind() {
+    RMLCELL_CHECK(empty());
+    first_ = end_ = 0;
+  }
   void PopFront() {
     RMLCELL_CHECK(!empty());
     ++first_;

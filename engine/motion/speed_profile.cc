@@ -99,14 +99,6 @@ double PeakRise(double length, double top, double drop, const PathLimits& limits
 
 }  // namespace
 
-double RampTime(double v0, double v1, const PathLimits& limits) {
-  return RampOf(std::abs(v1 - v0), limits).duration_s;
-}
-
-double RampLength(double v0, double v1, const PathLimits& limits) {
-  return 0.5 * (v0 + v1) * RampTime(v0, v1, limits);
-}
-
 double Reach(double v0, double length, const PathLimits& limits) {
   const double a = limits.acceleration;
   const double j = limits.jerk;
@@ -151,6 +143,8 @@ double ReachMinimum(double v0_high, double length, const PathLimits& limits) {
 }
 
 SpeedProfile SpeedProfile::Span(double length, double v0, double v1, const PathLimits& limits) {
+  // Most spans of a contour of short lines.
+  if (v0 == v1 && v0 >= limits.speed && length > 0.0) return Steady(length, v0);
   SpeedProfile profile;
   profile.end_ = {std::max(length, 0.0), v1, 0.0};
   PathState state{0.0, v0, 0.0};
@@ -238,7 +232,8 @@ void SpeedProfile::AddPhase(PathState& state, double duration_s, double accelera
   state.acceleration = acceleration;
   phases_[static_cast<std::size_t>(count_++)] = {duration_s, jerk, state};
   const double t = duration_s;
-  state.s += t * (state.speed + t * (0.5 * acceleration + t * jerk / 6.0));
+  const double bend = jerk == 0.0 ? 0.0 : t * jerk / 6.0;  // spares the division
+  state.s += t * (state.speed + t * (0.5 * acceleration + bend));
   state.speed += t * (acceleration + 0.5 * t * jerk);
   state.acceleration = acceleration + t * jerk;
   duration_s_ += duration_s;
@@ -277,15 +272,6 @@ PathState SpeedProfile::At(double t_s) const {
   state.s = std::min(state.s, end_.s);
   state.speed = std::max(state.speed, 0.0);
   return state;
-}
-
-SpeedProfile SpeedProfile::Steady(double length, double speed) {
-  SpeedProfile profile;
-  PathState state{0.0, speed, 0.0};
-  profile.AddPhase(state, length / speed, 0.0, 0.0);
-  profile.peak_speed_ = speed;
-  profile.end_ = {length, speed, 0.0};
-  return profile;
 }
 
 double SpeedProfile::TimeAt(double s) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace rmlcell::motion {
@@ -48,7 +49,15 @@ class SpeedProfile {
                            const PathLimits& limits);
 
   // `length` at one speed above 0.
-  static SpeedProfile Steady(double length, double speed);
+  static SpeedProfile Steady(double length, double speed) {
+    SpeedProfile profile;
+    profile.count_ = 1;
+    profile.duration_s_ = length / speed;
+    profile.phases_[0] = {profile.duration_s_, 0.0, {0.0, speed, 0.0}};
+    profile.peak_speed_ = speed;
+    profile.end_ = {length, speed, 0.0};
+    return profile;
+  }
 
   // The part between two places, s counted from the first. 0 <= s_from < s_to <= end().s.
   SpeedProfile Part(double s_from, double s_to) const;
@@ -104,7 +113,17 @@ double Reach(double v0, double length, const PathLimits& limits);
 double ReachMinimum(double v0_high, double length, const PathLimits& limits);
 
 // Time and length of the ramp between two speeds.
-double RampTime(double v0, double v1, const PathLimits& limits);
-double RampLength(double v0, double v1, const PathLimits& limits);
+inline double RampTime(double v0, double v1, const PathLimits& limits) {
+  const double change = std::abs(v1 - v0);
+  const double a = limits.acceleration;
+  const double j = limits.jerk;
+  if (!(change > 0.0)) return 0.0;
+  if (std::isinf(j)) return change / a;
+  if (change <= a * a / j) return 2.0 * std::sqrt(change / j);
+  return change / a + a / j;
+}
+inline double RampLength(double v0, double v1, const PathLimits& limits) {
+  return 0.5 * (v0 + v1) * RampTime(v0, v1, limits);
+}
 
 }  // namespace rmlcell::motion

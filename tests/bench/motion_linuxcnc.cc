@@ -100,7 +100,7 @@ Outcome RunOurs(const std::vector<MoveCommand>& chain, const MachineLimits& mach
   motions.reserve(3 * chain.size());
   Planner planner(machine);
   const auto drain = [&] {
-    while (const std::optional<PlannedItem> item = planner.Next()) {
+    while (const PlannedItem* item = planner.NextInPlace()) {
       motions.push_back(std::get<PlannedMotion>(*item));
     }
   };
