@@ -17,8 +17,7 @@ constexpr double kNoRate = 1e-12;  // rad/mm
 double Rho(double half_cosine) { return 2.0 * std::sqrt(half_cosine); }
 
 // Peak curvature times cut between two lines; motion.md 4.2.
-double Bend(double half_sine, double half_cosine) {
-  const double rho = Rho(half_cosine);
+double Bend(double half_sine, double half_cosine, double rho) {
   const double middle = half_cosine * (15.0 / 8.0 - 7.0 * rho / 16.0);
   return 0.75 * rho * half_sine / (middle * middle);
 }
@@ -59,10 +58,10 @@ class PlainTable {
     return table;
   }
 
-  // By q = sqrt(cos(theta/2)), in which the length is smooth at both ends; four-point
+  // By q = sqrt(cos(theta/2)) = rho / 2, in which the length is smooth at both ends; four-point
   // interpolation.
-  double Length(double half_cosine) const {
-    const double x = (std::sqrt(half_cosine) - kFirst) / kStep;
+  double Length(double rho) const {
+    const double x = (0.5 * rho - kFirst) / kStep;
     const int k = std::clamp(static_cast<int>(x), 1, kNodes - 3);
     const double t = x - k;
     const auto at = [&](int i) { return length_[static_cast<std::size_t>(k + i)]; };
@@ -105,7 +104,7 @@ class PlainTable {
       constexpr int kIntervals = 40;  // of the first half: the curve is symmetric
       const double least =
           LeastAlong([&](double u) { return 1.0 / JerkPerCube(curve, u); }, 0.5, kIntervals);
-      jerk_share_[i] = 1.0 / (least * Jerk(s, c, Bend(s, c)));
+      jerk_share_[i] = 1.0 / (least * Jerk(s, c, Bend(s, c, Rho(c))));
     }
   }
 
@@ -157,7 +156,8 @@ Corner Corner::Between(const PathPiece& before, const PathPiece& after) {
   corner.passage_ = Passage::kBlend;
   corner.lines_ = lines;
   corner.plain_ = lines && in.a == 0.0 && in.b == 0.0 && out.a == 0.0 && out.b == 0.0;
-  corner.bend_ = Bend(corner.half_sine_, corner.half_cosine_);
+  corner.rho_ = Rho(corner.half_cosine_);
+  corner.bend_ = Bend(corner.half_sine_, corner.half_cosine_, corner.rho_);
   corner.jerk_ = PlainTable::Jerk(corner.half_sine_, corner.half_cosine_, corner.bend_);
   return corner;
 }
@@ -181,12 +181,14 @@ double Corner::CutFor(double w, const MachineLimits& machine) const {
 }
 
 double Corner::PlainLength(double cut_mm) const {
-  return cut_mm * PlainTable::Get().Length(half_cosine_);
+  return cut_mm * PlainTable::Get().Length(rho_);
 }
 
 double Corner::PlainDeviation(double cut_mm) const {
-  return cut_mm * half_sine_ * (1.0 - 5.0 * Rho(half_cosine_) / 16.0);
+  return cut_mm * half_sine_ * (1.0 - 5.0 * rho_ / 16.0);
 }
+
+double Corner::PlainBow(double cut_mm) const { return cut_mm * (0.5 - 5.0 * rho_ / 32.0); }
 
 double Corner::PlainSpeed(double cut_mm, const MachineLimits& machine) const {
   const double by_acceleration = std::sqrt(machine.normal_acceleration() * cut_mm / bend_);

@@ -53,6 +53,7 @@ class Corner {
   // `cut_mm`.
   double PlainLength(double cut_mm) const;
   double PlainDeviation(double cut_mm) const;
+  double PlainBow(double cut_mm) const;  // its middle is the corner plus this times (out - in)
   double PlainSpeed(double cut_mm, const MachineLimits& machine) const;
   double PlainCurvature(double cut_mm) const { return bend_ / cut_mm; }
 
@@ -63,6 +64,7 @@ class Corner {
   bool straight_ = false;
   double half_sine_ = 0.0;  // of the turn
   double half_cosine_ = 1.0;
+  double rho_ = 0.0;   // of motion.md 4.2
   double bend_ = 0.0;  // K of motion.md 4.2: peak curvature times cut
   double jerk_ = 0.0;  // J of 4.3
   double curvature_jump_ = 0.0;

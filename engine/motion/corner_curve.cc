@@ -62,13 +62,13 @@ CornerCurve::CornerCurve(const CurveEnd& from, const CurveEnd& to, double cut_mm
       0.0, 0.0);
 }
 
-CornerCurve::CornerCurve(const TipPose& corner, const Vec3& tangent_in, const Vec3& tangent_out,
-                         double cut_mm) {
-  const double scale = Scale(tangent_in, tangent_out, cut_mm);
-  Fit(tip_, corner.tip - tangent_in * cut_mm, (tangent_in + tangent_out) * cut_mm,
-      tangent_in * scale, tangent_out * scale, Vec3{}, Vec3{});
-  a_[0] = corner.a_rad;
-  b_[0] = corner.b_rad;
+CornerCurve::CornerCurve(const PlainCorner& corner) {
+  const double cut = corner.cut_mm;
+  const double scale = Scale(corner.tangent_in, corner.tangent_out, cut);
+  Fit(tip_, corner.at.tip - corner.tangent_in * cut, (corner.tangent_in + corner.tangent_out) * cut,
+      corner.tangent_in * scale, corner.tangent_out * scale, Vec3{}, Vec3{});
+  a_[0] = corner.at.a_rad;
+  b_[0] = corner.at.b_rad;
 }
 
 TipPose CornerCurve::At(double u) const { return {Value(tip_, u), Value(a_, u), Value(b_, u)}; }

@@ -238,11 +238,12 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
   if (leg.passage == Passage::kThrough) {
     speed_cap = wanted;
   } else if (!IsStop(leg.passage)) {
-    const double want = std::min(leg.corner.CutFor(wanted, machine_), leg.corner.cut_max_mm());
+    const double uncapped = leg.corner.CutFor(wanted, machine_);
+    const double want = std::min(uncapped, leg.corner.cut_max_mm());
     const std::optional<double> after = LengthAfter(number, 2.0 * want, accept_what_is_there);
     if (!after) return false;
     cut = std::min({want, 0.5 * total, 0.5 * *after});
-    const bool capped = cut < leg.corner.CutFor(wanted, machine_);
+    const bool capped = cut < uncapped;
     if (cut < kCutMin_mm) {
       cut = 0.0;
       closing.report.passage = Passage::kStopShort;
@@ -262,8 +263,8 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
               : leg.corner.lines() && AxesFollow(curves_.back(), head, machine_, speed_cap,
                                                  leg.corner.PlainCurvature(cut));
       if (!axes_follow) {
-        const CornerCurve curve =
-            closing.plain ? PlainCurve(leg.last_move, cut) : curves_.back();
+        const CornerCurve curve = closing.plain ? CornerCurve(PlainCornerAt(leg.last_move, cut))
+                                                : curves_.back();
         speed_cap = std::min(speed_cap, SpeedOnCurve(curve, head, machine_));
       }
       if (speed_cap < wanted) closing.report.passage = Passage::kBlendCapped;
@@ -282,16 +283,19 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
   return true;
 }
 
-CornerCurve MotionChain::PlainCurve(Number corner_move, double cut) {
+PlainCorner MotionChain::PlainCornerAt(Number corner_move, double cut) {
   const PathPiece& in = moves_[corner_move].path;
-  return CornerCurve(in.to(), in.Tangent(0.0), moves_[corner_move + 1].path.Tangent(0.0), cut);
+  return {in.to(), in.Tangent(0.0), moves_[corner_move + 1].path.Tangent(0.0), cut};
 }
 
 void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
   span.plain = leg.corner.plain();
   if (span.plain) {
+    const PathPiece& in = moves_[leg.last_move].path;
+    const PathPiece& out = moves_[leg.last_move + 1].path;
     span.curve_length = leg.corner.PlainLength(cut);
-    span.curve_middle = 0.5;
+    span.curve_middle = in.to();
+    span.curve_middle.tip = in.to().tip + (out.Tangent(0.0) - in.Tangent(0.0)) * leg.corner.PlainBow(cut);
     span.report.deviation_mm = leg.corner.PlainDeviation(cut);
     return;
   }
@@ -318,13 +322,13 @@ void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
   if (leg.corner.lines()) {
     // The tip's way is the same whether the head turns or not.
     span.curve_length = leg.corner.PlainLength(cut);
-    span.curve_middle = 0.5;
+    span.curve_middle = curve.At(0.5);
     span.report.deviation_mm = leg.corner.PlainDeviation(cut);
     return;
   }
   const CornerLength length(curve);
   span.curve_length = length.total();
-  span.curve_middle = length.ParameterAt(curve, 0.5 * span.curve_length);
+  span.curve_middle = curve.At(length.ParameterAt(curve, 0.5 * span.curve_length));
   span.report.deviation_mm = curve.DistanceFrom(moves_[leg.last_move].path.to().tip);
 }
 

@@ -84,7 +84,7 @@ class MotionChain {
     CornerReport report;
     // When the report says blend:
     double curve_length = 0.0;
-    double curve_middle = 0.5;
+    TipPose curve_middle;  // at half of its length
     bool plain = false;  // the curve follows from the corner and the cut; else it waits in curves_
   };
   struct WaitingMark {
@@ -100,7 +100,7 @@ class MotionChain {
   std::optional<double> LengthAfter(Number leg, double enough, bool accept_what_is_there);
   std::optional<double> SpeedWithin(Number leg, double cut, bool accept_what_is_there);
   void MakeCurve(Span& span, const Leg& leg, double cut);
-  CornerCurve PlainCurve(Number corner_move, double cut);
+  PlainCorner PlainCornerAt(Number corner_move, double cut);
   void CloseRun(Number last_leg, double total, const Span& closing, double speed_cap);
 
   // From where to where on a span or a curve, and the speed of all of it when that is steady.
@@ -117,14 +117,14 @@ class MotionChain {
     double to = 0.0;
     void Assign(SpeedProfile& speed_profile, const CellPart& part) const;
   };
+  // One half of a corner curve, and which part of it belongs to a move.
   struct CurvePart {
-    const CornerCurve* curve = nullptr;
-    const TipPose* from = nullptr;  // of its half
-    const TipPose* to = nullptr;
-    double half = 0.0;  // its length
+    TipPose from;
+    TipPose to;
+    double length = 0.0;
+    double begin = 0.0;  // on the curve
     double s_from = 0.0;
     double s_to = 0.0;
-    double begin = 0.0;  // of the half on the curve
     bool ends_move = false;
   };
 
@@ -132,9 +132,13 @@ class MotionChain {
   bool EndsSection(std::size_t index);
   void EmitSection(std::size_t count);
   void EmitSpan(const Timing& timing, const Timing& on_curve);
-  CornerCurve CurveOf(const Span& span);
   void EmitCurve(const Span& span, const Timing& timing);
-  void EmitCurvePart(const Span& span, Number move, const CurvePart& part, const Timing& timing);
+  template <class Shape>  // PlainCorner or CornerCurve
+  void EmitHalves(const Span& span, const Shape& shape, CurvePart first, CurvePart second,
+                  const Timing& timing);
+  template <class Shape>
+  void EmitCurvePart(const Span& span, Number move, const Shape& shape, const CurvePart& part,
+                     const Timing& timing);
   PlannedMotion& NewMotion(const Span& span, const Move& source);
   void FinishMotion(const Span& span, Number move, PlannedMotion& motion, bool ends_move);
 

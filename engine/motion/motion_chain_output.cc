@@ -147,60 +147,61 @@ void MotionChain::EmitSpan(const Timing& timing, const Timing& on_curve) {
   speeds_.Pop();
 }
 
-// The oldest span's curve. Plain ones, nearly all, are made when they are needed and not carried along.
-CornerCurve MotionChain::CurveOf(const Span& span) {
-  if (span.plain) return PlainCurve(span.corner_move, span.report.cut_mm);
-  const CornerCurve curve = curves_.front();
+void MotionChain::EmitCurve(const Span& span, const Timing& timing) {
+  const double half = 0.5 * span.curve_length;
+  if (span.plain) {
+    const PlainCorner corner = PlainCornerAt(span.corner_move, span.report.cut_mm);
+    EmitHalves(span, corner, {.from = corner.Start(), .to = span.curve_middle, .length = half},
+               {.from = span.curve_middle, .to = corner.Finish(), .length = half, .begin = half},
+               timing);
+    return;
+  }
+  const CornerCurve& curve = curves_.front();
+  EmitHalves(span, curve, {.from = curve.At(0.0), .to = span.curve_middle, .length = half},
+             {.from = span.curve_middle, .to = curve.At(1.0), .length = half, .begin = half},
+             timing);
   curves_.PopFront();
-  return curve;
 }
 
 // The curve is cut where its middle is, and where points that it swallows are: they lie on its
 // halves as they would lie on the straight pieces.
-void MotionChain::EmitCurve(const Span& span, const Timing& timing) {
-  const double half = 0.5 * span.curve_length;
+template <class Shape>
+void MotionChain::EmitHalves(const Span& span, const Shape& shape, CurvePart first,
+                             CurvePart second, const Timing& timing) {
   const double cut = span.report.cut_mm;
-  const CornerCurve curve = CurveOf(span);
-  const TipPose begin = curve.At(0.0);
-  const TipPose middle = curve.At(span.curve_middle);
-  const TipPose end = curve.At(1.0);
-  CurvePart part{.curve = &curve, .from = &begin, .to = &middle, .half = half, .ends_move = true};
+  const double half = first.length;
   // First half: from the end of the span to the corner.
   double x = moves_[span.last_move].path.length() - span.x_to;  // way to the end of the move
   if (x <= 0.0 && span.last_move < span.corner_move) x = 0.0;
-  double s = 0.0;
+  first.ends_move = true;
   for (Number k = span.last_move; k <= span.corner_move; ++k) {
     if (k > span.last_move) x += moves_[k].path.length();
-    const double to = k == span.corner_move ? half : std::min(half * x / cut, half);
-    part.s_from = s;
-    part.s_to = to;
-    if (to > s) EmitCurvePart(span, k, part, timing);
-    s = std::max(s, to);
+    first.s_to = k == span.corner_move ? half : std::min(half * x / cut, half);
+    if (!(first.s_to > first.s_from)) continue;
+    EmitCurvePart(span, k, shape, first, timing);
+    first.s_from = first.s_to;
   }
   // Second half: to the place where the next span begins.
   x = 0.0;
-  s = 0.0;
-  part.from = &middle;
-  part.to = &end;
-  part.begin = half;
   for (Number k = span.corner_move + 1;; ++k) {
     x += moves_[k].path.length();
     const bool last = x >= cut || k + 1 == moves_.end();
-    const double to = last ? half : std::min(half * x / cut, half);
-    part.s_from = s;
-    part.s_to = to;
-    part.ends_move = !last;
-    if (to > s) EmitCurvePart(span, k, part, timing);
-    s = std::max(s, to);
+    second.s_to = last ? half : std::min(half * x / cut, half);
+    second.ends_move = !last;
+    if (second.s_to > second.s_from) {
+      EmitCurvePart(span, k, shape, second, timing);
+      second.s_from = second.s_to;
+    }
     if (last) break;
   }
 }
 
-void MotionChain::EmitCurvePart(const Span& span, Number move, const CurvePart& part,
-                                const Timing& timing) {
+template <class Shape>
+void MotionChain::EmitCurvePart(const Span& span, Number move, const Shape& shape,
+                                const CurvePart& part, const Timing& timing) {
   PlannedMotion& motion = NewMotion(span, moves_[move]);
-  motion.path.AssignCorner(*part.curve, part.begin, part.half, *part.from, *part.to);
-  if (part.s_from != 0.0 || part.s_to != part.half) {
+  motion.path.AssignCorner(shape, part.begin, part.length, part.from, part.to);
+  if (part.s_from != 0.0 || part.s_to != part.length) {
     motion.path = motion.path.Part(part.s_from, part.s_to);
   }
   timing.Assign(motion.speed, {part.begin + part.s_from, part.begin + part.s_to, span.curve_length,

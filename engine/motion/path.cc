@@ -120,18 +120,6 @@ PathPiece PathPiece::Circle(const TipPose& from, const Vec3& centre, const Vec3&
   return piece;
 }
 
-void PathPiece::AssignCorner(const CornerCurve& curve, double start, double length,
-                             const TipPose& from, const TipPose& to) {
-  kind_ = Kind::kBlend;
-  length_ = length;
-  from_ = from;
-  to_ = to;
-  CurvePart* part = std::get_if<CurvePart>(&shape_);
-  if (part == nullptr) part = &shape_.emplace<CurvePart>();
-  part->curve = curve;
-  part->start = start;
-}
-
 PathPiece PathPiece::Part(double s_from, double s_to) const {
   PathPiece part;
   part.AssignPart(*this, s_from, s_to);
@@ -151,8 +139,12 @@ void PathPiece::AssignPart(const PathPiece& whole, double s_from, double s_to) {
     part.inward = whole.Curvature(s_from) * part.radius_mm;
     part.sweep_rad = length_ / part.radius_mm;
   } else if (kind_ == Kind::kBlend) {
-    shape_ = whole.shape_;
-    std::get_if<CurvePart>(&shape_)->start += s_from;
+    AssignShape(whole);
+    if (auto* plain = std::get_if<PlainPart>(&shape_)) {
+      plain->start += s_from;
+    } else {
+      std::get_if<CurvePart>(&shape_)->start += s_from;
+    }
   }
 }
 
@@ -169,7 +161,10 @@ Vec3 PathPiece::ArcPoint(double angle) const {
 TipPose PathPiece::At(double s) const {
   if (!(s > 0.0)) return from_;
   if (s >= length_) return to_;
-  if (kind_ == Kind::kBlend) return curve().At(curve_part().Parameter(s));
+  if (kind_ == Kind::kBlend) {
+    const CornerCurve whole = curve();
+    return whole.At(ParameterOn(whole, s));
+  }
   const double share = s / length_;
   TipPose pose;
   pose.a_rad = from_.a_rad + (to_.a_rad - from_.a_rad) * share;
@@ -179,7 +174,10 @@ TipPose PathPiece::At(double s) const {
 }
 
 PathDerivatives PathPiece::FirstOffLine(double s) const {
-  if (kind_ == Kind::kBlend) return curve().FirstByLength(curve_part().Parameter(s));
+  if (kind_ == Kind::kBlend) {
+    const CornerCurve whole = curve();
+    return whole.FirstByLength(ParameterOn(whole, s));
+  }
   Vec3 tip = to_.tip - from_.tip;
   if (kind_ == Kind::kArc) {
     const double angle = s / radius_mm();
@@ -189,7 +187,10 @@ PathDerivatives PathPiece::FirstOffLine(double s) const {
 }
 
 PathDerivatives PathPiece::Second(double s) const {
-  if (kind_ == Kind::kBlend) return curve().SecondByLength(curve_part().Parameter(s));
+  if (kind_ == Kind::kBlend) {
+    const CornerCurve whole = curve();
+    return whole.SecondByLength(ParameterOn(whole, s));
+  }
   if (kind_ != Kind::kArc) return {};
   const double angle = s / radius_mm();
   return {(arc().inward * std::cos(angle) - tangent_ * std::sin(angle)) * (1.0 / radius_mm()), 0.0,

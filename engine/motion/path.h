@@ -67,7 +67,15 @@ class PathPiece {
   // Makes this piece the half of a corner curve: its arc length, and the poses at its ends. `start` is
   // the arc length of the curve before it.
   void AssignCorner(const CornerCurve& curve, double start, double length, const TipPose& from,
-                    const TipPose& to);
+                    const TipPose& to) {
+    AssignBlend(length, from, to);
+    shape_ = CurvePart{start, curve};
+  }
+  void AssignCorner(const PlainCorner& corner, double start, double length, const TipPose& from,
+                    const TipPose& to) {
+    AssignBlend(length, from, to);
+    shape_ = PlainPart{start, corner};
+  }
 
   // Outside 0..length() the nearer end; the ends are from() and to() to the last bit.
   // On a kBlend piece this measures the curve each time; MotionView does it once.
@@ -82,7 +90,10 @@ class PathPiece {
   Vec3 Curvature(double s) const { return Second(s).tip; }
 
   // The same places by u for kBlend pieces, whose s must be turned into u first: see CornerLength.
-  double curve_start() const { return curve_part().start; }
+  double curve_start() const {
+    if (const auto* plain = std::get_if<PlainPart>(&shape_)) return plain->start;
+    return std::get_if<CurvePart>(&shape_)->start;
+  }
 
   // Arcs only.
   const Vec3& centre() const { return arc().centre; }
@@ -90,8 +101,12 @@ class PathPiece {
   double radius_mm() const { return arc().radius_mm; }
   double sweep_rad() const { return arc().sweep_rad; }
 
-  // Blends only: the whole curve of the corner, of which this piece may be a part.
-  const CornerCurve& curve() const { return curve_part().curve; }
+  // Blends only: the whole curve of the corner, of which this piece may be a part. Made anew each time:
+  // keep it for many places.
+  CornerCurve curve() const {
+    if (const auto* plain = std::get_if<PlainPart>(&shape_)) return CornerCurve(plain->corner);
+    return std::get_if<CurvePart>(&shape_)->curve;
+  }
 
  private:
   struct ArcShape {
@@ -102,12 +117,24 @@ class PathPiece {
     double sweep_rad = 0.0;
   };
   struct CurvePart {
-    CornerCurve curve;
     double start = 0.0;  // arc length of the curve before this piece
-    double Parameter(double s) const { return CornerLength(curve).ParameterAt(curve, start + s); }
+    CornerCurve curve;
+  };
+  struct PlainPart {
+    double start = 0.0;
+    PlainCorner corner;
   };
   const ArcShape& arc() const { return *std::get_if<ArcShape>(&shape_); }
-  const CurvePart& curve_part() const { return *std::get_if<CurvePart>(&shape_); }
+  double ParameterOn(const CornerCurve& curve, double s) const {
+    return CornerLength(curve).ParameterAt(curve, curve_start() + s);
+  }
+  void AssignBlend(double length, const TipPose& from, const TipPose& to) {
+    kind_ = Kind::kBlend;
+    length_ = length;
+    from_ = from;
+    to_ = to;
+  }
+  void AssignShape(const PathPiece& other);
   Vec3 ArcPoint(double angle) const;
   PathDerivatives FirstOffLine(double s) const;
   double RateOf(double from, double to) const {
@@ -120,8 +147,16 @@ class PathPiece {
   TipPose to_;
   Vec3 tangent_;  // lines and arcs: unit tangent at the start
   // Of arcs and blends. Other kinds may hold what the piece was before.
-  std::variant<std::monostate, ArcShape, CurvePart> shape_;
+  std::variant<std::monostate, ArcShape, CurvePart, PlainPart> shape_;
 };
+
+inline void PathPiece::AssignShape(const PathPiece& other) {
+  if (const auto* plain = std::get_if<PlainPart>(&other.shape_)) {
+    shape_ = *plain;
+  } else {
+    shape_ = other.shape_;
+  }
+}
 
 inline PathPiece& PathPiece::operator=(const PathPiece& other) {
   kind_ = other.kind_;
@@ -129,7 +164,7 @@ inline PathPiece& PathPiece::operator=(const PathPiece& other) {
   from_ = other.from_;
   to_ = other.to_;
   tangent_ = other.tangent_;
-  if (kind_ == Kind::kArc || kind_ == Kind::kBlend) shape_ = other.shape_;
+  if (kind_ == Kind::kArc || kind_ == Kind::kBlend) AssignShape(other);
   return *this;
 }
 

@@ -83,11 +83,13 @@ MotionView::MotionView(const PlannedMotion& motion)
       head_(motion.head),
       speed_(motion.speed),
       duration_s_(motion.duration_s()) {
-  if (path_.kind() == PathPiece::Kind::kBlend) curve_length_.emplace(path_.curve());
+  if (path_.kind() != PathPiece::Kind::kBlend) return;
+  curve_ = path_.curve();
+  curve_length_.emplace(curve_);
 }
 
 double MotionView::Parameter(double s) const {
-  return curve_length_->ParameterAt(path_.curve(), path_.curve_start() + s);
+  return curve_length_->ParameterAt(curve_, path_.curve_start() + s);
 }
 
 TrajectoryPoint MotionView::At(double t_s) const {
@@ -95,14 +97,13 @@ TrajectoryPoint MotionView::At(double t_s) const {
   if (t_s > speed_.duration_s()) state.speed = state.acceleration = 0.0;
   if (!curve_length_) return PointAt(path_, head_, state);
   const double u = Parameter(state.s);
-  const CornerCurve& curve = path_.curve();
-  return PointAt({path_.kind(), curve.At(u), curve.FirstByLength(u), curve.SecondByLength(u)},
+  return PointAt({path_.kind(), curve_.At(u), curve_.FirstByLength(u), curve_.SecondByLength(u)},
                  head_, state);
 }
 
 TipPose MotionView::PoseAt(double t_s) const {
   const double s = speed_.At(t_s).s;
-  if (curve_length_) return path_.curve().At(Parameter(s));
+  if (curve_length_) return curve_.At(Parameter(s));
   const TipPose pose = path_.At(s);
   if (path_.kind() != PathPiece::Kind::kJoint) return pose;
   return head_.TipOf({pose.tip, pose.a_rad, pose.b_rad});
@@ -123,10 +124,11 @@ void AppendPolyline(const PathPiece& path, double tolerance_mm, std::vector<Vec3
     const int chords = static_cast<int>(std::clamp(wanted, 1.0, static_cast<double>(kChordsMax)));
     for (int k = 1; k < chords; ++k) points.push_back(path.At(path.length() * k / chords).tip);
   } else if (path.kind() == PathPiece::Kind::kBlend) {
-    const CornerLength length(path.curve());
-    const double from = length.ParameterAt(path.curve(), path.curve_start());
-    const double to = length.ParameterAt(path.curve(), path.curve_start() + path.length());
-    Halve(path.curve(), from, to, path.from().tip, path.to().tip, tolerance_mm, 0, points);
+    const CornerCurve curve = path.curve();
+    const CornerLength length(curve);
+    const double from = length.ParameterAt(curve, path.curve_start());
+    const double to = length.ParameterAt(curve, path.curve_start() + path.length());
+    Halve(curve, from, to, path.from().tip, path.to().tip, tolerance_mm, 0, points);
     return;
   }
   if (path.length() > 0.0 && path.kind() != PathPiece::Kind::kRotary)

@@ -45,7 +45,8 @@ class MotionView {
   double Parameter(double s) const;
 
   PathPiece path_;
-  std::optional<CornerLength> curve_length_;  // of a blend
+  CornerCurve curve_;  // of a blend
+  std::optional<CornerLength> curve_length_;
   Head head_;
   SpeedProfile speed_;
   double duration_s_;
