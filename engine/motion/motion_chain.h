@@ -103,19 +103,11 @@ class MotionChain {
   PlainCorner PlainCornerAt(Number corner_move, double cut);
   void CloseRun(Number last_leg, double total, const Span& closing, double speed_cap);
 
-  // From where to where on a span or a curve, and the speed of all of it when that is steady.
-  struct CellPart {
-    double from = 0.0;
-    double to = 0.0;
-    double length = 0.0;
-    double speed = 0.0;
-  };
-  // Part of a speed profile, for a span or a curve.
+  // Where a span, or a curve, lies on the ramp that passes it.
   struct Timing {
     const SpeedProfile* profile = nullptr;  // null: steady
     double from = 0.0;
     double to = 0.0;
-    void Assign(SpeedProfile& speed_profile, const CellPart& part) const;
   };
   // One half of a corner curve, and which part of it belongs to a move.
   struct CurvePart {
@@ -130,9 +122,11 @@ class MotionChain {
 
   std::size_t SectionSize();
   bool EndsSection(std::size_t index);
-  void EmitSection(std::size_t count);
-  void EmitSpan(const Timing& timing, const Timing& on_curve);
-  void EmitCurve(const Span& span, const Timing& timing);
+  void PlanSection();
+  Timing PresentTiming(double length);
+  void TakePart(SpeedProfile& speed, const Timing& timing, double to, bool to_end);
+  void EmitMove();
+  void EmitCurve(Span& span);
   template <class Shape>  // PlainCorner or CornerCurve
   void EmitHalves(const Span& span, const Shape& shape, CurvePart first, CurvePart second,
                   const Timing& timing);
@@ -168,11 +162,22 @@ class MotionChain {
   bool starts_too_fast_ = false;
   std::size_t section_seen_ = 0;  // spans known not to end the next section
   bool axes_follow_ramps_;        // on curves without head rotation, whatever the tip does
+
+  // The section that is given out move by move, so that a span of thousands of them takes no room.
+  std::size_t section_left_ = 0;  // its spans from the oldest one on
+  bool alone_ = false;            // it has but one span, timed by lone_; else by ramps_
+  SpeedProfile lone_;
   std::vector<RampCell> cells_;
   RampPlan ramps_;
+  std::size_t section_cell_ = 0;  // the present one of cells_
+  std::size_t place_ramp_ = 0;    // of ramps_
+  SpeedProfile::Place place_;     // on it, or on lone_: where the last part ended
+  bool emitting_ = false;         // some moves of the oldest span are out already
+  Number emit_move_ = 0;          // its next
+  double emit_done_ = 0.0;        // length of those that are out
 
   Ring<WaitingMark> marks_;
-  Ring<PlannedItem> items_;
+  Ring<PlannedItem> items_;  // final, not yet taken: those of one move and the curve behind it
 };
 
 }  // namespace rmlcell::motion

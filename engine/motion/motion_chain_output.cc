@@ -15,10 +15,13 @@ constexpr std::size_t kSectionMax = RampPlan::kCellsMax / 2;
 
 const PlannedItem* MotionChain::Next() {
   while (items_.empty()) {
-    const std::size_t count = SectionSize();
-    if (count == 0) return nullptr;
+    if (section_left_ == 0) {
+      section_left_ = SectionSize();
+      if (section_left_ == 0) return nullptr;
+      PlanSection();
+    }
     items_.Rewind();
-    EmitSection(count);
+    EmitMove();
   }
   const PlannedItem* item = &items_.front();  // nothing is written there before the next call
   items_.PopFront();
@@ -47,7 +50,8 @@ bool MotionChain::EndsSection(std::size_t index) {
   return IsBlend(span.report.passage) && !(span.curve_may_vary && axes_follow_ramps_);
 }
 
-void MotionChain::EmitSection(std::size_t count) {
+// Times the spans of the section that begins with the oldest one.
+void MotionChain::PlanSection() {
   // Only a chain that begins moving can be too fast: the passes see to the rest.
   constexpr double kRoom = 1.0 + 1e-9;
   const Span& first = spans_.front();
@@ -55,26 +59,27 @@ void MotionChain::EmitSection(std::size_t count) {
       RampLength(last_speed_, speeds_.speed(), first.limits) > first.length * kRoom) {
     starts_too_fast_ = true;
   }
-  if (count == 1) {
-    const Span& span = spans_.front();
-    SpeedProfile profile;
-    if (span.length > 0.0) {
-      profile = SpeedProfile::Span(span.length, last_speed_, speeds_.speed(), span.limits);
+  section_cell_ = 0;
+  place_ = {};
+  place_ramp_ = 0;
+  alone_ = section_left_ == 1;
+  if (alone_) {
+    if (first.length > 0.0) {
+      lone_ = SpeedProfile::Span(first.length, last_speed_, speeds_.speed(), first.limits);
     }
-    EmitSpan({&profile, 0.0, span.length}, {});
     return;
   }
   // What lies between the knots at both ends, each with the speed of level 1 at its end. The curve
   // behind the last knot is passed steadily.
   cells_.clear();
-  for (std::size_t k = 0; k < count; ++k) {
+  for (std::size_t k = 0; k < section_left_; ++k) {
     const Span& span = spans_[spans_.first() + k];
     const double speed = speeds_.speed(k);
     const bool blend = IsBlend(span.report.passage);
     if (span.length > 0.0) {
       cells_.push_back({span.length, span.limits, speed, blend ? RampCell::kNoCap : span.cap});
     }
-    if (k + 1 == count || !blend) continue;
+    if (k + 1 == section_left_ || !blend) continue;
     const PathLimits& after = spans_[spans_.first() + k + 1].limits;
     const double along = machine_.curve_tangential * machine_.tip_acceleration_mm_s2;
     cells_.push_back(
@@ -85,48 +90,48 @@ void MotionChain::EmitSection(std::size_t count) {
          speed});
   }
   if (!cells_.empty()) ramps_.Plan(cells_, last_speed_);
-  std::size_t cell = 0;
-  const auto next = [&] {
-    const RampPlan::Timing& timing = ramps_.timing()[cell++];
-    return Timing{&ramps_.ramps()[timing.ramp], timing.from, timing.to};
-  };
-  for (std::size_t k = 0; k < count; ++k) {
-    const Span& span = spans_.front();
-    const Timing on_span = span.length > 0.0 ? next() : Timing{};
-    const bool varies = k + 1 < count && IsBlend(span.report.passage);
-    EmitSpan(on_span, varies ? next() : Timing{});
-  }
 }
 
-void MotionChain::Timing::Assign(SpeedProfile& speed_profile, const CellPart& part) const {
-  if (profile == nullptr) {
-    speed_profile = SpeedProfile::Steady(part.to - part.from, part.speed);
+// The ramp that passes the present cell, a span of `length` or the curve behind it.
+MotionChain::Timing MotionChain::PresentTiming(double length) {
+  if (alone_) return {&lone_, 0.0, length};
+  const RampPlan::Timing& timing = ramps_.timing()[section_cell_];
+  if (timing.ramp != place_ramp_) {
+    place_ramp_ = timing.ramp;
+    place_ = {};
+  }
+  return {&ramps_.ramps()[timing.ramp], timing.from, timing.to};
+}
+
+// The part of the timing to `to` on its cell, or to the end of that, from where the last part ended.
+void MotionChain::TakePart(SpeedProfile& speed, const Timing& timing, double to, bool to_end) {
+  const double end = to_end ? timing.to : std::min(timing.from + to, timing.to);
+  if (place_.s == 0.0 && end == timing.profile->end().s) {
+    speed = *timing.profile;
     return;
   }
-  const double end = part.to >= part.length ? to : std::min(from + part.to, to);
-  if (from + part.from == 0.0 && end == profile->end().s) {
-    speed_profile = *profile;
-  } else {
-    speed_profile = profile->Part(from + part.from, end);
-  }
+  if (place_.s < timing.from) timing.profile->Advance(place_, timing.from);
+  speed = timing.profile->PartTo(place_, end);
 }
 
-void MotionChain::EmitSpan(const Timing& timing, const Timing& on_curve) {
+// What is left of the next move between the curves at its ends, and the curve behind it when the span
+// ends there.
+void MotionChain::EmitMove() {
   Span& span = spans_.front();
-  const double speed = speeds_.speed();
-  span.report.speed = speed;
   const bool blend = IsBlend(span.report.passage);
-  if (on_curve.profile != nullptr) {
-    const double middle = on_curve.from + 0.5 * span.curve_length;
-    span.report.speed = on_curve.profile->At(on_curve.profile->TimeAt(middle)).speed;
-  }
   if (span.length > 0.0) {
-    double done = 0.0;
-    for (Number k = span.first_move; k <= span.last_move; ++k) {
-      const Move& move = moves_[k];
+    if (!emitting_) {
+      emitting_ = true;
+      emit_move_ = span.first_move;
+      emit_done_ = 0.0;
+    }
+    const Timing timing = PresentTiming(span.length);
+    for (bool emitted = false; !emitted && emit_move_ <= span.last_move; ++emit_move_) {
+      const Move& move = moves_[emit_move_];
       const PathPiece& path = move.path;
-      const double from = k == span.first_move ? span.x_from : 0.0;
-      const double to = k == span.last_move ? span.x_to : path.length();
+      const bool last = emit_move_ == span.last_move;
+      const double from = emit_move_ == span.first_move ? span.x_from : 0.0;
+      const double to = last ? span.x_to : path.length();
       if (!(to > from)) continue;
       PlannedMotion& motion = NewMotion(span, move);
       if (from == 0.0 && to == path.length()) {
@@ -134,33 +139,46 @@ void MotionChain::EmitSpan(const Timing& timing, const Timing& on_curve) {
       } else {
         motion.path.AssignPart(path, from, to);
       }
-      const double end = k == span.last_move ? span.length : done + (to - from);
-      timing.Assign(motion.speed, {done, end, span.length, speed});
-      done += to - from;
-      const bool reaches_end = to == path.length() && !(blend && k == span.corner_move);
-      FinishMotion(span, k, motion, reaches_end);
+      emit_done_ += to - from;
+      TakePart(motion.speed, timing, emit_done_, last);
+      const bool reaches_end = to == path.length() && !(blend && emit_move_ == span.corner_move);
+      FinishMotion(span, emit_move_, motion, reaches_end);
+      emitted = true;
     }
+    if (emit_move_ <= span.last_move) return;
+    emitting_ = false;
+    ++section_cell_;
   }
-  if (blend) EmitCurve(span, on_curve);
+  const double speed = speeds_.speed();
+  span.report.speed = speed;
+  if (blend) EmitCurve(span);
   last_speed_ = speed;
   spans_.PopFront();
   speeds_.Pop();
+  --section_left_;
 }
 
-void MotionChain::EmitCurve(const Span& span, const Timing& timing) {
+void MotionChain::EmitCurve(Span& span) {
   const double half = 0.5 * span.curve_length;
+  Timing timing;  // steady
+  if (section_left_ > 1) {
+    timing = PresentTiming(span.curve_length);
+    const double middle = timing.from + half;
+    span.report.speed = timing.profile->At(timing.profile->TimeAt(middle)).speed;
+  }
   if (span.plain) {
     const PlainCorner corner = PlainCornerAt(span.corner_move, span.report.cut_mm);
     EmitHalves(span, corner, {.from = corner.Start(), .to = span.curve_middle, .length = half},
                {.from = span.curve_middle, .to = corner.Finish(), .length = half, .begin = half},
                timing);
-    return;
+  } else {
+    const CornerCurve& curve = curves_.front();
+    EmitHalves(span, curve, {.from = curve.At(0.0), .to = span.curve_middle, .length = half},
+               {.from = span.curve_middle, .to = curve.At(1.0), .length = half, .begin = half},
+               timing);
+    curves_.PopFront();
   }
-  const CornerCurve& curve = curves_.front();
-  EmitHalves(span, curve, {.from = curve.At(0.0), .to = span.curve_middle, .length = half},
-             {.from = span.curve_middle, .to = curve.At(1.0), .length = half, .begin = half},
-             timing);
-  curves_.PopFront();
+  if (section_left_ > 1) ++section_cell_;
 }
 
 // The curve is cut where its middle is, and where points that it swallows are: they lie on its
@@ -204,8 +222,12 @@ void MotionChain::EmitCurvePart(const Span& span, Number move, const Shape& shap
   if (part.s_from != 0.0 || part.s_to != part.length) {
     motion.path = motion.path.Part(part.s_from, part.s_to);
   }
-  timing.Assign(motion.speed, {part.begin + part.s_from, part.begin + part.s_to, span.curve_length,
-                               span.report.speed});
+  if (timing.profile == nullptr) {
+    motion.speed = SpeedProfile::Steady(part.s_to - part.s_from, span.report.speed);
+  } else {
+    const double to = part.begin + part.s_to;
+    TakePart(motion.speed, timing, to, to >= span.curve_length);
+  }
   motion.limits.speed = timing.profile != nullptr ? span.cap : span.report.speed;
   motion.limits.acceleration = std::min(
       motion.limits.acceleration, machine_.curve_tangential * machine_.tip_acceleration_mm_s2);

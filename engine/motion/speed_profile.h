@@ -62,6 +62,18 @@ class SpeedProfile {
   // The part between two places, s counted from the first. 0 <= s_from < s_to <= end().s.
   SpeedProfile Part(double s_from, double s_to) const;
 
+  // A place that is only ever moved forward: many parts one behind the other cost as much as they are
+  // long, whatever came before them. Good for one profile.
+  struct Place {
+    double s = 0.0;
+    double t_s = 0.0;           // when s is passed
+    int phase = 0;              // the one that s lies in
+    double phase_start_s = 0.0;  // when it begins
+  };
+  void Advance(Place& place, double s) const;
+  // The part from `place` to `s_to`, where `place` is afterwards.
+  SpeedProfile PartTo(Place& place, double s_to) const;
+
   double duration_s() const { return duration_s_; }
   const PathState& end() const { return end_; }  // s of the end, and the speed there
   double peak_speed() const { return peak_speed_; }
@@ -81,6 +93,7 @@ class SpeedProfile {
   SpeedProfile StopFrom(double t_s, const PathLimits& limits) const;
 
  private:
+  static double TimeWithin(const Phase& phase, double wanted);
   void AddPhase(PathState& state, double duration_s, double acceleration, double jerk);
   void AddSpan(PathState& state, double end_s, double v1, const PathLimits& limits);
   void AddRamp(PathState& state, double change, double sign, double to_speed,
