@@ -17,7 +17,8 @@ bool Equal(const PathLimits& a, const PathLimits& b) {
 }
 
 bool Contiguous(const TipPose& a, const TipPose& b) {
-  return Distance(a.tip, b.tip) <= kContiguous_mm && a.a_rad == b.a_rad && a.b_rad == b.b_rad;
+  return a.a_rad == b.a_rad && a.b_rad == b.b_rad &&
+         (a.tip == b.tip || Distance(a.tip, b.tip) <= kContiguous_mm);
 }
 
 bool AxesKeepUp(const MachineLimits& machine) {
@@ -248,8 +249,11 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
       cut = 0.0;
       closing.report.passage = Passage::kStopShort;
     } else {
-      const std::optional<double> swallowed = SpeedWithin(number, cut, accept_what_is_there);
-      if (!swallowed) return false;
+      std::optional<double> swallowed = HUGE_VAL;
+      if (legs_[number + 1].length < cut) {
+        swallowed = SpeedWithin(number, cut, accept_what_is_there);
+        if (!swallowed) return false;
+      }
       closing.report.passage = capped ? Passage::kBlendCapped : Passage::kBlend;
       speed_cap = wanted;
       MakeCurve(closing, leg, cut);

@@ -109,15 +109,17 @@ class MotionChain {
     double from = 0.0;
     double to = 0.0;
   };
-  // One half of a corner curve, and which part of it belongs to a move.
-  struct CurvePart {
-    TipPose from;
-    TipPose to;
-    double length = 0.0;
-    double begin = 0.0;  // on the curve
-    double s_from = 0.0;
-    double s_to = 0.0;
-    bool ends_move = false;
+  // One half of a corner curve, `begin` behind its start, and which part of it belongs to a move.
+  struct Half {
+    const TipPose& from;
+    const TipPose& to;
+    double length;
+    double begin;
+  };
+  struct HalfPart {
+    double s_from;
+    double s_to;
+    bool ends_move;
   };
 
   std::size_t SectionSize();
@@ -128,11 +130,11 @@ class MotionChain {
   void EmitMove();
   void EmitCurve(Span& span);
   template <class Shape>  // PlainCorner or CornerCurve
-  void EmitHalves(const Span& span, const Shape& shape, CurvePart first, CurvePart second,
+  void EmitHalves(const Span& span, const Shape& shape, const Half& first, const Half& second,
                   const Timing& timing);
   template <class Shape>
-  void EmitCurvePart(const Span& span, Number move, const Shape& shape, const CurvePart& part,
-                     const Timing& timing);
+  void EmitCurvePart(const Span& span, Number move, const Shape& shape, const Half& half,
+                     const HalfPart& part, const Timing& timing);
   PlannedMotion& NewMotion(const Span& span, const Move& source);
   void FinishMotion(const Span& span, Number move, PlannedMotion& motion, bool ends_move);
 

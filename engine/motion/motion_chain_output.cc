@@ -166,16 +166,15 @@ void MotionChain::EmitCurve(Span& span) {
     const double middle = timing.from + half;
     span.report.speed = timing.profile->At(timing.profile->TimeAt(middle)).speed;
   }
+  const TipPose& middle = span.curve_middle;
   if (span.plain) {
     const PlainCorner corner = PlainCornerAt(span.corner_move, span.report.cut_mm);
-    EmitHalves(span, corner, {.from = corner.Start(), .to = span.curve_middle, .length = half},
-               {.from = span.curve_middle, .to = corner.Finish(), .length = half, .begin = half},
-               timing);
+    const TipPose start = corner.Start(), finish = corner.Finish();
+    EmitHalves(span, corner, {start, middle, half, 0.0}, {middle, finish, half, half}, timing);
   } else {
     const CornerCurve& curve = curves_.front();
-    EmitHalves(span, curve, {.from = curve.At(0.0), .to = span.curve_middle, .length = half},
-               {.from = span.curve_middle, .to = curve.At(1.0), .length = half, .begin = half},
-               timing);
+    const TipPose start = curve.At(0.0), finish = curve.At(1.0);
+    EmitHalves(span, curve, {start, middle, half, 0.0}, {middle, finish, half, half}, timing);
     curves_.PopFront();
   }
   if (section_left_ > 1) ++section_cell_;
@@ -184,51 +183,52 @@ void MotionChain::EmitCurve(Span& span) {
 // The curve is cut where its middle is, and where points that it swallows are: they lie on its
 // halves as they would lie on the straight pieces.
 template <class Shape>
-void MotionChain::EmitHalves(const Span& span, const Shape& shape, CurvePart first,
-                             CurvePart second, const Timing& timing) {
+void MotionChain::EmitHalves(const Span& span, const Shape& shape, const Half& first,
+                             const Half& second, const Timing& timing) {
   const double cut = span.report.cut_mm;
   const double half = first.length;
   // First half: from the end of the span to the corner.
-  double x = moves_[span.last_move].path.length() - span.x_to;  // way to the end of the move
-  if (x <= 0.0 && span.last_move < span.corner_move) x = 0.0;
-  first.ends_move = true;
+  double x = 0.0;  // way from the start of the curve to the end of the move
+  double s = 0.0;
   for (Number k = span.last_move; k <= span.corner_move; ++k) {
-    if (k > span.last_move) x += moves_[k].path.length();
-    first.s_to = k == span.corner_move ? half : std::min(half * x / cut, half);
-    if (!(first.s_to > first.s_from)) continue;
-    EmitCurvePart(span, k, shape, first, timing);
-    first.s_from = first.s_to;
+    double to = half;
+    if (k < span.corner_move) {
+      x += moves_[k].path.length() - (k == span.last_move ? span.x_to : 0.0);
+      to = std::min(half * std::max(x, 0.0) / cut, half);
+    }
+    if (!(to > s)) continue;
+    EmitCurvePart(span, k, shape, first, {s, to, true}, timing);
+    s = to;
   }
   // Second half: to the place where the next span begins.
   x = 0.0;
+  s = 0.0;
   for (Number k = span.corner_move + 1;; ++k) {
     x += moves_[k].path.length();
     const bool last = x >= cut || k + 1 == moves_.end();
-    second.s_to = last ? half : std::min(half * x / cut, half);
-    second.ends_move = !last;
-    if (second.s_to > second.s_from) {
-      EmitCurvePart(span, k, shape, second, timing);
-      second.s_from = second.s_to;
-    }
+    const double to = last ? half : std::min(half * x / cut, half);
+    if (to > s) EmitCurvePart(span, k, shape, second, {s, to, !last}, timing);
+    s = std::max(s, to);
     if (last) break;
   }
 }
 
 template <class Shape>
 void MotionChain::EmitCurvePart(const Span& span, Number move, const Shape& shape,
-                                const CurvePart& part, const Timing& timing) {
+                                const Half& half, const HalfPart& part, const Timing& timing) {
   PlannedMotion& motion = NewMotion(span, moves_[move]);
-  motion.path.AssignCorner(shape, part.begin, part.length, part.from, part.to);
-  if (part.s_from != 0.0 || part.s_to != part.length) {
+  motion.path.AssignCorner(shape, half.begin, half.length, half.from, half.to);
+  if (part.s_from != 0.0 || part.s_to != half.length) {
     motion.path = motion.path.Part(part.s_from, part.s_to);
   }
   if (timing.profile == nullptr) {
     motion.speed = SpeedProfile::Steady(part.s_to - part.s_from, span.report.speed);
+    motion.limits.speed = span.report.speed;
   } else {
-    const double to = part.begin + part.s_to;
+    const double to = half.begin + part.s_to;
     TakePart(motion.speed, timing, to, to >= span.curve_length);
+    motion.limits.speed = span.cap;
   }
-  motion.limits.speed = timing.profile != nullptr ? span.cap : span.report.speed;
   motion.limits.acceleration = std::min(
       motion.limits.acceleration, machine_.curve_tangential * machine_.tip_acceleration_mm_s2);
   FinishMotion(span, move, motion, part.ends_move);
@@ -245,21 +245,22 @@ PlannedMotion& MotionChain::NewMotion(const Span& span, const Move& source) {
   motion->limits = span.limits;
   motion->settling_s = 0.0;
   motion->upper_bound = false;
-  motion->corner = {};
   return *motion;
 }
 
 void MotionChain::FinishMotion(const Span& span, Number move, PlannedMotion& motion,
                                bool ends_move) {
   motion.ends_move = ends_move;
-  if (!ends_move) return;
+  if (!ends_move) {
+    motion.corner = {};
+    return;
+  }
   if (move == span.corner_move) {
     motion.corner = span.report;
     if (!IsBlend(span.report.passage)) motion.corner.speed = motion.speed.end().speed;
     motion.settling_s = span.settling_s;
   } else {
-    motion.corner.passage = Passage::kThrough;
-    motion.corner.speed = motion.speed.end().speed;
+    motion.corner = {.passage = Passage::kThrough, .speed = motion.speed.end().speed};
   }
   while (!marks_.empty() && marks_.front().after_move <= move) {
     items_.Push(PlannedMark{marks_.front().tag});

@@ -13,8 +13,6 @@ bool IsFinite(const Vec3& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-Vec3 Between(const Vec3& from, const Vec3& to, double share) { return from + (to - from) * share; }
-
 }  // namespace
 
 PathPiece PathPiece::Line(const TipPose& from, const TipPose& to) {
@@ -126,7 +124,7 @@ PathPiece PathPiece::Part(double s_from, double s_to) const {
   return part;
 }
 
-void PathPiece::AssignPart(const PathPiece& whole, double s_from, double s_to) {
+void PathPiece::AssignPartOffLine(const PathPiece& whole, double s_from, double s_to) {
   kind_ = whole.kind_;
   length_ = s_to - s_from;
   from_ = whole.At(s_from);
@@ -165,11 +163,8 @@ TipPose PathPiece::At(double s) const {
     const CornerCurve whole = curve();
     return whole.At(ParameterOn(whole, s));
   }
-  const double share = s / length_;
-  TipPose pose;
-  pose.a_rad = from_.a_rad + (to_.a_rad - from_.a_rad) * share;
-  pose.b_rad = from_.b_rad + (to_.b_rad - from_.b_rad) * share;
-  pose.tip = kind_ == Kind::kArc ? ArcPoint(s / radius_mm()) : Between(from_.tip, to_.tip, share);
+  TipPose pose = OnLine(s);
+  if (kind_ == Kind::kArc) pose.tip = ArcPoint(s / radius_mm());
   return pose;
 }
 

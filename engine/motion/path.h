@@ -51,7 +51,14 @@ class PathPiece {
   PathPiece Part(double s_from, double s_to) const;
 
   // Makes this piece that part of `whole`, which must be another one: Part without the copies.
-  void AssignPart(const PathPiece& whole, double s_from, double s_to);
+  void AssignPart(const PathPiece& whole, double s_from, double s_to) {
+    if (whole.kind_ != Kind::kLine) return AssignPartOffLine(whole, s_from, s_to);
+    kind_ = Kind::kLine;
+    length_ = s_to - s_from;
+    from_ = whole.OnLine(s_from);
+    to_ = whole.OnLine(s_to);
+    tangent_ = whole.tangent_;
+  }
 
   Kind kind() const { return kind_; }
   double length() const { return length_; }  // mm, or 1 for sigma pieces; 0: nothing to do
@@ -69,12 +76,18 @@ class PathPiece {
   void AssignCorner(const CornerCurve& curve, double start, double length, const TipPose& from,
                     const TipPose& to) {
     AssignBlend(length, from, to);
-    shape_ = CurvePart{start, curve};
+    auto* part = std::get_if<CurvePart>(&shape_);
+    if (part == nullptr) part = &shape_.emplace<CurvePart>();
+    part->start = start;
+    part->curve = curve;
   }
   void AssignCorner(const PlainCorner& corner, double start, double length, const TipPose& from,
                     const TipPose& to) {
     AssignBlend(length, from, to);
-    shape_ = PlainPart{start, corner};
+    auto* part = std::get_if<PlainPart>(&shape_);
+    if (part == nullptr) part = &shape_.emplace<PlainPart>();
+    part->start = start;
+    part->corner = corner;
   }
 
   // Outside 0..length() the nearer end; the ends are from() and to() to the last bit.
@@ -137,6 +150,15 @@ class PathPiece {
   void AssignShape(const PathPiece& other);
   Vec3 ArcPoint(double angle) const;
   PathDerivatives FirstOffLine(double s) const;
+  TipPose OnLine(double s) const {
+    if (!(s > 0.0)) return from_;
+    if (s >= length_) return to_;
+    const double share = s / length_;
+    return {from_.tip + (to_.tip - from_.tip) * share,
+            from_.a_rad + (to_.a_rad - from_.a_rad) * share,
+            from_.b_rad + (to_.b_rad - from_.b_rad) * share};
+  }
+  void AssignPartOffLine(const PathPiece& whole, double s_from, double s_to);
   double RateOf(double from, double to) const {
     return to != from && length_ > 0.0 ? (to - from) / length_ : 0.0;
   }
