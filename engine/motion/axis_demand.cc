@@ -110,7 +110,7 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
     for (std::size_t i = 0; i < 3; ++i) {
       enough = enough && shares.speed * axes.speed[i] >= limits.speed &&
                shares.acceleration * axes.acceleration[i] >= limits.acceleration &&
-               shares.acceleration * axes.jerk[i] >= limits.jerk;
+               (shares.acceleration * axes.jerk[i] >= limits.jerk || std::isinf(limits.jerk));
     }
     if (enough) return limits;
   }

@@ -121,45 +121,42 @@ bool Same(double a, double b) {
 
 }  // namespace
 
-Corner Corner::Between(const PathPiece& before, const PathPiece& after) {
-  Corner corner;
+void Corner::Assign(const PathPiece& before, const PathPiece& after) {
   const PathDerivatives in = before.First(before.length());
   const PathDerivatives out = after.First(0.0);
-  corner.half_sine_ = std::min(0.5 * Distance(in.tip, out.tip), 1.0);
-  corner.half_cosine_ = std::sqrt(std::max(0.0, 0.5 * (1.0 + Dot(in.tip, out.tip))));
-  if (corner.half_cosine_ < kReversalHalfCosine) {
-    corner.passage_ = Passage::kStopReversal;
-    return corner;
+  half_sine_ = std::min(0.5 * Distance(in.tip, out.tip), 1.0);
+  half_cosine_ = std::sqrt(std::max(0.0, 0.5 * (1.0 + Dot(in.tip, out.tip))));
+  lines_ = before.kind() == PathPiece::Kind::kLine && after.kind() == PathPiece::Kind::kLine;
+  const bool turns = in.a != 0.0 || in.b != 0.0 || out.a != 0.0 || out.b != 0.0;
+  plain_ = lines_ && !turns;
+  cut_max_mm_ = HUGE_VAL;
+  curvature_jump_ = a_jump_ = b_jump_ = 0.0;
+  straight_ = half_sine_ <= kStraightHalfSine;
+  if (half_cosine_ < kReversalHalfCosine) {
+    passage_ = Passage::kStopReversal;
+    return;
   }
-  corner.cut_max_mm_ = HUGE_VAL;
-  const bool lines =
-      before.kind() == PathPiece::Kind::kLine && after.kind() == PathPiece::Kind::kLine;
   bool smooth = true;
-  if (!lines) {
+  if (!plain_) {
+    straight_ = straight_ && Same(in.a, out.a) && Same(in.b, out.b);
+    a_jump_ = std::abs(out.a - in.a);
+    b_jump_ = std::abs(out.b - in.b);
+  }
+  if (!lines_) {
     const Vec3 bend_in = before.Second(before.length()).tip;
     const Vec3 bend_out = after.Second(0.0).tip;
     smooth = Same(bend_in, bend_out);
-    corner.curvature_jump_ = Distance(bend_in, bend_out);
+    curvature_jump_ = Distance(bend_in, bend_out);
     for (const PathPiece* piece : {&before, &after}) {
       if (piece->kind() != PathPiece::Kind::kArc) continue;
-      corner.cut_max_mm_ = std::min(corner.cut_max_mm_, 0.5 * piece->radius_mm());
+      cut_max_mm_ = std::min(cut_max_mm_, 0.5 * piece->radius_mm());
     }
   }
-  const bool head_steady = Same(in.a, out.a) && Same(in.b, out.b);
-  corner.a_jump_ = std::abs(out.a - in.a);
-  corner.b_jump_ = std::abs(out.b - in.b);
-  corner.straight_ = corner.half_sine_ <= kStraightHalfSine && head_steady;
-  if (corner.straight_ && smooth) {
-    corner.passage_ = Passage::kThrough;
-    return corner;
-  }
-  corner.passage_ = Passage::kBlend;
-  corner.lines_ = lines;
-  corner.plain_ = lines && in.a == 0.0 && in.b == 0.0 && out.a == 0.0 && out.b == 0.0;
-  corner.rho_ = Rho(corner.half_cosine_);
-  corner.bend_ = Bend(corner.half_sine_, corner.half_cosine_, corner.rho_);
-  corner.jerk_ = PlainTable::Jerk(corner.half_sine_, corner.half_cosine_, corner.bend_);
-  return corner;
+  passage_ = straight_ && smooth ? Passage::kThrough : Passage::kBlend;
+  if (passage_ == Passage::kThrough) return;
+  rho_ = Rho(half_cosine_);
+  bend_ = Bend(half_sine_, half_cosine_, rho_);
+  jerk_ = PlainTable::Jerk(half_sine_, half_cosine_, bend_);
 }
 
 double Corner::CutFor(double w, const MachineLimits& machine) const {

@@ -27,7 +27,12 @@ class Corner {
   Corner() = default;
 
   // Precondition: `before` ends where `after` begins; neither is by sigma.
-  static Corner Between(const PathPiece& before, const PathPiece& after);
+  static Corner Between(const PathPiece& before, const PathPiece& after) {
+    Corner corner;
+    corner.Assign(before, after);
+    return corner;
+  }
+  void Assign(const PathPiece& before, const PathPiece& after);  // in place
 
   // kStopReversal, kThrough or kBlend.
   Passage passage() const { return passage_; }

@@ -45,6 +45,7 @@ bool AxesFollowRamps(const MachineLimits& machine) {
 MotionChain::MotionChain(const MachineLimits& machine, std::size_t window)
     : machine_(machine),
       window_(std::max(window, kBatchMin)),
+      lines_follow_tip_(LinesFollowTip(machine)),
       axes_keep_up_(AxesKeepUp(machine)),
       axes_follow_ramps_(AxesFollowRamps(machine)) {}
 
@@ -71,7 +72,7 @@ void MotionChain::Append(const MoveCommand& move, const PathLimits& limits) {
     leg.length = move.path.length();
   }
   if (!move.fly) {
-    CloseLeg(Passage::kStop, Corner{}, 0.0);
+    CloseLeg(Passage::kStop, false, 0.0);
     open_ = false;
   }
   if (!merged || !open_ || number % kBatchMin == 0) Work();
@@ -80,37 +81,37 @@ void MotionChain::Append(const MoveCommand& move, const PathLimits& limits) {
 // Decides how the last move passes into this one. False when both are one leg.
 bool MotionChain::Join(const MoveCommand& move, const PathLimits& limits) {
   const Move& before = moves_.back();
+  Leg& leg = legs_.back();
   Passage passage = Passage::kStop;
-  Corner corner;
   double cap = 0.0;
+  bool bends = false;  // a curve must not reach over it, although without a limit on jerk it is passed
   if (before.overshoot <= 0.0 || stands_) {
     passage = Passage::kStopNoSpeed;
   } else if (before.path.by_sigma() || move.path.by_sigma()) {
     passage = Passage::kStopNeighbour;
   } else if (SameTip(before.head, move.head) && Contiguous(before.path.to(), move.path.from())) {
-    const bool mill = machine_.junction_jump_mm_s > 0.0;
-    if (!mill) corner = Corner::Between(before.path, move.path);
-    passage = mill ? Passage::kThrough : corner.passage();
-    if (passage == Passage::kBlend && corner.straight() && std::isinf(machine_.tip_jerk_mm_s3)) {
-      passage = Passage::kThrough;  // without a limit on jerk a jump of curvature needs no curve
-    }
-    if (!IsStop(passage)) cap = before.overshoot * std::min(before.limits.speed, limits.speed);
-    if (mill) {
+    cap = before.overshoot * std::min(before.limits.speed, limits.speed);
+    if (machine_.junction_jump_mm_s > 0.0) {  // a mill
+      passage = Passage::kThrough;
       cap = std::min(cap, JunctionSpeed(before.path.Tangent(before.path.length()),
                                         move.path.Tangent(0.0), machine_.junction_jump_mm_s));
+    } else {
+      leg.corner.Assign(before.path, move.path);
+      passage = leg.corner.passage();
+      bends = passage == Passage::kBlend;
+      if (bends && leg.corner.straight() && std::isinf(machine_.tip_jerk_mm_s3)) {
+        passage = Passage::kThrough;  // without a limit on jerk a jump of curvature needs no curve
+      }
     }
   }
   stands_ = false;
   if (passage == Passage::kThrough && Equal(before.limits, limits) && Equal(cap, limits.speed)) {
     // A line without end must not fill the window as one leg.
-    const Leg& leg = legs_.back();
     if (leg.last_move - leg.first_move < window_ / 2) return false;
     ++starved_;
-    CloseLeg(passage, corner, cap);
-    legs_.back().ends_run = true;
-    return true;
+    bends = true;
   }
-  CloseLeg(passage, corner, cap);
+  CloseLeg(passage, bends, cap);
   return true;
 }
 
@@ -136,18 +137,16 @@ void MotionChain::Mark(std::uint64_t tag) {
 
 void MotionChain::Stop() {
   if (!open_) return;
-  CloseLeg(Passage::kStop, Corner{}, 0.0);
+  CloseLeg(Passage::kStop, false, 0.0);
   open_ = false;
   stands_ = false;
   Work();
 }
 
-void MotionChain::CloseLeg(Passage passage, const Corner& corner, double cap) {
+void MotionChain::CloseLeg(Passage passage, bool ends_run, double cap) {
   Leg& leg = legs_.back();
   leg.passage = passage;
-  leg.corner = corner;
-  // A curve must not reach over a jump of curvature, although without a limit on jerk it is passed.
-  leg.ends_run = passage != Passage::kThrough || corner.passage() == Passage::kBlend;
+  leg.ends_run = passage != Passage::kThrough || ends_run;
   leg.cap = leg.limit = IsStop(passage) ? 0.0 : cap;
   running_.Push(leg.length, moves_[leg.first_move].limits, leg.cap);
 }

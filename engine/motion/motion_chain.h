@@ -29,6 +29,16 @@ class MotionChain {
  public:
   MotionChain(const MachineLimits& machine, std::size_t window);
 
+  // LimitsOf, without asking the axes where the answer is known.
+  PathLimits LimitsFor(const MoveCommand& move) const {
+    const PathPiece& path = move.path;
+    const bool simple = lines_follow_tip_ && path.kind() == PathPiece::Kind::kLine &&
+                        move.kind == MoveCommand::Kind::kContour &&
+                        path.from().a_rad == path.to().a_rad &&
+                        path.from().b_rad == path.to().b_rad;
+    return simple ? TipLimits(move, machine_) : LimitsOf(move, machine_);
+  }
+
   // The move has passed all checks and has a length above zero.
   void Append(const MoveCommand& move, const PathLimits& limits);
 
@@ -62,7 +72,7 @@ class MotionChain {
     Number first_move = 0;
     Number last_move = 0;
     double length = 0.0;
-    Corner corner{};  // at its end
+    Corner corner{};  // at its end, when that may be a curve
     Passage passage = Passage::kStop;
     bool ends_run = true;
     double cap = 0.0;    // OVERSH x the lower limit of both sides, lowered to what level 1 reaches
@@ -93,7 +103,7 @@ class MotionChain {
   };
 
   bool Join(const MoveCommand& move, const PathLimits& limits);
-  void CloseLeg(Passage passage, const Corner& corner, double cap);
+  void CloseLeg(Passage passage, bool ends_run, double cap);
   void Work();
   void Starve();
   bool Resolve(bool accept_what_is_there);
@@ -140,6 +150,7 @@ class MotionChain {
 
   MachineLimits machine_;
   std::size_t window_;
+  bool lines_follow_tip_;
   bool axes_keep_up_;  // the axes allow whatever the tip may do on a curve without head rotation
   std::uint64_t starved_ = 0;
 

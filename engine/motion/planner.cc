@@ -68,7 +68,7 @@ Status Planner::AppendChecked(const MoveCommand& move) {
                  "the acceleration is " + ShortestText(100.0 * move.acceleration_fraction) + " %",
                  {}};
   }
-  const PathLimits limits = LimitsOf(move, chain_->machine());
+  const PathLimits limits = chain_->LimitsFor(move);
   if (!(move.path.length() <= limits.speed * kDurationMax_s) || !(limits.speed > 0.0) ||
       !(limits.acceleration > 0.0) || !(limits.jerk > 0.0)) {
     return Error{ErrorCode::kNoMotion, "the speed is too low to ever arrive", {}};

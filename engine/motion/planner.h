@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -123,5 +124,16 @@ class Planner {
 
 // The limits of one motion by itself: motion.md 5.1 and 3.4, 3.5.
 PathLimits LimitsOf(const MoveCommand& move, const MachineLimits& machine);
+
+// What is programmed for the tip, whatever the path: the first two lines of motion.md 5.1.
+inline PathLimits TipLimits(const MoveCommand& move, const MachineLimits& machine) {
+  const double share = std::clamp(move.acceleration_fraction, 0.0, 1.0);
+  return {std::clamp(move.speed_fraction, 0.0, 1.0) * machine.tip_speed_mm_s,
+          share * machine.tip_acceleration_mm_s2, share * machine.tip_jerk_mm_s3};
+}
+
+// Whether no axis is ever asked for more than it can on a line with a steady head: then the limits of
+// the tip are all there are.
+bool LinesFollowTip(const MachineLimits& machine);
 
 }  // namespace rmlcell::motion
