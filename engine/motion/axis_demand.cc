@@ -47,6 +47,24 @@ double JerkAllowed(const AxisDerivatives& q, const AxisLimits& axes, const AxisS
       [&](std::size_t i) { return shares.acceleration * axes.jerk[i] / std::abs(q.first[i]); });
 }
 
+// Whether no axis is asked for more than it can, without a division: nearly always so.
+bool Allows(const AxisDerivatives& q, const AxisLimits& axes, const AxisShares& shares,
+            const PathLimits& limits) {
+  const double square = limits.speed * limits.speed;
+  bool enough = true;
+  for (std::size_t i = 0; i < kAxisCount; ++i) {
+    const double along = std::abs(q.first[i]);
+    const double across = std::abs(q.second[i]) * square;
+    const double acceleration = shares.acceleration * axes.acceleration[i];
+    enough = enough && along * limits.speed <= shares.speed * axes.speed[i] &&
+             2.0 * across <= acceleration &&
+             across + along * limits.acceleration <= acceleration &&
+             (along * limits.jerk <= shares.acceleration * axes.jerk[i] ||
+              std::isinf(limits.jerk));
+  }
+  return enough;
+}
+
 // Upper bounds of both derivatives over the whole piece, cheap: enough for most moves.
 AxisDerivatives Bounds(const PathPiece& path, const Head& head) {
   const double arm = head.arm_mm();
@@ -93,10 +111,10 @@ AxisDerivatives DerivativesAt(const PathPiece& path, const Head& head, double s)
 
 AxisDerivatives ThroughHead(const Head& head, const TipPose& pose, const PathDerivatives& first,
                             const PathDerivatives& second) {
-  const TipRates rates{first.tip, first.a, first.b};
-  return {.first = AxisRates(head, pose.a_rad, pose.b_rad, rates),
-          .second = AxisSecondRates(head, pose.a_rad, pose.b_rad, rates,
-                                    {second.tip, second.a, second.b})};
+  const BothAxisRates rates = AxisRatesOfBoth(head, pose.a_rad, pose.b_rad,
+                                              {first.tip, first.a, first.b},
+                                              {second.tip, second.a, second.b});
+  return {.first = rates.first, .second = rates.second};
 }
 
 PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits& axes,
@@ -147,11 +165,13 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
           q.first[i] = std::abs(q.first[i]) + drift * share;
           q.second[i] = std::abs(q.second[i]) + drift * share * rate;
         }
+        if (Allows(q, axes, shares, limits)) continue;
         limits.speed = std::min(limits.speed, SpeedAllowed(q, axes, shares));
         if (std::isfinite(limits.jerk))
           limits.jerk = std::min(limits.jerk, JerkAllowed(q, axes, shares));
       }
       for (std::size_t k = 0; k < parts; ++k) {
+        if (Allows(at[k], axes, shares, limits)) continue;
         limits.acceleration =
             std::min(limits.acceleration, AccelerationAllowed(at[k], axes, shares, limits.speed));
       }

@@ -113,11 +113,12 @@ CornerCurve::Bounds CornerCurve::DerivativeBounds() const {
   const std::array<Vec3, 5> tip = first(tip_);
   const Vec3 sum = tip[0] + tip[4];  // along the bisector: both ends have the same length
   const double along = Norm(sum);
-  bounds.slowest = HUGE_VAL;
-  for (const Vec3& control : tip)
-    bounds.slowest = std::min(bounds.slowest, Dot(control, sum) / along);
-  for (const Vec3& control : second(tip_))
-    bounds.tip_second = std::max(bounds.tip_second, Norm(control));
+  double least = HUGE_VAL;
+  for (const Vec3& control : tip) least = std::min(least, Dot(control, sum));
+  bounds.slowest = least / along;
+  double square = 0.0;
+  for (const Vec3& control : second(tip_)) square = std::max(square, Dot(control, control));
+  bounds.tip_second = std::sqrt(square);
   bounds.a_first = largest(first(a_));
   bounds.b_first = largest(first(b_));
   bounds.a_second = largest(second(a_));

@@ -146,6 +146,7 @@ class MotionChain {
   void EmitCurvePart(const Span& span, Number move, const Shape& shape, const Half& half,
                      const HalfPart& part, const Timing& timing);
   PlannedMotion& NewMotion(const Span& span, const Move& source);
+  void EndMove(const Span& span, Number move, PlannedMotion& motion);
   void FinishMotion(const Span& span, Number move, PlannedMotion& motion, bool ends_move);
 
   MachineLimits machine_;

@@ -114,6 +114,30 @@ void MotionChain::TakePart(SpeedProfile& speed, const Timing& timing, double to,
   speed = timing.profile->PartTo(place_, end);
 }
 
+// Motions are made where they wait to be taken: they are large. The slot holds an old one, so every
+// member is set here or by the caller (path, speed).
+inline PlannedMotion& MotionChain::NewMotion(const Span& span, const Move& source) {
+  PlannedItem& slot = items_.PushSlot();
+  auto* motion = std::get_if<PlannedMotion>(&slot);
+  if (motion == nullptr) motion = &slot.emplace<PlannedMotion>();
+  motion->tag = source.tag;
+  motion->head = source.head;
+  motion->limits = span.limits;
+  motion->settling_s = 0.0;
+  motion->upper_bound = false;
+  return *motion;
+}
+
+inline void MotionChain::FinishMotion(const Span& span, Number move, PlannedMotion& motion,
+                                      bool ends_move) {
+  motion.ends_move = ends_move;
+  if (ends_move) {
+    EndMove(span, move, motion);
+  } else {
+    motion.corner = {};
+  }
+}
+
 // What is left of the next move between the curves at its ends, and the curve behind it when the span
 // ends there.
 void MotionChain::EmitMove() {
@@ -234,27 +258,7 @@ void MotionChain::EmitCurvePart(const Span& span, Number move, const Shape& shap
   FinishMotion(span, move, motion, part.ends_move);
 }
 
-// Motions are made where they wait to be taken: they are large. The slot holds an old one, so every
-// member is set here or by the caller (path, speed).
-PlannedMotion& MotionChain::NewMotion(const Span& span, const Move& source) {
-  PlannedItem& slot = items_.PushSlot();
-  auto* motion = std::get_if<PlannedMotion>(&slot);
-  if (motion == nullptr) motion = &slot.emplace<PlannedMotion>();
-  motion->tag = source.tag;
-  motion->head = source.head;
-  motion->limits = span.limits;
-  motion->settling_s = 0.0;
-  motion->upper_bound = false;
-  return *motion;
-}
-
-void MotionChain::FinishMotion(const Span& span, Number move, PlannedMotion& motion,
-                               bool ends_move) {
-  motion.ends_move = ends_move;
-  if (!ends_move) {
-    motion.corner = {};
-    return;
-  }
+void MotionChain::EndMove(const Span& span, Number move, PlannedMotion& motion) {
   if (move == span.corner_move) {
     motion.corner = span.report;
     if (!IsBlend(span.report.passage)) motion.corner.speed = motion.speed.end().speed;

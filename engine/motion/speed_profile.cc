@@ -277,17 +277,10 @@ PathState SpeedProfile::At(double t_s) const {
 
 void SpeedProfile::Advance(Place& place, double s) const {
   place.s = s;
-  for (; place.phase < count_; ++place.phase) {
-    const auto k = static_cast<std::size_t>(place.phase);
-    const Phase& phase = phases_[k];
-    const double next = place.phase + 1 < count_ ? phases_[k + 1].start.s : end_.s;
-    if (s < next) {
-      place.t_s = place.phase_start_s + TimeWithin(phase, s - phase.start.s);
-      return;
-    }
-    place.phase_start_s += phase.duration_s;
+  while (place.phase < count_ && s >= PhaseEnd(place.phase)) {
+    place.phase_start_s += phases_[static_cast<std::size_t>(place.phase)].duration_s;
+    ++place.phase;
   }
-  place.t_s = place.phase_start_s;
 }
 
 // How long after the start of a phase it has gone `wanted`.
@@ -311,7 +304,7 @@ double SpeedProfile::TimeWithin(const Phase& phase, double wanted) {
 double SpeedProfile::TimeAt(double s) const {
   Place place;
   Advance(place, s);
-  return place.t_s;
+  return TimeOf(place);
 }
 
 SpeedProfile SpeedProfile::Part(double s_from, double s_to) const {
@@ -320,15 +313,16 @@ SpeedProfile SpeedProfile::Part(double s_from, double s_to) const {
   return PartTo(place, s_to);
 }
 
-SpeedProfile SpeedProfile::PartTo(Place& place, double s_to) const {
+SpeedProfile SpeedProfile::ChangingPartTo(Place& place, double s_to) const {
   const Place begin = place;
+  const double t_from = TimeOf(begin);
   Advance(place, s_to);
-  const double t_to = s_to >= end_.s ? duration_s_ : place.t_s;
+  const double t_to = s_to >= end_.s ? duration_s_ : TimeOf(place);
   SpeedProfile part;
   double time = begin.phase_start_s;
   for (int k = begin.phase; k < count_ && time < t_to; ++k) {
     const Phase& phase = phases_[static_cast<std::size_t>(k)];
-    const double from = std::max(begin.t_s - time, 0.0);
+    const double from = std::max(t_from - time, 0.0);
     const double to = std::min(t_to - time, phase.duration_s);
     time += phase.duration_s;
     if (!(to > from)) continue;

@@ -66,13 +66,21 @@ class SpeedProfile {
   // long, whatever came before them. Good for one profile.
   struct Place {
     double s = 0.0;
-    double t_s = 0.0;           // when s is passed
-    int phase = 0;              // the one that s lies in
+    int phase = 0;               // the one that s lies in
     double phase_start_s = 0.0;  // when it begins
   };
   void Advance(Place& place, double s) const;
   // The part from `place` to `s_to`, where `place` is afterwards.
-  SpeedProfile PartTo(Place& place, double s_to) const;
+  SpeedProfile PartTo(Place& place, double s_to) const {
+    const Phase& phase = phases_[static_cast<std::size_t>(place.phase)];
+    if (place.phase < count_ && phase.jerk == 0.0 && phase.start.acceleration == 0.0 &&
+        s_to < PhaseEnd(place.phase) && place.s >= phase.start.s) {
+      const double length = s_to - place.s;
+      place.s = s_to;
+      return Steady(length, phase.start.speed);
+    }
+    return ChangingPartTo(place, s_to);
+  }
 
   double duration_s() const { return duration_s_; }
   const PathState& end() const { return end_; }  // s of the end, and the speed there
@@ -94,6 +102,15 @@ class SpeedProfile {
 
  private:
   static double TimeWithin(const Phase& phase, double wanted);
+  SpeedProfile ChangingPartTo(Place& place, double s_to) const;
+  double PhaseEnd(int index) const {
+    return index + 1 < count_ ? phases_[static_cast<std::size_t>(index) + 1].start.s : end_.s;
+  }
+  double TimeOf(const Place& place) const {
+    if (place.phase >= count_) return place.phase_start_s;
+    const Phase& phase = phases_[static_cast<std::size_t>(place.phase)];
+    return place.phase_start_s + TimeWithin(phase, place.s - phase.start.s);
+  }
   void AddPhase(PathState& state, double duration_s, double acceleration, double jerk);
   void AddSpan(PathState& state, double end_s, double v1, const PathLimits& limits);
   void AddRamp(PathState& state, double change, double sign, double to_speed,
