@@ -57,10 +57,8 @@ bool Allows(const AxisDerivatives& q, const AxisLimits& axes, const AxisShares& 
     const double across = std::abs(q.second[i]) * square;
     const double acceleration = shares.acceleration * axes.acceleration[i];
     enough = enough && along * limits.speed <= shares.speed * axes.speed[i] &&
-             2.0 * across <= acceleration &&
-             across + along * limits.acceleration <= acceleration &&
-             (along * limits.jerk <= shares.acceleration * axes.jerk[i] ||
-              std::isinf(limits.jerk));
+             2.0 * across <= acceleration && across + along * limits.acceleration <= acceleration &&
+             (along * limits.jerk <= shares.acceleration * axes.jerk[i] || std::isinf(limits.jerk));
   }
   return enough;
 }
@@ -111,9 +109,9 @@ AxisDerivatives DerivativesAt(const PathPiece& path, const Head& head, double s)
 
 AxisDerivatives ThroughHead(const Head& head, const TipPose& pose, const PathDerivatives& first,
                             const PathDerivatives& second) {
-  const BothAxisRates rates = AxisRatesOfBoth(head, pose.a_rad, pose.b_rad,
-                                              {first.tip, first.a, first.b},
-                                              {second.tip, second.a, second.b});
+  const BothAxisRates rates =
+      AxisRatesOfBoth(head, pose.a_rad, pose.b_rad, {first.tip, first.a, first.b},
+                      {second.tip, second.a, second.b});
   return {.first = rates.first, .second = rates.second};
 }
 

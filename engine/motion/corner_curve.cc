@@ -51,7 +51,7 @@ double CornerCurve::Scale(const Vec3& tangent_in, const Vec3& tangent_out, doubl
   return 2.0 * std::sqrt(half_cosine) * cut_mm;
 }
 
-CornerCurve::CornerCurve(const CurveEnd& from, const CurveEnd& to, double cut_mm) {
+CornerCurve::CornerCurve(const CurveEnd& from, const CurveEnd& to, double cut_mm) : turns_(true) {
   const double scale = Scale(from.tangent, to.tangent, cut_mm);
   const double square = scale * scale;
   Fit(tip_, from.pose.tip, to.pose.tip - from.pose.tip, from.tangent * scale, to.tangent * scale,
@@ -71,7 +71,10 @@ CornerCurve::CornerCurve(const PlainCorner& corner) {
   b_[0] = corner.at.b_rad;
 }
 
-TipPose CornerCurve::At(double u) const { return {Value(tip_, u), Value(a_, u), Value(b_, u)}; }
+TipPose CornerCurve::At(double u) const {
+  if (!turns_) return {Value(tip_, u), a_[0], b_[0]};
+  return {Value(tip_, u), Value(a_, u), Value(b_, u)};
+}
 
 PathDerivatives CornerCurve::Derivative(double u, int order) const {
   if (order == 1) return {First(tip_, u), First(a_, u), First(b_, u)};
@@ -92,6 +95,23 @@ PathDerivatives CornerCurve::SecondByLength(double u) const {
   const double along = Dot(d.tip, e.tip) * square;  // d(|p'|)/du over |p'|
   return {(e.tip - d.tip * along) * square, (e.a - d.a * along) * square,
           (e.b - d.b * along) * square};
+}
+
+double CornerCurve::JerkPerCube(double u) const {
+  const Vec3 first = First(tip_, u);
+  const Vec3 second = Second(tip_, u);
+  const Vec3 third = Third(tip_, u);
+  const double square = Dot(first, first);
+  const double speed = std::sqrt(square);
+  const Vec3 cross = Cross(first, second);
+  const Vec3 change = Cross(first, third);
+  const double n = Norm(cross);
+  const double kappa = n / (square * speed);
+  const double n_change = n > 0.0 ? Dot(cross, change) / n : Norm(change);
+  const double kappa_change =
+      (n_change / (square * speed) - 3.0 * n * Dot(first, second) / (square * square * speed)) /
+      speed;
+  return std::sqrt(kappa_change * kappa_change + kappa * kappa * kappa * kappa);
 }
 
 CornerCurve::Bounds CornerCurve::DerivativeBounds() const {

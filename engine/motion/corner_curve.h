@@ -24,8 +24,8 @@ struct PathDerivatives {
   double b = 0.0;
 };
 
-// Where two lines meet, passed with a steady head: all that the curve there follows from. Nearly every
-// corner is one, so motions carry this and not the coefficients.
+// Where two lines meet, passed with a steady head: all that the curve there follows from. Nearly
+// every corner is one, so motions carry this and not the coefficients.
 struct PlainCorner {
   TipPose at;
   Vec3 tangent_in;
@@ -56,6 +56,9 @@ class CornerCurve {
   PathDerivatives FirstByLength(double u) const;
   PathDerivatives SecondByLength(double u) const;
 
+  // Path jerk per speed cubed: sqrt(kappa'^2 + kappa^4).
+  double JerkPerCube(double u) const;
+
   // Bounds of the derivatives by u, from control points: cheap, and good on gentle curves.
   struct Bounds {
     double slowest = 0.0;     // of |dp/du|, from below; at most 0 when nothing is known
@@ -75,6 +78,7 @@ class CornerCurve {
 
  private:
   static double Scale(const Vec3& tangent_in, const Vec3& tangent_out, double cut_mm);
+  bool turns_ = false;  // the head; else only the first of a_ and b_ counts
   // Coefficients of u^0 .. u^5.
   std::array<Vec3, 6> tip_{};
   std::array<double, 6> a_{};

@@ -84,7 +84,8 @@ bool MotionChain::Join(const MoveCommand& move, const PathLimits& limits) {
   Leg& leg = legs_.back();
   Passage passage = Passage::kStop;
   double cap = 0.0;
-  bool bends = false;  // a curve must not reach over it, although without a limit on jerk it is passed
+  bool bends =
+      false;  // a curve must not reach over it, although without a limit on jerk it is passed
   if (before.overshoot <= 0.0 || stands_) {
     passage = Passage::kStopNoSpeed;
   } else if (before.path.by_sigma() || move.path.by_sigma()) {
@@ -197,8 +198,8 @@ std::optional<double> MotionChain::LengthAfter(Number leg, double enough,
   return std::nullopt;
 }
 
-// Points passed straight on that the curve of `cut` at the end of `leg` swallows keep their speed: the
-// least of them; nothing when they are not known yet.
+// Points passed straight on that the curve of `cut` at the end of `leg` swallows keep their speed:
+// the least of them; nothing when they are not known yet.
 std::optional<double> MotionChain::SpeedWithin(Number leg, double cut, bool accept_what_is_there) {
   double least = HUGE_VAL;
   double beyond = 0.0;
@@ -266,8 +267,8 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
               : leg.corner.lines() && AxesFollow(curves_.back(), head, machine_, speed_cap,
                                                  leg.corner.PlainCurvature(cut));
       if (!axes_follow) {
-        const CornerCurve curve = closing.plain ? CornerCurve(PlainCornerAt(leg.last_move, cut))
-                                                : curves_.back();
+        const CornerCurve curve =
+            closing.plain ? CornerCurve(PlainCornerAt(leg.last_move, cut)) : curves_.back();
         speed_cap = std::min(speed_cap, SpeedOnCurve(curve, head, machine_));
       }
       if (speed_cap < wanted) closing.report.passage = Passage::kBlendCapped;
@@ -298,7 +299,8 @@ void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
     const PathPiece& out = moves_[leg.last_move + 1].path;
     span.curve_length = leg.corner.PlainLength(cut);
     span.curve_middle = in.to();
-    span.curve_middle.tip = in.to().tip + (out.Tangent(0.0) - in.Tangent(0.0)) * leg.corner.PlainBow(cut);
+    span.curve_middle.tip =
+        in.to().tip + (out.Tangent(0.0) - in.Tangent(0.0)) * leg.corner.PlainBow(cut);
     span.report.deviation_mm = leg.corner.PlainDeviation(cut);
     return;
   }

@@ -170,9 +170,9 @@ class MotionChain {
 
   Ring<Span> spans_;
   Ring<CornerCurve> curves_;  // of those spans whose curve is not plain
-  SpeedPasses speeds_;  // over spans
+  SpeedPasses speeds_;        // over spans
   std::size_t speeds_next_ = 0;
-  double last_speed_ = 0.0;       // at the end of the last emitted span
+  double last_speed_ = 0.0;  // at the end of the last emitted span
   bool starts_too_fast_ = false;
   std::size_t section_seen_ = 0;  // spans known not to end the next section
   bool axes_follow_ramps_;        // on curves without head rotation, whatever the tip does

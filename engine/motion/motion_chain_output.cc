@@ -103,7 +103,8 @@ MotionChain::Timing MotionChain::PresentTiming(double length) {
   return {&ramps_.ramps()[timing.ramp], timing.from, timing.to};
 }
 
-// The part of the timing to `to` on its cell, or to the end of that, from where the last part ended.
+// The part of the timing to `to` on its cell, or to the end of that, from where the last part
+// ended.
 void MotionChain::TakePart(SpeedProfile& speed, const Timing& timing, double to, bool to_end) {
   const double end = to_end ? timing.to : std::min(timing.from + to, timing.to);
   if (place_.s == 0.0 && end == timing.profile->end().s) {
@@ -138,8 +139,8 @@ inline void MotionChain::FinishMotion(const Span& span, Number move, PlannedMoti
   }
 }
 
-// What is left of the next move between the curves at its ends, and the curve behind it when the span
-// ends there.
+// What is left of the next move between the curves at its ends, and the curve behind it when the
+// span ends there.
 void MotionChain::EmitMove() {
   Span& span = spans_.front();
   const bool blend = IsBlend(span.report.passage);
@@ -238,8 +239,8 @@ void MotionChain::EmitHalves(const Span& span, const Shape& shape, const Half& f
 }
 
 template <class Shape>
-void MotionChain::EmitCurvePart(const Span& span, Number move, const Shape& shape,
-                                const Half& half, const HalfPart& part, const Timing& timing) {
+void MotionChain::EmitCurvePart(const Span& span, Number move, const Shape& shape, const Half& half,
+                                const HalfPart& part, const Timing& timing) {
   PlannedMotion& motion = NewMotion(span, moves_[move]);
   motion.path.AssignCorner(shape, half.begin, half.length, half.from, half.to);
   if (part.s_from != 0.0 || part.s_to != half.length) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/core/units.h"
+#include "engine/motion/blend_curve.h"
 
 namespace rmlcell::motion {
 namespace {
@@ -160,8 +161,8 @@ TipPose PathPiece::At(double s) const {
   if (!(s > 0.0)) return from_;
   if (s >= length_) return to_;
   if (kind_ == Kind::kBlend) {
-    const CornerCurve whole = curve();
-    return whole.At(ParameterOn(whole, s));
+    const BlendCurve blend(*this);
+    return blend.curve().At(blend.ParameterAt(s));
   }
   TipPose pose = OnLine(s);
   if (kind_ == Kind::kArc) pose.tip = ArcPoint(s / radius_mm());
@@ -170,8 +171,8 @@ TipPose PathPiece::At(double s) const {
 
 PathDerivatives PathPiece::FirstOffLine(double s) const {
   if (kind_ == Kind::kBlend) {
-    const CornerCurve whole = curve();
-    return whole.FirstByLength(ParameterOn(whole, s));
+    const BlendCurve blend(*this);
+    return blend.curve().FirstByLength(blend.ParameterAt(s));
   }
   Vec3 tip = to_.tip - from_.tip;
   if (kind_ == Kind::kArc) {
@@ -183,8 +184,8 @@ PathDerivatives PathPiece::FirstOffLine(double s) const {
 
 PathDerivatives PathPiece::Second(double s) const {
   if (kind_ == Kind::kBlend) {
-    const CornerCurve whole = curve();
-    return whole.SecondByLength(ParameterOn(whole, s));
+    const BlendCurve blend(*this);
+    return blend.curve().SecondByLength(blend.ParameterAt(s));
   }
   if (kind_ != Kind::kArc) return {};
   const double angle = s / radius_mm();

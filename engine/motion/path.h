@@ -12,10 +12,10 @@ namespace rmlcell::motion {
 inline constexpr double kTipLengthZero_mm = 1e-6;
 inline constexpr double kArcPointTolerance_mm = 1e-4;
 
-// One piece of path. A value: copy it freely, it owns nothing; a line, the most frequent kind, copies
-// a third of what a blend does. motion.md section 3.
-// s runs from 0 to length(); for kRotary and kJoint it is the path variable sigma from 0 to 1.
-// Rotary axes are linear in s and never reduced by a turn.
+// One piece of path. A value: copy it freely, it owns nothing; a line, the most frequent kind,
+// copies a third of what a blend does. motion.md section 3. s runs from 0 to length(); for kRotary
+// and kJoint it is the path variable sigma from 0 to 1. Rotary axes are linear in s and never
+// reduced by a turn.
 class PathPiece {
  public:
   enum class Kind {
@@ -71,8 +71,8 @@ class PathPiece {
   const TipPose& from() const { return from_; }
   const TipPose& to() const { return to_; }
 
-  // Makes this piece the half of a corner curve: its arc length, and the poses at its ends. `start` is
-  // the arc length of the curve before it.
+  // Makes this piece the half of a corner curve: its arc length, and the poses at its ends. `start`
+  // is the arc length of the curve before it.
   void AssignCorner(const CornerCurve& curve, double start, double length, const TipPose& from,
                     const TipPose& to) {
     AssignBlend(length, from, to);
@@ -82,13 +82,24 @@ class PathPiece {
     part->curve = curve;
   }
   void AssignCorner(const PlainCorner& corner, double start, double length, const TipPose& from,
-                    const TipPose& to) {
+                    const TipPose& to) {  // `length` is half of the whole
     AssignBlend(length, from, to);
     auto* part = std::get_if<PlainPart>(&shape_);
     if (part == nullptr) part = &shape_.emplace<PlainPart>();
     part->start = start;
+    part->total = 2.0 * length;
     part->corner = corner;
   }
+
+  // Blends only: the corner when it is that of two lines passed with a steady head, and the length
+  // of its curve; else null.
+  struct PlainPart;
+  const PlainPart* plain_corner() const { return std::get_if<PlainPart>(&shape_); }
+  struct PlainPart {
+    double start = 0.0;
+    double total = 0.0;
+    PlainCorner corner;
+  };
 
   // Outside 0..length() the nearer end; the ends are from() and to() to the last bit.
   // On a kBlend piece this measures the curve each time; MotionView does it once.
@@ -114,8 +125,8 @@ class PathPiece {
   double radius_mm() const { return arc().radius_mm; }
   double sweep_rad() const { return arc().sweep_rad; }
 
-  // Blends only: the whole curve of the corner, of which this piece may be a part. Made anew each time:
-  // keep it for many places.
+  // Blends only: the whole curve of the corner, of which this piece may be a part. Made anew each
+  // time: keep it for many places.
   CornerCurve curve() const {
     if (const auto* plain = std::get_if<PlainPart>(&shape_)) return CornerCurve(plain->corner);
     return std::get_if<CurvePart>(&shape_)->curve;
@@ -133,14 +144,7 @@ class PathPiece {
     double start = 0.0;  // arc length of the curve before this piece
     CornerCurve curve;
   };
-  struct PlainPart {
-    double start = 0.0;
-    PlainCorner corner;
-  };
   const ArcShape& arc() const { return *std::get_if<ArcShape>(&shape_); }
-  double ParameterOn(const CornerCurve& curve, double s) const {
-    return CornerLength(curve).ParameterAt(curve, curve_start() + s);
-  }
   void AssignBlend(double length, const TipPose& from, const TipPose& to) {
     kind_ = Kind::kBlend;
     length_ = length;

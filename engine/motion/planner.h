@@ -91,9 +91,9 @@ class Planner {
   Status Append(const MoveCommand& move);
 
   // The machine passes the start of the first move at this speed (mm/s), with acceleration zero,
-  // instead of standing there: a chain that is planned anew on the way (motion.md section 6). Before
-  // the first Append. When what follows cannot be met from that speed, starts_too_fast() says so
-  // once the first items are taken, and they are of no use.
+  // instead of standing there: a chain that is planned anew on the way (motion.md section 6).
+  // Before the first Append. When what follows cannot be met from that speed, starts_too_fast()
+  // says so once the first items are taken, and they are of no use.
   void BeginMoving(double speed_mm_s);
   bool starts_too_fast() const;
 
@@ -132,8 +132,8 @@ inline PathLimits TipLimits(const MoveCommand& move, const MachineLimits& machin
           share * machine.tip_acceleration_mm_s2, share * machine.tip_jerk_mm_s3};
 }
 
-// Whether no axis is ever asked for more than it can on a line with a steady head: then the limits of
-// the tip are all there are.
+// Whether no axis is ever asked for more than it can on a line with a steady head: then the limits
+// of the tip are all there are.
 bool LinesFollowTip(const MachineLimits& machine);
 
 }  // namespace rmlcell::motion

@@ -36,7 +36,8 @@ class Ring {
     return slots_[slot];
   }
   void Push(T value) { PushSlot() = std::move(value); }
-  // Precondition: empty. Numbers begin at 0 again, and so do the slots: few of them stay in the cache.
+  // Precondition: empty. Numbers begin at 0 again, and so do the slots: few of them stay in the
+  // cache.
   void Rewind() {
     RMLCELL_CHECK(empty());
     first_ = end_ = base_ = 0;

@@ -329,8 +329,7 @@ SpeedProfile SpeedProfile::ChangingPartTo(Place& place, double s_to) const {
     const PathState& start = phase.start;
     PathState state;
     const double bend = phase.jerk == 0.0 ? 0.0 : from * phase.jerk / 6.0;  // spares the division
-    state.s =
-        start.s + from * (start.speed + from * (0.5 * start.acceleration + bend)) - begin.s;
+    state.s = start.s + from * (start.speed + from * (0.5 * start.acceleration + bend)) - begin.s;
     state.speed = start.speed + from * (start.acceleration + 0.5 * from * phase.jerk);
     part.peak_speed_ = std::max(part.peak_speed_, state.speed);
     part.AddPhase(state, to - from, start.acceleration + from * phase.jerk, phase.jerk);

@@ -62,8 +62,8 @@ class SpeedProfile {
   // The part between two places, s counted from the first. 0 <= s_from < s_to <= end().s.
   SpeedProfile Part(double s_from, double s_to) const;
 
-  // A place that is only ever moved forward: many parts one behind the other cost as much as they are
-  // long, whatever came before them. Good for one profile.
+  // A place that is only ever moved forward: many parts one behind the other cost as much as they
+  // are long, whatever came before them. Good for one profile.
   struct Place {
     double s = 0.0;
     int phase = 0;               // the one that s lies in

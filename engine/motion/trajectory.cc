@@ -83,27 +83,22 @@ MotionView::MotionView(const PlannedMotion& motion)
       head_(motion.head),
       speed_(motion.speed),
       duration_s_(motion.duration_s()) {
-  if (path_.kind() != PathPiece::Kind::kBlend) return;
-  curve_ = path_.curve();
-  curve_length_.emplace(curve_);
-}
-
-double MotionView::Parameter(double s) const {
-  return curve_length_->ParameterAt(curve_, path_.curve_start() + s);
+  if (path_.kind() == PathPiece::Kind::kBlend) blend_.emplace(path_);
 }
 
 TrajectoryPoint MotionView::At(double t_s) const {
   PathState state = speed_.At(t_s);
   if (t_s > speed_.duration_s()) state.speed = state.acceleration = 0.0;
-  if (!curve_length_) return PointAt(path_, head_, state);
-  const double u = Parameter(state.s);
-  return PointAt({path_.kind(), curve_.At(u), curve_.FirstByLength(u), curve_.SecondByLength(u)},
+  if (!blend_) return PointAt(path_, head_, state);
+  const CornerCurve& curve = blend_->curve();
+  const double u = blend_->ParameterAt(state.s);
+  return PointAt({path_.kind(), curve.At(u), curve.FirstByLength(u), curve.SecondByLength(u)},
                  head_, state);
 }
 
 TipPose MotionView::PoseAt(double t_s) const {
   const double s = speed_.At(t_s).s;
-  if (curve_length_) return curve_.At(Parameter(s));
+  if (blend_) return blend_->curve().At(blend_->ParameterAt(s));
   const TipPose pose = path_.At(s);
   if (path_.kind() != PathPiece::Kind::kJoint) return pose;
   return head_.TipOf({pose.tip, pose.a_rad, pose.b_rad});
@@ -124,11 +119,10 @@ void AppendPolyline(const PathPiece& path, double tolerance_mm, std::vector<Vec3
     const int chords = static_cast<int>(std::clamp(wanted, 1.0, static_cast<double>(kChordsMax)));
     for (int k = 1; k < chords; ++k) points.push_back(path.At(path.length() * k / chords).tip);
   } else if (path.kind() == PathPiece::Kind::kBlend) {
-    const CornerCurve curve = path.curve();
-    const CornerLength length(curve);
-    const double from = length.ParameterAt(curve, path.curve_start());
-    const double to = length.ParameterAt(curve, path.curve_start() + path.length());
-    Halve(curve, from, to, path.from().tip, path.to().tip, tolerance_mm, 0, points);
+    const BlendCurve blend(path);
+    const double from = blend.ParameterAt(0.0);
+    const double to = blend.ParameterAt(path.length());
+    Halve(blend.curve(), from, to, path.from().tip, path.to().tip, tolerance_mm, 0, points);
     return;
   }
   if (path.length() > 0.0 && path.kind() != PathPiece::Kind::kRotary)

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/motion/blend_curve.h"
 #include "engine/motion/planner.h"
 
 namespace rmlcell::motion {
@@ -42,11 +43,8 @@ class MotionView {
   double duration_s() const { return duration_s_; }
 
  private:
-  double Parameter(double s) const;
-
   PathPiece path_;
-  CornerCurve curve_;  // of a blend
-  std::optional<CornerLength> curve_length_;
+  std::optional<BlendCurve> blend_;
   Head head_;
   SpeedProfile speed_;
   double duration_s_;
