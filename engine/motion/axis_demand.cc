@@ -131,34 +131,35 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
     if (enough) return limits;
   }
   const AxisDerivatives bounds = constant ? DerivativesAt(path, head, 0.0) : Bounds(path, head);
-  const double by_bound = SpeedAllowed(bounds, axes, shares);
-  if (constant || by_bound >= limits.speed) {
-    limits.speed = std::min(limits.speed, by_bound);
-    const double acceleration = AccelerationAllowed(bounds, axes, shares, limits.speed);
-    const double jerk = JerkAllowed(bounds, axes, shares);
-    if (constant || (acceleration >= limits.acceleration && jerk >= limits.jerk)) {
-      limits.acceleration = std::min(limits.acceleration, acceleration);
-      if (std::isfinite(limits.jerk)) limits.jerk = std::min(limits.jerk, jerk);
-      return limits;
-    }
-  }
+  const auto by_bounds = [&] {
+    limits.speed = std::min(limits.speed, SpeedAllowed(bounds, axes, shares));
+    limits.acceleration =
+        std::min(limits.acceleration, AccelerationAllowed(bounds, axes, shares, limits.speed));
+    if (std::isfinite(limits.jerk))
+      limits.jerk = std::min(limits.jerk, JerkAllowed(bounds, axes, shares));
+    return limits;
+  };
+  if (constant) return by_bounds();
+  if (Allows(bounds, axes, shares, limits)) return limits;
 
   if (!arc) {
     // A short turn: places in the middle of a few parts, and how far the derivatives can get away
     // from them. Within 1 %.
     constexpr double kRoom = 0.004;
     constexpr std::size_t kPartsMax = 8;
-    const double rate = std::abs(path.a_rate()) + std::abs(path.b_rate());
+    const PathDerivatives first = path.First(0.0);  // and everywhere: there is no second one
+    const double rate = std::abs(first.a) + std::abs(first.b);
     const double half = 0.5 * path.length();
     const double drift = half * head.arm_mm() * rate * rate;
-    const double wanted = std::ceil(std::max(drift / Norm(path.Tangent(0.0)), half * rate) / kRoom);
+    const double wanted = std::ceil(std::max(drift / Norm(first.tip), half * rate) / kRoom);
     if (wanted <= static_cast<double>(kPartsMax)) {
       const auto parts = static_cast<std::size_t>(std::max(wanted, 1.0));
       const double share = 1.0 / static_cast<double>(parts);
       std::array<AxisDerivatives, kPartsMax> at;
       for (std::size_t k = 0; k < parts; ++k) {
         AxisDerivatives& q = at[k];
-        q = DerivativesAt(path, head, path.length() * (static_cast<double>(k) + 0.5) * share);
+        const double s = path.length() * (static_cast<double>(k) + 0.5) * share;
+        q = ThroughHead(head, path.At(s), first, {});
         for (std::size_t i = 0; i < 3; ++i) {
           q.first[i] = std::abs(q.first[i]) + drift * share;
           q.second[i] = std::abs(q.second[i]) + drift * share * rate;
@@ -180,14 +181,7 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
   const double turning = std::abs(path.to().a_rad - path.from().a_rad) +
                          std::abs(path.to().b_rad - path.from().b_rad) +
                          (arc ? path.sweep_rad() : 0.0);
-  if (!(turning <= kTurningMax_rad)) {
-    limits.speed = std::min(limits.speed, by_bound);
-    limits.acceleration =
-        std::min(limits.acceleration, AccelerationAllowed(bounds, axes, shares, limits.speed));
-    if (std::isfinite(limits.jerk))
-      limits.jerk = std::min(limits.jerk, JerkAllowed(bounds, axes, shares));
-    return limits;
-  }
+  if (!(turning <= kTurningMax_rad)) return by_bounds();
   const int intervals =
       std::max(static_cast<int>(std::ceil(turning / kSampleAngle_rad)), kIntervalsMin);
   const auto least = [&](auto limit) {

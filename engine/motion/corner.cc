@@ -131,7 +131,8 @@ bool AxesFollow(const CornerCurve& curve, const Head& head, const MachineLimits&
   return enough;
 }
 
-double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLimits& machine) {
+double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLimits& machine,
+                    double enough) {
   const double normal = machine.normal_acceleration();
   const double jerk = machine.normal_jerk();
   const auto allowed = [&](double u) {
@@ -147,7 +148,7 @@ double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLim
     return speed;
   };
   constexpr int kIntervals = 48;
-  return LeastAlong(allowed, 1.0, kIntervals);
+  return LeastAlong(allowed, 1.0, kIntervals, enough);
 }
 
 }  // namespace rmlcell::motion

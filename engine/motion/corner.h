@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "engine/motion/axis_demand.h"
 #include "engine/motion/corner_curve.h"
 #include "engine/motion/machine_limits.h"
@@ -92,7 +94,8 @@ bool AxesFollow(const CornerCurve& curve, const Head& head, const MachineLimits&
                 double speed, double bend_per_mm);
 
 // The highest speed at which a curve can be passed: normal acceleration, jerk and axes.
-// motion.md 4.3; to 1e-9.
-double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLimits& machine);
+// motion.md 4.3; to 1e-9. When it is above `enough` that is all that can be told from it.
+double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLimits& machine,
+                    double enough = HUGE_VAL);
 
 }  // namespace rmlcell::motion

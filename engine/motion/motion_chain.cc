@@ -269,7 +269,7 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
       if (!axes_follow) {
         const CornerCurve curve =
             closing.plain ? CornerCurve(PlainCornerAt(leg.last_move, cut)) : curves_.back();
-        speed_cap = std::min(speed_cap, SpeedOnCurve(curve, head, machine_));
+        speed_cap = std::min(speed_cap, SpeedOnCurve(curve, head, machine_, speed_cap));
       }
       if (speed_cap < wanted) closing.report.passage = Passage::kBlendCapped;
       speed_cap = std::min(speed_cap, *swallowed);

@@ -157,7 +157,7 @@ Vec3 PathPiece::ArcPoint(double angle) const {
          arc().inward * (radius * 2.0 * half_sine * half_sine);
 }
 
-TipPose PathPiece::At(double s) const {
+TipPose PathPiece::OffLine(double s) const {
   if (!(s > 0.0)) return from_;
   if (s >= length_) return to_;
   if (kind_ == Kind::kBlend) {

@@ -103,7 +103,7 @@ class PathPiece {
 
   // Outside 0..length() the nearer end; the ends are from() and to() to the last bit.
   // On a kBlend piece this measures the curve each time; MotionView does it once.
-  TipPose At(double s) const;
+  TipPose At(double s) const { return kind_ == Kind::kLine ? OnLine(s) : OffLine(s); }
 
   // Derivatives of the pose by s: the unit tangent and the curvature vector (1/mm), or by sigma.
   PathDerivatives First(double s) const {
@@ -162,6 +162,7 @@ class PathPiece {
             from_.a_rad + (to_.a_rad - from_.a_rad) * share,
             from_.b_rad + (to_.b_rad - from_.b_rad) * share};
   }
+  TipPose OffLine(double s) const;
   void AssignPartOffLine(const PathPiece& whole, double s_from, double s_to);
   double RateOf(double from, double to) const {
     return to != from && length_ > 0.0 ? (to - from) / length_ : 0.0;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace rmlcell::motion {
@@ -93,6 +95,23 @@ class SpeedProfile {
 
   // 0 <= t <= duration_s(); outside it is clamped.
   PathState At(double t_s) const;
+
+  // Its s alone.
+  double PlaceAt(double t_s) const {
+    if (count_ == 0 || t_s >= duration_s_) return end_.s;
+    double t = std::max(t_s, 0.0);
+    std::size_t k = 0;
+    for (const auto last = static_cast<std::size_t>(count_ - 1);
+         k < last && t >= phases_[k].duration_s; ++k) {
+      t -= phases_[k].duration_s;
+    }
+    const Phase& p = phases_[k];
+    t = std::min(t, p.duration_s);
+    const double bend = p.jerk == 0.0 ? 0.0 : t * p.jerk / 6.0;
+    // Rounding must not carry the last phase past its end.
+    return std::min(p.start.s + t * (p.start.speed + t * (0.5 * p.start.acceleration + bend)),
+                    end_.s);
+  }
 
   // The ramp to rest that begins at `t_s`, at once and with the limits: a motion that speeds up
   // first brings its acceleration to zero, one that slows down goes on slowing down, so that a STOP

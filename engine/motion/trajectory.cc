@@ -78,30 +78,23 @@ TrajectoryPoint PointAt(const PathPlace& place, const Head& head, const PathStat
   return point;
 }
 
-MotionView::MotionView(const PlannedMotion& motion)
-    : path_(motion.path),
-      head_(motion.head),
-      speed_(motion.speed),
-      duration_s_(motion.duration_s()) {
-  if (path_.kind() == PathPiece::Kind::kBlend) blend_.emplace(path_);
-}
-
 TrajectoryPoint MotionView::At(double t_s) const {
-  PathState state = speed_.At(t_s);
-  if (t_s > speed_.duration_s()) state.speed = state.acceleration = 0.0;
-  if (!blend_) return PointAt(path_, head_, state);
+  const PathPiece& path = motion_.path;
+  PathState state = motion_.speed.At(t_s);
+  if (t_s > motion_.speed.duration_s()) state.speed = state.acceleration = 0.0;
+  if (!blend_) return PointAt(path, motion_.head, state);
   const CornerCurve& curve = blend_->curve();
   const double u = blend_->ParameterAt(state.s);
-  return PointAt({path_.kind(), curve.At(u), curve.FirstByLength(u), curve.SecondByLength(u)},
-                 head_, state);
+  return PointAt({path.kind(), curve.At(u), curve.FirstByLength(u), curve.SecondByLength(u)},
+                 motion_.head, state);
 }
 
 TipPose MotionView::PoseAt(double t_s) const {
-  const double s = speed_.At(t_s).s;
+  const double s = motion_.speed.PlaceAt(t_s);
   if (blend_) return blend_->curve().At(blend_->ParameterAt(s));
-  const TipPose pose = path_.At(s);
-  if (path_.kind() != PathPiece::Kind::kJoint) return pose;
-  return head_.TipOf({pose.tip, pose.a_rad, pose.b_rad});
+  const TipPose pose = motion_.path.At(s);
+  if (motion_.path.kind() != PathPiece::Kind::kJoint) return pose;
+  return motion_.head.TipOf({pose.tip, pose.a_rad, pose.b_rad});
 }
 
 void LongSum::Add(double value) {
