@@ -4,8 +4,11 @@
 #include <grpcpp/grpcpp.h>
 #include <grpcpp/health_check_service_interface.h>
 #include <spdlog/spdlog.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <random>
 #include <thread>
@@ -55,6 +58,23 @@ std::string PathOfOwnProgram() {
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
   return error ? std::string() : self.parent_path().string();
+}
+
+// A server that listens on a unix socket has it taken away by the next one without a word: gRPC removes the
+// file before it makes its own, which is right only for one that a dead server left behind.
+bool IsUnixSocketInUse(const std::string& address) {
+  if (!address.starts_with("unix:")) return false;
+  std::string path = address.substr(std::string_view("unix:").size());
+  if (path.starts_with("//")) path.erase(0, 2);
+  sockaddr_un name{};
+  if (path.size() >= sizeof(name.sun_path)) return false;  // gRPC refuses it
+  name.sun_family = AF_UNIX;
+  path.copy(name.sun_path, path.size());
+  const int probe = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (probe < 0) return false;
+  const bool answers = ::connect(probe, reinterpret_cast<const sockaddr*>(&name), sizeof(name)) == 0 || errno == EAGAIN;
+  ::close(probe);
+  return answers;
 }
 
 Error PortUsed(const std::string& address) {
@@ -150,6 +170,9 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
   builder.SetMaxReceiveMessageSize(static_cast<int>(config.limit_message_bytes + kRefusalBytes));
   builder.SetMaxSendMessageSize(-1);
+  for (const std::string& address : config.listen_grpc) {
+    if (IsUnixSocketInUse(address)) return PortUsed(address);
+  }
   std::vector<int> ports(config.listen_grpc.size(), 0);
   for (std::size_t i = 0; i < ports.size(); ++i) {
     builder.AddListeningPort(config.listen_grpc[i], grpc::InsecureServerCredentials(), &ports[i]);
@@ -241,6 +264,8 @@ void Cell::Stop() {
   }
   if (parts.web != nullptr) parts.web->StopAccepting();
   parts.open.StopAll();
+  // Workers end when the dispatcher asks for their jobs.
+  if (parts.processes != nullptr) parts.processes->StartNoMore();
   if (parts.dispatcher != nullptr) parts.dispatcher->Drain(patience / 2);
   if (parts.processes != nullptr) parts.processes->Stop(patience / 4);
   if (parts.web != nullptr) parts.web->Stop(patience / 4);

@@ -9,6 +9,8 @@
 namespace rmlcell::server {
 namespace {
 
+constexpr int kTitleMax = 200;
+
 Error Malformed(std::string_view name, std::string_view expected) {
   return {ErrorCode::kCellInvalidArgument,
           "name is '" + Readable(name) + "', expected is " + std::string(expected), {}};
@@ -97,6 +99,12 @@ Result<storage::Revision> ParseEtag(std::string_view etag) {
   const auto revision = Number(etag);
   if (!revision || *revision <= 0) return Error{ErrorCode::kCellEtagMismatch, "etag is not one of ours", {}};
   return storage::Revision{*revision};
+}
+
+Status CheckTitle(std::string_view title, std::string_view field) {
+  const auto characters = std::ranges::count_if(title, [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; });
+  if (characters <= kTitleMax) return {};
+  return InvalidArgument(std::string(field) + " is longer than " + std::to_string(kTitleMax) + " characters");
 }
 
 std::string MachineName(std::string_view id) { return "machines/" + std::string(id); }

@@ -37,6 +37,9 @@ Result<ScheduleName> ParseScheduleName(std::string_view name);  // ".../laserSch
 // Error: CellEtagMismatch for anything else: it cannot be one of ours.
 Result<storage::Revision> ParseEtag(std::string_view etag);
 
+// Titles are for people: at most 200 characters. Error: CellInvalidArgument, naming the field.
+Status CheckTitle(std::string_view title, std::string_view field);
+
 std::string MachineName(std::string_view id);
 std::string ProjectName(std::string_view id);
 std::string JobName(std::int64_t id);

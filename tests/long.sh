@@ -53,26 +53,35 @@ races() {
   done
 }
 
-# Each decoder of foreign bytes, from its committed seeds. What is found is kept beside the log.
+# One decoder of foreign bytes, from its committed seeds. What is found is kept beside the log.
+fuzz_one() {
+  local target=$1 program seeds=tests/fuzz/corpus/$1 found=build/long/$1
+  program=$(find build/fuzz -name "$target" -type f -perm -u+x | head -n 1)
+  case $target in
+    optimo_*) seeds=tests/fuzz/corpus/optimo-$(echo "$target" | cut -d_ -f2) ;;
+    rml1_*) seeds=tests/fuzz/corpus/rml1 ;;
+    lsp_*) seeds=tests/fuzz/corpus/lsp ;;
+  esac
+  mkdir -p "$found"
+  local inputs=("$found")
+  [ -d "$seeds" ] && inputs+=("$seeds")
+  "$program" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 -print_final_stats=1 \
+    -artifact_prefix="build/long/$target-" "${inputs[@]}" >"build/long/$target.log" 2>&1
+}
+
+# As many at a time as the machine has cores.
 fuzz() {
   command -v clang++ >/dev/null || bash deploy/setup.sh --fuzz
   cmake --preset fuzz >/dev/null
   local targets=(motion_planner_fuzz optimo_text_fuzz optimo_object_fuzz optimo_convert_fuzz optimo_compensate_fuzz
                  rml1_device_fuzz lsp_fuzz)
   ninja -C build/fuzz "${targets[@]}" >build/long/fuzz_build.log
+  export -f fuzz_one
+  export seconds
+  printf '%s\n' "${targets[@]}" |
+    xargs -P "$(nproc)" -I '{}' bash -c 'fuzz_one {} && touch build/long/{}.good || rm -f build/long/{}.good' || true
   for target in "${targets[@]}"; do
-    local program seeds=tests/fuzz/corpus/$target found=build/long/$target
-    program=$(find build/fuzz -name "$target" -type f -perm -u+x | head -n 1)
-    case $target in
-      optimo_*) seeds=tests/fuzz/corpus/optimo-$(echo "$target" | cut -d_ -f2) ;;
-      rml1_*) seeds=tests/fuzz/corpus/rml1 ;;
-      lsp_*) seeds=tests/fuzz/corpus/lsp ;;
-    esac
-    mkdir -p "$found"
-    local inputs=("$found")
-    [ -d "$seeds" ] && inputs+=("$seeds")
-    if "$program" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 -print_final_stats=1 \
-        -artifact_prefix="build/long/$target-" "${inputs[@]}" >"build/long/$target.log" 2>&1; then
+    if [ -e "build/long/$target.good" ]; then
       note "fuzz: $target, $seconds s, $(sed -n 's/.*number_of_executed_units: *//p' "build/long/$target.log") inputs, nothing found"
     else
       fail "$target, see build/long/$target.log"

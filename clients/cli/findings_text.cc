@@ -5,6 +5,7 @@
 #include <string>
 
 #include "clients/cli/terminal.h"
+#include "proto/bridge/findings.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -31,6 +32,11 @@ void PrintFindings(const std::vector<Diagnostic>& findings, std::uint64_t droppe
 void ComplainOf(const std::vector<Diagnostic>& findings, std::uint64_t dropped, std::string_view source) {
   const std::string text = Text(findings, dropped, source, ColourOnErrors());
   std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
+int Refuse(const Error& error) {
+  Complain(bridge::ErrorText(error));
+  return kUsage;
 }
 
 }  // namespace rmlcell::cli

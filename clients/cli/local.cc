@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <set>
+#include <tuple>
 
 #include "clients/cli/findings_text.h"
 #include "clients/cli/fix.h"
@@ -20,10 +22,17 @@
 namespace rmlcell::cli {
 namespace {
 
-// A wrong use or an unreadable file; the exit code tells which.
-int Refuse(const Error& error) {
-  Complain(bridge::ErrorText(error));
-  return kUsage;
+// What was found in the text, and is found again at the same place when it runs.
+void DropFindings(const std::vector<Diagnostic>& told, v1::RunReport& report) {
+  std::set<std::tuple<std::string, int, int>> places;
+  for (const Diagnostic& finding : told) places.emplace(CodeText(finding.code), finding.where.line, finding.where.column);
+  auto& again = *report.mutable_diagnostics();
+  again.erase(std::remove_if(again.begin(), again.end(),
+                             [&](const v1::Diagnostic& finding) {
+                               const v1::SourcePlace& place = finding.place();
+                               return place.line() > 0 && places.contains({finding.code(), place.line(), place.column()});
+                             }),
+              again.end());
 }
 
 Result<bridge::MachineFile> ReadMachine(const std::string& path) {
@@ -334,6 +343,7 @@ int Simulate(const SimulateOptions& options) {
     for (const auto& [name, value] : result->variables) Print("variable." + name + ": " + value);
   } else {
     PrintFindings(outcome->diagnostics, outcome->diagnostics_dropped, {});
+    DropFindings(outcome->diagnostics, report);
     PrintRaw(ReportText(report));
   }
   const machine::OutcomeKind kind = result->report.outcome.kind;

@@ -1,5 +1,6 @@
 // The parameters of a family as a machine file: what can be set, what it means, what it is now.
 #include "clients/cli/local.h"
+#include "clients/cli/findings_text.h"
 #include "clients/cli/program_files.h"
 #include "clients/cli/terminal.h"
 #include "engine/core/number_text.h"
@@ -38,11 +39,6 @@ std::string MachineFile(const machine::MachineFamily& family, const std::string&
                                        : Quoted(parameters.Word(parameter.name))) + "\n";
   }
   return text;
-}
-
-int Refuse(const Error& error) {
-  Complain(bridge::ErrorText(error));
-  return kUsage;
 }
 
 }  // namespace

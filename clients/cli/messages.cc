@@ -2,6 +2,7 @@
 
 
 #include <algorithm>
+#include <tuple>
 
 #include "clients/cli/terminal.h"
 #include "engine/core/diagnostic.h"
@@ -104,7 +105,10 @@ void AddFigures(const v1::RunReport& report, Rows& rows) {
   if (report.has_tip_box()) {
     rows.emplace_back("tip box", PointText(report.tip_box().low()) + "  to  " + PointText(report.tip_box().high()));
   }
-  for (const auto& [name, value] : report.variables()) rows.emplace_back(name, value);
+  // A map of Protocol Buffers has another order each time: by kind and number.
+  const auto first = rows.insert(rows.end(), report.variables().begin(), report.variables().end());
+  const auto order = [](const auto& row) { return std::tuple(row.first.substr(0, row.first.find('[')), row.first.size(), row.first); };
+  std::ranges::sort(first, rows.end(), {}, order);
 }
 
 }  // namespace

@@ -24,11 +24,6 @@ namespace {
 
 constexpr const char* kMapExtension = ".MAP";
 
-int Refuse(const Error& error) {
-  Complain(bridge::ErrorText(error));
-  return kUsage;
-}
-
 std::string WithExtension(const std::string& file, const char* extension) {
   return std::filesystem::path(file).replace_extension(extension).string();
 }

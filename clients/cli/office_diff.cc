@@ -16,11 +16,6 @@ namespace {
 
 using Response = v1::DiffProgramsResponse;
 
-int Refuse(const Error& error) {
-  Complain(bridge::ErrorText(error));
-  return kUsage;
-}
-
 Result<bridge::ComparedProgram> ReadProgram(const std::string& file) {
   const Result<LoadedFiles> loaded = LoadFiles({file}, {}, 0, "optimo");
   if (!loaded) return loaded.error();

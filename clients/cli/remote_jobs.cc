@@ -1,7 +1,9 @@
+#include <cstdio>
 #include <filesystem>
 #include <random>
 #include <thread>
 
+#include "clients/cli/findings_text.h"
 #include "clients/cli/messages.h"
 #include "clients/cli/program_files.h"
 #include "clients/cli/remote_call.h"
@@ -12,11 +14,6 @@
 
 namespace rmlcell::cli {
 namespace {
-
-int RefuseFile(const Error& error) {
-  Complain(bridge::ErrorText(error));
-  return kUsage;
-}
 
 int ExitOf(const v1::Outcome& outcome) {
   return outcome.kind() == v1::Outcome::KIND_COMPLETED || outcome.kind() == v1::Outcome::KIND_STOPPED ? kGood
@@ -95,6 +92,8 @@ bool WatchOnce(const Remote& remote, v1::JobService::Stub& stub, const std::stri
 }  // namespace
 
 int WatchJob(const Remote& remote, const std::string& job, std::int64_t after) {
+  // What reads from a pipe wants each event when it happens.
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   const auto stub = v1::JobService::NewStub(Connect(remote));
   const std::string name = FullName("jobs", job);
   // A server that restarts is waited for, and nothing is missed or told twice.
@@ -126,9 +125,9 @@ int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
     job.set_program(job.machine() + "/programs/" + std::to_string(wanted.slot));
   } else {
     Result<std::string> bytes = bridge::ReadFile(wanted.file, kFileBytesMax);
-    if (!bytes) return RefuseFile(bytes.error());
+    if (!bytes) return Refuse(bytes.error());
     if (bytes->size() > kInlineBytesMax) {
-      return RefuseFile({ErrorCode::kCellTooLarge,
+      return Refuse({ErrorCode::kCellTooLarge,
                          wanted.file + " has " + std::to_string(bytes->size()) + " bytes, a job takes " +
                              std::to_string(kInlineBytesMax) + " with it",
                          {}});
@@ -143,9 +142,9 @@ int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
   options.set_trace(wanted.trace);
   if (!wanted.inputs_file.empty()) {
     const Result<std::string> text = bridge::ReadFile(wanted.inputs_file, kFileBytesMax);
-    if (!text) return RefuseFile(text.error());
+    if (!text) return Refuse(text.error());
     if (Status parsed = bridge::ParseInputFile(*text, wanted.inputs_file, options); !parsed) {
-      return RefuseFile(parsed.error());
+      return Refuse(parsed.error());
     }
   }
   request.set_request_id(wanted.request_id.empty() ? NewRequestId() : wanted.request_id);
@@ -255,7 +254,7 @@ int JobPicture(const Remote& remote, const std::string& job, const std::string& 
     PrintRaw(response.content());
     return kGood;
   }
-  if (const Status written = WriteWholeFile(output, response.content()); !written) return RefuseFile(written.error());
+  if (const Status written = WriteWholeFile(output, response.content()); !written) return Refuse(written.error());
   return kGood;
 }
 

@@ -1,5 +1,6 @@
 #include <filesystem>
 
+#include "clients/cli/findings_text.h"
 #include "clients/cli/messages.h"
 #include "clients/cli/program_files.h"
 #include "clients/cli/project_files.h"
@@ -19,11 +20,6 @@ namespace {
 
 constexpr std::size_t kUnaryBytes = 3 << 20;
 constexpr std::size_t kChunkBytes = 512 << 10;
-
-int RefuseFile(const Error& error) {
-  Complain(bridge::ErrorText(error));
-  return kUsage;
-}
 
 std::string ProgramName(const std::string& machine, int slot) {
   return FullName("machines", machine) + "/programs/" + std::to_string(slot);
@@ -112,7 +108,7 @@ int Programs(const Remote& remote, const std::string& machine) {
 int PutProgram(const Remote& remote, const std::string& machine, int slot, const std::string& file,
                const std::string& etag, bool check_only) {
   const Result<std::string> bytes = bridge::ReadFile(file, kFileBytesMax);
-  if (!bytes) return RefuseFile(bytes.error());
+  if (!bytes) return Refuse(bytes.error());
   const auto stub = v1::ProgramService::NewStub(Connect(remote));
   const std::string base = std::filesystem::path(file).filename().string();
   v1::Program program;
@@ -161,7 +157,7 @@ int GetProgram(const Remote& remote, const std::string& machine, int slot, const
     PrintRaw(bytes);
     return kGood;
   }
-  if (const Status written = WriteWholeFile(output, bytes); !written) return RefuseFile(written.error());
+  if (const Status written = WriteWholeFile(output, bytes); !written) return Refuse(written.error());
   return kGood;
 }
 
@@ -250,7 +246,7 @@ int Stored(const Remote& remote, const grpc::Status& status, const v1::Project& 
 
 int CreateProject(const Remote& remote, const std::string& project, const std::string& path) {
   Result<v1::Project> made = ReadProject(path);
-  if (!made) return RefuseFile(made.error());
+  if (!made) return Refuse(made.error());
   v1::CreateProjectRequest request;
   request.set_project_id(project);
   *request.mutable_project() = *std::move(made);
@@ -263,7 +259,7 @@ int CreateProject(const Remote& remote, const std::string& project, const std::s
 
 int UpdateProject(const Remote& remote, const std::string& project, const std::string& path) {
   Result<v1::Project> changed = ReadProject(path);
-  if (!changed) return RefuseFile(changed.error());
+  if (!changed) return Refuse(changed.error());
   v1::UpdateProjectRequest request;
   *request.mutable_project() = *std::move(changed);
   request.mutable_project()->set_name(FullName("projects", project));

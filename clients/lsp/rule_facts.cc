@@ -7,7 +7,7 @@ namespace rmlcell::lsp {
 namespace {
 
 // clang-format off
-constexpr std::array kFacts = {
+constexpr std::array kRuleFacts = {
     RuleFact{"OPT-1.01", "One instruction stands on a line: a name, its parameters, and attributes behind a slash."},
     RuleFact{"OPT-1.08", "An object has at most 34,000 bytes; a longer program is split into parts that CALL each other."},
     RuleFact{"OPT-1.10", "The control keeps programs under the numbers 1 to 99."},
@@ -163,15 +163,15 @@ constexpr std::array kFacts = {
     RuleFact{"OPT-E.7319", "Near B = 0 a turn of A swings the head round for a small change of direction."},
 };
 // clang-format on
-static_assert(std::ranges::is_sorted(kFacts, {}, &RuleFact::id), "ordered by id");
+static_assert(std::ranges::is_sorted(kRuleFacts, {}, &RuleFact::id), "ordered by id");
 
 }  // namespace
 
-std::span<const RuleFact> RuleFacts() { return kFacts; }
+std::span<const RuleFact> RuleFacts() { return kRuleFacts; }
 
 std::string_view TextOfRule(std::string_view id) {
-  const auto found = std::ranges::lower_bound(kFacts, id, {}, &RuleFact::id);
-  return found != kFacts.end() && found->id == id ? found->text : std::string_view();
+  const auto found = std::ranges::lower_bound(kRuleFacts, id, {}, &RuleFact::id);
+  return found != kRuleFacts.end() && found->id == id ? found->text : std::string_view();
 }
 
 }  // namespace rmlcell::lsp

@@ -19,7 +19,7 @@ struct Fact {
 };
 
 // clang-format off
-constexpr std::array kFacts = {
+constexpr std::array kVariableFacts = {
     Fact{VariableGroup::kVr, 0, 25, "free for customers", "OPT-7.104"},
     Fact{VariableGroup::kVr, 26, 42, "free for customers, without unit: rotary-table angles, laser schedules", "OPT-7.104"},
     Fact{VariableGroup::kVr, 43, 59, "used by Amada's programs", "OPT-7.104"},
@@ -69,7 +69,7 @@ constexpr std::array kFacts = {
 constexpr int kFirstWorkFlag = 87, kLastWorkFlag = 94;  // IL, OPT-3.37
 
 const Fact* Find(Variable variable) {
-  for (const Fact& fact : kFacts) {
+  for (const Fact& fact : kVariableFacts) {
     if (fact.group == variable.group && variable.index >= fact.first && variable.index <= fact.last)
       return &fact;
   }

@@ -15,7 +15,7 @@ constexpr std::string_view kWithoutEffect =
     "Accepted without effect; the rest of the line is not looked at.";
 
 // clang-format off
-constexpr std::array kFacts = {
+constexpr std::array kWordFacts = {
     WordFact{Word::kAccel, "ACCEL percent", "Acceleration in percent of the machine's largest, 0 to 100. Holds until it is changed; 100 when a program starts."},
     WordFact{Word::kAssign, "ASSIGN first = value /n", "Writes a whole number in binary to n (1 to 16) logical outputs or variables in a row, lowest bit first."},
     WordFact{Word::kBreak, "BREAK step [, program]", "Sets the breakpoint of the control behind a step."},
@@ -131,20 +131,20 @@ constexpr std::array kFacts = {
 // clang-format on
 
 constexpr bool IsIndexedByWord() {
-  for (std::size_t row = 0; row < kFacts.size(); ++row) {
-    if (static_cast<std::size_t>(kFacts[row].word) != row + 1) return false;
+  for (std::size_t row = 0; row < kWordFacts.size(); ++row) {
+    if (static_cast<std::size_t>(kWordFacts[row].word) != row + 1) return false;
   }
-  return kFacts.size() == static_cast<std::size_t>(Word::kLogic);
+  return kWordFacts.size() == static_cast<std::size_t>(Word::kLogic);
 }
 static_assert(IsIndexedByWord(), "one row per word, in the order of words.def");
 
 }  // namespace
 
-std::span<const WordFact> WordFacts() { return kFacts; }
+std::span<const WordFact> WordFacts() { return kWordFacts; }
 
 const WordFact& FactOf(Word word) {
   RMLCELL_CHECK(word != Word::kNone);
-  return kFacts[static_cast<std::size_t>(word) - 1];
+  return kWordFacts[static_cast<std::size_t>(word) - 1];
 }
 
 }  // namespace rmlcell::lsp

@@ -30,6 +30,9 @@ struct Error {
   bool operator==(const Error&) const = default;
 };
 
+// What a caller gave and must not have given; the detail says which part and what is allowed.
+inline Error InvalidArgument(std::string detail) { return {ErrorCode::kCellInvalidArgument, std::move(detail), {}}; }
+
 // A value or an error. Member names as in std::expected, which replaces it when the toolchain has it
 // (docs/decisions/0001-result-type.md). Reading the wrong side is a bug of ours and stops the process.
 template <class T>

@@ -14,6 +14,7 @@ struct Box {
   motion::Vec3 max{-kNone, -kNone, -kNone};
 
   bool empty() const { return min.x > max.x; }
+  double diagonal_mm() const { return empty() ? 0.0 : Distance(min, max); }
   void Add(const motion::Vec3& p) {
     min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
     max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};

@@ -56,7 +56,8 @@ void MotionChain::Append(const MoveCommand& move, const PathLimits& limits) {
   slot.path = move.path;
   slot.head = move.head;
   slot.limits = limits;
-  slot.overshoot = move.overshoot_fraction;
+  // What is no number makes no passage.
+  slot.overshoot = move.overshoot_fraction > 0.0 ? std::min(move.overshoot_fraction, 1.0) : 0.0;
   slot.settling_s = move.settles ? machine_.settling_s : 0.0;
   slot.tag = move.tag;
   slot.fly = move.fly;

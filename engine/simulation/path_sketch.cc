@@ -20,13 +20,11 @@ constexpr std::size_t kToolsMax = 4096;
 constexpr double kCurveTolerance_mm = 0.01;
 // The first tolerance, as a share of the size: a tenth of a pixel of a large picture.
 constexpr double kFirstShare = 5e-5;
-constexpr double kCoarser = 2.0;
+constexpr double kCoarserSketch = 2.0;
 
 bool IsFinite(const Vec3& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
-
-double Size(const machine::Box& box) { return box.empty() ? 0.0 : Distance(box.min, box.max); }
 
 }  // namespace
 
@@ -103,10 +101,10 @@ void PathSketch::AddTool(const machine::MotionDone& done) {
 }
 
 void PathSketch::Coarsen() {
-  const double first = std::max(Size(box_) * kFirstShare, 1e-9);
+  const double first = std::max(box_.diagonal_mm() * kFirstShare, 1e-9);
   tolerance_mm_ = std::max(first, tolerance_mm_);
   // With a tolerance of the whole size everything is alike: this ends.
-  for (;; tolerance_mm_ *= kCoarser) {
+  for (;; tolerance_mm_ *= kCoarserSketch) {
     MergeStraight(elements_, tolerance_mm_);
     DropAlike(elements_, tolerance_mm_);
     if (elements_.size() <= elements_max_ / 2) break;

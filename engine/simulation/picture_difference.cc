@@ -12,17 +12,12 @@
 namespace rmlcell::simulation {
 namespace {
 
-constexpr double kMargin = 36.0;
-constexpr double kHeader = 92.0;
-constexpr double kRulerLeft = 58.0;
-constexpr double kRulerBelow = 44.0;
-constexpr double kColumn = 330.0;  // beside the panels
-constexpr double kColumnGap = 34.0;
-constexpr double kFooter = 36.0;
+constexpr double kDifferenceHeader = 92.0;
+constexpr double kDifferenceColumn = 330.0;  // beside the panels
+constexpr double kDifferenceFooter = 36.0;
 constexpr double kCaption = 40.0;  // above the panels of the difference alone
-constexpr int kWidthMin = 720;
-constexpr int kWidthMax = 8192;
-constexpr std::size_t kTitleMax = 40;  // characters of one title that fit
+constexpr int kDifferenceWidthMin = 720;
+constexpr std::size_t kDifferenceTitleMax = 40;  // characters of one title that fit
 constexpr double kCloserBelow = 0.35;  // a difference this much smaller than the path gets panels
 constexpr std::size_t kDotsShown = 2000;  // of a kind, in a panel
 
@@ -37,23 +32,13 @@ constexpr Look kCommon{"common", "#9aa7b2", "", "#cfd6dc"};
 constexpr Look kRemoved{"removed", "#c92a2a", "7 4", "#e59a9a"};
 constexpr Look kAdded{"added", "#1864ab", "", "#8bb4dc"};
 
-std::string Shortened(std::string_view text) {
-  if (text.size() <= kTitleMax) return std::string(text);
-  std::size_t length = kTitleMax;
-  // Not in the middle of a character.
-  while (length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0u) == 0x80u) --length;
-  return std::string(text.substr(0, length)) + "…";
-}
-
-double Size(const machine::Box& box) { return box.empty() ? 0.0 : Distance(box.min, box.max); }
-
 std::string Colour(std::string_view attribute, std::string_view colour) {
   return std::string(attribute) + "=\"" + std::string(colour) + '"';
 }
 
-class Page {
+class DifferencePage {
  public:
-  Page(const ComparedPath& before, const ComparedPath& after, const machine::MachineShape& shape,
+  DifferencePage(const ComparedPath& before, const ComparedPath& after, const machine::MachineShape& shape,
        const std::vector<ComparedFigure>& figures, const PictureOptions& options,
        std::size_t elements_max)
       : before_(before),
@@ -61,19 +46,19 @@ class Page {
         shape_(shape),
         figures_(figures),
         difference_(Compare(before.path, after.path)) {
-    width_ = std::clamp(options.width_px, kWidthMin, kWidthMax);
+    width_ = std::clamp(options.width_px, kDifferenceWidthMin, kPageWidthMax);
     machine::Box all = before.path.box(), cut = before.path.cut_box();
     all.Add(after.path.box());
     cut.Add(after.path.cut_box());
-    const double panels_width = width_ - 2.0 * kMargin - kRulerLeft - kColumn - kColumnGap;
-    const ScreenRect area{kMargin + kRulerLeft, kHeader + kMargin, panels_width, 0.0};
+    const double panels_width = width_ - 2.0 * kPageMargin - kRulerLeft - kDifferenceColumn - kColumnGap;
+    const ScreenRect area{kPageMargin + kRulerLeft, kDifferenceHeader + kPageMargin, panels_width, 0.0};
     const machine::Box shown = BoxToShow(all, cut, shape.travel);
     whole_ = LayOut(FramesOf(options, shape), shown, area);
     bottom_ = area.y + whole_.height + kRulerBelow;
 
     machine::Box changed = difference_.removed.box();
     changed.Add(difference_.added.box());
-    if (!changed.empty() && Size(changed) < kCloserBelow * Size(shown)) {
+    if (!changed.empty() && changed.diagonal_mm() < kCloserBelow * shown.diagonal_mm()) {
       closer_y_ = bottom_ + kCaption;
       std::vector<ViewFrame> frames = {FrameOf(PictureView::kXY, options.direction)};
       if (shape.five_axis) frames.push_back(FrameOf(PictureView::kXZ, options.direction));
@@ -82,7 +67,7 @@ class Page {
     }
     const std::size_t panels = whole_.panels.size() + closer_.panels.size();
     elements_max_ = std::max<std::size_t>(elements_max / (3 * panels), 1);
-    column_x_ = width_ - kMargin - kColumn;
+    column_x_ = width_ - kPageMargin - kDifferenceColumn;
   }
 
   std::string Svg() {
@@ -90,12 +75,12 @@ class Page {
     int id = 0;
     for (const Panel& panel : whole_.panels) DrawOne(panel, ++id);
     if (!closer_.panels.empty()) {
-      AppendText(body_, {kMargin + kRulerLeft, closer_y_ - 26.0}, "Where they differ, closer",
+      AppendText(body_, {kPageMargin + kRulerLeft, closer_y_ - 26.0}, "Where they differ, closer",
                  {.size = 15.0, .bold = true});
     }
     for (const Panel& panel : closer_.panels) DrawOne(panel, ++id);
-    const double height = std::ceil(std::max(bottom_, DrawColumn(kHeader + kMargin)) + kFooter);
-    AppendText(body_, {kMargin, height - 14.0}, "machine frame, mm",
+    const double height = std::ceil(std::max(bottom_, DrawColumn(kDifferenceHeader + kPageMargin)) + kDifferenceFooter);
+    AppendText(body_, {kPageMargin, height - 14.0}, "machine frame, mm",
                {.size = 11.0, .colour = kFaint});
     return Opening(height) + body_ + "</svg>\n";
   }
@@ -128,12 +113,12 @@ class Page {
   }
 
   void DrawHeader() {
-    AppendRect(body_, {0, 0, static_cast<double>(width_), kHeader}, Colour("fill", "#ffffff"));
-    AppendLine(body_, {0, kHeader}, {static_cast<double>(width_), kHeader},
+    AppendRect(body_, {0, 0, static_cast<double>(width_), kDifferenceHeader}, Colour("fill", "#ffffff"));
+    AppendLine(body_, {0, kDifferenceHeader}, {static_cast<double>(width_), kDifferenceHeader},
                Colour("stroke", kRule) + " stroke-width=\"1\"");
-    AppendText(body_, {kMargin, 44.0}, Shortened(before_.title) + "  →  " + Shortened(after_.title),
+    AppendText(body_, {kPageMargin, 44.0}, Shortened(before_.title, kDifferenceTitleMax) + "  →  " + Shortened(after_.title, kDifferenceTitleMax),
                {.size = 26.0, .bold = true});
-    AppendText(body_, {kMargin, 70.0},
+    AppendText(body_, {kPageMargin, 70.0},
                same_path() ? "both run along the same path"
                            : "removed: the first alone runs there; added: the second alone",
                {.size = 14.0, .colour = kFaint});
@@ -171,7 +156,7 @@ class Page {
 
   void Heading(double y, std::string_view text) {
     AppendText(body_, {column_x_, y}, text, {.size = 13.0, .colour = kFaint, .bold = true});
-    AppendLine(body_, {column_x_, y + 7.0}, {column_x_ + kColumn, y + 7.0},
+    AppendLine(body_, {column_x_, y + 7.0}, {column_x_ + kDifferenceColumn, y + 7.0},
                Colour("stroke", kRule) + " stroke-width=\"1\"");
   }
 
@@ -195,7 +180,7 @@ class Page {
       AppendLine(body_, {column_x_, y + 1.0}, {column_x_ + 44.0, y + 1.0},
                  Colour("stroke", look->travel) + " stroke-width=\"1\" stroke-dasharray=\"5 3.5\"");
       AppendText(body_, {column_x_ + 58.0, y}, look->name, {.size = 14.0, .bold = true});
-      AppendText(body_, {column_x_ + kColumn, y}, Lengths(*part),
+      AppendText(body_, {column_x_ + kDifferenceColumn, y}, Lengths(*part),
                  {.size = 11.5, .colour = kFaint, .anchor = "end"});
       y += 28.0;
     }
@@ -218,7 +203,7 @@ class Page {
       };
       const std::string value = number(figure.before) + (same ? "" : " → " + number(figure.after)) +
                                 (figure.unit.empty() ? "" : " " + figure.unit);
-      AppendText(body_, {column_x_ + kColumn, y}, value,
+      AppendText(body_, {column_x_ + kDifferenceColumn, y}, value,
                  {.size = 13.0, .anchor = "end", .bold = !same});
       y += 20.0;
     }
@@ -231,7 +216,7 @@ class Page {
       y += 18.0;
     };
     for (const ComparedPath* path : {&before_, &after_}) {
-      if (!path->note.empty()) note(Shortened(path->title) + ": " + path->note);
+      if (!path->note.empty()) note(Shortened(path->title, kDifferenceTitleMax) + ": " + path->note);
     }
     if (before_.path.tolerance_mm() > 0.0 || after_.path.tolerance_mm() > 0.0) {
       note("drawn coarser: the program is very long");
@@ -261,7 +246,7 @@ std::string PictureOfDifference(const ComparedPath& before, const ComparedPath& 
                                 const machine::MachineShape& shape,
                                 const std::vector<ComparedFigure>& figures,
                                 const PictureOptions& options, std::size_t elements_max) {
-  return Page(before, after, shape, figures, options, elements_max).Svg();
+  return DifferencePage(before, after, shape, figures, options, elements_max).Svg();
 }
 
 }  // namespace rmlcell::simulation

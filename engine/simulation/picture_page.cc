@@ -11,46 +11,34 @@
 namespace rmlcell::simulation {
 namespace {
 
-constexpr double kMargin = 36.0;
-constexpr double kHeader = 92.0;
-constexpr double kRulerLeft = 58.0;
-constexpr double kRulerBelow = 44.0;
-constexpr double kColumn = 282.0;  // beside the panels
-constexpr double kColumnGap = 34.0;
-constexpr double kFooter = 30.0;
-constexpr int kWidthMin = 640;
-constexpr int kWidthMax = 8192;
-constexpr std::size_t kTitleMax = 60;  // characters of a title that fit
+constexpr double kPictureHeader = 92.0;
+constexpr double kPictureColumn = 282.0;  // beside the panels
+constexpr double kPictureFooter = 30.0;
+constexpr int kPictureWidthMin = 640;
+constexpr std::size_t kPictureTitleMax = 60;  // characters of a title that fit
 
 std::string Length(double mm) { return FixedText(mm, mm == 0.0 ? 0 : mm < 100.0 ? 3 : 1) + " mm"; }
 
-std::string Cut(std::string_view text, std::size_t length) {
-  if (text.size() <= length) return std::string(text);
-  // Not in the middle of a character.
-  while (length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0u) == 0x80u) --length;
-  return std::string(text.substr(0, length)) + "…";
-}
-
-class Page {
+class PageWriter {
  public:
-  Page(const PathSketch& sketch, const machine::MachineShape& shape, const RunReport& report,
+  PageWriter(const PathSketch& sketch, const machine::MachineShape& shape, const RunReport& report,
        const PictureOptions& options)
       : sketch_(sketch), shape_(shape), report_(report) {
-    width_ = std::clamp(options.width_px, kWidthMin, kWidthMax);
+    width_ = std::clamp(options.width_px, kPictureWidthMin, kPageWidthMax);
     const std::vector<ViewFrame> frames = FramesOf(options, shape);
     depth_ = DepthOf(frames);
-    const double panels_width = width_ - 2.0 * kMargin - kRulerLeft - kColumn - kColumnGap;
+    const double panels_width = width_ - 2.0 * kPageMargin - kRulerLeft - kPictureColumn - kColumnGap;
     layout_ = LayOut(frames, BoxToShow(sketch, shape.travel),
-                     {kMargin + kRulerLeft, kHeader + kMargin, panels_width, 0.0});
-    column_x_ = width_ - kMargin - kColumn;
+                     {kPageMargin + kRulerLeft, kPictureHeader + kPageMargin, panels_width, 0.0});
+    column_x_ = width_ - kPageMargin - kPictureColumn;
   }
 
   std::string Svg() {
     DrawHeader();
     DrawPanels();
-    const double column_bottom = DrawColumn(kHeader + kMargin);
-    const double panels_bottom = kHeader + kMargin + layout_.height + kRulerBelow;
-    const double height = std::max(column_bottom, panels_bottom) + kFooter + 6.0;
+    const double column_bottom = DrawColumn(kPictureHeader + kPageMargin);
+    const double panels_bottom = kPictureHeader + kPageMargin + layout_.height + kRulerBelow;
+    const double height = std::max(column_bottom, panels_bottom) + kPictureFooter + 6.0;
     DrawFooter(height);
     return Opening(height) + body_ + "</svg>\n";
   }
@@ -111,15 +99,15 @@ class Page {
   }
 
   void DrawHeader() {
-    AppendRect(body_, {0, 0, static_cast<double>(width_), kHeader}, "fill=\"#ffffff\"");
-    AppendLine(body_, {0, kHeader}, {static_cast<double>(width_), kHeader},
+    AppendRect(body_, {0, 0, static_cast<double>(width_), kPictureHeader}, "fill=\"#ffffff\"");
+    AppendLine(body_, {0, kPictureHeader}, {static_cast<double>(width_), kPictureHeader},
                "stroke=\"#d3dae1\" stroke-width=\"1\"");
-    AppendText(body_, {kMargin, 44.0}, Cut(TitleText(), kTitleMax), {.size = 26.0, .bold = true});
+    AppendText(body_, {kPageMargin, 44.0}, Shortened(TitleText(), kPictureTitleMax), {.size = 26.0, .bold = true});
     const machine::MachineFamily* family = FindFamily(report_.family);
     const std::string machine =
         family != nullptr ? std::string(family->info().title) : report_.family;
-    AppendText(body_, {kMargin, 70.0}, machine, {.size = 14.0, .colour = kFaint});
-    const double right = width_ - kMargin;
+    AppendText(body_, {kPageMargin, 70.0}, machine, {.size = 14.0, .colour = kFaint});
+    const double right = width_ - kPageMargin;
     AppendText(body_, {right, 44.0}, TimeText(), {.size = 26.0, .anchor = "end", .bold = true});
     const bool bound = report_.timing == Timing::kExactStopUpperBound;
     AppendText(body_, {right, 70.0},
@@ -139,7 +127,7 @@ class Page {
 
   // Figures, legend and place, from `y` on; returns where they end.
   double DrawColumn(double y) {
-    AppendRect(body_, {column_x_, y, kColumn, 30.0},
+    AppendRect(body_, {column_x_, y, kPictureColumn, 30.0},
                completed() ? "fill=\"#e6f4ea\" rx=\"5\"" : "fill=\"#fde8e8\" rx=\"5\"");
     AppendText(body_, {column_x_ + 12.0, y + 20.0}, OutcomeLine(),
                {.size = 14.0, .colour = completed() ? "#1e6b34" : "#b42318", .bold = true});
@@ -150,7 +138,7 @@ class Page {
 
   void Heading(double y, std::string_view text) {
     AppendText(body_, {column_x_, y}, text, {.size = 13.0, .colour = kFaint, .bold = true});
-    AppendLine(body_, {column_x_, y + 7.0}, {column_x_ + kColumn, y + 7.0},
+    AppendLine(body_, {column_x_, y + 7.0}, {column_x_ + kPictureColumn, y + 7.0},
                "stroke=\"#d3dae1\" stroke-width=\"1\"");
   }
 
@@ -159,7 +147,7 @@ class Page {
     y += 26.0;
     const auto row = [&](std::string_view name, const std::string& value) {
       AppendText(body_, {column_x_, y}, name, {.size = 13.0, .colour = kFaint});
-      AppendText(body_, {column_x_ + kColumn, y}, value, {.size = 13.0, .anchor = "end"});
+      AppendText(body_, {column_x_ + kPictureColumn, y}, value, {.size = 13.0, .anchor = "end"});
       y += 20.0;
     };
     row("cut", Length(report_.total.cut_mm));
@@ -263,7 +251,7 @@ class Page {
     const double width = all.max.x - all.min.x;
     const double height = all.max.y - all.min.y;
     if (!(width > 0.0) || !(height > 0.0)) return y;
-    const double scale = std::min(kColumn / width, 190.0 / height);
+    const double scale = std::min(kPictureColumn / width, 190.0 / height);
     const auto place = [&](const machine::Box& box) {
       return ScreenRect{column_x_ + (box.min.x - all.min.x) * scale,
                         y + (all.max.y - box.max.y) * scale, (box.max.x - box.min.x) * scale,
@@ -303,7 +291,7 @@ class Page {
     std::string text = "machine frame, mm";
     if (!report_.inputs_hash.empty()) text += "   ·   inputs " + report_.inputs_hash.substr(0, 12);
     if (!report_.engine_version.empty()) text += "   ·   engine " + report_.engine_version;
-    AppendText(body_, {kMargin, height - 14.0}, text, {.size = 11.0, .colour = "#93a0ab"});
+    AppendText(body_, {kPageMargin, height - 14.0}, text, {.size = 11.0, .colour = "#93a0ab"});
   }
 
   const PathSketch& sketch_;
@@ -337,7 +325,7 @@ std::string DurationText(SimTime time) {
 
 std::string PicturePage(const PathSketch& sketch, const machine::MachineShape& shape,
                         const RunReport& report, const PictureOptions& options) {
-  return Page(sketch, shape, report, options).Svg();
+  return PageWriter(sketch, shape, report, options).Svg();
 }
 
 }  // namespace rmlcell::simulation

@@ -8,6 +8,11 @@
 
 namespace rmlcell::simulation {
 
+// Room on a page of panels, px: their rulers, and the gap to the column of figures.
+inline constexpr double kRulerLeft = 58.0;
+inline constexpr double kRulerBelow = 44.0;
+inline constexpr double kColumnGap = 34.0;
+
 // What all panels of a page have in common.
 struct PanelContent {
   const PathSketch& sketch;

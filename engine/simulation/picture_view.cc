@@ -30,8 +30,6 @@ void Widen(double& low, double& high, double least) {
   high += lacking;
 }
 
-double Size(const machine::Box& box) { return box.empty() ? 0.0 : Distance(box.min, box.max); }
-
 // Shares the room among two rows or columns by what they need, but leaves each its least.
 std::pair<double, double> Share(double room, double first, double second) {
   const double least = std::min(kPanelMin_px, 0.5 * room);
@@ -169,7 +167,7 @@ machine::Box BoxToShow(const PathSketch& sketch, const machine::Box& travel) {
 
 machine::Box BoxToShow(const machine::Box& all, const machine::Box& cut,
                        const machine::Box& travel) {
-  const bool whole = cut.empty() || Size(all) <= kWholeIfWithin * Size(cut);
+  const bool whole = cut.empty() || all.diagonal_mm() <= kWholeIfWithin * cut.diagonal_mm();
   machine::Box box = whole ? all : cut;
   if (box.empty()) box = travel;
   if (box.empty()) box.Add(Vec3{});

@@ -12,15 +12,13 @@
 namespace rmlcell::simulation {
 namespace {
 
-constexpr double kMargin = 36.0;
-constexpr double kHeader = 84.0;
-constexpr double kLeft = 92.0;     // titles and ticks of the panels
+constexpr double kPlotHeader = 84.0;
+constexpr double kPlotLeft = 92.0;     // titles and ticks of the panels
 constexpr double kMarkRow = 22.0;  // names of the marks
-constexpr double kGap = 22.0;      // between panels
+constexpr double kPlotGap = 22.0;      // between panels
 constexpr double kTimeAxis = 46.0;
-constexpr double kFooter = 22.0;
-constexpr int kWidthMin = 640;
-constexpr int kWidthMax = 8192;
+constexpr double kPlotFooter = 22.0;
+constexpr int kPlotWidthMin = 640;
 constexpr double kTickPixels_x = 90.0;  // at least, between two ticks
 constexpr double kTickPixels_y = 26.0;
 constexpr double kMoved = 1e-9;  // mm, rad: an axis that moves less stands
@@ -71,9 +69,9 @@ class CurveWriter {
 PlotPage::PlotPage(const Curves& curves, const machine::MachineShape& shape,
                    const RunReport& report, const PlotOptions& options)
     : curves_(curves), shape_(shape), report_(report), panels_(PanelsOf(options)) {
-  page_width_ = std::clamp(options.width_px, kWidthMin, kWidthMax);
-  left_ = kMargin + kLeft;
-  width_ = page_width_ - kMargin - left_;
+  page_width_ = std::clamp(options.width_px, kPlotWidthMin, kPageWidthMax);
+  left_ = kPageMargin + kPlotLeft;
+  width_ = page_width_ - kPageMargin - left_;
   duration_s_ = std::max(ToSeconds(report.cycle_time), 1e-9);
 }
 
@@ -133,11 +131,11 @@ PlotPage::Scale PlotPage::ScaleOf(const Panel& panel, double top) const {
 std::string PlotPage::Svg() {
   DrawHeader();
   const bool marked = !curves_.marks.empty();
-  const double top = kHeader + kGap + (marked ? kMarkRow : 0.0);
+  const double top = kPlotHeader + kPlotGap + (marked ? kMarkRow : 0.0);
   double bottom = top;
-  for (const Panel& panel : panels_) bottom += panel.height + kGap;
-  if (panels_.empty()) bottom += 60.0 + kGap;
-  bottom -= kGap;
+  for (const Panel& panel : panels_) bottom += panel.height + kPlotGap;
+  if (panels_.empty()) bottom += 60.0 + kPlotGap;
+  bottom -= kPlotGap;
   DrawTimeGrid(top, bottom);
   if (panels_.empty()) {
     AppendText(body_, {left_ + 0.5 * width_, top + 34.0}, "nothing moved",
@@ -146,14 +144,14 @@ std::string PlotPage::Svg() {
   double y = top;
   for (const Panel& panel : panels_) {
     DrawPanel(panel, y);
-    y += panel.height + kGap;
+    y += panel.height + kPlotGap;
   }
   if (marked) DrawMarks(top, bottom);
-  const double height = std::ceil(bottom + kTimeAxis + kFooter);
+  const double height = std::ceil(bottom + kTimeAxis + kPlotFooter);
   std::string footer = "virtual time, s";
   if (!report_.inputs_hash.empty()) footer += "   ·   inputs " + report_.inputs_hash.substr(0, 12);
   if (!report_.engine_version.empty()) footer += "   ·   engine " + report_.engine_version;
-  AppendText(body_, {kMargin, height - 12.0}, footer, {.size = 11.0, .colour = "#93a0ab"});
+  AppendText(body_, {kPageMargin, height - 12.0}, footer, {.size = 11.0, .colour = "#93a0ab"});
 
   const std::string size = Pixels(page_width_) + "\" height=\"" + Pixels(height);
   std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
@@ -166,17 +164,17 @@ std::string PlotPage::Svg() {
 }
 
 void PlotPage::DrawHeader() {
-  AppendRect(body_, {0, 0, page_width_, kHeader}, "fill=\"#ffffff\"");
-  AppendLine(body_, {0, kHeader}, {page_width_, kHeader}, "stroke=\"#d3dae1\" stroke-width=\"1\"");
-  AppendText(body_, {kMargin, 40.0}, report_.title.empty() ? "Plot" : report_.title,
+  AppendRect(body_, {0, 0, page_width_, kPlotHeader}, "fill=\"#ffffff\"");
+  AppendLine(body_, {0, kPlotHeader}, {page_width_, kPlotHeader}, "stroke=\"#d3dae1\" stroke-width=\"1\"");
+  AppendText(body_, {kPageMargin, 40.0}, report_.title.empty() ? "Plot" : report_.title,
              {.size = 24.0, .bold = true});
   std::string outcome(OutcomeText(report_.outcome.kind));
   std::replace(outcome.begin(), outcome.end(), '_', ' ');
   if (report_.outcome.code) outcome += "  " + CodeText(*report_.outcome.code);
   const bool completed = report_.outcome.kind == machine::OutcomeKind::kCompleted;
-  AppendText(body_, {kMargin, 64.0}, outcome,
+  AppendText(body_, {kPageMargin, 64.0}, outcome,
              {.size = 14.0, .colour = completed ? kFaint : "#b42318"});
-  const double right = page_width_ - kMargin;
+  const double right = page_width_ - kPageMargin;
   const bool bound = report_.timing == Timing::kExactStopUpperBound;
   AppendText(body_, {right, 40.0}, (bound ? "≤ " : "") + DurationText(report_.cycle_time),
              {.size = 24.0, .anchor = "end", .bold = true});
@@ -212,9 +210,9 @@ void PlotPage::DrawPanel(const Panel& panel, double top) {
   }
   AppendRect(body_, {left_, top, width_, panel.height},
              "fill=\"none\" stroke=\"#d3dae1\" stroke-width=\"1\"");
-  AppendText(body_, {kMargin, top + 14.0}, panel.title,
+  AppendText(body_, {kPageMargin, top + 14.0}, panel.title,
              {.size = 14.0, .colour = panel.colour, .bold = true});
-  AppendText(body_, {kMargin, top + 31.0}, panel.unit, {.size = 12.0, .colour = kFaint});
+  AppendText(body_, {kPageMargin, top + 31.0}, panel.unit, {.size = 12.0, .colour = kFaint});
   for (std::size_t k = panel.series.size(); k-- > 0;) {
     const std::string data = CurveData(panel.series[k], scale);
     if (data.empty()) continue;
@@ -224,9 +222,9 @@ void PlotPage::DrawPanel(const Panel& panel, double top) {
     body_ += " stroke-linejoin=\"round\"/>\n";
   }
   if (panel.series.size() > 1) {
-    AppendLine(body_, {kMargin, top + 46.0}, {kMargin + 24.0, top + 46.0},
+    AppendLine(body_, {kPageMargin, top + 46.0}, {kPageMargin + 24.0, top + 46.0},
                "stroke=\"#9aa7b3\" stroke-width=\"1\" stroke-dasharray=\"4 3\"");
-    AppendText(body_, {kMargin, top + 61.0}, "asked for", {.size = 11.0, .colour = kFaint});
+    AppendText(body_, {kPageMargin, top + 61.0}, "asked for", {.size = 11.0, .colour = kFaint});
   }
 }
 

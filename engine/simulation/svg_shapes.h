@@ -15,6 +15,9 @@ inline constexpr std::string_view kFaint = "#66747f";  // secondary text
 inline constexpr std::string_view kRule = "#d3dae1";   // frames
 inline constexpr std::string_view kGrid = "#edf1f4";
 
+inline constexpr double kPageMargin = 36.0;  // px
+inline constexpr int kPageWidthMax = 8192;   // px
+
 void AppendLine(std::string& out, ScreenPoint from, ScreenPoint to, std::string_view style);
 void AppendRect(std::string& out, const ScreenRect& rect, std::string_view style);
 void AppendCircle(std::string& out, ScreenPoint middle, double radius, std::string_view style);

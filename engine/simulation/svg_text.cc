@@ -39,6 +39,12 @@ std::int64_t Hundredths(double px) {
 
 }  // namespace
 
+std::string Shortened(std::string_view text, std::size_t bytes) {
+  if (text.size() <= bytes) return std::string(text);
+  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xC0u) == 0x80u) --bytes;
+  return std::string(text.substr(0, bytes)) + "…";
+}
+
 std::string XmlText(std::string_view text) {
   std::string out;
   out.reserve(text.size());

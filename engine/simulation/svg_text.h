@@ -11,6 +11,9 @@ namespace rmlcell::simulation {
 // (control characters, bytes that are no UTF-8) becomes U+FFFD.
 std::string XmlText(std::string_view text);
 
+// The first `bytes` of a text that is longer, ended by an ellipsis; no character is cut in two.
+std::string Shortened(std::string_view text, std::size_t bytes);
+
 // "12.5", "-0.07", "3".
 void AppendPixels(std::string& out, std::int64_t hundredths);
 std::string Pixels(double px);

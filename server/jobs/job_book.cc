@@ -20,10 +20,7 @@ namespace {
 constexpr int kPageDefault = 50;
 constexpr int kPageMax = 1000;
 constexpr int kSnapshotJobs = 200;
-constexpr std::size_t kTitleMax = 200;
 constexpr std::size_t kRequestIdMax = 64;
-
-Error Invalid(const std::string& detail) { return {ErrorCode::kCellInvalidArgument, detail, {}}; }
 
 std::string_view KindName(v1::JobKind kind) {
   switch (kind) {
@@ -35,11 +32,11 @@ std::string_view KindName(v1::JobKind kind) {
 }
 
 Status CheckBudget(const v1::Budget& budget) {
-  if (budget.steps() < 0) return Invalid("job.budget.steps is below 0");
-  if (budget.memory_bytes() < 0) return Invalid("job.budget.memory_bytes is below 0");
-  if (budget.output_bytes() < 0) return Invalid("job.budget.output_bytes is below 0");
-  if (!(budget.virtual_time_s() >= 0.0)) return Invalid("job.budget.virtual_time_s is below 0");
-  if (!(budget.processor_s() >= 0.0)) return Invalid("job.budget.processor_s is below 0");
+  if (budget.steps() < 0) return InvalidArgument("job.budget.steps is below 0");
+  if (budget.memory_bytes() < 0) return InvalidArgument("job.budget.memory_bytes is below 0");
+  if (budget.output_bytes() < 0) return InvalidArgument("job.budget.output_bytes is below 0");
+  if (!(budget.virtual_time_s() >= 0.0)) return InvalidArgument("job.budget.virtual_time_s is below 0");
+  if (!(budget.processor_s() >= 0.0)) return InvalidArgument("job.budget.processor_s is below 0");
   return {};
 }
 
@@ -47,20 +44,20 @@ Status CheckStepPlace(const v1::StepPlace& place, const std::string& field) {
   if (place.program() != 0 && !IsSlot(place.program())) {
     return Error{ErrorCode::kProgramNumber, field + ".program is " + std::to_string(place.program()), {}};
   }
-  if (place.step() < 1) return Invalid(field + ".step is below 1");
+  if (place.step() < 1) return InvalidArgument(field + ".step is below 1");
   return {};
 }
 
 Status CheckSimulation(const v1::SimulationOptions& options) {
   const double override_percent = options.override_percent();
   if (!(override_percent >= 0.0 && override_percent <= bridge::kOverrideMax)) {
-    return Invalid("job.simulation.override_percent is " + ShortestText(override_percent) +
+    return InvalidArgument("job.simulation.override_percent is " + ShortestText(override_percent) +
                    ", allowed are above 0 to 145");
   }
   if (!(options.toolpath_tolerance_mm() >= 0.0 && options.toolpath_tolerance_mm() <= 100.0)) {
-    return Invalid("job.simulation.toolpath_tolerance_mm: allowed are 0 to 100");
+    return InvalidArgument("job.simulation.toolpath_tolerance_mm: allowed are 0 to 100");
   }
-  if (!v1::OperatingMode_IsValid(options.mode())) return Invalid("job.simulation.mode is none that there is");
+  if (!v1::OperatingMode_IsValid(options.mode())) return InvalidArgument("job.simulation.mode is none that there is");
   if (options.has_breakpoint()) {
     const Status valid = CheckStepPlace(options.breakpoint(), "job.simulation.breakpoint");
     if (!valid) return valid;
@@ -71,14 +68,14 @@ Status CheckSimulation(const v1::SimulationOptions& options) {
   }
   for (const v1::ScriptedInput& input : options.inputs()) {
     if (!(input.at_s() >= 0.0 && std::isfinite(input.at_s()))) {
-      return Invalid("job.simulation.inputs: at_s must be 0 or later");
+      return InvalidArgument("job.simulation.inputs: at_s must be 0 or later");
     }
     if (input.kind() == v1::ScriptedInput::KIND_UNSPECIFIED || !v1::ScriptedInput::Kind_IsValid(input.kind())) {
-      return Invalid("job.simulation.inputs: kind is not given");
+      return InvalidArgument("job.simulation.inputs: kind is not given");
     }
-    if (input.index() < 0 || input.index() > 99) return Invalid("job.simulation.inputs: index is 0 to 99");
+    if (input.index() < 0 || input.index() > 99) return InvalidArgument("job.simulation.inputs: index is 0 to 99");
     if (const Status valid = bridge::CheckInputValue(input); !valid) {
-      return Invalid("job.simulation.inputs: " + valid.error().detail);
+      return InvalidArgument("job.simulation.inputs: " + valid.error().detail);
     }
   }
   for (const v1::SlotProgram& program : options.programs()) {
@@ -113,7 +110,7 @@ Status JobBook::AttachProgram(const v1::Job& job, const storage::MachineRecord& 
       }
       const machine::MachineFamily* named = simulation::FamilyOfFileName(job.inline_program().file_name());
       if (named != nullptr && named != family) {
-        return Invalid(job.inline_program().file_name() + " is a program for " + std::string(named->info().title) +
+        return InvalidArgument(job.inline_program().file_name() + " is a program for " + std::string(named->info().title) +
                        ", machines/" + machine.id + " is of family " + machine.family);
       }
       made.attachments.push_back({std::string(kMainAttachment), "application/octet-stream",
@@ -124,7 +121,7 @@ Status JobBook::AttachProgram(const v1::Job& job, const storage::MachineRecord& 
     case v1::Job::kProgram: {
       const Result<ProgramName> name = ParseProgramName(job.program());
       if (!name) return name.error();
-      if (name->machine != machine.id) return Invalid("job.program is not a program of job.machine");
+      if (name->machine != machine.id) return InvalidArgument("job.program is not a program of job.machine");
       if (name->executable) return Error{ErrorCode::kProgramNumber, "an executable is started by its object", {}};
       const auto found = store_.ListPrograms(machine.id, name->slot - 1, 1);
       if (!found) return found.error();
@@ -137,7 +134,7 @@ Status JobBook::AttachProgram(const v1::Job& job, const storage::MachineRecord& 
     }
     case v1::Job::PROGRAM_SOURCE_NOT_SET: break;
   }
-  return Invalid("job.program or job.inline_program is missing");
+  return InvalidArgument("job.program or job.inline_program is missing");
 }
 
 Status JobBook::CheckSize(const std::string& content, const std::string& what) const {
@@ -152,13 +149,13 @@ Status JobBook::CheckSize(const std::string& content, const std::string& what) c
 Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, const std::string& caller) {
   const v1::Job& job = request.job();
   const std::string_view kind = KindName(job.kind());
-  if (kind.empty()) return Invalid("job.kind is missing: CHECK or SIMULATE");
+  if (kind.empty()) return InvalidArgument("job.kind is missing: CHECK or SIMULATE");
   if (job.kind() == v1::JOB_KIND_RUN) {
     return Error{ErrorCode::kCellUnimplemented, "jobs of kind RUN", {}};
   }
-  if (request.request_id().size() > kRequestIdMax) return Invalid("request_id is longer than 64 characters");
-  if (job.title().size() > kTitleMax) return Invalid("job.title is longer than 200 characters");
-  if (job.attempts_max() < 0 || job.attempts_max() > 10) return Invalid("job.attempts_max: allowed are 1 to 10");
+  if (request.request_id().size() > kRequestIdMax) return InvalidArgument("request_id is longer than 64 characters");
+  if (const Status good = CheckTitle(job.title(), "job.title"); !good) return good.error();
+  if (job.attempts_max() < 0 || job.attempts_max() > 10) return InvalidArgument("job.attempts_max: allowed are 1 to 10");
   if (Status valid = CheckBudget(job.budget()); !valid) return valid.error();
   if (Status valid = CheckSimulation(job.simulation()); !valid) return valid.error();
 
@@ -190,9 +187,9 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, co
   for (v1::SlotProgram& program : *specification.mutable_simulation()->mutable_programs()) {
     const std::string what = "job.simulation.programs of slot " + std::to_string(program.slot());
     if (Status fits = CheckSize(program.program().content(), what); !fits) return fits.error();
-    if (!further.insert(program.slot()).second) return Invalid(what + " stands twice");
+    if (!further.insert(program.slot()).second) return InvalidArgument(what + " stands twice");
     if (job.has_inline_program() && program.slot() == InlineSlotOf(job)) {
-      return Invalid(what + ": the slot of job.inline_program (inline_slot, 1 when it is not given)");
+      return InvalidArgument(what + ": the slot of job.inline_program (inline_slot, 1 when it is not given)");
     }
     made.attachments.push_back({AttachmentName(program.slot()), "application/octet-stream",
                                 std::move(*program.mutable_program()->mutable_content()), {}});
@@ -243,7 +240,7 @@ Result<v1::Job> JobBook::WithArtifacts(const storage::JobRecord& record) {
 
 Result<v1::ListJobsResponse> JobBook::List(const v1::ListJobsRequest& request) {
   storage::JobQuery query;
-  if (request.page_size() < 0) return Invalid("page_size is below 0");
+  if (request.page_size() < 0) return InvalidArgument("page_size is below 0");
   const int size = request.page_size() == 0 ? kPageDefault : std::min(request.page_size(), kPageMax);
   query.limit = size + 1;  // one more tells whether there is a next page
   if (Status applied = ApplyFilter(request.filter(), query); !applied) return applied.error();

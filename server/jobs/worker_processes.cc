@@ -124,11 +124,14 @@ void WorkerProcesses::Watch(const std::stop_token& stop) {
   }
 }
 
+void WorkerProcesses::StartNoMore() {
+  if (!watcher_.joinable()) return;
+  watcher_.request_stop();
+  watcher_.join();
+}
+
 void WorkerProcesses::Stop(std::chrono::milliseconds patience) {
-  if (watcher_.joinable()) {
-    watcher_.request_stop();
-    watcher_.join();
-  }
+  StartNoMore();
   std::map<pid_t, int> alive;
   {
     const std::lock_guard lock(mutex_);

@@ -30,6 +30,8 @@ class WorkerProcesses {
   WorkerProcesses(const WorkerProcesses&) = delete;
   WorkerProcesses& operator=(const WorkerProcesses&) = delete;
 
+  // Those that end from now on stay away: the server stops.
+  void StartNoMore();
   // Asks all to end, then kills what is still there after `patience`.
   void Stop(std::chrono::milliseconds patience);
 

@@ -16,6 +16,7 @@
 #include "proto/bridge/setup.h"
 #include "proto/bridge/sha256.h"
 #include "server/names.h"
+#include "server/programs/program_office.h"
 
 namespace rmlcell::server {
 namespace {
@@ -30,14 +31,7 @@ constexpr std::size_t kPictureElementsMax = 60'000;
 constexpr std::size_t kChangesMax = 10'000;
 constexpr const char* kFamily = "optimo";
 
-Error Invalid(std::string detail) { return {ErrorCode::kCellInvalidArgument, std::move(detail), {}}; }
-
-bool IsObject(const v1::ProgramText& program) {
-  return program.form() == v1::PROGRAM_FORM_OBJECT ||
-         optimo::FormOfFile(program.file_name(), program.content()) == optimo::FileForm::kObject;
-}
-
-v1::StaleExecutable::Reason ToProto(machine::StaleReason reason) {
+v1::StaleExecutable::Reason ReasonOf(machine::StaleReason reason) {
   switch (reason) {
     case machine::StaleReason::kObjectChanged: return v1::StaleExecutable::REASON_OBJECT_CHANGED;
     case machine::StaleReason::kObjectMissing: return v1::StaleExecutable::REASON_OBJECT_MISSING;
@@ -57,7 +51,7 @@ class LinkMaterial {
       if (!IsSlot(part.slot())) {
         return Error{ErrorCode::kProgramNumber, "program number is " + std::to_string(part.slot()), {}};
       }
-      if (objects_.contains(part.slot())) return Invalid("slot " + std::to_string(part.slot()) + " is given twice");
+      if (objects_.contains(part.slot())) return InvalidArgument("slot " + std::to_string(part.slot()) + " is given twice");
       const v1::ProgramText& program = part.program();
       if (program.content().empty()) return Error{ErrorCode::kCellEmptyProgram, program.file_name(), {}};
       if (IsObject(program)) {
@@ -117,7 +111,7 @@ Result<v1::FixProgramResponse> MemoryOffice::Fix(const v1::FixProgramRequest& re
   if (!first) return first.error();
   const machine::MachineFamily* named = simulation::FamilyOfFileName(program.file_name());
   if (named != nullptr && !named->info().has_executables) {
-    return Invalid("a stream of " + std::string(named->info().title) + " has nothing to fix");
+    return InvalidArgument("a stream of " + std::string(named->info().title) + " has nothing to fix");
   }
   if (IsObject(program)) return Error{ErrorCode::kCellBadText, program.file_name() + " is an object, not a source", {}};
   if (const Status good = optimo::CheckIsText(program.file_name(), program.content()); !good) return good.error();
@@ -203,7 +197,7 @@ Result<v1::ListStaleExecutablesResponse> MemoryOffice::ListStale(const v1::ListS
     for (const machine::StalePart& part : stale.parts) {
       v1::StaleExecutable::Part& why = *made.add_parts();
       why.set_program(NameOfProgram(*id, part.slot));
-      why.set_reason(ToProto(part.reason));
+      why.set_reason(ReasonOf(part.reason));
       why.set_text(part.text);
     }
   }
@@ -215,7 +209,7 @@ Result<v1::DecompileProgramResponse> MemoryOffice::Decompile(const v1::Decompile
   if (!request.name().empty()) {
     const Result<ProgramName> name = ParseProgramName(request.name());
     if (!name) return name.error();
-    if (name->executable) return Invalid("an executable has no source; its program is " +
+    if (name->executable) return InvalidArgument("an executable has no source; its program is " +
                                          NameOfProgram(name->machine, name->slot));
     // One read of the record: text and object belong together.
     Result<ProgramShelf::Content> source = shelf_.Read(request.name(), v1::PROGRAM_FORM_SOURCE);
@@ -238,7 +232,7 @@ Result<v1::DecompileProgramResponse> MemoryOffice::Decompile(const v1::Decompile
 Result<MemoryOffice::StoredObject> MemoryOffice::ObjectOf(const std::string& name) {
   const Result<ProgramName> parsed = ParseProgramName(name);
   if (!parsed) return parsed.error();
-  if (parsed->executable) return Invalid("executables are not compared; name the program of its object");
+  if (parsed->executable) return InvalidArgument("executables are not compared; name the program of its object");
   const auto machine = store_.GetMachine(parsed->machine);
   if (!machine) return machine.error();
   if (machine->family != kFamily) {

@@ -17,15 +17,8 @@
 namespace rmlcell::server {
 namespace {
 
-Error Invalid(std::string detail) { return {ErrorCode::kCellInvalidArgument, std::move(detail), {}}; }
-
 v1::Findings FindingsOf(const std::vector<Diagnostic>& findings, std::uint64_t dropped = 0) {
   return bridge::FindingsOf(!HasErrors(findings), findings, dropped, {});
-}
-
-bool IsObject(const v1::ProgramText& program) {
-  return program.form() == v1::PROGRAM_FORM_OBJECT ||
-         optimo::FormOfFile(program.file_name(), program.content()) == optimo::FileForm::kObject;
 }
 
 bool IsInch(const v1::ProgramText& program) {
@@ -34,7 +27,7 @@ bool IsInch(const v1::ProgramText& program) {
 
 Status CheckText(const v1::ProgramText& program) {
   if (program.content().empty()) return Error{ErrorCode::kCellEmptyProgram, program.file_name(), {}};
-  if (IsObject(program)) return Invalid("an object is no source; DecompileProgram gives its source");
+  if (IsObject(program)) return InvalidArgument("an object is no source; DecompileProgram gives its source");
   return {};
 }
 
@@ -51,17 +44,22 @@ struct Offset {
 
 Result<Offset> OffsetOf(const v1::Point& translation, const google::protobuf::RepeatedField<double>& rotation) {
   if (!rotation.empty() && rotation.size() != 3) {
-    return Invalid("rotation has " + std::to_string(rotation.size()) + " values, needs none or three");
+    return InvalidArgument("rotation has " + std::to_string(rotation.size()) + " values, needs none or three");
   }
   Offset offset{{translation.x(), translation.y(), translation.z()}, {}};
   std::ranges::copy(rotation, offset.turn.begin());
   for (const double value : {offset.move.x, offset.move.y, offset.move.z, offset.turn[0], offset.turn[1], offset.turn[2]}) {
-    if (!std::isfinite(value)) return Invalid("translation and rotation must be finite");
+    if (!std::isfinite(value)) return InvalidArgument("translation and rotation must be finite");
   }
   return offset;
 }
 
 }  // namespace
+
+bool IsObject(const v1::ProgramText& program) {
+  return program.form() == v1::PROGRAM_FORM_OBJECT ||
+         optimo::FormOfFile(program.file_name(), program.content()) == optimo::FileForm::kObject;
+}
 
 Result<v1::FormatProgramResponse> FormatText(const v1::FormatProgramRequest& request) {
   const v1::ProgramText& program = request.program();
@@ -84,7 +82,7 @@ Result<v1::ConvertProgramResponse> ConvertText(const v1::ConvertProgramRequest& 
   if (request.target() == v1::ConvertProgramRequest::TARGET_INCH) arguments.emplace_back("/i");
   const auto wanted = optimo::ReadConvertArguments(arguments);
   if (!wanted) return wanted.error();
-  if (!*wanted) return Invalid("program.file_name is empty");
+  if (!*wanted) return InvalidArgument("program.file_name is empty");
   const optimo::Conversion made =
       optimo::Convert(program.content(), (*wanted)->direction,
                       optimo::FileNames{.input = (*wanted)->input,

@@ -10,6 +10,9 @@
 // its findings.
 namespace rmlcell::server {
 
+// True for what says that it is an object, or is one by its file name or its bytes.
+bool IsObject(const v1::ProgramText& program);
+
 // Errors: CellUnknownFamily for a text of another family, CellEmptyProgram, and those named.
 Result<v1::FormatProgramResponse> FormatText(const v1::FormatProgramRequest& request);
 

@@ -16,10 +16,7 @@
 namespace rmlcell::server {
 namespace {
 
-constexpr std::size_t kTitleMax = 200;
 constexpr std::size_t kFileNameMax = 255;
-
-Error Invalid(const std::string& detail) { return {ErrorCode::kCellInvalidArgument, detail, {}}; }
 
 std::string BaseName(const std::string& file_name) {
   const std::size_t slash = file_name.find_last_of("/\\");
@@ -85,8 +82,8 @@ ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
                      std::to_string(config_.limit_program_bytes),
                  {}};
   }
-  if (put.title.size() > kTitleMax) return Invalid("title is longer than 200 characters");
-  if (put.file_name.size() > kFileNameMax) return Invalid("file_name is longer than 255 characters");
+  if (const Status good = CheckTitle(put.title, "title"); !good) return good.error();
+  if (put.file_name.size() > kFileNameMax) return InvalidArgument("file_name is longer than 255 characters");
   if (name->executable || put.form == v1::PROGRAM_FORM_EXECUTABLE) {
     return StoreExecutable(put, name->machine, name->slot);
   }
@@ -96,7 +93,7 @@ ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
   if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
   const machine::MachineFamily* named = simulation::FamilyOfFileName(put.file_name);
   if (named != nullptr && named != family) {
-    return Invalid(BaseName(put.file_name) + " is a program for " + std::string(named->info().title) + ", not for " +
+    return InvalidArgument(BaseName(put.file_name) + " is a program for " + std::string(named->info().title) + ", not for " +
                    std::string(family->info().title));
   }
   const Result<storage::Revision> expected = ParseEtag(put.etag);
@@ -259,7 +256,7 @@ Result<v1::ListProgramsResponse> ProgramShelf::List(const v1::ListProgramsReques
   const Result<std::string> machine = ParseMachineName(request.parent());
   if (!machine) return machine.error();
   if (const auto known = store_.GetMachine(*machine); !known) return known.error();
-  if (request.page_size() < 0) return Invalid("page_size is below 0");
+  if (request.page_size() < 0) return InvalidArgument("page_size is below 0");
   const int size = request.page_size() == 0 ? kSlotMax : std::min(request.page_size(), kSlotMax);
   int after = 0;
   if (!request.page_token().empty()) {

@@ -18,15 +18,12 @@ namespace {
 
 constexpr int kPageDefault = 100;
 constexpr int kPageMax = 1000;
-constexpr std::size_t kTitleMax = 200;
 constexpr std::size_t kNotesMax = 64 << 10;
-
-Error Invalid(const std::string& detail) { return {ErrorCode::kCellInvalidArgument, detail, {}}; }
 
 // What can be said without a machine. Languages are checked when the project is transferred.
 Status CheckParts(const v1::Project& project) {
-  if (project.title().size() > kTitleMax) return Invalid("title is longer than 200 characters");
-  if (project.notes().size() > kNotesMax) return Invalid("notes are longer than 64 KiB");
+  if (const Status good = CheckTitle(project.title(), "title"); !good) return good.error();
+  if (project.notes().size() > kNotesMax) return InvalidArgument("notes are longer than 64 KiB");
   std::set<int> slots;
   for (const v1::ProjectProgram& program : project.programs()) {
     const std::string slot = std::to_string(program.slot());
@@ -42,12 +39,12 @@ Status CheckParts(const v1::Project& project) {
     if (schedule.number() < 1 || schedule.number() > 63) {
       return Error{ErrorCode::kScheduleRange, "laser schedule " + number, {}};
     }
-    if (!schedules.insert(schedule.number()).second) return Invalid("laser schedule " + number + " stands twice");
+    if (!schedules.insert(schedule.number()).second) return InvalidArgument("laser schedule " + number + " stands twice");
     if (!schedule.mode().empty() && schedule.mode() != "CW" && schedule.mode() != "PULSE") {
-      return Invalid("laser schedule " + number + ": mode is CW or PULSE");
+      return InvalidArgument("laser schedule " + number + ": mode is CW or PULSE");
     }
     if (!(schedule.power_percent() >= 0.0 && schedule.power_percent() <= 100.0)) {
-      return Invalid("laser schedule " + number + ": power_percent: allowed are 0 to 100");
+      return InvalidArgument("laser schedule " + number + ": power_percent: allowed are 0 to 100");
     }
   }
   std::set<std::pair<int, int>> processes;
@@ -176,7 +173,7 @@ Result<v1::Project> ProjectBook::Get(std::string_view name) {
 }
 
 Result<v1::ListProjectsResponse> ProjectBook::List(const v1::ListProjectsRequest& request) {
-  if (request.page_size() < 0) return Invalid("page_size is below 0");
+  if (request.page_size() < 0) return InvalidArgument("page_size is below 0");
   const int size = request.page_size() == 0 ? kPageDefault : std::min(request.page_size(), kPageMax);
   if (!request.page_token().empty() && !CheckResourceId(request.page_token(), "page_token")) {
     return Error{ErrorCode::kCellBadPageToken, {}, {}};
@@ -218,7 +215,7 @@ ProgramResult<v1::Project> ProjectBook::Update(const v1::UpdateProjectRequest& r
   for (const std::string& path : paths) {
     if (path != "title" && path != "notes" && path != "programs" && path != "laser_schedules" &&
         path != "processes") {
-      return Invalid("update_mask: '" + path + "' is none of title, notes, programs, laser_schedules, processes");
+      return InvalidArgument("update_mask: '" + path + "' is none of title, notes, programs, laser_schedules, processes");
     }
   }
   if (named("title")) project.set_title(wanted.title());

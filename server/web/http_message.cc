@@ -228,4 +228,18 @@ std::string ChunkHead(std::size_t size) {
   return std::string(digits.data(), end) + "\r\n";
 }
 
+void SetTarget(std::string_view target, HttpRequest& request) {
+  for (const std::string_view scheme : {"http://", "https://"}) {
+    if (!target.starts_with(scheme)) continue;
+    target.remove_prefix(scheme.size());
+    const std::size_t path = std::min(target.find_first_of("/?"), target.size());
+    request.host = std::string(target.substr(0, path));  // it stands above the Host header
+    target.remove_prefix(path);
+  }
+  const std::size_t question = std::min(target.find('?'), target.size());
+  request.path = std::string(target.substr(0, question));
+  if (request.path.empty()) request.path = "/";
+  if (question < target.size()) request.query = std::string(target.substr(question + 1));
+}
+
 }  // namespace rmlcell::web

@@ -30,6 +30,9 @@ struct HttpRequest {
   std::size_t CountOf(std::string_view name) const;
 };
 
+// "http://host:port/path?query" or "/path?query" into the parts of a request.
+void SetTarget(std::string_view target, HttpRequest& request);
+
 struct HttpResponse {
   int status = 200;
   HeaderList headers;

@@ -58,24 +58,11 @@ HttpResponse Refusal(int http_status, ErrorCode code, std::string detail) {
                      false);
 }
 
-// "http://host:port/path?query" or "/path?query" into its parts.
-void SetTarget(std::string_view target, HttpRequest& request) {
-  for (const std::string_view scheme : {"http://", "https://"}) {
-    if (!target.starts_with(scheme)) continue;
-    target.remove_prefix(scheme.size());
-    const std::size_t path = std::min(target.find_first_of("/?"), target.size());
-    request.host = std::string(target.substr(0, path));  // it stands above the Host header
-    target.remove_prefix(path);
-  }
-  const std::size_t question = std::min(target.find('?'), target.size());
-  request.path = std::string(target.substr(0, question));
-  if (request.path.empty()) request.path = "/";
-  if (question < target.size()) request.query = std::string(target.substr(question + 1));
-}
-
 }  // namespace
 
-class HttpSession : public Connection, public std::enable_shared_from_this<HttpSession> {
+class HttpSession : public Connection,
+                    public OpenSession,
+                    public std::enable_shared_from_this<HttpSession> {
  public:
   HttpSession(const SessionSetting& setting, tcp::socket socket)
       : setting_(setting),
@@ -114,7 +101,7 @@ class HttpSession : public Connection, public std::enable_shared_from_this<HttpS
   tcp::socket::executor_type Executor() { return socket_.get_executor(); }
 
   // From any thread, while the table's lock keeps this alive.
-  void End(bool at_once) {
+  void End(bool at_once) override {
     std::weak_ptr<HttpSession> weak = weak_from_this();
     asio::post(socket_.get_executor(), [weak, at_once] {
       if (const auto self = weak.lock()) self->EndNow(at_once);
@@ -563,32 +550,6 @@ class HttpSession : public Connection, public std::enable_shared_from_this<HttpS
   bool timed_out_ = false;
   bool closed_ = false;
 };
-
-void SessionTable::Add(HttpSession* session) {
-  const std::lock_guard lock(mutex_);
-  sessions_.insert(session);
-}
-
-void SessionTable::Remove(HttpSession* session) {
-  const std::lock_guard lock(mutex_);
-  sessions_.erase(session);
-  changed_.notify_all();
-}
-
-std::size_t SessionTable::size() const {
-  const std::lock_guard lock(mutex_);
-  return sessions_.size();
-}
-
-void SessionTable::EndAll(bool at_once) {
-  const std::lock_guard lock(mutex_);
-  for (HttpSession* session : sessions_) session->End(at_once);
-}
-
-bool SessionTable::WaitUntilEmpty(std::chrono::milliseconds patience) {
-  std::unique_lock lock(mutex_);
-  return changed_.wait_for(lock, patience, [this] { return sessions_.empty(); });
-}
 
 void StartSession(const SessionSetting& setting, tcp::socket socket, bool refused) {
   const auto session = std::make_shared<HttpSession>(setting, std::move(socket));

@@ -5,13 +5,13 @@
 namespace rmlcell::storage::sqlite {
 namespace {
 
-std::string Select(const std::string& which) {
+std::string SelectArtifact(const std::string& which) {
   return "SELECT artifact.job, artifact.name, artifact.media_type, blob.sha256, blob.size"
          " FROM artifact LEFT JOIN blob ON blob.id = artifact.blob WHERE artifact.job = ?1 " +
          which;
 }
 
-Result<ArtifactRecord> Read(const Query& row) {
+Result<ArtifactRecord> ReadArtifact(const Query& row) {
   if (row.IsNull(3)) {
     return Error{
         ErrorCode::kCellStoreCorrupt,
@@ -31,8 +31,8 @@ ArtifactTable::ArtifactTable(Database& database)
     : add_(database,
            "INSERT INTO artifact (job, name, media_type, blob) VALUES (?1, ?2, ?3, ?4)"
            " ON CONFLICT DO NOTHING"),
-      list_(database, Select("ORDER BY artifact.name")),
-      get_(database, Select("AND artifact.name = ?2")),
+      list_(database, SelectArtifact("ORDER BY artifact.name")),
+      get_(database, SelectArtifact("AND artifact.name = ?2")),
       remove_(database, "DELETE FROM artifact WHERE job = ?1 RETURNING blob") {}
 
 Result<bool> ArtifactTable::Add(std::int64_t job, const NewArtifact& artifact, std::int64_t blob) {
@@ -42,11 +42,11 @@ Result<bool> ArtifactTable::Add(std::int64_t job, const NewArtifact& artifact, s
 }
 
 Result<std::vector<ArtifactRecord>> ArtifactTable::List(std::int64_t job) {
-  return AllRows<ArtifactRecord>(list_.With(job), Read);
+  return AllRows<ArtifactRecord>(list_.With(job), ReadArtifact);
 }
 
 Result<std::optional<ArtifactRecord>> ArtifactTable::Get(std::int64_t job, std::string_view name) {
-  return FirstRow<ArtifactRecord>(get_.With(job, name), Read);
+  return FirstRow<ArtifactRecord>(get_.With(job, name), ReadArtifact);
 }
 
 Result<std::vector<std::int64_t>> ArtifactTable::RemoveOf(std::int64_t job) {

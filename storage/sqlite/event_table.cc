@@ -3,11 +3,11 @@
 namespace rmlcell::storage::sqlite {
 namespace {
 
-std::string Select(const std::string& which) {
+std::string SelectEvent(const std::string& which) {
   return "SELECT position, job, sequence, attempt, at, kind, payload FROM event " + which;
 }
 
-EventRecord Read(const Query& row) {
+EventRecord ReadEvent(const Query& row) {
   return EventRecord{.position = row.Integer(0),
                      .job = row.Integer(1),
                      .sequence = row.Integer(2),
@@ -30,8 +30,8 @@ EventTable::EventTable(Database& database)
     : add_(database,
            "INSERT INTO event (position, job, sequence, attempt, at, kind, payload)"
            " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)"),
-      of_job_(database, Select("WHERE job = ?1 AND sequence > ?2 ORDER BY sequence LIMIT ?3")),
-      all_(database, Select("WHERE position > ?1 ORDER BY position LIMIT ?2")),
+      of_job_(database, SelectEvent("WHERE job = ?1 AND sequence > ?2 ORDER BY sequence LIMIT ?3")),
+      all_(database, SelectEvent("WHERE position > ?1 ORDER BY position LIMIT ?2")),
       last_(database, "SELECT ifnull(max(position), 0) FROM event"),
       last_until_(database,
                   "SELECT ifnull(max(position), 0) FROM"
@@ -56,11 +56,11 @@ Status EventTable::Add(const Place& place, const NewEvent& event) {
 
 Result<std::vector<EventRecord>> EventTable::OfJob(std::int64_t job, std::int64_t after_sequence,
                                                    int limit) {
-  return AllRows<EventRecord>(of_job_.With(job, after_sequence, limit), Read);
+  return AllRows<EventRecord>(of_job_.With(job, after_sequence, limit), ReadEvent);
 }
 
 Result<std::vector<EventRecord>> EventTable::All(std::int64_t after_position, int limit) {
-  return AllRows<EventRecord>(all_.With(after_position, limit), Read);
+  return AllRows<EventRecord>(all_.With(after_position, limit), ReadEvent);
 }
 
 Result<std::int64_t> EventTable::LastPosition() { return FirstInteger(last_.With()); }

@@ -9,17 +9,13 @@ namespace {
 
 constexpr int kOutsideAnAttempt = 0;
 
-Error Invalid(std::string detail) {
-  return Error{ErrorCode::kCellInvalidArgument, std::move(detail), {}};
-}
-
 Error LeaseLost(const Lease& lease, const std::string& why) {
   return Error{ErrorCode::kCellLeaseLost, "job " + std::to_string(lease.job) + " " + why, {}};
 }
 
 Status CheckFinal(const JobOutcome& outcome) {
   if (IsFinal(outcome.state)) return {};
-  return Invalid("an outcome has to be final");
+  return InvalidArgument("an outcome has to be final");
 }
 
 Status CheckSizes(const std::vector<NewEvent>& events) {
@@ -170,7 +166,7 @@ Status AddArtifacts(WriteContext& context, std::int64_t job,
     if (!blob) return blob.error();
     const Result<bool> added = context.tables.artifacts.Add(job, artifacts[i], *blob);
     if (!added) return added.error();
-    if (!*added) return Invalid("two artifacts named " + artifacts[i].name);
+    if (!*added) return InvalidArgument("two artifacts named " + artifacts[i].name);
   }
   return {};
 }
@@ -199,7 +195,7 @@ Error RequestIdReused(std::int64_t job) {
 
 Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
                                const JobContents& contents) {
-  if (job.attempts_max < 1) return Invalid("a job needs at least one attempt");
+  if (job.attempts_max < 1) return InvalidArgument("a job needs at least one attempt");
   JobRecord record{.id = context.counters.job + 1,
                    .request_id = contents.request_id,
                    .request_hash = job.request_hash,

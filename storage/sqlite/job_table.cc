@@ -7,7 +7,7 @@ namespace rmlcell::storage::sqlite {
 namespace {
 
 // The columns in the order of Read().
-std::string Select(const std::string& from) {
+std::string SelectJob(const std::string& from) {
   return "SELECT id, request_id, request_hash, machine, kind, title, caller, state,"
          " cancel_requested, attempts, attempts_max, attempts_begun, last_sequence,"
          " events_gone_until, created_at, started_at, finished_at, outcome_code, outcome_detail,"
@@ -92,8 +92,8 @@ JobTable::JobTable(Database& database, BlobTable& blobs)
               " events_gone_until, created_at)"
               " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, 0, 0, 0, ?8, 0, ?9, 0, ?10)"
               " ON CONFLICT (request_id) DO NOTHING"),
-      get_(database, Select("WHERE id = ?1")),
-      find_by_request_(database, Select("WHERE request_id = ?1")),
+      get_(database, SelectJob("WHERE id = ?1")),
+      find_by_request_(database, SelectJob("WHERE request_id = ?1")),
       oldest_queued_(
           database,
           "SELECT id FROM job INDEXED BY job_unfinished WHERE state < 2 AND state = 0 AND kind = ?1"
@@ -273,7 +273,7 @@ Result<std::vector<JobRecord>> JobTable::ListFinished(const JobQuery& query) {
 Result<std::vector<JobRecord>> JobTable::ListLane(const std::string& lane, const JobQuery& query,
                                                   std::optional<std::string_view> lane_kind) {
   // A parameter that is not looked at still has to be named.
-  std::string sql = Select(lane);
+  std::string sql = SelectJob(lane);
   sql += lane_kind ? " AND kind = ?1" : " AND (?1 = '' OR kind = ?1)";
   sql += query.machine.empty() ? " AND ?2 = ''" : " AND machine = ?2";
   sql += query.caller.empty() ? " AND ?3 = ''" : " AND caller = ?3";

@@ -3,7 +3,7 @@
 namespace rmlcell::storage::sqlite {
 namespace {
 
-std::string Select(const std::string& which) {
+std::string SelectMachine(const std::string& which) {
   return "SELECT id, family, title, profile, revision, created_at, updated_at, state, state_blob"
          " FROM machine " +
          which;
@@ -14,8 +14,8 @@ std::string Select(const std::string& which) {
 MachineTable::MachineTable(Database& database, BlobTable& blobs)
     : blobs_(blobs),
       find_(database, "SELECT revision, created_at, state_blob FROM machine WHERE id = ?1"),
-      get_(database, Select("WHERE id = ?1")),
-      list_(database, Select("ORDER BY id")),
+      get_(database, SelectMachine("WHERE id = ?1")),
+      list_(database, SelectMachine("ORDER BY id")),
       put_(database,
            "INSERT OR REPLACE INTO machine"
            " (id, family, title, profile, revision, created_at, updated_at, state, state_blob)"

@@ -5,7 +5,7 @@
 namespace rmlcell::storage::sqlite {
 namespace {
 
-std::string Select(const std::string& which) {
+std::string SelectProgram(const std::string& which) {
   return "SELECT slot, name, source_name, revision, created_at, updated_at, object_blob, "
          "source_blob,"
          " executable_blob FROM program WHERE machine = ?1 " +
@@ -44,9 +44,9 @@ Result<ProgramSummary> ReadSummary(const Query& row) {
 
 ProgramTable::ProgramTable(Database& database, BlobTable& blobs)
     : blobs_(blobs),
-      find_(database, Select("AND slot = ?2")),
-      get_(database, Select("AND slot = ?2")),
-      memory_(database, Select("ORDER BY slot")),
+      find_(database, SelectProgram("AND slot = ?2")),
+      get_(database, SelectProgram("AND slot = ?2")),
+      memory_(database, SelectProgram("ORDER BY slot")),
       list_(database, SelectSummary("AND program.slot > ?2 ORDER BY program.slot LIMIT ?3")),
       summary_(database, SelectSummary("AND program.slot = ?2")),
       put_(database,

@@ -3,7 +3,7 @@
 namespace rmlcell::storage::sqlite {
 namespace {
 
-std::string Select(const std::string& which) {
+std::string SelectProject(const std::string& which) {
   return "SELECT id, title, revision, created_at, updated_at, body, body_blob FROM project " +
          which;
 }
@@ -13,8 +13,8 @@ std::string Select(const std::string& which) {
 ProjectTable::ProjectTable(Database& database, BlobTable& blobs)
     : blobs_(blobs),
       find_(database, "SELECT revision, created_at, body_blob FROM project WHERE id = ?1"),
-      get_(database, Select("WHERE id = ?1")),
-      list_(database, Select("WHERE id > ?1 ORDER BY id LIMIT ?2")),
+      get_(database, SelectProject("WHERE id = ?1")),
+      list_(database, SelectProject("WHERE id > ?1 ORDER BY id LIMIT ?2")),
       put_(database,
            "INSERT OR REPLACE INTO project"
            " (id, title, revision, created_at, updated_at, body, body_blob)"

@@ -3,13 +3,13 @@
 namespace rmlcell::storage::sqlite {
 namespace {
 
-std::string Select(const std::string& which) {
+std::string SelectSchedule(const std::string& which) {
   return "SELECT machine, number, name, mode, power_percent, revision, updated_at FROM schedule"
          " WHERE machine = ?1 " +
          which;
 }
 
-ScheduleRecord Read(const Query& row) {
+ScheduleRecord ReadSchedule(const Query& row) {
   return ScheduleRecord{.machine = row.Text(0),
                         .number = row.Small(1),
                         .name = row.Text(2),
@@ -22,8 +22,8 @@ ScheduleRecord Read(const Query& row) {
 }  // namespace
 
 ScheduleTable::ScheduleTable(Database& database)
-    : get_(database, Select("AND number = ?2")),
-      list_(database, Select("ORDER BY number")),
+    : get_(database, SelectSchedule("AND number = ?2")),
+      list_(database, SelectSchedule("ORDER BY number")),
       put_(database,
            "INSERT OR REPLACE INTO schedule"
            " (machine, number, name, mode, power_percent, revision, updated_at)"
@@ -31,11 +31,11 @@ ScheduleTable::ScheduleTable(Database& database)
       remove_(database, "DELETE FROM schedule WHERE machine = ?1 AND number = ?2") {}
 
 Result<std::optional<ScheduleRecord>> ScheduleTable::Get(std::string_view machine, int number) {
-  return FirstRow<ScheduleRecord>(get_.With(machine, number), Read);
+  return FirstRow<ScheduleRecord>(get_.With(machine, number), ReadSchedule);
 }
 
 Result<std::vector<ScheduleRecord>> ScheduleTable::List(std::string_view machine) {
-  return AllRows<ScheduleRecord>(list_.With(machine), Read);
+  return AllRows<ScheduleRecord>(list_.With(machine), ReadSchedule);
 }
 
 Status ScheduleTable::Put(const ScheduleRecord& schedule) {

@@ -10,10 +10,6 @@
 namespace rmlcell::storage::sqlite {
 namespace {
 
-Error Invalid(std::string detail) {
-  return Error{ErrorCode::kCellInvalidArgument, std::move(detail), {}};
-}
-
 std::string SlotText(std::string_view machine, int slot) {
   return "slot " + std::to_string(slot) + " of " + std::string(machine);
 }
@@ -36,10 +32,10 @@ Status CheckSize(std::size_t bytes, const std::string& what) {
 
 Status CheckSchedule(const ScheduleRecord& schedule) {
   if (schedule.number < kScheduleMin || schedule.number > kScheduleMax) {
-    return Invalid("laser schedule " + std::to_string(schedule.number));
+    return InvalidArgument("laser schedule " + std::to_string(schedule.number));
   }
   // The database would make NULL of a NaN.
-  if (!std::isfinite(schedule.power_percent)) return Invalid("power_percent is not a number");
+  if (!std::isfinite(schedule.power_percent)) return InvalidArgument("power_percent is not a number");
   return {};
 }
 
@@ -48,8 +44,8 @@ Status CheckWrites(const std::vector<ProgramWrite>& programs,
   std::set<int> slots;
   for (const ProgramWrite& program : programs) {
     const std::string slot = "slot " + std::to_string(program.slot);
-    if (!IsSlot(program.slot)) return Invalid(slot);
-    if (!slots.insert(program.slot).second) return Invalid(slot + " is written twice");
+    if (!IsSlot(program.slot)) return InvalidArgument(slot);
+    if (!slots.insert(program.slot).second) return InvalidArgument(slot + " is written twice");
     const Status object = CheckSize(program.object.size(), "the object for " + slot);
     if (!object) return object;
     const Status source =
@@ -61,7 +57,7 @@ Status CheckWrites(const std::vector<ProgramWrite>& programs,
     const Status good = CheckSchedule(schedule);
     if (!good) return good;
     if (!numbers.insert(schedule.number).second) {
-      return Invalid("laser schedule " + std::to_string(schedule.number) + " is written twice");
+      return InvalidArgument("laser schedule " + std::to_string(schedule.number) + " is written twice");
     }
   }
   return {};

@@ -5,10 +5,6 @@
 namespace rmlcell::storage::sqlite {
 namespace {
 
-Error Invalid(std::string detail) {
-  return Error{ErrorCode::kCellInvalidArgument, std::move(detail), {}};
-}
-
 Error NoProject(std::string_view id) {
   return Error{ErrorCode::kCellNotFound, "project " + std::string(id), {}};
 }
@@ -95,7 +91,7 @@ Status RemoveProject(WriteContext& context, std::string_view id, Revision expect
 Status CheckRevision(std::optional<Revision> current, Revision expected, const std::string& what,
                      ErrorCode when_missing) {
   if (expected == kAnyRevision) return {};
-  if (expected < 0) return Invalid("expected revision " + std::to_string(expected));
+  if (expected < 0) return InvalidArgument("expected revision " + std::to_string(expected));
   if (expected == 0) {
     if (!current) return {};
     return Error{
@@ -123,7 +119,7 @@ Result<MachineRecord> SqliteStore::GetMachine(std::string_view id) {
 }
 
 Result<MachineRecord> SqliteStore::PutMachine(const MachineRecord& machine, Revision expected) {
-  if (machine.id.empty()) return Invalid("a machine needs an id");
+  if (machine.id.empty()) return InvalidArgument("a machine needs an id");
   const Result<StagedContent> state =
       StagedContent::Make(writer_, machine.state, StagedContent::Place::kRecordWhenSmall);
   if (!state) return state.error();
@@ -151,7 +147,7 @@ Result<ProjectRecord> SqliteStore::GetProject(std::string_view id) {
 }
 
 Result<ProjectRecord> SqliteStore::PutProject(const ProjectRecord& project, Revision expected) {
-  if (project.id.empty()) return Invalid("a project needs an id");
+  if (project.id.empty()) return InvalidArgument("a project needs an id");
   const Result<StagedContent> body =
       StagedContent::Make(writer_, project.body, StagedContent::Place::kRecordWhenSmall);
   if (!body) return body.error();

@@ -107,4 +107,8 @@ SimTime At(double seconds);
 // A program of the shared corpus; empty where the corpus is not at hand.
 std::string CorpusProgram(const std::string& name);
 
+// How programs begin.
+inline const std::string kAbsol = "COORD ABSOL\nPATH LIN\n";
+inline const std::string kAbsolSlowly = kAbsol + "SPEED 10\n";
+
 }  // namespace rmlcell::optimo::testing

@@ -10,8 +10,7 @@ namespace {
 
 using machine::InputKind;
 
-const std::string kAbsol = "COORD ABSOL\nPATH LIN\nSPEED 10\n";
-const std::string kStart = kAbsol + "MOVE (1000.,1000.,-400.,0.,0.)\n";
+const std::string kStart = kAbsolSlowly + "MOVE (1000.,1000.,-400.,0.,0.)\n";
 
 // OPT-2.05, OPT-2.02
 TEST(OptimoRunMotion, TheTipComesToTheTarget) {
@@ -60,7 +59,7 @@ TEST(OptimoRunMotion, AnArcGoesThroughItsViaPointEvenWithFly) {
 // OPT-2.26, OPT-B.14: a hole without WORK switches nothing; it may start above its plane: S is 100
 // mm above and 3 mm from the axis, A = C + r X.
 TEST(OptimoRunMotion, AHoleSwitchesNothing) {
-  const Ran ran = OptimoMachine().Run(kAbsol +
+  const Ran ran = OptimoMachine().Run(kAbsolSlowly +
                                       "MOVE (103.,50.,-450.,0.,0.)\nPATH HOLE (25.)\n"
                                       "MOVE (100.,50.,-550.,0.,0.)/VIA (100.,50.,-450.,0.,0.)\n");
   EXPECT_TRUE(ran.completed());
@@ -72,7 +71,7 @@ TEST(OptimoRunMotion, AHoleSwitchesNothing) {
 
 // OPT-B.11: the straight part ends at rest, the circle too; only the move as a whole settles.
 TEST(OptimoRunMotion, AHoleStopsTwiceAtItsFirstPoint) {
-  const Ran ran = OptimoMachine().Run(kAbsol +
+  const Ran ran = OptimoMachine().Run(kAbsolSlowly +
                                       "MOVE (130.,50.,-540.,0.,0.)\nPATH HOLE (25.)\n"
                                       "MOVE (100.,50.,-550.,0.,0.)/VIA (100.,50.,-450.,0.,0.)\n");
   ASSERT_EQ(ran.motions.size(), 3U);
@@ -165,7 +164,7 @@ TEST(OptimoRunMotion, AnglesAreAbsolute) {
 
 // OPT-B.30, OPT-B.31: seen at 21 cycles of 0.048 s at 50 mm/s, at rest after 50.4 mm (case O04).
 TEST(OptimoRunMotion, EndIsSeenAtACycle) {
-  const Ran ran = OptimoMachine().Run(kAbsol + "MOVE (521.02,2201.2,-350.,0.,0.)/END (IL[20])\n",
+  const Ran ran = OptimoMachine().Run(kAbsolSlowly + "MOVE (521.02,2201.2,-350.,0.,0.)/END (IL[20])\n",
                                       {.inputs = {{At(1.0), InputKind::kLogical, 20, 1.0}}});
   EXPECT_TRUE(ran.completed());
   EXPECT_NEAR(ran.run().state().tip.tip.x, 21.02 + 50.4, 1e-3);
@@ -173,12 +172,12 @@ TEST(OptimoRunMotion, EndIsSeenAtACycle) {
 
 // OPT-B.32: /END that ends the move leaves no passage; /TIME counts the wait of /START.
 TEST(OptimoRunMotion, EndWithFlyAndTimeWithStart) {
-  const Ran end = OptimoMachine().Run(kAbsol +
+  const Ran end = OptimoMachine().Run(kAbsolSlowly +
                                           "MOVE (521.02,2201.2,-350.,0.,0.)/FLY/END (IL[20])\n"
                                           "VR[1] = IA[0]\nMOVE (521.02,2301.2,-350.,0.,0.)\n",
                                       {.inputs = {{At(1.0), InputKind::kLogical, 20, 1.0}}});
   EXPECT_NEAR(end.Number("VR[1]"), 21.02 + 50.4, 1e-2);
-  const Ran time = OptimoMachine().Run(kAbsol +
+  const Ran time = OptimoMachine().Run(kAbsolSlowly +
                                        "MOVE (521.02,2201.2,-350.,0.,0.)/TIME (1.,900)/START "
                                        "(IL[20])\nENDTASK\n900 VI[2]=1\nRETURN\n");
   EXPECT_EQ(time.Var("VI[2]"), "1");
@@ -189,7 +188,7 @@ TEST(OptimoRunMotion, EndWithFlyAndTimeWithStart) {
 // OPT-B.33: the program waits for the condition, starts the motion and goes on.
 TEST(OptimoRunMotion, StartWithNextWaitsAndGoesOn) {
   const Ran ran = OptimoMachine().Run(
-      kAbsol + "MOVE (521.02,2201.2,-350.,0.,0.)/START (IL[21])/NEXT\nVL[0] = IL[95]\n",
+      kAbsolSlowly + "MOVE (521.02,2201.2,-350.,0.,0.)/START (IL[21])/NEXT\nVL[0] = IL[95]\n",
       {.inputs = {{At(2.0), InputKind::kLogical, 21, 1.0}}});
   EXPECT_EQ(ran.Var("VL[0]"), "1");
   ASSERT_TRUE(ran.Find("step LET"));
@@ -199,7 +198,7 @@ TEST(OptimoRunMotion, StartWithNextWaitsAndGoesOn) {
 // OPT-B.34, OPT-4.18: one beam-off and one beam-on per STOP and START; no dwell again.
 TEST(OptimoRunMotion, TheBeamIsOffWhileMotionIsHeld) {
   const Ran ran = OptimoMachine().Run(
-      kAbsol +
+      kAbsolSlowly +
           "WORKDEF 1,0 (10.,80.,0.5,60.)\nWORK 1,0/ON\nMOVE (521.02,2201.2,-350.,0.,0.)\n"
           "WORK 1,0/OFF\n",
       {.inputs = {{At(2.0), InputKind::kStop}, {At(5.0), InputKind::kStart}}});

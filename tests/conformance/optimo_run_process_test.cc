@@ -13,7 +13,6 @@ using machine::InputKind;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-const std::string kAbsol = "COORD ABSOL\nPATH LIN\n";
 const std::string kRamp = "WORKDEF 1,0 (8.,75.,1.,50.)\n";
 const std::string kAway = "MOVE (521.02,2201.2,-350.,0.,0.)\n";
 

@@ -12,7 +12,6 @@ namespace {
 
 using machine::InputKind;
 
-const std::string kAbsol = "COORD ABSOL\nPATH LIN\nSPEED 10\n";
 
 // OPT-7.03, OPT-7.04, OPT-7.08: variables live on; GO drops the pending returns and starts anew.
 TEST(OptimoRunProgram, GoDropsThePendingReturns) {
@@ -126,7 +125,7 @@ TEST(OptimoRunProgram, CoordinatesAsTheActiveTypeHasThem) {
 
 // OPT-7.67: IL[16] is the START push-button.
 TEST(OptimoRunProgram, AMoveWaitsForTheButton) {
-  const Ran ran = OptimoMachine().Run(kAbsol + "MOVE (31.02,2201.2,-350.,0.,0.) / START (IL[16])\n",
+  const Ran ran = OptimoMachine().Run(kAbsolSlowly + "MOVE (31.02,2201.2,-350.,0.,0.) / START (IL[16])\n",
                                       {.inputs = {{At(3.0), InputKind::kLogical, 16, 1.0}}});
   ASSERT_EQ(ran.motions.size(), 1U);
   EXPECT_NEAR(ran.motions[0].start_s, 3.0, 1e-6);
@@ -134,7 +133,7 @@ TEST(OptimoRunProgram, AMoveWaitsForTheButton) {
 
 // OPT-7.68: 1 from the first instant of a motion to standstill.
 TEST(OptimoRunProgram, TheMotionFlag) {
-  const std::string move = kAbsol + "MOVE (521.02,2201.2,-350.,0.,0.)";
+  const std::string move = kAbsolSlowly + "MOVE (521.02,2201.2,-350.,0.,0.)";
   EXPECT_EQ(OptimoMachine().Run(move + "/NEXT\nVL[0]=IL[95]\n").Var("VL[0]"), "1");
   EXPECT_EQ(OptimoMachine().Run(move + "\nVL[0]=IL[95]\n").Var("VL[0]"), "0");
 }
@@ -142,7 +141,7 @@ TEST(OptimoRunProgram, TheMotionFlag) {
 // OPT-7.69: 50 mm/s times the system cycle.
 TEST(OptimoRunProgram, TheSpeedOfTheTip) {
   const std::string program =
-      kAbsol + "MOVE (521.02,2201.2,-350.,0.,0.)/NEXT\nDELAY 2\nVR[0]=OA[0]\n";
+      kAbsolSlowly + "MOVE (521.02,2201.2,-350.,0.,0.)/NEXT\nDELAY 2\nVR[0]=OA[0]\n";
   EXPECT_NEAR(OptimoMachine().Run(program).Number("VR[0]"), 2.4, 1e-5);
   EXPECT_NEAR(OptimoMachine().Set("CYCLE", "0.064").Run(program).Number("VR[0]"), 3.2, 1e-5);
 }
@@ -252,7 +251,7 @@ TEST(OptimoRunProgram, GoSetsTheMode) {
 // OPT-B.64, OPT-6.07: HOLD in a CALLed program halts there.
 TEST(OptimoRunProgram, HoldHaltsInTheCalledProgram) {
   OptimoMachine machine;
-  machine.Store(45, kAbsol + "MOVE (521.02,2201.2,-350.,0.,0.)\nVI[2]=1\n");
+  machine.Store(45, kAbsolSlowly + "MOVE (521.02,2201.2,-350.,0.,0.)\nVI[2]=1\n");
   const Ran ran = machine.Run("CALL 45\nVI[3]=1\n", {.inputs = {{At(2.0), InputKind::kHold}}});
   EXPECT_FALSE(ran.completed());
   EXPECT_EQ(ran.Var("VI[2]"), "0");
@@ -275,7 +274,7 @@ TEST(OptimoRunProgram, TimersAndNextMovesAtACall) {
   const Ran timer = machine.Run(
       "TIMER (2., 900)\nCALL 45\nVI[4]=VI[2]\nDELAY 3\nENDTASK\n900 VI[2]=VI[2]+1\nRETURN\n");
   EXPECT_EQ(timer.Var("VI[3]") + timer.Var("VI[4]") + timer.Var("VI[2]"), "001");
-  const Ran next = machine.Run(kAbsol + "MOVE (521.02,2201.2,-350.,0.,0.)/NEXT\nCALL 46\n");
+  const Ran next = machine.Run(kAbsolSlowly + "MOVE (521.02,2201.2,-350.,0.,0.)/NEXT\nCALL 46\n");
   EXPECT_NEAR(next.Number("VR[0]"), 521.02, 1e-3);
 }
 

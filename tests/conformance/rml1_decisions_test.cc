@@ -8,11 +8,11 @@
 namespace rmlcell::rml1::conformance {
 namespace {
 
-const std::string kTable = RMLCELL_SOURCE_DIR "/tests/conformance/rml1_decisions.csv";
+const std::string kDecisionsTable = RMLCELL_SOURCE_DIR "/tests/conformance/rml1_decisions.csv";
 
 // RML1-9.05: in one piece, byte by byte, and split at every position.
 TEST(Rml1Decisions, HoldOnTheBench) {
-  const std::vector<Example> examples = LoadExamples(kTable);
+  const std::vector<Example> examples = LoadExamples(kDecisionsTable);
   ASSERT_GT(examples.size(), 100U);
   for (const Example& example : examples) {
     const Observed whole = RunOnBench(example, 0);
@@ -28,7 +28,7 @@ TEST(Rml1Decisions, HoldOnTheBench) {
 }
 
 TEST(Rml1Decisions, HoldAsPrograms) {
-  for (const Example& example : LoadExamples(kTable)) {
+  for (const Example& example : LoadExamples(kDecisionsTable)) {
     for (const std::string& violation : Violations(example, RunAsProgram(example))) {
       ADD_FAILURE() << example.name() << " " << example.tags << " " << example.input << "\n  "
                     << violation;

@@ -9,7 +9,7 @@
 namespace rmlcell::rml1::conformance {
 namespace {
 
-const std::string kTable = RMLCELL_SOURCE_DIR "/tests/conformance/rml1_examples.csv";
+const std::string kExamplesTable = RMLCELL_SOURCE_DIR "/tests/conformance/rml1_examples.csv";
 
 class Rml1Examples : public ::testing::Test {
  protected:
@@ -22,7 +22,7 @@ class Rml1Examples : public ::testing::Test {
     }
   }
 
-  const std::vector<Example> examples_ = LoadExamples(kTable);
+  const std::vector<Example> examples_ = LoadExamples(kExamplesTable);
 };
 
 // RML1-7.01: the facts hold for the stream in one piece and for single bytes.

@@ -4,9 +4,10 @@ import os
 import pathlib
 import subprocess
 import tempfile
+import time
 import unittest
 
-from cell import BIN, SQUARE, Cell
+from cell import BIN, ENDLESS, SQUARE, Cell, inline_job, job_pb2, submit
 
 
 def run(*words, server=None):
@@ -46,6 +47,15 @@ class Local(unittest.TestCase):
         done = run("simulate", self.folder, "--main", 12, "--vars", "VR[0..1]", "--facts")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertIn("variable.VR[1]: 42.0", done.stdout)
+
+    def test_variables_are_shown_by_number(self):
+        done = run("simulate", self.file("v.S", "VR[2]=1E-7\nVR[10]=0.5\n"), "--vars", "VR[10],VI[3],VR[2]")
+        shown = [line.split() for line in done.stdout.splitlines() if "[" in line]
+        self.assertEqual(shown, [["VI[3]", "0"], ["VR[2]", "1.0E-7"], ["VR[10]", "0.5"]])
+
+    def test_an_error_of_a_mill_is_told_once(self):
+        done = run("simulate", self.file("bad.rml", "PU0,0;QQ5;PD100,100;PU;"))
+        self.assertEqual(done.stdout.count("RML1-E1:"), 1, done.stdout)
 
     def test_inputs_over_time_reach_the_program(self):
         inputs = self.file("inputs.txt", "# the operator\n2.5 IL[20] = 1\n")
@@ -108,6 +118,36 @@ class Local(unittest.TestCase):
         self.assertEqual(run("jobs", server="127.0.0.1:1").returncode, 3)
 
 
+class Sockets(unittest.TestCase):
+    def test_a_socket_in_use_is_refused_and_one_left_behind_is_taken(self):
+        with tempfile.TemporaryDirectory() as folder:
+            socket = pathlib.Path(folder) / "cell.sock"
+
+            def server(state):
+                return subprocess.Popen([BIN / "rmlcelld", "--state.directory", pathlib.Path(folder) / state,
+                                         "--listen.grpc", f"unix:{socket}", "--listen.web", "", "--workers.count", "0"],
+                                        stderr=subprocess.PIPE, text=True)
+
+            def answers():
+                return run("machines", server=f"unix:{socket}").returncode == 0
+
+            first = server("one")
+            self.addCleanup(first.communicate)
+            self.addCleanup(first.kill)
+            self.assertTrue(any(answers() or time.sleep(0.1) for _ in range(100)))
+            second = server("two")
+            self.assertIn("CELL-E9202", second.communicate(timeout=60)[1])
+            self.assertEqual(second.returncode, 69)
+            self.assertTrue(answers())
+            first.kill()
+            first.wait()
+            self.assertTrue(socket.exists())
+            third = server("two")
+            self.addCleanup(third.communicate)
+            self.addCleanup(third.kill)
+            self.assertTrue(any(answers() or time.sleep(0.1) for _ in range(100)))
+
+
 class Remote(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -129,6 +169,17 @@ class Remote(unittest.TestCase):
             self.assertEqual(run("picture", job, "-o", picture, server=at).returncode, 0)
             self.assertIn("<svg", picture.read_text())
             self.assertIn("succeeded", run("jobs", server=at).stdout)
+
+    def test_what_reads_from_a_pipe_sees_each_event_when_it_happens(self):
+        stub = self.cell.jobs()
+        job = submit(stub, inline_job("optimo-1", "endless.S", ENDLESS))
+        watch = subprocess.Popen([BIN / "rmlcell", "watch", job.name], stdout=subprocess.PIPE, text=True,
+                                 stderr=subprocess.DEVNULL, env={**os.environ, "RMLCELL_SERVER": self.cell.address})
+        try:
+            self.assertIn("queued", watch.stdout.readline())
+        finally:
+            stub.CancelJob(job_pb2.CancelJobRequest(name=job.name))
+            watch.communicate(timeout=60)
 
     def test_a_check_job_reports_findings_and_no_figures(self):
         with tempfile.TemporaryDirectory() as folder:

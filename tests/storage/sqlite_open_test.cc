@@ -106,11 +106,11 @@ TEST(SqliteOpen, EmptyFileBecomesAStore) {
 TEST(SqliteOpen, PathsThatCannotBeAreRefused) {
   const TestDirectory directory;
   WriteFile(directory.File("file"), "x");
-  constexpr auto kFailed = ErrorCode::kCellStoreFailed;
-  EXPECT_EQ(CodeOf(OpenAt("/proc/no/such/cell.db")), kFailed);
-  EXPECT_EQ(CodeOf(OpenAt(directory.File("file/cell.db"))), kFailed);
-  EXPECT_EQ(CodeOf(OpenAt(directory.File(""))), kFailed);  // the directory itself
-  EXPECT_EQ(CodeOf(OpenAt("")), kFailed);
+  constexpr auto kRefused = ErrorCode::kCellStoreFailed;
+  EXPECT_EQ(CodeOf(OpenAt("/proc/no/such/cell.db")), kRefused);
+  EXPECT_EQ(CodeOf(OpenAt(directory.File("file/cell.db"))), kRefused);
+  EXPECT_EQ(CodeOf(OpenAt(directory.File(""))), kRefused);  // the directory itself
+  EXPECT_EQ(CodeOf(OpenAt("")), kRefused);
   const auto refused = OpenAt(directory.File("file/cell.db"));
   EXPECT_THAT(refused.error().detail, HasSubstr("file"));
 }

@@ -2,14 +2,10 @@
 
 #include "engine/optimo/language/evaluate.h"
 #include "engine/optimo/language/parser.h"
+#include "engine/optimo/language/priority.h"
 
 namespace rmlcell::optimo {
 namespace {
-
-// Priorities of optimo.md B.9, lowest first.
-constexpr int kOrLevel = 1, kAndLevel = 2, kNotLevel = 3, kRelationLevel = 4, kSumLevel = 5,
-              kTermLevel = 6, kPowerLevel = 7;
-constexpr int kNoLevel = 0;
 
 Node BinaryNode(const Token& token) {
   switch (token.kind) {

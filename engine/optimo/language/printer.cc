@@ -6,19 +6,18 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/optimo/language/priority.h"
+
 namespace rmlcell::optimo {
 namespace {
-
-// Priorities as the parser has them; a leaf binds tightest.
-constexpr int kNotLevel = 3, kRelationLevel = 4, kSignedLevel = 8, kLeafLevel = 9;
 
 int LevelOf(const ExprNode& node) {
   switch (node.op) {
     case Node::kOr:
     case Node::kXor:
-      return 1;
+      return kOrLevel;
     case Node::kAnd:
-      return 2;
+      return kAndLevel;
     case Node::kNot:
       return kNotLevel;
     case Node::kLess:
@@ -30,13 +29,13 @@ int LevelOf(const ExprNode& node) {
       return kRelationLevel;
     case Node::kAdd:
     case Node::kSubtract:
-      return 5;
+      return kSumLevel;
     case Node::kMultiply:
     case Node::kDivide:
     case Node::kMod:
-      return 6;
+      return kTermLevel;
     case Node::kPower:
-      return 7;
+      return kPowerLevel;
     case Node::kNegate:
       return kSignedLevel;
     default:

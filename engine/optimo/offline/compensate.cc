@@ -17,7 +17,7 @@
 namespace rmlcell::optimo {
 namespace {
 
-constexpr int kDecimals = 5;  // OPT-8.11
+constexpr int kCompensateDecimals = 5;  // OPT-8.11
 
 enum class Side { kNone, kLeft, kRight };
 
@@ -331,7 +331,7 @@ void Compensator::Rewrite(const Instruction& i, const OffsetLeg& moved) {
 
 void Compensator::RewriteNumber(std::uint32_t node, double value) {
   const NodePlace& place = p_.node_places[node];
-  edits_.push_back({place.offset, static_cast<int>(place.length), FixedText(value, kDecimals)});
+  edits_.push_back({place.offset, static_cast<int>(place.length), FixedText(value, kCompensateDecimals)});
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 namespace rmlcell::optimo {
 namespace {
 
-constexpr int kDecimals = 6;  // OPT-8.28
+constexpr int kConvertDecimals = 6;  // OPT-8.28
 constexpr std::size_t kFindingsMax = 1000;
 
 bool IsRelation(Node op) { return op >= Node::kLess && op <= Node::kNotEqual; }
@@ -269,7 +269,7 @@ void Converter::ConvertNumber(const Part& part, Unit unit) {
   const std::optional<double> value = LiteralValue(p_.text.substr(place.offset, place.length));
   if (!value) return;
   edits_.push_back({place.offset, static_cast<int>(place.length),
-                    TrimmedText(Converted(*value, unit), kDecimals)});
+                    TrimmedText(Converted(*value, unit), kConvertDecimals)});
 }
 
 // ";$DIA=0.020": the amount is a length. OPT-8.39
@@ -289,7 +289,7 @@ void Converter::ConvertDirectives() {
     const std::optional<double> value = LiteralValue(text.substr(at, end - at));
     if (!value) continue;
     edits_.push_back({static_cast<std::int64_t>(comment.begin + at), static_cast<int>(end - at),
-                      TrimmedText(Converted(*value, Unit::kLinear), kDecimals)});
+                      TrimmedText(Converted(*value, Unit::kLinear), kConvertDecimals)});
   }
 }
 

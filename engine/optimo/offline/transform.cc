@@ -16,7 +16,7 @@
 namespace rmlcell::optimo {
 namespace {
 
-constexpr int kDecimals = 6;
+constexpr int kTransformDecimals = 6;
 constexpr double kStraightDown = 1e-9;  // of sin B: then A is free
 constexpr int kFirstShiftVariable = 86;
 
@@ -33,7 +33,7 @@ std::optional<double> Literal(const ParsedProgram& program, std::uint32_t expres
 
 Fix NumberEdit(const ParsedProgram& program, std::uint32_t expression, double value) {
   const NodePlace& place = program.node_places[program.module.FirstNode(expression)];
-  return {place.offset, static_cast<int>(place.length), TrimmedText(value, kDecimals)};
+  return {place.offset, static_cast<int>(place.length), TrimmedText(value, kTransformDecimals)};
 }
 
 Rewriting Finish(std::string_view text, std::vector<Fix> edits, Findings& findings) {

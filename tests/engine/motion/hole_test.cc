@@ -3,15 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/units.h"
+#include "tests/engine/motion/expect_near.h"
 
 namespace rmlcell::motion {
 namespace {
-
-void ExpectNear(const Vec3& got, const Vec3& want) {
-  EXPECT_NEAR(got.x, want.x, 1e-12);
-  EXPECT_NEAR(got.y, want.y, 1e-12);
-  EXPECT_NEAR(got.z, want.z, 1e-12);
-}
 
 const HoleCommand kHole{.from = {{130, 50, -540}, 0.1, 0.0},
                         .centre = {{100, 50, -550}, 0.1, 0.5},

@@ -6,16 +6,11 @@
 #include <limits>
 
 #include "engine/core/units.h"
+#include "tests/engine/motion/expect_near.h"
 #include "tests/engine/motion/standard_machine.h"
 
 namespace rmlcell::motion {
 namespace {
-
-void ExpectNear(const Vec3& got, const Vec3& want, double tolerance = 1e-9) {
-  EXPECT_NEAR(got.x, want.x, tolerance);
-  EXPECT_NEAR(got.y, want.y, tolerance);
-  EXPECT_NEAR(got.z, want.z, tolerance);
-}
 
 // Along the outward radial of sample 2's cylinder. OPT-B.03
 TEST(ToolAxes, PointAlongTheRadial) {

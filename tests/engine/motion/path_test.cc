@@ -6,15 +6,10 @@
 #include <limits>
 
 #include "engine/core/units.h"
+#include "tests/engine/motion/expect_near.h"
 
 namespace rmlcell::motion {
 namespace {
-
-void ExpectNear(const Vec3& got, const Vec3& want, double tolerance) {
-  EXPECT_NEAR(got.x, want.x, tolerance);
-  EXPECT_NEAR(got.y, want.y, tolerance);
-  EXPECT_NEAR(got.z, want.z, tolerance);
-}
 
 PathPiece ArcOf(const Vec3& from, const Vec3& via, const Vec3& to) {
   const Result<PathPiece::Arc3> arc = PathPiece::ArcThrough({from}, via, {to});

@@ -7,6 +7,7 @@
 #include "engine/core/units.h"
 #include "tests/engine/motion/plan_check.h"
 #include "tests/engine/motion/random_chain.h"
+#include "tests/engine/motion/whole_planner.h"
 
 namespace rmlcell::motion {
 namespace {
@@ -19,11 +20,6 @@ Drawn Draw(int most = 40) {
   return {*rc::gen::noShrink(rc::gen::arbitrary<std::uint64_t>()), *rc::gen::inRange(1, most)};
 }
 
-double Duration(const std::vector<PlannedMotion>& motions) {
-  LongSum sum;
-  for (const PlannedMotion& motion : motions) sum.Add(motion.duration_s());
-  return sum.value();
-}
 double Length(const std::vector<PlannedMotion>& motions) {
   LongSum sum;
   for (const PlannedMotion& motion : motions) sum.Add(motion.path.length());

@@ -11,7 +11,7 @@
 namespace rmlcell::motion {
 namespace {
 
-constexpr PathLimits kLimits{.speed = 100.0, .acceleration = 2000.0, .jerk = 40000.0};
+constexpr PathLimits kCellLimits{.speed = 100.0, .acceleration = 2000.0, .jerk = 40000.0};
 
 // Fills in the speeds of level 1: forward and backward by Reach, from `start` to `end`.
 void TimeByLevelOne(std::vector<RampCell>& cells, double start, double end) {
@@ -49,7 +49,7 @@ double TimeOf(const RampPlan& plan) {
 // From rest to 100 mm/s takes 5 mm (50 mm/s for 2 sqrt(100/40000) = 0.1 s): over ten stretches of 1
 // mm with one limit that is one ramp and 5 mm at full speed. Level 1 stops speeding up at each end.
 TEST(RampPlan, OneRampOverStretchesOfOneLimit) {
-  std::vector<RampCell> cells(100, RampCell{.length = 1.0, .limits = kLimits, .end_speed = 0.0});
+  std::vector<RampCell> cells(100, RampCell{.length = 1.0, .limits = kCellLimits, .end_speed = 0.0});
   TimeByLevelOne(cells, 0.0, 100.0);
   ASSERT_EQ(cells.back().end_speed, 100.0);
   RampPlan plan;
@@ -64,7 +64,7 @@ TEST(RampPlan, OneRampOverStretchesOfOneLimit) {
 
 // A stretch in the middle that allows only 20 mm/s is passed at 20, and not at more just before it.
 TEST(RampPlan, SlowStretchIsKept) {
-  std::vector<RampCell> cells(9, RampCell{.length = 2.0, .limits = kLimits, .end_speed = 0.0});
+  std::vector<RampCell> cells(9, RampCell{.length = 2.0, .limits = kCellLimits, .end_speed = 0.0});
   cells[4].limits.speed = 20.0;
   TimeByLevelOne(cells, 0.0, 0.0);
   RampPlan plan;
@@ -80,7 +80,7 @@ TEST(RampPlan, SlowStretchIsKept) {
 
 // A point between two fast stretches may have a limit of its own (OVERSH straight on).
 TEST(RampPlan, SlowPointIsKept) {
-  std::vector<RampCell> cells(6, RampCell{.length = 3.0, .limits = kLimits, .end_speed = 0.0});
+  std::vector<RampCell> cells(6, RampCell{.length = 3.0, .limits = kCellLimits, .end_speed = 0.0});
   cells[2].end_cap = 30.0;
   TimeByLevelOne(cells, 0.0, 0.0);
   RampPlan plan;

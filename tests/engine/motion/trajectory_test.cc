@@ -5,16 +5,11 @@
 #include <cmath>
 
 #include "engine/core/units.h"
+#include "tests/engine/motion/expect_near.h"
 #include "tests/engine/motion/random_chain.h"
 
 namespace rmlcell::motion {
 namespace {
-
-void ExpectNear(const Vec3& got, const Vec3& want, double tolerance) {
-  EXPECT_NEAR(got.x, want.x, tolerance);
-  EXPECT_NEAR(got.y, want.y, tolerance);
-  EXPECT_NEAR(got.z, want.z, tolerance);
-}
 
 // Velocities and accelerations of tip and axes are the derivatives of the positions, on every kind
 // of piece. motion.md 2.4

@@ -158,4 +158,10 @@ WholePlan PlanWhole(const std::vector<MoveCommand>& chain, const MachineLimits& 
   return plan;
 }
 
+double Duration(const std::vector<PlannedMotion>& motions) {
+  LongSum sum;
+  for (const PlannedMotion& motion : motions) sum.Add(motion.duration_s());
+  return sum.value();
+}
+
 }  // namespace rmlcell::motion

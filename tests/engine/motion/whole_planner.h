@@ -16,4 +16,7 @@ struct WholePlan {
 };
 WholePlan PlanWhole(const std::vector<MoveCommand>& chain, const MachineLimits& machine);
 
+// Of all motions, s.
+double Duration(const std::vector<PlannedMotion>& motions);
+
 }  // namespace rmlcell::motion

@@ -12,12 +12,6 @@
 namespace rmlcell::motion {
 namespace {
 
-double Duration(const std::vector<PlannedMotion>& motions) {
-  LongSum sum;
-  for (const PlannedMotion& motion : motions) sum.Add(motion.duration_s());
-  return sum.value();
-}
-
 // motion.md 12, C01: 90 degrees, legs 100 mm, SPEED 10: worked out there.
 TEST(WholePlanner, CornerOfReferenceCaseC01) {
   std::vector<MoveCommand> chain(2);

@@ -9,6 +9,7 @@
 #include "engine/simulation/box_tree.h"
 #include "engine/simulation/picture_difference.h"
 #include "tests/engine/simulation/fake_run.h"
+#include "tests/engine/simulation/laser_shape.h"
 #include "tests/engine/simulation/xml_check.h"
 
 namespace rmlcell::simulation {
@@ -193,21 +194,6 @@ TEST(BoxTree, FindsWhatTouches) {
     ADD_FAILURE();
     return true;
   });
-}
-
-std::size_t CountOf(std::string_view text, std::string_view what) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(what); at != std::string_view::npos; at = text.find(what, at + 1))
-    ++count;
-  return count;
-}
-
-machine::MachineShape Laser() {
-  machine::MachineShape shape;
-  shape.five_axis = true;
-  shape.limits = motion::StandardMachine();
-  shape.laser_watts = 1500.0;
-  return shape;
 }
 
 // A standalone document with all three kinds, a legend with their lengths, and names escaped.

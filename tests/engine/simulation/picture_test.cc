@@ -9,6 +9,7 @@
 #include "engine/simulation/picture_page.h"
 #include "tests/engine/motion/standard_machine.h"
 #include "tests/engine/simulation/fake_run.h"
+#include "tests/engine/simulation/laser_shape.h"
 #include "tests/engine/simulation/xml_check.h"
 
 namespace rmlcell::simulation {
@@ -27,11 +28,8 @@ machine::MachineShape Mill() {
   return shape;
 }
 
-machine::MachineShape Laser() {
-  machine::MachineShape shape;
-  shape.five_axis = true;
-  shape.limits = motion::StandardMachine();
-  shape.laser_watts = 1500.0;
+machine::MachineShape LaserWithTravel() {
+  machine::MachineShape shape = Laser();
   shape.travel.Add(Vec3{-600, -600, -1300});
   shape.travel.Add(Vec3{3600, 3100, 1100});
   return shape;
@@ -50,15 +48,6 @@ std::string SvgOf(const Script& script, const machine::MachineShape& shape,
   FakeRun run(script, recorder);
   run.Advance(kForever);
   return recorder.Svg(report, options);
-}
-
-std::size_t CountOf(std::string_view text, std::string_view what) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(what); at != std::string_view::npos;
-       at = text.find(what, at + 1)) {
-    ++count;
-  }
-  return count;
 }
 
 // All path data of a document, one after the other.
@@ -99,7 +88,7 @@ Script SomeLaserWork() {
 
 // A standalone document: well-formed, nothing that runs, nothing from outside.
 TEST(Picture, IsStandaloneAndWellFormed) {
-  for (const std::string& svg : {SvgOf(SomeMilling(), Mill()), SvgOf(SomeLaserWork(), Laser()),
+  for (const std::string& svg : {SvgOf(SomeMilling(), Mill()), SvgOf(SomeLaserWork(), LaserWithTravel()),
                                  SvgOf(Script(), Mill()), SvgOf(Script(), {})}) {
     EXPECT_EQ(XmlFault(svg), "");
     EXPECT_TRUE(svg.starts_with("<?xml"));
@@ -141,14 +130,14 @@ TEST(Picture, ViewsOfTheMachine) {
   const std::string mill = SvgOf(SomeMilling(), Mill());
   EXPECT_EQ(CountOf(mill, "<clipPath"), 1u);
   EXPECT_EQ(CountOf(mill, ">XY from above<"), 1u);
-  const std::string laser = SvgOf(SomeLaserWork(), Laser());
+  const std::string laser = SvgOf(SomeLaserWork(), LaserWithTravel());
   EXPECT_EQ(CountOf(laser, "<clipPath"), 4u);
   for (const char* view :
        {">XY from above<", ">XZ from the front<", ">YZ from the right<", ">in space<"}) {
     EXPECT_EQ(CountOf(laser, view), 1u) << view;
   }
   const std::string asked =
-      SvgOf(SomeLaserWork(), Laser(), Completed(), {.views = {PictureView::kXZ, PictureView::kYZ}});
+      SvgOf(SomeLaserWork(), LaserWithTravel(), Completed(), {.views = {PictureView::kXZ, PictureView::kYZ}});
   EXPECT_EQ(CountOf(asked, "<clipPath"), 2u);
 }
 
@@ -160,7 +149,7 @@ TEST(Picture, ShowsWhatTheIssueAsksFor) {
                            ">X mm<", ">Y mm<", ">completed<"}) {
     EXPECT_GE(CountOf(mill, word), 1u) << word;
   }
-  const std::string laser = SvgOf(SomeLaserWork(), Laser());
+  const std::string laser = SvgOf(SomeLaserWork(), LaserWithTravel());
   EXPECT_GE(CountOf(laser, ">pierce<"), 1u);
   EXPECT_GE(CountOf(laser, ">beam on<"), 1u);
   EXPECT_GE(CountOf(laser, ">direction of the head<"), 1u);

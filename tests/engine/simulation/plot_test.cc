@@ -8,18 +8,11 @@
 
 #include "engine/simulation/plot_page.h"
 #include "tests/engine/simulation/fake_run.h"
+#include "tests/engine/simulation/laser_shape.h"
 #include "tests/engine/simulation/xml_check.h"
 
 namespace rmlcell::simulation {
 namespace {
-
-machine::MachineShape Laser() {
-  machine::MachineShape shape;
-  shape.five_axis = true;
-  shape.limits = motion::StandardMachine();
-  shape.laser_watts = 1500.0;
-  return shape;
-}
 
 struct Drawn {
   std::string svg;

@@ -7,6 +7,7 @@
 
 #include "tests/engine/motion/standard_machine.h"
 #include "tests/engine/simulation/fake_run.h"
+#include "tests/engine/simulation/laser_shape.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -16,14 +17,6 @@ using machine::Signal;
 using machine::WaitKind;
 using motion::PathPiece;
 using motion::Vec3;
-
-machine::MachineShape Laser() {
-  machine::MachineShape shape;
-  shape.five_axis = true;
-  shape.limits = motion::StandardMachine();
-  shape.laser_watts = 1500.0;
-  return shape;
-}
 
 RunReport ReportOf(const Script& script, const machine::MachineShape& shape) {
   ReportRecorder recorder(shape);

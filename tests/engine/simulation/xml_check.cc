@@ -124,4 +124,13 @@ class Checker {
 
 std::string XmlFault(std::string_view document) { return Checker(document).Run(); }
 
+std::size_t CountOf(std::string_view text, std::string_view what) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(what); at != std::string_view::npos;
+       at = text.find(what, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
 }  // namespace rmlcell::simulation

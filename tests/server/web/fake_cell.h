@@ -24,6 +24,8 @@
 //   UNAVAILABLE.
 namespace rmlcell::web::testing {
 
+inline constexpr std::string_view kGetJob = "/rmlcell.v1.JobService/GetJob";
+inline constexpr std::string_view kWatchJob = "/rmlcell.v1.JobService/WatchJob";
 inline constexpr std::string_view kSecret = "only-the-gateway-knows";
 
 // What the fakes count.

@@ -11,7 +11,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::string_view kGetJob = "/rmlcell.v1.JobService/GetJob";
 constexpr std::string_view kJob1 = R"({"name":"jobs/1"})";
 
 WebOptions Small() {

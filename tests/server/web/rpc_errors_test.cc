@@ -16,8 +16,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::string_view kGetJob = "/rmlcell.v1.JobService/GetJob";
-constexpr std::string_view kWatchJob = "/rmlcell.v1.JobService/WatchJob";
 constexpr std::string_view kSubmitJob = "/rmlcell.v1.JobService/SubmitJob";
 constexpr std::string_view kMissing = R"({"name":"jobs/999"})";
 

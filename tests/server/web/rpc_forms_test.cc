@@ -14,8 +14,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::string_view kGetJob = "/rmlcell.v1.JobService/GetJob";
-constexpr std::string_view kWatchJob = "/rmlcell.v1.JobService/WatchJob";
 
 struct Frame {
   int flags = 0;

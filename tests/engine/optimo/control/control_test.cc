@@ -10,16 +10,6 @@ using machine::InputKind;
 using machine::OutcomeKind;
 using ::testing::ElementsAre;
 
-constexpr const char* kAbsol = "COORD ABSOL\nPATH LIN\n";
-
-std::string Value(const std::string& text, const std::string& variable, RunOptions options = {}) {
-  options.variables = {variable};
-  return RunText(text, options).variables[variable];
-}
-
-int CodeOf(const Ran& ran) { return ran.outcome.code ? Lookup(*ran.outcome.code).number : 0; }
-
-SimTime At(double seconds) { return FromSeconds(seconds); }
 
 // OPT-2.06, OPT-2.07: what ABSOL and ROBOT coordinates mean; L = 300.
 TEST(Motion, AbsolIsTheTipAndRobotTheColumn) {

@@ -13,11 +13,12 @@ using ::testing::ElementsAre;
 
 constexpr double kReal = 1e-4;  // mm; values have seven digits
 
-SimTime At(double seconds) { return FromSeconds(seconds); }
-
-std::string Value(const std::string& text, const std::string& variable, RunOptions options = {}) {
-  options.variables = {variable};
-  return RunText(text, options).variables[variable];
+// OPT-7.62, OPT-B.39: a small value is shown as it is, in the form that reads back to it.
+TEST(DataRules, ValuesAreShownWhole) {
+  EXPECT_EQ(Value("VR[0]=0.0001234567\n", "VR[0]"), "0.0001234567");
+  EXPECT_EQ(Value("VR[0]=2E-19\n", "VR[0]"), "2.0E-19");
+  EXPECT_EQ(Value("VR[0]=1E18*2.\n", "VR[0]"), "2.0E18");
+  EXPECT_EQ(Value("VR[0]=1E-15*1E-15\n", "VR[0]"), "0.0");
 }
 
 // OPT-1.16, OPT-1.17, OPT-7.63: variables are the machine's, not the program's: 0 when it is new,

@@ -14,7 +14,7 @@ namespace {
 using machine::InputKind;
 using machine::OutcomeKind;
 
-const std::string kAbsol =
+const std::string kAbsolThere =
     "COORD ABSOL\nPATH LIN\nMOVE (1000.,1000.,-400.,0.,0.)\n";  // steps 1 to 3
 
 struct Row {
@@ -86,15 +86,15 @@ INSTANTIATE_TEST_SUITE_P(
         Row{"goto", 60, 2, "VI[2]=1\nGOTO 77\n"}, Row{"gosub", 60, 1, "GOSUB 77\n"},
         Row{"computed_goto", 60, 2, "VI[2]=2\nGOTO VI[2] (20,77)\n20 VI[3]=1\n"},
         Row{"timer", 60, 2, "TIMER (1.,77)\nDELAY 2\nVI[2]=1\n"},
-        Row{"time", 60, 4, kAbsol + "MOVE (1400.,1000.,-400.,0.,0.)/TIME (.1,77)\n"},
+        Row{"time", 60, 4, kAbsolThere + "MOVE (1400.,1000.,-400.,0.,0.)/TIME (.1,77)\n"},
         Row{"hole_on_axis",
             129,
             5,
-            kAbsol +
+            kAbsolThere +
                 "PATH HOLE (5.)\nMOVE (1000.,1000.,-400.,0.,0.)/VIA (1000.,1000.,-300.,0.,0.)\n",
             {.parameters = {{"TEACH_SIM", "ON"}}}},
         Row{"hole_radius", 348, 5,
-            kAbsol +
+            kAbsolThere +
                 "PATH HOLE (0.)\nMOVE (1000.,1000.,-400.,0.,0.)/VIA (1000.,1000.,-300.,0.,0.)\n"},
         Row{"gas_three", 931, 3, "ERR 900\nVI[2]=1\nOL[9]=ON\n900 VI[3]=1\n"}),
     NameOf);
@@ -168,7 +168,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Row{"delay", 7205, 2, "VR[64]=-1.\nDELAY VR[64]\n"},
                       Row{"workdef", 7205, 1, "WORKDEF 1,0 (VR[0],80.,1.,90.)\n"},
                       Row{"time", 7205, 5,
-                          kAbsol + "VR[0]=-1.\nMOVE (1100.,1000.,-400.,0.,0.)/TIME (VR[0],900)\n"},
+                          kAbsolThere + "VR[0]=-1.\nMOVE (1100.,1000.,-400.,0.,0.)/TIME (VR[0],900)\n"},
                       Row{"assign", 7206, 2, "VI[2]=16\nASSIGN OL[12]=VI[2] /4\n"}),
     NameOf);
 
@@ -182,10 +182,10 @@ INSTANTIATE_TEST_SUITE_P(
             "MOVE (900.,3000.,-400.,0.,0.)/VIA (500.,3400.,-400.,0.,0.)\n"},
         Row{"lin_in_robot", 7302, 3, "COORD ROBOT\nPATH LIN\nMOVE (0.,0.,0.,0.,0.)\n"},
         Row{"fly_before_coord", 7303, 6,
-            kAbsol + "VI[2]=1\nMOVE (1100.,1000.,-400.,0.,0.)/FLY\nCOORD ROBOT\n"},
+            kAbsolThere + "VI[2]=1\nMOVE (1100.,1000.,-400.,0.,0.)/FLY\nCOORD ROBOT\n"},
         Row{"arc", 7305, 5,
-            kAbsol + "PATH CIR\nMOVE (1010.,1000.,-400.,0.,0.)/VIA (1020.,1000.,-400.,0.,0.)\n"},
-        Row{"no_speed", 7307, 5, kAbsol + "SPEED 0\nMOVE (1100.,1000.,-400.,0.,0.)\n"}),
+            kAbsolThere + "PATH CIR\nMOVE (1010.,1000.,-400.,0.,0.)/VIA (1020.,1000.,-400.,0.,0.)\n"},
+        Row{"no_speed", 7307, 5, kAbsolThere + "SPEED 0\nMOVE (1100.,1000.,-400.,0.,0.)\n"}),
     NameOf);
 
 // OPT-E.7309, OPT-E.7310, OPT-E.7401, OPT-E.7403, OPT-E.7404
@@ -193,7 +193,7 @@ INSTANTIATE_TEST_SUITE_P(
     MotionAndLaser, EndsTheRun,
     ::testing::Values(
         Row{"normal", 7309, 5,
-            kAbsol +
+            kAbsolThere +
                 "PATH HOLE (5.)\nMOVE (1000.,1000.,-400.,0.,0.)/VIA (1000.,1000.,-400.,0.,0.)\n"},
         Row{"not_zeroed",
             7310,
@@ -259,12 +259,12 @@ TEST_P(OnlyWarns, AtItsPlace) {
 INSTANTIATE_TEST_SUITE_P(
     Motion, OnlyWarns,
     ::testing::Values(
-        Row{"fly_cancelled", 7304, 5, kAbsol + "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nDELAY 1\n"},
+        Row{"fly_cancelled", 7304, 5, kAbsolThere + "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nDELAY 1\n"},
         Row{"straight_arc", 7306, 5,
-            kAbsol + "PATH CIR\nMOVE (1010.,1000.,-400.,0.,0.)/VIA (1010.,1000.,-400.,0.,0.)\n"},
-        Row{"no_via", 7308, 5, kAbsol + "PATH CIR\nMOVE (1010.,1000.,-400.,0.,0.)\n"},
+            kAbsolThere + "PATH CIR\nMOVE (1010.,1000.,-400.,0.,0.)/VIA (1010.,1000.,-400.,0.,0.)\n"},
+        Row{"no_via", 7308, 5, kAbsolThere + "PATH CIR\nMOVE (1010.,1000.,-400.,0.,0.)\n"},
         Row{"hole_without_via", 7308, 5,
-            kAbsol + "PATH HOLE (5.)\nMOVE (1010.,1000.,-400.,0.,0.)\n"},
+            kAbsolThere + "PATH HOLE (5.)\nMOVE (1010.,1000.,-400.,0.,0.)\n"},
         Row{"zero_sysdef", 7311, 2, "VI[2]=1\nSYSDEF (0.0,0.0,0.0,0.0,0.0,0.0)\n"},
         Row{"tcp_axis", 7312, 1, "TCP (0,0,0/0,0,0)\n"}),
     NameOf);
@@ -277,7 +277,7 @@ INSTANTIATE_TEST_SUITE_P(
         Row{"beside", 7313, 1, "TCP (0,0,3/0,1,3)\n"},
         Row{"reversed", 7315, 1, "TCP (0,0,0/0,0,5)\n"},
         Row{"reversal", 7316, 6,
-            kAbsol +
+            kAbsolThere +
                 "SPEED 20\nMOVE (1100.,1000.,-400.,0.,0.)/FLY\nMOVE (1000.,1000.,-400.,0.,0.)\n"},
         Row{"limited",
             7320,
@@ -297,12 +297,10 @@ INSTANTIATE_TEST_SUITE_P(
             "WORKDEF 2,5 (15)\nWORK 0,0/ON\nWORK 2,5/OFF\nWORK 0,0/OFF\n"}),
     NameOf);
 
-int CodeOf(const Ran& ran) { return ran.outcome.code ? Lookup(*ran.outcome.code).number : 0; }
-
 // OPT-E.7303, OPT-B.56: a fatal error, and an alarm, are not caught by ERR.
 TEST(ErrorRules, FatalErrorsAreNotCaught) {
   const Ran ran =
-      RunText("ERR 900\n" + kAbsol +
+      RunText("ERR 900\n" + kAbsolThere +
                   "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nCOORD ROBOT\nENDTASK\n900 VI[2]=1\n",
               {.variables = {"VI[2]"}});
   EXPECT_EQ(CodeOf(ran), 7303);
@@ -378,7 +376,7 @@ TEST(ErrorRules, EndlessTimesAreLong) {
   EXPECT_EQ(CodeOf(RunText("VR[0]=9E18\nTIMER (VR[0],900) /AUTO\nDELAY 1\n900 VI[2]=1\n",
                            {.budget = hour})),
             0);
-  EXPECT_EQ(CodeOf(RunText(kAbsol + "VR[0]=9E18\nMOVE (1100.,1000.,-400.,0.,0.)/TIME (VR[0],900)\n",
+  EXPECT_EQ(CodeOf(RunText(kAbsolThere + "VR[0]=9E18\nMOVE (1100.,1000.,-400.,0.,0.)/TIME (VR[0],900)\n",
                            {.budget = hour})),
             0);
 }

@@ -13,14 +13,6 @@ using machine::Mode;
 using machine::OutcomeKind;
 using ::testing::ElementsAre;
 
-SimTime At(double seconds) { return FromSeconds(seconds); }
-int CodeOf(const Ran& ran) { return ran.outcome.code ? Lookup(*ran.outcome.code).number : 0; }
-
-std::string Value(const std::string& text, const std::string& variable, RunOptions options = {}) {
-  options.variables = {variable};
-  return RunText(text, options).variables[variable];
-}
-
 // The scripted STARTs at 1 s, 2 s ... that many.
 machine::InputScript Starts(int count) {
   machine::InputScript script;

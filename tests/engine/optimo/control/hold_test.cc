@@ -13,9 +13,7 @@ using machine::InputKind;
 
 constexpr double kTwoLegs_s = 4.089999848;
 constexpr double kDeviation_mm = 1.358847515;
-const std::string kThere =
-    "COORD ABSOL\nPATH LIN\nMOVE (1000.,1000.,-400.,0.,0.)\nSPEED 10\n";  // steps 1 to 4
-const std::string kChain =
+const std::string kTwoCorners =
     kThere +
     "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nMOVE (1100.,1100.,-400.,0.,0.)/FLY\n"
     "OL[16]=ON\nMOVE (1200.,1100.,-400.,0.,0.)/FLY\nMOVE (1200.,1200.,-400.,0.,0.)\n";
@@ -31,8 +29,8 @@ Ran Held(const std::string& text, double hold_s, double start_s) {
 // OPT-4.17: on the second leg, whose bend is not begun: its own target is reached exactly, and
 // settled.
 TEST(Hold, MakesTheMoveUnderWayExact) {
-  const double begin = BeginOf(kChain);
-  const Ran ran = Held(kChain, begin + 3.0, begin + 20.0);
+  const double begin = BeginOf(kTwoCorners);
+  const Ran ran = Held(kTwoCorners, begin + 3.0, begin + 20.0);
   EXPECT_EQ(ran.First("halt HOLD").step, 6);
   EXPECT_NEAR(ran.First("halt HOLD").at_s, begin + kTwoLegs_s, 1e-6);
   EXPECT_LT(ran.DistanceTo({1100.0, 1100.0, -400.0}), 1e-9);
@@ -45,8 +43,8 @@ TEST(Hold, MakesTheMoveUnderWayExact) {
 
 // OPT-4.17: on the first leg the first target; 100 mm from rest to rest.
 TEST(Hold, HaltsAtTheFirstTarget) {
-  const double begin = BeginOf(kChain);
-  const Ran ran = Held(kChain, begin + 1.0, begin + 20.0);
+  const double begin = BeginOf(kTwoCorners);
+  const Ran ran = Held(kTwoCorners, begin + 1.0, begin + 20.0);
   EXPECT_EQ(ran.First("halt HOLD").step, 5);
   EXPECT_NEAR(ran.First("halt HOLD").at_s,
               begin + 100.0 / 50.0 + 2.0 * std::sqrt(50.0 / 40000.0) + 0.048, 1e-6);
@@ -56,7 +54,7 @@ TEST(Hold, HaltsAtTheFirstTarget) {
 
 // OPT-4.17: inside the bend the next move is finished too.
 TEST(Hold, FinishesTheBendAndTheNextMove) {
-  const Ran free = RunText(kChain);
+  const Ran free = RunText(kTwoCorners);
   const double begin = ToSeconds(free.moves.front().at);
   double in_bend = 0.0;
   for (const Ran::Part& part : free.parts) {
@@ -65,7 +63,7 @@ TEST(Hold, FinishesTheBendAndTheNextMove) {
     break;
   }
   ASSERT_GT(in_bend, begin);
-  const Ran ran = Held(kChain, in_bend, begin + 20.0);
+  const Ran ran = Held(kTwoCorners, in_bend, begin + 20.0);
   EXPECT_EQ(ran.First("halt HOLD").step, 6);
   EXPECT_NEAR(ran.First("halt HOLD").at_s, begin + kTwoLegs_s, 1e-6);
 }

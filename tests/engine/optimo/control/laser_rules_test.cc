@@ -15,14 +15,7 @@ using machine::OutcomeKind;
 using ::testing::ElementsAre;
 using ::testing::StartsWith;
 
-const std::string kAbsol = "COORD ABSOL\nPATH LIN\n";
 const machine::InputChange kDoorOpensAtOnce{SimTime(0), InputKind::kDoor, 0, 1.0};
-
-SimTime At(double seconds) { return FromSeconds(seconds); }
-int CodeOf(const Ran& ran) { return ran.outcome.code ? Lookup(*ran.outcome.code).number : 0; }
-
-// The steps 1 to 4 that bring the tip to (1000,1000,-400), at SPEED 10 from there on.
-const std::string kThere = kAbsol + "MOVE (1000.,1000.,-400.,0.,0.)\nSPEED 10\n";
 
 // What was told without compiling.
 std::vector<std::string> Told(const Ran& ran) {

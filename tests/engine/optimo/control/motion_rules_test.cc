@@ -13,15 +13,10 @@ namespace {
 
 using machine::InputKind;
 
-constexpr double kSettle_s = 0.048;
 constexpr double kCycle_s = 0.048;
 constexpr double kReal_mm = 1e-4;  // literals have seven digits (OPT-B.37)
-const std::string kAbsol = "COORD ABSOL\nPATH LIN\n";
 // The tip at home, with the head pointing down, is 300 mm below the column.
 constexpr motion::Vec3 kHomeTip{21.02, 2201.2, -350.0};
-
-SimTime At(double seconds) { return FromSeconds(seconds); }
-int CodeOf(const Ran& ran) { return ran.outcome.code ? Lookup(*ran.outcome.code).number : 0; }
 
 // OPT-2.05: five absolute coordinates in the active system.
 TEST(MotionRules, AMoveEndsAtItsFiveCoordinates) {

@@ -13,7 +13,6 @@ namespace {
 
 using machine::InputKind;
 
-constexpr double kSettle_s = 0.048;
 constexpr double kJerk = 40000.0;
 constexpr double kAt50 = 1.358847515;    // C01: distance from the corner at 50 mm/s
 constexpr double kAt25 = 0.480425146;    // C02, 25 mm/s

@@ -237,4 +237,13 @@ Ran RunText(const std::string& main, const RunOptions& options) {
   return ran;
 }
 
+std::string Value(const std::string& text, const std::string& variable, RunOptions options) {
+  options.variables = {variable};
+  return RunText(text, options).variables[variable];
+}
+
+int CodeOf(const Ran& ran) { return ran.outcome.code ? Lookup(*ran.outcome.code).number : 0; }
+
+SimTime At(double seconds) { return FromSeconds(seconds); }
+
 }  // namespace rmlcell::optimo::testing

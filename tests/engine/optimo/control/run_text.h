@@ -76,4 +76,20 @@ machine::RunSetup SetupOf(const std::string& main, const RunOptions& options = {
 // Compiles `main` as program 1 and runs it to its end, or until nothing more happens.
 Ran RunText(const std::string& main, const RunOptions& options = {});
 
+// The value that a variable has in the end.
+std::string Value(const std::string& text, const std::string& variable, RunOptions options = {});
+
+// The number of the code that a run ended with; 0: none.
+int CodeOf(const Ran& ran);
+
+SimTime At(double seconds);
+
+// How programs begin: steps 1 and 2.
+inline const std::string kAbsol = "COORD ABSOL\nPATH LIN\n";
+// Steps 1 to 4, which bring the tip to (1000,1000,-400); at SPEED 10 from there on.
+inline const std::string kThere = kAbsol + "MOVE (1000.,1000.,-400.,0.,0.)\nSPEED 10\n";
+
+// From the end of a motion until the next may begin.
+inline constexpr double kSettle_s = 0.048;
+
 }  // namespace rmlcell::optimo::testing

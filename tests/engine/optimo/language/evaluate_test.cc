@@ -9,7 +9,7 @@
 namespace rmlcell::optimo {
 namespace {
 
-class Variables : public VariableAccess {
+class StoredVariables : public VariableAccess {
  public:
   float Read(Variable variable) override { return values_[{variable.group, variable.index}]; }
   void Set(VariableGroup group, int index, float value) {
@@ -22,7 +22,7 @@ class Variables : public VariableAccess {
 
 // The value of `text` as the right-hand side of an assignment to `target`.
 Result<Value> ValueOf(const std::string& text, const std::string& target = "VR[0]") {
-  static Variables variables;
+  static StoredVariables variables;
   const Compilation compiled = MustCompile(target + " = " + text + "\n");
   if (!compiled.ok) return Error{ErrorCode::kSyntax, "did not compile", {}};
   return Evaluate(compiled.module.Value(compiled.module.instructions[0], 1), variables);
@@ -146,7 +146,7 @@ TEST(Evaluate, LogicalOperatorsTakeNoShortCut) {
 
 // OPT-B.52
 TEST(Evaluate, ComparisonOfRealsIsExact) {
-  Variables variables;
+  StoredVariables variables;
   variables.Set(VariableGroup::kVr, 0, 0.1F);
   const Compilation compiled = MustCompile("5 IF VR[0] = 0.1 THEN 5\n");
   const Result<Value> value =
@@ -158,7 +158,7 @@ TEST(Evaluate, ComparisonOfRealsIsExact) {
 
 // OPT-7.95, OPT-7.57
 TEST(Evaluate, NamesStandForTheirValues) {
-  Variables variables;
+  StoredVariables variables;
   const Compilation compiled =
       MustCompile("DECLARE X = VR[0]\nDECLARE XHOME = 10.5\nX = XHOME + 200.0\n");
   const Instruction& let = compiled.module.instructions[2];

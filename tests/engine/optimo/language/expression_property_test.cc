@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::uint32_t kRounds = 4000;
 
-class Variables : public VariableAccess {
+class ReferenceAccess : public VariableAccess {
  public:
-  explicit Variables(const ReferenceVariables& values) : values_(values) {}
+  explicit ReferenceAccess(const ReferenceVariables& values) : values_(values) {}
   float Read(Variable variable) override {
     switch (variable.group) {
       case VariableGroup::kVr:
@@ -51,7 +51,7 @@ void Agree(std::uint32_t seed, bool logical, Outcomes& outcomes) {
   ASSERT_TRUE(expected.understood);
   const Compilation compiled = MustCompile((logical ? "VL[0] = " : "VR[0] = ") + text + "\n");
   ASSERT_TRUE(compiled.ok);
-  Variables variables(values);
+  ReferenceAccess variables(values);
   const Result<Value> found =
       Evaluate(compiled.module.Value(compiled.module.instructions[0], 1), variables);
   ASSERT_EQ(found ? 0 : Lookup(found.error().code).number, expected.error);

@@ -16,7 +16,7 @@ struct Told {
   int line;
   std::string detail;
 };
-std::vector<Told> Findings(const std::string& text, ErrorCode code) {
+std::vector<Told> FindingsWith(const std::string& text, ErrorCode code) {
   std::vector<Told> told;
   for (const Diagnostic& d : TranslateOptimo({"a.S", text}, {}).diagnostics) {
     if (d.code == code) told.push_back({d.where.line, d.detail});
@@ -35,39 +35,39 @@ std::string CornerOf(double degrees, const std::string& before = "", bool beam =
 
 // OPT-2.62, OPT-E.7317: motion.md C01: 90 degrees at 50 mm/s: 1.3588 mm from the corner.
 TEST(ContourAdvice, SharpCornersAreToldWithTheirDistance) {
-  const auto told = Findings(CornerOf(90), ErrorCode::kFlySharp);
+  const auto told = FindingsWith(CornerOf(90), ErrorCode::kFlySharp);
   ASSERT_EQ(told.size(), 1U);
   EXPECT_EQ(told[0].line, 6);
   EXPECT_EQ(told[0].detail,
             "the contour turns by 90.0 degrees; the path stays 1.359 mm away from the corner");
-  EXPECT_TRUE(Findings(CornerOf(59.9), ErrorCode::kFlySharp).empty());
-  EXPECT_EQ(Findings(CornerOf(60.1), ErrorCode::kFlySharp).size(), 1U);
+  EXPECT_TRUE(FindingsWith(CornerOf(59.9), ErrorCode::kFlySharp).empty());
+  EXPECT_EQ(FindingsWith(CornerOf(60.1), ErrorCode::kFlySharp).size(), 1U);
 }
 
 // OPT-2.42, OPT-2.62: OVERSH 50 halves the speed; case C13: 0.480 mm.
 TEST(ContourAdvice, OvershotCornersAreMeasuredAtTheirSpeed) {
   const std::string text = CornerOf(90);
-  const auto told = Findings("OVERSH 50\n" + text, ErrorCode::kFlySharp);
+  const auto told = FindingsWith("OVERSH 50\n" + text, ErrorCode::kFlySharp);
   ASSERT_EQ(told.size(), 1U);
   EXPECT_NE(told[0].detail.find("stays 0.480 mm"), std::string::npos) << told[0].detail;
 }
 
 // OPT-2.62: OVERSH 0, beam off, or a corner that is no passage: nothing to say.
 TEST(ContourAdvice, HarmlessCornersAreNotTold) {
-  EXPECT_TRUE(Findings("OVERSH 0\n" + CornerOf(90), ErrorCode::kFlySharp).empty());
-  EXPECT_TRUE(Findings(CornerOf(90, "", false), ErrorCode::kFlySharp).empty());
-  EXPECT_TRUE(Findings(CornerOf(90, "DELAY 1\n"), ErrorCode::kFlySharp).empty());
+  EXPECT_TRUE(FindingsWith("OVERSH 0\n" + CornerOf(90), ErrorCode::kFlySharp).empty());
+  EXPECT_TRUE(FindingsWith(CornerOf(90, "", false), ErrorCode::kFlySharp).empty());
+  EXPECT_TRUE(FindingsWith(CornerOf(90, "DELAY 1\n"), ErrorCode::kFlySharp).empty());
   // What is not known cannot be told: a speed from a variable, a corner that a jump comes to.
-  EXPECT_TRUE(Findings(CornerOf(90, "SPEED VR[64]\n"), ErrorCode::kFlySharp).empty());
-  EXPECT_TRUE(Findings(CornerOf(90, "10\n") + "GOTO 10\n", ErrorCode::kFlySharp).empty());
-  EXPECT_EQ(Findings(CornerOf(90, "OL[16]=ON\n"), ErrorCode::kFlySharp).size(), 1U);
+  EXPECT_TRUE(FindingsWith(CornerOf(90, "SPEED VR[64]\n"), ErrorCode::kFlySharp).empty());
+  EXPECT_TRUE(FindingsWith(CornerOf(90, "10\n") + "GOTO 10\n", ErrorCode::kFlySharp).empty());
+  EXPECT_EQ(FindingsWith(CornerOf(90, "OL[16]=ON\n"), ErrorCode::kFlySharp).size(), 1U);
 }
 
 // OPT-2.62: a comment allows it, as any other advice.
 TEST(ContourAdvice, CommentsSilenceIt) {
   const std::string text = CornerOf(90);
   const std::size_t corner = text.find("/FLY") + 4;
-  EXPECT_TRUE(Findings(text.substr(0, corner) + " ; rmlcell: allow 7317" + text.substr(corner),
+  EXPECT_TRUE(FindingsWith(text.substr(0, corner) + " ; rmlcell: allow 7317" + text.substr(corner),
                        ErrorCode::kFlySharp)
                   .empty());
 }
@@ -76,7 +76,7 @@ TEST(ContourAdvice, CommentsSilenceIt) {
 // K = 0.9719 and J = 4.2 (motion.md 4.2, 4.3), a_n = 1600 and j_n = 32000: sqrt(a_n d/K) = 28.7,
 // (j_n d^2/J)^(1/3) = 12.4 mm/s, and the bound J lies at most 6 % too high: v <= 12.64.
 TEST(ContourAdvice, ShortNeighboursCostSpeed) {
-  const auto told = Findings(
+  const auto told = FindingsWith(
       "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (0,0,0,0,0)\nMOVE (100,0,0,0,0)/FLY\n"
       "MOVE (100,1,0,0,0)/FLY\nMOVE (200,1,0,0,0)\n",
       ErrorCode::kFlyCapped);
@@ -93,7 +93,7 @@ TEST(ContourAdvice, ShortNeighboursCostSpeed) {
   EXPECT_GE(speed, 12.35);
   EXPECT_LE(speed, 12.65);
   // With room for the whole bend (4.05 mm of cut, case C01) it costs nothing.
-  EXPECT_TRUE(Findings("COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (0,0,0,0,0)\nMOVE (100,0,0,0,0)/FLY\n"
+  EXPECT_TRUE(FindingsWith("COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (0,0,0,0,0)\nMOVE (100,0,0,0,0)/FLY\n"
                        "MOVE (100,8.2,0,0,0)/FLY\nMOVE (200,8.2,0,0,0)\n",
                        ErrorCode::kFlyCapped)
                   .empty());
@@ -102,7 +102,7 @@ TEST(ContourAdvice, ShortNeighboursCostSpeed) {
 // OPT-E.7319: B = 0.5 degrees is 0.008727 rad, 31 degrees are 0.541052 rad, 29 are 0.506145.
 TEST(ContourAdvice, AHeadThatSwingsWhileStraightDown) {
   const auto count = [](const std::string& from, const std::string& to) {
-    return Findings("COORD ABSOL\nPATH LIN\nMOVE (0,0,0," + from + ")\nMOVE (100,0,0," + to + ")\n",
+    return FindingsWith("COORD ABSOL\nPATH LIN\nMOVE (0,0,0," + from + ")\nMOVE (100,0,0," + to + ")\n",
                     ErrorCode::kHeadSingular)
         .size();
   };
@@ -110,7 +110,7 @@ TEST(ContourAdvice, AHeadThatSwingsWhileStraightDown) {
   EXPECT_EQ(count("0,0.008727", "0.506145,0.008727"), 0U);
   EXPECT_EQ(count("0,0.0192", "0.541052,0.0192"), 0U);   // 1.1 degrees
   EXPECT_EQ(count("0,0.785398", "3.14,-0.785398"), 1U);  // passes through B = 0
-  EXPECT_EQ(Findings("COORD ABSOL\nPATH PTP\nMOVE (0,0,0,0,0)\nMOVE (100,0,0,1,0)\n",
+  EXPECT_EQ(FindingsWith("COORD ABSOL\nPATH PTP\nMOVE (0,0,0,0,0)\nMOVE (100,0,0,1,0)\n",
                      ErrorCode::kHeadSingular)
                 .size(),
             0U);  // no contour

@@ -1,0 +1,31 @@
+#include "server/web/session_table.h"
+
+namespace rmlcell::web {
+
+void SessionTable::Add(OpenSession* session) {
+  const std::lock_guard lock(mutex_);
+  sessions_.insert(session);
+}
+
+void SessionTable::Remove(OpenSession* session) {
+  const std::lock_guard lock(mutex_);
+  sessions_.erase(session);
+  changed_.notify_all();
+}
+
+std::size_t SessionTable::size() const {
+  const std::lock_guard lock(mutex_);
+  return sessions_.size();
+}
+
+void SessionTable::EndAll(bool at_once) {
+  const std::lock_guard lock(mutex_);
+  for (OpenSession* session : sessions_) session->End(at_once);
+}
+
+bool SessionTable::WaitUntilEmpty(std::chrono::milliseconds patience) {
+  std::unique_lock lock(mutex_);
+  return changed_.wait_for(lock, patience, [this] { return sessions_.empty(); });
+}
+
+}  // namespace rmlcell::web
