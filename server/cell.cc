@@ -123,7 +123,13 @@ Status Cell::Parts::OpenStore() {
       {.path = config.state_directory + "/cell.db",
        .keep_finished_jobs = config.jobs_keep_finished,
        .log_bytes_prepared = kLogBytesPrepared});
-  if (!opened) return opened.error();
+  if (!opened) {
+    Error error = opened.error();
+    if (error.code == ErrorCode::kCellStoreCorrupt) {
+      error.detail += "; the server does not start with it. Use another state.directory for an empty store";
+    }
+    return error;
+  }
   store = std::move(*opened);
   return MakeMachines();
 }

@@ -70,13 +70,10 @@ Result<ProgramName> ParseProgramName(std::string_view name) {
   const auto rest = After(name.substr(slash), "/programs/");
   const auto number = rest ? Number(*rest) : std::nullopt;
   if (!machine || !number) return Malformed(name, kForm);
-  if (*number >= kSlotMin + kExecutableOffset && *number <= kSlotMax + kExecutableOffset) {
-    return ProgramName{*machine, static_cast<int>(*number) - kExecutableOffset, true};
-  }
-  if (*number < kSlotMin || *number > kSlotMax) {
-    return Error{ErrorCode::kProgramNumber, "program number is " + std::to_string(*number), {}};
-  }
-  return ProgramName{*machine, static_cast<int>(*number), false};
+  ProgramName made{.machine = *machine, .number = *number, .slot = 0, .executable = *number > kExecutableOffset};
+  const std::int64_t slot = *number - (made.executable ? kExecutableOffset : 0);
+  if (slot >= kSlotMin && slot <= kSlotMax) made.slot = static_cast<int>(slot);
+  return made;
 }
 
 Result<ScheduleName> ParseScheduleName(std::string_view name) {

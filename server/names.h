@@ -18,11 +18,12 @@ Result<std::string> ParseMachineName(std::string_view name);  // "machines/optim
 Result<std::string> ParseProjectName(std::string_view name);  // "projects/bracket"
 Result<std::int64_t> ParseJobName(std::string_view name);     // "jobs/17"
 
-// "machines/optimo-1/programs/45", an executable by its own number. Errors also: ProgramNumber (7101) for a
-// number that is neither 1..99 nor 101..199.
+// "machines/optimo-1/programs/45", an executable by its own number. Whether the machine has such a number is its
+// family's to say (jobs/program_place.h).
 struct ProgramName {
   std::string machine;
-  int slot = 0;             // 1..99
+  std::int64_t number = 0;  // as it stands in the name
+  int slot = 0;             // 1..99; 0: the number is neither 1..99 nor 101..199
   bool executable = false;  // named as slot + 100
 };
 Result<ProgramName> ParseProgramName(std::string_view name);

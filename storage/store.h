@@ -106,6 +106,8 @@ class Store {
   virtual Result<std::vector<ProgramSummary>> ListPrograms(std::string_view machine, int after_slot,
                                                            int limit) = 0;
   virtual Result<ProgramRecord> GetProgram(std::string_view machine, int slot) = 0;  // CellNotFound
+  // Without its bytes. CellNotFound.
+  virtual Result<ProgramSummary> GetProgramSummary(std::string_view machine, int slot) = 0;
   // The program memory of the machine for a run, slots in order: every program with its object and
   // executable, without its source.
   virtual Result<std::vector<ProgramRecord>> GetProgramMemory(std::string_view machine) = 0;

@@ -129,7 +129,7 @@ int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
     if (bytes->size() > kInlineBytesMax) {
       return Refuse({ErrorCode::kCellTooLarge,
                          wanted.file + " has " + std::to_string(bytes->size()) + " bytes, a job takes " +
-                             std::to_string(kInlineBytesMax) + " with it",
+                             std::to_string(kInlineBytesMax) + " with it: put it into a slot first, then submit with --slot",
                          {}});
     }
     job.mutable_inline_program()->set_file_name(bridge::Utf8(std::filesystem::path(wanted.file).filename().string()));

@@ -287,6 +287,7 @@ int UpdateProject(const Remote& remote, const std::string& project, const std::s
   v1::UpdateProjectRequest request;
   *request.mutable_project() = *std::move(changed);
   request.mutable_project()->set_name(FullName("projects", project));
+  request.mutable_update_mask()->add_paths("*");  // what the file lacks is not in the project any more
   const auto stub = v1::ProjectService::NewStub(Connect(remote));
   grpc::ClientContext context;
   Prepare(context);

@@ -60,6 +60,7 @@ constexpr std::array kRuleFacts = {
     RuleFact{"OPT-3.14", "On an ARROW laser the first WORK ON opens the shutter; OFF switches the beam only."},
     RuleFact{"OPT-3.17", "The shutter closes when the door is opened in HOLD."},
     RuleFact{"OPT-3.20", "WORK 0 /ON switches the beam on with the settings that are active, without a dwell."},
+    RuleFact{"OPT-3.21", "WORK 1 /ON dwells for the DELAY of its WORKDEF at PEAK power; a delay of 0 is no dwell."},
     RuleFact{"OPT-3.24", "WORK 2 /OFF switches the beam off, although WORK 2 /ON does not switch it on."},
     RuleFact{"OPT-3.33", "Every process is turned OFF before GO or CALL."},
     RuleFact{"OPT-3.34", "Every process is turned OFF before the program ends."},

@@ -121,6 +121,7 @@ class Actions {
   // "; rmlcell: allow 7033" on the line where the statement begins; into a comment that is there.
   void AddSilence(const Diagnostic& finding, std::size_t begin) {
     const std::string& text = document_.text();
+    if (begin < text.size() && text[begin] == ';') return;  // of a directive itself
     const std::size_t line_end = std::min(text.find('\n', begin), text.size());
     const std::size_t line = begin == 0 ? 0 : text.rfind('\n', begin - 1) + 1;
     const std::string number = std::to_string(Lookup(finding.code).number);

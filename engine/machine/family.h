@@ -20,7 +20,19 @@ struct FamilyInfo {
   std::string_view axes{};        // "X Y Z A B"
   bool has_executables = false; // makes executables at slot + 100
   bool has_schedules = false;   // laser schedules and process definitions
+  bool hold_in_remote = false;  // the HOLD key works in mode REMOTE, too
+  // The machine's own codes for a number that is no slot, and for a slot without program. A machine without
+  // program memory has none: the cell keeps its programs, and says so in its own words.
+  ErrorCode no_slot = ErrorCode::kCellInvalidArgument;
+  ErrorCode empty_slot = ErrorCode::kCellNotFound;
 };
+
+// The key that holds a run from afar: HOLD, after the present instruction; STOP, at once on the
+// path, where HOLD has no effect.
+inline InputKind HoldKey(const FamilyInfo& info, Mode mode) {
+  const bool works = mode != Mode::kRemote || info.hold_in_remote;
+  return works ? InputKind::kHold : InputKind::kStop;
+}
 
 // A program text or stream as it comes from a user.
 struct SourceFile {
@@ -119,6 +131,16 @@ class MachineFamily {
   virtual const FamilyInfo& info() const = 0;
   virtual std::span<const ParameterInfo> parameters() const = 0;
   virtual std::span<const MachineProfile> profiles() const = 0;
+
+  // Whether the parameters of a machine fit together: what no range of a single one tells. Whoever takes
+  // parameters from outside asks this before anything is kept or run.
+  // Error: CellParameterRange, with both names and values.
+  virtual Status CheckParameters(const Parameters& /*parameters*/) const { return {}; }
+
+  // Whether Run::ReadVariable knows the name, on a machine with these parameters.
+  virtual bool HasVariable(const Parameters& /*parameters*/, std::string_view /*name*/) const {
+    return false;
+  }
 
   // Every figure that Run::figures can hold; docs/facts.md lists them.
   virtual std::span<const FigureInfo> figures() const { return {}; }

@@ -47,6 +47,22 @@ double JerkAllowed(const AxisDerivatives& q, const AxisLimits& axes, const AxisS
       [&](std::size_t i) { return shares.acceleration * axes.jerk[i] / std::abs(q.first[i]); });
 }
 
+// Whether no axis is asked for more than it can, without a division: nearly always so.
+bool Allows(const AxisDerivatives& q, const AxisLimits& axes, const AxisShares& shares,
+            const PathLimits& limits) {
+  const double square = limits.speed * limits.speed;
+  bool enough = true;
+  for (std::size_t i = 0; i < kAxisCount; ++i) {
+    const double along = std::abs(q.first[i]);
+    const double across = std::abs(q.second[i]) * square;
+    const double acceleration = shares.acceleration * axes.acceleration[i];
+    enough = enough && along * limits.speed <= shares.speed * axes.speed[i] &&
+             2.0 * across <= acceleration && across + along * limits.acceleration <= acceleration &&
+             (along * limits.jerk <= shares.acceleration * axes.jerk[i] || std::isinf(limits.jerk));
+  }
+  return enough;
+}
+
 // Upper bounds of both derivatives over the whole piece, cheap: enough for most moves.
 AxisDerivatives Bounds(const PathPiece& path, const Head& head) {
   const double arm = head.arm_mm();
@@ -93,10 +109,10 @@ AxisDerivatives DerivativesAt(const PathPiece& path, const Head& head, double s)
 
 AxisDerivatives ThroughHead(const Head& head, const TipPose& pose, const PathDerivatives& first,
                             const PathDerivatives& second) {
-  const TipRates rates{first.tip, first.a, first.b};
-  return {.first = AxisRates(head, pose.a_rad, pose.b_rad, rates),
-          .second = AxisSecondRates(head, pose.a_rad, pose.b_rad, rates,
-                                    {second.tip, second.a, second.b})};
+  const BothAxisRates rates =
+      AxisRatesOfBoth(head, pose.a_rad, pose.b_rad, {first.tip, first.a, first.b},
+                      {second.tip, second.a, second.b});
+  return {.first = rates.first, .second = rates.second};
 }
 
 PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits& axes,
@@ -110,48 +126,51 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
     for (std::size_t i = 0; i < 3; ++i) {
       enough = enough && shares.speed * axes.speed[i] >= limits.speed &&
                shares.acceleration * axes.acceleration[i] >= limits.acceleration &&
-               shares.acceleration * axes.jerk[i] >= limits.jerk;
+               (shares.acceleration * axes.jerk[i] >= limits.jerk || std::isinf(limits.jerk));
     }
     if (enough) return limits;
   }
   const AxisDerivatives bounds = constant ? DerivativesAt(path, head, 0.0) : Bounds(path, head);
-  const double by_bound = SpeedAllowed(bounds, axes, shares);
-  if (constant || by_bound >= limits.speed) {
-    limits.speed = std::min(limits.speed, by_bound);
-    const double acceleration = AccelerationAllowed(bounds, axes, shares, limits.speed);
-    const double jerk = JerkAllowed(bounds, axes, shares);
-    if (constant || (acceleration >= limits.acceleration && jerk >= limits.jerk)) {
-      limits.acceleration = std::min(limits.acceleration, acceleration);
-      if (std::isfinite(limits.jerk)) limits.jerk = std::min(limits.jerk, jerk);
-      return limits;
-    }
-  }
+  const auto by_bounds = [&] {
+    limits.speed = std::min(limits.speed, SpeedAllowed(bounds, axes, shares));
+    limits.acceleration =
+        std::min(limits.acceleration, AccelerationAllowed(bounds, axes, shares, limits.speed));
+    if (std::isfinite(limits.jerk))
+      limits.jerk = std::min(limits.jerk, JerkAllowed(bounds, axes, shares));
+    return limits;
+  };
+  if (constant) return by_bounds();
+  if (Allows(bounds, axes, shares, limits)) return limits;
 
   if (!arc) {
     // A short turn: places in the middle of a few parts, and how far the derivatives can get away
     // from them. Within 1 %.
     constexpr double kRoom = 0.004;
     constexpr std::size_t kPartsMax = 8;
-    const double rate = std::abs(path.a_rate()) + std::abs(path.b_rate());
+    const PathDerivatives first = path.First(0.0);  // and everywhere: there is no second one
+    const double rate = std::abs(first.a) + std::abs(first.b);
     const double half = 0.5 * path.length();
     const double drift = half * head.arm_mm() * rate * rate;
-    const double wanted = std::ceil(std::max(drift / Norm(path.Tangent(0.0)), half * rate) / kRoom);
+    const double wanted = std::ceil(std::max(drift / Norm(first.tip), half * rate) / kRoom);
     if (wanted <= static_cast<double>(kPartsMax)) {
       const auto parts = static_cast<std::size_t>(std::max(wanted, 1.0));
       const double share = 1.0 / static_cast<double>(parts);
       std::array<AxisDerivatives, kPartsMax> at;
       for (std::size_t k = 0; k < parts; ++k) {
         AxisDerivatives& q = at[k];
-        q = DerivativesAt(path, head, path.length() * (static_cast<double>(k) + 0.5) * share);
+        const double s = path.length() * (static_cast<double>(k) + 0.5) * share;
+        q = ThroughHead(head, path.At(s), first, {});
         for (std::size_t i = 0; i < 3; ++i) {
           q.first[i] = std::abs(q.first[i]) + drift * share;
           q.second[i] = std::abs(q.second[i]) + drift * share * rate;
         }
+        if (Allows(q, axes, shares, limits)) continue;
         limits.speed = std::min(limits.speed, SpeedAllowed(q, axes, shares));
         if (std::isfinite(limits.jerk))
           limits.jerk = std::min(limits.jerk, JerkAllowed(q, axes, shares));
       }
       for (std::size_t k = 0; k < parts; ++k) {
+        if (Allows(at[k], axes, shares, limits)) continue;
         limits.acceleration =
             std::min(limits.acceleration, AccelerationAllowed(at[k], axes, shares, limits.speed));
       }
@@ -162,14 +181,7 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
   const double turning = std::abs(path.to().a_rad - path.from().a_rad) +
                          std::abs(path.to().b_rad - path.from().b_rad) +
                          (arc ? path.sweep_rad() : 0.0);
-  if (!(turning <= kTurningMax_rad)) {
-    limits.speed = std::min(limits.speed, by_bound);
-    limits.acceleration =
-        std::min(limits.acceleration, AccelerationAllowed(bounds, axes, shares, limits.speed));
-    if (std::isfinite(limits.jerk))
-      limits.jerk = std::min(limits.jerk, JerkAllowed(bounds, axes, shares));
-    return limits;
-  }
+  if (!(turning <= kTurningMax_rad)) return by_bounds();
   const int intervals =
       std::max(static_cast<int>(std::ceil(turning / kSampleAngle_rad)), kIntervalsMin);
   const auto least = [&](auto limit) {

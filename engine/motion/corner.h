@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "engine/motion/axis_demand.h"
 #include "engine/motion/corner_curve.h"
 #include "engine/motion/machine_limits.h"
@@ -27,7 +29,12 @@ class Corner {
   Corner() = default;
 
   // Precondition: `before` ends where `after` begins; neither is by sigma.
-  static Corner Between(const PathPiece& before, const PathPiece& after);
+  static Corner Between(const PathPiece& before, const PathPiece& after) {
+    Corner corner;
+    corner.Assign(before, after);
+    return corner;
+  }
+  void Assign(const PathPiece& before, const PathPiece& after);  // in place
 
   // kStopReversal, kThrough or kBlend.
   Passage passage() const { return passage_; }
@@ -53,6 +60,7 @@ class Corner {
   // `cut_mm`.
   double PlainLength(double cut_mm) const;
   double PlainDeviation(double cut_mm) const;
+  double PlainBow(double cut_mm) const;  // its middle is the corner plus this times (out - in)
   double PlainSpeed(double cut_mm, const MachineLimits& machine) const;
   double PlainCurvature(double cut_mm) const { return bend_ / cut_mm; }
 
@@ -63,6 +71,7 @@ class Corner {
   bool straight_ = false;
   double half_sine_ = 0.0;  // of the turn
   double half_cosine_ = 1.0;
+  double rho_ = 0.0;   // of motion.md 4.2
   double bend_ = 0.0;  // K of motion.md 4.2: peak curvature times cut
   double jerk_ = 0.0;  // J of 4.3
   double curvature_jump_ = 0.0;
@@ -85,7 +94,8 @@ bool AxesFollow(const CornerCurve& curve, const Head& head, const MachineLimits&
                 double speed, double bend_per_mm);
 
 // The highest speed at which a curve can be passed: normal acceleration, jerk and axes.
-// motion.md 4.3; to 1e-9.
-double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLimits& machine);
+// motion.md 4.3; to 1e-9. When it is above `enough` that is all that can be told from it.
+double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLimits& machine,
+                    double enough = HUGE_VAL);
 
 }  // namespace rmlcell::motion

@@ -51,7 +51,7 @@ double CornerCurve::Scale(const Vec3& tangent_in, const Vec3& tangent_out, doubl
   return 2.0 * std::sqrt(half_cosine) * cut_mm;
 }
 
-CornerCurve::CornerCurve(const CurveEnd& from, const CurveEnd& to, double cut_mm) {
+CornerCurve::CornerCurve(const CurveEnd& from, const CurveEnd& to, double cut_mm) : turns_(true) {
   const double scale = Scale(from.tangent, to.tangent, cut_mm);
   const double square = scale * scale;
   Fit(tip_, from.pose.tip, to.pose.tip - from.pose.tip, from.tangent * scale, to.tangent * scale,
@@ -62,16 +62,19 @@ CornerCurve::CornerCurve(const CurveEnd& from, const CurveEnd& to, double cut_mm
       0.0, 0.0);
 }
 
-CornerCurve::CornerCurve(const TipPose& corner, const Vec3& tangent_in, const Vec3& tangent_out,
-                         double cut_mm) {
-  const double scale = Scale(tangent_in, tangent_out, cut_mm);
-  Fit(tip_, corner.tip - tangent_in * cut_mm, (tangent_in + tangent_out) * cut_mm,
-      tangent_in * scale, tangent_out * scale, Vec3{}, Vec3{});
-  a_[0] = corner.a_rad;
-  b_[0] = corner.b_rad;
+CornerCurve::CornerCurve(const PlainCorner& corner) {
+  const double cut = corner.cut_mm;
+  const double scale = Scale(corner.tangent_in, corner.tangent_out, cut);
+  Fit(tip_, corner.at.tip - corner.tangent_in * cut, (corner.tangent_in + corner.tangent_out) * cut,
+      corner.tangent_in * scale, corner.tangent_out * scale, Vec3{}, Vec3{});
+  a_[0] = corner.at.a_rad;
+  b_[0] = corner.at.b_rad;
 }
 
-TipPose CornerCurve::At(double u) const { return {Value(tip_, u), Value(a_, u), Value(b_, u)}; }
+TipPose CornerCurve::At(double u) const {
+  if (!turns_) return {Value(tip_, u), a_[0], b_[0]};
+  return {Value(tip_, u), Value(a_, u), Value(b_, u)};
+}
 
 PathDerivatives CornerCurve::Derivative(double u, int order) const {
   if (order == 1) return {First(tip_, u), First(a_, u), First(b_, u)};
@@ -94,6 +97,23 @@ PathDerivatives CornerCurve::SecondByLength(double u) const {
           (e.b - d.b * along) * square};
 }
 
+double CornerCurve::JerkPerCube(double u) const {
+  const Vec3 first = First(tip_, u);
+  const Vec3 second = Second(tip_, u);
+  const Vec3 third = Third(tip_, u);
+  const double square = Dot(first, first);
+  const double speed = std::sqrt(square);
+  const Vec3 cross = Cross(first, second);
+  const Vec3 change = Cross(first, third);
+  const double n = Norm(cross);
+  const double kappa = n / (square * speed);
+  const double n_change = n > 0.0 ? Dot(cross, change) / n : Norm(change);
+  const double kappa_change =
+      (n_change / (square * speed) - 3.0 * n * Dot(first, second) / (square * square * speed)) /
+      speed;
+  return std::sqrt(kappa_change * kappa_change + kappa * kappa * kappa * kappa);
+}
+
 CornerCurve::Bounds CornerCurve::DerivativeBounds() const {
   // Control points of the first derivative (degree 4) and the second (degree 3).
   const auto first = [](const auto& c) {
@@ -113,11 +133,12 @@ CornerCurve::Bounds CornerCurve::DerivativeBounds() const {
   const std::array<Vec3, 5> tip = first(tip_);
   const Vec3 sum = tip[0] + tip[4];  // along the bisector: both ends have the same length
   const double along = Norm(sum);
-  bounds.slowest = HUGE_VAL;
-  for (const Vec3& control : tip)
-    bounds.slowest = std::min(bounds.slowest, Dot(control, sum) / along);
-  for (const Vec3& control : second(tip_))
-    bounds.tip_second = std::max(bounds.tip_second, Norm(control));
+  double least = HUGE_VAL;
+  for (const Vec3& control : tip) least = std::min(least, Dot(control, sum));
+  bounds.slowest = least / along;
+  double square = 0.0;
+  for (const Vec3& control : second(tip_)) square = std::max(square, Dot(control, control));
+  bounds.tip_second = std::sqrt(square);
   bounds.a_first = largest(first(a_));
   bounds.b_first = largest(first(b_));
   bounds.a_second = largest(second(a_));

@@ -24,6 +24,18 @@ struct PathDerivatives {
   double b = 0.0;
 };
 
+// Where two lines meet, passed with a steady head: all that the curve there follows from. Nearly
+// every corner is one, so motions carry this and not the coefficients.
+struct PlainCorner {
+  TipPose at;
+  Vec3 tangent_in;
+  Vec3 tangent_out;
+  double cut_mm = 0.0;  // the curve begins and ends this far from the corner
+
+  TipPose Start() const { return {at.tip - tangent_in * cut_mm, at.a_rad, at.b_rad}; }
+  TipPose Finish() const { return {at.tip + tangent_out * cut_mm, at.a_rad, at.b_rad}; }
+};
+
 // The curve of a /FLY passage: a quintic in X Y Z A B whose position, tangent, curvature and head
 // rates meet those of both pieces. motion.md 4.2. A value of fixed size.
 class CornerCurve {
@@ -33,10 +45,8 @@ class CornerCurve {
   // Both ends are cut at the distance `cut_mm` from the corner.
   CornerCurve(const CurveEnd& from, const CurveEnd& to, double cut_mm);
 
-  // Between two lines without head rotation: from the corner itself, so that a curve of 1e-3 mm far
-  // from the origin keeps its digits.
-  CornerCurve(const TipPose& corner, const Vec3& tangent_in, const Vec3& tangent_out,
-              double cut_mm);
+  // From the corner itself, so that a curve of 1e-3 mm far from the origin keeps its digits.
+  explicit CornerCurve(const PlainCorner& corner);
 
   // u runs from 0 to 1.
   TipPose At(double u) const;
@@ -45,6 +55,9 @@ class CornerCurve {
   // Derivatives by arc length: first (the tangent), second (the curvature vector).
   PathDerivatives FirstByLength(double u) const;
   PathDerivatives SecondByLength(double u) const;
+
+  // Path jerk per speed cubed: sqrt(kappa'^2 + kappa^4).
+  double JerkPerCube(double u) const;
 
   // Bounds of the derivatives by u, from control points: cheap, and good on gentle curves.
   struct Bounds {
@@ -65,6 +78,7 @@ class CornerCurve {
 
  private:
   static double Scale(const Vec3& tangent_in, const Vec3& tangent_out, double cut_mm);
+  bool turns_ = false;  // the head; else only the first of a_ and b_ counts
   // Coefficients of u^0 .. u^5.
   std::array<Vec3, 6> tip_{};
   std::array<double, 6> a_{};

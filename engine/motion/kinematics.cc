@@ -36,6 +36,17 @@ AxisValues Together(const Vec3& column, double a, double b) {
   return {column.x, column.y, column.z, a, b};
 }
 
+AxisValues FirstRates(const HeadVector& w, const TipRates& first) {
+  return Together(first.tip + w.ByA() * first.a + w.ByB() * first.b, first.a, first.b);
+}
+
+AxisValues SecondRates(const HeadVector& w, const TipRates& first, const TipRates& second) {
+  return Together(second.tip + w.ByA() * second.a + w.ByB() * second.b +
+                      w.ByAA() * (first.a * first.a) + w.ByAB() * (2.0 * first.a * first.b) +
+                      w.ByBB() * (first.b * first.b),
+                  second.a, second.b);
+}
+
 // The angle that differs from `angle` by whole turns and is nearest to `near`.
 double NearestTurn(double angle, double near) {
   return angle + kTurn * std::round((near - angle) / kTurn);
@@ -73,17 +84,18 @@ TipPose Head::TipOf(const AxisPose& pose) const {
 
 AxisValues AxisRates(const Head& head, double a_rad, double b_rad, const TipRates& first) {
   if (first.a == 0.0 && first.b == 0.0) return Together(first.tip, 0.0, 0.0);
-  const HeadVector w(head, a_rad, b_rad);
-  return Together(first.tip + w.ByA() * first.a + w.ByB() * first.b, first.a, first.b);
+  return FirstRates(HeadVector(head, a_rad, b_rad), first);
 }
 
 AxisValues AxisSecondRates(const Head& head, double a_rad, double b_rad, const TipRates& first,
                            const TipRates& second) {
+  return SecondRates(HeadVector(head, a_rad, b_rad), first, second);
+}
+
+BothAxisRates AxisRatesOfBoth(const Head& head, double a_rad, double b_rad, const TipRates& first,
+                              const TipRates& second) {
   const HeadVector w(head, a_rad, b_rad);
-  return Together(second.tip + w.ByA() * second.a + w.ByB() * second.b +
-                      w.ByAA() * (first.a * first.a) + w.ByAB() * (2.0 * first.a * first.b) +
-                      w.ByBB() * (first.b * first.b),
-                  second.a, second.b);
+  return {FirstRates(w, first), SecondRates(w, first, second)};
 }
 
 HeadAngles AnglesOf(const Vec3& u, const HeadAngles& near) {

@@ -66,6 +66,12 @@ struct TipRates {
 AxisValues AxisRates(const Head& head, double a_rad, double b_rad, const TipRates& first);
 AxisValues AxisSecondRates(const Head& head, double a_rad, double b_rad, const TipRates& first,
                            const TipRates& second);
+struct BothAxisRates {
+  AxisValues first;
+  AxisValues second;
+};
+BothAxisRates AxisRatesOfBoth(const Head& head, double a_rad, double b_rad, const TipRates& first,
+                              const TipRates& second);
 
 // The head angles for a tool direction `u` (need not be a unit vector), of the two solutions and
 // their turns the one nearest to `near` in |dA| + |dB|; A stays where it is when u is along Z.

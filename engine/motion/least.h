@@ -9,9 +9,10 @@ namespace rmlcell::motion {
 
 // The least value of `f` over [0, length], sampled at `intervals` equal steps; every sample minimum
 // that could win is refined by golden sections to some 1e-9. `f` is smooth between samples, or the
-// least of such.
+// least of such. Who only asks whether it falls below `enough` gets any value above that when it
+// does not.
 template <class F>
-double LeastAlong(F f, double length, int intervals) {
+double LeastAlong(F f, double length, int intervals, double enough = HUGE_VAL) {
   constexpr double kCandidate = 0.95;  // a sample above best / 0.95 hides no lower value
   constexpr double kGolden = 0.6180339887498949;
   constexpr int kSections = 40;  // 0.618^40 = 4e-9 of the bracket; the value is flat there
@@ -24,6 +25,7 @@ double LeastAlong(F f, double length, int intervals) {
     if (k <= kKept) kept[static_cast<std::size_t>(k)] = value;
     best = std::min(best, value);
   }
+  if (best * kCandidate >= enough) return best;
   const auto sample = [&](int k) {
     return k <= kKept ? kept[static_cast<std::size_t>(k)] : f(place(k));
   };

@@ -6,6 +6,16 @@
 
 namespace rmlcell::motion {
 
+bool LinesFollowTip(const MachineLimits& machine) {
+  bool enough = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    enough = enough && machine.axes.speed[i] >= machine.tip_speed_mm_s &&
+             machine.axes.acceleration[i] >= machine.tip_acceleration_mm_s2 &&
+             (machine.axes.jerk[i] >= machine.tip_jerk_mm_s3 || std::isinf(machine.tip_jerk_mm_s3));
+  }
+  return enough;
+}
+
 PathLimits LimitsOf(const MoveCommand& move, const MachineLimits& machine) {
   const double share = std::clamp(move.acceleration_fraction, 0.0, 1.0);
   const double speed_share = std::clamp(move.speed_fraction, 0.0, 1.0);
@@ -16,8 +26,7 @@ PathLimits LimitsOf(const MoveCommand& move, const MachineLimits& machine) {
     return WithinAxes(move.path, move.head, machine.axes, {speed_share, share},
                       {kLargest, kLargest, jerk});
   }
-  PathLimits limits{speed_share * machine.tip_speed_mm_s, share * machine.tip_acceleration_mm_s2,
-                    share * machine.tip_jerk_mm_s3};
+  PathLimits limits = TipLimits(move, machine);
   if (move.path.kind() == PathPiece::Kind::kArc) {
     const double radius = move.path.radius_mm();
     const double normal = machine.curve_normal * machine.tip_acceleration_mm_s2;

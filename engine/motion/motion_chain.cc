@@ -17,7 +17,8 @@ bool Equal(const PathLimits& a, const PathLimits& b) {
 }
 
 bool Contiguous(const TipPose& a, const TipPose& b) {
-  return Distance(a.tip, b.tip) <= kContiguous_mm && a.a_rad == b.a_rad && a.b_rad == b.b_rad;
+  return a.a_rad == b.a_rad && a.b_rad == b.b_rad &&
+         (a.tip == b.tip || Distance(a.tip, b.tip) <= kContiguous_mm);
 }
 
 bool AxesKeepUp(const MachineLimits& machine) {
@@ -44,6 +45,7 @@ bool AxesFollowRamps(const MachineLimits& machine) {
 MotionChain::MotionChain(const MachineLimits& machine, std::size_t window)
     : machine_(machine),
       window_(std::max(window, kBatchMin)),
+      lines_follow_tip_(LinesFollowTip(machine)),
       axes_keep_up_(AxesKeepUp(machine)),
       axes_follow_ramps_(AxesFollowRamps(machine)) {}
 
@@ -54,7 +56,8 @@ void MotionChain::Append(const MoveCommand& move, const PathLimits& limits) {
   slot.path = move.path;
   slot.head = move.head;
   slot.limits = limits;
-  slot.overshoot = move.overshoot_fraction;
+  // What is no number makes no passage.
+  slot.overshoot = move.overshoot_fraction > 0.0 ? std::min(move.overshoot_fraction, 1.0) : 0.0;
   slot.settling_s = move.settles ? machine_.settling_s : 0.0;
   slot.tag = move.tag;
   slot.fly = move.fly;
@@ -65,10 +68,12 @@ void MotionChain::Append(const MoveCommand& move, const PathLimits& limits) {
     legs_.back().last_move = number;
     legs_.back().length += move.path.length();
   } else {
-    legs_.Push({.first_move = number, .last_move = number, .length = move.path.length()});
+    Leg& leg = legs_.PushSlot();  // CloseLeg sets the rest
+    leg.first_move = leg.last_move = number;
+    leg.length = move.path.length();
   }
   if (!move.fly) {
-    CloseLeg(Passage::kStop, Corner{}, 0.0);
+    CloseLeg(Passage::kStop, false, 0.0);
     open_ = false;
   }
   if (!merged || !open_ || number % kBatchMin == 0) Work();
@@ -77,37 +82,38 @@ void MotionChain::Append(const MoveCommand& move, const PathLimits& limits) {
 // Decides how the last move passes into this one. False when both are one leg.
 bool MotionChain::Join(const MoveCommand& move, const PathLimits& limits) {
   const Move& before = moves_.back();
+  Leg& leg = legs_.back();
   Passage passage = Passage::kStop;
-  Corner corner;
   double cap = 0.0;
+  bool bends =
+      false;  // a curve must not reach over it, although without a limit on jerk it is passed
   if (before.overshoot <= 0.0 || stands_) {
     passage = Passage::kStopNoSpeed;
   } else if (before.path.by_sigma() || move.path.by_sigma()) {
     passage = Passage::kStopNeighbour;
   } else if (SameTip(before.head, move.head) && Contiguous(before.path.to(), move.path.from())) {
-    const bool mill = machine_.junction_jump_mm_s > 0.0;
-    if (!mill) corner = Corner::Between(before.path, move.path);
-    passage = mill ? Passage::kThrough : corner.passage();
-    if (passage == Passage::kBlend && corner.straight() && std::isinf(machine_.tip_jerk_mm_s3)) {
-      passage = Passage::kThrough;  // without a limit on jerk a jump of curvature needs no curve
-    }
-    if (!IsStop(passage)) cap = before.overshoot * std::min(before.limits.speed, limits.speed);
-    if (mill) {
+    cap = before.overshoot * std::min(before.limits.speed, limits.speed);
+    if (machine_.junction_jump_mm_s > 0.0) {  // a mill
+      passage = Passage::kThrough;
       cap = std::min(cap, JunctionSpeed(before.path.Tangent(before.path.length()),
                                         move.path.Tangent(0.0), machine_.junction_jump_mm_s));
+    } else {
+      leg.corner.Assign(before.path, move.path);
+      passage = leg.corner.passage();
+      bends = passage == Passage::kBlend;
+      if (bends && leg.corner.straight() && std::isinf(machine_.tip_jerk_mm_s3)) {
+        passage = Passage::kThrough;  // without a limit on jerk a jump of curvature needs no curve
+      }
     }
   }
   stands_ = false;
   if (passage == Passage::kThrough && Equal(before.limits, limits) && Equal(cap, limits.speed)) {
     // A line without end must not fill the window as one leg.
-    const Leg& leg = legs_.back();
     if (leg.last_move - leg.first_move < window_ / 2) return false;
     ++starved_;
-    CloseLeg(passage, corner, cap);
-    legs_.back().ends_run = true;
-    return true;
+    bends = true;
   }
-  CloseLeg(passage, corner, cap);
+  CloseLeg(passage, bends, cap);
   return true;
 }
 
@@ -133,18 +139,16 @@ void MotionChain::Mark(std::uint64_t tag) {
 
 void MotionChain::Stop() {
   if (!open_) return;
-  CloseLeg(Passage::kStop, Corner{}, 0.0);
+  CloseLeg(Passage::kStop, false, 0.0);
   open_ = false;
   stands_ = false;
   Work();
 }
 
-void MotionChain::CloseLeg(Passage passage, const Corner& corner, double cap) {
+void MotionChain::CloseLeg(Passage passage, bool ends_run, double cap) {
   Leg& leg = legs_.back();
   leg.passage = passage;
-  leg.corner = corner;
-  // A curve must not reach over a jump of curvature, although without a limit on jerk it is passed.
-  leg.ends_run = passage != Passage::kThrough || corner.passage() == Passage::kBlend;
+  leg.ends_run = passage != Passage::kThrough || ends_run;
   leg.cap = leg.limit = IsStop(passage) ? 0.0 : cap;
   running_.Push(leg.length, moves_[leg.first_move].limits, leg.cap);
 }
@@ -195,6 +199,21 @@ std::optional<double> MotionChain::LengthAfter(Number leg, double enough,
   return std::nullopt;
 }
 
+// Points passed straight on that the curve of `cut` at the end of `leg` swallows keep their speed:
+// the least of them; nothing when they are not known yet.
+std::optional<double> MotionChain::SpeedWithin(Number leg, double cut, bool accept_what_is_there) {
+  double least = HUGE_VAL;
+  double beyond = 0.0;
+  for (Number k = leg + 1; k < legs_.end() && beyond + legs_[k].length < cut; ++k) {
+    beyond += legs_[k].length;
+    const auto index = static_cast<std::size_t>(k - leg);
+    const bool known = index < running_.final_count();
+    if (!known && !accept_what_is_there) return std::nullopt;
+    least = std::min(least, known ? running_.speed(index) : legs_[k].cap);
+  }
+  return least;
+}
+
 bool MotionChain::Resolve(bool accept_what_is_there) {
   if (running_.final_count() == 0) return false;
   const Number number = resolving_;
@@ -221,15 +240,21 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
   if (leg.passage == Passage::kThrough) {
     speed_cap = wanted;
   } else if (!IsStop(leg.passage)) {
-    const double want = std::min(leg.corner.CutFor(wanted, machine_), leg.corner.cut_max_mm());
+    const double uncapped = leg.corner.CutFor(wanted, machine_);
+    const double want = std::min(uncapped, leg.corner.cut_max_mm());
     const std::optional<double> after = LengthAfter(number, 2.0 * want, accept_what_is_there);
     if (!after) return false;
     cut = std::min({want, 0.5 * total, 0.5 * *after});
-    const bool capped = cut < leg.corner.CutFor(wanted, machine_);
+    const bool capped = cut < uncapped;
     if (cut < kCutMin_mm) {
       cut = 0.0;
       closing.report.passage = Passage::kStopShort;
     } else {
+      std::optional<double> swallowed = HUGE_VAL;
+      if (legs_[number + 1].length < cut) {
+        swallowed = SpeedWithin(number, cut, accept_what_is_there);
+        if (!swallowed) return false;
+      }
       closing.report.passage = capped ? Passage::kBlendCapped : Passage::kBlend;
       speed_cap = wanted;
       MakeCurve(closing, leg, cut);
@@ -240,20 +265,15 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
       const bool axes_follow =
           leg.corner.plain()
               ? axes_keep_up_
-              : leg.corner.lines() && AxesFollow(closing.curve, head, machine_, speed_cap,
+              : leg.corner.lines() && AxesFollow(curves_.back(), head, machine_, speed_cap,
                                                  leg.corner.PlainCurvature(cut));
-      if (!axes_follow)
-        speed_cap = std::min(speed_cap, SpeedOnCurve(closing.curve, head, machine_));
-      if (speed_cap < wanted) closing.report.passage = Passage::kBlendCapped;
-      // Points passed straight on that the curve swallows keep their speed.
-      double beyond = 0.0;
-      for (Number k = number + 1; k < legs_.end() && beyond + legs_[k].length < cut; ++k) {
-        beyond += legs_[k].length;
-        const auto index = static_cast<std::size_t>(k - number);
-        const bool known = index < running_.final_count();
-        if (!known && !accept_what_is_there) return false;
-        speed_cap = std::min(speed_cap, known ? running_.speed(index) : legs_[k].cap);
+      if (!axes_follow) {
+        const CornerCurve curve =
+            closing.plain ? CornerCurve(PlainCornerAt(leg.last_move, cut)) : curves_.back();
+        speed_cap = std::min(speed_cap, SpeedOnCurve(curve, head, machine_, speed_cap));
       }
+      if (speed_cap < wanted) closing.report.passage = Passage::kBlendCapped;
+      speed_cap = std::min(speed_cap, *swallowed);
     }
   }
   closing.report.cut_mm = cut;
@@ -268,13 +288,20 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
   return true;
 }
 
+PlainCorner MotionChain::PlainCornerAt(Number corner_move, double cut) {
+  const PathPiece& in = moves_[corner_move].path;
+  return {in.to(), in.Tangent(0.0), moves_[corner_move + 1].path.Tangent(0.0), cut};
+}
+
 void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
-  if (leg.corner.plain()) {
+  span.plain = leg.corner.plain();
+  if (span.plain) {
     const PathPiece& in = moves_[leg.last_move].path;
-    span.curve =
-        CornerCurve(in.to(), in.Tangent(0.0), moves_[leg.last_move + 1].path.Tangent(0.0), cut);
+    const PathPiece& out = moves_[leg.last_move + 1].path;
     span.curve_length = leg.corner.PlainLength(cut);
-    span.curve_middle = 0.5;
+    span.curve_middle = in.to();
+    span.curve_middle.tip =
+        in.to().tip + (out.Tangent(0.0) - in.Tangent(0.0)) * leg.corner.PlainBow(cut);
     span.report.deviation_mm = leg.corner.PlainDeviation(cut);
     return;
   }
@@ -295,19 +322,20 @@ void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
   const PathPiece& out = moves_[after].path;
   span.curve_may_vary =
       in.a_rate() == 0.0 && in.b_rate() == 0.0 && out.a_rate() == 0.0 && out.b_rate() == 0.0;
-  span.curve = CornerCurve(EndAt(in, std::max(in.length() - left, 0.0)),
-                           EndAt(out, std::min(right, out.length())), cut);
+  const CornerCurve curve(EndAt(in, std::max(in.length() - left, 0.0)),
+                          EndAt(out, std::min(right, out.length())), cut);
+  curves_.Push(curve);
   if (leg.corner.lines()) {
     // The tip's way is the same whether the head turns or not.
     span.curve_length = leg.corner.PlainLength(cut);
-    span.curve_middle = 0.5;
+    span.curve_middle = curve.At(0.5);
     span.report.deviation_mm = leg.corner.PlainDeviation(cut);
     return;
   }
-  const CornerLength length(span.curve);
+  const CornerLength length(curve);
   span.curve_length = length.total();
-  span.curve_middle = length.ParameterAt(span.curve, 0.5 * span.curve_length);
-  span.report.deviation_mm = span.curve.DistanceFrom(moves_[leg.last_move].path.to().tip);
+  span.curve_middle = curve.At(length.ParameterAt(curve, 0.5 * span.curve_length));
+  span.report.deviation_mm = curve.DistanceFrom(moves_[leg.last_move].path.to().tip);
 }
 
 // The legs from the start of the run to `last_leg`, less what the curves at both ends take, become

@@ -29,6 +29,16 @@ class MotionChain {
  public:
   MotionChain(const MachineLimits& machine, std::size_t window);
 
+  // LimitsOf, without asking the axes where the answer is known.
+  PathLimits LimitsFor(const MoveCommand& move) const {
+    const PathPiece& path = move.path;
+    const bool simple = lines_follow_tip_ && path.kind() == PathPiece::Kind::kLine &&
+                        move.kind == MoveCommand::Kind::kContour &&
+                        path.from().a_rad == path.to().a_rad &&
+                        path.from().b_rad == path.to().b_rad;
+    return simple ? TipLimits(move, machine_) : LimitsOf(move, machine_);
+  }
+
   // The move has passed all checks and has a length above zero.
   void Append(const MoveCommand& move, const PathLimits& limits);
 
@@ -38,7 +48,7 @@ class MotionChain {
   bool starts_too_fast() const { return starts_too_fast_; }
   void Mark(std::uint64_t tag);
   void Stop();
-  std::optional<PlannedItem> Next();
+  const PlannedItem* Next();  // see Planner::NextInPlace
 
   const MachineLimits& machine() const { return machine_; }
   std::uint64_t starved() const { return starved_; }
@@ -62,7 +72,7 @@ class MotionChain {
     Number first_move = 0;
     Number last_move = 0;
     double length = 0.0;
-    Corner corner{};  // at its end
+    Corner corner{};  // at its end, when that may be a curve
     Passage passage = Passage::kStop;
     bool ends_run = true;
     double cap = 0.0;    // OVERSH x the lower limit of both sides, lowered to what level 1 reaches
@@ -82,9 +92,10 @@ class MotionChain {
     double cap = 0.0;            // of the speed at its end, and on the curve behind it
     bool curve_may_vary = true;  // the curve behind it may be passed with changing speed
     CornerReport report;
+    // When the report says blend:
     double curve_length = 0.0;
-    double curve_middle = 0.5;
-    CornerCurve curve{};  // when the report says blend
+    TipPose curve_middle;  // at half of its length
+    bool plain = false;  // the curve follows from the corner and the cut; else it waits in curves_
   };
   struct WaitingMark {
     std::uint64_t tag = 0;
@@ -92,40 +103,55 @@ class MotionChain {
   };
 
   bool Join(const MoveCommand& move, const PathLimits& limits);
-  void CloseLeg(Passage passage, const Corner& corner, double cap);
+  void CloseLeg(Passage passage, bool ends_run, double cap);
   void Work();
   void Starve();
   bool Resolve(bool accept_what_is_there);
   std::optional<double> LengthAfter(Number leg, double enough, bool accept_what_is_there);
+  std::optional<double> SpeedWithin(Number leg, double cut, bool accept_what_is_there);
   void MakeCurve(Span& span, const Leg& leg, double cut);
+  PlainCorner PlainCornerAt(Number corner_move, double cut);
   void CloseRun(Number last_leg, double total, const Span& closing, double speed_cap);
 
-  // Part of a speed profile, for a span or a curve.
+  // Where a span, or a curve, lies on the ramp that passes it.
   struct Timing {
     const SpeedProfile* profile = nullptr;  // null: steady
     double from = 0.0;
     double to = 0.0;
-    SpeedProfile Part(double s_from, double s_to, double length, double speed) const;
   };
-  struct CurvePart {
-    const PathPiece* half = nullptr;
-    double s_from = 0.0;
-    double s_to = 0.0;
-    double begin = 0.0;  // of the half on the curve
-    bool ends_move = false;
+  // One half of a corner curve, `begin` behind its start, and which part of it belongs to a move.
+  struct Half {
+    const TipPose& from;
+    const TipPose& to;
+    double length;
+    double begin;
+  };
+  struct HalfPart {
+    double s_from;
+    double s_to;
+    bool ends_move;
   };
 
   std::size_t SectionSize();
   bool EndsSection(std::size_t index);
-  void EmitSection(std::size_t count);
-  void EmitSpan(const Timing& timing, const Timing& on_curve);
-  void EmitCurve(const Span& span, const Timing& timing);
-  void EmitCurvePart(const Span& span, Number move, const CurvePart& part, const Timing& timing);
-  PlannedMotion& NewMotion(const Span& span, Number move);
+  void PlanSection();
+  Timing PresentTiming(double length);
+  void TakePart(SpeedProfile& speed, const Timing& timing, double to, bool to_end);
+  void EmitMove();
+  void EmitCurve(Span& span);
+  template <class Shape>  // PlainCorner or CornerCurve
+  void EmitHalves(const Span& span, const Shape& shape, const Half& first, const Half& second,
+                  const Timing& timing);
+  template <class Shape>
+  void EmitCurvePart(const Span& span, Number move, const Shape& shape, const Half& half,
+                     const HalfPart& part, const Timing& timing);
+  PlannedMotion& NewMotion(const Span& span, const Move& source);
+  void EndMove(const Span& span, Number move, PlannedMotion& motion);
   void FinishMotion(const Span& span, Number move, PlannedMotion& motion, bool ends_move);
 
   MachineLimits machine_;
   std::size_t window_;
+  bool lines_follow_tip_;
   bool axes_keep_up_;  // the axes allow whatever the tip may do on a curve without head rotation
   std::uint64_t starved_ = 0;
 
@@ -143,17 +169,29 @@ class MotionChain {
   double run_cut_ = 0.0;          // what the curve at the start of the run takes of it
 
   Ring<Span> spans_;
-  SpeedPasses speeds_;  // over spans
+  Ring<CornerCurve> curves_;  // of those spans whose curve is not plain
+  SpeedPasses speeds_;        // over spans
   std::size_t speeds_next_ = 0;
-  double last_speed_ = 0.0;       // at the end of the last emitted span
+  double last_speed_ = 0.0;  // at the end of the last emitted span
   bool starts_too_fast_ = false;
   std::size_t section_seen_ = 0;  // spans known not to end the next section
   bool axes_follow_ramps_;        // on curves without head rotation, whatever the tip does
+
+  // The section that is given out move by move, so that a span of thousands of them takes no room.
+  std::size_t section_left_ = 0;  // its spans from the oldest one on
+  bool alone_ = false;            // it has but one span, timed by lone_; else by ramps_
+  SpeedProfile lone_;
   std::vector<RampCell> cells_;
   RampPlan ramps_;
+  std::size_t section_cell_ = 0;  // the present one of cells_
+  std::size_t place_ramp_ = 0;    // of ramps_
+  SpeedProfile::Place place_;     // on it, or on lone_: where the last part ended
+  bool emitting_ = false;         // some moves of the oldest span are out already
+  Number emit_move_ = 0;          // its next
+  double emit_done_ = 0.0;        // length of those that are out
 
   Ring<WaitingMark> marks_;
-  Ring<PlannedItem> items_;
+  Ring<PlannedItem> items_;  // final, not yet taken: those of one move and the curve behind it
 };
 
 }  // namespace rmlcell::motion

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/core/units.h"
+#include "engine/motion/blend_curve.h"
 
 namespace rmlcell::motion {
 namespace {
@@ -12,8 +13,6 @@ constexpr double kCollinear_mm = kArcPointTolerance_mm;
 bool IsFinite(const Vec3& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
-
-Vec3 Between(const Vec3& from, const Vec3& to, double share) { return from + (to - from) * share; }
 
 }  // namespace
 
@@ -120,38 +119,32 @@ PathPiece PathPiece::Circle(const TipPose& from, const Vec3& centre, const Vec3&
   return piece;
 }
 
-PathPiece PathPiece::Corner(const CornerCurve& curve, double length) {
-  PathPiece piece;
-  piece.kind_ = Kind::kBlend;
-  piece.length_ = length;
-  piece.from_ = curve.At(0.0);
-  piece.to_ = curve.At(1.0);
-  piece.shape_ = CurvePart{curve, 0.0};
-  return piece;
-}
-
-PathPiece::Halves PathPiece::CornerHalves(const CornerCurve& curve, double length, double middle) {
-  Halves halves{Corner(curve, length), {}};
-  halves.first.length_ = 0.5 * length;
-  halves.second = halves.first;
-  halves.first.to_ = halves.second.from_ = curve.At(middle);
-  std::get_if<CurvePart>(&halves.second.shape_)->start = 0.5 * length;
-  return halves;
-}
-
 PathPiece PathPiece::Part(double s_from, double s_to) const {
-  PathPiece part = *this;
-  part.from_ = At(s_from);
-  part.to_ = At(s_to);
-  part.length_ = s_to - s_from;
-  if (auto* arc_shape = std::get_if<ArcShape>(&part.shape_)) {
-    part.tangent_ = Tangent(s_from);
-    arc_shape->inward = Curvature(s_from) * arc_shape->radius_mm;
-    arc_shape->sweep_rad = part.length_ / arc_shape->radius_mm;
-  } else if (auto* curve_part = std::get_if<CurvePart>(&part.shape_)) {
-    curve_part->start += s_from;
-  }
+  PathPiece part;
+  part.AssignPart(*this, s_from, s_to);
   return part;
+}
+
+void PathPiece::AssignPartOffLine(const PathPiece& whole, double s_from, double s_to) {
+  kind_ = whole.kind_;
+  length_ = s_to - s_from;
+  from_ = whole.At(s_from);
+  to_ = whole.At(s_to);
+  tangent_ = whole.tangent_;
+  if (kind_ == Kind::kArc) {
+    shape_ = whole.shape_;
+    ArcShape& part = *std::get_if<ArcShape>(&shape_);
+    tangent_ = whole.Tangent(s_from);
+    part.inward = whole.Curvature(s_from) * part.radius_mm;
+    part.sweep_rad = length_ / part.radius_mm;
+  } else if (kind_ == Kind::kBlend) {
+    AssignShape(whole);
+    if (auto* plain = std::get_if<PlainPart>(&shape_)) {
+      plain->start += s_from;
+    } else {
+      std::get_if<CurvePart>(&shape_)->start += s_from;
+    }
+  }
 }
 
 double PathPiece::tip_length_mm() const { return by_sigma() ? 0.0 : length_; }
@@ -164,25 +157,24 @@ Vec3 PathPiece::ArcPoint(double angle) const {
          arc().inward * (radius * 2.0 * half_sine * half_sine);
 }
 
-TipPose PathPiece::At(double s) const {
+TipPose PathPiece::OffLine(double s) const {
   if (!(s > 0.0)) return from_;
   if (s >= length_) return to_;
-  if (const auto* part = std::get_if<CurvePart>(&shape_)) {
-    return part->curve.At(part->Parameter(s));
+  if (kind_ == Kind::kBlend) {
+    const BlendCurve blend(*this);
+    return blend.curve().At(blend.ParameterAt(s));
   }
-  const double share = s / length_;
-  TipPose pose;
-  pose.a_rad = from_.a_rad + (to_.a_rad - from_.a_rad) * share;
-  pose.b_rad = from_.b_rad + (to_.b_rad - from_.b_rad) * share;
-  pose.tip = kind_ == Kind::kArc ? ArcPoint(s / radius_mm()) : Between(from_.tip, to_.tip, share);
+  TipPose pose = OnLine(s);
+  if (kind_ == Kind::kArc) pose.tip = ArcPoint(s / radius_mm());
   return pose;
 }
 
-PathDerivatives PathPiece::First(double s) const {
-  if (const auto* part = std::get_if<CurvePart>(&shape_)) {
-    return part->curve.FirstByLength(part->Parameter(s));
+PathDerivatives PathPiece::FirstOffLine(double s) const {
+  if (kind_ == Kind::kBlend) {
+    const BlendCurve blend(*this);
+    return blend.curve().FirstByLength(blend.ParameterAt(s));
   }
-  Vec3 tip = kind_ == Kind::kLine ? tangent_ : to_.tip - from_.tip;
+  Vec3 tip = to_.tip - from_.tip;
   if (kind_ == Kind::kArc) {
     const double angle = s / radius_mm();
     tip = tangent_ * std::cos(angle) + arc().inward * std::sin(angle);
@@ -191,8 +183,9 @@ PathDerivatives PathPiece::First(double s) const {
 }
 
 PathDerivatives PathPiece::Second(double s) const {
-  if (const auto* part = std::get_if<CurvePart>(&shape_)) {
-    return part->curve.SecondByLength(part->Parameter(s));
+  if (kind_ == Kind::kBlend) {
+    const BlendCurve blend(*this);
+    return blend.curve().SecondByLength(blend.ParameterAt(s));
   }
   if (kind_ != Kind::kArc) return {};
   const double angle = s / radius_mm();

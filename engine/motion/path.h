@@ -12,9 +12,10 @@ namespace rmlcell::motion {
 inline constexpr double kTipLengthZero_mm = 1e-6;
 inline constexpr double kArcPointTolerance_mm = 1e-4;
 
-// One piece of path. A value: copy it freely, it owns nothing. motion.md section 3.
-// s runs from 0 to length(); for kRotary and kJoint it is the path variable sigma from 0 to 1.
-// Rotary axes are linear in s and never reduced by a turn.
+// One piece of path. A value: copy it freely, it owns nothing; a line, the most frequent kind,
+// copies a third of what a blend does. motion.md section 3. s runs from 0 to length(); for kRotary
+// and kJoint it is the path variable sigma from 0 to 1. Rotary axes are linear in s and never
+// reduced by a turn.
 class PathPiece {
  public:
   enum class Kind {
@@ -26,6 +27,8 @@ class PathPiece {
   };
 
   PathPiece() = default;
+  PathPiece(const PathPiece& other) { *this = other; }
+  PathPiece& operator=(const PathPiece& other);  // only what the kind uses
 
   // kRotary when the tip does not move but an angle does; length 0 when nothing changes.
   static PathPiece Line(const TipPose& from, const TipPose& to);
@@ -47,34 +50,74 @@ class PathPiece {
   // The piece between two values of s, 0 <= s_from < s_to <= length(). Not for sigma pieces.
   PathPiece Part(double s_from, double s_to) const;
 
+  // Makes this piece that part of `whole`, which must be another one: Part without the copies.
+  void AssignPart(const PathPiece& whole, double s_from, double s_to) {
+    if (whole.kind_ != Kind::kLine) return AssignPartOffLine(whole, s_from, s_to);
+    kind_ = Kind::kLine;
+    length_ = s_to - s_from;
+    from_ = whole.OnLine(s_from);
+    to_ = whole.OnLine(s_to);
+    tangent_ = whole.tangent_;
+  }
+
   Kind kind() const { return kind_; }
   double length() const { return length_; }  // mm, or 1 for sigma pieces; 0: nothing to do
   double tip_length_mm() const;              // 0 for kRotary; for kJoint not known here, 0
   bool by_sigma() const { return kind_ == Kind::kRotary || kind_ == Kind::kJoint; }
-  double a_rate() const {
+  double a_rate() const {  // rad per unit of s; kBlend: mean
     return RateOf(from_.a_rad, to_.a_rad);
-  }  // rad per unit of s; kBlend: mean
+  }
   double b_rate() const { return RateOf(from_.b_rad, to_.b_rad); }
   const TipPose& from() const { return from_; }
   const TipPose& to() const { return to_; }
 
-  // A corner curve of the given length, which is its arc length; `middle` is u at half of it.
-  static PathPiece Corner(const CornerCurve& curve, double length);
-  struct Halves;
-  static Halves CornerHalves(const CornerCurve& curve, double length, double middle);
+  // Makes this piece the half of a corner curve: its arc length, and the poses at its ends. `start`
+  // is the arc length of the curve before it.
+  void AssignCorner(const CornerCurve& curve, double start, double length, const TipPose& from,
+                    const TipPose& to) {
+    AssignBlend(length, from, to);
+    auto* part = std::get_if<CurvePart>(&shape_);
+    if (part == nullptr) part = &shape_.emplace<CurvePart>();
+    part->start = start;
+    part->curve = curve;
+  }
+  void AssignCorner(const PlainCorner& corner, double start, double length, const TipPose& from,
+                    const TipPose& to) {  // `length` is half of the whole
+    AssignBlend(length, from, to);
+    auto* part = std::get_if<PlainPart>(&shape_);
+    if (part == nullptr) part = &shape_.emplace<PlainPart>();
+    part->start = start;
+    part->total = 2.0 * length;
+    part->corner = corner;
+  }
+
+  // Blends only: the corner when it is that of two lines passed with a steady head, and the length
+  // of its curve; else null.
+  struct PlainPart;
+  const PlainPart* plain_corner() const { return std::get_if<PlainPart>(&shape_); }
+  struct PlainPart {
+    double start = 0.0;
+    double total = 0.0;
+    PlainCorner corner;
+  };
 
   // Outside 0..length() the nearer end; the ends are from() and to() to the last bit.
   // On a kBlend piece this measures the curve each time; MotionView does it once.
-  TipPose At(double s) const;
+  TipPose At(double s) const { return kind_ == Kind::kLine ? OnLine(s) : OffLine(s); }
 
   // Derivatives of the pose by s: the unit tangent and the curvature vector (1/mm), or by sigma.
-  PathDerivatives First(double s) const;
+  PathDerivatives First(double s) const {
+    return kind_ == Kind::kLine ? PathDerivatives{tangent_, a_rate(), b_rate()} : FirstOffLine(s);
+  }
   PathDerivatives Second(double s) const;
   Vec3 Tangent(double s) const { return First(s).tip; }
   Vec3 Curvature(double s) const { return Second(s).tip; }
 
   // The same places by u for kBlend pieces, whose s must be turned into u first: see CornerLength.
-  double curve_start() const { return std::get_if<CurvePart>(&shape_)->start; }
+  double curve_start() const {
+    if (const auto* plain = std::get_if<PlainPart>(&shape_)) return plain->start;
+    return std::get_if<CurvePart>(&shape_)->start;
+  }
 
   // Arcs only.
   const Vec3& centre() const { return arc().centre; }
@@ -82,8 +125,12 @@ class PathPiece {
   double radius_mm() const { return arc().radius_mm; }
   double sweep_rad() const { return arc().sweep_rad; }
 
-  // Blends only: the whole curve of the corner, of which this piece may be a part.
-  const CornerCurve& curve() const { return std::get_if<CurvePart>(&shape_)->curve; }
+  // Blends only: the whole curve of the corner, of which this piece may be a part. Made anew each
+  // time: keep it for many places.
+  CornerCurve curve() const {
+    if (const auto* plain = std::get_if<PlainPart>(&shape_)) return CornerCurve(plain->corner);
+    return std::get_if<CurvePart>(&shape_)->curve;
+  }
 
  private:
   struct ArcShape {
@@ -94,14 +141,31 @@ class PathPiece {
     double sweep_rad = 0.0;
   };
   struct CurvePart {
-    CornerCurve curve;
     double start = 0.0;  // arc length of the curve before this piece
-    double Parameter(double s) const { return CornerLength(curve).ParameterAt(curve, start + s); }
+    CornerCurve curve;
   };
   const ArcShape& arc() const { return *std::get_if<ArcShape>(&shape_); }
+  void AssignBlend(double length, const TipPose& from, const TipPose& to) {
+    kind_ = Kind::kBlend;
+    length_ = length;
+    from_ = from;
+    to_ = to;
+  }
+  void AssignShape(const PathPiece& other);
   Vec3 ArcPoint(double angle) const;
+  PathDerivatives FirstOffLine(double s) const;
+  TipPose OnLine(double s) const {
+    if (!(s > 0.0)) return from_;
+    if (s >= length_) return to_;
+    const double share = s / length_;
+    return {from_.tip + (to_.tip - from_.tip) * share,
+            from_.a_rad + (to_.a_rad - from_.a_rad) * share,
+            from_.b_rad + (to_.b_rad - from_.b_rad) * share};
+  }
+  TipPose OffLine(double s) const;
+  void AssignPartOffLine(const PathPiece& whole, double s_from, double s_to);
   double RateOf(double from, double to) const {
-    return length_ > 0.0 ? (to - from) / length_ : 0.0;
+    return to != from && length_ > 0.0 ? (to - from) / length_ : 0.0;
   }
 
   Kind kind_ = Kind::kLine;
@@ -109,13 +173,27 @@ class PathPiece {
   TipPose from_;
   TipPose to_;
   Vec3 tangent_;  // lines and arcs: unit tangent at the start
-  std::variant<std::monostate, ArcShape, CurvePart> shape_;
+  // Of arcs and blends. Other kinds may hold what the piece was before.
+  std::variant<std::monostate, ArcShape, CurvePart, PlainPart> shape_;
 };
 
-struct PathPiece::Halves {
-  PathPiece first;
-  PathPiece second;
-};
+inline void PathPiece::AssignShape(const PathPiece& other) {
+  if (const auto* plain = std::get_if<PlainPart>(&other.shape_)) {
+    shape_ = *plain;
+  } else {
+    shape_ = other.shape_;
+  }
+}
+
+inline PathPiece& PathPiece::operator=(const PathPiece& other) {
+  kind_ = other.kind_;
+  length_ = other.length_;
+  from_ = other.from_;
+  to_ = other.to_;
+  tangent_ = other.tangent_;
+  if (kind_ == Kind::kArc || kind_ == Kind::kBlend) AssignShape(other);
+  return *this;
+}
 
 struct PathPiece::Arc3 {
   ArcCase kind = ArcCase::kArc;

@@ -68,7 +68,7 @@ Status Planner::AppendChecked(const MoveCommand& move) {
                  "the acceleration is " + ShortestText(100.0 * move.acceleration_fraction) + " %",
                  {}};
   }
-  const PathLimits limits = LimitsOf(move, chain_->machine());
+  const PathLimits limits = chain_->LimitsFor(move);
   if (!(move.path.length() <= limits.speed * kDurationMax_s) || !(limits.speed > 0.0) ||
       !(limits.acceleration > 0.0) || !(limits.jerk > 0.0)) {
     return Error{ErrorCode::kNoMotion, "the speed is too low to ever arrive", {}};
@@ -81,7 +81,11 @@ void Planner::BeginMoving(double speed_mm_s) { chain_->BeginMoving(speed_mm_s); 
 bool Planner::starts_too_fast() const { return chain_->starts_too_fast(); }
 void Planner::Mark(std::uint64_t tag) { chain_->Mark(tag); }
 void Planner::Stop() { chain_->Stop(); }
-std::optional<PlannedItem> Planner::Next() { return chain_->Next(); }
+const PlannedItem* Planner::NextInPlace() { return chain_->Next(); }
+std::optional<PlannedItem> Planner::Next() {
+  const PlannedItem* item = chain_->Next();
+  return item == nullptr ? std::nullopt : std::optional<PlannedItem>(*item);
+}
 const MachineLimits& Planner::limits() const { return chain_->machine(); }
 std::uint64_t Planner::lookahead_starved() const { return chain_->starved(); }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -90,9 +91,9 @@ class Planner {
   Status Append(const MoveCommand& move);
 
   // The machine passes the start of the first move at this speed (mm/s), with acceleration zero,
-  // instead of standing there: a chain that is planned anew on the way (motion.md section 6). Before
-  // the first Append. When what follows cannot be met from that speed, starts_too_fast() says so
-  // once the first items are taken, and they are of no use.
+  // instead of standing there: a chain that is planned anew on the way (motion.md section 6).
+  // Before the first Append. When what follows cannot be met from that speed, starts_too_fast()
+  // says so once the first items are taken, and they are of no use.
   void BeginMoving(double speed_mm_s);
   bool starts_too_fast() const;
 
@@ -104,6 +105,10 @@ class Planner {
 
   // The next final item, or nothing when more input is needed.
   std::optional<PlannedItem> Next();
+
+  // The same without a copy, for who takes millions: the item is good until the planner is called
+  // again; null when more input is needed.
+  const PlannedItem* NextInPlace();
 
   const MachineLimits& limits() const;
 
@@ -119,5 +124,16 @@ class Planner {
 
 // The limits of one motion by itself: motion.md 5.1 and 3.4, 3.5.
 PathLimits LimitsOf(const MoveCommand& move, const MachineLimits& machine);
+
+// What is programmed for the tip, whatever the path: the first two lines of motion.md 5.1.
+inline PathLimits TipLimits(const MoveCommand& move, const MachineLimits& machine) {
+  const double share = std::clamp(move.acceleration_fraction, 0.0, 1.0);
+  return {std::clamp(move.speed_fraction, 0.0, 1.0) * machine.tip_speed_mm_s,
+          share * machine.tip_acceleration_mm_s2, share * machine.tip_jerk_mm_s3};
+}
+
+// Whether no axis is ever asked for more than it can on a line with a steady head: then the limits
+// of the tip are all there are.
+bool LinesFollowTip(const MachineLimits& machine);
 
 }  // namespace rmlcell::motion

@@ -30,10 +30,18 @@ class Ring {
 
   // A slot for a new element, holding what some older one left there.
   T& PushSlot() {
-    if (size() == slots_.size()) Grow();
-    return slots_[Slot(end_++)];
+    if (size() == room_) Grow();
+    const std::size_t slot = Slot(end_++);
+    if (slot == slots_.size()) slots_.emplace_back();
+    return slots_[slot];
   }
   void Push(T value) { PushSlot() = std::move(value); }
+  // Precondition: empty. Numbers begin at 0 again, and so do the slots: few of them stay in the
+  // cache.
+  void Rewind() {
+    RMLCELL_CHECK(empty());
+    first_ = end_ = base_ = 0;
+  }
   void PopFront() {
     RMLCELL_CHECK(!empty());
     ++first_;
@@ -45,17 +53,22 @@ class Ring {
 
  private:
   std::size_t Slot(Number number) const {
-    return static_cast<std::size_t>(number) & (slots_.size() - 1);
+    return static_cast<std::size_t>(number - base_) & (room_ - 1);
   }
+  // Only the elements there are move; the slots behind them are made when they are first used.
   void Grow() {
-    std::vector<T> larger(slots_.empty() ? 16 : 2 * slots_.size());
-    for (Number n = first_; n < end_; ++n) {
-      larger[static_cast<std::size_t>(n) & (larger.size() - 1)] = std::move(slots_[Slot(n)]);
-    }
+    std::vector<T> larger;
+    const std::size_t room = room_ == 0 ? 16 : 2 * room_;
+    larger.reserve(room);
+    for (Number n = first_; n < end_; ++n) larger.push_back(std::move(slots_[Slot(n)]));
     slots_ = std::move(larger);
+    room_ = room;
+    base_ = first_;
   }
 
-  std::vector<T> slots_;  // a power of two
+  std::vector<T> slots_;  // up to room_
+  std::size_t room_ = 0;  // a power of two
+  Number base_ = 0;       // the number of the element in slot 0 after the last growth
   Number first_ = 0;
   Number end_ = 0;
 };

@@ -17,8 +17,8 @@ class SpeedPasses {
   // The chain begins at this speed instead of at rest. Before the first Push.
   void BeginAt(double speed) { last_forward_ = speed; }
 
-  // A knot reached over a span of `length` from the knot before it (the chain begins at rest, see BeginAt). It
-  // is passed at `cap` at most; 0 is a stop. `limits` are those of the span.
+  // A knot reached over a span of `length` from the knot before it (the chain begins at rest, see
+  // BeginAt). It is passed at `cap` at most; 0 is a stop. `limits` are those of the span.
   void Push(double length, const PathLimits& limits, double cap);
 
   // Backward from the last knot, as if the machine had to stand there. Returns how many knots are

@@ -99,14 +99,6 @@ double PeakRise(double length, double top, double drop, const PathLimits& limits
 
 }  // namespace
 
-double RampTime(double v0, double v1, const PathLimits& limits) {
-  return RampOf(std::abs(v1 - v0), limits).duration_s;
-}
-
-double RampLength(double v0, double v1, const PathLimits& limits) {
-  return 0.5 * (v0 + v1) * RampTime(v0, v1, limits);
-}
-
 double Reach(double v0, double length, const PathLimits& limits) {
   const double a = limits.acceleration;
   const double j = limits.jerk;
@@ -151,6 +143,8 @@ double ReachMinimum(double v0_high, double length, const PathLimits& limits) {
 }
 
 SpeedProfile SpeedProfile::Span(double length, double v0, double v1, const PathLimits& limits) {
+  // Most spans of a contour of short lines.
+  if (v0 == v1 && v0 >= limits.speed && length > 0.0) return Steady(length, v0);
   SpeedProfile profile;
   profile.end_ = {std::max(length, 0.0), v1, 0.0};
   PathState state{0.0, v0, 0.0};
@@ -238,7 +232,8 @@ void SpeedProfile::AddPhase(PathState& state, double duration_s, double accelera
   state.acceleration = acceleration;
   phases_[static_cast<std::size_t>(count_++)] = {duration_s, jerk, state};
   const double t = duration_s;
-  state.s += t * (state.speed + t * (0.5 * acceleration + t * jerk / 6.0));
+  const double bend = jerk == 0.0 ? 0.0 : t * jerk / 6.0;  // spares the division
+  state.s += t * (state.speed + t * (0.5 * acceleration + bend));
   state.speed += t * (acceleration + 0.5 * t * jerk);
   state.acceleration = acceleration + t * jerk;
   duration_s_ += duration_s;
@@ -270,7 +265,8 @@ PathState SpeedProfile::At(double t_s) const {
   const Phase& p = phases_[static_cast<std::size_t>(index)];
   t = std::min(t, p.duration_s);
   PathState state;
-  state.s = p.start.s + t * (p.start.speed + t * (0.5 * p.start.acceleration + t * p.jerk / 6.0));
+  const double bend = p.jerk == 0.0 ? 0.0 : t * p.jerk / 6.0;
+  state.s = p.start.s + t * (p.start.speed + t * (0.5 * p.start.acceleration + bend));
   state.speed = p.start.speed + t * (p.start.acceleration + 0.5 * t * p.jerk);
   state.acceleration = p.start.acceleration + t * p.jerk;
   // Rounding must not carry the last phase past its end.
@@ -279,50 +275,52 @@ PathState SpeedProfile::At(double t_s) const {
   return state;
 }
 
-SpeedProfile SpeedProfile::Steady(double length, double speed) {
-  SpeedProfile profile;
-  PathState state{0.0, speed, 0.0};
-  profile.AddPhase(state, length / speed, 0.0, 0.0);
-  profile.peak_speed_ = speed;
-  profile.end_ = {length, speed, 0.0};
-  return profile;
+void SpeedProfile::Advance(Place& place, double s) const {
+  place.s = s;
+  while (place.phase < count_ && s >= PhaseEnd(place.phase)) {
+    place.phase_start_s += phases_[static_cast<std::size_t>(place.phase)].duration_s;
+    ++place.phase;
+  }
+}
+
+// How long after the start of a phase it has gone `wanted`.
+double SpeedProfile::TimeWithin(const Phase& phase, double wanted) {
+  if (wanted <= 0.0) return 0.0;
+  const double v = phase.start.speed;
+  if (phase.jerk == 0.0) {  // closed: most of most profiles
+    const double a = phase.start.acceleration;
+    const double root = a == 0.0 ? v : std::sqrt(std::max(v * v + 2.0 * a * wanted, 0.0));
+    return std::min(v + root > 0.0 ? 2.0 * wanted / (v + root) : phase.duration_s,
+                    phase.duration_s);
+  }
+  const auto travelled = [&](double t) {
+    const double speed = v + t * (phase.start.acceleration + 0.5 * t * phase.jerk);
+    const double way = t * (v + t * (0.5 * phase.start.acceleration + t * phase.jerk / 6.0));
+    return ValueAndSlope{way, speed};
+  };
+  return Root(travelled, wanted, phase.duration_s);
 }
 
 double SpeedProfile::TimeAt(double s) const {
-  double time = 0.0;
-  for (int k = 0; k < count_; ++k) {
-    const Phase& phase = phases_[static_cast<std::size_t>(k)];
-    const double duration = phase.duration_s;
-    const double next = k + 1 < count_ ? phases_[static_cast<std::size_t>(k) + 1].start.s : end_.s;
-    if (s >= next) {
-      time += duration;
-      continue;
-    }
-    const double wanted = s - phase.start.s;
-    if (wanted <= 0.0) return time;
-    if (phase.jerk == 0.0) {  // closed: most of most profiles
-      const double v = phase.start.speed;
-      const double root = std::sqrt(std::max(v * v + 2.0 * phase.start.acceleration * wanted, 0.0));
-      return time + std::min(v + root > 0.0 ? 2.0 * wanted / (v + root) : duration, duration);
-    }
-    const auto travelled = [&](double t) {
-      const double speed =
-          phase.start.speed + t * (phase.start.acceleration + 0.5 * t * phase.jerk);
-      const double way =
-          t * (phase.start.speed + t * (0.5 * phase.start.acceleration + t * phase.jerk / 6.0));
-      return ValueAndSlope{way, speed};
-    };
-    return time + Root(travelled, wanted, duration);
-  }
-  return time;
+  Place place;
+  Advance(place, s);
+  return TimeOf(place);
 }
 
 SpeedProfile SpeedProfile::Part(double s_from, double s_to) const {
-  const double t_from = TimeAt(s_from);
-  const double t_to = s_to >= end_.s ? duration_s_ : TimeAt(s_to);
+  Place place;
+  Advance(place, s_from);
+  return PartTo(place, s_to);
+}
+
+SpeedProfile SpeedProfile::ChangingPartTo(Place& place, double s_to) const {
+  const Place begin = place;
+  const double t_from = TimeOf(begin);
+  Advance(place, s_to);
+  const double t_to = s_to >= end_.s ? duration_s_ : TimeOf(place);
   SpeedProfile part;
-  double time = 0.0;
-  for (int k = 0; k < count_; ++k) {
+  double time = begin.phase_start_s;
+  for (int k = begin.phase; k < count_ && time < t_to; ++k) {
     const Phase& phase = phases_[static_cast<std::size_t>(k)];
     const double from = std::max(t_from - time, 0.0);
     const double to = std::min(t_to - time, phase.duration_s);
@@ -330,16 +328,15 @@ SpeedProfile SpeedProfile::Part(double s_from, double s_to) const {
     if (!(to > from)) continue;
     const PathState& start = phase.start;
     PathState state;
-    state.s = start.s +
-              from * (start.speed + from * (0.5 * start.acceleration + from * phase.jerk / 6.0)) -
-              s_from;
+    const double bend = phase.jerk == 0.0 ? 0.0 : from * phase.jerk / 6.0;  // spares the division
+    state.s = start.s + from * (start.speed + from * (0.5 * start.acceleration + bend)) - begin.s;
     state.speed = start.speed + from * (start.acceleration + 0.5 * from * phase.jerk);
     part.peak_speed_ = std::max(part.peak_speed_, state.speed);
     part.AddPhase(state, to - from, start.acceleration + from * phase.jerk, phase.jerk);
     part.peak_speed_ = std::max(part.peak_speed_, state.speed);
   }
   part.end_ = At(t_to);
-  part.end_.s = s_to - s_from;
+  part.end_.s = s_to - begin.s;
   return part;
 }
 

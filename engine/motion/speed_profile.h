@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace rmlcell::motion {
@@ -48,10 +51,38 @@ class SpeedProfile {
                            const PathLimits& limits);
 
   // `length` at one speed above 0.
-  static SpeedProfile Steady(double length, double speed);
+  static SpeedProfile Steady(double length, double speed) {
+    SpeedProfile profile;
+    profile.count_ = 1;
+    profile.duration_s_ = length / speed;
+    profile.phases_[0] = {profile.duration_s_, 0.0, {0.0, speed, 0.0}};
+    profile.peak_speed_ = speed;
+    profile.end_ = {length, speed, 0.0};
+    return profile;
+  }
 
   // The part between two places, s counted from the first. 0 <= s_from < s_to <= end().s.
   SpeedProfile Part(double s_from, double s_to) const;
+
+  // A place that is only ever moved forward: many parts one behind the other cost as much as they
+  // are long, whatever came before them. Good for one profile.
+  struct Place {
+    double s = 0.0;
+    int phase = 0;               // the one that s lies in
+    double phase_start_s = 0.0;  // when it begins
+  };
+  void Advance(Place& place, double s) const;
+  // The part from `place` to `s_to`, where `place` is afterwards.
+  SpeedProfile PartTo(Place& place, double s_to) const {
+    const Phase& phase = phases_[static_cast<std::size_t>(place.phase)];
+    if (place.phase < count_ && phase.jerk == 0.0 && phase.start.acceleration == 0.0 &&
+        s_to < PhaseEnd(place.phase) && place.s >= phase.start.s) {
+      const double length = s_to - place.s;
+      place.s = s_to;
+      return Steady(length, phase.start.speed);
+    }
+    return ChangingPartTo(place, s_to);
+  }
 
   double duration_s() const { return duration_s_; }
   const PathState& end() const { return end_; }  // s of the end, and the speed there
@@ -65,6 +96,23 @@ class SpeedProfile {
   // 0 <= t <= duration_s(); outside it is clamped.
   PathState At(double t_s) const;
 
+  // Its s alone.
+  double PlaceAt(double t_s) const {
+    if (count_ == 0 || t_s >= duration_s_) return end_.s;
+    double t = std::max(t_s, 0.0);
+    std::size_t k = 0;
+    for (const auto last = static_cast<std::size_t>(count_ - 1);
+         k < last && t >= phases_[k].duration_s; ++k) {
+      t -= phases_[k].duration_s;
+    }
+    const Phase& p = phases_[k];
+    t = std::min(t, p.duration_s);
+    const double bend = p.jerk == 0.0 ? 0.0 : t * p.jerk / 6.0;
+    // Rounding must not carry the last phase past its end.
+    return std::min(p.start.s + t * (p.start.speed + t * (0.5 * p.start.acceleration + bend)),
+                    end_.s);
+  }
+
   // The ramp to rest that begins at `t_s`, at once and with the limits: a motion that speeds up
   // first brings its acceleration to zero, one that slows down goes on slowing down, so that a STOP
   // never passes the place where the motion would have ended by itself. Its s counts from the same
@@ -72,6 +120,16 @@ class SpeedProfile {
   SpeedProfile StopFrom(double t_s, const PathLimits& limits) const;
 
  private:
+  static double TimeWithin(const Phase& phase, double wanted);
+  SpeedProfile ChangingPartTo(Place& place, double s_to) const;
+  double PhaseEnd(int index) const {
+    return index + 1 < count_ ? phases_[static_cast<std::size_t>(index) + 1].start.s : end_.s;
+  }
+  double TimeOf(const Place& place) const {
+    if (place.phase >= count_) return place.phase_start_s;
+    const Phase& phase = phases_[static_cast<std::size_t>(place.phase)];
+    return place.phase_start_s + TimeWithin(phase, place.s - phase.start.s);
+  }
   void AddPhase(PathState& state, double duration_s, double acceleration, double jerk);
   void AddSpan(PathState& state, double end_s, double v1, const PathLimits& limits);
   void AddRamp(PathState& state, double change, double sign, double to_speed,
@@ -104,7 +162,17 @@ double Reach(double v0, double length, const PathLimits& limits);
 double ReachMinimum(double v0_high, double length, const PathLimits& limits);
 
 // Time and length of the ramp between two speeds.
-double RampTime(double v0, double v1, const PathLimits& limits);
-double RampLength(double v0, double v1, const PathLimits& limits);
+inline double RampTime(double v0, double v1, const PathLimits& limits) {
+  const double change = std::abs(v1 - v0);
+  const double a = limits.acceleration;
+  const double j = limits.jerk;
+  if (!(change > 0.0)) return 0.0;
+  if (std::isinf(j)) return change / a;
+  if (change <= a * a / j) return 2.0 * std::sqrt(change / j);
+  return change / a + a / j;
+}
+inline double RampLength(double v0, double v1, const PathLimits& limits) {
+  return 0.5 * (v0 + v1) * RampTime(v0, v1, limits);
+}
 
 }  // namespace rmlcell::motion

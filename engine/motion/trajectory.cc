@@ -78,34 +78,23 @@ TrajectoryPoint PointAt(const PathPlace& place, const Head& head, const PathStat
   return point;
 }
 
-MotionView::MotionView(const PlannedMotion& motion)
-    : path_(motion.path),
-      head_(motion.head),
-      speed_(motion.speed),
-      duration_s_(motion.duration_s()) {
-  if (path_.kind() == PathPiece::Kind::kBlend) curve_length_.emplace(path_.curve());
-}
-
-double MotionView::Parameter(double s) const {
-  return curve_length_->ParameterAt(path_.curve(), path_.curve_start() + s);
-}
-
 TrajectoryPoint MotionView::At(double t_s) const {
-  PathState state = speed_.At(t_s);
-  if (t_s > speed_.duration_s()) state.speed = state.acceleration = 0.0;
-  if (!curve_length_) return PointAt(path_, head_, state);
-  const double u = Parameter(state.s);
-  const CornerCurve& curve = path_.curve();
-  return PointAt({path_.kind(), curve.At(u), curve.FirstByLength(u), curve.SecondByLength(u)},
-                 head_, state);
+  const PathPiece& path = motion_.path;
+  PathState state = motion_.speed.At(t_s);
+  if (t_s > motion_.speed.duration_s()) state.speed = state.acceleration = 0.0;
+  if (!blend_) return PointAt(path, motion_.head, state);
+  const CornerCurve& curve = blend_->curve();
+  const double u = blend_->ParameterAt(state.s);
+  return PointAt({path.kind(), curve.At(u), curve.FirstByLength(u), curve.SecondByLength(u)},
+                 motion_.head, state);
 }
 
 TipPose MotionView::PoseAt(double t_s) const {
-  const double s = speed_.At(t_s).s;
-  if (curve_length_) return path_.curve().At(Parameter(s));
-  const TipPose pose = path_.At(s);
-  if (path_.kind() != PathPiece::Kind::kJoint) return pose;
-  return head_.TipOf({pose.tip, pose.a_rad, pose.b_rad});
+  const double s = motion_.speed.PlaceAt(t_s);
+  if (blend_) return blend_->curve().At(blend_->ParameterAt(s));
+  const TipPose pose = motion_.path.At(s);
+  if (motion_.path.kind() != PathPiece::Kind::kJoint) return pose;
+  return motion_.head.TipOf({pose.tip, pose.a_rad, pose.b_rad});
 }
 
 void LongSum::Add(double value) {
@@ -123,10 +112,10 @@ void AppendPolyline(const PathPiece& path, double tolerance_mm, std::vector<Vec3
     const int chords = static_cast<int>(std::clamp(wanted, 1.0, static_cast<double>(kChordsMax)));
     for (int k = 1; k < chords; ++k) points.push_back(path.At(path.length() * k / chords).tip);
   } else if (path.kind() == PathPiece::Kind::kBlend) {
-    const CornerLength length(path.curve());
-    const double from = length.ParameterAt(path.curve(), path.curve_start());
-    const double to = length.ParameterAt(path.curve(), path.curve_start() + path.length());
-    Halve(path.curve(), from, to, path.from().tip, path.to().tip, tolerance_mm, 0, points);
+    const BlendCurve blend(path);
+    const double from = blend.ParameterAt(0.0);
+    const double to = blend.ParameterAt(path.length());
+    Halve(blend.curve(), from, to, path.from().tip, path.to().tip, tolerance_mm, 0, points);
     return;
   }
   if (path.length() > 0.0 && path.kind() != PathPiece::Kind::kRotary)

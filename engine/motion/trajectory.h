@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/motion/blend_curve.h"
 #include "engine/motion/planner.h"
 
 namespace rmlcell::motion {
@@ -31,10 +32,14 @@ struct PathPlace {
 TrajectoryPoint PointAt(const PathPlace& place, const Head& head, const PathState& state);
 TrajectoryPoint PointAt(const PathPiece& path, const Head& head, const PathState& state);
 
-// One motion, ready to be looked at many times.
+// One motion, ready to be looked at many times. The motion must outlive the view.
 class MotionView {
  public:
-  explicit MotionView(const PlannedMotion& motion);
+  explicit MotionView(const PlannedMotion& motion)
+      : motion_(motion), duration_s_(motion.duration_s()) {
+    if (motion.path.kind() == PathPiece::Kind::kBlend) blend_.emplace(motion.path);
+  }
+  explicit MotionView(PlannedMotion&&) = delete;
 
   // 0 <= t <= duration_s(); the settling at the end stands still.
   TrajectoryPoint At(double t_s) const;
@@ -42,12 +47,8 @@ class MotionView {
   double duration_s() const { return duration_s_; }
 
  private:
-  double Parameter(double s) const;
-
-  PathPiece path_;
-  std::optional<CornerLength> curve_length_;  // of a blend
-  Head head_;
-  SpeedProfile speed_;
+  const PlannedMotion& motion_;
+  std::optional<BlendCurve> blend_;
   double duration_s_;
 };
 
@@ -79,6 +80,12 @@ class SampleTimes {
       if (!(time < end)) return;
       visit(time, time < start ? 0.0 : time - start);
     }
+  }
+  // Whether there is one: a motion of a millisecond may have none and need not be looked at.
+  bool NextWithin(double duration_s) const {
+    LongSum end = elapsed_;
+    end.Add(duration_s);
+    return static_cast<double>(next_) / rate_hz_ < end.value();
   }
   double elapsed_s() const { return elapsed_.value(); }
 

@@ -4,10 +4,21 @@
 #include <cmath>
 #include <string>
 
+#include "engine/core/number_text.h"
+
 namespace rmlcell::rml1 {
 namespace {
 
-Error Misfit(std::string detail) { return {ErrorCode::kCellParameterRange, std::move(detail), {}}; }
+// "X_MIN is 100, not below X_MAX, which is 50".
+Error Misfit(const machine::Parameters& parameters, const std::string& what,
+             std::string_view against) {
+  const std::string low = what + "_MIN";
+  const std::string high = what + "_MAX";
+  return {ErrorCode::kCellParameterRange,
+          low + " is " + ShortestText(parameters.Number(low)) + ", " + std::string(against) + " " +
+              high + ", which is " + ShortestText(parameters.Number(high)),
+          {}};
+}
 
 // Device units; 203.2 mm are 20320 of them and not a rounding error less.
 double Units(double mm, double units_per_mm) { return std::round(mm * units_per_mm * 1e6) * 1e-6; }
@@ -79,18 +90,25 @@ void ReadWords(const machine::Parameters& from, Profile& profile) {
 
 }  // namespace
 
-Result<Profile> MakeProfile(const machine::Parameters& parameters) {
+Status CheckFit(const machine::Parameters& parameters) {
   for (const std::string axis : {"X", "Y"}) {
     if (!(parameters.Number(axis + "_MIN") < parameters.Number(axis + "_MAX"))) {
-      return Misfit(axis + "_MIN is not below " + axis + "_MAX");
+      return Misfit(parameters, axis, "not below");
     }
   }
-  if (!(parameters.Number("Z_MIN") < 0.0)) return Misfit("Z_MIN is not below 0, the top");
+  if (!(parameters.Number("Z_MIN") < 0.0)) {
+    return Error{ErrorCode::kCellParameterRange, "Z_MIN is not below 0, the top", {}};
+  }
   for (const std::string what : {"XY_SPEED", "Z_SPEED", "SPINDLE"}) {
     if (parameters.Number(what + "_MIN") > parameters.Number(what + "_MAX")) {
-      return Misfit(what + "_MIN is above " + what + "_MAX");
+      return Misfit(parameters, what, "above");
     }
   }
+  return {};
+}
+
+Result<Profile> MakeProfile(const machine::Parameters& parameters) {
+  if (const Status fit = CheckFit(parameters); !fit) return fit.error();
   Profile profile;
   ReadFigures(parameters, profile);
   ReadWords(parameters, profile);

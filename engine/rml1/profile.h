@@ -71,8 +71,11 @@ std::span<const machine::ParameterInfo> ParameterTable();
 // The test profiles and the machines of rml1-profiles.md.
 std::span<const machine::MachineProfile> MachineProfiles();
 
-// Errors: CellParameterRange when two parameters do not fit together (a travel of nothing, a lowest
+// Error: CellParameterRange when two parameters do not fit together (a travel of nothing, a lowest
 // speed above the highest).
+Status CheckFit(const machine::Parameters& parameters);
+
+// Error: as CheckFit.
 Result<Profile> MakeProfile(const machine::Parameters& parameters);
 
 }  // namespace rmlcell::rml1

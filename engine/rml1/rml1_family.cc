@@ -7,6 +7,7 @@
 #include "engine/rml1/figures.h"
 #include "engine/rml1/physical.h"
 #include "engine/rml1/run.h"
+#include "engine/rml1/variables.h"
 
 namespace rmlcell::rml1 {
 namespace {
@@ -16,7 +17,8 @@ constexpr machine::FamilyInfo kInfo = {.id = "rml1",
                                        .extensions = ".RML .PRN",
                                        .axes = "X Y Z A",
                                        .has_executables = false,
-                                       .has_schedules = false};
+                                       .has_schedules = false,
+                                       .hold_in_remote = true};  // it has no such mode
 
 Diagnostic Plain(ErrorCode code, std::string detail) {
   return {.code = code,
@@ -129,6 +131,13 @@ class MillFamily final : public machine::MachineFamily {
   const machine::FamilyInfo& info() const override { return kInfo; }
   std::span<const machine::ParameterInfo> parameters() const override { return ParameterTable(); }
   std::span<const machine::MachineProfile> profiles() const override { return MachineProfiles(); }
+  Status CheckParameters(const machine::Parameters& parameters) const override {
+    return CheckFit(parameters);
+  }
+  bool HasVariable(const machine::Parameters& parameters, std::string_view name) const override {
+    const Result<Profile> profile = MakeProfile(parameters);
+    return profile && HasRegister(*profile, name);
+  }
   std::span<const machine::FigureInfo> figures() const override { return FigureTable(); }
   machine::MachineShape Shape(const machine::Parameters& parameters) const override;
   machine::Translation Translate(const machine::SourceFile& file,

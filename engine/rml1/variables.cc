@@ -1,5 +1,7 @@
 #include "engine/rml1/variables.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "engine/core/number_text.h"
@@ -16,47 +18,91 @@ std::string EscValues(const ReceivePath::Parameters& values, std::size_t count) 
   return text;
 }
 
+// Where a register is read from.
+struct View {
+  const Device& device;
+  const Profile& profile;
+  const Point& tool;
+
+  const Registers& registers() const { return device.registers(); }
+  const Point& logical() const { return device.carriage().logical(); }
+};
+
+// Coordinates are 4-byte values: what is behind the sixth decimal is noise of theirs.
+std::string NumberText(double value) { return ShortestText(std::round(value * 1e6) / 1e6); }
+
+// Half away from zero (RML1-9.22); 0.025 / 0.05 is a half although the quotient is a bit less.
+std::string StepsText(double value, double step) {
+  const double count = value / step;
+  return std::to_string(std::llround(count + std::copysign(1e-9, count)));
+}
+
+std::string MmSteps(const View& v, double units) {
+  return StepsText(units * (1.0 / v.profile.units_per_mm), v.profile.step_mm);
+}
+std::string XySpeed(const View& v) { return NumberText(v.registers().xy_speed); }
+std::string ZSpeed(const View& v) { return NumberText(v.registers().z_speed); }
+std::string Dwell(const View& v) { return std::to_string(v.registers().dwell_ms); }
+
+struct Register {
+  std::string_view name;
+  std::string (*read)(const View&);
+  bool of_rotary = false;  // only a machine with a rotary axis has it
+};
+
+constexpr std::array kRegisters = {
+    Register{"X", [](const View& v) { return NumberText(v.tool.x - v.profile.origin_x); }},
+    Register{"Y", [](const View& v) { return NumberText(v.tool.y - v.profile.origin_y); }},
+    Register{"Z", [](const View& v) { return NumberText(v.tool.z - v.registers().z0); }},
+    Register{"A", [](const View& v) { return NumberText(v.tool.a); }, true},
+    Register{"LX", [](const View& v) { return NumberText(v.logical().x - v.profile.origin_x); }},
+    Register{"LY", [](const View& v) { return NumberText(v.logical().y - v.profile.origin_y); }},
+    Register{"LZ", [](const View& v) { return NumberText(v.logical().z - v.registers().z0); }},
+    Register{"VS", XySpeed},
+    Register{"F", XySpeed},
+    Register{"VZ", ZSpeed},
+    Register{"V", ZSpeed},
+    Register{"DW", Dwell},
+    Register{"W", Dwell},
+    Register{"MC", [](const View& v) -> std::string { return v.registers().rotation ? "on" : "off"; }},
+    Register{"SPINDLE",
+             [](const View& v) -> std::string { return v.registers().spindle_on ? "on" : "off"; }},
+    Register{"RPM", [](const View& v) { return std::to_string(v.registers().rpm); }},
+    Register{"Z0", [](const View& v) { return NumberText(v.registers().z0); }},
+    Register{"Z1", [](const View& v) { return NumberText(v.registers().z1); }},
+    Register{"Z2", [](const View& v) { return NumberText(v.registers().z2); }},
+    Register{"MODE",
+             [](const View& v) -> std::string { return v.registers().absolute ? "abs" : "rel"; }},
+    Register{"TOOL",
+             [](const View& v) -> std::string { return v.registers().tool_down ? "down" : "up"; }},
+    Register{"ERR", [](const View& v) { return std::to_string(v.device.command_errors().value()); }},
+    Register{"COM", [](const View& v) { return std::to_string(v.device.link_errors().value()); }},
+    Register{"XSTEPS", [](const View& v) { return MmSteps(v, v.tool.x); }},
+    Register{"YSTEPS", [](const View& v) { return MmSteps(v, v.tool.y); }},
+    Register{"ZSTEPS", [](const View& v) { return MmSteps(v, v.tool.z); }},
+    Register{"ASTEPS",
+             [](const View& v) { return StepsText(v.tool.a, v.profile.rotary_step_deg); }, true},
+    Register{"ESC.M", [](const View& v) { return EscValues(v.device.path().esc_m(), 6); }},
+    Register{"ESC.T", [](const View& v) { return EscValues(v.device.path().esc_t(), 5); }},
+};
+
+const Register* FindRegister(const Profile& profile, std::string_view name) {
+  const auto found = std::ranges::find(kRegisters, name, &Register::name);
+  if (found == kRegisters.end() || (found->of_rotary && !profile.has_rotary)) return nullptr;
+  return &*found;
+}
+
 }  // namespace
+
+bool HasRegister(const Profile& profile, std::string_view name) {
+  return FindRegister(profile, name) != nullptr;
+}
 
 std::optional<std::string> ReadRegister(const Device& device, const Profile& profile,
                                         const Point& tool, std::string_view name) {
-  const Registers& registers = device.registers();
-  const Point& logical = device.carriage().logical();
-  // Coordinates are 4-byte values: what is behind the sixth decimal is noise of theirs.
-  const auto number = [](double value) { return ShortestText(std::round(value * 1e6) / 1e6); };
-  const auto steps = [](double value, double step) {
-    // Half away from zero (RML1-9.22); 0.025 / 0.05 is a half although the quotient is a bit less.
-    const double count = value / step;
-    return std::to_string(std::llround(count + std::copysign(1e-9, count)));
-  };
-  const double mm = 1.0 / profile.units_per_mm;
-  if (name == "X") return number(tool.x - profile.origin_x);
-  if (name == "Y") return number(tool.y - profile.origin_y);
-  if (name == "Z") return number(tool.z - registers.z0);
-  if (name == "A" && profile.has_rotary) return number(tool.a);
-  if (name == "LX") return number(logical.x - profile.origin_x);
-  if (name == "LY") return number(logical.y - profile.origin_y);
-  if (name == "LZ") return number(logical.z - registers.z0);
-  if (name == "VS" || name == "F") return number(registers.xy_speed);
-  if (name == "VZ" || name == "V") return number(registers.z_speed);
-  if (name == "DW" || name == "W") return std::to_string(registers.dwell_ms);
-  if (name == "MC") return registers.rotation ? "on" : "off";
-  if (name == "SPINDLE") return registers.spindle_on ? "on" : "off";
-  if (name == "RPM") return std::to_string(registers.rpm);
-  if (name == "Z0") return number(registers.z0);
-  if (name == "Z1") return number(registers.z1);
-  if (name == "Z2") return number(registers.z2);
-  if (name == "MODE") return registers.absolute ? "abs" : "rel";
-  if (name == "TOOL") return registers.tool_down ? "down" : "up";
-  if (name == "ERR") return std::to_string(device.command_errors().value());
-  if (name == "COM") return std::to_string(device.link_errors().value());
-  if (name == "XSTEPS") return steps(tool.x * mm, profile.step_mm);
-  if (name == "YSTEPS") return steps(tool.y * mm, profile.step_mm);
-  if (name == "ZSTEPS") return steps(tool.z * mm, profile.step_mm);
-  if (name == "ASTEPS" && profile.has_rotary) return steps(tool.a, profile.rotary_step_deg);
-  if (name == "ESC.M") return EscValues(device.path().esc_m(), 6);
-  if (name == "ESC.T") return EscValues(device.path().esc_t(), 5);
-  return std::nullopt;
+  const Register* found = FindRegister(profile, name);
+  if (found == nullptr) return std::nullopt;
+  return found->read({.device = device, .profile = profile, .tool = tool});
 }
 
 }  // namespace rmlcell::rml1

@@ -15,4 +15,7 @@ namespace rmlcell::rml1 {
 std::optional<std::string> ReadRegister(const Device& device, const Profile& profile,
                                         const Point& tool, std::string_view name);
 
+// Whether a machine of this profile has the register.
+bool HasRegister(const Profile& profile, std::string_view name);
+
 }  // namespace rmlcell::rml1

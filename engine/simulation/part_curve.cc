@@ -13,8 +13,9 @@ bool Turns(const PathPiece& path) {
   if (path.a_rate() != 0.0 || path.b_rate() != 0.0) return true;
   if (path.kind() != PathPiece::Kind::kBlend) return false;
   // A corner where the head turns back has the same angles at both ends.
-  const motion::PathDerivatives in = path.curve().Derivative(0.0, 1);
-  const motion::PathDerivatives out = path.curve().Derivative(1.0, 1);
+  const motion::CornerCurve curve = path.curve();
+  const motion::PathDerivatives in = curve.Derivative(0.0, 1);
+  const motion::PathDerivatives out = curve.Derivative(1.0, 1);
   return in.a != 0.0 || in.b != 0.0 || out.a != 0.0 || out.b != 0.0;
 }
 
@@ -31,21 +32,22 @@ PartCurve::PartCurve(const PathPart& part) : part_(part), begin_(part.from), end
     turning_rad_ += (part.to - part.from) / path.radius_mm();
   if (blend()) {
     turning_rad_ += kPi;
-    const motion::CornerLength length(path.curve());
-    begin_ = length.ParameterAt(path.curve(), path.curve_start() + part.from);
-    end_ = length.ParameterAt(path.curve(), path.curve_start() + part.to);
+    curve_ = path.curve();
+    const motion::CornerLength length(curve_);
+    begin_ = length.ParameterAt(curve_, path.curve_start() + part.from);
+    end_ = length.ParameterAt(curve_, path.curve_start() + part.to);
   }
 }
 
 motion::TipPose PartCurve::Pose(double p) const {
-  return blend() ? part_.path.curve().At(p) : part_.path.At(p);
+  return blend() ? curve_.At(p) : part_.path.At(p);
 }
 
 motion::PathDerivatives PartCurve::Rate(double p) const {
   if (part_.path.kind() == PathPiece::Kind::kRotary) {
     return {{}, part_.path.a_rate(), part_.path.b_rate()};
   }
-  return blend() ? part_.path.curve().Derivative(p, 1) : part_.path.First(p);
+  return blend() ? curve_.Derivative(p, 1) : part_.path.First(p);
 }
 
 // What the turning of the head adds to the motion of the column over that of the tip.

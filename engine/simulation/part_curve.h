@@ -45,6 +45,7 @@ class PartCurve {
   motion::Vec3 Swing(double p) const;
 
   const PathPart& part_;
+  motion::CornerCurve curve_;  // of a blend
   double begin_ = 0.0;
   double end_ = 0.0;
   double turning_rad_ = 0.0;

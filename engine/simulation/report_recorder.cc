@@ -137,6 +137,7 @@ void ReportRecorder::AddShape(const machine::MotionDone& done, double profile_en
 }
 
 void ReportRecorder::OnMove(const machine::MoveDone& move) {
+  if (!move.programmed) return;  // where it ends is asked of the run
   programmed_.Add(move.program_point);
   last_ = {.tip = move.tip,
            .axes = move.axes,

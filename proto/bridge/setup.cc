@@ -10,6 +10,7 @@ namespace rmlcell::bridge {
 namespace {
 
 constexpr std::size_t kVariablesMax = 1000;
+constexpr std::size_t kShownNameMax = 80;
 
 machine::Mode FromProto(v1::OperatingMode mode, machine::Mode standard) {
   switch (mode) {
@@ -74,6 +75,7 @@ Result<machine::Parameters> MakeParameters(const machine::MachineFamily& family,
   for (const auto& [name, value] : parameters) {
     if (const Status set = made.Set(name, std::string_view(value)); !set) return set.error();
   }
+  if (const Status fit = family.CheckParameters(made); !fit) return fit.error();
   return made;
 }
 
@@ -134,14 +136,14 @@ Result<std::vector<std::string>> ExpandVariables(const std::vector<std::string>&
       const auto high = name.ends_with(']') ? ParseInteger(name.substr(dots + 2, name.size() - dots - 3))
                                             : std::nullopt;
       if (!low || !high || *low < 0 || *low > *high || *high > 999) {
-        return Error{ErrorCode::kCellInvalidArgument, "variables '" + name + "': write VR[0..9]", {}};
+        return Error{ErrorCode::kCellInvalidArgument, "variables: '" + name.substr(0, kShownNameMax) + "': write VR[0..9]", {}};
       }
       for (long long i = *low; i <= *high; ++i) {
         expanded.push_back(name.substr(0, open + 1) + std::to_string(i) + "]");
       }
     }
     if (expanded.size() > kVariablesMax) {
-      return Error{ErrorCode::kCellInvalidArgument, "more than 1,000 variables", {}};
+      return Error{ErrorCode::kCellInvalidArgument, "variables: more than 1,000", {}};
     }
   }
   return expanded;

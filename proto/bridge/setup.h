@@ -49,7 +49,9 @@ struct SetupOutcome {
 Result<SetupOutcome> MakeSetup(const SetupInput& input, const v1::SimulationOptions& options,
                                const v1::Budget& budget);
 
-// Parameters of a machine: defaults of the family, then the profile, then single values.
+// Parameters of a machine: defaults of the family, then the profile, then single values. Errors:
+// CellInvalidArgument (no such profile), CellUnknownParameter, CellParameterRange, also of values that do
+// not fit together.
 Result<machine::Parameters> MakeParameters(const machine::MachineFamily& family, const std::string& profile,
                                            const std::map<std::string, std::string>& parameters);
 

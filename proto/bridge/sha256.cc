@@ -34,6 +34,16 @@ std::string Sha256::Hex() {
   return hex;
 }
 
+std::optional<std::string> ReadSha256(std::string_view text) {
+  if (text.size() != 64) return std::nullopt;
+  std::string digest(text);
+  for (char& c : digest) {
+    if (c >= 'A' && c <= 'F') c = static_cast<char>(c - 'A' + 'a');
+    if (!((c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'))) return std::nullopt;
+  }
+  return digest;
+}
+
 std::string Sha256Hex(std::string_view bytes) {
   Sha256 digest;
   digest.Add(bytes);

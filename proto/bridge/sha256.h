@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -23,5 +24,8 @@ class Sha256 {
 };
 
 std::string Sha256Hex(std::string_view bytes);
+
+// A digest that a client wrote, in lower case; nothing for what is not 64 hexadecimal digits.
+std::optional<std::string> ReadSha256(std::string_view text);
 
 }  // namespace rmlcell::bridge

@@ -9,10 +9,15 @@
 #include "engine/simulation/families.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/files.h"
+#include "proto/bridge/setup.h"
+#include "proto/bridge/sha256.h"
 #include "server/config.h"
+#include "server/jobs/file_family.h"
 #include "server/jobs/job_filter.h"
 #include "server/jobs/job_messages.h"
+#include "server/jobs/program_place.h"
 #include "server/names.h"
+#include "server/readable.h"
 
 namespace rmlcell::server {
 namespace {
@@ -40,15 +45,15 @@ Status CheckBudget(const v1::Budget& budget) {
   return {};
 }
 
-Status CheckStepPlace(const v1::StepPlace& place, const std::string& field) {
-  if (place.program() != 0 && !IsSlot(place.program())) {
-    return Error{ErrorCode::kProgramNumber, field + ".program is " + std::to_string(place.program()), {}};
+Status CheckStepPlace(const v1::StepPlace& place, const std::string& field, const machine::MachineFamily& family) {
+  if (place.program() != 0) {
+    if (Status slot = CheckSlot(family, place.program(), field + ".program"); !slot) return slot;
   }
   if (place.step() < 1) return InvalidArgument(field + ".step is below 1");
   return {};
 }
 
-Status CheckSimulation(const v1::SimulationOptions& options) {
+Status CheckSimulation(const v1::SimulationOptions& options, const machine::MachineFamily& family) {
   const double override_percent = options.override_percent();
   if (!(override_percent >= 0.0 && override_percent <= bridge::kOverrideMax)) {
     return InvalidArgument("job.simulation.override_percent is " + ShortestText(override_percent) +
@@ -58,12 +63,15 @@ Status CheckSimulation(const v1::SimulationOptions& options) {
     return InvalidArgument("job.simulation.toolpath_tolerance_mm: allowed are 0 to 100");
   }
   if (!v1::OperatingMode_IsValid(options.mode())) return InvalidArgument("job.simulation.mode is none that there is");
+  if (options.mode() == v1::OPERATING_MODE_MANUAL) {
+    return InvalidArgument("job.simulation.mode is MANUAL, in which no program runs: use REMOTE, CYCLE, SINGLE or REPEAT");
+  }
   if (options.has_breakpoint()) {
-    const Status valid = CheckStepPlace(options.breakpoint(), "job.simulation.breakpoint");
+    const Status valid = CheckStepPlace(options.breakpoint(), "job.simulation.breakpoint", family);
     if (!valid) return valid;
   }
   if (options.has_simul()) {
-    const Status valid = CheckStepPlace(options.simul(), "job.simulation.simul");
+    const Status valid = CheckStepPlace(options.simul(), "job.simulation.simul", family);
     if (!valid) return valid;
   }
   for (const v1::ScriptedInput& input : options.inputs()) {
@@ -79,40 +87,43 @@ Status CheckSimulation(const v1::SimulationOptions& options) {
     }
   }
   for (const v1::SlotProgram& program : options.programs()) {
-    if (!IsSlot(program.slot())) {
-      return Error{ErrorCode::kProgramNumber, "job.simulation.programs: slot is " + std::to_string(program.slot()), {}};
-    }
+    if (Status slot = CheckSlot(family, program.slot(), "job.simulation.programs.slot"); !slot) return slot;
   }
   return {};
 }
 
-// Two requests of one request_id must ask for the same. FNV-1a, since only equality matters.
+// Those of a report can be given (Run::ReadVariable) when the run is over.
+Status CheckVariables(const v1::SimulationOptions& options, const machine::MachineFamily& family,
+                      const machine::Parameters& parameters) {
+  const auto names = bridge::ExpandVariables({options.variables().begin(), options.variables().end()});
+  if (!names) return InvalidArgument("job.simulation." + names.error().detail);
+  for (const std::string& name : *names) {
+    if (family.HasVariable(parameters, name)) continue;
+    return InvalidArgument("job.simulation.variables: the machine has no variable " + Readable(name));
+  }
+  return {};
+}
+
+// Two requests of one request_id must ask for the same: by this alone a submission is acknowledged as a job
+// that is there already, so nobody may be able to make two jobs of one hash. A store of an earlier version
+// holds another kind of hash: such a request, repeated, is refused as reused, and nothing is run twice.
 std::string RequestHash(const v1::SubmitJobRequest& request) {
-  const std::string text = bridge::StableBytes(request.job());
-  std::uint64_t hash = 0xCBF29CE484222325U;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3U;
-  return std::to_string(hash);
+  return bridge::Sha256Hex(bridge::StableBytes(request.job()));
 }
 
 }  // namespace
 
 std::string AttachmentName(int slot) { return "program-" + std::to_string(slot); }
 
-Status JobBook::AttachProgram(const v1::Job& job, const storage::MachineRecord& machine, storage::NewJob& made,
+Status JobBook::AttachProgram(const v1::Job& job, const machine::MachineFamily& family, storage::NewJob& made,
                               v1::Job& specification) {
-  const machine::MachineFamily* family = simulation::FindFamily(machine.family);
-  if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine.family, {}};
   switch (job.program_source_case()) {
     case v1::Job::kInlineProgram: {
       if (Status fits = CheckSize(job.inline_program().content(), "job.inline_program"); !fits) return fits;
-      if (job.inline_slot() != 0 && !IsSlot(job.inline_slot())) {
-        return Error{ErrorCode::kProgramNumber, "job.inline_slot is " + std::to_string(job.inline_slot()), {}};
+      if (job.inline_slot() != 0) {
+        if (Status slot = CheckSlot(family, job.inline_slot(), "job.inline_slot"); !slot) return slot;
       }
-      const machine::MachineFamily* named = simulation::FamilyOfFileName(job.inline_program().file_name());
-      if (named != nullptr && named != family) {
-        return InvalidArgument(job.inline_program().file_name() + " is a program for " + std::string(named->info().title) +
-                       ", machines/" + machine.id + " is of family " + machine.family);
-      }
+      if (Status fits = CheckFileFamily(job.inline_program().file_name(), family); !fits) return fits;
       made.attachments.push_back({std::string(kMainAttachment), "application/octet-stream",
                                   job.inline_program().content(), {}});
       specification.mutable_inline_program()->clear_content();
@@ -121,15 +132,16 @@ Status JobBook::AttachProgram(const v1::Job& job, const storage::MachineRecord& 
     case v1::Job::kProgram: {
       const Result<ProgramName> name = ParseProgramName(job.program());
       if (!name) return name.error();
-      if (name->machine != machine.id) return InvalidArgument("job.program is not a program of job.machine");
-      if (name->executable) return Error{ErrorCode::kProgramNumber, "an executable is started by its object", {}};
-      const auto found = store_.ListPrograms(machine.id, name->slot - 1, 1);
-      if (!found) return found.error();
-      if (found->empty() || found->front().slot != name->slot) {
-        return Error{ErrorCode::kProgramMissing, NameOfProgram(machine.id, name->slot), {}};
+      if (name->machine != made.machine) return InvalidArgument("job.program is not a program of job.machine");
+      if (Status there = CheckNumber(family, *name); !there) return there;
+      if (name->executable) return Error{family.info().no_slot, "an executable is started by its object", {}};
+      const auto found = store_.GetProgramSummary(made.machine, name->slot);
+      if (!found) {
+        if (found.error().code != ErrorCode::kCellNotFound) return found.error();
+        return EmptySlot(family, job.program());
       }
       made.attachments.push_back(
-          {std::string(kMainAttachment), "application/octet-stream", {}, found->front().object_sha256});
+          {std::string(kMainAttachment), "application/octet-stream", {}, found->object_sha256});
       return {};
     }
     case v1::Job::PROGRAM_SOURCE_NOT_SET: break;
@@ -157,12 +169,14 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, co
   if (const Status good = CheckTitle(job.title(), "job.title"); !good) return good.error();
   if (job.attempts_max() < 0 || job.attempts_max() > 10) return InvalidArgument("job.attempts_max: allowed are 1 to 10");
   if (Status valid = CheckBudget(job.budget()); !valid) return valid.error();
-  if (Status valid = CheckSimulation(job.simulation()); !valid) return valid.error();
-
   const Result<std::string> machine_id = ParseMachineName(job.machine());
   if (!machine_id) return machine_id.error();
   const Result<storage::MachineRecord> machine = store_.GetMachine(*machine_id);
   if (!machine) return machine.error();
+  const machine::MachineFamily* known = simulation::FindFamily(machine->family);
+  if (known == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
+  const machine::MachineFamily& family = *known;
+  if (Status valid = CheckSimulation(job.simulation(), family); !valid) return valid.error();
 
   storage::NewJob made{.request_id = request.request_id(),
                        .request_hash = request.request_id().empty() ? "" : RequestHash(request),
@@ -177,16 +191,17 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, co
                        .attachments = {},
                        .events = {StateEvent(storage::JobState::kQueued)}};
   v1::Job specification = job;
-  if (Status attached = AttachProgram(job, *machine, made, specification); !attached) return attached.error();
-  const machine::MachineFamily& family = *simulation::FindFamily(machine->family);
-  machine::Parameters parameters(family.parameters());
-  for (const auto& [name, value] : job.simulation().parameters()) {
-    if (Status set = parameters.Set(name, std::string_view(value)); !set) return set.error();
-  }
+  if (Status attached = AttachProgram(job, family, made, specification); !attached) return attached.error();
+  std::map<std::string, std::string> values = machine->parameters;
+  for (const auto& [name, value] : job.simulation().parameters()) values[name] = value;
+  const Result<machine::Parameters> parameters = bridge::MakeParameters(family, machine->profile, values);
+  if (!parameters) return parameters.error();
+  if (Status good = CheckVariables(job.simulation(), family, *parameters); !good) return good.error();
   std::set<int> further;
   for (v1::SlotProgram& program : *specification.mutable_simulation()->mutable_programs()) {
     const std::string what = "job.simulation.programs of slot " + std::to_string(program.slot());
     if (Status fits = CheckSize(program.program().content(), what); !fits) return fits.error();
+    if (Status fits = CheckFileFamily(program.program().file_name(), family); !fits) return fits.error();
     if (!further.insert(program.slot()).second) return InvalidArgument(what + " stands twice");
     if (job.has_inline_program() && program.slot() == InlineSlotOf(job)) {
       return InvalidArgument(what + ": the slot of job.inline_program (inline_slot, 1 when it is not given)");
@@ -203,15 +218,16 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, co
 void JobBook::Submit(const v1::SubmitJobRequest& request, const std::string& caller,
                      std::function<void(Result<v1::Job>)> done) {
   Result<storage::NewJob> made = Prepare(request, caller);
-  if (!made) {
+  if (!made || request.validate_only()) {
     // Repeated after an answer that was lost: what it needed may be gone by now, its job is there.
-    if (request.request_id().empty()) return done(made.error());
-    const auto first = store_.FindSubmitted(request.request_id(), RequestHash(request));
-    if (!first) return done(first.error());
-    if (!*first) return done(made.error());
-    return done(ToProto(**first));
-  }
-  if (request.validate_only()) {
+    std::optional<storage::JobRecord> first;
+    if (!request.request_id().empty()) {
+      auto found = store_.FindSubmitted(request.request_id(), RequestHash(request));
+      if (!found) return done(found.error());
+      first = *std::move(found);
+    }
+    if (!made && !first) return done(made.error());
+    if (!request.validate_only()) return done(ToProto(*first));
     v1::Job job = request.job();
     job.clear_name();
     return done(std::move(job));

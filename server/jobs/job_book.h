@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/core/result.h"
+#include "engine/machine/family.h"
 #include "rmlcell/v1/job.pb.h"
 #include "storage/store.h"
 
@@ -24,8 +25,8 @@ class JobBook {
   // Checks everything that can be checked before work begins, makes the job durable, then calls `done`,
   // from a thread of the store or before it returns. Bytes of programs are kept with the job, so that a
   // slot that is stored again meanwhile changes nothing.
-  // Errors: CellInvalidArgument, CellUnknownMachine, ProgramNumber, ProgramMissing, CellEmptyProgram, CellTooLarge,
-  // CellParameterRange, CellUnimplemented (RUN), CellRequestIdReused, CellResourceExhausted.
+  // Errors: CellInvalidArgument, CellUnknownMachine, FamilyInfo::no_slot and empty_slot, CellEmptyProgram,
+  // CellTooLarge, CellParameterRange, CellUnimplemented (RUN), CellRequestIdReused, CellResourceExhausted.
   void Submit(const v1::SubmitJobRequest& request, const std::string& caller,
               std::function<void(Result<v1::Job>)> done);
 
@@ -44,7 +45,7 @@ class JobBook {
   Result<storage::NewJob> Prepare(const v1::SubmitJobRequest& request, const std::string& caller);
   Result<v1::Job> WithArtifacts(const storage::JobRecord& record);
   Status CheckSize(const std::string& content, const std::string& what) const;
-  Status AttachProgram(const v1::Job& job, const storage::MachineRecord& machine, storage::NewJob& made,
+  Status AttachProgram(const v1::Job& job, const machine::MachineFamily& family, storage::NewJob& made,
                        v1::Job& specification);
 
   storage::Store& store_;

@@ -15,6 +15,7 @@
 #include "proto/bridge/findings.h"
 #include "proto/bridge/setup.h"
 #include "proto/bridge/sha256.h"
+#include "server/jobs/program_place.h"
 #include "server/names.h"
 #include "server/programs/program_office.h"
 
@@ -224,10 +225,10 @@ Result<v1::ListStaleExecutablesResponse> MemoryOffice::ListStale(const v1::ListS
 Result<v1::DecompileProgramResponse> MemoryOffice::Decompile(const v1::DecompileProgramRequest& request) {
   v1::DecompileProgramResponse response;
   if (!request.name().empty()) {
-    const Result<ProgramName> name = ParseProgramName(request.name());
-    if (!name) return name.error();
-    if (name->executable) return InvalidArgument("an executable has no source; its program is " +
-                                         NameOfProgram(name->machine, name->slot));
+    const Result<ProgramPlace> place = FindProgramPlace(store_, request.name());
+    if (!place) return place.error();
+    if (place->executable) return InvalidArgument("an executable has no source; its program is " +
+                                         NameOfProgram(place->machine.id, place->slot));
     // One read of the record: text and object belong together.
     Result<ProgramShelf::Content> source = shelf_.Read(request.name(), v1::PROGRAM_FORM_SOURCE);
     if (!source) return source.error();
@@ -247,20 +248,18 @@ Result<v1::DecompileProgramResponse> MemoryOffice::Decompile(const v1::Decompile
 }
 
 Result<MemoryOffice::StoredObject> MemoryOffice::ObjectOf(const std::string& name) {
-  const Result<ProgramName> parsed = ParseProgramName(name);
-  if (!parsed) return parsed.error();
-  if (parsed->executable) return InvalidArgument("executables are not compared; name the program of its object");
-  const auto machine = store_.GetMachine(parsed->machine);
-  if (!machine) return machine.error();
-  if (machine->family != kFamily) {
-    return Error{ErrorCode::kCellPrecondition, "programs of a " + machine->family + " machine are not compared", {}};
+  const Result<ProgramPlace> place = FindProgramPlace(store_, name);
+  if (!place) return place.error();
+  if (place->executable) return InvalidArgument("executables are not compared; name the program of its object");
+  if (place->machine.family != kFamily) {
+    return Error{ErrorCode::kCellPrecondition, "programs of a " + place->machine.family + " machine are not compared", {}};
   }
-  Result<storage::ProgramRecord> program = store_.GetProgram(parsed->machine, parsed->slot);
+  Result<storage::ProgramRecord> program = store_.GetProgram(place->machine.id, place->slot);
   if (!program) {
     if (program.error().code != ErrorCode::kCellNotFound) return program.error();
-    return Error{ErrorCode::kProgramMissing, name, {}};
+    return EmptySlot(*place->family, name);
   }
-  const std::string title = program->source_name.empty() ? std::to_string(parsed->slot) : program->source_name;
+  const std::string title = program->source_name.empty() ? std::to_string(place->slot) : program->source_name;
   return StoredObject{title.substr(0, title.find_last_of('.')), std::move(program->object)};
 }
 

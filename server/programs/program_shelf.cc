@@ -8,10 +8,12 @@
 #include "proto/bridge/findings.h"
 #include "proto/bridge/setup.h"
 #include "proto/bridge/sha256.h"
-#include "server/programs/program_office.h"
 #include "server/config.h"
+#include "server/jobs/file_family.h"
 #include "server/jobs/job_messages.h"
+#include "server/jobs/program_place.h"
 #include "server/names.h"
+#include "server/programs/program_office.h"
 
 namespace rmlcell::server {
 namespace {
@@ -70,49 +72,44 @@ ProgramError FirstError(const machine::Translation& translation) {
 
 }  // namespace
 
-std::int64_t ProgramShelf::program_bytes_max() const { return config_.limit_program_bytes; }
+Status ProgramShelf::CheckSize(std::int64_t bytes) const {
+  if (bytes <= config_.limit_program_bytes) return {};
+  return Error{ErrorCode::kCellTooLarge,
+               "the program has " + std::to_string(bytes) + " bytes; limits.program_bytes of the configuration is " +
+                   std::to_string(config_.limit_program_bytes),
+               {}};
+}
 
 ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
-  const Result<ProgramName> name = ParseProgramName(put.name);
-  if (!name) return name.error();
+  const Result<ProgramPlace> place = FindProgramPlace(store_, put.name);
+  if (!place) return place.error();
+  const machine::MachineFamily& family = *place->family;
+  const storage::MachineRecord& machine = place->machine;
   if (put.bytes.empty()) return Error{ErrorCode::kCellEmptyProgram, put.file_name, {}};
-  if (static_cast<std::int64_t>(put.bytes.size()) > config_.limit_program_bytes) {
-    return Error{ErrorCode::kCellTooLarge,
-                 std::to_string(put.bytes.size()) + " bytes; limits.program_bytes is " +
-                     std::to_string(config_.limit_program_bytes),
-                 {}};
-  }
+  if (Status fits = CheckSize(static_cast<std::int64_t>(put.bytes.size())); !fits) return fits.error();
   if (const Status good = CheckTitle(put.title, "title"); !good) return good.error();
   if (put.file_name.size() > kFileNameMax) return InvalidArgument("file_name is longer than 255 characters");
-  if (name->executable || put.form == v1::PROGRAM_FORM_EXECUTABLE) {
-    return StoreExecutable(put, name->machine, name->slot);
-  }
-  const Result<storage::MachineRecord> machine = store_.GetMachine(name->machine);
-  if (!machine) return machine.error();
-  const machine::MachineFamily* family = simulation::FindFamily(machine->family);
-  if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
-  const machine::MachineFamily* named = simulation::FamilyOfFileName(put.file_name);
-  if (named != nullptr && named != family) {
-    return InvalidArgument(BaseName(put.file_name) + " is a program for " + std::string(named->info().title) + ", not for " +
-                   std::string(family->info().title));
-  }
+  if (!v1::ProgramForm_IsValid(put.form)) return InvalidArgument("form is none that there is");
+  if (put.form == v1::PROGRAM_FORM_LISTING) return InvalidArgument("a listing is made of a program and cannot be stored");
+  if (place->executable || put.form == v1::PROGRAM_FORM_EXECUTABLE) return StoreExecutable(put, *place);
+  if (const Status fits = CheckFileFamily(BaseName(put.file_name), family); !fits) return fits.error();
   const Result<storage::Revision> expected = ParseEtag(put.etag);
   if (!expected) return expected.error();
   const Result<machine::Parameters> parameters =
-      bridge::MakeParameters(*family, machine->profile, machine->parameters);
+      bridge::MakeParameters(family, machine.profile, machine.parameters);
   if (!parameters) return parameters.error();
 
   const bool is_object = put.form == v1::PROGRAM_FORM_OBJECT || bridge::IsObjectFileName(put.file_name);
-  machine::Translation translation = family->Translate(
+  machine::Translation translation = family.Translate(
       {.name = is_object ? "program.O" : BaseName(put.file_name), .bytes = put.bytes}, *parameters, {});
   if (!translation.ok) return FirstError(translation);
-  for (Diagnostic& found : family->CheckSlot(name->slot)) {
+  for (Diagnostic& found : family.CheckSlot(place->slot)) {
     found.file = BaseName(put.file_name);
     translation.diagnostics.push_back(std::move(found));
   }
   v1::Findings findings = bridge::FindingsOf(true, translation.diagnostics, translation.diagnostics_dropped,
                                              translation.figures);
-  storage::ProgramWrite write{.slot = name->slot,
+  storage::ProgramWrite write{.slot = place->slot,
                               .name = put.title.empty() ? TitleFrom(put.file_name) : put.title,
                               .object = std::move(translation.object),
                               .source = {},
@@ -121,7 +118,7 @@ ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
   // A stream is its own object: kept once.
   if (!is_object && write.object != put.bytes) write.source = std::move(put.bytes);
   if (put.validate_only) {
-    if (const auto fits = FindExpected(name->machine, name->slot, *expected); !fits) return fits.error();
+    if (const auto fits = FindExpected(machine.id, place->slot, *expected); !fits) return fits.error();
     v1::Program program;
     program.set_name(put.name);
     program.set_title(write.name);
@@ -130,9 +127,9 @@ ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
     *program.mutable_findings() = std::move(findings);
     return program;
   }
-  const auto stored = store_.PutPrograms(name->machine, {std::move(write)}, {});
+  const auto stored = store_.PutPrograms(machine.id, {std::move(write)}, {});
   if (!stored) return stored.error();
-  v1::Program program = MessageOf(name->machine, stored->front());
+  v1::Program program = MessageOf(machine.id, stored->front());
   *program.mutable_findings() = std::move(findings);
   return program;
 }
@@ -140,37 +137,34 @@ ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
 // What the store would say to a change of this slot, before it is made: nothing when the slot is empty.
 Result<std::optional<storage::ProgramSummary>> ProgramShelf::FindExpected(const std::string& machine, int slot,
                                                                           storage::Revision expected) {
-  auto found = store_.ListPrograms(machine, slot - 1, 1);
-  if (!found) return found.error();
-  const bool there = !found->empty() && found->front().slot == slot;
+  auto found = store_.GetProgramSummary(machine, slot);
+  const bool there = static_cast<bool>(found);
+  if (!there && found.error().code != ErrorCode::kCellNotFound) return found.error();
   if (expected == 0 && there) return Error{ErrorCode::kCellAlreadyExists, NameOfProgram(machine, slot), {}};
   if (expected > 0 && !there) return Error{ErrorCode::kCellNotFound, NameOfProgram(machine, slot), {}};
-  if (expected > 0 && found->front().revision != expected) {
+  if (expected > 0 && found->revision != expected) {
     return Error{ErrorCode::kCellEtagMismatch, NameOfProgram(machine, slot), {}};
   }
   if (!there) return std::optional<storage::ProgramSummary>();
-  return std::optional(std::move(found->front()));
+  return std::optional(*std::move(found));
 }
 
-ProgramResult<v1::Program> ProgramShelf::StoreExecutable(const Put& put, const std::string& machine_id, int slot) {
-  const Result<storage::MachineRecord> machine = store_.GetMachine(machine_id);
-  if (!machine) return machine.error();
-  const machine::MachineFamily* family = simulation::FindFamily(machine->family);
-  if (family == nullptr || !family->info().has_executables) {
-    return Error{ErrorCode::kProgramNumber, "this machine has no executables: use a slot from 1 to 99", {}};
-  }
+ProgramResult<v1::Program> ProgramShelf::StoreExecutable(const Put& put, const ProgramPlace& place) {
+  const std::string& machine_id = place.machine.id;
+  const int slot = place.slot;
+  if (!place.family->info().has_executables) return InvalidArgument("this machine has no executables");
   const Result<storage::Revision> expected = ParseEtag(put.etag);
   if (!expected) return expected.error();
   // An etag is that of the object: an executable has none of its own.
   const auto found = FindExpected(machine_id, slot, *expected == 0 ? storage::kAnyRevision : *expected);
   if (!found) return found.error();
   if (!*found) {
-    return Error{ErrorCode::kProgramMissing, "an executable needs its object: " + NameOfProgram(machine_id, slot), {}};
+    return EmptySlot(*place.family, NameOfProgram(machine_id, slot) + ", and an executable needs its object");
   }
   if (*expected == 0 && (*found)->executable_bytes >= 0) {
     return Error{ErrorCode::kCellAlreadyExists, "an executable of " + NameOfProgram(machine_id, slot), {}};
   }
-  if (const Status good = family->CheckExecutable(put.bytes, slot); !good) return good.error();
+  if (const Status good = place.family->CheckExecutable(put.bytes, slot); !good) return good.error();
   if (!put.validate_only) {
     const auto kept = store_.PutExecutable(machine_id, slot, (*found)->revision, put.bytes);
     if (!kept) return kept.error();
@@ -183,39 +177,36 @@ ProgramResult<v1::Program> ProgramShelf::StoreExecutable(const Put& put, const s
 }
 
 Result<v1::Program> ProgramShelf::Get(std::string_view name) {
-  const Result<ProgramName> parsed = ParseProgramName(name);
-  if (!parsed) return parsed.error();
-  if (const auto machine = store_.GetMachine(parsed->machine); !machine) return machine.error();
-  const auto found = store_.ListPrograms(parsed->machine, parsed->slot - 1, 1);
-  if (!found) return found.error();
-  const bool there = !found->empty() && found->front().slot == parsed->slot &&
-                     (!parsed->executable || found->front().executable_bytes >= 0);
-  if (!there) return Error{ErrorCode::kProgramMissing, std::string(name), {}};
-  v1::Program program = MessageOf(parsed->machine, found->front());
+  const Result<ProgramPlace> place = FindProgramPlace(store_, name);
+  if (!place) return place.error();
+  const auto found = store_.GetProgramSummary(place->machine.id, place->slot);
+  if (!found && found.error().code != ErrorCode::kCellNotFound) return found.error();
+  const bool there = found && (!place->executable || found->executable_bytes >= 0);
+  if (!there) return EmptySlot(*place->family, name);
+  v1::Program program = MessageOf(place->machine.id, *found);
   program.set_name(std::string(name));  // an executable is asked for by its own number
   return program;
 }
 
 Result<ProgramShelf::Content> ProgramShelf::Read(std::string_view name, v1::ProgramForm form) {
-  const Result<ProgramName> parsed = ParseProgramName(name);
-  if (!parsed) return parsed.error();
-  const auto machine = store_.GetMachine(parsed->machine);
-  if (!machine) return machine.error();
-  Result<storage::ProgramRecord> program = store_.GetProgram(parsed->machine, parsed->slot);
+  if (!v1::ProgramForm_IsValid(form)) return InvalidArgument("form is none that there is");
+  const Result<ProgramPlace> place = FindProgramPlace(store_, name);
+  if (!place) return place.error();
+  Result<storage::ProgramRecord> program = store_.GetProgram(place->machine.id, place->slot);
   if (!program) {
     if (program.error().code != ErrorCode::kCellNotFound) return program.error();
-    return Error{ErrorCode::kProgramMissing, std::string(name), {}};
+    return EmptySlot(*place->family, name);
   }
-  if (parsed->executable) form = v1::PROGRAM_FORM_EXECUTABLE;
-  const machine::MachineFamily* family = simulation::FindFamily(machine->family);
-  const bool has_objects = family != nullptr && family->info().has_executables;
-  const std::string base = program->source_name.empty() ? std::to_string(parsed->slot) : TitleFrom(program->source_name);
+  if (place->executable) form = v1::PROGRAM_FORM_EXECUTABLE;
+  const machine::MachineFamily& family = *place->family;
+  const bool has_objects = family.info().has_executables;
+  const std::string base = program->source_name.empty() ? std::to_string(place->slot) : TitleFrom(program->source_name);
   Content content;
   const std::string object_sha256 = bridge::Sha256Hex(program->object);
   switch (form) {
     case v1::PROGRAM_FORM_EXECUTABLE:
       if (!program->executable) {
-        return Error{ErrorCode::kProgramMissing, "no executable was made of " + std::string(name), {}};
+        return EmptySlot(family, "executable of " + std::string(name));
       }
       content = {.bytes = std::move(*program->executable), .form = form, .file_name = base + ".X", .sha256 = {}};
       break;
@@ -224,7 +215,7 @@ Result<ProgramShelf::Content> ProgramShelf::Read(std::string_view name, v1::Prog
       break;
     case v1::PROGRAM_FORM_LISTING: {
       if (!has_objects) {
-        return Error{ErrorCode::kCellPrecondition, "a " + machine->family + " program has no steps to list", {}};
+        return Error{ErrorCode::kCellPrecondition, "a " + place->machine.family + " program has no steps to list", {}};
       }
       Result<std::string> listing = ListingOf(program->object);
       if (!listing) return listing.error();
@@ -235,13 +226,13 @@ Result<ProgramShelf::Content> ProgramShelf::Read(std::string_view name, v1::Prog
       if (program->source || !has_objects) {
         content = {.bytes = program->source ? std::move(*program->source) : std::move(program->object),
                    .form = v1::PROGRAM_FORM_SOURCE,
-                   .file_name = program->source_name.empty() && family != nullptr
-                                    ? base + std::string(FirstExtension(family->info()))
+                   .file_name = program->source_name.empty()
+                                    ? base + std::string(FirstExtension(family.info()))
                                     : program->source_name,
                    .sha256 = {},
                    .own_text = true};
       } else if (form == v1::PROGRAM_FORM_SOURCE) {
-        Result<std::string> source = family->Decompile(program->object);
+        Result<std::string> source = family.Decompile(program->object);
         if (!source) return source.error();
         content = {.bytes = std::move(*source), .form = form, .file_name = base + ".S", .sha256 = {}};
       } else {
@@ -282,21 +273,19 @@ Result<v1::ListProgramsResponse> ProgramShelf::List(const v1::ListProgramsReques
 }
 
 Status ProgramShelf::Delete(const v1::DeleteProgramRequest& request) {
-  const Result<ProgramName> name = ParseProgramName(request.name());
-  if (!name) return name.error();
-  if (const auto machine = store_.GetMachine(name->machine); !machine) return machine.error();
+  const Result<ProgramPlace> place = FindProgramPlace(store_, request.name());
+  if (!place) return place.error();
+  const std::string& machine = place->machine.id;
   const Result<storage::Revision> expected = ParseEtag(request.etag());
   if (!expected) return expected.error();
-  if (name->executable) {
-    if (const auto fits = FindExpected(name->machine, name->slot, *expected); !fits) {
+  if (place->executable) {
+    if (const auto fits = FindExpected(machine, place->slot, *expected); !fits) {
       if (fits.error().code != ErrorCode::kCellNotFound) return fits.error();
     }
   }
-  const Status deleted = name->executable ? store_.DeleteExecutable(name->machine, name->slot)
-                                          : store_.DeleteProgram(name->machine, name->slot, *expected);
-  if (!deleted && deleted.error().code == ErrorCode::kCellNotFound) {
-    return Error{ErrorCode::kProgramMissing, request.name(), {}};
-  }
+  const Status deleted = place->executable ? store_.DeleteExecutable(machine, place->slot)
+                                           : store_.DeleteProgram(machine, place->slot, *expected);
+  if (!deleted && deleted.error().code == ErrorCode::kCellNotFound) return EmptySlot(*place->family, request.name());
   return deleted;
 }
 

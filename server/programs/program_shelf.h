@@ -11,6 +11,7 @@
 namespace rmlcell::server {
 
 struct Config;
+struct ProgramPlace;
 
 // The program memory of machines: translation, checks and storage of programs.
 // Thread-safe; blocks on the store and on compilation.
@@ -27,8 +28,8 @@ class ProgramShelf {
     std::string bytes;
     bool validate_only = false;
   };
-  // All or nothing. Errors: CellEmptyProgram, CellTooLarge, ProgramNumber (7101), the first compile error,
-  // CellEtagMismatch, CellUnknownMachine, ProgramMissing for an executable without its object and
+  // All or nothing. Errors: CellEmptyProgram, CellTooLarge, the first compile error, CellEtagMismatch,
+  // CellUnknownMachine, FamilyInfo::no_slot, empty_slot for an executable without its object and
   // CellInvalidArgument for that of another program (OPT-1.15).
   ProgramResult<v1::Program> Store(Put put);
 
@@ -51,12 +52,13 @@ class ProgramShelf {
   Result<machine::Translation> Check(const std::string& family, const std::string& machine,
                                      const v1::ProgramText& program, bool advice);
 
-  std::int64_t program_bytes_max() const;
+  // Of a whole program. Error: CellTooLarge, with the limit of the configuration.
+  Status CheckSize(std::int64_t bytes) const;
 
  private:
   Result<std::optional<storage::ProgramSummary>> FindExpected(const std::string& machine, int slot,
                                                               storage::Revision expected);
-  ProgramResult<v1::Program> StoreExecutable(const Put& put, const std::string& machine, int slot);
+  ProgramResult<v1::Program> StoreExecutable(const Put& put, const ProgramPlace& place);
 
   storage::Store& store_;
   const Config& config_;

@@ -1,6 +1,7 @@
 #include "server/projects/project_book.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iterator>
 #include <optional>
@@ -10,8 +11,10 @@
 #include "engine/simulation/families.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/setup.h"
+#include "server/jobs/file_family.h"
 #include "server/jobs/job_messages.h"
 #include "server/names.h"
+#include "server/update_mask.h"
 
 namespace rmlcell::server {
 namespace {
@@ -19,6 +22,7 @@ namespace {
 constexpr int kPageDefault = 100;
 constexpr int kPageMax = 1000;
 constexpr std::size_t kNotesMax = 64 << 10;
+constexpr std::array<std::string_view, 5> kProjectFields = {"title", "notes", "programs", "laser_schedules", "processes"};
 
 // What can be said without a machine. Languages are checked when the project is transferred.
 Status CheckParts(const v1::Project& project) {
@@ -28,6 +32,7 @@ Status CheckParts(const v1::Project& project) {
   for (const v1::ProjectProgram& program : project.programs()) {
     const std::string slot = std::to_string(program.slot());
     if (!IsSlot(program.slot())) return Error{ErrorCode::kProgramNumber, "slot is " + slot, {}};
+    if (Status good = CheckTitle(program.title(), "title of program " + slot); !good) return good;
     if (!slots.insert(program.slot()).second) return Error{ErrorCode::kProjectDuplicate, "slot " + slot, {}};
     if (program.source().content().empty()) {
       return Error{ErrorCode::kProjectSource, "the program of slot " + slot + " has no source", {}};
@@ -39,6 +44,7 @@ Status CheckParts(const v1::Project& project) {
     if (schedule.number() < 1 || schedule.number() > 63) {
       return Error{ErrorCode::kScheduleRange, "laser schedule " + number, {}};
     }
+    if (Status good = CheckTitle(schedule.title(), "title of laser schedule " + number); !good) return good;
     if (!schedules.insert(schedule.number()).second) return InvalidArgument("laser schedule " + number + " stands twice");
     if (!schedule.mode().empty() && schedule.mode() != "CW" && schedule.mode() != "PULSE") {
       return InvalidArgument("laser schedule " + number + ": mode is CW or PULSE");
@@ -208,21 +214,13 @@ ProgramResult<v1::Project> ProjectBook::Update(const v1::UpdateProjectRequest& r
   if (!kept) return kept.error();
   v1::Project& project = *kept;
   const v1::Project& wanted = request.project();
-  const auto& paths = request.update_mask().paths();
-  const auto named = [&](std::string_view field) {
-    return paths.empty() || std::ranges::find(paths, field) != paths.end();
-  };
-  for (const std::string& path : paths) {
-    if (path != "title" && path != "notes" && path != "programs" && path != "laser_schedules" &&
-        path != "processes") {
-      return InvalidArgument("update_mask: '" + path + "' is none of title, notes, programs, laser_schedules, processes");
-    }
-  }
-  if (named("title")) project.set_title(wanted.title());
-  if (named("notes")) project.set_notes(wanted.notes());
-  if (named("programs")) *project.mutable_programs() = wanted.programs();
-  if (named("laser_schedules")) *project.mutable_laser_schedules() = wanted.laser_schedules();
-  if (named("processes")) *project.mutable_processes() = wanted.processes();
+  const auto named = FieldsToUpdate(request.update_mask(), wanted, kProjectFields);
+  if (!named) return named.error();
+  if (named->contains("title")) project.set_title(wanted.title());
+  if (named->contains("notes")) project.set_notes(wanted.notes());
+  if (named->contains("programs")) *project.mutable_programs() = wanted.programs();
+  if (named->contains("laser_schedules")) *project.mutable_laser_schedules() = wanted.laser_schedules();
+  if (named->contains("processes")) *project.mutable_processes() = wanted.processes();
   if (auto fault = FindFault(project)) return *std::move(fault);
   if (request.validate_only()) return project;
   // Another change between the two is not overwritten.
@@ -251,6 +249,13 @@ ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(const v1::Trans
   const auto parameters = bridge::MakeParameters(*family, machine->profile, machine->parameters);
   if (!parameters) return parameters.error();
   if (project->programs().empty()) return Error{ErrorCode::kProjectSource, "the project has no program", {}};
+
+  // A stream takes any bytes: by its translation alone no source of another family would be refused.
+  for (const v1::ProjectProgram& program : project->programs()) {
+    if (const Status fits = CheckFileFamily(program.source().file_name(), *family); !fits) {
+      return InvalidArgument("program " + std::to_string(program.slot()) + ": " + fits.error().detail);
+    }
+  }
 
   machine::TransferPlan plan =
       family->PlanTransfer(BundleOf(*project), *parameters,

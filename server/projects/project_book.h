@@ -24,7 +24,7 @@ class ProjectBook {
 
   // Converts, compiles and checks everything in the engine, then stores all programs and schedules in one
   // transaction; on any error nothing is stored (OPT-8.71). Errors: ProjectDuplicate (7861),
-  // ProjectSource (7862), the first error of the programs.
+  // ProjectSource (7862), CellInvalidArgument for a file of another family, the first error of the programs.
   ProgramResult<v1::TransferProjectResponse> Transfer(const v1::TransferProjectRequest& request);
 
  private:

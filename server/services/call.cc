@@ -36,7 +36,8 @@ Status CheckSize(const CallRoom& room, const google::protobuf::Message& request)
   if (size <= room.message_bytes_max) return {};
   return Error{ErrorCode::kCellTooLarge,
                "the message has " + std::to_string(size) + " bytes, one call takes " +
-                   std::to_string(room.message_bytes_max),
+                   std::to_string(room.message_bytes_max) +
+                   "; send a large program by chunks (UploadProgram, rmlcell put), and name its slot in a job",
                {}};
 }
 

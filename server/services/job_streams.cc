@@ -18,6 +18,15 @@ namespace {
 // Events read from the log at once; all that a watcher ever holds.
 constexpr int kReadAhead = 64;
 
+// A watcher must not wait for events that are numbered otherwise by now: it has its number of another cell, or
+// the store was put back from a backup. It is told, and never set somewhere else in silence.
+Status CheckPosition(std::int64_t after, std::int64_t last, const std::string& of) {
+  if (after < 0) return InvalidArgument("after_sequence is below 0");
+  if (after <= last) return {};
+  return InvalidArgument("after_sequence is " + std::to_string(after) + ", the last event of " + of + " is " +
+                         std::to_string(last) + ": begin anew, with a snapshot");
+}
+
 // A snapshot first, then the job's events in order, then positions while nothing else is to be told; the
 // end of the job ends the stream.
 class JobWatch final : public PullStream<v1::WatchJobResponse> {
@@ -54,10 +63,6 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
   }
 
   Next MakeSnapshot(v1::WatchJobResponse& message, grpc::Status& status) {
-    if (cursor_ < 0) {
-      status = ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument, "after_sequence is below 0", {}});
-      return Next::kEnd;
-    }
     Result<v1::Job> job = room_.book.Get(request_.name());
     if (!job) {
       status = ToGrpcStatus(job.error());
@@ -66,11 +71,8 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
     job_ = *ParseJobName(request_.name());
     // Subscribed before the log is read: what comes in between wakes us again.
     subscription_ = room_.feed.Subscribe(job_, [this] { Wake(); });
-    if (cursor_ > job->last_sequence()) {
-      status = ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument,
-                                  "after_sequence is " + std::to_string(cursor_) + ", the last event of the job is " +
-                                      std::to_string(job->last_sequence()),
-                                  {}});
+    if (const Status there = CheckPosition(cursor_, job->last_sequence(), "the job"); !there) {
+      status = ToGrpcStatus(there.error());
       return Next::kEnd;
     }
     final_sequence_ = job->has_end_time() ? job->last_sequence() : -1;
@@ -167,7 +169,11 @@ class JobsWatch final : public PullStream<v1::WatchJobsResponse> {
       return Next::kEnd;
     }
     for (const storage::MachineRecord& machine : *machines) *snapshot->add_machines() = ToProto(machine);
-    if (cursor_ <= 0 || cursor_ > snapshot->sequence()) cursor_ = snapshot->sequence();
+    if (const Status there = CheckPosition(cursor_, snapshot->sequence(), "the cell"); !there) {
+      status = ToGrpcStatus(there.error());
+      return Next::kEnd;
+    }
+    if (cursor_ == 0) cursor_ = snapshot->sequence();
     *message.mutable_snapshot() = std::move(*snapshot);
     return Next::kMessage;
   }

@@ -91,9 +91,7 @@ Status CheckMachine(const storage::MachineRecord& machine) {
     for (const machine::MachineFamily* one : simulation::Families()) known += " " + std::string(one->info().id);
     return Error{ErrorCode::kCellUnknownFamily, "'" + machine.family + "'; there are" + known, {}};
   }
-  if (machine.title.size() > 200) {
-    return Error{ErrorCode::kCellInvalidArgument, "title is longer than 200 characters", {}};
-  }
+  if (Status good = CheckTitle(machine.title, "title"); !good) return good;
   const auto parameters = bridge::MakeParameters(*family, machine.profile, machine.parameters);
   if (!parameters) return parameters.error();
   return {};

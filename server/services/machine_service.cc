@@ -1,6 +1,7 @@
 #include "server/services/machine_service.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "engine/machine/family.h"
@@ -11,6 +12,7 @@
 #include "server/names.h"
 #include "server/services/job_streams.h"
 #include "server/services/machine_messages.h"
+#include "server/update_mask.h"
 #include "server/version.h"
 
 namespace rmlcell::server {
@@ -19,6 +21,7 @@ namespace {
 constexpr int kPageDefault = 100;
 constexpr int kPageMax = 1000;
 constexpr std::int64_t kUnaryProgramBytes = 3 << 20;
+constexpr std::array<std::string_view, 3> kMachineFields = {"title", "profile", "parameters"};
 
 storage::MachineRecord FromProto(const v1::Machine& message, const std::string& id) {
   return {.id = id,
@@ -131,19 +134,11 @@ grpc::ServerUnaryReactor* MachineService::UpdateMachine(grpc::CallbackServerCont
     if (!wanted.family.empty() && wanted.family != record->family) {
       return ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument, "the family of a machine cannot be changed", {}});
     }
-    const auto& paths = request->update_mask().paths();
-    const auto named = [&](std::string_view field) {
-      return paths.empty() || std::ranges::find(paths, field) != paths.end();
-    };
-    for (const std::string& path : paths) {
-      if (path != "title" && path != "profile" && path != "parameters") {
-        return ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument,
-                                  "update_mask: '" + path + "' is none of title, profile, parameters", {}});
-      }
-    }
-    if (named("title")) record->title = wanted.title;
-    if (named("profile")) record->profile = wanted.profile;
-    if (named("parameters")) record->parameters = wanted.parameters;
+    const auto named = FieldsToUpdate(request->update_mask(), request->machine(), kMachineFields);
+    if (!named) return ToGrpcStatus(named.error());
+    if (named->contains("title")) record->title = wanted.title;
+    if (named->contains("profile")) record->profile = wanted.profile;
+    if (named->contains("parameters")) record->parameters = wanted.parameters;
     if (Status good = CheckMachine(*record); !good) return ToGrpcStatus(good.error());
     if (request->validate_only()) {
       *response = ToProto(*record);
@@ -189,6 +184,7 @@ grpc::ServerUnaryReactor* MachineService::PutLaserSchedule(grpc::CallbackServerC
     if (family == nullptr || !family->info().has_schedules) {
       return ToGrpcStatus(Error{ErrorCode::kCellPrecondition, "this machine has no laser schedules", {}});
     }
+    if (const Status good = CheckTitle(wanted.title(), "title"); !good) return ToGrpcStatus(good.error());
     const std::string mode = wanted.mode().empty() ? "CW" : wanted.mode();
     if (mode != "CW" && mode != "PULSE") {
       return ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument, "mode is CW or PULSE", {}});

@@ -38,12 +38,12 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
       if (begun_) return End(Error{ErrorCode::kCellInvalidArgument, "a second header", {}});
       begun_ = true;
       header_ = message_.header();
-      if (header_.size() <= 0) return End(Error{ErrorCode::kCellEmptyProgram, header_.file_name(), {}});
-      if (header_.size() > shelf_.program_bytes_max()) {
-        return End(Error{ErrorCode::kCellTooLarge, std::to_string(header_.size()) + " bytes", {}});
-      }
+      if (const Status good = CheckHeader(); !good) return End(good.error());
     } else {
       if (!begun_) return End(Error{ErrorCode::kCellInvalidArgument, "the first message must be the header", {}});
+      if (header_.size() == 0 && !message_.chunk().empty()) {
+        return End(InvalidArgument("header.size is missing: give the number of bytes that follow"));
+      }
       if (bytes_.size() + message_.chunk().size() > static_cast<std::size_t>(header_.size())) {
         return End(Error{ErrorCode::kCellChecksum, "more bytes than the header says", {}});
       }
@@ -53,8 +53,19 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
     StartRead(&message_);
   }
 
+  // What is wrong with it is told before the first byte of the program.
+  Status CheckHeader() {
+    if (header_.size() < 0) return InvalidArgument("header.size is " + std::to_string(header_.size()));
+    if (header_.sha256().empty()) return InvalidArgument("header.sha256 is missing");
+    const std::optional<std::string> digest = bridge::ReadSha256(header_.sha256());
+    if (!digest) return InvalidArgument("header.sha256 is not 64 hexadecimal digits");
+    header_.set_sha256(*digest);
+    return shelf_.CheckSize(header_.size());
+  }
+
   void Store() {
     if (!begun_) return End(Error{ErrorCode::kCellInvalidArgument, "no header", {}});
+    if (header_.size() == 0) return End(Error{ErrorCode::kCellEmptyProgram, header_.file_name(), {}});
     if (bytes_.size() != static_cast<std::size_t>(header_.size())) {
       return End(Error{ErrorCode::kCellChecksum,
                        std::to_string(bytes_.size()) + " bytes came, " + std::to_string(header_.size()) +

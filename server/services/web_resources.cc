@@ -8,6 +8,7 @@
 #include "server/jobs/job_book.h"
 #include "server/names.h"
 #include "server/programs/program_shelf.h"
+#include "server/readable.h"
 
 namespace rmlcell::server {
 namespace {
@@ -46,22 +47,23 @@ Result<web::Resource> FindArtifact(JobBook& book, const web::ArtifactPath& path)
   return resource;
 }
 
-v1::ProgramForm FormOf(const std::string& word) {
+// Error: CellInvalidArgument for a word that is none.
+Result<v1::ProgramForm> FormOf(const std::string& word) {
+  if (word.empty()) return v1::PROGRAM_FORM_UNSPECIFIED;
   if (word == "source") return v1::PROGRAM_FORM_SOURCE;
   if (word == "object") return v1::PROGRAM_FORM_OBJECT;
   if (word == "executable") return v1::PROGRAM_FORM_EXECUTABLE;
   if (word == "listing") return v1::PROGRAM_FORM_LISTING;
-  return v1::PROGRAM_FORM_UNSPECIFIED;
+  return InvalidArgument("form is '" + Readable(word) + "': use source, object, executable or listing");
 }
 
 class Sink final : public web::UploadSink {
  public:
-  Sink(ProgramShelf& shelf, const web::UploadHeader& header) : shelf_(shelf), header_(header) {}
+  Sink(ProgramShelf& shelf, const web::UploadHeader& header, v1::ProgramForm form)
+      : shelf_(shelf), header_(header), form_(form) {}
 
   Status Append(std::string_view chunk) override {
-    if (bytes_.size() + chunk.size() > static_cast<std::size_t>(shelf_.program_bytes_max())) {
-      return Error{ErrorCode::kCellTooLarge, "limits.program_bytes", {}};
-    }
+    if (Status fits = shelf_.CheckSize(static_cast<std::int64_t>(bytes_.size() + chunk.size())); !fits) return fits;
     digest_.Add(chunk);
     bytes_ += chunk;
     return {};
@@ -74,7 +76,7 @@ class Sink final : public web::UploadSink {
     const ProgramResult<v1::Program> stored =
         shelf_.Store({.name = "machines/" + header_.path.machine + "/programs/" + std::to_string(header_.path.slot),
                       .file_name = header_.file_name,
-                      .form = FormOf(header_.path.form),
+                      .form = form_,
                       .title = header_.title,
                       .etag = header_.etag,
                       .bytes = std::move(bytes_),
@@ -92,6 +94,7 @@ class Sink final : public web::UploadSink {
 
   ProgramShelf& shelf_;
   web::UploadHeader header_;
+  v1::ProgramForm form_;
   bridge::Sha256 digest_;
   std::string bytes_;
 };
@@ -103,8 +106,10 @@ Result<web::Resource> WebResources::Find(const web::ResourcePath& path, const we
   if (!caller) return caller.error();
   if (const auto* artifact = std::get_if<web::ArtifactPath>(&path)) return FindArtifact(book_, *artifact);
   const auto& program = std::get<web::ProgramContentPath>(path);
+  const Result<v1::ProgramForm> form = FormOf(program.form);
+  if (!form) return form.error();
   Result<ProgramShelf::Content> content =
-      shelf_.Read("machines/" + program.machine + "/programs/" + std::to_string(program.slot), FormOf(program.form));
+      shelf_.Read("machines/" + program.machine + "/programs/" + std::to_string(program.slot), *form);
   if (!content) return content.error();
   web::Resource resource{.media_type = content->form == v1::PROGRAM_FORM_SOURCE ? "text/plain; charset=utf-8"
                                                                                 : "application/octet-stream",
@@ -118,10 +123,10 @@ Result<std::unique_ptr<web::UploadSink>> WebResources::BeginUpload(const web::Up
                                                                    const web::WebCallerMetadata& metadata) {
   const Result<Caller> caller = Admit(gate_, metadata, "POST");
   if (!caller) return caller.error();
-  if (header.size > shelf_.program_bytes_max()) {
-    return Error{ErrorCode::kCellTooLarge, std::to_string(header.size) + " bytes", {}};
-  }
-  return std::unique_ptr<web::UploadSink>(std::make_unique<Sink>(shelf_, header));
+  if (const Status fits = shelf_.CheckSize(header.size); !fits) return fits.error();
+  const Result<v1::ProgramForm> form = FormOf(header.path.form);
+  if (!form) return form.error();
+  return std::unique_ptr<web::UploadSink>(std::make_unique<Sink>(shelf_, header, *form));
 }
 
 }  // namespace rmlcell::server

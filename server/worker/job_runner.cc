@@ -201,7 +201,7 @@ class Attempt {
     }
     for (const Diagnostic& diagnostic : made->diagnostics) events_.OnDiagnostic(SimTime(0), diagnostic);
     const machine::MachineFamily& family = *simulation::FindFamily(assignment_.family());
-    remote_ = made->setup->mode == machine::Mode::kRemote;
+    hold_key_ = machine::HoldKey(family.info(), made->setup->mode);
     simulation::InputDescription inputs = simulation::DescribeInputs(family, *made->setup);
     simulation::Products products;
     if (options.trace()) {
@@ -318,8 +318,7 @@ class Attempt {
       switch (order.kind()) {
         case v1::WorkerControl::KIND_HOLD:
           hold_ordered_ = true;
-          // The HOLD key has no effect in REMOTE (OPT-4.17): there only STOP holds.
-          simulation.Apply({.at = now, .kind = remote_ ? machine::InputKind::kStop : machine::InputKind::kHold});
+          simulation.Apply({.at = now, .kind = hold_key_});
           break;
         case v1::WorkerControl::KIND_STOP:
           hold_ordered_ = true;
@@ -399,7 +398,7 @@ class Attempt {
   std::int64_t events_stored_ = 0;
   std::vector<v1::WorkerControl> orders_;  // not carried out yet
   bool hold_ordered_ = false;
-  bool remote_ = false;
+  machine::InputKind hold_key_ = machine::InputKind::kHold;
   bool released_ = false;
   bool stop_asked_ = false;
 };

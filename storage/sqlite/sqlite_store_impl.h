@@ -39,6 +39,7 @@ class SqliteStore final : public Store {
   Result<std::vector<ProgramSummary>> ListPrograms(std::string_view machine, int after_slot,
                                                    int limit) override;
   Result<ProgramRecord> GetProgram(std::string_view machine, int slot) override;
+  Result<ProgramSummary> GetProgramSummary(std::string_view machine, int slot) override;
   Result<std::vector<ProgramRecord>> GetProgramMemory(std::string_view machine) override;
   Result<std::vector<int>> ListDeletedPrograms(std::string_view machine) override;
   Result<std::vector<ProgramSummary>> PutPrograms(

@@ -255,6 +255,17 @@ Result<ProgramRecord> SqliteStore::GetProgram(std::string_view machine, int slot
   });
 }
 
+Result<ProgramSummary> SqliteStore::GetProgramSummary(std::string_view machine, int slot) {
+  return readers_->Read([&](Tables& tables) -> Result<ProgramSummary> {
+    const Status known = CheckMachine(tables, machine);
+    if (!known) return known.error();
+    Result<std::optional<ProgramSummary>> summary = tables.programs.Summary(machine, slot);
+    if (!summary) return summary.error();
+    if (!*summary) return NoProgram(machine, slot);
+    return **std::move(summary);
+  });
+}
+
 Result<std::vector<ProgramRecord>> SqliteStore::GetProgramMemory(std::string_view machine) {
   return readers_->Read([&](Tables& tables) -> Result<std::vector<ProgramRecord>> {
     const Status known = CheckMachine(tables, machine);

@@ -47,7 +47,7 @@ int Main(std::string_view what, int count) {
   Planner planner(machine);
   double sum = 0.0;
   const auto drain = [&] {
-    while (const std::optional<PlannedItem> item = planner.Next()) {
+    while (const PlannedItem* item = planner.NextInPlace()) {
       sum += std::get<PlannedMotion>(*item).speed.duration_s();
     }
   };

@@ -94,35 +94,48 @@ Outcome RunPeer(const Peer& peer, const std::vector<MoveCommand>& chain, double*
           static_cast<double>(cycles) * kCycle_s};
 }
 
+// As the peer does it: as many lines as its queue takes, then their positions, in memory that both
+// use again and again.
 Outcome RunOurs(const std::vector<MoveCommand>& chain, const MachineLimits& machine, double* sum) {
-  double begin = Now();
-  std::vector<PlannedMotion> motions;
-  motions.reserve(3 * chain.size());
+  constexpr std::size_t kQueue = 2000;  // DEFAULT_TC_QUEUE_SIZE
+  static std::vector<PlannedMotion> motions;
   Planner planner(machine);
-  const auto drain = [&] {
-    while (const std::optional<PlannedItem> item = planner.Next()) {
-      motions.push_back(std::get<PlannedMotion>(*item));
-    }
-  };
-  for (const MoveCommand& move : chain) {
-    if (planner.Append(move)) drain();
-  }
-  planner.Stop();
-  drain();
-  const double planning = Now() - begin;
-
-  begin = Now();
   SampleTimes times(1000.0);
   std::uint64_t samples = 0;
-  for (const PlannedMotion& motion : motions) {
-    const MotionView view(motion);
-    times.Through(motion.speed.duration_s(), [&](double, double t) {
-      const Vec3 tip = view.PoseAt(t).tip;
-      *sum += tip.x + tip.y + tip.z;
-      ++samples;
-    });
+  double planning = 0.0;
+  double sampling = 0.0;
+  for (std::size_t next = 0; next < chain.size();) {
+    double begin = Now();
+    motions.clear();
+    const auto drain = [&] {
+      while (const PlannedItem* item = planner.NextInPlace()) {
+        motions.push_back(std::get<PlannedMotion>(*item));
+      }
+    };
+    const std::size_t end = std::min(next + kQueue, chain.size());
+    for (; next < end; ++next) {
+      if (planner.Append(chain[next])) drain();
+    }
+    if (end == chain.size()) planner.Stop();
+    drain();
+    planning += Now() - begin;
+
+    begin = Now();
+    for (const PlannedMotion& motion : motions) {
+      const double duration = motion.speed.duration_s();
+      if (times.NextWithin(duration)) {
+        const MotionView view(motion);
+        times.Through(duration, [&](double, double t) {
+          const Vec3 tip = view.PoseAt(t).tip;
+          *sum += tip.x + tip.y + tip.z;
+          ++samples;
+        });
+      } else {
+        times.Through(duration, [](double, double) {});
+      }
+    }
+    sampling += Now() - begin;
   }
-  const double sampling = Now() - begin;
   return {static_cast<double>(chain.size()) / planning, static_cast<double>(samples) / sampling,
           times.elapsed_s()};
 }

@@ -36,7 +36,7 @@ double PlanRate(const std::vector<MoveCommand>& chain, const MachineLimits& mach
   const double begin = Now();
   Planner planner(machine);
   const auto drain = [&] {
-    while (const std::optional<PlannedItem> item = planner.Next()) {
+    while (const PlannedItem* item = planner.NextInPlace()) {
       sum += std::get<PlannedMotion>(*item).speed.duration_s();
     }
   };
@@ -109,7 +109,7 @@ void Flat() {
     double sum = 0.0;
     for (int k = 0; k < segments; ++k) {
       if (!planner.Append(loop[static_cast<std::size_t>(k) % loop.size()])) return;
-      while (const std::optional<PlannedItem> item = planner.Next()) {
+      while (const PlannedItem* item = planner.NextInPlace()) {
         sum += std::get<PlannedMotion>(*item).speed.duration_s();
       }
     }

@@ -112,7 +112,7 @@ NewJob JobOf(int round, int caller, int turn) {
   const std::string number =
       std::to_string(round) + "-" + std::to_string(caller) + "-" + std::to_string(turn);
   return NewJob{.request_id = "",
-                .request_hash = "14695981039346656037",
+                .request_hash = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad",
                 .machine = "optimo-1",
                 .kind = "SIMULATE",
                 .title = "part " + number,

@@ -89,7 +89,7 @@ class Jobs(WithCell):
         self.cell.programs().DeleteProgram(program_pb2.DeleteProgramRequest(name=name))
         self.assertEqual(submit(stub, job, request_id).name, first.name)
         self.refused(stub.SubmitJob, job_pb2.SubmitJobRequest(job=job, request_id=str(uuid.uuid4())),
-                     grpc.StatusCode.NOT_FOUND, "OPT-E7102")
+                     grpc.StatusCode.NOT_FOUND, "CELL-E9004")
 
     def test_programs_of_a_job_leave_nothing_behind(self):
         stub, programs = self.cell.jobs(), self.cell.programs()
@@ -150,6 +150,35 @@ class Jobs(WithCell):
             list(stub.WatchJob(job_pb2.WatchJobRequest(name=job.name, after_sequence=len(whole) + 1), timeout=20))
         self.assertEqual(caught.exception.code(), grpc.StatusCode.INVALID_ARGUMENT)
 
+    def test_a_watcher_of_all_jobs_is_never_set_elsewhere_in_silence(self):
+        stub = self.cell.jobs()
+        job = submit(stub, inline_job("mill-1", "square.rml", SQUARE))
+        wait_for_end(stub, job.name)
+        watch = stub.WatchJobs(job_pb2.WatchJobsRequest(events_only=True), timeout=30)
+        last = next(iter(watch)).snapshot.sequence
+        watch.cancel()
+        self.assertGreater(last, 0)
+        for after in (last + 1_000_000, -1):
+            with self.assertRaises(grpc.RpcError) as caught:
+                list(stub.WatchJobs(job_pb2.WatchJobsRequest(after_sequence=after), timeout=20))
+            self.assertEqual(caught.exception.code(), grpc.StatusCode.INVALID_ARGUMENT)
+            self.assertEqual(detail_of(caught.exception).code, "CELL-E9003")
+        # The last number itself is good: nothing has come since.
+        watch = stub.WatchJobs(job_pb2.WatchJobsRequest(after_sequence=last, events_only=True), timeout=30)
+        self.assertTrue(next(iter(watch)).HasField("snapshot"))
+        watch.cancel()
+        # Over the web port, too.
+        request = urllib.request.Request(f"http://127.0.0.1:{self.cell.web_port}/rmlcell.v1.JobService/WatchJobs", None,
+                                         {"Accept": "text/event-stream", "Last-Event-ID": str(last + 1_000_000)})
+        try:
+            with urllib.request.urlopen(request, timeout=20) as answer:
+                told = answer.read().decode()
+                self.assertIn("event: error", told)
+        except urllib.error.HTTPError as error:
+            self.assertEqual(error.code, 400)
+            told = error.read().decode()
+        self.assertIn("CELL-E9003", told)
+
     def test_budgets_end_a_job_with_their_own_codes(self):
         stub = self.cell.jobs()
         job = inline_job("optimo-1", "endless.S", ENDLESS)
@@ -197,6 +226,45 @@ class Jobs(WithCell):
                      grpc.StatusCode.INVALID_ARGUMENT, "CELL-E9107")
 
 
+class Machines(WithCell):
+    def update(self, name, mask=None, **fields):
+        request = machine_pb2.UpdateMachineRequest(machine=machine_pb2.Machine(name=f"machines/{name}", **fields))
+        if mask is not None:
+            request.update_mask.paths.extend(mask)
+        return request
+
+    def test_an_update_without_a_mask_changes_what_has_a_value(self):
+        stub = self.cell.machines()
+        before = stub.UpdateMachine(self.update("mill-1", profile="srm-20", parameters={"SPIN_UP": "3"}))
+        after = stub.UpdateMachine(self.update("mill-1", title="By the door", etag=before.etag))
+        self.assertEqual((after.title, after.profile, dict(after.parameters)), ("By the door", "srm-20", {"SPIN_UP": "3"}))
+        self.refused(stub.UpdateMachine, self.update("mill-1", title="late", etag=before.etag),
+                     grpc.StatusCode.ABORTED, "CELL-E9006")
+        self.refused(stub.UpdateMachine, self.update("mill-1", ["colour"]), grpc.StatusCode.INVALID_ARGUMENT, "CELL-E9003")
+        self.assertEqual(stub.UpdateMachine(self.update("mill-1", ["profile"])).profile, "")
+        emptied = stub.UpdateMachine(self.update("mill-1", ["*"], title="Mill"))
+        self.assertEqual((emptied.title, dict(emptied.parameters)), ("Mill", {}))
+
+    def test_a_title_has_two_hundred_characters_of_any_language(self):
+        stub = self.cell.machines()
+        self.assertEqual(stub.UpdateMachine(self.update("mill-1", title="\u5de5" * 200)).title, "\u5de5" * 200)
+        self.refused(stub.UpdateMachine, self.update("mill-1", title="\u5de5" * 201), grpc.StatusCode.INVALID_ARGUMENT,
+                     "CELL-E9003")
+
+    def test_travels_that_end_before_they_begin_are_refused(self):
+        stub = self.cell.machines()
+        bad = grpc.StatusCode.INVALID_ARGUMENT, "CELL-E9011"
+        for name, family, low, high in (("optimo-1", "optimo", "TRAVEL_X_MIN", "TRAVEL_X_MAX"),
+                                        ("mill-1", "rml1", "X_MIN", "X_MAX")):
+            parameters = {low: "100", high: "50"}
+            detail = self.refused(stub.UpdateMachine, self.update(name, parameters=parameters), *bad)
+            self.assertIn(f"{low} is 100", detail.message)
+            self.assertTrue(detail.advice)
+            new = machine_pb2.Machine(family=family, parameters=parameters)
+            self.refused(stub.CreateMachine, machine_pb2.CreateMachineRequest(machine_id=f"new-{family}", machine=new), *bad)
+            self.assertEqual(dict(stub.GetMachine(machine_pb2.GetMachineRequest(name=f"machines/{name}")).parameters), {})
+
+
 class Programs(WithCell):
     def put(self, machine, slot, file_name, content, **more):
         request = program_pb2.PutProgramRequest(name=f"machines/{machine}/programs/{slot}", **more)
@@ -240,6 +308,31 @@ class Programs(WithCell):
         # 199 is the executable of 99, which needs its object (OPT-1.15).
         self.refused(stub.PutProgram, self.put("optimo-1", 199, "a.X", b"x"), grpc.StatusCode.NOT_FOUND, "OPT-E7102")
 
+    def test_a_mill_has_no_code_for_slots_and_gets_that_of_the_cell(self):
+        stub, jobs = self.cell.programs(), self.cell.jobs()
+        invalid, missing = grpc.StatusCode.INVALID_ARGUMENT, grpc.StatusCode.NOT_FOUND
+        for slot in (0, 100, 199, 200):
+            name = f"machines/mill-1/programs/{slot}"
+            job = job_pb2.Job(machine="machines/mill-1", kind=job_pb2.JOB_KIND_CHECK, program=name)
+            for call, request in ((stub.PutProgram, self.put("mill-1", slot, "a.rml", "PU;")),
+                                  (stub.GetProgram, program_pb2.GetProgramRequest(name=name)),
+                                  (stub.DeleteProgram, program_pb2.DeleteProgramRequest(name=name)),
+                                  (jobs.SubmitJob, job_pb2.SubmitJobRequest(job=job))):
+                detail = self.refused(call, request, invalid, "CELL-E9003")
+                self.assertIn(f"is {slot}; slots are 1 to 99", detail.message)
+        name = "machines/mill-1/programs/88"
+        job = job_pb2.Job(machine="machines/mill-1", kind=job_pb2.JOB_KIND_CHECK, program=name)
+        for call, request in ((stub.GetProgram, program_pb2.GetProgramRequest(name=name)),
+                              (stub.GetProgramContent, program_pb2.GetProgramContentRequest(name=name)),
+                              (stub.DeleteProgram, program_pb2.DeleteProgramRequest(name=name)),
+                              (jobs.SubmitJob, job_pb2.SubmitJobRequest(job=job))):
+            detail = self.refused(call, request, missing, "CELL-E9004")
+            self.assertIn(name, detail.message)
+            self.assertNotIn("CALL", detail.message + detail.advice)
+        for field in ({"inline_slot": 100}, {"simulation": job_pb2.SimulationOptions(programs=[job_pb2.SlotProgram()])}):
+            job = inline_job("mill-1", "a.rml", "PU;", **field)
+            self.refused(jobs.SubmitJob, job_pb2.SubmitJobRequest(job=job), invalid, "CELL-E9003")
+
     def test_bad_bytes_are_refused_and_the_server_goes_on(self):
         stub = self.cell.programs()
         self.refused(stub.PutProgram, self.put("optimo-1", 47, "empty.S", b""), grpc.StatusCode.INVALID_ARGUMENT,
@@ -254,6 +347,7 @@ class Programs(WithCell):
             stub.PutProgram(self.put("optimo-1", 47, "big.S", b";" * 5_000_000))
         self.assertEqual(caught.exception.code(), grpc.StatusCode.RESOURCE_EXHAUSTED)
         self.assertEqual(detail_of(caught.exception).code, "CELL-E9007")
+        self.assertIn("UploadProgram", detail_of(caught.exception).message)
         self.refused(self.cell.jobs().GetJob, job_pb2.GetJobRequest(name="jobs/" + "9" * 1_000_000),
                      grpc.StatusCode.INVALID_ARGUMENT, "CELL-E9003")
         self.refused(self.cell.jobs().SubmitJob,
@@ -265,7 +359,7 @@ class Programs(WithCell):
         def parts():
             header = program_pb2.UploadProgramRequest.Header(
                 name=name, file_name=file_name, size=len(data) if size is None else size,
-                sha256=sha256 or hashlib.sha256(data).hexdigest())
+                sha256=hashlib.sha256(data).hexdigest() if sha256 is None else sha256)
             yield program_pb2.UploadProgramRequest(header=header)
             for at in range(0, len(data), 1 << 20):
                 yield program_pb2.UploadProgramRequest(chunk=data[at:at + (1 << 20)])
@@ -282,6 +376,28 @@ class Programs(WithCell):
             self.upload("machines/mill-1/programs/9", "large.rml", data, sha256="0" * 64)
         self.assertEqual(detail_of(caught.exception).code, "CELL-E9016")
         self.assertEqual(self.cell.programs().GetProgram(program_pb2.GetProgramRequest(name=stored.name)).etag, stored.etag)
+
+    def test_the_header_of_an_upload_is_told_what_is_wrong_with_it(self):
+        data = b"PU100,100;"
+        name = "machines/mill-1/programs/10"
+        upper = hashlib.sha256(data).hexdigest().upper()
+        self.assertEqual(self.upload(name, "a.rml", data, sha256=upper).object_bytes, len(data))
+        limit = self.cell.machines().GetCell(machine_pb2.GetCellRequest()).program_bytes_max
+        for sha256, size, code, words in (("junk", None, "CELL-E9003", "64 hexadecimal digits"),
+                                          ("g" * 64, None, "CELL-E9003", "64 hexadecimal digits"),
+                                          ("", None, "CELL-E9003", "sha256 is missing"),
+                                          (None, -1, "CELL-E9003", "size is -1"),
+                                          (None, 0, "CELL-E9003", "size is missing"),
+                                          (None, limit + 1, "CELL-E9007", "limits.program_bytes")):
+            with self.assertRaises(grpc.RpcError) as caught:
+                self.upload(name, "a.rml", data, sha256=sha256, size=size)
+            detail = detail_of(caught.exception)
+            self.assertEqual(detail.code, code)
+            self.assertIn(words, detail.message)
+            self.assertNotIn("UploadProgram", caught.exception.details())
+        with self.assertRaises(grpc.RpcError) as caught:  # a file with nothing in it
+            self.upload(name, "a.rml", b"")
+        self.assertEqual(detail_of(caught.exception).code, "CELL-E9017")
 
     def test_a_hundred_megabytes_of_one_byte_are_answered(self):
         with self.assertRaises(grpc.RpcError) as caught:
@@ -410,6 +526,26 @@ class Web(WithCell):
             self.assertEqual(json.load(answer)["outcome"]["kind"], "KIND_COMPLETED")
         with urllib.request.urlopen(f"http://127.0.0.1:{self.cell.web_port}/") as page:
             self.assertIn(b"<html", page.read())
+
+    def test_a_form_that_is_none_is_refused(self):
+        url = f"http://127.0.0.1:{self.cell.web_port}/v1/machines/optimo-1/programs/61/content"
+        def ask(query, body=None):
+            request = urllib.request.Request(url + query, body, {"Content-Type": "application/octet-stream"} if body else {})
+            try:
+                with urllib.request.urlopen(request, timeout=30) as answer:
+                    return answer.status, answer.read().decode()
+            except urllib.error.HTTPError as error:
+                return error.code, error.read().decode()
+        self.assertEqual(ask("?file_name=a.S", b"SPEED 5\n")[0], 200)
+        for query in ("", "?form=", "?form=source"):
+            self.assertEqual(ask(query), (200, "SPEED 5\n"))
+        self.assertEqual(ask("?form=listing")[0], 200)
+        for query, body in (("?form=bogus", None), ("?form=SOURCE", None), ("?file_name=a.S&form=bogus", b"SPEED 6\n"),
+                            ("?file_name=a.S&form=listing", b"SPEED 6\n")):
+            status, text = ask(query, body)
+            self.assertEqual(status, 400, query)
+            self.assertIn("CELL-E9003", text)
+        self.assertEqual(ask("?form=source"), (200, "SPEED 5\n"))
 
     def test_reflection_alone_is_enough_for_a_client(self):
         buf = os.environ.get("RMLCELL_BUF")

@@ -72,6 +72,17 @@ class Local(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertGreater(state.stat().st_size, 0)
 
+    def test_a_machine_file_whose_values_do_not_fit_together_is_refused(self):
+        for family, name, low, high in (("optimo", "a.S", "TRAVEL_X_MIN", "TRAVEL_X_MAX"), ("rml1", "a.rml", "X_MIN", "X_MAX")):
+            program = self.file(name, "DELAY 1.\n" if family == "optimo" else "PU;")
+            machine = self.file(f"{family}.toml", f'family = "{family}"\n[parameters]\n{low} = 100\n{high} = 50\n')
+            for verb in ("simulate", "check"):
+                done = run(verb, program, "--machine", machine)
+                self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+                self.assertIn("CELL-E9011", done.stderr)
+                self.assertIn(f"{low} is 100", done.stderr)
+                self.assertIn(f"{high}, which is 50", done.stderr)
+
     def test_listed_parameters_are_a_machine_file_that_changes_nothing(self):
         for family, profile, program in (("optimo", "pw-1993", self.file("a.S", "MOVE (100.0, 0.0, 0.0, 0.0, 0.0)\n")),
                                          ("rml1", "srm-20", self.file("square.rml", SQUARE))):

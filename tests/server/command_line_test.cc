@@ -3,7 +3,9 @@
 #include <sys/wait.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "server/config.h"
 #include "tests/storage/sqlite_bed.h"
@@ -95,6 +97,24 @@ TEST(CommandLine, AMistakeIsNamedAndEndsTheProgram) {
     EXPECT_EQ(answer.status, status) << words;
     EXPECT_THAT(answer.text, HasSubstr(text)) << words;
   }
+}
+
+// A file that is not ours stops the start; nothing of it is served, and it stays as it is.
+TEST(CommandLine, AStoreOfAnotherProgramStopsTheStart) {
+  const storage::TestDirectory folder;
+  const std::string path = folder.File("cell.db");
+  const std::string foreign = "<html>not a database</html>" + std::string(2'000, ' ');
+  std::ofstream(path) << foreign;
+  const Answer answer = Ask("", "--listen.grpc 127.0.0.1:0 --listen.web \"\" --state.directory " +
+                                    std::filesystem::path(path).parent_path().string());
+  EXPECT_EQ(answer.status, 69) << answer.text;
+  EXPECT_THAT(answer.text, HasSubstr("CELL-E9104"));
+  EXPECT_THAT(answer.text, HasSubstr(path));
+  EXPECT_THAT(answer.text, HasSubstr("the server does not start"));
+  EXPECT_THAT(answer.text, testing::Not(HasSubstr("still served")));
+  std::ostringstream now;
+  now << std::ifstream(path).rdbuf();
+  EXPECT_EQ(now.str(), foreign);
 }
 
 }  // namespace

@@ -26,6 +26,9 @@ class ForwardingStore : public storage::Store {
   Result<storage::ProgramRecord> GetProgram(std::string_view machine, int slot) override {
     return store_.GetProgram(machine, slot);
   }
+  Result<storage::ProgramSummary> GetProgramSummary(std::string_view machine, int slot) override {
+    return store_.GetProgramSummary(machine, slot);
+  }
   Result<std::vector<storage::ProgramRecord>> GetProgramMemory(std::string_view machine) override {
     return store_.GetProgramMemory(machine);
   }

@@ -62,6 +62,17 @@ TEST_P(StoreConformance, SummaryTellsSizesAndHash) {
   EXPECT_EQ(Must(store().ReadBlob(kSha256OfAbc)), "abc");
 }
 
+TEST_P(StoreConformance, ASlotIsLookedUpByItself) {
+  PutMachine("m");
+  for (const int slot : {4, 6}) PutProgram("m", slot, "abc");
+  const ProgramSummary found = Must(store().GetProgramSummary("m", 4));
+  EXPECT_EQ(found.slot, 4);
+  EXPECT_EQ(found.object_sha256, kSha256OfAbc);
+  EXPECT_EQ(found.object_bytes, 3);
+  EXPECT_EQ(CodeOf(store().GetProgramSummary("m", 5)), ErrorCode::kCellNotFound);
+  EXPECT_EQ(CodeOf(store().GetProgramSummary("none", 4)), ErrorCode::kCellUnknownMachine);
+}
+
 TEST_P(StoreConformance, ProgramsAreListedInPages) {
   PutMachine("m");
   PutMachine("other");

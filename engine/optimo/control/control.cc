@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/core/number_text.h"
 
@@ -121,18 +122,29 @@ SimTime Control::NextTick(SimTime since) const {
   return since + ((s_.now - since) / cycle + 1) * cycle;
 }
 
+// Nothing outside can change the condition any more, and no motion either.
+bool Control::WaitsForEver() const {
+  const bool times_out = s_.pending.of_move && s_.time_gosub;
+  return s_.pending.kind == Pending::Kind::kCondition && !Busy() && !times_out &&
+         s_.next_input >= setup_.inputs.size();
+}
+
 SimTime Control::NextEvent(SimTime until) const {
   SimTime next = kForever;
   if (s_.next_input < setup_.inputs.size())
     next = std::max(s_.now, setup_.inputs[s_.next_input].at);
   if (s_.active) {
     next = std::min(next, s_.active->end);
-    if (Watching() && !s_.deferred) {
-      if (s_.end_condition) next = std::min(next, NextTick(s_.watched_since));
-      if (s_.time_gosub && !s_.time_ran_out) next = std::min(next, std::max(s_.now, s_.time_due));
-    }
   } else if (!s_.timeline.empty()) {
     next = s_.now;
+  }
+  const bool last_input = s_.next_input >= setup_.inputs.size();
+  if ((Watching() || s_.no_motion) && !s_.deferred) {
+    // Where the program stands and no input is to come, ticks would show nothing new.
+    const bool settled =
+        s_.pending.kind == Pending::Kind::kNoMotion && !Busy() && last_input && !s_.input_changed;
+    if (s_.end_condition && !settled) next = std::min(next, NextTick(s_.watched_since));
+    if (s_.time_gosub && !s_.time_ran_out) next = std::min(next, std::max(s_.now, s_.time_due));
   }
   const bool times_out = s_.pending.of_move && s_.time_gosub;
   switch (s_.pending.kind) {
@@ -149,14 +161,11 @@ SimTime Control::NextEvent(SimTime until) const {
     case Pending::Kind::kStandstill:
       if (!Busy()) next = s_.now;
       break;
+    case Pending::Kind::kNoMotion:
     case Pending::Kind::kNone:
       break;
   }
-  // Nothing outside can change a condition any more, and no motion either: ticks would show nothing
-  // new.
-  const bool quiet = s_.pending.kind == Pending::Kind::kCondition && !Busy() && !times_out &&
-                     s_.next_input >= setup_.inputs.size();
-  if (quiet) next = kForever;
+  if (WaitsForEver()) next = kForever;  // ticks would show nothing new
   next = std::min(next, NextTask());
   if (s_.input_changed && s_.pending.kind == Pending::Kind::kCondition) next = s_.now;
   return std::min(next, std::max(setup_.budget.virtual_time, s_.now + SimTime(1)) <= until
@@ -174,17 +183,8 @@ void Control::ActOnTime() {
   if (s_.phase != machine::RunPhase::kRunning) return;
   if (!s_.active && !s_.timeline.empty()) StartNextItem();
   if (s_.phase != machine::RunPhase::kRunning) return;
-  if (s_.halting && !Busy()) {
-    s_.halting = false;
-    if (s_.held.empty()) return Halt("STOP");
-    s_.place_ahead = s_.place;
-    s_.place = s_.halted_behind;
-    return Halt("HOLD");
-  }
-  if (s_.stop_requested && s_.active && BringToHalt() && !Busy()) {
-    s_.halting = false;
-    return Halt("STOP");
-  }
+  if (s_.halting && !Busy()) return HaltOnPath();
+  if (s_.stop_requested && s_.active && BringToHalt() && !Busy()) return HaltOnPath();
   WatchMove();
   RunTasks();
   if (s_.phase != machine::RunPhase::kRunning) return;
@@ -224,13 +224,15 @@ void Control::ActOnTime() {
       if (s_.active) EndMotionHere();
       s_.timeline.clear();
       break;
+    case Pending::Kind::kNoMotion:  // WatchMove ends it
     case Pending::Kind::kNone:
       break;
   }
   if (s_.phase == machine::RunPhase::kRunning && s_.now >= setup_.budget.virtual_time) {
-    Finish(
-        machine::OutcomeKind::kBudgetExceeded, ErrorCode::kTimeBudget,
-        "the run takes longer than " + ShortestText(ToSeconds(setup_.budget.virtual_time)) + " s");
+    std::string detail =
+        "the run takes longer than " + ShortestText(ToSeconds(setup_.budget.virtual_time)) + " s";
+    if (WaitsForEver()) detail += ": it waits for a condition, and no input is to come";
+    BreakOff(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kTimeBudget, std::move(detail));
   }
 }
 
@@ -264,11 +266,7 @@ void Control::Apply(const machine::InputChange& input) {
       // An open door acts as STOP, and the shutter closes (OPT-B.34, OPT-3.17).
       if (s_.phase == machine::RunPhase::kRunning)
         Apply({.at = s_.now, .kind = machine::InputKind::kStop});
-      SuspendBeam();
-      if (s_.beam.shutter_open) {
-        s_.beam.shutter_was_open = true;
-        CloseShutter();
-      }
+      CloseBehindDoor();
       break;
     case machine::InputKind::kStart:
       Resume();
@@ -284,10 +282,7 @@ void Control::Apply(const machine::InputChange& input) {
       if (!Busy() && !s_.passing) {
         Halt("STOP");
       } else if (s_.active && !s_.active->ended && BringToHalt()) {
-        if (!Busy()) {
-          s_.halting = false;
-          Halt("STOP");
-        }
+        if (!Busy()) HaltOnPath();
       } else {
         s_.stop_requested = true;
       }
@@ -298,21 +293,46 @@ void Control::Apply(const machine::InputChange& input) {
   }
 }
 
+void Control::CloseBehindDoor() {
+  const machine::Place in_execution = std::exchange(s_.place, PlaceOfMotion());
+  SuspendBeam();
+  if (s_.beam.shutter_open) {
+    s_.beam.shutter_was_open = true;
+    CloseShutter();
+  }
+  s_.place = in_execution;
+}
+
 // Reports what was not yet reported of the wait under way. While a motion goes on (/NEXT) there is
 // nothing to report: that time is the motion's.
 void Control::TellWait() {
   Pending& pending = s_.pending;
   const bool timed = pending.kind == Pending::Kind::kTime;
-  if (!timed && pending.kind != Pending::Kind::kCondition) return;
+  const bool condition =
+      pending.kind == Pending::Kind::kCondition || pending.kind == Pending::Kind::kNoMotion;
+  if (!timed && !condition) return;
   if (!s_.active && s_.now > pending.told) {
     observer_.OnWait({.start = pending.told,
                       .end = s_.now,
-                      .place = s_.place,
+                      .place = pending.place,
                       .kind = timed ? pending.wait : machine::WaitKind::kCondition,
                       .beam_on = s_.beam.on,
                       .power_percent = s_.beam.on ? s_.beam.power.constant_percent : 0.0});
   }
   pending.told = s_.now;
+}
+
+// The step that the machine is at: the program runs ahead of /FLY moves, but not of one of /NEXT,
+// which goes on beside it.
+machine::Place Control::PlaceOfMotion() const {
+  return s_.active && !s_.background ? s_.active->note.place : s_.place;
+}
+
+// The motions are at rest, and go on at START: the halt belongs to the move that was under way.
+void Control::HaltOnPath() {
+  s_.halting = false;
+  s_.place_ahead = std::exchange(s_.place, s_.halted_behind);
+  Halt(s_.held.empty() ? "STOP" : "HOLD");
 }
 
 void Control::Halt(std::string_view why) {
@@ -327,20 +347,24 @@ void Control::Halt(std::string_view why) {
   observer_.OnHalt({.at = s_.now, .place = s_.place, .why = why});
 }
 
+// The halt up to now: the operator is waited for.
+void Control::TellHalt() {
+  if (s_.now <= s_.halted_at) return;
+  observer_.OnWait({.start = s_.halted_at,
+                    .end = s_.now,
+                    .place = s_.place,
+                    .kind = machine::WaitKind::kOperator,
+                    .beam_on = false,
+                    .power_percent = 0.0});
+}
+
 void Control::Resume() {
   if (s_.phase != machine::RunPhase::kHalted) return;
   if (s_.machine.door_open && (s_.beam_returns || s_.beam.shutter_was_open)) {
     Warn(ErrorCode::kShutterInterlock, "START with the operator door open", "OPT-3.17");
     return;
   }
-  if (s_.now > s_.halted_at) {
-    observer_.OnWait({.start = s_.halted_at,
-                      .end = s_.now,
-                      .place = s_.place,
-                      .kind = machine::WaitKind::kOperator,
-                      .beam_on = false,
-                      .power_percent = 0.0});
-  }
+  TellHalt();
   // A wait that was under way lasts as long as before: time stood still for it.
   const SimTime stood = s_.now - s_.halted_at;
   if (s_.pending.kind != Pending::Kind::kNone) {
@@ -365,31 +389,38 @@ void Control::Resume() {
   s_.timeline.insert(s_.timeline.begin(), s_.interrupted.begin(), s_.interrupted.end());
   s_.interrupted.clear();
   PlanHeld();
+  if (s_.place_ahead) s_.place = *std::exchange(s_.place_ahead, std::nullopt);
 }
 
 // The state freezes: no motion is modelled after it (motion.md 6).
 void Control::EmergencyStop() {
-  if (s_.active) {
-    TellMotion(s_.now);
-    s_.machine.axes = AxesNow();
-    s_.active.reset();
-  }
   s_.machine.data.vi[99] = 7610.0F;
-  Finish(machine::OutcomeKind::kFailed, ErrorCode::kEmergencyStop, {});
+  BreakOff(machine::OutcomeKind::kFailed, ErrorCode::kEmergencyStop, {});
 }
 
 void Control::End(machine::OutcomeKind kind, ErrorCode code) {
-  if (s_.phase == machine::RunPhase::kFinished) return;
+  if (s_.phase != machine::RunPhase::kFinished) BreakOff(kind, code, {});
+}
+
+// From outside, wherever the machine is: at its place, not where the program has run ahead to.
+void Control::BreakOff(machine::OutcomeKind kind, ErrorCode code, std::string detail) {
+  s_.place = PlaceOfMotion();
+  Finish(kind, code, std::move(detail));
+}
+
+// Beam off, shutter closed, whatever the reason (OPT-3.16, 3.18, B.54). What goes on is told up to
+// now.
+void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail) {
+  if (s_.phase == machine::RunPhase::kHalted) {
+    TellHalt();
+  } else {
+    TellWait();
+  }
   if (s_.active) {
     TellMotion(s_.now);
     s_.machine.axes = AxesNow();
     s_.active.reset();
   }
-  Finish(kind, code, {});
-}
-
-// Beam off, shutter closed, whatever the reason (OPT-3.16, 3.18, B.54).
-void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail) {
   s_.timeline.clear();
   s_.held.clear();
   s_.interrupted.clear();

@@ -38,17 +38,23 @@ class Control : private VariableAccess {
   void StartMain();
   bool MayFetch() const;
   void Fetch();
+  bool WaitsForEver() const;
   SimTime NextEvent(SimTime until) const;
   void LetTimePass(SimTime to);
   void ActOnTime();
   void ApplyScripted();
   void Halt(std::string_view why);
+  void HaltOnPath();
+  machine::Place PlaceOfMotion() const;
+  void CloseBehindDoor();
   void TellWait();
   SimTime After(double seconds) const;
   SimTime TickAfter(double seconds) const;
   void CountExecution(int slot);
   void Resume();
+  void TellHalt();
   void EmergencyStop();
+  void BreakOff(machine::OutcomeKind kind, ErrorCode code, std::string detail);
   void Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail);
   SimTime NextTick(SimTime since) const;
 
@@ -70,6 +76,7 @@ class Control : private VariableAccess {
   bool Watching() const;
   void Unwatch();
   void WatchMove();
+  void EndNoMotion();
 
   // 0: no source is known.
   int LineOf(int slot, std::uint32_t step) const;
@@ -86,9 +93,9 @@ class Control : private VariableAccess {
   // Where a chain that is planned anew goes on: after the way that brings the acceleration to zero,
   // and the speed down where it must.
   struct Onward {
-    std::size_t own = 0;       // of s_.appended: the command of that place
-    double lead_length = 0.0;  // of that way, mm
-    double speed = 0.0;        // at its end, mm/s
+    std::size_t own = 0;        // of s_.appended: the command of that place
+    double lead_length = 0.0;   // of that way, mm
+    double speed = 0.0;         // at its end, mm/s
     motion::MoveCommand first;  // what is left of the command then
   };
   bool ReplanChain();
@@ -115,6 +122,8 @@ class Control : private VariableAccess {
   bool AppendMotion(const motion::PathPiece& path, const Instruction& i, const MoveNote& note,
                     bool settles);
   bool InTravel(const motion::PathPiece& path);
+  bool NeverMoves() const;
+  void NotUnderWay(const Instruction& i);
   bool MoveHole(const Instruction& i, const motion::TipPose& from, const motion::TipPose& target,
                 MoveNote note);
   void WatchAndGoOn(const Instruction& i, std::uint64_t first_tag, bool ran_ahead);
@@ -124,6 +133,7 @@ class Control : private VariableAccess {
   void SetWorkOffset(const Instruction& i);
   void SetTool(const Instruction& i);
   void ZeroAxes();
+  void TellZeroed(int group);
   motion::Head HeadNow() const;
 
   // --- control_work.cc: WORK, also while the program goes on ---
@@ -146,6 +156,7 @@ class Control : private VariableAccess {
   double SchedulePower() const;
   void Show(PassageEffect effect, When when = When::kPassage);
   void Carry(const PassageEffect& effect);
+  void TakeEffect(const PassageEffect& effect);
   void BeamOn(const machine::PowerBySpeed& power);
   void BeamOff();
   void OpenShutter();
@@ -158,6 +169,7 @@ class Control : private VariableAccess {
   // --- control_flow.cc: instructions and jumps; control_calls.cc; control_errors.cc ---
   void Execute(const Instruction& i);
   bool NeedsStandstill(const Instruction& i);
+  static bool WaitsForNext(const Instruction& i, bool main);
   bool MakeDueGosub();
   bool LetPollingTakeTime(const Instruction& i, std::uint32_t at);
   void Jump(int label);
@@ -180,7 +192,11 @@ class Control : private VariableAccess {
   void Wait(Pending pending);
   void Raise(ErrorCode code, std::string detail = {});
   void HandleError(const Error& error);
+  void FailWithoutHandler(int label);
+  void Tell(const Diagnostic& finding);
   void Warn(ErrorCode code, std::string detail, std::string_view rule);
+  void WarnAt(const machine::Place& place, ErrorCode code, std::string detail,
+              std::string_view rule);
 
   // --- control_data.cc: variables ---
   float Read(Variable variable) override;

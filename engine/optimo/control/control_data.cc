@@ -1,8 +1,6 @@
 #include <cmath>
 
-#include "engine/core/number_text.h"
 #include "engine/optimo/control/control.h"
-#include "engine/optimo/language/printer.h"
 
 // Variables, images and expressions.
 namespace rmlcell::optimo {
@@ -216,35 +214,8 @@ void Control::SetGroups(const Instruction& i) {
   }
 }
 
-namespace {
-
-std::string RealText(float value) {
-  std::string text;
-  PrintReal(value, text);
-  return text;
-}
-
-}  // namespace
-
 std::optional<std::string> Control::ReadVariable(std::string_view name) const {
-  const std::size_t open = name.find('[');
-  if (open == std::string_view::npos || !name.ends_with(']')) return std::nullopt;
-  const auto number = ParseInteger(name.substr(open + 1, name.size() - open - 2));
-  if (!number || *number < 0 || *number > kVariableIndexMax) return std::nullopt;
-  const auto n = static_cast<std::size_t>(*number);
-  const DataArea& data = s_.machine.data;
-  const auto group = name.substr(0, open);
-  const auto is = [&](std::string_view word) {
-    return group.size() == 2 && (group[0] & ~0x20) == word[0] && (group[1] & ~0x20) == word[1];
-  };
-  if (is("VR")) return RealText(data.vr[n]);
-  if (is("VI")) return std::to_string(static_cast<int>(data.vi[n]));
-  if (is("VL")) return data.vl[n] ? "1" : "0";
-  if (is("IL")) return data.il[n] ? "1" : "0";
-  if (is("OL")) return data.ol[n] ? "1" : "0";
-  if (is("IA")) return RealText(data.ia[n]);
-  if (is("OA")) return RealText(data.oa[n]);
-  return std::nullopt;
+  return ReadByName(s_.machine.data, name);
 }
 
 }  // namespace rmlcell::optimo

@@ -2,15 +2,39 @@
 
 // Errors: whether a program goes on after one, and where.
 namespace rmlcell::optimo {
+namespace {
+
+// Some codes have more than one severity (optimo.md section C); the catalogue holds the first. This
+// is the one in a run.
+Severity SeverityInRun(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::kScheduleRange:  // computed; a literal never comes to a run (OPT-B.36)
+      return Severity::kProgram;
+    case ErrorCode::kCmosFull:
+    case ErrorCode::kObjectCorrupt:  // when it is linked or loaded, OPT-B.56
+      return Severity::kFatal;
+    default:
+      return Lookup(code).severity;
+  }
+}
+
+}  // namespace
 
 void Control::Warn(ErrorCode code, std::string detail, std::string_view rule) {
-  observer_.OnDiagnostic(s_.now, {.code = code,
-                                  .severity = Lookup(code).severity,
-                                  .detail = std::move(detail),
-                                  .rule = std::string(rule),
-                                  .program = s_.place.program,
-                                  .step = s_.place.step});
+  WarnAt(s_.place, code, std::move(detail), rule);
 }
+
+void Control::WarnAt(const machine::Place& place, ErrorCode code, std::string detail,
+                     std::string_view rule) {
+  Tell({.code = code,
+        .severity = SeverityInRun(code),
+        .detail = std::move(detail),
+        .rule = std::string(rule),
+        .program = place.program,
+        .step = place.step});
+}
+
+void Control::Tell(const Diagnostic& finding) { observer_.OnDiagnostic(s_.now, finding); }
 
 // The failing instruction has no effect. What moves comes to rest first; an error that was raised
 // ahead of a motion is handled when that motion is over.
@@ -29,13 +53,13 @@ void Control::Raise(ErrorCode code, std::string detail) {
 }
 
 void Control::HandleError(const Error& error) {
-  const CatalogueEntry& entry = Lookup(error.code);
-  s_.machine.data.vi[99] = static_cast<float>(entry.number);
+  s_.machine.data.vi[99] = static_cast<float>(Lookup(error.code).number);
+  TellWait();
   s_.pending = {};
   s_.condition_met = false;
   Unwatch();
   BeamOff();
-  Severity severity = entry.severity;
+  const Severity severity = SeverityInRun(error.code);
   std::optional<std::uint32_t> handler;
   std::size_t catching = 0;
   if (!s_.programs.empty()) {
@@ -51,9 +75,7 @@ void Control::HandleError(const Error& error) {
           *frames[n].error_label);
       if (!handler) {
         Warn(error.code, error.detail, {});
-        s_.machine.data.vi[99] = 60.0F;
-        return Finish(machine::OutcomeKind::kFailed, ErrorCode::kLabelNotFound,
-                      "no sequence number " + std::to_string(*frames[n].error_label) + " for ERR");
+        return FailWithoutHandler(*frames[n].error_label);
       }
       break;
     }
@@ -63,6 +85,19 @@ void Control::HandleError(const Error& error) {
   program().frames.resize(catching + 1);
   frame().error_label.reset();  // taking the handler disarms it, OPT-3.55
   frame().next = *handler;
+}
+
+// The label of ERR is missing: a second error, which nothing can catch. OPT-3.59, OPT-E.60
+void Control::FailWithoutHandler(int label) {
+  const std::string detail = "no sequence number " + std::to_string(label) + " for ERR";
+  Tell({.code = ErrorCode::kLabelNotFound,
+        .severity = Severity::kFatal,
+        .detail = detail,
+        .rule = "OPT-3.59",
+        .program = s_.place.program,
+        .step = s_.place.step});
+  s_.machine.data.vi[99] = static_cast<float>(Lookup(ErrorCode::kLabelNotFound).number);
+  Finish(machine::OutcomeKind::kFailed, ErrorCode::kLabelNotFound, detail);
 }
 
 }  // namespace rmlcell::optimo

@@ -22,6 +22,10 @@ void SkipMissed(ProgramTimer& timer, SimTime now) {
 // Carries out the next instruction, or finds out that the machine must stand first.
 void Control::Fetch() {
   const auto stand_first = [&] {
+    if (s_.no_motion) {
+      Wait({.kind = Pending::Kind::kNoMotion, .since = s_.now});
+      return true;
+    }
     if (!s_.passing && !Busy()) return false;
     StopMotions();
     s_.pending = {.kind = Pending::Kind::kStandstill};
@@ -64,8 +68,18 @@ void Control::Fetch() {
   }
   s_.place = {.program = slot, .step = static_cast<int>(i.step), .line = LineOf(slot, i.step)};
   s_.op = i.op;
+  if (s_.no_motion) {
+    if (i.op == Op::kMove && !s_.condition_met) EndNoMotion();  // takes over at once: it stands
+    if (s_.no_motion && WaitsForNext(i, program().frames.size() == 1)) {
+      stand_first();
+      return;
+    }
+  }
   if (s_.passing || Busy()) {
     if (s_.passing && i.op == Op::kCoord && static_cast<CoordType>(i.choice) != modal().coord) {
+      // A failing instruction is an executed step like any other.
+      observer_.OnStep(s_.now, s_.place, Describe(i.op).name);
+      ++s_.steps;
       return Raise(ErrorCode::kFlyBeforeCoord,
                    "COORD changes the coordinate type after a /FLY move");
     }
@@ -170,30 +184,34 @@ bool Control::LetPollingTakeTime(const Instruction& i, std::uint32_t at) {
   return true;
 }
 
+// Whether a motion of /NEXT is finished before this instruction. `main`: it stands in the main
+// module. OPT-B.89
+bool Control::WaitsForNext(const Instruction& i, bool main) {
+  switch (i.op) {
+    case Op::kCall:
+    case Op::kGo:
+    case Op::kZero:
+    case Op::kPause:
+    case Op::kStop:
+    case Op::kTcp:
+    case Op::kCoord:
+      return true;
+    case Op::kEndtask:
+      return main;
+    default:
+      return false;
+  }
+}
+
 // Only asked while a /FLY passage is open or a /NEXT motion is under way. OPT-2.48, OPT-B.89
 bool Control::NeedsStandstill(const Instruction& i) {
-  if (s_.background) {
-    switch (i.op) {
-      case Op::kCall:
-      case Op::kGo:
-      case Op::kZero:
-      case Op::kPause:
-      case Op::kStop:
-      case Op::kTcp:
-      case Op::kCoord:
-        return true;
-      case Op::kEndtask:
-        return program().frames.size() == 1;
-      default:
-        return false;
-    }
-  }
+  if (s_.background) return WaitsForNext(i, program().frames.size() == 1);
   if (i.reads_machine) return true;
   const FlyClass fly = Describe(i.op).fly;
   if (fly != FlyClass::kDepends) return fly == FlyClass::kStandstill;
   switch (i.op) {
     case Op::kMove:
-      return i.Has(kStart);
+      return i.Has(kStart) || (i.Has(kTime) && NeverMoves());
     case Op::kEndtask:
       return program().frames.size() == 1;
     case Op::kWork: {
@@ -342,6 +360,7 @@ void Control::Execute(const Instruction& i) {
 void Control::Wait(Pending pending) {
   s_.pending = pending;
   s_.pending.told = s_.now;
+  s_.pending.place = s_.place;
 }
 
 void Control::Jump(int label) {

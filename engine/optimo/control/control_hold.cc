@@ -167,7 +167,6 @@ void Control::HoldAllBehind(std::uint64_t target) {
 // START after such a HOLD: the moves that were held back, from rest.
 void Control::PlanHeld() {
   if (s_.held.empty()) return;
-  s_.place = s_.place_ahead;
   for (AppendedItem& item : s_.held) {
     if (!item.move) {
       s_.planner.Mark(item.tag);

@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kPercent = 0.01;
 constexpr double kAccelLeast_percent = 0.1;  // OPT-B.22
+// What ZERO moves at a time, as its moves are told. OPT-4.49
+constexpr std::array<std::string_view, 3> kZeroGroups = {"ZERO_Z", "ZERO_AB", "ZERO_XY"};
 
 motion::MoveCommand::Kind KindOf(PathType path, CoordType coord) {
   if (coord == CoordType::kRobot) return motion::MoveCommand::Kind::kPointToPointAxes;
@@ -60,6 +62,12 @@ bool Control::InTravel(const motion::PathPiece& path) {
   return false;
 }
 
+// OPT-B.22
+bool Control::NeverMoves() const {
+  return modal().speed_percent <= 0.0 || modal().accel_percent < kAccelLeast_percent;
+}
+
+// False: an error was raised, or the MOVE stands until its /TIME (no_motion).
 bool Control::AppendMotion(const motion::PathPiece& path, const Instruction& i,
                            const MoveNote& note, bool settles) {
   double speed = modal().speed_percent * kPercent * s_.override_percent * kPercent;
@@ -70,16 +78,22 @@ bool Control::AppendMotion(const motion::PathPiece& path, const Instruction& i,
       Warn(ErrorCode::kSpeedLimited, "SPEED x override is over 100 %", "OPT-4.38");
     }
   }
-  if ((modal().speed_percent <= 0.0 || modal().accel_percent < kAccelLeast_percent) &&
-      path.length() > 0.0 && !i.Has(kTime)) {
-    Raise(ErrorCode::kNoMotion, modal().speed_percent <= 0.0 ? "SPEED is 0" : "ACCEL is below 0.1");
+  const auto never_ends = [&](std::string why) {
+    if (i.Has(kTime)) {
+      s_.no_motion = true;
+    } else {
+      Raise(ErrorCode::kNoMotion, std::move(why));
+    }
     return false;
+  };
+  if (NeverMoves() && path.length() > 0.0) {
+    return never_ends(modal().speed_percent <= 0.0 ? "SPEED is 0" : "ACCEL is below 0.1");
   }
   motion::MoveCommand command;
   command.kind = KindOf(note.path, modal().coord);
   command.path = path;
   command.head = HeadNow();
-  command.speed_fraction = std::max(speed, 1e-6);
+  command.speed_fraction = speed;
   command.acceleration_fraction = std::max(modal().accel_percent, kAccelLeast_percent) * kPercent;
   command.overshoot_fraction = modal().oversh_percent * kPercent;
   command.fly = note.fly;
@@ -110,6 +124,7 @@ bool Control::AppendMotion(const motion::PathPiece& path, const Instruction& i,
   s_.notes.emplace_back(command.tag, kept);
   if (const Status appended = s_.planner.Append(command); !appended) {
     s_.notes.pop_back();
+    if (appended.error().code == ErrorCode::kNoMotion) return never_ends(appended.error().detail);
     Raise(appended.error().code, appended.error().detail);
     return false;
   }
@@ -195,7 +210,7 @@ void Control::Move(const Instruction& i) {
   } else {
     const motion::TipPose from = HeadNow().TipOf(s_.planned_axes);
     if (m.path == PathType::kHole) {
-      if (!MoveHole(i, from, *target, note)) return Unwatch();
+      if (!MoveHole(i, from, *target, note)) return NotUnderWay(i);
       return WatchAndGoOn(i, first_tag, ran_ahead);
     }
     path = motion::PathPiece::Line(from, *target);
@@ -213,9 +228,16 @@ void Control::Move(const Instruction& i) {
       }
     }
   }
-  if (!InTravel(path) || !AppendMotion(path, i, note, true)) return Unwatch();
+  if (!InTravel(path) || !AppendMotion(path, i, note, true)) return NotUnderWay(i);
   if (path.length() <= 0.0) return Unwatch();
   WatchAndGoOn(i, first_tag, ran_ahead);
+}
+
+// A MOVE that came to nothing, or that stands until its /TIME runs out.
+void Control::NotUnderWay(const Instruction& i) {
+  if (!s_.no_motion) return Unwatch();
+  s_.watched_since = s_.now;
+  if (!i.Has(kNext)) Wait({.kind = Pending::Kind::kNoMotion, .since = s_.now});
 }
 
 // The motions of a MOVE are on their way: /END and /TIME watch them, /NEXT goes on meanwhile.
@@ -332,26 +354,35 @@ void Control::SetTool(const Instruction& i) {
   s_.machine.tool = {.offset = {v[0], v[1], v[2]}, .reference = {v[3], v[4], v[5]}};
 }
 
-// Z, then A and B, then X and Y, each to its mechanical zero: OPT-4.49, OPT-B.60. In virtual time
-// each group is a joint motion.
+// Z, then A and B, then X and Y: OPT-4.49, OPT-B.60. In virtual time each group is a joint motion
+// to its mechanical zero, where its reference is found; each is told, also one that stands there
+// already.
 void Control::ZeroAxes() {
   if (simulating()) return;
   motion::AxisPose pose = s_.planned_axes;
   const motion::AxisPose& zero = parameters_.mechanical_zero;
+  int group = 0;
   const auto move = [&](const motion::AxisPose& to) {
     const motion::PathPiece path = motion::PathPiece::Joint({pose.column, pose.a_rad, pose.b_rad},
                                                             {to.column, to.a_rad, to.b_rad});
     pose = to;
-    if (path.length() <= 0.0) return;
-    motion::MoveCommand command;
-    command.kind = motion::MoveCommand::Kind::kPointToPointAxes;
-    command.path = path;
-    command.head = HeadNow();
-    command.speed_fraction = 0.1;  // no override: OPT-4.51
-    command.tag = s_.next_tag++;
-    s_.notes.emplace_back(command.tag,
-                          MoveNote{.place = s_.place, .path = PathType::kPtp, .last = false});
-    if (const Status appended = s_.planner.Append(command); !appended) s_.notes.pop_back();
+    if (path.length() > 0.0) {
+      motion::MoveCommand command;
+      command.kind = motion::MoveCommand::Kind::kPointToPointAxes;
+      command.path = path;
+      command.head = HeadNow();
+      command.speed_fraction = 0.1;  // no override: OPT-4.51
+      command.tag = s_.next_tag++;
+      s_.notes.emplace_back(command.tag,
+                            MoveNote{.place = s_.place, .path = PathType::kPtp, .last = false});
+      if (const Status appended = s_.planner.Append(command); !appended) s_.notes.pop_back();
+    }
+    const std::uint64_t tag = s_.next_tag++;
+    const int zeroed = group++;
+    s_.effects.emplace_back(
+        tag,
+        PassageEffect{.kind = PassageEffect::Kind::kZeroed, .place = s_.place, .index = zeroed});
+    s_.planner.Mark(tag);
   };
   motion::AxisPose to = pose;
   to.column.z = zero.column.z;
@@ -365,6 +396,18 @@ void Control::ZeroAxes() {
   s_.planned_axes = to;
   s_.machine.zeroed = true;
   StopMotions();
+}
+
+void Control::TellZeroed(int group) {
+  const motion::AxisPose axes = AxesNow();
+  observer_.OnMove({.at = s_.now,
+                    .place = s_.place,
+                    .tip = TipNow(),
+                    .axes = axes,
+                    .program_point = axes.column,
+                    .rotary_a = axes.a_rad,
+                    .path = kZeroGroups[static_cast<std::size_t>(group)],
+                    .programmed = false});
 }
 
 }  // namespace rmlcell::optimo

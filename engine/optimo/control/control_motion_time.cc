@@ -117,8 +117,8 @@ void Control::ArriveAtEnd() {
   }
   const motion::CornerReport& corner = active.motion.corner;
   if (corner.passage == motion::Passage::kStopReversal) {
-    Warn(ErrorCode::kFlyReversal, "the path turns back: the machine stops at the target",
-         "OPT-B.25");
+    WarnAt(active.note.place, ErrorCode::kFlyReversal,
+           "the path turns back: the machine stops at the target", "OPT-B.25");
   }
   if (active.note.last || active.ended) {
     observer_.OnMove({.at = s_.now,
@@ -198,6 +198,10 @@ bool Control::BringToHalt() {
     if (k >= dropped) s_.interrupted.emplace_back(restart[k - dropped]);
     add_marks(stop.index + k, s_.interrupted);
   }
+  s_.halted_behind = s_.place;  // beside a motion of /NEXT
+  if (const MoveNote* note = NoteOf(left.front().tag); note != nullptr && !s_.background) {
+    s_.halted_behind = note->place;
+  }
   s_.halting = true;
   s_.stop_requested = false;
   StartNextItem();
@@ -216,6 +220,15 @@ void Control::Unwatch() {
   s_.time_gosub.reset();
   s_.time_ran_out = false;
   s_.watch_begins = false;
+  s_.no_motion = false;
+}
+
+void Control::EndNoMotion() {
+  if (s_.pending.kind == Pending::Kind::kNoMotion) {
+    TellWait();
+    s_.pending = {};
+  }
+  Unwatch();
 }
 
 // /END and /TIME of the move under way: at its start, at each tick, when time runs out. OPT-2.54
@@ -232,16 +245,26 @@ void Control::WatchMove() {
       ++frame().next;
       return;
     }
+    if (s_.no_motion) {
+      program().due_gosub = s_.time_gosub;
+      return EndNoMotion();
+    }
     if (Watching()) {
       s_.time_ran_out = true;
       EndMotionHere();
       return;
     }
   }
-  if (!s_.end_condition || !Watching()) return;
+  const bool stands = s_.no_motion;
+  if (!s_.end_condition || !(stands || Watching())) return;
   if ((s_.now - s_.watched_since) % FromSeconds(parameters_.cycle_s) != SimTime(0)) return;
+  if (stands) s_.input_changed = false;
   const std::optional<bool> met = Truth(*s_.end_condition);
-  if (!met || *met) EndMotionHere();
+  if (stands) {
+    if (met && *met) EndNoMotion();
+  } else if (!met || *met) {
+    EndMotionHere();
+  }
 }
 
 // An error or the end of the run: whatever moves comes to rest, nothing more begins.

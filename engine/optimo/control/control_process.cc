@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/core/number_text.h"
 #include "engine/optimo/control/control.h"
@@ -34,7 +35,14 @@ void Control::Show(PassageEffect effect, When when) {
   DrainPlanner();
 }
 
+// Told at the step that asked for it: the program may have run ahead of the passage.
 void Control::Carry(const PassageEffect& effect) {
+  const machine::Place in_execution = std::exchange(s_.place, effect.place);
+  TakeEffect(effect);
+  s_.place = in_execution;
+}
+
+void Control::TakeEffect(const PassageEffect& effect) {
   DataArea& data = s_.machine.data;
   const auto n = static_cast<std::size_t>(effect.index);
   switch (effect.kind) {
@@ -67,6 +75,8 @@ void Control::Carry(const PassageEffect& effect) {
     case PassageEffect::Kind::kTable:
       s_.machine.table_deg = effect.value;
       return TellSignal(machine::Signal::kRotaryTable, 0, effect.value);
+    case PassageEffect::Kind::kZeroed:
+      return TellZeroed(effect.index);
   }
 }
 

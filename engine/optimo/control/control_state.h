@@ -137,7 +137,8 @@ struct ActiveMotion {
 
 // Something visible that happens between two motions (planner marks).
 struct PassageEffect {
-  enum class Kind { kOutput, kAnalogue, kBeamOn, kBeamOff, kSchedule, kTable };
+  // kZeroed: a group of axes stands at its mechanical zero; `index` says which.
+  enum class Kind { kOutput, kAnalogue, kBeamOn, kBeamOff, kSchedule, kTable, kZeroed };
   Kind kind = Kind::kOutput;
   machine::Place place{};
   int index = 0;
@@ -153,12 +154,14 @@ struct Pending {
     kTime,        // until `until`
     kCondition,   // until the expression of the instruction is true, then it is carried out
     kTakeOver,    // the next tick, when the /NEXT motion is brought to rest
+    kNoMotion,    // the end of ControlState::no_motion
   };
   Kind kind = Kind::kNone;
   SimTime since{0};
   SimTime until{0};
   SimTime told{0};  // reported up to here
   machine::WaitKind wait = machine::WaitKind::kDwell;
+  machine::Place place{};  // of the instruction that waits
   ExprRange expression{};  // kCondition: of the module of the innermost frame
   bool of_move = false;    // kCondition: /START of a MOVE, whose /TIME counts the wait
 };
@@ -207,12 +210,13 @@ struct ControlState {
   std::deque<motion::PlannedItem> interrupted{};  // STOP: what follows at START
   std::deque<AppendedItem> appended{};            // while /FLY passages are open
   std::deque<AppendedItem> held{};                // HOLD: what follows at START
-  machine::Place halted_behind{};                 // the move that HOLD made exact
-  machine::Place place_ahead{};  // where the program was when HOLD halted the motion
-  bool halting = false;          // coming to rest for a STOP, or a HOLD inside a chain
-  bool passing = false;          // the planner may hold a /FLY motion back
-  bool background = false;       // the motion under way is one of /NEXT
-  bool condition_met = false;    // /START of the instruction in execution was true
+  machine::Place halted_behind{};  // the move that HOLD made exact, or that STOP interrupted
+  // Where the program had run ahead to when HOLD or STOP halted the motion; set while halted.
+  std::optional<machine::Place> place_ahead{};
+  bool halting = false;        // coming to rest for a STOP, or a HOLD inside a chain
+  bool passing = false;        // the planner may hold a /FLY motion back
+  bool background = false;     // the motion under way is one of /NEXT
+  bool condition_met = false;  // /START of the instruction in execution was true
   SimTime instruction_since{0};
   Polling polling{};
   int run_ahead = 0;  // instructions executed since the last motion
@@ -230,6 +234,9 @@ struct ControlState {
   SimTime watched_since{0};
   bool watch_begins = false;  // with the motion: the program ran ahead through a /FLY passage
   bool time_ran_out = false;
+  // A MOVE that could never end (SPEED 0) stands until its /TIME runs out or its /END is true: from
+  // watched_since on. With /NEXT the program goes on meanwhile. OPT-B.22
+  bool no_motion = false;
 
   bool input_changed = false;  // conditions are to be tested again
   bool tasks_input = false;    // the same for the /START of WORK in the background

@@ -101,14 +101,15 @@ bool Control::WorkOn(const WorkTask& task, bool dwell_in_background, When when) 
   const auto n = static_cast<std::size_t>(kind);
   const auto p = static_cast<std::size_t>(task.process);
   const std::optional<WorkDefinition>& definition = processes.definitions[n][p];
+  const bool efa = parameters_.laser == Laser::kEfa51;
+  const int schedule = definition ? definition->schedule : 0;
+  // Before the WORKDEF is asked for: no WORKDEF would help (OPT-3.43).
+  if (efa && (kind == 2 || schedule > 0)) {
+    return refuse(ErrorCode::kSchedulesUnavailable, "the EFA-51 has no laser schedules");
+  }
   if (!definition && !(kind == 0 && task.process == 0)) {
     return refuse(ErrorCode::kWorkdefMissing, "WORK " + std::to_string(kind) + "," +
                                                   std::to_string(task.process) + " has no WORKDEF");
-  }
-  const bool efa = parameters_.laser == Laser::kEfa51;
-  const int schedule = definition ? definition->schedule : 0;
-  if (efa && (kind == 2 || schedule > 0)) {
-    return refuse(ErrorCode::kSchedulesUnavailable, "the EFA-51 has no laser schedules");
   }
   if (efa && kind == 1) {
     const Bits& ol = s_.machine.data.ol;

@@ -3,6 +3,9 @@
 #include <bit>
 #include <cstring>
 
+#include "engine/core/number_text.h"
+#include "engine/optimo/language/printer.h"
+
 namespace rmlcell::optimo {
 namespace {
 
@@ -152,6 +155,36 @@ Result<MachineState> DecodeMachineState(std::string_view bytes) {
   if (!reader.good())
     return Error{ErrorCode::kCellBadText, "the state of the machine is damaged", {}};
   return state;
+}
+
+namespace {
+
+std::string RealText(float value) {
+  std::string text;
+  PrintReal(value, text);
+  return text;
+}
+
+}  // namespace
+
+std::optional<std::string> ReadByName(const DataArea& data, std::string_view name) {
+  const std::size_t open = name.find('[');
+  if (open == std::string_view::npos || !name.ends_with(']')) return std::nullopt;
+  const auto number = ParseInteger(name.substr(open + 1, name.size() - open - 2));
+  if (!number || *number < 0 || *number > kVariableIndexMax) return std::nullopt;
+  const auto n = static_cast<std::size_t>(*number);
+  const auto group = name.substr(0, open);
+  const auto is = [&](std::string_view word) {
+    return group.size() == 2 && (group[0] & ~0x20) == word[0] && (group[1] & ~0x20) == word[1];
+  };
+  if (is("VR")) return RealText(data.vr[n]);
+  if (is("VI")) return std::to_string(static_cast<int>(data.vi[n]));
+  if (is("VL")) return data.vl[n] ? "1" : "0";
+  if (is("IL")) return data.il[n] ? "1" : "0";
+  if (is("OL")) return data.ol[n] ? "1" : "0";
+  if (is("IA")) return RealText(data.ia[n]);
+  if (is("OA")) return RealText(data.oa[n]);
+  return std::nullopt;
 }
 
 }  // namespace rmlcell::optimo

@@ -32,6 +32,9 @@ struct DataArea {
   Numbers oa_physical{};
 };
 
+// "VR[5]" -> "7.0", the groups in either case. Nothing for what names no variable.
+std::optional<std::string> ReadByName(const DataArea& data, std::string_view name);
+
 // SYSDEF in force. OPT-7.28 to 7.40
 struct WorkOffsetState {
   bool active = false;

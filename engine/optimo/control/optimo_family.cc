@@ -18,7 +18,10 @@ constexpr machine::FamilyInfo kInfo = {.id = "optimo",
                                        .extensions = ".S .SI .CMP .O",
                                        .axes = "X Y Z A B",
                                        .has_executables = true,
-                                       .has_schedules = true};
+                                       .has_schedules = true,
+                                       .hold_in_remote = false,  // OPT-4.17
+                                       .no_slot = ErrorCode::kProgramNumber,
+                                       .empty_slot = ErrorCode::kProgramMissing};
 
 constexpr std::array kFigures = {
     machine::FigureInfo{"lookahead_starved", "",
@@ -49,6 +52,12 @@ class Family final : public machine::MachineFamily {
     return OptimoParameterTable();
   }
   std::span<const machine::MachineProfile> profiles() const override { return OptimoProfiles(); }
+  Status CheckParameters(const machine::Parameters& parameters) const override {
+    return CheckFit(parameters);
+  }
+  bool HasVariable(const machine::Parameters& /*parameters*/, std::string_view name) const override {
+    return ReadByName(DataArea(), name).has_value();
+  }
   std::span<const machine::FigureInfo> figures() const override { return kFigures; }
   machine::MachineShape Shape(const machine::Parameters& parameters) const override {
     return ShapeOf(Resolve(parameters));
@@ -118,6 +127,7 @@ class Family final : public machine::MachineFamily {
 
   Result<std::unique_ptr<machine::Run>> NewRun(machine::RunSetup setup,
                                                machine::RunObserver& observer) const override {
+    if (const Status fit = CheckFit(setup.parameters); !fit) return fit.error();
     if (!setup.machine_state.empty()) {
       if (const Result<MachineState> state = DecodeMachineState(setup.machine_state); !state)
         return state.error();

@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 
+#include "engine/core/number_text.h"
 #include "engine/core/units.h"
 
 namespace rmlcell::optimo {
@@ -109,6 +110,20 @@ const std::vector<machine::MachineProfile>& OptimoProfiles() {
       {"efa-51", "Optimo with EFA-51 laser", {{"LASER", 0.0, "EFA51"}}},
   };
   return profiles;
+}
+
+Status CheckFit(const machine::Parameters& parameters) {
+  for (const std::string_view axis : kAxisNames) {
+    const std::string low = "TRAVEL_" + std::string(axis) + "_MIN";
+    const std::string high = "TRAVEL_" + std::string(axis) + "_MAX";
+    if (parameters.Number(low) > parameters.Number(high)) {
+      return Error{ErrorCode::kCellParameterRange,
+                   low + " is " + ShortestText(parameters.Number(low)) + ", above " + high +
+                       ", which is " + ShortestText(parameters.Number(high)),
+                   {}};
+    }
+  }
+  return {};
 }
 
 OptimoParameters Resolve(const machine::Parameters& parameters) {

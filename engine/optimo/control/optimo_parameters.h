@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/core/result.h"
 #include "engine/machine/parameters.h"
 #include "engine/machine/shape.h"
 #include "engine/motion/planner.h"
@@ -36,7 +37,11 @@ struct OptimoParameters {
 std::span<const machine::ParameterInfo> OptimoParameterTable();
 const std::vector<machine::MachineProfile>& OptimoProfiles();
 
-// Precondition: `parameters` are of OptimoParameterTable.
+// Error: CellParameterRange when the least travel of an axis is above its greatest; one that cannot move at all
+// is clamped and no error (OPT-B.06, OPT-B.08).
+Status CheckFit(const machine::Parameters& parameters);
+
+// Precondition: `parameters` are of OptimoParameterTable, and fit together.
 OptimoParameters Resolve(const machine::Parameters& parameters);
 machine::MachineShape ShapeOf(const OptimoParameters& parameters);
 

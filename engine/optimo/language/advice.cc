@@ -1,5 +1,6 @@
 #include "engine/optimo/language/advice.h"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -67,12 +68,15 @@ class Adviser {
 
   void AdviseTarget(const Instruction& i, int width) {
     const ExprNode& target = module_.Value(i, 0)[0];
-    if (target.op != Node::kVariable) return;
-    const std::string text =
-        std::string(GroupName(target.group)) + "[" + std::to_string(target.index) + "]";
-    if (IsReserved(target.variable())) {
-      Warn(i, ErrorCode::kReservedVariable, text + " belongs to Amada's programs or to the system",
+    if (target.op != Node::kVariable || IsReadOnly(target.variable())) return;
+    for (int index = target.index; index < std::min(target.index + width, kVariableIndexMax + 1);
+         ++index) {
+      if (!IsReserved({target.group, static_cast<std::uint8_t>(index)})) continue;
+      Warn(i, ErrorCode::kReservedVariable,
+           std::string(GroupName(target.group)) + "[" + std::to_string(index) +
+               "] belongs to Amada's programs or to the system",
            target.group == VariableGroup::kVr ? "OPT-7.104" : "OPT-7.105");
+      break;
     }
     if (target.group != VariableGroup::kOl) return;
     for (int output = target.index; output < target.index + width; ++output) {

@@ -26,8 +26,12 @@ constexpr int kAssignWidthMax = 16;  // OPT-7.102
 
 class Checker {
  public:
-  Checker(Module& module, const ParsedProgram* places, Findings& findings)
-      : module_(module), places_(places), findings_(findings), typing_(module, places, findings) {}
+  // `program` may be null: then findings have no place.
+  Checker(Module& module, ParsedProgram* program, Findings& findings)
+      : module_(module),
+        program_(program),
+        findings_(findings),
+        typing_(module, program, findings) {}
 
   void Run() {
     std::uint32_t step = 0;
@@ -36,7 +40,9 @@ class Checker {
       instruction.step = instruction.op == Op::kDeclare || IsBrokenDeclare(instruction) ? 0 : step;
       if (instruction.op == Op::kInvalid) continue;
       typing_.BeginStep(instruction);
+      const std::uint64_t errors = findings_.error_count();
       CheckInstruction(instruction);
+      if (program_ != nullptr && findings_.error_count() != errors) MarkFaulty(instruction);
       instruction.reads_machine = typing_.reads_machine();
     }
     module_.step_count = step;
@@ -46,6 +52,9 @@ class Checker {
  private:
   // A DECLARE that could not be parsed is no step either; the parser gave it none.
   bool IsBrokenDeclare(const Instruction& i) const { return i.op == Op::kInvalid && i.step == 0; }
+  void MarkFaulty(const Instruction& i) {
+    program_->faulty.push_back(static_cast<std::uint32_t>(&i - module_.instructions.data()));
+  }
 
   void CheckInstruction(Instruction& i);
   void CheckWorkdef(const Instruction& i);
@@ -86,7 +95,7 @@ class Checker {
   }
 
   Module& module_;
-  const ParsedProgram* places_;
+  ParsedProgram* program_;
   Findings& findings_;
   Typing typing_;
 };
@@ -215,8 +224,9 @@ void Checker::CheckAssign(const Instruction& i) {
   const ExprNode& value = module_.nodes[value_at];
   if (typed && value.op != Node::kVariable &&
       (value.number < 0.0F || value.number >= static_cast<float>(1 << width))) {
-    findings_.Add(ErrorCode::kAssignGroup, typing_.PlaceOfNode(value_at),
-                  "the value does not fit into " + std::to_string(width) + " places", "OPT-7.103");
+    findings_.AddAs(Severity::kCompile, ErrorCode::kAssignGroup, typing_.PlaceOfNode(value_at),
+                    "the value does not fit into " + std::to_string(width) + " places",
+                    "OPT-7.103");
   }
   if (!known) return;
   const ExprNode& target = module_.Value(i, 0)[0];
@@ -224,7 +234,8 @@ void Checker::CheckAssign(const Instruction& i) {
     Warn(ErrorCode::kTypeMismatch, "ASSIGN writes logical outputs or variables", "OPT-7.102");
   } else if (target.index + width - 1 >
              (target.group == VariableGroup::kPar ? kParameterCount - 1 : kVariableIndexMax)) {
-    Warn(ErrorCode::kAssignGroup, "the group runs past the last index", "OPT-7.103");
+    findings_.AddAs(Severity::kCompile, ErrorCode::kAssignGroup, typing_.PlaceOfStatement(),
+                    "the group runs past the last index", "OPT-7.103");
   }
 }
 
@@ -244,8 +255,8 @@ void Checker::CheckAttributes(const Instruction& i) {
   }
   if (!i.Has(kInf)) return;
   std::vector<Fix> fixes;
-  if (places_ != nullptr) {
-    if (const auto fix = AttributeRemoval(*places_, i, Word::kInf)) fixes.push_back(*fix);
+  if (program_ != nullptr) {
+    if (const auto fix = AttributeRemoval(*program_, i, Word::kInf)) fixes.push_back(*fix);
   }
   findings_.Add(ErrorCode::kWordIgnored, typing_.PlaceOfStatement(), "/INF has no effect",
                 "OPT-2.61", std::move(fixes));

@@ -1,14 +1,14 @@
 #include "engine/optimo/language/flow_advice.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <deque>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "engine/optimo/language/dwells.h"
 #include "engine/optimo/language/flow_graph.h"
 #include "engine/optimo/language/flow_state.h"
+#include "engine/optimo/language/flow_walk.h"
 #include "engine/optimo/language/fly_chain.h"
 #include "engine/optimo/language/gosub_depth.h"
 #include "engine/optimo/language/move_advice.h"
@@ -16,99 +16,80 @@
 namespace rmlcell::optimo {
 namespace {
 
-constexpr std::uint64_t kSubroutineWorkMax =
-    20'000'000;  // instructions looked at; beyond: nothing known
-
 std::string ProcessText(const Instruction& i) {
   return std::to_string(i.numbers[0]) + "," + std::to_string(i.numbers[1]);
+}
+
+std::string VariableText(const ExprNode& node) {
+  return std::string(GroupName(node.group)) + "[" + std::to_string(node.index) + "]";
+}
+
+// Customer variables (OPT-7.104, OPT-7.105): the others have a use that other programs know, VI[1]
+// as the program to go on with.
+bool IsFree(const ExprNode& node) {
+  switch (node.group) {
+    case VariableGroup::kVr:
+      return node.index <= 42;
+    case VariableGroup::kVi:
+      return node.index <= 69 && node.index != 1;
+    default:
+      return node.index <= 79;
+  }
+}
+
+// Instructions of which it is not known what they do: that have an error, or a name of which
+// nothing is known.
+std::vector<bool> FaultyInstructions(const ParsedProgram& program) {
+  const Module& module = program.module;
+  std::vector<bool> faulty(module.instructions.size());
+  for (const std::uint32_t at : program.faulty) faulty[at] = true;
+  for (std::size_t at = 0; at < faulty.size(); ++at) {
+    const Instruction& i = module.instructions[at];
+    if (i.op == Op::kInvalid) faulty[at] = true;
+    for (std::uint32_t e = 0; e < module.ExpressionCount(i); ++e) {
+      for (const ExprNode& node : module.expression(i.first_expression + e)) {
+        const bool unknown_index =
+            node.index_name != kNoName && !module.names[node.index_name].declared;
+        if (node.op == Node::kName || unknown_index) faulty[at] = true;
+      }
+    }
+  }
+  return faulty;
 }
 
 class FlowAdviser {
  public:
   FlowAdviser(const ParsedProgram& program, Findings& findings)
-      : p_(program), module_(program.module), findings_(findings), graph_(module_) {}
+      : p_(program),
+        module_(program.module),
+        findings_(findings),
+        any_error_(findings.error_count() > 0),
+        faulty_(any_error_ ? FaultyInstructions(program)
+                           : std::vector<bool>(program.module.instructions.size())),
+        graph_(module_),
+        dwells_(module_),
+        walk_(module_, graph_, dwells_, faulty_, any_error_) {}
 
   void Run() {
-    FollowSubroutines();
-    FollowStates();
-    hole_moves_.resize(graph_.size());
-    ForEachReached([&](std::uint32_t at, const FlowState& state) {
-      hole_moves_[at] = module_.instructions[at].op == Op::kMove && state.path == PathType::kHole;
-    });
-    const FlyChain chain(module_, graph_, hole_moves_);
-    MoveAdviser moves(p_, findings_, chain);
-    FindAssigned();
-    ForEachReached([&](std::uint32_t at, const FlowState& state) {
-      AdviseProcesses(at, state);
-      AdviseGas(at, state);
-      AdviseReads(at, state);
-      if (module_.instructions[at].op == Op::kMove) moves.Advise(at, state);
-    });
-    moves.AdviseRobotMoves();
-    AdviseEnds();
+    AdviseStates();
+    if (any_error_) return;  // it is not known where all of the program leads
     AdviseUnreachable();
     AdviseReturns();
     AdviseNesting();
   }
 
  private:
-  void FollowSubroutines();
-  void FollowStates();
-  void FindAssigned();
+  void AdviseStates();
   void AdviseProcesses(std::uint32_t at, const FlowState& state);
   void AdviseLeaving(std::uint32_t at, const FlowState& state, ErrorCode code,
                      const std::string& what);
-  void AdviseGas(std::uint32_t at, const FlowState& state);
-  void AdviseReads(std::uint32_t at, const FlowState& state);
-  void AdviseEnds();
+  void AdviseEnd(std::uint32_t at, const FlowState& state);
+  void AdviseSensor(const Instruction& i, const FlowState& state);
+  void AdviseGas(const Instruction& i, const FlowState& state);
+  void AdviseReads(const Instruction& i, const FlowState& state);
   void AdviseUnreachable();
   void AdviseReturns();
   void AdviseNesting();
-
-  // Calls visit(instruction, state before it) for everything that can be reached, in program order.
-  template <class Visit>
-  void ForEachReached(Visit visit) {
-    FlowState state;
-    for (std::uint32_t at = 0; at < graph_.size(); ++at) {
-      if (graph_.IsLeader(at)) state = states_[at];
-      if (!state.reached) continue;
-      visit(at, std::as_const(state));
-      const bool flows_on = Pass(at, state);
-      if (!flows_on) state.reached = false;
-    }
-  }
-
-  // Over one instruction; false when nothing goes on to the next one.
-  bool Pass(std::uint32_t at, FlowState& state) {
-    const Instruction& i = module_.instructions[at];
-    Step(module_, at, state);
-    if (i.op == Op::kGosub) {
-      Forget(TouchedInSubroutine(at), state);
-      state.set.set();
-    }
-    for (const Successor& s : graph_.From(at, room_)) {
-      if (s.edge == Edge::kNext) return true;
-    }
-    return false;
-  }
-
-  // The subroutine that a GOSUB calls; nothing for other instructions and missing numbers.
-  std::optional<std::size_t> Called(std::uint32_t at) const {
-    if (module_.instructions[at].op != Op::kGosub) return std::nullopt;
-    std::vector<Successor> room;
-    for (const Successor& s : graph_.From(at, room)) {
-      if (s.edge != Edge::kCall) continue;
-      const auto found = std::ranges::lower_bound(graph_.subroutines(), s.to);
-      return static_cast<std::size_t>(found - graph_.subroutines().begin());
-    }
-    return std::nullopt;
-  }
-
-  std::uint16_t TouchedInSubroutine(std::uint32_t gosub) const {
-    const auto called = Called(gosub);
-    if (!called) return 0;
-    return touched_.empty() ? std::uint16_t{kTouchesAll} : touched_[*called];
-  }
 
   void Warn(const Instruction& i, ErrorCode code, std::string detail, std::string_view rule) {
     findings_.AddAs(Severity::kWarning, code, p_.At(i), std::move(detail), rule);
@@ -120,80 +101,37 @@ class FlowAdviser {
   const ParsedProgram& p_;
   const Module& module_;
   Findings& findings_;
-  FlowGraph graph_;
-  std::vector<FlowState> states_;              // of leaders; the last one is the end of the program
-  std::vector<std::uint16_t> touched_;         // by subroutine; empty: not known
-  std::vector<bool> returns_;                  // by subroutine: it reaches a RETURN
-  std::vector<std::vector<GosubCall>> calls_;  // by subroutine
-  std::vector<bool> hole_moves_;
-  std::bitset<kOwnVariables> assigned_;  // somewhere in the program
+  const bool any_error_;
+  const std::vector<bool> faulty_;
+  const FlowGraph graph_;
+  const Dwells dwells_;
+  const FlowWalk walk_;
+  VariableSet assigned_;  // somewhere in the program
+  VariableSet told_;      // read, and set nowhere in the program
   std::vector<Successor> room_;
 };
 
-// What a GOSUB may change, its own GOSUBs included.
-void FlowAdviser::FollowSubroutines() {
-  const auto& subroutines = graph_.subroutines();
-  if (subroutines.size() * std::uint64_t{graph_.size()} > kSubroutineWorkMax) return;
-  calls_.resize(subroutines.size());
-  for (std::size_t s = 0; s < subroutines.size(); ++s) {
-    std::uint16_t touched = 0;
-    bool returns = false;
-    const std::vector<bool> reached = graph_.ReachOnLevel(subroutines[s]);
-    for (std::uint32_t at = 0; at < graph_.size(); ++at) {
-      if (!reached[at]) continue;
-      const Instruction& i = module_.instructions[at];
-      touched |= TouchedBy(i);
-      returns = returns || i.op == Op::kReturn;
-      if (const auto called = Called(at)) calls_[s].push_back({at, *called});
+void FlowAdviser::AdviseStates() {
+  std::vector<bool> hole_moves(graph_.size());
+  walk_.ForEachReached([&](std::uint32_t at, const FlowState& state) {
+    hole_moves[at] =
+        module_.instructions[at].op == Op::kMove && state.modes.path() == PathType::kHole;
+  });
+  const FlyChain chain(module_, graph_, dwells_, hole_moves, faulty_);
+  MoveAdviser moves(p_, findings_, chain);
+  for (const Instruction& i : module_.instructions) assigned_ |= VariablesSetBy(module_, i);
+  walk_.ForEachReached([&](std::uint32_t at, const FlowState& state) {
+    const Instruction& i = module_.instructions[at];
+    if (!faulty_[at]) {
+      AdviseProcesses(at, state);
+      AdviseSensor(i, state);
+      AdviseGas(i, state);
+      AdviseReads(i, state);
+      if (i.op == Op::kMove) moves.Advise(at, state);
     }
-    touched_.push_back(touched);
-    returns_.push_back(returns);
-  }
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (std::size_t s = 0; s < calls_.size(); ++s) {
-      for (const GosubCall& call : calls_[s]) {
-        const auto merged = static_cast<std::uint16_t>(touched_[s] | touched_[call.to]);
-        changed = changed || merged != touched_[s];
-        touched_[s] = merged;
-      }
-    }
-  }
-}
-
-void FlowAdviser::FollowStates() {
-  states_.resize(graph_.size() + 1U);
-  std::deque<std::uint32_t> open;
-  std::vector<bool> waiting(states_.size());
-  const auto enter = [&](std::uint32_t at, const FlowState& state) {
-    if (!Merge(states_[at], state) || waiting[at]) return;
-    waiting[at] = true;
-    open.push_back(at);
-  };
-  enter(graph_.entry(), FlowState::AtStart());
-  while (!open.empty()) {
-    std::uint32_t at = open.front();
-    open.pop_front();
-    waiting[at] = false;
-    FlowState state = states_[at];
-    while (at < graph_.size()) {
-      const std::vector<Successor> successors = graph_.From(at, room_);
-      const FlowState before = state;
-      const bool flows_on = Pass(at, state);
-      for (const Successor& s : successors) {
-        if (s.edge == Edge::kJump) enter(s.to, state);
-        if (s.edge == Edge::kCall) enter(s.to, before);
-        if (s.edge == Edge::kHandler) enter(s.to, FlowState::InErrorHandler());
-        if (s.edge == Edge::kTimed) enter(s.to, FlowState::Nothing());
-      }
-      if (!flows_on) break;
-      ++at;
-      if (at == graph_.size() || graph_.IsLeader(at)) {
-        enter(at, state);
-        break;
-      }
-    }
-  }
+    AdviseEnd(at, state);
+  });
+  moves.AdviseRobotMoves();
 }
 
 // OPT-3.09, OPT-3.24, OPT-3.33
@@ -206,84 +144,92 @@ void FlowAdviser::AdviseProcesses(std::uint32_t at, const FlowState& state) {
   if (i.op != Op::kWork) return;
   const ProcessSet bit = ProcessBit(i);
   if (i.Has(kOn)) {
-    const bool needs = bit != 1 && state.processes_known;  // 0,0 needs none, OPT-3.10
-    if (needs && (state.defined_some & bit) == 0) {
+    const bool needs = bit != 1 && state.KnowsWorkdefs();  // 0,0 needs none, OPT-3.10
+    if (needs && (state.defined.made & bit) == 0) {
       Warn(i, ErrorCode::kWorkdefMissing,
            "no WORKDEF " + ProcessText(i) +
                " comes before this WORK, unless the program runs as a FUNCTION",
            "OPT-3.09");
-    } else if (needs && (state.defined_all & bit) == 0) {
+    } else if (needs && (state.undefined.made & bit) != 0) {
       Warn(i, ErrorCode::kWorkdefMissing,
            "on one path no WORKDEF " + ProcessText(i) + " comes before this WORK", "OPT-3.09");
     }
-    const bool cuts = i.numbers[0] != 2;
-    if (cuts && state.sensor == Known::kNo) {
-      Warn(i, ErrorCode::kPracticeAdvice, "the sensor OL[11] is off while the beam cuts",
-           "OPT-5.47");
-    }
-  } else if (i.numbers[0] == 2 && state.beam == Known::kYes) {
+  } else if (i.numbers[0] == 2 && state.BeamIsOn()) {
     Warn(i, ErrorCode::kBeamOffBySchedule, "WORK 2 OFF switches the beam off, too", "OPT-3.24");
   }
 }
 
 void FlowAdviser::AdviseLeaving(std::uint32_t at, const FlowState& state, ErrorCode code,
                                 const std::string& what) {
-  if (!state.processes_known || state.on_some == 0) return;
-  const std::string path =
-      state.on_all != 0 ? "a process is ON at " : "on one path a process is ON at ";
-  const char* rule = code == ErrorCode::kWorkActiveAtCall ? "OPT-3.33" : "OPT-3.34";
-  if (at < graph_.size()) return Warn(module_.instructions[at], code, path + what, rule);
-  // The implied ENDTASK: reported at the last instruction.
-  if (graph_.size() > 0)
-    Warn(module_.instructions.back(), code, path + what + " of the program", rule);
+  const ProcessSet some = state.on.made & kAllProcesses;
+  if (!state.KnowsProcesses() || some == 0) return;
+  const bool always = (some & ~state.off.made) != 0;
+  Warn(module_.instructions[at], code,
+       (always ? "a process is ON at " : "on one path a process is ON at ") + what,
+       code == ErrorCode::kWorkActiveAtCall ? "OPT-3.33" : "OPT-3.34");
 }
 
-void FlowAdviser::AdviseEnds() {
-  const FlowState& end = states_.back();
-  if (end.reached) AdviseLeaving(graph_.size(), end, ErrorCode::kWorkActiveAtEnd, "the end");
-}
-
-// OPT-5.40: one assist gas at a time.
-void FlowAdviser::AdviseGas(std::uint32_t at, const FlowState& state) {
-  const Instruction& i = module_.instructions[at];
-  if (i.op != Op::kLet) return;
-  const ExprNode& target = module_.Value(i, 0)[0];
-  const auto value = LiteralValueOf(module_.Value(i, 1));
-  if (target.op != Node::kVariable || target.group != VariableGroup::kOl || !value ||
-      *value == 0.0F)
-    return;
-  const bool second = (target.index == 8 && state.gas_3 == Known::kYes) ||
-                      (target.index == 9 && state.gas_2 == Known::kYes);
-  if (second) Warn(i, ErrorCode::kGasConflict, "the other assist gas is on", "OPT-5.40");
-}
-
-void FlowAdviser::FindAssigned() {
-  for (const Instruction& i : module_.instructions) {
-    if (i.op != Op::kLet) continue;
-    if (const auto variable = OwnVariable(module_.Value(i, 0)[0])) assigned_.set(*variable);
+// The implied ENDTASK: reported at what comes before it.
+void FlowAdviser::AdviseEnd(std::uint32_t at, const FlowState& state) {
+  for (const Successor& s : graph_.From(at, room_)) {
+    if (s.to != graph_.size() || (s.edge != Edge::kNext && s.edge != Edge::kJump)) continue;
+    FlowState end = state;
+    walk_.Pass(at, end);
+    return AdviseLeaving(at, end, ErrorCode::kWorkActiveAtEnd, "the end of the program");
   }
 }
 
-// A variable that the program sets itself, but not on every path before it reads it. OPT-1.17
-void FlowAdviser::AdviseReads(std::uint32_t at, const FlowState& state) {
-  const Instruction& i = module_.instructions[at];
+// At the WORK ON, and where it was switched off since: at the next MOVE. OPT-5.47
+void FlowAdviser::AdviseSensor(const Instruction& i, const FlowState& state) {
+  const bool switched_on =
+      i.op == Op::kWork && i.Has(kOn) && i.numbers[0] != 2 &&
+      state.sensor.IsAmong(Choice<Sensor>::Bits({Sensor::kOff, Sensor::kOffSeen}));
+  const bool cuts = i.op == Op::kMove && state.BeamIsOn() && state.sensor.Is(Sensor::kOff);
+  if (!switched_on && !cuts) return;
+  Warn(i, ErrorCode::kPracticeAdvice, "the sensor OL[11] is off while the beam cuts", "OPT-5.47");
+}
+
+// OPT-5.40: one assist gas at a time.
+void FlowAdviser::AdviseGas(const Instruction& i, const FlowState& state) {
+  const auto gas_2 = OutputSetBy(module_, i, kGas2Output);
+  const auto gas_3 = OutputSetBy(module_, i, kGas3Output);
+  if (gas_2 == Output::kOn && gas_3 == Output::kOn)
+    return Warn(i, ErrorCode::kGasConflict, "this switches both assist gases on", "OPT-5.40");
+  const auto tell = [&](const Choice<Output>& other) {
+    if (!other.MayBe(Output::kOn)) return;
+    Warn(i, ErrorCode::kGasConflict,
+         other.Is(Output::kOn) ? "the other assist gas is on"
+                               : "on one path the other assist gas is on",
+         "OPT-5.40");
+  };
+  if (gas_2 == Output::kOn && !gas_3) tell(state.gas_3);
+  if (gas_3 == Output::kOn && !gas_2) tell(state.gas_2);
+}
+
+// A variable that the program sets itself, but not on every path before it reads it; or that
+// nothing in it sets. OPT-1.17
+void FlowAdviser::AdviseReads(const Instruction& i, const FlowState& state) {
   if (i.op == Op::kDeclare) return;
   const std::uint32_t first = i.op == Op::kLet || i.op == Op::kAssign ? 1 : 0;
   for (std::uint32_t e = first; e < module_.ExpressionCount(i); ++e) {
     for (const ExprNode& node : module_.expression(i.first_expression + e)) {
       const auto variable = OwnVariable(node);
-      if (!variable || !assigned_.test(*variable) || state.set.test(*variable)) continue;
-      return Note(i, ErrorCode::kPracticeAdvice,
-                  std::string(GroupName(node.group)) + "[" + std::to_string(node.index) +
-                      "] is read before the program sets it",
-                  "OPT-1.17");
+      if (!variable || !state.unset.made.test(*variable)) continue;
+      if (assigned_.test(*variable)) {
+        return Note(i, ErrorCode::kPracticeAdvice,
+                    VariableText(node) + " is read before the program sets it", "OPT-1.17");
+      }
+      if (!IsFree(node) || told_.test(*variable)) continue;
+      told_.set(*variable);
+      Note(i, ErrorCode::kPracticeAdvice,
+           VariableText(node) + " is read, and nothing in this program sets it", "OPT-1.17");
     }
   }
 }
 
 void FlowAdviser::AdviseUnreachable() {
   std::vector<bool> reached(graph_.size());
-  ForEachReached([&](std::uint32_t at, const FlowState&) { reached[at] = true; });
+  walk_.ForEachReached([&](std::uint32_t at, const FlowState&) { reached[at] = true; });
   bool reported = false;  // of this run of instructions
   for (std::uint32_t at = 0; at < graph_.size(); ++at) {
     const Instruction& i = module_.instructions[at];
@@ -299,18 +245,25 @@ void FlowAdviser::AdviseUnreachable() {
 // OPT-7.20 to 7.22
 void FlowAdviser::AdviseReturns() {
   const std::vector<bool> level = graph_.ReachOnLevel(graph_.entry());
-  bool calls = false;
-  for (const Instruction& i : module_.instructions) calls = calls || i.op == Op::kGosub;
-  for (std::uint32_t at = 0; calls && at < graph_.size(); ++at) {
+  const auto has = [&](auto is) { return std::ranges::any_of(module_.instructions, is); };
+  const bool calls = has([](const Instruction& i) { return i.op == Op::kGosub; });
+  const bool entry = has([](const Instruction& i) { return i.op == Op::kTask; });
+  for (std::uint32_t at = 0; at < graph_.size(); ++at) {
     if (!level[at] || module_.instructions[at].op != Op::kReturn) continue;
-    Note(module_.instructions[at], ErrorCode::kReturnWithoutGosub,
-         "the program can run into this RETURN without GOSUB; ENDTASK may be missing before the "
-         "subroutine",
-         "OPT-7.22");
+    if (calls) {
+      Note(module_.instructions[at], ErrorCode::kReturnWithoutGosub,
+           "the program can run into this RETURN without GOSUB; ENDTASK may be missing before the "
+           "subroutine",
+           "OPT-7.22");
+    } else if (!entry) {  // TASK 1 is the mark of a FUNCTION, OPT-9.11
+      Note(module_.instructions[at], ErrorCode::kReturnWithoutGosub,
+           "no GOSUB leads to this RETURN: it ends a FUNCTION, and is an error in other programs",
+           "OPT-7.22");
+    }
   }
-  for (std::size_t s = 0; s < returns_.size(); ++s) {
-    const std::uint32_t at = graph_.subroutines()[s];
-    if (returns_[s] || at == graph_.size()) continue;
+  const std::vector<bool> returns = graph_.ReachReturnOnLevel();
+  for (const std::uint32_t at : graph_.subroutines()) {
+    if (returns[at] || at == graph_.size()) continue;
     Note(module_.instructions[at], ErrorCode::kPracticeAdvice,
          "this subroutine never comes to a RETURN", "OPT-7.20");
   }
@@ -318,14 +271,14 @@ void FlowAdviser::AdviseReturns() {
 
 // OPT-7.21. The depth of a ring depends on its conditions, so that is only said.
 void FlowAdviser::AdviseNesting() {
-  if (returns_.size() != graph_.subroutines().size()) return;  // not followed
-  std::vector<GosubCall> main;
-  const std::vector<bool> level = graph_.ReachOnLevel(graph_.entry());
+  if (graph_.subroutines().empty()) return;
+  std::vector<LevelEdge> edges;
   for (std::uint32_t at = 0; at < graph_.size(); ++at) {
-    if (!level[at]) continue;
-    if (const auto called = Called(at)) main.push_back({at, *called});
+    for (const Successor& s : graph_.From(at, room_)) {
+      if (s.edge != Edge::kTimed) edges.push_back({at, s.to, s.edge == Edge::kCall});
+    }
   }
-  const GosubNesting nesting = FindNesting(main, calls_);
+  const GosubNesting nesting = FindNesting(graph_.size() + 1U, graph_.entry(), edges);
   for (const std::uint32_t at : nesting.too_deep) {
     Warn(module_.instructions[at], ErrorCode::kGosubTooDeep,
          "this GOSUB can be the " + std::to_string(kGosubDepthStandard + 1) + "th inside another",
@@ -343,7 +296,7 @@ void FlowAdviser::AdviseNesting() {
 
 void AdviseOnFlow(const ParsedProgram& program, Findings& findings) {
   const std::size_t count = program.module.instructions.size();
-  if (count == 0 || count > kFlowInstructionsMax || findings.error_count() > 0) return;
+  if (count == 0 || count > kFlowInstructionsMax) return;
   FlowAdviser(program, findings).Run();
 }
 

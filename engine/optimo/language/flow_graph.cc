@@ -69,6 +69,39 @@ const std::vector<Successor>& FlowGraph::From(std::uint32_t at,
   return room;
 }
 
+std::optional<std::uint32_t> FlowGraph::Called(std::uint32_t at) const {
+  const Instruction& i = module_.instructions[at];
+  if (i.op == Op::kMove && i.Has(kTime)) return index_.FindLabel(module_.TimeLabel(i));
+  if ((i.op != Op::kGosub && i.op != Op::kTimer) || i.target_count == 0) return std::nullopt;
+  return index_.FindLabel(module_.Targets(i)[0]);
+}
+
+std::vector<bool> FlowGraph::ReachReturnOnLevel() const {
+  const Predecessors predecessors(*this);
+  std::vector<bool> reaches(size() + 1U);
+  std::vector<std::uint32_t> open;
+  const auto reach = [&](std::uint32_t at) {
+    if (reaches[at]) return;
+    reaches[at] = true;
+    open.push_back(at);
+  };
+  for (std::uint32_t at = 0; at < size(); ++at) {
+    if (module_.instructions[at].op == Op::kReturn) reach(at);
+  }
+  std::vector<Successor> room;
+  while (!open.empty()) {
+    const std::uint32_t to = open.back();
+    open.pop_back();
+    for (const std::uint32_t from : predecessors.Of(to)) {
+      if (reaches[from]) continue;
+      for (const Successor& s : From(from, room)) {
+        if (s.to == to && s.edge != Edge::kCall && s.edge != Edge::kTimed) reach(from);
+      }
+    }
+  }
+  return reaches;
+}
+
 std::vector<bool> FlowGraph::ReachOnLevel(std::uint32_t from) const {
   std::vector<bool> reached(size() + 1U);
   std::vector<std::uint32_t> open = {from};
@@ -86,6 +119,19 @@ std::vector<bool> FlowGraph::ReachOnLevel(std::uint32_t from) const {
     }
   }
   return reached;
+}
+
+Predecessors::Predecessors(const FlowGraph& graph) : first_(graph.size() + 2U) {
+  std::vector<Successor> room;
+  for (std::uint32_t i = 0; i < graph.size(); ++i) {
+    for (const Successor& s : graph.From(i, room)) ++first_[s.to + 1U];
+  }
+  for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+  sources_.resize(first_.back());
+  std::vector<std::uint32_t> fill(first_.begin(), first_.end() - 1);
+  for (std::uint32_t i = 0; i < graph.size(); ++i) {
+    for (const Successor& s : graph.From(i, room)) sources_[fill[s.to]++] = i;
+  }
 }
 
 }  // namespace rmlcell::optimo

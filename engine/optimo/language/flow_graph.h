@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/optimo/language/ast.h"
@@ -24,6 +25,21 @@ struct Successor {
   Edge edge = Edge::kNext;
 };
 
+// Which instructions an edge leads from to each one, those with several edges several times.
+class Predecessors {
+ public:
+  explicit Predecessors(const class FlowGraph& graph);
+
+  // `to` may be the number of instructions: the end of the program.
+  std::span<const std::uint32_t> Of(std::uint32_t to) const {
+    return {sources_.data() + first_[to], first_[to + 1U] - first_[to]};
+  }
+
+ private:
+  std::vector<std::uint32_t> first_;
+  std::vector<std::uint32_t> sources_;
+};
+
 class FlowGraph {
  public:
   explicit FlowGraph(const Module& module);
@@ -39,8 +55,14 @@ class FlowGraph {
   // Targets of GOSUB, each once, ascending.
   const std::vector<std::uint32_t>& subroutines() const { return subroutines_; }
 
+  // Where a GOSUB, /TIME or TIMER goes; nothing for other instructions, and when the program does
+  // not have the sequence number.
+  std::optional<std::uint32_t> Called(std::uint32_t instruction) const;
+
   // What can be reached from `from` on one GOSUB level: calls are stepped over.
   std::vector<bool> ReachOnLevel(std::uint32_t from) const;
+  // From where a RETURN can be reached on one GOSUB level.
+  std::vector<bool> ReachReturnOnLevel() const;
 
  private:
   const Module& module_;

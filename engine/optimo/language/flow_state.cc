@@ -6,75 +6,123 @@
 namespace rmlcell::optimo {
 namespace {
 
-constexpr int kGas2Output = 8, kGas3Output = 9, kSensorOutput = 11;  // OPT-5.39
-constexpr std::uint8_t kTinyMovesMax = 3;
+using Beams = Choice<Beam>;
+using Sensors = Choice<Sensor>;
 
-Known Join(Known a, Known b) { return a == b ? a : Known::kMaybe; }
+// What becomes of each value, in the order of the enumeration.
+constexpr std::array<Beams::Values, 8> kBeamOn = {
+    Beams::Bit(Beam::kFresh), Beams::Bit(Beam::kFresh), Beams::Bit(Beam::kFresh),
+    Beams::Bit(Beam::kFresh), Beams::Bit(Beam::kOn),    Beams::Bit(Beam::kFresh)};
+constexpr std::array<Beams::Values, 8> kBeamOnRamp = {
+    Beams::Bit(Beam::kFreshRamp), Beams::Bit(Beam::kFreshRamp), Beams::Bit(Beam::kFreshRamp),
+    Beams::Bit(Beam::kFreshRamp), Beams::Bit(Beam::kOn),        Beams::Bit(Beam::kFreshRamp)};
+constexpr std::array<Beams::Values, 8> kBeamOff = {
+    Beams::Bit(Beam::kOff),     Beams::Bit(Beam::kJustOff), Beams::Bit(Beam::kJustOff),
+    Beams::Bit(Beam::kJustOff), Beams::Bit(Beam::kJustOff), Beams::Bit(Beam::kOff)};
+constexpr std::array<Beams::Values, 8> kBeamDwell = {
+    Beams::Bit(Beam::kOff), Beams::Bit(Beam::kJustOff), Beams::Bit(Beam::kOn),
+    Beams::Bit(Beam::kOn),  Beams::Bit(Beam::kOn),      Beams::Bit(Beam::kUnknown)};
+constexpr std::array<Beams::Values, 8> kBeamMove = {
+    Beams::Bit(Beam::kOff), Beams::Bit(Beam::kOff), Beams::Bit(Beam::kOn),
+    Beams::Bit(Beam::kOn),  Beams::Bit(Beam::kOn),  Beams::Bit(Beam::kUnknown)};
+constexpr std::array<Sensors::Values, 8> kSensorSeen = {
+    Sensors::Bit(Sensor::kOffSeen), Sensors::Bit(Sensor::kOffSeen), Sensors::Bit(Sensor::kOn),
+    Sensors::Bit(Sensor::kUnknown)};
+constexpr std::array<Choice<TinyMoves>::Values, 8> kOneMoreTiny = {
+    Choice<TinyMoves>::Bit(TinyMoves::kOne), Choice<TinyMoves>::Bit(TinyMoves::kTwo),
+    Choice<TinyMoves>::Bit(TinyMoves::kMore), Choice<TinyMoves>::Bit(TinyMoves::kMore)};
 
-template <class T>
-void Join(std::optional<T>& a, const std::optional<T>& b) {
-  if (a != b) a.reset();
+void Add(ProcessSet bits, Facts<ProcessSet>& to, Facts<ProcessSet>& from) {
+  to.made |= bits;
+  to.kept &= ~bits;
+  from.made &= ~bits;
+  from.kept &= ~bits;
 }
 
-void StepWork(const Instruction& i, FlowState& state) {
-  const ProcessSet bit = ProcessBit(i);
-  const bool laser = i.numbers[0] != 2;
+void StepWork(const Dwells& dwells, const Instruction& i, FlowState& state) {
   if (i.Has(kOn)) {
-    state.on_all |= bit;
-    state.on_some |= bit;
-    if (laser) {
-      state.beam = Known::kYes;
-      state.unpierced = i.numbers[0] == 0 ? Known::kYes : Known::kNo;  // WORK 1 dwells by itself
+    if (i.Has(kEnd)) {  // switches itself off, whenever that is: nobody has to (OPT-3.38)
+      Add(ProcessBit(i), state.off, state.on);
+    } else {
+      Add(ProcessBit(i), state.on, state.off);
     }
+    if (i.numbers[0] == 0) state.beam.Map(kBeamOn);
+    if (i.numbers[0] == 1) {
+      const bool none = dwells.Of(i.numbers[1]) == Dwells::Kind::kNone;
+      state.beam = none ? state.beam : Beams::Of(Beam::kOn);
+      if (none) state.beam.Map(kBeamOnRamp);
+    }
+    if (i.numbers[0] != 2) state.sensor.Map(kSensorSeen);
   } else {
-    state.on_all &= ~bit;
-    state.on_some &= ~bit;
-    state.after_off = state.beam == Known::kYes ? Known::kYes : state.after_off;
-    state.beam = Known::kNo;  // WORK 2 OFF, too: OPT-3.24
-    state.unpierced = Known::kNo;
+    Add(ProcessBit(i), state.off, state.on);
+    state.beam.Map(kBeamOff);  // WORK 2 OFF, too: OPT-3.24
   }
-  if (i.Has(kStart) || i.Has(kEnd)) state.beam = state.unpierced = Known::kMaybe;
+  if (i.Has(kStart) || i.Has(kEnd)) state.beam = Beams::Of(Beam::kUnknown);
 }
 
 void StepOutput(const Module& module, const Instruction& i, FlowState& state) {
-  const ExprNode& target = module.Value(i, 0)[0];
-  const auto variable = OwnVariable(target);
-  if (i.op == Op::kLet && variable) state.set.set(*variable);
-  if (i.op == Op::kAssign && target.group == VariableGroup::kVl && variable) {
-    for (std::size_t v = 0; v < i.numbers[0] && *variable + v < kOwnVariables; ++v)
-      state.set.set(*variable + v);
+  const VariableSet set = VariablesSetBy(module, i);
+  if (set.any()) {
+    state.unset.made &= ~set;
+    state.unset.kept &= ~set;
   }
-  if (target.op != Node::kVariable || target.group != VariableGroup::kOl) return;
-  Known value = Known::kMaybe;
-  if (i.op == Op::kLet) {
-    if (const auto literal = LiteralValueOf(module.Value(i, 1)))
-      value = *literal != 0.0F ? Known::kYes : Known::kNo;
+  if (const auto gas = OutputSetBy(module, i, kGas2Output)) state.gas_2 = Choice<Output>::Of(*gas);
+  if (const auto gas = OutputSetBy(module, i, kGas3Output)) state.gas_3 = Choice<Output>::Of(*gas);
+  if (const auto sensor = OutputSetBy(module, i, kSensorOutput)) {
+    state.sensor = Sensors::Of(*sensor == Output::kOn    ? Sensor::kOn
+                               : *sensor == Output::kOff ? Sensor::kOff
+                                                         : Sensor::kUnknown);
   }
-  const int first = target.index, last = first + (i.op == Op::kAssign ? i.numbers[0] : 1) - 1;
-  const auto set = [&](int output, Known& field) {
-    if (first <= output && output <= last) field = value;
-  };
-  set(kGas2Output, state.gas_2);
-  set(kGas3Output, state.gas_3);
-  set(kSensorOutput, state.sensor);
+}
+
+void ForgetPath(FlowState& state) {
+  state.target.Forget();
+  state.short_fly.Forget();
+  state.tiny_moves = Choice<TinyMoves>::Of(TinyMoves::kNone);
 }
 
 void StepMove(const Module& module, std::uint32_t at, FlowState& state) {
   const Instruction& i = module.instructions[at];
-  const auto target = state.coord == CoordType::kRobot ? std::nullopt : LiteralTarget(module, i);
+  const auto target =
+      state.modes.coord() == CoordType::kRobot ? std::nullopt : LiteralTarget(module, i);
   const bool fly = i.Has(kFly);
-  const bool straight = state.path == PathType::kLin || state.path == PathType::kPtp;
-  const bool measured = straight && target && state.target;
-  const double length = measured ? Distance(*target, *state.target) : HUGE_VAL;
-  state.short_fly = fly && length < kShortFly_mm ? at : kNoIndex;
-  const bool tiny = fly && length < kTinyFly_mm;
-  state.tiny_moves =
-      tiny ? std::min<std::uint8_t>(kTinyMovesMax, static_cast<std::uint8_t>(state.tiny_moves + 1))
-           : 0;
-  state.target =
-      i.Has(kEnd) || i.Has(kTime) || state.path == PathType::kHole ? std::nullopt : target;
-  state.unpierced = Known::kNo;
-  state.after_off = Known::kNo;
+  const auto path = state.modes.path();
+  const auto before = state.target.known();
+  const bool straight = path == PathType::kLin || path == PathType::kPtp;
+  const double length = straight && target && before ? Distance(*target, *before) : HUGE_VAL;
+  state.short_fly.Forget();
+  if (fly && length < kShortFly_mm) state.short_fly.Set(at);
+  if (fly && length < kTinyFly_mm) {
+    state.tiny_moves.Map(kOneMoreTiny);
+  } else {
+    state.tiny_moves = Choice<TinyMoves>::Of(TinyMoves::kNone);
+  }
+  state.target.Forget();
+  if (target && !i.Has(kEnd) && !i.Has(kTime) && path != PathType::kHole) state.target.Set(*target);
+  state.beam.Map(kBeamMove);
+  state.sensor.Map(kSensorSeen);
+}
+
+void StepSysdef(const Module& module, const Instruction& i, FlowState& state) {
+  state.target.Forget();
+  state.turned = Choice<Turned>::Of(Turned::kNo);
+  for (int v = 3; v < 6 && i.value_count == 6; ++v) {
+    const auto angle = LiteralValueOf(module.Value(i, v));
+    if (!angle || *angle != 0.0F) state.turned = Choice<Turned>::Of(Turned::kUnknown);
+  }
+}
+
+// Modal values and WORKDEFs come back; that no process is ON is what it needs to be made at all
+// (OPT-7.12, OPT-3.33).
+void StepCall(FlowState& state) {
+  state.beam = Beams::Of(Beam::kOff);
+  state.gas_2 = state.gas_3 = Choice<Output>::Of(Output::kUnknown);
+  state.sensor = Sensors::Of(Sensor::kUnknown);
+  state.turned = Choice<Turned>::Of(Turned::kUnknown);
+  state.on = {};
+  state.off = {kAllProcesses, 0};
+  state.unset = {};
+  ForgetPath(state);
 }
 
 }  // namespace
@@ -91,6 +139,30 @@ std::optional<std::size_t> OwnVariable(const ExprNode& node) {
     default:
       return std::nullopt;
   }
+}
+
+VariableSet VariablesSetBy(const Module& module, const Instruction& i) {
+  VariableSet set;
+  if (i.op != Op::kLet && i.op != Op::kAssign) return set;
+  const auto first = OwnVariable(module.Value(i, 0)[0]);
+  if (!first) return set;
+  const std::size_t count = i.op == Op::kAssign ? i.numbers[0] : 1U;
+  for (std::size_t v = *first; v < *first + count && v < kOwnVariables; ++v) set.set(v);
+  return set;
+}
+
+std::optional<Output> OutputSetBy(const Module& module, const Instruction& i, int output) {
+  if (i.op != Op::kLet && i.op != Op::kAssign) return std::nullopt;
+  const ExprNode& target = module.Value(i, 0)[0];
+  if (target.op != Node::kVariable || target.group != VariableGroup::kOl) return std::nullopt;
+  const int place = output - target.index;
+  if (place < 0 || place >= (i.op == Op::kAssign ? i.numbers[0] : 1)) return std::nullopt;
+  const auto value = LiteralValueOf(module.Value(i, 1));
+  if (!value || *value < 0.0F) return Output::kUnknown;
+  // ASSIGN: in binary, least significant bit first. OPT-7.102
+  const bool on =
+      i.op == Op::kLet ? *value != 0.0F : (static_cast<unsigned>(*value) >> place & 1U) != 0;
+  return on ? Output::kOn : Output::kOff;
 }
 
 std::optional<float> LiteralValueOf(Expression value) {
@@ -121,162 +193,183 @@ double Distance(const std::array<float, 3>& a, const std::array<float, 3>& b) {
 FlowState FlowState::AtStart() {
   FlowState state;
   state.reached = true;
-  state.speed = 70.0F;  // OPT-2.10
+  state.modes = Modes::AtStart();
+  state.beam = Beams::Of(Beam::kOff);
+  state.gas_2 = state.gas_3 = Choice<Output>::Of(Output::kOff);
+  state.sensor = Sensors::Of(Sensor::kOff);
+  state.turned = Choice<Turned>::Of(Turned::kNo);
+  state.tiny_moves = Choice<TinyMoves>::Of(TinyMoves::kNone);
+  state.off.made = state.undefined.made = kAllProcesses;
+  state.unset.made.set();
+  state.speed.Set(70.0F);  // OPT-2.10
   return state;
 }
 
-FlowState FlowState::Nothing() {
+FlowState FlowState::Unknown() {
   FlowState state;
   state.reached = true;
-  Forget(kTouchesAll, state);
-  state.set.set();
+  state.modes = Modes::Unknown();
+  state.beam = Beams::Of(Beam::kUnknown);
+  state.gas_2 = state.gas_3 = Choice<Output>::Of(Output::kUnknown);
+  state.sensor = Sensors::Of(Sensor::kUnknown);
+  state.turned = Choice<Turned>::Of(Turned::kUnknown);
+  state.tiny_moves = Choice<TinyMoves>::Of(TinyMoves::kNone);
+  state.on.made = state.defined.made = kNotFollowed;
   return state;
 }
 
 FlowState FlowState::InErrorHandler() {
-  FlowState state = Nothing();
-  state.beam = state.unpierced = state.after_off = Known::kNo;
+  FlowState state = Unknown();
+  state.beam = Beams::Of(Beam::kOff);
+  state.on = {};
+  state.off = {kAllProcesses, 0};
   return state;
 }
 
-bool Merge(FlowState& into, const FlowState& other) {
-  if (!into.reached) {
-    into = other;
-    return true;
-  }
-  const FlowState before = into;
-  Join(into.speed, other.speed);
-  Join(into.path, other.path);
-  Join(into.coord, other.coord);
-  Join(into.target, other.target);
-  into.beam = Join(into.beam, other.beam);
-  into.gas_2 = Join(into.gas_2, other.gas_2);
-  into.gas_3 = Join(into.gas_3, other.gas_3);
-  into.sensor = Join(into.sensor, other.sensor);
-  into.unpierced = Join(into.unpierced, other.unpierced);
-  into.rotated = Join(into.rotated, other.rotated);
-  into.after_off = Join(into.after_off, other.after_off);
-  into.processes_known = into.processes_known && other.processes_known;
-  into.on_all &= other.on_all;
-  into.on_some |= other.on_some;
-  into.defined_all &= other.defined_all;
-  into.defined_some |= other.defined_some;
-  if (into.short_fly != other.short_fly) into.short_fly = kNoIndex;
-  into.tiny_moves = std::min(into.tiny_moves, other.tiny_moves);
-  into.set &= other.set;
-  return !(into == before);
+FlowState FlowState::Kept() {
+  FlowState state;
+  state.reached = true;
+  state.modes = Modes::Kept();
+  state.beam = Beams::Kept();
+  state.gas_2 = state.gas_3 = Choice<Output>::Kept();
+  state.sensor = Sensors::Kept();
+  state.turned = Choice<Turned>::Kept();
+  state.tiny_moves = Choice<TinyMoves>::Kept();
+  state.on.kept = state.off.kept = state.defined.kept = state.undefined.kept = ~ProcessSet{0};
+  state.unset.kept.set();
+  state.speed = Single<float>::Kept();
+  state.target = Single<std::array<float, 3>>::Kept();
+  state.short_fly = Single<std::uint32_t>::Kept();
+  return state;
 }
 
-void Step(const Module& module, std::uint32_t at, FlowState& state) {
+bool FlowState::BeamIsOn() const {
+  return beam.IsAmong(Beams::Bits({Beam::kFresh, Beam::kFreshRamp, Beam::kOn}));
+}
+
+void FlowState::Then(const FlowState& next) {
+  modes.Then(next.modes);
+  beam.Then(next.beam);
+  gas_2.Then(next.gas_2);
+  gas_3.Then(next.gas_3);
+  sensor.Then(next.sensor);
+  turned.Then(next.turned);
+  tiny_moves.Then(next.tiny_moves);
+  on.Then(next.on);
+  off.Then(next.off);
+  defined.Then(next.defined);
+  undefined.Then(next.undefined);
+  unset.Then(next.unset);
+  speed.Then(next.speed);
+  target.Then(next.target);
+  short_fly.Then(next.short_fly);
+}
+
+void FlowState::ForgetDifferences(const FlowState& other) {
+  const FlowState unknown = Unknown();
+  const auto forget = [&](auto field) {
+    if (!(this->*field == other.*field)) this->*field = unknown.*field;
+  };
+  forget(&FlowState::modes);
+  forget(&FlowState::beam);
+  forget(&FlowState::gas_2);
+  forget(&FlowState::gas_3);
+  forget(&FlowState::sensor);
+  forget(&FlowState::turned);
+  forget(&FlowState::tiny_moves);
+  forget(&FlowState::speed);
+  forget(&FlowState::target);
+  forget(&FlowState::short_fly);
+  if (!(on == other.on && off == other.off)) {
+    on = unknown.on;
+    off = unknown.off;
+  }
+  if (!(defined == other.defined && undefined == other.undefined)) {
+    defined = unknown.defined;
+    undefined = unknown.undefined;
+  }
+  unset.made &= other.unset.made;
+  unset.kept &= other.unset.kept;
+}
+
+bool FlowState::Join(const FlowState& other) {
+  if (!other.reached) return false;
+  if (!reached) {
+    *this = other;
+    return true;
+  }
+  const FlowState before = *this;
+  modes.Join(other.modes);
+  beam.Join(other.beam);
+  gas_2.Join(other.gas_2);
+  gas_3.Join(other.gas_3);
+  sensor.Join(other.sensor);
+  turned.Join(other.turned);
+  tiny_moves.Join(other.tiny_moves);
+  on.Join(other.on);
+  off.Join(other.off);
+  defined.Join(other.defined);
+  undefined.Join(other.undefined);
+  unset.Join(other.unset);
+  speed.Join(other.speed);
+  target.Join(other.target);
+  short_fly.Join(other.short_fly);
+  return !(*this == before);
+}
+
+void Step(const Module& module, const Dwells& dwells, std::uint32_t at, FlowState& state) {
   const Instruction& i = module.instructions[at];
   switch (i.op) {
+    case Op::kInvalid:
+      state = FlowState::Unknown();
+      break;
     case Op::kSpeed:
-      state.speed = LiteralValueOf(module.Value(i, 0));
+      state.speed.Forget();
+      if (const auto speed = LiteralValueOf(module.Value(i, 0))) state.speed.Set(*speed);
       break;
     case Op::kPath:
-      state.path = static_cast<PathType>(i.choice);
+      state.modes.SetPath(static_cast<PathType>(i.choice));
       break;
     case Op::kCoord:
-      if (state.coord != static_cast<CoordType>(i.choice)) state.target.reset();
-      state.coord = static_cast<CoordType>(i.choice);
+      if (state.modes.coord() != static_cast<CoordType>(i.choice)) state.target.Forget();
+      state.modes.SetCoord(static_cast<CoordType>(i.choice));
       break;
     case Op::kMove:
       StepMove(module, at, state);
       break;
     case Op::kZero:
-      state.target.reset();
+    case Op::kTcp:
+      state.target.Forget();
       break;
     case Op::kWorkdef:
-      state.defined_all |= ProcessBit(i);
-      state.defined_some |= ProcessBit(i);
+      Add(ProcessBit(i), state.defined, state.undefined);
       break;
     case Op::kWork:
-      StepWork(i, state);
+      StepWork(dwells, i, state);
       break;
     case Op::kDelay:
-      state.unpierced = Known::kNo;
+      if (LiteralValueOf(module.Value(i, 0)) != 0.0F) state.beam.Map(kBeamDwell);
       break;
-    case Op::kSysdef: {
-      state.target.reset();
-      state.rotated = Known::kNo;
-      for (int v = 3; v < 6 && i.value_count == 6; ++v) {
-        const auto angle = LiteralValueOf(module.Value(i, v));
-        if (!angle || *angle != 0.0F) state.rotated = Known::kMaybe;
-      }
+    case Op::kWait:
+    case Op::kPause:
+    case Op::kStop:
+      state.beam.Map(kBeamDwell);  // the machine stands still, for how long is not known
       break;
-    }
-    case Op::kTcp:
-      state.target.reset();
+    case Op::kSysdef:
+      StepSysdef(module, i, state);
       break;
     case Op::kLet:
     case Op::kAssign:
       StepOutput(module, i, state);
       break;
     case Op::kFunction:
-      Forget(kTouchesAll, state);
-      state.set.set();
+      state = FlowState::Unknown();
       break;
     case Op::kCall:
-      state.set.set();
-      // Modal values and WORKDEFs come back, processes are off (OPT-7.12, OPT-3.33).
-      Forget(kTouchesOutput | kTouchesMotion | kTouchesOffset, state);
-      state.beam = state.unpierced = Known::kNo;
+      StepCall(state);
       break;
     default:
       break;
-  }
-}
-
-std::uint16_t TouchedBy(const Instruction& i) {
-  switch (i.op) {
-    case Op::kSpeed:
-    case Op::kPath:
-    case Op::kCoord:
-      return kTouchesModal;
-    case Op::kMove:
-    case Op::kZero:
-      return kTouchesMotion;
-    case Op::kWork:
-    case Op::kWorkdef:
-      return kTouchesProcess;
-    case Op::kLet:
-    case Op::kAssign:
-      return kTouchesOutput;
-    case Op::kSysdef:
-    case Op::kTcp:
-      return kTouchesOffset;
-    case Op::kDelay:
-      return kTouchesMotion;
-    case Op::kCall:
-      return kTouchesOutput | kTouchesMotion | kTouchesOffset;
-    case Op::kFunction:
-      return kTouchesAll;
-    default:
-      return 0;
-  }
-}
-
-void Forget(std::uint16_t touched, FlowState& state) {
-  if ((touched & kTouchesModal) != 0) {
-    state.speed.reset();
-    state.path.reset();
-    state.coord.reset();
-  }
-  if ((touched & kTouchesProcess) != 0) {
-    state.processes_known = false;
-    state.beam = state.unpierced = state.after_off = Known::kMaybe;
-    state.on_all = state.on_some = 0;
-  }
-  if ((touched & kTouchesOutput) != 0) state.gas_2 = state.gas_3 = state.sensor = Known::kMaybe;
-  if ((touched & kTouchesMotion) != 0) {
-    state.target.reset();
-    state.short_fly = kNoIndex;
-    state.tiny_moves = 0;
-    state.unpierced = state.after_off = Known::kMaybe;
-  }
-  if ((touched & kTouchesOffset) != 0) {
-    state.target.reset();
-    state.rotated = Known::kMaybe;
   }
 }
 

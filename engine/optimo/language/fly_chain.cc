@@ -1,31 +1,23 @@
 #include "engine/optimo/language/fly_chain.h"
 
-#include "engine/optimo/language/flow_state.h"
-
 namespace rmlcell::optimo {
 namespace {
 
 constexpr std::uint8_t kEither = kMotionAhead | kStopAhead;
 
-}  // namespace
-
 // WORK 1 ON stands still for its dwell; without one it does not. OPT-2.50
-void FlyChain::FindDwells() {
-  std::array<bool, 10> dwell{}, none{};
-  for (const Instruction& i : module_.instructions) {
-    if (i.op != Op::kWorkdef || i.numbers[0] != 1) continue;
-    const auto delay = LiteralValueOf(module_.Value(i, 2));
-    const std::size_t process = i.numbers[1];
-    dwell[process] = dwell[process] || !delay || *delay > 0.0F;
-    none[process] = none[process] || !delay || *delay == 0.0F;
-  }
-  for (std::size_t p = 0; p < work_1_on_.size(); ++p) {
-    // Both, or defined elsewhere: not known.
-    work_1_on_[p] = dwell[p] == none[p] ? kEither
-                    : dwell[p]          ? std::uint8_t{kStopAhead}
-                                        : std::uint8_t{0};
+std::uint8_t OfDwell(Dwells::Kind kind) {
+  switch (kind) {
+    case Dwells::Kind::kNone:
+      return 0;
+    case Dwells::Kind::kSome:
+      return kStopAhead;
+    default:
+      return kEither;
   }
 }
+
+}  // namespace
 
 // What the instruction is by itself; 0: look behind it.
 std::uint8_t FlyChain::OwnEffect(std::uint32_t at, const std::vector<bool>& hole_moves) const {
@@ -38,7 +30,7 @@ std::uint8_t FlyChain::OwnEffect(std::uint32_t at, const std::vector<bool>& hole
   switch (i.op) {
     case Op::kWork:
       if (i.Has(kStart)) return kStopAhead;
-      return i.numbers[0] == 1 && i.Has(kOn) ? work_1_on_[i.numbers[1]] : std::uint8_t{0};
+      return i.numbers[0] == 1 && i.Has(kOn) ? OfDwell(dwells_.Of(i.numbers[1])) : std::uint8_t{0};
     case Op::kTcp:
       return kEither;  // whether the tip moves is known when it runs
     case Op::kReturn:
@@ -50,11 +42,15 @@ std::uint8_t FlyChain::OwnEffect(std::uint32_t at, const std::vector<bool>& hole
   }
 }
 
-FlyChain::FlyChain(const Module& module, const FlowGraph& graph,
-                   const std::vector<bool>& hole_moves)
-    : module_(module), graph_(graph), met_(graph.size() + 1U), stop_(graph.size() + 1U, kNoIndex) {
-  FindDwells();
-  for (std::uint32_t i = 0; i < graph.size(); ++i) own_.push_back(OwnEffect(i, hole_moves));
+FlyChain::FlyChain(const Module& module, const FlowGraph& graph, const Dwells& dwells,
+                   const std::vector<bool>& hole_moves, const std::vector<bool>& faulty)
+    : module_(module),
+      graph_(graph),
+      dwells_(dwells),
+      met_(graph.size() + 1U),
+      stop_(graph.size() + 1U, kNoIndex) {
+  for (std::uint32_t i = 0; i < graph.size(); ++i)
+    own_.push_back(faulty[i] ? kEither : OwnEffect(i, hole_moves));
   // Predecessors in one array: those of i are at first[i] .. first[i + 1].
   std::vector<std::uint32_t> first(graph.size() + 2U);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;  // from, to

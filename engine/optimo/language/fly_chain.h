@@ -1,9 +1,9 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "engine/optimo/language/dwells.h"
 #include "engine/optimo/language/flow_graph.h"
 
 // What comes behind each instruction: a motion, or something for which the machine must stand still
@@ -14,8 +14,10 @@ enum Ahead : std::uint8_t { kMotionAhead = 1, kStopAhead = 2, kHoleAhead = 4 };
 
 class FlyChain {
  public:
-  // `hole_moves[i]`: instruction i is a MOVE that is known to run a hole.
-  FlyChain(const Module& module, const FlowGraph& graph, const std::vector<bool>& hole_moves);
+  // `hole_moves[i]`: instruction i is a MOVE that is known to run a hole. `faulty[i]`: it has an
+  // error, so what it does is not known.
+  FlyChain(const Module& module, const FlowGraph& graph, const Dwells& dwells,
+           const std::vector<bool>& hole_moves, const std::vector<bool>& faulty);
 
   // What may be met behind instruction `at`, as bits of Ahead.
   std::uint8_t Behind(std::uint32_t at) const;
@@ -24,11 +26,10 @@ class FlyChain {
 
  private:
   std::uint8_t OwnEffect(std::uint32_t at, const std::vector<bool>& hole_moves) const;
-  void FindDwells();
 
   const Module& module_;
   const FlowGraph& graph_;
-  std::array<std::uint8_t, 10> work_1_on_{};  // by process number: what its WORK 1 ON is
+  const Dwells& dwells_;
   std::vector<std::uint8_t> own_;
   std::vector<std::uint8_t> met_;  // when execution comes to the instruction
   std::vector<std::uint32_t> stop_;

@@ -5,86 +5,129 @@
 namespace rmlcell::optimo {
 namespace {
 
-enum class Visit : std::uint8_t { kNew, kOpen, kDone };
+constexpr std::uint32_t kUnseen = 0xFFFF'FFFF;
 
 void SortOnce(std::vector<std::uint32_t>& places) {
   std::ranges::sort(places);
   places.erase(std::unique(places.begin(), places.end()), places.end());
 }
 
-// Depth first from the program's own GOSUBs: marks the calls that lead back into the chain that is
-// open, and leaves the subroutines in an order in which each stands before those that call it.
-class Walk {
+// Rings are what can come to itself (Tarjan's strongly connected components, with a stack of its
+// own). The GOSUBs that lead back into the way that the walk is on close them.
+class RingWalk {
  public:
-  Walk(const std::vector<std::vector<GosubCall>>& calls, std::vector<std::uint32_t>& recursive)
-      : calls_(calls), recursive_(recursive), visits_(calls.size()) {
-    for (const auto& of_one : calls_) closes_.emplace_back(of_one.size());
+  RingWalk(std::uint32_t count, const std::vector<LevelEdge>& edges)
+      : edges_(edges),
+        first_(count + 1U),
+        order_(count, kUnseen),
+        low_(count),
+        ring_(count, kUnseen),
+        on_way_(count) {
+    for (const LevelEdge& edge : edges) ++first_[edge.from + 1U];
+    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
   }
 
-  void From(std::size_t subroutine) {
-    if (visits_[subroutine] != Visit::kNew) return;
-    Open(subroutine);
-    while (!open_.empty()) {
-      Frame& frame = open_.back();
-      if (frame.next == calls_[frame.subroutine].size()) {
-        visits_[frame.subroutine] = Visit::kDone;
-        finished_.push_back(frame.subroutine);
-        open_.pop_back();
+  void From(std::uint32_t entry) {
+    Open(entry);
+    while (!way_.empty()) {
+      Frame& frame = way_.back();
+      const std::uint32_t at = frame.at;
+      if (frame.next == first_[at + 1U]) {
+        Close(at);
         continue;
       }
-      const std::size_t which = frame.next++;
-      const GosubCall& call = calls_[frame.subroutine][which];
-      if (visits_[call.to] == Visit::kOpen) {
-        closes_[frame.subroutine][which] = true;
-        recursive_.push_back(call.at);
-      } else if (visits_[call.to] == Visit::kNew) {
-        Open(call.to);
+      const LevelEdge& edge = edges_[frame.next++];
+      if (order_[edge.to] == kUnseen) {
+        Open(edge.to);
+      } else if (ring_[edge.to] == kUnseen) {
+        low_[at] = std::min(low_[at], order_[edge.to]);
+        if (edge.gosub && on_way_[edge.to]) closing_.push_back(at);
       }
     }
   }
 
-  const std::vector<std::size_t>& finished() const { return finished_; }
-  bool Closes(std::size_t subroutine, std::size_t which) const {
-    return closes_[subroutine][which];
-  }
+  // Rings are numbered from the last one that can be come to; kUnseen: `at` is not come to.
+  std::uint32_t RingOf(std::uint32_t at) const { return ring_[at]; }
+  std::uint32_t rings() const { return rings_; }
+  const std::vector<std::uint32_t>& closing() const { return closing_; }
 
  private:
   struct Frame {
-    std::size_t subroutine = 0;
-    std::size_t next = 0;
+    std::uint32_t at = 0;
+    std::uint32_t next = 0;  // edge
   };
-  void Open(std::size_t subroutine) {
-    visits_[subroutine] = Visit::kOpen;
-    open_.push_back({subroutine, 0});
+
+  void Open(std::uint32_t at) {
+    order_[at] = low_[at] = seen_++;
+    on_way_[at] = true;
+    way_.push_back({at, first_[at]});
+    pending_.push_back(at);
   }
 
-  const std::vector<std::vector<GosubCall>>& calls_;
-  std::vector<std::uint32_t>& recursive_;
-  std::vector<Visit> visits_;
-  std::vector<std::vector<bool>> closes_;
-  std::vector<Frame> open_;
-  std::vector<std::size_t> finished_;
+  void Close(std::uint32_t at) {
+    way_.pop_back();
+    on_way_[at] = false;
+    if (!way_.empty()) low_[way_.back().at] = std::min(low_[way_.back().at], low_[at]);
+    if (low_[at] != order_[at]) return;
+    for (std::uint32_t member = kUnseen; member != at;) {
+      member = pending_.back();
+      pending_.pop_back();
+      ring_[member] = rings_;
+    }
+    ++rings_;
+  }
+
+  const std::vector<LevelEdge>& edges_;
+  std::vector<std::uint32_t> first_;  // edge, by its `from`
+  std::vector<std::uint32_t> order_, low_, ring_;
+  std::vector<bool> on_way_;
+  std::vector<Frame> way_;
+  std::vector<std::uint32_t> pending_;
+  std::vector<std::uint32_t> closing_;
+  std::uint32_t seen_ = 0, rings_ = 0;
 };
 
 }  // namespace
 
-GosubNesting FindNesting(const std::vector<GosubCall>& main,
-                         const std::vector<std::vector<GosubCall>>& calls, int levels_max) {
+GosubNesting FindNesting(std::uint32_t count, std::uint32_t entry,
+                         const std::vector<LevelEdge>& edges, int levels_max) {
   GosubNesting nesting;
-  Walk walk(calls, nesting.recursive);
-  for (const GosubCall& call : main) walk.From(call.to);
+  if (count == 0) return nesting;
+  RingWalk walk(count, edges);
+  walk.From(entry);
+  nesting.recursive = walk.closing();
 
-  // The deepest level on which each subroutine can run: callers before those that they call.
-  std::vector<int> level(calls.size());
-  const auto call_from = [&](const GosubCall& call, int caller_level) {
-    if (caller_level + 1 > levels_max) nesting.too_deep.push_back(call.at);
-    level[call.to] = std::max(level[call.to], caller_level + 1);
-  };
-  for (const GosubCall& call : main) call_from(call, 0);
-  for (std::size_t n = walk.finished().size(); n-- > 0;) {
-    const std::size_t subroutine = walk.finished()[n];
-    for (std::size_t which = 0; which < calls[subroutine].size(); ++which) {
-      if (!walk.Closes(subroutine, which)) call_from(calls[subroutine][which], level[subroutine]);
+  // A ring that a jump closes has no such GOSUB: its last one is told.
+  std::vector<bool> told(walk.rings());
+  for (const std::uint32_t at : nesting.recursive) told[walk.RingOf(at)] = true;
+  for (std::size_t e = edges.size(); e-- > 0;) {
+    const std::uint32_t ring = walk.RingOf(edges[e].from);
+    if (!edges[e].gosub || ring == kUnseen || ring != walk.RingOf(edges[e].to) || told[ring])
+      continue;
+    told[ring] = true;
+    nesting.recursive.push_back(edges[e].from);
+  }
+
+  // The deepest level of each ring, those first that lead to others.
+  std::vector<std::uint32_t> begin(walk.rings() + 1U), by_ring(edges.size());
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const std::uint32_t ring = walk.RingOf(edges[e].from);
+    if (ring != kUnseen && ring != walk.RingOf(edges[e].to)) ++begin[ring + 1U];
+  }
+  for (std::size_t r = 1; r < begin.size(); ++r) begin[r] += begin[r - 1];
+  std::vector<std::uint32_t> fill(begin.begin(), begin.end() - 1);
+  for (std::uint32_t e = 0; e < edges.size(); ++e) {
+    const std::uint32_t ring = walk.RingOf(edges[e].from);
+    if (ring != kUnseen && ring != walk.RingOf(edges[e].to)) by_ring[fill[ring]++] = e;
+  }
+  std::vector<int> level(walk.rings());
+  for (std::uint32_t ring = walk.rings(); ring-- > 0;) {
+    for (std::uint32_t b = begin[ring]; b < begin[ring + 1U]; ++b) {
+      const LevelEdge& edge = edges[by_ring[b]];
+      const int deeper = level[ring] + (edge.gosub ? 1 : 0);
+      if (edge.gosub && deeper > levels_max) nesting.too_deep.push_back(edge.from);
+      int& of = level[walk.RingOf(edge.to)];
+      of = std::max(of, deeper);
     }
   }
   SortOnce(nesting.recursive);

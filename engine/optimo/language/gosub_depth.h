@@ -4,16 +4,16 @@
 #include <cstdint>
 #include <vector>
 
-// How deep the GOSUBs of a program can nest, from which subroutine calls which. Private to the
-// folder.
+// How deep the GOSUBs of a program can nest. Private to the folder.
 namespace rmlcell::optimo {
 
 inline constexpr int kGosubDepthStandard = 16;  // machine parameter GOSUB_DEPTH, OPT-7.21
 
-// A GOSUB in a subroutine, or on the level of the program itself.
-struct GosubCall {
-  std::uint32_t at = 0;  // the instruction
-  std::size_t to = 0;    // the subroutine that it calls
+// One instruction may follow another; with a GOSUB, one level deeper.
+struct LevelEdge {
+  std::uint32_t from = 0;
+  std::uint32_t to = 0;
+  bool gosub = false;
 };
 
 struct GosubNesting {
@@ -23,10 +23,9 @@ struct GosubNesting {
   std::vector<std::uint32_t> too_deep;
 };
 
-// `main`: the GOSUBs outside of subroutines. `calls[s]`: those that subroutine s may come to on its
-// own level. Linear in the number of calls; no recursion.
-GosubNesting FindNesting(const std::vector<GosubCall>& main,
-                         const std::vector<std::vector<GosubCall>>& calls,
-                         int levels_max = kGosubDepthStandard);
+// `edges`: those of what runs, ascending by `from`, between `count` instructions of which `entry`
+// is the first. Linear in the number of edges; no recursion.
+GosubNesting FindNesting(std::uint32_t count, std::uint32_t entry,
+                         const std::vector<LevelEdge>& edges, int levels_max = kGosubDepthStandard);
 
 }  // namespace rmlcell::optimo

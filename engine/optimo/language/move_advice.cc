@@ -37,37 +37,56 @@ void MoveAdviser::Advise(std::uint32_t at, const FlowState& state) {
   AdviseFly(at, state);
   AdviseShortFly(at, state);
   AdviseHole(i, state);
-  if (state.coord) placed_.push_back({at, *state.coord});
+  if (const auto coord = state.modes.coord()) placed_.push_back({at, *coord});
 }
 
 void MoveAdviser::AdvisePath(const Instruction& i, const FlowState& state) {
-  const bool contour = state.path && *state.path != PathType::kPtp;
-  if (contour && state.coord == CoordType::kRobot) {
+  const Modes& modes = state.modes;
+  if (modes.IsRobotContour()) {
     Warn(i, ErrorCode::kPathNeedsAbsol, "COORD ROBOT has PATH PTP only; this MOVE will fail",
          "OPT-2.08");
+  } else if (modes.MayBeRobotContour()) {
+    Warn(i, ErrorCode::kPathNeedsAbsol,
+         "on one path this MOVE is in COORD ROBOT with a PATH other than PTP, and will fail",
+         "OPT-2.08");
   }
-  if ((state.path == PathType::kCir || state.path == PathType::kHole) && !i.Has(kVia)) {
-    Warn(i, ErrorCode::kViaMissing, "CIR and HOLE without /VIA move in a straight line",
-         state.path == PathType::kCir ? "OPT-2.21" : "OPT-2.29");
+  const bool arc = modes.MayBe(PathType::kCir), hole = modes.MayBe(PathType::kHole);
+  if ((arc || hole) && !i.Has(kVia)) {
+    const auto path = modes.path();
+    const bool always = path == PathType::kCir || path == PathType::kHole;
+    Warn(i, ErrorCode::kViaMissing,
+         std::string(always ? "" : "on one path the PATH is CIR or HOLE: ") +
+             "CIR and HOLE without /VIA move in a straight line",
+         arc ? "OPT-2.21" : "OPT-2.29");
   }
-  if (state.path == PathType::kPtp && state.beam == Known::kYes) {
+  if (!state.BeamIsOn()) return;
+  if (modes.path() == PathType::kPtp) {
     Warn(i, ErrorCode::kPracticeAdvice,
          "a contour in PATH PTP with the beam on: its speed is not controlled", "OPT-5.45");
+  } else if (modes.IsDefaultPath() && !std::exchange(default_path_told_, true)) {
+    Note(i, ErrorCode::kPracticeAdvice,
+         "a contour with the beam on, and no PATH was set: by default that is PTP, of which the "
+         "speed is not controlled",
+         "OPT-5.45");
   }
 }
 
 void MoveAdviser::AdviseSpeed(std::uint32_t at, const FlowState& state) {
   const Instruction& i = module_.instructions[at];
-  if (state.unpierced == Known::kYes && state.path && *state.path != PathType::kPtp) {
-    Note(i, ErrorCode::kPracticeAdvice, "the beam was switched on without a dwell to pierce",
-         "OPT-3.20");
+  const bool fresh = state.beam.Is(Beam::kFresh), ramp = state.beam.Is(Beam::kFreshRamp);
+  if ((fresh || ramp) && state.modes.IsContour() && !i.Has(kStart)) {
+    Note(i, ErrorCode::kPracticeAdvice,
+         fresh ? "the beam was switched on without a dwell to pierce"
+               : "WORKDEF 1 has a delay of 0: the beam was switched on without a dwell to pierce",
+         fresh ? "OPT-3.20" : "OPT-3.21");
   }
-  if (!state.speed) return;
-  const float speed = *state.speed;
+  const auto known = state.speed.known();
+  if (!known) return;
+  const float speed = *known;
   const bool before_on =
       at + 1 < module_.instructions.size() && module_.instructions[at + 1].op == Op::kWork &&
       module_.instructions[at + 1].Has(kOn) && module_.instructions[at + 1].numbers[0] != 2;
-  if (state.beam == Known::kYes) {
+  if (state.BeamIsOn()) {
     if (speed > kCuttingMax || speed < kCuttingMin) {
       Warn(i, ErrorCode::kPracticeAdvice,
            SpeedText(speed) + " with the beam on; cutting takes 5 to 15 %", "OPT-5.46");
@@ -78,7 +97,7 @@ void MoveAdviser::AdviseSpeed(std::uint32_t at, const FlowState& state) {
   } else if (before_on && speed > kApproachMax) {
     Note(i, ErrorCode::kPracticeAdvice,
          SpeedText(speed) + " to the pierce point; the approach takes 10 %", "OPT-5.46");
-  } else if (state.after_off == Known::kYes && speed > kLeavingMax) {
+  } else if (state.beam.Is(Beam::kJustOff) && speed > kLeavingMax) {
     Note(i, ErrorCode::kPracticeAdvice,
          SpeedText(speed) + " away from the part; leaving takes at most 20 %", "OPT-5.46");
   }
@@ -95,7 +114,7 @@ void MoveAdviser::AdviseFly(std::uint32_t at, const FlowState& state) {
   const std::uint8_t ahead = chain_.Behind(at);
   std::string detail;
   std::string_view rule;
-  if (state.path == PathType::kHole) {
+  if (state.modes.path() == PathType::kHole) {
     detail = "/FLY on a hole move";
     rule = "OPT-2.53";
   } else if (ahead == (kMotionAhead | kHoleAhead)) {
@@ -112,8 +131,8 @@ void MoveAdviser::AdviseFly(std::uint32_t at, const FlowState& state) {
       const std::string where =
           std::string(Describe(cause.op).name) + " at step " + std::to_string(cause.step);
       detail = "/FLY, but " + where + " needs standstill";
-      if (cause.op == Op::kCoord && state.coord &&
-          *state.coord != static_cast<CoordType>(cause.choice)) {
+      const auto coord = state.modes.coord();
+      if (cause.op == Op::kCoord && coord && *coord != static_cast<CoordType>(cause.choice)) {
         return findings_.AddAs(
             Severity::kWarning, ErrorCode::kFlyBeforeCoord, p_.At(i),
             "/FLY before the change of coordinates at step " + std::to_string(cause.step),
@@ -130,14 +149,16 @@ void MoveAdviser::AdviseFly(std::uint32_t at, const FlowState& state) {
 void MoveAdviser::AdviseShortFly(std::uint32_t at, const FlowState& state) {
   const Instruction& i = module_.instructions[at];
   if (!i.Has(kFly)) {
-    if (state.short_fly == kNoIndex) return;
-    const Instruction& before = module_.instructions[state.short_fly];
+    const auto short_fly = state.short_fly.known();
+    if (!short_fly) return;
+    const Instruction& before = module_.instructions[*short_fly];
     return Warn(before, ErrorCode::kShortFly,
                 "/FLY on a move shorter than 1 mm, and the next move stops", "OPT-2.51");
   }
-  if (state.tiny_moves < 2 || !state.target) return;
-  const auto target = LiteralTarget(module_, i);
-  if (target && Distance(*target, *state.target) < kTinyFly_mm) {
+  const auto from = state.target.known(), target = LiteralTarget(module_, i);
+  const auto several = Choice<TinyMoves>::Bits({TinyMoves::kTwo, TinyMoves::kMore});
+  if (!state.tiny_moves.IsAmong(several) || !from || !target) return;
+  if (Distance(*target, *from) < kTinyFly_mm) {
     Warn(i, ErrorCode::kShortFly, "/FLY on several moves in a row shorter than 0.01 mm",
          "OPT-2.52");
   }
@@ -146,7 +167,8 @@ void MoveAdviser::AdviseShortFly(std::uint32_t at, const FlowState& state) {
 // The angle between C to N and the tool axis u(A, B); program coordinates must not be turned.
 // OPT-5.48
 void MoveAdviser::AdviseHole(const Instruction& i, const FlowState& state) {
-  if (state.path != PathType::kHole || !i.Has(kVia) || state.rotated != Known::kNo) return;
+  const bool turned = !state.turned.Is(Turned::kNo);
+  if (state.modes.path() != PathType::kHole || !i.Has(kVia) || turned) return;
   double c[5], n[3];
   for (int v = 0; v < 5; ++v) {
     const auto value = LiteralValueOf(module_.Value(i, v));

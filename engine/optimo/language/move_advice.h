@@ -38,6 +38,7 @@ class MoveAdviser {
     CoordType coord;
   };
   std::vector<Placed> placed_;  // MOVEs whose COORD is known, in program order
+  bool default_path_told_ = false;
 };
 
 }  // namespace rmlcell::optimo

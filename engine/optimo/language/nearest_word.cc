@@ -30,21 +30,80 @@ int Distance(std::string_view a, std::string_view b) {
   return cost[a.size()][b.size()];
 }
 
+char UpperOf(char c) { return static_cast<char>(std::toupper(static_cast<unsigned char>(c))); }
+bool IsDigitOfName(char c) { return c >= '0' && c <= '9'; }
+// Letters by which the names of coordinates differ.
+bool IsAxis(char c) {
+  return std::string_view("XYZABC").find(UpperOf(c)) != std::string_view::npos;
+}
+
+// Of two words at a distance of 1: without what is equal at both ends.
+struct Difference {
+  std::string_view from, to;
+};
+Difference DifferenceOf(std::string_view from, std::string_view to) {
+  while (!from.empty() && !to.empty() && UpperOf(from.front()) == UpperOf(to.front())) {
+    from.remove_prefix(1);
+    to.remove_prefix(1);
+  }
+  while (!from.empty() && !to.empty() && UpperOf(from.back()) == UpperOf(to.back())) {
+    from.remove_suffix(1);
+    to.remove_suffix(1);
+  }
+  return {from, to};
+}
+
+Slip SlipOf(std::string_view word, std::string_view meant) {
+  const Difference difference = DifferenceOf(word, meant);
+  for (const std::string_view part : {difference.from, difference.to}) {
+    if (std::ranges::any_of(part, IsDigitOfName)) return Slip::kOther;
+  }
+  return difference.from.size() == 2 && difference.to.size() == 2 ? Slip::kSwap : Slip::kOneLetter;
+}
+
 }  // namespace
 
-std::string NearestWord(std::string_view word, std::span<const std::string_view> candidates) {
-  if (word.size() > kLongest) return {};
+NearWords NearestWords(std::string_view word, std::span<const std::string_view> candidates) {
+  NearWords near;
+  if (word.size() > kLongest) return near;
   int best = static_cast<int>(word.size() / 3) + 1;
-  std::string_view nearest;
   for (const std::string_view candidate : candidates) {
     if (candidate.size() > kLongest || candidate.empty()) continue;
     const int distance = Distance(word, candidate);
-    if (distance < best) {
-      best = distance;
-      nearest = candidate;
-    }
+    if (distance > best || (distance == best && near.words.empty())) continue;
+    if (distance < best) near.words.clear();
+    best = distance;
+    if (near.words.size() < kNearWordsMax &&
+        std::ranges::find(near.words, candidate) == near.words.end())
+      near.words.emplace_back(candidate);
   }
-  return std::string(nearest);
+  if (best == 1 && near.words.size() == 1) near.slip = SlipOf(word, near.words.front());
+  return near;
+}
+
+std::string QuestionFor(const NearWords& near) {
+  if (near.words.empty()) return {};
+  std::string text = "; did you mean " + near.words.front();
+  for (std::size_t w = 1; w < near.words.size(); ++w)
+    text += (w + 1 < near.words.size() ? ", " : " or ") + near.words[w];
+  return text + "?";
+}
+
+bool IsSurelyName(std::string_view word, const NearWords& near) {
+  if (!near.IsSingle(Slip::kSwap)) return false;
+  return !std::ranges::all_of(DifferenceOf(word, near.words.front()).from, IsAxis);
+}
+
+NameCandidates::NameCandidates(const Module& module, std::span<const std::uint16_t> declared) {
+  constexpr std::size_t kNamesMax = 500;  // compared with one mistyped word
+  for (const std::uint16_t name : declared.first(std::min(declared.size(), kNamesMax))) {
+    char room[kNameLength];
+    names_.emplace_back(UnpackName(module.names[name].key, room));
+  }
+}
+
+void NameCandidates::AppendTo(std::vector<std::string_view>& candidates) const {
+  candidates.insert(candidates.end(), names_.begin(), names_.end());
 }
 
 }  // namespace rmlcell::optimo

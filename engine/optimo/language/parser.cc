@@ -9,9 +9,8 @@
 namespace rmlcell::optimo {
 namespace {
 
-constexpr std::size_t kNamesMax = kNoName;      // names have 16-bit numbers
-constexpr std::size_t kQuotedMax = 40;          // of a token in a message
-constexpr std::size_t kProposalNamesMax = 500;  // names compared with a mistyped one
+constexpr std::size_t kNamesMax = kNoName;  // names have 16-bit numbers
+constexpr std::size_t kQuotedMax = 40;      // of a token in a message
 
 }  // namespace
 
@@ -53,9 +52,14 @@ void Parser::ParseStatement() {
   nesting_ = 0;
   slash_separates_ = false;
   first_ = Peek();
+  instruction_ = Instruction{};
+  instruction_.step = steps_ + 1;  // that a sequence number leads to, here or on a later line
   labelled_ = first_.kind == TokenKind::kNumber;
   if (labelled_) {
-    AddLabel(Take());
+    const Token label = Take();
+    // What is said of the number belongs to the instruction that it leads to (OPT-1.27).
+    instruction_.step = Peek().word == Word::kDeclare ? 0 : steps_ + 1;
+    AddLabel(label);
     if (Is(TokenKind::kEnd)) return;
     first_ = Peek();
   }
@@ -63,7 +67,10 @@ void Parser::ParseStatement() {
   instruction_.first_expression = static_cast<std::uint32_t>(module_.expression_ends.size());
   instruction_.first_target = static_cast<std::uint32_t>(module_.targets.size());
   attribute_parts_.clear();
-  const bool steps = first_.word != Word::kDeclare;
+  const std::uint64_t errors = findings_.error_count();
+  const bool rest_of_if = std::exchange(broken_if_, false) &&
+                          (first_.word == Word::kThen || first_.word == Word::kElse);
+  const bool steps = first_.word != Word::kDeclare && !rest_of_if;
   if (steps) ++steps_;
   instruction_.step = steps ? steps_ : 0;
 
@@ -71,8 +78,11 @@ void Parser::ParseStatement() {
                               ? WordGroup::kNone
                               : Describe(first_.word).group;
   bool good = false;
-  if (first_.kind == TokenKind::kWord &&
-      (group == WordGroup::kNone || group == WordGroup::kVariable)) {
+  if (rest_of_if) {
+    broken_if_ = true;  // reported where the IF stopped
+  } else if (first_.kind == TokenKind::kWord &&
+             (group == WordGroup::kNone || group == WordGroup::kVariable ||
+              (IsRefused(first_) && Peek(1).kind == TokenKind::kEqual))) {
     good = ParseAssignment(false);
   } else if (group == WordGroup::kInstruction) {
     good = ParseInstruction(first_.word);
@@ -90,6 +100,7 @@ void Parser::ParseStatement() {
     if (good && !Is(TokenKind::kEnd)) good = Fail("the end of the statement");
   }
   if (!good) {
+    broken_if_ = broken_if_ || instruction_.op == Op::kIf;
     DropExpressions(instruction_.first_expression);
     module_.targets.resize(instruction_.first_target);
     const bool named = instruction_.op == Op::kDeclare && instruction_.name != kNoName &&
@@ -101,6 +112,8 @@ void Parser::ParseStatement() {
     instruction_.first_expression = static_cast<std::uint32_t>(module_.expression_ends.size());
     instruction_.first_target = static_cast<std::uint32_t>(module_.targets.size());
   }
+  if (good && findings_.error_count() != errors)
+    program_.faulty.push_back(static_cast<std::uint32_t>(module_.instructions.size()));
   FinishStatement(good);
 }
 
@@ -213,29 +226,62 @@ void Parser::ParseIgnored(Word word) {
   module_.texts.push_back(std::move(text));
 }
 
-// The nearest instruction word or declared name is proposed. OPT-7.91
+// Would the statement be right with `text` in place of this word, its first?
+bool Parser::IsRightWith(const Token& word, std::string_view text) const {
+  constexpr std::size_t kBytesMax = 2000;  // what is longer is left to the programmer
+  std::string repaired(text);
+  repaired += text_.substr(word.offset + word.length, kBytesMax);
+  std::vector<Comment> comments;
+  Lexer lexer(repaired, comments);
+  if (!lexer.NextStatement()) return false;
+  std::size_t count = 1;
+  while (lexer.At(count).kind != TokenKind::kEnd) ++count;
+  const Token last = lexer.At(count - 1);
+  const std::size_t end = last.offset + last.length;
+  if (end >= kBytesMax) return false;
+  Findings none(0);
+  const ParsedProgram program =
+      Parse(std::string_view(repaired).substr(0, end), none, Places::kStatements);
+  return none.error_count() == 0 && program.statements.size() == 1;
+}
+
+// GOTO10: where the digits behind the word of an instruction begin, if a blank there makes it
+// right.
+std::optional<std::uint32_t> Parser::MissingBlank(const Token& name) const {
+  const std::string_view text = lexer_.TextOf(name);
+  const std::size_t letters = text.find_last_not_of("0123456789") + 1;
+  if (letters == text.size() || letters > kNameLength) return std::nullopt;
+  if (OpOf(FindWord(PackName(text.substr(0, letters)))) == Op::kInvalid) return std::nullopt;
+  std::string apart(text);
+  apart.insert(letters, " ");
+  if (!IsRightWith(name, apart)) return std::nullopt;
+  return static_cast<std::uint32_t>(letters);
+}
+
+// The nearest instruction words or declared names are proposed, and put in place when it is sure
+// what was meant. OPT-7.91
 bool Parser::FailUnknown(const Token& name) {
   if (findings_.full()) return FailAt(name, ErrorCode::kNameUndeclared, {});
-  std::vector<std::string_view> candidates;
-  for (const WordInfo& row : ReservedWords()) {
-    if (row.group == WordGroup::kInstruction || row.group == WordGroup::kIgnored)
-      candidates.push_back(row.text);
-  }
-  std::string names;
-  names.reserve(kProposalNamesMax * kNameLength);
-  for (std::size_t i = 0; i < module_.names.size() && i < kProposalNamesMax; ++i) {
-    if (!declared_[i]) continue;
-    char room[kNameLength];
-    const std::size_t begin = names.size();
-    names += UnpackName(module_.names[i].key, room);
-    candidates.push_back(std::string_view(names).substr(begin));
-  }
-  const std::string nearest = NearestWord(lexer_.TextOf(name), candidates);
   std::string detail = Quoted(name) + " is no instruction and no declared name";
   std::vector<Fix> fixes;
-  if (!nearest.empty()) {
-    detail += "; did you mean " + nearest + "?";
-    fixes.push_back({name.offset, static_cast<int>(name.length), nearest});
+  if (const auto blank = MissingBlank(name)) {
+    detail += "; a blank is missing before its digits";
+    fixes.push_back({name.offset + *blank, 0, " "});
+  } else {
+    std::vector<std::string_view> candidates;
+    for (const WordInfo& row : ReservedWords()) {
+      if (row.group == WordGroup::kInstruction || row.group == WordGroup::kIgnored)
+        candidates.push_back(row.text);
+    }
+    const NameCandidates names(module_, declared_names_);
+    names.AppendTo(candidates);
+    const NearWords near = NearestWords(lexer_.TextOf(name), candidates);
+    detail += QuestionFor(near);
+    // Not for a word without effect, nor for a name, behind which no '=' stands.
+    const bool sure = (near.IsSingle(Slip::kOneLetter) || near.IsSingle(Slip::kSwap)) &&
+                      OpOf(FindWord(PackName(near.words.front()))) != Op::kInvalid;
+    if (sure && IsRightWith(name, near.words.front()))
+      fixes.push_back({name.offset, static_cast<int>(name.length), near.words.front()});
   }
   findings_.Add(ErrorCode::kNameUndeclared, PlaceOf(name), std::move(detail), "OPT-7.91",
                 std::move(fixes));
@@ -255,11 +301,13 @@ std::uint16_t Parser::InternName(const Token& token) {
     }
     module_.names.push_back({.key = token.key, .declared = false, .value = {}});
     declared_.push_back(false);
-    program_.broken_names.push_back(false);
+    program_.broken_names.push_back(IsRefused(token));
     long_form_reported_.push_back(false);
   }
   const std::uint16_t name = entry->second;
-  if (token.length > kNameLength && !long_form_reported_[name]) {
+  // Of a name that nobody declared there is more to say than that it is long.
+  const bool known = declared_[name] || instruction_.op == Op::kDeclare;
+  if (token.length > kNameLength && known && !long_form_reported_[name]) {
     long_form_reported_[name] = true;
     char room[kNameLength];
     std::string eight(UnpackName(token.key, room));

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -104,6 +106,12 @@ class Parser {
   void Report(const Token& token, ErrorCode code, std::string detail, std::string_view rule = {});
   void ReportStatement(ErrorCode code, std::string detail, std::string_view rule = {});
   bool FailUnknown(const Token& name);
+  bool IsRightWith(const Token& word, std::string_view text) const;
+  std::optional<std::uint32_t> MissingBlank(const Token& name) const;
+  bool IsRefused(const Token& word) const {
+    return refused_.any() && refused_.test(static_cast<std::size_t>(FindWord(word.key)));
+  }
+  bool IsNameOfRefused(const Token& word, const Token& next) const;
   Place PlaceOf(const Token& token) const;
   std::string Quoted(const Token& token) const;
   std::uint16_t InternName(const Token& token);
@@ -118,8 +126,10 @@ class Parser {
   Token first_;              // of the statement, behind its label
   Instruction instruction_;  // under construction
   std::unordered_map<NameKey, std::uint16_t> names_;
-  std::vector<bool> declared_;  // by name, as far as the text was read
+  std::vector<bool> declared_;                 // by name, as far as the text was read
+  std::vector<std::uint16_t> declared_names_;  // in order
   std::vector<bool> long_form_reported_;
+  std::bitset<256> refused_;  // by Word: a DECLARE of it was an error, its uses are no further ones
   std::array<std::uint32_t, 10000> label_line_{};  // where it stands; 0: nowhere yet
   std::vector<NodePlace> pending_label_places_;    // of the instruction to come
   std::vector<std::uint16_t> pending_labels_;
@@ -133,6 +143,7 @@ class Parser {
   int nesting_ = 0;
   bool slash_separates_ = false;  // inside the list of TCP, OPT-B.85
   bool too_many_names_ = false;
+  bool broken_if_ = false;  // the statement before is an IF that was given up
 };
 
 }  // namespace rmlcell::optimo

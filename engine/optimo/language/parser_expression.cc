@@ -262,7 +262,9 @@ bool Parser::ParsePrimary(bool negative, const Token& sign) {
     --nesting_;
   } else if (next.kind == TokenKind::kWord) {
     const Token word = next;
-    const WordGroup group = word.word == Word::kNone ? WordGroup::kNone : Describe(word.word).group;
+    const WordGroup group = word.word == Word::kNone || IsNameOfRefused(word, Peek(1))
+                                ? WordGroup::kNone
+                                : Describe(word.word).group;
     if (group == WordGroup::kVariable) {
       if (!ParseVariable()) return false;
     } else if (group == WordGroup::kNone) {
@@ -358,10 +360,15 @@ bool Parser::ParseVariable() {
   return true;
 }
 
+// A DECLARE of this reserved word was refused, and here it stands where only a name can.
+bool Parser::IsNameOfRefused(const Token& word, const Token& next) const {
+  return IsRefused(word) && next.kind != TokenKind::kOpenIndex && next.kind != TokenKind::kOpen;
+}
+
 bool Parser::ParseTarget(std::string_view expected) {
   const Token& next = Peek();
   if (next.kind != TokenKind::kWord) return Fail(expected);
-  if (next.word == Word::kNone) {
+  if (next.word == Word::kNone || IsNameOfRefused(next, Peek(1))) {
     const Token name = Take();
     Emit(Node::kName, name.offset, name.length).name = InternName(name);
   } else if (Describe(next.word).group == WordGroup::kVariable) {

@@ -274,7 +274,8 @@ bool Parser::ParseTimer() {
 bool Parser::ParseDeclare() {
   if (!Is(TokenKind::kWord)) return Fail("a name");
   const Token name = Take();
-  if (FindWord(name.key) != Word::kNone) {
+  if (const Word reserved = FindWord(name.key); reserved != Word::kNone) {
+    refused_.set(static_cast<std::size_t>(reserved));
     return FailAt(name, ErrorCode::kNameReserved,
                   Quoted(name) + " is reserved" +
                       (name.word == Word::kNone ? ": eight characters count" : ""),
@@ -309,6 +310,7 @@ bool Parser::ParseDeclare() {
                   std::string(UnpackName(name.key, room)) + " is declared already", "OPT-7.49");
   }
   declared_[instruction_.name] = true;
+  declared_names_.push_back(instruction_.name);
   return true;
 }
 

@@ -45,6 +45,8 @@ struct ParsedProgram {
   std::vector<NodePlace> end_label_places;  // parallel to Module::end_labels
   std::vector<Comment> comments;
   std::vector<bool> broken_names;  // parallel to Module::names: its DECLARE has an error
+  // Instructions with an error that are no Op::kInvalid, in any order, some of them twice.
+  std::vector<std::uint32_t> faulty;
 
   Place At(const Instruction& instruction) const;  // the whole statement
   std::string_view TextOf(const Instruction& instruction) const;

@@ -1,34 +1,60 @@
 #include "engine/optimo/language/silence.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
-#include <set>
+#include <map>
 #include <string>
 #include <utility>
+
+#include "engine/optimo/language/nearest_word.h"
 
 namespace rmlcell::optimo {
 namespace {
 
 constexpr std::string_view kMark = "rmlcell:";
+constexpr std::string_view kAllow = "allow";
 constexpr std::string_view kWholeFile = "in file";
+constexpr std::size_t kNoStatement = std::string_view::npos;
 
-// The numbers of one directive; empty when the comment is none.
+std::string LowerCase(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return lower;
+}
+
+// What a comment asks for; no numbers and no complaint when it is an ordinary one.
 struct Directive {
   std::vector<int> numbers;
   bool whole_file = false;
+  std::string complaint;   // why it cannot be followed
+  std::vector<Fix> fixes;  // of the complaint; from the beginning of the comment
 };
 
 Directive ReadDirective(std::string_view comment) {
   Directive directive;
   std::size_t at = comment.find_first_not_of(" \t;");
-  if (at == std::string_view::npos || comment.substr(at, kMark.size()) != kMark) return directive;
-  at = comment.find_first_not_of(" \t", at + kMark.size());
-  constexpr std::string_view kAllow = "allow";
-  if (at == std::string_view::npos || comment.substr(at, kAllow.size()) != kAllow) return directive;
-  const std::string_view rest = comment.substr(at + kAllow.size());
-  directive.whole_file = rest.find(kWholeFile) != std::string_view::npos;
+  if (at == std::string_view::npos || LowerCase(comment.substr(at, kMark.size())) != kMark)
+    return directive;
+  const std::string text = LowerCase(comment);
+  at = std::min(text.find_first_not_of(" \t", at + kMark.size()), text.size());
+  std::size_t end = at;
+  while (end < text.size() && std::isalpha(static_cast<unsigned char>(text[end])) != 0) ++end;
+  if (const std::string word = text.substr(at, end - at); word != kAllow) {
+    directive.complaint = word.empty() ? "no word stands behind rmlcell:"
+                                       : "'" + word.substr(0, 20) + "' is no word for rmlcell:";
+    directive.complaint += "; write rmlcell: allow and the numbers of findings";
+    const NearWords near = NearestWords(word, std::array{kAllow});
+    if (near.IsSingle(Slip::kOneLetter) || near.IsSingle(Slip::kSwap)) {
+      directive.fixes = {
+          {static_cast<std::int64_t>(at), static_cast<int>(word.size()), std::string(kAllow)}};
+    }
+    return directive;
+  }
+  const std::string rest = text.substr(end);
+  directive.whole_file = rest.find(kWholeFile) != std::string::npos;
   int number = 0;
-  for (const char c : rest) {  // up to the first word
+  for (const char c : rest + ' ') {  // up to the first word
     if (std::isdigit(static_cast<unsigned char>(c)) != 0) {
       number = std::min(number * 10 + (c - '0'), 100'000);
       continue;
@@ -37,46 +63,147 @@ Directive ReadDirective(std::string_view comment) {
     number = 0;
     if (c != ' ' && c != '\t' && c != ',') break;
   }
-  if (number > 0) directive.numbers.push_back(number);
+  if (directive.numbers.empty()) directive.complaint = "allow needs the numbers of findings";
   return directive;
+}
+
+// One number of one directive.
+struct Allowance {
+  int number = 0;
+  std::size_t statement = kNoStatement;  // of which it is allowed; kNoStatement: of the whole text
+  std::size_t comment = 0;
+  bool used = false;
+};
+
+class Silencer {
+ public:
+  explicit Silencer(const ParsedProgram& program) : program_(program) {}
+
+  void ReadComments();
+  void Drop(std::vector<Diagnostic>& diagnostics);
+  void Tell(const SilenceOptions& options, std::vector<Diagnostic>& diagnostics);
+
+ private:
+  std::size_t StatementOf(const Comment& comment) const;
+  std::size_t StatementAt(std::int64_t offset) const;
+  struct Complaint {
+    std::size_t comment = 0;
+    std::string detail;
+    std::vector<Fix> fixes{};
+  };
+  void Add(const Complaint& complaint, std::string_view file,
+           std::vector<Diagnostic>& diagnostics) const;
+
+  const ParsedProgram& program_;
+  std::vector<Allowance> allowances_;
+  std::multimap<std::pair<int, std::size_t>, std::size_t> by_place_;  // number, statement
+  std::vector<Complaint> complaints_;
+};
+
+// The last statement that begins at or before this byte.
+std::size_t Silencer::StatementAt(std::int64_t offset) const {
+  const auto behind = std::ranges::upper_bound(
+      program_.statements, offset, {}, [](const Statement& s) -> std::int64_t { return s.begin; });
+  if (offset < 0 || behind == program_.statements.begin()) return kNoStatement;
+  return static_cast<std::size_t>(behind - program_.statements.begin()) - 1;
+}
+
+// The statement that the comment stands in or behind, on any of its lines; on a line of its own,
+// or behind a lone sequence number, the next one.
+std::size_t Silencer::StatementOf(const Comment& comment) const {
+  const std::size_t before = StatementAt(comment.begin);
+  if (before != kNoStatement) {
+    const std::uint32_t end = program_.statements[before].end;
+    if (comment.begin < end) return before;
+    const std::string_view between = program_.text.substr(end, comment.begin - end);
+    if (between.find('\n') == std::string_view::npos) return before;
+  }
+  const std::size_t next = before == kNoStatement ? 0 : before + 1;
+  return next < program_.statements.size() ? next : kNoStatement;
+}
+
+void Silencer::ReadComments() {
+  for (std::size_t c = 0; c < program_.comments.size(); ++c) {
+    const Comment& comment = program_.comments[c];
+    const std::string_view text = program_.text.substr(comment.begin, comment.end - comment.begin);
+    if (text.find(':') == std::string_view::npos) continue;
+    Directive directive = ReadDirective(text);
+    if (!directive.complaint.empty())
+      complaints_.push_back({c, std::move(directive.complaint), std::move(directive.fixes)});
+    for (const int number : directive.numbers) {
+      const auto code = FindError(ErrorFamily::kOptimo, number);
+      if (!code || IsError(Lookup(*code).severity)) {
+        complaints_.push_back(
+            {c, std::to_string(number) + (code ? " is an error, which no comment allows"
+                                               : " is the number of no finding")});
+        continue;
+      }
+      const std::size_t statement = directive.whole_file ? kNoStatement : StatementOf(comment);
+      if (!directive.whole_file && statement == kNoStatement) continue;  // nothing follows
+      by_place_.emplace(std::pair(number, statement), allowances_.size());
+      allowances_.push_back({number, statement, c});
+    }
+  }
+}
+
+void Silencer::Drop(std::vector<Diagnostic>& diagnostics) {
+  if (allowances_.empty()) return;
+  std::erase_if(diagnostics, [&](const Diagnostic& d) {
+    if (IsError(d.severity)) return false;
+    const int number = Lookup(d.code).number;
+    bool allowed = false;
+    for (const std::size_t place : {StatementAt(d.where.byte_offset), kNoStatement}) {
+      const auto [first, last] = by_place_.equal_range({number, place});
+      for (auto at = first; at != last; ++at) allowed = allowances_[at->second].used = true;
+      if (allowed) break;
+    }
+    return allowed;
+  });
+}
+
+void Silencer::Add(const Complaint& complaint, std::string_view file,
+                   std::vector<Diagnostic>& diagnostics) const {
+  const Comment& at = program_.comments[complaint.comment];
+  Diagnostic& told = diagnostics.emplace_back();
+  told.code = ErrorCode::kPracticeAdvice;
+  told.severity = Severity::kAdvice;
+  told.detail = complaint.detail;
+  told.file = file;
+  told.fixes = complaint.fixes;
+  for (Fix& fix : told.fixes) fix.byte_offset += at.begin;
+  told.where.byte_offset = at.begin;
+  told.where.length = static_cast<int>(at.end - at.begin);
+  const std::string_view before = program_.text.substr(0, at.begin);
+  told.where.line = static_cast<int>(std::ranges::count(before, '\n')) + 1;
+  const std::size_t line_end = before.rfind('\n');
+  told.where.column =
+      static_cast<int>(line_end == std::string_view::npos ? at.begin : at.begin - line_end - 1) + 1;
+}
+
+void Silencer::Tell(const SilenceOptions& options, std::vector<Diagnostic>& diagnostics) {
+  for (const Allowance& allowance : allowances_) {
+    const bool of_contours = allowance.number >= 7317 && allowance.number <= 7319;
+    if (!options.tell_idle || allowance.used || (of_contours && !options.with_contours)) continue;
+    complaints_.push_back({allowance.comment,
+                           "allow " + std::to_string(allowance.number) + " silences nothing here"});
+  }
+  if (complaints_.empty()) return;
+  std::ranges::stable_sort(complaints_, {}, &Complaint::comment);
+  constexpr std::size_t kComplaintsMax = 100;  // each looks for its line
+  if (complaints_.size() > kComplaintsMax) complaints_.resize(kComplaintsMax);
+  for (const Complaint& complaint : complaints_) Add(complaint, options.file, diagnostics);
+  std::ranges::stable_sort(diagnostics, {},
+                           [](const Diagnostic& d) { return d.where.byte_offset; });
 }
 
 }  // namespace
 
-void Silence(const ParsedProgram& program, std::vector<Diagnostic>& diagnostics) {
-  std::set<int> everywhere;
-  std::set<std::pair<int, int>> allowed;  // line, number
-  int line = 1;
-  std::size_t line_begin = 0;
-  std::size_t statement = 0;
-  const auto line_of = [&](std::size_t offset) {
-    for (std::size_t end; (end = program.text.find('\n', line_begin)) < offset;
-         line_begin = end + 1)
-      ++line;
-    return line;
-  };
-  for (const Comment& comment : program.comments) {
-    const std::string_view text = program.text.substr(comment.begin, comment.end - comment.begin);
-    if (text.find(kMark) == std::string_view::npos) continue;
-    const Directive directive = ReadDirective(text);
-    if (directive.whole_file) everywhere.insert(directive.numbers.begin(), directive.numbers.end());
-    int target = line_of(comment.begin);
-    const std::string_view before = program.text.substr(line_begin, comment.begin - line_begin);
-    if (before.find_first_not_of(" \t") == std::string_view::npos) {
-      while (statement < program.statements.size() &&
-             program.statements[statement].begin < comment.begin)
-        ++statement;
-      if (statement == program.statements.size()) continue;
-      target = line_of(program.statements[statement].begin);
-    }
-    for (const int number : directive.numbers) allowed.insert({target, number});
-  }
-  if (everywhere.empty() && allowed.empty()) return;
-  std::erase_if(diagnostics, [&](const Diagnostic& d) {
-    const int number = Lookup(d.code).number;
-    return !IsError(d.severity) &&
-           (everywhere.contains(number) || allowed.contains({d.where.line, number}));
-  });
+void Silence(const ParsedProgram& program, const SilenceOptions& options,
+             std::vector<Diagnostic>& diagnostics) {
+  Silencer silencer(program);
+  silencer.ReadComments();
+  silencer.Drop(diagnostics);
+  silencer.Tell(options, diagnostics);
 }
 
 }  // namespace rmlcell::optimo

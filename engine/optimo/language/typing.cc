@@ -8,8 +8,6 @@
 namespace rmlcell::optimo {
 namespace {
 
-constexpr std::size_t kProposalNamesMax = 500;
-
 std::string NameText(const Module& module, std::uint16_t name) {
   char room[kNameLength];
   return std::string(UnpackName(module.names[name].key, room));
@@ -46,25 +44,18 @@ void Typing::Report(ErrorCode code, std::size_t node, std::string detail, std::s
 void Typing::ReportUndeclared(std::uint16_t name, std::size_t node) {
   if (places_ != nullptr && places_->broken_names[name]) return;
   if (findings_.full()) return Report(ErrorCode::kNameUndeclared, node, {}, {});
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < module_.names.size() && i < kProposalNamesMax; ++i) {
-    if (module_.names[i].declared)
-      names.push_back(NameText(module_, static_cast<std::uint16_t>(i)));
-  }
-  const std::vector<std::string_view> candidates(names.begin(), names.end());
+  std::vector<std::string_view> candidates;
+  const NameCandidates names(module_, declared_names_);
+  names.AppendTo(candidates);
   const std::string text = NameText(module_, name);
-  const std::string nearest = NearestWord(text, candidates);
-  std::string detail = text + " is not declared";
+  const NearWords near = NearestWords(text, candidates);
   std::vector<Fix> fixes;
-  if (!nearest.empty()) {
-    detail += "; did you mean " + nearest + "?";
-    if (places_ != nullptr) {
-      const NodePlace place = NodePlaceOf(node);
-      fixes.push_back({place.offset, static_cast<int>(place.length), nearest});
-    }
+  if (places_ != nullptr && IsSurelyName(text, near)) {
+    const NodePlace place = NodePlaceOf(node);
+    fixes.push_back({place.offset, static_cast<int>(place.length), near.words.front()});
   }
-  findings_.Add(ErrorCode::kNameUndeclared, PlaceOfNode(node), std::move(detail), "OPT-7.50",
-                std::move(fixes));
+  findings_.Add(ErrorCode::kNameUndeclared, PlaceOfNode(node),
+                text + " is not declared" + QuestionFor(near), "OPT-7.50", std::move(fixes));
 }
 
 void Typing::UseVariable(const ExprNode& node) {
@@ -264,6 +255,7 @@ void Typing::Declare(const Instruction& instruction) {
   ExprNode& node = module_.nodes[at];
   node.type = TypeOfLeaf(node);
   name.declared = true;
+  declared_names_.push_back(instruction.name);
   name.value = node;
   name.value.index_name = kNoName;
 }

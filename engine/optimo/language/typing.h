@@ -67,6 +67,7 @@ class Typing {
   Module& module_;
   const ParsedProgram* places_;
   Findings& findings_;
+  std::vector<std::uint16_t> declared_names_;  // in order
   const Instruction* instruction_ = nullptr;
   bool reads_machine_ = false;
   std::array<bool, kParameterCount> parameter_used_{};

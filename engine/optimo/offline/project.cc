@@ -331,8 +331,10 @@ void Planner::AdviseSysdef() {
         drafts_, [&](const Draft& other) { return other.functions.contains(draft.from->slot); });
     if (function) continue;  // it moves in the system of its callers
     Report(ErrorCode::kPracticeAdvice,
-           "ABSOL moves without SYSDEF, while other programs of the project use it", "OPT-7.39",
-           nullptr);
+           draft.uses_sysdef
+               ? "ABSOL moves before the first SYSDEF of the program"
+               : "ABSOL moves without SYSDEF, while other programs of the project use it",
+           "OPT-7.39", nullptr);
     Diagnostic& found = plan_.diagnostics.back();
     found.program = draft.from->slot;
     found.file = draft.from->file.name;

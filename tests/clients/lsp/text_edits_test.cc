@@ -122,6 +122,18 @@ TEST(CodeActions, ADirectiveThatIsThereGetsAnotherNumberAndAnotherCommentStays) 
   EXPECT_EQ(Titled(ActionsOf(editor, {{1, 0}, {1, 0}}), "Allow"), nullptr);
 }
 
+// What is said about a directive is repaired, and nothing silences it.
+TEST(CodeActions, AMistypedDirectiveIsRepaired) {
+  Editor editor;
+  const std::string text = "SPEED 5 ; rmlcell: alow 7033\n";
+  editor.Open(text);
+  const Json actions = ActionsOf(editor, {{0, 10}, {0, 10}});
+  const Json* fix = Titled(actions, "Replace 'alow' by 'allow'");
+  ASSERT_NE(fix, nullptr) << actions.dump();
+  EXPECT_EQ(Applied(text, (*fix)["edit"]["changes"][kUri]), "SPEED 5 ; rmlcell: allow 7033\n");
+  EXPECT_EQ(Titled(actions, "Allow"), nullptr);
+}
+
 TEST(CodeActions, AnEditorThatKnowsCommandsOnlyGetsNone) {
   Editor editor(Json::object());
   editor.Open("SPED 5\n");

@@ -8,6 +8,13 @@ VI[75] = 1               ; expect 7413
 VI[69] = 1
 VL[80] = ON              ; expect 7413
 VL[79] = ON
+ASSIGN VL[78] = 0 /8     ; expect 7413
+ASSIGN VL[72] = 0 /8
+
+;=== what cannot be written at all is told once (advice)
+; OPT-7.66 OPT-7.105 OPT-E.7016
+VI[99] = 0               ; expect 7016
+ASSIGN OL[8] = VI[99] /1
 
 ;=== outputs of the system (advice)
 ; OPT-7.106 OPT-E.7412
@@ -27,6 +34,7 @@ TCP (0,0,0/0,0,5)                    ; expect 7315
 
 ;=== the rotary table turns in degrees (advice)
 ; OPT-8.78
+VR[3] = 1.
 FUNCTION 99 (VR[3])      ; expect 7033
 FUNCTION 99 (VR[26])
 

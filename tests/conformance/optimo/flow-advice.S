@@ -25,6 +25,16 @@ CALL 2                   ; expect 7407
 WORK 0,1/ON              ; expect 7401
 SPEED 10                 ; expect 7408
 
+;=== a WORK with /END switches itself off (advice)
+; OPT-3.34 OPT-3.38 OPT-E.7407 OPT-E.7408
+; rmlcell: allow 7033 in file
+WORK 0,0/ON
+WORK 0,0/ON/END (IL[20])
+WAIT NOT IL[87]
+CALL 2
+WORK 0,0/ON/END (IL[20])
+WAIT NOT IL[87]
+
 ;=== WORK 2 OFF with the beam on (advice)
 ; OPT-3.24 OPT-E.7411
 ; rmlcell: allow 7033 in file
@@ -33,6 +43,95 @@ WORK 2,5/ON
 WORK 0,0/ON
 WORK 2,5/OFF             ; expect 7411
 WORK 0,0/OFF
+
+;=== what a subroutine does not touch is as before (advice)
+; OPT-3.09 OPT-3.10 OPT-7.20
+; rmlcell: allow 7033 in file
+GOSUB 10
+WORK 1,3/ON              ; expect 7401
+WORK 1,3/OFF
+ENDTASK
+10 WORK 0,0/OFF
+RETURN
+
+;=== a process that a subroutine switched on is ON at a CALL (advice)
+; OPT-3.33 OPT-3.36 OPT-E.7407
+OL[11]=ON
+GOSUB 10
+CALL 2                   ; expect 7407
+ENDTASK
+10 WORK 0,0/ON
+DELAY 1
+RETURN
+
+;=== and at the end (advice)
+; OPT-3.34 OPT-3.36 OPT-E.7408
+OL[11]=ON
+GOSUB 10
+ENDTASK                  ; expect 7408
+10 WORK 0,0/ON
+DELAY 1
+RETURN
+
+;=== on one path of a subroutine, two GOSUBs deep (advice)
+; OPT-3.09 OPT-3.34 OPT-7.21
+OL[11]=ON
+GOSUB 10
+WORK 1,3/ON              ; expect 7401
+WORK 1,3/OFF
+WORK 1,4/ON
+WORK 1,4/OFF
+ENDTASK                  ; expect 7408
+10 GOSUB 20
+WORKDEF 1,4 (8., 75., 1., 50.)
+RETURN
+20 IF IL[20] THEN 21
+WORKDEF 1,3 (8., 75., 1., 50.)
+WORK 0,0/ON
+21 RETURN
+
+;=== COORD and PATH are as before behind a subroutine (advice)
+; OPT-2.08 OPT-7.20 OPT-E.7302
+COORD ROBOT
+PATH LIN
+GOSUB 10
+MOVE (1000.,900.,-500.,0.,0.)        ; expect 7302
+ENDTASK
+10 SPEED 5
+RETURN
+
+;=== an assignment to a variable leaves the gases (advice)
+; OPT-5.40 OPT-7.20 OPT-E.7409
+OL[8]=ON
+GOSUB 10
+OL[9]=ON                 ; expect 7409
+ENDTASK
+10 VR[1]=5
+RETURN
+
+;=== what the GOSUB of a TIMER touches is not known, the rest is (advice)
+; OPT-5.40 OPT-B.59
+OL[11]=ON
+OL[8]=ON
+TIMER (5.,10)
+OL[9]=ON
+WORK 0,0/ON
+DELAY 1
+CALL 2                   ; expect 7407
+ENDTASK
+10 OL[8]=OFF
+RETURN
+
+;=== the GOSUB of a /TIME may be made or not (advice)
+; OPT-2.54 OPT-5.40
+COORD ABSOL
+PATH LIN
+SPEED 10
+MOVE (10.,2.,3.,0.,0.)/TIME (5.,10)
+OL[9]=ON                 ; expect 7409
+ENDTASK
+10 OL[8]=ON
+RETURN
 
 ;=== a subroutine may switch the process (advice)
 ; OPT-3.36
@@ -75,7 +174,7 @@ IF VI[2] < 5 THEN 10
 MOVE (30.,2.,3.,0.,0.)
 
 ;=== /FLY before WORK with and without a dwell (advice)
-; OPT-2.50 OPT-3.21
+; OPT-2.50 OPT-3.20 OPT-3.21
 COORD ABSOL
 PATH LIN
 SPEED 10
@@ -88,7 +187,7 @@ MOVE (20.,2.,3.,0.,0.)
 WORK 1,0/OFF
 MOVE (30.,2.,3.,0.,0.)/FLY
 WORK 1,1/ON
-MOVE (40.,2.,3.,0.,0.)
+MOVE (40.,2.,3.,0.,0.)               ; expect 7033
 WORK 1,1/OFF
 
 ;=== /FLY around a hole (advice)
@@ -165,6 +264,59 @@ SPEED 30
 MOVE (30.,2.,3.,0.,0.)               ; expect 7033
 MOVE (40.,2.,3.,0.,0.)
 
+;=== WORK 1 with a delay of 0 does not dwell, a DELAY of 0 neither (advice)
+; OPT-3.20 OPT-3.21 OPT-3.45
+COORD ABSOL
+PATH LIN
+OL[11] = ON
+SPEED 10
+WORKDEF 1,0 (8., 75., 0., 50.)
+WORKDEF 1,1 (8., 75., 1., 50.)
+WORK 1,0/ON
+MOVE (10.,2.,3.,0.,0.)               ; expect 7033
+WORK 1,0/OFF
+MOVE (20.,2.,3.,0.,0.)
+WORK 1,1/ON
+MOVE (30.,2.,3.,0.,0.)
+WORK 1,1/OFF
+WORK 0,0/ON
+DELAY 0
+MOVE (40.,2.,3.,0.,0.)               ; expect 7033
+WORK 0,0/OFF
+WORK 0,0/ON
+MOVE (50.,2.,3.,0.,0.)/START (IL[20])
+WORK 0,0/OFF
+
+;=== the sensor is switched off while the beam cuts (advice)
+; OPT-5.47
+COORD ABSOL
+PATH LIN
+SPEED 10
+OL[11] = ON
+WORK 0,0/ON
+DELAY 1
+OL[11] = OFF
+MOVE (10.,2.,3.,0.,0.)               ; expect 7033
+MOVE (20.,2.,3.,0.,0.)
+WORK 0,0/OFF
+OL[11] = ON
+WORK 0,0/ON
+DELAY 1
+MOVE (30.,2.,3.,0.,0.)
+OL[11] = OFF
+WORK 0,0/OFF
+
+;=== a contour without a PATH is in the machine's default, told once (advice)
+; OPT-2.10 OPT-5.45
+COORD ABSOL
+SPEED 10
+OL[11] = ON
+WORK 0,0/ON
+DELAY 1
+MOVE (10.,2.,3.,0.,0.)               ; expect 7033
+MOVE (20.,2.,3.,0.,0.)
+WORK 0,0/OFF
+
 ;=== a wrong normal point (advice)
 ; OPT-5.48
 COORD ABSOL
@@ -189,6 +341,27 @@ MOVE (40.,2.,3.,0.,0.)
 COORD ROBOT
 MOVE (50.,2.,3.,0.,0.)
 
+;=== contours in COORD ROBOT, and arcs without /VIA, on one path (advice)
+; OPT-2.08 OPT-2.21 OPT-E.7302 OPT-E.7308
+IF IL[20] THEN 5
+COORD ROBOT
+PATH LIN
+5 MOVE (10.,2.,3.,0.,0.)             ; expect 7302
+COORD ABSOL
+IF IL[20] THEN 6
+PATH CIR
+6 MOVE (20.,2.,3.,0.,0.)             ; expect 7308
+
+;=== COORD ROBOT on one path and PATH LIN on the other are no contour (advice)
+; OPT-2.08
+IF IL[20] THEN 5
+COORD ROBOT
+PATH PTP
+GOTO 6
+5 COORD ABSOL
+PATH LIN
+6 MOVE (10.,2.,3.,0.,0.)
+
 ;=== one assist gas at a time (advice)
 ; OPT-5.40 OPT-E.7409
 OL[8] = ON
@@ -196,6 +369,16 @@ OL[9] = ON                           ; expect 7409
 OL[8] = OFF
 OL[9] = OFF
 OL[8] = ON
+
+;=== the other assist gas on one path, and both by one ASSIGN (advice)
+; OPT-5.40 OPT-7.102 OPT-E.7409
+IF IL[20] THEN 5
+OL[8] = ON
+5 OL[9] = ON             ; expect 7409
+ASSIGN OL[8] = 2 /2
+ASSIGN OL[8] = 3 /2      ; expect 7409
+ASSIGN OL[8] = 1 /2
+ASSIGN OL[9] = 1 /1      ; expect 7409
 
 ;=== code that is never reached (advice)
 ; OPT-3.47
@@ -220,14 +403,74 @@ ENDTASK
 100 SPEED 5
 RETURN
 
+;=== a RETURN that no GOSUB leads to (advice)
+; OPT-7.22 OPT-E.7504
+SPEED 5
+RETURN                   ; expect 7504
+
+;=== a FUNCTION ends with its RETURN (advice)
+; OPT-7.22 OPT-9.11
+TASK 1
+SPEED 5
+RETURN
+
+;=== variables that nothing in the program sets are told once (advice)
+; OPT-1.16 OPT-1.17 OPT-7.104 OPT-7.105
+VR[0] = VR[1] + 1        ; expect 7033
+VR[0] = VR[1] + VR[2]    ; expect 7033
+SPEED VR[64]
+CALL VI[1] (VL[3])       ; expect 7033
+VR[0] = VR[3] + VI[5]
+
+;=== an ASSIGN, a subroutine and a FUNCTION set variables (advice)
+; OPT-1.17 OPT-7.20 OPT-7.102 OPT-9.16
+ASSIGN VL[3] = 5 /4
+IF VL[6] THEN 10
+10 GOSUB 20
+SPEED VR[1]
+DELAY VR[2]              ; expect 7033
+VR[2] = 1.
+FUNCTION 44
+SPEED VR[3]
+ENDTASK
+20 VR[1] = 5.
+RETURN
+
 ;=== variables that are read before the program sets them (advice)
 ; OPT-1.17
 SPEED VR[64]
 VR[0] = VR[1]                        ; expect 7033
-IF VL[1] THEN 10
+IF IL[20] THEN 10
 VR[1] = 5.
 10 VR[2] = VR[1]                     ; expect 7033
 VR[3] = VR[2]
+
+;=== the end is told where the program comes to it (advice)
+; OPT-3.34 OPT-E.7408 OPT-1.27
+OL[11] = ON
+GOSUB 50
+WORK 0,0/ON
+DELAY 1
+GOTO 99                  ; expect 7408
+50 SPEED 5
+RETURN
+99
+
+;=== errors hide nothing that does not depend on them (advice)
+; OPT-1.33 OPT-3.09 OPT-3.34 OPT-5.40
+OL[8] = ON
+OL[9] = ON               ; expect 7409
+OL[11] = ON
+WORK 1,3/ON              ; expect 7401
+WORK 1,3/OFF
+WORK 0,0/OF              ; expect 7003
+OL[8] = ON
+OL[9] = ON               ; expect 7409
+GOSUB 20
+OL[8] = SPED             ; expect 7011
+OL[9] = ON
+ENDTASK
+20 SPEED 5
 
 ;=== comments silence findings, never errors (advice)
 ; OPT-1.18
@@ -236,13 +479,13 @@ OL[20] = ON              ; rmlcell: allow 7413, expect 7412
 ; rmlcell: allow 7412
 OL[20] = ON
 OL[20] = ON              ; expect 7412
-SPEED 101                ; rmlcell: allow 7004, expect 7004
+SPEED 101                ; rmlcell: allow 7004, expect 7004 7033
 
 ;=== a subroutine that calls itself (advice)
 ; OPT-7.21 OPT-E.7503
 GOSUB 100
 ENDTASK
-100 IF VL[1] THEN 110
+100 IF IL[20] THEN 110
 GOSUB 200
 110 RETURN
 200 GOSUB 100            ; expect 7503

@@ -46,6 +46,15 @@ MOVE (1.,2.,3.,0.,0.) /TIME (60., 999)          ; expect 7008
 ERR 5                                           ; expect 7008
 TIMER (1., 6)                                   ; expect 7008
 
+;=== what was parted from its IF is one error
+; OPT-1.30 OPT-1.33 OPT-7.23
+IF VL[1]                 ; expect 7003
+THEN 5
+ELSE 6
+5 SPEED 5
+6 IF VL[1] THEN 5
+ELSE 6                   ; expect 7003
+
 ;=== jumps take sequence numbers as literals
 ; OPT-B.51 OPT-7.25
 GOSUB VI[2]              ; expect 7003

@@ -40,6 +40,28 @@ DECLARE VR = 5               ; expect 7009
 DECLARE PAR = 5              ; expect 7009
 DECLARE A = VR[46]
 
+;=== the uses of a refused name are no errors of their own
+; OPT-1.33 OPT-7.48
+DECLARE C = VR[1]            ; expect 7009
+DECLARE SPEED = VR[2]        ; expect 7009
+DECLARE FUNCTION1 = VR[3]    ; expect 7009
+C = 5.
+LET C = C + 1.
+SPEED = C
+SPEED 5
+SPEED C
+FUNCTION1 = SPEED + FUNCTION1
+MOVE (C, SPEED, 1., 0., 0.)/FLY
+GO 46/C
+SPEED C C                    ; expect 7003
+
+;=== of a name that nobody declared it matters little how long it is
+; OPT-7.46 OPT-7.50 OPT-1.33
+POSITION1 = 5                ; expect 7011
+DECLARE LENGTH = VR[1]
+DECLARE LENGTHOFX = VR[2]    ; expect 7012
+LENGTHOFX = 5
+
 ;=== a name is declared once and before it is used
 ; OPT-7.49 OPT-7.50 OPT-E.7010 OPT-E.7011
 X = 5.                   ; expect 7011

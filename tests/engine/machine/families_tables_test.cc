@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 
 #include "engine/simulation/families.h"
@@ -94,6 +95,43 @@ TEST(FamilyTables, FiguresHaveNamesUnitsAndMeanings) {
     for (const FigureInfo& figure : family->figures()) {
       EXPECT_TRUE(names.insert(figure.name).second) << figure.name;
       EXPECT_FALSE(figure.text.empty()) << figure.name;
+    }
+  }
+}
+
+// OPT-4.17: HOLD has no effect on an Optimo in REMOTE, where STOP holds instead; a mill has no such
+// mode, and ends its move first.
+TEST(HoldKey, HoldsARunOfEveryFamily) {
+  struct Case {
+    SourceFile source;
+    std::string_view why_in_remote;
+  };
+  const std::map<std::string_view, Case> cases = {
+      {"optimo",
+       {{"part.S", "MOVE (521.02,2201.2,-50.,0.,0.)\nMOVE (621.02,2201.2,-50.,0.,0.)\n"}, "STOP"}},
+      {"rml1", {{"part.rml", "PA;PU4000,0;PU0,0;PU4000,0;PU0,0;"}, "HOLD"}}};
+  struct Listener final : RunObserver {
+    void OnHalt(const Halt& halt) override { why = halt.why; }
+    std::string why;
+  };
+  for (const MachineFamily* family : simulation::Families()) {
+    const FamilyInfo& info = family->info();
+    const Case& one = cases.at(info.id);
+    for (const Mode mode : {Mode::kRemote, Mode::kCycle}) {
+      RunSetup setup{Parameters(family->parameters())};
+      const Translation made = family->Translate(one.source, setup.parameters, {});
+      ASSERT_TRUE(made.ok) << info.id;
+      setup.programs[1] = {.name = "part",
+                           .object = std::make_shared<const std::string>(made.object)};
+      setup.main_program = 1;
+      setup.mode = mode;
+      Listener listener;
+      Result<std::unique_ptr<machine::Run>> run = family->NewRun(std::move(setup), listener);
+      ASSERT_TRUE(bool(run)) << info.id;
+      EXPECT_EQ((*run)->Advance(FromSeconds(0.1)), RunPhase::kRunning) << info.id;
+      (*run)->Apply({.at = (*run)->state().time, .kind = HoldKey(info, mode)});
+      EXPECT_EQ((*run)->Advance(FromSeconds(1000.0)), RunPhase::kHalted) << info.id;
+      EXPECT_EQ(listener.why, mode == Mode::kRemote ? one.why_in_remote : "HOLD") << info.id;
     }
   }
 }

@@ -2,6 +2,7 @@
 // fuzz.
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <vector>
 
 #include "tests/engine/motion/random_chain.h"
@@ -17,6 +18,21 @@ TEST(HostileInput, RandomBytesGiveSoundPlans) {
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(bits() >> 40);
     ASSERT_EQ(PlanBytes(bytes), "") << round;
   }
+}
+
+// A share that is no number is none: the passage is a stop, and every figure a number.
+TEST(HostileInput, AnOvershootThatIsNoNumberMakesNoPassage) {
+  Planner planner(StandardMachine());
+  MoveCommand move{.path = PathPiece::Line({{0, 0, 0}}, {{10, 0, 0}})};
+  move.overshoot_fraction = std::numeric_limits<double>::quiet_NaN();
+  move.fly = true;
+  ASSERT_TRUE(planner.Append(move));
+  move.path = PathPiece::Line({{10, 0, 0}}, {{10, 10, 0}});
+  ASSERT_TRUE(planner.Append(move));
+  planner.Stop();
+  const auto item = planner.Next();
+  ASSERT_TRUE(item);
+  EXPECT_EQ(std::get<PlannedMotion>(*item).speed.end().speed, 0.0);
 }
 
 // A million moves of 1e-9 mm make one way of 1e-3 mm; a million to one place make none.

@@ -92,11 +92,11 @@ TEST(Profile, RefusesMisfits) {
     const Result<Profile> profile = MakeProfile(parameters);
     return profile ? std::string("none") : profile.error().detail;
   };
-  EXPECT_EQ(refusal({{"X_MAX", 0.0}}), "X_MIN is not below X_MAX");
-  EXPECT_EQ(refusal({{"Y_MIN", 150.0}}), "Y_MIN is not below Y_MAX");
+  EXPECT_EQ(refusal({{"X_MAX", 0.0}}), "X_MIN is 0, not below X_MAX, which is 0");
+  EXPECT_EQ(refusal({{"Y_MIN", 150.0}}), "Y_MIN is 150, not below Y_MAX, which is 150");
   EXPECT_EQ(refusal({{"Z_MIN", 0.0}}), "Z_MIN is not below 0, the top");
-  EXPECT_EQ(refusal({{"XY_SPEED_MIN", 61.0}}), "XY_SPEED_MIN is above XY_SPEED_MAX");
-  EXPECT_EQ(refusal({{"SPINDLE_MIN", 15001.0}}), "SPINDLE_MIN is above SPINDLE_MAX");
+  EXPECT_EQ(refusal({{"XY_SPEED_MIN", 61.0}}), "XY_SPEED_MIN is 61, above XY_SPEED_MAX, which is 60");
+  EXPECT_EQ(refusal({{"SPINDLE_MIN", 15001.0}}), "SPINDLE_MIN is 15001, above SPINDLE_MAX, which is 15000");
   EXPECT_EQ(refusal({{"SPINDLE_MIN", 15000.0}}), "none");
 }
 

@@ -125,7 +125,8 @@ class Script {
     return Motion(Planned(LineFrom(from, to)), options);
   }
 
-  Script& Move(const motion::Vec3& tip, double feed_mm_s, std::string path) {
+  Script& Move(const motion::Vec3& tip, double feed_mm_s, std::string path,
+               bool programmed = true) {
     return Instant([=, place = place_](machine::RunObserver& to, SimTime at) {
       to.OnMove({.at = at,
                  .place = place,
@@ -134,7 +135,8 @@ class Script {
                  .program_point = tip,
                  .rotary_a = 0.0,
                  .feed_mm_s = feed_mm_s,
-                 .path = path});
+                 .path = path,
+                 .programmed = programmed});
     });
   }
 

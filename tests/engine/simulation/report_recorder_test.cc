@@ -337,6 +337,17 @@ TEST(ReportRecorder, OutcomeFindingsAndPosition) {
   EXPECT_EQ(report.figures.size(), 1u);
 }
 
+// motion.md 8.2: the box of programmed points holds those of the program, not the machine's own.
+TEST(ReportRecorder, AMoveOfTheMachineIsNotProgrammed) {
+  Script script;
+  script.Step(1, 1).Line({}, {3, 4, 0}).Move({3, 4, 0}, 50.0, "LIN");
+  script.Step(1, 2).Line({3, 4, 0}, {9, 9, 9}).Move({9, 9, 9}, 0.0, "ZERO_Z", false);
+  const RunReport report = ReportOf(script, {});
+  EXPECT_EQ(report.programmed.max, (Vec3{3, 4, 0}));
+  EXPECT_EQ(report.final_position.program_point, (Vec3{3, 4, 0}));
+  EXPECT_EQ(report.final_position.tip.tip, (Vec3{9, 9, 9}));
+}
+
 // A report on the way holds what was told so far and changes nothing of the end.
 TEST(ReportRecorder, ReportOnTheWay) {
   Script script;

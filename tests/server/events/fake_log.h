@@ -89,6 +89,9 @@ class FakeLog final : public storage::Store {
     return No();
   }
   Result<storage::ProgramRecord> GetProgram(std::string_view, int) override { return No(); }
+  Result<storage::ProgramSummary> GetProgramSummary(std::string_view, int) override {
+    return No();
+  }
   Result<std::vector<storage::ProgramRecord>> GetProgramMemory(std::string_view) override {
     return No();
   }

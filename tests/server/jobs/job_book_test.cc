@@ -7,6 +7,8 @@
 
 #include "engine/core/number_text.h"
 #include "engine/simulation/families.h"
+#include "proto/bridge/encoding.h"
+#include "proto/bridge/sha256.h"
 #include "server/config.h"
 #include "server/names.h"
 #include "tests/server/server_bed.h"
@@ -73,6 +75,35 @@ TEST_F(JobBookTest, TheSameRequestIdIsTheSameJob) {
   EXPECT_EQ(Jobs(), 2);
 }
 
+// What decides whether a submission is another job's repetition is SHA-256, of all that it asks for.
+TEST_F(JobBookTest, ARequestIsKnownByItsSha256) {
+  std::set<std::string> hashes;
+  for (const std::string source : {"STOP\n", "STOP \n"}) {
+    v1::SubmitJobRequest request = Simulate(source);
+    request.set_request_id("of " + source);
+    const std::string hash = Must(bed.store().GetJob(Number(Must(Submit(request))))).request_hash;
+    EXPECT_EQ(hash, bridge::Sha256Hex(bridge::StableBytes(request.job())));
+    EXPECT_EQ(hash.size(), 64U);
+    hashes.insert(hash);
+  }
+  EXPECT_EQ(hashes.size(), 2U);
+}
+
+// Earlier versions kept a number of 64 bits: their jobs are read, and never taken for a new request's.
+TEST_F(JobBookTest, AJobOfAnEarlierVersionIsReadAndItsRequestIdIsUsed) {
+  v1::SubmitJobRequest request = Simulate();
+  request.set_request_id("r");
+  storage::NewJob earlier{.request_id = "r",
+                          .request_hash = "14695981039346656037",
+                          .machine = "optimo-1",
+                          .kind = "SIMULATE",
+                          .specification = request.job().SerializeAsString()};
+  const std::int64_t id = Must(bed.store().SubmitAndWait(std::move(earlier))).job.id;
+  EXPECT_EQ(Must(book.Get(JobName(id))).machine(), "machines/optimo-1");
+  EXPECT_EQ(CodeOf(Submit(request)), ErrorCode::kCellRequestIdReused);
+  EXPECT_EQ(Jobs(), 1);
+}
+
 // The entries of a map have no order: a repeated request is the same whatever order they come in.
 TEST_F(JobBookTest, TheSameRequestIsRecognisedWithManyParameters) {
   std::vector<std::pair<std::string, std::string>> parameters;
@@ -124,6 +155,18 @@ TEST_F(JobBookTest, ChecksWhatCanBeCheckedBeforeWorkBegins) {
        [](auto& r) {
          r.mutable_job()->mutable_simulation()->mutable_breakpoint()->set_program(1);
        }},
+      {"mode MANUAL", kInvalid,
+       [](auto& r) { r.mutable_job()->mutable_simulation()->set_mode(v1::OPERATING_MODE_MANUAL); }},
+      {"open variable range", kInvalid,
+       [](auto& r) { r.mutable_job()->mutable_simulation()->add_variables("VR[0..9"); }},
+      {"open variable", kInvalid,
+       [](auto& r) { r.mutable_job()->mutable_simulation()->add_variables("VR[0"); }},
+      {"variable of no group", kInvalid,
+       [](auto& r) { r.mutable_job()->mutable_simulation()->add_variables("ZZ[1]"); }},
+      {"variable 100", kInvalid,
+       [](auto& r) { r.mutable_job()->mutable_simulation()->add_variables("VR[95..100]"); }},
+      {"register of a mill", kInvalid,
+       [](auto& r) { r.mutable_job()->mutable_simulation()->add_variables("RPM"); }},
       {"input without kind", kInvalid,
        [](auto& r) { r.mutable_job()->mutable_simulation()->add_inputs(); }},
       {"no machine", kInvalid, [](auto& r) { r.mutable_job()->clear_machine(); }},
@@ -140,6 +183,13 @@ TEST_F(JobBookTest, ChecksWhatCanBeCheckedBeforeWorkBegins) {
        [](auto& r) { r.mutable_job()->set_inline_slot(100); }},
       {"program of a mill", kInvalid,
        [](auto& r) { r.mutable_job()->mutable_inline_program()->set_file_name("a.rml"); }},
+      {"further program of a mill", kInvalid,
+       [](auto& r) {
+         v1::SlotProgram& program = *r.mutable_job()->mutable_simulation()->add_programs();
+         program.set_slot(4);
+         program.mutable_program()->set_file_name("a.RML");
+         program.mutable_program()->set_content("PU;");
+       }},
       {"empty slot", ErrorCode::kProgramMissing,
        [](auto& r) { r.mutable_job()->set_program("machines/optimo-1/programs/45"); }},
       {"slot 0", ErrorCode::kProgramNumber,
@@ -184,11 +234,64 @@ TEST_F(JobBookTest, ChecksWhatCanBeCheckedBeforeWorkBegins) {
   EXPECT_TRUE(Submit(Simulate(std::string(2047, ';') + "\n")));
 }
 
+// RML1-5A.01, OPT-B.08: the parameters of a job go over those of its machine, and must fit together with them.
+TEST_F(JobBookTest, ParametersOfAJobMustFitThoseOfItsMachine) {
+  Must(bed.store().PutMachine(
+      {.id = "narrow", .family = "rml1", .parameters = {{"X_MIN", "300"}, {"X_MAX", "400"}}}, 0));
+  const auto code = [&](const std::string& machine, const std::string& name, const std::string& value) {
+    v1::SubmitJobRequest request = Simulate();
+    request.mutable_job()->set_machine("machines/" + machine);
+    if (machine != "optimo-1") request.mutable_job()->mutable_inline_program()->set_file_name("a.rml");
+    (*request.mutable_job()->mutable_simulation()->mutable_parameters())[name] = value;
+    return CodeOf(Submit(request));
+  };
+  constexpr auto kRange = ErrorCode::kCellParameterRange;
+  EXPECT_EQ(code("mill-1", "X_MIN", "500"), kRange);  // X_MAX is 200
+  EXPECT_EQ(code("mill-1", "X_MAX", "250"), std::nullopt);
+  EXPECT_EQ(code("narrow", "X_MAX", "250"), kRange);
+  EXPECT_EQ(code("narrow", "X_MIN", "350"), std::nullopt);
+  EXPECT_EQ(code("optimo-1", "TRAVEL_X_MIN", "3601"), kRange);
+  EXPECT_EQ(code("optimo-1", "TRAVEL_X_MIN", "3600"), std::nullopt);
+}
+
+// OPT-7.96 to 7.101 for the laser; of a mill only what its profile has.
+TEST_F(JobBookTest, AJobMayAskForTheVariablesOfItsMachine) {
+  v1::SubmitJobRequest request = Simulate();
+  for (const std::string name : {"VR[0..99]", "vi[99]", "VL[0]", "IL[1]", "OL[2]", "IA[0]", "OA[3]"}) {
+    request.mutable_job()->mutable_simulation()->add_variables(name);
+  }
+  EXPECT_TRUE(Submit(request));
+  request.mutable_job()->set_machine("machines/mill-1");
+  request.mutable_job()->mutable_inline_program()->set_file_name("a.rml");
+  EXPECT_EQ(CodeOf(Submit(request)), ErrorCode::kCellInvalidArgument);
+  request.mutable_job()->mutable_simulation()->clear_variables();
+  request.mutable_job()->mutable_simulation()->add_variables("ESC.M");
+  EXPECT_TRUE(Submit(request));
+  request.mutable_job()->mutable_simulation()->add_variables("ASTEPS");
+  EXPECT_EQ(CodeOf(Submit(request)), ErrorCode::kCellInvalidArgument);
+  (*request.mutable_job()->mutable_simulation()->mutable_parameters())["AXES"] = "XYZA";
+  EXPECT_TRUE(Submit(request));
+}
+
 TEST_F(JobBookTest, AskingOnlyStoresNothing) {
   v1::SubmitJobRequest request = Simulate();
   request.set_validate_only(true);
   EXPECT_EQ(Must(Submit(request)).name(), "");
   EXPECT_EQ(Jobs(), 0);
+}
+
+// AIP-163: asking gives what doing would, of a request id that is known as well.
+TEST_F(JobBookTest, AskingLooksAtTheRequestId) {
+  v1::SubmitJobRequest request = Simulate();
+  request.set_request_id("r");
+  Must(Submit(request));
+  request.set_validate_only(true);
+  EXPECT_EQ(Must(Submit(request)).name(), "");
+  request.mutable_job()->set_title("another");
+  EXPECT_EQ(CodeOf(Submit(request)), ErrorCode::kCellRequestIdReused);
+  request.mutable_job()->set_machine("machines/none");  // the same, whatever else is wrong
+  EXPECT_EQ(CodeOf(Submit(request)), ErrorCode::kCellRequestIdReused);
+  EXPECT_EQ(Jobs(), 1);
 }
 
 TEST_F(JobBookTest, SoManyJobsMayWaitAndNoMore) {

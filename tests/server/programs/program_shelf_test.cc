@@ -198,6 +198,28 @@ TEST_F(ProgramShelfTest, AnExecutableNeedsItsObject) {
   EXPECT_EQ(Get(32).etag(), etag);
 }
 
+TEST_F(ProgramShelfTest, AFormIsOneThatThereIs) {
+  ASSERT_TRUE(Store(45, "STOP\n"));
+  constexpr auto kNone = static_cast<v1::ProgramForm>(99);
+  EXPECT_EQ(CodeOf(shelf.Read(Name(45), kNone)), ErrorCode::kCellInvalidArgument);
+  for (const v1::ProgramForm form : {kNone, v1::PROGRAM_FORM_LISTING}) {
+    EXPECT_EQ(CodeOf(shelf.Store({.name = Name(46), .form = form, .bytes = "STOP\n"})),
+              ErrorCode::kCellInvalidArgument);
+  }
+}
+
+// Codes of an Optimo are of an Optimo: a mill has none for slots.
+TEST_F(ProgramShelfTest, SlotsHaveTheCodesOfTheirMachine) {
+  for (const int number : {0, 100, 107, 199}) {
+    EXPECT_EQ(CodeOf(shelf.Get(Name(number, "mill-1"))), ErrorCode::kCellInvalidArgument) << number;
+  }
+  EXPECT_EQ(CodeOf(shelf.Get(Name(7, "mill-1"))), ErrorCode::kCellNotFound);
+  EXPECT_EQ(CodeOf(shelf.Read(Name(7, "mill-1"), v1::PROGRAM_FORM_SOURCE)), ErrorCode::kCellNotFound);
+  EXPECT_EQ(CodeOf(shelf.Get(Name(100))), ErrorCode::kProgramNumber);
+  EXPECT_EQ(CodeOf(shelf.Get(Name(7))), ErrorCode::kProgramMissing);
+  EXPECT_EQ(CodeOf(shelf.Get(Name(100, "none"))), ErrorCode::kCellUnknownMachine);
+}
+
 // A mill keeps the stream itself, and has no executables.
 TEST_F(ProgramShelfTest, AStreamIsItsOwnObject) {
   const auto stored =
@@ -207,7 +229,9 @@ TEST_F(ProgramShelfTest, AStreamIsItsOwnObject) {
   EXPECT_EQ(Must(shelf.Read(Name(7, "mill-1"), v1::PROGRAM_FORM_SOURCE)).bytes, "IN;PU0,0;");
   EXPECT_EQ(Must(shelf.Read(Name(7, "mill-1"), v1::PROGRAM_FORM_SOURCE)).file_name, "a.rml");
   EXPECT_EQ(CodeOf(shelf.Store({.name = Name(107, "mill-1"), .bytes = "IN;"})),
-            ErrorCode::kProgramNumber);
+            ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(CodeOf(shelf.Store({.name = Name(7, "mill-1"), .form = v1::PROGRAM_FORM_EXECUTABLE, .bytes = "IN;"})),
+            ErrorCode::kCellInvalidArgument);
   ASSERT_TRUE(
       shelf.Store({.name = Name(8, "mill-1"), .form = v1::PROGRAM_FORM_OBJECT, .bytes = "IN;"}));
   EXPECT_EQ(Must(shelf.Read(Name(8, "mill-1"), v1::PROGRAM_FORM_SOURCE)).file_name,

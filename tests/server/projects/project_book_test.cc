@@ -107,6 +107,10 @@ TEST_F(ProjectBookTest, ChecksItsPartsBeforeItIsKept) {
   const std::vector<std::tuple<std::string, ErrorCode, Change>> cases = {
       {"long title", kInvalid, [](auto& p) { p.set_title(std::string(201, 't')); }},
       {"long notes", kInvalid, [](auto& p) { p.set_notes(std::string((64 << 10) + 1, 'n')); }},
+      {"long title of a program", kInvalid,
+       [](auto& p) { Add(p, 1, "STOP\n"), p.mutable_programs(0)->set_title(std::string(201, 't')); }},
+      {"long title of a schedule", kInvalid,
+       [](auto& p) { AddSchedule(p, 1), p.mutable_laser_schedules(0)->set_title(std::string(201, 't')); }},
       {"slot 0", ErrorCode::kProgramNumber, [](auto& p) { Add(p, 0, "STOP\n"); }},
       {"slot 100", ErrorCode::kProgramNumber, [](auto& p) { Add(p, 100, "STOP\n"); }},
       {"slot twice", ErrorCode::kProjectDuplicate,
@@ -194,10 +198,22 @@ TEST_F(ProjectBookTest, AnUpdateChangesWhatItsMaskNames) {
     EXPECT_EQ(CodeOf(book.Update(update)), ErrorCode::kCellEtagMismatch);
   }
   update.mutable_project()->clear_etag();
-  update.clear_update_mask();  // all of it
+  update.clear_update_mask();  // what has a value
+  update.mutable_project()->set_title("third");
+  AddSchedule(*update.mutable_project(), 11);
   const v1::Project third = Must(book.Update(update));
-  EXPECT_EQ(third.notes(), "");
-  EXPECT_EQ(third.programs_size(), 0);
+  EXPECT_EQ(third.title(), "third");
+  EXPECT_EQ(third.laser_schedules_size(), 1);
+  EXPECT_EQ(third.notes(), "old");
+  EXPECT_EQ(third.programs_size(), 1);
+  update.mutable_update_mask()->add_paths("notes");  // named, and empty
+  EXPECT_EQ(Must(book.Update(update)).notes(), "");
+  update.mutable_project()->clear_laser_schedules();
+  *update.mutable_update_mask()->mutable_paths(0) = "*";  // all of it
+  const v1::Project fourth = Must(book.Update(update));
+  EXPECT_EQ(fourth.title(), "third");
+  EXPECT_EQ(fourth.laser_schedules_size(), 0);
+  EXPECT_EQ(fourth.programs_size(), 0);
   update.mutable_update_mask()->add_paths("colour");
   EXPECT_EQ(CodeOf(book.Update(update)), kInvalid);
   update.mutable_project()->set_name("projects/none");
@@ -258,6 +274,32 @@ TEST_F(ProjectBookTest, DeletesAndListsInPages) {
   remove.clear_etag();
   EXPECT_TRUE(book.Delete(remove));
   EXPECT_EQ(book.Delete(remove).error().code, ErrorCode::kCellNotFound);
+}
+
+// The family follows from the file name: a mill would take the text of a laser program for a stream.
+TEST_F(ProjectBookTest, ATransferTakesNoProgramOfAnotherFamily) {
+  v1::Project project;
+  Add(project, 10, "PU;", "10.rml");
+  Add(project, 11, "SPEED 10\nSPEED 200\n");
+  Must(Create("f", project));
+  v1::TransferProjectRequest request;
+  request.set_name("projects/f");
+  request.set_machine("machines/mill-1");
+  const auto refused = book.Transfer(request);
+  EXPECT_EQ(CodeOf(refused), kInvalid);
+  EXPECT_THAT(refused.error.error.detail, testing::HasSubstr("program 11: 11.S is a program for Amada OPTIMO"));
+  EXPECT_EQ(Must(bed.store().ListPrograms("mill-1", 0, 100)).size(), 0U);
+  request.set_machine("machines/optimo-1");
+  EXPECT_THAT(book.Transfer(request).error.error.detail, testing::HasSubstr("program 10: 10.rml is a program for Roland"));
+  EXPECT_EQ(Programs(), 0U);
+
+  v1::Project mill;
+  Add(mill, 10, "PU;", "10.rml");
+  Add(mill, 11, "PU;", "outline");  // no extension of anybody's
+  Must(Create("mill", mill));
+  request.set_name("projects/mill");
+  request.set_machine("machines/mill-1");
+  EXPECT_EQ(Must(book.Transfer(request)).programs_size(), 2);
 }
 
 // Issue "Projects": compiled, and put into slots together with the schedules.

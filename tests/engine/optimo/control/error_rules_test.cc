@@ -168,7 +168,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Row{"delay", 7205, 2, "VR[64]=-1.\nDELAY VR[64]\n"},
                       Row{"workdef", 7205, 1, "WORKDEF 1,0 (VR[0],80.,1.,90.)\n"},
                       Row{"time", 7205, 5,
-                          kAbsolThere + "VR[0]=-1.\nMOVE (1100.,1000.,-400.,0.,0.)/TIME (VR[0],900)\n"},
+                          kAbsolThere +
+                              "VR[0]=-1.\nMOVE (1100.,1000.,-400.,0.,0.)/TIME (VR[0],900)\n"},
                       Row{"assign", 7206, 2, "VI[2]=16\nASSIGN OL[12]=VI[2] /4\n"}),
     NameOf);
 
@@ -184,7 +185,8 @@ INSTANTIATE_TEST_SUITE_P(
         Row{"fly_before_coord", 7303, 6,
             kAbsolThere + "VI[2]=1\nMOVE (1100.,1000.,-400.,0.,0.)/FLY\nCOORD ROBOT\n"},
         Row{"arc", 7305, 5,
-            kAbsolThere + "PATH CIR\nMOVE (1010.,1000.,-400.,0.,0.)/VIA (1020.,1000.,-400.,0.,0.)\n"},
+            kAbsolThere +
+                "PATH CIR\nMOVE (1010.,1000.,-400.,0.,0.)/VIA (1020.,1000.,-400.,0.,0.)\n"},
         Row{"no_speed", 7307, 5, kAbsolThere + "SPEED 0\nMOVE (1100.,1000.,-400.,0.,0.)\n"}),
     NameOf);
 
@@ -259,9 +261,11 @@ TEST_P(OnlyWarns, AtItsPlace) {
 INSTANTIATE_TEST_SUITE_P(
     Motion, OnlyWarns,
     ::testing::Values(
-        Row{"fly_cancelled", 7304, 5, kAbsolThere + "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nDELAY 1\n"},
+        Row{"fly_cancelled", 7304, 5,
+            kAbsolThere + "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nDELAY 1\n"},
         Row{"straight_arc", 7306, 5,
-            kAbsolThere + "PATH CIR\nMOVE (1010.,1000.,-400.,0.,0.)/VIA (1010.,1000.,-400.,0.,0.)\n"},
+            kAbsolThere +
+                "PATH CIR\nMOVE (1010.,1000.,-400.,0.,0.)/VIA (1010.,1000.,-400.,0.,0.)\n"},
         Row{"no_via", 7308, 5, kAbsolThere + "PATH CIR\nMOVE (1010.,1000.,-400.,0.,0.)\n"},
         Row{"hole_without_via", 7308, 5,
             kAbsolThere + "PATH HOLE (5.)\nMOVE (1010.,1000.,-400.,0.,0.)\n"},
@@ -276,7 +280,7 @@ INSTANTIATE_TEST_SUITE_P(
         Row{"off_axis", 7313, 1, "TCP (8.68,0,0.72/0,1.77,0)\n"},
         Row{"beside", 7313, 1, "TCP (0,0,3/0,1,3)\n"},
         Row{"reversed", 7315, 1, "TCP (0,0,0/0,0,5)\n"},
-        Row{"reversal", 7316, 6,
+        Row{"reversal", 7316, 5,
             kAbsolThere +
                 "SPEED 20\nMOVE (1100.,1000.,-400.,0.,0.)/FLY\nMOVE (1000.,1000.,-400.,0.,0.)\n"},
         Row{"limited",
@@ -307,6 +311,69 @@ TEST(ErrorRules, FatalErrorsAreNotCaught) {
   EXPECT_EQ(ran.variables.at("VI[2]"), "0");
   EXPECT_EQ(CodeOf(RunText("ERR 900\n10 GOSUB 10\n900 VI[2]=1\n")), 7503);
   EXPECT_EQ(CodeOf(RunText("ERR 900\nMOVE (9000.,0.,0.,0.,0.)\n900 VI[2]=1\n")), 7301);
+}
+
+// OPT-B.68: the failing instruction was executed, too, and counts, whatever its error.
+TEST(ErrorRules, AFailingStepCounts) {
+  const std::string three = "COORD ABSOL\nPATH LIN\nMOVE (121.02,2201.2,-350.,0.,0.)";
+  for (const std::string& text :
+       {three + "/FLY\nCOORD ROBOT\n", three + "\nWORK 1,3/ON\n", three + "\nVR[0]=1/0\n",
+        three + "\nMOVE (9000.,0.,0.,0.,0.)\n", three + "/FLY\nMOVE (9000.,0.,0.,0.,0.)\n",
+        three + "/FLY\nGOTO 77\n"}) {
+    const Ran ran = RunText(text);
+    EXPECT_EQ(ran.outcome.place.step, 4) << text;
+    EXPECT_EQ(ran.steps, 4U) << text;
+    EXPECT_EQ(ran.steps_begun.size(), 4U) << text;
+  }
+}
+
+// OPT-3.59, OPT-E.60: an ERR whose label is missing is an error of its own, and fatal; it is told
+// behind the one that it should have caught.
+TEST(ErrorRules, AMissingHandlerIsAFindingOfItsOwn) {
+  const Ran ran = RunText("ERR 5\nVI[2]=1\nFUNCTION 44\n", {.programs = {{44, "VR[0]=1/0\n"}}});
+  EXPECT_EQ(CodeOf(ran), 60);
+  ASSERT_EQ(ran.findings.size(), 2U);
+  EXPECT_EQ(ran.findings[0].code, ErrorCode::kDivisionByZero);
+  EXPECT_EQ(ran.findings[0].severity, Severity::kProgram);
+  EXPECT_EQ(ran.findings[1].code, ErrorCode::kLabelNotFound);
+  EXPECT_EQ(ran.findings[1].severity, Severity::kFatal);
+  EXPECT_EQ(ran.findings[1].program, 44);
+  EXPECT_EQ(ran.findings[1].step, 1);
+  EXPECT_EQ(ran.outcome.place.program, 44);
+}
+
+// OPT-E.7403, OPT-3.53, OPT-B.36: a literal schedule out of range is an error of the compiler, a
+// computed one a program error of the WORKDEF, which ERR catches.
+TEST(ErrorRules, AComputedScheduleOutOfRangeIsCaught) {
+  const std::string by_number =
+      "ERR 9\nVR[30]=64.\nWORKDEF 2,0 (VR[30])\nENDTASK\n9 VI[1]=VI[99]\n";
+  EXPECT_EQ(Value(by_number, "VI[1]"), "7403");
+  EXPECT_EQ(CodeOf(RunText(by_number)), 0);
+  EXPECT_EQ(RunText(by_number).Finding(7403).severity, Severity::kProgram);
+  EXPECT_EQ(Value("ERR 9\nVR[30]=0.\nWORKDEF 1,0 (8.,75.,1.,50.,VR[30])\nENDTASK\n9 VI[1]=VI[99]\n",
+                  "VI[1]"),
+            "7403");
+}
+
+// OPT-B.56: a program that cannot be linked is a fatal error of the run, whatever the reason.
+TEST(ErrorRules, ADamagedProgramIsFatal) {
+  machine::RunSetup setup = SetupOf("ERR 9\nCALL 45\nENDTASK\n9 VI[1]=1\n");
+  setup.programs[45] = {.name = "damaged",
+                        .object = std::make_shared<const std::string>("no object")};
+  std::vector<Diagnostic> findings;
+  struct Listener final : machine::RunObserver {
+    explicit Listener(std::vector<Diagnostic>& list) : found(list) {}
+    void OnDiagnostic(SimTime, const Diagnostic& diagnostic) override {
+      found.push_back(diagnostic);
+    }
+    std::vector<Diagnostic>& found;
+  } listener(findings);
+  Result<std::unique_ptr<machine::Run>> run = OptimoFamily().NewRun(std::move(setup), listener);
+  ASSERT_TRUE(bool(run));
+  EXPECT_EQ((*run)->Advance(FromSeconds(1.0)), machine::RunPhase::kFinished);
+  EXPECT_EQ((*run)->outcome().code, ErrorCode::kObjectCorrupt);
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings[0].severity, Severity::kFatal);
 }
 
 // OPT-E.7310, OPT-6.22: a simulated MOVE needs no zero; ZERO makes the machine ready.
@@ -376,9 +443,10 @@ TEST(ErrorRules, EndlessTimesAreLong) {
   EXPECT_EQ(CodeOf(RunText("VR[0]=9E18\nTIMER (VR[0],900) /AUTO\nDELAY 1\n900 VI[2]=1\n",
                            {.budget = hour})),
             0);
-  EXPECT_EQ(CodeOf(RunText(kAbsolThere + "VR[0]=9E18\nMOVE (1100.,1000.,-400.,0.,0.)/TIME (VR[0],900)\n",
-                           {.budget = hour})),
-            0);
+  EXPECT_EQ(
+      CodeOf(RunText(kAbsolThere + "VR[0]=9E18\nMOVE (1100.,1000.,-400.,0.,0.)/TIME (VR[0],900)\n",
+                     {.budget = hour})),
+      0);
 }
 
 }  // namespace

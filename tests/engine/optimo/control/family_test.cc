@@ -33,6 +33,25 @@ TEST(OptimoFamily, AdviceIsForTheMachineAtHand) {
   EXPECT_EQ(SharpCorner("20", Standard()).find("stays 0.480 mm"), std::string::npos);
 }
 
+// OPT-B.06, OPT-B.08: a travel that ends before it begins is none; one of a single place is a clamped axis.
+TEST(OptimoFamily, RefusesTravelsThatEndBeforeTheyBegin) {
+  machine::RunObserver nobody;
+  for (const std::string axis : {"X", "Y", "Z", "A", "B"}) {
+    machine::Parameters parameters = Standard();
+    ASSERT_TRUE(parameters.Set("TRAVEL_" + axis + "_MAX", 1.0));
+    ASSERT_TRUE(parameters.Set("TRAVEL_" + axis + "_MIN", 1.0));
+    EXPECT_TRUE(OptimoFamily().CheckParameters(parameters));
+    ASSERT_TRUE(parameters.Set("TRAVEL_" + axis + "_MIN", 1.5));
+    const Status fit = OptimoFamily().CheckParameters(parameters);
+    ASSERT_FALSE(fit);
+    EXPECT_EQ(fit.error().code, ErrorCode::kCellParameterRange);
+    EXPECT_EQ(fit.error().detail,
+              "TRAVEL_" + axis + "_MIN is 1.5, above TRAVEL_" + axis + "_MAX, which is 1");
+    EXPECT_FALSE(OptimoFamily().NewRun(machine::RunSetup(parameters), nobody));
+  }
+  EXPECT_TRUE(OptimoFamily().CheckParameters(Standard()));
+}
+
 machine::Bytes Object(const std::string& text) {
   return std::make_shared<const std::string>(Compile(text, "", {}).object);
 }

@@ -275,6 +275,7 @@ TEST(LaserRules, RampIsBlockedByModulation) {
 // OPT-3.43: the EFA-51 has no schedules, neither for WORK 2 nor as fifth value of WORKDEF 1.
 TEST(LaserRules, NoSchedulesOnTheEfa51) {
   const RunOptions efa{.profile = "efa-51"};
+  EXPECT_EQ(CodeOf(RunText("WORK 2,0/ON\n", efa)), 7405);  // with or without WORKDEF
   EXPECT_EQ(CodeOf(RunText("WORKDEF 2,0 (11)\nWORK 2,0/ON\n", efa)), 7405);
   EXPECT_EQ(CodeOf(RunText("WORKDEF 1,0 (8.,75.,0.,50.,12)\nWORK 1,0/ON\n", efa)), 7405);
 }

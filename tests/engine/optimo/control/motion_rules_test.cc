@@ -144,14 +144,16 @@ TEST(MotionRules, AMoveTakesOverFromNext) {
   EXPECT_NEAR(ran.end.tip.tip.x, 21.02, kReal_mm);
 }
 
-// OPT-2.59, OPT-7.68: the move that takes over is waited for like any other, and so is a chain behind it.
+// OPT-2.59, OPT-7.68: the move that takes over is waited for like any other, and so is a chain
+// behind it.
 TEST(MotionRules, AMoveThatTookOverIsWaitedFor) {
-  const Ran ran = RunText(kAbsol +
-                              "SPEED 10\nMOVE (521.02,2201.2,-350.,0.,0.)/NEXT\n"
-                              "MOVE (21.02,2101.2,-350.,0.,0.)\nVL[0] = IL[95]\n"
-                              "MOVE (21.02,2001.2,-350.,0.,0.)/NEXT\nMOVE (21.02,2051.2,-350.,0.,0.)/FLY\n"
-                              "MOVE (21.02,2101.2,-350.,0.,0.)\nVL[1] = IL[95]\n",
-                          {.variables = {"VL[0]", "VL[1]"}});
+  const Ran ran =
+      RunText(kAbsol +
+                  "SPEED 10\nMOVE (521.02,2201.2,-350.,0.,0.)/NEXT\n"
+                  "MOVE (21.02,2101.2,-350.,0.,0.)\nVL[0] = IL[95]\n"
+                  "MOVE (21.02,2001.2,-350.,0.,0.)/NEXT\nMOVE (21.02,2051.2,-350.,0.,0.)/FLY\n"
+                  "MOVE (21.02,2101.2,-350.,0.,0.)\nVL[1] = IL[95]\n",
+              {.variables = {"VL[0]", "VL[1]"}});
   EXPECT_EQ(CodeOf(ran), 0);
   EXPECT_EQ(ran.variables.at("VL[0]"), "0");
   EXPECT_EQ(ran.variables.at("VL[1]"), "0");
@@ -308,6 +310,40 @@ TEST(MotionRules, ZeroEndsAtTheMechanicalZero) {
   const motion::TipPose after_head = ran.parts[2].motion.path.to();
   EXPECT_NEAR(after_head.tip.x, 500.0, 1e-9);
   EXPECT_NEAR(after_head.a_rad, 0.0, 1e-9);
+}
+
+// OPT-4.49, OPT-B.60: each group of axes is told when it has found its zero, at the step of ZERO;
+// the points are the machine's, not the program's.
+TEST(MotionRules, ZeroIsTold) {
+  const Ran ran = RunText("MOVE (500.,600.,-200.,1.,0.5)\nZERO\n");
+  ASSERT_EQ(ran.moves.size(), 4U);
+  EXPECT_TRUE(ran.moves[0].programmed);
+  for (std::size_t n = 1; n < 4; ++n) {
+    EXPECT_EQ(ran.moves[n].place.step, 2);
+    EXPECT_FALSE(ran.moves[n].programmed);
+    EXPECT_EQ(ran.moves[n].at, ran.parts[n].done.end);
+  }
+  EXPECT_EQ(ran.moves[1].path, "ZERO_Z");
+  EXPECT_NEAR(ran.moves[1].axes.column.z, 0.0, 1e-9);
+  EXPECT_NEAR(ran.moves[1].axes.column.x, 500.0, 1e-9);
+  EXPECT_NEAR(ran.moves[1].axes.a_rad, 1.0, 1e-6);
+  EXPECT_EQ(ran.moves[2].path, "ZERO_AB");
+  EXPECT_NEAR(ran.moves[2].axes.a_rad, 0.0, 1e-9);
+  EXPECT_NEAR(ran.moves[2].axes.column.x, 500.0, 1e-9);
+  EXPECT_EQ(ran.moves[3].path, "ZERO_XY");
+  EXPECT_NEAR(ran.moves[3].axes.column.x, 0.0, 1e-9);
+  EXPECT_NEAR(ran.moves[3].axes.column.y, 0.0, 1e-9);
+}
+
+// OPT-4.49: a machine that stands at its zero finds it again, without a motion.
+TEST(MotionRules, ZeroAtTheZeroIsToldToo) {
+  const Ran ran = RunText("ZERO\nZERO\n");
+  ASSERT_EQ(ran.moves.size(), 6U);
+  for (std::size_t n = 3; n < 6; ++n) {
+    EXPECT_EQ(ran.moves[n].place.step, 2);
+    EXPECT_EQ(ran.moves[n].path, ran.moves[n - 3].path);
+    EXPECT_EQ(ran.moves[n].at, ran.moves[2].at);
+  }
 }
 
 // OPT-B.53, OPT-2.09: each program begins with the defaults; what a CALLed one sets is gone after

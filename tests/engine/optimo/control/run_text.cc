@@ -77,6 +77,7 @@ class Listener final : public machine::RunObserver {
     Tell(std::string(text), at, place);
   }
   void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override {
+    ran_.findings.push_back(diagnostic);
     Tell("E" + std::to_string(Lookup(diagnostic.code).number), at,
          {.program = diagnostic.program, .step = diagnostic.step});
   }
@@ -120,6 +121,15 @@ const Ran::Event& Ran::First(const std::string& what) const {
   if (found != events.end()) return *found;
   ADD_FAILURE() << "never told: " << what;
   static const Event none;
+  return none;
+}
+
+const Diagnostic& Ran::Finding(int code) const {
+  const auto found = std::ranges::find_if(
+      findings, [&](const Diagnostic& one) { return Lookup(one.code).number == code; });
+  if (found != findings.end()) return *found;
+  ADD_FAILURE() << "never told: " << code;
+  static const Diagnostic none{.code = ErrorCode::kLabelNotFound, .severity = Severity::kAdvice};
   return none;
 }
 

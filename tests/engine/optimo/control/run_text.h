@@ -31,6 +31,7 @@ struct Ran {
   machine::Outcome outcome;
   std::vector<std::string> told;
   std::vector<Event> events;  // parallel to `told`
+  std::vector<Diagnostic> findings;
   std::vector<machine::MoveDone> moves;
   std::vector<Part> parts;
   std::vector<machine::Wait> waits;
@@ -44,8 +45,9 @@ struct Ran {
 
   bool Told(const std::string& what) const;
   int Count(const std::string& what) const;
-  // Precondition: it was told.
+  // Preconditions: it was told.
   const Event& First(const std::string& what) const;
+  const Diagnostic& Finding(int code) const;
   double DistanceTo(const motion::Vec3& point) const;  // of the tip path, where it comes nearest
   double BeamOnLength() const;                         // mm of tip path with the beam on
 };

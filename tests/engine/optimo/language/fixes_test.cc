@@ -14,7 +14,35 @@ std::string Fixed(const std::string& text) {
 // OPT-7.91: the proposed word is put in place of the mistyped one.
 TEST(Fixes, MistypedWordsAreCorrected) {
   EXPECT_EQ(Fixed("SPEDE 20 ; slow\nSPEED 5\n"), "SPEED 20 ; slow\nSPEED 5\n");
-  EXPECT_EQ(Fixed("DECLARE XHOME = VR[1]\nXHOM = 5.\n"), "DECLARE XHOME = VR[1]\nXHOME = 5.\n");
+  EXPECT_EQ(Fixed("DECLARE XHOME = VR[1]\nXHOEM = 5.\n"), "DECLARE XHOME = VR[1]\nXHOME = 5.\n");
+}
+
+// OPT-7.50: a program that would stay valid with another variable is left to the programmer.
+TEST(Fixes, NoNameIsMadeAnotherThatMayNotBeMeant) {
+  const std::string text =
+      "DECLARE POS1 = VR[1]\nDECLARE POS2 = VR[2]\nDECLARE ZONE1 = VL[1]\n"
+      "DECLARE XPOS = VR[3]\nPOS3 = 7\nZONE3 = ON\nYPOS = 7\nXPO = 7\n";
+  EXPECT_EQ(Fixed(text), text);
+  const std::vector<Diagnostic> found = Compile(text, "", {}).diagnostics;
+  ASSERT_EQ(found.size(), 4U);
+  EXPECT_NE(found[0].detail.find("did you mean POS1 or POS2?"), std::string::npos);
+  EXPECT_NE(found[2].detail.find("did you mean XPOS?"), std::string::npos);
+}
+
+// OPT-7.91, OPT-1.29: digits behind the word of an instruction are its operand, never waste.
+TEST(Fixes, OperandsAreParted) {
+  EXPECT_EQ(
+      Fixed("GOTO10\nGOSUB10\n10 SPEED20\nTASK1\nSPEED33.\nGO46/C\nWORK0,0/ON\nFUNCTION44\n"),
+      "GOTO 10\nGOSUB 10\n10 SPEED 20\nTASK 1\nSPEED 33.\nGO 46/C\nWORK 0,0/ON\nFUNCTION 44\n");
+}
+
+// OPT-7.91: no repair where none makes the statement right, several do, or it would do nothing.
+TEST(Fixes, WhatIsNotSureIsOnlyProposed) {
+  for (const char* text :
+       {"SYSDEF86\n", "STOP1\n", "REAL1\n", "GOT 10\n", "WORKD 1,0 (8,75,0,50)\n", "SPEDE 20 20\n",
+        "CON 5\n", "DECLARE XHOME = VR[1]\nXHOEM 5.\n"}) {
+    EXPECT_EQ(Fixed(text), text);
+  }
 }
 
 // OPT-2.61, OPT-2.47, OPT-9.24, OPT-7.37

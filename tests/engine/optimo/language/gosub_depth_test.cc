@@ -5,44 +5,59 @@
 namespace rmlcell::optimo {
 namespace {
 
-using Places = std::vector<std::uint32_t>;
+using Instructions = std::vector<std::uint32_t>;
+using LevelEdges = std::vector<LevelEdge>;
 
-// OPT-7.21: a chain of GOSUBs; the call at place 10 + s is made on level s + 1.
+constexpr bool kGosub = true;
+
+// OPT-7.21: a chain of GOSUBs; the call at place n is made on level n.
 TEST(GosubDepth, AChainIsMeasured) {
-  std::vector<std::vector<GosubCall>> calls(4);
-  for (std::size_t s = 0; s + 1 < calls.size(); ++s)
-    calls[s].push_back({static_cast<std::uint32_t>(10 + s), s + 1});
-  EXPECT_TRUE(FindNesting({{1, 0}}, calls, 4).too_deep.empty());
-  EXPECT_EQ(FindNesting({{1, 0}}, calls, 3).too_deep, (Places{12}));
-  EXPECT_EQ(FindNesting({{1, 0}}, calls, 2).too_deep, (Places{11, 12}));
-  // From the middle of the chain it is shallower; what nothing calls does not count.
-  EXPECT_TRUE(FindNesting({{1, 2}}, calls, 2).too_deep.empty());
+  const LevelEdges edges = {{0, 1, kGosub}, {1, 2, kGosub}, {2, 3, kGosub}};
+  EXPECT_TRUE(FindNesting(4, 0, edges, 3).too_deep.empty());
+  EXPECT_EQ(FindNesting(4, 0, edges, 2).too_deep, (Instructions{2}));
+  EXPECT_EQ(FindNesting(4, 0, edges, 1).too_deep, (Instructions{1, 2}));
+  // From the middle of the chain it is shallower; what nothing comes to does not count.
+  EXPECT_TRUE(FindNesting(4, 2, edges, 1).too_deep.empty());
 }
 
 // OPT-7.21: of two ways to a subroutine the deeper one counts, whichever is met first.
 TEST(GosubDepth, TheDeepestWayCounts) {
-  const std::vector<std::vector<GosubCall>> calls = {{{10, 2}, {11, 1}}, {{12, 2}}, {{13, 3}}, {}};
-  EXPECT_EQ(FindNesting({{1, 0}}, calls, 3).too_deep, (Places{13}));
-  EXPECT_TRUE(FindNesting({{1, 0}}, calls, 4).too_deep.empty());
+  const LevelEdges edges = {{0, 3, kGosub}, {0, 1}, {1, 2, kGosub}, {2, 3, kGosub}, {3, 4, kGosub}};
+  EXPECT_EQ(FindNesting(5, 0, edges, 2).too_deep, (Instructions{3}));
+  EXPECT_TRUE(FindNesting(5, 0, edges, 3).too_deep.empty());
+}
+
+// OPT-7.21: a loop is no level, and each of its instructions is as deep as the deepest.
+TEST(GosubDepth, LoopsAreOneLevel) {
+  const LevelEdges edges = {{0, 1, kGosub}, {0, 2}, {1, 3}, {2, 3}, {2, 4, kGosub}, {3, 2}};
+  EXPECT_EQ(FindNesting(5, 0, edges, 1).too_deep, (Instructions{2}));
+  EXPECT_TRUE(FindNesting(5, 0, edges, 2).too_deep.empty());
+  EXPECT_TRUE(FindNesting(5, 0, edges, 2).recursive.empty());
 }
 
 // OPT-7.21: rings are told by the call that closes them, and have no depth.
 TEST(GosubDepth, RingsAreFound) {
-  const GosubNesting itself = FindNesting({{1, 0}}, {{{10, 0}}});
-  EXPECT_EQ(itself.recursive, (Places{10}));
+  const GosubNesting itself = FindNesting(2, 0, {{0, 1, kGosub}, {1, 1, kGosub}});
+  EXPECT_EQ(itself.recursive, (Instructions{1}));
   EXPECT_TRUE(itself.too_deep.empty());
-  const GosubNesting ring = FindNesting({{1, 0}}, {{{10, 1}}, {{11, 2}}, {{12, 0}}});
-  EXPECT_EQ(ring.recursive, (Places{12}));
+  const GosubNesting ring =
+      FindNesting(4, 0, {{0, 1, kGosub}, {1, 2, kGosub}, {2, 3, kGosub}, {3, 1, kGosub}});
+  EXPECT_EQ(ring.recursive, (Instructions{3}));
+  // Closed by a jump: the last GOSUB of the ring.
+  const GosubNesting jump =
+      FindNesting(4, 0, {{0, 1, kGosub}, {1, 2, kGosub}, {2, 3, kGosub}, {3, 1}});
+  EXPECT_EQ(jump.recursive, (Instructions{2}));
   // Two ways to the same subroutine are no ring.
-  EXPECT_TRUE(FindNesting({{1, 0}, {2, 1}}, {{{10, 1}}, {}}).recursive.empty());
+  const LevelEdges two = {{0, 1, kGosub}, {0, 2, kGosub}, {1, 2, kGosub}};
+  EXPECT_TRUE(FindNesting(3, 0, two).recursive.empty());
 }
 
 // A chain of a hundred thousand does not need a deep call stack.
 TEST(GosubDepth, LongChainsAreNoDeepStack) {
-  std::vector<std::vector<GosubCall>> calls(100'000);
-  for (std::size_t s = 0; s + 1 < calls.size(); ++s)
-    calls[s].push_back({static_cast<std::uint32_t>(s), s + 1});
-  EXPECT_EQ(FindNesting({{1, 0}}, calls, 16).too_deep.size(), calls.size() - 16);
+  constexpr std::uint32_t kCount = 100'000;
+  LevelEdges edges;
+  for (std::uint32_t at = 0; at + 1 < kCount; ++at) edges.push_back({at, at + 1, kGosub});
+  EXPECT_EQ(FindNesting(kCount, 0, edges, 16).too_deep.size(), edges.size() - 16);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <set>
 
 #include "engine/optimo/language/instruction_set.h"
@@ -37,14 +38,45 @@ TEST(Words, InstructionsAreInTheInstructionSet) {
   EXPECT_EQ(OpOf(Word::kGoto), Op::kGoto);
 }
 
-TEST(NearestWord, ProposesWhatIsNear) {
-  const std::vector<std::string_view> words = {"SPEED", "MOVE", "GOSUB", "GOTO"};
-  EXPECT_EQ(NearestWord("SPEDE", words), "SPEED");
-  EXPECT_EQ(NearestWord("MVOE", words), "MOVE");
-  EXPECT_EQ(NearestWord("gosup", words), "GOSUB");
-  EXPECT_EQ(NearestWord("ZZZZZ", words), "");
-  EXPECT_EQ(NearestWord("X", words), "");
-  EXPECT_EQ(NearestWord(std::string(1000, 'M'), words), "");
+using Words = std::vector<std::string>;
+
+// OPT-7.91, OPT-E.7011
+TEST(NearestWords, ProposesWhatIsNear) {
+  const std::vector<std::string_view> words = {"SPEED", "MOVE", "GOSUB", "GO", "GOTO"};
+  EXPECT_EQ(NearestWords("SPEDE", words).words, (Words{"SPEED"}));
+  EXPECT_EQ(NearestWords("MVOE", words).words, (Words{"MOVE"}));
+  EXPECT_EQ(NearestWords("gosup", words).words, (Words{"GOSUB"}));
+  EXPECT_EQ(NearestWords("GOT", words).words, (Words{"GO", "GOTO"}));
+  EXPECT_EQ(NearestWords("ZZZZZ", words).words, Words{});
+  EXPECT_EQ(NearestWords("X", words).words, Words{});
+  EXPECT_EQ(NearestWords(std::string(1000, 'M'), words).words, Words{});
+}
+
+// OPT-7.91: of several nothing is sure, nor where a digit differs or more than one letter.
+TEST(NearestWords, TellsASlipFromAnotherWord) {
+  const std::vector<std::string_view> words = {"SPEED", "ZONE1", "GO", "GOTO"};
+  EXPECT_TRUE(NearestWords("SPEDE", words).IsSingle(Slip::kSwap));
+  EXPECT_TRUE(NearestWords("SPED", words).IsSingle(Slip::kOneLetter));
+  EXPECT_TRUE(NearestWords("SPEEED", words).IsSingle(Slip::kOneLetter));
+  EXPECT_TRUE(NearestWords("ZONE3", words).IsSingle(Slip::kOther));
+  EXPECT_TRUE(NearestWords("SPEED20", words).IsSingle(Slip::kOther));
+  EXPECT_TRUE(NearestWords("SPPE", words).words.empty() ||
+              NearestWords("SPPE", words).IsSingle(Slip::kOther));
+  EXPECT_FALSE(NearestWords("GOT", words).IsSingle(Slip::kOneLetter));
+  EXPECT_EQ(QuestionFor(NearestWords("GOT", words)), "; did you mean GO or GOTO?");
+  EXPECT_EQ(QuestionFor(NearestWords("QQ", words)), "");
+}
+
+// OPT-7.50: names that differ in a letter may both be meant; XPOS and YPOS always are.
+TEST(NearestWords, NamesAreSureOnlyWhenLettersAreSwapped) {
+  const auto sure = [](std::string_view word, std::string_view meant) {
+    return IsSurelyName(word, NearestWords(word, std::array{meant}));
+  };
+  EXPECT_TRUE(sure("XHOEM", "XHOME"));
+  EXPECT_FALSE(sure("XHOM", "XHOME"));
+  EXPECT_FALSE(sure("YPOS", "XPOS"));
+  EXPECT_FALSE(sure("POSYX", "POSXY"));
+  EXPECT_FALSE(sure("ZONE12", "ZONE21"));
 }
 
 }  // namespace

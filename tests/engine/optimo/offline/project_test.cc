@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/engine/optimo/language/compile_text.h"
 
 namespace rmlcell::optimo {
@@ -128,12 +130,14 @@ TEST_F(Project, MissingDefinitionsAreInserted) {
   AddSchedule(11);
   Define(2, 0, {11});
   Add(45,
-      "; part\nDECLARE V = 5\n7    SPEED V ; slow\n10   WORK 1,3 /ON ; cut\nWORK 1,3/OFF\n  WORK 2,0/ON\n");
+      "; part\nDECLARE V = 5\n7    SPEED V ; slow\n10   WORK 1,3 /ON ; cut\nWORK 1,3/OFF\n  WORK "
+      "2,0/ON\n");
   const machine::TransferPlan plan = Plan(true);
   ASSERT_TRUE(plan.ok);
-  EXPECT_EQ(plan.programs[0].source,
-            "; part\nDECLARE V = 5\n     WORKDEF 1,3 (6.5, 80.0, 1.5, 95.0)\n     WORKDEF 2,0 (11)\n"
-            "7    SPEED V ; slow\n10   WORK 1,3 /ON ; cut\nWORK 1,3/OFF\n  WORK 2,0/ON\n");
+  EXPECT_EQ(
+      plan.programs[0].source,
+      "; part\nDECLARE V = 5\n     WORKDEF 1,3 (6.5, 80.0, 1.5, 95.0)\n     WORKDEF 2,0 (11)\n"
+      "7    SPEED V ; slow\n10   WORK 1,3 /ON ; cut\nWORK 1,3/OFF\n  WORK 2,0/ON\n");
   EXPECT_EQ(plan.programs[0].object, MustCompile(plan.programs[0].source).object);
   const machine::TransferPlan without = Plan(false);
   EXPECT_TRUE(without.ok);
@@ -143,7 +147,9 @@ TEST_F(Project, MissingDefinitionsAreInserted) {
 // OPT-3.09: the first WORK of the text is not the first that runs.
 TEST_F(Project, InsertedDefinitionsAreReachedByJumps) {
   Define(1, 0, {8, 75, 1, 50});
-  Add(61, "GOSUB 100\nENDTASK\n50 WORK 1,0/ON\nWORK 1,0/OFF\nRETURN\n100 WORK 1,0/ON\nWORK 1,0/OFF\nRETURN\n");
+  Add(61,
+      "GOSUB 100\nENDTASK\n50 WORK 1,0/ON\nWORK 1,0/OFF\nRETURN\n100 WORK 1,0/ON\nWORK "
+      "1,0/OFF\nRETURN\n");
   const machine::TransferPlan plan = Plan(true);
   ASSERT_TRUE(plan.ok);
   EXPECT_EQ(plan.programs[0].source.find("     WORKDEF 1,0 (8.0, 75.0, 1.0, 50.0)\nGOSUB 100"), 0U);
@@ -155,8 +161,9 @@ TEST_F(Project, InsertedDefinitionsStandBehindTask1) {
   Add(61, "VI[2]=1\nTASK 1\nWORK 1,0/ON\nWORK 1,0/OFF\n");
   const machine::TransferPlan plan = Plan(true);
   ASSERT_TRUE(plan.ok);
-  EXPECT_EQ(plan.programs[0].source,
-            "VI[2]=1\nTASK 1\n     WORKDEF 1,0 (8.0, 75.0, 1.0, 50.0)\nWORK 1,0/ON\nWORK 1,0/OFF\n");
+  EXPECT_EQ(
+      plan.programs[0].source,
+      "VI[2]=1\nTASK 1\n     WORKDEF 1,0 (8.0, 75.0, 1.0, 50.0)\nWORK 1,0/ON\nWORK 1,0/OFF\n");
 }
 
 // OPT-3.12: a FUNCTION shares the WORKDEFs of its callers.
@@ -181,6 +188,20 @@ TEST_F(Project, AllProgramsOrNoneUseSysdef) {
     EXPECT_EQ(d.program, 46);
   }
   EXPECT_EQ(found, 1);
+}
+
+// OPT-7.39: a program that moves before its own SYSDEF is reported for that, also when no other
+// program uses it.
+TEST_F(Project, MovesBeforeTheOwnSysdef) {
+  Add(45,
+      "COORD ABSOL\nMOVE (1.,2.,3.,0.,0.)\nSYSDEF (1.,2.,3.,0.,0.,0.)\nMOVE (1.,2.,3.,0.,0.)\n");
+  Add(46, "SPEED 5\n");
+  const machine::TransferPlan plan = Plan();
+  const auto found =
+      std::ranges::find(plan.diagnostics, std::string("OPT-7.39"), &Diagnostic::rule);
+  ASSERT_NE(found, plan.diagnostics.end());
+  EXPECT_EQ(found->program, 45);
+  EXPECT_EQ(found->detail, "ABSOL moves before the first SYSDEF of the program");
 }
 
 // OPT-10.17, OPT-E.7413

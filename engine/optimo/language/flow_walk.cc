@@ -1,0 +1,112 @@
+#include "engine/optimo/language/flow_walk.h"
+
+#include <deque>
+
+namespace rmlcell::optimo {
+
+FlowWalk::FlowWalk(const Module& module, const FlowGraph& graph, const Dwells& dwells,
+                   const std::vector<bool>& faulty, bool any_error)
+    : module_(module),
+      graph_(graph),
+      dwells_(dwells),
+      faulty_(faulty),
+      subroutines_(module, graph, dwells, faulty),
+      leaders_(graph.size() + 1U),
+      slots_(graph.size() + 1U) {
+  FindTimer();
+  std::uint32_t count = 0;
+  for (std::uint32_t at = 0; at <= graph.size(); ++at) {
+    leaders_[at] = at == graph.size() || graph.IsLeader(at) ||
+                   (any_error && module.instructions[at].label_count > 0);
+    if (leaders_[at]) slots_[at] = count++;
+  }
+  states_.resize(count);
+  Follow(any_error);
+}
+
+// The GOSUB of a TIMER comes between two instructions, no matter which. OPT-B.59
+void FlowWalk::FindTimer() {
+  for (std::uint32_t at = 0; at < graph_.size(); ++at) {
+    if (module_.instructions[at].op != Op::kTimer) continue;
+    const auto called = graph_.Called(at);
+    const FlowState* effect = called ? subroutines_.Of(*called) : nullptr;
+    if (effect == nullptr) continue;
+    if (!timer_) timer_.emplace();
+    timer_->Join(*effect);
+  }
+}
+
+void FlowWalk::Pass(std::uint32_t at, FlowState& state) const {
+  if (faulty_[at]) {
+    state = FlowState::Unknown();
+  } else {
+    Step(module_, dwells_, at, state);
+  }
+  const Op op = module_.instructions[at].op;
+  if (const auto called = graph_.Called(at); called && op != Op::kTimer) {
+    const FlowState* effect = subroutines_.Of(*called);
+    if (op == Op::kMove) {
+      if (effect != nullptr) {  // the time of /TIME may run out
+        FlowState timed = state;
+        timed.Then(*effect);
+        state.Join(timed);
+      }
+    } else if (effect != nullptr) {
+      state.Then(*effect);
+    } else {
+      state = FlowState::Unknown();  // it is told that it never comes back
+    }
+  }
+  if (!timer_) return;
+  FlowState timed = state;
+  timed.Then(*timer_);
+  state.ForgetDifferences(timed);
+}
+
+bool FlowWalk::FlowsOn(std::uint32_t at, std::vector<Successor>& room) const {
+  for (const Successor& s : graph_.From(at, room)) {
+    if (s.edge == Edge::kNext) return true;
+  }
+  return false;
+}
+
+void FlowWalk::Follow(bool any_error) {
+  std::deque<std::uint32_t> open;
+  std::vector<bool> waiting(graph_.size() + 1U);
+  const auto enter = [&](std::uint32_t at, const FlowState& state) {
+    if (!states_[slots_[at]].Join(state) || waiting[at]) return;
+    waiting[at] = true;
+    open.push_back(at);
+  };
+  enter(graph_.entry(), FlowState::AtStart());
+  for (std::uint32_t at = 0; any_error && at < graph_.size(); ++at) {
+    if (module_.instructions[at].label_count > 0) enter(at, FlowState::Unknown());
+  }
+  std::vector<Successor> room;
+  while (!open.empty()) {
+    std::uint32_t at = open.front();
+    open.pop_front();
+    waiting[at] = false;
+    FlowState state = states_[slots_[at]];
+    for (bool on = true; on && at < graph_.size();) {
+      on = false;
+      FlowState after = state;
+      Pass(at, after);
+      for (const Successor& s : graph_.From(at, room)) {
+        if (s.edge == Edge::kNext) on = true;
+        if (s.edge == Edge::kJump) enter(s.to, after);
+        if (s.edge == Edge::kCall) enter(s.to, state);
+        if (s.edge == Edge::kHandler) enter(s.to, FlowState::InErrorHandler());
+        if (s.edge == Edge::kTimed) enter(s.to, FlowState::Unknown());
+      }
+      ++at;
+      state = after;
+      if (on && leaders_[at]) {
+        enter(at, state);
+        on = false;
+      }
+    }
+  }
+}
+
+}  // namespace rmlcell::optimo
