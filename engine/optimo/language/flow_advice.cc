@@ -112,10 +112,11 @@ class FlowAdviser {
 };
 
 void FlowAdviser::AdviseStates() {
-  std::vector<bool> hole_moves(graph_.size());
+  std::vector<bool> hole_moves(graph_.size()), absol_moves(graph_.size());
   walk_.ForEachReached([&](std::uint32_t at, const FlowState& state) {
-    hole_moves[at] =
-        module_.instructions[at].op == Op::kMove && state.modes.path() == PathType::kHole;
+    if (module_.instructions[at].op != Op::kMove) return;
+    hole_moves[at] = state.modes.path() == PathType::kHole;
+    absol_moves[at] = state.modes.coord() == CoordType::kAbsol;
   });
   const FlyChain chain(module_, graph_, dwells_, hole_moves, faulty_);
   MoveAdviser moves(p_, findings_, chain);
@@ -131,7 +132,7 @@ void FlowAdviser::AdviseStates() {
     }
     AdviseEnd(at, state);
   });
-  moves.AdviseRobotMoves();
+  moves.AdviseRobotMoves(graph_, graph_.LeadingTo(absol_moves, true));
 }
 
 // OPT-3.09, OPT-3.24, OPT-3.33
@@ -261,7 +262,9 @@ void FlowAdviser::AdviseReturns() {
            "OPT-7.22");
     }
   }
-  const std::vector<bool> returns = graph_.ReachReturnOnLevel();
+  std::vector<bool> is_return;
+  for (const Instruction& i : module_.instructions) is_return.push_back(i.op == Op::kReturn);
+  const std::vector<bool> returns = graph_.LeadingTo(is_return, false);
   for (const std::uint32_t at : graph_.subroutines()) {
     if (returns[at] || at == graph_.size()) continue;
     Note(module_.instructions[at], ErrorCode::kPracticeAdvice,

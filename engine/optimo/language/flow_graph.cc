@@ -76,7 +76,7 @@ std::optional<std::uint32_t> FlowGraph::Called(std::uint32_t at) const {
   return index_.FindLabel(module_.Targets(i)[0]);
 }
 
-std::vector<bool> FlowGraph::ReachReturnOnLevel() const {
+std::vector<bool> FlowGraph::LeadingTo(const std::vector<bool>& goals, bool calls) const {
   const Predecessors predecessors(*this);
   std::vector<bool> reaches(size() + 1U);
   std::vector<std::uint32_t> open;
@@ -86,7 +86,7 @@ std::vector<bool> FlowGraph::ReachReturnOnLevel() const {
     open.push_back(at);
   };
   for (std::uint32_t at = 0; at < size(); ++at) {
-    if (module_.instructions[at].op == Op::kReturn) reach(at);
+    if (goals[at]) reach(at);
   }
   std::vector<Successor> room;
   while (!open.empty()) {
@@ -95,7 +95,7 @@ std::vector<bool> FlowGraph::ReachReturnOnLevel() const {
     for (const std::uint32_t from : predecessors.Of(to)) {
       if (reaches[from]) continue;
       for (const Successor& s : From(from, room)) {
-        if (s.to == to && s.edge != Edge::kCall && s.edge != Edge::kTimed) reach(from);
+        if (s.to == to && s.edge != Edge::kTimed && (calls || s.edge != Edge::kCall)) reach(from);
       }
     }
   }

@@ -61,8 +61,9 @@ class FlowGraph {
 
   // What can be reached from `from` on one GOSUB level: calls are stepped over.
   std::vector<bool> ReachOnLevel(std::uint32_t from) const;
-  // From where a RETURN can be reached on one GOSUB level.
-  std::vector<bool> ReachReturnOnLevel() const;
+  // From where one of the `goals` (by instruction) can be reached on one GOSUB level; with `calls`,
+  // also inside what is called on the way.
+  std::vector<bool> LeadingTo(const std::vector<bool>& goals, bool calls) const;
 
  private:
   const Module& module_;

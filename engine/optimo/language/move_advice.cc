@@ -1,5 +1,6 @@
 #include "engine/optimo/language/move_advice.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -193,21 +194,41 @@ void MoveAdviser::AdviseHole(const Instruction& i, const FlowState& state) {
        "OPT-5.48");
 }
 
-// OPT-7.109: with SYSDEF, ROBOT moves belong only to the first approach and the last retract.
-void MoveAdviser::AdviseRobotMoves() {
-  bool uses_sysdef = false;
-  for (const Instruction& i : module_.instructions)
-    uses_sysdef = uses_sysdef || (i.op == Op::kSysdef && i.value_count > 0);
-  if (!uses_sysdef) return;
-  std::size_t first = placed_.size(), last = 0;
-  for (std::size_t m = 0; m < placed_.size(); ++m) {
-    if (placed_[m].coord != CoordType::kAbsol) continue;
-    first = std::min(first, m);
-    last = m;
+// OPT-7.109: with SYSDEF, ROBOT moves belong only to the first approach and the last retract, of
+// the program and of each of its subroutines. What stands behind the program's own end is no part
+// of it, but a GOSUB stands for the moves that it leads to.
+void MoveAdviser::AdviseRobotMoves(const FlowGraph& graph, const std::vector<bool>& to_absol) {
+  const auto sets_offset = [](const Instruction& i) {
+    return i.op == Op::kSysdef && i.value_count > 0;
+  };
+  if (std::ranges::none_of(module_.instructions, sets_offset)) return;
+  for (std::uint32_t at = 0; at < graph.size(); ++at) {
+    if (module_.instructions[at].op != Op::kGosub) continue;
+    const auto called = graph.Called(at);
+    if (called && to_absol[*called]) placed_.push_back({at, CoordType::kAbsol});
   }
-  for (std::size_t m = first; m < last; ++m) {
-    if (placed_[m].coord != CoordType::kRobot) continue;
-    Warn(module_.instructions[placed_[m].at], ErrorCode::kPracticeAdvice,
+  std::ranges::sort(placed_, {}, &Placed::at);
+  const std::vector<bool> main = graph.ReachOnLevel(graph.entry());
+  // Which part each belongs to: 0 the program itself, else up to which RETURN or ENDTASK it goes.
+  std::vector<std::uint32_t> part(graph.size());
+  std::uint32_t ends = 1;
+  for (std::uint32_t at = 0; at < graph.size(); ++at) {
+    part[at] = main[at] ? 0 : ends;
+    const Op op = module_.instructions[at].op;
+    if (op == Op::kReturn || op == Op::kEndtask) ++ends;
+  }
+  std::vector<std::uint32_t> first(ends + 1U, kNoIndex), last(ends + 1U);  // ABSOL, of each part
+  for (const Placed& move : placed_) {
+    if (move.coord != CoordType::kAbsol) continue;
+    const std::uint32_t of = part[move.at];
+    if (first[of] == kNoIndex) first[of] = move.at;
+    last[of] = move.at;
+  }
+  for (const Placed& move : placed_) {
+    const std::uint32_t of = part[move.at];
+    if (move.coord != CoordType::kRobot || first[of] == kNoIndex) continue;
+    if (move.at < first[of] || move.at > last[of]) continue;
+    Warn(module_.instructions[move.at], ErrorCode::kPracticeAdvice,
          "a ROBOT move between ABSOL moves is not shifted by SYSDEF", "OPT-7.109");
   }
 }

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "engine/optimo/language/flow_graph.h"
 #include "engine/optimo/language/flow_state.h"
 #include "engine/optimo/language/fly_chain.h"
 #include "engine/optimo/language/program.h"
@@ -16,8 +17,9 @@ class MoveAdviser {
       : p_(program), module_(program.module), findings_(findings), chain_(chain) {}
 
   void Advise(std::uint32_t at, const FlowState& state);
-  // After all moves: ROBOT moves between ABSOL moves in a program that uses SYSDEF.
-  void AdviseRobotMoves();
+  // After all moves: ROBOT moves between ABSOL moves in a program that uses SYSDEF. `to_absol`:
+  // from where an ABSOL move can be reached, calls included.
+  void AdviseRobotMoves(const FlowGraph& graph, const std::vector<bool>& to_absol);
 
  private:
   void AdvisePath(const Instruction& i, const FlowState& state);

@@ -341,6 +341,27 @@ MOVE (40.,2.,3.,0.,0.)
 COORD ROBOT
 MOVE (50.,2.,3.,0.,0.)
 
+;=== subroutines stand behind the last retract, and count where they are called (advice)
+; OPT-7.109 OPT-3.47
+SYSDEF (1.,2.,3.,0.,0.,0.)
+PATH PTP
+COORD ROBOT
+MOVE (10.,2.,3.,0.,0.)
+GOSUB 100
+COORD ROBOT
+MOVE (20.,2.,3.,0.,0.)               ; expect 7033
+GOSUB 100
+COORD ROBOT
+MOVE (30.,2.,3.,0.,0.)
+ENDTASK
+100 COORD ABSOL
+MOVE (40.,2.,3.,0.,0.)
+COORD ROBOT
+MOVE (50.,2.,3.,0.,0.)               ; expect 7033
+COORD ABSOL
+MOVE (60.,2.,3.,0.,0.)
+RETURN
+
 ;=== contours in COORD ROBOT, and arcs without /VIA, on one path (advice)
 ; OPT-2.08 OPT-2.21 OPT-E.7302 OPT-E.7308
 IF IL[20] THEN 5
