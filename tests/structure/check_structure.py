@@ -96,6 +96,8 @@ def room_of(path):
 
 def room_of_header(header):
     """The room whose header this is; None for one of the system."""
+    if header.startswith("google/protobuf/"):  # of the library
+        return None
     if header.startswith(PROTO_HEADERS) or header.endswith(".pb.h"):
         return "proto"
     if header.split("/")[0] in ("engine", "storage", "proto", "server", "clients", "tests"):
