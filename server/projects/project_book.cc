@@ -13,8 +13,8 @@
 #include "proto/bridge/setup.h"
 #include "server/jobs/file_family.h"
 #include "server/jobs/job_messages.h"
+#include "server/jobs/update_mask.h"
 #include "server/names.h"
-#include "server/update_mask.h"
 
 namespace rmlcell::server {
 namespace {

@@ -9,10 +9,10 @@
 #include "server/config.h"
 #include "server/jobs/dispatcher.h"
 #include "server/jobs/job_messages.h"
+#include "server/jobs/update_mask.h"
 #include "server/names.h"
 #include "server/services/job_streams.h"
 #include "server/services/machine_messages.h"
-#include "server/update_mask.h"
 #include "server/version.h"
 
 namespace rmlcell::server {

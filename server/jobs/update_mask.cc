@@ -1,4 +1,4 @@
-#include "server/update_mask.h"
+#include "server/jobs/update_mask.h"
 
 #include <algorithm>
 
