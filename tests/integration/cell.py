@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import unittest
 
 BIN = pathlib.Path(os.environ["RMLCELL_BIN"])
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -32,6 +33,10 @@ from rmlcell.v1 import (  # noqa: E402
 )
 
 OPTIONS = [("grpc.max_receive_message_length", -1), ("grpc.max_send_message_length", -1)]
+
+
+COMPLETED = 1
+FAILED = 3
 
 
 class Cell:
@@ -120,6 +125,22 @@ class Cell:
         if check and done.returncode != 0:
             raise AssertionError(f"rmlcell {words} ended with {done.returncode}:\n{done.stdout}{done.stderr}")
         return done
+
+
+class WithCell(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.cell = Cell().start()
+        cls.addClassCleanup(cls.cell.close)
+
+    def refused(self, call, request, code, our_code):
+        with self.assertRaises(grpc.RpcError) as caught:
+            call(request, timeout=60)
+        self.assertEqual(caught.exception.code(), code, caught.exception.details())
+        detail = detail_of(caught.exception)
+        self.assertIsNotNone(detail, "no ErrorDetail")
+        self.assertEqual(detail.code, our_code)
+        return detail
 
 
 def inline_job(machine, file_name, content, kind=job_pb2.JOB_KIND_SIMULATE, **more):

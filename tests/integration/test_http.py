@@ -1,0 +1,118 @@
+"""The web port as curl meets it, and reflection."""
+import json
+import os
+import socket
+import subprocess
+import unittest
+import urllib.error
+import urllib.parse
+import urllib.request
+
+from cell import (SQUARE, WithCell, grpc, inline_job, submit, wait_for_end)
+
+
+class Web(WithCell):
+    def post(self, method, body, **headers):
+        request = urllib.request.Request(f"http://127.0.0.1:{self.cell.web_port}/{method}", json.dumps(body).encode(),
+                                         {"Content-Type": "application/json", **headers})
+        with urllib.request.urlopen(request, timeout=30) as answer:
+            return json.load(answer)
+
+    def test_a_client_that_ends_its_sending_gets_its_answer(self):
+        body = b"{}"
+        head = ("POST /rmlcell.v1.MachineService/ListMachines HTTP/1.1\r\nHost: localhost\r\n"
+                f"Content-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n").encode()
+        for request in (head + body, b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n"):
+            for _ in range(10):
+                with socket.create_connection(("127.0.0.1", self.cell.web_port), timeout=20) as connection:
+                    connection.sendall(request)
+                    connection.shutdown(socket.SHUT_WR)
+                    answer = b""
+                    while piece := connection.recv(65536):
+                        answer += piece
+                self.assertTrue(answer.startswith(b"HTTP/1.1 200"), answer[:80])
+
+    def test_bytes_that_are_no_message_are_told_so(self):
+        request = urllib.request.Request(
+            f"http://127.0.0.1:{self.cell.web_port}/rmlcell.v1.MachineService/ListMachines", b"\xff\xff",
+            {"Content-Type": "application/proto"})
+        with self.assertRaises(urllib.error.HTTPError) as caught:
+            urllib.request.urlopen(request, timeout=30)
+        self.assertEqual(caught.exception.code, 400)
+        self.assertEqual(json.load(caught.exception)["code"], "invalid_argument")
+
+    def test_json_by_post_answers_like_the_call(self):
+        machines = self.post("rmlcell.v1.MachineService/ListMachines", {})["machines"]
+        self.assertEqual([machine["name"] for machine in machines], ["machines/mill-1", "machines/optimo-1"])
+        with self.assertRaises(urllib.error.HTTPError) as caught:
+            self.post("rmlcell.v1.MachineService/GetMachine", {"name": "machines/none"})
+        self.assertEqual(caught.exception.code, 404)
+        self.assertEqual(json.load(caught.exception)["code"], "not_found")
+
+    def test_events_of_a_job_stream_and_resume_by_last_event_id(self):
+        job = self.post("rmlcell.v1.JobService/SubmitJob", {"job": {
+            "kind": "JOB_KIND_SIMULATE", "machine": "machines/mill-1",
+            "inlineProgram": {"fileName": "a.rml", "content": "UFUxMDAwLDEwMDA7SDs="}}})
+        def ids(**headers):
+            message = urllib.parse.quote(json.dumps({"name": job["name"], "eventsOnly": True}))
+            request = urllib.request.Request(
+                f"http://127.0.0.1:{self.cell.web_port}/rmlcell.v1.JobService/WatchJob?message={message}", None,
+                {"Accept": "text/event-stream", **headers})
+            with urllib.request.urlopen(request, timeout=60) as answer:
+                return [int(line[3:]) for line in answer.read().decode().splitlines() if line.startswith("id:")]
+        whole = ids()
+        self.assertEqual(whole, list(range(1, len(whole) + 1)))
+        self.assertEqual(ids(**{"Last-Event-ID": "1"}), whole[1:])
+
+    def test_products_have_stable_addresses_with_etag(self):
+        stub = self.cell.jobs()
+        job = submit(stub, inline_job("mill-1", "square.rml", SQUARE))
+        wait_for_end(stub, job.name)
+        url = f"http://127.0.0.1:{self.cell.web_port}/v1/{job.name}/artifacts/picture.svg"
+        with urllib.request.urlopen(url) as answer:
+            etag = answer.headers["ETag"]
+            self.assertEqual(answer.headers["Content-Type"], "image/svg+xml")
+            self.assertIn(b"<svg", answer.read())
+        with self.assertRaises(urllib.error.HTTPError) as caught:
+            urllib.request.urlopen(urllib.request.Request(url, headers={"If-None-Match": etag}))
+        self.assertEqual(caught.exception.code, 304)
+        with urllib.request.urlopen(f"http://127.0.0.1:{self.cell.web_port}/v1/{job.name}/artifacts/report") as answer:
+            self.assertEqual(json.load(answer)["outcome"]["kind"], "KIND_COMPLETED")
+        with urllib.request.urlopen(f"http://127.0.0.1:{self.cell.web_port}/") as page:
+            self.assertIn(b"<html", page.read())
+
+    def test_a_form_that_is_none_is_refused(self):
+        url = f"http://127.0.0.1:{self.cell.web_port}/v1/machines/optimo-1/programs/61/content"
+        def ask(query, body=None):
+            request = urllib.request.Request(url + query, body, {"Content-Type": "application/octet-stream"} if body else {})
+            try:
+                with urllib.request.urlopen(request, timeout=30) as answer:
+                    return answer.status, answer.read().decode()
+            except urllib.error.HTTPError as error:
+                return error.code, error.read().decode()
+        self.assertEqual(ask("?file_name=a.S", b"SPEED 5\n")[0], 200)
+        for query in ("", "?form=", "?form=source"):
+            self.assertEqual(ask(query), (200, "SPEED 5\n"))
+        self.assertEqual(ask("?form=listing")[0], 200)
+        for query, body in (("?form=bogus", None), ("?form=SOURCE", None), ("?file_name=a.S&form=bogus", b"SPEED 6\n"),
+                            ("?file_name=a.S&form=listing", b"SPEED 6\n")):
+            status, text = ask(query, body)
+            self.assertEqual(status, 400, query)
+            self.assertIn("CELL-E9003", text)
+        self.assertEqual(ask("?form=source"), (200, "SPEED 5\n"))
+
+    def test_reflection_alone_is_enough_for_a_client(self):
+        buf = os.environ.get("RMLCELL_BUF")
+        if not buf:
+            self.skipTest("buf is not here (RMLCELL_BUF)")
+        base = [buf, "curl", "--protocol", "grpc", "--http2-prior-knowledge"]
+        url = f"http://127.0.0.1:{self.cell.grpc_port}"
+        listed = subprocess.run([*base, "--list-methods", url], capture_output=True, text=True, timeout=60)
+        self.assertIn("rmlcell.v1.JobService/SubmitJob", listed.stdout, listed.stderr)
+        said = subprocess.run([*base, "-d", '{"code":"348"}', f"{url}/rmlcell.v1.ProgramService/ExplainError"],
+                              capture_output=True, text=True, timeout=60)
+        self.assertEqual(json.loads(said.stdout)["errors"][0]["code"], "OPT-E348")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
