@@ -53,6 +53,11 @@ class Local(unittest.TestCase):
         shown = [line.split() for line in done.stdout.splitlines() if "[" in line]
         self.assertEqual(shown, [["VI[3]", "0"], ["VR[2]", "1.0E-7"], ["VR[10]", "0.5"]])
 
+    def test_an_error_of_a_run_names_its_line(self):
+        done = run("simulate", self.file("d.S", "VR[1]=0\n\n; zero\nVR[0]=1/VR[1]\n"), "--json")
+        place = [d["place"] for d in json.loads(done.stdout)["diagnostics"] if d["code"] == "OPT-E7201"][0]
+        self.assertEqual((place["program"], place["step"], place["line"]), (1, 2, 4))
+
     def test_an_error_of_a_mill_is_told_once(self):
         done = run("simulate", self.file("bad.rml", "PU0,0;QQ5;PD100,100;PU;"))
         self.assertEqual(done.stdout.count("RML1-E1:"), 1, done.stdout)

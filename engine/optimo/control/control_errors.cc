@@ -30,6 +30,7 @@ void Control::WarnAt(const machine::Place& place, ErrorCode code, std::string de
         .severity = SeverityInRun(code),
         .detail = std::move(detail),
         .rule = std::string(rule),
+        .where = {.line = place.line},
         .program = place.program,
         .step = place.step});
 }
@@ -94,6 +95,7 @@ void Control::FailWithoutHandler(int label) {
         .severity = Severity::kFatal,
         .detail = detail,
         .rule = "OPT-3.59",
+        .where = {.line = s_.place.line},
         .program = s_.place.program,
         .step = s_.place.step});
   s_.machine.data.vi[99] = static_cast<float>(Lookup(ErrorCode::kLabelNotFound).number);
