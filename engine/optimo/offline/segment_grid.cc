@@ -70,7 +70,7 @@ SegmentGrid::SegmentGrid(const std::vector<PathSegment>& segments, double reach)
     });
   }
   std::ranges::sort(entries_);
-  entries_.erase(std::ranges::unique(entries_).begin(), entries_.end());
+  entries_.erase(std::unique(entries_.begin(), entries_.end()), entries_.end());
 }
 
 PathSegment SegmentGrid::Clipped(const PathSegment& segment) const {
