@@ -1,6 +1,7 @@
 #include "engine/motion/interruption.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace rmlcell::motion {
 namespace {
@@ -21,6 +22,23 @@ std::size_t Touched(std::span<const PlannedMotion> ahead, double s) {
 double SpeedAtEnd(const PlannedMotion& motion) { return motion.speed.end().speed; }
 
 }  // namespace
+
+bool FromFits(const PathState& state, double end_s, double v1, const PathLimits& limits) {
+  constexpr double kRoom = 1e-9;  // lengths that other formulas gave
+  double speed = state.speed;
+  double left = end_s - state.s;
+  const double a = state.acceleration;
+  if (a != 0.0 && std::isfinite(limits.jerk)) {
+    const double time = std::abs(a) / limits.jerk;
+    left -= time * (speed + a * time / 3.0);
+    speed += 0.5 * a * time;
+  }
+  const double room = kRoom * std::max(end_s - state.s, 0.0);
+  if (speed < -kRoom * state.speed || left < -room) return false;
+  // Between speeds that differ by rounding a ramp needs no way.
+  if (std::abs(speed - v1) <= kRoom * std::max(speed, v1)) return true;
+  return RampLength(std::max(speed, 0.0), v1, limits) <= left + room;
+}
 
 StopOnPath StopAlong(std::span<const PlannedMotion> ahead, double t_s) {
   StopOnPath stop;

@@ -8,6 +8,10 @@
 
 namespace rmlcell::motion {
 
+// Whether SpeedProfile::From gets from `state` to `v1` at `end_s` without breaking `limits`. False
+// above all while braking for `end_s`: what is left is then too short for anything but to go on.
+bool FromFits(const PathState& state, double end_s, double v1, const PathLimits& limits);
+
 // What becomes of planned motions when the machine is stopped on its way. motion.md section 6.
 struct StopOnPath {
   std::vector<PlannedMotion> motions;  // from the instant of the STOP to rest; no settling
