@@ -30,6 +30,12 @@ std::string_view PathName(PathType path) {
   return "";
 }
 
+// Exactly the end once it has arrived: times are rounded to 1 ns, the profile may be a little
+// longer.
+double PlaceOf(const ActiveMotion& active, SimTime time) {
+  return time >= active.arrival ? active.motion.path.length() : active.s_at(time);
+}
+
 motion::TipPose PoseOn(const motion::PlannedMotion& motion, double s) { return motion.path.At(s); }
 
 }  // namespace
@@ -89,8 +95,8 @@ void Control::TellMotion(SimTime until) {
                       .place = active.note.place,
                       .use = s_.beam.on ? machine::MotionUse::kCut : machine::MotionUse::kTravel,
                       .motion = &active.motion,
-                      .from = active.s_at(std::min(active.told, active.arrival)),
-                      .travelled = active.s_at(std::min(until, active.arrival)),
+                      .from = PlaceOf(active, active.told),
+                      .travelled = PlaceOf(active, until),
                       .profile_start_s = ToSeconds(active.told - active.start),
                       .programmed_mm_s = active.note.feed_mm_s,
                       .beam_on = s_.beam.on,
