@@ -21,11 +21,15 @@ struct StopOnPath {
 };
 
 // The ramp to rest along the planned path that begins at `t_s` of ahead[0]: at once, with the
-// limits of the motions that it touches. Precondition: ahead is not empty.
-StopOnPath StopAlong(std::span<const PlannedMotion> ahead, double t_s);
+// limits of the motions that it touches. Only in a bend where the axes have nothing left to brake
+// with, because the head turns, does it brake more gently or behind the bend.
+// Precondition: ahead is not empty.
+StopOnPath StopAlong(std::span<const PlannedMotion> ahead, double t_s, const AxisLimits& axes);
 
 // The motions that lead from rest at the place `s` of ahead[0] over the same path. Speeds at knots
-// are those planned, as soon as they can be reached again. Precondition: ahead is not empty.
-std::vector<PlannedMotion> RestartAlong(std::span<const PlannedMotion> ahead, double s);
+// are those planned, as soon as they can be reached again; in a bend where the axes would be asked
+// for too much that way, lower ones. Precondition: ahead is not empty.
+std::vector<PlannedMotion> RestartAlong(std::span<const PlannedMotion> ahead, double s,
+                                        const AxisLimits& axes);
 
 }  // namespace rmlcell::motion

@@ -179,7 +179,8 @@ bool Control::BringToHalt() {
       marks.emplace_back(ahead.size() - 1, std::get<motion::PlannedMark>(item));
     }
   }
-  const motion::StopOnPath stop = motion::StopAlong(ahead, ToSeconds(s_.now - s_.active->start));
+  const motion::StopOnPath stop =
+      motion::StopAlong(ahead, ToSeconds(s_.now - s_.active->start), parameters_.limits.axes);
   if (!stop.complete) return false;
   TellMotion(s_.now);
   s_.machine.axes = AxesNow();
@@ -196,7 +197,8 @@ bool Control::BringToHalt() {
     if (first + n < stop.index) add_marks(first + n, s_.timeline);
   }
   const std::span<const motion::PlannedMotion> left = std::span(ahead).subspan(stop.index);
-  const std::vector<motion::PlannedMotion> restart = motion::RestartAlong(left, stop.s);
+  const std::vector<motion::PlannedMotion> restart =
+      motion::RestartAlong(left, stop.s, parameters_.limits.axes);
   s_.interrupted.clear();
   // RestartAlong leaves out the first motion when the machine stands at its end.
   const std::size_t dropped = left.size() - restart.size();

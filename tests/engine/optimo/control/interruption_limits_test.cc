@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "tests/engine/motion/random_chain.h"
 #include "tests/engine/optimo/control/measured.h"
 
 // Whatever changes on the way, no limit of motion.md section 1 is broken: 10.1, measured from where
@@ -48,6 +49,68 @@ TEST(InterruptionLimits, OverrideDuringPtpAndHoles) {
                            text + std::to_string(percent) + " % at " + std::to_string(at));
       }
     }
+  }
+}
+
+// motion.md 10.1: in a bend in which the head turns, the axes spend most of what they can on the
+// bend itself. Stopped and started anywhere around it.
+TEST(InterruptionLimits, StopAndStartInABendThatTurnsTheHead) {
+  const std::string text =
+      "COORD ABSOL\nPATH LIN\nSPEED 20\nMOVE (150.,2100.,-400.,0.,1.)\n"
+      "MOVE (230.,2100.,-400.,0.,1.)/FLY\nMOVE (260.,2100.,-400.,1.0,1.)\n";
+  const Ran plain = RunText(text);
+  for (double at = 2.4; at < plain.time_s; at += 0.011) {
+    const Ran ran = RunText(text, {.inputs = {{FromSeconds(at), InputKind::kStop, 0, 1.0},
+                                              {FromSeconds(9.0), InputKind::kStart, 0, 1.0}}});
+    const std::string what = "STOP at " + std::to_string(at);
+    EXPECT_EQ(ran.outcome.kind, machine::OutcomeKind::kCompleted) << what;
+    EXPECT_NEAR(motion::Distance(ran.end.tip.tip, plain.end.tip.tip), 0.0, 1e-6) << what;
+    ExpectWithinLimits(ran, true, what);
+  }
+}
+
+// Random contours with passages and turning heads, changed and stopped at random times.
+// motion.md 6, 10.1
+TEST(InterruptionLimits, RandomProgramsKeepThemWhateverComes) {
+  constexpr int kSeeds = 250;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    motion::Dice dice(static_cast<std::uint64_t>(seed));
+    const bool turns = dice.Uniform(0.0, 1.0) < 0.5;
+    std::string text = "COORD ABSOL\nPATH LIN\nSPEED " +
+                       std::to_string(static_cast<int>(dice.Uniform(5.0, 100.0))) + "\n";
+    double x = 100.0;
+    double y = 2100.0;
+    const int moves = static_cast<int>(dice.Uniform(2.0, 8.0));
+    for (int k = 0; k <= moves; ++k) {
+      x += dice.Uniform(-30.0, 60.0);
+      y += dice.Uniform(-40.0, 40.0);
+      const double a = turns ? dice.Uniform(-0.3, 0.3) : 0.0;
+      const bool fly = k < moves && dice.Uniform(0.0, 1.0) < 0.8;
+      text += "MOVE (" + std::to_string(x) + "," + std::to_string(y) + ",-400.," +
+              std::to_string(a) + ",0.5)" + (fly ? "/FLY\n" : "\n");
+    }
+    const Ran plain = RunText(text);
+    ExpectWithinLimits(plain, true, "undisturbed\n" + text);
+    machine::InputScript inputs;
+    std::string what = text;
+    double at = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      at += dice.Uniform(0.0, 0.6) * plain.time_s;
+      const double kind = dice.Uniform(0.0, 4.0);
+      if (kind < 2.0) {
+        inputs.push_back(OverrideTo(at, 10.0 + 15.0 * std::floor(dice.Uniform(0.0, 10.0))));
+        what += std::to_string(at) + " OVERRIDE " + std::to_string(inputs.back().value) + "\n";
+      } else {
+        const InputKind halt = kind < 3.0 ? InputKind::kStop : InputKind::kHold;
+        inputs.push_back({FromSeconds(at), halt, 0, 1.0});
+        what += std::to_string(at) + (kind < 3.0 ? " STOP\n" : " HOLD\n");
+        at += 20.0;
+        inputs.push_back({FromSeconds(at), InputKind::kStart, 0, 1.0});
+        what += std::to_string(at) + " START\n";
+      }
+    }
+    const Ran ran = RunText(text, {.inputs = inputs});
+    ExpectWithinLimits(ran, true, what);
   }
 }
 
