@@ -110,6 +110,8 @@ TEST(InterruptionLimits, RandomProgramsKeepThemWhateverComes) {
       }
     }
     const Ran ran = RunText(text, {.inputs = inputs});
+    EXPECT_EQ(ran.outcome.kind, machine::OutcomeKind::kCompleted) << what;
+    EXPECT_NEAR(motion::Distance(ran.end.tip.tip, plain.end.tip.tip), 0.0, 1e-6) << what;
     ExpectWithinLimits(ran, true, what);
   }
 }
