@@ -1,6 +1,10 @@
 #include "engine/motion/interruption.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/motion/axis_demand.h"
 
 namespace rmlcell::motion {
 namespace {
@@ -20,21 +24,55 @@ std::size_t Touched(std::span<const PlannedMotion> ahead, double s) {
 
 double SpeedAtEnd(const PlannedMotion& motion) { return motion.speed.end().speed; }
 
-}  // namespace
+// Shares of the limits to try in turn where the axes are asked for too much: what the bend takes of
+// them falls with the square of the speed.
+constexpr std::array<double, 5> kEases{1.0, 0.5, 0.25, 0.125, 0.0625};
 
-StopOnPath StopAlong(std::span<const PlannedMotion> ahead, double t_s) {
+// Whether the axes can do what a motion on a bend asks of them. All others keep the limits of
+// motion.md 5.1, which leave room for ramps anywhere.
+bool AxesCan(const PlannedMotion& motion, const AxisLimits& axes) {
+  if (motion.path.kind() != PathPiece::Kind::kBlend) return true;
+  constexpr double kRoom = 1.0 + 1e-3;  // plans use up the limits; 0.1 % is no harm
+  constexpr int kPlaces = 32;
+  for (int k = 0; k <= kPlaces; ++k) {
+    const PathState state = motion.speed.At(motion.speed.duration_s() * k / kPlaces);
+    const AxisDerivatives q = DerivativesAt(motion.path, motion.head, state.s);
+    for (std::size_t i = 0; i < kAxisCount; ++i) {
+      const double asked =
+          q.first[i] * state.acceleration + q.second[i] * state.speed * state.speed;
+      if (std::abs(asked) > axes.acceleration[i] * kRoom) return false;
+    }
+  }
+  return true;
+}
+bool AxesCan(std::span<const PlannedMotion> motions, const AxisLimits& axes) {
+  return std::ranges::all_of(motions, [&](const PlannedMotion& m) { return AxesCan(m, axes); });
+}
+
+// The first motion at whose end the plan stands by itself; their number: none.
+std::size_t RestOf(std::span<const PlannedMotion> ahead) {
+  const auto rest = std::ranges::find_if(
+      ahead, [](const PlannedMotion& motion) { return SpeedAtEnd(motion) == 0.0; });
+  return static_cast<std::size_t>(rest - ahead.begin());
+}
+
+// What changes after a halt, and from which motion on nothing does.
+struct Restart {
+  std::vector<PlannedMotion> motions;
+  std::size_t next = 0;
+};
+
+// With `ease` of the limits.
+StopOnPath StopWith(std::span<const PlannedMotion> ahead, double t_s, double ease) {
   StopOnPath stop;
   const double s_from = ahead[0].speed.At(t_s).s;
-  if (t_s >= ahead[0].speed.duration_s() && SpeedAtEnd(ahead[0]) == 0.0) {  // it settles already
-    stop.s = ahead[0].path.length();
-    return stop;
-  }
   // The weakest of the motions on the way sets the ramp, and a weaker ramp may reach one motion
   // more.
   PathLimits limits = ahead[0].limits;
+  limits.acceleration *= ease;
   SpeedProfile ramp = ahead[0].speed.StopFrom(t_s, limits);
   for (std::size_t seen = 1; seen < Touched(ahead, ramp.end().s); ++seen) {
-    limits.acceleration = std::min(limits.acceleration, ahead[seen].limits.acceleration);
+    limits.acceleration = std::min(limits.acceleration, ease * ahead[seen].limits.acceleration);
     limits.jerk = std::min(limits.jerk, ahead[seen].limits.jerk);
     ramp = ahead[0].speed.StopFrom(t_s, limits);
   }
@@ -61,8 +99,18 @@ StopOnPath StopAlong(std::span<const PlannedMotion> ahead, double t_s) {
   return stop;
 }
 
-std::vector<PlannedMotion> RestartAlong(std::span<const PlannedMotion> ahead, double s) {
+// With `ease` of the limits on bends.
+Restart RestartWith(std::span<const PlannedMotion> ahead, double s, double ease) {
   const auto left_of = [&](std::size_t k) { return ahead[k].path.length() - (k == 0 ? s : 0.0); };
+  const auto limits_of = [&](std::size_t k) {
+    PathLimits limits = ahead[k].limits;
+    if (ahead[k].path.kind() == PathPiece::Kind::kBlend) {
+      limits.acceleration *= ease;
+      limits.jerk *= ease;
+      limits.speed *= std::sqrt(ease);
+    }
+    return limits;
+  };
   std::vector<PlannedMotion> motions;
   std::vector<double> caps(ahead.size());  // of the speeds at the ends
   double speed = 0.0;
@@ -75,11 +123,16 @@ std::vector<PlannedMotion> RestartAlong(std::span<const PlannedMotion> ahead, do
     while (last + 1 < ahead.size() && ahead[last].speed.end().acceleration != 0.0) ++last;
     for (std::size_t k = last + 1; k-- > next;) {
       caps[k] = SpeedAtEnd(ahead[k]);
+      if (ease < 1.0) {
+        caps[k] = std::min(caps[k], limits_of(k).speed);
+        if (k + 1 < ahead.size()) caps[k] = std::min(caps[k], limits_of(k + 1).speed);
+      }
       if (k == last || caps[k] <= caps[k + 1]) continue;
-      caps[k] = std::min(caps[k], Reach(caps[k + 1], left_of(k + 1), ahead[k + 1].limits));
+      caps[k] = std::min(caps[k], Reach(caps[k + 1], left_of(k + 1), limits_of(k + 1)));
     }
     for (; next <= last; ++next) {
       PlannedMotion motion = ahead[next];
+      motion.limits = limits_of(next);
       const double left = left_of(next);
       double end = caps[next];
       if (end > speed && RampLength(speed, end, motion.limits) > left) {
@@ -100,7 +153,76 @@ std::vector<PlannedMotion> RestartAlong(std::span<const PlannedMotion> ahead, do
     }
     as_planned = speed == SpeedAtEnd(ahead[last]) && ahead[last].speed.end().acceleration == 0.0;
   }
-  motions.insert(motions.end(), ahead.begin() + static_cast<std::ptrdiff_t>(next), ahead.end());
+  return {std::move(motions), next};
+}
+
+}  // namespace
+
+bool FromFits(const PathState& state, double end_s, double v1, const PathLimits& limits) {
+  constexpr double kRoom = 1e-9;  // lengths that other formulas gave
+  double speed = state.speed;
+  double left = end_s - state.s;
+  const double a = state.acceleration;
+  if (a != 0.0 && std::isfinite(limits.jerk)) {
+    const double time = std::abs(a) / limits.jerk;
+    left -= time * (speed + a * time / 3.0);
+    speed += 0.5 * a * time;
+  }
+  const double room = kRoom * std::max(end_s - state.s, 0.0);
+  if (speed < -kRoom * state.speed || left < -room) return false;
+  // Between speeds that differ by rounding a ramp needs no way.
+  if (std::abs(speed - v1) <= kRoom * std::max(speed, v1)) return true;
+  return RampLength(std::max(speed, 0.0), v1, limits) <= left + room;
+}
+
+StopOnPath StopAlong(std::span<const PlannedMotion> ahead, double t_s, const AxisLimits& axes) {
+  if (t_s >= ahead[0].speed.duration_s() && SpeedAtEnd(ahead[0]) == 0.0) {  // it settles already
+    StopOnPath stop;
+    stop.s = ahead[0].path.length();
+    return stop;
+  }
+  // The motions as planned, one after the other, until it is possible to brake; at the latest the
+  // plan itself comes to rest.
+  std::vector<PlannedMotion> planned;
+  for (std::size_t first = 0; first < ahead.size(); ++first, t_s = 0.0) {
+    const std::span<const PlannedMotion> from_here = ahead.subspan(first);
+    const std::size_t rest = RestOf(from_here);
+    for (const double ease : kEases) {
+      StopOnPath stop = StopWith(from_here, t_s, ease);
+      const bool beyond = stop.index > rest || (!stop.complete && rest < from_here.size());
+      if (beyond || !AxesCan(stop.motions, axes)) continue;
+      stop.index += first;
+      stop.motions.insert(stop.motions.begin(), planned.begin(), planned.end());
+      return stop;
+    }
+    PlannedMotion part = ahead[first];
+    const double s = part.speed.At(t_s).s;
+    const double length = part.path.length();
+    if (s > 0.0 && s < length) {
+      part.path = PartOf(part.path, s, length);
+      part.speed = part.speed.Part(s, length);
+    }
+    part.settling_s = 0.0;
+    if (s < length) planned.push_back(part);
+    if (SpeedAtEnd(ahead[first]) == 0.0) {
+      return {.motions = planned, .index = first, .s = length, .complete = true};
+    }
+  }
+  StopOnPath stop;
+  stop.complete = false;
+  return stop;
+}
+
+std::vector<PlannedMotion> RestartAlong(std::span<const PlannedMotion> ahead, double s,
+                                        const AxisLimits& axes) {
+  Restart restart;
+  for (const double ease : kEases) {
+    restart = RestartWith(ahead, s, ease);
+    if (AxesCan(restart.motions, axes)) break;
+  }
+  std::vector<PlannedMotion> motions = std::move(restart.motions);
+  motions.insert(motions.end(), ahead.begin() + static_cast<std::ptrdiff_t>(restart.next),
+                 ahead.end());
   return motions;
 }
 

@@ -8,6 +8,10 @@
 
 namespace rmlcell::motion {
 
+// Whether SpeedProfile::From gets from `state` to `v1` at `end_s` without breaking `limits`. False
+// above all while braking for `end_s`: what is left is then too short for anything but to go on.
+bool FromFits(const PathState& state, double end_s, double v1, const PathLimits& limits);
+
 // What becomes of planned motions when the machine is stopped on its way. motion.md section 6.
 struct StopOnPath {
   std::vector<PlannedMotion> motions;  // from the instant of the STOP to rest; no settling
@@ -17,11 +21,15 @@ struct StopOnPath {
 };
 
 // The ramp to rest along the planned path that begins at `t_s` of ahead[0]: at once, with the
-// limits of the motions that it touches. Precondition: ahead is not empty.
-StopOnPath StopAlong(std::span<const PlannedMotion> ahead, double t_s);
+// limits of the motions that it touches. Only in a bend where the axes have nothing left to brake
+// with, because the head turns, does it brake more gently or behind the bend.
+// Precondition: ahead is not empty.
+StopOnPath StopAlong(std::span<const PlannedMotion> ahead, double t_s, const AxisLimits& axes);
 
 // The motions that lead from rest at the place `s` of ahead[0] over the same path. Speeds at knots
-// are those planned, as soon as they can be reached again. Precondition: ahead is not empty.
-std::vector<PlannedMotion> RestartAlong(std::span<const PlannedMotion> ahead, double s);
+// are those planned, as soon as they can be reached again; in a bend where the axes would be asked
+// for too much that way, lower ones. Precondition: ahead is not empty.
+std::vector<PlannedMotion> RestartAlong(std::span<const PlannedMotion> ahead, double s,
+                                        const AxisLimits& axes);
 
 }  // namespace rmlcell::motion

@@ -13,13 +13,11 @@ namespace rmlcell::motion {
 
 // The inside of the planner. Moves pass three stages, each a queue:
 //
-//   legs   moves that are one to the speed passes: a line split by points that change nothing. The
-//   first
-//          pair of passes runs over legs at their full length and gives each corner its running
-//          speed w, and with it the size of its curve (motion.md 4.3).
+//   legs   moves that are one to the speed passes: a line split by points that change nothing.
+//          The first pair of passes runs over legs at their full length and gives each corner its
+//          running speed w, and with it the size of its curve (motion.md 4.3).
 //   spans  what the curves leave of the legs, each with the curve behind it. The second pair of
-//   passes
-//          gives the speeds of the knots.
+//          passes gives the speeds of the knots.
 //   items  spans cut back into moves, on demand. Spans between two knots that are passed as fast as
 //          they may be are timed together: ramps run across the knots between (motion.md 5.4).
 //

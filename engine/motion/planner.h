@@ -66,11 +66,12 @@ using PlannedItem = std::variant<PlannedMotion, PlannedMark>;
 class MotionChain;
 
 // Turns commanded motions into timed ones with look-ahead over /FLY passages: motion.md sections 4
-// and 5, level 1; moves in COORD ROBOT stop at every target (4.5 is not planned). Memory is bounded
-// whatever the length of the program, and the result depends neither on when Next is called nor on
-// the inner batches, as long as look-ahead needs no more than kWindow knots. Items are held back
-// until no later motion can change them: call Stop() wherever the machine stands before the next
-// motion (a dwell, a wait, the end), and what was appended comes out.
+// and 5, level 2, or level 1 where MachineLimits::ramps_across_passages is off; moves in COORD
+// ROBOT stop at every target (4.5 is not planned). Memory is bounded whatever the length of the
+// program, and the result depends neither on when Next is called nor on the inner batches, as long
+// as look-ahead needs no more than kWindow knots. Items are held back until no later motion can
+// change them: call Stop() wherever the machine stands before the next motion (a dwell, a wait, the
+// end), and what was appended comes out.
 class Planner {
  public:
   // Knots that may wait for a decision: 75 mm of braking distance in steps of 1 um (motion.md 5.5).
@@ -84,10 +85,10 @@ class Planner {
   Planner(Planner&&) noexcept;
   Planner& operator=(Planner&&) noexcept;
 
-  // Errors: NoMotion (7307) when speed or acceleration is too low to ever arrive. On error the
-  // planner is unchanged; TargetOutOfTravel (7301) when a coordinate is not a number or beyond
-  // 1e12. A path of length zero is not an error and adds nothing; without /FLY it makes the passage
-  // before it a stop.
+  // Errors: NoMotion (7307) when speed or acceleration is too low to ever arrive; TargetOutOfTravel
+  // (7301) when a coordinate is not a number or beyond 1e12. On error the planner is unchanged. A
+  // path of length zero is not an error and adds nothing; without /FLY it makes the passage before
+  // it a stop.
   Status Append(const MoveCommand& move);
 
   // The machine passes the start of the first move at this speed (mm/s), with acceleration zero,

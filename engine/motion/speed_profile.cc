@@ -164,6 +164,7 @@ SpeedProfile SpeedProfile::From(const PathState& state, double end_s, double v1,
                      -sign * limits.jerk);
   }
   now.acceleration = 0.0;
+  now.speed = std::max(now.speed, 0.0);  // rounding
   PathLimits span = limits;
   const double left = end_s - now.s;
   const double slow = limits.speed;

@@ -37,7 +37,9 @@ void CornerLog::Add(const machine::MotionDone& done) {
   if (!motion.path.by_sigma()) {
     move_peak_mm_s_ = std::max(move_peak_mm_s_, motion.speed.peak_speed());
   }
-  if (!motion.ends_move || done.travelled < motion.path.length()) return;
+  const double length = motion.path.length();
+  if (!motion.ends_move || done.travelled < length) return;
+  if (length > 0.0 && done.from >= length) return;  // it was over before: settling, told in parts
   AddCorner(done);
   AddShortfall(done);
   move_peak_mm_s_ = 0.0;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/motion/interruption.h"
 #include "engine/optimo/control/control.h"
 #include "engine/optimo/control/motion_place.h"
 
@@ -53,7 +54,8 @@ bool Control::EndAtATarget() {
     if (LineOrArc(exact.path) && LineOrArc(command->path)) {
       const double begin = PlaceOn(command->path, exact.path.from().tip);
       const double way = command->path.length() - begin - state.s;
-      if (way > 0.0 && RoomToRest(state, exact.limits) <= way * kReaches) {
+      if (way > 0.0 && RoomToRest(state, exact.limits) <= way * kReaches &&
+          motion::FromFits(state, state.s + way, 0.0, exact.limits)) {
         exact.path = command->path.Part(begin + state.s, command->path.length());
         const double length = exact.path.length();
         exact.speed = motion::SpeedProfile::From(

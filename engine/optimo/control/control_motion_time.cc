@@ -30,6 +30,12 @@ std::string_view PathName(PathType path) {
   return "";
 }
 
+// Exactly the end once it has arrived: times are rounded to 1 ns, the profile may be a little
+// longer.
+double PlaceOf(const ActiveMotion& active, SimTime time) {
+  return time >= active.arrival ? active.motion.path.length() : active.s_at(time);
+}
+
 motion::TipPose PoseOn(const motion::PlannedMotion& motion, double s) { return motion.path.At(s); }
 
 }  // namespace
@@ -89,8 +95,8 @@ void Control::TellMotion(SimTime until) {
                       .place = active.note.place,
                       .use = s_.beam.on ? machine::MotionUse::kCut : machine::MotionUse::kTravel,
                       .motion = &active.motion,
-                      .from = active.s_at(std::min(active.told, active.arrival)),
-                      .travelled = active.s_at(std::min(until, active.arrival)),
+                      .from = PlaceOf(active, active.told),
+                      .travelled = PlaceOf(active, until),
                       .profile_start_s = ToSeconds(active.told - active.start),
                       .programmed_mm_s = active.note.feed_mm_s,
                       .beam_on = s_.beam.on,
@@ -173,7 +179,8 @@ bool Control::BringToHalt() {
       marks.emplace_back(ahead.size() - 1, std::get<motion::PlannedMark>(item));
     }
   }
-  const motion::StopOnPath stop = motion::StopAlong(ahead, ToSeconds(s_.now - s_.active->start));
+  const motion::StopOnPath stop =
+      motion::StopAlong(ahead, ToSeconds(s_.now - s_.active->start), parameters_.limits.axes);
   if (!stop.complete) return false;
   TellMotion(s_.now);
   s_.machine.axes = AxesNow();
@@ -190,7 +197,8 @@ bool Control::BringToHalt() {
     if (first + n < stop.index) add_marks(first + n, s_.timeline);
   }
   const std::span<const motion::PlannedMotion> left = std::span(ahead).subspan(stop.index);
-  const std::vector<motion::PlannedMotion> restart = motion::RestartAlong(left, stop.s);
+  const std::vector<motion::PlannedMotion> restart =
+      motion::RestartAlong(left, stop.s, parameters_.limits.axes);
   s_.interrupted.clear();
   // RestartAlong leaves out the first motion when the machine stands at its end.
   const std::size_t dropped = left.size() - restart.size();

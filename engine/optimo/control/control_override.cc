@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/motion/interruption.h"
 #include "engine/optimo/control/control.h"
 #include "engine/optimo/control/motion_place.h"
 
@@ -36,7 +37,8 @@ Lead LeadFrom(const motion::PathState& state, const motion::PathLimits& limits, 
 }  // namespace
 
 // Motions not begun are planned with the new value. The one under way goes over to it from where it
-// is; a bend that has begun, or is too near to slow down before it, keeps its shape and speed.
+// is; a bend that has begun, or is too near to slow down before it, keeps its shape and speed. A
+// machine that brakes for a stop too near for anything else goes on braking.
 void Control::ChangeOverride(double percent) {
   const double before = s_.override_percent;
   if (!(percent > 0.0) || percent == before) return;
@@ -52,10 +54,14 @@ void Control::ChangeOverride(double percent) {
   command.head = active.motion.head;
   command.speed_fraction = FractionOf(active.note);
   command.acceleration_fraction = active.note.accel_fraction;
-  const motion::PathLimits limits = motion::LimitsOf(command, parameters_.limits);
+  // The axes may have more room at the new speed; until that is reached the old limits hold.
+  motion::PathLimits limits = motion::LimitsOf(command, parameters_.limits);
+  limits.acceleration = std::min(limits.acceleration, active.motion.limits.acceleration);
+  limits.jerk = std::min(limits.jerk, active.motion.limits.jerk);
   const motion::PathState here = active.motion.speed.At(ToSeconds(s_.now - active.start));
-  TellMotion(s_.now);
   const double length = active.motion.path.length();
+  if (!motion::FromFits(here, length, 0.0, limits)) return;
+  TellMotion(s_.now);
   motion::SpeedProfile changed = motion::SpeedProfile::From(here, length, 0.0, limits);
   active.motion.limits = limits;
   active.motion.path = active.motion.path.Part(here.s, length);
@@ -135,7 +141,10 @@ std::optional<Control::Onward> Control::OnwardFrom(const ChainPlace& place,
     return std::nullopt;
   }
   const Lead lead = LeadFrom(place.state, here.limits, speed);
+  motion::PathLimits limits = here.limits;
+  limits.speed = std::max(limits.speed, lead.speed);
   const double end = place.state.s + lead.length;
+  if (!motion::FromFits(place.state, end, lead.speed, limits)) return std::nullopt;
   const double begin = PlaceOn(command.path, here.path.from().tip) + end;
   constexpr double kLeft_mm = 1e-3;  // less of a move is not worth a plan
   if (end > here.path.length() || begin > command.path.length() - kLeft_mm) return std::nullopt;

@@ -29,7 +29,7 @@ TEST(StopAlong, BrakesIntoTheBend) {
   north.tag = 1;
   const std::vector<PlannedMotion> plan = Plan({east, north});
   const double t = plan[0].speed.TimeAt(plan[0].path.length() - 1.0);
-  const StopOnPath stop = StopAlong(plan, t);
+  const StopOnPath stop = StopAlong(plan, t, StandardMachine().axes);
   ASSERT_TRUE(stop.complete);
   ASSERT_EQ(stop.motions.size(), 2u);
   EXPECT_EQ(stop.index, 1u);
@@ -53,9 +53,10 @@ TEST(RestartAlong, GoesOnOverTheSamePath) {
     const auto at = static_cast<std::size_t>(dice.Uniform(0.0, static_cast<double>(plan.size())));
     const double t = dice.Uniform(0.0, plan[at].speed.duration_s());
     const std::span<const PlannedMotion> ahead = std::span(plan).subspan(at);
-    const StopOnPath stop = StopAlong(ahead, t);
+    const StopOnPath stop = StopAlong(ahead, t, machine.axes);
     ASSERT_TRUE(stop.complete) << seed;
-    const std::vector<PlannedMotion> rest = RestartAlong(ahead.subspan(stop.index), stop.s);
+    const std::vector<PlannedMotion> rest =
+        RestartAlong(ahead.subspan(stop.index), stop.s, machine.axes);
 
     const double before = plan[at].speed.At(t).s;
     double whole = -before;
