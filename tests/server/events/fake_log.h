@@ -31,6 +31,7 @@ class FakeLog final : public storage::Store {
     failing_ = failing;
   }
   void Hint() {
+    const std::lock_guard calling(calling_);
     std::function<void()> changed;
     {
       const std::lock_guard lock(mutex_);
@@ -65,7 +66,9 @@ class FakeLog final : public storage::Store {
     class Handle final : public Subscription {
      public:
       explicit Handle(FakeLog& log) : log_(log) {}
+      // As of a real store: no call is under way, or comes, when it is gone.
       ~Handle() override {
+        const std::lock_guard calling(log_.calling_);
         const std::lock_guard lock(log_.mutex_);
         log_.changed_ = nullptr;
       }
@@ -177,6 +180,7 @@ class FakeLog final : public storage::Store {
  private:
   static Error No() { return {ErrorCode::kCellStoreFailed, "not in a log", {}}; }
 
+  std::mutex calling_;  // before mutex_
   mutable std::mutex mutex_;
   std::vector<storage::EventRecord> events_;
   std::int64_t last_ = 0;
