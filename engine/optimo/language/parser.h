@@ -84,7 +84,8 @@ class Parser {
   void DropExpressions(std::uint32_t expressions);
 
   // Tokens
-  const Token& Peek(std::size_t ahead = 0) { return lexer_.At(at_ + ahead); }
+  // A copy: the next look may move the tokens.
+  Token Peek(std::size_t ahead = 0) { return lexer_.At(at_ + ahead); }
   Token Take() { return lexer_.At(at_++); }
   bool Is(TokenKind kind) { return Peek().kind == kind; }
   bool TryTake(TokenKind kind) {
