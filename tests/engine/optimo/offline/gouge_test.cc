@@ -49,7 +49,7 @@ std::string Slot(double width, double b = 0.0) {
   return Cut(kLeft, {Pose(0, 0), Pose(10, 0), Pose(10, width, 0, b), Pose(0, width)});
 }
 
-// OPT-8.16, OPT-E.7812: a beam of 2 mm needs a slot of 2 mm. In a narrower one the two long moves
+// OPT-8.16; 7812 is ours: a beam of 2 mm needs a slot of 2 mm. In a narrower one the two long moves
 // change places, lie on each other (width 1.2: y = 1 and 0.2), or on the contour (width 1).
 TEST(Gouge, SlotsNarrowerThanTheBeamAreFound) {
   for (const double width : {0.5, 1.0, 1.2, 1.5, 1.9, 1.99}) {
