@@ -27,7 +27,7 @@ TipPose Pose(const json& tip, const json& ab) {
 }
 
 Head HeadOf(const json& input) {
-  Head head;
+  GantryHead head;
   if (input.contains("tcp")) {
     const Vec3 offset = PointOf(input.at("tcp"));
     head.tool = {offset.x, offset.y, offset.z};
@@ -68,8 +68,7 @@ Figures ColumnRates(const json& input) {
   const double b = NumberOf(input, "B");
   const TipRates first{PointOf(input.at("tip_v")), NumberOf(input, "A1"), NumberOf(input, "B1")};
   const TipRates second{PointOf(input.at("tip_a")), NumberOf(input, "A2"), NumberOf(input, "B2")};
-  const AxisValues v = AxisRates(HeadOf(input), a, b, first);
-  const AxisValues w = AxisSecondRates(HeadOf(input), a, b, first, second);
+  const auto [v, w] = HeadOf(input).RatesOfBoth(a, b, first, second);
   Put(figures, "v", {v[0], v[1], v[2]});
   Put(figures, "a", {w[0], w[1], w[2]});
   return figures;

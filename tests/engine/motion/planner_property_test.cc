@@ -119,7 +119,7 @@ RC_GTEST_PROP(PlannerProperty, ScaledTakesTheSameTime, ()) {
       return p;
     };
     move.path = PathPiece::Line(grow(move.path.from()), grow(move.path.to()));
-    move.head.length_mm *= c;
+    move.head = GantryHead{.length_mm = GantryHead{}.length_mm * c};
   }
   MachineLimits machine = StandardMachine();
   machine.tip_speed_mm_s *= c;
