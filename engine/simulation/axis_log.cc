@@ -12,6 +12,9 @@ constexpr std::size_t kFirstRotary = 3;
 
 }  // namespace
 
+std::string_view AxisName(int axis) { return kAxisNames[static_cast<std::size_t>(axis)]; }
+bool IsRotaryAxis(int axis) { return static_cast<std::size_t>(axis) >= kFirstRotary; }
+
 void AxisLog::AddSweep(Axis& axis, const CoordinateSweep& sweep) {
   axis.minimum = axis.seen ? std::min(axis.minimum, sweep.minimum) : sweep.minimum;
   axis.maximum = axis.seen ? std::max(axis.maximum, sweep.maximum) : sweep.maximum;

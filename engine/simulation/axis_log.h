@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string_view>
 
 #include "engine/machine/shape.h"
 #include "engine/motion/trajectory.h"
@@ -9,6 +10,10 @@
 #include "engine/simulation/report.h"
 
 namespace rmlcell::simulation {
+
+// 0..4: "X" "Y" "Z" "A" "B".
+std::string_view AxisName(int axis);
+bool IsRotaryAxis(int axis);
 
 // What each axis did over a run: travel, range, reversals, peaks.
 class AxisLog {

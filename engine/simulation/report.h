@@ -10,6 +10,7 @@
 
 #include "engine/core/diagnostic.h"
 #include "engine/core/units.h"
+#include "engine/machine/family.h"
 #include "engine/machine/run.h"
 #include "engine/machine/shape.h"
 
@@ -140,6 +141,22 @@ struct Finding {
   bool operator==(const Finding&) const = default;
 };
 
+// An axis that a step takes out of its travel: the worst time that it did. motion.md 2.6.
+inline constexpr std::size_t kReportedViolationsMax = machine::kDiagnosticsMax;
+struct AxisViolation {
+  machine::Place place;
+  std::string axis;  // "X"
+  bool rotary = false;
+  double excess = 0.0;     // mm or rad
+  bool at_target = false;  // the target lies outside; else the path on the way
+  motion::AxisPose axes;   // where it is worst
+  motion::Vec3 tip;
+  SimTime first_at{0};  // that the step did it: a motion begins
+  std::uint64_t count = 1;
+
+  bool operator==(const AxisViolation&) const = default;
+};
+
 // How far a product went before its budget was used up.
 struct ProductState {
   bool made = false;
@@ -191,7 +208,9 @@ struct RunReport {
 
   std::vector<Finding> findings;  // in order of first occurrence; at most machine::kDiagnosticsMax
   std::uint64_t findings_dropped = 0;
-  std::vector<machine::Figure> figures;  // the family's own
+  std::vector<AxisViolation> violations;  // in order of first occurrence
+  std::uint64_t violations_dropped = 0;   // at further steps, past kReportedViolationsMax
+  std::vector<machine::Figure> figures;   // the family's own
 
   ProductState trace;
   ProductState toolpath;

@@ -197,6 +197,10 @@ void ReportRecorder::OnResume(SimTime at, const machine::Place& /*place*/) {
   halted_ = false;
 }
 
+void ReportRecorder::OnViolation(const machine::TravelViolation& violation) {
+  violations_.Add(violation);
+}
+
 void ReportRecorder::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
   findings_.Add(at, diagnostic);
 }
@@ -234,6 +238,8 @@ RunReport ReportRecorder::Report(const machine::Run& run) const {
   axes_.WriteTo(report);
   report.findings = findings_.findings();
   report.findings_dropped = findings_.dropped();
+  report.violations = violations_.violations();
+  report.violations_dropped = violations_.dropped();
   report.figures = run.figures();
   return report;
 }

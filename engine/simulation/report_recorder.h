@@ -7,6 +7,7 @@
 #include "engine/simulation/finding_list.h"
 #include "engine/simulation/report.h"
 #include "engine/simulation/time_ledger.h"
+#include "engine/simulation/violation_list.h"
 #include "engine/simulation/work_table.h"
 
 namespace rmlcell::simulation {
@@ -25,6 +26,7 @@ class ReportRecorder final : public machine::RunObserver {
   void OnWait(const machine::Wait& wait) override;
   void OnHalt(const machine::Halt& halt) override;
   void OnResume(SimTime at, const machine::Place& place) override;
+  void OnViolation(const machine::TravelViolation& violation) override;
   void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override;
 
   // Once, when the run is over: what nothing was told about since is standstill.
@@ -48,6 +50,7 @@ class ReportRecorder final : public machine::RunObserver {
   BeamWork beam_;
   CornerLog corners_;
   FindingList findings_;
+  ViolationList violations_;
   machine::Place place_;
   bool halted_ = false;
   std::uint64_t halts_ = 0;
