@@ -80,6 +80,20 @@ v1::AxisFigures ToProto(const simulation::AxisFigures& axis) {
   return message;
 }
 
+v1::AxisViolation ToProto(const simulation::AxisViolation& violation) {
+  v1::AxisViolation message;
+  SetPlace(violation.place, *message.mutable_place());
+  message.set_axis(violation.axis);
+  message.set_rotary(violation.rotary);
+  message.set_excess(violation.excess);
+  message.set_at_target(violation.at_target);
+  *message.mutable_position() = PositionOf({.tip = violation.tip, .a_rad = violation.axes.a_rad, .b_rad = violation.axes.b_rad},
+                                           violation.axes);
+  message.set_time_s(ToSeconds(violation.first_at));
+  message.set_count(static_cast<std::int64_t>(violation.count));
+  return message;
+}
+
 v1::ProductState ToProto(const simulation::ProductState& product) {
   v1::ProductState message;
   message.set_made(product.made);
@@ -138,6 +152,10 @@ v1::RunReport ToProto(const simulation::RunReport& report,
     diagnostic.set_count(static_cast<std::int64_t>(finding.count));
   }
   message.set_diagnostics_dropped(static_cast<std::int64_t>(report.findings_dropped));
+  for (const simulation::AxisViolation& violation : report.violations) {
+    *message.add_violations() = ToProto(violation);
+  }
+  message.set_violations_dropped(static_cast<std::int64_t>(report.violations_dropped));
   for (const machine::Figure& figure : report.figures) *message.add_figures() = ToProto(figure);
   for (const auto& [name, value] : variables) (*message.mutable_variables())[name] = value;
   for (const auto& [name, value] : report.changed_parameters) (*message.mutable_parameters())[name] = value;
