@@ -30,7 +30,7 @@ class AxisLog {
 
   // Writes axes, tip_figures and the range of the axes. A rotary axis that a mill never turned is
   // left out.
-  void WriteTo(RunReport& report) const;
+  void WriteTo(ScopeFigures& figures) const;
 
  private:
   struct Axis {
@@ -42,6 +42,7 @@ class AxisLog {
     std::uint64_t reversals = 0;
     double peak_speed = 0.0;
     double peak_acceleration = 0.0;
+    double peak_jerk = 0.0;
   };
   void AddSweep(Axis& axis, const CoordinateSweep& sweep);
 
@@ -50,6 +51,7 @@ class AxisLog {
   motion::LongSum tip_path_;
   double tip_peak_speed_ = 0.0;
   double tip_peak_acceleration_ = 0.0;
+  double tip_peak_jerk_ = 0.0;
 };
 
 }  // namespace rmlcell::simulation
