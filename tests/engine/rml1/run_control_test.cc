@@ -164,7 +164,7 @@ TEST(MillRunControl, StopsOnThePath) {
 
 // A STOP in the last ramp ends where the motion would have ended.
 TEST(MillRunControl, StopsNoLaterThanTheMotionItself) {
-  TestRun run(ParametersOf("t1"), "!MC0;PU6000,0;PU0,0;");
+  TestRun run(ParametersOf("t1"), "!MC0;PU6000,0;!RC15;PD;");
   const double end = TrapezoidTime(15, 2) + TrapezoidTime(60, 60);
   run->Advance(FromSeconds(end - 0.01));
   run.Press(InputKind::kStop);
