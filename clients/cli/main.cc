@@ -265,6 +265,7 @@ void AddJobVerbs(CLI::App& app, Remote& remote, int& exit_code) {
       RemoteVerb(app, "submit", "Submit a job",
                  "  rmlcell submit mill-1 --slot 7 --watch         a stored program, watched live\n"
                  "  rmlcell submit optimo-1 part.S --watch         a file, without storing it\n"
+                 "  rmlcell submit optimo-1 part.S --pace 1 --watch   as fast as the machine would be\n"
                  "  rmlcell submit optimo-1 part.S --kind check    only what is wrong with it",
                  remote);
   verb->add_option("MACHINE", submit.machine)->required();
@@ -276,6 +277,8 @@ void AddJobVerbs(CLI::App& app, Remote& remote, int& exit_code) {
   verb->add_option("--title", submit.title);
   verb->add_option("--request-id", submit.request_id, "repeating it gives the same job");
   verb->add_option("--override", submit.override_percent, "feed override, percent");
+  verb->add_option("--pace", submit.pace, "1: as fast as the machine would be; 10: ten times; 0: at once")
+      ->check(CLI::Range(0.0, 1000.0));
   verb->add_option("--inputs", submit.inputs_file, "external inputs and keys over time");
   verb->add_flag("--trace", submit.trace, "keep a trace");
   verb->add_flag("--watch", submit.watch, "watch the job to its end");

@@ -15,7 +15,7 @@ struct HeadVector {
   double x;     // r_x
   double m, n;  // r turned about the tool's X axis: components across and along Z
 
-  HeadVector(const Head& head, double a_rad, double b_rad)
+  HeadVector(const GantryHead& head, double a_rad, double b_rad)
       : sin_a(std::sin(a_rad)), cos_a(std::cos(a_rad)), x(-head.tool.x_mm) {
     const double sin_b = std::sin(b_rad);
     const double cos_b = std::cos(b_rad);
@@ -34,17 +34,6 @@ struct HeadVector {
 
 AxisValues Together(const Vec3& column, double a, double b) {
   return {column.x, column.y, column.z, a, b};
-}
-
-AxisValues FirstRates(const HeadVector& w, const TipRates& first) {
-  return Together(first.tip + w.ByA() * first.a + w.ByB() * first.b, first.a, first.b);
-}
-
-AxisValues SecondRates(const HeadVector& w, const TipRates& first, const TipRates& second) {
-  return Together(second.tip + w.ByA() * second.a + w.ByB() * second.b +
-                      w.ByAA() * (first.a * first.a) + w.ByAB() * (2.0 * first.a * first.b) +
-                      w.ByBB() * (first.b * first.b),
-                  second.a, second.b);
 }
 
 // The angle that differs from `angle` by whole turns and is nearest to `near`.
@@ -72,30 +61,49 @@ ToolAxes AxesOfTool(double a_rad, double b_rad) {
           .u = {sin_a * sin_b, -cos_a * sin_b, cos_b}};
 }
 
-double Head::arm_mm() const { return Norm({tool.x_mm, tool.y_mm, length_mm - tool.z_mm}); }
+Vec3 GantryHead::Offset(double a_rad, double b_rad) const {
+  return HeadVector(*this, a_rad, b_rad).Value();
+}
+
+Swing GantryHead::SwingOf(double a_rad, double b_rad, const TipRates& first,
+                          const TipRates& second) const {
+  const HeadVector w(*this, a_rad, b_rad);
+  const Vec3 by_a = w.ByA();
+  const Vec3 by_b = w.ByB();
+  return {.first = by_a * first.a + by_b * first.b,
+          .second = by_a * second.a + by_b * second.b + w.ByAA() * (first.a * first.a) +
+                    w.ByAB() * (2.0 * first.a * first.b) + w.ByBB() * (first.b * first.b)};
+}
+
+double GantryHead::reach_mm() const { return Norm({tool.x_mm, tool.y_mm, length_mm - tool.z_mm}); }
 
 AxisPose Head::ColumnOf(const TipPose& pose) const {
-  return {pose.tip + HeadVector(*this, pose.a_rad, pose.b_rad).Value(), pose.a_rad, pose.b_rad};
+  const Vec3 offset =
+      std::visit([&](const auto& head) { return head.Offset(pose.a_rad, pose.b_rad); }, kind_);
+  return {pose.tip + offset, pose.a_rad, pose.b_rad};
 }
 
 TipPose Head::TipOf(const AxisPose& pose) const {
-  return {pose.column - HeadVector(*this, pose.a_rad, pose.b_rad).Value(), pose.a_rad, pose.b_rad};
+  const Vec3 offset =
+      std::visit([&](const auto& head) { return head.Offset(pose.a_rad, pose.b_rad); }, kind_);
+  return {pose.column - offset, pose.a_rad, pose.b_rad};
 }
 
-AxisValues AxisRates(const Head& head, double a_rad, double b_rad, const TipRates& first) {
+double Head::reach_mm() const {
+  return std::visit([](const auto& head) { return head.reach_mm(); }, kind_);
+}
+
+AxisValues Head::Rates(double a_rad, double b_rad, const TipRates& first) const {
   if (first.a == 0.0 && first.b == 0.0) return Together(first.tip, 0.0, 0.0);
-  return FirstRates(HeadVector(head, a_rad, b_rad), first);
+  return RatesOfBoth(a_rad, b_rad, first, {}).first;
 }
 
-AxisValues AxisSecondRates(const Head& head, double a_rad, double b_rad, const TipRates& first,
-                           const TipRates& second) {
-  return SecondRates(HeadVector(head, a_rad, b_rad), first, second);
-}
-
-BothAxisRates AxisRatesOfBoth(const Head& head, double a_rad, double b_rad, const TipRates& first,
-                              const TipRates& second) {
-  const HeadVector w(head, a_rad, b_rad);
-  return {FirstRates(w, first), SecondRates(w, first, second)};
+BothAxisRates Head::RatesOfBoth(double a_rad, double b_rad, const TipRates& first,
+                                const TipRates& second) const {
+  const Swing swing = std::visit(
+      [&](const auto& head) { return head.SwingOf(a_rad, b_rad, first, second); }, kind_);
+  return {Together(first.tip + swing.first, first.a, first.b),
+          Together(second.tip + swing.second, second.a, second.b)};
 }
 
 HeadAngles AnglesOf(const Vec3& u, const HeadAngles& near) {

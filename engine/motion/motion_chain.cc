@@ -92,7 +92,7 @@ bool MotionChain::Join(const MoveCommand& move, const PathLimits& limits) {
     passage = Passage::kStopNoSpeed;
   } else if (before.path.by_sigma() || move.path.by_sigma()) {
     passage = Passage::kStopNeighbour;
-  } else if (SameTip(before.head, move.head) && Contiguous(before.path.to(), move.path.from())) {
+  } else if (before.head == move.head && Contiguous(before.path.to(), move.path.from())) {
     cap = before.overshoot * std::min(before.limits.speed, limits.speed);
     if (machine_.junction_jump_mm_s > 0.0) {  // a mill
       passage = Passage::kThrough;

@@ -112,7 +112,7 @@ void MotionChain::TakePart(SpeedProfile& speed, const Timing& timing, double to,
     return;
   }
   if (place_.s < timing.from) timing.profile->Advance(place_, timing.from);
-  speed = timing.profile->PartTo(place_, end);
+  timing.profile->PartTo(place_, end, speed);
 }
 
 // Motions are made where they wait to be taken: they are large. The slot holds an old one, so every

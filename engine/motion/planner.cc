@@ -30,7 +30,7 @@ bool IsAboveZero(const PathLimits& limits) {
 // believes it begins: a line begins where the machine is.
 bool NeedsAnchor(const PathPiece& path, const TipPose* end) {
   constexpr double kGap_mm = 1e-3;  // a thousand such moves
-  if (end == nullptr || path.from() == *end) return false;
+  if (end == nullptr) return false;
   const bool straight = path.kind() == PathPiece::Kind::kLine ||
                         path.kind() == PathPiece::Kind::kRotary || !(path.length() > 0.0);
   return straight && Distance(end->tip, path.from().tip) <= kGap_mm &&
@@ -51,10 +51,13 @@ Planner::Planner(Planner&&) noexcept = default;
 Planner& Planner::operator=(Planner&&) noexcept = default;
 
 Status Planner::Append(const MoveCommand& move) {
-  if (!IsUsable(move.path.from()) || !IsUsable(move.path.to()) || !IsUsable(move.path.length())) {
+  const TipPose* end = chain_->end();
+  const bool goes_on = end != nullptr && move.path.from() == *end;  // from where all is well
+  if ((!goes_on && !IsUsable(move.path.from())) || !IsUsable(move.path.to()) ||
+      !IsUsable(move.path.length())) {
     return Error{ErrorCode::kTargetOutOfTravel, "a coordinate is not a usable number", {}};
   }
-  if (NeedsAnchor(move.path, chain_->end())) {
+  if (!goes_on && NeedsAnchor(move.path, end)) {
     MoveCommand anchored = move;
     anchored.path = PathPiece::Line(*chain_->end(), move.path.to());
     return AppendChecked(anchored);

@@ -20,6 +20,7 @@
 #include "server/jobs/framing.h"
 #include "server/worker/job_events.h"
 #include "server/worker/memory_budget.h"
+#include "server/worker/pacer.h"
 
 namespace rmlcell::server {
 namespace {
@@ -32,6 +33,7 @@ constexpr std::chrono::milliseconds kPositionInterval{50};  // at most 20 positi
 constexpr std::chrono::milliseconds kStepTarget{5};
 constexpr SimTime kSliceMin = std::chrono::milliseconds(10);
 constexpr SimTime kSliceMax = std::chrono::hours(10);
+constexpr SimTime kPacedSliceMin = std::chrono::milliseconds(1);
 
 double ProcessorTime_s() {
   timespec time{};
@@ -253,13 +255,16 @@ class Attempt {
 
   End Drive(machine::Run& run, simulation::Simulation& simulation, const simulation::Recorder& recorder) {
     SimTime slice = std::chrono::milliseconds(100);
+    Pacer pacer(assignment_.job().simulation().pace());
     Clock::time_point last_position = Clock::now();
     SendPosition(run);
     while (!simulation.finished()) {
       const Clock::time_point begin = Clock::now();
       CarryOut(simulation);
       if (simulation.finished()) break;
-      const machine::RunPhase phase = simulation.Step(slice);
+      const SimTime due = pacer.Due(begin, simulation.state().time, slice);
+      const bool early = pacer.paced() && due < kPacedSliceMin && simulation.phase() == machine::RunPhase::kRunning;
+      const machine::RunPhase phase = early ? machine::RunPhase::kRunning : simulation.Step(due);
       const auto took = Clock::now() - begin;
       if (took < kStepTarget / 2) slice = std::min(slice * 2, kSliceMax);
       if (took > kStepTarget) slice = std::max(slice / 2, kSliceMin);
@@ -269,7 +274,10 @@ class Attempt {
         simulation.End(machine::OutcomeKind::kStopped, ErrorCode::kCellWaitsForever);
         break;
       }
-      const auto patience = held ? std::chrono::milliseconds(20) : std::chrono::milliseconds(0);
+      if (held) pacer.Stand();
+      const auto patience = held    ? std::chrono::milliseconds(20)
+                            : early ? Pacer::kWait
+                                    : std::chrono::milliseconds(0);
       while (std::optional<v1::WorkResponse> message = line_.Receive(patience)) {
         Obey(*message);
         if (released_) return End::kLost;

@@ -27,7 +27,8 @@ std::string_view AxisName(int axis) {
 }  // namespace
 
 motion::Head Control::HeadNow() const {
-  return {.length_mm = parameters_.head_length_mm, .tool = s_.machine.tool.offset};
+  return motion::GantryHead{.length_mm = parameters_.head_length_mm,
+                            .tool = s_.machine.tool.offset};
 }
 
 // The five coordinates of a MOVE or its /VIA: a machine-frame tip in COORD ABSOL, a column in COORD
