@@ -229,7 +229,8 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
   Leg& leg = legs_[number];
   const double wanted = running_.speed();
   const double total = run_length_ + leg.length;
-  if (!leg.ends_run && number - legs_.first() >= window_ / 2) {  // nor may a run fill it
+  // Nor may a run fill it; but it holds what the curve before it takes.
+  if (!leg.ends_run && number - legs_.first() >= window_ / 2 && total >= run_cut_) {
     leg.ends_run = true;
     ++starved_;
   }

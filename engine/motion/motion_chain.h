@@ -134,6 +134,7 @@ class MotionChain {
   std::size_t SectionSize();
   bool EndsSection(std::size_t index);
   void PlanSection();
+  PathLimits LimitsOnCurve(const Span& span, Number last_move);
   Timing PresentTiming(double length);
   void TakePart(SpeedProfile& speed, const Timing& timing, double to, bool to_end);
   void EmitMove();
