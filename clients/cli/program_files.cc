@@ -24,13 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// "12" of "dir/12.S"; nothing when the name is not a slot number.
-std::optional<int> SlotFromName(const fs::path& path) {
-  const auto number = ParseInteger(path.stem().string());
-  if (!number || !IsSlot(static_cast<int>(std::clamp<long long>(*number, -1, 1000)))) return std::nullopt;
-  return static_cast<int>(*number);
-}
-
 Result<bridge::ProgramInput> ReadProgram(const std::string& file, int slot, bool may_be_empty) {
   Result<std::string> bytes = bridge::ReadFile(file, kFileBytesMax);
   if (!bytes) return bytes.error();
@@ -44,6 +37,19 @@ Result<bridge::ProgramInput> ReadProgram(const std::string& file, int slot, bool
 }
 
 }  // namespace
+
+std::optional<int> SlotFromName(const fs::path& path) {
+  const auto number = ParseInteger(path.stem().string());
+  if (!number || !IsSlot(static_cast<int>(std::clamp<long long>(*number, -1, 1000)))) return std::nullopt;
+  return static_cast<int>(*number);
+}
+
+Result<bridge::MachineFile> ReadMachine(const std::string& path) {
+  if (path.empty()) return bridge::MachineFile{};
+  const Result<std::string> text = bridge::ReadFile(path, kFileBytesMax);
+  if (!text) return text.error();
+  return bridge::ParseMachineFile(*text, path);
+}
 
 Status WriteWholeFile(const std::string& path, std::string_view bytes) {
   const auto failed = [&](int error) {

@@ -49,7 +49,7 @@ _rmlcell_options() {
   local remote="--help --server --json"
   case $1 in
     "") echo "--help --version" ;;
-    check) echo "--help --family --machine --errors-only --fix --dry-run --json" ;;
+    check) echo "--help --family --machine --inputs --errors-only --fix --dry-run --json" ;;
     simulate)
       echo "--help --slot --main --executable --family --profile --machine --inputs --mode --override --simul" \
         "--break --budget --vars --svg --samples --plot --state-in --state-out --trace --facts --json" ;;
@@ -67,7 +67,7 @@ _rmlcell_options() {
     put) echo "$remote --etag --check-only" ;;
     get) echo "$remote --form --output" ;;
     submit)
-      echo "$remote --slot --kind --title --request-id --override --inputs --trace --watch" ;;
+      echo "$remote --slot --kind --title --request-id --override --pace --inputs --trace --watch" ;;
     watch) echo "$remote --after" ;;
     jobs) echo "$remote --filter --limit" ;;
     picture) echo "$remote --output" ;;
@@ -81,7 +81,7 @@ _rmlcell_takes_value() {
   case $1 in
     --slot | --main | --executable | --family | --profile | --machine | --inputs | --mode | --override | \
       --simul | --break | --budget | --vars | --svg | --samples | --plot | --state-in | --state-out | --server | --etag | --form | \
-      --output | -o | --kind | --title | --request-id | --after | --filter | --limit | --move | --turn | --shift) return 0 ;;
+      --output | -o | --kind | --title | --request-id | --pace | --after | --filter | --limit | --move | --turn | --shift) return 0 ;;
   esac
   return 1
 }
@@ -97,6 +97,7 @@ _rmlcell_values() {
     --kind) _rmlcell_offer simulate check run ;;
     --form) _rmlcell_offer source object executable listing ;;
     --override) _rmlcell_offer 10 25 40 55 70 85 100 115 130 145 ;;
+    --pace) _rmlcell_offer 1 10 100 ;;
     --etag) _rmlcell_offer none ;;
     --budget)
       compopt -o nospace 2>/dev/null

@@ -58,6 +58,7 @@ void MotionChain::Append(const MoveCommand& move, const PathLimits& limits) {
   slot.limits = limits;
   // What is no number makes no passage.
   slot.overshoot = move.overshoot_fraction > 0.0 ? std::min(move.overshoot_fraction, 1.0) : 0.0;
+  slot.passage_speed = move.passage_speed_mm_s;
   slot.settling_s = move.settles ? machine_.settling_s : 0.0;
   slot.tag = move.tag;
   slot.fly = move.fly;
@@ -91,12 +92,16 @@ bool MotionChain::Join(const MoveCommand& move, const PathLimits& limits) {
     passage = Passage::kStopNoSpeed;
   } else if (before.path.by_sigma() || move.path.by_sigma()) {
     passage = Passage::kStopNeighbour;
-  } else if (SameTip(before.head, move.head) && Contiguous(before.path.to(), move.path.from())) {
+  } else if (before.head == move.head && Contiguous(before.path.to(), move.path.from())) {
     cap = before.overshoot * std::min(before.limits.speed, limits.speed);
     if (machine_.junction_jump_mm_s > 0.0) {  // a mill
       passage = Passage::kThrough;
-      cap = std::min(cap, JunctionSpeed(before.path.Tangent(before.path.length()),
-                                        move.path.Tangent(0.0), machine_.junction_jump_mm_s));
+      bends = true;  // nothing behind it makes a curve longer: what is before it need not wait
+      cap = std::min({cap, before.passage_speed,
+                      JunctionSpeed(before.path.Tangent(before.path.length()),
+                                    move.path.Tangent(0.0), machine_.junction_jump_mm_s)});
+      const double turn = std::abs(move.path.a_rate() - before.path.a_rate());
+      if (turn > 0.0) cap = std::min(cap, machine_.junction_jump_a_rad_s / turn);
     } else {
       leg.corner.Assign(before.path, move.path);
       passage = leg.corner.passage();
@@ -107,7 +112,11 @@ bool MotionChain::Join(const MoveCommand& move, const PathLimits& limits) {
     }
   }
   stands_ = false;
-  if (passage == Passage::kThrough && Equal(before.limits, limits) && Equal(cap, limits.speed)) {
+  // Lines of a mill stay apart, which without a limit on jerk costs no time: one leg of them all
+  // would come out only when it is over.
+  const bool apart = machine_.junction_jump_mm_s > 0.0 && std::isinf(machine_.tip_jerk_mm_s3);
+  if (!apart && passage == Passage::kThrough && Equal(before.limits, limits) &&
+      Equal(cap, limits.speed)) {
     // A line without end must not fill the window as one leg.
     if (leg.last_move - leg.first_move < window_ / 2) return false;
     ++starved_;
@@ -220,7 +229,8 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
   Leg& leg = legs_[number];
   const double wanted = running_.speed();
   const double total = run_length_ + leg.length;
-  if (!leg.ends_run && number - legs_.first() >= window_ / 2) {  // nor may a run fill it
+  // Nor may a run fill it; but it holds what the curve before it takes.
+  if (!leg.ends_run && number - legs_.first() >= window_ / 2 && total >= run_cut_) {
     leg.ends_run = true;
     ++starved_;
   }

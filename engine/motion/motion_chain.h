@@ -62,6 +62,7 @@ class MotionChain {
     Head head;
     PathLimits limits;
     double overshoot = 0.0;
+    double passage_speed = 0.0;  // mills
     double settling_s = 0.0;
     std::uint64_t tag = 0;
     bool fly = false;
@@ -133,6 +134,7 @@ class MotionChain {
   std::size_t SectionSize();
   bool EndsSection(std::size_t index);
   void PlanSection();
+  PathLimits LimitsOnCurve(const Span& span, Number last_move);
   Timing PresentTiming(double length);
   void TakePart(SpeedProfile& speed, const Timing& timing, double to, bool to_end);
   void EmitMove();

@@ -19,6 +19,7 @@ constexpr machine::FamilyInfo kInfo = {.id = "optimo",
                                        .axes = "X Y Z A B",
                                        .has_executables = true,
                                        .has_schedules = true,
+                                       .checked_by_running = true,
                                        .hold_in_remote = false,  // OPT-4.17
                                        .no_slot = ErrorCode::kProgramNumber,
                                        .empty_slot = ErrorCode::kProgramMissing};

@@ -181,7 +181,7 @@ TEST(Planner, PassagesThatAreNotBlended) {
   turn.path = PathPiece::Line({{10, 0, 0}, 0, 0}, {{10, 0, 0}, 1, 0});
   EXPECT_EQ(passage(east, turn), Passage::kStopNeighbour);
   MoveCommand other_tool = north;
-  other_tool.head.tool.z_mm = 3.0;
+  other_tool.head = GantryHead{.tool = {.z_mm = 3.0}};
   EXPECT_EQ(passage(east, other_tool), Passage::kStop);  // as if /FLY were absent, OPT-2.48
   // A short neighbour: at most half of it, so the bend is slower than the 50 mm/s of both moves.
   EXPECT_EQ(passage(east, LineTo({10, 0, 0}, {10, 1, 0}, 2)), Passage::kBlendCapped);
@@ -219,6 +219,39 @@ TEST(Planner, TinyStepsAreNotLost) {
     length += path.length();
   }
   EXPECT_NEAR(length, 1e-4, 1.1e-6);  // the last step of up to 1e-6 mm is dropped
+}
+
+// Behind a bend come more points straight on, each with another SPEED, than the window holds, and
+// the bend takes its part of them: what is decided early then must not cut into it. OPT-2.46,
+// OPT-B.29
+TEST(Planner, WindowFullOfPointsThatABendSwallows) {
+  for (const double step_mm : {1e-3, 1e-2, 1e-1}) {
+    for (const int count : {20, 31, 33, 40, 64, 80}) {
+      Planner planner(StandardMachine(), 64);
+      Vec3 at{1000, 900, -200};
+      double way = 0.0, planned = 0.0;
+      TipPose last{at};
+      const auto go = [&](const Vec3& step, double speed, bool fly) {
+        MoveCommand move = LineTo(at, at + step, 1, fly);
+        move.speed_fraction = speed;
+        at = at + step;
+        way += Norm(step);
+        ASSERT_TRUE(planner.Append(move));
+        while (const std::optional<PlannedItem> item = planner.Next()) {
+          const PathPiece& path = std::get<PlannedMotion>(*item).path;
+          ASSERT_LE(Distance(path.from().tip, last.tip), 1e-9);
+          last = path.to();
+          planned += path.length();
+        }
+      };
+      go({100, 0, 0}, 0.5, true);
+      for (int k = 0; k < count; ++k) go({0, step_mm, 0}, k % 2 == 0 ? 0.4 : 0.5, true);
+      for (int k = 0; k < count; ++k) go({0, 1, 0}, k % 2 == 0 ? 0.4 : 0.5, true);
+      go({100, 0, 0}, 0.5, false);
+      EXPECT_EQ(last.tip, at);
+      EXPECT_LE(planned, way);
+    }
+  }
 }
 
 // A copy goes on by itself.
