@@ -6,9 +6,10 @@
 namespace rmlcell::motion {
 namespace {
 
-constexpr std::size_t kBatchMin = 32;  // knots before a backward pass is worth its while
-constexpr double kCutMin_mm = 1e-4;    // a smaller curve is a stop, motion.md 4.4
-constexpr double kEqualLimits = 1e-9;  // relative
+constexpr std::size_t kBatchMin = 32;    // knots before a backward pass is worth its while
+constexpr std::size_t kMillLegMax = 16;  // moves: most of what one leg of all would save
+constexpr double kCutMin_mm = 1e-4;      // a smaller curve is a stop, motion.md 4.4
+constexpr double kEqualLimits = 1e-9;    // relative
 constexpr double kContiguous_mm = 1e-6;
 
 bool Equal(double a, double b) { return a == b || std::abs(a - b) <= kEqualLimits * std::abs(b); }
@@ -86,17 +87,17 @@ bool MotionChain::Join(const MoveCommand& move, const PathLimits& limits) {
   Leg& leg = legs_.back();
   Passage passage = Passage::kStop;
   double cap = 0.0;
-  bool bends =
-      false;  // a curve must not reach over it, although without a limit on jerk it is passed
+  const bool mill = machine_.junction_jump_mm_s > 0.0;
+  // A curve must not reach over it, although without a limit on jerk it is passed.
+  bool bends = false;
   if (before.overshoot <= 0.0 || stands_) {
     passage = Passage::kStopNoSpeed;
   } else if (before.path.by_sigma() || move.path.by_sigma()) {
     passage = Passage::kStopNeighbour;
   } else if (before.head == move.head && Contiguous(before.path.to(), move.path.from())) {
     cap = before.overshoot * std::min(before.limits.speed, limits.speed);
-    if (machine_.junction_jump_mm_s > 0.0) {  // a mill
+    if (mill) {
       passage = Passage::kThrough;
-      bends = true;  // nothing behind it makes a curve longer: what is before it need not wait
       cap = std::min({cap, before.passage_speed,
                       JunctionSpeed(before.path.Tangent(before.path.length()),
                                     move.path.Tangent(0.0), machine_.junction_jump_mm_s)});
@@ -112,14 +113,11 @@ bool MotionChain::Join(const MoveCommand& move, const PathLimits& limits) {
     }
   }
   stands_ = false;
-  // Lines of a mill stay apart, which without a limit on jerk costs no time: one leg of them all
-  // would come out only when it is over.
-  const bool apart = machine_.junction_jump_mm_s > 0.0 && std::isinf(machine_.tip_jerk_mm_s3);
-  if (!apart && passage == Passage::kThrough && Equal(before.limits, limits) &&
-      Equal(cap, limits.speed)) {
-    // A line without end must not fill the window as one leg.
-    if (leg.last_move - leg.first_move < window_ / 2) return false;
-    ++starved_;
+  if (passage == Passage::kThrough && Equal(before.limits, limits) && Equal(cap, limits.speed)) {
+    // A line without end must not fill the window as one leg. Of a mill it need not even wait:
+    // without a limit on jerk a leg may be cut anywhere.
+    if (leg.last_move - leg.first_move < (mill ? kMillLegMax : window_ / 2)) return false;
+    if (!mill) ++starved_;
     bends = true;
   }
   CloseLeg(passage, bends, cap);
@@ -229,10 +227,13 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
   Leg& leg = legs_[number];
   const double wanted = running_.speed();
   const double total = run_length_ + leg.length;
-  // Nor may a run fill it; but it holds what the curve before it takes.
-  if (!leg.ends_run && number - legs_.first() >= window_ / 2 && total >= run_cut_) {
+  // Nor may a run fill the window; but it holds what the curve before it takes. The run of a mill has
+  // no curve at its end to wait for.
+  const bool mill = machine_.junction_jump_mm_s > 0.0;
+  const std::size_t longest = mill ? kBatchMin : window_ / 2;
+  if (!leg.ends_run && number - legs_.first() >= longest && total >= run_cut_) {
     leg.ends_run = true;
-    ++starved_;
+    if (!mill) ++starved_;
   }
   if (!leg.ends_run) {
     leg.cap = std::min(leg.cap, wanted);

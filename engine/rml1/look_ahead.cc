@@ -113,6 +113,7 @@ void LookAhead::Append(const motion::PathPiece& path, const motion::PathLimits& 
                        bool ends_motion, double passage_speed) {
   motion::MoveCommand move;
   move.path = path;
+  move.head = motion::MillHead{};
   move.limits = limits;
   move.fly = true;
   move.settles = false;
@@ -130,6 +131,7 @@ void LookAhead::Brake(Leg& leg) {
   leg = {};
   leg.feed_mm_s = plan.feed_mm_s;
   leg.ride.path = RestOf(plan.path, true);
+  leg.ride.head = motion::MillHead{};
   leg.ride.limits = plan.limits;
   const double length = leg.ride.path.length();
   const double ramp = speed_ * speed_ / (2.0 * a);
