@@ -113,7 +113,8 @@ bool MotionChain::Join(const MoveCommand& move, const PathLimits& limits) {
     }
   }
   stands_ = false;
-  if (passage == Passage::kThrough && Equal(before.limits, limits) && Equal(cap, limits.speed)) {
+  const bool alike = Equal(before.limits, limits) && Equal(cap, limits.speed);
+  if (passage == Passage::kThrough && !bends && alike) {
     // A line without end must not fill the window as one leg. Of a mill it need not even wait:
     // without a limit on jerk a leg may be cut anywhere.
     if (leg.last_move - leg.first_move < (mill ? kMillLegMax : window_ / 2)) return false;
