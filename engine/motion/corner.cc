@@ -148,7 +148,17 @@ double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLim
     return speed;
   };
   constexpr int kIntervals = 48;
-  return LeastAlong(allowed, 1.0, kIntervals, enough);
+  const double least = LeastAlong(allowed, 1.0, kIntervals, enough);
+  // Near a cusp all happens between two samples: as far about the sharpest place as the curve needs
+  // to turn.
+  const double sharpest = curve.SlowestPlace();
+  const double width = curve.Speed(sharpest) / Norm(curve.Derivative(sharpest, 2).tip);
+  if (!(width * kIntervals < 4.0)) return least;
+  constexpr double kWidths = 8.0;
+  const double from = std::max(0.0, sharpest - kWidths * width);
+  const double to = std::min(1.0, sharpest + kWidths * width);
+  return std::min(least, LeastAlong([&](double u) { return allowed(from + u); }, to - from,
+                                    kIntervals, enough));
 }
 
 }  // namespace rmlcell::motion

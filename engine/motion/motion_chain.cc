@@ -258,18 +258,27 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
     if (!after) return false;
     cut = std::min({want, 0.5 * total, 0.5 * *after});
     const bool capped = cut < uncapped;
+    double swallowed = HUGE_VAL;  // the speed of what the curve takes whole
     if (cut < kCutMin_mm) {
       cut = 0.0;
       closing.report.passage = Passage::kStopShort;
     } else {
-      std::optional<double> swallowed = HUGE_VAL;
       if (legs_[number + 1].length < cut) {
-        swallowed = SpeedWithin(number, cut, accept_what_is_there);
-        if (!swallowed) return false;
+        const auto within = SpeedWithin(number, cut, accept_what_is_there);
+        if (!within) return false;
+        swallowed = *within;
       }
       closing.report.passage = capped ? Passage::kBlendCapped : Passage::kBlend;
       speed_cap = wanted;
       MakeCurve(closing, leg, cut);
+    }
+    if (cut > 0.0 && !leg.corner.lines() && curves_.back().HasCusp(cut)) {
+      curves_.PopBack();
+      cut = speed_cap = 0.0;
+      closing.curve_length = closing.report.deviation_mm = 0.0;
+      closing.report.passage = Passage::kStopReversal;
+    }
+    if (cut > 0.0) {
       const Head& head = moves_[leg.last_move].head;
       if (leg.corner.lines() && capped) {
         speed_cap = std::min(speed_cap, leg.corner.PlainSpeed(cut, machine_));
@@ -285,7 +294,7 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
         speed_cap = std::min(speed_cap, SpeedOnCurve(curve, head, machine_, speed_cap));
       }
       if (speed_cap < wanted) closing.report.passage = Passage::kBlendCapped;
-      speed_cap = std::min(speed_cap, *swallowed);
+      speed_cap = std::min(speed_cap, swallowed);
     }
   }
   closing.report.cut_mm = cut;

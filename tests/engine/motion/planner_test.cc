@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/engine/motion/random_chain.h"
 #include "tests/engine/motion/standard_machine.h"
 
 namespace rmlcell::motion {
@@ -186,6 +187,44 @@ TEST(Planner, PassagesThatAreNotBlended) {
   // A short neighbour: at most half of it, so the bend is slower than the 50 mm/s of both moves.
   EXPECT_EQ(passage(east, LineTo({10, 0, 0}, {10, 1, 0}, 2)), Passage::kBlendCapped);
   EXPECT_EQ(passage(east, LineTo({10, 0, 0}, {10, 1.9e-4, 0}, 2)), Passage::kStopShort);
+}
+
+// motion.md 4.4: a curve beside an arc that comes to a point on its way is a stop, as with OVERSH
+// 0.
+TEST(Planner, CurvesWithACuspAreStops) {
+  struct Corner2 {
+    PathPiece in;
+    PathPiece out;
+    double speed;
+  };
+  const auto arc = [](const Vec3& from, const Vec3& via, const Vec3& to) {
+    return PathPiece::ArcThrough({from}, via, {to}).value().path;
+  };
+  const std::vector<Corner2> corners = {
+      // The corner itself turns by 151 degrees, the cut points by 180.
+      {PathPiece::Line({{0, 0, 0}}, {{30, 0, 0}}),
+       arc({30, 0, 0}, {16.7910347625062, -3.372802547013361, 0},
+           {19.22102315613114, -16.78726176359408, 0}),
+       0.4},
+      // Two arcs whose curve nearly stands still in its middle.
+      {arc({11.482, 12.304, 0}, {9.102, 3.016, 0}, {0, 0, 0}),
+       arc({0, 0, 0}, {9.102, -3.016, 0}, {11.482, -12.304, 0}), 0.4}};
+  for (const Corner2& corner : corners) {
+    const auto plan = [&](double overshoot) {
+      std::vector<MoveCommand> chain(2);
+      chain[0] = {.path = corner.in, .speed_fraction = corner.speed, .fly = true};
+      chain[0].overshoot_fraction = overshoot;
+      chain[1] = {.path = corner.out, .speed_fraction = corner.speed};
+      return Plan(chain);
+    };
+    const std::vector<PlannedMotion> fly = plan(1.0), stop = plan(0.0);
+    EXPECT_EQ(fly[0].corner.passage, Passage::kStopReversal);
+    EXPECT_EQ(fly[0].corner.cut_mm, 0.0);
+    double fly_s = 0.0, stop_s = 0.0;
+    for (const PlannedMotion& motion : fly) fly_s += motion.duration_s();
+    for (const PlannedMotion& motion : stop) stop_s += motion.duration_s();
+    EXPECT_NEAR(fly_s, stop_s, 1e-12);
+  }
 }
 
 // A move that goes nowhere is dropped; without /FLY it makes the passage before it a stop.
