@@ -75,6 +75,9 @@ class ConstantAdviser {
       const std::uint32_t count = module_.ExpressionCount(i);
       for (std::uint32_t e = 0; e < count; ++e) {
         const Expression expression = module_.expression(i.first_expression + e);
+        // A literal by itself is the checker's, except where its type is changed, or it is waited
+        // for.
+        if (expression.size() == 1 && i.op != Op::kLet && i.op != Op::kWait) continue;
         if (IsConstant(expression) && !Look(i, e, expression)) break;  // one is told
       }
     }
