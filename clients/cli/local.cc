@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "clients/cli/findings_text.h"
-#include "clients/cli/fix.h"
 #include "clients/cli/messages.h"
 #include "clients/cli/program_files.h"
 #include "clients/cli/terminal.h"
@@ -33,13 +32,6 @@ void DropFindings(const std::vector<Diagnostic>& told, v1::RunReport& report) {
                                return place.line() > 0 && places.contains({finding.code(), place.line(), place.column()});
                              }),
               again.end());
-}
-
-Result<bridge::MachineFile> ReadMachine(const std::string& path) {
-  if (path.empty()) return bridge::MachineFile{};
-  const Result<std::string> text = bridge::ReadFile(path, kFileBytesMax);
-  if (!text) return text.error();
-  return bridge::ParseMachineFile(*text, path);
 }
 
 Result<v1::StepPlace> ParseStepPlace(const std::string& text) {
@@ -166,50 +158,6 @@ Status MakeExecutable(const machine::MachineFamily& family, machine::RunSetup& s
 }
 
 }  // namespace
-
-int Check(const CheckOptions& options) {
-  const Result<bridge::MachineFile> machine = ReadMachine(options.machine_file);
-  if (!machine) return Refuse(machine.error());
-  int exit_code = kGood;
-  for (const std::string& file : options.files) {
-    const auto family = FamilyFor(options.family.empty() ? machine->family : options.family, file);
-    if (!family) return Refuse(family.error());
-    const auto parameters = bridge::MakeParameters(**family, machine->profile, machine->parameters);
-    if (!parameters) return Refuse(parameters.error());
-    const Result<std::string> text = bridge::ReadFile(file, kFileBytesMax);
-    if (!text) return Refuse(text.error());
-    if (text->empty()) return Refuse({ErrorCode::kCellEmptyProgram, file, {}});
-    const auto check = [&](const machine::SourceFile& source) {
-      return (*family)->Translate(source, *parameters, {.advice = !options.errors_only});
-    };
-    if (options.fix) {
-      if (!(*family)->info().has_executables) {
-        return Refuse({ErrorCode::kCellUsage, file + ": a stream of " + std::string((*family)->info().title) +
-                                                  " has nothing to fix", {}});
-      }
-      exit_code = std::max(exit_code, FixFile(file, *text, check, {options.dry_run, options.json}));
-      if (exit_code > kProgramErrors) return exit_code;
-      continue;
-    }
-    const machine::Translation translation = check({.name = file, .bytes = *text});
-    if (!translation.ok) exit_code = kProgramErrors;
-    if (options.json) {
-      Print(Json(bridge::FindingsOf(translation.ok, translation.diagnostics, translation.diagnostics_dropped,
-                                    translation.figures)));
-      continue;
-    }
-    PrintFindings(translation.diagnostics, translation.diagnostics_dropped, *text);
-    const std::size_t findings = translation.diagnostics.size() + translation.diagnostics_dropped;
-    std::string line = file + ": " + (!translation.ok ? "has errors" : findings == 0 ? "good" : "can be stored");
-    if (findings > 0) line += ", " + std::to_string(findings) + (findings == 1 ? " finding" : " findings");
-    for (const machine::Figure& figure : translation.figures) {
-      if (figure.value == 0.0) continue;
-      line += ", " + figure.name + " " + ShortestText(figure.value) + (figure.unit.empty() ? "" : " " + figure.unit);
-    }
-    Print(line);
-  }
-  return exit_code;
-}
 
 int Simulate(const SimulateOptions& options) {
   const Result<bridge::MachineFile> machine = ReadMachine(options.machine_file);

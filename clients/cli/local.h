@@ -10,6 +10,7 @@ struct CheckOptions {
   std::vector<std::string> files;
   std::string family;
   std::string machine_file;
+  std::string inputs_file;  // what comes from outside while the motion is checked
   bool errors_only = false;
   bool fix = false;      // repair the files, and check what comes out
   bool dry_run = false;  // with fix: show what would change, and write nothing

@@ -44,7 +44,7 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
   {
     auto options = std::make_shared<CheckOptions>();
     CLI::App* verb =
-        app.add_subcommand("check", "Say what is wrong with programs, without running them");
+        app.add_subcommand("check", "Say what is wrong with programs, before anything moves");
     verb->footer(
         "Examples:\n"
         "  rmlcell check part.S                    one program: errors, warnings, advice, each "
@@ -52,11 +52,16 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
         "  rmlcell check progs/*.S --errors-only   errors alone; exit code 1 when there is one\n"
         "  rmlcell check part.S --fix              apply the fixes; layout and comments stay\n"
         "  rmlcell check part.S --fix --dry-run    show them as a patch\n"
-        "  rmlcell check part.S --json             for an editor or a script");
+        "  rmlcell check 45.S 44.S --inputs keys.txt  programs that call each other, with inputs\n"
+        "  rmlcell check part.S --json             for an editor or a script\n\n"
+        "Motion is followed as a run with these inputs (default: all off) would do it: axes that leave\n"
+        "their travel are errors, axes that hold a contour back are advice.");
     verb->add_option("FILES", options->files, "programs")->required();
     verb->add_option("--family", options->family, "optimo or rml1; default: from the file name");
     verb->add_option("--machine", options->machine_file,
                      "machine file (TOML): family, profile, [parameters]");
+    verb->add_option("--inputs", options->inputs_file,
+                     "what comes from outside over time, while the motion is checked");
     verb->add_flag("--errors-only", options->errors_only, "leave warnings and advice out");
     CLI::Option* fix = verb->add_flag("--fix", options->fix, "repair what has one obvious repair, in the files");
     verb->add_flag("--dry-run", options->dry_run, "with --fix: show the changes as a patch; write nothing")->needs(fix);

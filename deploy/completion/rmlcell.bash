@@ -49,7 +49,7 @@ _rmlcell_options() {
   local remote="--help --server --json"
   case $1 in
     "") echo "--help --version" ;;
-    check) echo "--help --family --machine --errors-only --fix --dry-run --json" ;;
+    check) echo "--help --family --machine --inputs --errors-only --fix --dry-run --json" ;;
     simulate)
       echo "--help --slot --main --executable --family --profile --machine --inputs --mode --override --simul" \
         "--break --budget --vars --svg --samples --plot --state-in --state-out --trace --facts --json" ;;

@@ -131,16 +131,16 @@ Restart RestartWith(std::span<const PlannedMotion> ahead, double s, double ease)
       caps[k] = std::min(caps[k], Reach(caps[k + 1], left_of(k + 1), limits_of(k + 1)));
     }
     for (; next <= last; ++next) {
-      PlannedMotion motion = ahead[next];
-      motion.limits = limits_of(next);
+      PlannedMotion motion = ahead[next];  // its limits are not eased: the next STOP begins anew
+      const PathLimits limits = limits_of(next);
       const double left = left_of(next);
       double end = caps[next];
-      if (end > speed && RampLength(speed, end, motion.limits) > left) {
-        end = std::min(end, Reach(speed, left, motion.limits));
+      if (end > speed && RampLength(speed, end, limits) > left) {
+        end = std::min(end, Reach(speed, left, limits));
       }
       if (left > 0.0) {
         if (next == 0) motion.path = PartOf(ahead[0].path, s, motion.path.length());
-        motion.speed = SpeedProfile::Span(left, speed, end, motion.limits);
+        motion.speed = SpeedProfile::Span(left, speed, end, limits);
       } else {
         motion.path = PathPiece::Line(ahead[next].path.to(), ahead[next].path.to());
         motion.speed = SpeedProfile();  // it stood at the end: only its settling is left

@@ -49,6 +49,41 @@ void KeepWorse(TravelExcess& worst, const TravelExcess& other) {
   if (other.excess > worst.excess) worst = other;
 }
 
+// By how much a value lies outside the travel of its axis; 0 inside.
+double ExcessOf(std::size_t axis, double value, const AxisLimits& limits) {
+  if (std::isnan(value)) return std::numeric_limits<double>::infinity();
+  return std::max({limits.travel_min[axis] - value, value - limits.travel_max[axis], 0.0});
+}
+
+AxisPose AxesAt(const PathPiece& path, const Head& head, double s) {
+  const TipPose pose = path.At(s);
+  return path.kind() == PathPiece::Kind::kJoint ? AxisPose{pose.tip, pose.a_rad, pose.b_rad}
+                                                : head.ColumnOf(pose);
+}
+
+// The places of a path at which its range is looked at: motion.md 2.6.
+template <class Look>
+void ForEachRangePoint(const PathPiece& path, Look look) {
+  const bool arc = path.kind() == PathPiece::Kind::kArc;
+  const int pieces =
+      arc ? std::max(kRangePieces,
+                     static_cast<int>(std::ceil(path.sweep_rad() / kTurn * kRangePerTurn)))
+          : kRangePieces;
+  for (int k = 0; k <= pieces; ++k) look(path.length() * k / pieces);
+  if (!arc) return;
+
+  // Where the circle is farthest along X, Y and Z: tangent(x) = t cos x + c sin x has no such
+  // component.
+  const Vec3 t = path.Tangent(0.0);
+  const Vec3 c = path.Curvature(0.0) * path.radius_mm();
+  for (const auto& [along, inward] :
+       {std::pair{t.x, c.x}, std::pair{t.y, c.y}, std::pair{t.z, c.z}}) {
+    double angle = std::atan2(-along, inward);
+    if (angle < 0.0) angle += kPi;
+    for (; angle < path.sweep_rad(); angle += kPi) look(angle * path.radius_mm());
+  }
+}
+
 }  // namespace
 
 ToolAxes AxesOfTool(double a_rad, double b_rad) {
@@ -170,40 +205,35 @@ TravelExcess WorstExcess(const AxisPose& pose, const AxisLimits& limits) {
   TravelExcess worst;
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
-    double excess = std::max(limits.travel_min[i] - values[i], values[i] - limits.travel_max[i]);
-    if (std::isnan(values[i])) excess = std::numeric_limits<double>::infinity();
-    KeepWorse(worst, {excess > 0.0 ? axis : -1, std::max(excess, 0.0)});
+    const double excess = ExcessOf(i, values[i], limits);
+    KeepWorse(worst, {excess > 0.0 ? axis : -1, excess});
   }
   return worst;
 }
 
+double ExcessOfAxis(int axis, const AxisPose& pose, const AxisLimits& limits) {
+  const auto i = static_cast<std::size_t>(axis);
+  return ExcessOf(i, Together(pose.column, pose.a_rad, pose.b_rad)[i], limits);
+}
+
 TravelExcess WorstExcess(const PathPiece& path, const Head& head, const AxisLimits& limits) {
   TravelExcess worst;
-  const auto look = [&](double s) {
-    const TipPose pose = path.At(s);
-    const AxisPose axes = path.kind() == PathPiece::Kind::kJoint
-                              ? AxisPose{pose.tip, pose.a_rad, pose.b_rad}
-                              : head.ColumnOf(pose);
-    KeepWorse(worst, WorstExcess(axes, limits));
-  };
-  const bool arc = path.kind() == PathPiece::Kind::kArc;
-  const int pieces =
-      arc ? std::max(kRangePieces,
-                     static_cast<int>(std::ceil(path.sweep_rad() / kTurn * kRangePerTurn)))
-          : kRangePieces;
-  for (int k = 0; k <= pieces; ++k) look(path.length() * k / pieces);
-  if (!arc) return worst;
+  ForEachRangePoint(
+      path, [&](double s) { KeepWorse(worst, WorstExcess(AxesAt(path, head, s), limits)); });
+  return worst;
+}
 
-  // Where the circle is farthest along X, Y and Z: tangent(x) = t cos x + c sin x has no such
-  // component.
-  const Vec3 t = path.Tangent(0.0);
-  const Vec3 c = path.Curvature(0.0) * path.radius_mm();
-  for (const auto& [along, inward] :
-       {std::pair{t.x, c.x}, std::pair{t.y, c.y}, std::pair{t.z, c.z}}) {
-    double angle = std::atan2(-along, inward);
-    if (angle < 0.0) angle += kPi;
-    for (; angle < path.sweep_rad(); angle += kPi) look(angle * path.radius_mm());
-  }
+std::array<PlacedExcess, kAxisCount> ExcessOfEach(const PathPiece& path, const Head& head,
+                                                  const AxisLimits& limits) {
+  std::array<PlacedExcess, kAxisCount> worst{};
+  ForEachRangePoint(path, [&](double s) {
+    const AxisPose pose = AxesAt(path, head, s);
+    const AxisValues values = Together(pose.column, pose.a_rad, pose.b_rad);
+    for (std::size_t i = 0; i < worst.size(); ++i) {
+      const double excess = ExcessOf(i, values[i], limits);
+      if (excess > worst[i].excess) worst[i] = {excess, s};
+    }
+  });
   return worst;
 }
 

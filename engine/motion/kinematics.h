@@ -161,8 +161,17 @@ struct TravelExcess {
   double excess = 0.0;
 };
 TravelExcess WorstExcess(const AxisPose& pose, const AxisLimits& limits);
+double ExcessOfAxis(int axis, const AxisPose& pose, const AxisLimits& limits);
 
 // The worst excess along a tip path at the points of motion.md 2.6.
 TravelExcess WorstExcess(const PathPiece& path, const Head& head, const AxisLimits& limits);
+
+// The same for every axis by itself, and where on the path it is worst: the first such place.
+struct PlacedExcess {
+  double excess = 0.0;  // 0: inside its travel all along
+  double s = 0.0;
+};
+std::array<PlacedExcess, kAxisCount> ExcessOfEach(const PathPiece& path, const Head& head,
+                                                  const AxisLimits& limits);
 
 }  // namespace rmlcell::motion

@@ -63,6 +63,7 @@ void MotionChain::Append(const MoveCommand& move, const PathLimits& limits) {
   slot.settling_s = move.settles ? machine_.settling_s : 0.0;
   slot.tag = move.tag;
   slot.fly = move.fly;
+  slot.would_blend = false;
   end_ = move.path.to();
   end_known_ = true;
   open_ = true;
@@ -94,6 +95,10 @@ bool MotionChain::Join(const MoveCommand& move, const PathLimits& limits) {
     passage = Passage::kStopNoSpeed;
   } else if (before.path.by_sigma() || move.path.by_sigma()) {
     passage = Passage::kStopNeighbour;
+    // The machine would blend these in axis space (motion.md 4.5), which is not planned.
+    using Kind = PathPiece::Kind;
+    moves_.back().would_blend =
+        before.path.kind() == Kind::kJoint && move.path.kind() == Kind::kJoint;
   } else if (before.head == move.head && Contiguous(before.path.to(), move.path.from())) {
     cap = before.overshoot * std::min(before.limits.speed, limits.speed);
     if (mill) {
@@ -227,9 +232,11 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
   Leg& leg = legs_[number];
   const double wanted = running_.speed();
   const double total = run_length_ + leg.length;
-  // Nor may a run fill the window. That of a mill has no curve at its end to wait for.
+  // Nor may a run fill it; but it holds what the curve before it takes. That of a mill has no curve
+  // at its end to wait for.
   const bool mill = machine_.junction_jump_mm_s > 0.0;
-  if (!leg.ends_run && number - legs_.first() >= (mill ? kBatchMin : window_ / 2)) {
+  const bool full = number - legs_.first() >= (mill ? kBatchMin : window_ / 2);
+  if (!leg.ends_run && full && total >= run_cut_) {
     leg.ends_run = true;
     if (!mill) ++starved_;
   }

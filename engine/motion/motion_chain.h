@@ -66,6 +66,7 @@ class MotionChain {
     double settling_s = 0.0;
     std::uint64_t tag = 0;
     bool fly = false;
+    bool would_blend = false;  // the passage behind it is a stop of the plan, not of the machine
   };
   struct Leg {
     Number first_move = 0;
@@ -134,6 +135,7 @@ class MotionChain {
   std::size_t SectionSize();
   bool EndsSection(std::size_t index);
   void PlanSection();
+  PathLimits LimitsOnCurve(const Span& span, Number last_move);
   Timing PresentTiming(double length);
   void TakePart(SpeedProfile& speed, const Timing& timing, double to, bool to_end);
   void EmitMove();

@@ -80,16 +80,22 @@ void MotionChain::PlanSection() {
       cells_.push_back({span.length, span.limits, speed, blend ? RampCell::kNoCap : span.cap});
     }
     if (k + 1 == section_left_ || !blend) continue;
-    const PathLimits& after = spans_[spans_.first() + k + 1].limits;
-    const double along = machine_.curve_tangential * machine_.tip_acceleration_mm_s2;
     cells_.push_back(
-        {span.curve_length,
-         {.speed = span.cap,
-          .acceleration = std::min({span.limits.acceleration, after.acceleration, along}),
-          .jerk = std::min(span.limits.jerk, after.jerk)},
-         speed});
+        {span.curve_length, LimitsOnCurve(span, spans_[spans_.first() + k + 1].first_move), speed});
   }
   if (!cells_.empty()) ramps_.Plan(cells_, last_speed_);
+}
+
+// Those of every move that the curve behind `span` touches, to the one where the next span begins.
+PathLimits MotionChain::LimitsOnCurve(const Span& span, Number last_move) {
+  PathLimits limits{.speed = span.cap,
+                    .acceleration = machine_.curve_tangential * machine_.tip_acceleration_mm_s2,
+                    .jerk = span.limits.jerk};
+  for (Number k = span.last_move; k <= last_move; ++k) {
+    limits.acceleration = std::min(limits.acceleration, moves_[k].limits.acceleration);
+    limits.jerk = std::min(limits.jerk, moves_[k].limits.jerk);
+  }
+  return limits;
 }
 
 // The ramp that passes the present cell, a span of `length` or the curve behind it.
@@ -248,14 +254,16 @@ void MotionChain::EmitCurvePart(const Span& span, Number move, const Shape& shap
   }
   if (timing.profile == nullptr) {
     motion.speed = SpeedProfile::Steady(part.s_to - part.s_from, span.report.speed);
+    // A STOP on the way brakes as the move does that this part belongs to.
+    motion.limits = moves_[move].limits;
+    motion.limits.acceleration = std::min(
+        motion.limits.acceleration, machine_.curve_tangential * machine_.tip_acceleration_mm_s2);
     motion.limits.speed = span.report.speed;
   } else {
     const double to = half.begin + part.s_to;
     TakePart(motion.speed, timing, to, to >= span.curve_length);
-    motion.limits.speed = span.cap;
+    motion.limits = cells_[section_cell_].limits;  // the ramp runs through both halves
   }
-  motion.limits.acceleration = std::min(
-      motion.limits.acceleration, machine_.curve_tangential * machine_.tip_acceleration_mm_s2);
   FinishMotion(span, move, motion, part.ends_move);
 }
 
@@ -264,6 +272,7 @@ void MotionChain::EndMove(const Span& span, Number move, PlannedMotion& motion) 
     motion.corner = span.report;
     if (!IsBlend(span.report.passage)) motion.corner.speed = motion.speed.end().speed;
     motion.settling_s = span.settling_s;
+    motion.upper_bound = moves_[move].would_blend;
   } else {
     motion.corner = {.passage = Passage::kThrough, .speed = motion.speed.end().speed};
   }

@@ -80,6 +80,9 @@ void Recorder::OnProgram(SimTime at, const machine::Place& place, std::string_vi
 void Recorder::OnMessage(SimTime at, const machine::Place& place, std::string_view text) {
   state_->All([&](machine::RunObserver& to) { to.OnMessage(at, place, text); });
 }
+void Recorder::OnViolation(const machine::TravelViolation& violation) {
+  state_->All([&](machine::RunObserver& to) { to.OnViolation(violation); });
+}
 void Recorder::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
   state_->All([&](machine::RunObserver& to) { to.OnDiagnostic(at, diagnostic); });
 }

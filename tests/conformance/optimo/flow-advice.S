@@ -109,30 +109,6 @@ ENDTASK
 10 VR[1]=5
 RETURN
 
-;=== what the GOSUB of a TIMER touches is not known, the rest is (advice)
-; OPT-5.40 OPT-B.59
-OL[11]=ON
-OL[8]=ON
-TIMER (5.,10)
-OL[9]=ON
-WORK 0,0/ON
-DELAY 1
-CALL 2                   ; expect 7407
-ENDTASK
-10 OL[8]=OFF
-RETURN
-
-;=== the GOSUB of a /TIME may be made or not (advice)
-; OPT-2.54 OPT-5.40
-COORD ABSOL
-PATH LIN
-SPEED 10
-MOVE (10.,2.,3.,0.,0.)/TIME (5.,10)
-OL[9]=ON                 ; expect 7409
-ENDTASK
-10 OL[8]=ON
-RETURN
-
 ;=== a subroutine may switch the process (advice)
 ; OPT-3.36
 ; rmlcell: allow 7033 in file

@@ -221,6 +221,39 @@ TEST(Planner, TinyStepsAreNotLost) {
   EXPECT_NEAR(length, 1e-4, 1.1e-6);  // the last step of up to 1e-6 mm is dropped
 }
 
+// Behind a bend come more points straight on, each with another SPEED, than the window holds, and
+// the bend takes its part of them: what is decided early then must not cut into it. OPT-2.46,
+// OPT-B.29
+TEST(Planner, WindowFullOfPointsThatABendSwallows) {
+  for (const double step_mm : {1e-3, 1e-2, 1e-1}) {
+    for (const int count : {20, 31, 33, 40, 64, 80}) {
+      Planner planner(StandardMachine(), 64);
+      Vec3 at{1000, 900, -200};
+      double way = 0.0, planned = 0.0;
+      TipPose last{at};
+      const auto go = [&](const Vec3& step, double speed, bool fly) {
+        MoveCommand move = LineTo(at, at + step, 1, fly);
+        move.speed_fraction = speed;
+        at = at + step;
+        way += Norm(step);
+        ASSERT_TRUE(planner.Append(move));
+        while (const std::optional<PlannedItem> item = planner.Next()) {
+          const PathPiece& path = std::get<PlannedMotion>(*item).path;
+          ASSERT_LE(Distance(path.from().tip, last.tip), 1e-9);
+          last = path.to();
+          planned += path.length();
+        }
+      };
+      go({100, 0, 0}, 0.5, true);
+      for (int k = 0; k < count; ++k) go({0, step_mm, 0}, k % 2 == 0 ? 0.4 : 0.5, true);
+      for (int k = 0; k < count; ++k) go({0, 1, 0}, k % 2 == 0 ? 0.4 : 0.5, true);
+      go({100, 0, 0}, 0.5, false);
+      EXPECT_EQ(last.tip, at);
+      EXPECT_LE(planned, way);
+    }
+  }
+}
+
 // A copy goes on by itself.
 TEST(Planner, CopyIsASnapshot) {
   Planner planner(StandardMachine());
