@@ -254,6 +254,9 @@ int Transform(const TransformOptions& options) {
     std::ranges::copy(options.shift, by.begin());
     return Rewrite(options, [&](const std::string& text) { return optimo::Shift(text, by); });
   }
+  if (options.move.empty() && options.turn.empty()) {
+    return Refuse({ErrorCode::kCellUsage, "nothing to do: give --move, --turn or --shift", {}});
+  }
   std::array<double, 3> move{}, turn{};
   std::ranges::copy(options.move, move.begin());
   std::ranges::copy(options.turn, turn.begin());

@@ -118,7 +118,8 @@ bool MotionChain::Join(const MoveCommand& move, const PathLimits& limits) {
     }
   }
   stands_ = false;
-  if (passage == Passage::kThrough && Equal(before.limits, limits) && Equal(cap, limits.speed)) {
+  const bool alike = Equal(before.limits, limits) && Equal(cap, limits.speed);
+  if (passage == Passage::kThrough && !bends && alike) {
     // A line without end must not fill the window as one leg. Of a mill it need not even wait:
     // without a limit on jerk a leg may be cut anywhere.
     if (leg.last_move - leg.first_move < (mill ? kMillLegMax : window_ / 2)) return false;
@@ -232,11 +233,11 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
   Leg& leg = legs_[number];
   const double wanted = running_.speed();
   const double total = run_length_ + leg.length;
-  // Nor may a run fill it; but it holds what the curve before it takes. That of a mill has no curve
-  // at its end to wait for.
+  // Nor may a run fill the window; but it holds what the curve before it takes. The run of a mill has
+  // no curve at its end to wait for.
   const bool mill = machine_.junction_jump_mm_s > 0.0;
-  const bool full = number - legs_.first() >= (mill ? kBatchMin : window_ / 2);
-  if (!leg.ends_run && full && total >= run_cut_) {
+  const std::size_t longest = mill ? kBatchMin : window_ / 2;
+  if (!leg.ends_run && number - legs_.first() >= longest && total >= run_cut_) {
     leg.ends_run = true;
     if (!mill) ++starved_;
   }
