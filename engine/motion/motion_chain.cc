@@ -63,6 +63,7 @@ void MotionChain::Append(const MoveCommand& move, const PathLimits& limits) {
   slot.settling_s = move.settles ? machine_.settling_s : 0.0;
   slot.tag = move.tag;
   slot.fly = move.fly;
+  slot.would_blend = false;
   end_ = move.path.to();
   end_known_ = true;
   open_ = true;
@@ -94,6 +95,10 @@ bool MotionChain::Join(const MoveCommand& move, const PathLimits& limits) {
     passage = Passage::kStopNoSpeed;
   } else if (before.path.by_sigma() || move.path.by_sigma()) {
     passage = Passage::kStopNeighbour;
+    // The machine would blend these in axis space (motion.md 4.5), which is not planned.
+    using Kind = PathPiece::Kind;
+    moves_.back().would_blend =
+        before.path.kind() == Kind::kJoint && move.path.kind() == Kind::kJoint;
   } else if (before.head == move.head && Contiguous(before.path.to(), move.path.from())) {
     cap = before.overshoot * std::min(before.limits.speed, limits.speed);
     if (mill) {

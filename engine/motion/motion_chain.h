@@ -66,6 +66,7 @@ class MotionChain {
     double settling_s = 0.0;
     std::uint64_t tag = 0;
     bool fly = false;
+    bool would_blend = false;  // the passage behind it is a stop of the plan, not of the machine
   };
   struct Leg {
     Number first_move = 0;

@@ -272,6 +272,7 @@ void MotionChain::EndMove(const Span& span, Number move, PlannedMotion& motion) 
     motion.corner = span.report;
     if (!IsBlend(span.report.passage)) motion.corner.speed = motion.speed.end().speed;
     motion.settling_s = span.settling_s;
+    motion.upper_bound = moves_[move].would_blend;
   } else {
     motion.corner = {.passage = Passage::kThrough, .speed = motion.speed.end().speed};
   }

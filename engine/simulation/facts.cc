@@ -160,7 +160,7 @@ void Table::AddRun() {
   Add("halts", "", "times that the run waited for a person",
       [](const RunReport& r) { return Count(r.halts); });
   Add("timing", "",
-      "`exact`; `exact stop, upper bound` when a passage with /FLY was timed as a stop",
+      "`exact`; `exact stop, upper bound` when PTP moves in COORD ROBOT with /FLY were timed as stops",
       [](const RunReport& r) { return std::string(TimingText(r.timing)); });
 }
 
