@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "clients/cli/findings_text.h"
 #include "clients/cli/fix.h"

@@ -137,7 +137,7 @@ void AddViolations(const v1::RunReport& report, Rows& rows) {
   const auto& violations = report.violations();
   if (violations.empty()) return;
   const std::int64_t all = violations.size() + report.violations_dropped();
-  rows.emplace_back("travel", std::to_string(all) + (all == 1 ? " axis leaves its" : " axes of steps leave their") + " travel");
+  rows.emplace_back("travel", std::to_string(all) + (all == 1 ? " violation" : " violations"));
   int listed = 0;
   for (const v1::AxisViolation& violation : violations) {
     if (++listed > kListedMax) break;

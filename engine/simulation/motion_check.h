@@ -16,7 +16,7 @@ namespace rmlcell::simulation {
 //
 // Bounds, whatever the program does: an object of 34,000 bytes has some thousand steps, so this is
 // many times round the longest one, and a part takes less than a day.
-inline constexpr std::uint64_t kCheckStepsMax = 100'000;
+inline constexpr std::uint64_t kCheckStepsMax = 50'000;
 inline constexpr SimTime kCheckTimeMax = std::chrono::hours(24);
 
 struct MotionCheck {

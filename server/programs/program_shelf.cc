@@ -316,7 +316,7 @@ Result<ProgramShelf::Subject> ProgramShelf::FindSubject(const std::string& famil
     auto machine = store_.GetMachine(*id);
     if (!machine) return machine.error();
     subject.family = simulation::FindFamily(machine->family);
-    subject.machine = *std::move(machine);
+    subject.record = *std::move(machine);
   } else if (!family_id.empty()) {
     subject.family = simulation::FindFamily(family_id);
     if (subject.family == nullptr) return Error{ErrorCode::kCellUnknownFamily, family_id, {}};
@@ -326,7 +326,7 @@ Result<ProgramShelf::Subject> ProgramShelf::FindSubject(const std::string& famil
   if (subject.family == nullptr) return Error{ErrorCode::kCellFamilyUnknownFromName, program.file_name(), {}};
   if (program.content().empty()) return Error{ErrorCode::kCellEmptyProgram, program.file_name(), {}};
   Result<machine::Parameters> parameters =
-      subject.machine ? bridge::MakeParameters(*subject.family, subject.machine->profile, subject.machine->parameters)
+      subject.record ? bridge::MakeParameters(*subject.family, subject.record->profile, subject.record->parameters)
                       : bridge::MakeParameters(*subject.family, {}, {});
   if (!parameters) return parameters.error();
   subject.parameters = *std::move(parameters);
@@ -342,7 +342,7 @@ Result<machine::Translation> ProgramShelf::Translate(const std::string& family_i
 
 // The programs of the machine, its schedules and the state in which it stands.
 Status ProgramShelf::AddMemory(const Subject& subject, bridge::SetupInput& input) {
-  const storage::MachineRecord& machine = *subject.machine;
+  const storage::MachineRecord& machine = *subject.record;
   input.machine_state = machine.state;
   auto memory = store_.GetProgramMemory(machine.id);
   if (!memory) return memory.error();
@@ -377,7 +377,7 @@ Result<ProgramShelf::Checked> ProgramShelf::Check(const std::string& family_id, 
   Checked checked{.translation = TranslateFor(family, *subject->parameters, program, advice), .motion = {}};
   if (!checked.translation.ok || !family.info().checked_by_running) return checked;
   bridge::SetupInput input{.family = &family, .programs = {}, .schedules = {}, .machine_state = {}};
-  if (subject->machine) {
+  if (subject->record) {
     if (const Status added = AddMemory(*subject, input); !added) return added.error();
   }
   checked.slot = SlotForCheck(program.file_name(), input.programs);

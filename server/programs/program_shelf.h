@@ -74,7 +74,7 @@ class ProgramShelf {
   // What a program is checked for.
   struct Subject {
     const machine::MachineFamily* family = nullptr;
-    std::optional<storage::MachineRecord> machine{};
+    std::optional<storage::MachineRecord> record{};
     std::optional<machine::Parameters> parameters{};
   };
   Result<Subject> FindSubject(const std::string& family, const std::string& machine, const v1::ProgramText& program);

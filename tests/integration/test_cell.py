@@ -83,6 +83,31 @@ class Jobs(WithCell):
         report = stub.GetJobReport(job_pb2.GetJobReportRequest(name=job.name))
         self.assertEqual([d.code for d in report.diagnostics][:2], ["OPT-E7004", "OPT-E7019"])
 
+    # OPT-E.7301: a job that only checks follows the motion, with the programs of its machine.
+    def test_a_check_job_follows_the_motion(self):
+        stub = self.cell.jobs()
+        far = "COORD ROBOT\nMOVE (9000.,0.,0.,0.,0.)\n"
+        job = submit(stub, inline_job("optimo-1", "far.S", far, kind=job_pb2.JOB_KIND_CHECK))
+        ended = wait_for_end(stub, job.name)[-1].ended
+        self.assertEqual((ended.kind, ended.code, ended.place.step), (FAILED, "OPT-E7301", 2))
+        self.cell.programs().PutProgram(program_pb2.PutProgramRequest(
+            name="machines/optimo-1/programs/61",
+            program=program_pb2.ProgramText(file_name="61.S", content=far.encode())))
+        job = submit(stub, inline_job("optimo-1", "main.S", "CALL 61\n", kind=job_pb2.JOB_KIND_CHECK))
+        ended = wait_for_end(stub, job.name)[-1].ended
+        self.assertEqual((ended.code, ended.place.program), ("OPT-E7301", 61))
+
+    # motion.md 2.6: a simulation tells every violation and ends as failed.
+    def test_a_simulation_tells_all_violations(self):
+        stub = self.cell.jobs()
+        job = submit(stub, inline_job("optimo-1", "far.S", "COORD ROBOT\nMOVE (9000.,0.,0.,0.,0.)\n"
+                                                          "MOVE (0.,0.,0.,13.,0.)\n"))
+        ended = wait_for_end(stub, job.name)[-1].ended
+        self.assertEqual((ended.kind, ended.code), (FAILED, "OPT-E7301"))
+        report = stub.GetJobReport(job_pb2.GetJobReportRequest(name=job.name))
+        self.assertEqual([v.axis for v in report.violations], ["X", "A"])
+        self.assertEqual(sum(d.code == "OPT-E7301" for d in report.diagnostics), 2)
+
     def test_the_same_request_id_gives_the_same_job(self):
         stub = self.cell.jobs()
         request_id = str(uuid.uuid4())

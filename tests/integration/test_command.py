@@ -35,6 +35,71 @@ class Local(unittest.TestCase):
         self.assertIn("a.S:2:", done.stdout)
         self.assertIn("OPT-E7004", done.stdout)
 
+    # OPT-E.7301, OPT-B.08: before anything moves, every place with its time; exit code 1.
+    def test_check_follows_the_motion(self):
+        far = self.file("far.S", "COORD ROBOT\nMOVE (9000.,0.,0.,0.,0.)\nMOVE (0.,0.,0.,13.,0.)\n")
+        done = run("check", far)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stdout, r"far.S:2: error OPT-E7301: X of the target .* 5400.000 mm \(step 2, at 0.000 s\)")
+        self.assertRegex(done.stdout, r"far.S:3: error OPT-E7301: A of the target .* 0.400 rad \(step 3, at 2\d.\d+ s\)")
+        findings = json.loads(run("check", far, "--json").stdout)
+        self.assertFalse(findings.get("ok", False))
+        self.assertEqual([(d["code"], d["place"]["step"], d["place"]["line"]) for d in findings["diagnostics"]],
+                         [("OPT-E7301", 2, 2), ("OPT-E7301", 3, 3)])
+        self.assertGreater(findings["diagnostics"][1]["timeS"], 20.0)
+
+    # OPT-B.09: a program that another one calls is looked at with the SYSDEF of that one.
+    def test_check_knows_programs_that_call_each_other(self):
+        part = self.file("44.S", "COORD ABSOL\nMOVE (4000.,0.,0.,0.,0.)\n")
+        main = self.file("45.S", "SYSDEF (-1000.,0.,-300.,0.,0.,0.)\nCALL 44\n")
+        self.assertEqual(run("check", part, main, "--errors-only").returncode, 0)
+        self.assertEqual(run("check", part).returncode, 1)
+
+    def test_check_says_how_far_it_came(self):
+        wait = self.file("w.S", "COORD ROBOT\nWAIT (IL[16])\nMOVE (9000.,0.,0.,0.,0.)\n")
+        done = run("check", wait)
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("motion checked only up to step 2, line 2: OPT-E7902", done.stdout)
+        inputs = self.file("inputs.txt", "1.5 IL[16] = 1\n")
+        done = run("check", wait, "--inputs", inputs)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("at 1.500 s", done.stdout)
+
+    # motion.md 2.6, 8.2: the simulation goes on, tells all of them, and fails.
+    def test_simulate_goes_on_behind_a_violation(self):
+        far = self.file("far.S", "COORD ROBOT\nMOVE (9000.,0.,0.,0.,0.)\nMOVE (0.,0.,0.,13.,0.)\n")
+        done = run("simulate", far, "--json")
+        self.assertEqual(done.returncode, 1)
+        report = json.loads(done.stdout)
+        self.assertEqual((report["outcome"]["kind"], report["outcome"]["code"]), ("KIND_FAILED", "OPT-E7301"))
+        self.assertEqual([(v["axis"], v["place"]["step"], round(v["excess"], 6)) for v in report["violations"]],
+                         [("X", 2, 5400.0), ("A", 3, 0.4)])
+        self.assertIn("2 motions leave the travel", report["outcome"]["message"])
+        self.assertIn("travel        2 violations", run("simulate", far).stdout)
+
+    # motion.md 8.2: figures that scripts read from the report.
+    def test_the_report_has_the_figures_of_motion(self):
+        part = self.file("45.S", "COORD ABSOL\nPATH LIN\nWORKDEF 1,0 (8.,75.,1.,50.)\n"
+                                 "MOVE (1000.,1000.,-400.,0.,0.)\nSPEED 8\nWORK 1,0/ON\n"
+                                 "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nMOVE (1100.,1100.,-400.,0.,0.)\nWORK 1,0/OFF\n"
+                                 "SPEED 100\nMOVE (1101.,1100.,-400.,0.,0.)\n")
+        report = json.loads(run("simulate", part, "--json").stdout)
+        self.assertAlmostEqual(report["total"]["energyJPerMm"], 28.125, 6)
+        self.assertEqual((report["corners"]["blended"], report["corners"]["stopped"]), ("1", "3"))
+        self.assertEqual(report["corners"]["deviationPlace"]["step"], 7)
+        self.assertEqual((len(report["beam"]["bySpeedS"]), len(report["beam"]["byPowerS"])), (21, 20))
+        self.assertAlmostEqual(sum(report["beam"]["bySpeedS"]), report["total"]["beamOnS"], 6)
+        slow = report["slowMoves"][-1]
+        self.assertEqual((slow["place"]["step"], slow["cause"], slow["wantedMmS"]), (11, "short", 500.0))
+        self.assertAlmostEqual(slow["reachedMmS"], 21.5443469, 3)  # case S03
+        x = next(axis for axis in report["axes"] if axis["axis"] == "X")
+        self.assertAlmostEqual(x["peakSpeedShare"], x["peakSpeed"] / 500.0, 9)
+        self.assertEqual(report["collisions"], "not modelled")
+        self.assertEqual(report["programs"][0]["corners"], report["corners"])
+        text = run("simulate", part).stdout
+        for word in ("corners", "too slow", "peak speed", "28.125 J/mm"):
+            self.assertIn(word, text)
+
     def test_simulate_prints_the_report_as_json(self):
         done = run("simulate", self.file("square.rml", SQUARE), "--json")
         self.assertEqual(done.returncode, 0, done.stderr)

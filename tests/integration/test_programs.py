@@ -66,6 +66,25 @@ class Programs(WithCell):
         self.refused(stub.GetProgram, program_pb2.GetProgramRequest(name=stored.name), grpc.StatusCode.NOT_FOUND,
                      "OPT-E7102")
 
+    # OPT-E.7301: a check says it; the program can be stored all the same, as on the control.
+    def test_a_check_follows_the_motion(self):
+        stub = self.cell.programs()
+        request = program_pb2.CheckProgramRequest(machine="machines/optimo-1")
+        request.program.file_name = "far.S"
+        request.program.content = b"COORD ROBOT\nMOVE (9000.,0.,0.,0.,0.)\n"
+        findings = stub.CheckProgram(request).findings
+        self.assertFalse(findings.ok)
+        self.assertEqual([(d.code, d.place.step, d.time_s) for d in findings.diagnostics], [("OPT-E7301", 2, 0.0)])
+        stub.PutProgram(self.put("optimo-1", 46, "far.S", request.program.content))
+        wide = machine_pb2.Machine(name="machines/optimo-1", parameters={"TRAVEL_X_MAX": "9500"})
+        before = self.cell.machines().GetMachine(machine_pb2.GetMachineRequest(name=wide.name))
+        self.cell.machines().UpdateMachine(machine_pb2.UpdateMachineRequest(machine=wide))
+        self.assertTrue(stub.CheckProgram(request).findings.ok)
+        restore = machine_pb2.UpdateMachineRequest(machine=machine_pb2.Machine(
+            name=wide.name, parameters=dict(before.parameters)))
+        restore.update_mask.paths.append("parameters")
+        self.cell.machines().UpdateMachine(restore)
+
     def test_a_program_with_errors_is_refused_with_place_and_advice(self):
         stub = self.cell.programs()
         detail = self.refused(stub.PutProgram, self.put("optimo-1", 46, "bad.S", "SPEED 20\nSPEED 101\n"),
