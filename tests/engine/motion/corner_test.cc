@@ -53,7 +53,7 @@ TEST(Corner, CurvatureAndDeviationFollowTheFormulas) {
 // 1e-6.
 TEST(Corner, UncappedCornersNeedNoBound) {
   const MachineLimits machine = StandardMachine();
-  for (double degrees = 0.5; degrees < 175.0; degrees += 1.37) {
+  for (double degrees = 0.5; degrees < 175.0; degrees += 0.137) {
     const Bend bend = Of(degrees);
     const double exact = SpeedOnCurve(bend.curve, Head{}, machine);
     const double table = bend.corner.PlainSpeed(1.0, machine);
