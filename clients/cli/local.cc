@@ -7,8 +7,8 @@
 #include <tuple>
 
 #include "clients/cli/findings_text.h"
-#include "clients/cli/fix.h"
 #include "clients/cli/messages.h"
+#include "clients/cli/milling.h"
 #include "clients/cli/program_files.h"
 #include "clients/cli/terminal.h"
 #include "engine/core/number_text.h"
@@ -33,13 +33,6 @@ void DropFindings(const std::vector<Diagnostic>& told, v1::RunReport& report) {
                                return place.line() > 0 && places.contains({finding.code(), place.line(), place.column()});
                              }),
               again.end());
-}
-
-Result<bridge::MachineFile> ReadMachine(const std::string& path) {
-  if (path.empty()) return bridge::MachineFile{};
-  const Result<std::string> text = bridge::ReadFile(path, kFileBytesMax);
-  if (!text) return text.error();
-  return bridge::ParseMachineFile(*text, path);
 }
 
 Result<v1::StepPlace> ParseStepPlace(const std::string& text) {
@@ -167,50 +160,6 @@ Status MakeExecutable(const machine::MachineFamily& family, machine::RunSetup& s
 
 }  // namespace
 
-int Check(const CheckOptions& options) {
-  const Result<bridge::MachineFile> machine = ReadMachine(options.machine_file);
-  if (!machine) return Refuse(machine.error());
-  int exit_code = kGood;
-  for (const std::string& file : options.files) {
-    const auto family = FamilyFor(options.family.empty() ? machine->family : options.family, file);
-    if (!family) return Refuse(family.error());
-    const auto parameters = bridge::MakeParameters(**family, machine->profile, machine->parameters);
-    if (!parameters) return Refuse(parameters.error());
-    const Result<std::string> text = bridge::ReadFile(file, kFileBytesMax);
-    if (!text) return Refuse(text.error());
-    if (text->empty()) return Refuse({ErrorCode::kCellEmptyProgram, file, {}});
-    const auto check = [&](const machine::SourceFile& source) {
-      return (*family)->Translate(source, *parameters, {.advice = !options.errors_only});
-    };
-    if (options.fix) {
-      if (!(*family)->info().has_executables) {
-        return Refuse({ErrorCode::kCellUsage, file + ": a stream of " + std::string((*family)->info().title) +
-                                                  " has nothing to fix", {}});
-      }
-      exit_code = std::max(exit_code, FixFile(file, *text, check, {options.dry_run, options.json}));
-      if (exit_code > kProgramErrors) return exit_code;
-      continue;
-    }
-    const machine::Translation translation = check({.name = file, .bytes = *text});
-    if (!translation.ok) exit_code = kProgramErrors;
-    if (options.json) {
-      Print(Json(bridge::FindingsOf(translation.ok, translation.diagnostics, translation.diagnostics_dropped,
-                                    translation.figures)));
-      continue;
-    }
-    PrintFindings(translation.diagnostics, translation.diagnostics_dropped, *text);
-    const std::size_t findings = translation.diagnostics.size() + translation.diagnostics_dropped;
-    std::string line = file + ": " + (!translation.ok ? "has errors" : findings == 0 ? "good" : "can be stored");
-    if (findings > 0) line += ", " + std::to_string(findings) + (findings == 1 ? " finding" : " findings");
-    for (const machine::Figure& figure : translation.figures) {
-      if (figure.value == 0.0) continue;
-      line += ", " + figure.name + " " + ShortestText(figure.value) + (figure.unit.empty() ? "" : " " + figure.unit);
-    }
-    Print(line);
-  }
-  return exit_code;
-}
-
 int Simulate(const SimulateOptions& options) {
   const Result<bridge::MachineFile> machine = ReadMachine(options.machine_file);
   if (!machine) return Refuse(machine.error());
@@ -296,6 +245,11 @@ int Simulate(const SimulateOptions& options) {
     request.products.plot = true;
     request.plot.curves = *std::move(curves);
   }
+  if (!options.stock.empty()) {
+    Result<simulation::Milling> milling = MillingOf(options, loaded->family->Shape(outcome->setup->parameters));
+    if (!milling) return Refuse(milling.error());
+    request.products.milling = *milling;
+  }
   request.variables = *variables;
   ProgressLine progress;
   request.options.slice = std::chrono::seconds(10);
@@ -311,6 +265,9 @@ int Simulate(const SimulateOptions& options) {
   progress.Clear();
   if (!result) return Refuse(result.error());
 
+  if (result->material && !options.stl.empty()) {
+    if (Status written = WriteMaterial(*result->material, options.stl); !written) return Refuse(written.error());
+  }
   if (samples.is_open()) {
     samples.close();
     if (!samples) return Refuse({ErrorCode::kCellFileUnwritable, options.samples[1] + ": not written to its end", {}});

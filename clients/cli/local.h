@@ -10,6 +10,7 @@ struct CheckOptions {
   std::vector<std::string> files;
   std::string family;
   std::string machine_file;
+  std::string inputs_file;  // what comes from outside while the motion is checked
   bool errors_only = false;
   bool fix = false;      // repair the files, and check what comes out
   bool dry_run = false;  // with fix: show what would change, and write nothing
@@ -35,6 +36,10 @@ struct SimulateOptions {
   std::string svg;
   std::vector<std::string> samples;  // rate and file; empty: none
   std::vector<std::string> plot;  // curves and file; empty: none
+  std::string stock;              // "100x80x10"; empty: material is not modelled
+  std::string tool;               // "flat:3"
+  double cell_mm = 0.1;
+  std::string stl;
   std::string state_in;
   std::string state_out;
   bool trace = false;

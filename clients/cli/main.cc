@@ -44,7 +44,7 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
   {
     auto options = std::make_shared<CheckOptions>();
     CLI::App* verb =
-        app.add_subcommand("check", "Say what is wrong with programs, without running them");
+        app.add_subcommand("check", "Say what is wrong with programs, before anything moves");
     verb->footer(
         "Examples:\n"
         "  rmlcell check part.S                    one program: errors, warnings, advice, each "
@@ -52,11 +52,16 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
         "  rmlcell check progs/*.S --errors-only   errors alone; exit code 1 when there is one\n"
         "  rmlcell check part.S --fix              apply the fixes; layout and comments stay\n"
         "  rmlcell check part.S --fix --dry-run    show them as a patch\n"
-        "  rmlcell check part.S --json             for an editor or a script");
+        "  rmlcell check 45.S 44.S --inputs keys.txt  programs that call each other, with inputs\n"
+        "  rmlcell check part.S --json             for an editor or a script\n\n"
+        "Motion is followed as a run with these inputs (default: all off) would do it: axes that leave\n"
+        "their travel are errors, axes that hold a contour back are advice.");
     verb->add_option("FILES", options->files, "programs")->required();
     verb->add_option("--family", options->family, "optimo or rml1; default: from the file name");
     verb->add_option("--machine", options->machine_file,
                      "machine file (TOML): family, profile, [parameters]");
+    verb->add_option("--inputs", options->inputs_file,
+                     "what comes from outside over time, while the motion is checked");
     verb->add_flag("--errors-only", options->errors_only, "leave warnings and advice out");
     CLI::Option* fix = verb->add_flag("--fix", options->fix, "repair what has one obvious repair, in the files");
     verb->add_flag("--dry-run", options->dry_run, "with --fix: show the changes as a patch; write nothing")->needs(fix);
@@ -70,6 +75,7 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
         "Examples:\n"
         "  rmlcell simulate part.rml --svg part.svg       figures, and a picture\n"
         "  rmlcell simulate 45.S --plot speed,power t.svg curves over time\n"
+        "  rmlcell simulate part.rml --stock 100x80x10 --tool flat:3 --stl part.stl   what is left\n"
         "  rmlcell simulate 32.S progs/ --trace           progs/44.S and the like fill the program "
         "memory\n"
         "  rmlcell simulate part.S --simul 12/40          dry up to step 40 of program 12, real "
@@ -110,6 +116,14 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
         ->type_size(2)
         ->expected(1)
         ->allow_extra_args(false);
+    CLI::Option* stock = verb->add_option("--stock", options->stock,
+                                          "100x80x10[@X,Y,TOP]: a block on a mill's table, mm from the work origin");
+    CLI::Option* tool = verb->add_option("--tool", options->tool, "flat:D, ball:D, vee:D:ANGLE[:TIP]: what mills it");
+    stock->needs(tool);
+    tool->needs(stock);
+    verb->add_option("--cell", options->cell_mm, "edge of the cells that the block is looked at in, mm; default 0.1")
+        ->needs(stock);
+    verb->add_option("--stl", options->stl, "write what is left of the block")->needs(stock);
     verb->add_option("--state-in", options->state_in, "machine state of an earlier run");
     verb->add_option("--state-out", options->state_out, "keep the machine state for a later run");
     verb->add_flag("--trace", options->trace, "list all that was observable, in order");
@@ -265,6 +279,7 @@ void AddJobVerbs(CLI::App& app, Remote& remote, int& exit_code) {
       RemoteVerb(app, "submit", "Submit a job",
                  "  rmlcell submit mill-1 --slot 7 --watch         a stored program, watched live\n"
                  "  rmlcell submit optimo-1 part.S --watch         a file, without storing it\n"
+                 "  rmlcell submit optimo-1 part.S --pace 1 --watch   as fast as the machine would be\n"
                  "  rmlcell submit optimo-1 part.S --kind check    only what is wrong with it",
                  remote);
   verb->add_option("MACHINE", submit.machine)->required();
@@ -276,6 +291,8 @@ void AddJobVerbs(CLI::App& app, Remote& remote, int& exit_code) {
   verb->add_option("--title", submit.title);
   verb->add_option("--request-id", submit.request_id, "repeating it gives the same job");
   verb->add_option("--override", submit.override_percent, "feed override, percent");
+  verb->add_option("--pace", submit.pace, "1: as fast as the machine would be; 10: ten times; 0: at once")
+      ->check(CLI::Range(0.0, 1000.0));
   verb->add_option("--inputs", submit.inputs_file, "external inputs and keys over time");
   verb->add_flag("--trace", submit.trace, "keep a trace");
   verb->add_flag("--watch", submit.watch, "watch the job to its end");

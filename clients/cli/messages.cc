@@ -66,6 +66,107 @@ namespace {
 
 using Rows = std::vector<std::pair<std::string, std::string>>;
 
+constexpr int kListedMax = 5;  // of a list that the report has in full as JSON
+
+std::string Percent(double share) { return Fixed(share * 100.0, 0) + " %"; }
+
+void AddCorners(const v1::RunReport& report, Rows& rows) {
+  const v1::CornerFigures& corners = report.corners();
+  std::string text;
+  const auto count = [&](std::int64_t number, const char* what) {
+    if (number > 0) text += (text.empty() ? "" : ", ") + std::to_string(number) + " " + what;
+  };
+  count(corners.stopped(), "stops");
+  count(corners.stopped_with_fly(), "stops with /FLY");
+  count(corners.reversed(), "reversals with /FLY");
+  count(corners.through(), "straight on");
+  count(corners.blended(), "blended");
+  count(corners.capped(), "blended slower");
+  if (!text.empty()) rows.emplace_back("corners", text);
+  if (corners.deviation_mm_max() > 0.0) {
+    rows.emplace_back("", "deviation up to " + Fixed(corners.deviation_mm_max(), 3) + " mm at " +
+                              PlaceText(corners.deviation_place()) + ", " + PointText(corners.deviation_point()));
+  }
+  if (report.lookahead_starved() > 0) {
+    rows.emplace_back("", "look-ahead was too short " + std::to_string(report.lookahead_starved()) + " times");
+  }
+}
+
+void AddSlowMoves(const v1::RunReport& report, Rows& rows) {
+  const v1::SpeedShortfall& shortfall = report.shortfall();
+  if (shortfall.moves() == 0) return;
+  std::string causes;
+  const auto cause = [&](std::int64_t number, const char* what) {
+    if (number > 0) causes += (causes.empty() ? "" : ", ") + std::string(what) + " " + std::to_string(number);
+  };
+  cause(shortfall.by_axis(), "axis");
+  cause(shortfall.by_radius(), "radius");
+  cause(shortfall.too_short(), "too short");
+  cause(shortfall.by_acceleration(), "acceleration");
+  rows.emplace_back("too slow", std::to_string(shortfall.moves()) + " moves below their SPEED: " + causes);
+  int listed = 0;
+  for (const v1::SlowMove& move : report.slow_moves()) {
+    if (++listed > kListedMax) break;
+    rows.emplace_back("", PlaceText(move.place()) + ": " + Fixed(move.reached_mm_s(), 3) + " of " +
+                              Fixed(move.wanted_mm_s(), 3) + " mm/s, " + move.cause() +
+                              (move.axis().empty() ? "" : " " + move.axis()) +
+                              (move.count() > 1 ? " (" + std::to_string(move.count()) + " times)" : ""));
+  }
+  const std::int64_t more = report.slow_moves_size() + report.slow_moves_dropped() - kListedMax;
+  if (more > 0) rows.emplace_back("", "and " + std::to_string(more) + " more steps");
+}
+
+void AddPeaks(const v1::RunReport& report, Rows& rows) {
+  std::string speeds;
+  std::string accelerations;
+  for (const v1::AxisFigures& axis : report.axes()) {
+    if (axis.peak_speed() <= 0.0) continue;
+    const auto add = [&](std::string& to, double value, double share) {
+      to += (to.empty() ? "" : ", ") + axis.axis() + " " + Fixed(value, axis.rotary() ? 3 : 1);
+      if (share > 0.0) to += " (" + Percent(share) + ")";
+    };
+    add(speeds, axis.peak_speed(), axis.peak_speed_share());
+    add(accelerations, axis.peak_acceleration(), axis.peak_acceleration_share());
+  }
+  if (speeds.empty()) return;
+  rows.emplace_back("peak speed", speeds);
+  rows.emplace_back("peak accel.", accelerations);
+}
+
+void AddViolations(const v1::RunReport& report, Rows& rows) {
+  const auto& violations = report.violations();
+  if (violations.empty()) return;
+  const std::int64_t all = violations.size() + report.violations_dropped();
+  rows.emplace_back("travel", std::to_string(all) + (all == 1 ? " axis leaves its" : " axes of steps leave their") + " travel");
+  int listed = 0;
+  for (const v1::AxisViolation& violation : violations) {
+    if (++listed > kListedMax) break;
+    rows.emplace_back("", PlaceText(violation.place()) + ": " + violation.axis() + " by " +
+                              Fixed(violation.excess(), 3) + (violation.rotary() ? " rad" : " mm") +
+                              (violation.at_target() ? " at the target" : " on the way") + ", at " +
+                              Fixed(violation.time_s(), 3) + " s");
+  }
+  if (all > kListedMax) rows.emplace_back("", "and " + std::to_string(all - kListedMax) + " more");
+}
+
+void AddMilling(const v1::RunReport& report, Rows& rows) {
+  if (!report.has_milling()) return;
+  const v1::MillingFigures& milling = report.milling();
+  rows.emplace_back("material", Fixed(milling.removed_mm3(), 3) + " mm3 taken off");
+  if (milling.gouges() == 0) return;
+  rows.emplace_back("", std::to_string(milling.gouges()) + " motions at travel speed through material, up to " +
+                            Fixed(milling.gouge_depth_mm(), 3) + " mm deep at " + PlaceText(milling.gouge_place()) +
+                            ", at " + Fixed(milling.gouge_time_s(), 3) + " s");
+}
+
+// A figure of the family, by name; 0 when the run has none of it.
+double FamilyFigure(const v1::RunReport& report, std::string_view name) {
+  for (const v1::Figure& figure : report.figures()) {
+    if (figure.name() == name) return figure.value();
+  }
+  return 0.0;
+}
+
 // What a run did; a job that only checks has none of it.
 void AddFigures(const v1::RunReport& report, Rows& rows) {
   const v1::WorkFigures& total = report.total();
@@ -92,9 +193,26 @@ void AddFigures(const v1::RunReport& report, Rows& rows) {
     rows.emplace_back("beam", "on " + Fixed(total.beam_on_s(), 3) + " s, switched on " +
                                   std::to_string(total.beam_switches()) + " times, " +
                                   std::to_string(total.pierces()) + " pierces, " + Fixed(total.energy_j(), 0) + " J");
+    if (total.energy_j_per_mm() > 0.0) {
+      rows.emplace_back("", Fixed(total.energy_j_per_mm(), 3) + " J/mm, of a step at most " +
+                                Fixed(total.energy_j_per_mm_max(), 3));
+    }
   } else {
     rows.emplace_back("plunges", std::to_string(total.plunges()));
+    rows.emplace_back("tool", "down " + Fixed(FamilyFigure(report, "tool_down_time"), 3) + " s, up " +
+                                  Fixed(FamilyFigure(report, "tool_up_time"), 3) + " s");
+    if (const double clipped = FamilyFigure(report, "clipped_length"); clipped > 0.0) {
+      rows.emplace_back("clipped", Fixed(clipped, 3) + " mm beyond the cutting range");
+    }
+    if (const double clamps = FamilyFigure(report, "speed_clamps"); clamps > 0.0) {
+      rows.emplace_back("speeds", Fixed(clamps, 0) + " limited to those of the machine");
+    }
   }
+  AddCorners(report, rows);
+  AddSlowMoves(report, rows);
+  AddPeaks(report, rows);
+  AddMilling(report, rows);
+  AddViolations(report, rows);
   rows.emplace_back("steps", std::to_string(total.steps()));
   rows.emplace_back("final tip", PointText(report.final_position().tip()));
   if (report.family() == "optimo") {
@@ -117,6 +235,7 @@ std::string ReportText(const v1::RunReport& report) {
   Rows rows;
   rows.emplace_back("outcome", OutcomeLine(report.outcome()));
   if (report.has_total()) AddFigures(report, rows);
+  if (!report.motion_check().empty()) rows.emplace_back("motion", "checked " + report.motion_check());
   std::string text;
   for (const auto& [name, value] : rows) {
     text += Paint(name + std::string(14 - std::min<std::size_t>(13, name.size()), ' '), Colour::kDim,

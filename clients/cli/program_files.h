@@ -1,9 +1,12 @@
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/machine/family.h"
+#include "proto/bridge/files.h"
 #include "proto/bridge/setup.h"
 
 namespace rmlcell::cli {
@@ -19,12 +22,23 @@ struct LoadedFiles {
 
 // Files and folders given to a local run. Folders bring their numbered programs ("12.S", "44.rml");
 // "SLOT=FILE" a program each. The main program is the first file, or `main_slot`.
-// Errors: CellFileUnreadable, CellUnknownFamily, CellFamilyUnknownFromName, CellUsage, ProgramNumber.
+// An empty file is an error, unless it lies in a folder and only what is needed is read of that: the caller
+// tells it when it is.
+// Errors: CellFileUnreadable, CellUnknownFamily, CellFamilyUnknownFromName, CellUsage, ProgramNumber,
+// CellEmptyProgram.
+enum class EmptyInFolders { kRefused, kTaken };
 Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files, const std::vector<std::string>& slots,
-                              int main_slot, const std::string& family_id);
+                              int main_slot, const std::string& family_id,
+                              EmptyInFolders empty = EmptyInFolders::kRefused);
+
+// "progs/44.S" -> 44: the name of a program file tells its slot. Nothing: it tells none.
+std::optional<int> SlotFromName(const std::filesystem::path& path);
 
 // "44=FILE" -> 44, FILE; "44" -> 44 and nothing.
 Result<std::pair<int, std::string>> ParseSlotFile(const std::string& text);
+
+// The machine file; without a path the defaults. Errors: CellFileUnreadable, CellBadText.
+Result<bridge::MachineFile> ReadMachine(const std::string& path);
 
 // Writes a file whole or not at all: what stood under this name before is there until the new one is on the
 // disk, and keeps its mode. Error: CellFileUnwritable.

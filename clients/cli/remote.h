@@ -38,6 +38,7 @@ struct SubmitRequest {
   std::string request_id;
   std::string inputs_file;
   double override_percent = 0.0;
+  double pace = 0.0;  // virtual seconds a real second; 0: as fast as possible
   bool trace = false;
   bool watch = false;
 };

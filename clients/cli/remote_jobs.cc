@@ -139,6 +139,7 @@ int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
   }
   v1::SimulationOptions& options = *job.mutable_simulation();
   options.set_override_percent(wanted.override_percent);
+  options.set_pace(wanted.pace);
   options.set_trace(wanted.trace);
   if (!wanted.inputs_file.empty()) {
     const Result<std::string> text = bridge::ReadFile(wanted.inputs_file, kFileBytesMax);

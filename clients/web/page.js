@@ -345,8 +345,93 @@ function drawResults(row, job) {
     const word = one.name.startsWith("picture") ? "Picture" : one.name[0].toUpperCase() + one.name.slice(1);
     const link = element("a", { href: one.urlPath, target: "_blank", rel: "noopener" }, word);
     link.setAttribute("aria-label", `${word} of job ${lastPart(job.name)}, opens in a new tab`);
+    if (one.name !== "report") return link;
+    link.setAttribute("aria-label", `Report of job ${lastPart(job.name)}`);
+    link.addEventListener("click", (event) => {
+      if (event.ctrlKey || event.metaKey || event.shiftKey) return;
+      event.preventDefault();
+      showReport(job, one.urlPath);
+    });
     return link;
   }));
+}
+
+// A code in a report is explained in the same dialog.
+function openDialog() {
+  const dialog = byId("explain");
+  if (!dialog.open) dialog.showModal();
+}
+
+// --- the report -----------------------------------------------------------------------------------------
+
+const SHOWN_OF_A_LIST = 8;
+const fixed = (number, digits) => (number ?? 0).toFixed(digits);
+
+function countsText(pairs) {
+  return pairs.filter(([number]) => Number(number) > 0).map(([number, what]) => `${number} ${what}`).join(", ");
+}
+
+// What a person wants to know first; the link below has everything.
+function reportRows(report) {
+  const rows = [];
+  const total = report.total;
+  const add = (word, text) => {
+    if (text) rows.push([word, text]);
+  };
+  if (total) {
+    const times = total.times ?? {};
+    add("Cycle time", duration(times.cycleS ?? 0) + (report.timing === "exact" ? "" : ` (${report.timing})`));
+    add("Path", `${fixed(total.pathLengthMm, 1)} mm, cut ${fixed(total.cutLengthMm, 1)}, travel ${fixed(total.travelLengthMm, 1)}`);
+    if (total.beamOnS) add("Beam", `on ${fixed(total.beamOnS, 1)} s, ${total.pierces ?? 0} pierces, ${fixed(total.energyJ, 0)} J`);
+    if (total.energyJPerMm) add("", `${fixed(total.energyJPerMm, 2)} J/mm, of a step at most ${fixed(total.energyJPerMmMax, 2)}`);
+    if (Number(total.plunges) > 0) add("Plunges", String(total.plunges));
+  }
+  const corners = report.corners ?? {};
+  add("Corners", countsText([[corners.stopped, "stops"], [corners.stoppedWithFly, "stops with /FLY"],
+    [corners.reversed, "reversals"], [corners.through, "straight on"], [corners.blended, "blended"],
+    [corners.capped, "blended slower"]]));
+  if (corners.deviationMmMax) add("", `deviation up to ${fixed(corners.deviationMmMax, 3)} mm, ${placeText(corners.deviationPlace)}`);
+  const shortfall = report.shortfall ?? {};
+  if (Number(shortfall.moves) > 0) {
+    add("Too slow", `${shortfall.moves} moves: ` + countsText([[shortfall.byAxis, "by an axis"],
+      [shortfall.byRadius, "by a radius"], [shortfall.tooShort, "too short"], [shortfall.byAcceleration, "by acceleration"]]));
+  }
+  for (const axis of report.axes ?? []) {
+    if (!axis.peakSpeed) continue;
+    const share = axis.peakSpeedShare ? ` (${fixed(axis.peakSpeedShare * 100, 0)} %)` : "";
+    add(`Peak ${axis.axis}`, `${fixed(axis.peakSpeed, axis.rotary ? 3 : 1)} ${axis.rotary ? "rad/s" : "mm/s"}${share}`);
+  }
+  const violations = report.violations ?? [];
+  for (const one of violations.slice(0, SHOWN_OF_A_LIST)) {
+    add("Leaves its travel", `${one.axis} by ${fixed(one.excess, 3)} ${one.rotary ? "rad" : "mm"}, ${placeText(one.place)}, at ${fixed(one.timeS, 3)} s`);
+  }
+  const more = violations.length + Number(report.violationsDropped ?? 0) - SHOWN_OF_A_LIST;
+  if (more > 0) add("", `and ${more} more`);
+  add("Motion checked", report.motionCheck);
+  return rows;
+}
+
+async function showReport(job, address) {
+  const body = byId("explain-body");
+  setText(byId("explain-title"), `Report of job ${lastPart(job.name)}`);
+  body.replaceChildren("Asking the server");
+  openDialog();
+  try {
+    const response = await fetch(address, { signal: AbortSignal.timeout(CALL_MS) });
+    if (!response.ok) throw new Error(response.statusText);
+    const report = await response.json();
+    const list = element("dl", { className: "report" });
+    for (const [word, text] of reportRows(report)) list.append(element("dt", {}, word), element("dd", {}, text));
+    const findings = element("ul", { className: "findings" });
+    for (const one of (report.diagnostics ?? []).slice(0, SHOWN_OF_A_LIST)) {
+      findings.append(element("li", {}, explainLink(one.code), ` ${one.message} `,
+        element("span", { className: "sub" }, placeText(one.place))));
+    }
+    const all = element("a", { href: address, target: "_blank", rel: "noopener" }, "All of it as JSON");
+    body.replaceChildren(list, findings, element("p", {}, all));
+  } catch (error) {
+    setText(body, `The report cannot be read: ${error.message}`);
+  }
 }
 
 // --- explanations ---------------------------------------------------------------------------------------
@@ -371,7 +456,7 @@ async function explain(code) {
   const body = byId("explain-body");
   setText(byId("explain-title"), code);
   body.replaceChildren("Asking the server");
-  byId("explain").showModal();
+  openDialog();
   try {
     const answer = await call("ProgramService/ExplainError", { code });
     body.replaceChildren(...(answer.errors ?? []).map((error) => {

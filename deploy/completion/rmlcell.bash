@@ -49,10 +49,11 @@ _rmlcell_options() {
   local remote="--help --server --json"
   case $1 in
     "") echo "--help --version" ;;
-    check) echo "--help --family --machine --errors-only --fix --dry-run --json" ;;
+    check) echo "--help --family --machine --inputs --errors-only --fix --dry-run --json" ;;
     simulate)
       echo "--help --slot --main --executable --family --profile --machine --inputs --mode --override --simul" \
-        "--break --budget --vars --svg --samples --plot --state-in --state-out --trace --facts --json" ;;
+        "--break --budget --vars --svg --samples --plot --stock --tool --cell --stl" \
+        "--state-in --state-out --trace --facts --json" ;;
     explain) echo "--help --json" ;;
     diff) echo "--help --svg --json" ;;
     parameters) echo "--help --profile --json" ;;
@@ -67,7 +68,7 @@ _rmlcell_options() {
     put) echo "$remote --etag --check-only" ;;
     get) echo "$remote --form --output" ;;
     submit)
-      echo "$remote --slot --kind --title --request-id --override --inputs --trace --watch" ;;
+      echo "$remote --slot --kind --title --request-id --override --pace --inputs --trace --watch" ;;
     watch) echo "$remote --after" ;;
     jobs) echo "$remote --filter --limit" ;;
     picture) echo "$remote --output" ;;
@@ -80,8 +81,8 @@ _rmlcell_options() {
 _rmlcell_takes_value() {
   case $1 in
     --slot | --main | --executable | --family | --profile | --machine | --inputs | --mode | --override | \
-      --simul | --break | --budget | --vars | --svg | --samples | --plot | --state-in | --state-out | --server | --etag | --form | \
-      --output | -o | --kind | --title | --request-id | --after | --filter | --limit | --move | --turn | --shift) return 0 ;;
+      --simul | --break | --budget | --vars | --svg | --samples | --plot | --stock | --tool | --cell | --stl | --state-in | --state-out | --server | --etag | --form | \
+      --output | -o | --kind | --title | --request-id | --pace | --after | --filter | --limit | --move | --turn | --shift) return 0 ;;
   esac
   return 1
 }
@@ -97,6 +98,7 @@ _rmlcell_values() {
     --kind) _rmlcell_offer simulate check run ;;
     --form) _rmlcell_offer source object executable listing ;;
     --override) _rmlcell_offer 10 25 40 55 70 85 100 115 130 145 ;;
+    --pace) _rmlcell_offer 1 10 100 ;;
     --etag) _rmlcell_offer none ;;
     --budget)
       compopt -o nospace 2>/dev/null
@@ -106,6 +108,9 @@ _rmlcell_values() {
       _rmlcell_offer state= machine= kind= caller= finished= ;;
     --machine) _rmlcell_files .toml ;;
     --svg) _rmlcell_files .svg ;;
+    --stl) _rmlcell_files .stl ;;
+    --stock) _rmlcell_offer 100x80x10 ;;
+    --tool) _rmlcell_offer flat:3 ball:3 vee:6:60 ;;
     --samples) _rmlcell_offer 10 100 1000 10000 ;;
     --plot)
       compopt -o nospace 2>/dev/null

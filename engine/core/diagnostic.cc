@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/core/number_text.h"
+
 namespace rmlcell {
 namespace {
 
@@ -65,7 +67,11 @@ std::string FormatDiagnostic(const Diagnostic& diagnostic, std::string_view sour
   text += error ? "error" : std::string(SeverityName(diagnostic.severity));
   text += ' ' + CodeText(diagnostic.code) + ": ";
   text += diagnostic.detail.empty() ? std::string(entry.when) : diagnostic.detail;
-  if (diagnostic.step > 0) text += " (step " + std::to_string(diagnostic.step) + ')';
+  if (diagnostic.step > 0) {
+    text += " (step " + std::to_string(diagnostic.step);
+    if (diagnostic.at) text += ", at " + FixedText(ToSeconds(*diagnostic.at), 3) + " s";
+    text += ')';
+  }
   if (!diagnostic.rule.empty()) text += " [" + diagnostic.rule + ']';
   if (error || diagnostic.severity == Severity::kDevice) text += "; " + std::string(entry.advice);
   if (diagnostic.where.line > 0 && !source.empty()) {

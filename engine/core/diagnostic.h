@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "engine/core/result.h"
+#include "engine/core/units.h"
 
 namespace rmlcell {
 
@@ -29,6 +31,7 @@ struct Diagnostic {
   int program = 0;       // slot; 0 when the program has none
   int step = 0;          // as the control counts; 0 when it belongs to no step
   std::vector<Fix> fixes{};
+  std::optional<SimTime> at{};  // virtual time of the run that found it; none: found in the text
 
   bool operator==(const Diagnostic&) const = default;
 };
@@ -37,8 +40,8 @@ struct Diagnostic {
 bool IsError(Severity severity);
 bool HasErrors(std::span<const Diagnostic> findings);
 
-// "part.S:12:6: error OPT-E7019: MOVE has 4 values, needs 5 [OPT-2.01]", then, when `source` is not
-// empty and the line is known, that line and a caret line below it. No line end after the last line.
+// "part.S:12:6: error OPT-E7019: MOVE has 4 values, needs 5 [OPT-2.01]", of a run with its time,
+// "(step 3, at 1.500 s)", then, when `source` is not empty and the line is known, that line and a caret line below it. No line end after the last line.
 std::string FormatDiagnostic(const Diagnostic& diagnostic, std::string_view source);
 
 }  // namespace rmlcell

@@ -20,6 +20,7 @@ struct FamilyInfo {
   std::string_view axes{};        // "X Y Z A B"
   bool has_executables = false; // makes executables at slot + 100
   bool has_schedules = false;   // laser schedules and process definitions
+  bool checked_by_running = false;  // Translate does not follow the motion: CHECK runs the program
   bool hold_in_remote = false;  // the HOLD key works in mode REMOTE, too
   // The machine's own codes for a number that is no slot, and for a slot without program. A machine without
   // program memory has none: the cell keeps its programs, and says so in its own words.

@@ -95,6 +95,18 @@ struct Wait {
   double power_percent = 0.0;  // laser: while the beam is on
 };
 
+// An axis that a motion takes out of its travel (OPT-B.08, motion.md 2.6): one for each such axis.
+// In a forecast the motion begins at `at`; else the run ends there.
+struct TravelViolation {
+  SimTime at{0};
+  Place place{};
+  int axis = 0;             // 0..4: X Y Z A B
+  double excess = 0.0;      // the worst of the motion, mm or rad
+  bool at_target = false;   // the target itself lies outside; else the path on the way
+  motion::AxisPose axes{};  // where it is worst
+  motion::TipPose tip{};
+};
+
 // A halt of the run: PAUSE, STOP, HOLD, breakpoint, !NR.
 struct Halt {
   SimTime at{0};
@@ -116,6 +128,7 @@ class RunObserver {
   virtual void OnResume(SimTime /*at*/, const Place&) {}
   virtual void OnProgram(SimTime /*at*/, const Place&, std::string_view /*what*/, int /*program*/) {}
   virtual void OnMessage(SimTime /*at*/, const Place&, std::string_view /*text*/) {}
+  virtual void OnViolation(const TravelViolation&) {}
   virtual void OnDiagnostic(SimTime /*at*/, const Diagnostic&) {}
 };
 

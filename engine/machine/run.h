@@ -66,6 +66,10 @@ struct RunSetup {
   std::optional<ProgramStep> breakpoint{};                 // halt after this step
   std::optional<ProgramStep> simul{};                      // dry run up to this step
   InputScript inputs{};
+  // SIMULATE and CHECK: a motion that leaves the travel of an axis is told as an error, and the run
+  // goes on as if the axis could, so that one run tells of all of them; it ends as failed. False,
+  // RUN: such a motion is an alarm before it begins (motion.md 2.6).
+  bool forecast = false;
   RunBudget budget{};
 };
 

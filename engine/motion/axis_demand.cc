@@ -65,7 +65,7 @@ bool Allows(const AxisDerivatives& q, const AxisLimits& axes, const AxisShares& 
 
 // Upper bounds of both derivatives over the whole piece, cheap: enough for most moves.
 AxisDerivatives Bounds(const PathPiece& path, const Head& head) {
-  const double arm = head.arm_mm();
+  const double arm = head.reach_mm();
   const double a = std::abs(path.a_rate());
   const double b = std::abs(path.b_rate());
   const double swing = arm * (a + b);
@@ -110,8 +110,8 @@ AxisDerivatives DerivativesAt(const PathPiece& path, const Head& head, double s)
 AxisDerivatives ThroughHead(const Head& head, const TipPose& pose, const PathDerivatives& first,
                             const PathDerivatives& second) {
   const BothAxisRates rates =
-      AxisRatesOfBoth(head, pose.a_rad, pose.b_rad, {first.tip, first.a, first.b},
-                      {second.tip, second.a, second.b});
+      head.RatesOfBoth(pose.a_rad, pose.b_rad, {first.tip, first.a, first.b},
+                       {second.tip, second.a, second.b});
   return {.first = rates.first, .second = rates.second};
 }
 
@@ -150,7 +150,7 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
     const PathDerivatives first = path.First(0.0);  // and everywhere: there is no second one
     const double rate = std::abs(first.a) + std::abs(first.b);
     const double half = 0.5 * path.length();
-    const double drift = half * head.arm_mm() * rate * rate;
+    const double drift = half * head.reach_mm() * rate * rate;
     const double wanted = std::ceil(std::max(drift / Norm(first.tip), half * rate) / kRoom);
     if (wanted <= static_cast<double>(kPartsMax)) {
       const auto parts = static_cast<std::size_t>(std::max(wanted, 1.0));

@@ -133,7 +133,7 @@ bool AxesFollow(const CornerCurve& curve, const Head& head, const MachineLimits&
   const double b = by_u.b_first * per_mm;
   const double aa = (by_u.a_second + by_u.a_first * stretch) * per_mm * per_mm;
   const double bb = (by_u.b_second + by_u.b_first * stretch) * per_mm * per_mm;
-  const double arm = head.arm_mm();
+  const double arm = head.reach_mm();
   const double first = 1.0 + arm * (a + b);
   const double second = bend_per_mm + arm * (aa + bb + (a + b) * (a + b));
   const AxisLimits& axes = machine.axes;

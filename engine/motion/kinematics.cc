@@ -15,7 +15,7 @@ struct HeadVector {
   double x;     // r_x
   double m, n;  // r turned about the tool's X axis: components across and along Z
 
-  HeadVector(const Head& head, double a_rad, double b_rad)
+  HeadVector(const GantryHead& head, double a_rad, double b_rad)
       : sin_a(std::sin(a_rad)), cos_a(std::cos(a_rad)), x(-head.tool.x_mm) {
     const double sin_b = std::sin(b_rad);
     const double cos_b = std::cos(b_rad);
@@ -36,17 +36,6 @@ AxisValues Together(const Vec3& column, double a, double b) {
   return {column.x, column.y, column.z, a, b};
 }
 
-AxisValues FirstRates(const HeadVector& w, const TipRates& first) {
-  return Together(first.tip + w.ByA() * first.a + w.ByB() * first.b, first.a, first.b);
-}
-
-AxisValues SecondRates(const HeadVector& w, const TipRates& first, const TipRates& second) {
-  return Together(second.tip + w.ByA() * second.a + w.ByB() * second.b +
-                      w.ByAA() * (first.a * first.a) + w.ByAB() * (2.0 * first.a * first.b) +
-                      w.ByBB() * (first.b * first.b),
-                  second.a, second.b);
-}
-
 // The angle that differs from `angle` by whole turns and is nearest to `near`.
 double NearestTurn(double angle, double near) {
   return angle + kTurn * std::round((near - angle) / kTurn);
@@ -58,6 +47,41 @@ constexpr int kRangePerTurn = 32;  // on arcs
 
 void KeepWorse(TravelExcess& worst, const TravelExcess& other) {
   if (other.excess > worst.excess) worst = other;
+}
+
+// By how much a value lies outside the travel of its axis; 0 inside.
+double ExcessOf(std::size_t axis, double value, const AxisLimits& limits) {
+  if (std::isnan(value)) return std::numeric_limits<double>::infinity();
+  return std::max({limits.travel_min[axis] - value, value - limits.travel_max[axis], 0.0});
+}
+
+AxisPose AxesAt(const PathPiece& path, const Head& head, double s) {
+  const TipPose pose = path.At(s);
+  return path.kind() == PathPiece::Kind::kJoint ? AxisPose{pose.tip, pose.a_rad, pose.b_rad}
+                                                : head.ColumnOf(pose);
+}
+
+// The places of a path at which its range is looked at: motion.md 2.6.
+template <class Look>
+void ForEachRangePoint(const PathPiece& path, Look look) {
+  const bool arc = path.kind() == PathPiece::Kind::kArc;
+  const int pieces =
+      arc ? std::max(kRangePieces,
+                     static_cast<int>(std::ceil(path.sweep_rad() / kTurn * kRangePerTurn)))
+          : kRangePieces;
+  for (int k = 0; k <= pieces; ++k) look(path.length() * k / pieces);
+  if (!arc) return;
+
+  // Where the circle is farthest along X, Y and Z: tangent(x) = t cos x + c sin x has no such
+  // component.
+  const Vec3 t = path.Tangent(0.0);
+  const Vec3 c = path.Curvature(0.0) * path.radius_mm();
+  for (const auto& [along, inward] :
+       {std::pair{t.x, c.x}, std::pair{t.y, c.y}, std::pair{t.z, c.z}}) {
+    double angle = std::atan2(-along, inward);
+    if (angle < 0.0) angle += kPi;
+    for (; angle < path.sweep_rad(); angle += kPi) look(angle * path.radius_mm());
+  }
 }
 
 }  // namespace
@@ -72,30 +96,49 @@ ToolAxes AxesOfTool(double a_rad, double b_rad) {
           .u = {sin_a * sin_b, -cos_a * sin_b, cos_b}};
 }
 
-double Head::arm_mm() const { return Norm({tool.x_mm, tool.y_mm, length_mm - tool.z_mm}); }
+Vec3 GantryHead::Offset(double a_rad, double b_rad) const {
+  return HeadVector(*this, a_rad, b_rad).Value();
+}
+
+Swing GantryHead::SwingOf(double a_rad, double b_rad, const TipRates& first,
+                          const TipRates& second) const {
+  const HeadVector w(*this, a_rad, b_rad);
+  const Vec3 by_a = w.ByA();
+  const Vec3 by_b = w.ByB();
+  return {.first = by_a * first.a + by_b * first.b,
+          .second = by_a * second.a + by_b * second.b + w.ByAA() * (first.a * first.a) +
+                    w.ByAB() * (2.0 * first.a * first.b) + w.ByBB() * (first.b * first.b)};
+}
+
+double GantryHead::reach_mm() const { return Norm({tool.x_mm, tool.y_mm, length_mm - tool.z_mm}); }
 
 AxisPose Head::ColumnOf(const TipPose& pose) const {
-  return {pose.tip + HeadVector(*this, pose.a_rad, pose.b_rad).Value(), pose.a_rad, pose.b_rad};
+  const Vec3 offset =
+      std::visit([&](const auto& head) { return head.Offset(pose.a_rad, pose.b_rad); }, kind_);
+  return {pose.tip + offset, pose.a_rad, pose.b_rad};
 }
 
 TipPose Head::TipOf(const AxisPose& pose) const {
-  return {pose.column - HeadVector(*this, pose.a_rad, pose.b_rad).Value(), pose.a_rad, pose.b_rad};
+  const Vec3 offset =
+      std::visit([&](const auto& head) { return head.Offset(pose.a_rad, pose.b_rad); }, kind_);
+  return {pose.column - offset, pose.a_rad, pose.b_rad};
 }
 
-AxisValues AxisRates(const Head& head, double a_rad, double b_rad, const TipRates& first) {
+double Head::reach_mm() const {
+  return std::visit([](const auto& head) { return head.reach_mm(); }, kind_);
+}
+
+AxisValues Head::Rates(double a_rad, double b_rad, const TipRates& first) const {
   if (first.a == 0.0 && first.b == 0.0) return Together(first.tip, 0.0, 0.0);
-  return FirstRates(HeadVector(head, a_rad, b_rad), first);
+  return RatesOfBoth(a_rad, b_rad, first, {}).first;
 }
 
-AxisValues AxisSecondRates(const Head& head, double a_rad, double b_rad, const TipRates& first,
-                           const TipRates& second) {
-  return SecondRates(HeadVector(head, a_rad, b_rad), first, second);
-}
-
-BothAxisRates AxisRatesOfBoth(const Head& head, double a_rad, double b_rad, const TipRates& first,
-                              const TipRates& second) {
-  const HeadVector w(head, a_rad, b_rad);
-  return {FirstRates(w, first), SecondRates(w, first, second)};
+BothAxisRates Head::RatesOfBoth(double a_rad, double b_rad, const TipRates& first,
+                                const TipRates& second) const {
+  const Swing swing = std::visit(
+      [&](const auto& head) { return head.SwingOf(a_rad, b_rad, first, second); }, kind_);
+  return {Together(first.tip + swing.first, first.a, first.b),
+          Together(second.tip + swing.second, second.a, second.b)};
 }
 
 HeadAngles AnglesOf(const Vec3& u, const HeadAngles& near) {
@@ -162,40 +205,35 @@ TravelExcess WorstExcess(const AxisPose& pose, const AxisLimits& limits) {
   TravelExcess worst;
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
-    double excess = std::max(limits.travel_min[i] - values[i], values[i] - limits.travel_max[i]);
-    if (std::isnan(values[i])) excess = std::numeric_limits<double>::infinity();
-    KeepWorse(worst, {excess > 0.0 ? axis : -1, std::max(excess, 0.0)});
+    const double excess = ExcessOf(i, values[i], limits);
+    KeepWorse(worst, {excess > 0.0 ? axis : -1, excess});
   }
   return worst;
 }
 
+double ExcessOfAxis(int axis, const AxisPose& pose, const AxisLimits& limits) {
+  const auto i = static_cast<std::size_t>(axis);
+  return ExcessOf(i, Together(pose.column, pose.a_rad, pose.b_rad)[i], limits);
+}
+
 TravelExcess WorstExcess(const PathPiece& path, const Head& head, const AxisLimits& limits) {
   TravelExcess worst;
-  const auto look = [&](double s) {
-    const TipPose pose = path.At(s);
-    const AxisPose axes = path.kind() == PathPiece::Kind::kJoint
-                              ? AxisPose{pose.tip, pose.a_rad, pose.b_rad}
-                              : head.ColumnOf(pose);
-    KeepWorse(worst, WorstExcess(axes, limits));
-  };
-  const bool arc = path.kind() == PathPiece::Kind::kArc;
-  const int pieces =
-      arc ? std::max(kRangePieces,
-                     static_cast<int>(std::ceil(path.sweep_rad() / kTurn * kRangePerTurn)))
-          : kRangePieces;
-  for (int k = 0; k <= pieces; ++k) look(path.length() * k / pieces);
-  if (!arc) return worst;
+  ForEachRangePoint(
+      path, [&](double s) { KeepWorse(worst, WorstExcess(AxesAt(path, head, s), limits)); });
+  return worst;
+}
 
-  // Where the circle is farthest along X, Y and Z: tangent(x) = t cos x + c sin x has no such
-  // component.
-  const Vec3 t = path.Tangent(0.0);
-  const Vec3 c = path.Curvature(0.0) * path.radius_mm();
-  for (const auto& [along, inward] :
-       {std::pair{t.x, c.x}, std::pair{t.y, c.y}, std::pair{t.z, c.z}}) {
-    double angle = std::atan2(-along, inward);
-    if (angle < 0.0) angle += kPi;
-    for (; angle < path.sweep_rad(); angle += kPi) look(angle * path.radius_mm());
-  }
+std::array<PlacedExcess, kAxisCount> ExcessOfEach(const PathPiece& path, const Head& head,
+                                                  const AxisLimits& limits) {
+  std::array<PlacedExcess, kAxisCount> worst{};
+  ForEachRangePoint(path, [&](double s) {
+    const AxisPose pose = AxesAt(path, head, s);
+    const AxisValues values = Together(pose.column, pose.a_rad, pose.b_rad);
+    for (std::size_t i = 0; i < worst.size(); ++i) {
+      const double excess = ExcessOf(i, values[i], limits);
+      if (excess > worst[i].excess) worst[i] = {excess, s};
+    }
+  });
   return worst;
 }
 

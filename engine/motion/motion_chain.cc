@@ -6,9 +6,10 @@
 namespace rmlcell::motion {
 namespace {
 
-constexpr std::size_t kBatchMin = 32;  // knots before a backward pass is worth its while
-constexpr double kCutMin_mm = 1e-4;    // a smaller curve is a stop, motion.md 4.4
-constexpr double kEqualLimits = 1e-9;  // relative
+constexpr std::size_t kBatchMin = 32;    // knots before a backward pass is worth its while
+constexpr std::size_t kMillLegMax = 16;  // moves: most of what one leg of all would save
+constexpr double kCutMin_mm = 1e-4;      // a smaller curve is a stop, motion.md 4.4
+constexpr double kEqualLimits = 1e-9;    // relative
 constexpr double kContiguous_mm = 1e-6;
 
 // A bend that takes all that the axes have takes nine tenths of it at this share of its speed.
@@ -61,6 +62,7 @@ void MotionChain::Append(const MoveCommand& move, const PathLimits& limits) {
   slot.limits = limits;
   // What is no number makes no passage.
   slot.overshoot = move.overshoot_fraction > 0.0 ? std::min(move.overshoot_fraction, 1.0) : 0.0;
+  slot.passage_speed = move.passage_speed_mm_s;
   slot.settling_s = move.settles ? machine_.settling_s : 0.0;
   slot.tag = move.tag;
   slot.fly = move.fly;
@@ -88,18 +90,22 @@ bool MotionChain::Join(const MoveCommand& move, const PathLimits& limits) {
   Leg& leg = legs_.back();
   Passage passage = Passage::kStop;
   double cap = 0.0;
-  bool bends =
-      false;  // a curve must not reach over it, although without a limit on jerk it is passed
+  const bool mill = machine_.junction_jump_mm_s > 0.0;
+  // A curve must not reach over it, although without a limit on jerk it is passed.
+  bool bends = false;
   if (before.overshoot <= 0.0 || stands_) {
     passage = Passage::kStopNoSpeed;
   } else if (before.path.by_sigma() || move.path.by_sigma()) {
     passage = Passage::kStopNeighbour;
-  } else if (SameTip(before.head, move.head) && Contiguous(before.path.to(), move.path.from())) {
+  } else if (before.head == move.head && Contiguous(before.path.to(), move.path.from())) {
     cap = before.overshoot * std::min(before.limits.speed, limits.speed);
-    if (machine_.junction_jump_mm_s > 0.0) {  // a mill
+    if (mill) {
       passage = Passage::kThrough;
-      cap = std::min(cap, JunctionSpeed(before.path.Tangent(before.path.length()),
-                                        move.path.Tangent(0.0), machine_.junction_jump_mm_s));
+      cap = std::min({cap, before.passage_speed,
+                      JunctionSpeed(before.path.Tangent(before.path.length()),
+                                    move.path.Tangent(0.0), machine_.junction_jump_mm_s)});
+      const double turn = std::abs(move.path.a_rate() - before.path.a_rate());
+      if (turn > 0.0) cap = std::min(cap, machine_.junction_jump_a_rad_s / turn);
     } else {
       leg.corner.Assign(before.path, move.path);
       passage = leg.corner.passage();
@@ -110,11 +116,12 @@ bool MotionChain::Join(const MoveCommand& move, const PathLimits& limits) {
     }
   }
   stands_ = false;
-  if (passage == Passage::kThrough && !bends && Equal(before.limits, limits) &&
-      Equal(cap, limits.speed)) {
-    // A line without end must not fill the window as one leg.
-    if (leg.last_move - leg.first_move < window_ / 2) return false;
-    ++starved_;
+  const bool alike = Equal(before.limits, limits) && Equal(cap, limits.speed);
+  if (passage == Passage::kThrough && !bends && alike) {
+    // A line without end must not fill the window as one leg. Of a mill it need not even wait:
+    // without a limit on jerk a leg may be cut anywhere.
+    if (leg.last_move - leg.first_move < (mill ? kMillLegMax : window_ / 2)) return false;
+    if (!mill) ++starved_;
     bends = true;
   }
   CloseLeg(passage, bends, cap);
@@ -249,10 +256,13 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
   Leg& leg = legs_[number];
   const double wanted = running_.speed();
   const double total = run_length_ + leg.length;
-  // Nor may a run fill it; but it holds what the curve before it takes.
-  if (!leg.ends_run && number - legs_.first() >= window_ / 2 && total >= run_cut_) {
+  // Nor may a run fill the window; but it holds what the curve before it takes. The run of a mill has
+  // no curve at its end to wait for.
+  const bool mill = machine_.junction_jump_mm_s > 0.0;
+  const std::size_t longest = mill ? kBatchMin : window_ / 2;
+  if (!leg.ends_run && number - legs_.first() >= longest && total >= run_cut_) {
     leg.ends_run = true;
-    ++starved_;
+    if (!mill) ++starved_;
   }
   if (!leg.ends_run) {
     leg.cap = std::min(leg.cap, wanted);

@@ -63,6 +63,7 @@ class MotionChain {
     Head head;
     PathLimits limits;
     double overshoot = 0.0;
+    double passage_speed = 0.0;  // mills
     double settling_s = 0.0;
     std::uint64_t tag = 0;
     bool fly = false;

@@ -136,7 +136,7 @@ void MotionChain::TakeRamp(SpeedProfile& speed, const SpeedProfile& ramp, double
     return;
   }
   if (place_.s < from) ramp.Advance(place_, from);
-  speed = ramp.PartTo(place_, to);
+  ramp.PartTo(place_, to, speed);
 }
 
 // The part of the span to `to` of its length, or to its end.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/core/check.h"
 #include "engine/core/number_text.h"
 #include "engine/motion/motion_chain.h"
 
@@ -21,11 +22,15 @@ bool IsUsable(const TipPose& pose) {
 // A motion of more than 30 years is one that never arrives.
 constexpr double kDurationMax_s = 1e9;
 
+bool IsAboveZero(const PathLimits& limits) {
+  return limits.speed > 0.0 && limits.acceleration > 0.0 && limits.jerk > 0.0;
+}
+
 // Moves too short to be made leave a gap between where the machine is and where the next move
 // believes it begins: a line begins where the machine is.
 bool NeedsAnchor(const PathPiece& path, const TipPose* end) {
   constexpr double kGap_mm = 1e-3;  // a thousand such moves
-  if (end == nullptr || path.from() == *end) return false;
+  if (end == nullptr) return false;
   const bool straight = path.kind() == PathPiece::Kind::kLine ||
                         path.kind() == PathPiece::Kind::kRotary || !(path.length() > 0.0);
   return straight && Distance(end->tip, path.from().tip) <= kGap_mm &&
@@ -46,10 +51,13 @@ Planner::Planner(Planner&&) noexcept = default;
 Planner& Planner::operator=(Planner&&) noexcept = default;
 
 Status Planner::Append(const MoveCommand& move) {
-  if (!IsUsable(move.path.from()) || !IsUsable(move.path.to()) || !IsUsable(move.path.length())) {
+  const TipPose* end = chain_->end();
+  const bool goes_on = end != nullptr && move.path.from() == *end;  // from where all is well
+  if ((!goes_on && !IsUsable(move.path.from())) || !IsUsable(move.path.to()) ||
+      !IsUsable(move.path.length())) {
     return Error{ErrorCode::kTargetOutOfTravel, "a coordinate is not a usable number", {}};
   }
-  if (NeedsAnchor(move.path, chain_->end())) {
+  if (!goes_on && NeedsAnchor(move.path, end)) {
     MoveCommand anchored = move;
     anchored.path = PathPiece::Line(*chain_->end(), move.path.to());
     return AppendChecked(anchored);
@@ -62,6 +70,11 @@ Status Planner::AppendChecked(const MoveCommand& move) {
     chain_->Nothing(move.path.from(), move.fly);
     return {};
   }
+  if (move.limits) {
+    RMLCELL_CHECK(IsAboveZero(*move.limits));
+    chain_->Append(move, *move.limits);
+    return {};
+  }
   if (!(move.speed_fraction > 0.0)) return Error{ErrorCode::kNoMotion, "the speed is 0", {}};
   if (!(move.acceleration_fraction >= kAccelerationFractionMin)) {
     return Error{ErrorCode::kNoMotion,
@@ -69,8 +82,7 @@ Status Planner::AppendChecked(const MoveCommand& move) {
                  {}};
   }
   const PathLimits limits = chain_->LimitsFor(move);
-  if (!(move.path.length() <= limits.speed * kDurationMax_s) || !(limits.speed > 0.0) ||
-      !(limits.acceleration > 0.0) || !(limits.jerk > 0.0)) {
+  if (!(move.path.length() <= limits.speed * kDurationMax_s) || !IsAboveZero(limits)) {
     return Error{ErrorCode::kNoMotion, "the speed is too low to ever arrive", {}};
   }
   chain_->Append(move, limits);

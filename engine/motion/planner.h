@@ -24,9 +24,14 @@ struct MoveCommand {
   double speed_fraction = 1.0;  // SPEED x override, at most 1
   double acceleration_fraction = 1.0;
   double overshoot_fraction = 1.0;  // OVERSH
-  bool fly = false;                 // the passage to the next motion may be blended
-  bool settles = true;              // false: the inner stop of a hole, which takes no settling time
-  std::uint64_t tag = 0;            // given back with the result
+  // Limits that the caller knows, in place of fractions of the machine's: a mill, whose programs
+  // give mm/s. Every figure above zero.
+  std::optional<PathLimits> limits{};
+  // Mills: how fast the passage behind it may be, besides what the limits and the vertex allow.
+  double passage_speed_mm_s = kLargest;
+  bool fly = false;       // the passage to the next motion may be blended
+  bool settles = true;    // false: the inner stop of a hole, which takes no settling time
+  std::uint64_t tag = 0;  // given back with the result
 };
 
 // How a move ended, for reports and warnings.

@@ -10,7 +10,8 @@
 namespace rmlcell::motion {
 
 // A queue whose elements keep their number while they live: the first one ever pushed is 0. Grows
-// by doubling and never shrinks, so a steady stream allocates nothing.
+// fourfold and never shrinks, so a steady stream allocates nothing; room that is not used is not
+// touched.
 template <class T>
 class Ring {
  public:
@@ -58,7 +59,7 @@ class Ring {
   // Only the elements there are move; the slots behind them are made when they are first used.
   void Grow() {
     std::vector<T> larger;
-    const std::size_t room = room_ == 0 ? 16 : 2 * room_;
+    const std::size_t room = room_ == 0 ? 16 : 4 * room_;
     larger.reserve(room);
     for (Number n = first_; n < end_; ++n) larger.push_back(std::move(slots_[Slot(n)]));
     slots_ = std::move(larger);

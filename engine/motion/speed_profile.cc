@@ -313,7 +313,9 @@ double SpeedProfile::TimeAt(double s) const {
 SpeedProfile SpeedProfile::Part(double s_from, double s_to) const {
   Place place;
   Advance(place, s_from);
-  return PartTo(place, s_to);
+  SpeedProfile part;
+  PartTo(place, s_to, part);
+  return part;
 }
 
 SpeedProfile SpeedProfile::ChangingPartTo(Place& place, double s_to) const {

@@ -53,12 +53,15 @@ class SpeedProfile {
   // `length` at one speed above 0.
   static SpeedProfile Steady(double length, double speed) {
     SpeedProfile profile;
-    profile.count_ = 1;
-    profile.duration_s_ = length / speed;
-    profile.phases_[0] = {profile.duration_s_, 0.0, {0.0, speed, 0.0}};
-    profile.peak_speed_ = speed;
-    profile.end_ = {length, speed, 0.0};
+    profile.SetSteady(length, speed);
     return profile;
+  }
+  void SetSteady(double length, double speed) {
+    count_ = 1;
+    duration_s_ = length / speed;
+    phases_[0] = {duration_s_, 0.0, {0.0, speed, 0.0}};
+    peak_speed_ = speed;
+    end_ = {length, speed, 0.0};
   }
 
   // The part between two places, s counted from the first. 0 <= s_from < s_to <= end().s.
@@ -72,16 +75,17 @@ class SpeedProfile {
     double phase_start_s = 0.0;  // when it begins
   };
   void Advance(Place& place, double s) const;
-  // The part from `place` to `s_to`, where `place` is afterwards.
-  SpeedProfile PartTo(Place& place, double s_to) const {
+  // Sets `part` to the part from `place` to `s_to`, where `place` is afterwards.
+  void PartTo(Place& place, double s_to, SpeedProfile& part) const {
     const Phase& phase = phases_[static_cast<std::size_t>(place.phase)];
     if (place.phase < count_ && phase.jerk == 0.0 && phase.start.acceleration == 0.0 &&
         s_to < PhaseEnd(place.phase) && place.s >= phase.start.s) {
       const double length = s_to - place.s;
       place.s = s_to;
-      return Steady(length, phase.start.speed);
+      part.SetSteady(length, phase.start.speed);
+    } else {
+      part = ChangingPartTo(place, s_to);
     }
-    return ChangingPartTo(place, s_to);
   }
 
   double duration_s() const { return duration_s_; }

@@ -54,9 +54,10 @@ TrajectoryPoint PointAt(const PathPlace& place, const Head& head, const PathStat
   const TipRates turning{{}, velocity.a, velocity.b};
   const TipRates turning_more{{}, acceleration.a, acceleration.b};
   // What the head's turning adds to the column over the tip.
-  const Vec3 swing = ColumnPart(AxisRates(head, pose.a_rad, pose.b_rad, turning));
-  const Vec3 whirl =
-      ColumnPart(AxisSecondRates(head, pose.a_rad, pose.b_rad, turning, turning_more));
+  const BothAxisRates by_turning =
+      head.RatesOfBoth(pose.a_rad, pose.b_rad, turning, turning_more);
+  const Vec3 swing = ColumnPart(by_turning.first);
+  const Vec3 whirl = ColumnPart(by_turning.second);
 
   TrajectoryPoint point;
   if (place.kind == PathPiece::Kind::kJoint) {  // the piece holds the column

@@ -10,7 +10,12 @@ namespace {
 constexpr std::array<std::string_view, motion::kAxisCount> kAxisNames = {"X", "Y", "Z", "A", "B"};
 constexpr std::size_t kFirstRotary = 3;
 
+double Finite(double limit) { return std::isfinite(limit) ? limit : 0.0; }
+
 }  // namespace
+
+std::string_view AxisName(int axis) { return kAxisNames[static_cast<std::size_t>(axis)]; }
+bool IsRotaryAxis(int axis) { return static_cast<std::size_t>(axis) >= kFirstRotary; }
 
 void AxisLog::AddSweep(Axis& axis, const CoordinateSweep& sweep) {
   axis.minimum = axis.seen ? std::min(axis.minimum, sweep.minimum) : sweep.minimum;
@@ -31,14 +36,16 @@ void AxisLog::Add(const Motion& motion) {
     axes_[i].peak_speed = std::max(axes_[i].peak_speed, motion.peaks.axis_speed[i]);
     axes_[i].peak_acceleration =
         std::max(axes_[i].peak_acceleration, motion.peaks.axis_acceleration[i]);
+    axes_[i].peak_jerk = std::max(axes_[i].peak_jerk, motion.peaks.axis_jerk[i]);
   }
   tip_path_.Add(motion.tip_path_mm);
   tip_peak_speed_ = std::max(tip_peak_speed_, motion.peaks.tip_speed);
   tip_peak_acceleration_ = std::max(tip_peak_acceleration_, motion.peaks.tip_acceleration);
+  tip_peak_jerk_ = std::max(tip_peak_jerk_, motion.peaks.tip_jerk);
 }
 
-void AxisLog::WriteTo(RunReport& report) const {
-  report.axes.clear();
+void AxisLog::WriteTo(ScopeFigures& scope) const {
+  scope.axes.clear();
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const Axis& axis = axes_[i];
     const bool rotary = i >= kFirstRotary;
@@ -50,20 +57,24 @@ void AxisLog::WriteTo(RunReport& report) const {
                         .maximum = axis.maximum,
                         .peak_speed = axis.peak_speed,
                         .peak_acceleration = axis.peak_acceleration,
+                        .peak_jerk = axis.peak_jerk,
                         .reversals = axis.reversals};
     if (shape_.limits) {
       figures.speed_limit = shape_.limits->axes.speed[i];
       figures.acceleration_limit = shape_.limits->axes.acceleration[i];
+      figures.jerk_limit = Finite(shape_.limits->axes.jerk[i]);
     }
-    report.axes.push_back(std::move(figures));
+    scope.axes.push_back(std::move(figures));
   }
-  report.tip_figures = {.name = "tip",
-                        .travel = tip_path_.value(),
-                        .peak_speed = tip_peak_speed_,
-                        .peak_acceleration = tip_peak_acceleration_};
+  scope.tip_figures = {.name = "tip",
+                       .travel = tip_path_.value(),
+                       .peak_speed = tip_peak_speed_,
+                       .peak_acceleration = tip_peak_acceleration_,
+                       .peak_jerk = tip_peak_jerk_};
   if (shape_.limits) {
-    report.tip_figures.speed_limit = shape_.limits->tip_speed_mm_s;
-    report.tip_figures.acceleration_limit = shape_.limits->tip_acceleration_mm_s2;
+    scope.tip_figures.speed_limit = shape_.limits->tip_speed_mm_s;
+    scope.tip_figures.acceleration_limit = shape_.limits->tip_acceleration_mm_s2;
+    scope.tip_figures.jerk_limit = Finite(shape_.limits->tip_jerk_mm_s3);
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string_view>
 
 #include "engine/machine/shape.h"
 #include "engine/motion/trajectory.h"
@@ -9,6 +10,10 @@
 #include "engine/simulation/report.h"
 
 namespace rmlcell::simulation {
+
+// 0..4: "X" "Y" "Z" "A" "B".
+std::string_view AxisName(int axis);
+bool IsRotaryAxis(int axis);
 
 // What each axis did over a run: travel, range, reversals, peaks.
 class AxisLog {
@@ -25,7 +30,7 @@ class AxisLog {
 
   // Writes axes, tip_figures and the range of the axes. A rotary axis that a mill never turned is
   // left out.
-  void WriteTo(RunReport& report) const;
+  void WriteTo(ScopeFigures& figures) const;
 
  private:
   struct Axis {
@@ -37,6 +42,7 @@ class AxisLog {
     std::uint64_t reversals = 0;
     double peak_speed = 0.0;
     double peak_acceleration = 0.0;
+    double peak_jerk = 0.0;
   };
   void AddSweep(Axis& axis, const CoordinateSweep& sweep);
 
@@ -45,6 +51,7 @@ class AxisLog {
   motion::LongSum tip_path_;
   double tip_peak_speed_ = 0.0;
   double tip_peak_acceleration_ = 0.0;
+  double tip_peak_jerk_ = 0.0;
 };
 
 }  // namespace rmlcell::simulation

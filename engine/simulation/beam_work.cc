@@ -135,12 +135,16 @@ void BeamWork::Count(double duration_s, double tip_speed, double power_percent) 
     speed_bin = 1 + static_cast<std::size_t>(std::clamp(share, 0.0, kSpeedBins - 2.0));
   }
   const double bin = std::clamp(power_percent / kBin_percent, 0.0, kPowerBins - 1.0);
-  by_speed_[speed_bin].Add(duration_s);
-  by_power_[static_cast<std::size_t>(bin)].Add(duration_s);
+  const auto power_bin = static_cast<std::size_t>(bin);
+  for (BeamTimes* times : {&all_, also_}) {
+    if (times == nullptr) continue;
+    times->by_speed[speed_bin].Add(duration_s);
+    times->by_power[power_bin].Add(duration_s);
+  }
 }
 
-BeamHistogram BeamWork::Histogram(SimTime beam_on) const {
-  return {.by_speed = Rounded(by_speed_, beam_on), .by_power = Rounded(by_power_, beam_on)};
+BeamHistogram BeamTimes::Histogram(SimTime beam_on) const {
+  return {.by_speed = Rounded(by_speed, beam_on), .by_power = Rounded(by_power, beam_on)};
 }
 
 }  // namespace rmlcell::simulation

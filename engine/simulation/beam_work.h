@@ -9,6 +9,15 @@
 
 namespace rmlcell::simulation {
 
+// How long a beam is on at which speed and power.
+struct BeamTimes {
+  std::array<motion::LongSum, kSpeedBins> by_speed{};
+  std::array<motion::LongSum, kPowerBins> by_power{};
+
+  // The times by class, in whole nanoseconds that add up to `beam_on`.
+  BeamHistogram Histogram(SimTime beam_on) const;
+};
+
 // What a beam does over time: energy, and how long it was on at which speed and power.
 // motion.md 8.1, 8.2.
 class BeamWork {
@@ -26,16 +35,18 @@ class BeamWork {
   // The beam on a standing tip. Returns the energy in J.
   double Standing(double duration_s, double power_percent);
 
-  // The times by class, in whole nanoseconds that add up to `beam_on`.
-  BeamHistogram Histogram(SimTime beam_on) const;
+  // Whose times what follows is counted in, besides the whole; null: nobody's.
+  void AlsoInto(BeamTimes* times) { also_ = times; }
+
+  BeamHistogram Histogram(SimTime beam_on) const { return all_.Histogram(beam_on); }
 
  private:
   void Count(double duration_s, double tip_speed, double power_percent);
 
   double watts_;
   double speed_max_;
-  std::array<motion::LongSum, kSpeedBins> by_speed_{};
-  std::array<motion::LongSum, kPowerBins> by_power_{};
+  BeamTimes all_;
+  BeamTimes* also_ = nullptr;
 };
 
 }  // namespace rmlcell::simulation

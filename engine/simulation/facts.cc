@@ -1,5 +1,6 @@
 #include "engine/simulation/facts.h"
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <utility>
@@ -18,6 +19,9 @@ constexpr int kDecimals = 6;  // lengths to 1e-6 mm, times to 1e-6 s: motion.md 
 std::string Real(double value) { return TrimmedText(value, kDecimals); }
 std::string Count(std::uint64_t value) { return std::to_string(value); }
 std::string Seconds(SimTime time) { return Real(ToSeconds(time)); }
+std::string Share(double value, double limit) {
+  return limit > 0.0 ? Real(value / limit) : std::string(kNone);
+}
 std::string Yes(bool value) { return value ? "yes" : "no"; }
 
 // One line, whatever a program was called: a value never breaks the format.
@@ -46,12 +50,13 @@ class Table {
     AddRun();
     AddTimes();
     AddWork();
+    AddBeamTimes();
     AddCorners();
     AddPositions();
-    AddBox("programmed", "", "points as the program wrote them", &RunReport::programmed);
-    AddBox("tip", "mm", "tip", &RunReport::tip);
-    AddBox("cut", "mm", "tip while it cut", &RunReport::cut);
-    AddBox("column", "mm", "column of a gantry, or the tip of a mill", &RunReport::column);
+    AddBox("programmed", "", "points as the program wrote them", &ScopeFigures::programmed);
+    AddBox("tip", "mm", "tip", &ScopeFigures::tip);
+    AddBox("cut", "mm", "tip while it cut", &ScopeFigures::cut);
+    AddBox("column", "mm", "column of a gantry, or the tip of a mill", &ScopeFigures::column);
     AddAxes();
     AddFindings();
     AddProducts();
@@ -81,12 +86,13 @@ class Table {
   void AddRun();
   void AddTimes();
   void AddWork();
+  void AddBeamTimes();
   void AddCorners();
   void AddPositions();
   void AddPoint(const std::string& name, const std::string& unit, const std::string& text,
                 std::function<Vec3(const RunReport&)> point);
   void AddBox(const std::string& name, const std::string& unit, const std::string& text,
-              machine::Box RunReport::*box);
+              machine::Box ScopeFigures::*box);
   void AddAxes();
   void AddAxis(std::string_view axis);
   void AddFindings();
@@ -185,7 +191,7 @@ void Table::AddWork() {
   Counter("pierces", "times that the beam went on while standing, and stayed",
           &WorkFigures::pierces);
   Add("shutter_open_s", "s", "time with the shutter open",
-      [](const RunReport& r) { return Seconds(r.shutter_open); });
+      [](const RunReport& r) { return Seconds(r.total.shutter_open); });
   Add("energy_j", "J", "energy of the beam: of cuts and pierces",
       [](const RunReport& r) { return Real(r.total.energy_j()); });
   Figure("cut_energy_j", "J", "energy of motions with the beam on", &WorkFigures::cut_energy_j);
@@ -194,9 +200,43 @@ void Table::AddWork() {
   Add("energy_j_per_mm", "J/mm", "energy of cuts by cut length",
       [](const RunReport& r) { return Real(r.total.energy_j_per_mm()); });
   Add("energy_max_j_per_mm", "J/mm", "the same, of the step where it is highest",
-      [](const RunReport& r) { return Real(r.energy_j_per_mm_max); });
+      [](const RunReport& r) { return Real(r.total.energy_j_per_mm_max); });
   Add("feed_not_reached", "", "motions that never reached the feed rate asked for",
       [](const RunReport& r) { return Count(r.shortfall.moves); });
+  const auto slow = [this](std::string key, std::string text,
+                           std::uint64_t SpeedShortfall::*figure) {
+    Add(std::move(key), "", std::move(text),
+        [figure](const RunReport& r) { return Count(r.shortfall.*figure); });
+  };
+  slow("feed_held_by_axis", "of these, held back by an axis", &SpeedShortfall::by_axis);
+  slow("feed_held_by_radius", "of these, held back by the radius of an arc",
+       &SpeedShortfall::by_radius);
+  slow("feed_held_by_length", "of these, shorter than their ramps", &SpeedShortfall::too_short);
+  slow("feed_held_by_acceleration", "of these, held back by ACCEL, or by an axis that takes of it",
+       &SpeedShortfall::by_acceleration);
+}
+
+// Keys by the upper bound of the class in percent, three digits.
+void Table::AddBeamTimes() {
+  const auto percent = [](int value) {
+    std::string digits = std::to_string(value);
+    return std::string(3 - std::min<std::size_t>(digits.size(), 3), '0') + digits;
+  };
+  Add("beam_on_standing_s", "s", "beam on while the tip stands",
+      [](const RunReport& r) { return Seconds(r.beam.by_speed[0]); });
+  constexpr int kClass_percent = 5;
+  for (int k = 1; k < kSpeedBins; ++k) {
+    Add("beam_on_speed_" + percent(k * kClass_percent) + "_s", "s",
+        "beam on at up to " + std::to_string(k * kClass_percent) +
+            " % of the highest tip speed, above the class before",
+        [k](const RunReport& r) { return Seconds(r.beam.by_speed[static_cast<std::size_t>(k)]); });
+  }
+  for (int k = 0; k < kPowerBins; ++k) {
+    Add("beam_on_power_" + percent((k + 1) * kClass_percent) + "_s", "s",
+        "beam on at a power from " + std::to_string(k * kClass_percent) + " to " +
+            std::to_string((k + 1) * kClass_percent) + " %",
+        [k](const RunReport& r) { return Seconds(r.beam.by_power[static_cast<std::size_t>(k)]); });
+  }
 }
 
 void Table::AddCorners() {
@@ -218,6 +258,22 @@ void Table::AddCorners() {
         &CornerFigures::capped);
   Add("corners_deviation_max_mm", "mm", "largest distance of the path from a target",
       [](const RunReport& r) { return Real(r.corners.deviation_mm_max); });
+  Add("corners_deviation_at", "", "program/step of that target", [](const RunReport& r) {
+    if (r.corners.deviation_mm_max <= 0.0) return std::string(kNone);
+    const machine::Place& place = r.corners.deviation_place;
+    return std::to_string(place.program) + '/' + std::to_string(place.step);
+  });
+  Add("lookahead_starved", "", "knots that the planner decided before it could see enough",
+      [](const RunReport& r) { return Count(r.lookahead_starved); });
+  const auto of_material = [](auto figure) {
+    return [figure](const RunReport& r) { return r.milling ? figure(*r.milling) : std::string(kNone); };
+  };
+  Add("removed_volume_mm3", "mm3", "what a mill took off the block that it was given",
+      of_material([](const MillingFigures& m) { return Real(m.removed_mm3); }));
+  Add("gouges", "", "motions at travel speed through that block",
+      of_material([](const MillingFigures& m) { return Count(m.gouges); }));
+  Add("gouge_depth_mm", "mm", "depth of the deepest of them",
+      of_material([](const MillingFigures& m) { return Real(m.gouge_depth_mm); }));
 }
 
 void Table::AddPoint(const std::string& name, const std::string& unit, const std::string& text,
@@ -246,7 +302,7 @@ void Table::AddPositions() {
 }
 
 void Table::AddBox(const std::string& name, const std::string& unit, const std::string& text,
-                   machine::Box RunReport::*box) {
+                   machine::Box ScopeFigures::*box) {
   constexpr std::pair<const char*, double Vec3::*> kCoordinates[] = {
       {"_x", &Vec3::x}, {"_y", &Vec3::y}, {"_z", &Vec3::z}};
   for (const auto& [suffix, coordinate] : kCoordinates) {
@@ -291,6 +347,12 @@ void Table::AddAxis(std::string_view axis) {
       [](const AxisFigures& a) { return Real(a.peak_speed); });
   add("axis_" + name + "_peak_acceleration_" + unit + "_s2", unit + "/s2",
       "highest acceleration" + of, [](const AxisFigures& a) { return Real(a.peak_acceleration); });
+  add("axis_" + name + "_peak_jerk_" + unit + "_s3", unit + "/s3", "highest jerk" + of,
+      [](const AxisFigures& a) { return Real(a.peak_jerk); });
+  add("axis_" + name + "_peak_speed_share", "", "highest speed by its limit" + of,
+      [](const AxisFigures& a) { return Share(a.peak_speed, a.speed_limit); });
+  add("axis_" + name + "_peak_acceleration_share", "", "highest acceleration by its limit" + of,
+      [](const AxisFigures& a) { return Share(a.peak_acceleration, a.acceleration_limit); });
 }
 
 void Table::AddAxes() {
@@ -298,6 +360,13 @@ void Table::AddAxes() {
       [](const RunReport& r) { return Real(r.tip_figures.peak_speed); });
   Add("tip_peak_acceleration_mm_s2", "mm/s2", "highest acceleration of the tip",
       [](const RunReport& r) { return Real(r.tip_figures.peak_acceleration); });
+  Add("tip_peak_speed_share", "", "highest speed of the tip by its limit", [](const RunReport& r) {
+    return Share(r.tip_figures.peak_speed, r.tip_figures.speed_limit);
+  });
+  Add("tip_peak_acceleration_share", "", "highest acceleration of the tip by its limit",
+      [](const RunReport& r) {
+        return Share(r.tip_figures.peak_acceleration, r.tip_figures.acceleration_limit);
+      });
   for (const std::string_view axis : {"X", "Y", "Z", "A", "B"}) AddAxis(axis);
 }
 
@@ -328,6 +397,18 @@ void Table::AddFindings() {
           if (!text.empty()) text += ' ';
           text += CodeText(d.code) + '@' + std::to_string(d.program) + '/' + std::to_string(d.step);
           if (finding.count > 1) text += 'x' + std::to_string(finding.count);
+        }
+        return Line(text);
+      });
+  Add("violations", "", "axes of steps that leave their travel; 0: none does",
+      [](const RunReport& r) { return Count(r.violations.size() + r.violations_dropped); });
+  Add("violation_list", "", "axis@program/step:excess of each, mm or rad, in order",
+      [](const RunReport& r) {
+        std::string text;
+        for (const AxisViolation& v : r.violations) {
+          if (!text.empty()) text += ' ';
+          text += v.axis + '@' + std::to_string(v.place.program) + '/' +
+                  std::to_string(v.place.step) + ':' + Real(v.excess);
         }
         return Line(text);
       });

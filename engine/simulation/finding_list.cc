@@ -17,6 +17,7 @@ void FindingList::Add(SimTime at, const Diagnostic& diagnostic) {
   }
   index_.emplace(key, findings_.size());
   findings_.push_back({.diagnostic = diagnostic, .first_at = at, .count = 1});
+  findings_.back().diagnostic.at = at;
 }
 
 }  // namespace rmlcell::simulation

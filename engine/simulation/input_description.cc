@@ -126,6 +126,7 @@ InputDescription DescribeInputs(const machine::MachineFamily& family,
     hash.Real(input.value);
     description.input_times.push_back(input.at);
   }
+  hash.Number(setup.forecast ? 1 : 0);
   hash.Number(setup.budget.steps);
   hash.Integer(setup.budget.virtual_time.count());
   description.hash = hash.Digits();

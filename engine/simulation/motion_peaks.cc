@@ -39,17 +39,29 @@ void Add(MotionPeaks& peaks, const Instant& at) {
   }
 }
 
+// The mean jerk between two instants of one phase.
+void AddJerk(MotionPeaks& peaks, const Instant& before, const Instant& after, double duration_s) {
+  if (!(duration_s > 0.0)) return;
+  Raise(peaks.tip_jerk, Norm(after.tip_acceleration - before.tip_acceleration) / duration_s);
+  for (std::size_t i = 0; i < peaks.axis_jerk.size(); ++i) {
+    Raise(peaks.axis_jerk[i],
+          (after.axis_acceleration[i] - before.axis_acceleration[i]) / duration_s);
+  }
+}
+
 // The derivatives by s are the same everywhere: only speed and acceleration count.
 MotionPeaks Straight(const motion::PlannedMotion& motion, bool five_axis, double from_s,
                      double to_s) {
   double speed = 0.0;
   double acceleration = 0.0;
+  double jerk = 0.0;
   ForEachPhase(motion.speed, from_s, to_s, [&](const PhasePart& part) {
     const double end = part.duration_s;
     Raise(speed, part.start.speed);
     Raise(speed, part.SpeedAt(end));
     Raise(acceleration, part.start.acceleration);
     Raise(acceleration, part.AccelerationAt(end));
+    Raise(jerk, part.jerk);
     const double level = part.jerk != 0.0 ? -part.start.acceleration / part.jerk : 0.0;
     if (level > 0.0 && level < end) Raise(speed, part.SpeedAt(level));
   });
@@ -60,9 +72,11 @@ MotionPeaks Straight(const motion::PlannedMotion& motion, bool five_axis, double
   MotionPeaks peaks;
   peaks.tip_speed = Norm(tip) * speed;
   peaks.tip_acceleration = Norm(tip) * acceleration;
+  peaks.tip_jerk = Norm(tip) * jerk;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     peaks.axis_speed[i] = std::abs(axes[i]) * speed;
     peaks.axis_acceleration[i] = std::abs(axes[i]) * acceleration;
+    peaks.axis_jerk[i] = std::abs(axes[i]) * jerk;
   }
   return peaks;
 }
@@ -109,10 +123,14 @@ MotionPeaks Sampled(const motion::PlannedMotion& motion, double from_s, double t
     const double wanted = std::ceil(turning * std::abs(way) / kPeakSampleAngle_rad);
     const int samples =
         static_cast<int>(std::clamp(wanted, double{kSamplesMin}, double{kSamplesMax}));
+    Instant before;
     for (int k = 0; k <= samples; ++k) {
       const double t = part.duration_s * k / samples;
       const motion::PathState state{part.PlaceAt(t), part.SpeedAt(t), part.AccelerationAt(t)};
-      Add(peaks, look(phase_start + t, state));
+      const Instant here = look(phase_start + t, state);
+      Add(peaks, here);
+      if (k > 0) AddJerk(peaks, before, here, part.duration_s / samples);
+      before = here;
     }
     phase_start += part.duration_s;
   });

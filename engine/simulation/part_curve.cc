@@ -55,7 +55,7 @@ Vec3 PartCurve::Swing(double p) const {
   const motion::PathDerivatives rate = Rate(p);
   const motion::TipPose pose = Pose(p);
   const motion::AxisValues swing =
-      motion::AxisRates(part_.head, pose.a_rad, pose.b_rad, {{}, rate.a, rate.b});
+      part_.head.Rates(pose.a_rad, pose.b_rad, {{}, rate.a, rate.b});
   return {swing[0], swing[1], swing[2]};
 }
 

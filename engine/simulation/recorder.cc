@@ -25,6 +25,7 @@ struct Recorder::State {
     if (products.samples) {
       Join(&samples.emplace(shape, products.samples_hz, std::move(products.samples)));
     }
+    if (products.milling) Join(&milling.emplace(shape, *products.milling));
   }
 
   void Join(machine::RunObserver* observer) {
@@ -43,7 +44,8 @@ struct Recorder::State {
   std::optional<PictureRecorder> picture;
   std::optional<PlotRecorder> plot;
   std::optional<SampleRecorder> samples;
-  std::array<machine::RunObserver*, 7> observers{};
+  std::optional<MillingRecorder> milling;
+  std::array<machine::RunObserver*, 8> observers{};
   std::size_t count = 0;
 };
 
@@ -79,6 +81,9 @@ void Recorder::OnProgram(SimTime at, const machine::Place& place, std::string_vi
 }
 void Recorder::OnMessage(SimTime at, const machine::Place& place, std::string_view text) {
   state_->All([&](machine::RunObserver& to) { to.OnMessage(at, place, text); });
+}
+void Recorder::OnViolation(const machine::TravelViolation& violation) {
+  state_->All([&](machine::RunObserver& to) { to.OnViolation(violation); });
 }
 void Recorder::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
   state_->All([&](machine::RunObserver& to) { to.OnDiagnostic(at, diagnostic); });
@@ -121,7 +126,12 @@ RunReport Recorder::Report(const machine::Run& run) const {
   if (const auto& picture = state_->picture) {
     report.picture = {.made = true, .complete = picture->exact(), .records = picture->elements()};
   }
+  if (state_->milling) report.milling = state_->milling->Figures();
   return report;
+}
+
+const HeightField* Recorder::material() const {
+  return state_->milling ? &state_->milling->material() : nullptr;
 }
 
 std::string Recorder::Svg(const RunReport& report, const PictureOptions& options) const {

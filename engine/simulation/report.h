@@ -10,6 +10,7 @@
 
 #include "engine/core/diagnostic.h"
 #include "engine/core/units.h"
+#include "engine/machine/family.h"
 #include "engine/machine/run.h"
 #include "engine/machine/shape.h"
 
@@ -50,8 +51,12 @@ struct WorkFigures {
   std::uint64_t beam_switches = 0;  // off to on
   std::uint64_t pierces = 0;        // beam on while standing: WORK 1 with delay, DELAY after WORK 0
   std::uint64_t plunges = 0;
+  SimTime shutter_open{0};
   double cut_energy_j = 0.0;     // of motion with the beam on
   double pierce_energy_j = 0.0;  // of the beam on a standing tip
+
+  // The highest mean over a part of it: of a step over its motions, else over the steps.
+  double energy_j_per_mm_max = 0.0;
 
   double energy_j() const { return cut_energy_j + pierce_energy_j; }
   // Mean over the cut; 0 without one.
@@ -89,8 +94,10 @@ struct AxisFigures {
   double maximum = 0.0;
   double peak_speed = 0.0;
   double peak_acceleration = 0.0;
+  double peak_jerk = 0.0;    // within the phases of the ramps; not a limit, see motion.md 5.1
   double speed_limit = 0.0;  // 0: not known
   double acceleration_limit = 0.0;
+  double jerk_limit = 0.0;  // 0: not known, or none
   std::uint64_t reversals = 0;
 
   bool operator==(const AxisFigures&) const = default;
@@ -111,9 +118,33 @@ struct CornerFigures {
   bool operator==(const CornerFigures&) const = default;
 };
 
-// Moves that never reached the feed rate asked for: too short, or held back by an axis or a radius.
+// Why a move never reached the speed asked for. The first two are limits along its whole way, which
+// it did reach; else its way is too short for its ramps, with all the acceleration of the tip, or
+// because ACCEL or an axis takes some of that.
+enum class SlowCause { kAxis, kRadius, kShort, kAcceleration };
+std::string_view SlowCauseText(SlowCause cause);  // "axis", "radius", "short", "acceleration"
+
+// The slowest move of a step, by the share that it reached.
+inline constexpr std::size_t kReportedSlowMovesMax = 1000;
+struct SlowMove {
+  machine::Place place;
+  SlowCause cause = SlowCause::kShort;
+  std::string axis;           // kAxis: "A"
+  double wanted_mm_s = 0.0;   // SPEED and override
+  double allowed_mm_s = 0.0;  // on its line or arc
+  double reached_mm_s = 0.0;
+  std::uint64_t count = 1;  // moves of this step that were too slow
+
+  bool operator==(const SlowMove&) const = default;
+};
+
+// How many moves never reached the speed asked for, by cause, and the one that came least near.
 struct SpeedShortfall {
   std::uint64_t moves = 0;
+  std::uint64_t by_axis = 0;
+  std::uint64_t by_radius = 0;
+  std::uint64_t too_short = 0;
+  std::uint64_t by_acceleration = 0;
   machine::Place worst;  // least share of what was asked
   double wanted_mm_s = 0.0;
   double reached_mm_s = 0.0;
@@ -140,6 +171,33 @@ struct Finding {
   bool operator==(const Finding&) const = default;
 };
 
+// An axis that a step takes out of its travel: the worst time that it did. motion.md 2.6.
+inline constexpr std::size_t kReportedViolationsMax = machine::kDiagnosticsMax;
+struct AxisViolation {
+  machine::Place place;
+  std::string axis;  // "X"
+  bool rotary = false;
+  double excess = 0.0;     // mm or rad
+  bool at_target = false;  // the target lies outside; else the path on the way
+  motion::AxisPose axes;   // where it is worst
+  motion::Vec3 tip;
+  SimTime first_at{0};  // that the step did it: a motion begins
+  std::uint64_t count = 1;
+
+  bool operator==(const AxisViolation&) const = default;
+};
+
+// What a mill took off a block, when it was told of block and tool. motion.md 8.2, 9.
+struct MillingFigures {
+  double removed_mm3 = 0.0;
+  std::uint64_t gouges = 0;     // motions at travel speed through material
+  double gouge_depth_mm = 0.0;  // of the deepest
+  machine::Place gouge_place;   // where that was
+  SimTime gouge_at{0};
+
+  bool operator==(const MillingFigures&) const = default;
+};
+
 // How far a product went before its budget was used up.
 struct ProductState {
   bool made = false;
@@ -156,7 +214,25 @@ std::string_view TimingText(Timing timing);  // "exact"; "exact stop, upper boun
 
 std::string_view OutcomeText(machine::OutcomeKind kind);  // "completed", "budget_exceeded" ...
 
-struct RunReport {
+// Every figure that a job and each of its programs has. motion.md 8.2.
+struct ScopeFigures {
+  WorkFigures total;  // of the job: time.total() == cycle_time
+  BeamHistogram beam;
+  CornerFigures corners;
+  SpeedShortfall shortfall;
+
+  machine::Box programmed;  // points as the program wrote them
+  machine::Box tip;         // where the tip was, machine frame; true extremes of arcs
+  machine::Box cut;         // where it cut
+  machine::Box column;      // gantry: the column; mill: the same as the tip
+  AxisFigures tip_figures;
+  std::vector<AxisFigures> axes;
+
+  bool operator==(const ScopeFigures&) const = default;
+};
+
+// Collisions are not modelled; nor is the removal of material, so no removed volume is given.
+struct RunReport : ScopeFigures {
   std::string family;  // "optimo"
   std::string title;   // of the program: its name
   std::string engine_version;
@@ -171,27 +247,20 @@ struct RunReport {
   std::uint64_t halts = 0;
   FinalPosition final_position;
 
-  WorkFigures total;  // time.total() == cycle_time
-  SimTime shutter_open{0};
-  double energy_j_per_mm_max = 0.0;  // highest mean of a step
-  BeamHistogram beam;
-  CornerFigures corners;
-  SpeedShortfall shortfall;
+  std::uint64_t lookahead_starved = 0;  // knots that the planner decided before it saw enough
 
-  machine::Box programmed;  // points as the program wrote them
-  machine::Box tip;         // where the tip was, machine frame; true extremes of arcs
-  machine::Box cut;         // where it cut
-  machine::Box column;      // gantry: the column; mill: the same as the tip
-  AxisFigures tip_figures;
-  std::vector<AxisFigures> axes;
-
-  std::map<int, WorkFigures> programs;  // by slot; at most kReportedProgramsMax
-  std::vector<StepFigures> steps;       // by program and step; the first kReportedStepsMax that ran
-  WorkFigures rest;                     // of all other steps
+  std::map<int, ScopeFigures> programs;  // by slot; at most kReportedProgramsMax
+  std::vector<StepFigures> steps;  // by program and step; the first kReportedStepsMax that ran
+  WorkFigures rest;                // of all other steps
 
   std::vector<Finding> findings;  // in order of first occurrence; at most machine::kDiagnosticsMax
   std::uint64_t findings_dropped = 0;
-  std::vector<machine::Figure> figures;  // the family's own
+  std::vector<SlowMove> slow_moves;       // in order of first occurrence
+  std::uint64_t slow_moves_dropped = 0;   // at further steps, past kReportedSlowMovesMax
+  std::vector<AxisViolation> violations;  // in order of first occurrence
+  std::uint64_t violations_dropped = 0;   // at further steps, past kReportedViolationsMax
+  std::vector<machine::Figure> figures;   // the family's own
+  std::optional<MillingFigures> milling;  // nothing: not asked for
 
   ProductState trace;
   ProductState toolpath;

@@ -9,6 +9,8 @@ using machine::MotionUse;
 using machine::Signal;
 using machine::WaitKind;
 
+constexpr std::string_view kStarved = "lookahead_starved";  // of every family that looks ahead
+
 double TipSpeedMax(const machine::MachineShape& shape) {
   return shape.limits ? shape.limits->tip_speed_mm_s : 0.0;
 }
@@ -56,14 +58,45 @@ std::string_view OutcomeText(machine::OutcomeKind kind) {
 ReportRecorder::ReportRecorder(const machine::MachineShape& shape)
     : shape_(shape),
       time_([this](const TimeLedger::Gap& gap) { CountStandstill(gap); }),
-      axes_(shape),
-      beam_(shape.laser_watts, TipSpeedMax(shape)) {}
+      job_(shape),
+      beam_(shape.laser_watts, TipSpeedMax(shape)),
+      speeds_(shape) {}
+
+// Null: one program too many. The next time of the beam counts in what is given here.
+FigureLog* ReportRecorder::LogOf(int program) {
+  auto found = programs_.find(program);
+  if (found == programs_.end() && programs_.size() < kReportedProgramsMax) {
+    found = programs_.try_emplace(program, shape_).first;
+  }
+  FigureLog* log = found != programs_.end() ? &found->second : nullptr;
+  beam_.AlsoInto(log != nullptr ? &log->beam() : nullptr);
+  return log;
+}
+
+// How much of `claimed`, which ends at `end`, the shutter was open; each instant is counted once.
+SimTime ReportRecorder::ShutterShare(SimTime end, SimTime claimed) {
+  if (!shutter_open_) return SimTime::zero();
+  const SimTime left = end - shutter_since_ - shutter_counted_;
+  const SimTime share = std::clamp(left, SimTime::zero(), claimed);
+  shutter_counted_ += share;
+  return share;
+}
+
+// What was not counted under anything is counted here.
+void ReportRecorder::CloseShutter(SimTime at, const machine::Place& place) {
+  WorkFigures work;
+  work.shutter_open = at - shutter_since_ - shutter_counted_;
+  work_.Add(place, work);
+  shutter_open_ = false;
+}
 
 void ReportRecorder::CountStandstill(const TimeLedger::Gap& gap) {
   WorkFigures work;
   (gap.halted ? work.time.operator_wait : work.time.standstill) = gap.length();
+  work.shutter_open = ShutterShare(gap.end, gap.length());
   if (gap.beam_on) {
     work.beam_on = gap.length();
+    LogOf(gap.place.program);
     work.pierce_energy_j = beam_.Standing(ToSeconds(gap.length()), 0.0);
   }
   work_.Add(gap.place, work);
@@ -98,7 +131,9 @@ void ReportRecorder::OnMotion(const machine::MotionDone& done) {
       done.profile_start_s + std::min(profile_left_s, ToSeconds(done.end - done.start));
   const double length = TipLength({motion.path, motion.head, done.from, done.travelled});
   AddLengths(done, length, work);
+  work.shutter_open = ShutterShare(done.end, claimed);
   if (done.beam_on) {
+    LogOf(done.place.program);
     work.beam_on = claimed;
     const double way = done.travelled - done.from;
     work.cut_energy_j = beam_.Moving(motion.speed, done.profile_start_s, profile_end_s,
@@ -106,7 +141,6 @@ void ReportRecorder::OnMotion(const machine::MotionDone& done) {
     work.cut_energy_j += beam_.Standing(ToSeconds(work.time.settling), done.power.constant_percent);
   }
   AddShape(done, profile_end_s, length);
-  corners_.Add(done);
   stands_since_beam_on_ = false;
   work_.Add(done.place, work);
 }
@@ -126,19 +160,27 @@ void ReportRecorder::AddShape(const machine::MotionDone& done, double profile_en
   const PathPart part{motion.path, motion.head, done.from, done.travelled};
   const PointSweep tip = TipSweep(part);
   const PointSweep column = shape_.five_axis ? ColumnSweep(part) : tip;
-  const machine::Box box = BoxOf(tip);
-  tip_.Add(box);
-  column_.Add(BoxOf(column));
-  if (Cuts(done)) cut_.Add(box);
-  axes_.Add({.xyz = column,
-             .ab = RotarySweep(part),
-             .peaks = PeaksOf(motion, shape_.five_axis, done.profile_start_s, profile_end_s),
-             .tip_path_mm = length});
+  const std::array<CoordinateSweep, 2> rotary = RotarySweep(part);
+  const MotionPeaks peaks = PeaksOf(motion, shape_.five_axis, done.profile_start_s, profile_end_s);
+  const AxisLog::Motion axes{.xyz = column, .ab = rotary, .peaks = peaks, .tip_path_mm = length};
+  const machine::Box tip_box = BoxOf(tip);
+  const machine::Box column_box = BoxOf(column);
+  const std::optional<SlowMove> slow = speeds_.Add(done);
+  if (slow) slow_moves_.Add(*slow);
+  const FigureLog::Motion figures{.done = done,
+                                  .axes = axes,
+                                  .tip = tip_box,
+                                  .column = column_box,
+                                  .cuts = Cuts(done),
+                                  .slow = slow};
+  job_.Add(figures);
+  if (FigureLog* log = LogOf(done.place.program)) log->Add(figures);
 }
 
 void ReportRecorder::OnMove(const machine::MoveDone& move) {
   if (!move.programmed) return;  // where it ends is asked of the run
-  programmed_.Add(move.program_point);
+  job_.AddProgrammed(move.program_point);
+  if (FigureLog* log = LogOf(move.place.program)) log->AddProgrammed(move.program_point);
   last_ = {.tip = move.tip,
            .axes = move.axes,
            .program_point = move.program_point,
@@ -162,10 +204,11 @@ void ReportRecorder::OnSignal(const machine::SignalChange& change) {
   if (change.signal == Signal::kShutter && on != shutter_open_) {
     if (on) {
       shutter_since_ = change.at;
+      shutter_counted_ = SimTime::zero();
+      shutter_open_ = true;
     } else {
-      shutter_time_ += change.at - shutter_since_;
+      CloseShutter(change.at, change.place);
     }
-    shutter_open_ = on;
   }
 }
 
@@ -173,7 +216,9 @@ void ReportRecorder::OnWait(const machine::Wait& wait) {
   const SimTime claimed = time_.Claim(wait.start, wait.end, Now());
   WorkFigures work;
   PartOf(work.time, wait.kind) = claimed;
+  work.shutter_open = ShutterShare(wait.end, claimed);
   if (wait.beam_on) {
+    LogOf(wait.place.program);
     work.beam_on = claimed;
     work.pierce_energy_j = beam_.Standing(ToSeconds(claimed), wait.power_percent);
     const bool pierces =
@@ -197,6 +242,10 @@ void ReportRecorder::OnResume(SimTime at, const machine::Place& /*place*/) {
   halted_ = false;
 }
 
+void ReportRecorder::OnViolation(const machine::TravelViolation& violation) {
+  violations_.Add(violation);
+}
+
 void ReportRecorder::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
   findings_.Add(at, diagnostic);
 }
@@ -204,9 +253,7 @@ void ReportRecorder::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
 void ReportRecorder::Finish(SimTime at) {
   time_.Leave(at, Now());
   time_.Close();
-  if (!shutter_open_) return;
-  shutter_time_ += at - shutter_since_;
-  shutter_open_ = false;
+  if (shutter_open_) CloseShutter(at, place_);
 }
 
 RunReport ReportRecorder::Report(const machine::Run& run) const {
@@ -222,19 +269,26 @@ RunReport ReportRecorder::Report(const machine::Run& run) const {
   report.final_position.tip = state.tip;
   report.final_position.axes = state.axes;
   work_.WriteTo(report);
-  report.shutter_open =
-      shutter_time_ + (shutter_open_ ? time_.reached() - shutter_since_ : SimTime::zero());
+  if (shutter_open_) {
+    report.total.shutter_open += time_.reached() - shutter_since_ - shutter_counted_;
+  }
+  job_.WriteTo(report, report.total.beam_on);
   report.beam = beam_.Histogram(report.total.beam_on);
-  report.corners = corners_.corners();
-  report.shortfall = corners_.shortfall();
-  report.programmed = programmed_;
-  report.tip = tip_;
-  report.cut = cut_;
-  report.column = column_;
-  axes_.WriteTo(report);
+  for (auto& [program, figures] : report.programs) {
+    const auto log = programs_.find(program);
+    if (log != programs_.end()) log->second.WriteTo(figures, figures.total.beam_on);
+  }
+  report.slow_moves = slow_moves_.moves();
+  report.slow_moves_dropped = slow_moves_.dropped();
   report.findings = findings_.findings();
   report.findings_dropped = findings_.dropped();
+  report.violations = violations_.violations();
+  report.violations_dropped = violations_.dropped();
   report.figures = run.figures();
+  for (const machine::Figure& figure : report.figures) {
+    if (figure.name == kStarved)
+      report.lookahead_starved = static_cast<std::uint64_t>(figure.value);
+  }
   return report;
 }
 

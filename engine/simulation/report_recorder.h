@@ -1,12 +1,14 @@
 #pragma once
 
 #include "engine/machine/observer.h"
-#include "engine/simulation/axis_log.h"
 #include "engine/simulation/beam_work.h"
-#include "engine/simulation/corner_log.h"
+#include "engine/simulation/figure_log.h"
 #include "engine/simulation/finding_list.h"
+#include "engine/simulation/move_speeds.h"
 #include "engine/simulation/report.h"
+#include "engine/simulation/slow_move_list.h"
 #include "engine/simulation/time_ledger.h"
+#include "engine/simulation/violation_list.h"
 #include "engine/simulation/work_table.h"
 
 namespace rmlcell::simulation {
@@ -25,6 +27,7 @@ class ReportRecorder final : public machine::RunObserver {
   void OnWait(const machine::Wait& wait) override;
   void OnHalt(const machine::Halt& halt) override;
   void OnResume(SimTime at, const machine::Place& place) override;
+  void OnViolation(const machine::TravelViolation& violation) override;
   void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override;
 
   // Once, when the run is over: what nothing was told about since is standstill.
@@ -40,14 +43,20 @@ class ReportRecorder final : public machine::RunObserver {
   bool Cuts(const machine::MotionDone& done) const;
   void AddLengths(const machine::MotionDone& done, double length, WorkFigures& work);
   void AddShape(const machine::MotionDone& done, double profile_end_s, double length);
+  FigureLog* LogOf(int program);
+  SimTime ShutterShare(SimTime end, SimTime claimed);
+  void CloseShutter(SimTime at, const machine::Place& place);
 
   machine::MachineShape shape_;
   TimeLedger time_;
   WorkTable work_;
-  AxisLog axes_;
+  FigureLog job_;
+  std::map<int, FigureLog> programs_;  // at most kReportedProgramsMax
   BeamWork beam_;
-  CornerLog corners_;
+  MoveSpeeds speeds_;
+  SlowMoveList slow_moves_;
   FindingList findings_;
+  ViolationList violations_;
   machine::Place place_;
   bool halted_ = false;
   std::uint64_t halts_ = 0;
@@ -58,13 +67,9 @@ class ReportRecorder final : public machine::RunObserver {
   bool pierce_counted_ = false;
   bool shutter_open_ = false;
   SimTime shutter_since_{0};
-  SimTime shutter_time_{0};
+  SimTime shutter_counted_{0};  // since then, under what went on meanwhile
   bool plunging_ = false;
 
-  machine::Box programmed_;
-  machine::Box tip_;
-  machine::Box cut_;
-  machine::Box column_;
   FinalPosition last_;
 };
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/core/check.h"
 #include "engine/simulation/polyline.h"
 
 namespace rmlcell::simulation {
@@ -32,6 +31,12 @@ std::int64_t Microseconds(SimTime time) {
   return time.count() / 1000 + (time.count() % 1000 >= 500 ? 1 : 0);
 }
 
+// The same step, purpose, beam and speed class.
+bool AlikeRuns(const ToolpathRun& a, const ToolpathRun& b) {
+  return a.program == b.program && a.step == b.step && a.use == b.use && a.beam_on == b.beam_on &&
+         a.speed_class == b.speed_class;
+}
+
 // When the motion is at `s`: the profile is monotone, so halving finds it.
 SimTime TimeAt(const machine::MotionDone& done, double s) {
   if (s >= done.travelled) return done.end;
@@ -49,14 +54,11 @@ SimTime TimeAt(const machine::MotionDone& done, double s) {
 ToolpathRecorder::ToolpathRecorder(const machine::MachineShape& shape, ToolpathOptions options,
                                    ToolpathSink sink)
     : speed_max_mm_s_(shape.limits ? shape.limits->tip_speed_mm_s : 0.0),
-      bytes_max_(options.bytes_max),
-      sink_(std::move(sink)) {
-  RMLCELL_CHECK(sink_);
+      writer_(options.bytes_max, std::move(sink)) {
   const double tolerance =
       std::clamp(options.tolerance_mm, kToolpathToleranceMin_mm, kToolpathToleranceMax_mm);
   merge_tolerance_mm_ = kMergeShare * tolerance;
   chord_tolerance_mm_ = tolerance - 2.0 * merge_tolerance_mm_;
-  block_.points.reserve(kToolpathBlockPoints);
 }
 
 int ToolpathRecorder::SpeedClassOf(const machine::MotionDone& done) const {
@@ -67,62 +69,28 @@ int ToolpathRecorder::SpeedClassOf(const machine::MotionDone& done) const {
 }
 
 void ToolpathRecorder::OnMotion(const machine::MotionDone& done) {
-  if (closed_) return;
+  if (writer_.closed()) return;
   const motion::PathPiece& path = done.motion->path;
   const motion::Head& head = done.motion->head;
   const Vec3 first = TipAt(path, head, done.from);
-  const Key key{.program = done.place.program,
-                .step = done.place.step,
-                .use = done.use,
-                .beam_on = done.beam_on,
-                .speed_class = SpeedClassOf(done)};
-  const std::int64_t start_us = Microseconds(done.start);
-  const bool goes_on = run_open_ && key == key_ && block_.runs.back().end_us == start_us &&
-                       PointOf(first) == block_.points.back();
-  if (!goes_on) OpenRun(key, first, start_us);
+  const ToolpathRun run{.program = done.place.program,
+                        .step = done.place.step,
+                        .use = done.use,
+                        .beam_on = done.beam_on,
+                        .speed_class = SpeedClassOf(done),
+                        .start_us = Microseconds(done.start)};
+  const bool goes_on = writer_.open() && AlikeRuns(run, writer_.run()) &&
+                       writer_.run().end_us == run.start_us && writer_.last() == PointOf(first);
+  if (!goes_on) {
+    writer_.Open(run, PointOf(first));
+    stretch_ = {.anchor = first, .direction = {}, .last = first, .open = false};
+  }
   ForEachVertex({path, head, done.from, done.travelled}, chord_tolerance_mm_,
                 [&](double s, const Vec3& tip) {
                   // Only the end of a block needs the time of a vertex on the way.
-                  const bool full = block_.points.size() + 1 >= kToolpathBlockPoints;
-                  Vertex(tip, full ? TimeAt(done, s) : done.end);
+                  Vertex(tip, writer_.full_with_next() ? TimeAt(done, s) : done.end);
                 });
-  if (run_open_) block_.runs.back().end_us = Microseconds(done.end);
-}
-
-// A run that was opened where a block began, and then went nowhere: takes it back, with its point
-// unless that is the last one of the run before.
-void ToolpathRecorder::DropEmptyRun() {
-  if (block_.runs.empty() || block_.runs.back().point_count > 1) return;
-  const std::uint32_t point = block_.runs.back().first_point;
-  block_.runs.pop_back();
-  const bool shared = !block_.runs.empty() &&
-                      block_.runs.back().first_point + block_.runs.back().point_count > point;
-  if (!shared) block_.points.pop_back();
-}
-
-void ToolpathRecorder::OpenRun(const Key& key, const Vec3& first, std::int64_t start_us) {
-  DropEmptyRun();
-  // A run needs two points: its first one and one more.
-  if (block_.points.size() + 2 > kToolpathBlockPoints) Flush();
-  const ToolpathPoint point = PointOf(first);
-  const bool joined = !block_.points.empty() && block_.points.back() == point;
-  if (!joined) {
-    block_.points.push_back(point);
-    ++points_;
-  }
-  ToolpathRun run{.program = key.program,
-                  .step = key.step,
-                  .use = key.use,
-                  .beam_on = key.beam_on,
-                  .speed_class = key.speed_class,
-                  .start_us = start_us,
-                  .end_us = start_us};
-  run.first_point = static_cast<std::uint32_t>(block_.points.size() - 1);
-  run.point_count = 1;
-  block_.runs.push_back(run);
-  key_ = key;
-  run_open_ = true;
-  stretch_ = {.anchor = first, .direction = {}, .last = first, .open = false};
+  writer_.EndAt(Microseconds(done.end));
 }
 
 bool ToolpathRecorder::Merges(const Vec3& tip) {
@@ -140,49 +108,23 @@ bool ToolpathRecorder::Merges(const Vec3& tip) {
 }
 
 void ToolpathRecorder::Vertex(const Vec3& tip, SimTime at) {
-  if (closed_) return;
-  ToolpathRun& run = block_.runs.back();
+  if (writer_.closed()) return;
   const ToolpathPoint point = PointOf(tip);
-  if (run.point_count > 1) {
+  if (writer_.run().point_count > 1) {
     if (Merges(tip)) {  // it takes the place of the last vertex
-      block_.points.back() = point;
+      writer_.MoveLast(point);
       stretch_.last = tip;
       return;
     }
-    if (point == block_.points.back()) return;  // within a micrometre of it
+    if (point == writer_.last()) return;  // within a micrometre of it
   }
-  block_.points.push_back(point);
-  ++points_;
-  ++run.point_count;
-  stretch_ = {.anchor = stretch_.last, .direction = {}, .last = tip, .open = true};
-  if (block_.points.size() < kToolpathBlockPoints) return;
-
-  // The block is full in the middle of a run: the run goes on in the next block.
-  run.end_us = Microseconds(at);
-  const std::int64_t end_us = run.end_us;
-  Flush();
-  if (!closed_) OpenRun(key_, tip, end_us);
-}
-
-void ToolpathRecorder::Flush() {
-  run_open_ = false;
-  DropEmptyRun();
-  if (!block_.runs.empty()) {
-    const std::string bytes = EncodeToolpathBlock(block_);
-    if (bytes_ + bytes.size() > bytes_max_ || !sink_(bytes)) {
-      closed_ = true;
-    } else {
-      bytes_ += bytes.size();
-      ++blocks_;
-    }
+  if (writer_.Add(point, Microseconds(at))) {
+    stretch_ = {.anchor = tip, .direction = {}, .last = tip, .open = false};
+  } else {
+    stretch_ = {.anchor = stretch_.last, .direction = {}, .last = tip, .open = true};
   }
-  block_.points.clear();
-  block_.runs.clear();
 }
 
-void ToolpathRecorder::Finish() {
-  if (closed_) return;
-  Flush();
-}
+void ToolpathRecorder::Finish() { writer_.Finish(); }
 
 }  // namespace rmlcell::simulation

@@ -3,6 +3,12 @@
 #include <algorithm>
 
 namespace rmlcell::simulation {
+namespace {
+
+// Energy by length says nothing on less: a rest of a motion that was told in parts.
+constexpr double kMeanLengthMin_mm = 1e-3;
+
+}  // namespace
 
 SimTime TimeParts::total() const {
   return motion + settling + dwell + pierce + condition + operator_wait + spin_up + load +
@@ -21,6 +27,7 @@ void WorkTable::Sum::Add(const WorkFigures& work) {
   counts.time.load += work.time.load;
   counts.time.standstill += work.time.standstill;
   counts.beam_on += work.beam_on;
+  counts.shutter_open += work.shutter_open;
   counts.beam_switches += work.beam_switches;
   counts.pierces += work.pierces;
   counts.plunges += work.plunges;
@@ -29,6 +36,9 @@ void WorkTable::Sum::Add(const WorkFigures& work) {
   travel.Add(work.travel_mm);
   plunge.Add(work.plunge_mm);
   cut_energy.Add(work.cut_energy_j);
+  if (work.cut_mm >= kMeanLengthMin_mm) {
+    counts.energy_j_per_mm_max = std::max(counts.energy_j_per_mm_max, work.energy_j_per_mm());
+  }
   pierce_energy.Add(work.pierce_energy_j);
 }
 
@@ -74,18 +84,24 @@ void WorkTable::Add(const machine::Place& place, const WorkFigures& work) {
 void WorkTable::WriteTo(RunReport& report) const {
   report.total = total_.Total();
   report.rest = rest_.Total();
-  report.programs.clear();
-  for (const auto& [program, sum] : programs_) report.programs[program] = sum.Total();
+  for (const auto& [program, sum] : programs_) {
+    report.programs[program].total = sum.Total();
+    report.programs[program].total.energy_j_per_mm_max = 0.0;
+  }
   report.steps.clear();
   report.steps.reserve(steps_.size());
-  report.energy_j_per_mm_max = 0.0;
+  double& highest = report.total.energy_j_per_mm_max;
+  highest = report.rest.energy_j_per_mm();
   for (const auto& [key, step] : steps_) {
     report.steps.push_back(
         {.program = key.first, .step = key.second, .line = step.line, .figures = step.sum.Total()});
-    report.energy_j_per_mm_max =
-        std::max(report.energy_j_per_mm_max, report.steps.back().figures.energy_j_per_mm());
+    const double mean = report.steps.back().figures.energy_j_per_mm();
+    highest = std::max(highest, mean);
+    const auto program = report.programs.find(key.first);
+    if (program == report.programs.end()) continue;
+    double& of_program = program->second.total.energy_j_per_mm_max;
+    of_program = std::max(of_program, mean);
   }
-  report.energy_j_per_mm_max = std::max(report.energy_j_per_mm_max, report.rest.energy_j_per_mm());
 }
 
 }  // namespace rmlcell::simulation

@@ -19,7 +19,7 @@ class WorkTable {
   // `work` was done at `place`.
   void Add(const machine::Place& place, const WorkFigures& work);
 
-  // Writes total, programs, steps and rest of the report.
+  // Writes total, steps, rest and the totals of the programs of the report.
   void WriteTo(RunReport& report) const;
 
  private:

@@ -90,6 +90,7 @@ v1::Diagnostic ToProto(const Diagnostic& diagnostic) {
   message.set_advice(std::string(entry.advice));
   message.set_rule(diagnostic.rule);
   message.set_count(1);
+  if (diagnostic.at) message.set_time_s(ToSeconds(*diagnostic.at));
   v1::SourcePlace& place = *message.mutable_place();
   place.set_file(Utf8(diagnostic.file));
   place.set_program(diagnostic.program);
@@ -158,6 +159,15 @@ v1::Findings FindingsOf(bool ok, const std::vector<Diagnostic>& diagnostics, std
   return message;
 }
 
+v1::Findings FindingsOf(const machine::Translation& translation, const simulation::MotionCheck& motion, int slot) {
+  v1::Findings message = FindingsOf(translation.ok && !motion.has_errors(), translation.diagnostics,
+                                    translation.diagnostics_dropped + motion.findings_dropped, translation.figures);
+  for (const Diagnostic& diagnostic : motion.findings) *message.add_diagnostics() = ToProto(diagnostic);
+  const auto cut_short = motion.cut_short.find(slot);
+  if (cut_short != motion.cut_short.end()) message.set_motion_check(Utf8(cut_short->second));
+  return message;
+}
+
 Diagnostic FromProto(const v1::Diagnostic& message) {
   Diagnostic diagnostic{.code = ErrorCode::kCellInternal,
                         .severity = SeverityFromProto(message.severity()),
@@ -173,6 +183,7 @@ Diagnostic FromProto(const v1::Diagnostic& message) {
                         .program = message.place().program(),
                         .step = message.place().step(),
                         .fixes = {}};
+  if (message.has_time_s()) diagnostic.at = FromSeconds(message.time_s());
   const auto found = FindByText(message.code());
   if (found.empty()) {
     diagnostic.detail = message.code() + ": " + diagnostic.detail;

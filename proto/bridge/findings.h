@@ -5,6 +5,7 @@
 
 #include "engine/core/diagnostic.h"
 #include "engine/machine/family.h"
+#include "engine/simulation/motion_check.h"
 
 namespace google::rpc {
 class Status;
@@ -33,6 +34,9 @@ v1::ErrorExplanation Explain(const CatalogueEntry& entry);
 // The findings of a translation or a transfer.
 v1::Findings FindingsOf(bool ok, const std::vector<Diagnostic>& diagnostics, std::uint64_t dropped,
                         const std::vector<machine::Figure>& figures);
+
+// The findings of a check: of the translation, then of the motion.
+v1::Findings FindingsOf(const machine::Translation& translation, const simulation::MotionCheck& motion, int slot);
 
 // Back to engine values, for those that print findings which came over the wire. Unknown codes become
 // CellInternal with the code in the text: a newer server may know more.

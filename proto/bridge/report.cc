@@ -31,7 +31,8 @@ void SetPlace(const machine::Place& place, v1::SourcePlace& message) {
   if (place.byte_offset >= 0) message.set_byte_offset(place.byte_offset);
 }
 
-void SetBox(const machine::Box& box, v1::Box* (v1::RunReport::*mutable_box)(), v1::RunReport& report) {
+template <class Message>
+void SetBox(const machine::Box& box, v1::Box* (Message::*mutable_box)(), Message& report) {
   if (box.empty()) return;
   v1::Box& message = *(report.*mutable_box)();
   *message.mutable_low() = ToProto(box.min);
@@ -62,8 +63,12 @@ v1::WorkFigures ToProto(const simulation::WorkFigures& figures) {
   message.set_plunges(static_cast<std::int64_t>(figures.plunges));
   message.set_energy_j(figures.energy_j());
   message.set_energy_j_per_mm(figures.energy_j_per_mm());
+  message.set_energy_j_per_mm_max(figures.energy_j_per_mm_max);
+  message.set_shutter_open_s(ToSeconds(figures.shutter_open));
   return message;
 }
+
+double ShareOf(double value, double limit) { return limit > 0.0 ? value / limit : 0.0; }
 
 v1::AxisFigures ToProto(const simulation::AxisFigures& axis) {
   v1::AxisFigures message;
@@ -77,6 +82,83 @@ v1::AxisFigures ToProto(const simulation::AxisFigures& axis) {
   message.set_peak_acceleration(axis.peak_acceleration);
   message.set_acceleration_limit(axis.acceleration_limit);
   message.set_reversals(static_cast<std::int64_t>(axis.reversals));
+  message.set_peak_speed_share(ShareOf(axis.peak_speed, axis.speed_limit));
+  message.set_peak_acceleration_share(ShareOf(axis.peak_acceleration, axis.acceleration_limit));
+  message.set_peak_jerk(axis.peak_jerk);
+  message.set_jerk_limit(axis.jerk_limit);
+  return message;
+}
+
+v1::CornerFigures ToProto(const simulation::CornerFigures& corners) {
+  v1::CornerFigures message;
+  message.set_stopped(static_cast<std::int64_t>(corners.stops));
+  message.set_stopped_with_fly(static_cast<std::int64_t>(corners.stops_with_fly));
+  message.set_reversed(static_cast<std::int64_t>(corners.reversals));
+  message.set_through(static_cast<std::int64_t>(corners.through));
+  message.set_blended(static_cast<std::int64_t>(corners.blended));
+  message.set_capped(static_cast<std::int64_t>(corners.capped));
+  if (corners.deviation_mm_max > 0.0) {
+    message.set_deviation_mm_max(corners.deviation_mm_max);
+    SetPlace(corners.deviation_place, *message.mutable_deviation_place());
+    *message.mutable_deviation_point() = ToProto(corners.deviation_point);
+  }
+  return message;
+}
+
+v1::SpeedShortfall ToProto(const simulation::SpeedShortfall& shortfall) {
+  v1::SpeedShortfall message;
+  message.set_moves(static_cast<std::int64_t>(shortfall.moves));
+  message.set_by_axis(static_cast<std::int64_t>(shortfall.by_axis));
+  message.set_by_radius(static_cast<std::int64_t>(shortfall.by_radius));
+  message.set_too_short(static_cast<std::int64_t>(shortfall.too_short));
+  message.set_by_acceleration(static_cast<std::int64_t>(shortfall.by_acceleration));
+  SetPlace(shortfall.worst, *message.mutable_worst());
+  message.set_wanted_mm_s(shortfall.wanted_mm_s);
+  message.set_reached_mm_s(shortfall.reached_mm_s);
+  return message;
+}
+
+v1::SlowMove ToProto(const simulation::SlowMove& move) {
+  v1::SlowMove message;
+  SetPlace(move.place, *message.mutable_place());
+  message.set_cause(std::string(simulation::SlowCauseText(move.cause)));
+  message.set_axis(move.axis);
+  message.set_wanted_mm_s(move.wanted_mm_s);
+  message.set_allowed_mm_s(move.allowed_mm_s);
+  message.set_reached_mm_s(move.reached_mm_s);
+  message.set_count(static_cast<std::int64_t>(move.count));
+  return message;
+}
+
+// What the report has of the whole run and of each program alike.
+template <class Message>
+void SetScope(const simulation::ScopeFigures& scope, Message& message) {
+  *message.mutable_corners() = ToProto(scope.corners);
+  if (scope.shortfall.moves > 0) *message.mutable_shortfall() = ToProto(scope.shortfall);
+  if (scope.total.beam_on > SimTime::zero()) {
+    v1::BeamHistogram& beam = *message.mutable_beam();
+    for (const SimTime time : scope.beam.by_speed) beam.add_by_speed_s(ToSeconds(time));
+    for (const SimTime time : scope.beam.by_power) beam.add_by_power_s(ToSeconds(time));
+  }
+  SetBox(scope.programmed, &Message::mutable_program_box, message);
+  SetBox(scope.tip, &Message::mutable_tip_box, message);
+  SetBox(scope.cut, &Message::mutable_cut_box, message);
+  SetBox(scope.column, &Message::mutable_column_box, message);
+  *message.add_axes() = ToProto(scope.tip_figures);
+  for (const simulation::AxisFigures& axis : scope.axes) *message.add_axes() = ToProto(axis);
+}
+
+v1::AxisViolation ToProto(const simulation::AxisViolation& violation) {
+  v1::AxisViolation message;
+  SetPlace(violation.place, *message.mutable_place());
+  message.set_axis(violation.axis);
+  message.set_rotary(violation.rotary);
+  message.set_excess(violation.excess);
+  message.set_at_target(violation.at_target);
+  *message.mutable_position() = PositionOf({.tip = violation.tip, .a_rad = violation.axes.a_rad, .b_rad = violation.axes.b_rad},
+                                           violation.axes);
+  message.set_time_s(ToSeconds(violation.first_at));
+  message.set_count(static_cast<std::int64_t>(violation.count));
   return message;
 }
 
@@ -103,26 +185,15 @@ v1::RunReport ToProto(const simulation::RunReport& report,
   *message.mutable_final_program_point() = ToProto(report.final_position.program_point);
   message.add_final_program_angles(report.final_position.program_a);
   message.add_final_program_angles(report.final_position.program_b);
-  message.set_shutter_open_s(ToSeconds(report.shutter_open));
-  message.set_energy_j_per_mm_max(report.energy_j_per_mm_max);
+  message.set_shutter_open_s(ToSeconds(report.total.shutter_open));
+  message.set_energy_j_per_mm_max(report.total.energy_j_per_mm_max);
   message.set_halts(static_cast<std::int64_t>(report.halts));
-  if (report.shortfall.moves > 0) {
-    v1::SpeedShortfall& shortfall = *message.mutable_shortfall();
-    shortfall.set_moves(static_cast<std::int64_t>(report.shortfall.moves));
-    SetPlace(report.shortfall.worst, *shortfall.mutable_worst());
-    shortfall.set_wanted_mm_s(report.shortfall.wanted_mm_s);
-    shortfall.set_reached_mm_s(report.shortfall.reached_mm_s);
-  }
-  SetBox(report.programmed, &v1::RunReport::mutable_program_box, message);
-  SetBox(report.tip, &v1::RunReport::mutable_tip_box, message);
-  SetBox(report.cut, &v1::RunReport::mutable_cut_box, message);
-  SetBox(report.column, &v1::RunReport::mutable_column_box, message);
-  *message.add_axes() = ToProto(report.tip_figures);
-  for (const simulation::AxisFigures& axis : report.axes) *message.add_axes() = ToProto(axis);
+  SetScope(report, message);
   for (const auto& [slot, figures] : report.programs) {
     v1::ProgramFigures& program = *message.add_programs();
     program.set_program(slot);
-    *program.mutable_figures() = ToProto(figures);
+    *program.mutable_figures() = ToProto(figures.total);
+    SetScope(figures, program);
   }
   for (const simulation::StepFigures& step : report.steps) {
     v1::StepFigures& made = *message.add_steps();
@@ -138,6 +209,22 @@ v1::RunReport ToProto(const simulation::RunReport& report,
     diagnostic.set_count(static_cast<std::int64_t>(finding.count));
   }
   message.set_diagnostics_dropped(static_cast<std::int64_t>(report.findings_dropped));
+  for (const simulation::SlowMove& move : report.slow_moves) *message.add_slow_moves() = ToProto(move);
+  message.set_slow_moves_dropped(static_cast<std::int64_t>(report.slow_moves_dropped));
+  message.set_lookahead_starved(static_cast<std::int64_t>(report.lookahead_starved));
+  message.set_collisions("not modelled");
+  if (const auto& milling = report.milling) {
+    v1::MillingFigures& figures = *message.mutable_milling();
+    figures.set_removed_mm3(milling->removed_mm3);
+    figures.set_gouges(static_cast<std::int64_t>(milling->gouges));
+    figures.set_gouge_depth_mm(milling->gouge_depth_mm);
+    if (milling->gouges > 0) SetPlace(milling->gouge_place, *figures.mutable_gouge_place());
+    figures.set_gouge_time_s(ToSeconds(milling->gouge_at));
+  }
+  for (const simulation::AxisViolation& violation : report.violations) {
+    *message.add_violations() = ToProto(violation);
+  }
+  message.set_violations_dropped(static_cast<std::int64_t>(report.violations_dropped));
   for (const machine::Figure& figure : report.figures) *message.add_figures() = ToProto(figure);
   for (const auto& [name, value] : variables) (*message.mutable_variables())[name] = value;
   for (const auto& [name, value] : report.changed_parameters) (*message.mutable_parameters())[name] = value;

@@ -94,6 +94,13 @@ machine::InputChange FromProto(const v1::ScriptedInput& input) {
   return change;
 }
 
+machine::InputScript InputsOf(const v1::SimulationOptions& options) {
+  machine::InputScript inputs;
+  for (const v1::ScriptedInput& scripted : options.inputs()) inputs.push_back(FromProto(scripted));
+  std::ranges::stable_sort(inputs, {}, &machine::InputChange::at);
+  return inputs;
+}
+
 Result<SetupOutcome> MakeSetup(const SetupInput& input, const v1::SimulationOptions& options,
                                const v1::Budget& budget) {
   std::map<std::string, std::string> values = input.parameters;
@@ -107,11 +114,11 @@ Result<SetupOutcome> MakeSetup(const SetupInput& input, const v1::SimulationOpti
   setup.schedules = input.schedules;
   setup.machine_state = input.machine_state;
   setup.mode = FromProto(options.mode(), input.default_mode);
+  setup.forecast = true;  // who moves a machine says otherwise
   if (options.override_percent() > 0.0) setup.override_percent = options.override_percent();
   if (options.has_breakpoint()) setup.breakpoint = StepOf(options.breakpoint(), input.main_program);
   if (options.has_simul()) setup.simul = StepOf(options.simul(), input.main_program);
-  for (const v1::ScriptedInput& scripted : options.inputs()) setup.inputs.push_back(FromProto(scripted));
-  std::ranges::stable_sort(setup.inputs, {}, &machine::InputChange::at);
+  setup.inputs = InputsOf(options);
   if (budget.steps() > 0) setup.budget.steps = static_cast<std::uint64_t>(budget.steps());
   if (budget.virtual_time_s() > 0.0) setup.budget.virtual_time = FromSeconds(budget.virtual_time_s());
 
@@ -122,6 +129,25 @@ Result<SetupOutcome> MakeSetup(const SetupInput& input, const v1::SimulationOpti
   }
   if (good) outcome.setup.emplace(std::move(setup));
   return outcome;
+}
+
+machine::RunSetup SetupForCheck(const SetupInput& input, machine::Parameters parameters,
+                                const machine::Translation& main) {
+  machine::RunSetup setup(std::move(parameters));
+  setup.deleted_programs = {input.deleted_programs.begin(), input.deleted_programs.end()};
+  setup.main_program = input.main_program;
+  setup.schedules = input.schedules;
+  setup.machine_state = input.machine_state;
+  SetupOutcome ignored;
+  for (const ProgramInput& program : input.programs) {
+    if (program.slot != input.main_program) AddProgram(input, program, setup, ignored);
+  }
+  machine::StoredProgram stored{.name = {},
+                                .object = std::make_shared<const std::string>(main.object),
+                                .executable = nullptr,
+                                .step_lines = std::make_shared<const std::vector<int>>(main.step_lines)};
+  setup.programs[input.main_program] = std::move(stored);
+  return setup;
 }
 
 Result<std::vector<std::string>> ExpandVariables(const std::vector<std::string>& names) {

@@ -49,6 +49,11 @@ struct SetupOutcome {
 Result<SetupOutcome> MakeSetup(const SetupInput& input, const v1::SimulationOptions& options,
                                const v1::Budget& budget);
 
+// The setup in which the motion of the main program is checked; `main` is its translation. Sources among the
+// other programs are translated, those with errors left out, as if they were not there.
+machine::RunSetup SetupForCheck(const SetupInput& input, machine::Parameters parameters,
+                                const machine::Translation& main);
+
 // Parameters of a machine: defaults of the family, then the profile, then single values. Errors:
 // CellInvalidArgument (no such profile), CellUnknownParameter, CellParameterRange, also of values that do
 // not fit together.
@@ -56,6 +61,7 @@ Result<machine::Parameters> MakeParameters(const machine::MachineFamily& family,
                                            const std::map<std::string, std::string>& parameters);
 
 machine::InputChange FromProto(const v1::ScriptedInput& input);
+machine::InputScript InputsOf(const v1::SimulationOptions& options);  // in order of time
 
 // True when the name says that the bytes are an object: ".O".
 bool IsObjectFileName(const std::string& file_name);

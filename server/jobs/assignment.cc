@@ -108,7 +108,8 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
   std::optional<std::string> main_executable;
   const machine::MachineFamily* family = simulation::FindFamily(machine->family);
   // A mill runs one stream; only a family whose programs call each other needs the whole memory.
-  if (family != nullptr && family->info().has_executables && job.kind() != v1::JOB_KIND_CHECK) {
+  const bool only_read = family != nullptr && !family->info().checked_by_running && job.kind() == v1::JOB_KIND_CHECK;
+  if (family != nullptr && family->info().has_executables && !only_read) {
     auto memory = store.GetProgramMemory(leased.job.machine);
     if (!memory) return memory.error();
     for (storage::ProgramRecord& program : *memory) {

@@ -26,6 +26,7 @@ constexpr int kPageDefault = 50;
 constexpr int kPageMax = 1000;
 constexpr int kSnapshotJobs = 200;
 constexpr std::size_t kRequestIdMax = 64;
+constexpr double kPaceMax = 1000.0;  // faster is not to be told from as fast as possible
 
 std::string_view KindName(v1::JobKind kind) {
   switch (kind) {
@@ -61,6 +62,9 @@ Status CheckSimulation(const v1::SimulationOptions& options, const machine::Mach
   }
   if (!(options.toolpath_tolerance_mm() >= 0.0 && options.toolpath_tolerance_mm() <= 100.0)) {
     return InvalidArgument("job.simulation.toolpath_tolerance_mm: allowed are 0 to 100");
+  }
+  if (!(options.pace() >= 0.0 && options.pace() <= kPaceMax)) {
+    return InvalidArgument("job.simulation.pace is " + ShortestText(options.pace()) + ", allowed are 0 to 1000");
   }
   if (!v1::OperatingMode_IsValid(options.mode())) return InvalidArgument("job.simulation.mode is none that there is");
   if (options.mode() == v1::OPERATING_MODE_MANUAL) {

@@ -127,7 +127,7 @@ class LinkMaterial {
 Result<v1::FixProgramResponse> MemoryOffice::Fix(const v1::FixProgramRequest& request) {
   const v1::ProgramText& program = request.program();
   // Refuses what names family or machine wrongly before anything is done.
-  const auto first = shelf_.Check(request.family(), request.machine(), program, !request.errors_only());
+  const auto first = shelf_.Translate(request.family(), request.machine(), program, !request.errors_only());
   if (!first) return first.error();
   const machine::MachineFamily* named = simulation::FamilyOfFileName(program.file_name());
   if (named != nullptr && !named->info().has_executables) {
@@ -138,7 +138,7 @@ Result<v1::FixProgramResponse> MemoryOffice::Fix(const v1::FixProgramRequest& re
   const auto check = [&](const machine::SourceFile& file) {
     v1::ProgramText text = program;
     text.set_content(std::string(file.bytes));
-    auto checked = shelf_.Check(request.family(), request.machine(), text, !request.errors_only());
+    auto checked = shelf_.Translate(request.family(), request.machine(), text, !request.errors_only());
     return checked ? *std::move(checked) : *first;  // the machine went away meanwhile: as it was
   };
   optimo::Fixing fixing = optimo::FixProgram({.name = program.file_name(), .bytes = program.content()}, check);

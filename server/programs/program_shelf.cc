@@ -70,6 +70,23 @@ ProgramError FirstError(const machine::Translation& translation) {
   return wrong;
 }
 
+machine::Translation TranslateFor(const machine::MachineFamily& family, const machine::Parameters& parameters,
+                                  const v1::ProgramText& program, bool advice) {
+  const bool is_object = program.form() == v1::PROGRAM_FORM_OBJECT;
+  return family.Translate({.name = is_object ? "program.O" : program.file_name(), .bytes = program.content()},
+                          parameters, {.advice = advice, .step_lines = true});
+}
+
+// "44.S" is program 44, other names take the place of no program of the machine when there is room.
+int SlotForCheck(const std::string& file_name, const std::vector<bridge::ProgramInput>& programs) {
+  const auto named = ParseInteger(TitleFrom(file_name));
+  if (named && *named >= kSlotMin && *named <= kSlotMax) return static_cast<int>(*named);
+  for (int slot = kSlotMin; slot < kSlotMax; ++slot) {
+    if (std::ranges::find(programs, slot, &bridge::ProgramInput::slot) == programs.end()) return slot;
+  }
+  return kSlotMax;
+}
+
 }  // namespace
 
 Status ProgramShelf::CheckSize(std::int64_t bytes) const {
@@ -289,32 +306,93 @@ Status ProgramShelf::Delete(const v1::DeleteProgramRequest& request) {
   return deleted;
 }
 
-Result<machine::Translation> ProgramShelf::Check(const std::string& family_id, const std::string& machine_name,
-                                                 const v1::ProgramText& program, bool advice) {
-  const machine::MachineFamily* family = nullptr;
-  std::string profile;
-  std::map<std::string, std::string> values;
+Result<ProgramShelf::Subject> ProgramShelf::FindSubject(const std::string& family_id,
+                                                        const std::string& machine_name,
+                                                        const v1::ProgramText& program) {
+  Subject subject;
   if (!machine_name.empty()) {
     const Result<std::string> id = ParseMachineName(machine_name);
     if (!id) return id.error();
-    const auto machine = store_.GetMachine(*id);
+    auto machine = store_.GetMachine(*id);
     if (!machine) return machine.error();
-    family = simulation::FindFamily(machine->family);
-    profile = machine->profile;
-    values = machine->parameters;
+    subject.family = simulation::FindFamily(machine->family);
+    subject.machine = *std::move(machine);
   } else if (!family_id.empty()) {
-    family = simulation::FindFamily(family_id);
-    if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, family_id, {}};
+    subject.family = simulation::FindFamily(family_id);
+    if (subject.family == nullptr) return Error{ErrorCode::kCellUnknownFamily, family_id, {}};
   } else {
-    family = simulation::FamilyOfFileName(program.file_name());
+    subject.family = simulation::FamilyOfFileName(program.file_name());
   }
-  if (family == nullptr) return Error{ErrorCode::kCellFamilyUnknownFromName, program.file_name(), {}};
+  if (subject.family == nullptr) return Error{ErrorCode::kCellFamilyUnknownFromName, program.file_name(), {}};
   if (program.content().empty()) return Error{ErrorCode::kCellEmptyProgram, program.file_name(), {}};
-  const Result<machine::Parameters> parameters = bridge::MakeParameters(*family, profile, values);
+  Result<machine::Parameters> parameters =
+      subject.machine ? bridge::MakeParameters(*subject.family, subject.machine->profile, subject.machine->parameters)
+                      : bridge::MakeParameters(*subject.family, {}, {});
   if (!parameters) return parameters.error();
-  const bool is_object = program.form() == v1::PROGRAM_FORM_OBJECT;
-  return family->Translate({.name = is_object ? "program.O" : program.file_name(), .bytes = program.content()},
-                           *parameters, {.advice = advice});
+  subject.parameters = *std::move(parameters);
+  return subject;
+}
+
+Result<machine::Translation> ProgramShelf::Translate(const std::string& family_id, const std::string& machine_name,
+                                                     const v1::ProgramText& program, bool advice) {
+  const Result<Subject> subject = FindSubject(family_id, machine_name, program);
+  if (!subject) return subject.error();
+  return TranslateFor(*subject->family, *subject->parameters, program, advice);
+}
+
+// The programs of the machine, its schedules and the state in which it stands.
+Status ProgramShelf::AddMemory(const Subject& subject, bridge::SetupInput& input) {
+  const storage::MachineRecord& machine = *subject.machine;
+  input.machine_state = machine.state;
+  auto memory = store_.GetProgramMemory(machine.id);
+  if (!memory) return memory.error();
+  for (storage::ProgramRecord& program : *memory) {
+    bridge::ProgramInput& made = input.programs.emplace_back();
+    made.slot = program.slot;
+    made.name = std::move(program.name);
+    made.bytes = std::make_shared<const std::string>(std::move(program.object));
+    if (program.executable) made.executable = std::make_shared<const std::string>(*std::move(program.executable));
+  }
+  const auto deleted = store_.ListDeletedPrograms(machine.id);
+  if (!deleted) return deleted.error();
+  input.deleted_programs = *deleted;
+  const auto schedules = store_.ListSchedules(machine.id);
+  if (!schedules) return schedules.error();
+  if (schedules->empty()) return {};
+  input.schedules.emplace();
+  for (const storage::ScheduleRecord& schedule : *schedules) {
+    input.schedules->push_back({.number = schedule.number,
+                                .name = schedule.name,
+                                .mode = schedule.mode,
+                                .power_percent = schedule.power_percent});
+  }
+  return {};
+}
+
+Result<ProgramShelf::Checked> ProgramShelf::Check(const std::string& family_id, const std::string& machine_name,
+                                                  const v1::ProgramText& program, bool advice) {
+  const Result<Subject> subject = FindSubject(family_id, machine_name, program);
+  if (!subject) return subject.error();
+  const machine::MachineFamily& family = *subject->family;
+  Checked checked{.translation = TranslateFor(family, *subject->parameters, program, advice), .motion = {}};
+  if (!checked.translation.ok || !family.info().checked_by_running) return checked;
+  bridge::SetupInput input{.family = &family, .programs = {}, .schedules = {}, .machine_state = {}};
+  if (subject->machine) {
+    if (const Status added = AddMemory(*subject, input); !added) return added.error();
+  }
+  checked.slot = SlotForCheck(program.file_name(), input.programs);
+  input.main_program = checked.slot;
+  const machine::RunSetup setup = bridge::SetupForCheck(input, *subject->parameters, checked.translation);
+  auto motion = simulation::CheckMotion(family, setup, {checked.slot});
+  if (!motion) return motion.error();
+  checked.motion = *std::move(motion);
+  for (Diagnostic& finding : checked.motion.findings) {
+    if (finding.program == checked.slot) finding.file = program.file_name();
+  }
+  if (!advice) {
+    std::erase_if(checked.motion.findings, [](const Diagnostic& finding) { return !IsError(finding.severity); });
+  }
+  return checked;
 }
 
 }  // namespace rmlcell::server

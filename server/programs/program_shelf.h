@@ -1,9 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/machine/family.h"
+#include "engine/simulation/motion_check.h"
+#include "proto/bridge/setup.h"
 #include "rmlcell/v1/program.pb.h"
 #include "server/programs/program_result.h"
 #include "storage/store.h"
@@ -49,8 +52,18 @@ class ProgramShelf {
   Status Delete(const v1::DeleteProgramRequest& request);
 
   // Translates without storing. Errors: CellUnknownFamily and what names machine or family wrongly.
-  Result<machine::Translation> Check(const std::string& family, const std::string& machine,
-                                     const v1::ProgramText& program, bool advice);
+  Result<machine::Translation> Translate(const std::string& family, const std::string& machine,
+                                         const v1::ProgramText& program, bool advice);
+
+  // The same, and follows the motion of what has no errors; on a machine in the state in which that is, with
+  // its programs. Findings of other programs, which the checked one calls, are among them.
+  struct Checked {
+    machine::Translation translation;
+    simulation::MotionCheck motion;
+    int slot = 0;  // that the program has in the check
+  };
+  Result<Checked> Check(const std::string& family, const std::string& machine, const v1::ProgramText& program,
+                        bool advice);
 
   // Of a whole program. Error: CellTooLarge, with the limit of the configuration.
   Status CheckSize(std::int64_t bytes) const;
@@ -58,6 +71,14 @@ class ProgramShelf {
  private:
   Result<std::optional<storage::ProgramSummary>> FindExpected(const std::string& machine, int slot,
                                                               storage::Revision expected);
+  // What a program is checked for.
+  struct Subject {
+    const machine::MachineFamily* family = nullptr;
+    std::optional<storage::MachineRecord> machine{};
+    std::optional<machine::Parameters> parameters{};
+  };
+  Result<Subject> FindSubject(const std::string& family, const std::string& machine, const v1::ProgramText& program);
+  Status AddMemory(const Subject& subject, bridge::SetupInput& input);
   ProgramResult<v1::Program> StoreExecutable(const Put& put, const ProgramPlace& place);
 
   storage::Store& store_;

@@ -153,7 +153,7 @@ grpc::ServerUnaryReactor* JobService::GetJobReport(grpc::CallbackServerContext* 
 grpc::ServerWriteReactor<v1::StreamJobToolpathResponse>* JobService::StreamJobToolpath(
     grpc::CallbackServerContext* context, const v1::StreamJobToolpathRequest* request) {
   return Open(room_, context, "JobService/StreamJobToolpath",
-              MakeToolpathStream({room_.executor, open_, book_, feed_, instance_id_}, request->name()));
+              MakeToolpathStream({room_.executor, open_, book_, feed_, instance_id_}, request->name(), request->level()));
 }
 
 grpc::ServerUnaryReactor* JobService::GetJobPicture(grpc::CallbackServerContext* context,

@@ -5,6 +5,8 @@
 #include <set>
 
 #include "engine/core/number_text.h"
+#include "engine/simulation/toolpath_level.h"
+#include "engine/simulation/toolpath_recorder.h"
 #include "server/events/event_feed.h"
 #include "server/jobs/framing.h"
 #include "server/jobs/job_book.h"
@@ -225,12 +227,18 @@ class FramesStream : public PullStream<Response> {
   // Adds one frame; false: the message is full with it.
   virtual bool Add(std::string_view frame, Response& message) = 0;
 
+  // All frames, as they are stored.
+  virtual Result<std::string> Read(std::int64_t job) { return room_.book.ReadArtifact(job, artifact_); }
+
+  const std::string& job_name() const { return job_name_; }
+  JobBook& book() const { return room_.book; }
+
  private:
   Next Make(Response& message, grpc::Status& status) override {
     if (!begun_) {
       begun_ = true;
       const Result<std::int64_t> job = ParseJobName(job_name_);
-      Result<std::string> bytes = job ? room_.book.ReadArtifact(*job, artifact_) : Result<std::string>(job.error());
+      Result<std::string> bytes = job ? Read(*job) : Result<std::string>(job.error());
       if (!bytes) {
         status = ToGrpcStatus(bytes.error());
         return Next::kEnd;
@@ -254,12 +262,47 @@ class FramesStream : public PullStream<Response> {
   std::string_view rest_;
 };
 
+// A toolpath that is coarser than the stored one by some levels of detail.
+std::string AtLevel(std::string_view frames, double stored_mm, int level) {
+  std::string coarse;
+  simulation::ToolpathLevel made(simulation::LevelTolerance(stored_mm, level) - stored_mm, [&](std::string_view block) {
+    AddFrame(block, coarse);
+    return true;
+  });
+  while (const auto frame = TakeFrame(frames)) {
+    const Result<simulation::ToolpathBlock> block = simulation::DecodeToolpathBlock(*frame);
+    if (!block) break;  // ends where the stored one does
+    made.Take(*block);
+  }
+  made.Finish();
+  return coarse;
+}
+
 class ToolpathStream final : public FramesStream<v1::StreamJobToolpathResponse> {
-  using FramesStream::FramesStream;
+ public:
+  ToolpathStream(const JobStreamRoom& room, std::string job_name, int level)
+      : FramesStream(room, std::move(job_name), "toolpath"), level_(level) {}
+
+ private:
+  Result<std::string> Read(std::int64_t job) override {
+    if (level_ < 0 || level_ > simulation::kToolpathLevelMax) {
+      return InvalidArgument("level is " + std::to_string(level_) + ", allowed are 0 to " +
+                             std::to_string(simulation::kToolpathLevelMax));
+    }
+    Result<std::string> stored = FramesStream::Read(job);
+    if (!stored || level_ == 0) return stored;
+    const Result<v1::Job> made_by = book().Get(job_name());
+    if (!made_by) return made_by.error();
+    const double asked = made_by->simulation().toolpath_tolerance_mm();
+    return AtLevel(*stored, asked > 0.0 ? asked : simulation::ToolpathOptions().tolerance_mm, level_);
+  }
+
   bool Add(std::string_view frame, v1::StreamJobToolpathResponse& message) override {
     message.set_block(std::string(frame));
     return false;
   }
+
+  int level_;
 };
 
 class TraceStream final : public FramesStream<v1::StreamJobTraceResponse> {
@@ -284,8 +327,8 @@ std::shared_ptr<PullStream<v1::WatchJobsResponse>> MakeJobsWatch(const JobStream
 }
 
 std::shared_ptr<PullStream<v1::StreamJobToolpathResponse>> MakeToolpathStream(const JobStreamRoom& room,
-                                                                              const std::string& job_name) {
-  return std::make_shared<ToolpathStream>(room, job_name, "toolpath");
+                                                                              const std::string& job_name, int level) {
+  return std::make_shared<ToolpathStream>(room, job_name, level);
 }
 
 std::shared_ptr<PullStream<v1::StreamJobTraceResponse>> MakeTraceStream(const JobStreamRoom& room,

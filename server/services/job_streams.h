@@ -25,7 +25,7 @@ std::shared_ptr<PullStream<v1::WatchJobResponse>> MakeJobWatch(const JobStreamRo
 std::shared_ptr<PullStream<v1::WatchJobsResponse>> MakeJobsWatch(const JobStreamRoom& room,
                                                                  const v1::WatchJobsRequest& request);
 std::shared_ptr<PullStream<v1::StreamJobToolpathResponse>> MakeToolpathStream(const JobStreamRoom& room,
-                                                                              const std::string& job_name);
+                                                                              const std::string& job_name, int level);
 std::shared_ptr<PullStream<v1::StreamJobTraceResponse>> MakeTraceStream(const JobStreamRoom& room,
                                                                         const std::string& job_name);
 

@@ -236,10 +236,10 @@ grpc::ServerUnaryReactor* ProgramService::CheckProgram(grpc::CallbackServerConte
                                                        const v1::CheckProgramRequest* request,
                                                        v1::CheckProgramResponse* response) {
   return Answer(room_, context, *request, "ProgramService/CheckProgram", [this, request, response](const Caller&) {
-    const auto translation =
+    const auto checked =
         shelf_.Check(request->family(), request->machine(), request->program(), !request->errors_only());
-    if (!translation) return ToGrpcStatus(translation.error());
-    *response->mutable_findings() = FindingsOf(*translation);
+    if (!checked) return ToGrpcStatus(checked.error());
+    *response->mutable_findings() = bridge::FindingsOf(checked->translation, checked->motion, checked->slot);
     return grpc::Status::OK;
   });
 }
@@ -248,7 +248,7 @@ grpc::ServerUnaryReactor* ProgramService::CompileProgram(grpc::CallbackServerCon
                                                          const v1::CompileProgramRequest* request,
                                                          v1::CompileProgramResponse* response) {
   return Answer(room_, context, *request, "ProgramService/CompileProgram", [this, request, response](const Caller&) {
-    auto translation = shelf_.Check(request->family(), {}, request->program(), true);
+    auto translation = shelf_.Translate(request->family(), {}, request->program(), true);
     if (!translation) return ToGrpcStatus(translation.error());
     *response->mutable_findings() = FindingsOf(*translation);
     if (translation->ok) response->set_object(std::move(translation->object));

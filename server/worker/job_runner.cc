@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/simulation/families.h"
+#include "engine/simulation/motion_check.h"
 #include "engine/simulation/simulate.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
@@ -20,6 +21,7 @@
 #include "server/jobs/framing.h"
 #include "server/worker/job_events.h"
 #include "server/worker/memory_budget.h"
+#include "server/worker/pacer.h"
 
 namespace rmlcell::server {
 namespace {
@@ -32,6 +34,7 @@ constexpr std::chrono::milliseconds kPositionInterval{50};  // at most 20 positi
 constexpr std::chrono::milliseconds kStepTarget{5};
 constexpr SimTime kSliceMin = std::chrono::milliseconds(10);
 constexpr SimTime kSliceMax = std::chrono::hours(10);
+constexpr SimTime kPacedSliceMin = std::chrono::milliseconds(1);
 
 double ProcessorTime_s() {
   timespec time{};
@@ -120,12 +123,13 @@ class Attempt {
   }
 
   // A translation that fails ends the job with its first error; the findings are its report.
-  void ReportFindings(const bridge::SetupOutcome& made) {
+  void ReportFindings(const bridge::SetupOutcome& made, const std::string& motion_check = {}) {
     v1::RunReport report;
     report.set_family(assignment_.family());
+    report.set_motion_check(bridge::Utf8(motion_check));
     for (const Diagnostic& diagnostic : made.diagnostics) {
       *report.add_diagnostics() = bridge::ToProto(diagnostic);
-      events_.OnDiagnostic(SimTime(0), diagnostic);
+      events_.OnDiagnostic(diagnostic.at.value_or(SimTime(0)), diagnostic);
     }
     report.set_diagnostics_dropped(static_cast<std::int64_t>(made.diagnostics_dropped));
     const auto first = std::ranges::find_if(made.diagnostics, [](const Diagnostic& d) { return IsError(d.severity); });
@@ -149,21 +153,30 @@ class Attempt {
 
   End Check() {
     bridge::SetupInput input = Input();
-    // Checking is translating: what was stored as an object is read as one.
-    for (bridge::ProgramInput& program : input.programs) {
-      if (!program.is_source) program.file_name = std::string(input.family->info().has_executables ? "program.O" : "program.rml");
-      program.is_source = true;
-    }
-    const auto parameters = bridge::MakeParameters(*input.family, input.profile, input.parameters);
+    const machine::MachineFamily& family = *input.family;
+    const auto parameters = bridge::MakeParameters(family, input.profile, input.parameters);
     if (!parameters) return Refuse(parameters.error());
     bridge::SetupOutcome made;
+    std::string motion_check;
     for (const bridge::ProgramInput& program : input.programs) {
       if (program.slot != input.main_program) continue;
+      // Checking is translating: what was stored as an object is read as one.
+      const std::string name = program.is_source                ? program.file_name
+                               : family.info().has_executables ? "program.O"
+                                                               : "program.rml";
       machine::Translation translation =
-          input.family->Translate({.name = program.file_name, .bytes = *program.bytes}, *parameters, {});
+          family.Translate({.name = name, .bytes = *program.bytes}, *parameters, {.step_lines = true});
       for (Diagnostic& diagnostic : translation.diagnostics) diagnostic.program = program.slot;
       made.diagnostics = std::move(translation.diagnostics);
       made.diagnostics_dropped = translation.diagnostics_dropped;
+      if (!translation.ok) continue;
+      machine::RunSetup setup = bridge::SetupForCheck(input, *parameters, translation);
+      setup.inputs = bridge::InputsOf(assignment_.job().simulation());
+      const auto motion = simulation::CheckMotion(family, setup, {program.slot});
+      if (!motion) return Refuse(motion.error());
+      made.diagnostics.insert(made.diagnostics.end(), motion->findings.begin(), motion->findings.end());
+      made.diagnostics_dropped += motion->findings_dropped;
+      if (!motion->cut_short.empty()) motion_check = motion->cut_short.begin()->second;
     }
     while (const std::optional<v1::WorkResponse> message = line_.Receive(std::chrono::milliseconds(0))) {
       Obey(*message);
@@ -174,7 +187,7 @@ class Attempt {
       outcome_ = OutcomeFor(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellProcessorBudget);
       return End::kFinished;
     }
-    ReportFindings(made);
+    ReportFindings(made, motion_check);
     return End::kFinished;
   }
 
@@ -253,13 +266,16 @@ class Attempt {
 
   End Drive(machine::Run& run, simulation::Simulation& simulation, const simulation::Recorder& recorder) {
     SimTime slice = std::chrono::milliseconds(100);
+    Pacer pacer(assignment_.job().simulation().pace());
     Clock::time_point last_position = Clock::now();
     SendPosition(run);
     while (!simulation.finished()) {
       const Clock::time_point begin = Clock::now();
       CarryOut(simulation);
       if (simulation.finished()) break;
-      const machine::RunPhase phase = simulation.Step(slice);
+      const SimTime due = pacer.Due(begin, simulation.state().time, slice);
+      const bool early = pacer.paced() && due < kPacedSliceMin && simulation.phase() == machine::RunPhase::kRunning;
+      const machine::RunPhase phase = early ? machine::RunPhase::kRunning : simulation.Step(due);
       const auto took = Clock::now() - begin;
       if (took < kStepTarget / 2) slice = std::min(slice * 2, kSliceMax);
       if (took > kStepTarget) slice = std::max(slice / 2, kSliceMin);
@@ -269,7 +285,10 @@ class Attempt {
         simulation.End(machine::OutcomeKind::kStopped, ErrorCode::kCellWaitsForever);
         break;
       }
-      const auto patience = held ? std::chrono::milliseconds(20) : std::chrono::milliseconds(0);
+      if (held) pacer.Stand();
+      const auto patience = held    ? std::chrono::milliseconds(20)
+                            : early ? Pacer::kWait
+                                    : std::chrono::milliseconds(0);
       while (std::optional<v1::WorkResponse> message = line_.Receive(patience)) {
         Obey(*message);
         if (released_) return End::kLost;

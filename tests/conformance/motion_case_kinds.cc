@@ -7,6 +7,8 @@
 #include "engine/motion/feed_steps.h"
 #include "engine/motion/hole.h"
 #include "engine/motion/laser_power.h"
+#include "tests/conformance/mill_case_kinds.h"
+#include "tests/conformance/motion_case_input.h"
 #include "tests/engine/motion/standard_machine.h"
 
 namespace rmlcell::motion {
@@ -14,33 +16,20 @@ namespace {
 
 using nlohmann::json;
 
-Vec3 Point(const json& j) {
-  return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
-}
-
 void Put(Figures& figures, const std::string& name, const Vec3& v) {
   figures[name + ".x"] = v.x;
   figures[name + ".y"] = v.y;
   figures[name + ".z"] = v.z;
 }
 
-std::string Numbered(std::string name, std::uint64_t number) {
-  return name.append(std::to_string(number));
-}
-
-double Number(const json& input, const char* name) { return input.at(name).get<double>(); }
-double NumberOr(const json& input, const char* name, double standard) {
-  return input.contains(name) ? Number(input, name) : standard;
-}
-
 TipPose Pose(const json& tip, const json& ab) {
-  return {Point(tip), ab.at(0).get<double>(), ab.at(1).get<double>()};
+  return {PointOf(tip), ab.at(0).get<double>(), ab.at(1).get<double>()};
 }
 
 Head HeadOf(const json& input) {
-  Head head;
+  GantryHead head;
   if (input.contains("tcp")) {
-    const Vec3 offset = Point(input.at("tcp"));
+    const Vec3 offset = PointOf(input.at("tcp"));
     head.tool = {offset.x, offset.y, offset.z};
   }
   return head;
@@ -48,39 +37,38 @@ Head HeadOf(const json& input) {
 
 WorkOffset OffsetOf(const json& input) {
   const json& s = input.at("sysdef");
-  return {Point(s), s.at(3).get<double>(), s.at(4).get<double>(), s.at(5).get<double>()};
+  return {PointOf(s), s.at(3).get<double>(), s.at(4).get<double>(), s.at(5).get<double>()};
 }
 
 Figures ToolDirection(const json& input) {
   Figures figures;
-  Put(figures, "u", AxesOfTool(Number(input, "A"), Number(input, "B")).u);
+  Put(figures, "u", AxesOfTool(NumberOf(input, "A"), NumberOf(input, "B")).u);
   return figures;
 }
 
 Figures Inverse(const json& input) {
   Figures figures;
-  const Vec3 tip = OffsetOf(input).ToMachine(Point(input.at("tip")));
+  const Vec3 tip = OffsetOf(input).ToMachine(PointOf(input.at("tip")));
   Put(figures, "machine_tip", tip);
   Put(figures, "column",
-      HeadOf(input).ColumnOf({tip, Number(input, "A"), Number(input, "B")}).column);
+      HeadOf(input).ColumnOf({tip, NumberOf(input, "A"), NumberOf(input, "B")}).column);
   return figures;
 }
 
 Figures Forward(const json& input) {
   Figures figures;
-  const AxisPose axes{Point(input.at("column")), Number(input, "A"), Number(input, "B")};
+  const AxisPose axes{PointOf(input.at("column")), NumberOf(input, "A"), NumberOf(input, "B")};
   Put(figures, "tip", OffsetOf(input).ToProgram(HeadOf(input).TipOf(axes).tip));
   return figures;
 }
 
 Figures ColumnRates(const json& input) {
   Figures figures;
-  const double a = Number(input, "A");
-  const double b = Number(input, "B");
-  const TipRates first{Point(input.at("tip_v")), Number(input, "A1"), Number(input, "B1")};
-  const TipRates second{Point(input.at("tip_a")), Number(input, "A2"), Number(input, "B2")};
-  const AxisValues v = AxisRates(HeadOf(input), a, b, first);
-  const AxisValues w = AxisSecondRates(HeadOf(input), a, b, first, second);
+  const double a = NumberOf(input, "A");
+  const double b = NumberOf(input, "B");
+  const TipRates first{PointOf(input.at("tip_v")), NumberOf(input, "A1"), NumberOf(input, "B1")};
+  const TipRates second{PointOf(input.at("tip_a")), NumberOf(input, "A2"), NumberOf(input, "B2")};
+  const auto [v, w] = HeadOf(input).RatesOfBoth(a, b, first, second);
   Put(figures, "v", {v[0], v[1], v[2]});
   Put(figures, "a", {w[0], w[1], w[2]});
   return figures;
@@ -92,8 +80,8 @@ Figures JogCase(const json& input) {
   Jog jog;
   jog.mode = mode == "TCP" ? JogMode::kTool : mode == "ABS" ? JogMode::kAbsolute : JogMode::kRobot;
   jog.axis = static_cast<int>(std::string("XYZAB").find(axis));
-  jog.distance = Number(input, "dist");
-  const AxisPose from{Point(input.at("column")), Number(input, "A"), Number(input, "B")};
+  jog.distance = NumberOf(input, "dist");
+  const AxisPose from{PointOf(input.at("column")), NumberOf(input, "A"), NumberOf(input, "B")};
   const AxisPose to = Jogged(from, HeadOf(input), jog);
   Figures figures{{"A", to.a_rad}, {"B", to.b_rad}};
   Put(figures, "column", to.column);
@@ -103,13 +91,13 @@ Figures JogCase(const json& input) {
 Figures Orientation(const json& input) {
   const json& near = input.at("near");
   const HeadAngles angles =
-      AnglesOf(Point(input.at("u")), {near.at(0).get<double>(), near.at(1).get<double>()});
+      AnglesOf(PointOf(input.at("u")), {near.at(0).get<double>(), near.at(1).get<double>()});
   return {{"A", angles.a_rad}, {"B", angles.b_rad}};
 }
 
 Figures Arc(const json& input) {
-  const Result<PathPiece::Arc3> arc =
-      PathPiece::ArcThrough({Point(input.at("E"))}, Point(input.at("F")), {Point(input.at("G"))});
+  const Result<PathPiece::Arc3> arc = PathPiece::ArcThrough(
+      {PointOf(input.at("E"))}, PointOf(input.at("F")), {PointOf(input.at("G"))});
   if (!arc) return {{"kind", -1.0}};
   if (arc->kind == PathPiece::ArcCase::kNoTipMotion) return {{"kind", 2.0}};
   if (arc->kind != PathPiece::ArcCase::kArc) return {{"kind", 0.0}};
@@ -127,7 +115,8 @@ Figures Arc(const json& input) {
 PlannedMotion Single(const MoveCommand& move) {
   Planner planner(StandardMachine());
   PlannedMotion motion;
-  if (!planner.Append(move)) return motion;
+  if (const Status appended = planner.Append(move); !appended)
+    throw SenselessCase(appended.error().detail);
   planner.Stop();
   if (std::optional<PlannedItem> item = planner.Next()) motion = std::get<PlannedMotion>(*item);
   return motion;
@@ -139,11 +128,11 @@ Figures Hole(const json& input) {
   const TipPose centre = Pose(input.at("centre"), ab);
   const Result<HolePath> hole = HoleThrough({.from = start,
                                              .centre = centre,
-                                             .normal_point = Point(input.at("normal")),
-                                             .radius_mm = Number(input, "radius")});
+                                             .normal_point = PointOf(input.at("normal")),
+                                             .radius_mm = NumberOf(input, "radius")});
   if (!hole) return {{"kind", -1.0}};
   MoveCommand move{
-      .path = hole->lead, .speed_fraction = Number(input, "speed") / 100.0, .settles = false};
+      .path = hole->lead, .speed_fraction = NumberOf(input, "speed") / 100.0, .settles = false};
   const PlannedMotion lead = Single(move);
   move.path = hole->circle;
   move.settles = true;
@@ -157,32 +146,33 @@ Figures Hole(const json& input) {
 }
 
 PathLimits LimitsFrom(const json& input, double speed) {
-  const json& jerk = input.at("j");
-  return {speed, Number(input, "a"),
-          jerk.is_null() ? std::numeric_limits<double>::infinity() : jerk.get<double>()};
+  return {
+      speed, PositiveOf(input, "a"),
+      input.at("j").is_null() ? std::numeric_limits<double>::infinity() : PositiveOf(input, "j")};
 }
 
 Figures Profile(const json& input) {
   const SpeedProfile profile =
-      SpeedProfile::Span(Number(input, "dist"), NumberOr(input, "v0", 0.0),
-                         NumberOr(input, "v1", 0.0), LimitsFrom(input, Number(input, "v")));
+      SpeedProfile::Span(NumberOf(input, "dist"), NumberOr(input, "v0", 0.0),
+                         NumberOr(input, "v1", 0.0), LimitsFrom(input, PositiveOf(input, "v")));
   return {{"T", profile.duration_s()}, {"v_peak", profile.peak_speed()}};
 }
 
 Figures ReachCase(const json& input) {
-  return {{"v1", Reach(Number(input, "v0"), Number(input, "dist"), LimitsFrom(input, HUGE_VAL))}};
+  return {
+      {"v1", Reach(NumberOf(input, "v0"), NumberOf(input, "dist"), LimitsFrom(input, HUGE_VAL))}};
 }
 
 Figures PointToPoint(const json& input, bool axes) {
   MoveCommand move;
   move.speed_fraction =
-      std::min(1.0, Number(input, "speed") / 100.0 * NumberOr(input, "override", 100.0) / 100.0);
+      std::min(1.0, NumberOf(input, "speed") / 100.0 * NumberOr(input, "override", 100.0) / 100.0);
   move.acceleration_fraction = NumberOr(input, "accel", 100.0) / 100.0;
   move.settles = false;
   if (axes) {
     move.kind = MoveCommand::Kind::kPointToPointAxes;
     const auto pose = [](const json& q) {
-      return TipPose{Point(q), q.at(3).get<double>(), q.at(4).get<double>()};
+      return TipPose{PointOf(q), q.at(3).get<double>(), q.at(4).get<double>()};
     };
     move.path = PathPiece::Joint(pose(input.at("q0")), pose(input.at("q1")));
   } else {
@@ -199,8 +189,7 @@ Figures PointToPoint(const json& input, bool axes) {
           {"sigma_j", motion.limits.jerk / length}};
 }
 
-// A chain of moves. This version plans exact stops, so chains with a blended corner are not its
-// own.
+// A chain of moves from rest to rest, with the final settling.
 Figures PlanCase(const json& input) {
   TipPose at = Pose(input.at("start"), input.at("start_ab"));
   MachineLimits machine = StandardMachine();
@@ -211,18 +200,22 @@ Figures PlanCase(const json& input) {
     const TipPose target = Pose(m.at("target"), m.at("ab"));
     MoveCommand move;
     move.path = PathPiece::Line(at, target);
-    if (m.at("type") == "CIR") {
-      const Result<PathPiece::Arc3> arc = PathPiece::ArcThrough(at, Point(m.at("via")), target);
+    const std::string type = m.at("type").get<std::string>();
+    if (type != "LIN" && type != "CIR")
+      throw SenselessCase("there is no move of type '" + type + "'");
+    if (type == "CIR" && m.contains("via") && !m.at("via").is_null()) {  // without /VIA: a line
+      const Result<PathPiece::Arc3> arc = PathPiece::ArcThrough(at, PointOf(m.at("via")), target);
       if (!arc) return Figures{{"kind", -1.0}};
       move.path = arc->path;
     }
     move.speed_fraction =
-        std::min(1.0, Number(m, "speed") / 100.0 * NumberOr(m, "override", 100.0) / 100.0);
+        std::min(1.0, NumberOf(m, "speed") / 100.0 * NumberOr(m, "override", 100.0) / 100.0);
     move.acceleration_fraction = NumberOr(m, "accel", 100.0) / 100.0;
     move.overshoot_fraction = NumberOr(m, "oversh", 100.0) / 100.0;
     move.fly = m.value("fly", false);
     move.tag = static_cast<std::uint64_t>(++count);
-    if (!planner.Append(move)) return Figures{{"kind", -1.0}};
+    if (const Status appended = planner.Append(move); !appended)
+      throw SenselessCase(appended.error().detail);
     at = target;
   }
   planner.Stop();
@@ -255,21 +248,21 @@ PowerLaw LawOf(double speed, double power) {
 }
 
 Figures Power(const json& input) {
-  const PowerLaw law = LawOf(Number(input, "speed"), Number(input, "power"));
-  return {{"power_pct", law.PercentAt(Number(input, "v"))}};
+  const PowerLaw law = LawOf(PositiveOf(input, "speed"), NumberOf(input, "power"));
+  return {{"power_pct", law.PercentAt(NumberOf(input, "v"))}};
 }
 
 Figures Cut(const json& input) {
-  const double length = Number(input, "dist");
-  const double delay = Number(input, "delay");
-  const double rated = Number(input, "laser_W");
+  const double length = NumberOf(input, "dist");
+  const double delay = NumberOf(input, "delay");
+  const double rated = NumberOf(input, "laser_W");
   const PlannedMotion motion = Single({.path = PathPiece::Line({}, {{length, 0.0, 0.0}}),
-                                       .speed_fraction = Number(input, "speed") / 100.0});
-  const PowerLaw law = LawOf(Number(input, "wd_speed"), Number(input, "wd_power"));
+                                       .speed_fraction = NumberOf(input, "speed") / 100.0});
+  const PowerLaw law = LawOf(PositiveOf(input, "wd_speed"), NumberOf(input, "wd_power"));
   const double energy = EnergyOf(motion.speed, law, rated);
   const double beam_on = delay + motion.duration_s();
   return {{"beam_on", beam_on},
-          {"E_pierce", rated * Number(input, "peak") / 100.0 * delay},
+          {"E_pierce", rated * NumberOf(input, "peak") / 100.0 * delay},
           {"E_cut", energy},
           {"J_per_mm", energy / length},
           {"T", beam_on}};
@@ -278,16 +271,16 @@ Figures Cut(const json& input) {
 // One line from rest at ACCEL 100, without settling.
 PlannedMotion Cruise(const json& input, double percent) {
   MoveCommand move;
-  move.path = PathPiece::Line({}, {{Number(input, "dist"), 0.0, 0.0}});
-  move.speed_fraction = Number(input, "speed") / 100.0 * percent / 100.0;
+  move.path = PathPiece::Line({}, {{NumberOf(input, "dist"), 0.0, 0.0}});
+  move.speed_fraction = NumberOf(input, "speed") / 100.0 * percent / 100.0;
   move.settles = false;
   return Single(move);
 }
 
 Figures OverrideChange(const json& input) {
-  const double t = Number(input, "t");
-  const PlannedMotion before = Cruise(input, Number(input, "override0"));
-  const PlannedMotion wanted = Cruise(input, Number(input, "override1"));
+  const double t = NumberOf(input, "t");
+  const PlannedMotion before = Cruise(input, NumberOf(input, "override0"));
+  const PlannedMotion wanted = Cruise(input, NumberOf(input, "override1"));
   const SpeedProfile rest =
       SpeedProfile::From(before.speed.At(t), before.path.length(), 0.0, wanted.limits);
   // The reference's peak is the speed that it settles to: the one half way through what is left.
@@ -295,70 +288,26 @@ Figures OverrideChange(const json& input) {
 }
 
 Figures StopResume(const json& input) {
-  const double t = Number(input, "t");
+  const double t = NumberOf(input, "t");
   const PlannedMotion motion = Cruise(input, 100.0);
   const SpeedProfile stop = motion.speed.StopFrom(t, motion.limits);
   const double s = stop.end().s;
   const SpeedProfile rest = SpeedProfile::Span(motion.path.length() - s, 0.0, 0.0, motion.limits);
-  return {{"T", t + stop.duration_s() + Number(input, "wait") + rest.duration_s()}, {"s_stop", s}};
+  return {{"T", t + stop.duration_s() + NumberOf(input, "wait") + rest.duration_s()},
+          {"s_stop", s}};
 }
 
 Figures EndCondition(const json& input) {
   constexpr double kTick_s = 0.048;
-  const double seen = std::ceil(Number(input, "t_true") / kTick_s - 1e-9) * kTick_s;
+  const double seen = std::ceil(NumberOf(input, "t_true") / kTick_s - 1e-9) * kTick_s;
   const PlannedMotion motion = Cruise(input, 100.0);
   const SpeedProfile stop = motion.speed.StopFrom(seen, motion.limits);
   return {{"t_seen", seen}, {"s_stop", stop.end().s}, {"T", seen + stop.duration_s()}};
 }
 
-// The motion test profile of motion.md section 7.
-MachineLimits TestMill() {
-  MachineLimits mill;
-  mill.tip_speed_mm_s = 15.0;
-  mill.tip_acceleration_mm_s2 = 200.0;
-  mill.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
-  mill.settling_s = 0.0;
-  mill.junction_jump_mm_s = 3.0;
-  mill.axes.speed.fill(kLargest);
-  mill.axes.acceleration.fill(kLargest);
-  mill.axes.jerk.fill(kLargest);
-  return mill;
-}
-
-// One chain from rest to rest; with a dwell before each move every vertex is a stop.
-Figures MillPath(const json& input, double speed, double dwell) {
-  const json& points = input.at("points");
-  Planner planner(TestMill());
-  double time = 0.0;
-  for (std::size_t k = 1; k < points.size(); ++k) {
-    MoveCommand move;
-    move.path = PathPiece::Line({Point(points.at(k - 1))}, {Point(points.at(k))});
-    move.speed_fraction = speed / planner.limits().tip_speed_mm_s;
-    move.fly = dwell == 0.0;
-    move.tag = k;
-    if (!planner.Append(move)) return {{"kind", -1.0}};
-    time += dwell;
-  }
-  planner.Stop();
-  Figures figures;
-  while (const std::optional<PlannedItem> item = planner.Next()) {
-    const auto& motion = std::get<PlannedMotion>(*item);
-    time += motion.duration_s();
-    if (motion.ends_move) figures[Numbered("v", motion.tag)] = motion.corner.speed;
-  }
-  figures["T"] = time;
-  return figures;
-}
-
-Figures MillJob(const json& input) {
-  double time = Number(input, "spin_up");
-  for (const json& leg : input.at("legs")) time += MillPath(leg, Number(leg, "speed"), 0.0)["T"];
-  return {{"T", time}};
-}
-
 }  // namespace
 
-std::optional<Figures> Compute(const json& input) {
+Result<Figures> Compute(const json& input) try {
   const std::string f = input.at("f").get<std::string>();
   if (f == "tool_direction") return ToolDirection(input);
   if (f == "inverse") return Inverse(input);
@@ -373,14 +322,14 @@ std::optional<Figures> Compute(const json& input) {
   if (f == "ptp_robot" || f == "ptp_absol") return PointToPoint(input, f == "ptp_robot");
   if (f == "power") return Power(input);
   if (f == "cut") return Cut(input);
-  if (f == "quant") return Figures{{"v", FeedSteps{}.Nearest(Number(input, "value"))}};
   if (f == "plan") return PlanCase(input);
   if (f == "override_change") return OverrideChange(input);
   if (f == "stop_resume") return StopResume(input);
   if (f == "end_condition") return EndCondition(input);
-  if (f == "rml_path") return MillPath(input, Number(input, "speed"), Number(input, "dwell"));
-  if (f == "rml_job") return MillJob(input);
-  return std::nullopt;
+  if (std::optional<Figures> figures = ComputeMill(f, input)) return *figures;
+  return InvalidArgument("there is no kind of case '" + f + "'");
+} catch (const SenselessCase& error) {
+  return InvalidArgument(error.what());
 }
 
 }  // namespace rmlcell::motion

@@ -52,12 +52,14 @@ bool Agrees(double value, double reference) {
 }
 
 // T_min and T_max enclose the time that is called T in the engine's figures.
-bool AgreesWith(const Figures& figures, const std::string& name, double reference, double& value) {
+bool AgreesWith(const Figures& figures, const std::string& name, double reference,
+                std::optional<double>& ours) {
   const bool lowest = name == "T_min";
   const bool highest = name == "T_max";
   const auto figure = figures.find(lowest || highest ? "T" : name);
   if (figure == figures.end()) return false;
-  value = figure->second;
+  const double value = figure->second;
+  ours = value;
   const double room = kAgreement * std::max(1.0, std::abs(reference));
   if (lowest) return value >= reference - room;
   if (highest) return value <= reference + room;
@@ -93,21 +95,24 @@ ReferenceVerdict Judge(const ReferenceCase& reference) {
       !input["f"].is_string()) {
     return {ReferenceVerdict::Kind::kUnreadable, {"input or output is not a JSON object with f"}};
   }
-  std::optional<Figures> figures;
+  Figures figures;
   try {
-    figures = Compute(input);
+    Result<Figures> computed = Compute(input);
+    if (!computed) return {ReferenceVerdict::Kind::kUnreadable, {computed.error().detail}};
+    figures = std::move(*computed);
   } catch (const json::exception& error) {  // a member is missing or of another type
     return {ReferenceVerdict::Kind::kUnreadable, {error.what()}};
   }
-  if (!figures) return {ReferenceVerdict::Kind::kNotCovered, {}};
+  if (output.empty())
+    return {ReferenceVerdict::Kind::kUnreadable, {"the output names no figure to compare with"}};
   for (const auto& [name, value] : output.items()) {
     if (!value.is_number())
       return {ReferenceVerdict::Kind::kUnreadable, {name + " is not a number"}};
-    double ours = 0.0;
-    if (!AgreesWith(*figures, name, value.get<double>(), ours)) {
+    std::optional<double> ours;
+    if (!AgreesWith(figures, name, value.get<double>(), ours)) {
       verdict.kind = ReferenceVerdict::Kind::kDiffers;
-      verdict.differences.push_back(name + ": " + ShortestText(ours) + ", reference " +
-                                    ShortestText(value.get<double>()));
+      verdict.differences.push_back(name + ": " + (ours ? ShortestText(*ours) : "not computed") +
+                                    ", reference " + ShortestText(value.get<double>()));
     }
   }
   return verdict;

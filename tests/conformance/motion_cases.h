@@ -21,7 +21,7 @@ struct ReferenceCase {
 Result<std::vector<ReferenceCase>> ReadReferenceCases(std::string_view csv);
 
 struct ReferenceVerdict {
-  enum class Kind { kAgrees, kDiffers, kNotCovered, kUnreadable };
+  enum class Kind { kAgrees, kDiffers, kUnreadable };
   Kind kind = Kind::kAgrees;
   std::vector<std::string> differences;  // "v1: 49.9, reference 50"
 };

@@ -1,4 +1,5 @@
 """The cell as its clients meet it: jobs and kills."""
+import math
 import os
 import threading
 import time
@@ -29,6 +30,43 @@ class Jobs(WithCell):
         self.assertIn(b"<svg", picture.content)
         blocks = list(stub.StreamJobToolpath(job_pb2.StreamJobToolpathRequest(name=job.name)))
         self.assertGreater(len(blocks), 0)
+
+    def test_a_toolpath_comes_in_levels_of_detail(self):
+        stub = self.cell.jobs()
+        # Forty chords of a circle of 20 mm: 40 lines, each 0.062 mm off the circle.
+        points = [(20 * math.cos(k * math.pi / 20), 20 * math.sin(k * math.pi / 20)) for k in range(41)]
+        source = "COORD ABSOL\nSPEED 10\n" + "".join(
+            f"MOVE ({1000 + x:.3f},{1000 + y:.3f},0.,0.,0.)\n" for x, y in points)
+        job = submit(stub, inline_job("optimo-1", "circle.S", source))
+        wait_for_end(stub, job.name)
+
+        def size(level):
+            blocks = stub.StreamJobToolpath(job_pb2.StreamJobToolpathRequest(name=job.name, level=level))
+            return sum(len(message.block) for message in blocks)
+        sizes = [size(level) for level in range(6)]
+        self.assertEqual(sizes, sorted(sizes, reverse=True))
+        self.assertLess(sizes[2], sizes[0] / 2)
+        self.assertGreater(sizes[5], 0)
+        for level in (-1, 6):
+            with self.assertRaises(grpc.RpcError) as caught:
+                size(level)
+            self.assertEqual(detail_of(caught.exception).code, "CELL-E9003")
+
+    def test_a_job_runs_at_the_pace_of_the_machine(self):
+        stub = self.cell.jobs()
+        job = inline_job("optimo-1", "slow.S", "DELAY 1.5\n")
+        job.simulation.pace = 1.0
+        begin = time.monotonic()
+        name = submit(stub, job).name
+        seen = [m.progress.virtual_time_ns * 1e-9 for m in stub.WatchJob(job_pb2.WatchJobRequest(name=name), timeout=60)
+                if m.HasField("progress")]
+        took = time.monotonic() - begin
+        self.assertGreaterEqual(took, 1.5)
+        self.assertGreater(len({t for t in seen if 0.0 < t < 1.5}), 5)  # live on the way
+        job.simulation.pace = 1001.0
+        with self.assertRaises(grpc.RpcError) as caught:
+            submit(stub, job)
+        self.assertEqual(detail_of(caught.exception).code, "CELL-E9003")
 
     def test_a_laser_job_ends_with_the_machines_own_code(self):
         stub = self.cell.jobs()

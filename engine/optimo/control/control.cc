@@ -432,6 +432,7 @@ void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, s
   }
   s_.phase = machine::RunPhase::kFinished;
   s_.outcome = {.kind = kind, .code = code, .detail = std::move(detail), .place = s_.place};
+  FailOfViolations();
 }
 
 machine::RunState Control::Snapshot() const {

@@ -68,6 +68,7 @@ class Control : private VariableAccess {
   void EndMotionHere();
   bool BringToHalt();
   const MoveNote* NoteOf(std::uint64_t tag) const;
+  MoveNote* NoteOf(std::uint64_t tag);
   void StopMotions();
   motion::TipPose TipNow() const;
   motion::AxisPose AxesNow() const;
@@ -121,7 +122,6 @@ class Control : private VariableAccess {
   std::optional<motion::TipPose> Target(const Instruction& i, bool via);
   bool AppendMotion(const motion::PathPiece& path, const Instruction& i, const MoveNote& note,
                     bool settles);
-  bool InTravel(const motion::PathPiece& path);
   bool NeverMoves() const;
   void NotUnderWay(const Instruction& i);
   bool MoveHole(const Instruction& i, const motion::TipPose& from, const motion::TipPose& target,
@@ -135,6 +135,13 @@ class Control : private VariableAccess {
   void ZeroAxes();
   void TellZeroed(int group);
   motion::Head HeadNow() const;
+
+  // --- control_travel.cc: what the axes cannot do ---
+  bool InTravel(const motion::PathPiece& path, MoveNote& note);
+  std::vector<BeyondTravel> BeyondTravelOf(const motion::PathPiece& path) const;
+  void TellViolations(const machine::Place& place, const std::vector<BeyondTravel>& beyond);
+  void FailOfViolations();
+  void TellSpeedHeld(const motion::PlannedMotion& motion, const MoveNote& note);
 
   // --- control_work.cc: WORK, also while the program goes on ---
   // At the passage that the program has run ahead to, or now: a WORK that goes on in the

@@ -19,15 +19,11 @@ motion::MoveCommand::Kind KindOf(PathType path, CoordType coord) {
                                 : motion::MoveCommand::Kind::kContour;
 }
 
-std::string_view AxisName(int axis) {
-  constexpr std::array<std::string_view, motion::kAxisCount> kNames = {"X", "Y", "Z", "A", "B"};
-  return kNames[static_cast<std::size_t>(axis)];
-}
-
 }  // namespace
 
 motion::Head Control::HeadNow() const {
-  return {.length_mm = parameters_.head_length_mm, .tool = s_.machine.tool.offset};
+  return motion::GantryHead{.length_mm = parameters_.head_length_mm,
+                            .tool = s_.machine.tool.offset};
 }
 
 // The five coordinates of a MOVE or its /VIA: a machine-frame tip in COORD ABSOL, a column in COORD
@@ -43,23 +39,6 @@ std::optional<motion::TipPose> Control::Target(const Instruction& i, bool via) {
   if (modal().coord == CoordType::kAbsol)
     pose.tip = s_.machine.work_offset.transform().ToMachine(pose.tip);
   return pose;
-}
-
-bool Control::InTravel(const motion::PathPiece& path) {
-  const motion::AxisLimits& axes = parameters_.limits.axes;
-  const motion::TipPose& to = path.to();
-  const bool joint = path.kind() == motion::PathPiece::Kind::kJoint;
-  const motion::AxisPose target =
-      joint ? motion::AxisPose{to.tip, to.a_rad, to.b_rad} : HeadNow().ColumnOf(to);
-  motion::TravelExcess worst = motion::WorstExcess(target, axes);
-  const bool at_target = worst.axis >= 0;
-  if (!at_target) worst = motion::WorstExcess(path, HeadNow(), axes);
-  if (worst.axis < 0) return true;
-  Raise(ErrorCode::kTargetOutOfTravel, std::string(AxisName(worst.axis)) +
-                                           (at_target ? " of the target" : " on the way") +
-                                           " leaves its travel by " + FixedText(worst.excess, 3) +
-                                           (worst.axis < 3 ? " mm" : " rad"));
-  return false;
 }
 
 // OPT-B.22
@@ -109,6 +88,7 @@ bool Control::AppendMotion(const motion::PathPiece& path, const Instruction& i,
     // Nothing moves; the planner must know that the passage before is a stop, unless this one flies
     // too.
     if (!note.fly) StopMotions();
+    TellViolations(note.place, note.beyond);
     if (note.last && !s_.passing) {
       observer_.OnMove({.at = s_.now,
                         .place = note.place,
@@ -125,6 +105,10 @@ bool Control::AppendMotion(const motion::PathPiece& path, const Instruction& i,
   if (const Status appended = s_.planner.Append(command); !appended) {
     s_.notes.pop_back();
     if (appended.error().code == ErrorCode::kNoMotion) return never_ends(appended.error().detail);
+    if (!note.beyond.empty()) {  // no machine is as large: not even a forecast can go there
+      TellViolations(note.place, note.beyond);
+      return false;
+    }
     Raise(appended.error().code, appended.error().detail);
     return false;
   }
@@ -228,7 +212,7 @@ void Control::Move(const Instruction& i) {
       }
     }
   }
-  if (!InTravel(path) || !AppendMotion(path, i, note, true)) return NotUnderWay(i);
+  if (!InTravel(path, note) || !AppendMotion(path, i, note, true)) return NotUnderWay(i);
   if (path.length() <= 0.0) return Unwatch();
   WatchAndGoOn(i, first_tag, ran_ahead);
 }
@@ -265,7 +249,7 @@ bool Control::MoveHole(const Instruction& i, const motion::TipPose& from,
     }
     Warn(ErrorCode::kViaMissing, "HOLE without /VIA is a straight line to the centre", "OPT-2.29");
     const motion::PathPiece line = motion::PathPiece::Line(from, target);
-    return InTravel(line) && AppendMotion(line, i, note, true);
+    return InTravel(line, note) && AppendMotion(line, i, note, true);
   }
   const std::optional<motion::TipPose> normal = Target(i, true);
   if (!normal) return false;
@@ -285,8 +269,8 @@ bool Control::MoveHole(const Instruction& i, const motion::TipPose& from,
     Raise(ErrorCode::kHoleStartOnAxis, "the hole starts on the line from centre to normal point");
     return false;
   }
-  if (!InTravel(hole->lead) || !InTravel(hole->circle)) return false;
   MoveNote lead = note;
+  if (!InTravel(hole->lead, lead) || !InTravel(hole->circle, note)) return false;
   lead.last = false;
   lead.fly = false;
   if (hole->lead.length() > 0.0 && !AppendMotion(hole->lead, i, lead, false)) return false;

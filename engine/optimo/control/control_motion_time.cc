@@ -10,7 +10,7 @@ namespace rmlcell::optimo {
 namespace {
 
 template <class Queue>
-const typename Queue::value_type::second_type* FindTag(const Queue& queue, std::uint64_t tag) {
+auto* FindTag(Queue& queue, std::uint64_t tag) {
   const auto found =
       std::ranges::lower_bound(queue, tag, {}, [](const auto& row) { return row.first; });
   return found != queue.end() && found->first == tag ? &found->second : nullptr;
@@ -46,6 +46,7 @@ void Control::DrainPlanner() {
 }
 
 const MoveNote* Control::NoteOf(std::uint64_t tag) const { return FindTag(s_.notes, tag); }
+MoveNote* Control::NoteOf(std::uint64_t tag) { return FindTag(s_.notes, tag); }
 
 // Marks take effect at once, motions begin.
 void Control::StartNextItem() {
@@ -62,7 +63,13 @@ void Control::StartNextItem() {
     ActiveMotion& active = *s_.active;
     active.motion = std::get<motion::PlannedMotion>(next);
     s_.timeline.pop_front();
-    if (const MoveNote* note = FindTag(s_.notes, active.motion.tag)) active.note = *note;
+    if (MoveNote* note = NoteOf(active.motion.tag)) {
+      const std::vector<BeyondTravel> beyond = std::move(note->beyond);
+      note->beyond.clear();
+      TellViolations(note->place, beyond);
+      active.note = *note;
+    }
+    TellSpeedHeld(active.motion, active.note);
     while (!s_.notes.empty() && s_.notes.front().first < active.motion.tag) s_.notes.pop_front();
     while (!s_.appended.empty() && s_.appended.front().tag < active.motion.tag) {
       s_.appended.pop_front();

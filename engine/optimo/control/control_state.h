@@ -3,7 +3,9 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -107,7 +109,15 @@ struct AppendedItem {
   std::optional<motion::MoveCommand> move{};
 };
 
-// What is told when a motion is over.
+// An axis that a motion takes out of its travel.
+struct BeyondTravel {
+  int axis = 0;
+  double excess = 0.0;  // the worst of the motion, mm or rad
+  bool at_target = false;
+  motion::AxisPose axes{};  // where it is worst
+};
+
+// What is told when a motion begins and when it is over.
 struct MoveNote {
   machine::Place place{};
   motion::Vec3 program_point{};
@@ -120,6 +130,7 @@ struct MoveNote {
   motion::MoveCommand::Kind kind = motion::MoveCommand::Kind::kContour;
   double speed_percent = 0.0;  // as programmed; for a change of the override on the way
   double accel_fraction = 1.0;
+  std::vector<BeyondTravel> beyond{};  // a forecast: told when the motion begins
 };
 
 // A motion under way.
@@ -257,6 +268,10 @@ struct ControlState {
   std::map<int, std::string> made_executables{};
   std::map<int, Loaded> loaded{};  // executables of this run, by slot
   bool speed_limited_told = false;
+  // A forecast: the first motion that leaves the travel, and how many do.
+  std::optional<Diagnostic> first_violation{};
+  std::uint64_t violations = 0;
+  std::set<std::pair<int, int>> held_by_axis{};  // program and step, told already
   std::uint64_t steps_at_repeat = 0;  // REPEAT: executed before this repetition
 
   explicit ControlState(const motion::MachineLimits& limits) : planner(limits) {}

@@ -176,7 +176,7 @@ void ContourAdviser::PassMove(const Instruction& i) {
         {&i,
          {.kind = tip ? MoveCommand::Kind::kPointToPointTip : MoveCommand::Kind::kContour,
           .path = *piece,
-          .head = {.length_mm = machine_.head_length_mm},
+          .head = motion::GantryHead{.length_mm = machine_.head_length_mm},
           .speed_fraction = *speed_ / 100.0,
           .acceleration_fraction = *accel_ / 100.0,
           .overshoot_fraction = *oversh_ / 100.0,
@@ -264,6 +264,12 @@ void AdviseOnContours(const ParsedProgram& program, const ContourMachine& machin
                       Findings& findings) {
   if (program.module.instructions.size() > kInstructionsMax || findings.error_count() > 0) return;
   ContourAdviser(program, machine, findings).Run();
+}
+
+std::function<void(const ParsedProgram&, Findings&)> ContourAdvice(const ContourMachine& machine) {
+  return [machine](const ParsedProgram& program, Findings& findings) {
+    AdviseOnContours(program, machine, findings);
+  };
 }
 
 }  // namespace rmlcell::optimo

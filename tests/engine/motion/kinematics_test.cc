@@ -22,16 +22,18 @@ TEST(ToolAxes, PointAlongTheRadial) {
 
 // OPT-2.06, OPT-2.07, OPT-B.04, OPT-B.05
 TEST(Head, PutsTheColumnBehindTheTip) {
-  Head head;
+  GantryHead tool;
+  Head head = tool;
   ExpectNear(head.ColumnOf({{100, 100, -400}, 0, kPi / 2}).column, {100, -200, -400});
   ExpectNear(head.TipOf({{100, 100, -400}, 0, 0}).tip, {100, 100, -700});
-  head.tool.z_mm = 3.0;
+  tool.tool.z_mm = 3.0;
+  head = tool;
   ExpectNear(head.TipOf({{100, -200, -400}, 0, kPi / 2}).tip, {100, 97, -400});
 }
 
 // motion.md section 10, property 13.
 TEST(Head, ForwardAndInverseCancel) {
-  const Head head{.length_mm = 287.0, .tool = {1.5, -2.5, 4.0}};
+  const Head head = GantryHead{.length_mm = 287.0, .tool = {1.5, -2.5, 4.0}};
   for (double a = -12.0; a < 12.0; a += 1.37) {
     for (double b = -2.4; b < 2.4; b += 0.31) {
       const TipPose pose{{120.0, -77.0, 310.0}, a, b};
@@ -42,7 +44,7 @@ TEST(Head, ForwardAndInverseCancel) {
 
 // motion.md 2.4 against differences of positions.
 TEST(Head, RatesAreDerivatives) {
-  const Head head{.length_mm = 287.0, .tool = {1.5, -2.5, 4.0}};
+  const Head head = GantryHead{.length_mm = 287.0, .tool = {1.5, -2.5, 4.0}};
   const auto at = [&](double t) {
     return head.ColumnOf({{3.0 * t, t * t, -t}, 0.4 + 0.5 * t, -0.8 + 0.3 * t * t}).column;
   };
@@ -50,12 +52,37 @@ TEST(Head, RatesAreDerivatives) {
   const TipRates first{{3.0, 2.0 * t, -1.0}, 0.5, 0.6 * t};
   const TipRates second{{0.0, 2.0, 0.0}, 0.0, 0.6};
   const double a = 0.4 + 0.5 * t, b = -0.8 + 0.3 * t * t;
-  const AxisValues v = AxisRates(head, a, b, first);
-  const AxisValues w = AxisSecondRates(head, a, b, first, second);
+  const auto [v, w] = head.RatesOfBoth(a, b, first, second);
+  EXPECT_EQ(head.Rates(a, b, first), v);
   ExpectNear({v[0], v[1], v[2]}, (at(t + h) - at(t - h)) * (0.5 / h), 1e-5);
   ExpectNear({w[0], w[1], w[2]}, (at(t + h) - at(t) * 2.0 + at(t - h)) * (1.0 / (h * h)), 1e-4);
   EXPECT_EQ(v[3], 0.5);
   EXPECT_EQ(w[4], 0.6);
+}
+
+// motion.md 7: a mill's axes are where the tip is, whatever its rotary axis does.
+TEST(Head, MillStandsAtTheTip) {
+  const Head head = MillHead{};
+  const TipPose pose{{10, 20, -3}, 1.2, 0.0};
+  EXPECT_EQ(head.ColumnOf(pose).column, pose.tip);
+  EXPECT_EQ(head.TipOf(head.ColumnOf(pose)), pose);
+  const auto [v, w] = head.RatesOfBoth(1.2, 0.0, {{1, 2, 3}, 0.5, 0.0}, {{4, 5, 6}, 0.7, 0.0});
+  EXPECT_EQ(v, (AxisValues{1, 2, 3, 0.5, 0.0}));
+  EXPECT_EQ(w, (AxisValues{4, 5, 6, 0.7, 0.0}));
+  EXPECT_EQ(head.reach_mm(), 0.0);
+}
+
+// The bound that the planner goes by: column rates never exceed the tip's by more than
+// reach (|A'| + |B'|), second ones by reach ((|A'| + |B'|)^2 + |A''| + |B''|).
+TEST(Head, ReachBoundsTheSwing) {
+  const GantryHead head{.length_mm = 287.0, .tool = {1.5, -2.5, 4.0}};
+  for (double a = -6.0; a < 6.0; a += 0.37) {
+    for (double b = -2.4; b < 2.4; b += 0.31) {
+      const Swing swing = head.SwingOf(a, b, {{}, 0.4, -0.9}, {{}, -2.0, 0.3});
+      EXPECT_LE(Norm(swing.first), head.reach_mm() * 1.3 * (1 + 1e-12));
+      EXPECT_LE(Norm(swing.second), head.reach_mm() * (1.3 * 1.3 + 2.3) * (1 + 1e-12));
+    }
+  }
 }
 
 // OPT-B.09: the manual's order of the rotations.
@@ -112,11 +139,11 @@ TEST(Travel, FindsTheQuadrantPointOfAnArc) {
   AxisLimits limits = StandardMachine().axes;
   const PathPiece arc = PathPiece::Circle({{0, 0, 0}}, {100, 100, 0}, {0, 0, 1}, 4.3807, 0, 0);
   limits.travel_max[0] = 100.0 + 100.0 * std::sqrt(2.0) - 1e-6;
-  const TravelExcess worst = WorstExcess(arc, Head{.length_mm = 0.0}, limits);
+  const TravelExcess worst = WorstExcess(arc, MillHead{}, limits);
   EXPECT_EQ(worst.axis, 0);
   EXPECT_NEAR(worst.excess, 1e-6, 1e-10);
   limits.travel_max[0] += 2e-6;
-  EXPECT_EQ(WorstExcess(arc, Head{.length_mm = 0.0}, limits).axis, -1);
+  EXPECT_EQ(WorstExcess(arc, MillHead{}, limits).axis, -1);
 }
 
 // The column swings out between two ends that are both inside.

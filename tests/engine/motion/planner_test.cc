@@ -181,7 +181,7 @@ TEST(Planner, PassagesThatAreNotBlended) {
   turn.path = PathPiece::Line({{10, 0, 0}, 0, 0}, {{10, 0, 0}, 1, 0});
   EXPECT_EQ(passage(east, turn), Passage::kStopNeighbour);
   MoveCommand other_tool = north;
-  other_tool.head.tool.z_mm = 3.0;
+  other_tool.head = GantryHead{.tool = {.z_mm = 3.0}};
   EXPECT_EQ(passage(east, other_tool), Passage::kStop);  // as if /FLY were absent, OPT-2.48
   // A short neighbour: at most half of it, so the bend is slower than the 50 mm/s of both moves.
   EXPECT_EQ(passage(east, LineTo({10, 0, 0}, {10, 1, 0}, 2)), Passage::kBlendCapped);

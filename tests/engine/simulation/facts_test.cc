@@ -79,6 +79,36 @@ TEST(Facts, ValuesInTheUnitsOfTheirKeys) {
   EXPECT_EQ(facts["rml1.programmed.cut_length"], "617.412");
 }
 
+// motion.md 8.2: every figure of the report has a key.
+TEST(Facts, FiguresOfSection82) {
+  RunReport report;
+  report.finished = true;
+  report.beam.by_speed[0] = FromSeconds(1.048);
+  report.beam.by_speed[2] = FromSeconds(4.5);
+  report.beam.by_power[19] = FromSeconds(2.0);
+  report.corners.deviation_mm_max = 1.5;
+  report.corners.deviation_place = {.program = 45, .step = 9};
+  report.lookahead_starved = 2;
+  report.shortfall = {.moves = 4, .by_axis = 1, .by_radius = 1, .too_short = 2};
+  report.tip_figures = {.name = "tip", .peak_speed = 125.0, .speed_limit = 500.0};
+  report.axes = {{.name = "X", .peak_speed = 50.0, .peak_jerk = 40000.0, .speed_limit = 200.0}};
+  report.violations = {{.place = {.program = 45, .step = 3}, .axis = "X", .excess = 12.5}};
+  auto facts = MapOf(report);
+  EXPECT_EQ(facts["beam_on_standing_s"], "1.048");
+  EXPECT_EQ(facts["beam_on_speed_010_s"], "4.5");
+  EXPECT_EQ(facts["beam_on_power_100_s"], "2.0");
+  EXPECT_EQ(facts["corners_deviation_at"], "45/9");
+  EXPECT_EQ(facts["lookahead_starved"], "2");
+  EXPECT_EQ(facts["feed_not_reached"], "4");
+  EXPECT_EQ(facts["feed_held_by_length"], "2");
+  EXPECT_EQ(facts["tip_peak_speed_share"], "0.25");
+  EXPECT_EQ(facts["axis_x_peak_speed_share"], "0.25");
+  EXPECT_EQ(facts["axis_x_peak_acceleration_share"], "none");
+  EXPECT_EQ(facts["axis_x_peak_jerk_mm_s3"], "40000.0");
+  EXPECT_EQ(facts["violations"], "1");
+  EXPECT_EQ(facts["violation_list"], "X@45/3:12.5");
+}
+
 TEST(Facts, RunOnTheWay) {
   auto facts = MapOf(RunReport{});
   EXPECT_EQ(facts["outcome"], "running");
@@ -131,8 +161,8 @@ TEST(Facts, DocumentIsUpToDate) {
 TEST(Facts, UnitsEndTheKeys) {
   const std::map<std::string_view, std::string_view> endings = {
       {"s", "_s"},           {"mm", "_mm"},      {"J", "_j"},         {"J/mm", "_j_per_mm"},
-      {"rad", "_rad"},       {"mm/s", "_mm_s"},  {"mm/s2", "_mm_s2"}, {"rad/s", "_rad_s"},
-      {"rad/s2", "_rad_s2"}, {"bytes", "_bytes"}};
+      {"rad", "_rad"},       {"mm3", "_mm3"}, {"mm/s", "_mm_s"},  {"mm/s2", "_mm_s2"}, {"rad/s", "_rad_s"},
+      {"rad/s2", "_rad_s2"}, {"mm/s3", "_mm_s3"}, {"rad/s3", "_rad_s3"}, {"bytes", "_bytes"}};
   for (const FactKey& key : FactKeys()) {
     if (key.unit.empty()) continue;
     ASSERT_TRUE(endings.contains(key.unit)) << key.unit;

@@ -64,7 +64,7 @@ TEST(MotionPeaks, CircleAcceleratesAcross) {
 TEST(MotionPeaks, ColumnIsSwungByTheHead) {
   motion::PlannedMotion planned;
   planned.path = PathPiece::Line({{0, 0, 0}, 0.528, 1.5708}, {{1, 0, 0}, 0.534, 1.5708});
-  planned.head = {.length_mm = 300.0};
+  planned.head = motion::GantryHead{.length_mm = 300.0};
   planned.speed = motion::SpeedProfile::Span(1.0, 50.0, 50.0, kSlowLimits);
   const MotionPeaks peaks = PeaksOf(planned, true, 0.0, 1e-9);
   EXPECT_NEAR(peaks.axis_speed[0], 127.743476981, 1e-5);
@@ -97,7 +97,7 @@ TEST(MotionPeaks, CurveOfACorner) {
 TEST(MotionPeaks, TipIsSwungInRobotCoordinates) {
   motion::PlannedMotion planned;
   planned.path = PathPiece::Joint({{0, 0, 0}, 0.0, 0.0}, {{0, 0, 0}, 0.0, 1.0});
-  planned.head = {.length_mm = 300.0};
+  planned.head = motion::GantryHead{.length_mm = 300.0};
   const motion::PathLimits limits{.speed = 1.0, .acceleration = 10.0, .jerk = 100.0};
   planned.speed = motion::SpeedProfile::Span(1.0, 1.0, 1.0, limits);
   const MotionPeaks peaks = Whole(planned, true);

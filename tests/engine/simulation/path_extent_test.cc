@@ -11,6 +11,7 @@
 namespace rmlcell::simulation {
 namespace {
 
+using motion::GantryHead;
 using motion::Head;
 using motion::PathPiece;
 using motion::Vec3;
@@ -85,7 +86,7 @@ TEST(PathExtent, NearlyStraightArc) {
 // -sin B in Y and cos B in Z, 300 mm long: Y from 300 to -300, Z up to 300 and down again.
 TEST(PathExtent, ColumnSwingsAboutAStandingTip) {
   const PathPiece turn = PathPiece::Line({{0, 0, 0}, 0.0, -kPi / 2}, {{0, 0, 0}, 0.0, kPi / 2});
-  const Head head{.length_mm = 300.0};
+  const Head head = GantryHead{.length_mm = 300.0};
   const PathPart part{turn, head, 0.0, 1.0};
   const PointSweep column = ColumnSweep(part);
   EXPECT_NEAR(column[1].maximum, 300.0, 1e-9);
@@ -104,7 +105,7 @@ TEST(PathExtent, ColumnSwingsAboutAStandingTip) {
 // Without a turn of the head the column goes as the tip does, 300 mm above.
 TEST(PathExtent, ColumnFollowsAnArcOfTheTip) {
   const PathPiece arc = CircleXY(1.5 * kPi);
-  const PointSweep column = ColumnSweep({arc, Head{.length_mm = 300.0}, 0.0, arc.length()});
+  const PointSweep column = ColumnSweep({arc, GantryHead{.length_mm = 300.0}, 0.0, arc.length()});
   EXPECT_NEAR(column[0].minimum, -10.0, 1e-9);
   EXPECT_NEAR(column[1].maximum, 10.0, 1e-9);
   EXPECT_NEAR(column[2].minimum, 300.0, 1e-9);
@@ -115,7 +116,7 @@ TEST(PathExtent, ColumnFollowsAnArcOfTheTip) {
 // mm radius: 471.2389 mm, from below the column to beside it.
 TEST(PathExtent, TipBowsWhenTheHeadTurnsInRobotCoordinates) {
   const PathPiece joint = PathPiece::Joint({{0, 0, 0}, 0.0, 0.0}, {{0, 0, 0}, 0.0, kPi / 2});
-  const PathPart part{joint, Head{.length_mm = 300.0}, 0.0, 1.0};
+  const PathPart part{joint, GantryHead{.length_mm = 300.0}, 0.0, 1.0};
   EXPECT_NEAR(TipLength(part), 300.0 * kPi / 2, 1e-9);
   const PointSweep tip = TipSweep(part);
   EXPECT_NEAR(tip[2].minimum, -300.0, 1e-9);
@@ -127,7 +128,7 @@ TEST(PathExtent, TipBowsWhenTheHeadTurnsInRobotCoordinates) {
 // From B = -1 to B = 1 the tip passes the lowest point of its circle, which no end of the move is.
 TEST(PathExtent, TipTurnsRoundInTheMiddleOfABow) {
   const PathPiece joint = PathPiece::Joint({{0, 0, 0}, 0.0, -1.0}, {{0, 0, 0}, 0.0, 1.0});
-  const PathPart part{joint, Head{.length_mm = 300.0}, 0.0, 1.0};
+  const PathPart part{joint, GantryHead{.length_mm = 300.0}, 0.0, 1.0};
   const PointSweep tip = TipSweep(part);
   EXPECT_NEAR(tip[2].minimum, -300.0, 1e-9);
   EXPECT_NEAR(tip[2].maximum, -300.0 * std::cos(1.0), 1e-9);

@@ -73,7 +73,7 @@ TEST(ReportRecorder, StepsAndProgramsAddUp) {
     path += step.figures.tip_path_mm;
   }
   SimTime programs{0};
-  for (const auto& [slot, figures] : report.programs) programs += figures.time.total();
+  for (const auto& [slot, figures] : report.programs) programs += figures.total.time.total();
   EXPECT_EQ(report.steps.size(), 500u);
   EXPECT_EQ(steps, report.cycle_time);
   EXPECT_EQ(programs, report.cycle_time);
@@ -124,12 +124,12 @@ TEST(ReportRecorder, LaserCutOfTheReference) {
   EXPECT_NEAR(report.total.cut_energy_j, 5625.0, 1e-9);
   EXPECT_NEAR(report.total.energy_j(), 6375.0, 1e-9);
   EXPECT_NEAR(report.total.energy_j_per_mm(), 28.125, 1e-12);
-  EXPECT_NEAR(report.energy_j_per_mm_max, 28.125, 1e-12);
+  EXPECT_NEAR(report.total.energy_j_per_mm_max, 28.125, 1e-12);
   EXPECT_EQ(report.total.pierces, 1u);
   EXPECT_EQ(report.total.beam_switches, 1u);
   EXPECT_NEAR(report.total.cut_mm, 200.0, 1e-12);
   EXPECT_NEAR(report.total.travel_mm, 100.0, 1e-12);
-  EXPECT_EQ(report.shutter_open, report.cycle_time);
+  EXPECT_EQ(report.total.shutter_open, report.cycle_time);
   EXPECT_EQ(report.cut.max, (Vec3{200, 0, 0}));
   EXPECT_EQ(report.shortfall.moves, 0u);
   // The second step holds the cut, the first the pierce.

@@ -144,7 +144,7 @@ TEST(ToolpathRecorder, ArcIsAsManyChordsAsTheToleranceNeeds) {
 // motion.md 9, the property: distance between polyline and path at most tolerance + 1 um, for every
 // kind of piece and any tolerance.
 TEST(ToolpathRecorder, KeepsWithinTheTolerance) {
-  const motion::Head head{.length_mm = 300.0};
+  const motion::Head head = motion::GantryHead{.length_mm = 300.0};
   const std::vector<PathPiece> paths = {
       PathPiece::Circle({{3, 0, 0}}, {0, 0, 0}, {0, 0.6, 0.8}, 5.0, 0.0, 0.0),
       PathPiece::ArcThrough({{0, 0, 0}}, {50, 0.01, 0}, {{100, 0, 0}}).value().path,

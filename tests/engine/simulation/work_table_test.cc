@@ -26,7 +26,7 @@ TEST(WorkTable, AddsUpByProgramAndStep) {
   EXPECT_EQ(report.steps[1].line, 9);
   EXPECT_EQ(report.steps[1].figures.steps, 2u);
   EXPECT_EQ(report.steps[1].figures.cut_mm, 2.0);
-  EXPECT_EQ(report.programs.at(1).cut_mm, 2.0);
+  EXPECT_EQ(report.programs.at(1).total.cut_mm, 2.0);
   EXPECT_EQ(report.total.cut_mm, 4.0);
   EXPECT_EQ(report.rest.steps, 0u);
 }

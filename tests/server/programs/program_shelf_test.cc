@@ -270,17 +270,17 @@ TEST_F(ProgramShelfTest, ChecksWithoutAMachineToo) {
   v1::ProgramText text;
   text.set_file_name("a.S");
   text.set_content("SPEED 101\n");
-  EXPECT_FALSE(Must(shelf.Check("", "", text, true)).ok);
-  EXPECT_FALSE(Must(shelf.Check("optimo", "", text, true)).ok);
-  EXPECT_FALSE(Must(shelf.Check("", "machines/optimo-1", text, true)).ok);
+  EXPECT_FALSE(Must(shelf.Translate("", "", text, true)).ok);
+  EXPECT_FALSE(Must(shelf.Translate("optimo", "", text, true)).ok);
+  EXPECT_FALSE(Must(shelf.Translate("", "machines/optimo-1", text, true)).ok);
   text.set_content("SPEED 100\n");
-  EXPECT_TRUE(Must(shelf.Check("", "", text, true)).ok);
-  EXPECT_EQ(CodeOf(shelf.Check("lathe", "", text, true)), ErrorCode::kCellUnknownFamily);
-  EXPECT_EQ(CodeOf(shelf.Check("", "machines/none", text, true)), ErrorCode::kCellUnknownMachine);
+  EXPECT_TRUE(Must(shelf.Translate("", "", text, true)).ok);
+  EXPECT_EQ(CodeOf(shelf.Translate("lathe", "", text, true)), ErrorCode::kCellUnknownFamily);
+  EXPECT_EQ(CodeOf(shelf.Translate("", "machines/none", text, true)), ErrorCode::kCellUnknownMachine);
   text.set_file_name("a.txt");
-  EXPECT_EQ(CodeOf(shelf.Check("", "", text, true)), ErrorCode::kCellFamilyUnknownFromName);
+  EXPECT_EQ(CodeOf(shelf.Translate("", "", text, true)), ErrorCode::kCellFamilyUnknownFromName);
   text.clear_content();
-  EXPECT_EQ(CodeOf(shelf.Check("optimo", "", text, true)), ErrorCode::kCellEmptyProgram);
+  EXPECT_EQ(CodeOf(shelf.Translate("optimo", "", text, true)), ErrorCode::kCellEmptyProgram);
 }
 
 }  // namespace

@@ -76,6 +76,9 @@ class Listener final : public machine::RunObserver {
   void OnMessage(SimTime at, const machine::Place& place, std::string_view text) override {
     Tell(std::string(text), at, place);
   }
+  void OnViolation(const machine::TravelViolation& violation) override {
+    ran_.violations.push_back(violation);
+  }
   void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override {
     ran_.findings.push_back(diagnostic);
     Tell("E" + std::to_string(Lookup(diagnostic.code).number), at,
@@ -197,6 +200,7 @@ machine::RunSetup SetupOf(const std::string& main, const RunOptions& options) {
   setup.simul = options.simul;
   setup.override_percent = options.override_percent;
   setup.budget = options.budget;
+  setup.forecast = options.forecast;
   setup.machine_state = options.machine_state;
   setup.schedules = options.schedules;
   for (const auto& [slot, bytes] : options.executables) {

@@ -35,6 +35,7 @@ struct Ran {
   std::vector<machine::MoveDone> moves;
   std::vector<Part> parts;
   std::vector<machine::Wait> waits;
+  std::vector<machine::TravelViolation> violations;
   std::vector<int> steps_begun;                  // step numbers in order, of whatever program
   std::string machine_state;                     // as the run left it
   std::map<int, std::string> executables;        // made by the run
@@ -70,6 +71,7 @@ struct RunOptions {
   std::optional<std::vector<machine::LaserSchedule>> schedules;
   std::map<int, std::string> executables;      // by slot
   SimTime slice = std::chrono::seconds(1000);  // of one Advance
+  bool forecast = false;
 };
 
 // A setup of `main` as program 1, to be run by hand.

@@ -1,0 +1,158 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "engine/core/number_text.h"
+#include "engine/motion/speed_bound.h"
+#include "engine/optimo/control/control.h"
+
+// Motions that ask more of an axis than it can do: way or speed.
+namespace rmlcell::optimo {
+namespace {
+
+constexpr int kFirstRotaryAxis = 3;
+
+// A program names the end of a travel with 24 bits (12.6 rad is 4e-7 less), and the head's
+// kinematics round: neither is a violation.
+constexpr double kTravelSlack = 1e-6;  // mm, rad; the tolerance of motion.md section 1
+
+// A plan comes this near to the speed asked for: rounding is no shortfall.
+constexpr double kFullSpeed = 1.0 - 1e-6;
+
+double SlackOf(double limit) {
+  return kTravelSlack + std::abs(limit) * std::numeric_limits<float>::epsilon();
+}
+
+std::string_view NameOfAxis(int axis) {
+  constexpr std::array<std::string_view, motion::kAxisCount> kNames = {"X", "Y", "Z", "A", "B"};
+  return kNames[static_cast<std::size_t>(axis)];
+}
+
+// "X of the target leaves its travel by 5400.000 mm, A on the way by 0.200 rad"
+std::string TextOf(const std::vector<BeyondTravel>& beyond) {
+  std::string text;
+  for (const BeyondTravel& one : beyond) {
+    const bool first = text.empty();
+    if (!first) text += ", ";
+    text += NameOfAxis(one.axis);
+    text += one.at_target ? " of the target" : " on the way";
+    text += first ? " leaves its travel by " : " by ";
+    text += FixedText(one.excess, 3) + (one.axis < kFirstRotaryAxis ? " mm" : " rad");
+  }
+  return text;
+}
+
+}  // namespace
+
+// Every axis that leaves its travel, the target first where that lies outside. A motion that comes
+// back from where the one before it should not have gone is not to blame for its start.
+std::vector<BeyondTravel> Control::BeyondTravelOf(const motion::PathPiece& path) const {
+  const motion::AxisLimits& limits = parameters_.limits.axes;
+  const motion::Head head = HeadNow();
+  const bool joint = path.kind() == motion::PathPiece::Kind::kJoint;
+  const auto axes_at = [&](const motion::TipPose& pose) {
+    return joint ? motion::AxisPose{pose.tip, pose.a_rad, pose.b_rad} : head.ColumnOf(pose);
+  };
+  const auto worst = motion::ExcessOfEach(path, head, limits);
+  std::vector<BeyondTravel> beyond;
+  for (int axis = 0; axis < motion::kAxisCount; ++axis) {
+    const auto i = static_cast<std::size_t>(axis);
+    const double slack = std::max(SlackOf(limits.travel_min[i]), SlackOf(limits.travel_max[i]));
+    if (worst[i].excess <= slack) continue;
+    const double at_target = motion::ExcessOfAxis(axis, axes_at(path.to()), limits);
+    const double at_start = motion::ExcessOfAxis(axis, axes_at(path.from()), limits);
+    const bool inherited = s_.violations > 0 && at_start > slack;
+    if (at_target <= slack && inherited && worst[i].excess <= at_start + slack) continue;
+    beyond.push_back({.axis = axis,
+                      .excess = worst[i].excess,
+                      .at_target = at_target > slack,
+                      .axes = axes_at(path.At(worst[i].s))});
+  }
+  return beyond;
+}
+
+// motion.md 2.6. False: an alarm was raised. In a forecast the note says what is to be told.
+bool Control::InTravel(const motion::PathPiece& path, MoveNote& note) {
+  std::vector<BeyondTravel> beyond = BeyondTravelOf(path);
+  if (beyond.empty()) return true;
+  if (setup_.forecast) {
+    note.beyond = std::move(beyond);
+    return true;
+  }
+  // The target is looked at first, and only then the way to it.
+  const auto outside = [](const BeyondTravel& one) { return one.at_target; };
+  if (std::ranges::any_of(beyond, outside)) std::erase_if(beyond, std::not_fn(outside));
+  TellViolations(note.place, beyond);
+  Raise(ErrorCode::kTargetOutOfTravel, TextOf(beyond));
+  return false;
+}
+
+// Now: where the motion begins, or where it is refused.
+void Control::TellViolations(const machine::Place& place, const std::vector<BeyondTravel>& beyond) {
+  if (beyond.empty()) return;
+  for (const BeyondTravel& one : beyond) {
+    observer_.OnViolation({.at = s_.now,
+                           .place = place,
+                           .axis = one.axis,
+                           .excess = one.excess,
+                           .at_target = one.at_target,
+                           .axes = one.axes,
+                           .tip = HeadNow().TipOf(one.axes)});
+  }
+  if (!setup_.forecast) return;  // the alarm says the rest
+  const Diagnostic finding{.code = ErrorCode::kTargetOutOfTravel,
+                           .severity = Severity::kProgram,
+                           .detail = TextOf(beyond),
+                           .rule = "OPT-B.08",
+                           .where = {.line = place.line},
+                           .program = place.program,
+                           .step = place.step,
+                           .at = s_.now};
+  ++s_.violations;
+  if (!s_.first_violation) s_.first_violation = finding;
+  Tell(finding);
+}
+
+// A forecast that found violations has not shown a program that the machine could run.
+void Control::FailOfViolations() {
+  const bool went_well = s_.outcome.kind == machine::OutcomeKind::kCompleted ||
+                         s_.outcome.kind == machine::OutcomeKind::kStopped;
+  if (!s_.first_violation || !went_well) return;
+  const Diagnostic& first = *s_.first_violation;
+  std::string detail = first.detail;
+  if (s_.violations > 1) {
+    detail = std::to_string(s_.violations) + " motions leave the travel; the first: " + detail;
+  }
+  s_.outcome = {.kind = machine::OutcomeKind::kFailed,
+                .code = first.code,
+                .detail = std::move(detail),
+                .place = {.program = first.program, .step = first.step, .line = first.where.line}};
+}
+
+// OPT-2.16: the contour that begins slows down for an axis. Once for each step.
+void Control::TellSpeedHeld(const motion::PlannedMotion& motion, const MoveNote& note) {
+  const auto kind = motion.path.kind();
+  const bool contour =
+      kind == motion::PathPiece::Kind::kLine || kind == motion::PathPiece::Kind::kArc;
+  if (!contour || note.feed_mm_s <= 0.0 || motion.limits.speed >= note.feed_mm_s * kFullSpeed) {
+    return;
+  }
+  if (s_.held_by_axis.contains({note.place.program, note.place.step})) return;
+  const motion::SpeedBound bound =
+      motion::TightestBound(motion.path, motion.head, parameters_.limits, note.feed_mm_s);
+  if (bound.cause != motion::SpeedBound::Cause::kAxis) return;
+  s_.held_by_axis.emplace(note.place.program, note.place.step);
+  Tell({.code = ErrorCode::kSpeedHeldByAxis,
+        .severity = Lookup(ErrorCode::kSpeedHeldByAxis).severity,
+        .detail = "axis " + std::string(NameOfAxis(bound.axis)) + " allows " +
+                  FixedText(motion.limits.speed, 3) + " mm/s of " + FixedText(note.feed_mm_s, 3) +
+                  "; reached " + FixedText(motion.speed.peak_speed(), 3) + " mm/s",
+        .rule = "OPT-2.16",
+        .where = {.line = note.place.line},
+        .program = note.place.program,
+        .step = note.place.step,
+        .at = s_.now});
+}
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "engine/machine/family.h"
+
+namespace rmlcell::simulation {
+
+// CHECK of what no text tells: where the motion of a program leaves the travel of an axis (7301),
+// and where an axis holds it back (7321). The program runs in virtual time with the inputs of the
+// setup, by default all off, START being given at every halt; what such a run would do is told,
+// with its time, and nothing else.
+//
+// Bounds, whatever the program does: an object of 34,000 bytes has some thousand steps, so this is
+// many times round the longest one, and a part takes less than a day.
+inline constexpr std::uint64_t kCheckStepsMax = 100'000;
+inline constexpr SimTime kCheckTimeMax = std::chrono::hours(24);
+
+struct MotionCheck {
+  std::vector<Diagnostic> findings;  // each with program, step, line and time
+  std::uint64_t findings_dropped = 0;
+  // By slot: why the motion was not followed to the end of the program, for people: a bound, a wait
+  // for an input that never comes, an error.
+  std::map<int, std::string> cut_short;
+
+  bool has_errors() const { return HasErrors(findings); }
+};
+
+// Checks the programs of `setup` in these slots; mode, budget and forecast are set here. A program
+// that another one of them runs (CALL, GO, FUNCTION) is looked at there only: its caller sets its
+// SYSDEF and TCP. A family whose translation tells all has nothing to run: no findings.
+// Errors: those of MachineFamily::NewRun.
+Result<MotionCheck> CheckMotion(const machine::MachineFamily& family,
+                                const machine::RunSetup& setup, const std::set<int>& slots);
+
+}  // namespace rmlcell::simulation

@@ -1,0 +1,162 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/engine/optimo/control/run_text.h"
+
+// Motions that leave the travel of an axis, or ask too much speed of it. The travel of the standard
+// machine: X -600..3600, Y -600..3100, Z -1300..1100 mm, A +-12.6, B +-2.4 rad.
+namespace rmlcell::optimo::testing {
+namespace {
+
+using machine::OutcomeKind;
+
+std::vector<int> StepsOf(const Ran& ran, int code) {
+  std::vector<int> steps;
+  for (const Diagnostic& finding : ran.findings) {
+    if (Lookup(finding.code).number == code) steps.push_back(finding.step);
+  }
+  return steps;
+}
+
+// X alone from rest to rest at SPEED 70: D/V + V/a + a/j, and SETTLE.
+double RobotTime(double distance_mm) { return distance_mm / 350.0 + 0.175 + 0.05 + 0.048; }
+
+// OPT-E.7301, OPT-B.08: a forecast tells every motion that leaves the travel, with step, line, time
+// and excess, goes on behind it, and ends as failed at the first.
+TEST(Travel, AForecastTellsAllViolationsOfARun) {
+  const Ran ran = RunText(
+      "COORD ROBOT\n"
+      "MOVE (9000.,2201.2,-50.,0.,0.)\n"
+      "MOVE (1000.,2201.2,-50.,0.,0.)\n"
+      "MOVE (1000.,2201.2,-50.,13.,2.5)\n"
+      "MOVE (1000.,2201.2,-50.,0.,0.)\n",
+      {.forecast = true});
+  EXPECT_EQ(StepsOf(ran, 7301), (std::vector{2, 4}));  // 3 and 5 only come back
+  ASSERT_EQ(ran.violations.size(), 3U);
+  EXPECT_EQ(ran.violations[0].axis, 0);
+  EXPECT_NEAR(ran.violations[0].excess, 5400.0, 1e-9);
+  EXPECT_TRUE(ran.violations[0].at_target);
+  EXPECT_EQ(ran.violations[0].at, SimTime(0));
+  EXPECT_NEAR(ran.violations[0].axes.column.x, 9000.0, 1e-9);
+  EXPECT_NEAR(ran.violations[0].tip.tip.z, -350.0, 1e-9);
+  EXPECT_EQ(ran.violations[1].axis, 3);
+  EXPECT_NEAR(ran.violations[1].excess, 0.4, 1e-9);
+  EXPECT_EQ(ran.violations[2].axis, 4);
+  EXPECT_NEAR(ran.violations[2].excess, 0.1, 1e-9);
+  EXPECT_NEAR(ToSeconds(ran.violations[1].at), RobotTime(9000.0 - 21.02) + RobotTime(8000.0), 1e-6);
+  const Diagnostic& first = ran.findings.front();
+  EXPECT_EQ(first.severity, Severity::kProgram);
+  EXPECT_EQ(first.detail, "X of the target leaves its travel by 5400.000 mm");
+  EXPECT_EQ(first.at, SimTime(0));
+  EXPECT_EQ(ran.findings[1].detail,
+            "A of the target leaves its travel by 0.400 rad, B of the target by 0.100 rad");
+  EXPECT_EQ(ran.outcome.kind, OutcomeKind::kFailed);
+  EXPECT_EQ(CodeOf(ran), 7301);
+  EXPECT_EQ(ran.outcome.place.step, 2);
+  EXPECT_NEAR(ran.end.axes.column.x, 1000.0, 1e-9);
+}
+
+// OPT-B.08: in RUN it is an alarm at its place, and nothing moves.
+TEST(Travel, ARunStopsAtTheFirstBeforeItMoves) {
+  const Ran ran =
+      RunText("COORD ROBOT\nMOVE (9000.,1000.,-300.,13.,0.)\nMOVE (-900.,0.,0.,0.,0.)\n");
+  EXPECT_EQ(CodeOf(ran), 7301);
+  EXPECT_EQ(StepsOf(ran, 7301), std::vector{2});
+  EXPECT_TRUE(ran.moves.empty());
+  EXPECT_EQ(ran.findings.front().severity, Severity::kAlarm);
+  EXPECT_EQ(ran.violations.size(), 2U);
+}
+
+// OPT-B.08: the circle through (3500,1000), (3650,1150) and (3500,1300) has its centre at
+// (3500,1150): its quadrant point is 50 mm beyond the end of X, its target is not.
+TEST(Travel, AnArcLeavesItOnTheWay) {
+  const std::string program = std::string(kAbsol) +
+                              "MOVE (3500.,1000.,-400.,0.,0.)\nPATH CIR\n"
+                              "MOVE (3500.,1300.,-400.,0.,0.)/VIA (3650.,1150.,-400.,0.,0.)\n";
+  const Ran ran = RunText(program, {.forecast = true});
+  ASSERT_EQ(ran.violations.size(), 1U);
+  EXPECT_NEAR(ran.violations[0].excess, 50.0, 1e-6);
+  EXPECT_FALSE(ran.violations[0].at_target);
+  EXPECT_NEAR(ran.violations[0].tip.tip.y, 1150.0, 1e-6);
+  EXPECT_EQ(ran.findings.front().detail, "X on the way leaves its travel by 50.000 mm");
+  EXPECT_EQ(CodeOf(RunText(program)), 7301);
+}
+
+// OPT-B.37: 12.6 is 4e-7 more in the REAL arithmetic of the control. The end of a travel is inside.
+TEST(Travel, TheVeryEndOfItIsInside) {
+  const Ran ran = RunText(
+      "COORD ROBOT\nMOVE (3600.,3100.,1100.,12.6,2.4)\nMOVE (-600.,-600.,-1300.,-12.6,-2.4)\n");
+  EXPECT_EQ(CodeOf(ran), 0);
+  EXPECT_EQ(CodeOf(RunText("COORD ROBOT\nMOVE (3600.01,0.,0.,0.,0.)\n")), 7301);
+}
+
+// OPT-2.49: the program runs ahead of /FLY moves; a finding has the time at which its own begins,
+// half way through the bend of case C01: 2.021 s after the chain.
+TEST(Travel, InAChainEachHasTheTimeOfItsOwnMotion) {
+  const Ran ran = RunText(std::string(kAbsol) +
+                              "SPEED 10\nMOVE (3550.,1000.,-400.,0.,0.)\n"
+                              "MOVE (3550.,1100.,-400.,0.,0.)/FLY\n"
+                              "MOVE (3650.,1100.,-400.,0.,0.)\n",
+                          {.forecast = true});
+  ASSERT_EQ(ran.violations.size(), 1U);
+  EXPECT_NEAR(ran.violations[0].excess, 50.0, 1e-3);
+  const double chain_s = ToSeconds(ran.moves.front().at);
+  EXPECT_NEAR(ToSeconds(ran.violations[0].at), chain_s + (4.08999984769 - 0.048) / 2.0, 1e-6);
+}
+
+// OPT-E.7301: a target that no machine of any size has is told, and left out.
+TEST(Travel, ATargetBeyondAllMeasureIsLeftOut) {
+  const Ran ran = RunText("COORD ROBOT\nMOVE (1.E15,0.,0.,0.,0.)\nMOVE (50.,2201.2,-50.,0.,0.)\n",
+                          {.forecast = true});
+  EXPECT_EQ(StepsOf(ran, 7301), std::vector{2});
+  EXPECT_EQ(CodeOf(ran), 7301);
+  EXPECT_NEAR(ran.end.axes.column.x, 50.0, 1e-9);
+}
+
+// OPT-B.15, OPT-B.08: both parts of a hole are looked at; the circle of radius 50 round (3580,1000)
+// reaches 30 mm beyond the end of X.
+TEST(Travel, AHoleAtTheEdge) {
+  const Ran ran = RunText(std::string(kAbsol) +
+                              "MOVE (3530.,1000.,-400.,0.,0.)\nPATH HOLE (50.)\n"
+                              "MOVE (3580.,1000.,-400.,0.,0.)/VIA (3580.,1000.,-300.,0.,0.)\n",
+                          {.forecast = true});
+  ASSERT_EQ(ran.violations.size(), 1U);
+  EXPECT_NEAR(ran.violations[0].excess, 30.0, 1e-6);
+}
+
+// OPT-6.31: a forecast that stops for a key and found violations is a failed one, too.
+TEST(Travel, AHaltDoesNotHideThem) {
+  const Ran ran =
+      RunText("COORD ROBOT\nMOVE (9000.,0.,0.,0.,0.)\nSTOP\n",
+              {.inputs = {{std::chrono::hours(1), machine::InputKind::kStart}}, .forecast = true});
+  EXPECT_EQ(CodeOf(ran), 7301);
+}
+
+// OPT-2.16: case L01: at A 0 the column goes 4 mm for each mm of the tip, so X allows 125 mm/s of
+// the 150. Told once for the step, however often it runs.
+TEST(Travel, AnAxisThatHoldsAContourBackIsToldOnce) {
+  const Ran ran = RunText(std::string(kAbsol) +
+                          "SPEED 30\nVI[2]=0\n"
+                          "10 MOVE (1000.,1000.,-400.,0.,1.570796)\n"
+                          "MOVE (1100.,1000.,-400.,1.,1.570796)\n"
+                          "VI[2]=VI[2]+1\nIF (VI[2]<3) THEN 10\n");
+  EXPECT_EQ(CodeOf(ran), 0);
+  EXPECT_EQ(ran.Finding(7321).detail,
+            "axis X allows 125.000 mm/s of 150.000; reached 125.000 mm/s");
+  EXPECT_EQ(ran.Finding(7321).severity, Severity::kAdvice);
+  EXPECT_EQ(std::ranges::count(StepsOf(ran, 7321), ran.Finding(7321).step), 1);
+}
+
+// motion.md 5.1: neither a small radius nor a short way is an axis.
+TEST(Travel, ARadiusIsNoAxis) {
+  const Ran ran =
+      RunText(std::string(kAbsol) +
+              "SPEED 100\nMOVE (1000.,1000.,-400.,0.,0.)\nMOVE (1001.,1000.,-400.,0.,0.)\n"
+              "PATH CIR\nMOVE (1003.,1000.,-400.,0.,0.)/VIA (1002.,1001.,-400.,0.,0.)\n");
+  EXPECT_FALSE(ran.Told("E7321"));
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo::testing

@@ -1,0 +1,134 @@
+#include "engine/simulation/motion_check.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/simulation/families.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+// A memory of Optimo programs, as CHECK gets them.
+machine::RunSetup Memory(const std::map<int, std::string>& programs) {
+  const machine::MachineFamily& family = *FindFamily("optimo");
+  machine::RunSetup setup{machine::Parameters(family.parameters())};
+  for (const auto& [slot, text] : programs) {
+    machine::Translation made =
+        family.Translate({.name = "test.S", .bytes = text}, setup.parameters, {.step_lines = true});
+    EXPECT_TRUE(made.ok) << text;
+    machine::StoredProgram& stored = setup.programs[slot];
+    stored.object = std::make_shared<const std::string>(std::move(made.object));
+    stored.step_lines = std::make_shared<const std::vector<int>>(std::move(made.step_lines));
+  }
+  return setup;
+}
+
+MotionCheck Checked(const std::map<int, std::string>& programs, const std::set<int>& slots,
+                    const machine::InputScript& inputs = {}) {
+  machine::RunSetup setup = Memory(programs);
+  setup.inputs = inputs;
+  const auto check = CheckMotion(*FindFamily("optimo"), setup, slots);
+  EXPECT_TRUE(check);
+  return *check;
+}
+
+const std::string kPart =
+    "COORD ABSOL\nPATH LIN\nMOVE (4000.,0.,0.,0.,0.)\nMOVE (4100.,0.,0.,0.,0.)\n";
+
+// OPT-E.7301: code, program, step, line and the time at which a run would do it.
+TEST(MotionCheck, FindsEveryViolationWithItsPlace) {
+  const MotionCheck check = Checked({{45, kPart}}, {45});
+  ASSERT_EQ(check.findings.size(), 2U);
+  EXPECT_TRUE(check.has_errors());
+  EXPECT_EQ(check.findings[0].code, ErrorCode::kTargetOutOfTravel);
+  EXPECT_EQ(check.findings[0].program, 45);
+  EXPECT_EQ(check.findings[0].step, 3);
+  EXPECT_EQ(check.findings[0].where.line, 3);
+  EXPECT_EQ(check.findings[0].at, SimTime(0));
+  EXPECT_EQ(check.findings[1].step, 4);
+  EXPECT_GT(*check.findings[1].at, SimTime(0));
+  EXPECT_TRUE(check.cut_short.empty());
+}
+
+// OPT-B.09: the SYSDEF of the caller brings the part into the travel; only alone would it leave it.
+TEST(MotionCheck, AProgramIsLookedAtWithTheOffsetOfItsCaller) {
+  const std::string caller = "SYSDEF (-1000.,0.,-300.,0.,0.,0.)\nCALL 44\n";
+  const std::map<int, std::string> programs = {{44, kPart}, {45, caller}};
+  EXPECT_TRUE(Checked(programs, {44, 45}).findings.empty());
+  EXPECT_EQ(Checked(programs, {44}).findings.size(), 2U);
+  // The same the other way round: the fault is the caller's offset, the place that of the step.
+  const MotionCheck far = Checked({{44, "COORD ABSOL\nMOVE (100.,0.,0.,0.,0.)\n"},
+                                   {45, "SYSDEF (5000.,0.,0.,0.,0.,0.)\nCALL 44\n"}},
+                                  {44, 45});
+  ASSERT_EQ(far.findings.size(), 1U);
+  EXPECT_EQ(far.findings[0].program, 44);
+}
+
+// OPT-4.55: a tool that is 500 mm shorter brings the column below the end of Z: -1000 + 300 - 500 =
+// -1200 is inside -1300, -1150 + 300 - 500 = -1350 is 50 outside.
+TEST(MotionCheck, TheToolCounts) {
+  const std::string tool = "TCP (0.,0.,500.,0.,0.,0.)\nCOORD ABSOL\n";
+  EXPECT_TRUE(Checked({{1, tool + "MOVE (500.,500.,-1000.,0.,0.)\n"}}, {1}).findings.empty());
+  const MotionCheck low = Checked({{1, tool + "MOVE (500.,500.,-1150.,0.,0.)\n"}}, {1});
+  ASSERT_EQ(low.findings.size(), 1U);
+  EXPECT_EQ(low.findings[0].detail, "Z of the target leaves its travel by 50.000 mm");
+}
+
+// OPT-2.16, OPT-E.7321: advice of the motion comes along, and is no error.
+TEST(MotionCheck, TellsAxesThatHoldBack) {
+  const MotionCheck check = Checked(
+      {{1, "COORD ABSOL\nPATH LIN\nMOVE (500.,500.,-400.,0.,1.)\nMOVE (500.,505.,-400.,0.,0.)\n"}},
+      {1});
+  ASSERT_FALSE(check.findings.empty());
+  EXPECT_EQ(check.findings[0].code, ErrorCode::kSpeedHeldByAxis);
+  EXPECT_FALSE(check.has_errors());
+}
+
+// What inputs decide is looked at as far as they let it happen, and said so.
+TEST(MotionCheck, StopsWhereAnInputIsMissing) {
+  const std::string program = "COORD ABSOL\nWAIT (IL[16])\nMOVE (9000.,0.,0.,0.,0.)\n";
+  const MotionCheck without = Checked({{1, program}}, {1});
+  EXPECT_TRUE(without.findings.empty());
+  ASSERT_TRUE(without.cut_short.contains(1));
+  EXPECT_NE(without.cut_short.at(1).find("only up to step 2, line 2"), std::string::npos);
+  const MotionCheck with = Checked(
+      {{1, program}}, {1}, {{std::chrono::seconds(5), machine::InputKind::kLogical, 16, 1.0}});
+  ASSERT_EQ(with.findings.size(), 1U);
+  EXPECT_EQ(ToSeconds(*with.findings[0].at), 5.0);
+}
+
+// A halt is answered with START: the program goes on behind it.
+TEST(MotionCheck, GoesOnBehindAHalt) {
+  const MotionCheck check = Checked({{1, "COORD ABSOL\nSTOP\nMOVE (9000.,0.,0.,0.,0.)\n"}}, {1});
+  EXPECT_EQ(check.findings.size(), 1U);
+}
+
+// Whatever a program does, its check ends, and ends the same every time.
+TEST(MotionCheck, IsBounded) {
+  const std::string endless =
+      "COORD ROBOT\n10 MOVE (9000.,0.,0.,0.,0.)\nMOVE (0.,0.,0.,0.,0.)\nGOTO 10\n";
+  const MotionCheck check = Checked({{1, endless}}, {1});
+  EXPECT_EQ(check.findings.size(), 1U);
+  ASSERT_TRUE(check.cut_short.contains(1));
+  EXPECT_EQ(Checked({{1, endless}}, {1}).cut_short, check.cut_short);
+}
+
+// Two programs that run each other in a ring are looked at, though none is the first.
+TEST(MotionCheck, ARingIsLookedAtOnce) {
+  const MotionCheck check =
+      Checked({{44, "COORD ABSOL\nMOVE (4000.,0.,0.,0.,0.)\nGO 45\n"}, {45, "GO 44\n"}}, {44, 45});
+  ASSERT_EQ(check.findings.size(), 1U);
+  EXPECT_EQ(check.findings[0].program, 44);
+}
+
+// RML1-5A.01: a mill cuts off what lies outside; its translation says so already.
+TEST(MotionCheck, AMillHasNone) {
+  const machine::MachineFamily& mill = *FindFamily("rml1");
+  machine::RunSetup setup{machine::Parameters(mill.parameters())};
+  setup.programs[1].object = std::make_shared<const std::string>("PD;PA99999,0;");
+  const auto check = CheckMotion(mill, setup, {1});
+  ASSERT_TRUE(check);
+  EXPECT_TRUE(check->findings.empty());
+}
+
+}  // namespace
+}  // namespace rmlcell::simulation

@@ -1,0 +1,210 @@
+#include "engine/simulation/toolpath_level.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+namespace rmlcell::simulation {
+namespace {
+
+using machine::MotionUse;
+using motion::Vec3;
+
+ToolpathRun RunOf(int step, std::int64_t start_us, std::int64_t end_us, std::uint32_t points) {
+  return {.program = 1,
+          .step = step,
+          .use = MotionUse::kCut,
+          .beam_on = true,
+          .speed_class = 2,
+          .start_us = start_us,
+          .end_us = end_us,
+          .first_point = 0,
+          .point_count = points};
+}
+
+ToolpathBlock OneRun(std::vector<ToolpathPoint> points, int step = 1, std::int64_t start_us = 0,
+                     std::int64_t end_us = 1000) {
+  ToolpathBlock block;
+  block.runs.push_back(RunOf(step, start_us, end_us, static_cast<std::uint32_t>(points.size())));
+  block.points = std::move(points);
+  return block;
+}
+
+std::vector<ToolpathBlock> Coarser(const std::vector<ToolpathBlock>& blocks, double tolerance_mm) {
+  std::vector<ToolpathBlock> coarse;
+  ToolpathLevel level(tolerance_mm, [&](std::string_view bytes) {
+    Result<ToolpathBlock> block = DecodeToolpathBlock(bytes);
+    EXPECT_TRUE(block);
+    if (block) coarse.push_back(*std::move(block));
+    return true;
+  });
+  for (const ToolpathBlock& block : blocks) level.Take(block);
+  level.Finish();
+  return coarse;
+}
+
+Vec3 Place(const ToolpathPoint& p) {
+  return {static_cast<double>(p.x_um), static_cast<double>(p.y_um), static_cast<double>(p.z_um)};
+}
+
+double ToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 along = b - a;
+  const double squared = Dot(along, along);
+  const double t = squared > 0.0 ? std::clamp(Dot(p - a, along) / squared, 0.0, 1.0) : 0.0;
+  return Distance(p, a + along * t);
+}
+
+double ToPolyline(const Vec3& p, const std::vector<ToolpathPoint>& points) {
+  double best = HUGE_VAL;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    best = std::min(best, ToSegment(p, Place(points[i - 1]), Place(points[i])));
+  return best;
+}
+
+// The farthest that any place of one polyline lies from the other, um.
+double Farthest(const std::vector<ToolpathPoint>& of, const std::vector<ToolpathPoint>& from) {
+  double worst = 0.0;
+  for (std::size_t i = 1; i < of.size(); ++i) {
+    for (int k = 0; k < 4; ++k) {
+      const Vec3 a = Place(of[i - 1]);
+      worst = std::max(worst, ToPolyline(a + (Place(of[i]) - a) * (k / 4.0), from));
+    }
+  }
+  return worst;
+}
+
+std::vector<ToolpathPoint> AllPoints(const std::vector<ToolpathBlock>& blocks) {
+  std::vector<ToolpathPoint> points;
+  for (const ToolpathBlock& block : blocks)
+    points.insert(points.end(), block.points.begin(), block.points.end());
+  return points;
+}
+
+// motion.md 9: tolerance times 8 a level.
+TEST(ToolpathLevel, EachLevelHasEightTimesTheTolerance) {
+  EXPECT_DOUBLE_EQ(LevelTolerance(0.01, 0), 0.01);
+  EXPECT_DOUBLE_EQ(LevelTolerance(0.01, 1), 0.08);
+  EXPECT_DOUBLE_EQ(LevelTolerance(0.01, 3), 5.12);
+}
+
+TEST(ToolpathLevel, LeavesOutWhatLiesWithinTheTolerance) {
+  // 50 um beside the line of 10 mm: left out at 0.08 mm, kept at 0.04 mm.
+  const ToolpathBlock bent = OneRun({{0, 0, 0}, {5000, 50, 0}, {10000, 0, 0}});
+  EXPECT_EQ(AllPoints(Coarser({bent}, 0.08)),
+            (std::vector<ToolpathPoint>{{0, 0, 0}, {10000, 0, 0}}));
+  EXPECT_EQ(AllPoints(Coarser({bent}, 0.04)), bent.points);
+}
+
+TEST(ToolpathLevel, KeepsTheTurningPointOfAWayBack) {
+  const ToolpathBlock back = OneRun({{0, 0, 0}, {10000, 0, 0}, {3000, 0, 0}});
+  EXPECT_EQ(AllPoints(Coarser({back}, 1.0)), back.points);
+}
+
+TEST(ToolpathLevel, JoinsStepsAndNothingElse) {
+  const ToolpathBlock first = OneRun({{0, 0, 0}, {1000, 0, 0}}, 7, 0, 100);
+  ToolpathBlock second = OneRun({{1000, 0, 0}, {2000, 0, 0}}, 8, 100, 300);
+  const std::vector<ToolpathBlock> joined = Coarser({first, second}, 0.08);
+  ASSERT_EQ(joined.size(), 1u);
+  ASSERT_EQ(joined[0].runs.size(), 1u);
+  EXPECT_EQ(joined[0].runs[0].step, 7);
+  EXPECT_EQ(joined[0].runs[0].start_us, 0);
+  EXPECT_EQ(joined[0].runs[0].end_us, 300);
+  EXPECT_EQ(joined[0].points, (std::vector<ToolpathPoint>{{0, 0, 0}, {2000, 0, 0}}));
+
+  const auto runs_after = [&](auto change) {
+    ToolpathBlock other = second;
+    change(other.runs[0]);
+    return Coarser({first, other}, 0.08).at(0).runs.size();
+  };
+  EXPECT_EQ(runs_after([](ToolpathRun& run) { run.beam_on = false; }), 2u);
+  EXPECT_EQ(runs_after([](ToolpathRun& run) { run.use = MotionUse::kTravel; }), 2u);
+  EXPECT_EQ(runs_after([](ToolpathRun& run) { run.speed_class = 3; }), 2u);
+  EXPECT_EQ(runs_after([](ToolpathRun& run) { run.program = 2; }), 2u);
+  EXPECT_EQ(runs_after([](ToolpathRun& run) { run.start_us = 150; }), 2u) << "a pause between";
+}
+
+TEST(ToolpathLevel, ShowsASmallHoleAsAPoint) {
+  const ToolpathBlock hole =
+      OneRun({{100, 0, 0}, {0, 100, 0}, {-100, 0, 0}, {0, -100, 0}, {100, 0, 0}});
+  const std::vector<ToolpathBlock> coarse = Coarser({hole}, 1.0);
+  ASSERT_EQ(coarse.size(), 1u);
+  EXPECT_EQ(coarse[0].runs.size(), 1u);
+  EXPECT_EQ(coarse[0].points, (std::vector<ToolpathPoint>{{100, 0, 0}, {100, 0, 0}}));
+}
+
+// Both ways, for ways of every kind and every tolerance; motion.md 9.
+TEST(ToolpathLevel, StaysWithinTheToleranceBothWays) {
+  std::mt19937 random(11);  // NOLINT: the same every time
+  std::uniform_int_distribution<int> step(-400, 400);
+  for (int round = 0; round < 15; ++round) {
+    std::vector<ToolpathPoint> way{{0, 0, 0}};
+    for (int k = 1; k < 200; ++k) {
+      ToolpathPoint p = way.back();
+      if (round % 3 == 0) {  // wandering
+        p = {p.x_um + step(random), p.y_um + step(random), p.z_um + step(random)};
+      } else if (round % 3 == 1) {  // forward with noise
+        p = {p.x_um + 500, step(random) / 8, step(random) / 8};
+      } else {  // a circle of 20 mm
+        const double angle = k * 2.0 * std::numbers::pi / 200.0;
+        p = {static_cast<int>(20000.0 * std::cos(angle)),
+             static_cast<int>(20000.0 * std::sin(angle)), k * 10};
+      }
+      way.push_back(p);
+    }
+    for (const double tolerance_mm : {0.02, 0.08, 0.64, 5.12}) {
+      const std::vector<ToolpathPoint> coarse = AllPoints(Coarser({OneRun(way)}, tolerance_mm));
+      const double allowed = tolerance_mm * 1000.0 + 1e-6;
+      EXPECT_LE(Farthest(way, coarse), allowed) << round << " at " << tolerance_mm;
+      EXPECT_LE(Farthest(coarse, way), allowed) << round << " at " << tolerance_mm;
+      EXPECT_EQ(coarse.front(), way.front());
+      EXPECT_EQ(coarse.back(), way.back());
+    }
+  }
+}
+
+TEST(ToolpathLevel, ACircleNeedsFewPoints) {
+  std::vector<ToolpathPoint> way;
+  for (int k = 0; k <= 3000; ++k) {
+    const double angle = k * 2.0 * std::numbers::pi / 3000.0;
+    way.push_back({static_cast<int>(50000.0 * std::cos(angle)),
+                   static_cast<int>(50000.0 * std::sin(angle)), 0});
+  }
+  // Chords with the tolerance as their height: pi / acos(1 - tol/R). A line from point to point may
+  // lie off by the tolerance, on both sides of the curve, so fewer may do; twice as many are poor.
+  const double chords = std::numbers::pi / std::acos(1.0 - 0.08 / 50.0);
+  const std::size_t points = AllPoints(Coarser({OneRun(way)}, 0.08)).size();
+  EXPECT_LT(static_cast<double>(points), 2.0 * chords);
+}
+
+// Blocks of the result are full, and time goes on through them.
+TEST(ToolpathLevel, LongWaysFillSeveralBlocks) {
+  std::vector<ToolpathBlock> blocks;
+  for (int b = 0; b < 10; ++b) {
+    std::vector<ToolpathPoint> zigzag;
+    for (int k = 0; k < 2000; ++k) {
+      const int n = b * 1999 + k;
+      zigzag.push_back({n * 1000, n % 2 * 1000, 0});
+    }
+    blocks.push_back(OneRun(zigzag, b + 1, b * 2000, b * 2000 + 2000));
+  }
+  const std::vector<ToolpathBlock> coarse = Coarser(blocks, 0.08);
+  std::size_t ways = 0;
+  std::int64_t time = 0;
+  for (const ToolpathBlock& block : coarse) {
+    for (const ToolpathRun& run : block.runs) {
+      EXPECT_EQ(run.start_us, time);
+      time = run.end_us;
+      ways += run.point_count - 1;
+    }
+  }
+  EXPECT_EQ(coarse.size(), 5u);  // 19,991 points, of which 4 appear twice
+  EXPECT_EQ(ways, 19990u);
+  EXPECT_EQ(time, 20000);
+}
+
+}  // namespace
+}  // namespace rmlcell::simulation

@@ -1,0 +1,38 @@
+#include "engine/simulation/violation_list.h"
+
+#include <gtest/gtest.h>
+
+namespace rmlcell::simulation {
+namespace {
+
+machine::TravelViolation Violation(int step, int axis, double excess, SimTime at) {
+  return {.at = at, .place = {.program = 45, .step = step}, .axis = axis, .excess = excess};
+}
+
+// motion.md 8.2: step, axis, excess; of a loop the worst pass, with the time of the first.
+TEST(ViolationList, KeepsTheWorstOfAStepAndTheFirstTime) {
+  ViolationList list;
+  list.Add(Violation(3, 0, 5.0, SimTime(10)));
+  list.Add(Violation(3, 0, 7.0, SimTime(20)));
+  list.Add(Violation(3, 0, 6.0, SimTime(30)));
+  list.Add(Violation(3, 4, 0.5, SimTime(30)));
+  ASSERT_EQ(list.violations().size(), 2U);
+  EXPECT_EQ(list.violations()[0].axis, "X");
+  EXPECT_EQ(list.violations()[0].excess, 7.0);
+  EXPECT_EQ(list.violations()[0].first_at, SimTime(10));
+  EXPECT_EQ(list.violations()[0].count, 3U);
+  EXPECT_EQ(list.violations()[1].axis, "B");
+  EXPECT_TRUE(list.violations()[1].rotary);
+}
+
+TEST(ViolationList, IsBounded) {
+  ViolationList list;
+  for (int step = 0; step < static_cast<int>(kReportedViolationsMax) + 5; ++step) {
+    list.Add(Violation(step, 0, 1.0, SimTime(0)));
+  }
+  EXPECT_EQ(list.violations().size(), kReportedViolationsMax);
+  EXPECT_EQ(list.dropped(), 5U);
+}
+
+}  // namespace
+}  // namespace rmlcell::simulation
