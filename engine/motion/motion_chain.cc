@@ -12,6 +12,9 @@ constexpr double kCutMin_mm = 1e-4;      // a smaller curve is a stop, motion.md
 constexpr double kEqualLimits = 1e-9;    // relative
 constexpr double kContiguous_mm = 1e-6;
 
+// A bend that takes all that the axes have takes nine tenths of it at this share of its speed.
+constexpr double kLeavesRoom = 0.95;
+
 bool Equal(double a, double b) { return a == b || std::abs(a - b) <= kEqualLimits * std::abs(b); }
 bool Equal(const PathLimits& a, const PathLimits& b) {
   return Equal(a.speed, b.speed) && Equal(a.acceleration, b.acceleration) && Equal(a.jerk, b.jerk);
@@ -180,8 +183,8 @@ void MotionChain::Work() {
     speeds_.Settle();
     speeds_next_ = std::max(kBatchMin, 2 * open_knots(speeds_));
   }
-  const Number decided = speeds_.final_count();
-  const Number oldest = decided < spans_.size() ? spans_[spans_.first() + decided].first_move
+  SeeDecided();
+  const Number oldest = decided_ < spans_.end() ? spans_[decided_].first_move
                         : legs_.empty()         ? moves_.end()
                                                 : legs_.front().first_move;
   if (moves_.end() - oldest >= window_) Starve();
@@ -193,8 +196,33 @@ void MotionChain::Starve() {
   running_.Accept(running_.size() / 2);
   while (Resolve(true)) {
   }
-  speeds_.Settle();
-  speeds_.Accept(speeds_.size() / 2);
+  LetBendsVary();
+  if (2 * speeds_.Settle() < speeds_.size()) speeds_.Accept(speeds_.size() / 2);
+}
+
+void MotionChain::SeeDecided() {
+  while (decided_ < spans_.end() &&
+         decided_knots_ + spans_[decided_].knots() <= speeds_.final_count()) {
+    decided_knots_ += spans_[decided_++].knots();
+  }
+}
+
+// A chain of steady bends that use up the lines between them has one speed, which its slowest bend
+// sets: nothing is decided before its end. Where the window is full, its bends are passed with
+// changing speed, where need be a little slower, so that what comes later need not be known.
+void MotionChain::LetBendsVary() {
+  SeeDecided();
+  std::size_t known = speeds_.final_count() - decided_knots_;  // knots of the span
+  speeds_.DropOpen();
+  for (Number k = decided_; k < spans_.end(); ++k, known = 0) {
+    Span& span = spans_[k];
+    if (known == 0 && IsBlend(span.report.passage) && !span.in_stretches) {
+      if (!span.head_steady || !axes_follow_ramps_) span.cap *= kLeavesRoom;
+      span.in_stretches = true;
+      span.stretches = {.start = span.cap, .open = span.cap, .middle = span.cap};
+    }
+    PushKnots(span, known);
+  }
 }
 
 // The length of the run that begins behind `leg`, or at least `enough` of it; nothing when that is
@@ -274,6 +302,7 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
         swallowed = *within;
       }
       closing.report.passage = capped ? Passage::kBlendCapped : Passage::kBlend;
+      closing.report.cut_mm = cut;
       speed_cap = wanted;
       MakeCurve(closing, leg, cut);
     }
@@ -300,6 +329,8 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
       }
       if (speed_cap < wanted) closing.report.passage = Passage::kBlendCapped;
       speed_cap = std::min(speed_cap, swallowed);
+      ChooseStretches(closing, leg, speed_cap, std::min(leg.limit, swallowed));
+      if (closing.in_stretches) speed_cap = closing.stretches.start;
     }
   }
   closing.report.cut_mm = cut;
@@ -346,7 +377,7 @@ void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
     ++after;
   }
   const PathPiece& out = moves_[after].path;
-  span.curve_may_vary =
+  span.head_steady =
       in.a_rate() == 0.0 && in.b_rate() == 0.0 && out.a_rate() == 0.0 && out.b_rate() == 0.0;
   const CornerCurve curve(EndAt(in, std::max(in.length() - left, 0.0)),
                           EndAt(out, std::min(right, out.length())), cut);
@@ -362,6 +393,80 @@ void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
   span.curve_length = length.total();
   span.curve_middle = curve.At(length.ParameterAt(curve, 0.5 * span.curve_length));
   span.report.deviation_mm = curve.DistanceFrom(moves_[leg.last_move].path.to().tip);
+}
+
+// A bend that cannot be passed at OVERSH x Vb but at `steady` may be faster where it is less tight,
+// up to `most`. motion.md 5.4
+void MotionChain::ChooseStretches(Span& span, const Leg& leg, double steady, double most) {
+  if (!machine_.ramps_across_passages || std::isinf(machine_.tip_jerk_mm_s3)) return;
+  if (!axes_follow_ramps_ || !span.head_steady) return;
+  if (steady >= leg.limit * (1.0 - kEqualLimits)) return;
+  span.in_stretches = true;
+  span.stretches = {.start = steady, .open = steady, .middle = steady};
+  if (!span.plain) return;
+  const double cut = span.report.cut_mm;
+  span.stretches = StretchesOf(leg.corner.PlainSpeeds(cut, most, machine_), 0.5 * span.curve_length,
+                               LimitsOnCurve(leg.last_move, cut));
+}
+
+// Those of every move that a curve touches.
+PathLimits MotionChain::LimitsOnCurve(Number corner_move, double cut) {
+  PathLimits limits = moves_[corner_move].limits;
+  const auto lower = [&](const Move& move) {
+    limits.acceleration = std::min(limits.acceleration, move.limits.acceleration);
+    limits.jerk = std::min(limits.jerk, move.limits.jerk);
+    return move.path.length();
+  };
+  limits.acceleration =
+      std::min(limits.acceleration, machine_.curve_tangential * machine_.tip_acceleration_mm_s2);
+  double left = cut;
+  for (Number k = corner_move; left > 0.0; --k) {
+    left -= lower(moves_[k]);
+    if (k == moves_.first()) break;
+  }
+  left = cut;
+  for (Number k = corner_move + 1; left > 0.0 && k < moves_.end(); ++k) left -= lower(moves_[k]);
+  return limits;
+}
+
+PathLimits MotionChain::LimitsInStretches(const Span& span) {
+  PathLimits limits = LimitsOnCurve(span.corner_move, span.report.cut_mm);
+  limits.speed = span.stretches.open;
+  if (span.head_steady && axes_follow_ramps_) return limits;
+  // No axis moves by more than its speed over that of the tip for a mm of the way.
+  const double whole = limits.speed / kLeavesRoom;
+  for (std::size_t i = 0; i < kAxisCount; ++i) {
+    const double per_axis = whole / machine_.axes.speed[i];
+    limits.acceleration =
+        std::min(limits.acceleration,
+                 (1.0 - kLeavesRoom * kLeavesRoom) * machine_.axes.acceleration[i] * per_axis);
+    if (std::isfinite(limits.jerk)) {
+      limits.jerk = std::min(limits.jerk, machine_.axes.jerk[i] * per_axis);
+    }
+  }
+  return limits;
+}
+
+MotionChain::Stretch MotionChain::StretchOf(const Span& span, std::size_t index) {
+  const BendStretches& most = span.stretches;
+  if (index + 1 == most.count) return {span.curve_length, most.start};
+  return {0.5 * span.curve_length, most.middle};
+}
+
+// The knots of a span from its `first` on.
+void MotionChain::PushKnots(const Span& span, std::size_t first) {
+  if (first == 0) {
+    const bool through = span.report.passage == Passage::kThrough;
+    speeds_.Push(span.length, span.limits, through ? span.report.wanted_speed : span.cap);
+    ++first;
+  }
+  if (!span.in_stretches) return;
+  const PathLimits limits = LimitsInStretches(span);
+  for (std::size_t k = first; k < span.knots(); ++k) {
+    const Stretch stretch = StretchOf(span, k - 1);
+    const double begin = k == 1 ? 0.0 : StretchOf(span, k - 2).end;
+    speeds_.Push(stretch.end - begin, limits, stretch.end_cap);
+  }
 }
 
 // The legs from the start of the run to `last_leg`, less what the curves at both ends take, become
@@ -385,12 +490,18 @@ void MotionChain::CloseRun(Number last_leg, double total, const Span& closing, d
     if (closes) {
       span = closing;
       span.corner_move = legs_[last_leg].last_move;
+      double swallowed = HUGE_VAL;
       for (Number rest = k; rest < last_leg; ++rest)
-        speed_cap = std::min(speed_cap, legs_[rest].cap);
+        swallowed = std::min(swallowed, legs_[rest].cap);
+      BendStretches& most = span.stretches;
+      speed_cap = std::min(speed_cap, swallowed);
+      most.start = std::min(most.start, swallowed);
+      most.open = std::min(most.open, swallowed);
+      most.middle = std::min(most.middle, swallowed);
     } else {
       span.corner_move = leg.last_move;
       span.settling_s = 0.0;
-      span.curve_may_vary = true;
+      span.in_stretches = false;
       span.report = {.passage = Passage::kThrough, .wanted_speed = leg.cap};
     }
     span.length = std::max(to - from, 0.0);
@@ -413,7 +524,7 @@ void MotionChain::CloseRun(Number last_leg, double total, const Span& closing, d
     const double cap = closes ? speed_cap : leg.cap;
     // Straight on the shape of the path does not hang on what level 1 reaches.
     span.cap = span.report.passage == Passage::kThrough ? legs_[closes ? last_leg : k].limit : cap;
-    speeds_.Push(span.length, span.limits, cap);
+    PushKnots(span, 0);
     if (closes) break;
   }
 }

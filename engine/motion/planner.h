@@ -51,8 +51,11 @@ struct PlannedMotion {
   PathPiece path{};
   Head head{};
   SpeedProfile speed;
-  PathLimits limits;         // those in force, for a STOP on the way
-  double settling_s = 0.0;   // standstill after the motion
+  PathLimits limits;        // those in force, for a STOP on the way
+  double settling_s = 0.0;  // standstill after the motion
+  // In a bend that is fast at some places and slow at others: the highest speed that is allowed at
+  // all of them, for a START on the way. Else no limit besides limits.speed.
+  double restart_speed = kLargest;
   bool ends_move = true;     // the last motion of its move
   bool upper_bound = false;  // a /FLY passage was planned as a stop: time is an upper bound
   CornerReport corner;       // when ends_move

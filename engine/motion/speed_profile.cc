@@ -127,10 +127,10 @@ double Reach(double v0, double length, const PathLimits& limits) {
   return v0 + y * y;
 }
 
-double ReachMinimum(double v0_high, double length, const PathLimits& limits) {
+double ReachMinimum(double v0_low, double v0_high, double length, const PathLimits& limits) {
   const double a = limits.acceleration;
   const double j = limits.jerk;
-  if (std::isinf(j)) return Reach(0.0, length, limits);
+  if (std::isinf(j)) return Reach(v0_low, length, limits);
   const double b = a * a / j;
   // Where the derivative of Reach by v0 is 0: y^2 = 2 v0 in the short regime, v0 = b / 2 in the
   // other.
@@ -139,7 +139,7 @@ double ReachMinimum(double v0_high, double length, const PathLimits& limits) {
     const double y = std::cbrt(0.5 * length * std::sqrt(j));
     worst = 0.5 * y * y;
   }
-  return Reach(std::min(worst, v0_high), length, limits);
+  return Reach(std::clamp(worst, v0_low, v0_high), length, limits);
 }
 
 SpeedProfile SpeedProfile::Span(double length, double v0, double v1, const PathLimits& limits) {

@@ -260,6 +260,30 @@ TEST(Planner, TinyStepsAreNotLost) {
   EXPECT_NEAR(length, 1e-4, 1.1e-6);  // the last step of up to 1e-6 mm is dropped
 }
 
+// Without a limit on jerk a line goes over into an arc without a curve; the bend behind a short arc
+// must not reach back into the line, which lies elsewhere than the arc's tangent. OPT-B.25
+TEST(Planner, BendKeepsToTheArcBehindIt) {
+  MachineLimits machine = StandardMachine();
+  machine.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
+  const MoveCommand north = LineTo({0, -20, 0}, {}, 1, true);
+  MoveCommand arc = north;  // 0.05 mm of a circle of 1000 mm, then a line
+  arc.path = PathPiece::Circle({}, {-1000, 0, 0}, {0, 0, 1}, 5e-5, 0, 0);
+  const Vec3 end = arc.path.to().tip;
+  Planner planner(machine);
+  for (const MoveCommand& move : {north, arc, LineTo(end, end + Vec3{30, 0, 0}, 3)}) {
+    ASSERT_TRUE(planner.Append(move));
+  }
+  planner.Stop();
+  TipPose last{{0, -20, 0}};
+  while (const std::optional<PlannedItem> item = planner.Next()) {
+    const PathPiece& path = std::get<PlannedMotion>(*item).path;
+    EXPECT_LE(Distance(path.from().tip, last.tip), 1e-12);
+    EXPECT_LE(Distance(path.At(0.0).tip, last.tip), 1e-9);
+    last = path.to();
+  }
+  EXPECT_EQ(last.tip, end + (Vec3{30, 0, 0}));
+}
+
 // Behind a bend come more points straight on, each with another SPEED, than the window holds, and
 // the bend takes its part of them: what is decided early then must not cut into it. OPT-2.46,
 // OPT-B.29
