@@ -31,6 +31,7 @@ const PlannedItem* MotionChain::Next() {
 // How many spans are timed together next; 0 when that is not known yet.
 std::size_t MotionChain::SectionSize() {
   const std::size_t known = speeds_.final_count();
+  if (known <= section_knots_) return 0;
   while (spans_.first() + section_seen_ < spans_.end()) {
     const Span& span = spans_[spans_.first() + section_seen_];
     if (section_knots_ + span.knots() > known) break;
@@ -181,7 +182,7 @@ void MotionChain::TakeStretches(SpeedProfile& speed, CurveCells& cells, double f
 
 // Motions are made where they wait to be taken: they are large. The slot holds an old one, so every
 // member is set here or by the caller (path, speed).
-inline PlannedMotion& MotionChain::NewMotion(const Span& span, const Move& source) {
+[[gnu::always_inline]] inline PlannedMotion& MotionChain::NewMotion(const Span& span, const Move& source) {
   PlannedItem& slot = items_.PushSlot();
   auto* motion = std::get_if<PlannedMotion>(&slot);
   if (motion == nullptr) motion = &slot.emplace<PlannedMotion>();

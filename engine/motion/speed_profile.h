@@ -76,7 +76,7 @@ class SpeedProfile {
   };
   void Advance(Place& place, double s) const;
   // Sets `part` to the part from `place` to `s_to`, where `place` is afterwards.
-  void PartTo(Place& place, double s_to, SpeedProfile& part) const {
+  [[gnu::always_inline]] void PartTo(Place& place, double s_to, SpeedProfile& part) const {
     const Phase& phase = phases_[static_cast<std::size_t>(place.phase)];
     if (place.phase < count_ && phase.jerk == 0.0 && phase.start.acceleration == 0.0 &&
         s_to < PhaseEnd(place.phase) && place.s >= phase.start.s) {
