@@ -7,7 +7,7 @@
 namespace rmlcell::motion {
 namespace {
 
-constexpr double kRoom = 1e-9;        // last digits must not decide
+constexpr double kLastDigits = 1e-9;        // last digits must not decide
 constexpr double kWorthwhile = 1.01;  // less to gain than this is not worth more stretches
 
 // Whether the ramp between these speeds keeps below those that stand at equal steps of `length`.
@@ -37,12 +37,12 @@ bool RampFits(std::span<const double> most, double length, double from, double t
       const double speed = phase.start.speed + t * (a + 0.5 * t * phase.jerk);
       const auto step = static_cast<std::size_t>(x);
       const double here = most_at(step, x - static_cast<double>(step));
-      if (speed > here * (1.0 + kRoom)) return false;
+      if (speed > here * (1.0 + kLastDigits)) return false;
     }
   }
   const auto reached = static_cast<std::size_t>(std::clamp(ramp.end().s * per_mm, 0.0, steps));
   return std::ranges::all_of(most.subspan(reached + 1),
-                             [&](double here) { return to <= here * (1.0 + kRoom); });
+                             [&](double here) { return to <= here * (1.0 + kLastDigits); });
 }
 
 // From any speed up to most[0]. Who starts slower has more time on the way and is nearly everywhere
