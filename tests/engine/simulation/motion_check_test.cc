@@ -73,7 +73,7 @@ TEST(MotionCheck, TheToolCounts) {
   EXPECT_EQ(low.findings[0].detail, "Z of the target leaves its travel by 50.000 mm");
 }
 
-// OPT-2.16, OPT-E.7321: advice of the motion comes along, and is no error.
+// OPT-2.16: advice of the motion comes along, and is no error.
 TEST(MotionCheck, TellsAxesThatHoldBack) {
   const MotionCheck check = Checked(
       {{1, "COORD ABSOL\nPATH LIN\nMOVE (500.,500.,-400.,0.,1.)\nMOVE (500.,505.,-400.,0.,0.)\n"}},
