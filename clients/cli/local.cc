@@ -8,6 +8,7 @@
 
 #include "clients/cli/findings_text.h"
 #include "clients/cli/messages.h"
+#include "clients/cli/milling.h"
 #include "clients/cli/program_files.h"
 #include "clients/cli/terminal.h"
 #include "engine/core/number_text.h"
@@ -244,6 +245,11 @@ int Simulate(const SimulateOptions& options) {
     request.products.plot = true;
     request.plot.curves = *std::move(curves);
   }
+  if (!options.stock.empty()) {
+    Result<simulation::Milling> milling = MillingOf(options, loaded->family->Shape(outcome->setup->parameters));
+    if (!milling) return Refuse(milling.error());
+    request.products.milling = *milling;
+  }
   request.variables = *variables;
   ProgressLine progress;
   request.options.slice = std::chrono::seconds(10);
@@ -259,6 +265,9 @@ int Simulate(const SimulateOptions& options) {
   progress.Clear();
   if (!result) return Refuse(result.error());
 
+  if (result->material && !options.stl.empty()) {
+    if (Status written = WriteMaterial(*result->material, options.stl); !written) return Refuse(written.error());
+  }
   if (samples.is_open()) {
     samples.close();
     if (!samples) return Refuse({ErrorCode::kCellFileUnwritable, options.samples[1] + ": not written to its end", {}});

@@ -36,6 +36,10 @@ struct SimulateOptions {
   std::string svg;
   std::vector<std::string> samples;  // rate and file; empty: none
   std::vector<std::string> plot;  // curves and file; empty: none
+  std::string stock;              // "100x80x10"; empty: material is not modelled
+  std::string tool;               // "flat:3"
+  double cell_mm = 0.1;
+  std::string stl;
   std::string state_in;
   std::string state_out;
   bool trace = false;

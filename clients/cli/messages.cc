@@ -149,6 +149,16 @@ void AddViolations(const v1::RunReport& report, Rows& rows) {
   if (all > kListedMax) rows.emplace_back("", "and " + std::to_string(all - kListedMax) + " more");
 }
 
+void AddMilling(const v1::RunReport& report, Rows& rows) {
+  if (!report.has_milling()) return;
+  const v1::MillingFigures& milling = report.milling();
+  rows.emplace_back("material", Fixed(milling.removed_mm3(), 3) + " mm3 taken off");
+  if (milling.gouges() == 0) return;
+  rows.emplace_back("", std::to_string(milling.gouges()) + " motions at travel speed through material, up to " +
+                            Fixed(milling.gouge_depth_mm(), 3) + " mm deep at " + PlaceText(milling.gouge_place()) +
+                            ", at " + Fixed(milling.gouge_time_s(), 3) + " s");
+}
+
 // A figure of the family, by name; 0 when the run has none of it.
 double FamilyFigure(const v1::RunReport& report, std::string_view name) {
   for (const v1::Figure& figure : report.figures()) {
@@ -201,6 +211,7 @@ void AddFigures(const v1::RunReport& report, Rows& rows) {
   AddCorners(report, rows);
   AddSlowMoves(report, rows);
   AddPeaks(report, rows);
+  AddMilling(report, rows);
   AddViolations(report, rows);
   rows.emplace_back("steps", std::to_string(total.steps()));
   rows.emplace_back("final tip", PointText(report.final_position().tip()));

@@ -16,6 +16,7 @@
 #include "engine/optimo/language/linker.h"
 #include "engine/optimo/language/source_map.h"
 #include "engine/optimo/offline/compensate.h"
+#include "engine/optimo/offline/contour_advice.h"
 #include "engine/optimo/offline/convert.h"
 #include "engine/optimo/offline/listing.h"
 #include "engine/optimo/offline/transform.h"
@@ -65,8 +66,12 @@ Result<Source> ReadSource(const std::string& file) {
 // The object of a file; its findings go into the answer. Nothing when it has errors.
 std::optional<optimo::Compilation> CompileFile(const std::string& file, const Source& source, bool advice,
                                                ToolAnswer& answer) {
-  optimo::Compilation compiled =
-      optimo::Compile(source.text, file, {.object_limit = optimo::kObjectLimitStandard, .advice = advice, .inch = source.inch});
+  optimo::Compilation compiled = optimo::Compile(
+      source.text, file,
+      {.object_limit = optimo::kObjectLimitStandard,
+       .advice = advice,
+       .inch = source.inch,
+       .further_advice = optimo::ContourAdvice(optimo::ContourMachine::Standard())});
   answer.Found(compiled.diagnostics, compiled.diagnostics_dropped, source.text);
   if (!compiled.ok) return std::nullopt;
   return compiled;
@@ -110,7 +115,8 @@ int Decompile(const ToolOptions& options) {
 }
 
 int Link(const LinkOptions& options) {
-  const Result<LoadedFiles> loaded = LoadFiles(options.files, options.slots, options.main_slot, "optimo");
+  const Result<LoadedFiles> loaded =
+      LoadFiles(options.files, options.slots, options.main_slot, "optimo", EmptyInFolders::kTaken);
   if (!loaded) return Refuse(loaded.error());
   if (options.json && options.output == "-") return Refuse(NoBytesInJson());
   ToolAnswer answer(options.files.front(), options.json);
@@ -121,6 +127,18 @@ int Link(const LinkOptions& options) {
     if (const auto made = objects.find(slot); made != objects.end()) return made->second;
     const auto program = std::ranges::find(loaded->programs, slot, &bridge::ProgramInput::slot);
     if (program == loaded->programs.end()) return std::nullopt;
+    if (program->bytes->empty()) {
+      answer.Found({{.code = ErrorCode::kCellEmptyProgram,
+                     .severity = Lookup(ErrorCode::kCellEmptyProgram).severity,
+                     .detail = "program " + std::to_string(slot) + " is called, and its file is empty",
+                     .rule = {},
+                     .file = program->file_name,
+                     .where = {},
+                     .fixes = {}}},
+                   0, {});
+      good = false;
+      return std::nullopt;
+    }
     const optimo::FileForm form = optimo::FormOfFile(program->file_name, *program->bytes);
     if (form == optimo::FileForm::kObject) return objects[slot] = *program->bytes;
     const auto compiled =
@@ -235,6 +253,9 @@ int Transform(const TransformOptions& options) {
     std::array<double, 6> by{};
     std::ranges::copy(options.shift, by.begin());
     return Rewrite(options, [&](const std::string& text) { return optimo::Shift(text, by); });
+  }
+  if (options.move.empty() && options.turn.empty()) {
+    return Refuse({ErrorCode::kCellUsage, "nothing to do: give --move, --turn or --shift", {}});
   }
   std::array<double, 3> move{}, turn{};
   std::ranges::copy(options.move, move.begin());

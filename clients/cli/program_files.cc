@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <set>
 #include <system_error>
 
 #include "engine/core/number_text.h"
@@ -23,10 +24,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Result<bridge::ProgramInput> ReadProgram(const std::string& file, int slot) {
+Result<bridge::ProgramInput> ReadProgram(const std::string& file, int slot, bool may_be_empty) {
   Result<std::string> bytes = bridge::ReadFile(file, kFileBytesMax);
   if (!bytes) return bytes.error();
-  if (bytes->empty()) return Error{ErrorCode::kCellEmptyProgram, file, {}};
+  if (bytes->empty() && !may_be_empty) return Error{ErrorCode::kCellEmptyProgram, file, {}};
   return bridge::ProgramInput{.slot = slot,
                               .name = fs::path(file).stem().string(),
                               .file_name = file,
@@ -107,8 +108,9 @@ Result<std::pair<int, std::string>> ParseSlotFile(const std::string& text) {
 }
 
 Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files, const std::vector<std::string>& slots,
-                              int main_slot, const std::string& family_id) {
+                              int main_slot, const std::string& family_id, EmptyInFolders empty) {
   std::vector<std::pair<int, std::string>> found;  // slot 0: to be chosen
+  std::set<std::string> in_folders;
   std::string first_file;
   // A folder may hold programs of several machines: only those of the family of the first file count.
   std::error_code ignored;
@@ -138,7 +140,9 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files, const std::
         // The main program may lie in the folder, too.
         const bool again = std::ranges::any_of(
             found, [&](const auto& one) { return one.first == *slot && fs::equivalent(one.second, path, ignored); });
-        if (!again) found.emplace_back(*slot, path.string());
+        if (again) continue;
+        found.emplace_back(*slot, path.string());
+        if (empty == EmptyInFolders::kTaken) in_folders.insert(path.string());
       }
     }
   }
@@ -176,7 +180,7 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files, const std::
       }
     }
     if (!IsSlot(slot)) return Error{ErrorCode::kProgramNumber, "program number is " + std::to_string(slot), {}};
-    Result<bridge::ProgramInput> program = ReadProgram(file, slot);
+    Result<bridge::ProgramInput> program = ReadProgram(file, slot, in_folders.contains(file));
     if (!program) return program.error();
     if (file == first_file) loaded.main_slot = slot;
     loaded.programs.push_back(std::move(*program));

@@ -22,9 +22,14 @@ struct LoadedFiles {
 
 // Files and folders given to a local run. Folders bring their numbered programs ("12.S", "44.rml");
 // "SLOT=FILE" a program each. The main program is the first file, or `main_slot`.
-// Errors: CellFileUnreadable, CellUnknownFamily, CellFamilyUnknownFromName, CellUsage, ProgramNumber.
+// An empty file is an error, unless it lies in a folder and only what is needed is read of that: the caller
+// tells it when it is.
+// Errors: CellFileUnreadable, CellUnknownFamily, CellFamilyUnknownFromName, CellUsage, ProgramNumber,
+// CellEmptyProgram.
+enum class EmptyInFolders { kRefused, kTaken };
 Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files, const std::vector<std::string>& slots,
-                              int main_slot, const std::string& family_id);
+                              int main_slot, const std::string& family_id,
+                              EmptyInFolders empty = EmptyInFolders::kRefused);
 
 // "progs/44.S" -> 44: the name of a program file tells its slot. Nothing: it tells none.
 std::optional<int> SlotFromName(const std::filesystem::path& path);

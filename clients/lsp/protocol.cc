@@ -1,6 +1,7 @@
 #include "clients/lsp/protocol.h"
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -35,11 +36,44 @@ std::optional<std::uint32_t> Count(const Json* json) {
   return static_cast<std::uint32_t>(std::min(json->get<std::uint64_t>(), kMost));
 }
 
+// The 16 bits of the escape "\uXXXX" that begins at `at`; nothing when there is none.
+std::optional<unsigned> EscapedUnit(std::string_view text, std::size_t at) {
+  if (text.size() - std::min(at, text.size()) < 6 || text[at] != '\\' || text[at + 1] != 'u')
+    return std::nullopt;
+  unsigned unit = 0;
+  const char* begin = text.data() + at + 2;
+  const auto [end, error] = std::from_chars(begin, begin + 4, unit, 16);
+  if (error != std::errc() || end != begin + 4) return std::nullopt;
+  return unit;
+}
+
+// Half a surrogate pair is no character, but JavaScript has such strings, and an editor sends them
+// while a pair is typed, or cut in two. It becomes U+FFFD, one unit of UTF-16 as well.
+std::string WithWholePairs(std::string_view text) {
+  std::string whole(text);
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    if (whole[at] != '\\') continue;
+    const auto unit = EscapedUnit(whole, at);
+    if (!unit || *unit < 0xD800 || *unit > 0xDFFF) {
+      ++at;  // of "\\" the second does not begin an escape
+      continue;
+    }
+    const auto next = EscapedUnit(whole, at + 6);
+    if (*unit < 0xDC00 && next && *next >= 0xDC00 && *next <= 0xDFFF) {
+      at += 11;
+    } else {
+      whole.replace(at, 6, "\\uFFFD");
+    }
+  }
+  return whole;
+}
+
 }  // namespace
 
 std::optional<Json> ReadJson(std::string_view text) {
   if (TooDeep(text)) return std::nullopt;
   Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) json = Json::parse(WithWholePairs(text), nullptr, false);
   if (json.is_discarded()) return std::nullopt;
   return json;
 }

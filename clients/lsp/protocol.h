@@ -36,7 +36,7 @@ struct RequestError {
 // Arrays and objects inside each other; deeper is refused before it is read.
 inline constexpr int kJsonDepthMax = 64;
 
-// Nothing when it is no JSON, or nested too deep.
+// Nothing when it is no JSON, or nested too deep. Half a surrogate pair counts as U+FFFD.
 std::optional<Json> ReadJson(std::string_view text);
 // One line; bytes that are no UTF-8 become U+FFFD.
 std::string WriteJson(const Json& json);

@@ -6,6 +6,15 @@
 
 // Documents as the editor opens, changes and closes them, and what is said of them.
 namespace rmlcell::lsp {
+namespace {
+
+// Without one, or with null as some clients have it, the change is the whole text.
+const Json* RangeOf(const Json& change) {
+  const Json* range = Member(change, {"range"});
+  return range == nullptr || range->is_null() ? nullptr : range;
+}
+
+}  // namespace
 
 void Server::DidOpen(const Json& parameters) {
   const auto uri = TextMember(parameters, {"textDocument", "uri"});
@@ -24,13 +33,13 @@ void Server::DidChange(const Json& parameters) {
   const Json* changes = Member(parameters, {"contentChanges"});
   if (changes == nullptr || !changes->is_array()) return Log("didChange without contentChanges");
   for (const Json& change : *changes) {
-    const Json* range = Member(change, {"range"});
+    const Json* range = RangeOf(change);
     if (!TextMember(change, {"text"}) || (range != nullptr && !ReadRange(*range)))
       return Log("didChange with a change that cannot be read; close and open the document");
   }
   for (const Json& change : *changes) {
     std::string text = *TextMember(change, {"text"});
-    if (const Json* range = Member(change, {"range"})) {
+    if (const Json* range = RangeOf(change)) {
       open->document.Replace(*ReadRange(*range), text);
     } else {
       open->document.ReplaceAll(std::move(text));

@@ -52,7 +52,8 @@ _rmlcell_options() {
     check) echo "--help --family --machine --inputs --errors-only --fix --dry-run --json" ;;
     simulate)
       echo "--help --slot --main --executable --family --profile --machine --inputs --mode --override --simul" \
-        "--break --budget --vars --svg --samples --plot --state-in --state-out --trace --facts --json" ;;
+        "--break --budget --vars --svg --samples --plot --stock --tool --cell --stl" \
+        "--state-in --state-out --trace --facts --json" ;;
     explain) echo "--help --json" ;;
     diff) echo "--help --svg --json" ;;
     parameters) echo "--help --profile --json" ;;
@@ -80,7 +81,7 @@ _rmlcell_options() {
 _rmlcell_takes_value() {
   case $1 in
     --slot | --main | --executable | --family | --profile | --machine | --inputs | --mode | --override | \
-      --simul | --break | --budget | --vars | --svg | --samples | --plot | --state-in | --state-out | --server | --etag | --form | \
+      --simul | --break | --budget | --vars | --svg | --samples | --plot | --stock | --tool | --cell | --stl | --state-in | --state-out | --server | --etag | --form | \
       --output | -o | --kind | --title | --request-id | --pace | --after | --filter | --limit | --move | --turn | --shift) return 0 ;;
   esac
   return 1
@@ -107,6 +108,9 @@ _rmlcell_values() {
       _rmlcell_offer state= machine= kind= caller= finished= ;;
     --machine) _rmlcell_files .toml ;;
     --svg) _rmlcell_files .svg ;;
+    --stl) _rmlcell_files .stl ;;
+    --stock) _rmlcell_offer 100x80x10 ;;
+    --tool) _rmlcell_offer flat:3 ball:3 vee:6:60 ;;
     --samples) _rmlcell_offer 10 100 1000 10000 ;;
     --plot)
       compopt -o nospace 2>/dev/null

@@ -90,8 +90,23 @@ double Corner::PlainBow(double cut_mm) const { return cut_mm * (0.5 - 5.0 * rho_
 double Corner::PlainSpeed(double cut_mm, const MachineLimits& machine) const {
   const double by_acceleration = std::sqrt(machine.normal_acceleration() * cut_mm / bend_);
   if (std::isinf(machine.tip_jerk_mm_s3)) return by_acceleration;
-  const double jerk = jerk_ * CornerJerkShare(half_sine_, half_cosine_);
+  const double jerk = CornerJerkPeak(half_sine_, half_cosine_, bend_);
   return std::min(by_acceleration, std::cbrt(machine.normal_jerk() * cut_mm * cut_mm / jerk));
+}
+
+BendSpeeds Corner::PlainSpeeds(double cut, double top, const MachineLimits& machine) const {
+  // Plans look at these places only, and ramps bend a little between them.
+  constexpr double kBetween = 1.0 - 3e-3;
+  const HalfCorner half = CornerHalf(half_sine_, half_cosine_);
+  const double by_bend = std::sqrt(machine.normal_acceleration() * cut / bend_);
+  const double by_jerk = std::cbrt(machine.normal_jerk() * cut * cut / bend_);
+  const double least = PlainSpeed(cut, machine);  // holds everywhere
+  BendSpeeds speeds;
+  for (std::size_t k = 0; k < speeds.most.size(); ++k) {
+    const double here = kBetween * std::min(by_bend * half.by_bend[k], by_jerk * half.by_jerk[k]);
+    speeds.most[k] = std::min(std::max(here, least), top);
+  }
+  return speeds;
 }
 
 double JunctionSpeed(const Vec3& tangent_in, const Vec3& tangent_out, double jump_mm_s) {
@@ -148,7 +163,17 @@ double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLim
     return speed;
   };
   constexpr int kIntervals = 48;
-  return LeastAlong(allowed, 1.0, kIntervals, enough);
+  const double least = LeastAlong(allowed, 1.0, kIntervals, enough);
+  // Near a cusp all happens between two samples: as far about the sharpest place as the curve needs
+  // to turn.
+  const double sharpest = curve.SlowestPlace();
+  const double width = curve.Speed(sharpest) / Norm(curve.Derivative(sharpest, 2).tip);
+  if (!(width * kIntervals < 4.0)) return least;
+  constexpr double kWidths = 8.0;
+  const double from = std::max(0.0, sharpest - kWidths * width);
+  const double to = std::min(1.0, sharpest + kWidths * width);
+  return std::min(least, LeastAlong([&](double u) { return allowed(from + u); }, to - from,
+                                    kIntervals, enough));
 }
 
 }  // namespace rmlcell::motion

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/motion/axis_demand.h"
+#include "engine/motion/bend_speed.h"
 #include "engine/motion/corner_curve.h"
 #include "engine/motion/machine_limits.h"
 
@@ -62,6 +63,8 @@ class Corner {
   double PlainDeviation(double cut_mm) const;
   double PlainBow(double cut_mm) const;  // its middle is the corner plus this times (out - in)
   double PlainSpeed(double cut_mm, const MachineLimits& machine) const;
+  // The highest speed from place to place, none above `top`. With a limit on jerk.
+  BendSpeeds PlainSpeeds(double cut_mm, double top_mm_s, const MachineLimits& machine) const;
   double PlainCurvature(double cut_mm) const { return bend_ / cut_mm; }
 
  private:

@@ -158,33 +158,51 @@ double CornerCurve::Integral(double from, double to) const {
   return half * sum;
 }
 
+double CornerCurve::SlowestPlace() const {
+  constexpr int kSamples = 16;
+  double slowest = HUGE_VAL;
+  double where = 0.5;
+  for (int k = 0; k <= kSamples; ++k) {
+    const double u = static_cast<double>(k) / kSamples;
+    const double speed = Speed(u);
+    if (speed < slowest) {
+      slowest = speed;
+      where = u;
+    }
+  }
+  // Newton on d|p'|^2 / du, which has a simple root near a cusp.
+  for (int step = 0; step < 8; ++step) {
+    const Vec3 first = Derivative(where, 1).tip;
+    const Vec3 second = Derivative(where, 2).tip;
+    const double slope = Dot(second, second) + Dot(first, Derivative(where, 3).tip);
+    if (!(slope > 0.0)) break;
+    where = std::clamp(where - Dot(first, second) / slope, 0.0, 1.0);
+  }
+  return where;
+}
+
+bool CornerCurve::HasCusp(double cut_mm) const {
+  constexpr double kSharpest = 574.0;  // 10 K(175 degrees), motion.md 4.2: curvature x cut
+  const double bend = Norm(SecondByLength(SlowestPlace()).tip);
+  return !(bend * cut_mm < kSharpest);  // also when it stands still there
+}
+
 void CornerLength::ChoosePanels(const CornerCurve& curve) {
   constexpr int kSamples = 16;
   constexpr double kNearCusp = 0.25;  // of the mean: above, equal panels are good to 1e-12
   double slowest = HUGE_VAL;
   double sum = 0.0;
-  double where = 0.5;
   for (int k = 0; k <= kSamples; ++k) {
     const double speed = curve.Speed(static_cast<double>(k) / kSamples);
     sum += speed;
-    if (speed < slowest) {
-      slowest = speed;
-      where = static_cast<double>(k) / kSamples;
-    }
+    slowest = std::min(slowest, speed);
   }
   if (slowest * (kSamples + 1) > kNearCusp * sum) {
     panels_ = kPanels;
     for (std::size_t k = 0; k <= kPanels; ++k) edge_[k] = static_cast<double>(k) / kPanels;
     return;
   }
-  // Newton on d|p'|^2 / du, which has a simple root near a cusp.
-  for (int step = 0; step < 8; ++step) {
-    const Vec3 first = curve.Derivative(where, 1).tip;
-    const Vec3 second = curve.Derivative(where, 2).tip;
-    const double slope = Dot(second, second) + Dot(first, curve.Derivative(where, 3).tip);
-    if (!(slope > 0.0)) break;
-    where = std::clamp(where - Dot(first, second) / slope, 0.0, 1.0);
-  }
+  const double where = curve.SlowestPlace();
   panels_ = kPanelsMax;
   constexpr std::size_t kSide = kPanelsMax / 2;
   constexpr double kShrink = 0.3;

@@ -73,7 +73,13 @@ class CornerCurve {
   // Distance of `point` from the curve, and from its nearest place.
   double DistanceFrom(const Vec3& point) const;
 
-  double Speed(double u) const;                       // |dp/du|
+  double Speed(double u) const;  // |dp/du|
+  // Where that is least, and with it the curve sharpest.
+  double SlowestPlace() const;
+  // Whether it comes to a point on its way: it is bent ten times as sharp there as a curve between
+  // lines at the turn that is a stop, 175 degrees, with the same cut. Only curves beside an arc can
+  // (docs/decisions/0011-cusps.md).
+  bool HasCusp(double cut_mm) const;
   double Integral(double u_from, double u_to) const;  // arc length, one panel
 
  private:

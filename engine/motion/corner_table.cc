@@ -1,5 +1,7 @@
 #include "engine/motion/corner_table.h"
 
+#include <vector>
+
 #include "engine/core/units.h"
 #include "engine/motion/least.h"
 
@@ -56,6 +58,10 @@ class LengthTable {
   std::array<double, kNodes> length_{};
 };
 
+// About what the peak of path jerk is, at every angle, and smooth: J has corners, which straight
+// lines between the nodes of a table would cut.
+double JerkScale(double tangent, double bend) { return 3.0 * tangent + bend * bend; }
+
 // By theta/2. Apart from the lengths: it takes longer, and only corners that are capped ask for it.
 class JerkTable {
  public:
@@ -72,7 +78,7 @@ class JerkTable {
   }
 
  private:
-  static constexpr int kNodes = 1025;
+  static constexpr int kNodes = 2049;
   static constexpr double kHalfTurnMax = 1.5272;  // 87.5 degrees, rounded up
   static constexpr double kRoom = 1e-6;           // what straight lines between nodes may lack
 
@@ -86,10 +92,62 @@ class JerkTable {
       const double least =
           LeastAlong([&](double u) { return 1.0 / curve.JerkPerCube(u); }, 0.5, kIntervals);
       share_[static_cast<std::size_t>(k)] =
-          1.0 / (least * CornerJerk(s, c, CornerBend(s, c, CornerRho(c))));
+          1.0 / (least * JerkScale(s / c, CornerBend(s, c, CornerRho(c))));
     }
   }
   std::array<double, kNodes> share_{};
+};
+
+// By theta/2, as JerkTable.
+class HalfTable {
+ public:
+  static const HalfTable& Get() {
+    static const HalfTable table;
+    return table;
+  }
+  HalfCorner At(double half_sine, double half_cosine) const {
+    const double x = std::atan2(half_sine, half_cosine) / kHalfTurnMax * (kNodes - 1);
+    const int k = std::clamp(static_cast<int>(x), 0, kNodes - 2);
+    const auto t = static_cast<float>(x - k);
+    const Node* at = &nodes_[static_cast<std::size_t>(k)];
+    HalfCorner half;
+    for (std::size_t i = 0; i < half.by_bend.size(); ++i) {
+      half.by_bend[i] = kRoom * (at[0].by_bend[i] + (at[1].by_bend[i] - at[0].by_bend[i]) * t);
+      half.by_jerk[i] = kRoom * (at[0].by_jerk[i] + (at[1].by_jerk[i] - at[0].by_jerk[i]) * t);
+    }
+    return half;
+  }
+
+ private:
+  static constexpr int kNodes = 1025;
+  static constexpr double kHalfTurnMax = 1.5272;  // 87.5 degrees, rounded up
+  static constexpr double kRoom = 1.0 - 3e-4;     // what straight lines between nodes may lack
+  static constexpr double kMost = 1e3;            // where the curve is straight
+  struct Node {
+    std::array<float, HalfCorner::kSteps + 1> by_bend;
+    std::array<float, HalfCorner::kSteps + 1> by_jerk;
+  };
+
+  HalfTable() : nodes_(kNodes) {
+    for (int k = 0; k < kNodes; ++k) {
+      const double half_turn = std::max(kHalfTurnMax * k / (kNodes - 1), 1e-7);
+      const double s = std::sin(half_turn);
+      const double c = std::cos(half_turn);
+      const CornerCurve curve = PlainCurve(s, c);
+      const CornerLength length(curve);
+      const double bend = CornerBend(s, c, CornerRho(c));
+      Node& node = nodes_[static_cast<std::size_t>(k)];
+      for (std::size_t i = 0; i < node.by_bend.size(); ++i) {
+        const double way = 0.5 * length.total() * static_cast<double>(i) / HalfCorner::kSteps;
+        const double u = length.ParameterAt(curve, way);
+        const double kappa = Norm(curve.SecondByLength(u).tip);
+        const double jerk = curve.JerkPerCube(u);
+        node.by_bend[i] = static_cast<float>(std::min(std::sqrt(bend / kappa), kMost));
+        node.by_jerk[i] = static_cast<float>(std::min(std::cbrt(bend / jerk), kMost));
+      }
+    }
+  }
+  std::vector<Node> nodes_;
 };
 
 // By sin^2(theta/2). The curve is symmetric: with y = 2 share - 1 and w = 2 u - 1, w is odd in y,
@@ -153,8 +211,12 @@ class MeasureTable {
 
 }  // namespace
 
-double CornerJerkShare(double half_sine, double half_cosine) {
-  return JerkTable::Get().At(half_sine, half_cosine);
+double CornerJerkPeak(double half_sine, double half_cosine, double bend) {
+  return JerkTable::Get().At(half_sine, half_cosine) * JerkScale(half_sine / half_cosine, bend);
+}
+
+HalfCorner CornerHalf(double half_sine, double half_cosine) {
+  return HalfTable::Get().At(half_sine, half_cosine);
 }
 
 double CornerArcLength(double rho) { return LengthTable::Get().At(rho); }

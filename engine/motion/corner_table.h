@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "engine/motion/bend_speed.h"
 #include "engine/motion/corner_curve.h"
 
 namespace rmlcell::motion {
@@ -27,8 +28,18 @@ inline double CornerJerk(double half_sine, double half_cosine, double bend) {
   return std::max(t * std::min(3.0 + 1.2 * t, 4.75), 1.04 * bend * bend);
 }
 
-// The true peak of that as a share of J; never below it.
-double CornerJerkShare(double half_sine, double half_cosine);
+// The true peak of that; never below it.
+double CornerJerkPeak(double half_sine, double half_cosine, double bend);
+
+// What the local limits of speed along the first half of the curve are made of, at equal steps of
+// arc length: the curvature there is bend / by_bend^2 for a curve of cut 1, and path jerk per speed
+// cubed is bend / by_jerk^3. Rounded down.
+struct HalfCorner {
+  static constexpr std::size_t kSteps = BendSpeeds::kSteps;
+  std::array<double, kSteps + 1> by_bend;
+  std::array<double, kSteps + 1> by_jerk;
+};
+HalfCorner CornerHalf(double half_sine, double half_cosine);
 
 // Arc length of the whole curve.
 double CornerArcLength(double rho);

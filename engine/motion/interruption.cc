@@ -104,6 +104,7 @@ Restart RestartWith(std::span<const PlannedMotion> ahead, double s, double ease)
   const auto left_of = [&](std::size_t k) { return ahead[k].path.length() - (k == 0 ? s : 0.0); };
   const auto limits_of = [&](std::size_t k) {
     PathLimits limits = ahead[k].limits;
+    limits.speed = std::min(limits.speed, ahead[k].restart_speed);
     if (ahead[k].path.kind() == PathPiece::Kind::kBlend) {
       limits.acceleration *= ease;
       limits.jerk *= ease;
@@ -122,25 +123,22 @@ Restart RestartWith(std::span<const PlannedMotion> ahead, double s, double ease)
     std::size_t last = next;
     while (last + 1 < ahead.size() && ahead[last].speed.end().acceleration != 0.0) ++last;
     for (std::size_t k = last + 1; k-- > next;) {
-      caps[k] = SpeedAtEnd(ahead[k]);
-      if (ease < 1.0) {
-        caps[k] = std::min(caps[k], limits_of(k).speed);
-        if (k + 1 < ahead.size()) caps[k] = std::min(caps[k], limits_of(k + 1).speed);
-      }
+      caps[k] = std::min(SpeedAtEnd(ahead[k]), limits_of(k).speed);
+      if (k + 1 < ahead.size()) caps[k] = std::min(caps[k], limits_of(k + 1).speed);
       if (k == last || caps[k] <= caps[k + 1]) continue;
       caps[k] = std::min(caps[k], Reach(caps[k + 1], left_of(k + 1), limits_of(k + 1)));
     }
     for (; next <= last; ++next) {
-      PlannedMotion motion = ahead[next];
-      motion.limits = limits_of(next);
+      PlannedMotion motion = ahead[next];  // its limits are not eased: the next STOP begins anew
+      const PathLimits limits = limits_of(next);
       const double left = left_of(next);
       double end = caps[next];
-      if (end > speed && RampLength(speed, end, motion.limits) > left) {
-        end = std::min(end, Reach(speed, left, motion.limits));
+      if (end > speed && RampLength(speed, end, limits) > left) {
+        end = std::min(end, Reach(speed, left, limits));
       }
       if (left > 0.0) {
         if (next == 0) motion.path = PartOf(ahead[0].path, s, motion.path.length());
-        motion.speed = SpeedProfile::Span(left, speed, end, motion.limits);
+        motion.speed = SpeedProfile::Span(left, speed, end, limits);
       } else {
         motion.path = PathPiece::Line(ahead[next].path.to(), ahead[next].path.to());
         motion.speed = SpeedProfile();  // it stood at the end: only its settling is left

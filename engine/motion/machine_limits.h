@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "engine/motion/kinematics.h"
 
 namespace rmlcell::motion {
@@ -16,6 +18,8 @@ struct MachineLimits {
   // Above 0: a mill. Polylines are kept exactly, and a vertex is passed at the speed at which no
   // axis has to jump by more than this (motion.md section 7). 0: corners are passed on curves.
   double junction_jump_mm_s = 0.0;
+  // The same for the rotary axis A, where it turns in step with the tip of a mill.
+  double junction_jump_a_rad_s = std::numeric_limits<double>::infinity();
   // Ramps run across the passages between moves (level 2 of motion.md 5.4). False: the acceleration
   // is zero at each of them (level 1, the reference); never faster.
   bool ramps_across_passages = true;

@@ -6,10 +6,14 @@
 namespace rmlcell::motion {
 namespace {
 
-constexpr std::size_t kBatchMin = 32;  // knots before a backward pass is worth its while
-constexpr double kCutMin_mm = 1e-4;    // a smaller curve is a stop, motion.md 4.4
-constexpr double kEqualLimits = 1e-9;  // relative
+constexpr std::size_t kBatchMin = 32;    // knots before a backward pass is worth its while
+constexpr std::size_t kMillLegMax = 16;  // moves: most of what one leg of all would save
+constexpr double kCutMin_mm = 1e-4;      // a smaller curve is a stop, motion.md 4.4
+constexpr double kEqualLimits = 1e-9;    // relative
 constexpr double kContiguous_mm = 1e-6;
+
+// A bend that takes all that the axes have takes nine tenths of it at this share of its speed.
+constexpr double kLeavesRoom = 0.95;
 
 bool Equal(double a, double b) { return a == b || std::abs(a - b) <= kEqualLimits * std::abs(b); }
 bool Equal(const PathLimits& a, const PathLimits& b) {
@@ -58,9 +62,11 @@ void MotionChain::Append(const MoveCommand& move, const PathLimits& limits) {
   slot.limits = limits;
   // What is no number makes no passage.
   slot.overshoot = move.overshoot_fraction > 0.0 ? std::min(move.overshoot_fraction, 1.0) : 0.0;
+  slot.passage_speed = move.passage_speed_mm_s;
   slot.settling_s = move.settles ? machine_.settling_s : 0.0;
   slot.tag = move.tag;
   slot.fly = move.fly;
+  slot.would_blend = false;
   end_ = move.path.to();
   end_known_ = true;
   open_ = true;
@@ -85,18 +91,26 @@ bool MotionChain::Join(const MoveCommand& move, const PathLimits& limits) {
   Leg& leg = legs_.back();
   Passage passage = Passage::kStop;
   double cap = 0.0;
-  bool bends =
-      false;  // a curve must not reach over it, although without a limit on jerk it is passed
+  const bool mill = machine_.junction_jump_mm_s > 0.0;
+  // A curve must not reach over it, although without a limit on jerk it is passed.
+  bool bends = false;
   if (before.overshoot <= 0.0 || stands_) {
     passage = Passage::kStopNoSpeed;
   } else if (before.path.by_sigma() || move.path.by_sigma()) {
     passage = Passage::kStopNeighbour;
+    // The machine would blend these in axis space (motion.md 4.5), which is not planned.
+    using Kind = PathPiece::Kind;
+    moves_.back().would_blend =
+        before.path.kind() == Kind::kJoint && move.path.kind() == Kind::kJoint;
   } else if (before.head == move.head && Contiguous(before.path.to(), move.path.from())) {
     cap = before.overshoot * std::min(before.limits.speed, limits.speed);
-    if (machine_.junction_jump_mm_s > 0.0) {  // a mill
+    if (mill) {
       passage = Passage::kThrough;
-      cap = std::min(cap, JunctionSpeed(before.path.Tangent(before.path.length()),
-                                        move.path.Tangent(0.0), machine_.junction_jump_mm_s));
+      cap = std::min({cap, before.passage_speed,
+                      JunctionSpeed(before.path.Tangent(before.path.length()),
+                                    move.path.Tangent(0.0), machine_.junction_jump_mm_s)});
+      const double turn = std::abs(move.path.a_rate() - before.path.a_rate());
+      if (turn > 0.0) cap = std::min(cap, machine_.junction_jump_a_rad_s / turn);
     } else {
       leg.corner.Assign(before.path, move.path);
       passage = leg.corner.passage();
@@ -107,10 +121,12 @@ bool MotionChain::Join(const MoveCommand& move, const PathLimits& limits) {
     }
   }
   stands_ = false;
-  if (passage == Passage::kThrough && Equal(before.limits, limits) && Equal(cap, limits.speed)) {
-    // A line without end must not fill the window as one leg.
-    if (leg.last_move - leg.first_move < window_ / 2) return false;
-    ++starved_;
+  const bool alike = Equal(before.limits, limits) && Equal(cap, limits.speed);
+  if (passage == Passage::kThrough && !bends && alike) {
+    // A line without end must not fill the window as one leg. Of a mill it need not even wait:
+    // without a limit on jerk a leg may be cut anywhere.
+    if (leg.last_move - leg.first_move < (mill ? kMillLegMax : window_ / 2)) return false;
+    if (!mill) ++starved_;
     bends = true;
   }
   CloseLeg(passage, bends, cap);
@@ -167,8 +183,8 @@ void MotionChain::Work() {
     speeds_.Settle();
     speeds_next_ = std::max(kBatchMin, 2 * open_knots(speeds_));
   }
-  const Number decided = speeds_.final_count();
-  const Number oldest = decided < spans_.size() ? spans_[spans_.first() + decided].first_move
+  SeeDecided();
+  const Number oldest = decided_ < spans_.end() ? spans_[decided_].first_move
                         : legs_.empty()         ? moves_.end()
                                                 : legs_.front().first_move;
   if (moves_.end() - oldest >= window_) Starve();
@@ -180,8 +196,33 @@ void MotionChain::Starve() {
   running_.Accept(running_.size() / 2);
   while (Resolve(true)) {
   }
-  speeds_.Settle();
-  speeds_.Accept(speeds_.size() / 2);
+  LetBendsVary();
+  if (2 * speeds_.Settle() < speeds_.size()) speeds_.Accept(speeds_.size() / 2);
+}
+
+void MotionChain::SeeDecided() {
+  while (decided_ < spans_.end() &&
+         decided_knots_ + spans_[decided_].knots() <= speeds_.final_count()) {
+    decided_knots_ += spans_[decided_++].knots();
+  }
+}
+
+// A chain of steady bends that use up the lines between them has one speed, which its slowest bend
+// sets: nothing is decided before its end. Where the window is full, its bends are passed with
+// changing speed, where need be a little slower, so that what comes later need not be known.
+void MotionChain::LetBendsVary() {
+  SeeDecided();
+  std::size_t known = speeds_.final_count() - decided_knots_;  // knots of the span
+  speeds_.DropOpen();
+  for (Number k = decided_; k < spans_.end(); ++k, known = 0) {
+    Span& span = spans_[k];
+    if (known == 0 && IsBlend(span.report.passage) && !span.in_stretches) {
+      if (!span.head_steady || !axes_follow_ramps_) span.cap *= kLeavesRoom;
+      span.in_stretches = true;
+      span.stretches = {.start = span.cap, .open = span.cap, .middle = span.cap};
+    }
+    PushKnots(span, known);
+  }
 }
 
 // The length of the run that begins behind `leg`, or at least `enough` of it; nothing when that is
@@ -220,9 +261,13 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
   Leg& leg = legs_[number];
   const double wanted = running_.speed();
   const double total = run_length_ + leg.length;
-  if (!leg.ends_run && number - legs_.first() >= window_ / 2) {  // nor may a run fill it
+  // Nor may a run fill the window; but it holds what the curve before it takes. The run of a mill has
+  // no curve at its end to wait for.
+  const bool mill = machine_.junction_jump_mm_s > 0.0;
+  const std::size_t longest = mill ? kBatchMin : window_ / 2;
+  if (!leg.ends_run && number - legs_.first() >= longest && total >= run_cut_) {
     leg.ends_run = true;
-    ++starved_;
+    if (!mill) ++starved_;
   }
   if (!leg.ends_run) {
     leg.cap = std::min(leg.cap, wanted);
@@ -246,18 +291,28 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
     if (!after) return false;
     cut = std::min({want, 0.5 * total, 0.5 * *after});
     const bool capped = cut < uncapped;
+    double swallowed = HUGE_VAL;  // the speed of what the curve takes whole
     if (cut < kCutMin_mm) {
       cut = 0.0;
       closing.report.passage = Passage::kStopShort;
     } else {
-      std::optional<double> swallowed = HUGE_VAL;
       if (legs_[number + 1].length < cut) {
-        swallowed = SpeedWithin(number, cut, accept_what_is_there);
-        if (!swallowed) return false;
+        const auto within = SpeedWithin(number, cut, accept_what_is_there);
+        if (!within) return false;
+        swallowed = *within;
       }
       closing.report.passage = capped ? Passage::kBlendCapped : Passage::kBlend;
+      closing.report.cut_mm = cut;
       speed_cap = wanted;
       MakeCurve(closing, leg, cut);
+    }
+    if (cut > 0.0 && !leg.corner.lines() && curves_.back().HasCusp(cut)) {
+      curves_.PopBack();
+      cut = speed_cap = 0.0;
+      closing.curve_length = closing.report.deviation_mm = 0.0;
+      closing.report.passage = Passage::kStopReversal;
+    }
+    if (cut > 0.0) {
       const Head& head = moves_[leg.last_move].head;
       if (leg.corner.lines() && capped) {
         speed_cap = std::min(speed_cap, leg.corner.PlainSpeed(cut, machine_));
@@ -273,7 +328,9 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
         speed_cap = std::min(speed_cap, SpeedOnCurve(curve, head, machine_, speed_cap));
       }
       if (speed_cap < wanted) closing.report.passage = Passage::kBlendCapped;
-      speed_cap = std::min(speed_cap, *swallowed);
+      speed_cap = std::min(speed_cap, swallowed);
+      ChooseStretches(closing, leg, speed_cap, std::min(leg.limit, swallowed));
+      if (closing.in_stretches) speed_cap = closing.stretches.start;
     }
   }
   closing.report.cut_mm = cut;
@@ -320,7 +377,7 @@ void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
     ++after;
   }
   const PathPiece& out = moves_[after].path;
-  span.curve_may_vary =
+  span.head_steady =
       in.a_rate() == 0.0 && in.b_rate() == 0.0 && out.a_rate() == 0.0 && out.b_rate() == 0.0;
   const CornerCurve curve(EndAt(in, std::max(in.length() - left, 0.0)),
                           EndAt(out, std::min(right, out.length())), cut);
@@ -336,6 +393,80 @@ void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
   span.curve_length = length.total();
   span.curve_middle = curve.At(length.ParameterAt(curve, 0.5 * span.curve_length));
   span.report.deviation_mm = curve.DistanceFrom(moves_[leg.last_move].path.to().tip);
+}
+
+// A bend that cannot be passed at OVERSH x Vb but at `steady` may be faster where it is less tight,
+// up to `most`. motion.md 5.4
+void MotionChain::ChooseStretches(Span& span, const Leg& leg, double steady, double most) {
+  if (!machine_.ramps_across_passages || std::isinf(machine_.tip_jerk_mm_s3)) return;
+  if (!axes_follow_ramps_ || !span.head_steady) return;
+  if (steady >= leg.limit * (1.0 - kEqualLimits)) return;
+  span.in_stretches = true;
+  span.stretches = {.start = steady, .open = steady, .middle = steady};
+  if (!span.plain) return;
+  const double cut = span.report.cut_mm;
+  span.stretches = StretchesOf(leg.corner.PlainSpeeds(cut, most, machine_), 0.5 * span.curve_length,
+                               LimitsOnCurve(leg.last_move, cut));
+}
+
+// Those of every move that a curve touches.
+PathLimits MotionChain::LimitsOnCurve(Number corner_move, double cut) {
+  PathLimits limits = moves_[corner_move].limits;
+  const auto lower = [&](const Move& move) {
+    limits.acceleration = std::min(limits.acceleration, move.limits.acceleration);
+    limits.jerk = std::min(limits.jerk, move.limits.jerk);
+    return move.path.length();
+  };
+  limits.acceleration =
+      std::min(limits.acceleration, machine_.curve_tangential * machine_.tip_acceleration_mm_s2);
+  double left = cut;
+  for (Number k = corner_move; left > 0.0; --k) {
+    left -= lower(moves_[k]);
+    if (k == moves_.first()) break;
+  }
+  left = cut;
+  for (Number k = corner_move + 1; left > 0.0 && k < moves_.end(); ++k) left -= lower(moves_[k]);
+  return limits;
+}
+
+PathLimits MotionChain::LimitsInStretches(const Span& span) {
+  PathLimits limits = LimitsOnCurve(span.corner_move, span.report.cut_mm);
+  limits.speed = span.stretches.open;
+  if (span.head_steady && axes_follow_ramps_) return limits;
+  // No axis moves by more than its speed over that of the tip for a mm of the way.
+  const double whole = limits.speed / kLeavesRoom;
+  for (std::size_t i = 0; i < kAxisCount; ++i) {
+    const double per_axis = whole / machine_.axes.speed[i];
+    limits.acceleration =
+        std::min(limits.acceleration,
+                 (1.0 - kLeavesRoom * kLeavesRoom) * machine_.axes.acceleration[i] * per_axis);
+    if (std::isfinite(limits.jerk)) {
+      limits.jerk = std::min(limits.jerk, machine_.axes.jerk[i] * per_axis);
+    }
+  }
+  return limits;
+}
+
+MotionChain::Stretch MotionChain::StretchOf(const Span& span, std::size_t index) {
+  const BendStretches& most = span.stretches;
+  if (index + 1 == most.count) return {span.curve_length, most.start};
+  return {0.5 * span.curve_length, most.middle};
+}
+
+// The knots of a span from its `first` on.
+void MotionChain::PushKnots(const Span& span, std::size_t first) {
+  if (first == 0) {
+    const bool through = span.report.passage == Passage::kThrough;
+    speeds_.Push(span.length, span.limits, through ? span.report.wanted_speed : span.cap);
+    ++first;
+  }
+  if (!span.in_stretches) return;
+  const PathLimits limits = LimitsInStretches(span);
+  for (std::size_t k = first; k < span.knots(); ++k) {
+    const Stretch stretch = StretchOf(span, k - 1);
+    const double begin = k == 1 ? 0.0 : StretchOf(span, k - 2).end;
+    speeds_.Push(stretch.end - begin, limits, stretch.end_cap);
+  }
 }
 
 // The legs from the start of the run to `last_leg`, less what the curves at both ends take, become
@@ -359,12 +490,18 @@ void MotionChain::CloseRun(Number last_leg, double total, const Span& closing, d
     if (closes) {
       span = closing;
       span.corner_move = legs_[last_leg].last_move;
+      double swallowed = HUGE_VAL;
       for (Number rest = k; rest < last_leg; ++rest)
-        speed_cap = std::min(speed_cap, legs_[rest].cap);
+        swallowed = std::min(swallowed, legs_[rest].cap);
+      BendStretches& most = span.stretches;
+      speed_cap = std::min(speed_cap, swallowed);
+      most.start = std::min(most.start, swallowed);
+      most.open = std::min(most.open, swallowed);
+      most.middle = std::min(most.middle, swallowed);
     } else {
       span.corner_move = leg.last_move;
       span.settling_s = 0.0;
-      span.curve_may_vary = true;
+      span.in_stretches = false;
       span.report = {.passage = Passage::kThrough, .wanted_speed = leg.cap};
     }
     span.length = std::max(to - from, 0.0);
@@ -387,7 +524,7 @@ void MotionChain::CloseRun(Number last_leg, double total, const Span& closing, d
     const double cap = closes ? speed_cap : leg.cap;
     // Straight on the shape of the path does not hang on what level 1 reaches.
     span.cap = span.report.passage == Passage::kThrough ? legs_[closes ? last_leg : k].limit : cap;
-    speeds_.Push(span.length, span.limits, cap);
+    PushKnots(span, 0);
     if (closes) break;
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -62,9 +63,11 @@ class MotionChain {
     Head head;
     PathLimits limits;
     double overshoot = 0.0;
+    double passage_speed = 0.0;  // mills
     double settling_s = 0.0;
     std::uint64_t tag = 0;
     bool fly = false;
+    bool would_blend = false;  // the passage behind it is a stop of the plan, not of the machine
   };
   struct Leg {
     Number first_move = 0;
@@ -87,13 +90,25 @@ class MotionChain {
     Number corner_move = 0;  // the last move before the passage; differs from last_move when the
                              // curve begins in an earlier one
     double settling_s = 0.0;
-    double cap = 0.0;            // of the speed at its end, and on the curve behind it
-    bool curve_may_vary = true;  // the curve behind it may be passed with changing speed
+    double cap = 0.0;  // of the speed at its end, and on the curve behind it or at both its ends
+    bool head_steady = true;  // on the curve behind it
+    // The curve behind it is passed in stretches, with changing speed: a knot at the end of each.
+    // Else it is passed steadily, or belongs to the ramps that run across the knot before it.
+    bool in_stretches = false;
+    BendStretches stretches{};
     CornerReport report;
     // When the report says blend:
     double curve_length = 0.0;
     TipPose curve_middle;  // at half of its length
     bool plain = false;  // the curve follows from the corner and the cut; else it waits in curves_
+
+    std::size_t curve_knots() const { return in_stretches ? stretches.count : 0; }
+    std::size_t knots() const { return 1 + curve_knots(); }
+  };
+  // One stretch of a curve, from its start.
+  struct Stretch {
+    double end = 0.0;      // arc length from the start of the curve
+    double end_cap = 0.0;  // of the speed there
   };
   struct WaitingMark {
     std::uint64_t tag = 0;
@@ -109,13 +124,20 @@ class MotionChain {
   std::optional<double> SpeedWithin(Number leg, double cut, bool accept_what_is_there);
   void MakeCurve(Span& span, const Leg& leg, double cut);
   PlainCorner PlainCornerAt(Number corner_move, double cut);
+  void ChooseStretches(Span& span, const Leg& leg, double cut, double most);
   void CloseRun(Number last_leg, double total, const Span& closing, double speed_cap);
+  PathLimits LimitsOnCurve(Number corner_move, double cut);
+  PathLimits LimitsInStretches(const Span& span);
+  static Stretch StretchOf(const Span& span, std::size_t index);
+  void PushKnots(const Span& span, std::size_t first);
+  void LetBendsVary();
+  void SeeDecided();
 
-  // Where a span, or a curve, lies on the ramp that passes it.
-  struct Timing {
-    const SpeedProfile* profile = nullptr;  // null: steady
-    double from = 0.0;
-    double to = 0.0;
+  // The stretches of a curve that ramps pass; none: it is passed steadily.
+  struct CurveCells {
+    std::size_t count = 0;
+    std::size_t at = 0;  // the present one
+    std::array<double, 2> end{};
   };
   // One half of a corner curve, `begin` behind its start, and which part of it belongs to a move.
   struct Half {
@@ -131,18 +153,20 @@ class MotionChain {
   };
 
   std::size_t SectionSize();
-  bool EndsSection(std::size_t index);
+  bool EndsSection(const Span& span, std::size_t last_knot) const;
   void PlanSection();
-  Timing PresentTiming(double length);
-  void TakePart(SpeedProfile& speed, const Timing& timing, double to, bool to_end);
+  void AddCurve(const Span& span, std::size_t knot);
+  void TakeRamp(SpeedProfile& speed, const SpeedProfile& ramp, double from, double to);
+  void TakePart(SpeedProfile& speed, double to, bool to_end);
+  void TakeStretches(SpeedProfile& speed, CurveCells& cells, double from, double& to);
   void EmitMove();
   void EmitCurve(Span& span);
   template <class Shape>  // PlainCorner or CornerCurve
   void EmitHalves(const Span& span, const Shape& shape, const Half& first, const Half& second,
-                  const Timing& timing);
+                  CurveCells& cells);
   template <class Shape>
   void EmitCurvePart(const Span& span, Number move, const Shape& shape, const Half& half,
-                     const HalfPart& part, const Timing& timing);
+                     const HalfPart& part, CurveCells& cells);
   PlannedMotion& NewMotion(const Span& span, const Move& source);
   void EndMove(const Span& span, Number move, PlannedMotion& motion);
   void FinishMotion(const Span& span, Number move, PlannedMotion& motion, bool ends_move);
@@ -172,14 +196,18 @@ class MotionChain {
   std::size_t speeds_next_ = 0;
   double last_speed_ = 0.0;  // at the end of the last emitted span
   bool starts_too_fast_ = false;
-  std::size_t section_seen_ = 0;  // spans known not to end the next section
-  bool axes_follow_ramps_;        // on curves without head rotation, whatever the tip does
+  std::size_t section_seen_ = 0;   // spans known not to end the next section
+  std::size_t section_knots_ = 0;  // theirs
+  Number decided_ = 0;             // the first span with a knot that is not final
+  std::size_t decided_knots_ = 0;  // of the spans before it
+  bool axes_follow_ramps_;         // on curves without head rotation, whatever the tip does
 
   // The section that is given out move by move, so that a span of thousands of them takes no room.
   std::size_t section_left_ = 0;  // its spans from the oldest one on
   bool alone_ = false;            // it has but one span, timed by lone_; else by ramps_
   SpeedProfile lone_;
   std::vector<RampCell> cells_;
+  std::vector<double> most_;  // of the bends among them: RampCell::most
   RampPlan ramps_;
   std::size_t section_cell_ = 0;  // the present one of cells_
   std::size_t place_ramp_ = 0;    // of ramps_

@@ -8,8 +8,8 @@
 namespace rmlcell::motion {
 namespace {
 
-// Spans timed together: each gives at most two cells.
-constexpr std::size_t kSectionMax = RampPlan::kCellsMax / 2;
+// Spans timed together: each gives at most three cells, itself and two stretches of a bend.
+constexpr std::size_t kSectionMax = RampPlan::kCellsMax / 3;
 
 }  // namespace
 
@@ -31,10 +31,16 @@ const PlannedItem* MotionChain::Next() {
 // How many spans are timed together next; 0 when that is not known yet.
 std::size_t MotionChain::SectionSize() {
   const std::size_t known = speeds_.final_count();
-  while (section_seen_ < known) {
-    const std::size_t index = section_seen_++;
-    const Number moves = spans_[spans_.first() + index].last_move - spans_.front().first_move;
-    if (EndsSection(index) || section_seen_ == kSectionMax || moves >= window_ / 2) {
+  if (known <= section_knots_) return 0;
+  while (spans_.first() + section_seen_ < spans_.end()) {
+    const Span& span = spans_[spans_.first() + section_seen_];
+    if (section_knots_ + span.knots() > known) break;
+    ++section_seen_;
+    section_knots_ += span.knots();
+    const Number moves = span.last_move - spans_.front().first_move;
+    if (EndsSection(span, section_knots_ - 1) || section_seen_ == kSectionMax ||
+        moves >= window_ / 2) {
+      section_knots_ = 0;
       return std::exchange(section_seen_, 0);
     }
   }
@@ -42,12 +48,12 @@ std::size_t MotionChain::SectionSize() {
 }
 
 // A knot that is passed as fast as it may be: the speed has no slope there in any good plan.
-bool MotionChain::EndsSection(std::size_t index) {
+bool MotionChain::EndsSection(const Span& span, std::size_t last_knot) const {
   if (!machine_.ramps_across_passages || std::isinf(machine_.tip_jerk_mm_s3)) return true;
   constexpr double kReaches = 1.0 - 1e-12;
-  const Span& span = spans_[spans_.first() + index];
-  if (speeds_.speed(index) >= span.cap * kReaches) return true;
-  return IsBlend(span.report.passage) && !(span.curve_may_vary && axes_follow_ramps_);
+  if (speeds_.speed(last_knot) >= span.cap * kReaches) return true;
+  const bool varies = span.in_stretches || (span.head_steady && axes_follow_ramps_);
+  return IsBlend(span.report.passage) && !varies;
 }
 
 // Times the spans of the section that begins with the oldest one.
@@ -62,7 +68,7 @@ void MotionChain::PlanSection() {
   section_cell_ = 0;
   place_ = {};
   place_ramp_ = 0;
-  alone_ = section_left_ == 1;
+  alone_ = section_left_ == 1 && !first.in_stretches;
   if (alone_) {
     if (first.length > 0.0) {
       lone_ = SpeedProfile::Span(first.length, last_speed_, speeds_.speed(), first.limits);
@@ -70,54 +76,113 @@ void MotionChain::PlanSection() {
     return;
   }
   // What lies between the knots at both ends, each with the speed of level 1 at its end. The curve
-  // behind the last knot is passed steadily.
+  // behind the last knot is passed steadily, unless it has knots itself.
   cells_.clear();
+  most_.clear();
+  most_.reserve(section_left_ * (2 * BendSpeeds::kSteps + 1));  // cells look into it
+  std::size_t knot = 0;
   for (std::size_t k = 0; k < section_left_; ++k) {
     const Span& span = spans_[spans_.first() + k];
-    const double speed = speeds_.speed(k);
+    const double speed = speeds_.speed(knot);
     const bool blend = IsBlend(span.report.passage);
+    const bool free = blend && !span.in_stretches;
     if (span.length > 0.0) {
-      cells_.push_back({span.length, span.limits, speed, blend ? RampCell::kNoCap : span.cap});
+      cells_.push_back({span.length, span.limits, speed, free ? RampCell::kNoCap : span.cap, {}});
+    } else if (!cells_.empty() && !free) {  // a bend begins where the last one ends
+      cells_.back().end_cap = std::min(cells_.back().end_cap, span.cap);
     }
-    if (k + 1 == section_left_ || !blend) continue;
-    const PathLimits& after = spans_[spans_.first() + k + 1].limits;
-    const double along = machine_.curve_tangential * machine_.tip_acceleration_mm_s2;
-    cells_.push_back(
-        {span.curve_length,
-         {.speed = span.cap,
-          .acceleration = std::min({span.limits.acceleration, after.acceleration, along}),
-          .jerk = std::min(span.limits.jerk, after.jerk)},
-         speed});
+    if (span.in_stretches) {
+      AddCurve(span, knot);
+    } else if (blend && k + 1 < section_left_) {
+      PathLimits limits = LimitsOnCurve(span.corner_move, span.report.cut_mm);
+      limits.speed = span.cap;
+      cells_.push_back({span.curve_length, limits, speed, RampCell::kNoCap, {}});
+    }
+    knot += span.knots();
   }
   if (!cells_.empty()) ramps_.Plan(cells_, last_speed_);
 }
 
-// The ramp that passes the present cell, a span of `length` or the curve behind it.
-MotionChain::Timing MotionChain::PresentTiming(double length) {
-  if (alone_) return {&lone_, 0.0, length};
+// The stretches of the curve behind a span whose own knot is `knot`.
+void MotionChain::AddCurve(const Span& span, std::size_t knot) {
+  const PathLimits limits = LimitsInStretches(span);
+  constexpr std::size_t kSteps = BendSpeeds::kSteps;
+  std::span<const double> most;
+  if (span.stretches.open > span.stretches.start) {
+    Corner corner;
+    corner.Assign(moves_[span.corner_move].path, moves_[span.corner_move + 1].path);
+    const BendSpeeds half = corner.PlainSpeeds(span.report.cut_mm, span.stretches.open, machine_);
+    const std::size_t begin = most_.size();
+    most_.insert(most_.end(), half.most.begin(), half.most.end());
+    most_.insert(most_.end(), half.most.rbegin() + 1, half.most.rend());
+    most = std::span(most_).subspan(begin);
+  }
+  double begin = 0.0;
+  for (std::size_t k = 0; k < span.curve_knots(); ++k) {
+    const Stretch stretch = StretchOf(span, k);
+    RampCell cell{stretch.end - begin, limits, speeds_.speed(knot + 1 + k), stretch.end_cap, {}};
+    if (!most.empty()) {
+      const std::size_t steps = 2 * kSteps / span.curve_knots();
+      cell.most = most.subspan(k * steps, steps + 1);
+    }
+    cells_.push_back(cell);
+    begin = stretch.end;
+  }
+}
+
+// The part of a ramp to `to`, from where the last part ended, or from `from` when it ended before.
+void MotionChain::TakeRamp(SpeedProfile& speed, const SpeedProfile& ramp, double from, double to) {
+  if (place_.s == 0.0 && to == ramp.end().s) {
+    speed = ramp;
+    return;
+  }
+  if (place_.s < from) ramp.Advance(place_, from);
+  ramp.PartTo(place_, to, speed);
+}
+
+// The part of the span to `to` of its length, or to its end.
+void MotionChain::TakePart(SpeedProfile& speed, double to, bool to_end) {
+  if (alone_) return TakeRamp(speed, lone_, 0.0, to_end ? spans_.front().length : to);
   const RampPlan::Timing& timing = ramps_.timing()[section_cell_];
   if (timing.ramp != place_ramp_) {
     place_ramp_ = timing.ramp;
     place_ = {};
   }
-  return {&ramps_.ramps()[timing.ramp], timing.from, timing.to};
+  const double end = to_end ? timing.to : std::min(timing.from + to, timing.to);
+  TakeRamp(speed, ramps_.ramps()[timing.ramp], timing.from, end);
 }
 
-// The part of the timing to `to` on its cell, or to the end of that, from where the last part
-// ended.
-void MotionChain::TakePart(SpeedProfile& speed, const Timing& timing, double to, bool to_end) {
-  const double end = to_end ? timing.to : std::min(timing.from + to, timing.to);
-  if (place_.s == 0.0 && end == timing.profile->end().s) {
-    speed = *timing.profile;
-    return;
+// The part of a curve from `from` to `to` of its length, or to where another ramp begins: that is
+// `to` then.
+void MotionChain::TakeStretches(SpeedProfile& speed, CurveCells& cells, double from, double& to) {
+  const RampPlan::Timing& first = ramps_.timing()[section_cell_];
+  if (first.ramp != place_ramp_) {
+    place_ramp_ = first.ramp;
+    place_ = {};
   }
-  if (place_.s < timing.from) timing.profile->Advance(place_, timing.from);
-  timing.profile->PartTo(place_, end, speed);
+  const double begin = cells.at == 0 ? 0.0 : cells.end[cells.at - 1];
+  const double on_ramp_from = std::min(first.from + (from - begin), first.to);
+  double on_ramp_to = on_ramp_from;
+  for (bool more = true; more;) {
+    const RampPlan::Timing& timing = ramps_.timing()[section_cell_];
+    const double start = cells.at == 0 ? 0.0 : cells.end[cells.at - 1];
+    const double end = cells.end[cells.at];
+    const bool whole = to >= end;
+    on_ramp_to = whole ? timing.to : std::min(timing.from + (to - start), timing.to);
+    if (whole) {
+      ++section_cell_;
+      ++cells.at;
+    }
+    more = whole && cells.at < cells.count && to > end &&
+           ramps_.timing()[section_cell_].ramp == place_ramp_;
+    if (!more) to = std::min(to, end);
+  }
+  TakeRamp(speed, ramps_.ramps()[place_ramp_], on_ramp_from, on_ramp_to);
 }
 
 // Motions are made where they wait to be taken: they are large. The slot holds an old one, so every
 // member is set here or by the caller (path, speed).
-inline PlannedMotion& MotionChain::NewMotion(const Span& span, const Move& source) {
+[[gnu::always_inline]] inline PlannedMotion& MotionChain::NewMotion(const Span& span, const Move& source) {
   PlannedItem& slot = items_.PushSlot();
   auto* motion = std::get_if<PlannedMotion>(&slot);
   if (motion == nullptr) motion = &slot.emplace<PlannedMotion>();
@@ -126,6 +191,7 @@ inline PlannedMotion& MotionChain::NewMotion(const Span& span, const Move& sourc
   motion->limits = span.limits;
   motion->settling_s = 0.0;
   motion->upper_bound = false;
+  motion->restart_speed = kLargest;
   return *motion;
 }
 
@@ -150,7 +216,6 @@ void MotionChain::EmitMove() {
       emit_move_ = span.first_move;
       emit_done_ = 0.0;
     }
-    const Timing timing = PresentTiming(span.length);
     for (bool emitted = false; !emitted && emit_move_ <= span.last_move; ++emit_move_) {
       const Move& move = moves_[emit_move_];
       const PathPiece& path = move.path;
@@ -165,7 +230,7 @@ void MotionChain::EmitMove() {
         motion.path.AssignPart(path, from, to);
       }
       emit_done_ += to - from;
-      TakePart(motion.speed, timing, emit_done_, last);
+      TakePart(motion.speed, emit_done_, last);
       const bool reaches_end = to == path.length() && !(blend && emit_move_ == span.corner_move);
       FinishMotion(span, emit_move_, motion, reaches_end);
       emitted = true;
@@ -174,42 +239,53 @@ void MotionChain::EmitMove() {
     emitting_ = false;
     ++section_cell_;
   }
-  const double speed = speeds_.speed();
-  span.report.speed = speed;
+  span.report.speed = speeds_.speed();
+  const std::size_t knots = span.knots();
+  const double end_speed = speeds_.speed(knots - 1);
   if (blend) EmitCurve(span);
-  last_speed_ = speed;
+  last_speed_ = end_speed;
+  if (decided_ > spans_.first()) {
+    decided_knots_ -= knots;
+  } else {
+    ++decided_;
+  }
   spans_.PopFront();
-  speeds_.Pop();
+  for (std::size_t k = 0; k < knots; ++k) speeds_.Pop();
   --section_left_;
 }
 
 void MotionChain::EmitCurve(Span& span) {
   const double half = 0.5 * span.curve_length;
-  Timing timing;  // steady
-  if (section_left_ > 1) {
-    timing = PresentTiming(span.curve_length);
-    const double middle = timing.from + half;
-    span.report.speed = timing.profile->At(timing.profile->TimeAt(middle)).speed;
+  CurveCells cells;  // none: steady
+  if (span.in_stretches || section_left_ > 1) {
+    cells.count = span.in_stretches ? span.curve_knots() : 1;
+    for (std::size_t k = 0; k < cells.count; ++k) {
+      cells.end[k] = span.in_stretches ? StretchOf(span, k).end : span.curve_length;
+    }
+    // The speed in the middle, which is an end of a stretch when there are some.
+    const RampPlan::Timing& timing = ramps_.timing()[section_cell_];
+    const SpeedProfile& ramp = ramps_.ramps()[timing.ramp];
+    const double middle = cells.count > 1 ? timing.to : 0.5 * (timing.from + timing.to);
+    span.report.speed = ramp.At(ramp.TimeAt(middle)).speed;
   }
   const TipPose& middle = span.curve_middle;
   if (span.plain) {
     const PlainCorner corner = PlainCornerAt(span.corner_move, span.report.cut_mm);
     const TipPose start = corner.Start(), finish = corner.Finish();
-    EmitHalves(span, corner, {start, middle, half, 0.0}, {middle, finish, half, half}, timing);
+    EmitHalves(span, corner, {start, middle, half, 0.0}, {middle, finish, half, half}, cells);
   } else {
     const CornerCurve& curve = curves_.front();
     const TipPose start = curve.At(0.0), finish = curve.At(1.0);
-    EmitHalves(span, curve, {start, middle, half, 0.0}, {middle, finish, half, half}, timing);
+    EmitHalves(span, curve, {start, middle, half, 0.0}, {middle, finish, half, half}, cells);
     curves_.PopFront();
   }
-  if (section_left_ > 1) ++section_cell_;
 }
 
 // The curve is cut where its middle is, and where points that it swallows are: they lie on its
 // halves as they would lie on the straight pieces.
 template <class Shape>
 void MotionChain::EmitHalves(const Span& span, const Shape& shape, const Half& first,
-                             const Half& second, const Timing& timing) {
+                             const Half& second, CurveCells& cells) {
   const double cut = span.report.cut_mm;
   const double half = first.length;
   // First half: from the end of the span to the corner.
@@ -222,7 +298,7 @@ void MotionChain::EmitHalves(const Span& span, const Shape& shape, const Half& f
       to = std::min(half * std::max(x, 0.0) / cut, half);
     }
     if (!(to > s)) continue;
-    EmitCurvePart(span, k, shape, first, {s, to, true}, timing);
+    EmitCurvePart(span, k, shape, first, {s, to, true}, cells);
     s = to;
   }
   // Second half: to the place where the next span begins.
@@ -232,7 +308,7 @@ void MotionChain::EmitHalves(const Span& span, const Shape& shape, const Half& f
     x += moves_[k].path.length();
     const bool last = x >= cut || k + 1 == moves_.end();
     const double to = last ? half : std::min(half * x / cut, half);
-    if (to > s) EmitCurvePart(span, k, shape, second, {s, to, !last}, timing);
+    if (to > s) EmitCurvePart(span, k, shape, second, {s, to, !last}, cells);
     s = std::max(s, to);
     if (last) break;
   }
@@ -240,23 +316,33 @@ void MotionChain::EmitHalves(const Span& span, const Shape& shape, const Half& f
 
 template <class Shape>
 void MotionChain::EmitCurvePart(const Span& span, Number move, const Shape& shape, const Half& half,
-                                const HalfPart& part, const Timing& timing) {
-  PlannedMotion& motion = NewMotion(span, moves_[move]);
-  motion.path.AssignCorner(shape, half.begin, half.length, half.from, half.to);
-  if (part.s_from != 0.0 || part.s_to != half.length) {
-    motion.path = motion.path.Part(part.s_from, part.s_to);
+                                const HalfPart& part, CurveCells& cells) {
+  // A half is one motion, but for its moves and where the ramp changes.
+  for (double s = part.s_from; s < part.s_to;) {
+    PlannedMotion& motion = NewMotion(span, moves_[move]);
+    motion.limits = moves_[move].limits;
+    double s_to = part.s_to;
+    if (cells.count == 0) {
+      // A STOP on the way brakes as the move does that this part belongs to.
+      motion.speed = SpeedProfile::Steady(s_to - s, span.report.speed);
+      motion.limits.acceleration = std::min(
+          motion.limits.acceleration, machine_.curve_tangential * machine_.tip_acceleration_mm_s2);
+      motion.limits.speed = span.report.speed;
+    } else {
+      motion.limits = cells_[section_cell_].limits;  // the ramp runs through both halves
+      if (span.in_stretches) {
+        motion.restart_speed =
+            std::min({span.stretches.start, span.stretches.open, span.stretches.middle});
+      }
+      double to = half.begin + s_to;
+      TakeStretches(motion.speed, cells, half.begin + s, to);
+      s_to = to < half.begin + s_to ? to - half.begin : s_to;
+    }
+    motion.path.AssignCorner(shape, half.begin, half.length, half.from, half.to);
+    if (s != 0.0 || s_to != half.length) motion.path = motion.path.Part(s, s_to);
+    FinishMotion(span, move, motion, part.ends_move && s_to == part.s_to);
+    s = s_to;
   }
-  if (timing.profile == nullptr) {
-    motion.speed = SpeedProfile::Steady(part.s_to - part.s_from, span.report.speed);
-    motion.limits.speed = span.report.speed;
-  } else {
-    const double to = half.begin + part.s_to;
-    TakePart(motion.speed, timing, to, to >= span.curve_length);
-    motion.limits.speed = span.cap;
-  }
-  motion.limits.acceleration = std::min(
-      motion.limits.acceleration, machine_.curve_tangential * machine_.tip_acceleration_mm_s2);
-  FinishMotion(span, move, motion, part.ends_move);
 }
 
 void MotionChain::EndMove(const Span& span, Number move, PlannedMotion& motion) {
@@ -264,6 +350,7 @@ void MotionChain::EndMove(const Span& span, Number move, PlannedMotion& motion) 
     motion.corner = span.report;
     if (!IsBlend(span.report.passage)) motion.corner.speed = motion.speed.end().speed;
     motion.settling_s = span.settling_s;
+    motion.upper_bound = moves_[move].would_blend;
   } else {
     motion.corner = {.passage = Passage::kThrough, .speed = motion.speed.end().speed};
   }

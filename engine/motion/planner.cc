@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/core/check.h"
 #include "engine/core/number_text.h"
 #include "engine/motion/motion_chain.h"
 
@@ -20,6 +21,10 @@ bool IsUsable(const TipPose& pose) {
 
 // A motion of more than 30 years is one that never arrives.
 constexpr double kDurationMax_s = 1e9;
+
+bool IsAboveZero(const PathLimits& limits) {
+  return limits.speed > 0.0 && limits.acceleration > 0.0 && limits.jerk > 0.0;
+}
 
 // Moves too short to be made leave a gap between where the machine is and where the next move
 // believes it begins: a line begins where the machine is.
@@ -65,6 +70,11 @@ Status Planner::AppendChecked(const MoveCommand& move) {
     chain_->Nothing(move.path.from(), move.fly);
     return {};
   }
+  if (move.limits) {
+    RMLCELL_CHECK(IsAboveZero(*move.limits));
+    chain_->Append(move, *move.limits);
+    return {};
+  }
   if (!(move.speed_fraction > 0.0)) return Error{ErrorCode::kNoMotion, "the speed is 0", {}};
   if (!(move.acceleration_fraction >= kAccelerationFractionMin)) {
     return Error{ErrorCode::kNoMotion,
@@ -72,8 +82,7 @@ Status Planner::AppendChecked(const MoveCommand& move) {
                  {}};
   }
   const PathLimits limits = chain_->LimitsFor(move);
-  if (!(move.path.length() <= limits.speed * kDurationMax_s) || !(limits.speed > 0.0) ||
-      !(limits.acceleration > 0.0) || !(limits.jerk > 0.0)) {
+  if (!(move.path.length() <= limits.speed * kDurationMax_s) || !IsAboveZero(limits)) {
     return Error{ErrorCode::kNoMotion, "the speed is too low to ever arrive", {}};
   }
   chain_->Append(move, limits);

@@ -24,9 +24,14 @@ struct MoveCommand {
   double speed_fraction = 1.0;  // SPEED x override, at most 1
   double acceleration_fraction = 1.0;
   double overshoot_fraction = 1.0;  // OVERSH
-  bool fly = false;                 // the passage to the next motion may be blended
-  bool settles = true;              // false: the inner stop of a hole, which takes no settling time
-  std::uint64_t tag = 0;            // given back with the result
+  // Limits that the caller knows, in place of fractions of the machine's: a mill, whose programs
+  // give mm/s. Every figure above zero.
+  std::optional<PathLimits> limits{};
+  // Mills: how fast the passage behind it may be, besides what the limits and the vertex allow.
+  double passage_speed_mm_s = kLargest;
+  bool fly = false;       // the passage to the next motion may be blended
+  bool settles = true;    // false: the inner stop of a hole, which takes no settling time
+  std::uint64_t tag = 0;  // given back with the result
 };
 
 // How a move ended, for reports and warnings.
@@ -46,8 +51,11 @@ struct PlannedMotion {
   PathPiece path{};
   Head head{};
   SpeedProfile speed;
-  PathLimits limits;         // those in force, for a STOP on the way
-  double settling_s = 0.0;   // standstill after the motion
+  PathLimits limits;        // those in force, for a STOP on the way
+  double settling_s = 0.0;  // standstill after the motion
+  // In a bend that is fast at some places and slow at others: the highest speed that is allowed at
+  // all of them, for a START on the way. Else no limit besides limits.speed.
+  double restart_speed = kLargest;
   bool ends_move = true;     // the last motion of its move
   bool upper_bound = false;  // a /FLY passage was planned as a stop: time is an upper bound
   CornerReport corner;       // when ends_move

@@ -45,6 +45,23 @@ struct RampPlan::Try {
   bool worst_is_end = false;
 };
 
+// The limits that a ramp breaks.
+struct RampPlan::Excess {
+  double lowest_broken = std::numeric_limits<double>::infinity();
+  double most = 1.0 + kRoom;  // speed over limit
+  std::size_t worst = Try::kNone;
+  bool worst_is_end = false;
+
+  void Keep(double speed, double cap, std::size_t cell, bool at_end) {
+    if (speed <= cap * (1.0 + kRoom)) return;
+    lowest_broken = std::min(lowest_broken, cap);
+    if (speed <= cap * most) return;
+    most = speed / cap;
+    worst = cell;
+    worst_is_end = at_end;
+  }
+};
+
 void RampPlan::Plan(std::span<const RampCell> cells, double start_speed) {
   RMLCELL_CHECK(!cells.empty() && cells.size() <= kCellsMax);
   cells_ = cells;
@@ -178,6 +195,28 @@ double RampPlan::BestOfAll(std::size_t first, std::size_t last) {
   return ways[count - 1].time;
 }
 
+// The places of a bend that lies on the ramp between `from` and `to`.
+void RampPlan::LookAlong(const SpeedProfile& ramp, std::size_t cell, double from, double to,
+                         Excess& excess) const {
+  const std::span<const double> most = cells_[cell].most;
+  const double step = (to - from) / static_cast<double>(most.size() - 1);
+  SpeedProfile::Place place;
+  for (std::size_t k = 0; k < most.size(); ++k) {
+    const double s = std::min(from + step * static_cast<double>(k), to);
+    ramp.Advance(place, s);
+    // Within a phase of a ramp the speed does not turn: where both its ends are slow enough, so is
+    // the place.
+    const int next = place.phase + 1;
+    const double begin =
+        place.phase < ramp.phase_count() ? ramp.phase(place.phase).start.speed : ramp.end().speed;
+    const double end = next < ramp.phase_count() ? ramp.phase(next).start.speed : ramp.end().speed;
+    constexpr double kPlaceRoom = 1.0 + 1e-9;  // places are found to less
+    const double cap = most[k] * kPlaceRoom;
+    if (std::max(begin, end) <= cap) continue;
+    excess.Keep(SpeedAt(ramp, s), cap, cell, false);
+  }
+}
+
 RampPlan::Try RampPlan::Together(std::size_t first, std::size_t last) const {
   Try whole;
   const double start_speed = SpeedBefore(first);
@@ -201,8 +240,7 @@ RampPlan::Try RampPlan::Together(std::size_t first, std::size_t last) const {
   whole.profile = SpeedProfile::Span(length, start_speed, end_speed, limits);
   // The speed rises to one peak and falls: within a cell it is highest at an end or at the peak.
   const double peak_place = PlaceOfPeak(whole.profile);
-  double lowest_broken = std::numeric_limits<double>::infinity();
-  double excess = 1.0 + kRoom;
+  Excess excess;
   double from = 0.0;
   double speed_from = start_speed;
   for (std::size_t k = first; k <= last; ++k) {
@@ -210,19 +248,15 @@ RampPlan::Try RampPlan::Together(std::size_t first, std::size_t last) const {
     const double speed_to = k == last ? end_speed : SpeedAt(whole.profile, to);
     const bool peaks = from <= peak_place && peak_place <= to;
     const double highest = peaks ? whole.profile.peak_speed() : std::max(speed_from, speed_to);
-    const auto keep = [&](double speed, double cap, bool at_end) {
-      if (speed <= cap * (1.0 + kRoom)) return;
-      lowest_broken = std::min(lowest_broken, cap);
-      if (speed <= cap * excess) return;
-      excess = speed / cap;
-      whole.worst = k;
-      whole.worst_is_end = at_end;
-    };
-    keep(highest, cells_[k].limits.speed, false);
-    if (k < last) keep(speed_to, cells_[k].end_cap, true);
+    excess.Keep(highest, cells_[k].limits.speed, k, false);
+    if (k < last) excess.Keep(speed_to, cells_[k].end_cap, k, true);
+    if (!cells_[k].most.empty()) LookAlong(whole.profile, k, from, to, excess);
     from = to;
     speed_from = speed_to;
   }
+  const double lowest_broken = excess.lowest_broken;
+  whole.worst = excess.worst;
+  whole.worst_is_end = excess.worst_is_end;
   if (lowest_broken > limits.speed) {  // none is broken
     whole.time = whole.profile.duration_s();
     return whole;

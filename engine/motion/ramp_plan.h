@@ -16,6 +16,10 @@ struct RampCell {
   PathLimits limits;
   double end_speed = 0.0;
   double end_cap = kNoCap;  // of the speed at its end, besides the limits on both sides
+  // In a bend the highest speeds at equal steps from its beginning to its end. Ramps of this
+  // stretch alone, with acceleration zero at both ends, keep them without being asked; others are
+  // looked at. Empty: limits.speed everywhere.
+  std::span<const double> most{};
 
   static constexpr double kNoCap = std::numeric_limits<double>::infinity();
 };
@@ -28,8 +32,8 @@ struct RampCell {
 // the whole way changes. Reused for many ways: it keeps its memory.
 class RampPlan {
  public:
-  // Stretches looked at together: 2 m of lines of 2 mm with their curves, more than any ramp takes.
-  static constexpr std::size_t kCellsMax = 2048;
+  // Stretches looked at together: 1 m of lines of 2 mm with their curves, more than any ramp takes.
+  static constexpr std::size_t kCellsMax = 2560;
 
   struct Timing {
     std::size_t ramp = 0;  // of ramps()
@@ -54,6 +58,9 @@ class RampPlan {
   Try Together(std::size_t first, std::size_t last) const;
   double TimeApart(std::size_t first, std::size_t last) const;
   double CapAfter(std::size_t cell) const;
+  struct Excess;
+  void LookAlong(const SpeedProfile& ramp, std::size_t cell, double from, double to,
+                 Excess& excess) const;
   void Append(const SpeedProfile& ramp, std::size_t last);
   double SpeedBefore(std::size_t cell) const {
     return cell == 0 ? start_speed_ : speeds_[cell - 1];

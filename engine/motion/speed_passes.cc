@@ -38,8 +38,8 @@ std::size_t SpeedPasses::Settle() {
     Knot& knot = knots_[--k];
     const double from_high = Reachable(high, after.length, after.limits, knot.forward);
     const double from_low = Reachable(low, after.length, after.limits, knot.forward);
-    const double least = std::min({knot.forward, from_low, from_high,
-                                   std::max(low, ReachMinimum(high, after.length, after.limits))});
+    const double least = std::min(
+        {knot.forward, from_low, from_high, ReachMinimum(low, high, after.length, after.limits)});
     knot.speed = least;  // from here any future can be met: for Accept
     high = std::max(from_low, from_high);
     low = least;
@@ -70,8 +70,14 @@ void SpeedPasses::Accept(std::size_t count) {
   final_ = count;
 }
 
+void SpeedPasses::DropOpen() {
+  knots_.resize(first_ + final_);
+  last_forward_ = final_ > 0 ? knots_.back().speed : last_popped_;
+}
+
 void SpeedPasses::Pop() {
   RMLCELL_CHECK(final_ > 0);
+  last_popped_ = knots_[first_].speed;
   ++first_;
   --final_;
   // Move the open knots to the front when that costs no more than was popped.

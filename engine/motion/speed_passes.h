@@ -15,7 +15,7 @@ namespace rmlcell::motion {
 class SpeedPasses {
  public:
   // The chain begins at this speed instead of at rest. Before the first Push.
-  void BeginAt(double speed) { last_forward_ = speed; }
+  void BeginAt(double speed) { last_forward_ = last_popped_ = speed; }
 
   // A knot reached over a span of `length` from the knot before it (the chain begins at rest, see
   // BeginAt). It is passed at `cap` at most; 0 is a stop. `limits` are those of the span.
@@ -28,6 +28,9 @@ class SpeedPasses {
   // Accepts the speeds that the last Settle found for the first `count` knots although they are not
   // final: legal, but slower than need be.
   void Accept(std::size_t count);
+
+  // Forgets the knots that are not final: others take their place.
+  void DropOpen();
 
   std::size_t size() const { return knots_.size() - first_; }
   std::size_t final_count() const { return final_; }
@@ -49,6 +52,7 @@ class SpeedPasses {
   std::size_t first_ = 0;
   std::size_t final_ = 0;
   double last_forward_ = 0.0;
+  double last_popped_ = 0.0;  // the speed of that knot
 };
 
 }  // namespace rmlcell::motion

@@ -127,10 +127,10 @@ double Reach(double v0, double length, const PathLimits& limits) {
   return v0 + y * y;
 }
 
-double ReachMinimum(double v0_high, double length, const PathLimits& limits) {
+double ReachMinimum(double v0_low, double v0_high, double length, const PathLimits& limits) {
   const double a = limits.acceleration;
   const double j = limits.jerk;
-  if (std::isinf(j)) return Reach(0.0, length, limits);
+  if (std::isinf(j)) return Reach(v0_low, length, limits);
   const double b = a * a / j;
   // Where the derivative of Reach by v0 is 0: y^2 = 2 v0 in the short regime, v0 = b / 2 in the
   // other.
@@ -139,7 +139,7 @@ double ReachMinimum(double v0_high, double length, const PathLimits& limits) {
     const double y = std::cbrt(0.5 * length * std::sqrt(j));
     worst = 0.5 * y * y;
   }
-  return Reach(std::min(worst, v0_high), length, limits);
+  return Reach(std::clamp(worst, v0_low, v0_high), length, limits);
 }
 
 SpeedProfile SpeedProfile::Span(double length, double v0, double v1, const PathLimits& limits) {
@@ -189,24 +189,26 @@ void SpeedProfile::AddSpan(PathState& state, double end_s, double v1, const Path
   const double drop = std::abs(v1 - v0);
   const double direct = RampLength(v0, v1, limits);
   if (direct > length * (1.0 + kRoundingRoom)) {
-    // The ends come from Reach, and a ramp this short hangs on the last digits of their difference
-    // (the ramp between two neighbouring numbers near 500 mm/s is longer than 1e-6 mm): the same
-    // ramp in the time that there is.
+    // The ends come from Reach, whose last digits the length of a ramp hangs on. The same ramp in
+    // the time that there is; but where the ends differ by nothing else (the ramp between two
+    // neighbouring numbers near 500 mm/s is longer than 1e-6 mm), one speed, the mean of both.
     peak_speed_ = std::max(peak_speed_, top);
     const double time = 2.0 * length / (v0 + v1);
     const Ramp ramp = RampOf(drop, limits);
     const double squeeze = time / ramp.duration_s;
-    constexpr double kSameShape = 0.99;  // below, the difference is nothing but rounding
-    const double sign = v1 > v0 ? 1.0 : -1.0;
-    if (ramp.edge_s == 0.0 || squeeze < kSameShape) {
-      AddPhase(state, time, sign * drop / time, 0.0);
+    constexpr double kSameRamp = 1.0 - 1e-6;  // its acceleration and jerk are above by that at most
+    if (squeeze < kSameRamp) {
+      state.speed = 0.5 * (v0 + v1);
+      AddPhase(state, time, 0.0, 0.0);
+      state.speed = v1;
       return;
     }
+    const double sign = v1 > v0 ? 1.0 : -1.0;
     const double edge = ramp.edge_s * squeeze;
     const double a = sign * ramp.acceleration / squeeze;
-    AddPhase(state, edge, 0.0, a / edge);
+    if (edge > 0.0) AddPhase(state, edge, 0.0, a / edge);
     AddPhase(state, time - 2.0 * edge, a, 0.0);
-    AddPhase(state, edge, a, -a / edge);
+    if (edge > 0.0) AddPhase(state, edge, a, -a / edge);
     return;
   }
 

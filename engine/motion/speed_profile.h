@@ -76,7 +76,7 @@ class SpeedProfile {
   };
   void Advance(Place& place, double s) const;
   // Sets `part` to the part from `place` to `s_to`, where `place` is afterwards.
-  void PartTo(Place& place, double s_to, SpeedProfile& part) const {
+  [[gnu::always_inline]] void PartTo(Place& place, double s_to, SpeedProfile& part) const {
     const Phase& phase = phases_[static_cast<std::size_t>(place.phase)];
     if (place.phase < count_ && phase.jerk == 0.0 && phase.start.acceleration == 0.0 &&
         s_to < PhaseEnd(place.phase) && place.s >= phase.start.s) {
@@ -160,10 +160,10 @@ inline SpeedProfile& SpeedProfile::operator=(const SpeedProfile& other) {
 // The highest speed that can be reached from `v0` within `length`. motion.md 5.2.
 double Reach(double v0, double length, const PathLimits& limits);
 
-// The least of Reach over all starting speeds up to `v0_high`. It is not at 0: who starts from rest
-// has more time on the way, and with a limit on jerk time is worth more than speed until y^2 = 2 v0
-// (see Reach); at most 6 % below Reach(0).
-double ReachMinimum(double v0_high, double length, const PathLimits& limits);
+// The least of Reach over all starting speeds from `v0_low` to `v0_high`. It is not at 0: who
+// starts from rest has more time on the way, and with a limit on jerk time is worth more than speed
+// until y^2 = 2 v0 (see Reach); at most 6 % below Reach(0).
+double ReachMinimum(double v0_low, double v0_high, double length, const PathLimits& limits);
 
 // Time and length of the ramp between two speeds.
 inline double RampTime(double v0, double v1, const PathLimits& limits) {

@@ -11,6 +11,7 @@ struct Source {
   const Physical::Totals& tool;
   double mm;  // of one device unit
   bool rotary;
+  std::optional<std::uint64_t> starved;
 };
 
 using Value = std::optional<double>;
@@ -57,6 +58,7 @@ constexpr std::array kRows = {
     Row{{"dwell_time", "s", "waits of W and !DW"}, [](const Source& s) -> Value { return s.tool.dwell_s; }},
     Row{{"spindle_time", "s", "waits for the spindle to turn steadily or to stand"}, [](const Source& s) -> Value { return s.tool.spindle_s; }},
     Row{{"halted_time", "s", "waits for a key"}, [](const Source& s) -> Value { return s.tool.halted_s; }},
+    Row{{"lookahead_starved", "", "times that the planner had to decide before it could see enough"}, [](const Source& s) -> Value { return s.starved ? Value(Count(*s.starved)) : std::nullopt; }},
     Row{{"box.xmin", "units", "least X of the tool, work coordinates"}, [](const Source& s) -> Value { return Low(s.tool.x); }},
     Row{{"box.xmax", "units", "greatest X of the tool, work coordinates"}, [](const Source& s) -> Value { return High(s.tool.x); }},
     Row{{"box.ymin", "units", "least Y of the tool, work coordinates"}, [](const Source& s) -> Value { return Low(s.tool.y); }},
@@ -148,12 +150,14 @@ std::span<const machine::FigureInfo> FigureTable() {
   return infos;
 }
 
-std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& physical) {
+std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& physical,
+                                       std::optional<std::uint64_t> starved) {
   const Profile& profile = physical.profile();
   const Source source{.device = device,
                       .tool = physical.totals(),
                       .mm = 1.0 / profile.units_per_mm,
-                      .rotary = profile.has_rotary};
+                      .rotary = profile.has_rotary,
+                      .starved = starved};
   std::vector<machine::Figure> figures;
   for (const Row& row : kRows) {
     const Value value = row.value(source);

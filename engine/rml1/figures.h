@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,8 @@ std::span<const machine::FigureInfo> FigureTable();
 
 // The figures of a device and of what its tool did; those that have nothing to say (an extent of no
 // points, a command that did not occur) are left out.
-std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& physical);
+// `starved`: of the look-ahead, where motions were timed.
+std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& physical,
+                                       std::optional<std::uint64_t> starved = {});
 
 }  // namespace rmlcell::rml1

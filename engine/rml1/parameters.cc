@@ -32,6 +32,7 @@ constexpr std::array kParameters = {
     ParameterInfo{"Z_SPEED",        "mm/s",     2.0, 0.01,      1e4, {}, "speed of Z at power-on and after V, !VZ, DF, IN", "RML1-9.08"},
     ParameterInfo{"TRAVEL_SPEED",   "mm/s",    60.0, 0.01,      1e4, {}, "speed with the tool up", "RML1-9.44"},
     ParameterInfo{"ACCELERATION",   "mm/s2",  200.0,  0.1,      1e6, {}, "acceleration along the path", "RML1-9.45"},
+    ParameterInfo{"SPEED_JUMP",     "mm/s",     3.0, 0.01,      1e4, {}, "change of speed that an axis can make at once, at the corner of a path", "RML1-9.45"},
     ParameterInfo{"SPINDLE_MIN",    "rpm",   4500.0,  0.0,      1e6, {}, "lowest spindle speed, and the one at power-on", "RML1-9.32"},
     ParameterInfo{"SPINDLE_MAX",    "rpm",  15000.0,  0.0,      1e6, {}, "highest spindle speed", "RML1-3C.15"},
     ParameterInfo{"SPINDLE_STEP",   "rpm",    100.0,  1.0,      1e6, {}, "a speed in rpm is cut down to a multiple of this", "RML1-3C.16"},

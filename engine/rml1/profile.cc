@@ -62,6 +62,7 @@ void ReadFigures(const machine::Parameters& from, Profile& profile) {
   profile.z_speed = profile.z_speeds.Nearest(from.Number("Z_SPEED"));
   profile.travel_speed = from.Number("TRAVEL_SPEED");
   profile.acceleration_mm_s2 = from.Number("ACCELERATION");
+  profile.speed_jump_mm_s = from.Number("SPEED_JUMP");
   profile.spindle_min_rpm = static_cast<int>(from.Number("SPINDLE_MIN"));
   profile.spindle_max_rpm = static_cast<int>(from.Number("SPINDLE_MAX"));
   profile.spindle_step_rpm = static_cast<int>(from.Number("SPINDLE_STEP"));

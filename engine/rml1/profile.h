@@ -41,6 +41,7 @@ struct Profile {
   double z_speed = 2.0;
   double travel_speed = 60.0;
   double acceleration_mm_s2 = 200.0;
+  double speed_jump_mm_s = 3.0;  // of an axis at the vertex of a polyline; motion.md section 7
 
   int spindle_min_rpm = 0;
   int spindle_max_rpm = 0;

@@ -1,12 +1,12 @@
 #include "engine/rml1/rml1_family.h"
 
 #include <algorithm>
-#include <limits>
 #include <set>
 
 #include "engine/rml1/figures.h"
 #include "engine/rml1/physical.h"
 #include "engine/rml1/run.h"
+#include "engine/rml1/timing.h"
 #include "engine/rml1/variables.h"
 
 namespace rmlcell::rml1 {
@@ -162,16 +162,7 @@ machine::MachineShape MillFamily::Shape(const machine::Parameters& parameters) c
   shape.travel.Add(mm(p.x.high, p.y.high, p.z.high));
   shape.has_work_origin = true;
   shape.work_origin = mm(p.origin_x, p.origin_y, p.z0);
-  const double xy = std::max(p.xy_speeds.maximum_mm_s, p.travel_speed);
-  const double a = p.acceleration_mm_s2;
-  motion::MachineLimits limits;
-  limits.tip_speed_mm_s = xy;
-  limits.tip_acceleration_mm_s2 = a;
-  limits.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
-  limits.settling_s = 0.0;
-  limits.axes.speed = {xy, xy, p.z_speeds.maximum_mm_s, p.rotary_speed_deg_s * kRadPerDegree, 0.0};
-  limits.axes.acceleration = {a, a, a, p.rotary_acceleration_deg_s2 * kRadPerDegree, 0.0};
-  shape.limits = limits;
+  shape.limits = MillLimits(p);
   return shape;
 }
 

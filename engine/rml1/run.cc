@@ -65,7 +65,7 @@ Result<std::unique_ptr<MillRun>> MillRun::Make(machine::RunSetup setup,
     const Result<MachineState> kept = ReadMachineState(run->setup_.machine_state, *profile);
     if (!kept) return kept.error();
     run->state_.device.Restore(kept->registers, kept->at);
-    run->state_.tool = run->state_.device.carriage().physical();
+    run->PutTool();
   }
   return run;
 }
@@ -76,7 +76,11 @@ MillRun::MillRun(machine::RunSetup setup, std::shared_ptr<const Profile> profile
   if (!std::isnan(setup_.override_percent)) {
     state_.override_percent = std::clamp(setup_.override_percent, kOverrideMin, kOverrideMax);
   }
-  state_.tool = state_.device.carriage().physical();
+  halts_.after_each = setup_.mode == machine::Mode::kSingle;
+  if (setup_.breakpoint && setup_.breakpoint->program == setup_.main_program) {
+    halts_.after = setup_.breakpoint->step;
+  }
+  PutTool();
   state_.place.program = setup_.main_program;
   const auto found = setup_.programs.find(setup_.main_program);
   if (found != setup_.programs.end()) program_ = found->second.object;
@@ -84,6 +88,13 @@ MillRun::MillRun(machine::RunSetup setup, std::shared_ptr<const Profile> profile
     CloseWith(OutcomeKind::kFailed, ErrorCode::kCellNotFound,
               "no program in slot " + std::to_string(setup_.main_program));
   }
+}
+
+// Before the first byte: where the device says that the tool stands.
+void MillRun::PutTool() {
+  state_.tool = state_.device.carriage().physical();
+  state_.scout = Scout(state_.device);
+  state_.ahead = LookAhead(profile(), state_.tool, state_.override_percent);
 }
 
 std::string_view MillRun::stream() const {
@@ -98,7 +109,8 @@ SimTime MillRun::NextInputTime() const {
 // caller then comes first, as a scripted one of that time would.
 RunPhase MillRun::Advance(SimTime until) {
   State& s = state_;
-  const std::size_t stop_at = s.cursor + kBytesPerAdvance;
+  const std::size_t sent_max = s.sender.sent() + kBytesPerAdvance;
+  const std::size_t ahead_max = s.scout.sent() + kBytesPerAdvance;
   const SimTime limit =
       setup_.budget.virtual_time > SimTime::zero() ? setup_.budget.virtual_time : kForever;
   while (s.phase != RunPhase::kFinished) {
@@ -124,10 +136,12 @@ RunPhase MillRun::Advance(SimTime until) {
     s.now = next;
     if (scripted && input_at <= s.now) {
       Handle(setup_.inputs[s.next_input++]);
+    } else if (s.busy == Busy::kMotion && !s.motion.planned) {
+      if (!PlanLeg(ahead_max)) return s.phase = RunPhase::kRunning;
     } else if (s.busy != Busy::kNothing) {
       EndBusy();
-    } else if (s.cursor < stop_at) {
-      Proceed(stop_at - s.cursor);
+    } else if (s.sender.sent() < sent_max) {
+      Proceed(sent_max);
     } else {
       return s.phase = RunPhase::kRunning;
     }
@@ -136,9 +150,10 @@ RunPhase MillRun::Advance(SimTime until) {
 }
 
 // The next thing that takes no time, or the start of one that does.
-void MillRun::Proceed(std::size_t bytes_max) {
+void MillRun::Proceed(std::size_t sent_max) {
   State& s = state_;
-  if (s.halt_wanted != HaltCause::kNone) {
+  const bool ends_motion_first = s.rest_left && s.halt_wanted == HaltCause::kHold;
+  if (s.halt_wanted != HaltCause::kNone && !Moves() && !ends_motion_first) {
     BeginHalt(s.halt_wanted);
     return;
   }
@@ -151,7 +166,8 @@ void MillRun::Proceed(std::size_t bytes_max) {
   if (!s.device.actions().empty()) {
     const Action action = s.device.actions().front();
     if (action.kind == Action::Kind::kPause) {
-      FillBuffer();
+      Listener listener(*this);
+      s.sender.FillBuffer(s.device, stream(), listener);
       BeginHalt(HaltCause::kPause);
       return;
     }
@@ -166,43 +182,25 @@ void MillRun::Proceed(std::size_t bytes_max) {
       End(OutcomeKind::kBudgetExceeded, ErrorCode::kCellStepBudget);
       return;
     }
-    const bool at_breakpoint = setup_.breakpoint &&
-                               setup_.breakpoint->program == setup_.main_program &&
-                               setup_.breakpoint->step == s.place.step;
-    if (at_breakpoint) return BeginHalt(HaltCause::kBreakpoint);
-    if (setup_.mode == machine::Mode::kSingle) return BeginHalt(HaltCause::kSingle);
+    if (halts_.After(s.place.step)) {
+      const bool at_breakpoint = halts_.after > 0 && halts_.after == s.place.step;
+      return BeginHalt(at_breakpoint ? HaltCause::kBreakpoint : HaltCause::kSingle);
+    }
   }
-  Interpret(bytes_max);
+  Interpret(sent_max);
 }
 
 // Bytes, until one of them makes something happen, or so many of them.
-void MillRun::Interpret(std::size_t bytes_max) {
+void MillRun::Interpret(std::size_t sent_max) {
   State& s = state_;
   Listener listener(*this);
   for (;;) {
     while (s.device.Step(listener)) {
       if (!s.device.actions().empty() || s.device.commands_done() != s.commands_seen) return;
     }
-    if (s.cursor == program_->size()) return Finish();
-    if (bytes_max-- == 0) return;
-    FeedOneByte(listener);
-  }
-}
-
-void MillRun::FeedOneByte(DeviceListener& listener) {
-  State& s = state_;
-  const auto byte = static_cast<unsigned char>((*program_)[s.cursor]);
-  s.device.Receive(byte, static_cast<std::int64_t>(s.cursor), listener);
-  ++s.cursor;
-}
-
-// While the device is paused the sender goes on until flow control stops it. Two places are kept
-// free: a byte behind ESC may bring the ESC with it.
-void MillRun::FillBuffer() {
-  constexpr std::size_t kSpare = 2;
-  Listener listener(*this);
-  while (state_.cursor < program_->size() && state_.device.room() >= kSpare) {
-    FeedOneByte(listener);
+    if (s.sender.done(stream())) return Finish();
+    if (s.sender.sent() >= sent_max) return;
+    s.sender.SendByte(s.device, stream(), listener);
   }
 }
 
@@ -230,28 +228,19 @@ void MillRun::Apply(const machine::InputChange& input) {
 }
 
 void MillRun::Handle(const machine::InputChange& input) {
-  State& s = state_;
   switch (input.kind) {
     case InputKind::kStart:
       PressStart();
       break;
     case InputKind::kHold:
-      if (s.halt == HaltCause::kNone && s.halt_wanted == HaltCause::kNone) {
-        s.halt_wanted = HaltCause::kHold;
-      }
+      PressHold();
       break;
     case InputKind::kStop:
       PressStop();
       break;
-    case InputKind::kOverride: {
-      if (std::isnan(input.value)) break;
-      const double before = s.override_percent;
-      s.override_percent = std::clamp(input.value, kOverrideMin, kOverrideMax);
-      const bool changes = s.busy == Busy::kMotion && !s.motion.stopping &&
-                           !s.motion.action.rapid && s.override_percent != before;
-      if (changes) CutMotion(false);
+    case InputKind::kOverride:
+      ChangeOverride(input.value);
       break;
-    }
     case InputKind::kEmergencyStop:
       Freeze();
       CloseWith(OutcomeKind::kStopped, std::nullopt, "emergency stop");  // it has no number
@@ -263,13 +252,20 @@ void MillRun::Handle(const machine::InputChange& input) {
   }
 }
 
+// Also takes back a HOLD or STOP that has not halted it yet; the tool that brakes for a STOP comes
+// to rest first.
 void MillRun::PressStart() {
   State& s = state_;
-  if (s.halt != HaltCause::kNone) {
-    EndHalt();
-  } else {
-    s.halt_wanted = HaltCause::kNone;  // takes back a HOLD or STOP that has not halted it yet
-  }
+  if (s.halt != HaltCause::kNone) return EndHalt();
+  s.halt_wanted = HaltCause::kNone;
+  if (Moves() && s.ahead.intent() == LookAhead::Intent::kHold) PlanAnew(LookAhead::Intent::kGo);
+}
+
+void MillRun::PressHold() {
+  State& s = state_;
+  if (s.halt != HaltCause::kNone || s.halt_wanted != HaltCause::kNone) return;
+  s.halt_wanted = HaltCause::kHold;
+  if (Moves() && s.ahead.intent() == LookAhead::Intent::kGo) PlanAnew(LookAhead::Intent::kHold);
 }
 
 // Brakes on the path, or stops the clock of a wait; standing still it is a HOLD.
@@ -277,12 +273,27 @@ void MillRun::PressStop() {
   State& s = state_;
   if (s.halt != HaltCause::kNone) return;
   s.halt_wanted = HaltCause::kStop;
-  if (s.busy == Busy::kMotion && !s.motion.stopping) {
-    CutMotion(true);
+  if (Moves()) {
+    if (s.ahead.intent() != LookAhead::Intent::kStop) PlanAnew(LookAhead::Intent::kStop);
   } else if (s.busy == Busy::kWait) {
     s.wait_left = s.busy_until - s.now;
     EndWait();
     s.clock.Set(s.now);
+  }
+}
+
+// A ramp to rest stays what it is, and so does travel, of which no chain is but a part.
+void MillRun::ChangeOverride(double percent) {
+  State& s = state_;
+  if (std::isnan(percent)) return;
+  const double before = s.override_percent;
+  s.override_percent = std::clamp(percent, kOverrideMin, kOverrideMax);
+  const bool stays = !Moves() || s.ahead.intent() == LookAhead::Intent::kStop ||
+                     s.motion.action.rapid || s.override_percent == before;
+  if (stays) {
+    s.ahead.SetOverride(s.override_percent);
+  } else {
+    PlanAnew(s.ahead.intent());
   }
 }
 
@@ -295,7 +306,6 @@ void MillRun::BeginHalt(HaltCause cause) {
   s.halt = cause;
   s.halt_wanted = HaltCause::kNone;
   s.halted_at = s.now;
-  s.chain = Chain::kAlone;
   observer_.OnHalt({.at = s.now, .place = s.place, .why = why});
   const bool for_ever = cause == HaltCause::kPause && s.next_input == setup_.inputs.size();
   if (!for_ever) return;
@@ -338,8 +348,8 @@ void MillRun::End(OutcomeKind kind, ErrorCode code) {
 // The tool stands where it is, and the spindle stops.
 void MillRun::Freeze() {
   State& s = state_;
-  if (s.busy == Busy::kMotion) {
-    const double travelled = s.motion.leg.speed.At(ElapsedInLeg()).s;
+  if (s.busy == Busy::kMotion && s.motion.planned) {
+    const double travelled = s.motion.leg.ride.speed.At(ElapsedInLeg()).s;
     const Point stopped_at = ToolAt(TipNow());
     ReportLeg(travelled);
     s.tool = stopped_at;
@@ -368,15 +378,17 @@ machine::RunState MillRun::state() const {
   if (s.place.step > 0) state.instruction = RowOf(s.device.command().op).name;
   state.tip = TipNow();
   state.axes = {.column = state.tip.tip, .a_rad = state.tip.a_rad, .b_rad = 0.0};
-  if (s.busy == Busy::kMotion) {
-    const double along = s.motion.leg.speed.At(ElapsedInLeg()).speed;
-    const bool turns_only = s.motion.leg.path.kind() == motion::PathPiece::Kind::kRotary;
-    if (!turns_only) state.tip_speed_mm_s = along;
+  if (s.busy == Busy::kMotion && s.motion.planned) {
+    const motion::PlannedMotion& ride = s.motion.leg.ride;
+    if (!ride.path.by_sigma()) state.tip_speed_mm_s = ride.speed.At(ElapsedInLeg()).speed;
+  } else if (s.phase != RunPhase::kFinished) {
+    state.tip_speed_mm_s = s.ahead.speed();
   }
   state.override_percent = s.override_percent;
   state.spindle_on = SpindleTurns();
   const double size = static_cast<double>(stream().size());
-  state.progress = size > 0.0 ? static_cast<double>(s.cursor - s.device.waiting()) / size : 1.0;
+  state.progress =
+      size > 0.0 ? static_cast<double>(s.sender.sent() - s.device.waiting()) / size : 1.0;
   return state;
 }
 
@@ -385,7 +397,7 @@ std::optional<std::string> MillRun::ReadVariable(std::string_view name) const {
 }
 
 std::vector<machine::Figure> MillRun::figures() const {
-  return FiguresOf(state_.device, state_.physical);
+  return FiguresOf(state_.device, state_.physical, state_.ahead.starved());
 }
 
 // A run that was cut short leaves the tool where it stands, and the spindle off.

@@ -7,7 +7,10 @@
 
 #include "engine/machine/run.h"
 #include "engine/rml1/device.h"
+#include "engine/rml1/look_ahead.h"
 #include "engine/rml1/physical.h"
+#include "engine/rml1/scout.h"
+#include "engine/rml1/sender.h"
 #include "engine/rml1/timing.h"
 
 namespace rmlcell::rml1 {
@@ -16,9 +19,14 @@ namespace rmlcell::rml1 {
 // has nothing to do, and while it is paused as many as its buffer takes; so nothing of the program
 // is held but the byte in hand (RML1-9.06).
 //
+// The device acts in virtual time: a command is told, and changes what there is to see, when its
+// turn comes, while the tool may pass from one motion to the next without standing. How fast it
+// passes is known from a second device that reads the same stream ahead (scout.h, look_ahead.h).
+//
 // Keys: START resumes !NR, a pause at the edge of the range, HOLD and STOP. HOLD lets the motion or
-// wait in progress end; STOP brakes on the path at once and goes on from there; an emergency stop
-// freezes the run, which then ends as STOPPED. Errors of the program never end it (RML1-6.08).
+// wait in progress end, and where the tool is too fast for that as many motions as it takes; STOP
+// brakes on the path at once and goes on from there; an emergency stop freezes the run, which then
+// ends as STOPPED. Errors of the program never end it (RML1-6.08).
 class MillRun final : public machine::Run {
  public:
   // Errors: CellUnimplemented for a dry run up to a step or mode REPEAT, which a mill does not
@@ -39,35 +47,38 @@ class MillRun final : public machine::Run {
   void Restore(const machine::RunSnapshot& snapshot) override;
 
  private:
-  // Bytes of the stream that one call of Advance reads at most, whatever time they take, so that
-  // whoever runs a file of nonsense hears of it every tenth of a second.
+  // Bytes of the stream that one call of Advance reads at most, whatever time they take, and reads
+  // ahead at most, so that whoever runs a file of nonsense hears of it every tenth of a second.
   static constexpr std::size_t kBytesPerAdvance = std::size_t{1} << 20;
 
   enum class Busy : std::uint8_t { kNothing, kMotion, kWait };
   enum class HaltCause : std::uint8_t { kNone, kPause, kHold, kStop, kSingle, kBreakpoint };
 
-  // A motion under way. A STOP or an override cuts it into legs: the one that runs now and up to
-  // one more behind it.
+  // The motion in progress. It is ridden in legs: one, but for a STOP or an override on the way.
   struct Motion {
     Action action;
     Point from;
     bool first_leg = true;
-    double feed_mm_s = 0.0;
-    motion::PlannedMotion leg;
-    bool stopping = false;  // the leg is a ramp to rest, and something is left behind it
-    bool joins = false;     // a planner with look-ahead would not have stopped before it
+    bool planned = false;  // false: the leg is not known, the tool passes its start
+    LookAhead::Leg leg;
   };
 
   // Everything that changes: a snapshot is a copy.
   struct State {
     explicit State(std::shared_ptr<const Profile> machine_profile)
-        : profile(std::move(machine_profile)), device(*profile), physical(*profile) {}
+        : profile(std::move(machine_profile)),
+          device(*profile),
+          physical(*profile),
+          scout(device),
+          ahead(*profile, device.carriage().physical(), 100.0) {}
 
     std::shared_ptr<const Profile>
         profile;  // of device and physical: a snapshot may outlive the run
     Device device;
     Physical physical;
-    std::size_t cursor = 0;  // bytes handed to the device
+    Sender sender;
+    Scout scout;
+    LookAhead ahead;
     std::size_t next_input = 0;
     VirtualClock clock;
     SimTime now{0};
@@ -83,8 +94,7 @@ class MillRun final : public machine::Run {
     Motion motion;
     bool rest_left = false;  // of a motion that STOP interrupted: it goes on at the next START
     machine::WaitKind wait_kind = machine::WaitKind::kDwell;
-    Point tool;                   // where it stands, or the motion began
-    Chain chain = Chain::kAlone;  // of the last motion, when nothing came after it
+    Point tool;  // where it stands, or the leg began
 
     HaltCause halt = HaltCause::kNone;
     SimTime halted_at{0};
@@ -98,33 +108,38 @@ class MillRun final : public machine::Run {
   MillRun(machine::RunSetup setup, std::shared_ptr<const Profile> profile,
           machine::RunObserver& observer);
 
+  void PutTool();
+
   // run.cc: the course of time.
   SimTime NextInputTime() const;
-  void Proceed(std::size_t bytes_max);
-  void Interpret(std::size_t bytes_max);
-  void FeedOneByte(DeviceListener& listener);
+  void Proceed(std::size_t sent_max);
+  void Interpret(std::size_t sent_max);
   void Finish();
   void Handle(const machine::InputChange& input);
   void Freeze();
   void PressStart();
+  void PressHold();
   void PressStop();
+  void ChangeOverride(double percent);
   void BeginHalt(HaltCause cause);
   void EndHalt();
   void CloseWith(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail);
-  void FillBuffer();
   std::string_view stream() const;
 
   // run_motion.cc: one action after the other.
   void Begin(const Action& action);
   void BeginMotion(const Action& action);
   void BeginWait(machine::WaitKind kind, double seconds);
+  bool PlanLeg(std::size_t sent_max);
   void StartLeg();
   void EndBusy();
   void EndLeg();
+  void EndMotion(double speed);
   void ReportLeg(double travelled);
   void EndWait();
-  void CutMotion(bool stop);
+  void PlanAnew(LookAhead::Intent intent);
   void ResumeMotion();
+  bool Moves() const { return state_.busy == Busy::kMotion || state_.ahead.speed() > 0.0; }
   double ElapsedInLeg() const;
   Point ToolAt(const motion::TipPose& pose) const;
   motion::TipPose TipNow() const;
@@ -134,6 +149,7 @@ class MillRun final : public machine::Run {
   bool SpindleTurns() const;
 
   const machine::RunSetup setup_;
+  CommandHalts halts_;
   machine::Bytes program_;
   machine::RunObserver& observer_;
   State state_;

@@ -6,29 +6,11 @@
 #include "engine/rml1/run.h"
 
 namespace rmlcell::rml1 {
-namespace {
-
-bool ByAngle(const motion::PathPiece& path) {
-  return path.kind() == motion::PathPiece::Kind::kRotary;
-}
-double Turn(const motion::PathPiece& path) { return std::abs(path.to().a_rad - path.from().a_rad); }
-
-// The speed along `path`, when the speed along `old_path` was `speed`: by mm it is the same, by the
-// share of a turn it counts for the turn that is left.
-double SpeedOn(const motion::PathPiece& path, const motion::PathPiece& old_path, double speed) {
-  if (ByAngle(path) != ByAngle(old_path)) return 0.0;  // a last micrometre of the other kind
-  return ByAngle(path) ? speed * Turn(old_path) / Turn(path) : speed;
-}
-
-}  // namespace
-
 using machine::Signal;
 using machine::WaitKind;
 
 void MillRun::Begin(const Action& action) {
-  State& s = state_;
   if (action.kind == Action::Kind::kMotion) return BeginMotion(action);
-  s.chain = Chain::kAlone;
   switch (action.kind) {
     case Action::Kind::kSpindleStart:
       EmitSignal(Signal::kSpindle, 1.0, action.rpm);
@@ -50,26 +32,39 @@ void MillRun::Begin(const Action& action) {
   }
 }
 
+// The tool is where the last motion ended, and may be on its way.
 void MillRun::BeginMotion(const Action& action) {
   State& s = state_;
-  const MotionPlan plan = PlanMotion(profile(), s.tool, action, s.override_percent);
+  const bool after_halt = s.ahead.intent() != LookAhead::Intent::kGo && !Moves();
+  if (after_halt) s.ahead.Replan(LookAhead::Intent::kGo, s.override_percent);
   s.motion.action = action;
   s.motion.from = s.tool;
   s.motion.first_leg = true;
-  s.motion.stopping = false;
-  s.motion.feed_mm_s = plan.feed_mm_s;
-  s.motion.joins = action.chain != Chain::kAlone && action.chain == s.chain;
-  s.motion.leg = Ride(plan.path, 0.0, 0.0, plan.limits);
-  s.chain = action.chain;
-  StartLeg();
+  s.motion.planned = false;
+  s.busy = Busy::kMotion;
+  s.busy_from = s.busy_until = s.now;
+}
+
+// False: the bytes that may be read ahead now are used up.
+bool MillRun::PlanLeg(std::size_t sent_max) {
+  State& s = state_;
+  while (!s.ahead.NextLeg(s.motion.leg)) {
+    if (!s.scout.Read(stream(), halts_, sent_max, s.ahead)) return false;
+  }
+  if (s.motion.leg.halts && !(s.ahead.speed() > 0.0)) {  // a STOP before it began to move
+    s.busy = Busy::kNothing;
+    s.rest_left = true;
+  } else {
+    StartLeg();
+  }
+  return true;
 }
 
 void MillRun::StartLeg() {
   State& s = state_;
-  s.motion.leg.upper_bound = s.motion.joins;
-  s.busy = Busy::kMotion;
+  s.motion.planned = true;
   s.busy_from = s.now;
-  s.clock.Add(s.motion.leg.duration_s());
+  s.clock.Add(s.motion.leg.ride.duration_s());
   s.busy_until = std::max(s.now, s.clock.time());
 }
 
@@ -105,15 +100,25 @@ void MillRun::EndWait() {
 
 void MillRun::EndLeg() {
   State& s = state_;
-  ReportLeg(s.motion.leg.speed.end().s);
+  const LookAhead::Leg& leg = s.motion.leg;
+  const motion::PathState end = leg.ride.speed.end();
+  ReportLeg(end.s);
+  if (leg.ends_motion) return EndMotion(end.speed);
+  s.tool = ToolAt(leg.ride.path.At(end.s));
+  s.ahead.Ride({.length = end.s, .speed = end.speed, .tool = s.tool});
+  s.motion.planned = false;
+  s.busy_from = s.busy_until = s.now;
+  if (!leg.halts) return;
   s.busy = Busy::kNothing;
-  if (s.motion.stopping) {
-    s.rest_left = true;
-    s.tool = ToolAt(s.motion.leg.path.At(s.motion.leg.speed.end().s));
-    return;
-  }
+  s.rest_left = true;
+}
+
+void MillRun::EndMotion(double speed) {
+  State& s = state_;
+  s.busy = Busy::kNothing;
+  s.ahead.Finish(speed);
   s.tool = s.motion.action.to;
-  const motion::TipPose tip = s.motion.leg.path.to();
+  const motion::TipPose tip = PoseOf(profile(), s.tool);
   observer_.OnMove({.at = s.now,
                     .place = s.place,
                     .tip = tip,
@@ -121,19 +126,19 @@ void MillRun::EndLeg() {
                     .program_point = {s.tool.x - profile().origin_x, s.tool.y - profile().origin_y,
                                       s.tool.z - s.device.registers().z0},
                     .rotary_a = s.tool.a,
-                    .feed_mm_s = s.motion.feed_mm_s,
+                    .feed_mm_s = s.motion.leg.feed_mm_s,
                     .path = RowOf(s.device.command().op).name});
 }
 
 // The leg is over, or as much of it as was ridden.
 void MillRun::ReportLeg(double travelled) {
   State& s = state_;
-  const bool not_begun = s.now == s.busy_from && travelled < s.motion.leg.path.length();
-  if (not_begun) return;
   const Motion& m = s.motion;
-  const motion::PathPiece& path = m.leg.path;
+  const motion::PathPiece& path = m.leg.ride.path;
+  const bool not_begun = s.now == s.busy_from && travelled < path.length();
+  if (not_begun) return;
   const Point from = m.first_leg ? m.from : ToolAt(path.from());
-  const bool to_end = travelled >= path.length() && !m.stopping;
+  const bool to_end = m.leg.ends_motion && travelled >= path.length();
   const Point to = to_end ? m.action.to : ToolAt(path.At(travelled));
   s.physical.OnRide({.from = from,
                      .to = to,
@@ -146,63 +151,51 @@ void MillRun::ReportLeg(double travelled) {
                       .end = s.now,
                       .place = s.place,
                       .use = m.action.use,
-                      .motion = &m.leg,
+                      .motion = &m.leg.ride,
                       .travelled = travelled,
-                      .programmed_mm_s = m.action.rapid ? 0.0 : m.feed_mm_s});
+                      .programmed_mm_s = m.action.rapid ? 0.0 : m.leg.feed_mm_s});
   s.motion.first_leg = false;
 }
 
-// STOP: a ramp to rest at once; the rest of the path follows with START. Override: over to the new
-// speed on the rest of the path. motion.md section 6.
-void MillRun::CutMotion(bool stop) {
+// What a key or another override makes of the motions ahead; motion.md section 6. The leg ends here
+// and now, and the next one begins at the same speed.
+void MillRun::PlanAnew(LookAhead::Intent intent) {
   State& s = state_;
-  const motion::PathState along = s.motion.leg.speed.At(ElapsedInLeg());
-  const motion::PathPiece old_path = s.motion.leg.path;
-  ReportLeg(along.s);
   s.clock.Set(s.now);
-  s.tool = ToolAt(old_path.At(along.s));
-  const MotionPlan plan = PlanMotion(profile(), s.tool, s.motion.action, s.override_percent);
-  const double length = plan.path.length();
-  // Rounding must not leave it too fast to stop within what is left.
-  const double speed =
-      std::min(SpeedOn(plan.path, old_path, along.speed), motion::Reach(0.0, length, plan.limits));
-  s.motion.feed_mm_s = plan.feed_mm_s;
-  s.motion.joins = false;
-  s.motion.leg = {};
-  s.motion.leg.path = plan.path;
-  s.motion.leg.limits = plan.limits;
-  const double ramp = motion::RampLength(speed, 0.0, plan.limits);
-  s.motion.stopping = stop && ramp < length;
-  if (s.motion.stopping && !(ramp > 0.0)) {  // it had not begun to move
-    s.motion.stopping = false;
-    s.busy = Busy::kNothing;
-    s.rest_left = true;
-    return;
+  if (s.busy == Busy::kMotion && s.motion.planned) {
+    const motion::PathPiece& path = s.motion.leg.ride.path;
+    const motion::PathState along = s.motion.leg.ride.speed.At(ElapsedInLeg());
+    if (path.length() - along.s <= LookAhead::kNothing_mm) {
+      EndLeg();
+    } else {
+      ReportLeg(along.s);
+      s.tool = ToolAt(path.At(along.s));
+      s.ahead.Ride({.length = along.s, .speed = along.speed, .tool = s.tool});
+      s.motion.planned = false;
+      s.busy_from = s.busy_until = s.now;
+    }
   }
-  motion::PathLimits limits = plan.limits;
-  if (s.motion.stopping) limits.speed = speed;  // no faster, only down
-  s.motion.leg.speed = motion::SpeedProfile::From({.s = 0.0, .speed = speed, .acceleration = 0.0},
-                                                  s.motion.stopping ? ramp : length, 0.0, limits);
-  StartLeg();
+  if (s.busy == Busy::kMotion && s.ahead.NothingLeft()) EndMotion(s.ahead.speed());
+  s.ahead.Replan(intent, s.override_percent);
 }
 
-// From where STOP left the tool, with the override of now.
+// From where STOP left the tool, with the override of now. A HOLD that came on the way lets it end.
 void MillRun::ResumeMotion() {
   State& s = state_;
   s.rest_left = false;
-  s.motion.stopping = false;
-  const MotionPlan plan = PlanMotion(profile(), s.tool, s.motion.action, s.override_percent);
-  s.motion.feed_mm_s = plan.feed_mm_s;
-  s.motion.leg = Ride(plan.path, 0.0, 0.0, plan.limits);
-  StartLeg();
+  const bool hold = s.halt_wanted == HaltCause::kHold;
+  s.ahead.Replan(hold ? LookAhead::Intent::kHold : LookAhead::Intent::kGo, s.override_percent);
+  s.busy = Busy::kMotion;
+  s.busy_from = s.busy_until = s.now;
 }
 
 double MillRun::ElapsedInLeg() const { return ToSeconds(state_.now - state_.busy_from); }
 
 motion::TipPose MillRun::TipNow() const {
   const State& s = state_;
-  if (s.busy != Busy::kMotion) return PoseOf(profile(), s.tool);
-  return s.motion.leg.path.At(s.motion.leg.speed.At(ElapsedInLeg()).s);
+  if (s.busy != Busy::kMotion || !s.motion.planned) return PoseOf(profile(), s.tool);
+  const motion::PlannedMotion& ride = s.motion.leg.ride;
+  return ride.path.At(ride.speed.At(ElapsedInLeg()).s);
 }
 
 Point MillRun::ToolAt(const motion::TipPose& pose) const {

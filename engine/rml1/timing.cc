@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/rml1/carriage.h"
 
@@ -13,6 +14,23 @@ motion::TipPose PoseOf(const Profile& profile, const Point& at) {
   return {.tip = {at.x * mm, at.y * mm, at.z * mm},
           .a_rad = sense * at.a * kRadPerDegree,
           .b_rad = 0.0};
+}
+
+motion::MachineLimits MillLimits(const Profile& profile) {
+  const double xy = std::max(profile.xy_speeds.maximum_mm_s, profile.travel_speed);
+  const double z = profile.z_speeds.maximum_mm_s;
+  const double a = profile.acceleration_mm_s2;
+  const double rotary = profile.rotary_acceleration_deg_s2 * kRadPerDegree;
+  motion::MachineLimits limits;
+  limits.tip_speed_mm_s = xy;
+  limits.tip_acceleration_mm_s2 = a;
+  limits.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
+  limits.settling_s = 0.0;
+  limits.junction_jump_mm_s = profile.speed_jump_mm_s;
+  limits.junction_jump_a_rad_s = rotary * profile.speed_jump_mm_s / a;
+  limits.axes.speed = {xy, xy, z, profile.rotary_speed_deg_s * kRadPerDegree, 0.0};
+  limits.axes.acceleration = {a, a, a, rotary, 0.0};
+  return limits;
 }
 
 MotionPlan PlanMotion(const Profile& profile, const Point& from, const Action& action,
@@ -38,18 +56,6 @@ MotionPlan PlanMotion(const Profile& profile, const Point& from, const Action& a
     plan.limits.acceleration = std::min(plan.limits.acceleration, rotary);
   }
   return plan;
-}
-
-motion::PlannedMotion Ride(const motion::PathPiece& path, double v0, double v1,
-                           const motion::PathLimits& limits) {
-  motion::PlannedMotion planned;
-  planned.path = path;
-  planned.limits = limits;
-  const double start = std::min(v0, motion::Reach(v1, path.length(), limits));
-  motion::PathLimits span = limits;
-  span.speed = std::max({limits.speed, start, v1});
-  planned.speed = motion::SpeedProfile::Span(path.length(), start, v1, span);
-  return planned;
 }
 
 }  // namespace rmlcell::rml1

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "engine/core/units.h"
-#include "engine/motion/planner.h"
+#include "engine/motion/machine_limits.h"
+#include "engine/motion/path.h"
+#include "engine/motion/speed_profile.h"
 #include "engine/rml1/action.h"
 #include "engine/rml1/profile.h"
 
@@ -14,9 +16,13 @@ inline constexpr double kOverrideMax = 200.0;
 // The tool in the machine frame: mm, and rad for the rotary axis.
 motion::TipPose PoseOf(const Profile& profile, const Point& at);
 
-// A motion from standstill to standstill: trapezoids with the acceleration of the profile
-// (motion.md section 7; a planner that looks ahead across commands is to come). The override acts
-// on F/VS and V/!VZ speeds, within what the axes can do, and not on the travel speed.
+// What a mill can do, for the planner and for reports: trapezoids, polylines kept exactly, and a
+// vertex passed where no axis has to jump by more than SPEED_JUMP; motion.md section 7. The rotary
+// axis may jump by what its own acceleration makes in the same time.
+motion::MachineLimits MillLimits(const Profile& profile);
+
+// The path of one motion and its limits, whatever comes before and behind. The override acts on
+// F/VS and V/!VZ speeds, within what the axes can do, and not on the travel speed.
 struct MotionPlan {
   motion::PathPiece path;
   motion::PathLimits limits;
@@ -24,11 +30,6 @@ struct MotionPlan {
 };
 MotionPlan PlanMotion(const Profile& profile, const Point& from, const Action& action,
                       double override_percent);
-
-// `path` ridden from speed v0 to v1. v0 is lowered to what the length can still brake, against
-// rounding errors of a motion cut in two.
-motion::PlannedMotion Ride(const motion::PathPiece& path, double v0, double v1,
-                           const motion::PathLimits& limits);
 
 // Virtual time as a sum of durations, compensated, so that a million short motions add up.
 class VirtualClock {

@@ -160,7 +160,7 @@ void Table::AddRun() {
   Add("halts", "", "times that the run waited for a person",
       [](const RunReport& r) { return Count(r.halts); });
   Add("timing", "",
-      "`exact`; `exact stop, upper bound` when a passage with /FLY was timed as a stop",
+      "`exact`; `exact stop, upper bound` when PTP moves in COORD ROBOT with /FLY were timed as stops",
       [](const RunReport& r) { return std::string(TimingText(r.timing)); });
 }
 
@@ -265,6 +265,15 @@ void Table::AddCorners() {
   });
   Add("lookahead_starved", "", "knots that the planner decided before it could see enough",
       [](const RunReport& r) { return Count(r.lookahead_starved); });
+  const auto of_material = [](auto figure) {
+    return [figure](const RunReport& r) { return r.milling ? figure(*r.milling) : std::string(kNone); };
+  };
+  Add("removed_volume_mm3", "mm3", "what a mill took off the block that it was given",
+      of_material([](const MillingFigures& m) { return Real(m.removed_mm3); }));
+  Add("gouges", "", "motions at travel speed through that block",
+      of_material([](const MillingFigures& m) { return Count(m.gouges); }));
+  Add("gouge_depth_mm", "mm", "depth of the deepest of them",
+      of_material([](const MillingFigures& m) { return Real(m.gouge_depth_mm); }));
 }
 
 void Table::AddPoint(const std::string& name, const std::string& unit, const std::string& text,

@@ -6,39 +6,6 @@
 #include "engine/core/units.h"
 
 namespace rmlcell::simulation {
-namespace {
-
-// Height of the surface above the lowest point, at distance `d` from the axis.
-double SurfaceAt(const MillTool& tool, double d) {
-  switch (tool.shape) {
-    case MillTool::Shape::kFlat:
-      return 0.0;
-    case MillTool::Shape::kBall:
-      return tool.radius_mm - std::sqrt(std::max(0.0, tool.radius_mm * tool.radius_mm - d * d));
-    case MillTool::Shape::kVee:
-      return std::max(0.0, d - tool.tip_radius_mm) / std::tan(tool.half_angle_rad);
-  }
-  return 0.0;
-}
-
-// The point in the axes of the move: `along` it from its start, and `across`. The tool is over the
-// point while its own place t along the move lies in low..high.
-struct Passing {
-  double along = 0.0;
-  double across = 0.0;
-  double slope = 0.0;  // of z by t
-  double z = 0.0;      // at t = 0
-  double low = 0.0;
-  double high = 0.0;
-};
-
-double LeastAt(const MillTool& tool, const Passing& p, double t) {
-  const double inside = std::clamp(t, p.low, p.high);
-  return p.z + p.slope * inside + SurfaceAt(tool, std::hypot(p.along - inside, p.across));
-}
-
-}  // namespace
-
 Status CheckTool(const MillTool& tool) {
   if (!(tool.radius_mm > 0.0) || !std::isfinite(tool.radius_mm))
     return InvalidArgument("the radius of a tool is above 0 mm");
@@ -50,46 +17,55 @@ Status CheckTool(const MillTool& tool) {
   return {};
 }
 
+ToolPass::ToolPass(const MillTool& tool, const motion::Vec3& from, const motion::Vec3& to)
+    : from_(from),
+      to_(to),
+      radius_(tool.radius_mm),
+      tip_radius_(tool.tip_radius_mm),
+      length_(std::hypot(to.x - from.x, to.y - from.y)),
+      upright_(!(length_ > 0.0)),
+      z_(upright_ ? std::min(from.z, to.z) : from.z) {
+  if (tool.shape == MillTool::Shape::kVee) rise_ = 1.0 / std::tan(tool.half_angle_rad);
+  if (upright_) return;
+  way_x_ = (to.x - from.x) / length_;
+  way_y_ = (to.y - from.y) / length_;
+  slope_ = (to.z - from.z) / length_;
+  lead_ = slope_ / std::sqrt(1.0 + slope_ * slope_);
+}
+
+// The height over the point is convex in the tool's place: its least is at an end, where it stands
+// still, or where the flat tip begins.
+double ToolPass::LeastOfVee(double along, double across) const {
+  const Reach r = ReachOf(along, across);
+  if (!r.hit) return HUGE_VAL;
+  const auto at = [&](double place) {
+    const double t = std::clamp(place, r.low, r.high);
+    const double distance = std::hypot(along - t, across);
+    return z_ + slope_ * t + std::max(0.0, distance - tip_radius_) * rise_;
+  };
+  double least = std::min(at(r.low), at(r.high));
+  const double steepness = slope_ / rise_;
+  if (std::abs(steepness) < 1.0) {
+    const double ahead = across * steepness / std::sqrt(1.0 - steepness * steepness);
+    least = std::min(least, at(along - ahead));
+  }
+  const double flat_2 = tip_radius_ * tip_radius_ - across * across;
+  if (flat_2 > 0.0) {
+    least = std::min(least, at(along - std::sqrt(flat_2)));
+    least = std::min(least, at(along + std::sqrt(flat_2)));
+  }
+  return least;
+}
+
 std::optional<double> SweptHeight(const MillTool& tool, const motion::Vec3& from,
                                   const motion::Vec3& to, double x, double y) {
-  const double dx = to.x - from.x;
-  const double dy = to.y - from.y;
-  const double length = std::hypot(dx, dy);
-  const double px = x - from.x;
-  const double py = y - from.y;
-  if (length <= 0.0) {
-    const double distance = std::hypot(px, py);
-    if (distance > tool.radius_mm) return std::nullopt;
-    return std::min(from.z, to.z) + SurfaceAt(tool, distance);
-  }
-  Passing p;
-  p.along = (px * dx + py * dy) / length;
-  p.across = std::abs(py * dx - px * dy) / length;
-  if (p.across > tool.radius_mm) return std::nullopt;
-  const double half = std::sqrt(tool.radius_mm * tool.radius_mm - p.across * p.across);
-  p.low = std::max(0.0, p.along - half);
-  p.high = std::min(length, p.along + half);
-  if (p.low > p.high) return std::nullopt;
-  p.slope = (to.z - from.z) / length;
-  p.z = from.z;
-
-  // The height over the point is convex in t: its least is at an end, or where it stands still.
-  double least = std::min(LeastAt(tool, p, p.low), LeastAt(tool, p, p.high));
-  const auto try_at = [&](double ahead) {
-    least = std::min(least, LeastAt(tool, p, p.along - ahead));
-  };
-  if (tool.shape == MillTool::Shape::kBall) {
-    try_at(p.slope * half / std::sqrt(1.0 + p.slope * p.slope));
-  } else if (tool.shape == MillTool::Shape::kVee) {
-    const double steepness = p.slope * std::tan(tool.half_angle_rad);
-    if (std::abs(steepness) < 1.0)
-      try_at(p.across * steepness / std::sqrt(1.0 - steepness * steepness));
-    const double flat_2 = tool.tip_radius_mm * tool.tip_radius_mm - p.across * p.across;
-    if (flat_2 > 0.0) {
-      try_at(std::sqrt(flat_2));
-      try_at(-std::sqrt(flat_2));
-    }
-  }
+  const ToolPass pass(tool, from, to);
+  const double along = pass.AlongOf(x - from.x, y - from.y);
+  const double across = pass.AcrossOf(x - from.x, y - from.y);
+  const double least = tool.shape == MillTool::Shape::kFlat   ? pass.LeastOfFlat(along, across)
+                       : tool.shape == MillTool::Shape::kBall ? pass.LeastOfBall(along, across)
+                                                              : pass.LeastOfVee(along, across);
+  if (std::isinf(least)) return std::nullopt;
   return least;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "engine/core/result.h"
@@ -21,8 +23,66 @@ struct MillTool {
 // not between 0 and a quarter turn, a tip wider than the shaft.
 Status CheckTool(const MillTool& tool);
 
-// The least height that the tool's surface has above the point (x, y) while the tool moves straight
-// from `from` to `to`; nothing where it does not come over the point. Closed form.
+// A tool on a straight move, seen from a point: `along` the move from its start and `across` it.
+// The least height that the tool's surface has over the point on the way, in closed form; infinite
+// where the tool does not come over it.
+class ToolPass {
+ public:
+  ToolPass(const MillTool& tool, const motion::Vec3& from, const motion::Vec3& to);
+
+  const motion::Vec3& from() const { return from_; }
+  const motion::Vec3& to() const { return to_; }
+  double radius_mm() const { return radius_; }
+
+  // Of a point at (x, y) from the start of the move. A plunge: all of its distance is across.
+  double AlongOf(double x, double y) const { return x * way_x_ + y * way_y_; }
+  double AcrossOf(double x, double y) const {
+    return upright_ ? std::sqrt(x * x + y * y) : std::abs(y * way_x_ - x * way_y_);
+  }
+
+  double LeastOfFlat(double along, double across) const {
+    const Reach r = ReachOf(along, across);
+    return r.hit ? z_ + slope_ * (slope_ > 0.0 ? r.low : r.high) : HUGE_VAL;
+  }
+  double LeastOfBall(double along, double across) const {
+    const Reach r = ReachOf(along, across);
+    const double t = std::clamp(along - lead_ * r.half, r.low, r.high);
+    const double rise_2 = r.half * r.half - (along - t) * (along - t);
+    return r.hit ? z_ + slope_ * t + radius_ - std::sqrt(std::max(0.0, rise_2)) : HUGE_VAL;
+  }
+  double LeastOfVee(double along, double across) const;
+
+ private:
+  // The tool is over the point while its own place along the move lies in low..high.
+  struct Reach {
+    double half;
+    double low;
+    double high;
+    bool hit;
+  };
+  Reach ReachOf(double along, double across) const {
+    const double half_2 = radius_ * radius_ - across * across;
+    const double half = std::sqrt(std::max(0.0, half_2));
+    const double low = std::max(0.0, along - half);
+    const double high = std::min(length_, along + half);
+    return {half, low, std::max(low, high), half_2 >= 0.0 && low <= high};
+  }
+
+  motion::Vec3 from_;
+  motion::Vec3 to_;
+  double radius_;
+  double tip_radius_;
+  double rise_ = 0.0;  // of a vee tool by its radius
+  double length_;      // seen from above
+  bool upright_;       // a plunge
+  double way_x_ = 0.0;
+  double way_y_ = 0.0;
+  double z_;
+  double slope_ = 0.0;  // of z along the move
+  double lead_ = 0.0;   // of a ball: how far ahead of the point its axis is, by half a chord
+};
+
+// The same for any shape, at a point of the plane; nothing where the tool does not come over it.
 std::optional<double> SweptHeight(const MillTool& tool, const motion::Vec3& from,
                                   const motion::Vec3& to, double x, double y);
 

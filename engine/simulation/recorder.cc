@@ -25,6 +25,7 @@ struct Recorder::State {
     if (products.samples) {
       Join(&samples.emplace(shape, products.samples_hz, std::move(products.samples)));
     }
+    if (products.milling) Join(&milling.emplace(shape, *products.milling));
   }
 
   void Join(machine::RunObserver* observer) {
@@ -43,7 +44,8 @@ struct Recorder::State {
   std::optional<PictureRecorder> picture;
   std::optional<PlotRecorder> plot;
   std::optional<SampleRecorder> samples;
-  std::array<machine::RunObserver*, 7> observers{};
+  std::optional<MillingRecorder> milling;
+  std::array<machine::RunObserver*, 8> observers{};
   std::size_t count = 0;
 };
 
@@ -124,7 +126,12 @@ RunReport Recorder::Report(const machine::Run& run) const {
   if (const auto& picture = state_->picture) {
     report.picture = {.made = true, .complete = picture->exact(), .records = picture->elements()};
   }
+  if (state_->milling) report.milling = state_->milling->Figures();
   return report;
+}
+
+const HeightField* Recorder::material() const {
+  return state_->milling ? &state_->milling->material() : nullptr;
 }
 
 std::string Recorder::Svg(const RunReport& report, const PictureOptions& options) const {

@@ -4,6 +4,7 @@
 
 #include "engine/machine/shape.h"
 #include "engine/simulation/input_description.h"
+#include "engine/simulation/milling_recorder.h"
 #include "engine/simulation/picture.h"
 #include "engine/simulation/plot.h"
 #include "engine/simulation/report.h"
@@ -23,6 +24,7 @@ struct Products {
   bool plot = false;
   SampleSink samples{};  // empty: no samples
   double samples_hz = 1000.0;
+  std::optional<Milling> milling{};  // checked; nothing: material is not modelled
   machine::RunObserver* also = nullptr;  // told everything too, before the products; may be null
 };
 
@@ -55,6 +57,9 @@ class Recorder final : public machine::RunObserver {
 
   // Once, when the run is over: closes trace and toolpath.
   void Finish(const machine::Run& run);
+
+  // Null when material is not modelled.
+  const HeightField* material() const;
 
   // Empty when no picture was asked for.
   std::string Svg(const RunReport& report, const PictureOptions& options) const;

@@ -187,6 +187,17 @@ struct AxisViolation {
   bool operator==(const AxisViolation&) const = default;
 };
 
+// What a mill took off a block, when it was told of block and tool. motion.md 8.2, 9.
+struct MillingFigures {
+  double removed_mm3 = 0.0;
+  std::uint64_t gouges = 0;     // motions at travel speed through material
+  double gouge_depth_mm = 0.0;  // of the deepest
+  machine::Place gouge_place;   // where that was
+  SimTime gouge_at{0};
+
+  bool operator==(const MillingFigures&) const = default;
+};
+
 // How far a product went before its budget was used up.
 struct ProductState {
   bool made = false;
@@ -249,6 +260,7 @@ struct RunReport : ScopeFigures {
   std::vector<AxisViolation> violations;  // in order of first occurrence
   std::uint64_t violations_dropped = 0;   // at further steps, past kReportedViolationsMax
   std::vector<machine::Figure> figures;   // the family's own
+  std::optional<MillingFigures> milling;  // nothing: not asked for
 
   ProductState trace;
   ProductState toolpath;

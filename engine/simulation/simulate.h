@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "engine/machine/family.h"
@@ -80,6 +81,7 @@ struct SimulationResult {
   RunReport report;
   std::string svg;                               // empty when not asked for
   std::string plot;                              // empty when not asked for
+  std::optional<HeightField> material;           // what is left of the block, when there is one
   std::string machine_state;                     // for the next run on this machine
   std::map<int, std::string> executables;        // that the run made, by slot
   std::map<std::string, std::string> variables;  // those asked for and known, by name

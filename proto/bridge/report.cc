@@ -213,6 +213,14 @@ v1::RunReport ToProto(const simulation::RunReport& report,
   message.set_slow_moves_dropped(static_cast<std::int64_t>(report.slow_moves_dropped));
   message.set_lookahead_starved(static_cast<std::int64_t>(report.lookahead_starved));
   message.set_collisions("not modelled");
+  if (const auto& milling = report.milling) {
+    v1::MillingFigures& figures = *message.mutable_milling();
+    figures.set_removed_mm3(milling->removed_mm3);
+    figures.set_gouges(static_cast<std::int64_t>(milling->gouges));
+    figures.set_gouge_depth_mm(milling->gouge_depth_mm);
+    if (milling->gouges > 0) SetPlace(milling->gouge_place, *figures.mutable_gouge_place());
+    figures.set_gouge_time_s(ToSeconds(milling->gouge_at));
+  }
   for (const simulation::AxisViolation& violation : report.violations) {
     *message.add_violations() = ToProto(violation);
   }

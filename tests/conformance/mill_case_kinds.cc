@@ -41,7 +41,7 @@ Figures MillPath(const json& input, double speed, double dwell) {
     move.tag = k;
     if (const Status appended = planner.Append(move); !appended)
       throw SenselessCase(appended.error().detail);
-    time += dwell;
+    if (move.path.length() > 0.0) time += dwell;  // RML1-9.49
   }
   planner.Stop();
   Figures figures;

@@ -34,6 +34,12 @@ inline double PositiveOf(const nlohmann::json& input, const char* name) {
   return value;
 }
 
+inline double NotBelowZero(double value, const char* name) {
+  if (!(value >= 0.0))
+    throw SenselessCase(std::string(name) + " is " + ShortestText(value) + ": it is 0 or above");
+  return value;
+}
+
 inline std::string Numbered(std::string name, std::size_t number) {
   return name.append(std::to_string(number));
 }

@@ -6,6 +6,7 @@
 
 #include "engine/motion/feed_steps.h"
 #include "engine/motion/hole.h"
+#include "engine/motion/interruption.h"
 #include "engine/motion/laser_power.h"
 #include "tests/conformance/mill_case_kinds.h"
 #include "tests/conformance/motion_case_input.h"
@@ -111,6 +112,12 @@ Figures Arc(const json& input) {
   return figures;
 }
 
+// SPEED x override, each within its bounds: motion.md 5.1.
+double ShareOf(const json& input) {
+  const double speed = std::clamp(NumberOf(input, "speed"), 0.0, 100.0) / 100.0;
+  return std::min(1.0, speed * NumberOr(input, "override", 100.0) / 100.0);
+}
+
 // One commanded motion, from rest to rest.
 PlannedMotion Single(const MoveCommand& move) {
   Planner planner(StandardMachine());
@@ -152,21 +159,27 @@ PathLimits LimitsFrom(const json& input, double speed) {
 }
 
 Figures Profile(const json& input) {
-  const SpeedProfile profile =
-      SpeedProfile::Span(NumberOf(input, "dist"), NumberOr(input, "v0", 0.0),
-                         NumberOr(input, "v1", 0.0), LimitsFrom(input, PositiveOf(input, "v")));
+  const PathLimits limits = LimitsFrom(input, PositiveOf(input, "v"));
+  const double length = NotBelowZero(NumberOf(input, "dist"), "dist");
+  const double v0 = NotBelowZero(NumberOr(input, "v0", 0.0), "v0");
+  const double v1 = NotBelowZero(NumberOr(input, "v1", 0.0), "v1");
+  constexpr double kRoom = 1.0 + 1e-9;
+  if (std::max(v0, v1) > limits.speed * kRoom) throw SenselessCase("an end is faster than v");
+  if (RampLength(v0, v1, limits) > length * kRoom)
+    throw SenselessCase("dist is too short to get from v0 to v1");
+  const SpeedProfile profile = SpeedProfile::Span(length, v0, v1, limits);
   return {{"T", profile.duration_s()}, {"v_peak", profile.peak_speed()}};
 }
 
 Figures ReachCase(const json& input) {
   return {
-      {"v1", Reach(NumberOf(input, "v0"), NumberOf(input, "dist"), LimitsFrom(input, HUGE_VAL))}};
+      {"v1", Reach(NotBelowZero(NumberOf(input, "v0"), "v0"),
+                   NotBelowZero(NumberOf(input, "dist"), "dist"), LimitsFrom(input, HUGE_VAL))}};
 }
 
 Figures PointToPoint(const json& input, bool axes) {
   MoveCommand move;
-  move.speed_fraction =
-      std::min(1.0, NumberOf(input, "speed") / 100.0 * NumberOr(input, "override", 100.0) / 100.0);
+  move.speed_fraction = ShareOf(input);
   move.acceleration_fraction = NumberOr(input, "accel", 100.0) / 100.0;
   move.settles = false;
   if (axes) {
@@ -195,6 +208,7 @@ Figures PlanCase(const json& input) {
   MachineLimits machine = StandardMachine();
   if (!input.value("jerk", true)) machine.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
   Planner planner(machine);
+  Figures figures{{"T", 0.0}, {"length", 0.0}};
   int count = 0;
   for (const json& m : input.at("moves")) {
     const TipPose target = Pose(m.at("target"), m.at("ab"));
@@ -208,27 +222,23 @@ Figures PlanCase(const json& input) {
       if (!arc) return Figures{{"kind", -1.0}};
       move.path = arc->path;
     }
-    move.speed_fraction =
-        std::min(1.0, NumberOf(m, "speed") / 100.0 * NumberOr(m, "override", 100.0) / 100.0);
+    move.speed_fraction = ShareOf(m);
     move.acceleration_fraction = NumberOr(m, "accel", 100.0) / 100.0;
     move.overshoot_fraction = NumberOr(m, "oversh", 100.0) / 100.0;
     move.fly = m.value("fly", false);
     move.tag = static_cast<std::uint64_t>(++count);
     if (const Status appended = planner.Append(move); !appended)
       throw SenselessCase(appended.error().detail);
+    figures[Numbered("vlim", move.tag)] = LimitsOf(move, machine).speed;
     at = target;
   }
   planner.Stop();
-  Figures figures{{"T", 0.0}, {"length", 0.0}};
   double cut_sum = 0.0;
   double deviation_max = 0.0;
   while (const std::optional<PlannedItem> item = planner.Next()) {
     const auto& motion = std::get<PlannedMotion>(*item);
     figures["T"] += motion.duration_s();
-    figures["length"] += motion.path.length();
-    if (motion.path.kind() != PathPiece::Kind::kBlend) {
-      figures[Numbered("vlim", motion.tag)] = motion.limits.speed;
-    }
+    if (motion.path.kind() != PathPiece::Kind::kRotary) figures["length"] += motion.path.length();
     if (!motion.ends_move) continue;
     figures[Numbered("v", motion.tag)] = motion.corner.speed;
     figures[Numbered("d", motion.tag)] = motion.corner.cut_mm;
@@ -253,7 +263,7 @@ Figures Power(const json& input) {
 }
 
 Figures Cut(const json& input) {
-  const double length = NumberOf(input, "dist");
+  const double length = PositiveOf(input, "dist");
   const double delay = NumberOf(input, "delay");
   const double rated = NumberOf(input, "laser_W");
   const PlannedMotion motion = Single({.path = PathPiece::Line({}, {{length, 0.0, 0.0}}),
@@ -277,10 +287,19 @@ PlannedMotion Cruise(const json& input, double percent) {
   return Single(move);
 }
 
+// When something happens, while the motion is on its way.
+double TimeWithin(const PlannedMotion& motion, double t, const char* name) {
+  if (!(NotBelowZero(t, name) <= motion.duration_s()))
+    throw SenselessCase(std::string(name) + " is after the end of the motion");
+  return t;
+}
+
 Figures OverrideChange(const json& input) {
-  const double t = NumberOf(input, "t");
   const PlannedMotion before = Cruise(input, NumberOf(input, "override0"));
   const PlannedMotion wanted = Cruise(input, NumberOf(input, "override1"));
+  const double t = TimeWithin(before, NumberOf(input, "t"), "t");
+  if (!FromFits(before.speed.At(t), before.path.length(), 0.0, wanted.limits))
+    throw SenselessCase("t is where the motion brakes for its end: nothing changes any more");
   const SpeedProfile rest =
       SpeedProfile::From(before.speed.At(t), before.path.length(), 0.0, wanted.limits);
   // The reference's peak is the speed that it settles to: the one half way through what is left.
@@ -288,8 +307,8 @@ Figures OverrideChange(const json& input) {
 }
 
 Figures StopResume(const json& input) {
-  const double t = NumberOf(input, "t");
   const PlannedMotion motion = Cruise(input, 100.0);
+  const double t = TimeWithin(motion, NumberOf(input, "t"), "t");
   const SpeedProfile stop = motion.speed.StopFrom(t, motion.limits);
   const double s = stop.end().s;
   const SpeedProfile rest = SpeedProfile::Span(motion.path.length() - s, 0.0, 0.0, motion.limits);
@@ -299,8 +318,10 @@ Figures StopResume(const json& input) {
 
 Figures EndCondition(const json& input) {
   constexpr double kTick_s = 0.048;
-  const double seen = std::ceil(NumberOf(input, "t_true") / kTick_s - 1e-9) * kTick_s;
+  const double asked = NotBelowZero(NumberOf(input, "t_true"), "t_true");
   const PlannedMotion motion = Cruise(input, 100.0);
+  const double seen =
+      TimeWithin(motion, std::ceil(asked / kTick_s - 1e-9) * kTick_s, "the tick after t_true");
   const SpeedProfile stop = motion.speed.StopFrom(seen, motion.limits);
   return {{"t_seen", seen}, {"s_stop", stop.end().s}, {"T", seen + stop.duration_s()}};
 }

@@ -81,6 +81,18 @@ TEST(MotionReference, TellsWhatMakesNoSense) {
   EXPECT_EQ(detail(R"({"f":"plan","start":[0,0,0],"start_ab":[0,0],"moves":[
                 {"type":"SPLINE","target":[1,0,0],"ab":[0,0],"speed":10}]})"),
             "there is no move of type 'SPLINE'");
+  EXPECT_EQ(detail(R"({"f":"span","dist":1,"v0":50,"v1":0,"v":50,"a":2000,"j":40000})"),
+            "dist is too short to get from v0 to v1");
+  EXPECT_EQ(detail(R"({"f":"span","dist":100,"v0":60,"v1":0,"v":50,"a":2000,"j":40000})"),
+            "an end is faster than v");
+  EXPECT_EQ(detail(R"({"f":"end_condition","dist":300,"speed":10,"t_true":-9})"),
+            "t_true is -9: it is 0 or above");
+  EXPECT_EQ(detail(R"({"f":"stop_resume","dist":300,"speed":10,"t":99,"wait":1})"),
+            "t is after the end of the motion");
+  // 100 mm at 50 mm/s take 2.0707 s, the last 0.0707 of them to brake.
+  EXPECT_EQ(detail(R"({"f":"override_change","dist":100,"speed":10,"t":2.02,)"
+                   R"("override0":100,"override1":10})"),
+            "t is where the motion brakes for its end: nothing changes any more");
   EXPECT_EQ(detail(R"({"f":"clip","points":[[1,1,1]],"box":[[5,0,0],[0,5,5]]})"),
             "the box ends before it begins");
   EXPECT_EQ(detail(R"({"f":"sweep","tool":{"kind":"drill","R":1},"seg":[[0,0,0],[1,0,0]],)"

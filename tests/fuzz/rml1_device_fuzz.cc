@@ -1,13 +1,15 @@
 #include "tests/fuzz/rml1_device_fuzz.h"
 
+#include <array>
+#include <chrono>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "engine/core/check.h"
 #include "engine/rml1/device.h"
-#include "engine/rml1/rml1_family.h"
 #include "engine/rml1/profile.h"
+#include "engine/rml1/rml1_family.h"
 
 namespace rmlcell::rml1 {
 namespace {
@@ -109,6 +111,55 @@ class MoveObserver final : public machine::RunObserver {
   SimTime last_{0};
 };
 
+// Keys at even times, in an order that the bytes choose.
+machine::InputScript KeysFrom(std::uint8_t order, std::uint8_t pace) {
+  using machine::InputKind;
+  constexpr std::array kKinds = {InputKind::kStop, InputKind::kStart, InputKind::kOverride,
+                                 InputKind::kHold, InputKind::kStart};
+  constexpr int kKeys = 24;
+  machine::InputScript inputs;
+  for (int i = 0; i < kKeys; ++i) {
+    const auto choice = static_cast<std::size_t>(i * (1 + order % 7) + pace) % kKinds.size();
+    inputs.push_back({.at = std::chrono::milliseconds((1 + pace) * (i + 1)),
+                      .kind = kKinds[choice],
+                      .index = 0,
+                      .value = 10.0 + (i * 37 + order) % 190});
+  }
+  return inputs;
+}
+
+struct Course {
+  int slice_ms = 0;  // length of the first call of Advance
+  machine::InputScript inputs{};
+};
+
+// As a stored program in virtual time: where the tool goes is what the device said.
+void CheckRun(const machine::Parameters& parameters, const std::string& stream,
+              const Outcome& whole, const Course& course) {
+  machine::RunSetup setup(parameters);
+  setup.main_program = 1;
+  setup.budget = {.steps = 0, .virtual_time = SimTime::zero()};
+  setup.inputs = course.inputs;
+  setup.programs[1] = {
+      .name = {}, .object = std::make_shared<const std::string>(stream), .executable = nullptr};
+  MoveObserver observer;
+  const auto run = Rml1Family().NewRun(std::move(setup), observer).value();
+  run->Advance(std::chrono::milliseconds(course.slice_ms));
+  while (run->Advance(kForever) == machine::RunPhase::kHalted) {
+    run->Apply({.at = run->state().time, .kind = machine::InputKind::kStart});
+  }
+  const double units = parameters.Number("UNITS_PER_MM");
+  RMLCELL_CHECK(run->outcome().kind == machine::OutcomeKind::kCompleted);
+  RMLCELL_CHECK(observer.moves.size() == whole.moves.size());
+  for (std::size_t i = 0; i < whole.moves.size(); ++i) {
+    const motion::Vec3& tip = observer.moves[i].tip.tip;
+    RMLCELL_CHECK(std::abs(tip.x * units - whole.moves[i].x) < 1e-3);
+    RMLCELL_CHECK(std::abs(tip.z * units - whole.moves[i].z) < 1e-3);
+  }
+  RMLCELL_CHECK(run->ReadVariable("ERR") == std::to_string(whole.command_error));
+  RMLCELL_CHECK(run->ReadVariable("COM") == std::to_string(whole.link_error));
+}
+
 }  // namespace
 
 void FuzzDevice(const std::uint8_t* data, std::size_t size) {
@@ -121,26 +172,8 @@ void FuzzDevice(const std::uint8_t* data, std::size_t size) {
   const Outcome whole = Rehearsal(profile).Run(stream, stream.size() + 1);
   RMLCELL_CHECK(Rehearsal(profile).Run(stream, data[2]) == whole);
 
-  machine::RunSetup setup(parameters);
-  setup.main_program = 1;
-  setup.budget = {.steps = 0, .virtual_time = SimTime::zero()};
-  setup.programs[1] = {
-      .name = {}, .object = std::make_shared<const std::string>(stream), .executable = nullptr};
-  MoveObserver observer;
-  const auto run = Rml1Family().NewRun(std::move(setup), observer).value();
-  run->Advance(std::chrono::milliseconds(data[2]));
-  while (run->Advance(kForever) == machine::RunPhase::kHalted) {
-    run->Apply({.at = run->state().time, .kind = machine::InputKind::kStart});
-  }
-  RMLCELL_CHECK(run->outcome().kind == machine::OutcomeKind::kCompleted);
-  RMLCELL_CHECK(observer.moves.size() == whole.moves.size());
-  for (std::size_t i = 0; i < whole.moves.size(); ++i) {
-    const motion::Vec3& tip = observer.moves[i].tip.tip;
-    RMLCELL_CHECK(std::abs(tip.x * profile.units_per_mm - whole.moves[i].x) < 1e-3);
-    RMLCELL_CHECK(std::abs(tip.z * profile.units_per_mm - whole.moves[i].z) < 1e-3);
-  }
-  RMLCELL_CHECK(run->ReadVariable("ERR") == std::to_string(whole.command_error));
-  RMLCELL_CHECK(run->ReadVariable("COM") == std::to_string(whole.link_error));
+  CheckRun(parameters, stream, whole, {.slice_ms = data[2]});
+  CheckRun(parameters, stream, whole, {.slice_ms = data[2], .inputs = KeysFrom(data[1], data[2])});
 }
 
 }  // namespace rmlcell::rml1

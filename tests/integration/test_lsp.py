@@ -298,6 +298,16 @@ class Features(Session):
         self.assertEqual([one["range"] for one in found], [span(2, 6, 9), span(3, 6, 9)])
 
     # RML1-E1
+    def test_a_pair_that_is_cut_in_two_and_a_range_of_null_keep_the_texts_the_same(self):
+        self.editor.open("12.S", "SPEED 5 ; \U0001d11e\nSPEED 101\n")
+        self.editor.change("12.S", 2, {"range": span(0, 11, 12), "text": ""})        # inside the pair: before it
+        self.editor.change("12.S", 3, {"range": span(0, 10, 11), "text": "\ud834"},  # as JavaScript has it
+                           {"range": span(0, 11, 11), "text": "\nSPEED 102"})
+        self.assertEqual([one["range"] for one in self.editor.diagnostics("12.S", 3)],
+                         [span(1, 6, 9), span(2, 6, 9)])
+        self.editor.change("12.S", 4, {"range": None, "text": "SPEED 103\n"})
+        self.assertEqual([one["range"] for one in self.editor.diagnostics("12.S", 4)], [span(0, 6, 9)])
+
     def test_a_stream_for_a_mill_has_findings(self):
         self.editor.open("part.rml", "PU0,0;QQ;PD10,10;")
         found = self.editor.diagnostics("part.rml")
@@ -329,6 +339,19 @@ class Wires(Session):
         client.open("12.S", "SPEED 5\n")
         client.process.stdin.close()
         self.ends(client, 1)
+
+    # Their numbers must not go to files that a library opens: it would wait on one of those.
+    def test_without_standard_input_or_output_it_ends_with_1(self):
+        session = b""
+        for message in ({"id": 1, "method": "initialize", "params": {}}, {"id": 2, "method": "shutdown"},
+                        {"method": "exit"}):
+            body = json.dumps({"jsonrpc": "2.0", **message}).encode()
+            session += b"Content-Length: %d\r\n\r\n%s" % (len(body), body)
+        for closed, code in ((None, 0), (0, 1), (1, 1)):
+            done = subprocess.run([BIN / "rmlcell", "lsp"], input=session, timeout=PATIENCE_S, stdout=subprocess.PIPE,
+                                  stderr=subprocess.PIPE,
+                                  preexec_fn=None if closed is None else lambda closed=closed: os.close(closed))
+            self.assertEqual((done.returncode, done.stderr), (code, b""), closed)
 
     def test_a_parent_that_is_gone_ends_it(self):
         parent = subprocess.Popen(["sleep", "600"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

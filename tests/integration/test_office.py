@@ -88,6 +88,7 @@ class CommandLine(unittest.TestCase):
         self.file("45.S", "VR[0] = 1.\n")
         self.file("64.S", "SPEED 101\n")
         self.file("65.S", "VR[50] = 1.\n")  # has a warning
+        self.file("66.S", "")
         done = subprocess.run([BIN / "rmlcell", "link", main, self.folder, "-o", self.folder / "190.X"],
                               capture_output=True, text=True, timeout=60)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
@@ -99,6 +100,12 @@ class CommandLine(unittest.TestCase):
         self.assertIn("45.S", done.stderr)
         self.assertNotIn("no object", done.stderr)
         self.assertFalse((self.folder / "no.X").exists())
+        self.file("45.S", "")
+        done = subprocess.run([BIN / "rmlcell", "link", main, self.folder, "-o", self.folder / "no.X"],
+                              capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"45\.S: .*CELL-E.*program 45 is called")
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
 
     # OPT-B.40
     def test_format_keeps_comments_and_comes_to_rest(self):

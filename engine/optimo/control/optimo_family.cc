@@ -46,6 +46,10 @@ machine::StaleReason ReasonOf(StaleReason reason) {
   return machine::StaleReason::kDamaged;
 }
 
+ContourMachine ContourMachineOf(const OptimoParameters& resolved) {
+  return {.limits = resolved.limits, .head_length_mm = resolved.head_length_mm};
+}
+
 class Family final : public machine::MachineFamily {
  public:
   const machine::FamilyInfo& info() const override { return kInfo; }
@@ -56,7 +60,8 @@ class Family final : public machine::MachineFamily {
   Status CheckParameters(const machine::Parameters& parameters) const override {
     return CheckFit(parameters);
   }
-  bool HasVariable(const machine::Parameters& /*parameters*/, std::string_view name) const override {
+  bool HasVariable(const machine::Parameters& /*parameters*/,
+                   std::string_view name) const override {
     return ReadByName(DataArea(), name).has_value();
   }
   std::span<const machine::FigureInfo> figures() const override { return kFigures; }
@@ -69,20 +74,22 @@ class Family final : public machine::MachineFamily {
                                  const machine::CheckOptions& options) const override {
     const OptimoParameters resolved = Resolve(parameters);
     return TranslateOptimo(file, options, static_cast<std::uint32_t>(resolved.object_limit),
-                           {.limits = resolved.limits, .head_length_mm = resolved.head_length_mm});
+                           ContourMachineOf(resolved));
   }
 
   std::vector<Diagnostic> CheckSlot(int slot) const override { return CheckProgramNumber(slot); }
 
-  std::vector<Diagnostic> CheckProcess(const machine::ProcessDefinition& definition) const override {
+  std::vector<Diagnostic> CheckProcess(
+      const machine::ProcessDefinition& definition) const override {
     return optimo::CheckProcess(definition);
   }
 
   machine::TransferPlan PlanTransfer(const machine::ProjectBundle& project,
                                      const machine::Parameters& parameters,
                                      const machine::TransferOptions& options) const override {
-    return optimo::PlanTransfer(project, options,
-                                static_cast<std::uint32_t>(Resolve(parameters).object_limit));
+    const OptimoParameters resolved = Resolve(parameters);
+    return optimo::PlanTransfer(project, options, static_cast<std::uint32_t>(resolved.object_limit),
+                                ContourMachineOf(resolved));
   }
 
   Result<std::string> Decompile(std::string_view object) const override {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/optimo/language/constant_advice.h"
 #include "engine/optimo/language/flow_advice.h"
 #include "engine/optimo/language/units_of_variables.h"
 
@@ -54,6 +55,13 @@ class Adviser {
           break;
         case Op::kFunction:
           AdviseRotaryTable(i);
+          break;
+        case Op::kTask:
+          if (i.numbers[0] == 1 && std::exchange(entry_seen_, true)) {
+            findings_.AddAs(Severity::kWarning, ErrorCode::kPracticeAdvice, program_.At(i),
+                            "TASK 1 stands above already, and the program begins there",
+                            "OPT-9.12");
+          }
           break;
         default:
           break;
@@ -147,12 +155,14 @@ class Adviser {
   const ParsedProgram& program_;
   const Module& module_;
   Findings& findings_;
+  bool entry_seen_ = false;  // TASK 1
 };
 
 }  // namespace
 
 void Advise(const ParsedProgram& program, Findings& findings) {
   Adviser(program, findings).Run();
+  if (findings.error_count() == 0) AdviseOnConstants(program, findings);
   AdviseOnFlow(program, findings);
 }
 

@@ -59,6 +59,7 @@ std::string Decompile(const Module& module) {
     out += '\n';
   }
   for (const std::uint16_t label : module.end_labels) lone(label);
+  if (out.empty()) out = '\n';  // a file without a byte is refused as a program
   return out;
 }
 

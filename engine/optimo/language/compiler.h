@@ -44,7 +44,8 @@ std::string EncodeObject(const Module& module);
 // valid. Errors: ObjectCorrupt (7034); ObjectTooLong is not tested here.
 Result<Module> DecodeObject(std::string_view bytes);
 
-// Canonical source of a module, lines ended by LF (OPT-B.40). Compiles to the same object.
+// Canonical source of a module, lines ended by LF (OPT-B.40); never empty. Compiles to the same
+// object.
 std::string Decompile(const Module& module);
 
 // Decodes and decompiles. Errors: ObjectCorrupt.

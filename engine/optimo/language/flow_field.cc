@@ -50,6 +50,10 @@ std::optional<PathType> Modes::path() const {
 bool Modes::MayBe(PathType path) const { return (PathsSeen() & 1U << Of(path)) != 0; }
 bool Modes::IsDefaultPath() const { return PathsSeen() == 1U << kDefault; }
 
+bool Modes::IsDefaultCoord() const {
+  return pairs_ != 0 && (pairs_ & ~(kAllPaths << (kDefault * kPaths))) == 0;
+}
+
 bool Modes::IsContour() const {
   const unsigned contours =
       1U << Of(PathType::kLin) | 1U << Of(PathType::kCir) | 1U << Of(PathType::kHole);

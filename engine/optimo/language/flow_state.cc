@@ -112,6 +112,13 @@ void StepSysdef(const Module& module, const Instruction& i, FlowState& state) {
   }
 }
 
+// Its own TIMER knows the sequence numbers of its own program only (OPT-B.59).
+void StepFunction(FlowState& state) {
+  const Choice<Armed> timer = state.timer;
+  state = FlowState::Unknown();
+  state.timer = timer;
+}
+
 // Modal values and WORKDEFs come back; that no process is ON is what it needs to be made at all
 // (OPT-7.12, OPT-3.33).
 void StepCall(FlowState& state) {
@@ -198,6 +205,7 @@ FlowState FlowState::AtStart() {
   state.gas_2 = state.gas_3 = Choice<Output>::Of(Output::kOff);
   state.sensor = Sensors::Of(Sensor::kOff);
   state.turned = Choice<Turned>::Of(Turned::kNo);
+  state.timer = Choice<Armed>::Of(Armed::kNo);
   state.tiny_moves = Choice<TinyMoves>::Of(TinyMoves::kNone);
   state.off.made = state.undefined.made = kAllProcesses;
   state.unset.made.set();
@@ -213,6 +221,7 @@ FlowState FlowState::Unknown() {
   state.gas_2 = state.gas_3 = Choice<Output>::Of(Output::kUnknown);
   state.sensor = Sensors::Of(Sensor::kUnknown);
   state.turned = Choice<Turned>::Of(Turned::kUnknown);
+  state.timer = Choice<Armed>::Of(Armed::kYes);  // when there is one
   state.tiny_moves = Choice<TinyMoves>::Of(TinyMoves::kNone);
   state.on.made = state.defined.made = kNotFollowed;
   return state;
@@ -234,6 +243,7 @@ FlowState FlowState::Kept() {
   state.gas_2 = state.gas_3 = Choice<Output>::Kept();
   state.sensor = Sensors::Kept();
   state.turned = Choice<Turned>::Kept();
+  state.timer = Choice<Armed>::Kept();
   state.tiny_moves = Choice<TinyMoves>::Kept();
   state.on.kept = state.off.kept = state.defined.kept = state.undefined.kept = ~ProcessSet{0};
   state.unset.kept.set();
@@ -254,6 +264,7 @@ void FlowState::Then(const FlowState& next) {
   gas_3.Then(next.gas_3);
   sensor.Then(next.sensor);
   turned.Then(next.turned);
+  timer.Then(next.timer);
   tiny_moves.Then(next.tiny_moves);
   on.Then(next.on);
   off.Then(next.off);
@@ -288,6 +299,7 @@ void FlowState::ForgetDifferences(const FlowState& other) {
     defined = unknown.defined;
     undefined = unknown.undefined;
   }
+  timer.Join(other.timer);  // what was armed may have come, or not yet
   unset.made &= other.unset.made;
   unset.kept &= other.unset.kept;
 }
@@ -363,7 +375,10 @@ void Step(const Module& module, const Dwells& dwells, std::uint32_t at, FlowStat
       StepOutput(module, i, state);
       break;
     case Op::kFunction:
-      state = FlowState::Unknown();
+      StepFunction(state);
+      break;
+    case Op::kTimer:
+      state.timer = Choice<Armed>::Of(i.target_count > 0 ? Armed::kYes : Armed::kNo);
       break;
     case Op::kCall:
       StepCall(state);

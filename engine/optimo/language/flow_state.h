@@ -21,6 +21,8 @@ enum class Output : std::uint8_t { kOff, kOn, kUnknown };
 enum class Sensor : std::uint8_t { kOff, kOffSeen, kOn, kUnknown };
 // Whether SYSDEF turns the program's coordinates.
 enum class Turned : std::uint8_t { kNo, kUnknown };
+// Whether the GOSUB of a TIMER may come.
+enum class Armed : std::uint8_t { kNo, kYes };
 // /FLY moves below 0.01 mm in a row.
 enum class TinyMoves : std::uint8_t { kNone, kOne, kTwo, kMore };
 
@@ -46,6 +48,7 @@ struct FlowState {
   Choice<Output> gas_2, gas_3;
   Choice<Sensor> sensor;
   Choice<Turned> turned;
+  Choice<Armed> timer;
   Choice<TinyMoves> tiny_moves;
   Facts<ProcessSet> on, off;             // may be ON, may be OFF
   Facts<ProcessSet> defined, undefined;  // a WORKDEF may have been executed, may not

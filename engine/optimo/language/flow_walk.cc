@@ -24,8 +24,9 @@ FlowWalk::FlowWalk(const Module& module, const FlowGraph& graph, const Dwells& d
   Follow(any_error);
 }
 
-// The GOSUB of a TIMER comes between two instructions, no matter which. OPT-B.59
+// OPT-B.59
 void FlowWalk::FindTimer() {
+  std::vector<bool> arming(graph_.size());
   for (std::uint32_t at = 0; at < graph_.size(); ++at) {
     if (module_.instructions[at].op != Op::kTimer) continue;
     const auto called = graph_.Called(at);
@@ -33,10 +34,13 @@ void FlowWalk::FindTimer() {
     if (effect == nullptr) continue;
     if (!timer_) timer_.emplace();
     timer_->Join(*effect);
+    arming[at] = true;
   }
+  if (timer_) arms_ = graph_.LeadingTo(arming, true);
 }
 
 void FlowWalk::Pass(std::uint32_t at, FlowState& state) const {
+  bool armed = state.timer.MayBe(Armed::kYes);
   if (faulty_[at]) {
     state = FlowState::Unknown();
   } else {
@@ -45,6 +49,7 @@ void FlowWalk::Pass(std::uint32_t at, FlowState& state) const {
   const Op op = module_.instructions[at].op;
   if (const auto called = graph_.Called(at); called && op != Op::kTimer) {
     const FlowState* effect = subroutines_.Of(*called);
+    armed = armed || (timer_ && arms_[*called]);
     if (op == Op::kMove) {
       if (effect != nullptr) {  // the time of /TIME may run out
         FlowState timed = state;
@@ -57,10 +62,18 @@ void FlowWalk::Pass(std::uint32_t at, FlowState& state) const {
       state = FlowState::Unknown();  // it is told that it never comes back
     }
   }
-  if (!timer_) return;
+  if (!timer_ || !(armed || state.timer.MayBe(Armed::kYes))) return;
   FlowState timed = state;
   timed.Then(*timer_);
   state.ForgetDifferences(timed);
+}
+
+// In the GOSUB of a /TIME, behind its MOVE; in that of a TIMER: it comes whenever it does.
+FlowState FlowWalk::WhenTimeRanOut(std::uint32_t at, const FlowState& before) const {
+  if (faulty_[at] || module_.instructions[at].op != Op::kMove) return FlowState::Unknown();
+  FlowState state = before;
+  Step(module_, dwells_, at, state);
+  return state;
 }
 
 bool FlowWalk::FlowsOn(std::uint32_t at, std::vector<Successor>& room) const {
@@ -97,7 +110,7 @@ void FlowWalk::Follow(bool any_error) {
         if (s.edge == Edge::kJump) enter(s.to, after);
         if (s.edge == Edge::kCall) enter(s.to, state);
         if (s.edge == Edge::kHandler) enter(s.to, FlowState::InErrorHandler());
-        if (s.edge == Edge::kTimed) enter(s.to, FlowState::Unknown());
+        if (s.edge == Edge::kTimed) enter(s.to, WhenTimeRanOut(at, state));
       }
       ++at;
       state = after;

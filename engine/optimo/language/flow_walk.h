@@ -40,6 +40,7 @@ class FlowWalk {
  private:
   void FindTimer();
   void Follow(bool any_error);
+  FlowState WhenTimeRanOut(std::uint32_t at, const FlowState& before) const;
   bool FlowsOn(std::uint32_t at, std::vector<Successor>& room) const;
 
   const Module& module_;
@@ -47,7 +48,10 @@ class FlowWalk {
   const Dwells& dwells_;
   const std::vector<bool>& faulty_;
   SubroutineEffects subroutines_;
-  std::optional<FlowState> timer_;  // what the GOSUB of a TIMER does
+  // What the GOSUB of a TIMER does. It comes between any two instructions while a TIMER may be
+  // armed, so what it changes is not known there; before and behind it is.
+  std::optional<FlowState> timer_;
+  std::vector<bool> arms_;  // from here an instruction may be come to that arms one
   std::vector<bool> leaders_;
   std::vector<std::uint32_t> slots_;  // by leader
   std::vector<FlowState> states_;     // by slot

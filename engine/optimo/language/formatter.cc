@@ -125,6 +125,7 @@ Formatting Format(std::string_view text) {
       first_end != std::string_view::npos && first_end > 0 && program.text[first_end - 1] == '\r';
   Formatting result;
   result.text = Writer(program, dos ? "\r\n" : "\n").Write();
+  result.text += text.substr(program.text.size());  // behind the end of the text, OPT-1.03
   result.changed = result.text != text;
   return result;
 }

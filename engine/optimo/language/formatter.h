@@ -17,7 +17,7 @@ struct Formatting {
 // comments and blank lines kept in their place. A comment inside a continued statement moves above
 // it. A text with syntax errors is returned unchanged. Idempotent; what the program does is
 // unchanged. Line ends become LF, unless the text uses CR LF. What stands behind the end of text
-// (1Ah) is dropped.
+// (1Ah) stays as it is.
 Formatting Format(std::string_view text);
 
 }  // namespace rmlcell::optimo

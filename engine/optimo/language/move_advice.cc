@@ -50,9 +50,15 @@ void MoveAdviser::AdvisePath(const Instruction& i, const FlowState& state) {
     Warn(i, ErrorCode::kPathNeedsAbsol,
          "on one path this MOVE is in COORD ROBOT with a PATH other than PTP, and will fail",
          "OPT-2.08");
+  } else if (modes.IsDefaultCoord() && modes.IsContour() &&
+             !std::exchange(default_coord_told_, true)) {
+    Note(i, ErrorCode::kPathNeedsAbsol,
+         "no COORD was set: by default that is ROBOT, which has PATH PTP only, unless the program "
+         "runs as a FUNCTION",
+         "OPT-2.09");
   }
   const bool arc = modes.MayBe(PathType::kCir), hole = modes.MayBe(PathType::kHole);
-  if ((arc || hole) && !i.Has(kVia)) {
+  if ((arc || hole) && !i.Has(kVia) && !modes.IsRobotContour()) {
     const auto path = modes.path();
     const bool always = path == PathType::kCir || path == PathType::kHole;
     Warn(i, ErrorCode::kViaMissing,
@@ -84,6 +90,12 @@ void MoveAdviser::AdviseSpeed(std::uint32_t at, const FlowState& state) {
   const auto known = state.speed.known();
   if (!known) return;
   const float speed = *known;
+  if (speed == 0.0F) {
+    const auto from = state.target.known(), target = LiteralTarget(module_, i);
+    if (!i.Has(kTime) && from && target && Distance(*from, *target) > 0.0)
+      Warn(i, ErrorCode::kNoMotion, "SPEED is 0: this MOVE will fail", "OPT-B.22");
+    return;
+  }
   const bool before_on =
       at + 1 < module_.instructions.size() && module_.instructions[at + 1].op == Op::kWork &&
       module_.instructions[at + 1].Has(kOn) && module_.instructions[at + 1].numbers[0] != 2;

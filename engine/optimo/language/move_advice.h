@@ -41,6 +41,7 @@ class MoveAdviser {
   };
   std::vector<Placed> placed_;  // MOVEs whose COORD is known, in program order
   bool default_path_told_ = false;
+  bool default_coord_told_ = false;
 };
 
 }  // namespace rmlcell::optimo

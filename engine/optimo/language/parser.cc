@@ -9,8 +9,9 @@
 namespace rmlcell::optimo {
 namespace {
 
-constexpr std::size_t kNamesMax = kNoName;  // names have 16-bit numbers
-constexpr std::size_t kQuotedMax = 40;      // of a token in a message
+constexpr std::size_t kNamesMax = kNoName;                   // names have 16-bit numbers
+constexpr std::size_t kQuotedMax = 40;                       // of a token in a message
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // what some editors put before UTF-8
 
 }  // namespace
 
@@ -327,6 +328,12 @@ bool Parser::Fail(std::string_view expected) {
       }
       return FailAt(token, ErrorCode::kSyntax, "expected " + std::string(expected));
     case TokenKind::kBadCharacter:
+      if (token.offset == 0 && lexer_.TextOf(token).starts_with(kByteOrderMark)) {
+        findings_.Add(ErrorCode::kBadCharacter, PlaceOf(token),
+                      "a byte order mark stands before the text", "OPT-1.32",
+                      {{0, static_cast<int>(kByteOrderMark.size()), ""}});
+        return false;
+      }
       return FailAt(token, ErrorCode::kBadCharacter, Quoted(token) + " cannot stand here",
                     "OPT-1.32");
     case TokenKind::kBadNumber:

@@ -16,9 +16,8 @@ struct Compensation {
   bool ok = false;   // false: an error; the text is empty and nothing may be written
   std::string text;  // with the header line when names were given
   // 7801 to 7803, 7805 to 7808, 7810, 7305 for an arc that is none, and the errors of the parser
-  // stop; 7804, 7809, 7811 and the
-  // gouge check 7812 (the beam cuts across an edge of the contour, gouge.h) are warnings; 7812 as
-  // advice says which steps were not looked at.
+  // stop; 7804, 7809, 7811 and the gouge check 7812 (the path is nearer to an edge than the beam is
+  // wide, gouge.h) are warnings; 7812 as advice says which steps were not looked at.
   std::vector<Diagnostic> diagnostics;
 };
 

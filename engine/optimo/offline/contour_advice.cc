@@ -266,4 +266,10 @@ void AdviseOnContours(const ParsedProgram& program, const ContourMachine& machin
   ContourAdviser(program, machine, findings).Run();
 }
 
+std::function<void(const ParsedProgram&, Findings&)> ContourAdvice(const ContourMachine& machine) {
+  return [machine](const ParsedProgram& program, Findings& findings) {
+    AdviseOnContours(program, machine, findings);
+  };
+}
+
 }  // namespace rmlcell::optimo

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "engine/motion/planner.h"
 #include "engine/optimo/language/program.h"
 
@@ -24,5 +26,9 @@ struct ContourMachine {
 // hold are left out. Precondition: Check found no errors.
 void AdviseOnContours(const ParsedProgram& program, const ContourMachine& machine,
                       Findings& findings);
+
+// The same for CompileOptions::further_advice: whatever compiles for a programmer says it, so that
+// check, compile, put and transfer have the same findings.
+std::function<void(const ParsedProgram&, Findings&)> ContourAdvice(const ContourMachine& machine);
 
 }  // namespace rmlcell::optimo

@@ -40,8 +40,11 @@ struct Draft {
 class Planner {
  public:
   Planner(const machine::ProjectBundle& project, const machine::TransferOptions& options,
-          std::uint32_t object_limit)
-      : project_(project), options_(options), object_limit_(object_limit) {}
+          std::uint32_t object_limit, const ContourMachine& contour_machine)
+      : project_(project),
+        options_(options),
+        object_limit_(object_limit),
+        contour_machine_(contour_machine) {}
 
   machine::TransferPlan Run() {
     drafts_.reserve(project_.programs.size());  // ParsedProgram::text looks into Draft::text
@@ -94,6 +97,7 @@ class Planner {
   const machine::ProjectBundle& project_;
   const machine::TransferOptions& options_;
   std::uint32_t object_limit_;
+  const ContourMachine& contour_machine_;
   machine::TransferPlan plan_;
   std::vector<Draft> drafts_;
   std::map<std::size_t, const machine::ProcessDefinition*> definitions_;
@@ -344,7 +348,8 @@ void Planner::AdviseSysdef() {
 void Planner::CompileDraft(Draft& draft) {
   if (draft.text.empty()) return;
   Compilation compiled =
-      Compile(draft.text, draft.from->file.name, {.object_limit = object_limit_});
+      Compile(draft.text, draft.from->file.name,
+              {.object_limit = object_limit_, .further_advice = ContourAdvice(contour_machine_)});
   for (Diagnostic& found : compiled.diagnostics) {
     found.program = draft.from->slot;
     Add(std::move(found));
@@ -358,8 +363,9 @@ void Planner::CompileDraft(Draft& draft) {
 
 machine::TransferPlan PlanTransfer(const machine::ProjectBundle& project,
                                    const machine::TransferOptions& options,
-                                   std::uint32_t object_limit) {
-  return Planner(project, options, object_limit).Run();
+                                   std::uint32_t object_limit,
+                                   const ContourMachine& contour_machine) {
+  return Planner(project, options, object_limit, contour_machine).Run();
 }
 
 }  // namespace rmlcell::optimo

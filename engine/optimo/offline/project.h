@@ -2,6 +2,7 @@
 
 #include "engine/machine/family.h"
 #include "engine/optimo/language/compiler.h"
+#include "engine/optimo/offline/contour_advice.h"
 
 namespace rmlcell::optimo {
 
@@ -12,11 +13,13 @@ namespace rmlcell::optimo {
 // without text or a laser schedule that the project lacks (7862), a process definition that breaks
 // OPT-3.01 to 3.08 (7402, 7403, 7004, 7019), a WORK ON with neither WORKDEF nor process definition
 // (7401), and whatever the compiler refuses. A program that runs as FUNCTION shares the WORKDEFs of
-// its callers (OPT-3.12). Warned: WORKDEF and process definition that differ (7863), a program of
-// the numbers 1 to 7 (7413), a program without SYSDEF where another has one (7033, OPT-7.39).
-machine::TransferPlan PlanTransfer(const machine::ProjectBundle& project,
-                                   const machine::TransferOptions& options,
-                                   std::uint32_t object_limit = kObjectLimitStandard);
+// its callers (OPT-3.12). Advice on paths is that for `contour_machine`. Warned: WORKDEF and
+// process definition that differ (7863), a program of the numbers 1 to 7 (7413), a program without
+// SYSDEF where another has one (7033, OPT-7.39).
+machine::TransferPlan PlanTransfer(
+    const machine::ProjectBundle& project, const machine::TransferOptions& options,
+    std::uint32_t object_limit = kObjectLimitStandard,
+    const ContourMachine& contour_machine = ContourMachine::Standard());
 
 // Errors of one process definition, as PlanTransfer reports them.
 std::vector<Diagnostic> CheckProcess(const machine::ProcessDefinition& definition);

@@ -19,6 +19,11 @@ namespace {
 
 constexpr int kTransformDecimals = 6;
 constexpr double kStraightDown = 1e-9;  // of sin B: then A is free
+// Of the rotation about Z: decides between half a turn to the left and one to the right, which
+// rounding would decide otherwise.
+constexpr double kTieShare = 1e-3;
+// Of sin B: below, six decimals of B do not say where A is, and what it turned by says nothing.
+constexpr double kNearlyDown = 0.01;
 constexpr int kFirstShiftVariable = 86;
 
 // New numbers in place of plain ones.
@@ -72,15 +77,20 @@ RigidMotion RigidMotion::Inverse() const {
   return inverse;
 }
 
-HeadAngles TurnHead(const HeadAngles& old, const RigidMotion& motion) {
+HeadAngles TurnHead(const HeadAngles& old, const RigidMotion& motion, std::optional<double> swing) {
   const motion::Vec3 u = motion.Turn(ToolDirection(old.a, old.b));
   const double across = std::hypot(u.x, u.y);
   const double b = std::atan2(across, u.z);
-  if (across < kStraightDown) {
-    return {old.a + std::atan2(motion.columns[0].y, motion.columns[0].x), b};
-  }
+  const double about_z = std::atan2(motion.columns[0].y, motion.columns[0].x);
+  if (across < kStraightDown) return {old.a + about_z, b};
   const double a = std::atan2(u.x, -u.y);
-  const HeadAngles one{Nearest(a, old.a), b}, twin{Nearest(a + kPi, old.a), -b};
+  const double to = swing ? old.a + *swing : old.a + kTieShare * about_z;
+  const HeadAngles one{Nearest(a, to), b}, twin{Nearest(a + kPi, to), -b};
+  if (swing) return std::fabs(twin.a - to) < std::fabs(one.a - to) ? twin : one;
+  if (std::hypot(motion.columns[2].x, motion.columns[2].y) < kStraightDown &&
+      motion.columns[2].z > 0.0) {
+    return old.b < 0.0 ? twin : one;
+  }
   const auto distance = [&](const HeadAngles& angles) {
     return std::fabs(angles.a - old.a) + std::fabs(angles.b - old.b);
   };
@@ -95,6 +105,7 @@ Rewriting Transform(std::string_view text, const RigidMotion& motion) {
   ProgramFrame frame;
   const ProgramFrame machine;
   bool robot = false;
+  std::optional<double> swing;  // of A, at the move before
   for (const Instruction& i : module.instructions) {
     if (i.op == Op::kCoord) robot = i.choice == static_cast<std::uint8_t>(CoordType::kRobot);
     if (i.op == Op::kSysdef && !frame.Set(program, i)) {
@@ -122,7 +133,9 @@ Rewriting Transform(std::string_view text, const RigidMotion& motion) {
                                            : motion::Vec3{0, 0, 1};
         in_machine.columns[c] = in.DirectionToMachine(motion.Turn(in.DirectionToProgram(axis)));
       }
-      const HeadAngles head = TurnHead({*v[3], *v[4]}, in_machine);
+      const HeadAngles head = TurnHead({*v[3], *v[4]}, in_machine, swing);
+      if (std::fabs(std::sin(*v[4])) > kNearlyDown && std::fabs(std::sin(head.b)) > kNearlyDown)
+        swing = head.a - *v[3];
       const std::array<double, 5> values = {point.x, point.y, point.z, head.a, head.b};
       for (std::uint32_t n = 0; n < 5; ++n) {
         edits.Put(i, i.first_expression + first + n, values[n]);

@@ -28,10 +28,16 @@ struct RigidMotion {
 struct HeadAngles {
   double a = 0.0, b = 0.0;  // rad
 };
-// The angles at which the tool points where the turned old tool points: of the two solutions the
-// one nearest to the old angles, A nearest to the old A; straight down A turns by the rotation
-// about Z (OPT-B.80).
-HeadAngles TurnHead(const HeadAngles& old, const RigidMotion& motion);
+// The angles at which the tool points where the turned old tool points. Straight down A turns by
+// the rotation about Z (OPT-B.80). Otherwise there are two solutions, (A', B') and (A' + pi, -B'),
+// and whole turns of A:
+//   - of the first move the one nearest to the old angles, A nearest to the old A; a rotation about
+//     Z leaves B as it is, whatever is nearer. Half a turn goes the way of the rotation.
+//   - behind that the one that swings A most nearly as `swing`, what A turned by before: chosen
+//   anew
+//     for each move, the head would swing by half a turn in the middle of a contour.
+HeadAngles TurnHead(const HeadAngles& old, const RigidMotion& motion,
+                    std::optional<double> swing = {});
 
 struct Rewriting {
   bool ok = false;  // false: the text is empty, nothing may be written

@@ -78,16 +78,13 @@ machine::Translation TranslateOptimo(const machine::SourceFile& file,
     AddFigures(*module, 0, accepted);
     return accepted;
   }
-  Compilation compiled =
-      Compile(file.bytes, file.name,
-              {.object_limit = object_limit,
-               .advice = options.advice,
-               .inch = form == FileForm::kInchSource,
-               .step_lines = options.step_lines,
-               .diagnostics_max = machine::kDiagnosticsMax,
-               .further_advice = [&](const ParsedProgram& program, Findings& findings) {
-                 AdviseOnContours(program, contour_machine, findings);
-               }});
+  Compilation compiled = Compile(file.bytes, file.name,
+                                 {.object_limit = object_limit,
+                                  .advice = options.advice,
+                                  .inch = form == FileForm::kInchSource,
+                                  .step_lines = options.step_lines,
+                                  .diagnostics_max = machine::kDiagnosticsMax,
+                                  .further_advice = ContourAdvice(contour_machine)});
   machine::Translation translation;
   translation.ok = compiled.ok;
   translation.object = std::move(compiled.object);

@@ -13,7 +13,6 @@ TEST(Protocol, JsonIsRefusedWhenItIsNoneOrTooDeep) {
   EXPECT_FALSE(ReadJson("{\"a\":"));
   EXPECT_FALSE(ReadJson("{} {}"));
   EXPECT_FALSE(ReadJson("\"\xFF\""));
-  EXPECT_FALSE(ReadJson("\"\\ud800\""));  // half of a character
   const auto nested = [](std::size_t depth) {
     return std::string(depth, '[') + std::string(depth, ']');
   };
@@ -21,6 +20,24 @@ TEST(Protocol, JsonIsRefusedWhenItIsNoneOrTooDeep) {
   EXPECT_FALSE(ReadJson(nested(kJsonDepthMax + 1)));
   EXPECT_FALSE(ReadJson(std::string(50'000'000, '[')));
   EXPECT_TRUE(ReadJson("\"[[[[\\\"" + std::string(100, '[') + "\""));  // text is not nested
+}
+
+// Editors written in JavaScript send half a pair while one is typed, or cut in two. U+FFFD takes one
+// unit of UTF-16 as well, so that later positions fit.
+TEST(Protocol, HalfASurrogatePairIsReplaced) {
+  const std::string replaced = "\xEF\xBF\xBD";
+  const auto text = [](std::string_view json) {
+    const auto read = ReadJson(json);
+    return read && read->is_string() ? read->get<std::string>() : std::string("nothing");
+  };
+  EXPECT_EQ(text(R"("a\ud834z")"), "a" + replaced + "z");
+  EXPECT_EQ(text(R"("\uDD1E\uD834")"), replaced + replaced);
+  EXPECT_EQ(text(R"("\ud834\ud834\udd1e")"), replaced + "\xF0\x9D\x84\x9E");
+  EXPECT_EQ(text(R"("\ud834\u0041")"), replaced + "A");
+  EXPECT_EQ(text(R"("\\\ud834")"), "\\" + replaced);
+  EXPECT_EQ(text(R"("\\ud834 \ud834")"), "\\ud834 " + replaced);
+  EXPECT_EQ(text(R"("\ud834\ud8")"), "nothing");
+  EXPECT_EQ(text(R"("\ud834)"), "nothing");
 }
 
 TEST(Protocol, BytesThatAreNoUtf8AreReplacedWhenWritten) {

@@ -109,30 +109,6 @@ ENDTASK
 10 VR[1]=5
 RETURN
 
-;=== what the GOSUB of a TIMER touches is not known, the rest is (advice)
-; OPT-5.40 OPT-B.59
-OL[11]=ON
-OL[8]=ON
-TIMER (5.,10)
-OL[9]=ON
-WORK 0,0/ON
-DELAY 1
-CALL 2                   ; expect 7407
-ENDTASK
-10 OL[8]=OFF
-RETURN
-
-;=== the GOSUB of a /TIME may be made or not (advice)
-; OPT-2.54 OPT-5.40
-COORD ABSOL
-PATH LIN
-SPEED 10
-MOVE (10.,2.,3.,0.,0.)/TIME (5.,10)
-OL[9]=ON                 ; expect 7409
-ENDTASK
-10 OL[8]=ON
-RETURN
-
 ;=== a subroutine may switch the process (advice)
 ; OPT-3.36
 ; rmlcell: allow 7033 in file
@@ -214,6 +190,28 @@ MOVE (20.010,2.,3.,0.,0.)/FLY
 MOVE (20.015,2.,3.,0.,0.)/FLY        ; expect 7314
 MOVE (30.,2.,3.,0.,0.)/FLY
 MOVE (40.,2.,3.,0.,0.)
+
+;=== a contour in the COORD of the machine (advice)
+; OPT-2.09 OPT-2.08 OPT-E.7302
+PATH LIN
+SPEED 10
+MOVE (10.,2.,3.,0.,0.)               ; expect 7302
+MOVE (20.,2.,3.,0.,0.)
+PATH PTP
+MOVE (10.,2.,3.,0.,0.)
+
+;=== an arc in COORD ROBOT fails, with or without /VIA (advice)
+; OPT-2.08 OPT-E.7302
+COORD ROBOT
+PATH CIR
+MOVE (10.,2.,3.,0.,0.)               ; expect 7302
+
+;=== TASK 1 twice (advice)
+; OPT-9.11 OPT-9.12
+TASK 1
+SPEED 5
+TASK 1                               ; expect 7033
+SPEED 6
 
 ;=== contour paths in COORD ROBOT, and arcs without /VIA (advice)
 ; OPT-2.08 OPT-2.21 OPT-2.29 OPT-E.7308 OPT-E.7302

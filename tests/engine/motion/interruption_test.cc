@@ -41,6 +41,51 @@ TEST(StopAlong, BrakesIntoTheBend) {
   EXPECT_EQ(stop.motions[1].speed.end().speed, 0.0);
 }
 
+// ACCEL 100 before a right angle passed steadily, 20 behind it: each half of the bend brakes as its
+// own move does, but not harder than curve_tangential allows. OPT-2.16, OPT-B.31
+TEST(StopAlong, EachHalfOfABendBrakesAsItsOwnMoveDoes) {
+  for (const bool strong_first : {true, false}) {
+    MoveCommand east, north;
+    east.path = PathPiece::Line({}, {{100, 0, 0}});
+    east.speed_fraction = north.speed_fraction = 0.1;
+    east.acceleration_fraction = strong_first ? 1.0 : 0.2;
+    north.acceleration_fraction = strong_first ? 0.2 : 1.0;
+    east.fly = true;
+    north.path = PathPiece::Line({{100, 0, 0}}, {{100, 100, 0}});
+    north.tag = 1;
+    const std::vector<PlannedMotion> plan = Plan({east, north});
+    ASSERT_EQ(plan.size(), 4u);
+    for (std::size_t half = 1; half <= 2; ++half) {
+      const bool strong = (half == 1) == strong_first;
+      EXPECT_EQ(plan[half].limits.acceleration, strong ? 1200.0 : 400.0);
+      EXPECT_EQ(plan[half].limits.jerk, strong ? 40000.0 : 8000.0);
+    }
+    // A STOP that begins behind the corner touches nothing but the second move: 50 mm/s to rest.
+    const double a = strong_first ? 400.0 : 1200.0;
+    const double j = strong_first ? 8000.0 : 40000.0;
+    const StopOnPath stop = StopAlong(std::span(plan).subspan(2), 0.0, StandardMachine().axes);
+    EXPECT_NEAR(Length(stop.motions), 25.0 * (50.0 / a + a / j), 1e-9);
+  }
+}
+
+// A STOP and START in a bend where the head turns: what is told of the limits does not shrink each
+// time that the axes ask for a gentler ramp. OPT-B.31
+TEST(RestartAlong, LimitsStayThoseOfThePlan) {
+  const MachineLimits machine = StandardMachine();
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const std::vector<PlannedMotion> plan =
+        Plan(RandomChain(seed, 6, {.all_fly = true, .shortest_mm = 0.5, .longest_mm = 5.0}));
+    const double s = 0.5 * plan[1].path.length();
+    const std::vector<PlannedMotion> rest =
+        RestartAlong(std::span(plan).subspan(1), s, machine.axes);
+    ASSERT_EQ(rest.size(), plan.size() - 1);
+    for (std::size_t k = 0; k < rest.size(); ++k) {
+      EXPECT_EQ(rest[k].limits.acceleration, plan[k + 1].limits.acceleration) << seed;
+      EXPECT_EQ(rest[k].limits.jerk, plan[k + 1].limits.jerk) << seed;
+    }
+  }
+}
+
 // Stopped anywhere and started again: the same path, every limit kept, the end at rest at the
 // target. motion.md section 10, property 12
 TEST(RestartAlong, GoesOnOverTheSamePath) {

@@ -67,7 +67,24 @@ class Checker {
     if (here.settling_s > 0.0) Most(here, "speed before settling", last_.tip_speed(), 0.0, 0.0);
   }
 
+  // The ramps are those that ACCEL of the move allows and the motion says it is bound by, in both
+  // halves of a bend too. OPT-2.16
+  void Ramps(const PlannedMotion& motion, const MoveCommand& move) {
+    const MachineLimits& m = plan_.machine;
+    const double share = motion.path.by_sigma() ? HUGE_VAL : move.acceleration_fraction;
+    const double most = std::min(motion.limits.acceleration, share * m.tip_acceleration_mm_s2);
+    const double jerk = std::min(motion.limits.jerk, share * m.tip_jerk_mm_s3);
+    for (int k = 0; k < motion.speed.phase_count(); ++k) {
+      const SpeedProfile::Phase& phase = motion.speed.phase(k);
+      const double begin = phase.start.acceleration;
+      const double end = begin + phase.duration_s * phase.jerk;
+      Most(motion, "ramp", std::max(std::abs(begin), std::abs(end)), most, 1e-6);
+      Most(motion, "jerk of a ramp", std::abs(phase.jerk), jerk, 1e-3);
+    }
+  }
+
   void Inside(const PlannedMotion& motion, const MoveCommand& move) {
+    Ramps(motion, move);
     const MotionView view(motion);
     const bool blend = motion.path.kind() == PathPiece::Kind::kBlend;
     const bool contour = move.kind == MoveCommand::Kind::kContour && !motion.path.by_sigma();

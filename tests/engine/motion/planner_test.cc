@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/engine/motion/random_chain.h"
 #include "tests/engine/motion/standard_machine.h"
 
 namespace rmlcell::motion {
@@ -188,6 +189,44 @@ TEST(Planner, PassagesThatAreNotBlended) {
   EXPECT_EQ(passage(east, LineTo({10, 0, 0}, {10, 1.9e-4, 0}, 2)), Passage::kStopShort);
 }
 
+// motion.md 4.4: a curve beside an arc that comes to a point on its way is a stop, as with OVERSH
+// 0.
+TEST(Planner, CurvesWithACuspAreStops) {
+  struct Corner2 {
+    PathPiece in;
+    PathPiece out;
+    double speed;
+  };
+  const auto arc = [](const Vec3& from, const Vec3& via, const Vec3& to) {
+    return PathPiece::ArcThrough({from}, via, {to}).value().path;
+  };
+  const std::vector<Corner2> corners = {
+      // The corner itself turns by 151 degrees, the cut points by 180.
+      {PathPiece::Line({{0, 0, 0}}, {{30, 0, 0}}),
+       arc({30, 0, 0}, {16.7910347625062, -3.372802547013361, 0},
+           {19.22102315613114, -16.78726176359408, 0}),
+       0.4},
+      // Two arcs whose curve nearly stands still in its middle.
+      {arc({11.482, 12.304, 0}, {9.102, 3.016, 0}, {0, 0, 0}),
+       arc({0, 0, 0}, {9.102, -3.016, 0}, {11.482, -12.304, 0}), 0.4}};
+  for (const Corner2& corner : corners) {
+    const auto plan = [&](double overshoot) {
+      std::vector<MoveCommand> chain(2);
+      chain[0] = {.path = corner.in, .speed_fraction = corner.speed, .fly = true};
+      chain[0].overshoot_fraction = overshoot;
+      chain[1] = {.path = corner.out, .speed_fraction = corner.speed};
+      return Plan(chain);
+    };
+    const std::vector<PlannedMotion> fly = plan(1.0), stop = plan(0.0);
+    EXPECT_EQ(fly[0].corner.passage, Passage::kStopReversal);
+    EXPECT_EQ(fly[0].corner.cut_mm, 0.0);
+    double fly_s = 0.0, stop_s = 0.0;
+    for (const PlannedMotion& motion : fly) fly_s += motion.duration_s();
+    for (const PlannedMotion& motion : stop) stop_s += motion.duration_s();
+    EXPECT_NEAR(fly_s, stop_s, 1e-12);
+  }
+}
+
 // A move that goes nowhere is dropped; without /FLY it makes the passage before it a stop.
 // motion.md 3.1
 TEST(Planner, MoveToWhereTheMachineIs) {
@@ -219,6 +258,63 @@ TEST(Planner, TinyStepsAreNotLost) {
     length += path.length();
   }
   EXPECT_NEAR(length, 1e-4, 1.1e-6);  // the last step of up to 1e-6 mm is dropped
+}
+
+// Without a limit on jerk a line goes over into an arc without a curve; the bend behind a short arc
+// must not reach back into the line, which lies elsewhere than the arc's tangent. OPT-B.25
+TEST(Planner, BendKeepsToTheArcBehindIt) {
+  MachineLimits machine = StandardMachine();
+  machine.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
+  const MoveCommand north = LineTo({0, -20, 0}, {}, 1, true);
+  MoveCommand arc = north;  // 0.05 mm of a circle of 1000 mm, then a line
+  arc.path = PathPiece::Circle({}, {-1000, 0, 0}, {0, 0, 1}, 5e-5, 0, 0);
+  const Vec3 end = arc.path.to().tip;
+  Planner planner(machine);
+  for (const MoveCommand& move : {north, arc, LineTo(end, end + Vec3{30, 0, 0}, 3)}) {
+    ASSERT_TRUE(planner.Append(move));
+  }
+  planner.Stop();
+  TipPose last{{0, -20, 0}};
+  while (const std::optional<PlannedItem> item = planner.Next()) {
+    const PathPiece& path = std::get<PlannedMotion>(*item).path;
+    EXPECT_LE(Distance(path.from().tip, last.tip), 1e-12);
+    EXPECT_LE(Distance(path.At(0.0).tip, last.tip), 1e-9);
+    last = path.to();
+  }
+  EXPECT_EQ(last.tip, end + (Vec3{30, 0, 0}));
+}
+
+// Behind a bend come more points straight on, each with another SPEED, than the window holds, and
+// the bend takes its part of them: what is decided early then must not cut into it. OPT-2.46,
+// OPT-B.29
+TEST(Planner, WindowFullOfPointsThatABendSwallows) {
+  for (const double step_mm : {1e-3, 1e-2, 1e-1}) {
+    for (const int count : {20, 31, 33, 40, 64, 80}) {
+      Planner planner(StandardMachine(), 64);
+      Vec3 at{1000, 900, -200};
+      double way = 0.0, planned = 0.0;
+      TipPose last{at};
+      const auto go = [&](const Vec3& step, double speed, bool fly) {
+        MoveCommand move = LineTo(at, at + step, 1, fly);
+        move.speed_fraction = speed;
+        at = at + step;
+        way += Norm(step);
+        ASSERT_TRUE(planner.Append(move));
+        while (const std::optional<PlannedItem> item = planner.Next()) {
+          const PathPiece& path = std::get<PlannedMotion>(*item).path;
+          ASSERT_LE(Distance(path.from().tip, last.tip), 1e-9);
+          last = path.to();
+          planned += path.length();
+        }
+      };
+      go({100, 0, 0}, 0.5, true);
+      for (int k = 0; k < count; ++k) go({0, step_mm, 0}, k % 2 == 0 ? 0.4 : 0.5, true);
+      for (int k = 0; k < count; ++k) go({0, 1, 0}, k % 2 == 0 ? 0.4 : 0.5, true);
+      go({100, 0, 0}, 0.5, false);
+      EXPECT_EQ(last.tip, at);
+      EXPECT_LE(planned, way);
+    }
+  }
 }
 
 // A copy goes on by itself.

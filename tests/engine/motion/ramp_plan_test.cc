@@ -49,7 +49,8 @@ double TimeOf(const RampPlan& plan) {
 // From rest to 100 mm/s takes 5 mm (50 mm/s for 2 sqrt(100/40000) = 0.1 s): over ten stretches of 1
 // mm with one limit that is one ramp and 5 mm at full speed. Level 1 stops speeding up at each end.
 TEST(RampPlan, OneRampOverStretchesOfOneLimit) {
-  std::vector<RampCell> cells(100, RampCell{.length = 1.0, .limits = kCellLimits, .end_speed = 0.0});
+  std::vector<RampCell> cells(100,
+                              RampCell{.length = 1.0, .limits = kCellLimits, .end_speed = 0.0});
   TimeByLevelOne(cells, 0.0, 100.0);
   ASSERT_EQ(cells.back().end_speed, 100.0);
   RampPlan plan;

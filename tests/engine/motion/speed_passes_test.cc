@@ -114,15 +114,40 @@ TEST(ReachMinimum, IsBelowEveryReach) {
   const PathLimits limits{500.0, 2000.0, 40000.0};
   for (const double length : {1e-3, 0.5, 9.0, 11.0, 100.0}) {
     for (const double high : {0.1, 20.0, 300.0}) {
-      const double least = ReachMinimum(high, length, limits);
-      double seen = 1e9;
-      for (int k = 0; k <= 2000; ++k)
-        seen = std::min(seen, Reach(high * std::pow(k / 2000.0, 4), length, limits));
-      EXPECT_LE(least, seen * (1 + 1e-12));
-      EXPECT_GE(least, seen * (1 - 1e-4));
-      EXPECT_GE(least, 0.93 * Reach(0.0, length, limits));
+      for (const double low : {0.0, 0.05, 5.0, 20.0, 80.0}) {
+        if (low > high) continue;
+        const double least = ReachMinimum(low, high, length, limits);
+        double seen = 1e9;
+        for (int k = 0; k <= 2000; ++k) {
+          const double from = low + (high - low) * std::pow(k / 2000.0, 4);
+          seen = std::min(seen, Reach(from, length, limits));
+        }
+        EXPECT_LE(least, seen * (1 + 1e-12));
+        EXPECT_GE(least, seen * (1 - 1e-4));
+        if (low == 0.0) {
+          EXPECT_GE(least, 0.93 * Reach(0.0, length, limits));
+        }
+      }
     }
   }
+}
+
+// Steps far shorter than the way to brake: what lies further from the end than that way is final,
+// so a window holds the braking distance and no more (motion.md 5.5). At 150 mm/s and 2000 mm/s2 it
+// is 5.625 mm without a limit on jerk: 563 steps of 0.01 mm. With one, ramps end at each step: a
+// step adds at most L^2 j / (4 v^2), whose sum up to 150 mm/s takes 150^3 * 4 / (3 L^2 j) steps.
+// OPT-2.16
+TEST(SpeedPasses, ShortStepsAreFinalBehindTheBrakingDistance) {
+  const auto open_knots = [](const PathLimits& limits, double length, int count) {
+    SpeedPasses passes;
+    for (int k = 0; k < count; ++k) passes.Push(length, limits, 150.0);
+    passes.Settle();
+    return count - static_cast<int>(passes.final_count());
+  };
+  EXPECT_LE(open_knots({150.0, 2000.0}, 0.01, 3000), 565);
+  const double steps = 4.0 * 150.0 * 150.0 * 150.0 / (3.0 * 0.64 * 40000.0);  // 175.8
+  EXPECT_LE(open_knots({150.0, 2000.0, 40000.0}, 0.8, 3000), 1.1 * steps);
+  EXPECT_GE(open_knots({150.0, 2000.0, 40000.0}, 0.8, 3000), 0.5 * steps);
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <limits>
 #include <random>
 
+#include "tests/engine/motion/random_chain.h"
+
 namespace rmlcell::motion {
 namespace {
 
@@ -191,6 +193,41 @@ TEST(StopFrom, AnyStateOfAnyProfile) {
       }
     }
   }
+}
+
+// Reach is good to the last digits, and so is what a ramp to its speed is made of: where the change
+// of speed is nothing but such digits the ramp must still be one that the machine may make.
+// OPT-2.16, OPT-B.21
+TEST(SpeedProfile, RampToWhatReachGivesKeepsItsLimits) {
+  Dice dice(3);
+  int tight = 0;  // ramps longer, by their own figures, than the way
+  for (int round = 0; round < 200'000; ++round) {
+    PathLimits limits{.speed = 500.0, .acceleration = dice.Magnitude(2.0, 2000.0)};
+    if (round % 3 != 0) limits.jerk = 20.0 * limits.acceleration;
+    const double v0 = dice.Chance(0.2) ? dice.Magnitude(1e-6, 500.0) : dice.Uniform(0.0, 500.0);
+    const double length = dice.Magnitude(1e-14, 100.0);
+    const double v1 = Reach(v0, length, limits);
+    if (v1 > limits.speed) continue;
+    if (RampLength(v0, v1, limits) > length * (1 + 1e-12)) ++tight;
+    const bool up = round % 2 == 0;
+    const SpeedProfile ramp = up ? SpeedProfile::Span(length, v0, v1, limits)
+                                 : SpeedProfile::Span(length, v1, v0, limits);
+    double speed = up ? v0 : v1;
+    double way = 0.0;
+    for (int k = 0; k < ramp.phase_count(); ++k) {
+      const SpeedProfile::Phase& phase = ramp.phase(k);
+      const double a = phase.start.acceleration, t = phase.duration_s;
+      ASSERT_LE(std::max(std::abs(a), std::abs(a + t * phase.jerk)),
+                limits.acceleration * (1 + 2e-6));
+      ASSERT_LE(std::abs(phase.jerk), limits.jerk * (1 + 4e-6));
+      ASSERT_NEAR(phase.start.speed, speed, 1e-10 * speed);
+      speed = phase.start.speed + t * (a + 0.5 * t * phase.jerk);
+      way += t * (phase.start.speed + t * (0.5 * a + t * phase.jerk / 6.0));
+    }
+    ASSERT_NEAR(speed, up ? v1 : v0, 1e-10 * v1);
+    ASSERT_NEAR(way, length, 1e-10 * length);
+  }
+  EXPECT_GT(tight, 10'000);
 }
 
 }  // namespace

@@ -83,6 +83,46 @@ TEST(HostileStreams, AdvanceReturnsNowAndThen) {
   EXPECT_EQ(run.AdvanceToEnd(), machine::RunPhase::kFinished);
 }
 
+// Nonsense in the middle of a chain: the motion behind it is looked for over several calls, and
+// what comes of it is the same. A STOP that comes meanwhile finds the tool where it is.
+TEST(HostileStreams, LooksForTheNextMotionOverSeveralCalls) {
+  const std::string nonsense(std::size_t{3} << 20, ';');
+  TestRun plain(ParametersOf("t1"), "!MC0;VS10;PD1000,0;PD2000,0;");
+  plain.AdvanceToEnd();
+  TestRun far(ParametersOf("t1"), "!MC0;VS10;PD1000,0;" + nonsense + "PD2000,0;");
+  int calls = 0;
+  while (far->Advance(kForever) == machine::RunPhase::kRunning) ++calls;
+  EXPECT_GE(calls, 4);
+  EXPECT_EQ(far.seen().text(), plain.seen().text());
+
+  TestRun stopped(ParametersOf("t1"), "!MC0;VS10;PD1000,0;" + nonsense + "PD2000,0;");
+  do {
+    ASSERT_EQ(stopped->Advance(kForever), machine::RunPhase::kRunning);
+  } while (stopped.seen().moves().size() < 2);
+  EXPECT_DOUBLE_EQ(stopped->state().tip_speed_mm_s, 10.0);
+  stopped.Press(machine::InputKind::kStop);
+  ASSERT_EQ(stopped.AdvanceToEnd(), machine::RunPhase::kHalted);
+  EXPECT_NEAR(stopped->state().tip.tip.x, 10.25, 1e-9);  // 10 mm/s take 0.25 mm to brake
+}
+
+// RML1-9.06, motion.md 5.5: a million lines of one chain need no more than ten thousand do, and a
+// key on the way makes no difference.
+TEST(HostileStreams, AMillionLinesOfOneChainAreFlat) {
+  const auto lines = [](std::size_t count) {
+    std::string stream = "!MC0;VS60;PD";
+    for (std::size_t k = 0; k < count; ++k) {
+      stream +=
+          std::to_string(5000 + k % 200 * 10) + "," + std::to_string(k / 200 % 300 * 10) + ",";
+    }
+    stream.back() = ';';
+    return stream;
+  };
+  const std::size_t few = MemoryFor(lines(10'000), ParametersOf("t1"));
+  const std::size_t many = MemoryFor(lines(kLarge / 2), ParametersOf("t1"));
+  EXPECT_LT(few, kRoom);
+  EXPECT_LE(many, few + 100'000);
+}
+
 TEST(HostileStreams, MuchOfAnyByte) {
   machine::Parameters all = ParametersOf("t1a");
   ASSERT_TRUE(all.Set("SEQUENCES", "ALL").ok());

@@ -95,8 +95,10 @@ TEST(Profile, RefusesMisfits) {
   EXPECT_EQ(refusal({{"X_MAX", 0.0}}), "X_MIN is 0, not below X_MAX, which is 0");
   EXPECT_EQ(refusal({{"Y_MIN", 150.0}}), "Y_MIN is 150, not below Y_MAX, which is 150");
   EXPECT_EQ(refusal({{"Z_MIN", 0.0}}), "Z_MIN is not below 0, the top");
-  EXPECT_EQ(refusal({{"XY_SPEED_MIN", 61.0}}), "XY_SPEED_MIN is 61, above XY_SPEED_MAX, which is 60");
-  EXPECT_EQ(refusal({{"SPINDLE_MIN", 15001.0}}), "SPINDLE_MIN is 15001, above SPINDLE_MAX, which is 15000");
+  EXPECT_EQ(refusal({{"XY_SPEED_MIN", 61.0}}),
+            "XY_SPEED_MIN is 61, above XY_SPEED_MAX, which is 60");
+  EXPECT_EQ(refusal({{"SPINDLE_MIN", 15001.0}}),
+            "SPINDLE_MIN is 15001, above SPINDLE_MAX, which is 15000");
   EXPECT_EQ(refusal({{"SPINDLE_MIN", 15000.0}}), "none");
 }
 

@@ -29,6 +29,20 @@ const std::string kVaried =
     "!MC1;VS20;V10;PU1000,1000;PD3000,1000,3000,3000;W30;PD1000,3000;!RC15;W0;Z500,500,-300,"
     "900,900,-100;PU25000,0;PD19000,500;XX;!ZE X5000Z-50;!MC0;IN;PU0,0;H;";
 
+// And one of short lines, with commands between them that need no standstill.
+const std::string kChained = [] {
+  std::string stream = "!MC0;!ZM-2000;PD;";
+  for (int k = 0; k < 400; ++k) {
+    stream += k % 50 == 0 ? "VS" + std::to_string(5 + k / 50 * 7) + ";" : "";
+    stream += k % 90 == 80 ? "XX;" : "";
+    stream += k % 140 == 139 ? "W20;" : k % 140 == 0 ? "W0;" : "";
+    const double angle = 0.05 * k;
+    stream += "PD" + std::to_string(static_cast<int>(3000 + 2000 * std::cos(angle) + k)) + "," +
+              std::to_string(static_cast<int>(3000 + 2000 * std::sin(angle))) + ";";
+  }
+  return stream + "PU;PU0,0,100,100,0,300;Z0,0,0,10,10,-10,500,300,-100,600,900,-100;";
+}();
+
 machine::Parameters VariedMachine() {
   machine::Parameters parameters = ParametersOf("t1");
   EXPECT_TRUE(parameters.Set("SPIN_UP", 0.7).ok());
@@ -48,12 +62,12 @@ const InputScript kVariedInputs = {
     {.at = 9s, .kind = InputKind::kOverride, .index = 0, .value = 30.0}};
 
 // How time is divided into calls of Advance changes nothing that is told: RML1-7.01.
-TEST(MillRunControl, DependsNotOnTheCallsOfAdvance) {
-  TestRun whole(VariedMachine(), kVaried, kVariedInputs);
+void ExpectSameInParts(const std::string& stream) {
+  TestRun whole(VariedMachine(), stream, kVariedInputs);
   ASSERT_EQ(whole.AdvanceToEnd(), RunPhase::kFinished);
   std::mt19937 random(11);
   for (int round = 0; round < 30; ++round) {
-    TestRun parts(VariedMachine(), kVaried, kVariedInputs);
+    TestRun parts(VariedMachine(), stream, kVariedInputs);
     SimTime until{0};
     while (parts->Advance(until) != RunPhase::kFinished) {
       until += std::chrono::microseconds(1 + random() % (round < 3 ? 3000 : 2'000'000));
@@ -63,47 +77,57 @@ TEST(MillRunControl, DependsNotOnTheCallsOfAdvance) {
     EXPECT_EQ(parts->SaveMachine(), whole->SaveMachine());
   }
 }
+TEST(MillRunControl, DependsNotOnTheCallsOfAdvance) {
+  ExpectSameInParts(kVaried);
+  ExpectSameInParts(kChained);
+}
 
 // Inputs applied by the caller act as scripted ones of the same time do.
 TEST(MillRunControl, TreatsAppliedInputsAsScripted) {
   const InputScript inputs = {
       {.at = 2500ms, .kind = InputKind::kOverride, .index = 0, .value = 50.0},
       {.at = 6s, .kind = InputKind::kOverride, .index = 0, .value = 180.0}};
-  TestRun scripted(VariedMachine(), kVaried, inputs);
-  scripted.AdvanceToEnd();
-  TestRun applied(VariedMachine(), kVaried);
-  for (const machine::InputChange& input : inputs) {
-    applied->Advance(input.at);
-    ASSERT_EQ(applied->state().time, input.at);
-    applied->Apply(input);
+  for (const std::string& stream : {kVaried, kChained}) {
+    TestRun scripted(VariedMachine(), stream, inputs);
+    scripted.AdvanceToEnd();
+    TestRun applied(VariedMachine(), stream);
+    for (const machine::InputChange& input : inputs) {
+      applied->Advance(input.at);
+      ASSERT_EQ(applied->state().time, input.at);
+      applied->Apply(input);
+    }
+    ASSERT_EQ(applied.AdvanceToEnd(), RunPhase::kFinished);
+    EXPECT_EQ(applied.seen().text(), scripted.seen().text());
   }
-  ASSERT_EQ(applied.AdvanceToEnd(), RunPhase::kFinished);
-  EXPECT_EQ(applied.seen().text(), scripted.seen().text());
 }
 
 // A snapshot taken anywhere, restored into the same run or an equal one, goes on the same way, also
 // when the run it came from is gone.
-TEST(MillRunControl, GoesOnFromASnapshot) {
-  TestRun whole(VariedMachine(), kVaried, kVariedInputs);
+void ExpectSameFromASnapshot(const std::string& stream) {
+  TestRun whole(VariedMachine(), stream, kVariedInputs);
   whole.AdvanceToEnd();
   std::mt19937 random(12);
   const double total = whole.time_s();
   for (int round = 0; round < 40; ++round) {
     const SimTime at = FromSeconds(total * static_cast<double>(random() % 1000) / 1000.0);
-    auto first = std::make_unique<TestRun>(VariedMachine(), kVaried, kVariedInputs);
+    auto first = std::make_unique<TestRun>(VariedMachine(), stream, kVariedInputs);
     (*first)->Advance(at);
     const std::string before = first->seen().text();
     const std::unique_ptr<machine::RunSnapshot> snapshot = (*first)->Save();
     first->AdvanceToEnd();
     EXPECT_EQ(first->seen().text(), whole.seen().text());
     first.reset();
-    TestRun second(VariedMachine(), kVaried, kVariedInputs);
+    TestRun second(VariedMachine(), stream, kVariedInputs);
     second->Restore(*snapshot);
     EXPECT_EQ(second->state().time, at);
     second.AdvanceToEnd();
     ASSERT_EQ(before + second.seen().text(), whole.seen().text());
     EXPECT_EQ(second.figures(), whole.figures());
   }
+}
+TEST(MillRunControl, GoesOnFromASnapshot) {
+  ExpectSameFromASnapshot(kVaried);
+  ExpectSameFromASnapshot(kChained);
 }
 
 // What watchers see between events: the tool never jumps, never exceeds the feed, and stays in the
@@ -164,7 +188,7 @@ TEST(MillRunControl, StopsOnThePath) {
 
 // A STOP in the last ramp ends where the motion would have ended.
 TEST(MillRunControl, StopsNoLaterThanTheMotionItself) {
-  TestRun run(ParametersOf("t1"), "!MC0;PU6000,0;PU0,0;");
+  TestRun run(ParametersOf("t1"), "!MC0;PU6000,0;!RC15;PD;");
   const double end = TrapezoidTime(15, 2) + TrapezoidTime(60, 60);
   run->Advance(FromSeconds(end - 0.01));
   run.Press(InputKind::kStop);

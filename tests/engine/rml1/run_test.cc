@@ -145,20 +145,6 @@ TEST(MillRun, TellsWhatMotionsAreFor) {
   EXPECT_NEAR(run.figures().at("travel_length"), 15 + 1 + 5 + 0.2 + 1 + 19.9 + 4, 1e-9);
 }
 
-// Motions that a planner with look-ahead would join are upper bounds; motion.md section 7, corners:
-// the chain ends at a change of height, a spindle command and a dwell.
-TEST(MillRun, MarksChainsAsUpperBounds) {
-  TestRun run(ParametersOf("t1"),
-              "PU100,0,200,0;PU300,0;PD;PD400,0;PD500,0;!RC15;PD600,0;Z700,0,0;Z800,0,0;"
-              "W5;Z900,0,0;Z950,0,0;");
-  run.AdvanceToEnd();
-  std::string bounds;
-  for (const RunRecord::Motion& motion : run.seen().motions()) {
-    bounds += motion.planned.upper_bound ? 'j' : '-';
-  }
-  EXPECT_EQ(bounds, "--jj--j--j--");
-}
-
 // RML1-7.05: a place is the slot, the number of the command, its line and first byte.
 TEST(MillRun, TellsThePlaceOfEveryMotion) {
   TestRun run(ParametersOf("t1"), "PA;\n ^PU1,1,\n2,2;\r\nPU3,3;");

@@ -156,5 +156,14 @@ TEST(Compiler, AnEmptyProgramIsAProgram) {
   EXPECT_EQ(compiled.module.step_count, 0U);
 }
 
+// OPT-1.05, OPT-1.06: a program without instructions has a source, too.
+TEST(Compiler, AnEmptyProgramHasASource) {
+  const std::string object = MustCompile("; nothing but a comment\n").object;
+  const Result<std::string> source = ObjectToSource(object);
+  ASSERT_TRUE(source);
+  EXPECT_EQ(*source, "\n");
+  EXPECT_EQ(MustCompile(*source).object, object);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

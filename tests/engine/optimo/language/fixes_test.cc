@@ -29,6 +29,13 @@ TEST(Fixes, NoNameIsMadeAnotherThatMayNotBeMeant) {
   EXPECT_NE(found[2].detail.find("did you mean XPOS?"), std::string::npos);
 }
 
+// OPT-1.32: some editors put it there unasked.
+TEST(Fixes, AByteOrderMarkIsTakenOut) {
+  EXPECT_EQ(FindingsOf("\xEF\xBB\xBFSPEED 5\n"), (std::vector<int>{7001}));
+  EXPECT_EQ(Fixed("\xEF\xBB\xBFSPEED 5\n"), "SPEED 5\n");
+  EXPECT_EQ(Fixed("SPEED 5\n\xEF\xBB\xBFSPEED 6\n"), "SPEED 5\n\xEF\xBB\xBFSPEED 6\n");
+}
+
 // OPT-7.91, OPT-1.29: digits behind the word of an instruction are its operand, never waste.
 TEST(Fixes, OperandsAreParted) {
   EXPECT_EQ(

@@ -29,6 +29,14 @@ TEST(Formatter, KeepsDosLineEnds) {
   EXPECT_EQ(Format("speed 5\r\n; x\r\n").text, "     SPEED 5\r\n; x\r\n");
 }
 
+// OPT-1.03: what stands behind the end of the text is not looked at, and not lost.
+TEST(Formatter, KeepsWhatStandsBehindTheEndOfTheText) {
+  const std::string text = "speed 5\r\n\x1A garbage\n";
+  EXPECT_EQ(Format(text).text, "     SPEED 5\r\n\x1A garbage\n");
+  EXPECT_FALSE(Format(Format(text).text).changed);
+  EXPECT_EQ(Format("speed 5 ; slow\x1A").text, "     SPEED 5  ; slow\n\x1A");
+}
+
 TEST(Formatter, LeavesTextWithSyntaxErrorsAlone) {
   const std::string text = "speed 5\n10000 path lin\n(((\n";
   const Formatting formatted = Format(text);

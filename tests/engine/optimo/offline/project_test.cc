@@ -204,6 +204,24 @@ TEST_F(Project, MovesBeforeTheOwnSysdef) {
   EXPECT_EQ(found->detail, "ABSOL moves before the first SYSDEF of the program");
 }
 
+// OPT-2.62, OPT-E.7317, OPT-8.69: what `check` says of a corner, the transfer says too, for the
+// machine that it goes to. motion.md C01: 90 degrees at 50 mm/s, 1.3588 mm.
+TEST_F(Project, PathsAreLookedAtAsTheyAreWhenChecked) {
+  Add(45,
+      "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (0,0,0,0,0)\nWORK 0,0/ON\nDELAY 1\n"
+      "MOVE (100,0,0,0,0)/FLY\nMOVE (100,100,0,0,0)\nWORK 0,0/OFF\n");
+  const auto corner = [](const machine::TransferPlan& plan) {
+    const auto found = std::ranges::find(plan.diagnostics, ErrorCode::kFlySharp, &Diagnostic::code);
+    return found == plan.diagnostics.end() ? std::string() : found->detail;
+  };
+  EXPECT_EQ(corner(Plan()),
+            "the contour turns by 90.0 degrees; the path stays 1.359 mm away from the corner");
+  ContourMachine slow = ContourMachine::Standard();
+  slow.limits.tip_speed_mm_s /= 2.0;
+  EXPECT_EQ(corner(PlanTransfer(bundle_, {}, kObjectLimitStandard, slow)),
+            "the contour turns by 90.0 degrees; the path stays 0.480 mm away from the corner");
+}
+
 // OPT-10.17, OPT-E.7413
 TEST_F(Project, AmadasNumbersAreReserved) {
   Add(5, "SPEED 5\n");

@@ -44,6 +44,21 @@ TEST(Transform, ChoosesTheNearestHeadAngles) {
   EXPECT_NEAR(down.b, 0.0, 1e-12);
 }
 
+// OPT-B.80, OPT-8.76: B stays positive if it was, whatever the turn about Z; half a turn goes the
+// way it is meant for all moves, and back again.
+TEST(Transform, ATurnAboutZLeavesB) {
+  for (const double turn : {2.0, 3.0, kPi, -kPi, 3.14159265, -2.5}) {
+    const RigidMotion motion = RigidMotion::Of({}, turn, 0, 0);
+    for (const double b : {0.02, 0.3, 1.5, 1.6, 2.3, -0.3, -2.0}) {
+      for (const double a : {-9.0, -kPi, 0.0, 0.2, kPi, 3.5256}) {
+        const HeadAngles head = TurnHead({a, b}, motion);
+        EXPECT_NEAR(head.b, b, 1e-12);
+        EXPECT_NEAR(head.a, a + turn, 1e-9);
+      }
+    }
+  }
+}
+
 // The head points where the turned tool points, whatever the angles are.
 TEST(Transform, TheToolTurnsWithThePart) {
   for (const double a : {-3.0, 0.4, 2.8}) {
@@ -241,6 +256,34 @@ TEST(Shift, AddsToTheSystemVariables) {
 TEST(Shift, NeedsSomethingToShift) {
   EXPECT_EQ(FirstFinding(Shift("VR[86] = VR[10]\nVR[5] = 1.\n", {30, 0, 0, 0, 0, 0})), 7852);
   EXPECT_FALSE(Shift("SPEED 5\n", {30, 0, 0, 0, 0, 0}).ok);
+}
+
+// OPT-B.80: A turns as smoothly behind a rotation as it did before: a head that swung by half a
+// turn between two moves would leave the part.
+TEST(Transform, AContourStaysSmooth) {
+  std::string text = "COORD ABSOL\nPATH LIN\n";
+  for (int k = 0; k <= 60; ++k) {
+    text += "MOVE (" + std::to_string(k) + ".0,0.0,0.0," + std::to_string(0.1 * k) + "," +
+            std::to_string(1.2 + 0.01 * k) + ")\n";
+  }
+  const RigidMotion motion = RigidMotion::Of({1, 2, 3}, 2.2, 0.1, -0.2);
+  const Rewriting turned = Transform(text, motion);
+  ASSERT_TRUE(turned.ok);
+  const auto poses = NumbersOf(turned.text).poses;
+  ASSERT_EQ(poses.size(), 61U);
+  for (std::size_t k = 1; k < poses.size(); ++k) {
+    EXPECT_LT(std::fabs(poses[k][3] - poses[k - 1][3]), 0.2) << k;
+    EXPECT_LT(std::fabs(poses[k][4] - poses[k - 1][4]), 0.1) << k;
+  }
+  const Rewriting back = Transform(turned.text, motion.Inverse());
+  ASSERT_TRUE(back.ok);
+  const auto wanted = NumbersOf(text).poses, found = NumbersOf(back.text).poses;
+  ASSERT_EQ(wanted.size(), found.size());
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    for (std::size_t axis = 0; axis < 5; ++axis) {
+      EXPECT_NEAR(found[k][axis], wanted[k][axis], 3e-6) << k;
+    }
+  }
 }
 
 }  // namespace

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "engine/motion/machine_limits.h"
+#include "engine/motion/speed_profile.h"
+
+namespace rmlcell::motion {
+
+// How fast the curve between two lines may be passed from place to place, at equal steps of its arc
+// length from the start to the middle; the second half is its mirror image. motion.md 4.3, 5.4.
+struct BendSpeeds {
+  static constexpr std::size_t kSteps = 24;
+  std::array<double, kSteps + 1> most;
+};
+
+// The stretches in which a bend is passed that cannot be passed at OVERSH x Vb: the whole of it, or
+// its halves where it is tightest in the middle. A stretch may be passed by any ramp between speeds
+// allowed at its start and its end, with acceleration zero at both and `open` on the way: that
+// keeps the speeds of the bend all along.
+struct BendStretches {
+  std::size_t count = 1;
+  double start = 0.0;   // highest speed at the start of the bend, and at its end
+  double open = 0.0;    // on the way
+  double middle = 0.0;  // of two stretches: where they meet
+};
+
+// `limits` are those of the ramps (their speed does not count).
+BendStretches StretchesOf(const BendSpeeds& speeds, double half_length_mm,
+                          const PathLimits& limits);
+
+}  // namespace rmlcell::motion

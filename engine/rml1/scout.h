@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+#include "engine/machine/run.h"
+#include "engine/rml1/device.h"
+#include "engine/rml1/look_ahead.h"
+#include "engine/rml1/sender.h"
+
+namespace rmlcell::rml1 {
+
+// Where a run halts by itself between two commands: after each, or after one.
+struct CommandHalts {
+  bool after_each = false;  // mode SINGLE
+  int after = 0;            // number of the command with the breakpoint; 0: none
+
+  bool After(int command) const { return after_each || (after > 0 && after == command); }
+};
+
+// Reads the stream of a run ahead of its tool, through a device of its own: which motions come, and
+// where the tool must stand between them. What that device notices nobody hears; the device of the
+// run reads the same bytes when their time comes. A device knows no time, so both do the same.
+class Scout {
+ public:
+  // `device` as the run's own before the first byte.
+  explicit Scout(Device device) : device_(std::move(device)) {}
+
+  // As far as the next motion, or the next place where the tool must stand. False: `sent_max` bytes
+  // of the stream were read before that, of which sent() tells. Not behind the end of the stream.
+  bool Read(std::string_view stream, const CommandHalts& halts, std::size_t sent_max,
+            LookAhead& ahead);
+
+  std::size_t sent() const { return sender_.sent(); }
+
+ private:
+  bool TakeActions(std::string_view stream, LookAhead& ahead);
+
+  Device device_;
+  Sender sender_;
+  std::uint64_t commands_seen_ = 0;
+  bool over_ = false;
+};
+
+}  // namespace rmlcell::rml1
