@@ -231,7 +231,7 @@ struct ScopeFigures {
   bool operator==(const ScopeFigures&) const = default;
 };
 
-// Collisions are not modelled; nor is the removal of material, so no removed volume is given.
+// Collisions are not modelled: the machine knows neither part nor fixture.
 struct RunReport : ScopeFigures {
   std::string family;  // "optimo"
   std::string title;   // of the program: its name

@@ -421,6 +421,10 @@ void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, s
     s_.machine.axes = AxesNow();
     s_.active.reset();
   }
+  // A chain of /FLY moves that never stands is still being planned: the run would have come there.
+  if (code == ErrorCode::kStepBudget) {
+    for (auto& [tag, note] : s_.notes) TellViolations(note.place, std::exchange(note.beyond, {}));
+  }
   s_.timeline.clear();
   s_.held.clear();
   s_.interrupted.clear();

@@ -134,6 +134,19 @@ TEST(Travel, AHaltDoesNotHideThem) {
   EXPECT_EQ(CodeOf(ran), 7301);
 }
 
+// OPT-2.49: a chain without an end never begins to move before the steps run out; what it would do is
+// told.
+TEST(Travel, AnEndlessChainTellsThemToo) {
+  const Ran ran = RunText(std::string(kAbsol) +
+                              "10 MOVE (1000.,1000.,-400.,0.,0.)/FLY\n"
+                              "MOVE (3700.,1000.,-400.,0.,0.)/FLY\nGOTO 10\n",
+                          {.budget = {.steps = 100}, .forecast = true});
+  EXPECT_EQ(ran.outcome.kind, OutcomeKind::kBudgetExceeded);
+  ASSERT_FALSE(ran.violations.empty());
+  EXPECT_EQ(ran.violations.front().place.step, 4);
+  EXPECT_NEAR(ran.violations.front().excess, 100.0, 1e-3);
+}
+
 // OPT-2.16: case L01: at A 0 the column goes 4 mm for each mm of the tip, so X allows 125 mm/s of
 // the 150. Told once for the step, however often it runs.
 TEST(Travel, AnAxisThatHoldsAContourBackIsToldOnce) {
