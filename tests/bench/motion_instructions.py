@@ -15,8 +15,8 @@ import sys
 # 1,000, is reached but for half a percent where the path is kept as it is (mill, 1,006); with a curve at every corner
 # (trapezoid) a line is three motions, and no stage takes more than a tenth of the count:
 # docs/decisions/0009-motion-speed.md.
-LIMITS = {"jerk": 3170, "trapezoid": 3130, "mill": 1110, "five_axis": 6750, "arcs": 199000, "short": 4500,
-          "ramps": 28400}
+LIMITS = {"jerk": 3550, "trapezoid": 3500, "mill": 1110, "five_axis": 7200, "arcs": 200000, "short": 27000,
+          "ramps": 52000}
 SHORT, LONG = 2400, 8400
 
 
