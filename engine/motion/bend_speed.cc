@@ -7,7 +7,7 @@
 namespace rmlcell::motion {
 namespace {
 
-constexpr double kLastDigits = 1e-9;        // last digits must not decide
+constexpr double kLastDigits = 1e-9;  // last digits must not decide
 constexpr double kWorthwhile = 1.01;  // less to gain than this is not worth more stretches
 
 // Whether the ramp between these speeds keeps below those that stand at equal steps of `length`.
@@ -18,7 +18,7 @@ bool RampFits(std::span<const double> most, double length, double from, double t
                          {.speed = to, .acceleration = limits.acceleration, .jerk = limits.jerk});
   const double steps = static_cast<double>(most.size() - 1);
   const double per_mm = steps / length;
-  constexpr int kPlaces = 12;  // of each phase, closer where it begins
+  constexpr int kPlaces = 8;  // of each phase, closer where it begins
   // Between the steps, rounded down where the speeds bend upwards; from the first on they may begin
   // flat.
   const auto most_at = [&](std::size_t step, double share) {
@@ -45,27 +45,38 @@ bool RampFits(std::span<const double> most, double length, double from, double t
                              [&](double here) { return to <= here * (1.0 + kLastDigits); });
 }
 
-// From any speed up to most[0]. Who starts slower has more time on the way and is nearly everywhere
+// From lower speeds too. Who starts slower has more time on the way and is nearly everywhere
 // behind, but not where the bend opens slowly.
-bool RampsFit(std::span<const double> most, double length, double to, const PathLimits& limits) {
-  constexpr int kStarts = 4;
-  for (int k = kStarts; k >= 0; --k) {
-    if (!RampFits(most, length, most.front() * k / kStarts, to, limits)) return false;
+bool SlowerRampsFit(std::span<const double> most, double length, double to,
+                    const PathLimits& limits) {
+  for (const double share : {0.0, 0.25, 0.5, 0.75}) {
+    if (!RampFits(most, length, most.front() * share, to, limits)) return false;
   }
   return true;
 }
 
-// The highest speed to which there are such ramps; most[0] when there is none above it.
+// The highest speed to which there are ramps from any speed up to most[0]; most[0] when there is
+// none above it.
 double HighestAfter(std::span<const double> most, double length, double high,
                     const PathLimits& limits) {
-  double low = most.front();
-  if (!(high > low) || RampsFit(most, length, high, limits)) return std::max(low, high);
-  constexpr int kHalvings = 6;  // to 1 % of the gain
-  for (int k = 0; k < kHalvings; ++k) {
-    const double middle = 0.5 * (low + high);
-    (RampsFit(most, length, middle, limits) ? low : high) = middle;
-  }
-  return low;
+  const double start = most.front();
+  if (!(high > start)) return start;
+  const auto highest = [&](auto fits) {
+    if (fits(high)) return high;
+    double low = start;
+    double above = high;
+    constexpr int kHalvings = 6;  // to 1 % of the gain
+    for (int k = 0; k < kHalvings; ++k) {
+      const double middle = 0.5 * (low + above);
+      (fits(middle) ? low : above) = middle;
+    }
+    return low;
+  };
+  const auto from_start = [&](double to) { return RampFits(most, length, start, to, limits); };
+  const double found = highest(from_start);  // nearly always good for slower ones
+  if (SlowerRampsFit(most, length, found, limits)) return found;
+  return highest(
+      [&](double to) { return from_start(to) && SlowerRampsFit(most, length, to, limits); });
 }
 
 }  // namespace

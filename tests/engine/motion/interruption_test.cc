@@ -122,5 +122,59 @@ TEST(RestartAlong, GoesOnOverTheSamePath) {
   }
 }
 
+// Stopped and started again and again, with a turning head and in bends that use up their lines:
+// the tip and the head come through the same places, and the end is the same. motion.md section 10,
+// property 12
+TEST(RestartAlong, ManyHaltsKeepThePath) {
+  const MachineLimits machine = StandardMachine();
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    const std::vector<PlannedMotion> plan =
+        Plan(RandomChain(seed, 8,
+                         {.arcs = seed % 2 == 0,
+                          .all_fly = true,
+                          .shortest_mm = 0.1,
+                          .longest_mm = seed % 3 == 0 ? 2.0 : 50.0}));
+    std::vector<PlannedMotion> driven;
+    std::vector<PlannedMotion> ahead = plan;
+    Dice dice(seed);
+    for (int halts = 0; halts < 5 && !ahead.empty(); ++halts) {
+      const auto at = static_cast<std::size_t>(
+          dice.Uniform(0.0, std::min(3.0, static_cast<double>(ahead.size()))));
+      const double t = dice.Uniform(0.0, ahead[at].speed.duration_s());
+      for (std::size_t k = 0; k < at; ++k) driven.push_back(ahead[k]);
+      const double s = ahead[at].speed.At(t).s;
+      if (s > 0.0) {
+        PlannedMotion part = ahead[at];
+        if (s < part.path.length()) part.path = part.path.Part(0.0, s);
+        driven.push_back(part);
+      }
+      const StopOnPath stop = StopAlong(std::span(ahead).subspan(at), t, machine.axes);
+      ASSERT_TRUE(stop.complete) << seed;
+      driven.insert(driven.end(), stop.motions.begin(), stop.motions.end());
+      ahead = RestartAlong(std::span(ahead).subspan(at + stop.index), stop.s, machine.axes);
+    }
+    driven.insert(driven.end(), ahead.begin(), ahead.end());
+    ASSERT_NEAR(Length(driven), Length(plan), 1e-7) << seed;
+    // Each piece driven lies on the piece of the plan that is as far along.
+    std::size_t piece = 0;
+    double begin = 0.0;  // of that piece
+    double way = 0.0;
+    for (const PlannedMotion& motion : driven) {
+      for (const double share : {0.0, 0.5, 1.0}) {
+        const double x = way + motion.path.length() * share;
+        while (piece + 1 < plan.size() && x > begin + plan[piece].path.length()) {
+          begin += plan[piece++].path.length();
+        }
+        const TipPose here = motion.path.At(motion.path.length() * share);
+        const TipPose wanted = plan[piece].path.At(x - begin);
+        ASSERT_LE(Distance(here.tip, wanted.tip), 1e-6) << seed;
+        ASSERT_NEAR(here.a_rad, wanted.a_rad, 1e-6) << seed;
+        ASSERT_NEAR(here.b_rad, wanted.b_rad, 1e-6) << seed;
+      }
+      way += motion.path.length();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::motion

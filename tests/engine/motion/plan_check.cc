@@ -100,6 +100,14 @@ class Checker {
     double last_s = -1.0;
     for (int k = 0; k < motion.speed.phase_count(); ++k) {
       const double duration = motion.speed.phase(k).duration_s;
+      // Path jerk, from places within one phase of a line: there it is constant.
+      const double step = std::min(duration / 8, 2e-3);
+      if (contour && motion.path.kind() == PathPiece::Kind::kLine && step >= 2e-4) {
+        const auto at = [&](double t) { return view.PoseAt(phase_start + 0.5 * duration + t).tip; };
+        const Vec3 third = at(3 * step) - at(step) * 3.0 + at(-step) * 3.0 - at(-3 * step);
+        Most(motion, "path jerk", Norm(third) / (8 * step * step * step),
+             move.acceleration_fraction * m.tip_jerk_mm_s3, 8e-12 / (step * step * step));
+      }
       const int last = k + 1 == motion.speed.phase_count() ? plan_.samples_per_phase
                                                            : plan_.samples_per_phase - 1;
       for (int i = 0; i <= last; ++i) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/motion/trajectory.h"
+
 namespace rmlcell::motion {
 namespace {
 
