@@ -307,7 +307,8 @@ void MotionChain::EmitHalves(const Span& span, const Shape& shape, const Half& f
   for (Number k = span.corner_move + 1;; ++k) {
     x += moves_[k].path.length();
     const bool last = x >= cut || k + 1 == moves_.end();
-    const double to = last ? half : std::min(half * x / cut, half);
+    double to = last ? half : std::min(half * x / cut, half);
+    if (half + to >= half + half) to = half;  // what is left is less than the last digit of the curve
     if (to > s) EmitCurvePart(span, k, shape, second, {s, to, !last}, cells);
     s = std::max(s, to);
     if (last) break;
