@@ -42,6 +42,10 @@ void AxisLog::Add(const Motion& motion) {
   tip_peak_speed_ = std::max(tip_peak_speed_, motion.peaks.tip_speed);
   tip_peak_acceleration_ = std::max(tip_peak_acceleration_, motion.peaks.tip_acceleration);
   tip_peak_jerk_ = std::max(tip_peak_jerk_, motion.peaks.tip_jerk);
+  if (!motion.tip_limited) return;
+  limited_peak_speed_ = std::max(limited_peak_speed_, motion.peaks.tip_speed);
+  limited_peak_acceleration_ =
+      std::max(limited_peak_acceleration_, motion.peaks.tip_acceleration);
 }
 
 void AxisLog::WriteTo(ScopeFigures& scope) const {
@@ -72,8 +76,11 @@ void AxisLog::WriteTo(ScopeFigures& scope) const {
                        .peak_acceleration = tip_peak_acceleration_,
                        .peak_jerk = tip_peak_jerk_};
   if (shape_.limits) {
-    scope.tip_figures.speed_limit = shape_.limits->tip_speed_mm_s;
-    scope.tip_figures.acceleration_limit = shape_.limits->tip_acceleration_mm_s2;
+    const bool speed_limited = tip_peak_speed_ <= limited_peak_speed_;
+    const bool acceleration_limited = tip_peak_acceleration_ <= limited_peak_acceleration_;
+    scope.tip_figures.speed_limit = speed_limited ? shape_.limits->tip_speed_mm_s : 0.0;
+    scope.tip_figures.acceleration_limit =
+        acceleration_limited ? shape_.limits->tip_acceleration_mm_s2 : 0.0;
     scope.tip_figures.jerk_limit = Finite(shape_.limits->tip_jerk_mm_s3);
   }
 }

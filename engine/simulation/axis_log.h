@@ -25,6 +25,7 @@ class AxisLog {
     const std::array<CoordinateSweep, 2>& ab;
     const MotionPeaks& peaks;
     double tip_path_mm = 0.0;
+    bool tip_limited = true;  // PTP of a gantry is not: there only the axes count (motion.md 3.5)
   };
   void Add(const Motion& motion);
 
@@ -52,6 +53,9 @@ class AxisLog {
   double tip_peak_speed_ = 0.0;
   double tip_peak_acceleration_ = 0.0;
   double tip_peak_jerk_ = 0.0;
+  // The same of motions in which the tip has limits: a peak above them has no share of one.
+  double limited_peak_speed_ = 0.0;
+  double limited_peak_acceleration_ = 0.0;
 };
 
 }  // namespace rmlcell::simulation

@@ -95,7 +95,7 @@ struct AxisFigures {
   double peak_speed = 0.0;
   double peak_acceleration = 0.0;
   double peak_jerk = 0.0;    // within the phases of the ramps; not a limit, see motion.md 5.1
-  double speed_limit = 0.0;  // 0: not known
+  double speed_limit = 0.0;  // 0: not known; of the tip also when a PTP motion was the fastest
   double acceleration_limit = 0.0;
   double jerk_limit = 0.0;  // 0: not known, or none
   std::uint64_t reversals = 0;

@@ -162,7 +162,11 @@ void ReportRecorder::AddShape(const machine::MotionDone& done, double profile_en
   const PointSweep column = shape_.five_axis ? ColumnSweep(part) : tip;
   const std::array<CoordinateSweep, 2> rotary = RotarySweep(part);
   const MotionPeaks peaks = PeaksOf(motion, shape_.five_axis, done.profile_start_s, profile_end_s);
-  const AxisLog::Motion axes{.xyz = column, .ab = rotary, .peaks = peaks, .tip_path_mm = length};
+  const AxisLog::Motion axes{.xyz = column,
+                             .ab = rotary,
+                             .peaks = peaks,
+                             .tip_path_mm = length,
+                             .tip_limited = !shape_.five_axis || done.programmed_mm_s > 0.0};
   const machine::Box tip_box = BoxOf(tip);
   const machine::Box column_box = BoxOf(column);
   const std::optional<SlowMove> slow = speeds_.Add(done);

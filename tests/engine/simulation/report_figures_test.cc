@@ -66,6 +66,9 @@ TEST(ReportFigures, PeaksOfAnAxis) {
   EXPECT_NEAR(Axis(report, "Y").peak_speed, 0.0, 1e-3);  // 2201.2 has no exact REAL
   EXPECT_NEAR(report.tip_figures.peak_speed, 350.0, 1e-6);
   EXPECT_NEAR(report.tip_figures.peak_jerk, 40000.0, 1e-3);
+  // PTP: only the axes have limits (3.5), so the tip has no share of one.
+  EXPECT_EQ(report.tip_figures.speed_limit, 0.0);
+  EXPECT_EQ(report.tip_figures.acceleration_limit, 0.0);
 }
 
 // motion.md 2.4: round an arc of R 20 at a steady 60 mm/s the jerk is v^3/R^2 = 540 mm/s3; the ramp
@@ -219,6 +222,7 @@ TEST(ReportFigures, EachProgramHasItsOwn) {
   const ScopeFigures& main = both.programs.at(43);
   const ScopeFigures& called = both.programs.at(44);
   EXPECT_NEAR(called.tip_figures.peak_speed, 40.0, 1e-6);
+  EXPECT_EQ(called.tip_figures.speed_limit, 500.0);  // of a contour
   EXPECT_GT(main.tip_figures.peak_speed, 100.0);  // of the way from the home position
   EXPECT_NEAR(called.tip.min.x, 1100.0, 1e-6);
   EXPECT_NEAR(called.tip.max.x, 1180.0, 1e-6);
