@@ -182,7 +182,8 @@ void MotionChain::TakeStretches(SpeedProfile& speed, CurveCells& cells, double f
 
 // Motions are made where they wait to be taken: they are large. The slot holds an old one, so every
 // member is set here or by the caller (path, speed).
-[[gnu::always_inline]] inline PlannedMotion& MotionChain::NewMotion(const Span& span, const Move& source) {
+[[gnu::always_inline]] inline PlannedMotion& MotionChain::NewMotion(const Span& span,
+                                                                    const Move& source) {
   PlannedItem& slot = items_.PushSlot();
   auto* motion = std::get_if<PlannedMotion>(&slot);
   if (motion == nullptr) motion = &slot.emplace<PlannedMotion>();
@@ -308,7 +309,8 @@ void MotionChain::EmitHalves(const Span& span, const Shape& shape, const Half& f
     x += moves_[k].path.length();
     const bool last = x >= cut || k + 1 == moves_.end();
     double to = last ? half : std::min(half * x / cut, half);
-    if (half + to >= half + half) to = half;  // what is left is less than the last digit of the curve
+    if (half + to >= half + half)
+      to = half;  // what is left is less than the last digit of the curve
     if (to > s) EmitCurvePart(span, k, shape, second, {s, to, !last}, cells);
     s = std::max(s, to);
     if (last) break;

@@ -51,23 +51,32 @@ bool IsFiniteBlock(const Stock& s) {
   return true;
 }
 
+double CellsAlong(double low, double high, double cell) {
+  constexpr double kLastDigits = 1e-9;  // 3 mm are thirty cells of 0.1
+  return std::max(1.0, std::ceil((high - low) / cell - kLastDigits));
+}
+
 }  // namespace
 
-Result<HeightField> HeightField::Of(const Stock& stock) {
+Status CheckStock(const Stock& stock) {
   if (!IsFiniteBlock(stock) || !(stock.x_min < stock.x_max) || !(stock.y_min < stock.y_max) ||
       !(stock.bottom < stock.top)) {
     return InvalidArgument("the stock ends before it begins");
   }
   if (!(stock.cell > 0.0)) return InvalidArgument("the cells of the stock have no size");
-  const double columns = std::ceil((stock.x_max - stock.x_min) / stock.cell - 1e-9);
-  const double rows = std::ceil((stock.y_max - stock.y_min) / stock.cell - 1e-9);
-  if (!(columns * rows <= static_cast<double>(kCellsMax))) {
-    return InvalidArgument("the stock has " + ShortestText(columns) + " by " + ShortestText(rows) +
-                           " cells, more than " + std::to_string(kCellsMax) +
-                           ": make the cells larger");
-  }
-  return HeightField(stock, std::max<std::size_t>(1, static_cast<std::size_t>(columns)),
-                     std::max<std::size_t>(1, static_cast<std::size_t>(rows)));
+  const double columns = CellsAlong(stock.x_min, stock.x_max, stock.cell);
+  const double rows = CellsAlong(stock.y_min, stock.y_max, stock.cell);
+  if (columns * rows <= static_cast<double>(HeightField::kCellsMax)) return {};
+  return InvalidArgument("the stock has " + ShortestText(columns) + " by " + ShortestText(rows) +
+                         " cells, more than " + std::to_string(HeightField::kCellsMax) +
+                         ": make the cells larger");
+}
+
+Result<HeightField> HeightField::Of(const Stock& stock) {
+  if (Status sound = CheckStock(stock); !sound) return sound.error();
+  return HeightField(stock,
+                     static_cast<std::size_t>(CellsAlong(stock.x_min, stock.x_max, stock.cell)),
+                     static_cast<std::size_t>(CellsAlong(stock.y_min, stock.y_max, stock.cell)));
 }
 
 HeightField::HeightField(const Stock& stock, std::size_t columns, std::size_t rows)

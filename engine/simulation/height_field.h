@@ -21,13 +21,16 @@ struct Stock {
   bool operator==(const Stock&) const = default;
 };
 
+// Errors: CellInvalidArgument for a block that cannot be, or of more cells than a HeightField has.
+Status CheckStock(const Stock& stock);
+
 // What is left of a block: the height of its surface over each cell of a grid. Cuts only ever lower
 // it, so their order does not matter, and rows can be cut each by itself. motion.md section 9.
 class HeightField {
  public:
   static constexpr std::uint64_t kCellsMax = 1u << 26;  // 256 MiB of heights
 
-  // Errors: CellInvalidArgument for a block that cannot be, or of more cells than kCellsMax.
+  // Errors: those of CheckStock.
   static Result<HeightField> Of(const Stock& stock);
 
   struct Rows {

@@ -9,8 +9,7 @@ constexpr double kGougeLeast_mm = 1e-3;  // less is rounding of heights and plac
 
 Status CheckMilling(const Milling& milling) {
   if (Status sound = CheckTool(milling.tool); !sound) return sound;
-  const Result<HeightField> field = HeightField::Of(milling.stock);
-  return field ? Status() : Status(field.error());
+  return CheckStock(milling.stock);
 }
 
 MillingRecorder::MillingRecorder(const machine::MachineShape& shape, const Milling& milling)

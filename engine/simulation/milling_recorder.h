@@ -12,7 +12,7 @@ struct Milling {
   Stock stock;
   MillTool tool;
 };
-// Errors: CellInvalidArgument, as CheckTool and HeightField::Of have them.
+// Errors: CellInvalidArgument, as CheckTool and CheckStock have them.
 Status CheckMilling(const Milling& milling);
 
 // Takes the material away that the motions of a run sweep, and tells where the tool went into it at

@@ -83,11 +83,4 @@ bool WriteStl(const HeightField& field, const std::function<bool(std::string_vie
   return wanted && sink(bytes);
 }
 
-double StlVolume(const HeightField& field) {
-  double six_fold = 0.0;
-  ForEachTriangle(
-      field, [&](const Vec3& a, const Vec3& b, const Vec3& c) { six_fold += Dot(a, Cross(b, c)); });
-  return six_fold / 6.0;
-}
-
 }  // namespace rmlcell::simulation

@@ -12,7 +12,4 @@ namespace rmlcell::simulation {
 // the call of `sink`; it returns false when it wants no more, and so does this.
 bool WriteStl(const HeightField& field, const std::function<bool(std::string_view)>& sink);
 
-// Its volume, mm3.
-double StlVolume(const HeightField& field);
-
 }  // namespace rmlcell::simulation
