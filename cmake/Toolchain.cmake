@@ -1,7 +1,9 @@
 # Compiler, linker and warning settings that hold for every target.
 find_program(CCACHE ccache)
 if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+  # Tests are compiled alike for every preset: seen from their build folders their paths are the same,
+  # and so the sanitizer build takes them from the cache.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} ${CCACHE})
 endif()
 find_program(LLD ld.lld)
 if(LLD)

@@ -380,7 +380,7 @@ function reportRows(report) {
   };
   if (total) {
     const times = total.times ?? {};
-    add("Cycle time", duration(times.cycleS ?? 0) + (report.timing === "exact" ? "" : ` (${report.timing})`));
+    add("Cycle time", duration(times.cycleS ?? 0));
     add("Path", `${fixed(total.pathLengthMm, 1)} mm, cut ${fixed(total.cutLengthMm, 1)}, travel ${fixed(total.travelLengthMm, 1)}`);
     if (total.beamOnS) add("Beam", `on ${fixed(total.beamOnS, 1)} s, ${total.pierces ?? 0} pierces, ${fixed(total.energyJ, 0)} J`);
     if (total.energyJPerMm) add("", `${fixed(total.energyJPerMm, 2)} J/mm, of a step at most ${fixed(total.energyJPerMmMax, 2)}`);

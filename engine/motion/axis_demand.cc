@@ -96,10 +96,11 @@ double SpeedWithinAxes(const AxisDerivatives& q, const AxisLimits& axes) {
 
 AxisDerivatives DerivativesAt(const PathPiece& path, const Head& head, double s) {
   const PathDerivatives first = path.First(s);
-  if (path.kind() == PathPiece::Kind::kJoint) {
-    return {.first = {first.tip.x, first.tip.y, first.tip.z, first.a, first.b}, .second = {}};
-  }
   const PathDerivatives second = path.Second(s);
+  if (path.in_axes()) {
+    return {.first = {first.tip.x, first.tip.y, first.tip.z, first.a, first.b},
+            .second = {second.tip.x, second.tip.y, second.tip.z, second.a, second.b}};
+  }
   if (first.a == 0.0 && first.b == 0.0 && second.a == 0.0 && second.b == 0.0) {
     return {.first = {first.tip.x, first.tip.y, first.tip.z, 0.0, 0.0},
             .second = {second.tip.x, second.tip.y, second.tip.z, 0.0, 0.0}};
@@ -109,9 +110,8 @@ AxisDerivatives DerivativesAt(const PathPiece& path, const Head& head, double s)
 
 AxisDerivatives ThroughHead(const Head& head, const TipPose& pose, const PathDerivatives& first,
                             const PathDerivatives& second) {
-  const BothAxisRates rates =
-      head.RatesOfBoth(pose.a_rad, pose.b_rad, {first.tip, first.a, first.b},
-                       {second.tip, second.a, second.b});
+  const BothAxisRates rates = head.RatesOfBoth(
+      pose.a_rad, pose.b_rad, {first.tip, first.a, first.b}, {second.tip, second.a, second.b});
   return {.first = rates.first, .second = rates.second};
 }
 

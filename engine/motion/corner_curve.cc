@@ -51,8 +51,19 @@ double CornerCurve::Scale(const Vec3& tangent_in, const Vec3& tangent_out, doubl
   return 2.0 * std::sqrt(half_cosine) * cut_mm;
 }
 
-CornerCurve::CornerCurve(const CurveEnd& from, const CurveEnd& to, double cut_mm) : turns_(true) {
-  const double scale = Scale(from.tangent, to.tangent, cut_mm);
+CornerCurve::CornerCurve(const CurveEnd& from, const CurveEnd& to, double cut_mm) {
+  FitEnds(from, to, Scale(from.tangent, to.tangent, cut_mm));
+}
+
+CornerCurve CornerCurve::InAxes(const CurveEnd& from, const CurveEnd& to, double cut_s) {
+  CornerCurve curve;
+  curve.way_s_ = 2.0 * cut_s;
+  curve.FitEnds(from, to, curve.way_s_);
+  return curve;
+}
+
+void CornerCurve::FitEnds(const CurveEnd& from, const CurveEnd& to, double scale) {
+  turns_ = true;
   const double square = scale * scale;
   Fit(tip_, from.pose.tip, to.pose.tip - from.pose.tip, from.tangent * scale, to.tangent * scale,
       from.curvature * square, to.curvature * square);
@@ -84,13 +95,17 @@ PathDerivatives CornerCurve::Derivative(double u, int order) const {
 
 PathDerivatives CornerCurve::FirstByLength(double u) const {
   const PathDerivatives d = Derivative(u, 1);
-  const double per_mm = 1.0 / Norm(d.tip);
+  const double per_mm = 1.0 / (in_axes() ? way_s_ : Norm(d.tip));
   return {d.tip * per_mm, d.a * per_mm, d.b * per_mm};
 }
 
 PathDerivatives CornerCurve::SecondByLength(double u) const {
   const PathDerivatives d = Derivative(u, 1);
   const PathDerivatives e = Derivative(u, 2);
+  if (in_axes()) {
+    const double square = 1.0 / (way_s_ * way_s_);
+    return {e.tip * square, e.a * square, e.b * square};
+  }
   const double square = 1.0 / Dot(d.tip, d.tip);
   const double along = Dot(d.tip, e.tip) * square;  // d(|p'|)/du over |p'|
   return {(e.tip - d.tip * along) * square, (e.a - d.a * along) * square,
@@ -216,6 +231,11 @@ void CornerLength::ChoosePanels(const CornerCurve& curve) {
 }
 
 CornerLength::CornerLength(const CornerCurve& curve) {
+  if (curve.in_axes()) {
+    panels_ = 1;
+    reached_[1] = curve.way_s();
+    return;
+  }
   ChoosePanels(curve);
   for (std::size_t k = 0; k < panels_; ++k) {
     const bool wide = edge_[k + 1] > edge_[k];
@@ -226,6 +246,7 @@ CornerLength::CornerLength(const CornerCurve& curve) {
 double CornerLength::ParameterAt(const CornerCurve& curve, double s) const {
   if (!(s > 0.0)) return 0.0;
   if (s >= reached_[panels_]) return 1.0;
+  if (curve.in_axes()) return s / reached_[1];
   std::size_t panel = 0;
   while (s > reached_[panel + 1]) ++panel;
   const double from = edge_[panel];

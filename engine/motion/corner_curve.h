@@ -37,7 +37,9 @@ struct PlainCorner {
 };
 
 // The curve of a /FLY passage: a quintic in X Y Z A B whose position, tangent, curvature and head
-// rates meet those of both pieces. motion.md 4.2. A value of fixed size.
+// rates meet those of both pieces. motion.md 4.2. A value of fixed size. Between two moves in COORD
+// ROBOT it is a curve of the axes by time instead (4.5): the same quintic with rho = 2, whose u
+// grows evenly.
 class CornerCurve {
  public:
   CornerCurve() = default;
@@ -48,11 +50,19 @@ class CornerCurve {
   // From the corner itself, so that a curve of 1e-3 mm far from the origin keeps its digits.
   explicit CornerCurve(const PlainCorner& corner);
 
+  // Between two kJoint pieces, measured by the time that they take at full speed; `cut_s` of it is
+  // cut off both.
+  static CornerCurve InAxes(const CurveEnd& from, const CurveEnd& to, double cut_s);
+  bool in_axes() const { return way_s_ > 0.0; }
+  void MeasureBy(double factor) { way_s_ *= factor; }
+  double way_s() const { return way_s_; }  // in_axes: the length of the curve in that measure
+
   // u runs from 0 to 1.
   TipPose At(double u) const;
   PathDerivatives Derivative(double u, int order) const;  // by u; order 1 to 3
 
-  // Derivatives by arc length: first (the tangent), second (the curvature vector).
+  // Derivatives by s, which is arc length but in_axes: first (the tangent), second (the curvature
+  // vector).
   PathDerivatives FirstByLength(double u) const;
   PathDerivatives SecondByLength(double u) const;
 
@@ -84,7 +94,9 @@ class CornerCurve {
 
  private:
   static double Scale(const Vec3& tangent_in, const Vec3& tangent_out, double cut_mm);
+  void FitEnds(const CurveEnd& from, const CurveEnd& to, double scale);
   bool turns_ = false;  // the head; else only the first of a_ and b_ counts
+  double way_s_ = 0.0;
   // Coefficients of u^0 .. u^5.
   std::array<Vec3, 6> tip_{};
   std::array<double, 6> a_{};
@@ -92,7 +104,8 @@ class CornerCurve {
 };
 
 // Arc length along a corner curve by Gauss-Legendre on eight panels; on sixteen, narrower towards
-// the place where the curve is sharpest, when it nearly has a cusp.
+// the place where the curve is sharpest, when it nearly has a cusp. Of a curve in_axes its own even
+// measure.
 class CornerLength {
  public:
   explicit CornerLength(const CornerCurve& curve);

@@ -140,7 +140,7 @@ Restart RestartWith(std::span<const PlannedMotion> ahead, double s, double ease)
         if (next == 0) motion.path = PartOf(ahead[0].path, s, motion.path.length());
         motion.speed = SpeedProfile::Span(left, speed, end, limits);
       } else {
-        motion.path = PathPiece::Line(ahead[next].path.to(), ahead[next].path.to());
+        motion.path = ahead[next].path.Standing(ahead[next].path.length());
         motion.speed = SpeedProfile();  // it stood at the end: only its settling is left
         end = 0.0;
       }

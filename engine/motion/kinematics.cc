@@ -57,8 +57,7 @@ double ExcessOf(std::size_t axis, double value, const AxisLimits& limits) {
 
 AxisPose AxesAt(const PathPiece& path, const Head& head, double s) {
   const TipPose pose = path.At(s);
-  return path.kind() == PathPiece::Kind::kJoint ? AxisPose{pose.tip, pose.a_rad, pose.b_rad}
-                                                : head.ColumnOf(pose);
+  return path.in_axes() ? AxisPose{pose.tip, pose.a_rad, pose.b_rad} : head.ColumnOf(pose);
 }
 
 // The places of a path at which its range is looked at: motion.md 2.6.

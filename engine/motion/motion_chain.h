@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/motion/axes_corner.h"
 #include "engine/motion/planner.h"
 #include "engine/motion/ramp_plan.h"
 #include "engine/motion/ring.h"
@@ -38,12 +39,13 @@ class MotionChain {
     return simple ? TipLimits(move, machine_) : LimitsOf(move, machine_);
   }
 
-  // The move has passed all checks and has a length above zero.
-  void Append(const MoveCommand& move, const PathLimits& limits);
+  // The move has passed all checks and has a length above zero. `goes_on`: it begins exactly at
+  // end().
+  void Append(const MoveCommand& move, const PathLimits& limits, bool goes_on);
 
   // A move that goes nowhere stood here: the passage before it is a stop unless it had /FLY itself.
   void Nothing(const TipPose& here, bool fly);
-  void BeginMoving(double speed);
+  void BeginMoving(double speed) { entry_speed_ = speed; }
   bool starts_too_fast() const { return starts_too_fast_; }
   void Mark(std::uint64_t tag);
   void Stop();
@@ -58,22 +60,26 @@ class MotionChain {
  private:
   using Number = std::uint64_t;
 
+  static constexpr std::size_t kBatchMin = 32;  // knots before a backward pass is worth its while
+
   struct Move {
     PathPiece path;
     Head head;
     PathLimits limits;
     double overshoot = 0.0;
-    double passage_speed = 0.0;  // mills
+    double acceleration_share = 1.0;  // ACCEL
+    double passage_speed = 0.0;       // mills
     double settling_s = 0.0;
     std::uint64_t tag = 0;
     bool fly = false;
-    bool would_blend = false;  // the passage behind it is a stop of the plan, not of the machine
   };
   struct Leg {
     Number first_move = 0;
     Number last_move = 0;
     double length = 0.0;
-    Corner corner{};  // at its end, when that may be a curve
+    Corner corner{};         // at its end, when that may be a curve
+    AxesCorner axes_corner;  // instead, when in_axes
+    bool in_axes = false;    // both sides of its end are in COORD ROBOT
     Passage passage = Passage::kStop;
     bool ends_run = true;
     double cap = 0.0;    // OVERSH x the lower limit of both sides, lowered to what level 1 reaches
@@ -115,7 +121,8 @@ class MotionChain {
     Number after_move = 0;
   };
 
-  bool Join(const MoveCommand& move, const PathLimits& limits);
+  static double MeasureByTime(Move& move);
+  bool Join(bool goes_on);
   void CloseLeg(Passage passage, bool ends_run, double cap);
   void Work();
   void Starve();
@@ -123,6 +130,8 @@ class MotionChain {
   std::optional<double> LengthAfter(Number leg, double enough, bool accept_what_is_there);
   std::optional<double> SpeedWithin(Number leg, double cut, bool accept_what_is_there);
   void MakeCurve(Span& span, const Leg& leg, double cut);
+  CornerCurve CurveAround(const Leg& leg, double cut, bool& head_steady);
+  double SpeedOn(const Span& span, const Leg& leg, double cut, double most, bool capped);
   PlainCorner PlainCornerAt(Number corner_move, double cut);
   void ChooseStretches(Span& span, const Leg& leg, double cut, double most);
   void CloseRun(Number last_leg, double total, const Span& closing, double speed_cap);
@@ -194,7 +203,8 @@ class MotionChain {
   Ring<CornerCurve> curves_;  // of those spans whose curve is not plain
   SpeedPasses speeds_;        // over spans
   std::size_t speeds_next_ = 0;
-  double last_speed_ = 0.0;  // at the end of the last emitted span
+  double last_speed_ = 0.0;   // at the end of the last emitted span
+  double entry_speed_ = 0.0;  // of the first move, by its own s
   bool starts_too_fast_ = false;
   std::size_t section_seen_ = 0;   // spans known not to end the next section
   std::size_t section_knots_ = 0;  // theirs

@@ -191,7 +191,6 @@ void MotionChain::TakeStretches(SpeedProfile& speed, CurveCells& cells, double f
   motion->head = source.head;
   motion->limits = span.limits;
   motion->settling_s = 0.0;
-  motion->upper_bound = false;
   motion->restart_speed = kLargest;
   return *motion;
 }
@@ -353,7 +352,6 @@ void MotionChain::EndMove(const Span& span, Number move, PlannedMotion& motion) 
     motion.corner = span.report;
     if (!IsBlend(span.report.passage)) motion.corner.speed = motion.speed.end().speed;
     motion.settling_s = span.settling_s;
-    motion.upper_bound = moves_[move].would_blend;
   } else {
     motion.corner = {.passage = Passage::kThrough, .speed = motion.speed.end().speed};
   }

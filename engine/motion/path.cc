@@ -174,7 +174,7 @@ PathDerivatives PathPiece::FirstOffLine(double s) const {
     const BlendCurve blend(*this);
     return blend.curve().FirstByLength(blend.ParameterAt(s));
   }
-  Vec3 tip = to_.tip - from_.tip;
+  Vec3 tip = length_ > 0.0 ? (to_.tip - from_.tip) * (1.0 / length_) : Vec3{};
   if (kind_ == Kind::kArc) {
     const double angle = s / radius_mm();
     tip = tangent_ * std::cos(angle) + arc().inward * std::sin(angle);

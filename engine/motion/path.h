@@ -13,9 +13,9 @@ inline constexpr double kTipLengthZero_mm = 1e-6;
 inline constexpr double kArcPointTolerance_mm = 1e-4;
 
 // One piece of path. A value: copy it freely, it owns nothing; a line, the most frequent kind,
-// copies a third of what a blend does. motion.md section 3. s runs from 0 to length(); for kRotary
-// and kJoint it is the path variable sigma from 0 to 1. Rotary axes are linear in s and never
-// reduced by a turn.
+// copies a third of what a blend does. motion.md section 3. s runs from 0 to length(): mm of the
+// tip's way, but for kRotary the path variable sigma from 0 to 1, and for kJoint sigma until
+// MeasureBy makes it another even measure. Rotary axes are linear in s and never reduced by a turn.
 class PathPiece {
  public:
   enum class Kind {
@@ -23,7 +23,7 @@ class PathPiece {
     kArc,     // circle through space
     kRotary,  // the tip stands, A or B turn; s is sigma
     kJoint,   // straight in the five axes of COORD ROBOT; s is sigma, poses hold the column
-    kBlend,   // quintic corner of a /FLY passage
+    kBlend,   // quintic corner of a /FLY passage, of the tip or in_axes()
   };
 
   PathPiece() = default;
@@ -36,6 +36,15 @@ class PathPiece {
   // Straight in the five axes; `from` and `to` hold column positions, not tips.
   static PathPiece Joint(const TipPose& from, const TipPose& to);
 
+  // Pieces in_axes(): s shall run from 0 to this.
+  void MeasureBy(double length) {
+    if (auto* part = kind_ == Kind::kBlend ? std::get_if<CurvePart>(&shape_) : nullptr) {
+      part->start *= length / length_;
+      part->curve.MeasureBy(length / length_);
+    }
+    length_ = length;
+  }
+
   // How three points make a path; motion.md 3.2.
   enum class ArcCase { kArc, kLine, kLineWarned, kNoTipMotion };
   struct Arc3;
@@ -46,6 +55,12 @@ class PathPiece {
   // `centre` is the foot of `from` on the axis; a sweep of one turn ends exactly where it began.
   static PathPiece Circle(const TipPose& from, const Vec3& centre, const Vec3& normal,
                           double sweep_rad, double a_to_rad, double b_to_rad);
+
+  // To stand at the place `s`: length 0.
+  PathPiece Standing(double s) const {
+    const TipPose pose = At(s);
+    return in_axes() ? Joint(pose, pose) : Line(pose, pose);
+  }
 
   // The piece between two values of s, 0 <= s_from < s_to <= length(). Not for sigma pieces.
   PathPiece Part(double s_from, double s_to) const;
@@ -61,9 +76,15 @@ class PathPiece {
   }
 
   Kind kind() const { return kind_; }
-  double length() const { return length_; }  // mm, or 1 for sigma pieces; 0: nothing to do
-  double tip_length_mm() const;              // 0 for kRotary; for kJoint not known here, 0
-  bool by_sigma() const { return kind_ == Kind::kRotary || kind_ == Kind::kJoint; }
+  double length() const { return length_; }  // of s; 0: nothing to do
+  double tip_length_mm() const;              // 0 for kRotary; in_axes() not known here, 0
+  // Poses hold the column, and s says nothing of the tip's way: COORD ROBOT.
+  bool in_axes() const {
+    if (kind_ == Kind::kJoint) return true;
+    const auto* part = kind_ == Kind::kBlend ? std::get_if<CurvePart>(&shape_) : nullptr;
+    return part != nullptr && part->curve.in_axes();
+  }
+  bool by_sigma() const { return kind_ == Kind::kRotary || in_axes(); }  // s is no way of the tip
   double a_rate() const {  // rad per unit of s; kBlend: mean
     return RateOf(from_.a_rad, to_.a_rad);
   }
@@ -106,11 +127,11 @@ class PathPiece {
   TipPose At(double s) const { return kind_ == Kind::kLine ? OnLine(s) : OffLine(s); }
 
   // Derivatives of the pose by s: the unit tangent and the curvature vector (1/mm), or by sigma.
-  PathDerivatives First(double s) const {
+  [[gnu::always_inline]] PathDerivatives First(double s) const {
     return kind_ == Kind::kLine ? PathDerivatives{tangent_, a_rate(), b_rate()} : FirstOffLine(s);
   }
   PathDerivatives Second(double s) const;
-  Vec3 Tangent(double s) const { return First(s).tip; }
+  Vec3 Tangent(double s) const { return kind_ == Kind::kLine ? tangent_ : FirstOffLine(s).tip; }
   Vec3 Curvature(double s) const { return Second(s).tip; }
 
   // The same places by u for kBlend pieces, whose s must be turned into u first: see CornerLength.

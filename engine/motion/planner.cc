@@ -15,8 +15,9 @@ constexpr double kAccelerationFractionMin = 0.001;
 // Lengths in mm or angles in rad that no machine can have would only overflow later.
 bool IsUsable(double value) { return std::abs(value) <= kLargest; }
 bool IsUsable(const TipPose& pose) {
-  return IsUsable(pose.tip.x) && IsUsable(pose.tip.y) && IsUsable(pose.tip.z) &&
-         IsUsable(pose.a_rad) && IsUsable(pose.b_rad);
+  return std::abs(pose.tip.x) + std::abs(pose.tip.y) + std::abs(pose.tip.z) + std::abs(pose.a_rad) +
+             std::abs(pose.b_rad) <=
+         kLargest;
 }
 
 // A motion of more than 30 years is one that never arrives.
@@ -37,7 +38,26 @@ bool NeedsAnchor(const PathPiece& path, const TipPose* end) {
          end->a_rad == path.from().a_rad && end->b_rad == path.from().b_rad;
 }
 
+// Errors are made elsewhere, so that the moves without one pay nothing for them.
+[[gnu::cold, gnu::noinline]] Status NotUsable() {
+  return Error{ErrorCode::kTargetOutOfTravel, "a coordinate is not a usable number", {}};
+}
+[[gnu::cold, gnu::noinline]] Status NoMotion(const char* why) {
+  return Error{ErrorCode::kNoMotion, why, {}};
+}
+[[gnu::cold, gnu::noinline]] Status TooLittleAcceleration(double share) {
+  return Error{
+      ErrorCode::kNoMotion, "the acceleration is " + ShortestText(100.0 * share) + " %", {}};
+}
+
 }  // namespace
+
+void PlannedMotion::MeasureBy(double factor) {
+  path.MeasureBy(path.length() * factor);
+  speed = speed.Scaled(factor);
+  limits = {limits.speed * factor, limits.acceleration * factor, limits.jerk * factor};
+  if (restart_speed < kLargest) restart_speed *= factor;
+}
 
 Planner::Planner(const MachineLimits& limits, std::size_t window)
     : chain_(std::make_unique<MotionChain>(limits, window)) {}
@@ -53,43 +73,39 @@ Planner& Planner::operator=(Planner&&) noexcept = default;
 Status Planner::Append(const MoveCommand& move) {
   const TipPose* end = chain_->end();
   const bool goes_on = end != nullptr && move.path.from() == *end;  // from where all is well
-  if ((!goes_on && !IsUsable(move.path.from())) || !IsUsable(move.path.to()) ||
-      !IsUsable(move.path.length())) {
-    return Error{ErrorCode::kTargetOutOfTravel, "a coordinate is not a usable number", {}};
+  if (!goes_on) {
+    if (!IsUsable(move.path.from())) return NotUsable();
+    if (NeedsAnchor(move.path, end)) {
+      MoveCommand anchored = move;
+      anchored.path = PathPiece::Line(*end, move.path.to());
+      return Append(anchored);
+    }
   }
-  if (!goes_on && NeedsAnchor(move.path, end)) {
-    MoveCommand anchored = move;
-    anchored.path = PathPiece::Line(*chain_->end(), move.path.to());
-    return AppendChecked(anchored);
-  }
-  return AppendChecked(move);
-}
-
-Status Planner::AppendChecked(const MoveCommand& move) {
+  const bool line = move.path.kind() == PathPiece::Kind::kLine;  // as long as its ends say
+  if (!IsUsable(move.path.to()) || (!line && !IsUsable(move.path.length()))) return NotUsable();
   if (!(move.path.length() > 0.0)) {
+    if (!IsUsable(move.path.length())) return NotUsable();
     chain_->Nothing(move.path.from(), move.fly);
     return {};
   }
   if (move.limits) {
     RMLCELL_CHECK(IsAboveZero(*move.limits));
-    chain_->Append(move, *move.limits);
+    chain_->Append(move, *move.limits, goes_on);
     return {};
   }
-  if (!(move.speed_fraction > 0.0)) return Error{ErrorCode::kNoMotion, "the speed is 0", {}};
+  if (!(move.speed_fraction > 0.0)) return NoMotion("the speed is 0");
   if (!(move.acceleration_fraction >= kAccelerationFractionMin)) {
-    return Error{ErrorCode::kNoMotion,
-                 "the acceleration is " + ShortestText(100.0 * move.acceleration_fraction) + " %",
-                 {}};
+    return TooLittleAcceleration(move.acceleration_fraction);
   }
   const PathLimits limits = chain_->LimitsFor(move);
   if (!(move.path.length() <= limits.speed * kDurationMax_s) || !IsAboveZero(limits)) {
-    return Error{ErrorCode::kNoMotion, "the speed is too low to ever arrive", {}};
+    return NoMotion("the speed is too low to ever arrive");
   }
-  chain_->Append(move, limits);
+  chain_->Append(move, limits, goes_on);
   return {};
 }
 
-void Planner::BeginMoving(double speed_mm_s) { chain_->BeginMoving(speed_mm_s); }
+void Planner::BeginMoving(double speed) { chain_->BeginMoving(speed); }
 bool Planner::starts_too_fast() const { return chain_->starts_too_fast(); }
 void Planner::Mark(std::uint64_t tag) { chain_->Mark(tag); }
 void Planner::Stop() { chain_->Stop(); }

@@ -19,8 +19,8 @@ namespace rmlcell::motion {
 struct MoveCommand {
   enum class Kind { kContour, kPointToPointTip, kPointToPointAxes };
   Kind kind = Kind::kContour;
-  PathPiece path{};             // kPointToPointAxes: a kJoint piece
-  Head head{};                  // tool in force, for the axis limits
+  PathPiece path{};  // kPointToPointAxes: a kJoint piece, which comes out measured by time
+  Head head{};       // tool in force, for the axis limits
   double speed_fraction = 1.0;  // SPEED x override, at most 1
   double acceleration_fraction = 1.0;
   double overshoot_fraction = 1.0;  // OVERSH
@@ -34,7 +34,8 @@ struct MoveCommand {
   std::uint64_t tag = 0;  // given back with the result
 };
 
-// How a move ended, for reports and warnings.
+// How a move ended, for reports and warnings. Between moves in COORD ROBOT speeds are shares of the
+// full one, and the cut is in seconds at full speed (motion.md 4.5).
 struct CornerReport {
   Passage passage = Passage::kStop;
   double cut_mm = 0.0;        // a blend begins this far before the corner
@@ -56,10 +57,12 @@ struct PlannedMotion {
   // In a bend that is fast at some places and slow at others: the highest speed that is allowed at
   // all of them, for a START on the way. Else no limit besides limits.speed.
   double restart_speed = kLargest;
-  bool ends_move = true;     // the last motion of its move
-  bool upper_bound = false;  // a /FLY passage was planned as a stop: time is an upper bound
-  CornerReport corner;       // when ends_move
+  bool ends_move = true;  // the last motion of its move
+  CornerReport corner;    // when ends_move
   double duration_s() const { return speed.duration_s() + settling_s; }
+
+  // The same motion of the axes (COORD ROBOT), with `factor` of s for each s.
+  void MeasureBy(double factor);
 };
 
 // Something that takes effect between two motions: outputs, beam. With a blended corner it takes
@@ -74,12 +77,11 @@ using PlannedItem = std::variant<PlannedMotion, PlannedMark>;
 class MotionChain;
 
 // Turns commanded motions into timed ones with look-ahead over /FLY passages: motion.md sections 4
-// and 5, level 2, or level 1 where MachineLimits::ramps_across_passages is off; moves in COORD
-// ROBOT stop at every target (4.5 is not planned). Memory is bounded whatever the length of the
-// program, and the result depends neither on when Next is called nor on the inner batches, as long
-// as look-ahead needs no more than kWindow knots. Items are held back until no later motion can
-// change them: call Stop() wherever the machine stands before the next motion (a dwell, a wait, the
-// end), and what was appended comes out.
+// and 5, level 2, or level 1 where MachineLimits::ramps_across_passages is off. Memory is bounded
+// whatever the length of the program, and the result depends neither on when Next is called nor on
+// the inner batches, as long as look-ahead needs no more than kWindow knots. Items are held back
+// until no later motion can change them: call Stop() wherever the machine stands before the next
+// motion (a dwell, a wait, the end), and what was appended comes out.
 class Planner {
  public:
   // Knots that may wait for a decision: 75 mm of braking distance in steps of 1 um (motion.md 5.5).
@@ -99,11 +101,12 @@ class Planner {
   // it a stop.
   Status Append(const MoveCommand& move);
 
-  // The machine passes the start of the first move at this speed (mm/s), with acceleration zero,
-  // instead of standing there: a chain that is planned anew on the way (motion.md section 6).
+  // The machine passes the start of the first move at this speed, with acceleration zero, instead
+  // of standing there: a chain that is planned anew on the way (motion.md section 6). By the s of
+  // that move: mm/s, or what its sigma does in COORD ROBOT.
   // Before the first Append. When what follows cannot be met from that speed, starts_too_fast()
   // says so once the first items are taken, and they are of no use.
-  void BeginMoving(double speed_mm_s);
+  void BeginMoving(double speed);
   bool starts_too_fast() const;
 
   // Something that takes effect after the motions appended so far, see PlannedMark.
@@ -126,8 +129,6 @@ class Planner {
   std::uint64_t lookahead_starved() const;
 
  private:
-  Status AppendChecked(const MoveCommand& move);
-
   std::unique_ptr<MotionChain> chain_;
 };
 

@@ -22,7 +22,7 @@ class Ring {
   std::size_t size() const { return static_cast<std::size_t>(end_ - first_); }
   bool empty() const { return first_ == end_; }
 
-  T& operator[](Number number) {
+  [[gnu::always_inline]] T& operator[](Number number) {
     RMLCELL_CHECK(number >= first_ && number < end_);
     return slots_[Slot(number)];
   }
@@ -30,7 +30,7 @@ class Ring {
   T& back() { return (*this)[end_ - 1]; }
 
   // A slot for a new element, holding what some older one left there.
-  T& PushSlot() {
+  [[gnu::always_inline]] T& PushSlot() {
     if (size() == room_) Grow();
     const std::size_t slot = Slot(end_++);
     if (slot == slots_.size()) slots_.emplace_back();
@@ -57,7 +57,7 @@ class Ring {
     return static_cast<std::size_t>(number - base_) & (room_ - 1);
   }
   // Only the elements there are move; the slots behind them are made when they are first used.
-  void Grow() {
+  [[gnu::noinline]] void Grow() {
     std::vector<T> larger;
     const std::size_t room = room_ == 0 ? 16 : 4 * room_;
     larger.reserve(room);

@@ -310,6 +310,21 @@ double SpeedProfile::TimeAt(double s) const {
   return TimeOf(place);
 }
 
+SpeedProfile SpeedProfile::Scaled(double factor) const {
+  const auto scale = [&](PathState& state) {
+    state = {state.s * factor, state.speed * factor, state.acceleration * factor};
+  };
+  SpeedProfile scaled = *this;
+  for (int k = 0; k < count_; ++k) {
+    Phase& phase = scaled.phases_[static_cast<std::size_t>(k)];
+    phase.jerk *= factor;
+    scale(phase.start);
+  }
+  scale(scaled.end_);
+  scaled.peak_speed_ *= factor;
+  return scaled;
+}
+
 SpeedProfile SpeedProfile::Part(double s_from, double s_to) const {
   Place place;
   Advance(place, s_from);

@@ -88,6 +88,9 @@ class SpeedProfile {
     }
   }
 
+  // The same in time, where each s becomes `factor` of them.
+  SpeedProfile Scaled(double factor) const;
+
   double duration_s() const { return duration_s_; }
   const PathState& end() const { return end_; }  // s of the end, and the speed there
   double peak_speed() const { return peak_speed_; }

@@ -40,8 +40,8 @@ void Halve(const CornerCurve& curve, double u0, double u1, const Vec3& p0, const
 }  // namespace
 
 TrajectoryPoint PointAt(const PathPiece& path, const Head& head, const PathState& state) {
-  return PointAt({path.kind(), path.At(state.s), path.First(state.s), path.Second(state.s)}, head,
-                 state);
+  return PointAt({path.in_axes(), path.At(state.s), path.First(state.s), path.Second(state.s)},
+                 head, state);
 }
 
 TrajectoryPoint PointAt(const PathPlace& place, const Head& head, const PathState& state) {
@@ -54,13 +54,12 @@ TrajectoryPoint PointAt(const PathPlace& place, const Head& head, const PathStat
   const TipRates turning{{}, velocity.a, velocity.b};
   const TipRates turning_more{{}, acceleration.a, acceleration.b};
   // What the head's turning adds to the column over the tip.
-  const BothAxisRates by_turning =
-      head.RatesOfBoth(pose.a_rad, pose.b_rad, turning, turning_more);
+  const BothAxisRates by_turning = head.RatesOfBoth(pose.a_rad, pose.b_rad, turning, turning_more);
   const Vec3 swing = ColumnPart(by_turning.first);
   const Vec3 whirl = ColumnPart(by_turning.second);
 
   TrajectoryPoint point;
-  if (place.kind == PathPiece::Kind::kJoint) {  // the piece holds the column
+  if (place.in_axes) {
     const AxisPose axes{pose.tip, pose.a_rad, pose.b_rad};
     point.tip = head.TipOf(axes);
     point.tip_velocity = velocity.tip - swing;
@@ -86,15 +85,14 @@ TrajectoryPoint MotionView::At(double t_s) const {
   if (!blend_) return PointAt(path, motion_.head, state);
   const CornerCurve& curve = blend_->curve();
   const double u = blend_->ParameterAt(state.s);
-  return PointAt({path.kind(), curve.At(u), curve.FirstByLength(u), curve.SecondByLength(u)},
+  return PointAt({curve.in_axes(), curve.At(u), curve.FirstByLength(u), curve.SecondByLength(u)},
                  motion_.head, state);
 }
 
 TipPose MotionView::PoseAt(double t_s) const {
   const double s = motion_.speed.PlaceAt(t_s);
-  if (blend_) return blend_->curve().At(blend_->ParameterAt(s));
-  const TipPose pose = motion_.path.At(s);
-  if (motion_.path.kind() != PathPiece::Kind::kJoint) return pose;
+  const TipPose pose = blend_ ? blend_->curve().At(blend_->ParameterAt(s)) : motion_.path.At(s);
+  if (!motion_.path.in_axes()) return pose;
   return motion_.head.TipOf({pose.tip, pose.a_rad, pose.b_rad});
 }
 

@@ -21,10 +21,10 @@ struct TrajectoryPoint {
   double tip_speed() const { return Norm(tip_velocity); }
 };
 
-// The state of a path with these derivatives by s, where it is passed as `state` says. For a kJoint
-// piece `pose` and the derivatives are those of the column. motion.md 2.4.
+// The state of a path with these derivatives by s, where it is passed as `state` says.
+// motion.md 2.4.
 struct PathPlace {
-  PathPiece::Kind kind = PathPiece::Kind::kLine;
+  bool in_axes = false;  // `pose` and the derivatives are those of the column
   TipPose pose;
   PathDerivatives first;
   PathDerivatives second;
@@ -96,7 +96,7 @@ class SampleTimes {
 };
 
 // Corner points of a polyline that stays within `tolerance_mm` of the tip path, both ends included;
-// the first is left out when `points` already ends there. For kJoint pieces the column is drawn.
+// the first is left out when `points` already ends there. Of pieces in_axes() the column is drawn.
 // motion.md section 9.
 void AppendPolyline(const PathPiece& path, double tolerance_mm, std::vector<Vec3>& points);
 

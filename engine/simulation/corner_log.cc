@@ -1,6 +1,7 @@
 #include "engine/simulation/corner_log.h"
 
 #include "engine/simulation/move_speeds.h"
+#include "engine/simulation/part_curve.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -36,7 +37,8 @@ void CornerLog::Add(const machine::MotionDone& done) {
   if (corner.deviation_mm <= corners_.deviation_mm_max) return;
   corners_.deviation_mm_max = corner.deviation_mm;
   corners_.deviation_place = done.place;
-  corners_.deviation_point = done.motion->path.to().tip;
+  const motion::PathPiece& path = done.motion->path;
+  corners_.deviation_point = TipAt(path, done.motion->head, path.length());
 }
 
 }  // namespace rmlcell::simulation

@@ -159,9 +159,6 @@ void Table::AddRun() {
       [](const RunReport& r) { return Count(r.steps_executed); });
   Add("halts", "", "times that the run waited for a person",
       [](const RunReport& r) { return Count(r.halts); });
-  Add("timing", "",
-      "`exact`; `exact stop, upper bound` when PTP moves in COORD ROBOT with /FLY were timed as stops",
-      [](const RunReport& r) { return std::string(TimingText(r.timing)); });
 }
 
 void Table::AddTimes() {
@@ -266,7 +263,9 @@ void Table::AddCorners() {
   Add("lookahead_starved", "", "knots that the planner decided before it could see enough",
       [](const RunReport& r) { return Count(r.lookahead_starved); });
   const auto of_material = [](auto figure) {
-    return [figure](const RunReport& r) { return r.milling ? figure(*r.milling) : std::string(kNone); };
+    return [figure](const RunReport& r) {
+      return r.milling ? figure(*r.milling) : std::string(kNone);
+    };
   };
   Add("removed_volume_mm3", "mm3", "what a mill took off the block that it was given",
       of_material([](const MillingFigures& m) { return Real(m.removed_mm3); }));

@@ -21,7 +21,7 @@ bool Turns(const PathPiece& path) {
 
 Vec3 TipAt(const PathPiece& path, const motion::Head& head, double s) {
   const motion::TipPose pose = path.At(s);
-  if (path.kind() != PathPiece::Kind::kJoint) return pose.tip;
+  if (!path.in_axes()) return pose.tip;
   return head.TipOf({pose.tip, pose.a_rad, pose.b_rad}).tip;
 }
 
@@ -54,25 +54,26 @@ motion::PathDerivatives PartCurve::Rate(double p) const {
 Vec3 PartCurve::Swing(double p) const {
   const motion::PathDerivatives rate = Rate(p);
   const motion::TipPose pose = Pose(p);
-  const motion::AxisValues swing =
-      part_.head.Rates(pose.a_rad, pose.b_rad, {{}, rate.a, rate.b});
+  const motion::AxisValues swing = part_.head.Rates(pose.a_rad, pose.b_rad, {{}, rate.a, rate.b});
   return {swing[0], swing[1], swing[2]};
 }
 
 Vec3 PartCurve::Tip(double p) const {
   const motion::TipPose pose = Pose(p);
-  return joint() ? part_.head.TipOf({pose.tip, pose.a_rad, pose.b_rad}).tip : pose.tip;
+  return part_.path.in_axes() ? part_.head.TipOf({pose.tip, pose.a_rad, pose.b_rad}).tip : pose.tip;
 }
 
 Vec3 PartCurve::Column(double p) const {
   const motion::TipPose pose = Pose(p);
-  return joint() ? pose.tip : part_.head.ColumnOf(pose).column;
+  return part_.path.in_axes() ? pose.tip : part_.head.ColumnOf(pose).column;
 }
 
-Vec3 PartCurve::TipRate(double p) const { return joint() ? Rate(p).tip - Swing(p) : Rate(p).tip; }
+Vec3 PartCurve::TipRate(double p) const {
+  return part_.path.in_axes() ? Rate(p).tip - Swing(p) : Rate(p).tip;
+}
 
 Vec3 PartCurve::ColumnRate(double p) const {
-  return joint() ? Rate(p).tip : Rate(p).tip + Swing(p);
+  return part_.path.in_axes() ? Rate(p).tip : Rate(p).tip + Swing(p);
 }
 
 }  // namespace rmlcell::simulation

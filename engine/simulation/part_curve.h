@@ -36,11 +36,10 @@ class PartCurve {
   motion::Vec3 Column(double p) const;
   motion::Vec3 TipRate(double p) const;     // by p
   motion::Vec3 ColumnRate(double p) const;  // by p
-  motion::TipPose Pose(double p) const;     // of a kJoint piece the column
+  motion::TipPose Pose(double p) const;     // the column where the path is in_axes()
   motion::PathDerivatives Rate(double p) const;
 
  private:
-  bool joint() const { return part_.path.kind() == motion::PathPiece::Kind::kJoint; }
   bool blend() const { return part_.path.kind() == motion::PathPiece::Kind::kBlend; }
   motion::Vec3 Swing(double p) const;
 

@@ -149,7 +149,7 @@ machine::Box BoxOf(const PointSweep& sweep) {
 PointSweep TipSweep(const PathPart& part) {
   const PathPiece::Kind kind = part.path.kind();
   if (kind == PathPiece::Kind::kArc) return ArcSweep(part);
-  const bool bows = kind == PathPiece::Kind::kJoint && Turns(part.path);
+  const bool bows = part.path.in_axes() && Turns(part.path);
   if (!bows && kind != PathPiece::Kind::kBlend) {
     return Straight(TipAt(part.path, part.head, part.from), TipAt(part.path, part.head, part.to));
   }
@@ -163,7 +163,7 @@ PointSweep ColumnSweep(const PathPart& part) {
   if (path.kind() == PathPiece::Kind::kJoint) {
     return Straight(path.At(part.from).tip, path.At(part.to).tip);
   }
-  if (!Turns(path)) {  // as the tip goes, somewhere above it
+  if (!Turns(path) && !path.in_axes()) {  // as the tip goes, somewhere above it
     const Vec3 arm = part.head.ColumnOf(path.from()).column - path.from().tip;
     PointSweep sweep = TipSweep(part);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -194,18 +194,20 @@ std::array<CoordinateSweep, 2> RotarySweep(const PathPart& part) {
 double TipLength(const PathPart& part) {
   const PathPiece& path = part.path;
   if (path.kind() == PathPiece::Kind::kRotary) return 0.0;
-  if (path.kind() != PathPiece::Kind::kJoint) return part.to - part.from;
-  if (!Turns(path)) return Norm(path.to().tip - path.from().tip) * (part.to - part.from);
+  if (!path.in_axes()) return part.to - part.from;
+  if (path.kind() == PathPiece::Kind::kJoint && !Turns(path)) {
+    return Norm(path.to().tip - path.from().tip) * (part.to - part.from) / path.length();
+  }
   // Gauss-Legendre with five nodes on panels of at most kSampleAngle_rad: error below 1e-12 of the
   // length, unless the tip all but stands somewhere.
   constexpr std::array kNodes = {0.0, 0.5384693101056831, 0.9061798459386640};
   constexpr std::array kWeights = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
   const PartCurve curve(part);
   const int panels = Intervals(curve);
-  const double half = 0.5 * (part.to - part.from) / panels;
+  const double half = 0.5 * (curve.end() - curve.begin()) / panels;
   double length = 0.0;
   for (int k = 0; k < panels; ++k) {
-    const double middle = part.from + half * (2.0 * k + 1.0);
+    const double middle = curve.begin() + half * (2.0 * k + 1.0);
     const auto speed = [&](double node) { return Norm(curve.TipRate(middle + half * node)); };
     length += half * kWeights[0] * speed(0.0);
     for (std::size_t i = 1; i < kNodes.size(); ++i) {

@@ -22,12 +22,13 @@ std::string Length(double mm) { return FixedText(mm, mm == 0.0 ? 0 : mm < 100.0 
 class PageWriter {
  public:
   PageWriter(const PathSketch& sketch, const machine::MachineShape& shape, const RunReport& report,
-       const PictureOptions& options)
+             const PictureOptions& options)
       : sketch_(sketch), shape_(shape), report_(report) {
     width_ = std::clamp(options.width_px, kPictureWidthMin, kPageWidthMax);
     const std::vector<ViewFrame> frames = FramesOf(options, shape);
     depth_ = DepthOf(frames);
-    const double panels_width = width_ - 2.0 * kPageMargin - kRulerLeft - kPictureColumn - kColumnGap;
+    const double panels_width =
+        width_ - 2.0 * kPageMargin - kRulerLeft - kPictureColumn - kColumnGap;
     layout_ = LayOut(frames, BoxToShow(sketch, shape.travel),
                      {kPageMargin + kRulerLeft, kPictureHeader + kPageMargin, panels_width, 0.0});
     column_x_ = width_ - kPageMargin - kPictureColumn;
@@ -77,14 +78,9 @@ class PageWriter {
 
   bool completed() const { return report_.outcome.kind == machine::OutcomeKind::kCompleted; }
 
-  std::string TimeText() const {
-    const bool bound = report_.timing == Timing::kExactStopUpperBound;
-    return std::string(bound ? "≤ " : "") + DurationText(report_.cycle_time);
-  }
-
   std::string Summary() const {
-    return "Cycle time " + TimeText() + ", timing: " + std::string(TimingText(report_.timing)) +
-           ", cut " + Length(report_.total.cut_mm) + ", travel " + Length(report_.total.travel_mm);
+    return "Cycle time " + DurationText(report_.cycle_time) + ", cut " +
+           Length(report_.total.cut_mm) + ", travel " + Length(report_.total.travel_mm);
   }
 
   std::string OutcomeLine() const {
@@ -102,17 +98,17 @@ class PageWriter {
     AppendRect(body_, {0, 0, static_cast<double>(width_), kPictureHeader}, "fill=\"#ffffff\"");
     AppendLine(body_, {0, kPictureHeader}, {static_cast<double>(width_), kPictureHeader},
                "stroke=\"#d3dae1\" stroke-width=\"1\"");
-    AppendText(body_, {kPageMargin, 44.0}, Shortened(TitleText(), kPictureTitleMax), {.size = 26.0, .bold = true});
+    AppendText(body_, {kPageMargin, 44.0}, Shortened(TitleText(), kPictureTitleMax),
+               {.size = 26.0, .bold = true});
     const machine::MachineFamily* family = FindFamily(report_.family);
     const std::string machine =
         family != nullptr ? std::string(family->info().title) : report_.family;
     AppendText(body_, {kPageMargin, 70.0}, machine, {.size = 14.0, .colour = kFaint});
     const double right = width_ - kPageMargin;
-    AppendText(body_, {right, 44.0}, TimeText(), {.size = 26.0, .anchor = "end", .bold = true});
-    const bool bound = report_.timing == Timing::kExactStopUpperBound;
-    AppendText(body_, {right, 70.0},
-               bound ? "timing: " + std::string(TimingText(report_.timing)) : "cycle time",
-               {.size = 14.0, .colour = bound ? "#b4540a" : kFaint, .anchor = "end"});
+    AppendText(body_, {right, 44.0}, DurationText(report_.cycle_time),
+               {.size = 26.0, .anchor = "end", .bold = true});
+    AppendText(body_, {right, 70.0}, "cycle time",
+               {.size = 14.0, .colour = kFaint, .anchor = "end"});
   }
 
   void DrawPanels() {

@@ -13,9 +13,9 @@ namespace rmlcell::simulation {
 namespace {
 
 constexpr double kPlotHeader = 84.0;
-constexpr double kPlotLeft = 92.0;     // titles and ticks of the panels
-constexpr double kMarkRow = 22.0;  // names of the marks
-constexpr double kPlotGap = 22.0;      // between panels
+constexpr double kPlotLeft = 92.0;  // titles and ticks of the panels
+constexpr double kMarkRow = 22.0;   // names of the marks
+constexpr double kPlotGap = 22.0;   // between panels
 constexpr double kTimeAxis = 46.0;
 constexpr double kPlotFooter = 22.0;
 constexpr int kPlotWidthMin = 640;
@@ -165,7 +165,8 @@ std::string PlotPage::Svg() {
 
 void PlotPage::DrawHeader() {
   AppendRect(body_, {0, 0, page_width_, kPlotHeader}, "fill=\"#ffffff\"");
-  AppendLine(body_, {0, kPlotHeader}, {page_width_, kPlotHeader}, "stroke=\"#d3dae1\" stroke-width=\"1\"");
+  AppendLine(body_, {0, kPlotHeader}, {page_width_, kPlotHeader},
+             "stroke=\"#d3dae1\" stroke-width=\"1\"");
   AppendText(body_, {kPageMargin, 40.0}, report_.title.empty() ? "Plot" : report_.title,
              {.size = 24.0, .bold = true});
   std::string outcome(OutcomeText(report_.outcome.kind));
@@ -175,8 +176,7 @@ void PlotPage::DrawHeader() {
   AppendText(body_, {kPageMargin, 64.0}, outcome,
              {.size = 14.0, .colour = completed ? kFaint : "#b42318"});
   const double right = page_width_ - kPageMargin;
-  const bool bound = report_.timing == Timing::kExactStopUpperBound;
-  AppendText(body_, {right, 40.0}, (bound ? "≤ " : "") + DurationText(report_.cycle_time),
+  AppendText(body_, {right, 40.0}, DurationText(report_.cycle_time),
              {.size = 24.0, .anchor = "end", .bold = true});
   AppendText(body_, {right, 64.0}, "cycle time", {.size = 14.0, .colour = kFaint, .anchor = "end"});
 }

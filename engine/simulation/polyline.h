@@ -32,7 +32,7 @@ template <class Take>
 void ForEachVertex(const PathPart& part, double tolerance_mm, Take take) {
   using Kind = motion::PathPiece::Kind;
   const motion::PathPiece& path = part.path;
-  const bool bows = path.kind() == Kind::kJoint && Turns(path);
+  const bool bows = path.in_axes() && Turns(path);
   if (path.kind() == Kind::kArc) {
     const double sweep = (part.to - part.from) / path.radius_mm();
     const int chords = ChordCount(path.radius_mm(), sweep, tolerance_mm);

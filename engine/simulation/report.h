@@ -209,9 +209,6 @@ struct ProductState {
   bool operator==(const ProductState&) const = default;
 };
 
-enum class Timing { kExact, kExactStopUpperBound };
-std::string_view TimingText(Timing timing);  // "exact"; "exact stop, upper bound"
-
 std::string_view OutcomeText(machine::OutcomeKind kind);  // "completed", "budget_exceeded" ...
 
 // Every figure that a job and each of its programs has. motion.md 8.2.
@@ -241,7 +238,6 @@ struct RunReport : ScopeFigures {
 
   bool finished = false;     // false: a report on the way
   machine::Outcome outcome;  // meaningless before
-  Timing timing = Timing::kExact;
   SimTime cycle_time{0};
   std::uint64_t steps_executed = 0;
   std::uint64_t halts = 0;

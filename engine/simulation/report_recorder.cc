@@ -35,10 +35,6 @@ SimTime& PartOf(TimeParts& parts, WaitKind kind) {
 
 }  // namespace
 
-std::string_view TimingText(Timing timing) {
-  return timing == Timing::kExact ? "exact" : "exact stop, upper bound";
-}
-
 std::string_view OutcomeText(machine::OutcomeKind kind) {
   switch (kind) {
     case machine::OutcomeKind::kCompleted:
@@ -119,7 +115,6 @@ void ReportRecorder::OnStep(SimTime at, const machine::Place& place,
 
 void ReportRecorder::OnMotion(const machine::MotionDone& done) {
   const motion::PlannedMotion& motion = *done.motion;
-  upper_bound_ = upper_bound_ || motion.upper_bound;
   const SimTime claimed = time_.Claim(done.start, done.end, Now());
 
   WorkFigures work;
@@ -265,7 +260,6 @@ RunReport ReportRecorder::Report(const machine::Run& run) const {
   RunReport report;
   report.finished = state.phase == machine::RunPhase::kFinished;
   if (report.finished) report.outcome = run.outcome();
-  report.timing = upper_bound_ ? Timing::kExactStopUpperBound : Timing::kExact;
   report.cycle_time = time_.reached();
   report.steps_executed = run.steps_executed();
   report.halts = halts_;

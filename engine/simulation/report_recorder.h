@@ -60,7 +60,6 @@ class ReportRecorder final : public machine::RunObserver {
   machine::Place place_;
   bool halted_ = false;
   std::uint64_t halts_ = 0;
-  bool upper_bound_ = false;
 
   bool beam_on_ = false;
   bool stands_since_beam_on_ = false;  // no motion yet: a dwell is a pierce

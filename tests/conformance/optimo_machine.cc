@@ -81,7 +81,7 @@ class Ran::Listener final : public machine::RunObserver {
     for (int n = 0; n <= kPosesOfMotion; ++n) {
       const double s = done.from + (done.travelled - done.from) * n / kPosesOfMotion;
       motion::TipPose pose = path.At(s);
-      if (path.kind() == motion::PathPiece::Kind::kJoint) {
+      if (path.in_axes()) {
         pose = done.motion->head.TipOf({pose.tip, pose.a_rad, pose.b_rad});
       }
       motion.poses.push_back(pose);

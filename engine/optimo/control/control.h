@@ -94,10 +94,12 @@ class Control : private VariableAccess {
   // Where a chain that is planned anew goes on: after the way that brings the acceleration to zero,
   // and the speed down where it must.
   struct Onward {
-    std::size_t own = 0;        // of s_.appended: the command of that place
-    double lead_length = 0.0;   // of that way, mm
-    double speed = 0.0;         // at its end, mm/s
-    motion::MoveCommand first;  // what is left of the command then
+    std::size_t own = 0;         // of s_.appended: the command of that place
+    double lead_length = 0.0;    // of that way, by the s of the motion
+    double speed = 0.0;          // at its end, by the same s
+    double speed_on_move = 0.0;  // by that of the command
+    double measure = 1.0;        // s of what is planned anew per s of the motion
+    motion::MoveCommand first;   // what is left of the command then
   };
   bool ReplanChain();
   std::optional<Onward> OnwardFrom(const ChainPlace& place, const motion::MoveCommand& command,

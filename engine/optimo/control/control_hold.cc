@@ -51,12 +51,11 @@ bool Control::EndAtATarget() {
     const bool last = s_.appended.empty() || s_.appended.back().tag <= exact.tag;
     const motion::MoveCommand* command = Appended(exact.tag);
     if (last || command == nullptr || exact.speed.end().speed <= 0.0) return false;
-    if (LineOrArc(exact.path) && LineOrArc(command->path)) {
-      const double begin = PlaceOn(command->path, exact.path.from().tip);
-      const double way = command->path.length() - begin - state.s;
+    if (const std::optional<PlaceOnMove> place = PlaceOf(exact.path, command->path)) {
+      const double way = (command->path.length() - place->begin) / place->scale - state.s;
       if (way > 0.0 && RoomToRest(state, exact.limits) <= way * kReaches &&
           motion::FromFits(state, state.s + way, 0.0, exact.limits)) {
-        exact.path = command->path.Part(begin + state.s, command->path.length());
+        exact.path = RestOfMove(command->path, *place, state.s);
         const double length = exact.path.length();
         exact.speed = motion::SpeedProfile::From(
             {.s = 0.0, .speed = state.speed, .acceleration = state.acceleration}, length, 0.0,

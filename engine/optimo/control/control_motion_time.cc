@@ -3,6 +3,7 @@
 #include <span>
 
 #include "engine/motion/interruption.h"
+#include "engine/motion/trajectory.h"
 #include "engine/optimo/control/control.h"
 
 // Motions as time passes: from the planner to the observer.
@@ -118,7 +119,7 @@ void Control::ArriveAtEnd() {
   if (!Busy()) s_.background = false;
   s_.pending.told = s_.now;  // a wait during a /NEXT motion is told from here on
   MarkTasks();
-  const bool joint = active.motion.path.kind() == motion::PathPiece::Kind::kJoint;
+  const bool joint = active.motion.path.in_axes();
   const motion::TipPose pose = PoseOn(active.motion, active.s_at(active.arrival));
   s_.machine.axes = joint ? motion::AxisPose{pose.tip, pose.a_rad, pose.b_rad}
                           : active.motion.head.ColumnOf(pose);
@@ -166,8 +167,7 @@ void Control::EndMotionHere() {
     active.motion.path = active.motion.path.Part(here, rest);
     active.motion.speed = ramp.Part(here, rest);
   } else {
-    active.motion.path =
-        motion::PathPiece::Line(active.motion.path.At(here), active.motion.path.At(here));
+    active.motion.path = active.motion.path.Standing(here);
     active.motion.speed = motion::SpeedProfile();
   }
   BeginProfile();
@@ -294,14 +294,14 @@ bool Control::Moving() const { return s_.active && s_.now < s_.active->arrival; 
 motion::TipPose Control::TipNow() const {
   if (!s_.active) return HeadNow().TipOf(s_.machine.axes);
   const motion::TipPose pose = PoseOn(s_.active->motion, s_.active->s_at(s_.now));
-  if (s_.active->motion.path.kind() != motion::PathPiece::Kind::kJoint) return pose;
+  if (!s_.active->motion.path.in_axes()) return pose;
   return s_.active->motion.head.TipOf({pose.tip, pose.a_rad, pose.b_rad});
 }
 
 motion::AxisPose Control::AxesNow() const {
   if (!s_.active) return s_.machine.axes;
   const motion::TipPose pose = PoseOn(s_.active->motion, s_.active->s_at(s_.now));
-  if (s_.active->motion.path.kind() == motion::PathPiece::Kind::kJoint) {
+  if (s_.active->motion.path.in_axes()) {
     return {pose.tip, pose.a_rad, pose.b_rad};
   }
   return s_.active->motion.head.ColumnOf(pose);
@@ -313,7 +313,7 @@ double Control::TipSpeedNow() const {
   const motion::PathPiece& path = s_.active->motion.path;
   if (!path.by_sigma()) return here.speed;
   if (path.kind() == motion::PathPiece::Kind::kRotary) return 0.0;
-  return here.speed * motion::Norm(path.Tangent(s_.active->s_at(s_.now)));
+  return motion::PointAt(path, s_.active->motion.head, here).tip_speed();
 }
 
 }  // namespace rmlcell::optimo

@@ -137,22 +137,25 @@ std::optional<Control::Onward> Control::OnwardFrom(const ChainPlace& place,
                                                    double speed) const {
   const motion::PlannedMotion& here = place.motion;
   const auto own = std::ranges::find(s_.appended, here.tag, &AppendedItem::tag);
-  if (own == s_.appended.end() || !LineOrArc(here.path) || !LineOrArc(command.path)) {
-    return std::nullopt;
-  }
-  const Lead lead = LeadFrom(place.state, here.limits, speed);
+  const std::optional<PlaceOnMove> on_move = PlaceOf(here.path, command.path);
+  if (own == s_.appended.end() || !on_move) return std::nullopt;
+  const Lead lead = LeadFrom(place.state, here.limits, speed / on_move->scale);
   motion::PathLimits limits = here.limits;
   limits.speed = std::max(limits.speed, lead.speed);
   const double end = place.state.s + lead.length;
   if (!motion::FromFits(place.state, end, lead.speed, limits)) return std::nullopt;
-  const double begin = PlaceOn(command.path, here.path.from().tip) + end;
-  constexpr double kLeft_mm = 1e-3;  // less of a move is not worth a plan
-  if (end > here.path.length() || begin > command.path.length() - kLeft_mm) return std::nullopt;
+  const double begin = on_move->begin + end * on_move->scale;
+  constexpr double kLeft = 1e-3;  // mm; of sigma: less of a move is not worth a plan
+  if (end > here.path.length() || begin > command.path.length() - kLeft) return std::nullopt;
   Onward onward{.own = static_cast<std::size_t>(own - s_.appended.begin()),
                 .lead_length = lead.length,
                 .speed = lead.speed,
+                .speed_on_move = lead.speed * on_move->scale,
                 .first = command};
   onward.first.path = command.path.Part(begin, command.path.length());
+  if (here.path.in_axes()) {  // the planner measures by the time at the new full speed
+    onward.measure = on_move->scale / motion::LimitsOf(onward.first, parameters_.limits).speed;
+  }
   return onward;
 }
 
@@ -160,7 +163,7 @@ std::optional<Control::Onward> Control::OnwardFrom(const ChainPlace& place,
 std::optional<motion::Planner> Control::PlanOnward(const Onward& onward,
                                                    std::span<const AppendedItem> later) const {
   motion::Planner planner(parameters_.limits);
-  planner.BeginMoving(onward.speed);
+  planner.BeginMoving(onward.speed_on_move);
   if (!planner.Append(onward.first)) return std::nullopt;
   for (const AppendedItem& item : later) {
     if (!item.move) {
@@ -201,6 +204,13 @@ void Control::GoOnward(const ChainPlace& place, const Onward& onward,
   } else if (place.under_way) {
     s_.machine.axes = AxesNow();
     s_.active.reset();
+  }
+  // One measure for the whole chain: a STOP runs from one motion into the next.
+  if (onward.measure == 1.0) return;
+  if (s_.active && s_.active->motion.path.in_axes()) s_.active->motion.MeasureBy(onward.measure);
+  for (motion::PlannedItem& item : s_.timeline) {
+    auto* planned = std::get_if<motion::PlannedMotion>(&item);
+    if (planned != nullptr && planned->path.in_axes()) planned->MeasureBy(onward.measure);
   }
 }
 

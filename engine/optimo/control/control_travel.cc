@@ -50,7 +50,7 @@ std::string TextOf(const std::vector<BeyondTravel>& beyond) {
 std::vector<BeyondTravel> Control::BeyondTravelOf(const motion::PathPiece& path) const {
   const motion::AxisLimits& limits = parameters_.limits.axes;
   const motion::Head head = HeadNow();
-  const bool joint = path.kind() == motion::PathPiece::Kind::kJoint;
+  const bool joint = path.in_axes();
   const auto axes_at = [&](const motion::TipPose& pose) {
     return joint ? motion::AxisPose{pose.tip, pose.a_rad, pose.b_rad} : head.ColumnOf(pose);
   };

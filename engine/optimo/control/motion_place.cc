@@ -5,22 +5,56 @@
 #include "engine/core/units.h"
 
 namespace rmlcell::optimo {
+namespace {
 
-bool LineOrArc(const motion::PathPiece& path) {
-  return path.kind() == motion::PathPiece::Kind::kLine ||
-         path.kind() == motion::PathPiece::Kind::kArc;
+using Kind = motion::PathPiece::Kind;
+
+double PlaceOnArc(const motion::PathPiece& arc, const motion::Vec3& point) {
+  const motion::Vec3 start = arc.from().tip - arc.centre();
+  const motion::Vec3 here = point - arc.centre();
+  double angle =
+      std::atan2(motion::Dot(arc.normal(), motion::Cross(start, here)), motion::Dot(start, here));
+  if (angle < 0.0) angle += kTurn;
+  return angle * arc.radius_mm();
 }
 
-double PlaceOn(const motion::PathPiece& whole, const motion::Vec3& point) {
-  if (whole.kind() == motion::PathPiece::Kind::kLine) {
-    return motion::Norm(point - whole.from().tip);
+motion::AxisValues Values(const motion::TipPose& pose) {
+  return {pose.tip.x, pose.tip.y, pose.tip.z, pose.a_rad, pose.b_rad};
+}
+
+// By the axis that goes farthest.
+PlaceOnMove PlaceInAxes(const motion::PathPiece& motion, const motion::PathPiece& move) {
+  const motion::AxisValues from = Values(move.from()), to = Values(move.to());
+  std::size_t widest = 0;
+  for (std::size_t i = 1; i < motion::kAxisCount; ++i) {
+    if (std::abs(to[i] - from[i]) > std::abs(to[widest] - from[widest])) widest = i;
   }
-  const motion::Vec3 start = whole.from().tip - whole.centre();
-  const motion::Vec3 here = point - whole.centre();
-  double angle =
-      std::atan2(motion::Dot(whole.normal(), motion::Cross(start, here)), motion::Dot(start, here));
-  if (angle < 0.0) angle += kTurn;
-  return angle * whole.radius_mm();
+  const double begin = Values(motion.from())[widest];
+  const double rate = (to[widest] - from[widest]) / move.length();
+  const double rate_of_motion = (Values(motion.to())[widest] - begin) / motion.length();
+  return {.begin = (begin - from[widest]) / rate, .scale = rate_of_motion / rate};
+}
+
+}  // namespace
+
+std::optional<PlaceOnMove> PlaceOf(const motion::PathPiece& motion, const motion::PathPiece& move) {
+  if (motion.kind() != move.kind()) return std::nullopt;
+  switch (motion.kind()) {
+    case Kind::kLine:
+      return PlaceOnMove{.begin = motion::Distance(motion.from().tip, move.from().tip)};
+    case Kind::kArc:
+      return PlaceOnMove{.begin = PlaceOnArc(move, motion.from().tip)};
+    case Kind::kJoint:
+      return PlaceInAxes(motion, move);
+    default:
+      return std::nullopt;
+  }
+}
+
+motion::PathPiece RestOfMove(const motion::PathPiece& move, const PlaceOnMove& place, double s) {
+  motion::PathPiece rest = move.Part(place.begin + s * place.scale, move.length());
+  if (rest.kind() == Kind::kJoint) rest.MeasureBy(rest.length() / place.scale);
+  return rest;
 }
 
 }  // namespace rmlcell::optimo

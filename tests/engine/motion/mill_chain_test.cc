@@ -75,23 +75,5 @@ TEST(MillChain, LetsALineOutBeforeItIsOver) {
   EXPECT_EQ(planner.lookahead_starved(), 0u);
 }
 
-// motion.md 4.5 is not planned: two PTP in COORD ROBOT with /FLY are stops of the plan.
-TEST(Planner, SaysWhereTheMachineWouldBlend) {
-  Planner planner(StandardMachine());
-  MoveCommand move;
-  move.kind = MoveCommand::Kind::kPointToPointAxes;
-  move.fly = true;
-  move.path = PathPiece::Joint({{0, 0, 0}}, {{100, 0, 0}});
-  ASSERT_TRUE(planner.Append(move));
-  move.path = PathPiece::Joint({{100, 0, 0}}, {{100, 100, 0}});
-  ASSERT_TRUE(planner.Append(move));
-  planner.Stop();
-  std::vector<bool> bounds;
-  while (const auto item = planner.Next()) {
-    bounds.push_back(std::get<PlannedMotion>(*item).upper_bound);
-  }
-  EXPECT_EQ(bounds, (std::vector<bool>{true, false}));
-}
-
 }  // namespace
 }  // namespace rmlcell::motion

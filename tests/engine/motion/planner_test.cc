@@ -46,7 +46,6 @@ TEST(Planner, MoveWithoutFlySettles) {
   const auto& motion = std::get<PlannedMotion>(*item);
   EXPECT_EQ(motion.tag, 5u);
   EXPECT_NEAR(motion.duration_s(), 10.0 + 2.0 * std::sqrt(50.0 / 40000.0) + 0.048, 1e-12);
-  EXPECT_FALSE(motion.upper_bound);
 }
 
 // OPT-2.47: /FLY before a stop is as if absent, so the machine settles; before another move it does
@@ -144,7 +143,6 @@ TEST(Planner, BlendOfARightAngle) {
   EXPECT_DOUBLE_EQ(motions[1].speed.duration_s(), motions[1].path.length() / 50.0);
   EXPECT_EQ(motions[2].tag, 2u);
   EXPECT_EQ(motions[3].path.to().tip, (Vec3{100, 100, 0}));
-  EXPECT_FALSE(motions[1].upper_bound);
 }
 
 // What stands against a blend; motion.md 4.4. OPT-B.25, OPT-B.27, OPT-2.39

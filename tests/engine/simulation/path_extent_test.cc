@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "engine/core/units.h"
+#include "engine/simulation/polyline.h"
+#include "tests/engine/motion/standard_machine.h"
 #include "tests/engine/simulation/fake_run.h"
 
 namespace rmlcell::simulation {
@@ -164,6 +166,54 @@ TEST(PathExtent, StraightJointMove) {
   const PathPiece joint = PathPiece::Joint({{0, 0, 0}, 1.0, 0.5}, {{30, 40, 0}, 1.0, 0.5});
   EXPECT_NEAR(TipLength({joint, Head{}, 0.0, 1.0}), 50.0, 1e-12);
   EXPECT_NEAR(TipLength({joint, Head{}, 0.25, 0.75}), 25.0, 1e-12);
+}
+
+// A passage in COORD ROBOT (motion.md 4.5) in which the head turns: extent and length of the tip's
+// way against ten thousand chords of it.
+TEST(PathExtent, PassageInAxes) {
+  motion::Planner planner(motion::StandardMachine());
+  motion::MoveCommand move;
+  move.kind = motion::MoveCommand::Kind::kPointToPointAxes;
+  move.fly = true;
+  move.path = PathPiece::Joint({{0, 0, 0}, 0.0, 0.2}, {{400, 50, 0}, 0.8, 0.9});
+  ASSERT_TRUE(planner.Append(move));
+  move.path = PathPiece::Joint({{400, 50, 0}, 0.8, 0.9}, {{300, 500, -80}, 0.1, 0.3});
+  ASSERT_TRUE(planner.Append(move));
+  planner.Stop();
+  int bends = 0;
+  while (const auto item = planner.Next()) {
+    const auto& planned = std::get<motion::PlannedMotion>(*item);
+    if (planned.path.kind() != PathPiece::Kind::kBlend) continue;
+    ++bends;
+    const PathPart part{planned.path, planned.head, 0.0, planned.path.length()};
+    const PointSweep tip = TipSweep(part), column = ColumnSweep(part);
+    double length = 0.0, highest = -1e9, column_highest = -1e9;
+    Vec3 last = TipAt(planned.path, planned.head, 0.0);
+    for (int k = 0; k <= 10000; ++k) {
+      const double s = planned.path.length() * k / 10000.0;
+      const Vec3 here = TipAt(planned.path, planned.head, s);
+      length += motion::Distance(here, last);
+      last = here;
+      highest = std::max(highest, here.x);
+      column_highest = std::max(column_highest, planned.path.At(s).tip.x);
+    }
+    EXPECT_NEAR(TipLength(part), length, 1e-6);
+    EXPECT_NEAR(tip[0].maximum, highest, 1e-6);
+    EXPECT_NEAR(column[0].maximum, column_highest, 1e-6);
+    int vertices = 0;
+    double drawn = 0.0;
+    Vec3 vertex = TipAt(planned.path, planned.head, 0.0);
+    ForEachVertex(part, 0.01, [&](double, const Vec3& next) {
+      ++vertices;
+      drawn += motion::Distance(next, vertex);
+      vertex = next;
+    });
+    EXPECT_GT(vertices, 2);
+    EXPECT_LE(drawn, length + 1e-9);
+    EXPECT_NEAR(drawn, length, 0.01);
+    EXPECT_EQ(vertex, last);
+  }
+  EXPECT_EQ(bends, 2);
 }
 
 }  // namespace

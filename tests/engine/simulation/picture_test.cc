@@ -88,8 +88,9 @@ Script SomeLaserWork() {
 
 // A standalone document: well-formed, nothing that runs, nothing from outside.
 TEST(Picture, IsStandaloneAndWellFormed) {
-  for (const std::string& svg : {SvgOf(SomeMilling(), Mill()), SvgOf(SomeLaserWork(), LaserWithTravel()),
-                                 SvgOf(Script(), Mill()), SvgOf(Script(), {})}) {
+  for (const std::string& svg :
+       {SvgOf(SomeMilling(), Mill()), SvgOf(SomeLaserWork(), LaserWithTravel()),
+        SvgOf(Script(), Mill()), SvgOf(Script(), {})}) {
     EXPECT_EQ(XmlFault(svg), "");
     EXPECT_TRUE(svg.starts_with("<?xml"));
     EXPECT_EQ(CountOf(svg, "<svg"), 1u);
@@ -136,8 +137,8 @@ TEST(Picture, ViewsOfTheMachine) {
        {">XY from above<", ">XZ from the front<", ">YZ from the right<", ">in space<"}) {
     EXPECT_EQ(CountOf(laser, view), 1u) << view;
   }
-  const std::string asked =
-      SvgOf(SomeLaserWork(), LaserWithTravel(), Completed(), {.views = {PictureView::kXZ, PictureView::kYZ}});
+  const std::string asked = SvgOf(SomeLaserWork(), LaserWithTravel(), Completed(),
+                                  {.views = {PictureView::kXZ, PictureView::kYZ}});
   EXPECT_EQ(CountOf(asked, "<clipPath"), 2u);
 }
 
@@ -153,17 +154,6 @@ TEST(Picture, ShowsWhatTheIssueAsksFor) {
   EXPECT_GE(CountOf(laser, ">pierce<"), 1u);
   EXPECT_GE(CountOf(laser, ">beam on<"), 1u);
   EXPECT_GE(CountOf(laser, ">direction of the head<"), 1u);
-}
-
-// Issue 2: the picture says when the time is an upper bound.
-TEST(Picture, TimingNote) {
-  RunReport report = Completed();
-  report.cycle_time = FromSeconds(12.5);
-  EXPECT_EQ(CountOf(SvgOf(SomeMilling(), Mill(), report), "upper bound"), 0u);
-  report.timing = Timing::kExactStopUpperBound;
-  const std::string svg = SvgOf(SomeMilling(), Mill(), report);
-  EXPECT_GE(CountOf(svg, ">timing: exact stop, upper bound<"), 1u);
-  EXPECT_GE(CountOf(svg, "≤ 12.500 s"), 1u);
 }
 
 // A failed run says so, with code and place.

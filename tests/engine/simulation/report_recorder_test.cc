@@ -271,7 +271,6 @@ TEST(ReportRecorder, CornerOfTheReference) {
   EXPECT_NEAR(report.corners.deviation_point.y, off, 1e-6);
   EXPECT_NEAR(report.steps[0].figures.tip_path_mm, 0.5 * 198.564458478, 1e-6);
   EXPECT_EQ(report.shortfall.moves, 0u);
-  EXPECT_EQ(report.timing, Timing::kExact);
   EXPECT_NEAR(report.tip.max.x, 100.0, 1e-9);
   EXPECT_NEAR(report.tip.min.y, 0.0, 1e-9);
 }
@@ -305,15 +304,6 @@ TEST(ReportRecorder, BoxOfACircle) {
   EXPECT_NEAR(report.cut.min.y, 38.0, 1e-9);
   EXPECT_NEAR(report.cut.max.y, 62.0, 1e-9);
   EXPECT_NEAR(report.total.cut_mm, 24.0 * kPi, 1e-9);
-}
-
-// Issue 2: while /FLY is planned as stops the report says `exact stop, upper bound`.
-TEST(ReportRecorder, UpperBoundIsSaid) {
-  EXPECT_EQ(TimingText(ReportOf(Script().Line({}, {1, 0, 0}), {}).timing), "exact");
-  auto planned = Planned(LineFrom({}, {10, 0, 0}));
-  planned.upper_bound = true;
-  const RunReport report = ReportOf(Script().Motion(planned).Line({10, 0, 0}, {20, 0, 0}), {});
-  EXPECT_EQ(TimingText(report.timing), "exact stop, upper bound");
 }
 
 // What the machine found, merged; outcome and position of the run; points as programmed.

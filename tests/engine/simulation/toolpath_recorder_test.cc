@@ -59,7 +59,7 @@ double WorstDistance(const PathPiece& path, const motion::Head& head, const Tool
   for (int k = 0; k <= 2000; ++k) {
     const double s = path.length() * k / 2000;
     Vec3 tip = path.At(s).tip;
-    if (path.kind() == PathPiece::Kind::kJoint) {
+    if (path.in_axes()) {
       const motion::TipPose pose = path.At(s);
       tip = head.TipOf({pose.tip, pose.a_rad, pose.b_rad}).tip;
     }

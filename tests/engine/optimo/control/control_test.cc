@@ -10,7 +10,6 @@ using machine::InputKind;
 using machine::OutcomeKind;
 using ::testing::ElementsAre;
 
-
 // OPT-2.06, OPT-2.07: what ABSOL and ROBOT coordinates mean; L = 300.
 TEST(Motion, AbsolIsTheTipAndRobotTheColumn) {
   const Ran absol = RunText(std::string(kAbsol) + "MOVE (100.,100.,-400.,0.,1.5708)\n");
@@ -65,6 +64,27 @@ TEST(Motion, TargetOutsideTheTravelIs7301WithoutMotion) {
   const Ran ran = RunText("COORD ROBOT\nMOVE (9000.,0.,0.,0.,0.)\n");
   EXPECT_EQ(CodeOf(ran), 7301);
   EXPECT_TRUE(ran.moves.empty());
+}
+
+// motion.md 4.5: X at 250 mm/s, then Y. No settling between them, and an output of the passage
+// comes when half of the curve is behind (OPT-2.49): the ramp takes 250/2000 + 2000/40000 s, of
+// which half is lost, and each 1000 mm 4 s.
+TEST(Motion, PassagesInCoordRobot) {
+  const Ran ran = RunText(
+      "COORD ROBOT\nMOVE (0.,0.,-50.,0.,0.)\nSPEED 50\nMOVE (1000.,0.,-50.,0.,0.)/FLY\n"
+      "OL[20]=1\nMOVE (1000.,1000.,-50.,0.,0.)\n");
+  const Ran there = RunText("COORD ROBOT\nMOVE (0.,0.,-50.,0.,0.)\n");
+  ASSERT_EQ(ran.outcome.kind, machine::OutcomeKind::kCompleted);
+  const double ramps = 250.0 / 2000.0 + 2000.0 / 40000.0;
+  EXPECT_NEAR(ran.time_s - there.time_s, 8.0 + ramps + 0.048, 1e-6);
+  EXPECT_FALSE(ran.Told("E7304"));
+  const auto curve = std::ranges::find_if(ran.parts, [](const Ran::Part& part) {
+    return part.motion.path.kind() == motion::PathPiece::Kind::kBlend;
+  });
+  ASSERT_NE(curve, ran.parts.end());
+  EXPECT_EQ(curve->motion.corner.passage, motion::Passage::kBlend);
+  ASSERT_TRUE(ran.Told("OL[20] 1"));
+  EXPECT_NEAR(ran.First("OL[20] 1").at_s - there.time_s, 4.0 + 0.5 * ramps, 1e-6);
 }
 
 // OPT-2.45, OPT-2.46, OPT-2.47: /FLY before COORD and before the end.

@@ -22,7 +22,7 @@ struct Where {
 Where WhereIn(const Ran::Part& part, double time_s) {
   const double within = time_s - ToSeconds(part.done.start) + part.done.profile_start_s;
   const motion::TipPose pose = part.motion.path.At(part.motion.speed.At(within).s);
-  const bool joint = part.motion.path.kind() == motion::PathPiece::Kind::kJoint;
+  const bool joint = part.motion.path.in_axes();
   const motion::AxisPose axes =
       joint ? motion::AxisPose{pose.tip, pose.a_rad, pose.b_rad} : part.motion.head.ColumnOf(pose);
   return {joint ? part.motion.head.TipOf(axes).tip : pose.tip,

@@ -143,7 +143,7 @@ double Ran::DistanceTo(const motion::Vec3& point) const {
   for (const Part& part : parts) {
     const auto distance = [&](double s) {
       const motion::TipPose pose = part.motion.path.At(s);
-      const bool joint = part.motion.path.kind() == motion::PathPiece::Kind::kJoint;
+      const bool joint = part.motion.path.in_axes();
       const motion::TipPose tip =
           joint ? part.motion.head.TipOf({pose.tip, pose.a_rad, pose.b_rad}) : pose;
       return motion::Norm(tip.tip - point);
