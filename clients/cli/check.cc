@@ -37,7 +37,7 @@ machine::StoredProgram StoredFrom(const CheckedFile& file) {
   return {.name = file.name,
           .object = std::make_shared<const std::string>(file.translation.object),
           .executable = nullptr,
-          .step_lines = std::make_shared<const std::vector<int>>(file.translation.step_lines)};
+          .source = std::make_shared<const machine::SourceNotes>(file.translation.source)};
 }
 
 // The files of one family make one program memory, so that they can call each other: each in the slot of
@@ -106,7 +106,7 @@ Status Translate(CheckedFile& file, const CheckOptions& options) {
   if (text->empty()) return Error{ErrorCode::kCellEmptyProgram, file.name, {}};
   file.text = *std::move(text);
   file.translation = file.family->Translate({.name = file.name, .bytes = file.text}, *file.parameters,
-                                            {.advice = !options.errors_only, .step_lines = true});
+                                            {.advice = !options.errors_only, .source = true});
   return {};
 }
 

@@ -44,4 +44,12 @@ bool HasErrors(std::span<const Diagnostic> findings);
 // "(step 3, at 1.500 s)", then, when `source` is not empty and the line is known, that line and a caret line below it. No line end after the last line.
 std::string FormatDiagnostic(const Diagnostic& diagnostic, std::string_view source);
 
+// What an author lets pass: warnings and advice of this number at a line of the text; 0: anywhere.
+struct AllowedFinding {
+  int line = 0;
+  int number = 0;
+
+  bool operator==(const AllowedFinding&) const = default;
+};
+
 }  // namespace rmlcell

@@ -48,13 +48,13 @@ struct Translation {
   std::vector<Diagnostic> diagnostics{};  // in order of place; at most kDiagnosticsMax
   std::uint64_t diagnostics_dropped = 0;
   std::vector<Figure> figures{};          // "steps", "object_bytes" ...
-  std::vector<int> step_lines{};          // line, from 1, of each step; empty: not asked for, or none
+  SourceNotes source{};                   // empty: not asked for, or none
 };
 inline constexpr std::size_t kDiagnosticsMax = 1000;
 
 struct CheckOptions {
   bool advice = true;       // lint findings of severity warning and advice
-  bool step_lines = false;  // fill in Translation::step_lines
+  bool source = false;  // fill in Translation::source
 };
 
 // A process definition of a project: WORKDEF n, p with its parameters. OPT-3.01 to 3.08.

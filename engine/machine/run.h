@@ -20,12 +20,17 @@ namespace rmlcell::machine {
 // Shared, because a stream may be of hundreds of megabytes and several runs read it.
 using Bytes = std::shared_ptr<const std::string>;
 
+// What is known of the text that a program was made from.
+struct SourceNotes {
+  std::vector<int> step_lines{};          // line, from 1, of each step
+  std::vector<AllowedFinding> allowed{};  // not to be told when it runs
+};
+
 struct StoredProgram {
   std::string name{};
   Bytes object{};
-  Bytes executable{};  // at slot + 100; null when none was made
-  // The line, from 1, of each step of the source; null when no source is known.
-  std::shared_ptr<const std::vector<int>> step_lines{};
+  Bytes executable{};                           // at slot + 100; null when none was made
+  std::shared_ptr<const SourceNotes> source{};  // null when no source is known
 };
 
 struct LaserSchedule {
@@ -55,16 +60,16 @@ struct RunSetup {
   explicit RunSetup(Parameters machine_parameters) : parameters(std::move(machine_parameters)) {}
 
   Parameters parameters;
-  std::map<int, StoredProgram> programs{};                 // by slot 1..99
+  std::map<int, StoredProgram> programs{};  // by slot 1..99
   // Slots that held a program once and are empty now: deleting counts as altering (OPT-1.13).
   std::set<int> deleted_programs{};
-  int main_program = 0;                                  // slot to start
-  std::optional<std::vector<LaserSchedule>> schedules{};   // none: all that the machine can have
-  std::string machine_state{};                             // from SaveMachine; empty: a new machine
+  int main_program = 0;                                   // slot to start
+  std::optional<std::vector<LaserSchedule>> schedules{};  // none: all that the machine can have
+  std::string machine_state{};                            // from SaveMachine; empty: a new machine
   Mode mode = Mode::kCycle;
   double override_percent = 100.0;
-  std::optional<ProgramStep> breakpoint{};                 // halt after this step
-  std::optional<ProgramStep> simul{};                      // dry run up to this step
+  std::optional<ProgramStep> breakpoint{};  // halt after this step
+  std::optional<ProgramStep> simul{};       // dry run up to this step
   InputScript inputs{};
   // SIMULATE and CHECK: a motion that leaves the travel of an axis is told as an error, and the run
   // goes on as if the axis could, so that one run tells of all of them; it ends as failed. False,
@@ -84,7 +89,7 @@ struct Outcome {
   OutcomeKind kind = OutcomeKind::kCompleted;
   std::optional<ErrorCode> code{};  // the machine's own; none when completed
   std::string detail{};
-  Place place{};                    // of the last step, or where it failed
+  Place place{};  // of the last step, or where it failed
 };
 
 // For people who watch: where the run is now.
@@ -104,8 +109,8 @@ struct RunState {
 
 // A figure that a family computes about a finished run, with a stable name.
 struct Figure {
-  std::string name{};   // "programmed.cut_length"
-  std::string unit{};   // "mm"; empty for counts
+  std::string name{};  // "programmed.cut_length"
+  std::string unit{};  // "mm"; empty for counts
   double value = 0.0;
 };
 
@@ -115,21 +120,22 @@ class RunSnapshot {
   virtual ~RunSnapshot() = default;
 };
 
-// One execution of a program in virtual time. Deterministic and resumable: how the caller divides time
-// into calls of Advance changes nothing that the observer is told. One thread at a time.
+// One execution of a program in virtual time. Deterministic and resumable: how the caller divides
+// time into calls of Advance changes nothing that the observer is told. One thread at a time.
 class Run {
  public:
   virtual ~Run() = default;
 
-  // Goes on until virtual time `until`, a halt, or the end, whichever comes first. A motion that spans
-  // `until` is left in the middle. Scripted inputs act at their times. After much work in one call it
-  // may come back earlier, with kRunning: call again.
+  // Goes on until virtual time `until`, a halt, or the end, whichever comes first. A motion that
+  // spans `until` is left in the middle. Scripted inputs act at their times. After much work in one
+  // call it may come back earlier, with kRunning: call again.
   virtual RunPhase Advance(SimTime until) = 0;
 
   // An input or key at the present time, as if scripted for it.
   virtual void Apply(const InputChange& input) = 0;
 
-  // Ends the run at the present time with beam off, shutter closed: CANCELLED, or a budget of the caller.
+  // Ends the run at the present time with beam off, shutter closed: CANCELLED, or a budget of the
+  // caller.
   virtual void End(OutcomeKind kind, ErrorCode code) = 0;
 
   virtual RunState state() const = 0;

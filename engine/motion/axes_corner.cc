@@ -24,8 +24,8 @@ AxesCorner::AxesCorner(const PathPiece& before, const PathPiece& after, double a
   for (std::size_t i = 0; i < kAxisCount; ++i) {
     const double change = std::abs(out[i] - in[i]);
     if (change > kSameSpeed * machine.axes.speed[i]) passage_ = Passage::kBlend;
-    by_acceleration_s_ = std::max(
-        by_acceleration_s_, change / (acceleration_share * machine.axes.acceleration[i]));
+    by_acceleration_s_ =
+        std::max(by_acceleration_s_, change / (acceleration_share * machine.axes.acceleration[i]));
     if (jerk_limited) {
       by_jerk_s2_ = std::max(by_jerk_s2_, change / (acceleration_share * machine.axes.jerk[i]));
     }

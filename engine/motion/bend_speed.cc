@@ -81,6 +81,19 @@ double HighestAfter(std::span<const double> most, double length, double high,
 
 }  // namespace
 
+std::array<double, BendStretches::kAbrupt> AbruptSpeeds(const BendSpeeds& speeds) {
+  constexpr std::size_t kHalf = BendStretches::kAbrupt / 2;
+  constexpr std::size_t kEach = BendSpeeds::kSteps / kHalf;
+  static_assert(kEach * kHalf == BendSpeeds::kSteps && 2 * kHalf == BendStretches::kAbrupt);
+  std::array<double, BendStretches::kAbrupt> most;
+  for (std::size_t k = 0; k < kHalf; ++k) {
+    const auto first = speeds.most.begin() + static_cast<std::ptrdiff_t>(k * kEach);
+    most[k] = *std::min_element(first, first + kEach + 1);
+    most[most.size() - 1 - k] = most[k];
+  }
+  return most;
+}
+
 BendStretches StretchesOf(const BendSpeeds& speeds, double half_length_mm,
                           const PathLimits& limits) {
   constexpr std::size_t kSteps = BendSpeeds::kSteps;

@@ -18,13 +18,18 @@ struct BendSpeeds {
 // The stretches in which a bend is passed that cannot be passed at OVERSH x Vb: the whole of it, or
 // its halves where it is tightest in the middle. A stretch may be passed by any ramp between speeds
 // allowed at its start and its end, with acceleration zero at both and `open` on the way: that
-// keeps the speeds of the bend all along.
+// keeps the speeds of the bend all along. Without a limit on jerk there are kAbrupt of equal
+// length, each with a speed of its own that any ramp within it may reach.
 struct BendStretches {
+  static constexpr std::size_t kAbrupt = 6;
   std::size_t count = 1;
   double start = 0.0;   // highest speed at the start of the bend, and at its end
   double open = 0.0;    // on the way
-  double middle = 0.0;  // of two stretches: where they meet
+  double middle = 0.0;  // of more than one: where the halves meet
 };
+
+// The highest speed on each of kAbrupt stretches.
+std::array<double, BendStretches::kAbrupt> AbruptSpeeds(const BendSpeeds& speeds);
 
 // `limits` are those of the ramps (their speed does not count).
 BendStretches StretchesOf(const BendSpeeds& speeds, double half_length_mm,

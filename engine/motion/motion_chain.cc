@@ -34,7 +34,7 @@ bool AxesFollowRamps(const MachineLimits& machine) {
   bool enough = AxesKeepUp(machine);
   for (std::size_t i = 0; i < 3; ++i) {
     enough = enough && machine.axes.acceleration[i] >= machine.tip_acceleration_mm_s2 &&
-             machine.axes.jerk[i] >= machine.tip_jerk_mm_s3;
+             (std::isinf(machine.tip_jerk_mm_s3) || machine.axes.jerk[i] >= machine.tip_jerk_mm_s3);
   }
   return enough;
 }

@@ -108,6 +108,12 @@ class MotionChain {
     TipPose curve_middle;  // at half of its length
     bool plain = false;  // the curve follows from the corner and the cut; else it waits in curves_
 
+    double curve_end(std::size_t stretch) const {  // arc length from the start of the curve
+      const std::size_t count = stretches.count;
+      return stretch + 1 == count
+                 ? curve_length
+                 : curve_length * static_cast<double>(stretch + 1) / static_cast<double>(count);
+    }
     std::size_t curve_knots() const { return in_stretches ? stretches.count : 0; }
     std::size_t knots() const { return 1 + curve_knots(); }
   };
@@ -115,7 +121,9 @@ class MotionChain {
   struct Stretch {
     double end = 0.0;      // arc length from the start of the curve
     double end_cap = 0.0;  // of the speed there
+    double most = 0.0;     // of the speed on the way
   };
+  using Stretches = std::array<Stretch, BendStretches::kAbrupt>;  // the first curve_knots()
   struct WaitingMark {
     std::uint64_t tag = 0;
     Number after_move = 0;
@@ -137,7 +145,8 @@ class MotionChain {
   void CloseRun(Number last_leg, double total, const Span& closing, double speed_cap);
   PathLimits LimitsOnCurve(Number corner_move, double cut);
   PathLimits LimitsInStretches(const Span& span);
-  static Stretch StretchOf(const Span& span, std::size_t index);
+  Stretches StretchesIn(const Span& span);
+  BendSpeeds SpeedsAlong(const Span& span);
   void PushKnots(const Span& span, std::size_t first);
   void LetBendsVary();
   void SeeDecided();
@@ -146,7 +155,7 @@ class MotionChain {
   struct CurveCells {
     std::size_t count = 0;
     std::size_t at = 0;  // the present one
-    std::array<double, 2> end{};
+    std::array<double, BendStretches::kAbrupt> end{};
   };
   // One half of a corner curve, `begin` behind its start, and which part of it belongs to a move.
   struct Half {

@@ -52,8 +52,8 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
   Leg& leg = legs_[number];
   const double wanted = running_.speed();
   const double total = run_length_ + leg.length;
-  // Nor may a run fill the window; but it holds what the curve before it takes. The run of a mill has
-  // no curve at its end to wait for.
+  // Nor may a run fill the window; but it holds what the curve before it takes. The run of a mill
+  // has no curve at its end to wait for.
   const bool mill = machine_.junction_jump_mm_s > 0.0;
   const std::size_t longest = mill ? kBatchMin : window_ / 2;
   if (!leg.ends_run && number - legs_.first() >= longest && total >= run_cut_) {
@@ -154,8 +154,8 @@ void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
     const PathPiece& out = moves_[leg.last_move + 1].path;
     span.curve_length = leg.corner.PlainLength(cut);
     span.curve_middle = in.path.to();
-    span.curve_middle.tip = in.path.to().tip +
-                            (out.Tangent(0.0) - in.path.Tangent(0.0)) * leg.corner.PlainBow(cut);
+    span.curve_middle.tip =
+        in.path.to().tip + (out.Tangent(0.0) - in.path.Tangent(0.0)) * leg.corner.PlainBow(cut);
     span.report.deviation_mm = leg.corner.PlainDeviation(cut);
     return;
   }
@@ -211,15 +211,22 @@ CornerCurve MotionChain::CurveAround(const Leg& leg, double cut, bool& head_stea
 // A bend that cannot be passed at OVERSH x Vb but at `steady` may be faster where it is less tight,
 // up to `most`. motion.md 5.4
 void MotionChain::ChooseStretches(Span& span, const Leg& leg, double steady, double most) {
-  if (!machine_.ramps_across_passages || std::isinf(machine_.tip_jerk_mm_s3)) return;
-  if (!axes_follow_ramps_ || !span.head_steady) return;
+  if (!machine_.ramps_across_passages || !axes_follow_ramps_ || !span.head_steady) return;
   if (steady >= leg.limit * (1.0 - kSameLimit)) return;
   span.in_stretches = true;
   span.stretches = {.start = steady, .open = steady, .middle = steady};
   if (!span.plain) return;
   const double cut = span.report.cut_mm;
-  span.stretches = StretchesOf(leg.corner.PlainSpeeds(cut, most, machine_), 0.5 * span.curve_length,
-                               LimitsOnCurve(leg.last_move, cut));
+  const BendSpeeds speeds = leg.corner.PlainSpeeds(cut, most, machine_);
+  if (std::isinf(machine_.tip_jerk_mm_s3)) {
+    const auto abrupt = AbruptSpeeds(speeds);
+    span.stretches = {.count = abrupt.size(),
+                      .start = abrupt.front(),
+                      .open = most,
+                      .middle = abrupt[abrupt.size() / 2]};
+    return;
+  }
+  span.stretches = StretchesOf(speeds, 0.5 * span.curve_length, LimitsOnCurve(leg.last_move, cut));
 }
 
 // Those of every move that a curve touches.
@@ -260,10 +267,28 @@ PathLimits MotionChain::LimitsInStretches(const Span& span) {
   return limits;
 }
 
-MotionChain::Stretch MotionChain::StretchOf(const Span& span, std::size_t index) {
+// How fast the curve behind a span may be passed from place to place. Precondition: it is plain.
+BendSpeeds MotionChain::SpeedsAlong(const Span& span) {
+  Corner corner;
+  corner.Assign(moves_[span.corner_move].path, moves_[span.corner_move + 1].path);
+  return corner.PlainSpeeds(span.report.cut_mm, span.stretches.open, machine_);
+}
+
+MotionChain::Stretches MotionChain::StretchesIn(const Span& span) {
   const BendStretches& most = span.stretches;
-  if (index + 1 == most.count) return {span.curve_length, most.start};
-  return {0.5 * span.curve_length, most.middle};
+  Stretches stretches;
+  for (std::size_t k = 0; k < most.count; ++k) {
+    const bool last = k + 1 == most.count;
+    stretches[k] = {
+        .end = span.curve_end(k), .end_cap = last ? most.start : most.middle, .most = most.open};
+  }
+  if (most.count < BendStretches::kAbrupt) return stretches;
+  const auto speeds = AbruptSpeeds(SpeedsAlong(span));
+  for (std::size_t k = 0; k < most.count; ++k) {
+    stretches[k].most = speeds[k];
+    stretches[k].end_cap = std::min(speeds[k], k + 1 < most.count ? speeds[k + 1] : most.start);
+  }
+  return stretches;
 }
 
 // The knots of a span from its `first` on.
@@ -274,11 +299,12 @@ void MotionChain::PushKnots(const Span& span, std::size_t first) {
     ++first;
   }
   if (!span.in_stretches) return;
-  const PathLimits limits = LimitsInStretches(span);
+  PathLimits limits = LimitsInStretches(span);
+  const Stretches stretches = StretchesIn(span);
   for (std::size_t k = first; k < span.knots(); ++k) {
-    const Stretch stretch = StretchOf(span, k - 1);
-    const double begin = k == 1 ? 0.0 : StretchOf(span, k - 2).end;
-    speeds_.Push(stretch.end - begin, limits, stretch.end_cap);
+    const Stretch& stretch = stretches[k - 1];
+    limits.speed = stretch.most;
+    speeds_.Push(stretch.end - (k == 1 ? 0.0 : stretches[k - 2].end), limits, stretch.end_cap);
   }
 }
 

@@ -105,24 +105,24 @@ void MotionChain::PlanSection() {
 
 // The stretches of the curve behind a span whose own knot is `knot`.
 void MotionChain::AddCurve(const Span& span, std::size_t knot) {
-  const PathLimits limits = LimitsInStretches(span);
-  constexpr std::size_t kSteps = BendSpeeds::kSteps;
+  PathLimits limits = LimitsInStretches(span);
+  const Stretches stretches = StretchesIn(span);
+  const std::size_t count = span.curve_knots();
   std::span<const double> most;
-  if (span.stretches.open > span.stretches.start) {
-    Corner corner;
-    corner.Assign(moves_[span.corner_move].path, moves_[span.corner_move + 1].path);
-    const BendSpeeds half = corner.PlainSpeeds(span.report.cut_mm, span.stretches.open, machine_);
+  if (count <= 2 && span.stretches.open > span.stretches.start) {
+    const BendSpeeds half = SpeedsAlong(span);
     const std::size_t begin = most_.size();
     most_.insert(most_.end(), half.most.begin(), half.most.end());
     most_.insert(most_.end(), half.most.rbegin() + 1, half.most.rend());
     most = std::span(most_).subspan(begin);
   }
   double begin = 0.0;
-  for (std::size_t k = 0; k < span.curve_knots(); ++k) {
-    const Stretch stretch = StretchOf(span, k);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Stretch& stretch = stretches[k];
+    limits.speed = stretch.most;
     RampCell cell{stretch.end - begin, limits, speeds_.speed(knot + 1 + k), stretch.end_cap, {}};
     if (!most.empty()) {
-      const std::size_t steps = 2 * kSteps / span.curve_knots();
+      const std::size_t steps = 2 * BendSpeeds::kSteps / count;
       cell.most = most.subspan(k * steps, steps + 1);
     }
     cells_.push_back(cell);
@@ -260,10 +260,11 @@ void MotionChain::EmitCurve(Span& span) {
   if (span.in_stretches || section_left_ > 1) {
     cells.count = span.in_stretches ? span.curve_knots() : 1;
     for (std::size_t k = 0; k < cells.count; ++k) {
-      cells.end[k] = span.in_stretches ? StretchOf(span, k).end : span.curve_length;
+      cells.end[k] = span.in_stretches ? span.curve_end(k) : span.curve_length;
     }
     // The speed in the middle, which is an end of a stretch when there are some.
-    const RampPlan::Timing& timing = ramps_.timing()[section_cell_];
+    const std::size_t cell = section_cell_ + (cells.count > 1 ? cells.count / 2 - 1 : 0);
+    const RampPlan::Timing& timing = ramps_.timing()[cell];
     const SpeedProfile& ramp = ramps_.ramps()[timing.ramp];
     const double middle = cells.count > 1 ? timing.to : 0.5 * (timing.from + timing.to);
     span.report.speed = ramp.At(ramp.TimeAt(middle)).speed;

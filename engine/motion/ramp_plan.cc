@@ -69,7 +69,9 @@ void RampPlan::Plan(std::span<const RampCell> cells, double start_speed) {
   ramps_.clear();
   last_cell_.clear();
   timing_.clear();
-  if (Pass()) {
+  // Without a limit on jerk the two passes were the optimum.
+  const bool joins = std::isfinite(cells.front().limits.jerk);
+  if (joins && Pass()) {
     double time = 0.0;
     std::size_t first = 0;
     for (std::size_t k = 0; k < cells.size(); ++k) {

@@ -29,7 +29,8 @@ struct RampCell {
 // passed as fast as they may be, one ramp takes the place of several wherever it keeps the limits
 // of each: up to kExactMax stretches all ways to join neighbours are tried, longer ways are split
 // at the stretch that one ramp breaks most. Never slower than level 1, and no speed at the ends of
-// the whole way changes. Reused for many ways: it keeps its memory.
+// the whole way changes. Without a limit on jerk every stretch is timed by itself. Reused for many
+// ways: it keeps its memory.
 class RampPlan {
  public:
   // Stretches looked at together: 1 m of lines of 2 mm with their curves, more than any ramp takes.

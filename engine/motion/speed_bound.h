@@ -7,8 +7,8 @@ namespace rmlcell::motion {
 
 // What keeps a contour from being passed at any speed: the third and fourth line of motion.md 5.1.
 struct SpeedBound {
-  // The radius of an arc counts, whether the tip or the axes could not take the bend; an axis, where
-  // the head turns, or one that is slower than the tip.
+  // The radius of an arc counts, whether the tip or the axes could not take the bend; an axis,
+  // where the head turns, or one that is slower than the tip.
   enum class Cause { kNone, kRadius, kAxis };
   Cause cause = Cause::kNone;
   int axis = -1;       // kAxis: 0..4, X Y Z A B

@@ -34,7 +34,7 @@ bool AddProgram(const SetupInput& input, const ProgramInput& program, machine::R
   if (program.is_source && !IsObjectFileName(program.file_name)) {
     machine::Translation translation =
         input.family->Translate({.name = program.file_name, .bytes = *program.bytes}, setup.parameters,
-                                {.advice = program.slot == input.main_program, .step_lines = true});
+                                {.advice = program.slot == input.main_program, .source = true});
     for (Diagnostic& diagnostic : translation.diagnostics) {
       if (outcome.diagnostics.size() >= machine::kDiagnosticsMax) {
         ++outcome.diagnostics_dropped;
@@ -46,7 +46,7 @@ bool AddProgram(const SetupInput& input, const ProgramInput& program, machine::R
     outcome.diagnostics_dropped += translation.diagnostics_dropped;
     if (!translation.ok) return false;
     stored.object = std::make_shared<const std::string>(std::move(translation.object));
-    stored.step_lines = std::make_shared<const std::vector<int>>(std::move(translation.step_lines));
+    stored.source = std::make_shared<const machine::SourceNotes>(std::move(translation.source));
   }
   setup.programs[program.slot] = std::move(stored);
   return true;
@@ -145,7 +145,7 @@ machine::RunSetup SetupForCheck(const SetupInput& input, machine::Parameters par
   machine::StoredProgram stored{.name = {},
                                 .object = std::make_shared<const std::string>(main.object),
                                 .executable = nullptr,
-                                .step_lines = std::make_shared<const std::vector<int>>(main.step_lines)};
+                                .source = std::make_shared<const machine::SourceNotes>(main.source)};
   setup.programs[input.main_program] = std::move(stored);
   return setup;
 }

@@ -74,7 +74,7 @@ machine::Translation TranslateFor(const machine::MachineFamily& family, const ma
                                   const v1::ProgramText& program, bool advice) {
   const bool is_object = program.form() == v1::PROGRAM_FORM_OBJECT;
   return family.Translate({.name = is_object ? "program.O" : program.file_name(), .bytes = program.content()},
-                          parameters, {.advice = advice, .step_lines = true});
+                          parameters, {.advice = advice, .source = true});
 }
 
 // "44.S" is program 44, other names take the place of no program of the machine when there is room.

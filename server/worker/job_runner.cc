@@ -165,7 +165,7 @@ class Attempt {
                                : family.info().has_executables ? "program.O"
                                                                : "program.rml";
       machine::Translation translation =
-          family.Translate({.name = name, .bytes = *program.bytes}, *parameters, {.step_lines = true});
+          family.Translate({.name = name, .bytes = *program.bytes}, *parameters, {.source = true});
       for (Diagnostic& diagnostic : translation.diagnostics) diagnostic.program = program.slot;
       made.diagnostics = std::move(translation.diagnostics);
       made.diagnostics_dropped = translation.diagnostics_dropped;

@@ -120,10 +120,11 @@ void Row(const char* name, const std::vector<MoveCommand>& chain) {
   std::printf(
       "{\"path\": \"%s\", \"moves\": %zu, \"bound_s\": %.4f, \"bound_with_curve_jerk\": %.3f, "
       "\"level_1\": %.3f, \"level_2\": %.3f, "
-      "\"trapezoid\": %.3f, \"all_stops\": %.3f}\n",
+      "\"trapezoid\": %.3f, \"trapezoid_level_2\": %.3f, \"all_stops\": %.3f}\n",
       name, chain.size(), bound, Bound(motions, chain, level_one, true) / bound,
       TimeOf(motions) / bound, TimeOf(Plan(chain, Machine(40000.0, true))) / bound,
-      TimeOf(flat) / flat_bound, TimeOf(Plan(stopping, level_one)) / bound);
+      TimeOf(flat) / flat_bound, TimeOf(Plan(chain, Machine(kTrapezoid, true))) / flat_bound,
+      TimeOf(Plan(stopping, level_one)) / bound);
   std::fflush(stdout);
 }
 

@@ -24,7 +24,7 @@ Control::Control(OptimoParameters parameters, machine::RunSetup setup,
       observer_(observer),
       s_(parameters_.limits) {
   for (const auto& [slot, program] : setup_.programs) {
-    if (IsSlot(slot)) step_lines_[static_cast<std::size_t>(slot)] = program.step_lines.get();
+    if (IsSlot(slot)) sources_[static_cast<std::size_t>(slot)] = program.source.get();
   }
   s_.machine = NewMachine(parameters_);
   if (!setup_.machine_state.empty()) {
@@ -44,8 +44,9 @@ Control::Control(OptimoParameters parameters, machine::RunSetup setup,
 }
 
 int Control::LineOf(int slot, std::uint32_t step) const {
-  const std::vector<int>* lines = step_lines_[static_cast<std::size_t>(slot)];
-  return lines != nullptr && step >= 1 && step <= lines->size() ? (*lines)[step - 1] : 0;
+  const machine::SourceNotes* source = sources_[static_cast<std::size_t>(slot)];
+  const bool known = source != nullptr && step >= 1 && step <= source->step_lines.size();
+  return known ? source->step_lines[step - 1] : 0;
 }
 
 // START: the program begins, in SINGLE with its first step (OPT-6.31).

@@ -203,6 +203,7 @@ class Control : private VariableAccess {
   void HandleError(const Error& error);
   void FailWithoutHandler(int label);
   void Tell(const Diagnostic& finding);
+  bool Allowed(const Diagnostic& finding) const;
   void Warn(ErrorCode code, std::string detail, std::string_view rule);
   void WarnAt(const machine::Place& place, ErrorCode code, std::string detail,
               std::string_view rule);
@@ -239,7 +240,7 @@ class Control : private VariableAccess {
 
   OptimoParameters parameters_;
   machine::RunSetup setup_;
-  std::array<const std::vector<int>*, kSlotMax + 1> step_lines_{};  // null: no source is known
+  std::array<const machine::SourceNotes*, kSlotMax + 1> sources_{};  // null: not known
   machine::RunObserver& observer_;
   ControlState s_;
 };

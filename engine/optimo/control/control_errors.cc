@@ -35,7 +35,19 @@ void Control::WarnAt(const machine::Place& place, ErrorCode code, std::string de
         .step = place.step});
 }
 
-void Control::Tell(const Diagnostic& finding) { observer_.OnDiagnostic(s_.now, finding); }
+void Control::Tell(const Diagnostic& finding) {
+  if (!Allowed(finding)) observer_.OnDiagnostic(s_.now, finding);
+}
+
+// Whether a comment of the program lets it pass: `; rmlcell: allow 7321`.
+bool Control::Allowed(const Diagnostic& finding) const {
+  if (IsError(finding.severity) || !IsSlot(finding.program)) return false;
+  const machine::SourceNotes* source = sources_[static_cast<std::size_t>(finding.program)];
+  return source != nullptr && std::ranges::any_of(source->allowed, [&](const AllowedFinding& one) {
+           return one.number == Lookup(finding.code).number &&
+                  (one.line == 0 || one.line == finding.where.line);
+         });
+}
 
 // The failing instruction has no effect. What moves comes to rest first; an error that was raised
 // ahead of a motion is handled when that motion is over.

@@ -272,7 +272,7 @@ struct ControlState {
   std::optional<Diagnostic> first_violation{};
   std::uint64_t violations = 0;
   std::set<std::pair<int, int>> held_by_axis{};  // program and step, told already
-  std::uint64_t steps_at_repeat = 0;  // REPEAT: executed before this repetition
+  std::uint64_t steps_at_repeat = 0;             // REPEAT: executed before this repetition
 
   explicit ControlState(const motion::MachineLimits& limits) : planner(limits) {}
 };

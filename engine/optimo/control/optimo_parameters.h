@@ -37,8 +37,8 @@ struct OptimoParameters {
 std::span<const machine::ParameterInfo> OptimoParameterTable();
 const std::vector<machine::MachineProfile>& OptimoProfiles();
 
-// Error: CellParameterRange when the least travel of an axis is above its greatest; one that cannot move at all
-// is clamped and no error (OPT-B.06, OPT-B.08).
+// Error: CellParameterRange when the least travel of an axis is above its greatest; one that cannot
+// move at all is clamped and no error (OPT-B.06, OPT-B.08).
 Status CheckFit(const machine::Parameters& parameters);
 
 // Precondition: `parameters` are of OptimoParameterTable, and fit together.

@@ -38,12 +38,16 @@ Compilation Compile(std::string_view text, std::string_view file, const CompileO
   result.ok = findings.error_count() == 0;
   result.diagnostics_dropped = findings.dropped();
   result.diagnostics = findings.Take(text, file);
-  Silence(program,
-          {.tell_idle = options.advice && result.ok && result.diagnostics_dropped == 0,
-           .with_contours = options.further_advice != nullptr,
-           .file = file},
-          result.diagnostics);
-  if (options.step_lines && result.ok) result.step_lines = LinesOfSteps(program);
+  std::vector<AllowedFinding> allowed =
+      Silence(program,
+              {.tell_idle = options.advice && result.ok && result.diagnostics_dropped == 0,
+               .with_contours = options.further_advice != nullptr,
+               .file = file},
+              result.diagnostics);
+  if (options.source && result.ok) {
+    result.step_lines = LinesOfSteps(program);
+    result.allowed = std::move(allowed);
+  }
   result.module = std::move(program.module);
   return result;
 }

@@ -19,7 +19,7 @@ struct CompileOptions {
       kObjectLimitStandard;  // bytes; machine parameter OBJECT_LIMIT; 0: none
   bool advice = true;        // static warnings and advice
   bool inch = false;         // the text is an inch source: 7030 (OPT-2.04)
-  bool step_lines = false;   // fill in Compilation::step_lines
+  bool source = false;       // fill in Compilation::step_lines and allowed
   std::size_t diagnostics_max = 1000;
   // What others have to say about a program without errors: asked when `advice` is.
   std::function<void(const ParsedProgram&, Findings&)> further_advice{};
@@ -31,7 +31,8 @@ struct Compilation {
   Module module;                        // checked; complete only when ok
   std::vector<Diagnostic> diagnostics;  // in order of place
   std::uint64_t diagnostics_dropped = 0;
-  std::vector<int> step_lines;  // as LinesOfSteps; only when asked for and ok
+  std::vector<int> step_lines;          // as LinesOfSteps; only when asked for and ok
+  std::vector<AllowedFinding> allowed;  // alike: what comments allow
 };
 
 // Never fails: bad programs are diagnostics. `file` is only a name for them.

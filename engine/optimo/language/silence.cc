@@ -15,6 +15,11 @@ namespace {
 constexpr std::string_view kMark = "rmlcell:";
 constexpr std::string_view kAllow = "allow";
 constexpr std::string_view kWholeFile = "in file";
+// Warnings that a program gets when it runs, whatever was found in its text.
+constexpr std::array kToldByRuns{
+    ErrorCode::kFlyCancelled,    ErrorCode::kFlyReversal,       ErrorCode::kSpeedHeldByAxis,
+    ErrorCode::kSpeedLimited,    ErrorCode::kArcIsStraight,     ErrorCode::kWorkActiveAtEnd,
+    ErrorCode::kExecutableStale, ErrorCode::kBeamOffBySchedule, ErrorCode::kGasConflict};
 constexpr std::size_t kNoStatement = std::string_view::npos;
 
 std::string LowerCase(std::string_view text) {
@@ -82,6 +87,7 @@ class Silencer {
   void ReadComments();
   void Drop(std::vector<Diagnostic>& diagnostics);
   void Tell(const SilenceOptions& options, std::vector<Diagnostic>& diagnostics);
+  std::vector<AllowedFinding> Allowed() const;
 
  private:
   std::size_t StatementOf(const Comment& comment) const;
@@ -161,6 +167,25 @@ void Silencer::Drop(std::vector<Diagnostic>& diagnostics) {
   });
 }
 
+// Statements come in the order of the text, and so do the comments of each.
+std::vector<AllowedFinding> Silencer::Allowed() const {
+  std::vector<AllowedFinding> allowed;
+  int line = 1;
+  std::size_t at = 0;
+  for (const Allowance& allowance : allowances_) {
+    if (allowance.statement == kNoStatement) {
+      allowed.push_back({.line = 0, .number = allowance.number});
+      continue;
+    }
+    const std::size_t begin = program_.statements[allowance.statement].begin;
+    if (begin < at) continue;
+    line += static_cast<int>(std::ranges::count(program_.text.substr(at, begin - at), '\n'));
+    at = begin;
+    allowed.push_back({.line = line, .number = allowance.number});
+  }
+  return allowed;
+}
+
 void Silencer::Add(const Complaint& complaint, std::string_view file,
                    std::vector<Diagnostic>& diagnostics) const {
   const Comment& at = program_.comments[complaint.comment];
@@ -184,6 +209,10 @@ void Silencer::Tell(const SilenceOptions& options, std::vector<Diagnostic>& diag
   for (const Allowance& allowance : allowances_) {
     const bool of_contours = allowance.number >= 7317 && allowance.number <= 7319;
     if (!options.tell_idle || allowance.used || (of_contours && !options.with_contours)) continue;
+    if (std::ranges::any_of(
+            kToldByRuns, [&](ErrorCode code) { return Lookup(code).number == allowance.number; })) {
+      continue;
+    }
     complaints_.push_back({allowance.comment,
                            "allow " + std::to_string(allowance.number) + " silences nothing here"});
   }
@@ -198,12 +227,13 @@ void Silencer::Tell(const SilenceOptions& options, std::vector<Diagnostic>& diag
 
 }  // namespace
 
-void Silence(const ParsedProgram& program, const SilenceOptions& options,
-             std::vector<Diagnostic>& diagnostics) {
+std::vector<AllowedFinding> Silence(const ParsedProgram& program, const SilenceOptions& options,
+                                    std::vector<Diagnostic>& diagnostics) {
   Silencer silencer(program);
   silencer.ReadComments();
   silencer.Drop(diagnostics);
   silencer.Tell(options, diagnostics);
+  return silencer.Allowed();
 }
 
 }  // namespace rmlcell::optimo

@@ -16,13 +16,14 @@ namespace rmlcell::optimo {
 //
 // Upper and lower case are equal (OPT-1.02). Errors cannot be allowed. Comments that cannot be
 // followed, and numbers that silence nothing, are told as advice, which none of them silences.
+// Returns what is allowed, for findings that only a run can make.
 // Precondition: the findings are in order of place and have their lines.
 struct SilenceOptions {
   bool tell_idle = false;      // everything was looked at: what silences nothing is idle
   bool with_contours = false;  // the advice on contours, too (7317 to 7319)
   std::string_view file{};     // name for what is told
 };
-void Silence(const ParsedProgram& program, const SilenceOptions& options,
-             std::vector<Diagnostic>& diagnostics);
+std::vector<AllowedFinding> Silence(const ParsedProgram& program, const SilenceOptions& options,
+                                    std::vector<Diagnostic>& diagnostics);
 
 }  // namespace rmlcell::optimo

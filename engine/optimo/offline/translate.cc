@@ -82,7 +82,7 @@ machine::Translation TranslateOptimo(const machine::SourceFile& file,
                                  {.object_limit = object_limit,
                                   .advice = options.advice,
                                   .inch = form == FileForm::kInchSource,
-                                  .step_lines = options.step_lines,
+                                  .source = options.source,
                                   .diagnostics_max = machine::kDiagnosticsMax,
                                   .further_advice = ContourAdvice(contour_machine)});
   machine::Translation translation;
@@ -91,7 +91,8 @@ machine::Translation TranslateOptimo(const machine::SourceFile& file,
   translation.diagnostics = std::move(compiled.diagnostics);
   translation.diagnostics_dropped = compiled.diagnostics_dropped;
   if (compiled.ok) AddFigures(compiled.module, file.bytes.size(), translation);
-  translation.step_lines = std::move(compiled.step_lines);
+  translation.source = {.step_lines = std::move(compiled.step_lines),
+                        .allowed = std::move(compiled.allowed)};
   return translation;
 }
 

@@ -52,8 +52,7 @@ const TipPose kNorthEast{{1000, 1000, 0}};
 // sqrt(6 x 250 / 40000)) = 0.193649 s, the deviation of each axis 3/32 T_b 250 = 4.538655 mm. Each
 // move takes 4 s at full speed and its ramp from or to rest half of 250/2000 + 2000/40000 more.
 TEST(AxesCorner, RightAngle) {
-  const auto motions =
-      PlanOf({InAxes(kHere, kEast, 0.5), InAxes(kEast, kNorthEast, 0.5, false)});
+  const auto motions = PlanOf({InAxes(kHere, kEast, 0.5), InAxes(kEast, kNorthEast, 0.5, false)});
   ASSERT_EQ(motions.size(), 4u);
   const double bend_s = std::sqrt(6.0 * 250.0 / 40000.0);
   EXPECT_EQ(motions[1].corner.passage, Passage::kBlend);
@@ -69,8 +68,7 @@ TEST(AxesCorner, RightAngle) {
 
 // By time the speeds go over by 3u^2 - 2u^3: at a quarter of T_b X has lost 5/32 of its speed.
 TEST(AxesCorner, SpeedsGoOverSmoothly) {
-  const auto motions =
-      PlanOf({InAxes(kHere, kEast, 0.5), InAxes(kEast, kNorthEast, 0.5, false)});
+  const auto motions = PlanOf({InAxes(kHere, kEast, 0.5), InAxes(kEast, kNorthEast, 0.5, false)});
   const MotionView first_half(motions[1]);
   const TrajectoryPoint at = first_half.At(0.5 * motions[1].duration_s());
   EXPECT_NEAR(at.axis_velocity[0], 250.0 * 27.0 / 32.0, 1e-9);
@@ -110,7 +108,8 @@ TEST(AxesCorner, RotaryAxesTakePart) {
   ASSERT_EQ(FirstCorner(motions).passage, Passage::kBlendCapped);
   // B has a way of 2 rad, 1/pi s at full speed: reach and half of the way lower the share.
   const double share = FirstCorner(motions).speed;
-  const double bend_s = std::max(1.5 * share * kTurn / 20.0, std::sqrt(6.0 * share * kTurn / 400.0));
+  const double bend_s =
+      std::max(1.5 * share * kTurn / 20.0, std::sqrt(6.0 * share * kTurn / 400.0));
   EXPECT_NEAR(share * bend_s, 0.5 / kPi, 1e-9);
   EXPECT_NEAR(motions[1].path.to().a_rad, 6.0 - 3.0 / 32.0 * bend_s * share * kTurn, 1e-9);
 }

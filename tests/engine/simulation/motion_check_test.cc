@@ -13,11 +13,11 @@ machine::RunSetup Memory(const std::map<int, std::string>& programs) {
   machine::RunSetup setup{machine::Parameters(family.parameters())};
   for (const auto& [slot, text] : programs) {
     machine::Translation made =
-        family.Translate({.name = "test.S", .bytes = text}, setup.parameters, {.step_lines = true});
+        family.Translate({.name = "test.S", .bytes = text}, setup.parameters, {.source = true});
     EXPECT_TRUE(made.ok) << text;
     machine::StoredProgram& stored = setup.programs[slot];
     stored.object = std::make_shared<const std::string>(std::move(made.object));
-    stored.step_lines = std::make_shared<const std::vector<int>>(std::move(made.step_lines));
+    stored.source = std::make_shared<const machine::SourceNotes>(std::move(made.source));
   }
   return setup;
 }
@@ -81,6 +81,21 @@ TEST(MotionCheck, TellsAxesThatHoldBack) {
   ASSERT_FALSE(check.findings.empty());
   EXPECT_EQ(check.findings[0].code, ErrorCode::kSpeedHeldByAxis);
   EXPECT_FALSE(check.has_errors());
+}
+
+// A comment lets advice of the motion pass at its line, or in the whole text; an error never.
+TEST(MotionCheck, CommentsAllowAdvice) {
+  const std::string there = "COORD ABSOL\nPATH LIN\nMOVE (500.,500.,-400.,0.,1.)\n";
+  const std::string slow = "MOVE (500.,505.,-400.,0.,0.)";
+  const auto count = [&](const std::string& text) {
+    return Checked({{1, text}}, {1}).findings.size();
+  };
+  EXPECT_EQ(count(there + slow + "\n"), 1u);
+  EXPECT_EQ(count(there + slow + " ; rmlcell: allow 7321\n"), 0u);
+  EXPECT_EQ(count(there + "; rmlcell: allow 7321\n" + slow + "\n"), 0u);
+  EXPECT_EQ(count("; rmlcell: allow 7321 in file\n" + there + slow + "\n"), 0u);
+  EXPECT_EQ(count(there + "SPEED 50 ; rmlcell: allow 7321\n" + slow + "\n"), 1u);
+  EXPECT_EQ(count("MOVE (9000.,0.,0.,0.,0.) ; rmlcell: allow 7301\n"), 1u);
 }
 
 // What inputs decide is looked at as far as they let it happen, and said so.

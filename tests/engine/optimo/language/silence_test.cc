@@ -70,6 +70,18 @@ TEST(Silence, WhatSilencesNothingIsTold) {
   EXPECT_EQ(Details("SPEED 5 ; rmlcell: allow 7317\n",
                     {.further_advice = [](const ParsedProgram&, Findings&) {}}),
             (Texts{"allow 7317 silences nothing here"}));
+  // An axis that holds back is found when the program runs.
+  EXPECT_EQ(Details("SPEED 5 ; rmlcell: allow 7321\n"), Texts{});
+}
+
+// What is allowed comes along with the object, for the run.
+TEST(Silence, AllowancesComeWithTheSource) {
+  const std::string text =
+      "; rmlcell: allow 7316 in file\nSPEED 5\nPATH LIN ; rmlcell: allow 7321 7304\n"
+      "; rmlcell: allow 7321\nMOVE (1.,\n2.,3.,0.,0.)\n";
+  EXPECT_EQ(Compile(text, "", {.source = true}).allowed,
+            (std::vector<AllowedFinding>{{0, 7316}, {3, 7321}, {3, 7304}, {5, 7321}}));
+  EXPECT_TRUE(Compile(text, "", {}).allowed.empty());
 }
 
 }  // namespace

@@ -57,9 +57,9 @@ TEST(SourceMap, DamagedMapsArePassedOver) {
 // OPT-6.01, OPT-1.20, OPT-6.04
 TEST(SourceMap, KnowsTheLinesOfTheSteps) {
   EXPECT_EQ(LinesOfSteps(kText), (std::vector<int>{3, 4, 6}));
-  EXPECT_EQ(Compile(kText, "", {.step_lines = true}).step_lines, (std::vector<int>{3, 4, 6}));
+  EXPECT_EQ(Compile(kText, "", {.source = true}).step_lines, (std::vector<int>{3, 4, 6}));
   EXPECT_TRUE(Compile(kText, "", {}).step_lines.empty());
-  EXPECT_TRUE(Compile("SPEED 101\n", "", {.step_lines = true}).step_lines.empty());
+  EXPECT_TRUE(Compile("SPEED 101\n", "", {.source = true}).step_lines.empty());
   EXPECT_EQ(LinesOfSteps("DECLARE X = VR[0]\n; text\n10\nDEFINE PAR[0] = INT\nX = 1.\nENDTASK\n"),
             (std::vector<int>{4, 5, 6, 7}));
   EXPECT_EQ(LinesOfSteps(""), (std::vector<int>{1}));
