@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "engine/motion/axis_demand.h"
 
@@ -182,16 +183,28 @@ StopOnPath StopAlong(std::span<const PlannedMotion> ahead, double t_s, const Axi
   // The motions as planned, one after the other, until it is possible to brake; at the latest the
   // plan itself comes to rest.
   std::vector<PlannedMotion> planned;
-  for (std::size_t first = 0; first < ahead.size(); ++first, t_s = 0.0) {
+  double planned_s = 0.0;
+  // Braking gently at once may take longer than to brake behind the bend: the soonest rest counts.
+  std::optional<StopOnPath> best;
+  double best_s = HUGE_VAL;
+  for (std::size_t first = 0; first < ahead.size() && planned_s < best_s; ++first, t_s = 0.0) {
     const std::span<const PlannedMotion> from_here = ahead.subspan(first);
     const std::size_t rest = RestOf(from_here);
     for (const double ease : kEases) {
       StopOnPath stop = StopWith(from_here, t_s, ease);
       const bool beyond = stop.index > rest || (!stop.complete && rest < from_here.size());
       if (beyond || !AxesCan(stop.motions, axes)) continue;
-      stop.index += first;
-      stop.motions.insert(stop.motions.begin(), planned.begin(), planned.end());
-      return stop;
+      if (!stop.complete) return best ? *best : stop;  // more is to be planned first
+      double stop_s = planned_s;
+      for (const PlannedMotion& motion : stop.motions) stop_s += motion.speed.duration_s();
+      if (stop_s < best_s) {
+        stop.index += first;
+        stop.motions.insert(stop.motions.begin(), planned.begin(), planned.end());
+        best = std::move(stop);
+        best_s = stop_s;
+      }
+      if (first == 0 && ease == 1.0) return *best;
+      break;
     }
     PlannedMotion part = ahead[first];
     const double s = part.speed.At(t_s).s;
@@ -201,11 +214,16 @@ StopOnPath StopAlong(std::span<const PlannedMotion> ahead, double t_s, const Axi
       part.speed = part.speed.Part(s, length);
     }
     part.settling_s = 0.0;
-    if (s < length) planned.push_back(part);
+    if (s < length) {
+      planned.push_back(part);
+      planned_s += part.speed.duration_s();
+    }
     if (SpeedAtEnd(ahead[first]) == 0.0) {
+      if (best) break;
       return {.motions = planned, .index = first, .s = length, .complete = true};
     }
   }
+  if (best) return *best;
   StopOnPath stop;
   stop.complete = false;
   return stop;

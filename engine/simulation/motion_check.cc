@@ -11,7 +11,8 @@ namespace rmlcell::simulation {
 namespace {
 
 bool IsOfMotion(ErrorCode code) {
-  return code == ErrorCode::kTargetOutOfTravel || code == ErrorCode::kSpeedHeldByAxis;
+  return code == ErrorCode::kTargetOutOfTravel || code == ErrorCode::kSpeedHeldByAxis ||
+         code == ErrorCode::kFlyReversal;
 }
 
 // What one run tells about its motion, and which programs take part.

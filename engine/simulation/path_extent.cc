@@ -193,7 +193,7 @@ std::array<CoordinateSweep, 2> RotarySweep(const PathPart& part) {
 
 double TipLength(const PathPart& part) {
   const PathPiece& path = part.path;
-  if (path.kind() == PathPiece::Kind::kRotary) return 0.0;
+  if (path.kind() == PathPiece::Kind::kRotary || !(path.length() > 0.0)) return 0.0;
   if (!path.in_axes()) return part.to - part.from;
   if (path.kind() == PathPiece::Kind::kJoint && !Turns(path)) {
     return Norm(path.to().tip - path.from().tip) * (part.to - part.from) / path.length();

@@ -38,7 +38,7 @@ struct SampleRecorder::State {
   // Lines up to `until_s`, not including it, with the machine standing as it is.
   void StandUntil(double until_s) {
     if (!known) return;
-    speed = 0.0;
+    if (until_s > looked_s) speed = 0.0;
     for (; NextTime() < until_s && !closed; ++next) Line(NextTime(), {});
   }
 
@@ -72,7 +72,8 @@ struct SampleRecorder::State {
     block.clear();
   }
 
-  void Look(const motion::TrajectoryPoint& point) {
+  void Look(const motion::TrajectoryPoint& point, double at_s) {
+    looked_s = at_s;
     tip = point.tip.tip;
     speed = point.tip_speed();
     axes = shape.five_axis ? point.axes
@@ -88,7 +89,8 @@ struct SampleRecorder::State {
   std::uint64_t lines = 0;
   bool closed = false;
 
-  bool known = false;  // where the machine is
+  bool known = false;     // where the machine is
+  double looked_s = 0.0;  // when it was there
   motion::AxisValues axes{};
   motion::Vec3 tip;
   double speed = 0.0;
@@ -108,19 +110,20 @@ void SampleRecorder::OnMotion(const machine::MotionDone& done) {
   const motion::MotionView view(*done.motion);
   const double start = ToSeconds(done.start);
   const double end = ToSeconds(done.end);
-  if (!s.known) s.Look(view.At(done.profile_start_s));  // it stood there before
+  if (!s.known) s.Look(view.At(done.profile_start_s), 0.0);  // it stood there before
   s.power = 0.0;
   s.StandUntil(start);
   s.place = done.place;
   for (; s.NextTime() < end && !s.closed; ++s.next) {
-    s.Look(view.At(TimeWithin(*done.motion, done.profile_start_s + (s.NextTime() - start))));
+    s.Look(view.At(TimeWithin(*done.motion, done.profile_start_s + (s.NextTime() - start))),
+           s.NextTime());
     s.power = done.beam_on
                   ? std::clamp(done.power.constant_percent + done.power.percent_per_mm_s * s.speed,
                                0.0, 100.0)
                   : 0.0;
     s.Line(s.NextTime(), {});
   }
-  s.Look(view.At(TimeWithin(*done.motion, done.profile_start_s + (end - start))));
+  s.Look(view.At(TimeWithin(*done.motion, done.profile_start_s + (end - start))), end);
 }
 
 void SampleRecorder::OnWait(const machine::Wait& wait) {

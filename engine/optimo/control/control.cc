@@ -241,6 +241,11 @@ void Control::ApplyScripted() {
   while (s_.next_input < setup_.inputs.size() && setup_.inputs[s_.next_input].at <= s_.now &&
          s_.phase != machine::RunPhase::kFinished) {
     const machine::InputChange input = setup_.inputs[s_.next_input++];
+    // Of several overrides of one instant the last one counts (motion.md 10, property 12).
+    if (input.kind == machine::InputKind::kOverride && s_.next_input < setup_.inputs.size()) {
+      const machine::InputChange& next = setup_.inputs[s_.next_input];
+      if (next.kind == input.kind && next.at == input.at) continue;
+    }
     Apply(input);
   }
 }
@@ -279,7 +284,8 @@ void Control::Apply(const machine::InputChange& input) {
       break;
     case machine::InputKind::kStop:
       if (s_.phase != machine::RunPhase::kRunning) break;
-      if (s_.halting) break;
+      // A HOLD that is still on its way to the target is overtaken, a STOP is not.
+      if (s_.halting && (s_.held.empty() || !s_.interrupted.empty())) break;
       if (!Busy() && !s_.passing) {
         Halt("STOP");
       } else if (s_.active && !s_.active->ended && BringToHalt()) {
@@ -333,7 +339,7 @@ machine::Place Control::PlaceOfMotion() const {
 void Control::HaltOnPath() {
   s_.halting = false;
   s_.place_ahead = std::exchange(s_.place, s_.halted_behind);
-  Halt(s_.held.empty() ? "STOP" : "HOLD");
+  Halt(s_.held.empty() || !s_.interrupted.empty() ? "STOP" : "HOLD");
 }
 
 void Control::Halt(std::string_view why) {
@@ -387,9 +393,14 @@ void Control::Resume() {
     s_.beam_returns = false;
     BeamOn(s_.beam.power);
   }
+  const bool interrupted = !s_.interrupted.empty();
   s_.timeline.insert(s_.timeline.begin(), s_.interrupted.begin(), s_.interrupted.end());
   s_.interrupted.clear();
   PlanHeld();
+  if (interrupted && std::exchange(s_.override_while_stopped, false)) {
+    StartNextItem();
+    AdaptMotions();
+  }
   if (s_.place_ahead) s_.place = *std::exchange(s_.place_ahead, std::nullopt);
 }
 

@@ -65,6 +65,7 @@ class Control : private VariableAccess {
   void TellMotion(SimTime until);
   void ArriveAtEnd();
   void BeginProfile();
+  void GoesOnInBackground(bool background);
   void EndMotionHere();
   bool BringToHalt();
   const MoveNote* NoteOf(std::uint64_t tag) const;
@@ -101,6 +102,7 @@ class Control : private VariableAccess {
     double measure = 1.0;        // s of what is planned anew per s of the motion
     motion::MoveCommand first;   // what is left of the command then
   };
+  void AdaptMotions();
   bool ReplanChain();
   std::optional<Onward> OnwardFrom(const ChainPlace& place, const motion::MoveCommand& command,
                                    double speed) const;

@@ -233,7 +233,9 @@ void Control::WatchAndGoOn(const Instruction& i, std::uint64_t first_tag, bool r
   }
   if (i.Has(kNext)) {
     StopMotions();
-    s_.background = Busy();
+    // Behind a /FLY passage the program waits for this very move to begin.
+    if (ran_ahead) s_.background_from = first_tag;
+    s_.background = Busy() && !ran_ahead;
     if (!s_.active && !s_.timeline.empty()) StartNextItem();
   }
 }

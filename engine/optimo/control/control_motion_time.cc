@@ -64,6 +64,7 @@ void Control::StartNextItem() {
     ActiveMotion& active = *s_.active;
     active.motion = std::get<motion::PlannedMotion>(next);
     s_.timeline.pop_front();
+    if (s_.background_from && active.motion.tag >= *s_.background_from) GoesOnInBackground(true);
     if (MoveNote* note = NoteOf(active.motion.tag)) {
       const std::vector<BeyondTravel> beyond = std::move(note->beyond);
       note->beyond.clear();
@@ -77,7 +78,13 @@ void Control::StartNextItem() {
     }
     BeginProfile();
   }
-  if (!Busy()) s_.background = false;
+  if (!Busy()) GoesOnInBackground(false);
+}
+
+// Whether the program goes on beside the motion that is under way from now on.
+void Control::GoesOnInBackground(bool background) {
+  s_.background = background;
+  s_.background_from.reset();
 }
 
 // The profile of the motion under way begins now.
@@ -116,7 +123,7 @@ void Control::ArriveAtEnd() {
   TellMotion(s_.active->end);
   const ActiveMotion active = std::move(*s_.active);
   s_.active.reset();
-  if (!Busy()) s_.background = false;
+  if (!Busy()) GoesOnInBackground(false);
   s_.pending.told = s_.now;  // a wait during a /NEXT motion is told from here on
   MarkTasks();
   const bool joint = active.motion.path.in_axes();
@@ -204,8 +211,12 @@ bool Control::BringToHalt() {
     if (first + n < stop.index) add_marks(first + n, s_.timeline);
   }
   const std::span<const motion::PlannedMotion> left = std::span(ahead).subspan(stop.index);
-  const std::vector<motion::PlannedMotion> restart =
+  std::vector<motion::PlannedMotion> restart =
       motion::RestartAlong(left, stop.s, parameters_.limits.axes);
+  if (!stop.motions.empty() && stop.motions.back().ends_move && !restart.empty()) {
+    motion::PlannedMotion& settling = restart.front();  // all that is left of that move
+    if (!(settling.path.length() > 0.0)) settling.ends_move = false;
+  }
   s_.interrupted.clear();
   // RestartAlong leaves out the first motion when the machine stands at its end.
   const std::size_t dropped = left.size() - restart.size();

@@ -44,8 +44,17 @@ void Control::ChangeOverride(double percent) {
   if (!(percent > 0.0) || percent == before) return;
   s_.override_percent = percent;
   for (AppendedItem& item : s_.held) AdaptToOverride(item);
-  if (!s_.active || s_.active->ended || s_.halting || s_.now >= s_.active->arrival) return;
-  if (!s_.interrupted.empty() || ReplanChain()) return;
+  if (s_.halting || !s_.interrupted.empty()) {
+    s_.override_while_stopped = true;  // a ramp to rest is not changed: what is behind it is
+    return;
+  }
+  AdaptMotions();
+}
+
+// The motions planned with another override, from the one under way on.
+void Control::AdaptMotions() {
+  if (!s_.active || s_.active->ended || s_.now >= s_.active->arrival) return;
+  if (ReplanChain()) return;
   ActiveMotion& active = *s_.active;
   if (active.motion.speed.end().speed > 0.0 || active.note.speed_percent <= 0.0) return;
   motion::MoveCommand command;

@@ -224,9 +224,11 @@ struct ControlState {
   machine::Place halted_behind{};  // the move that HOLD made exact, or that STOP interrupted
   // Where the program had run ahead to when HOLD or STOP halted the motion; set while halted.
   std::optional<machine::Place> place_ahead{};
-  bool halting = false;        // coming to rest for a STOP, or a HOLD inside a chain
-  bool passing = false;        // the planner may hold a /FLY motion back
-  bool background = false;     // the motion under way is one of /NEXT
+  bool override_while_stopped = false;  // the feed override changed since a STOP
+  bool halting = false;                 // coming to rest for a STOP, or a HOLD inside a chain
+  bool passing = false;                 // the planner may hold a /FLY motion back
+  bool background = false;              // the motion under way is one of /NEXT
+  std::optional<std::uint64_t> background_from{};  // it is the one of this tag, still to come
   bool condition_met = false;  // /START of the instruction in execution was true
   SimTime instruction_since{0};
   Polling polling{};

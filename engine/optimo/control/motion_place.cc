@@ -38,7 +38,7 @@ PlaceOnMove PlaceInAxes(const motion::PathPiece& motion, const motion::PathPiece
 }  // namespace
 
 std::optional<PlaceOnMove> PlaceOf(const motion::PathPiece& motion, const motion::PathPiece& move) {
-  if (motion.kind() != move.kind()) return std::nullopt;
+  if (motion.kind() != move.kind() || !(motion.length() > 0.0)) return std::nullopt;
   switch (motion.kind()) {
     case Kind::kLine:
       return PlaceOnMove{.begin = motion::Distance(motion.from().tip, move.from().tip)};

@@ -41,6 +41,32 @@ TEST(StopAlong, BrakesIntoTheBend) {
   EXPECT_EQ(stop.motions[1].speed.end().speed, 0.0);
 }
 
+// A STOP within a bend of the axes (motion.md 4.5), whose middle takes all that they have: braking
+// begins at once if that is sooner, else behind the bend. So it takes no longer than to pass the
+// bend and to brake behind it.
+TEST(StopAlong, BendsOfTheAxesDoNotDelayTheRest) {
+  MoveCommand east, north;
+  east.kind = north.kind = MoveCommand::Kind::kPointToPointAxes;
+  east.path = PathPiece::Joint({{0, 0, 0}}, {{500, 0, 0}, 1.0, 0.0});
+  north.path = PathPiece::Joint({{500, 0, 0}, 1.0, 0.0}, {{500, 400, 0}, 1.0, 0.5});
+  east.fly = true;
+  const std::vector<PlannedMotion> plan = Plan({east, north});
+  ASSERT_EQ(plan.size(), 4u);
+  const std::span<const PlannedMotion> bend = std::span(plan).subspan(1);
+  const double passing = plan[1].duration_s() + plan[2].duration_s();
+  const StopOnPath behind = StopAlong(std::span(plan).subspan(3), 0.0, StandardMachine().axes);
+  double braking = 0.0;
+  for (const PlannedMotion& motion : behind.motions) braking += motion.duration_s();
+  for (int k = 0; k < 20; ++k) {
+    const double t = plan[1].duration_s() * k / 20.0;
+    const StopOnPath stop = StopAlong(bend, t, StandardMachine().axes);
+    ASSERT_TRUE(stop.complete);
+    double time = 0.0;
+    for (const PlannedMotion& motion : stop.motions) time += motion.duration_s();
+    EXPECT_LE(time, passing - t + braking + 1e-9) << k;
+  }
+}
+
 // ACCEL 100 before a right angle passed steadily, 20 behind it: each half of the bend brakes as its
 // own move does, but not harder than curve_tangential allows. OPT-2.16, OPT-B.31
 TEST(StopAlong, EachHalfOfABendBrakesAsItsOwnMoveDoes) {

@@ -168,6 +168,14 @@ TEST(PathExtent, StraightJointMove) {
   EXPECT_NEAR(TipLength({joint, Head{}, 0.25, 0.75}), 25.0, 1e-12);
 }
 
+// What is left of a move that was stopped on its target.
+TEST(PathExtent, StandingHasNoLength) {
+  const PathPiece joint = PathPiece::Joint({{0, 0, 0}, 0.0, 0.2}, {{30, 40, 0}, 1.0, 0.5});
+  const PathPiece here = joint.Standing(1.0);
+  EXPECT_TRUE(here.in_axes());
+  EXPECT_EQ(TipLength({here, Head{}, 0.0, 0.0}), 0.0);
+}
+
 // A passage in COORD ROBOT (motion.md 4.5) in which the head turns: extent and length of the tip's
 // way against ten thousand chords of it.
 TEST(PathExtent, PassageInAxes) {

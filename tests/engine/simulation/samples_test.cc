@@ -8,6 +8,7 @@
 
 #include "engine/core/number_text.h"
 #include "engine/motion/trajectory.h"
+#include "tests/engine/motion/standard_machine.h"
 #include "tests/engine/simulation/fake_run.h"
 
 namespace rmlcell::simulation {
@@ -113,6 +114,33 @@ TEST(Samples, WaitsAndEventsHaveTheirLines) {
   EXPECT_EQ(at_fifty, 4);
   EXPECT_EQ(events, 1);
   EXPECT_EQ(rows.back()[10], "0.0000");
+}
+
+// motion.md 9: an event between two motions that pass into each other has the speed there.
+TEST(Samples, EventsOnTheWayHaveTheirSpeed) {
+  motion::Planner planner(motion::StandardMachine());
+  motion::MoveCommand move;
+  move.speed_fraction = 0.1;
+  move.fly = true;
+  move.path = motion::PathPiece::Line({}, {{100, 0, 0}});
+  ASSERT_TRUE(planner.Append(move));
+  move.path = motion::PathPiece::Line({{100, 0, 0}}, {{100, 100, 0}});
+  ASSERT_TRUE(planner.Append(move));
+  planner.Stop();
+  Script script;
+  script.Step(1, 1);
+  int motions = 0;
+  while (const auto item = planner.Next()) {
+    if (++motions == 3) script.Signal(machine::Signal::kOutput, 1.0, 0.0, 16);
+    script.Motion(std::get<motion::PlannedMotion>(*item));
+  }
+  int events = 0;
+  for (const Row& row : Sampled(script, 10.0)) {
+    if (row[13] != "output 16 = 1") continue;
+    ++events;
+    EXPECT_NEAR(Number(row, 9), 50.0, 1e-6);
+  }
+  EXPECT_EQ(events, 1);
 }
 
 // The head of the gantry: axes and tip are different points; K03 has L = 300 along u.

@@ -87,6 +87,57 @@ TEST(Motion, PassagesInCoordRobot) {
   EXPECT_NEAR(ran.First("OL[20] 1").at_s - there.time_s, 4.0 + 0.5 * ramps, 1e-6);
 }
 
+// OPT-2.59: behind a /FLY passage the instructions after a MOVE with /NEXT begin with that move,
+// which is the middle of the bend, and nothing of the move before it is lost.
+TEST(Motion, NextBehindAPassage) {
+  const std::string text = std::string(kAbsol) +
+                           "SPEED 30\nMOVE (100.,1500.,-300.,0.,0.)\n"
+                           "MOVE (600.,1500.,-300.,0.,0.)/FLY\nMOVE (600.,1800.,-300.,0.,0.)";
+  const std::string behind = "OL[20]=1\nDELAY 20.\n";
+  const Ran plain = RunText(text + "\n");
+  const Ran next = RunText(text + "/NEXT\n" + behind);
+  ASSERT_TRUE(next.Told("OL[20] 1"));
+  ASSERT_EQ(next.moves.size(), 3u);
+  EXPECT_NEAR(next.First("OL[20] 1").at_s, ToSeconds(plain.moves[1].at), 1e-6);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(ToSeconds(next.moves[k].at), ToSeconds(plain.moves[k].at), 1e-6) << k;
+    EXPECT_NEAR(motion::Distance(next.moves[k].tip.tip, plain.moves[k].tip.tip), 0.0, 1e-6) << k;
+  }
+}
+
+// motion.md 6, OPT-B.34: STOP, and the door, stop the machine at once, also on its way to the
+// target of a HOLD: from 50 mm/s in 2 sqrt(50/40000) = 0.0707 s.
+TEST(Motion, StopOvertakesAHold) {
+  const std::string text = std::string(kAbsol) +
+                           "SPEED 10\nMOVE (500.,2201.2,-350.,0.,0.)/FLY\n"
+                           "MOVE (500.,1500.,-350.,0.,0.)\n";
+  const Ran plain = RunText(text);
+  for (const InputKind stop : {InputKind::kStop, InputKind::kDoor}) {
+    const Ran ran = RunText(text, {.inputs = {{FromSeconds(2.0), InputKind::kHold, 0, 1.0},
+                                              {FromSeconds(3.0), stop, 0, 1.0},
+                                              {FromSeconds(4.0), InputKind::kDoor, 0, 0.0},
+                                              {FromSeconds(5.0), InputKind::kStart, 0, 1.0}}});
+    ASSERT_TRUE(ran.Told("halt STOP"));
+    EXPECT_NEAR(ran.First("halt STOP").at_s, 3.0 + 2.0 * std::sqrt(50.0 / 40000.0), 1e-6);
+    EXPECT_EQ(ran.outcome.kind, machine::OutcomeKind::kCompleted);
+    EXPECT_NEAR(motion::Distance(ran.end.tip.tip, plain.end.tip.tip), 0.0, 1e-9);
+  }
+}
+
+// A STOP that ends on the target of the move: it is told once.
+TEST(Motion, StopOnTheTarget) {
+  for (const std::string start : {"COORD ROBOT\nMOVE (221.02,2201.2,-50.,0.,0.)\n",
+                                  "COORD ABSOL\nPATH LIN\nMOVE (221.02,2201.2,-350.,0.,0.)\n"}) {
+    const Ran plain = RunText("SPEED 10\n" + start);
+    const double at = plain.time_s - 0.048 - 0.02;  // braking already
+    const Ran ran =
+        RunText("SPEED 10\n" + start, {.inputs = {{FromSeconds(at), InputKind::kStop, 0, 1.0},
+                                                  {FromSeconds(10.0), InputKind::kStart, 0, 1.0}}});
+    EXPECT_EQ(ran.outcome.kind, machine::OutcomeKind::kCompleted);
+    EXPECT_EQ(ran.moves.size(), 1u) << start;
+  }
+}
+
 // OPT-2.45, OPT-2.46, OPT-2.47: /FLY before COORD and before the end.
 TEST(Motion, FlyBeforeCoordAndBeforeTheEnd) {
   const std::string fly =

@@ -97,11 +97,33 @@ TEST(OverrideRules, ABendTooNearKeepsItsShape) {
 // Property 12 of motion.md 10: 100 -> x -> 100 with no time between changes nothing.
 TEST(OverrideRules, ThereAndBackAtOnceChangesNothing) {
   const Ran plain = RunText(kChain);
-  const SimTime at = FromSeconds(3.0);
-  const Ran ran = RunText(kChain, {.inputs = {{at, InputKind::kOverride, 0, 40.0},
-                                              {at, InputKind::kOverride, 0, 100.0}}});
-  EXPECT_NEAR(ran.time_s, plain.time_s, 1e-6);
-  EXPECT_NEAR(ran.DistanceTo(kFirst), plain.DistanceTo(kFirst), 1e-9);
+  for (const double at_s : {0.03, 3.0}) {  // speeding up, and at full speed
+    const SimTime at = FromSeconds(at_s);
+    const Ran ran = RunText(kChain, {.inputs = {{at, InputKind::kOverride, 0, 40.0},
+                                                {at, InputKind::kOverride, 0, 100.0}}});
+    EXPECT_NEAR(ran.time_s, plain.time_s, 1e-9);
+    EXPECT_NEAR(ran.DistanceTo(kFirst), plain.DistanceTo(kFirst), 1e-9);
+  }
+}
+
+// motion.md 6: set while the machine stands on its way after a STOP, it counts for the rest of the
+// move under way and for all that was planned behind it. 1000 mm at 50 mm/s, stopped after a good
+// 4 s; 10 % of that for the rest, in a chain and by itself, on contours and in COORD ROBOT.
+TEST(OverrideRules, ChangedDuringAStop) {
+  const std::string contour = "COORD ABSOL\nPATH LIN\nSPEED 10\n";
+  for (const auto& [start, z] :
+       {std::pair{contour, "-350."}, std::pair{std::string("COORD ROBOT\nSPEED 10\n"), "-50."}}) {
+    for (const std::string fly : {"", "/FLY"}) {
+      const std::string text = start + "MOVE (1021.02,2201.2," + z + ",0.,0.)" + fly +
+                               "\nMOVE (1021.02,1701.2," + z + ",0.,0.)\n";
+      const Ran ran = RunText(text, {.inputs = {{FromSeconds(4.0), InputKind::kStop, 0, 1.0},
+                                                {FromSeconds(5.0), InputKind::kOverride, 0, 10.0},
+                                                {FromSeconds(6.0), InputKind::kStart, 0, 1.0}}});
+      ASSERT_EQ(ran.outcome.kind, machine::OutcomeKind::kCompleted) << text;
+      // About 1300 mm are left, at 5 mm/s.
+      EXPECT_NEAR(ran.time_s, 6.0 + 1300.0 / 5.0, 3.0) << text;
+    }
+  }
 }
 
 // At any time, on long and on very short moves: nothing jumps, every program ends at its last
