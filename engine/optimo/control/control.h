@@ -127,6 +127,8 @@ class Control : private VariableAccess {
   bool AppendMotion(const motion::PathPiece& path, const Instruction& i, const MoveNote& note,
                     bool settles);
   bool NeverMoves() const;
+  motion::TipPose FromProgram(const std::array<double, 5>& values) const;
+  bool GoesNowhere(const Instruction& i);
   void NotUnderWay(const Instruction& i);
   bool MoveHole(const Instruction& i, const motion::TipPose& from, const motion::TipPose& target,
                 MoveNote note);

@@ -211,7 +211,7 @@ bool Control::NeedsStandstill(const Instruction& i) {
   if (fly != FlyClass::kDepends) return fly == FlyClass::kStandstill;
   switch (i.op) {
     case Op::kMove:
-      return i.Has(kStart) || (i.Has(kTime) && NeverMoves());
+      return i.Has(kStart) || (i.Has(kTime) && NeverMoves()) || (!i.Has(kFly) && GoesNowhere(i));
     case Op::kEndtask:
       return program().frames.size() == 1;
     case Op::kWork: {

@@ -35,10 +35,33 @@ std::optional<motion::TipPose> Control::Target(const Instruction& i, bool via) {
     if (!value) return std::nullopt;
     v[static_cast<std::size_t>(n)] = *value;
   }
+  return FromProgram(v);
+}
+
+// In the machine frame; of COORD ROBOT the column.
+motion::TipPose Control::FromProgram(const std::array<double, 5>& v) const {
   motion::TipPose pose{.tip = {v[0], v[1], v[2]}, .a_rad = v[3], .b_rad = v[4]};
   if (modal().coord == CoordType::kAbsol)
     pose.tip = s_.machine.work_offset.transform().ToMachine(pose.tip);
   return pose;
+}
+
+// A MOVE to where the motions so far end. No error is raised: the MOVE itself does that.
+bool Control::GoesNowhere(const Instruction& i) {
+  const bool robot = modal().coord == CoordType::kRobot;
+  if (!robot && modal().path != PathType::kPtp && modal().path != PathType::kLin) return false;
+  std::array<double, 5> v{};
+  for (int n = 0; n < 5; ++n) {
+    const Result<Value> value = Evaluate(module().Value(i, n), *this);
+    if (!value) return true;
+    v[static_cast<std::size_t>(n)] = value->number;
+  }
+  const motion::AxisPose& from = s_.planned_axes;
+  const motion::TipPose to = FromProgram(v);
+  const motion::PathPiece path =
+      robot ? motion::PathPiece::Joint({from.column, from.a_rad, from.b_rad}, to)
+            : motion::PathPiece::Line(HeadNow().TipOf(from), to);
+  return !(path.length() > 0.0);
 }
 
 // OPT-B.22

@@ -141,6 +141,11 @@ void Control::ArriveAtEnd() {
     WarnAt(active.note.place, ErrorCode::kFlyReversal,
            "the path turns back: the machine stops at the target", "OPT-B.25");
   }
+  if (corner.passage == motion::Passage::kStopNeighbour) {
+    WarnAt(active.note.place, ErrorCode::kFlyCancelled,
+           "/FLY beside a motion that cannot be passed into: the machine stops at the target",
+           "OPT-2.48");
+  }
   if (active.note.last || active.ended) {
     observer_.OnMove({.at = s_.now,
                       .place = active.note.place,

@@ -138,6 +138,22 @@ TEST(Motion, StopOnTheTarget) {
   }
 }
 
+// motion.md 3.6: a MOVE to where the machine goes anyway ends the chain, with 7304, and is told
+// when that is over; so does a motion that cannot be passed into.
+TEST(Motion, WhatEndsAChainOfPassages) {
+  const std::string there = std::string(kAbsol) + "MOVE (600.,1500.,-300.,0.,0.)/FLY\n";
+  const Ran nowhere = RunText(there +
+                              "MOVE (600.,1800.,-300.,0.,0.)/FLY\n"
+                              "MOVE (600.,1800.,-300.,0.,0.)\nOL[20]=1\n"
+                              "MOVE (100.,1800.,-300.,0.,0.)\n");
+  ASSERT_EQ(nowhere.moves.size(), 4u);
+  EXPECT_EQ(nowhere.moves[2].tip.tip, (motion::Vec3{600.0, 1800.0, -300.0}));
+  EXPECT_GE(nowhere.moves[2].at, nowhere.moves[1].at);
+  EXPECT_EQ(nowhere.Count("E7304"), 1);
+  const Ran turn = RunText(there + "MOVE (600.,1500.,-300.,0.5,0.)\n");
+  EXPECT_EQ(turn.Count("E7304"), 1);
+}
+
 // OPT-2.45, OPT-2.46, OPT-2.47: /FLY before COORD and before the end.
 TEST(Motion, FlyBeforeCoordAndBeforeTheEnd) {
   const std::string fly =
