@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/motion/least.h"
 #include "engine/motion/motion_chain.h"
 
 namespace rmlcell::motion {
@@ -13,6 +14,16 @@ constexpr double kSameLimit = 1e-9;  // relative
 
 // A bend that takes all that the axes have takes nine tenths of it at this share of its speed.
 constexpr double kLeavesRoom = 0.95;
+
+// How near the tip comes to where it would be at `target`, on a curve of the axes.
+double TipDistance(const CornerCurve& curve, const Head& head, const TipPose& target) {
+  const auto tip_of = [&](const TipPose& axes) {
+    return head.TipOf({axes.tip, axes.a_rad, axes.b_rad}).tip;
+  };
+  constexpr int kIntervals = 32;
+  const Vec3 tip = tip_of(target);
+  return LeastAlong([&](double u) { return Distance(tip_of(curve.At(u)), tip); }, 1.0, kIntervals);
+}
 
 }  // namespace
 
@@ -162,13 +173,10 @@ void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
   const CornerCurve curve = CurveAround(leg, cut, span.head_steady);
   curves_.Push(curve);
   if (leg.in_axes) {
-    const auto tip_of = [&](const TipPose& axes) {
-      return in.head.TipOf({axes.tip, axes.a_rad, axes.b_rad}).tip;
-    };
     span.head_steady = false;  // whatever it does: the speed is not that of the tip
     span.curve_length = curve.way_s();
     span.curve_middle = curve.At(0.5);
-    span.report.deviation_mm = Distance(tip_of(span.curve_middle), tip_of(in.path.to()));
+    span.report.deviation_mm = TipDistance(curve, in.head, in.path.to());
     return;
   }
   if (leg.corner.lines()) {

@@ -12,7 +12,7 @@ namespace {
 
 bool IsOfMotion(ErrorCode code) {
   return code == ErrorCode::kTargetOutOfTravel || code == ErrorCode::kSpeedHeldByAxis ||
-         code == ErrorCode::kFlyReversal;
+         code == ErrorCode::kFlyReversal || code == ErrorCode::kNoMotion;
 }
 
 // What one run tells about its motion, and which programs take part.
@@ -90,7 +90,19 @@ Status RunForCheck(const machine::MachineFamily& family, machine::RunSetup setup
   const auto run = family.NewRun(std::move(setup), checked.listener);
   if (!run) return run.error();
   Drive(**run, inputs);
-  checked.cut_short = WhyCutShort((*run)->outcome());
+  const machine::Outcome outcome = (*run)->outcome();
+  checked.cut_short = WhyCutShort(outcome);
+  if (outcome.code == ErrorCode::kNoMotion) {
+    // A warning: with what comes from outside the speed may be another.
+    checked.listener.OnDiagnostic((*run)->state().time, {.code = *outcome.code,
+                                                         .severity = Severity::kWarning,
+                                                         .detail = outcome.detail,
+                                                         .rule = "OPT-B.22",
+                                                         .where = {.line = outcome.place.line},
+                                                         .program = outcome.place.program,
+                                                         .step = outcome.place.step,
+                                                         .at = (*run)->state().time});
+  }
   return {};
 }
 

@@ -79,9 +79,12 @@ std::vector<PlotPage::Panel> PlotPage::PanelsOf(const PlotOptions& options) cons
   std::vector<Panel> panels;
   for (const PlotCurve curve : options.curves) {
     if (curve == PlotCurve::kSpeed) {
+      // A run of positioning moves asks for no speed of the tip.
+      const bool asks = Limits(curves_.envelope, kFeed).second > 0.0;
       panels.push_back({.title = "tip speed",
                         .unit = "mm/s",
-                        .series = {kSpeed, kFeed},
+                        .series = asks ? std::vector<std::size_t>{kSpeed, kFeed}
+                                       : std::vector<std::size_t>{kSpeed},
                         .colour = "#0b4fa8",
                         .height = 220.0,
                         .from_zero = true});

@@ -231,7 +231,7 @@ void Control::ActOnTime() {
   }
   if (s_.phase == machine::RunPhase::kRunning && s_.now >= setup_.budget.virtual_time) {
     std::string detail =
-        "the run takes longer than " + ShortestText(ToSeconds(setup_.budget.virtual_time)) + " s";
+        "the run takes longer than " + TrimmedText(ToSeconds(setup_.budget.virtual_time), 9) + " s";
     if (WaitsForEver()) detail += ": it waits for a condition, and no input is to come";
     BreakOff(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kTimeBudget, std::move(detail));
   }

@@ -126,6 +126,14 @@ TEST(AxesCorner, ShortNeighbourLowersBothSpeeds) {
   EXPECT_NEAR(motions[2].path.to().tip.y, 5.0, 1e-9);
 }
 
+// From 500 to 100 mm/s on one line: speeds change, and yet the target lies on the way.
+TEST(AxesCorner, OnALineNothingDeviates) {
+  const auto motions =
+      PlanOf({InAxes(kHere, kEast, 1.0), InAxes(kEast, {{2000, 0, 0}}, 0.2, false)});
+  EXPECT_EQ(FirstCorner(motions).passage, Passage::kBlend);
+  EXPECT_NEAR(FirstCorner(motions).deviation_mm, 0.0, 1e-6);
+}
+
 // A move cut in two goes through as one; where its axes turn back it stops, motion.md 4.4.
 TEST(AxesCorner, StraightOnAndBack) {
   const TipPose to{{900, 300, -60}, 0.9, 0.3};

@@ -83,6 +83,23 @@ TEST(MotionCheck, TellsAxesThatHoldBack) {
   EXPECT_FALSE(check.has_errors());
 }
 
+// OPT-B.22, OPT-B.25: a MOVE that would never end, and a turn back that /FLY cannot pass.
+TEST(MotionCheck, TellsWhatARunWouldMeet) {
+  const MotionCheck still = Checked({{1, "SPEED 0\nMOVE (100.,100.,0.,0.,0.)\n"}}, {1});
+  ASSERT_EQ(still.findings.size(), 1u);
+  EXPECT_EQ(still.findings[0].code, ErrorCode::kNoMotion);
+  EXPECT_EQ(still.findings[0].where.line, 2);
+  EXPECT_FALSE(still.has_errors());
+  const MotionCheck back = Checked({{1,
+                                     "COORD ABSOL\nPATH LIN\nMOVE (500.,500.,-400.,0.,0.)\n"
+                                     "MOVE (600.,500.,-400.,0.,0.)/FLY\n"
+                                     "MOVE (500.,500.,-400.,0.,0.)\n"}},
+                                   {1});
+  ASSERT_EQ(back.findings.size(), 1u);
+  EXPECT_EQ(back.findings[0].code, ErrorCode::kFlyReversal);
+  EXPECT_EQ(back.findings[0].where.line, 4);
+}
+
 // A comment lets advice of the motion pass at its line, or in the whole text; an error never.
 TEST(MotionCheck, CommentsAllowAdvice) {
   const std::string there = "COORD ABSOL\nPATH LIN\nMOVE (500.,500.,-400.,0.,1.)\n";

@@ -161,7 +161,7 @@ TEST(Plot, SpeedDoesNotDipWhereMotionsMeet) {
     script.Motion(each);
   }
   const Drawn drawn = Draw(script, machine::MachineShape{}, "speed");
-  const std::vector<ScreenPoint> speed = Curve(drawn.svg, 1);
+  const std::vector<ScreenPoint> speed = Curve(drawn.svg, 0);
   const double top = HeightAt(speed, 0.2);
   for (const ScreenPoint& point : speed) {
     const double share = (point.x - speed.front().x) / (speed.back().x - speed.front().x);
@@ -179,6 +179,8 @@ TEST(Plot, LeavesOutWhatThereIsNot) {
   EXPECT_NE(svg.find(">Y<"), std::string::npos);
   EXPECT_EQ(svg.find(">X<"), std::string::npos);
   EXPECT_EQ(svg.find(">power<"), std::string::npos);
+  // Nobody asked for a speed of the tip.
+  EXPECT_EQ(svg.find(">asked for<"), std::string::npos);
   EXPECT_EQ(XmlFault(Draw(Script(), machine::MachineShape{}, "axes").svg), "");
 }
 
