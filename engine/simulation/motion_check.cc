@@ -24,7 +24,11 @@ class MotionListener final : public machine::RunObserver {
     last_program_ = place.program;
   }
   void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override {
-    if (IsOfMotion(diagnostic.code)) findings_.Add(at, diagnostic);
+    if (!IsOfMotion(diagnostic.code)) return;
+    Diagnostic told = diagnostic;
+    // With what comes from outside the speed may be another.
+    if (told.code == ErrorCode::kNoMotion) told.severity = Severity::kWarning;
+    findings_.Add(at, told);
   }
 
   const FindingList& findings() const { return findings_; }
@@ -90,19 +94,7 @@ Status RunForCheck(const machine::MachineFamily& family, machine::RunSetup setup
   const auto run = family.NewRun(std::move(setup), checked.listener);
   if (!run) return run.error();
   Drive(**run, inputs);
-  const machine::Outcome outcome = (*run)->outcome();
-  checked.cut_short = WhyCutShort(outcome);
-  if (outcome.code == ErrorCode::kNoMotion) {
-    // A warning: with what comes from outside the speed may be another.
-    checked.listener.OnDiagnostic((*run)->state().time, {.code = *outcome.code,
-                                                         .severity = Severity::kWarning,
-                                                         .detail = outcome.detail,
-                                                         .rule = "OPT-B.22",
-                                                         .where = {.line = outcome.place.line},
-                                                         .program = outcome.place.program,
-                                                         .step = outcome.place.step,
-                                                         .at = (*run)->state().time});
-  }
+  checked.cut_short = WhyCutShort((*run)->outcome());
   return {};
 }
 
