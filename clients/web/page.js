@@ -223,7 +223,7 @@ function draw() {
   const shown = kept.filter(FILTERS[filter]);
   drawRows(shown);
   byId("empty").hidden = shown.length > 0;
-  setText(byId("empty"), kept.length ? "No such job." : "No jobs yet. Submit one with: rmlcell submit FILE");
+  setText(byId("empty"), kept.length ? "No such job." : "No jobs yet. Submit one with: rmlcell submit MACHINE FILE");
 }
 
 function drawMachines(all) {
