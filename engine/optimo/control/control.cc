@@ -397,7 +397,8 @@ void Control::Resume() {
   s_.timeline.insert(s_.timeline.begin(), s_.interrupted.begin(), s_.interrupted.end());
   s_.interrupted.clear();
   PlanHeld();
-  if (interrupted && std::exchange(s_.override_while_stopped, false)) {
+  const bool overridden = std::exchange(s_.override_while_stopped, false);
+  if (interrupted && overridden) {
     StartNextItem();
     AdaptMotions();
   }
