@@ -32,7 +32,7 @@ endif()
 
 # Sources compiled several at a time are included by one that is made: g++ takes them for headers, whose
 # classes should not have members of unnamed namespaces.
-if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+if((CMAKE_UNITY_BUILD OR RMLCELL_TESTS_AS_RELEASED) AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(rmlcell_warnings INTERFACE -Wno-subobject-linkage)
 endif()
 

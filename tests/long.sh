@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # What takes hours: rare interleavings, races, and inputs that nobody thought of. Writes a summary to
 # tests/results/long.txt. Needs build/release, as tests/run.sh leaves it.
-#   [ROUNDS=100] [FUZZ_SECONDS=600] bash tests/long.sh [kills] [crashes] [races] [fuzz]      default: all
+#   bash tests/long.sh [kills] [crashes] [races] [fuzz] [load] [mutation]      default: all
+# ROUNDS=100, FUZZ_SECONDS=600, LOAD_ROUNDS=20, MUTATIONS=300 and SEED=1 say how much.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 rounds=${ROUNDS:-100}
 seconds=${FUZZ_SECONDS:-600}
-parts=${*:-kills crashes races fuzz}
+parts=${*:-kills crashes races fuzz load mutation}
 export RMLCELL_BIN=$PWD/build/release/bin RMLCELL_STUBS=$PWD/build/release/tests/integration/stubs
 export RMLCELL_SHARED=${RMLCELL_SHARED:-$PWD/../shared}
 
@@ -89,13 +90,57 @@ fuzz() {
   done
 }
 
+# The release tests again and again with busy loops beside them: none may depend on being served at once. Rounds
+# that this commit has passed in a row are not run again.
+load() {
+  local wanted=${LOAD_ROUNDS:-20} log=tests/results/load.txt loops=() commit passed
+  commit=$(git log -1 --format=%h -- . ':!tests/results')
+  if ! grep -qs "^Release tests of $commit," "$log" || grep -q '^failed' "$log"; then
+    echo "Release tests of $commit, $(nproc) cores, four busy loops beside them" >"$log"
+  fi
+  for _ in 1 2 3 4; do
+    (while :; do :; done) &
+    loops+=($!)
+  done
+  # shellcheck disable=SC2064
+  trap "kill ${loops[*]} 2>/dev/null || true" EXIT
+  while passed=$(grep -c '^round' "$log" || true); [ "$passed" -lt "$wanted" ]; do
+    local begin=$SECONDS good=1
+    ctest --test-dir build/release --output-on-failure -j "$(nproc)" --test-output-truncation head \
+      --output-junit "$PWD/build/long/load.xml" >build/long/load.log 2>&1 || good=0
+    local counted
+    counted=$(python3 tests/count_results.py build/long/load.xml | tail -n 1)
+    if [ $good -eq 0 ]; then
+      cp build/long/load.log "build/long/load-failed-$((passed + 1)).log"
+      echo "failed: $counted, $((SECONDS - begin)) s: $(grep -A 20 'tests FAILED' build/long/load.log | tr '\n' ' ')" >>"$log"
+      break
+    fi
+    echo "round $((passed + 1)): $counted, $((SECONDS - begin)) s" >>"$log"
+  done
+  kill "${loops[@]}" 2>/dev/null || true
+  trap - EXIT
+  note "load: $(grep -c '^round' "$log" || true) rounds of $wanted passed, see $log"
+  [ "$(grep -c '^round' "$log" || true)" -ge "$wanted" ] || fail load
+}
+
+# What the tests notice of changes of meaning.
+mutation() {
+  if python3 -B tests/mutation/mutate.py --seed "${SEED:-1}" --count "${MUTATIONS:-300}" \
+      --results tests/results/mutation.txt >build/long/mutation.log 2>&1; then
+    note "mutation: at least 95 of 100 changes noticed in every area, see tests/results/mutation.txt"
+  else
+    tail -n 3 build/long/mutation.log
+    fail "mutation, see build/long/mutation.log and tests/results/mutation.txt"
+  fi
+}
+
 {
   echo "Long tests of $(git rev-parse --short HEAD 2>/dev/null || echo unknown), $(date -u +%F), $(nproc) cores"
 } >"$summary"
 for part in $parts; do
   case $part in
-    kills | crashes | races | fuzz) $part ;;
-    *) echo "usage: bash tests/long.sh [kills] [crashes] [races] [fuzz]" >&2; exit 2 ;;
+    kills | crashes | races | fuzz | load | mutation) $part ;;
+    *) echo "usage: bash tests/long.sh [kills] [crashes] [races] [fuzz] [load] [mutation]" >&2; exit 2 ;;
   esac
 done
 exit $failed

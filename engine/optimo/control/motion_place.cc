@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/core/units.h"
+#include "engine/motion/kinematics.h"
 
 namespace rmlcell::optimo {
 namespace {

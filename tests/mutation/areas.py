@@ -1,0 +1,46 @@
+"""The areas that are measured: the folders that are changed, and the tests of that part, by their names in CTest,
+those first that notice most."""
+import dataclasses
+
+
+@dataclasses.dataclass(frozen=True)
+class Area:
+    folders: tuple  # every .cc file in them, not in folders below
+    tests: tuple
+
+
+AREAS = {
+    "motion": Area(("engine/core", "engine/machine", "engine/motion"),
+                   ("core_test", "machine_test", "motion_test", "motion_reference_test", "motion_property_test",
+                    "optimo_control_test", "rml1_test", "simulation_test", "optimo_language_test")),
+    "mill": Area(("engine/rml1",),
+                 ("rml1_test", "rml1_examples_test", "simulation_test", "motion_test", "motion_reference_test",
+                  "rml1_hostile_test", "rml1_corpus_test")),
+    "language": Area(("engine/optimo/language",),
+                     ("optimo_language_test", "optimo_language_conformance_test", "optimo_offline_test",
+                      "optimo_control_test", "optimo_run_conformance_test", "lsp_test")),
+    "offline": Area(("engine/optimo/offline",),
+                    ("optimo_offline_test", "optimo_language_conformance_test", "lsp_test",
+                     "server_programs_test")),
+    "control": Area(("engine/optimo/control",),
+                    ("optimo_control_test", "optimo_run_conformance_test", "simulation_test",
+                     "motion_reference_test")),
+    "simulation": Area(("engine/simulation",),
+                       ("simulation_test", "optimo_run_conformance_test", "rml1_test", "rml1_examples_test",
+                        "integration_test_command")),
+    "store": Area(("storage", "storage/sqlite"),
+                  ("storage_sqlite_conformance_test", "storage_sqlite_test", "storage_sqlite_crash_test",
+                   "server_jobs_test", "server_projects_test")),
+    "jobs": Area(("server", "server/jobs", "server/events", "server/worker", "server/programs", "server/projects"),
+                 ("server_test", "server_jobs_test", "server_events_test", "server_programs_test",
+                  "server_projects_test", "integration_test_cell", "integration_test_office",
+                  "integration_test_programs")),
+    "web": Area(("server/web",), ("server_web_test", "integration_test_http", "integration_test_web")),
+    "services": Area(("server/auth", "server/services", "proto/bridge"),
+                     ("server_programs_test", "server_jobs_test", "integration_test_office", "integration_test_cell",
+                      "integration_test_programs", "integration_test_http", "integration_test_command",
+                      "integration_test_web")),
+    "command": Area(("clients/cli", "clients/lsp"),
+                    ("lsp_test", "integration_test_command", "integration_test_lsp", "integration_test_office",
+                     "integration_test_programs")),
+}

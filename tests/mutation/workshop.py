@@ -1,0 +1,201 @@
+"""Builds one changed source and tries the tests on it, beside a build that stays as it is.
+
+The changed source becomes an archive of its own that stands before the library it belongs to when a program is
+linked, so that nothing of the build is written over and several changes can be tried at a time. The build
+compiles each source by itself (preset `mutation`): where several are compiled together, the compiler may have
+put the old code into a neighbour.
+"""
+import json
+import os
+import pathlib
+import re
+import resource
+import shlex
+import shutil
+import subprocess
+
+MEMORY_BYTES_MAX = 6 << 30
+
+
+class Test:
+    """One entry of CTest."""
+
+    def __init__(self, name, command, environment, build):
+        self.name = name
+        self.environment = environment
+        self.cpu_s = 0.0
+        program = os.path.relpath(command[0], build)
+        self.program = None if program.startswith("..") else program  # None: a script that drives the programs
+        self.command = command
+
+
+class Workshop:
+    def __init__(self, root, build):
+        self.root = pathlib.Path(root)
+        self.build = pathlib.Path(build)
+        with open(self.build / "compile_commands.json", encoding="utf-8") as file:
+            self.compiles = {os.path.relpath(entry["file"], self.root): entry for entry in json.load(file)}
+        self.links = {}
+
+    def tests(self, names):
+        listed = subprocess.run(["ctest", "--test-dir", str(self.build), "--show-only=json-v1"], check=True,
+                                capture_output=True, text=True).stdout
+        entries = {entry["name"]: entry for entry in json.loads(listed)["tests"]}
+        unknown = [name for name in names if name not in entries]
+        if unknown:
+            raise SystemExit(f"no such test: {', '.join(unknown)}")
+        found = []
+        for name in names:
+            properties = {p["name"]: p["value"] for p in entries[name]["properties"]}
+            environment = dict(pair.split("=", 1) for pair in properties.get("ENVIRONMENT", []))
+            found.append(Test(name, entries[name]["command"], environment, self.build))
+        return found
+
+    def link(self, output):
+        """The command that makes `output`, a path below the build."""
+        if output not in self.links:
+            lines = subprocess.run(["ninja", "-C", str(self.build), "-t", "commands", "-s", output], check=True,
+                                   capture_output=True, text=True).stdout.splitlines()
+            command = [line for line in lines if f"-o {output} " in line][-1]
+            self.links[output] = re.sub(r"^: && | && :$", "", command)
+        return self.links[output]
+
+    def programs(self):
+        return sorted(f"bin/{path.name}" for path in (self.build / "bin").iterdir()
+                      if path.name.startswith("rmlcell") and os.access(path, os.X_OK))
+
+    def object_of(self, file):
+        command = shlex.split(self.compiles[file]["command"])
+        return command[command.index("-o") + 1]
+
+    def library_of(self, file):
+        """The archive that holds the object, or None where it is linked by itself."""
+        folder, _, rest = self.object_of(file).partition("/CMakeFiles/")
+        archive = f"{folder}/lib{rest.split('.dir/')[0]}.a"
+        return archive if (self.build / archive).exists() else None
+
+    def compile(self, file, source, to, flags=()):
+        """The object of `source` as if it stood in `file`; None where it is no C++."""
+        changed = to / pathlib.Path(file).name
+        changed.write_text(source, encoding="utf-8")
+        command = shlex.split(self.compiles[file]["command"])
+        if os.path.basename(command[0]) == "ccache":
+            command = command[1:]
+        made = to / "changed.o"
+        command[command.index("-o") + 1] = str(made)
+        command[command.index("-c") + 1] = str(changed)
+        # Warnings are no matter here, and messages carry the file's own name.
+        command += ["-w", f"-ffile-prefix-map={changed}={self.root / file}",
+                    "-iquote", str((self.root / file).parent), *flags]
+        done = subprocess.run(command, cwd=self.build, capture_output=True, text=True, check=False)
+        return made if done.returncode == 0 else None
+
+    def relink(self, output, file, changed, to):
+        """`output` with the changed object, or None where it does not hold that source."""
+        command = self.link(output)
+        archive, original = self.library_of(file), self.object_of(file)
+        if archive is None:
+            if not re.search(rf"(^| ){re.escape(original)}( |$)", command):
+                return None
+            command = command.replace(f" {original} ", f" {changed} ")
+        else:
+            if f" {archive}" not in command:
+                return None
+            own = to / "changed.a"
+            if not own.exists():
+                subprocess.run(["ar", "rcs", str(own), str(changed)], check=True)
+            command = command.replace(f" {archive}", f" {own} {archive}")
+        made = to / output
+        made.parent.mkdir(parents=True, exist_ok=True)
+        command = command.replace(f"-o {output} ", f"-o {made} ")
+        done = subprocess.run(command, cwd=self.build, shell=True, capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            raise RuntimeError(f"{output} cannot be linked: {done.stderr[-2000:]}")
+        return made
+
+    def run(self, test, place, file=None, changed=None):
+        """What tells that the test fails, "" where it passes, None where it does not concern the file."""
+        command, environment = list(test.command), {**os.environ, **test.environment}
+        if test.program:
+            if changed:
+                made = self.relink(test.program, file, changed, place)
+                if made is None:
+                    return None
+                command[0] = str(made)
+            command += ["--gtest_fail_fast", "--gtest_brief=1"]
+        elif changed:
+            bin_folder = place / "bin"
+            bin_folder.mkdir(exist_ok=True)
+            touched = False
+            for program in self.programs():
+                if (place / program).exists():
+                    touched = touched or not (place / program).is_symlink()
+                elif self.relink(program, file, changed, place):
+                    touched = True
+                else:
+                    (place / program).symlink_to(self.build / program)
+            if not touched:
+                return None
+            environment["RMLCELL_BIN"] = str(bin_folder)
+            command += ["--failfast"]
+        return self.judge(test, command, environment, place)
+
+    def judge(self, test, command, environment, place):
+        # By processor time: a machine that is busy with other things decides nothing.
+        seconds = int(test.cpu_s * 6) + 20 if test.cpu_s else 600
+
+        def limits():
+            resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
+            resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES_MAX, MEMORY_BYTES_MAX))
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+        scratch = place / "tmp"
+        scratch.mkdir(exist_ok=True)
+        environment["TMPDIR"] = str(scratch)
+        process = subprocess.Popen(command, cwd=place, env=environment, stdout=subprocess.PIPE, text=True,
+                                   stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, errors="replace",
+                                   preexec_fn=limits, start_new_session=True)
+        try:
+            # A guard against waiting for ever, a quarter of an hour at least.
+            output, _ = process.communicate(timeout=900)
+        except subprocess.TimeoutExpired:
+            output = "it waits for ever"
+        finally:
+            try:
+                os.killpg(process.pid, 9)
+            except ProcessLookupError:
+                pass
+        if process.wait() == 0:
+            return ""
+        failed = re.findall(r"\[  FAILED  \] ([\w/.]+)|^(?:FAIL|ERROR): (\w+)", output, re.MULTILINE)
+        if failed:
+            return next(part for part in failed[0] if part)
+        return output.strip().splitlines()[-1][:200] if output.strip() else f"signal {-process.returncode}"
+
+    def measure(self, tests, place, kept):
+        """Runs each test on the code as it is: what fails then tells nothing. `kept` holds what is known."""
+        known = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
+        for test in tests:
+            version = self.version(test)
+            if known.get(test.name, {}).get("version") == version:
+                test.cpu_s = known[test.name]["cpu_s"]
+                continue
+            before = resource.getrusage(resource.RUSAGE_CHILDREN)
+            failed = self.run(test, place)
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+            if failed:
+                raise SystemExit(f"{test.name} fails on the code as it is: {failed}")
+            test.cpu_s = (after.ru_utime + after.ru_stime) - (before.ru_utime + before.ru_stime)
+            known[test.name] = {"version": version, "cpu_s": test.cpu_s}
+            kept.write_text(json.dumps(known, indent=1), encoding="utf-8")
+
+    def version(self, test):
+        """Another one when the test or what it drives was built or written anew."""
+        files = [test.program] if test.program else [*self.programs(), test.command[-1]]
+        return [(self.build / file).stat().st_mtime_ns for file in files]
+
+
+def fresh(folder):
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    return folder
