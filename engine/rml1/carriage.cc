@@ -172,8 +172,8 @@ void Carriage::TurnRotary(const Context& context, double a, bool& dwell) {
 
 // Recovery of section 5A: Z alone where X and Y are right, else up to the pass height, across, and
 // down. Up and across at the travel speed, down at the Z speed (RML1-9.28, RML1-9.53). `dwell`: a
-// wait is due before the first motion. Two-dimensional commands wait before the one that ends at the
-// tool height.
+// wait is due before the first motion. Two-dimensional commands wait before the one that ends at
+// the tool height.
 void Carriage::Recover(const Context& context, const Point& to, const Recovery& recovery,
                        bool& dwell) {
   const Registers& registers = context.registers;

@@ -73,17 +73,16 @@ TEST(OutsidePause, IsNotMadeUpFor) {
 
 // RML1-5A.35: the height of Z2 is no matter of three-axis motion.
 TEST(OutsidePause, OfThreeAxesKnowsNoZ2) {
-  EXPECT_THAT(
-      PathOf("@0,3000;Z21000,0,2000,19000,0,2000,18000,0,2000;"),
-      ElementsAre("move 20000.0,0.0,2000.0", "halt OVER_AREA", "move 19000.0,0.0,2000.0",
-                  "move 18000.0,0.0,2000.0"));
+  EXPECT_THAT(PathOf("@0,3000;Z21000,0,2000,19000,0,2000,18000,0,2000;"),
+              ElementsAre("move 20000.0,0.0,2000.0", "halt OVER_AREA", "move 19000.0,0.0,2000.0",
+                          "move 18000.0,0.0,2000.0"));
 }
 
 // RML1-5A.35, RML1-9.29: off by default.
 TEST(OutsidePause, IsAnOption) {
-  EXPECT_THAT(PathOf("PU21000,0,19000,0;", "CONTINUE"),
-              ElementsAre("move 0.0,0.0,500.0", "move 20000.0,0.0,500.0",
-                          "move 19000.0,0.0,500.0"));
+  EXPECT_THAT(
+      PathOf("PU21000,0,19000,0;", "CONTINUE"),
+      ElementsAre("move 0.0,0.0,500.0", "move 20000.0,0.0,500.0", "move 19000.0,0.0,500.0"));
   EXPECT_FALSE(MakeProfile(ParametersOf("t1")).value().pause_outside);
 }
 
