@@ -73,14 +73,14 @@ TEST(Profile, HasTheMachinesOfTheTable) {
 
 // The same table whole, in the units of the manuals; where it names no figure the one of T1 stands
 // (RML1-9.08), and the travel speed is the highest one (RML1-9.44).
-struct Figures {
+struct MachineRow {
   std::string_view id;
   double units_per_mm, x_min, x_max, y_max, z_min, z2;  // mm
   double xy_slowest, xy_fastest, z_slowest, z_fastest, travel;
   int rpm_min, rpm_max;
   double spin_s, step_mm;
 };
-constexpr Figures kTable[] = {
+constexpr MachineRow kMachineRows[] = {
     {"t1", 100, 0, 200, 150, -60, 5, 0.5, 60, 0.5, 60, 60, 4500, 15000, 0, 0.01},
     {"t1a", 100, 0, 200, 150, -60, 5, 0.5, 60, 0.5, 60, 60, 4500, 15000, 0, 0.01},
     {"t1n", 100, 0, 200, 150, -60, 5, 0.5, 60, 0.5, 60, 60, 4500, 15000, 0, 0.01},
@@ -98,8 +98,8 @@ constexpr Figures kTable[] = {
 
 // rml1.md 0.2 and rml1-profiles.md; RML1-1.08, RML1-9.10, RML1-9.12.
 TEST(Profile, HasEveryFigureOfTheTable) {
-  ASSERT_EQ(std::size(kTable), MachineProfiles().size());
-  for (const Figures& row : kTable) {
+  ASSERT_EQ(std::size(kMachineRows), MachineProfiles().size());
+  for (const MachineRow& row : kMachineRows) {
     SCOPED_TRACE(row.id);
     const Profile p = ProfileOf(row.id);
     const double u = row.units_per_mm;
