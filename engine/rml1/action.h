@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "engine/core/check.h"
 #include "engine/machine/observer.h"
@@ -53,6 +54,7 @@ class ActionQueue {
 
   bool empty() const { return head_ == end_; }
   const Action& front() const { return actions_[head_]; }
+  std::span<const Action> all() const { return {actions_.data() + head_, end_ - head_}; }
   void Pop() {
     if (++head_ == end_) head_ = end_ = 0;
   }

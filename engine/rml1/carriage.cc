@@ -60,24 +60,22 @@ void Carriage::ToToolHeight(const Context& context) {
   if (!range_.HasXY(logical_)) return;
   Point to = range_.Nearest(logical_);
   to.a = physical_.a;
-  if (SameXY(physical_, to)) {
-    Go(context, to,
-       {.speed_mm_s = registers.z_speed,
-        .use = UseOfHeight(physical_.z, z, registers.tool_down),
-        .dwells = true});
-  } else {
-    bool no_dwell = false;
-    const double pass_z = parked_ ? registers.up_z(context.profile) : range_.top();
-    Recover(context, to, {.pass_z = pass_z, .to_tool_height = true}, no_dwell);
-  }
+  bool no_dwell = false;
+  if (!SameXY(physical_, to)) Approach(context, to, {.pass_z = WayAcross(context)}, no_dwell);
   parked_ = false;
-  PauseAtEntry(context, registers.z0 + registers.z2 <= range_.top());
+  // Here the tool comes in over the top: the operator is asked before it goes down (RML1-9.56).
+  PauseAtEntry(context, MayPauseXY(context));
+  Go(context, to,
+     {.speed_mm_s = registers.z_speed,
+      .use = UseOfHeight(physical_.z, z, registers.tool_down),
+      .dwells = true});
 }
 
 void Carriage::MoveXY(const Context& context, double x, double y) {
   const Registers& registers = context.registers;
   const Point from = logical_;
   const Point to{x, y, from.z, from.a};
+  if (SamePoint(from, to, zero_)) return;
   logical_ = to;
   const double length = DistanceXYZ(from, to);
   const Share share = ShareInXY(range_, from, to);
@@ -86,11 +84,10 @@ void Carriage::MoveXY(const Context& context, double x, double y) {
     const Point entry = range_.Nearest(Between(from, to, share.low));
     if (share.low > 0.0) {
       bool no_dwell = false;
-      const double pass_z = parked_ ? registers.up_z(context.profile) : range_.top();
       Recover(context, {entry.x, entry.y, entry.z, physical_.a},
-              {.pass_z = pass_z, .to_tool_height = true}, no_dwell);
+              {.pass_z = WayAcross(context), .to_tool_height = true}, no_dwell);
       parked_ = false;
-      PauseAtEntry(context, registers.z0 + registers.z2 <= range_.top());
+      PauseAtEntry(context, MayPauseXY(context));
     }
     Point end = range_.Nearest(Between(from, to, share.high));
     end.a = physical_.a;
@@ -125,6 +122,7 @@ void Carriage::LeaveXY(const Context& context) {
 }
 
 void Carriage::MoveXYZ(const Context& context, const Point& to) {
+  if (SamePoint(logical_, to, zero_)) return;
   const Pieces pieces = Pieces::Cut(range_, logical_, to, zero_);
   logical_ = to;
   parked_ = false;
@@ -148,7 +146,6 @@ void Carriage::Follow(const Context& context, const Piece& piece, bool& dwell) {
   const Registers& registers = context.registers;
   const Point begin = range_.Nearest(piece.from);
   const Point end = range_.Nearest(piece.to);
-  TurnRotary(context, begin.a, dwell);
   Recover(context, begin, {.pass_z = range_.top(), .to_tool_height = false}, dwell);
   if (piece.region == Region::kInside) PauseAtEntry(context, true);
   const bool moved =
@@ -173,34 +170,55 @@ void Carriage::TurnRotary(const Context& context, double a, bool& dwell) {
   dwell = false;
 }
 
-// Recovery of section 5A: Z alone where X and Y are right, else up to `pass_z`, across, and down.
-// Up and across at the travel speed, down at the Z speed (RML1-9.28). `dwell`: a wait is due before
-// the first motion. Two-dimensional commands wait before the one that ends at the tool height.
+// Recovery of section 5A: Z alone where X and Y are right, else up to the pass height, across, and
+// down. Up and across at the travel speed, down at the Z speed (RML1-9.28, RML1-9.53). `dwell`: a
+// wait is due before the first motion. Two-dimensional commands wait before the one that ends at
+// the tool height.
 void Carriage::Recover(const Context& context, const Point& to, const Recovery& recovery,
                        bool& dwell) {
   const Registers& registers = context.registers;
-  const double travel = context.profile.travel_speed;
-  const auto go = [&](const Point& next, Stroke stroke) {
-    stroke.dwells = stroke.dwells || dwell;
-    if (Go(context, next, stroke)) dwell = false;
-  };
-  if (!SameXY(physical_, to)) {
-    const double z = std::max(physical_.z, recovery.pass_z);
-    go({physical_.x, physical_.y, z, physical_.a},
-       {.speed_mm_s = travel, .use = MotionUse::kRetract, .rapid = true});
-    go({to.x, to.y, z, physical_.a}, {.speed_mm_s = travel, .rapid = true});
-  }
-  const bool up = to.z > physical_.z;
+  Approach(context, to, recovery, dwell);
   const bool into_work = recovery.to_tool_height ? registers.tool_down : to.z < registers.z0;
-  go(to, {.speed_mm_s = up ? travel : registers.z_speed,
-          .use = UseOfHeight(physical_.z, to.z, into_work),
-          .rapid = up,
-          .dwells = recovery.to_tool_height});
+  const bool moved = Go(context, to,
+                        {.speed_mm_s = registers.z_speed,
+                         .use = UseOfHeight(physical_.z, to.z, into_work),
+                         .dwells = recovery.to_tool_height || dwell});
+  dwell = dwell && !moved;
+}
+
+// All of it but the way down. A catches up when the tool has been raised (RML1-9.57).
+void Carriage::Approach(const Context& context, const Point& to, const Recovery& recovery,
+                        bool& dwell) {
+  const auto go = [&](const Point& next, MotionUse use, bool waits) {
+    const bool moved = Go(context, next,
+                          {.speed_mm_s = context.profile.travel_speed,
+                           .use = use,
+                           .rapid = true,
+                           .dwells = waits || dwell});
+    dwell = dwell && !moved;
+  };
+  const bool aside = !SameXY(physical_, to);
+  Point up = physical_;
+  up.z = std::max(physical_.z, aside ? recovery.pass_z : to.z);
+  go(up, MotionUse::kRetract, recovery.to_tool_height && !aside);
+  TurnRotary(context, to.a, dwell);
+  go({to.x, to.y, physical_.z, physical_.a}, MotionUse::kTravel, false);
+}
+
+// Height of the way across of a two-dimensional command (RML1-5A.31, RML1-9.54).
+double Carriage::WayAcross(const Context& context) const {
+  return parked_ ? context.registers.up_z(context.profile) : range_.top();
+}
+
+// RML1-5A.36.
+bool Carriage::MayPauseXY(const Context& context) const {
+  return context.registers.z0 + context.registers.z2 <= range_.top();
 }
 
 void Carriage::MoveZ(const Context& context, double z) {
   Point to = physical_;
   to.z = z;
+  if (SamePoint(physical_, to, zero_) && std::abs(logical_.z - z) <= zero_) return;
   Go(context, to,
      {.speed_mm_s = context.registers.z_speed,
       .use = UseOfThreeAxis(physical_, to, true, context.registers.z0)});
@@ -265,7 +283,7 @@ void Carriage::NoteClipped(double length) {
 }
 
 bool Carriage::SameXY(const Point& a, const Point& b) const {
-  return std::abs(a.x - b.x) <= zero_ && std::abs(a.y - b.y) <= zero_;
+  return DistanceXYZ({a.x, a.y}, {b.x, b.y}) <= zero_;
 }
 
 }  // namespace rmlcell::rml1

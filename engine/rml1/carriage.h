@@ -14,7 +14,8 @@ namespace rmlcell::rml1 {
 // commands and may lie anywhere; the physical one never leaves the cutting range (section 5A).
 // Every method appends what happens to the queue of its context, with the start of the spindle (5B)
 // and the dwells (RML1-9.34) in their places, and leaves the positions as they are when that is
-// done. Motions of length zero are not appended (RML1-9.49).
+// done. Motions of length zero are not appended (RML1-9.49), and a point or height that is the
+// logical one already changes nothing at all (RML1-9.52, RML1-9.55).
 class Carriage {
  public:
   // Power-on: at the XY work origin, as far as the travel reaches, with Z at the top (RML1-9.07).
@@ -67,6 +68,9 @@ class Carriage {
     bool to_tool_height = false;  // of a two-dimensional command
   };
   void Recover(const Context& context, const Point& to, const Recovery& recovery, bool& dwell);
+  void Approach(const Context& context, const Point& to, const Recovery& recovery, bool& dwell);
+  double WayAcross(const Context& context) const;
+  bool MayPauseXY(const Context& context) const;
   void Follow(const Context& context, const Piece& piece, bool& dwell);
   void TurnRotary(const Context& context, double a, bool& dwell);
   void LeaveXY(const Context& context);

@@ -102,6 +102,14 @@ bool Device::Step(DeviceListener& listener) {
   return true;
 }
 
+bool Device::spindle_turns() const {
+  for (const Action& action : actions_.all()) {
+    if (action.kind == Action::Kind::kSpindleStart) return false;
+    if (action.kind == Action::Kind::kSpindleStop) return true;
+  }
+  return registers_.spindle_on;
+}
+
 void Device::OnReading(const Reading& reading, const DataBuffer::Entry& at,
                        DeviceListener& listener) {
   switch (reading.kind) {

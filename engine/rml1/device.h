@@ -59,6 +59,9 @@ class Device {
   const ActionQueue& actions() const { return actions_; }
   bool paused() const { return !actions_.empty() && actions_.front().kind == Action::Kind::kPause; }
 
+  // What an action that is still waiting does to the spindle has not happened yet.
+  bool spindle_turns() const;
+
   // A command, a name, a call or a control sequence is unfinished.
   bool pending() const { return reader_.pending() || path_.pending(); }
   std::int64_t pending_offset() const {

@@ -214,7 +214,7 @@ void Device::OnGroup(DeviceListener& listener) {
   const Programmed::AxisGroup& named = group_.named;
   if (named.has_x || named.has_y || named.has_z) programmed_.OnGroup(named);
   const std::uint64_t clipped = carriage_.clipped_sets();
-  if (!(group_.to == carriage_.logical())) carriage_.MoveXYZ(context(), group_.to);
+  carriage_.MoveXYZ(context(), group_.to);
   NoteClipping(clipped, listener);
   ClearGroup();
 }

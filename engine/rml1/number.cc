@@ -4,6 +4,7 @@
 #include <bit>
 #include <charconv>
 #include <limits>
+#include <string>
 
 namespace rmlcell::rml1 {
 namespace {
@@ -11,6 +12,7 @@ namespace {
 // 10^n is exact in a double up to here, and so is a mantissa of fifteen digits: their quotient is
 // the nearest double to the decimal.
 constexpr int kExactDigits = 15;
+constexpr std::uint64_t kExactLimit = 1'000'000'000'000'000;  // such a mantissa has one digit more
 constexpr std::array<double, 23> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                                  1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
                                                  1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
@@ -83,10 +85,16 @@ void NumberReader::ConvertExactly(Number& number) const {
   end = std::to_chars(end, room.data() + room.size(), -scale).ptr;
   // Too small for the format leaves the 0 in place; too large was handled by the caller.
   float single = 0.0F;
-  double decimal = 0.0;
   std::from_chars(room.data(), end, single);
-  std::from_chars(room.data(), end, decimal);
   number.single = static_cast<double>(single);
+
+  // All the digits that are cut off here stand behind the period: the whole part has at most nine.
+  std::uint64_t first_digits = digits_;
+  int first_scale = scale_ - more_;
+  for (; first_digits >= kExactLimit; first_digits /= 10) --first_scale;
+  const std::string first = std::to_string(first_digits) + 'e' + std::to_string(-first_scale);
+  double decimal = 0.0;
+  std::from_chars(first.data(), first.data() + first.size(), decimal);
   number.decimal = decimal;
 }
 

@@ -26,7 +26,7 @@ struct Registers {
   double z1;
   double z2;
   bool rotation = true;  // !MC
-  bool spindle_on = false;
+  bool spindle_on = false;  // when the actions that wait are done
   int rpm;
 
   // The heights that are really used, from the machine's zero (RML1-3A.07, RML1-3B.18).

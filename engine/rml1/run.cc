@@ -357,11 +357,11 @@ void MillRun::Freeze() {
     EndWait();
   }
   s.busy = Busy::kNothing;
-  if (s.device.registers().spindle_on) EmitSignal(machine::Signal::kSpindle, 0.0, 0.0);
+  if (s.device.spindle_turns()) EmitSignal(machine::Signal::kSpindle, 0.0, 0.0);
 }
 
 bool MillRun::SpindleTurns() const {
-  return state_.device.registers().spindle_on && state_.outcome.kind == OutcomeKind::kCompleted;
+  return state_.device.spindle_turns() && state_.outcome.kind == OutcomeKind::kCompleted;
 }
 
 void MillRun::CloseWith(OutcomeKind kind, std::optional<ErrorCode> code, std::string detail) {
@@ -393,7 +393,8 @@ machine::RunState MillRun::state() const {
 }
 
 std::optional<std::string> MillRun::ReadVariable(std::string_view name) const {
-  return ReadRegister(state_.device, profile(), ToolAt(TipNow()), name);
+  return ReadRegister(state_.device, profile(),
+                      {.at = ToolAt(TipNow()), .spindle_turns = SpindleTurns()}, name);
 }
 
 std::vector<machine::Figure> MillRun::figures() const {

@@ -22,7 +22,7 @@ std::string EscValues(const ReceivePath::Parameters& values, std::size_t count) 
 struct View {
   const Device& device;
   const Profile& profile;
-  const Point& tool;
+  const ToolNow& tool;
 
   const Registers& registers() const { return device.registers(); }
   const Point& logical() const { return device.carriage().logical(); }
@@ -51,10 +51,10 @@ struct Register {
 };
 
 constexpr std::array kRegisters = {
-    Register{"X", [](const View& v) { return NumberText(v.tool.x - v.profile.origin_x); }},
-    Register{"Y", [](const View& v) { return NumberText(v.tool.y - v.profile.origin_y); }},
-    Register{"Z", [](const View& v) { return NumberText(v.tool.z - v.registers().z0); }},
-    Register{"A", [](const View& v) { return NumberText(v.tool.a); }, true},
+    Register{"X", [](const View& v) { return NumberText(v.tool.at.x - v.profile.origin_x); }},
+    Register{"Y", [](const View& v) { return NumberText(v.tool.at.y - v.profile.origin_y); }},
+    Register{"Z", [](const View& v) { return NumberText(v.tool.at.z - v.registers().z0); }},
+    Register{"A", [](const View& v) { return NumberText(v.tool.at.a); }, true},
     Register{"LX", [](const View& v) { return NumberText(v.logical().x - v.profile.origin_x); }},
     Register{"LY", [](const View& v) { return NumberText(v.logical().y - v.profile.origin_y); }},
     Register{"LZ", [](const View& v) { return NumberText(v.logical().z - v.registers().z0); }},
@@ -66,7 +66,7 @@ constexpr std::array kRegisters = {
     Register{"W", Dwell},
     Register{"MC", [](const View& v) -> std::string { return v.registers().rotation ? "on" : "off"; }},
     Register{"SPINDLE",
-             [](const View& v) -> std::string { return v.registers().spindle_on ? "on" : "off"; }},
+             [](const View& v) -> std::string { return v.tool.spindle_turns ? "on" : "off"; }},
     Register{"RPM", [](const View& v) { return std::to_string(v.registers().rpm); }},
     Register{"Z0", [](const View& v) { return NumberText(v.registers().z0); }},
     Register{"Z1", [](const View& v) { return NumberText(v.registers().z1); }},
@@ -77,11 +77,11 @@ constexpr std::array kRegisters = {
              [](const View& v) -> std::string { return v.registers().tool_down ? "down" : "up"; }},
     Register{"ERR", [](const View& v) { return std::to_string(v.device.command_errors().value()); }},
     Register{"COM", [](const View& v) { return std::to_string(v.device.link_errors().value()); }},
-    Register{"XSTEPS", [](const View& v) { return MmSteps(v, v.tool.x); }},
-    Register{"YSTEPS", [](const View& v) { return MmSteps(v, v.tool.y); }},
-    Register{"ZSTEPS", [](const View& v) { return MmSteps(v, v.tool.z); }},
+    Register{"XSTEPS", [](const View& v) { return MmSteps(v, v.tool.at.x); }},
+    Register{"YSTEPS", [](const View& v) { return MmSteps(v, v.tool.at.y); }},
+    Register{"ZSTEPS", [](const View& v) { return MmSteps(v, v.tool.at.z); }},
     Register{"ASTEPS",
-             [](const View& v) { return StepsText(v.tool.a, v.profile.rotary_step_deg); }, true},
+             [](const View& v) { return StepsText(v.tool.at.a, v.profile.rotary_step_deg); }, true},
     Register{"ESC.M", [](const View& v) { return EscValues(v.device.path().esc_m(), 6); }},
     Register{"ESC.T", [](const View& v) { return EscValues(v.device.path().esc_t(), 5); }},
 };
@@ -99,7 +99,7 @@ bool HasRegister(const Profile& profile, std::string_view name) {
 }
 
 std::optional<std::string> ReadRegister(const Device& device, const Profile& profile,
-                                        const Point& tool, std::string_view name) {
+                                        const ToolNow& tool, std::string_view name) {
   const Register* found = FindRegister(profile, name);
   if (found == nullptr) return std::nullopt;
   return found->read({.device = device, .profile = profile, .tool = tool});

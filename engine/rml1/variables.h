@@ -8,12 +8,18 @@
 
 namespace rmlcell::rml1 {
 
+// What a run knows and its device does not: a motion, or an action, may be under way.
+struct ToolNow {
+  Point at;
+  bool spindle_turns = false;
+};
+
 // The present value of a register of the device by name, as a person would write it: X Y Z A (where
 // the tool is, work units), LX LY LZ (where the program is), VS VZ F V mm/s, DW W ms, MC RPM
 // SPINDLE, Z0 Z1 Z2, MODE TOOL, ERR COM, XSTEPS YSTEPS ZSTEPS ASTEPS, ESC.M ESC.T. Nothing for
 // other names.
 std::optional<std::string> ReadRegister(const Device& device, const Profile& profile,
-                                        const Point& tool, std::string_view name);
+                                        const ToolNow& tool, std::string_view name);
 
 // Whether a machine of this profile has the register.
 bool HasRegister(const Profile& profile, std::string_view name);

@@ -42,8 +42,10 @@ struct SampleRecorder::State {
     for (; NextTime() < until_s && !closed; ++next) Line(NextTime(), {});
   }
 
-  void Event(SimTime at, std::string_view what) {
+  // The lines before it are still those of the place before.
+  void Event(SimTime at, const machine::Place& of, std::string_view what) {
     StandUntil(ToSeconds(at));
+    place = of;
     if (known) Line(ToSeconds(at), what);
   }
 
@@ -140,15 +142,16 @@ void SampleRecorder::OnSignal(const machine::SignalChange& change) {
   if (change.signal == machine::Signal::kOutput || change.signal == machine::Signal::kAnalogue) {
     what += ' ' + std::to_string(change.index);
   }
-  state_->place = change.place;
-  state_->Event(change.at, what + " = " + ShortestText(change.value));
+  state_->Event(change.at, change.place, what + " = " + ShortestText(change.value));
 }
 
-void SampleRecorder::OnHalt(const machine::Halt& halt) { state_->Event(halt.at, "halt"); }
+void SampleRecorder::OnHalt(const machine::Halt& halt) {
+  state_->Event(halt.at, halt.place, "halt");
+}
 
 void SampleRecorder::Finish(SimTime at) {
   state_->power = 0.0;
-  state_->Event(at, "end");
+  state_->Event(at, machine::Place(state_->place), "end");
   state_->HandOut();
 }
 

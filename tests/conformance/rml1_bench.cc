@@ -196,7 +196,7 @@ Observed Bench::Look() const {
   seen.dwell_ms = registers.dwell_ms;
   seen.rpm = registers.rpm;
   seen.rotation = registers.rotation;
-  seen.spindle_on = registers.spindle_on;
+  seen.spindle_on = device_->spindle_turns();
   seen.paused = device_->paused();
   seen.pending = device_->pending();
   seen.at = place(device_->carriage().physical());

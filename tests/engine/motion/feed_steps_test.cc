@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace rmlcell::motion {
@@ -19,6 +20,34 @@ TEST(FeedSteps, RoundsDownToWhatTheMillKnows) {
   EXPECT_DOUBLE_EQ(steps.Nearest(999.0), 15.0);
   EXPECT_DOUBLE_EQ(steps.Nearest(-3.0), 0.5);
   EXPECT_DOUBLE_EQ(steps.Nearest(std::numeric_limits<double>::quiet_NaN()), 0.5);
+}
+
+// motion.md section 7: every step is itself, and the next lower number belongs to the step below.
+TEST(FeedSteps, RoundsNothingUp) {
+  const FeedSteps steps;
+  EXPECT_EQ(steps.Nearest(0.9999999999), 0.9);
+  for (int tenth = 6; tenth < 10; ++tenth) {
+    EXPECT_EQ(steps.Nearest(tenth / 10.0), tenth / 10.0);
+    EXPECT_EQ(steps.Nearest(std::nextafter(tenth / 10.0, 0.0)), (tenth - 1) / 10.0);
+    EXPECT_EQ(steps.Nearest(std::nextafter(tenth / 10.0, 1.0)), tenth / 10.0);
+  }
+  EXPECT_EQ(steps.Nearest(std::nextafter(1.0, 0.0)), 0.9);
+  for (int whole = 2; whole < 15; ++whole) {
+    EXPECT_EQ(steps.Nearest(whole), whole);
+    EXPECT_EQ(steps.Nearest(std::nextafter(whole, 0.0)), whole - 1.0);
+  }
+  EXPECT_EQ(steps.Nearest(std::nextafter(15.0, 0.0)), 14.0);
+}
+
+// motion.md section 7: the range comes first; its ends need not be steps.
+TEST(FeedSteps, KeepsTheEndsOfTheRange) {
+  const FeedSteps steps{.minimum_mm_s = 0.25, .maximum_mm_s = 9.5};
+  EXPECT_EQ(steps.Nearest(0.2), 0.25);
+  EXPECT_EQ(steps.Nearest(0.29), 0.25);
+  EXPECT_EQ(steps.Nearest(0.3), 0.3);
+  EXPECT_EQ(steps.Nearest(9.4), 9.0);
+  EXPECT_EQ(steps.Nearest(9.5), 9.5);
+  EXPECT_EQ(steps.Nearest(12.0), 9.5);
 }
 
 }  // namespace

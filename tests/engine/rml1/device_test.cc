@@ -165,6 +165,28 @@ TEST(Device, AdvisesOnSpeedsBeyondTheMachine) {
   EXPECT_EQ(device.findings()[0].step, 3);
 }
 
+// RML1-3A.47, RML1-3B.29, RML1-3A.49, RML1-3C.23: all four speeds are rounded down, whatever little
+// lacks for the step.
+TEST(Device, RoundsEverySpeedDown) {
+  for (const std::string name : {"F", "VS", "V", "!VZ"}) {
+    const auto speed_of = [&](const std::string& written) {
+      TestDevice device(ParametersOf("t1"));
+      device.Feed(name + written + ";");
+      EXPECT_EQ(device->command_errors().total(), 0U) << name << written;
+      const Registers& registers = device->registers();
+      const bool of_z = name == "V" || name == "!VZ";
+      EXPECT_EQ(of_z ? registers.xy_speed : registers.z_speed, 2.0) << name;
+      return of_z ? registers.z_speed : registers.xy_speed;
+    };
+    EXPECT_EQ(speed_of("0.9999999999"), 0.9) << name;
+    EXPECT_EQ(speed_of("0." + std::string(30, '9')), 0.9) << name;
+    EXPECT_EQ(speed_of("0.7"), 0.7) << name;
+    EXPECT_EQ(speed_of("7.9999999999"), 7.0) << name;
+    EXPECT_EQ(speed_of("1"), 1.0) << name;
+    EXPECT_EQ(speed_of("59.9999999999"), 59.0) << name;
+  }
+}
+
 // RML1-5A.01: what the tool could not follow is told once a command, and measured.
 TEST(Device, AdvisesOnClippedMotion) {
   TestDevice device(ParametersOf("t1"));

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/core/number_text.h"
 #include "tests/engine/rml1/run_support.h"
 
 namespace rmlcell::rml1 {
@@ -53,6 +54,45 @@ TEST(MachineState, RefusesWhatIsNotOurs) {
   EXPECT_FALSE(with("z0 -595.5", "z0 nan"));
   EXPECT_FALSE(with("dwell_ms 32767", "dwell_ms 32768"));
   EXPECT_EQ(with("rpm 6600", "rpm -1").error().code, ErrorCode::kCellBadText);
+}
+
+// RML1-9.11, RML1-9.23, RML1-3A.53: every value has its line and its range, ends included; what is
+// outside names itself.
+TEST(MachineState, KeepsEveryValueWithinItsRange) {
+  struct Range {
+    std::string key;
+    double low, high;
+  };
+  const Range ranges[] = {{"x", -1e9, 1e9},       {"y", -1e9, 1e9},        {"z", -1e9, 1e9},
+                          {"a", -1e9, 1e9},       {"z0", -1e9, 0.0},       {"z1", -1e9, 0.0},
+                          {"z2", 0.0, 1e9},       {"xy_speed", 1e-3, 1e5}, {"z_speed", 1e-3, 1e5},
+                          {"dwell_ms", 0, 32767}, {"rpm", 0, 1e6},         {"absolute", 0, 1},
+                          {"tool_down", 0, 1},    {"rotation", 0, 1},      {"spindle_on", 0, 1}};
+  const auto text_with = [&](const std::string& key, const std::string& value) {
+    std::string text = "rml1 machine state 1\n";
+    for (const Range& range : ranges) {
+      text += range.key + " " + (range.key == key ? value : range.low <= 0.0 ? "0" : "1") + "\n";
+    }
+    return text;
+  };
+  for (const Range& range : ranges) {
+    for (const double end : {range.low, range.high}) {
+      const std::string text = text_with(range.key, ShortestText(end));
+      const Result<MachineState> read = ReadMachineState(text, T1());
+      ASSERT_TRUE(read) << text;
+      EXPECT_EQ(WriteMachineState(*read), text);
+    }
+    const double little = (range.high - range.low) * 1e-6;
+    for (const double beyond : {range.low - little, range.high + little}) {
+      const auto read = ReadMachineState(text_with(range.key, ShortestText(beyond)), T1());
+      ASSERT_FALSE(read) << range.key << beyond;
+      EXPECT_EQ(read.error().detail, "machine state: " + range.key + " is out of range");
+    }
+  }
+  EXPECT_EQ(ReadMachineState("rml1 machine state 1\ny 0\n", T1()).error().detail,
+            "machine state: no line 'x'");
+  EXPECT_EQ(ReadMachineState("", T1()).error().detail,
+            "machine state: it does not begin with 'rml1 machine state 1'");
 }
 
 }  // namespace

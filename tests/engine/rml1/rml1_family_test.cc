@@ -120,6 +120,20 @@ TEST(Rml1Family, BoundsItsDiagnostics) {
   EXPECT_EQ(TranslateText(std::string(1000, '5')).diagnostics_dropped, 0U);
 }
 
+// A check tells of the first 1000 pauses, as of every advice (RML1-9.06); each at its command.
+TEST(Rml1Family, BoundsWhatItTellsOfPauses) {
+  std::string stream;
+  for (int k = 0; k < 1005; ++k) stream += "!NR;";
+  const machine::Translation translation = TranslateText(stream);
+  ASSERT_EQ(translation.diagnostics.size(), 1000U);
+  EXPECT_EQ(translation.diagnostics_dropped, 0U);
+  const Diagnostic& second = translation.diagnostics[1];
+  EXPECT_EQ(second.code, ErrorCode::kRml1PausedAtEnd);
+  EXPECT_EQ(second.rule, "RML1-3C.08");
+  EXPECT_EQ(second.step, 2);
+  EXPECT_EQ(second.where, (SourceSpan{.line = 1, .column = 5, .length = 3, .byte_offset = 4}));
+}
+
 // RML1-9.42, RML1-3C.08, RML1-3A.46: advice, and silence where none is wanted.
 TEST(Rml1Family, AdvisesWhereWanted) {
   const std::string stream = "F99;!NR;PU30000,0;PU1,1";

@@ -363,6 +363,35 @@ TEST(MillRunControl, HaltsBetweenCommands) {
   EXPECT_EQ(halted.AdvanceToEnd(), RunPhase::kFinished);
 }
 
+// Every halt tells what caused it, once; a breakpoint of another program is none.
+TEST(MillRunControl, TellsTheCauseOfAHalt) {
+  const auto first_halt = [](TestRun run, InputKind key) {
+    run->Advance(1s);
+    if (key != InputKind::kStart) run.Press(key);
+    EXPECT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
+    std::vector<std::string> halts;
+    for (const std::string& event : run.seen().Events()) {
+      if (event.starts_with("halt ")) halts.push_back(event);
+    }
+    return halts;
+  };
+  const auto setup_of = [](machine::Mode mode, int breakpoint_program) {
+    machine::RunSetup setup = SetupOf(ParametersOf("t1"), "!MC0;PD100,0;!NR;PU;");
+    setup.mode = mode;
+    setup.breakpoint = machine::ProgramStep{.program = breakpoint_program, .step = 1};
+    return setup;
+  };
+  using Halts = std::vector<std::string>;
+  const auto plain = [&] { return TestRun(setup_of(machine::Mode::kCycle, 2)); };
+  EXPECT_EQ(first_halt(plain(), InputKind::kStart), (Halts{"halt !NR"}));
+  EXPECT_EQ(first_halt(plain(), InputKind::kHold), (Halts{"halt HOLD"}));
+  EXPECT_EQ(first_halt(plain(), InputKind::kStop), (Halts{"halt STOP"}));
+  EXPECT_EQ(first_halt(TestRun(setup_of(machine::Mode::kSingle, 2)), InputKind::kStart),
+            (Halts{"halt SINGLE"}));
+  EXPECT_EQ(first_halt(TestRun(setup_of(machine::Mode::kCycle, 1)), InputKind::kStart),
+            (Halts{"halt BREAKPOINT"}));
+}
+
 // RML1-9.11, RML1-3B.06: what a machine keeps between jobs.
 TEST(MillRunControl, KeepsTheMachineBetweenJobs) {
   TestRun first(ParametersOf("t1a"), "PR;!ZO-500;@-3,7;VS9;V8;W6;!RC15;PD100,200;!ZE A30;XX;");

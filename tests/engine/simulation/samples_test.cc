@@ -116,6 +116,23 @@ TEST(Samples, WaitsAndEventsHaveTheirLines) {
   EXPECT_EQ(rows.back()[10], "0.0000");
 }
 
+// motion.md 9: an event has the place of its own, and the lines before it keep theirs; a halt is one.
+TEST(Samples, EventsHaveTheirOwnPlace) {
+  Script script;
+  script.Step(1, 1).Line({0, 0, 0}, {1, 0, 0}).Nothing(1.0);
+  script.Step(1, 2).Signal(machine::Signal::kSpindle, 1.0, 4500.0).Nothing(1.0);
+  script.Step(1, 3).Halt("!NR");
+  std::vector<std::string> steps;  // of each event, with that of the line before it
+  Row before;
+  for (const Row& row : Sampled(script, 10.0)) {
+    if (!row[13].empty() && row[13] != "event") {
+      steps.push_back(before[12] + " " + row[12] + " " + row[13]);
+    }
+    before = row;
+  }
+  EXPECT_EQ(steps, (std::vector<std::string>{"1 2 spindle = 1", "2 3 halt", "3 3 end"}));
+}
+
 // motion.md 9: an event between two motions that pass into each other has the speed there.
 TEST(Samples, EventsOnTheWayHaveTheirSpeed) {
   motion::Planner planner(motion::StandardMachine());

@@ -1,0 +1,171 @@
+// Figures and registers of a run, each from what the program and the rules say.
+#include "engine/rml1/figures.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "engine/rml1/rml1_family.h"
+#include "tests/engine/rml1/run_support.h"
+
+namespace rmlcell::rml1 {
+namespace {
+
+// From rest to rest at 200 mm/s2, where the speed is reached.
+double TimeFor(double length_mm, double speed_mm_s) {
+  return length_mm / speed_mm_s + speed_mm_s / 200.0;
+}
+
+machine::Parameters WithSpindle(double up_s, double down_s) {
+  machine::Parameters parameters = ParametersOf("t1");
+  EXPECT_TRUE(parameters.Set("SPIN_UP", up_s).ok());
+  EXPECT_TRUE(parameters.Set("SPIN_DOWN", down_s).ok());
+  EXPECT_TRUE(parameters.Set("ORIGIN_X", 10.0).ok());
+  EXPECT_TRUE(parameters.Set("ORIGIN_Y", 20.0).ok());
+  return parameters;
+}
+
+// RML1-9.33, RML1-9.45, RML1-3A.56: times by tool state. The origin is 10, 20 mm; Z0 20 mm below
+// the top: 15 mm down to Z2, 30 mm across, [0.1 s] 7 mm down to Z1, [0.1 s] 40 mm of cut.
+TEST(Figures, OfTimesAndWays) {
+  TestRun run(WithSpindle(2.0, 1.0), "@-2,500;@-200,500;VS20;V10;PU3000,0;W100;PD3000,4000;!MC0;");
+  ASSERT_EQ(run.AdvanceToEnd(), machine::RunPhase::kFinished);
+  const Figures f = run.figures();
+  const double up = 2.0 + TimeFor(15, 10) + TimeFor(30, 60);
+  const double down = 0.1 + TimeFor(7, 10) + 0.1 + TimeFor(40, 20) + 1.0;
+  EXPECT_EQ(f.at("commands"), 8);
+  EXPECT_EQ(f.at("motions"), 4);
+  EXPECT_EQ(f.at("plunges"), 1);
+  EXPECT_NEAR(f.at("cut_length"), 7 + 40, 1e-9);
+  EXPECT_NEAR(f.at("travel_length"), 15 + 30, 1e-9);
+  EXPECT_NEAR(f.at("tool_up_time"), up, 1e-7);
+  EXPECT_NEAR(f.at("tool_down_time"), down, 1e-7);
+  EXPECT_NEAR(f.at("motion_time"), up + down - 3.0 - 0.2, 1e-7);
+  EXPECT_NEAR(f.at("dwell_time"), 0.2, 1e-9);
+  EXPECT_NEAR(f.at("spindle_time"), 3.0, 1e-9);
+  EXPECT_EQ(f.at("halted_time"), 0.0);
+  EXPECT_NEAR(run.time_s(), up + down, 1e-7);
+}
+
+// RML1-1.08, RML1-9.12: the box that the tool went through, from the work origin, in units and mm;
+// with the place where it began. 40 units are one mm.
+TEST(Figures, OfTheBox) {
+  machine::Parameters parameters = ParametersOf("mdx-15");
+  ASSERT_TRUE(parameters.Set("ORIGIN_X", 10.0).ok());
+  TestRun run(parameters, "@-8,40;PU-80,0;PD-80,120;PU40,0;");
+  run.AdvanceToEnd();
+  const Figures f = run.figures();
+  const std::pair<const char*, double> units[] = {{"xmin", -80}, {"xmax", 40}, {"ymin", 0},
+                                                  {"ymax", 120}, {"zmin", -8}, {"zmax", 800}};
+  for (const auto& [name, value] : units) {
+    EXPECT_NEAR(f.at("box." + std::string(name)), value, 1e-9) << name;
+    EXPECT_NEAR(f.at("box_mm." + std::string(name)), value / 40.0, 1e-9) << name;
+  }
+  EXPECT_FALSE(f.contains("box.amin"));
+  TestRun still(parameters, "PA;");
+  still.AdvanceToEnd();
+  EXPECT_FALSE(still.figures().contains("box.xmin"));
+  TestRun turns(ParametersOf("t1a"), "!ZE A30;!ZE A-40;");
+  turns.AdvanceToEnd();
+  EXPECT_EQ(turns.figures().at("box.amin"), -40.0);
+  EXPECT_EQ(turns.figures().at("box.amax"), 30.0);
+}
+
+// RML1-6.04, RML1-4.21, RML1-3A.46: registers and counts of errors and advice.
+TEST(Figures, OfErrors) {
+  TestRun run(ParametersOf("t1"), "F99;V0;XX;5;6;W-1;W-1;W-1;\x1b.k\x1b.j;");
+  run.AdvanceToEnd();
+  const Figures f = run.figures();
+  EXPECT_EQ(f.at("speed_clamps"), 2);
+  EXPECT_EQ(f.at("error_register"), 1);
+  EXPECT_EQ(f.at("errors"), 7);
+  EXPECT_EQ(f.at("errors.1"), 2);  // kj, which the sequences let through (RML1-4.05), is no name
+  EXPECT_EQ(f.at("errors.2"), 2);
+  EXPECT_EQ(f.at("errors.3"), 3);
+  EXPECT_EQ(f.at("errors.cut"), 0);
+  EXPECT_EQ(f.at("communication_register"), 11);
+  EXPECT_EQ(f.at("communication_errors"), 2);
+  EXPECT_EQ(f.at("communication_errors.11"), 2);
+  EXPECT_FALSE(f.contains("communication_errors.12"));
+  EXPECT_EQ(f.at("communication_errors.cut"), 0);
+}
+
+// RML1-6.10: a log that was cut says so.
+TEST(Figures, OfACutLog) {
+  machine::CheckOptions options;
+  const auto translation = Rml1Family().Translate({.name = "a", .bytes = std::string(100'001, '5')},
+                                                  ParametersOf("t1"), options);
+  EXPECT_EQ(ByName(translation.figures).at("errors.cut"), 1);
+  EXPECT_EQ(ByName(translation.figures).at("errors"), 100'001);
+  EXPECT_EQ(ByName(translation.figures).at("object_bytes"), 100'001);
+}
+
+// A check carries out the same motions at once: RML1-9.45.
+TEST(Figures, OfACheckAreThoseOfTheRun) {
+  const std::string stream = "@-100,300;PU1000,500;PD2000,500;Z0,0,-200,25000,0,-200;H;";
+  const auto translation =
+      Rml1Family().Translate({.name = "a", .bytes = stream}, ParametersOf("t1"), {});
+  const Figures checked = ByName(translation.figures);
+  TestRun run(ParametersOf("t1"), stream);
+  run.AdvanceToEnd();
+  for (const char* name : {"motions", "cut_length", "travel_length", "plunges", "box.xmax",
+                           "box.zmin", "clipped_length", "clipped_sets", "commands"}) {
+    EXPECT_NEAR(checked.at(name), run.figures().at(name), 1e-9) << name;
+  }
+}
+
+// What the program asks for, each command under its own name.
+TEST(Figures, CountCommandsByName) {
+  const std::pair<std::string, std::string> commands[] = {
+      {"D", "D;"},     {"F", "F;"},     {"H", "H;"},     {"I", "I;"},     {"M", "M;"},
+      {"R", "R;"},     {"V", "V;"},     {"W", "W;"},     {"Z", "Z;"},     {"@", "@;"},
+      {"DF", "DF;"},   {"IN", "IN;"},   {"PA", "PA;"},   {"PD", "PD;"},   {"PR", "PR;"},
+      {"PU", "PU;"},   {"VS", "VS;"},   {"!DW", "!DW;"}, {"!MC", "!MC;"}, {"!NR", "!NR;"},
+      {"!PZ", "!PZ;"}, {"!RC", "!RC;"}, {"!VZ", "!VZ;"}, {"!ZM", "!ZM;"}, {"!ZO", "!ZO;"},
+      {"!ZZ", "!ZZ;"}, {"!ZE", "!ZE;"}};
+  for (const auto& [name, stream] : commands) {
+    const auto translation =
+        Rml1Family().Translate({.name = "a", .bytes = stream}, ParametersOf("t1"), {});
+    Figures counts = ByName(translation.figures);
+    std::erase_if(counts, [](const auto& f) { return !f.first.starts_with("programmed.count."); });
+    EXPECT_EQ(counts, (Figures{{"programmed.count." + name, 1.0}}));
+  }
+}
+
+// RML1-7.08, RML1-9.22: every register by its name, in work units.
+TEST(Registers, AreReadByName) {
+  machine::Parameters parameters = WithSpindle(0.0, 0.0);
+  ASSERT_TRUE(parameters.Set("STEP", 0.05).ok());
+  TestRun run(parameters, "!ZO-1000;@-7,40;VS7;V8;W9;!RC15;PR;PD18500,300;!ZE Z-1;XX;\x1b.k;");
+  run.AdvanceToEnd();
+  // Machine 195, 23 and -10.08 mm, in steps of 0.05 mm.
+  const std::pair<const char*, const char*> registers[] = {
+      {"X", "18500"},    {"Y", "300"},       {"Z", "-8"},   {"VS", "7"},        {"F", "7"},
+      {"VZ", "8"},       {"V", "8"},         {"DW", "9"},   {"W", "9"},         {"MC", "on"},
+      {"SPINDLE", "on"}, {"RPM", "15000"},   {"Z1", "-7"},  {"Z0", "-1000"},    {"Z2", "40"},
+      {"MODE", "rel"},   {"TOOL", "down"},   {"ERR", "1"},  {"XSTEPS", "3900"}, {"COM", "11"},
+      {"YSTEPS", "460"}, {"ZSTEPS", "-202"}, {"A", "none"}, {"ASTEPS", "none"}, {"Q", "none"}};
+  for (const auto& [name, value] : registers) EXPECT_EQ(run.variable(name), value) << name;
+  TestRun outside(parameters, "!MC0;PU25000,31000;");
+  outside.AdvanceToEnd();
+  EXPECT_EQ(outside.variable("LX"), "25000");
+  EXPECT_EQ(outside.variable("LY"), "31000");
+  EXPECT_EQ(outside.variable("LZ"), "500");
+  EXPECT_EQ(outside.variable("MC"), "off");
+  EXPECT_EQ(outside.variable("SPINDLE"), "off");
+  EXPECT_EQ(outside.variable("MODE"), "abs");
+  EXPECT_EQ(outside.variable("TOOL"), "up");
+  TestRun turns(ParametersOf("t1a"), "!ZE A-0.126;");
+  turns.AdvanceToEnd();
+  EXPECT_EQ(turns.variable("A"), "-0.126");
+  EXPECT_EQ(turns.variable("ASTEPS"), "-13");
+  const machine::MachineFamily& family = Rml1Family();
+  EXPECT_TRUE(family.HasVariable(parameters, "ZSTEPS"));
+  EXPECT_FALSE(family.HasVariable(parameters, "A"));
+  EXPECT_TRUE(family.HasVariable(ParametersOf("t1a"), "A"));
+  EXPECT_TRUE(family.HasVariable(ParametersOf("t1a"), "ASTEPS"));
+  EXPECT_FALSE(family.HasVariable(parameters, "Q"));
+}
+
+}  // namespace
+}  // namespace rmlcell::rml1
