@@ -11,7 +11,9 @@ SimTime Later(SimTime time, SimTime by) { return time > kForever - by ? kForever
 
 }  // namespace
 
-Simulation::Simulation(machine::Run& run, Recorder& recorder) : run_(run), recorder_(recorder) {}
+Simulation::Simulation(machine::Run& run, Recorder& recorder) : run_(run), recorder_(recorder) {
+  recorder_.Begin(run_);
+}
 
 machine::RunPhase Simulation::Step(SimTime slice) {
   if (finished()) return phase_;
