@@ -2,11 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "engine/core/number_text.h"
 
 namespace rmlcell::optimo {
+namespace {
+
+constexpr std::uint64_t kUnlimitedSteps = std::numeric_limits<std::uint64_t>::max();
+
+}  // namespace
 
 Loaded Load(Executable executable) {
   auto loaded = std::make_shared<LoadedProgram>();
@@ -23,6 +29,8 @@ Control::Control(OptimoParameters parameters, machine::RunSetup setup,
       setup_(std::move(setup)),
       observer_(observer),
       s_(parameters_.limits) {
+  if (setup_.budget.steps == 0) setup_.budget.steps = kUnlimitedSteps;
+  if (setup_.budget.virtual_time <= SimTime(0)) setup_.budget.virtual_time = kForever;
   for (const auto& [slot, program] : setup_.programs) {
     if (IsSlot(slot)) sources_[static_cast<std::size_t>(slot)] = program.source.get();
   }
@@ -99,6 +107,7 @@ machine::RunPhase Control::Advance(SimTime until) {
       Fetch();
       continue;
     }
+    if (next == kForever && until == kForever) return s_.phase;  // nothing is to come: time stands
     const SimTime next = NextEvent(until);
     if (next > until) {
       LetTimePass(until);
