@@ -377,8 +377,12 @@ void Control::TellHalt() {
 void Control::Resume() {
   if (s_.phase != machine::RunPhase::kHalted) return;
   if (s_.machine.door_open && (s_.beam_returns || s_.beam.shutter_was_open)) {
-    Warn(ErrorCode::kShutterInterlock, "START with the operator door open", "OPT-3.17");
-    return;
+    // An alarm: no ERR catches it (OPT-B.56).
+    constexpr std::string_view kDetail = "START with the operator door open";
+    s_.machine.data.vi[99] = static_cast<float>(Lookup(ErrorCode::kShutterInterlock).number);
+    Warn(ErrorCode::kShutterInterlock, std::string(kDetail), "OPT-3.17");
+    return Finish(machine::OutcomeKind::kFailed, ErrorCode::kShutterInterlock,
+                  std::string(kDetail));
   }
   TellHalt();
   // A wait that was under way lasts as long as before: time stood still for it.
