@@ -41,13 +41,12 @@ Control::Control(OptimoParameters parameters, machine::RunSetup setup,
   s_.planned_axes = s_.machine.axes;
   s_.mode = setup_.mode;
   s_.override_percent = setup_.override_percent;
-  s_.breakpoint = setup_.breakpoint ? setup_.breakpoint : s_.machine.breakpoint;
-  if (setup_.simul) {
-    s_.simulated = {.active = true, .until = *setup_.simul};
-  } else if (s_.machine.simul) {
-    s_.simulated = {.active = true, .until = *s_.machine.simul, .armed = true};
-    s_.machine.simul.reset();
-  }
+  // What is set for this run replaces what the machine kept, and is kept like it (OPT-6.08, 6.14).
+  if (setup_.breakpoint) s_.machine.breakpoint = setup_.breakpoint;
+  s_.breakpoint = s_.machine.breakpoint;
+  if (setup_.simul) s_.machine.simul = setup_.simul;
+  if (s_.machine.simul) s_.simulated = {.active = true, .until = *s_.machine.simul};
+  s_.machine.simul.reset();
   StartMain();
 }
 
@@ -107,8 +106,8 @@ machine::RunPhase Control::Advance(SimTime until) {
       Fetch();
       continue;
     }
-    if (next == kForever && until == kForever) return s_.phase;  // nothing is to come: time stands
     const SimTime next = NextEvent(until);
+    if (next == kForever && until == kForever) return s_.phase;  // nothing is to come: time stands
     if (next > until) {
       LetTimePass(until);
       return s_.phase;
@@ -457,7 +456,7 @@ void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, s
   BeamOff();
   CloseShutter();
   s_.beam_returns = false;
-  if (s_.simulated.active && s_.simulated.armed && !s_.machine.simul) {
+  if (s_.simulated.active && !s_.machine.simul) {
     s_.machine.simul = s_.simulated.until;  // its step was not reached: OPT-6.14
   }
   s_.phase = machine::RunPhase::kFinished;
