@@ -58,7 +58,7 @@ RunReport RunToEnd(Simulation& simulation, const SimulationOptions& options) {
       break;
     }
     if (simulation.phase() != machine::RunPhase::kHalted) continue;
-    // START that changes nothing will never do: an emergency stop, a door left open.
+    // START that changes nothing will never do.
     const Progress here{simulation.state(), simulation.steps_executed(), simulation.cut_off()};
     const bool stuck =
         started && started->state.time == here.state.time && started->steps == here.steps;
