@@ -52,6 +52,8 @@ double Number(const Row& row, std::size_t column) { return *ParseDouble(row[colu
 
 TEST(Samples, RateHasLimits) {
   EXPECT_EQ(*ParseSampleRate("1000"), 1000.0);
+  EXPECT_EQ(*ParseSampleRate("1"), 1.0);
+  EXPECT_EQ(*ParseSampleRate("10000"), 10000.0);
   for (const char* wrong : {"0.5", "10001", "", "fast", "nan"}) {
     EXPECT_FALSE(ParseSampleRate(wrong)) << wrong;
   }
