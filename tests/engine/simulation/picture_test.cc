@@ -4,8 +4,10 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "engine/core/units.h"
+#include "engine/simulation/path_sketch.h"
 #include "engine/simulation/picture_page.h"
 #include "tests/engine/motion/standard_machine.h"
 #include "tests/engine/simulation/fake_run.h"
@@ -140,6 +142,42 @@ TEST(Picture, ViewsOfTheMachine) {
   const std::string asked = SvgOf(SomeLaserWork(), LaserWithTravel(), Completed(),
                                   {.views = {PictureView::kXZ, PictureView::kYZ}});
   EXPECT_EQ(CountOf(asked, "<clipPath"), 2u);
+}
+
+// motion.md 8.1: a dot at each pierce, where the report counts one: WORK 1 with delay, or WORK 0
+// followed by DELAY; no other signal makes one of a later DELAY.
+TEST(Picture, DotsArePierces) {
+  using machine::Signal;
+  using machine::WaitKind;
+  Script script;
+  const auto cut = [&](double from, double to) {
+    script.Line({from, 0, 0}, {to, 0, 0}, {.use = MotionUse::kCut, .beam_on = true});
+  };
+  script.Line({0, 5, 0}, {0, 0, 0});
+  script.Signal(Signal::kBeam, 1, 100).Wait(WaitKind::kDwell, 0.5, true, 100.0);  // at 0
+  cut(0, 10);
+  script.Signal(Signal::kOutput, 1, 0, 16).Wait(WaitKind::kDwell, 0.5, true, 100.0);  // none
+  script.Signal(Signal::kBeam, 1, 50).Wait(WaitKind::kDwell, 0.5, true, 100.0);  // it was on: none
+  script.Signal(Signal::kBeam, 0).Signal(Signal::kBeam, 1, 100);
+  cut(10, 20);
+  script.Wait(WaitKind::kCondition, 1.0, true, 50.0);  // none
+  script.Signal(Signal::kBeam, 0).Signal(Signal::kBeam, 1, 100);
+  script.Wait(WaitKind::kPierce, 1.0, true, 50.0);  // at 20
+  script.Wait(WaitKind::kDwell, 1.0, true, 0.0);    // the same one
+  script.Signal(Signal::kBeam, 0).Wait(WaitKind::kDwell, 1.0);
+  cut(20, 30);
+  script.Signal(Signal::kBeam, 1, 100).Wait(WaitKind::kPierce, 0.0, true, 50.0);  // no time: none
+  PictureRecorder recorder(Laser());
+  FakeRun run(script, recorder);
+  run.Advance(kForever);
+  std::vector<double> dots;
+  for (const SketchDot& dot : recorder.sketch().dots()) {
+    EXPECT_TRUE(dot.pierce);
+    dots.push_back(dot.at.x);
+  }
+  EXPECT_EQ(dots, (std::vector<double>{0.0, 20.0}));
+  EXPECT_EQ(recorder.elements(), 4u);
+  EXPECT_TRUE(recorder.exact());
 }
 
 // Cut and travel in different strokes, plunges and pierces as dots; legend, scale, envelope.

@@ -185,10 +185,11 @@ TEST(Samples, OfAProgramWithoutAMotion) {
     EXPECT_EQ(row[3], "-50.000000");
     EXPECT_EQ(row[8], "-350.000000");
   }
-  EXPECT_EQ(seen, (std::vector<std::string>{
-                      "0.0 0.0000 1 ", "0.5 0.0000 1 ", "1.0 0.0000 2 shutter = 1",
-                      "1.0 0.0000 2 beam = 1", "1.0 100.0000 3 ", "1.5 100.0000 3 ",
-                      "2.0 100.0000 4 beam = 0", "2.0 100.0000 4 shutter = 0", "2.0 0.0000 4 end"}));
+  EXPECT_EQ(seen,
+            (std::vector<std::string>{"0.0 0.0000 1 ", "0.5 0.0000 1 ", "1.0 0.0000 2 shutter = 1",
+                                      "1.0 0.0000 2 beam = 1", "1.0 100.0000 3 ", "1.5 100.0000 3 ",
+                                      "2.0 100.0000 4 beam = 0", "2.0 100.0000 4 shutter = 0",
+                                      "2.0 0.0000 4 end"}));
 }
 
 // motion.md 9: of a five-axis machine the columns of the axes are those of the column.

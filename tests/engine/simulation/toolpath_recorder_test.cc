@@ -250,9 +250,9 @@ TEST(ToolpathRecorder, StraightOnIsOneLineBehindABreak) {
   jump.Line({0, 5, 0}, {10, 5, 0}).Line({10, 5, 0}, {20, 5, 0});
   const Recorded two_runs = Record(jump);
   ASSERT_EQ(two_runs.blocks.size(), 1u);
-  EXPECT_EQ(two_runs.blocks[0].points,
-            (std::vector<ToolpathPoint>{
-                {0, 0, 0}, {10'000, 0, 0}, {0, 5000, 0}, {20'000, 5000, 0}}));
+  EXPECT_EQ(
+      two_runs.blocks[0].points,
+      (std::vector<ToolpathPoint>{{0, 0, 0}, {10'000, 0, 0}, {0, 5000, 0}, {20'000, 5000, 0}}));
   ASSERT_EQ(two_runs.blocks[0].runs.size(), 2u);
   EXPECT_EQ(two_runs.blocks[0].runs[1].first_point, 2u);
   EXPECT_EQ(two_runs.blocks[0].runs[1].point_count, 2u);

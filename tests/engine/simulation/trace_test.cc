@@ -104,7 +104,8 @@ TEST(Trace, SignalsAndWaitsHaveWords) {
   EXPECT_EQ(LinesOf(script), expected);
 }
 
-// What a record holds: of a move all that was told of it, of a finding its code, severity and place.
+// What a record holds: of a move all that was told of it, of a finding its code, severity and
+// place.
 TEST(Trace, RecordsHoldWhatWasTold) {
   std::vector<TraceRecord> records;
   TraceRecorder recorder([&](const TraceRecord& record) {

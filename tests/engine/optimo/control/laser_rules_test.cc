@@ -76,8 +76,8 @@ TEST(LaserRules, StartWithTheDoorOpenEndsTheRun) {
 
 // OPT-E.7410: without a beam to come back START goes on behind an open door.
 TEST(LaserRules, StartWithTheDoorOpenAndNoBeamGoesOn) {
-  const Ran ran = RunText("DELAY 5\n", {.inputs = {{At(1.0), InputKind::kDoor, 0, 1.0},
-                                                   {At(2.0), InputKind::kStart}}});
+  const Ran ran = RunText(
+      "DELAY 5\n", {.inputs = {{At(1.0), InputKind::kDoor, 0, 1.0}, {At(2.0), InputKind::kStart}}});
   EXPECT_EQ(ran.outcome.kind, OutcomeKind::kCompleted);
   EXPECT_NEAR(ran.time_s, 6.0, 1e-9);
 }
