@@ -206,6 +206,23 @@ TEST(Picture, FailureIsShown) {
   EXPECT_GE(CountOf(svg, ">where it ended<"), 1u);
 }
 
+// An arc that bows less than a fiftieth of a pixel is drawn as a line: 6 um in a picture of a
+// metre, over a chord of 10 mm; one that bows 0.6 mm is an arc.
+TEST(Picture, AnArcThatBowsTooLittleIsALine) {
+  const auto drawn = [](double radius) {
+    const PathPiece flat =
+        PathPiece::Circle({{500, 0, 0}}, {505, -std::sqrt(radius * radius - 25.0), 0}, {0, 0, -1},
+                          2.0 * std::asin(5.0 / radius), 0.0, 0.0);
+    Script script;
+    script.Line({0, 0, 0}, {500, 0, 0}, {.use = MotionUse::kCut});
+    script.Motion(Planned(flat), {.use = MotionUse::kCut});
+    script.Line({510, 0, 0}, {1000, 0, 0}, {.use = MotionUse::kCut});
+    return PathsOf(SvgOf(script, {}));
+  };
+  EXPECT_EQ(drawn(2000.0).find('a'), std::string::npos);
+  EXPECT_NE(drawn(20.0).find('a'), std::string::npos);
+}
+
 // motion.md 9: a program without blends gives real arcs. A full circle seen from above is arcs of
 // equal radii, and they end where they began; no line is drawn for it.
 TEST(Picture, ArcsAreArcs) {
