@@ -89,6 +89,11 @@ void Recorder::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
   state_->All([&](machine::RunObserver& to) { to.OnDiagnostic(at, diagnostic); });
 }
 
+void Recorder::Begin(const machine::Run& run) {
+  const machine::RunState state = run.state();
+  if (state_->samples) state_->samples->StandsAt(state.tip, state.axes);
+}
+
 bool Recorder::cut_off() const {
   return (state_->trace && state_->trace->dropped() > 0) ||
          (state_->toolpath && !state_->toolpath->complete());

@@ -47,6 +47,9 @@ class Recorder final : public machine::RunObserver {
   void OnViolation(const machine::TravelViolation& violation) override;
   void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override;
 
+  // Once, before the run goes on: where the machine stands.
+  void Begin(const machine::Run& run);
+
   // A product reached its budget and is cut off.
   bool cut_off() const;
 

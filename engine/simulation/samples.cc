@@ -76,10 +76,13 @@ struct SampleRecorder::State {
 
   void Look(const motion::TrajectoryPoint& point, double at_s) {
     looked_s = at_s;
-    tip = point.tip.tip;
     speed = point.tip_speed();
-    axes = shape.five_axis ? point.axes
-                           : motion::AxisValues{tip.x, tip.y, tip.z, point.tip.a_rad, 0.0};
+    StandAt(point.tip, point.axes);
+  }
+
+  void StandAt(const motion::TipPose& pose, const motion::AxisValues& of_axes) {
+    tip = pose.tip;
+    axes = shape.five_axis ? of_axes : motion::AxisValues{tip.x, tip.y, tip.z, pose.a_rad, 0.0};
     known = true;
   }
 
@@ -105,6 +108,10 @@ SampleRecorder::SampleRecorder(const machine::MachineShape& shape, double rate_h
   RMLCELL_CHECK(state_->sink && rate_hz >= kSampleRateMin_hz && rate_hz <= kSampleRateMax_hz);
 }
 SampleRecorder::~SampleRecorder() = default;
+
+void SampleRecorder::StandsAt(const motion::TipPose& tip, const motion::AxisPose& axes) {
+  state_->StandAt(tip, {axes.column.x, axes.column.y, axes.column.z, axes.a_rad, axes.b_rad});
+}
 
 void SampleRecorder::OnMotion(const machine::MotionDone& done) {
   if (done.motion == nullptr) return;

@@ -25,12 +25,15 @@ Result<double> ParseSampleRate(std::string_view text);
 // up), and one at every event: a signal, a halt, the end. Columns: t_s; X_mm Y_mm Z_mm A_rad B_rad
 // of the axes; tip_x_mm tip_y_mm tip_z_mm; speed_mm_s of the tip; power_percent; program, step;
 // event (empty for the evenly spaced ones). What is not told in motions stands still; lines begin
-// when the first position is known. Memory is bounded however long the run.
+// when the first position is known: by StandsAt, else the first motion. Memory is bounded.
 class SampleRecorder final : public machine::RunObserver {
  public:
   // Preconditions: the rate is within its limits, `sink` is not empty.
   SampleRecorder(const machine::MachineShape& shape, double rate_hz, SampleSink sink);
   ~SampleRecorder() override;
+
+  // Before anything is told: where the machine stands.
+  void StandsAt(const motion::TipPose& tip, const motion::AxisPose& axes);
 
   void OnMotion(const machine::MotionDone& done) override;
   void OnWait(const machine::Wait& wait) override;

@@ -11,7 +11,9 @@ SimTime Later(SimTime time, SimTime by) { return time > kForever - by ? kForever
 
 }  // namespace
 
-Simulation::Simulation(machine::Run& run, Recorder& recorder) : run_(run), recorder_(recorder) {}
+Simulation::Simulation(machine::Run& run, Recorder& recorder) : run_(run), recorder_(recorder) {
+  recorder_.Begin(run_);
+}
 
 machine::RunPhase Simulation::Step(SimTime slice) {
   if (finished()) return phase_;
@@ -56,7 +58,7 @@ RunReport RunToEnd(Simulation& simulation, const SimulationOptions& options) {
       break;
     }
     if (simulation.phase() != machine::RunPhase::kHalted) continue;
-    // START that changes nothing will never do: an emergency stop, a door left open.
+    // START that changes nothing will never do.
     const Progress here{simulation.state(), simulation.steps_executed(), simulation.cut_off()};
     const bool stuck =
         started && started->state.time == here.state.time && started->steps == here.steps;

@@ -22,7 +22,7 @@ namespace rmlcell::simulation {
 // Cutting virtual time into other slices changes nothing in the products.
 class Simulation {
  public:
-  // The recorder must be the observer of the run. Both must outlive this.
+  // The recorder must be the observer of the run, which has not begun. Both must outlive this.
   Simulation(machine::Run& run, Recorder& recorder);
 
   // Goes on by `slice` of virtual time, at most. While halted with scripted inputs to come, up to

@@ -2,11 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "engine/core/number_text.h"
 
 namespace rmlcell::optimo {
+namespace {
+
+constexpr std::uint64_t kUnlimitedSteps = std::numeric_limits<std::uint64_t>::max();
+
+}  // namespace
 
 Loaded Load(Executable executable) {
   auto loaded = std::make_shared<LoadedProgram>();
@@ -23,6 +29,8 @@ Control::Control(OptimoParameters parameters, machine::RunSetup setup,
       setup_(std::move(setup)),
       observer_(observer),
       s_(parameters_.limits) {
+  if (setup_.budget.steps == 0) setup_.budget.steps = kUnlimitedSteps;
+  if (setup_.budget.virtual_time <= SimTime(0)) setup_.budget.virtual_time = kForever;
   for (const auto& [slot, program] : setup_.programs) {
     if (IsSlot(slot)) sources_[static_cast<std::size_t>(slot)] = program.source.get();
   }
@@ -33,13 +41,12 @@ Control::Control(OptimoParameters parameters, machine::RunSetup setup,
   s_.planned_axes = s_.machine.axes;
   s_.mode = setup_.mode;
   s_.override_percent = setup_.override_percent;
-  s_.breakpoint = setup_.breakpoint ? setup_.breakpoint : s_.machine.breakpoint;
-  if (setup_.simul) {
-    s_.simulated = {.active = true, .until = *setup_.simul};
-  } else if (s_.machine.simul) {
-    s_.simulated = {.active = true, .until = *s_.machine.simul, .armed = true};
-    s_.machine.simul.reset();
-  }
+  // What is set for this run replaces what the machine kept, and is kept like it (OPT-6.08, 6.14).
+  if (setup_.breakpoint) s_.machine.breakpoint = setup_.breakpoint;
+  s_.breakpoint = s_.machine.breakpoint;
+  if (setup_.simul) s_.machine.simul = setup_.simul;
+  if (s_.machine.simul) s_.simulated = {.active = true, .until = *s_.machine.simul};
+  s_.machine.simul.reset();
   StartMain();
 }
 
@@ -100,6 +107,7 @@ machine::RunPhase Control::Advance(SimTime until) {
       continue;
     }
     const SimTime next = NextEvent(until);
+    if (next == kForever && until == kForever) return s_.phase;  // nothing is to come: time stands
     if (next > until) {
       LetTimePass(until);
       return s_.phase;
@@ -368,8 +376,12 @@ void Control::TellHalt() {
 void Control::Resume() {
   if (s_.phase != machine::RunPhase::kHalted) return;
   if (s_.machine.door_open && (s_.beam_returns || s_.beam.shutter_was_open)) {
-    Warn(ErrorCode::kShutterInterlock, "START with the operator door open", "OPT-3.17");
-    return;
+    // An alarm: no ERR catches it (OPT-B.56).
+    constexpr std::string_view kDetail = "START with the operator door open";
+    s_.machine.data.vi[99] = static_cast<float>(Lookup(ErrorCode::kShutterInterlock).number);
+    Warn(ErrorCode::kShutterInterlock, std::string(kDetail), "OPT-3.17");
+    return Finish(machine::OutcomeKind::kFailed, ErrorCode::kShutterInterlock,
+                  std::string(kDetail));
   }
   TellHalt();
   // A wait that was under way lasts as long as before: time stood still for it.
@@ -444,7 +456,7 @@ void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, s
   BeamOff();
   CloseShutter();
   s_.beam_returns = false;
-  if (s_.simulated.active && s_.simulated.armed && !s_.machine.simul) {
+  if (s_.simulated.active && !s_.machine.simul) {
     s_.machine.simul = s_.simulated.until;  // its step was not reached: OPT-6.14
   }
   s_.phase = machine::RunPhase::kFinished;

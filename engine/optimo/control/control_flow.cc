@@ -52,21 +52,24 @@ void Control::Fetch() {
     return EndModule();
   }
   const Instruction& i = module().instructions[at];
+  const machine::Place here{
+      .program = slot, .step = static_cast<int>(i.step), .line = LineOf(slot, i.step)};
   if (simulating() && slot == s_.simulated.until.program &&
       i.step == static_cast<std::uint32_t>(s_.simulated.until.step)) {
     // The first time that control comes to the step: from here on all is real (OPT-6.13, 6.14).
     const int schedule = s_.simulated.schedule;
     s_.simulated = {};
+    s_.place = here;  // where what the simulated steps asked for takes effect
     ConnectOutputs();
+    if (s_.phase != machine::RunPhase::kRunning) return;
     if (schedule > 0)
       Carry({.kind = PassageEffect::Kind::kSchedule, .place = s_.place, .index = schedule});
-    if (s_.phase != machine::RunPhase::kRunning || s_.pending.kind != Pending::Kind::kNone) return;
   }
   if (s_.steps >= setup_.budget.steps) {
     return Finish(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kStepBudget,
                   std::to_string(s_.steps) + " steps were executed");
   }
-  s_.place = {.program = slot, .step = static_cast<int>(i.step), .line = LineOf(slot, i.step)};
+  s_.place = here;
   s_.op = i.op;
   if (s_.no_motion) {
     if (i.op == Op::kMove && !s_.condition_met) EndNoMotion();  // takes over at once: it stands

@@ -147,10 +147,7 @@ bool Control::SelectSchedule(int number, When when) {
 bool Control::SetOutput(int index, bool on) {
   DataArea& data = s_.machine.data;
   data.ol[static_cast<std::size_t>(index)] = on;
-  if (!Connected(kGroupOl)) {
-    if (simulating()) s_.simulated.ol_changed[static_cast<std::size_t>(index)] = true;
-    return true;
-  }
+  if (!Connected(kGroupOl)) return true;
   if (on && index == kGas3 && parameters_.gas_channels < 3) {
     Raise(ErrorCode::kGas3NotFitted, {});
     return false;
@@ -173,7 +170,7 @@ void Control::ConnectOutputs() {
   for (int n = 0; n < kVariableCount; ++n) {
     const auto at = static_cast<std::size_t>(n);
     if (Connected(kGroupOl) && s_.machine.data.ol[at] != s_.machine.data.ol_physical[at]) {
-      SetOutput(n, s_.machine.data.ol[at]);
+      if (!SetOutput(n, s_.machine.data.ol[at])) return;
     }
     if (Connected(kGroupOa) && n > 0 && s_.machine.data.oa[at] != s_.machine.data.oa_physical[at]) {
       Carry({.kind = PassageEffect::Kind::kAnalogue,

@@ -190,10 +190,7 @@ struct Polling {
 struct Simulated {
   bool active = false;
   machine::ProgramStep until{};
-  bool armed =
-      false;  // by the instruction SIMUL of an earlier run: stays when its step is not reached
-  Bits ol_changed{};
-  int schedule = 0;
+  int schedule = 0;  // selected last; 0: none
 };
 
 struct ControlState {

@@ -22,6 +22,29 @@ TEST(Families, ExtensionsAreComparedWithoutCase) {
   EXPECT_FALSE(ClaimsExtension(info, "fk"));
 }
 
+// Only letters have two cases: what stands beside them in ASCII is itself.
+TEST(Families, OnlyLettersHaveTwoCases) {
+  const machine::FamilyInfo info{.extensions = ".AZ .B@ .C["};
+  for (const char* same : {".AZ", ".az", ".Az", ".b@", ".c["}) {
+    EXPECT_TRUE(ClaimsExtension(info, same)) << same;
+  }
+  for (const char* other : {".b`", ".c{", ".A", ".AZ ", ".AZ .B@"}) {
+    EXPECT_FALSE(ClaimsExtension(info, other)) << other;
+  }
+}
+
+// The extension is what follows the last point of the name itself, whichever way folders are
+// written.
+TEST(Families, OfFileNames) {
+  const machine::MachineFamily* optimo = FindFamily("optimo");
+  ASSERT_NE(optimo, nullptr);
+  for (const char* name : {"part.S", "part.si", "a.b.S", "C:\\old.d\\part.S", "x.rml/part.cmp"}) {
+    EXPECT_EQ(FamilyOfFileName(name), optimo) << name;
+  }
+  EXPECT_EQ(FamilyOfFileName("old.S\\part"), nullptr);
+  EXPECT_EQ(FamilyOfFileName("part.S.bak"), nullptr);
+}
+
 TEST(Families, NamesOfNobody) {
   EXPECT_EQ(FindFamily("no such family"), nullptr);
   EXPECT_EQ(FamilyOfFileName("part.xyz"), nullptr);

@@ -25,6 +25,7 @@ TEST(FindingList, SameFindingAtTheSameStepIsCounted) {
   ASSERT_EQ(list.findings().size(), 2u);
   EXPECT_EQ(list.findings()[0].count, 2u);
   EXPECT_EQ(list.findings()[0].first_at, SimTime(10));
+  EXPECT_EQ(list.findings()[0].diagnostic.at, SimTime(10));
   EXPECT_EQ(list.findings()[0].diagnostic.detail, "first");
   EXPECT_EQ(list.findings()[1].count, 1u);
   Diagnostic other = Warning(5);

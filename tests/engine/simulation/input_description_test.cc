@@ -75,6 +75,32 @@ TEST(DescribeInputs, EveryFieldChangesTheHash) {
       [](machine::RunSetup& s) {
         s.inputs = {{SimTime(1), machine::InputKind::kHold, 0, 1.0}};
       },
+      [](machine::RunSetup& s) {
+        s.inputs = {{SimTime(1), machine::InputKind::kStop, 0, 0.0}};
+      },
+      [](machine::RunSetup& s) { s.inputs.resize(2); },
+      [](machine::RunSetup& s) {
+        s.breakpoint = {1, 3};
+      },
+      [](machine::RunSetup& s) {
+        s.breakpoint = {2, 2};
+      },
+      [](machine::RunSetup& s) {
+        s.simul = {1, 3};
+      },
+      [](machine::RunSetup& s) {
+        s.simul = {2, 2};
+      },
+      [](machine::RunSetup& s) {
+        s.breakpoint = {1, 2};
+        s.simul = {1, 2};
+      },
+      [](machine::RunSetup& s) { s.schedules = {{.number = 2, .name = "", .mode = "CW"}}; },
+      [](machine::RunSetup& s) { s.schedules = {{.number = 1, .name = "a", .mode = "CW"}}; },
+      [](machine::RunSetup& s) { s.schedules = {{.number = 1, .name = "", .mode = "PW"}}; },
+      [](machine::RunSetup& s) { s.schedules = {{.number = 1, .name = "C", .mode = "W"}}; },
+      [&](machine::RunSetup& s) { s.programs[3] = s.programs[1]; },
+      [](machine::RunSetup& s) { s.forecast = true; },
       [](machine::RunSetup& s) { s.budget.steps = 7; },
       [](machine::RunSetup& s) { s.budget.virtual_time = SimTime(7); },
   };

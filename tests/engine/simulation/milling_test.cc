@@ -71,6 +71,30 @@ TEST(MillingRecorder, TellsTravelThroughMaterial) {
   EXPECT_EQ(figures.gouge_at, std::chrono::seconds(4));
 }
 
+// The deepest gouge is kept with its place, wherever it comes; less than a micrometre is rounding.
+TEST(MillingRecorder, KeepsTheDeepestGouge) {
+  MillingRecorder recorder(MillShape(), kSlot);
+  Tell(recorder, {5, 2, -0.0005}, {15, 2, -0.0005}, 0.0, 1);
+  EXPECT_EQ(recorder.Figures().gouges, 0u);
+  Tell(recorder, {5, 6, -1.5}, {15, 6, -1.5}, 0.0, 2);
+  Tell(recorder, {5, 10, -0.5}, {15, 10, -0.5}, 0.0, 3);
+  Tell(recorder, {5, 2, -0.002}, {15, 2, -0.002}, 0.0, 4);
+  EXPECT_EQ(recorder.Figures().gouges, 3u);
+  EXPECT_NEAR(recorder.Figures().gouge_depth_mm, 1.5, 1e-5);
+  EXPECT_EQ(recorder.Figures().gouge_place.step, 2);
+  EXPECT_EQ(recorder.Figures().gouge_place.program, 7);
+}
+
+// Only the part of a motion that was travelled takes material off.
+TEST(MillingRecorder, TakesOffWhatWasTravelled) {
+  MillingRecorder recorder(MillShape(), kSlot);
+  motion::PlannedMotion planned;
+  const Vec3 origin = MillShape().work_origin;
+  planned.path = PathPiece::Line({Vec3{2, 6, -2} + origin}, {Vec3{18, 6, -2} + origin});
+  recorder.OnMotion({.motion = &planned, .from = 3.0, .travelled = 13.0, .programmed_mm_s = 8.0});
+  EXPECT_NEAR(recorder.Figures().removed_mm3, 2.0 * (30.0 + kPi * 2.25), 0.3);
+}
+
 TEST(MillingText, ReadsBlocks) {
   const Result<Stock> plain = ParseStock("100x80x10");
   ASSERT_TRUE(plain);
@@ -81,6 +105,10 @@ TEST(MillingText, ReadsBlocks) {
       *placed,
       (Stock{
           .x_min = -5.0, .x_max = 15.0, .y_min = -4.0, .y_max = 6.0, .bottom = -1.5, .top = 1.0}));
+  const Result<Stock> flat = ParseStock("20x10x2.5@-5,-4");
+  ASSERT_TRUE(flat);
+  EXPECT_EQ(*flat,
+            (Stock{.x_min = -5.0, .x_max = 15.0, .y_min = -4.0, .y_max = 6.0, .bottom = -2.5}));
   for (const char* wrong :
        {"", "100x80", "100x80x10x2", "axbxc", "100x80x10@", "100x80x10@1", "1x1x1@1,2,3,4"})
     EXPECT_FALSE(ParseStock(wrong)) << wrong;
@@ -93,6 +121,10 @@ TEST(MillingText, ReadsTools) {
   EXPECT_DOUBLE_EQ(vee->radius_mm, 3.0);
   EXPECT_DOUBLE_EQ(vee->half_angle_rad, kPi / 6);
   EXPECT_DOUBLE_EQ(vee->tip_radius_mm, 0.1);
+  const Result<MillTool> pointed = ParseTool("vee:6:60");
+  ASSERT_TRUE(pointed);
+  EXPECT_EQ(pointed->tip_radius_mm, 0.0);
+  EXPECT_EQ(ParseTool("flat:3")->shape, MillTool::Shape::kFlat);
   EXPECT_EQ(ParseTool("ball:3")->shape, MillTool::Shape::kBall);
   EXPECT_EQ(ParseTool("flat:3")->radius_mm, 1.5);
   for (const char* wrong :

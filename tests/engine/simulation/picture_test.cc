@@ -4,8 +4,10 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "engine/core/units.h"
+#include "engine/simulation/path_sketch.h"
 #include "engine/simulation/picture_page.h"
 #include "tests/engine/motion/standard_machine.h"
 #include "tests/engine/simulation/fake_run.h"
@@ -142,6 +144,42 @@ TEST(Picture, ViewsOfTheMachine) {
   EXPECT_EQ(CountOf(asked, "<clipPath"), 2u);
 }
 
+// motion.md 8.1: a dot at each pierce, where the report counts one: WORK 1 with delay, or WORK 0
+// followed by DELAY; no other signal makes one of a later DELAY.
+TEST(Picture, DotsArePierces) {
+  using machine::Signal;
+  using machine::WaitKind;
+  Script script;
+  const auto cut = [&](double from, double to) {
+    script.Line({from, 0, 0}, {to, 0, 0}, {.use = MotionUse::kCut, .beam_on = true});
+  };
+  script.Line({0, 5, 0}, {0, 0, 0});
+  script.Signal(Signal::kBeam, 1, 100).Wait(WaitKind::kDwell, 0.5, true, 100.0);  // at 0
+  cut(0, 10);
+  script.Signal(Signal::kOutput, 1, 0, 16).Wait(WaitKind::kDwell, 0.5, true, 100.0);  // none
+  script.Signal(Signal::kBeam, 1, 50).Wait(WaitKind::kDwell, 0.5, true, 100.0);  // it was on: none
+  script.Signal(Signal::kBeam, 0).Signal(Signal::kBeam, 1, 100);
+  cut(10, 20);
+  script.Wait(WaitKind::kCondition, 1.0, true, 50.0);  // none
+  script.Signal(Signal::kBeam, 0).Signal(Signal::kBeam, 1, 100);
+  script.Wait(WaitKind::kPierce, 1.0, true, 50.0);  // at 20
+  script.Wait(WaitKind::kDwell, 1.0, true, 0.0);    // the same one
+  script.Signal(Signal::kBeam, 0).Wait(WaitKind::kDwell, 1.0);
+  cut(20, 30);
+  script.Signal(Signal::kBeam, 1, 100).Wait(WaitKind::kPierce, 0.0, true, 50.0);  // no time: none
+  PictureRecorder recorder(Laser());
+  FakeRun run(script, recorder);
+  run.Advance(kForever);
+  std::vector<double> dots;
+  for (const SketchDot& dot : recorder.sketch().dots()) {
+    EXPECT_TRUE(dot.pierce);
+    dots.push_back(dot.at.x);
+  }
+  EXPECT_EQ(dots, (std::vector<double>{0.0, 20.0}));
+  EXPECT_EQ(recorder.elements(), 4u);
+  EXPECT_TRUE(recorder.exact());
+}
+
 // Cut and travel in different strokes, plunges and pierces as dots; legend, scale, envelope.
 TEST(Picture, ShowsWhatTheIssueAsksFor) {
   const std::string mill = SvgOf(SomeMilling(), Mill());
@@ -166,6 +204,23 @@ TEST(Picture, FailureIsShown) {
   const std::string svg = SvgOf(SomeMilling(), Mill(), report);
   EXPECT_GE(CountOf(svg, "failed  OPT-E348  at 45/7"), 1u);
   EXPECT_GE(CountOf(svg, ">where it ended<"), 1u);
+}
+
+// An arc that bows less than a fiftieth of a pixel is drawn as a line: 6 um in a picture of a
+// metre, over a chord of 10 mm; one that bows 0.6 mm is an arc.
+TEST(Picture, AnArcThatBowsTooLittleIsALine) {
+  const auto drawn = [](double radius) {
+    const PathPiece flat =
+        PathPiece::Circle({{500, 0, 0}}, {505, -std::sqrt(radius * radius - 25.0), 0}, {0, 0, -1},
+                          2.0 * std::asin(5.0 / radius), 0.0, 0.0);
+    Script script;
+    script.Line({0, 0, 0}, {500, 0, 0}, {.use = MotionUse::kCut});
+    script.Motion(Planned(flat), {.use = MotionUse::kCut});
+    script.Line({510, 0, 0}, {1000, 0, 0}, {.use = MotionUse::kCut});
+    return PathsOf(SvgOf(script, {}));
+  };
+  EXPECT_EQ(drawn(2000.0).find('a'), std::string::npos);
+  EXPECT_NE(drawn(20.0).find('a'), std::string::npos);
 }
 
 // motion.md 9: a program without blends gives real arcs. A full circle seen from above is arcs of

@@ -8,6 +8,8 @@
 
 #include "engine/core/number_text.h"
 #include "engine/motion/trajectory.h"
+#include "engine/simulation/families.h"
+#include "engine/simulation/simulate.h"
 #include "tests/engine/motion/standard_machine.h"
 #include "tests/engine/simulation/fake_run.h"
 
@@ -16,17 +18,8 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-// Lines of a run, cut at commas; the headings first.
-std::vector<Row> Sampled(const Script& script, double rate_hz,
-                         const machine::MachineShape& shape = {}) {
-  std::string text;
-  SampleRecorder recorder(shape, rate_hz, [&](std::string_view lines) {
-    text += lines;
-    return true;
-  });
-  FakeRun run(script, recorder);
-  run.Advance(kForever);
-  recorder.Finish(run.state().time);
+// Lines, cut at commas.
+std::vector<Row> Cut(const std::string& text) {
   std::vector<Row> rows(1, Row(1));
   for (const char c : text) {
     if (c == '\n') {
@@ -41,10 +34,26 @@ std::vector<Row> Sampled(const Script& script, double rate_hz,
   return rows;
 }
 
+// Lines of a run, cut at commas; the headings first.
+std::vector<Row> Sampled(const Script& script, double rate_hz,
+                         const machine::MachineShape& shape = {}) {
+  std::string text;
+  SampleRecorder recorder(shape, rate_hz, [&](std::string_view lines) {
+    text += lines;
+    return true;
+  });
+  FakeRun run(script, recorder);
+  run.Advance(kForever);
+  recorder.Finish(run.state().time);
+  return Cut(text);
+}
+
 double Number(const Row& row, std::size_t column) { return *ParseDouble(row[column]); }
 
 TEST(Samples, RateHasLimits) {
   EXPECT_EQ(*ParseSampleRate("1000"), 1000.0);
+  EXPECT_EQ(*ParseSampleRate("1"), 1.0);
+  EXPECT_EQ(*ParseSampleRate("10000"), 10000.0);
   for (const char* wrong : {"0.5", "10001", "", "fast", "nan"}) {
     EXPECT_FALSE(ParseSampleRate(wrong)) << wrong;
   }
@@ -131,6 +140,94 @@ TEST(Samples, EventsHaveTheirOwnPlace) {
     before = row;
   }
   EXPECT_EQ(steps, (std::vector<std::string>{"1 2 spindle = 1", "2 3 halt", "3 3 end"}));
+}
+
+// motion.md 9: where the machine stands is known from the start on: what is told before the first
+// motion has its lines, with the place, the power of the beam, and the events.
+TEST(Samples, BeginBeforeTheFirstMotion) {
+  std::string text;
+  SampleRecorder recorder({}, 2.0, [&](std::string_view lines) {
+    text += lines;
+    return true;
+  });
+  recorder.StandsAt({{1, 2, 3}, 0.25, 0.0}, {});
+  Script script;
+  script.Step(1, 1).Wait(machine::WaitKind::kDwell, 1.0);
+  script.Step(1, 2).Signal(machine::Signal::kBeam, 1.0, 100.0);
+  script.Step(1, 3).Wait(machine::WaitKind::kDwell, 1.0, true, 100.0);
+  script.Step(1, 4).Signal(machine::Signal::kBeam, 0.0);
+  FakeRun run(script, recorder);
+  run.Advance(kForever);
+  recorder.Finish(run.state().time);
+  const std::vector<Row> rows = Cut(text);
+  ASSERT_EQ(rows.size(), 1u + 4u + 3u);  // 0.0 to 1.5; two signals, the end
+  std::vector<std::string> seen;
+  for (std::size_t n = 1; n < rows.size(); ++n) {
+    seen.push_back(rows[n][0].substr(0, 3) + ' ' + rows[n][10] + ' ' + rows[n][13]);
+    EXPECT_EQ(Number(rows[n], 1), 1.0);
+    EXPECT_EQ(Number(rows[n], 2), 2.0);
+    EXPECT_EQ(Number(rows[n], 3), 3.0);
+    EXPECT_EQ(Number(rows[n], 4), 0.25);  // a mill's rotary axis
+    EXPECT_EQ(Number(rows[n], 6), 1.0);
+    EXPECT_EQ(Number(rows[n], 9), 0.0);
+  }
+  EXPECT_EQ(seen, (std::vector<std::string>{"0.0 0.0000 ", "0.5 0.0000 ", "1.0 0.0000 beam = 1",
+                                            "1.0 100.0000 ", "1.5 100.0000 ",
+                                            "2.0 100.0000 beam = 0", "2.0 0.0000 end"}));
+}
+
+// motion.md 9, 8.1: the same of a program without a motion: dwelling, then with the beam on.
+TEST(Samples, OfAProgramWithoutAMotion) {
+  const machine::MachineFamily& family = *FindFamily("optimo");
+  machine::RunSetup setup{machine::Parameters(family.parameters())};
+  machine::Translation made =
+      family.Translate({.name = "test.S", .bytes = "DELAY 1\nWORK 0,0/ON\nDELAY 1\nWORK 0,0/OFF\n"},
+                       setup.parameters, {});
+  ASSERT_TRUE(made.ok);
+  setup.programs[1].object = std::make_shared<const std::string>(std::move(made.object));
+  setup.main_program = 1;
+  std::string text;
+  SimulationRequest request;
+  request.products.samples_hz = 2.0;
+  request.products.samples = [&](std::string_view lines) {
+    text += lines;
+    return true;
+  };
+  ASSERT_TRUE(Simulate(family, std::move(setup), std::move(request)));
+  std::vector<std::string> seen;
+  for (const Row& row : Cut(text)) {
+    if (row[0] == "t_s") continue;
+    seen.push_back(row[0].substr(0, 3) + ' ' + row[10] + ' ' + row[12] + ' ' + row[13]);
+    EXPECT_EQ(row[1], "21.020000");  // home, the tip 300 mm below the column
+    EXPECT_EQ(row[3], "-50.000000");
+    EXPECT_EQ(row[8], "-350.000000");
+  }
+  EXPECT_EQ(seen,
+            (std::vector<std::string>{"0.0 0.0000 1 ", "0.5 0.0000 1 ", "1.0 0.0000 2 shutter = 1",
+                                      "1.0 0.0000 2 beam = 1", "1.0 100.0000 3 ", "1.5 100.0000 3 ",
+                                      "2.0 100.0000 4 beam = 0", "2.0 100.0000 4 shutter = 0",
+                                      "2.0 0.0000 4 end"}));
+}
+
+// motion.md 9: of a five-axis machine the columns of the axes are those of the column.
+TEST(Samples, StandStillAtTheColumn) {
+  machine::MachineShape gantry;
+  gantry.five_axis = true;
+  std::string text;
+  SampleRecorder recorder(gantry, 1.0, [&](std::string_view lines) {
+    text += lines;
+    return true;
+  });
+  recorder.StandsAt({{1, 2, 3}, 0.25, 0.5}, {{4, 5, 6}, 0.25, 0.5});
+  recorder.Finish(FromSeconds(0.5));
+  const std::vector<Row> rows = Cut(text);
+  ASSERT_EQ(rows.size(), 3u);
+  for (const std::size_t n : {1u, 2u}) {
+    const double expected[] = {4, 5, 6, 0.25, 0.5, 1, 2, 3};
+    for (std::size_t column = 0; column < 8; ++column) {
+      EXPECT_EQ(Number(rows[n], column + 1), expected[column]) << column;
+    }
+  }
 }
 
 // motion.md 9: an event between two motions that pass into each other has the speed there.

@@ -154,7 +154,7 @@ TEST(Simulation, ScriptedStartEndsAHalt) {
   EXPECT_EQ(result->report.total.time.operator_wait, FromSeconds(3600.0));
 }
 
-// A START that has no effect (an emergency stop, an open door) must not be given for ever.
+// A START that has no effect must not be given for ever.
 TEST(Simulation, StartWithoutEffectEndsTheRun) {
   Recorder recorder({}, {}, {});
   FakeRun run(WithHalt(), recorder);

@@ -227,6 +227,53 @@ TEST(ToolpathRecorder, BlocksFollowEachOther) {
   EXPECT_LT(recorded.bytes, 11u * kMoves);
 }
 
+// motion.md 9: what goes straight on is one line also behind the end of a block, and behind a jump:
+// from the last point there, not from where the path was before.
+TEST(ToolpathRecorder, StraightOnIsOneLineBehindABreak) {
+  Script full;
+  full.Step(1, 1);
+  Vec3 at;
+  for (int k = 1; k < static_cast<int>(kToolpathBlockPoints); ++k) {
+    const Vec3 next{1.0 * k, k % 2 * 1.0, 0};
+    full.Line(at, next);
+    at = next;
+  }
+  full.Line(at, at + Vec3{5, 0, 0}).Line(at + Vec3{5, 0, 0}, at + Vec3{9, 0, 0});
+  const Recorded two_blocks = Record(full);
+  ASSERT_EQ(two_blocks.blocks.size(), 2u);
+  EXPECT_EQ(two_blocks.blocks[0].points.size(), kToolpathBlockPoints);
+  EXPECT_EQ(two_blocks.blocks[1].points,
+            (std::vector<ToolpathPoint>{{4'095'000, 1000, 0}, {4'104'000, 1000, 0}}));
+
+  Script jump;
+  jump.Step(1, 1).Line({0, 0, 0}, {10, 0, 0});
+  jump.Line({0, 5, 0}, {10, 5, 0}).Line({10, 5, 0}, {20, 5, 0});
+  const Recorded two_runs = Record(jump);
+  ASSERT_EQ(two_runs.blocks.size(), 1u);
+  EXPECT_EQ(
+      two_runs.blocks[0].points,
+      (std::vector<ToolpathPoint>{{0, 0, 0}, {10'000, 0, 0}, {0, 5000, 0}, {20'000, 5000, 0}}));
+  ASSERT_EQ(two_runs.blocks[0].runs.size(), 2u);
+  EXPECT_EQ(two_runs.blocks[0].runs[1].first_point, 2u);
+  EXPECT_EQ(two_runs.blocks[0].runs[1].point_count, 2u);
+}
+
+// The class of a speed is the share of the highest tip speed, 500 mm/s here, rounded up: 50 mm/s is
+// the second of twenty, 25 the first, 500 and more the last; as fast as the axes can is none.
+TEST(ToolpathRecorder, ClassesOfSpeed) {
+  const auto class_of = [](double mm_s) {
+    Script script;
+    script.Step(1, 1).Line({}, {1, 0, 0}, {.programmed_mm_s = mm_s});
+    return Record(script).blocks.at(0).runs.at(0).speed_class;
+  };
+  EXPECT_EQ(class_of(0.0), 0);
+  EXPECT_EQ(class_of(1.0), 1);
+  EXPECT_EQ(class_of(500.0 / kSpeedClasses), 1);
+  EXPECT_EQ(class_of(500.0 / kSpeedClasses + 0.1), 2);
+  EXPECT_EQ(class_of(500.0), kSpeedClasses);
+  EXPECT_EQ(class_of(900.0), kSpeedClasses);
+}
+
 // One arc with more points than a block: the run goes on in the next block, and times grow with the
 // way: at half of the way of a motion from rest to rest half of the time is over.
 TEST(ToolpathRecorder, LongArcGoesOnInTheNextBlock) {

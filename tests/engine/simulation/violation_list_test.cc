@@ -32,6 +32,13 @@ TEST(ViolationList, IsBounded) {
   }
   EXPECT_EQ(list.violations().size(), kReportedViolationsMax);
   EXPECT_EQ(list.dropped(), 5U);
+  // One that was dropped is dropped each time; one that is listed goes on counting.
+  list.Add(Violation(static_cast<int>(kReportedViolationsMax), 0, 9.0, SimTime(0)));
+  EXPECT_EQ(list.dropped(), 6U);
+  list.Add(Violation(static_cast<int>(kReportedViolationsMax) - 1, 0, 9.0, SimTime(0)));
+  EXPECT_EQ(list.dropped(), 6U);
+  EXPECT_EQ(list.violations().back().count, 2U);
+  EXPECT_EQ(list.violations().back().excess, 9.0);
 }
 
 }  // namespace

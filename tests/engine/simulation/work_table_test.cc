@@ -31,6 +31,91 @@ TEST(WorkTable, AddsUpByProgramAndStep) {
   EXPECT_EQ(report.rest.steps, 0u);
 }
 
+// Every figure adds up for itself: of two of each its double.
+TEST(WorkTable, EveryFigureAddsUp) {
+  WorkFigures work{.steps = 1,
+                   .time = {.motion = SimTime(1),
+                            .settling = SimTime(2),
+                            .dwell = SimTime(3),
+                            .pierce = SimTime(4),
+                            .condition = SimTime(5),
+                            .operator_wait = SimTime(6),
+                            .spin_up = SimTime(7),
+                            .load = SimTime(8),
+                            .standstill = SimTime(9)},
+                   .tip_path_mm = 10.0,
+                   .cut_mm = 11.0,
+                   .travel_mm = 12.0,
+                   .plunge_mm = 13.0,
+                   .beam_on = SimTime(14),
+                   .beam_switches = 15,
+                   .pierces = 16,
+                   .plunges = 17,
+                   .shutter_open = SimTime(18),
+                   .cut_energy_j = 22.0,
+                   .pierce_energy_j = 20.0};
+  EXPECT_EQ(work.time.total(), SimTime(45));
+  EXPECT_EQ(work.energy_j(), 42.0);
+  EXPECT_EQ(work.energy_j_per_mm(), 2.0);
+  const WorkFigures twice{.steps = 2,
+                          .time = {.motion = SimTime(2),
+                                   .settling = SimTime(4),
+                                   .dwell = SimTime(6),
+                                   .pierce = SimTime(8),
+                                   .condition = SimTime(10),
+                                   .operator_wait = SimTime(12),
+                                   .spin_up = SimTime(14),
+                                   .load = SimTime(16),
+                                   .standstill = SimTime(18)},
+                          .tip_path_mm = 20.0,
+                          .cut_mm = 22.0,
+                          .travel_mm = 24.0,
+                          .plunge_mm = 26.0,
+                          .beam_on = SimTime(28),
+                          .beam_switches = 30,
+                          .pierces = 32,
+                          .plunges = 34,
+                          .shutter_open = SimTime(36),
+                          .cut_energy_j = 44.0,
+                          .pierce_energy_j = 40.0,
+                          .energy_j_per_mm_max = 2.0};
+  WorkTable table;
+  table.Add({.program = 1, .step = 1}, work);
+  table.Add({.program = 1, .step = 1}, work);
+  RunReport report;
+  table.WriteTo(report);
+  EXPECT_EQ(report.total, twice);
+  EXPECT_EQ(report.programs.at(1).total, twice);
+  ASSERT_EQ(report.steps.size(), 1u);
+  EXPECT_EQ(report.steps[0].figures, twice);
+}
+
+WorkFigures Cut(double length_mm, double energy_j) {
+  WorkFigures work;
+  work.cut_mm = length_mm;
+  work.cut_energy_j = energy_j;
+  return work;
+}
+
+// motion.md 8.2: the highest energy by length: of a step over its motions, of a program and of the
+// job over the means of the steps. A scrap of a motion, below a micrometre, says nothing.
+TEST(WorkTable, HighestEnergyByLength) {
+  WorkTable table;
+  table.Add({.program = 1, .step = 1}, Cut(10.0, 20.0));  // 2 J/mm
+  table.Add({.program = 1, .step = 1}, Cut(10.0, 60.0));  // 6 J/mm; the step 4 J/mm
+  table.Add({.program = 1, .step = 1}, Cut(0.0009, 9.0));
+  table.Add({.program = 1, .step = 2}, Cut(10.0, 30.0));
+  table.Add({.program = 2, .step = 1}, Cut(0.001, 0.005));  // 5 J/mm: long enough
+  RunReport report;
+  table.WriteTo(report);
+  EXPECT_NEAR(report.steps[0].figures.energy_j_per_mm_max, 6.0, 1e-12);
+  EXPECT_NEAR(report.steps[1].figures.energy_j_per_mm_max, 3.0, 1e-12);
+  EXPECT_NEAR(report.steps[2].figures.energy_j_per_mm_max, 5.0, 1e-12);
+  EXPECT_NEAR(report.programs.at(1).total.energy_j_per_mm_max, 89.0 / 20.0009, 1e-12);
+  EXPECT_NEAR(report.programs.at(2).total.energy_j_per_mm_max, 5.0, 1e-12);
+  EXPECT_NEAR(report.total.energy_j_per_mm_max, 5.0, 1e-12);
+}
+
 // Bounded: the first kReportedStepsMax steps are listed, the others added up; both sides of the
 // limit.
 TEST(WorkTable, StepsPastTheLimitAreTheRest) {

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "engine/optimo/control/optimo_family.h"
 #include "tests/engine/optimo/control/run_text.h"
 
 namespace rmlcell::optimo::testing {
@@ -456,6 +457,33 @@ TEST(Control, BudgetsEndTheRun) {
   EXPECT_EQ(CodeOf(RunText("WAIT IL[20]\n",
                            {.budget = {.steps = 1000, .virtual_time = std::chrono::seconds(5)}})),
             7902);
+}
+
+// OPT-B.67: a budget of 0 is no limit, of steps as of time; a day longer than the usual one of 30.
+TEST(Control, ABudgetOfZeroIsNoLimit) {
+  const double days_31 = 31.0 * 24.0 * 3600.0;
+  const Ran limited = RunText("DELAY 2678400\n");
+  EXPECT_EQ(CodeOf(limited), 7902);
+  const Ran ran =
+      RunText("DELAY 2678400\nVI[2]=1\n",
+              {.variables = {"VI[2]"}, .budget = {.steps = 0, .virtual_time = SimTime(0)}});
+  EXPECT_EQ(ran.outcome.kind, machine::OutcomeKind::kCompleted);
+  EXPECT_NEAR(ran.time_s, days_31, 1e-6);
+  EXPECT_EQ(ran.variables.at("VI[2]"), "1");
+}
+
+// OPT-B.67: with no limit of time a WAIT that nothing can end goes on as long as it is
+// asked to, and no further.
+TEST(Control, WithoutALimitAnEndlessWaitStands) {
+  machine::RunObserver nobody;
+  machine::RunSetup setup =
+      SetupOf("WAIT IL[20]\n", {.budget = {.steps = 0, .virtual_time = SimTime(0)}});
+  Result<std::unique_ptr<machine::Run>> run = OptimoFamily().NewRun(std::move(setup), nobody);
+  ASSERT_TRUE(bool(run));
+  EXPECT_EQ((*run)->Advance(At(1e9)), machine::RunPhase::kRunning);
+  EXPECT_EQ((*run)->state().time, At(1e9));
+  EXPECT_EQ((*run)->Advance(kForever), machine::RunPhase::kRunning);
+  EXPECT_EQ((*run)->state().time, At(1e9));
 }
 
 // OPT-B.68: DECLARE and the implied ENDTASK are not executed steps; a written ENDTASK is.

@@ -35,22 +35,51 @@ TEST(LaserRules, ShutterClosesAtTheEnd) {
   EXPECT_NEAR(ran.BeamOnLength(), 100.0, 1e-6);
 }
 
-// OPT-3.17, OPT-3.62: the door opened while halted closes the shutter; START with the door open is
-// refused (7410); with the door closed first the shutter opens, then the beam comes back.
+// OPT-3.17, OPT-3.62: the door opened while halted closes the shutter; START with the door closed
+// again first opens the shutter, then the beam comes back.
 TEST(LaserRules, TheDoorClosesTheShutter) {
   const Ran ran = RunText(kThere + "WORK 0,0/ON\nMOVE (1500.,1000.,-400.,0.,0.)\nWORK 0,0/OFF\n",
                           {.inputs = {{At(6.0), InputKind::kStop},
                                       {At(7.0), InputKind::kDoor, 0, 1.0},
-                                      {At(8.0), InputKind::kStart},
                                       {At(9.0), InputKind::kDoor, 0, 0.0},
                                       {At(10.0), InputKind::kStart}}});
-  EXPECT_THAT(Told(ran),
-              ElementsAre("shutter open", "beam on 100.0", "beam off", "halt STOP",
-                          "shutter closed", "E7410", StartsWith("wait operator"), "shutter open",
-                          "beam on 100.0", "beam off", "shutter closed"));
+  EXPECT_THAT(Told(ran), ElementsAre("shutter open", "beam on 100.0", "beam off", "halt STOP",
+                                     "shutter closed", StartsWith("wait operator"), "shutter open",
+                                     "beam on 100.0", "beam off", "shutter closed"));
   EXPECT_NEAR(ran.First("shutter closed").at_s, 7.0, 1e-9);
   EXPECT_EQ(ran.outcome.kind, OutcomeKind::kCompleted);
   EXPECT_NEAR(ran.BeamOnLength(), 500.0, 3.0);  // less the ramp to rest, which is without beam
+}
+
+// OPT-3.17, OPT-B.56, OPT-E.7410: START with the door open, the beam to come back, is an alarm: it
+// ends the run at the step that was halted, no ERR catches it, and nothing opens.
+TEST(LaserRules, StartWithTheDoorOpenEndsTheRun) {
+  const Ran ran = RunText("ERR 900\n" + kThere +
+                              "WORK 0,0/ON\nMOVE (1500.,1000.,-400.,0.,0.)\nWORK 0,0/OFF\nENDTASK\n"
+                              "900 VI[2]=1\n",
+                          {.inputs = {{At(6.0), InputKind::kStop},
+                                      {At(7.0), InputKind::kDoor, 0, 1.0},
+                                      {At(8.0), InputKind::kStart},
+                                      {At(9.0), InputKind::kDoor, 0, 0.0},
+                                      {At(10.0), InputKind::kStart}},
+                           .variables = {"VI[2]", "VI[99]"}});
+  EXPECT_THAT(Told(ran), ElementsAre("shutter open", "beam on 100.0", "beam off", "halt STOP",
+                                     "shutter closed", "E7410", StartsWith("wait operator")));
+  EXPECT_EQ(ran.outcome.kind, OutcomeKind::kFailed);
+  EXPECT_EQ(CodeOf(ran), 7410);
+  EXPECT_EQ(ran.outcome.place.step, 7);
+  EXPECT_NEAR(ran.time_s, 8.0, 1e-9);
+  EXPECT_EQ(ran.Finding(7410).severity, Severity::kAlarm);
+  EXPECT_EQ(ran.variables.at("VI[2]"), "0");
+  EXPECT_EQ(ran.variables.at("VI[99]"), "7410");
+}
+
+// OPT-E.7410: without a beam to come back START goes on behind an open door.
+TEST(LaserRules, StartWithTheDoorOpenAndNoBeamGoesOn) {
+  const Ran ran = RunText(
+      "DELAY 5\n", {.inputs = {{At(1.0), InputKind::kDoor, 0, 1.0}, {At(2.0), InputKind::kStart}}});
+  EXPECT_EQ(ran.outcome.kind, OutcomeKind::kCompleted);
+  EXPECT_NEAR(ran.time_s, 6.0, 1e-9);
 }
 
 // OPT-3.18, OPT-B.55: an error that is not caught switches the beam off and closes the shutter, at
