@@ -8,7 +8,7 @@
 
 // What sentences of the language mean when they are carried out: small programs, and what is left in
 // the variables.
-namespace rmlcell::optimo::testing {
+namespace rmlcell::optimo::testing::language_run {
 namespace {
 
 using machine::InputKind;
@@ -327,4 +327,4 @@ TEST(LanguageRun, BreakAndSimulWithoutAProgram) {
 }
 
 }  // namespace
-}  // namespace rmlcell::optimo::testing
+}  // namespace rmlcell::optimo::testing::language_run

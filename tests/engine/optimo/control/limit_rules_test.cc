@@ -6,7 +6,7 @@
 
 // Both sides of every limit that the control looks at when a program runs: the last legal value, and
 // the first that is refused.
-namespace rmlcell::optimo::testing {
+namespace rmlcell::optimo::testing::limit_rules {
 namespace {
 
 using machine::OutcomeKind;
@@ -283,4 +283,4 @@ TEST(LimitRules, LevelsEndWithTheirModules) {
 }
 
 }  // namespace
-}  // namespace rmlcell::optimo::testing
+}  // namespace rmlcell::optimo::testing::limit_rules

@@ -7,7 +7,7 @@
 #include "tests/engine/optimo/control/run_text.h"
 
 // The parameters of the machine, what it keeps from run to run, and what is counted over runs.
-namespace rmlcell::optimo::testing {
+namespace rmlcell::optimo::testing::machine_rules {
 namespace {
 
 using ::testing::ElementsAre;
@@ -378,4 +378,4 @@ TEST(MachineRules, TheRadiusIsThatOfThePathStep) {
 }
 
 }  // namespace
-}  // namespace rmlcell::optimo::testing
+}  // namespace rmlcell::optimo::testing::machine_rules

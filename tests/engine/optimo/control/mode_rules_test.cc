@@ -8,7 +8,7 @@
 
 // Modes and keys: what START, HOLD, STOP and the emergency stop do in each mode, and where a run then
 // stands. New machines stand with the tip at (21.02, 2201.2, -350).
-namespace rmlcell::optimo::testing {
+namespace rmlcell::optimo::testing::mode_rules {
 namespace {
 
 using machine::InputKind;
@@ -442,4 +442,4 @@ TEST(ModeRules, TheBeamIsOffBetweenTheStepsOfSingle) {
 }
 
 }  // namespace
-}  // namespace rmlcell::optimo::testing
+}  // namespace rmlcell::optimo::testing::mode_rules

@@ -5,7 +5,7 @@
 #include "tests/engine/optimo/control/run_text.h"
 
 // Outputs, inputs and their images: what the program writes and what the machine follows.
-namespace rmlcell::optimo::testing {
+namespace rmlcell::optimo::testing::output_rules {
 namespace {
 
 using machine::InputKind;
@@ -229,4 +229,4 @@ TEST(OutputRules, ImagesAreKept) {
 }
 
 }  // namespace
-}  // namespace rmlcell::optimo::testing
+}  // namespace rmlcell::optimo::testing::output_rules

@@ -6,7 +6,7 @@
 
 // The ten steps of the feed override while a program runs. OPT-4.34 to 4.40. A ramp over a change of
 // speed v takes 2 sqrt(v / j) at the mean of both speeds; j is 40,000 mm/s3, less with ACCEL.
-namespace rmlcell::optimo::testing {
+namespace rmlcell::optimo::testing::override_steps {
 namespace {
 
 using machine::InputKind;
@@ -139,4 +139,4 @@ TEST(OverrideSteps, ItActsInTheBackground) {
 }
 
 }  // namespace
-}  // namespace rmlcell::optimo::testing
+}  // namespace rmlcell::optimo::testing::override_steps

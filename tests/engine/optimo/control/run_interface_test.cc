@@ -7,7 +7,7 @@
 
 // What a run shows to those who drive it and watch it: state, lines of the source, what a comment
 // lets pass, and how much work one call does.
-namespace rmlcell::optimo::testing {
+namespace rmlcell::optimo::testing::run_interface {
 namespace {
 
 using machine::InputKind;
@@ -186,4 +186,4 @@ TEST(RunInterface, TheRotaryTable) {
 }
 
 }  // namespace
-}  // namespace rmlcell::optimo::testing
+}  // namespace rmlcell::optimo::testing::run_interface

@@ -8,7 +8,7 @@
 #include "tests/engine/optimo/control/run_text.h"
 
 // TCP, and the zero procedure. New machines stand at home: column (21.02, 2201.2, -50), head down.
-namespace rmlcell::optimo::testing {
+namespace rmlcell::optimo::testing::tool_rules {
 namespace {
 
 using machine::InputKind;
@@ -271,4 +271,4 @@ TEST(ToolRules, StopDuringTheZeroProcedure) {
 }
 
 }  // namespace
-}  // namespace rmlcell::optimo::testing
+}  // namespace rmlcell::optimo::testing::tool_rules

@@ -5,7 +5,7 @@
 
 // WORK step by step: which process, which power, what goes on beside the program, and when. OPT-3.13
 // to 3.44
-namespace rmlcell::optimo::testing {
+namespace rmlcell::optimo::testing::work_rules {
 namespace {
 
 using machine::InputKind;
@@ -26,7 +26,7 @@ machine::InputChange Input(double at_s, int index, double value) {
 TEST(WorkRules, FlagsOfAllProcesses) {
   for (int p = 0; p <= 7; ++p) {
     const std::string n = std::to_string(p);
-    for (const std::string definition : {"WORKDEF 0," + n + "\nWORK 0,", "WORKDEF 1," + n + " (5.,80.,0.,90.)\nWORK 1,",
+    for (const std::string& definition : {"WORKDEF 0," + n + "\nWORK 0,", "WORKDEF 1," + n + " (5.,80.,0.,90.)\nWORK 1,",
                                          "WORKDEF 2," + n + " (15)\nWORK 2,"}) {
       const Ran ran = RunText(definition + n + "/ON\nVL[0]=IL[" + std::to_string(87 + p) + "]\nVL[1]=IL[" +
                                   std::to_string(p == 0 ? 94 : 86 + p) + "]\n",
@@ -252,4 +252,4 @@ TEST(WorkRules, StartWithTheDoorOpen) {
 }
 
 }  // namespace
-}  // namespace rmlcell::optimo::testing
+}  // namespace rmlcell::optimo::testing::work_rules
