@@ -404,5 +404,25 @@ TEST(MotionRules, TimeEndsWithItsMove) {
   EXPECT_GT(ran.time_s, 12.0);
 }
 
+// OPT-B.30: an input of the instant of a tick is seen at that tick: 21 x 0.048 s.
+TEST(MotionRules, AnInputOfTheTickIsSeenAtIt) {
+  const Ran ran = RunText(kAbsol + "SPEED 10\nMOVE (321.02,2201.2,-350.,0.,0.)/END (IL[20])\n",
+                          {.inputs = {{At(1.008), InputKind::kLogical, 20, 1.0}}});
+  EXPECT_NEAR(ran.end.tip.tip.x, kHomeTip.x + 50.4, 1e-6);
+}
+
+// OPT-3.45, OPT-3.49: a wait without beam is told without power, and so is a halt.
+TEST(MotionRules, WaitsWithoutBeamHaveNoPower) {
+  const Ran ran = RunText("DELAY 1\nWORK 0,0/ON\nDELAY 1\nSTOP\nWORK 0,0/OFF\nWAIT IL[20]\n",
+                          {.inputs = {{At(4.0), InputKind::kStart},
+                                      {At(6.0), InputKind::kLogical, 20, 1.0}}});
+  ASSERT_EQ(ran.waits.size(), 4U);
+  const double powers[] = {0.0, 100.0, 0.0, 0.0};
+  for (std::size_t n = 0; n < 4; ++n) {
+    EXPECT_EQ(ran.waits[n].power_percent, powers[n]) << n;
+    EXPECT_EQ(ran.waits[n].beam_on, n == 1) << n;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing
