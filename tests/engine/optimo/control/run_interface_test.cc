@@ -61,6 +61,15 @@ TEST(RunInterface, TheStateIsThatOfTheMoment) {
   EXPECT_EQ(run->steps_executed(), 5U);
 }
 
+// OPT-7.69: the speed is that of the motion under way, whenever it began: half way through the ramp.
+TEST(RunInterface, TheSpeedOfALaterMotion) {
+  machine::RunObserver nobody;
+  const std::unique_ptr<machine::Run> run = RunOf(
+      SetupOf("COORD ABSOL\nPATH LIN\nSPEED 10\nDELAY 1\nMOVE (521.02,2201.2,-350.,0.,0.)\n"), nobody);
+  run->Advance(At(1.0 + std::sqrt(50.0 / 40000.0)));
+  EXPECT_NEAR(run->state().tip_speed_mm_s, 25.0, 1e-4);
+}
+
 // motion.md 3.4: the speed of the tip in COORD ROBOT: B turns at SPEED 10 of 6.283 rad/s round L = 300 mm;
 // with the head alone about a tip that stands it is 0.
 TEST(RunInterface, TipSpeedOfTurningAxes) {
