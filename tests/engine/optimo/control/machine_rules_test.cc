@@ -239,7 +239,7 @@ TEST(MachineRules, ForeignBytesAreRefused) {
 // OPT-B.63, OPT-7.70: 1 in the first run after a program was selected, one more with each start of
 // it; another program begins at 1, and so does the first when it is selected again.
 TEST(MachineRules, ExecutionsSinceSelection) {
-  const auto run = [](int main, const std::string& state) {
+  const auto run_of = [](int main, const std::string& state) {
     machine::RunSetup setup = SetupOf("VI[2]=VI[98]\n", {.programs = {{45, "VI[2]=VI[98]\n"}}});
     setup.main_program = main;
     setup.machine_state = state;
@@ -249,11 +249,11 @@ TEST(MachineRules, ExecutionsSinceSelection) {
     (*run)->Advance(At(1.0));
     return std::pair((*run)->ReadVariable("VI[2]").value_or("?"), (*run)->SaveMachine());
   };
-  auto [first, state] = run(45, "");
+  auto [first, state] = run_of(45, "");
   EXPECT_EQ(first, "1");
   const std::tuple<int, const char*> later[] = {{45, "2"}, {45, "3"}, {1, "1"}, {1, "2"}, {45, "1"}};
   for (const auto& [main, wanted] : later) {
-    const auto [count, after] = run(main, state);
+    const auto [count, after] = run_of(main, state);
     EXPECT_EQ(count, wanted) << main;
     state = after;
   }
