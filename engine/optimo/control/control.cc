@@ -237,7 +237,9 @@ void Control::ActOnTime() {
     case Pending::Kind::kNone:
       break;
   }
-  if (s_.phase == machine::RunPhase::kRunning && s_.now >= setup_.budget.virtual_time) {
+  // What can go on without time may do so: more than the budget is too much, not all of it.
+  if (s_.phase == machine::RunPhase::kRunning && s_.now >= setup_.budget.virtual_time &&
+      !MayFetch()) {
     std::string detail =
         "the run takes longer than " + TrimmedText(ToSeconds(setup_.budget.virtual_time), 9) + " s";
     if (WaitsForEver()) detail += ": it waits for a condition, and no input is to come";
@@ -353,11 +355,9 @@ void Control::HaltOnPath() {
 void Control::Halt(std::string_view why) {
   TellWait();
   s_.phase = machine::RunPhase::kHalted;
-  s_.halt_reason = why;
   s_.halted_at = s_.now;
   s_.hold_requested = false;
   s_.stop_requested = false;
-  s_.halt_after_step = false;
   SuspendBeam();
   observer_.OnHalt({.at = s_.now, .place = s_.place, .why = why});
 }
@@ -409,6 +409,7 @@ void Control::Resume() {
   s_.timeline.insert(s_.timeline.begin(), s_.interrupted.begin(), s_.interrupted.end());
   s_.interrupted.clear();
   PlanHeld();
+  if (!Busy()) GoesOnInBackground(false);
   const bool overridden = std::exchange(s_.override_while_stopped, false);
   if (interrupted && overridden) {
     StartNextItem();

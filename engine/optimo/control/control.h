@@ -114,8 +114,8 @@ class Control : private VariableAccess {
 
   // --- control_hold.cc: HOLD inside a chain of passages ---
   const motion::MoveCommand* Appended(std::uint64_t tag) const;
-  bool EndAtATarget();
-  bool EndOverManyMoves();
+  void EndAtATarget();
+  void EndOverManyMoves();
   void HoldBehind(const motion::PlannedMotion& exact, const std::vector<motion::PlannedItem>& kept,
                   bool under_way);
   void HoldAllBehind(std::uint64_t target);

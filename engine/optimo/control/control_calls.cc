@@ -39,7 +39,6 @@ void Control::RepeatMain() {
   s_.programs.clear();
   Begin(main, {});
   CountExecution(main->slot());
-  if (s_.hold_requested) return Halt("HOLD");
   // A program that carries nothing out still takes its turn: else time would stand for ever.
   if (s_.steps == s_.steps_at_repeat) {
     Wait({.kind = Pending::Kind::kTime,

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/core/number_text.h"
 #include "engine/optimo/control/control.h"
@@ -35,13 +36,15 @@ void Control::Fetch() {
   std::uint32_t at = index().SkipDeclares(frame().next);
   const bool at_end = at >= module().instructions.size();
   const bool stop_here = s_.stop_requested && !s_.passing;
-  if (s_.hold_requested || stop_here || s_.halt_after_step) {
+  // An instruction whose condition is met is finished before a HOLD: OPT-4.17.
+  const bool hold_here = s_.hold_requested && !s_.condition_met;
+  if (hold_here || stop_here || s_.halt_after_step) {
     if (stand_first()) return;
     const bool over = at_end && s_.programs.size() == 1 && program().frames.size() == 1;
-    if (!(s_.halt_after_step && over)) {
-      return Halt(s_.halt_after_step ? s_.halt_reason : stop_here ? "STOP" : "HOLD");
+    const bool after_step = std::exchange(s_.halt_after_step, false);
+    if (!(after_step && over)) {
+      return Halt(after_step ? s_.halt_reason : stop_here ? "STOP" : "HOLD");
     }
-    s_.halt_after_step = false;
   }
   if (!s_.passing && !s_.condition_met && MakeDueGosub()) return;
   if (at_end) {

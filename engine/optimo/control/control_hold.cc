@@ -34,10 +34,10 @@ const motion::MoveCommand* Control::Appended(std::uint64_t tag) const {
 }
 
 // Ends the motions at the first target where the machine can come to rest: that of the move under
-// way, or of a later one when its passage has begun or is too near. False: they end by themselves,
-// or not enough is planned yet.
-bool Control::EndAtATarget() {
-  if (!s_.active || s_.active->ended || s_.halting || !s_.interrupted.empty()) return false;
+// way, or of a later one when its passage has begun or is too near. Nothing changes when they end by
+// themselves, or not enough is planned yet.
+void Control::EndAtATarget() {
+  if (!s_.active || s_.active->ended || s_.halting || !s_.interrupted.empty()) return;
   std::vector<motion::PlannedItem> kept;  // between the motion under way and the exact one
   motion::PlannedMotion exact = s_.active->motion;
   motion::PathState state = exact.speed.At(ToSeconds(s_.now - s_.active->start));
@@ -50,7 +50,7 @@ bool Control::EndAtATarget() {
     if (exact.tag > following) return EndOverManyMoves();
     const bool last = s_.appended.empty() || s_.appended.back().tag <= exact.tag;
     const motion::MoveCommand* command = Appended(exact.tag);
-    if (last || command == nullptr || exact.speed.end().speed <= 0.0) return false;
+    if (last || command == nullptr || exact.speed.end().speed <= 0.0) return;
     if (const std::optional<PlaceOnMove> place = PlaceOf(exact.path, command->path)) {
       const double way = (command->path.length() - place->begin) / place->scale - state.s;
       if (way > 0.0 && RoomToRest(state, exact.limits) <= way * kReaches &&
@@ -63,8 +63,7 @@ bool Control::EndAtATarget() {
         exact.settling_s = command->settles ? parameters_.limits.settling_s : 0.0;
         exact.ends_move = true;
         exact.corner = {};
-        HoldBehind(exact, kept, under_way);
-        return true;
+        return HoldBehind(exact, kept, under_way);
       }
     }
     if (!under_way) kept.emplace_back(exact);
@@ -74,14 +73,14 @@ bool Control::EndAtATarget() {
          ++next) {
       kept.push_back(*next);
     }
-    if (next == s_.timeline.end()) return false;
+    if (next == s_.timeline.end()) return;
     exact = std::get<motion::PlannedMotion>(*next++);
   }
 }
 
 // Where moves are too short to come to rest on one of them: the first target that can be reached at
 // rest, over as many of them as that takes.
-bool Control::EndOverManyMoves() {
+void Control::EndOverManyMoves() {
   std::vector<motion::PlannedItem> kept;
   motion::PlannedMotion here = s_.active->motion;
   ChainPlace place{.motion = here,
@@ -90,7 +89,7 @@ bool Control::EndOverManyMoves() {
   std::optional<Onward> onward;
   for (auto next = s_.timeline.begin();; ++next) {
     const motion::MoveCommand* command = Appended(place.motion.tag);
-    if (command == nullptr) return false;
+    if (command == nullptr) return;
     onward = OnwardFrom(place, *command, motion::kLargest);
     if (onward) break;
     if (!place.under_way) kept.emplace_back(place.motion);
@@ -98,7 +97,7 @@ bool Control::EndOverManyMoves() {
          ++next) {
       kept.push_back(*next);
     }
-    if (next == s_.timeline.end()) return false;
+    if (next == s_.timeline.end()) return;
     place = {.motion = std::get<motion::PlannedMotion>(*next), .state = {}, .under_way = false};
     place.state = place.motion.speed.At(0.0);
   }
@@ -118,7 +117,7 @@ bool Control::EndOverManyMoves() {
     too_few = enough;
     enough *= 2;
   }
-  if (enough >= later.size()) return false;  // it ends by itself as soon
+  if (enough >= later.size()) return;  // it ends by itself as soon
   while (enough - too_few > 1) {
     const std::size_t middle = too_few + (enough - too_few) / 2;
     if (!later[middle - 1].move || !planned(middle)) {
@@ -128,7 +127,7 @@ bool Control::EndOverManyMoves() {
     }
   }
   std::optional<motion::Planner> planner = planned(enough);
-  if (!planner) return false;
+  if (!planner) return;
   const std::uint64_t target = later[enough - 1].tag;
   if (const MoveNote* note = NoteOf(target)) s_.halted_behind = note->place;
   GoOnward(place, *onward, kept);
@@ -136,7 +135,6 @@ bool Control::EndOverManyMoves() {
   while (std::optional<motion::PlannedItem> item = planner->Next()) s_.timeline.push_back(*item);
   HoldAllBehind(target);
   if (!s_.active) StartNextItem();
-  return true;
 }
 
 // `exact` is the last motion before the halt; everything that was appended behind it is held back.
@@ -162,7 +160,6 @@ void Control::HoldAllBehind(std::uint64_t target) {
   });
   s_.planner = motion::Planner(parameters_.limits);
   s_.halting = true;
-  s_.hold_requested = false;
 }
 
 // START after such a HOLD: the moves that were held back, from rest.

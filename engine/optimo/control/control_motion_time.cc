@@ -78,10 +78,11 @@ void Control::StartNextItem() {
     }
     BeginProfile();
   }
-  if (!Busy()) GoesOnInBackground(false);
+  if (!Busy() && !s_.halting) GoesOnInBackground(false);
 }
 
-// Whether the program goes on beside the motion that is under way from now on.
+// Whether the program goes on beside the motion that is under way from now on. A halt on the path
+// leaves it as it is: the motion goes on at START as it did before.
 void Control::GoesOnInBackground(bool background) {
   s_.background = background;
   s_.background_from.reset();
@@ -123,7 +124,7 @@ void Control::ArriveAtEnd() {
   TellMotion(s_.active->end);
   const ActiveMotion active = std::move(*s_.active);
   s_.active.reset();
-  if (!Busy()) GoesOnInBackground(false);
+  if (!Busy() && !s_.halting) GoesOnInBackground(false);
   s_.pending.told = s_.now;  // a wait during a /NEXT motion is told from here on
   MarkTasks();
   const bool joint = active.motion.path.in_axes();

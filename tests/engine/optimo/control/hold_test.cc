@@ -99,5 +99,65 @@ TEST(Hold, HaltsOnATargetWhereMovesAreTooShortToBrake) {
   EXPECT_NEAR(travelled, kMoves, 1e-6);
 }
 
+// OPT-4.17: the same at 200 mm/s after 85.5 mm: at rest after 15 mm more, so just on the target at 101
+// mm, the first that can be reached.
+TEST(Hold, HaltsOnTheFirstTargetThatCanBeReached) {
+  std::string text = "COORD ABSOL\nPATH LIN\nMOVE (1000.,1000.,-400.,0.,0.)\nSPEED 40\n";
+  for (int k = 1; k <= 200; ++k) {
+    text += "MOVE (" + std::to_string(1000 + k) + ".,1000.,-400.,0.,0.)";
+    text += k < 200 ? "/FLY\n" : "\n";
+  }
+  const double begin = BeginOf(text);
+  const Ran ran = Held(text, begin + 0.5025, begin + 20.0);
+  EXPECT_EQ(ran.First("halt HOLD").step - 4, 101);
+  EXPECT_NEAR(ran.end.tip.tip.x, 1200.0, 1e-4);
+}
+
+// OPT-4.17: while it still speeds up, it has all the room there is: the first target, in the time of
+// 100 mm from rest to rest and a little more, as the acceleration is brought to zero first.
+TEST(Hold, WhileSpeedingUp) {
+  const double begin = BeginOf(kTwoCorners);
+  for (const double later : {0.01, 0.03, 0.06}) {
+    const Ran ran = Held(kTwoCorners, begin + later, begin + 20.0);
+    const double taken = ran.First("halt HOLD").at_s - begin;
+    EXPECT_EQ(ran.First("halt HOLD").step, 5) << later;
+    EXPECT_GE(taken, 100.0 / 50.0 + 2.0 * std::sqrt(50.0 / 40000.0) + 0.048 - 1e-6);
+    EXPECT_LE(taken, 100.0 / 50.0 + 2.0 * std::sqrt(50.0 / 40000.0) + 0.048 + 0.02);
+  }
+}
+
+// OPT-4.17, OPT-4.37: what was held back is a chain like any other: it can be held again, and the
+// override acts on it: three legs are left, two corners of them at 25 mm/s, those of case C02.
+TEST(Hold, TheRestIsAChainAgain) {
+  const double begin = BeginOf(kTwoCorners);
+  const Ran twice = RunText(kTwoCorners, {.inputs = {{FromSeconds(begin + 1.0), InputKind::kHold},
+                                                     {FromSeconds(begin + 20.0), InputKind::kStart},
+                                                     {FromSeconds(begin + 23.0), InputKind::kHold},
+                                                     {FromSeconds(begin + 40.0), InputKind::kStart}}});
+  EXPECT_EQ(twice.Count("halt HOLD"), 2);
+  EXPECT_LT(twice.DistanceTo({1100.0, 1000.0, -400.0}), 1e-9);
+  EXPECT_NEAR(twice.DistanceTo({1100.0, 1100.0, -400.0}), kDeviation_mm, 1e-6);
+  EXPECT_LT(twice.DistanceTo({1200.0, 1100.0, -400.0}), 1e-9);
+  EXPECT_NEAR(twice.end.tip.tip.y, 1200.0, 1e-4);
+  const Ran slower = RunText(
+      kTwoCorners, {.inputs = {{FromSeconds(begin + 1.0), InputKind::kHold},
+                               {FromSeconds(begin + 20.0), InputKind::kStart},
+                               {FromSeconds(begin + 21.0), InputKind::kOverride, 0, 50.0}}});
+  EXPECT_NEAR(slower.DistanceTo({1100.0, 1100.0, -400.0}), 0.480425146, 1e-4);
+  EXPECT_NEAR(slower.DistanceTo({1200.0, 1100.0, -400.0}), 0.480425146, 1e-4);
+}
+
+// OPT-2.59, OPT-4.17: a chain that ends in a move of /NEXT, held and started: the program goes on
+// beside that move again.
+TEST(Hold, ANextMoveBehindTheHaltGoesOnBesideTheProgram) {
+  const std::string text = kThere +
+                           "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nMOVE (1100.,1100.,-400.,0.,0.)/FLY\n"
+                           "MOVE (1200.,1100.,-400.,0.,0.)/NEXT\nOL[16]=ON\n";
+  const double begin = BeginOf(text);
+  const Ran ran = Held(text, begin + 1.0, begin + 20.0);
+  EXPECT_EQ(ran.outcome.kind, machine::OutcomeKind::kCompleted);
+  EXPECT_LT(ran.First("OL[16] 1").at_s, ToSeconds(ran.moves.back().at) - 1.0);
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing

@@ -359,5 +359,70 @@ TEST(MotionRules, ACalledProgramBeginsWithTheDefaults) {
               100.0 / 50.0 + std::sqrt(50.0 / 40000.0) * 2.0 + kSettle_s, 1e-5);
 }
 
+// OPT-B.31, OPT-2.58: a move that /END ends is told whole, in two parts: 50.4 mm of way in all.
+TEST(MotionRules, AnEndedMoveIsToldWhole) {
+  const Ran ran = RunText(kAbsol + "SPEED 10\nMOVE (321.02,2201.2,-350.,0.,0.)/END (IL[20])\n",
+                          {.inputs = {{At(1.0), InputKind::kLogical, 20, 1.0}}});
+  ASSERT_EQ(ran.parts.size(), 2U);
+  EXPECT_EQ(ran.parts[0].done.start, SimTime(0));
+  EXPECT_EQ(ran.parts[0].done.end, ran.parts[1].done.start);
+  EXPECT_NEAR(ToSeconds(ran.parts[1].done.start), 1.008, 1e-9);
+  double way = 0.0;
+  for (const Ran::Part& part : ran.parts) way += part.done.travelled - part.done.from;
+  EXPECT_NEAR(way, 50.4, 1e-6);
+}
+
+// OPT-2.59: time beside a /NEXT move is the move's; what is left of a DELAY is told from its end on.
+TEST(MotionRules, ADelayBesideANextMoveIsToldFromItsEnd) {
+  const Ran ran = RunText(kAbsol + "SPEED 10\nMOVE (121.02,2201.2,-350.,0.,0.)/NEXT\nDELAY 5\n");
+  ASSERT_EQ(ran.waits.size(), 1U);
+  EXPECT_EQ(ran.waits[0].start, ran.moves[0].at);
+  EXPECT_NEAR(ToSeconds(ran.waits[0].end), 5.0, 1e-9);
+}
+
+// OPT-4.18: a STOP while the machine settles finds it at its target.
+TEST(MotionRules, StopWhileSettling) {
+  const double settled = 100.0 / 50.0 + 2.0 * std::sqrt(50.0 / 40000.0) + kSettle_s;
+  const Ran ran = RunText(kAbsol + "SPEED 10\nMOVE (121.02,2201.2,-350.,0.,0.)\nOL[16]=ON\n",
+                          {.inputs = {{At(settled - 0.02), InputKind::kStop}}});
+  EXPECT_EQ(ran.Count("halt STOP"), 1);
+  EXPECT_NEAR(ran.end.tip.tip.x, 121.02, kReal_mm);
+  EXPECT_FALSE(ran.Told("OL[16] 1"));
+}
+
+// OPT-2.54: the time of a MOVE that came to its target counts no more, also where the next one waits
+// for its /START; nor does its /END.
+TEST(MotionRules, TimeEndsWithItsMove) {
+  const Ran ran = RunText(kAbsol +
+                              "SPEED 10\nMOVE (121.02,2201.2,-350.,0.,0.)/TIME (5.,900)/END (IL[21])\n"
+                              "MOVE (221.02,2201.2,-350.,0.,0.)/START (IL[20])\nENDTASK\n900 VI[2]=1\nRETURN\n",
+                          {.inputs = {{At(4.0), InputKind::kLogical, 21, 1.0},
+                                      {At(10.0), InputKind::kLogical, 20, 1.0}},
+                           .variables = {"VI[2]"}});
+  EXPECT_EQ(ran.variables.at("VI[2]"), "0");
+  EXPECT_NEAR(ran.end.tip.tip.x, 221.02, kReal_mm);
+  EXPECT_GT(ran.time_s, 12.0);
+}
+
+// OPT-B.30: an input of the instant of a tick is seen at that tick: 21 x 0.048 s.
+TEST(MotionRules, AnInputOfTheTickIsSeenAtIt) {
+  const Ran ran = RunText(kAbsol + "SPEED 10\nMOVE (321.02,2201.2,-350.,0.,0.)/END (IL[20])\n",
+                          {.inputs = {{At(1.008), InputKind::kLogical, 20, 1.0}}});
+  EXPECT_NEAR(ran.end.tip.tip.x, kHomeTip.x + 50.4, 1e-6);
+}
+
+// OPT-3.45, OPT-3.49: a wait without beam is told without power, and so is a halt.
+TEST(MotionRules, WaitsWithoutBeamHaveNoPower) {
+  const Ran ran = RunText("DELAY 1\nWORK 0,0/ON\nDELAY 1\nSTOP\nWORK 0,0/OFF\nWAIT IL[20]\n",
+                          {.inputs = {{At(4.0), InputKind::kStart},
+                                      {At(6.0), InputKind::kLogical, 20, 1.0}}});
+  ASSERT_EQ(ran.waits.size(), 4U);
+  const double powers[] = {0.0, 100.0, 0.0, 0.0};
+  for (std::size_t n = 0; n < 4; ++n) {
+    EXPECT_EQ(ran.waits[n].power_percent, powers[n]) << n;
+    EXPECT_EQ(ran.waits[n].beam_on, n == 1) << n;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo::testing

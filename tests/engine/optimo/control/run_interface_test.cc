@@ -1,0 +1,198 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/optimo/control/optimo_family.h"
+#include "tests/engine/optimo/control/run_text.h"
+
+// What a run shows to those who drive it and watch it: state, lines of the source, what a comment
+// lets pass, and how much work one call does.
+namespace rmlcell::optimo::testing::run_interface {
+namespace {
+
+using machine::InputKind;
+using machine::RunPhase;
+
+// Steps 1 to 5.
+const std::string kCutting =
+    "COORD ABSOL\nPATH LIN\nSPEED 10\nWORK 0,0/ON\nMOVE (521.02,2201.2,-350.,0.,0.)\n";
+
+std::unique_ptr<machine::Run> RunOf(machine::RunSetup setup, machine::RunObserver& observer) {
+  Result<std::unique_ptr<machine::Run>> run = OptimoFamily().NewRun(std::move(setup), observer);
+  EXPECT_TRUE(bool(run));
+  return run ? std::move(*run) : nullptr;
+}
+
+class Findings final : public machine::RunObserver {
+ public:
+  void OnDiagnostic(SimTime, const Diagnostic& finding) override { found.push_back(finding); }
+  void OnStep(SimTime, const machine::Place& place, std::string_view) override {
+    lines.push_back(place.line);
+  }
+  std::vector<Diagnostic> found;
+  std::vector<int> lines;
+};
+
+// OPT-4.07, OPT-7.68: place, speed, beam and override are those of the moment: during the ramp, at
+// full speed, in standstill.
+TEST(RunInterface, TheStateIsThatOfTheMoment) {
+  machine::RunObserver nobody;
+  const std::unique_ptr<machine::Run> run =
+      RunOf(SetupOf(kCutting, {.override_percent = 55.0}), nobody);
+  const double ramp_s = 2.0 * std::sqrt(27.5 / 40000.0);
+  EXPECT_EQ(run->Advance(At(0.5 * ramp_s)), RunPhase::kRunning);
+  EXPECT_NEAR(run->state().tip_speed_mm_s, 13.75, 1e-4);
+  EXPECT_EQ(run->Advance(At(2.0)), RunPhase::kRunning);
+  const machine::RunState state = run->state();
+  EXPECT_EQ(state.time, At(2.0));
+  EXPECT_EQ(state.phase, RunPhase::kRunning);
+  EXPECT_EQ(state.place.program, 1);
+  EXPECT_EQ(state.place.step, 5);
+  EXPECT_EQ(state.instruction, "MOVE");
+  EXPECT_NEAR(state.tip.tip.x, 21.02 + 27.5 * (2.0 - 0.5 * ramp_s), 1e-6);
+  EXPECT_NEAR(state.axes.column.x, state.tip.tip.x, 1e-9);
+  EXPECT_NEAR(state.axes.column.z, -50.0, 1e-9);
+  EXPECT_NEAR(state.tip_speed_mm_s, 27.5, 1e-9);
+  EXPECT_EQ(state.override_percent, 55.0);
+  EXPECT_TRUE(state.beam_on);
+  EXPECT_EQ(run->Advance(At(100.0)), RunPhase::kFinished);
+  EXPECT_EQ(run->state().tip_speed_mm_s, 0.0);
+  EXPECT_FALSE(run->state().beam_on);
+  EXPECT_EQ(run->steps_executed(), 5U);
+}
+
+// OPT-7.69: the speed is that of the motion under way, whenever it began: half way through the ramp.
+TEST(RunInterface, TheSpeedOfALaterMotion) {
+  machine::RunObserver nobody;
+  const std::unique_ptr<machine::Run> run = RunOf(
+      SetupOf("COORD ABSOL\nPATH LIN\nSPEED 10\nDELAY 1\nMOVE (521.02,2201.2,-350.,0.,0.)\n"), nobody);
+  run->Advance(At(1.0 + std::sqrt(50.0 / 40000.0)));
+  EXPECT_NEAR(run->state().tip_speed_mm_s, 25.0, 1e-4);
+}
+
+// motion.md 3.4: the speed of the tip in COORD ROBOT: B turns at SPEED 10 of 6.283 rad/s round L = 300 mm;
+// with the head alone about a tip that stands it is 0.
+TEST(RunInterface, TipSpeedOfTurningAxes) {
+  machine::RunObserver nobody;
+  const auto speed = [&](const std::string& text) {
+    const std::unique_ptr<machine::Run> run = RunOf(SetupOf(text), nobody);
+    run->Advance(At(1.0));
+    return run->state().tip_speed_mm_s;
+  };
+  EXPECT_NEAR(speed("SPEED 10\nMOVE (21.02,2201.2,-50.,0.,2.)\n"), 0.1 * 2.0 * M_PI * 300.0, 1e-3);
+  EXPECT_NEAR(speed("COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (21.02,2201.2,-350.,0.,2.)\n"), 0.0, 1e-3);
+}
+
+// A run that does not let time pass comes back after so many instructions, and goes on when it is
+// called again.
+TEST(RunInterface, OneCallDoesSoMuch) {
+  machine::RunObserver nobody;
+  const std::unique_ptr<machine::Run> run = RunOf(SetupOf("10 GOTO 10\n"), nobody);
+  for (std::uint64_t call = 1; call <= 3; ++call) {
+    EXPECT_EQ(run->Advance(At(1.0)), RunPhase::kRunning);
+    EXPECT_EQ(run->steps_executed(), call * 20'000U);
+    EXPECT_EQ(run->state().time, SimTime(0));
+  }
+}
+
+// Time stands while a run is halted, until a scripted key comes; where none is to come it stays at
+// the halt.
+TEST(RunInterface, TimeOfAHaltedRun) {
+  machine::RunObserver nobody;
+  const std::unique_ptr<machine::Run> waiting =
+      RunOf(SetupOf("DELAY 1\nSTOP\nDELAY 1\n", {.inputs = {{At(5.0), InputKind::kStart}}}), nobody);
+  EXPECT_EQ(waiting->Advance(At(3.0)), RunPhase::kHalted);
+  EXPECT_EQ(waiting->state().time, At(3.0));
+  EXPECT_EQ(waiting->Advance(At(5.5)), RunPhase::kRunning);
+  EXPECT_EQ(waiting->Advance(At(9.0)), RunPhase::kFinished);
+  EXPECT_EQ(waiting->state().time, At(6.0));
+  const std::unique_ptr<machine::Run> alone = RunOf(SetupOf("DELAY 1\nSTOP\nDELAY 1\n"), nobody);
+  EXPECT_EQ(alone->Advance(At(3.0)), RunPhase::kHalted);
+  EXPECT_EQ(alone->state().time, At(1.0));
+  alone->Apply({At(3.0), InputKind::kStart});
+  EXPECT_EQ(alone->Advance(At(9.0)), RunPhase::kFinished);
+  EXPECT_EQ(alone->state().time, At(2.0));
+}
+
+// A finished run takes no more keys, and ends only once.
+TEST(RunInterface, NothingComesAfterTheEnd) {
+  machine::RunObserver nobody;
+  const std::unique_ptr<machine::Run> run = RunOf(SetupOf("DELAY 1\n"), nobody);
+  EXPECT_EQ(run->Advance(At(3.0)), RunPhase::kFinished);
+  run->Apply({At(3.0), InputKind::kEmergencyStop});
+  run->End(machine::OutcomeKind::kCancelled, ErrorCode::kCancelled);
+  EXPECT_EQ(run->outcome().kind, machine::OutcomeKind::kCompleted);
+  EXPECT_FALSE(run->outcome().code.has_value());
+  EXPECT_EQ(run->ReadVariable("VI[99]"), "0");
+}
+
+// Inputs beyond the last index act on the last one, those below the first on the first.
+TEST(RunInterface, InputsOutOfRange) {
+  const Ran ran = RunText("VL[0]=IL[0]\nVL[1]=IL[86]\nVL[2]=IL[99]\n",
+                          {.inputs = {{SimTime(0), InputKind::kLogical, -5, 1.0},
+                                      {SimTime(0), InputKind::kLogical, 500, 1.0}},
+                           .variables = {"VL[0]", "VL[1]", "VL[2]"}});
+  EXPECT_EQ(ran.variables.at("VL[0]") + ran.variables.at("VL[1]") + ran.variables.at("VL[2]"), "101");
+}
+
+machine::RunSetup WithSource(const std::string& text, machine::SourceNotes notes) {
+  machine::RunSetup setup = SetupOf(text);
+  setup.programs[1].source = std::make_shared<const machine::SourceNotes>(std::move(notes));
+  return setup;
+}
+
+// Steps have the lines of their source, as far as that is known.
+TEST(RunInterface, LinesOfSteps) {
+  Findings findings;
+  const std::unique_ptr<machine::Run> run =
+      RunOf(WithSource("VI[2]=1\nVI[3]=1\nVR[0]=1/0\n", {.step_lines = {7, 9}}), findings);
+  run->Advance(At(1.0));
+  EXPECT_EQ(findings.lines, (std::vector{7, 9, 0}));
+  Findings errors;
+  const std::unique_ptr<machine::Run> failing =
+      RunOf(WithSource("VI[2]=1\nVR[0]=1/0\n", {.step_lines = {7, 9}}), errors);
+  failing->Advance(At(1.0));
+  ASSERT_EQ(errors.found.size(), 1U);
+  EXPECT_EQ(errors.found[0].where.line, 9);
+  EXPECT_EQ(failing->outcome().place.line, 9);
+}
+
+// A comment lets a warning pass that it names, on its line or in the whole file; another one, or on
+// another line, it does not, and an error never.
+TEST(RunInterface, WhatACommentLetsPass) {
+  const auto told = [](const std::string& text, int number, int line) {
+    Findings findings;
+    RunOf(WithSource(text, {.step_lines = {5, 6}, .allowed = {{.line = line, .number = number}}}), findings)
+        ->Advance(At(1.0));
+    return findings.found.size();
+  };
+  const std::string warns = "VI[2]=1\nTCP (0,0,0/0,0,5)\n";
+  EXPECT_EQ(told(warns, 7315, 0), 0U);
+  EXPECT_EQ(told(warns, 7315, 6), 0U);
+  EXPECT_EQ(told(warns, 7315, 5), 1U);
+  EXPECT_EQ(told(warns, 7312, 0), 1U);
+  EXPECT_EQ(told("VI[2]=1\nVR[0]=1/0\n", 7201, 0), 1U);
+}
+
+// OPT-B.30: a time of a whole number of cycles is over at that cycle: 6 s are 125 of 0.048 s, though
+// the division does not come out even. 300 mm at 50 mm/s.
+TEST(RunInterface, WholeCycles) {
+  const Ran ran = RunText(
+      "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (521.02,2201.2,-350.,0.,0.)/TIME (6.,900)\nENDTASK\n900 RETURN\n");
+  EXPECT_NEAR(ran.end.tip.tip.x, 21.02 + 300.0, 1e-6);
+  EXPECT_NEAR(ran.time_s, 6.0 + 2.0 * std::sqrt(50.0 / 40000.0), 1e-6);
+  const Ran timer = RunText("TIMER (6.,900)\nDELAY 6\nVI[2]=VI[3]\nENDTASK\n900 VI[3]=1\nRETURN\n",
+                            {.variables = {"VI[2]"}});
+  EXPECT_EQ(timer.variables.at("VI[2]"), "1");
+}
+
+// OPT-9.19: FUNCTION 99 turns the table to its degrees; without a value, to 0. The position is kept.
+TEST(RunInterface, TheRotaryTable) {
+  const RunOptions fitted{.parameters = {{"ROTARY_TABLE", "ON"}}};
+  const Ran ran = RunText("FUNCTION 99 (90.)\nFUNCTION 99 (-45.5)\nFUNCTION 99\n", fitted);
+  EXPECT_EQ(ran.Count("table 90.0") + ran.Count("table -45.5") + ran.Count("table 0.0"), 3);
+  EXPECT_EQ(CodeOf(RunText("FUNCTION 99 (1./VR[0])\n", fitted)), 7201);
+}
+
+}  // namespace
+}  // namespace rmlcell::optimo::testing::run_interface
