@@ -84,6 +84,23 @@ TEST(Object, HostileBytesNeverBreakTheDecoder) {
   EXPECT_GT(accepted, 100);
 }
 
+// OPT-B.40: objects were written with the sign of "-(5)" beside its literal; they are read as what
+// they mean.
+TEST(Object, ASignBesideItsLiteralIsReadAsOne) {
+  const auto with_signs = [](const std::string& literal, const std::string& signs) {
+    std::string object = MustCompile("VR[0] = " + literal + "\n").object;
+    const std::size_t value = object.find(literal == "5" ? std::string("\x01\x05\x00", 3)
+                                                         : std::string("\x01\x00\x80", 3));
+    return WithChecksum(object.insert(value, signs));
+  };
+  const std::string negate(1, static_cast<char>(0x20 + static_cast<int>(Node::kNegate)));
+  const std::string less_five = with_signs("5", negate);
+  ASSERT_TRUE(DecodeObject(less_five));
+  EXPECT_EQ(EncodeObject(*DecodeObject(less_five)), MustCompile("VR[0] = -5\n").object);
+  EXPECT_EQ(*ObjectToSource(with_signs("5", negate + negate)), "     LET VR[0] = 5\n");
+  EXPECT_EQ(*ObjectToSource(with_signs("-32768", negate)), "     LET VR[0] = 32768.0\n");
+}
+
 // OPT-1.21: comments are not in the object, names and numbers are.
 TEST(Object, HoldsNoComments) {
   EXPECT_EQ(MustCompile("SPEED 5 ; a comment\n; another\n").object,
