@@ -110,6 +110,83 @@ TEST(Completion, AnIndexIsOfferedWithItsUse) {
   EXPECT_EQ(Offered("PAR[|").size(), 8U);
 }
 
+// What follows a word is what its grammar takes there, and nothing where that is a number.
+TEST(Completion, EachPlaceHasItsOwn) {
+  for (const char* nothing : {"SYSDEF |", "TASK |", "BREAK |", "SIMUL |", "WORK |", "COORD ABSOL |",
+                              "UPDATE IL |", "DECLARE |", "DECLARE X |", "DEFINE PAR |", "NAME |",
+                              "VR[0]=QQ[|", "; |", ";$ |", ";;$|", "; rmlcell: allow |"}) {
+    EXPECT_THAT(Offered(nothing), IsEmpty()) << nothing;
+  }
+  const std::vector<std::string> groups = {"IL", "OL", "IA", "OA"};
+  for (const char* group : {"UPDATE |", "IMAGE |", "REAL |", "REAL IL, |"})
+    EXPECT_THAT(Offered(group), testing::UnorderedElementsAreArray(groups)) << group;
+  EXPECT_THAT(Offered("DEFINE |"), ElementsAre("PAR"));
+  EXPECT_THAT(Offered("DEFINE PAR = L|"), ElementsAre("LOGIC"));
+  const std::vector<std::string> operators = {"MOD", "AND", "OR", "XOR"};
+  for (const char* value : {"VR[0] = 5 |", "VR[0] = (5) |", "VR[0] = VR[1] |", "SPEED K |"})
+    EXPECT_THAT(Offered(value), testing::IsSupersetOf(operators)) << value;
+  for (const char* value : {"VR[0] = 5 |", "SPEED K |"}) {
+    EXPECT_THAT(Offered(value), AllOf(Not(Contains("THEN")), Not(Contains("VR")))) << value;
+  }
+  EXPECT_THAT(Offered("IF K |"), testing::IsSupersetOf({"THEN", "ELSE", "AND"}));
+  EXPECT_THAT(Offered("GOTO VI[2] (10 |\n10\n"), Not(Contains("10")));
+  EXPECT_THAT(Offered("MOVE (1,2,3,0,0)/TIME (|\n10\n"), Not(Contains("10")));
+  EXPECT_THAT(Offered("CALL 46 (1, |\n10\n"), AllOf(Not(Contains("10")), Contains("SIN")));
+  EXPECT_THAT(Offered("PATH HOLE (|"), Contains("VR"));
+  EXPECT_EQ(Offered("IL[|").size(), 100U);
+}
+
+// OPT-1.30: a line goes on where the statement before it asks for more.
+TEST(Completion, ALineThatGoesOnIsNoBeginning) {
+  for (const char* open : {"MOVE (1,\n|", "VR[0] = 5 +\n|", "VR[0] =\n|", "VR[0] = 2 *\n; c\n |"})
+    EXPECT_THAT(Offered(open), AllOf(Contains("SIN"), Not(Contains("MOVE")))) << open;
+  EXPECT_THAT(Offered("MOVE (1,2,3,0,0)/\n|"), AllOf(Contains("FLY"), Not(Contains("MOVE"))));
+  for (const char* closed : {"MOVE (1,2,3,0,0)\n|", "VR[0] = (5)\n |", "SPEED 5 ; /\n|"})
+    EXPECT_THAT(Offered(closed), Contains("MOVE")) << closed;
+}
+
+// The kinds are numbers of the protocol (CompletionItemKind).
+TEST(Completion, ItemsHaveTheirKindAndDetail) {
+  Editor editor;
+  editor.folder.files["file:///work/44.S"] = "";
+  const auto item = [&](std::string_view marked, const std::string& label) {
+    for (const Json& one : editor.At("textDocument/completion", marked)["result"]["items"]) {
+      if (one["label"] == label)
+        return std::to_string(one["kind"].get<int>()) + " " + one.value("detail", "");
+    }
+    return std::string("nothing");
+  };
+  constexpr const char* kValue = "DECLARE K = 5\nDECLARE X = VR[1]\nVR[0] = |\n";
+  EXPECT_EQ(item(kValue, "K"), "21 = 5");
+  EXPECT_EQ(item(kValue, "X"), "6 = VR[1]");
+  EXPECT_EQ(item(kValue, "VR").substr(0, 2), "6 ");
+  EXPECT_EQ(item(kValue, "SIN").substr(0, 2), "3 ");
+  EXPECT_EQ(item(kValue, "PI").substr(0, 3), "21 ");
+  EXPECT_EQ(item(kValue, "NOT").substr(0, 3), "14 ");
+  EXPECT_EQ(item("GOTO |\n10 SPEED 5\n20\n", "20"), "18 ");
+  EXPECT_EQ(item("CALL |\n", "44"), "9 44.S");
+  EXPECT_EQ(item("|\n", "MOVE").substr(0, 3), "14 ");
+}
+
+// Lists are bounded, and say so: typing on narrows them.
+TEST(Completion, AThousandNamesAndNumbersAreOffered) {
+  Editor editor;
+  const auto list = [&](int count, bool labels) {
+    std::string text = labels ? "GOTO |\n" : "";
+    for (int n = 0; n < count; ++n) {
+      text += labels ? std::to_string(n) + " STOP\n" : "DECLARE N" + std::to_string(n) + " = 5\n";
+    }
+    if (!labels) text += "VR[0] = N|\n";
+    return editor.At("textDocument/completion", text)["result"];
+  };
+  EXPECT_EQ(list(1000, true)["items"].size(), 1000U);
+  EXPECT_FALSE(list(1000, true)["isIncomplete"]);
+  EXPECT_EQ(list(1001, true)["items"].size(), 1000U);
+  EXPECT_TRUE(list(1001, true)["isIncomplete"]);
+  EXPECT_FALSE(list(1000, false)["isIncomplete"]);
+  EXPECT_TRUE(list(1001, false)["isIncomplete"]);
+}
+
 // OPT-8.03, OPT-8.04
 TEST(Completion, CommentsHaveDirectivesAndNothingElse) {
   EXPECT_THAT(Offered("SPEED 5 ; s|"), IsEmpty());

@@ -129,6 +129,76 @@ TEST(Hover, AFindingIsToldWithItsRule) {
       AllOf(HasSubstr("**OPT-E7004**"), HasSubstr("Rule OPT-2.35: SPEED, ACCEL and OVERSH")));
 }
 
+// OPT-7.20, OPT-7.44, OPT-1.27: the whole of what is said, with its counts.
+TEST(Hover, CountsJumpsAndUses) {
+  EXPECT_EQ(HoverAt("GOSUB 1|00\nGOTO 100\nENDTASK\n100\n; here\nSPEED 5\nRETURN\n"),
+            "**Sequence number 100** on line 4, step 4\n\n1 jump, 1 GOSUB to it.\n\n`SPEED 5`");
+  EXPECT_EQ(HoverAt("GOSUB 100\nGOSUB 100\nENDTASK\n1|00 SPEED 5\nRETURN\n"),
+            "**Sequence number 100** on line 4, step 4\n\n0 jumps, 2 GOSUBs to it.");
+  EXPECT_EQ(HoverAt("IF VL[1] THEN 1|0 ELSE 20\nGOTO VI[2] (10,20)\n20\n10 STOP\n"),
+            "**Sequence number 10** on line 4, step 3\n\n2 jumps, 0 GOSUBs to it.\n\n`STOP`");
+  EXPECT_EQ(HoverAt("DECLARE K = 5.\nVR[0] = K|\n"),
+            "**K** = `5.`\n\nDeclared on line 1, used 1 time.");
+  EXPECT_EQ(HoverAt("; one\nDECLARE K| = 5.\nDECLARE L = 6.\nVR[0] = L\n"),
+            "**K** = `5.`\n\nDeclared on line 2, used 0 times.");
+}
+
+// OPT-3.05, OPT-3.06, OPT-3.07: values that are expressions stay whole.
+TEST(Hover, TheValuesOfAWorkdefAreNamedInTheirOrder) {
+  EXPECT_THAT(
+      HoverAt("WORKD|EF 1,0 ((1+2)*3, SIN(1.),\n  1., 50.)\nWORK 1,0/ON\nWORK 1,0/ON\nWORK "
+              "1,1/ON\nWORK 1,0/OFF\nWORK 2,0/ON\n"),
+      testing::EndsWith("\n\nProcess 1,0, turned ON 2 times.\n\n- speed, percent of the largest: "
+                        "`(1+2)*3`\n- power at that speed, percent: `SIN(1.)`\n- dwell at peak, s: "
+                        "`1.`\n- piercing power, percent: `50.`"));
+  EXPECT_THAT(HoverAt("WORKD|EF 0,3\nWORK 0,3/ON\n"),
+              testing::EndsWith("\n\nProcess 0,3, turned ON 1 time."));
+  EXPECT_THAT(HoverAt("WORKDEF 2,0 (11)\nWORKDEF 2,0 (12)\nWORKDEF 2,1 (13)\nWO|RK 2,0 "
+                      "/ON\nWORKDEF 2,0 (14)\n"),
+              testing::EndsWith("\n\nDefined on line 2: `WORKDEF 2,0 (12)`\n\n- laser schedule: "
+                                "`12`"));
+  EXPECT_THAT(HoverAt("WO|RK 2,0 /ON\nWORKDEF 2,0 (14)\nWORKDEF 2,0 (15)\n"),
+              HasSubstr("Defined on line 2: `WORKDEF 2,0 (14)`"));
+}
+
+// OPT-3.06, OPT-3.07: schedules are those from 1 to 63, and a REAL one is truncated.
+TEST(Hover, SchedulesOfTheProjectAreFoundByTheirNumber) {
+  Editor editor;
+  editor.folder.files["file:///work/project.json"] =
+      R"({"laserSchedules": [{"number": 1, "mode": "CW", "powerPercent": 50},
+                             {"number": 63, "mode": "PULSE", "powerPercent": 60}]})";
+  const auto schedule = [&](const std::string& written) {
+    return HoverAt("WORKD|EF 2,0 (" + written + ")\n", editor);
+  };
+  EXPECT_THAT(schedule("1"), HasSubstr("`1` (CW, 50 %)"));
+  EXPECT_THAT(schedule(" 1.9 "), HasSubstr("`1.9` (CW, 50 %)"));
+  EXPECT_THAT(schedule("63"), HasSubstr("`63` (PULSE, 60 %)"));
+  EXPECT_THAT(schedule("63.9"), HasSubstr("`63.9` (PULSE, 60 %)"));
+  for (const char* other : {"0", ".9", "2", "64", "VR[30]"})
+    EXPECT_THAT(schedule(other), Not(HasSubstr("%)"))) << other;
+}
+
+// OPT-9.01, OPT-9.21: the whole of what is said of another program; what heads it is a comment
+// before its first statement.
+TEST(Hover, AProgramOfTheFolderIsTold) {
+  Editor editor;
+  editor.folder.files["file:///work/44.S"] = "; a `long`\t rectangle\nVR[0] = PAR[1]\nSPEED 5\n";
+  editor.folder.files["file:///work/46.S"] = "SPEED 5 ; slow\n; more\n";
+  editor.folder.files["file:///work/47.S"] = ";" + std::string(130, 'x') + "\nVR[1] = PAR[0]\n";
+  editor.folder.files["file:///work/48.S"] = ";" + std::string(119, 'x') + "\n";
+  EXPECT_EQ(HoverAt("FUNCTION 4|4 (1,2)\n", editor),
+            "**Program 44** in `44.S`, 2 steps\n\n`; a 'long' rectangle`\n\nReads PAR[0] to "
+            "PAR[1].");
+  EXPECT_EQ(HoverAt("CALL 4|6\n", editor), "**Program 46** in `46.S`, 1 step");
+  EXPECT_EQ(HoverAt("CALL 4|7\n", editor), "**Program 47** in `47.S`, 1 step\n\n`;" +
+                                               std::string(119, 'x') +
+                                               " ...`\n\nReads PAR[0] to PAR[0].");
+  EXPECT_EQ(HoverAt("CALL 4|8\n", editor),
+            "**Program 48** in `48.S`, 0 steps\n\n`;" + std::string(119, 'x') + "`");
+  EXPECT_EQ(HoverAt("CALL 4|5\n", editor),
+            "**Program 45**\n\nThere is no file 45.S in this folder.");
+}
+
 TEST(Hover, AStreamOfAMillHasItsFindings) {
   Editor editor;
   editor.Open("PU0,0;QQ;", "file:///work/a.rml", "rml1");

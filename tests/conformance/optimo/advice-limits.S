@@ -307,3 +307,64 @@ VI[2] = 32768            ; expect 7203
 VI[2] = -32768.9
 VI[2] = -32769           ; expect 7203
 VI[2] = 32766 + 1
+
+;=== an offset that does not turn leaves the normal points, one that turns does not (advice)
+; OPT-5.48
+COORD ABSOL
+PATH HOLE (5.)
+SYSDEF (10.,0.,0.,0.,0.,0.)
+MOVE (20.,2.,3.,0.,0.)/VIA (29.,2.,9.,0.,0.)     ; expect 7033
+SYSDEF (10.,0.,0.,0.,0.,.5)
+MOVE (20.,2.,3.,0.,0.)/VIA (29.,2.,9.,0.,0.)
+SYSDEF (10.,0.,0.,.5,0.,0.)
+MOVE (20.,2.,3.,0.,0.)/VIA (29.,2.,9.,0.,0.)
+SYSDEF
+MOVE (20.,2.,3.,0.,0.)/VIA (29.,2.,9.,0.,0.)     ; expect 7033
+
+;=== the normal point of a tilted hole (advice)
+; OPT-5.48
+COORD ABSOL
+PATH HOLE (5.)
+MOVE (20.,2.,3.,0.,1.)/VIA (20.,-6.415,8.403,0.,0.)
+MOVE (20.,2.,3.,0.,1.)/VIA (20.,2.,13.,0.,0.)    ; expect 7033
+MOVE (20.,2.,3.,0.,1.)/VIA (20.,-8.,3.,0.,0.)    ; expect 7033
+
+;=== without an offset ROBOT moves may stand anywhere (advice)
+; OPT-7.109
+SYSDEF
+COORD ABSOL
+MOVE (10.,2.,3.,0.,0.)
+COORD ROBOT
+MOVE (10.,2.,3.,0.,0.)
+COORD ABSOL
+MOVE (20.,2.,3.,0.,0.)
+
+;=== with an offset they may not stand between the others (advice)
+; OPT-7.109 OPT-E.7033
+SYSDEF (10.,0.,0.,0.,0.,0.)
+COORD ROBOT
+MOVE (10.,2.,3.,0.,0.)
+COORD ABSOL
+MOVE (10.,2.,3.,0.,0.)
+COORD ROBOT
+MOVE (10.,2.,3.,0.,0.)   ; expect 7033
+COORD ABSOL
+MOVE (20.,2.,3.,0.,0.)
+COORD ROBOT
+MOVE (10.,2.,3.,0.,0.)
+
+;=== what a statement with an error sets is not known (advice)
+; OPT-1.33 OPT-5.46
+COORD ABSOL
+PATH LIN
+SPEED 101                ; expect 7004
+MOVE (10.,2.,3.,0.,0.)
+SPEED 100
+MOVE (20.,2.,3.,0.,0.)   ; expect 7033
+
+;=== a gas that an input switches may be off (advice)
+; OPT-5.40
+OL[8] = IL[20]
+OL[9] = ON
+OL[8] = OFF
+OL[8] = ON               ; expect 7409

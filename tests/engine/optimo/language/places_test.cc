@@ -6,8 +6,8 @@
 
 #include "tests/engine/optimo/language/compile_text.h"
 
-// What the compiler says, and of which characters. The braces of a row are no part of its text: they
-// stand around what the finding is about.
+// What the compiler says, and of which characters. The braces of a row are no part of its text:
+// they stand around what the finding is about.
 namespace rmlcell::optimo {
 namespace {
 
@@ -268,11 +268,20 @@ TEST(Places, OfAttributesThatAnInstructionDoesNotHave) {
       {"SIMUL 7", ""},
       {"ZERO", ""},
   };
-  const std::vector<std::pair<std::string, std::string>> attributes = {
-      {"VIA", " (1,2,3,4,5)"}, {"FLY", ""},  {"START", " (IL[20])"}, {"END", " (IL[20])"},
-      {"TIME", " (1.,5)"},     {"NEXT", ""}, {"INF", ""},            {"ON", ""},
-      {"OFF", ""},             {"C", ""},    {"R", ""},              {"S", ""},
-      {"AUTO", ""},            {"DIS", ""}};
+  const std::vector<std::pair<std::string, std::string>> attributes = {{"VIA", " (1,2,3,4,5)"},
+                                                                       {"FLY", ""},
+                                                                       {"START", " (IL[20])"},
+                                                                       {"END", " (IL[20])"},
+                                                                       {"TIME", " (1.,5)"},
+                                                                       {"NEXT", ""},
+                                                                       {"INF", ""},
+                                                                       {"ON", ""},
+                                                                       {"OFF", ""},
+                                                                       {"C", ""},
+                                                                       {"R", ""},
+                                                                       {"S", ""},
+                                                                       {"AUTO", ""},
+                                                                       {"DIS", ""}};
   for (const Statement& statement : statements) {
     for (const auto& [word, rest] : attributes) {
       const std::string head = "5 " + std::string(statement.text) + " /";
