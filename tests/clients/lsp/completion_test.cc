@@ -180,11 +180,11 @@ TEST(Completion, AThousandNamesAndNumbersAreOffered) {
     return editor.At("textDocument/completion", text)["result"];
   };
   EXPECT_EQ(list(1000, true)["items"].size(), 1000U);
-  EXPECT_FALSE(list(1000, true)["isIncomplete"]);
+  EXPECT_EQ(list(1000, true)["isIncomplete"], false);
   EXPECT_EQ(list(1001, true)["items"].size(), 1000U);
-  EXPECT_TRUE(list(1001, true)["isIncomplete"]);
-  EXPECT_FALSE(list(1000, false)["isIncomplete"]);
-  EXPECT_TRUE(list(1001, false)["isIncomplete"]);
+  EXPECT_EQ(list(1001, true)["isIncomplete"], true);
+  EXPECT_EQ(list(1000, false)["isIncomplete"], false);
+  EXPECT_EQ(list(1001, false)["isIncomplete"], true);
 }
 
 // OPT-8.03, OPT-8.04
