@@ -51,34 +51,6 @@ TEST(Outline, ASubroutineIsAFunction) {
   EXPECT_EQ(symbols[3]["kind"], 12);
 }
 
-// The kinds are numbers of the protocol (SymbolKind); what is selected is the name or number.
-TEST(Outline, SymbolsHaveTheirKindAndPlaces) {
-  Editor editor;
-  editor.Open("DECLARE X = VR[0]\nDECLARE K = 5\n10 GOSUB 10\n SPEED 5 ; c\n");
-  const Json symbols =
-      editor.Result("textDocument/documentSymbol", {{"textDocument", {{"uri", kUri}}}});
-  ASSERT_EQ(symbols.size(), 3U);
-  EXPECT_EQ(symbols[0]["kind"], 13);
-  EXPECT_EQ(symbols[0]["range"], ToJson(Range{{0, 0}, {0, 17}}));
-  EXPECT_EQ(symbols[0]["selectionRange"], ToJson(Range{{0, 8}, {0, 9}}));
-  EXPECT_EQ(symbols[1]["kind"], 14);
-  EXPECT_EQ(symbols[1]["detail"], "5");
-  EXPECT_EQ(symbols[2]["kind"], 12);
-  EXPECT_EQ(symbols[2]["range"], ToJson(Range{{2, 0}, {3, 8}}));
-  EXPECT_EQ(symbols[2]["selectionRange"], ToJson(Range{{2, 0}, {2, 2}}));
-  ASSERT_EQ(symbols[2]["children"].size(), 2U);
-  EXPECT_EQ(symbols[2]["children"][1]["kind"], 24);
-  EXPECT_EQ(symbols[2]["children"][1]["range"], ToJson(Range{{3, 1}, {3, 8}}));
-  EXPECT_FALSE(symbols[2]["children"][1].contains("detail"));
-}
-
-// Of a long statement sixty bytes stand in the outline.
-TEST(Outline, LongStatementsAreCut) {
-  const std::string sixty = "VR[0]=" + std::string(52, '1') + "+1";
-  EXPECT_EQ(OutlineOf(sixty + "\n"), "1 " + sixty + " [0-0]\n");
-  EXPECT_EQ(OutlineOf(sixty + "2\n"), "1 " + sixty + " ... [0-0]\n");
-}
-
 TEST(Outline, ALongProgramHasItsNumbersAndNamesAlone) {
   const auto count = [](std::uint32_t steps) {
     std::string text = "10 STOP\n";
@@ -118,9 +90,6 @@ using Strings = std::vector<std::string>;
 
 TEST(Folding, CommentsInARowStatementsOverLinesAndDeclarations) {
   EXPECT_EQ(FoldsOf("; a\n; b\nSPEED 5 ; c\n; d\n\n; e\n"), Strings{"comment 0-1"});
-  EXPECT_EQ(FoldsOf("; a\n  ; b\n; c\n\n; d\n; e\nSTOP ; f\n; g\n"),
-            (Strings{"comment 0-2", "comment 4-5"}));
-  EXPECT_EQ(FoldsOf("STOP\nDECLARE X = 1\nDECLARE Y = 2\nDECLARE Z = 3\n"), Strings{" 1-3"});
   EXPECT_EQ(FoldsOf("MOVE (1,2,3,0,0)/\n  VIA (1,2,3,\n0,0)\nSPEED 5\n"), Strings{" 0-2"});
   EXPECT_EQ(FoldsOf("DECLARE X = 1\nDECLARE Y = 2\nSPEED 5\nDECLARE Z = 3\n"), Strings{" 0-1"});
 }
@@ -131,10 +100,6 @@ TEST(Folding, ContoursAndSubroutines) {
             (Strings{"region 1-3", "region 0-4"}));
   EXPECT_EQ(FoldsOf("GOSUB 100\nENDTASK\n90 STOP\n100\nSPEED 5\nRETURN\n"), Strings{"region 3-5"});
   EXPECT_EQ(FoldsOf("WORK 0,0/ON\nSPEED 5\n"), Strings{});
-  EXPECT_EQ(FoldsOf("WORK 0,0/ON\nWORK 0,1/OFF\nWORK 1,0/OFF\nWORKDEF 0,0\n"), Strings{});
-  EXPECT_EQ(FoldsOf("WORK 0,0/ON\nWORK 0,0/OFF\nSTOP\nWORK 0,0/OFF\n"), Strings{"region 0-1"});
-  EXPECT_EQ(FoldsOf("GOSUB 9\nGOTO 5\n5 STOP\nRETURN\n9 STOP\nRETURN\nSTOP\nRETURN\n"),
-            Strings{"region 4-5"});
 }
 
 }  // namespace
