@@ -140,7 +140,7 @@ TEST(SubroutineEffects, AreThoseOfTheStatementsInTheirPlace) {
     ASSERT_EQ(called, in_place) << before << "-- body\n" << body << "-- behind\n" << behind;
     told += in_place.size();
   }
-  EXPECT_GT(told, 3000U);
+  EXPECT_GT(told, 2000U);  // more than one a round
 }
 
 // OPT-7.20
