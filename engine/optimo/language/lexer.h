@@ -72,6 +72,9 @@ class Lexer {
   // Line of the statement's first token, from 1.
   std::uint32_t line() const { return statement_line_; }
 
+  // Since the beginning, those read again behind ResumeAt among them.
+  std::uint64_t tokens_read() const { return tokens_read_; }
+
   // The line at `offset` begins like an assignment: NAME = or VR[5] =.
   bool BeginsAssignment(std::size_t offset) const;
 
@@ -110,12 +113,14 @@ class Lexer {
                        .length = static_cast<std::uint32_t>(length)});
     at_ += length;
     last_end_ = at_;
+    ++tokens_read_;
   }
 
   std::string_view text_;
   std::vector<Comment>* comments_;
   std::vector<Token> tokens_;
   Token end_;
+  std::uint64_t tokens_read_ = 0;
   std::size_t at_ = 0;
   std::size_t last_end_ = 0;  // behind the last token
   std::uint32_t line_ = 1;    // of at_

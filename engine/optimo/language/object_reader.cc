@@ -17,8 +17,8 @@ namespace {
 constexpr int kLabelMax = 9999;
 constexpr std::uint64_t kTargetsMax = 10'000;
 
-// Accepts exactly what EncodeObject can write: so what was accepted, decompiled and compiled again
-// is the same object.
+// Accepts exactly what EncodeObject can write, or could once: so what was accepted, decompiled and
+// compiled again is the same object.
 class Reader {
  public:
   explicit Reader(std::string_view bytes) : in_(bytes) {}
@@ -200,6 +200,11 @@ void Reader::ReadExpression() {
       ReadLeaf(tag, node);
     }
     --needed;
+    // Objects were written with the sign of "-(5)" beside its literal.
+    while (IsLiteral(node) && !reversed_.empty() && reversed_.back().op == Node::kNegate) {
+      reversed_.pop_back();
+      node = NegatedLiteral(node);
+    }
     reversed_.push_back(node);
   }
   if (in_.bad()) return;

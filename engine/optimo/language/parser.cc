@@ -45,6 +45,7 @@ void Parser::Run() {
   module_.end_labels = pending_labels_;
   program_.end_label_places = pending_label_places_;
   module_.step_count = steps_;
+  program_.tokens_read = lexer_.tokens_read();
 }
 
 // line := [ label ] [ statement ]                                               OPT-1.27
@@ -186,7 +187,12 @@ void Parser::AddLabel(const Token& token) {
 bool Parser::ParseAssignment(bool after_let) {
   instruction_.op = Op::kLet;
   const Token target = Peek();
-  if (!after_let && target.word == Word::kNone && Peek(1).kind != TokenKind::kEqual) {
+  const Token next = Peek(1);
+  if (next.kind == TokenKind::kBadCharacter && next.joined) {  // X_1, OPT-7.45
+    Take();
+    return Fail("'='");
+  }
+  if (!after_let && target.word == Word::kNone && next.kind != TokenKind::kEqual) {
     const auto known = names_.find(target.key);
     if (known == names_.end() || !declared_[known->second]) return FailUnknown(target);
   }

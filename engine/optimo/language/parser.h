@@ -71,6 +71,7 @@ class Parser {
   bool ParseBinary(int level);
   bool ParseSigned();
   bool ParsePrimary(bool negative, const Token& sign);
+  void Negate(const Token& sign);
   bool ParseVariable();                         // group [ index ], appended as a node
   bool ParseTarget(std::string_view expected);  // variable | par | name, as one expression
   bool ParseLiteral(bool negative, const Token& sign);

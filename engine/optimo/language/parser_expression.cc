@@ -299,8 +299,22 @@ bool Parser::ParsePrimary(bool negative, const Token& sign) {
   } else {
     return Fail(kValueExpected);
   }
-  if (negative) Emit(Node::kNegate, sign.offset, sign.length);
+  if (negative) Negate(sign);
   return true;
+}
+
+// The value that ends before the next token. A number in parentheses is a literal as one without
+// them is: the canonical text has none, and must mean the same (OPT-1.06, OPT-B.40).
+void Parser::Negate(const Token& sign) {
+  ExprNode& value = module_.nodes.back();
+  if (!IsLiteral(value)) {
+    Emit(Node::kNegate, sign.offset, sign.length);
+    return;
+  }
+  value = NegatedLiteral(value);
+  const Token& last = lexer_.At(at_ - 1);
+  if (places_ == Places::kNodes)
+    program_.node_places.back() = {sign.offset, last.offset + last.length - sign.offset};
 }
 
 bool Parser::ParseLiteral(bool negative, const Token& sign) {
@@ -338,12 +352,12 @@ bool Parser::ParseVariable() {
     node.index_name = InternName(index);
   } else if (index.kind == TokenKind::kNumber && index.whole && Is(TokenKind::kCloseIndex)) {
     if (index.digits > static_cast<std::uint32_t>(max)) {
-      Report(index, ErrorCode::kIndexRange,
-             "index " + std::string(lexer_.TextOf(index)) + " is outside 0.." + std::to_string(max),
-             "OPT-7.59");
-    } else {
-      node.index = static_cast<std::uint8_t>(index.digits);
+      return FailAt(
+          index, ErrorCode::kIndexRange,
+          "index " + std::string(lexer_.TextOf(index)) + " is outside 0.." + std::to_string(max),
+          "OPT-7.59");
     }
+    node.index = static_cast<std::uint8_t>(index.digits);
   } else if (index.kind == TokenKind::kEnd || index.kind == TokenKind::kCloseIndex ||
              index.kind == TokenKind::kBadCharacter || index.kind == TokenKind::kBadNumber) {
     --at_;

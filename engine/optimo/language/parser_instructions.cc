@@ -300,8 +300,9 @@ bool Parser::ParseDeclare() {
   }
   if (!ParseSigned()) return false;
   module_.EndExpression();
-  const Token& next = Peek();
-  if (LevelOf(next) != 0) {
+  const Token next = Peek();
+  const bool attribute = next.kind == TokenKind::kSlash && EndsExpression(Peek(1));
+  if (LevelOf(next) != 0 && !attribute) {
     return FailAt(next, ErrorCode::kDeclareValue, "DECLARE takes no expression", "OPT-7.42");
   }
   if (declared_[instruction_.name]) {

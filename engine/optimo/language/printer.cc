@@ -43,14 +43,10 @@ int LevelOf(const ExprNode& node) {
   }
 }
 
-bool IsLiteral(const ExprNode& node) {
-  return node.name == kNoName && (node.op == Node::kInteger || node.op == Node::kReal);
-}
-
-// A sign before a literal would become part of it, two signs would cancel: "-(5)", "-(-X)".
+// Two signs would cancel: "-(-X)".
 bool OperandNeedsParentheses(const ExprNode& parent, const ExprNode& operand) {
   if (parent.op == Node::kNot) return LevelOf(operand) < kNotLevel;
-  if (parent.op == Node::kNegate) return LevelOf(operand) <= kSignedLevel || IsLiteral(operand);
+  if (parent.op == Node::kNegate) return LevelOf(operand) <= kSignedLevel;
   return false;  // a function has its own
 }
 // Operators of one priority go from the left, relations do not chain.

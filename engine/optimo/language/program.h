@@ -17,7 +17,8 @@ struct Statement {
   std::uint32_t end = 0;    // behind its last token
   std::uint32_t tokens = 0;
 };
-// Where a literal or name stands. Operators have the place of their sign.
+// Where a literal or name stands, a literal with its sign: all of "-(4.)". Operators have the place
+// of their sign.
 struct NodePlace {
   std::uint32_t offset = 0;
   std::uint32_t length = 0;
@@ -47,6 +48,7 @@ struct ParsedProgram {
   std::vector<bool> broken_names;  // parallel to Module::names: its DECLARE has an error
   // Instructions with an error that are no Op::kInvalid, in any order, some of them twice.
   std::vector<std::uint32_t> faulty;
+  std::uint64_t tokens_read = 0;  // those read twice counted twice: what the reading cost
 
   Place At(const Instruction& instruction) const;  // the whole statement
   std::string_view TextOf(const Instruction& instruction) const;

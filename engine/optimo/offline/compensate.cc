@@ -355,9 +355,9 @@ void Compensator::Rewrite(const Instruction& i, const OffsetLeg& moved) {
 }
 
 void Compensator::RewriteNumber(std::uint32_t node, double value) {
-  const NodePlace& place = p_.node_places[node];
-  edits_.push_back(
-      {place.offset, static_cast<int>(place.length), FixedText(value, kCompensateDecimals)});
+  const NumberPlace place = PlaceOfNumber(p_, node);
+  edits_.push_back({place.offset, static_cast<int>(place.length),
+                    FixedText(place.Written(value), kCompensateDecimals)});
 }
 
 }  // namespace

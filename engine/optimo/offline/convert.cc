@@ -274,7 +274,7 @@ void Converter::Settle(std::vector<Part>& parts, std::size_t operators, bool con
 }
 
 void Converter::ConvertNumber(const Part& part, Unit unit) {
-  const NodePlace& place = p_.node_places[part.node];
+  const NumberPlace place = PlaceOfNumber(p_, part.node);
   const std::optional<double> value = LiteralValue(p_.text.substr(place.offset, place.length));
   if (!value) return;
   edits_.push_back({place.offset, static_cast<int>(place.length),

@@ -38,9 +38,9 @@ struct NumberEdits {
                    "a number would become larger than the control can hold", "OPT-7.62");
       return;
     }
-    const NodePlace& place = program.node_places[program.module.FirstNode(expression)];
-    edits.push_back(
-        {place.offset, static_cast<int>(place.length), TrimmedText(value, kTransformDecimals)});
+    const NumberPlace place = PlaceOfNumber(program, program.module.FirstNode(expression));
+    edits.push_back({place.offset, static_cast<int>(place.length),
+                     TrimmedText(place.Written(value), kTransformDecimals)});
   }
 };
 

@@ -42,6 +42,10 @@ WORKDEF 1,0 (1+1, 50., 1.-2., 90.)   ; expect 7205
 WORKDEF 1,0 (1+1, 50., 1., 90., 8*8) ; expect 7403
 WORKDEF 2,0 (32+32)                  ; expect 7403
 WORKDEF 2,0 (32+31)
+WORKDEF 2,0 (63+.9999)
+WORKDEF 2,0 (63+1.)                  ; expect 7403
+SETERR 9999+.999
+SETERR 9999+1.                       ; expect 7505
 
 ;=== what depends on a variable is not known (advice)
 ; OPT-B.36 OPT-7.79

@@ -25,6 +25,11 @@ YHOME = 46.0             ; expect 7015
 ;=== a name begins with a letter
 ; OPT-7.45
 DECLARE 2X = VR[1]       ; expect 7003
+DECLARE X_1 = VR[1]      ; expect 7001
+X_1 = 5.                 ; expect 7001
+LET X_1 = 5.             ; expect 7001
+SPED_1 = 5.              ; expect 7001
+VR[0] = X_1              ; expect 7001
 
 ;=== eight characters count
 ; OPT-7.46 OPT-7.47 OPT-B.49 OPT-E.7012

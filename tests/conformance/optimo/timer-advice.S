@@ -122,3 +122,167 @@ WORK 0,0/OFF
 ENDTASK
 10 CALL 2
 RETURN
+
+;=== what the GOSUB of a TIMER changes may be changed behind it: speed (advice)
+; OPT-5.46 OPT-B.59
+COORD ABSOL
+PATH LIN
+SPEED 90
+MOVE (10.,2.,3.,0.,0.)               ; expect 7033
+TIMER (5.,10)
+MOVE (20.,2.,3.,0.,0.)
+ENDTASK
+10 SPEED 5
+RETURN
+
+;=== and what it leaves is not: speed (advice)
+; OPT-5.46 OPT-B.59
+COORD ABSOL
+PATH LIN
+SPEED 90
+TIMER (5.,10)
+MOVE (20.,2.,3.,0.,0.)               ; expect 7033
+ENDTASK
+10 OL[16] = ON
+RETURN
+
+;=== COORD and PATH of a TIMER's GOSUB (advice)
+; OPT-2.08 OPT-B.59 OPT-E.7302
+COORD ROBOT
+PATH LIN
+TIMER (5.,10)
+MOVE (1000.,900.,-500.,0.,0.)
+ENDTASK
+10 COORD ABSOL
+RETURN
+
+;=== COORD and PATH that it leaves (advice)
+; OPT-2.08 OPT-B.59 OPT-E.7302
+COORD ROBOT
+PATH LIN
+TIMER (5.,10)
+MOVE (1000.,900.,-500.,0.,0.)        ; expect 7302
+ENDTASK
+10 OL[16] = ON
+RETURN
+
+;=== the beam that it switches off (advice)
+; OPT-5.46 OPT-B.59
+COORD ABSOL
+PATH LIN
+OL[11] = ON
+WORK 0,0/ON
+DELAY 1
+SPEED 30
+TIMER (5.,10)
+MOVE (10.,2.,3.,0.,0.)
+WORK 0,0/OFF
+ENDTASK
+10 WORK 0,0/OFF
+RETURN
+
+;=== the beam that it leaves on (advice)
+; OPT-5.46 OPT-B.59
+COORD ABSOL
+PATH LIN
+OL[11] = ON
+WORK 0,0/ON
+DELAY 1
+SPEED 30
+TIMER (5.,10)
+MOVE (10.,2.,3.,0.,0.)               ; expect 7033
+WORK 0,0/OFF
+ENDTASK
+10 OL[16] = ON
+RETURN
+
+;=== the sensor that it switches on, and leaves off (advice)
+; OPT-5.47 OPT-B.59
+TIMER (5.,10)
+WORK 0,0/ON
+WORK 0,0/OFF
+TIMER (5.,20)
+OL[11] = OFF
+WORK 0,0/ON
+WORK 0,0/OFF
+ENDTASK
+10 OL[11] = ON
+RETURN
+20 OL[16] = ON
+RETURN
+
+;=== the sensor that it leaves off (advice)
+; OPT-5.47 OPT-B.59
+TIMER (5.,20)
+WORK 0,0/ON              ; expect 7033
+WORK 0,0/OFF
+ENDTASK
+20 OL[16] = ON
+RETURN
+
+;=== the offset that it turns (advice)
+; OPT-5.48 OPT-B.59
+COORD ABSOL
+PATH HOLE (5.)
+MOVE (20.,2.,3.,0.,0.)/VIA (29.,2.,9.,0.,0.)     ; expect 7033
+TIMER (5.,10)
+MOVE (20.,2.,3.,0.,0.)/VIA (29.,2.,9.,0.,0.)
+ENDTASK
+10 SYSDEF (0.,0.,0.,0.,1.,0.)
+RETURN
+
+;=== the offset that it leaves (advice)
+; OPT-5.48 OPT-B.59
+COORD ABSOL
+PATH HOLE (5.)
+TIMER (5.,10)
+MOVE (20.,2.,3.,0.,0.)/VIA (29.,2.,9.,0.,0.)     ; expect 7033
+ENDTASK
+10 OL[16] = ON
+RETURN
+
+;=== a WORKDEF of its own (advice)
+; OPT-3.09 OPT-B.59 OPT-E.7401
+; rmlcell: allow 7033 in file
+TIMER (5.,10)
+WORK 1,3/ON
+WORK 1,3/OFF
+ENDTASK
+10 WORKDEF 1,3 (8., 75., 1., 50.)
+RETURN
+
+;=== no WORKDEF of its own (advice)
+; OPT-3.09 OPT-B.59 OPT-E.7401
+TIMER (5.,10)
+OL[11] = ON
+WORK 1,4/ON              ; expect 7401
+WORK 1,4/OFF
+ENDTASK
+10 OL[16] = ON
+RETURN
+
+;=== a tool of its own: where the tip is, is not known (advice)
+; OPT-B.22 OPT-B.59 OPT-E.7307
+COORD ABSOL
+PATH LIN
+SPEED 70
+MOVE (1.,2.,3.,0.,0.)
+SPEED 0
+TIMER (5.,10)
+MOVE (9.,2.,3.,0.,0.)
+ENDTASK
+10 TCP (0,0,6/0,0,1)
+RETURN
+
+;=== no tool of its own (advice)
+; OPT-B.22 OPT-B.59 OPT-E.7307
+COORD ABSOL
+PATH LIN
+SPEED 70
+MOVE (1.,2.,3.,0.,0.)
+SPEED 0
+TIMER (5.,10)
+MOVE (9.,2.,3.,0.,0.)    ; expect 7307
+ENDTASK
+10 OL[16] = ON
+RETURN

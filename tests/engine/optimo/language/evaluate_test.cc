@@ -118,6 +118,110 @@ TEST(Evaluate, FunctionsTakeRadians) {
   EXPECT_EQ(Number("EXP(1)"), 2.71828183F);
 }
 
+// OPT-W.73, OPT-7.57: PI is 3.14159, whatever name it has; it is REAL, and a constant.
+TEST(Evaluate, PiHasSixDigits) {
+  EXPECT_EQ(Number("PI"), 3.14159F);
+  EXPECT_EQ(Number("-PI"), -3.14159F);
+  // Not the pi of the mathematicians: it differs from 3.14159 in 24 bits by 2.53518 millionths.
+  EXPECT_NEAR(Number("SIN(PI)*1000000."), 2.53518F, 1e-5F);
+  EXPECT_EQ(*ConvertTo(ValueType::kInteger, *ValueOf("PI")), 3.0F);
+  const Compilation compiled = MustCompile("DECLARE P = PI\nVR[0] = P\n");
+  const ExprNode& node = compiled.module.Value(compiled.module.instructions[1], 1)[0];
+  EXPECT_EQ(node.number, 3.14159F);
+  EXPECT_EQ(node.type, ValueType::kReal);
+  EXPECT_EQ(Decompile(compiled.module), "     DECLARE P = PI\n     LET VR[0] = P\n");
+  EXPECT_EQ(FindingsOf("DECLARE P = PI\nP = 3.\n"), std::vector<int>{7015});
+  EXPECT_EQ(FindingsOf("DECLARE PI = 3.\n"), std::vector<int>{7009});
+  EXPECT_EQ(FindingsOf("VL[0] = PI\n"), std::vector<int>{7018});
+  EXPECT_EQ(FindingsOf("DECLARE P = PI\nVR[P] = 1.\n"), std::vector<int>{7017});
+}
+
+// OPT-7.82, OPT-7.83, OPT-E.7204: each function by a value that no other has, and both ends of what
+// it takes.
+TEST(Evaluate, EachFunctionHasItsValuesAndEnds) {
+  struct Row {
+    const char* text;
+    float value;
+  };
+  for (const Row& row :
+       {Row{"SIN(1)", 0.841470985F}, Row{"COS(1)", 0.540302306F}, Row{"TAN(1)", 1.55740772F},
+        Row{"ASIN(1)", 1.57079633F}, Row{"ASIN(-1)", -1.57079633F}, Row{"ACOS(-1)", 3.14159265F},
+        Row{"ACOS(1)", 0.0F}, Row{"ATAN(-2)", -1.10714872F}, Row{"SQRT(2)", 1.41421356F},
+        Row{"EXP(-32)", 1.26641655e-14F}, Row{"EXP(32)", 7.8962960e13F}, Row{"LN(10)", 2.30258509F},
+        Row{"LOG(2)", 0.301029996F}, Row{"ABS(2.5)", 2.5F}, Row{"ABS(-2.5)", 2.5F},
+        Row{"INT(2.7)", 2.0F}, Row{"INT(-2.7)", -2.0F}}) {
+    EXPECT_EQ(Number(row.text), row.value) << row.text;
+  }
+  for (const char* text :
+       {"ASIN(1.0001)", "ASIN(-1.0001)", "ACOS(1.0001)", "ACOS(-1.0001)", "SQRT(-.0001)",
+        "EXP(32.0001)", "EXP(-32.0001)", "LN(-1)", "LOG(-1)", "(-8)^.5"}) {
+    EXPECT_EQ(ErrorOf(text), 7204) << text;
+  }
+}
+
+// OPT-7.80, OPT-7.81, OPT-7.85, OPT-7.86
+TEST(Evaluate, EachOperatorHasItsValue) {
+  EXPECT_EQ(Number("7 - 2"), 5.0F);
+  EXPECT_EQ(Number("7 * -2"), -14.0F);
+  EXPECT_EQ(Number("7 MOD -3"), 1.0F);
+  EXPECT_EQ(Number("-7 MOD -3"), -1.0F);
+  EXPECT_EQ(Number("(-2)^-1"), -0.5F);
+  EXPECT_EQ(Number("0^2"), 0.0F);
+  EXPECT_EQ(Number("-(0)"), 0.0F);
+  EXPECT_EQ(ErrorOf("0^-.5"), 7201);
+  struct Row {
+    const char* op;
+    bool less, equal, greater;
+  };
+  for (const Row& row :
+       {Row{"<", true, false, false}, Row{"<=", true, true, false}, Row{"=", false, true, false},
+        Row{">=", false, true, true}, Row{">", false, false, true}, Row{"<>", true, false, true},
+        Row{"><", true, false, true}}) {
+    const std::string op = row.op;
+    EXPECT_EQ(Truth("1 " + op + " 2"), row.less) << op;
+    EXPECT_EQ(Truth("2 " + op + " 2"), row.equal) << op;
+    EXPECT_EQ(Truth("3 " + op + " 2"), row.greater) << op;
+  }
+  struct Logical {
+    const char* op;
+    bool both, first, second, none;
+  };
+  for (const Logical& row :
+       {Logical{" AND ", true, false, false, false}, Logical{" OR ", true, true, true, false},
+        Logical{" XOR ", false, true, true, false}}) {
+    const std::string op = row.op;
+    EXPECT_EQ(Truth("ON" + op + "ON"), row.both) << op;
+    EXPECT_EQ(Truth("ON" + op + "OFF"), row.first) << op;
+    EXPECT_EQ(Truth("OFF" + op + "ON"), row.second) << op;
+    EXPECT_EQ(Truth("OFF" + op + "OFF"), row.none) << op;
+  }
+}
+
+// OPT-B.37, OPT-7.62, OPT-E.7202: 2^63 = 9.223372E18 and 2^-64 = 5.421011E-20 are the ends.
+TEST(Evaluate, RealEndsAtTwoToTheSixtyThird) {
+  EXPECT_EQ(Number("2^63"), 9223372036854775808.0F);
+  EXPECT_EQ(Number("-(2^63)"), -9223372036854775808.0F);
+  EXPECT_EQ(ErrorOf("2^63*1.000001"), 7202);
+  EXPECT_EQ(ErrorOf("-(2^63)*1.000001"), 7202);
+  EXPECT_EQ(Number("2^-64"), 5.42101086e-20F);
+  EXPECT_EQ(Number("2^-64*.999999"), 0.0F);
+  EXPECT_EQ(Number("-(2^-64)*.999999"), 0.0F);
+}
+
+// OPT-7.77, OPT-7.78, OPT-E.7203
+TEST(Evaluate, IntegersEndAtSixteenBits) {
+  const auto integer = [](float value) {
+    return ConvertTo(ValueType::kInteger, {ValueType::kReal, value});
+  };
+  EXPECT_EQ(*integer(32767.9F), 32767.0F);
+  EXPECT_FALSE(integer(32768.0F));
+  EXPECT_EQ(*integer(-32768.9F), -32768.0F);
+  ASSERT_FALSE(integer(-32769.0F));
+  EXPECT_EQ(integer(-32769.0F).error().code, ErrorCode::kIntegerOverflow);
+  EXPECT_EQ(*ConvertTo(ValueType::kLogical, {ValueType::kReal, 0.0F}), 0.0F);
+  EXPECT_EQ(*ConvertTo(ValueType::kReal, {ValueType::kReal, 2.7F}), 2.7F);
+}
+
 // OPT-B.37, OPT-7.62, OPT-E.7202
 TEST(Evaluate, RealHasTwentyFourBits) {
   EXPECT_EQ(Number("16777216.+1."), 16777216.0F);

@@ -111,6 +111,50 @@ TEST_F(Linker, SizesFollowTheModel) {
   EXPECT_EQ(size("FUNCTION 44\n"), 20U + 4U + 3U + 8U + 4U);
 }
 
+// OPT-B.72: 4 a step, 5 a REAL literal, 3 an INTEGER one and a target, 2 a variable, 1 an operator,
+// function, attribute, ON or OFF.
+TEST_F(Linker, EachInstructionHasItsSize) {
+  struct Row {
+    const char* text;
+    std::uint32_t size;
+  };
+  for (const Row& row : {
+           Row{"SPEED 5\n", 4 + 3},
+           Row{"SPEED 5.\n", 4 + 5},
+           Row{"SPEED 40000.+VR[1]\n", 4 + 5 + 2 + 1},
+           Row{"VR[1] = -SIN(PI)\n", 4 + 2 + 5 + 1 + 1},
+           Row{"OL[11] = ON\n", 4 + 2 + 1},
+           Row{"VL[1] = NOT VL[2] AND IL[3] = OFF\n", 4 + 2 + 1 + 2 + 1 + 2 + 1 + 1},
+           Row{"COORD ABSOL\n", 4},
+           Row{"PATH HOLE (5.)\n", 4 + 5},
+           Row{"WORKDEF 1,2 (8.,75.,1.,50.)\n", 4 + 3 + 3 + 20},
+           Row{"WORKDEF 0,0\n", 4 + 3 + 3},
+           Row{"WORK 1,2/ON\n", 4 + 3 + 3 + 1},
+           Row{"WORK 1,2/ON/START (IL[20])/NEXT\n", 4 + 3 + 3 + 3 + 2},
+           Row{"TASK 1\n", 4 + 3},
+           Row{"DEFINE PAR[0] = INT\n", 4 + 3},
+           Row{"ASSIGN OL[32] = 5 /8\n", 4 + 2 + 3 + 3},
+           Row{"BREAK 7\n", 4 + 3},
+           Row{"BREAK 7, 45\n", 4 + 3 + 3},
+           Row{"SIMUL 7, 45\n", 4 + 3 + 3},
+           Row{"UPDATE IL, OL /ON\n", 4 + 1},
+           Row{"IMAGE\n", 4},
+           Row{"10 GOTO VI[2] (10,10,10)\n", 4 + 2 + 9},
+           Row{"10 IF VL[1] THEN 10 ELSE 10\n", 4 + 2 + 6},
+           Row{"10 TIMER (5.,10) /AUTO\n", 4 + 5 + 3 + 1},
+           Row{"TIMER /DIS\n", 4 + 1},
+           Row{"10 MOVE (1.,2.,3.,0.,0.)/TIME (2.,10)\n", 4 + 25 + 5 + 3 + 1},
+           Row{"MOVE (1.,2.,3.,0.,0.)/VIA (1.,2.,3.,0.,0)\n", 4 + 25 + 23 + 1},
+           Row{"GO 46 /C\n", 4 + 3 + 1},
+           Row{"CALL 46 (VR[1],5.)\n", 4 + 3 + 2 + 5},
+           Row{"DECLARE X = 5.\nVR[1] = X\n", 4 + 2 + 5},
+           Row{"DECLARE X = VR[2]\nVR[1] = X\n", 4 + 2 + 2},
+       }) {
+    Store(32, row.text);
+    EXPECT_EQ(ExecutableSize(*Link(32, Lookup(), {})), 20U + row.size) << row.text;
+  }
+}
+
 // OPT-9.10, OPT-E.7106: smaller than the limit.
 TEST_F(Linker, TheExecutableStaysBelowTheLimit) {
   Store(32, "MOVE (1.,2.,3.,0.,0.)/FLY\n");

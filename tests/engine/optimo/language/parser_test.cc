@@ -65,5 +65,24 @@ TEST(Parser, WrongStatementsCountAsSteps) {
   EXPECT_EQ(compiled.diagnostics[2].step, 2);
 }
 
+// OPT-7.45, OPT-1.32: names have letters and digits; what is wrong is the other character.
+TEST(Parser, ABadCharacterInANameIsWhatIsReported) {
+  struct Row {
+    std::string_view text;
+    int column;
+  };
+  for (const Row& row : {Row{"X_1 = 5.\n", 2}, Row{"10 LENGTH_X = 5.\n", 10},
+                         Row{"LET X_1 = 5.\n", 6}, Row{"DECLARE X_1 = VR[1]\n", 10},
+                         Row{"VR_1 = 5.\n", 3}, Row{"VR[0] = X_1\n", 10}, Row{"SPED# 5\n", 5}}) {
+    const Compilation compiled = Compile(row.text, "", {.advice = false});
+    ASSERT_EQ(compiled.diagnostics.size(), 1U) << row.text;
+    const Diagnostic& found = compiled.diagnostics[0];
+    EXPECT_EQ(found.code, ErrorCode::kBadCharacter) << row.text;
+    EXPECT_EQ(found.where.line, 1) << row.text;
+    EXPECT_EQ(found.where.column, row.column) << row.text;
+    EXPECT_EQ(found.where.length, 1) << row.text;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/optimo/language/formatter.h"
 #include "tests/engine/optimo/language/compile_text.h"
 
 namespace rmlcell::optimo {
@@ -69,7 +70,6 @@ TEST(Printer, ParenthesesOnlyWhereNeeded) {
   EXPECT_EQ(expression("-(VR[1]^2)"), "-(VR[1] ^ 2)");
   EXPECT_EQ(expression("-VR[1]^2"), "-VR[1] ^ 2");
   EXPECT_EQ(expression("-(-VR[1])"), "-(-VR[1])");
-  EXPECT_EQ(expression("-(5)"), "-(5)");
   EXPECT_EQ(expression("- 5"), "-5");
   EXPECT_EQ(expression("3--5"), "3 - -5");
   EXPECT_EQ(expression("SQRT((VR[1]+2.))"), "SQRT(VR[1] + 2.0)");
@@ -77,6 +77,50 @@ TEST(Printer, ParenthesesOnlyWhereNeeded) {
   EXPECT_EQ(expression("VL[1] OR (VL[2] AND VL[3])", "VL[0]"), "VL[1] OR VL[2] AND VL[3]");
   EXPECT_EQ(expression("NOT (VL[1] AND VL[2])", "VL[0]"), "NOT (VL[1] AND VL[2])");
   EXPECT_EQ(expression("(1 < 2) = (2 >< 3)", "VL[0]"), "(1 < 2) = (2 <> 3)");
+}
+
+// OPT-B.40: a sign before a literal is part of the literal, whatever parentheses stand between.
+// OPT-1.06: and the canonical text compiles to the same object.
+TEST(Printer, ASignIsPartOfItsLiteral) {
+  const std::vector<std::pair<std::string, std::string>> rows = {
+      {"2. * -(4.)", "2.0 * -4.0"},
+      {"-(5)", "-5"},
+      {"-((5))", "-5"},
+      {"-(-5)", "5"},
+      {"-(+5)", "-5"},
+      {"--(5)", "5"},
+      {"3 - (5)", "3 - 5"},
+      {"3 - -(5)", "3 - -5"},
+      {"-(0)", "0"},
+      {"-(0.)", "0.0"},
+      {"-(32768)", "-32768.0"},   // 32768 is REAL by itself
+      {"-(-32768)", "32768.0"},   // and no INTEGER
+      {"-(-32767)", "32767"},
+      {"-(2)^2", "-2 ^ 2"},
+      {"-(2^2)", "-(2 ^ 2)"},
+      {"-(2 + 3)", "-(2 + 3)"},
+      {"SQRT(-(-4.))", "SQRT(4.0)"},
+      {"-(PI)", "-PI"},
+      {"-(VR[1])", "-VR[1]"},
+      {"-(-(4.) + VR[1])", "-(-4.0 + VR[1])"},
+  };
+  for (const auto& [text, canonical] : rows) {
+    const Compilation compiled = MustCompile("VR[0] = " + text + "\n");
+    const std::string source = Decompile(compiled.module);
+    EXPECT_EQ(source, "     LET VR[0] = " + canonical + "\n") << text;
+    EXPECT_EQ(Format("VR[0] = " + text + "\n").text, source) << text;
+    EXPECT_EQ(MustCompile(source).object, compiled.object) << text;
+  }
+}
+
+// OPT-B.40, OPT-2.35: so it is refused like one without parentheses, at its place; the name of a
+// constant is none.
+TEST(Printer, ALiteralInParenthesesIsCheckedLikeOneWithout) {
+  const Compilation compiled = Compile("SPEED  -( 5 ) ; no\n", "", {.advice = false});
+  ASSERT_EQ(compiled.diagnostics.size(), 1U);
+  EXPECT_EQ(compiled.diagnostics[0].code, ErrorCode::kLiteralRange);
+  EXPECT_EQ(Canonical("DECLARE FIVE = 5\nVR[0] = -(FIVE)"),
+            "     DECLARE FIVE = 5\n     LET VR[0] = -FIVE");
 }
 
 // OPT-B.85

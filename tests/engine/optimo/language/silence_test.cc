@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
 #include <string>
 
 #include "engine/optimo/language/fixes.h"
@@ -72,6 +73,72 @@ TEST(Silence, WhatSilencesNothingIsTold) {
             (Texts{"allow 7317 silences nothing here"}));
   // An axis that holds back is found when the program runs.
   EXPECT_EQ(Details("SPEED 5 ; rmlcell: allow 7321\n"), Texts{});
+}
+
+// What only a run can find is no idle allowance: all others are told.
+TEST(Silence, WhatRunsFindIsNotIdle) {
+  const std::set<int> of_runs = {7110, 7304, 7306, 7316, 7320, 7321, 7408, 7409, 7411};
+  const std::set<int> of_contours = {7317, 7318, 7319};
+  int told = 0;
+  for (int number = 1; number < 8000; ++number) {
+    const auto code = FindError(ErrorFamily::kOptimo, number);
+    if (!code || IsError(Lookup(*code).severity)) continue;
+    const std::string text = "SPEED 5 ; rmlcell: allow " + std::to_string(number) + "\n";
+    const bool silent = of_runs.contains(number) || of_contours.contains(number);
+    const std::string idle = "allow " + std::to_string(number) + " silences nothing here";
+    EXPECT_EQ(Details(text), silent ? Texts{} : Texts{idle}) << number;
+    const bool of_run = of_runs.contains(number);
+    EXPECT_EQ(Details(text, {.further_advice = [](const ParsedProgram&, Findings&) {}}),
+              of_run ? Texts{} : Texts{idle})
+        << number;
+    told += silent ? 0 : 1;
+  }
+  EXPECT_GT(told, 10);
+}
+
+// OPT-1.18: only what is written as one is taken for an allowance, with numbers up to its first
+// word.
+TEST(Silence, NumbersEndAtTheFirstWord) {
+  const auto silenced = [](const std::string& comment) {
+    return Details("OL[20] = ON" + comment + "\n").empty();
+  };
+  EXPECT_TRUE(silenced(";rmlcell:allow 7412"));
+  EXPECT_TRUE(silenced(" ;;  RmlCell:  ALLOW\t7412, it is ours since 1993"));
+  EXPECT_TRUE(silenced(" ; rmlcell: allow ,7412"));
+  for (const char* comment :
+       {"; rmlcell allow 7412", "; see rmlcell: allow 7412", "; rmlcell: allow our 7412",
+        "; rmlcell: allow 74120", "; rmlcell: allow 741", "; rmlcell: allowed 7412"}) {
+    EXPECT_FALSE(silenced(comment)) << comment;
+  }
+  EXPECT_EQ(Details("SPEED 5 ; rmlcell:\n"),
+            (Texts{"no word stands behind rmlcell:; write rmlcell: allow and the numbers of "
+                   "findings"}));
+  EXPECT_EQ(Details("SPEED 5 ; rmlcell: abcdefghijklmnopqrstuvwxyz\n"),
+            (Texts{"'abcdefghijklmnopqrst' is no word for rmlcell:; write rmlcell: allow and the "
+                   "numbers of findings"}));
+}
+
+// Complaints are bounded, have their places and stand among the findings in the order of the text.
+TEST(Silence, ComplaintsStandAtTheirComments) {
+  std::string text;
+  for (int n = 0; n < 101; ++n) text += "  STOP ; rmlcell: allow\n";
+  const std::vector<Diagnostic> found = Compile(text, "", {}).diagnostics;
+  ASSERT_EQ(found.size(), 100U);
+  for (int n = 0; n < 100; ++n) {
+    EXPECT_EQ(found[static_cast<std::size_t>(n)].where, (SourceSpan{n + 1, 8, 16, 7 + n * 24}));
+  }
+  EXPECT_EQ(Details("; rmlcell: allow\nOL[20] = ON\nSTOP ; rmlcell: allow\n"),
+            (Texts{"allow needs the numbers of findings", "OL[20] is used by the system",
+                   "allow needs the numbers of findings"}));
+}
+
+// Behind the last statement there is nothing that it could silence, and it is none for the file.
+TEST(Silence, AnAllowanceAtTheEndSilencesNothing) {
+  EXPECT_EQ(Details("OL[20] = ON\n; rmlcell: allow 7412\n"),
+            (Texts{"OL[20] is used by the system"}));
+  const std::vector<Diagnostic> found = Compile("\n; rmlcell: allow\n", "", {}).diagnostics;
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].where, (SourceSpan{2, 1, 16, 1}));
 }
 
 // What is allowed comes along with the object, for the run.

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <random>
 #include <string>
+#include <vector>
 
 #include "tests/engine/optimo/language/compile_text.h"
 
@@ -55,6 +58,89 @@ TEST(SubroutineEffects, GoThroughOtherSubroutines) {
   EXPECT_EQ(state.speed.known(), 5.0F);
   EXPECT_TRUE(state.gas_3.Is(Output::kOn));
   EXPECT_FALSE(program.Behind(20).speed.known());  // 70, or 5 by way of 10
+}
+
+// The findings of a program, each with the statement that it is about. What is told of a variable
+// once is told at the first of several statements in the text: only that it is told. How far moves
+// go is left out: it is known better or worse from one to the next.
+std::vector<std::string> ToldOf(const std::string& text) {
+  std::vector<std::string> told;
+  for (const Diagnostic& d : Compile(text, "", {}).diagnostics) {
+    if (d.code == ErrorCode::kNoMotion || d.code == ErrorCode::kShortFly) continue;
+    const std::size_t begin = text.rfind('\n', static_cast<std::size_t>(d.where.byte_offset)) + 1;
+    const std::string line = text.substr(begin, text.find('\n', begin) - begin);
+    told.push_back(CodeText(d.code) + " " + (d.rule == "OPT-1.17" ? "" : line) + " " + d.rule);
+  }
+  std::ranges::sort(told);
+  return told;
+}
+
+// OPT-7.20, OPT-3.36: whether the statements stand in a subroutine or in its place, the same is
+// told.
+TEST(SubroutineEffects, AreThoseOfTheStatementsInTheirPlace) {
+  const std::vector<std::string> statements = {"COORD ABSOL",
+                                               "COORD ROBOT",
+                                               "PATH LIN",
+                                               "PATH PTP",
+                                               "PATH CIR",
+                                               "SPEED 5",
+                                               "SPEED 12",
+                                               "SPEED 30",
+                                               "SPEED 90",
+                                               "SPEED 0",
+                                               "SPEED VR[26]",
+                                               "DELAY 1",
+                                               "DELAY 0",
+                                               "WAIT IL[20]",
+                                               "OL[8]=ON",
+                                               "OL[8]=OFF",
+                                               "OL[9]=ON",
+                                               "OL[9]=OFF",
+                                               "OL[11]=ON",
+                                               "OL[11]=OFF",
+                                               "ASSIGN OL[8]=2 /2",
+                                               "WORK 0,0/ON",
+                                               "WORK 0,0/OFF",
+                                               "WORK 1,1/ON",
+                                               "WORK 1,1/OFF",
+                                               "WORK 2,5/ON",
+                                               "WORK 2,5/OFF",
+                                               "WORKDEF 1,1 (8.,75.,1.,50.)",
+                                               "WORKDEF 2,5 (15)",
+                                               "CALL 2",
+                                               "FUNCTION 44",
+                                               "MOVE (10.,2.,3.,0.,0.)",
+                                               "MOVE (10.5,2.,3.,0.,0.)/FLY",
+                                               "MOVE (90.,2.,3.,0.,0.)/FLY",
+                                               "MOVE (20.,2.,3.,0.,0.)/VIA (29.,2.,9.,0.,0.)",
+                                               "PATH HOLE (5.)",
+                                               "SYSDEF",
+                                               "SYSDEF (1.,0.,0.,0.,0.,1.)",
+                                               "TCP (0,0,6/0,0,1)",
+                                               "ZERO",
+                                               "VR[1]=5.",
+                                               "VR[2]=VR[1]",
+                                               "VI[2]=VI[3]",
+                                               "TIMER /DIS"};
+  std::mt19937 random(7);
+  const auto lines = [&](std::uint32_t most) {
+    std::string text;
+    for (std::uint32_t n = 1 + static_cast<std::uint32_t>(random()) % most; n > 0; --n)
+      text += statements[random() % statements.size()] + "\n";
+    return text;
+  };
+  std::size_t told = 0;
+  for (int round = 0; round < 1500; ++round) {
+    const std::string before = "COORD ABSOL\nPATH LIN\n" + lines(4), body = lines(3),
+                      behind = lines(4);
+    const std::vector<std::string> in_place =
+        ToldOf(before + "OL[16]=ON\n" + body + "OL[16]=ON\n" + behind + "ENDTASK\n");
+    const std::vector<std::string> called =
+        ToldOf(before + "GOSUB 100\n" + behind + "ENDTASK\n100 OL[16]=ON\n" + body + "RETURN\n");
+    ASSERT_EQ(called, in_place) << before << "-- body\n" << body << "-- behind\n" << behind;
+    told += in_place.size();
+  }
+  EXPECT_GT(told, 2000U);  // more than one a round
 }
 
 // OPT-7.20

@@ -43,6 +43,12 @@ TEST(Compensate, ALineMovesSideways) {
             "MOVE (10.00000,-0.25400,0.00000,0.00000,0.00000)\n");
 }
 
+// OPT-8.15, OPT-B.40: a number in parentheses has the sign before them, and keeps them.
+TEST(Compensate, NumbersInParenthesesHaveTheirSign) {
+  EXPECT_EQ(Contour(";$rad=0.254\n;$left\n", "MOVE (-(10.),-(0.),0.,0.,0.)\n"),
+            "MOVE (-(10.00000),-(0.25400),0.00000,0.00000,0.00000)\n");
+}
+
 // OPT-8.16: the intersection of the two offset lines.
 TEST(Compensate, CornersAreTheMeetingOfTheOffsetLines) {
   const std::string moves = "MOVE (10,0,0,0,0)\nMOVE (10,10,0,0,0)\n";

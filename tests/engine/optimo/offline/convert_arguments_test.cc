@@ -59,6 +59,25 @@ TEST(ConvertArguments, SwitchesAndDirectionsThatAreNone) {
   EXPECT_EQ(Read({"optimo.old"}), "7704");
 }
 
+// OPT-8.54, OPT-8.56, OPT-8.57, OPT-8.58, OPT-8.67: names, folders and extensions of both letters.
+TEST(ConvertArguments, NamesKeepTheirFolderAndTheirLetters) {
+  EXPECT_EQ(Read({"A.S"}), "A.S A.SI inch");
+  EXPECT_EQ(Read({"a.Si"}), "a.Si a.s metric");
+  EXPECT_EQ(Read({"x.y/a.s"}), "x.y/a.s x.y/a.si inch");
+  EXPECT_EQ(Read({"x\\a.S", "b"}), "x\\a.S b.SI inch");
+  EXPECT_EQ(Read({"a", "/i"}), "a a.si inch");
+  EXPECT_EQ(Read({"x.y/a", "/m"}), "x.y/a x.y/a.s metric");
+  EXPECT_EQ(Read({"/m", "a.si", "x.y/b"}), "a.si x.y/b.s metric");
+  EXPECT_EQ(Read({"a.si", "b.new"}), "a.si b.new metric");
+  EXPECT_EQ(Read({"a.s", "b.new"}), "a.s b.new inch");
+  EXPECT_EQ(Read({"a.", "/I"}), "a. a.si inch");
+  EXPECT_EQ(Read({"a.si", "b.si"}), "7701");
+  EXPECT_EQ(Read({"a.old", "b.si", "/m"}), "7701");
+  EXPECT_EQ(Read({"a.s", "/i", "/i"}), "a.s a.si inch");
+  EXPECT_EQ(Read({"a.s", "/"}), "7702");
+  EXPECT_EQ(Read({"a.s", "/mm"}), "7702");
+}
+
 // OPT-8.62, OPT-8.64, OPT-E.7705, OPT-E.7707
 TEST(ConvertArguments, TooFewAndTooManyNames) {
   EXPECT_EQ(Read({"/i"}), "7705");

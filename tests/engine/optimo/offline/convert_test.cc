@@ -42,6 +42,15 @@ TEST(Convert, NumbersHaveUpToSixDecimals) {
   EXPECT_EQ(Metric("VR[0] = 40.739"), "VR[0] = 1034.7706");
 }
 
+// OPT-B.40, OPT-8.28: of a number in parentheses the digits change, and nothing around them.
+TEST(Convert, NumbersInParenthesesKeepThem) {
+  EXPECT_EQ(Metric("VR[0] = -(2.)"), "VR[0] = -(50.8)");
+  EXPECT_EQ(Metric("VR[0] = - ( -( .5 ) ) ; 7 (8)"), "VR[0] = - ( -( 12.7 ) ) ; 7 (8)");
+  EXPECT_EQ(Metric("VR[0] = -(\n; 5. inches (five)\n5 E 0\n)"),
+            "VR[0] = -(\n; 5. inches (five)\n127.0\n)");
+  EXPECT_EQ(Metric("MOVE (-(1),2,(3),0,-(90))"), "MOVE (-(25.4),50.8,(76.2),0.0,-(1.570796))");
+}
+
 // OPT-8.29
 TEST(Convert, RepeatedConversionMayMoveANumber) {
   EXPECT_EQ(Inch("VR[0] = 420.5"), "VR[0] = 16.555118");

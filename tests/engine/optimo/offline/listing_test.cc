@@ -25,5 +25,17 @@ TEST(Listing, LoneNumbersAreNoSteps) {
             "    1     0  15\n    2     1  16   SPEED 5\n    3     0  17\n");
 }
 
+// OPT-8.73: columns of five, that wider numbers push on.
+TEST(Listing, ColumnsHaveFivePlaces) {
+  std::string text;
+  for (int n = 0; n < 100'001; ++n) text += "STOP\n";
+  const Compilation compiled = Compile(text, "", {.object_limit = 0, .advice = false});
+  const std::string list = List(compiled.module);
+  EXPECT_TRUE(list.starts_with("    1     1       STOP\n"));
+  EXPECT_NE(list.find("\n 9999  9999       STOP\n"), std::string::npos);
+  EXPECT_NE(list.find("\n99999 99999       STOP\n"), std::string::npos);
+  EXPECT_TRUE(list.ends_with("\n100001 100001       STOP\n"));
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/engine/optimo/language/compile_text.h"
 
@@ -94,6 +95,64 @@ TEST_F(Project, DefinitionsAreChecked) {
   EXPECT_EQ(errors(2, 0, {0}), (std::vector<int>{7403}));
   EXPECT_EQ(errors(1, 0, {0, 80, 1.5, 95}), (std::vector<int>{7004}));
   EXPECT_EQ(errors(1, 0, {8, 101, -1, 95}), (std::vector<int>{7004, 7004}));
+}
+
+// OPT-3.01, OPT-3.02, OPT-3.06, OPT-3.07, OPT-3.08: both sides of each limit.
+TEST_F(Project, DefinitionsEndWhereThoseOfTheLanguageDo) {
+  struct Row {
+    int kind, process;
+    std::vector<double> values;
+    std::vector<int> errors;
+  };
+  for (const Row& row : std::vector<Row>{
+           {0, 9, {}, {}},
+           {-1, 0, {}, {7402}},
+           {0, -1, {}, {7402}},
+           {2, 10, {5}, {7402}},
+           {0, 0, {1}, {7019}},
+           {1, 0, {8, 75, 1}, {7019}},
+           {1, 0, {8, 75, 1, 50, 5, 6}, {7019}},
+           {2, 0, {}, {7019}},
+           {2, 0, {5, 6}, {7019}},
+           {1, 0, {0.01, 0, 0, 0}, {}},
+           {1, 0, {100, 100, 1e6, 100}, {}},
+           {1, 0, {0, 75, 1, 50}, {7004}},
+           {1, 0, {-0.01, 75, 1, 50}, {7004}},
+           {1, 0, {100.01, 75, 1, 50}, {7004}},
+           {1, 0, {8, -0.01, 1, 50}, {7004}},
+           {1, 0, {8, 100.01, 1, 50}, {7004}},
+           {1, 0, {8, 75, -0.01, 50}, {7004}},
+           {1, 0, {8, 75, HUGE_VAL, 50}, {7004}},
+           {1, 0, {8, 75, 1, -0.01}, {7004}},
+           {1, 0, {8, 75, 1, 100.01}, {7004}},
+           {1, 0, {8, 75, 1, 50, 1}, {}},
+           {1, 0, {8, 75, 1, 50, 0}, {7403}},
+           {1, 0, {8, 75, 1, 50, 64}, {7403}},
+           {2, 0, {1}, {}},
+           {2, 0, {63.99}, {}},
+           {2, 0, {0.99}, {7403}},
+           {2, 0, {64}, {7403}},
+           {1, 0, {101, 101, -1, 101, 64}, {7004, 7004, 7004, 7004, 7403}},
+       }) {
+    std::vector<int> found;
+    for (const Diagnostic& d : CheckProcess({row.kind, row.process, row.values, ""})) {
+      found.push_back(Lookup(d.code).number);
+      const std::string whose = "process definition " + std::to_string(row.kind) + "," +
+                                std::to_string(row.process) + ": ";
+      EXPECT_TRUE(d.detail.starts_with(whose)) << d.detail;
+      EXPECT_TRUE(IsError(d.severity));
+    }
+    EXPECT_EQ(found, row.errors) << row.kind << "," << row.process << " " << row.values.size();
+  }
+}
+
+// OPT-3.01, OPT-B.39: as canonical source has it; schedules are whole numbers.
+TEST_F(Project, DefinitionsAreWrittenAsWorkdefs) {
+  EXPECT_EQ(WorkdefText({0, 3, {}, ""}), "WORKDEF 0,3");
+  EXPECT_EQ(WorkdefText({1, 0, {6.5, 80, 1.5, 95}, ""}), "WORKDEF 1,0 (6.5, 80.0, 1.5, 95.0)");
+  EXPECT_EQ(WorkdefText({1, 9, {6.5, 80, 1.5, 95, 12}, ""}),
+            "WORKDEF 1,9 (6.5, 80.0, 1.5, 95.0, 12)");
+  EXPECT_EQ(WorkdefText({2, 5, {15}, ""}), "WORKDEF 2,5 (15)");
 }
 
 // OPT-3.11; 7863 is a code of our own

@@ -31,6 +31,13 @@ TEST(Transform, TurnsPointsAndHead) {
       "MOVE (101.0,2.0,2.0,0.0,0.0)/VIA (104.0,5.0,5.0,0.0,0.0)\n");
 }
 
+// OPT-8.76, OPT-B.40: a number in parentheses has the sign before them.
+TEST(Transform, NumbersInParenthesesHaveTheirSign) {
+  EXPECT_EQ(
+      Transform("MOVE (-(10),-(-20),-(30),0,0)\n", RigidMotion::Of({1, 2, 40}, 0, 0, 0)).text,
+      "MOVE (-(9.0),-(-22.0),-(-10.0),0.0,0.0)\n");
+}
+
 // OPT-B.80
 TEST(Transform, ChoosesTheNearestHeadAngles) {
   const RigidMotion quarter = RigidMotion::Of({}, kPi / 2, 0, 0);

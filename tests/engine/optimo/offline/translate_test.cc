@@ -49,6 +49,56 @@ TEST(Translate, ObjectsAreCheckedAndTakenAsTheyAre) {
   EXPECT_EQ(damaged.diagnostics.at(0).code, ErrorCode::kObjectCorrupt);
 }
 
+// OPT-1.08, OPT-E.7031: an object that is put as one has the same limit, and none when that is 0.
+TEST(Translate, ObjectsHaveTheLimitOfObjects) {
+  const std::string object = MustCompile("SPEED 5\nSPEED 6\n").object;
+  const auto size = static_cast<std::uint32_t>(object.size());
+  EXPECT_TRUE(TranslateOptimo({"44.O", object}, {}, size).ok);
+  EXPECT_TRUE(TranslateOptimo({"44.O", object}, {}, 0).ok);
+  const machine::Translation refused = TranslateOptimo({"44.O", object}, {}, size - 1);
+  EXPECT_FALSE(refused.ok);
+  EXPECT_TRUE(refused.object.empty());
+  ASSERT_EQ(refused.diagnostics.size(), 1U);
+  EXPECT_EQ(refused.diagnostics[0].code, ErrorCode::kObjectTooLong);
+  EXPECT_EQ(refused.diagnostics[0].file, "44.O");
+  EXPECT_TRUE(TranslateOptimo({"a.S", "SPEED 5\nSPEED 6\n"}, {}, size).ok);
+  EXPECT_FALSE(TranslateOptimo({"a.S", "SPEED 5\nSPEED 6\n"}, {}, size - 1).ok);
+}
+
+// OPT-1.04, OPT-6.01: what is counted of a program, the same of its source and its object, which
+// has none.
+TEST(Translate, CountsWhatAProgramHas) {
+  const std::string text = "DECLARE X = VR[1]\nDECLARE Y = VR[2]\n10\n20 X = Y ; c\nSPEED 5\n30\n";
+  const std::string object = MustCompile(text).object;
+  const auto figures = [](const machine::Translation& translation) {
+    std::vector<std::pair<std::string, double>> counted;
+    for (const auto& figure : translation.figures) counted.emplace_back(figure.name, figure.value);
+    return counted;
+  };
+  std::vector<std::pair<std::string, double>> expected = {
+      {"steps", 2.0},
+      {"source_bytes", static_cast<double>(text.size())},
+      {"object_bytes", static_cast<double>(object.size())},
+      {"sequence_numbers", 3.0},
+      {"names", 2.0}};
+  EXPECT_EQ(figures(TranslateOptimo({"a.S", text}, {})), expected);
+  expected[1].second = 0.0;
+  EXPECT_EQ(figures(TranslateOptimo({"a.O", object}, {})), expected);
+  EXPECT_TRUE(figures(TranslateOptimo({"a.S", "SPEED 101\n"}, {})).empty());
+}
+
+// OPT-8.72: an extension is what stands behind the last point, in any case.
+TEST(Translate, OtherNamesAreToldByTheirBytes) {
+  const std::string object = MustCompile("SPEED 5\n").object;
+  EXPECT_EQ(FormOfFile("a.SO", "SPEED 5\n"), FileForm::kMetricSource);
+  EXPECT_EQ(FormOfFile("a.SO", object), FileForm::kObject);
+  EXPECT_EQ(FormOfFile("S", object), FileForm::kObject);
+  EXPECT_EQ(FormOfFile("o", "LMR"), FileForm::kMetricSource);
+  EXPECT_EQ(FormOfFile("a.o", ""), FileForm::kObject);
+  EXPECT_EQ(FormOfFile("a.S", object), FileForm::kMetricSource);
+  EXPECT_EQ(FormOfFile(".si", ""), FileForm::kInchSource);
+}
+
 TEST(Translate, AnEmptyFileIsNoProgram) {
   const machine::Translation empty = TranslateOptimo({"a.S", ""}, {});
   EXPECT_FALSE(empty.ok);
@@ -63,7 +113,9 @@ TEST(Translate, NumbersUpToSevenAreReserved) {
     EXPECT_EQ(Lookup(found[0].code).number, 7413);
     EXPECT_EQ(found[0].severity, Severity::kWarning);
     EXPECT_EQ(found[0].rule, "OPT-10.17");
+    EXPECT_EQ(found[0].program, slot);
   }
+  EXPECT_TRUE(CheckProgramNumber(0).empty());
   EXPECT_TRUE(CheckProgramNumber(8).empty());
   EXPECT_TRUE(CheckProgramNumber(99).empty());
 }
