@@ -138,7 +138,7 @@ TEST(DispatcherDrain, AsksForEverythingBackAndGivesOutNothingMore) {
   FakeWorker busy(bed.dispatcher(), "busy");
   ASSERT_TRUE(busy.Take());
   FakeWorker idle(bed.dispatcher(), "idle");
-  std::jthread server([&] { bed.dispatcher().Drain(kPatience); });
+  std::jthread server([&] { bed.dispatcher().Drain(std::chrono::hours(1)); });
   EXPECT_TRUE(busy.line().Next(v1::WorkResponse::kStop).has_stop());
   EXPECT_TRUE(idle.line().Next(v1::WorkResponse::kStop).has_stop());
   busy.HandBack();
@@ -178,7 +178,7 @@ TEST(DispatcherDrain, AJobOnItsWayToAWorkerGoesBack) {
   const std::int64_t job = bed.server.SubmitCheck("STOP\n", 1);
   FakeWorker worker(bed.dispatcher(), "w");
   ASSERT_TRUE(Eventually([&] { return found_one.load(); }));
-  std::jthread server([&] { bed.dispatcher().Drain(kPatience); });
+  std::jthread server([&] { bed.dispatcher().Drain(std::chrono::hours(1)); });
   EXPECT_TRUE(worker.line().Next(v1::WorkResponse::kStop).has_stop());
   EXPECT_TRUE(bed.Swept()) << "it waits: leases are looked after until it returns";
   go_on = true;

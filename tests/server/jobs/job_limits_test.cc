@@ -293,6 +293,16 @@ TEST_F(JobLimits, ASubmissionIsKeptAsItWas) {
   EXPECT_EQ(events[0].kind, "state");
 }
 
+// SubmitJobRequest.validate_only: the answer has no name, whatever the client wrote there.
+TEST_F(JobLimits, AskingOnlyNamesNothing) {
+  v1::SubmitJobRequest request = Simulate();
+  request.mutable_job()->set_name("jobs/5");
+  request.set_validate_only(true);
+  const v1::Job job = Must(Submit(request));
+  EXPECT_EQ(job.name(), "");
+  EXPECT_EQ(job.inline_program().file_name(), "part.S");
+}
+
 // A stored program by its name: the bytes at the time of submission.
 TEST_F(JobLimits, AStoredProgramIsAttached) {
   Must(bed.store().PutPrograms("optimo-1", {{.slot = 45, .object = "object 45"}}, {}));
