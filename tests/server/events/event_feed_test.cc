@@ -199,7 +199,9 @@ TEST(EventFeed, BeginsAtTheEndOfTheLog) {
   log.Write(1, 5);
   EventFeed feed(log, {.poll_interval = kNever});
   EXPECT_EQ(feed.position(), 5);
+  ASSERT_TRUE(Eventually([&] { return log.reads() == 1; }));
   EXPECT_TRUE(Must(feed.EventsAfter(5, 10)).empty());
+  EXPECT_EQ(log.reads(), 1);  // whoever is at the end asks the log nothing
   ExpectPositions(Must(feed.EventsAfter(0, 10)), 1, 5);
 }
 
@@ -260,6 +262,7 @@ TEST(EventFeed, GoesOnWhenAFailingStoreWorksAgain) {
 TEST(EventFeed, SkipsEventsThatAreGoneAndTellsWatchersSo) {
   FakeLog log;
   EventFeed feed(log);
+  const auto first = feed.Subscribe(1, [] {});
   log.Write(1, 2);
   ASSERT_TRUE(Eventually([&] { return feed.position() == 2; }));
   std::atomic<int> woken = 0;
@@ -275,6 +278,11 @@ TEST(EventFeed, SkipsEventsThatAreGoneAndTellsWatchersSo) {
   log.Write(7, 1);
   ASSERT_TRUE(Eventually([&] { return feed.position() == 13; }));
   ExpectPositions(Must(feed.EventsAfter(12, 10)), 13, 1);
+  // Nor does memory leave them out in silence: who saw the second event of the first job asks the log.
+  log.Write(1, 1);
+  ASSERT_TRUE(Eventually([&] { return feed.position() == 14; }));
+  EXPECT_FALSE(feed.JobEvents(1, 2, 10));
+  EXPECT_TRUE(feed.JobEvents(1, 13, 10));
 }
 
 // A watcher costs a cursor: what is in memory is bounded, what is older comes from the log.
