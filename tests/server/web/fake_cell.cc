@@ -113,8 +113,8 @@ class Jobs : public v1::JobService::CallbackService {
           if (name == "jobs/1" && sequence > 5) return Step::kEnd;
           response.set_sequence(sequence);
           response.mutable_event()->set_sequence(sequence);
-          response.mutable_event()->set_message(
-              name.ends_with("flood") ? std::string(100'000, 'f') : "event");
+          response.mutable_event()->set_message(name == "jobs/flood" ? std::string(100'000, 'f')
+                                                                     : "event");
           if (name == "jobs/flood") ++counters_.produced;
           return Step::kMessage;
         });

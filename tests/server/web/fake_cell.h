@@ -19,8 +19,8 @@
 //   GetJob "jobs/1" a job; "jobs/meta" the caller's metadata in `title`; "jobs/slow" waits until it
 //   is cancelled; "jobs/big" a megabyte of title; "jobs/huge" six megabytes; others NOT_FOUND with
 //   details. WatchJob "jobs/1" events after `after_sequence` to 5, then the end; "jobs/fail" two
-//   events, then an error with details; "jobs/idle" a snapshot, then nothing; "jobs/flood" and
-//   "jobs/other-flood" long events without an end, those of the first are counted; "jobs/stop" a snapshot, then waits for StopStreams, which ends it with
+//   events, then an error with details; "jobs/idle" a snapshot, then nothing; "jobs/flood" long
+//   events without an end; "jobs/stop" a snapshot, then waits for StopStreams, which ends it with
 //   UNAVAILABLE.
 namespace rmlcell::web::testing {
 

@@ -182,14 +182,14 @@ TEST(SlowReader, SlowsItsProducerOnly) {
   RawClient client(cell.port(), 65536);
   client.Send(Watch("flood"));
   EXPECT_EQ(client.ReadHead().status, 200);
-  // While another reads hundreds of messages of 100 kB, the buffers of a loopback connection hold some
-  // megabytes of them at most.
-  RawClient other(cell.port());
-  other.Send(Watch("other-flood"));
-  for (int i = 0; i < 300; ++i) ASSERT_NE(other.ReadUntil("\r\nid: ").size(), 0U);
+  // While others have hundreds of their calls answered by the same threads it makes no more messages of
+  // 100 kB than the buffers of a loopback connection hold: some megabytes at most.
+  for (int i = 0; i < 300; ++i) {
+    ASSERT_EQ(Exchange(cell.port(), Post(kGetJob, "application/json", R"({"name":"jobs/1"})")).status,
+              200);
+  }
   EXPECT_GT(cell.counters().produced, 0);
   EXPECT_LT(cell.counters().produced, 100);
-  EXPECT_EQ(Exchange(cell.port(), Get("/healthz")).status, 200);
   for (int i = 0; i < 200; ++i) ASSERT_NE(client.ReadUntil("\r\nid: ").size(), 0U);
   EXPECT_GE(cell.counters().produced, 200);  // it went on when it was read
 }
