@@ -13,13 +13,11 @@
 namespace rmlcell::server {
 namespace {
 
-template <class T>
-std::optional<ErrorCode> CodeOf(const ProgramResult<T>& result) {
-  return result ? std::nullopt : std::optional(result.error.error.code);
+// What a store of a program was refused with.
+std::optional<ErrorCode> RefusedWith(const ProgramResult<v1::Program>& stored) {
+  return stored ? std::nullopt : std::optional(stored.error.error.code);
 }
-using storage::CodeOf;
 using testing::HasSubstr;
-constexpr auto kInvalid = ErrorCode::kCellInvalidArgument;
 
 class ShelfLimits : public testing::Test {
  protected:
@@ -66,17 +64,17 @@ TEST_F(ShelfLimits, APageHasUpToNinetyNinePrograms) {
 
 TEST_F(ShelfLimits, OfBytesTitlesAndFileNames) {
   const auto code = [&](std::size_t bytes, std::size_t title, std::size_t name) {
-    return CodeOf(shelf.Store({.name = Name(45),
-                               .title = std::string(title, 't'),
-                               .file_name = std::string(name, 'f'),
-                               .bytes = std::string(bytes - 1, ';') + "\n",
-                               .validate_only = true}));
+    return RefusedWith(shelf.Store({.name = Name(45),
+                                    .file_name = std::string(name, 'f'),
+                                    .title = std::string(title, 't'),
+                                    .bytes = std::string(bytes - 1, ';') + "\n",
+                                    .validate_only = true}));
   };
   config.limit_program_bytes = 1024;
   EXPECT_EQ(code(1024, 200, 255), std::nullopt);
   EXPECT_EQ(code(1025, 200, 255), ErrorCode::kCellTooLarge);
-  EXPECT_EQ(code(1024, 201, 255), kInvalid);
-  EXPECT_EQ(code(1024, 200, 256), kInvalid);
+  EXPECT_EQ(code(1024, 201, 255), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(code(1024, 200, 256), ErrorCode::kCellInvalidArgument);
 }
 
 // Program: title and file name without a folder, sizes, a hash and the etag; times of the store.
@@ -90,7 +88,7 @@ TEST_F(ShelfLimits, WhatIsToldOfAProgram) {
   EXPECT_EQ(first.create_time().seconds(), first.update_time().seconds());
   bed.clock().Advance(std::chrono::seconds(5));
   const v1::Program second =
-      Stored({.name = Name(45), .title = "Lid", .file_name = "lid.S", .bytes = "SPEED 5\n"});
+      Stored({.name = Name(45), .file_name = "lid.S", .title = "Lid", .bytes = "SPEED 5\n"});
   EXPECT_EQ(second.title(), "Lid");
   EXPECT_EQ(second.etag(), "2");
   EXPECT_EQ(second.update_time().seconds() - second.create_time().seconds(), 5);
@@ -103,7 +101,7 @@ TEST_F(ShelfLimits, WhatIsToldOfAProgram) {
             }());
 
   const auto asked = shelf.Store(
-      {.name = Name(46), .title = "Lid", .file_name = "x/lid.S", .bytes = "STOP\n", .validate_only = true});
+      {.name = Name(46), .file_name = "x/lid.S", .title = "Lid", .bytes = "STOP\n", .validate_only = true});
   ASSERT_TRUE(asked);
   EXPECT_EQ(asked.value->name(), Name(46));
   EXPECT_EQ(asked.value->title(), "Lid");
@@ -117,7 +115,7 @@ TEST_F(ShelfLimits, AnObjectIsKnownByItsFormOrItsName) {
   const std::string object = ObjectOf("SPEED 5\nSTOP\n");
   const v1::Program by_name = Stored({.name = Name(44), .file_name = "part.O", .bytes = object});
   const v1::Program by_form =
-      Stored({.name = Name(45), .form = v1::PROGRAM_FORM_OBJECT, .file_name = "part", .bytes = object});
+      Stored({.name = Name(45), .file_name = "part", .form = v1::PROGRAM_FORM_OBJECT, .bytes = object});
   for (const v1::Program& program : {by_name, by_form}) {
     EXPECT_FALSE(program.has_source_bytes());
     EXPECT_EQ(program.file_name(), "");

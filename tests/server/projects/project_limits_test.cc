@@ -11,8 +11,6 @@
 namespace rmlcell::server {
 namespace {
 
-constexpr auto kInvalid = ErrorCode::kCellInvalidArgument;
-
 class ProjectLimits : public testing::Test {
  protected:
   // What the server says to a project with this change, asked only.
@@ -61,14 +59,14 @@ TEST_F(ProjectLimits, PagesHaveAHundredProjectsOrSoManyAsWantedUpToAThousand) {
   }
   v1::ListProjectsRequest request;
   request.set_page_size(-1);
-  EXPECT_EQ(CodeOf(book.List(request)), kInvalid);
+  EXPECT_EQ(CodeOf(book.List(request)), ErrorCode::kCellInvalidArgument);
 }
 
 TEST_F(ProjectLimits, OfTexts) {
   EXPECT_EQ(Asked([](v1::Project& p) { p.set_title(std::string(200, 't')); }), std::nullopt);
-  EXPECT_EQ(Asked([](v1::Project& p) { p.set_title(std::string(201, 't')); }), kInvalid);
+  EXPECT_EQ(Asked([](v1::Project& p) { p.set_title(std::string(201, 't')); }), ErrorCode::kCellInvalidArgument);
   EXPECT_EQ(Asked([](v1::Project& p) { p.set_notes(std::string(65'536, 'n')); }), std::nullopt);
-  EXPECT_EQ(Asked([](v1::Project& p) { p.set_notes(std::string(65'537, 'n')); }), kInvalid);
+  EXPECT_EQ(Asked([](v1::Project& p) { p.set_notes(std::string(65'537, 'n')); }), ErrorCode::kCellInvalidArgument);
 }
 
 // OPT-1.10: slots 1 to 99.
@@ -83,7 +81,7 @@ TEST_F(ProjectLimits, OfPrograms) {
   };
   for (const int slot : {1, 99}) EXPECT_EQ(asked(slot, 200), std::nullopt) << slot;
   for (const int slot : {-1, 0, 100}) EXPECT_EQ(asked(slot, 0), ErrorCode::kProgramNumber) << slot;
-  EXPECT_EQ(asked(1, 201), kInvalid);
+  EXPECT_EQ(asked(1, 201), ErrorCode::kCellInvalidArgument);
 }
 
 // OPT-3.44: schedules 1 to 63, power 0 to 100 %.
@@ -100,10 +98,10 @@ TEST_F(ProjectLimits, OfLaserSchedules) {
   for (const int number : {1, 63}) EXPECT_EQ(asked(number, "", 50.0, 200), std::nullopt) << number;
   for (const int number : {0, 64}) EXPECT_EQ(asked(number, "", 50.0, 0), ErrorCode::kScheduleRange);
   for (const std::string mode : {"", "CW", "PULSE"}) EXPECT_EQ(asked(1, mode, 50.0, 0), std::nullopt);
-  for (const std::string mode : {"cw", "PULSED"}) EXPECT_EQ(asked(1, mode, 50.0, 0), kInvalid);
+  for (const std::string mode : {"cw", "PULSED"}) EXPECT_EQ(asked(1, mode, 50.0, 0), ErrorCode::kCellInvalidArgument);
   for (const double power : {0.0, 100.0}) EXPECT_EQ(asked(1, "CW", power, 0), std::nullopt) << power;
-  for (const double power : {-0.001, 100.001}) EXPECT_EQ(asked(1, "CW", power, 0), kInvalid) << power;
-  EXPECT_EQ(asked(1, "CW", 50.0, 201), kInvalid);
+  for (const double power : {-0.001, 100.001}) EXPECT_EQ(asked(1, "CW", power, 0), ErrorCode::kCellInvalidArgument) << power;
+  EXPECT_EQ(asked(1, "CW", 50.0, 201), ErrorCode::kCellInvalidArgument);
 }
 
 // A process is known by its kind and its number together.
