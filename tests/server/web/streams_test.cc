@@ -183,15 +183,15 @@ TEST(SlowReader, SlowsItsProducerOnly) {
   client.Send(Watch("flood"));
   EXPECT_EQ(client.ReadHead().status, 200);
   // While others have hundreds of their calls answered by the same threads it makes no more messages of
-  // 100 kB than the buffers of a loopback connection hold: some megabytes at most.
+  // 100 kB than the windows of gRPC and the buffers of the connection hold: some tens of megabytes.
   for (int i = 0; i < 300; ++i) {
     ASSERT_EQ(Exchange(cell.port(), Post(kGetJob, "application/json", R"({"name":"jobs/1"})")).status,
               200);
   }
   EXPECT_GT(cell.counters().produced, 0);
-  EXPECT_LT(cell.counters().produced, 100);
-  for (int i = 0; i < 200; ++i) ASSERT_NE(client.ReadUntil("\r\nid: ").size(), 0U);
-  EXPECT_GE(cell.counters().produced, 200);  // it went on when it was read
+  EXPECT_LT(cell.counters().produced, 500);
+  for (int i = 0; i < 600; ++i) ASSERT_NE(client.ReadUntil("\r\nid: ").size(), 0U);
+  EXPECT_GE(cell.counters().produced, 600);  // it went on when it was read
 }
 
 // Several threads of the gateway serve the same requests.
