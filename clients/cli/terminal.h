@@ -45,7 +45,7 @@ class ProgressLine {
 };
 
 std::string Fixed(double value, int decimals);
-std::string Duration(double seconds);     // "1 h 02 min 03.4 s"
+std::string Duration(double seconds);     // "1 h 2 min 3.400 s"
 std::string Bytes(std::int64_t bytes);    // "1.2 MB"
 
 }  // namespace rmlcell::cli

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 namespace rmlcell::server {
 namespace {
 
-// Another server may write to the same store: look without a hint that often.
-constexpr std::chrono::seconds kPollInterval{1};
 constexpr int kReadBatch = 1000;
 
 // Many watchers of one job read the same events at about the same time: once from the store is enough.
@@ -47,7 +46,7 @@ class EventFeed::Handle : public EventFeed::Subscription {
   std::shared_ptr<Watcher> watcher_;
 };
 
-EventFeed::EventFeed(storage::Store& store) : store_(store) {
+EventFeed::EventFeed(storage::Store& store, Timing timing) : store_(store), timing_(std::move(timing)) {
   const Result<std::int64_t> last = store_.LastPosition();
   if (last) position_ = *last;
   store_watch_ = store_.Watch([this] {
@@ -142,24 +141,19 @@ std::int64_t EventFeed::position() {
 }
 
 void EventFeed::Run(const std::stop_token& stop) {
-  using Clock = std::chrono::steady_clock;
-  auto next_poll = Clock::now();
-  auto next_progress = Clock::now();
+  FeedRhythm rhythm(timing_.clock(), timing_.poll_interval);
   while (!stop.stop_requested()) {
     bool read = false;
     std::vector<std::int64_t> moved;
     {
       std::unique_lock lock(mutex_);
       const bool quiet = arriving_.empty();
-      wake_.wait_until(lock, stop, quiet ? next_poll : std::min(next_poll, next_progress),
-                       [&] { return hinted_ || (quiet && !arriving_.empty()); });
-      const auto now = Clock::now();
-      read = hinted_ || now >= next_poll;
-      hinted_ = false;
-      if (read) next_poll = now + kPollInterval;
+      wake_.wait_for(lock, stop, rhythm.Next(!quiet) - timing_.clock(),
+                     [&] { return hinted_ || (quiet && !arriving_.empty()); });
+      const auto now = timing_.clock();
+      read = rhythm.TakeLook(now, std::exchange(hinted_, false));
       // Watchers see positions only from here on: one that is woken by many events gets no more of them.
-      if (!arriving_.empty() && now >= next_progress) {
-        next_progress = now + kProgressInterval;
+      if (!arriving_.empty() && rhythm.TakePositions(now)) {
         for (auto& [job, bytes] : arriving_) {
           progress_[job] = {.job = job, .version = ++version_, .bytes = std::move(bytes)};
           moved.push_back(job);

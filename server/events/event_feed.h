@@ -12,6 +12,8 @@
 #include <thread>
 #include <vector>
 
+#include "server/events/feed_rhythm.h"
+#include "server/steady_clock.h"
 #include "storage/store.h"
 
 namespace rmlcell::server {
@@ -25,17 +27,24 @@ struct ProgressText {
 
 // Wakes watchers when there is something for them. Durable events are never handed over here: a watcher
 // keeps a cursor and reads the log when its writer is free, so one that does not read costs a cursor.
-// Positions are latest-wins and change, as watchers see them, at most every kProgressInterval.
+// Positions are latest-wins and change, as watchers see them, at most every
+// FeedRhythm::kProgressInterval.
 //
 // Knows no gRPC: the race detector sees all of it. Thread-safe. Lock order: mutex_ is a leaf; neither the
 // store nor a watcher is called under it.
 class EventFeed {
  public:
-  static constexpr std::chrono::milliseconds kProgressInterval{50};
   // Events kept in memory, so that a hundred watchers of everything read the log once.
   static constexpr std::size_t kRecentEvents = 4096;
 
-  explicit EventFeed(storage::Store& store);
+  struct Timing {
+    SteadyClock clock = SteadyTime;
+    // Another server may write to the same store: look without a hint that often.
+    std::chrono::milliseconds poll_interval{1000};
+  };
+
+  explicit EventFeed(storage::Store& store) : EventFeed(store, Timing()) {}
+  EventFeed(storage::Store& store, Timing timing);
   ~EventFeed();
   EventFeed(const EventFeed&) = delete;
   EventFeed& operator=(const EventFeed&) = delete;
@@ -82,6 +91,7 @@ class EventFeed {
   static void Call(const std::vector<std::shared_ptr<Watcher>>& woken);
 
   storage::Store& store_;
+  const Timing timing_;
   std::mutex mutex_;
   std::condition_variable_any wake_;
   bool hinted_ = true;

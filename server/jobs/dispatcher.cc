@@ -25,8 +25,13 @@ void SendStop(WorkerLine& line) {
 }  // namespace
 
 Dispatcher::Dispatcher(storage::Store& store, EventFeed& feed, const Config& config, Executor& executor,
-                       std::string join_token)
-    : store_(store), feed_(feed), config_(config), executor_(executor), join_token_(std::move(join_token)) {
+                       std::string join_token, SteadyClock clock)
+    : store_(store),
+      feed_(feed),
+      config_(config),
+      executor_(executor),
+      join_token_(std::move(join_token)),
+      clock_(std::move(clock)) {
   store_watch_ = store_.Watch([this] { WakeIdle(); });
   sweeper_ = std::jthread([this](const std::stop_token& stop) { SweepLeases(stop); });
 }

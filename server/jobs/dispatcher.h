@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "rmlcell/v1/worker.pb.h"
+#include "server/steady_clock.h"
 #include "storage/store.h"
 
 namespace rmlcell::server {
@@ -39,7 +40,7 @@ class WorkerLine {
 class Dispatcher {
  public:
   Dispatcher(storage::Store& store, EventFeed& feed, const Config& config, Executor& executor,
-             std::string join_token);
+             std::string join_token, SteadyClock clock = SteadyTime);
   ~Dispatcher();
   Dispatcher(const Dispatcher&) = delete;
   Dispatcher& operator=(const Dispatcher&) = delete;
@@ -92,6 +93,7 @@ class Dispatcher {
   const Config& config_;
   Executor& executor_;
   std::string join_token_;
+  SteadyClock clock_;
   std::atomic<bool> draining_ = false;
 
   mutable std::mutex mutex_;

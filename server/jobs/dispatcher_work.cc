@@ -14,8 +14,6 @@
 namespace rmlcell::server {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 // What a worker may send over its budget until it has noticed.
 constexpr std::int64_t kOutputSlack = 1 << 20;
 
@@ -60,7 +58,7 @@ void Dispatcher::Assign(const std::shared_ptr<Worker>& worker) {
   if (found) {
     worker->assignment.emplace();
     worker->assignment->lease = (*leased)->lease;
-    worker->assignment->renewed_at = Clock::now();
+    worker->assignment->renewed_at = clock_();
     worker->assignment->machine = (*leased)->job.machine;
   }
   {
@@ -154,8 +152,9 @@ void Dispatcher::Heartbeat(Worker& worker, const v1::WorkerHeartbeat& heartbeat)
     feed_.PublishProgress(assignment.lease.job, progress.SerializeAsString());
   }
   const auto third = std::chrono::milliseconds(config_.workers_lease_ms / 3);
-  if (Clock::now() - assignment.renewed_at < third) return;
-  assignment.renewed_at = Clock::now();
+  const auto now = clock_();
+  if (now - assignment.renewed_at < third) return;
+  assignment.renewed_at = now;
   const auto renewed = store_.Renew(assignment.lease, std::chrono::milliseconds(config_.workers_lease_ms));
   if (renewed) {
     // Another server may have been asked to cancel it.

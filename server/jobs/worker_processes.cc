@@ -13,14 +13,12 @@
 #include <set>
 #include <vector>
 
+#include "server/jobs/restart_delay.h"
+
 namespace rmlcell::server {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-constexpr std::chrono::milliseconds kLook{20};          // how soon a dead worker is noticed
-constexpr std::chrono::seconds kHealthyLife{5};         // a shorter life counts as a failed start
-constexpr std::chrono::milliseconds kDelayMax{10'000};  // between starts of one that keeps failing
+constexpr std::chrono::milliseconds kLook{20};  // how soon a dead worker is noticed
 
 }  // namespace
 
@@ -84,13 +82,13 @@ pid_t WorkerProcesses::Spawn(int number) const {
 void WorkerProcesses::Watch(const std::stop_token& stop) {
   struct Place {
     pid_t process = -1;
-    Clock::time_point started;
-    Clock::time_point next_start;
-    std::chrono::milliseconds delay{0};
+    std::chrono::steady_clock::time_point started;
+    std::chrono::steady_clock::time_point next_start;
+    RestartDelay delay;
   };
   std::vector<Place> places(static_cast<std::size_t>(options_.count));
   while (!stop.stop_requested()) {
-    const auto now = Clock::now();
+    const auto now = options_.clock();
     for (std::size_t i = 0; i < places.size(); ++i) {
       Place& place = places[i];
       int how = 0;
@@ -104,10 +102,7 @@ void WorkerProcesses::Watch(const std::stop_token& stop) {
         } else {
           spdlog::warn("worker process {} ended with {}", place.process, WEXITSTATUS(how));
         }
-        const bool healthy = now - place.started >= kHealthyLife;
-        place.delay = healthy ? std::chrono::milliseconds(0)
-                              : std::min(kDelayMax, place.delay * 2 + std::chrono::milliseconds(100));
-        place.next_start = now + place.delay;
+        place.next_start = now + place.delay.AfterLife(now - place.started);
         place.process = -1;
       }
       if (place.process < 0 && now >= place.next_start) {
@@ -137,12 +132,12 @@ void WorkerProcesses::Stop(std::chrono::milliseconds patience) {
     const std::lock_guard lock(mutex_);
     alive.swap(alive_);
   }
+  const auto until = options_.clock() + patience;
   for (const auto& [process, number] : alive) ::kill(process, SIGTERM);
-  const auto until = Clock::now() + patience;
   while (!alive.empty()) {
     std::erase_if(alive, [](const auto& row) { return ::waitpid(row.first, nullptr, WNOHANG) != 0; });
     if (alive.empty()) break;
-    if (Clock::now() >= until) {
+    if (options_.clock() >= until) {
       for (const auto& [process, number] : alive) ::kill(process, SIGKILL);
       for (const auto& [process, number] : alive) ::waitpid(process, nullptr, 0);
       break;

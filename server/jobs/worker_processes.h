@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "engine/core/result.h"
+#include "server/steady_clock.h"
 
 namespace rmlcell::server {
 
@@ -22,6 +23,7 @@ class WorkerProcesses {
     std::string log_level;
     std::string log_format;
     int count = 1;
+    SteadyClock clock = SteadyTime;
   };
 
   // Error: CellConfiguration when the program is not there.

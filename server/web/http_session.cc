@@ -37,9 +37,7 @@ constexpr std::size_t kReadBytes = std::size_t{64} << 10U;  // at a time, of a b
 constexpr int kSendBufferBytes = 256 << 10;
 constexpr std::chrono::milliseconds kLingerDraining{
     200};                                           // a stop does not wait for silent clients
-constexpr std::chrono::milliseconds kLinger{2000};  // to take in what a refused client still sends
 constexpr std::chrono::seconds kPipelinedLook{1};
-constexpr std::chrono::milliseconds kHalfClosed{2000};  // for the answer of a client that ended its sending
 
 std::string View(beast::string_view text) { return std::string(text.data(), text.size()); }
 
@@ -386,7 +384,7 @@ class HttpSession : public Connection,
     error_code ignored;
     socket_.shutdown(tcp::socket::shutdown_send, ignored);
     reading_ = Reading::kLinger;
-    Arm(setting_.draining ? kLingerDraining : kLinger);
+    Arm(setting_.draining ? kLingerDraining : options_.linger_timeout);
     piece_.resize(kReadBytes);
     ReadAndForget();
   }
@@ -419,7 +417,7 @@ class HttpSession : public Connection,
       // It has said all it wants to say; who waits for a stream that has no end does not half-close.
       if (exchange_->IsEndless()) return Gone();
       closing_ = true;
-      Arm(kHalfClosed);  // it may have left altogether, which looks the same
+      Arm(options_.linger_timeout);  // it may have left altogether, which looks the same
       return;
     }
     if (size < 0)

@@ -34,6 +34,8 @@ struct WebOptions {
   std::chrono::milliseconds write_timeout{120'000};
   std::chrono::milliseconds quiet_interval{
       15'000};  // a comment line on event streams that are quiet
+  // For a client that was refused to come to its end, and for the answer of one that ended its sending.
+  std::chrono::milliseconds linger_timeout{2000};
 
   std::vector<std::string> host_names;  // names, besides loopback and `address`, that Host may have
   std::vector<std::string> origins;     // foreign pages that may call: "http://localhost:5173"

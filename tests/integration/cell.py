@@ -84,13 +84,13 @@ class Cell:
 
     def stop(self):
         self.process.send_signal(signal.SIGTERM)
-        return self.process.wait(timeout=15)
+        return self.process.wait(timeout=60)
 
     def close(self):
         if self.process is not None and self.process.poll() is None:
             self.process.terminate()
             try:
-                self.process.wait(timeout=10)
+                self.process.wait(timeout=30)
             except subprocess.TimeoutExpired:
                 self.process.kill()
         shutil.rmtree(self.folder, ignore_errors=True)
@@ -151,10 +151,10 @@ def inline_job(machine, file_name, content, kind=job_pb2.JOB_KIND_SIMULATE, **mo
 
 
 def submit(stub, job, request_id=""):
-    return stub.SubmitJob(job_pb2.SubmitJobRequest(job=job, request_id=request_id), timeout=30)
+    return stub.SubmitJob(job_pb2.SubmitJobRequest(job=job, request_id=request_id), timeout=60)
 
 
-def wait_for_end(stub, name, seconds=120):
+def wait_for_end(stub, name, seconds=300):
     """Events of the job up to its end, in order."""
     events = []
     for message in stub.WatchJob(job_pb2.WatchJobRequest(name=name, events_only=True), timeout=seconds):
@@ -163,11 +163,20 @@ def wait_for_end(stub, name, seconds=120):
     return events
 
 
-def wait_until_it_runs(stub, name, seconds=60):
+def eventually(holds, seconds=60):
+    """What `holds` says as soon as it is true; only a failing test waits so long."""
     until = time.monotonic() + seconds
-    while (job := stub.GetJob(job_pb2.GetJobRequest(name=name))).state != job_pb2.Job.STATE_RUNNING:
-        assert job.state == job_pb2.Job.STATE_QUEUED and time.monotonic() < until, job
+    while not (answer := holds()) and time.monotonic() < until:
         time.sleep(0.02)
+    return answer
+
+
+def wait_until_it_runs(stub, name):
+    def runs():
+        job = stub.GetJob(job_pb2.GetJobRequest(name=name))
+        assert job.state in (job_pb2.Job.STATE_QUEUED, job_pb2.Job.STATE_RUNNING), job
+        return job.state == job_pb2.Job.STATE_RUNNING
+    assert eventually(runs), f"{name} does not run"
 
 
 def detail_of(error):

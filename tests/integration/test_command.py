@@ -4,10 +4,9 @@ import os
 import pathlib
 import subprocess
 import tempfile
-import time
 import unittest
 
-from cell import BIN, ENDLESS, SQUARE, Cell, inline_job, job_pb2, submit
+from cell import BIN, ENDLESS, SQUARE, Cell, eventually, inline_job, job_pb2, submit
 
 
 def run(*words, server=None):
@@ -215,7 +214,7 @@ class Sockets(unittest.TestCase):
             first = server("one")
             self.addCleanup(first.communicate)
             self.addCleanup(first.kill)
-            self.assertTrue(any(answers() or time.sleep(0.1) for _ in range(100)))
+            self.assertTrue(eventually(answers))
             second = server("two")
             self.assertIn("CELL-E9202", second.communicate(timeout=60)[1])
             self.assertEqual(second.returncode, 69)
@@ -226,7 +225,7 @@ class Sockets(unittest.TestCase):
             third = server("two")
             self.addCleanup(third.communicate)
             self.addCleanup(third.kill)
-            self.assertTrue(any(answers() or time.sleep(0.1) for _ in range(100)))
+            self.assertTrue(eventually(answers))
 
 
 class Remote(unittest.TestCase):

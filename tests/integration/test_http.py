@@ -15,7 +15,7 @@ class Web(WithCell):
     def post(self, method, body, **headers):
         request = urllib.request.Request(f"http://127.0.0.1:{self.cell.web_port}/{method}", json.dumps(body).encode(),
                                          {"Content-Type": "application/json", **headers})
-        with urllib.request.urlopen(request, timeout=30) as answer:
+        with urllib.request.urlopen(request, timeout=60) as answer:
             return json.load(answer)
 
     def test_a_client_that_ends_its_sending_gets_its_answer(self):
@@ -24,7 +24,7 @@ class Web(WithCell):
                 f"Content-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n").encode()
         for request in (head + body, b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n"):
             for _ in range(10):
-                with socket.create_connection(("127.0.0.1", self.cell.web_port), timeout=20) as connection:
+                with socket.create_connection(("127.0.0.1", self.cell.web_port), timeout=60) as connection:
                     connection.sendall(request)
                     connection.shutdown(socket.SHUT_WR)
                     answer = b""
@@ -37,7 +37,7 @@ class Web(WithCell):
             f"http://127.0.0.1:{self.cell.web_port}/rmlcell.v1.MachineService/ListMachines", b"\xff\xff",
             {"Content-Type": "application/proto"})
         with self.assertRaises(urllib.error.HTTPError) as caught:
-            urllib.request.urlopen(request, timeout=30)
+            urllib.request.urlopen(request, timeout=60)
         self.assertEqual(caught.exception.code, 400)
         self.assertEqual(json.load(caught.exception)["code"], "invalid_argument")
 
@@ -86,7 +86,7 @@ class Web(WithCell):
         def ask(query, body=None):
             request = urllib.request.Request(url + query, body, {"Content-Type": "application/octet-stream"} if body else {})
             try:
-                with urllib.request.urlopen(request, timeout=30) as answer:
+                with urllib.request.urlopen(request, timeout=60) as answer:
                     return answer.status, answer.read().decode()
             except urllib.error.HTTPError as error:
                 return error.code, error.read().decode()

@@ -1,10 +1,11 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <functional>
 #include <string>
-#include <thread>
 
+#include "server/steady_clock.h"
 #include "storage/store.h"
 #include "tests/storage/sqlite_bed.h"
 
@@ -12,21 +13,33 @@
 namespace rmlcell::server {
 
 using storage::CodeOf;
+using storage::Eventually;
+using storage::kPatience;
 using storage::Must;
 
-// How long a test waits for something that must come; only a failing test waits that long.
-inline constexpr std::chrono::seconds kPatience{20};
-
-// True as soon as `holds` does, false when it does not within kPatience.
-template <class Condition>
-bool Eventually(Condition holds) {
-  const auto until = std::chrono::steady_clock::now() + kPatience;
-  while (!holds()) {
-    if (std::chrono::steady_clock::now() > until) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+// A clock for intervals that stands still until it is moved, and counts who looks at it. Thread-safe.
+class TestSteadyClock {
+ public:
+  SteadyClock clock() {
+    return [this] {
+      ++looks_;
+      return std::chrono::steady_clock::time_point(std::chrono::hours(1) +
+                                                   std::chrono::milliseconds(passed_ms_));
+    };
   }
-  return true;
-}
+  void Advance(std::chrono::milliseconds by) { passed_ms_ += by.count(); }
+
+  // Waits until the clock was looked at and the work that followed is done, by a thread that looks
+  // at it again and again.
+  bool GoneRound() {
+    const int before = looks_;
+    return Eventually([&] { return looks_ > before + 2; });
+  }
+
+ private:
+  std::atomic<std::int64_t> passed_ms_ = 0;
+  std::atomic<int> looks_ = 0;
+};
 
 // An embedded store with the machines optimo-1 and mill-1. Its clock stands still until it is
 // moved.

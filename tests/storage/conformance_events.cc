@@ -31,7 +31,7 @@ class Bell {
   }
   bool WaitFor(int rings) {
     std::unique_lock lock(mutex_);
-    return rung_.wait_for(lock, std::chrono::seconds(20), [&] { return rings_ >= rings; });
+    return rung_.wait_for(lock, kPatience, [&] { return rings_ >= rings; });
   }
   int rings() {
     const std::lock_guard lock(mutex_);
@@ -205,9 +205,7 @@ TEST_P(StoreConformance, WatcherFindsTheRows) {
   }
   EXPECT_EQ(last, 100);
   const std::int64_t position = Must(store().LastPosition());
-  for (int i = 0; i < 2'000 && read_until < position; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
+  Eventually([&] { return read_until >= position; });
   EXPECT_EQ(read_until, position);
 }
 
@@ -216,15 +214,19 @@ TEST_P(StoreConformance, EndedWatcherIsNotCalled) {
   for (int round = 0; round < 30; ++round) {
     auto alive = std::make_unique<std::atomic<bool>>(true);
     std::atomic<int> bad = 0;
-    auto watch = store().Watch([&bad, flag = alive.get()] {
-      if (!*flag) ++bad;
-      std::this_thread::sleep_for(std::chrono::microseconds(300));
-      if (!*flag) ++bad;
+    std::atomic<int> calls = 0;
+    auto watch = store().Watch([&bad, &calls, flag = alive.get()] {
+      ++calls;
+      for (int i = 0; i < 200; ++i) {
+        if (!*flag) ++bad;
+        std::this_thread::yield();
+      }
     });
     std::jthread writer([&] {
       for (int i = 0; i < 5; ++i) Submit();
     });
-    std::this_thread::sleep_for(std::chrono::microseconds(200 * round));
+    // Before a call or in the middle of one, as it happens.
+    ASSERT_TRUE(Eventually([&] { return calls >= round % 2; }));
     watch.reset();
     *alive = false;
     writer.join();
@@ -252,12 +254,15 @@ TEST_P(StoreConformance, WatchersMayEndInsideACall) {
   }
   Submit();
   const auto rings = [&] { return own.rings() + other.rings(); };
-  for (int i = 0; i < 2'000 && rings() == 0; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
+  ASSERT_TRUE(Eventually([&] { return rings() > 0; }));
   EXPECT_EQ(rings(), 1);
-  Submit();
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  // One that watches later is told of both: when it hears of the second, all was told of the first.
+  Bell later;
+  const auto third = store().Watch([&] { later.Ring(); });
+  for (int told = 1; told <= 2; ++told) {
+    Submit();
+    ASSERT_TRUE(later.WaitFor(told));
+  }
   EXPECT_EQ(rings(), 1);
 }
 

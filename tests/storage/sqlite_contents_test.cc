@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <functional>
-#include <thread>
 
 #include "storage/sqlite/content.h"
 #include "tests/storage/sqlite_bed.h"
@@ -14,12 +13,7 @@ namespace {
 constexpr std::size_t kMiB = std::size_t{1} << 20;
 
 // Removal happens beside the writes: waits until it is done.
-void WaitUntil(const std::function<bool()>& done) {
-  for (int i = 0; i < 4'000 && !done(); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  EXPECT_TRUE(done());
-}
+void WaitUntil(const std::function<bool()>& done) { EXPECT_TRUE(Eventually(done)); }
 
 class SqliteContents : public testing::Test {
  protected:

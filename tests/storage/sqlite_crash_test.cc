@@ -4,15 +4,14 @@
 // every single crash point.
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <poll.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <limits>
 #include <map>
 #include <random>
 #include <set>
@@ -58,21 +57,16 @@ class Child {
 
   void Kill() { kill(process_, SIGKILL); }
 
-  // Reads until the child has closed its end, that is, until it is gone, or until `deadline`.
-  void ReadUntil(std::chrono::steady_clock::time_point deadline) {
-    for (;;) {
-      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
-          deadline - std::chrono::steady_clock::now());
-      if (left.count() <= 0) return;
-      pollfd waiting{.fd = output_, .events = POLLIN, .revents = 0};
-      const auto patience = std::min(left, std::chrono::milliseconds(1'000));
-      if (poll(&waiting, 1, static_cast<int>(patience.count())) <= 0) continue;
-      char bytes[65536];
+  // Reads until the child has told so many lines, or has closed its end, that is, until it is gone.
+  void ReadLines(std::int64_t lines) {
+    for (; lines > std::ranges::count(text_, '\n');) {
+      char bytes[256];  // few at a time, so that it is stopped in the middle of its work
       const ssize_t size = read(output_, bytes, sizeof(bytes));
       if (size <= 0) return;
       text_.append(bytes, static_cast<std::size_t>(size));
     }
   }
+  void ReadAll() { ReadLines(std::numeric_limits<std::int64_t>::max()); }
 
   // How it ended, as waitpid() tells.
   int Wait() {
@@ -206,10 +200,9 @@ TEST(SqliteCrash, NothingAcknowledgedIsLostByAKillAtAnyTime) {
     for (int round = 0; round < (IsLongRun() ? kRoundsOfOneStore : 6); ++round) {
       SCOPED_TRACE(round);
       Child child({path, Numbered("run", round), "0", "40"});
-      child.ReadUntil(std::chrono::steady_clock::now() +
-                      std::chrono::milliseconds(20 + random() % 400));
+      child.ReadLines(static_cast<std::int64_t>(random() % 400));
       child.Kill();
-      child.ReadUntil(std::chrono::steady_clock::time_point::max());
+      child.ReadAll();
       child.Wait();
       told.Read(child.text());
       ExpectAllIsThere(path, told, 0);
@@ -230,7 +223,7 @@ std::int64_t CrashOnce(const std::string& how, std::int64_t operation) {
   Acknowledged told;
   {
     Child child({path, "run", std::to_string(kKeep), "4", how, std::to_string(operation)});
-    child.ReadUntil(std::chrono::steady_clock::time_point::max());
+    child.ReadAll();
     const int ended = child.Wait();
     const bool came_to_its_end = WIFEXITED(ended) && WEXITSTATUS(ended) == 0;
     EXPECT_TRUE(came_to_its_end || (WIFSIGNALED(ended) && WTERMSIG(ended) == SIGKILL))

@@ -51,9 +51,7 @@ class SqliteKeep : public testing::Test {
   }
   // Removal happens beside the writes.
   void WaitForCount(const std::string& from, std::int64_t count) {
-    for (int i = 0; i < 4'000 && Count(from) != count; ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
+    Eventually([&] { return Count(from) == count; });
     EXPECT_EQ(Count(from), count) << from;
   }
 
@@ -152,9 +150,7 @@ TEST_F(SqliteKeep, OldEventsGo) {
   for (int i = 2; i <= 500; ++i) {
     Must(store().AppendAndWait(lease, {{.kind = "e", .payload = std::to_string(i)}}));
   }
-  for (int i = 0; i < 4'000 && Count("event") > 90; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
+  Eventually([&] { return Count("event") <= 90; });
   const std::int64_t kept = Count("event");
   EXPECT_GE(kept, 80);
   EXPECT_LE(kept, 90);  // an eighth more than the limit at most

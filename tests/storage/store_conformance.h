@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,20 @@
 //   INSTANTIATE_TEST_SUITE_P(Sqlite, StoreConformance, testing::Values(StoreKind{"Sqlite", Make}),
 //   Name);
 namespace rmlcell::storage {
+
+// How long a test waits for something that must come; only a failing test waits that long.
+inline constexpr std::chrono::seconds kPatience{60};
+
+// True as soon as `holds` does, false when it does not within kPatience.
+template <class Condition>
+bool Eventually(Condition holds) {
+  const auto until = std::chrono::steady_clock::now() + kPatience;
+  while (!holds()) {
+    if (std::chrono::steady_clock::now() > until) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return true;
+}
 
 // A clock that stands still until it is moved. Thread-safe.
 class TestClock {

@@ -26,10 +26,10 @@ MAY_INCLUDE = {
     "storage/sqlite": ["engine/core", "storage"],
     "proto/bridge": ["engine/core", "engine/machine", "engine/optimo/language", "engine/optimo/offline",
                      "engine/simulation", "proto"],
-    # config, names, executor, log: what every room of the server may use.
+    # config, names, executor, log, steady_clock: what every room of the server may use.
     "server": ["engine/core", "storage"],
     "server/auth": ["engine/core"],
-    "server/events": ["engine/core", "storage"],
+    "server/events": ["engine/core", "server", "storage"],
     "server/jobs": ["engine/core", "engine/machine", "engine/simulation", "proto", "proto/bridge", "server",
                     "server/events", "storage"],
     "server/programs": ["engine/core", "engine/machine", "engine/motion", "engine/optimo/language",

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 
 #include "tests/server/events/fake_log.h"
@@ -12,7 +13,9 @@ namespace rmlcell::server {
 namespace {
 
 using storage::EventRecord;
-using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kNever = std::chrono::hours(24 * 366);  // of looks without a hint
 
 // Reads the log of the whole cell whenever it is woken, in batches of its own size, from any
 // position.
@@ -178,6 +181,11 @@ TEST(EventFeed, ServesTheWatchersOfAJobFromMemory) {
   ASSERT_TRUE(Eventually([&] { return woken >= 4 && feed.position() == 2'003; }));
   EXPECT_FALSE(feed.JobEvents(1, 3, 100));
   EXPECT_TRUE(feed.JobEvents(1, 2'000, 100));
+  // It keeps the newest 1024 of a job: 980 to 2003.
+  EXPECT_FALSE(feed.JobEvents(1, 978, 1));
+  const Result<std::vector<EventRecord>> oldest = feed.JobEvents(1, 979, 1);
+  ASSERT_TRUE(oldest);
+  ExpectPositions(*oldest, 980, 1);
 
   first.reset();
   EXPECT_TRUE(feed.JobEvents(1, 2'000, 100));
@@ -185,10 +193,52 @@ TEST(EventFeed, ServesTheWatchersOfAJobFromMemory) {
   EXPECT_FALSE(feed.JobEvents(1, 2'000, 100));  // nobody watches: nothing is kept
 }
 
+// It tells of what comes; what was there before it began is in the log.
+TEST(EventFeed, BeginsAtTheEndOfTheLog) {
+  FakeLog log;
+  log.Write(1, 5);
+  EventFeed feed(log, {.poll_interval = kNever});
+  EXPECT_EQ(feed.position(), 5);
+  ASSERT_TRUE(Eventually([&] { return log.reads() == 1; }));
+  EXPECT_TRUE(Must(feed.EventsAfter(5, 10)).empty());
+  EXPECT_EQ(log.reads(), 1);  // whoever is at the end asks the log nothing
+  ExpectPositions(Must(feed.EventsAfter(0, 10)), 1, 5);
+}
+
+// With nobody to tell it sleeps; the first watcher wakes it.
+TEST(EventFeed, ReadsWhatCameBeforeTheFirstWatcher) {
+  FakeLog log;
+  EventFeed feed(log, {.poll_interval = kNever});
+  ASSERT_TRUE(Eventually([&] { return log.reads() == 1; }));
+  log.Write(1, 3);
+  const auto watch = feed.Subscribe(1, [] {});
+  EXPECT_TRUE(Eventually([&] { return feed.position() == 3; }));
+}
+
+// Of the positions of many jobs each is there, in the order in which they were told.
+TEST(EventFeed, PositionsAreOfTheirJobs) {
+  FakeLog log;
+  EventFeed feed(log, {.poll_interval = kNever});
+  for (const int job : {7, 3, 5}) {
+    feed.PublishProgress(job, "of " + std::to_string(job));
+    ASSERT_TRUE(Eventually([&] { return feed.ProgressAfter(job, 0).has_value(); }));
+  }
+  const std::vector<ProgressText> all = feed.AllProgressAfter(0);
+  ASSERT_EQ(all.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(all[i].job, (std::array{7, 3, 5}[i]));
+    EXPECT_EQ(*all[i].bytes, "of " + std::to_string(all[i].job));
+    EXPECT_EQ(all[i].version, i + 1);
+    EXPECT_EQ(feed.AllProgressAfter(all[i].version).size(), 2 - i);
+    EXPECT_FALSE(feed.ProgressAfter(all[i].job, i + 1));
+    EXPECT_TRUE(feed.ProgressAfter(all[i].job, i));
+  }
+}
+
 // Another server may write to the same store: then there is no hint.
 TEST(EventFeed, FindsEventsWithoutAHint) {
   FakeLog log;
-  EventFeed feed(log);
+  EventFeed feed(log, {.poll_interval = milliseconds(20)});
   const auto hint = log.Watch([] {});  // takes the hint away from the feed
   ASSERT_TRUE(Eventually([&] { return log.reads() >= 1; }));
   log.Write(1, 3);
@@ -197,7 +247,7 @@ TEST(EventFeed, FindsEventsWithoutAHint) {
 
 TEST(EventFeed, GoesOnWhenAFailingStoreWorksAgain) {
   FakeLog log;
-  EventFeed feed(log);
+  EventFeed feed(log, {.poll_interval = milliseconds(20)});
   log.Fail(true);
   log.Write(1, 3);
   const int before = log.reads();
@@ -212,6 +262,7 @@ TEST(EventFeed, GoesOnWhenAFailingStoreWorksAgain) {
 TEST(EventFeed, SkipsEventsThatAreGoneAndTellsWatchersSo) {
   FakeLog log;
   EventFeed feed(log);
+  const auto first = feed.Subscribe(1, [] {});
   log.Write(1, 2);
   ASSERT_TRUE(Eventually([&] { return feed.position() == 2; }));
   std::atomic<int> woken = 0;
@@ -227,24 +278,30 @@ TEST(EventFeed, SkipsEventsThatAreGoneAndTellsWatchersSo) {
   log.Write(7, 1);
   ASSERT_TRUE(Eventually([&] { return feed.position() == 13; }));
   ExpectPositions(Must(feed.EventsAfter(12, 10)), 13, 1);
+  // Nor does memory leave them out in silence: who saw the second event of the first job asks the log.
+  log.Write(1, 1);
+  ASSERT_TRUE(Eventually([&] { return feed.position() == 14; }));
+  EXPECT_FALSE(feed.JobEvents(1, 2, 10));
+  EXPECT_TRUE(feed.JobEvents(1, 13, 10));
 }
 
 // A watcher costs a cursor: what is in memory is bounded, what is older comes from the log.
 TEST(EventFeed, KeepsSoManyEventsInMemoryAndNoMore) {
   constexpr auto kKept = static_cast<std::int64_t>(EventFeed::kRecentEvents);
   FakeLog log;
-  EventFeed feed(log);
+  EventFeed feed(log, {.poll_interval = kNever});
+  ASSERT_TRUE(Eventually([&] { return log.reads() == 1; }));  // it looks when it begins
+  const auto watch = feed.Subscribe(2, [] {});
   constexpr std::int64_t kEvents = 3 * kKept + 5;
   log.Write(1, static_cast<int>(kEvents));
   ASSERT_TRUE(Eventually([&] { return feed.position() == kEvents; }));
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));
   const int before = log.reads();
   ExpectPositions(Must(feed.EventsAfter(kEvents - kKept, 100)), kEvents - kKept + 1, 100);
-  EXPECT_LE(log.reads(), before + 1);  // at most a poll
+  EXPECT_EQ(log.reads(), before);
   ExpectPositions(Must(feed.EventsAfter(kEvents - kKept - 1, 100)), kEvents - kKept, 100);
-  const int first = log.reads();
+  EXPECT_EQ(log.reads(), before + 1);
   ExpectPositions(Must(feed.EventsAfter(0, 100)), 1, 100);
-  EXPECT_GT(log.reads(), first);
+  EXPECT_EQ(log.reads(), before + 2);
 }
 
 TEST(EventFeed, ANewPositionReplacesTheOneBefore) {
@@ -284,43 +341,57 @@ TEST(EventFeed, AForgottenPositionDoesNotComeBack) {
 // Issue "Watch": at most 20 position updates a second, also for a watcher that many events wake.
 TEST(EventFeed, TellsAtMostTwentyPositionsASecond) {
   FakeLog log;
-  EventFeed feed(log);
-  std::atomic<std::uint64_t> seen = 0;
-  std::atomic<int> told = 0;
-  const auto watch = feed.Subscribe(1, [&] {
-    if (const auto progress = feed.ProgressAfter(1, seen)) {
-      seen = progress->version;
-      ++told;
-    }
+  TestSteadyClock steady;
+  EventFeed feed(log, {.clock = steady.clock(), .poll_interval = kNever});
+  std::vector<std::string> told;  // touched by the thread of the feed alone, until `feed` has caught up
+  std::atomic<int> tellings = 0;
+  const auto watch = feed.Subscribe(1, [&, seen = std::uint64_t{0}]() mutable {
+    const auto progress = feed.ProgressAfter(1, seen);
+    if (!progress) return;
+    seen = progress->version;
+    told.push_back(*progress->bytes);
+    ++tellings;
   });
-  const auto begin = Clock::now();
   int published = 0;
-  while (Clock::now() - begin < std::chrono::milliseconds(600)) {
-    feed.PublishProgress(1, std::to_string(++published));
-    log.Write(1, 1);
-    std::this_thread::sleep_for(std::chrono::microseconds(200));
-  }
-  const auto took = Clock::now() - begin;
-  const auto intervals = took / EventFeed::kProgressInterval;
-  EXPECT_LE(told, intervals + 1);
-  EXPECT_GE(told, 2);
-  EXPECT_GT(published, 5 * told);
+  const auto publish = [&](int count) {
+    for (int i = 0; i < count; ++i) {
+      feed.PublishProgress(1, std::to_string(++published));
+      log.Write(1, 1);
+    }
+  };
+  // The feed has read all that was written, told who watches, and looked at the clock again.
+  const auto wait_for_the_feed = [&] {
+    const std::int64_t last = Must(log.LastPosition());
+    ASSERT_TRUE(Eventually([&] { return feed.position() == last; }));
+    ASSERT_TRUE(steady.GoneRound());
+  };
+  publish(1);
+  ASSERT_TRUE(Eventually([&] { return tellings == 1; }));  // at once: there was none for a while
+  publish(100);
+  wait_for_the_feed();
+  EXPECT_EQ(tellings, 1);
+  steady.Advance(milliseconds(49));
+  publish(100);
+  wait_for_the_feed();
+  EXPECT_EQ(tellings, 1);
   // The last one is told, though nothing follows it.
-  EXPECT_TRUE(
-      Eventually([&] { return *feed.ProgressAfter(1, 0)->bytes == std::to_string(published); }));
+  steady.Advance(milliseconds(1));
+  ASSERT_TRUE(Eventually([&] { return tellings == 2; }));
+  steady.Advance(milliseconds(50));
+  publish(1);
+  ASSERT_TRUE(Eventually([&] { return tellings == 3; }));
+  EXPECT_THAT(told, testing::ElementsAre("1", "201", "202"));
 }
 
+// Nothing else wakes it: it looks at the log by itself next year.
 TEST(EventFeed, TellsTheFirstPositionAfterAQuietTimeAtOnce) {
   FakeLog log;
-  EventFeed feed(log);
+  EventFeed feed(log, {.poll_interval = kNever});
+  ASSERT_TRUE(Eventually([&] { return log.reads() == 1; }));
   std::atomic<bool> woken = false;
   const auto watch = feed.Subscribe(1, [&] { woken = true; });
-  std::this_thread::sleep_for(std::chrono::milliseconds(150));  // nothing is there: the feed sleeps
-  const auto begin = Clock::now();
   feed.PublishProgress(1, "here");
-  ASSERT_TRUE(Eventually([&] { return woken.load(); }));
-  EXPECT_LT(Clock::now() - begin,
-            std::chrono::milliseconds(500));  // and not at the next poll, after 1 s
+  EXPECT_TRUE(Eventually([&] { return woken.load(); }));
 }
 
 TEST(EventFeed, NobodyIsCalledAfterItsHandleIsGone) {
@@ -337,14 +408,19 @@ TEST(EventFeed, NobodyIsCalledAfterItsHandleIsGone) {
   log.Write(1, 1);
   ASSERT_TRUE(Eventually([&] { return inside.load(); }));
   std::jthread free([&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    // The handle is on its way out: nothing of the job is kept any more.
+    Eventually([&] { return !feed.JobEvents(1, 0, 1); });
     go_on = true;
   });
   watch.reset();  // waits for the call that is under way
   EXPECT_EQ(calls, 1);
+  // Who watches the same is called in the same round.
+  std::atomic<int> others = 0;
+  const auto other = feed.Subscribe(1, [&] { ++others; });
   log.Write(1, 1);
-  ASSERT_TRUE(Eventually([&] { return feed.position() == 2; }));
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  ASSERT_TRUE(Eventually([&] { return others == 1; }));
+  log.Write(1, 1);
+  ASSERT_TRUE(Eventually([&] { return others == 2; }));
   EXPECT_EQ(calls, 1);
 }
 
@@ -374,7 +450,7 @@ TEST(EventFeed, StandsManyThreads) {
     threads.emplace_back([&, i] {
       while (!stop) {
         log.Write(i + 1, 1);
-        std::this_thread::sleep_for(std::chrono::microseconds(50));
+        std::this_thread::yield();
       }
     });
   }
@@ -384,18 +460,22 @@ TEST(EventFeed, StandsManyThreads) {
   EXPECT_TRUE(Eventually([&] { return feed.position() == Must(log.LastPosition()); }));
 }
 
-TEST(EventFeed, EndsAtOnceThoughEventsFlow) {
+// Its thread ends though more and more comes, and does not wait for the time of its next look.
+TEST(EventFeed, EndsThoughEventsFlow) {
   FakeLog log;
   std::atomic<bool> stop = false;
   std::jthread writer([&] {
     while (!stop) log.Write(1, 10);
   });
   for (int i = 0; i < 20; ++i) {
-    const auto begin = Clock::now();
-    { EventFeed feed(log); }
-    EXPECT_LT(Clock::now() - begin, std::chrono::seconds(5));
+    EventFeed feed(log, {.poll_interval = kNever});
+    const auto watch = feed.Subscribe(std::nullopt, [] {});
   }
   stop = true;
+  writer.join();
+  const int reads = log.reads();
+  log.Write(1, 1);
+  EXPECT_EQ(log.reads(), reads);  // nobody is told any more
 }
 
 }  // namespace

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <set>
+
 #include "server/config.h"
 #include "server/jobs/job_book.h"
 #include "tests/server/server_bed.h"
@@ -126,6 +129,129 @@ TEST_F(AssignmentTest, BringsTheLaserSchedulesOfTheMachine) {
   EXPECT_EQ(assignment.schedules(0).number(), 12);
   EXPECT_EQ(assignment.schedules(0).mode(), "PULSE");
   EXPECT_EQ(assignment.schedules(0).power_percent(), 40.0);
+}
+
+// Job.budget: 0 is the limit of the server; each on both sides of it.
+TEST_F(AssignmentTest, EachLimitOfABudgetIsItsOwn) {
+  config.limit_steps = 10;
+  config.limit_virtual_time_s = 20.0;
+  config.limit_memory_bytes = 30;
+  config.limit_processor_s = 40.0;
+  config.limit_output_bytes = 50;
+  Put(1, "object");
+  const auto given = [&](int difference) {
+    v1::SubmitJobRequest request = Stored(1);
+    v1::Budget& wanted = *request.mutable_job()->mutable_budget();
+    wanted.set_steps(10 + difference);
+    wanted.set_virtual_time_s(20.0 + difference);
+    wanted.set_memory_bytes(30 + difference);
+    wanted.set_processor_s(40.0 + difference);
+    wanted.set_output_bytes(50 + difference);
+    return Must(MakeAssignment(bed.store(), config, Lease(request))).first.assignment().budget();
+  };
+  for (const int difference : {-1, 0, 1}) {
+    const v1::Budget budget = given(difference);
+    const int less = std::min(difference, 0);
+    EXPECT_EQ(budget.steps(), 10 + less);
+    EXPECT_EQ(budget.virtual_time_s(), 20.0 + less);
+    EXPECT_EQ(budget.memory_bytes(), 30 + less);
+    EXPECT_EQ(budget.processor_s(), 40.0 + less);
+    EXPECT_EQ(budget.output_bytes(), 50 + less);
+  }
+}
+
+TEST_F(AssignmentTest, BringsTheMachineAsItIs) {
+  storage::MachineRecord machine = Must(bed.store().GetMachine("mill-1"));
+  machine.parameters = {{"X_MAX", "250"}};
+  machine.state = "state of the machine";
+  Must(bed.store().PutMachine(machine, storage::kAnyRevision));
+  Put(2, "PU;", "mill-1");
+  const storage::LeasedJob leased = Lease(Stored(2, "mill-1"));
+  const auto made = Must(MakeAssignment(bed.store(), config, leased));
+  const v1::WorkerAssignment& assignment = made.first.assignment();
+  EXPECT_EQ(assignment.profile(), machine.profile);
+  ASSERT_EQ(assignment.parameters_size(), 1);
+  EXPECT_EQ(assignment.parameters().at("X_MAX"), "250");
+  EXPECT_EQ(assignment.machine_state(), "state of the machine");
+  EXPECT_EQ(assignment.main_program(), 2);
+  EXPECT_EQ(assignment.job().name(), "jobs/" + std::to_string(leased.job.id));
+  ASSERT_EQ(assignment.programs_size(), 1);
+  EXPECT_FALSE(assignment.programs(0).is_source());  // what is stored is an object
+  EXPECT_TRUE(made.object_revisions.empty());        // nothing is made of it that could be kept
+}
+
+TEST_F(AssignmentTest, AnInlineProgramIsSourceUnlessItSaysThatItIsAnObject) {
+  for (const bool object : {false, true}) {
+    const auto form = object ? v1::PROGRAM_FORM_OBJECT : v1::PROGRAM_FORM_UNSPECIFIED;
+    v1::SubmitJobRequest request;
+    v1::Job& job = *request.mutable_job();
+    job.set_kind(v1::JOB_KIND_SIMULATE);
+    job.set_machine("machines/optimo-1");
+    job.set_inline_slot(9);
+    job.mutable_inline_program()->set_file_name(object ? "part.O" : "part.S");
+    job.mutable_inline_program()->set_form(form);
+    job.mutable_inline_program()->set_content("STOP\n");
+    v1::SlotProgram& further = *job.mutable_simulation()->add_programs();
+    further.set_slot(45);
+    further.mutable_program()->set_file_name(object ? "45.O" : "45.S");
+    further.mutable_program()->set_form(form);
+    further.mutable_program()->set_content("RESUME\n");
+    const auto made = Must(MakeAssignment(bed.store(), config, Lease(request)));
+    const v1::WorkerAssignment& assignment = made.first.assignment();
+    EXPECT_EQ(assignment.main_program(), 9);
+    EXPECT_EQ(Contents(assignment), (Programs{{9, "STOP\n"}, {45, "RESUME\n"}}));
+    EXPECT_EQ(assignment.programs(0).is_source(), !object);
+    EXPECT_EQ(assignment.programs(1).is_source(), !object);
+    EXPECT_EQ(assignment.programs(0).file_name(), object ? "part.O" : "part.S");
+    EXPECT_EQ(assignment.programs(1).file_name(), object ? "45.O" : "45.S");
+  }
+}
+
+// OPT-1.11: the executable of the program that is started comes with it, and its title.
+TEST_F(AssignmentTest, BringsTitlesAndTheExecutableOfTheMainProgram) {
+  Put(32, "object 32");
+  Put(44, "object 44");
+  Must(bed.store().PutExecutable("optimo-1", 32, 1, "executable 32"));
+  const auto made = Must(MakeAssignment(bed.store(), config, Lease(Stored(32))));
+  const v1::WorkerAssignment& assignment = made.first.assignment();
+  ASSERT_EQ(assignment.programs_size(), 2);
+  EXPECT_EQ(assignment.programs(0).title(), "p32");
+  EXPECT_EQ(assignment.programs(0).executable(), "executable 32");
+  EXPECT_EQ(assignment.programs(0).size(), 9);
+  EXPECT_EQ(assignment.programs(1).title(), "p44");
+  EXPECT_EQ(assignment.programs(1).executable(), "");
+  EXPECT_EQ(made.object_revisions.size(), 2U);
+}
+
+// Programs of up to 64 KiB go with the assignment, as long as all of them together have up to 1 MiB.
+TEST_F(AssignmentTest, FollowsTheAssignmentFromAByteMoreThanGoesWithIt) {
+  constexpr std::size_t kInline = 65'536;
+  Put(1, std::string(kInline + 1, 'm'));
+  for (int slot = 2; slot <= 17; ++slot) Put(slot, std::string(kInline, 'a'));
+  Put(18, "b");
+  const auto made = Must(MakeAssignment(bed.store(), config, Lease(Stored(1))));
+  std::set<int> later;
+  for (const auto& [slot, bytes] : made.programs) later.insert(slot);
+  // 2 to 17 fill the megabyte; the main program is too large and 18 comes too late.
+  EXPECT_EQ(later, (std::set<int>{1, 18}));
+  for (const v1::AssignedProgram& program : made.first.assignment().programs()) {
+    EXPECT_EQ(program.content().empty(), later.contains(program.slot())) << program.slot();
+  }
+}
+
+TEST_F(AssignmentTest, WhatCannotBeReadIsAnError) {
+  storage::LeasedJob leased = Lease([&] {
+    Put(1, "object");
+    return Stored(1);
+  }());
+  leased.job.machine = "none";
+  EXPECT_EQ(CodeOf(MakeAssignment(bed.store(), config, leased)), ErrorCode::kCellUnknownMachine);
+  leased.job.machine = "optimo-1";
+  leased.job.specification = "\xFF\xFF";
+  EXPECT_EQ(CodeOf(MakeAssignment(bed.store(), config, leased)), ErrorCode::kCellStoreCorrupt);
+  Must(bed.store().SubmitAndWait({.machine = "optimo-1", .kind = "CHECK"}));  // without its program
+  leased = *Must(bed.store().Acquire("w", {"CHECK"}, std::chrono::hours(1), {}));
+  EXPECT_EQ(CodeOf(MakeAssignment(bed.store(), config, leased)), ErrorCode::kCellNotFound);
 }
 
 // One message is limited: many programs of moderate size follow it as well.

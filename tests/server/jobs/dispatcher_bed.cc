@@ -1,5 +1,8 @@
 #include "tests/server/jobs/dispatcher_bed.h"
 
+#include <algorithm>
+#include <latch>
+
 namespace rmlcell::server {
 
 void FakeLine::Send(v1::WorkResponse message) {
@@ -25,6 +28,12 @@ v1::WorkResponse FakeLine::Next(v1::WorkResponse::MessageCase kind,
     }
     if (!changed_.wait_until(lock, until, [&] { return !messages_.empty(); })) return {};
   }
+}
+
+bool FakeLine::Has(v1::WorkResponse::MessageCase kind) {
+  const std::lock_guard lock(mutex_);
+  return std::ranges::any_of(messages_,
+                             [&](const auto& message) { return message.message_case() == kind; });
 }
 
 std::map<int, std::string> FakeLine::programs() {
@@ -111,10 +120,10 @@ v1::WorkerControl FakeWorker::Ordered() {
 
 Dispatcher& DispatcherBed::dispatcher() {
   if (dispatcher_ == nullptr) {
-    executor_ = std::make_unique<Executor>(4);
+    executor_ = std::make_unique<Executor>(kThreads);
     feed_ = std::make_unique<EventFeed>(hooks);
-    dispatcher_ =
-        std::make_unique<Dispatcher>(hooks, *feed_, config, *executor_, std::string(kToken));
+    dispatcher_ = std::make_unique<Dispatcher>(hooks, *feed_, config, *executor_,
+                                               std::string(kToken), steady_.clock());
   }
   return *dispatcher_;
 }
@@ -122,6 +131,35 @@ Dispatcher& DispatcherBed::dispatcher() {
 EventFeed& DispatcherBed::feed() {
   dispatcher();
   return *feed_;
+}
+
+void DispatcherBed::Advance(std::chrono::milliseconds by) {
+  server.clock().Advance(by);
+  steady_.Advance(by);
+}
+
+// The executor takes work in order: when all its threads meet here, all before is done.
+void DispatcherBed::Settle() {
+  dispatcher();
+  const auto meeting = std::make_shared<std::latch>(kThreads + 1);
+  for (int i = 0; i < kThreads; ++i) {
+    executor_->Post([meeting] { meeting->arrive_and_wait(); });
+  }
+  meeting->arrive_and_wait();
+}
+
+// A worker that leaves wakes those that are idle; this one can do nothing, so it takes nothing.
+void DispatcherBed::LookAgain() {
+  v1::WorkerHello hello = Hello("passing");
+  hello.clear_kinds();
+  FakeWorker(dispatcher(), hello).Leave();
+  Settle();  // it has left, and others were woken
+  Settle();  // they have looked
+}
+
+bool DispatcherBed::Swept() {
+  const int before = hooks.sweeps;  // the next to return may have begun before
+  return Eventually([&] { return hooks.sweeps >= before + 2; });
 }
 
 void DispatcherBed::End() {

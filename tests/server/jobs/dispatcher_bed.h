@@ -17,9 +17,6 @@
 namespace rmlcell::server {
 
 inline constexpr std::string_view kToken = "the token";
-// Long enough for what must not come to come.
-inline constexpr std::chrono::milliseconds kAWhile{120};
-
 // The line to a worker, as seen from its end. Thread-safe.
 class FakeLine final : public WorkerLine {
  public:
@@ -31,6 +28,8 @@ class FakeLine final : public WorkerLine {
   // one when none comes within `patience`.
   v1::WorkResponse Next(v1::WorkResponse::MessageCase kind,
                         std::chrono::milliseconds patience = kPatience);
+  // Whether a message of this kind is there now; nothing is dropped.
+  bool Has(v1::WorkResponse::MessageCase kind);
   std::map<int, std::string> programs();
 
  private:
@@ -53,6 +52,8 @@ class FakeWorker {
 
   // Waits for a job and takes it. False: none came.
   bool Take(std::chrono::milliseconds patience = kPatience);
+  // Whether a job is there to be taken now. Says that none comes only after DispatcherBed::LookAgain.
+  bool HasJob() { return line_->Has(v1::WorkResponse::kAssignment); }
   const v1::WorkerAssignment& assignment() const { return assignment_; }
   std::int64_t job() const { return assignment_.lease().job(); }
 
@@ -83,14 +84,55 @@ class HookedStore final : public ForwardingStore {
  public:
   using ForwardingStore::ForwardingStore;
   std::function<void(bool found)> after_acquire;  // set before the dispatcher is made
+  // So many of the next calls fail, as on a full disk.
+  std::atomic<int> finishes_that_fail = 0;
+  std::atomic<int> renewals_that_fail = 0;
+  std::atomic<int> acquires_that_fail = 0;
+  // Calls that have returned.
+  std::atomic<int> renewals = 0;
+  std::atomic<int> sweeps = 0;
+  std::atomic<int> hints = 0;  // told to the dispatcher and to the feed
+
+  std::unique_ptr<Subscription> Watch(std::function<void()> changed) override {
+    return store_.Watch([this, changed = std::move(changed)] {
+      changed();
+      ++hints;
+    });
+  }
 
   Result<std::optional<storage::LeasedJob>> Acquire(
       std::string_view worker, const std::vector<std::string>& kinds,
       std::chrono::milliseconds duration, const std::vector<storage::NewEvent>& events) override {
+    if (Fails(acquires_that_fail)) return FullDisk();
     auto leased = store_.Acquire(worker, kinds, duration, events);
     if (after_acquire) after_acquire(leased && leased->has_value());
     return leased;
   }
+  Result<storage::JobRecord> Renew(const storage::Lease& lease,
+                                   std::chrono::milliseconds duration) override {
+    auto renewed = Fails(renewals_that_fail) ? FullDisk() : store_.Renew(lease, duration);
+    ++renewals;
+    return renewed;
+  }
+  Result<storage::JobRecord> Finish(const storage::Lease& lease, const storage::JobOutcome& outcome,
+                                    const std::vector<storage::NewArtifact>& artifacts,
+                                    const std::vector<storage::NewEvent>& events) override {
+    if (Fails(finishes_that_fail)) return FullDisk();
+    return store_.Finish(lease, outcome, artifacts, events);
+  }
+  Result<std::vector<storage::JobRecord>> Expire(const storage::LossPolicy& policy) override {
+    auto expired = store_.Expire(policy);
+    ++sweeps;
+    return expired;
+  }
+
+ private:
+  static bool Fails(std::atomic<int>& left) {
+    if (left == 0) return false;
+    --left;
+    return true;
+  }
+  static Error FullDisk() { return {ErrorCode::kCellStoreFailed, "the disk is full", {}}; }
 };
 
 // A dispatcher with all that it needs, made when it is asked for first and ended as Cell::Stop
@@ -110,6 +152,16 @@ class DispatcherBed {
   bool Becomes(std::int64_t id, storage::JobState state) {
     return Eventually([&] { return Job(id).state == state; });
   }
+  // Moves the clock of the store and that of the dispatcher.
+  void Advance(std::chrono::milliseconds by);
+  // Waits until what was posted for workers is worked through.
+  void Settle();
+  // Each idle worker looks for a job once more, and has looked when this returns: what it was not
+  // given until then it is not given.
+  void LookAgain();
+  // Waits until leases were looked at by the clock as it is now.
+  bool Swept();
+
   // Kinds of the events of a job, and the code of the last one when it tells the end.
   std::vector<v1::JobEvent> Events(std::int64_t id);
 
@@ -118,6 +170,9 @@ class DispatcherBed {
   Config config;
 
  private:
+  static constexpr int kThreads = 4;
+
+  TestSteadyClock steady_;
   std::unique_ptr<Executor> executor_;
   std::unique_ptr<EventFeed> feed_;
   std::unique_ptr<Dispatcher> dispatcher_;

@@ -76,7 +76,8 @@ TEST(DispatcherAssign, GivesAJobThatComesLaterAndOnlyOfItsKinds) {
   const std::int64_t job = bed.server.SubmitCheck();
   ASSERT_TRUE(checker.Take());
   EXPECT_EQ(checker.job(), job);
-  EXPECT_FALSE(simulator.Take(kAWhile));
+  bed.LookAgain();
+  EXPECT_FALSE(simulator.HasJob());
 }
 
 TEST(DispatcherAssign, SendsALargeProgramAfterTheAssignment) {
@@ -95,15 +96,12 @@ TEST(DispatcherAssign, SendsALargeProgramAfterTheAssignment) {
 TEST(DispatcherAssign, AJobStoredDuringALookIsGivenOut) {
   DispatcherBed bed;
   std::atomic<bool> done = false;
-  std::atomic<int> hints = 0;
-  const auto watch = bed.server.store().Watch([&] { ++hints; });
   bed.hooks.after_acquire = [&](bool found) {
     if (found || done.exchange(true)) return;
-    const int before = hints;
+    const int before = bed.hooks.hints;
     bed.server.SubmitCheck();
-    Eventually(
-        [&] { return hints > before; });  // the dispatcher was told, and the look is not over
-    std::this_thread::sleep_for(milliseconds(20));
+    // The dispatcher was told, and the look is not over.
+    Eventually([&] { return bed.hooks.hints > before; });
   };
   FakeWorker worker(bed.dispatcher(), "w");
   EXPECT_TRUE(worker.Take());
@@ -235,16 +233,30 @@ TEST(DispatcherLease, IsRenewedByHeartbeatsAndLostWithoutThem) {
   FakeWorker alive(bed.dispatcher(), "alive");
   ASSERT_TRUE(alive.Take());
   FakeWorker other(bed.dispatcher(), "other");
-  for (int i = 0; i < 5; ++i) {  // far beyond the lease, by the clock of the store
-    std::this_thread::sleep_for(
-        milliseconds(210));  // a heartbeat renews after a third of the lease
+  // A heartbeat renews after a third of the lease, and not before.
+  const auto heartbeat = [&] {
     alive.Heartbeat();
-    std::this_thread::sleep_for(milliseconds(30));
-    bed.server.clock().Advance(milliseconds(400));
+    bed.Settle();
+  };
+  bed.Advance(milliseconds(199));
+  heartbeat();
+  EXPECT_EQ(bed.hooks.renewals, 0);
+  bed.Advance(milliseconds(1));
+  heartbeat();
+  EXPECT_EQ(bed.hooks.renewals, 1);
+  heartbeat();
+  EXPECT_EQ(bed.hooks.renewals, 1);
+  for (int i = 0; i < 4; ++i) {  // far beyond the first lease
+    bed.Advance(milliseconds(400));
+    heartbeat();
+    EXPECT_EQ(bed.hooks.renewals, 2 + i);
   }
-  EXPECT_FALSE(other.Take(milliseconds(0)));
+  // It ends 600 ms after the last renewal, at that instant and not before.
+  bed.Advance(milliseconds(599));
+  ASSERT_TRUE(bed.Swept());
+  EXPECT_EQ(bed.Job(job).state, JobState::kRunning);
   EXPECT_EQ(bed.Job(job).attempts, 1);
-  bed.server.clock().Advance(milliseconds(601));
+  bed.Advance(milliseconds(1));
   ASSERT_TRUE(other.Take());
   EXPECT_EQ(other.job(), job);
   EXPECT_EQ(other.assignment().lease().attempt(), 2);
@@ -257,7 +269,7 @@ TEST(DispatcherLease, NothingOfAStaleWorkerIsKept) {
   FakeWorker stale(bed.dispatcher(), "stale");
   ASSERT_TRUE(stale.Take());
   FakeWorker second(bed.dispatcher(), "second");
-  bed.server.clock().Advance(milliseconds(301));
+  bed.Advance(milliseconds(300));
   ASSERT_TRUE(second.Take());
   EXPECT_GT(second.assignment().lease().fence(), stale.assignment().lease().fence());
   stale.Events(1, "stale");
@@ -289,7 +301,9 @@ TEST(DispatcherLease, MessagesForAnotherLeaseAreDropped) {
   one.Finish(v1::Outcome::KIND_FAILED);
   one.Events(5);
   one.HandBack();
-  EXPECT_FALSE(one.line().Next(v1::WorkResponse::kRelease, kAWhile).has_release());
+  bed.Settle();
+  EXPECT_FALSE(one.line().Has(v1::WorkResponse::kRelease));
+  EXPECT_FALSE(one.line().Has(v1::WorkResponse::kEventsStored));
   EXPECT_EQ(bed.Job(first).state, JobState::kSucceeded);
   EXPECT_EQ(bed.Job(second).state, JobState::kRunning);
 }
@@ -301,10 +315,9 @@ TEST(DispatcherLease, AWorkerThatLostItsLeaseIsGivenTheNextJob) {
   const std::int64_t job = bed.server.SubmitCheck();
   FakeWorker worker(bed.dispatcher(), "w");
   ASSERT_TRUE(worker.Take());
-  bed.server.clock().Advance(milliseconds(301));
+  bed.Advance(milliseconds(300));
   ASSERT_TRUE(bed.Becomes(job, JobState::kQueued));
-  std::this_thread::sleep_for(milliseconds(150));  // so that the next heartbeat renews
-  worker.Heartbeat();
+  worker.Heartbeat();  // would renew
   EXPECT_EQ(worker.Released(), false);
   ASSERT_TRUE(worker.Take());
   EXPECT_EQ(worker.job(), job);

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <set>
-
 #include "server/executor.h"
 #include "server/jobs/framing.h"
 #include "server/jobs/job_messages.h"
@@ -93,12 +91,164 @@ TEST(JobMessages, AnEventOfTheLogKnowsItsPlaceThere) {
 }
 
 TEST(JobMessages, EveryStateHasItsOwn) {
-  std::set<int> states;
-  for (const JobState state : {JobState::kQueued, JobState::kRunning, JobState::kSucceeded,
-                               JobState::kFailed, JobState::kCancelled, JobState::kInterrupted}) {
-    EXPECT_NE(ToProto(state), v1::Job::STATE_UNSPECIFIED);
-    EXPECT_TRUE(states.insert(ToProto(state)).second);
-  }
+  EXPECT_EQ(ToProto(JobState::kQueued), v1::Job::STATE_QUEUED);
+  EXPECT_EQ(ToProto(JobState::kRunning), v1::Job::STATE_RUNNING);
+  EXPECT_EQ(ToProto(JobState::kSucceeded), v1::Job::STATE_SUCCEEDED);
+  EXPECT_EQ(ToProto(JobState::kFailed), v1::Job::STATE_FAILED);
+  EXPECT_EQ(ToProto(JobState::kCancelled), v1::Job::STATE_CANCELLED);
+  EXPECT_EQ(ToProto(JobState::kInterrupted), v1::Job::STATE_INTERRUPTED);
+}
+
+// google/protobuf/timestamp.proto: seconds, and the rest in nanoseconds.
+TEST(JobMessages, ATimeIsExactToTheMicrosecond) {
+  const auto time = ToProto(storage::WallTime(std::chrono::microseconds(1'700'000'000'654'321)));
+  EXPECT_EQ(time.seconds(), 1'700'000'000);
+  EXPECT_EQ(time.nanos(), 654'321'000);
+}
+
+storage::WallTime AtSecond(int second) { return storage::WallTime(std::chrono::seconds(second)); }
+
+TEST(JobMessages, AJobHasAllOfItsRecord) {
+  v1::Job wanted;
+  wanted.set_kind(v1::JOB_KIND_CHECK);
+  wanted.set_title("as it was asked for");
+  const storage::JobRecord record{.id = 17,
+                                  .machine = "optimo-1",
+                                  .title = "title",
+                                  .caller = "caller",
+                                  .specification = wanted.SerializeAsString(),
+                                  .state = JobState::kFailed,
+                                  .cancel_requested = true,
+                                  .attempts = 3,
+                                  .attempts_max = 4,
+                                  .outcome = JobOutcome{.state = JobState::kFailed, .step = 9},
+                                  .last_sequence = 55,
+                                  .created_at = AtSecond(1),
+                                  .started_at = AtSecond(2),
+                                  .finished_at = AtSecond(3)};
+  const v1::Job job = ToProto(record);
+  EXPECT_EQ(job.name(), "jobs/17");
+  EXPECT_EQ(job.kind(), v1::JOB_KIND_CHECK);
+  EXPECT_EQ(job.machine(), "machines/optimo-1");
+  EXPECT_EQ(job.title(), "title");
+  EXPECT_EQ(job.caller(), "caller");
+  EXPECT_EQ(job.state(), v1::Job::STATE_FAILED);
+  EXPECT_TRUE(job.cancel_requested());
+  EXPECT_EQ(job.attempts(), 3);
+  EXPECT_EQ(job.attempts_max(), 4);
+  EXPECT_EQ(job.outcome().place().step(), 9);
+  EXPECT_EQ(job.last_sequence(), 55);
+  EXPECT_EQ(job.create_time().seconds(), 1);
+  EXPECT_EQ(job.start_time().seconds(), 2);
+  EXPECT_EQ(job.end_time().seconds(), 3);
+
+  const v1::Job fresh = ToProto(storage::JobRecord{.id = 18, .machine = "mill-1"});
+  EXPECT_FALSE(fresh.has_start_time());
+  EXPECT_FALSE(fresh.has_end_time());
+  EXPECT_FALSE(fresh.has_outcome());
+  EXPECT_FALSE(fresh.cancel_requested());
+  EXPECT_EQ(fresh.state(), v1::Job::STATE_QUEUED);
+  // A specification that cannot be read leaves the rest visible.
+  const v1::Job broken = ToProto(
+      storage::JobRecord{.id = 19, .machine = "mill-1", .specification = "\x08\x01\xFF\xFF"});
+  EXPECT_EQ(broken.name(), "jobs/19");
+  EXPECT_EQ(broken.machine(), "machines/mill-1");
+  EXPECT_EQ(broken.kind(), v1::JOB_KIND_UNSPECIFIED);
+}
+
+TEST(JobMessages, AProductHasItsPathOnTheWebPort) {
+  const v1::Artifact artifact = ToProto(storage::ArtifactRecord{.job = 17,
+                                                                .name = "report",
+                                                                .media_type = "image/svg+xml",
+                                                                .sha256 = "abc",
+                                                                .size = 33});
+  EXPECT_EQ(artifact.name(), "report");
+  EXPECT_EQ(artifact.media_type(), "image/svg+xml");
+  EXPECT_EQ(artifact.size(), 33);
+  EXPECT_EQ(artifact.sha256(), "abc");
+  EXPECT_EQ(artifact.url_path(), "/v1/jobs/17/artifacts/report");
+}
+
+// job.proto inline_slot: 1 to 99; 0: 1.
+TEST(JobMessages, AnInlineProgramHasSlotOneUnlessItSaysAnother) {
+  v1::Job job;
+  EXPECT_EQ(InlineSlotOf(job), 1);
+  job.set_inline_slot(1);
+  EXPECT_EQ(InlineSlotOf(job), 1);
+  job.set_inline_slot(99);
+  EXPECT_EQ(InlineSlotOf(job), 99);
+}
+
+TEST(JobMessages, AnEventIsKeptUnderItsKind) {
+  v1::JobEvent event;
+  EXPECT_EQ(ToRecord(event).kind, "");
+  event.set_message("m");
+  EXPECT_EQ(ToRecord(event).kind, "message");
+  event.mutable_diagnostic();
+  EXPECT_EQ(ToRecord(event).kind, "diagnostic");
+  event.mutable_halted();
+  EXPECT_EQ(ToRecord(event).kind, "halted");
+  event.mutable_resumed();
+  EXPECT_EQ(ToRecord(event).kind, "resumed");
+  event.mutable_signal();
+  EXPECT_EQ(ToRecord(event).kind, "signal");
+  event.mutable_milestone();
+  EXPECT_EQ(ToRecord(event).kind, "milestone");
+  event.set_state(v1::Job::STATE_QUEUED);
+  EXPECT_EQ(ToRecord(event).kind, "state");
+  EXPECT_EQ(StateEvent(JobState::kQueued).payload, event.SerializeAsString());
+  EXPECT_EQ(StateEvent(JobState::kQueued).kind, "state");
+  v1::Outcome outcome;
+  outcome.set_message("over");
+  const storage::NewEvent ended = EndedEvent(outcome);
+  EXPECT_EQ(ended.kind, "ended");
+  ASSERT_TRUE(event.ParseFromString(ended.payload));
+  EXPECT_EQ(event.ended().message(), "over");
+}
+
+// What a worker tells of the end becomes what is kept of it.
+TEST(JobMessages, AnOutcomeOfAWorkerIsRead) {
+  const auto kept = [](v1::Outcome::Kind kind, const std::string& code = "") {
+    v1::Outcome outcome;
+    outcome.set_kind(kind);
+    outcome.set_code(code);
+    outcome.set_message("text");
+    outcome.mutable_place()->set_program(45);
+    outcome.mutable_place()->set_step(6);
+    return OutcomeOf(outcome);
+  };
+  EXPECT_EQ(kept(v1::Outcome::KIND_COMPLETED).state, JobState::kSucceeded);
+  EXPECT_EQ(kept(v1::Outcome::KIND_STOPPED).state, JobState::kSucceeded);
+  EXPECT_EQ(kept(v1::Outcome::KIND_CANCELLED).state, JobState::kCancelled);
+  EXPECT_EQ(kept(v1::Outcome::KIND_FAILED).state, JobState::kFailed);
+  EXPECT_EQ(kept(v1::Outcome::KIND_BUDGET_EXCEEDED).state, JobState::kFailed);
+  EXPECT_EQ(kept(v1::Outcome::KIND_UNSPECIFIED).state, JobState::kFailed);
+  const JobOutcome whole = kept(v1::Outcome::KIND_FAILED, "OPT-E348");
+  EXPECT_EQ(whole.code, ErrorCode::kHoleRadiusZero);
+  EXPECT_EQ(whole.detail, "text");
+  EXPECT_EQ(whole.program, 45);
+  EXPECT_EQ(whole.step, 6);
+  EXPECT_EQ(kept(v1::Outcome::KIND_FAILED).code, std::nullopt);
+  EXPECT_EQ(kept(v1::Outcome::KIND_FAILED, "OPT-E99999").code, std::nullopt);
+}
+
+TEST(JobMessages, AnOutcomeSaysWhatHappenedInItsOwnWordsOrThoseOfTheCatalogue) {
+  JobOutcome outcome{.state = JobState::kSucceeded, .code = ErrorCode::kCellCancelled};
+  EXPECT_EQ(ToProto(outcome).kind(), v1::Outcome::KIND_STOPPED);  // it ended before its last step
+  outcome = {.state = JobState::kInterrupted};
+  EXPECT_EQ(ToProto(outcome).kind(), v1::Outcome::KIND_FAILED);
+  outcome = {.state = JobState::kFailed, .code = ErrorCode::kHoleRadiusZero};
+  EXPECT_EQ(ToProto(outcome).message(), Lookup(ErrorCode::kHoleRadiusZero).when);
+  EXPECT_FALSE(ToProto(outcome).has_place());
+  outcome.detail = "radius is 0";
+  EXPECT_EQ(ToProto(outcome).message(), "radius is 0");
+  outcome.program = 1;
+  outcome.step = 1;
+  EXPECT_EQ(ToProto(outcome).place().program(), 1);
+  EXPECT_EQ(ToProto(outcome).place().step(), 1);
+  EXPECT_EQ(ToProto(JobOutcome{.state = JobState::kSucceeded}).code(), "");
+  EXPECT_EQ(WorkerDiedOutcome().state, JobState::kFailed);
+  EXPECT_EQ(WorkerDiedOutcome().code, ErrorCode::kCellWorkerDied);
 }
 
 TEST(Executor, RunsAllThatWasPostedAndSurvivesAnException) {

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <memory>
 #include <sstream>
+#include <thread>
 
 #include "tests/server/server_bed.h"
 
@@ -31,7 +32,8 @@ class WorkerProcessesTest : public testing::Test {
             .join_token = "secret",
             .log_level = "info",
             .log_format = "json",
-            .count = count};
+            .count = count,
+            .clock = steady_.clock()};
   }
   std::string lives() { return folder_.File("lives"); }
   std::string Text(const std::string& name) {
@@ -50,16 +52,14 @@ class WorkerProcessesTest : public testing::Test {
   static bool IsAlive(pid_t process) { return ::kill(process, 0) == 0; }
 
   storage::TestDirectory folder_;
+  TestSteadyClock steady_;  // stands still, unless a test moves it
 };
 
 TEST_F(WorkerProcessesTest, StartsSoManyAndEndsThemInOrder) {
   auto processes = Must(WorkerProcesses::Start(Options("exec sleep 60", 3)));
   ASSERT_TRUE(Eventually([&] { return Lives().size() == 3; }));
   for (const pid_t process : Lives()) EXPECT_TRUE(IsAlive(process));
-  const auto begin = std::chrono::steady_clock::now();
-  processes->Stop(std::chrono::seconds(10));
-  EXPECT_LT(std::chrono::steady_clock::now() - begin,
-            std::chrono::seconds(5));  // SIGTERM was enough
+  processes->Stop(std::chrono::seconds(10));  // SIGTERM is enough: its patience never ends
   for (const pid_t process : Lives()) EXPECT_FALSE(IsAlive(process));
   EXPECT_EQ(Lives().size(), 3U);
 }
@@ -68,9 +68,13 @@ TEST_F(WorkerProcessesTest, StartsSoManyAndEndsThemInOrder) {
 TEST_F(WorkerProcessesTest, StartsAnotherForOneThatWasKilled) {
   auto processes = Must(WorkerProcesses::Start(Options("exec sleep 60")));
   ASSERT_TRUE(Eventually([&] { return Lives().size() == 1; }));
+  steady_.Advance(std::chrono::seconds(5));  // a healthy life: at once
+  ASSERT_TRUE(steady_.GoneRound());
   ::kill(Lives()[0], SIGKILL);
   ASSERT_TRUE(Eventually([&] { return Lives().size() == 2; }));
   EXPECT_NE(Lives()[0], Lives()[1]);
+  steady_.Advance(std::chrono::seconds(5));
+  ASSERT_TRUE(steady_.GoneRound());
   ::kill(Lives()[1], SIGKILL);
   ASSERT_TRUE(Eventually([&] { return Lives().size() == 3; }));
   processes->Stop(std::chrono::seconds(10));
@@ -79,26 +83,43 @@ TEST_F(WorkerProcessesTest, StartsAnotherForOneThatWasKilled) {
 
 TEST_F(WorkerProcessesTest, StartsOneThatFailsAtOnceMoreAndMoreSlowly) {
   auto processes = Must(WorkerProcesses::Start(Options("exit 3")));
-  ASSERT_TRUE(Eventually([&] { return Lives().size() >= 3; }));
-  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-  // Waits of 0.1, 0.3, 0.7, 1.5 s: at most five within the time, and not a busy loop of hundreds.
-  EXPECT_LE(Lives().size(), 6U);
-  processes->Stop(std::chrono::milliseconds(0));
-  const std::size_t at_stop = Lives().size();
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  EXPECT_EQ(Lives().size(), at_stop);
+  std::size_t lives = 1;
+  for (const int delay_ms : {100, 300, 700}) {
+    // A process that was looked after is gone altogether.
+    ASSERT_TRUE(Eventually([&] { return Lives().size() == lives && !IsAlive(Lives().back()); }));
+    steady_.Advance(std::chrono::milliseconds(delay_ms - 1));
+    ASSERT_TRUE(steady_.GoneRound());
+    EXPECT_EQ(Lives().size(), lives);
+    steady_.Advance(std::chrono::milliseconds(1));
+    ++lives;
+  }
+  ASSERT_TRUE(Eventually([&] { return Lives().size() == lives; }));
 }
 
+TEST_F(WorkerProcessesTest, StartsNoMoreWhenItIsToldSo) {
+  auto processes = Must(WorkerProcesses::Start(Options("exec sleep 60", 2)));
+  ASSERT_TRUE(Eventually([&] { return Lives().size() == 2; }));
+  processes->StartNoMore();
+  steady_.Advance(std::chrono::seconds(60));
+  ::kill(Lives()[0], SIGKILL);
+  processes->Stop(std::chrono::seconds(10));
+  EXPECT_EQ(Lives().size(), 2U);
+  for (const pid_t process : Lives()) EXPECT_FALSE(IsAlive(process));
+}
+
+// Patience on both sides of its end, by a clock of the test.
 TEST_F(WorkerProcessesTest, KillsWhatDoesNotEnd) {
-  auto processes =
-      Must(WorkerProcesses::Start(Options("trap '' TERM\nwhile :; do sleep 0.05; done")));
-  ASSERT_TRUE(Eventually([&] { return Lives().size() == 1; }));
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));  // until it has its trap
-  const auto begin = std::chrono::steady_clock::now();
-  processes->Stop(std::chrono::milliseconds(200));
-  const auto took = std::chrono::steady_clock::now() - begin;
-  EXPECT_GE(took, std::chrono::milliseconds(200));
-  EXPECT_LT(took, std::chrono::seconds(5));
+  auto processes = Must(WorkerProcesses::Start(
+      Options("trap 'echo > " + folder_.File("asked") + "' TERM\necho > " + folder_.File("ready") +
+              "\nwhile :; do sleep 0.05; done")));
+  ASSERT_TRUE(Eventually([&] { return !Text("ready").empty(); }));
+  std::jthread stopping([&] { processes->Stop(std::chrono::milliseconds(200)); });
+  ASSERT_TRUE(Eventually([&] { return !Text("asked").empty(); }));
+  steady_.Advance(std::chrono::milliseconds(199));
+  ASSERT_TRUE(steady_.GoneRound());
+  EXPECT_TRUE(IsAlive(Lives()[0]));
+  steady_.Advance(std::chrono::milliseconds(1));
+  stopping.join();
   EXPECT_FALSE(IsAlive(Lives()[0]));
 }
 

@@ -18,7 +18,7 @@ RawClient::RawClient(int port, int receive_buffer_bytes)
   if (receive_buffer_bytes > 0) {
     setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &receive_buffer_bytes, sizeof(receive_buffer_bytes));
   }
-  timeval patience{.tv_sec = 10, .tv_usec = 0};
+  timeval patience{.tv_sec = 60, .tv_usec = 0};
   setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof(patience));
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -132,9 +132,9 @@ bool RawClient::AtEnd() {
   return size == 0 || (size < 0 && errno == ECONNRESET);
 }
 
-bool RawClient::SilentFor(std::chrono::milliseconds time) {
+bool RawClient::AnswersWithin(std::chrono::milliseconds time) {
   pollfd one{.fd = socket_, .events = POLLIN, .revents = 0};
-  return buffer_.empty() && poll(&one, 1, static_cast<int>(time.count())) == 0;
+  return !buffer_.empty() || poll(&one, 1, static_cast<int>(time.count())) != 0;
 }
 
 std::string Post(std::string_view path, std::string_view content_type, std::string_view body,

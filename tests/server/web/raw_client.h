@@ -20,7 +20,7 @@ struct RawResponse {
   }
 };
 
-// A socket and just enough HTTP to look at every byte. Reads give up after ten seconds.
+// A socket and just enough HTTP to look at every byte. Reads give up after a minute.
 class RawClient {
  public:
   explicit RawClient(int port, int receive_buffer_bytes = 0);
@@ -43,8 +43,8 @@ class RawClient {
   std::string ReadUntil(std::string_view mark);
   // True when the other side closed and nothing is left to be read.
   bool AtEnd();
-  // True when nothing arrives in this time.
-  bool SilentFor(std::chrono::milliseconds time);
+  // True as soon as there is something to read, an end included; false when nothing came in this time.
+  bool AnswersWithin(std::chrono::milliseconds time);
 
  private:
   bool Fill();

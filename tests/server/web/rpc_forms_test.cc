@@ -280,8 +280,16 @@ TEST_F(RpcForms, Deadlines) {
                                   "Connect-Timeout-Ms: 100\r\n"));
   EXPECT_NE(stream.body.find("event: error\ndata: {\"code\":\"deadline_exceeded\""),
             std::string::npos);
-  EXPECT_TRUE(FakeCell::Eventually([&] { return cell_.counters().open == 0; }));
-  EXPECT_EQ(cell_.counters().cancelled, 3);
+  // Each call that came as far as its handler was cancelled there; on a slow machine not every one does.
+  const auto all_cancelled = [&] {
+    return cell_.counters().open == 0 && cell_.counters().cancelled == cell_.counters().calls;
+  };
+  EXPECT_TRUE(FakeCell::Eventually([&] {
+    Exchange(cell_.port(), Post(kGetJob, "application/json", R"({"name":"jobs/slow"})",
+                                "Connect-Timeout-Ms: 100\r\n"));
+    return cell_.counters().cancelled > 0;
+  }));
+  EXPECT_TRUE(FakeCell::Eventually(all_cancelled));
 }
 
 // The health service has a descriptor, so it is offered like any other.

@@ -20,10 +20,10 @@ std::string Watch(std::string_view job) {
 }
 
 WebOptions Quick() {
-  WebOptions options;
-  options.port = 0;
+  WebOptions options = AnyPort();
   options.quiet_interval = milliseconds(200);
   options.write_timeout = milliseconds(1500);
+  options.linger_timeout = milliseconds(200);
   return options;
 }
 
@@ -116,10 +116,10 @@ TEST_F(Streams, StopTellsClientsToComeBack) {
             std::string::npos);
   EXPECT_NE(connect.ReadUntil("0\r\n\r\n").find("{\"error\":{\"code\":\"unavailable\""),
             std::string::npos);
-  const auto begun = std::chrono::steady_clock::now();
-  cell_.web().Stop(milliseconds(3000));
-  EXPECT_LT(std::chrono::steady_clock::now() - begun, milliseconds(2900));
+  cell_.web().Stop(std::chrono::minutes(1));  // nothing is left that it would have to cut off
   EXPECT_EQ(cell_.counters().open, 0);
+  EXPECT_EQ(cell_.counters().cancelled, 0);
+  for (const WebLogEntry& entry : cell_.log()) EXPECT_TRUE(entry.finished) << entry.path;
 }
 
 // Streams that do not end are cut off when the grace is over.
@@ -132,9 +132,7 @@ TEST_F(Streams, StopEndsWhatDoesNotEnd) {
   flood.ReadHead();
   RawClient half(cell_.port());
   half.Send("GET / HTT");
-  const auto begun = std::chrono::steady_clock::now();
   cell_.web().Stop(milliseconds(300));
-  EXPECT_LT(std::chrono::steady_clock::now() - begun, milliseconds(2000));
   EXPECT_TRUE(FakeCell::Eventually([&] { return cell_.counters().open == 0; }));
   EXPECT_EQ(cell_.web().connections(), 0U);
 }
@@ -184,18 +182,16 @@ TEST(SlowReader, SlowsItsProducerOnly) {
   RawClient client(cell.port(), 65536);
   client.Send(Watch("flood"));
   EXPECT_EQ(client.ReadHead().status, 200);
-  int produced = -1;
-  EXPECT_TRUE(FakeCell::Eventually([&] {
-    std::this_thread::sleep_for(milliseconds(100));
-    const int before = produced;
-    produced = cell.counters().produced;
-    return produced > 0 && produced == before;
-  }));
-  // Messages of 100 kB; the buffers of a loopback connection hold some megabytes at most.
-  EXPECT_LT(produced, 100);
-  EXPECT_EQ(Exchange(cell.port(), Get("/healthz")).status, 200);
-  for (int i = 0; i < 200; ++i) ASSERT_NE(client.ReadUntil("\r\nid: ").size(), 0U);
-  EXPECT_GE(cell.counters().produced, 200);  // it went on when it was read
+  // While others have hundreds of their calls answered by the same threads it makes no more messages of
+  // 100 kB than the windows of gRPC and the buffers of the connection hold: some tens of megabytes.
+  for (int i = 0; i < 300; ++i) {
+    ASSERT_EQ(Exchange(cell.port(), Post(kGetJob, "application/json", R"({"name":"jobs/1"})")).status,
+              200);
+  }
+  EXPECT_GT(cell.counters().produced, 0);
+  EXPECT_LT(cell.counters().produced, 500);
+  for (int i = 0; i < 600; ++i) ASSERT_NE(client.ReadUntil("\r\nid: ").size(), 0U);
+  EXPECT_GE(cell.counters().produced, 600);  // it went on when it was read
 }
 
 // Several threads of the gateway serve the same requests.

@@ -1,0 +1,343 @@
+// The bounds of a submission and of lists, each on both sides; values from proto/rmlcell/v1/job.proto.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <future>
+#include <limits>
+
+#include "server/config.h"
+#include "server/jobs/job_book.h"
+#include "server/names.h"
+#include "tests/server/server_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using storage::JobState;
+constexpr auto kInvalid = ErrorCode::kCellInvalidArgument;
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+class JobLimits : public testing::Test {
+ protected:
+  static v1::SubmitJobRequest Simulate() {
+    v1::SubmitJobRequest request;
+    request.mutable_job()->set_kind(v1::JOB_KIND_SIMULATE);
+    request.mutable_job()->set_machine("machines/optimo-1");
+    request.mutable_job()->mutable_inline_program()->set_file_name("part.S");
+    request.mutable_job()->mutable_inline_program()->set_content("STOP\n");
+    return request;
+  }
+  Result<v1::Job> Submit(const v1::SubmitJobRequest& request) {
+    std::promise<Result<v1::Job>> answer;
+    book.Submit(request, "tester", [&](Result<v1::Job> job) { answer.set_value(std::move(job)); });
+    return answer.get_future().get();
+  }
+  // What the server says to a job with this change, asked only.
+  std::optional<ErrorCode> Asked(const std::function<void(v1::Job&)>& change) {
+    v1::SubmitJobRequest request = Simulate();
+    change(*request.mutable_job());
+    request.set_validate_only(true);
+    return CodeOf(Submit(request));
+  }
+  storage::JobRecord Record(const v1::Job& job) {
+    return Must(bed.store().GetJob(Must(ParseJobName(job.name()))));
+  }
+  // So many jobs without a program, in few commits.
+  void Fill(int count) {
+    std::atomic<int> done = 0;
+    for (int i = 0; i < count; ++i) {
+      bed.store().Submit({.machine = "optimo-1", .kind = "CHECK"},
+                         [&done](const Result<storage::SubmittedJob>&) { ++done; });
+    }
+    ASSERT_TRUE(Eventually([&] { return done == count; }));
+  }
+  v1::ListJobsResponse Page(int size, const std::string& token = "") {
+    v1::ListJobsRequest request;
+    request.set_page_size(size);
+    request.set_page_token(token);
+    return Must(book.List(request));
+  }
+
+  ServerBed bed;
+  Config config;
+  JobBook book{bed.store(), config};
+};
+
+// ListJobsRequest.page_size: 0 is 50, at most 1000, below 0 is refused.
+TEST_F(JobLimits, PagesHaveFiftyJobsOrSoManyAsWantedUpToAThousand) {
+  Fill(1002);
+  EXPECT_EQ(Page(0).jobs_size(), 50);
+  EXPECT_EQ(Page(0).next_page_token(), "953");
+  EXPECT_EQ(Page(1).jobs_size(), 1);
+  EXPECT_EQ(Page(1).jobs(0).name(), "jobs/1002");
+  EXPECT_EQ(Page(999).jobs_size(), 999);
+  for (const int size : {1000, 1001, std::numeric_limits<int>::max()}) {
+    const v1::ListJobsResponse page = Page(size);
+    EXPECT_EQ(page.jobs_size(), 1000) << size;
+    const v1::ListJobsResponse rest = Page(size, page.next_page_token());
+    ASSERT_EQ(rest.jobs_size(), 2) << size;
+    EXPECT_EQ(rest.jobs(0).name(), "jobs/2");
+    EXPECT_EQ(rest.jobs(1).name(), "jobs/1");
+    EXPECT_EQ(rest.next_page_token(), "");
+  }
+  for (const int size : {-1, std::numeric_limits<int>::min()}) {
+    v1::ListJobsRequest request;
+    request.set_page_size(size);
+    EXPECT_EQ(CodeOf(book.List(request)), kInvalid) << size;
+  }
+}
+
+// A page goes on behind the last job of the page before, whatever was submitted meanwhile.
+TEST_F(JobLimits, PagesHaveEachJobOnce) {
+  Fill(5);
+  std::vector<std::string> names;
+  std::string token;
+  do {
+    const v1::ListJobsResponse page = Page(2, token);
+    for (const v1::Job& job : page.jobs()) names.push_back(job.name());
+    token = page.next_page_token();
+    Fill(1);
+  } while (!token.empty());
+  EXPECT_THAT(names, testing::ElementsAre("jobs/5", "jobs/4", "jobs/3", "jobs/2", "jobs/1"));
+  EXPECT_EQ(Page(2, "1").jobs_size(), 0);
+  EXPECT_EQ(Page(2, "9223372036854775807").jobs_size(), 2);
+}
+
+TEST_F(JobLimits, OfTextsAndAttempts) {
+  v1::SubmitJobRequest request = Simulate();
+  request.set_request_id(std::string(64, 'r'));
+  request.mutable_job()->set_title(std::string(200, 't'));
+  request.mutable_job()->set_attempts_max(10);
+  const storage::JobRecord record = Record(Must(Submit(request)));
+  EXPECT_EQ(record.request_id, std::string(64, 'r'));
+  EXPECT_EQ(record.title, std::string(200, 't'));
+  EXPECT_EQ(record.attempts_max, 10);
+  for (const int attempts : {0, 1, 10}) {
+    EXPECT_EQ(Asked([&](v1::Job& job) { job.set_attempts_max(attempts); }), std::nullopt);
+  }
+  request.set_request_id(std::string(65, 'r'));
+  EXPECT_EQ(CodeOf(Submit(request)), kInvalid);
+  // Characters count, not bytes.
+  std::string umlauts;
+  for (int i = 0; i < 200; ++i) umlauts += "\xC3\xA4";
+  EXPECT_EQ(Asked([&](v1::Job& job) { job.set_title(umlauts); }), std::nullopt);
+  EXPECT_EQ(Asked([&](v1::Job& job) { job.set_title(umlauts + "a"); }), kInvalid);
+  // Without a wish that of the configuration.
+  config.jobs_attempts = 3;
+  v1::SubmitJobRequest plain = Simulate();
+  EXPECT_EQ(Record(Must(Submit(plain))).attempts_max, 3);
+  plain.mutable_job()->set_attempts_max(1);
+  EXPECT_EQ(Record(Must(Submit(plain))).attempts_max, 1);
+}
+
+TEST_F(JobLimits, OfBudgets) {
+  const auto asked = [&](const std::function<void(v1::Budget&)>& change) {
+    return Asked([&](v1::Job& job) { change(*job.mutable_budget()); });
+  };
+  for (const std::int64_t wanted : {0, 1}) {
+    EXPECT_EQ(asked([&](v1::Budget& budget) {
+                budget.set_steps(wanted);
+                budget.set_memory_bytes(wanted);
+                budget.set_output_bytes(wanted);
+                budget.set_virtual_time_s(static_cast<double>(wanted));
+                budget.set_processor_s(static_cast<double>(wanted));
+              }),
+              std::nullopt);
+  }
+  EXPECT_EQ(asked([](v1::Budget& budget) { budget.set_steps(-1); }), kInvalid);
+  EXPECT_EQ(asked([](v1::Budget& budget) { budget.set_memory_bytes(-1); }), kInvalid);
+  EXPECT_EQ(asked([](v1::Budget& budget) { budget.set_output_bytes(-1); }), kInvalid);
+  for (const double bad : {-0.001, -kInfinite, std::nan("")}) {
+    EXPECT_EQ(asked([&](v1::Budget& budget) { budget.set_virtual_time_s(bad); }), kInvalid) << bad;
+    EXPECT_EQ(asked([&](v1::Budget& budget) { budget.set_processor_s(bad); }), kInvalid) << bad;
+  }
+}
+
+TEST_F(JobLimits, OfSimulations) {
+  const auto asked = [&](const std::function<void(v1::SimulationOptions&)>& change) {
+    return Asked([&](v1::Job& job) { change(*job.mutable_simulation()); });
+  };
+  using Options = v1::SimulationOptions;
+  struct Range {
+    const char* what;
+    std::function<void(Options&, double)> set;
+    double max;
+    double above;
+  };
+  const std::vector<Range> ranges = {
+      {"override", [](Options& o, double v) { o.set_override_percent(v); }, 145.0, 145.001},
+      {"tolerance", [](Options& o, double v) { o.set_toolpath_tolerance_mm(v); }, 100.0, 100.001},
+      {"pace", [](Options& o, double v) { o.set_pace(v); }, 1000.0, 1000.001}};
+  for (const Range& range : ranges) {
+    for (const double good : {0.0, 0.001, range.max}) {
+      EXPECT_EQ(asked([&](Options& o) { range.set(o, good); }), std::nullopt) << range.what << good;
+    }
+    for (const double bad : {-0.001, range.above, std::nan(""), kInfinite}) {
+      EXPECT_EQ(asked([&](Options& o) { range.set(o, bad); }), kInvalid) << range.what << bad;
+    }
+  }
+  for (const auto mode : {v1::OPERATING_MODE_UNSPECIFIED, v1::OPERATING_MODE_REMOTE,
+                          v1::OPERATING_MODE_CYCLE, v1::OPERATING_MODE_SINGLE,
+                          v1::OPERATING_MODE_REPEAT}) {
+    EXPECT_EQ(asked([&](Options& o) { o.set_mode(mode); }), std::nullopt) << mode;
+  }
+  EXPECT_EQ(asked([](Options& o) { o.set_mode(static_cast<v1::OperatingMode>(99)); }), kInvalid);
+}
+
+TEST_F(JobLimits, OfPlacesWhereARunHalts) {
+  const auto asked = [&](bool simul, int program, int step) {
+    return Asked([&](v1::Job& job) {
+      v1::SimulationOptions& options = *job.mutable_simulation();
+      v1::StepPlace& place = simul ? *options.mutable_simul() : *options.mutable_breakpoint();
+      place.set_program(program);
+      place.set_step(step);
+    });
+  };
+  for (const bool simul : {false, true}) {
+    for (const int program : {0, 1, 99}) EXPECT_EQ(asked(simul, program, 1), std::nullopt);
+    for (const int program : {-1, 100}) {
+      EXPECT_EQ(asked(simul, program, 1), ErrorCode::kProgramNumber) << program;
+    }
+    for (const int step : {0, -1}) EXPECT_EQ(asked(simul, 1, step), kInvalid) << step;
+  }
+}
+
+TEST_F(JobLimits, OfInputsOverTime) {
+  const auto asked = [&](double at_s, int kind, int index, double value) {
+    return Asked([&](v1::Job& job) {
+      v1::ScriptedInput& input = *job.mutable_simulation()->add_inputs();
+      input.set_at_s(at_s);
+      input.set_kind(static_cast<v1::ScriptedInput::Kind>(kind));
+      input.set_index(index);
+      input.set_value(value);
+    });
+  };
+  constexpr int kLogical = v1::ScriptedInput::KIND_LOGICAL_INPUT;
+  for (const int index : {0, 1, 99}) EXPECT_EQ(asked(0.0, kLogical, index, 1.0), std::nullopt);
+  for (const int index : {-1, 100}) EXPECT_EQ(asked(0.0, kLogical, index, 1.0), kInvalid) << index;
+  for (const double at_s : {-0.001, kInfinite, std::nan("")}) {
+    EXPECT_EQ(asked(at_s, kLogical, 1, 1.0), kInvalid) << at_s;
+  }
+  for (const int kind : {0, 99}) EXPECT_EQ(asked(1.0, kind, 1, 1.0), kInvalid) << kind;
+}
+
+// Job.inline_slot: 1 to 99, 0 is 1. SlotProgram.slot: 1 to 99, no slot twice, nor that of the inline program.
+TEST_F(JobLimits, OfSlots) {
+  const auto asked = [&](int inline_slot, const std::vector<int>& further) {
+    return Asked([&](v1::Job& job) {
+      job.set_inline_slot(inline_slot);
+      for (const int slot : further) {
+        v1::SlotProgram& program = *job.mutable_simulation()->add_programs();
+        program.set_slot(slot);
+        program.mutable_program()->set_content("STOP\n");
+      }
+    });
+  };
+  for (const int slot : {0, 1, 99}) EXPECT_EQ(asked(slot, {}), std::nullopt) << slot;
+  for (const int slot : {-1, 100}) EXPECT_EQ(asked(slot, {}), ErrorCode::kProgramNumber) << slot;
+  EXPECT_EQ(asked(0, {2, 99}), std::nullopt);
+  EXPECT_EQ(asked(5, {1, 4}), std::nullopt);
+  EXPECT_EQ(asked(0, {1}), kInvalid);
+  EXPECT_EQ(asked(5, {5}), kInvalid);
+  EXPECT_EQ(asked(0, {4, 4}), kInvalid);
+  for (const int slot : {-1, 0, 100}) EXPECT_EQ(asked(0, {slot}), ErrorCode::kProgramNumber) << slot;
+}
+
+// limits.program_bytes for the program and for each further one.
+TEST_F(JobLimits, OfProgramBytes) {
+  config.limit_program_bytes = 100;
+  const auto asked = [&](std::size_t main, std::size_t further) {
+    return Asked([&](v1::Job& job) {
+      job.mutable_inline_program()->set_content(std::string(main, ';'));
+      v1::SlotProgram& program = *job.mutable_simulation()->add_programs();
+      program.set_slot(4);
+      program.mutable_program()->set_content(std::string(further, ';'));
+    });
+  };
+  EXPECT_EQ(asked(100, 100), std::nullopt);
+  EXPECT_EQ(asked(101, 1), ErrorCode::kCellTooLarge);
+  EXPECT_EQ(asked(1, 101), ErrorCode::kCellTooLarge);
+  EXPECT_EQ(asked(0, 1), ErrorCode::kCellEmptyProgram);
+  EXPECT_EQ(asked(1, 0), ErrorCode::kCellEmptyProgram);
+}
+
+// What is kept of a job: its wishes as they were, its bytes once, beside them.
+TEST_F(JobLimits, ASubmissionIsKeptAsItWas) {
+  v1::SubmitJobRequest request = Simulate();
+  EXPECT_FALSE(Must(book.Get(Must(Submit(request)).name())).has_simulation());
+  v1::Job& wanted = *request.mutable_job();
+  wanted.set_inline_slot(7);
+  wanted.mutable_budget()->set_steps(55);
+  v1::SlotProgram& further = *wanted.mutable_simulation()->add_programs();
+  further.set_slot(8);
+  further.mutable_program()->set_file_name("8.S");
+  further.mutable_program()->set_content("RESUME\n");
+  const v1::Job job = Must(book.Get(Must(Submit(request)).name()));
+  EXPECT_EQ(job.kind(), v1::JOB_KIND_SIMULATE);
+  EXPECT_EQ(job.inline_slot(), 7);
+  EXPECT_EQ(job.budget().steps(), 55);
+  EXPECT_EQ(job.inline_program().file_name(), "part.S");
+  EXPECT_EQ(job.inline_program().content(), "");
+  ASSERT_EQ(job.simulation().programs_size(), 1);
+  EXPECT_EQ(job.simulation().programs(0).slot(), 8);
+  EXPECT_EQ(job.simulation().programs(0).program().content(), "");
+  ASSERT_EQ(job.artifacts_size(), 2);
+  const std::int64_t id = Must(ParseJobName(job.name()));
+  EXPECT_EQ(Must(book.ReadArtifact(id, kMainAttachment)), "STOP\n");
+  EXPECT_EQ(Must(book.ReadArtifact(id, AttachmentName(8))), "RESUME\n");
+  EXPECT_EQ(Must(book.FindArtifact(id, AttachmentName(8))).media_type, "application/octet-stream");
+  const auto events = Must(bed.store().JobEvents(id, 0, 10));
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].kind, "state");
+}
+
+// SubmitJobRequest.validate_only: the answer has no name, whatever the client wrote there.
+TEST_F(JobLimits, AskingOnlyNamesNothing) {
+  v1::SubmitJobRequest request = Simulate();
+  request.mutable_job()->set_name("jobs/5");
+  request.set_validate_only(true);
+  const v1::Job job = Must(Submit(request));
+  EXPECT_EQ(job.name(), "");
+  EXPECT_EQ(job.inline_program().file_name(), "part.S");
+}
+
+// A stored program by its name: the bytes at the time of submission.
+TEST_F(JobLimits, AStoredProgramIsAttached) {
+  Must(bed.store().PutPrograms("optimo-1", {{.slot = 45, .object = "object 45"}}, {}));
+  v1::SubmitJobRequest request = Simulate();
+  request.mutable_job()->set_program("machines/optimo-1/programs/45");
+  const std::int64_t id = Must(ParseJobName(Must(Submit(request)).name()));
+  Must(bed.store().PutPrograms("optimo-1", {{.slot = 45, .object = "another"}}, {}));
+  EXPECT_EQ(Must(book.ReadArtifact(id, kMainAttachment)), "object 45");
+  EXPECT_EQ(Asked([](v1::Job& job) { job.set_program("machines/optimo-1/programs/x"); }), kInvalid);
+  EXPECT_EQ(Asked([](v1::Job& job) { job.set_program("machines/optimo-1/programs/100"); }),
+            ErrorCode::kProgramNumber);
+}
+
+// Snapshots have at most 200 jobs: those that have not ended first, then the newest that have.
+TEST_F(JobLimits, ASnapshotHasTwoHundredJobs) {
+  Fill(3);
+  for (int i = 0; i < 3; ++i) {
+    Must(bed.store().Finish(bed.Lease("CHECK"), {.state = JobState::kSucceeded}, {}, {}));
+  }
+  Fill(198);
+  v1::CellSnapshot snapshot = Must(book.Snapshot());
+  ASSERT_EQ(snapshot.jobs_size(), 200);
+  EXPECT_EQ(snapshot.sequence(), Must(bed.store().LastPosition()));
+  EXPECT_EQ(snapshot.jobs(0).name(), "jobs/201");
+  EXPECT_EQ(snapshot.jobs(199).name(), "jobs/2");
+  EXPECT_EQ(snapshot.jobs(199).state(), v1::Job::STATE_SUCCEEDED);
+  Fill(2);
+  snapshot = Must(book.Snapshot());
+  EXPECT_EQ(snapshot.jobs_size(), 200);
+  EXPECT_EQ(snapshot.jobs(199).name(), "jobs/4");
+  Fill(1);
+  snapshot = Must(book.Snapshot());
+  EXPECT_EQ(snapshot.jobs_size(), 200);
+  EXPECT_EQ(snapshot.jobs(199).name(), "jobs/5");
+}
+
+}  // namespace
+}  // namespace rmlcell::server

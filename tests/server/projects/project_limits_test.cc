@@ -1,0 +1,158 @@
+// The bounds of projects and of their lists, each on both sides; values from proto/rmlcell/v1/project.proto.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+#include "server/projects/project_book.h"
+#include "tests/server/server_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+class ProjectLimits : public testing::Test {
+ protected:
+  // What the server says to a project with this change, asked only.
+  std::optional<ErrorCode> Asked(const std::function<void(v1::Project&)>& change) {
+    v1::CreateProjectRequest request;
+    request.set_project_id("asked");
+    change(*request.mutable_project());
+    request.set_validate_only(true);
+    const auto created = book.Create(request);
+    return created ? std::nullopt : std::optional(created.error.error.code);
+  }
+  void Fill(int count) {
+    for (int i = 0; i < count; ++i) {
+      const std::string number = std::to_string(10'000 + i);
+      Must(bed.store().PutProject({.id = "p" + number, .title = "t" + number}, 0));
+    }
+  }
+  v1::ListProjectsResponse Page(int size, const std::string& token = "") {
+    v1::ListProjectsRequest request;
+    request.set_page_size(size);
+    request.set_page_token(token);
+    return Must(book.List(request));
+  }
+
+  ServerBed bed;
+  ProjectBook book{bed.store()};
+};
+
+// ListProjectsRequest.page_size: 0 is 100, at most 1000, below 0 is refused.
+TEST_F(ProjectLimits, PagesHaveAHundredProjectsOrSoManyAsWantedUpToAThousand) {
+  Fill(1002);
+  EXPECT_EQ(Page(0).projects_size(), 100);
+  EXPECT_EQ(Page(0).next_page_token(), "p10099");
+  EXPECT_EQ(Page(1).projects_size(), 1);
+  EXPECT_EQ(Page(1).projects(0).name(), "projects/p10000");
+  EXPECT_EQ(Page(1, "p10000").projects(0).name(), "projects/p10001");
+  EXPECT_EQ(Page(999).projects_size(), 999);
+  for (const int size : {1000, 1001, std::numeric_limits<int>::max()}) {
+    const v1::ListProjectsResponse page = Page(size);
+    EXPECT_EQ(page.projects_size(), 1000) << size;
+    const v1::ListProjectsResponse rest = Page(size, page.next_page_token());
+    ASSERT_EQ(rest.projects_size(), 2) << size;
+    EXPECT_EQ(rest.projects(0).name(), "projects/p11000");
+    EXPECT_EQ(rest.projects(0).title(), "t11000");
+    EXPECT_EQ(rest.next_page_token(), "");
+  }
+  v1::ListProjectsRequest request;
+  request.set_page_size(-1);
+  EXPECT_EQ(CodeOf(book.List(request)), ErrorCode::kCellInvalidArgument);
+}
+
+TEST_F(ProjectLimits, OfTexts) {
+  EXPECT_EQ(Asked([](v1::Project& p) { p.set_title(std::string(200, 't')); }), std::nullopt);
+  EXPECT_EQ(Asked([](v1::Project& p) { p.set_title(std::string(201, 't')); }), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(Asked([](v1::Project& p) { p.set_notes(std::string(65'536, 'n')); }), std::nullopt);
+  EXPECT_EQ(Asked([](v1::Project& p) { p.set_notes(std::string(65'537, 'n')); }), ErrorCode::kCellInvalidArgument);
+}
+
+// OPT-1.10: slots 1 to 99.
+TEST_F(ProjectLimits, OfPrograms) {
+  const auto asked = [&](int slot, std::size_t title) {
+    return Asked([&](v1::Project& project) {
+      v1::ProjectProgram& program = *project.add_programs();
+      program.set_slot(slot);
+      program.set_title(std::string(title, 't'));
+      program.mutable_source()->set_content("STOP\n");
+    });
+  };
+  for (const int slot : {1, 99}) EXPECT_EQ(asked(slot, 200), std::nullopt) << slot;
+  for (const int slot : {-1, 0, 100}) EXPECT_EQ(asked(slot, 0), ErrorCode::kProgramNumber) << slot;
+  EXPECT_EQ(asked(1, 201), ErrorCode::kCellInvalidArgument);
+}
+
+// OPT-3.44: schedules 1 to 63, power 0 to 100 %.
+TEST_F(ProjectLimits, OfLaserSchedules) {
+  const auto asked = [&](int number, const std::string& mode, double power_percent, std::size_t title) {
+    return Asked([&](v1::Project& project) {
+      v1::ProjectLaserSchedule& schedule = *project.add_laser_schedules();
+      schedule.set_number(number);
+      schedule.set_mode(mode);
+      schedule.set_power_percent(power_percent);
+      schedule.set_title(std::string(title, 't'));
+    });
+  };
+  for (const int number : {1, 63}) EXPECT_EQ(asked(number, "", 50.0, 200), std::nullopt) << number;
+  for (const int number : {0, 64}) EXPECT_EQ(asked(number, "", 50.0, 0), ErrorCode::kScheduleRange);
+  for (const std::string mode : {"", "CW", "PULSE"}) EXPECT_EQ(asked(1, mode, 50.0, 0), std::nullopt);
+  for (const std::string mode : {"cw", "PULSED"}) EXPECT_EQ(asked(1, mode, 50.0, 0), ErrorCode::kCellInvalidArgument);
+  for (const double power : {0.0, 100.0}) EXPECT_EQ(asked(1, "CW", power, 0), std::nullopt) << power;
+  for (const double power : {-0.001, 100.001}) EXPECT_EQ(asked(1, "CW", power, 0), ErrorCode::kCellInvalidArgument) << power;
+  EXPECT_EQ(asked(1, "CW", 50.0, 201), ErrorCode::kCellInvalidArgument);
+}
+
+// A process is known by its kind and its number together.
+TEST_F(ProjectLimits, OfProcesses) {
+  const auto asked = [&](std::initializer_list<std::pair<int, int>> processes) {
+    return Asked([&](v1::Project& project) {
+      for (const auto& [kind, number] : processes) {
+        v1::ProjectProcess& process = *project.add_processes();
+        process.set_kind(kind);
+        process.set_process(number);
+        if (kind == 2) process.add_values(1.0);
+      }
+    });
+  };
+  EXPECT_EQ(asked({{0, 1}, {0, 2}, {2, 1}}), std::nullopt);
+  EXPECT_EQ(asked({{0, 1}, {0, 1}}), ErrorCode::kProjectDuplicate);
+}
+
+// Asked only: what would be kept, under its name; times and etag are the server's.
+TEST_F(ProjectLimits, WhatIsKeptOfAProject) {
+  v1::CreateProjectRequest request;
+  request.set_project_id("lid");
+  request.mutable_project()->set_name("projects/another");
+  request.mutable_project()->set_etag("77");
+  request.mutable_project()->set_title("Lid");
+  request.set_validate_only(true);
+  EXPECT_EQ(book.Create(request).value->name(), "projects/lid");
+  request.set_validate_only(false);
+  const auto created = book.Create(request);
+  ASSERT_TRUE(created);
+  EXPECT_EQ(created.value->name(), "projects/lid");
+  EXPECT_EQ(created.value->etag(), "1");
+  EXPECT_EQ(created.value->title(), "Lid");
+  EXPECT_EQ(created.value->create_time().seconds(), created.value->update_time().seconds());
+  bed.clock().Advance(std::chrono::seconds(7));
+  v1::UpdateProjectRequest update;
+  update.mutable_project()->set_name("projects/lid");
+  update.mutable_project()->set_notes("turn it over");
+  const auto updated = book.Update(update);
+  ASSERT_TRUE(updated);
+  EXPECT_EQ(updated.value->etag(), "2");
+  EXPECT_EQ(updated.value->title(), "Lid");  // not given: as it was
+  EXPECT_EQ(updated.value->notes(), "turn it over");
+  EXPECT_EQ(updated.value->update_time().seconds() - updated.value->create_time().seconds(), 7);
+  const storage::ProjectRecord record = Must(bed.store().GetProject("lid"));
+  v1::Project body;
+  ASSERT_TRUE(body.ParseFromString(record.body));
+  EXPECT_EQ(body.title(), "");  // kept once
+  EXPECT_EQ(body.etag(), "");
+  EXPECT_EQ(body.name(), "");
+}
+
+}  // namespace
+}  // namespace rmlcell::server
