@@ -36,6 +36,7 @@ std::vector<PlannedMotion> Drained(Planner& planner) {
 // Tip length zero: 1e-6 mm.
 TEST(Tolerance, TipLengthZero) {
   EXPECT_EQ(PathPiece::Line({}, {{0.99e-6, 0, 0}}).length(), 0.0);
+  EXPECT_EQ(PathPiece::Line({}, {{1e-6, 0, 0}}).length(), 0.0);
   EXPECT_EQ(PathPiece::Line({}, {{1.01e-6, 0, 0}}).length(), 1.01e-6);
   EXPECT_EQ(PathPiece::Line({}, {{0, 0.99e-6, 0}, 0, 1}).kind(), PathPiece::Kind::kRotary);
   EXPECT_EQ(PathPiece::Line({}, {{0, 0.99e-6, 0}, 1, 0}).kind(), PathPiece::Kind::kRotary);
