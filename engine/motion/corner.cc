@@ -68,14 +68,15 @@ double Corner::CutFor(double w, const MachineLimits& machine) const {
   double cut =
       std::max(bend_ * square / machine.normal_acceleration(), std::sqrt(jerk_ * cube / jerk));
   if (curvature_jump_ > 0.0) cut = std::max(cut, 1.2 * curvature_jump_ * cube / jerk);
-  if (a_jump_ > 0.0) {
-    cut = std::max({cut, 0.75 * a_jump_ * square / machine.axes.acceleration[3],
-                    std::sqrt(1.5 * a_jump_ * cube / machine.axes.jerk[3])});
-  }
-  if (b_jump_ > 0.0) {
-    cut = std::max({cut, 0.75 * b_jump_ * square / machine.axes.acceleration[4],
-                    std::sqrt(1.5 * b_jump_ * cube / machine.axes.jerk[4])});
-  }
+  // Trapezoids have no limit on the jerk of the axes either: docs/decisions/0015.
+  const bool jerk_limited = std::isfinite(jerk);
+  const auto widen = [&](double jump, std::size_t axis) {
+    if (!(jump > 0.0)) return;
+    cut = std::max(cut, 0.75 * jump * square / machine.axes.acceleration[axis]);
+    if (jerk_limited) cut = std::max(cut, std::sqrt(1.5 * jump * cube / machine.axes.jerk[axis]));
+  };
+  widen(a_jump_, 3);
+  widen(b_jump_, 4);
   return cut;
 }
 

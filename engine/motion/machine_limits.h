@@ -10,7 +10,7 @@ namespace rmlcell::motion {
 struct MachineLimits {
   double tip_speed_mm_s = 500.0;
   double tip_acceleration_mm_s2 = 2000.0;
-  double tip_jerk_mm_s3 = 40000.0;  // infinite: trapezoids
+  double tip_jerk_mm_s3 = 40000.0;  // infinite: trapezoids, and the jerk of the axes counts nowhere
   double curve_normal = 0.8;        // shares of the tip limits on curved pieces
   double curve_tangential = 0.6;
   double curve_jerk = 0.8;

@@ -117,8 +117,8 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
     if (cut > 0.0) {
       const bool capped = cut < uncapped;
       speed_cap = SpeedOn(closing, leg, cut, wanted, capped);
-      closing.report.passage =
-          capped || speed_cap < wanted ? Passage::kBlendCapped : Passage::kBlend;
+      const bool slower = speed_cap < wanted * (1.0 - kSameLimit);
+      closing.report.passage = capped || slower ? Passage::kBlendCapped : Passage::kBlend;
       speed_cap = std::min(speed_cap, swallowed);
       ChooseStretches(closing, leg, speed_cap, std::min(leg.limit, swallowed));
       if (closing.in_stretches) speed_cap = closing.stretches.start;

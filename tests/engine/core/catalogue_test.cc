@@ -137,6 +137,51 @@ TEST(Catalogue, NumbersAreThoseOfTheirFamilyAndUnique) {
   }
 }
 
+// design.md section 5: clients and logs know the cell's codes by number, so a number keeps its
+// meaning for good; a new code is a new line here. What ends a run is a budget, a finding that cuts
+// the others short is advice, all else refuses a request.
+TEST(Catalogue, NumbersOfTheCellKeepTheirMeaning) {
+  const std::map<int, std::string_view> cell = {
+      {9001, "CellInternal"},        {9002, "CellUnavailable"},
+      {9003, "CellInvalidArgument"}, {9004, "CellNotFound"},
+      {9005, "CellAlreadyExists"},   {9006, "CellEtagMismatch"},
+      {9007, "CellTooLarge"},        {9008, "CellUnknownFamily"},
+      {9009, "CellUnknownMachine"},  {9010, "CellUnknownParameter"},
+      {9011, "CellParameterRange"},  {9012, "CellPermission"},
+      {9013, "CellUnauthenticated"}, {9014, "CellUnimplemented"},
+      {9015, "CellPrecondition"},    {9016, "CellChecksum"},
+      {9017, "CellEmptyProgram"},    {9018, "CellFamilyUnknownFromName"},
+      {9019, "CellRequestIdReused"}, {9020, "CellResourceExhausted"},
+      {9021, "CellEventsGone"},      {9022, "CellFileUnreadable"},
+      {9023, "CellFileUnwritable"},  {9024, "CellBadText"},
+      {9025, "CellDiagnosticsCut"},  {9026, "CellUsage"},
+      {9027, "CellToolpathCorrupt"}, {9101, "CellStoreFailed"},
+      {9102, "CellStoreNewer"},      {9103, "CellStoreBusy"},
+      {9104, "CellStoreCorrupt"},    {9105, "CellLeaseLost"},
+      {9106, "CellBadPageToken"},    {9107, "CellBadFilter"},
+      {9201, "CellConfiguration"},   {9202, "CellPortUsed"},
+      {9203, "CellUnsafeListen"},    {9301, "CellWorkerDied"},
+      {9302, "CellMemoryBudget"},    {9303, "CellProcessorBudget"},
+      {9304, "CellStepBudget"},      {9305, "CellTimeBudget"},
+      {9306, "CellOutputBudget"},    {9307, "CellCancelled"},
+      {9308, "CellWaitsForever"},    {9309, "CellVersionMismatch"},
+      {9310, "CellJoinRefused"},
+  };
+  std::size_t rows = 0;
+  for (const CatalogueEntry& entry : Catalogue()) {
+    if (entry.family != ErrorFamily::kCell) continue;
+    ++rows;
+    ASSERT_TRUE(cell.contains(entry.number)) << entry.number;
+    EXPECT_EQ(entry.symbol, cell.at(entry.number));
+    const bool budget = entry.number >= 9301 && entry.number <= 9308;
+    EXPECT_EQ(entry.severity, budget                 ? Severity::kBudget
+                              : entry.number == 9025 ? Severity::kAdvice
+                                                     : Severity::kRequest)
+        << entry.number;
+  }
+  EXPECT_EQ(rows, cell.size());
+}
+
 TEST(Catalogue, SymbolsConstantsAndCodesAreUnique) {
   std::set<std::string> names;
   for (const CatalogueEntry& entry : Catalogue()) {

@@ -152,6 +152,89 @@ TEST(Diagnostic, OfALongLineOnlyTheSurroundingsAreShown) {
   EXPECT_EQ(mark - text.find('\n'), caret - text.rfind('\n'));  // it stands below it
 }
 
+// A hundred bytes about the caret: up to column 51 they begin with the line, behind it fifty
+// before.
+TEST(Diagnostic, ShowsAHundredBytesOfALongLine) {
+  std::string source;
+  for (int k = 0; k < 400; ++k) source += static_cast<char>('a' + k % 26);
+  for (const int column : {1, 50, 51, 52, 53, 200, 301, 399, 400}) {
+    const std::string text = FormatDiagnostic(At(1, column), source);
+    const std::size_t from = column > 51 ? static_cast<std::size_t>(column) - 51 : 0;
+    const std::string shown = source.substr(from, 100);
+    const std::string caret(static_cast<std::size_t>(column) - 1 - from, ' ');
+    EXPECT_TRUE(text.ends_with("\n  " + shown + "\n  " + caret + "^")) << column << text;
+  }
+}
+
+// The tildes end with the length of what is meant, with the line, or with what is shown of it.
+TEST(Diagnostic, UnderlinesNoMoreThanThereIs) {
+  using testing::EndsWith;
+  EXPECT_THAT(FormatDiagnostic(At(1, 1, 1), "SPEED 5"), EndsWith("\n  SPEED 5\n  ^"));
+  EXPECT_THAT(FormatDiagnostic(At(1, 1, 5), "SPEED 5"), EndsWith("\n  SPEED 5\n  ^~~~~"));
+  EXPECT_THAT(FormatDiagnostic(At(1, 1, 7), "SPEED 5"), EndsWith("\n  SPEED 5\n  ^~~~~~~"));
+  EXPECT_THAT(FormatDiagnostic(At(1, 3, 99), "SPEED 5"), EndsWith("\n  SPEED 5\n    ^~~~~"));
+  EXPECT_THAT(FormatDiagnostic(At(1, 1, 500), std::string(300, 'x')),
+              EndsWith("\n  " + std::string(100, 'x') + "\n  ^" + std::string(99, '~')));
+  // A place behind the last column of its line still has its caret; a line end of two bytes is
+  // none.
+  EXPECT_THAT(FormatDiagnostic(At(2, 5), "A\r\nSTOP\r\n"), EndsWith("\n  STOP\n      ^"));
+}
+
+// Bytes below 0x20 but the tabulator, and 0x7F; 0x20, 0x7E and those of other alphabets are shown.
+TEST(Diagnostic, ShowsWhatATerminalDoesNotActOn) {
+  EXPECT_THAT(FormatDiagnostic(At(1, 1), "\x1F \x1E\t~\x7F\xC3\xA4"),
+              HasSubstr("\n  ? ?\t~?\xC3\xA4\n"));
+}
+
+// Line without column, column without line, the file before the program, the time of a run.
+TEST(Diagnostic, TellsThePlaceAsFarAsItIsKnown) {
+  const std::string rest = "error OPT-E7019: MOVE has 4 values, needs 5";
+  Diagnostic finding = At(3, 0);
+  finding.program = 45;
+  EXPECT_THAT(FormatDiagnostic(finding, {}),
+              testing::StartsWith("part.S:3: " + rest + " [OPT-2.01]; "));
+  finding.where = {.line = 0, .column = 7};
+  EXPECT_THAT(FormatDiagnostic(finding, {}), testing::StartsWith("part.S: " + rest));
+  finding.file.clear();
+  EXPECT_THAT(FormatDiagnostic(finding, {}), testing::StartsWith("program 45: " + rest));
+  finding.program = 0;
+  finding.rule.clear();
+  finding.step = 3;
+  finding.at = FromSeconds(1.5);
+  EXPECT_EQ(
+      FormatDiagnostic(finding, {}),
+      rest + " (step 3, at 1.500 s); " + std::string(Lookup(ErrorCode::kArgumentCount).advice));
+  finding.step = 0;  // a time without a step says nothing
+  finding.severity = Severity::kDevice;
+  EXPECT_EQ(FormatDiagnostic(finding, {}),
+            "device error OPT-E7019: MOVE has 4 values, needs 5; " +
+                std::string(Lookup(ErrorCode::kArgumentCount).advice));
+  finding.severity = Severity::kMessage;
+  EXPECT_EQ(FormatDiagnostic(finding, {}),
+            "operator message OPT-E7019: MOVE has 4 values, needs 5");
+}
+
+// Findings, places and errors are equal when all of them is.
+TEST(Result, ErrorsAreComparedWhole) {
+  const Error error = InvalidArgument("slot is 0");
+  EXPECT_EQ(error.code, ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(error.detail, "slot is 0");
+  EXPECT_FALSE(error.where);
+  EXPECT_EQ(error, InvalidArgument("slot is 0"));
+  EXPECT_NE(error, InvalidArgument("slot is 1"));
+  EXPECT_EQ(SourceSpan().byte_offset, -1);
+  EXPECT_DEATH(RMLCELL_CHECK(1 == 2), "core_test.cc:[0-9]+: check failed: 1 == 2");
+  RMLCELL_CHECK(1 == 1);
+}
+
+// Both ends of what fits.
+TEST(Units, LongestTimes) {
+  EXPECT_EQ(FromSeconds(-9.0e9), -kForever);
+  EXPECT_EQ(FromSeconds(-8.999e9), SimTime(-8'999'000'000'000'000'000));
+  EXPECT_EQ(FromSeconds(8.999e9), SimTime(8'999'000'000'000'000'000));
+  EXPECT_EQ(ToSeconds(SimTime(1)), 1e-9);
+}
+
 TEST(Diagnostic, ErrorsStopAProgramAndTheRestDoesNot) {
   for (const Severity severity :
        {Severity::kCompile, Severity::kProgram, Severity::kFatal, Severity::kAlarm, Severity::kTool,

@@ -98,6 +98,41 @@ TEST(Parameters, ChangedIsWhatDiffersFromTheDefaultsAndReadsBack) {
   EXPECT_THAT(parameters.Changed(), IsEmpty());
 }
 
+// What is told: the name as the table writes it, the value seen and what is allowed.
+TEST(Parameters, ErrorsSayWhatIsAllowed) {
+  Parameters parameters(kTable);
+  EXPECT_EQ(parameters.Set("VMIN", 1.0).error().detail, "VMIN");
+  EXPECT_EQ(parameters.Set("vmin", std::string_view("x")).error().detail, "vmin");
+  EXPECT_EQ(parameters.Set("vmax", 0.5).error().detail, "VMAX is 0.5, allowed are 1 to 1000");
+  EXPECT_EQ(parameters.Set("offset", std::string_view("-10.5")).error().detail,
+            "OFFSET is -10.5, allowed are -10 to 10");
+  EXPECT_EQ(parameters.Set("vmax", std::string_view("fast")).error().detail,
+            "VMAX takes a number, not 'fast'");
+  EXPECT_EQ(parameters.Set("direction", 1.0).error().detail,
+            "DIRECTION takes one of ARROW EFA51 NONE");
+  EXPECT_EQ(parameters.Set("direction", std::string_view("SOUTH")).error().detail,
+            "DIRECTION takes one of ARROW EFA51 NONE");
+  const Status unknown = parameters.Apply({.id = "c", .title = "", .values = {{"NEW", 1.0, {}}}});
+  EXPECT_EQ(CodeOf(unknown), ErrorCode::kCellUnknownParameter);
+  const Status word = parameters.Apply(
+      {.id = "d", .title = "", .values = {{"VMAX", 7.0, {}}, {"DIRECTION", 0, "X"}}});
+  EXPECT_EQ(CodeOf(word), ErrorCode::kCellParameterRange);
+  EXPECT_THAT(parameters.Changed(), IsEmpty());
+}
+
+// Each word of a choice, the last too; the death of asking for a word that is a number.
+TEST(Parameters, EveryWordOfAChoice) {
+  Parameters parameters(kTable);
+  for (const std::string_view word : {"NONE", "EFA51", "ARROW"}) {
+    EXPECT_TRUE(parameters.Set("DIRECTION", word));
+    EXPECT_EQ(parameters.Word("direction"), word);
+  }
+  EXPECT_EQ(parameters.Number("offset"), 0.0);
+  EXPECT_TRUE(parameters.Set("OFFSET", 10.0));
+  EXPECT_EQ(parameters.Number("OFFSET"), 10.0);
+  EXPECT_DEATH((void)parameters.Word("VMIN"), "check failed");
+}
+
 TEST(ParametersDeathTest, AskingForWhatIsNotThereIsOurMistake) {
   const Parameters parameters(kTable);
   EXPECT_DEATH((void)parameters.Number("VMIN"), "check failed");

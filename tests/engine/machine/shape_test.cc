@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/machine/run.h"
+
 namespace rmlcell::machine {
 namespace {
 
@@ -38,6 +40,34 @@ TEST(Box, AnEmptyOneAddsNothing) {
   box.Add(other);
   EXPECT_EQ(box.min, (motion::Vec3{-1, 0, 1}));
   EXPECT_EQ(box.max, (motion::Vec3{1, 1, 2}));
+}
+
+// From corner to corner; 0 of an empty one, and of a point.
+TEST(Box, DiagonalGoesFromCornerToCorner) {
+  Box box;
+  EXPECT_EQ(box.diagonal_mm(), 0.0);
+  box.Add(motion::Vec3{1, 2, 3});
+  EXPECT_EQ(box.diagonal_mm(), 0.0);
+  box.Add(motion::Vec3{-1, 5, 9});
+  EXPECT_DOUBLE_EQ(box.diagonal_mm(), 7.0);
+}
+
+// What a run does without being told: CYCLE at 100 %, at most 100 million steps and 30 days.
+TEST(RunSetup, Defaults) {
+  const RunSetup setup{Parameters({})};
+  EXPECT_EQ(setup.mode, Mode::kCycle);
+  EXPECT_EQ(setup.override_percent, 100.0);
+  EXPECT_EQ(setup.budget.steps, 100'000'000u);
+  EXPECT_EQ(setup.budget.virtual_time, FromSeconds(30.0 * 24.0 * 3600.0));
+  EXPECT_FALSE(setup.forecast);
+  EXPECT_FALSE(setup.schedules || setup.breakpoint || setup.simul);
+  EXPECT_EQ(LaserSchedule{}.mode, "CW");
+  EXPECT_EQ(LaserSchedule{}.power_percent, 100.0);
+  EXPECT_EQ(RunState{}.override_percent, 100.0);
+  EXPECT_LT(RunState{}.progress, 0.0);
+  EXPECT_EQ(MotionDone{}.use, MotionUse::kTravel);
+  EXPECT_TRUE(MoveDone{}.programmed);
+  EXPECT_EQ(Place{}.byte_offset, -1);
 }
 
 }  // namespace

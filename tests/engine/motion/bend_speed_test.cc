@@ -95,6 +95,71 @@ TEST(BendStretches, EveryRampKeepsTheSpeedsOfTheBend) {
   EXPECT_GT(halves, 20);
 }
 
+BendSpeeds Speeds(double (*at)(std::size_t)) {
+  BendSpeeds speeds;
+  for (std::size_t k = 0; k < speeds.most.size(); ++k) speeds.most[k] = at(k);
+  return speeds;
+}
+
+// Six stretches of equal length over the whole bend, each with the least speed on it: those of the
+// first half are eight of the 24 steps long, ends included, and the second half is its mirror
+// image.
+TEST(AbruptSpeeds, AreTheLeastOfEachStretch) {
+  EXPECT_EQ(AbruptSpeeds(Speeds([](std::size_t k) { return 10.0 + static_cast<double>(k); })),
+            (std::array{10.0, 18.0, 26.0, 26.0, 18.0, 10.0}));
+  EXPECT_EQ(AbruptSpeeds(Speeds([](std::size_t k) { return 50.0 - static_cast<double>(k); })),
+            (std::array{42.0, 34.0, 26.0, 26.0, 34.0, 42.0}));
+  EXPECT_EQ(AbruptSpeeds(Speeds([](std::size_t k) { return k == 11 ? 3.0 : 9.0; })),
+            (std::array{9.0, 3.0, 9.0, 9.0, 3.0, 9.0}));
+}
+
+// One speed, or less than 1 % to gain: one stretch at the least speed of the bend.
+TEST(BendStretches, NothingToGain) {
+  constexpr PathLimits kGentle{.acceleration = 100.0, .jerk = 1000.0};
+  const auto expect_steady = [&](const BendSpeeds& speeds, double least) {
+    const BendStretches bend = StretchesOf(speeds, 1.0, kGentle);
+    EXPECT_EQ(bend.count, 1u);
+    EXPECT_EQ(bend.start, least);
+    EXPECT_EQ(bend.open, least);
+    EXPECT_EQ(bend.middle, least);
+  };
+  expect_steady(Speeds([](std::size_t) { return 10.0; }), 10.0);
+  expect_steady(Speeds([](std::size_t k) { return 10.0 + 0.004 * static_cast<double>(k); }), 10.0);
+  expect_steady(Speeds([](std::size_t k) { return 10.0 - 0.1 * static_cast<double>(k); }), 7.6);
+}
+
+// Open in the middle, and a ramp too gentle to get anywhere near it on the way: 100 mm/s2 and 1000
+// mm/s3 make 10.05 of 10 mm/s in the first tenth of 1 mm, where 11 are allowed. So ramps may be
+// those to the speed of the middle. A ramp that is there at once is nearly none: 1/64 of the gain.
+TEST(BendStretches, OpenInTheMiddle) {
+  const BendSpeeds rising =
+      Speeds([](std::size_t k) { return 10.0 + static_cast<double>(k) / 2.4; });
+  const BendStretches gentle = StretchesOf(rising, 1.0, {.acceleration = 100.0, .jerk = 1000.0});
+  EXPECT_EQ(gentle.count, 1u);
+  EXPECT_EQ(gentle.start, 10.0);
+  EXPECT_NEAR(gentle.open, 20.0, 1e-12);
+  EXPECT_NEAR(gentle.middle, 20.0, 1e-12);
+  const BendStretches abrupt = StretchesOf(rising, 1.0, {.acceleration = 1e9, .jerk = 1e15});
+  EXPECT_LE(abrupt.open, 10.0 + 10.0 / 64.0 + 1e-9);
+}
+
+// Open between the start and the middle: two stretches, each up and down again, both as far as the
+// side that is the shorter way allows.
+TEST(BendStretches, OpenBetween) {
+  const BendSpeeds hump = Speeds([](std::size_t k) {
+    const double from_top = k < 12 ? 12.0 - static_cast<double>(k) : static_cast<double>(k) - 12.0;
+    return 20.0 - from_top / (k < 12 ? 1.2 : 2.0);
+  });
+  const BendStretches bend = StretchesOf(hump, 1.0, {.acceleration = 100.0, .jerk = 1000.0});
+  EXPECT_EQ(bend.count, 2u);
+  EXPECT_NEAR(bend.start, 10.0, 1e-12);
+  EXPECT_NEAR(bend.middle, 14.0, 1e-12);
+  EXPECT_NEAR(bend.open, 20.0, 1e-12);
+  const BendStretches abrupt = StretchesOf(hump, 1.0, {.acceleration = 1e9, .jerk = 1e15});
+  EXPECT_LE(abrupt.open, 14.0);  // from 10 it is nearly 10, which the middle has
+  EXPECT_GE(abrupt.open, 10.0);
+}
+
 double TimeOf(const std::vector<PlannedMotion>& motions) {
   LongSum sum;
   for (const PlannedMotion& motion : motions) sum.Add(motion.duration_s());

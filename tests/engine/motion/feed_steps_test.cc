@@ -50,5 +50,29 @@ TEST(FeedSteps, KeepsTheEndsOfTheRange) {
   EXPECT_EQ(steps.Nearest(12.0), 9.5);
 }
 
+// Other mills, other steps: 1 to 50 mm/s, by quarters up to 10, by 2.5 from there on. The least
+// speed goes before the step below it.
+TEST(FeedSteps, OtherMills) {
+  const FeedSteps steps{.minimum_mm_s = 1.1,
+                        .maximum_mm_s = 51.0,
+                        .fine_step_mm_s = 0.25,
+                        .coarse_step_mm_s = 2.5,
+                        .coarse_from_mm_s = 10.0};
+  for (const auto& [wanted, got] : {std::pair{1.1, 1.1},
+                                    {1.2, 1.1},
+                                    {1.25, 1.25},
+                                    {1.49, 1.25},
+                                    {9.99, 9.75},
+                                    {10.0, 10.0},
+                                    {12.4, 10.0},
+                                    {12.5, 12.5},
+                                    {50.9, 50.0},
+                                    {51.0, 51.0},
+                                    {60.0, 51.0},
+                                    {0.0, 1.1}}) {
+    EXPECT_DOUBLE_EQ(steps.Nearest(wanted), got) << wanted;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::motion

@@ -206,7 +206,10 @@ TEST(Planner, CurvesWithACuspAreStops) {
        0.4},
       // Two arcs whose curve nearly stands still in its middle.
       {arc({11.482, 12.304, 0}, {9.102, 3.016, 0}, {0, 0, 0}),
-       arc({0, 0, 0}, {9.102, -3.016, 0}, {11.482, -12.304, 0}), 0.4}};
+       arc({0, 0, 0}, {9.102, -3.016, 0}, {11.482, -12.304, 0}), 0.4},
+      // The same a hundred times as small.
+      {arc({0.11482, 0.12304, 0}, {0.09102, 0.03016, 0}, {0, 0, 0}),
+       arc({0, 0, 0}, {0.09102, -0.03016, 0}, {0.11482, -0.12304, 0}), 0.4}};
   for (const Corner2& corner : corners) {
     const auto plan = [&](double overshoot) {
       std::vector<MoveCommand> chain(2);

@@ -111,5 +111,88 @@ TEST(Polyline, ArcHasAsManyChordsAsNeeded) {
             1 + static_cast<std::size_t>(std::ceil(kTurn / (2 * std::acos(1 - 1e-4)))));
 }
 
+// No chord spans more than a quarter turn, however coarse the tolerance; an arc of a quarter turn
+// and a little more has two.
+TEST(Polyline, CoarseArcs) {
+  for (const auto& [sweep, chords] :
+       {std::pair{kTurn, 4u}, {0.5 * kTurn, 2u}, {0.24 * kTurn, 1u}, {0.26 * kTurn, 2u}}) {
+    for (const double tolerance : {60.0, 99.0, 100.0, 1e6}) {
+      std::vector<Vec3> points;
+      AppendPolyline(PathPiece::Circle({{100, 0, 0}}, {0, 0, 0}, {0, 0, 1}, sweep, 0, 0), tolerance,
+                     points);
+      EXPECT_EQ(points.size(), 1 + chords) << sweep << " " << tolerance;
+    }
+  }
+}
+
+// Pieces one behind the other share their point; what does not move the tip adds none.
+TEST(Polyline, GoesOn) {
+  std::vector<Vec3> points;
+  AppendPolyline(PathPiece::Line({}, {{10, 0, 0}}), 0.01, points);
+  AppendPolyline(PathPiece::Line({{10, 0, 0}}, {{10, 5, 0}}), 0.01, points);
+  AppendPolyline(PathPiece::Line({{10, 5, 0}}, {{10, 5, 0}, 1, 0}), 0.01, points);
+  AppendPolyline(PathPiece::Line({{10, 5, 0}}, {{10, 5, 0}}), 0.01, points);
+  EXPECT_EQ(points, (std::vector<Vec3>{{0, 0, 0}, {10, 0, 0}, {10, 5, 0}}));
+  AppendPolyline(PathPiece::Joint({{20, 5, 0}}, {{20, 5, 7}}), 0.01, points);
+  EXPECT_EQ(points, (std::vector<Vec3>{{0, 0, 0}, {10, 0, 0}, {10, 5, 0}, {20, 5, 0}, {20, 5, 7}}));
+}
+
+// A number next to which the sum so far is small is not lost, nor what it hides.
+TEST(LongSum, KeepsWhatALargeNumberHides) {
+  LongSum sum;
+  for (const double value : {1.0, 1e100, 1.0, -1e100}) sum.Add(value);
+  EXPECT_EQ(sum.value(), 2.0);
+}
+
+// Whether a motion has a sample: those at 0.010 and 0.020 belong to the motions that begin there.
+TEST(SampleTimes, TellWhetherThereIsOne) {
+  SampleTimes times(100.0);
+  std::vector<double> seen;
+  const auto through = [&](double duration) {
+    const bool one = times.NextWithin(duration);
+    const std::size_t before = seen.size();
+    times.Through(duration, [&](double, double t) { seen.push_back(t); });
+    EXPECT_EQ(one, seen.size() > before);
+    return one;
+  };
+  EXPECT_TRUE(through(0.010));  // at 0
+  EXPECT_TRUE(through(0.004));  // at 0.010
+  EXPECT_FALSE(through(0.005));
+  EXPECT_TRUE(through(0.002));  // at 0.020
+  ASSERT_EQ(seen.size(), 3u);
+  EXPECT_EQ(seen[0], 0.0);
+  EXPECT_EQ(seen[1], 0.0);
+  EXPECT_NEAR(seen[2], 0.001, 1e-15);
+}
+
+// motion.md 2.4 and 2.2: the same instant told of the tip and of the column, in either kind of
+// move.
+TEST(MotionView, TipAndColumnAgree) {
+  for (const bool joint : {true, false}) {
+    MoveCommand move;
+    const TipPose from{{10, 20, 30}, 0.2, 0.3}, to{{110, -40, 70}, 1.2, -0.8};
+    move.path = joint ? PathPiece::Joint(from, to) : PathPiece::Line(from, to);
+    if (joint) move.kind = MoveCommand::Kind::kPointToPointAxes;
+    move.head = GantryHead{.length_mm = 120.0, .tool = {3.0, -5.0, 8.0}};
+    const std::vector<PlannedMotion> plan = Plan({move});
+    const MotionView view(plan[0]);
+    const double h = 1e-5, t = 0.4 * plan[0].speed.duration_s();
+    const TrajectoryPoint here = view.At(t), before = view.At(t - h), after = view.At(t + h);
+    const AxisPose column = move.head.ColumnOf(here.tip);
+    ExpectNear({here.axes[0], here.axes[1], here.axes[2]}, column.column, 1e-10);
+    EXPECT_EQ(here.axes[3], here.tip.a_rad);
+    EXPECT_EQ(here.axes[4], here.tip.b_rad);
+    ExpectNear(here.tip_velocity, (after.tip.tip - before.tip.tip) * (0.5 / h), 1e-4);
+    ExpectNear(here.tip_acceleration, (after.tip_velocity - before.tip_velocity) * (0.5 / h), 0.5);
+    for (std::size_t i = 0; i < kAxisCount; ++i) {
+      EXPECT_NEAR(here.axis_velocity[i], (after.axes[i] - before.axes[i]) * 0.5 / h, 1e-4);
+      EXPECT_NEAR(here.axis_acceleration[i],
+                  (after.axis_velocity[i] - before.axis_velocity[i]) * 0.5 / h, 0.5);
+    }
+    EXPECT_NEAR(here.tip_speed(), Norm(here.tip_velocity), 1e-12);
+    ExpectNear(view.PoseAt(t).tip, here.tip.tip, 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::motion
