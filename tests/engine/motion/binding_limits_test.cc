@@ -9,12 +9,12 @@
 #include "engine/motion/axis_demand.h"
 #include "engine/motion/planner.h"
 #include "engine/motion/speed_bound.h"
+#include "tests/engine/motion/standard_machine.h"
 
 namespace rmlcell::motion {
 namespace {
 
 constexpr double kPlenty = 1e7;  // what an axis or the tip does not lack
-constexpr double kNone = std::numeric_limits<double>::infinity();
 
 // No limit binds: each test lowers the one that it is about.
 MachineLimits Strong() {
@@ -79,9 +79,9 @@ TEST(BindingLimits, EachLinearAxisOnALine) {
     machine = Strong();
     machine.axes.speed[axis] = 1000.0 * kDirection[axis] * (1.0 + 1e-9);
     EXPECT_EQ(LimitsOf(move, machine).speed, 1000.0) << axis;
-    machine.tip_jerk_mm_s3 = kNone;
+    machine.tip_jerk_mm_s3 = kNoLimit;
     machine.axes.jerk[axis] = 1.0;  // counts nowhere
-    EXPECT_EQ(LimitsOf(move, machine).jerk, kNone) << axis;
+    EXPECT_EQ(LimitsOf(move, machine).jerk, kNoLimit) << axis;
     EXPECT_EQ(LimitsOf(move, machine).speed, 1000.0) << axis;
   }
 }
@@ -190,7 +190,7 @@ TEST(BindingLimits, JerkOnArcs) {
   EXPECT_NEAR(TightestBound(move.path, move.head, machine, 500.0).speed, std::cbrt(288000.0), 1e-9);
   machine.curve_jerk = 0.4;
   EXPECT_NEAR(LimitsOf(move, machine).speed, std::cbrt(144000.0), 1e-9);
-  machine.tip_jerk_mm_s3 = kNone;
+  machine.tip_jerk_mm_s3 = kNoLimit;
   EXPECT_EQ(LimitsOf(move, machine).speed, 1000.0);
   EXPECT_EQ(TightestBound(move.path, move.head, machine, 2000.0).cause, SpeedBound::Cause::kNone);
 }
@@ -337,7 +337,7 @@ TEST(BindingLimits, LinesFollowTheTipUnlessAnAxisIsWeaker) {
       MachineLimits weak = machine;
       (weak.axes.*figure)[axis] *= 1.0 - 1e-6;
       EXPECT_FALSE(LinesFollowTip(weak));
-      weak.tip_jerk_mm_s3 = kNone;
+      weak.tip_jerk_mm_s3 = kNoLimit;
       EXPECT_EQ(LinesFollowTip(weak), figure == &AxisLimits::jerk);
     }
   }
@@ -348,7 +348,7 @@ TEST(BindingLimits, LinesFollowTheTipUnlessAnAxisIsWeaker) {
 TEST(BindingLimits, PlansKeepThem) {
   MachineLimits machine = Strong();
   machine.tip_acceleration_mm_s2 = 2000.0;
-  machine.tip_jerk_mm_s3 = kNone;
+  machine.tip_jerk_mm_s3 = kNoLimit;
   machine.axes.speed[1] = 40.0;
   machine.settling_s = 0.0;
   const auto time = [&](const Vec3& to) {

@@ -140,15 +140,15 @@ TEST(CornerCurve, BoundsHold) {
 
 // The highest speed on a curve against a dense search, each limit alone. motion.md 4.3
 TEST(SpeedOnCurve, EachLimitAlone) {
-  constexpr double kPlenty = 1e9;
+  constexpr double kStrong = 1e9;
   const Head head = GantryHead{.length_mm = 250.0, .tool = {4.0, -2.0, 10.0}};
   for (const double degrees : {8.0, 75.0, 140.0}) {
     const CornerCurve curve = Turning(degrees, 6.0);
     MachineLimits strong;
-    strong.tip_acceleration_mm_s2 = kPlenty;
+    strong.tip_acceleration_mm_s2 = kStrong;
     strong.tip_jerk_mm_s3 = HUGE_VAL;
-    strong.axes.speed.fill(kPlenty);
-    strong.axes.acceleration.fill(kPlenty);
+    strong.axes.speed.fill(kStrong);
+    strong.axes.acceleration.fill(kStrong);
     const auto dense = [&](auto limit) {
       double least = HUGE_VAL;
       for (int k = 0; k <= 20000; ++k) least = std::min(least, limit(k / 20000.0));

@@ -7,15 +7,15 @@
 
 #include "engine/motion/axes_corner.h"
 #include "tests/engine/motion/random_chain.h"
+#include "tests/engine/motion/standard_machine.h"
 
 namespace rmlcell::motion {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::infinity();
 
 MachineLimits Trapezoids() {
   MachineLimits machine = StandardMachine();
-  machine.tip_jerk_mm_s3 = kNone;
+  machine.tip_jerk_mm_s3 = kNoLimit;
   return machine;
 }
 
@@ -252,7 +252,7 @@ TEST(JunctionSpeed, TheWorstAxisSetsIt) {
     EXPECT_NEAR(JunctionSpeed(in, in + change, 3.0), 6.0, 1e-12);
     EXPECT_NEAR(JunctionSpeed(in + change, in, 3.0), 6.0, 1e-12);
   }
-  EXPECT_EQ(JunctionSpeed(in, in, 3.0), kNone);
+  EXPECT_EQ(JunctionSpeed(in, in, 3.0), kNoLimit);
 }
 
 // Moves of COORD ROBOT, measured by the time that they take: 100 mm of X in 0.4 s, then of Y.

@@ -10,12 +10,12 @@
 #include "engine/motion/laser_power.h"
 #include "tests/engine/motion/expect_near.h"
 #include "tests/engine/motion/random_chain.h"
+#include "tests/engine/motion/standard_machine.h"
 
 namespace rmlcell::motion {
 namespace {
 
 constexpr PathLimits kLimits{350.0, 2000.0, 40000.0};
-constexpr double kNone = std::numeric_limits<double>::infinity();
 
 // S02 of section 12: 30 mm in 0.3 s, six phases of 0.05 s; a jerk of 40000 brings 2000 mm/s2 and
 // 50 mm/s in one of them, so that the peak is 50 + 100 + 50.
@@ -46,7 +46,7 @@ TEST(SpeedProfile, PhasesOfS02) {
 // When a place is passed, and back; a part is the same between two places.
 TEST(SpeedProfile, TimesAndParts) {
   for (const PathLimits& limits :
-       {kLimits, PathLimits{350, 2000, kNone}, PathLimits{60, 900, 8000}}) {
+       {kLimits, PathLimits{350, 2000, kNoLimit}, PathLimits{60, 900, 8000}}) {
     const SpeedProfile p = SpeedProfile::Span(30.0, 20.0, 45.0, limits);
     EXPECT_EQ(p.TimeAt(-1.0), 0.0);
     EXPECT_NEAR(p.TimeAt(30.0), p.duration_s(), 1e-12);
@@ -117,7 +117,7 @@ TEST(StopFrom, SlowingDownGoesOn) {
   const double grow = (std::sqrt(200.0 * 40000.0) - 2000.0) / 40000.0;
   EXPECT_NEAR(hard.duration_s(), grow + std::sqrt(200.0 / 40000.0), 1e-9);
   // Trapezoid: 150 mm/s at 2000 mm/s2.
-  const SpeedProfile abrupt = S02().StopFrom(0.2, {350.0, 2000.0, kNone});
+  const SpeedProfile abrupt = S02().StopFrom(0.2, {350.0, 2000.0, kNoLimit});
   EXPECT_NEAR(abrupt.duration_s(), 0.075, 1e-9);
 }
 
@@ -148,7 +148,7 @@ TEST(From, EndsTheAccelerationFirst) {
   EXPECT_NEAR(up.duration_s(), 0.03 + (50.0 - way) / 36.0, 1e-9);
   const SpeedProfile down = SpeedProfile::From({0.0, 54.0, -1200.0}, 50.0, 36.0, {36, 2000, 40000});
   EXPECT_NEAR(down.duration_s(), 0.03 + (50.0 - 0.03 * (54.0 - 12.0)) / 36.0, 1e-9);
-  const SpeedProfile abrupt = SpeedProfile::From({0.0, 36.0, 900.0}, 50.0, 36.0, {36, 2000, kNone});
+  const SpeedProfile abrupt = SpeedProfile::From({0.0, 36.0, 900.0}, 50.0, 36.0, {36, 2000, kNoLimit});
   EXPECT_NEAR(abrupt.duration_s(), 50.0 / 36.0, 1e-12);
 }
 
@@ -173,8 +173,8 @@ TEST(FromFits, JustAndJustNot) {
   EXPECT_FALSE(FromFits({0.0, 17.0, -1200.0}, 100.0, 0.0, kLimits));
   EXPECT_TRUE(FromFits({0.0, 19.0, -1200.0}, 100.0, 0.0, kLimits));
   // Without a limit on jerk there is none to be ended: v^2 / 2a.
-  EXPECT_TRUE(FromFits({0.0, 50.0, -1200.0}, 0.626, 0.0, {350, 2000, kNone}));
-  EXPECT_FALSE(FromFits({0.0, 50.0, -1200.0}, 0.624, 0.0, {350, 2000, kNone}));
+  EXPECT_TRUE(FromFits({0.0, 50.0, -1200.0}, 0.626, 0.0, {350, 2000, kNoLimit}));
+  EXPECT_FALSE(FromFits({0.0, 50.0, -1200.0}, 0.624, 0.0, {350, 2000, kNoLimit}));
   // At the end already, at that speed or not.
   EXPECT_TRUE(FromFits({5.0, 50.0, 0.0}, 5.0, 50.0, kLimits));
   EXPECT_FALSE(FromFits({5.0, 50.0, 0.0}, 5.0, 49.0, kLimits));
@@ -283,7 +283,7 @@ TEST(EnergyOf, SpeedingUpAndSlowingDown) {
   const PowerLaw law{.speed_percent = 8.0, .power_percent = 75.0, .tip_speed_max_mm_s = 500.0};
   EXPECT_DOUBLE_EQ(law.PercentAt(-1.0), 0.0);
   EXPECT_DOUBLE_EQ(law.PercentAt(20.0), 37.5);
-  const PathLimits limits{80, 2000, kNone};
+  const PathLimits limits{80, 2000, kNoLimit};
   const double up = EnergyOf(SpeedProfile::Span(30.0, 10.0, 80.0, limits), law, 1000.0);
   const double down = EnergyOf(SpeedProfile::Span(30.0, 80.0, 10.0, limits), law, 1000.0);
   EXPECT_NEAR(up, down, 1e-9 * up);

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <limits>
+
 #include "engine/core/units.h"
 #include "engine/motion/planner.h"
 
 namespace rmlcell::motion {
+
+inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 // The machine of motion.md section 1, as all figures of its section 12 assume it.
 inline MachineLimits StandardMachine() {

@@ -12,7 +12,6 @@
 namespace rmlcell::motion {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 MoveCommand MoveOn(const PathPiece& path, bool fly = false) {
@@ -66,7 +65,7 @@ TEST(Tolerance, ArcPoints) {
             "the arc ends where it begins");
   EXPECT_EQ(PathPiece::ArcThrough({}, {15, 0, 0}, {{10, 0, 0}}).error().detail,
             "the via point is on the line through start and target, outside them");
-  for (const double bad : {kNaN, kNone}) {
+  for (const double bad : {kNaN, std::numeric_limits<double>::infinity()}) {
     for (const Result<PathPiece::Arc3>& arc :
          {PathPiece::ArcThrough({{bad, 0, 0}}, {5, 5, 0}, {{10, 0, 0}}),
           PathPiece::ArcThrough({}, {5, bad, 0}, {{10, 0, 0}}),
@@ -137,7 +136,7 @@ TEST(Tolerance, UsableNumbers) {
   for (const TipPose& far :
        {TipPose{{1.01e12, 0, 0}}, TipPose{{0, -1.01e12, 0}}, TipPose{{0, 0, 1.01e12}},
         TipPose{{}, 1.01e12, 0}, TipPose{{}, 0, -1.01e12}, TipPose{{4e11, -4e11, 4e11}},
-        TipPose{{kNaN, 0, 0}}, TipPose{{}, kNaN, 0}, TipPose{{}, 0, kNone}}) {
+        TipPose{{kNaN, 0, 0}}, TipPose{{}, kNaN, 0}, TipPose{{}, 0, std::numeric_limits<double>::infinity()}}) {
     EXPECT_EQ(code({}, far), ErrorCode::kTargetOutOfTravel);
     EXPECT_EQ(code(far, {}), ErrorCode::kTargetOutOfTravel);
     EXPECT_EQ(code(far, far), ErrorCode::kTargetOutOfTravel);

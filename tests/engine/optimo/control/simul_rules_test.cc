@@ -6,7 +6,7 @@
 #include "engine/optimo/control/machine_state.h"
 #include "tests/engine/optimo/control/run_text.h"
 
-// SIMUL: the dry run up to a step, OPT-6.12 to 6.30.
+// SIMUL: the dry run up to a step, chapter 6.
 namespace rmlcell::optimo::testing {
 namespace {
 
