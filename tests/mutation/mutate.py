@@ -37,9 +37,12 @@ COUNTED = ("noticed", "survived")
 
 
 def read_equivalent():
-    """The changes that change nothing, with the reason, as equivalent.csv lists them."""
-    with open(pathlib.Path(__file__).parent / "equivalent.csv", encoding="utf-8", newline="") as file:
-        return {(row["file"], row["line"], row["change"]): row["why"] for row in csv.DictReader(file)}
+    """The changes that change nothing, with the reason, as the tables of equivalent/ list them."""
+    known = {}
+    for table in sorted((pathlib.Path(__file__).parent / "equivalent").glob("*.csv")):
+        with open(table, encoding="utf-8", newline="") as file:
+            known |= {(row["file"], row["line"], row["change"]): row["why"] for row in csv.DictReader(file)}
+    return known
 
 
 def error_codes():
