@@ -11,7 +11,7 @@
 
 namespace rmlcell::server {
 
-// A store of which one call fails, the n-th from when it is told so. For one thread.
+// A store of which one call fails, the n-th from when it is told so; none with 0. For one thread.
 class FailingStore final : public ForwardingStore {
  public:
   using ForwardingStore::ForwardingStore;
@@ -20,7 +20,7 @@ class FailingStore final : public ForwardingStore {
     fails_at_ = call;
     calls_ = 0;
   }
-  bool failed() const { return calls_ >= fails_at_; }
+  bool failed() const { return fails_at_ > 0 && calls_ >= fails_at_; }
 
   Result<storage::MachineRecord> GetMachine(std::string_view id) override {
     return Or([&] { return store_.GetMachine(id); });
@@ -126,6 +126,7 @@ inline void ExpectFailuresHandedOn(FailingStore& store, const std::string& what,
   store.FailAt(calls + 1);
   EXPECT_EQ(operation(), last) << what;
   EXPECT_FALSE(store.failed()) << what << " makes more than " << calls << " calls";
+  store.FailAt(0);
 }
 
 }  // namespace rmlcell::server
