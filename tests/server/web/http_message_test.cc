@@ -216,7 +216,7 @@ TEST(JsonText, EveryRangeOfUtf8) {
         "\xEF\xBF\xC0", "\xEF\xC0\xBF", "\xF0\x8F\xBF\xBF", "\xF4\x90\x80\x80", "\xF5\x80\x80\x80",
         "\xF0\x90\x80", "\xFF", "\xF0\x90\x80\xC0"}) {
     // Each byte that begins no character becomes one sign; a good tail of such bytes is none.
-    EXPECT_EQ(JsonString(bad), times(bad.size())) << testing::PrintToString(std::string(bad));
+    EXPECT_EQ(JsonString(bad), times(bad.size())) << ::testing::PrintToString(std::string(bad));
   }
 }
 

@@ -264,7 +264,7 @@ TEST_F(JobRunnerTest, ACheckLeavesAReport) {
   EXPECT_FALSE(HandedBack());
 }
 
-// The first error ends the job; each finding is in the report and in the log. OPT-2.12: 1 to 100.
+// The first error ends the job; each finding is in the report and in the log. OPT-2.35: SPEED is 0 to 100.
 TEST_F(JobRunnerTest, ACheckOfAProgramWithErrorsFails) {
   Work(Assignment(v1::JOB_KIND_CHECK, "STOP\nSPEED 101\nSPEED 102\n"));
   const v1::Outcome outcome = Outcome();
