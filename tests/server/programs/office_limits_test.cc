@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "engine/optimo/language/linker.h"
 #include "server/config.h"
 #include "server/programs/memory_office.h"
 #include "server/programs/program_office.h"
@@ -87,9 +88,10 @@ TEST_F(OfficeLimits, MachinesOfALink) {
 TEST_F(OfficeLimits, AMachineHasLimitsOfItsOwn) {
   std::string long_program;
   for (int i = 0; i < 40; ++i) long_program += "VI[2] = VI[3]\n";
-  const std::size_t object = ObjectOf(long_program).size();
-  const auto linked = office.Link(LinkOf(1, {{1, long_program}}));
-  const std::size_t executable = Must(linked).executable().size();
+  const std::string bytes = ObjectOf(long_program);
+  const std::size_t object = bytes.size();
+  const auto lookup = [&](int) -> std::optional<std::string_view> { return bytes; };
+  const std::uint32_t executable = optimo::ExecutableSize(Must(optimo::Link(1, lookup, {})));
   ASSERT_GT(object, 100U);
   Machine("object-fits", {{"OBJECT_LIMIT", std::to_string(object)}});
   Machine("object-long", {{"OBJECT_LIMIT", std::to_string(object - 1)}});
