@@ -81,6 +81,9 @@ class Dispatcher {
   void AppendEvents(Worker& worker, const v1::WorkerEvents& events);
   void Collect(Worker& worker, v1::WorkerArtifact& artifact);
   void Finish(Worker& worker, v1::WorkerFinish& finish);
+  // Of a job whose end cannot be stored this attempt counts as lost.
+  Result<storage::JobRecord> StoreEnd(const Worker& worker, const v1::Outcome& outcome,
+                                      const std::vector<storage::NewArtifact>& artifacts);
   void EndAssignment(Worker& worker, bool stored);
   void Lose(const storage::Lease& lease);
   void SweepLeases(const std::stop_token& stop);

@@ -90,11 +90,21 @@ void Dispatcher::Begin(const std::shared_ptr<Worker>& worker, const storage::Lea
 }
 
 void Dispatcher::EndWithoutWork(const std::shared_ptr<Worker>& worker, const storage::JobOutcome& how) {
-  const v1::Outcome outcome = ToProto(how);
-  const auto ended = store_.Finish(worker->assignment->lease, OutcomeOf(outcome), {}, {EndedEvent(outcome)});
-  if (!ended) spdlog::error("{}: {}", JobName(worker->assignment->lease.job), bridge::ErrorText(ended.error()));
+  (void)StoreEnd(*worker, ToProto(how), {});
   EndAssignment(*worker, false);
   PostLook(worker);
+}
+
+Result<storage::JobRecord> Dispatcher::StoreEnd(const Worker& worker, const v1::Outcome& outcome,
+                                                const std::vector<storage::NewArtifact>& artifacts) {
+  const storage::Lease& lease = worker.assignment->lease;
+  auto ended = store_.Finish(lease, OutcomeOf(outcome), artifacts, {EndedEvent(outcome)});
+  if (!ended) {
+    spdlog::warn("{} of worker {}: {}", JobName(lease.job), worker.name, bridge::ErrorText(ended.error()));
+    // A full disk must not leave the job without an owner until its lease runs out.
+    if (ended.error().code != ErrorCode::kCellLeaseLost) Lose(lease);
+  }
+  return ended;
 }
 
 void Dispatcher::GiveBack(Worker& worker) {
@@ -215,15 +225,9 @@ void Dispatcher::Finish(Worker& worker, v1::WorkerFinish& finish) {
   }
   std::vector<storage::NewArtifact> artifacts;
   for (auto& [name, artifact] : assignment.artifacts) artifacts.push_back(std::move(artifact));
-  const storage::Lease lease = assignment.lease;
-  const auto finished =
-      store_.Finish(lease, OutcomeOf(finish.outcome()), artifacts, {EndedEvent(finish.outcome())});
-  if (!finished) {
-    spdlog::warn("{} of worker {}: {}", JobName(lease.job), worker.name, bridge::ErrorText(finished.error()));
-    // A full disk must not leave the job without an owner until its lease runs out.
-    if (finished.error().code != ErrorCode::kCellLeaseLost) Lose(lease);
-  } else {
-    spdlog::info("{} {} {}", JobName(lease.job), v1::Job::State_Name(ToProto(finished->state)),
+  const auto finished = StoreEnd(worker, finish.outcome(), artifacts);
+  if (finished) {
+    spdlog::info("{} {} {}", JobName(assignment.lease.job), v1::Job::State_Name(ToProto(finished->state)),
                  finish.outcome().code());
   }
   // Of a worker that lost its lease nothing is kept.

@@ -233,7 +233,7 @@ RpcStatus Unwrap(const RpcRoute& route, const HttpRequest& request, std::string&
 }  // namespace
 
 bool LooksLikeMethod(std::string_view path) {
-  if (path.size() < 4 || path.front() != '/') return false;
+  if (!path.starts_with('/')) return false;
   const std::size_t slash = path.find('/', 1);
   if (slash == std::string_view::npos || slash + 1 == path.size()) return false;
   const auto is_name = [](char c) {

@@ -73,22 +73,24 @@ TEST(DispatcherFailures, AnEndThatCannotBeStoredInTheLastAttemptFailsTheJob) {
   EXPECT_TRUE(bed.Events(job).back().has_ended());
 }
 
-// Nobody works on it and its end is not stored: its lease brings it back.
+// The same where there is nothing to work on: no time of a lease passes before it is looked at again.
 TEST(DispatcherFailures, AJobThatCannotBeWorkedOnIsLookedAtAgainWhenItsEndIsNotStored) {
   DispatcherBed bed;
-  bed.config.workers_lease_ms = 100;
   const std::int64_t broken =
-      Must(bed.server.store().SubmitAndWait(
-               {.machine = "optimo-1", .kind = "CHECK", .specification = "\xFF\xFF no message"}))
+      Must(bed.server.store().SubmitAndWait({.machine = "optimo-1",
+                                             .kind = "CHECK",
+                                             .specification = "\xFF\xFF no message",
+                                             .attempts_max = 2}))
           .job.id;
   bed.hooks.finishes_that_fail = 1;
   FakeWorker worker(bed.dispatcher(), "w");
-  EXPECT_TRUE(worker.line().Next(v1::WorkResponse::kRelease).has_release());
-  EXPECT_EQ(bed.Job(broken).state, JobState::kRunning);
-  bed.Advance(milliseconds(100));
   ASSERT_TRUE(bed.Becomes(broken, JobState::kFailed));
   EXPECT_EQ(bed.Job(broken).outcome->code, ErrorCode::kCellStoreCorrupt);
   EXPECT_EQ(bed.Job(broken).attempts, 2);
+  const auto attempts = Must(bed.server.store().ListAttempts(broken));
+  ASSERT_EQ(attempts.size(), 2U);
+  EXPECT_EQ(attempts[0].how_it_ended, "abandoned");
+  EXPECT_FALSE(worker.HasJob());
 }
 
 TEST(DispatcherFailures, AWorkerIsGivenAJobWhenAFailingStoreWorksAgain) {

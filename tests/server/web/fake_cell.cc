@@ -113,7 +113,7 @@ class Jobs : public v1::JobService::CallbackService {
           if (name == "jobs/1" && sequence > 5) return Step::kEnd;
           response.set_sequence(sequence);
           response.mutable_event()->set_sequence(sequence);
-          response.mutable_event()->set_message(name == "jobs/flood" ? std::string(100'000, 'f')
+          response.mutable_event()->set_message(name == "jobs/flood" ? std::string(kFloodBytes, 'f')
                                                                      : "event");
           if (name == "jobs/flood") ++counters_.produced;
           return Step::kMessage;
@@ -244,6 +244,9 @@ FakeCell::FakeCell(WebOptions options) : services_(std::make_unique<Services>(co
   SetServing(true);
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);
+  // A window of a known size; gRPC would have it grow with what it measures.
+  arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
+  arguments.SetInt(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, kGrpcWindowBytes);
   options.secret = std::string(kSecret);
   Result<std::unique_ptr<WebServer>> web = WebServer::Start(
       options, grpc::CreateCustomChannel("127.0.0.1:" + std::to_string(grpc_port), grpc::InsecureChannelCredentials(), arguments), resources_, [this](const WebLogEntry& entry) {

@@ -1,0 +1,132 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/server/forwarding_store.h"
+
+namespace rmlcell::server {
+
+// A store of which one call fails, the n-th from when it is told so; none with 0. For one thread.
+class FailingStore final : public ForwardingStore {
+ public:
+  using ForwardingStore::ForwardingStore;
+
+  void FailAt(int call) {
+    fails_at_ = call;
+    calls_ = 0;
+  }
+  bool failed() const { return fails_at_ > 0 && calls_ >= fails_at_; }
+
+  Result<storage::MachineRecord> GetMachine(std::string_view id) override {
+    return Or([&] { return store_.GetMachine(id); });
+  }
+  Result<std::vector<storage::ProgramSummary>> ListPrograms(std::string_view machine, int after,
+                                                            int limit) override {
+    return Or([&] { return store_.ListPrograms(machine, after, limit); });
+  }
+  Result<storage::ProgramRecord> GetProgram(std::string_view machine, int slot) override {
+    return Or([&] { return store_.GetProgram(machine, slot); });
+  }
+  Result<storage::ProgramSummary> GetProgramSummary(std::string_view machine, int slot) override {
+    return Or([&] { return store_.GetProgramSummary(machine, slot); });
+  }
+  Result<std::vector<storage::ProgramRecord>> GetProgramMemory(std::string_view machine) override {
+    return Or([&] { return store_.GetProgramMemory(machine); });
+  }
+  Result<std::vector<int>> ListDeletedPrograms(std::string_view machine) override {
+    return Or([&] { return store_.ListDeletedPrograms(machine); });
+  }
+  Result<std::vector<storage::ProgramSummary>> PutPrograms(
+      std::string_view machine, const std::vector<storage::ProgramWrite>& programs,
+      const std::vector<storage::ScheduleRecord>& schedules) override {
+    return Or([&] { return store_.PutPrograms(machine, programs, schedules); });
+  }
+  Status DeleteProgram(std::string_view machine, int slot, storage::Revision expected) override {
+    return Or([&] { return store_.DeleteProgram(machine, slot, expected); });
+  }
+  Result<bool> PutExecutable(std::string_view machine, int slot, storage::Revision object_revision,
+                             std::string_view executable) override {
+    return Or([&] { return store_.PutExecutable(machine, slot, object_revision, executable); });
+  }
+  Status DeleteExecutable(std::string_view machine, int slot) override {
+    return Or([&] { return store_.DeleteExecutable(machine, slot); });
+  }
+  Result<std::vector<storage::ScheduleRecord>> ListSchedules(std::string_view machine) override {
+    return Or([&] { return store_.ListSchedules(machine); });
+  }
+  Result<std::vector<storage::ProjectRecord>> ListProjects(std::string_view after,
+                                                           int limit) override {
+    return Or([&] { return store_.ListProjects(after, limit); });
+  }
+  Result<storage::ProjectRecord> GetProject(std::string_view id) override {
+    return Or([&] { return store_.GetProject(id); });
+  }
+  Result<storage::ProjectRecord> PutProject(const storage::ProjectRecord& project,
+                                            storage::Revision expected) override {
+    return Or([&] { return store_.PutProject(project, expected); });
+  }
+  Status DeleteProject(std::string_view id, storage::Revision expected) override {
+    return Or([&] { return store_.DeleteProject(id, expected); });
+  }
+  void Submit(storage::NewJob job,
+              std::function<void(Result<storage::SubmittedJob>)> done) override {
+    if (FailsNow()) return done(FullDisk());
+    store_.Submit(std::move(job), std::move(done));
+  }
+  Result<std::optional<storage::JobRecord>> FindSubmitted(std::string_view id,
+                                                          std::string_view hash) override {
+    return Or([&] { return store_.FindSubmitted(id, hash); });
+  }
+  Result<storage::JobRecord> GetJob(std::int64_t id) override {
+    return Or([&] { return store_.GetJob(id); });
+  }
+  Result<std::vector<storage::JobRecord>> ListJobs(const storage::JobQuery& query) override {
+    return Or([&] { return store_.ListJobs(query); });
+  }
+  Result<std::int64_t> LastPosition() override {
+    return Or([&] { return store_.LastPosition(); });
+  }
+  Result<std::vector<storage::ArtifactRecord>> ListArtifacts(std::int64_t job) override {
+    return Or([&] { return store_.ListArtifacts(job); });
+  }
+  Result<storage::ArtifactRecord> GetArtifact(std::int64_t job, std::string_view name) override {
+    return Or([&] { return store_.GetArtifact(job, name); });
+  }
+  Result<std::string> ReadBlob(std::string_view sha256) override {
+    return Or([&] { return store_.ReadBlob(sha256); });
+  }
+
+ private:
+  static Error FullDisk() { return {ErrorCode::kCellStoreFailed, "the disk is full", {}}; }
+  bool FailsNow() { return ++calls_ == fails_at_; }
+  template <class Call>
+  auto Or(Call call) -> decltype(call()) {
+    if (FailsNow()) return FullDisk();
+    return call();
+  }
+
+  int fails_at_ = 0;
+  int calls_ = 0;
+};
+
+// Lets the first call to the store fail, then the second, and so on until the operation comes
+// through: each failure is what the operation ends with, and without one it ends with `last`.
+inline void ExpectFailuresHandedOn(FailingStore& store, const std::string& what, int calls,
+                                   const std::function<std::optional<ErrorCode>()>& operation,
+                                   std::optional<ErrorCode> last = std::nullopt) {
+  for (int call = 1; call <= calls; ++call) {
+    store.FailAt(call);
+    EXPECT_EQ(operation(), ErrorCode::kCellStoreFailed) << what << ", call " << call;
+  }
+  store.FailAt(calls + 1);
+  EXPECT_EQ(operation(), last) << what;
+  EXPECT_FALSE(store.failed()) << what << " makes more than " << calls << " calls";
+  store.FailAt(0);
+}
+
+}  // namespace rmlcell::server

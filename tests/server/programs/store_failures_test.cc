@@ -1,0 +1,122 @@
+// Whichever call to the store fails in the middle of something, its error is what the caller hears.
+#include <gtest/gtest.h>
+
+#include "server/config.h"
+#include "server/programs/memory_office.h"
+#include "tests/server/engine_bytes.h"
+#include "tests/server/failing_store.h"
+#include "tests/server/server_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+class ProgramStoreFailures : public testing::Test {
+ protected:
+  static std::string Name(int number) {
+    return "machines/optimo-1/programs/" + std::to_string(number);
+  }
+  static v1::ProgramText Text() {
+    v1::ProgramText text;
+    text.set_file_name("44.S");
+    text.set_content("STOP\n");
+    return text;
+  }
+  std::optional<ErrorCode> Store(ProgramShelf::Put put) {
+    const auto stored = shelf.Store(std::move(put));
+    return stored ? std::nullopt : std::optional(stored.error.error.code);
+  }
+  std::optional<ErrorCode> Delete(int number, const std::string& etag = "") {
+    v1::DeleteProgramRequest request;
+    request.set_name(Name(number));
+    request.set_etag(etag);
+    const Status deleted = shelf.Delete(request);
+    return deleted ? std::nullopt : std::optional(deleted.error().code);
+  }
+  void Put(int slot) {
+    Must(bed.store().PutPrograms("optimo-1", {{.slot = slot, .object = ObjectOf("STOP\n")}}, {}));
+  }
+  void Expect(const std::string& what, int calls,
+              const std::function<std::optional<ErrorCode>()>& operation) {
+    ExpectFailuresHandedOn(store, what, calls, operation);
+  }
+
+  ServerBed bed;
+  FailingStore store{bed.store()};
+  Config config;
+  ProgramShelf shelf{store, config};
+  MemoryOffice office{store, shelf};
+};
+
+TEST_F(ProgramStoreFailures, OfTheShelf) {
+  Expect("storing", 2,
+         [&] { return Store({.name = Name(45), .file_name = "a.S", .bytes = "STOP\n"}); });
+  Expect("asking whether it can be stored", 2, [&] {
+    return Store({.name = Name(46),
+                  .file_name = "a.S",
+                  .etag = "none",
+                  .bytes = "STOP\n",
+                  .validate_only = true});
+  });
+  Expect("storing an executable", 3,
+         [&] { return Store({.name = Name(145), .bytes = ExecutableOf(45, "STOP\n")}); });
+  Expect("getting", 2, [&] { return CodeOf(shelf.Get(Name(45))); });
+  Expect("reading", 2, [&] { return CodeOf(shelf.Read(Name(45), v1::PROGRAM_FORM_SOURCE)); });
+  Expect("listing", 2, [&] {
+    v1::ListProgramsRequest request;
+    request.set_parent("machines/optimo-1");
+    return CodeOf(shelf.List(request));
+  });
+  Expect("translating", 1,
+         [&] { return CodeOf(shelf.Translate("", "machines/optimo-1", Text(), true)); });
+  Expect("checking", 4, [&] { return CodeOf(shelf.Check("", "machines/optimo-1", Text(), true)); });
+  Expect("deleting an executable", 3, [&] { return Delete(145); });
+  Expect("deleting", 2, [&] { return Delete(45); });
+}
+
+TEST_F(ProgramStoreFailures, OfTheOffice) {
+  Put(44);
+  Put(45);
+  Expect("linking", 2, [&] {
+    v1::LinkProgramRequest request;
+    request.set_slot(45);
+    request.set_machine("machines/optimo-1");
+    return CodeOf(office.Link(request));
+  });
+  Expect("looking for stale executables", 3, [&] {
+    v1::ListStaleExecutablesRequest request;
+    request.set_parent("machines/optimo-1");
+    return CodeOf(office.ListStale(request));
+  });
+  Expect("decompiling", 3, [&] {
+    v1::DecompileProgramRequest request;
+    request.set_name(Name(45));
+    return CodeOf(office.Decompile(request));
+  });
+  Expect("comparing", 4, [&]() -> std::optional<ErrorCode> {
+    v1::DiffProgramsRequest request;
+    request.mutable_before()->set_name(Name(44));
+    request.mutable_after()->set_name(Name(45));
+    const auto diff = office.Diff(request);
+    return diff ? std::nullopt : std::optional(diff.error.error.code);
+  });
+  v1::FixProgramRequest fix;
+  *fix.mutable_program() = Text();
+  fix.set_machine("machines/optimo-1");
+  store.FailAt(1);
+  EXPECT_EQ(CodeOf(office.Fix(fix)), ErrorCode::kCellStoreFailed);
+}
+
+// The machine goes away while its program is being mended: what was found before stays true.
+TEST_F(ProgramStoreFailures, AFixGoesOnWithWhatWasFoundBefore) {
+  v1::FixProgramRequest fix;
+  fix.mutable_program()->set_file_name("44.S");
+  fix.mutable_program()->set_content("SPEDE 20\n");
+  fix.set_machine("machines/optimo-1");
+  store.FailAt(2);
+  const auto fixed = Must(office.Fix(fix));
+  EXPECT_TRUE(store.failed());
+  EXPECT_EQ(fixed.content(), "SPEED 20\n");
+}
+
+}  // namespace
+}  // namespace rmlcell::server

@@ -1,0 +1,79 @@
+// Whichever call to the store fails in the middle of something, its error is what the caller hears.
+#include <gtest/gtest.h>
+
+#include "server/config.h"
+#include "server/projects/project_book.h"
+#include "tests/server/failing_store.h"
+#include "tests/server/server_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+class ProjectFailures : public testing::Test {
+ protected:
+  template <class T>
+  static std::optional<ErrorCode> Code(const ProgramResult<T>& result) {
+    return result ? std::nullopt : std::optional(result.error.error.code);
+  }
+  void Expect(const std::string& what, int calls,
+              const std::function<std::optional<ErrorCode>()>& operation) {
+    ExpectFailuresHandedOn(store, what, calls, operation);
+  }
+  static v1::CreateProjectRequest Creation(const std::string& id) {
+    v1::CreateProjectRequest request;
+    request.set_project_id(id);
+    v1::ProjectProgram& program = *request.mutable_project()->add_programs();
+    program.set_slot(45);
+    program.mutable_source()->set_file_name("45.S");
+    program.mutable_source()->set_content("STOP\n");
+    return request;
+  }
+  v1::TransferProjectRequest Transfer(const std::string& machine) {
+    v1::TransferProjectRequest request;
+    request.set_name("projects/lid");
+    request.set_machine(machine);
+    return request;
+  }
+
+  ServerBed bed;
+  FailingStore store{bed.store()};
+  ProjectBook book{store};
+};
+
+TEST_F(ProjectFailures, AreHandedOn) {
+  v1::CreateProjectRequest create = Creation("lid");
+  create.set_validate_only(true);
+  Expect("asking whether it can be created", 1, [&] { return Code(book.Create(create)); });
+  create.set_validate_only(false);
+  Expect("creating", 1, [&] { return Code(book.Create(create)); });
+  Expect("getting", 1, [&] { return CodeOf(book.Get("projects/lid")); });
+  Expect("listing", 1, [&] { return CodeOf(book.List({})); });
+  Expect("updating", 2, [&] {
+    v1::UpdateProjectRequest request;
+    request.mutable_project()->set_name("projects/lid");
+    request.mutable_project()->set_title("Lid");
+    return Code(book.Update(request));
+  });
+  Expect("transferring", 3, [&] { return Code(book.Transfer(Transfer("machines/optimo-1"))); });
+  Expect("deleting", 1, [&]() -> std::optional<ErrorCode> {
+    v1::DeleteProjectRequest request;
+    request.set_name("projects/lid");
+    const Status deleted = book.Delete(request);
+    return deleted ? std::nullopt : std::optional(deleted.error().code);
+  });
+}
+
+// A store that a later version has written to may have machines of families unknown here.
+TEST_F(ProjectFailures, AMachineThatThisServerDoesNotKnow) {
+  ASSERT_TRUE(book.Create(Creation("lid")));
+  Must(bed.store().PutMachine({.id = "odd", .family = "lathe"}, 0));
+  Must(bed.store().PutMachine({.id = "strange", .family = "optimo", .parameters = {{"NONE", "1"}}},
+                              0));
+  EXPECT_EQ(Code(book.Transfer(Transfer("machines/odd"))), ErrorCode::kCellUnknownFamily);
+  EXPECT_NE(Code(book.Transfer(Transfer("machines/strange"))), std::nullopt);
+  EXPECT_EQ(Code(book.Transfer(Transfer("machines/none"))), ErrorCode::kCellUnknownMachine);
+  EXPECT_EQ(Code(book.Transfer(Transfer("none"))), ErrorCode::kCellInvalidArgument);
+}
+
+}  // namespace
+}  // namespace rmlcell::server

@@ -1,0 +1,514 @@
+// A worker's side of a job, against a server that says what the test wants and notes what it hears.
+#include "server/worker/job_runner.h"
+
+#include <gmock/gmock.h>
+#include <grpcpp/grpcpp.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+
+#include "rmlcell/v1/report.pb.h"
+#include "rmlcell/v1/worker.grpc.pb.h"
+#include "server/version.h"
+#include "server/worker/server_line.h"
+
+namespace rmlcell::server {
+namespace {
+
+using testing::ElementsAre;
+
+// Runs for as long as it is let, in no virtual time.
+constexpr const char* kEndless = "10 VI[2] = VI[3]\nGOTO 10\n";
+
+class FakeServer final : public v1::WorkerService::Service {
+ public:
+  FakeServer() {
+    grpc::ServerBuilder builder;
+    int port = 0;
+    builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port);
+    builder.RegisterService(this);
+    builder.SetMaxReceiveMessageSize(-1);
+    server_ = builder.BuildAndStart();
+    address_ = "127.0.0.1:" + std::to_string(port);
+  }
+  ~FakeServer() override {
+    server_->Shutdown(std::chrono::system_clock::now());
+    server_->Wait();
+  }
+
+  const std::string& address() const { return address_; }
+
+  // Set before a worker joins.
+  grpc::Status refusal = grpc::Status::OK;
+  std::int64_t lease_ms = 60'000;
+  int window = 256;
+  std::function<void(const v1::WorkRequest&)> heard;  // what to do on a message; may call Send
+
+  void Send(const v1::WorkResponse& message) {
+    const std::lock_guard lock(mutex_);
+    stream_->Write(message);
+  }
+  // Ends the line without a word.
+  void HangUp() {
+    const std::lock_guard lock(mutex_);
+    context_->TryCancel();
+  }
+
+  std::vector<v1::WorkRequest> requests() {
+    const std::lock_guard lock(mutex_);
+    return requests_;
+  }
+
+  grpc::Status Work(grpc::ServerContext* context,
+                    grpc::ServerReaderWriter<v1::WorkResponse, v1::WorkRequest>* stream) override {
+    v1::WorkRequest message;
+    if (!stream->Read(&message) || !refusal.ok()) return refusal;
+    {
+      const std::lock_guard lock(mutex_);
+      context_ = context;
+      stream_ = stream;
+      requests_ = {message};  // of this worker alone
+    }
+    v1::WorkResponse welcome;
+    welcome.mutable_welcome()->set_lease_ms(lease_ms);
+    welcome.mutable_welcome()->set_events_window(window);
+    Send(welcome);
+    std::int64_t events = 0;
+    while (stream->Read(&message)) {
+      {
+        const std::lock_guard lock(mutex_);
+        requests_.push_back(message);
+      }
+      if (message.has_events() && stores) {
+        events += message.events().events_size();
+        v1::WorkResponse stored;
+        *stored.mutable_events_stored()->mutable_lease() = message.events().lease();
+        stored.mutable_events_stored()->set_count(events);
+        Send(stored);
+      }
+      if (heard) heard(message);
+    }
+    return grpc::Status::OK;
+  }
+
+  bool stores = true;  // events are said to be durable at once
+
+ private:
+  std::unique_ptr<grpc::Server> server_;
+  std::string address_;
+  std::mutex mutex_;
+  grpc::ServerContext* context_ = nullptr;
+  grpc::ServerReaderWriter<v1::WorkResponse, v1::WorkRequest>* stream_ = nullptr;
+  std::vector<v1::WorkRequest> requests_;
+};
+
+class JobRunnerTest : public testing::Test {
+ protected:
+  static v1::WorkerLease Lease(std::int64_t fence = 5) {
+    v1::WorkerLease lease;
+    lease.set_job(7);
+    lease.set_attempt(2);
+    lease.set_fence(fence);
+    return lease;
+  }
+  static v1::WorkerAssignment Assignment(v1::JobKind kind, const std::string& source,
+                                         const std::string& family = "optimo") {
+    v1::WorkerAssignment assignment;
+    *assignment.mutable_lease() = Lease();
+    assignment.mutable_job()->set_kind(kind);
+    assignment.set_family(family);
+    assignment.set_main_program(45);
+    assignment.set_default_schedules(true);
+    v1::AssignedProgram& program = *assignment.add_programs();
+    program.set_slot(45);
+    program.set_file_name(family == "optimo" ? "part.S" : "part.rml");
+    program.set_content(source);
+    program.set_size(static_cast<std::int64_t>(source.size()));
+    program.set_is_source(true);
+    v1::Budget& budget = *assignment.mutable_budget();
+    budget.set_steps(1'000'000'000);
+    budget.set_virtual_time_s(1e6);
+    budget.set_memory_bytes(std::int64_t{1} << 30);
+    budget.set_processor_s(600.0);
+    budget.set_output_bytes(std::int64_t{1} << 28);
+    return assignment;
+  }
+  static v1::WorkResponse Order(v1::WorkerControl::Kind kind, std::int64_t fence = 5,
+                                double value = 0.0) {
+    v1::WorkResponse message;
+    *message.mutable_control()->mutable_lease() = Lease(fence);
+    message.mutable_control()->set_kind(kind);
+    message.mutable_control()->set_value(value);
+    return message;
+  }
+  static v1::WorkResponse Release(std::int64_t fence = 5) {
+    v1::WorkResponse message;
+    *message.mutable_release()->mutable_lease() = Lease(fence);
+    return message;
+  }
+  static bool IsPosition(const v1::WorkRequest& message) {
+    return message.has_heartbeat() && message.heartbeat().has_progress();
+  }
+
+  // Works on it; all that the worker says has been heard when this returns.
+  bool Work(const v1::WorkerAssignment& assignment,
+            const std::vector<v1::WorkResponse>& before = {}) {
+    line_ = *ServerLine::Join({.server = server.address(), .join_token = "secret", .name = "w"});
+    for (const v1::WorkResponse& message : before) server.Send(message);
+    JobRunner runner(*line_, stopping);
+    const bool go_on = runner.Work(assignment);
+    line_->Close();
+    while (!line_->gone()) line_->Receive(std::chrono::seconds(60));
+    heard_ = server.requests();
+    return go_on;
+  }
+  // The end that the worker told; there is one at most, and nothing follows it.
+  std::optional<v1::WorkerFinish> Finished() {
+    std::optional<v1::WorkerFinish> finish;
+    for (const v1::WorkRequest& message : heard_) {
+      EXPECT_FALSE(finish && !message.has_heartbeat());
+      if (message.has_finish()) finish = message.finish();
+    }
+    if (finish) {
+      EXPECT_EQ(finish->lease().SerializeAsString(), Lease().SerializeAsString());
+    }
+    return finish;
+  }
+  v1::Outcome Outcome() {
+    const auto finish = Finished();
+    EXPECT_TRUE(finish);
+    return finish ? finish->outcome() : v1::Outcome();
+  }
+  bool HandedBack() {
+    return std::ranges::any_of(heard_, [](const v1::WorkRequest& m) {
+      return m.has_hand_back() &&
+             m.hand_back().lease().SerializeAsString() == Lease().SerializeAsString();
+    });
+  }
+  std::map<std::string, std::string> Artifacts() {
+    std::map<std::string, std::string> artifacts;
+    for (const v1::WorkRequest& message : heard_) {
+      if (!message.has_artifact()) continue;
+      EXPECT_EQ(message.artifact().lease().SerializeAsString(), Lease().SerializeAsString());
+      EXPECT_LE(message.artifact().chunk().size(), std::size_t{1} << 20);
+      artifacts[message.artifact().name()] += message.artifact().chunk();
+    }
+    return artifacts;
+  }
+  std::vector<std::string> Names() {
+    std::vector<std::string> names;
+    for (const auto& [name, bytes] : Artifacts()) names.push_back(name);
+    return names;
+  }
+  v1::RunReport Report() {
+    v1::RunReport report;
+    EXPECT_TRUE(report.ParseFromString(Artifacts()["report"]));
+    return report;
+  }
+  std::vector<v1::JobEvent> Events() {
+    std::vector<v1::JobEvent> events;
+    for (const v1::WorkRequest& message : heard_) {
+      if (!message.has_events()) continue;
+      EXPECT_EQ(message.events().lease().SerializeAsString(), Lease().SerializeAsString());
+      events.insert(events.end(), message.events().events().begin(),
+                    message.events().events().end());
+    }
+    return events;
+  }
+
+  FakeServer server;
+  std::atomic<bool> stopping = false;
+  std::unique_ptr<ServerLine> line_;
+  std::vector<v1::WorkRequest> heard_;
+};
+
+TEST_F(JobRunnerTest, JoinsWithItsNameAndWhatItCanDo) {
+  server.lease_ms = 1234;
+  server.window = 77;
+  EXPECT_TRUE(Work(Assignment(v1::JOB_KIND_CHECK, "STOP\n")));
+  EXPECT_EQ(line_->lease_ms(), 1234);
+  EXPECT_EQ(line_->events_window(), 77);
+  const v1::WorkerHello& hello = heard_.front().hello();
+  EXPECT_EQ(hello.join_token(), "secret");
+  EXPECT_EQ(hello.worker(), "w");
+  EXPECT_EQ(hello.version(), kVersion);
+  EXPECT_THAT(hello.kinds(), ElementsAre(v1::JOB_KIND_CHECK, v1::JOB_KIND_SIMULATE));
+  EXPECT_GT(hello.process_id(), 0);
+}
+
+// server/worker/server_line.h: the reason of the server has a code of its own.
+TEST_F(JobRunnerTest, IsToldWhyItMayNotJoin) {
+  const std::vector<std::pair<grpc::StatusCode, ErrorCode>> rows = {
+      {grpc::StatusCode::UNAUTHENTICATED, ErrorCode::kCellJoinRefused},
+      {grpc::StatusCode::FAILED_PRECONDITION, ErrorCode::kCellVersionMismatch},
+      {grpc::StatusCode::INTERNAL, ErrorCode::kCellUnavailable}};
+  for (const auto& [status, code] : rows) {
+    server.refusal = grpc::Status(status, "because");
+    const auto joined =
+        ServerLine::Join({.server = server.address(), .join_token = "", .name = "w"});
+    ASSERT_FALSE(joined);
+    EXPECT_EQ(joined.error().code, code);
+    EXPECT_EQ(joined.error().detail, "because");
+  }
+}
+
+TEST_F(JobRunnerTest, ACheckLeavesAReport) {
+  EXPECT_TRUE(Work(Assignment(v1::JOB_KIND_CHECK, "STOP\n")));
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
+  EXPECT_THAT(Names(), ElementsAre("report"));
+  EXPECT_EQ(Report().outcome().kind(), v1::Outcome::KIND_COMPLETED);
+  EXPECT_EQ(Report().family(), "optimo");
+  EXPECT_FALSE(HandedBack());
+}
+
+// The first error ends the job; each finding is in the report and in the log. OPT-2.35: SPEED is 0
+// to 100.
+TEST_F(JobRunnerTest, ACheckOfAProgramWithErrorsFails) {
+  Work(Assignment(v1::JOB_KIND_CHECK, "STOP\nSPEED 101\nSPEED 102\n"));
+  const v1::Outcome outcome = Outcome();
+  EXPECT_EQ(outcome.kind(), v1::Outcome::KIND_FAILED);
+  EXPECT_EQ(outcome.code(), "OPT-E7004");
+  EXPECT_EQ(outcome.place().program(), 45);
+  EXPECT_EQ(outcome.place().line(), 2);
+  EXPECT_EQ(Report().diagnostics_size(), 2);
+  EXPECT_EQ(Report().outcome().SerializeAsString(), outcome.SerializeAsString());
+  EXPECT_EQ(Events().size(), 2U);
+}
+
+TEST_F(JobRunnerTest, ASimulationThatCannotBeTranslatedFailsWithItsFindings) {
+  Work(Assignment(v1::JOB_KIND_SIMULATE, "STOP\nSPEED 101\n"));
+  EXPECT_EQ(Outcome().code(), "OPT-E7004");
+  EXPECT_THAT(Names(), ElementsAre("report"));
+  EXPECT_EQ(Report().diagnostics_size(), 1);
+}
+
+// 10 mm in the work: the products of a run.
+TEST_F(JobRunnerTest, ASimulationLeavesItsProducts) {
+  Work(Assignment(v1::JOB_KIND_SIMULATE,
+                  "PA;PA;VS8;!MC1;PU1000,1000;Z1000,1000,-50;Z2000,1000,-50;PU0,0;", "rml1"));
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
+  EXPECT_THAT(Names(), ElementsAre("picture.svg", "report", "toolpath"));
+  EXPECT_NE(Artifacts()["picture.svg"].find("<svg"), std::string::npos);
+  EXPECT_NEAR(Report().total().cut_length_mm() - Report().total().plunge_length_mm(), 10.0, 1e-3);
+  EXPECT_TRUE(std::ranges::any_of(heard_, IsPosition));
+}
+
+TEST_F(JobRunnerTest, ATraceComesWhenItIsWanted) {
+  v1::WorkerAssignment assignment = Assignment(v1::JOB_KIND_SIMULATE, "OL[20]=ON\nDELAY 1.5\n");
+  assignment.mutable_job()->mutable_simulation()->set_trace(true);
+  assignment.mutable_job()->mutable_simulation()->add_variables("VI[3]");
+  Work(assignment);
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
+  EXPECT_THAT(Names(), ElementsAre("picture.svg", "report", "toolpath", "trace"));
+  EXPECT_NEAR(Report().total().times().dwell_s(), 1.5, 1e-9);
+  EXPECT_EQ(Finished()->executables_size(), 1);  // OPT-1.11: the first run makes it
+  EXPECT_EQ(Finished()->executables().begin()->first, 45);
+  EXPECT_EQ(std::ranges::count_if(Events(), [](const v1::JobEvent& e) { return e.has_signal(); }),
+            1);
+}
+
+// Large programs follow in parts; parts of other programs are not taken for them.
+TEST_F(JobRunnerTest, TakesAProgramInParts) {
+  v1::WorkerAssignment assignment = Assignment(v1::JOB_KIND_SIMULATE, "");
+  assignment.mutable_programs(0)->set_size(10);
+  const auto part = [](int slot, const std::string& bytes) {
+    v1::WorkResponse message;
+    message.mutable_blob()->set_slot(slot);
+    message.mutable_blob()->set_chunk(bytes);
+    return message;
+  };
+  Work(assignment, {part(45, "DELAY "), part(44, "junk"), Release(4), part(45, "2.5\n")});
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
+  EXPECT_NEAR(Report().total().times().dwell_s(), 2.5, 1e-9);
+}
+
+TEST_F(JobRunnerTest, ALeaseThatIsLostBeforeAllPartsCameIsGone) {
+  v1::WorkerAssignment assignment = Assignment(v1::JOB_KIND_SIMULATE, "");
+  assignment.mutable_programs(0)->set_size(10);
+  EXPECT_TRUE(Work(assignment, {Release()}));
+  EXPECT_FALSE(Finished());
+  EXPECT_FALSE(HandedBack());
+}
+
+TEST_F(JobRunnerTest, IsCancelled) {
+  for (const v1::JobKind kind : {v1::JOB_KIND_CHECK, v1::JOB_KIND_SIMULATE}) {
+    v1::WorkerAssignment assignment = Assignment(kind, "");
+    const std::string source = kind == v1::JOB_KIND_CHECK ? "STOP\n" : kEndless;
+    assignment.mutable_programs(0)->set_size(static_cast<std::int64_t>(source.size()));
+    v1::WorkResponse program;
+    program.mutable_blob()->set_slot(45);
+    program.mutable_blob()->set_chunk(source);
+    // An order of another attempt is not for this one; the order is there before the run begins.
+    Work(assignment,
+         {Order(v1::WorkerControl::KIND_STOP, 4), Order(v1::WorkerControl::KIND_CANCEL), program});
+    EXPECT_EQ(heard_.back().finish().outcome().kind(), v1::Outcome::KIND_CANCELLED);
+    EXPECT_EQ(heard_.back().finish().outcome().code(), "CELL-E9307");
+  }
+}
+
+TEST_F(JobRunnerTest, IsCancelledWhileItRuns) {
+  bool ordered = false;
+  server.heard = [&](const v1::WorkRequest& message) {
+    if (IsPosition(message) && !std::exchange(ordered, true))
+      server.Send(Order(v1::WorkerControl::KIND_CANCEL));
+  };
+  Work(Assignment(v1::JOB_KIND_SIMULATE, kEndless));
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_CANCELLED);
+}
+
+// HOLD halts it and RESUME lets it go on; what is ordered is told at once.
+TEST_F(JobRunnerTest, IsHeldAndGoesOn) {
+  for (const auto kind : {v1::WorkerControl::KIND_HOLD, v1::WorkerControl::KIND_STOP}) {
+    std::vector<std::string> told;
+    bool ordered = false;
+    server.heard = [&](const v1::WorkRequest& message) {
+      if (IsPosition(message) && !std::exchange(ordered, true)) server.Send(Order(kind));
+      for (const v1::JobEvent& event : message.events().events()) {
+        if (event.has_halted()) {
+          told.emplace_back("halted");
+          server.Send(Order(v1::WorkerControl::KIND_RESUME));
+        } else if (event.has_resumed()) {
+          told.emplace_back("resumed");
+          server.Send(Order(v1::WorkerControl::KIND_CANCEL));
+        }
+      }
+    };
+    Work(Assignment(v1::JOB_KIND_SIMULATE, kEndless));
+    EXPECT_EQ(heard_.back().finish().outcome().kind(), v1::Outcome::KIND_CANCELLED);
+    EXPECT_THAT(told, ElementsAre("halted", "resumed"));
+  }
+}
+
+// A program that halts by itself waits for a key that nobody presses; one that a client holds waits
+// for him.
+TEST_F(JobRunnerTest, AHaltThatNobodyEndsEndsTheRun) {
+  v1::WorkerAssignment assignment = Assignment(v1::JOB_KIND_SIMULATE, kEndless);
+  assignment.mutable_job()->mutable_simulation()->mutable_breakpoint()->set_step(2);
+  Work(assignment);
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_STOPPED);
+  EXPECT_EQ(Outcome().code(), "CELL-E9308");
+}
+
+TEST_F(JobRunnerTest, ALeaseThatIsLostEndsTheWorkWithoutAWord) {
+  bool sent = false;
+  server.heard = [&](const v1::WorkRequest& message) {
+    if (!IsPosition(message) || std::exchange(sent, true)) return;
+    server.Send(Release(4));  // another one
+    server.Send(Release());
+  };
+  EXPECT_TRUE(Work(Assignment(v1::JOB_KIND_SIMULATE, kEndless)));
+  EXPECT_FALSE(Finished());
+  EXPECT_FALSE(HandedBack());
+}
+
+TEST_F(JobRunnerTest, ALineThatIsGoneEndsTheWork) {
+  bool sent = false;
+  server.heard = [&](const v1::WorkRequest& message) {
+    if (IsPosition(message) && !std::exchange(sent, true)) server.HangUp();
+  };
+  EXPECT_TRUE(Work(Assignment(v1::JOB_KIND_SIMULATE, kEndless)));
+  EXPECT_FALSE(Finished());
+}
+
+// A server that stops gets its job back, and the worker ends; so it does when its process is to
+// end.
+TEST_F(JobRunnerTest, HandsAJobBack) {
+  v1::WorkResponse stop;
+  stop.mutable_stop();
+  EXPECT_FALSE(Work(Assignment(v1::JOB_KIND_SIMULATE, kEndless), {stop}));
+  EXPECT_TRUE(HandedBack());
+  EXPECT_FALSE(Finished());
+  stopping = true;
+  EXPECT_TRUE(Work(Assignment(v1::JOB_KIND_SIMULATE, kEndless)));
+  EXPECT_TRUE(HandedBack());
+  EXPECT_FALSE(Finished());
+}
+
+TEST_F(JobRunnerTest, EachBudgetEndsTheJobWithItsCode) {
+  const auto ended = [&](const std::string& source, const std::function<void(v1::Budget&)>& change,
+                         v1::JobKind kind = v1::JOB_KIND_SIMULATE) {
+    v1::WorkerAssignment assignment = Assignment(kind, source);
+    change(*assignment.mutable_budget());
+    Work(assignment);
+    const v1::Outcome outcome = heard_.back().finish().outcome();
+    EXPECT_EQ(outcome.kind(), v1::Outcome::KIND_BUDGET_EXCEEDED);
+    return outcome.code();
+  };
+  EXPECT_EQ(ended(kEndless, [](v1::Budget& b) { b.set_processor_s(0.05); }), "CELL-E9303");
+  EXPECT_EQ(ended(
+                "STOP\n", [](v1::Budget& b) { b.set_processor_s(1e-9); }, v1::JOB_KIND_CHECK),
+            "CELL-E9303");
+  EXPECT_EQ(ended("STOP\n", [](v1::Budget& b) { b.set_output_bytes(1); }), "CELL-E9306");
+  EXPECT_EQ(ended(
+                "STOP\n", [](v1::Budget& b) { b.set_output_bytes(1); }, v1::JOB_KIND_CHECK),
+            "CELL-E9306");
+  EXPECT_EQ(ended("STOP\n", [](v1::Budget& b) { b.set_memory_bytes(1000); }), "CELL-E9302");
+}
+
+// A parameter that the machine has not: refused before anything runs.
+TEST_F(JobRunnerTest, RefusesWhatCannotBeSetUp) {
+  for (const v1::JobKind kind : {v1::JOB_KIND_CHECK, v1::JOB_KIND_SIMULATE}) {
+    v1::WorkerAssignment assignment = Assignment(kind, "STOP\n");
+    (*assignment.mutable_parameters())["NONE"] = "1";
+    Work(assignment);
+    EXPECT_EQ(heard_.back().finish().outcome().kind(), v1::Outcome::KIND_FAILED);
+    EXPECT_FALSE(heard_.back().finish().outcome().code().empty());
+    EXPECT_THAT(Names(), ElementsAre());
+  }
+}
+
+// A store that is slow slows the run: beyond the window nothing is sent until events are stored.
+TEST_F(JobRunnerTest, SendsNoMoreThanAWindowOfEvents) {
+  server.lease_ms = 30;
+  server.window = 64;
+  server.stores = false;
+  int beats = 0;
+  int events = 0;
+  std::vector<int> sent_when_stored;
+  server.heard = [&](const v1::WorkRequest& message) {
+    events += message.events().events_size();
+    // Some beats of the heart in which nothing else comes.
+    beats = message.has_heartbeat() && !message.heartbeat().has_progress() ? beats + 1 : 0;
+    if (beats < 5 || events == 0) return;
+    beats = 0;
+    sent_when_stored.push_back(events);
+    v1::WorkResponse stored;
+    *stored.mutable_events_stored()->mutable_lease() = Lease();
+    stored.mutable_events_stored()->set_count(events);
+    server.Send(stored);
+  };
+  std::string source;
+  for (int i = 0; i < 100; ++i) source += "OL[20]=ON\nOL[20]=OFF\n";
+  Work(Assignment(v1::JOB_KIND_SIMULATE, source));
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
+  EXPECT_EQ(std::ranges::count_if(Events(),
+                                  [](const v1::JobEvent& e) { return e.signal().index() == 20; }),
+            200);
+  ASSERT_FALSE(sent_when_stored.empty());
+  // One batch of 64 more than the window, which may be exceeded once, and never more under way.
+  int before = 0;
+  for (const int sent : sent_when_stored) {
+    EXPECT_LE(sent - before, 64 + 64);
+    before = sent;
+  }
+}
+
+// While it translates and runs its heart beats three times in a lease.
+TEST_F(JobRunnerTest, BeatsThreeTimesInALease) {
+  server.lease_ms = 60;
+  int beats = 0;
+  server.heard = [&](const v1::WorkRequest& message) {
+    if (!message.has_heartbeat() || message.heartbeat().has_progress()) return;
+    EXPECT_EQ(message.heartbeat().lease().SerializeAsString(), Lease().SerializeAsString());
+    if (++beats == 3) server.Send(Order(v1::WorkerControl::KIND_CANCEL));
+  };
+  Work(Assignment(v1::JOB_KIND_SIMULATE, kEndless));
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_CANCELLED);
+  EXPECT_GE(beats, 3);
+}
+
+}  // namespace
+}  // namespace rmlcell::server
