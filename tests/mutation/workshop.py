@@ -34,9 +34,7 @@ class Workshop:
         self.root = pathlib.Path(root)
         self.build = pathlib.Path(build)
         with open(self.build / "compile_commands.json", encoding="utf-8") as file:
-            self.compiles = {}  # of each source; a test may compile one of a program's once more
-            for entry in json.load(file):
-                self.compiles.setdefault(os.path.relpath(entry["file"], self.root), []).append(entry)
+            self.compiles = {os.path.relpath(entry["file"], self.root): entry for entry in json.load(file)}
         self.links = {}
 
     def tests(self, names):
@@ -66,13 +64,13 @@ class Workshop:
         return sorted(f"bin/{path.name}" for path in (self.build / "bin").iterdir()
                       if path.name.startswith("rmlcell") and os.access(path, os.X_OK))
 
-    def objects_of(self, file):
-        commands = [shlex.split(entry["command"]) for entry in self.compiles[file]]
-        return [command[command.index("-o") + 1] for command in commands]
+    def object_of(self, file):
+        command = shlex.split(self.compiles[file]["command"])
+        return command[command.index("-o") + 1]
 
-    def library_of(self, an_object):
+    def library_of(self, file):
         """The archive that holds the object, or None where it is linked by itself."""
-        folder, _, rest = an_object.partition("/CMakeFiles/")
+        folder, _, rest = self.object_of(file).partition("/CMakeFiles/")
         archive = f"{folder}/lib{rest.split('.dir/')[0]}.a"
         return archive if (self.build / archive).exists() else None
 
@@ -80,7 +78,7 @@ class Workshop:
         """The object of `source` as if it stood in `file`; None where it is no C++."""
         changed = to / pathlib.Path(file).name
         changed.write_text(source, encoding="utf-8")
-        command = shlex.split(self.compiles[file][0]["command"])
+        command = shlex.split(self.compiles[file]["command"])
         if os.path.basename(command[0]) == "ccache":
             command = command[1:]
         made = to / "changed.o"
@@ -94,18 +92,19 @@ class Workshop:
 
     def relink(self, output, file, changed, to):
         """`output` with the changed object, or None where it does not hold that source."""
-        whole = command = self.link(output)
-        for original in self.objects_of(file):
-            archive = self.library_of(original)
-            if archive is None:
-                command = re.sub(rf"(?<= ){re.escape(original)}(?= )", str(changed), command)
-            elif f" {archive}" in command:
-                own = to / "changed.a"
-                if not own.exists():
-                    subprocess.run(["ar", "rcs", str(own), str(changed)], check=True)
-                command = command.replace(f" {archive}", f" {own} {archive}")
-        if command == whole:
-            return None
+        command = self.link(output)
+        archive, original = self.library_of(file), self.object_of(file)
+        if archive is None:
+            if not re.search(rf"(^| ){re.escape(original)}( |$)", command):
+                return None
+            command = command.replace(f" {original} ", f" {changed} ")
+        else:
+            if f" {archive}" not in command:
+                return None
+            own = to / "changed.a"
+            if not own.exists():
+                subprocess.run(["ar", "rcs", str(own), str(changed)], check=True)
+            command = command.replace(f" {archive}", f" {own} {archive}")
         made = to / output
         made.parent.mkdir(parents=True, exist_ok=True)
         command = command.replace(f"-o {output} ", f"-o {made} ")
