@@ -368,3 +368,224 @@ OL[8] = IL[20]
 OL[9] = ON
 OL[8] = OFF
 OL[8] = ON               ; expect 7409
+
+;=== a subroutine without moves is no ABSOL move (advice)
+; OPT-7.109
+SYSDEF (10.,0.,0.,0.,0.,0.)
+COORD ABSOL
+MOVE (10.,0.,0.,0.,0.)
+COORD ROBOT
+MOVE (20.,0.,0.,0.,0.)
+COORD ABSOL
+GOSUB 100
+ENDTASK
+100 SPEED 5
+RETURN
+
+;=== a subroutine that leads to ABSOL moves is one, however deep they are (advice)
+; OPT-7.109 OPT-7.21
+SYSDEF (10.,0.,0.,0.,0.,0.)
+COORD ABSOL
+MOVE (10.,0.,0.,0.,0.)
+COORD ROBOT
+MOVE (20.,0.,0.,0.,0.)   ; expect 7033
+GOSUB 100
+ENDTASK
+100 GOSUB 200
+RETURN
+200 COORD ABSOL
+MOVE (30.,0.,0.,0.,0.)
+RETURN
+
+;=== each subroutine has its own first and last ABSOL move (advice)
+; OPT-7.109
+SYSDEF (10.,0.,0.,0.,0.,0.)
+COORD ROBOT
+MOVE (1.,0.,0.,0.,0.)
+GOSUB 100
+GOSUB 200
+COORD ROBOT
+MOVE (2.,0.,0.,0.,0.)
+ENDTASK
+100 COORD ROBOT
+MOVE (3.,0.,0.,0.,0.)
+COORD ABSOL
+MOVE (4.,0.,0.,0.,0.)
+RETURN
+200 COORD ABSOL
+MOVE (5.,0.,0.,0.,0.)
+COORD ROBOT
+MOVE (6.,0.,0.,0.,0.)
+RETURN
+
+;=== TIMER in a subroutine of a subroutine may have come (advice)
+; OPT-5.40 OPT-B.59 OPT-7.21
+OL[8]=ON
+GOSUB 40
+OL[9]=ON
+ENDTASK
+10 OL[8]=OFF
+RETURN
+30 TIMER (5.,10)
+DELAY 9
+TIMER /DIS
+RETURN
+40 GOSUB 30
+RETURN
+
+;=== a subroutine without a TIMER leaves what the other one knows (advice)
+; OPT-5.40 OPT-B.59
+OL[8]=ON
+GOSUB 40
+OL[9]=ON                 ; expect 7409
+OL[9]=OFF
+GOSUB 30
+ENDTASK
+10 OL[8]=OFF
+RETURN
+30 TIMER (5.,10)
+DELAY 9
+TIMER /DIS
+RETURN
+40 SPEED 5
+RETURN
+
+;=== two TIMERs: what either of them touches is not known (advice)
+; OPT-5.40 OPT-B.59 OPT-3.33
+OL[11]=ON
+TIMER (5.,10)
+TIMER (6.,20)
+OL[8]=ON
+OL[9]=ON
+OL[9]=OFF
+WORK 0,0/ON
+DELAY 1
+CALL 2
+ENDTASK
+10 OL[8]=OFF
+RETURN
+20 WORK 0,0/OFF
+RETURN
+
+;=== in an error handler the beam is off and all processes are (advice)
+; OPT-3.53 OPT-3.33 OPT-5.45
+OL[11]=ON
+ERR 900
+WORK 0,0/ON
+DELAY 1
+WORK 0,0/OFF
+ENDTASK
+900 CALL 2
+COORD ABSOL
+PATH PTP
+SPEED 5
+MOVE (10.,0.,0.,0.,0.)
+ENDTASK
+
+;=== behind a CALL the beam, gases, sensor and places are not as before (advice)
+; OPT-7.12 OPT-5.40 OPT-5.47 OPT-2.51
+COORD ABSOL
+PATH LIN
+SPEED 10
+OL[8]=ON
+CALL 2
+OL[9]=ON
+WORK 0,0/ON
+DELAY 1
+MOVE (10.,0.,0.,0.,0.)
+WORK 0,0/OFF
+MOVE (20.,0.,0.,0.,0.)
+CALL 2
+MOVE (20.5,0.,0.,0.,0.)/FLY
+MOVE (30.,0.,0.,0.,0.)
+WORK 1,3/ON              ; expect 7401
+WORK 1,3/OFF
+
+;=== modal values and WORKDEFs come back behind a CALL (advice)
+; OPT-7.12 OPT-2.21 OPT-5.46
+WORKDEF 1,0 (8., 75., 1., 50.)
+COORD ABSOL
+PATH CIR
+SPEED 90
+CALL 2
+MOVE (10.,0.,0.,0.,0.)   ; expect 7308 7033
+OL[11]=ON
+WORK 1,0/ON
+WORK 1,0/OFF
+
+;=== moves that change their place for other reasons are not short (advice)
+; OPT-2.51 OPT-2.54 OPT-4.64 OPT-7.29
+COORD ABSOL
+PATH LIN
+SPEED 10
+MOVE (10.,0.,0.,0.,0.)
+SYSDEF (5.,0.,0.,0.,0.,0.)
+MOVE (10.5,0.,0.,0.,0.)/FLY
+MOVE (20.,0.,0.,0.,0.)
+SYSDEF
+MOVE (30.,0.,0.,0.,0.)/END (IL[20])
+MOVE (30.5,0.,0.,0.,0.)/FLY
+MOVE (40.,0.,0.,0.,0.)
+TCP (0,0,0/0,0,-5)
+MOVE (40.5,0.,0.,0.,0.)/FLY
+MOVE (50.,0.,0.,0.,0.)
+MOVE (VR[64],0.,0.,0.,0.)
+MOVE (50.5,0.,0.,0.,0.)/FLY
+MOVE (60.,0.,0.,0.,0.)
+MOVE (60.5,0.,0.,0.,0.)/FLY          ; expect 7314
+MOVE (70.,0.,0.,0.,0.)
+MOVE (70.,0.5,0.,0.,0.)/FLY          ; expect 7314
+MOVE (70.,20.,0.,0.,0.)
+MOVE (70.,20.,0.5,0.,0.)/FLY         ; expect 7314
+MOVE (70.,20.,20.,0.,0.)
+MOVE (70.6,20.6,20.6,0.,0.)/FLY
+MOVE (90.,20.,20.,0.,0.)
+
+;=== what ends the freshness of a beam (advice)
+; OPT-3.20 OPT-3.45 OPT-3.49 OPT-7.27
+COORD ABSOL
+PATH LIN
+SPEED 10
+OL[11]=ON
+WORK 0,0/ON
+WAIT IL[20]
+MOVE (10.,0.,0.,0.,0.)
+WORK 0,0/OFF
+WORK 0,0/ON
+PAUSE
+MOVE (20.,0.,0.,0.,0.)
+WORK 0,0/OFF
+WORK 0,0/ON
+STOP
+MOVE (30.,0.,0.,0.,0.)
+WORK 0,0/OFF
+WORK 0,0/ON
+DELAY VR[64]
+MOVE (40.,0.,0.,0.,0.)
+WORK 0,0/OFF
+WORK 0,0/ON
+SPEED 10
+MOVE (50.,0.,0.,0.,0.)               ; expect 7033
+WORK 0,0/ON
+MOVE (60.,0.,0.,0.,0.)
+WORK 0,0/OFF
+WORK 0,0/ON
+WORK 0,0/OFF
+MOVE (70.,0.,0.,0.,0.)
+WORK 0,0/ON/START (IL[20])
+MOVE (80.,0.,0.,0.,0.)
+WORK 0,0/OFF
+
+;=== an ASSIGN switches gases and the sensor by its bits (advice)
+; OPT-7.102 OPT-5.40 OPT-5.47
+ASSIGN OL[8] = 9 /4      ; expect 7412
+OL[9]=ON                 ; expect 7409
+OL[9]=OFF
+WORK 0,0/ON
+WORK 0,0/OFF
+ASSIGN OL[11] = 0 /1
+WORK 0,0/ON              ; expect 7033
+WORK 0,0/OFF
+ASSIGN OL[9] = VI[1] /1
+OL[8]=OFF
+OL[8]=ON
