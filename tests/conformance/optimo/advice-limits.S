@@ -589,3 +589,135 @@ WORK 0,0/OFF
 ASSIGN OL[9] = VI[1] /1
 OL[8]=OFF
 OL[8]=ON
+
+;=== what a /FLY meets on its way to the next MOVE (advice)
+; OPT-2.48 OPT-2.49 OPT-2.50 OPT-E.7032
+; rmlcell: allow 7033 in file
+COORD ABSOL
+PATH LIN
+SPEED 10
+WORKDEF 1,0 (8., 75., VR[67], 50.)
+WORKDEF 1,1 (8., 75., 0., 50.)
+WORKDEF 1,2 (8., 75., .1, 50.)
+WORKDEF 2,0 (5)
+MOVE (1.,0.,0.,0.,0.)/FLY
+WORK 2,0/ON
+ACCEL 50
+OVERSH 50
+PATH LIN
+WORKDEF 0,1
+VR[1] = 2. * VR[2]
+ASSIGN OL[8] = 1 /1
+DEFINE PAR[0] = INT
+MOVE (2.,0.,0.,0.,0.)/FLY
+WORK 1,0/ON
+MOVE (3.,0.,0.,0.,0.)/FLY
+WORK 1,0/OFF
+MOVE (4.,0.,0.,0.,0.)/FLY
+WORK 1,1/ON
+MOVE (5.,0.,0.,0.,0.)/FLY
+WORK 1,2/OFF
+MOVE (6.,0.,0.,0.,0.)/FLY            ; expect 7032
+WORK 1,2/ON
+MOVE (7.,0.,0.,0.,0.)/FLY            ; expect 7032
+WORK 0,0/ON/START (IL[20])
+MOVE (8.,0.,0.,0.,0.)/FLY
+TCP (0,0,0/0,0,-5)
+MOVE (9.,0.,0.,0.,0.)/FLY
+FUNCTION 3
+MOVE (10.,0.,0.,0.,0.)/FLY           ; expect 7032
+MOVE (11.,0.,0.,0.,0.)/START (IL[20])
+MOVE (12.,0.,0.,0.,0.)/FLY           ; expect 7032
+VL[1] = IL[20]
+MOVE (13.,0.,0.,0.,0.)/FLY           ; expect 7032
+IF IL[20] THEN 5
+5 MOVE (14.,0.,0.,0.,0.)/FLY         ; expect 7032
+NOERR
+MOVE (15.,0.,0.,0.,0.)/FLY           ; expect 7032
+SETERR 5
+MOVE (16.,0.,0.,0.,0.)/FLY           ; expect 7032
+UPDATE OL /ON
+MOVE (17.,0.,0.,0.,0.)/FLY           ; expect 7032
+PAUSE
+MOVE (18.,0.,0.,0.,0.)/FLY           ; expect 7032
+ZERO
+MOVE (19.,0.,0.,0.,0.)/FLY           ; expect 7032
+BREAK 5
+MOVE (20.,0.,0.,0.,0.)
+
+;=== jumps lead a /FLY on to what they lead to (advice)
+; OPT-2.47 OPT-2.48 OPT-2.49 OPT-B.29
+; rmlcell: allow 7033 in file
+COORD ABSOL
+PATH LIN
+SPEED 10
+MOVE (1.,0.,0.,0.,0.)/FLY
+GOTO 10
+5 DELAY 1
+10 MOVE (2.,0.,0.,0.,0.)/FLY         ; expect 7032
+GOTO 20
+20 DELAY 1
+MOVE (3.,0.,0.,0.,0.)/FLY
+IF VL[1] THEN 30
+DELAY 1
+30 MOVE (4.,0.,0.,0.,0.)/FLY         ; expect 7032
+IF VL[1] THEN 40 ELSE 50
+MOVE (5.,0.,0.,0.,0.)
+40 DELAY 1
+50 DELAY 1
+MOVE (6.,0.,0.,0.,0.)/FLY
+GOTO VI[1] (60, 70)
+60 DELAY 1
+70 MOVE (7.,0.,0.,0.,0.)/FLY         ; expect 7032
+GOTO 99
+99
+
+;=== into subroutines, and behind their GOSUB (advice)
+; OPT-2.47 OPT-2.48 OPT-2.49 OPT-7.20
+COORD ABSOL
+PATH LIN
+SPEED 10
+MOVE (1.,0.,0.,0.,0.)/FLY
+GOSUB 100
+MOVE (2.,0.,0.,0.,0.)/FLY            ; expect 7032
+GOSUB 200
+MOVE (3.,0.,0.,0.,0.)/FLY
+GOSUB 300
+ENDTASK
+100 MOVE (4.,0.,0.,0.,0.)/FLY
+RETURN
+200 DELAY 1
+RETURN
+300 SPEED 10
+RETURN
+
+;=== a RETURN leads behind each GOSUB (advice)
+; OPT-2.47 OPT-2.48 OPT-7.20
+COORD ABSOL
+PATH LIN
+SPEED 10
+GOSUB 100
+DELAY 1
+GOSUB 100
+ENDTASK
+100 MOVE (4.,0.,0.,0.,0.)/FLY        ; expect 7032
+SPEED 20
+RETURN
+
+;=== the end of a FUNCTION may be followed by a MOVE of its caller (advice)
+; OPT-2.49 OPT-9.11
+TASK 1
+COORD ABSOL
+PATH LIN
+SPEED 10
+MOVE (1.,0.,0.,0.,0.)/FLY
+RETURN
+
+;=== a statement with an error may be anything (advice)
+; OPT-1.33 OPT-2.48
+COORD ABSOL
+PATH LIN
+SPEED 10
+MOVE (1.,0.,0.,0.,0.)/FLY
+DELAY                    ; expect 7003
+MOVE (2.,0.,0.,0.,0.)
