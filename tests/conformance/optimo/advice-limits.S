@@ -721,3 +721,136 @@ SPEED 10
 MOVE (1.,0.,0.,0.,0.)/FLY
 DELAY                    ; expect 7003
 MOVE (2.,0.,0.,0.,0.)
+
+;=== a speed that the GOSUB of a TIMER may change is not known (advice)
+; OPT-B.59 OPT-5.46
+COORD ABSOL
+PATH LIN
+SPEED 80
+TIMER (5.,10)
+MOVE (1.,0.,0.,0.,0.)
+ENDTASK
+10 SPEED 60
+RETURN
+
+;=== a path that the GOSUB of a TIMER may change is not known (advice)
+; OPT-B.59 OPT-2.08
+COORD ROBOT
+PATH LIN
+TIMER (5.,10)
+MOVE (1.,0.,0.,0.,0.)
+ENDTASK
+10 PATH PTP
+RETURN
+
+;=== a beam that the GOSUB of a TIMER may change is not known (advice)
+; OPT-B.59 OPT-5.46 OPT-3.34
+COORD ABSOL
+PATH LIN
+SPEED 30
+OL[11]=ON
+WORK 0,0/ON
+DELAY 1
+TIMER (5.,10)
+MOVE (1.,0.,0.,0.,0.)
+ENDTASK
+10 WORK 0,0/OFF
+RETURN
+
+;=== a gas that the GOSUB of a TIMER may change is not known (advice)
+; OPT-B.59 OPT-5.40
+OL[9]=ON
+TIMER (5.,10)
+OL[8]=ON
+ENDTASK
+10 OL[9]=OFF
+RETURN
+
+;=== a sensor that the GOSUB of a TIMER may change is not known (advice)
+; OPT-B.59 OPT-5.47
+TIMER (5.,10)
+WORK 0,0/ON
+WORK 0,0/OFF
+ENDTASK
+10 OL[11]=ON
+RETURN
+
+;=== a turn that the GOSUB of a TIMER may change is not known (advice)
+; OPT-B.59 OPT-5.48
+COORD ABSOL
+PATH HOLE (5.)
+TIMER (5.,10)
+MOVE (20.,2.,3.,0.,0.)/VIA (29.,2.,9.,0.,0.)
+ENDTASK
+10 SYSDEF (0,0,0,.5,0,0)
+RETURN
+
+;=== a place that the GOSUB of a TIMER may change is not known (advice)
+; OPT-B.59 OPT-B.22
+COORD ABSOL
+PATH LIN
+SPEED 10
+MOVE (0.,0.,0.,0.,0.)
+TIMER (5.,10)
+SPEED 0
+MOVE (1.,0.,0.,0.,0.)
+ENDTASK
+10 MOVE (1.,0.,0.,0.,0.)
+RETURN
+
+;=== a definition that the GOSUB of a TIMER may change is not known (advice)
+; OPT-B.59 OPT-3.09
+TIMER (5.,10)
+OL[11]=ON
+WORK 1,3/ON
+WORK 1,3/OFF
+ENDTASK
+10 WORKDEF 1,3 (8., 75., 1., 50.)
+RETURN
+
+;=== a variable that the GOSUB of a TIMER may change is not known (advice)
+; OPT-B.59 OPT-1.17
+TIMER (5.,10)
+SPEED VR[1]
+ENDTASK
+10 VR[1]=2.
+RETURN
+
+;=== a TIMER whose GOSUB does something else leaves all of that known (advice)
+; OPT-B.59 OPT-1.17 OPT-2.08 OPT-3.09 OPT-5.46
+TIMER (5.,10)
+SPEED VR[1]              ; expect 7033
+OL[11]=ON
+WORK 1,3/ON              ; expect 7401
+WORK 1,3/OFF
+COORD ABSOL
+PATH LIN
+SPEED 80
+MOVE (1.,0.,0.,0.,0.)    ; expect 7033
+SPEED 0
+MOVE (2.,0.,0.,0.,0.)    ; expect 7307
+SPEED 20
+PATH HOLE (5.)
+MOVE (20.,2.,3.,0.,0.)/VIA (29.,2.,9.,0.,0.)     ; expect 7033
+PATH LIN
+MOVE (2.,0.,0.,0.,0.)
+OL[9]=ON
+OL[8]=ON                 ; expect 7409
+OL[8]=OFF
+WORK 0,0/ON
+DELAY 1
+SPEED 30
+MOVE (1.,0.,0.,0.,0.)    ; expect 7033
+OL[11]=OFF
+MOVE (2.,0.,0.,0.,0.)    ; expect 7033 7033
+COORD ROBOT
+MOVE (1.,0.,0.,0.,0.)    ; expect 7302 7033
+ENDTASK                  ; expect 7408
+10 OL[40]=ON
+RETURN
+
+;=== the last variables of each group may be read (advice)
+; OPT-7.59 OPT-1.17
+VR[0] = VR[99]
+VI[2] = VI[99]
+VL[0] = VL[99]
