@@ -418,6 +418,7 @@ TEST(Compensate, WhatEndsAndBeginsAContour) {
         ";$rad=1\n;$left\nPATH LIN\nMOVE (0,0,0,0,0)\n"
         "WORK 0,0/ON\nMOVE (10,0,0,0,0)\n" +
         middle + "MOVE (10,10,0,0,0)\n");
+    if (!made.ok) return std::string();
     const std::size_t at = made.text.find("WORK 0,0/ON\nMOVE (") + 18;
     return made.text.substr(at, made.text.find(",0.00000", at) - at);
   };

@@ -164,8 +164,7 @@ TEST(ContourAdvice, WhatStandsBetweenTheMovesOfACorner) {
                                   "PATH HOLE (5.)\n",
                                   "SPEED VR[64]\n",
                                   "ACCEL VR[64]\n",
-                                  "OVERSH VR[64]\n",
-                                  "OVERSH 0\n"}) {
+                                  "OVERSH VR[64]\n"}) {
     EXPECT_EQ(told(stops), 0U) << stops;
   }
 }
