@@ -4,7 +4,7 @@ namespace rmlcell::optimo {
 
 unsigned Modes::PathsSeen() const {
   std::uint64_t paths = 0;
-  for (unsigned c = 0; c < kCoords; ++c) paths |= pairs_ >> (c * kPaths) & kAllPaths;
+  for (std::uint64_t pairs = pairs_; pairs != 0; pairs >>= kPaths) paths |= pairs & kAllPaths;
   return static_cast<unsigned>(paths);
 }
 
@@ -14,7 +14,7 @@ void Modes::SetCoord(CoordType coord) {
 
 void Modes::SetPath(PathType path) {
   std::uint64_t pairs = 0;
-  for (unsigned c = 0; c < kCoords; ++c) {
+  for (unsigned c = 0; pairs_ >> (c * kPaths) != 0; ++c) {
     if ((pairs_ >> (c * kPaths) & kAllPaths) != 0) pairs |= Bit(c, Of(path));
   }
   pairs_ = pairs;

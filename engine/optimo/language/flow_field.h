@@ -156,7 +156,7 @@ class Modes {
  private:
   // Of either: as before, the machine's default, not known, then the values of its type.
   static constexpr unsigned kKept = 0, kDefault = 1, kUnknown = 2, kFirst = 3;
-  static constexpr unsigned kPaths = kFirst + 4, kCoords = kFirst + 2;
+  static constexpr unsigned kPaths = kFirst + 4;
   static constexpr std::uint64_t kAllPaths = (1U << kPaths) - 1;
   static constexpr std::uint64_t Bit(unsigned coord, unsigned path) {
     return std::uint64_t{1} << (coord * kPaths + path);

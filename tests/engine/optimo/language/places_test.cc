@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/engine/optimo/language/compile_text.h"
+#include "tests/engine/optimo/language/marked_text.h"
 
 // What the compiler says, and of which characters. The braces of a row are no part of its text:
 // they stand around what the finding is about.
@@ -17,36 +18,6 @@ struct Row {
   std::string_view rule = "";
   int step = 1;
 };
-
-struct Marked {
-  std::string text;
-  SourceSpan span;
-};
-
-Marked WithoutBraces(std::string_view marked) {
-  Marked result{{}, {.line = 1, .column = 1}};
-  bool inside = false, before = true;
-  for (const char c : marked) {
-    if (c == '{') {
-      inside = true;
-      before = false;
-      result.span.byte_offset = static_cast<std::int64_t>(result.text.size());
-      continue;
-    }
-    if (c == '}') {
-      inside = false;
-      continue;
-    }
-    if (inside) ++result.span.length;
-    if (before && c == '\n') {
-      ++result.span.line;
-      result.span.column = 0;
-    }
-    if (before) ++result.span.column;
-    result.text += c;
-  }
-  return result;
-}
 
 void ExpectAtItsPlace(const Row& row) {
   const Marked marked = WithoutBraces(row.text);

@@ -79,5 +79,38 @@ TEST(NearestWords, NamesAreSureOnlyWhenLettersAreSwapped) {
   EXPECT_FALSE(sure("ZONE12", "ZONE21"));
 }
 
+// OPT-7.91: one mistyped letter in three is near: put in, left out, another one, or two exchanged;
+// upper and lower case are the same. The nearest are proposed, each once.
+TEST(NearestWords, OneLetterInThreeMayDiffer) {
+  const auto near = [](std::string_view word, std::vector<std::string_view> words) {
+    return NearestWords(word, words).words;
+  };
+  EXPECT_EQ(near("AB", {"AC"}), Words{});
+  EXPECT_EQ(near("AB", {"ABC"}), Words{});
+  EXPECT_EQ(near("ABC", {"ABD"}), (Words{"ABD"}));
+  EXPECT_EQ(near("ABC", {"ABCD"}), (Words{"ABCD"}));
+  EXPECT_EQ(near("ABC", {"AC"}), (Words{"AC"}));
+  EXPECT_EQ(near("ABC", {"BAC"}), (Words{"BAC"}));
+  EXPECT_EQ(near("abc", {"ACB"}), (Words{"ACB"}));
+  EXPECT_EQ(near("ABC", {"BCA"}), Words{});
+  EXPECT_EQ(near("ABCDE", {"ABXYE"}), Words{});
+  EXPECT_EQ(near("ABCDEF", {"ABXYEF"}), (Words{"ABXYEF"}));
+  EXPECT_EQ(near("ABCDEF", {"BADCEF"}), (Words{"BADCEF"}));
+  EXPECT_EQ(near("ABCDEF", {"ABXYZF"}), Words{});
+  EXPECT_EQ(near("ABCDEF", {"ABXYEF", "ABCDEX", "XBCDEF"}), (Words{"ABCDEX", "XBCDEF"}));
+  EXPECT_EQ(near("ABCDEF", {"ABCDEX", "ABXYEF", "ABCDEX"}), (Words{"ABCDEX"}));
+  EXPECT_EQ(near("ABC", {"", "ABC"}), (Words{"ABC"}));
+  const std::string sixteen(16, 'A'), seventeen(17, 'A');
+  EXPECT_EQ(near(sixteen, {sixteen}).size(), 1U);
+  EXPECT_EQ(near(seventeen, {sixteen}), Words{});
+  EXPECT_EQ(near(sixteen, {seventeen}), Words{});
+  const std::vector<std::string_view> many = {"ABD", "ABE", "ABF", "ABG", "ABH"};
+  EXPECT_EQ(near("ABC", many), Words(many.begin(), many.begin() + kNearWordsMax));
+  EXPECT_EQ(QuestionFor(NearestWords("ABC", std::array<std::string_view, 3>{"ABD", "ABE", "ABF"})),
+            "; did you mean ABD, ABE or ABF?");
+  EXPECT_EQ(QuestionFor(NearestWords("ABC", std::array<std::string_view, 1>{"ABD"})),
+            "; did you mean ABD?");
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

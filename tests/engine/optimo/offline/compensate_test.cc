@@ -345,5 +345,92 @@ TEST(Compensate, GougesAreReported) {
           .empty());
 }
 
+// OPT-8.02, OPT-8.04, OPT-8.05, OPT-8.06: what is a directive, what it sets, and what is wrong with
+// it. A line to the right by 10: Y says how far to which side it went.
+TEST(Compensate, DirectivesSayWhatTheySay) {
+  const auto moved = [](const std::string& directives) {
+    const Compensation made = Compensate(directives +
+                                         "PATH LIN\nMOVE (0,0,0,0,0)\nWORK 0,0/ON\n"
+                                         "MOVE (10,0,0,0,0)\nWORK 0,0/OFF\n");
+    if (!made.ok) return std::to_string(FindingsOf(made).front());
+    const std::size_t at = made.text.rfind("MOVE (") + 6;
+    const std::size_t comma = made.text.find(',', at) + 1;
+    return made.text.substr(comma, made.text.find(',', comma) - comma);
+  };
+  const std::vector<std::pair<std::string, std::string>> rows = {
+      {";$rad=1\n;$left\n", "1.00000"},
+      {";$rad=1\n;$right\n", "-1.00000"},
+      {";$rad=1\n;$cright\n", "-1.00000"},
+      {";$rad=1\n;$cleft\n", "1.00000"},
+      {";$rad=1\n;$sleft\n", "1.00000"},
+      {";$dia=1\n;$left\n", "0.50000"},
+      {";$DIA = 1\n;$LEFT\n", "0.50000"},
+      {";$dia=\t1 \r\n;$left \r\n", "0.50000"},
+      {";$dia=0\n;$left\n", "0.00000"},
+      {";$rad=1\n;$left\n;$none\n", "0"},
+      {";$rad=1\n;$left\n;$snone\n", "0"},
+      {";$rad=1\n;$left\n;$right\n", "-1.00000"},
+      {";$rad=1\n;$rad=2\n;$left\n", "2.00000"},
+      {"10 ;$rad=1\n \t20\t;$left\n", "1.00000"},
+      {";$rad=1\n;$left\nSPEED 5;$right\n", "1.00000"},
+      {";$rad=1\n;$left\n; $right\n;left\n;\n;x$right\n", "1.00000"},
+      {";$rad=1\n;$left\n;$\n", "7802"},
+      {";$rad=1\n;$left right\n", "7802"},
+      {";$rad=1\n;$left=1\n", "7802"},
+      {";$rad=1\n;$lef\n", "7802"},
+      {";$rad=1\n;$xleft\n", "7802"},
+      {";$rad=1\n;$c\n", "7802"},
+      {";$rad\n", "7802"},
+      {";$rad 1\n", "7802"},
+      {";$rad=\n", "7802"},
+      {";$rad=1E400\n", "7802"},
+      {";$radius=1\n", "7802"},
+  };
+  for (const auto& [directives, y] : rows) EXPECT_EQ(moved(directives), y) << directives;
+}
+
+// OPT-8.07, OPT-8.08, OPT-8.12, OPT-8.21: when the path is offset and when it is not, by what comes
+// between; the last MOVE tells.
+TEST(Compensate, WhatEndsAndBeginsAContour) {
+  const auto last = [](const std::string& middle) {
+    const Compensation made = Compensate(
+        ";$rad=1\n;$left\nPATH LIN\nMOVE (0,0,0,0,0)\n"
+        "WORK 0,0/ON\nMOVE (10,0,0,0,0)\n" +
+        middle);
+    if (!made.ok) return std::to_string(FindingsOf(made).front());
+    const std::size_t at = made.text.rfind("MOVE (") + 6;
+    return made.text.substr(at, made.text.find(",0", made.text.find(',', at) + 2) - at);
+  };
+  const std::string turn = "MOVE (10,10,0,0,0)\n";
+  EXPECT_EQ(last(turn), "9.00000,10.00000");
+  EXPECT_EQ(last("PATH PTP\n" + turn), "10,10");
+  EXPECT_EQ(last("PATH PTP\nMOVE (10,5,0,0,0)\nPATH LIN\n" + turn), "9.00000,10.00000");
+  EXPECT_EQ(last("WORK 0,0/OFF\n" + turn), "10,10");
+  EXPECT_EQ(last("WORK 1,3/OFF\n" + turn), "10,10");
+  EXPECT_EQ(last("WORKDEF 2,1 (5)\nWORK 2,1/ON\n" + turn), "9.00000,10.00000");
+  EXPECT_EQ(last("COORD ROBOT\nPATH PTP\n" + turn), "10,10");
+  EXPECT_EQ(last("COORD ROBOT\n" + turn), "7810");
+  EXPECT_EQ(last("SPEED 5\nDELAY 1\nOL[8]=ON\n" + turn), "9.00000,10.00000");
+  // Where the contour ends its last point lies beside the programmed one, and what follows begins
+  // anew: no corner.
+  const auto first = [](const std::string& middle) {
+    const Compensation made = Compensate(
+        ";$rad=1\n;$left\nPATH LIN\nMOVE (0,0,0,0,0)\n"
+        "WORK 0,0/ON\nMOVE (10,0,0,0,0)\n" +
+        middle + "MOVE (10,10,0,0,0)\n");
+    if (!made.ok) return std::string();
+    const std::size_t at = made.text.find("WORK 0,0/ON\nMOVE (") + 18;
+    return made.text.substr(at, made.text.find(",0.00000", at) - at);
+  };
+  EXPECT_EQ(first(""), "9.00000,1.00000");
+  EXPECT_EQ(first("COORD ABSOL\n"), "9.00000,1.00000");
+  EXPECT_EQ(first("PATH CIR\n"), "9.00000,1.00000");
+  for (const std::string end : {"WORK 0,0/OFF\n", "PATH PTP\n", "PATH HOLE (5)\n",
+                                "COORD ROBOT\nPATH PTP\n", "SYSDEF\n", "TCP (0,0,0/0,0,-5)\n"}) {
+    const std::string point = first(end);
+    EXPECT_EQ(point, end.starts_with("TCP") ? "" : "10.00000,1.00000") << end;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

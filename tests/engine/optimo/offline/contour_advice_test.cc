@@ -119,5 +119,105 @@ TEST(ContourAdvice, AHeadThatSwingsWhileStraightDown) {
             0U);  // no contour
 }
 
+// OPT-2.48, OPT-2.49, OPT-2.62: what may stand at a corner, and what makes it one that is not
+// passed, or of which nothing is known.
+TEST(ContourAdvice, WhatStandsBetweenTheMovesOfACorner) {
+  const std::string behind = "GOTO 9\n5 RETURN\n9\n";
+  const auto told = [&](const std::string& between) {
+    return FindingsWith(CornerOf(90, between) + behind, ErrorCode::kFlySharp).size();
+  };
+  for (const std::string passes :
+       {"SPEED 10\n", "ACCEL 100\n", "OVERSH 100\n", "PATH LIN\n", "VR[1]=2.\n", "OL[16]=ON\n",
+        "ASSIGN OL[16]=1 /1\n", "DECLARE X = 5.\n", "DEFINE PAR[0] = INT\n", "7\n",
+        "WORKDEF 2,0 (5)\nWORK 2,0/ON\n", "WORK 0,0/ON\n", "TASK 1\n"}) {
+    EXPECT_EQ(told(passes), 1U) << passes;
+  }
+  for (const std::string stops : {"DELAY 1\n",
+                                  "WAIT IL[20]\n",
+                                  "PAUSE\n",
+                                  "STOP\n",
+                                  "ZERO\n",
+                                  "VR[1]=IA[0]\n",
+                                  "VL[1]=IL[20]\n",
+                                  "ERR 5\n",
+                                  "NOERR\n",
+                                  "SETERR 5\n",
+                                  "UPDATE OL /ON\n",
+                                  "IMAGE OL\n",
+                                  "REAL\n",
+                                  "TIMER (1.,5)\n",
+                                  "COORD ABSOL\n",
+                                  "COORD ROBOT\n",
+                                  "CALL 2\n",
+                                  "FUNCTION 3\n",
+                                  "GOSUB 5\n",
+                                  "GOTO 7\n7\n",
+                                  "ENDTASK\n",
+                                  "TCP (0,0,0/0,0,-5)\n",
+                                  "SYSDEF\n",
+                                  "WORK 0,0/OFF\n",
+                                  "WORKDEF 2,0 (5)\nWORK 2,0/OFF\n",
+                                  "WORK 0,0/ON/START (IL[20])\n",
+                                  "WORK 0,0/ON/END (IL[20])\n",
+                                  "WORK 0,0/ON/TIME (1.,5)\n",
+                                  "WORKDEF 1,0 (8.,75.,1.,50.)\nWORK 1,0/ON\n",
+                                  "PATH HOLE (5.)\n",
+                                  "SPEED VR[64]\n",
+                                  "ACCEL VR[64]\n",
+                                  "OVERSH VR[64]\n"}) {
+    EXPECT_EQ(told(stops), 0U) << stops;
+  }
+}
+
+// OPT-2.43, OPT-2.48, OPT-2.54: attributes of the two moves; a target that is no number.
+TEST(ContourAdvice, AttributesOfTheMovesOfACorner) {
+  const auto told = [](const std::string& first, const std::string& second) {
+    return FindingsWith(
+               "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (0,0,0,0,0)\nWORK 0,0/ON\n"
+               "MOVE (100,0,0,0,0)" +
+                   first + "\nMOVE (100,100,0,0," + second + "\nWORK 0,0/OFF\n5\n",
+               ErrorCode::kFlySharp)
+        .size();
+  };
+  EXPECT_EQ(told("/FLY", "0)"), 1U);
+  EXPECT_EQ(told("/FLY", "0)/FLY"), 1U);
+  EXPECT_EQ(told("", "0)"), 0U);
+  EXPECT_EQ(told("/FLY", "0)/START (IL[20])"), 0U);
+  EXPECT_EQ(told("/FLY/START (IL[20])", "0)"), 1U);
+  EXPECT_EQ(told("/FLY/END (IL[20])", "0)"), 0U);
+  EXPECT_EQ(told("/FLY/TIME (1.,5)", "0)"), 0U);
+  EXPECT_EQ(told("/FLY/END (IL[20])/NEXT", "0)"), 0U);
+  EXPECT_EQ(told("/FLY", "VR[1])"), 0U);
+}
+
+// OPT-E.7319: on both sides of straight down, either way, and what is said of which move.
+TEST(ContourAdvice, TheSwingOfTheHeadIsTold) {
+  const auto told = [](const std::string& from, const std::string& to) {
+    return FindingsWith(
+        "COORD ABSOL\nPATH LIN\nMOVE (0,0,0," + from + ")\nMOVE (100,0,0," + to + ")\n",
+        ErrorCode::kHeadSingular);
+  };
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"0,-0.008727", "0.541052,-0.008727"},
+           {"0.541052,0.008727", "0,0.008727"},
+           {"0,-0.5", "-0.541052,0.5"},
+           {"0,0.5", "0.541052,-0.5"},
+           {"0,0.5", "0.541052,0.017"},  // 0.974 degrees
+           {"0,0.017", "0.541052,0.5"},
+           {"0,-0.5", "0.541052,-0.017"}}) {
+    const auto found = told(from, to);
+    ASSERT_EQ(found.size(), 1U) << from << " " << to;
+    EXPECT_EQ(found[0].line, 4);
+    EXPECT_EQ(found[0].detail, "A turns by 31.0 degrees while the head passes straight down");
+  }
+  EXPECT_TRUE(told("0,-0.5", "0.541052,-0.0178").empty());  // 1.02 degrees
+  EXPECT_TRUE(told("0,0.5", "0.541052,0.5").empty());
+  EXPECT_TRUE(told("0,-0.5", "0.506145,0.5").empty());
+  // Where the tip stands still the head may turn as it likes.
+  EXPECT_TRUE(FindingsWith("COORD ABSOL\nPATH LIN\nMOVE (0,0,0,0,0)\nMOVE (0,0,0,1,0)\n",
+                           ErrorCode::kHeadSingular)
+                  .empty());
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

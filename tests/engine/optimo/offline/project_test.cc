@@ -294,5 +294,113 @@ TEST_F(Project, AProgramHasText) {
   EXPECT_EQ(Findings(), (std::vector<int>{7862}));
 }
 
+// OPT-1.10, OPT-3.44, OPT-3.09, OPT-3.11, OPT-8.68: what each finding of a project says, and of
+// which program and line.
+TEST_F(Project, FindingsSayWhatTheyAreAbout) {
+  AddSchedule(0);
+  AddSchedule(64);
+  AddSchedule(63);
+  AddSchedule(1);
+  AddSchedule(1);
+  Define(1, 3, {6.5, 80, 1.5, 95, 63});
+  Define(1, 3, {6.5, 80, 1.5, 95});
+  Define(2, 4, {7});
+  Define(1, 5, {6.5, 80, 1.5, 95, 8});
+  Add(0, "SPEED 5\n");
+  Add(45, "SPEED 5\nWORKDEF 1,3 (6.5,80.,1.5,96.,63)\nWORKDEF 2,0 (1)\n");
+  Add(45, "SPEED 5\nSPEED 6\nWORK 1,4/ON\nWORK 1,4/OFF\n");
+  Add(46, "WORK 2,4/ON\nWORK 2,4/OFF\n");
+  std::vector<std::string> said;
+  for (const Diagnostic& d : Plan().diagnostics) {
+    if (d.rule != "OPT-1.10" && d.rule != "OPT-3.44" && d.rule != "OPT-3.11" &&
+        d.rule != "OPT-8.68" && d.code != ErrorCode::kWorkdefMissing &&
+        d.code != ErrorCode::kProjectProcess) {
+      continue;
+    }
+    if (d.detail.starts_with("no WORKDEF 1,4") || d.detail.starts_with("no WORKDEF 2,4"))
+      continue;  // the compiler's
+    said.push_back(std::to_string(d.program) + ":" + std::to_string(d.where.line) + " " +
+                   std::to_string(Lookup(d.code).number) + " " + d.rule + " " + d.detail);
+  }
+  const std::vector<std::string> expected = {
+      "0:0 7101 OPT-1.10 program number 0 is outside 1..99",
+      "0:0 7861 OPT-8.68 program 45 stands twice",
+      "0:0 7403 OPT-3.44 laser schedule 0 is outside 1..63",
+      "0:0 7403 OPT-3.44 laser schedule 64 is outside 1..63",
+      "0:0 7861 OPT-8.68 laser schedule 1 stands twice",
+      "0:0 7861 OPT-8.68 process definition 1,3 stands twice",
+      "0:0 7862 OPT-8.68 the project has no laser schedule 7",
+      "0:0 7862 OPT-8.68 the project has no laser schedule 8",
+      "45:2 7863 OPT-3.11 the project defines WORKDEF 1,3 (6.5, 80.0, 1.5, 95.0, 63)",
+      "45:3 7863 OPT-3.11 the project has no definition of process 2,0",
+      "45:3 7401 OPT-3.09 WORK 1,4 has neither a WORKDEF nor a process definition of the project",
+      "46:1 7863 OPT-3.09 no WORKDEF before WORK 2,4; the project defines WORKDEF 2,4 (7)"};
+  EXPECT_EQ(said, expected);
+}
+
+// OPT-3.12, OPT-9.16: definitions come from callers and from FUNCTIONs, near and far, and from
+// nowhere else.
+TEST_F(Project, DefinitionsComeFromRelativesOnly) {
+  Add(30, "FUNCTION 31\nWORK 1,1/ON\nWORK 1,1/OFF\n");
+  Add(31, "FUNCTION 32\n");
+  Add(32, "WORKDEF 1,1 (8.,75.,1.,50.)\nWORK 1,2/ON\nWORK 1,2/OFF\n");
+  Add(33, "FUNCTION 32\nWORKDEF 1,2 (8.,75.,1.,50.)\n");
+  EXPECT_TRUE(Plan().ok);
+  Add(40, "CALL 32\nWORKDEF 1,3 (8.,75.,1.,50.)\n");
+  Add(41, "WORK 1,3/ON\nWORK 1,3/OFF\n");
+  EXPECT_FALSE(Plan().ok);
+}
+
+// OPT-3.11: what cannot be compared, and what agrees, is not told.
+TEST_F(Project, WorkdefsThatAgreeAreNotTold) {
+  AddSchedule(5);
+  Define(1, 0, {6.5, 80, 1.5, 95});
+  Define(2, 9, {5});
+  Add(45,
+      "DECLARE P = 80.\nWORKDEF 1,0 (6.5,P,1.5,95.)\nWORKDEF 2,9 (5)\nWORKDEF 0,3\n"
+      "WORKDEF 1,0 (VR[65],80.,VR[66],95.)\nWORKDEF 2,9 (VR[26])\n");
+  EXPECT_TRUE(Findings().empty());
+  Add(46, "WORKDEF 1,0 (VR[65],80.,VR[66],94.)\n");
+  EXPECT_EQ(Findings(), (std::vector<int>{7863}));
+  Add(47, "WORKDEF 1,0 (6.5,80.,1.5,95.,5)\n");
+  EXPECT_EQ(Findings(), (std::vector<int>{7863, 7863}));
+}
+
+// OPT-7.39: a FUNCTION moves in the system of its callers, and ROBOT moves in none.
+TEST_F(Project, MovesThatNeedNoSysdef) {
+  Add(45, "COORD ABSOL\nSYSDEF (1.,2.,3.,0.,0.,0.)\nMOVE (1.,2.,3.,0.,0.)\nFUNCTION 46\n");
+  Add(46, "COORD ABSOL\nMOVE (1.,2.,3.,0.,0.)\n");
+  Add(47, "COORD ABSOL\nCOORD ROBOT\nPATH PTP\nMOVE (1.,2.,3.,0.,0.)\n");
+  Add(48, "MOVE (1.,2.,3.,0.,0.)\n");
+  EXPECT_TRUE(Findings().empty());
+  Add(49, "COORD ABSOL\nMOVE (1.,2.,3.,0.,0.)\n");
+  const machine::TransferPlan plan = Plan();
+  const auto found =
+      std::ranges::find(plan.diagnostics, std::string("OPT-7.39"), &Diagnostic::rule);
+  ASSERT_NE(found, plan.diagnostics.end());
+  EXPECT_EQ(found->program, 49);
+  EXPECT_EQ(found->file, "49.S");
+  EXPECT_EQ(found->detail,
+            "ABSOL moves without SYSDEF, while other programs of the project use it");
+}
+
+// OPT-8.69: a text is the project's own unless its units, its form or its WORKDEFs are new.
+TEST_F(Project, TextsThatTheTransferMadeAreToldFromTheOwn) {
+  const std::string object = MustCompile("SPEED 6\n").object;
+  Define(1, 0, {6.5, 80, 1.5, 95});
+  Add(45, "SPEED 5\n");
+  Add(46, "SPEED 5\n", true);                                     // its name tells the units
+  bundle_.programs.push_back({47, {"47.S", "SPEED 5\n"}, true});  // its name does not
+  bundle_.programs.push_back({48, {"48.O", object}, false});
+  Add(49, "WORK 1,0/ON\nWORK 1,0/OFF\n");
+  const machine::TransferPlan plan = Plan(true);
+  ASSERT_TRUE(plan.ok);
+  std::vector<bool> own;
+  for (const auto& program : plan.programs) own.push_back(program.own_text);
+  EXPECT_EQ(own, (std::vector<bool>{true, true, false, false, false}));
+  EXPECT_EQ(plan.programs[3].object, object);
+  EXPECT_EQ(plan.programs[3].source, "     SPEED 6\n");
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo
