@@ -146,22 +146,27 @@ TEST(WatchRules, TheClockOfEndBeginsWithTheMove) {
   EXPECT_NEAR(missed.end.tip.tip.x, 521.02, 1e-4);
 }
 
-// OPT-2.49, OPT-2.58: behind a /FLY passage the clock begins with the motion, not where the program
-// ran ahead.
+// OPT-2.49, OPT-2.54: behind a /FLY passage the clock begins with the motion, not where the program
+// ran ahead: 100 mm in one line are over after 2.0354 s.
 TEST(WatchRules, BehindAPassageTheClockBeginsWithTheMotion) {
-  const std::string chain = MoveTo(121.02, "/FLY") + MoveTo(521.02, "?");
-  const auto with = [&](const std::string& attributes) {
-    std::string text = chain;
-    text.replace(text.find('?'), 1, attributes);
-    return RunText(Program(text), {.inputs = {Input(4.0, 20, 1.0)}, .variables = {"VI[3]"}});
-  };
-  const double begin = 2.0 + 0.5 * kRamp_s;  // in one line: no bend
-  const Ran end = with("/END (IL[20])");
-  const double ticks = std::ceil((4.0 - begin) / kTick_s);
-  EXPECT_NEAR(end.time_s, begin + ticks * kTick_s + kRamp_s, 1e-5);
-  const Ran time = with("/TIME (3.,900)");
+  const double begin = 2.0 + 0.5 * kRamp_s;
+  const Ran time = RunText(Program(MoveTo(121.02, "/FLY") + MoveTo(521.02, "/TIME (3.,900)")),
+                           {.variables = {"VI[3]"}});
   EXPECT_EQ(time.variables.at("VI[3]"), "1");
-  EXPECT_NEAR(time.end.tip.tip.x, 121.02 + 50.0 * (63 * kTick_s) + 0.5 * 50.0 * kRamp_s, 0.1);
+  EXPECT_NEAR(time.time_s, begin + 63 * kTick_s + kRamp_s, 1e-4);
+  // /END of a variable that the program sets beside the motion, 2 s after its begin.
+  const Ran end = RunText(Program("VL[3]=OFF\n" + MoveTo(121.02, "/FLY") +
+                                  MoveTo(521.02, "/END (VL[3])/NEXT") + "DELAY 2\nVL[3]=ON\n"));
+  EXPECT_NEAR(end.time_s, begin + 42 * kTick_s + kRamp_s, 1e-4);
+}
+
+// OPT-2.48, OPT-2.58: a MOVE that reads an input needs standstill: /FLY before it is cancelled, and its
+// clock begins where the machine stands.
+TEST(WatchRules, AMoveThatReadsAnInputNeedsStandstill) {
+  const Ran ran = RunText(Program(MoveTo(121.02, "/FLY") + MoveTo(521.02, "/END (IL[20])")),
+                          {.inputs = {Input(4.0, 20, 1.0)}});
+  EXPECT_EQ(ran.Count("E7304"), 1);
+  EXPECT_NEAR(ran.time_s, 2.0 + kRamp_s + 41 * kTick_s + kRamp_s, 1e-5);
 }
 
 // OPT-2.59, OPT-2.54: a MOVE of /NEXT has its time too: the GOSUB comes between two instructions.
