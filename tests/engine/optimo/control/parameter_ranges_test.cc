@@ -70,7 +70,14 @@ constexpr Range kRanges[] = {{"VMAX", 1, 2000},
 // OPT-B.01: every number of the machine has its range.
 TEST(ParameterRanges, BothEndsAreAllowed) {
   int numbers = 0;
-  for (const machine::ParameterInfo& info : OptimoParameterTable()) numbers += info.choices.empty() ? 1 : 0;
+  for (const machine::ParameterInfo& info : OptimoParameterTable()) {
+    numbers += info.choices.empty() ? 1 : 0;
+    if (!info.choices.empty()) {
+      EXPECT_EQ(info.standard + info.minimum + info.maximum, 0.0) << info.name;
+    }
+    EXPECT_TRUE(info.rule.starts_with("OPT-") || info.rule.starts_with("motion.md")) << info.name;
+    EXPECT_NE(info.text.find(' '), std::string_view::npos) << info.name;
+  }
   EXPECT_EQ(numbers, static_cast<int>(std::size(kRanges)));
   for (const Range& range : kRanges) {
     machine::Parameters parameters(OptimoParameterTable());
