@@ -167,7 +167,8 @@ bool Control::SetOutput(int index, bool on) {
   return true;
 }
 
-// Physical outputs of these groups follow their images again: UPDATE ON, REAL, the end of a simulation.
+// Physical outputs of these groups follow their images again: UPDATE ON, REAL, the end of a
+// simulation.
 void Control::ConnectOutputs(std::uint8_t groups) {
   const DataArea& data = s_.machine.data;
   const bool logical = (groups & kGroupOl) != 0;

@@ -6,8 +6,8 @@
 #include "tests/engine/optimo/control/measured.h"
 #include "tests/engine/optimo/control/run_text.h"
 
-// HOLD and STOP on both sides of the way that braking takes, and the clocks that they stop. From 500
-// mm/s the machine comes to rest in 500/2000 + 2000/40000 = 0.3 s over 75 mm.
+// HOLD and STOP on both sides of the way that braking takes, and the clocks that they stop. From
+// 500 mm/s the machine comes to rest in 500/2000 + 2000/40000 = 0.3 s over 75 mm.
 namespace rmlcell::optimo::testing::halt_rules {
 namespace {
 
@@ -25,13 +25,13 @@ std::string MoveX(double x_mm, const std::string& attributes) {
 // Steps 1 to 4, which bring the tip to X 0; at 500 mm/s from there on.
 const std::string kFromZero = "COORD ABSOL\nPATH LIN\nMOVE (0.,1000.,-400.,0.,0.)\nSPEED 100\n";
 // Moves of 300 mm in one line as steps 5 to 8, with an instruction between.
-const std::string kLine = kFromZero + MoveX(300, "/FLY") + MoveX(600, "/FLY") + MoveX(900, "/FLY") +
-                          MoveX(1200, "");
+const std::string kLine =
+    kFromZero + MoveX(300, "/FLY") + MoveX(600, "/FLY") + MoveX(900, "/FLY") + MoveX(1200, "");
 
 double BeginOf(const std::string& text) { return ToSeconds(RunText(text).moves.front().at); }
 
-// OPT-4.17: the move under way is finished if the way that is left is enough to brake, else the next
-// one: 5 mm to either side of it, on each of three moves.
+// OPT-4.17: the move under way is finished if the way that is left is enough to brake, else the
+// next one: 5 mm to either side of it, on each of three moves.
 TEST(HaltRules, HoldFinishesTheFirstTargetThatCanBeReached) {
   const double begin = BeginOf(kLine);
   for (int k = 0; k < 3; ++k) {
@@ -49,15 +49,15 @@ TEST(HaltRules, HoldFinishesTheFirstTargetThatCanBeReached) {
       EXPECT_NEAR(ran.First("halt HOLD").at_s,
                   begin + 300.0 * (target + 1) / 500.0 + 0.3 + kSettle_s, 1e-6);
       ExpectWithinLimits(ran, true, "HOLD at " + std::to_string(at));
-      EXPECT_NEAR(ran.time_s, begin + 30.0 + (1200.0 - 300.0 * (target + 1)) / 500.0 + 0.3 + kSettle_s,
-                  1e-6);
+      EXPECT_NEAR(ran.time_s,
+                  begin + 30.0 + (1200.0 - 300.0 * (target + 1)) / 500.0 + 0.3 + kSettle_s, 1e-6);
     }
   }
 }
 
-// OPT-4.17: while it speeds up the acceleration is brought to zero first. 0.1 s after the start it is
-// 5.833 mm on the way, at 150 mm/s and 2000 mm/s2: at rest after 30 mm. 0.03 s: 0.18 mm, 18 mm/s and
-// 1200 mm/s2, at rest after 2.16 mm.
+// OPT-4.17: while it speeds up the acceleration is brought to zero first. 0.1 s after the start it
+// is 5.833 mm on the way, at 150 mm/s and 2000 mm/s2: at rest after 30 mm. 0.03 s: 0.18 mm, 18 mm/s
+// and 1200 mm/s2, at rest after 2.16 mm.
 TEST(HaltRules, HoldWhileSpeedingUp) {
   struct Case {
     double after_s, rest_mm;
@@ -92,7 +92,8 @@ TEST(HaltRules, EffectsOfPassagesBeforeAHold) {
   std::string many = kFromZero;
   for (int k = 1; k <= 60; ++k) {
     many += MoveX(10.0 * k, k < 60 ? "/FLY" : "");
-    if (k < 60) many += "OL[" + std::to_string(20 + k % 50) + "]=" + (k <= 50 ? "ON" : "OFF") + "\n";
+    if (k < 60)
+      many += "OL[" + std::to_string(20 + k % 50) + "]=" + (k <= 50 ? "ON" : "OFF") + "\n";
   }
   const double start = BeginOf(many);
   const Ran held = RunText(many, {.inputs = {Key(start + 0.15 + 203.0 / 500.0, InputKind::kHold),
@@ -123,10 +124,11 @@ TEST(HaltRules, HoldInCoordRobotAfterAChangeOfTheOverride) {
     double speed_percent, full_speed, acceleration, jerk, from, step;
   };
   constexpr double kPi = M_PI;
-  for (const Axis& axis : {Axis{0, 50, 500, 2000, 40000, 21.02, 300}, Axis{0, 50, 500, 2000, 40000, 921.02, -300},
-                           Axis{1, 50, 500, 2000, 40000, 2201.2, -300}, Axis{2, 50, 500, 2000, 40000, -50, -300},
-                           Axis{3, 50, 2 * kPi, 20, 400, 0, 4}, Axis{3, 50, 2 * kPi, 20, 400, 0, -4},
-                           Axis{4, 10, 2 * kPi, 20, 400, 0, -0.8}}) {
+  for (const Axis& axis :
+       {Axis{0, 50, 500, 2000, 40000, 21.02, 300}, Axis{0, 50, 500, 2000, 40000, 921.02, -300},
+        Axis{1, 50, 500, 2000, 40000, 2201.2, -300}, Axis{2, 50, 500, 2000, 40000, -50, -300},
+        Axis{3, 50, 2 * kPi, 20, 400, 0, 4}, Axis{3, 50, 2 * kPi, 20, 400, 0, -4},
+        Axis{4, 10, 2 * kPi, 20, 400, 0, -0.8}}) {
     const auto place = [&](double value) {
       double v[] = {21.02, 2201.2, -50.0, 0.0, 0.0};
       v[axis.index] = value;
@@ -139,10 +141,10 @@ TEST(HaltRules, HoldInCoordRobotAfterAChangeOfTheOverride) {
                  ? 2.0 * std::sqrt(change / axis.jerk)
                  : change / axis.acceleration + axis.acceleration / axis.jerk;
     };
-    const std::string text = place(axis.from) + "\nDELAY 1\nSPEED " + std::to_string(axis.speed_percent) +
-                             "\n" + place(axis.from + axis.step) + "/FLY\n" +
-                             place(axis.from + 2 * axis.step) + "/FLY\n" +
-                             place(axis.from + 3 * axis.step) + "\n";
+    const std::string text =
+        place(axis.from) + "\nDELAY 1\nSPEED " + std::to_string(axis.speed_percent) + "\n" +
+        place(axis.from + axis.step) + "/FLY\n" + place(axis.from + 2 * axis.step) + "/FLY\n" +
+        place(axis.from + 3 * axis.step) + "\n";
     const Ran there = RunText(place(axis.from) + "\n");
     const double begin = there.time_s + 1.0;
     const double speed = axis.full_speed * axis.speed_percent / 100.0;
@@ -164,7 +166,8 @@ TEST(HaltRules, HoldInCoordRobotAfterAChangeOfTheOverride) {
       for (const machine::MoveDone& move : ran.moves) {
         const motion::AxisPose& at = move.axes;
         const double all[] = {at.column.x, at.column.y, at.column.z, at.a_rad, at.b_rad};
-        passed = passed || std::abs(all[axis.index] - reached) < 1e-6 * std::max(1.0, std::abs(reached));
+        passed =
+            passed || std::abs(all[axis.index] - reached) < 1e-6 * std::max(1.0, std::abs(reached));
       }
       EXPECT_TRUE(passed);
       EXPECT_EQ(ran.outcome.kind, OutcomeKind::kCompleted);
@@ -189,7 +192,8 @@ TEST(HaltRules, HoldOnACircleAfterAChangeOfTheOverride) {
   const double ramp = 2.0 * std::sqrt(50.0 / 40000.0);
   const double half = 2.0 * std::sqrt(25.0 / 40000.0);
   const double left = 150.0 * M_PI - 50.0 * (7.0 - 0.5 * ramp) - 37.5 * half - 12.5 * half;
-  EXPECT_NEAR(ran.First("halt HOLD").at_s, begin + 7.0 + 2.0 * half + left / 25.0 + kSettle_s, 5e-3);
+  EXPECT_NEAR(ran.First("halt HOLD").at_s, begin + 7.0 + 2.0 * half + left / 25.0 + kSettle_s,
+              5e-3);
   EXPECT_NEAR(ran.moves.back().tip.tip.x, -100.0, 1e-4);
   ExpectWithinLimits(ran, true, "circle");
 }
@@ -199,7 +203,8 @@ TEST(HaltRules, HoldOnACircleAfterAChangeOfTheOverride) {
 TEST(HaltRules, TheClockOfABackgroundWorkStandsWhileHalted) {
   const double stood = 2.01;
   const Ran ran = RunText("WORK 0,0/ON/END (IL[20])\nDELAY 10\n",
-                          {.inputs = {Key(1.0, InputKind::kStop), Key(1.0 + stood, InputKind::kStart),
+                          {.inputs = {Key(1.0, InputKind::kStop),
+                                      Key(1.0 + stood, InputKind::kStart),
                                       {At(4.0), InputKind::kLogical, 20, 1.0}}});
   EXPECT_EQ(ran.Count("beam off"), 2);  // with the halt, and with /END
   EXPECT_NEAR(ran.events[ran.events.size() - 3].at_s, stood + 42 * kTick_s, 1e-9);
@@ -209,8 +214,9 @@ TEST(HaltRules, TheClockOfABackgroundWorkStandsWhileHalted) {
 // OPT-7.68, OPT-2.60: IL[95] is 1 until standstill, not until the machine has settled: 100 mm at 50
 // mm/s are over after 2.0707 s, the tick behind that is 2.112 s.
 TEST(HaltRules, TheMotionFlagIsOffAtStandstill) {
-  const Ran ran = RunText("COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (121.02,2201.2,-350.,0.,0.)/NEXT\n"
-                          "WAIT NOT IL[95]\nOL[16]=ON\n");
+  const Ran ran = RunText(
+      "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (121.02,2201.2,-350.,0.,0.)/NEXT\n"
+      "WAIT NOT IL[95]\nOL[16]=ON\n");
   EXPECT_NEAR(ran.First("OL[16] 1").at_s, 44 * kTick_s, 1e-9);
 }
 

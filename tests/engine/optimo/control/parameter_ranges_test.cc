@@ -8,8 +8,8 @@
 #include "engine/optimo/control/optimo_family.h"
 #include "engine/optimo/control/optimo_parameters.h"
 
-// What a machine can be set to: both ends of each range are allowed, what is beyond is not. A machine
-// that is stored with such a value stays usable.
+// What a machine can be set to: both ends of each range are allowed, what is beyond is not. A
+// machine that is stored with such a value stays usable.
 namespace rmlcell::optimo::testing::parameter_ranges {
 namespace {
 
@@ -95,12 +95,14 @@ TEST(ParameterRanges, BothEndsAreAllowed) {
 
 // OPT-3.39: at the programmed speed the programmed power: 75 % at 8 % of 500 mm/s.
 TEST(ParameterRanges, TheRampOfAProcess) {
-  const machine::PowerBySpeed power = RampedPower({.speed_percent = 8.0, .power_percent = 75.0}, 500.0);
+  const machine::PowerBySpeed power =
+      RampedPower({.speed_percent = 8.0, .power_percent = 75.0}, 500.0);
   EXPECT_EQ(power.constant_percent, 0.0);
   EXPECT_NEAR(power.percent_per_mm_s * 40.0, 75.0, 1e-9);
 }
 
-// OPT-3.37, OPT-3.33: a flag is on with a process of its number of whatever kind; any of them counts.
+// OPT-3.37, OPT-3.33: a flag is on with a process of its number of whatever kind; any of them
+// counts.
 TEST(ParameterRanges, FlagsOfProcesses) {
   for (int kind = 0; kind < kProcessKinds; ++kind) {
     for (int p = 0; p < kProcessesPerKind; ++p) {
@@ -119,13 +121,14 @@ motion::TipPose Tip(double x, double y, double a = 0.0, double b = 0.0) {
   return {.tip = {x, y, -400.0}, .a_rad = a, .b_rad = b};
 }
 
-// Where a part of a move lies on it: on a line by its length, on an arc by the angle from its start,
-// whichever way round, also behind its half; in axes by the axis that goes farthest.
+// Where a part of a move lies on it: on a line by its length, on an arc by the angle from its
+// start, whichever way round, also behind its half; in axes by the axis that goes farthest.
 TEST(ParameterRanges, PartsAreFoundOnTheirMoves) {
   const motion::PathPiece line = motion::PathPiece::Line(Tip(0, 0), Tip(30, 40));
   std::vector<motion::PathPiece> moves{line};
-  for (const auto& [via, to] : {std::pair{Tip(200, 0), Tip(100, -100)}, std::pair{Tip(100, -100), Tip(200, 0)},
-                                std::pair{Tip(100, -100), Tip(100, 100)}}) {
+  for (const auto& [via, to] :
+       {std::pair{Tip(200, 0), Tip(100, -100)}, std::pair{Tip(100, -100), Tip(200, 0)},
+        std::pair{Tip(100, -100), Tip(100, 100)}}) {
     const auto arc = motion::PathPiece::ArcThrough(Tip(0, 0), via.tip, to);
     ASSERT_TRUE(bool(arc));
     moves.push_back(arc->path);
@@ -134,10 +137,9 @@ TEST(ParameterRanges, PartsAreFoundOnTheirMoves) {
     for (const double way : {8.0, -8.0}) {
       double v[] = {1.0, 1.0, 1.0, 1.0, 1.0};
       v[axis] = way;
-      moves.push_back(motion::PathPiece::Joint({.tip = {5, 6, 7}, .a_rad = 0.5, .b_rad = -0.5},
-                                               {.tip = {5 + v[0], 6 + v[1], 7 + v[2]},
-                                                .a_rad = 0.5 + v[3],
-                                                .b_rad = -0.5 + v[4]}));
+      moves.push_back(motion::PathPiece::Joint(
+          {.tip = {5, 6, 7}, .a_rad = 0.5, .b_rad = -0.5},
+          {.tip = {5 + v[0], 6 + v[1], 7 + v[2]}, .a_rad = 0.5 + v[3], .b_rad = -0.5 + v[4]}));
     }
   }
   for (const motion::PathPiece& move : moves) {
@@ -151,7 +153,8 @@ TEST(ParameterRanges, PartsAreFoundOnTheirMoves) {
       const motion::PathPiece rest = RestOfMove(move, *place, 0.01 * length);
       EXPECT_NEAR(rest.length(), (0.99 - begin) * length, 1e-9 * length);
       EXPECT_NEAR(motion::Distance(rest.to().tip, move.to().tip), 0.0, 1e-9);
-      EXPECT_NEAR(motion::Distance(rest.from().tip, move.At((begin + 0.01) * length).tip), 0.0, 1e-6);
+      EXPECT_NEAR(motion::Distance(rest.from().tip, move.At((begin + 0.01) * length).tip), 0.0,
+                  1e-6);
       if (!move.in_axes()) continue;
       // The same part, measured by twice as much.
       part.MeasureBy(2.0 * part.length());
@@ -161,7 +164,8 @@ TEST(ParameterRanges, PartsAreFoundOnTheirMoves) {
       EXPECT_NEAR(measured->scale, 0.5, 1e-9);
       const motion::PathPiece half = RestOfMove(move, *measured, 0.02 * length);
       EXPECT_NEAR(half.length(), 2.0 * (0.99 - begin) * length, 1e-9 * length);
-      EXPECT_NEAR(motion::Distance(half.from().tip, move.At((begin + 0.01) * length).tip), 0.0, 1e-6);
+      EXPECT_NEAR(motion::Distance(half.from().tip, move.At((begin + 0.01) * length).tip), 0.0,
+                  1e-6);
     }
   }
   // Of another kind, or of no length: there is no such place.

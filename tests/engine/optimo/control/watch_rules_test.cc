@@ -27,7 +27,8 @@ machine::InputChange Input(double at_s, int index, double value) {
   return {At(at_s), InputKind::kLogical, index, value};
 }
 
-// How a MOVE with all of it can end, from 21.02 on. IL[20] is on until 0.5 s, and again from 4 s to 6 s.
+// How a MOVE with all of it can end, from 21.02 on. IL[20] is on until 0.5 s, and again from 4 s to
+// 6 s.
 struct Way {
   std::string name;
   std::string steps;
@@ -44,7 +45,8 @@ const std::vector<Way>& Ways() {
       {"no motion", "SPEED 0\n" + MoveTo(521.02, "/TIME (1.,900)/END (IL[21])") + "SPEED 10\n", 1},
       {"no motion, ended",
        "SPEED 0\n" + MoveTo(521.02, "/TIME (9.,900)/END (NOT IL[20])") + "SPEED 10\n"},
-      {"taken over", MoveTo(521.02, "/TIME (9.,900)/END (IL[21])/NEXT") + "DELAY 1\n" + MoveTo(21.02, "")},
+      {"taken over",
+       MoveTo(521.02, "/TIME (9.,900)/END (IL[21])/NEXT") + "DELAY 1\n" + MoveTo(21.02, "")},
       {"no motion, taken over", "SPEED 0\n" + MoveTo(521.02, "/TIME (9.,900)/END (IL[21])/NEXT") +
                                     "DELAY 1\nSPEED 10\n" + MoveTo(31.02, "")},
   };
@@ -71,15 +73,16 @@ TEST(WatchRules, TheTimeOfAMoveIsOverWithIt) {
   }
 }
 
-// OPT-2.54, OPT-2.58: nor does it end the motion of one that has an /END of its own; and its /END not
-// that of one that has a /TIME.
+// OPT-2.54, OPT-2.58: nor does it end the motion of one that has an /END of its own; and its /END
+// not that of one that has a /TIME.
 TEST(WatchRules, TheEndOfAMoveIsOverWithIt) {
   for (const Way& way : Ways()) {
     SCOPED_TRACE(way.name);
     const Ran end = RunWay(way, MoveTo(921.02, "/END (IL[22])"), {Input(40.0, 21, 1.0)});
     EXPECT_EQ(end.variables.at("VI[3]"), std::to_string(way.gosubs));
     EXPECT_NEAR(end.end.tip.tip.x, 921.02, 1e-4);
-    const Ran time = RunWay(way, "DELAY 6\n" + MoveTo(921.02, "/TIME (99.,900)"), {Input(12.0, 21, 1.0)});
+    const Ran time =
+        RunWay(way, "DELAY 6\n" + MoveTo(921.02, "/TIME (99.,900)"), {Input(12.0, 21, 1.0)});
     EXPECT_EQ(time.variables.at("VI[3]"), std::to_string(way.gosubs));
     EXPECT_NEAR(time.end.tip.tip.x, 921.02, 1e-4);
     EXPECT_EQ(time.variables.at("VI[4]"), "0");
@@ -97,7 +100,9 @@ TEST(WatchRules, EachMoveHasItsOwnTime) {
     ASSERT_GE(ran.parts.size(), 2U);
     // 63 ticks at 50 mm/s and the ramp to rest.
     const double way_mm = last.motion.path.At(last.done.travelled).tip.x -
-                          ran.parts[ran.parts.size() - 2].motion.path.At(ran.parts[ran.parts.size() - 2].done.from).tip.x;
+                          ran.parts[ran.parts.size() - 2]
+                              .motion.path.At(ran.parts[ran.parts.size() - 2].done.from)
+                              .tip.x;
     EXPECT_NEAR(way_mm, 50.0 * 63 * kTick_s, 1e-4);
   }
 }
@@ -117,7 +122,8 @@ TEST(WatchRules, AMissingLabelCountsWhenTheTimeRunsOut) {
   const Ran out = RunText(Program(MoveTo(521.02, "/TIME (2.,999)")), {.variables = {"VI[4]"}});
   EXPECT_EQ(out.variables.at("VI[4]"), "60");
   EXPECT_NEAR(out.time_s, 42 * kTick_s + kRamp_s, 1e-6);
-  const Ran wait = RunText(Program(MoveTo(521.02, "/START (IL[20])/TIME (2.,999)")), {.variables = {"VI[4]"}});
+  const Ran wait =
+      RunText(Program(MoveTo(521.02, "/START (IL[20])/TIME (2.,999)")), {.variables = {"VI[4]"}});
   EXPECT_EQ(wait.variables.at("VI[4]"), "60");
   EXPECT_NEAR(wait.time_s, 42 * kTick_s, 1e-9);
 }
@@ -160,8 +166,8 @@ TEST(WatchRules, BehindAPassageTheClockBeginsWithTheMotion) {
   EXPECT_NEAR(end.time_s, begin + 42 * kTick_s + kRamp_s, 1e-4);
 }
 
-// OPT-2.48, OPT-2.58: a MOVE that reads an input needs standstill: /FLY before it is cancelled, and its
-// clock begins where the machine stands.
+// OPT-2.48, OPT-2.58: a MOVE that reads an input needs standstill: /FLY before it is cancelled, and
+// its clock begins where the machine stands.
 TEST(WatchRules, AMoveThatReadsAnInputNeedsStandstill) {
   const Ran ran = RunText(Program(MoveTo(121.02, "/FLY") + MoveTo(521.02, "/END (IL[20])")),
                           {.inputs = {Input(4.0, 20, 1.0)}});
@@ -178,10 +184,11 @@ TEST(WatchRules, TheTimeOfANextMove) {
   EXPECT_NEAR(ran.end.tip.tip.x, 21.02 + 50.0 * 42 * kTick_s, 1e-6);
 }
 
-// OPT-2.59, OPT-B.30: the next MOVE takes over at the next tick of the system's clock: the first comes
-// to rest on its path and is told as over where it stands.
+// OPT-2.59, OPT-B.30: the next MOVE takes over at the next tick of the system's clock: the first
+// comes to rest on its path and is told as over where it stands.
 TEST(WatchRules, TakingOverAtATick) {
-  const Ran ran = RunText(Program(MoveTo(521.02, "/NEXT") + "DELAY 1.001\nMOVE (21.02,2101.2,-350.,0.,0.)\n"));
+  const Ran ran =
+      RunText(Program(MoveTo(521.02, "/NEXT") + "DELAY 1.001\nMOVE (21.02,2101.2,-350.,0.,0.)\n"));
   ASSERT_EQ(ran.moves.size(), 2U);
   EXPECT_NEAR(ToSeconds(ran.moves[0].at), 21 * kTick_s + kRamp_s, 1e-6);
   EXPECT_NEAR(ran.moves[0].tip.tip.x, 21.02 + 50.0 * 21 * kTick_s, 1e-6);
