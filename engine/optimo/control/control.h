@@ -176,7 +176,7 @@ class Control : private VariableAccess {
   void CloseShutter();
   void SuspendBeam();
   bool SetOutput(int index, bool on);
-  void ConnectOutputs();
+  void ConnectOutputs(std::uint8_t groups);
   void TellSignal(machine::Signal signal, int index, double value, double detail = 0.0);
 
   // --- control_flow.cc: instructions and jumps; control_calls.cc; control_errors.cc ---

@@ -195,7 +195,6 @@ void Control::Assign(const Instruction& i) {
 
 // UPDATE, IMAGE, REAL. Outputs that become connected are set from their images at that moment.
 void Control::SetGroups(const Instruction& i) {
-  const bool were_connected = Connected(kGroupOl);
   if (i.op == Op::kUpdate) {
     if (i.Has(kOn)) {
       modal().updated = static_cast<std::uint8_t>(modal().updated | i.choice);
@@ -207,11 +206,7 @@ void Control::SetGroups(const Instruction& i) {
   } else {
     modal().imaged = static_cast<std::uint8_t>(modal().imaged & ~i.choice);
   }
-  const bool asked = (i.choice & (kGroupOl | kGroupOa)) != 0;
-  if (asked && (Connected(kGroupOl) || Connected(kGroupOa)) &&
-      (!were_connected || i.op == Op::kUpdate)) {
-    ConnectOutputs();
-  }
+  ConnectOutputs(i.choice);
 }
 
 std::optional<std::string> Control::ReadVariable(std::string_view name) const {

@@ -63,7 +63,7 @@ void Control::Fetch() {
     const int schedule = s_.simulated.schedule;
     s_.simulated = {};
     s_.place = here;  // where what the simulated steps asked for takes effect
-    ConnectOutputs();
+    ConnectOutputs(kAllGroups);
     if (s_.phase != machine::RunPhase::kRunning) return;
     if (schedule > 0)
       Carry({.kind = PassageEffect::Kind::kSchedule, .place = s_.place, .index = schedule});

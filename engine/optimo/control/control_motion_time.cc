@@ -250,8 +250,6 @@ void Control::Unwatch() {
   s_.watched.reset();
   s_.end_condition.reset();
   s_.time_gosub.reset();
-  s_.time_ran_out = false;
-  s_.watch_begins = false;
   s_.no_motion = false;
 }
 

@@ -14,6 +14,9 @@ constexpr int kGas3 = 9;
 constexpr int kSensor = 11;
 constexpr double kFullPower = 100.0;
 
+// Of which only one is on at a time. -1: the output is no gas.
+int OtherGas(int index) { return index == kGas2 ? kGas3 : index == kGas3 ? kGas2 : -1; }
+
 }  // namespace
 
 void Control::TellSignal(machine::Signal signal, int index, double value, double detail) {
@@ -49,12 +52,16 @@ void Control::TakeEffect(const PassageEffect& effect) {
     case PassageEffect::Kind::kOutput: {
       const bool on = effect.value != 0.0;
       if (data.ol_physical[n] == on) return;
+      const int other = OtherGas(effect.index);
+      if (on && other >= 0 && data.ol_physical[static_cast<std::size_t>(other)]) {
+        return Warn(ErrorCode::kGasConflict,
+                    "OL[" + std::to_string(effect.index) + "] while another assist gas is on",
+                    "OPT-5.40");
+      }
       data.ol_physical[n] = on;
       TellSignal(machine::Signal::kOutput, effect.index, effect.value);
-      if (effect.index == kGas2 || effect.index == kGas3) {
-        const int gas = data.ol_physical[kGas2] ? 2 : data.ol_physical[kGas3] ? 3 : 1;  // OPT-5.42
-        if (gas != s_.gas) TellSignal(machine::Signal::kGas, 0, gas);
-        s_.gas = gas;
+      if (other >= 0) {
+        TellSignal(machine::Signal::kGas, 0, !on ? 1 : effect.index == kGas2 ? 2 : 3);  // OPT-5.42
       }
       if (effect.index == kSensor) TellSignal(machine::Signal::kSensor, 0, effect.value);
       return;
@@ -143,7 +150,8 @@ bool Control::SelectSchedule(int number, When when) {
 }
 
 // The image takes the value in any case; the machine follows unless the output is refused
-// (OPT-5.38). False: an alarm was raised.
+// (OPT-5.38): a second gas when its turn comes, for the first may go off at the same passage.
+// False: an alarm was raised.
 bool Control::SetOutput(int index, bool on) {
   DataArea& data = s_.machine.data;
   data.ol[static_cast<std::size_t>(index)] = on;
@@ -152,12 +160,6 @@ bool Control::SetOutput(int index, bool on) {
     Raise(ErrorCode::kGas3NotFitted, {});
     return false;
   }
-  const int other = index == kGas2 ? kGas3 : index == kGas3 ? kGas2 : -1;
-  if (on && other >= 0 && data.ol[static_cast<std::size_t>(other)]) {
-    Warn(ErrorCode::kGasConflict,
-         "OL[" + std::to_string(index) + "] while another assist gas is on", "OPT-5.40");
-    return true;
-  }
   Show({.kind = PassageEffect::Kind::kOutput,
         .place = s_.place,
         .index = index,
@@ -165,19 +167,22 @@ bool Control::SetOutput(int index, bool on) {
   return true;
 }
 
-// Physical outputs follow their images again: UPDATE ON, REAL, the end of a simulation.
-void Control::ConnectOutputs() {
+// Physical outputs of these groups follow their images again: UPDATE ON, REAL, the end of a
+// simulation.
+void Control::ConnectOutputs(std::uint8_t groups) {
+  const DataArea& data = s_.machine.data;
+  const bool logical = (groups & kGroupOl) != 0;
+  const bool analogue = (groups & kGroupOa) != 0 && Connected(kGroupOa);
+  // Gas 3 makes way for gas 2, whose output comes first below.
+  if (logical && !data.ol[kGas3]) SetOutput(kGas3, false);
   for (int n = 0; n < kVariableCount; ++n) {
     const auto at = static_cast<std::size_t>(n);
-    if (Connected(kGroupOl) && s_.machine.data.ol[at] != s_.machine.data.ol_physical[at]) {
-      if (!SetOutput(n, s_.machine.data.ol[at])) return;
-    }
-    if (Connected(kGroupOa) && n > 0 && s_.machine.data.oa[at] != s_.machine.data.oa_physical[at]) {
-      Carry({.kind = PassageEffect::Kind::kAnalogue,
-             .place = s_.place,
-             .index = n,
-             .value = s_.machine.data.oa[at]});
-    }
+    if (logical && !SetOutput(n, data.ol[at])) return;
+    if (!analogue) continue;
+    Carry({.kind = PassageEffect::Kind::kAnalogue,
+           .place = s_.place,
+           .index = n,
+           .value = data.oa[at]});
   }
 }
 

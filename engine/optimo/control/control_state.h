@@ -263,7 +263,6 @@ struct ControlState {
 
   Beam beam{};
   machine::PowerBySpeed power_before_pierce{};
-  int gas = 1;
   std::map<int, std::string> made_executables{};
   std::map<int, Loaded> loaded{};  // executables of this run, by slot
   bool speed_limited_told = false;

@@ -50,6 +50,49 @@ TEST(OutputRules, OneGasAfterTheOther) {
                           "gas 1"));
 }
 
+// OPT-5.40, OPT-5.38: it is the output that counts, not the image: a gas that was refused is not on,
+// and one that is on already is no second one.
+TEST(OutputRules, ARefusedGasIsNotOn) {
+  EXPECT_THAT(Told(RunText("OL[8]=ON\nOL[9]=ON\nOL[8]=ON\nOL[8]=OFF\nOL[8]=ON\n", kThreeGases)),
+              ElementsAre("OL[8] 1", "gas 2", "E7409", "OL[8] 0", "gas 1", "OL[8] 1", "gas 2"));
+  EXPECT_THAT(Told(RunText("OL[9]=ON\nOL[8]=ON\nOL[9]=OFF\nOL[9]=ON\n", kThreeGases)),
+              ElementsAre("OL[9] 1", "gas 3", "E7409", "OL[9] 0", "gas 1", "OL[9] 1", "gas 3"));
+}
+
+// OPT-5.40, OPT-7.98, OPT-6.24: where outputs follow their images again, one of two gases comes, the
+// first, and the other is refused; one that is on makes way when its image says so.
+TEST(OutputRules, GasesFromTheirImages) {
+  const std::string both = "OL[8]=ON\nOL[9]=ON\n";
+  EXPECT_THAT(Told(RunText("UPDATE OL/OFF\n" + both + "UPDATE OL/ON\n", kThreeGases)),
+              ElementsAre("OL[8] 1", "gas 2", "E7409"));
+  RunOptions dry = kThreeGases;
+  dry.simul = machine::ProgramStep{.program = 1, .step = 3};
+  EXPECT_THAT(Told(RunText(both + "VI[2]=1\n", dry)), ElementsAre("OL[8] 1", "gas 2", "E7409"));
+  EXPECT_THAT(Told(RunText("OL[8]=ON\nIMAGE OL\nOL[8]=OFF\nOL[9]=ON\nREAL OL\n", kThreeGases)),
+              ElementsAre("OL[8] 1", "gas 2", "OL[8] 0", "gas 1", "OL[9] 1", "gas 3"));
+  EXPECT_THAT(Told(RunText("OL[9]=ON\nIMAGE OL\nOL[9]=OFF\nOL[8]=ON\nREAL OL\n", kThreeGases)),
+              ElementsAre("OL[9] 1", "gas 3", "OL[9] 0", "gas 1", "OL[8] 1", "gas 2"));
+}
+
+// OPT-5.40, OPT-2.49: between two /FLY moves it is the passage that counts: there the first gas is off
+// when the second comes. A refusal is told there too, at its own step.
+TEST(OutputRules, GasesOfAPassage) {
+  const std::string way = "OL[8]=ON\n" + kThere + "MOVE (1100.,1000.,-400.,0.,0.)/FLY\n";
+  const std::string end = "MOVE (1200.,1000.,-400.,0.,0.)\n";
+  EXPECT_THAT(Told(RunText(way + "OL[8]=OFF\nOL[9]=ON\n" + end, kThreeGases)),
+              ElementsAre("OL[8] 1", "gas 2", "OL[8] 0", "gas 1", "OL[9] 1", "gas 3"));
+  const Ran refused = RunText(way + "OL[9]=ON\n" + end, kThreeGases);
+  EXPECT_EQ(refused.First("E7409").step, 7);
+  EXPECT_GT(refused.First("E7409").at_s, ToSeconds(refused.moves.front().at) + 2.0);
+}
+
+// OPT-5.42, OPT-B.54: a gas outlives its run, and the next one tells that gas 1 is back.
+TEST(OutputRules, AGasOutlivesItsRun) {
+  RunOptions next = kThreeGases;
+  next.machine_state = RunText("OL[8]=ON\n", kThreeGases).machine_state;
+  EXPECT_THAT(Told(RunText("OL[9]=ON\nOL[8]=OFF\n", next)), ElementsAre("E7409", "OL[8] 0", "gas 1"));
+}
+
 // OPT-5.41, OPT-E.931: with two channels OL[9] ON is alarm 931, also behind UPDATE; OFF is not. With
 // three it is an output. Its image stays set.
 TEST(OutputRules, TheThirdGasNeedsItsChannel) {
@@ -128,6 +171,22 @@ TEST(OutputRules, EachGroupIsSimulatedByItself) {
   EXPECT_THAT(Told(RunText("UPDATE OL/OFF\nIMAGE OL\n" + outputs + "REAL OL\n")),
               ElementsAre("OA[5] 2.5"));
   EXPECT_THAT(Told(RunText("IMAGE OL\n" + outputs + "REAL IL,IA\n")), ElementsAre("OA[5] 2.5"));
+}
+
+// OPT-7.100, OPT-7.98: a group comes back by itself, whatever the other is; the other one is not
+// touched: a gas that was refused is not tried again.
+TEST(OutputRules, EachGroupComesBackByItself) {
+  const std::string outputs = "OL[16]=ON\nOA[5]=2.5\n";
+  EXPECT_THAT(Told(RunText("IMAGE OA\n" + outputs + "REAL OA\n")),
+              ElementsAre("OL[16] 1", "OA[5] 2.5"));
+  EXPECT_THAT(Told(RunText("IMAGE OL\n" + outputs + "REAL OL\n")),
+              ElementsAre("OA[5] 2.5", "OL[16] 1"));
+  EXPECT_THAT(Told(RunText("UPDATE OA/OFF\n" + outputs + "UPDATE OA/ON\n")),
+              ElementsAre("OL[16] 1", "OA[5] 2.5"));
+  EXPECT_THAT(Told(RunText("IMAGE\n" + outputs + "REAL IL\nREAL OA\n")), ElementsAre("OA[5] 2.5"));
+  const std::string refused = "OL[8]=ON\nOL[9]=ON\n";
+  EXPECT_EQ(RunText(refused + "UPDATE OA/ON\nREAL OA\nREAL IL,IA\n", kThreeGases).Count("E7409"), 1);
+  EXPECT_EQ(RunText(refused + "UPDATE OL/ON\n", kThreeGases).Count("E7409"), 2);
 }
 
 // OPT-7.97, OPT-7.98, OPT-7.100: inputs of a group that is off keep their images; the other group is

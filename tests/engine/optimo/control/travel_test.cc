@@ -92,6 +92,21 @@ TEST(Travel, TheVeryEndOfItIsInside) {
   EXPECT_EQ(CodeOf(RunText("COORD ROBOT\nMOVE (3600.01,0.,0.,0.,0.)\n")), 7301);
 }
 
+// OPT-B.08, OPT-B.37: how much counts as rounding: 1e-6, and what a number of 24 bits leaves of the
+// limit, which is 0.00043 mm at 3600 mm: one step of such a number, not two.
+TEST(Travel, RoundingIsNoViolation) {
+  const auto code = [](const std::string& target, const RunOptions& options = {}) {
+    return CodeOf(RunText("MOVE (" + target + ")\n", options));
+  };
+  const RunOptions clamped{.parameters = {{"TRAVEL_A_MIN", "0"}, {"TRAVEL_A_MAX", "0"}}};
+  for (const std::string sign : {"", "-"}) {
+    EXPECT_EQ(code("121.02,2201.2,-50.," + sign + "0.0000009,0.", clamped), 0);
+    EXPECT_EQ(code("121.02,2201.2,-50.," + sign + "0.0000015,0.", clamped), 7301);
+  }
+  EXPECT_EQ(code("3600.00025,2201.2,-50.,0.,0."), 0);
+  EXPECT_EQ(code("3600.0005,2201.2,-50.,0.,0."), 7301);
+}
+
 // OPT-2.49: the program runs ahead of /FLY moves; a finding has the time at which its own begins,
 // half way through the bend of case C01: 2.021 s after the chain.
 TEST(Travel, InAChainEachHasTheTimeOfItsOwnMotion) {
