@@ -84,6 +84,11 @@ TEST(Carriage, TurnsInTheWorkOrAboveIt) {
   EXPECT_THAT(UsesOf("V5;!ZE Z-1:X21000A90;", "t1a"), ElementsAre("plunge 5", "cut 5", "cut 5"));
   EXPECT_THAT(UsesOf("V5;!ZE Z0:X21000A90;", "t1a"),
               ElementsAre("travel 5", "travel 5", "travel 5"));
+  // By itself it is neither a plunge nor drawn back, and at Z0 it touches nothing.
+  EXPECT_THAT(UsesOf("V5;!ZE Z-1:A90:Z-2:A0:Z-1;", "t1a"),
+              ElementsAre("plunge 5", "cut 5", "plunge 5", "cut 5", "retract 5"));
+  EXPECT_THAT(UsesOf("V5;!ZE Z0:A90:X1000A0;", "t1a"),
+              ElementsAre("travel 5", "travel 5", "travel 5"));
 }
 
 // motion.md section 7: no axis beyond its own maximum, and a rotary axis in step. T1 has 60 mm/s in
