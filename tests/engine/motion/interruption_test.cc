@@ -317,6 +317,12 @@ TEST(StopAlong, SaysWhenMoreIsToBePlanned) {
   EXPECT_FALSE(stop.motions[1].ends_move);
   EXPECT_EQ(stop.motions[0].tag, 7u);
   EXPECT_EQ(stop.motions[1].tag, 8u);
+  // At the very end of the first move nothing of it is left.
+  const StopOnPath behind = StopAlong(plan, plan[0].speed.duration_s(), StandardMachine().axes);
+  EXPECT_EQ(behind.index, 1u);
+  ASSERT_EQ(behind.motions.size(), 1u);
+  EXPECT_EQ(behind.motions[0].tag, 8u);
+  EXPECT_NEAR(behind.s, kRamp_mm, 1e-9);
   const double far = plan[0].speed.TimeAt(100.0 - kRamp_mm - 0.1);
   EXPECT_TRUE(StopAlong(std::span(plan).first(1), far, StandardMachine().axes).complete);
 }
