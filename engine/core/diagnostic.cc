@@ -24,8 +24,8 @@ std::string_view LineAt(std::string_view source, int line) {
 
 // The line and a caret line below it. Bytes that a terminal would act on are shown as '?'.
 std::string CaretLines(std::string_view line, const SourceSpan& where) {
-  const std::size_t column = where.column > 0 ? static_cast<std::size_t>(where.column - 1) : 0;
-  const std::size_t from = column > kShownBytes / 2 ? column - kShownBytes / 2 : 0;
+  const auto column = static_cast<std::size_t>(std::max(where.column, 1) - 1);
+  const std::size_t from = std::max(column, kShownBytes / 2) - kShownBytes / 2;
   if (from > line.size()) return {};
   std::string shown(line.substr(from, kShownBytes));
   std::string caret;
@@ -35,8 +35,8 @@ std::string CaretLines(std::string_view line, const SourceSpan& where) {
     if (from + i < column) caret += shown[i] == '\t' ? '\t' : ' ';
   }
   caret += '^';
-  const auto room = static_cast<int>(shown.size() + from > column ? shown.size() + from - column : 1);
-  for (int i = 1; i < std::min(where.length, room); ++i) caret += '~';
+  const std::size_t end = column + static_cast<std::size_t>(std::max(where.length, 0));
+  for (std::size_t i = column + 1; i < std::min(end, from + shown.size()); ++i) caret += '~';
   return "\n  " + shown + "\n  " + caret;
 }
 

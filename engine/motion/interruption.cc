@@ -126,7 +126,7 @@ Restart RestartWith(std::span<const PlannedMotion> ahead, double s, double ease)
     for (std::size_t k = last + 1; k-- > next;) {
       caps[k] = std::min(SpeedAtEnd(ahead[k]), limits_of(k).speed);
       if (k + 1 < ahead.size()) caps[k] = std::min(caps[k], limits_of(k + 1).speed);
-      if (k == last || caps[k] <= caps[k + 1]) continue;
+      if (k == last) continue;
       caps[k] = std::min(caps[k], Reach(caps[k + 1], left_of(k + 1), limits_of(k + 1)));
     }
     for (; next <= last; ++next) {
@@ -134,7 +134,7 @@ Restart RestartWith(std::span<const PlannedMotion> ahead, double s, double ease)
       const PathLimits limits = limits_of(next);
       const double left = left_of(next);
       double end = caps[next];
-      if (end > speed && RampLength(speed, end, limits) > left) {
+      if (RampLength(speed, end, limits) > left) {
         end = std::min(end, Reach(speed, left, limits));
       }
       if (left > 0.0) {

@@ -212,7 +212,8 @@ void MotionChain::Starve() {
   while (Resolve(true)) {
   }
   LetBendsVary();
-  if (2 * speeds_.Settle() < speeds_.size()) speeds_.Accept(speeds_.size() / 2);
+  speeds_.Settle();
+  speeds_.Accept(speeds_.size() / 2);
 }
 
 void MotionChain::SeeDecided() {

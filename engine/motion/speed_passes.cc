@@ -57,7 +57,7 @@ std::size_t SpeedPasses::Settle() {
 
 void SpeedPasses::Accept(std::size_t count) {
   RMLCELL_CHECK(count <= size());
-  if (count <= final_ || count == 0) return;
+  if (count <= final_) return;
   // The knots after it were planned forward from a faster one.
   Knot& last = knots_[first_ + count - 1];
   last_forward_ = last.speed;

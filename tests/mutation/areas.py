@@ -11,8 +11,9 @@ class Area:
 
 AREAS = {
     "motion": Area(("engine/core", "engine/machine", "engine/motion"),
-                   ("core_test", "machine_test", "motion_test", "motion_reference_test", "motion_property_test",
-                    "optimo_control_test", "rml1_test", "simulation_test", "optimo_language_test")),
+                   ("core_test", "machine_test", "motion_test", "motion_reference_test", "rml1_test",
+                    "simulation_test", "optimo_control_test", "optimo_language_test",
+                    "motion_property_test")),
     "mill": Area(("engine/rml1",),
                  ("rml1_test", "rml1_examples_test", "simulation_test", "motion_test", "motion_reference_test",
                   "rml1_hostile_test", "rml1_corpus_test")),

@@ -143,6 +143,28 @@ TEST(BendStretches, OpenInTheMiddle) {
   EXPECT_LE(abrupt.open, 10.0 + 10.0 / 64.0 + 1e-9);
 }
 
+// A ramp that fits where it lies must also leave a speed that the bend keeps behind its end. Of
+// jerk 250 mm/s3 the one from 10 to 20 mm/s takes 6 mm, here the first six of 24 steps, and keeps
+// below speeds that reach 20 after two. A dip to 15 at any step behind it lets no more than 15 be
+// the speed on the way: to that there is a ramp of 3.5 mm.
+TEST(BendStretches, KeepTheirSpeedBehindTheRamp) {
+  constexpr PathLimits kRamp{.acceleration = 1e9, .jerk = 250.0};
+  ASSERT_NEAR(RampLength(10.0, 20.0, kRamp), 6.0, 1e-12);
+  // Just short of 24 mm: the ramp ends a little behind the sixth step.
+  constexpr double kHalf_mm = 24.0 * (1.0 - 1e-11);
+  BendSpeeds speeds =
+      Speeds([](std::size_t k) { return std::min(10.0 + 5.0 * static_cast<double>(k), 20.0); });
+  EXPECT_NEAR(StretchesOf(speeds, kHalf_mm, kRamp).open, 20.0, 1e-12);
+  for (std::size_t dip = 7; dip < BendSpeeds::kSteps; ++dip) {
+    BendSpeeds dipped = speeds;
+    dipped.most[dip] = 15.0;
+    const BendStretches bend = StretchesOf(dipped, kHalf_mm, kRamp);
+    EXPECT_EQ(bend.count, 1u);
+    EXPECT_EQ(bend.start, 10.0);
+    EXPECT_NEAR(bend.open, 15.0, 1e-8) << dip;
+  }
+}
+
 // Open between the start and the middle: two stretches, each up and down again, both as far as the
 // side that is the shorter way allows.
 TEST(BendStretches, OpenBetween) {

@@ -202,5 +202,130 @@ TEST(RestartAlong, ManyHaltsKeepThePath) {
   }
 }
 
+// One line of 100 mm at 50 mm/s, with 0.048 s of settling behind it. Its ramps of jerk 40,000 take
+// 2 sqrt(50/40000) = 0.0707 s and 1.768 mm. motion.md 5.2
+MoveCommand LineOf100() {
+  MoveCommand move;
+  move.path = PathPiece::Line({}, {{100, 0, 0}});
+  move.speed_fraction = 0.1;
+  move.tag = 7;
+  return move;
+}
+const double kRamp_s = 2.0 * std::sqrt(50.0 / 40000.0);
+const double kRamp_mm = 25.0 * kRamp_s;
+
+// A STOP in the middle rests on the path and settles nothing; the START behind it does the rest of
+// the move, whose end and settling are its own. OPT-B.31
+TEST(StopAlong, RestsOnALineAndGoesOn) {
+  const std::vector<PlannedMotion> plan = Plan({LineOf100()});
+  ASSERT_EQ(plan.size(), 1u);
+  const double t = kRamp_s + (50.0 - kRamp_mm) / 50.0;  // at 50 mm
+  const StopOnPath stop = StopAlong(plan, t, StandardMachine().axes);
+  EXPECT_TRUE(stop.complete);
+  EXPECT_EQ(stop.index, 0u);
+  EXPECT_NEAR(stop.s, 50.0 + kRamp_mm, 1e-9);
+  ASSERT_EQ(stop.motions.size(), 1u);
+  const PlannedMotion& braking = stop.motions[0];
+  EXPECT_FALSE(braking.ends_move);
+  EXPECT_EQ(braking.settling_s, 0.0);
+  EXPECT_EQ(braking.tag, 7u);
+  EXPECT_NEAR(braking.path.from().tip.x, 50.0, 1e-9);
+  EXPECT_NEAR(braking.path.to().tip.x, stop.s, 1e-9);
+  EXPECT_NEAR(braking.speed.duration_s(), kRamp_s, 1e-9);
+
+  const std::vector<PlannedMotion> rest = RestartAlong(plan, stop.s, StandardMachine().axes);
+  ASSERT_EQ(rest.size(), 1u);
+  EXPECT_TRUE(rest[0].ends_move);
+  EXPECT_EQ(rest[0].settling_s, 0.048);
+  EXPECT_EQ(rest[0].corner.speed, 0.0);
+  EXPECT_NEAR(rest[0].path.length(), 50.0 - kRamp_mm, 1e-9);
+  EXPECT_NEAR(rest[0].speed.duration_s(), 2 * kRamp_s + (50.0 - 3 * kRamp_mm) / 50.0, 1e-9);
+}
+
+// In its last ramp a STOP leads to the end of the move and no further; all that is left is to
+// settle. While it settles, or stands, a STOP is nothing. OPT-B.31
+TEST(StopAlong, AtTheEndNothingIsLeftButToSettle) {
+  const std::vector<PlannedMotion> plan = Plan({LineOf100()});
+  const double moving = plan[0].speed.duration_s();
+  const StopOnPath stop = StopAlong(plan, moving - 0.25 * kRamp_s, StandardMachine().axes);
+  EXPECT_TRUE(stop.complete);
+  EXPECT_NEAR(stop.s, 100.0, 1e-9);
+  ASSERT_EQ(stop.motions.size(), 1u);
+  EXPECT_NEAR(stop.motions[0].speed.duration_s(), 0.25 * kRamp_s, 1e-9);
+  EXPECT_EQ(stop.motions[0].settling_s, 0.0);
+
+  for (const double t : {moving, moving + 0.01, moving + 0.048}) {
+    const StopOnPath none = StopAlong(plan, t, StandardMachine().axes);
+    EXPECT_TRUE(none.complete);
+    EXPECT_TRUE(none.motions.empty());
+    EXPECT_EQ(none.index, 0u);
+    EXPECT_EQ(none.s, 100.0);
+  }
+  const std::vector<PlannedMotion> rest = RestartAlong(plan, 100.0, StandardMachine().axes);
+  ASSERT_EQ(rest.size(), 1u);
+  EXPECT_EQ(rest[0].speed.duration_s(), 0.0);
+  EXPECT_EQ(rest[0].duration_s(), 0.048);
+  EXPECT_EQ(rest[0].path.length(), 0.0);
+  EXPECT_EQ(rest[0].path.from().tip, (Vec3{100, 0, 0}));
+  EXPECT_TRUE(rest[0].ends_move);
+}
+
+// A stop between two moves that costs no settling (OVERSH 0): who rests there goes on with the next
+// move alone, and a STOP in the last ramp before it does not reach into it. OPT-2.15, OPT-B.31
+TEST(StopAlong, StopsBetweenMovesStayWhereTheyAre) {
+  MoveCommand first = LineOf100(), second = LineOf100();
+  first.fly = true;
+  first.overshoot_fraction = 0.0;
+  second.path = PathPiece::Line({{100, 0, 0}}, {{100, 40, 0}});
+  second.tag = 8;
+  const std::vector<PlannedMotion> plan = Plan({first, second});
+  ASSERT_EQ(plan.size(), 2u);
+  ASSERT_EQ(plan[0].settling_s, 0.0);
+  const double moving = plan[0].speed.duration_s();
+  const StopOnPath stop = StopAlong(plan, moving - 0.25 * kRamp_s, StandardMachine().axes);
+  EXPECT_EQ(stop.index, 0u);
+  EXPECT_NEAR(stop.s, 100.0, 1e-9);
+  EXPECT_EQ(stop.motions.size(), 1u);
+  const std::vector<PlannedMotion> rest = RestartAlong(plan, 100.0, StandardMachine().axes);
+  ASSERT_EQ(rest.size(), 1u);
+  EXPECT_EQ(rest[0].tag, 8u);
+  EXPECT_NEAR(rest[0].duration_s(), plan[1].duration_s(), 1e-12);
+  // From 20 mm before its end: both moves, the first as far as it is left.
+  const std::vector<PlannedMotion> both = RestartAlong(plan, 80.0, StandardMachine().axes);
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_NEAR(both[0].path.length(), 20.0, 1e-9);
+  EXPECT_NEAR(both[0].duration_s(), 2 * kRamp_s + (20.0 - 2 * kRamp_mm) / 50.0, 1e-9);
+  EXPECT_EQ(both[1].path.length(), 40.0);
+}
+
+// What is not planned yet may lie on the way: a STOP says that it needs more. motion.md section 6
+TEST(StopAlong, SaysWhenMoreIsToBePlanned) {
+  MoveCommand first = LineOf100(), second = LineOf100();
+  first.fly = true;
+  second.path = PathPiece::Line({{100, 0, 0}}, {{200, 0, 0}});
+  second.tag = 8;
+  const std::vector<PlannedMotion> plan = Plan({first, second});
+  ASSERT_EQ(plan.size(), 2u);                          // straight on
+  const double near_end = plan[0].speed.TimeAt(99.0);  // 1 mm before, 1.768 are needed
+  EXPECT_FALSE(StopAlong(std::span(plan).first(1), near_end, StandardMachine().axes).complete);
+  const StopOnPath stop = StopAlong(plan, near_end, StandardMachine().axes);
+  EXPECT_TRUE(stop.complete);
+  EXPECT_EQ(stop.index, 1u);
+  EXPECT_NEAR(stop.s, kRamp_mm - 1.0, 1e-9);
+  ASSERT_EQ(stop.motions.size(), 2u);
+  EXPECT_TRUE(stop.motions[0].ends_move);
+  EXPECT_FALSE(stop.motions[1].ends_move);
+  EXPECT_EQ(stop.motions[0].tag, 7u);
+  EXPECT_EQ(stop.motions[1].tag, 8u);
+  // At the very end of the first move nothing of it is left.
+  const StopOnPath behind = StopAlong(plan, plan[0].speed.duration_s(), StandardMachine().axes);
+  EXPECT_EQ(behind.index, 1u);
+  ASSERT_EQ(behind.motions.size(), 1u);
+  EXPECT_EQ(behind.motions[0].tag, 8u);
+  EXPECT_NEAR(behind.s, kRamp_mm, 1e-9);
+  const double far = plan[0].speed.TimeAt(100.0 - kRamp_mm - 0.1);
+  EXPECT_TRUE(StopAlong(std::span(plan).first(1), far, StandardMachine().axes).complete);
+}
+
 }  // namespace
 }  // namespace rmlcell::motion

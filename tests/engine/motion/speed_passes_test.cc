@@ -77,6 +77,36 @@ TEST(SpeedPasses, BatchesGiveTheSpeedsOfTheWholeChain) {
   EXPECT_GT(early, 100000u);  // of 360000
 }
 
+// To accept what is final already changes nothing, now or later: the speeds stay those of the whole
+// chain. motion.md 5.5
+TEST(SpeedPasses, AcceptingWhatIsFinalChangesNothing) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const std::vector<Span> chain = RandomSpans(seed, seed % 3 != 0);
+    const std::vector<double> whole = Whole(chain);
+    Dice dice(seed);
+    SpeedPasses passes;
+    std::size_t taken = 0;
+    for (const Span& span : chain) {
+      passes.Push(span.length, span.limits, span.cap);
+      passes.Accept(passes.final_count());
+      if (!dice.Chance(0.2) && &span != &chain.back()) continue;
+      passes.Settle();
+      passes.Accept(passes.final_count());
+      passes.Accept(0);
+      for (std::size_t left = dice.Chance(0.5) ? passes.final_count() : 0; left > 0; --left) {
+        ASSERT_EQ(passes.speed(), whole[taken]) << "seed " << seed << " knot " << taken;
+        passes.Pop();
+        ++taken;
+      }
+    }
+    for (; passes.final_count() > 0; ++taken) {
+      ASSERT_EQ(passes.speed(), whole[taken]) << "seed " << seed << " knot " << taken;
+      passes.Pop();
+    }
+    EXPECT_EQ(taken, chain.size());
+  }
+}
+
 // Speeds accepted too early are legal: every span can be run between them, and the chain ends at
 // rest.
 TEST(SpeedPasses, AcceptedSpeedsAreLegal) {

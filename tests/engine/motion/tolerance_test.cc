@@ -136,7 +136,8 @@ TEST(Tolerance, UsableNumbers) {
   for (const TipPose& far :
        {TipPose{{1.01e12, 0, 0}}, TipPose{{0, -1.01e12, 0}}, TipPose{{0, 0, 1.01e12}},
         TipPose{{}, 1.01e12, 0}, TipPose{{}, 0, -1.01e12}, TipPose{{4e11, -4e11, 4e11}},
-        TipPose{{kNaN, 0, 0}}, TipPose{{}, kNaN, 0}, TipPose{{}, 0, std::numeric_limits<double>::infinity()}}) {
+        TipPose{{kNaN, 0, 0}}, TipPose{{}, kNaN, 0},
+        TipPose{{}, 0, std::numeric_limits<double>::infinity()}}) {
     EXPECT_EQ(code({}, far), ErrorCode::kTargetOutOfTravel);
     EXPECT_EQ(code(far, {}), ErrorCode::kTargetOutOfTravel);
     EXPECT_EQ(code(far, far), ErrorCode::kTargetOutOfTravel);
@@ -268,6 +269,85 @@ TEST(BeginMoving, InAxesBySigma) {
   measured.restart_speed = kLargest;
   measured.MeasureBy(2.0);
   EXPECT_EQ(measured.restart_speed, kLargest);
+}
+
+// What lies exactly at a tolerance is within it: points 1e-4 mm apart are one, a via point 1e-4 mm
+// from the chord lies on it. motion.md 1, 3.2; OPT-B.16, OPT-B.18
+TEST(Tolerance, ArcPointsAtTheBoundItself) {
+  using Case = PathPiece::ArcCase;
+  const auto through = [](const Vec3& via, const Vec3& to) {
+    return PathPiece::ArcThrough({}, via, {to});
+  };
+  const auto kind = [&](const Vec3& via, const Vec3& to) {
+    const Result<PathPiece::Arc3> arc = through(via, to);
+    return arc ? std::optional(arc->kind) : std::nullopt;
+  };
+  EXPECT_FALSE(through({5, 5, 0}, {1e-4, 0, 0}));  // ends where it begins
+  EXPECT_EQ(kind({0, 1e-4, 0}, {1e-4, 0, 0}), Case::kNoTipMotion);
+  EXPECT_EQ(kind({0, 1e-4, 0}, {10, 0, 0}), Case::kLineWarned);   // via is the start
+  EXPECT_EQ(kind({10, 1e-4, 0}, {10, 0, 0}), Case::kLineWarned);  // via is the target
+  EXPECT_EQ(kind({5, 1e-4, 0}, {10, 0, 0}), Case::kLineWarned);   // on the chord
+  EXPECT_FALSE(through({15, 1e-4, 0}, {10, 0, 0}));               // behind it
+}
+
+// motion.md 3.3: |N - C| of 1e-6 is no direction, |q| of 1e-6 is on the axis, an entry 1e-6 mm away
+// is reached, and X counts up to a cosine of 0.9 itself. OPT-B.12, OPT-B.13, OPT-2.32
+TEST(Tolerance, HolesAtTheBoundItself) {
+  HoleCommand hole{
+      .from = {{0, 1e-6, 5}}, .centre = {}, .normal_point = {0, 0, 1e-6}, .radius_mm = 5.0};
+  EXPECT_EQ(HoleThrough(hole).error().code, ErrorCode::kHoleNormalUndefined);
+  hole.normal_point.z = 1.0;
+  EXPECT_TRUE(HoleThrough(hole)->starts_on_axis);
+  // The smallest hole begins 1e-6 mm from its circle: the head turns over the circle.
+  const HoleCommand tiny{.from = {{2e-6, 0, 0}, 0.1, 0.2},
+                         .centre = {{}, 0.3, 0.4},
+                         .normal_point = {0, 0, 1},
+                         .radius_mm = 1e-6};
+  EXPECT_EQ(HoleThrough(tiny)->circle.from().a_rad, 0.1);
+  EXPECT_EQ(HoleThrough(tiny)->circle.from().b_rad, 0.2);
+  // The program's X at a cosine of 0.9 to the axis; its part across the axis lies along Y.
+  hole = {.from = {}, .centre = {}, .normal_point = {1, 0, 0}, .radius_mm = 5.0};
+  hole.program_x = {0.9, std::sqrt(0.19), 0};
+  hole.program_y = {0, 0, 1};
+  ExpectNear(HoleThrough(hole)->circle.from().tip, {0, 5, 0}, 1e-12);
+}
+
+// Numbers of exactly 1e12, times of exactly 1e9 s, gaps of exactly 1e-3 mm. OPT-B.22
+TEST(Tolerance, MovesAtTheBoundItself) {
+  const auto code = [](const PathPiece& path) {
+    MoveCommand move = MoveOn(path);
+    move.speed_fraction = 1.0;
+    const Status status = Planner(StandardMachine()).Append(move);
+    return status ? std::optional<ErrorCode>() : status.error().code;
+  };
+  EXPECT_EQ(code(PathPiece::Line({}, {{5e11, 0, 0}})), std::nullopt);          // at 500 mm/s
+  EXPECT_EQ(code(PathPiece::Line({}, {{1e12, 0, 0}})), ErrorCode::kNoMotion);  // a number, but far
+  EXPECT_EQ(code(PathPiece::Line({{-1e12, 0, 0}}, {})), ErrorCode::kNoMotion);
+  const PathPiece round = PathPiece::Circle({}, {1e11, 0, 0}, {0, 0, 1}, 10.0, 0, 0);
+  ASSERT_EQ(round.length(), 1e12);
+  EXPECT_EQ(code(round), ErrorCode::kNoMotion);
+
+  Planner planner(StandardMachine());
+  ASSERT_TRUE(planner.Append(LineOf({{-10, 0, 0}}, {})));
+  ASSERT_TRUE(planner.Append(LineOf({{1e-3, 0, 0}}, {{10, 0, 0}})));
+  const std::vector<PlannedMotion> motions = Drained(planner);
+  ASSERT_EQ(motions.size(), 2u);
+  EXPECT_EQ(motions[1].path.from().tip, (Vec3{0, 0, 0}));
+}
+
+// Both ends of any piece are those it was given, to the last digit, and so is what lies beyond.
+// motion.md 3
+TEST(PathPiece, EndsAreExact) {
+  const TipPose from{{0.1, 0.2, 0.3}, 0.4, 0.5}, to{{7.7, -3.3, 1.9}, -1.1, 0.7};
+  for (const PathPiece& path : {PathPiece::Line(from, to), PathPiece::Joint(from, to),
+                                PathPiece::ArcThrough(from, {3.1, 4.7, -0.3}, to)->path,
+                                PathPiece::Line(from, {from.tip, 1.3, -0.9})}) {
+    const TipPose end = path.to();
+    EXPECT_EQ(path.At(0.0), from);
+    EXPECT_EQ(path.At(-1.0), from);
+    EXPECT_EQ(path.At(path.length()), end);
+    EXPECT_EQ(path.At(path.length() + 1.0), end);
+  }
 }
 
 }  // namespace

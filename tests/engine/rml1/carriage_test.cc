@@ -79,10 +79,33 @@ TEST(Carriage, LeavesAndReturnsInTwoAxes) {
               ElementsAre("travel 5", "travel 5", "retract 0", "travel 0", "travel 5", "travel 0"));
 }
 
+// RML1-9.54: the way back of a two-axis exit leads across at Z2; a set of three axes or a !ZM in
+// between makes it an ordinary recovery, over the top, 20 mm above Z0.
+TEST(Carriage, ReturnsOverTheTopWhenSomethingElseCameBetween) {
+  const auto heights = [](const std::string& between) {
+    TestRun run(ParametersOf("t1"), "!MC0;PU21000,0;" + between + "PU21000,1000,19000,1000;");
+    run.AdvanceToEnd();
+    std::vector<int> found;  // in work coordinates
+    for (const machine::MoveDone& move : run.seen().moves()) {
+      found.push_back(static_cast<int>(std::lround(move.program_point.z)));
+    }
+    return found;
+  };
+  EXPECT_THAT(heights(""), ElementsAre(500, 500, 500, 500));
+  EXPECT_THAT(heights("!ZM-1400;"), ElementsAre(500, 500, 600, 2000, 2000, 500, 500));
+  EXPECT_THAT(heights("Z21000,500,600;"), ElementsAre(500, 500, 2000, 2000, 500, 500));
+  EXPECT_THAT(heights("@0,900;"), ElementsAre(500, 500, 900, 900, 900));
+}
+
 // RML1-9.30: a turn that catches up is a cut only where the tool stands in the work.
 TEST(Carriage, TurnsInTheWorkOrAboveIt) {
   EXPECT_THAT(UsesOf("V5;!ZE Z-1:X21000A90;", "t1a"), ElementsAre("plunge 5", "cut 5", "cut 5"));
   EXPECT_THAT(UsesOf("V5;!ZE Z0:X21000A90;", "t1a"),
+              ElementsAre("travel 5", "travel 5", "travel 5"));
+  // By itself it is neither a plunge nor drawn back, and at Z0 it touches nothing.
+  EXPECT_THAT(UsesOf("V5;!ZE Z-1:A90:Z-2:A0:Z-1;", "t1a"),
+              ElementsAre("plunge 5", "cut 5", "plunge 5", "cut 5", "retract 5"));
+  EXPECT_THAT(UsesOf("V5;!ZE Z0:A90:X1000A0;", "t1a"),
               ElementsAre("travel 5", "travel 5", "travel 5"));
 }
 

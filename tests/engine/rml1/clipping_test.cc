@@ -63,6 +63,54 @@ TEST(Pieces, CountFacesAsInside) {
   EXPECT_EQ(noisy.all()[0].region, Region::kInside);
 }
 
+// RML1-5A.01: as far beyond a face as counts as on it is inside, at each face and at either end of
+// a line, and no further. A place beyond the bottom or the top is cut off there.
+TEST(Pieces, EndTheToleranceOfAFaceWhereItEnds) {
+  constexpr double kBeyond = CuttingRange::kFaceTolerance;
+  const Point middle{7000, 7000, -3000, 0};
+  struct Face {
+    Point at, past;
+    Region region;
+  };
+  const auto with = [&](double Point::*axis, double value) {
+    Point p = middle;
+    p.*axis = value;
+    return p;
+  };
+  const auto face = [&](double Point::*axis, double value, double outward, Region region) {
+    return Face{with(axis, value + outward * kBeyond), with(axis, value + outward), region};
+  };
+  const Face faces[] = {face(&Point::x, 0.0, -1.0, Region::kOutside),
+                        face(&Point::x, 20000.0, 1.0, Region::kOutside),
+                        face(&Point::y, 0.0, -1.0, Region::kOutside),
+                        face(&Point::y, 15000.0, 1.0, Region::kOutside),
+                        face(&Point::z, -6000.0, -1.0, Region::kBelow),
+                        face(&Point::z, 0.0, 1.0, Region::kAbove)};
+  for (const Face& f : faces) {
+    for (const bool out : {true, false}) {
+      const auto cut = [&](const Point& end) {
+        return out ? Pieces::Cut(kRange, middle, end, kZero)
+                   : Pieces::Cut(kRange, end, middle, kZero);
+      };
+      const Pieces at = cut(f.at);
+      ASSERT_EQ(at.all().size(), 1U);
+      EXPECT_EQ(at.all()[0].region, Region::kInside);
+      const Point& end = out ? at.all()[0].to : at.all()[0].from;
+      EXPECT_LE(DistanceXYZ(end, f.at), 1.01 * kBeyond);  // it may be put on the face itself
+      const Pieces past = cut(f.past);
+      ASSERT_EQ(past.all().size(), 2U);
+      EXPECT_EQ(past.all()[out ? 0 : 1].region, Region::kInside);
+      EXPECT_EQ(past.all()[out ? 1 : 0].region, f.region);
+    }
+    // Along the face, all of it so far beyond.
+    Point along = f.at;
+    (along.x == middle.x ? along.x : along.y) += 500.0;
+    const Pieces beside = Pieces::Cut(kRange, f.at, along, kZero);
+    ASSERT_EQ(beside.all().size(), 1U);
+    EXPECT_EQ(beside.all()[0].region, Region::kInside);
+  }
+}
+
 // RML1-5A.34: angles are shared out along the line.
 TEST(Pieces, ShareTheRotaryAxisAlongTheLine) {
   const Pieces pieces = Pieces::Cut(kRange, {0, 0, 0, 0}, {25000, 0, 0, 100}, kZero);

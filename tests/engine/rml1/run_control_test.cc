@@ -338,6 +338,16 @@ TEST(MillRunControl, KeepsItsBudgets) {
   late.AdvanceToEnd();
   EXPECT_EQ(late->outcome().code, ErrorCode::kCellTimeBudget);
   EXPECT_EQ(late->state().time, whole - 1ns);
+
+  // Up to the end of the budget a caller may advance; what lies behind belongs to the next call.
+  machine::RunSetup watched = SetupOf(ParametersOf("t1"), "PU;PD;PU;");
+  watched.budget.virtual_time = 1s;
+  TestRun run(std::move(watched));
+  EXPECT_EQ(run->Advance(1s), RunPhase::kRunning);
+  EXPECT_EQ(run->state().time, 1s);
+  EXPECT_EQ(run->Advance(1s + 1ns), RunPhase::kFinished);
+  EXPECT_EQ(run->outcome().code, ErrorCode::kCellTimeBudget);
+  EXPECT_EQ(run->state().time, 1s);
 }
 
 // Single steps and a breakpoint halt between commands.
