@@ -68,6 +68,7 @@ struct RunSetup {
   std::string machine_state{};                            // from SaveMachine; empty: a new machine
   Mode mode = Mode::kCycle;
   double override_percent = 100.0;
+  // Where it is not given, what machine_state kept holds; step 0 switches that off.
   std::optional<ProgramStep> breakpoint{};  // halt after this step
   std::optional<ProgramStep> simul{};       // dry run up to this step
   InputScript inputs{};
