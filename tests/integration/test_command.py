@@ -152,17 +152,17 @@ class Local(unittest.TestCase):
             return json.loads(done.stdout)
 
         def seconds(*words):
-            return report(*words).get("cycleTimeS", 0.0)
+            return report(*words)["total"]["times"]["cycleS"]
 
         self.assertEqual(seconds("--simul", "1/9"), 0.0)  # that step is never reached
         self.assertEqual(seconds("--state-in", state), 0.0)
         self.assertEqual(seconds("--state-in", state, "--simul", "off"), 5.0)
         self.assertEqual(seconds("--state-in", state), 5.0)
-        self.assertEqual(seconds("--state-in", state, "--simul", "1/1"), 0.0)  # reached: over
+        self.assertEqual(seconds("--state-in", state, "--simul", "1/2"), 0.0)  # reached: over
         self.assertEqual(seconds("--state-in", state), 5.0)
 
         def halts(*words):
-            return int(report(*words).get("halts", 0))
+            return int(report(*words)["halts"])
 
         self.assertEqual(halts("--break", "1/1"), 1)
         self.assertEqual(halts("--state-in", state), 1)
