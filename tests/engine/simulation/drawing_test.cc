@@ -15,11 +15,11 @@
 #include "tests/engine/simulation/laser_shape.h"
 #include "tests/engine/simulation/xml_check.h"
 
-// Whole pages against drawings/: where each line, text and colour stands is decided by eye, and what
-// was agreed on is kept there as a drawing that any browser shows. A drawing that is to look
-// different is written anew by the failing test, looked at, and put in the place of the old one. What
-// a page has to say and to measure has tests of its own in picture_test, picture_view_test and
-// plot_test.
+// Whole pages against drawings/, so that no line, text or colour moves unseen: the same bytes on every
+// machine. Where they stand is a matter of taste that no rule decides; what a page has to say and to
+// measure has tests of its own in picture_test, picture_view_test, plot_test and
+// path_difference_test. A page that is to look different is written anew by the failing test, looked
+// at, and put in the place of the old one.
 namespace rmlcell::simulation {
 namespace drawings {
 

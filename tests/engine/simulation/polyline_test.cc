@@ -39,7 +39,7 @@ TEST(Polyline, ASwingIsCutAsTheToleranceAllows) {
       motion::PathPiece::Joint({{0, 0, 300}, 0.0, 0.0}, {{0, 0, 300}, 0.0, 4.0});
   for (const double tolerance : {0.01, 0.5, 20.0}) {
     std::size_t counts[2] = {};
-    for (const std::size_t half : {0u, 1u}) {
+    for (const int half : {0, 1}) {
       const PathPart part{path, head, 0.5 * half * path.length(), 0.5 * (half + 1) * path.length()};
       double before = part.from;
       motion::Vec3 from = TipAt(path, head, before);
