@@ -36,11 +36,12 @@ void DropFindings(const std::vector<Diagnostic>& told, v1::RunReport& report) {
 }
 
 Result<v1::StepPlace> ParseStepPlace(const std::string& text) {
+  if (text == "off") return v1::StepPlace();
   const std::size_t slash = text.find('/');
   const auto program = slash == std::string::npos ? std::optional<long long>(0) : ParseInteger(text.substr(0, slash));
   const auto step = ParseInteger(slash == std::string::npos ? text : text.substr(slash + 1));
   if (!program || !step || *program < 0 || *program > 99 || (slash != std::string::npos && *program < 1) || *step < 1 || *step > 1'000'000'000) {
-    return Error{ErrorCode::kCellUsage, "'" + text + "': write PROGRAM/STEP, such as 45/7", {}};
+    return Error{ErrorCode::kCellUsage, "'" + text + "': write PROGRAM/STEP, such as 45/7, or off", {}};
   }
   v1::StepPlace place;
   place.set_program(static_cast<int>(*program));

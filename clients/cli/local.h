@@ -29,8 +29,8 @@ struct SimulateOptions {
   std::string inputs_file;
   std::string mode = "cycle";
   double override_percent = 100.0;
-  std::string simul;       // "P/S"
-  std::string breakpoint;  // "P/S"
+  std::string simul;       // "P/S" or "off"
+  std::string breakpoint;  // "P/S" or "off"
   std::string budget;      // "steps=N,time=S"
   std::string variables;   // "VR[0..9],VI[99]"
   std::string svg;

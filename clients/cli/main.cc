@@ -100,8 +100,8 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
                      "external inputs and keys over time, a line each: 0.5 IL[20] = 1");
     verb->add_option("--mode", options->mode, "cycle (START given once), remote, single, repeat");
     verb->add_option("--override", options->override_percent, "feed override, percent");
-    verb->add_option("--simul", options->simul, "P/S: dry run up to step S of program P");
-    verb->add_option("--break", options->breakpoint, "P/S: halt after step S of program P");
+    verb->add_option("--simul", options->simul, "P/S: dry run up to step S of program P; off");
+    verb->add_option("--break", options->breakpoint, "P/S: halt after step S of program P; off");
     verb->add_option("--budget", options->budget,
                      "steps=N,time=SECONDS: end the run when it needs more");
     verb->add_option("--vars", options->variables, "variables to show at the end: VR[0..9],VI[99]");

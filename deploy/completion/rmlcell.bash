@@ -94,6 +94,7 @@ _rmlcell_values() {
     --profile)
       _rmlcell_offer standard mc-1000ipm pw-1993 efa-51 t1 t1a t1n t1s t1f srm-20 mdx-15 mdx-20 mdx-40a \
         mdx-40a-rotary mdx-50 mdx-540 pnc-3200 ;;
+    --simul | --break) _rmlcell_offer off ;;
     --mode) _rmlcell_offer cycle remote single repeat ;;
     --kind) _rmlcell_offer simulate check run ;;
     --form) _rmlcell_offer source object executable listing ;;

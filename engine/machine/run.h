@@ -68,8 +68,8 @@ struct RunSetup {
   std::string machine_state{};                            // from SaveMachine; empty: a new machine
   Mode mode = Mode::kCycle;
   double override_percent = 100.0;
-  std::optional<ProgramStep> breakpoint{};  // halt after this step
-  std::optional<ProgramStep> simul{};       // dry run up to this step
+  std::optional<ProgramStep> breakpoint{};  // halt after this step; step 0 ends the kept one
+  std::optional<ProgramStep> simul{};       // dry run up to this step; step 0 as above
   InputScript inputs{};
   // SIMULATE and CHECK: a motion that leaves the travel of an axis is told as an error, and the run
   // goes on as if the axis could, so that one run tells of all of them; it ends as failed. False,

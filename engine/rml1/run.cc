@@ -51,7 +51,7 @@ class MillRun::Listener final : public DeviceListener {
 
 Result<std::unique_ptr<MillRun>> MillRun::Make(machine::RunSetup setup,
                                                machine::RunObserver& observer) {
-  if (setup.simul) {
+  if (setup.simul && setup.simul->step > 0) {
     return Error{ErrorCode::kCellUnimplemented, "a mill has no dry run up to a step", {}};
   }
   if (setup.mode == machine::Mode::kRepeat) {

@@ -10,9 +10,9 @@ namespace {
 
 using motion::Vec3;
 
-constexpr double kMargin = 0.06;        // around what is shown, of the larger extent
+constexpr double kMargin = 0.06;        // around what is shown, of the larger extent: a line gets room
 constexpr double kWholeIfWithin = 1.8;  // the path is shown whole when at most this much larger
-constexpr double kThinnest = 0.04;      // of the larger extent: a line gets some room around it
+constexpr double kThinnest = 0.04;      // of the largest extent: a panel counts as this at least
 constexpr double kSmallest_mm = 0.05;
 constexpr double kGap_px = 64.0;  // between panels: the rulers of the next one
 constexpr double kPanelMin_px = 230.0;
@@ -21,13 +21,6 @@ constexpr double kPanelHeightMax_px = 900.0;  // of all rows
 Vec3 Unit(const Vec3& v) {
   const double length = Norm(v);
   return length > 0.0 ? v * (1.0 / length) : Vec3{};
-}
-
-void Widen(double& low, double& high, double least) {
-  const double lacking = 0.5 * (least - (high - low));
-  if (lacking <= 0.0) return;
-  low -= lacking;
-  high += lacking;
 }
 
 // Shares the room among two rows or columns by what they need, but leaves each its least.
@@ -125,7 +118,8 @@ PanelLayout LayOut(const std::vector<ViewFrame>& frames, const machine::Box& box
       }
       if (axial) rows[k / 2] = std::max(rows[k / 2], extents[k].height());
     }
-    const double largest = std::max({columns[0], columns[1], rows[0], rows[1]});
+    // Views in space alone need nothing in particular.
+    const double largest = std::max({columns[0], columns[1], rows[0], rows[1], kSmallest_mm});
     for (double& side : columns) side = std::max(side, kThinnest * largest);
     const auto [first, second] = Share(area.width - kGap_px, columns[0], columns[1]);
     const double scale = std::min(first / columns[0], second / columns[1]);
@@ -176,9 +170,6 @@ machine::Box BoxToShow(const machine::Box& all, const machine::Box& cut,
   const double margin = kMargin * largest;
   box.Add(box.min - Vec3{margin, margin, margin});
   box.Add(box.max + Vec3{margin, margin, margin});
-  Widen(box.min.x, box.max.x, kThinnest * largest);
-  Widen(box.min.y, box.max.y, kThinnest * largest);
-  Widen(box.min.z, box.max.z, kThinnest * largest);
   return box;
 }
 

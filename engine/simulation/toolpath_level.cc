@@ -54,7 +54,6 @@ void ToolpathLevel::Follow(const ToolpathRun& run, const ToolpathPoint* points) 
     Close();
     writer_.Open(run, points[0]);
     anchor_ = points[0];
-    last_ = {points[0], run.start_us};
     moved_ = false;
     half_angle_rad_ = -1.0;
     farthest_um_ = 0.0;

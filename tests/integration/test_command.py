@@ -141,6 +141,37 @@ class Local(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertGreater(state.stat().st_size, 0)
 
+    # OPT-6.08, OPT-6.14: breakpoint and SIMUL stay in the machine for the next run; off ends that.
+    def test_the_kept_state_holds_breakpoint_and_simul_until_they_are_switched_off(self):
+        part = self.file("1.S", "DELAY 5.\nVI[2] = 1\n")
+        state = self.folder / "state"
+
+        def report(*words):
+            done = run("simulate", part, "--json", "--state-out", state, *words)
+            self.assertIn(done.returncode, (0, 1), done.stderr)
+            return json.loads(done.stdout)
+
+        def seconds(*words):
+            return report(*words)["total"]["times"]["cycleS"]
+
+        self.assertEqual(seconds("--simul", "1/9"), 0.0)  # that step is never reached
+        self.assertEqual(seconds("--state-in", state), 0.0)
+        self.assertEqual(seconds("--state-in", state, "--simul", "off"), 5.0)
+        self.assertEqual(seconds("--state-in", state), 5.0)
+        self.assertEqual(seconds("--state-in", state, "--simul", "1/2"), 0.0)  # reached: over
+        self.assertEqual(seconds("--state-in", state), 5.0)
+
+        def halts(*words):
+            return int(report(*words)["halts"])
+
+        self.assertEqual(halts("--break", "1/1"), 1)
+        self.assertEqual(halts("--state-in", state), 1)
+        self.assertEqual(halts("--state-in", state, "--break", "off"), 0)
+        self.assertEqual(halts("--state-in", state), 0)
+        mill = self.file("a.rml", SQUARE)
+        self.assertEqual(run("simulate", mill, "--break", "off", "--simul", "off").returncode, 0)
+        self.assertEqual(run("simulate", part, "--break", "on").returncode, 2)
+
     def test_a_machine_file_whose_values_do_not_fit_together_is_refused(self):
         for family, name, low, high in (("optimo", "a.S", "TRAVEL_X_MIN", "TRAVEL_X_MAX"), ("rml1", "a.rml", "X_MIN", "X_MAX")):
             program = self.file(name, "DELAY 1.\n" if family == "optimo" else "PU;")

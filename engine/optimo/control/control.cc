@@ -12,6 +12,14 @@ namespace {
 
 constexpr std::uint64_t kUnlimitedSteps = std::numeric_limits<std::uint64_t>::max();
 
+// What a run sets replaces what the machine kept; step 0 switches it off.
+void Replace(std::optional<machine::ProgramStep>& kept,
+             const std::optional<machine::ProgramStep>& set) {
+  if (!set) return;
+  kept = set;
+  if (set->step == 0) kept.reset();
+}
+
 }  // namespace
 
 Loaded Load(Executable executable) {
@@ -42,9 +50,9 @@ Control::Control(OptimoParameters parameters, machine::RunSetup setup,
   s_.mode = setup_.mode;
   s_.override_percent = setup_.override_percent;
   // What is set for this run replaces what the machine kept, and is kept like it (OPT-6.08, 6.14).
-  if (setup_.breakpoint) s_.machine.breakpoint = setup_.breakpoint;
+  Replace(s_.machine.breakpoint, setup_.breakpoint);
   s_.breakpoint = s_.machine.breakpoint;
-  if (setup_.simul) s_.machine.simul = setup_.simul;
+  Replace(s_.machine.simul, setup_.simul);
   if (s_.machine.simul) s_.simulated = {.active = true, .until = *s_.machine.simul};
   s_.machine.simul.reset();
   StartMain();

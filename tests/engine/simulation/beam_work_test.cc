@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -82,13 +83,65 @@ TEST(BeamWork, TimeByPower) {
   BeamWork beam(kWatts, kSpeedMax);
   const motion::PathLimits limits{.speed = 60.0, .acceleration = 100.0};
   const auto profile = motion::SpeedProfile::Span(96.0, 0.0, 0.0, limits);
-  beam.Moving(profile, 0.0, profile.duration_s(), 1.0, {.percent_per_mm_s = 1.0});
+  // The bounds at 25 and 50 mm/s are those of a class of speed, too: 30 % on the ramps, 60 % between.
+  EXPECT_NEAR(beam.Moving(profile, 0.0, profile.duration_s(), 1.0, {.percent_per_mm_s = 1.0}),
+              kWatts * (1.2 * 0.3 + 1.0 * 0.6), 1e-9);
   const BeamHistogram histogram = beam.Histogram(FromSeconds(2.2));
   for (std::size_t bin = 0; bin < 12; ++bin) {
     EXPECT_NEAR(ToSeconds(histogram.by_power[bin]), 0.1, 1e-8) << bin;
   }
   EXPECT_NEAR(ToSeconds(histogram.by_power[12]), 1.0, 1e-8);
   EXPECT_EQ(histogram.by_power[13], SimTime::zero());
+}
+
+// Bounds of classes: the power of a class begins at its lower bound, 100 % belongs to the last one,
+// what lies outside to the ends; a speed of 0 and a machine without a known highest speed to class 0.
+TEST(BeamWork, ClassesBeginAtTheirLowerBound) {
+  const auto power_class = [](double percent) {
+    BeamWork beam(kWatts, kSpeedMax);
+    const double energy = beam.Standing(2.0, percent);
+    EXPECT_NEAR(energy, kWatts * 2.0 * std::clamp(percent, 0.0, 100.0) / 100.0, 1e-9) << percent;
+    const BeamHistogram histogram = beam.Histogram(FromSeconds(2.0));
+    EXPECT_EQ(histogram.by_speed[0], FromSeconds(2.0));
+    return std::ranges::find(histogram.by_power, FromSeconds(2.0)) - histogram.by_power.begin();
+  };
+  EXPECT_EQ(power_class(-5.0), 0);
+  EXPECT_EQ(power_class(4.99), 0);
+  EXPECT_EQ(power_class(5.0), 1);
+  EXPECT_EQ(power_class(94.99), 18);
+  EXPECT_EQ(power_class(95.0), 19);
+  EXPECT_EQ(power_class(100.0), 19);
+  EXPECT_EQ(power_class(130.0), 19);
+  const auto speed_class = [](double speed, double speed_max) {
+    BeamWork beam(kWatts, speed_max);
+    const auto steady = motion::SpeedProfile::Steady(speed * 2.0, speed);
+    beam.Moving(steady, 0.0, 2.0, 1.0, {.constant_percent = 50.0});
+    const BeamHistogram histogram = beam.Histogram(FromSeconds(2.0));
+    return std::ranges::find(histogram.by_speed, FromSeconds(2.0)) - histogram.by_speed.begin();
+  };
+  EXPECT_EQ(speed_class(1.0, kSpeedMax), 1);
+  EXPECT_EQ(speed_class(26.0, kSpeedMax), 2);
+  EXPECT_EQ(speed_class(474.0, kSpeedMax), 19);
+  EXPECT_EQ(speed_class(476.0, kSpeedMax), 20);
+  EXPECT_EQ(speed_class(600.0, kSpeedMax), 20);
+  EXPECT_EQ(speed_class(26.0, 0.0), 0);
+}
+
+// A power that falls with the speed, as a negative slope makes it: 80 % at rest, none from 8 mm/s
+// on. On a ramp of 1 s to 10 mm/s each class of 5 % takes 0.05 s, and the last 0.2 s have none.
+TEST(BeamWork, APowerThatFallsWithTheSpeed) {
+  BeamWork beam(kWatts, kSpeedMax);
+  const auto profile =
+      motion::SpeedProfile::Span(10.0, 0.0, 0.0, {.speed = 10.0, .acceleration = 10.0});
+  EXPECT_NEAR(beam.Moving(profile, 0.0, 2.0, 1.0,
+                          {.constant_percent = 80.0, .percent_per_mm_s = -10.0}),
+              kWatts * 2.0 * 0.8 * 0.4, 1e-9);
+  const BeamHistogram histogram = beam.Histogram(FromSeconds(2.0));
+  EXPECT_NEAR(ToSeconds(histogram.by_power[0]), 0.1 + 0.4, 1e-8);
+  for (std::size_t bin = 1; bin < 16; ++bin) {
+    EXPECT_NEAR(ToSeconds(histogram.by_power[bin]), 0.1, 1e-8) << bin;
+  }
+  EXPECT_EQ(histogram.by_power[16], SimTime::zero());
 }
 
 // A tip that stands while A and B turn gets the power of speed 0.

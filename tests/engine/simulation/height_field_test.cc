@@ -158,6 +158,88 @@ TEST(HeightField, IsTheSameInAnyOrderAndByAnyRows) {
   }
 }
 
+// Where a block lies makes no difference: one that begins elsewhere is cut there in the same way.
+TEST(HeightField, LiesWhereItsStockBegins) {
+  Stock moved = kPlate;  // by binary fractions, so that all digits stay
+  moved.x_min -= 32.0, moved.x_max -= 32.0, moved.y_min += 64.0, moved.y_max += 64.0;
+  moved.bottom += 8.0, moved.top += 8.0;
+  const Vec3 by{-32.0, 64.0, 8.0};
+  HeightField here = Field(kPlate), there = Field(moved);
+  EXPECT_EQ(there.columns(), 80u);
+  EXPECT_EQ(there.rows(), 48u);
+  for (const auto& [from, to] : {std::pair{Vec3{3, 4, -1}, Vec3{12, 7.5, -2}},
+                                 std::pair{Vec3{16, 10, -3}, Vec3{16, 3, -3}},
+                                 std::pair{Vec3{18, 9, 1}, Vec3{18, 9, -4}}}) {
+    for (const MillTool& tool : {kFlat, kBall, kVee}) {
+      EXPECT_NEAR(there.DepthOf(tool, from + by, to + by), here.DepthOf(tool, from, to), 1e-5);
+      here.Cut(tool, from, to);
+      there.Cut(tool, from + by, to + by);
+    }
+  }
+  for (std::size_t k = 0; k < here.heights().size(); ++k) {
+    ASSERT_NEAR(there.heights()[k], here.heights()[k] + 8.0f, 1e-5) << k;
+  }
+  EXPECT_NEAR(there.removed_mm3(), here.removed_mm3(), 1e-3);
+  EXPECT_GT(here.removed_mm3(), 10.0);
+}
+
+// 3 mm are thirty cells of 0.1, and a cell begun is a cell; a block smaller than one has one.
+TEST(HeightField, CellsCoverTheBlock) {
+  const auto cells = [](double width, double cell) {
+    return Field({.x_max = width, .y_max = 1.0, .bottom = -1.0, .top = 0.0, .cell = cell}).columns();
+  };
+  EXPECT_EQ(cells(3.0, 0.1), 30u);
+  EXPECT_EQ(cells(3.01, 0.1), 31u);
+  EXPECT_EQ(cells(0.01, 1.0), 1u);
+  const Stock most{.x_max = 8192.0, .y_max = 8192.0, .bottom = -1.0, .top = 0.0, .cell = 1.0};
+  EXPECT_TRUE(CheckStock(most).ok());  // 1 << 26 cells
+  Stock more = most;
+  more.x_max = 8193.0;
+  EXPECT_FALSE(CheckStock(more).ok());
+}
+
+// Each side of a block has an extent, each edge a finite place.
+TEST(HeightField, RefusesEachSideOfABlock) {
+  EXPECT_TRUE(CheckStock(kPlate).ok());
+  for (double Stock::*const edge : {&Stock::x_min, &Stock::x_max, &Stock::y_min, &Stock::y_max,
+                                    &Stock::bottom, &Stock::top, &Stock::cell}) {
+    Stock stock = kPlate;
+    stock.*edge = HUGE_VAL;
+    EXPECT_FALSE(CheckStock(stock).ok());
+    stock.*edge = -HUGE_VAL;
+    EXPECT_FALSE(CheckStock(stock).ok());
+  }
+  for (const auto& [low, high] : {std::pair{&Stock::x_min, &Stock::x_max},
+                                  std::pair{&Stock::y_min, &Stock::y_max},
+                                  std::pair{&Stock::bottom, &Stock::top}}) {
+    Stock stock = kPlate;
+    stock.*high = stock.*low;
+    EXPECT_FALSE(CheckStock(stock).ok());
+  }
+  Stock stock = kPlate;
+  stock.cell = -1.0;
+  EXPECT_FALSE(CheckStock(stock).ok());
+}
+
+// Both sides of each limit of a tool.
+TEST(MillTool, LimitsOfATool) {
+  const auto vee = [](double half_angle, double tip) {
+    return CheckTool({.shape = Shape::kVee,
+                      .radius_mm = 1.0,
+                      .half_angle_rad = half_angle,
+                      .tip_radius_mm = tip})
+        .ok();
+  };
+  EXPECT_TRUE(vee(0.001, 0.0));
+  EXPECT_FALSE(vee(-0.001, 0.0));
+  EXPECT_TRUE(vee(0.5 * kPi - 0.001, 0.0));
+  EXPECT_FALSE(vee(0.5 * kPi + 0.001, 0.0));
+  EXPECT_TRUE(vee(0.5, 1.0));
+  EXPECT_FALSE(vee(0.5, -0.001));
+  EXPECT_FALSE(CheckTool({.radius_mm = -1.0}).ok());
+  EXPECT_FALSE(CheckTool({.radius_mm = HUGE_VAL}).ok());
+}
+
 TEST(HeightField, TellsHowDeepAToolWouldGo) {
   HeightField field = Field(kPlate);
   EXPECT_EQ(field.DepthOf(kFlat, {2, 6, 1}, {18, 6, 1}), 0.0);

@@ -92,6 +92,25 @@ TEST(MotionPeaks, CurveOfACorner) {
   EXPECT_NEAR(acceleration, 2500.0 * bend / 4.050462937, 1e-3);
 }
 
+// The axes of a mill go as the tip does round the bend of a chain, and its rotary axis as A: no other
+// axis moves.
+TEST(MotionPeaks, BendOfAMill) {
+  const auto motions = PlannedCorner({{0, 0, 0}}, {{100, 0, 0}}, {{100, 100, 0}});
+  for (std::size_t k = 1; k <= 2; ++k) {
+    const MotionPeaks peaks = Whole(motions[k], false);
+    EXPECT_NEAR(peaks.tip_speed, 50.0, 1e-6);
+    EXPECT_NEAR(peaks.axis_speed[k - 1], 50.0, 1e-6);  // along X into it, along Y out of it
+    EXPECT_NEAR(peaks.axis_speed[2], 0.0, 1e-9);
+    for (const std::size_t rotary : {3u, 4u}) {
+      EXPECT_EQ(peaks.axis_speed[rotary], 0.0);
+      EXPECT_EQ(peaks.axis_acceleration[rotary], 0.0);
+      EXPECT_EQ(peaks.axis_jerk[rotary], 0.0);
+    }
+    EXPECT_LE(peaks.axis_acceleration[0], peaks.tip_acceleration * (1 + 1e-9));
+    EXPECT_GT(peaks.axis_acceleration[0], 0.3 * peaks.tip_acceleration);
+  }
+}
+
 // COORD ROBOT, B turns at 1 rad/s about a standing column: the tip goes at 300 mm/s on a circle,
 // and is accelerated by w2 L = 300 mm/s2 towards the column.
 TEST(MotionPeaks, TipIsSwungInRobotCoordinates) {

@@ -119,6 +119,43 @@ TEST(PathSketch, ToolDirectionsAreBounded) {
   EXPECT_NEAR(sketch.tools()[0].towards_head.y, -1.0, 1e-12);  // u at A = 0, B = pi/2
 }
 
+// Only a head has a direction, and only where it cuts.
+TEST(PathSketch, DirectionsAreOfCutsWithAHead) {
+  for (const bool five_axis : {true, false}) {
+    for (const bool beam_on : {true, false}) {
+      machine::MachineShape shape;
+      shape.five_axis = five_axis;
+      shape.laser_watts = 1500.0;
+      PathSketch sketch(shape, 1000);
+      motion::PlannedMotion planned;
+      planned.path = LineFrom({0, 0, 0}, {1, 0, 0});
+      sketch.Add({.use = MotionUse::kCut, .motion = &planned, .travelled = 1.0, .beam_on = beam_on});
+      EXPECT_EQ(sketch.tools().size(), five_axis && beam_on ? 1u : 0u);
+      EXPECT_EQ(sketch.elements()[0].cuts, beam_on);
+    }
+  }
+}
+
+// A mill cuts with its tool in the material, not on its way out of it.
+TEST(PathSketch, WhatAMillCuts) {
+  PathSketch sketch({}, 1000);
+  AddLine(sketch, {0, 0, 0}, {1, 0, 0}, MotionUse::kTravel);
+  AddLine(sketch, {1, 0, 0}, {1, 0, -1}, MotionUse::kPlunge);
+  AddLine(sketch, {1, 0, -1}, {1, 0, -2}, MotionUse::kPlunge);  // the same plunge: one dot
+  AddLine(sketch, {1, 0, -2}, {3, 0, -2}, MotionUse::kCut);
+  AddLine(sketch, {3, 0, -2}, {3, 0, 5}, MotionUse::kRetract);
+  AddLine(sketch, {3, 0, 5}, {3, 0, -1}, MotionUse::kPlunge);
+  std::vector<bool> cuts;
+  for (const SketchElement& element : sketch.elements()) cuts.push_back(element.cuts);
+  EXPECT_EQ(cuts, (std::vector<bool>{false, true, true, true, false, true}));
+  EXPECT_EQ(sketch.dots().size(), 2u);
+  EXPECT_EQ(sketch.start(), (Vec3{0, 0, 0}));
+  EXPECT_EQ(sketch.end(), (Vec3{3, 0, -1}));
+  EXPECT_EQ(sketch.cut_box().min, (Vec3{1, 0, -2}));
+  EXPECT_EQ(sketch.cut_box().max, (Vec3{3, 0, 5}));
+  EXPECT_EQ(sketch.box().min, (Vec3{0, 0, -2}));
+}
+
 // Neighbours that go straight on are one; no vertex is farther off than twice the tolerance.
 TEST(MergeStraight, MergesWithinTheTolerance) {
   std::vector<SketchElement> elements;

@@ -321,10 +321,78 @@ TEST(Picture, MillionMovesGiveABoundedPicture) {
   EXPECT_EQ(XmlFault(svg), "");
 }
 
-// Nothing moved: the travel of the machine, and a word.
-TEST(Picture, NothingMoved) { EXPECT_GE(CountOf(SvgOf(Script(), Mill()), ">nothing moved<"), 1u); }
+// Nothing moved: the travel of the machine, and a word; there is no part whose place could be shown.
+TEST(Picture, NothingMoved) {
+  const std::string svg = SvgOf(Script(), Mill());
+  EXPECT_EQ(CountOf(svg, ">nothing moved<"), 1u);
+  EXPECT_EQ(CountOf(svg, ">Place on the machine<"), 0u);
+  EXPECT_EQ(CountOf(SvgOf(SomeMilling(), Mill()), ">Place on the machine<"), 1u);
+  EXPECT_EQ(CountOf(SvgOf(SomeMilling(), {}), ">Place on the machine<"), 0u);
+}
+
+// More than 300 dots are drawn small: both sides. Those at the same place are one.
+TEST(Picture, ManyDotsAreSmall) {
+  const auto drawn = [](int count, double apart) {
+    Script script;
+    for (int k = 0; k < count; ++k) {
+      const double x = apart * (k % 20), y = 4.0 * (k / 20);
+      script.Line({x, y, 0}, {x, y, -1}, {.use = MotionUse::kPlunge});
+      script.Line({x, y, -1}, {x, y, 0}, {.use = MotionUse::kRetract});
+    }
+    return SvgOf(script, {});
+  };
+  const std::string few = drawn(300, 4.0);
+  EXPECT_EQ(CountOf(few, "r=\"2.4\" fill=\"#ffffff\" stroke=\"#e8590c\" stroke-width=\"1.2\""), 300u + 1u);
+  const std::string many = drawn(301, 4.0);
+  EXPECT_EQ(CountOf(many, "r=\"1.1\" fill=\"#ffffff\" stroke=\"#e8590c\" stroke-width=\".6\""), 301u);
+  EXPECT_EQ(CountOf(many, "r=\"2.4\""), 1u);  // of the legend
+  EXPECT_EQ(CountOf(drawn(40, 0.0), "r=\"2.4\""), 2u + 1u);
+}
+
+// At most 120 directions of the head: of 120 cuts all, of 121 each second one.
+TEST(Picture, SomeDirectionsOfTheHeadAreShown) {
+  const auto shown = [](int cuts) {
+    Script script;
+    for (int k = 0; k < cuts; ++k) {
+      script.Line({1.0 * k, 0, 0}, {k + 1.0, 0, 0}, {.use = MotionUse::kCut, .beam_on = true});
+    }
+    const std::string svg =
+        SvgOf(script, Laser(), Completed(), {.views = {PictureView::kDirection}});
+    const std::size_t begin = svg.find("<g stroke=\"#0f8a5f\"");
+    return CountOf(svg.substr(begin, svg.find("</g>", begin) - begin), "<line");
+  };
+  EXPECT_EQ(shown(120), 120u);
+  EXPECT_EQ(shown(121), 61u);
+}
+
+// Neither narrower than 640 px nor wider than 8192.
+TEST(Picture, WidthIsLimited) {
+  for (const auto& [asked, made] : {std::pair{1, 640}, {641, 641}, {8191, 8191}, {9000, 8192}}) {
+    const std::string svg = SvgOf(Script(), Mill(), Completed(), {.width_px = asked});
+    EXPECT_EQ(CountOf(svg, "viewBox=\"0 0 " + std::to_string(made) + " "), 1u) << asked;
+  }
+}
+
+// Browsers draw long paths slowly: a thousand segments in one.
+TEST(Picture, LongPathsAreDivided) {
+  const auto paths = [](int lines) {
+    Script script;
+    for (int k = 0; k < lines; ++k) {
+      script.Line({2.0 * k, k % 2 * 900.0, 0}, {2.0 * k + 2.0, (k + 1) % 2 * 900.0, 0},
+                  {.use = MotionUse::kCut});
+    }
+    return CountOf(SvgOf(script, {}), "<path");
+  };
+  EXPECT_EQ(paths(1000), 1u);
+  EXPECT_EQ(paths(1001), 2u);
+}
 
 TEST(DurationText, ForPeople) {
+  EXPECT_EQ(DurationText(FromSeconds(59.999)), "59.999 s");
+  EXPECT_EQ(DurationText(FromSeconds(69.96)), "1 min 10.0 s");
+  EXPECT_EQ(DurationText(FromSeconds(3599.9)), "59 min 59.9 s");
+  EXPECT_EQ(DurationText(FromSeconds(3600.0)), "1 h 00 min 00 s");
+  EXPECT_EQ(DurationText(FromSeconds(36610.6)), "10 h 10 min 11 s");
   EXPECT_EQ(DurationText(FromSeconds(12.3456)), "12.346 s");
   EXPECT_EQ(DurationText(FromSeconds(245.17)), "4 min 05.2 s");
   EXPECT_EQ(DurationText(FromSeconds(60.0)), "1 min 00.0 s");

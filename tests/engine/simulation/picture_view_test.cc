@@ -49,6 +49,96 @@ TEST(PictureView, OneViewFits) {
   EXPECT_LT(panel.Project({50, 50, 0}).y, middle.y);  // Y goes up
 }
 
+// Both limits of the height of a view: twice 230 px, and 900.
+TEST(PictureView, OneViewIsNeitherFlatNorEndless) {
+  const auto height = [](double y) {
+    const PanelLayout layout =
+        LayOut({FrameOf(PictureView::kXY, {})}, BoxFrom({0, 0, 0}, {100, y, 1}), {10, 20, 800, 0});
+    EXPECT_EQ(layout.height, layout.panels[0].rect.height);
+    return layout.height;
+  };
+  EXPECT_NEAR(height(1.0), 460.0, 1e-9);
+  EXPECT_NEAR(height(60.0), 480.0, 1e-9);
+  EXPECT_NEAR(height(112.0), 896.0, 1e-9);
+  EXPECT_NEAR(height(500.0), 900.0, 1e-9);
+}
+
+// 1000 px less the gap of 64 are shared by need, but a column or row has 230 px at least, and a row
+// 648 at most (0.72 of 900); a view that is all but a line counts as 4 % of the largest.
+TEST(PictureView, RoomIsSharedByNeed) {
+  const std::vector<ViewFrame> four = {
+      FrameOf(PictureView::kXY, {}), FrameOf(PictureView::kDirection, {1, -1, 1}),
+      FrameOf(PictureView::kXZ, {}), FrameOf(PictureView::kYZ, {})};
+  const auto expect = [](const ScreenRect& rect, double x, double y, double width, double height) {
+    EXPECT_NEAR(rect.x, x, 1e-9);
+    EXPECT_NEAR(rect.y, y, 1e-9);
+    EXPECT_NEAR(rect.width, width, 1e-9);
+    EXPECT_NEAR(rect.height, height, 1e-9);
+  };
+  // X takes 1000 of 1001 mm, so 706 of 936 px: 0.706 px a mm, and all rows are below 230 px.
+  const PanelLayout flat = LayOut(four, BoxFrom({0, 0, 0}, {1000, 1, 1}), {5, 7, 1000, 0});
+  ASSERT_EQ(flat.panels.size(), 4u);
+  expect(flat.panels[0].rect, 5, 7, 706, 230);
+  expect(flat.panels[1].rect, 5 + 770, 7, 230, 230);
+  expect(flat.panels[2].rect, 5, 7 + 294, 706, 230);
+  expect(flat.panels[3].rect, 5 + 770, 7 + 294, 230, 230);
+  EXPECT_NEAR(flat.height, 524.0, 1e-9);
+  EXPECT_NEAR(flat.panels[0].scale, 0.706, 1e-12);
+  EXPECT_NEAR(flat.panels[3].scale, 0.706, 1e-12);
+  // X and Y alike: 468 px each for 100 mm; 1000 mm of Z would be 4680 px, so Z decides the scale.
+  const PanelLayout tall = LayOut({four[2], four[3]}, BoxFrom({0, 0, 0}, {100, 100, 1000}), {0, 0, 1000, 0});
+  expect(tall.panels[0].rect, 0, 0, 468, 648);
+  expect(tall.panels[1].rect, 532, 0, 468, 648);
+  EXPECT_NEAR(tall.height, 648.0, 1e-9);
+  EXPECT_NEAR(tall.panels[0].scale, 0.648, 1e-12);
+  // 300 and 100 mm beside each other: 702 and 234 px, 2.34 px a mm, and so for 100 and 150 mm above.
+  const PanelLayout usual = LayOut(four, BoxFrom({0, 0, 0}, {300, 100, 150}), {0, 0, 1000, 0});
+  expect(usual.panels[1].rect, 766, 0, 234, 234);
+  expect(usual.panels[2].rect, 0, 298, 702, 351);
+  EXPECT_NEAR(usual.height, 234.0 + 64.0 + 351.0, 1e-9);
+  EXPECT_NEAR(usual.panels[0].scale, 2.34, 1e-12);
+  const PanelLayout three = LayOut({four[0], four[1], four[2]}, BoxFrom({0, 0, 0}, {300, 100, 150}), {0, 0, 1000, 0});
+  // No axial view on the right: 12 mm, 4 % of 300, so it has 230 px and 300 mm the other 706.
+  EXPECT_NEAR(three.height, 706.0 / 300.0 * (100.0 + 150.0) + 64.0, 1e-9);
+  // Views in space alone are squares.
+  const PanelLayout space = LayOut({four[1], four[1]}, BoxFrom({0, 0, 0}, {300, 100, 150}), {0, 0, 1000, 0});
+  expect(space.panels[0].rect, 0, 0, 468, 468);
+  expect(space.panels[1].rect, 532, 0, 468, 468);
+}
+
+// What is shown: the whole path, or the cuts where that is more than 1.8 times as large; 6 % of the
+// largest side around it. Without a path the travel, without that a point of 0.05 mm.
+TEST(PictureView, WhatIsShown) {
+  const auto expect = [](const machine::Box& box, const Vec3& low, const Vec3& high) {
+    EXPECT_NEAR(Distance(box.min, low), 0.0, 1e-9);
+    EXPECT_NEAR(Distance(box.max, high), 0.0, 1e-9);
+  };
+  const machine::Box cut = BoxFrom({0, 0, 0}, {100, 0, 0});
+  expect(BoxToShow(BoxFrom({0, 0, 0}, {179, 0, 0}), cut, {}), {-10.74, -10.74, -10.74},
+         {189.74, 10.74, 10.74});
+  expect(BoxToShow(BoxFrom({0, 0, 0}, {181, 0, 0}), cut, {}), {-6, -6, -6}, {106, 6, 6});
+  expect(BoxToShow(BoxFrom({0, 0, 0}, {900, 50, 10}), {}, cut), {-54, -54, -54}, {954, 104, 64});
+  expect(BoxToShow({}, {}, BoxFrom({0, 0, -20}, {100, 50, 0})), {-6, -6, -26}, {106, 56, 6});
+  expect(BoxToShow({}, {}, {}), {-0.003, -0.003, -0.003}, {0.003, 0.003, 0.003});
+}
+
+// Four views at most; a mill is seen from above unless something else is asked for.
+TEST(PictureView, WhichViews) {
+  const auto titles = [](const std::vector<PictureView>& views, bool five_axis) {
+    machine::MachineShape shape;
+    shape.five_axis = five_axis;
+    std::vector<std::string> found;
+    for (const ViewFrame& frame : FramesOf({.views = views}, shape)) found.push_back(frame.title);
+    return found;
+  };
+  using Titles = std::vector<std::string>;
+  EXPECT_EQ(titles({}, false), (Titles{"XY from above"}));
+  EXPECT_EQ(titles({}, true),
+            (Titles{"XY from above", "in space", "XZ from the front", "YZ from the right"}));
+  EXPECT_EQ(titles(std::vector<PictureView>(5, PictureView::kXZ), false).size(), 4u);
+  EXPECT_EQ(titles({PictureView::kYZ}, true), (Titles{"YZ from the right"}));
+}
+
 // Several views: one scale, and the same X above each other, the same Z beside each other.
 TEST(PictureView, ViewsAreInLine) {
   const machine::Box box = BoxFrom({-20, 0, 0}, {180, 90, 60});

@@ -197,6 +197,37 @@ TEST(Plot, MarksHaltsAndErrorsButNoAdvice) {
   EXPECT_NE(svg.find("STOP &lt;now&gt;"), std::string::npos);
 }
 
+// Forty marks at most, of halts and findings together; advice is none.
+TEST(Plot, MarksAreLimited) {
+  for (const bool halts : {true, false}) {
+    Script script;
+    script.Step(1, 1).Line({0, 0, 0}, {10, 0, 0});
+    PlotRecorder recorder({});
+    FakeRun run(script, recorder);
+    run.Advance(kForever);
+    for (int k = 0; k < 41; ++k) {
+      if (halts) {
+        recorder.OnHalt({.at = FromSeconds(0.005 * k), .why = "PAUSE"});
+      } else {
+        recorder.OnDiagnostic(FromSeconds(0.005 * k), {.code = ErrorCode::kSpeedLimited,
+                                                      .severity = Severity::kWarning});
+      }
+    }
+    RunReport report;
+    report.cycle_time = run.state().time;
+    const std::string svg = recorder.Svg(report, {.curves = {PlotCurve::kSpeed}});
+    EXPECT_EQ(CountOf(svg, "stroke-dasharray=\"2 3\""), 40u);
+  }
+}
+
+// Neither narrower than 640 px nor wider than 8192.
+TEST(Plot, WidthIsLimited) {
+  for (const auto& [asked, made] : {std::pair{1, 640}, {641, 641}, {8191, 8191}, {9000, 8192}}) {
+    const std::string svg = PlotRecorder({}).Svg({}, {.width_px = asked});
+    EXPECT_EQ(CountOf(svg, "width=\"" + std::to_string(made) + "\" height="), 1u + 2u) << asked;
+  }
+}
+
 // A hundred thousand short moves: the picture stays small.
 TEST(Plot, IsOfBoundedSizeHoweverLongTheRun) {
   PlotRecorder recorder(Laser());

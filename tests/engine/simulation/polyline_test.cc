@@ -30,5 +30,51 @@ TEST(Polyline, ChordsHaveLimits) {
   EXPECT_EQ(ChordCount(1e9, 1e6, 1e-3), kChordsMax);
 }
 
+// COORD ROBOT: B swings a tip 300 mm below its column, so the way is an arc of R 300. Every place of
+// it is within the tolerance of the polyline, chords of half the tolerance are none, and what is
+// asked of a part of the way does not depend on where the part lies.
+TEST(Polyline, ASwingIsCutAsTheToleranceAllows) {
+  const motion::Head head = motion::GantryHead{.length_mm = 300.0};
+  const motion::PathPiece path =
+      motion::PathPiece::Joint({{0, 0, 300}, 0.0, 0.0}, {{0, 0, 300}, 0.0, 4.0});
+  for (const double tolerance : {0.01, 0.5, 20.0}) {
+    std::size_t counts[2] = {};
+    for (const int half : {0, 1}) {
+      const PathPart part{path, head, 0.5 * half * path.length(), 0.5 * (half + 1) * path.length()};
+      double before = part.from;
+      motion::Vec3 from = TipAt(path, head, before);
+      double worst = 0.0;
+      ForEachVertex(part, tolerance, [&](double s, const motion::Vec3& tip) {
+        EXPECT_GT(s, before);
+        EXPECT_NEAR(Distance(tip, TipAt(path, head, s)), 0.0, 1e-9);
+        const motion::Vec3 middle = TipAt(path, head, 0.5 * (before + s));
+        worst = std::max(worst, Distance(middle, (from + tip) * 0.5));
+        before = s;
+        from = tip;
+        ++counts[half];
+      });
+      EXPECT_EQ(before, part.to);
+      EXPECT_LE(worst, tolerance);
+      EXPECT_GT(worst, tolerance / 6.0);  // halved once too often at most, with a quarter for what lies between
+    }
+    EXPECT_EQ(counts[0], counts[1]) << tolerance;
+  }
+}
+
+// A way that runs past the end of its chord and back is not as near as the line through it: the tip
+// of a whole turn ends where it began.
+TEST(Polyline, AWholeTurnIsNoPoint) {
+  const motion::Head head = motion::GantryHead{.length_mm = 300.0};
+  const motion::PathPiece path =
+      motion::PathPiece::Joint({{0, 0, 300}, 0.0, 0.0}, {{0, 0, 300}, 0.0, kTurn});
+  double way = 0.0;
+  motion::Vec3 from = TipAt(path, head, 0.0);
+  ForEachVertex({path, head, 0.0, path.length()}, 1.0, [&](double, const motion::Vec3& tip) {
+    way += Distance(from, tip);
+    from = tip;
+  });
+  EXPECT_NEAR(way, 300.0 * kTurn, 10.0);
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

@@ -338,6 +338,31 @@ TEST(ReportRecorder, AMoveOfTheMachineIsNotProgrammed) {
   EXPECT_EQ(report.final_position.tip.tip, (Vec3{9, 9, 9}));
 }
 
+// motion.md 8.2: what the beam does counts in the program that does it, and in no other: moving,
+// waiting and standing. 50 % are class 10 of power, 80 % class 16; 10 mm/s of 500 class 1 of speed.
+TEST(ReportRecorder, TheBeamCountsInItsProgram) {
+  const MotionOptions cut{
+      .use = MotionUse::kCut, .beam_on = true, .power = {.constant_percent = 80.0}};
+  Script script;
+  script.Step(1, 1).Line({}, {5, 0, 0}).Signal(Signal::kBeam, 1, 50);
+  script.Wait(WaitKind::kDwell, 1.0, true, 50.0);
+  script.Step(2, 1).Motion(Planned(LineFrom({}, {10, 0, 0}), kSecondRamps), cut);
+  script.Step(1, 2).Line({10, 0, 0}, {5, 0, 0}).Step(2, 2).Wait(WaitKind::kPierce, 0.5, true, 50.0);
+  script.Step(1, 3).Line({5, 0, 0}, {0, 0, 0}).Step(2, 3).Nothing(0.25).Step(2, 4);
+  const RunReport report = ReportOf(script, Laser());
+  const BeamHistogram& first = report.programs.at(1).beam;
+  const BeamHistogram& second = report.programs.at(2).beam;
+  EXPECT_EQ(first.by_power[10], FromSeconds(1.0));
+  EXPECT_EQ(first.by_power[0], SimTime::zero());
+  EXPECT_EQ(first.by_speed[0], FromSeconds(1.0));
+  EXPECT_EQ(second.by_power[16], FromSeconds(2.0));
+  EXPECT_EQ(second.by_power[10], FromSeconds(0.5));
+  EXPECT_EQ(second.by_power[0], FromSeconds(0.25));
+  EXPECT_EQ(second.by_speed[1], FromSeconds(2.0));
+  EXPECT_EQ(second.by_speed[0], FromSeconds(0.75));
+  EXPECT_EQ(report.beam.by_power[10], FromSeconds(1.5));
+}
+
 // A report on the way holds what was told so far and changes nothing of the end.
 TEST(ReportRecorder, ReportOnTheWay) {
   Script script;

@@ -104,6 +104,67 @@ TEST(ToolpathLevel, KeepsTheTurningPointOfAWayBack) {
   EXPECT_EQ(AllPoints(Coarser({back}, 1.0)), back.points);
 }
 
+// A point as far from the anchor as the tolerance is left out, whatever comes; one farther binds.
+TEST(ToolpathLevel, WhatIsNearTheAnchorBindsNothing) {
+  const ToolpathBlock near = OneRun({{0, 0, 0}, {80, 0, 0}, {-10000, 0, 0}});
+  EXPECT_EQ(AllPoints(Coarser({near}, 0.08)),
+            (std::vector<ToolpathPoint>{{0, 0, 0}, {-10000, 0, 0}}));
+  const ToolpathBlock far = OneRun({{0, 0, 0}, {81, 0, 0}, {-10000, 0, 0}});
+  EXPECT_EQ(AllPoints(Coarser({far}, 0.08)), far.points);
+}
+
+// The first point binds the direction by asin(80 / 1000) = 0.0801 rad: one that goes off by 0.07 rad
+// passes it, one by 0.09 rad does not. Both ways, since the cone has two sides.
+TEST(ToolpathLevel, TheConeIsAsWideAsTheTolerance) {
+  for (const double side : {1.0, -1.0}) {
+    const auto kept = [&](double angle) {
+      const auto x = static_cast<std::int32_t>(std::lround(20000.0 * std::cos(angle)));
+      const auto y = static_cast<std::int32_t>(std::lround(side * 20000.0 * std::sin(angle)));
+      return AllPoints(Coarser({OneRun({{0, 0, 0}, {1000, 0, 0}, {x, y, 0}})}, 0.08)).size();
+    };
+    EXPECT_EQ(kept(0.07), 2u);
+    EXPECT_EQ(kept(0.09), 3u);
+  }
+}
+
+// Two cones share what both allow: 0.0801 rad about 0 and asin(80 / 2000) = 0.0400 about 0.06 leave
+// 0.02 to 0.0801; of a cone that lies in another one all is left, of the outer one nothing more.
+TEST(ToolpathLevel, ConesShareWhatBothAllow) {
+  const auto kept = [&](double second, double third) {
+    const auto at = [](double radius, double angle) {
+      return ToolpathPoint{static_cast<std::int32_t>(std::lround(radius * std::cos(angle))),
+                           static_cast<std::int32_t>(std::lround(radius * std::sin(angle))), 0};
+    };
+    return AllPoints(Coarser({OneRun({{0, 0, 0}, {1000, 0, 0}, at(2000, second), at(20000, third)})},
+                             0.08))
+        .size();
+  };
+  EXPECT_EQ(kept(0.06, 0.024), 2u);
+  EXPECT_EQ(kept(0.06, 0.076), 2u);
+  EXPECT_EQ(kept(0.06, 0.016), 3u);
+  EXPECT_EQ(kept(0.06, 0.084), 3u);
+  EXPECT_EQ(kept(-0.06, -0.076), 2u);
+  EXPECT_EQ(kept(-0.06, -0.016), 3u);
+  EXPECT_EQ(kept(0.02, 0.056), 2u);  // the inner one alone: -0.02 to 0.06
+  EXPECT_EQ(kept(0.02, -0.016), 2u);
+  EXPECT_EQ(kept(0.02, 0.064), 3u);
+  EXPECT_EQ(kept(0.02, -0.024), 3u);
+}
+
+// Each point of a joined run is at the time that its share of the way says.
+TEST(ToolpathLevel, TimeGoesOnWithTheWay) {
+  const ToolpathBlock corner = OneRun({{0, 0, 0}, {1000, 0, 0}, {1000, 3000, 0}}, 1, 500, 900);
+  ToolpathBlock after = OneRun({{1000, 3000, 0}, {1000, 3000, 8000}}, 2, 900, 1000);
+  after.runs[0].speed_class = 3;  // not joined
+  const std::vector<ToolpathBlock> coarse = Coarser({corner, after}, 0.08);
+  ASSERT_EQ(coarse.size(), 1u);
+  ASSERT_EQ(coarse[0].runs.size(), 2u);
+  EXPECT_EQ(coarse[0].runs[0].start_us, 500);
+  EXPECT_EQ(coarse[0].runs[0].end_us, 900);
+  EXPECT_EQ(coarse[0].runs[1].start_us, 900);
+  EXPECT_EQ(coarse[0].runs[1].end_us, 1000);
+}
+
 TEST(ToolpathLevel, JoinsStepsAndNothingElse) {
   const ToolpathBlock first = OneRun({{0, 0, 0}, {1000, 0, 0}}, 7, 0, 100);
   ToolpathBlock second = OneRun({{1000, 0, 0}, {2000, 0, 0}}, 8, 100, 300);
