@@ -244,7 +244,7 @@ INSTANTIATE_TEST_SUITE_P(
         Row{"seterr_high", 7505, 2, "VI[2]=10000\nSETERR VI[2]\n"}),
     NameOf);
 
-// Warnings: told at the place, and the run goes on to its end.
+// Warnings: told once at the place, nothing else is told, and the run goes on to its end.
 class OnlyWarns : public ::testing::TestWithParam<Row> {};
 
 TEST_P(OnlyWarns, AtItsPlace) {
@@ -252,6 +252,9 @@ TEST_P(OnlyWarns, AtItsPlace) {
   const Ran ran = RunText(row.text, row.options);
   EXPECT_EQ(ran.outcome.kind, OutcomeKind::kCompleted);
   ExpectTold(row, ran);
+  std::vector<int> told;
+  for (const Diagnostic& finding : ran.findings) told.push_back(Lookup(finding.code).number);
+  EXPECT_EQ(told, std::vector<int>{row.code});
   const Result<MachineState> state = DecodeMachineState(ran.machine_state);
   ASSERT_TRUE(bool(state));
   EXPECT_EQ(state->data.vi[99], 0.0F);
