@@ -14,7 +14,8 @@ export RMLCELL_SHARED=${RMLCELL_SHARED:-$PWD/../shared}
 mkdir -p tests/results build/long
 summary=tests/results/long.txt
 failed=0
-note() { echo "$*" | tee -a "$summary"; }
+stamp="$(git rev-parse --short HEAD 2>/dev/null || echo unknown), $(date -u +%F), $(nproc) cores"
+note() { echo "$* ($stamp)" | tee -a "$summary"; }
 fail() { failed=1; note "FAILED: $*"; }
 
 # The server and its workers are killed in the middle of jobs and submissions.
@@ -134,9 +135,12 @@ mutation() {
   fi
 }
 
-{
-  echo "Long tests of $(git rev-parse --short HEAD 2>/dev/null || echo unknown), $(date -u +%F), $(nproc) cores"
-} >"$summary"
+# What is known of parts that are not run now stays.
+if [ -f "$summary" ]; then
+  kept=$(grep -vE "^(FAILED: )?(${parts// /|})\\b" "$summary" || true)
+  printf '%s' "${kept:+$kept
+}" >"$summary"
+fi
 for part in $parts; do
   case $part in
     kills | crashes | races | fuzz | load | mutation) $part ;;
