@@ -244,6 +244,7 @@ TEST(WorkRules, StartWithTheDoorOpen) {
     EXPECT_EQ(CodeOf(ran), 7410) << text;
     EXPECT_EQ(ran.Count("E7410"), 1) << text;
     EXPECT_EQ(ran.Count("shutter open"), 1) << text;
+    EXPECT_EQ(ran.Count("wait dwell 1.0"), 1) << text;  // time stood still for it since
     EXPECT_NEAR(ran.time_s, 2.0, 1e-9) << text;
   }
 }
