@@ -28,7 +28,6 @@ double Least(Ask ask) {
 double SpeedAllowed(const AxisDerivatives& q, const AxisLimits& axes, const AxisShares& shares) {
   return Least([&](std::size_t i) {
     const double by_speed = shares.speed * axes.speed[i] / std::abs(q.first[i]);
-    if (q.second[i] == 0.0) return by_speed;
     return std::min(by_speed, std::sqrt(0.5 * shares.acceleration * axes.acceleration[i] /
                                         std::abs(q.second[i])));
   });

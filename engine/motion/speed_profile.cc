@@ -293,8 +293,7 @@ double SpeedProfile::TimeWithin(const Phase& phase, double wanted) {
   if (phase.jerk == 0.0) {  // closed: most of most profiles
     const double a = phase.start.acceleration;
     const double root = a == 0.0 ? v : std::sqrt(std::max(v * v + 2.0 * a * wanted, 0.0));
-    return std::min(v + root > 0.0 ? 2.0 * wanted / (v + root) : phase.duration_s,
-                    phase.duration_s);
+    return std::min(2.0 * wanted / (v + root), phase.duration_s);
   }
   const auto travelled = [&](double t) {
     const double speed = v + t * (phase.start.acceleration + 0.5 * t * phase.jerk);

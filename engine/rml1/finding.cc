@@ -113,7 +113,6 @@ SourceSpan LineCounter::At(std::string_view stream, std::int64_t offset, int len
                                      : stream.rfind('\n', static_cast<std::size_t>(wanted - 1));
       line_start_ = before == std::string_view::npos ? 0 : static_cast<std::int64_t>(before) + 1;
     }
-    at_ = wanted;
   }
   while (at_ < wanted) {
     const std::string_view rest =

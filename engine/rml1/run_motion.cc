@@ -51,7 +51,7 @@ bool MillRun::PlanLeg(std::size_t sent_max) {
   while (!s.ahead.NextLeg(s.motion.leg)) {
     if (!s.scout.Read(stream(), halts_, sent_max, s.ahead)) return false;
   }
-  if (s.motion.leg.halts && !(s.ahead.speed() > 0.0)) {  // a STOP before it began to move
+  if (s.motion.leg.halts && !(s.ahead.speed() > 0.0)) {  // at rest for a STOP
     s.busy = Busy::kNothing;
     s.rest_left = true;
   } else {
@@ -106,11 +106,8 @@ void MillRun::EndLeg() {
   if (leg.ends_motion) return EndMotion(end.speed);
   s.tool = ToolAt(leg.ride.path.At(end.s));
   s.ahead.Ride({.length = end.s, .speed = end.speed, .tool = s.tool});
-  s.motion.planned = false;
+  s.motion.planned = false;  // PlanLeg sees when it has come to rest for a STOP
   s.busy_from = s.busy_until = s.now;
-  if (!leg.halts) return;
-  s.busy = Busy::kNothing;
-  s.rest_left = true;
 }
 
 void MillRun::EndMotion(double speed) {

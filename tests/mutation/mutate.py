@@ -2,6 +2,7 @@
 """Changes the meaning of the code in one place, runs the tests of that part, and counts what they notice.
 
     mutate.py [--seed N] [--count 300] [--area NAME ...]   as many changes, the areas in turn
+    mutate.py --area NAME --file PATH                      every change of these sources, whatever the count
     mutate.py --again                                      the survivors of that seed once more
     mutate.py --report                                     what is known of that seed, running nothing
 
@@ -54,12 +55,13 @@ def change_of(place):
     return f"{place.before} => {place.after}"
 
 
-def sequence(area, seed, codes):
+def sequence(area, seed, codes, files):
     """The places of an area in the order in which this seed takes them: first a kind, then a place of it."""
     by_kind = collections.defaultdict(list)
     for folder in AREAS[area].folders:
         for path in sorted((ROOT / folder).glob("*.cc")):
-            for place in places_of(ROOT, str(path.relative_to(ROOT)), codes):
+            name = str(path.relative_to(ROOT))
+            for place in places_of(ROOT, name, codes) if not files or name in files else ():
                 by_kind[place.kind].append(place)
     dice = random.Random(f"{seed} {area}")
     while any(by_kind.values()):
@@ -178,16 +180,17 @@ class Measurement:
 
     def measure(self, areas):
         self.prepare(areas)
-        share = math.ceil(self.options.count / len(areas))
+        share = math.inf if self.options.file else math.ceil(self.options.count / len(areas))
         with concurrent.futures.ThreadPoolExecutor(self.options.jobs) as pool:
             for area in areas:
                 self.measure_area(area, share, pool)
 
     def measure_area(self, area, share, pool):
         """The first `share` changes that are C++ and change the code, whatever the order they end in."""
-        places, counted, waiting = sequence(area, self.options.seed, self.codes), 0, set()
+        places = sequence(area, self.options.seed, self.codes, self.options.file)
+        counted, waiting = 0, set()
         while counted < share:
-            while counted + len(waiting) < share:
+            while counted + len(waiting) < share and len(waiting) < 2 * self.options.jobs:
                 place = next(places, None)
                 if place is None:
                     break
@@ -237,6 +240,7 @@ def main():
     parser.add_argument("--seed", default="1")
     parser.add_argument("--count", type=int, default=300)
     parser.add_argument("--area", action="append", choices=AREAS)
+    parser.add_argument("--file", action="append")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--again", action="store_true")
     parser.add_argument("--report", action="store_true")

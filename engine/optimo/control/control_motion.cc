@@ -382,9 +382,10 @@ void Control::ZeroAxes() {
       command.head = HeadNow();
       command.speed_fraction = 0.1;  // no override: OPT-4.51
       command.tag = s_.next_tag++;
-      s_.notes.emplace_back(command.tag,
-                            MoveNote{.place = s_.place, .path = PathType::kPtp, .last = false});
-      if (const Status appended = s_.planner.Append(command); !appended) s_.notes.pop_back();
+      if (s_.planner.Append(command).ok()) {
+        s_.notes.emplace_back(command.tag,
+                              MoveNote{.place = s_.place, .path = PathType::kPtp, .last = false});
+      }
     }
     const std::uint64_t tag = s_.next_tag++;
     const int zeroed = group++;

@@ -9,7 +9,7 @@ namespace {
 struct Outcome {
   float number = 0.0F;
   bool good = true;
-  ErrorCode code = ErrorCode::kDomain;
+  ErrorCode code{};  // where it is not good
 };
 
 Outcome Fail(ErrorCode code) { return {0.0F, false, code}; }

@@ -80,10 +80,7 @@ PathSegment SegmentGrid::Clipped(const PathSegment& segment) const {
     const double from = Coordinate(segment.from, axis), d = Coordinate(along, axis);
     const double low = Coordinate(low_, axis) - 2.0 * reach_ - from;
     const double high = Coordinate(high_, axis) + 2.0 * reach_ - from;
-    if (d == 0.0) {
-      if (low > 0.0 || high < 0.0) last = -1.0;
-      continue;
-    }
+    // Along an axis in which it does not go these are infinite: all of it lies inside, or nothing.
     first = std::fmax(first, std::fmin(low / d, high / d));
     last = std::fmin(last, std::fmax(low / d, high / d));
   }

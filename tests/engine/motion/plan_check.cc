@@ -1,13 +1,20 @@
 #include "tests/engine/motion/plan_check.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 namespace rmlcell::motion {
 namespace {
 
 constexpr std::size_t kEnough = 10;
+constexpr std::array<std::string_view, kAxisCount> kAxisSpeed = {
+    "speed of X", "speed of Y", "speed of Z", "speed of A", "speed of B"};
+constexpr std::array<std::string_view, kAxisCount> kAxisAcceleration = {
+    "acceleration of X", "acceleration of Y", "acceleration of Z", "acceleration of A",
+    "acceleration of B"};
 
 class Checker {
  public:
@@ -30,11 +37,11 @@ class Checker {
   }
 
  private:
-  void Say(const PlannedMotion& motion, const std::string& what, double value, double limit) {
-    found_.push_back("move " + std::to_string(motion.tag) + ": " + what + " " +
+  void Say(const PlannedMotion& motion, std::string_view what, double value, double limit) {
+    found_.push_back("move " + std::to_string(motion.tag) + ": " + std::string(what) + " " +
                      std::to_string(value) + " against " + std::to_string(limit));
   }
-  void Most(const PlannedMotion& motion, const std::string& what, double value, double limit,
+  void Most(const PlannedMotion& motion, std::string_view what, double value, double limit,
             double room) {
     if (!(value <= limit * (1 + 1e-6) + room)) Say(motion, what, value, limit);
   }
@@ -158,12 +165,11 @@ class Checker {
                           : a.b_rad;
         };
         for (std::size_t n = 0; n < kAxisCount; ++n) {
-          const std::string name = std::string("axis ") + "XYZAB"[n];
           const double v = 0.5 / h * std::abs(axis(a2, n) - axis(a0, n));
           const double w = std::abs(axis(a2, n) - 2 * axis(a1, n) + axis(a0, n)) / (h * h);
           const double digits = n < 3 ? 1.0 : 1e-3;
-          Most(motion, name + " speed", v, m.axes.speed[n], 1e-6);
-          Most(motion, name + " acceleration", w, m.axes.acceleration[n], room * digits);
+          Most(motion, kAxisSpeed[n], v, m.axes.speed[n], 1e-6);
+          Most(motion, kAxisAcceleration[n], w, m.axes.acceleration[n], room * digits);
         }
       }
       phase_start += duration;

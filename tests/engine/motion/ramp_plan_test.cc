@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "tests/engine/motion/random_chain.h"
@@ -141,6 +142,133 @@ TEST(RampPlan, RandomStretchesKeepTheirLimitsAndAreNeverSlower) {
     }
   }
   EXPECT_GT(faster, 1000);
+}
+
+// The highest speed of a ramp between two places, from its phases: within one the speed turns where
+// the acceleration is zero, if at all.
+double HighestBetween(const SpeedProfile& ramp, double from, double to) {
+  double highest = std::max(ramp.At(ramp.TimeAt(from)).speed, ramp.At(ramp.TimeAt(to)).speed);
+  for (int n = 0; n < ramp.phase_count(); ++n) {
+    const SpeedProfile::Phase& phase = ramp.phase(n);
+    if (from <= phase.start.s && phase.start.s <= to)
+      highest = std::max(highest, phase.start.speed);
+  }
+  return highest;
+}
+
+// One ramp over the cells from `first` to `last`, as motion.md 5.4 has it: with the least of their
+// limits and the greatest of their speeds where that breaks none, else as fast as the slowest that
+// it breaks. Infinite: its ends do not allow it.
+double TimeOfOneRamp(const std::vector<RampCell>& cells, double start, std::size_t first,
+                     std::size_t last) {
+  const double begin = first == 0 ? start : cells[first - 1].end_speed;
+  const double end = cells[last].end_speed;
+  PathLimits limits{0.0, HUGE_VAL, HUGE_VAL};
+  double length = 0.0;
+  for (std::size_t k = first; k <= last; ++k) {
+    limits.speed = std::max(limits.speed, cells[k].limits.speed);
+    limits.acceleration = std::min(limits.acceleration, cells[k].limits.acceleration);
+    limits.jerk = std::min(limits.jerk, cells[k].limits.jerk);
+    length += cells[k].length;
+  }
+  if (first < last && RampLength(begin, end, limits) > length * (1 + 1e-12)) return HUGE_VAL;
+  const SpeedProfile fast = SpeedProfile::Span(length, begin, end, limits);
+  if (first == last) return fast.duration_s();
+  double slowest_broken = HUGE_VAL;
+  const auto keep = [&](double speed, double cap, double room = 1e-12) {
+    if (speed > cap * (1 + room)) slowest_broken = std::min(slowest_broken, cap);
+  };
+  double from = 0.0;
+  for (std::size_t k = first; k <= last; ++k) {
+    const double to = std::min(from + cells[k].length, length);
+    keep(HighestBetween(fast, from, to), cells[k].limits.speed);
+    if (k < last) keep(fast.At(fast.TimeAt(to)).speed, cells[k].end_cap);
+    for (std::size_t n = 0; n < cells[k].most.size(); ++n) {
+      const double share = static_cast<double>(n) / static_cast<double>(cells[k].most.size() - 1);
+      keep(fast.At(fast.TimeAt(from + share * (to - from))).speed, cells[k].most[n], 1e-9);
+    }
+    from = to;
+  }
+  if (slowest_broken == HUGE_VAL) return fast.duration_s();
+  if (slowest_broken < std::max(begin, end)) return HUGE_VAL;
+  limits.speed = slowest_broken;
+  return SpeedProfile::Span(length, begin, end, limits).duration_s();
+}
+
+// The least time of all ways to join neighbours that are not passed at the limit.
+double TimeOfBestJoins(const std::vector<RampCell>& cells, double start) {
+  std::vector<double> until(cells.size() + 1, HUGE_VAL);
+  until[0] = 0.0;
+  for (std::size_t end = 0; end < cells.size(); ++end) {
+    for (std::size_t begin = end + 1; begin-- > 0;) {
+      until[end + 1] =
+          std::min(until[end + 1], until[begin] + TimeOfOneRamp(cells, start, begin, end));
+      if (begin == 0) break;
+      const double cap = std::min({cells[begin - 1].limits.speed, cells[begin].limits.speed,
+                                   cells[begin - 1].end_cap});
+      if (cells[begin - 1].end_speed >= cap * (1 - 1e-12)) break;
+    }
+  }
+  return std::min(until.back(), LevelOneTime(cells, start));
+}
+
+// Up to eight stretches: beside all ways to join them, tried by another program. A third of them
+// are bends that are fast at their ends and slow in the middle.
+TEST(RampPlan, FewStretchesAreJoinedInTheBestWay) {
+  Dice dice(11);
+  RampPlan plan;
+  int joined = 0;
+  for (int round = 0; round < 6000; ++round) {
+    std::vector<RampCell> cells(static_cast<std::size_t>(dice.Uniform(2.0, 9.0)));
+    std::vector<std::vector<double>> bends(cells.size());
+    const double fastest = dice.Magnitude(20.0, 200.0);
+    double acceleration = 2000.0;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      RampCell& cell = cells[k];
+      if (dice.Chance(0.1)) acceleration = dice.Magnitude(500.0, 2000.0);
+      cell.length = dice.Magnitude(0.05, 5.0);
+      cell.limits = {fastest * (dice.Chance(0.5) ? 1.0 : dice.Uniform(0.5, 1.5)), acceleration,
+                     20.0 * acceleration};
+      if (dice.Chance(0.2)) cell.end_cap = fastest * dice.Uniform(0.4, 1.2);
+    }
+    const double start = dice.Chance(0.4) ? 0.0 : fastest * 0.5;
+    TimeByLevelOne(cells, start, dice.Chance(0.5) ? 0.0 : fastest * 0.5);
+    if (RampLength(start, cells[0].end_speed, cells[0].limits) > cells[0].length) continue;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      if (!dice.Chance(0.3)) continue;
+      const double end = cells[k].end_speed;
+      const double top = std::max({end, k == 0 ? start : cells[k - 1].end_speed, 0.5 * fastest});
+      for (const double share : {1.2, 1.1, 1.0, 1.1, 1.2}) bends[k].push_back(share * top);
+      cells[k].most = bends[k];
+    }
+    plan.Plan(cells, start);
+    const double best = TimeOfBestJoins(cells, start);
+    ASSERT_NEAR(TimeOf(plan), best, 1e-8 * best) << round;
+    if (best < 0.999 * LevelOneTime(cells, start)) ++joined;
+  }
+  EXPECT_GT(joined, 2000);
+}
+
+// Longer ways are split at what one ramp breaks most: a stretch by itself, with one ramp on each
+// side of it, or the end of a stretch, with one ramp up to it and one from it.
+TEST(RampPlan, LongWaysAreSplitWhereTheyAreSlow) {
+  std::vector<RampCell> cells(15, {.length = 2.0, .limits = kCellLimits});
+  cells[4].limits.speed = 40.0;
+  TimeByLevelOne(cells, 0.0, 0.0);
+  RampPlan plan;
+  plan.Plan(cells, 0.0);
+  ASSERT_EQ(plan.ramps().size(), 3U);
+  EXPECT_NEAR(plan.ramps()[0].end().s, 8.0, 1e-12);
+  EXPECT_NEAR(plan.ramps()[1].end().s, 2.0, 1e-12);
+  EXPECT_NEAR(plan.ramps()[2].end().s, 20.0, 1e-12);
+  EXPECT_EQ(plan.ramps()[2].At(0.0).speed, 40.0);
+  cells[4].limits.speed = 100.0;
+  cells[11].end_cap = 30.0;
+  TimeByLevelOne(cells, 0.0, 0.0);
+  plan.Plan(cells, 0.0);
+  ASSERT_EQ(plan.ramps().size(), 2U);
+  EXPECT_NEAR(plan.ramps()[0].end().s, 24.0, 1e-12);
+  EXPECT_EQ(plan.ramps()[0].end().speed, 30.0);
 }
 
 }  // namespace

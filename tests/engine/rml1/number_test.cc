@@ -106,6 +106,17 @@ TEST(NumberReader, RoundsToTheNearestSingle) {
   }
 }
 
+// RML1-9.21: few digits behind many noughts: a tenth's powers are exact up to 22, and further on too.
+TEST(NumberReader, SmallDecimals) {
+  for (int noughts = 15; noughts < 40; ++noughts) {
+    for (const char* digits : {"1", "123", "987654321012345"}) {
+      const std::string text = "0." + std::string(static_cast<std::size_t>(noughts), '0') + digits;
+      EXPECT_EQ(ValueOf(text).decimal, std::strtod(text.c_str(), nullptr)) << text;
+      EXPECT_EQ(ValueOf(text).single, static_cast<double>(std::strtof(text.c_str(), nullptr)));
+    }
+  }
+}
+
 // RML1-9.21: decimals exactly halfway between two values, and a hair beside them. 16777217 lies
 // halfway above 2^24; 8388607.75 is halfway between two values half a unit apart.
 TEST(NumberReader, RoundsHalfwayCasesRight) {

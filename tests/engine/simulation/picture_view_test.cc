@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+
+#include "engine/simulation/picture_panel.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -208,6 +211,23 @@ TEST(TickText, AsManyDecimalsAsTheStepNeeds) {
   EXPECT_EQ(TickText(1150.0, 50.0), "1150");
   EXPECT_EQ(TickText(0.30000000000000004, 0.1), "0.3");
   EXPECT_EQ(TickText(-0.0, 0.05), "0.00");
+}
+
+// Marks of the rulers stand at whole steps, those at both edges too: 800 mm by 400 mm at 1 px/mm,
+// with 78 px between two marks at least, has one every 100 mm.
+TEST(PictureView, RulersReachBothEdges) {
+  const Panel panel{.frame = FrameOf(PictureView::kXY, {}),
+                    .rect = {.x = 60.0, .y = 40.0, .width = 800.0, .height = 400.0},
+                    .middle_right = 400.0,
+                    .middle_up = 200.0};
+  std::string drawn;
+  BeginPanel({}, panel, 1, drawn);
+  for (const char* mark : {">0<", ">100<", ">400<", ">500<", ">800<"}) {
+    EXPECT_NE(drawn.find(mark), std::string::npos) << mark;
+  }
+  EXPECT_NE(drawn.find(">400<"), drawn.rfind(">400<"));  // along both rulers
+  EXPECT_EQ(drawn.find(">900<"), std::string::npos);
+  EXPECT_EQ(drawn.find(">500<"), drawn.rfind(">500<"));
 }
 
 }  // namespace

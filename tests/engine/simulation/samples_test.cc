@@ -125,6 +125,23 @@ TEST(Samples, WaitsAndEventsHaveTheirLines) {
   EXPECT_EQ(rows.back()[10], "0.0000");
 }
 
+// motion.md 8.1: what nobody tells about before a wait is no part of it: the beam is off, and the
+// step is the one before.
+TEST(Samples, TimeBeforeAWaitIsNotTheWaits) {
+  Script script;
+  script.Step(1, 1).Line({0, 0, 0}, {1, 0, 0}).Nothing(1.0);
+  script.Step(1, 2).Wait(machine::WaitKind::kPierce, 1.0, true, 50.0);
+  int dark = 0, bright = 0;
+  for (const Row& row : Sampled(script, 10.0)) {
+    if (row[12] == "2" && row[10] == "50.0000") ++bright;
+    if (row[12] != "1") continue;
+    EXPECT_EQ(row[10], "0.0000");
+    ++dark;
+  }
+  EXPECT_EQ(bright, 10);
+  EXPECT_GE(dark, 10);
+}
+
 // motion.md 9: an event has the place of its own, and the lines before it keep theirs; a halt is one.
 TEST(Samples, EventsHaveTheirOwnPlace) {
   Script script;

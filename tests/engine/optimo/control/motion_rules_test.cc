@@ -144,6 +144,19 @@ TEST(MotionRules, AMoveTakesOverFromNext) {
   EXPECT_NEAR(ran.end.tip.tip.x, 21.02, kReal_mm);
 }
 
+// OPT-2.59, motion.md 6: the take-over is at the next tick, whatever happens before it. The MOVE is
+// reached at 0.5 s, the tick is at 0.528 s, an input comes at 0.51 s.
+TEST(MotionRules, AnInputDoesNotHastenTheTakeOver) {
+  const std::string text = kAbsol +
+                           "SPEED 10\nMOVE (521.02,2201.2,-350.,0.,0.)/NEXT\nDELAY 0.5\n"
+                           "MOVE (21.02,2101.2,-350.,0.,0.)\n";
+  const Ran ran = RunText(text, {.inputs = {{At(0.51), machine::InputKind::kLogical, 20, 1.0}}});
+  ASSERT_EQ(ran.moves.size(), 2U);
+  // The ramp to 50 mm/s costs 50 mm/s x half of 2 sqrt(50/40000) s, and the brake gives as much back.
+  EXPECT_NEAR(ran.moves[0].tip.tip.x, kHomeTip.x + 50.0 * 0.528, 1e-6);
+  EXPECT_NEAR(ToSeconds(ran.moves[0].at), 0.528 + 2.0 * std::sqrt(50.0 / 40000.0), 1e-6);
+}
+
 // OPT-2.59, OPT-7.68: the move that takes over is waited for like any other, and so is a chain
 // behind it.
 TEST(MotionRules, AMoveThatTookOverIsWaitedFor) {

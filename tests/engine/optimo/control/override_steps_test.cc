@@ -38,6 +38,18 @@ TEST(OverrideSteps, EachIsAShareOfTheProgrammedSpeed) {
   }
 }
 
+// OPT-4.34, motion.md 3.3: the axes bind after a change as they do before it. B turns by 2 rad over
+// 500 mm, 300 mm below the column: at the tip's 500 mm/s the column would go at up to 1100 mm/s.
+TEST(OverrideSteps, AfterAChangeTheColumnBindsAsBefore) {
+  const std::string text = "COORD ABSOL\nPATH LIN\nMOVE (521.02,2201.2,-350.,0.,2.)\n";
+  const Ran whole = RunText(text);
+  const Ran raised = RunText(text, {.inputs = {Override(1.0, 100.0)}, .override_percent = 10.0});
+  ASSERT_EQ(raised.parts.size(), 2U);
+  const double bound = whole.parts[0].motion.speed.peak_speed();
+  EXPECT_LT(bound, 400.0);
+  EXPECT_NEAR(raised.parts[1].motion.speed.peak_speed(), bound, 1e-9);
+}
+
 // OPT-4.37: from step 7 to step 4 on the way, in every mode: from that instant on a ramp from 50 to
 // 27.5 mm/s, with the active ACCEL.
 TEST(OverrideSteps, AChangeActsAtOnceInEveryMode) {

@@ -255,6 +255,23 @@ TEST(Object, EachPartOfAnExpressionHasItsCode) {
   }
 }
 
+// OPT-B.71, OPT-E.7034: ignored lines have numbers of 16 bits, the last of which means none.
+TEST(Object, IgnoredLinesHaveNumbers) {
+  const Result<Module> one = DecodeObject(MustCompile("CONT X\n").object);
+  ASSERT_TRUE(one);
+  ASSERT_EQ(one->texts.size(), 1U);
+  Module many = *one;
+  for (int n = 1; n < 65535; ++n) {
+    many.instructions.push_back(one->instructions[0]);
+    many.instructions.back().name = static_cast<std::uint16_t>(n);
+    many.texts.push_back(one->texts[0]);
+  }
+  EXPECT_TRUE(DecodeObject(EncodeObject(many)));
+  many.instructions.push_back(one->instructions[0]);
+  many.texts.push_back(one->texts[0]);
+  EXPECT_FALSE(DecodeObject(EncodeObject(many)));
+}
+
 // OPT-B.71, OPT-E.7034: with a right checksum, too, nothing is read that the language does not
 // have. The last byte of the first `bytes` of the record is changed.
 TEST(Object, WhatTheLanguageDoesNotHaveIsRefused) {

@@ -63,6 +63,11 @@ TEST(ContourAdvice, HarmlessCornersAreNotTold) {
   EXPECT_EQ(FindingsWith(CornerOf(90, "OL[16]=ON\n"), ErrorCode::kFlySharp).size(), 1U);
 }
 
+// OPT-2.62: a program with an error has no path yet, so nothing is said of one.
+TEST(ContourAdvice, NoneBesideAnError) {
+  EXPECT_TRUE(FindingsWith(CornerOf(90) + "SPEED ;\n", ErrorCode::kFlySharp).empty());
+}
+
 // OPT-2.62: a comment allows it, as any other advice.
 TEST(ContourAdvice, CommentsSilenceIt) {
   const std::string text = CornerOf(90);

@@ -89,6 +89,9 @@ TEST(FixProgram, ObjectsAndBinariesAreNoText) {
   EXPECT_FALSE(CheckIsText("12.O", object));
   EXPECT_FALSE(CheckIsText("12.S", object));
   EXPECT_FALSE(CheckIsText("12.S", std::string_view("SPEED 20\n\0", 10)));
+  EXPECT_EQ(CheckIsText("12.S", object).error().code, ErrorCode::kCellBadText);
+  EXPECT_EQ(CheckIsText("12.S", std::string_view("SPEED 20\n\0", 10)).error().code,
+            ErrorCode::kCellBadText);
   EXPECT_TRUE(CheckIsText("12.S", "SPEED 20 ; \xE9t\xE9 \x1B\n\x1A"));
 }
 
