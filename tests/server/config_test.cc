@@ -375,7 +375,8 @@ TEST(Config, RefusesMachineIdsThatAreNoResourceIdsOrStandTwice) {
       config.machines.push_back({.id = id, .family = "rml1", .profile = {}, .title = {}});
     return ValidateConfig(config);
   };
-  EXPECT_TRUE(with({"a", "b-2"}));
+  EXPECT_TRUE(with({"a", "b-2", "z", "za09z-"}));
+  for (const char* wrong : {"a/", "a:", "a`", "a{", "-a", "0a", "`a", "{a"}) EXPECT_FALSE(with({wrong}));
   EXPECT_TRUE(with({"a" + std::string(62, 'b')}));
   EXPECT_FALSE(with({"a" + std::string(63, 'b')}));
   EXPECT_FALSE(with({""}));

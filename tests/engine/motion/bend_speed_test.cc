@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/core/units.h"
@@ -270,6 +271,40 @@ TEST(BendStretches, ChainsThatUseUpTheirLinesGoOn) {
       EXPECT_EQ(planner.lookahead_starved(), 0u);
       EXPECT_NEAR(time / 6000, each, 0.02 * each);
     }
+  }
+}
+
+// A curve may touch several moves in line with each other: along it ACCEL is the least of them all.
+// Here it reaches 2 mm to both sides, half of the way to a stop.
+TEST(BendStretches, ACurveKeepsTheAccelerationOfAllItTouches) {
+  for (const auto& [weak, touched] : {std::pair{3, false}, {4, true}, {7, true}, {8, true},
+                                      {11, true}, {12, false}}) {
+    std::vector<MoveCommand> chain;
+    TipPose at{{1000, 900, -200}};
+    for (int k = 0; k < 16; ++k) {  // 8 x 0.5 mm along X, as many along Y
+      MoveCommand move;
+      TipPose to = at;
+      (k < 8 ? to.tip.x : to.tip.y) += 0.5;
+      move.path = PathPiece::Line(at, to);
+      move.speed_fraction = 0.3;
+      move.acceleration_fraction = k == weak ? 0.05 : 1.0;
+      move.fly = k < 15;
+      move.tag = static_cast<std::uint64_t>(k);
+      chain.push_back(move);
+      at = to;
+    }
+    const std::vector<PlannedMotion> motions = Plan(chain);
+    double most = 0.0;
+    for (const PlannedMotion& motion : motions) {
+      if (motion.path.kind() != PathPiece::Kind::kBlend) continue;
+      for (int n = 0; n < motion.speed.phase_count(); ++n) {
+        const SpeedProfile::Phase& phase = motion.speed.phase(n);
+        most = std::max({most, std::abs(phase.start.acceleration),
+                         std::abs(phase.start.acceleration + phase.duration_s * phase.jerk)});
+      }
+    }
+    const double allowed = 0.05 * StandardMachine().tip_acceleration_mm_s2;
+    EXPECT_EQ(most <= allowed * (1 + 1e-9), touched) << weak << ": " << most;
   }
 }
 

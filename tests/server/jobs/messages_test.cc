@@ -249,6 +249,7 @@ TEST(JobMessages, AnOutcomeSaysWhatHappenedInItsOwnWordsOrThoseOfTheCatalogue) {
   EXPECT_EQ(ToProto(JobOutcome{.state = JobState::kSucceeded}).code(), "");
   EXPECT_EQ(WorkerDiedOutcome().state, JobState::kFailed);
   EXPECT_EQ(WorkerDiedOutcome().code, ErrorCode::kCellWorkerDied);
+  EXPECT_FALSE(ToProto(WorkerDiedOutcome()).has_place());  // it died somewhere
 }
 
 TEST(Executor, RunsAllThatWasPostedAndSurvivesAnException) {
