@@ -25,7 +25,8 @@ class Test:
         self.environment = environment
         self.cpu_s = 0.0
         program = os.path.relpath(command[0], build)
-        self.program = None if program.startswith("..") else program  # None: a script that drives the programs
+        self.program = None if program.startswith("..") else program  # None: a script
+        self.drives_programs = "RMLCELL_BIN" in environment
         self.command = command
 
 
@@ -117,29 +118,29 @@ class Workshop:
     def run(self, test, place, file=None, changed=None):
         """What tells that the test fails, "" where it passes, None where it does not concern the file."""
         command, environment = list(test.command), {**os.environ, **test.environment}
-        if test.program:
-            if changed:
-                made = self.relink(test.program, file, changed, place)
-                if made is None:
-                    return None
+        command += ["--gtest_fail_fast", "--gtest_brief=1"] if test.program else ["--failfast"]
+        if changed:
+            made = self.relink(test.program, file, changed, place) if test.program else None
+            if made:
                 command[0] = str(made)
-            command += ["--gtest_fail_fast", "--gtest_brief=1"]
-        elif changed:
-            bin_folder = place / "bin"
-            bin_folder.mkdir(exist_ok=True)
-            touched = False
-            for program in self.programs():
-                if (place / program).exists():
-                    touched = touched or not (place / program).is_symlink()
-                elif self.relink(program, file, changed, place):
-                    touched = True
-                else:
-                    (place / program).symlink_to(self.build / program)
-            if not touched:
+            elif not test.drives_programs:
                 return None
-            environment["RMLCELL_BIN"] = str(bin_folder)
-            command += ["--failfast"]
+            if test.drives_programs:
+                if not self.relink_programs(file, changed, place) and not made:
+                    return None
+                environment["RMLCELL_BIN"] = str(place / "bin")
         return self.judge(test, command, environment, place)
+
+    def relink_programs(self, file, changed, place):
+        """All programs in place/bin, those that hold the source with the changed object; whether one does."""
+        (place / "bin").mkdir(exist_ok=True)
+        touched = False
+        for program in self.programs():
+            made = place / program
+            if not made.exists() and not self.relink(program, file, changed, place):
+                made.symlink_to(self.build / program)
+            touched = touched or not made.is_symlink()
+        return touched
 
     def judge(self, test, command, environment, place):
         # By processor time: a machine that is busy with other things decides nothing.
@@ -192,7 +193,9 @@ class Workshop:
 
     def version(self, test):
         """Another one when the test or what it drives was built or written anew."""
-        files = [test.program] if test.program else [*self.programs(), test.command[-1]]
+        files = [test.program] if test.program else [test.command[-1]]
+        if test.drives_programs:
+            files += self.programs()
         return [(self.build / file).stat().st_mtime_ns for file in files]
 
 

@@ -2,12 +2,16 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <sstream>
 
 #include "server/config.h"
+#include "server/version.h"
 #include "tests/storage/sqlite_bed.h"
 
 // The program itself, asked for its configuration: what is set where, and what it says about
@@ -22,16 +26,26 @@ struct Answer {
   std::string text;  // of both streams
 };
 
-// `words` go through the shell; the environment is empty but for `variables`.
-Answer Ask(const std::string& variables, const std::string& words) {
+std::string PathOf(const std::string& program) {
+  const char* programs = std::getenv("RMLCELL_BIN");  // CTest sets it
+  return programs == nullptr ? program : std::string(programs) + "/" + program;
+}
+
+// `words` go through the shell; the environment is empty but for `variables`. `heard` is called
+// with each line that the program writes.
+Answer Ask(const std::string& variables, const std::string& words,
+           const std::string& program = "rmlcelld",
+           const std::function<void(const std::string&)>& heard = {}) {
   const std::string line =
-      "env -i HOME=/home/nobody " + variables + " " + RMLCELL_SERVER + " " + words + " 2>&1";
+      "exec env -i HOME=/home/nobody " + variables + " " + PathOf(program) + " " + words + " 2>&1";
   std::FILE* pipe = ::popen(line.c_str(), "r");
   if (pipe == nullptr) throw std::runtime_error("no shell");
   Answer answer;
   char room[4096];
-  for (std::size_t n = 0; (n = std::fread(room, 1, sizeof room, pipe)) > 0;)
-    answer.text.append(room, n);
+  while (std::fgets(room, sizeof room, pipe) != nullptr) {
+    answer.text += room;
+    if (heard) heard(room);
+  }
   const int status = ::pclose(pipe);
   answer.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return answer;
@@ -115,6 +129,67 @@ TEST(CommandLine, AStoreOfAnotherProgramStopsTheStart) {
   std::ostringstream now;
   now << std::ifstream(path).rdbuf();
   EXPECT_EQ(now.str(), foreign);
+}
+
+TEST(CommandLine, BothProgramsTellVersionAndUse) {
+  for (const char* program : {"rmlcelld", "rmlcell-worker"}) {
+    EXPECT_EQ(Ask("", "--version", program).text, std::string(kVersion) + "\n");
+    EXPECT_EQ(Ask("", "--version", program).status, 0);
+    EXPECT_EQ(Ask("", "--help", program).status, 0);
+    EXPECT_THAT(Ask("", "--help", program).text, HasSubstr(program));
+    EXPECT_EQ(Ask("", "--no-such-flag", program).status, 64);
+  }
+}
+
+// The address of gRPC in what a server has written so far.
+std::string AddressIn(const std::string& text) {
+  const std::size_t at = text.find("gRPC on ");
+  const std::size_t begin = at + std::string("gRPC on ").size();
+  return at == std::string::npos ? "" : text.substr(begin, text.find('\n', begin) - begin);
+}
+
+// It says where it listens, that it is ready, and what stops it; a variable that is nearly one of
+// its own is told. Until then a worker with another token is refused.
+TEST(CommandLine, TheServerTellsItsLifeAndEndsOnASignal) {
+  const storage::TestDirectory folder;
+  const std::string state = std::filesystem::path(folder.File("cell.db")).parent_path().string();
+  std::string told;
+  Answer refused;
+  const Answer life = Ask("RMLCELL_JOBS_ATEMPTS=3",
+                          "--listen.grpc 127.0.0.1:0 --listen.web 127.0.0.1:0 --workers.count 0 "
+                          "--log.format text --state.directory " + state,
+                          "rmlcelld", [&](const std::string& line) {
+                            told += line;
+                            if (line.find(" is ready, store in " + state) == std::string::npos) {
+                              return;
+                            }
+                            refused = Ask("RMLCELL_JOIN_TOKEN=other",
+                                          "--name odd --server " + AddressIn(told),
+                                          "rmlcell-worker");
+                            const std::size_t process = line.find("[rmlcelld ") + 10;
+                            ::kill(std::stoi(line.substr(process)), SIGTERM);
+                          });
+  EXPECT_EQ(life.status, 0) << life.text;
+  EXPECT_THAT(life.text, HasSubstr("RMLCELL_JOBS_ATEMPTS"));
+  EXPECT_THAT(life.text, HasSubstr("gRPC on 127.0.0.1:"));
+  EXPECT_THAT(life.text, HasSubstr("web on http://127.0.0.1:"));
+  EXPECT_THAT(life.text, HasSubstr("rmlcelld " + std::string(kVersion) + " is ready"));
+  EXPECT_THAT(life.text, HasSubstr("stopping on Terminated"));
+  EXPECT_THAT(life.text, HasSubstr("] stopped\n"));
+  EXPECT_EQ(refused.status, 69);
+  EXPECT_THAT(refused.text, HasSubstr("CELL-E9310"));
+}
+
+TEST(CommandLine, WhatCannotBeOpenedStopsTheStart) {
+  const storage::TestDirectory folder;
+  const std::string state = std::filesystem::path(folder.File("cell.db")).parent_path().string();
+  const Answer log = Ask("", "--listen.grpc 127.0.0.1:0 --listen.web \"\" --log.file /proc/no/file "
+                             "--state.directory " + state);
+  EXPECT_EQ(log.status, 69);
+  EXPECT_THAT(log.text, HasSubstr("/proc/no/file"));
+  const Answer nobody = Ask("", "--server unix:" + state + "/nobody --name lonely", "rmlcell-worker");
+  EXPECT_EQ(nobody.status, 69);
+  EXPECT_THAT(nobody.text, HasSubstr("error [lonely "));
 }
 
 }  // namespace
