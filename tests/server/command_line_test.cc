@@ -157,15 +157,16 @@ TEST(CommandLine, TheServerTellsItsLifeAndEndsOnASignal) {
   Answer refused;
   const Answer life = Ask("RMLCELL_JOBS_ATEMPTS=3",
                           "--listen.grpc 127.0.0.1:0 --listen.web 127.0.0.1:0 --workers.count 0 "
-                          "--log.format text --state.directory " + state,
+                          "--log.format text --state.directory " +
+                              state,
                           "rmlcelld", [&](const std::string& line) {
                             told += line;
                             if (line.find(" is ready, store in " + state) == std::string::npos) {
                               return;
                             }
-                            refused = Ask("RMLCELL_JOIN_TOKEN=other",
-                                          "--name odd --server " + AddressIn(told),
-                                          "rmlcell-worker");
+                            refused =
+                                Ask("RMLCELL_JOIN_TOKEN=other",
+                                    "--name odd --server " + AddressIn(told), "rmlcell-worker");
                             const std::size_t process = line.find("[rmlcelld ") + 10;
                             ::kill(std::stoi(line.substr(process)), SIGTERM);
                           });
@@ -183,11 +184,14 @@ TEST(CommandLine, TheServerTellsItsLifeAndEndsOnASignal) {
 TEST(CommandLine, WhatCannotBeOpenedStopsTheStart) {
   const storage::TestDirectory folder;
   const std::string state = std::filesystem::path(folder.File("cell.db")).parent_path().string();
-  const Answer log = Ask("", "--listen.grpc 127.0.0.1:0 --listen.web \"\" --log.file /proc/no/file "
-                             "--state.directory " + state);
+  const Answer log = Ask("",
+                         "--listen.grpc 127.0.0.1:0 --listen.web \"\" --log.file /proc/no/file "
+                         "--state.directory " +
+                             state);
   EXPECT_EQ(log.status, 69);
   EXPECT_THAT(log.text, HasSubstr("/proc/no/file"));
-  const Answer nobody = Ask("", "--server unix:" + state + "/nobody --name lonely", "rmlcell-worker");
+  const Answer nobody =
+      Ask("", "--server unix:" + state + "/nobody --name lonely", "rmlcell-worker");
   EXPECT_EQ(nobody.status, 69);
   EXPECT_THAT(nobody.text, HasSubstr("error [lonely "));
 }

@@ -204,8 +204,8 @@ double TimeOfBestJoins(const std::vector<RampCell>& cells, double start) {
       until[end + 1] =
           std::min(until[end + 1], until[begin] + TimeOfOneRamp(cells, start, begin, end));
       if (begin == 0) break;
-      const double cap = std::min({cells[begin - 1].limits.speed, cells[begin].limits.speed,
-                                   cells[begin - 1].end_cap});
+      const double cap = std::min(
+          {cells[begin - 1].limits.speed, cells[begin].limits.speed, cells[begin - 1].end_cap});
       if (cells[begin - 1].end_speed >= cap * (1 - 1e-12)) break;
     }
   }

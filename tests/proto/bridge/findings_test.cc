@@ -1,0 +1,244 @@
+#include "proto/bridge/findings.h"
+
+#include <google/protobuf/any.pb.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
+#include "rmlcell/v1/common.pb.h"
+#include "rmlcell/v1/program.pb.h"
+#include "rmlcell/v1/report.pb.h"
+#include "tests/proto/bridge/message_text.h"
+
+namespace rmlcell::bridge {
+namespace {
+
+// RFC 3629: every form at the ends of its range; what is not UTF-8 becomes one "?" a byte.
+TEST(Utf8, KeepsWhatIsAndMarksWhatIsNot) {
+  const std::vector<std::string> good = {"",
+                                         "plain",
+                                         "\x7F",
+                                         "\xC2\x80",
+                                         "\xDF\xBF",
+                                         "\xE0\xA0\x80",
+                                         "\xEC\xBF\xBF",
+                                         "\xED\x9F\xBF",
+                                         "\xEE\x80\x80",
+                                         "\xEF\xBF\xBF",
+                                         "\xF0\x90\x80\x80",
+                                         "\xF3\xBF\xBF\xBF",
+                                         "\xF4\x8F\xBF\xBF"};
+  for (const std::string& text : good) {
+    EXPECT_EQ(Utf8(text), text);
+    EXPECT_EQ(Utf8("a" + text + "b"), "a" + text + "b");
+  }
+  const std::map<std::string, std::string> bad = {{"\x80", "?"},
+                                                  {"\xBF", "?"},
+                                                  {"\xC0\x80", "??"},
+                                                  {"\xC1\xBF", "??"},
+                                                  {"\xC2", "?"},
+                                                  {"\xC2\x7F", "?\x7F"},
+                                                  {"\xC2\xC0", "??"},
+                                                  {"\xE0\x9F\xBF", "???"},
+                                                  {"\xED\xA0\x80", "???"},
+                                                  {"\xE1\x80", "??"},
+                                                  {"\xF0\x8F\xBF\xBF", "????"},
+                                                  {"\xF4\x90\x80\x80", "????"},
+                                                  {"\xF5\x80\x80\x80", "????"},
+                                                  {"\xF1\x80\x80", "???"},
+                                                  {"\xE1\x80"
+                                                   "c",
+                                                   "??c"},
+                                                  {"\xFF", "?"}};
+  for (const auto& [text, marked] : bad) {
+    EXPECT_EQ(Utf8(text), marked) << marked;
+    EXPECT_EQ(Utf8("a" + text), "a" + marked);
+  }
+}
+
+constexpr std::pair<Severity, v1::Severity> kSeverities[] = {
+    {Severity::kAdvice, v1::SEVERITY_ADVICE},   {Severity::kWarning, v1::SEVERITY_WARNING},
+    {Severity::kCompile, v1::SEVERITY_COMPILE}, {Severity::kProgram, v1::SEVERITY_PROGRAM},
+    {Severity::kFatal, v1::SEVERITY_FATAL},     {Severity::kAlarm, v1::SEVERITY_ALARM},
+    {Severity::kMessage, v1::SEVERITY_MESSAGE}, {Severity::kTool, v1::SEVERITY_TOOL},
+    {Severity::kBudget, v1::SEVERITY_BUDGET},   {Severity::kDevice, v1::SEVERITY_DEVICE},
+    {Severity::kRequest, v1::SEVERITY_REQUEST}};
+
+Diagnostic Whole() {
+  return {.code = ErrorCode::kHoleRadiusZero,
+          .severity = Severity::kProgram,
+          .detail = "radius is 0",
+          .rule = "OPT-2.27",
+          .file = "part.S",
+          .where = {.line = 1, .column = 2, .length = 3, .byte_offset = 4},
+          .program = 5,
+          .step = 6,
+          .fixes = {{.byte_offset = 7, .length = 8, .text = "1."}},
+          .at = std::chrono::seconds(9)};
+}
+
+TEST(DiagnosticMessage, EveryFieldThereAndBack) {
+  const CatalogueEntry& entry = Lookup(ErrorCode::kHoleRadiusZero);
+  const v1::Diagnostic message = ToProto(Whole());
+  ExpectMessage(message,
+                "code: 'OPT-E348' symbol: '" + std::string(ConstantName(entry.code)) +
+                    "' severity: SEVERITY_PROGRAM message: 'radius is 0' advice: '" +
+                    std::string(entry.advice) +
+                    "' rule: 'OPT-2.27' place { file: 'part.S' line: 1 column: 2 length: 3 "
+                    "byte_offset: 4 program: 5 step: 6 } fixes { byte_offset: 7 length: 8 "
+                    "text: '1.' } count: 1 time_s: 9");
+  EXPECT_EQ(FromProto(message), Whole());
+  for (const auto& [severity, wire] : kSeverities) {
+    Diagnostic one = Whole();
+    one.severity = severity;
+    EXPECT_EQ(ToProto(one).severity(), wire);
+    EXPECT_EQ(FromProto(ToProto(one)).severity, severity);
+  }
+}
+
+// Without a detail the catalogue says it; without a place in bytes there is none; a code that is
+// not known stands in the text.
+TEST(DiagnosticMessage, WhatIsMissing) {
+  Diagnostic bare{.code = ErrorCode::kHoleRadiusZero, .severity = Severity::kProgram};
+  bare.where.byte_offset = -1;
+  const v1::Diagnostic message = ToProto(bare);
+  EXPECT_EQ(message.message(), Lookup(ErrorCode::kHoleRadiusZero).when);
+  EXPECT_FALSE(message.place().has_byte_offset());
+  EXPECT_FALSE(message.has_time_s());
+  EXPECT_EQ(FromProto(message).where.byte_offset, -1);
+  EXPECT_FALSE(FromProto(message).at);
+  bare.where.byte_offset = 0;
+  EXPECT_TRUE(ToProto(bare).place().has_byte_offset());
+  v1::Diagnostic newer = message;
+  newer.set_code("OPT-E9");
+  newer.set_message("of tomorrow");
+  EXPECT_EQ(FromProto(newer).code, ErrorCode::kCellInternal);
+  EXPECT_EQ(FromProto(newer).detail, "OPT-E9: of tomorrow");
+  newer.set_severity(v1::SEVERITY_UNSPECIFIED);
+  EXPECT_EQ(FromProto(newer).severity, Severity::kRequest);
+}
+
+TEST(OutcomeMessage, EveryKind) {
+  using machine::OutcomeKind;
+  for (const auto& [kind, wire] :
+       {std::pair{OutcomeKind::kCompleted, v1::Outcome::KIND_COMPLETED},
+        {OutcomeKind::kStopped, v1::Outcome::KIND_STOPPED},
+        {OutcomeKind::kFailed, v1::Outcome::KIND_FAILED},
+        {OutcomeKind::kCancelled, v1::Outcome::KIND_CANCELLED},
+        {OutcomeKind::kBudgetExceeded, v1::Outcome::KIND_BUDGET_EXCEEDED}}) {
+    EXPECT_EQ(ToProto(machine::Outcome{.kind = kind}).kind(), wire);
+  }
+  machine::Outcome failed{.kind = OutcomeKind::kFailed, .code = ErrorCode::kHoleRadiusZero};
+  failed.place.byte_offset = -1;
+  EXPECT_EQ(ToProto(failed).message(), Lookup(ErrorCode::kHoleRadiusZero).when);
+  EXPECT_FALSE(ToProto(failed).place().has_byte_offset());
+  failed.detail = "radius is 0";
+  EXPECT_EQ(ToProto(failed).message(), "radius is 0");
+}
+
+TEST(ExplanationMessage, SaysAllOfARow) {
+  const CatalogueEntry& entry = Lookup(ErrorCode::kHoleRadiusZero);
+  const v1::ErrorExplanation message = Explain(entry);
+  EXPECT_EQ(message.code(), "OPT-E348");
+  EXPECT_EQ(message.symbol(), ConstantName(entry.code));
+  EXPECT_EQ(FromProto([&] {
+              v1::Diagnostic d;
+              d.set_severity(message.severity());
+              return d;
+            }())
+                .severity,
+            entry.severity);
+  EXPECT_EQ(message.when(), entry.when);
+  EXPECT_EQ(message.effect(), SeverityEffect(entry.severity));
+  EXPECT_EQ(message.advice(), entry.advice);
+}
+
+TEST(FindingsMessage, OfATranslationAndItsMotion) {
+  machine::Translation translation;
+  translation.ok = true;
+  translation.diagnostics = {Whole()};
+  translation.diagnostics_dropped = 3;
+  translation.figures = {{.name = "steps", .unit = "", .value = 7.0}};
+  simulation::MotionCheck motion;
+  motion.findings_dropped = 4;
+  motion.cut_short = {{45, "only up to step 2"}};
+  const v1::Findings good = FindingsOf(translation, motion, 45);
+  EXPECT_TRUE(good.ok());
+  EXPECT_EQ(good.diagnostics_size(), 1);
+  EXPECT_EQ(good.diagnostics_dropped(), 7);
+  EXPECT_EQ(good.motion_check(), "only up to step 2");
+  ASSERT_EQ(good.figures_size(), 1);
+  EXPECT_EQ(good.figures(0).name(), "steps");
+  EXPECT_EQ(good.figures(0).value(), 7.0);
+  EXPECT_EQ(FindingsOf(translation, motion, 44).motion_check(), "");
+  motion.findings = {{.code = ErrorCode::kTargetOutOfTravel, .severity = Severity::kProgram}};
+  const v1::Findings bad = FindingsOf(translation, motion, 45);
+  EXPECT_FALSE(bad.ok());
+  ASSERT_EQ(bad.diagnostics_size(), 2);
+  EXPECT_EQ(bad.diagnostics(1).code(), CodeText(ErrorCode::kTargetOutOfTravel));
+  translation.ok = false;
+  EXPECT_FALSE(FindingsOf(translation, {}, 45).ok());
+}
+
+// The codes of gRPC, as docs/api.md tells what to do on each.
+TEST(RpcCodes, OfEveryErrorThatIsNoWrongArgument) {
+  const std::map<ErrorCode, int> others = {
+      {ErrorCode::kCellInternal, 13},      {ErrorCode::kCellStoreFailed, 13},
+      {ErrorCode::kCellStoreCorrupt, 15},  {ErrorCode::kCellUnavailable, 14},
+      {ErrorCode::kCellStoreBusy, 14},     {ErrorCode::kCellNotFound, 5},
+      {ErrorCode::kCellUnknownMachine, 5}, {ErrorCode::kProgramMissing, 5},
+      {ErrorCode::kCellAlreadyExists, 6},  {ErrorCode::kCellRequestIdReused, 6},
+      {ErrorCode::kCellEtagMismatch, 10},  {ErrorCode::kCellLeaseLost, 10},
+      {ErrorCode::kCellPermission, 7},     {ErrorCode::kCellUnauthenticated, 16},
+      {ErrorCode::kCellJoinRefused, 16},   {ErrorCode::kCellUnimplemented, 12},
+      {ErrorCode::kCellPrecondition, 9},   {ErrorCode::kCellVersionMismatch, 9},
+      {ErrorCode::kProgramInUse, 9},       {ErrorCode::kCellResourceExhausted, 8},
+      {ErrorCode::kCellTooLarge, 8},       {ErrorCode::kCmosFull, 8},
+      {ErrorCode::kCellEventsGone, 11}};
+  for (const CatalogueEntry& entry : Catalogue()) {
+    const auto other = others.find(entry.code);
+    EXPECT_EQ(RpcCode(entry.code), other == others.end() ? 3 : other->second)
+        << CodeText(entry.code);
+  }
+}
+
+TEST(RpcStatus, CarriesCodeTextPlaceAndFindings) {
+  const Error error{ErrorCode::kCellNotFound, "slot 12", SourceSpan{.line = 1, .column = 2}};
+  Diagnostic warning{.code = ErrorCode::kFlyReversal, .severity = Severity::kWarning};
+  const google::rpc::Status plain = ToRpcStatus(error);
+  const CatalogueEntry& entry = Lookup(ErrorCode::kCellNotFound);
+  EXPECT_EQ(plain.code(), 5);
+  EXPECT_EQ(plain.message(),
+            "CELL-E9004: " + std::string(entry.when) + ": slot 12; " + std::string(entry.advice));
+  ASSERT_EQ(plain.details_size(), 2);
+  google::rpc::ErrorInfo info;
+  ASSERT_TRUE(plain.details(0).UnpackTo(&info));
+  EXPECT_EQ(info.reason(), ConstantName(ErrorCode::kCellNotFound));
+  EXPECT_EQ(info.domain(), "rmlcell");
+  EXPECT_EQ(info.metadata().at("code"), "CELL-E9004");
+  v1::ErrorDetail detail;
+  ASSERT_TRUE(plain.details(1).UnpackTo(&detail));
+  ExpectMessage(detail, "code: 'CELL-E9004' symbol: '" + std::string(ConstantName(entry.code)) +
+                            "' number: 9004 message: 'slot 12' advice: '" +
+                            std::string(entry.advice) + "' place { line: 1 column: 2 }");
+  // The place of the first error stands for all.
+  Diagnostic second = Whole();
+  second.where.line = 99;
+  ASSERT_TRUE(ToRpcStatus(error, {warning, Whole(), second}, 3).details(1).UnpackTo(&detail));
+  EXPECT_EQ(detail.diagnostics_size(), 3);
+  EXPECT_EQ(detail.diagnostics_dropped(), 3);
+  EXPECT_EQ(detail.place().line(), 1);
+  EXPECT_EQ(detail.place().program(), 5);
+  ASSERT_TRUE(ToRpcStatus({ErrorCode::kCellNotFound, {}, {}}).details(1).UnpackTo(&detail));
+  EXPECT_EQ(detail.message(), entry.when);
+  EXPECT_FALSE(detail.has_place());
+  EXPECT_EQ(ErrorText({ErrorCode::kCellNotFound, {}, {}}),
+            "CELL-E9004: " + std::string(entry.when) + "; " + std::string(entry.advice));
+}
+
+}  // namespace
+}  // namespace rmlcell::bridge

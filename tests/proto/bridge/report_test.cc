@@ -1,0 +1,316 @@
+#include "proto/bridge/report.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "rmlcell/v1/job.pb.h"
+#include "rmlcell/v1/report.pb.h"
+#include "tests/proto/bridge/message_text.h"
+
+// Every figure of a report has its field: each has a value of its own here.
+namespace rmlcell::bridge {
+namespace {
+
+using simulation::RunReport;
+
+SimTime Seconds(int count) { return std::chrono::seconds(count); }
+
+simulation::WorkFigures Figures() {
+  simulation::WorkFigures figures;
+  figures.steps = 1;
+  figures.time = {.motion = Seconds(2),
+                  .settling = Seconds(3),
+                  .dwell = Seconds(4),
+                  .pierce = Seconds(5),
+                  .condition = Seconds(6),
+                  .operator_wait = Seconds(7),
+                  .spin_up = Seconds(8),
+                  .load = Seconds(9),
+                  .standstill = Seconds(10)};
+  figures.tip_path_mm = 11.0;
+  figures.cut_mm = 12.5;
+  figures.travel_mm = 13.0;
+  figures.plunge_mm = 14.0;
+  figures.beam_on = Seconds(16);
+  figures.beam_switches = 16;
+  figures.pierces = 17;
+  figures.plunges = 18;
+  figures.shutter_open = Seconds(19);
+  figures.cut_energy_j = 25.0;
+  figures.pierce_energy_j = 30.0;
+  figures.energy_j_per_mm_max = 22.0;
+  return figures;
+}
+// 54 s in all; 25 J of cut and 30 J of piercing, 25 / 12.5 J/mm.
+const std::string kFigures =
+    "steps: 1 times { cycle_s: 54 motion_s: 2 settling_s: 3 dwell_s: 4 pierce_s: 5 condition_s: 6 "
+    "operator_s: 7 spin_up_s: 8 load_s: 9 standstill_s: 10 } path_length_mm: 11 cut_length_mm: "
+    "12.5 "
+    "travel_length_mm: 13 plunge_length_mm: 14 beam_on_s: 16 beam_switches: 16 pierces: 17 "
+    "plunges: 18 energy_j: 55 energy_j_per_mm: 2 energy_j_per_mm_max: 22 shutter_open_s: 19 ";
+
+machine::Box BoxOf(double low, double high) {
+  machine::Box box;
+  box.Add(motion::Vec3{low, low + 1, low + 2});
+  box.Add(motion::Vec3{high, high + 1, high + 2});
+  return box;
+}
+
+simulation::ScopeFigures Scope() {
+  simulation::ScopeFigures scope;
+  scope.total = Figures();
+  scope.beam.by_speed[2] = Seconds(1);
+  scope.beam.by_power[19] = Seconds(2);
+  scope.corners = {.stops = 1,
+                   .stops_with_fly = 2,
+                   .reversals = 3,
+                   .through = 4,
+                   .blended = 5,
+                   .capped = 6,
+                   .deviation_mm_max = 0.5,
+                   .deviation_place = {.program = 7, .step = 8, .line = 9},
+                   .deviation_point = {10, 11, 12}};
+  scope.shortfall = {.moves = 10,
+                     .by_axis = 1,
+                     .by_radius = 2,
+                     .too_short = 3,
+                     .by_acceleration = 4,
+                     .worst = {.program = 1, .step = 2, .line = 3, .byte_offset = 4},
+                     .wanted_mm_s = 100.0,
+                     .reached_mm_s = 25.0};
+  scope.programmed = BoxOf(1, 10);
+  scope.tip = BoxOf(2, 20);
+  scope.cut = BoxOf(3, 30);
+  scope.column = BoxOf(4, 40);
+  scope.tip_figures = {.name = "tip", .travel = 5.0, .peak_speed = 6.0};
+  scope.axes = {{.name = "A",
+                 .rotary = true,
+                 .travel = 1.0,
+                 .minimum = 2.0,
+                 .maximum = 3.0,
+                 .peak_speed = 4.0,
+                 .peak_acceleration = 5.0,
+                 .peak_jerk = 6.0,
+                 .speed_limit = 8.0,
+                 .acceleration_limit = 20.0,
+                 .jerk_limit = 9.0,
+                 .reversals = 10}};
+  return scope;
+}
+const std::string kScope =
+    "corners { stopped: 1 stopped_with_fly: 2 reversed: 3 through: 4 blended: 5 capped: 6 "
+    "deviation_mm_max: 0.5 deviation_place { program: 7 step: 8 line: 9 } "
+    "deviation_point { x: 10 y: 11 z: 12 } } "
+    "shortfall { moves: 10 by_axis: 1 by_radius: 2 too_short: 3 by_acceleration: 4 "
+    "worst { program: 1 step: 2 line: 3 byte_offset: 4 } wanted_mm_s: 100 reached_mm_s: 25 } "
+    "program_box { low { x: 1 y: 2 z: 3 } high { x: 10 y: 11 z: 12 } } "
+    "tip_box { low { x: 2 y: 3 z: 4 } high { x: 20 y: 21 z: 22 } } "
+    "cut_box { low { x: 3 y: 4 z: 5 } high { x: 30 y: 31 z: 32 } } "
+    "column_box { low { x: 4 y: 5 z: 6 } high { x: 40 y: 41 z: 42 } } "
+    "axes { axis: 'tip' travel: 5 peak_speed: 6 } "
+    "axes { axis: 'A' rotary: true travel: 1 minimum: 2 maximum: 3 peak_speed: 4 speed_limit: 8 "
+    "peak_acceleration: 5 acceleration_limit: 20 reversals: 10 peak_speed_share: 0.5 "
+    "peak_acceleration_share: 0.25 peak_jerk: 6 jerk_limit: 9 } ";
+
+std::string Beam() {
+  std::string text = "beam { ";
+  for (int bin = 0; bin < 21; ++bin) text += bin == 2 ? "by_speed_s: 1 " : "by_speed_s: 0 ";
+  for (int bin = 0; bin < 20; ++bin) text += bin == 19 ? "by_power_s: 2 " : "by_power_s: 0 ";
+  return text + "} ";
+}
+
+const std::string kNothing = "times {} ";
+const std::string kStill =
+    "final_position { tip {} column {} } final_program_point {} final_program_angles: 0 "
+    "final_program_angles: 0 ";
+
+TEST(ReportMessage, OfARunThatDidNothing) {
+  ExpectMessage(ToProto(RunReport{}, {}),
+                "outcome { kind: KIND_COMPLETED place {} } total { times {} } " + kStill +
+                    "corners {} axes {} trace { complete: true } toolpath { complete: true } "
+                    "picture { complete: true } collisions: 'not modelled'");
+}
+
+TEST(ReportMessage, EveryFigureHasItsField) {
+  RunReport report;
+  static_cast<simulation::ScopeFigures&>(report) = Scope();
+  report.family = "optimo";
+  report.title = "part";
+  report.engine_version = "1.2";
+  report.inputs_hash = "abc";
+  report.changed_parameters = {{"VMAX", "400"}};
+  report.outcome = {.kind = machine::OutcomeKind::kFailed,
+                    .code = ErrorCode::kHoleRadiusZero,
+                    .detail = "radius is 0",
+                    .place = {.program = 1, .step = 2, .line = 3, .byte_offset = 4}};
+  report.halts = 5;
+  report.final_position = {.tip = {{1, 2, 3}, 0.5, 0.25},
+                           .axes = {{4, 5, 6}, 0.75, 0.125},
+                           .program_point = {7, 8, 9},
+                           .program_a = 10.0,
+                           .program_b = 11.0};
+  report.lookahead_starved = 12;
+  report.programs[45] = Scope();
+  report.steps = {{.program = 1, .step = 2, .line = 3, .figures = Figures()}};
+  report.rest = Figures();
+  report.findings = {{.diagnostic = {.code = ErrorCode::kFlyReversal,
+                                     .severity = Severity::kWarning,
+                                     .detail = "turns",
+                                     .rule = "OPT-2.48"},
+                      .first_at = Seconds(1),
+                      .count = 6}};
+  report.findings_dropped = 7;
+  report.slow_moves = {{.place = {.program = 1, .step = 2},
+                        .cause = simulation::SlowCause::kAxis,
+                        .axis = "A",
+                        .wanted_mm_s = 3.0,
+                        .allowed_mm_s = 2.0,
+                        .reached_mm_s = 1.0,
+                        .count = 4}};
+  report.slow_moves_dropped = 8;
+  report.violations = {{.place = {.program = 1, .step = 2},
+                        .axis = "X",
+                        .rotary = true,
+                        .excess = 0.5,
+                        .at_target = true,
+                        .axes = {{1, 2, 3}, 4, 5},
+                        .tip = {6, 7, 8},
+                        .first_at = Seconds(9),
+                        .count = 10}};
+  report.violations_dropped = 9;
+  report.figures = {{.name = "programmed.cut_length", .unit = "mm", .value = 2.5}};
+  report.milling = {.removed_mm3 = 1.0,
+                    .gouges = 2,
+                    .gouge_depth_mm = 3.0,
+                    .gouge_place = {.program = 4, .step = 5},
+                    .gouge_at = Seconds(6)};
+  report.trace = {.made = true, .complete = false, .records = 1, .dropped = 2};
+  report.toolpath = {.made = true, .records = 3};
+  report.picture = {.made = true, .records = 4};
+  const CatalogueEntry& hole = Lookup(ErrorCode::kHoleRadiusZero);
+  const CatalogueEntry& turn = Lookup(ErrorCode::kFlyReversal);
+  ExpectMessage(
+      ToProto(report, {{"VR[1]", "2.5"}}),
+      "family: 'optimo' title: 'part' outcome { kind: KIND_FAILED code: 'OPT-E348' symbol: '" +
+          std::string(ConstantName(ErrorCode::kHoleRadiusZero)) +
+          "' message: 'radius is 0' advice: '" + std::string(hole.advice) +
+          "' place { program: 1 step: 2 line: 3 byte_offset: 4 } } total { " + kFigures +
+          "} final_position { tip { x: 1 y: 2 z: 3 } column { x: 4 y: 5 z: 6 } a: 0.75 b: 0.125 } "
+          "final_program_point { x: 7 y: 8 z: 9 } final_program_angles: 10 final_program_angles: "
+          "11 "
+          "shutter_open_s: 19 energy_j_per_mm_max: 22 halts: 5 " +
+          kScope + Beam() + "programs { program: 45 figures { " + kFigures + "} " + kScope +
+          Beam() + "} steps { program: 1 step: 2 line: 3 figures { " + kFigures +
+          "} } other_steps { " + kFigures + "} diagnostics { code: '" + CodeText(turn.code) +
+          "' symbol: '" + std::string(ConstantName(turn.code)) +
+          "' severity: SEVERITY_WARNING message: 'turns' advice: '" + std::string(turn.advice) +
+          "' rule: 'OPT-2.48' count: 6 place {} } diagnostics_dropped: 7 "
+          "slow_moves { place { program: 1 step: 2 } cause: 'axis' axis: 'A' wanted_mm_s: 3 "
+          "allowed_mm_s: 2 reached_mm_s: 1 count: 4 } slow_moves_dropped: 8 lookahead_starved: 12 "
+          "violations { place { program: 1 step: 2 } axis: 'X' rotary: true excess: 0.5 "
+          "at_target: true position { tip { x: 6 y: 7 z: 8 } column { x: 1 y: 2 z: 3 } a: 4 b: 5 } "
+          "time_s: 9 count: 10 } violations_dropped: 9 "
+          "figures { name: 'programmed.cut_length' unit: 'mm' value: 2.5 } "
+          "variables { key: 'VR[1]' value: '2.5' } parameters { key: 'VMAX' value: '400' } "
+          "inputs_hash: 'abc' engine_version: '1.2' trace { made: true records: 1 dropped: 2 } "
+          "toolpath { made: true complete: true records: 3 } "
+          "picture { made: true complete: true records: 4 } collisions: 'not modelled' "
+          "milling { removed_mm3: 1 gouges: 2 gouge_depth_mm: 3 gouge_place { program: 4 step: 5 } "
+          "gouge_time_s: 6 }");
+}
+
+// What did not happen has no place: no gouge, no deviation, no beam, no limit to have a share of.
+TEST(ReportMessage, WhatDidNotHappenIsNotThere) {
+  RunReport report;
+  report.milling = {.removed_mm3 = 1.0};
+  report.tip_figures = {.name = "tip", .peak_speed = 5.0, .peak_acceleration = 6.0};
+  const v1::RunReport message = ToProto(report, {});
+  EXPECT_FALSE(message.milling().has_gouge_place());
+  EXPECT_FALSE(message.corners().has_deviation_place());
+  EXPECT_FALSE(message.has_beam());
+  EXPECT_FALSE(message.has_shortfall());
+  EXPECT_FALSE(message.has_other_steps());
+  EXPECT_FALSE(message.has_cut_box());
+  EXPECT_EQ(message.axes(0).peak_speed_share(), 0.0);
+  EXPECT_EQ(message.axes(0).peak_acceleration_share(), 0.0);
+  report.programs[1] = {};
+  EXPECT_FALSE(ToProto(report, {}).programs(0).has_beam());
+}
+
+simulation::TraceRecord Record(simulation::TraceKind kind) {
+  return {.number = 3,
+          .kind = kind,
+          .at = Seconds(2),
+          .place = {.program = 4, .step = 5, .line = 6, .byte_offset = 0},
+          .text = "words",
+          .tip = {{1, 2, 3}, 0.1, 0.2},
+          .axes = {{4, 5, 6}, 0.5, 0.25},
+          .program_point = {7, 8, 9},
+          .program_a = 10.0,
+          .program_b = 11.0,
+          .feed_mm_s = 12.0,
+          .signal = machine::Signal::kSpindle,
+          .index = 13,
+          .value = 14.0,
+          .detail = 15.0,
+          .wait = machine::WaitKind::kPierce,
+          .duration = Seconds(16),
+          .code = ErrorCode::kFlyReversal,
+          .severity = Severity::kWarning,
+          .outcome = machine::OutcomeKind::kStopped};
+}
+
+// Each kind of record carries its own fields and no others.
+TEST(TraceMessage, EachKindHasItsFields) {
+  using simulation::TraceKind;
+  const auto expect = [](TraceKind kind, const std::string& more) {
+    ExpectMessage(
+        ToProto(Record(kind)),
+        "number: 3 time_s: 2 place { program: 4 step: 5 line: 6 byte_offset: 0 } " + more);
+  };
+  const std::string code = CodeText(ErrorCode::kFlyReversal);
+  expect(TraceKind::kMove,
+         "kind: 'move' text: 'words' point { x: 7 y: 8 z: 9 } angles: 10 angles: 11 position { tip "
+         "{ x: 1 y: 2 z: 3 } column { x: 4 y: 5 z: 6 } a: 0.5 b: 0.25 } feed_mm_s: 12");
+  expect(TraceKind::kSignal, "kind: 'signal' text: 'spindle' index: 13 value: 14 detail: 15");
+  expect(TraceKind::kWait, "kind: 'wait' text: 'pierce' duration_s: 16");
+  expect(TraceKind::kProgram, "kind: 'program' text: 'words' index: 13");
+  expect(TraceKind::kHalt, "kind: 'halt' text: 'words'");
+  expect(TraceKind::kResume, "kind: 'resume' text: 'words'");
+  expect(TraceKind::kMessage, "kind: 'message' text: 'words'");
+  expect(TraceKind::kFinding,
+         "kind: 'finding' text: 'words' code: '" + code + "' severity: SEVERITY_WARNING");
+  expect(TraceKind::kEnd, "kind: 'end' text: 'stopped' code: '" + code + "'");
+  simulation::TraceRecord end = Record(TraceKind::kEnd);
+  end.code.reset();
+  EXPECT_EQ(ToProto(end).code(), "");
+}
+
+TEST(ProgressMessage, EveryFieldIsThere) {
+  machine::RunState state{.time = std::chrono::nanoseconds(1),
+                          .phase = machine::RunPhase::kHalted,
+                          .place = {.program = 2, .step = 3},
+                          .instruction = "MOVE",
+                          .tip = {{4, 5, 6}, 0.5, 0.25},
+                          .axes = {{7, 8, 9}, 0.75, 0.125},
+                          .tip_speed_mm_s = 10.0,
+                          .override_percent = 55.0,
+                          .beam_on = true,
+                          .progress = 0.0};
+  ExpectMessage(ToProto(state, 11),
+                "virtual_time_ns: 1 steps: 11 place { program: 2 step: 3 } instruction: 'MOVE' "
+                "position { tip { x: 4 y: 5 z: 6 } column { x: 7 y: 8 z: 9 } a: 0.75 b: 0.125 } "
+                "speed_mm_s: 10 override_percent: 55 tool_on: true held: true progress: 0");
+  state.phase = machine::RunPhase::kRunning;
+  state.beam_on = false;
+  state.progress = -1.0;
+  EXPECT_FALSE(ToProto(state, 0).held());
+  EXPECT_FALSE(ToProto(state, 0).tool_on());
+  EXPECT_FALSE(ToProto(state, 0).has_progress());
+  state.spindle_on = true;
+  EXPECT_TRUE(ToProto(state, 0).tool_on());
+}
+
+}  // namespace
+}  // namespace rmlcell::bridge

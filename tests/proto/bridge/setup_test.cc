@@ -1,0 +1,226 @@
+#include "proto/bridge/setup.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/simulation/families.h"
+#include "rmlcell/v1/job.pb.h"
+
+namespace rmlcell::bridge {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const machine::MachineFamily& Optimo() { return *simulation::FindFamily("optimo"); }
+
+ProgramInput Source(int slot, const std::string& text, const std::string& name = "p.S") {
+  return {.slot = slot,
+          .name = "part",
+          .file_name = name,
+          .bytes = std::make_shared<const std::string>(text),
+          .is_source = true,
+          .executable = nullptr};
+}
+
+SetupInput InputOf(std::vector<ProgramInput> programs) {
+  return {.family = &Optimo(), .programs = std::move(programs), .main_program = 12};
+}
+
+TEST(MakeParameters, DefaultsThenProfileThenValues) {
+  const auto plain = MakeParameters(Optimo(), "", {});
+  ASSERT_TRUE(plain);
+  EXPECT_EQ(plain->Number("VMAX"), 500.0);
+  EXPECT_EQ(MakeParameters(Optimo(), "mc-1000ipm", {})->Number("VMAX"), 423.333);
+  EXPECT_EQ(MakeParameters(Optimo(), "mc-1000ipm", {{"VMAX", "300"}})->Number("VMAX"), 300.0);
+  const auto code = [](const std::string& profile,
+                       const std::map<std::string, std::string>& values) {
+    return MakeParameters(Optimo(), profile, values).error().code;
+  };
+  EXPECT_EQ(code("lathe", {}), ErrorCode::kCellInvalidArgument);
+  EXPECT_THAT(MakeParameters(Optimo(), "lathe", {}).error().detail,
+              HasSubstr("no profile 'lathe'; there are standard mc-1000ipm"));
+  EXPECT_EQ(code("", {{"COLOUR", "1"}}), ErrorCode::kCellUnknownParameter);
+  EXPECT_EQ(code("", {{"VMAX", "-1"}}), ErrorCode::kCellParameterRange);
+  EXPECT_EQ(code("", {{"TRAVEL_X_MIN", "100"}, {"TRAVEL_X_MAX", "50"}}),
+            ErrorCode::kCellParameterRange);
+}
+
+TEST(Inputs, EachKindAndTheOrderOfTime) {
+  v1::SimulationOptions options;
+  using K = v1::ScriptedInput;
+  const std::vector<std::pair<K::Kind, machine::InputKind>> kinds = {
+      {K::KIND_LOGICAL_INPUT, machine::InputKind::kLogical},
+      {K::KIND_ANALOGUE_INPUT, machine::InputKind::kAnalogue},
+      {K::KIND_DOOR, machine::InputKind::kDoor},
+      {K::KIND_START, machine::InputKind::kStart},
+      {K::KIND_HOLD, machine::InputKind::kHold},
+      {K::KIND_STOP, machine::InputKind::kStop},
+      {K::KIND_EMERGENCY_STOP, machine::InputKind::kEmergencyStop},
+      {K::KIND_OVERRIDE, machine::InputKind::kOverride}};
+  double at = 10.0;
+  for (const auto& [kind, own] : kinds) {
+    v1::ScriptedInput& input = *options.add_inputs();
+    input.set_kind(kind);
+    input.set_at_s(at -= 1.0);
+    input.set_index(7);
+    input.set_value(2.5);
+    EXPECT_EQ(FromProto(input).kind, own);
+    EXPECT_EQ(FromProto(input).index, 7);
+    EXPECT_EQ(FromProto(input).value, 2.5);
+    EXPECT_EQ(ToSeconds(FromProto(input).at), at);
+  }
+  v1::ScriptedInput& same = *options.add_inputs();  // of the same instant: in the order given
+  same.set_kind(K::KIND_STOP);
+  same.set_at_s(2.0);
+  const machine::InputScript script = InputsOf(options);
+  ASSERT_EQ(script.size(), 9U);
+  for (std::size_t n = 1; n < script.size(); ++n) EXPECT_LE(script[n - 1].at, script[n].at);
+  EXPECT_EQ(script[0].kind, machine::InputKind::kOverride);
+  EXPECT_EQ(script[1].kind, machine::InputKind::kStop);
+  EXPECT_EQ(script[1].at, script[0].at + std::chrono::seconds(0));
+}
+
+TEST(MakeSetup, TakesEverythingOver) {
+  SetupInput input = InputOf({Source(12, "SPEED 20\n"), Source(13, "SPEED 30\n")});
+  input.programs.push_back({.slot = 14,
+                            .name = "object",
+                            .file_name = "q.O",
+                            .bytes = std::make_shared<const std::string>("bytes"),
+                            .is_source = true,
+                            .executable = std::make_shared<const std::string>("executable")});
+  input.profile = "mc-1000ipm";
+  input.parameters = {{"CYCLE", "0.064"}, {"SETTLE", "0.5"}};
+  input.deleted_programs = {3, 4};
+  input.schedules = std::vector<machine::LaserSchedule>{};
+  input.machine_state = "state";
+  v1::SimulationOptions options;
+  (*options.mutable_parameters())["SETTLE"] = "0.25";
+  options.set_override_percent(55.0);
+  options.mutable_breakpoint()->set_step(7);
+  options.mutable_simul()->set_program(13);
+  options.mutable_simul()->set_step(8);
+  options.add_inputs()->set_kind(v1::ScriptedInput::KIND_START);
+  v1::Budget budget;
+  budget.set_steps(9);
+  budget.set_virtual_time_s(10.0);
+  const auto made = MakeSetup(input, options, budget);
+  ASSERT_TRUE(made);
+  ASSERT_TRUE(made->setup);
+  const machine::RunSetup& setup = *made->setup;
+  EXPECT_EQ(setup.parameters.Number("VMAX"), 423.333);
+  EXPECT_EQ(setup.parameters.Number("CYCLE"), 0.064);
+  EXPECT_EQ(setup.parameters.Number("SETTLE"), 0.25);  // the job's over the machine's
+  EXPECT_THAT(setup.deleted_programs, ElementsAre(3, 4));
+  EXPECT_EQ(setup.main_program, 12);
+  EXPECT_TRUE(setup.schedules);
+  EXPECT_EQ(setup.machine_state, "state");
+  EXPECT_EQ(setup.mode, machine::Mode::kRemote);
+  EXPECT_TRUE(setup.forecast);
+  EXPECT_EQ(setup.override_percent, 55.0);
+  ASSERT_TRUE(setup.breakpoint);
+  EXPECT_EQ(setup.breakpoint->program, 12);  // none named: that of the main program
+  EXPECT_EQ(setup.breakpoint->step, 7);
+  EXPECT_EQ(setup.simul->program, 13);
+  EXPECT_EQ(setup.simul->step, 8);
+  EXPECT_EQ(setup.inputs.size(), 1U);
+  EXPECT_EQ(setup.budget.steps, 9U);
+  EXPECT_EQ(ToSeconds(setup.budget.virtual_time), 10.0);
+  ASSERT_EQ(setup.programs.size(), 3U);
+  EXPECT_EQ(setup.programs.at(12).name, "part");
+  EXPECT_TRUE(setup.programs.at(12).source);
+  EXPECT_EQ(*setup.programs.at(14).object, "bytes");  // its name says that it is an object
+  EXPECT_EQ(*setup.programs.at(14).executable, "executable");
+  EXPECT_FALSE(setup.programs.at(14).source);
+}
+
+TEST(MakeSetup, ModesAndWhatIsNotAskedFor) {
+  SetupInput input = InputOf({Source(12, "SPEED 20\n")});
+  input.default_mode = machine::Mode::kCycle;
+  v1::SimulationOptions options;
+  const auto mode = [&](v1::OperatingMode asked) {
+    options.set_mode(asked);
+    return MakeSetup(input, options, {})->setup->mode;
+  };
+  EXPECT_EQ(mode(v1::OPERATING_MODE_UNSPECIFIED), machine::Mode::kCycle);
+  EXPECT_EQ(mode(v1::OPERATING_MODE_REMOTE), machine::Mode::kRemote);
+  EXPECT_EQ(mode(v1::OPERATING_MODE_SINGLE), machine::Mode::kSingle);
+  EXPECT_EQ(mode(v1::OPERATING_MODE_REPEAT), machine::Mode::kRepeat);
+  input.default_mode = machine::Mode::kRemote;
+  EXPECT_EQ(mode(v1::OPERATING_MODE_CYCLE), machine::Mode::kCycle);
+  const machine::RunSetup plain(machine::Parameters(Optimo().parameters()));
+  const auto made = MakeSetup(input, options, {});
+  EXPECT_EQ(made->setup->override_percent, 100.0);
+  EXPECT_FALSE(made->setup->breakpoint);
+  EXPECT_FALSE(made->setup->simul);
+  EXPECT_EQ(made->setup->budget.steps, plain.budget.steps);
+  EXPECT_EQ(made->setup->budget.virtual_time, plain.budget.virtual_time);
+}
+
+// Every program is translated, also behind one with errors; advice is for the main one alone.
+TEST(MakeSetup, FindingsOfEveryProgram) {
+  const auto made = MakeSetup(
+      InputOf({Source(13, "SPEDE 20\n"), Source(12, "SPEED\n"), Source(14, "SPEED 20\n")}), {}, {});
+  ASSERT_TRUE(made);
+  EXPECT_FALSE(made->setup);
+  std::vector<int> slots;
+  for (const Diagnostic& d : made->diagnostics) slots.push_back(d.program);
+  EXPECT_EQ(slots, (std::vector<int>{13, 12}));
+  EXPECT_EQ(made->diagnostics_dropped, 0U);
+  std::string many;
+  for (int n = 0; n < 1500; ++n) many += "SPEDE 20\n";
+  const auto most = MakeSetup(InputOf({Source(13, many), Source(12, many)}), {}, {});
+  EXPECT_EQ(most->diagnostics.size() + most->diagnostics_dropped, 3000U);
+  EXPECT_EQ(most->diagnostics.size(), machine::kDiagnosticsMax);
+}
+
+TEST(SetupForCheck, LeavesOutWhatHasErrors) {
+  SetupInput input =
+      InputOf({Source(12, "SPEED 20\n"), Source(13, "SPEDE 20\n"), Source(14, "SPEED 30\n")});
+  input.deleted_programs = {5};
+  input.schedules = std::vector<machine::LaserSchedule>{};
+  input.machine_state = "state";
+  machine::Translation main;
+  main.object = "translated";
+  const machine::RunSetup setup =
+      SetupForCheck(input, machine::Parameters(Optimo().parameters()), main);
+  EXPECT_EQ(setup.main_program, 12);
+  EXPECT_EQ(*setup.programs.at(12).object, "translated");
+  EXPECT_TRUE(setup.programs.at(12).source);
+  EXPECT_FALSE(setup.programs.contains(13));
+  EXPECT_TRUE(setup.programs.contains(14));
+  EXPECT_THAT(setup.deleted_programs, ElementsAre(5));
+  EXPECT_TRUE(setup.schedules);
+  EXPECT_EQ(setup.machine_state, "state");
+}
+
+TEST(ObjectFileName, EndsInO) {
+  EXPECT_TRUE(IsObjectFileName("1.O"));
+  EXPECT_TRUE(IsObjectFileName("12.o"));
+  EXPECT_FALSE(IsObjectFileName(".O"));
+  EXPECT_FALSE(IsObjectFileName("12.S"));
+  EXPECT_FALSE(IsObjectFileName("12O"));
+}
+
+TEST(Variables, RangesAreWrittenOut) {
+  EXPECT_THAT(*ExpandVariables({"VI[99]", "Z1", "VR[8..10]", "VL[3..3]"}),
+              ElementsAre("VI[99]", "Z1", "VR[8]", "VR[9]", "VR[10]", "VL[3]"));
+  EXPECT_EQ(ExpandVariables({"VR[0..999]"})->size(), 1000U);
+  for (const char* wrong : {"VR[0..1000]", "VR[5..4]", "VR[-1..4]", "VR0..4]", "VR[0..4", "VR[..4]",
+                            "VR[0..]", "VR[a..4]"}) {
+    const auto expanded = ExpandVariables({wrong});
+    ASSERT_FALSE(expanded) << wrong;
+    EXPECT_EQ(expanded.error().code, ErrorCode::kCellInvalidArgument);
+    EXPECT_EQ(expanded.error().detail, "variables: '" + std::string(wrong) + "': write VR[0..9]");
+  }
+  EXPECT_EQ(ExpandVariables({"VR[0..999]", "A"}).error().detail, "variables: more than 1,000");
+  EXPECT_THAT(ExpandVariables({std::string(100, 'x') + ".."}).error().detail,
+              HasSubstr("'" + std::string(80, 'x') + "'"));
+}
+
+}  // namespace
+}  // namespace rmlcell::bridge
