@@ -261,6 +261,10 @@ TEST_P(StoreConformance, RunIsInterruptedNotRepeated) {
   EXPECT_EQ(ended[0].outcome->step, 34);
   EXPECT_THAT(KindsOf(EventsOf(leased.job.id)), ElementsAre("ended"));
   EXPECT_FALSE(Must(store().Acquire("w", {"RUN"}, kLease, {})));
+  // It has ended: a cancel that comes late changes nothing.
+  EXPECT_EQ(Must(store().RequestCancel(leased.job.id, {{.kind = "ended", .payload = "c"}})).state,
+            JobState::kInterrupted);
+  EXPECT_THAT(KindsOf(EventsOf(leased.job.id)), ElementsAre("ended"));
 }
 
 // store.h LossPolicy: a lost job whose cancel was requested is cancelled, if the caller has events

@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdint>
+#include <cstdio>
 #include <map>
+#include <string>
+#include <string_view>
 
 #include "server/web/rpc_status.h"
 
@@ -83,6 +87,29 @@ TEST(HttpText, NamesOfFiles) {
   EXPECT_EQ(ContentDisposition("attachment", "M\xC3\xBC \"%\\/\x7F\x1F.S"),
             "attachment; filename=\"M__ ______.S\"; "
             "filename*=UTF-8''M%C3%BC%20%22%25%5C%2F%7F%1F.S");
+}
+
+// RFC 6266 and 8187: each byte as it is where that is safe, else "_" in the plain name and %XX in
+// the other one, which is there only when it differs.
+TEST(HttpText, EveryByteOfAFileName) {
+  constexpr std::string_view kSafe =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-_";
+  for (int byte = 0; byte < 256; ++byte) {
+    const char c = static_cast<char>(byte);
+    const bool visible = byte >= 32 && byte <= 126 && std::string_view("\"\\%/").find(c) > 3;
+    std::array<char, 4> hex{};
+    std::snprintf(hex.data(), hex.size(), "%%%02X", static_cast<unsigned>(byte));
+    const std::string plain(1, visible ? c : '_');
+    const std::string encoded =
+        kSafe.find(c) != std::string_view::npos ? std::string(1, c) : hex.data();
+    const std::string alone = "inline; filename=\"" + plain + '"';
+    EXPECT_EQ(ContentDisposition("inline", std::string(1, c)),
+              visible ? alone : alone + "; filename*=UTF-8''" + encoded)
+        << byte;
+    EXPECT_EQ(ContentDisposition("inline", std::string("\xFF") + c),
+              "inline; filename=\"_" + plain + "\"; filename*=UTF-8''%FF" + encoded)
+        << byte;
+  }
 }
 
 TEST(HttpText, SizesOfChunks) {
