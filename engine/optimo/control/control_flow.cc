@@ -112,18 +112,14 @@ void Control::Fetch() {
     s_.instruction_since = s_.now;
     observer_.OnStep(s_.now, s_.place, Describe(i.op).name);
   }
-  const std::size_t depth = s_.programs.size();
-  const std::size_t level = program().frames.size();
   frame().next = at + 1;
   Execute(i);
-  if (s_.pending.kind == Pending::Kind::kCondition && s_.programs.size() == depth &&
-      s_.programs.back().frames.size() == level) {
+  if (s_.pending.kind == Pending::Kind::kCondition) {
     frame().next = at;  // carried out again when the condition is met
     return;
   }
   s_.condition_met = false;
   ++s_.steps;
-  if (s_.programs.empty()) return;
   MarkTasks();
   if (s_.phase != machine::RunPhase::kRunning) return;
   const bool breakpoint = s_.breakpoint && s_.breakpoint->program == slot &&
@@ -259,7 +255,7 @@ void Control::Execute(const Instruction& i) {
       if (!seconds) return;
       if (*seconds < 0.0)
         return Raise(ErrorCode::kValueRange, "DELAY is " + ShortestText(*seconds));
-      if (simulating() || *seconds <= 0.0) return;
+      if (simulating()) return;
       return Wait({.kind = Pending::Kind::kTime,
                    .since = s_.now,
                    .until = After(*seconds),

@@ -178,7 +178,7 @@ void Control::WorkOff(int kind, int process, When when) {
 // since it was tested last is not tested again.
 SimTime Control::NextTask() const {
   SimTime next = kForever;
-  if (s_.programs.empty() || s_.deferred) return next;
+  if (s_.deferred) return next;
   for (const WorkTask& task : program().work_tasks) {
     if (task.stage == WorkTask::Stage::kDwell) {
       next = std::min(next, std::max(s_.now, task.until));
