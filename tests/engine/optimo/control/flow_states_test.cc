@@ -104,6 +104,24 @@ TEST(FlowStates, ADelayOfNothing) {
   EXPECT_TRUE(with.waits.empty());
 }
 
+// OPT-2.59, OPT-2.54, OPT-B.55: a hole of /NEXT that ends on its lead, by /END or by an error: a move
+// behind it is waited for like any other.
+TEST(FlowStates, AHoleOfNextThatEndsOnItsLead) {
+  const std::string hole = "MOVE (1100.,1000.,-400.,0.,0.)/VIA (1100.,1000.,-300.,0.,0.)";
+  const std::string behind = "PATH LIN\nMOVE (1100.,1100.,-400.,0.,0.)\nOL[16]=ON\n";
+  const double begin = ToSeconds(RunText(kThere).moves.front().at);
+  for (const std::string& text :
+       {kThere + "PATH HOLE (10.)\n" + hole + "/END (IL[20])/NEXT\nDELAY 5\n" + behind,
+        kThere + "PATH HOLE (10.)\nERR 10\n" + hole + "/NEXT\nDELAY 1\nVR[0]=1/VI[2]\n10 DELAY 0\n" +
+            behind}) {
+    const Ran ran = RunText(text, {.inputs = {{At(begin + 1.0), InputKind::kLogical, 20, 1.0}}});
+    ASSERT_EQ(ran.moves.size(), 3U) << text;
+    EXPECT_LT(ran.moves[1].tip.tip.x, 1080.0);
+    EXPECT_EQ(ran.First("OL[16] 1").at_s, ToSeconds(ran.moves[2].at)) << text;
+    EXPECT_EQ(ran.First("OL[16] 1").at_s, ran.time_s);
+  }
+}
+
 // OPT-3.45: a time longer than any run, halted and started meanwhile, is still to come.
 TEST(FlowStates, AnEndlessDelayOverAHalt) {
   for (const std::string seconds : {"9E18", "3E9"}) {
