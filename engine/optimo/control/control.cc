@@ -376,9 +376,7 @@ void Control::TellHalt() {
   observer_.OnWait({.start = s_.halted_at,
                     .end = s_.now,
                     .place = s_.place,
-                    .kind = machine::WaitKind::kOperator,
-                    .beam_on = false,
-                    .power_percent = 0.0});
+                    .kind = machine::WaitKind::kOperator});
 }
 
 void Control::Resume() {

@@ -225,13 +225,14 @@ bool Control::NeedsStandstill(const Instruction& i) {
     case Op::kTcp: {
       // A TCP that leaves the tip where it is needs no stop; its values may be expressions, so they
       // are looked at without an error being raised here.
-      std::array<double, 3> v{};
-      for (int n = 0; n < 3; ++n) {
-        const Result<Value> value = Evaluate(module().Value(i, n), *this);
+      motion::ToolOffset offset;
+      int n = 0;
+      for (double* of : {&offset.x_mm, &offset.y_mm, &offset.z_mm}) {
+        const Result<Value> value = Evaluate(module().Value(i, n++), *this);
         if (!value) return true;
-        v[static_cast<std::size_t>(n)] = value->number;
+        *of = value->number;
       }
-      return motion::ToolOffset{v[0], v[1], v[2]} != s_.machine.tool.offset;
+      return offset != s_.machine.tool.offset;
     }
     default:
       return true;
