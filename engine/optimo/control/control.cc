@@ -82,8 +82,8 @@ void Control::CountExecution(int slot) {
 
 // The instant so many seconds from now; far beyond any run when there is no such instant.
 SimTime Control::After(double seconds) const {
-  constexpr SimTime kLongest = std::chrono::hours(24 * 365 * 200);
-  return std::min(s_.now, kLongest / 8) + std::min(FromSeconds(seconds), kLongest);
+  constexpr SimTime kFar = kForever / 4;  // a halt may still be added
+  return std::min(s_.now, kFar) + std::min(FromSeconds(seconds), kFar);
 }
 
 // The first tick of the system cycle, counted from now, at which so many seconds are over. OPT-B.30
@@ -272,7 +272,7 @@ void Control::Apply(const machine::InputChange& input) {
   if (s_.phase == machine::RunPhase::kFinished) return;
   s_.input_changed = true;
   s_.tasks_input = true;
-  if (!s_.programs.empty()) MarkTasks();
+  MarkTasks();
   const auto index = static_cast<std::size_t>(std::clamp(input.index, 0, kVariableIndexMax));
   switch (input.kind) {
     case machine::InputKind::kLogical:
@@ -376,9 +376,7 @@ void Control::TellHalt() {
   observer_.OnWait({.start = s_.halted_at,
                     .end = s_.now,
                     .place = s_.place,
-                    .kind = machine::WaitKind::kOperator,
-                    .beam_on = false,
-                    .power_percent = 0.0});
+                    .kind = machine::WaitKind::kOperator});
 }
 
 void Control::Resume() {

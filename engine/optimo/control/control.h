@@ -116,8 +116,7 @@ class Control : private VariableAccess {
   const motion::MoveCommand* Appended(std::uint64_t tag) const;
   void EndAtATarget();
   void EndOverManyMoves();
-  void HoldBehind(const motion::PlannedMotion& exact, const std::vector<motion::PlannedItem>& kept,
-                  bool under_way);
+  void HoldBehind(std::uint64_t tag, const std::vector<motion::PlannedItem>& kept);
   void HoldAllBehind(std::uint64_t target);
   void PlanHeld();
 

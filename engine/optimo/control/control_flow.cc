@@ -112,18 +112,14 @@ void Control::Fetch() {
     s_.instruction_since = s_.now;
     observer_.OnStep(s_.now, s_.place, Describe(i.op).name);
   }
-  const std::size_t depth = s_.programs.size();
-  const std::size_t level = program().frames.size();
   frame().next = at + 1;
   Execute(i);
-  if (s_.pending.kind == Pending::Kind::kCondition && s_.programs.size() == depth &&
-      s_.programs.back().frames.size() == level) {
+  if (s_.pending.kind == Pending::Kind::kCondition) {
     frame().next = at;  // carried out again when the condition is met
     return;
   }
   s_.condition_met = false;
   ++s_.steps;
-  if (s_.programs.empty()) return;
   MarkTasks();
   if (s_.phase != machine::RunPhase::kRunning) return;
   const bool breakpoint = s_.breakpoint && s_.breakpoint->program == slot &&
@@ -229,13 +225,14 @@ bool Control::NeedsStandstill(const Instruction& i) {
     case Op::kTcp: {
       // A TCP that leaves the tip where it is needs no stop; its values may be expressions, so they
       // are looked at without an error being raised here.
-      std::array<double, 3> v{};
-      for (int n = 0; n < 3; ++n) {
-        const Result<Value> value = Evaluate(module().Value(i, n), *this);
+      motion::ToolOffset offset;
+      int n = 0;
+      for (double* of : {&offset.x_mm, &offset.y_mm, &offset.z_mm}) {
+        const Result<Value> value = Evaluate(module().Value(i, n++), *this);
         if (!value) return true;
-        v[static_cast<std::size_t>(n)] = value->number;
+        *of = value->number;
       }
-      return motion::ToolOffset{v[0], v[1], v[2]} != s_.machine.tool.offset;
+      return offset != s_.machine.tool.offset;
     }
     default:
       return true;
@@ -259,7 +256,7 @@ void Control::Execute(const Instruction& i) {
       if (!seconds) return;
       if (*seconds < 0.0)
         return Raise(ErrorCode::kValueRange, "DELAY is " + ShortestText(*seconds));
-      if (simulating() || *seconds <= 0.0) return;
+      if (simulating()) return;
       return Wait({.kind = Pending::Kind::kTime,
                    .since = s_.now,
                    .until = After(*seconds),

@@ -4,6 +4,7 @@
 
 #include "engine/motion/interruption.h"
 #include "engine/optimo/control/control.h"
+#include "engine/optimo/control/lead.h"
 #include "engine/optimo/control/motion_place.h"
 
 // HOLD inside a chain of /FLY passages: the move under way becomes exact. The program has run ahead
@@ -13,15 +14,6 @@ namespace rmlcell::optimo {
 namespace {
 
 constexpr double kReaches = 1.0 + 1e-9;  // rounding, where braking takes just the way that is left
-
-// The way to rest when the acceleration is first brought to zero.
-double RoomToRest(const motion::PathState& state, const motion::PathLimits& limits) {
-  const double a = state.acceleration;
-  if (a == 0.0 || std::isinf(limits.jerk)) return motion::RampLength(state.speed, 0.0, limits);
-  const double time = std::abs(a) / limits.jerk;
-  const double level = std::max(state.speed + 0.5 * a * time, 0.0);
-  return time * (state.speed + a * time / 3.0) + motion::RampLength(level, 0.0, limits);
-}
 
 }  // namespace
 
@@ -34,10 +26,10 @@ const motion::MoveCommand* Control::Appended(std::uint64_t tag) const {
 }
 
 // Ends the motions at the first target where the machine can come to rest: that of the move under
-// way, or of a later one when its passage has begun or is too near. Nothing changes when they end by
-// themselves, or not enough is planned yet.
+// way, or of a later one when its passage has begun or is too near. Nothing changes on the last
+// move, or when not enough is planned yet.
 void Control::EndAtATarget() {
-  if (!s_.active || s_.active->ended || s_.halting || !s_.interrupted.empty()) return;
+  if (!s_.active || s_.halting) return;
   std::vector<motion::PlannedItem> kept;  // between the motion under way and the exact one
   motion::PlannedMotion exact = s_.active->motion;
   motion::PathState state = exact.speed.At(ToSeconds(s_.now - s_.active->start));
@@ -50,20 +42,38 @@ void Control::EndAtATarget() {
     if (exact.tag > following) return EndOverManyMoves();
     const bool last = s_.appended.empty() || s_.appended.back().tag <= exact.tag;
     const motion::MoveCommand* command = Appended(exact.tag);
-    if (last || command == nullptr || exact.speed.end().speed <= 0.0) return;
+    if (last || command == nullptr) return;
+    if (exact.speed.end().speed <= 0.0 && NoteOf(exact.tag)->last) {
+      // It stands at this target anyway: where the path turns back, before what cannot be passed.
+      exact.settling_s = parameters_.limits.settling_s;
+      if (under_way) {
+        s_.active->motion.settling_s = exact.settling_s;
+        s_.active->end = s_.active->arrival + FromSeconds(exact.settling_s);
+      } else {
+        kept.emplace_back(exact);
+      }
+      return HoldBehind(exact.tag, kept);
+    }
     if (const std::optional<PlaceOnMove> place = PlaceOf(exact.path, command->path)) {
       const double way = (command->path.length() - place->begin) / place->scale - state.s;
-      if (way > 0.0 && RoomToRest(state, exact.limits) <= way * kReaches &&
+      if (way > 0.0 && LeadFrom(state, exact.limits, 0.0).length <= way * kReaches &&
           motion::FromFits(state, state.s + way, 0.0, exact.limits)) {
         exact.path = RestOfMove(command->path, *place, state.s);
         const double length = exact.path.length();
         exact.speed = motion::SpeedProfile::From(
             {.s = 0.0, .speed = state.speed, .acceleration = state.acceleration}, length, 0.0,
             exact.limits);
-        exact.settling_s = command->settles ? parameters_.limits.settling_s : 0.0;
+        exact.settling_s = parameters_.limits.settling_s;
         exact.ends_move = true;
         exact.corner = {};
-        return HoldBehind(exact, kept, under_way);
+        if (under_way) {
+          TellMotion(s_.now);
+          s_.active->motion = exact;
+          BeginProfile();
+        } else {
+          kept.emplace_back(exact);
+        }
+        return HoldBehind(exact.tag, kept);
       }
     }
     if (!under_way) kept.emplace_back(exact);
@@ -129,7 +139,7 @@ void Control::EndOverManyMoves() {
   std::optional<motion::Planner> planner = planned(enough);
   if (!planner) return;
   const std::uint64_t target = later[enough - 1].tag;
-  if (const MoveNote* note = NoteOf(target)) s_.halted_behind = note->place;
+  s_.halted_behind = NoteOf(target)->place;
   GoOnward(place, *onward, kept);
   planner->Stop();
   while (std::optional<motion::PlannedItem> item = planner->Next()) s_.timeline.push_back(*item);
@@ -137,19 +147,12 @@ void Control::EndOverManyMoves() {
   if (!s_.active) StartNextItem();
 }
 
-// `exact` is the last motion before the halt; everything that was appended behind it is held back.
-void Control::HoldBehind(const motion::PlannedMotion& exact,
-                         const std::vector<motion::PlannedItem>& kept, bool under_way) {
-  if (const MoveNote* note = NoteOf(exact.tag)) s_.halted_behind = note->place;
+// The move of this tag is the last one before the halt; everything that was appended behind it is
+// held back.
+void Control::HoldBehind(std::uint64_t tag, const std::vector<motion::PlannedItem>& kept) {
+  s_.halted_behind = NoteOf(tag)->place;
   s_.timeline.assign(kept.begin(), kept.end());
-  if (under_way) {
-    TellMotion(s_.now);
-    s_.active->motion = exact;
-    BeginProfile();
-  } else {
-    s_.timeline.emplace_back(exact);
-  }
-  HoldAllBehind(exact.tag);
+  HoldAllBehind(tag);
 }
 
 void Control::HoldAllBehind(std::uint64_t target) {

@@ -11,7 +11,7 @@ namespace {
 constexpr double kPercent = 0.01;
 constexpr double kAccelLeast_percent = 0.1;  // OPT-B.22
 // What ZERO moves at a time, as its moves are told. OPT-4.49
-constexpr std::array<std::string_view, 3> kZeroGroups = {"ZERO_Z", "ZERO_AB", "ZERO_XY"};
+constexpr std::string_view kZeroGroups[] = {"ZERO_Z", "ZERO_AB", "ZERO_XY"};
 
 motion::MoveCommand::Kind KindOf(PathType path, CoordType coord) {
   if (coord == CoordType::kRobot) return motion::MoveCommand::Kind::kPointToPointAxes;
@@ -182,11 +182,9 @@ void Control::Move(const Instruction& i) {
   if (simulating()) return;  // no motion, and the position does not change: OPT-6.18
 
   MoveNote note{.place = s_.place, .path = m.path};
-  std::array<double, 5> programmed{};
-  for (int n = 0; n < 5; ++n) programmed[static_cast<std::size_t>(n)] = *Real(module().Value(i, n));
-  note.program_point = {programmed[0], programmed[1], programmed[2]};
-  note.program_a = programmed[3];
-  note.program_b = programmed[4];
+  const auto programmed = [&](int n) { return *Real(module().Value(i, n)); };
+  note.program_point = {programmed(0), programmed(1), programmed(2)};
+  note.program_a = programmed(3);
   const bool halts = s_.mode == machine::Mode::kSingle || s_.hold_requested ||
                      (s_.breakpoint && s_.breakpoint->program == s_.place.program &&
                       s_.breakpoint->step == s_.place.step);
@@ -416,7 +414,7 @@ void Control::TellZeroed(int group) {
                     .axes = axes,
                     .program_point = axes.column,
                     .rotary_a = axes.a_rad,
-                    .path = kZeroGroups[static_cast<std::size_t>(group)],
+                    .path = kZeroGroups[group],
                     .programmed = false});
 }
 

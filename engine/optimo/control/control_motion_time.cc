@@ -78,7 +78,6 @@ void Control::StartNextItem() {
     }
     BeginProfile();
   }
-  if (!Busy() && !s_.halting) GoesOnInBackground(false);
 }
 
 // Whether the program goes on beside the motion that is under way from now on. A halt on the path
@@ -124,7 +123,6 @@ void Control::ArriveAtEnd() {
   TellMotion(s_.active->end);
   const ActiveMotion active = std::move(*s_.active);
   s_.active.reset();
-  if (!Busy() && !s_.halting) GoesOnInBackground(false);
   s_.pending.told = s_.now;  // a wait during a /NEXT motion is told from here on
   MarkTasks();
   const bool joint = active.motion.path.in_axes();
@@ -134,9 +132,9 @@ void Control::ArriveAtEnd() {
   if (active.ended) {
     s_.timeline.clear();
     s_.planned_axes = s_.machine.axes;
-  } else if (!active.motion.ends_move) {
-    return;
   }
+  if (!Busy() && !s_.halting) GoesOnInBackground(false);
+  if (!active.ended && !active.motion.ends_move) return;
   const motion::CornerReport& corner = active.motion.corner;
   if (corner.passage == motion::Passage::kStopReversal) {
     WarnAt(active.note.place, ErrorCode::kFlyReversal,

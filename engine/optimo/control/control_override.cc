@@ -6,35 +6,11 @@
 
 #include "engine/motion/interruption.h"
 #include "engine/optimo/control/control.h"
+#include "engine/optimo/control/lead.h"
 #include "engine/optimo/control/motion_place.h"
 
 // The feed override changed while the machine moves. motion.md 6, OPT-4.38
 namespace rmlcell::optimo {
-namespace {
-
-// Where a chain is planned anew: the way to there brings the acceleration to zero and the speed
-// down to the new one.
-struct Lead {
-  double length = 0.0;
-  double speed = 0.0;  // at its end
-};
-
-Lead LeadFrom(const motion::PathState& state, const motion::PathLimits& limits, double speed) {
-  Lead lead{.length = 0.0, .speed = state.speed};
-  const double a = state.acceleration;
-  if (a != 0.0 && std::isfinite(limits.jerk)) {
-    const double time = std::abs(a) / limits.jerk;
-    lead.length = time * (state.speed + a * time / 3.0);
-    lead.speed = std::max(state.speed + 0.5 * a * time, 0.0);
-  }
-  if (lead.speed > speed) {
-    lead.length += motion::RampLength(lead.speed, speed, limits);
-    lead.speed = speed;
-  }
-  return lead;
-}
-
-}  // namespace
 
 // Motions not begun are planned with the new value. The one under way goes over to it from where it
 // is; a bend that has begun, or is too near to slow down before it, keeps its shape and speed. A
@@ -79,19 +55,16 @@ void Control::AdaptMotions() {
 }
 
 double Control::FractionOf(const MoveNote& note) const {
-  return std::clamp(note.speed_percent * s_.override_percent * 1e-4, 1e-6, 1.0);
+  return std::min(note.speed_percent * s_.override_percent * 1e-4, 1.0);
 }
 
 // A command that was appended with another override, and what is told of its feed rate.
 void Control::AdaptToOverride(AppendedItem& item) {
-  if (!item.move) return;
-  const auto found =
-      std::ranges::lower_bound(s_.notes, item.tag, {}, [](const auto& row) { return row.first; });
-  if (found == s_.notes.end() || found->first != item.tag) return;
-  MoveNote& note = found->second;
-  item.move->speed_fraction = FractionOf(note);
-  if (note.feed_mm_s > 0.0) {
-    note.feed_mm_s = item.move->speed_fraction * parameters_.limits.tip_speed_mm_s;
+  MoveNote* note = NoteOf(item.tag);
+  if (note == nullptr) return;  // a mark
+  item.move->speed_fraction = FractionOf(*note);
+  if (note->feed_mm_s > 0.0) {
+    note->feed_mm_s = item.move->speed_fraction * parameters_.limits.tip_speed_mm_s;
   }
 }
 
@@ -147,7 +120,7 @@ std::optional<Control::Onward> Control::OnwardFrom(const ChainPlace& place,
   const motion::PlannedMotion& here = place.motion;
   const auto own = std::ranges::find(s_.appended, here.tag, &AppendedItem::tag);
   const std::optional<PlaceOnMove> on_move = PlaceOf(here.path, command.path);
-  if (own == s_.appended.end() || !on_move) return std::nullopt;
+  if (!on_move) return std::nullopt;
   const Lead lead = LeadFrom(place.state, here.limits, speed / on_move->scale);
   motion::PathLimits limits = here.limits;
   limits.speed = std::max(limits.speed, lead.speed);
@@ -215,7 +188,6 @@ void Control::GoOnward(const ChainPlace& place, const Onward& onward,
     s_.active.reset();
   }
   // One measure for the whole chain: a STOP runs from one motion into the next.
-  if (onward.measure == 1.0) return;
   if (s_.active && s_.active->motion.path.in_axes()) s_.active->motion.MeasureBy(onward.measure);
   for (motion::PlannedItem& item : s_.timeline) {
     auto* planned = std::get_if<motion::PlannedMotion>(&item);

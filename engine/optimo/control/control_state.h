@@ -122,7 +122,6 @@ struct MoveNote {
   machine::Place place{};
   motion::Vec3 program_point{};
   double program_a = 0.0;
-  double program_b = 0.0;
   double feed_mm_s = 0.0;
   PathType path = PathType::kPtp;
   bool last = true;  // of its MOVE; false: the lead of a hole

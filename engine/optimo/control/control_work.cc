@@ -25,7 +25,6 @@ void Control::DefineWork(const Instruction& i) {
     Raise(ErrorCode::kValueRange, std::string(what) + " of WORKDEF is " + ShortestText(value));
   };
   WorkDefinition definition;
-  double schedule = 0.0;
   if (i.numbers[0] == 1) {
     definition = {
         .speed_percent = v[0], .power_percent = v[1], .delay_s = v[2], .peak_percent = v[3]};
@@ -33,15 +32,14 @@ void Control::DefineWork(const Instruction& i) {
     if (!(v[1] >= 0.0 && v[1] <= 100.0)) return refuse("power", v[1]);
     if (!(v[2] >= 0.0)) return refuse("delay", v[2]);
     if (!(v[3] >= 0.0 && v[3] <= 100.0)) return refuse("peak", v[3]);
-    schedule = i.value_count == 5 ? v[4] : 0.0;
-  } else if (i.numbers[0] == 2) {
-    schedule = v[0];
   }
   if (i.numbers[0] == 2 || i.value_count == 5) {
-    definition.schedule = static_cast<int>(std::trunc(std::clamp(schedule, -1.0, 1000.0)));
-    if (definition.schedule < kScheduleMin || definition.schedule > kScheduleMax) {
+    const double schedule = i.numbers[0] == 2 ? v[0] : v[4];
+    const double number = std::trunc(schedule);
+    if (!(number >= kScheduleMin && number <= kScheduleMax)) {
       return Raise(ErrorCode::kScheduleRange, "laser schedule is " + ShortestText(schedule));
     }
+    definition.schedule = static_cast<int>(number);
   }
   program().processes.definitions[i.numbers[0]][i.numbers[1]] = definition;
 }
@@ -127,7 +125,7 @@ bool Control::WorkOn(const WorkTask& task, bool dwell_in_background, When when) 
   if (kind == 0) {
     Show({.kind = PassageEffect::Kind::kBeamOn,
           .place = s_.place,
-          .power = {.constant_percent = SchedulePower(), .percent_per_mm_s = 0.0}},
+          .power = {.constant_percent = SchedulePower()}},
          when);
     return true;
   }
@@ -138,7 +136,7 @@ bool Control::WorkOn(const WorkTask& task, bool dwell_in_background, When when) 
   }
   // Standing still, as NeedsStandstill saw to: at peak power for the delay, then the ramp
   // (OPT-3.21).
-  BeamOn({.constant_percent = definition->peak_percent, .percent_per_mm_s = 0.0});
+  BeamOn({.constant_percent = definition->peak_percent});
   if (dwell_in_background || when == When::kNow) {
     WorkTask dwell{.stage = WorkTask::Stage::kDwell,
                    .place = task.place,
@@ -178,7 +176,7 @@ void Control::WorkOff(int kind, int process, When when) {
 // since it was tested last is not tested again.
 SimTime Control::NextTask() const {
   SimTime next = kForever;
-  if (s_.programs.empty() || s_.deferred) return next;
+  if (s_.deferred) return next;
   for (const WorkTask& task : program().work_tasks) {
     if (task.stage == WorkTask::Stage::kDwell) {
       next = std::min(next, std::max(s_.now, task.until));

@@ -15,8 +15,7 @@ bool Processes::flag(int process) const {
 }
 
 machine::PowerBySpeed RampedPower(const WorkDefinition& definition, double tip_speed_max_mm_s) {
-  return {.constant_percent = 0.0,
-          .percent_per_mm_s =
+  return {.percent_per_mm_s =
               definition.power_percent * 100.0 / (definition.speed_percent * tip_speed_max_mm_s)};
 }
 

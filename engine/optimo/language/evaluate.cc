@@ -14,7 +14,8 @@ struct Outcome {
 
 Outcome Fail(ErrorCode code) { return {0.0F, false, code}; }
 
-// Functions are computed in double precision and rounded once (OPT-B.38).
+// Functions are computed in double precision and rounded once (OPT-B.38). Outside its domain a
+// function is not a number.
 Outcome Round(double value) {
   if (std::isnan(value)) return Fail(ErrorCode::kDomain);
   const auto rounded = static_cast<float>(value);
@@ -27,7 +28,6 @@ Outcome Round(double value) {
 // OPT-7.81: any base with an integer exponent; 0^0 is 1.
 Outcome Power(double base, double exponent) {
   if (base == 0.0 && exponent < 0.0) return Fail(ErrorCode::kDivisionByZero);
-  if (base < 0.0 && exponent != std::trunc(exponent)) return Fail(ErrorCode::kDomain);
   return Round(std::pow(base, exponent));
 }
 
@@ -46,19 +46,19 @@ Outcome Function(Node op, double x) {
     case Node::kTan:
       return Round(std::tan(x));
     case Node::kAsin:
-      return x < -1.0 || x > 1.0 ? Fail(ErrorCode::kDomain) : Round(std::asin(x));
+      return Round(std::asin(x));
     case Node::kAcos:
-      return x < -1.0 || x > 1.0 ? Fail(ErrorCode::kDomain) : Round(std::acos(x));
+      return Round(std::acos(x));
     case Node::kAtan:
       return Round(std::atan(x));
     case Node::kSqrt:
-      return x < 0.0 ? Fail(ErrorCode::kDomain) : Round(std::sqrt(x));
+      return Round(std::sqrt(x));
     case Node::kExp:
       return x < -32.0 || x > 32.0 ? Fail(ErrorCode::kDomain) : Round(std::exp(x));
     case Node::kLn:
-      return x <= 0.0 ? Fail(ErrorCode::kDomain) : Round(std::log(x));
+      return x == 0.0 ? Fail(ErrorCode::kDomain) : Round(std::log(x));
     case Node::kLog:
-      return x <= 0.0 ? Fail(ErrorCode::kDomain) : Round(std::log10(x));
+      return x == 0.0 ? Fail(ErrorCode::kDomain) : Round(std::log10(x));
     case Node::kAbs:
       return {static_cast<float>(std::fabs(x))};
     default:
@@ -181,12 +181,6 @@ Result<float> ConvertTo(ValueType type, Value value) {
   const Result<int> whole = TruncateToInteger(value.number);
   if (!whole) return whole.error();
   return static_cast<float>(*whole);
-}
-
-Result<float> RoundToReal(double value) {
-  const Outcome outcome = Round(value);
-  if (!outcome.good) return Error{outcome.code, DetailOf(outcome.code), {}};
-  return outcome.number;
 }
 
 }  // namespace rmlcell::optimo

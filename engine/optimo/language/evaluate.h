@@ -49,7 +49,4 @@ Result<float> ConvertTo(ValueType type, Value value);
 // Truncation towards zero. Errors: IntegerOverflow 7203 outside -32768..32767.
 Result<int> TruncateToInteger(float number);
 
-// To 24 bits, with the range of REAL. Errors: RealOverflow.
-Result<float> RoundToReal(double value);
-
 }  // namespace rmlcell::optimo

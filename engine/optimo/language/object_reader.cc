@@ -15,7 +15,7 @@ namespace rmlcell::optimo {
 namespace {
 
 constexpr int kLabelMax = 9999;
-constexpr std::uint64_t kTargetsMax = 10'000;
+constexpr std::uint64_t kTargetsMax = kStatementTokensMax / 2;  // a comma between two
 
 // Accepts exactly what EncodeObject can write, or could once: so what was accepted, decompiled and
 // compiled again is the same object.
@@ -54,7 +54,7 @@ class Reader {
 };
 
 void Reader::ReadNames() {
-  const std::uint64_t count = in_.Whole(kNoName - 1U);
+  const std::uint64_t count = in_.Whole(kNoName);
   std::vector<NameKey> keys;
   for (std::uint64_t n = 0; n < count && !in_.bad(); ++n) {
     const std::string_view text = in_.Text(kNameLength);

@@ -168,7 +168,7 @@ void Parser::DropExpressions(std::uint32_t expressions) {
 }
 
 void Parser::AddLabel(const Token& token) {
-  if (token.digits > 9999 || token.length > 4) {
+  if (token.length > 4) {
     return Report(token, ErrorCode::kLabelRange, "sequence numbers go from 0 to 9999", "OPT-1.23");
   }
   std::uint32_t& line = label_line_[token.digits];

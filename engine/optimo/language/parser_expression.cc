@@ -398,12 +398,11 @@ bool Parser::ParseTarget(std::string_view expected) {
 bool Parser::ParseJumpLabel() {
   if (!Is(TokenKind::kNumber) || !Peek().whole) return Fail("a sequence number");
   const Token token = Take();
-  if (token.digits > 9999 || token.length > 4) {
+  if (token.length > 4) {
     return FailAt(token, ErrorCode::kLabelRange, "sequence numbers go from 0 to 9999", "OPT-1.23");
   }
   module_.targets.push_back(static_cast<std::uint16_t>(token.digits));
-  if (instruction_.target_count == 0xFFFF)
-    return FailAt(token, ErrorCode::kSyntax, "too many sequence numbers");
+  static_assert(kStatementTokensMax / 2 < 0xFFFF, "counted with 16 bits");
   ++instruction_.target_count;
   return true;
 }

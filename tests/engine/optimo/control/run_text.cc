@@ -80,6 +80,8 @@ class Listener final : public machine::RunObserver {
     ran_.violations.push_back(violation);
   }
   void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override {
+    EXPECT_FALSE(diagnostic.detail.starts_with("OPT-")) << diagnostic.detail;
+    EXPECT_TRUE(diagnostic.rule.empty() || diagnostic.rule.starts_with("OPT-")) << diagnostic.rule;
     ran_.findings.push_back(diagnostic);
     Tell("E" + std::to_string(Lookup(diagnostic.code).number), at,
          {.program = diagnostic.program, .step = diagnostic.step});

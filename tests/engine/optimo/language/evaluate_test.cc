@@ -105,6 +105,21 @@ TEST(Evaluate, FunctionsHaveDomains) {
   }
   EXPECT_EQ(Number("SQRT(0)"), 0.0F);
   EXPECT_EQ(ErrorOf("EXP(32)"), 0);
+  // Just outside, and at the ends.
+  for (const char* text : {"ASIN(1.000001)", "ASIN(-1.000001)", "ACOS(1.000001)", "ACOS(-1.000001)",
+                           "SQRT(-1E-10)", "LN(-1)", "LN(-1E-10)", "LOG(-1)", "LOG(-1E-10)",
+                           "EXP(32.00001)", "EXP(-32.00001)", "(-2)^0.5", "(-2)^(-0.5)"}) {
+    EXPECT_EQ(ErrorOf(text), 7204) << text;
+  }
+  EXPECT_EQ(ErrorOf("EXP(-32)"), 0);
+  EXPECT_EQ(Number("ACOS(1)"), 0.0F);
+  EXPECT_FLOAT_EQ(Number("ACOS(-1)"), 3.14159265F);
+  EXPECT_FLOAT_EQ(Number("ASIN(1)"), 1.57079633F);
+  EXPECT_FLOAT_EQ(Number("ASIN(-1)"), -1.57079633F);
+  EXPECT_EQ(Number("LN(1)"), 0.0F);
+  EXPECT_EQ(Number("LOG(10)"), 1.0F);
+  EXPECT_EQ(Number("LOG(1E-10)"), -10.0F);
+  EXPECT_EQ(ErrorOf("LN(1E-18)"), 0);
 }
 
 // OPT-7.82, OPT-7.57, OPT-B.38

@@ -16,6 +16,9 @@ TEST(GosubDepth, AChainIsMeasured) {
   EXPECT_TRUE(FindNesting(4, 0, edges, 3).too_deep.empty());
   EXPECT_EQ(FindNesting(4, 0, edges, 2).too_deep, (Instructions{2}));
   EXPECT_EQ(FindNesting(4, 0, edges, 1).too_deep, (Instructions{1, 2}));
+  // Once for each instruction, however many ways lead on from it.
+  const LevelEdges fork = {{0, 1, kGosub}, {1, 2, kGosub}, {1, 3, kGosub}};
+  EXPECT_EQ(FindNesting(4, 0, fork, 1).too_deep, (Instructions{1}));
   // In the order of the program, not in that of the calls.
   const LevelEdges back = {{0, 4}, {1, 2}, {2, 3, kGosub}, {4, 1, kGosub}};
   EXPECT_EQ(FindNesting(5, 0, back, 0).too_deep, (Instructions{2, 4}));

@@ -95,6 +95,8 @@ TEST(Places, OfNumbersOutsideTheirRange) {
       {"5 MOVE (1,2,3,4,5)/TIME ({-1.},5)/FLY\n", 7004, "OPT-2.54"},
       {"SPEED 5\n{10000} SPEED 5\n", 7006, "OPT-1.23", 2},
       {"GOTO {10000}\n", 7006, "OPT-1.23"},
+      {"{99999999999} SPEED 5\n", 7006, "OPT-1.23"},
+      {"GOTO {4294967297}\n", 7006, "OPT-1.23"},
       {"{00012} SPEED 5\n", 7006, "OPT-1.23"},
       {"GOSUB {00010}\n", 7006, "OPT-1.23"},
       {"VR[{100}] = 1.\n", 7017, "OPT-7.59"},
