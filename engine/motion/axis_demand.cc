@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/core/units.h"
+#include "engine/motion/axes.h"
 #include "engine/motion/least.h"
 
 namespace rmlcell::motion {

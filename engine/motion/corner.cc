@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/motion/axes.h"
 #include "engine/motion/corner_table.h"
 #include "engine/motion/least.h"
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/motion/axes.h"
 #include "engine/motion/axis_demand.h"
 
 namespace rmlcell::motion {

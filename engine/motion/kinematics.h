@@ -1,8 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
-#include <ranges>
 #include <variant>
 
 #include "engine/motion/path.h"
@@ -21,8 +19,6 @@ struct AxisPose {
 
 inline constexpr int kAxisCount = 5;  // X Y Z A B
 using AxisValues = std::array<double, kAxisCount>;
-inline constexpr auto kAxes = std::views::iota(std::size_t{0}, std::size_t{kAxisCount});
-inline constexpr auto kLinearAxes = std::views::iota(std::size_t{0}, std::size_t{3});  // X Y Z
 
 // Speed, acceleration, jerk and travel of each axis: mm and rad.
 struct AxisLimits {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/motion/axes.h"
 #include "engine/motion/axis_demand.h"
 #include "engine/motion/planner.h"
 

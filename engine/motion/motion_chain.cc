@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/motion/axes.h"
+
 namespace rmlcell::motion {
 namespace {
 

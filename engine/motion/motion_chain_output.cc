@@ -31,7 +31,6 @@ const PlannedItem* MotionChain::Next() {
 // How many spans are timed together next; 0 when that is not known yet.
 std::size_t MotionChain::SectionSize() {
   const std::size_t known = speeds_.final_count();
-  if (known <= section_knots_) return 0;
   while (spans_.first() + section_seen_ < spans_.end()) {
     const Span& span = spans_[spans_.first() + section_seen_];
     if (section_knots_ + span.knots() > known) break;
@@ -70,9 +69,7 @@ void MotionChain::PlanSection() {
   place_ramp_ = 0;
   alone_ = section_left_ == 1 && !first.in_stretches;
   if (alone_) {
-    if (first.length > 0.0) {
-      lone_ = SpeedProfile::Span(first.length, last_speed_, speeds_.speed(), first.limits);
-    }
+    lone_ = SpeedProfile::Span(first.length, last_speed_, speeds_.speed(), first.limits);
     return;
   }
   // What lies between the knots at both ends, each with the speed of level 1 at its end. The curve

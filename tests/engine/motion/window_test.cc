@@ -61,6 +61,17 @@ TEST(Window, AnUndecidedBendDoesNotFillIt) {
   }
 }
 
+// The window is full with its last move, not before: nothing is decided too early up to there.
+TEST(Window, HoldsAsManyMovesAsItSays) {
+  Counted chain(StandardMachine(), 64);
+  chain.Go({100, 0, 0}, 1.0);
+  for (int k = 2; k < 64; ++k) chain.Go({0, 1e-5, 0}, k % 2 == 0 ? 0.9 : 1.0);
+  EXPECT_EQ(chain.waiting(), 63u);
+  EXPECT_EQ(chain.planner().lookahead_starved(), 0u);
+  chain.Go({0, 1e-5, 0}, 0.9);
+  EXPECT_EQ(chain.planner().lookahead_starved(), 1u);
+}
+
 std::vector<PlannedMotion> Drain(Planner& planner) {
   std::vector<PlannedMotion> motions;
   planner.Stop();
