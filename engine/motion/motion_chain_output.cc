@@ -31,6 +31,7 @@ const PlannedItem* MotionChain::Next() {
 // How many spans are timed together next; 0 when that is not known yet.
 std::size_t MotionChain::SectionSize() {
   const std::size_t known = speeds_.final_count();
+  if (known <= section_knots_) return 0;
   while (spans_.first() + section_seen_ < spans_.end()) {
     const Span& span = spans_[spans_.first() + section_seen_];
     if (section_knots_ + span.knots() > known) break;
