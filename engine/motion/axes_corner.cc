@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/motion/axes.h"
+
 namespace rmlcell::motion {
 namespace {
 
@@ -21,7 +23,7 @@ AxesCorner::AxesCorner(const PathPiece& before, const PathPiece& after, double a
   const AxisValues out = Values(after.First(0.0));
   double in_square = 0.0, out_square = 0.0, product = 0.0;
   const bool jerk_limited = std::isfinite(machine.tip_jerk_mm_s3);
-  for (std::size_t i = 0; i < kAxisCount; ++i) {
+  for (const std::size_t i : kAxes) {
     const double change = std::abs(out[i] - in[i]);
     if (change > kSameSpeed * machine.axes.speed[i]) passage_ = Passage::kBlend;
     by_acceleration_s_ =

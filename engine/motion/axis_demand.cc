@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/core/units.h"
+#include "engine/motion/axes.h"
 #include "engine/motion/least.h"
 
 namespace rmlcell::motion {
@@ -15,13 +16,11 @@ constexpr int kIntervalsMin = 16;
 constexpr double kTurningMax_rad =
     60.0;  // more than any travel: bounds will do, a search would last
 
-std::size_t At(int axis) { return static_cast<std::size_t>(axis); }
-
 // The least of the axes' answers to `ask`, which gives a limit for one axis.
 template <class Ask>
 double Least(Ask ask) {
   double least = HUGE_VAL;
-  for (int axis = 0; axis < kAxisCount; ++axis) least = std::min(least, ask(At(axis)));
+  for (const std::size_t axis : kAxes) least = std::min(least, ask(axis));
   return least;
 }
 
@@ -51,7 +50,7 @@ bool Allows(const AxisDerivatives& q, const AxisLimits& axes, const AxisShares& 
             const PathLimits& limits) {
   const double square = limits.speed * limits.speed;
   bool enough = true;
-  for (std::size_t i = 0; i < kAxisCount; ++i) {
+  for (const std::size_t i : kAxes) {
     const double along = std::abs(q.first[i]);
     const double across = std::abs(q.second[i]) * square;
     const double acceleration = shares.acceleration * axes.acceleration[i];
@@ -119,16 +118,6 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
   const bool turns = path.a_rate() != 0.0 || path.b_rate() != 0.0;
   const bool arc = path.kind() == PathPiece::Kind::kArc;
   const bool constant = path.kind() == PathPiece::Kind::kJoint || (!arc && !turns);
-  if (!arc && !turns && path.kind() == PathPiece::Kind::kLine) {
-    // No axis is asked for more than the tip: most lines end here.
-    bool enough = true;
-    for (std::size_t i = 0; i < 3; ++i) {
-      enough = enough && shares.speed * axes.speed[i] >= limits.speed &&
-               shares.acceleration * axes.acceleration[i] >= limits.acceleration &&
-               (shares.acceleration * axes.jerk[i] >= limits.jerk || std::isinf(limits.jerk));
-    }
-    if (enough) return limits;
-  }
   const AxisDerivatives bounds = constant ? DerivativesAt(path, head, 0.0) : Bounds(path, head);
   const auto by_bounds = [&] {
     limits.speed = std::min(limits.speed, SpeedAllowed(bounds, axes, shares));
@@ -162,7 +151,7 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
         const double s = path.length() * (static_cast<double>(k) + 0.5) * share;
         at[k] = around[k] = ThroughHead(head, path.At(s), first, {});
         AxisDerivatives& q = around[k];
-        for (std::size_t i = 0; i < 3; ++i) {
+        for (const std::size_t i : kLinearAxes) {
           q.first[i] = std::abs(q.first[i]) + drift * share;
           q.second[i] = std::abs(q.second[i]) + drift * share * rate;
         }

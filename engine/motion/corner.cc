@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/motion/axes.h"
 #include "engine/motion/corner_table.h"
 #include "engine/motion/least.h"
 
@@ -141,7 +142,7 @@ bool AxesFollow(const CornerCurve& curve, const Head& head, const MachineLimits&
   const double square = speed * speed;
   bool enough = a * speed <= axes.speed[3] && b * speed <= axes.speed[4] &&
                 aa * square <= axes.acceleration[3] && bb * square <= axes.acceleration[4];
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (const std::size_t i : kLinearAxes) {
     enough = enough && first * speed <= axes.speed[i] && second * square <= axes.acceleration[i];
   }
   return enough;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/motion/axes.h"
 #include "engine/motion/axis_demand.h"
 
 namespace rmlcell::motion {
@@ -38,7 +39,7 @@ bool AxesCan(const PlannedMotion& motion, const AxisLimits& axes) {
   for (int k = 0; k <= kPlaces; ++k) {
     const PathState state = motion.speed.At(motion.speed.duration_s() * k / kPlaces);
     const AxisDerivatives q = DerivativesAt(motion.path, motion.head, state.s);
-    for (std::size_t i = 0; i < kAxisCount; ++i) {
+    for (const std::size_t i : kAxes) {
       const double asked =
           q.first[i] * state.acceleration + q.second[i] * state.speed * state.speed;
       if (std::abs(asked) > axes.acceleration[i] * kRoom) return false;

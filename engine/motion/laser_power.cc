@@ -13,8 +13,7 @@ double Slope(const PowerLaw& law) {  // percent of power per mm/s
   return law.power_percent * kFull_percent / (law.tip_speed_max_mm_s * law.speed_percent);
 }
 
-// Where in (0, duration) the speed of a phase passes `speed`, in order; unused places hold the
-// duration.
+// Where within a phase its speed passes `speed`, in order; unused places hold an end of it.
 std::array<double, 2> Crossings(const SpeedProfile::Phase& phase, double speed) {
   const double end = phase.duration_s;
   std::array<double, 2> found{end, end};
@@ -23,7 +22,7 @@ std::array<double, 2> Crossings(const SpeedProfile::Phase& phase, double speed) 
   const double c = phase.start.speed - speed;
   std::size_t count = 0;
   const auto keep = [&](double t) {
-    if (t > 0.0 && t < end) found[count++] = t;
+    found[count++] = std::clamp(t, 0.0, end);
   };
   if (a == 0.0) {
     if (b != 0.0) keep(-c / b);
@@ -60,7 +59,6 @@ double EnergyOf(const SpeedProfile& profile, const PowerLaw& law, double rated_W
     const std::array<double, 2> cross = Crossings(phase, saturates_mm_s);
     double from = 0.0;
     for (const double to : {cross[0], cross[1], phase.duration_s}) {
-      if (to <= from) continue;
       const bool full = SpeedIn(phase, 0.5 * (from + to)) > saturates_mm_s;
       percent_s +=
           full ? kFull_percent * (to - from) : slope * (Advance(phase, to) - Advance(phase, from));

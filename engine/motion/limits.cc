@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/motion/axes.h"
 #include "engine/motion/axis_demand.h"
 #include "engine/motion/planner.h"
 
@@ -8,7 +9,7 @@ namespace rmlcell::motion {
 
 bool LinesFollowTip(const MachineLimits& machine) {
   bool enough = true;
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (const std::size_t i : kLinearAxes) {
     enough = enough && machine.axes.speed[i] >= machine.tip_speed_mm_s &&
              machine.axes.acceleration[i] >= machine.tip_acceleration_mm_s2 &&
              (machine.axes.jerk[i] >= machine.tip_jerk_mm_s3 || std::isinf(machine.tip_jerk_mm_s3));

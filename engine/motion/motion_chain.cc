@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/motion/axes.h"
+
 namespace rmlcell::motion {
 namespace {
 
@@ -22,7 +24,7 @@ bool Contiguous(const TipPose& a, const TipPose& b) {
 
 bool AxesKeepUp(const MachineLimits& machine) {
   bool enough = true;
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (const std::size_t i : kLinearAxes) {
     enough = enough && machine.axes.speed[i] >= machine.tip_speed_mm_s &&
              machine.axes.acceleration[i] >= machine.normal_acceleration();
   }
@@ -32,7 +34,7 @@ bool AxesKeepUp(const MachineLimits& machine) {
 // The tip's acceleration is at most that of the machine, whatever its speed does on a curve.
 bool AxesFollowRamps(const MachineLimits& machine) {
   bool enough = AxesKeepUp(machine);
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (const std::size_t i : kLinearAxes) {
     enough = enough && machine.axes.acceleration[i] >= machine.tip_acceleration_mm_s2 &&
              (std::isinf(machine.tip_jerk_mm_s3) || machine.axes.jerk[i] >= machine.tip_jerk_mm_s3);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/motion/axes.h"
 #include "engine/motion/least.h"
 #include "engine/motion/motion_chain.h"
 
@@ -197,22 +198,22 @@ void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
 CornerCurve MotionChain::CurveAround(const Leg& leg, double cut, bool& head_steady) {
   Number before = leg.last_move;
   double left = cut;
-  while (left > moves_[before].path.length() && before > moves_.first()) {
+  while (left > moves_[before].path.length()) {
     left -= moves_[before].path.length();
     --before;
   }
   const PathPiece& in = moves_[before].path;
   Number after = leg.last_move + 1;
   double right = cut;
-  while (right > moves_[after].path.length() && after + 1 < moves_.end()) {
+  while (right > moves_[after].path.length()) {
     right -= moves_[after].path.length();
     ++after;
   }
   const PathPiece& out = moves_[after].path;
   head_steady =
       in.a_rate() == 0.0 && in.b_rate() == 0.0 && out.a_rate() == 0.0 && out.b_rate() == 0.0;
-  const CurveEnd begin = EndAt(in, std::max(in.length() - left, 0.0));
-  const CurveEnd end = EndAt(out, std::min(right, out.length()));
+  const CurveEnd begin = EndAt(in, in.length() - left);
+  const CurveEnd end = EndAt(out, right);
   return leg.in_axes ? CornerCurve::InAxes(begin, end, cut) : CornerCurve(begin, end, cut);
 }
 
@@ -263,7 +264,7 @@ PathLimits MotionChain::LimitsInStretches(const Span& span) {
   if (span.head_steady && axes_follow_ramps_) return limits;
   // No axis moves by more than its speed over that of the tip for a mm of the way.
   const double whole = limits.speed / kLeavesRoom;
-  for (std::size_t i = 0; i < kAxisCount; ++i) {
+  for (const std::size_t i : kAxes) {
     const double per_axis = whole / machine_.axes.speed[i];
     limits.acceleration =
         std::min(limits.acceleration,

@@ -70,9 +70,7 @@ void MotionChain::PlanSection() {
   place_ramp_ = 0;
   alone_ = section_left_ == 1 && !first.in_stretches;
   if (alone_) {
-    if (first.length > 0.0) {
-      lone_ = SpeedProfile::Span(first.length, last_speed_, speeds_.speed(), first.limits);
-    }
+    lone_ = SpeedProfile::Span(first.length, last_speed_, speeds_.speed(), first.limits);
     return;
   }
   // What lies between the knots at both ends, each with the speed of level 1 at its end. The curve

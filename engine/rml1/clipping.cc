@@ -56,7 +56,6 @@ bool SamePoint(const Point& a, const Point& b, double zero) {
 }
 
 Point Between(const Point& from, const Point& to, double share) {
-  if (share <= 0.0) return from;
   if (share >= 1.0) return to;
   const auto at = [share](double a, double b) { return a + (b - a) * share; };
   return {at(from.x, to.x), at(from.y, to.y), at(from.z, to.z), at(from.a, to.a)};

@@ -180,7 +180,7 @@ Reading CommandReader::InNumber(unsigned char byte) {
   state_ =
       reader_.has_digit() ? State::kAfterNumber : State::kListOver;  // a lone period: RML1-2.31
   comma_ = false;
-  if (count_ < 2) ++count_;
+  count_ = std::min(count_ + 1, 2);
   return Again(Reading::Kind::kParameter);
 }
 

@@ -39,7 +39,7 @@ void NumberReader::TakeDigit(unsigned char byte) {
   const int digit = byte - '0';
   if (period_) {
     fraction_ = fraction_ || digit != 0;
-  } else if (magnitude_ < Number::kMagnitudeMax) {
+  } else {
     magnitude_ = std::min(magnitude_ * 10 + digit, Number::kMagnitudeMax);
   }
   if (direct_ < kDirectDigits) {
@@ -64,7 +64,7 @@ Number NumberReader::value() const {
   } else if (short_number) {
     number.decimal = static_cast<double>(digits_) / kPowersOfTen[static_cast<std::size_t>(scale_)];
     number.single = static_cast<double>(static_cast<float>(number.decimal));
-    if (scale_ > 0 && IsHalfwayBetweenSingles(number.decimal)) ConvertExactly(number);
+    if (IsHalfwayBetweenSingles(number.decimal)) ConvertExactly(number);
   } else {
     ConvertExactly(number);
   }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "engine/motion/trajectory.h"
 #include "tests/engine/motion/plan_check.h"
@@ -91,6 +92,32 @@ TEST(StopAlong, EachHalfOfABendBrakesAsItsOwnMoveDoes) {
     const double j = strong_first ? 8000.0 : 40000.0;
     const StopOnPath stop = StopAlong(std::span(plan).subspan(2), 0.0, StandardMachine().axes);
     EXPECT_NEAR(Length(stop.motions), 25.0 * (50.0 / a + a / j), 1e-9);
+  }
+}
+
+// Straight on over moves of ever less ACCEL, 100, 20 and 10, at 50 mm/s: the weakest move on the way
+// sets acceleration and jerk of the whole ramp, and where that is too long for the moves it was
+// looked for, the next move counts too. 50/a + a/j s at 25 mm/s on average. OPT-2.16, OPT-B.31
+TEST(StopAlong, TheWeakestMoveOnTheWaySetsTheRamp) {
+  constexpr double kStrong = 50.0 / 2000.0, kWeak = 50.0 / 400.0 + 400.0 / 8000.0,
+                   kWeakest = 50.0 / 200.0 + 200.0 / 4000.0;
+  for (const auto& [second_mm, left_mm, time] :
+       {std::tuple{40.0, 8.0, kStrong}, {40.0, 1.0, kWeak}, {2.0, 1.0, kWeakest}}) {
+    std::vector<MoveCommand> chain(3);
+    const double ends[4] = {0.0, 100.0, 100.0 + second_mm, 200.0 + second_mm};
+    for (std::size_t k = 0; k < 3; ++k) {
+      chain[k].path = PathPiece::Line({{ends[k], 0, 0}}, {{ends[k + 1], 0, 0}});
+      chain[k].speed_fraction = 0.1;
+      chain[k].acceleration_fraction = k == 0 ? 1.0 : k == 1 ? 0.2 : 0.1;
+      chain[k].fly = k < 2;
+    }
+    const std::vector<PlannedMotion> plan = Plan(chain);
+    const double t = plan[0].speed.TimeAt(100.0 - left_mm);
+    const StopOnPath stop = StopAlong(plan, t, StandardMachine().axes);
+    // With ACCEL 100 the speed never gets to 2000 mm/s2: 2 sqrt(50/40000).
+    const double ramp_s = time == kStrong ? 2.0 * std::sqrt(50.0 / 40000.0) : time;
+    EXPECT_NEAR(Length(stop.motions), 25.0 * ramp_s, 1e-9) << second_mm << " " << left_mm;
+    EXPECT_NEAR(stop.motions[0].path.from().tip.x, 100.0 - left_mm, 1e-9);
   }
 }
 

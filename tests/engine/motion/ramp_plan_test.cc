@@ -120,7 +120,7 @@ TEST(RampPlan, RandomStretchesKeepTheirLimitsAndAreNeverSlower) {
       ASSERT_NEAR(ramp.At(0.0).speed, speed, 1e-9);
       speed = ramp.end().speed;
     }
-    ASSERT_NEAR(speed, cells.back().end_speed, 1e-12);
+    ASSERT_EQ(speed, cells.back().end_speed);
     for (std::size_t k = 0; k < count; ++k) {
       const RampPlan::Timing& timing = plan.timing()[k];
       const SpeedProfile part = plan.ramps()[timing.ramp].Part(timing.from, timing.to);
@@ -247,6 +247,37 @@ TEST(RampPlan, FewStretchesAreJoinedInTheBestWay) {
     if (best < 0.999 * LevelOneTime(cells, start)) ++joined;
   }
   EXPECT_GT(joined, 2000);
+}
+
+// Longer ways are never slower than one ramp over them, as slow all along as their slowest place
+// asks for.
+TEST(RampPlan, LongWaysAreNeverSlowerThanOneRamp) {
+  Dice dice(17);
+  RampPlan plan;
+  int compared = 0;
+  for (int round = 0; round < 1200; ++round) {
+    std::vector<RampCell> cells(static_cast<std::size_t>(dice.Uniform(9.0, 30.0)));
+    const double fastest = dice.Magnitude(20.0, 200.0);
+    for (RampCell& cell : cells) {
+      cell.length = dice.Magnitude(0.01, 1.0);
+      cell.limits = {fastest * dice.Uniform(0.8, 1.2), 2000.0, 40000.0};
+      if (dice.Chance(0.2)) cell.end_cap = fastest * dice.Uniform(0.6, 1.2);
+    }
+    TimeByLevelOne(cells, 0.0, 0.0);
+    const double one = TimeOfOneRamp(cells, 0.0, 0, cells.size() - 1);
+    ASSERT_TRUE(std::isfinite(one));
+    plan.Plan(cells, 0.0);
+    bool touches = false;  // then it is no one way
+    for (std::size_t k = 0; k + 1 < cells.size(); ++k) {
+      const double cap =
+          std::min({cells[k].limits.speed, cells[k + 1].limits.speed, cells[k].end_cap});
+      touches = touches || cells[k].end_speed >= cap * (1 - 1e-12);
+    }
+    if (touches) continue;
+    ++compared;
+    ASSERT_LE(TimeOf(plan), one * (1 + 1e-9)) << round;
+  }
+  EXPECT_GT(compared, 100);
 }
 
 // Longer ways are split at what one ramp breaks most: a stretch by itself, with one ramp on each

@@ -58,6 +58,7 @@ TEST(AnglesOf, FirstSolutionOnATie) {
 // hypot(ux, uy) < 1e-9: A is free and kept. From there on the direction tells it.
 TEST(AnglesOf, AlongZ) {
   EXPECT_EQ(AnglesOf({0.9e-9, 0, 1}, {0.3, 0.0}).a_rad, 0.3);
+  EXPECT_NEAR(AnglesOf({1e-9, 0, 1}, {0.3, 0.0}).a_rad, kPi / 2, 1e-12);
   EXPECT_NEAR(AnglesOf({1.1e-9, 0, 1}, {0.3, 0.0}).a_rad, kPi / 2, 1e-12);
   EXPECT_NEAR(AnglesOf({0, 0.9e-9, 1}, {0.3, 0.0}).b_rad, 0.9e-9, 1e-20);
   // The length of the direction does not count for B.

@@ -32,6 +32,18 @@ TEST(SpeedBound, KnowsTheRadius) {
   EXPECT_NEAR(bound.speed, std::sqrt(0.5 * 2000.0 * 2.0), 1e-9);
 }
 
+// The same where the head stands upright at one third of the way, in a turn of 0.88 rad, and half
+// way, in one of 0.6: those places are looked at. x' = 1 + 3 (turn / 1 rad) cos A.
+TEST(SpeedBound, LooksAtEqualSteps) {
+  for (const auto& [turn, share] : {std::pair{0.88, 1.0 / 3.0}, {0.6, 0.5}, {0.01, 0.5}}) {
+    const PathPiece line = PathPiece::Line({{0, 0, 0}, -turn * share, kPi / 2},
+                                           {{100, 0, 0}, turn * (1.0 - share), kPi / 2});
+    const SpeedBound bound = TightestBound(line, Head{}, StandardMachine(), 1000.0);
+    EXPECT_EQ(bound.axis, 0);
+    EXPECT_NEAR(bound.speed, 500.0 / (1.0 + 3.0 * turn), 1e-9);
+  }
+}
+
 // motion.md 2.6: what an axis lacks is told axis by axis, with the place on the path.
 TEST(Travel, ExcessOfEachAxisAndWhere) {
   const AxisLimits limits = StandardMachine().axes;

@@ -219,5 +219,35 @@ TEST(Device, IsAValue) {
   EXPECT_EQ(copy.carriage().logical().y, 2.0);
 }
 
+// RML1-2.34: in relative mode it is the place led to that has the range, in work coordinates: from
+// (700, 400, -300) with the origin elsewhere. One unit decides, for sets and for groups of axes.
+TEST(Device, RelativeValuesHaveTheRangeOfTheirPlace) {
+  machine::Parameters parameters = ParametersOf("t1");
+  ASSERT_TRUE(parameters.Set("ORIGIN_X", 50.0).ok());
+  ASSERT_TRUE(parameters.Set("ORIGIN_Y", 30.0).ok());
+  const auto error = [&](const std::string& command) {
+    TestRun run(parameters, "!MC0;Z700,400,-300;PR;" + command);
+    run.AdvanceToEnd();
+    return run.variable("ERR");
+  };
+  const auto value = [](std::int64_t number) { return std::to_string(number); };
+  EXPECT_EQ(error("Z" + value(kFloatMax - 700) + ",0,0;"), "0");
+  EXPECT_EQ(error("Z" + value(kFloatMax - 699) + ",0,0;"), "3");
+  EXPECT_EQ(error("Z0," + value(kFloatMax - 400) + ",0;"), "0");
+  EXPECT_EQ(error("Z0," + value(kFloatMax - 399) + ",0;"), "3");
+  EXPECT_EQ(error("Z0,0," + value(kFloatMin + 300) + ";"), "0");
+  EXPECT_EQ(error("Z0,0," + value(kFloatMin + 299) + ";"), "3");
+  EXPECT_EQ(error("!ZE X" + value(kFloatMax - 700) + ";"), "0");
+  EXPECT_EQ(error("!ZE X" + value(kFloatMax - 699) + ";"), "3");
+  EXPECT_EQ(error("!ZE Y" + value(kFloatMax - 400) + ";"), "0");
+  EXPECT_EQ(error("!ZE Y" + value(kFloatMax - 399) + ";"), "3");
+  EXPECT_EQ(error("!ZE Z" + value(kFloatMin + 300) + ";"), "0");
+  EXPECT_EQ(error("!ZE Z" + value(kFloatMin + 299) + ";"), "3");
+  // The same values by themselves, in absolute mode, at both ends.
+  EXPECT_EQ(error("PA;PU" + value(kFloatMin) + "," + value(kFloatMax) + ";"), "0");
+  EXPECT_EQ(error("PA;PU" + value(kFloatMin - 1) + ",0;"), "3");
+  EXPECT_EQ(error("PA;PU0," + value(kFloatMax + 1) + ";"), "3");
+}
+
 }  // namespace
 }  // namespace rmlcell::rml1

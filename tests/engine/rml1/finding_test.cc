@@ -93,6 +93,25 @@ TEST(Finding, OfAdvice) {
   for (const Case& c : cases) EXPECT_EQ(FirstFinding(c), c.finding) << c.stream;
 }
 
+// Printing characters are shown as they are, blanks and all others by their number.
+TEST(Finding, NamesEveryByte) {
+  const auto named = [](unsigned char byte) {
+    Finding finding{.kind = FindingKind::kForeignCharacter};
+    finding.byte = byte;
+    return DetailOf(finding);
+  };
+  for (const auto& [byte, name] : {std::pair<unsigned char, std::string>{0x00, "0x00"},
+                                   {0x1F, "0x1F"},
+                                   {0x20, "0x20"},
+                                   {0x21, "'!'"},
+                                   {0x7E, "'~'"},
+                                   {0x7F, "0x7F"},
+                                   {0xAB, "0xAB"},
+                                   {0xFF, "0xFF"}}) {
+    EXPECT_EQ(named(byte), name + " begins no command");
+  }
+}
+
 // RML1-4.20: what no byte of a stored program can raise has its row as well.
 TEST(Finding, RowsAreThoseOfTheTable) {
   EXPECT_EQ(RowOf(FindingKind::kLineError).code, ErrorCode::kRml1LineError);
