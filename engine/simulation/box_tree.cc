@@ -1,7 +1,6 @@
 #include "engine/simulation/box_tree.h"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 #include <utility>
 
@@ -9,8 +8,6 @@ namespace rmlcell::simulation {
 namespace {
 
 constexpr std::uint32_t kLeafMax = 8;
-// Halving 2^32 boxes goes no deeper.
-constexpr std::size_t kDepthMax = 34;
 
 bool Touch(const machine::Box& a, const machine::Box& b, double reach) {
   return a.min.x <= b.max.x + reach && b.min.x <= a.max.x + reach && a.min.y <= b.max.y + reach &&
@@ -27,11 +24,16 @@ BoxTree::BoxTree(std::vector<machine::Box> boxes, double reach)
 
 void BoxTree::Build(std::uint32_t begin, std::uint32_t end) {
   const std::size_t here = nodes_.size();
-  nodes_.push_back({.box = {}, .begin = begin, .end = end});
+  nodes_.emplace_back();
   machine::Box box;
   for (std::uint32_t i = begin; i < end; ++i) box.Add(boxes_[order_[i]]);
   nodes_[here].box = box;
-  if (end - begin <= kLeafMax) return;
+  if (end - begin <= kLeafMax) {
+    nodes_[here].begin = begin;
+    nodes_[here].end = end;
+    nodes_[here].behind = static_cast<std::uint32_t>(nodes_.size());
+    return;
+  }
   const motion::Vec3 size = box.max - box.min;
   const double longest = std::max({size.x, size.y, size.z});
   const auto middle = [&](std::uint32_t index) {
@@ -45,27 +47,22 @@ void BoxTree::Build(std::uint32_t begin, std::uint32_t end) {
     return std::pair(middle(a), a) < std::pair(middle(b), b);
   });
   Build(begin, half);
-  nodes_[here].second = static_cast<std::uint32_t>(nodes_.size());
   Build(half, end);
+  nodes_[here].behind = static_cast<std::uint32_t>(nodes_.size());
 }
 
 void BoxTree::Visit(const machine::Box& box,
                     const std::function<bool(std::size_t index)>& visit) const {
-  if (nodes_.empty()) return;
-  std::array<std::uint32_t, kDepthMax> waiting{};
-  std::size_t count = 1;  // the root
-  while (count > 0) {
-    const std::uint32_t here = waiting[--count];
+  for (std::uint32_t here = 0; here < nodes_.size();) {
     const Node& node = nodes_[here];
-    if (!Touch(node.box, box, reach_)) continue;
-    if (node.second != 0) {
-      waiting[count++] = node.second;
-      waiting[count++] = here + 1;
+    if (!Touch(node.box, box, reach_)) {
+      here = node.behind;
       continue;
     }
     for (std::uint32_t i = node.begin; i < node.end; ++i) {
       if (Touch(boxes_[order_[i]], box, reach_) && !visit(order_[i])) return;
     }
+    ++here;  // its first half, or what is behind a leaf
   }
 }
 

@@ -19,11 +19,12 @@ class BoxTree {
   void Visit(const machine::Box& box, const std::function<bool(std::size_t index)>& visit) const;
 
  private:
+  // Behind a node come its first half and all of that, then its second half.
   struct Node {
     machine::Box box;
-    std::uint32_t begin = 0;  // in order_
+    std::uint32_t begin = 0;  // of a leaf: its boxes in order_
     std::uint32_t end = 0;
-    std::uint32_t second = 0;  // its second half; the first is the next node. 0: a leaf
+    std::uint32_t behind = 0;  // the first node that is not within this one
   };
   void Build(std::uint32_t begin, std::uint32_t end);
 

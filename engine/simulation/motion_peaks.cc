@@ -41,7 +41,6 @@ void Add(MotionPeaks& peaks, const Instant& at) {
 
 // The mean jerk between two instants of one phase.
 void AddJerk(MotionPeaks& peaks, const Instant& before, const Instant& after, double duration_s) {
-  if (!(duration_s > 0.0)) return;
   Raise(peaks.tip_jerk, Norm(after.tip_acceleration - before.tip_acceleration) / duration_s);
   for (std::size_t i = 0; i < peaks.axis_jerk.size(); ++i) {
     Raise(peaks.axis_jerk[i],

@@ -125,8 +125,8 @@ void Append(PathShare& part, const SketchElement& element, const std::vector<Ske
   const double share_begin = stretch.begin / length, share_end = stretch.end / length;
   if (element.arc < 0) {
     const Vec3 way = element.to - element.from;
-    if (share_begin > 0.0) piece.from = element.from + way * share_begin;
-    if (share_end < 1.0) piece.to = element.from + way * share_end;
+    piece.from = element.from + way * share_begin;
+    piece.to = element.to - way * (1.0 - share_end);
   } else {
     SketchCircle circle = circles[static_cast<std::size_t>(element.arc)];
     const Vec3 spoke = element.from - circle.centre;
@@ -135,8 +135,8 @@ void Append(PathShare& part, const SketchElement& element, const std::vector<Ske
       const double angle = share * circle.sweep_rad;
       return circle.centre + spoke * std::cos(angle) + side * std::sin(angle);
     };
-    if (share_begin > 0.0) piece.from = at(share_begin);
-    if (share_end < 1.0) piece.to = at(share_end);
+    piece.from = at(share_begin);
+    piece.to = at(share_end);
     piece.middle = at(0.5 * (share_begin + share_end));
     circle.sweep_rad *= share_end - share_begin;
     piece.arc = static_cast<std::int32_t>(part.circles.size());

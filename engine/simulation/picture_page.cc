@@ -48,9 +48,8 @@ class PageWriter {
   // A mill seen from above tells depth by shade.
   DepthRange DepthOf(const std::vector<ViewFrame>& frames) const {
     constexpr double kFlat_mm = 0.01;
-    const machine::Box& cut = sketch_.cut_box();
     const bool from_above = frames.size() == 1 && frames[0].upward == "Y";
-    if (shape_.five_axis || cut.empty() || !from_above) return {};
+    if (shape_.five_axis || !from_above) return {};
     double low = HUGE_VAL;
     double high = -HUGE_VAL;
     for (const SketchElement& element : sketch_.elements()) {

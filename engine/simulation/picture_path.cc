@@ -50,15 +50,12 @@ std::optional<Clip> ClipTo(const ScreenRect& rect, const ScreenPoint& a, const S
   const std::array<double, 4> q = {a.x - rect.x, rect.x + rect.width - a.x, a.y - rect.y,
                                    rect.y + rect.height - a.y};
   for (std::size_t i = 0; i < 4; ++i) {
-    if (p[i] == 0.0) {
-      if (q[i] < 0.0) return std::nullopt;
-      continue;
-    }
-    const double t = q[i] / p[i];
     if (p[i] < 0.0) {
-      clip.begin = std::max(clip.begin, t);
-    } else {
-      clip.end = std::min(clip.end, t);
+      clip.begin = std::max(clip.begin, q[i] / p[i]);
+    } else if (p[i] > 0.0) {
+      clip.end = std::min(clip.end, q[i] / p[i]);
+    } else if (q[i] < 0.0) {
+      return std::nullopt;
     }
   }
   if (!(clip.begin <= clip.end)) return std::nullopt;
@@ -127,8 +124,8 @@ class PathDrawing {
     if (!clip) return;
     SketchElement inside = line;
     const Vec3 way = line.to - line.from;
-    if (clip->begin > 0.0) inside.from = line.from + way * clip->begin;
-    if (clip->end < 1.0) inside.to = line.from + way * clip->end;
+    inside.from = line.from + way * clip->begin;
+    inside.to = line.to - way * (1.0 - clip->end);
     elements_.push_back(inside);
   }
 

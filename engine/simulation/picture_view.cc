@@ -48,7 +48,7 @@ ViewFrame FrameOf(PictureView view, const Vec3& direction) {
   frame.towards_eye = Unit(direction);
   if (frame.towards_eye == Vec3{}) frame.towards_eye = {0, 0, 1};
   frame.right = Unit(Cross({0, 0, 1}, frame.towards_eye));
-  if (Norm(frame.right) < 0.5) frame.right = {1, 0, 0};  // straight from above or below
+  if (frame.right == Vec3{}) frame.right = {1, 0, 0};  // straight from above or below
   frame.up = Cross(frame.towards_eye, frame.right);
   frame.title = "in space";
   return frame;

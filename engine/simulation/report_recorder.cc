@@ -60,11 +60,8 @@ ReportRecorder::ReportRecorder(const machine::MachineShape& shape)
 
 // Null: one program too many. The next time of the beam counts in what is given here.
 FigureLog* ReportRecorder::LogOf(int program) {
-  auto found = programs_.find(program);
-  if (found == programs_.end() && programs_.size() < kReportedProgramsMax) {
-    found = programs_.try_emplace(program, shape_).first;
-  }
-  FigureLog* log = found != programs_.end() ? &found->second : nullptr;
+  FigureLog* log = nullptr;
+  if (work_.HasRoomFor(program)) log = &programs_.try_emplace(program, shape_).first->second;
   beam_.AlsoInto(log != nullptr ? &log->beam() : nullptr);
   return log;
 }

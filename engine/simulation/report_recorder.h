@@ -51,7 +51,7 @@ class ReportRecorder final : public machine::RunObserver {
   TimeLedger time_;
   WorkTable work_;
   FigureLog job_;
-  std::map<int, FigureLog> programs_;  // at most kReportedProgramsMax
+  std::map<int, FigureLog> programs_;  // of those that work_ has room for
   BeamWork beam_;
   MoveSpeeds speeds_;
   SlowMoveList slow_moves_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <utility>
 
 #include "engine/simulation/polyline.h"
@@ -37,16 +38,14 @@ bool AlikeRuns(const ToolpathRun& a, const ToolpathRun& b) {
          a.speed_class == b.speed_class;
 }
 
-// When the motion is at `s`: the profile is monotone, so halving finds it.
+// When the motion is at `s`: the profile is monotone, so halving finds the nanosecond.
 SimTime TimeAt(const machine::MotionDone& done, double s) {
   if (s >= done.travelled) return done.end;
-  double low = done.profile_start_s;
-  double high = done.motion->speed.duration_s();
-  for (int i = 0; i < 50; ++i) {
-    const double middle = 0.5 * (low + high);
-    (done.motion->speed.At(middle).s < s ? low : high) = middle;
-  }
-  return std::min(done.end, done.start + FromSeconds(high - done.profile_start_s));
+  const auto place_at = [&](std::int64_t ns) {
+    return done.motion->speed.At(done.profile_start_s + ToSeconds(SimTime(ns) - done.start)).s;
+  };
+  const auto times = std::views::iota(done.start.count(), done.end.count());
+  return SimTime(*std::ranges::lower_bound(times, s, {}, place_at));
 }
 
 }  // namespace

@@ -19,6 +19,9 @@ class WorkTable {
   // `work` was done at `place`.
   void Add(const machine::Place& place, const WorkFigures& work);
 
+  // Whether what a program does is counted by program; once it is, it stays so.
+  bool HasRoomFor(int program) { return ProgramOf(program) != nullptr; }
+
   // Writes total, steps, rest and the totals of the programs of the report.
   void WriteTo(RunReport& report) const;
 

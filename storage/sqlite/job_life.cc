@@ -308,7 +308,6 @@ Result<std::int64_t> AppendEvents(WriteContext& context, const Lease& lease,
                                   const std::vector<NewEvent>& events) {
   Result<JobRow> row = GetHeldRow(context, lease);
   if (!row) return row.error();
-  if (events.empty()) return row->job.last_sequence;
   const Status written = WriteEvents(context, row->job, lease.attempt, events);
   if (!written) return written.error();
   const Status noted = context.tables.jobs.SetLastSequence(row->job.id, row->job.last_sequence);

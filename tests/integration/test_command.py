@@ -231,6 +231,120 @@ class Local(unittest.TestCase):
         self.assertEqual(run("jobs", server="127.0.0.1:1").returncode, 3)
 
 
+class Refusals(unittest.TestCase):
+    """Wrong use: exit code 2, the code of the error and what was wrong, and nothing on standard output."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        for name, text in (("a.S", "DELAY 1.\n"), ("b.S", "DELAY 2.\n"), ("a.rml", "PU;"), ("a.SI", "DELAY 1.\n"),
+                           ("empty.S", ""), ("empty.rml", ""), ("notes.txt", "DELAY 1.\n"), ("1.S", "DELAY 1.\n")):
+            (self.folder / name).write_text(text)
+        self.assertEqual(run("compile", self.folder / "a.S").returncode, 0)
+        (self.folder / "an.O").write_bytes((self.folder / "a.O").read_bytes())
+
+    def run_here(self, line):
+        """In `line` an @ stands for the folder."""
+        return run(*(word.replace("@", f"{self.folder}/") for word in line.split()))
+
+    def refused(self, rows):
+        for line, code, text in rows:
+            with self.subTest(line):
+                done = self.run_here(line)
+                self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+                self.assertTrue(done.stderr.startswith(f"rmlcell: {code}: "), done.stderr)
+                self.assertIn(text.replace("@", f"{self.folder}/"), done.stderr)
+
+    def accepted(self, *lines):
+        for line in lines:
+            with self.subTest(line):
+                done = self.run_here(line)
+                self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_check(self):
+        self.refused([("check @empty.S", "CELL-E9017", "@empty.S"), ("check @empty.rml", "CELL-E9017", "@empty.rml"),
+                      ("check --fix @empty.S", "CELL-E9017", "@empty.S"),
+                      ("check --fix @a.rml", "CELL-E9026", "@a.rml: a stream of"),
+                      ("check --fix @none.S", "CELL-E9022", "@none.S"), ("check @none.S", "CELL-E9022", "@none.S"),
+                      ("check @none.rml", "CELL-E9022", "@none.rml"),
+                      ("check @notes.txt", "CELL-E9018", "@notes.txt': give --family"),
+                      ("check @a.S --family lathe", "CELL-E9008", "'lathe'; there are optimo rml1"),
+                      ("check @a.S --machine @none.toml", "CELL-E9022", "@none.toml"),
+                      ("check @a.S --inputs @none.txt", "CELL-E9022", "@none.txt")])
+
+    def test_places_of_simulate(self):
+        place = "write PROGRAM/STEP, such as 45/7, or off"
+        self.refused([(f"simulate @a.S {option} {text}", "CELL-E9026", f"'{text}': {place}")
+                      for option, text in (("--break", "on"), ("--simul", "0/1"), ("--simul", "100/1"), ("--break", "1/0"),
+                                           ("--break", "0"), ("--simul", "-1/1"), ("--simul", "1/1000000001"),
+                                           ("--break", "1/"), ("--break", "/1"))])
+        self.refused([(f"simulate @a.S {option} 99/1", "CELL-E9026", "--simul, --break: there is no program 99")
+                      for option in ("--simul", "--break")])
+        self.accepted("simulate @a.S --break 1/1000000000", "simulate @a.S --main 99 --simul 99/1", "simulate @a.S --simul 1")
+
+    def test_numbers_of_simulate(self):
+        self.refused([(f"simulate @a.S --budget {text}", "CELL-E9026", f"'{part}': write steps=N,time=SECONDS")
+                      for text, part in (("steps=0", "steps=0"), ("steps", "steps"), ("time=9,time=-1", "time=-1"),
+                                         ("time=0", "time=0"), ("step=5", "step=5"), ("time=x", "time=x"))])
+        self.refused([(f"simulate @a.S --override {text}", "CELL-E9026", "--override: allowed are above 0 to 145")
+                      for text in ("0", "-1", "145.5")])
+        self.refused([("simulate @a.S --mode fast", "CELL-E9026", "'fast': modes are cycle, remote, single, repeat"),
+                      ("simulate @a.S --plot torque @p.svg", "CELL-E9026", "'torque': curves are speed, power, axes"),
+                      ("simulate @a.S --plot axes,axes @p.svg", "CELL-E9026", "'axes' is there twice"),
+                      ("simulate @a.S --samples 0.5 @s.csv", "CELL-E9026", "'0.5': samples a second")])
+        self.accepted("simulate @a.S --override 145", "simulate @a.S --budget steps=5,time=60", "simulate @a.S --mode single")
+        self.assertEqual(self.run_here("simulate @a.S --budget time=0.5").returncode, 1)
+
+    def test_programs_of_simulate(self):
+        self.refused([("simulate @a.S --executable x", "CELL-E9026", "'x': write 44=FILE"),
+                      ("simulate @a.S --executable 44", "CELL-E9026", "--executable 44: there is no such program"),
+                      ("simulate @a.S --executable 100", "OPT-E7101", "program number is 100"),
+                      ("simulate @a.S --slot 44", "CELL-E9026", "'44': write 44=FILE"),
+                      ("simulate @a.S --slot 44=", "CELL-E9026", "'44=': write 44=FILE"),
+                      ("simulate @a.S --slot 0=@b.S", "OPT-E7101", "program number is 0"),
+                      ("simulate @a.S --slot 100=@b.S", "OPT-E7101", "program number is 100"),
+                      ("simulate @1.S --slot 1=@b.S", "CELL-E9026",
+                       "program 1 comes from two files: @1.S and @b.S"),
+                      ("simulate --slot 1=@a.S --slot 2=@b.S", "CELL-E9026", "several programs: say which one is started"),
+                      ("simulate", "CELL-E9026", "no program: give a file, or a folder"),
+                      ("simulate @empty.S", "CELL-E9017", "@empty.S"),
+                      ("simulate @notes.txt", "CELL-E9018", "@notes.txt': give --family"),
+                      ("simulate @a.S --state-in @none", "CELL-E9022", "@none")])
+        self.accepted("simulate --slot 1=@a.S --slot 99=@b.S --main 99", "simulate --slot 44=@a.S")
+
+    def test_files_that_cannot_be_written(self):
+        options = ("--svg {}", "--plot speed {}", "--samples 100 {}", "--state-out {}")
+        self.refused([(f"simulate @a.S {option.format('/dev/full')}", "CELL-E9023", "/dev/full: ") for option in options])
+        self.refused([(f"simulate @a.S {option.format('@no/x')}", "CELL-E9023", "@no/x: ") for option in options])
+        self.refused([(f"simulate @a.rml --stock 9x9x9 --tool flat:2 --stl {to}", "CELL-E9023", f"{to}: cannot be written")
+                      for to in ("/dev/full", "@no/x")])
+        self.refused([("compile @a.S -o @no/x.O", "CELL-E9023", "@no/x.O: "), ("compile @a.S -o /dev/full", "CELL-E9023", ""),
+                      ("decompile @a.O -o @no/x.S", "CELL-E9023", "@no/x.S: "),
+                      ("convert @a.S @no/x.SI", "OPT-E7706", "@no/x.SI: ")])
+
+    def test_office(self):
+        self.refused([("compile @empty.S", "CELL-E9017", "@empty.S"), ("compile @none.S", "CELL-E9022", "@none.S"),
+                      ("compile @a.S --json -o -", "CELL-E9026", "--json says what was written"),
+                      ("compile @a.S --map -o -", "CELL-E9026", "--map: the object goes into no file"),
+                      ("link @1.S --json -o -", "CELL-E9026", "--json says what was written"),
+                      ("decompile @none.O", "CELL-E9022", "@none.O"), ("list @none.S", "CELL-E9022", "@none.S"),
+                      ("format @an.O", "CELL-E9024", "@an.O is an object; rmlcell decompile gives its source"),
+                      ("format @none.S", "CELL-E9022", "@none.S"),
+                      ("convert @an.O /i", "CELL-E9024", "@an.O is an object; rmlcell decompile gives its source"),
+                      ("convert @none.S", "OPT-E7703", "@none.S"), ("convert @a.S /i /m", "OPT-E7701", "/i and /m"),
+                      ("convert @notes.txt", "OPT-E7704", "@notes.txt is neither .S nor .SI"),
+                      ("compensate @none.S", "CELL-E9022", "@none.S"),
+                      ("transform @none.S --move 1,0,0", "CELL-E9022", "@none.S"),
+                      ("transform @a.S", "CELL-E9026", "nothing to do: give --move, --turn or --shift"),
+                      ("transform @a.S --shift 1,0,0,0,0,0 --move 1,0,0", "CELL-E9026", "give one or the other"),
+                      ("transform @a.S --shift 1,0,0,0,0,0 --turn 1,0,0", "CELL-E9026", "give one or the other"),
+                      ("transform @a.SI --move 1,0,0", "OPT-E7030", "@a.SI")])
+        for name in ("move", "turn"):
+            self.refused([(f"transform @a.S --{name} {values}", "CELL-E9026", f"--{name}: give finite numbers")
+                          for values in ("inf,0,0", "0,0,nan")])
+
+
 class Sockets(unittest.TestCase):
     def test_a_socket_in_use_is_refused_and_one_left_behind_is_taken(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -98,8 +98,17 @@ def silent_tokens(found, pairs):
             while end + 1 < len(found) and found[end + 1].text not in ("(", ";", "{", "}"):
                 end += 1
             if end + 1 in pairs and found[end + 1].text == "(":
-                silent.update(range(index, pairs[end + 1] + 1))
+                silent.update(range(start_of_chain(found, pairs, index), pairs[end + 1] + 1))
     return silent
+
+
+def start_of_chain(found, pairs, index):
+    """The first token of `a.b[1]->name`, for that of `name`."""
+    while index > 1 and found[index - 1].text in (".", "->", "::"):
+        index -= 2
+        while index > 0 and found[index].text in ("]", ")") and index in pairs:
+            index = pairs[index] - 1
+    return index
 
 
 def number_after(text):

@@ -53,6 +53,12 @@ class Places(unittest.TestCase):
     def test_declarations_are_not_dropped(self):
         self.assertEqual(changes("void F() { std::string a(b); Type c; const int d = 1; }", "dropped statement"), [])
 
+    def test_room_that_is_made_beforehand_stays(self):
+        source = "void F() { a.reserve(2); b->rows[n].reserve(c + 1); d.log_->reserve(3); a.clear(); }"
+        self.assertEqual(changes(source, "dropped statement"),
+                         [source.replace("a.clear()", "")])
+        self.assertEqual(changes(source, "constant"), [])
+
     def test_exchanged_arguments(self):
         self.assertEqual(changes("void F() { Use(a, b.c, 3); }", "exchanged argument"),
                          ["void F() { Use(b.c, a, 3); }", "void F() { Use(a, 3, b.c); }"])
@@ -72,7 +78,7 @@ class Places(unittest.TestCase):
 class Sequence(unittest.TestCase):
     def test_a_seed_gives_the_same_places_again(self):
         def first(seed):
-            places = mutate.sequence("mill", seed, mutate.error_codes())
+            places = mutate.sequence("mill", seed, mutate.error_codes(), None)
             return [next(places) for _ in range(50)]
 
         self.assertEqual(first("1"), first("1"))

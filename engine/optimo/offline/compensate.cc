@@ -307,7 +307,7 @@ void Compensator::AddLeg(const Instruction& i) {
 
 void Compensator::FinishChain() {
   if (chain_.empty()) return;
-  std::size_t failed = 0;
+  std::size_t failed{};
   const Result<std::vector<OffsetLeg>> moved = OffsetChain(chain_, chain_offset_, failed);
   if (!moved) {
     Report(moved.error().code, *chain_moves_[failed], moved.error().detail, "OPT-8.19");

@@ -197,7 +197,7 @@ void ContourAdviser::PassMove(const Instruction& i) {
 void ContourAdviser::AdviseHead(const Instruction& i, const TipPose& target) {
   const double swing = std::fabs(target.a_rad - at_->a_rad);
   const bool crosses = (at_->b_rad < 0.0) != (target.b_rad < 0.0);
-  const double nearest = crosses ? 0.0 : std::fmin(std::fabs(at_->b_rad), std::fabs(target.b_rad));
+  const double nearest = crosses ? 0.0 : std::min(std::fabs(at_->b_rad), std::fabs(target.b_rad));
   if (swing <= kSwingMax_rad || nearest >= kNearStraightDown_rad) return;
   findings_.Add(ErrorCode::kHeadSingular, p_.At(i),
                 "A turns by " + FixedText(swing / kRadPerDegree, 1) +

@@ -50,8 +50,8 @@ class Drawing {
     }
     const Vec3 e = (leg.from - leg.centre) * (1.0 / leg.radius), f = motion::Cross(leg.axis, e);
     const double sweep = SweepOf(leg);
-    const double chord = std::fmax(
-        kChordMin_rad, std::fmin(2.0 * std::sqrt(2.0 * kChordError_mm / leg.radius), 0.5));
+    const double chord = std::max(
+        kChordMin_rad, std::min(2.0 * std::sqrt(2.0 * kChordError_mm / leg.radius), 0.5));
     const int chords = static_cast<int>(std::ceil(sweep / chord));
     Vec3 before = Flat(leg.from);
     for (int c = 1; c <= chords; ++c) {
@@ -197,10 +197,10 @@ GougeSearch FindGouges(const std::vector<Leg>& legs, const std::vector<OffsetLeg
       // Two lines with a corner come too near only where one runs back, or at the pierce point.
       if (apart == 1 && !legs[piece.leg].is_arc && !legs[edge.leg].is_arc) {
         if (piece.leg > 0 || edges.start) return;
-        nearest[0] = std::fmin(nearest[0], NearestPointsOf({start, start, 0}, edge).distance);
+        nearest[0] = std::min(nearest[0], NearestPointsOf({start, start, 0}, edge).distance);
         return;
       }
-      nearest[piece.leg] = std::fmin(nearest[piece.leg], NearestPointsOf(piece, edge).distance);
+      nearest[piece.leg] = std::min(nearest[piece.leg], NearestPointsOf(piece, edge).distance);
     });
     whole = whole && all;
   };

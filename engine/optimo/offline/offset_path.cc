@@ -186,7 +186,6 @@ std::optional<Vec3> HoleEnd(const Vec3& from, const Vec3& centre, const Vec3& be
 Result<std::vector<OffsetLeg>> OffsetChain(const std::vector<Leg>& legs, double offset,
                                            std::size_t& failed) {
   std::vector<OffsetLeg> result;
-  result.reserve(legs.size());
   for (std::size_t k = 0; k < legs.size(); ++k) {
     const Leg& leg = legs[k];
     failed = k;

@@ -48,8 +48,8 @@ SegmentGrid::SegmentGrid(const std::vector<PathSegment>& segments, double reach)
   double length = 0.0;
   for (const PathSegment& s : segments) {
     for (const Vec3& p : {s.from, s.to}) {
-      low_ = {std::fmin(low_.x, p.x), std::fmin(low_.y, p.y), std::fmin(low_.z, p.z)};
-      high_ = {std::fmax(high_.x, p.x), std::fmax(high_.y, p.y), std::fmax(high_.z, p.z)};
+      low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y), std::min(low_.z, p.z)};
+      high_ = {std::max(high_.x, p.x), std::max(high_.y, p.y), std::max(high_.z, p.z)};
     }
     length += motion::Distance(s.from, s.to);
   }
@@ -61,7 +61,7 @@ SegmentGrid::SegmentGrid(const std::vector<PathSegment>& segments, double reach)
   // A part of the mean length: then there are a few entries a segment, whatever their lengths, and
   // long ones that lie side by side do not share all of their cells.
   cell_ =
-      std::fmax(2.0 * reach, length / (kCellsPerSegment * static_cast<double>(segments.size())));
+      std::max(2.0 * reach, length / (kCellsPerSegment * static_cast<double>(segments.size())));
   entries_.reserve(3 * segments.size());
   for (std::size_t i = 0; i < segments.size(); ++i) {
     Cover(segments[i], 0.0, [&](std::uint64_t cell) {

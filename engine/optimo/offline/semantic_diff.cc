@@ -188,7 +188,7 @@ std::vector<FigureChange> CompareFigures(const std::vector<machine::Figure>& a,
   }
   std::vector<FigureChange> changes;
   for (auto& [name, change] : by_name) {
-    const double size = std::fmax(std::fabs(change.before), std::fabs(change.after));
+    const double size = std::max(std::fabs(change.before), std::fabs(change.after));
     if (std::fabs(change.after - change.before) > kSameFigure * size)
       changes.push_back(std::move(change));
   }

@@ -85,5 +85,47 @@ TEST(Framing, ALengthBeyondTheLargestTakesNoMemory) {
   EXPECT_THAT(frames[0].problem, testing::HasSubstr("at most"));
 }
 
+// What is wrong with a header, word by word; what is right stands beside it.
+TEST(Framing, TheProblemIsNamed) {
+  const auto problem = [](const std::string& header) {
+    const std::vector<Frame> frames = Read(header + "\r\n\r\nok", 1000);
+    if (frames.empty()) return std::string("no frame");
+    return frames[0].problem.empty() ? frames[0].body : frames[0].problem;
+  };
+  const std::string length = "Content-Length: 2";
+  EXPECT_EQ(problem(length), "ok");
+  EXPECT_EQ(problem("CONTENT-LENGTH:\t2"), "ok");
+  EXPECT_EQ(problem("\r\n" + length + "\r\nOther: x"), "ok");
+  EXPECT_EQ(problem(length + "\r\n" + length), "ok");
+  EXPECT_EQ(problem("Content-Length: twelve"), "Content-Length is no number");
+  EXPECT_EQ(problem("Content-Length: 2x"), "Content-Length is no number");
+  EXPECT_EQ(problem("Content-Length:"), "Content-Length is no number");
+  EXPECT_EQ(problem("Content-Length: 99999999999999999999"), "Content-Length is no number");
+  EXPECT_EQ(problem("Content-Length: 134217729"), "a message of 134217729 bytes; at most 134217728 are read");
+  EXPECT_EQ(problem(length + "\r\nContent-Length: 3"), "two different Content-Length");
+  EXPECT_EQ(problem("Content-Length: 0\r\nContent-Length: 2"), "two different Content-Length");
+  EXPECT_EQ(problem("no colon"), "a header line without a colon");
+  EXPECT_EQ(problem("Other: x"), "a header without Content-Length");
+  EXPECT_EQ(problem("X: " + std::string(kHeaderBytesMax, 'x')), "a header that does not end");
+  for (const std::string type : {"application/vscode-jsonrpc", "a; charset=utf-8", "a;charset=UTF8",
+                                 "a; CHARSET= utf-8; b", "a; charset=\"UTF-8\"", ""}) {
+    EXPECT_EQ(problem(length + "\r\nContent-Type: " + type), "ok") << type;
+  }
+  for (const std::string type : {"a; charset=utf-16", "a; CHARSET=latin1", "a; charset="}) {
+    EXPECT_EQ(problem(length + "\r\nContent-Type: " + type), "a message that is not in UTF-8") << type;
+  }
+}
+
+// Reading goes on at the next mark, even one that begins within another, as often as it must.
+TEST(Framing, EachLossFindsTheNextMark) {
+  const std::string stream = "x\n\nCContent-LContent-Length: 1\n\na" + Framed("b") + "y\n\nContent-Length: z\n\n" +
+                             "Content-Length: 1\n\nc";
+  for (const std::size_t piece : {1U, 5U, 1000U}) {
+    std::vector<std::string> read;
+    for (const Frame& frame : Read(stream, piece)) read.push_back(frame.problem.empty() ? frame.body : "?");
+    EXPECT_EQ(read, (std::vector<std::string>{"?", "a", "b", "?", "?", "c"})) << piece;
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::lsp

@@ -22,6 +22,16 @@ TEST(ProgramFolder, PathsAndUrisGoBothWays) {
   EXPECT_EQ(PathOfUri("file:///a%2"), std::nullopt);
   EXPECT_EQ(PathOfUri("file:///a%zz"), std::nullopt);
   EXPECT_EQ(PathOfUri("file:///a%00b"), std::nullopt);
+  EXPECT_EQ(PathOfUri("file:///%0F%F0%f0%aF%09%90"), "/\x0F\xF0\xF0\xAF\x09\x90");
+  EXPECT_EQ(PathOfUri("file:///%AG"), std::nullopt);
+  EXPECT_EQ(PathOfUri("file:///%g0"), std::nullopt);
+  EXPECT_EQ(PathOfUri("file:///%:0"), std::nullopt);
+  EXPECT_EQ(PathOfUri("file:///%0/"), std::nullopt);
+  EXPECT_EQ(PathOfUri("file:///a%41"), "/aA");
+  EXPECT_EQ(PathOfUri("file:///a%4"), std::nullopt);
+  EXPECT_EQ(PathOfUri("file://host"), std::nullopt);
+  EXPECT_EQ(UriOfPath("/azAZ09-._~"), "file:///azAZ09-._~");
+  EXPECT_EQ(UriOfPath("/@[`{:\x7F\xFF"), "file:///%40%5B%60%7B%3A%7F%FF");
 }
 
 // OPT-1.10

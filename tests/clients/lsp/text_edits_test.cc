@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 #include "engine/optimo/language/fixes.h"
 #include "engine/optimo/language/formatter.h"
 #include "tests/clients/lsp/editor.h"
@@ -138,6 +142,106 @@ TEST(CodeActions, AnEditorThatKnowsCommandsOnlyGetsNone) {
   Editor editor(Json::object());
   editor.Open("SPED 5\n");
   EXPECT_EQ(ActionsOf(editor, {{0, 0}, {0, 1}}), Json::array());
+}
+
+std::vector<std::string> TitlesOf(const Json& actions) {
+  std::vector<std::string> titles;
+  for (const Json& action : actions) titles.push_back(action["title"]);
+  return titles;
+}
+using Titles = std::vector<std::string>;
+
+// A finding is there at both of its ends and in between; a range that ends before it begins is a place.
+TEST(CodeActions, AFindingReachesFromItsFirstCharacterBehindItsLast) {
+  Editor editor;
+  editor.Open("STOP\n SPED 5\n");
+  const Titles fix = {"Replace 'SPED' by 'SPEED'"};
+  const auto titles = [&](const Range& range) {
+    return TitlesOf(ActionsOf(editor, range, {{"only", {"quickfix"}}}));
+  };
+  EXPECT_EQ(titles({{1, 0}, {1, 0}}), Titles{});
+  EXPECT_EQ(titles({{1, 1}, {1, 1}}), fix);
+  EXPECT_EQ(titles({{1, 5}, {1, 5}}), fix);
+  EXPECT_EQ(titles({{1, 6}, {1, 6}}), Titles{});
+  EXPECT_EQ(titles({{0, 0}, {1, 1}}), fix);
+  EXPECT_EQ(titles({{1, 5}, {1, 7}}), fix);
+  EXPECT_EQ(titles({{1, 5}, {0, 0}}), fix);
+  EXPECT_EQ(titles({{1, 6}, {0, 0}}), Titles{});
+}
+
+// A kind that is asked for stands for all below it; a part of a word stands for nothing.
+TEST(CodeActions, OnlyKindsThatAreAskedFor) {
+  Editor editor;
+  editor.Open("MOVE (1,2,3,0,0) /INF\n");
+  const auto kinds = [&](const Json& only) {
+    std::vector<std::string> found;
+    for (const Json& action : ActionsOf(editor, {{0, 0}, {0, 0}}, {{"only", only}})) {
+      if (found.empty() || found.back() != action["kind"]) found.push_back(action["kind"]);
+    }
+    return found;
+  };
+  const Titles quick = {"quickfix"}, all = {"source.fixAll.rmlcell"}, both = {"quickfix", "source.fixAll.rmlcell"};
+  EXPECT_EQ(kinds(Json::array()), both);
+  EXPECT_EQ(kinds(nullptr), both);
+  EXPECT_EQ(kinds({""}), both);
+  EXPECT_EQ(kinds({"quickfix"}), quick);
+  EXPECT_EQ(kinds({"source"}), all);
+  EXPECT_EQ(kinds({"source.fixAll"}), all);
+  EXPECT_EQ(kinds({"source.fixAll.rmlcell"}), all);
+  EXPECT_EQ(kinds({"refactor", "quickfix"}), quick);
+  for (const Json& none : {Json{"sourc"}, Json{"source.fix"}, Json{"quickfix.more"}, Json{"source.fixAll.rmlcell.x"},
+                           Json::array({5})}) {
+    EXPECT_EQ(kinds(none), Titles{}) << none.dump();
+  }
+}
+
+// A hundred for one request, and the one that stands for all.
+TEST(CodeActions, AHundredAtMost) {
+  for (const std::size_t lines : {99U, 100U, 101U}) {
+    Editor editor;
+    std::string text;
+    for (std::size_t k = 0; k < lines; ++k) text += "SPED 5\n";
+    editor.Open(text);
+    const Json actions = ActionsOf(editor, {{0, 0}, {200, 0}});
+    EXPECT_EQ(actions.size(), std::min<std::size_t>(lines, 100) + 1U);
+    EXPECT_EQ(actions.back()["title"], "Apply all fixes of rmlcell");
+    EXPECT_FALSE(actions.back().contains("diagnostics"));
+    EXPECT_FALSE(actions.back().contains("isPreferred"));
+  }
+}
+
+// The whole action that allows a warning, at the end of what stands on the line, wherever that ends.
+TEST(CodeActions, AllowingStandsAtTheEndOfTheLine) {
+  const auto allowed = [](const std::string& text, std::uint32_t line, std::uint32_t end) {
+    Editor editor;
+    editor.Open(text);
+    const Json actions = ActionsOf(editor, {{line, 0}, {line, 0}});
+    const Json* allow = Titled(actions, "Allow 7413 on this line");
+    if (allow == nullptr) return std::string("nothing");
+    EXPECT_EQ((*allow)["kind"], "quickfix");
+    EXPECT_EQ((*allow)["isPreferred"], false);
+    EXPECT_EQ((*allow)["diagnostics"][0]["code"], "OPT-E7413");
+    const Json edits = (*allow)["edit"]["changes"][kUri];
+    EXPECT_EQ(edits.size(), 1U);
+    EXPECT_EQ(edits[0]["range"], ToJson(Range{{line, end}, {line, end}}));
+    return edits[0]["newText"].get<std::string>();
+  };
+  const std::string comment = "  ; rmlcell: allow 7413";
+  EXPECT_EQ(allowed("VR[98] = 1.", 0, 11), comment);
+  EXPECT_EQ(allowed("VR[98] = 1. \t\r\nSTOP\n", 0, 11), comment);
+  EXPECT_EQ(allowed("STOP\nVR[98] = 1.\nSTOP\n", 1, 11), comment);
+  EXPECT_EQ(allowed("STOP\nVR[98] = 1.", 1, 11), comment);
+  EXPECT_EQ(allowed("STOP ; x\n\nVR[98] = 1.\n", 2, 11), comment);
+  EXPECT_EQ(allowed("VR[98] = 1.; rmlcell: allow 7033 \n", 0, 32), " 7413");
+  EXPECT_EQ(allowed("VR[98] = 1.; rmlcell: allow 7033 in file\n", 0, 0), "nothing");
+  EXPECT_EQ(allowed("VR[98] = 1.; mine 7033\n", 0, 0), "nothing");
+}
+
+// Each stretch of lines that change is an edit of its own; the last line may have no end.
+TEST(Formatting, StretchesOfLines) {
+  EXPECT_EQ(FormatOf("speed 5\n     SPEED 6\nspeed 7\nspeed 8"),
+            (Json{TextEdit({{0, 0}, {1, 0}}, "     SPEED 5\n"),
+                  TextEdit({{2, 0}, {3, 7}}, "     SPEED 7\n     SPEED 8\n")}));
 }
 
 }  // namespace

@@ -30,6 +30,27 @@ TEST(MotionPeaks, LineSharesItsSpeedAmongTheAxes) {
   EXPECT_NEAR(peaks.axis_acceleration[1], 0.8 * acceleration, 1e-6);
 }
 
+// Within the ramps the jerk is that of the limits, and the axes share it, also on a move that turns
+// the rotary axis of a mill alone; on a steady circle it is v3/R2, from accelerations that turn.
+TEST(MotionPeaks, JerkOfTheRamps) {
+  const MotionPeaks line = Whole(Planned(LineFrom({0, 0, 0}, {60, -80, 0})), false);
+  EXPECT_NEAR(line.tip_jerk, 40'000.0, 1e-6);
+  EXPECT_NEAR(line.axis_jerk[0], 24'000.0, 1e-6);
+  EXPECT_NEAR(line.axis_jerk[1], 32'000.0, 1e-6);
+  EXPECT_EQ(line.axis_jerk[2], 0.0);
+  motion::PlannedMotion circle;
+  circle.path = PathPiece::Circle({{20, 0, 0}}, {0, 0, 0}, {0, 0, 1}, kTurn, 0.0, 0.0);
+  circle.speed = motion::SpeedProfile::Steady(circle.path.length(), 50.0);
+  const double jerk = 50.0 * 50.0 * 50.0 / (20.0 * 20.0);
+  for (const bool five_axis : {false, true}) {
+    const MotionPeaks turning = Whole(circle, five_axis);
+    EXPECT_NEAR(turning.tip_jerk, jerk, 0.002 * jerk);
+    EXPECT_NEAR(turning.axis_jerk[0], jerk, 0.002 * jerk);
+    EXPECT_NEAR(turning.axis_jerk[1], jerk, 0.002 * jerk);
+    EXPECT_NEAR(turning.axis_jerk[2], 0.0, 1e-9);
+  }
+}
+
 // S02: 30 mm never reach 350 mm/s; the peak is 200 mm/s, half way.
 TEST(MotionPeaks, PeakBetweenTwoPhasesIsSeen) {
   const auto planned = Planned(LineFrom({0, 0, 0}, {0, 0, 30}),

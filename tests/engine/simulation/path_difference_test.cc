@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "engine/core/units.h"
 #include "engine/simulation/box_tree.h"
@@ -160,6 +162,86 @@ TEST(PathDifference, PartsAddUpToTheWhole) {
     EXPECT_NEAR(same.common, before_mm, 1e-6);
     EXPECT_EQ(same.removed + same.added, 0.0);
   }
+}
+
+// What is left of a line or an arc lies where it lay: ends, middle, sweep and length.
+TEST(PathDifference, PartsKeepTheirPlace) {
+  const PathDifference lines = Compare(Path().Line({0, 0, 3}, {30, 40, 3}).sketch(), Path().Line({6, 8, 3}, {24, 32, 3}).sketch());
+  ASSERT_EQ(lines.removed.elements.size(), 2u);
+  EXPECT_NEAR(Distance(lines.removed.elements[0].from, {0, 0, 3}), 0.0, 1e-12);
+  EXPECT_NEAR(Distance(lines.removed.elements[0].to, {6, 8, 3}), 0.0, 1e-9);
+  EXPECT_NEAR(Distance(lines.removed.elements[1].from, {24, 32, 3}), 0.0, 1e-9);
+  EXPECT_NEAR(Distance(lines.removed.elements[1].to, {30, 40, 3}), 0.0, 1e-12);
+  EXPECT_NEAR(lines.removed.cut_mm, 20.0, 1e-9);
+  const PathDifference arcs =
+      Compare(Path().Arc({1, 2, 0}, 10.0, 0.0, kPi).sketch(), Path().Arc({1, 2, 0}, 10.0, 0.0, kPi / 2).sketch());
+  ASSERT_EQ(arcs.removed.elements.size(), 1u);
+  ASSERT_EQ(arcs.removed.circles.size(), 1u);
+  const SketchElement& arc = arcs.removed.elements[0];
+  EXPECT_EQ(arc.arc, 0);
+  EXPECT_NEAR(Distance(arc.from, {1, 12, 0}), 0.0, 1e-9);
+  EXPECT_NEAR(Distance(arc.to, {-9, 2, 0}), 0.0, 1e-9);
+  EXPECT_NEAR(Distance(arc.middle, {1 - 10 * std::sqrt(0.5), 2 + 10 * std::sqrt(0.5), 0}), 0.0, 1e-9);
+  EXPECT_NEAR(arcs.removed.circles[0].sweep_rad, kPi / 2, 1e-9);
+  EXPECT_EQ(arcs.removed.circles[0].radius_mm, 10.0);
+  EXPECT_NEAR(arcs.removed.cut_mm, 10.0 * kPi / 2, 1e-9);
+  EXPECT_EQ(arcs.removed.travel_mm, 0.0);
+  machine::Box seen;
+  for (const Vec3& p : {arc.from, arc.to, arc.middle}) seen.Add(p);
+  EXPECT_EQ(arcs.removed.box(), seen);
+}
+
+// Dots are the same where they are of one kind and within kSamePlace_mm, along whichever axis; of
+// several at one X each is looked at.
+TEST(PathDifference, DotsOfOneKindAtOnePlaceAreTheSame) {
+  struct Dot {
+    Vec3 at;
+    bool pierce = true;
+  };
+  const auto sketch_of = [](const std::vector<Dot>& dots) {
+    PathSketch sketch({}, 100);
+    for (const Dot& dot : dots) {
+      motion::PlannedMotion planned;
+      planned.path = LineFrom(dot.at + Vec3{0, 0, 9}, dot.at);
+      sketch.Add({.use = dot.pierce ? MotionUse::kTravel : MotionUse::kPlunge,
+                  .motion = &planned,
+                  .travelled = planned.path.length()});
+      if (dot.pierce) sketch.AddPierce();
+    }
+    return sketch;
+  };
+  // "common removed added"
+  const auto counts = [&](const std::vector<Dot>& before, const std::vector<Dot>& after) {
+    const PathDifference difference = Compare(sketch_of(before), sketch_of(after));
+    return std::to_string(difference.common.dots.size()) + " " +
+           std::to_string(difference.removed.dots.size()) + " " +
+           std::to_string(difference.added.dots.size());
+  };
+  const Dot here{{5, 6, 7}};
+  EXPECT_EQ(counts({here}, {here}), "1 0 0");
+  EXPECT_EQ(counts({here}, {}), "0 1 0");
+  EXPECT_EQ(counts({}, {here}), "0 0 1");
+  EXPECT_EQ(counts({here}, {{{5, 6, 7}, false}}), "0 1 1");
+  EXPECT_EQ(counts({{{5, 6, 7}, false}}, {{{5, 6, 7}, false}}), "1 0 0");
+  for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
+    for (const double side : {-1.0, 1.0}) {
+      const Vec3 way = axis * (side * kSamePlace_mm);
+      EXPECT_EQ(counts({here}, {{here.at + way * 0.99}}), "1 0 0");
+      EXPECT_EQ(counts({here}, {{here.at + way * 1.01}}), "0 1 1");
+    }
+  }
+  // Beside the one that is meant stand others: before it, behind it, and of the other kind.
+  const std::vector<Dot> many = {{{4, 6, 7}}, {{5, 1, 7}}, {{5, 6, 7}, false}, {{5, 9, 7}}, {{6, 6, 7}}, here};
+  EXPECT_EQ(counts({here}, many), "1 0 5");
+  EXPECT_EQ(counts(many, {here}), "1 5 0");
+  const PathDifference difference = Compare(sketch_of({here}), sketch_of({{{1, 2, 3}}, here}));
+  EXPECT_EQ(difference.added.dots[0].at, (Vec3{1, 2, 3}));
+  EXPECT_TRUE(difference.added.dots[0].pierce);
+  EXPECT_EQ(difference.common.dots[0].at, here.at);
+  PathShare dots;
+  dots.dots = {{.at = {1, 2, 3}}, {.at = {-1, 5, 0}}};
+  EXPECT_EQ(dots.box().min, (Vec3{-1, 2, 0}));
+  EXPECT_EQ(dots.box().max, (Vec3{1, 5, 3}));
 }
 
 // Against looking at every box.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "engine/core/units.h"
 #include "tests/engine/simulation/fake_run.h"
@@ -60,6 +61,82 @@ TEST(PathSketch, LongPathsStayInBounds) {
   EXPECT_NEAR(kept.max.x, 100.0, 3 * sketch.tolerance_mm());
   EXPECT_NEAR(kept.max.y, 99.9, 3 * sketch.tolerance_mm());
   EXPECT_LT(sketch.tolerance_mm(), 2.0);
+}
+
+// Coarsening begins with 5e-5 of the size, doubles it until at most half of the room is taken, and
+// stays there.
+TEST(PathSketch, ToleranceDoublesUntilHalfIsFree) {
+  constexpr double kFirst = 5e-5;
+  // Straight on with gaps of 5 first tolerances: 8 of them close the gaps.
+  PathSketch gaps({}, 100);
+  const double gap = 100.0 * 5.0 * kFirst;
+  for (int k = 0; k <= 100; ++k) {
+    AddLine(gaps, {0.99 * k, 0, 0}, {k == 100 ? 100.0 : 0.99 * (k + 1) - gap, 0, 0});
+  }
+  EXPECT_NEAR(gaps.tolerance_mm(), 8.0 * kFirst * 100.0, 1e-12);
+  EXPECT_EQ(gaps.elements().size(), 1u);
+  // Two straight stretches of a room of four are half of it.
+  PathSketch half({}, 4);
+  for (int k = 0; k < 3; ++k) AddLine(half, {1.0 * k, 0, 0}, {k + 1.0, 0, 0});
+  for (int k = 0; k < 2; ++k) AddLine(half, {3, 2.0 * k, 0}, {3, 2.0 * k + 2, 0});
+  EXPECT_EQ(half.elements().size(), 2u);
+  EXPECT_NEAR(half.tolerance_mm(), kFirst * 5.0, 1e-15);  // of a diagonal of 5 mm
+  // Once it is coarse it does not get finer.
+  AddLine(half, {3, 4, 0}, {0, 4, 0});
+  AddLine(half, {0, 4, 0}, {0, 1, 0});
+  EXPECT_EQ(half.elements().size(), 4u);
+  EXPECT_NEAR(half.tolerance_mm(), kFirst * 5.0, 1e-15);
+}
+
+// Arcs that are left keep their circles, whatever was dropped before them.
+TEST(PathSketch, ArcsKeepTheirCircles) {
+  PathSketch sketch({}, 6);
+  const auto add_circle = [&](const Vec3& centre, double radius) {
+    motion::PlannedMotion planned;
+    planned.path = PathPiece::Circle({centre + Vec3{radius, 0, 0}}, centre, {0, 0, 1}, kTurn, 0.0, 0.0);
+    sketch.Add({.use = MotionUse::kCut, .motion = &planned, .travelled = planned.path.length()});
+  };
+  for (int k = 0; k < 5; ++k) add_circle({0, 0, 0}, 5.0);
+  add_circle({50, 0, 0}, 7.0);
+  AddLine(sketch, {57, 0, 0}, {99, 0, 0});  // one too many: the copies are dropped
+  std::vector<double> radii;
+  for (const SketchElement& element : sketch.elements()) {
+    if (element.arc >= 0) radii.push_back(sketch.circle(element.arc).radius_mm);
+  }
+  EXPECT_EQ(radii, (std::vector{5.0, 7.0}));
+  EXPECT_EQ(sketch.circles().size(), 2u);
+}
+
+// Plunges have 20 000 dots; more run together in any picture.
+TEST(PathSketch, DotsAreBounded) {
+  PathSketch sketch({}, 10);
+  for (int k = 0; k <= 20'000; ++k) sketch.AddPierce();
+  EXPECT_EQ(sketch.dots().size(), 20'000u);
+}
+
+// Of directions every one is kept up to 4096, then every second, then every fourth.
+TEST(PathSketch, EverySecondDirectionGoes) {
+  machine::MachineShape shape;
+  shape.five_axis = true;
+  shape.laser_watts = 1500.0;
+  PathSketch sketch(shape, 100);
+  int cuts = 0;
+  const auto cut_until = [&](int count) {
+    for (; cuts < count; ++cuts) {
+      motion::PlannedMotion planned;
+      planned.path = LineFrom({1.0 * cuts, 9, 0}, {1.0 * cuts, 0, 0});
+      sketch.Add({.use = MotionUse::kCut, .motion = &planned, .travelled = 9.0, .beam_on = true});
+    }
+  };
+  cut_until(4095);
+  ASSERT_EQ(sketch.tools().size(), 4095u);
+  EXPECT_EQ(sketch.tools()[4094].tip, (Vec3{4094, 0, 0}));  // where the cut ends
+  cut_until(4096);
+  ASSERT_EQ(sketch.tools().size(), 2048u);
+  for (std::size_t i = 0; i < 2048; ++i) ASSERT_EQ(sketch.tools()[i].tip.x, 2.0 * static_cast<double>(i));
+  cut_until(8191);
+  ASSERT_EQ(sketch.tools().size(), 2048u + 2048u - 2048u);
+  for (std::size_t i = 0; i < 2048; ++i) ASSERT_EQ(sketch.tools()[i].tip.x, 4.0 * static_cast<double>(i));
 }
 
 // Repeated passes lie on top of each other: coarsening drops the copies first.

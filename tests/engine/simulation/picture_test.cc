@@ -194,6 +194,30 @@ TEST(Picture, ShowsWhatTheIssueAsksFor) {
   EXPECT_GE(CountOf(laser, ">direction of the head<"), 1u);
 }
 
+// Depth is told by shade where a mill is seen from above alone, and cut more than 0.01 mm deep in
+// places: from the highest cut, by its deeper end, to the deepest.
+TEST(Picture, DepthsHaveShadesFromAboveOnly) {
+  const auto milled = [](double deeper) {
+    return Script()
+        .Line({0, 0, 5}, {0, 0, -1}, {.use = MotionUse::kPlunge})
+        .Line({0, 0, -1}, {50, 0, -1}, {.use = MotionUse::kCut})
+        .Line({50, 0, -1}, {50, 40, -1 - deeper}, {.use = MotionUse::kCut});
+  };
+  const auto shaded = [](const Script& script, const machine::MachineShape& shape,
+                         const std::vector<PictureView>& views) {
+    const std::string svg = SvgOf(script, shape, Completed(), {.views = views});
+    return CountOf(svg, ">cut, Z -1.00 to ") == 1;
+  };
+  EXPECT_TRUE(shaded(milled(2.0), Mill(), {}));
+  EXPECT_TRUE(shaded(milled(0.011), Mill(), {PictureView::kXY}));
+  EXPECT_FALSE(shaded(milled(0.009), Mill(), {PictureView::kXY}));
+  EXPECT_FALSE(shaded(milled(2.0), Mill(), {PictureView::kXZ}));
+  EXPECT_FALSE(shaded(milled(2.0), Mill(), {PictureView::kXY, PictureView::kXZ}));
+  machine::MachineShape head = Mill();
+  head.five_axis = true;
+  EXPECT_FALSE(shaded(milled(2.0), head, {PictureView::kXY}));
+}
+
 // A failed run says so, with code and place.
 TEST(Picture, FailureIsShown) {
   RunReport report = Completed();

@@ -363,6 +363,25 @@ TEST(ReportRecorder, TheBeamCountsInItsProgram) {
   EXPECT_EQ(report.beam.by_power[10], FromSeconds(1.5));
 }
 
+// A report has room for 128 programs; each of those has all of its figures, whenever it first moved.
+TEST(ReportRecorder, ProgramsOfTheReportHaveAllTheirFigures) {
+  Script script;
+  script.Step(0, 1);
+  for (int program = 1; program <= 128; ++program) {
+    script.Step(program, 1).Line({0, 0, 0}, {1.0 * program, 0, 0}, {.use = MotionUse::kCut});
+  }
+  script.Step(0, 2).Line({0, 0, 0}, {0, 7, 0}, {.use = MotionUse::kCut});
+  const RunReport report = ReportOf(script, {});
+  ASSERT_EQ(report.programs.size(), 128u);
+  for (int program = 1; program < 128; ++program) {
+    EXPECT_EQ(report.programs.at(program).tip.max.x, 1.0 * program);
+    EXPECT_EQ(report.programs.at(program).total.cut_mm, 1.0 * program);
+  }
+  EXPECT_EQ(report.programs.at(0).tip.max.y, 7.0);
+  EXPECT_EQ(report.programs.at(0).total.cut_mm, 7.0);
+  EXPECT_EQ(report.tip.max.x, 128.0);  // of the job, whatever its programs have
+}
+
 // A report on the way holds what was told so far and changes nothing of the end.
 TEST(ReportRecorder, ReportOnTheWay) {
   Script script;

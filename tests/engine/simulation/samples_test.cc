@@ -55,7 +55,10 @@ TEST(Samples, RateHasLimits) {
   EXPECT_EQ(*ParseSampleRate("1"), 1.0);
   EXPECT_EQ(*ParseSampleRate("10000"), 10000.0);
   for (const char* wrong : {"0.5", "10001", "", "fast", "nan"}) {
-    EXPECT_FALSE(ParseSampleRate(wrong)) << wrong;
+    const auto refused = ParseSampleRate(wrong);
+    ASSERT_FALSE(refused) << wrong;
+    EXPECT_EQ(refused.error().code, ErrorCode::kCellUsage);
+    EXPECT_EQ(refused.error().detail, "'" + std::string(wrong) + "': samples a second, 1 to 10000");
   }
 }
 

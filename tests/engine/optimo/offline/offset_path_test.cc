@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <utility>
 
 namespace rmlcell::optimo {
 namespace {
@@ -214,6 +215,56 @@ TEST(OffsetPath, WhatCannotBeOffsetIsRefused) {
   EXPECT_EQ(refused({line, arc}, -5.0), "");
   // An arc so small that the offset line passes by its concentric circle.
   EXPECT_EQ(refused({line, ArcOf(plane, -1, 0, 1, 0, M_PI / 2)}, 0.9), "7808 0");
+}
+
+// OPT-8.79, OPT-B.79: curves meet as circles only where both legs lie across the tool, to a cosine of
+// 1 - 1e-6 of the arc and a sine of 1e-6 of the line; else the corner is that of their tangents.
+TEST(OffsetPath, LegsThatLeanMeetByTheirTangents) {
+  const double heading = M_PI / 3, offset = 0.5, radius = 2.0;
+  const Vec3 tool{0, 0, 1}, out{std::cos(heading), std::sin(heading), 0};
+  const Vec3 by_tangents = (Vec3{0, 1, 0} + Vec3{-out.y, out.x, 0}) * (offset / 1.5);
+  const auto corner = [&](double line_sine, double arc_cosine) {
+    Leg line;
+    line.from = {-20, 0, -20 * line_sine};
+    line.tool_from = line.tool_to = line.tool_via = tool;
+    Prepare(line);
+    const Vec3 across = Cross(tool, out);
+    const Vec3 axis = tool * arc_cosine + across * std::sqrt(1.0 - arc_cosine * arc_cosine);
+    const Vec3 to_centre = Cross(axis, out) * radius;
+    const auto at = [&](double angle) {
+      return to_centre - to_centre * std::cos(angle) + out * (radius * std::sin(angle));
+    };
+    Leg arc;
+    arc.via = at(0.4);
+    arc.to = at(1.0);
+    arc.tool_from = arc.tool_to = arc.tool_via = tool;
+    Prepare(arc);
+    return MustOffset({line, arc}, offset)[0].to;
+  };
+  for (const auto& [sine, cosine] : {std::pair{0.0, 1.0 - 1.5e-6}, {1.5e-6, 1.0}, {-1.5e-6, 1.0}}) {
+    EXPECT_LT(Distance(corner(sine, cosine), by_tangents), 1e-4) << sine << " " << cosine;
+  }
+  // On the concentric circle, to which the line beside the first leg leads.
+  const Vec3 centre = Cross(tool, out) * radius;
+  for (const auto& [sine, cosine] : {std::pair{0.0, 1.0 - 0.7e-6}, {0.7e-6, 1.0}, {-0.7e-6, 1.0}}) {
+    const Vec3 point = corner(sine, cosine);
+    EXPECT_NEAR(point.y, offset, 1e-3);
+    EXPECT_NEAR(Distance(point, centre), radius - offset, 1e-3);
+    EXPECT_GT(Distance(point, by_tangents), 0.02);
+  }
+}
+
+// What counts as nothing: a way of a nanometre, a tangent that leaves the tool by a sine of 1e-6, an
+// arc that is left with half of the last decimal (OPT-8.11).
+TEST(OffsetPath, HowLittleIsNothing) {
+  EXPECT_EQ(LineOf(kPlanes[0], 0, 0, 0.7e-9, 0).tangent_to, Vec3{});
+  ExpectNear(LineOf(kPlanes[0], 0, 0, 1.5e-9, 0).tangent_to, {1, 0, 0});
+  EXPECT_EQ(LeftNormal({0, 0, 1}, {0.7e-6, 0, 1}), Vec3{});
+  ExpectNear(LeftNormal({0, 0, 1}, {1.5e-6, 0, 1}), {0, 1, 0});
+  const Leg arc = ArcOf(kPlanes[2], 0, 2, 2, -M_PI / 2, 0);
+  std::size_t failed{};
+  EXPECT_TRUE(OffsetChain({arc}, 2.0 - 7e-6, failed));
+  EXPECT_FALSE(OffsetChain({arc}, 2.0 - 3e-6, failed));
 }
 
 // OPT-2.23, OPT-B.10: the nearest point of the circle, at the height of its centre.
