@@ -163,7 +163,6 @@ SpeedProfile SpeedProfile::From(const PathState& state, double end_s, double v1,
     profile.AddPhase(now, sign * now.acceleration / limits.jerk, now.acceleration,
                      -sign * limits.jerk);
   }
-  now.acceleration = 0.0;
   now.speed = std::max(now.speed, 0.0);  // rounding
   PathLimits span = limits;
   const double left = end_s - now.s;
@@ -238,7 +237,6 @@ void SpeedProfile::AddPhase(PathState& state, double duration_s, double accelera
   const double bend = jerk == 0.0 ? 0.0 : t * jerk / 6.0;  // spares the division
   state.s += t * (state.speed + t * (0.5 * acceleration + bend));
   state.speed += t * (acceleration + 0.5 * t * jerk);
-  state.acceleration = acceleration + t * jerk;
   duration_s_ += duration_s;
 }
 
@@ -254,7 +252,6 @@ void SpeedProfile::AddRamp(PathState& state, double change, double sign, double 
     AddPhase(state, ramp.edge_s, a, -sign * limits.jerk);
   }
   state.speed = to_speed;  // exactly, whatever the phases added up to
-  state.acceleration = 0.0;
 }
 
 PathState SpeedProfile::At(double t_s) const {
@@ -368,8 +365,7 @@ SpeedProfile SpeedProfile::StopFrom(double t_s, const PathLimits& limits) const 
   if (std::isinf(j)) {
     stop.AddRamp(state, state.speed, -1.0, 0.0, limits);
   } else if (a >= 0.0) {
-    if (a > 0.0) stop.AddPhase(state, a / j, a, -j);
-    state.acceleration = 0.0;
+    stop.AddPhase(state, a / j, a, -j);
     stop.peak_speed_ = state.speed;
     stop.AddRamp(state, state.speed, -1.0, 0.0, limits);
   } else {
@@ -380,8 +376,7 @@ SpeedProfile SpeedProfile::StopFrom(double t_s, const PathLimits& limits) const 
     Ramp ramp = RampOf(began, limits);
     ramp.acceleration = std::max(ramp.acceleration, share);
     if (state.speed <= a * a / (2.0 * j)) {
-      if (state.speed > 0.0)
-        stop.AddPhase(state, 2.0 * state.speed / share, a, a * a / (2.0 * state.speed));
+      stop.AddPhase(state, 2.0 * state.speed / share, a, a * a / (2.0 * state.speed));
     } else {
       const double grow = (ramp.acceleration - share) / j;
       const double release = ramp.acceleration / j;
@@ -390,8 +385,6 @@ SpeedProfile SpeedProfile::StopFrom(double t_s, const PathLimits& limits) const 
       stop.AddPhase(state, std::max(left, 0.0) / ramp.acceleration, -ramp.acceleration, 0.0);
       stop.AddPhase(state, release, -ramp.acceleration, j);
     }
-    state.speed = 0.0;
-    state.acceleration = 0.0;
   }
   stop.end_ = {state.s, 0.0, 0.0};
   return stop;

@@ -183,7 +183,7 @@ void MillRun::Proceed(std::size_t sent_max) {
       return;
     }
     if (halts_.After(s.place.step)) {
-      const bool at_breakpoint = halts_.after > 0 && halts_.after == s.place.step;
+      const bool at_breakpoint = halts_.after == s.place.step;
       return BeginHalt(at_breakpoint ? HaltCause::kBreakpoint : HaltCause::kSingle);
     }
   }

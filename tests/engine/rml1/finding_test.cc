@@ -43,6 +43,9 @@ TEST(Finding, OfCommandErrors) {
       {"PU;! QQ;", "RML1-E1 RML1-2.09 3+4 0: the name that ends with 'Q' is no command"},
       {"PU;!3", "RML1-E1 RML1-2.09 3+2 0: the name that ends with '3' is no command"},
       {"PU;-", "RML1-E2 RML1-2.02 3+1 0: '-' where a command is expected"},
+      {"PU;DF5;", "RML1-E2 RML1-2.02 5+1 0: '5' where a command is expected"},
+      {"PU;IN5;", "RML1-E2 RML1-2.02 5+1 0: '5' where a command is expected"},
+      {"^PU;H5;", "RML1-E2 RML1-2.02 5+1 0: '5' where a command is expected"},
       {"PU;^ QR;",
        "RML1-E2 RML1-3A.31 5+2 0: the name after ^ that ends with 'R' is no command "
        "of two letters"},

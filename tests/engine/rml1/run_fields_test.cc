@@ -290,6 +290,11 @@ TEST(MillRunFields, OfTheState) {
   EXPECT_EQ(state.override_percent, 100.0);
   EXPECT_FALSE(state.spindle_on);
   EXPECT_EQ(state.progress, 0.0);
+  Seen first(ParametersOf("t1"), "PU1000,0;");
+  first.run->Advance(100ms);
+  EXPECT_EQ(first.run->state().place.step, 1);
+  EXPECT_EQ(first.run->state().instruction, "PU");
+  EXPECT_EQ(first.run->state().axes.b_rad, 0.0);
   // 1.1 s down; 0.05 s and 0.25 mm to speed, 0.4 s at 10 mm/s.
   EXPECT_EQ(seen.run->Advance(1550ms), RunPhase::kRunning);
   state = seen.run->state();
