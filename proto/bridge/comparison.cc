@@ -55,7 +55,6 @@ Result<std::optional<optimo::Module>> ReadModule(const ComparedProgram& program,
 // A run from a new machine; a program that calls others, or waits, does not end by itself.
 Result<std::optional<simulation::TrialRun>> Run(const ComparedProgram& program, const ComparisonOptions& options) {
   const machine::MachineFamily* family = simulation::FindFamily(kFamily);
-  if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, std::string(kFamily), {}};
   const bool object = optimo::FormOfFile(program.file_name, *program.bytes) == optimo::FileForm::kObject;
   const SetupInput input{.family = family,
                          .programs = {{.slot = program.slot,

@@ -22,6 +22,8 @@ import grpc  # noqa: E402
 from google.rpc import status_pb2  # noqa: E402
 from rmlcell.v1 import (  # noqa: E402
     common_pb2,
+    handbox_pb2,
+    handbox_pb2_grpc,
     job_pb2,
     job_pb2_grpc,
     machine_pb2,

@@ -2,7 +2,7 @@
 """Machines and their laser schedules as gRPC clients see them: every field, every refusal."""
 import unittest
 
-from cell import Cell, WithCell, eventually, grpc, inline_job, job_pb2, machine_pb2, submit, wait_for_end
+from cell import Cell, WithCell, eventually, grpc, handbox_pb2, handbox_pb2_grpc, inline_job, job_pb2, machine_pb2, submit, wait_for_end
 
 BAD = grpc.StatusCode.INVALID_ARGUMENT
 UNKNOWN = grpc.StatusCode.NOT_FOUND
@@ -80,6 +80,11 @@ class Machines(WithCell):
                               (create("m", parameters={"COLOUR": "1"}), "CELL-E9010"),
                               (create("m", parameters={"SPIN_UP": "-1"}), "CELL-E9011")):
             self.refused(stub.CreateMachine, request, BAD, code)
+        # Of a text without end a thousand characters come back, at most.
+        for length, shown in ((900, False), (2000, True)):
+            detail = self.refused(stub.CreateMachine, create("m", family="x" * length), BAD, "CELL-E9008")
+            self.assertEqual(detail.message.endswith("..."), shown)
+            self.assertEqual(len(detail.message) == 1003, shown)
         lathe = self.refused(stub.CreateMachine, create("m", family="lathe"), BAD, "CELL-E9008")
         self.assertIn("there are optimo rml1", lathe.message)
         self.refused(stub.UpdateMachine, machine_pb2.UpdateMachineRequest(
@@ -103,6 +108,14 @@ class Machines(WithCell):
                         stub.ReadVariables: machine_pb2.ReadVariablesRequest,
                         stub.WriteVariables: machine_pb2.WriteVariablesRequest}[method]())
             self.assertEqual(caught.exception.code(), grpc.StatusCode.UNIMPLEMENTED)
+        handbox = handbox_pb2_grpc.HandboxServiceStub(self.cell.channel())
+        for method, request in ((handbox.CreateHandboxSession, handbox_pb2.CreateHandboxSessionRequest()),
+                                (handbox.PressKey, handbox_pb2.PressKeyRequest()),
+                                (handbox.DeleteHandboxSession, handbox_pb2.DeleteHandboxSessionRequest())):
+            self.refused(method, request, grpc.StatusCode.UNIMPLEMENTED, "CELL-E9014")
+        with self.assertRaises(grpc.RpcError) as caught:
+            next(iter(handbox.WatchHandboxSession(handbox_pb2.WatchHandboxSessionRequest())))
+        self.assertEqual(caught.exception.code(), grpc.StatusCode.UNIMPLEMENTED)
         with self.assertRaises(grpc.RpcError) as caught:
             next(iter(stub.WatchMachine(machine_pb2.WatchMachineRequest(name="machines/mill-1"))))
         self.assertEqual(caught.exception.code(), grpc.StatusCode.UNIMPLEMENTED)

@@ -6,7 +6,7 @@ import unittest
 import urllib.error
 import urllib.request
 
-from cell import (WithCell, detail_of, grpc, inline_job, job_pb2, program_pb2, project_pb2, submit, wait_for_end,
+from cell import (WithCell, detail_of, grpc, inline_job, job_pb2, machine_pb2, program_pb2, project_pb2, submit, wait_for_end,
                   wait_until_it_runs)
 
 BAD = grpc.StatusCode.INVALID_ARGUMENT
@@ -174,6 +174,21 @@ class Products(WithCell):
             self.assertEqual(times, sorted(set(times)))
         stub.CancelJob(job_pb2.CancelJobRequest(name=job.name))
         wait_for_end(stub, job.name)
+
+    def test_every_message_of_a_watch_names_the_cell_and_its_place(self):
+        stub = self.cell.jobs()
+        cell = self.cell.machines().GetCell(machine_pb2.GetCellRequest()).instance_id
+        job = submit(stub, inline_job("mill-1", "p.rml", LINE))
+        wait_for_end(stub, job.name)
+        messages = list(stub.WatchJob(job_pb2.WatchJobRequest(name=job.name)))
+        self.assertEqual({message.instance_id for message in messages}, {cell})
+        self.assertTrue(messages[0].HasField("snapshot"))
+        sequences = [message.sequence for message in messages[1:]]
+        self.assertEqual(sequences, list(range(1, len(sequences) + 1)))
+        self.assertEqual(messages[0].snapshot.last_sequence, sequences[-1])
+        watch = stub.WatchJobs(job_pb2.WatchJobsRequest())
+        self.assertEqual(next(iter(watch)).instance_id, cell)
+        watch.cancel()
 
     def test_a_watch_of_named_jobs_tells_of_no_others(self):
         stub = self.cell.jobs()
