@@ -118,9 +118,8 @@ storage::ProjectRecord RecordOf(const std::string& id, v1::Project project) {
 
 // OPT-8.72; extensions are compared without case.
 bool IsInchName(std::string_view file_name) {
-  if (file_name.size() < 3) return false;
-  const std::string_view end = file_name.substr(file_name.size() - 3);
-  return end[0] == '.' && (end[1] == 'S' || end[1] == 's') && (end[2] == 'I' || end[2] == 'i');
+  return file_name.ends_with(".SI") || file_name.ends_with(".si") || file_name.ends_with(".Si") ||
+         file_name.ends_with(".sI");
 }
 
 machine::ProjectBundle BundleOf(const v1::Project& project) {

@@ -54,7 +54,7 @@ TEST(CompensateFindings, AnglesOfTheViaPointCountWhereTheStartHasNone) {
   }
 }
 
-// OPT-8.19, OPT-E.7812: a slot of 1 mm. A beam of radius 0.75 comes within 0.25 mm of the other wall,
+// OPT-8.19: a slot of 1 mm. A beam of radius 0.75 comes within 0.25 mm of the other wall,
 // one of radius 2 crosses the contour; on the ground of the slot the path leads back.
 TEST(CompensateFindings, GougesSayHowFarTheyGo) {
   const std::string slot =
