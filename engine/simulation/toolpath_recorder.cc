@@ -45,7 +45,8 @@ SimTime TimeAt(const machine::MotionDone& done, double s) {
     return done.motion->speed.At(done.profile_start_s + ToSeconds(SimTime(ns) - done.start)).s;
   };
   const auto times = std::views::iota(done.start.count(), done.end.count());
-  return SimTime(*std::ranges::lower_bound(times, s, {}, place_at));
+  const auto found = std::ranges::lower_bound(times, s, {}, place_at);
+  return done.start + SimTime(found - times.begin());
 }
 
 }  // namespace

@@ -11,13 +11,13 @@ namespace rmlcell::simulation {
 // A family whose runs do what a script says.
 class FakeFamily final : public machine::MachineFamily {
  public:
-  explicit FakeFamily(Script script = {}) : script_(std::move(script)) {}
-
-  const machine::FamilyInfo& info() const override {
-    static const machine::FamilyInfo info{
-        .id = "fake", .title = "Fake machine", .extensions = ".FK .fake", .axes = "X Y Z"};
-    return info;
+  // `checked_by_running`: its programs are followed to say what is wrong with them.
+  explicit FakeFamily(Script script = {}, bool checked_by_running = false)
+      : script_(std::move(script)) {
+    info_.checked_by_running = checked_by_running;
   }
+
+  const machine::FamilyInfo& info() const override { return info_; }
   std::span<const machine::ParameterInfo> parameters() const override { return Table(); }
   std::span<const machine::MachineProfile> profiles() const override { return {}; }
   machine::Translation Translate(const machine::SourceFile&, const machine::Parameters&,
@@ -57,6 +57,8 @@ class FakeFamily final : public machine::MachineFamily {
   }
 
  private:
+  machine::FamilyInfo info_{
+      .id = "fake", .title = "Fake machine", .extensions = ".FK .fake", .axes = "X Y Z"};
   Script script_;
 };
 

@@ -14,7 +14,8 @@ namespace rmlcell::simulation {
 namespace {
 
 TEST(Families, ExtensionsAreComparedWithoutCase) {
-  const machine::FamilyInfo& info = FakeFamily().info();
+  const FakeFamily family;
+  const machine::FamilyInfo& info = family.info();
   EXPECT_TRUE(ClaimsExtension(info, ".fk"));
   EXPECT_TRUE(ClaimsExtension(info, ".FAKE"));
   EXPECT_FALSE(ClaimsExtension(info, ".fak"));

@@ -135,44 +135,11 @@ TEST(MotionCheck, GoesOnBehindAHalt) {
   EXPECT_EQ(check.findings.size(), 1U);
 }
 
-// A machine whose programs are followed to say what is wrong with them.
-class FollowedFamily final : public machine::MachineFamily {
- public:
-  explicit FollowedFamily(Script script) : fake_(std::move(script)) {}
-  const machine::FamilyInfo& info() const override {
-    static const machine::FamilyInfo followed = [this] {
-      machine::FamilyInfo own = fake_.info();
-      own.checked_by_running = true;
-      return own;
-    }();
-    return followed;
-  }
-  std::span<const machine::ParameterInfo> parameters() const override {
-    return fake_.parameters();
-  }
-  std::span<const machine::MachineProfile> profiles() const override { return {}; }
-  machine::Translation Translate(const machine::SourceFile&, const machine::Parameters&,
-                                 const machine::CheckOptions&) const override {
-    return {};
-  }
-  machine::TransferPlan PlanTransfer(const machine::ProjectBundle&, const machine::Parameters&,
-                                     const machine::TransferOptions&) const override {
-    return {};
-  }
-  Result<std::unique_ptr<machine::Run>> NewRun(machine::RunSetup setup,
-                                               machine::RunObserver& observer) const override {
-    return fake_.NewRun(std::move(setup), observer);
-  }
-
- private:
-  FakeFamily fake_;
-};
-
 // A START that changes nothing is not given for ever: the program waits for something else.
 TEST(MotionCheck, AHaltThatStartDoesNotEnd) {
   Script script;
   script.Step(1, 4, 5).Nothing(1.0).Halt("STOP").Halt("STOP").Nothing(1.0);
-  const auto check = CheckMotion(FollowedFamily(script), FakeFamily::Setup(), {1});
+  const auto check = CheckMotion(FakeFamily(script, true), FakeFamily::Setup(), {1});
   ASSERT_TRUE(check);
   ASSERT_TRUE(check->cut_short.contains(1));
   EXPECT_EQ(check->cut_short.at(1).find("only up to step 4, line 5: CELL-E9308 "), 0U)
