@@ -47,7 +47,7 @@ def example_programs():
             stream = row.get("input") or ""
             if stream:
                 yield Program(f"conformance/rml1/line {number}", "example.rml", stream.encode())
-    for path in sorted((ROOT / "examples").rglob("*")) if (ROOT / "examples").exists() else ():
+    for path in sorted((ROOT / "deploy" / "examples").rglob("*")):
         if path.suffix in (".S", ".rml"):
             yield Program(f"examples/{path.name}", path.name, path.read_bytes())
 
