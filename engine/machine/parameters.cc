@@ -27,6 +27,11 @@ std::string_view FindChoice(std::string_view choices, std::string_view word) {
 
 }  // namespace
 
+std::string ParameterValue::Text() const {
+  const auto* word = std::get_if<std::string_view>(&value);
+  return word != nullptr ? std::string(*word) : ShortestText(std::get<double>(value));
+}
+
 const ParameterInfo* Parameters::Find(std::string_view name) const {
   const auto found = std::ranges::find_if(
       table_, [&](const ParameterInfo& info) { return EqualIgnoringCase(info.name, name); });
@@ -71,9 +76,7 @@ Status Parameters::Set(std::string_view name, std::string_view text) {
 Status Parameters::Apply(const MachineProfile& profile) {
   Parameters changed = *this;
   for (const ParameterValue& value : profile.values) {
-    const Status set = value.word.empty() ? changed.Set(value.name, value.number)
-                                          : changed.Set(value.name, value.word);
-    if (!set) return set;
+    if (const Status set = changed.Set(value.name, value.Text()); !set) return set;
   }
   *this = std::move(changed);
   return {};

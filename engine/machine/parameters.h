@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "engine/core/result.h"
@@ -12,6 +13,11 @@ namespace rmlcell::machine {
 
 // One machine parameter of a family: a number with a range, or one of a few words.
 struct ParameterInfo {
+  static constexpr ParameterInfo OfWord(std::string_view name, std::string_view choices,
+                                        std::string_view text, std::string_view rule) {
+    return {.name = name, .unit = {}, .choices = choices, .text = text, .rule = rule};
+  }
+
   std::string_view name;     // "VMAX"
   std::string_view unit;     // "mm/s"; empty for words and counts
   double standard = 0.0;     // default
@@ -25,8 +31,9 @@ struct ParameterInfo {
 // A named set of values: "pw-1993", "srm-20".
 struct ParameterValue {
   std::string_view name;
-  double number = 0.0;
-  std::string_view word;  // when the parameter is a word
+  std::variant<double, std::string_view> value;  // a number or a word
+
+  std::string Text() const;  // as Set reads it
 };
 struct MachineProfile {
   std::string_view id;

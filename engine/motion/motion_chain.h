@@ -174,9 +174,10 @@ class MotionChain {
   bool EndsSection(const Span& span, std::size_t last_knot) const;
   void PlanSection();
   void AddCurve(const Span& span, std::size_t knot);
-  void TakeRamp(SpeedProfile& speed, const SpeedProfile& ramp, double from, double to);
+  void TakeRamp(SpeedProfile& speed, const SpeedProfile& ramp, double to);
+  const SpeedProfile& PresentRamp();
   void TakePart(SpeedProfile& speed, double to, bool to_end);
-  void TakeStretches(SpeedProfile& speed, CurveCells& cells, double from, double& to);
+  void TakeStretches(SpeedProfile& speed, CurveCells& cells, double& to);
   void EmitMove();
   void EmitCurve(Span& span);
   template <class Shape>  // PlainCorner or CornerCurve

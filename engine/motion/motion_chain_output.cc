@@ -128,39 +128,37 @@ void MotionChain::AddCurve(const Span& span, std::size_t knot) {
   }
 }
 
-// The part of a ramp to `to`, from where the last part ended, or from `from` when it ended before.
-void MotionChain::TakeRamp(SpeedProfile& speed, const SpeedProfile& ramp, double from, double to) {
+// The part of a ramp to `to`, from where the last part ended.
+void MotionChain::TakeRamp(SpeedProfile& speed, const SpeedProfile& ramp, double to) {
   if (place_.s == 0.0 && to == ramp.end().s) {
     speed = ramp;
     return;
   }
-  if (place_.s < from) ramp.Advance(place_, from);
   ramp.PartTo(place_, to, speed);
+}
+
+// The ramp of the present cell; another one begins at its beginning.
+const SpeedProfile& MotionChain::PresentRamp() {
+  const std::size_t ramp = ramps_.timing()[section_cell_].ramp;
+  if (ramp != place_ramp_) {
+    place_ramp_ = ramp;
+    place_ = {};
+  }
+  return ramps_.ramps()[ramp];
 }
 
 // The part of the span to `to` of its length, or to its end.
 void MotionChain::TakePart(SpeedProfile& speed, double to, bool to_end) {
-  if (alone_) return TakeRamp(speed, lone_, 0.0, to_end ? spans_.front().length : to);
+  if (alone_) return TakeRamp(speed, lone_, to_end ? spans_.front().length : to);
+  const SpeedProfile& ramp = PresentRamp();
   const RampPlan::Timing& timing = ramps_.timing()[section_cell_];
-  if (timing.ramp != place_ramp_) {
-    place_ramp_ = timing.ramp;
-    place_ = {};
-  }
-  const double end = to_end ? timing.to : std::min(timing.from + to, timing.to);
-  TakeRamp(speed, ramps_.ramps()[timing.ramp], timing.from, end);
+  TakeRamp(speed, ramp, to_end ? timing.to : std::min(timing.from + to, timing.to));
 }
 
-// The part of a curve from `from` to `to` of its length, or to where another ramp begins: that is
-// `to` then.
-void MotionChain::TakeStretches(SpeedProfile& speed, CurveCells& cells, double from, double& to) {
-  const RampPlan::Timing& first = ramps_.timing()[section_cell_];
-  if (first.ramp != place_ramp_) {
-    place_ramp_ = first.ramp;
-    place_ = {};
-  }
-  const double begin = cells.at == 0 ? 0.0 : cells.end[cells.at - 1];
-  const double on_ramp_from = std::min(first.from + (from - begin), first.to);
-  double on_ramp_to = on_ramp_from;
+// The part of a curve to `to` of its length, or to where another ramp begins: that is `to` then.
+void MotionChain::TakeStretches(SpeedProfile& speed, CurveCells& cells, double& to) {
+  const SpeedProfile& ramp = PresentRamp();
+  double on_ramp_to = 0.0;
   for (bool more = true; more;) {
     const RampPlan::Timing& timing = ramps_.timing()[section_cell_];
     const double start = cells.at == 0 ? 0.0 : cells.end[cells.at - 1];
@@ -175,7 +173,7 @@ void MotionChain::TakeStretches(SpeedProfile& speed, CurveCells& cells, double f
            ramps_.timing()[section_cell_].ramp == place_ramp_;
     if (!more) to = std::min(to, end);
   }
-  TakeRamp(speed, ramps_.ramps()[place_ramp_], on_ramp_from, on_ramp_to);
+  TakeRamp(speed, ramp, on_ramp_to);
 }
 
 // Motions are made where they wait to be taken: they are large. The slot holds an old one, so every
@@ -336,7 +334,7 @@ void MotionChain::EmitCurvePart(const Span& span, Number move, const Shape& shap
             std::min({span.stretches.start, span.stretches.open, span.stretches.middle});
       }
       double to = half.begin + s_to;
-      TakeStretches(motion.speed, cells, half.begin + s, to);
+      TakeStretches(motion.speed, cells, to);
       s_to = to < half.begin + s_to ? to - half.begin : s_to;
     }
     motion.path.AssignCorner(shape, half.begin, half.length, half.from, half.to);

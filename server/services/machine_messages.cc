@@ -52,8 +52,7 @@ v1::Family ToProto(const machine::MachineFamily& family) {
     made.set_id(std::string(profile.id));
     made.set_title(std::string(profile.title));
     for (const machine::ParameterValue& value : profile.values) {
-      (*made.mutable_parameters())[std::string(value.name)] =
-          value.word.empty() ? ShortestText(value.number) : std::string(value.word);
+      (*made.mutable_parameters())[std::string(value.name)] = value.Text();
     }
   }
   return message;

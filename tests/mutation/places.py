@@ -27,7 +27,7 @@ COMPARISONS = {"==": "!=", "!=": "==", "<": ">", ">": "<", "<=": ">=", ">=": "<=
 BOUNDS = {"<": "<=", "<=": "<", ">": ">=", ">=": ">"}
 SIGNS = {"+": "-", "-": "+", "+=": "-=", "-=": "+=", "++": "--", "--": "++"}
 # The order of their arguments is no matter.
-SYMMETRIC = {"min", "max", "hypot", "swap", "tie", "Near", "Dot", "Distance"}
+SYMMETRIC = {"min", "max", "hypot", "swap", "tie", "Near", "Dot", "Distance", "RampLength", "RampTime", "SlipOf"}
 KEYWORDS = {"if", "for", "while", "switch", "return", "case", "do", "else", "throw", "using", "goto", "delete", "new",
             "const", "constexpr", "static", "auto", "struct", "class", "enum", "namespace", "template", "typedef",
             "public", "private", "protected", "default", "friend", "extern", "explicit", "inline", "operator", "try"}
@@ -120,7 +120,9 @@ def number_after(text):
     if not real:
         return None
     value = float(real.group(1).replace("'", ""))
-    return repr(value * 2 if value else 1.0) + real.group(2)
+    # A number written as 1e-9 is what rounding may do: twice as much is the same statement.
+    factor = 1000 if "e-" in text.lower() else 2
+    return repr(value * factor if value else 1.0) + real.group(2)
 
 
 class Finder:

@@ -40,6 +40,10 @@ class Places(unittest.TestCase):
                           "auto a = F(9, 1'000u, 1.0, 0.0, true);", "auto a = F(9, 1'000u, 0.5, 1.0, true);",
                           "auto a = F(9, 1'000u, 0.5, 0.0, false);"])
 
+    def test_a_tolerance_changes_by_more_than_a_factor_of_two(self):
+        self.assertEqual(changes("auto a = F(1e-9, 2e3);", "constant"),
+                         ["auto a = F(1.0000000000000002e-06, 2e3);", "auto a = F(1e-9, 4000.0);"])
+
     def test_statements_that_can_be_dropped(self):
         source = "int F() {\n  int a = 1;\n  a = 2;\n  Use(a);\n  ++a;\n  if (a > 2) return 0;\n  return a;\n}"
         self.assertEqual([change.splitlines()[n] for change, n in

@@ -16,10 +16,6 @@ constexpr ParameterInfo Number(std::string_view name, std::string_view unit, dou
                                std::string_view rule = "OPT-B.01") {
   return {name, unit, standard, low, high, {}, text, rule};
 }
-constexpr ParameterInfo Word(std::string_view name, std::string_view choices, std::string_view text,
-                             std::string_view rule) {
-  return {name, {}, 0.0, 0.0, 0.0, choices, text, rule};
-}
 
 constexpr std::array kTable = {
     Number("VMAX", "mm/s", 500, 1, 2000, "tip speed of SPEED 100", "OPT-2.34"),
@@ -66,13 +62,14 @@ constexpr std::array kTable = {
     Number("CYCLE", "s", 0.048, 0.001, 1, "system cycle: OA[0], sampling of conditions",
            "OPT-7.69"),
     Number("SETTLE", "s", 0.048, 0, 1, "standstill after a MOVE without /FLY", "OPT-B.20"),
-    Word("COORD_DEFAULT", "ROBOT ABSOL", "COORD at program start", "OPT-2.09"),
-    Word("PATH_DEFAULT", "PTP LIN", "PATH at program start", "OPT-2.10"),
-    Word("LASER", "ARROW EFA51", "kind of laser: how shutter and beam behave", "OPT-3.14"),
+    ParameterInfo::OfWord("COORD_DEFAULT", "ROBOT ABSOL", "COORD at program start", "OPT-2.09"),
+    ParameterInfo::OfWord("PATH_DEFAULT", "PTP LIN", "PATH at program start", "OPT-2.10"),
+    ParameterInfo::OfWord("LASER", "ARROW EFA51", "kind of laser: how shutter and beam behave", "OPT-3.14"),
     Number("GAS_CHANNELS", "", 2, 2, 3, "assist gases fitted", "OPT-5.41"),
-    Word("TEACH_SIM", "OFF ON", "the old teach simulator: a hole cannot start on its axis",
-         "OPT-2.28"),
-    Word("ROTARY_TABLE", "OFF ON", "FUNCTION 99 turns a rotary table", "OPT-9.19"),
+    ParameterInfo::OfWord("TEACH_SIM", "OFF ON",
+                          "the old teach simulator: a hole cannot start on its axis",
+                          "OPT-2.28"),
+    ParameterInfo::OfWord("ROTARY_TABLE", "OFF ON", "FUNCTION 99 turns a rotary table", "OPT-9.19"),
     Number("OBJECT_LIMIT", "characters", 34'000, 100, 10'000'000, "largest object", "OPT-1.08"),
     Number("EXECUTABLE_LIMIT", "bytes", 32'768, 100, 10'000'000, "executables are smaller",
            "OPT-9.10"),
@@ -104,11 +101,11 @@ std::span<const ParameterInfo> OptimoParameterTable() { return kTable; }
 const std::vector<machine::MachineProfile>& OptimoProfiles() {
   static const std::vector<machine::MachineProfile> profiles = {
       {"standard", "Optimo of 30 m/min with ARROW laser", {}},
-      {"mc-1000ipm", "MC series, 1000 inch/min", {{"VMAX", 423.333, {}}}},
+      {"mc-1000ipm", "MC series, 1000 inch/min", {{"VMAX", 423.333}}},
       {"pw-1993",
        "customer machine that starts in COORD ABSOL, PATH LIN",
-       {{"COORD_DEFAULT", 0.0, "ABSOL"}, {"PATH_DEFAULT", 0.0, "LIN"}}},
-      {"efa-51", "Optimo with EFA-51 laser", {{"LASER", 0.0, "EFA51"}}},
+       {{"COORD_DEFAULT", "ABSOL"}, {"PATH_DEFAULT", "LIN"}}},
+      {"efa-51", "Optimo with EFA-51 laser", {{"LASER", "EFA51"}}},
   };
   return profiles;
 }

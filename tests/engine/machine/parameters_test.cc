@@ -70,11 +70,11 @@ TEST(Parameters, WhatIsNotThereOrNotSuchIsRefused) {
 TEST(Parameters, AProfileIsAppliedWholeOrNotAtAll) {
   Parameters parameters(kTable);
   EXPECT_TRUE(parameters.Apply(
-      {.id = "a", .title = "", .values = {{"VMAX", 700.0, {}}, {"DIRECTION", 0.0, "NONE"}}}));
+      {.id = "a", .title = "", .values = {{"VMAX", 700.0}, {"DIRECTION", "NONE"}}}));
   EXPECT_EQ(parameters.Number("VMAX"), 700.0);
   EXPECT_EQ(parameters.Word("DIRECTION"), "NONE");
   EXPECT_FALSE(parameters.Apply(
-      {.id = "b", .title = "", .values = {{"VMAX", 800.0, {}}, {"OFFSET", 11.0, {}}}}));
+      {.id = "b", .title = "", .values = {{"VMAX", 800.0}, {"OFFSET", 11.0}}}));
   EXPECT_EQ(parameters.Number("VMAX"), 700.0);
   // Single values go over the profile.
   EXPECT_TRUE(parameters.Set("VMAX", 600.0));
@@ -112,10 +112,10 @@ TEST(Parameters, ErrorsSayWhatIsAllowed) {
             "DIRECTION takes one of ARROW EFA51 NONE");
   EXPECT_EQ(parameters.Set("direction", std::string_view("SOUTH")).error().detail,
             "DIRECTION takes one of ARROW EFA51 NONE");
-  const Status unknown = parameters.Apply({.id = "c", .title = "", .values = {{"NEW", 1.0, {}}}});
+  const Status unknown = parameters.Apply({.id = "c", .title = "", .values = {{"NEW", 1.0}}});
   EXPECT_EQ(CodeOf(unknown), ErrorCode::kCellUnknownParameter);
   const Status word = parameters.Apply(
-      {.id = "d", .title = "", .values = {{"VMAX", 7.0, {}}, {"DIRECTION", 0, "X"}}});
+      {.id = "d", .title = "", .values = {{"VMAX", 7.0}, {"DIRECTION", "X"}}});
   EXPECT_EQ(CodeOf(word), ErrorCode::kCellParameterRange);
   EXPECT_THAT(parameters.Changed(), IsEmpty());
 }

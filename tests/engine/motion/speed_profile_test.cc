@@ -56,6 +56,19 @@ TEST(Ramp, BothRegimesMeetAtTheBoundary) {
   EXPECT_EQ(RampTime(70, 70, kLimits), 0.0);
 }
 
+// motion.md 5.2: a ramp down is the ramp up in reverse, to the last digit.
+TEST(Ramp, IsTheSameUpAndDown) {
+  for (const double v0 : {0.0, 1e-9, 10.0, 33.3, 210.0}) {
+    for (const double v1 : {0.0, 7.7, 33.3, 350.0}) {
+      for (const double jerk : {40000.0, kNoJerkLimit}) {
+        const PathLimits limits{350, 2000, jerk};
+        EXPECT_EQ(RampTime(v0, v1, limits), RampTime(v1, v0, limits)) << v0 << ' ' << v1;
+        EXPECT_EQ(RampLength(v0, v1, limits), RampLength(v1, v0, limits)) << v0 << ' ' << v1;
+      }
+    }
+  }
+}
+
 // OPT-2.36: run-up from rest to 50 mm/s takes 0.0707 s, with ACCEL 50 0.1000 s.
 TEST(Ramp, ManualsRunUp) {
   EXPECT_NEAR(RampTime(0, 50, kLimits), 0.0707, 5e-5);

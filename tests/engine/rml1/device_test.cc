@@ -46,6 +46,24 @@ class TestDevice final : public DeviceListener {
   std::vector<Finding> findings_;
 };
 
+// RML1-3C.29, RML1-3C.35: both ends of the Z travel, -60 to 0 mm, may be named; what lies beyond changes nothing.
+TEST(Device, TakesBothEndsOfTheZTravel) {
+  TestDevice device(ParametersOf("t1"));
+  device.Feed("!ZO-6000;");
+  EXPECT_EQ(device->registers().z0, -6000.0);
+  device.Feed("!ZO0;");
+  EXPECT_EQ(device->registers().z0, 0.0);
+  EXPECT_TRUE(device.findings().empty());
+  device.Feed("!ZO-6001;!ZO1;");
+  EXPECT_EQ(device->registers().z0, 0.0);
+  EXPECT_EQ(device.CountOf(FindingKind::kTravelRange), 2);
+
+  device.Feed("!ZM-6000;!ZM0;");
+  EXPECT_EQ(device.CountOf(FindingKind::kTravelRange), 2);
+  device.Feed("!ZM-6001;!ZM1;");
+  EXPECT_EQ(device.CountOf(FindingKind::kTravelRange), 4);
+}
+
 // RML1-6.10: 100,000 entries with their place, the rest counted, the cut told once, the register
 // kept.
 TEST(Device, BoundsItsErrorLog) {

@@ -91,6 +91,14 @@ TEST(MachineState, KeepsEveryValueWithinItsRange) {
   }
   EXPECT_EQ(ReadMachineState("rml1 machine state 1\ny 0\n", T1()).error().detail,
             "machine state: no line 'x'");
+  const std::string whole = text_with("", "");
+  EXPECT_EQ(ReadMachineState(whole.substr(0, whole.size() - 1), T1()).error().detail,
+            "machine state: no line 'spindle_on'");
+  for (const std::string other : {"rpn", "rpms", "rp"}) {
+    std::string changed = whole;
+    changed.replace(changed.find("rpm"), 3, other);
+    EXPECT_EQ(ReadMachineState(changed, T1()).error().detail, "machine state: no line 'rpm'");
+  }
   EXPECT_EQ(ReadMachineState("", T1()).error().detail,
             "machine state: it does not begin with 'rml1 machine state 1'");
 }

@@ -137,11 +137,14 @@ TEST(Rml1Family, BoundsWhatItTellsOfPauses) {
 // RML1-9.42, RML1-3C.08, RML1-3A.46: advice, and silence where none is wanted.
 TEST(Rml1Family, AdvisesWhereWanted) {
   const std::string stream = "F99;!NR;PU30000,0;PU1,1";
-  std::vector<ErrorCode> codes;
-  for (const Diagnostic& d : TranslateText(stream).diagnostics) codes.push_back(d.code);
-  EXPECT_EQ(codes,
-            (std::vector<ErrorCode>{ErrorCode::kRml1SpeedClamped, ErrorCode::kRml1PausedAtEnd,
-                                    ErrorCode::kRml1Clipped, ErrorCode::kRml1IncompleteCommand}));
+  // With the number of the command; what was not ended is no command yet.
+  std::vector<std::pair<ErrorCode, int>> told;
+  for (const Diagnostic& d : TranslateText(stream).diagnostics) told.emplace_back(d.code, d.step);
+  EXPECT_EQ(told, (std::vector<std::pair<ErrorCode, int>>{
+                      {ErrorCode::kRml1SpeedClamped, 1},
+                      {ErrorCode::kRml1PausedAtEnd, 2},
+                      {ErrorCode::kRml1Clipped, 3},
+                      {ErrorCode::kRml1IncompleteCommand, 0}}));
   EXPECT_TRUE(TranslateText(stream, false).diagnostics.empty());
   EXPECT_EQ(TranslateText("5;", false).diagnostics.size(), 1U);  // errors are no advice
 }
