@@ -1,0 +1,64 @@
+// Bends that are passed with changing speed because the window is full. motion.md 5.4, 6, 10.
+#include <gtest/gtest.h>
+
+#include "tests/engine/motion/plan_check.h"
+#include "tests/engine/motion/random_chain.h"
+
+namespace rmlcell::motion {
+namespace {
+
+constexpr int kBends = 60;
+
+// Bend after bend that leaves nothing of the lines between them, while the head turns.
+std::vector<MoveCommand> TurningBends(std::uint64_t seed) {
+  Dice dice(seed);
+  std::vector<MoveCommand> chain;
+  TipPose at{{1000.0, 900.0, -200.0}, 0.3, 0.4};
+  Vec3 heading{1.0, 0.0, 0.0};
+  for (int k = 0; k < kBends; ++k) {
+    heading = heading + dice.Direction() * 0.7;
+    heading = heading * (1.0 / Norm(heading));
+    TipPose to{at.tip + heading * dice.Uniform(1.0, 12.0), at.a_rad + dice.Uniform(-0.25, 0.25),
+               at.b_rad + dice.Uniform(-0.25, 0.25)};
+    MoveCommand move;
+    move.path = PathPiece::Line(at, to);
+    move.fly = true;
+    move.tag = static_cast<std::uint64_t>(k);
+    chain.push_back(move);
+    at = to;
+  }
+  return chain;
+}
+
+// The ramps on the way leave each axis what the bend itself asks of it, whichever of them is weak.
+TEST(VariedBends, KeepEveryAxisWhileTheHeadTurns) {
+  for (std::size_t weak = 0; weak < kAxisCount; ++weak) {
+    MachineLimits machine = StandardMachine();
+    machine.axes.acceleration[weak] *= 0.2;
+    machine.axes.jerk[weak] *= 0.1;
+    int varied = 0;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      const std::vector<MoveCommand> chain = TurningBends(seed);
+      const std::vector<PlannedMotion> motions = Plan(chain, machine, 8);
+      for (const PlannedMotion& motion : motions) {
+        const bool bend = motion.path.kind() == PathPiece::Kind::kBlend;
+        if (!bend || motion.speed.end().speed == motion.speed.At(0.0).speed) continue;
+        ++varied;
+        // At 0.95 of the speed at which the first axis is at its limit an axis moves by as much
+        // for a mm of the way.
+        for (std::size_t i = 0; i < kAxisCount; ++i) {
+          const double per_mm = 0.95 * machine.axes.speed[i] / motion.limits.speed;
+          EXPECT_LE(motion.limits.jerk * per_mm, machine.axes.jerk[i] * (1.0 + 1e-9));
+        }
+      }
+      const PlanCheck check{chain, motions, machine, 12};
+      for (const std::string& violation : check.Violations()) {
+        ADD_FAILURE() << "axis " << weak << " chain " << seed << ", " << violation;
+      }
+    }
+    EXPECT_GT(varied, 200);
+  }
+}
+
+}  // namespace
+}  // namespace rmlcell::motion
