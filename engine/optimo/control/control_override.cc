@@ -42,7 +42,6 @@ void Control::AdaptMotions() {
   // The axes may have more room at the new speed; until that is reached the old limits hold.
   motion::PathLimits limits = motion::LimitsOf(command, parameters_.limits);
   limits.acceleration = std::min(limits.acceleration, active.motion.limits.acceleration);
-  limits.jerk = std::min(limits.jerk, active.motion.limits.jerk);
   const motion::PathState here = active.motion.speed.At(ToSeconds(s_.now - active.start));
   const double length = active.motion.path.length();
   if (!motion::FromFits(here, length, 0.0, limits)) return;
