@@ -3,6 +3,7 @@
 
     mutate.py [--seed N] [--count 300] [--area NAME ...]   as many changes, the areas in turn
     mutate.py --area NAME --file PATH                      every change of these sources, whatever the count
+    mutate.py --kind "error code"                          these kinds only
     mutate.py --again                                      the survivors of that seed once more
     mutate.py --report                                     what is known of that seed, running nothing
 
@@ -55,14 +56,15 @@ def change_of(place):
     return f"{place.before} => {place.after}"
 
 
-def sequence(area, seed, codes, files):
+def sequence(area, seed, codes, files, kinds):
     """The places of an area in the order in which this seed takes them: first a kind, then a place of it."""
     by_kind = collections.defaultdict(list)
     for folder in AREAS[area].folders:
         for path in sorted((ROOT / folder).glob("*.cc")):
             name = str(path.relative_to(ROOT))
             for place in places_of(ROOT, name, codes) if not files or name in files else ():
-                by_kind[place.kind].append(place)
+                if not kinds or place.kind in kinds:
+                    by_kind[place.kind].append(place)
     dice = random.Random(f"{seed} {area}")
     while any(by_kind.values()):
         places = by_kind[dice.choice([kind for kind in KINDS if by_kind[kind]])]
@@ -187,7 +189,7 @@ class Measurement:
 
     def measure_area(self, area, share, pool):
         """The first `share` changes that are C++ and change the code, whatever the order they end in."""
-        places = sequence(area, self.options.seed, self.codes, self.options.file)
+        places = sequence(area, self.options.seed, self.codes, self.options.file, self.options.kind)
         counted, waiting = 0, set()
         while counted < share:
             while counted + len(waiting) < share and len(waiting) < 2 * self.options.jobs:
@@ -241,6 +243,7 @@ def main():
     parser.add_argument("--count", type=int, default=300)
     parser.add_argument("--area", action="append", choices=AREAS)
     parser.add_argument("--file", action="append")
+    parser.add_argument("--kind", action="append", choices=KINDS)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--again", action="store_true")
     parser.add_argument("--report", action="store_true")

@@ -82,7 +82,7 @@ class Places(unittest.TestCase):
 class Sequence(unittest.TestCase):
     def test_a_seed_gives_the_same_places_again(self):
         def first(seed):
-            places = mutate.sequence("mill", seed, mutate.error_codes(), None)
+            places = mutate.sequence("mill", seed, mutate.error_codes(), None, None)
             return [next(places) for _ in range(50)]
 
         self.assertEqual(first("1"), first("1"))
