@@ -6,6 +6,7 @@ compiles each source by itself (preset `mutation`): where several are compiled t
 put the old code into a neighbour.
 """
 import json
+import math
 import os
 import pathlib
 import re
@@ -15,6 +16,7 @@ import shutil
 import subprocess
 
 MEMORY_BYTES_MAX = 6 << 30
+QUIET_S = 60
 
 
 class Test:
@@ -158,10 +160,7 @@ class Workshop:
                                    stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, errors="replace",
                                    preexec_fn=limits, start_new_session=True)
         try:
-            # A guard against waiting for ever, a quarter of an hour at least.
-            output, _ = process.communicate(timeout=900)
-        except subprocess.TimeoutExpired:
-            output = "it waits for ever"
+            output = communicate(process)
         finally:
             try:
                 os.killpg(process.pid, 9)
@@ -197,6 +196,32 @@ class Workshop:
         if test.drives_programs:
             files += self.programs()
         return [(self.build / file).stat().st_mtime_ns for file in files]
+
+
+def communicate(process):
+    """What it prints until it ends, or until it does nothing any more: it waits for what never comes."""
+    before = -math.inf
+    while True:
+        try:
+            return process.communicate(timeout=QUIET_S)[0]
+        except subprocess.TimeoutExpired:
+            used = session_cpu_s(process.pid)
+            if used - before < QUIET_S / 100:  # its timers tick
+                return "it waits for ever"
+            before = used
+
+
+def session_cpu_s(session):
+    """Processor time of all processes of a session, those that ended included."""
+    ticks = 0
+    for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = stat.read_text(encoding="ascii", errors="replace").rpartition(")")[2].split()
+        except OSError:  # it ended in the meantime
+            continue
+        if int(fields[3]) == session:
+            ticks += sum(map(int, fields[11:15]))
+    return ticks / os.sysconf("SC_CLK_TCK")
 
 
 def fresh(folder):
