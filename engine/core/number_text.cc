@@ -13,6 +13,14 @@ constexpr std::size_t kLongestWhole = 311;
 // No double has more decimals that are not zero, and nobody reads so many.
 constexpr int kDecimalsMax = 100;
 
+template <class Number>
+std::optional<Number> ParseWhole(std::string_view text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
 }  // namespace
 
 std::string FixedText(double value, int decimals) {
@@ -42,18 +50,11 @@ std::string ShortestText(double value) {
 }
 
 std::optional<double> ParseDouble(std::string_view text) {
-  double value = 0.0;
-  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end.ec != std::errc() || end.ptr != text.data() + text.size()) return std::nullopt;
-  if (!std::isfinite(value)) return std::nullopt;  // from_chars reads "inf" and "nan" as well
+  const std::optional<double> value = ParseWhole<double>(text);
+  if (value && !std::isfinite(*value)) return std::nullopt;  // "inf" and "nan" are read as well
   return value;
 }
 
-std::optional<long long> ParseInteger(std::string_view text) {
-  long long value = 0;
-  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end.ec != std::errc() || end.ptr != text.data() + text.size()) return std::nullopt;
-  return value;
-}
+std::optional<long long> ParseInteger(std::string_view text) { return ParseWhole<long long>(text); }
 
 }  // namespace rmlcell

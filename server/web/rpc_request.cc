@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
+#include "engine/core/number_text.h"
 #include "server/web/base64.h"
 #include "server/web/envelope.h"
 #include "server/web/rpc_json.h"
@@ -140,14 +140,9 @@ RpcStatus Invalid(std::string detail) {
   return FromError({ErrorCode::kCellInvalidArgument, std::move(detail), {}});
 }
 
-template <class Integer>
-std::optional<Integer> WholeNumber(std::string_view text, std::size_t digits_max) {
-  Integer value = 0;
-  if (text.empty() || text.size() > digits_max) return std::nullopt;
-  if (!std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; })) return std::nullopt;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
+std::optional<std::int64_t> WholeNumber(std::string_view text, std::size_t digits_max) {
+  if (text.size() > digits_max || text.starts_with('-')) return std::nullopt;
+  return ParseInteger(text);
 }
 
 RpcStatus DecodeTimeout(const RpcRoute& route, const HttpRequest& request, RpcRequest& out) {
@@ -289,7 +284,7 @@ RpcDecoding DecodeRpc(const RpcRoute& route, const HttpRequest& request) {
   std::optional<std::int64_t> after_sequence;
   const std::string_view last_event = request.Header("last-event-id");
   if (!last_event.empty() && route.wire == Wire::kEvents) {
-    after_sequence = WholeNumber<std::int64_t>(last_event, 19);
+    after_sequence = WholeNumber(last_event, 19);
     if (!after_sequence) {
       out.status = Invalid("Last-Event-ID is not a sequence number");
       return out;
@@ -321,7 +316,7 @@ RpcDecoding DecodeRpc(const RpcRoute& route, const HttpRequest& request) {
 
 std::optional<std::chrono::nanoseconds> ParseGrpcTimeout(std::string_view text) {
   if (text.size() < 2) return std::nullopt;
-  const auto number = WholeNumber<std::int64_t>(text.substr(0, text.size() - 1), 8);
+  const auto number = WholeNumber(text.substr(0, text.size() - 1), 8);
   if (!number) return std::nullopt;
   // Eight digits of hours are 3.6e20 ns, more than 64 bits hold; ten years stand for all beyond.
   constexpr std::chrono::hours kLongest{24 * 365 * 10};
@@ -344,7 +339,7 @@ std::optional<std::chrono::nanoseconds> ParseGrpcTimeout(std::string_view text) 
 }
 
 std::optional<std::chrono::nanoseconds> ParseConnectTimeout(std::string_view text) {
-  const auto number = WholeNumber<std::int64_t>(text, 10);
+  const auto number = WholeNumber(text, 10);
   if (!number) return std::nullopt;
   return std::chrono::milliseconds(*number);
 }
