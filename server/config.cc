@@ -3,7 +3,6 @@
 #include <arpa/inet.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -11,6 +10,7 @@
 #include <sstream>
 #include <toml++/toml.h>
 
+#include "engine/core/letters.h"
 #include "engine/core/number_text.h"
 
 namespace rmlcell::server {
@@ -236,7 +236,7 @@ constexpr std::string_view kVariablePrefix = "RMLCELL_";
 std::string VariableOf(std::string_view key) {
   std::string variable(kVariablePrefix);
   for (const char c : key) {
-    variable += c == '.' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    variable += c == '.' ? '_' : UpperCase(c);
   }
   return variable;
 }
@@ -395,8 +395,7 @@ std::vector<std::string> MistypedVariables(const std::map<std::string, std::stri
   std::vector<std::string> found;
   for (const auto& [variable, value] : environment) {
     if (!variable.starts_with(kVariablePrefix)) continue;
-    std::string name = variable.substr(kVariablePrefix.size());
-    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    std::string name = LowerCase(std::string_view(variable).substr(kVariablePrefix.size()));
     const std::size_t section = name.find('_');
     if (section != std::string::npos) name[section] = '.';
     if (const std::string near = NearestKey(name); !near.empty() && near != name) {

@@ -6,6 +6,7 @@
 
 #include "clients/cli/terminal.h"
 #include "engine/core/diagnostic.h"
+#include "engine/core/letters.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
 
@@ -33,8 +34,7 @@ std::string Json(const google::protobuf::Message& message) {
 std::string StateName(v1::Job::State state) {
   std::string name = v1::Job::State_Name(state);
   if (name.starts_with("STATE_")) name.erase(0, 6);
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return name;
+  return LowerCase(name);
 }
 
 std::string FindingLine(const v1::Diagnostic& diagnostic) {

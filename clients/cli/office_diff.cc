@@ -7,6 +7,7 @@
 #include "clients/cli/office.h"
 #include "clients/cli/program_files.h"
 #include "clients/cli/terminal.h"
+#include "engine/core/letters.h"
 #include "engine/core/number_text.h"
 #include "proto/bridge/comparison.h"
 #include "proto/bridge/findings.h"
@@ -27,9 +28,8 @@ Result<bridge::ComparedProgram> ReadProgram(const std::string& file) {
 std::string AspectText(const google::protobuf::RepeatedField<int>& aspects) {
   std::string text;
   for (const int aspect : aspects) {
-    std::string name = v1::DiffAspect_Name(aspect).substr(std::string_view("DIFF_ASPECT_").size());
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    text += (text.empty() ? "" : ", ") + name;
+    const std::string name = v1::DiffAspect_Name(aspect).substr(std::string_view("DIFF_ASPECT_").size());
+    text += (text.empty() ? "" : ", ") + LowerCase(name);
   }
   return text;
 }

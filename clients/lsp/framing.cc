@@ -5,18 +5,14 @@
 #include <optional>
 #include <utility>
 
+#include "engine/core/letters.h"
+#include "engine/core/number_text.h"
+
 namespace rmlcell::lsp {
 namespace {
 
 constexpr std::string_view kMark = "Content-Length:";
 constexpr std::size_t kFirstRoom = std::size_t{1} << 20;  // no more is taken on a promise alone
-
-char Lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
-bool EqualsIgnoringCase(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](char x, char y) { return Lower(x) == Lower(y); });
-}
 
 std::string_view Trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r");
@@ -25,16 +21,14 @@ std::string_view Trimmed(std::string_view text) {
 }
 
 std::optional<std::size_t> ReadLength(std::string_view text) {
-  std::size_t length = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), length);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return length;
+  const std::optional<long long> length = ParseInteger(text);
+  if (!length || *length < 0) return std::nullopt;
+  return static_cast<std::size_t>(*length);
 }
 
 // "application/vscode-jsonrpc; charset=utf-8": only UTF-8 is spoken here, under both its names.
 bool IsUtf8(std::string_view content_type) {
-  std::string lower(content_type);
-  std::ranges::transform(lower, lower.begin(), Lower);
+  const std::string lower = LowerCase(content_type);
   const std::size_t at = lower.find("charset=");
   if (at == std::string::npos) return true;
   const std::string_view name = Trimmed(std::string_view(lower).substr(at + 8));
@@ -58,7 +52,7 @@ Header ReadHeader(std::string_view text) {
     if (colon == std::string_view::npos) return {0, "a header line without a colon"};
     const std::string_view name = Trimmed(line.substr(0, colon));
     const std::string_view value = Trimmed(line.substr(colon + 1));
-    if (EqualsIgnoringCase(name, "Content-Length")) {
+    if (EqualIgnoringCase(name, "Content-Length")) {
       const std::optional<std::size_t> length = ReadLength(value);
       if (!length) return {0, "Content-Length is no number"};
       if (*length > kMessageBytesMax) {
@@ -68,7 +62,7 @@ Header ReadHeader(std::string_view text) {
       if (found && *length != header.length) return {0, "two different Content-Length"};
       found = true;
       header.length = *length;
-    } else if (EqualsIgnoringCase(name, "Content-Type") && !IsUtf8(value)) {
+    } else if (EqualIgnoringCase(name, "Content-Type") && !IsUtf8(value)) {
       return {0, "a message that is not in UTF-8"};
     }
   }

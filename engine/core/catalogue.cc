@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 #include "engine/core/check.h"
+#include "engine/core/letters.h"
 #include "engine/core/number_text.h"
 
 namespace rmlcell {
@@ -25,12 +25,6 @@ constexpr bool IsIndexedByCode() {
   return true;
 }
 static_assert(IsIndexedByCode(), "Lookup reads the row by its code");
-
-bool EqualIgnoringCase(std::string_view a, std::string_view b) {
-  return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) {
-    return std::toupper(x) == std::toupper(y);
-  });
-}
 
 }  // namespace
 
@@ -106,7 +100,7 @@ std::string ConstantName(ErrorCode code) {
     const bool starts_word = (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9' && before >= 'a');
     const bool inside_family = name == "RML";  // RML1 is one word
     if (starts_word && !name.empty() && !inside_family) name += '_';
-    name += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    name += UpperCase(c);
     before = c;
   }
   return name;

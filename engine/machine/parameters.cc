@@ -1,18 +1,12 @@
 #include "engine/machine/parameters.h"
 
 #include <algorithm>
-#include <cctype>
 
+#include "engine/core/letters.h"
 #include "engine/core/number_text.h"
 
 namespace rmlcell::machine {
 namespace {
-
-bool EqualIgnoringCase(std::string_view a, std::string_view b) {
-  return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) {
-    return std::toupper(x) == std::toupper(y);
-  });
-}
 
 // The word of `choices` that `word` means, or nothing.
 std::string_view FindChoice(std::string_view choices, std::string_view word) {

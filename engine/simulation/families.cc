@@ -3,18 +3,12 @@
 #include <algorithm>
 #include <vector>
 
+#include "engine/core/letters.h"
 #include "engine/optimo/control/optimo_family.h"
 #include "engine/rml1/rml1_family.h"
 
 namespace rmlcell::simulation {
 namespace {
-
-char Lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
-bool EqualIgnoringCase(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](char x, char y) { return Lower(x) == Lower(y); });
-}
 
 // "part.SI" of "jobs/old.d/part.SI" -> ".SI"; empty when the name has no extension.
 std::string_view ExtensionOf(std::string_view name) {

@@ -2,11 +2,11 @@
 
 #include <cmath>
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <memory>
 #include <toml++/toml.h>
 
+#include "engine/core/letters.h"
 #include "engine/core/number_text.h"
 #include "rmlcell/v1/job.pb.h"
 
@@ -22,13 +22,6 @@ Error BadText(const std::string& name, int line, int column, const std::string& 
           SourceSpan{.line = line, .column = column}};
 }
 
-std::string Upper(std::string_view text) {
-  std::string upper(text);
-  std::ranges::transform(upper, upper.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return upper;
-}
-
 std::string_view Trim(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r");
   if (first == std::string_view::npos) return {};
@@ -37,7 +30,7 @@ std::string_view Trim(std::string_view text) {
 
 // ON, OPEN, TRUE, YES are 1; OFF, CLOSED, FALSE, NO are 0; else a number.
 std::optional<double> ValueOf(std::string_view text) {
-  const std::string word = Upper(text);
+  const std::string word = UpperCase(text);
   if (word == "ON" || word == "OPEN" || word == "TRUE" || word == "YES") return 1.0;
   if (word == "OFF" || word == "CLOSED" || word == "FALSE" || word == "NO") return 0.0;
   return ParseDouble(text);
@@ -45,7 +38,7 @@ std::optional<double> ValueOf(std::string_view text) {
 
 // Fills kind and index from "IL[20]", "START" ...; false: no such thing.
 bool SetKind(std::string_view what, v1::ScriptedInput& input) {
-  const std::string word = Upper(what);
+  const std::string word = UpperCase(what);
   if (word == "START" || word == "RESUME") {
     input.set_kind(v1::ScriptedInput::KIND_START);
   } else if (word == "HOLD") {

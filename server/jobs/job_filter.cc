@@ -5,6 +5,7 @@
 #include <set>
 #include <vector>
 
+#include "engine/core/letters.h"
 #include "server/names.h"
 #include "server/readable.h"
 
@@ -52,15 +53,10 @@ Result<std::vector<Word>> Words(std::string_view filter) {
   return words;
 }
 
-std::string Upper(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return text;
-}
-
 Status Apply(const std::string& field, const std::string& value, storage::JobQuery& query) {
   using storage::JobState;
   if (field == "state") {
-    std::string state = Upper(value);
+    std::string state = UpperCase(value);
     if (state.starts_with("STATE_")) state.erase(0, 6);
     if (state == "QUEUED") {
       query.state = JobState::kQueued;
@@ -82,7 +78,7 @@ Status Apply(const std::string& field, const std::string& value, storage::JobQue
     if (!id) return Bad("machine: " + id.error().detail);
     query.machine = *id;
   } else if (field == "kind") {
-    std::string kind = Upper(value);
+    std::string kind = UpperCase(value);
     if (kind.starts_with("JOB_KIND_")) kind.erase(0, 9);
     if (kind != "CHECK" && kind != "SIMULATE" && kind != "RUN") {
       return Bad("no kind '" + Readable(value) + "'; there are CHECK, SIMULATE, RUN");
@@ -118,7 +114,7 @@ Status ApplyFilter(std::string_view filter, storage::JobQuery& query) {
     }
     if (const Status applied = Apply(word[0].text, word[2].text, changed); !applied) return applied;
     if (left == 3) break;
-    if (word[3].quoted || Upper(word[3].text) != "AND" || left == 4) {
+    if (word[3].quoted || UpperCase(word[3].text) != "AND" || left == 4) {
       return Bad("comparisons are joined by AND, found '" + Readable(word[3].text) + "'");
     }
   }

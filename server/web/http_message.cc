@@ -6,6 +6,8 @@
 #include <chrono>
 #include <ctime>
 
+#include "engine/core/letters.h"
+
 namespace rmlcell::web {
 namespace {
 
@@ -16,7 +18,6 @@ int HexDigit(char c) {
   return -1;
 }
 
-char LowerChar(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 bool IsControl(char c) {
   const auto byte = static_cast<unsigned char>(c);
@@ -193,16 +194,6 @@ std::string ContentDisposition(std::string_view kind, std::string_view file_name
   }
   std::string out = std::string(kind) + "; filename=\"" + plain + "\"";
   if (plain != file_name) out += "; filename*=UTF-8''" + encoded;
-  return out;
-}
-
-bool EqualIgnoringCase(std::string_view a, std::string_view b) {
-  return std::ranges::equal(a, b, {}, LowerChar, LowerChar);
-}
-
-std::string LowerCase(std::string_view text) {
-  std::string out(text);
-  std::ranges::transform(out, out.begin(), LowerChar);
   return out;
 }
 

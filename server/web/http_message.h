@@ -86,8 +86,6 @@ std::string HttpDate();
 // What stands before a chunk of a body. RFC 9112 7.1
 std::string ChunkHead(std::size_t size);
 
-bool EqualIgnoringCase(std::string_view a, std::string_view b);
-std::string LowerCase(std::string_view text);
 std::string_view Trim(std::string_view text);  // blanks and tabs
 
 }  // namespace rmlcell::web

@@ -20,6 +20,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/core/letters.h"
 #include "server/web/rpc_codec.h"
 
 namespace rmlcell::web {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "engine/core/letters.h"
 #include "server/web/base64.h"
 #include "server/web/rpc_call.h"
 #include "server/web/rpc_codec.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/core/letters.h"
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "engine/core/letters.h"
 #include "engine/core/number_text.h"
 #include "server/web/base64.h"
 #include "server/web/envelope.h"

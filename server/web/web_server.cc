@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "engine/core/letters.h"
 #include "server/web/http_session.h"
 
 namespace rmlcell::web {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cctype>
 
+#include "engine/core/letters.h"
+
 namespace rmlcell::optimo {
 namespace {
 
@@ -12,16 +14,15 @@ constexpr std::size_t kLongest = 16;  // longer words are no mistyped words of e
 // Optimal string alignment distance of two short words, without case.
 int Distance(std::string_view a, std::string_view b) {
   std::array<std::array<int, kLongest + 1>, kLongest + 1> cost{};
-  const auto upper = [](char c) { return std::toupper(static_cast<unsigned char>(c)); };
   for (std::size_t i = 0; i <= a.size(); ++i) cost[i][0] = static_cast<int>(i);
   for (std::size_t j = 0; j <= b.size(); ++j) cost[0][j] = static_cast<int>(j);
   for (std::size_t i = 1; i <= a.size(); ++i) {
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      const bool same = upper(a[i - 1]) == upper(b[j - 1]);
+      const bool same = UpperCase(a[i - 1]) == UpperCase(b[j - 1]);
       int best =
           std::min({cost[i - 1][j] + 1, cost[i][j - 1] + 1, cost[i - 1][j - 1] + (same ? 0 : 1)});
-      if (i > 1 && j > 1 && upper(a[i - 1]) == upper(b[j - 2]) &&
-          upper(a[i - 2]) == upper(b[j - 1])) {
+      if (i > 1 && j > 1 && UpperCase(a[i - 1]) == UpperCase(b[j - 2]) &&
+          UpperCase(a[i - 2]) == UpperCase(b[j - 1])) {
         best = std::min(best, cost[i - 2][j - 2] + 1);
       }
       cost[i][j] = best;
@@ -30,11 +31,10 @@ int Distance(std::string_view a, std::string_view b) {
   return cost[a.size()][b.size()];
 }
 
-char UpperOf(char c) { return static_cast<char>(std::toupper(static_cast<unsigned char>(c))); }
 bool IsDigitOfName(char c) { return c >= '0' && c <= '9'; }
 // Letters by which the names of coordinates differ.
 bool IsAxis(char c) {
-  return std::string_view("XYZABC").find(UpperOf(c)) != std::string_view::npos;
+  return std::string_view("XYZABC").find(UpperCase(c)) != std::string_view::npos;
 }
 
 // Of two words at a distance of 1: without what is equal at both ends.
@@ -42,11 +42,11 @@ struct Difference {
   std::string_view from, to;
 };
 Difference DifferenceOf(std::string_view from, std::string_view to) {
-  while (!from.empty() && !to.empty() && UpperOf(from.front()) == UpperOf(to.front())) {
+  while (!from.empty() && !to.empty() && UpperCase(from.front()) == UpperCase(to.front())) {
     from.remove_prefix(1);
     to.remove_prefix(1);
   }
-  while (!from.empty() && !to.empty() && UpperOf(from.back()) == UpperOf(to.back())) {
+  while (!from.empty() && !to.empty() && UpperCase(from.back()) == UpperCase(to.back())) {
     from.remove_suffix(1);
     to.remove_suffix(1);
   }

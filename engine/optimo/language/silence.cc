@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/core/letters.h"
 #include "engine/optimo/language/nearest_word.h"
 
 namespace rmlcell::optimo {
@@ -21,12 +22,6 @@ constexpr std::array kToldByRuns{
     ErrorCode::kSpeedLimited,    ErrorCode::kArcIsStraight,     ErrorCode::kWorkActiveAtEnd,
     ErrorCode::kExecutableStale, ErrorCode::kBeamOffBySchedule, ErrorCode::kGasConflict};
 constexpr std::size_t kNoStatement = std::string_view::npos;
-
-std::string LowerCase(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return lower;
-}
 
 // What a comment asks for; no numbers and no complaint when it is an ordinary one.
 struct Directive {

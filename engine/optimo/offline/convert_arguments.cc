@@ -1,15 +1,10 @@
 #include <cctype>
 
+#include "engine/core/letters.h"
 #include "engine/optimo/offline/convert.h"
 
 namespace rmlcell::optimo {
 namespace {
-
-std::string Lower(std::string_view text) {
-  std::string lower;
-  for (const char c : text) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return lower;
-}
 
 // Place of the point of the extension; npos when the name has none.
 std::size_t ExtensionAt(std::string_view name) {
@@ -50,7 +45,7 @@ Result<std::optional<ConvertRequest>> ReadConvertArguments(std::span<const std::
       names.push_back(argument);
       continue;
     }
-    const std::string letter = Lower(argument);
+    const std::string letter = LowerCase(argument);
     if (letter != "/i" && letter != "/m") return Refuse(ErrorCode::kConvertSwitch, argument);
     const Direction direction = letter == "/i" ? Direction::kToInch : Direction::kToMetric;
     if (wanted && *wanted != direction) {
@@ -61,7 +56,7 @@ Result<std::optional<ConvertRequest>> ReadConvertArguments(std::span<const std::
   if (names.empty()) return Refuse(ErrorCode::kConvertTooFew, "no file name");
   if (names.size() > 2) return Refuse(ErrorCode::kConvertTooMany, "more than two file names");
 
-  const std::string extension = Lower(ExtensionOf(names[0]));
+  const std::string extension = LowerCase(ExtensionOf(names[0]));
   std::optional<Direction> by_name;
   if (extension == ".s") by_name = Direction::kToInch;
   if (extension == ".si") by_name = Direction::kToMetric;
@@ -85,7 +80,7 @@ Result<std::optional<ConvertRequest>> ReadConvertArguments(std::span<const std::
     request.output = names[0].substr(0, at) + standard;
   } else {
     request.output = names[1];
-    const std::string output_extension = Lower(ExtensionOf(names[1]));
+    const std::string output_extension = LowerCase(ExtensionOf(names[1]));
     if (output_extension.empty()) request.output += standard;
     if (output_extension == (inch ? ".s" : ".si")) {
       return Refuse(ErrorCode::kConvertConflict, names[0] + " and " + names[1]);

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <string>
 
+#include "engine/core/letters.h"
 #include "engine/optimo/offline/literal_text.h"
 
 namespace rmlcell::optimo {
@@ -33,7 +34,7 @@ std::optional<CutterDirective> ReadCutterDirective(const ParsedProgram& program,
   std::string word;
   std::size_t at = 2;
   for (; at < text.size() && std::isalpha(static_cast<unsigned char>(text[at])) != 0; ++at)
-    word += static_cast<char>(std::tolower(static_cast<unsigned char>(text[at])));
+    word += LowerCase(text[at]);
   at = std::min(text.find_first_not_of(kBlanks, at), text.size());
   const std::size_t end = text.find_last_not_of(kBlanks) + 1;
   CutterDirective directive;

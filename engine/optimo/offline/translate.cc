@@ -1,7 +1,8 @@
 #include "engine/optimo/offline/translate.h"
 
-#include <cctype>
 #include <utility>
+
+#include "engine/core/letters.h"
 
 namespace rmlcell::optimo {
 namespace {
@@ -9,12 +10,7 @@ namespace {
 constexpr int kAmadaProgramMax = 7;  // OPT-10.17
 
 bool EndsWith(std::string_view name, std::string_view upper_case) {
-  if (name.size() < upper_case.size()) return false;
-  const std::string_view tail = name.substr(name.size() - upper_case.size());
-  for (std::size_t i = 0; i < tail.size(); ++i) {
-    if (std::toupper(static_cast<unsigned char>(tail[i])) != upper_case[i]) return false;
-  }
-  return true;
+  return UpperCase(name).ends_with(upper_case);
 }
 
 void AddFigures(const Module& module, std::size_t source_bytes, machine::Translation& to) {
