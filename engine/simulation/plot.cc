@@ -94,12 +94,11 @@ void PlotRecorder::OnMotion(const machine::MotionDone& done) {
   ForEachPhase(done.motion->speed, done.profile_start_s, done.profile_start_s + whole,
                [&](const PhasePart& part) {
                  const double end = t + part.duration_s;
+                 // Where the acceleration is zero the speed has its peak.
                  const double level = part.jerk != 0.0 ? -part.start.acceleration / part.jerk : 0.0;
-                 if (level > 0.0 && level < part.duration_s) {  // the speed has its peak there
-                   state_->LookThrough(done, view, t, t + level);
-                   t += level;
-                 }
-                 state_->LookThrough(done, view, t, end);
+                 const double peak = t + std::clamp(level, 0.0, part.duration_s);
+                 state_->LookThrough(done, view, t, peak);
+                 state_->LookThrough(done, view, peak, end);
                  t = end;
                });
   // What is left is settling: it stands.
