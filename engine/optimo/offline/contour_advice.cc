@@ -14,7 +14,7 @@
 namespace rmlcell::optimo {
 namespace {
 
-// No object of 34,000 bytes has as many records.
+// No object of 34,000 bytes has as many records; what is longer is not worth the time.
 constexpr std::size_t kInstructionsMax = 40'000;
 constexpr double kSharp_rad = 60.0 * kRadPerDegree;      // OPT-2.62
 constexpr double kNearStraightDown_rad = kRadPerDegree;  // OPT-E.7319
@@ -262,7 +262,7 @@ ContourMachine ContourMachine::Standard() {
 
 void AdviseOnContours(const ParsedProgram& program, const ContourMachine& machine,
                       Findings& findings) {
-  if (program.module.instructions.size() > kInstructionsMax || findings.error_count() > 0) return;
+  if (program.module.instructions.size() > kInstructionsMax) return;
   ContourAdviser(program, machine, findings).Run();
 }
 

@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "engine/core/number_text.h"
+#include "engine/core/units.h"
+#include "engine/optimo/language/checker.h"
 #include "engine/optimo/offline/translate.h"
 
 namespace rmlcell::optimo {
@@ -222,6 +225,38 @@ TEST(ContourAdvice, TheSwingOfTheHeadIsTold) {
   EXPECT_TRUE(FindingsWith("COORD ABSOL\nPATH LIN\nMOVE (0,0,0,0,0)\nMOVE (0,0,0,1,0)\n",
                            ErrorCode::kHeadSingular)
                   .empty());
+}
+
+// contour_advice.h: programs of more than 40,000 instructions are left out. A corner has eight.
+TEST(ContourAdvice, ProgramsThatNoControlHoldsAreLeftOut) {
+  const auto told = [](int further) {
+    std::string text = CornerOf(90);
+    for (int n = 0; n < further; ++n) text += "SPEED 10\n";
+    Findings findings;
+    ParsedProgram program = Parse(text, findings, Places::kStatements);
+    Check(program, findings);
+    AdviseOnContours(program, ContourMachine::Standard(), findings);
+    const std::vector<Diagnostic> all = findings.Take(text, "a.S");
+    return std::ranges::count(all, ErrorCode::kFlySharp, &Diagnostic::code);
+  };
+  EXPECT_EQ(told(40'000 - 8), 1);
+  EXPECT_EQ(told(40'000 - 8 + 1), 0);
+}
+
+// optimo.md B.1: the machine that is meant where none is named.
+TEST(ContourAdvice, TheStandardMachineHasTheDefaults) {
+  const ContourMachine machine = ContourMachine::Standard();
+  EXPECT_EQ(machine.head_length_mm, 300.0);
+  const motion::MachineLimits& limits = machine.limits;
+  EXPECT_EQ(limits.tip_speed_mm_s, 500.0);
+  EXPECT_EQ(limits.tip_acceleration_mm_s2, 2000.0);
+  EXPECT_EQ(limits.tip_jerk_mm_s3, 40'000.0);
+  EXPECT_EQ(limits.settling_s, 0.048);
+  EXPECT_EQ(limits.axes.speed, (motion::AxisValues{500.0, 500.0, 500.0, kTurn, kTurn}));
+  EXPECT_EQ(limits.axes.acceleration, (motion::AxisValues{2000.0, 2000.0, 2000.0, 20.0, 20.0}));
+  EXPECT_EQ(limits.axes.jerk, (motion::AxisValues{40'000.0, 40'000.0, 40'000.0, 400.0, 400.0}));
+  EXPECT_EQ(limits.axes.travel_min, (motion::AxisValues{-600.0, -600.0, -1300.0, -12.6, -2.4}));
+  EXPECT_EQ(limits.axes.travel_max, (motion::AxisValues{3600.0, 3100.0, 1100.0, 12.6, 2.4}));
 }
 
 }  // namespace

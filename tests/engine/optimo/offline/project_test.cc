@@ -183,6 +183,20 @@ TEST_F(Project, AWorkNeedsADefinition) {
   EXPECT_EQ(plan.diagnostics[0].where.line, 2);
 }
 
+// OPT-3.09: it is the beam that needs one: WORK OFF does not, and of several ON the first is told.
+TEST_F(Project, OnlyAWorkOnNeedsADefinition) {
+  Add(45, "WORK 1,3/OFF\n");
+  EXPECT_TRUE(Plan().ok);
+  Define(1, 5, {6.5, 80, 1.5, 95});
+  EXPECT_TRUE(Findings().empty());
+  Add(46, "WORK 1,3/OFF\nWORK 1,3/ON\nWORK 1,3/OFF\nWORK 1,3/ON\nWORK 1,3/OFF\n");
+  const machine::TransferPlan plan = Plan();
+  ASSERT_FALSE(plan.diagnostics.empty());
+  EXPECT_EQ(plan.diagnostics[0].code, ErrorCode::kWorkdefMissing);
+  EXPECT_EQ(plan.diagnostics[0].program, 46);
+  EXPECT_EQ(plan.diagnostics[0].where.line, 2);
+}
+
 // OPT-3.09: inserted at the beginning, so that every way to a WORK leads through it; comments stay.
 TEST_F(Project, MissingDefinitionsAreInserted) {
   Define(1, 3, {6.5, 80, 1.5, 95});
