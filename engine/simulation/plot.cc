@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "engine/core/catalogue.h"
 #include "engine/motion/trajectory.h"
@@ -63,7 +64,11 @@ struct PlotRecorder::State {
                                         : motion::AxisValues{point.tip.tip.x, point.tip.tip.y,
                                                              point.tip.tip.z, point.tip.a_rad, 0.0};
     std::copy(axes.begin(), axes.end(), values.begin() + PlotPage::kFirstAxis);
-    curves.envelope.Add(std::clamp(done.start + FromSeconds(t_s), done.start, done.end), values);
+    if (!std::exchange(moved, true)) {  // until now they stood here, and nobody had told where
+      for (std::size_t k = 0; k < axes.size(); ++k)
+        curves.envelope.Amend(PlotPage::kFirstAxis + k, axes[k]);
+    }
+    curves.envelope.Add(std::min(done.start + FromSeconds(t_s), done.end), values);
   }
 
   // From `t_s` up to, not including, `end_s`: twice a bucket.
@@ -79,6 +84,7 @@ struct PlotRecorder::State {
   PlotPage::Curves curves;
   TimeEnvelope::Values values{};
   SimTime told{0};  // the curves are known up to here
+  bool moved = false;
 };
 
 PlotRecorder::PlotRecorder(const machine::MachineShape& shape)
