@@ -91,6 +91,54 @@ TEST(PathDifference, NearIsTheSameFarIsNot) {
   far.Line({0, 1.1 * kSamePlace_mm, 0}, {100, 1.1 * kSamePlace_mm, 0});
   EXPECT_NEAR(CutsOf(before, near).removed, 0.0, 1e-9);
   EXPECT_NEAR(CutsOf(before, far).removed, 100.0, 1e-9);
+  Path beside;
+  beside.Line({0, kSamePlace_mm, 0}, {100, kSamePlace_mm, 0});
+  EXPECT_EQ(CutsOf(before, beside).removed, 0.0);
+}
+
+// Gaps and remains that are no longer than kSamePlace_mm go with what they touch, in common and apart.
+TEST(PathDifference, WhatIsTooShortGoesWithItsNeighbour) {
+  constexpr double k = kSamePlace_mm;
+  Path before, gap, wide_gap, late, too_late;
+  before.Line({0, 0, 0}, {10, 0, 0});
+  gap.Line({0, 0, 0}, {4, 0, 0}).Line({4 + k, 0, 0}, {10, 0, 0});
+  wide_gap.Line({0, 0, 0}, {4, 0, 0}).Line({4 + 1.5 * k, 0, 0}, {10, 0, 0});
+  late.Line({k, 0, 0}, {10, 0, 0});
+  too_late.Line({1.5 * k, 0, 0}, {10, 0, 0});
+  EXPECT_EQ(CutsOf(before, gap).removed, 0.0);
+  EXPECT_NEAR(CutsOf(before, wide_gap).removed, 1.5 * k, 1e-9);
+  EXPECT_EQ(CutsOf(before, late).removed, 0.0);
+  EXPECT_NEAR(CutsOf(before, too_late).removed, 1.5 * k, 1e-9);
+  for (const bool at_begin : {true, false}) {
+    const auto longer = [&](double by) {
+      Path after;
+      after.Line({at_begin ? -by : 0.0, 0, 0}, {at_begin ? 10.0 : 10.0 + by, 0, 0});
+      return CutsOf(before, after);
+    };
+    EXPECT_NEAR(longer(0.9 * k).common, 10 + 0.9 * k, 1e-9);
+    EXPECT_EQ(longer(0.9 * k).added, 0.0);
+    EXPECT_NEAR(longer(1.5 * k).common, 10, 1e-9);
+    EXPECT_NEAR(longer(1.5 * k).added, 1.5 * k, 1e-9);
+  }
+}
+
+// What is no longer than kSamePlace_mm is a place: nothing to have in common, to remove or to add.
+TEST(PathDifference, PlacesAreNoPath) {
+  const auto common = [](double overlap) {
+    Path before, after;
+    before.Line({0, 0, 0}, {10, 0, 0});
+    after.Line({-5, 0, 0}, {overlap, 0, 0});
+    return CutsOf(before, after).common;
+  };
+  EXPECT_EQ(common(kSamePlace_mm), 0.0);
+  EXPECT_NEAR(common(1.5 * kSamePlace_mm), 1.5 * kSamePlace_mm, 1e-9);
+  const auto whole = [](double length) {
+    Path before, after;
+    before.Line({0, 0, 0}, {length, 0, 0});
+    return CutsOf(before, after).removed;
+  };
+  EXPECT_EQ(whole(kSamePlace_mm), 0.0);
+  EXPECT_NEAR(whole(1.5 * kSamePlace_mm), 1.5 * kSamePlace_mm, 1e-9);
 }
 
 // Circles are the same up to kSamePlace_mm in every respect, and not a bit beyond: the place of the
