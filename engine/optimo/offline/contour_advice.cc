@@ -65,9 +65,9 @@ class ContourAdviser {
   void AdviseCorner(const ChainMove& before, const ChainMove& after,
                     const motion::CornerReport& corner);
 
-  // Something else may come here from elsewhere.
+  // Something else may come here from elsewhere. A chain ends with the next move: nothing is known
+  // of where that one starts.
   void Forget() {
-    FinishChain();
     at_.reset();
     path_.reset();
     coord_.reset();
@@ -108,7 +108,6 @@ void ContourAdviser::Pass(const Instruction& i) {
       break;
     case Op::kCoord:
       FinishChain();
-      if (coord_ != static_cast<CoordType>(i.choice)) at_.reset();
       coord_ = static_cast<CoordType>(i.choice);
       return;
     case Op::kSysdef:

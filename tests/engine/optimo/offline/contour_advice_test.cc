@@ -227,6 +227,63 @@ TEST(ContourAdvice, TheSwingOfTheHeadIsTold) {
                   .empty());
 }
 
+// contour_advice.h: where a jump comes to, nothing that was said before counts: the place, PATH,
+// COORD, SPEED, ACCEL, OVERSH and the beam. Each must be said again before a corner can be told.
+TEST(ContourAdvice, NothingIsKnownWhereAJumpComesTo) {
+  const std::vector<std::string> setting = {"COORD ABSOL\n", "PATH LIN\n",   "SPEED 10\n",
+                                            "ACCEL 100\n",   "OVERSH 100\n", "WORK 0,0/ON\n"};
+  const std::string jump = "WORK 0,0/OFF\nGOTO 10\n";
+  const auto told = [&](std::size_t left_out, const std::string& moves) {
+    std::string before, behind = "10\n";
+    for (std::size_t k = 0; k < setting.size(); ++k) {
+      before += setting[k];
+      if (k != left_out) behind += setting[k];
+    }
+    return FindingsWith(before + "MOVE (0,0,0,0,0)\nMOVE (100,0,0,0,0)\n" + behind + moves + jump,
+                        ErrorCode::kFlySharp)
+        .size();
+  };
+  // The first corner is at the end of a move that starts somewhere.
+  const std::string one = "MOVE (100,100,0,0,0)/FLY\nMOVE (0,100,0,0,0)\n";
+  const std::string two = "MOVE (100,100,0,0,0)/FLY\nMOVE (0,100,0,0,0)/FLY\nMOVE (0,200,0,0,0)\n";
+  EXPECT_EQ(told(setting.size(), one), 0U);
+  EXPECT_EQ(told(setting.size(), two), 1U);
+  for (std::size_t k = 0; k < setting.size(); ++k) EXPECT_EQ(told(k, two), 0U) << setting[k];
+}
+
+// OPT-2.10: SPEED, ACCEL and OVERSH set one thing each, in whichever order they stand.
+TEST(ContourAdvice, TheOrderOfSettingsDoesNotMatter) {
+  const auto told = [](const std::string& settings) {
+    const std::string text = settings +
+                             "COORD ABSOL\nPATH LIN\nMOVE (0,0,0,0,0)\nWORK 0,0/ON\n"
+                             "MOVE (100,0,0,0,0)/FLY\nMOVE (100,1,0,0,0)/FLY\nMOVE (200,1,0,0,0)\n";
+    std::string all;
+    for (const ErrorCode code : {ErrorCode::kFlySharp, ErrorCode::kFlyCapped})
+      for (const Told& each : FindingsWith(text, code)) all += each.detail + "\n";
+    return all;
+  };
+  const std::string speed = "SPEED 10\n", accel = "ACCEL 40\n", oversh = "OVERSH 70\n";
+  const std::string expected = told(oversh + accel + speed);
+  EXPECT_NE(expected, "");
+  EXPECT_EQ(told(speed + accel + oversh), expected);
+  EXPECT_EQ(told(speed + oversh + accel), expected);
+  EXPECT_EQ(told(accel + oversh + speed), expected);
+  EXPECT_EQ(told(oversh + speed + accel), expected);
+}
+
+// contour_advice.h: COORD moves nothing: the place is known as long as no MOVE was in ROBOT.
+TEST(ContourAdvice, CoordMovesNothing) {
+  const auto told = [](const std::string& between) {
+    return FindingsWith("COORD ABSOL\nPATH LIN\nSPEED 10\nWORK 0,0/ON\nMOVE (0,0,0,0,0)\n" + between +
+                            "COORD ABSOL\nMOVE (100,0,0,0,0)/FLY\nMOVE (100,100,0,0,0)\nWORK 0,0/OFF\n",
+                        ErrorCode::kFlySharp)
+        .size();
+  };
+  EXPECT_EQ(told(""), 1U);
+  EXPECT_EQ(told("COORD ROBOT\n"), 1U);
+  EXPECT_EQ(told("COORD ROBOT\nPATH PTP\nMOVE (0,0,0,0,0)\nPATH LIN\n"), 0U);
+}
+
 // contour_advice.h: programs of more than 40,000 instructions are left out. A corner has eight.
 TEST(ContourAdvice, ProgramsThatNoControlHoldsAreLeftOut) {
   const auto told = [](int further) {
