@@ -62,7 +62,7 @@ struct PlotRecorder::State {
     const motion::AxisValues axes = shape.five_axis
                                         ? point.axes
                                         : motion::AxisValues{point.tip.tip.x, point.tip.tip.y,
-                                                             point.tip.tip.z, point.tip.a_rad, 0.0};
+                                                             point.tip.tip.z, point.tip.a_rad};
     std::copy(axes.begin(), axes.end(), values.begin() + PlotPage::kFirstAxis);
     if (!std::exchange(moved, true)) {  // until now they stood here, and nobody had told where
       for (std::size_t k = 0; k < axes.size(); ++k)

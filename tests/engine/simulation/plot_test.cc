@@ -203,6 +203,7 @@ TEST(Plot, NothingHappensBetweenWhatIsTold) {
   // Pixels above zero, or above the lowest of an axis.
   const auto heights = [&](int curve) {
     const std::vector<ScreenPoint> points = Curve(svg, curve);
+    EXPECT_TRUE(std::ranges::is_sorted(points, {}, &ScreenPoint::x));  // time never goes back
     const double zero = std::ranges::max(points, {}, &ScreenPoint::y).y;
     std::vector<double> found;
     for (const double t : {1.01, 1.99, 2.01, 3.99, 4.01, 4.3, 4.99, 5.01, 6.99, 7.01, 7.99, 8.01})
