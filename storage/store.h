@@ -177,7 +177,7 @@ class Store {
                                                    const std::vector<std::string>& kinds,
                                                    std::chrono::milliseconds duration,
                                                    const std::vector<NewEvent>& events) = 0;
-  // Until `duration` from now. CellLeaseLost. Returns the job without its specification, so that the
+  // Until `duration` from now, 366 days at most. CellLeaseLost. Returns the job without its specification, so that the
   // holder sees cancel_requested.
   virtual Result<JobRecord> Renew(const Lease& lease, std::chrono::milliseconds duration) = 0;
   // CellLeaseLost, CellTooLarge, CellResourceExhausted. `done` gets the last sequence number written, and is

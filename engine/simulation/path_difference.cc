@@ -27,16 +27,16 @@ double LengthOf(const SketchElement& element, const std::vector<SketchCircle>& c
   return circle.radius_mm * circle.sweep_rad;
 }
 
+// Boxes of elements that have a way in common touch. Arcs have one only with arcs of their circle,
+// and those have its centre.
 machine::Box BoxOf(const SketchElement& element, const std::vector<SketchCircle>& circles) {
   machine::Box box;
-  if (element.arc >= 0) {  // the whole circle: larger, and never too small
-    const SketchCircle& circle = circles[static_cast<std::size_t>(element.arc)];
-    const Vec3 reach{circle.radius_mm, circle.radius_mm, circle.radius_mm};
-    box.Add(circle.centre - reach);
-    box.Add(circle.centre + reach);
+  if (element.arc >= 0) {
+    box.Add(circles[static_cast<std::size_t>(element.arc)].centre);
+  } else {
+    box.Add(element.from);
+    box.Add(element.to);
   }
-  box.Add(element.from);
-  box.Add(element.to);
   return box;
 }
 
@@ -70,12 +70,11 @@ std::array<std::optional<Stretch>, 2> AlongArc(const SketchElement& a, const Ske
   const Vec3 start = (cosine > 0.0 ? b.from : b.to) - of_a.centre;
   double begin = std::atan2(Dot(start, side), Dot(start, spoke));
   if (begin < 0.0) begin += kTurn;
-  const double slack = kSamePlace_mm / of_a.radius_mm;
   std::size_t count = 0;
   for (const double from : {begin, begin - kTurn}) {
     const Stretch both{std::max(0.0, from) * of_a.radius_mm,
                        std::min(of_a.sweep_rad, from + of_b.sweep_rad) * of_a.radius_mm};
-    if (both.end - both.begin > slack * of_a.radius_mm) found[count++] = both;
+    if (both.end - both.begin > kSamePlace_mm) found[count++] = both;
   }
   return found;
 }

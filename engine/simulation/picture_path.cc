@@ -46,10 +46,10 @@ std::optional<Clip> ClipTo(const ScreenRect& rect, const ScreenPoint& a, const S
   Clip clip;
   const double dx = b.x - a.x;
   const double dy = b.y - a.y;
-  const std::array<double, 4> p = {-dx, dx, -dy, dy};
-  const std::array<double, 4> q = {a.x - rect.x, rect.x + rect.width - a.x, a.y - rect.y,
-                                   rect.y + rect.height - a.y};
-  for (std::size_t i = 0; i < 4; ++i) {
+  const std::array p = {-dx, dx, -dy, dy};
+  const std::array q = {a.x - rect.x, rect.x + rect.width - a.x, a.y - rect.y,
+                        rect.y + rect.height - a.y};
+  for (std::size_t i = 0; i < p.size(); ++i) {
     if (p[i] < 0.0) {
       clip.begin = std::max(clip.begin, q[i] / p[i]);
     } else if (p[i] > 0.0) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "engine/core/catalogue.h"
 #include "engine/motion/trajectory.h"
@@ -61,9 +62,13 @@ struct PlotRecorder::State {
     const motion::AxisValues axes = shape.five_axis
                                         ? point.axes
                                         : motion::AxisValues{point.tip.tip.x, point.tip.tip.y,
-                                                             point.tip.tip.z, point.tip.a_rad, 0.0};
+                                                             point.tip.tip.z, point.tip.a_rad};
     std::copy(axes.begin(), axes.end(), values.begin() + PlotPage::kFirstAxis);
-    curves.envelope.Add(std::clamp(done.start + FromSeconds(t_s), done.start, done.end), values);
+    if (!std::exchange(moved, true)) {  // until now they stood here, and nobody had told where
+      for (std::size_t k = 0; k < axes.size(); ++k)
+        curves.envelope.Amend(PlotPage::kFirstAxis + k, axes[k]);
+    }
+    curves.envelope.Add(std::min(done.start + FromSeconds(t_s), done.end), values);
   }
 
   // From `t_s` up to, not including, `end_s`: twice a bucket.
@@ -79,6 +84,7 @@ struct PlotRecorder::State {
   PlotPage::Curves curves;
   TimeEnvelope::Values values{};
   SimTime told{0};  // the curves are known up to here
+  bool moved = false;
 };
 
 PlotRecorder::PlotRecorder(const machine::MachineShape& shape)
@@ -94,12 +100,11 @@ void PlotRecorder::OnMotion(const machine::MotionDone& done) {
   ForEachPhase(done.motion->speed, done.profile_start_s, done.profile_start_s + whole,
                [&](const PhasePart& part) {
                  const double end = t + part.duration_s;
+                 // Where the acceleration is zero the speed has its peak.
                  const double level = part.jerk != 0.0 ? -part.start.acceleration / part.jerk : 0.0;
-                 if (level > 0.0 && level < part.duration_s) {  // the speed has its peak there
-                   state_->LookThrough(done, view, t, t + level);
-                   t += level;
-                 }
-                 state_->LookThrough(done, view, t, end);
+                 const double peak = t + std::clamp(level, 0.0, part.duration_s);
+                 state_->LookThrough(done, view, t, peak);
+                 state_->LookThrough(done, view, peak, end);
                  t = end;
                });
   // What is left is settling: it stands.

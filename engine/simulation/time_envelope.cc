@@ -39,6 +39,10 @@ void TimeEnvelope::Add(SimTime at, const Values& values) {
   }
 }
 
+void TimeEnvelope::Amend(std::size_t series, double value) {
+  for (Bucket& bucket : buckets_) bucket.ranges[series] = {value, value, value, value, true};
+}
+
 void TimeEnvelope::Halve() {
   width_ns_ *= 2;
   std::size_t kept = 0;

@@ -22,6 +22,9 @@ class TimeEnvelope {
   // Precondition: `at` is not below 0 and not before the time of an earlier call.
   void Add(SimTime at, const Values& values);
 
+  // What a series was all the time so far.
+  void Amend(std::size_t series, double value);
+
   struct Range {
     double first = 0.0;
     double low = 0.0;

@@ -1,6 +1,7 @@
 #include "engine/simulation/time_ledger.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace rmlcell::simulation {
 
@@ -34,19 +35,16 @@ void TimeLedger::Leave(SimTime until, const Gap& now) {
 SimTime TimeLedger::Claim(SimTime start, SimTime end, const Gap& now) {
   Leave(start, now);
   SimTime claimed = std::max(SimTime::zero(), end - std::max(start, reached_));
-  if (open_ > 0) {
-    const std::array<Gap, kGapsMax> before = gaps_;
-    const std::size_t count = open_;
-    open_ = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-      Gap left = before[k];
-      Gap right = before[k];
-      left.end = std::clamp(start, left.start, left.end);
-      right.start = std::clamp(end, left.end, right.end);
-      claimed += before[k].length() - left.length() - right.length();
-      Open(left);
-      Open(right);
-    }
+  const std::array<Gap, kGapsMax> before = gaps_;
+  const std::size_t count = std::exchange(open_, 0);
+  for (std::size_t k = 0; k < count; ++k) {
+    Gap left = before[k];
+    Gap right = before[k];
+    left.end = std::clamp(start, left.start, left.end);
+    right.start = std::clamp(end, left.end, right.end);
+    claimed += before[k].length() - left.length() - right.length();
+    Open(left);
+    Open(right);
   }
   reached_ = std::max(reached_, end);
   return claimed;

@@ -31,9 +31,8 @@ Status CheckSizes(const std::vector<NewEvent>& events) {
 
 // Never beyond what a WallTime can say.
 WallTime After(WallTime now, std::chrono::milliseconds duration) {
-  constexpr auto kLongest = std::chrono::hours(24 * 366);
-  return now +
-         std::clamp<std::chrono::milliseconds>(duration, std::chrono::milliseconds(0), kLongest);
+  return now + std::clamp<std::chrono::milliseconds>(duration, std::chrono::milliseconds(0),
+                                                     std::chrono::days(366));
 }
 
 // Numbers and writes events; the job has the new last sequence, its row not yet.
@@ -211,7 +210,8 @@ Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
                    .started_at = {},
                    .finished_at = {}};
   if (job.queued_max > 0 && context.counters.queued_jobs >= job.queued_max) {
-    // Looked for before anything is written: a refusal in the middle of a batch would undo the batch.
+    // Looked for before anything is written: a refusal in the middle of a batch would undo the
+    // batch.
     const auto known = context.tables.jobs.FindByRequest(contents.request_id);
     if (!known) return known.error();
     if (*known) return KnownJob(context, job, contents);

@@ -247,11 +247,6 @@ void Typing::Declare(const Instruction& instruction) {
     if (places_ == nullptr) Report(ErrorCode::kNameUndeclared, at, {}, {});
     return;
   }
-  if (name.declared) {
-    Report(ErrorCode::kNameDuplicate, at,
-           NameText(module_, instruction.name) + " is declared already", "OPT-7.49");
-    return;
-  }
   ExprNode& node = module_.nodes[at];
   node.type = TypeOfLeaf(node);
   name.declared = true;

@@ -32,6 +32,8 @@ class Typing {
   // 7011.
   bool ResolveTarget(std::uint32_t expression);
 
+  // Precondition: the first DECLARE of its name. Whoever makes a module sees to that: the parser
+  // reports another one (7010), in an object each name has its own record.
   void Declare(const Instruction& instruction);
   void Define(const Instruction& instruction);
 

@@ -14,7 +14,7 @@
 namespace rmlcell::optimo {
 namespace {
 
-// No object of 34,000 bytes has as many records.
+// No object of 34,000 bytes has as many records; what is longer is not worth the time.
 constexpr std::size_t kInstructionsMax = 40'000;
 constexpr double kSharp_rad = 60.0 * kRadPerDegree;      // OPT-2.62
 constexpr double kNearStraightDown_rad = kRadPerDegree;  // OPT-E.7319
@@ -65,9 +65,9 @@ class ContourAdviser {
   void AdviseCorner(const ChainMove& before, const ChainMove& after,
                     const motion::CornerReport& corner);
 
-  // Something else may come here from elsewhere.
+  // Something else may come here from elsewhere. A chain ends with the next move: nothing is known
+  // of where that one starts.
   void Forget() {
-    FinishChain();
     at_.reset();
     path_.reset();
     coord_.reset();
@@ -108,7 +108,6 @@ void ContourAdviser::Pass(const Instruction& i) {
       break;
     case Op::kCoord:
       FinishChain();
-      if (coord_ != static_cast<CoordType>(i.choice)) at_.reset();
       coord_ = static_cast<CoordType>(i.choice);
       return;
     case Op::kSysdef:
@@ -262,7 +261,7 @@ ContourMachine ContourMachine::Standard() {
 
 void AdviseOnContours(const ParsedProgram& program, const ContourMachine& machine,
                       Findings& findings) {
-  if (program.module.instructions.size() > kInstructionsMax || findings.error_count() > 0) return;
+  if (program.module.instructions.size() > kInstructionsMax) return;
   ContourAdviser(program, machine, findings).Run();
 }
 

@@ -22,8 +22,8 @@ struct ContourMachine {
 //   7318  a short neighbour limits a bend, with the speed that it costs; advice
 //   7319  a contour move comes within 1 degree of B = 0 while A turns by more than 30 (motion.md
 //         2.5)
-// SYSDEF does not matter: it moves a contour as a whole. Programs longer than the control could
-// hold are left out. Precondition: Check found no errors.
+// SYSDEF does not matter: it moves a contour as a whole. Programs of more than 40,000 instructions,
+// longer than any that the control could hold, are left out. Precondition: Check found no errors.
 void AdviseOnContours(const ParsedProgram& program, const ContourMachine& machine,
                       Findings& findings);
 

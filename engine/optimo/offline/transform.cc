@@ -33,7 +33,7 @@ struct NumberEdits {
   std::vector<Fix> edits{};
 
   void Put(const Instruction& i, std::uint32_t expression, double value) {
-    if (!(std::fabs(value) < kRealMax)) {  // NaN, too
+    if (!(std::fabs(value) <= kRealMax)) {  // NaN, too
       findings.Add(ErrorCode::kLiteralRange, program.At(i),
                    "a number would become larger than the control can hold", "OPT-7.62");
       return;

@@ -33,6 +33,11 @@ class Path {
                                  0.0, 0.0),
                MotionUse::kCut);
   }
+  // Whole, from its end in the XZ plane.
+  Path& Circle(const Vec3& centre, double radius, const Vec3& normal) {
+    const Vec3 spoke = Vec3{normal.z, 0, -normal.x} * radius;
+    return Add(PathPiece::Circle({centre + spoke}, centre, normal, kTurn, 0.0, 0.0), MotionUse::kCut);
+  }
   const PathSketch& sketch() const { return sketch_; }
 
  private:
@@ -86,6 +91,82 @@ TEST(PathDifference, NearIsTheSameFarIsNot) {
   far.Line({0, 1.1 * kSamePlace_mm, 0}, {100, 1.1 * kSamePlace_mm, 0});
   EXPECT_NEAR(CutsOf(before, near).removed, 0.0, 1e-9);
   EXPECT_NEAR(CutsOf(before, far).removed, 100.0, 1e-9);
+  Path beside;
+  beside.Line({0, kSamePlace_mm, 0}, {100, kSamePlace_mm, 0});
+  EXPECT_EQ(CutsOf(before, beside).removed, 0.0);
+}
+
+// Gaps and remains that are no longer than kSamePlace_mm go with what they touch, in common and apart.
+TEST(PathDifference, WhatIsTooShortGoesWithItsNeighbour) {
+  constexpr double k = kSamePlace_mm;
+  Path before, gap, wide_gap, late, too_late;
+  before.Line({0, 0, 0}, {10, 0, 0});
+  gap.Line({0, 0, 0}, {4, 0, 0}).Line({4 + k, 0, 0}, {10, 0, 0});
+  wide_gap.Line({0, 0, 0}, {4, 0, 0}).Line({4 + 1.5 * k, 0, 0}, {10, 0, 0});
+  late.Line({k, 0, 0}, {10, 0, 0});
+  too_late.Line({1.5 * k, 0, 0}, {10, 0, 0});
+  EXPECT_EQ(CutsOf(before, gap).removed, 0.0);
+  EXPECT_NEAR(CutsOf(before, wide_gap).removed, 1.5 * k, 1e-9);
+  EXPECT_EQ(CutsOf(before, late).removed, 0.0);
+  EXPECT_NEAR(CutsOf(before, too_late).removed, 1.5 * k, 1e-9);
+  for (const bool at_begin : {true, false}) {
+    const auto longer = [&](double by) {
+      Path after;
+      after.Line({at_begin ? -by : 0.0, 0, 0}, {at_begin ? 10.0 : 10.0 + by, 0, 0});
+      return CutsOf(before, after);
+    };
+    EXPECT_NEAR(longer(0.9 * k).common, 10 + 0.9 * k, 1e-9);
+    EXPECT_EQ(longer(0.9 * k).added, 0.0);
+    EXPECT_NEAR(longer(1.5 * k).common, 10, 1e-9);
+    EXPECT_NEAR(longer(1.5 * k).added, 1.5 * k, 1e-9);
+  }
+}
+
+// What is no longer than kSamePlace_mm is a place: nothing to have in common, to remove or to add.
+TEST(PathDifference, PlacesAreNoPath) {
+  const auto common = [](double overlap) {
+    Path before, after;
+    before.Line({0, 0, 0}, {10, 0, 0});
+    after.Line({-5, 0, 0}, {overlap, 0, 0});
+    return CutsOf(before, after).common;
+  };
+  EXPECT_EQ(common(kSamePlace_mm), 0.0);
+  EXPECT_NEAR(common(1.5 * kSamePlace_mm), 1.5 * kSamePlace_mm, 1e-9);
+  const auto whole = [](double length) {
+    Path before, after;
+    before.Line({0, 0, 0}, {length, 0, 0});
+    return CutsOf(before, after).removed;
+  };
+  EXPECT_EQ(whole(kSamePlace_mm), 0.0);
+  EXPECT_NEAR(whole(1.5 * kSamePlace_mm), 1.5 * kSamePlace_mm, 1e-9);
+}
+
+// Circles are the same up to kSamePlace_mm in every respect, and not a bit beyond: the place of the
+// centre, the radius, and how far the rim of one leans out of the plane of the other.
+TEST(PathDifference, CirclesAreTheSameUpToTheTolerance) {
+  const auto in_common = [](const Vec3& centre, double radius, const Vec3& normal) {
+    Path before, after;
+    before.Circle({0, 0, 0}, 1.0, {0, 0, 1});
+    after.Circle(centre, radius, normal);
+    const Lengths lengths = CutsOf(before, after);
+    EXPECT_TRUE(lengths.common == 0.0 || lengths.removed == 0.0);
+    return lengths.common > 0.0;
+  };
+  const auto leaning = [](double sine) { return Vec3{sine, 0, std::sqrt(1.0 - sine * sine)}; };
+  const Vec3 up{0, 0, 1};
+  EXPECT_TRUE(in_common({kSamePlace_mm, 0, 0}, 1.0, up));
+  EXPECT_FALSE(in_common({1.001 * kSamePlace_mm, 0, 0}, 1.0, up));
+  EXPECT_TRUE(in_common({0, 0, 0}, 1.0 - 0.999 * kSamePlace_mm, up));
+  EXPECT_TRUE(in_common({0, 0, 0}, 1.0 + 0.999 * kSamePlace_mm, up));
+  EXPECT_FALSE(in_common({0, 0, 0}, 1.0 - 1.001 * kSamePlace_mm, up));
+  EXPECT_FALSE(in_common({0, 0, 0}, 1.0 + 1.001 * kSamePlace_mm, up));
+  EXPECT_TRUE(in_common({0, 0, 0}, 1.0, leaning(kSamePlace_mm)));
+  EXPECT_FALSE(in_common({0, 0, 0}, 1.0, leaning(1.001 * kSamePlace_mm)));
+  // So small that the difference of the radii is exact.
+  Path small, twice;
+  small.Circle({0, 0, 0}, kSamePlace_mm, up);
+  twice.Circle({0, 0, 0}, 2.0 * kSamePlace_mm, up);
+  EXPECT_GT(CutsOf(small, twice).common, 0.0);
 }
 
 // Parallel, crossing and end to end: no length in common.

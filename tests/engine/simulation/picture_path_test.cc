@@ -84,6 +84,18 @@ TEST(PicturePath, LinesAreCutOffOutOfSight) {
   EXPECT_EQ(Draw({Cut({-320, 0, 0}, {0, 320, 0})}).cut(), "M-220-100l70-70");
 }
 
+// However little they go across: half a pixel here, of which a half is out of sight.
+TEST(PicturePath, SteepLinesAreCutOff) {
+  EXPECT_EQ(Draw({Cut({219.75, 0, 0}, {220.25, 100, 0})}).cut(), "M219.75 0l.25-50");
+  EXPECT_EQ(Draw({Cut({220.25, 100, 0}, {219.75, 0, 0})}).cut(), "M220-50l-.25 50");
+  EXPECT_EQ(Draw({Cut({-219.75, 0, 0}, {-220.25, 100, 0})}).cut(), "M-219.75 0l-.25-50");
+  EXPECT_EQ(Draw({Cut({-220.25, 100, 0}, {-219.75, 0, 0})}).cut(), "M-220-50l.25 50");
+  EXPECT_EQ(Draw({Cut({0, 169.75, 0}, {100, 170.25, 0})}).cut(), "M0-169.75l50-.25");
+  EXPECT_EQ(Draw({Cut({100, 170.25, 0}, {0, 169.75, 0})}).cut(), "M50-170l-50 .25");
+  EXPECT_EQ(Draw({Cut({0, -169.75, 0}, {100, -170.25, 0})}).cut(), "M0 169.75l50 .25");
+  EXPECT_EQ(Draw({Cut({100, -170.25, 0}, {0, -169.75, 0})}).cut(), "M50 170l-50-.25");
+}
+
 // What only touches the edge is drawn, what lies beyond it is not; along each edge, and at a corner.
 TEST(PicturePath, TheEdgeBelongsToWhatIsDrawn) {
   for (const double side : {-1.0, 1.0}) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <string>
@@ -169,6 +170,101 @@ TEST(Plot, SpeedDoesNotDipWhereMotionsMeet) {
       EXPECT_NEAR(point.y, top, 0.05) << share;
     }
   }
+}
+
+// Motions from 1 s to 2 s and from 7 s to 8 s that begin and end at speed, with the beam on, and a
+// wait with the beam on from 4 s to 5 s. In between nothing moves, nothing is asked for and the beam
+// is off, at once and up to the end; before the first nothing is known.
+TEST(Plot, NothingHappensBetweenWhatIsTold) {
+  PlotRecorder recorder(Laser());
+  const auto move = [&](double x, int from_s) {
+    motion::PlannedMotion planned = Planned(LineFrom({x, 0, 0}, {x + 50, 0, 0}));
+    planned.speed = motion::SpeedProfile::Steady(50.0, 50.0);
+    recorder.OnMotion({.start = std::chrono::seconds(from_s),
+                       .end = std::chrono::seconds(from_s + 1),
+                       .motion = &planned,
+                       .travelled = 50.0,
+                       .programmed_mm_s = 60.0,
+                       .beam_on = true,
+                       .power = {.constant_percent = 80.0}});
+  };
+  move(100.0, 1);
+  recorder.OnWait({.start = std::chrono::seconds(4),
+                   .end = std::chrono::seconds(5),
+                   .beam_on = true,
+                   .power_percent = 40.0});
+  // Told late, of a time that is known: nothing new.
+  recorder.OnWait({.start = std::chrono::seconds(4), .end = std::chrono::milliseconds(4500)});
+  move(150.0, 7);
+  RunReport report;
+  report.cycle_time = std::chrono::seconds(10);
+  const std::string svg = recorder.Svg(
+      report, {.curves = {PlotCurve::kSpeed, PlotCurve::kPower, PlotCurve::kAxes}});
+  // Pixels above zero, or above the lowest of an axis.
+  const auto heights = [&](int curve) {
+    const std::vector<ScreenPoint> points = Curve(svg, curve);
+    EXPECT_TRUE(std::ranges::is_sorted(points, {}, &ScreenPoint::x));  // time never goes back
+    const double zero = std::ranges::max(points, {}, &ScreenPoint::y).y;
+    std::vector<double> found;
+    for (const double t : {1.01, 1.99, 2.01, 3.99, 4.01, 4.3, 4.99, 5.01, 6.99, 7.01, 7.99, 8.01})
+      found.push_back(zero - HeightAt(points, (t - 1.0) / 9.0));
+    return found;
+  };
+  const auto expect = [&](int curve, const std::vector<double>& wanted) {
+    const std::vector<double> found = heights(curve);
+    for (std::size_t k = 0; k < wanted.size(); ++k)
+      EXPECT_NEAR(found[k], wanted[k], 0.6) << curve << " " << k;
+  };
+  // The greatest has a room of 4 % above it: 60 mm/s in a panel of 220 px, 100 % in one of 130 px.
+  const double feed = 220.0 / 1.04, speed = feed * 50.0 / 60.0, power = 130.0 / 1.04;
+  expect(0, {feed, feed, 0, 0, 0, 0, 0, 0, 0, feed, feed, 0});
+  expect(1, {speed, speed, 0, 0, 0, 0, 0, 0, 0, speed, speed, 0});
+  const double cut = 0.8 * power, pierce = 0.4 * power;
+  expect(2, {cut, cut, 0, 0, pierce, pierce, pierce, 0, 0, cut, cut, 0});
+  // 100 mm and 4 % on both sides in 96 px.
+  const double half = 50.0 * 96.0 / 108.0;
+  expect(3, {0, half, half, half, half, half, half, half, half, half, 2.0 * half, 2.0 * half});
+}
+
+// The axes stand where the first motion begins until it does, whatever is told before.
+TEST(Plot, AxesStandAtTheirPlaceBeforeTheFirstMotion) {
+  Script script;
+  script.Step(1, 1)
+      .Wait(machine::WaitKind::kDwell, 2.0, false, 0.0)
+      .Nothing(1.0)
+      .Line({100, 200, 0}, {150, 200, 0})
+      .Nothing(1.0);
+  for (const bool five_axis : {false, true}) {
+    machine::MachineShape shape;
+    shape.five_axis = five_axis;
+    const std::string svg = Draw(script, shape, "axes").svg;
+    EXPECT_EQ(CountOf(svg, ">X<"), 1u);
+    for (const char* still : {">Y<", ">Z<", ">A<", ">B<"}) EXPECT_EQ(CountOf(svg, still), 0u) << still;
+    const std::vector<ScreenPoint> x = Curve(svg, 0);
+    EXPECT_NEAR(HeightAt(x, 0.1), x.front().y, 0.01);
+    EXPECT_NEAR(x.front().y - x.back().y, 96.0 / 1.08, 0.1);  // 50 mm, with 4 % on both sides
+  }
+}
+
+// motion.md 8.1: from 0 to 100 %, and nothing with the beam off.
+TEST(Plot, PowerIsBetween0And100Percent) {
+  const auto power_at = [](double percent, bool beam_on) {
+    Script script;
+    script.Step(1, 1)
+        .Wait(machine::WaitKind::kPierce, 1.0, true, 50.0)
+        .Motion(Planned(LineFrom({0, 0, 0}, {50, 0, 0})),
+                {.beam_on = beam_on, .power = {.constant_percent = percent}})
+        .Nothing(1.0);
+    const Drawn drawn = Draw(script, Laser(), "power");
+    const std::vector<ScreenPoint> power = Curve(drawn.svg, 0);
+    const double off = power.back().y, whole = ToSeconds(drawn.duration);
+    return 50.0 * (off - HeightAt(power, 1.5 / whole)) / (off - HeightAt(power, 0.5 / whole));
+  };
+  EXPECT_NEAR(power_at(150.0, true), 100.0, 0.1);
+  EXPECT_NEAR(power_at(99.0, true), 99.0, 0.1);
+  EXPECT_NEAR(power_at(0.5, true), 0.5, 0.1);
+  EXPECT_NEAR(power_at(-10.0, true), 0.0, 0.1);
+  EXPECT_NEAR(power_at(80.0, false), 0.0, 0.1);
 }
 
 // Only what moved has a panel, and a mill has no beam.

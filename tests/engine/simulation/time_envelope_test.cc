@@ -25,6 +25,24 @@ TEST(TimeEnvelope, KeepsFirstLeastGreatestAndLastOfABucket) {
   EXPECT_FALSE(range.low_first);
 }
 
+TEST(TimeEnvelope, WhatASeriesWasCanBeToldLater) {
+  TimeEnvelope envelope;
+  const std::int64_t width = envelope.width().count();
+  for (const std::int64_t at : {std::int64_t{0}, width}) envelope.Add(SimTime(at), {1.0, 2.0, 3.0});
+  envelope.Amend(1, 7.0);
+  envelope.Add(SimTime(width), {1.0, 6.0, 3.0});
+  ASSERT_EQ(envelope.buckets().size(), 2u);
+  for (const TimeEnvelope::Bucket& bucket : envelope.buckets()) {
+    EXPECT_EQ(bucket.ranges[0].first, 1.0);
+    EXPECT_EQ(bucket.ranges[1].first, 7.0);
+    EXPECT_EQ(bucket.ranges[1].high, 7.0);
+    EXPECT_EQ(bucket.ranges[2].last, 3.0);
+  }
+  EXPECT_EQ(envelope.buckets()[0].ranges[1].low, 7.0);
+  EXPECT_EQ(envelope.buckets()[1].ranges[1].low, 6.0);
+  EXPECT_FALSE(envelope.buckets()[1].ranges[1].low_first);
+}
+
 // An hour with one peak of a microsecond: it is there, and memory did not grow.
 TEST(TimeEnvelope, NeverLosesAPeakHoweverLongTheRun) {
   TimeEnvelope envelope;

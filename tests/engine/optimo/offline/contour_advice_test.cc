@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "engine/core/number_text.h"
+#include "engine/core/units.h"
+#include "engine/optimo/language/checker.h"
 #include "engine/optimo/offline/translate.h"
 
 namespace rmlcell::optimo {
@@ -222,6 +225,95 @@ TEST(ContourAdvice, TheSwingOfTheHeadIsTold) {
   EXPECT_TRUE(FindingsWith("COORD ABSOL\nPATH LIN\nMOVE (0,0,0,0,0)\nMOVE (0,0,0,1,0)\n",
                            ErrorCode::kHeadSingular)
                   .empty());
+}
+
+// contour_advice.h: where a jump comes to, nothing that was said before counts: the place, PATH,
+// COORD, SPEED, ACCEL, OVERSH and the beam. Each must be said again before a corner can be told.
+TEST(ContourAdvice, NothingIsKnownWhereAJumpComesTo) {
+  const std::vector<std::string> setting = {"COORD ABSOL\n", "PATH LIN\n",   "SPEED 10\n",
+                                            "ACCEL 100\n",   "OVERSH 100\n", "WORK 0,0/ON\n"};
+  const std::string jump = "WORK 0,0/OFF\nGOTO 10\n";
+  const auto told = [&](std::size_t left_out, const std::string& moves) {
+    std::string before, behind = "10\n";
+    for (std::size_t k = 0; k < setting.size(); ++k) {
+      before += setting[k];
+      if (k != left_out) behind += setting[k];
+    }
+    return FindingsWith(before + "MOVE (0,0,0,0,0)\nMOVE (100,0,0,0,0)\n" + behind + moves + jump,
+                        ErrorCode::kFlySharp)
+        .size();
+  };
+  // The first corner is at the end of a move that starts somewhere.
+  const std::string one = "MOVE (100,100,0,0,0)/FLY\nMOVE (0,100,0,0,0)\n";
+  const std::string two = "MOVE (100,100,0,0,0)/FLY\nMOVE (0,100,0,0,0)/FLY\nMOVE (0,200,0,0,0)\n";
+  EXPECT_EQ(told(setting.size(), one), 0U);
+  EXPECT_EQ(told(setting.size(), two), 1U);
+  for (std::size_t k = 0; k < setting.size(); ++k) EXPECT_EQ(told(k, two), 0U) << setting[k];
+}
+
+// OPT-2.10: SPEED, ACCEL and OVERSH set one thing each, in whichever order they stand.
+TEST(ContourAdvice, TheOrderOfSettingsDoesNotMatter) {
+  const auto told = [](const std::string& settings) {
+    const std::string text = settings +
+                             "COORD ABSOL\nPATH LIN\nMOVE (0,0,0,0,0)\nWORK 0,0/ON\n"
+                             "MOVE (100,0,0,0,0)/FLY\nMOVE (100,1,0,0,0)/FLY\nMOVE (200,1,0,0,0)\n";
+    std::string all;
+    for (const ErrorCode code : {ErrorCode::kFlySharp, ErrorCode::kFlyCapped})
+      for (const Told& each : FindingsWith(text, code)) all += each.detail + "\n";
+    return all;
+  };
+  const std::string speed = "SPEED 10\n", accel = "ACCEL 40\n", oversh = "OVERSH 70\n";
+  const std::string expected = told(oversh + accel + speed);
+  EXPECT_NE(expected, "");
+  EXPECT_EQ(told(speed + accel + oversh), expected);
+  EXPECT_EQ(told(speed + oversh + accel), expected);
+  EXPECT_EQ(told(accel + oversh + speed), expected);
+  EXPECT_EQ(told(oversh + speed + accel), expected);
+}
+
+// contour_advice.h: COORD moves nothing: the place is known as long as no MOVE was in ROBOT.
+TEST(ContourAdvice, CoordMovesNothing) {
+  const auto told = [](const std::string& between) {
+    return FindingsWith("COORD ABSOL\nPATH LIN\nSPEED 10\nWORK 0,0/ON\nMOVE (0,0,0,0,0)\n" + between +
+                            "COORD ABSOL\nMOVE (100,0,0,0,0)/FLY\nMOVE (100,100,0,0,0)\nWORK 0,0/OFF\n",
+                        ErrorCode::kFlySharp)
+        .size();
+  };
+  EXPECT_EQ(told(""), 1U);
+  EXPECT_EQ(told("COORD ROBOT\n"), 1U);
+  EXPECT_EQ(told("COORD ROBOT\nPATH PTP\nMOVE (0,0,0,0,0)\nPATH LIN\n"), 0U);
+}
+
+// contour_advice.h: programs of more than 40,000 instructions are left out. A corner has eight.
+TEST(ContourAdvice, ProgramsThatNoControlHoldsAreLeftOut) {
+  const auto told = [](int further) {
+    std::string text = CornerOf(90);
+    for (int n = 0; n < further; ++n) text += "SPEED 10\n";
+    Findings findings;
+    ParsedProgram program = Parse(text, findings, Places::kStatements);
+    Check(program, findings);
+    AdviseOnContours(program, ContourMachine::Standard(), findings);
+    const std::vector<Diagnostic> all = findings.Take(text, "a.S");
+    return std::ranges::count(all, ErrorCode::kFlySharp, &Diagnostic::code);
+  };
+  EXPECT_EQ(told(40'000 - 8), 1);
+  EXPECT_EQ(told(40'000 - 8 + 1), 0);
+}
+
+// optimo.md B.1: the machine that is meant where none is named.
+TEST(ContourAdvice, TheStandardMachineHasTheDefaults) {
+  const ContourMachine machine = ContourMachine::Standard();
+  EXPECT_EQ(machine.head_length_mm, 300.0);
+  const motion::MachineLimits& limits = machine.limits;
+  EXPECT_EQ(limits.tip_speed_mm_s, 500.0);
+  EXPECT_EQ(limits.tip_acceleration_mm_s2, 2000.0);
+  EXPECT_EQ(limits.tip_jerk_mm_s3, 40'000.0);
+  EXPECT_EQ(limits.settling_s, 0.048);
+  EXPECT_EQ(limits.axes.speed, (motion::AxisValues{500.0, 500.0, 500.0, kTurn, kTurn}));
+  EXPECT_EQ(limits.axes.acceleration, (motion::AxisValues{2000.0, 2000.0, 2000.0, 20.0, 20.0}));
+  EXPECT_EQ(limits.axes.jerk, (motion::AxisValues{40'000.0, 40'000.0, 40'000.0, 400.0, 400.0}));
+  EXPECT_EQ(limits.axes.travel_min, (motion::AxisValues{-600.0, -600.0, -1300.0, -12.6, -2.4}));
+  EXPECT_EQ(limits.axes.travel_max, (motion::AxisValues{3600.0, 3100.0, 1100.0, 12.6, 2.4}));
 }
 
 }  // namespace

@@ -188,10 +188,14 @@ TEST(Gouge, WhatIsNotLookedAtIsSaid) {
   const Compensation made = Compensate(Cut(";$rad=0.1\n;$right\n", moves));
   ASSERT_TRUE(made.ok);
   ASSERT_EQ(made.diagnostics.size(), 1U);
-  EXPECT_EQ(made.diagnostics[0].severity, Severity::kAdvice);
-  EXPECT_NE(made.diagnostics[0].detail.find("not checked from step"), std::string::npos);
-  EXPECT_NE(made.diagnostics[0].detail.find(" to 30005"), std::string::npos)
-      << made.diagnostics[0].detail;
+  const Diagnostic& said = made.diagnostics[0];
+  EXPECT_EQ(said.code, ErrorCode::kCompGouge);
+  EXPECT_EQ(said.severity, Severity::kAdvice);
+  EXPECT_EQ(said.rule, "OPT-8.19");
+  EXPECT_EQ(said.detail, "not checked from step " + std::to_string(said.step) +
+                             " to 30005: the contour is too long to be looked through");
+  EXPECT_GT(said.step, 5);  // the first were looked at
+  EXPECT_LT(said.step, 30'005);
 }
 
 }  // namespace

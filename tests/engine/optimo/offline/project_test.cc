@@ -146,6 +146,18 @@ TEST_F(Project, DefinitionsEndWhereThoseOfTheLanguageDo) {
   }
 }
 
+// OPT-8.68, OPT-8.71: a definition that is wrong stops the transfer, and is none.
+TEST_F(Project, WrongDefinitionsAreNone) {
+  Define(2, 3, {});
+  Define(1, 10, {6.5, 80, 1.5, 95});
+  Define(1, 3, {0, 80, 1.5, 95});
+  EXPECT_EQ(Findings(), (std::vector<int>{7019, 7402, 7004}));
+  EXPECT_FALSE(Plan().ok);
+  Add(45, "WORKDEF 1,3 (6.5,80.,1.5,95.)\n");
+  EXPECT_EQ(Findings(), (std::vector<int>{7019, 7402, 7004, 7863}));
+  EXPECT_EQ(Plan().diagnostics.back().detail, "the project has no definition of process 1,3");
+}
+
 // OPT-3.01, OPT-B.39: as canonical source has it; schedules are whole numbers.
 TEST_F(Project, DefinitionsAreWrittenAsWorkdefs) {
   EXPECT_EQ(WorkdefText({0, 3, {}, ""}), "WORKDEF 0,3");
@@ -180,6 +192,20 @@ TEST_F(Project, AWorkNeedsADefinition) {
   EXPECT_FALSE(plan.ok);
   ASSERT_FALSE(plan.diagnostics.empty());
   EXPECT_EQ(plan.diagnostics[0].code, ErrorCode::kWorkdefMissing);
+  EXPECT_EQ(plan.diagnostics[0].where.line, 2);
+}
+
+// OPT-3.09: it is the beam that needs one: WORK OFF does not, and of several ON the first is told.
+TEST_F(Project, OnlyAWorkOnNeedsADefinition) {
+  Add(45, "WORK 1,3/OFF\n");
+  EXPECT_TRUE(Plan().ok);
+  Define(1, 5, {6.5, 80, 1.5, 95});
+  EXPECT_TRUE(Findings().empty());
+  Add(46, "WORK 1,3/OFF\nWORK 1,3/ON\nWORK 1,3/OFF\nWORK 1,3/ON\nWORK 1,3/OFF\n");
+  const machine::TransferPlan plan = Plan();
+  ASSERT_FALSE(plan.diagnostics.empty());
+  EXPECT_EQ(plan.diagnostics[0].code, ErrorCode::kWorkdefMissing);
+  EXPECT_EQ(plan.diagnostics[0].program, 46);
   EXPECT_EQ(plan.diagnostics[0].where.line, 2);
 }
 

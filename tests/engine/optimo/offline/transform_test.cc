@@ -96,6 +96,12 @@ TEST(Transform, NeedsPlainNumbers) {
   EXPECT_FALSE(refused.ok);
   EXPECT_TRUE(refused.text.empty());
   EXPECT_EQ(FirstFinding(refused), 7851);
+  for (const std::string rotations : {"VR[1],0,0", "0,VR[1],0", "0,0,VR[1]"}) {
+    const Rewriting turned = Transform("SPEED 5\nSYSDEF (1,2,3," + rotations + ")\n", {});
+    EXPECT_FALSE(turned.ok);
+    EXPECT_EQ(FirstFinding(turned), 7851);
+    EXPECT_EQ(turned.diagnostics[0].where.line, 2);
+  }
 }
 
 // OPT-7.62, OPT-E.7004: what the control cannot hold is not written.
@@ -109,6 +115,11 @@ TEST(Transform, NumbersThatAreNoneAreNotWritten) {
   EXPECT_EQ(FirstFinding(Transform("MOVE (1,2,3,0,0)\n", RigidMotion::Of({}, 0, std::nan(""), 0))),
             7004);
   EXPECT_TRUE(Shift("VR[86] = 1.\n", {9e18, 0, 0, 0, 0, 0}).ok);
+  const double max = std::ldexp(1.0, 63);
+  for (const double sign : {-1.0, 1.0}) {
+    EXPECT_TRUE(Shift("VR[86] = 0.\n", {sign * max, 0, 0, 0, 0, 0}).ok);
+    EXPECT_FALSE(Shift("VR[86] = 0.\n", {sign * std::nextafter(max, HUGE_VAL), 0, 0, 0, 0, 0}).ok);
+  }
 }
 
 // OPT-8.76: there and back is the same within the rounding of six decimals.
