@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdlib>
 
+#include "engine/core/letters.h"
 #include "server/web/http_message.h"
 
 namespace rmlcell::web::testing {
