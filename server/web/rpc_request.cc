@@ -145,8 +145,7 @@ std::optional<Integer> WholeNumber(std::string_view text, std::size_t digits_max
   Integer value = 0;
   if (text.empty() || text.size() > digits_max) return std::nullopt;
   if (!std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; })) return std::nullopt;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  if (std::from_chars(text.data(), text.data() + text.size(), value).ec != std::errc()) return std::nullopt;
   return value;
 }
 
