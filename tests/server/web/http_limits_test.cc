@@ -274,6 +274,14 @@ TEST_F(HttpLimits, UsedPortIsRefused) {
   const auto named = WebServer::Start(options, nullptr, resources);
   ASSERT_FALSE(named);
   EXPECT_EQ(named.error().code, ErrorCode::kCellConfiguration);
+  options.address = "localhost";
+  for (const int port : {-1, 65536}) {
+    options.port = port;
+    const auto none = WebServer::Start(options, nullptr, resources);
+    ASSERT_FALSE(none) << port;
+    EXPECT_EQ(none.error().code, ErrorCode::kCellConfiguration);
+    EXPECT_NE(none.error().detail.find("localhost:" + std::to_string(port)), std::string::npos);
+  }
 }
 
 }  // namespace
