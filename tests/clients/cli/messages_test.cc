@@ -354,5 +354,52 @@ TEST_F(Messages, AFindingIsOneLineWithItsCount) {
   EXPECT_EQ(ReportText(report), "outcome       not ended\n" + once + " (2 times)\n");
 }
 
+// However little there is of it, it is told: nothing alone is left out.
+TEST_F(Messages, TheLeastThatIsTold) {
+  v1::JobEvent event = Event(1);
+  event.set_virtual_time_ns(1);
+  event.mutable_signal()->set_text("beam");
+  event.mutable_signal()->set_detail(1.0);
+  EXPECT_EQ(EventLine(event), "#1  0.000 s  beam = 0 (1.0)");
+  v1::RunReport laser;
+  laser.set_family("optimo");
+  v1::Outcome& outcome = *laser.mutable_outcome();
+  outcome.set_kind(v1::Outcome::KIND_FAILED);
+  outcome.mutable_place()->set_program(1);
+  outcome.mutable_place()->set_step(1);
+  outcome.mutable_place()->set_line(1);
+  laser.mutable_total()->set_energy_j_per_mm(0.5);
+  laser.set_lookahead_starved(1);
+  laser.set_diagnostics_dropped(1);
+  laser.mutable_shortfall()->set_moves(1);
+  laser.mutable_shortfall()->set_too_short(1);
+  laser.set_slow_moves_dropped(6);
+  v1::AxisFigures& axis = *laser.add_axes();
+  axis.set_axis("Z");
+  axis.set_peak_speed(0.5);
+  axis.set_peak_speed_share(0.01);
+  axis.set_peak_acceleration(0.5);
+  const std::string text = ReportText(laser);
+  EXPECT_THAT(text, HasSubstr("outcome       failed (program 1 step 1 line 1)\n"));
+  EXPECT_THAT(text, HasSubstr("0.500 J/mm, of a step at most 0.000\n"));
+  EXPECT_THAT(text, HasSubstr("look-ahead was too short 1 times\n"));
+  EXPECT_THAT(text, HasSubstr("too slow      1 moves below their SPEED: too short 1\n"));
+  EXPECT_THAT(text, HasSubstr("and 1 more steps\n"));
+  EXPECT_THAT(text, HasSubstr("peak speed    Z 0.5 (1 %)\n"));
+  EXPECT_THAT(text, HasSubstr("peak accel.   Z 0.5\n"));
+  EXPECT_THAT(text, HasSubstr("and 1 more findings\n"));
+  v1::RunReport mill;
+  mill.mutable_total();
+  for (const char* name : {"clipped_length", "speed_clamps"}) {
+    v1::Figure& figure = *mill.add_figures();
+    figure.set_name(name);
+    figure.set_value(1.0);
+  }
+  mill.mutable_milling()->set_gouges(1);
+  EXPECT_THAT(ReportText(mill), HasSubstr("clipped       1.000 mm beyond the cutting range\n"));
+  EXPECT_THAT(ReportText(mill), HasSubstr("speeds        1 limited to those of the machine\n"));
+  EXPECT_THAT(ReportText(mill), HasSubstr("1 motions at travel speed through material"));
+}
+
 }  // namespace
 }  // namespace rmlcell::cli
