@@ -412,7 +412,8 @@ class Stops(unittest.TestCase):
         wait_until_it_runs(stub, job.name)
         last = []
         cell = []
-        watchers = [threading.Thread(target=self.collect, args=(stub.WatchJob(job_pb2.WatchJobRequest(name=job.name)), last)),
+        one = stub.WatchJob(job_pb2.WatchJobRequest(name=job.name))
+        watchers = [threading.Thread(target=self.collect, args=(one, last)),
                     threading.Thread(target=self.collect, args=(stub.WatchJobs(job_pb2.WatchJobsRequest()), cell))]
         for watcher in watchers:
             watcher.start()
@@ -424,7 +425,8 @@ class Stops(unittest.TestCase):
             self.assertTrue(seen[-1].HasField("reconnect"))
             self.assertEqual(seen[-1].instance_id, seen[0].instance_id)
             # Where to go on: behind the last event that was told, or the snapshot.
-            told = max([seen[0].snapshot.sequence if seen is cell else 0] + [m.sequence for m in seen if m.HasField("event")])
+            begin = seen[0].snapshot.sequence if seen is cell else 0
+            told = max([begin] + [m.sequence for m in seen if m.HasField("event")])
             self.assertTrue(seen[-1].reconnect.endswith(f"after sequence {told}"), seen[-1].reconnect)
         self.cell.start()
         again = self.cell.jobs().GetJob(job_pb2.GetJobRequest(name=job.name))

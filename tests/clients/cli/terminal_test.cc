@@ -87,7 +87,8 @@ std::string OnTerminal(int descriptor, std::FILE* stream, const std::function<vo
   ::close(inside);
   std::string text;
   char room[4096];
-  for (ssize_t size = 0; (size = ::read(outside, room, sizeof room)) > 0;) text.append(room, static_cast<std::size_t>(size));
+  for (ssize_t size = 0; (size = ::read(outside, room, sizeof room)) > 0;)
+    text.append(room, static_cast<std::size_t>(size));
   ::close(outside);
   return text;
 }
