@@ -128,8 +128,9 @@ int Link(const LinkOptions& options) {
     const auto program = std::ranges::find(loaded->programs, slot, &bridge::ProgramInput::slot);
     if (program == loaded->programs.end()) return std::nullopt;
     if (program->bytes->empty()) {
-      answer.Found({{.code = ErrorCode::kCellEmptyProgram,
-                     .severity = Lookup(ErrorCode::kCellEmptyProgram).severity,
+      constexpr ErrorCode kEmpty = ErrorCode::kCellEmptyProgram;
+      answer.Found({{.code = kEmpty,
+                     .severity = Lookup(kEmpty).severity,
                      .detail = "program " + std::to_string(slot) + " is called, and its file is empty",
                      .rule = {},
                      .file = program->file_name,

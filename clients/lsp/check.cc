@@ -32,15 +32,10 @@ Diagnostic Plain(ErrorCode code, Severity severity, std::string detail, std::str
           .fixes = {}};
 }
 
-// Distances in inches are no millimetres, angles no radians.
-bool DependsOnUnit(ErrorCode code) {
-  return code == ErrorCode::kShortFly || code == ErrorCode::kFlySharp ||
-         code == ErrorCode::kFlyCapped || code == ErrorCode::kHeadSingular;
-}
-
 Findings CheckInch(const Document& document) {
   optimo::Compilation compiled = optimo::Compile(document.text(), {}, {});
-  std::erase_if(compiled.diagnostics, [](const Diagnostic& d) { return DependsOnUnit(d.code); });
+  // A short distance in inches is none in millimetres. Contours, whose advice depends on units, are not looked at.
+  std::erase_if(compiled.diagnostics, [](const Diagnostic& d) { return d.code == ErrorCode::kShortFly; });
   compiled.diagnostics.insert(
       compiled.diagnostics.begin(),
       Plain(ErrorCode::kSourceIsInch, Severity::kAdvice,

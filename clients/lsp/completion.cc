@@ -47,8 +47,8 @@ bool StartsIgnoringCase(std::string_view text, std::string_view beginning) {
 class Completer {
  public:
   Completer(const OpenProgram& program, std::size_t offset)
-      : program_(program), index_(program.index), text_(program.document.text()), offset_(offset) {
-    begin_ = offset;
+      : program_(program), index_(program.index), text_(program.document.text()), offset_(offset),
+        begin_(offset) {
     while (begin_ > 0 && IsWordPart(text_[begin_ - 1])) --begin_;
     typed_ = text_.substr(begin_, offset - begin_);
     range_ = PositionFinder(program.document).Span(begin_, offset);
@@ -327,7 +327,7 @@ class Completer {
   const ProgramIndex& index_;
   std::string_view text_;
   std::size_t offset_;
-  std::size_t begin_ = 0;  // of the word that is being typed
+  std::size_t begin_;  // of the word that is being typed
   std::string_view typed_;
   Range range_;
   std::vector<Token> tokens_;

@@ -133,15 +133,15 @@ Result<std::string> DiskFolder::Read(std::string_view uri) const {
   if (!path) return Error{ErrorCode::kCellFileUnreadable, std::string(uri) + " is no file", {}};
   std::error_code error;
   // A pipe would keep the editor waiting.
-  if (!fs::is_regular_file(*path, error)) return Error{ErrorCode::kCellFileUnreadable, *path, {}};
-  const std::uintmax_t size = fs::file_size(*path, error);
-  if (error) return Error{ErrorCode::kCellFileUnreadable, *path + ": " + error.message(), {}};
+  const bool regular = fs::is_regular_file(*path, error);
+  const std::uintmax_t size = regular ? fs::file_size(*path, error) : 0;
+  std::ifstream file;
+  if (regular && !error) file.open(*path, std::ios::binary);
+  if (!file.is_open()) return Error{ErrorCode::kCellFileUnreadable, *path, {}};
   if (size > kProgramBytesMax) return Error{ErrorCode::kCellTooLarge, *path, {}};
-  std::ifstream file(*path, std::ios::binary);
   std::string text(static_cast<std::size_t>(size), '\0');
   file.read(text.data(), static_cast<std::streamsize>(size));
-  if (file.gcount() < 0 || file.bad() || !file.is_open())
-    return Error{ErrorCode::kCellFileUnreadable, *path, {}};
+  if (file.bad()) return Error{ErrorCode::kCellFileUnreadable, *path, {}};
   text.resize(static_cast<std::size_t>(file.gcount()));
   return text;
 }

@@ -116,21 +116,13 @@ storage::ProjectRecord RecordOf(const std::string& id, v1::Project project) {
   return {.id = id, .title = title, .body = project.SerializeAsString()};
 }
 
-// OPT-8.72; extensions are compared without case.
-bool IsInchName(std::string_view file_name) {
-  return file_name.ends_with(".SI") || file_name.ends_with(".si") || file_name.ends_with(".Si") ||
-         file_name.ends_with(".sI");
-}
-
 machine::ProjectBundle BundleOf(const v1::Project& project) {
   machine::ProjectBundle bundle;
   for (const v1::ProjectProgram& program : project.programs()) {
-    const std::string& file_name = program.source().file_name();
-    const bool inch_name = IsInchName(file_name);
+    // A name may say inch, too: the family reads it (OPT-8.72).
     bundle.programs.push_back({.slot = program.slot(),
-                               .file = {.name = file_name, .bytes = program.source().content()},
-                               .inch = program.units() == v1::UNITS_INCH ||
-                                       (program.units() == v1::UNITS_UNSPECIFIED && inch_name)});
+                               .file = {.name = program.source().file_name(), .bytes = program.source().content()},
+                               .inch = program.units() == v1::UNITS_INCH});
   }
   for (const v1::ProjectLaserSchedule& schedule : project.laser_schedules()) {
     bundle.schedules.push_back({.number = schedule.number(),

@@ -61,10 +61,7 @@ class Line final : public grpc::ServerBidiReactor<v1::WorkRequest, v1::WorkRespo
     if (finished_) return;
     end_ = status;
     ending_ = true;
-    if (!writing_) {
-      finished_ = true;
-      Finish(end_);
-    }
+    WriteNext();
   }
 
   // Precondition: mutex_ is held.

@@ -213,6 +213,47 @@ class Jobs(WithCell):
             told = error.read().decode()
         self.assertIn("CELL-E9003", told)
 
+    def test_a_watcher_of_all_jobs_sees_them_run(self):
+        stub = self.cell.jobs()
+        job = inline_job("optimo-1", "slow.S", "DELAY 1000\n")
+        job.simulation.pace = 1.0
+        job = submit(stub, job)
+        ended = {}
+
+        def follow(key, request):
+            seen = ended.setdefault(key, [])
+            for message in stub.WatchJobs(request, timeout=120):
+                seen.append(message)
+                if message.event.HasField("ended"):
+                    return
+
+        def times(key):
+            return [m.progress.virtual_time_ns for m in list(ended.get(key, ())) if m.HasField("progress")]
+
+        watchers = [threading.Thread(target=follow, args=(key, request)) for key, request in (
+            ("all", job_pb2.WatchJobsRequest()),
+            ("named", job_pb2.WatchJobsRequest(names=[job.name])),
+            ("another", job_pb2.WatchJobsRequest(names=[job.name, "jobs/999999"], events_only=True)))]
+        for watcher in watchers:
+            watcher.start()
+        try:
+            # Live on the way: again and again another time.
+            self.assertTrue(eventually(lambda: all(len(set(times(key))) > 2 for key in ("all", "named"))))
+        finally:
+            stub.CancelJob(job_pb2.CancelJobRequest(name=job.name))
+            for watcher in watchers:
+                watcher.join()
+        for key, messages in ended.items():
+            self.assertTrue(messages[0].HasField("snapshot"), key)
+            self.assertEqual(len({m.instance_id for m in messages} - {""}), 1, key)
+            self.assertTrue(all(m.instance_id for m in messages), key)
+            self.assertEqual({m.progress.job for m in messages if m.HasField("progress")} - {job.name}, set(), key)
+            self.assertEqual(times(key), sorted(times(key)), key)
+        self.assertEqual(times("another"), [])
+        with self.assertRaises(grpc.RpcError) as caught:
+            list(stub.WatchJobs(job_pb2.WatchJobsRequest(names=["17"]), timeout=60))
+        self.assertEqual(detail_of(caught.exception).code, "CELL-E9003")
+
     def test_budgets_end_a_job_with_their_own_codes(self):
         stub = self.cell.jobs()
         job = inline_job("optimo-1", "endless.S", ENDLESS)
@@ -370,12 +411,23 @@ class Stops(unittest.TestCase):
         job = submit(stub, inline_job("optimo-1", "endless.S", ENDLESS))
         wait_until_it_runs(stub, job.name)
         last = []
-        watcher = threading.Thread(target=lambda: self.collect(stub, job.name, last))
-        watcher.start()
-        self.assertTrue(eventually(lambda: last))
+        cell = []
+        one = stub.WatchJob(job_pb2.WatchJobRequest(name=job.name))
+        watchers = [threading.Thread(target=self.collect, args=(one, last)),
+                    threading.Thread(target=self.collect, args=(stub.WatchJobs(job_pb2.WatchJobsRequest()), cell))]
+        for watcher in watchers:
+            watcher.start()
+        self.assertTrue(eventually(lambda: last and cell))
         self.assertEqual(self.cell.stop(), 0)
-        watcher.join()
-        self.assertTrue(last[-1].HasField("reconnect"))
+        for watcher in watchers:
+            watcher.join()
+        for seen in (last, cell):
+            self.assertTrue(seen[-1].HasField("reconnect"))
+            self.assertEqual(seen[-1].instance_id, seen[0].instance_id)
+            # Where to go on: behind the last event that was told, or the snapshot.
+            begin = seen[0].snapshot.sequence if seen is cell else 0
+            told = max([begin] + [m.sequence for m in seen if m.HasField("event")])
+            self.assertTrue(seen[-1].reconnect.endswith(f"after sequence {told}"), seen[-1].reconnect)
         self.cell.start()
         again = self.cell.jobs().GetJob(job_pb2.GetJobRequest(name=job.name))
         self.assertIn(again.state, (job_pb2.Job.STATE_QUEUED, job_pb2.Job.STATE_RUNNING))
@@ -383,9 +435,9 @@ class Stops(unittest.TestCase):
         self.cell.jobs().CancelJob(job_pb2.CancelJobRequest(name=job.name))
 
     @staticmethod
-    def collect(stub, name, messages):
+    def collect(watch, messages):
         try:
-            for message in stub.WatchJob(job_pb2.WatchJobRequest(name=name)):
+            for message in watch:
                 messages.append(message)
         except grpc.RpcError:
             pass

@@ -451,6 +451,12 @@ class Remote(unittest.TestCase):
             done = run("projects", "update", "door", folder, server=at)
             self.assertEqual(done.returncode, 2)
             self.assertIn("none.S", done.stderr)
+            self.assertEqual(run("projects", "delete", "door", server=at).returncode, 0)
+            self.assertNotIn("door", run("projects", "list", server=at).stdout)
+            for words in (("show", "door"), ("delete", "projects/door")):
+                gone = run("projects", *words, server=at)
+                self.assertEqual(gone.returncode, 3)
+                self.assertIn("CELL-E9004", gone.stderr)
 
 
 if __name__ == "__main__":

@@ -181,5 +181,225 @@ TEST_F(Messages, VariablesStandInOrder) {
   EXPECT_LT(text.find("VR[2]"), text.find("VR[10]"));
 }
 
+// All that the report of a laser can say, in its order. Each figure has a value of its own.
+TEST_F(Messages, AWholeReportOfALaser) {
+  v1::RunReport report;
+  report.set_family("optimo");
+  report.mutable_outcome()->set_kind(v1::Outcome::KIND_STOPPED);
+  v1::WorkFigures& total = *report.mutable_total();
+  v1::RunTimes& times = *total.mutable_times();
+  times.set_cycle_s(45.0);
+  times.set_motion_s(1.0);
+  times.set_settling_s(2.0);
+  times.set_dwell_s(3.0);
+  times.set_pierce_s(4.0);
+  times.set_condition_s(5.0);
+  times.set_operator_s(6.0);
+  times.set_spin_up_s(7.0);
+  times.set_load_s(8.0);
+  times.set_standstill_s(9.0);
+  total.set_path_length_mm(21.0);
+  total.set_cut_length_mm(11.5);
+  total.set_travel_length_mm(9.5);
+  total.set_beam_on_s(12.25);
+  total.set_beam_switches(13);
+  total.set_pierces(14);
+  total.set_energy_j(1516.4);
+  total.set_energy_j_per_mm(17.125);
+  total.set_energy_j_per_mm_max(18.25);
+  total.set_steps(19);
+  v1::CornerFigures& corners = *report.mutable_corners();
+  corners.set_stopped(1);
+  corners.set_stopped_with_fly(2);
+  corners.set_reversed(3);
+  corners.set_through(4);
+  corners.set_blended(5);
+  corners.set_capped(6);
+  corners.set_deviation_mm_max(0.125);
+  corners.mutable_deviation_place()->set_program(44);
+  corners.mutable_deviation_place()->set_step(22);
+  corners.mutable_deviation_place()->set_line(23);
+  corners.mutable_deviation_point()->set_x(1.0);
+  corners.mutable_deviation_point()->set_y(2.0);
+  corners.mutable_deviation_point()->set_z(3.0);
+  v1::SpeedShortfall& shortfall = *report.mutable_shortfall();
+  shortfall.set_moves(10);
+  shortfall.set_by_axis(1);
+  shortfall.set_by_radius(2);
+  shortfall.set_too_short(3);
+  shortfall.set_by_acceleration(4);
+  report.set_slow_moves_dropped(7);
+  v1::SlowMove& slow = *report.add_slow_moves();
+  slow.mutable_place()->set_step(24);
+  slow.set_reached_mm_s(25.5);
+  slow.set_wanted_mm_s(26.5);
+  slow.set_cause("axis");
+  slow.set_axis("A");
+  slow.set_count(27);
+  v1::SlowMove& once = *report.add_slow_moves();
+  once.mutable_place()->set_line(28);
+  once.set_reached_mm_s(1.0);
+  once.set_wanted_mm_s(2.0);
+  once.set_cause("radius");
+  once.set_count(1);
+  const auto axis = [&](const std::string& name, bool rotary, double speed, double share, double acceleration) {
+    v1::AxisFigures& made = *report.add_axes();
+    made.set_axis(name);
+    made.set_rotary(rotary);
+    made.set_peak_speed(speed);
+    made.set_peak_speed_share(share);
+    made.set_peak_acceleration(acceleration);
+  };
+  axis("X", false, 100.5, 0.5, 200.5);
+  axis("Y", false, 0.0, 0.0, 0.0);  // never moved
+  axis("A", true, 1.25, 0.0, 2.5);
+  report.mutable_axes(2)->set_peak_acceleration_share(0.25);
+  v1::AxisViolation& violation = *report.add_violations();
+  violation.mutable_place()->set_step(31);
+  violation.set_axis("B");
+  violation.set_rotary(true);
+  violation.set_excess(0.5);
+  violation.set_at_target(true);
+  violation.set_time_s(32.5);
+  report.set_violations_dropped(5);
+  v1::Position& end = *report.mutable_final_position();
+  end.mutable_tip()->set_x(33.0);
+  end.mutable_tip()->set_y(34.0);
+  end.mutable_tip()->set_z(35.0);
+  end.mutable_column()->set_x(36.0);
+  end.mutable_column()->set_y(37.0);
+  end.mutable_column()->set_z(38.0);
+  end.set_a(0.25);
+  end.set_b(0.75);
+  report.mutable_tip_box()->mutable_low()->set_x(-1.0);
+  report.mutable_tip_box()->mutable_high()->set_y(2.0);
+  (*report.mutable_variables())["VR[2]"] = "39.";
+  report.set_motion_check("only up to step 2");
+  EXPECT_EQ(ReportText(report),
+            "outcome       stopped\n"
+            "cycle time    45.000 s\n"
+            "              motion 1.000 s, settling 2.000 s, dwell 3.000 s, pierce 4.000 s, condition 5.000 s, "
+            "operator 6.000 s, spin-up 7.000 s, loading 8.000 s, standstill 9.000 s\n"
+            "path          21.000 mm: cut 11.500, travel 9.500\n"
+            "beam          on 12.250 s, switched on 13 times, 14 pierces, 1516 J\n"
+            "              17.125 J/mm, of a step at most 18.250\n"
+            "corners       1 stops, 2 stops with /FLY, 3 reversals with /FLY, 4 straight on, 5 blended, "
+            "6 blended slower\n"
+            "              deviation up to 0.125 mm at program 44 step 22 line 23, 1.000, 2.000, 3.000\n"
+            "too slow      10 moves below their SPEED: axis 1, radius 2, too short 3, acceleration 4\n"
+            "              step 24: 25.500 of 26.500 mm/s, axis A (27 times)\n"
+            "              line 28: 1.000 of 2.000 mm/s, radius\n"
+            "              and 4 more steps\n"
+            "peak speed    X 100.5 (50 %), A 1.250\n"
+            "peak accel.   X 200.5, A 2.500 (25 %)\n"
+            "travel        6 violations\n"
+            "              step 31: B by 0.500 rad at the target, at 32.500 s\n"
+            "              and 1 more\n"
+            "steps         19\n"
+            "final tip     33.000, 34.000, 35.000\n"
+            "final column  36.000, 37.000, 38.000  A 0.250000  B 0.750000\n"
+            "tip box       -1.000, 0.000, 0.000  to  0.000, 2.000, 0.000\n"
+            "VR[2]         39.\n"
+            "motion        checked only up to step 2\n");
+}
+
+// What did not happen is not spoken of, and a mill has no head.
+TEST_F(Messages, AWholeReportOfAMill) {
+  v1::RunReport report;
+  report.set_family("rml1");
+  report.mutable_outcome()->set_kind(v1::Outcome::KIND_COMPLETED);
+  report.mutable_total()->set_plunges(2);
+  v1::MillingFigures& milling = *report.mutable_milling();
+  milling.set_removed_mm3(1.5);
+  milling.set_gouges(3);
+  milling.set_gouge_depth_mm(0.25);
+  milling.mutable_gouge_place()->set_step(4);
+  milling.set_gouge_time_s(5.5);
+  EXPECT_EQ(ReportText(report),
+            "outcome       completed\n"
+            "cycle time    0.000 s\n"
+            "path          0.000 mm: cut 0.000, travel 0.000\n"
+            "plunges       2\n"
+            "tool          down 0.000 s, up 0.000 s\n"
+            "material      1.500 mm3 taken off\n"
+            "              3 motions at travel speed through material, up to 0.250 mm deep at step 4, at 5.500 s\n"
+            "steps         0\n"
+            "final tip     0.000, 0.000, 0.000\n");
+}
+
+// A name that is longer than its column keeps a blank behind it.
+TEST_F(Messages, LongNamesKeepABlank) {
+  v1::RunReport report;
+  report.mutable_total();
+  (*report.mutable_variables())["VARIABLE[123]"] = "a";
+  (*report.mutable_variables())["VARIABLE[123456]"] = "b";
+  EXPECT_THAT(ReportText(report), HasSubstr("VARIABLE[123] a\nVARIABLE[123456] b\n"));
+}
+
+TEST_F(Messages, AFindingIsOneLineWithItsCount) {
+  v1::Diagnostic finding;
+  finding.set_code("OPT-E7004");
+  finding.set_message("x");
+  finding.set_count(1);
+  const std::string once = FindingLine(finding);
+  EXPECT_THAT(once, HasSubstr("OPT-E7004"));
+  EXPECT_THAT(once, Not(HasSubstr("times")));
+  finding.set_count(2);
+  EXPECT_EQ(FindingLine(finding), once + " (2 times)");
+  v1::JobEvent event = Event(4);
+  *event.mutable_diagnostic() = finding;
+  EXPECT_EQ(EventLine(event), "#4  " + once + " (2 times)");
+  v1::RunReport report;
+  *report.add_diagnostics() = finding;
+  EXPECT_EQ(ReportText(report), "outcome       not ended\n" + once + " (2 times)\n");
+}
+
+// However little there is of it, it is told: nothing alone is left out.
+TEST_F(Messages, TheLeastThatIsTold) {
+  v1::JobEvent event = Event(1);
+  event.set_virtual_time_ns(1);
+  event.mutable_signal()->set_text("beam");
+  event.mutable_signal()->set_detail(1.0);
+  EXPECT_EQ(EventLine(event), "#1  0.000 s  beam = 0 (1.0)");
+  v1::RunReport laser;
+  laser.set_family("optimo");
+  v1::Outcome& outcome = *laser.mutable_outcome();
+  outcome.set_kind(v1::Outcome::KIND_FAILED);
+  outcome.mutable_place()->set_program(1);
+  outcome.mutable_place()->set_step(1);
+  outcome.mutable_place()->set_line(1);
+  laser.mutable_total()->set_energy_j_per_mm(0.5);
+  laser.set_lookahead_starved(1);
+  laser.set_diagnostics_dropped(1);
+  laser.mutable_shortfall()->set_moves(1);
+  laser.mutable_shortfall()->set_too_short(1);
+  laser.set_slow_moves_dropped(6);
+  v1::AxisFigures& axis = *laser.add_axes();
+  axis.set_axis("Z");
+  axis.set_peak_speed(0.5);
+  axis.set_peak_speed_share(0.01);
+  axis.set_peak_acceleration(0.5);
+  const std::string text = ReportText(laser);
+  EXPECT_THAT(text, HasSubstr("outcome       failed (program 1 step 1 line 1)\n"));
+  EXPECT_THAT(text, HasSubstr("0.500 J/mm, of a step at most 0.000\n"));
+  EXPECT_THAT(text, HasSubstr("look-ahead was too short 1 times\n"));
+  EXPECT_THAT(text, HasSubstr("too slow      1 moves below their SPEED: too short 1\n"));
+  EXPECT_THAT(text, HasSubstr("and 1 more steps\n"));
+  EXPECT_THAT(text, HasSubstr("peak speed    Z 0.5 (1 %)\n"));
+  EXPECT_THAT(text, HasSubstr("peak accel.   Z 0.5\n"));
+  EXPECT_THAT(text, HasSubstr("and 1 more findings\n"));
+  v1::RunReport mill;
+  mill.mutable_total();
+  for (const char* name : {"clipped_length", "speed_clamps"}) {
+    v1::Figure& figure = *mill.add_figures();
+    figure.set_name(name);
+    figure.set_value(1.0);
+  }
+  mill.mutable_milling()->set_gouges(1);
+  EXPECT_THAT(ReportText(mill), HasSubstr("clipped       1.000 mm beyond the cutting range\n"));
+  EXPECT_THAT(ReportText(mill), HasSubstr("speeds        1 limited to those of the machine\n"));
+  EXPECT_THAT(ReportText(mill), HasSubstr("1 motions at travel speed through material"));
+}
+
 }  // namespace
 }  // namespace rmlcell::cli

@@ -1,8 +1,16 @@
 #include "clients/cli/terminal.h"
 
 #include <gtest/gtest.h>
+#include <pty.h>
+#include <termios.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <stdexcept>
+#include <string>
 
 namespace rmlcell::cli {
 namespace {
@@ -61,6 +69,106 @@ TEST(Terminal, FixedHasSoManyDecimals) {
   EXPECT_EQ(Fixed(-0.5, 1), "-0.5");
   EXPECT_EQ(Fixed(12.0, 0), "12");
 }
+
+// What `draw` writes to a descriptor while that is a terminal. It must be less than a terminal keeps, 4 KiB.
+std::string OnTerminal(int descriptor, std::FILE* stream, const std::function<void()>& draw) {
+  termios raw{};
+  ::cfmakeraw(&raw);
+  int outside = -1;
+  int inside = -1;
+  if (::openpty(&outside, &inside, nullptr, &raw, nullptr) != 0) throw std::runtime_error("no terminal");
+  std::fflush(stream);
+  const int kept = ::dup(descriptor);
+  ::dup2(inside, descriptor);
+  draw();
+  std::fflush(stream);
+  ::dup2(kept, descriptor);
+  ::close(kept);
+  ::close(inside);
+  std::string text;
+  char room[4096];
+  for (ssize_t size = 0; (size = ::read(outside, room, sizeof room)) > 0;)
+    text.append(room, static_cast<std::size_t>(size));
+  ::close(outside);
+  return text;
+}
+std::string OnErrors(const std::function<void()>& draw) { return OnTerminal(STDERR_FILENO, stderr, draw); }
+
+std::string Repeated(const std::string& cell, int count) {
+  std::string text;
+  for (int i = 0; i < count; ++i) text += cell;
+  return text;
+}
+
+constexpr const char* kNewLine = "\r\x1B[K";  // over what stood there
+
+TEST(Progress, TheBarHasTwentyEightCells) {
+  const auto shown = [](double share) {
+    ProgressLine line;
+    const std::string text = OnErrors([&] { line.Show(share, "jobs/7"); });
+    OnErrors([&] { line.Clear(); });
+    return text;
+  };
+  const auto bar = [](int filled, const std::string& share) {
+    return kNewLine + Repeated("█", filled) + Repeated("░", 28 - filled) + share + "  jobs/7";
+  };
+  EXPECT_EQ(shown(0.0), bar(0, " 0 %"));
+  EXPECT_EQ(shown(0.25), bar(7, " 25 %"));
+  EXPECT_EQ(shown(0.5), bar(14, " 50 %"));
+  EXPECT_EQ(shown(0.99), bar(28, " 99 %"));
+  EXPECT_EQ(shown(1.0), bar(28, " 100 %"));
+}
+
+// How far it is is not known: a mark goes from end to end and back.
+TEST(Progress, TheMarkGoesToAndFro) {
+  ProgressLine line;
+  for (int turn = 0; turn < 110; ++turn) {
+    const int phase = turn % 54;
+    const int place = phase <= 27 ? phase : 54 - phase;
+    EXPECT_EQ(OnErrors([&] { line.Show(-1.0, "x"); }),
+              kNewLine + Repeated("░", place) + "█" + Repeated("░", 27 - place) + "  x")
+        << turn;
+  }
+  OnErrors([&] { line.Clear(); });
+}
+
+TEST(Progress, WhatIsDrawnIsTakenAwayOnce) {
+  EXPECT_EQ(OnErrors([] { ProgressLine().Clear(); }), "");
+  const std::string all = OnErrors([&] {
+    ProgressLine line;
+    line.Show(1.0, "x");
+    line.Clear();
+    line.Clear();
+  });
+  EXPECT_EQ(all, kNewLine + Repeated("█", 28) + " 100 %  x" + kNewLine);
+  EXPECT_EQ(OnErrors([] {
+              ProgressLine line;
+              line.Show(1.0, "x");
+            }),
+            all);  // its end takes it away, too
+  EXPECT_EQ(OnErrors([] {
+              ProgressLine line;
+              line.Leave(1.0, "x");
+            }),
+            kNewLine + Repeated("█", 28) + " 100 %  x\n");
+}
+
+// https://no-color.org: set and not empty.
+TEST(Colours, OnATerminalUnlessTheyAreNotWanted) {
+  const auto complaint = [](const char* no_colour) {
+    no_colour != nullptr ? ::setenv("NO_COLOR", no_colour, 1) : ::unsetenv("NO_COLOR");
+    return OnErrors([] { Complain("x"); });
+  };
+  EXPECT_EQ(complaint(nullptr), "\x1B[31mrmlcell: \x1B[0mx\n");
+  EXPECT_EQ(complaint(""), "\x1B[31mrmlcell: \x1B[0mx\n");
+  EXPECT_EQ(complaint("1"), "rmlcell: x\n");
+  ::unsetenv("NO_COLOR");
+  const auto table = [] { PrintRaw(Table({{"a", "b"}, {"c", "d"}})); };
+  EXPECT_EQ(OnTerminal(STDOUT_FILENO, stdout, table), "\x1B[1ma  b\x1B[0m\nc  d\n");
+  EXPECT_EQ(OnTerminal(STDOUT_FILENO, stdout, [] { Print("x"); }), "x\n");
+}
+
+TEST(Terminal, BlueIsSixOfThePalette) { EXPECT_EQ(Paint("a", Colour::kBlue, true), "\x1B[36ma\x1B[0m"); }
 
 }  // namespace
 }  // namespace rmlcell::cli

@@ -91,6 +91,14 @@ TEST(Navigation, ReferencesOfAProgramAreThoseOfItsFolder) {
             (Strings{"12.S 1:5", "13.S 1:9", "14.S 2:3"}));
 }
 
+// Of several files for one number the first is the program.
+TEST(Navigation, ReferencesOfAProgramAreNotThoseOfItsOtherForms) {
+  Editor editor;
+  for (const char* name : {"13.S", "13.SI", "14.SI"})
+    editor.folder.files[std::string("file:///work/") + name] = "CALL 44\n";
+  EXPECT_EQ(ReferencesOf("CALL 4|4\n", true, editor), (Strings{"12.S 0:5", "13.S 0:5", "14.SI 0:5"}));
+}
+
 TEST(Navigation, HighlightsTellWritingFromReading) {
   Editor editor;
   const Json found =

@@ -80,6 +80,10 @@ TEST_F(OnDisk, FilesAreReadUpToALimitAndNothingElseIs) {
   EXPECT_EQ(disk_.Read(Uri("46.S")).error().code, ErrorCode::kCellTooLarge);
   EXPECT_EQ(disk_.Read(Uri("47.S")).error().code, ErrorCode::kCellFileUnreadable);
   EXPECT_EQ(disk_.Read(Uri("")).error().code, ErrorCode::kCellFileUnreadable);
+  EXPECT_EQ(disk_.Read("untitled:1").error().code, ErrorCode::kCellFileUnreadable);
+  EXPECT_EQ(disk_.Read(Uri("47.S")).error().detail, (folder_ / "47.S").string());
+  Write("49.S", "");
+  EXPECT_EQ(*disk_.Read(Uri("49.S")), "");
   ASSERT_EQ(mkfifo((folder_ / "48.S").c_str(), 0600), 0);
   EXPECT_EQ(disk_.Read(Uri("48.S")).error().code,
             ErrorCode::kCellFileUnreadable);  // and no waiting

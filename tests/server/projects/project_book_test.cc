@@ -317,7 +317,13 @@ TEST_F(ProjectBookTest, ATransferStoresProgramsAndSchedulesTogether) {
   ASSERT_TRUE(done) << done.error.error.detail;
   ASSERT_EQ(done.value->programs_size(), 2);
   EXPECT_EQ(done.value->programs(1).name(), "machines/optimo-1/programs/46");
+  EXPECT_EQ(done.value->programs(1).title(), "p46");
   EXPECT_EQ(done.value->programs(1).etag(), "1");
+  EXPECT_EQ(done.value->programs(1).object_bytes(),
+            static_cast<std::int64_t>(ObjectOf("SPEED 5\nSTOP\n").size()));
+  const storage::ProgramSummary summary = Must(bed.store().GetProgramSummary("optimo-1", 46));
+  EXPECT_EQ(done.value->programs(1).object_sha256(), summary.object_sha256);
+  EXPECT_EQ(summary.source_name, "46.S");
   const storage::ProgramRecord program = Must(bed.store().GetProgram("optimo-1", 46));
   EXPECT_EQ(program.object, ObjectOf("SPEED 5\nSTOP\n"));
   EXPECT_EQ(program.source, "SPEED 5\nSTOP\n");
@@ -325,6 +331,7 @@ TEST_F(ProjectBookTest, ATransferStoresProgramsAndSchedulesTogether) {
   const auto schedules = Must(bed.store().ListSchedules("optimo-1"));
   ASSERT_EQ(schedules.size(), 1U);
   EXPECT_EQ(schedules[0].number, 11);
+  EXPECT_EQ(schedules[0].name, "s11");
   EXPECT_EQ(schedules[0].mode, "CW");
   EXPECT_EQ(schedules[0].power_percent, 50.0);
 }
@@ -372,12 +379,13 @@ TEST_F(ProjectBookTest, InchProgramsAreConverted) {
   Add(project, 47, "PATH HOLE (.5)\n", "47.Si");
   Add(project, 48, "PATH HOLE (.5)\n", "48.S");
   project.mutable_programs(3)->set_units(v1::UNITS_INCH);
-  Add(project, 49, "PATH HOLE (12.7)\n", "49.S");
+  Add(project, 49, "PATH HOLE (.5)\n", "49.sI");
+  Add(project, 50, "PATH HOLE (12.7)\n", "50.S");
   Must(Create("a", project));
   const auto done = Transfer("a");
   ASSERT_TRUE(done) << done.error.error.detail;
-  const std::string object = Must(bed.store().GetProgram("optimo-1", 49)).object;
-  for (int slot = 45; slot <= 48; ++slot) {
+  const std::string object = ObjectOf("PATH HOLE (12.7)\n");
+  for (int slot = 45; slot <= 50; ++slot) {
     EXPECT_EQ(Must(bed.store().GetProgram("optimo-1", slot)).object, object) << slot;
   }
 }

@@ -154,5 +154,68 @@ TEST_F(ProjectLimits, WhatIsKeptOfAProject) {
   EXPECT_EQ(body.name(), "");
 }
 
+// Every call that names a project says so when the name is none, and does nothing.
+TEST_F(ProjectLimits, NamesThatAreNone) {
+  for (const std::string name : {"", "lid", "projects/", "projects/Lid", "machines/lid", "projects/lid/programs/1"}) {
+    EXPECT_EQ(CodeOf(book.Get(name)), ErrorCode::kCellInvalidArgument) << name;
+    v1::UpdateProjectRequest update;
+    update.mutable_project()->set_name(name);
+    const auto updated = book.Update(update);
+    ASSERT_FALSE(updated) << name;
+    EXPECT_EQ(updated.error.error.code, ErrorCode::kCellInvalidArgument) << name;
+    v1::DeleteProjectRequest remove;
+    remove.set_name(name);
+    const Status removed = book.Delete(remove);
+    ASSERT_FALSE(removed) << name;
+    EXPECT_EQ(removed.error().code, ErrorCode::kCellInvalidArgument) << name;
+    v1::TransferProjectRequest transfer;
+    transfer.set_name(name);
+    transfer.set_machine("machines/optimo-1");
+    const auto transferred = book.Transfer(transfer);
+    ASSERT_FALSE(transferred) << name;
+    EXPECT_EQ(transferred.error.error.code, ErrorCode::kCellInvalidArgument) << name;
+  }
+}
+
+// What is no etag of ours names no revision: nothing is changed, nothing deleted.
+TEST_F(ProjectLimits, EtagsThatAreNone) {
+  Must(bed.store().PutProject({.id = "lid", .title = "Lid"}, 0));
+  for (const std::string etag : {"x", "0", "-1", "01", "1 ", "2"}) {
+    v1::UpdateProjectRequest update;
+    update.mutable_project()->set_name("projects/lid");
+    update.mutable_project()->set_title("new");
+    update.mutable_project()->set_etag(etag);
+    const auto updated = book.Update(update);
+    ASSERT_FALSE(updated) << etag;
+    EXPECT_EQ(updated.error.error.code, ErrorCode::kCellEtagMismatch) << etag;
+    v1::DeleteProjectRequest remove;
+    remove.set_name("projects/lid");
+    remove.set_etag(etag);
+    const Status removed = book.Delete(remove);
+    ASSERT_FALSE(removed) << etag;
+    EXPECT_EQ(removed.error().code, ErrorCode::kCellEtagMismatch) << etag;
+  }
+  EXPECT_EQ(Must(book.Get("projects/lid")).title(), "Lid");
+  v1::DeleteProjectRequest remove;
+  remove.set_name("projects/lid");
+  remove.set_etag("1");
+  EXPECT_TRUE(book.Delete(remove));
+}
+
+// One damaged body is told of by whatever reads it, and no half of a page is given.
+TEST_F(ProjectLimits, ADamagedBodyIsToldOf) {
+  Must(bed.store().PutProject({.id = "good", .title = "t"}, 0));
+  Must(bed.store().PutProject({.id = "wrong", .title = "t", .body = "\xFF\xFF"}, 0));
+  EXPECT_EQ(CodeOf(book.List({})), ErrorCode::kCellStoreCorrupt);
+  EXPECT_EQ(Page(1).projects_size(), 1);
+  v1::UpdateProjectRequest update;
+  update.mutable_project()->set_name("projects/wrong");
+  update.mutable_project()->set_title("new");
+  const auto updated = book.Update(update);
+  ASSERT_FALSE(updated);
+  EXPECT_EQ(updated.error.error.code, ErrorCode::kCellStoreCorrupt);
+  EXPECT_EQ(Must(bed.store().GetProject("wrong")).title, "t");
+}
+
 }  // namespace
 }  // namespace rmlcell::server

@@ -146,6 +146,23 @@ TEST(RpcJson, UnknownFieldsAreRefused) {
   EXPECT_FALSE(JsonToBytes(type, R"({"name":"a"} x)"));
 }
 
+// What a client sends wrongly is his mistake; what the server would answer wrongly is its own.
+TEST(RpcJson, WhoseMistakeItIs) {
+  const auto& type = *v1::GetJobRequest::descriptor();
+  const auto json = JsonToBytes(type, "[]");
+  ASSERT_FALSE(json);
+  EXPECT_EQ(json.error().code, ErrorCode::kCellInvalidArgument);
+  EXPECT_NE(json.error().detail.find("rmlcell.v1.GetJobRequest"), std::string::npos);
+  const Status bytes = CheckBytes(type, "\xFF\xFF");
+  ASSERT_FALSE(bytes);
+  EXPECT_EQ(bytes.error().code, ErrorCode::kCellInvalidArgument);
+  EXPECT_TRUE(CheckBytes(type, ""));
+  const auto answer = BytesToJson(type, "\xFF\xFF");
+  ASSERT_FALSE(answer);
+  EXPECT_EQ(answer.error().code, ErrorCode::kCellInternal);
+  EXPECT_EQ(BytesToJson(type, "")->sequence, 0);  // has no such field
+}
+
 // Nesting is limited by the reader, not by the stack.
 TEST(RpcJson, DeepNestingIsRefused) {
   const auto& type = *v1::SubmitJobRequest::descriptor();

@@ -22,6 +22,13 @@ WebOptions Small() {
   return options;
 }
 
+// The code of the error that an answer tells, as "400 CELL-E9003".
+std::string ErrorOf(const RawResponse& response) {
+  const nlohmann::json body = nlohmann::json::parse(response.body, nullptr, false);
+  const std::string code = body.is_object() ? body["details"][1].value("code", "") : "no error";
+  return std::to_string(response.status) + " " + code;
+}
+
 class HttpLimits : public ::testing::Test {
  protected:
   void ExpectStillWell() {
@@ -50,7 +57,7 @@ TEST_F(HttpLimits, MalformedRequestsGet400AndClose) {
     RawClient client(cell_.port());
     client.Send(text);
     const RawResponse response = client.Read();
-    EXPECT_EQ(response.status, 400) << text;
+    EXPECT_EQ(ErrorOf(response), "400 CELL-E9003") << text;
     EXPECT_EQ(response.Header("connection"), "close") << text;
     EXPECT_TRUE(client.AtEnd()) << text;
   }
@@ -58,9 +65,9 @@ TEST_F(HttpLimits, MalformedRequestsGet400AndClose) {
 }
 
 TEST_F(HttpLimits, OtherVersions) {
-  EXPECT_EQ(Exchange(cell_.port(), "GET / HTTP/3.0\r\nHost: localhost\r\n\r\n").status, 505);
+  EXPECT_EQ(ErrorOf(Exchange(cell_.port(), "GET / HTTP/3.0\r\nHost: localhost\r\n\r\n")), "505 CELL-E9003");
   // A gRPC client that took the wrong port.
-  EXPECT_EQ(Exchange(cell_.port(), "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n").status, 505);
+  EXPECT_EQ(ErrorOf(Exchange(cell_.port(), "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n")), "505 CELL-E9003");
 }
 
 TEST_F(HttpLimits, Http10) {
@@ -91,7 +98,7 @@ TEST_F(HttpLimits, AbsoluteTargetsAndForeignHosts) {
       Exchange(cell_.port(), "GET http://evil.example/healthz HTTP/1.1\r\nHost: localhost\r\n\r\n")
           .status,
       403);
-  EXPECT_EQ(Exchange(cell_.port(), "GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n").status, 403);
+  EXPECT_EQ(ErrorOf(Exchange(cell_.port(), "GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n")), "403 CELL-E9012");
 }
 
 TEST_F(HttpLimits, PipelinedRequestsAreAnsweredInOrder) {
@@ -151,7 +158,7 @@ TEST_F(HttpLimits, BodyOfACall) {
                         " HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
                         "Transfer-Encoding: chunked\r\n\r\n";
   for (int i = 0; i < 100; ++i) chunked += "10\r\n                \r\n";
-  EXPECT_EQ(Exchange(cell_.port(), chunked + "0\r\n\r\n").status, 413);
+  EXPECT_EQ(ErrorOf(Exchange(cell_.port(), chunked + "0\r\n\r\n")), "413 CELL-E9007");
   EXPECT_EQ(Exchange(cell_.port(),
                      "GET /rmlcell.v1.JobService/GetJob HTTP/1.1\r\nHost: localhost\r\n"
                      "Content-Length: 1\r\n\r\nx")
@@ -172,7 +179,7 @@ TEST_F(HttpLimits, Headers) {
             200);
   EXPECT_EQ(Exchange(cell_.port(), Get("/healthz", "X: " + std::string(2100, 'x') + "\r\n")).status,
             431);
-  EXPECT_EQ(Exchange(cell_.port(), Get("/" + std::string(5000, 'x'))).status, 431);
+  EXPECT_EQ(ErrorOf(Exchange(cell_.port(), Get("/" + std::string(5000, 'x')))), "431 CELL-E9007");
   std::string many;
   for (int i = 0; i < 1000; ++i) many += "a: b\r\n";
   EXPECT_EQ(Exchange(cell_.port(), Get("/healthz", many)).status, 431);
@@ -184,7 +191,7 @@ TEST(HttpPatience, SlowRequestsAreEnded) {
   options.read_timeout = milliseconds(400);
   FakeCell cell(options);
   const auto ends_with_408 = [&](std::string_view request) {
-    return FakeCell::Eventually([&] { return Exchange(cell.port(), request).status == 408; });
+    return FakeCell::Eventually([&] { return ErrorOf(Exchange(cell.port(), request)) == "408 CELL-E9003"; });
   };
   EXPECT_TRUE(ends_with_408("GET / HTTP/1.1\r\nHost: loc"));
   EXPECT_TRUE(ends_with_408(
@@ -231,7 +238,7 @@ TEST_F(HttpLimits, TooManyConnectionsGet503) {
   }
   RawClient fifth(cell_.port());
   const RawResponse refused = fifth.Read();
-  EXPECT_EQ(refused.status, 503);
+  EXPECT_EQ(ErrorOf(refused), "503 CELL-E9020");
   EXPECT_EQ(refused.Header("retry-after"), "2");
   EXPECT_TRUE(fifth.AtEnd());
   clients.clear();
@@ -246,8 +253,8 @@ TEST_F(HttpLimits, Expectations) {
   EXPECT_EQ(client.ReadUntil("\r\n\r\n"), "HTTP/1.1 100 Continue\r\n\r\n");
   client.Send(kJob1);
   EXPECT_EQ(client.Read().status, 200);
-  EXPECT_EQ(Exchange(cell_.port(), head + "Content-Length: 0\r\nExpect: magic\r\n\r\n").status,
-            417);
+  EXPECT_EQ(ErrorOf(Exchange(cell_.port(), head + "Content-Length: 0\r\nExpect: magic\r\n\r\n")),
+            "417 CELL-E9003");
   // Refused before the body is sent.
   EXPECT_EQ(
       Exchange(cell_.port(), head + "Content-Length: 5000\r\nExpect: 100-continue\r\n\r\n").status,
@@ -267,6 +274,14 @@ TEST_F(HttpLimits, UsedPortIsRefused) {
   const auto named = WebServer::Start(options, nullptr, resources);
   ASSERT_FALSE(named);
   EXPECT_EQ(named.error().code, ErrorCode::kCellConfiguration);
+  options.address = "localhost";
+  for (const int port : {-1, 65536}) {
+    options.port = port;
+    const auto none = WebServer::Start(options, nullptr, resources);
+    ASSERT_FALSE(none) << port;
+    EXPECT_EQ(none.error().code, ErrorCode::kCellConfiguration);
+    EXPECT_NE(none.error().detail.find("localhost:" + std::to_string(port)), std::string::npos);
+  }
 }
 
 }  // namespace

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <tuple>
+
 #include "server/web/rpc_call.h"
 
 namespace rmlcell::web {
@@ -78,6 +81,42 @@ TEST(Guard, HeadersThatMayStandOnce) {
   }
 }
 
+// 400 is for what no request may look like, 403 for who may not ask; the detail names what it is.
+TEST(Guard, ARefusalSaysWhatIsWrong) {
+  const GuardRules rules = Rules();
+  HttpRequest chunked = Request({{"transfer-encoding", "chunked"}});
+  EXPECT_FALSE(RefuseRequest(rules, chunked));
+  chunked.version = 10;
+  HttpRequest plain = Request({});
+  plain.version = 10;
+  EXPECT_FALSE(RefuseRequest(rules, plain));
+  plain.host = "";
+  EXPECT_FALSE(RefuseRequest(rules, plain));  // HTTP/1.0 need not name its host
+  const std::vector<std::tuple<HttpRequest, int, std::string, std::string>> cases = {
+      {Request({{"origin", "http://localhost:5173"}, {"origin", "null"}}), 400, "CELL-E9003", "header origin stands twice"},
+      {chunked, 400, "CELL-E9003", "HTTP/1.0 has no transfer encodings"},
+      {Request({}, ""), 400, "CELL-E9003", "the request has no Host"},
+      {Request({}, "evil.example:80"), 403, "CELL-E9012", "this server is not evil.example:80"},
+      {Request({{"origin", "http://evil.example"}}), 403, "CELL-E9012", "pages of http://evil.example may not call"},
+      {Request({{"sec-fetch-site", "cross-site"}}), 403, "CELL-E9012", "pages of other sites may not call"}};
+  for (const auto& [request, status, code, detail] : cases) {
+    const auto refusal = RefuseRequest(rules, request);
+    ASSERT_TRUE(refusal) << detail;
+    EXPECT_EQ(refusal->status, status) << detail;
+    EXPECT_NE(refusal->body.find(code), std::string::npos) << refusal->body;
+    EXPECT_NE(refusal->body.find(detail), std::string::npos) << refusal->body;
+  }
+}
+
+// Links to the page itself and to resources are for everybody; calls are not.
+TEST(Guard, LinksOfOtherSites) {
+  HttpRequest link = Request({{"sec-fetch-site", "cross-site"}});
+  for (const std::string path : {"/", "/v1/jobs/17/artifacts/report", "/index.html"}) {
+    link.path = path;
+    EXPECT_FALSE(RefuseRequest(Rules(), link)) << path;
+  }
+}
+
 TEST(Guard, PreflightForConfiguredOriginsOnly) {
   const GuardRules rules = Rules();
   const HttpRequest good =
@@ -85,6 +124,15 @@ TEST(Guard, PreflightForConfiguredOriginsOnly) {
   HttpResponse answer = AnswerOptions(rules, good);
   AddCorsHeaders(rules, good, answer);
   EXPECT_EQ(answer.status, 204);
+  const auto header = [&](std::string_view name) {
+    const auto found = std::ranges::find(answer.headers, name, &HeaderList::value_type::first);
+    return found == answer.headers.end() ? std::string("none") : found->second;
+  };
+  EXPECT_EQ(header("Allow"), "GET, HEAD, POST, OPTIONS");
+  EXPECT_EQ(header("Access-Control-Allow-Methods"), "GET, HEAD, POST");
+  EXPECT_EQ(header("Access-Control-Max-Age"), "7200");
+  EXPECT_EQ(header("Access-Control-Allow-Private-Network"), "none");
+  EXPECT_EQ(header("Vary"), "Origin");
   std::string text = SerializeHead(answer, Framing::kNone, 0, true);
   EXPECT_NE(text.find("Access-Control-Allow-Origin: http://localhost:5173\r\n"), std::string::npos);
   EXPECT_NE(text.find("connect-protocol-version"), std::string::npos);
@@ -95,6 +143,47 @@ TEST(Guard, PreflightForConfiguredOriginsOnly) {
   AddCorsHeaders(rules, bad, answer);
   text = SerializeHead(answer, Framing::kNone, 0, true);
   EXPECT_EQ(text.find("Access-Control"), std::string::npos);
+  EXPECT_EQ(header("Vary"), "Origin");  // another origin would have another answer
+  EXPECT_EQ(header("Allow"), "GET, HEAD, POST, OPTIONS");
+}
+
+// What a preflight asks is answered to a preflight: OPTIONS by itself only says what there is.
+TEST(Guard, OptionsThatAreNoPreflight) {
+  const HttpRequest plain = Request({{"origin", "http://localhost:5173"}});
+  EXPECT_EQ(AnswerOptions(Rules(), plain).headers, (HeaderList{{"Allow", "GET, HEAD, POST, OPTIONS"}}));
+}
+
+// A page on another network reaches a server on loopback only when the server says so, to its own pages.
+TEST(Guard, PreflightIntoAPrivateNetwork) {
+  const auto allowed = [](const std::string& origin, const std::string& asked) {
+    const HttpResponse answer =
+        AnswerOptions(Rules(), Request({{"origin", origin},
+                                        {"access-control-request-method", "POST"},
+                                        {"access-control-request-private-network", asked}}));
+    return std::ranges::count(answer.headers, HeaderList::value_type("Access-Control-Allow-Private-Network", "true"));
+  };
+  EXPECT_EQ(allowed("http://localhost:5173", "true"), 1);
+  EXPECT_EQ(allowed("HTTP://LOCALHOST:5173", "true"), 1);
+  EXPECT_EQ(allowed("http://localhost:5173", "false"), 0);
+  EXPECT_EQ(allowed("http://evil.example", "true"), 0);
+}
+
+// Without configured origins no answer depends on where the page came from.
+TEST(Guard, CorsHeaders) {
+  GuardRules rules = Rules();
+  HttpResponse answer;
+  AddCorsHeaders(rules, Request({{"origin", "http://localhost:5173"}}), answer);
+  ASSERT_EQ(answer.headers.size(), 3U);
+  EXPECT_EQ(answer.headers[0], HeaderList::value_type("Vary", "Origin"));
+  EXPECT_EQ(answer.headers[1], HeaderList::value_type("Access-Control-Allow-Origin", "http://localhost:5173"));
+  EXPECT_EQ(answer.headers[2].first, "Access-Control-Expose-Headers");
+  answer.headers.clear();
+  AddCorsHeaders(rules, Request({}), answer);
+  EXPECT_EQ(answer.headers, (HeaderList{{"Vary", "Origin"}}));
+  rules.origins.clear();
+  answer.headers.clear();
+  AddCorsHeaders(rules, Request({{"origin", "http://localhost:5173"}}), answer);
+  EXPECT_EQ(answer.headers, HeaderList{});
 }
 
 // A name of ours is never forwarded, even when the configuration asks for it; what gRPC would end

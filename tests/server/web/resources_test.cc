@@ -35,6 +35,9 @@ TEST_F(Resources, PictureWithEtag) {
             std::string::npos);
   EXPECT_NE(response.Header("content-security-policy").find("sandbox"), std::string::npos);
   EXPECT_EQ(response.Header("etag"), "\"picture-1\"");
+  EXPECT_EQ(response.Header("cache-control"), "private, no-cache");
+  EXPECT_EQ(response.Header("cross-origin-resource-policy"), "same-origin");
+  EXPECT_FALSE(response.Header("date").empty());
   EXPECT_TRUE(response.body.starts_with("<svg"));
   const RawResponse same =
       Exchange(cell_.port(), Get(kPicture, "If-None-Match: W/\"picture-1\"\r\n"));
@@ -86,6 +89,17 @@ TEST_F(Resources, ProgramsAreSavedAsFiles) {
 
 TEST_F(Resources, Errors) {
   const RawResponse missing = Exchange(cell_.port(), Get("/v1/jobs/17/artifacts/none"));
+  const auto error = [&](const std::string& request) {
+    const RawResponse response = Exchange(cell_.port(), request);
+    return std::to_string(response.status) + " " + std::string(Json::parse(response.body)["details"][1]["code"]);
+  };
+  EXPECT_EQ(error(Get("/nothing")), "404 CELL-E9004");
+  EXPECT_EQ(error(Get("/v1/jobs/17/artifacts/..%2f..%2fetc%2fpasswd")), "400 CELL-E9003");
+  EXPECT_EQ(error(Get("/v1/jobs/17/artifacts/throw")), "500 CELL-E9001");
+  EXPECT_EQ(error(Get(kPicture, "Authorization: \xFF\r\n")), "400 CELL-E9003");
+  EXPECT_EQ(error(Post(kPicture, "application/octet-stream", "x")), "405 CELL-E9014");
+  EXPECT_EQ(error(Post("/page.js", "application/json", "{}")), "405 CELL-E9014");
+  EXPECT_EQ(error(Post("/healthz", "application/json", "{}")), "405 CELL-E9014");
   EXPECT_EQ(missing.status, 404);
   EXPECT_EQ(Json::parse(missing.body)["details"][1]["code"], "CELL-E9004");
   EXPECT_EQ(Exchange(cell_.port(), Get("/v1/machines/none/programs/45/content")).status, 404);

@@ -59,6 +59,8 @@ TEST(MethodPaths, GetCallsOnlyWhatChangesNothing) {
       EXPECT_EQ(!get.refusal.has_value(), reads) << path;
       if (get.refusal) {
         EXPECT_EQ(get.refusal->http_status, 405);
+        EXPECT_EQ(get.refusal->status.code, kCodeUnimplemented);
+        EXPECT_TRUE(get.refusal->status.message.starts_with("CELL-E9014: ")) << path;
         EXPECT_EQ(get.refusal->headers, (HeaderList{{"Allow", "POST"}}));
       }
       const RpcRouting put = RouteRpc(RequestFor("PUT", path));
@@ -105,6 +107,8 @@ TEST(Wires, ByContentType) {
       }
       if (!wanted && routing.refusal) {
         EXPECT_EQ(routing.refusal->http_status, 415) << row.type;
+        EXPECT_EQ(routing.refusal->status.code, kCodeInvalidArgument) << row.type;
+        EXPECT_TRUE(routing.refusal->status.message.starts_with("CELL-E9003: ")) << row.type;
         EXPECT_EQ(routing.refusal->headers.front().first, "Accept-Post");
       }
     }

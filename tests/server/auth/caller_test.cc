@@ -1,0 +1,50 @@
+#include "server/auth/caller.h"
+
+#include <gtest/gtest.h>
+
+namespace rmlcell::server {
+namespace {
+
+Caller Admitted(const Gate& gate, std::multimap<std::string, std::string> metadata) {
+  const auto caller = gate.Admit({.method = "/a.B/C", .peer = "ipv4:127.0.0.1:7", .metadata = std::move(metadata)});
+  EXPECT_TRUE(caller);
+  return *caller;
+}
+
+// Loopback and unix sockets only: whoever calls is the local administrator.
+TEST(Gate, EveryCallerIsTheLocalAdministrator) {
+  const Caller caller = Admitted(Gate("secret"), {});
+  EXPECT_EQ(caller.identity, "local");
+  EXPECT_EQ(caller.role, Role::kAdmin);
+  EXPECT_EQ(caller.peer, "ipv4:127.0.0.1:7");
+  EXPECT_EQ(caller.request_id, "");
+}
+
+// What is said of a browser counts with the secret of the gateway, and without one never.
+TEST(Gate, OnlyTheGatewaySpeaksForABrowser) {
+  const Gate gate("secret");
+  const auto peer = [](const Gate& of, const std::string& secret) {
+    return Admitted(of, {{"rmlcell-web-secret", secret}, {"rmlcell-web-peer", "10.1.1.1:5"}}).peer;
+  };
+  EXPECT_EQ(gate.web_secret(), "secret");
+  EXPECT_EQ(peer(gate, "secret"), "web:10.1.1.1:5");
+  for (const std::string wrong : {"", "Secret", "secret ", "secre"}) EXPECT_EQ(peer(gate, wrong), "ipv4:127.0.0.1:7");
+  EXPECT_EQ(Admitted(gate, {{"rmlcell-web-peer", "10.1.1.1:5"}}).peer, "ipv4:127.0.0.1:7");
+  EXPECT_EQ(peer(Gate(""), ""), "ipv4:127.0.0.1:7");
+  EXPECT_EQ(Admitted(Gate(""), {{"rmlcell-web-peer", "10.1.1.1:5"}}).peer, "ipv4:127.0.0.1:7");
+}
+
+// It goes into lines of the log: 64 characters that can be read, blank to tilde.
+TEST(Gate, ARequestIdFitsALineOfTheLog) {
+  const auto shown = [](const std::string& id) {
+    return Admitted(Gate("secret"), {{"x-request-id", id}}).request_id;
+  };
+  EXPECT_EQ(shown("r-7"), "r-7");
+  EXPECT_EQ(shown(" !}~"), " !}~");
+  EXPECT_EQ(shown("a\x1F" "b\x7F" "c\n\xC3\xBC"), "a?b?c???");
+  EXPECT_EQ(shown(std::string(64, 'x')), std::string(64, 'x'));
+  EXPECT_EQ(shown(std::string(64, 'x') + "y"), std::string(64, 'x'));
+}
+
+}  // namespace
+}  // namespace rmlcell::server

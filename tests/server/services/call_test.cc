@@ -1,0 +1,77 @@
+// How errors go over the wire: within what gRPC and its clients take of headers.
+#include "server/services/call.h"
+
+#include <gtest/gtest.h>
+
+#include "google/rpc/status.pb.h"
+#include "proto/bridge/findings.h"
+#include "rmlcell/v1/common.pb.h"
+
+namespace rmlcell::server {
+namespace {
+
+v1::ErrorDetail DetailOf(const grpc::Status& status) {
+  google::rpc::Status rich;
+  v1::ErrorDetail detail;
+  EXPECT_TRUE(rich.ParseFromString(status.error_details()));
+  EXPECT_EQ(rich.code(), static_cast<int>(status.error_code()));
+  EXPECT_EQ(rich.message(), status.error_message());
+  EXPECT_EQ(rich.details_size(), 2);
+  EXPECT_TRUE(rich.details(1).UnpackTo(&detail));
+  return detail;
+}
+
+std::vector<Diagnostic> Findings(std::size_t count) {
+  Diagnostic finding{.code = ErrorCode::kLiteralRange, .severity = Severity::kAlarm, .detail = std::string(100, 'd')};
+  return std::vector<Diagnostic>(count, finding);
+}
+
+TEST(CallStatus, HasCodeTextAndFindings) {
+  const grpc::Status status = ToGrpcStatus(Error{ErrorCode::kCellNotFound, "jobs/7", {}}, Findings(2), 3);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::NOT_FOUND);
+  EXPECT_EQ(status.error_message(), bridge::ErrorText({ErrorCode::kCellNotFound, "jobs/7", {}}));
+  const v1::ErrorDetail detail = DetailOf(status);
+  EXPECT_EQ(detail.code(), "CELL-E9004");
+  EXPECT_EQ(detail.message(), "jobs/7");
+  EXPECT_EQ(detail.diagnostics_size(), 2);
+  EXPECT_EQ(detail.diagnostics_dropped(), 3);
+}
+
+// A text of a thousand bytes is told whole, of a longer one its first thousand.
+TEST(CallStatus, LongTextsAreCut) {
+  const auto told = [](std::size_t size) {
+    return DetailOf(ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument, std::string(size, 'x'), {}}, {}, 0)).message();
+  };
+  EXPECT_EQ(told(999), std::string(999, 'x'));
+  EXPECT_EQ(told(1000), std::string(1000, 'x'));
+  EXPECT_EQ(told(1001), std::string(1000, 'x') + "...");
+  EXPECT_EQ(told(1'000'000), std::string(1000, 'x') + "...");
+}
+
+// Of many findings the first are told, as many as fit in 6 KiB, and the others counted.
+TEST(CallStatus, ManyFindingsAreCutAndCounted) {
+  const Error error{ErrorCode::kLiteralRange, "SPEED 101", {}};
+  for (const std::size_t count : {std::size_t{10}, std::size_t{100}, std::size_t{1000}}) {
+    const grpc::Status status = ToGrpcStatus(error, Findings(count), 5);
+    EXPECT_LE(status.error_details().size(), std::size_t{6} << 10) << count;
+    const v1::ErrorDetail detail = DetailOf(status);
+    EXPECT_GT(detail.diagnostics_size(), 0) << count;
+    EXPECT_EQ(static_cast<std::size_t>(detail.diagnostics_size() + detail.diagnostics_dropped()), count + 5) << count;
+    // Twice as many would not have fitted.
+    const auto told = static_cast<std::size_t>(detail.diagnostics_size());
+    const std::size_t twice_bytes = bridge::ToRpcStatus(error, Findings(told * 2), 5).ByteSizeLong();
+    EXPECT_TRUE(told == count || twice_bytes > std::size_t{6} << 10) << count;
+  }
+}
+
+// One finding alone may be too much: then there is none, and it is counted.
+TEST(CallStatus, AFindingThatDoesNotFitIsCounted) {
+  std::vector<Diagnostic> findings = Findings(1);
+  findings[0].detail = std::string(7 << 10, 'd');
+  const v1::ErrorDetail detail = DetailOf(ToGrpcStatus(Error{ErrorCode::kLiteralRange, {}, {}}, findings, 0));
+  EXPECT_EQ(detail.diagnostics_size(), 0);
+  EXPECT_EQ(detail.diagnostics_dropped(), 1);
+}
+
+}  // namespace
+}  // namespace rmlcell::server

@@ -1,0 +1,143 @@
+// What stands at the stable URLs, and what goes up there.
+#include "server/services/web_resources.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "google/rpc/status.pb.h"
+#include "proto/bridge/sha256.h"
+#include "rmlcell/v1/program.pb.h"
+#include "rmlcell/v1/report.pb.h"
+#include "server/config.h"
+#include "server/jobs/job_book.h"
+#include "server/programs/program_shelf.h"
+#include "tests/server/engine_bytes.h"
+#include "tests/server/server_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::string_view kText = "SPEED 20\n";
+
+class WebResourcesTest : public testing::Test {
+ protected:
+  WebResourcesTest() { config.limit_program_bytes = 100; }
+
+  static web::UploadHeader Header(const std::string& form = {}) {
+    return {.path = {.machine = "optimo-1", .slot = 45, .form = form}, .file_name = "plate.S", .size = 9};
+  }
+  Result<web::Resource> Find(const std::string& form) {
+    return resources.Find(web::ProgramContentPath{.machine = "optimo-1", .slot = 45, .form = form}, {});
+  }
+  // The message of the code that an upload ends with; empty: it is stored.
+  std::string Upload(const web::UploadHeader& header, const std::vector<std::string>& chunks) {
+    auto sink = Must(resources.BeginUpload(header, {}));
+    for (const std::string& chunk : chunks) EXPECT_TRUE(sink->Append(chunk));
+    const web::UploadEnd end = sink->Finish();
+    EXPECT_EQ(end.status.empty(), end.message_type == "rmlcell.v1.Program");
+    EXPECT_TRUE(stored.ParseFromString(end.message));
+    google::rpc::Status status;
+    EXPECT_TRUE(status.ParseFromString(end.status));
+    return status.message().substr(0, status.message().find(':'));
+  }
+
+  ServerBed bed;
+  Config config;
+  Gate gate{"secret"};
+  JobBook book{bed.store(), config};
+  ProgramShelf shelf{bed.store(), config};
+  WebResources resources{gate, book, shelf};
+  v1::Program stored;
+};
+
+TEST_F(WebResourcesTest, AProgramGoesUpAndComesDownInEachForm) {
+  web::UploadHeader header = Header();
+  header.title = "Plate";
+  header.sha256 = bridge::Sha256Hex(kText);
+  EXPECT_EQ(Upload(header, {"SPEED", " 20\n", ""}), "");
+  EXPECT_EQ(stored.name(), "machines/optimo-1/programs/45");
+  EXPECT_EQ(stored.title(), "Plate");
+  EXPECT_EQ(stored.file_name(), "plate.S");
+  for (const std::string form : {"", "source"}) {
+    const web::Resource source = Must(Find(form));
+    EXPECT_EQ(source.bytes, kText);
+    EXPECT_EQ(source.media_type, "text/plain; charset=utf-8");
+    EXPECT_EQ(source.file_name, "plate.S");
+    EXPECT_EQ(source.etag, bridge::Sha256Hex(kText));
+  }
+  const web::Resource object = Must(Find("object"));
+  EXPECT_EQ(object.bytes, ObjectOf(std::string(kText)));
+  EXPECT_EQ(object.media_type, "application/octet-stream");
+  EXPECT_EQ(object.etag, bridge::Sha256Hex(object.bytes));
+  EXPECT_NE(Must(Find("listing")).bytes, kText);
+  EXPECT_EQ(CodeOf(Find("executable")), ErrorCode::kProgramMissing);
+  EXPECT_EQ(CodeOf(Find("picture")), ErrorCode::kCellInvalidArgument);
+  header.etag = "7";
+  EXPECT_EQ(Upload(header, {std::string(kText)}), "CELL-E9006");
+  header.etag = "1";
+  EXPECT_EQ(Upload(header, {std::string(kText)}), "");
+}
+
+// All or nothing: what is refused leaves nothing behind.
+TEST_F(WebResourcesTest, UploadsThatAreRefused) {
+  web::UploadHeader header = Header();
+  header.sha256 = bridge::Sha256Hex("another");
+  EXPECT_EQ(Upload(header, {std::string(kText)}), "CELL-E9016");
+  EXPECT_EQ(Upload(Header(), {"SPEED 101\n"}), "OPT-E7004");
+  EXPECT_EQ(Upload(Header(), {}), "CELL-E9017");
+  header = Header();
+  header.validate_only = true;
+  EXPECT_EQ(Upload(header, {std::string(kText)}), "");
+  EXPECT_EQ(CodeOf(Find("source")), ErrorCode::kProgramMissing);
+  EXPECT_EQ(CodeOf(resources.BeginUpload(Header("picture"), {})), ErrorCode::kCellInvalidArgument);
+}
+
+// A report is kept as a message and shown as JSON; other products are shown as they are.
+TEST_F(WebResourcesTest, ProductsOfAJob) {
+  const auto finished = [&](const std::string& report) {
+    bed.SubmitCheck();
+    const storage::Lease lease = bed.Lease();
+    Must(bed.store().Finish(lease, {},
+                            {{.name = "report", .media_type = "application/x-protobuf", .bytes = report},
+                             {.name = "picture.svg", .media_type = "image/svg+xml", .bytes = "<svg/>"}},
+                            {}));
+    return std::to_string(lease.job);
+  };
+  v1::RunReport report;
+  report.set_family("optimo");
+  const std::string job = finished(report.SerializeAsString());
+  const web::Resource shown = Must(resources.Find(web::ArtifactPath{job, "report"}, {}));
+  EXPECT_EQ(shown.media_type, "application/json");
+  EXPECT_THAT(shown.bytes, HasSubstr("\"optimo\""));
+  EXPECT_EQ(shown.etag, bridge::Sha256Hex(report.SerializeAsString()));
+  const web::Resource picture = Must(resources.Find(web::ArtifactPath{job, "picture.svg"}, {}));
+  EXPECT_EQ(picture.media_type, "image/svg+xml");
+  EXPECT_EQ(picture.bytes, "<svg/>");
+  EXPECT_EQ(picture.etag, bridge::Sha256Hex("<svg/>"));
+  EXPECT_EQ(CodeOf(resources.Find(web::ArtifactPath{job, "trace"}, {})), ErrorCode::kCellNotFound);
+  EXPECT_EQ(CodeOf(resources.Find(web::ArtifactPath{"0", "report"}, {})), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(CodeOf(resources.Find(web::ArtifactPath{finished("\xFF\xFF"), "report"}, {})),
+            ErrorCode::kCellStoreCorrupt);
+}
+
+// limits.program_bytes, by what is announced and by what comes: the last byte that fits, and one more.
+TEST_F(WebResourcesTest, ALimitOfBytes) {
+  web::UploadHeader header = Header();
+  for (const std::int64_t size : {-1, 0, 100}) {
+    header.size = size;
+    EXPECT_TRUE(resources.BeginUpload(header, {})) << size;
+  }
+  header.size = 101;
+  EXPECT_EQ(CodeOf(resources.BeginUpload(header, {})), ErrorCode::kCellTooLarge);
+  header.size = -1;
+  auto sink = Must(resources.BeginUpload(header, {}));
+  EXPECT_TRUE(sink->Append(std::string(60, ' ')));
+  EXPECT_EQ(sink->Append(std::string(41, ' ')).error().code, ErrorCode::kCellTooLarge);
+  EXPECT_TRUE(sink->Append(std::string(40, ' ')));
+  EXPECT_EQ(sink->Append(" ").error().code, ErrorCode::kCellTooLarge);
+}
+
+}  // namespace
+}  // namespace rmlcell::server

@@ -1,0 +1,105 @@
+// What a job leaves: findings and reports, as far as its budget of output lets it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/server/worker/runner_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class JobProducts : public JobRunnerTest {
+ protected:
+  static v1::WorkerAssignment CheckOf(const std::string& source) { return Assignment(v1::JOB_KIND_CHECK, source); }
+  std::vector<std::string> Codes() {
+    std::vector<std::string> codes;
+    const v1::RunReport report = Report();
+    for (const v1::Diagnostic& diagnostic : report.diagnostics()) codes.push_back(diagnostic.code());
+    return codes;
+  }
+};
+
+// OPT-2.35 is a finding of the text, OPT-E7301 of the motion: both are found by one check.
+TEST_F(JobProducts, ACheckFindsWhatTheMotionWouldMeet) {
+  Work(CheckOf("COORD ABSOL\nPATH LIN\nMOVE (4000.,0.,0.,0.,0.)\nMOVE (4100.,0.,0.,0.,0.)\n"));
+  EXPECT_THAT(Codes(), ElementsAre("OPT-E7301", "OPT-E7301"));
+  EXPECT_EQ(Report().diagnostics(1).place().step(), 4);
+  EXPECT_EQ(Report().diagnostics(1).place().line(), 4);
+  EXPECT_GT(Report().diagnostics(1).time_s(), 0.0);
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_FAILED);
+  EXPECT_EQ(Outcome().code(), "OPT-E7301");
+  EXPECT_EQ(Outcome().place().program(), 45);
+  EXPECT_EQ(Outcome().place().step(), 3);
+  EXPECT_EQ(Outcome().place().line(), 3);
+  EXPECT_EQ(Report().motion_check(), "");
+  ASSERT_EQ(Events().size(), 2U);
+  EXPECT_EQ(Events()[0].virtual_time_ns(), 0);
+  EXPECT_GT(Events()[1].virtual_time_ns(), 0);
+}
+
+// Advice is told and ends nothing (OPT-2.16).
+TEST_F(JobProducts, ACheckWithAdviceAloneIsGood) {
+  Work(CheckOf("COORD ABSOL\nPATH LIN\nMOVE (500.,500.,-400.,0.,1.)\nMOVE (500.,505.,-400.,0.,0.)\n"));
+  EXPECT_THAT(Codes(), ElementsAre("OPT-E7321"));
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
+  EXPECT_EQ(Outcome().code(), "");
+}
+
+// A text that cannot be translated has no motion to look at.
+TEST_F(JobProducts, AFaultOfTheTextIsTheOnlyOne) {
+  Work(CheckOf("COORD ABSOL\nMOVE (9000.,0.,0.,0.,0.)\nSPEED 101\n"));
+  EXPECT_THAT(Codes(), ElementsAre("OPT-E7004"));
+}
+
+// The inputs of the job are those of its check; without them the report says how far it looked.
+TEST_F(JobProducts, ACheckTakesTheInputsOfTheJob) {
+  v1::WorkerAssignment assignment = CheckOf("COORD ABSOL\nWAIT (IL[16])\nMOVE (9000.,0.,0.,0.,0.)\n");
+  Work(assignment);
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
+  EXPECT_THAT(Report().motion_check(), HasSubstr("only up to step 2, line 2"));
+  v1::ScriptedInput& input = *assignment.mutable_job()->mutable_simulation()->add_inputs();
+  input.set_at_s(5.0);
+  input.set_kind(v1::ScriptedInput::KIND_LOGICAL_INPUT);
+  input.set_index(16);
+  input.set_value(1.0);
+  Work(assignment);
+  EXPECT_THAT(Codes(), ElementsAre("OPT-E7301"));
+  EXPECT_EQ(Report().diagnostics(0).time_s(), 5.0);
+  EXPECT_EQ(Report().motion_check(), "");
+}
+
+// Only the program of the job is checked; the others are there to be called.
+TEST_F(JobProducts, ACheckLooksAtTheProgramOfTheJob) {
+  v1::WorkerAssignment assignment = CheckOf("CALL 44\n");
+  v1::AssignedProgram& called = *assignment.add_programs();
+  called.set_slot(44);
+  called.set_file_name("44.S");
+  called.set_content("SPEED 101\n");
+  called.set_size(10);
+  called.set_is_source(true);
+  Work(assignment);
+  EXPECT_THAT(Codes(), ElementsAre());
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
+}
+
+// Budget.output_bytes: so many bytes of output and not one more.
+TEST_F(JobProducts, ABudgetOfOutputMayBeUsedUp) {
+  v1::WorkerAssignment assignment = CheckOf("STOP\n");
+  Work(assignment);
+  const auto report_bytes = static_cast<std::int64_t>(Artifacts()["report"].size());
+  ASSERT_GT(report_bytes, 0);
+  assignment.mutable_budget()->set_output_bytes(report_bytes);
+  Work(assignment);
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
+  EXPECT_THAT(Names(), ElementsAre("report"));
+  assignment.mutable_budget()->set_output_bytes(report_bytes - 1);
+  Work(assignment);
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_BUDGET_EXCEEDED);
+  EXPECT_EQ(Outcome().code(), "CELL-E9306");
+  EXPECT_THAT(Names(), ElementsAre());
+}
+
+}  // namespace
+}  // namespace rmlcell::server

@@ -1,0 +1,226 @@
+#pragma once
+
+#include <grpcpp/grpcpp.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rmlcell/v1/report.pb.h"
+#include "rmlcell/v1/worker.grpc.pb.h"
+#include "server/worker/job_runner.h"
+#include "server/worker/server_line.h"
+
+namespace rmlcell::server {
+
+// A server that says what the test wants and notes what it hears.
+class FakeServer final : public v1::WorkerService::Service {
+ public:
+  FakeServer() {
+    grpc::ServerBuilder builder;
+    int port = 0;
+    builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port);
+    builder.RegisterService(this);
+    builder.SetMaxReceiveMessageSize(-1);
+    server_ = builder.BuildAndStart();
+    address_ = "127.0.0.1:" + std::to_string(port);
+  }
+  ~FakeServer() override {
+    server_->Shutdown(std::chrono::system_clock::now());
+    server_->Wait();
+  }
+
+  const std::string& address() const { return address_; }
+
+  // Set before a worker joins.
+  grpc::Status refusal = grpc::Status::OK;
+  std::int64_t lease_ms = 60'000;
+  int window = 256;
+  std::function<void(const v1::WorkRequest&)> heard;  // what to do on a message; may call Send
+
+  void Send(const v1::WorkResponse& message) {
+    const std::lock_guard lock(mutex_);
+    stream_->Write(message);
+  }
+  // Ends the line without a word.
+  void HangUp() {
+    const std::lock_guard lock(mutex_);
+    context_->TryCancel();
+  }
+
+  std::vector<v1::WorkRequest> requests() {
+    const std::lock_guard lock(mutex_);
+    return requests_;
+  }
+
+  grpc::Status Work(grpc::ServerContext* context,
+                    grpc::ServerReaderWriter<v1::WorkResponse, v1::WorkRequest>* stream) override {
+    v1::WorkRequest message;
+    if (!stream->Read(&message) || !refusal.ok()) return refusal;
+    {
+      const std::lock_guard lock(mutex_);
+      context_ = context;
+      stream_ = stream;
+      requests_ = {message};  // of this worker alone
+    }
+    v1::WorkResponse welcome;
+    welcome.mutable_welcome()->set_lease_ms(lease_ms);
+    welcome.mutable_welcome()->set_events_window(window);
+    Send(welcome);
+    std::int64_t events = 0;
+    while (stream->Read(&message)) {
+      {
+        const std::lock_guard lock(mutex_);
+        requests_.push_back(message);
+      }
+      if (message.has_events() && stores) {
+        events += message.events().events_size();
+        v1::WorkResponse stored;
+        *stored.mutable_events_stored()->mutable_lease() = message.events().lease();
+        stored.mutable_events_stored()->set_count(events);
+        Send(stored);
+      }
+      if (heard) heard(message);
+    }
+    return grpc::Status::OK;
+  }
+
+  bool stores = true;  // events are said to be durable at once
+
+ private:
+  std::unique_ptr<grpc::Server> server_;
+  std::string address_;
+  std::mutex mutex_;
+  grpc::ServerContext* context_ = nullptr;
+  grpc::ServerReaderWriter<v1::WorkResponse, v1::WorkRequest>* stream_ = nullptr;
+  std::vector<v1::WorkRequest> requests_;
+};
+
+class JobRunnerTest : public testing::Test {
+ protected:
+  static v1::WorkerLease Lease(std::int64_t fence = 5) {
+    v1::WorkerLease lease;
+    lease.set_job(7);
+    lease.set_attempt(2);
+    lease.set_fence(fence);
+    return lease;
+  }
+  static v1::WorkerAssignment Assignment(v1::JobKind kind, const std::string& source,
+                                         const std::string& family = "optimo") {
+    v1::WorkerAssignment assignment;
+    *assignment.mutable_lease() = Lease();
+    assignment.mutable_job()->set_kind(kind);
+    assignment.set_family(family);
+    assignment.set_main_program(45);
+    assignment.set_default_schedules(true);
+    v1::AssignedProgram& program = *assignment.add_programs();
+    program.set_slot(45);
+    program.set_file_name(family == "optimo" ? "part.S" : "part.rml");
+    program.set_content(source);
+    program.set_size(static_cast<std::int64_t>(source.size()));
+    program.set_is_source(true);
+    v1::Budget& budget = *assignment.mutable_budget();
+    budget.set_steps(1'000'000'000);
+    budget.set_virtual_time_s(1e6);
+    budget.set_memory_bytes(std::int64_t{1} << 30);
+    budget.set_processor_s(600.0);
+    budget.set_output_bytes(std::int64_t{1} << 28);
+    return assignment;
+  }
+  static v1::WorkResponse Order(v1::WorkerControl::Kind kind, std::int64_t fence = 5,
+                                double value = 0.0) {
+    v1::WorkResponse message;
+    *message.mutable_control()->mutable_lease() = Lease(fence);
+    message.mutable_control()->set_kind(kind);
+    message.mutable_control()->set_value(value);
+    return message;
+  }
+  static v1::WorkResponse Release(std::int64_t fence = 5) {
+    v1::WorkResponse message;
+    *message.mutable_release()->mutable_lease() = Lease(fence);
+    return message;
+  }
+  static bool IsPosition(const v1::WorkRequest& message) {
+    return message.has_heartbeat() && message.heartbeat().has_progress();
+  }
+
+  // Works on it; all that the worker says has been heard when this returns.
+  bool Work(const v1::WorkerAssignment& assignment,
+            const std::vector<v1::WorkResponse>& before = {}) {
+    line_ = *ServerLine::Join({.server = server.address(), .join_token = "secret", .name = "w"});
+    for (const v1::WorkResponse& message : before) server.Send(message);
+    JobRunner runner(*line_, stopping);
+    const bool go_on = runner.Work(assignment);
+    line_->Close();
+    while (!line_->gone()) line_->Receive(std::chrono::seconds(60));
+    heard_ = server.requests();
+    return go_on;
+  }
+  // The end that the worker told; there is one at most, and nothing follows it.
+  std::optional<v1::WorkerFinish> Finished() {
+    std::optional<v1::WorkerFinish> finish;
+    for (const v1::WorkRequest& message : heard_) {
+      EXPECT_FALSE(finish && !message.has_heartbeat());
+      if (message.has_finish()) finish = message.finish();
+    }
+    if (finish) {
+      EXPECT_EQ(finish->lease().SerializeAsString(), Lease().SerializeAsString());
+    }
+    return finish;
+  }
+  v1::Outcome Outcome() {
+    const auto finish = Finished();
+    EXPECT_TRUE(finish);
+    return finish ? finish->outcome() : v1::Outcome();
+  }
+  bool HandedBack() {
+    return std::ranges::any_of(heard_, [](const v1::WorkRequest& m) {
+      return m.has_hand_back() &&
+             m.hand_back().lease().SerializeAsString() == Lease().SerializeAsString();
+    });
+  }
+  std::map<std::string, std::string> Artifacts() {
+    std::map<std::string, std::string> artifacts;
+    for (const v1::WorkRequest& message : heard_) {
+      if (!message.has_artifact()) continue;
+      EXPECT_EQ(message.artifact().lease().SerializeAsString(), Lease().SerializeAsString());
+      EXPECT_LE(message.artifact().chunk().size(), std::size_t{1} << 20);
+      artifacts[message.artifact().name()] += message.artifact().chunk();
+    }
+    return artifacts;
+  }
+  std::vector<std::string> Names() {
+    std::vector<std::string> names;
+    for (const auto& [name, bytes] : Artifacts()) names.push_back(name);
+    return names;
+  }
+  v1::RunReport Report() {
+    v1::RunReport report;
+    EXPECT_TRUE(report.ParseFromString(Artifacts()["report"]));
+    return report;
+  }
+  std::vector<v1::JobEvent> Events() {
+    std::vector<v1::JobEvent> events;
+    for (const v1::WorkRequest& message : heard_) {
+      if (!message.has_events()) continue;
+      EXPECT_EQ(message.events().lease().SerializeAsString(), Lease().SerializeAsString());
+      events.insert(events.end(), message.events().events().begin(),
+                    message.events().events().end());
+    }
+    return events;
+  }
+
+  FakeServer server;
+  std::atomic<bool> stopping = false;
+  std::unique_ptr<ServerLine> line_;
+  std::vector<v1::WorkRequest> heard_;
+};
+
+}  // namespace rmlcell::server
