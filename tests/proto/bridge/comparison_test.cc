@@ -143,6 +143,21 @@ TEST(Comparison, OfRunsThatDoNotEndByThemselves) {
   EXPECT_TRUE(runs(ends, "DELAY 2\n", {.steps_max = 100, .go_on = [] { return true; }}));
 }
 
+// An object that does not fit into the memory of the control cannot run (OPT-1.08); its steps are compared all the same.
+TEST(Comparison, OfObjectsThatAreTooLong) {
+  std::string lines;
+  for (int i = 0; i < 8000; ++i) lines += "VI[1]=1\n";
+  const auto object = [](const std::string& text) {
+    return TextOf(optimo::Compile(text, {}, {.object_limit = 0}).object, "a.O");
+  };
+  const auto outcome = ComparePrograms(object(lines), object(lines + "VI[2]=1\n"), {});
+  ASSERT_TRUE(outcome);
+  EXPECT_TRUE(outcome->ok);
+  EXPECT_FALSE(outcome->response.compared_runs());
+  ASSERT_EQ(outcome->response.steps_size(), 1);
+  EXPECT_EQ(outcome->response.steps(0).step_after(), 8001);
+}
+
 // The picture names both by the last part of their names, and says where a run ended early.
 TEST(Comparison, ThePicture) {
   const std::string line = "COORD ABSOL\nPATH LIN\nMOVE (100.,100.,-100.,0.,0.)\n";
@@ -155,7 +170,8 @@ TEST(Comparison, ThePicture) {
   EXPECT_THAT(picture, HasSubstr("two.S"));
   EXPECT_THAT(picture, Not(HasSubstr("here/one.S")));
   EXPECT_THAT(picture, Not(HasSubstr("new\\two.S")));
-  EXPECT_THAT(picture, HasSubstr("stopped at 1/4, OPT-E7507"));
+  EXPECT_THAT(picture, HasSubstr("two.S: stopped at 1/4, OPT-E7507"));
+  EXPECT_THAT(picture, Not(HasSubstr("one.S: ")));  // it ran to its end
 }
 
 TEST(Comparison, TheNoteSaysBudgetExceededInWords) {
