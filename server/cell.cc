@@ -42,7 +42,8 @@ constexpr int kExecutorThreads = 8;
 // What the log of the store grows to between two checkpoints of a cell that is not busy.
 constexpr std::int64_t kLogBytesPrepared = 17 << 20;
 
-// Keepalive for shop-floor networks: a client that is gone without a word is noticed within a minute.
+// Keepalive for shop-floor networks: a client that is gone without a word is noticed within a
+// minute.
 constexpr int kKeepaliveTime_ms = 40'000;
 constexpr int kKeepaliveTimeout_ms = 15'000;
 
@@ -60,8 +61,9 @@ std::string PathOfOwnProgram() {
   return error ? std::string() : self.parent_path().string();
 }
 
-// A server that listens on a unix socket has it taken away by the next one without a word: gRPC removes the
-// file before it makes its own, which is right only for one that a dead server left behind.
+// A server that listens on a unix socket has it taken away by the next one without a word: gRPC
+// removes the file before it makes its own, which is right only for one that a dead server left
+// behind.
 bool IsUnixSocketInUse(const std::string& address) {
   if (!address.starts_with("unix:")) return false;
   std::string path = address.substr(std::string_view("unix:").size());
@@ -72,7 +74,9 @@ bool IsUnixSocketInUse(const std::string& address) {
   path.copy(name.sun_path, path.size());
   const int probe = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (probe < 0) return false;
-  const bool answers = ::connect(probe, reinterpret_cast<const sockaddr*>(&name), sizeof(name)) == 0 || errno == EAGAIN;
+  const bool answers =
+      ::connect(probe, reinterpret_cast<const sockaddr*>(&name), sizeof(name)) == 0 ||
+      errno == EAGAIN;
   ::close(probe);
   return answers;
 }
@@ -119,14 +123,14 @@ struct Cell::Parts {
 };
 
 Status Cell::Parts::OpenStore() {
-  auto opened = storage::OpenSqliteStore(
-      {.path = config.state_directory + "/cell.db",
-       .keep_finished_jobs = config.jobs_keep_finished,
-       .log_bytes_prepared = kLogBytesPrepared});
+  auto opened = storage::OpenSqliteStore({.path = config.state_directory + "/cell.db",
+                                          .keep_finished_jobs = config.jobs_keep_finished,
+                                          .log_bytes_prepared = kLogBytesPrepared});
   if (!opened) {
     Error error = opened.error();
     if (error.code == ErrorCode::kCellStoreCorrupt) {
-      error.detail += "; the server does not start with it. Use another state.directory for an empty store";
+      error.detail +=
+          "; the server does not start with it. Use another state.directory for an empty store";
     }
     return error;
   }
@@ -142,7 +146,8 @@ Status Cell::Parts::MakeMachines() {
                                         .title = machine.title,
                                         .profile = machine.profile};
     if (Status good = CheckMachine(record); !good) {
-      return Error{ErrorCode::kCellConfiguration, "machine " + machine.id + ": " + good.error().detail, {}};
+      return Error{
+          ErrorCode::kCellConfiguration, "machine " + machine.id + ": " + good.error().detail, {}};
     }
     const auto stored = store->PutMachine(record, 0);
     if (!stored && stored.error().code != ErrorCode::kCellAlreadyExists) return stored.error();
@@ -160,7 +165,8 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   projects = std::make_unique<ProjectBook>(*store);
   const CallRoom room{gate, *executor, config.limit_message_bytes};
   job_service = std::make_unique<JobService>(room, *book, *dispatcher, *feed, open, instance_id);
-  machine_service = std::make_unique<MachineService>(room, *store, *dispatcher, config, instance_id);
+  machine_service =
+      std::make_unique<MachineService>(room, *store, *dispatcher, config, instance_id);
   program_service = std::make_unique<ProgramService>(room, *shelf, *office, open);
   project_service = std::make_unique<ProjectService>(room, *projects);
   handbox_service = std::make_unique<HandboxService>(room);
@@ -169,7 +175,8 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
-  // Without this a second server on the same port starts without a word and takes part of the calls.
+  // Without this a second server on the same port starts without a word and takes part of the
+  // calls.
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveTime_ms);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeout_ms);
@@ -183,9 +190,9 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   for (std::size_t i = 0; i < ports.size(); ++i) {
     builder.AddListeningPort(config.listen_grpc[i], grpc::InsecureServerCredentials(), &ports[i]);
   }
-  for (grpc::Service* service :
-       std::initializer_list<grpc::Service*>{job_service.get(), machine_service.get(), program_service.get(),
-                                             project_service.get(), handbox_service.get(), worker_service.get()}) {
+  for (grpc::Service* service : std::initializer_list<grpc::Service*>{
+           job_service.get(), machine_service.get(), program_service.get(), project_service.get(),
+           handbox_service.get(), worker_service.get()}) {
     builder.RegisterService(service);
   }
   server = builder.BuildAndStart();
@@ -194,7 +201,8 @@ Status Cell::Parts::Listen(const std::string& join_token) {
     const bool unix_socket = address.starts_with("unix:");
     if (server == nullptr || (ports[i] == 0 && !unix_socket)) return PortUsed(address);
     grpc_addresses.push_back(unix_socket ? address
-                                         : address.substr(0, address.rfind(':') + 1) + std::to_string(ports[i]));
+                                         : address.substr(0, address.rfind(':') + 1) +
+                                               std::to_string(ports[i]));
   }
   return {};
 }
@@ -207,21 +215,20 @@ Status Cell::Parts::ListenWeb() {
   resources = std::make_unique<WebResources>(gate, *book, *shelf);
   grpc::ChannelArguments arguments;
   arguments.SetInt(GRPC_ARG_MAX_RECEIVE_MESSAGE_LENGTH, -1);
-  auto started = web::WebServer::Start({.address = host,
-                                        .port = static_cast<int>(*ParseInteger(config.listen_web.substr(colon + 1))),
-                                        .call_bytes_max = static_cast<std::size_t>(config.limit_message_bytes),
-                                        .upload_bytes_max = static_cast<std::size_t>(config.limit_program_bytes),
-                                        .connections_max = static_cast<std::size_t>(config.web_connections_max),
-                                        .origins = config.web_origins,
-                                        .secret = gate.web_secret()},
-                                       grpc::CreateCustomChannel(grpc_addresses.front(), grpc::InsecureChannelCredentials(),
-                                                                 arguments),
-                                       *resources,
-                                       [](const web::WebLogEntry& entry) {
-                                         spdlog::debug("{} {} {} {} bytes in {} us, {}", entry.method, entry.path,
-                                                       entry.http_status, entry.bytes_sent, entry.duration.count(),
-                                                       entry.peer);
-                                       });
+  auto started = web::WebServer::Start(
+      {.address = host,
+       .port = static_cast<int>(*ParseInteger(config.listen_web.substr(colon + 1))),
+       .call_bytes_max = static_cast<std::size_t>(config.limit_message_bytes),
+       .upload_bytes_max = static_cast<std::size_t>(config.limit_program_bytes),
+       .connections_max = static_cast<std::size_t>(config.web_connections_max),
+       .origins = config.web_origins,
+       .secret = gate.web_secret()},
+      grpc::CreateCustomChannel(grpc_addresses.front(), grpc::InsecureChannelCredentials(),
+                                arguments),
+      *resources, [](const web::WebLogEntry& entry) {
+        spdlog::debug("{} {} {} {} bytes in {} us, {}", entry.method, entry.path, entry.http_status,
+                      entry.bytes_sent, entry.duration.count(), entry.peer);
+      });
   if (!started) return started.error();
   web = std::move(*started);
   return {};
@@ -230,8 +237,9 @@ Status Cell::Parts::ListenWeb() {
 Status Cell::Parts::StartWorkers(const std::string& join_token) {
   int count = static_cast<int>(config.workers_count);
   if (count < 0) count = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const std::string program =
-      config.workers_program.empty() ? PathOfOwnProgram() + "/rmlcell-worker" : config.workers_program;
+  const std::string program = config.workers_program.empty()
+                                  ? PathOfOwnProgram() + "/rmlcell-worker"
+                                  : config.workers_program;
   auto started = WorkerProcesses::Start({.program = program,
                                          .server = grpc_addresses.front(),
                                          .join_token = join_token,
@@ -248,7 +256,8 @@ Cell::Cell(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Result<std::unique_ptr<Cell>> Cell::Start(const Config& config) {
   std::unique_ptr<Cell> cell(new Cell(std::make_unique<Parts>(config)));
   Parts& parts = *cell->parts_;
-  const std::string join_token = config.workers_join_token.empty() ? RandomText() : config.workers_join_token;
+  const std::string join_token =
+      config.workers_join_token.empty() ? RandomText() : config.workers_join_token;
   // The lock of the store first: a second server on the same store must not listen for a moment.
   if (Status opened = parts.OpenStore(); !opened) return opened.error();
   if (Status listening = parts.Listen(join_token); !listening) return listening.error();
@@ -263,7 +272,8 @@ void Cell::Stop() {
   Parts& parts = *parts_;
   if (parts.stopped) return;
   parts.stopped = true;
-  const auto patience = std::chrono::milliseconds(static_cast<std::int64_t>(parts.config.shutdown_timeout_s * 1000.0));
+  const auto patience = std::chrono::milliseconds(
+      static_cast<std::int64_t>(parts.config.shutdown_timeout_s * 1000.0));
   const auto deadline = std::chrono::system_clock::now() + patience;
   if (parts.server != nullptr && parts.server->GetHealthCheckService() != nullptr) {
     parts.server->GetHealthCheckService()->SetServingStatus(false);

@@ -1,6 +1,7 @@
 #include "server/config.h"
 
 #include <arpa/inet.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -8,7 +9,6 @@
 #include <cstring>
 #include <set>
 #include <sstream>
-#include <toml++/toml.h>
 
 #include "engine/core/letters.h"
 #include "engine/core/number_text.h"
@@ -40,7 +40,8 @@ Result<std::int64_t> Integer(const std::string& text, std::int64_t low, std::int
   const auto value = ParseInteger(text);
   if (!value) return Wrong("takes a whole number, not '" + text + "'");
   if (*value < low || *value > high) {
-    return Wrong("is " + text + ", allowed are " + std::to_string(low) + " to " + std::to_string(high));
+    return Wrong("is " + text + ", allowed are " + std::to_string(low) + " to " +
+                 std::to_string(high));
   }
   return std::int64_t{*value};
 }
@@ -78,7 +79,8 @@ std::string NumberText(double value) {
   return text;
 }
 
-Status OneOf(const std::string& text, std::initializer_list<std::string_view> words, std::string& target) {
+Status OneOf(const std::string& text, std::initializer_list<std::string_view> words,
+             std::string& target) {
   if (std::ranges::find(words, text) == words.end()) {
     std::string all;
     for (const std::string_view word : words) all += (all.empty() ? "" : ", ") + std::string(word);
@@ -89,43 +91,43 @@ Status OneOf(const std::string& text, std::initializer_list<std::string_view> wo
 }
 
 // The setters and getters of one member, so that the table below stays one line a key.
-#define RMLCELL_INTEGER(member, low, high)                                        \
-  ConfigKind::kInteger,                                                           \
-  [](Config& config, const std::string& text) -> Status {                        \
-    const auto value = Integer(text, low, high);                                  \
-    if (!value) return value.error();                                             \
-    config.member = *value;                                                       \
-    return {};                                                                    \
-  },                                                                              \
+#define RMLCELL_INTEGER(member, low, high)                    \
+  ConfigKind::kInteger,                                       \
+      [](Config& config, const std::string& text) -> Status { \
+        const auto value = Integer(text, low, high);          \
+        if (!value) return value.error();                     \
+        config.member = *value;                               \
+        return {};                                            \
+      },                                                      \
       [](const Config& config) { return std::to_string(config.member); }
-#define RMLCELL_NUMBER(member, low, high)                                         \
-  ConfigKind::kNumber,                                                            \
-  [](Config& config, const std::string& text) -> Status {                        \
-    const auto value = Number(text, low, high);                                   \
-    if (!value) return value.error();                                             \
-    config.member = *value;                                                       \
-    return {};                                                                    \
-  },                                                                              \
+#define RMLCELL_NUMBER(member, low, high)                     \
+  ConfigKind::kNumber,                                        \
+      [](Config& config, const std::string& text) -> Status { \
+        const auto value = Number(text, low, high);           \
+        if (!value) return value.error();                     \
+        config.member = *value;                               \
+        return {};                                            \
+      },                                                      \
       [](const Config& config) { return NumberText(config.member); }
-#define RMLCELL_TEXT(member)                                                      \
-  ConfigKind::kText,                                                              \
-  [](Config& config, const std::string& text) -> Status {                        \
-    config.member = text;                                                         \
-    return {};                                                                    \
-  },                                                                              \
+#define RMLCELL_TEXT(member)                                  \
+  ConfigKind::kText,                                          \
+      [](Config& config, const std::string& text) -> Status { \
+        config.member = text;                                 \
+        return {};                                            \
+      },                                                      \
       [](const Config& config) { return Quoted(config.member); }
-#define RMLCELL_LIST(member)                                                      \
-  ConfigKind::kList,                                                              \
-  [](Config& config, const std::string& text) -> Status {                        \
-    config.member = SplitList(text);                                              \
-    return {};                                                                    \
-  },                                                                              \
+#define RMLCELL_LIST(member)                                  \
+  ConfigKind::kList,                                          \
+      [](Config& config, const std::string& text) -> Status { \
+        config.member = SplitList(text);                      \
+        return {};                                            \
+      },                                                      \
       [](const Config& config) { return ListText(config.member); }
-#define RMLCELL_WORD(member, ...)                                                 \
-  ConfigKind::kText,                                                              \
-  [](Config& config, const std::string& text) -> Status {                        \
-    return OneOf(text, {__VA_ARGS__}, config.member);                             \
-  },                                                                              \
+#define RMLCELL_WORD(member, ...)                             \
+  ConfigKind::kText,                                          \
+      [](Config& config, const std::string& text) -> Status { \
+        return OneOf(text, {__VA_ARGS__}, config.member);     \
+      },                                                      \
       [](const Config& config) { return Quoted(config.member); }
 
 constexpr std::int64_t kMiB = 1 << 20;
@@ -135,26 +137,32 @@ std::vector<ConfigKey> MakeKeys() {
   return {
       {"listen.grpc", "gRPC addresses: host:port or unix:/path; loopback and unix sockets only",
        RMLCELL_LIST(listen_grpc)},
-      {"listen.web", "web address host:port (page, JSON, gRPC-Web, event streams); empty: none; loopback only",
+      {"listen.web",
+       "web address host:port (page, JSON, gRPC-Web, event streams); empty: none; loopback only",
        RMLCELL_TEXT(listen_web)},
       {"web.origins", "other web origins that may call the web port, such as http://localhost:5173",
        RMLCELL_LIST(web_origins)},
       {"web.connections_max", "open web connections, 10 to 100000",
        RMLCELL_INTEGER(web_connections_max, 10, 100'000)},
-      {"state.directory", "where the store is kept; empty: $XDG_STATE_HOME/rmlcell or ~/.local/state/rmlcell",
+      {"state.directory",
+       "where the store is kept; empty: $XDG_STATE_HOME/rmlcell or ~/.local/state/rmlcell",
        RMLCELL_TEXT(state_directory)},
-      {"workers.count", "engine workers that the server starts, 0 to 256; -1: one per processor core",
+      {"workers.count",
+       "engine workers that the server starts, 0 to 256; -1: one per processor core",
        RMLCELL_INTEGER(workers_count, -1, 256)},
-      {"workers.program", "path of rmlcell-worker; empty: beside the server", RMLCELL_TEXT(workers_program)},
+      {"workers.program", "path of rmlcell-worker; empty: beside the server",
+       RMLCELL_TEXT(workers_program)},
       {"workers.join_token", "what a worker must know to join; empty: made anew at each start",
        RMLCELL_TEXT(workers_join_token)},
-      {"workers.lease_ms", "how long a worker may be silent before its job is given to another, 500 to 600000 ms",
+      {"workers.lease_ms",
+       "how long a worker may be silent before its job is given to another, 500 to 600000 ms",
        RMLCELL_INTEGER(workers_lease_ms, 500, 600'000)},
       {"jobs.attempts", "how often a job is tried when its worker dies, 1 to 10",
        RMLCELL_INTEGER(jobs_attempts, 1, 10)},
       {"jobs.queued_max", "jobs that may wait, 1 to 10000000; more are refused",
        RMLCELL_INTEGER(jobs_queued_max, 1, 10'000'000)},
-      {"jobs.keep_finished", "finished jobs that are kept with their events and products, 0 to 10000000; 0: all",
+      {"jobs.keep_finished",
+       "finished jobs that are kept with their events and products, 0 to 10000000; 0: all",
        RMLCELL_INTEGER(jobs_keep_finished, 0, 10'000'000)},
       {"limits.message_bytes", "largest message of a call, 65536 to 67108864 bytes",
        RMLCELL_INTEGER(limit_message_bytes, 65'536, 64 * kMiB)},
@@ -168,7 +176,8 @@ std::vector<ConfigKey> MakeKeys() {
        RMLCELL_INTEGER(limit_memory_bytes, 16 * kMiB, std::int64_t{1} << 40)},
       {"limits.processor_s", "processor time of a job, 0.1 to 86400 s",
        RMLCELL_NUMBER(limit_processor_s, 0.1, 86'400.0)},
-      {"limits.output_bytes", "report, trace, toolpath, pictures and events of a job, 65536 bytes to 16 GiB",
+      {"limits.output_bytes",
+       "report, trace, toolpath, pictures and events of a job, 65536 bytes to 16 GiB",
        RMLCELL_INTEGER(limit_output_bytes, 65'536, std::int64_t{16} << 30)},
       {"log.level", "trace, debug, info, warning, error or off",
        RMLCELL_WORD(log_level, "trace", "debug", "info", "warning", "error", "off")},
@@ -181,20 +190,28 @@ std::vector<ConfigKey> MakeKeys() {
 
 const ConfigKey* FindKey(std::string_view name) {
   const auto& keys = ConfigKeys();
-  const auto found = std::ranges::find_if(keys, [&](const ConfigKey& key) { return key.name == name; });
+  const auto found =
+      std::ranges::find_if(keys, [&](const ConfigKey& key) { return key.name == name; });
   return found == keys.end() ? nullptr : &*found;
 }
 
 // What a value of TOML is, for people.
 std::string_view TypeName(const toml::node& node) {
   switch (node.type()) {
-    case toml::node_type::string: return "a text";
-    case toml::node_type::integer: return "a whole number";
-    case toml::node_type::floating_point: return "a number";
-    case toml::node_type::boolean: return "a truth value";
-    case toml::node_type::array: return "a list";
-    case toml::node_type::table: return "a section";
-    default: return "a date or time";
+    case toml::node_type::string:
+      return "a text";
+    case toml::node_type::integer:
+      return "a whole number";
+    case toml::node_type::floating_point:
+      return "a number";
+    case toml::node_type::boolean:
+      return "a truth value";
+    case toml::node_type::array:
+      return "a list";
+    case toml::node_type::table:
+      return "a section";
+    default:
+      return "a date or time";
   }
 }
 
@@ -211,16 +228,19 @@ Result<std::string> ValueText(const toml::node& node, ConfigKind kind) {
     case ConfigKind::kText:
       if (const auto* text = node.as_string()) return text->get();
       return Wrong("takes a text, not " + std::string(TypeName(node)));
-    case ConfigKind::kList: break;
+    case ConfigKind::kList:
+      break;
   }
   const auto* list = node.as_array();
   if (list == nullptr) return Wrong("takes a list of texts, not " + std::string(TypeName(node)));
   std::string joined;
   for (const toml::node& item : *list) {
     const auto* text = item.as_string();
-    if (text == nullptr) return Wrong("takes a list of texts; one of them is " + std::string(TypeName(item)));
+    if (text == nullptr)
+      return Wrong("takes a list of texts; one of them is " + std::string(TypeName(item)));
     // The environment and the flags have no other way to separate the parts of a list.
-    if (text->get().find(',') != std::string::npos) return Wrong("has a comma in '" + text->get() + "'");
+    if (text->get().find(',') != std::string::npos)
+      return Wrong("has a comma in '" + text->get() + "'");
     joined += (joined.empty() ? "" : ",") + text->get();
   }
   return joined;
@@ -256,11 +276,13 @@ std::string NearestKey(std::string_view name) {
   return best;
 }
 
-Status ReadMachine(const toml::table& table, const std::string& file, std::vector<MachineConfig>& machines) {
+Status ReadMachine(const toml::table& table, const std::string& file,
+                   std::vector<MachineConfig>& machines) {
   MachineConfig machine;
   for (const auto& [key, node] : table) {
     const auto* text = node.as_string();
-    if (text == nullptr) return Wrong(PlaceText(file, node) + "machine." + std::string(key) + " takes a text");
+    if (text == nullptr)
+      return Wrong(PlaceText(file, node) + "machine." + std::string(key) + " takes a text");
     if (key == "id") {
       machine.id = text->get();
     } else if (key == "family") {
@@ -298,7 +320,8 @@ Status ApplyTable(const toml::table& parsed, const std::string& name, Config& co
     }
     const auto* table = section.as_table();
     if (table == nullptr) {
-      return Wrong(PlaceText(name, section) + "unknown key " + section_name + "; keys stand in sections");
+      return Wrong(PlaceText(name, section) + "unknown key " + section_name +
+                   "; keys stand in sections");
     }
     for (const auto& [key, node] : *table) {
       const std::string full = section_name + "." + std::string(key);
@@ -331,9 +354,11 @@ Status ValidateAddress(std::string_view key, const std::string& address) {
     return Wrong(std::string(key) + " names no socket file after unix:");
   }
   const std::size_t colon = address.rfind(':');
-  const auto port = colon == std::string::npos ? std::nullopt : ParseInteger(address.substr(colon + 1));
+  const auto port =
+      colon == std::string::npos ? std::nullopt : ParseInteger(address.substr(colon + 1));
   if (!port || *port < 0 || *port > 65535) {
-    return Wrong(std::string(key) + " is '" + address + "': write host:port with a port from 0 to 65535");
+    return Wrong(std::string(key) + " is '" + address +
+                 "': write host:port with a port from 0 to 65535");
   }
   if (!IsLoopback(address.substr(0, colon))) {
     return Error{ErrorCode::kCellUnsafeListen, std::string(key) + " is '" + address + "'", {}};
@@ -360,17 +385,21 @@ Status ReadConfigText(std::string_view text, const std::string& name, Config& co
     return ApplyTable(toml::parse(text, name), name, config);
   } catch (const toml::parse_error& error) {
     return Wrong(name + ":" + std::to_string(error.source().begin.line) + ":" +
-                 std::to_string(error.source().begin.column) + ": " + std::string(error.description()));
+                 std::to_string(error.source().begin.column) + ": " +
+                 std::string(error.description()));
   }
 }
 
 Status ReadConfigFile(const std::string& path, Config& config) {
-  const auto unreadable = [&](const std::string& why) { return Wrong("cannot read " + path + ": " + why); };
+  const auto unreadable = [&](const std::string& why) {
+    return Wrong("cannot read " + path + ": " + why);
+  };
   std::FILE* file = std::fopen(path.c_str(), "rb");
   if (file == nullptr) return unreadable(std::strerror(errno));
   std::string text;
   char room[4096];
-  for (std::size_t n = 0; (n = std::fread(room, 1, sizeof room, file)) > 0 && text.size() <= kFileBytesMax;) {
+  for (std::size_t n = 0;
+       (n = std::fread(room, 1, sizeof room, file)) > 0 && text.size() <= kFileBytesMax;) {
     text.append(room, n);
   }
   const int failed = std::ferror(file) != 0 ? errno : 0;  // a directory can be opened, not read
@@ -380,7 +409,8 @@ Status ReadConfigFile(const std::string& path, Config& config) {
   return ReadConfigText(text, path, config);
 }
 
-Status ReadConfigEnvironment(const std::map<std::string, std::string>& environment, Config& config) {
+Status ReadConfigEnvironment(const std::map<std::string, std::string>& environment,
+                             Config& config) {
   for (const ConfigKey& key : ConfigKeys()) {
     const std::string variable = VariableOf(key.name);
     const auto found = environment.find(variable);
@@ -418,9 +448,11 @@ Status ValidateConfig(const Config& config) {
   std::set<std::string> ids;
   for (const MachineConfig& machine : config.machines) {
     if (!IsResourceId(machine.id)) {
-      return Wrong("machine id '" + machine.id + "': use a-z, 0-9 and '-', beginning with a letter, at most 63");
+      return Wrong("machine id '" + machine.id +
+                   "': use a-z, 0-9 and '-', beginning with a letter, at most 63");
     }
-    if (!ids.insert(machine.id).second) return Wrong("machine id '" + machine.id + "' stands twice");
+    if (!ids.insert(machine.id).second)
+      return Wrong("machine id '" + machine.id + "' stands twice");
   }
   return {};
 }

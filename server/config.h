@@ -22,7 +22,7 @@ struct MachineConfig {
 struct Config {
   std::vector<std::string> listen_grpc = {"127.0.0.1:50051"};  // host:port or unix:/path
   std::string listen_web = "127.0.0.1:50080";                  // empty: no web port
-  std::vector<std::string> web_origins;                        // other pages that may call, for CORS
+  std::vector<std::string> web_origins;  // other pages that may call, for CORS
   std::int64_t web_connections_max = 2000;
 
   std::string state_directory;  // empty: $XDG_STATE_HOME/rmlcell, or ~/.local/state/rmlcell
@@ -54,11 +54,12 @@ struct Config {
                                          {"mill-1", "rml1", "srm-20", "Virtual SRM-20"}};
 };
 
-// One key of the configuration: how it is called everywhere and what it means. The same table reads the
-// file, the environment and the flags, checks, prints, and makes docs/configuration.md.
+// One key of the configuration: how it is called everywhere and what it means. The same table reads
+// the file, the environment and the flags, checks, prints, and makes docs/configuration.md.
 enum class ConfigKind { kInteger, kNumber, kText, kList };
 struct ConfigKey {
-  std::string_view name;  // "workers.count"; environment RMLCELL_WORKERS_COUNT; flag --workers.count
+  std::string_view
+      name;  // "workers.count"; environment RMLCELL_WORKERS_COUNT; flag --workers.count
   std::string_view text;  // meaning, unit and range
   ConfigKind kind;        // in the file; environment and flags give text, lists with commas
   Status (*set)(Config& config, const std::string& text);
@@ -66,17 +67,17 @@ struct ConfigKey {
 };
 const std::vector<ConfigKey>& ConfigKeys();
 
-// The file is TOML. Unknown keys, wrong types and values out of range are errors with line and key; nothing
-// is changed then. A file with machines replaces those that were there; `machine = []` leaves none.
-// Error: CellConfiguration, as in all of this file but ValidateConfig.
+// The file is TOML. Unknown keys, wrong types and values out of range are errors with line and key;
+// nothing is changed then. A file with machines replaces those that were there; `machine = []`
+// leaves none. Error: CellConfiguration, as in all of this file but ValidateConfig.
 Status ReadConfigFile(const std::string& path, Config& config);
 Status ReadConfigText(std::string_view text, const std::string& name, Config& config);
 
 // Variables RMLCELL_<KEY> with dots as underscores, in capitals. Errors name the variable.
 Status ReadConfigEnvironment(const std::map<std::string, std::string>& environment, Config& config);
 
-// Variables that look like one of those and are none, such as RMLCELL_WORKER_COUNT, each with what was
-// meant: a typing error must not leave a limit at its default in silence.
+// Variables that look like one of those and are none, such as RMLCELL_WORKER_COUNT, each with what
+// was meant: a typing error must not leave a limit at its default in silence.
 std::vector<std::string> MistypedVariables(const std::map<std::string, std::string>& environment);
 
 // What holds together only as a whole: addresses that may be listened on, machine ids.

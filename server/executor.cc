@@ -1,8 +1,9 @@
 #include "server/executor.h"
 
+#include <spdlog/spdlog.h>
+
 #include <boost/asio/post.hpp>
 #include <boost/asio/thread_pool.hpp>
-#include <spdlog/spdlog.h>
 
 namespace rmlcell::server {
 

@@ -3,10 +3,10 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <map>
-#include <chrono>
 #include <thread>
 
 #include "proto/bridge/findings.h"
@@ -26,7 +26,8 @@ std::map<std::string, std::string> Environment() {
   std::map<std::string, std::string> variables;
   for (char** entry = environ; *entry != nullptr; ++entry) {
     const char* equals = std::strchr(*entry, '=');
-    if (equals != nullptr) variables.emplace(std::string(*entry, static_cast<std::size_t>(equals - *entry)), equals + 1);
+    if (equals != nullptr)
+      variables.emplace(std::string(*entry, static_cast<std::size_t>(equals - *entry)), equals + 1);
   }
   return variables;
 }
@@ -34,11 +35,14 @@ std::map<std::string, std::string> Environment() {
 // sysexits.h: 78 a wrong configuration, 69 unavailable.
 int Refuse(const Error& error) {
   std::fprintf(stderr, "rmlcelld: %s\n", bridge::ErrorText(error).c_str());
-  return error.code == ErrorCode::kCellConfiguration || error.code == ErrorCode::kCellUnsafeListen ? 78 : 69;
+  return error.code == ErrorCode::kCellConfiguration || error.code == ErrorCode::kCellUnsafeListen
+             ? 78
+             : 69;
 }
 
 // Defaults, then the file, then the environment, then flags: each over the one before.
-Status Configure(const std::string& file, const std::map<std::string, std::string>& flags, Config& config) {
+Status Configure(const std::string& file, const std::map<std::string, std::string>& flags,
+                 Config& config) {
   const auto environment = Environment();
   config.state_directory = DefaultStateDirectory(environment);
   if (!file.empty()) {
@@ -49,7 +53,8 @@ Status Configure(const std::string& file, const std::map<std::string, std::strin
     const auto found = flags.find(std::string(key.name));
     if (found == flags.end()) continue;
     if (Status set = key.set(config, found->second); !set) {
-      return Error{ErrorCode::kCellConfiguration, "--" + found->first + " " + set.error().detail, {}};
+      return Error{
+          ErrorCode::kCellConfiguration, "--" + found->first + " " + set.error().detail, {}};
     }
   }
   if (config.state_directory.empty()) config.state_directory = DefaultStateDirectory(environment);
@@ -76,7 +81,8 @@ Every key of the configuration is a flag too, and a variable of the environment:
   for (const ConfigKey& key : ConfigKeys()) {
     const std::string name(key.name);
     app.add_option_function<std::string>(
-           "--" + name, [&flags, name](const std::string& value) { flags[name] = value; }, std::string(key.text))
+           "--" + name, [&flags, name](const std::string& value) { flags[name] = value; },
+           std::string(key.text))
         ->group("Configuration");
   }
   try {
@@ -85,12 +91,14 @@ Every key of the configuration is a flag too, and a variable of the environment:
     return app.exit(error) == 0 ? 0 : 64;
   }
   Config config;
-  if (Status configured = Configure(file, flags, config); !configured) return Refuse(configured.error());
+  if (Status configured = Configure(file, flags, config); !configured)
+    return Refuse(configured.error());
   if (print) {
     std::fputs(PrintConfig(config).c_str(), stdout);
     return 0;
   }
-  if (Status log = StartLog("rmlcelld", config.log_level, config.log_format, config.log_file); !log) {
+  if (Status log = StartLog("rmlcelld", config.log_level, config.log_format, config.log_file);
+      !log) {
     return Refuse(log.error());
   }
   for (const std::string& hint : MistypedVariables(Environment())) spdlog::warn("{}", hint);

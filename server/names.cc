@@ -13,7 +13,8 @@ constexpr int kTitleMax = 200;
 
 Error Malformed(std::string_view name, std::string_view expected) {
   return {ErrorCode::kCellInvalidArgument,
-          "name is '" + Readable(name) + "', expected is " + std::string(expected), {}};
+          "name is '" + Readable(name) + "', expected is " + std::string(expected),
+          {}};
 }
 
 // The part after "collection/", or nothing.
@@ -39,8 +40,10 @@ bool IsId(std::string_view id) {
 
 Status CheckResourceId(std::string_view id, std::string_view field) {
   if (IsId(id)) return {};
-  return Error{ErrorCode::kCellInvalidArgument,
-               std::string(field) + ": use 1 to 63 characters a-z, 0-9 and '-', beginning with a letter", {}};
+  return Error{
+      ErrorCode::kCellInvalidArgument,
+      std::string(field) + ": use 1 to 63 characters a-z, 0-9 and '-', beginning with a letter",
+      {}};
 }
 
 Result<std::string> ParseMachineName(std::string_view name) {
@@ -70,7 +73,8 @@ Result<ProgramName> ParseProgramName(std::string_view name) {
   const auto rest = After(name.substr(slash), "/programs/");
   const auto number = rest ? Number(*rest) : std::nullopt;
   if (!machine || !number) return Malformed(name, kForm);
-  ProgramName made{.machine = *machine, .number = *number, .slot = 0, .executable = *number > kExecutableOffset};
+  ProgramName made{
+      .machine = *machine, .number = *number, .slot = 0, .executable = *number > kExecutableOffset};
   const std::int64_t slot = *number - (made.executable ? kExecutableOffset : 0);
   if (slot >= kSlotMin && slot <= kSlotMax) made.slot = static_cast<int>(slot);
   return made;
@@ -94,14 +98,17 @@ Result<storage::Revision> ParseEtag(std::string_view etag) {
   if (etag.empty()) return storage::kAnyRevision;
   if (etag == "none") return storage::Revision{0};
   const auto revision = Number(etag);
-  if (!revision || *revision <= 0) return Error{ErrorCode::kCellEtagMismatch, "etag is not one of ours", {}};
+  if (!revision || *revision <= 0)
+    return Error{ErrorCode::kCellEtagMismatch, "etag is not one of ours", {}};
   return storage::Revision{*revision};
 }
 
 Status CheckTitle(std::string_view title, std::string_view field) {
-  const auto characters = std::ranges::count_if(title, [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; });
+  const auto characters = std::ranges::count_if(
+      title, [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; });
   if (characters <= kTitleMax) return {};
-  return InvalidArgument(std::string(field) + " is longer than " + std::to_string(kTitleMax) + " characters");
+  return InvalidArgument(std::string(field) + " is longer than " + std::to_string(kTitleMax) +
+                         " characters");
 }
 
 std::string MachineName(std::string_view id) { return "machines/" + std::string(id); }

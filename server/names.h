@@ -7,8 +7,8 @@
 #include "engine/core/result.h"
 #include "storage/records.h"
 
-// Resource names and etags of the API (proto/rmlcell/v1). Errors: CellInvalidArgument with the form expected.
-// A thing has exactly one name: numbers have no sign and no leading zero.
+// Resource names and etags of the API (proto/rmlcell/v1). Errors: CellInvalidArgument with the form
+// expected. A thing has exactly one name: numbers have no sign and no leading zero.
 namespace rmlcell::server {
 
 // 1 to 63 characters: a-z, 0-9, '-', beginning with a letter.
@@ -18,8 +18,8 @@ Result<std::string> ParseMachineName(std::string_view name);  // "machines/optim
 Result<std::string> ParseProjectName(std::string_view name);  // "projects/bracket"
 Result<std::int64_t> ParseJobName(std::string_view name);     // "jobs/17"
 
-// "machines/optimo-1/programs/45", an executable by its own number. Whether the machine has such a number is its
-// family's to say (jobs/program_place.h).
+// "machines/optimo-1/programs/45", an executable by its own number. Whether the machine has such a
+// number is its family's to say (jobs/program_place.h).
 struct ProgramName {
   std::string machine;
   std::int64_t number = 0;  // as it stands in the name
@@ -32,7 +32,8 @@ struct ScheduleName {
   std::string machine;
   int number = 0;  // 1..63
 };
-Result<ScheduleName> ParseScheduleName(std::string_view name);  // ".../laserSchedules/11"; error also: ScheduleRange
+Result<ScheduleName> ParseScheduleName(
+    std::string_view name);  // ".../laserSchedules/11"; error also: ScheduleRange
 
 // Etags are revisions in decimal. Empty: whatever is there. "none": must not exist yet.
 // Error: CellEtagMismatch for anything else: it cannot be one of ours.

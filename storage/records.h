@@ -11,15 +11,15 @@
 
 #include "engine/core/catalogue.h"
 
-// What the cell keeps, as plain values. Bytes that only their writer understands (a job's specification,
-// an event's payload, a project's body) are opaque here: storage knows no protobuf.
+// What the cell keeps, as plain values. Bytes that only their writer understands (a job's
+// specification, an event's payload, a project's body) are opaque here: storage knows no protobuf.
 namespace rmlcell::storage {
 
 using WallTime = std::chrono::sys_time<std::chrono::microseconds>;
 
-// Counts the changes of one record, from 1. A record that was deleted and is made again goes on counting,
-// so that what was expected of the old one never fits the new one. 0 as an expectation means "must not
-// exist yet"; kAnyRevision means "whatever is there".
+// Counts the changes of one record, from 1. A record that was deleted and is made again goes on
+// counting, so that what was expected of the old one never fits the new one. 0 as an expectation
+// means "must not exist yet"; kAnyRevision means "whatever is there".
 using Revision = std::int64_t;
 inline constexpr Revision kAnyRevision = -1;
 
@@ -34,7 +34,7 @@ struct MachineRecord {
   std::string id{};  // "optimo-1"
   std::string family{};
   std::string title{};
-  std::string profile{};  // empty: the defaults of the family
+  std::string profile{};                            // empty: the defaults of the family
   std::map<std::string, std::string> parameters{};  // what differs from the profile
   std::string state{};  // engine bytes kept between jobs; empty: a new machine
   Revision revision = 0;
@@ -50,7 +50,7 @@ struct ProgramRecord {
   std::optional<std::string> source{};      // where the program was stored from text
   std::string source_name{};                // file name of the source
   std::optional<std::string> executable{};  // at slot + 100
-  Revision revision = 0;                  // of the object; an executable made of an older one is gone
+  Revision revision = 0;  // of the object; an executable made of an older one is gone
   WallTime created_at{};
   WallTime updated_at{};
 };
@@ -63,7 +63,7 @@ struct ProgramSummary {
   std::int64_t object_bytes = 0;
   std::int64_t source_bytes = -1;      // -1: no source
   std::int64_t executable_bytes = -1;  // -1: no executable
-  std::string object_sha256{};           // lower-case hexadecimal
+  std::string object_sha256{};         // lower-case hexadecimal
   Revision revision = 0;
   WallTime created_at{};
   WallTime updated_at{};
@@ -92,7 +92,9 @@ struct ProjectRecord {
 inline constexpr std::string_view kRunKind = "RUN";
 
 enum class JobState { kQueued, kRunning, kSucceeded, kFailed, kCancelled, kInterrupted };
-inline bool IsFinal(JobState state) { return state != JobState::kQueued && state != JobState::kRunning; }
+inline bool IsFinal(JobState state) {
+  return state != JobState::kQueued && state != JobState::kRunning;
+}
 
 struct JobOutcome {
   JobState state = JobState::kSucceeded;
@@ -104,10 +106,11 @@ struct JobOutcome {
 
 struct JobRecord {
   std::int64_t id = 0;       // counts up; the order of submission
-  std::string request_id{};    // unique; made by the store when the client gave none
-  std::string request_hash{};  // of what was asked for: the same request_id with another request is refused
+  std::string request_id{};  // unique; made by the store when the client gave none
+  std::string
+      request_hash{};  // of what was asked for: the same request_id with another request is refused
   std::string machine{};
-  std::string kind{};          // "CHECK", "SIMULATE", kRunKind
+  std::string kind{};  // "CHECK", "SIMULATE", kRunKind
   std::string title{};
   std::string caller{};
   std::string specification{};  // opaque
@@ -142,7 +145,7 @@ struct AttemptRecord {
 
 // One line of a job's durable log.
 struct NewEvent {
-  std::string kind{};  // "state", "step", "alarm" ...: for filters and people
+  std::string kind{};     // "state", "step", "alarm" ...: for filters and people
   std::string payload{};  // opaque
 };
 struct EventRecord {
@@ -160,7 +163,8 @@ struct NewArtifact {
   std::string name{};  // "report", "toolpath", "picture.svg"
   std::string media_type{};
   std::string bytes{};
-  std::string existing_sha256{};  // not empty: content that the store has already; `bytes` is not looked at
+  std::string
+      existing_sha256{};  // not empty: content that the store has already; `bytes` is not looked at
 };
 struct ArtifactRecord {
   std::int64_t job = 0;

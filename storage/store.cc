@@ -7,7 +7,8 @@ namespace rmlcell::storage {
 Result<SubmittedJob> Store::SubmitAndWait(NewJob job) {
   std::promise<Result<SubmittedJob>> promise;
   std::future<Result<SubmittedJob>> future = promise.get_future();
-  Submit(std::move(job), [&](Result<SubmittedJob> result) { promise.set_value(std::move(result)); });
+  Submit(std::move(job),
+         [&](Result<SubmittedJob> result) { promise.set_value(std::move(result)); });
   return future.get();
 }
 

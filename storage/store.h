@@ -14,7 +14,7 @@
 namespace rmlcell::storage {
 
 struct NewJob {
-  std::string request_id{};    // empty: the store makes one
+  std::string request_id{};  // empty: the store makes one
   std::string request_hash{};
   std::string machine{};
   std::string kind{};
@@ -25,7 +25,7 @@ struct NewJob {
   std::int64_t queued_max = 0;  // refused when so many jobs wait already; 0: never
   // What the job works on, as artifacts of it: kept with it, whatever happens to slots.
   std::vector<NewArtifact> attachments{};
-  std::vector<NewEvent> events{};          // written in the transaction that makes the job
+  std::vector<NewEvent> events{};  // written in the transaction that makes the job
 };
 struct SubmittedJob {
   JobRecord job;
@@ -45,26 +45,28 @@ struct LeasedJob {
   JobRecord job;
 };
 
-// What becomes of a job whose worker is gone: back to the queue while attempts are left, else the outcome.
-// A RUN is never repeated by itself: it becomes kInterrupted with the outcome's code, detail and place.
+// What becomes of a job whose worker is gone: back to the queue while attempts are left, else the
+// outcome. A RUN is never repeated by itself: it becomes kInterrupted with the outcome's code,
+// detail and place.
 struct LossPolicy {
   JobOutcome outcome{};              // final
   std::vector<NewEvent> requeued{};  // appended when it goes back to the queue
   std::vector<NewEvent> ended{};     // appended when it ends
-  // Appended when its cancel was requested: it then ends as kCancelled (CellCancelled), whatever attempts
-  // are left; a RUN is interrupted all the same. Empty: such a job is treated as any other.
+  // Appended when its cancel was requested: it then ends as kCancelled (CellCancelled), whatever
+  // attempts are left; a RUN is interrupted all the same. Empty: such a job is treated as any
+  // other.
   std::vector<NewEvent> cancelled{};
 };
 
 // Newest first. A page ends where the next begins: pass the last id of it as `before_id`.
 struct JobQuery {
-  std::string machine{};                // empty: all
+  std::string machine{};  // empty: all
   std::optional<JobState> state{};
-  std::string kind{};                   // empty: all
-  std::string caller{};                 // empty: all
-  std::optional<bool> finished{};       // final states only, or unfinished only
+  std::string kind{};              // empty: all
+  std::string caller{};            // empty: all
+  std::optional<bool> finished{};  // final states only, or unfinished only
   int limit = 50;
-  std::int64_t before_id = 0;         // jobs with a smaller id; 0: from the newest
+  std::int64_t before_id = 0;  // jobs with a smaller id; 0: from the newest
 };
 
 // What to write into one slot. All writes of one call are made, or none.
@@ -77,16 +79,16 @@ struct ProgramWrite {
   Revision expected = kAnyRevision;
 };
 
-// Everything durable that the cell has. One interface for the embedded store and for a networked one
-// that several servers share: nothing here assumes that this process is the only writer.
+// Everything durable that the cell has. One interface for the embedded store and for a networked
+// one that several servers share: nothing here assumes that this process is the only writer.
 //
-// Thread-safe. What returned success survives a kill at any instruction. A change of a job and its events
-// are one transaction. After an error nothing is changed.
+// Thread-safe. What returned success survives a kill at any instruction. A change of a job and its
+// events are one transaction. After an error nothing is changed.
 //
-// Errors everywhere: CellStoreFailed (9101), CellStoreBusy (9103), CellStoreCorrupt (9104), CellTooLarge
-// (9007, a field beyond what the store can hold); those of a method beyond that are listed with it. What
-// belongs to one machine gives CellUnknownMachine, what belongs to one job CellNotFound, when there is no
-// such machine or job.
+// Errors everywhere: CellStoreFailed (9101), CellStoreBusy (9103), CellStoreCorrupt (9104),
+// CellTooLarge (9007, a field beyond what the store can hold); those of a method beyond that are
+// listed with it. What belongs to one machine gives CellUnknownMachine, what belongs to one job
+// CellNotFound, when there is no such machine or job.
 //
 // An `expected` revision that does not fit gives CellEtagMismatch; 0 when the record is there
 // CellAlreadyExists; above 0 when it is not there CellNotFound (of a machine: CellUnknownMachine).
@@ -95,14 +97,16 @@ class Store {
  public:
   virtual ~Store() = default;
 
-  // --- machines -------------------------------------------------------------------------------------
+  // --- machines
+  // -------------------------------------------------------------------------------------
   virtual Result<std::vector<MachineRecord>> ListMachines() = 0;  // by id
   virtual Result<MachineRecord> GetMachine(std::string_view id) = 0;
   // The revision and times of `machine` are not looked at. CellInvalidArgument: no id.
   virtual Result<MachineRecord> PutMachine(const MachineRecord& machine, Revision expected) = 0;
 
-  // --- programs -------------------------------------------------------------------------------------
-  // Slots in order, those after `after_slot`.
+  // --- programs
+  // ------------------------------------------------------------------------------------- Slots in
+  // order, those after `after_slot`.
   virtual Result<std::vector<ProgramSummary>> ListPrograms(std::string_view machine, int after_slot,
                                                            int limit) = 0;
   virtual Result<ProgramRecord> GetProgram(std::string_view machine, int slot) = 0;  // CellNotFound
@@ -111,47 +115,52 @@ class Store {
   // The program memory of the machine for a run, slots in order: every program with its object and
   // executable, without its source.
   virtual Result<std::vector<ProgramRecord>> GetProgramMemory(std::string_view machine) = 0;
-  // Slots that held a program once and are empty now, in order (OPT-1.13: deleting counts as altering).
+  // Slots that held a program once and are empty now, in order (OPT-1.13: deleting counts as
+  // altering).
   virtual Result<std::vector<int>> ListDeletedPrograms(std::string_view machine) = 0;
-  // Replaces objects, deletes the executables of these slots and no others (OPT-1.12, OPT-1.13), stores
-  // schedules (whatever is there; their `machine` is not looked at). Summaries in the order of
-  // `programs`. CellInvalidArgument: a slot or number out of range or twice; CellTooLarge:
+  // Replaces objects, deletes the executables of these slots and no others (OPT-1.12, OPT-1.13),
+  // stores schedules (whatever is there; their `machine` is not looked at). Summaries in the order
+  // of `programs`. CellInvalidArgument: a slot or number out of range or twice; CellTooLarge:
   // kProgramBytesMax.
   virtual Result<std::vector<ProgramSummary>> PutPrograms(
       std::string_view machine, const std::vector<ProgramWrite>& programs,
       const std::vector<ScheduleRecord>& schedules) = 0;
   // The executable goes with it (OPT-1.12). CellNotFound.
   virtual Status DeleteProgram(std::string_view machine, int slot, Revision expected) = 0;
-  // Kept only while the object still has `object_revision` (OPT-1.15); else nothing happens and false is
-  // returned, also when there is no object. The revision stays as it is.
+  // Kept only while the object still has `object_revision` (OPT-1.15); else nothing happens and
+  // false is returned, also when there is no object. The revision stays as it is.
   virtual Result<bool> PutExecutable(std::string_view machine, int slot, Revision object_revision,
                                      std::string_view executable) = 0;
   // The object stays (OPT-1.14). CellNotFound: no program, or no executable.
   virtual Status DeleteExecutable(std::string_view machine, int slot) = 0;
 
-  // --- laser schedules ------------------------------------------------------------------------------
-  virtual Result<std::vector<ScheduleRecord>> ListSchedules(std::string_view machine) = 0;  // by number
+  // --- laser schedules
+  // ------------------------------------------------------------------------------
+  virtual Result<std::vector<ScheduleRecord>> ListSchedules(
+      std::string_view machine) = 0;  // by number
   // CellInvalidArgument: number out of range.
   virtual Result<ScheduleRecord> PutSchedule(const ScheduleRecord& schedule, Revision expected) = 0;
   virtual Status DeleteSchedule(std::string_view machine, int number) = 0;  // CellNotFound
 
-  // --- projects -------------------------------------------------------------------------------------
-  // By id, those after `after_id`.
+  // --- projects
+  // ------------------------------------------------------------------------------------- By id,
+  // those after `after_id`.
   virtual Result<std::vector<ProjectRecord>> ListProjects(std::string_view after_id, int limit) = 0;
   virtual Result<ProjectRecord> GetProject(std::string_view id) = 0;  // CellNotFound
   // As PutMachine.
   virtual Result<ProjectRecord> PutProject(const ProjectRecord& project, Revision expected) = 0;
   virtual Status DeleteProject(std::string_view id, Revision expected) = 0;  // CellNotFound
 
-  // --- jobs -----------------------------------------------------------------------------------------
-  // Durable before `done` is called, from a thread of the store or before Submit() returns: many submissions
-  // share one commit.
-  // `done` is called once, does not throw, and is brief, as the next commit waits for it; it may call this
-  // store. Attachments are hashed and compressed by the calling thread before that.
-  // CellRequestIdReused when request_id is known with another request_hash; CellNotFound: an attachment
-  // names content that is not there; CellInvalidArgument: attempts_max below 1, an attachment's name
-  // twice; CellTooLarge: an event beyond kEventPayloadBytesMax; CellResourceExhausted: queued_max jobs wait
-  // and the request_id is new; or too many writes wait already, told at once by the calling thread.
+  // --- jobs
+  // -----------------------------------------------------------------------------------------
+  // Durable before `done` is called, from a thread of the store or before Submit() returns: many
+  // submissions share one commit. `done` is called once, does not throw, and is brief, as the next
+  // commit waits for it; it may call this store. Attachments are hashed and compressed by the
+  // calling thread before that. CellRequestIdReused when request_id is known with another
+  // request_hash; CellNotFound: an attachment names content that is not there; CellInvalidArgument:
+  // attempts_max below 1, an attachment's name twice; CellTooLarge: an event beyond
+  // kEventPayloadBytesMax; CellResourceExhausted: queued_max jobs wait and the request_id is new;
+  // or too many writes wait already, told at once by the calling thread.
   virtual void Submit(NewJob job, std::function<void(Result<SubmittedJob>)> done) = 0;
   virtual Result<SubmittedJob> SubmitAndWait(NewJob job);
   // The job that this request made, or nothing. CellRequestIdReused, as of Submit().
@@ -163,13 +172,15 @@ class Store {
   virtual Result<std::vector<AttemptRecord>> ListAttempts(std::int64_t job) = 0;  // by number
   virtual Result<JobCounts> CountJobs() = 0;  // cheap: called for every submission
 
-  // Queued: cancelled at once (CellCancelled), with `events`. Running: marked, without events; the holder
-  // of the lease ends it. Final: unchanged. Returns the job as it then is.
-  virtual Result<JobRecord> RequestCancel(std::int64_t job, const std::vector<NewEvent>& events) = 0;
+  // Queued: cancelled at once (CellCancelled), with `events`. Running: marked, without events; the
+  // holder of the lease ends it. Final: unchanged. Returns the job as it then is.
+  virtual Result<JobRecord> RequestCancel(std::int64_t job,
+                                          const std::vector<NewEvent>& events) = 0;
 
-  // --- leases; all times by the clock of the store -----------------------------------------------------
-  // A job has at most one holder. A lease that ran out stays its holder's until Expire() takes it: work
-  // that was done is kept while nobody else has begun it.
+  // --- leases; all times by the clock of the store
+  // ----------------------------------------------------- A job has at most one holder. A lease
+  // that ran out stays its holder's until Expire() takes it: work that was done is kept while
+  // nobody else has begun it.
   //
   // The oldest queued job of one of `kinds`, or nothing. `events` are appended to it. It may have
   // cancel_requested, when an earlier holder gave it back: the new one ends it.
@@ -177,17 +188,18 @@ class Store {
                                                    const std::vector<std::string>& kinds,
                                                    std::chrono::milliseconds duration,
                                                    const std::vector<NewEvent>& events) = 0;
-  // Until `duration` from now, 366 days at most. CellLeaseLost. Returns the job without its specification, so that the
-  // holder sees cancel_requested.
+  // Until `duration` from now, 366 days at most. CellLeaseLost. Returns the job without its
+  // specification, so that the holder sees cancel_requested.
   virtual Result<JobRecord> Renew(const Lease& lease, std::chrono::milliseconds duration) = 0;
-  // CellLeaseLost, CellTooLarge, CellResourceExhausted. `done` gets the last sequence number written, and is
-  // called as that of Submit(). What one thread appends is written in the order of its calls.
+  // CellLeaseLost, CellTooLarge, CellResourceExhausted. `done` gets the last sequence number
+  // written, and is called as that of Submit(). What one thread appends is written in the order of
+  // its calls.
   virtual void Append(const Lease& lease, std::vector<NewEvent> events,
                       std::function<void(Result<std::int64_t>)> done) = 0;
   virtual Result<std::int64_t> AppendAndWait(const Lease& lease, std::vector<NewEvent> events);
-  // Ends the job. Artifacts and events are written with it. CellLeaseLost; CellNotFound: an artifact names
-  // content that is not there; CellInvalidArgument: a state that is not final, an artifact's name that the
-  // job has already.
+  // Ends the job. Artifacts and events are written with it. CellLeaseLost; CellNotFound: an
+  // artifact names content that is not there; CellInvalidArgument: a state that is not final, an
+  // artifact's name that the job has already.
   virtual Result<JobRecord> Finish(const Lease& lease, const JobOutcome& outcome,
                                    const std::vector<NewArtifact>& artifacts,
                                    const std::vector<NewEvent>& events) = 0;
@@ -195,13 +207,14 @@ class Store {
   virtual Status HandBack(const Lease& lease, const std::vector<NewEvent>& events) = 0;
   // The worker is known to be dead: as if the lease ran out now. CellLeaseLost.
   virtual Result<JobRecord> Abandon(const Lease& lease, const LossPolicy& policy) = 0;
-  // Every lease that ran out. Any server may call it at any time. Returns the jobs that changed; one that
-  // cannot be read does not keep the others from going on.
+  // Every lease that ran out. Any server may call it at any time. Returns the jobs that changed;
+  // one that cannot be read does not keep the others from going on.
   virtual Result<std::vector<JobRecord>> Expire(const LossPolicy& policy) = 0;
 
-  // --- events and artifacts ----------------------------------------------------------------------------
-  // In order, those after the number given. CellEventsGone when some of these were removed (a store may be
-  // told to bound what it keeps): from JobRecord::events_gone_until and EventsGoneUntil() on all are there.
+  // --- events and artifacts
+  // ---------------------------------------------------------------------------- In order, those
+  // after the number given. CellEventsGone when some of these were removed (a store may be told to
+  // bound what it keeps): from JobRecord::events_gone_until and EventsGoneUntil() on all are there.
   virtual Result<std::vector<EventRecord>> JobEvents(std::int64_t job, std::int64_t after_sequence,
                                                      int limit) = 0;
   virtual Result<std::vector<EventRecord>> AllEvents(std::int64_t after_position, int limit) = 0;
@@ -211,11 +224,11 @@ class Store {
   virtual Result<ArtifactRecord> GetArtifact(std::int64_t job, std::string_view name) = 0;
   virtual Result<std::string> ReadBlob(std::string_view sha256) = 0;  // any content; CellNotFound
 
-  // Called after each commit that wrote events or changed jobs, from a thread of the store and under no
-  // lock: a hint to read the rows, which may come late, twice or for nothing. It may call this store and
-  // does not throw. The returned handle ends it when destroyed, also from inside the call; from elsewhere
-  // that waits for a call that is under way, so hold no lock there that the call takes. The handle may
-  // outlive the store.
+  // Called after each commit that wrote events or changed jobs, from a thread of the store and
+  // under no lock: a hint to read the rows, which may come late, twice or for nothing. It may call
+  // this store and does not throw. The returned handle ends it when destroyed, also from inside the
+  // call; from elsewhere that waits for a call that is under way, so hold no lock there that the
+  // call takes. The handle may outlive the store.
   class Subscription {
    public:
     virtual ~Subscription() = default;

@@ -40,8 +40,9 @@ machine::StoredProgram StoredFrom(const CheckedFile& file) {
           .source = std::make_shared<const machine::SourceNotes>(file.translation.source)};
 }
 
-// The files of one family make one program memory, so that they can call each other: each in the slot of
-// its name, the others in free ones. Those that find no room (a slot that is named twice) are left out.
+// The files of one family make one program memory, so that they can call each other: each in the
+// slot of its name, the others in free ones. Those that find no room (a slot that is named twice)
+// are left out.
 void ChooseSlots(std::vector<CheckedFile*>& files) {
   std::map<int, const CheckedFile*> used;
   for (CheckedFile* file : files) {
@@ -59,7 +60,8 @@ void ChooseSlots(std::vector<CheckedFile*>& files) {
 }
 
 // Runs what was translated, and gives each finding to the file that it is in.
-Status CheckMotions(std::vector<CheckedFile*>& files, const machine::InputScript& inputs, bool advice) {
+Status CheckMotions(std::vector<CheckedFile*>& files, const machine::InputScript& inputs,
+                    bool advice) {
   ChooseSlots(files);
   std::map<int, CheckedFile*> by_slot;
   machine::RunSetup memory(*files.front()->parameters);
@@ -71,7 +73,8 @@ Status CheckMotions(std::vector<CheckedFile*>& files, const machine::InputScript
     by_slot[file->slot] = file;
     slots.insert(file->slot);
   }
-  const auto take = [&](const simulation::MotionCheck& check, const std::map<int, CheckedFile*>& owners) {
+  const auto take = [&](const simulation::MotionCheck& check,
+                        const std::map<int, CheckedFile*>& owners) {
     for (Diagnostic finding : check.findings) {
       const auto owner = owners.find(finding.program);
       if (owner == owners.end() || (!advice && !IsError(finding.severity))) continue;
@@ -105,8 +108,9 @@ Status Translate(CheckedFile& file, const CheckOptions& options) {
   if (!text) return text.error();
   if (text->empty()) return Error{ErrorCode::kCellEmptyProgram, file.name, {}};
   file.text = *std::move(text);
-  file.translation = file.family->Translate({.name = file.name, .bytes = file.text}, *file.parameters,
-                                            {.advice = !options.errors_only, .source = true});
+  file.translation =
+      file.family->Translate({.name = file.name, .bytes = file.text}, *file.parameters,
+                             {.advice = !options.errors_only, .source = true});
   return {};
 }
 
@@ -120,11 +124,16 @@ void Show(const CheckedFile& file, bool json) {
   PrintFindings(file.motion.findings, file.motion.findings_dropped, file.text);
   const std::size_t findings = translation.diagnostics.size() + translation.diagnostics_dropped +
                                file.motion.findings.size() + file.motion.findings_dropped;
-  std::string line = file.name + ": " + (!file.ok() ? "has errors" : findings == 0 ? "good" : "can be stored");
-  if (findings > 0) line += ", " + std::to_string(findings) + (findings == 1 ? " finding" : " findings");
+  std::string line = file.name + ": " +
+                     (!file.ok()      ? "has errors"
+                      : findings == 0 ? "good"
+                                      : "can be stored");
+  if (findings > 0)
+    line += ", " + std::to_string(findings) + (findings == 1 ? " finding" : " findings");
   for (const machine::Figure& figure : translation.figures) {
     if (figure.value == 0.0) continue;
-    line += ", " + figure.name + " " + ShortestText(figure.value) + (figure.unit.empty() ? "" : " " + figure.unit);
+    line += ", " + figure.name + " " + ShortestText(figure.value) +
+            (figure.unit.empty() ? "" : " " + figure.unit);
   }
   Print(line);
   for (const auto& [slot, why] : file.motion.cut_short) Print("  motion checked " + why);
@@ -150,14 +159,17 @@ int Check(const CheckOptions& options) {
     if (!family) return Refuse(family.error());
     auto parameters = bridge::MakeParameters(**family, machine->profile, machine->parameters);
     if (!parameters) return Refuse(parameters.error());
-    files.push_back({.name = name, .text = {}, .family = *family, .parameters = *std::move(parameters)});
+    files.push_back(
+        {.name = name, .text = {}, .family = *family, .parameters = *std::move(parameters)});
   }
   int exit_code = kGood;
   if (options.fix) {
     for (const CheckedFile& file : files) {
       if (!file.family->info().has_executables) {
-        return Refuse({ErrorCode::kCellUsage, file.name + ": a stream of " + std::string(file.family->info().title) +
-                                                  " has nothing to fix", {}});
+        return Refuse({ErrorCode::kCellUsage,
+                       file.name + ": a stream of " + std::string(file.family->info().title) +
+                           " has nothing to fix",
+                       {}});
       }
       const Result<std::string> text = bridge::ReadFile(file.name, kFileBytesMax);
       if (!text) return Refuse(text.error());
@@ -165,7 +177,8 @@ int Check(const CheckOptions& options) {
       const auto check = [&](const machine::SourceFile& source) {
         return file.family->Translate(source, *file.parameters, {.advice = !options.errors_only});
       };
-      exit_code = std::max(exit_code, FixFile(file.name, *text, check, {options.dry_run, options.json}));
+      exit_code =
+          std::max(exit_code, FixFile(file.name, *text, check, {options.dry_run, options.json}));
       if (exit_code > kProgramErrors) return exit_code;
     }
     return exit_code;
@@ -173,15 +186,18 @@ int Check(const CheckOptions& options) {
   std::map<const machine::MachineFamily*, std::vector<CheckedFile*>> to_run;
   for (CheckedFile& file : files) {
     if (!file.family->info().checked_by_running) continue;
-    if (const Status translated = Translate(file, options); !translated) return Refuse(translated.error());
+    if (const Status translated = Translate(file, options); !translated)
+      return Refuse(translated.error());
     if (file.translation.ok) to_run[file.family].push_back(&file);
   }
   for (auto& [family, ready] : to_run) {
-    if (const Status ran = CheckMotions(ready, inputs, !options.errors_only); !ran) return Refuse(ran.error());
+    if (const Status ran = CheckMotions(ready, inputs, !options.errors_only); !ran)
+      return Refuse(ran.error());
   }
   for (CheckedFile& file : files) {
     if (!file.family->info().checked_by_running) {
-      if (const Status translated = Translate(file, options); !translated) return Refuse(translated.error());
+      if (const Status translated = Translate(file, options); !translated)
+        return Refuse(translated.error());
     }
     if (!file.ok()) exit_code = kProgramErrors;
     Show(file, options.json);

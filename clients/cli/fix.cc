@@ -15,8 +15,8 @@
 namespace rmlcell::cli {
 namespace {
 
-// How far behind a difference the texts are searched for where they agree again. Fixes stay within a
-// statement, which seldom has as many lines.
+// How far behind a difference the texts are searched for where they agree again. Fixes stay within
+// a statement, which seldom has as many lines.
 constexpr std::size_t kSearchLines = 200;
 
 std::vector<std::string_view> LinesOf(std::string_view text) {
@@ -91,7 +91,8 @@ std::string PatchText(const std::string& file, std::string_view before, std::str
 }
 
 int FixFile(const std::string& file, const std::string& text,
-            const std::function<machine::Translation(const machine::SourceFile&)>& check, const FixOptions& options) {
+            const std::function<machine::Translation(const machine::SourceFile&)>& check,
+            const FixOptions& options) {
   if (const Status good = optimo::CheckIsText(file, text); !good) {
     Complain(bridge::ErrorText(good.error()));
     return kUsage;
@@ -120,8 +121,8 @@ int FixFile(const std::string& file, const std::string& text,
     }
     PrintFindings(left.diagnostics, left.diagnostics_dropped, fixing.text);
     const std::size_t findings = left.diagnostics.size() + left.diagnostics_dropped;
-    Print(file + ": " + std::to_string(fixing.fixed.size()) + " fixed, " + std::to_string(findings) + " left, " +
-          (left.ok ? "can be stored" : "has errors"));
+    Print(file + ": " + std::to_string(fixing.fixed.size()) + " fixed, " +
+          std::to_string(findings) + " left, " + (left.ok ? "can be stored" : "has errors"));
   }
   if (!left.ok) return kProgramErrors;
   return options.dry_run && changed ? kProgramErrors : kGood;

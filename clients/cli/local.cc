@@ -25,23 +25,29 @@ namespace {
 // What was found in the text, and is found again at the same place when it runs.
 void DropFindings(const std::vector<Diagnostic>& told, v1::RunReport& report) {
   std::set<std::tuple<std::string, int, int>> places;
-  for (const Diagnostic& finding : told) places.emplace(CodeText(finding.code), finding.where.line, finding.where.column);
+  for (const Diagnostic& finding : told)
+    places.emplace(CodeText(finding.code), finding.where.line, finding.where.column);
   auto& again = *report.mutable_diagnostics();
-  again.erase(std::remove_if(again.begin(), again.end(),
-                             [&](const v1::Diagnostic& finding) {
-                               const v1::SourcePlace& place = finding.place();
-                               return place.line() > 0 && places.contains({finding.code(), place.line(), place.column()});
-                             }),
-              again.end());
+  again.erase(
+      std::remove_if(again.begin(), again.end(),
+                     [&](const v1::Diagnostic& finding) {
+                       const v1::SourcePlace& place = finding.place();
+                       return place.line() > 0 &&
+                              places.contains({finding.code(), place.line(), place.column()});
+                     }),
+      again.end());
 }
 
 Result<v1::StepPlace> ParseStepPlace(const std::string& text) {
   if (text == "off") return v1::StepPlace();
   const std::size_t slash = text.find('/');
-  const auto program = slash == std::string::npos ? std::optional<long long>(0) : ParseInteger(text.substr(0, slash));
+  const auto program = slash == std::string::npos ? std::optional<long long>(0)
+                                                  : ParseInteger(text.substr(0, slash));
   const auto step = ParseInteger(slash == std::string::npos ? text : text.substr(slash + 1));
-  if (!program || !step || *program < 0 || *program > 99 || (slash != std::string::npos && *program < 1) || *step < 1 || *step > 1'000'000'000) {
-    return Error{ErrorCode::kCellUsage, "'" + text + "': write PROGRAM/STEP, such as 45/7, or off", {}};
+  if (!program || !step || *program < 0 || *program > 99 ||
+      (slash != std::string::npos && *program < 1) || *step < 1 || *step > 1'000'000'000) {
+    return Error{
+        ErrorCode::kCellUsage, "'" + text + "': write PROGRAM/STEP, such as 45/7, or off", {}};
   }
   v1::StepPlace place;
   place.set_program(static_cast<int>(*program));
@@ -56,7 +62,8 @@ Result<v1::OperatingMode> ParseMode(const std::string& text) {
                                                           {"repeat", v1::OPERATING_MODE_REPEAT}};
   const auto found = modes.find(text);
   if (found != modes.end()) return found->second;
-  return Error{ErrorCode::kCellUsage, "'" + text + "': modes are cycle, remote, single, repeat", {}};
+  return Error{
+      ErrorCode::kCellUsage, "'" + text + "': modes are cycle, remote, single, repeat", {}};
 }
 
 // "steps=1000,time=60"
@@ -67,13 +74,15 @@ Status ParseBudget(const std::string& text, v1::Budget& budget) {
     const std::string_view part = rest.substr(0, end);
     rest.remove_prefix(std::min(end + 1, rest.size()));
     const std::size_t equals = part.find('=');
-    const auto value = equals == std::string_view::npos ? std::nullopt : ParseDouble(part.substr(equals + 1));
+    const auto value =
+        equals == std::string_view::npos ? std::nullopt : ParseDouble(part.substr(equals + 1));
     if (value && *value > 0.0 && part.substr(0, equals) == "steps") {
       budget.set_steps(static_cast<std::int64_t>(*value));
     } else if (value && *value > 0.0 && part.substr(0, equals) == "time") {
       budget.set_virtual_time_s(*value);
     } else {
-      return Error{ErrorCode::kCellUsage, "'" + std::string(part) + "': write steps=N,time=SECONDS", {}};
+      return Error{
+          ErrorCode::kCellUsage, "'" + std::string(part) + "': write steps=N,time=SECONDS", {}};
     }
   }
   return {};
@@ -113,7 +122,8 @@ Result<v1::SimulationOptions> OptionsMessage(const SimulateOptions& options) {
   if (!options.inputs_file.empty()) {
     const Result<std::string> text = bridge::ReadFile(options.inputs_file, kFileBytesMax);
     if (!text) return text.error();
-    if (Status parsed = bridge::ParseInputFile(*text, options.inputs_file, message); !parsed) return parsed.error();
+    if (Status parsed = bridge::ParseInputFile(*text, options.inputs_file, message); !parsed)
+      return parsed.error();
   }
   return message;
 }
@@ -125,8 +135,10 @@ Status AddExecutables(const SimulateOptions& options, const machine::MachineFami
     const Result<std::pair<int, std::string>> named = ParseSlotFile(text);
     if (!named) return named.error();
     if (named->second.empty()) {
-      if (std::ranges::find(programs, named->first, &bridge::ProgramInput::slot) == programs.end()) {
-        return Error{ErrorCode::kCellUsage, "--executable " + text + ": there is no such program", {}};
+      if (std::ranges::find(programs, named->first, &bridge::ProgramInput::slot) ==
+          programs.end()) {
+        return Error{
+            ErrorCode::kCellUsage, "--executable " + text + ": there is no such program", {}};
       }
       to_make.push_back(named->first);
       continue;
@@ -136,7 +148,9 @@ Status AddExecutables(const SimulateOptions& options, const machine::MachineFami
     if (const Status good = family.CheckExecutable(*bytes, named->first); !good) return good;
     const auto program = std::ranges::find(programs, named->first, &bridge::ProgramInput::slot);
     if (program == programs.end()) {
-      return Error{ErrorCode::kCellUsage, "--executable " + text + ": there is no program " + std::to_string(named->first), {}};
+      return Error{ErrorCode::kCellUsage,
+                   "--executable " + text + ": there is no program " + std::to_string(named->first),
+                   {}};
     }
     program->executable = std::make_shared<const std::string>(*std::move(bytes));
   }
@@ -153,7 +167,8 @@ Status MakeExecutable(const machine::MachineFamily& family, machine::RunSetup& s
   const std::map<int, std::string> made = (*run)->made_executables();
   const auto found = made.find(slot);
   if (found == made.end()) {
-    return Error{(*run)->outcome().code.value_or(ErrorCode::kProgramMissing), (*run)->outcome().detail, {}};
+    return Error{
+        (*run)->outcome().code.value_or(ErrorCode::kProgramMissing), (*run)->outcome().detail, {}};
   }
   setup.programs[slot].executable = std::make_shared<const std::string>(found->second);
   return {};
@@ -170,10 +185,13 @@ int Simulate(const SimulateOptions& options) {
   const Result<v1::SimulationOptions> message = OptionsMessage(options);
   if (!message) return Refuse(message.error());
   for (const v1::StepPlace* place : {&message->simul(), &message->breakpoint()}) {
-    const bool there = place->program() == 0 || std::ranges::find(loaded->programs, place->program(),
-                                                                  &bridge::ProgramInput::slot) != loaded->programs.end();
+    const bool there = place->program() == 0 ||
+                       std::ranges::find(loaded->programs, place->program(),
+                                         &bridge::ProgramInput::slot) != loaded->programs.end();
     if (!there) {
-      return Refuse({ErrorCode::kCellUsage, "--simul, --break: there is no program " + std::to_string(place->program()), {}});
+      return Refuse({ErrorCode::kCellUsage,
+                     "--simul, --break: there is no program " + std::to_string(place->program()),
+                     {}});
     }
   }
   v1::Budget budget;
@@ -181,7 +199,9 @@ int Simulate(const SimulateOptions& options) {
   const auto variables = bridge::ExpandVariables(SplitCommas(options.variables));
   if (!variables) return Refuse(variables.error());
   std::vector<int> executables_to_make;
-  if (Status added = AddExecutables(options, *loaded->family, loaded->programs, executables_to_make); !added) {
+  if (Status added =
+          AddExecutables(options, *loaded->family, loaded->programs, executables_to_make);
+      !added) {
     return Refuse(added.error());
   }
   std::string state;
@@ -191,19 +211,21 @@ int Simulate(const SimulateOptions& options) {
     state = std::move(*bytes);
   }
 
-  const bridge::SetupInput input{.family = loaded->family,
-                                 .profile = options.profile.empty() ? machine->profile : options.profile,
-                                 .parameters = machine->parameters,
-                                 .programs = loaded->programs,
-                                 .main_program = loaded->main_slot,
-                                 .schedules = std::nullopt,
-                                 .machine_state = state,
-                                 .default_mode = machine::Mode::kCycle};
+  const bridge::SetupInput input{
+      .family = loaded->family,
+      .profile = options.profile.empty() ? machine->profile : options.profile,
+      .parameters = machine->parameters,
+      .programs = loaded->programs,
+      .main_program = loaded->main_slot,
+      .schedules = std::nullopt,
+      .machine_state = state,
+      .default_mode = machine::Mode::kCycle};
   Result<bridge::SetupOutcome> outcome = bridge::MakeSetup(input, *message, budget);
   if (!outcome) return Refuse(outcome.error());
   if (!outcome->setup) {
     if (options.json) {
-      Print(Json(bridge::FindingsOf(false, outcome->diagnostics, outcome->diagnostics_dropped, {})));
+      Print(
+          Json(bridge::FindingsOf(false, outcome->diagnostics, outcome->diagnostics_dropped, {})));
     } else {
       std::string_view source;
       if (loaded->programs.size() == 1) source = *loaded->programs.front().bytes;
@@ -212,7 +234,8 @@ int Simulate(const SimulateOptions& options) {
     return kProgramErrors;
   }
   for (const int slot : executables_to_make) {
-    if (Status made = MakeExecutable(*loaded->family, *outcome->setup, slot); !made) return Refuse(made.error());
+    if (Status made = MakeExecutable(*loaded->family, *outcome->setup, slot); !made)
+      return Refuse(made.error());
   }
 
   simulation::SimulationRequest request;
@@ -234,20 +257,25 @@ int Simulate(const SimulateOptions& options) {
     const Result<double> rate = simulation::ParseSampleRate(options.samples[0]);
     if (!rate) return Refuse(rate.error());
     samples.open(options.samples[1], std::ios::binary | std::ios::trunc);
-    if (!samples) return Refuse({ErrorCode::kCellFileUnwritable, options.samples[1] + ": cannot be written", {}});
+    if (!samples)
+      return Refuse(
+          {ErrorCode::kCellFileUnwritable, options.samples[1] + ": cannot be written", {}});
     request.products.samples_hz = *rate;
     request.products.samples = [&samples](std::string_view lines) {
-      return static_cast<bool>(samples.write(lines.data(), static_cast<std::streamsize>(lines.size())));
+      return static_cast<bool>(
+          samples.write(lines.data(), static_cast<std::streamsize>(lines.size())));
     };
   }
   if (!options.plot.empty()) {
-    Result<std::vector<simulation::PlotCurve>> curves = simulation::ParsePlotCurves(options.plot[0]);
+    Result<std::vector<simulation::PlotCurve>> curves =
+        simulation::ParsePlotCurves(options.plot[0]);
     if (!curves) return Refuse(curves.error());
     request.products.plot = true;
     request.plot.curves = *std::move(curves);
   }
   if (!options.stock.empty()) {
-    Result<simulation::Milling> milling = MillingOf(options, loaded->family->Shape(outcome->setup->parameters));
+    Result<simulation::Milling> milling =
+        MillingOf(options, loaded->family->Shape(outcome->setup->parameters));
     if (!milling) return Refuse(milling.error());
     request.products.milling = *milling;
   }
@@ -257,7 +285,8 @@ int Simulate(const SimulateOptions& options) {
   int slices = 0;
   request.options.progress = [&](const simulation::Progress& here) {
     if (++slices % 16 == 0 && !options.json) {
-      progress.Show(here.state.progress, Fixed(ToSeconds(here.state.time), 1) + " s of virtual time");
+      progress.Show(here.state.progress,
+                    Fixed(ToSeconds(here.state.time), 1) + " s of virtual time");
     }
     return true;
   };
@@ -267,23 +296,29 @@ int Simulate(const SimulateOptions& options) {
   if (!result) return Refuse(result.error());
 
   if (result->material && !options.stl.empty()) {
-    if (Status written = WriteMaterial(*result->material, options.stl); !written) return Refuse(written.error());
+    if (Status written = WriteMaterial(*result->material, options.stl); !written)
+      return Refuse(written.error());
   }
   if (samples.is_open()) {
     samples.close();
-    if (!samples) return Refuse({ErrorCode::kCellFileUnwritable, options.samples[1] + ": not written to its end", {}});
+    if (!samples)
+      return Refuse(
+          {ErrorCode::kCellFileUnwritable, options.samples[1] + ": not written to its end", {}});
   }
   const std::string plot_file = options.plot.empty() ? std::string() : options.plot[1];
   const bool plot_on_output = plot_file == "-";
   if (!plot_file.empty() && !plot_on_output) {
-    if (Status written = WriteWholeFile(plot_file, result->plot); !written) return Refuse(written.error());
+    if (Status written = WriteWholeFile(plot_file, result->plot); !written)
+      return Refuse(written.error());
   }
   const bool picture_on_output = options.svg == "-";
   if (!options.svg.empty() && !picture_on_output) {
-    if (Status written = WriteWholeFile(options.svg, result->svg); !written) return Refuse(written.error());
+    if (Status written = WriteWholeFile(options.svg, result->svg); !written)
+      return Refuse(written.error());
   }
   if (!options.state_out.empty()) {
-    if (Status written = WriteWholeFile(options.state_out, result->machine_state); !written) return Refuse(written.error());
+    if (Status written = WriteWholeFile(options.state_out, result->machine_state); !written)
+      return Refuse(written.error());
   }
   const auto unknown = std::ranges::find_if(
       *variables, [&](const std::string& name) { return !result->variables.contains(name); });
@@ -305,7 +340,9 @@ int Simulate(const SimulateOptions& options) {
     PrintRaw(ReportText(report));
   }
   const machine::OutcomeKind kind = result->report.outcome.kind;
-  return kind == machine::OutcomeKind::kCompleted || kind == machine::OutcomeKind::kStopped ? kGood : kProgramErrors;
+  return kind == machine::OutcomeKind::kCompleted || kind == machine::OutcomeKind::kStopped
+             ? kGood
+             : kProgramErrors;
 }
 
 int Explain(const std::vector<std::string>& codes, bool json) {
@@ -328,11 +365,12 @@ int Explain(const std::vector<std::string>& codes, bool json) {
       continue;
     }
     if (codes.empty()) {
-      Print(CodeText(entry->code) + "  " + ConstantName(entry->code) + ": " + std::string(entry->when));
+      Print(CodeText(entry->code) + "  " + ConstantName(entry->code) + ": " +
+            std::string(entry->when));
       continue;
     }
-    Print(Paint(CodeText(entry->code), Colour::kBold, ColourOnOutput()) + "  " + ConstantName(entry->code) + "  (" +
-          std::string(SeverityName(entry->severity)) + ")");
+    Print(Paint(CodeText(entry->code), Colour::kBold, ColourOnOutput()) + "  " +
+          ConstantName(entry->code) + "  (" + std::string(SeverityName(entry->severity)) + ")");
     Print("  what happened:  " + std::string(entry->when));
     Print("  the machine:    " + std::string(SeverityEffect(entry->severity)));
     Print("  what to do:     " + std::string(entry->advice));

@@ -19,10 +19,10 @@ struct CheckOptions {
 int Check(const CheckOptions& options);
 
 struct SimulateOptions {
-  std::vector<std::string> files;      // programs and folders; the first program is started
-  std::vector<std::string> slots;      // "44=FILE"
+  std::vector<std::string> files;        // programs and folders; the first program is started
+  std::vector<std::string> slots;        // "44=FILE"
   std::vector<std::string> executables;  // "44", or "44=FILE"
-  int main_slot = 0;                   // 0: from the file name, else 1
+  int main_slot = 0;                     // 0: from the file name, else 1
   std::string family;
   std::string profile;
   std::string machine_file;
@@ -35,9 +35,9 @@ struct SimulateOptions {
   std::string variables;   // "VR[0..9],VI[99]"
   std::string svg;
   std::vector<std::string> samples;  // rate and file; empty: none
-  std::vector<std::string> plot;  // curves and file; empty: none
-  std::string stock;              // "100x80x10"; empty: material is not modelled
-  std::string tool;               // "flat:3"
+  std::vector<std::string> plot;     // curves and file; empty: none
+  std::string stock;                 // "100x80x10"; empty: material is not modelled
+  std::string tool;                  // "flat:3"
   double cell_mm = 0.1;
   std::string stl;
   std::string state_in;

@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "clients/cli/local.h"
 #include "clients/cli/findings_text.h"
+#include "clients/cli/local.h"
 #include "clients/cli/program_files.h"
 #include "clients/cli/terminal.h"
 #include "engine/core/number_text.h"
@@ -32,14 +32,17 @@ std::string ProfileLines(const machine::MachineFamily& family) {
 
 std::string MachineFile(const machine::MachineFamily& family, const std::string& profile,
                         const machine::Parameters& parameters) {
-  std::string text = "# " + std::string(family.info().title) + "\nfamily = " + Quoted(family.info().id) + "\n";
+  std::string text =
+      "# " + std::string(family.info().title) + "\nfamily = " + Quoted(family.info().id) + "\n";
   text += !profile.empty() ? "profile = " + Quoted(profile) + "\n" : ProfileLines(family);
   text += "\n[parameters]\n";
   for (const machine::ParameterInfo& parameter : family.parameters()) {
-    text += "# " + std::string(parameter.text) + " (" + RangeText(parameter) + "; " + std::string(parameter.rule) + ")\n";
+    text += "# " + std::string(parameter.text) + " (" + RangeText(parameter) + "; " +
+            std::string(parameter.rule) + ")\n";
     text += std::string(parameter.name) + " = " +
             (parameter.choices.empty() ? ShortestText(parameters.Number(parameter.name))
-                                       : Quoted(parameters.Word(parameter.name))) + "\n";
+                                       : Quoted(parameters.Word(parameter.name))) +
+            "\n";
   }
   return text;
 }
@@ -48,10 +51,13 @@ nlohmann::ordered_json FamilyJson(const machine::MachineFamily& family) {
   nlohmann::ordered_json profiles = nlohmann::ordered_json::array();
   for (const machine::MachineProfile& profile : family.profiles())
     profiles.push_back({{"id", profile.id}, {"title", profile.title}});
-  return {{"family", family.info().id}, {"title", family.info().title}, {"profiles", std::move(profiles)}};
+  return {{"family", family.info().id},
+          {"title", family.info().title},
+          {"profiles", std::move(profiles)}};
 }
 
-nlohmann::ordered_json ParametersJson(const machine::MachineFamily& family, const machine::Parameters& parameters) {
+nlohmann::ordered_json ParametersJson(const machine::MachineFamily& family,
+                                      const machine::Parameters& parameters) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const machine::ParameterInfo& parameter : family.parameters()) {
     nlohmann::ordered_json one = {

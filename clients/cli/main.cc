@@ -63,8 +63,11 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
     verb->add_option("--inputs", options->inputs_file,
                      "what comes from outside over time, while the motion is checked");
     verb->add_flag("--errors-only", options->errors_only, "leave warnings and advice out");
-    CLI::Option* fix = verb->add_flag("--fix", options->fix, "repair what has one obvious repair, in the files");
-    verb->add_flag("--dry-run", options->dry_run, "with --fix: show the changes as a patch; write nothing")->needs(fix);
+    CLI::Option* fix =
+        verb->add_flag("--fix", options->fix, "repair what has one obvious repair, in the files");
+    verb->add_flag("--dry-run", options->dry_run,
+                   "with --fix: show the changes as a patch; write nothing")
+        ->needs(fix);
     verb->add_flag("--json", options->json, "print findings as JSON, one line a file");
     verb->callback([options, &exit_code] { exit_code = Check(*options); });
   }
@@ -116,26 +119,30 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
         ->type_size(2)
         ->expected(1)
         ->allow_extra_args(false);
-    CLI::Option* stock = verb->add_option("--stock", options->stock,
-                                          "100x80x10[@X,Y,TOP]: a block on a mill's table, mm from the work origin");
-    CLI::Option* tool = verb->add_option("--tool", options->tool, "flat:D, ball:D, vee:D:ANGLE[:TIP]: what mills it");
+    CLI::Option* stock =
+        verb->add_option("--stock", options->stock,
+                         "100x80x10[@X,Y,TOP]: a block on a mill's table, mm from the work origin");
+    CLI::Option* tool = verb->add_option("--tool", options->tool,
+                                         "flat:D, ball:D, vee:D:ANGLE[:TIP]: what mills it");
     stock->needs(tool);
     tool->needs(stock);
-    verb->add_option("--cell", options->cell_mm, "edge of the cells that the block is looked at in, mm; default 0.1")
+    verb->add_option("--cell", options->cell_mm,
+                     "edge of the cells that the block is looked at in, mm; default 0.1")
         ->needs(stock);
     verb->add_option("--stl", options->stl, "write what is left of the block")->needs(stock);
     verb->add_option("--state-in", options->state_in, "machine state of an earlier run");
     verb->add_option("--state-out", options->state_out, "keep the machine state for a later run");
     verb->add_flag("--trace", options->trace, "list all that was observable, in order");
-    CLI::Option* facts = verb->add_flag("--facts", options->facts, "key: value lines for scripts (docs/facts.md)");
+    CLI::Option* facts =
+        verb->add_flag("--facts", options->facts, "key: value lines for scripts (docs/facts.md)");
     verb->add_flag("--json", options->json, "print the report as JSON")->excludes(facts);
     verb->callback([options, &exit_code] { exit_code = Simulate(*options); });
   }
   {
     auto family = std::make_shared<std::string>();
     auto profile = std::make_shared<std::string>();
-    CLI::App* verb =
-        app.add_subcommand("parameters", "List machine parameters: meaning, range and value, as a machine file");
+    CLI::App* verb = app.add_subcommand(
+        "parameters", "List machine parameters: meaning, range and value, as a machine file");
     verb->footer(
         "Examples:\n"
         "  rmlcell parameters                                    families and their profiles\n"
@@ -145,8 +152,9 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
     verb->add_option("--profile", *profile, "values of this profile");
     auto json = std::make_shared<bool>(false);
     verb->add_flag("--json", *json, "as JSON");
-    verb->callback(
-        [family, profile, json, &exit_code] { exit_code = ListParameters(*family, *profile, *json); });
+    verb->callback([family, profile, json, &exit_code] {
+      exit_code = ListParameters(*family, *profile, *json);
+    });
   }
   {
     auto codes = std::make_shared<std::vector<std::string>>();
@@ -168,7 +176,8 @@ CLI::App* RemoteVerb(CLI::App& app, const char* name, const char* text, const st
                      Remote& remote) {
   CLI::App* verb = app.add_subcommand(name, text);
   verb->footer("Examples:\n" + examples);
-  verb->add_option("--server", remote.server, "host:port or unix:/path; default: RMLCELL_SERVER, or 127.0.0.1:50051");
+  verb->add_option("--server", remote.server,
+                   "host:port or unix:/path; default: RMLCELL_SERVER, or 127.0.0.1:50051");
   verb->add_flag("--json", remote.json, "print messages as JSON, one line each");
   return verb;
 }
@@ -197,16 +206,17 @@ void AddProgramVerbs(CLI::App& app, Remote& remote, int& exit_code) {
                   "only if the program still has this etag; none: only if the slot is empty");
   put->add_flag("--check-only", check_only, "say what would be stored");
   put->callback([&] { exit_code = PutProgram(remote, machine, slot, file, etag, check_only); });
-  CLI::App* get =
-      RemoteVerb(app, "get", "Get a program of a machine",
-                 "  rmlcell get optimo-1 44                        its source: as it was stored, or decompiled\n"
-                 "  rmlcell get optimo-1 44 --form listing         with step numbers\n"
-                 "  rmlcell get optimo-1 44 -o 44.O                its object\n"
-                 "  rmlcell get optimo-1 144 -o 144.X              its executable",
-                 remote);
+  CLI::App* get = RemoteVerb(
+      app, "get", "Get a program of a machine",
+      "  rmlcell get optimo-1 44                        its source: as it was stored, or decompiled\n"
+      "  rmlcell get optimo-1 44 --form listing         with step numbers\n"
+      "  rmlcell get optimo-1 44 -o 44.O                its object\n"
+      "  rmlcell get optimo-1 144 -o 144.X              its executable",
+      remote);
   get->add_option("MACHINE", machine)->required();
   get->add_option("SLOT", slot)->required();
-  get->add_option("--form", form, "source, object, executable, listing; default: source, object into a file .O")
+  get->add_option("--form", form,
+                  "source, object, executable, listing; default: source, object into a file .O")
       ->check(CLI::IsMember({"source", "object", "executable", "listing"}));
   get->add_option("-o,--output", output, "file; default: standard output");
   get->callback([&] { exit_code = GetProgram(remote, machine, slot, form, output); });
@@ -218,11 +228,12 @@ void AddProgramVerbs(CLI::App& app, Remote& remote, int& exit_code) {
   remove->add_option("MACHINE", machine)->required();
   remove->add_option("SLOT", slot)->required();
   remove->callback([&] { exit_code = DeleteProgram(remote, machine, slot); });
-  CLI::App* stale = RemoteVerb(app, "stale", "Say which executables of a machine are older than its programs, and why",
-                               "  rmlcell stale optimo-1                         they run the old FUNCTION code until "
-                               "they are deleted\n"
-                               "  rmlcell delete optimo-1 132                    the next run of 32 links again",
-                               remote);
+  CLI::App* stale = RemoteVerb(
+      app, "stale", "Say which executables of a machine are older than its programs, and why",
+      "  rmlcell stale optimo-1                         they run the old FUNCTION code until "
+      "they are deleted\n"
+      "  rmlcell delete optimo-1 132                    the next run of 32 links again",
+      remote);
   stale->add_option("MACHINE", machine)->required();
   stale->callback([&] { exit_code = StaleExecutables(remote, machine); });
 }
@@ -231,13 +242,14 @@ void AddProjectVerbs(CLI::App& app, Remote& remote, int& exit_code) {
   static std::string project, machine, file;
   static bool insert = false;
   static bool check_only = false;
-  CLI::App* projects = RemoteVerb(app, "projects", "List, make, show, update, delete and transfer projects",
-                                  "  rmlcell projects                               all of them\n"
-                                  "  rmlcell projects create door door/             12.S, 44.SI ... and project.json of a folder\n"
-                                  "  rmlcell projects create door door.json\n"
-                                  "  rmlcell projects transfer door optimo-1 --check-only\n"
-                                  "  rmlcell projects transfer door optimo-1 --insert",
-                                  remote);
+  CLI::App* projects = RemoteVerb(
+      app, "projects", "List, make, show, update, delete and transfer projects",
+      "  rmlcell projects                               all of them\n"
+      "  rmlcell projects create door door/             12.S, 44.SI ... and project.json of a folder\n"
+      "  rmlcell projects create door door.json\n"
+      "  rmlcell projects transfer door optimo-1 --check-only\n"
+      "  rmlcell projects transfer door optimo-1 --insert",
+      remote);
   projects->require_subcommand(0, 1);
   projects->callback([&, projects] {
     if (projects->get_subcommands().empty()) exit_code = Projects(remote);
@@ -247,13 +259,13 @@ void AddProjectVerbs(CLI::App& app, Remote& remote, int& exit_code) {
   CLI::App* show = projects->add_subcommand("show", "Print a project as JSON");
   show->add_option("PROJECT", project)->required();
   show->callback([&] { exit_code = GetProject(remote, project); });
-  CLI::App* create =
-      projects->add_subcommand("create", "Make a project of a folder or of a JSON file (message Project)");
+  CLI::App* create = projects->add_subcommand(
+      "create", "Make a project of a folder or of a JSON file (message Project)");
   create->add_option("PROJECT", project)->required();
   create->add_option("PATH", file, "folder with files like 12.S, or JSON file")->required();
   create->callback([&] { exit_code = CreateProject(remote, project, file); });
-  CLI::App* update =
-      projects->add_subcommand("update", "Put a folder or a JSON file (message Project) in place of a project");
+  CLI::App* update = projects->add_subcommand(
+      "update", "Put a folder or a JSON file (message Project) in place of a project");
   update->add_option("PROJECT", project)->required();
   update->add_option("PATH", file, "folder with files like 12.S, or JSON file")->required();
   update->callback([&] { exit_code = UpdateProject(remote, project, file); });
@@ -275,13 +287,13 @@ void AddJobVerbs(CLI::App& app, Remote& remote, int& exit_code) {
   static std::string job, filter, output;
   static int limit = 20;
   static std::int64_t after = 0;
-  CLI::App* verb =
-      RemoteVerb(app, "submit", "Submit a job",
-                 "  rmlcell submit mill-1 --slot 7 --watch         a stored program, watched live\n"
-                 "  rmlcell submit optimo-1 part.S --watch         a file, without storing it\n"
-                 "  rmlcell submit optimo-1 part.S --pace 1 --watch   as fast as the machine would be\n"
-                 "  rmlcell submit optimo-1 part.S --kind check    only what is wrong with it",
-                 remote);
+  CLI::App* verb = RemoteVerb(
+      app, "submit", "Submit a job",
+      "  rmlcell submit mill-1 --slot 7 --watch         a stored program, watched live\n"
+      "  rmlcell submit optimo-1 part.S --watch         a file, without storing it\n"
+      "  rmlcell submit optimo-1 part.S --pace 1 --watch   as fast as the machine would be\n"
+      "  rmlcell submit optimo-1 part.S --kind check    only what is wrong with it",
+      remote);
   verb->add_option("MACHINE", submit.machine)->required();
   verb->add_option("FILE", submit.file, "a program for this job only; or give --slot");
   verb->add_option("--slot", submit.slot, "slot of a stored program, or where FILE goes")
@@ -291,7 +303,8 @@ void AddJobVerbs(CLI::App& app, Remote& remote, int& exit_code) {
   verb->add_option("--title", submit.title);
   verb->add_option("--request-id", submit.request_id, "repeating it gives the same job");
   verb->add_option("--override", submit.override_percent, "feed override, percent");
-  verb->add_option("--pace", submit.pace, "1: as fast as the machine would be; 10: ten times; 0: at once")
+  verb->add_option("--pace", submit.pace,
+                   "1: as fast as the machine would be; 10: ten times; 0: at once")
       ->check(CLI::Range(0.0, 1000.0));
   verb->add_option("--inputs", submit.inputs_file, "external inputs and keys over time");
   verb->add_flag("--trace", submit.trace, "keep a trace");
@@ -346,8 +359,10 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(kExamples);
   Remote remote;
-  // Not by the option itself: the library would let the environment win over the flag of another verb.
-  if (const char* server = std::getenv("RMLCELL_SERVER"); server != nullptr && *server != '\0') remote.server = server;
+  // Not by the option itself: the library would let the environment win over the flag of another
+  // verb.
+  if (const char* server = std::getenv("RMLCELL_SERVER"); server != nullptr && *server != '\0')
+    remote.server = server;
   int exit_code = kGood;
   AddLocalVerbs(app, exit_code);
   AddOfficeVerbs(app, exit_code);

@@ -1,6 +1,5 @@
 #include "clients/cli/messages.h"
 
-
 #include <algorithm>
 #include <tuple>
 
@@ -47,12 +46,23 @@ std::string OutcomeLine(const v1::Outcome& outcome) {
   const bool colour = ColourOnOutput();
   std::string text;
   switch (outcome.kind()) {
-    case v1::Outcome::KIND_COMPLETED: text = Paint("completed", Colour::kGreen, colour); break;
-    case v1::Outcome::KIND_STOPPED: text = Paint("stopped", Colour::kYellow, colour); break;
-    case v1::Outcome::KIND_FAILED: text = Paint("failed", Colour::kRed, colour); break;
-    case v1::Outcome::KIND_CANCELLED: text = Paint("cancelled", Colour::kYellow, colour); break;
-    case v1::Outcome::KIND_BUDGET_EXCEEDED: text = Paint("budget exceeded", Colour::kRed, colour); break;
-    default: text = "not ended";
+    case v1::Outcome::KIND_COMPLETED:
+      text = Paint("completed", Colour::kGreen, colour);
+      break;
+    case v1::Outcome::KIND_STOPPED:
+      text = Paint("stopped", Colour::kYellow, colour);
+      break;
+    case v1::Outcome::KIND_FAILED:
+      text = Paint("failed", Colour::kRed, colour);
+      break;
+    case v1::Outcome::KIND_CANCELLED:
+      text = Paint("cancelled", Colour::kYellow, colour);
+      break;
+    case v1::Outcome::KIND_BUDGET_EXCEEDED:
+      text = Paint("budget exceeded", Colour::kRed, colour);
+      break;
+    default:
+      text = "not ended";
   }
   if (!outcome.code().empty()) text += ", " + outcome.code();
   if (!outcome.message().empty()) text += ": " + Visible(outcome.message());
@@ -85,10 +95,12 @@ void AddCorners(const v1::RunReport& report, Rows& rows) {
   if (!text.empty()) rows.emplace_back("corners", text);
   if (corners.deviation_mm_max() > 0.0) {
     rows.emplace_back("", "deviation up to " + Fixed(corners.deviation_mm_max(), 3) + " mm at " +
-                              PlaceText(corners.deviation_place()) + ", " + PointText(corners.deviation_point()));
+                              PlaceText(corners.deviation_place()) + ", " +
+                              PointText(corners.deviation_point()));
   }
   if (report.lookahead_starved() > 0) {
-    rows.emplace_back("", "look-ahead was too short " + std::to_string(report.lookahead_starved()) + " times");
+    rows.emplace_back(
+        "", "look-ahead was too short " + std::to_string(report.lookahead_starved()) + " times");
   }
 }
 
@@ -97,20 +109,23 @@ void AddSlowMoves(const v1::RunReport& report, Rows& rows) {
   if (shortfall.moves() == 0) return;
   std::string causes;
   const auto cause = [&](std::int64_t number, const char* what) {
-    if (number > 0) causes += (causes.empty() ? "" : ", ") + std::string(what) + " " + std::to_string(number);
+    if (number > 0)
+      causes += (causes.empty() ? "" : ", ") + std::string(what) + " " + std::to_string(number);
   };
   cause(shortfall.by_axis(), "axis");
   cause(shortfall.by_radius(), "radius");
   cause(shortfall.too_short(), "too short");
   cause(shortfall.by_acceleration(), "acceleration");
-  rows.emplace_back("too slow", std::to_string(shortfall.moves()) + " moves below their SPEED: " + causes);
+  rows.emplace_back("too slow",
+                    std::to_string(shortfall.moves()) + " moves below their SPEED: " + causes);
   int listed = 0;
   for (const v1::SlowMove& move : report.slow_moves()) {
     if (++listed > kListedMax) break;
-    rows.emplace_back("", PlaceText(move.place()) + ": " + Fixed(move.reached_mm_s(), 3) + " of " +
-                              Fixed(move.wanted_mm_s(), 3) + " mm/s, " + move.cause() +
-                              (move.axis().empty() ? "" : " " + move.axis()) +
-                              (move.count() > 1 ? " (" + std::to_string(move.count()) + " times)" : ""));
+    rows.emplace_back(
+        "", PlaceText(move.place()) + ": " + Fixed(move.reached_mm_s(), 3) + " of " +
+                Fixed(move.wanted_mm_s(), 3) + " mm/s, " + move.cause() +
+                (move.axis().empty() ? "" : " " + move.axis()) +
+                (move.count() > 1 ? " (" + std::to_string(move.count()) + " times)" : ""));
   }
   const std::int64_t more = report.slow_moves_size() + report.slow_moves_dropped() - kListedMax;
   if (more > 0) rows.emplace_back("", "and " + std::to_string(more) + " more steps");
@@ -154,9 +169,10 @@ void AddMilling(const v1::RunReport& report, Rows& rows) {
   const v1::MillingFigures& milling = report.milling();
   rows.emplace_back("material", Fixed(milling.removed_mm3(), 3) + " mm3 taken off");
   if (milling.gouges() == 0) return;
-  rows.emplace_back("", std::to_string(milling.gouges()) + " motions at travel speed through material, up to " +
-                            Fixed(milling.gouge_depth_mm(), 3) + " mm deep at " + PlaceText(milling.gouge_place()) +
-                            ", at " + Fixed(milling.gouge_time_s(), 3) + " s");
+  rows.emplace_back(
+      "", std::to_string(milling.gouges()) + " motions at travel speed through material, up to " +
+              Fixed(milling.gouge_depth_mm(), 3) + " mm deep at " +
+              PlaceText(milling.gouge_place()) + ", at " + Fixed(milling.gouge_time_s(), 3) + " s");
 }
 
 // A figure of the family, by name; 0 when the run has none of it.
@@ -174,7 +190,8 @@ void AddFigures(const v1::RunReport& report, Rows& rows) {
   rows.emplace_back("cycle time", Duration(times.cycle_s()));
   std::string parts;
   const auto part = [&](const char* name, double seconds) {
-    if (seconds > 0.0) parts += (parts.empty() ? "" : ", ") + std::string(name) + " " + Fixed(seconds, 3) + " s";
+    if (seconds > 0.0)
+      parts += (parts.empty() ? "" : ", ") + std::string(name) + " " + Fixed(seconds, 3) + " s";
   };
   part("motion", times.motion_s());
   part("settling", times.settling_s());
@@ -186,20 +203,23 @@ void AddFigures(const v1::RunReport& report, Rows& rows) {
   part("loading", times.load_s());
   part("standstill", times.standstill_s());
   if (!parts.empty()) rows.emplace_back("", parts);
-  rows.emplace_back("path", Fixed(total.path_length_mm(), 3) + " mm: cut " + Fixed(total.cut_length_mm(), 3) +
-                                ", travel " + Fixed(total.travel_length_mm(), 3));
+  rows.emplace_back("path", Fixed(total.path_length_mm(), 3) + " mm: cut " +
+                                Fixed(total.cut_length_mm(), 3) + ", travel " +
+                                Fixed(total.travel_length_mm(), 3));
   if (report.family() == "optimo") {
     rows.emplace_back("beam", "on " + Fixed(total.beam_on_s(), 3) + " s, switched on " +
                                   std::to_string(total.beam_switches()) + " times, " +
-                                  std::to_string(total.pierces()) + " pierces, " + Fixed(total.energy_j(), 0) + " J");
+                                  std::to_string(total.pierces()) + " pierces, " +
+                                  Fixed(total.energy_j(), 0) + " J");
     if (total.energy_j_per_mm() > 0.0) {
       rows.emplace_back("", Fixed(total.energy_j_per_mm(), 3) + " J/mm, of a step at most " +
                                 Fixed(total.energy_j_per_mm_max(), 3));
     }
   } else {
     rows.emplace_back("plunges", std::to_string(total.plunges()));
-    rows.emplace_back("tool", "down " + Fixed(FamilyFigure(report, "tool_down_time"), 3) + " s, up " +
-                                  Fixed(FamilyFigure(report, "tool_up_time"), 3) + " s");
+    rows.emplace_back("tool", "down " + Fixed(FamilyFigure(report, "tool_down_time"), 3) +
+                                  " s, up " + Fixed(FamilyFigure(report, "tool_up_time"), 3) +
+                                  " s");
     if (const double clipped = FamilyFigure(report, "clipped_length"); clipped > 0.0) {
       rows.emplace_back("clipped", Fixed(clipped, 3) + " mm beyond the cutting range");
     }
@@ -220,11 +240,14 @@ void AddFigures(const v1::RunReport& report, Rows& rows) {
                                           Fixed(report.final_position().b(), 6));
   }
   if (report.has_tip_box()) {
-    rows.emplace_back("tip box", PointText(report.tip_box().low()) + "  to  " + PointText(report.tip_box().high()));
+    rows.emplace_back("tip box", PointText(report.tip_box().low()) + "  to  " +
+                                     PointText(report.tip_box().high()));
   }
   // A map of Protocol Buffers has another order each time: by kind and number.
   const auto first = rows.insert(rows.end(), report.variables().begin(), report.variables().end());
-  const auto order = [](const auto& row) { return std::tuple(row.first.substr(0, row.first.find('[')), row.first.size(), row.first); };
+  const auto order = [](const auto& row) {
+    return std::tuple(row.first.substr(0, row.first.find('[')), row.first.size(), row.first);
+  };
   std::ranges::sort(first, rows.end(), {}, order);
 }
 
@@ -234,13 +257,16 @@ std::string ReportText(const v1::RunReport& report) {
   Rows rows;
   rows.emplace_back("outcome", OutcomeLine(report.outcome()));
   if (report.has_total()) AddFigures(report, rows);
-  if (!report.motion_check().empty()) rows.emplace_back("motion", "checked " + report.motion_check());
+  if (!report.motion_check().empty())
+    rows.emplace_back("motion", "checked " + report.motion_check());
   std::string text;
   for (const auto& [name, value] : rows) {
-    text += Paint(name + std::string(14 - std::min<std::size_t>(13, name.size()), ' '), Colour::kDim,
-                  ColourOnOutput()) + value + "\n";
+    text += Paint(name + std::string(14 - std::min<std::size_t>(13, name.size()), ' '),
+                  Colour::kDim, ColourOnOutput()) +
+            value + "\n";
   }
-  for (const v1::Diagnostic& diagnostic : report.diagnostics()) text += FindingLine(diagnostic) + "\n";
+  for (const v1::Diagnostic& diagnostic : report.diagnostics())
+    text += FindingLine(diagnostic) + "\n";
   if (report.diagnostics_dropped() > 0) {
     text += "and " + std::to_string(report.diagnostics_dropped()) + " more findings\n";
   }
@@ -249,14 +275,20 @@ std::string ReportText(const v1::RunReport& report) {
 
 std::string EventLine(const v1::JobEvent& event) {
   std::string text = "#" + std::to_string(event.sequence());
-  if (event.virtual_time_ns() > 0) text += "  " + Fixed(static_cast<double>(event.virtual_time_ns()) * 1e-9, 3) + " s";
+  if (event.virtual_time_ns() > 0)
+    text += "  " + Fixed(static_cast<double>(event.virtual_time_ns()) * 1e-9, 3) + " s";
   text += "  ";
   switch (event.what_case()) {
-    case v1::JobEvent::kState: return text + StateName(event.state());
-    case v1::JobEvent::kDiagnostic: return text + FindingLine(event.diagnostic());
-    case v1::JobEvent::kMessage: return text + Visible(event.message());
-    case v1::JobEvent::kHalted: return text + "halted: " + event.halted();
-    case v1::JobEvent::kResumed: return text + "resumed";
+    case v1::JobEvent::kState:
+      return text + StateName(event.state());
+    case v1::JobEvent::kDiagnostic:
+      return text + FindingLine(event.diagnostic());
+    case v1::JobEvent::kMessage:
+      return text + Visible(event.message());
+    case v1::JobEvent::kHalted:
+      return text + "halted: " + event.halted();
+    case v1::JobEvent::kResumed:
+      return text + "resumed";
     case v1::JobEvent::kSignal: {
       const v1::TraceRecord& signal = event.signal();
       std::string line = text + signal.text();
@@ -264,9 +296,12 @@ std::string EventLine(const v1::JobEvent& event) {
       return line + " = " + Fixed(signal.value(), 0) +
              (signal.detail() != 0.0 ? " (" + Fixed(signal.detail(), 1) + ")" : "");
     }
-    case v1::JobEvent::kMilestone: return text + event.milestone();
-    case v1::JobEvent::kEnded: return text + "ended: " + OutcomeLine(event.ended());
-    case v1::JobEvent::WHAT_NOT_SET: break;
+    case v1::JobEvent::kMilestone:
+      return text + event.milestone();
+    case v1::JobEvent::kEnded:
+      return text + "ended: " + OutcomeLine(event.ended());
+    case v1::JobEvent::WHAT_NOT_SET:
+      break;
   }
   return text;
 }

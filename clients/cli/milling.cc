@@ -7,8 +7,10 @@
 
 namespace rmlcell::cli {
 
-Result<simulation::Milling> MillingOf(const SimulateOptions& options, const machine::MachineShape& shape) {
-  if (!shape.has_work_origin) return InvalidArgument("--stock is for mills: this machine takes nothing off a block");
+Result<simulation::Milling> MillingOf(const SimulateOptions& options,
+                                      const machine::MachineShape& shape) {
+  if (!shape.has_work_origin)
+    return InvalidArgument("--stock is for mills: this machine takes nothing off a block");
   Result<simulation::Stock> stock = simulation::ParseStock(options.stock);
   if (!stock) return stock.error();
   Result<simulation::MillTool> tool = simulation::ParseTool(options.tool);
@@ -22,10 +24,12 @@ Result<simulation::Milling> MillingOf(const SimulateOptions& options, const mach
 Status WriteMaterial(const simulation::HeightField& material, const std::string& file) {
   std::ofstream stream(file, std::ios::binary | std::ios::trunc);
   const bool written = simulation::WriteStl(material, [&stream](std::string_view bytes) {
-    return static_cast<bool>(stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size())));
+    return static_cast<bool>(
+        stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size())));
   });
   stream.close();
-  if (!written || !stream) return Error{ErrorCode::kCellFileUnwritable, file + ": cannot be written", {}};
+  if (!written || !stream)
+    return Error{ErrorCode::kCellFileUnwritable, file + ": cannot be written", {}};
   return {};
 }
 

@@ -8,7 +8,8 @@
 namespace rmlcell::cli {
 
 // Errors: CellInvalidArgument for a machine that mills nothing, a block or a tool that cannot be.
-Result<simulation::Milling> MillingOf(const SimulateOptions& options, const machine::MachineShape& shape);
+Result<simulation::Milling> MillingOf(const SimulateOptions& options,
+                                      const machine::MachineShape& shape);
 
 // Errors: CellFileUnwritable.
 Status WriteMaterial(const simulation::HeightField& material, const std::string& file);

@@ -35,8 +35,12 @@ std::string WithExtension(const std::string& file, const char* extension) {
 }
 
 optimo::FileNames Names(const std::string& input, const std::string& output) {
-  const auto name = [](const std::string& path) { return std::filesystem::path(path).filename().string(); };
-  return {.input = name(input), .output = output == "-" ? name(input) : name(output), .date = bridge::HeaderDate()};
+  const auto name = [](const std::string& path) {
+    return std::filesystem::path(path).filename().string();
+  };
+  return {.input = name(input),
+          .output = output == "-" ? name(input) : name(output),
+          .date = bridge::HeaderDate()};
 }
 
 std::string OrStandardOutput(const std::string& output) { return output.empty() ? "-" : output; }
@@ -64,8 +68,8 @@ Result<Source> ReadSource(const std::string& file) {
 }
 
 // The object of a file; its findings go into the answer. Nothing when it has errors.
-std::optional<optimo::Compilation> CompileFile(const std::string& file, const Source& source, bool advice,
-                                               ToolAnswer& answer) {
+std::optional<optimo::Compilation> CompileFile(const std::string& file, const Source& source,
+                                               bool advice, ToolAnswer& answer) {
   optimo::Compilation compiled = optimo::Compile(
       source.text, file,
       {.object_limit = optimo::kObjectLimitStandard,
@@ -89,11 +93,13 @@ int Compile(const ToolOptions& options, bool map) {
   ToolAnswer answer(file, options.json);
   const auto compiled = CompileFile(file, *source, true, answer);
   if (!compiled) return answer.Failed();
-  if (map && target == "-") return Refuse({ErrorCode::kCellUsage, "--map: the object goes into no file", {}});
+  if (map && target == "-")
+    return Refuse({ErrorCode::kCellUsage, "--map: the object goes into no file", {}});
   if (map) {
     const std::string bytes =
         optimo::EncodeSourceMap(optimo::MapSource(source->text, source->inch, compiled->object));
-    if (const Status written = WriteWholeFile(WithExtension(target, kMapExtension), bytes); !written) {
+    if (const Status written = WriteWholeFile(WithExtension(target, kMapExtension), bytes);
+        !written) {
       return Refuse(written.error());
     }
   }
@@ -107,11 +113,13 @@ int Decompile(const ToolOptions& options) {
   const Result<std::string> bytes = bridge::ReadFile(file, kFileBytesMax);
   if (!bytes) return Refuse(bytes.error());
   // A map that is not there, cannot be read, or is of another object is passed over.
-  const Result<std::string> map = bridge::ReadFile(WithExtension(file, kMapExtension), kFileBytesMax);
+  const Result<std::string> map =
+      bridge::ReadFile(WithExtension(file, kMapExtension), kFileBytesMax);
   const Result<optimo::RecoveredSource> source =
       optimo::RecoverSource(*bytes, map ? std::optional<std::string_view>(*map) : std::nullopt);
   if (!source) return Refuse(source.error());
-  return ToolAnswer(file, options.json).Deliver(source->text, OrStandardOutput(options.output), "source of " + file);
+  return ToolAnswer(file, options.json)
+      .Deliver(source->text, OrStandardOutput(options.output), "source of " + file);
 }
 
 int Link(const LinkOptions& options) {
@@ -129,21 +137,23 @@ int Link(const LinkOptions& options) {
     if (program == loaded->programs.end()) return std::nullopt;
     if (program->bytes->empty()) {
       constexpr ErrorCode kEmpty = ErrorCode::kCellEmptyProgram;
-      answer.Found({{.code = kEmpty,
-                     .severity = Lookup(kEmpty).severity,
-                     .detail = "program " + std::to_string(slot) + " is called, and its file is empty",
-                     .rule = {},
-                     .file = program->file_name,
-                     .where = {},
-                     .fixes = {}}},
-                   0, {});
+      answer.Found(
+          {{.code = kEmpty,
+            .severity = Lookup(kEmpty).severity,
+            .detail = "program " + std::to_string(slot) + " is called, and its file is empty",
+            .rule = {},
+            .file = program->file_name,
+            .where = {},
+            .fixes = {}}},
+          0, {});
       good = false;
       return std::nullopt;
     }
     const optimo::FileForm form = optimo::FormOfFile(program->file_name, *program->bytes);
     if (form == optimo::FileForm::kObject) return objects[slot] = *program->bytes;
     const auto compiled =
-        CompileFile(program->file_name, {*program->bytes, form == optimo::FileForm::kInchSource}, false, answer);
+        CompileFile(program->file_name, {*program->bytes, form == optimo::FileForm::kInchSource},
+                    false, answer);
     if (!compiled) {
       good = false;
       return std::nullopt;
@@ -167,7 +177,9 @@ int Format(const FormatOptions& options) {
     const Result<std::string> text = bridge::ReadFile(file, kFileBytesMax);
     if (!text) return Refuse(text.error());
     if (optimo::FormOfFile(file, *text) == optimo::FileForm::kObject) {
-      return Refuse({ErrorCode::kCellBadText, file + " is an object; rmlcell decompile gives its source", {}});
+      return Refuse({ErrorCode::kCellBadText,
+                     file + " is an object; rmlcell decompile gives its source",
+                     {}});
     }
     ToolAnswer answer(file, options.json);
     optimo::Compilation read = optimo::Compile(*text, file, {.object_limit = 0, .advice = false});
@@ -177,10 +189,13 @@ int Format(const FormatOptions& options) {
     if (bad) answer.Found(read.diagnostics, read.diagnostics_dropped, *text);
     const optimo::Formatting formatted = optimo::Format(*text);
     if (formatted.changed && !options.check_only) {
-      if (const Status written = WriteWholeFile(file, formatted.text); !written) return Refuse(written.error());
+      if (const Status written = WriteWholeFile(file, formatted.text); !written)
+        return Refuse(written.error());
     }
     // With --check a list of names, for scripts.
-    const std::string what = !formatted.changed ? "" : options.check_only ? file : file + ": formatted";
+    const std::string what = !formatted.changed   ? ""
+                             : options.check_only ? file
+                                                  : file + ": formatted";
     const bool fails = bad || (formatted.changed && options.check_only);
     exit_code = std::max(exit_code, answer.Say(what, fails ? kProgramErrors : kGood));
   }
@@ -191,16 +206,19 @@ int Convert(const std::vector<std::string>& arguments, bool json) {
   const auto request = optimo::ReadConvertArguments(arguments);
   if (!request) return Refuse(request.error());
   if (!*request) {
-    Print("convert FILE.S            millimetres and radians to inches and degrees: FILE.SI\n"
-          "convert FILE.SI           inches and degrees to millimetres and radians: FILE.S\n"
-          "convert FILE [OUT] /i     any other name, to inches; /m to millimetres");
+    Print(
+        "convert FILE.S            millimetres and radians to inches and degrees: FILE.SI\n"
+        "convert FILE.SI           inches and degrees to millimetres and radians: FILE.S\n"
+        "convert FILE [OUT] /i     any other name, to inches; /m to millimetres");
     return kUsage;
   }
   const optimo::ConvertRequest& wanted = **request;
   const Result<std::string> text = bridge::ReadFile(wanted.input, kFileBytesMax);
   if (!text) return Refuse({ErrorCode::kConvertInput, text.error().detail, {}});
   if (optimo::FormOfFile(wanted.input, *text) == optimo::FileForm::kObject) {
-    return Refuse({ErrorCode::kCellBadText, wanted.input + " is an object; rmlcell decompile gives its source", {}});
+    return Refuse({ErrorCode::kCellBadText,
+                   wanted.input + " is an object; rmlcell decompile gives its source",
+                   {}});
   }
   const optimo::Conversion converted =
       optimo::Convert(*text, wanted.direction, Names(wanted.input, wanted.output));
@@ -210,7 +228,8 @@ int Convert(const std::vector<std::string>& arguments, bool json) {
     return Refuse({ErrorCode::kConvertOutput, written.error().detail, {}});
   }
   return answer.Written(converted.text, wanted.output,
-                        wanted.direction == optimo::Direction::kToInch ? "inches and degrees" : "millimetres and radians",
+                        wanted.direction == optimo::Direction::kToInch ? "inches and degrees"
+                                                                       : "millimetres and radians",
                         HasErrors(converted.diagnostics) ? kProgramErrors : kGood);
 }
 
@@ -219,7 +238,8 @@ int Compensate(const ToolOptions& options) {
   const Result<Source> source = ReadSource(file);
   if (!source) return Refuse(source.error());
   const std::string target = options.output.empty() ? WithExtension(file, ".CMP") : options.output;
-  const optimo::Compensation made = optimo::Compensate(source->text, Names(file, target), source->inch);
+  const optimo::Compensation made =
+      optimo::Compensate(source->text, Names(file, target), source->inch);
   ToolAnswer answer(file, options.json);
   answer.Found(made.diagnostics, 0, source->text);
   return made.ok ? answer.Deliver(made.text, target, "compensated") : answer.Failed();
@@ -227,7 +247,8 @@ int Compensate(const ToolOptions& options) {
 
 namespace {
 
-int Rewrite(const ToolOptions& options, const std::function<optimo::Rewriting(const std::string&)>& rewrite) {
+int Rewrite(const ToolOptions& options,
+            const std::function<optimo::Rewriting(const std::string&)>& rewrite) {
   const std::string& file = options.file;
   const Result<Source> source = ReadSource(file);
   if (!source) return Refuse(source.error());
@@ -235,20 +256,25 @@ int Rewrite(const ToolOptions& options, const std::function<optimo::Rewriting(co
   const optimo::Rewriting made = rewrite(source->text);
   ToolAnswer answer(file, options.json);
   answer.Found(made.diagnostics, 0, source->text);
-  return made.ok ? answer.Deliver(made.text, OrStandardOutput(options.output), "rewritten from " + file)
-                 : answer.Failed();
+  return made.ok
+             ? answer.Deliver(made.text, OrStandardOutput(options.output), "rewritten from " + file)
+             : answer.Failed();
 }
 
 }  // namespace
 
 int Transform(const TransformOptions& options) {
-  for (const auto& [name, values] :
-       {std::pair("--move", &options.move), {"--turn", &options.turn}, {"--shift", &options.shift}}) {
+  for (const auto& [name, values] : {std::pair("--move", &options.move),
+                                     {"--turn", &options.turn},
+                                     {"--shift", &options.shift}}) {
     if (std::ranges::all_of(*values, [](double value) { return std::isfinite(value); })) continue;
     return Refuse({ErrorCode::kCellUsage, std::string(name) + ": give finite numbers", {}});
   }
   if (!options.shift.empty() && !(options.move.empty() && options.turn.empty())) {
-    return Refuse({ErrorCode::kCellUsage, "--shift changes VR[86] to VR[91], --move and --turn the moves: give one or the other", {}});
+    return Refuse(
+        {ErrorCode::kCellUsage,
+         "--shift changes VR[86] to VR[91], --move and --turn the moves: give one or the other",
+         {}});
   }
   if (!options.shift.empty()) {
     std::array<double, 6> by{};
@@ -261,7 +287,8 @@ int Transform(const TransformOptions& options) {
   std::array<double, 3> move{}, turn{};
   std::ranges::copy(options.move, move.begin());
   std::ranges::copy(options.turn, turn.begin());
-  const auto motion = optimo::RigidMotion::Of({move[0], move[1], move[2]}, turn[0], turn[1], turn[2]);
+  const auto motion =
+      optimo::RigidMotion::Of({move[0], move[1], move[2]}, turn[0], turn[1], turn[2]);
   return Rewrite(options, [&](const std::string& text) { return optimo::Transform(text, motion); });
 }
 
@@ -271,7 +298,8 @@ int List(const ToolOptions& options) {
   ToolAnswer answer(options.file, options.json);
   const auto compiled = CompileFile(options.file, {source->text, false}, false, answer);
   if (!compiled) return answer.Failed();
-  return answer.Deliver(optimo::List(compiled->module), OrStandardOutput(options.output), "list of " + options.file);
+  return answer.Deliver(optimo::List(compiled->module), OrStandardOutput(options.output),
+                        "list of " + options.file);
 }
 
 }  // namespace rmlcell::cli

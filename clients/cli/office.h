@@ -5,9 +5,9 @@
 
 namespace rmlcell::cli {
 
-// The tools of the programming office: they read and write files of Optimo programs and need no server.
-// An `output` of "-" is standard output; empty: the name that the tool gives it. Files are written whole
-// or not at all.
+// The tools of the programming office: they read and write files of Optimo programs and need no
+// server. An `output` of "-" is standard output; empty: the name that the tool gives it. Files are
+// written whole or not at all.
 
 // What most of them take. `json`: the answer as one JSON object (tool_answer.h).
 struct ToolOptions {
@@ -16,13 +16,13 @@ struct ToolOptions {
   bool json = false;
 };
 
-// `map`: a source map is written beside the object, .MAP for its extension, from which Decompile gives the
-// programmer's own text back as long as the object is the one that was made of it.
+// `map`: a source map is written beside the object, .MAP for its extension, from which Decompile
+// gives the programmer's own text back as long as the object is the one that was made of it.
 int Compile(const ToolOptions& options, bool map);
 int Decompile(const ToolOptions& options);
 
-// The executable of a main program with the FUNCTIONs that it needs, from files and folders as simulate
-// takes them.
+// The executable of a main program with the FUNCTIONs that it needs, from files and folders as
+// simulate takes them.
 struct LinkOptions {
   std::vector<std::string> files;
   std::vector<std::string> slots;  // "44=FILE"

@@ -28,13 +28,15 @@ Result<bridge::ComparedProgram> ReadProgram(const std::string& file) {
 std::string AspectText(const google::protobuf::RepeatedField<int>& aspects) {
   std::string text;
   for (const int aspect : aspects) {
-    const std::string name = v1::DiffAspect_Name(aspect).substr(std::string_view("DIFF_ASPECT_").size());
+    const std::string name =
+        v1::DiffAspect_Name(aspect).substr(std::string_view("DIFF_ASPECT_").size());
     text += (text.empty() ? "" : ", ") + LowerCase(name);
   }
   return text;
 }
 
-// For people: three decimals, or as many as it takes to tell the two apart; whole numbers without any.
+// For people: three decimals, or as many as it takes to tell the two apart; whole numbers without
+// any.
 std::array<std::string, 2> FigureTexts(double before, double after) {
   std::array<std::string, 2> texts;
   for (int decimals = 3; decimals <= 12 && texts[0] == texts[1]; decimals += 3)
@@ -50,8 +52,8 @@ std::string StepText(int step) { return step > 0 ? std::to_string(step) : "-"; }
 void PrintText(const Response& diff) {
   const bool colour = ColourOnOutput();
   for (const Response::StepChange& change : diff.steps()) {
-    Print(Paint("step " + StepText(change.step_before()) + " -> " + StepText(change.step_after()), Colour::kBold,
-                colour) +
+    Print(Paint("step " + StepText(change.step_before()) + " -> " + StepText(change.step_after()),
+                Colour::kBold, colour) +
           "  " + AspectText(change.aspects()));
     if (!change.before().empty()) Print(Paint("  - " + change.before(), Colour::kRed, colour));
     if (!change.after().empty()) Print(Paint("  + " + change.after(), Colour::kGreen, colour));
@@ -60,10 +62,12 @@ void PrintText(const Response& diff) {
       Print("    target moved by " + Fixed(change.target_moved_mm(), 3) + " mm");
     }
   }
-  if (diff.steps_dropped() > 0) Print("and " + std::to_string(diff.steps_dropped()) + " more steps");
+  if (diff.steps_dropped() > 0)
+    Print("and " + std::to_string(diff.steps_dropped()) + " more steps");
   for (const Response::FigureChange& figure : diff.figures()) {
     const auto [before, after] = FigureTexts(figure.before(), figure.after());
-    Print(figure.name() + "  " + before + " -> " + after + (figure.unit().empty() ? "" : " " + figure.unit()));
+    Print(figure.name() + "  " + before + " -> " + after +
+          (figure.unit().empty() ? "" : " " + figure.unit()));
   }
   if (diff.equal()) Print("they do the same");
 }
@@ -81,7 +85,8 @@ int Diff(const DiffOptions& options) {
   const Result<bridge::ComparisonOutcome> made =
       bridge::ComparePrograms(programs[0], programs[1], {.picture = !options.svg.empty()});
   if (!made) return Refuse(made.error());
-  for (std::size_t i = 0; i < 2; ++i) ComplainOf(made->diagnostics[i], made->dropped[i], *programs[i].bytes);
+  for (std::size_t i = 0; i < 2; ++i)
+    ComplainOf(made->diagnostics[i], made->dropped[i], *programs[i].bytes);
   if (!made->ok) return kProgramErrors;
   const Response& diff = made->response;
   if (!options.svg.empty() && options.svg != "-") {

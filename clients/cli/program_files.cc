@@ -40,7 +40,8 @@ Result<bridge::ProgramInput> ReadProgram(const std::string& file, int slot, bool
 
 std::optional<int> SlotFromName(const fs::path& path) {
   const auto number = ParseInteger(path.stem().string());
-  if (!number || !IsSlot(static_cast<int>(std::clamp<long long>(*number, -1, 1000)))) return std::nullopt;
+  if (!number || !IsSlot(static_cast<int>(std::clamp<long long>(*number, -1, 1000))))
+    return std::nullopt;
   return static_cast<int>(*number);
 }
 
@@ -53,7 +54,8 @@ Result<bridge::MachineFile> ReadMachine(const std::string& path) {
 
 Status WriteWholeFile(const std::string& path, std::string_view bytes) {
   const auto failed = [&](int error) {
-    return Error{ErrorCode::kCellFileUnwritable, path + ": " + std::generic_category().message(error), {}};
+    return Error{
+        ErrorCode::kCellFileUnwritable, path + ": " + std::generic_category().message(error), {}};
   };
   std::error_code ignored;
   // Into a pipe or a device as it is; a link stays a link.
@@ -63,7 +65,8 @@ Status WriteWholeFile(const std::string& path, std::string_view bytes) {
     to.flush();
     return to ? Status() : failed(errno);
   }
-  const std::string target = fs::is_symlink(path, ignored) ? fs::canonical(path, ignored).string() : path;
+  const std::string target =
+      fs::is_symlink(path, ignored) ? fs::canonical(path, ignored).string() : path;
   std::string temporary = target + ".XXXXXX";
   const int file = mkstemp(temporary.data());
   if (file < 0) return failed(errno);
@@ -86,11 +89,13 @@ Status WriteWholeFile(const std::string& path, std::string_view bytes) {
   return failed(error);
 }
 
-Result<const machine::MachineFamily*> FamilyFor(const std::string& id, const std::string& file_name) {
+Result<const machine::MachineFamily*> FamilyFor(const std::string& id,
+                                                const std::string& file_name) {
   if (!id.empty()) {
     if (const machine::MachineFamily* family = simulation::FindFamily(id)) return family;
     std::string known;
-    for (const machine::MachineFamily* one : simulation::Families()) known += " " + std::string(one->info().id);
+    for (const machine::MachineFamily* one : simulation::Families())
+      known += " " + std::string(one->info().id);
     return Error{ErrorCode::kCellUnknownFamily, "'" + id + "'; there are" + known, {}};
   }
   if (const machine::MachineFamily* family = simulation::FamilyOfFileName(file_name)) return family;
@@ -104,21 +109,25 @@ Result<std::pair<int, std::string>> ParseSlotFile(const std::string& text) {
   if (*number < kSlotMin || *number > kSlotMax) {
     return Error{ErrorCode::kProgramNumber, "program number is " + std::to_string(*number), {}};
   }
-  return std::pair(static_cast<int>(*number), equals == std::string::npos ? std::string() : text.substr(equals + 1));
+  return std::pair(static_cast<int>(*number),
+                   equals == std::string::npos ? std::string() : text.substr(equals + 1));
 }
 
-Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files, const std::vector<std::string>& slots,
-                              int main_slot, const std::string& family_id, EmptyInFolders empty) {
+Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files,
+                              const std::vector<std::string>& slots, int main_slot,
+                              const std::string& family_id, EmptyInFolders empty) {
   std::vector<std::pair<int, std::string>> found;  // slot 0: to be chosen
   std::set<std::string> in_folders;
   std::string first_file;
-  // A folder may hold programs of several machines: only those of the family of the first file count.
+  // A folder may hold programs of several machines: only those of the family of the first file
+  // count.
   std::error_code ignored;
-  const auto named_file =
-      std::ranges::find_if(files, [&](const std::string& file) { return !fs::is_directory(file, ignored); });
+  const auto named_file = std::ranges::find_if(
+      files, [&](const std::string& file) { return !fs::is_directory(file, ignored); });
   const machine::MachineFamily* wanted = nullptr;
   if (!family_id.empty() || named_file != files.end()) {
-    const auto family = FamilyFor(family_id, named_file != files.end() ? *named_file : std::string());
+    const auto family =
+        FamilyFor(family_id, named_file != files.end() ? *named_file : std::string());
     if (!family) return family.error();
     wanted = *family;
   }
@@ -130,16 +139,19 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files, const std::
       continue;
     }
     std::vector<fs::path> inside;
-    for (const fs::directory_entry& entry : fs::directory_iterator(file, error)) inside.push_back(entry.path());
+    for (const fs::directory_entry& entry : fs::directory_iterator(file, error))
+      inside.push_back(entry.path());
     std::ranges::sort(inside);
     for (const fs::path& path : inside) {
       const auto slot = SlotFromName(path);
       const machine::MachineFamily* family = simulation::FamilyOfFileName(path.string());
-      if (slot && family != nullptr && (wanted == nullptr || family == wanted) && fs::is_regular_file(path, error)) {
+      if (slot && family != nullptr && (wanted == nullptr || family == wanted) &&
+          fs::is_regular_file(path, error)) {
         wanted = family;
         // The main program may lie in the folder, too.
-        const bool again = std::ranges::any_of(
-            found, [&](const auto& one) { return one.first == *slot && fs::equivalent(one.second, path, ignored); });
+        const bool again = std::ranges::any_of(found, [&](const auto& one) {
+          return one.first == *slot && fs::equivalent(one.second, path, ignored);
+        });
         if (again) continue;
         found.emplace_back(*slot, path.string());
         if (empty == EmptyInFolders::kTaken) in_folders.insert(path.string());
@@ -149,17 +161,22 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files, const std::
   for (const std::string& text : slots) {
     Result<std::pair<int, std::string>> named = ParseSlotFile(text);
     if (!named) return named.error();
-    if (named->second.empty()) return Error{ErrorCode::kCellUsage, "'" + text + "': write 44=FILE", {}};
+    if (named->second.empty())
+      return Error{ErrorCode::kCellUsage, "'" + text + "': write 44=FILE", {}};
     found.push_back(std::move(*named));
   }
-  if (found.empty()) return Error{ErrorCode::kCellUsage, "no program: give a file, or a folder with files like 12.S", {}};
+  if (found.empty())
+    return Error{
+        ErrorCode::kCellUsage, "no program: give a file, or a folder with files like 12.S", {}};
 
   std::map<int, std::string> used;
   for (const auto& [slot, file] : found) {
     const auto [row, is_new] = used.emplace(slot, file);
     if (!is_new && slot != 0) {
       return Error{ErrorCode::kCellUsage,
-                   "program " + std::to_string(slot) + " comes from two files: " + row->second + " and " + file, {}};
+                   "program " + std::to_string(slot) + " comes from two files: " + row->second +
+                       " and " + file,
+                   {}};
     }
   }
   LoadedFiles loaded;
@@ -179,16 +196,19 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files, const std::
         slot = free_slot++;
       }
     }
-    if (!IsSlot(slot)) return Error{ErrorCode::kProgramNumber, "program number is " + std::to_string(slot), {}};
+    if (!IsSlot(slot))
+      return Error{ErrorCode::kProgramNumber, "program number is " + std::to_string(slot), {}};
     Result<bridge::ProgramInput> program = ReadProgram(file, slot, in_folders.contains(file));
     if (!program) return program.error();
     if (file == first_file) loaded.main_slot = slot;
     loaded.programs.push_back(std::move(*program));
   }
   if (main_slot > 0) loaded.main_slot = main_slot;
-  if (loaded.main_slot == 0 && loaded.programs.size() == 1) loaded.main_slot = loaded.programs.front().slot;
+  if (loaded.main_slot == 0 && loaded.programs.size() == 1)
+    loaded.main_slot = loaded.programs.front().slot;
   if (loaded.main_slot == 0) {
-    return Error{ErrorCode::kCellUsage, "several programs: say which one is started, --main 12", {}};
+    return Error{
+        ErrorCode::kCellUsage, "several programs: say which one is started, --main 12", {}};
   }
   return loaded;
 }

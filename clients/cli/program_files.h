@@ -22,13 +22,13 @@ struct LoadedFiles {
 
 // Files and folders given to a local run. Folders bring their numbered programs ("12.S", "44.rml");
 // "SLOT=FILE" a program each. The main program is the first file, or `main_slot`.
-// An empty file is an error, unless it lies in a folder and only what is needed is read of that: the caller
-// tells it when it is.
-// Errors: CellFileUnreadable, CellUnknownFamily, CellFamilyUnknownFromName, CellUsage, ProgramNumber,
-// CellEmptyProgram.
+// An empty file is an error, unless it lies in a folder and only what is needed is read of that:
+// the caller tells it when it is. Errors: CellFileUnreadable, CellUnknownFamily,
+// CellFamilyUnknownFromName, CellUsage, ProgramNumber, CellEmptyProgram.
 enum class EmptyInFolders { kRefused, kTaken };
-Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files, const std::vector<std::string>& slots,
-                              int main_slot, const std::string& family_id,
+Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files,
+                              const std::vector<std::string>& slots, int main_slot,
+                              const std::string& family_id,
                               EmptyInFolders empty = EmptyInFolders::kRefused);
 
 // "progs/44.S" -> 44: the name of a program file tells its slot. Nothing: it tells none.
@@ -40,11 +40,12 @@ Result<std::pair<int, std::string>> ParseSlotFile(const std::string& text);
 // The machine file; without a path the defaults. Errors: CellFileUnreadable, CellBadText.
 Result<bridge::MachineFile> ReadMachine(const std::string& path);
 
-// Writes a file whole or not at all: what stood under this name before is there until the new one is on the
-// disk, and keeps its mode. Error: CellFileUnwritable.
+// Writes a file whole or not at all: what stood under this name before is there until the new one
+// is on the disk, and keeps its mode. Error: CellFileUnwritable.
 Status WriteWholeFile(const std::string& path, std::string_view bytes);
 
 // The family by id, or by the file name.
-Result<const machine::MachineFamily*> FamilyFor(const std::string& id, const std::string& file_name);
+Result<const machine::MachineFamily*> FamilyFor(const std::string& id,
+                                                const std::string& file_name);
 
 }  // namespace rmlcell::cli

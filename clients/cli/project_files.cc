@@ -21,7 +21,8 @@ Result<v1::Project> ParseProject(const std::string& file) {
   if (!text) return text.error();
   v1::Project project;
   const auto parsed = google::protobuf::util::JsonStringToMessage(*text, &project);
-  if (!parsed.ok()) return Error{ErrorCode::kCellBadText, file + ": " + std::string(parsed.message()), {}};
+  if (!parsed.ok())
+    return Error{ErrorCode::kCellBadText, file + ": " + std::string(parsed.message()), {}};
   return project;
 }
 
@@ -29,7 +30,8 @@ Status AddContents(const fs::path& folder, v1::Project& project) {
   for (v1::ProjectProgram& program : *project.mutable_programs()) {
     v1::ProgramText& source = *program.mutable_source();
     if (!source.content().empty() || source.file_name().empty()) continue;
-    Result<std::string> bytes = bridge::ReadFile((folder / source.file_name()).string(), kFileBytesMax);
+    Result<std::string> bytes =
+        bridge::ReadFile((folder / source.file_name()).string(), kFileBytesMax);
     if (!bytes) return bytes.error();
     source.set_content(*std::move(bytes));
     source.set_file_name(fs::path(source.file_name()).filename().string());

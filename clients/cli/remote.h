@@ -26,8 +26,8 @@ int GetProject(const Remote& remote, const std::string& project);
 int CreateProject(const Remote& remote, const std::string& project, const std::string& path);
 int UpdateProject(const Remote& remote, const std::string& project, const std::string& path);
 int DeleteProject(const Remote& remote, const std::string& project);
-int TransferProject(const Remote& remote, const std::string& project, const std::string& machine, bool insert,
-                    bool check_only);
+int TransferProject(const Remote& remote, const std::string& project, const std::string& machine,
+                    bool insert, bool check_only);
 
 struct SubmitRequest {
   std::string machine;

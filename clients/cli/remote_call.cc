@@ -27,7 +27,8 @@ int Refused(const grpc::Status& status, const Remote& remote) {
   const bool detailed = rich.ParseFromString(status.error_details()) && rich.details_size() > 0;
   if (remote.json && detailed) Print(Json(rich));
   if (status.error_code() == grpc::StatusCode::UNAVAILABLE && !detailed) {
-    Complain("no server answers at " + remote.server + " (" + status.error_message() + "); start rmlcelld, or give --server");
+    Complain("no server answers at " + remote.server + " (" + status.error_message() +
+             "); start rmlcelld, or give --server");
     return kConnection;
   }
   Complain(status.error_message());

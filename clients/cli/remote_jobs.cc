@@ -16,8 +16,10 @@ namespace rmlcell::cli {
 namespace {
 
 int ExitOf(const v1::Outcome& outcome) {
-  return outcome.kind() == v1::Outcome::KIND_COMPLETED || outcome.kind() == v1::Outcome::KIND_STOPPED ? kGood
-                                                                                                     : kProgramErrors;
+  return outcome.kind() == v1::Outcome::KIND_COMPLETED ||
+                 outcome.kind() == v1::Outcome::KIND_STOPPED
+             ? kGood
+             : kProgramErrors;
 }
 
 // A random id, so that a repeated submission after a lost answer gives the same job.
@@ -45,8 +47,8 @@ std::string When(const google::protobuf::Timestamp& time) {
 constexpr std::size_t kInlineBytesMax = 3 << 20;
 
 // One connection of a watch. Moves `after` on; true: the job ended, and `exit_code` is set.
-bool WatchOnce(const Remote& remote, v1::JobService::Stub& stub, const std::string& name, std::int64_t& after,
-               int& exit_code, grpc::Status& status) {
+bool WatchOnce(const Remote& remote, v1::JobService::Stub& stub, const std::string& name,
+               std::int64_t& after, int& exit_code, grpc::Status& status) {
   grpc::ClientContext context;
   v1::WatchJobRequest request;
   request.set_name(name);
@@ -72,9 +74,10 @@ bool WatchOnce(const Remote& remote, v1::JobService::Stub& stub, const std::stri
         Print(Json(message));
       } else {
         progress.Show(at.has_progress() ? at.progress() : -1.0,
-                      Fixed(static_cast<double>(at.virtual_time_ns()) * 1e-9, 1) + " s  " + at.instruction() +
-                          "  X " + Fixed(at.position().tip().x(), 2) + " Y " + Fixed(at.position().tip().y(), 2) +
-                          " Z " + Fixed(at.position().tip().z(), 2));
+                      Fixed(static_cast<double>(at.virtual_time_ns()) * 1e-9, 1) + " s  " +
+                          at.instruction() + "  X " + Fixed(at.position().tip().x(), 2) + " Y " +
+                          Fixed(at.position().tip().y(), 2) + " Z " +
+                          Fixed(at.position().tip().z(), 2));
       }
     } else if (message.has_snapshot()) {
       const v1::Job& job = message.snapshot();
@@ -117,8 +120,9 @@ int WatchJob(const Remote& remote, const std::string& job, std::int64_t after) {
 int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
   v1::SubmitJobRequest request;
   v1::Job& job = *request.mutable_job();
-  job.set_kind(wanted.kind == "check" ? v1::JOB_KIND_CHECK : wanted.kind == "run" ? v1::JOB_KIND_RUN
-                                                                                   : v1::JOB_KIND_SIMULATE);
+  job.set_kind(wanted.kind == "check" ? v1::JOB_KIND_CHECK
+               : wanted.kind == "run" ? v1::JOB_KIND_RUN
+                                      : v1::JOB_KIND_SIMULATE);
   job.set_machine(FullName("machines", wanted.machine));
   job.set_title(bridge::Utf8(wanted.title));
   if (wanted.file.empty()) {
@@ -128,11 +132,13 @@ int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
     if (!bytes) return Refuse(bytes.error());
     if (bytes->size() > kInlineBytesMax) {
       return Refuse({ErrorCode::kCellTooLarge,
-                         wanted.file + " has " + std::to_string(bytes->size()) + " bytes, a job takes " +
-                             std::to_string(kInlineBytesMax) + " with it: put it into a slot first, then submit with --slot",
-                         {}});
+                     wanted.file + " has " + std::to_string(bytes->size()) +
+                         " bytes, a job takes " + std::to_string(kInlineBytesMax) +
+                         " with it: put it into a slot first, then submit with --slot",
+                     {}});
     }
-    job.mutable_inline_program()->set_file_name(bridge::Utf8(std::filesystem::path(wanted.file).filename().string()));
+    job.mutable_inline_program()->set_file_name(
+        bridge::Utf8(std::filesystem::path(wanted.file).filename().string()));
     job.mutable_inline_program()->set_content(std::move(*bytes));
     job.set_inline_slot(wanted.slot);
     if (job.title().empty()) job.set_title(job.inline_program().file_name());
@@ -180,12 +186,15 @@ int Jobs(const Remote& remote, const std::string& filter, int limit) {
     for (const v1::Job& job : response.jobs()) Print(Json(job));
     return kGood;
   }
-  std::vector<std::vector<std::string>> rows = {{"JOB", "STATE", "KIND", "MACHINE", "TITLE", "SUBMITTED", "CODE"}};
+  std::vector<std::vector<std::string>> rows = {
+      {"JOB", "STATE", "KIND", "MACHINE", "TITLE", "SUBMITTED", "CODE"}};
   for (const v1::Job& job : response.jobs()) {
     const std::string kind = v1::JobKind_Name(job.kind());
-    rows.push_back({job.name().substr(5), StateName(job.state()), kind.substr(std::min<std::size_t>(9, kind.size())),
+    rows.push_back({job.name().substr(5), StateName(job.state()),
+                    kind.substr(std::min<std::size_t>(9, kind.size())),
                     job.machine().substr(std::min<std::size_t>(9, job.machine().size())),
-                    job.title().empty() ? job.program() : job.title(), When(job.create_time()), job.outcome().code()});
+                    job.title().empty() ? job.program() : job.title(), When(job.create_time()),
+                    job.outcome().code()});
   }
   PrintRaw(Table(rows));
   return kGood;
@@ -204,10 +213,12 @@ int ShowJob(const Remote& remote, const std::string& job) {
     Print(Json(response));
     return kGood;
   }
-  Print(response.name() + "  " + StateName(response.state()) + "  " + response.machine() + "  " + response.title());
+  Print(response.name() + "  " + StateName(response.state()) + "  " + response.machine() + "  " +
+        response.title());
   if (response.has_outcome()) Print("outcome   " + OutcomeLine(response.outcome()));
   for (const v1::Artifact& artifact : response.artifacts()) {
-    Print("product   " + artifact.name() + "  " + Bytes(artifact.size()) + "  " + artifact.url_path());
+    Print("product   " + artifact.name() + "  " + Bytes(artifact.size()) + "  " +
+          artifact.url_path());
   }
   return kGood;
 }
@@ -255,7 +266,8 @@ int JobPicture(const Remote& remote, const std::string& job, const std::string& 
     PrintRaw(response.content());
     return kGood;
   }
-  if (const Status written = WriteWholeFile(output, response.content()); !written) return Refuse(written.error());
+  if (const Status written = WriteWholeFile(output, response.content()); !written)
+    return Refuse(written.error());
   return kGood;
 }
 

@@ -13,10 +13,10 @@
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/setup.h"
+#include "proto/bridge/sha256.h"
 #include "rmlcell/v1/machine.grpc.pb.h"
 #include "rmlcell/v1/program.grpc.pb.h"
 #include "rmlcell/v1/project.grpc.pb.h"
-#include "proto/bridge/sha256.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -44,7 +44,8 @@ int PrintStored(const Remote& remote, const v1::Program& program, bool check_onl
   const auto slot = ParseInteger(program.name().substr(program.name().rfind('/') + 1));
   const bool executable = slot && *slot > kExecutableOffset;
   Print(program.name() + (check_only ? " would be stored: " : " stored: ") + program.title() +
-        (executable ? ", executable " + Bytes(program.executable_bytes()) : ", object " + Bytes(program.object_bytes())));
+        (executable ? ", executable " + Bytes(program.executable_bytes())
+                    : ", object " + Bytes(program.object_bytes())));
   return kGood;
 }
 
@@ -78,8 +79,8 @@ int Machines(const Remote& remote) {
   }
   std::vector<std::vector<std::string>> rows = {{"MACHINE", "FAMILY", "PROFILE", "TITLE"}};
   for (const v1::Machine& machine : response.machines()) {
-    rows.push_back({machine.name().substr(9), machine.family(), machine.profile().empty() ? "-" : machine.profile(),
-                    machine.title()});
+    rows.push_back({machine.name().substr(9), machine.family(),
+                    machine.profile().empty() ? "-" : machine.profile(), machine.title()});
   }
   PrintRaw(Table(rows));
   return kGood;
@@ -98,11 +99,13 @@ int Programs(const Remote& remote, const std::string& machine) {
     for (const v1::Program& program : response.programs()) Print(Json(program));
     return kGood;
   }
-  std::vector<std::vector<std::string>> rows = {{"SLOT", "TITLE", "SOURCE", "OBJECT", "EXECUTABLE", "ETAG"}};
+  std::vector<std::vector<std::string>> rows = {
+      {"SLOT", "TITLE", "SOURCE", "OBJECT", "EXECUTABLE", "ETAG"}};
   for (const v1::Program& program : response.programs()) {
-    rows.push_back({program.name().substr(program.name().rfind('/') + 1), program.title(),
-                    program.file_name().empty() ? "-" : program.file_name(), Bytes(program.object_bytes()),
-                    program.has_executable_bytes() ? Bytes(program.executable_bytes()) : "-", program.etag()});
+    rows.push_back(
+        {program.name().substr(program.name().rfind('/') + 1), program.title(),
+         program.file_name().empty() ? "-" : program.file_name(), Bytes(program.object_bytes()),
+         program.has_executable_bytes() ? Bytes(program.executable_bytes()) : "-", program.etag()});
   }
   PrintRaw(Table(rows));
   return kGood;
@@ -175,13 +178,16 @@ int GetProgram(const Remote& remote, const std::string& machine, int slot, const
   const grpc::Status status = reader->Finish();
   if (!status.ok()) return Refused(status, remote);
   if (output.empty() && !text && isatty(STDOUT_FILENO) != 0) {
-    return Refuse({ErrorCode::kCellUsage, "these bytes are no text for a terminal: give -o FILE, or -o - all the same", {}});
+    return Refuse({ErrorCode::kCellUsage,
+                   "these bytes are no text for a terminal: give -o FILE, or -o - all the same",
+                   {}});
   }
   if (output.empty() || output == "-") {
     PrintRaw(bytes);
     return kGood;
   }
-  if (const Status written = WriteWholeFile(output, bytes); !written) return Refuse(written.error());
+  if (const Status written = WriteWholeFile(output, bytes); !written)
+    return Refuse(written.error());
   return kGood;
 }
 
@@ -226,7 +232,8 @@ int StaleExecutables(const Remote& remote, const std::string& machine) {
 
 int Projects(const Remote& remote) {
   const auto stub = v1::ProjectService::NewStub(Connect(remote));
-  std::vector<std::vector<std::string>> rows = {{"PROJECT", "TITLE", "PROGRAMS", "SCHEDULES", "PROCESSES"}};
+  std::vector<std::vector<std::string>> rows = {
+      {"PROJECT", "TITLE", "PROGRAMS", "SCHEDULES", "PROCESSES"}};
   v1::ListProjectsRequest request;
   do {
     grpc::ClientContext context;
@@ -236,8 +243,10 @@ int Projects(const Remote& remote) {
     if (!status.ok()) return Refused(status, remote);
     for (const v1::Project& project : response.projects()) {
       if (remote.json) Print(Json(project));
-      rows.push_back({project.name().substr(9), project.title(), std::to_string(project.programs_size()),
-                      std::to_string(project.laser_schedules_size()), std::to_string(project.processes_size())});
+      rows.push_back({project.name().substr(9), project.title(),
+                      std::to_string(project.programs_size()),
+                      std::to_string(project.laser_schedules_size()),
+                      std::to_string(project.processes_size())});
     }
     request.set_page_token(response.next_page_token());
   } while (!request.page_token().empty());
@@ -260,7 +269,8 @@ int GetProject(const Remote& remote, const std::string& project) {
 
 namespace {
 
-int Stored(const Remote& remote, const grpc::Status& status, const v1::Project& project, std::string_view what) {
+int Stored(const Remote& remote, const grpc::Status& status, const v1::Project& project,
+           std::string_view what) {
   if (!status.ok()) return Refused(status, remote);
   Print(remote.json ? Json(project) : project.name() + " " + std::string(what));
   return kGood;
@@ -287,7 +297,8 @@ int UpdateProject(const Remote& remote, const std::string& project, const std::s
   v1::UpdateProjectRequest request;
   *request.mutable_project() = *std::move(changed);
   request.mutable_project()->set_name(FullName("projects", project));
-  request.mutable_update_mask()->add_paths("*");  // what the file lacks is not in the project any more
+  request.mutable_update_mask()->add_paths(
+      "*");  // what the file lacks is not in the project any more
   const auto stub = v1::ProjectService::NewStub(Connect(remote));
   grpc::ClientContext context;
   Prepare(context);
@@ -306,8 +317,8 @@ int DeleteProject(const Remote& remote, const std::string& project) {
   return status.ok() ? int{kGood} : Refused(status, remote);
 }
 
-int TransferProject(const Remote& remote, const std::string& project, const std::string& machine, bool insert,
-                    bool check_only) {
+int TransferProject(const Remote& remote, const std::string& project, const std::string& machine,
+                    bool insert, bool check_only) {
   const auto stub = v1::ProjectService::NewStub(Connect(remote));
   grpc::ClientContext context;
   Prepare(context);

@@ -19,13 +19,20 @@ bool ColourOn(int descriptor) {
 
 std::string_view CodeOf(Colour colour) {
   switch (colour) {
-    case Colour::kRed: return "31";
-    case Colour::kYellow: return "33";
-    case Colour::kGreen: return "32";
-    case Colour::kBlue: return "36";
-    case Colour::kDim: return "2";
-    case Colour::kBold: return "1";
-    case Colour::kPlain: break;
+    case Colour::kRed:
+      return "31";
+    case Colour::kYellow:
+      return "33";
+    case Colour::kGreen:
+      return "32";
+    case Colour::kBlue:
+      return "36";
+    case Colour::kDim:
+      return "2";
+    case Colour::kBold:
+      return "1";
+    case Colour::kPlain:
+      break;
   }
   return "0";
 }
@@ -68,7 +75,8 @@ void Print(std::string_view text) {
 }
 
 void Complain(std::string_view text) {
-  const std::string line = Paint("rmlcell: ", Colour::kRed, ColourOnErrors()) + std::string(text) + "\n";
+  const std::string line =
+      Paint("rmlcell: ", Colour::kRed, ColourOnErrors()) + std::string(text) + "\n";
   std::fwrite(line.data(), 1, line.size(), stderr);
 }
 

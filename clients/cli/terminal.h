@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-// What the command shows to people: colour on a terminal, tables, a progress bar. Data goes to standard
-// output, everything about it to standard error.
+// What the command shows to people: colour on a terminal, tables, a progress bar. Data goes to
+// standard output, everything about it to standard error.
 namespace rmlcell::cli {
 
 // Exit codes (design.md section 7).
@@ -19,14 +19,15 @@ bool ColourOnErrors();
 enum class Colour { kPlain, kRed, kYellow, kGreen, kBlue, kDim, kBold };
 std::string Paint(std::string_view text, Colour colour, bool on);
 
-void Print(std::string_view text);      // to standard output, with a line end
+void Print(std::string_view text);  // to standard output, with a line end
 // Foreign text on one line: bytes that would steer a terminal are shown as \xNN.
 std::string Visible(std::string_view text);
 
-void PrintRaw(std::string_view text);   // to standard output, as it is
-void Complain(std::string_view text);   // to standard error, "rmlcell: ..."
+void PrintRaw(std::string_view text);  // to standard output, as it is
+void Complain(std::string_view text);  // to standard error, "rmlcell: ..."
 
-// Columns as wide as they need to be; numbers are not aligned specially. The first row is the heading.
+// Columns as wide as they need to be; numbers are not aligned specially. The first row is the
+// heading.
 std::string Table(std::vector<std::vector<std::string>> rows);
 
 // One line on standard error that is drawn over; draws nothing when standard error is no terminal.
@@ -45,7 +46,7 @@ class ProgressLine {
 };
 
 std::string Fixed(double value, int decimals);
-std::string Duration(double seconds);     // "1 h 2 min 3.400 s"
-std::string Bytes(std::int64_t bytes);    // "1.2 MB"
+std::string Duration(double seconds);   // "1 h 2 min 3.400 s"
+std::string Bytes(std::int64_t bytes);  // "1.2 MB"
 
 }  // namespace rmlcell::cli

@@ -36,13 +36,15 @@ int ToolAnswer::PrintJson(int exit_code, std::string_view output, std::string_vi
   return exit_code;
 }
 
-int ToolAnswer::Deliver(const std::string& bytes, const std::string& output, const std::string& text) {
+int ToolAnswer::Deliver(const std::string& bytes, const std::string& output,
+                        const std::string& text) {
   if (output == "-" && !json_) {
     PrintRaw(bytes);
     return kGood;
   }
   if (output != "-") {
-    if (const Status written = WriteWholeFile(output, bytes); !written) return Refuse(written.error());
+    if (const Status written = WriteWholeFile(output, bytes); !written)
+      return Refuse(written.error());
   }
   return Written(bytes, output, text, kGood);
 }
@@ -54,7 +56,9 @@ int ToolAnswer::Written(std::string_view bytes, std::string_view output, const s
   return exit_code;
 }
 
-int ToolAnswer::Failed() { return json_ ? PrintJson(kProgramErrors, {}, {}, {}) : int{kProgramErrors}; }
+int ToolAnswer::Failed() {
+  return json_ ? PrintJson(kProgramErrors, {}, {}, {}) : int{kProgramErrors};
+}
 
 int ToolAnswer::Failed(const Error& error) {
   if (!json_) {

@@ -34,8 +34,10 @@ Diagnostic Plain(ErrorCode code, Severity severity, std::string detail, std::str
 
 Findings CheckInch(const Document& document) {
   optimo::Compilation compiled = optimo::Compile(document.text(), {}, {});
-  // A short distance in inches is none in millimetres. Contours, whose advice depends on units, are not looked at.
-  std::erase_if(compiled.diagnostics, [](const Diagnostic& d) { return d.code == ErrorCode::kShortFly; });
+  // A short distance in inches is none in millimetres. Contours, whose advice depends on units, are
+  // not looked at.
+  std::erase_if(compiled.diagnostics,
+                [](const Diagnostic& d) { return d.code == ErrorCode::kShortFly; });
   compiled.diagnostics.insert(
       compiled.diagnostics.begin(),
       Plain(ErrorCode::kSourceIsInch, Severity::kAdvice,

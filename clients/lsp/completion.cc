@@ -47,7 +47,10 @@ bool StartsIgnoringCase(std::string_view text, std::string_view beginning) {
 class Completer {
  public:
   Completer(const OpenProgram& program, std::size_t offset)
-      : program_(program), index_(program.index), text_(program.document.text()), offset_(offset),
+      : program_(program),
+        index_(program.index),
+        text_(program.document.text()),
+        offset_(offset),
         begin_(offset) {
     while (begin_ > 0 && IsWordPart(text_[begin_ - 1])) --begin_;
     typed_ = text_.substr(begin_, offset - begin_);

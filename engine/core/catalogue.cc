@@ -11,9 +11,14 @@ namespace rmlcell {
 namespace {
 
 constexpr std::array kCatalogue = {
-#define RMLCELL_ERROR(family, number, symbol, severity, when, advice)                 \
-  CatalogueEntry{ErrorCode::k##symbol, ErrorFamily::k##family, number, #symbol,       \
-                 Severity::k##severity, when, advice},
+#define RMLCELL_ERROR(family, number, symbol, severity, when, advice) \
+  CatalogueEntry{ErrorCode::k##symbol,                                \
+                 ErrorFamily::k##family,                              \
+                 number,                                              \
+                 #symbol,                                             \
+                 Severity::k##severity,                               \
+                 when,                                                \
+                 advice},
 #include "engine/core/catalogue.def"
 #undef RMLCELL_ERROR
 };
@@ -45,45 +50,68 @@ std::optional<ErrorCode> FindError(ErrorFamily family, int number) {
 
 std::string_view FamilyPrefix(ErrorFamily family) {
   switch (family) {
-    case ErrorFamily::kOptimo: return "OPT";
-    case ErrorFamily::kRml1: return "RML1";
-    case ErrorFamily::kCell: return "CELL";
+    case ErrorFamily::kOptimo:
+      return "OPT";
+    case ErrorFamily::kRml1:
+      return "RML1";
+    case ErrorFamily::kCell:
+      return "CELL";
   }
   return "";
 }
 
 std::string_view SeverityName(Severity severity) {
   switch (severity) {
-    case Severity::kAdvice: return "advice";
-    case Severity::kWarning: return "warning";
-    case Severity::kCompile: return "compile error";
-    case Severity::kProgram: return "program error";
-    case Severity::kFatal: return "fatal program error";
-    case Severity::kAlarm: return "alarm";
-    case Severity::kMessage: return "operator message";
-    case Severity::kTool: return "tool error";
-    case Severity::kBudget: return "budget";
-    case Severity::kDevice: return "device error";
-    case Severity::kRequest: return "request error";
+    case Severity::kAdvice:
+      return "advice";
+    case Severity::kWarning:
+      return "warning";
+    case Severity::kCompile:
+      return "compile error";
+    case Severity::kProgram:
+      return "program error";
+    case Severity::kFatal:
+      return "fatal program error";
+    case Severity::kAlarm:
+      return "alarm";
+    case Severity::kMessage:
+      return "operator message";
+    case Severity::kTool:
+      return "tool error";
+    case Severity::kBudget:
+      return "budget";
+    case Severity::kDevice:
+      return "device error";
+    case Severity::kRequest:
+      return "request error";
   }
   return "";
 }
 
 std::string_view SeverityEffect(Severity severity) {
   switch (severity) {
-    case Severity::kAdvice: return "Reported only.";
-    case Severity::kWarning: return "Reported with its place; changes nothing.";
-    case Severity::kCompile: return "The program is not stored.";
+    case Severity::kAdvice:
+      return "Reported only.";
+    case Severity::kWarning:
+      return "Reported with its place; changes nothing.";
+    case Severity::kCompile:
+      return "The program is not stored.";
     case Severity::kProgram:
       return "The instruction has no effect, motion and beam stop; the program ends unless ERR catches it.";
-    case Severity::kFatal: return "The instruction has no effect, motion and beam stop, the run ends.";
+    case Severity::kFatal:
+      return "The instruction has no effect, motion and beam stop, the run ends.";
     case Severity::kAlarm:
       return "The run ends with the shutter closed; no start until the alarm is acknowledged.";
-    case Severity::kMessage: return "Shown to the operator; the key or request has no effect.";
-    case Severity::kTool: return "The tool stops and writes nothing.";
-    case Severity::kBudget: return "The cell ends the run; beam off, shutter closed.";
-    case Severity::kDevice: return "Noted in the error register and log; interpretation goes on.";
-    case Severity::kRequest: return "The request is refused and nothing is changed.";
+    case Severity::kMessage:
+      return "Shown to the operator; the key or request has no effect.";
+    case Severity::kTool:
+      return "The tool stops and writes nothing.";
+    case Severity::kBudget:
+      return "The cell ends the run; beam off, shutter closed.";
+    case Severity::kDevice:
+      return "Noted in the error register and log; interpretation goes on.";
+    case Severity::kRequest:
+      return "The request is refused and nothing is changed.";
   }
   return "";
 }
@@ -119,7 +147,8 @@ std::vector<const CatalogueEntry*> FindByText(std::string_view text) {
   if (!digits.empty() && (digits.front() == 'E' || digits.front() == 'e')) digits.remove_prefix(1);
   const auto number = ParseInteger(digits);
   for (const CatalogueEntry& entry : kCatalogue) {
-    const bool same_family = family.empty() || EqualIgnoringCase(family, FamilyPrefix(entry.family));
+    const bool same_family =
+        family.empty() || EqualIgnoringCase(family, FamilyPrefix(entry.family));
     const bool same_number = number && *number == entry.number && same_family;
     if (same_number || EqualIgnoringCase(text, entry.symbol) ||
         EqualIgnoringCase(text, ConstantName(entry.code))) {

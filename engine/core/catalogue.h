@@ -63,8 +63,8 @@ std::string CodeText(ErrorCode code);  // "OPT-E348"
 std::string ConstantName(ErrorCode code);
 
 // The rows that a person may mean by "OPT-E348", "rml1-e2", "348", "HoleRadiusZero" or
-// "HOLE_RADIUS_ZERO", in the order of the catalogue; empty when there is none. A bare number may name
-// rows of several families.
+// "HOLE_RADIUS_ZERO", in the order of the catalogue; empty when there is none. A bare number may
+// name rows of several families.
 std::vector<const CatalogueEntry*> FindByText(std::string_view text);
 
 }  // namespace rmlcell

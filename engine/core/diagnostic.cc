@@ -48,8 +48,8 @@ bool IsError(Severity severity) {
 }
 
 bool HasErrors(std::span<const Diagnostic> findings) {
-  return std::ranges::any_of(
-      findings, [](const Diagnostic& finding) { return IsError(finding.severity); });
+  return std::ranges::any_of(findings,
+                             [](const Diagnostic& finding) { return IsError(finding.severity); });
 }
 
 std::string FormatDiagnostic(const Diagnostic& diagnostic, std::string_view source) {

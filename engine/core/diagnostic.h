@@ -24,10 +24,10 @@ struct Fix {
 struct Diagnostic {
   ErrorCode code;
   Severity severity;     // normally that of the catalogue row; CHECK may lower or raise it
-  std::string detail{};    // "radius is 0"
-  std::string rule{};      // "OPT-2.27"; empty when the code says all
-  std::string file{};      // as the user named it; empty for a stored program
-  SourceSpan where{};      // line 0: no text is known
+  std::string detail{};  // "radius is 0"
+  std::string rule{};    // "OPT-2.27"; empty when the code says all
+  std::string file{};    // as the user named it; empty for a stored program
+  SourceSpan where{};    // line 0: no text is known
   int program = 0;       // slot; 0 when the program has none
   int step = 0;          // as the control counts; 0 when it belongs to no step
   std::vector<Fix> fixes{};
@@ -41,7 +41,8 @@ bool IsError(Severity severity);
 bool HasErrors(std::span<const Diagnostic> findings);
 
 // "part.S:12:6: error OPT-E7019: MOVE has 4 values, needs 5 [OPT-2.01]", of a run with its time,
-// "(step 3, at 1.500 s)", then, when `source` is not empty and the line is known, that line and a caret line below it. No line end after the last line.
+// "(step 3, at 1.500 s)", then, when `source` is not empty and the line is known, that line and a
+// caret line below it. No line end after the last line.
 std::string FormatDiagnostic(const Diagnostic& diagnostic, std::string_view source);
 
 // What an author lets pass: warnings and advice of this number at a line of the text; 0: anywhere.

@@ -25,8 +25,8 @@ std::optional<Number> ParseWhole(std::string_view text) {
 
 std::string FixedText(double value, int decimals) {
   std::array<char, kLongestWhole + kDecimalsMax> room{};
-  const auto end = std::to_chars(room.data(), room.data() + room.size(), value, std::chars_format::fixed,
-                                 std::clamp(decimals, 0, kDecimalsMax));
+  const auto end = std::to_chars(room.data(), room.data() + room.size(), value,
+                                 std::chars_format::fixed, std::clamp(decimals, 0, kDecimalsMax));
   std::string text(room.data(), end.ptr);
   if (!text.empty() && text.front() == '-' && text.find_first_not_of("-0.") == std::string::npos) {
     text.erase(0, 1);

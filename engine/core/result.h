@@ -31,15 +31,20 @@ struct Error {
 };
 
 // What a caller gave and must not have given; the detail says which part and what is allowed.
-inline Error InvalidArgument(std::string detail) { return {ErrorCode::kCellInvalidArgument, std::move(detail), {}}; }
+inline Error InvalidArgument(std::string detail) {
+  return {ErrorCode::kCellInvalidArgument, std::move(detail), {}};
+}
 
-// A value or an error. Member names as in std::expected, which replaces it when the toolchain has it
-// (docs/decisions/0001-result-type.md). Reading the wrong side is a bug of ours and stops the process.
+// A value or an error. Member names as in std::expected, which replaces it when the toolchain has
+// it (docs/decisions/0001-result-type.md). Reading the wrong side is a bug of ours and stops the
+// process.
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}      // NOLINT: implicit by design
-  Result(Error error) : state_(std::in_place_index<1>, std::move(error)) {}  // NOLINT: implicit by design
+  Result(T value)
+      : state_(std::in_place_index<0>, std::move(value)) {}  // NOLINT: implicit by design
+  Result(Error error)
+      : state_(std::in_place_index<1>, std::move(error)) {}  // NOLINT: implicit by design
 
   bool has_value() const { return state_.index() == 0; }
   explicit operator bool() const { return has_value(); }

@@ -5,8 +5,9 @@
 #include <cstdint>
 #include <numbers>
 
-// One unit system inside the engine: mm, mm/s, rad, s, W, J. Conversion happens once, at the edge that
-// reads inches, degrees, percent or device steps. A bare double carries its unit last in its name.
+// One unit system inside the engine: mm, mm/s, rad, s, W, J. Conversion happens once, at the edge
+// that reads inches, degrees, percent or device steps. A bare double carries its unit last in its
+// name.
 namespace rmlcell {
 
 // Virtual time since the start of a run. An integer, so that sums are exact everywhere.
@@ -18,8 +19,8 @@ inline constexpr double kTurn = 2.0 * std::numbers::pi;  // rad
 inline constexpr double kMmPerInch = 25.4;
 inline constexpr double kRadPerDegree = kPi / 180.0;
 
-// The nearest nanosecond; saturates at kForever and -kForever, and NaN counts as kForever: a run never
-// gets shorter by a figure that cannot be represented.
+// The nearest nanosecond; saturates at kForever and -kForever, and NaN counts as kForever: a run
+// never gets shorter by a figure that cannot be represented.
 inline SimTime FromSeconds(double seconds) {
   constexpr double kLongest_s = 9.0e9;  // about 285 years, inside the range of 64-bit nanoseconds
   if (!(seconds < kLongest_s)) return kForever;

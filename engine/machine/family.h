@@ -14,16 +14,16 @@
 namespace rmlcell::machine {
 
 struct FamilyInfo {
-  std::string_view id{};          // "optimo"
-  std::string_view title{};       // "Amada OPTIMO 5-axis laser"
-  std::string_view extensions{};  // ".S .SI .CMP .O", space separated, compared without case
-  std::string_view axes{};        // "X Y Z A B"
-  bool has_executables = false; // makes executables at slot + 100
-  bool has_schedules = false;   // laser schedules and process definitions
+  std::string_view id{};            // "optimo"
+  std::string_view title{};         // "Amada OPTIMO 5-axis laser"
+  std::string_view extensions{};    // ".S .SI .CMP .O", space separated, compared without case
+  std::string_view axes{};          // "X Y Z A B"
+  bool has_executables = false;     // makes executables at slot + 100
+  bool has_schedules = false;       // laser schedules and process definitions
   bool checked_by_running = false;  // Translate does not follow the motion: CHECK runs the program
-  bool hold_in_remote = false;  // the HOLD key works in mode REMOTE, too
-  // The machine's own codes for a number that is no slot, and for a slot without program. A machine without
-  // program memory has none: the cell keeps its programs, and says so in its own words.
+  bool hold_in_remote = false;      // the HOLD key works in mode REMOTE, too
+  // The machine's own codes for a number that is no slot, and for a slot without program. A machine
+  // without program memory has none: the cell keeps its programs, and says so in its own words.
   ErrorCode no_slot = ErrorCode::kCellInvalidArgument;
   ErrorCode empty_slot = ErrorCode::kCellNotFound;
 };
@@ -43,17 +43,17 @@ struct SourceFile {
 
 // What the machine would store, and what there is to say about it.
 struct Translation {
-  bool ok = false;                      // false: nothing may be stored
+  bool ok = false;  // false: nothing may be stored
   std::string object{};
   std::vector<Diagnostic> diagnostics{};  // in order of place; at most kDiagnosticsMax
   std::uint64_t diagnostics_dropped = 0;
-  std::vector<Figure> figures{};          // "steps", "object_bytes" ...
-  SourceNotes source{};                   // empty: not asked for, or none
+  std::vector<Figure> figures{};  // "steps", "object_bytes" ...
+  SourceNotes source{};           // empty: not asked for, or none
 };
 inline constexpr std::size_t kDiagnosticsMax = 1000;
 
 struct CheckOptions {
-  bool advice = true;       // lint findings of severity warning and advice
+  bool advice = true;   // lint findings of severity warning and advice
   bool source = false;  // fill in Translation::source
 };
 
@@ -101,7 +101,8 @@ struct FigureInfo {
   std::string_view text{};  // what it means, one sentence
 };
 
-// Why an executable is no longer what a new link of the stored objects would give (OPT-1.12 to 1.15).
+// Why an executable is no longer what a new link of the stored objects would give (OPT-1.12
+// to 1.15).
 enum class StaleReason {
   kObjectChanged,    // the object of its program is another one
   kObjectMissing,    // the object of its program is gone
@@ -133,9 +134,9 @@ class MachineFamily {
   virtual std::span<const ParameterInfo> parameters() const = 0;
   virtual std::span<const MachineProfile> profiles() const = 0;
 
-  // Whether the parameters of a machine fit together: what no range of a single one tells. Whoever takes
-  // parameters from outside asks this before anything is kept or run.
-  // Error: CellParameterRange, with both names and values.
+  // Whether the parameters of a machine fit together: what no range of a single one tells. Whoever
+  // takes parameters from outside asks this before anything is kept or run. Error:
+  // CellParameterRange, with both names and values.
   virtual Status CheckParameters(const Parameters& /*parameters*/) const { return {}; }
 
   // Whether Run::ReadVariable knows the name, on a machine with these parameters.
@@ -156,8 +157,11 @@ class MachineFamily {
   // What there is to say about storing a customer's program in this slot (1..99).
   virtual std::vector<Diagnostic> CheckSlot(int /*slot*/) const { return {}; }
 
-  // What is wrong with a process definition by itself, whatever the programs say (OPT-3.01 to 3.08).
-  virtual std::vector<Diagnostic> CheckProcess(const ProcessDefinition& /*definition*/) const { return {}; }
+  // What is wrong with a process definition by itself, whatever the programs say (OPT-3.01
+  // to 3.08).
+  virtual std::vector<Diagnostic> CheckProcess(const ProcessDefinition& /*definition*/) const {
+    return {};
+  }
 
   // Checks a project and makes what its transfer would store.
   virtual TransferPlan PlanTransfer(const ProjectBundle& project, const Parameters& parameters,
@@ -165,7 +169,9 @@ class MachineFamily {
 
   // Canonical source of an object. A family without objects of its own gives the bytes back.
   // Errors: ObjectCorrupt (7034).
-  virtual Result<std::string> Decompile(std::string_view object) const { return std::string(object); }
+  virtual Result<std::string> Decompile(std::string_view object) const {
+    return std::string(object);
+  }
 
   // Whether bytes are an executable of this family, made of the program of this slot (1..99).
   // Errors: ObjectCorrupt (7034), CellInvalidArgument for that of another program.
@@ -177,8 +183,8 @@ class MachineFamily {
     return {};
   }
 
-  // Errors: ProgramMissing (7102), ObjectCorrupt (7034), the link errors 7103..7108 and the like are not
-  // errors here: the run ends with them. Only a setup that makes no sense is refused.
+  // Errors: ProgramMissing (7102), ObjectCorrupt (7034), the link errors 7103..7108 and the like
+  // are not errors here: the run ends with them. Only a setup that makes no sense is refused.
   // `observer` must outlive the run.
   virtual Result<std::unique_ptr<Run>> NewRun(RunSetup setup, RunObserver& observer) const = 0;
 };

@@ -9,14 +9,14 @@ namespace rmlcell::machine {
 
 // What comes from outside while a program runs.
 enum class InputKind {
-  kLogical,    // IL[index] = value
-  kAnalogue,   // IA[index] = value
-  kDoor,       // operator door; value 1: open
-  kStart,      // keys; START also resumes a paused mill
+  kLogical,   // IL[index] = value
+  kAnalogue,  // IA[index] = value
+  kDoor,      // operator door; value 1: open
+  kStart,     // keys; START also resumes a paused mill
   kHold,
   kStop,
   kEmergencyStop,
-  kOverride,   // feed override in percent
+  kOverride,  // feed override in percent
 };
 
 struct InputChange {

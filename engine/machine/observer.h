@@ -11,10 +11,10 @@ namespace rmlcell::machine {
 
 // Where in the programs something happened.
 struct Place {
-  int program = 0;               // slot of the module; 0 for a stream without slot
-  int step = 0;                  // as the control counts; for a stream the number of the command from 1
-  int line = 0;                  // 0 when no text is known
-  std::int64_t byte_offset = -1; // streams: of the command's first byte
+  int program = 0;  // slot of the module; 0 for a stream without slot
+  int step = 0;     // as the control counts; for a stream the number of the command from 1
+  int line = 0;     // 0 when no text is known
+  std::int64_t byte_offset = -1;  // streams: of the command's first byte
 
   bool operator==(const Place&) const = default;
 };
@@ -32,47 +32,48 @@ struct PowerBySpeed {
   bool operator==(const PowerBySpeed&) const = default;
 };
 
-// One timed motion, when it is over, or a part of one. Whoever runs a motion tells it in parts where
-// something happens on the way: a STOP (the part before, then the ramp to rest as a profile of its
-// own), the beam switched during the motion. Parts, motions and waits never overlap in time; what
-// none of them covers is standstill.
+// One timed motion, when it is over, or a part of one. Whoever runs a motion tells it in parts
+// where something happens on the way: a STOP (the part before, then the ramp to rest as a profile
+// of its own), the beam switched during the motion. Parts, motions and waits never overlap in time;
+// what none of them covers is standstill.
 struct MotionDone {
   SimTime start{0};
   SimTime end{0};
   Place place{};
   MotionUse use = MotionUse::kTravel;
   const motion::PlannedMotion* motion = nullptr;  // valid during the call
-  double from = 0.0;              // along motion->path, at `start`
-  double travelled = 0.0;         // along motion->path, at `end`; short of its length when stopped
-  double profile_start_s = 0.0;   // time within motion->speed at `start`
-  double programmed_mm_s = 0.0;   // feed rate asked for, override included; 0: as fast as the axes can
+  double from = 0.0;                              // along motion->path, at `start`
+  double travelled = 0.0;        // along motion->path, at `end`; short of its length when stopped
+  double profile_start_s = 0.0;  // time within motion->speed at `start`
+  double programmed_mm_s =
+      0.0;  // feed rate asked for, override included; 0: as fast as the axes can
   bool beam_on = false;
-  PowerBySpeed power{};           // laser: in force while the beam is on
+  PowerBySpeed power{};  // laser: in force while the beam is on
 };
 
 // A MOVE (or coordinate set) carried out: where the tool now is.
 struct MoveDone {
   SimTime at{0};
   Place place{};
-  motion::TipPose tip{};             // machine frame; work units of a mill are in the family's figures
+  motion::TipPose tip{};  // machine frame; work units of a mill are in the family's figures
   motion::AxisPose axes{};
-  motion::Vec3 program_point{};      // as programmed: program frame, or device units of a stream
-  double rotary_a = 0.0;           // as programmed: rad, or degrees of a stream
-  double feed_mm_s = 0.0;          // speed limit of the motion
-  std::string_view path{};           // "LIN", "CIR", "ZERO_Z", "PU" ...
-  bool programmed = true;            // false: the machine went there by a procedure of its own
+  motion::Vec3 program_point{};  // as programmed: program frame, or device units of a stream
+  double rotary_a = 0.0;         // as programmed: rad, or degrees of a stream
+  double feed_mm_s = 0.0;        // speed limit of the motion
+  std::string_view path{};       // "LIN", "CIR", "ZERO_Z", "PU" ...
+  bool programmed = true;        // false: the machine went there by a procedure of its own
 };
 
 // A state that outsiders can see: an output, the beam, a spindle.
 enum class Signal {
-  kOutput,    // OL[index]
-  kAnalogue,  // OA[index]
-  kShutter,   // 1 open
-  kBeam,      // 1 on; detail in percent of power
-  kSchedule,  // number of the active laser schedule
-  kGas,       // 1..3
-  kSensor,    // C-axis sensor
-  kSpindle,   // 1 turning; detail in rpm
+  kOutput,        // OL[index]
+  kAnalogue,      // OA[index]
+  kShutter,       // 1 open
+  kBeam,          // 1 on; detail in percent of power
+  kSchedule,      // number of the active laser schedule
+  kGas,           // 1..3
+  kSensor,        // C-axis sensor
+  kSpindle,       // 1 turning; detail in rpm
   kSpindleSpeed,  // rpm, while turning or standing
   kRotaryTable,   // degrees
 };
@@ -114,8 +115,8 @@ struct Halt {
   std::string_view why{};  // "STOP"
 };
 
-// Told everything that a run does, in order of virtual time. Structs are valid during the call only.
-// Default bodies do nothing: override what you need. No method may call back into the run.
+// Told everything that a run does, in order of virtual time. Structs are valid during the call
+// only. Default bodies do nothing: override what you need. No method may call back into the run.
 class RunObserver {
  public:
   virtual ~RunObserver() = default;
@@ -126,7 +127,8 @@ class RunObserver {
   virtual void OnWait(const Wait&) {}
   virtual void OnHalt(const Halt&) {}
   virtual void OnResume(SimTime /*at*/, const Place&) {}
-  virtual void OnProgram(SimTime /*at*/, const Place&, std::string_view /*what*/, int /*program*/) {}
+  virtual void OnProgram(SimTime /*at*/, const Place&, std::string_view /*what*/, int /*program*/) {
+  }
   virtual void OnMessage(SimTime /*at*/, const Place&, std::string_view /*text*/) {}
   virtual void OnViolation(const TravelViolation&) {}
   virtual void OnDiagnostic(SimTime /*at*/, const Diagnostic&) {}

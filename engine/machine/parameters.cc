@@ -37,7 +37,8 @@ Status Parameters::Set(std::string_view name, double value) {
   if (info == nullptr) return Error{ErrorCode::kCellUnknownParameter, std::string(name), {}};
   if (!info->choices.empty()) {
     return Error{ErrorCode::kCellParameterRange,
-                 std::string(info->name) + " takes one of " + std::string(info->choices), {}};
+                 std::string(info->name) + " takes one of " + std::string(info->choices),
+                 {}};
   }
   if (!(value >= info->minimum && value <= info->maximum)) {
     return Error{ErrorCode::kCellParameterRange,
@@ -56,12 +57,14 @@ Status Parameters::Set(std::string_view name, std::string_view text) {
     const std::optional<double> number = ParseDouble(text);
     if (number) return Set(name, *number);
     return Error{ErrorCode::kCellParameterRange,
-                 std::string(info->name) + " takes a number, not '" + std::string(text) + "'", {}};
+                 std::string(info->name) + " takes a number, not '" + std::string(text) + "'",
+                 {}};
   }
   const std::string_view choice = FindChoice(info->choices, text);
   if (choice.empty()) {
     return Error{ErrorCode::kCellParameterRange,
-                 std::string(info->name) + " takes one of " + std::string(info->choices), {}};
+                 std::string(info->name) + " takes one of " + std::string(info->choices),
+                 {}};
   }
   words_.insert_or_assign(std::string(info->name), std::string(choice));
   return {};

@@ -18,9 +18,9 @@ struct ParameterInfo {
     return {.name = name, .unit = {}, .choices = choices, .text = text, .rule = rule};
   }
 
-  std::string_view name;     // "VMAX"
-  std::string_view unit;     // "mm/s"; empty for words and counts
-  double standard = 0.0;     // default
+  std::string_view name;  // "VMAX"
+  std::string_view unit;  // "mm/s"; empty for words and counts
+  double standard = 0.0;  // default
   double minimum = 0.0;
   double maximum = 0.0;
   std::string_view choices;  // "ARROW EFA51": the first word is the default; empty for a number
@@ -41,7 +41,8 @@ struct MachineProfile {
   std::vector<ParameterValue> values;
 };
 
-// The parameters of one machine: the table of its family, with the values that differ from the defaults.
+// The parameters of one machine: the table of its family, with the values that differ from the
+// defaults.
 class Parameters {
  public:
   // `table` must outlive this; it is a constant of the family.

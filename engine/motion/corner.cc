@@ -66,9 +66,8 @@ double Corner::CutFor(double w, const MachineLimits& machine) const {
   const double square = w * w;
   const double cube = square * w;
   const double jerk = machine.normal_jerk();
-  double cut =
-      std::max({bend_ * square / machine.normal_acceleration(), std::sqrt(jerk_ * cube / jerk),
-                1.2 * curvature_jump_ * cube / jerk});
+  double cut = std::max({bend_ * square / machine.normal_acceleration(),
+                         std::sqrt(jerk_ * cube / jerk), 1.2 * curvature_jump_ * cube / jerk});
   // Trapezoids have no limit on the jerk of the axes either: docs/decisions/0015.
   const bool jerk_limited = std::isfinite(jerk);
   const auto widen = [&](double jump, std::size_t axis) {

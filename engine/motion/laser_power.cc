@@ -21,9 +21,7 @@ std::array<double, 2> Crossings(const SpeedProfile::Phase& phase, double speed) 
   const double b = phase.start.acceleration;
   const double c = phase.start.speed - speed;
   std::size_t count = 0;
-  const auto keep = [&](double t) {
-    found[count++] = std::clamp(t, 0.0, end);
-  };
+  const auto keep = [&](double t) { found[count++] = std::clamp(t, 0.0, end); };
   if (a == 0.0) {
     if (b != 0.0) keep(-c / b);
   } else if (const double square = b * b - 4.0 * a * c; square >= 0.0) {

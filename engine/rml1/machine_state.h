@@ -18,8 +18,8 @@ struct MachineState {
 };
 std::string WriteMachineState(const MachineState& state);
 
-// Errors: CellBadText when the text is none of ours or of another version. A place or a setting beyond
-// `profile` is no error: it is limited when the run begins.
+// Errors: CellBadText when the text is none of ours or of another version. A place or a setting
+// beyond `profile` is no error: it is limited when the run begins.
 Result<MachineState> ReadMachineState(std::string_view text, const Profile& profile);
 
 }  // namespace rmlcell::rml1

@@ -14,9 +14,9 @@ inline constexpr std::int64_t kIntMax = 32767;
 
 // A parameter as it was read.
 struct Number {
-  double single = 0.0;         // the nearest 4-byte IEEE value (RML1-9.21): coordinates
-  double decimal = 0.0;        // the double nearest to its first 15 digits, which tell apart any two
-                               // decimals: speeds, so that 0.7 is seven steps of 0.1
+  double single = 0.0;   // the nearest 4-byte IEEE value (RML1-9.21): coordinates
+  double decimal = 0.0;  // the double nearest to its first 15 digits, which tell apart any two
+                         // decimals: speeds, so that 0.7 is seven steps of 0.1
   std::int64_t magnitude = 0;  // whole part without sign, at most kMagnitudeMax
   bool negative = false;
   bool fraction = false;  // a digit other than 0 behind the period, however far behind

@@ -25,7 +25,7 @@ struct Registers {
   double z0;
   double z1;
   double z2;
-  bool rotation = true;  // !MC
+  bool rotation = true;     // !MC
   bool spindle_on = false;  // when the actions that wait are done
   int rpm;
 

@@ -44,8 +44,7 @@ void AxisLog::Add(const Motion& motion) {
   tip_peak_jerk_ = std::max(tip_peak_jerk_, motion.peaks.tip_jerk);
   if (!motion.tip_limited) return;
   limited_peak_speed_ = std::max(limited_peak_speed_, motion.peaks.tip_speed);
-  limited_peak_acceleration_ =
-      std::max(limited_peak_acceleration_, motion.peaks.tip_acceleration);
+  limited_peak_acceleration_ = std::max(limited_peak_acceleration_, motion.peaks.tip_acceleration);
 }
 
 void AxisLog::WriteTo(ScopeFigures& scope) const {

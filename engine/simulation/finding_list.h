@@ -19,7 +19,8 @@ class FindingList {
   std::uint64_t dropped() const { return dropped_; }
 
  private:
-  // The same finding: code, program, step, line and column (a stream may be one line). Its detail may name other values each time.
+  // The same finding: code, program, step, line and column (a stream may be one line). Its detail
+  // may name other values each time.
   using Key = std::tuple<ErrorCode, int, int, int, int>;
 
   std::vector<Finding> findings_;

@@ -7,8 +7,8 @@
 
 namespace rmlcell::simulation {
 
-// Places no farther apart than this are one. Numbers of an object have 24 bits: at 4 m they are 0.0005 mm
-// apart, and two programs may divide the same line at different ones.
+// Places no farther apart than this are one. Numbers of an object have 24 bits: at 4 m they are
+// 0.0005 mm apart, and two programs may divide the same line at different ones.
 inline constexpr double kSamePlace_mm = 2e-3;
 // Pairs of elements that are looked at; enough for any two paths that are alike or far from each
 // other. What is left then counts as different.

@@ -38,9 +38,9 @@ std::string Colour(std::string_view attribute, std::string_view colour) {
 
 class DifferencePage {
  public:
-  DifferencePage(const ComparedPath& before, const ComparedPath& after, const machine::MachineShape& shape,
-       const std::vector<ComparedFigure>& figures, const PictureOptions& options,
-       std::size_t elements_max)
+  DifferencePage(const ComparedPath& before, const ComparedPath& after,
+                 const machine::MachineShape& shape, const std::vector<ComparedFigure>& figures,
+                 const PictureOptions& options, std::size_t elements_max)
       : before_(before),
         after_(after),
         shape_(shape),
@@ -50,8 +50,10 @@ class DifferencePage {
     machine::Box all = before.path.box(), cut = before.path.cut_box();
     all.Add(after.path.box());
     cut.Add(after.path.cut_box());
-    const double panels_width = width_ - 2.0 * kPageMargin - kRulerLeft - kDifferenceColumn - kColumnGap;
-    const ScreenRect area{kPageMargin + kRulerLeft, kDifferenceHeader + kPageMargin, panels_width, 0.0};
+    const double panels_width =
+        width_ - 2.0 * kPageMargin - kRulerLeft - kDifferenceColumn - kColumnGap;
+    const ScreenRect area{kPageMargin + kRulerLeft, kDifferenceHeader + kPageMargin, panels_width,
+                          0.0};
     const machine::Box shown = BoxToShow(all, cut, shape.travel);
     whole_ = LayOut(FramesOf(options, shape), shown, area);
     bottom_ = area.y + whole_.height + kRulerBelow;
@@ -79,7 +81,8 @@ class DifferencePage {
                  {.size = 15.0, .bold = true});
     }
     for (const Panel& panel : closer_.panels) DrawOne(panel, ++id);
-    const double height = std::ceil(std::max(bottom_, DrawColumn(kDifferenceHeader + kPageMargin)) + kDifferenceFooter);
+    const double height = std::ceil(std::max(bottom_, DrawColumn(kDifferenceHeader + kPageMargin)) +
+                                    kDifferenceFooter);
     AppendText(body_, {kPageMargin, height - 14.0}, "machine frame, mm",
                {.size = 11.0, .colour = kFaint});
     return Opening(height) + body_ + "</svg>\n";
@@ -113,10 +116,13 @@ class DifferencePage {
   }
 
   void DrawHeader() {
-    AppendRect(body_, {0, 0, static_cast<double>(width_), kDifferenceHeader}, Colour("fill", "#ffffff"));
+    AppendRect(body_, {0, 0, static_cast<double>(width_), kDifferenceHeader},
+               Colour("fill", "#ffffff"));
     AppendLine(body_, {0, kDifferenceHeader}, {static_cast<double>(width_), kDifferenceHeader},
                Colour("stroke", kRule) + " stroke-width=\"1\"");
-    AppendText(body_, {kPageMargin, 44.0}, Shortened(before_.title, kDifferenceTitleMax) + "  →  " + Shortened(after_.title, kDifferenceTitleMax),
+    AppendText(body_, {kPageMargin, 44.0},
+               Shortened(before_.title, kDifferenceTitleMax) + "  →  " +
+                   Shortened(after_.title, kDifferenceTitleMax),
                {.size = 26.0, .bold = true});
     AppendText(body_, {kPageMargin, 70.0},
                same_path() ? "both run along the same path"
@@ -216,7 +222,8 @@ class DifferencePage {
       y += 18.0;
     };
     for (const ComparedPath* path : {&before_, &after_}) {
-      if (!path->note.empty()) note(Shortened(path->title, kDifferenceTitleMax) + ": " + path->note);
+      if (!path->note.empty())
+        note(Shortened(path->title, kDifferenceTitleMax) + ": " + path->note);
     }
     if (before_.path.tolerance_mm() > 0.0 || after_.path.tolerance_mm() > 0.0) {
       note("drawn coarser: the program is very long");

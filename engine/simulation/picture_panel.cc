@@ -63,7 +63,8 @@ void DrawBox(const machine::Box& box, const Panel& panel, std::string_view style
                           (bits & 2) != 0 ? box.max.y : box.min.y,
                           (bits & 4) != 0 ? box.max.z : box.min.z});
   };
-  std::set<std::tuple<double, double, double, double>> drawn;  // an axial view sees edges behind each other
+  std::set<std::tuple<double, double, double, double>>
+      drawn;  // an axial view sees edges behind each other
   for (unsigned from = 0; from < 8; ++from) {
     for (const unsigned bit : {1u, 2u, 4u}) {
       if ((from & bit) != 0) continue;

@@ -22,7 +22,8 @@ struct PanelContent {
   std::size_t elements_max = 0;  // of one panel
 };
 
-// Opens a panel: paper, grid and rulers, travel of the machine. What is drawn then is clipped to it.
+// Opens a panel: paper, grid and rulers, travel of the machine. What is drawn then is clipped to
+// it.
 void BeginPanel(const machine::MachineShape& shape, const Panel& panel, int id, std::string& out);
 // Closes it: frame, title, axes or scale bar. `nothing`: says that nothing moved.
 void EndPanel(const Panel& panel, bool nothing, std::string& out);

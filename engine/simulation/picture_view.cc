@@ -10,7 +10,7 @@ namespace {
 
 using motion::Vec3;
 
-constexpr double kMargin = 0.06;        // around what is shown, of the larger extent: a line gets room
+constexpr double kMargin = 0.06;  // around what is shown, of the larger extent: a line gets room
 constexpr double kWholeIfWithin = 1.8;  // the path is shown whole when at most this much larger
 constexpr double kThinnest = 0.04;      // of the largest extent: a panel counts as this at least
 constexpr double kSmallest_mm = 0.05;

@@ -24,7 +24,7 @@ struct Products {
   bool plot = false;
   SampleSink samples{};  // empty: no samples
   double samples_hz = 1000.0;
-  std::optional<Milling> milling{};  // checked; nothing: material is not modelled
+  std::optional<Milling> milling{};      // checked; nothing: material is not modelled
   machine::RunObserver* also = nullptr;  // told everything too, before the products; may be null
 };
 

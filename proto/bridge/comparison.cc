@@ -29,7 +29,8 @@ struct Side {
 };
 
 // The module of one program; nothing when it has errors.
-Result<std::optional<optimo::Module>> ReadModule(const ComparedProgram& program, std::vector<Diagnostic>& found,
+Result<std::optional<optimo::Module>> ReadModule(const ComparedProgram& program,
+                                                 std::vector<Diagnostic>& found,
                                                  std::uint64_t& dropped) {
   const machine::MachineFamily* named = simulation::FamilyOfFileName(program.file_name);
   if (named != nullptr && named->info().id != kFamily) {
@@ -44,8 +45,9 @@ Result<std::optional<optimo::Module>> ReadModule(const ComparedProgram& program,
     if (!module) return module.error();
     return std::optional(*std::move(module));
   }
-  optimo::Compilation compiled = optimo::Compile(*program.bytes, program.file_name,
-                                                 {.advice = false, .inch = form == optimo::FileForm::kInchSource});
+  optimo::Compilation compiled =
+      optimo::Compile(*program.bytes, program.file_name,
+                      {.advice = false, .inch = form == optimo::FileForm::kInchSource});
   found = std::move(compiled.diagnostics);
   dropped = compiled.diagnostics_dropped;
   if (!compiled.ok) return std::optional<optimo::Module>();
@@ -53,9 +55,11 @@ Result<std::optional<optimo::Module>> ReadModule(const ComparedProgram& program,
 }
 
 // A run from a new machine; a program that calls others, or waits, does not end by itself.
-Result<std::optional<simulation::TrialRun>> Run(const ComparedProgram& program, const ComparisonOptions& options) {
+Result<std::optional<simulation::TrialRun>> Run(const ComparedProgram& program,
+                                                const ComparisonOptions& options) {
   const machine::MachineFamily* family = simulation::FindFamily(kFamily);
-  const bool object = optimo::FormOfFile(program.file_name, *program.bytes) == optimo::FileForm::kObject;
+  const bool object =
+      optimo::FormOfFile(program.file_name, *program.bytes) == optimo::FileForm::kObject;
   const SetupInput input{.family = family,
                          .programs = {{.slot = program.slot,
                                        .name = BaseName(program.file_name),
@@ -68,11 +72,14 @@ Result<std::optional<simulation::TrialRun>> Run(const ComparedProgram& program, 
   message.set_override_percent(100.0);
   v1::Budget budget;
   budget.set_steps(options.steps_max);
-  SetupOutcome made = *MakeSetup(input, message, budget);  // a machine as it comes: no parameter can be wrong
+  SetupOutcome made =
+      *MakeSetup(input, message, budget);  // a machine as it comes: no parameter can be wrong
   if (!made.setup) return std::optional<simulation::TrialRun>();
   simulation::SimulationOptions how;
-  if (options.go_on) how.progress = [&options](const simulation::Progress&) { return options.go_on(); };
-  Result<simulation::TrialRun> run = simulation::RunForComparison(*family, *std::move(made.setup), std::move(how));
+  if (options.go_on)
+    how.progress = [&options](const simulation::Progress&) { return options.go_on(); };
+  Result<simulation::TrialRun> run =
+      simulation::RunForComparison(*family, *std::move(made.setup), std::move(how));
   if (!run) return run.error();
   return std::optional(*std::move(run));
 }
@@ -127,8 +134,8 @@ std::string NoteOf(const machine::Outcome& outcome) {
   return text;
 }
 
-std::string Picture(const std::array<ComparedProgram, 2>& programs, const std::array<Side, 2>& sides,
-                    const ComparisonOptions& options) {
+std::string Picture(const std::array<ComparedProgram, 2>& programs,
+                    const std::array<Side, 2>& sides, const ComparisonOptions& options) {
   std::vector<simulation::ComparedFigure> figures;
   const auto& before = sides[0].run->figures;
   const auto& after = sides[1].run->figures;
@@ -142,12 +149,14 @@ std::string Picture(const std::array<ComparedProgram, 2>& programs, const std::a
   };
   const machine::MachineFamily* family = simulation::FindFamily(kFamily);
   const machine::MachineShape shape = family->Shape(machine::Parameters(family->parameters()));
-  return simulation::PictureOfDifference(path(0), path(1), shape, figures, {}, options.picture_elements_max);
+  return simulation::PictureOfDifference(path(0), path(1), shape, figures, {},
+                                         options.picture_elements_max);
 }
 
 }  // namespace
 
-Result<ComparisonOutcome> ComparePrograms(const ComparedProgram& before, const ComparedProgram& after,
+Result<ComparisonOutcome> ComparePrograms(const ComparedProgram& before,
+                                          const ComparedProgram& after,
                                           const ComparisonOptions& options) {
   const std::array<ComparedProgram, 2> programs = {before, after};
   std::array<Side, 2> sides;

@@ -24,7 +24,7 @@ struct ComparisonOptions {
   std::size_t picture_elements_max = simulation::kPictureElementsMax;
   std::size_t changes_max = 10'000;  // beyond these changed steps are only counted
   std::int64_t steps_max = 0;        // of each run; 0: as long as runs may be
-  std::function<bool()> go_on{};     // asked now and then; false: the run is given up, without figures
+  std::function<bool()> go_on{};  // asked now and then; false: the run is given up, without figures
 };
 
 struct ComparisonOutcome {
@@ -36,7 +36,8 @@ struct ComparisonOutcome {
 };
 
 // Errors: ObjectCorrupt (7034); CellInvalidArgument for a program of another family.
-Result<ComparisonOutcome> ComparePrograms(const ComparedProgram& before, const ComparedProgram& after,
+Result<ComparisonOutcome> ComparePrograms(const ComparedProgram& before,
+                                          const ComparedProgram& after,
                                           const ComparisonOptions& options);
 
 }  // namespace rmlcell::bridge

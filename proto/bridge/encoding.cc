@@ -37,8 +37,8 @@ std::optional<std::string> StableJson(const google::protobuf::Message& message, 
   options.add_whitespace = whitespace;
   std::string json;
   const auto status = google::protobuf::util::BinaryToJsonString(
-      resolver.get(), std::string(kUrlPrefix) + "/" + message.GetDescriptor()->full_name(), StableBytes(message),
-      &json, options);
+      resolver.get(), std::string(kUrlPrefix) + "/" + message.GetDescriptor()->full_name(),
+      StableBytes(message), &json, options);
   if (!status.ok()) return std::nullopt;
   return json;
 }

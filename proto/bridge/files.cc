@@ -1,10 +1,11 @@
 #include "proto/bridge/files.h"
 
-#include <cmath>
+#include <toml++/toml.h>
+
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
-#include <toml++/toml.h>
 
 #include "engine/core/letters.h"
 #include "engine/core/number_text.h"
@@ -64,7 +65,8 @@ bool SetKind(std::string_view what, v1::ScriptedInput& input) {
 }
 
 bool NeedsValue(v1::ScriptedInput::Kind kind) {
-  return kind == v1::ScriptedInput::KIND_LOGICAL_INPUT || kind == v1::ScriptedInput::KIND_ANALOGUE_INPUT ||
+  return kind == v1::ScriptedInput::KIND_LOGICAL_INPUT ||
+         kind == v1::ScriptedInput::KIND_ANALOGUE_INPUT ||
          kind == v1::ScriptedInput::KIND_OVERRIDE || kind == v1::ScriptedInput::KIND_DOOR;
 }
 
@@ -78,7 +80,9 @@ Result<std::string> ReadFile(const std::string& path, std::int64_t limit) {
   for (std::size_t n = 0; (n = std::fread(room, 1, sizeof room, file.get())) > 0;) {
     text.append(room, n);
     if (static_cast<std::int64_t>(text.size()) > limit) {
-      return Error{ErrorCode::kCellTooLarge, path + " is larger than " + std::to_string(limit) + " bytes", {}};
+      return Error{ErrorCode::kCellTooLarge,
+                   path + " is larger than " + std::to_string(limit) + " bytes",
+                   {}};
     }
   }
   // A directory opens but cannot be read.
@@ -109,8 +113,9 @@ Result<MachineFile> ParseMachineFile(std::string_view text, const std::string& n
           }
         }
       } else {
-        return BadText(name, line, 0,
-                       "unknown key " + std::string(key) + "; there are family, profile, [parameters]");
+        return BadText(
+            name, line, 0,
+            "unknown key " + std::string(key) + "; there are family, profile, [parameters]");
       }
     }
     return machine;
@@ -120,7 +125,8 @@ Result<MachineFile> ParseMachineFile(std::string_view text, const std::string& n
   }
 }
 
-Status ParseInputFile(std::string_view text, const std::string& name, v1::SimulationOptions& options) {
+Status ParseInputFile(std::string_view text, const std::string& name,
+                      v1::SimulationOptions& options) {
   int line_number = 0;
   while (!text.empty()) {
     ++line_number;
@@ -132,7 +138,8 @@ Status ParseInputFile(std::string_view text, const std::string& name, v1::Simula
     const std::size_t blank = line.find_first_of(" \t");
     const auto at = ParseDouble(line.substr(0, blank));
     if (!at || !(*at >= 0.0) || blank == std::string_view::npos) {
-      return BadText(name, line_number, 1, "a line begins with the time in seconds, from 0: 0.5 IL[20] = 1");
+      return BadText(name, line_number, 1,
+                     "a line begins with the time in seconds, from 0: 0.5 IL[20] = 1");
     }
     std::string_view rest = Trim(line.substr(blank));
     const std::size_t equals = rest.find('=');
@@ -146,11 +153,13 @@ Status ParseInputFile(std::string_view text, const std::string& name, v1::Simula
     }
     if (NeedsValue(input.kind()) != (equals != std::string_view::npos)) {
       return BadText(name, line_number, static_cast<int>(blank) + 2,
-                     std::string(what) + (equals == std::string_view::npos ? " needs '= VALUE'" : " takes no value"));
+                     std::string(what) + (equals == std::string_view::npos ? " needs '= VALUE'"
+                                                                           : " takes no value"));
     }
     if (equals != std::string_view::npos) {
       const auto value = ValueOf(Trim(rest.substr(equals + 1)));
-      if (!value) return BadText(name, line_number, 0, "the value is no number, ON, OFF, OPEN or CLOSED");
+      if (!value)
+        return BadText(name, line_number, 0, "the value is no number, ON, OFF, OPEN or CLOSED");
       input.set_value(*value);
       if (const Status valid = CheckInputValue(input); !valid) {
         return BadText(name, line_number, static_cast<int>(blank) + 2, valid.error().detail);
@@ -164,7 +173,9 @@ Status ParseInputFile(std::string_view text, const std::string& name, v1::Simula
 Status CheckInputValue(const v1::ScriptedInput& input) {
   const double value = input.value();
   const auto wrong = [&](const std::string& allowed) {
-    return Error{ErrorCode::kCellInvalidArgument, "the value is " + ShortestText(value) + "; " + allowed, {}};
+    return Error{ErrorCode::kCellInvalidArgument,
+                 "the value is " + ShortestText(value) + "; " + allowed,
+                 {}};
   };
   switch (input.kind()) {
     case v1::ScriptedInput::KIND_LOGICAL_INPUT:

@@ -9,7 +9,7 @@
 namespace rmlcell::v1 {
 class ScriptedInput;
 class SimulationOptions;
-}
+}  // namespace rmlcell::v1
 
 // Readers of the small files that go with a program. The forms are described in docs/files.md.
 namespace rmlcell::bridge {
@@ -28,12 +28,13 @@ Result<MachineFile> ParseMachineFile(std::string_view text, const std::string& n
 // Input file: one change a line, "SECONDS WHAT [= VALUE]", # begins a comment:
 //   0.5 IL[20] = 1      2.0 START      3.25 OVERRIDE = 55      4 DOOR = OPEN
 // Appends to options.inputs. Errors: CellBadText with line and column.
-Status ParseInputFile(std::string_view text, const std::string& name, v1::SimulationOptions& options);
+Status ParseInputFile(std::string_view text, const std::string& name,
+                      v1::SimulationOptions& options);
 
 inline constexpr double kOverrideMax = 145.0;  // %
 
-// Whether the value of an input can be: logical ones and the door are 0 or 1, the feed override is above 0 to
-// 145 %, numbers are finite. Error: CellInvalidArgument.
+// Whether the value of an input can be: logical ones and the door are 0 or 1, the feed override is
+// above 0 to 145 %, numbers are finite. Error: CellInvalidArgument.
 Status CheckInputValue(const v1::ScriptedInput& input);
 
 }  // namespace rmlcell::bridge

@@ -13,34 +13,56 @@ namespace {
 
 v1::Severity SeverityToProto(Severity severity) {
   switch (severity) {
-    case Severity::kAdvice: return v1::SEVERITY_ADVICE;
-    case Severity::kWarning: return v1::SEVERITY_WARNING;
-    case Severity::kCompile: return v1::SEVERITY_COMPILE;
-    case Severity::kProgram: return v1::SEVERITY_PROGRAM;
-    case Severity::kFatal: return v1::SEVERITY_FATAL;
-    case Severity::kAlarm: return v1::SEVERITY_ALARM;
-    case Severity::kMessage: return v1::SEVERITY_MESSAGE;
-    case Severity::kTool: return v1::SEVERITY_TOOL;
-    case Severity::kBudget: return v1::SEVERITY_BUDGET;
-    case Severity::kDevice: return v1::SEVERITY_DEVICE;
-    case Severity::kRequest: return v1::SEVERITY_REQUEST;
+    case Severity::kAdvice:
+      return v1::SEVERITY_ADVICE;
+    case Severity::kWarning:
+      return v1::SEVERITY_WARNING;
+    case Severity::kCompile:
+      return v1::SEVERITY_COMPILE;
+    case Severity::kProgram:
+      return v1::SEVERITY_PROGRAM;
+    case Severity::kFatal:
+      return v1::SEVERITY_FATAL;
+    case Severity::kAlarm:
+      return v1::SEVERITY_ALARM;
+    case Severity::kMessage:
+      return v1::SEVERITY_MESSAGE;
+    case Severity::kTool:
+      return v1::SEVERITY_TOOL;
+    case Severity::kBudget:
+      return v1::SEVERITY_BUDGET;
+    case Severity::kDevice:
+      return v1::SEVERITY_DEVICE;
+    case Severity::kRequest:
+      return v1::SEVERITY_REQUEST;
   }
   return v1::SEVERITY_UNSPECIFIED;
 }
 
 Severity SeverityFromProto(v1::Severity severity) {
   switch (severity) {
-    case v1::SEVERITY_ADVICE: return Severity::kAdvice;
-    case v1::SEVERITY_WARNING: return Severity::kWarning;
-    case v1::SEVERITY_COMPILE: return Severity::kCompile;
-    case v1::SEVERITY_PROGRAM: return Severity::kProgram;
-    case v1::SEVERITY_FATAL: return Severity::kFatal;
-    case v1::SEVERITY_ALARM: return Severity::kAlarm;
-    case v1::SEVERITY_MESSAGE: return Severity::kMessage;
-    case v1::SEVERITY_TOOL: return Severity::kTool;
-    case v1::SEVERITY_BUDGET: return Severity::kBudget;
-    case v1::SEVERITY_DEVICE: return Severity::kDevice;
-    default: return Severity::kRequest;
+    case v1::SEVERITY_ADVICE:
+      return Severity::kAdvice;
+    case v1::SEVERITY_WARNING:
+      return Severity::kWarning;
+    case v1::SEVERITY_COMPILE:
+      return Severity::kCompile;
+    case v1::SEVERITY_PROGRAM:
+      return Severity::kProgram;
+    case v1::SEVERITY_FATAL:
+      return Severity::kFatal;
+    case v1::SEVERITY_ALARM:
+      return Severity::kAlarm;
+    case v1::SEVERITY_MESSAGE:
+      return Severity::kMessage;
+    case v1::SEVERITY_TOOL:
+      return Severity::kTool;
+    case v1::SEVERITY_BUDGET:
+      return Severity::kBudget;
+    case v1::SEVERITY_DEVICE:
+      return Severity::kDevice;
+    default:
+      return Severity::kRequest;
   }
 }
 
@@ -58,8 +80,11 @@ std::string Utf8(const std::string& text) {
   out.reserve(text.size());
   for (std::size_t i = 0; i < text.size();) {
     const auto lead = static_cast<unsigned char>(text[i]);
-    std::size_t size = lead < 0x80 ? 1 : lead >= 0xC2 && lead < 0xE0 ? 2 : lead >= 0xE0 && lead < 0xF0 ? 3
-                     : lead >= 0xF0 && lead < 0xF5 ? 4 : 0;
+    std::size_t size = lead < 0x80                   ? 1
+                       : lead >= 0xC2 && lead < 0xE0 ? 2
+                       : lead >= 0xE0 && lead < 0xF0 ? 3
+                       : lead >= 0xF0 && lead < 0xF5 ? 4
+                                                     : 0;
     bool good = size > 0 && i + size <= text.size();
     for (std::size_t k = 1; good && k < size; ++k) {
       good = (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
@@ -86,7 +111,8 @@ v1::Diagnostic ToProto(const Diagnostic& diagnostic) {
   message.set_code(CodeText(diagnostic.code));
   message.set_symbol(ConstantName(diagnostic.code));
   message.set_severity(SeverityToProto(diagnostic.severity));
-  message.set_message(diagnostic.detail.empty() ? std::string(entry.when) : Utf8(diagnostic.detail));
+  message.set_message(diagnostic.detail.empty() ? std::string(entry.when)
+                                                : Utf8(diagnostic.detail));
   message.set_advice(std::string(entry.advice));
   message.set_rule(diagnostic.rule);
   message.set_count(1);
@@ -116,11 +142,21 @@ v1::Figure ToProto(const machine::Figure& figure) {
 v1::Outcome ToProto(const machine::Outcome& outcome) {
   v1::Outcome message;
   switch (outcome.kind) {
-    case machine::OutcomeKind::kCompleted: message.set_kind(v1::Outcome::KIND_COMPLETED); break;
-    case machine::OutcomeKind::kStopped: message.set_kind(v1::Outcome::KIND_STOPPED); break;
-    case machine::OutcomeKind::kFailed: message.set_kind(v1::Outcome::KIND_FAILED); break;
-    case machine::OutcomeKind::kCancelled: message.set_kind(v1::Outcome::KIND_CANCELLED); break;
-    case machine::OutcomeKind::kBudgetExceeded: message.set_kind(v1::Outcome::KIND_BUDGET_EXCEEDED); break;
+    case machine::OutcomeKind::kCompleted:
+      message.set_kind(v1::Outcome::KIND_COMPLETED);
+      break;
+    case machine::OutcomeKind::kStopped:
+      message.set_kind(v1::Outcome::KIND_STOPPED);
+      break;
+    case machine::OutcomeKind::kFailed:
+      message.set_kind(v1::Outcome::KIND_FAILED);
+      break;
+    case machine::OutcomeKind::kCancelled:
+      message.set_kind(v1::Outcome::KIND_CANCELLED);
+      break;
+    case machine::OutcomeKind::kBudgetExceeded:
+      message.set_kind(v1::Outcome::KIND_BUDGET_EXCEEDED);
+      break;
   }
   message.set_message(Utf8(outcome.detail));
   if (outcome.code) {
@@ -159,30 +195,33 @@ v1::Findings FindingsOf(bool ok, const std::vector<Diagnostic>& diagnostics, std
   return message;
 }
 
-v1::Findings FindingsOf(const machine::Translation& translation, const simulation::MotionCheck& motion, int slot) {
-  v1::Findings message = FindingsOf(translation.ok && !motion.has_errors(), translation.diagnostics,
-                                    translation.diagnostics_dropped + motion.findings_dropped, translation.figures);
-  for (const Diagnostic& diagnostic : motion.findings) *message.add_diagnostics() = ToProto(diagnostic);
+v1::Findings FindingsOf(const machine::Translation& translation,
+                        const simulation::MotionCheck& motion, int slot) {
+  v1::Findings message =
+      FindingsOf(translation.ok && !motion.has_errors(), translation.diagnostics,
+                 translation.diagnostics_dropped + motion.findings_dropped, translation.figures);
+  for (const Diagnostic& diagnostic : motion.findings)
+    *message.add_diagnostics() = ToProto(diagnostic);
   const auto cut_short = motion.cut_short.find(slot);
   if (cut_short != motion.cut_short.end()) message.set_motion_check(Utf8(cut_short->second));
   return message;
 }
 
 Diagnostic FromProto(const v1::Diagnostic& message) {
-  Diagnostic diagnostic{.code = ErrorCode::kCellInternal,
-                        .severity = SeverityFromProto(message.severity()),
-                        .detail = message.message(),
-                        .rule = message.rule(),
-                        .file = message.place().file(),
-                        .where = {.line = message.place().line(),
-                                  .column = message.place().column(),
-                                  .length = message.place().length(),
-                                  .byte_offset = message.place().has_byte_offset()
-                                                     ? message.place().byte_offset()
-                                                     : -1},
-                        .program = message.place().program(),
-                        .step = message.place().step(),
-                        .fixes = {}};
+  Diagnostic diagnostic{
+      .code = ErrorCode::kCellInternal,
+      .severity = SeverityFromProto(message.severity()),
+      .detail = message.message(),
+      .rule = message.rule(),
+      .file = message.place().file(),
+      .where = {.line = message.place().line(),
+                .column = message.place().column(),
+                .length = message.place().length(),
+                .byte_offset =
+                    message.place().has_byte_offset() ? message.place().byte_offset() : -1},
+      .program = message.place().program(),
+      .step = message.place().step(),
+      .fixes = {}};
   if (message.has_time_s()) diagnostic.at = FromSeconds(message.time_s());
   const auto found = FindByText(message.code());
   if (found.empty()) {
@@ -191,7 +230,8 @@ Diagnostic FromProto(const v1::Diagnostic& message) {
     diagnostic.code = found.front()->code;
   }
   for (const v1::TextFix& fix : message.fixes()) {
-    diagnostic.fixes.push_back({.byte_offset = fix.byte_offset(), .length = fix.length(), .text = fix.text()});
+    diagnostic.fixes.push_back(
+        {.byte_offset = fix.byte_offset(), .length = fix.length(), .text = fix.text()});
   }
   return diagnostic;
 }
@@ -199,29 +239,42 @@ Diagnostic FromProto(const v1::Diagnostic& message) {
 int RpcCode(ErrorCode code) {
   switch (code) {
     case ErrorCode::kCellInternal:
-    case ErrorCode::kCellStoreFailed: return 13;  // INTERNAL
-    case ErrorCode::kCellStoreCorrupt: return 15;  // DATA_LOSS
+    case ErrorCode::kCellStoreFailed:
+      return 13;  // INTERNAL
+    case ErrorCode::kCellStoreCorrupt:
+      return 15;  // DATA_LOSS
     case ErrorCode::kCellUnavailable:
-    case ErrorCode::kCellStoreBusy: return 14;  // UNAVAILABLE
+    case ErrorCode::kCellStoreBusy:
+      return 14;  // UNAVAILABLE
     case ErrorCode::kCellNotFound:
     case ErrorCode::kCellUnknownMachine:
-    case ErrorCode::kProgramMissing: return 5;  // NOT_FOUND
+    case ErrorCode::kProgramMissing:
+      return 5;  // NOT_FOUND
     case ErrorCode::kCellAlreadyExists:
-    case ErrorCode::kCellRequestIdReused: return 6;  // ALREADY_EXISTS
+    case ErrorCode::kCellRequestIdReused:
+      return 6;  // ALREADY_EXISTS
     case ErrorCode::kCellEtagMismatch:
-    case ErrorCode::kCellLeaseLost: return 10;  // ABORTED
-    case ErrorCode::kCellPermission: return 7;
+    case ErrorCode::kCellLeaseLost:
+      return 10;  // ABORTED
+    case ErrorCode::kCellPermission:
+      return 7;
     case ErrorCode::kCellUnauthenticated:
-    case ErrorCode::kCellJoinRefused: return 16;
-    case ErrorCode::kCellUnimplemented: return 12;
+    case ErrorCode::kCellJoinRefused:
+      return 16;
+    case ErrorCode::kCellUnimplemented:
+      return 12;
     case ErrorCode::kCellPrecondition:
     case ErrorCode::kCellVersionMismatch:
-    case ErrorCode::kProgramInUse: return 9;  // FAILED_PRECONDITION
+    case ErrorCode::kProgramInUse:
+      return 9;  // FAILED_PRECONDITION
     case ErrorCode::kCellResourceExhausted:
     case ErrorCode::kCellTooLarge:
-    case ErrorCode::kCmosFull: return 8;  // RESOURCE_EXHAUSTED
-    case ErrorCode::kCellEventsGone: return 11;  // OUT_OF_RANGE
-    default: return 3;  // INVALID_ARGUMENT: a program or a request that is wrong in itself
+    case ErrorCode::kCmosFull:
+      return 8;  // RESOURCE_EXHAUSTED
+    case ErrorCode::kCellEventsGone:
+      return 11;  // OUT_OF_RANGE
+    default:
+      return 3;  // INVALID_ARGUMENT: a program or a request that is wrong in itself
   }
 }
 

@@ -23,7 +23,8 @@ class Outcome;
 namespace rmlcell::bridge {
 
 v1::Diagnostic ToProto(const Diagnostic& diagnostic);
-// Text from programs and file names may hold any bytes; protobuf strings must be UTF-8. What is not becomes
+// Text from programs and file names may hold any bytes; protobuf strings must be UTF-8. What is not
+// becomes
 // "?".
 std::string Utf8(const std::string& text);
 
@@ -36,17 +37,18 @@ v1::Findings FindingsOf(bool ok, const std::vector<Diagnostic>& diagnostics, std
                         const std::vector<machine::Figure>& figures);
 
 // The findings of a check: of the translation, then of the motion.
-v1::Findings FindingsOf(const machine::Translation& translation, const simulation::MotionCheck& motion, int slot);
+v1::Findings FindingsOf(const machine::Translation& translation,
+                        const simulation::MotionCheck& motion, int slot);
 
-// Back to engine values, for those that print findings which came over the wire. Unknown codes become
-// CellInternal with the code in the text: a newer server may know more.
+// Back to engine values, for those that print findings which came over the wire. Unknown codes
+// become CellInternal with the code in the text: a newer server may know more.
 Diagnostic FromProto(const v1::Diagnostic& diagnostic);
 
 // The value of google.rpc.Code that an error stands for: 3 INVALID_ARGUMENT, 5 NOT_FOUND ...
 int RpcCode(ErrorCode code);
 
-// Status with ErrorInfo (reason = constant name, domain "rmlcell") and our ErrorDetail, which carries
-// the findings when there are any.
+// Status with ErrorInfo (reason = constant name, domain "rmlcell") and our ErrorDetail, which
+// carries the findings when there are any.
 google::rpc::Status ToRpcStatus(const Error& error, const std::vector<Diagnostic>& diagnostics = {},
                                 std::uint64_t dropped = 0);
 

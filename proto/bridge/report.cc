@@ -155,8 +155,9 @@ v1::AxisViolation ToProto(const simulation::AxisViolation& violation) {
   message.set_rotary(violation.rotary);
   message.set_excess(violation.excess);
   message.set_at_target(violation.at_target);
-  *message.mutable_position() = PositionOf({.tip = violation.tip, .a_rad = violation.axes.a_rad, .b_rad = violation.axes.b_rad},
-                                           violation.axes);
+  *message.mutable_position() = PositionOf(
+      {.tip = violation.tip, .a_rad = violation.axes.a_rad, .b_rad = violation.axes.b_rad},
+      violation.axes);
   message.set_time_s(ToSeconds(violation.first_at));
   message.set_count(static_cast<std::int64_t>(violation.count));
   return message;
@@ -180,7 +181,8 @@ v1::RunReport ToProto(const simulation::RunReport& report,
   message.set_title(report.title);
   *message.mutable_outcome() = ToProto(report.outcome);
   *message.mutable_total() = ToProto(report.total);
-  *message.mutable_final_position() = PositionOf(report.final_position.tip, report.final_position.axes);
+  *message.mutable_final_position() =
+      PositionOf(report.final_position.tip, report.final_position.axes);
   *message.mutable_final_program_point() = ToProto(report.final_position.program_point);
   message.add_final_program_angles(report.final_position.program_a);
   message.add_final_program_angles(report.final_position.program_b);
@@ -208,7 +210,8 @@ v1::RunReport ToProto(const simulation::RunReport& report,
     diagnostic.set_count(static_cast<std::int64_t>(finding.count));
   }
   message.set_diagnostics_dropped(static_cast<std::int64_t>(report.findings_dropped));
-  for (const simulation::SlowMove& move : report.slow_moves) *message.add_slow_moves() = ToProto(move);
+  for (const simulation::SlowMove& move : report.slow_moves)
+    *message.add_slow_moves() = ToProto(move);
   message.set_slow_moves_dropped(static_cast<std::int64_t>(report.slow_moves_dropped));
   message.set_lookahead_starved(static_cast<std::int64_t>(report.lookahead_starved));
   message.set_collisions("not modelled");
@@ -226,7 +229,8 @@ v1::RunReport ToProto(const simulation::RunReport& report,
   message.set_violations_dropped(static_cast<std::int64_t>(report.violations_dropped));
   for (const machine::Figure& figure : report.figures) *message.add_figures() = ToProto(figure);
   for (const auto& [name, value] : variables) (*message.mutable_variables())[name] = value;
-  for (const auto& [name, value] : report.changed_parameters) (*message.mutable_parameters())[name] = value;
+  for (const auto& [name, value] : report.changed_parameters)
+    (*message.mutable_parameters())[name] = value;
   message.set_inputs_hash(report.inputs_hash);
   message.set_engine_version(report.engine_version);
   *message.mutable_trace() = ToProto(report.trace);
@@ -271,13 +275,15 @@ v1::TraceRecord ToProto(const simulation::TraceRecord& record) {
                          .severity = record.severity,
                          .detail = std::string(record.text)};
       const v1::Diagnostic made = ToProto(finding);
-      message.set_text(record.kind == TraceKind::kEnd ? std::string(simulation::OutcomeText(record.outcome))
-                                                      : made.message());
+      message.set_text(record.kind == TraceKind::kEnd
+                           ? std::string(simulation::OutcomeText(record.outcome))
+                           : made.message());
       if (record.code) message.set_code(made.code());
       if (record.kind == TraceKind::kFinding) message.set_severity(made.severity());
       break;
     }
-    default: message.set_text(std::string(record.text));
+    default:
+      message.set_text(std::string(record.text));
   }
   return message;
 }

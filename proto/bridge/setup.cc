@@ -14,11 +14,16 @@ constexpr std::size_t kShownNameMax = 80;
 
 machine::Mode FromProto(v1::OperatingMode mode, machine::Mode standard) {
   switch (mode) {
-    case v1::OPERATING_MODE_CYCLE: return machine::Mode::kCycle;
-    case v1::OPERATING_MODE_SINGLE: return machine::Mode::kSingle;
-    case v1::OPERATING_MODE_REPEAT: return machine::Mode::kRepeat;
-    case v1::OPERATING_MODE_REMOTE: return machine::Mode::kRemote;
-    default: return standard;
+    case v1::OPERATING_MODE_CYCLE:
+      return machine::Mode::kCycle;
+    case v1::OPERATING_MODE_SINGLE:
+      return machine::Mode::kSingle;
+    case v1::OPERATING_MODE_REPEAT:
+      return machine::Mode::kRepeat;
+    case v1::OPERATING_MODE_REMOTE:
+      return machine::Mode::kRemote;
+    default:
+      return standard;
   }
 }
 
@@ -30,11 +35,12 @@ std::optional<machine::ProgramStep> StepOf(const v1::StepPlace& place, int main_
 // Translates one program into the setup. False: it has errors.
 bool AddProgram(const SetupInput& input, const ProgramInput& program, machine::RunSetup& setup,
                 SetupOutcome& outcome) {
-  machine::StoredProgram stored{.name = program.name, .object = program.bytes, .executable = program.executable};
+  machine::StoredProgram stored{
+      .name = program.name, .object = program.bytes, .executable = program.executable};
   if (program.is_source && !IsObjectFileName(program.file_name)) {
-    machine::Translation translation =
-        input.family->Translate({.name = program.file_name, .bytes = *program.bytes}, setup.parameters,
-                                {.advice = program.slot == input.main_program, .source = true});
+    machine::Translation translation = input.family->Translate(
+        {.name = program.file_name, .bytes = *program.bytes}, setup.parameters,
+        {.advice = program.slot == input.main_program, .source = true});
     for (Diagnostic& diagnostic : translation.diagnostics) {
       if (outcome.diagnostics.size() >= machine::kDiagnosticsMax) {
         ++outcome.diagnostics_dropped;
@@ -58,17 +64,21 @@ bool IsObjectFileName(const std::string& file_name) {
   return file_name.size() > 2 && (file_name.ends_with(".O") || file_name.ends_with(".o"));
 }
 
-Result<machine::Parameters> MakeParameters(const machine::MachineFamily& family, const std::string& profile,
+Result<machine::Parameters> MakeParameters(const machine::MachineFamily& family,
+                                           const std::string& profile,
                                            const std::map<std::string, std::string>& parameters) {
   machine::Parameters made(family.parameters());
   if (!profile.empty()) {
     const auto profiles = family.profiles();
     const auto found = std::ranges::find_if(
-        profiles, [&](const machine::MachineProfile& candidate) { return candidate.id == profile; });
+        profiles,
+        [&](const machine::MachineProfile& candidate) { return candidate.id == profile; });
     if (found == profiles.end()) {
       std::string known;
-      for (const machine::MachineProfile& candidate : profiles) known += " " + std::string(candidate.id);
-      return Error{ErrorCode::kCellInvalidArgument, "no profile '" + profile + "'; there are" + known, {}};
+      for (const machine::MachineProfile& candidate : profiles)
+        known += " " + std::string(candidate.id);
+      return Error{
+          ErrorCode::kCellInvalidArgument, "no profile '" + profile + "'; there are" + known, {}};
     }
     if (const Status applied = made.Apply(*found); !applied) return applied.error();
   }
@@ -80,16 +90,32 @@ Result<machine::Parameters> MakeParameters(const machine::MachineFamily& family,
 }
 
 machine::InputChange FromProto(const v1::ScriptedInput& input) {
-  machine::InputChange change{.at = FromSeconds(input.at_s()), .index = input.index(), .value = input.value()};
+  machine::InputChange change{
+      .at = FromSeconds(input.at_s()), .index = input.index(), .value = input.value()};
   switch (input.kind()) {
-    case v1::ScriptedInput::KIND_ANALOGUE_INPUT: change.kind = machine::InputKind::kAnalogue; break;
-    case v1::ScriptedInput::KIND_DOOR: change.kind = machine::InputKind::kDoor; break;
-    case v1::ScriptedInput::KIND_START: change.kind = machine::InputKind::kStart; break;
-    case v1::ScriptedInput::KIND_HOLD: change.kind = machine::InputKind::kHold; break;
-    case v1::ScriptedInput::KIND_STOP: change.kind = machine::InputKind::kStop; break;
-    case v1::ScriptedInput::KIND_EMERGENCY_STOP: change.kind = machine::InputKind::kEmergencyStop; break;
-    case v1::ScriptedInput::KIND_OVERRIDE: change.kind = machine::InputKind::kOverride; break;
-    default: change.kind = machine::InputKind::kLogical;
+    case v1::ScriptedInput::KIND_ANALOGUE_INPUT:
+      change.kind = machine::InputKind::kAnalogue;
+      break;
+    case v1::ScriptedInput::KIND_DOOR:
+      change.kind = machine::InputKind::kDoor;
+      break;
+    case v1::ScriptedInput::KIND_START:
+      change.kind = machine::InputKind::kStart;
+      break;
+    case v1::ScriptedInput::KIND_HOLD:
+      change.kind = machine::InputKind::kHold;
+      break;
+    case v1::ScriptedInput::KIND_STOP:
+      change.kind = machine::InputKind::kStop;
+      break;
+    case v1::ScriptedInput::KIND_EMERGENCY_STOP:
+      change.kind = machine::InputKind::kEmergencyStop;
+      break;
+    case v1::ScriptedInput::KIND_OVERRIDE:
+      change.kind = machine::InputKind::kOverride;
+      break;
+    default:
+      change.kind = machine::InputKind::kLogical;
   }
   return change;
 }
@@ -120,7 +146,8 @@ Result<SetupOutcome> MakeSetup(const SetupInput& input, const v1::SimulationOpti
   if (options.has_simul()) setup.simul = StepOf(options.simul(), input.main_program);
   setup.inputs = InputsOf(options);
   if (budget.steps() > 0) setup.budget.steps = static_cast<std::uint64_t>(budget.steps());
-  if (budget.virtual_time_s() > 0.0) setup.budget.virtual_time = FromSeconds(budget.virtual_time_s());
+  if (budget.virtual_time_s() > 0.0)
+    setup.budget.virtual_time = FromSeconds(budget.virtual_time_s());
 
   SetupOutcome outcome;
   bool good = true;
@@ -142,10 +169,11 @@ machine::RunSetup SetupForCheck(const SetupInput& input, machine::Parameters par
   for (const ProgramInput& program : input.programs) {
     if (program.slot != input.main_program) AddProgram(input, program, setup, ignored);
   }
-  machine::StoredProgram stored{.name = {},
-                                .object = std::make_shared<const std::string>(main.object),
-                                .executable = nullptr,
-                                .source = std::make_shared<const machine::SourceNotes>(main.source)};
+  machine::StoredProgram stored{
+      .name = {},
+      .object = std::make_shared<const std::string>(main.object),
+      .executable = nullptr,
+      .source = std::make_shared<const machine::SourceNotes>(main.source)};
   setup.programs[input.main_program] = std::move(stored);
   return setup;
 }
@@ -158,11 +186,16 @@ Result<std::vector<std::string>> ExpandVariables(const std::vector<std::string>&
     if (dots == std::string::npos) {
       expanded.push_back(name);
     } else {
-      const auto low = open == std::string::npos ? std::nullopt : ParseInteger(name.substr(open + 1, dots - open - 1));
-      const auto high = name.ends_with(']') ? ParseInteger(name.substr(dots + 2, name.size() - dots - 3))
-                                            : std::nullopt;
+      const auto low = open == std::string::npos
+                           ? std::nullopt
+                           : ParseInteger(name.substr(open + 1, dots - open - 1));
+      const auto high = name.ends_with(']')
+                            ? ParseInteger(name.substr(dots + 2, name.size() - dots - 3))
+                            : std::nullopt;
       if (!low || !high || *low < 0 || *low > *high || *high > 999) {
-        return Error{ErrorCode::kCellInvalidArgument, "variables: '" + name.substr(0, kShownNameMax) + "': write VR[0..9]", {}};
+        return Error{ErrorCode::kCellInvalidArgument,
+                     "variables: '" + name.substr(0, kShownNameMax) + "': write VR[0..9]",
+                     {}};
       }
       for (long long i = *low; i <= *high; ++i) {
         expanded.push_back(name.substr(0, open + 1) + std::to_string(i) + "]");

@@ -30,8 +30,8 @@ struct SetupInput {
   const machine::MachineFamily* family = nullptr;
   std::string profile;
   std::map<std::string, std::string> parameters;  // over the profile
-  std::vector<ProgramInput> programs;             // a later one of the same slot replaces an earlier one
-  std::vector<int> deleted_programs{};            // slots that are empty now and were not always
+  std::vector<ProgramInput> programs;   // a later one of the same slot replaces an earlier one
+  std::vector<int> deleted_programs{};  // slots that are empty now and were not always
   int main_program = 0;
   std::optional<std::vector<machine::LaserSchedule>> schedules;  // nothing: all at their defaults
   std::string machine_state;
@@ -45,19 +45,21 @@ struct SetupOutcome {
   std::uint64_t diagnostics_dropped = 0;
 };
 
-// Errors: CellUnknownParameter, CellParameterRange, CellInvalidArgument: the request itself is wrong.
+// Errors: CellUnknownParameter, CellParameterRange, CellInvalidArgument: the request itself is
+// wrong.
 Result<SetupOutcome> MakeSetup(const SetupInput& input, const v1::SimulationOptions& options,
                                const v1::Budget& budget);
 
-// The setup in which the motion of the main program is checked; `main` is its translation. Sources among the
-// other programs are translated, those with errors left out, as if they were not there.
+// The setup in which the motion of the main program is checked; `main` is its translation. Sources
+// among the other programs are translated, those with errors left out, as if they were not there.
 machine::RunSetup SetupForCheck(const SetupInput& input, machine::Parameters parameters,
                                 const machine::Translation& main);
 
 // Parameters of a machine: defaults of the family, then the profile, then single values. Errors:
-// CellInvalidArgument (no such profile), CellUnknownParameter, CellParameterRange, also of values that do
-// not fit together.
-Result<machine::Parameters> MakeParameters(const machine::MachineFamily& family, const std::string& profile,
+// CellInvalidArgument (no such profile), CellUnknownParameter, CellParameterRange, also of values
+// that do not fit together.
+Result<machine::Parameters> MakeParameters(const machine::MachineFamily& family,
+                                           const std::string& profile,
                                            const std::map<std::string, std::string>& parameters);
 
 machine::InputChange FromProto(const v1::ScriptedInput& input);

@@ -12,9 +12,9 @@ enum class Role { kViewer, kProgrammer, kOperator, kAdmin };
 
 // Who calls. Every method gets one from the gate and from nowhere else.
 struct Caller {
-  std::string identity;    // "local"
+  std::string identity;  // "local"
   Role role = Role::kViewer;
-  std::string peer;        // address, for the log; of the browser when the call came over the web port
+  std::string peer;  // address, for the log; of the browser when the call came over the web port
   std::string request_id;  // for the log: the client's own, or empty
 };
 
@@ -25,13 +25,13 @@ struct CallFacts {
   std::multimap<std::string, std::string> metadata;
 };
 
-// The one place that admits or refuses calls, whatever way they came in: TCP, unix socket, or the web
-// gateway over its channel. For now every caller is the local administrator, since the server
+// The one place that admits or refuses calls, whatever way they came in: TCP, unix socket, or the
+// web gateway over its channel. For now every caller is the local administrator, since the server
 // listens on loopback and unix sockets only.
 class Gate {
  public:
-  // `web_secret` is known to this process alone: what the gateway says about a browser counts only with
-  // it, so that no client can make up a web caller.
+  // `web_secret` is known to this process alone: what the gateway says about a browser counts only
+  // with it, so that no client can make up a web caller.
   explicit Gate(std::string web_secret) : web_secret_(std::move(web_secret)) {}
 
   // Errors: CellUnauthenticated, CellPermission.

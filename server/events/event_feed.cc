@@ -9,7 +9,8 @@ namespace {
 
 constexpr int kReadBatch = 1000;
 
-// Many watchers of one job read the same events at about the same time: once from the store is enough.
+// Many watchers of one job read the same events at about the same time: once from the store is
+// enough.
 constexpr std::size_t kTailEvents = 1024;
 
 constexpr std::int64_t kEverything = 0;  // no job has this number
@@ -32,7 +33,8 @@ class EventFeed::Handle : public EventFeed::Subscription {
     {
       const std::lock_guard lock(feed_.mutex_);
       const auto [first, last] = feed_.watchers_.equal_range(key_);
-      const auto found = std::find_if(first, last, [&](const auto& row) { return row.second == watcher_; });
+      const auto found =
+          std::find_if(first, last, [&](const auto& row) { return row.second == watcher_; });
       if (found != last) feed_.watchers_.erase(found);
       if (!feed_.watchers_.contains(key_)) feed_.tails_.erase(key_);
     }
@@ -46,7 +48,8 @@ class EventFeed::Handle : public EventFeed::Subscription {
   std::shared_ptr<Watcher> watcher_;
 };
 
-EventFeed::EventFeed(storage::Store& store, Timing timing) : store_(store), timing_(std::move(timing)) {
+EventFeed::EventFeed(storage::Store& store, Timing timing)
+    : store_(store), timing_(std::move(timing)) {
   const Result<std::int64_t> last = store_.LastPosition();
   if (last) position_ = *last;
   store_watch_ = store_.Watch([this] {
@@ -82,7 +85,8 @@ Result<std::vector<storage::EventRecord>> EventFeed::EventsAfter(std::int64_t po
     const std::lock_guard lock(mutex_);
     if (position >= position_) return std::vector<storage::EventRecord>();
     if (!recent_.empty() && recent_.front().position <= position + 1) {
-      const auto first = std::ranges::upper_bound(recent_, position, {}, &storage::EventRecord::position);
+      const auto first =
+          std::ranges::upper_bound(recent_, position, {}, &storage::EventRecord::position);
       const auto count = std::min<std::ptrdiff_t>(limit, recent_.end() - first);
       return std::vector<storage::EventRecord>(first, first + count);
     }
@@ -90,7 +94,8 @@ Result<std::vector<storage::EventRecord>> EventFeed::EventsAfter(std::int64_t po
   return store_.AllEvents(position, limit);
 }
 
-std::optional<std::vector<storage::EventRecord>> EventFeed::FromTail(std::int64_t job, std::int64_t after_sequence,
+std::optional<std::vector<storage::EventRecord>> EventFeed::FromTail(std::int64_t job,
+                                                                     std::int64_t after_sequence,
                                                                      int limit) {
   const std::lock_guard lock(mutex_);
   const auto found = tails_.find(job);
@@ -98,8 +103,10 @@ std::optional<std::vector<storage::EventRecord>> EventFeed::FromTail(std::int64_
   const std::deque<storage::EventRecord>& tail = found->second;
   if (tail.front().sequence > after_sequence + 1) return std::nullopt;
   // What is newer than the tail wakes its watchers when it has been read.
-  const auto first = std::ranges::upper_bound(tail, after_sequence, {}, &storage::EventRecord::sequence);
-  return std::vector<storage::EventRecord>(first, first + std::min<std::ptrdiff_t>(limit, tail.end() - first));
+  const auto first =
+      std::ranges::upper_bound(tail, after_sequence, {}, &storage::EventRecord::sequence);
+  return std::vector<storage::EventRecord>(
+      first, first + std::min<std::ptrdiff_t>(limit, tail.end() - first));
 }
 
 void EventFeed::PublishProgress(std::int64_t job, std::string bytes) {
@@ -152,7 +159,8 @@ void EventFeed::Run(const std::stop_token& stop) {
                      [&] { return hinted_ || (quiet && !arriving_.empty()); });
       const auto now = timing_.clock();
       read = rhythm.TakeLook(now, std::exchange(hinted_, false));
-      // Watchers see positions only from here on: one that is woken by many events gets no more of them.
+      // Watchers see positions only from here on: one that is woken by many events gets no more of
+      // them.
       if (!arriving_.empty() && rhythm.TakePositions(now)) {
         for (auto& [job, bytes] : arriving_) {
           progress_[job] = {.job = job, .version = ++version_, .bytes = std::move(bytes)};
@@ -195,8 +203,9 @@ void EventFeed::ReadNewEvents(const std::stop_token& stop) {
   }
 }
 
-// The store removed events before they were read here (it keeps so many, and more were written at once).
-// Whom they would have woken is not known: everybody looks, and a watcher that misses some is told so.
+// The store removed events before they were read here (it keeps so many, and more were written at
+// once). Whom they would have woken is not known: everybody looks, and a watcher that misses some
+// is told so.
 bool EventFeed::SkipGoneEvents() {
   const Result<std::int64_t> gone = store_.EventsGoneUntil();
   std::vector<std::shared_ptr<Watcher>> all;

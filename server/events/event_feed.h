@@ -25,13 +25,13 @@ struct ProgressText {
   std::shared_ptr<const std::string> bytes;
 };
 
-// Wakes watchers when there is something for them. Durable events are never handed over here: a watcher
-// keeps a cursor and reads the log when its writer is free, so one that does not read costs a cursor.
-// Positions are latest-wins and change, as watchers see them, at most every
+// Wakes watchers when there is something for them. Durable events are never handed over here: a
+// watcher keeps a cursor and reads the log when its writer is free, so one that does not read costs
+// a cursor. Positions are latest-wins and change, as watchers see them, at most every
 // FeedRhythm::kProgressInterval.
 //
-// Knows no gRPC: the race detector sees all of it. Thread-safe. Lock order: mutex_ is a leaf; neither the
-// store nor a watcher is called under it.
+// Knows no gRPC: the race detector sees all of it. Thread-safe. Lock order: mutex_ is a leaf;
+// neither the store nor a watcher is called under it.
 class EventFeed {
  public:
   // Events kept in memory, so that a hundred watchers of everything read the log once.
@@ -49,20 +49,22 @@ class EventFeed {
   EventFeed(const EventFeed&) = delete;
   EventFeed& operator=(const EventFeed&) = delete;
 
-  // What a watcher is woken for; may be called from any thread, late, or for nothing. Must be quick and
-  // must not block. Ends when the handle is destroyed; then no call is under way or comes.
+  // What a watcher is woken for; may be called from any thread, late, or for nothing. Must be quick
+  // and must not block. Ends when the handle is destroyed; then no call is under way or comes.
   class Subscription {
    public:
     virtual ~Subscription() = default;
   };
-  std::unique_ptr<Subscription> Subscribe(std::optional<std::int64_t> job, std::function<void()> wake);
+  std::unique_ptr<Subscription> Subscribe(std::optional<std::int64_t> job,
+                                          std::function<void()> wake);
 
-  // Events of the whole cell after a position; from memory when it reaches back that far. Not beyond
-  // position(). Errors: those of the store, CellEventsGone among them.
+  // Events of the whole cell after a position; from memory when it reaches back that far. Not
+  // beyond position(). Errors: those of the store, CellEventsGone among them.
   Result<std::vector<storage::EventRecord>> EventsAfter(std::int64_t position, int limit);
 
   // Events of one job after a sequence number; from memory when it reaches back that far.
-  Result<std::vector<storage::EventRecord>> JobEvents(std::int64_t job, std::int64_t after_sequence, int limit) {
+  Result<std::vector<storage::EventRecord>> JobEvents(std::int64_t job, std::int64_t after_sequence,
+                                                      int limit) {
     if (auto events = FromTail(job, after_sequence, limit)) return *std::move(events);
     return store_.JobEvents(job, after_sequence, limit);
   }
@@ -87,7 +89,8 @@ class EventFeed {
   bool SkipGoneEvents();
   void Wake(const std::vector<std::int64_t>& jobs);  // and those of everything
   // Nothing when memory does not reach back that far.
-  std::optional<std::vector<storage::EventRecord>> FromTail(std::int64_t job, std::int64_t after_sequence, int limit);
+  std::optional<std::vector<storage::EventRecord>> FromTail(std::int64_t job,
+                                                            std::int64_t after_sequence, int limit);
   static void Call(const std::vector<std::shared_ptr<Watcher>>& woken);
 
   storage::Store& store_;
@@ -98,7 +101,7 @@ class EventFeed {
   std::uint64_t version_ = 0;
   std::int64_t position_ = 0;
   std::deque<storage::EventRecord> recent_;
-  std::map<std::int64_t, std::deque<storage::EventRecord>> tails_;  // of jobs that are watched
+  std::map<std::int64_t, std::deque<storage::EventRecord>> tails_;       // of jobs that are watched
   std::map<std::int64_t, std::shared_ptr<const std::string>> arriving_;  // not told yet, by job
   std::map<std::int64_t, ProgressText> progress_;
   std::multimap<std::int64_t, std::shared_ptr<Watcher>> watchers_;  // by job; 0: of everything

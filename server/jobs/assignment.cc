@@ -9,8 +9,8 @@
 namespace rmlcell::server {
 namespace {
 
-// What is larger follows in messages of its own; all programs of an assignment together stay below the
-// limit of one message.
+// What is larger follows in messages of its own; all programs of an assignment together stay below
+// the limit of one message.
 constexpr std::size_t kInlineBytes = 64 << 10;
 constexpr std::size_t kInlineTotal = 1 << 20;
 
@@ -35,8 +35,8 @@ class ProgramsOfAssignment {
       : assignment_(assignment), messages_(messages) {}
 
   // A later program of the same slot replaces an earlier one.
-  void Add(int slot, const std::string& title, const std::string& file_name, std::string bytes, bool is_source,
-           const std::optional<std::string>& executable) {
+  void Add(int slot, const std::string& title, const std::string& file_name, std::string bytes,
+           bool is_source, const std::optional<std::string>& executable) {
     v1::AssignedProgram program;
     program.set_slot(slot);
     program.set_title(title);
@@ -55,7 +55,8 @@ class ProgramsOfAssignment {
 
   void Finish() {
     for (auto& [slot, program] : by_slot_) {
-      if (program.content().empty() && large_.contains(slot)) messages_.programs.emplace_back(slot, large_[slot]);
+      if (program.content().empty() && large_.contains(slot))
+        messages_.programs.emplace_back(slot, large_[slot]);
       *assignment_.add_programs() = std::move(program);
     }
   }
@@ -78,12 +79,14 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
   v1::WorkerAssignment& assignment = *messages.first.mutable_assignment();
   v1::Job& job = *assignment.mutable_job();
   if (!job.ParseFromString(leased.job.specification)) {
-    return Error{ErrorCode::kCellStoreCorrupt, "the specification of " + JobName(leased.job.id), {}};
+    return Error{
+        ErrorCode::kCellStoreCorrupt, "the specification of " + JobName(leased.job.id), {}};
   }
   job.set_name(JobName(leased.job.id));
   assignment.set_family(machine->family);
   assignment.set_profile(machine->profile);
-  for (const auto& [name, value] : machine->parameters) (*assignment.mutable_parameters())[name] = value;
+  for (const auto& [name, value] : machine->parameters)
+    (*assignment.mutable_parameters())[name] = value;
   assignment.set_machine_state(machine->state);
   *assignment.mutable_budget() = BudgetOf(job.budget(), config);
 
@@ -108,7 +111,8 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
   std::optional<std::string> main_executable;
   const machine::MachineFamily* family = simulation::FindFamily(machine->family);
   // A mill runs one stream; only a family whose programs call each other needs the whole memory.
-  const bool only_read = family != nullptr && !family->info().checked_by_running && job.kind() == v1::JOB_KIND_CHECK;
+  const bool only_read =
+      family != nullptr && !family->info().checked_by_running && job.kind() == v1::JOB_KIND_CHECK;
   if (family != nullptr && family->info().has_executables && !only_read) {
     auto memory = store.GetProgramMemory(leased.job.machine);
     if (!memory) return memory.error();
@@ -119,7 +123,8 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
         messages.object_revisions[program.slot] = program.revision;
       } else if (program.slot != main_slot) {
         messages.object_revisions[program.slot] = program.revision;
-        programs.Add(program.slot, program.name, {}, std::move(program.object), false, program.executable);
+        programs.Add(program.slot, program.name, {}, std::move(program.object), false,
+                     program.executable);
       }
     }
     const auto deleted = store.ListDeletedPrograms(leased.job.machine);
@@ -128,15 +133,16 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
   }
   const std::string file_name = stored_main ? std::string() : job.inline_program().file_name();
   const bool is_source = !stored_main && job.inline_program().form() != v1::PROGRAM_FORM_OBJECT;
-  programs.Add(main_slot, main_title, file_name, std::move(*main_bytes), is_source, main_executable);
+  programs.Add(main_slot, main_title, file_name, std::move(*main_bytes), is_source,
+               main_executable);
   for (const v1::SlotProgram& further : job.simulation().programs()) {
     Result<std::string> bytes = attached(AttachmentName(further.slot()));
     if (!bytes) return bytes.error();
     programs.Add(further.slot(), {}, further.program().file_name(), std::move(*bytes),
                  further.program().form() != v1::PROGRAM_FORM_OBJECT, std::nullopt);
   }
-  // An executable that is linked while the memory has programs that the machine has not, or not any more, holds
-  // their code: it is for this job only.
+  // An executable that is linked while the memory has programs that the machine has not, or not any
+  // more, holds their code: it is for this job only.
   const bool as_stored = stored_main && job.simulation().programs().empty() &&
                          messages.object_revisions.contains(main_slot);
   if (!as_stored) messages.object_revisions.clear();

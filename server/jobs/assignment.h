@@ -13,12 +13,14 @@ namespace rmlcell::server {
 
 struct Config;
 
-// Everything that a worker needs for a leased job: a snapshot of the machine's program memory as it is
-// now, with the programs that the job brought in their slots.
+// Everything that a worker needs for a leased job: a snapshot of the machine's program memory as it
+// is now, with the programs that the job brought in their slots.
 struct AssignmentMessages {
   v1::WorkResponse first;  // the assignment; the lease is not filled in
-  std::vector<std::pair<int, std::shared_ptr<const std::string>>> programs;  // those too large for it
-  std::map<int, storage::Revision> object_revisions;  // of stored programs: executables made of them may be kept
+  std::vector<std::pair<int, std::shared_ptr<const std::string>>>
+      programs;  // those too large for it
+  std::map<int, storage::Revision>
+      object_revisions;  // of stored programs: executables made of them may be kept
 };
 
 // Errors: those of the store, CellUnknownMachine.

@@ -1,11 +1,10 @@
-#include "server/jobs/dispatcher_worker.h"
-
 #include <spdlog/spdlog.h>
 
 #include "proto/bridge/findings.h"
 #include "server/config.h"
 #include "server/events/event_feed.h"
 #include "server/executor.h"
+#include "server/jobs/dispatcher_worker.h"
 #include "server/jobs/job_messages.h"
 #include "server/names.h"
 #include "server/version.h"
@@ -24,8 +23,8 @@ void SendStop(WorkerLine& line) {
 
 }  // namespace
 
-Dispatcher::Dispatcher(storage::Store& store, EventFeed& feed, const Config& config, Executor& executor,
-                       std::string join_token, SteadyClock clock)
+Dispatcher::Dispatcher(storage::Store& store, EventFeed& feed, const Config& config,
+                       Executor& executor, std::string join_token, SteadyClock clock)
     : store_(store),
       feed_(feed),
       config_(config),
@@ -42,11 +41,13 @@ Dispatcher::~Dispatcher() {
   changed_.notify_all();
 }
 
-Result<Dispatcher::WorkerId> Dispatcher::Join(std::shared_ptr<WorkerLine> line, const v1::WorkerHello& hello) {
+Result<Dispatcher::WorkerId> Dispatcher::Join(std::shared_ptr<WorkerLine> line,
+                                              const v1::WorkerHello& hello) {
   if (hello.join_token() != join_token_) return Error{ErrorCode::kCellJoinRefused, {}, {}};
   if (hello.version() != kVersion) {
     return Error{ErrorCode::kCellVersionMismatch,
-                 "the worker is " + hello.version() + ", the server " + std::string(kVersion), {}};
+                 "the worker is " + hello.version() + ", the server " + std::string(kVersion),
+                 {}};
   }
   auto worker = std::make_shared<Worker>();
   worker->name = hello.worker();
@@ -95,7 +96,8 @@ void Dispatcher::Leave(WorkerId id) {
   }
   Post(worker, [this, worker] {
     if (worker->assignment) {
-      spdlog::warn("worker {} is gone in the middle of {}", worker->name, JobName(worker->assignment->lease.job));
+      spdlog::warn("worker {} is gone in the middle of {}", worker->name,
+                   JobName(worker->assignment->lease.job));
       Lose(worker->assignment->lease);
       feed_.ForgetProgress(worker->assignment->lease.job);
       worker->assignment.reset();
@@ -135,7 +137,8 @@ void Dispatcher::Post(const std::shared_ptr<Worker>& worker, std::function<void(
   });
 }
 
-// A look that has not begun sees every job stored until now; one that has begun may have missed the last.
+// A look that has not begun sees every job stored until now; one that has begun may have missed the
+// last.
 void Dispatcher::PostLook(const std::shared_ptr<Worker>& worker) {
   {
     const std::lock_guard lock(mutex_);
@@ -170,7 +173,8 @@ void Dispatcher::SweepLeases(const std::stop_token& stop) {
     if (!expired) {
       spdlog::error("leases could not be looked at: {}", bridge::ErrorText(expired.error()));
     } else {
-      for (const storage::JobRecord& job : *expired) spdlog::warn("the lease of {} ran out", JobName(job.id));
+      for (const storage::JobRecord& job : *expired)
+        spdlog::warn("the lease of {} ran out", JobName(job.id));
     }
     EndFailedDeliveries();
     std::unique_lock lock(mutex_);
@@ -190,7 +194,8 @@ Status Dispatcher::Control(std::int64_t job, v1::WorkerControl::Kind kind, doubl
       if (worker->job == job || worker->looking) bearers.push_back(worker);
     }
   }
-  if (bearers.empty()) return Error{ErrorCode::kCellPrecondition, JobName(job) + " does not run", {}};
+  if (bearers.empty())
+    return Error{ErrorCode::kCellPrecondition, JobName(job) + " does not run", {}};
   for (const auto& worker : bearers) {
     Post(worker, [worker, job, kind, value] {
       if (!worker->assignment || worker->assignment->lease.job != job) return;
@@ -220,8 +225,8 @@ void Dispatcher::Drain(std::chrono::milliseconds patience) {
   {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, patience, [this] {
-      return std::ranges::all_of(workers_,
-                                 [](const auto& row) { return row.second->idle && !row.second->looking; });
+      return std::ranges::all_of(
+          workers_, [](const auto& row) { return row.second->idle && !row.second->looking; });
     });
   }
   // From here on nothing is posted but what lines still say.

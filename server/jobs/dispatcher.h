@@ -21,7 +21,8 @@ class EventFeed;
 class Executor;
 struct Config;
 
-// The line to one worker, as the dispatcher sees it: no gRPC here. Never blocks; after Close nothing is sent.
+// The line to one worker, as the dispatcher sees it: no gRPC here. Never blocks; after Close
+// nothing is sent.
 class WorkerLine {
  public:
   virtual ~WorkerLine() = default;
@@ -31,12 +32,12 @@ class WorkerLine {
   virtual void Close(const Error& why) = 0;
 };
 
-// Leases jobs to workers, takes their events and results, and sees to it that no job is lost with its
-// worker (design.md section 3, steps 3 to 9). A lease is held by one worker; what a worker sends after it
-// lost its lease is refused by the fence.
+// Leases jobs to workers, takes their events and results, and sees to it that no job is lost with
+// its worker (design.md section 3, steps 3 to 9). A lease is held by one worker; what a worker
+// sends after it lost its lease is refused by the fence.
 //
-// Thread-safe; calls from the lines return at once: messages of one worker are worked through in order on
-// the executor. Lock order: mutex_ is a leaf.
+// Thread-safe; calls from the lines return at once: messages of one worker are worked through in
+// order on the executor. Lock order: mutex_ is a leaf.
 class Dispatcher {
  public:
   Dispatcher(storage::Store& store, EventFeed& feed, const Config& config, Executor& executor,
@@ -57,8 +58,8 @@ class Dispatcher {
   // Ends a job: at once when it waits, else through its worker.
   Result<storage::JobRecord> Cancel(std::int64_t job);
 
-  // Gives out no more work and asks for what is under way to be handed back. Returns when that is done, or
-  // after `patience`. For good: leases are not looked after any more.
+  // Gives out no more work and asks for what is under way to be handed back. Returns when that is
+  // done, or after `patience`. For good: leases are not looked after any more.
   void Drain(std::chrono::milliseconds patience);
 
   int workers() const;

@@ -18,7 +18,8 @@ namespace {
 constexpr std::int64_t kOutputSlack = 1 << 20;
 
 bool SameLease(const storage::Lease& lease, const v1::WorkerLease& other) {
-  return lease.job == other.job() && lease.attempt == other.attempt() && lease.fence == other.fence();
+  return lease.job == other.job() && lease.attempt == other.attempt() &&
+         lease.fence == other.fence();
 }
 
 }  // namespace
@@ -35,7 +36,8 @@ storage::JobOutcome CancelledOutcome() {
   return {.state = storage::JobState::kCancelled, .code = ErrorCode::kCellCancelled, .detail = {}};
 }
 
-v1::WorkResponse ControlMessage(const storage::Lease& lease, v1::WorkerControl::Kind kind, double value) {
+v1::WorkResponse ControlMessage(const storage::Lease& lease, v1::WorkerControl::Kind kind,
+                                double value) {
   v1::WorkResponse message;
   v1::WorkerControl& control = *message.mutable_control();
   *control.mutable_lease() = ToProto(lease);
@@ -78,7 +80,8 @@ void Dispatcher::Assign(const std::shared_ptr<Worker>& worker) {
 void Dispatcher::Begin(const std::shared_ptr<Worker>& worker, const storage::LeasedJob& job) {
   // A job whose cancel came while its first worker gave it back: there is nothing to begin.
   if (job.job.cancel_requested) return EndWithoutWork(worker, CancelledOutcome());
-  spdlog::debug("{} attempt {} goes to worker {}", JobName(job.lease.job), job.lease.attempt, worker->name);
+  spdlog::debug("{} attempt {} goes to worker {}", JobName(job.lease.job), job.lease.attempt,
+                worker->name);
   if (const Status sent = SendAssignment(*worker, job); !sent) {
     // The job itself cannot be worked on: it fails, and the worker is free for the next.
     return EndWithoutWork(worker, {.state = storage::JobState::kFailed,
@@ -89,18 +92,21 @@ void Dispatcher::Begin(const std::shared_ptr<Worker>& worker, const storage::Lea
   if (draining_) GiveBack(*worker);
 }
 
-void Dispatcher::EndWithoutWork(const std::shared_ptr<Worker>& worker, const storage::JobOutcome& how) {
+void Dispatcher::EndWithoutWork(const std::shared_ptr<Worker>& worker,
+                                const storage::JobOutcome& how) {
   (void)StoreEnd(*worker, ToProto(how), {});
   EndAssignment(*worker, false);
   PostLook(worker);
 }
 
-Result<storage::JobRecord> Dispatcher::StoreEnd(const Worker& worker, const v1::Outcome& outcome,
-                                                const std::vector<storage::NewArtifact>& artifacts) {
+Result<storage::JobRecord> Dispatcher::StoreEnd(
+    const Worker& worker, const v1::Outcome& outcome,
+    const std::vector<storage::NewArtifact>& artifacts) {
   const storage::Lease& lease = worker.assignment->lease;
   auto ended = store_.Finish(lease, OutcomeOf(outcome), artifacts, {EndedEvent(outcome)});
   if (!ended) {
-    spdlog::warn("{} of worker {}: {}", JobName(lease.job), worker.name, bridge::ErrorText(ended.error()));
+    spdlog::warn("{} of worker {}: {}", JobName(lease.job), worker.name,
+                 bridge::ErrorText(ended.error()));
     // A full disk must not leave the job without an owner until its lease runs out.
     if (ended.error().code != ErrorCode::kCellLeaseLost) Lose(lease);
   }
@@ -149,7 +155,8 @@ void Dispatcher::Handle(const std::shared_ptr<Worker>& worker, v1::WorkRequest& 
       if (holds(message.hand_back().lease())) GiveBack(*worker);
       break;
     case v1::WorkRequest::kHello:
-    case v1::WorkRequest::MESSAGE_NOT_SET: break;
+    case v1::WorkRequest::MESSAGE_NOT_SET:
+      break;
   }
 }
 
@@ -165,7 +172,8 @@ void Dispatcher::Heartbeat(Worker& worker, const v1::WorkerHeartbeat& heartbeat)
   const auto now = clock_();
   if (now - assignment.renewed_at < third) return;
   assignment.renewed_at = now;
-  const auto renewed = store_.Renew(assignment.lease, std::chrono::milliseconds(config_.workers_lease_ms));
+  const auto renewed =
+      store_.Renew(assignment.lease, std::chrono::milliseconds(config_.workers_lease_ms));
   if (renewed) {
     // Another server may have been asked to cancel it.
     if (renewed->cancel_requested) {
@@ -183,26 +191,28 @@ void Dispatcher::AppendEvents(Worker& worker, const v1::WorkerEvents& events) {
   for (const v1::JobEvent& event : events.events()) records.push_back(ToRecord(event));
   const auto count = static_cast<std::int64_t>(records.size());
   const storage::Lease lease = worker.assignment->lease;
-  store_.Append(lease, std::move(records),
-                [line = worker.line, lease, count, delivery = worker.assignment->delivery](
-                    const Result<std::int64_t>& written) {
-                  if (!written) {
-                    spdlog::warn("events of {}: {}", JobName(lease.job), bridge::ErrorText(written.error()));
-                    delivery->failed = true;
-                    return;
-                  }
-                  v1::WorkResponse message;
-                  *message.mutable_events_stored()->mutable_lease() = ToProto(lease);
-                  message.mutable_events_stored()->set_count(delivery->stored.fetch_add(count) + count);
-                  line->Send(std::move(message));
-                });
+  store_.Append(
+      lease, std::move(records),
+      [line = worker.line, lease, count,
+       delivery = worker.assignment->delivery](const Result<std::int64_t>& written) {
+        if (!written) {
+          spdlog::warn("events of {}: {}", JobName(lease.job), bridge::ErrorText(written.error()));
+          delivery->failed = true;
+          return;
+        }
+        v1::WorkResponse message;
+        *message.mutable_events_stored()->mutable_lease() = ToProto(lease);
+        message.mutable_events_stored()->set_count(delivery->stored.fetch_add(count) + count);
+        line->Send(std::move(message));
+      });
 }
 
 void Dispatcher::Collect(Worker& worker, v1::WorkerArtifact& artifact) {
   Assignment& assignment = *worker.assignment;
   assignment.collected_bytes += static_cast<std::int64_t>(artifact.chunk().size());
   if (!assignment.artifacts.contains(artifact.name())) {
-    assignment.collected_bytes += static_cast<std::int64_t>(sizeof(storage::NewArtifact) + artifact.name().size());
+    assignment.collected_bytes +=
+        static_cast<std::int64_t>(sizeof(storage::NewArtifact) + artifact.name().size());
   }
   // The worker keeps to the job's budget; this bound holds against a worker that does not.
   if (assignment.collected_bytes > config_.limit_output_bytes + kOutputSlack) {
@@ -219,16 +229,15 @@ void Dispatcher::Collect(Worker& worker, v1::WorkerArtifact& artifact) {
 void Dispatcher::Finish(Worker& worker, v1::WorkerFinish& finish) {
   Assignment& assignment = *worker.assignment;
   if (assignment.over_budget) {
-    *finish.mutable_outcome() = ToProto(storage::JobOutcome{.state = storage::JobState::kFailed,
-                                                            .code = ErrorCode::kCellOutputBudget,
-                                                            .detail = {}});
+    *finish.mutable_outcome() = ToProto(storage::JobOutcome{
+        .state = storage::JobState::kFailed, .code = ErrorCode::kCellOutputBudget, .detail = {}});
   }
   std::vector<storage::NewArtifact> artifacts;
   for (auto& [name, artifact] : assignment.artifacts) artifacts.push_back(std::move(artifact));
   const auto finished = StoreEnd(worker, finish.outcome(), artifacts);
   if (finished) {
-    spdlog::info("{} {} {}", JobName(assignment.lease.job), v1::Job::State_Name(ToProto(finished->state)),
-                 finish.outcome().code());
+    spdlog::info("{} {} {}", JobName(assignment.lease.job),
+                 v1::Job::State_Name(ToProto(finished->state)), finish.outcome().code());
   }
   // Of a worker that lost its lease nothing is kept.
   for (const auto& [slot, executable] : finish.executables()) {
@@ -271,21 +280,23 @@ storage::LossPolicy Dispatcher::PolicyForLoss(const std::string& why) const {
 }
 
 void Dispatcher::Lose(const storage::Lease& lease) {
-  const auto changed = store_.Abandon(lease, PolicyForLoss("the worker of attempt " +
-                                                           std::to_string(lease.attempt) + " died"));
+  const auto changed = store_.Abandon(
+      lease, PolicyForLoss("the worker of attempt " + std::to_string(lease.attempt) + " died"));
   if (!changed && changed.error().code != ErrorCode::kCellLeaseLost) {
-    spdlog::error("{} could not be given back: {}", JobName(lease.job), bridge::ErrorText(changed.error()));
+    spdlog::error("{} could not be given back: {}", JobName(lease.job),
+                  bridge::ErrorText(changed.error()));
   }
 }
 
-// A worker waits until its events are durable. When they cannot be made so it is told to forget the job, or
-// it would wait for ever.
+// A worker waits until its events are durable. When they cannot be made so it is told to forget the
+// job, or it would wait for ever.
 void Dispatcher::EndFailedDeliveries() {
   std::vector<std::pair<std::shared_ptr<Worker>, std::shared_ptr<Delivery>>> failed;
   {
     const std::lock_guard lock(mutex_);
     for (const auto& [id, worker] : workers_) {
-      if (worker->delivery != nullptr && worker->delivery->failed) failed.emplace_back(worker, worker->delivery);
+      if (worker->delivery != nullptr && worker->delivery->failed)
+        failed.emplace_back(worker, worker->delivery);
     }
   }
   for (auto& [worker, delivery] : failed) {

@@ -47,8 +47,8 @@ struct Dispatcher::Worker {
   bool working = false;
   bool gone = false;
   bool idle = true;
-  bool will_look = false;  // a look for a job is in the queue and has not begun
-  bool looking = false;    // it has begun, and may find one; for Drain and Control
+  bool will_look = false;              // a look for a job is in the queue and has not begun
+  bool looking = false;                // it has begun, and may find one; for Drain and Control
   std::int64_t job = 0;                // 0: none; for Control
   std::shared_ptr<Delivery> delivery;  // of the same job, for the sweeper
 };
@@ -56,6 +56,7 @@ struct Dispatcher::Worker {
 v1::WorkerLease ToProto(const storage::Lease& lease);
 storage::JobOutcome CancelledOutcome();
 // An order for the worker that holds the lease.
-v1::WorkResponse ControlMessage(const storage::Lease& lease, v1::WorkerControl::Kind kind, double value);
+v1::WorkResponse ControlMessage(const storage::Lease& lease, v1::WorkerControl::Kind kind,
+                                double value);
 
 }  // namespace rmlcell::server

@@ -8,7 +8,8 @@ namespace rmlcell::server {
 Status CheckFileFamily(const std::string& file_name, const machine::MachineFamily& family) {
   const machine::MachineFamily* named = simulation::FamilyOfFileName(file_name);
   if (named == nullptr || named == &family) return {};
-  return InvalidArgument(Readable(file_name) + " is a program for " + std::string(named->info().title) + ", not for " +
+  return InvalidArgument(Readable(file_name) + " is a program for " +
+                         std::string(named->info().title) + ", not for " +
                          std::string(family.info().title));
 }
 

@@ -6,8 +6,8 @@
 
 namespace rmlcell::server {
 
-// Whether the name of a program's file may stand for a program of this family: its extension is none of
-// another one's. Error: CellInvalidArgument.
+// Whether the name of a program's file may stand for a program of this family: its extension is
+// none of another one's. Error: CellInvalidArgument.
 Status CheckFileFamily(const std::string& file_name, const machine::MachineFamily& family);
 
 }  // namespace rmlcell::server

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-// Products that are a series (toolpath blocks, trace records) are kept as frames: four bytes of length,
-// least significant first, then the bytes.
+// Products that are a series (toolpath blocks, trace records) are kept as frames: four bytes of
+// length, least significant first, then the bytes.
 namespace rmlcell::server {
 
 inline void AddFrame(std::string_view frame, std::string& bytes) {
@@ -19,7 +19,8 @@ inline void AddFrame(std::string_view frame, std::string& bytes) {
 inline std::optional<std::string_view> TakeFrame(std::string_view& rest) {
   if (rest.size() < 4) return std::nullopt;
   std::uint32_t size = 0;
-  for (int i = 3; i >= 0; --i) size = size << 8 | static_cast<unsigned char>(rest[static_cast<std::size_t>(i)]);
+  for (int i = 3; i >= 0; --i)
+    size = size << 8 | static_cast<unsigned char>(rest[static_cast<std::size_t>(i)]);
   if (rest.size() - 4 < size) return std::nullopt;
   const std::string_view frame = rest.substr(4, size);
   rest.remove_prefix(4 + std::size_t{size});

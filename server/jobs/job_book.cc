@@ -30,10 +30,14 @@ constexpr double kPaceMax = 1000.0;  // faster is not to be told from as fast as
 
 std::string_view KindName(v1::JobKind kind) {
   switch (kind) {
-    case v1::JOB_KIND_CHECK: return "CHECK";
-    case v1::JOB_KIND_SIMULATE: return "SIMULATE";
-    case v1::JOB_KIND_RUN: return "RUN";
-    default: return "";
+    case v1::JOB_KIND_CHECK:
+      return "CHECK";
+    case v1::JOB_KIND_SIMULATE:
+      return "SIMULATE";
+    case v1::JOB_KIND_RUN:
+      return "RUN";
+    default:
+      return "";
   }
 }
 
@@ -41,12 +45,14 @@ Status CheckBudget(const v1::Budget& budget) {
   if (budget.steps() < 0) return InvalidArgument("job.budget.steps is below 0");
   if (budget.memory_bytes() < 0) return InvalidArgument("job.budget.memory_bytes is below 0");
   if (budget.output_bytes() < 0) return InvalidArgument("job.budget.output_bytes is below 0");
-  if (!(budget.virtual_time_s() >= 0.0)) return InvalidArgument("job.budget.virtual_time_s is below 0");
+  if (!(budget.virtual_time_s() >= 0.0))
+    return InvalidArgument("job.budget.virtual_time_s is below 0");
   if (!(budget.processor_s() >= 0.0)) return InvalidArgument("job.budget.processor_s is below 0");
   return {};
 }
 
-Status CheckStepPlace(const v1::StepPlace& place, const std::string& field, const machine::MachineFamily& family) {
+Status CheckStepPlace(const v1::StepPlace& place, const std::string& field,
+                      const machine::MachineFamily& family) {
   if (place.program() != 0) {
     if (Status slot = CheckSlot(family, place.program(), field + ".program"); !slot) return slot;
   }
@@ -58,17 +64,20 @@ Status CheckSimulation(const v1::SimulationOptions& options, const machine::Mach
   const double override_percent = options.override_percent();
   if (!(override_percent >= 0.0 && override_percent <= bridge::kOverrideMax)) {
     return InvalidArgument("job.simulation.override_percent is " + ShortestText(override_percent) +
-                   ", allowed are above 0 to 145");
+                           ", allowed are above 0 to 145");
   }
   if (!(options.toolpath_tolerance_mm() >= 0.0 && options.toolpath_tolerance_mm() <= 100.0)) {
     return InvalidArgument("job.simulation.toolpath_tolerance_mm: allowed are 0 to 100");
   }
   if (!(options.pace() >= 0.0 && options.pace() <= kPaceMax)) {
-    return InvalidArgument("job.simulation.pace is " + ShortestText(options.pace()) + ", allowed are 0 to 1000");
+    return InvalidArgument("job.simulation.pace is " + ShortestText(options.pace()) +
+                           ", allowed are 0 to 1000");
   }
-  if (!v1::OperatingMode_IsValid(options.mode())) return InvalidArgument("job.simulation.mode is none that there is");
+  if (!v1::OperatingMode_IsValid(options.mode()))
+    return InvalidArgument("job.simulation.mode is none that there is");
   if (options.mode() == v1::OPERATING_MODE_MANUAL) {
-    return InvalidArgument("job.simulation.mode is MANUAL, in which no program runs: use REMOTE, CYCLE, SINGLE or REPEAT");
+    return InvalidArgument(
+        "job.simulation.mode is MANUAL, in which no program runs: use REMOTE, CYCLE, SINGLE or REPEAT");
   }
   if (options.has_breakpoint()) {
     const Status valid = CheckStepPlace(options.breakpoint(), "job.simulation.breakpoint", family);
@@ -82,16 +91,19 @@ Status CheckSimulation(const v1::SimulationOptions& options, const machine::Mach
     if (!(input.at_s() >= 0.0 && std::isfinite(input.at_s()))) {
       return InvalidArgument("job.simulation.inputs: at_s must be 0 or later");
     }
-    if (input.kind() == v1::ScriptedInput::KIND_UNSPECIFIED || !v1::ScriptedInput::Kind_IsValid(input.kind())) {
+    if (input.kind() == v1::ScriptedInput::KIND_UNSPECIFIED ||
+        !v1::ScriptedInput::Kind_IsValid(input.kind())) {
       return InvalidArgument("job.simulation.inputs: kind is not given");
     }
-    if (input.index() < 0 || input.index() > 99) return InvalidArgument("job.simulation.inputs: index is 0 to 99");
+    if (input.index() < 0 || input.index() > 99)
+      return InvalidArgument("job.simulation.inputs: index is 0 to 99");
     if (const Status valid = bridge::CheckInputValue(input); !valid) {
       return InvalidArgument("job.simulation.inputs: " + valid.error().detail);
     }
   }
   for (const v1::SlotProgram& program : options.programs()) {
-    if (Status slot = CheckSlot(family, program.slot(), "job.simulation.programs.slot"); !slot) return slot;
+    if (Status slot = CheckSlot(family, program.slot(), "job.simulation.programs.slot"); !slot)
+      return slot;
   }
   return {};
 }
@@ -99,18 +111,21 @@ Status CheckSimulation(const v1::SimulationOptions& options, const machine::Mach
 // Those of a report can be given (Run::ReadVariable) when the run is over.
 Status CheckVariables(const v1::SimulationOptions& options, const machine::MachineFamily& family,
                       const machine::Parameters& parameters) {
-  const auto names = bridge::ExpandVariables({options.variables().begin(), options.variables().end()});
+  const auto names =
+      bridge::ExpandVariables({options.variables().begin(), options.variables().end()});
   if (!names) return InvalidArgument("job.simulation." + names.error().detail);
   for (const std::string& name : *names) {
     if (family.HasVariable(parameters, name)) continue;
-    return InvalidArgument("job.simulation.variables: the machine has no variable " + Readable(name));
+    return InvalidArgument("job.simulation.variables: the machine has no variable " +
+                           Readable(name));
   }
   return {};
 }
 
-// Two requests of one request_id must ask for the same: by this alone a submission is acknowledged as a job
-// that is there already, so nobody may be able to make two jobs of one hash. A store of an earlier version
-// holds another kind of hash: such a request, repeated, is refused as reused, and nothing is run twice.
+// Two requests of one request_id must ask for the same: by this alone a submission is acknowledged
+// as a job that is there already, so nobody may be able to make two jobs of one hash. A store of an
+// earlier version holds another kind of hash: such a request, repeated, is refused as reused, and
+// nothing is run twice.
 std::string RequestHash(const v1::SubmitJobRequest& request) {
   return bridge::Sha256Hex(bridge::StableBytes(request.job()));
 }
@@ -119,26 +134,33 @@ std::string RequestHash(const v1::SubmitJobRequest& request) {
 
 std::string AttachmentName(int slot) { return "program-" + std::to_string(slot); }
 
-Status JobBook::AttachProgram(const v1::Job& job, const machine::MachineFamily& family, storage::NewJob& made,
-                              v1::Job& specification) {
+Status JobBook::AttachProgram(const v1::Job& job, const machine::MachineFamily& family,
+                              storage::NewJob& made, v1::Job& specification) {
   switch (job.program_source_case()) {
     case v1::Job::kInlineProgram: {
-      if (Status fits = CheckSize(job.inline_program().content(), "job.inline_program"); !fits) return fits;
+      if (Status fits = CheckSize(job.inline_program().content(), "job.inline_program"); !fits)
+        return fits;
       if (job.inline_slot() != 0) {
-        if (Status slot = CheckSlot(family, job.inline_slot(), "job.inline_slot"); !slot) return slot;
+        if (Status slot = CheckSlot(family, job.inline_slot(), "job.inline_slot"); !slot)
+          return slot;
       }
-      if (Status fits = CheckFileFamily(job.inline_program().file_name(), family); !fits) return fits;
-      made.attachments.push_back({std::string(kMainAttachment), "application/octet-stream",
-                                  job.inline_program().content(), {}});
+      if (Status fits = CheckFileFamily(job.inline_program().file_name(), family); !fits)
+        return fits;
+      made.attachments.push_back({std::string(kMainAttachment),
+                                  "application/octet-stream",
+                                  job.inline_program().content(),
+                                  {}});
       specification.mutable_inline_program()->clear_content();
       return {};
     }
     case v1::Job::kProgram: {
       const Result<ProgramName> name = ParseProgramName(job.program());
       if (!name) return name.error();
-      if (name->machine != made.machine) return InvalidArgument("job.program is not a program of job.machine");
+      if (name->machine != made.machine)
+        return InvalidArgument("job.program is not a program of job.machine");
       if (Status there = CheckNumber(family, *name); !there) return there;
-      if (name->executable) return Error{family.info().no_slot, "an executable is started by its object", {}};
+      if (name->executable)
+        return Error{family.info().no_slot, "an executable is started by its object", {}};
       const auto found = store_.GetProgramSummary(made.machine, name->slot);
       if (!found) {
         if (found.error().code != ErrorCode::kCellNotFound) return found.error();
@@ -148,7 +170,8 @@ Status JobBook::AttachProgram(const v1::Job& job, const machine::MachineFamily& 
           {std::string(kMainAttachment), "application/octet-stream", {}, found->object_sha256});
       return {};
     }
-    case v1::Job::PROGRAM_SOURCE_NOT_SET: break;
+    case v1::Job::PROGRAM_SOURCE_NOT_SET:
+      break;
   }
   return InvalidArgument("job.program or job.inline_program is missing");
 }
@@ -157,21 +180,24 @@ Status JobBook::CheckSize(const std::string& content, const std::string& what) c
   if (content.empty()) return Error{ErrorCode::kCellEmptyProgram, what, {}};
   if (static_cast<std::int64_t>(content.size()) <= config_.limit_program_bytes) return {};
   return Error{ErrorCode::kCellTooLarge,
-               what + " has " + std::to_string(content.size()) + " bytes; limits.program_bytes is " +
-                   std::to_string(config_.limit_program_bytes),
+               what + " has " + std::to_string(content.size()) +
+                   " bytes; limits.program_bytes is " + std::to_string(config_.limit_program_bytes),
                {}};
 }
 
-Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, const std::string& caller) {
+Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
+                                         const std::string& caller) {
   const v1::Job& job = request.job();
   const std::string_view kind = KindName(job.kind());
   if (kind.empty()) return InvalidArgument("job.kind is missing: CHECK or SIMULATE");
   if (job.kind() == v1::JOB_KIND_RUN) {
     return Error{ErrorCode::kCellUnimplemented, "jobs of kind RUN", {}};
   }
-  if (request.request_id().size() > kRequestIdMax) return InvalidArgument("request_id is longer than 64 characters");
+  if (request.request_id().size() > kRequestIdMax)
+    return InvalidArgument("request_id is longer than 64 characters");
   if (const Status good = CheckTitle(job.title(), "job.title"); !good) return good.error();
-  if (job.attempts_max() < 0 || job.attempts_max() > 10) return InvalidArgument("job.attempts_max: allowed are 1 to 10");
+  if (job.attempts_max() < 0 || job.attempts_max() > 10)
+    return InvalidArgument("job.attempts_max: allowed are 1 to 10");
   if (Status valid = CheckBudget(job.budget()); !valid) return valid.error();
   const Result<std::string> machine_id = ParseMachineName(job.machine());
   if (!machine_id) return machine_id.error();
@@ -189,29 +215,37 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request, co
                        .title = job.title(),
                        .caller = caller,
                        .specification = {},
-                       .attempts_max = job.attempts_max() > 0 ? job.attempts_max()
-                                                              : static_cast<int>(config_.jobs_attempts),
+                       .attempts_max = job.attempts_max() > 0
+                                           ? job.attempts_max()
+                                           : static_cast<int>(config_.jobs_attempts),
                        .queued_max = config_.jobs_queued_max,
                        .attachments = {},
                        .events = {StateEvent(storage::JobState::kQueued)}};
   v1::Job specification = job;
-  if (Status attached = AttachProgram(job, family, made, specification); !attached) return attached.error();
+  if (Status attached = AttachProgram(job, family, made, specification); !attached)
+    return attached.error();
   std::map<std::string, std::string> values = machine->parameters;
   for (const auto& [name, value] : job.simulation().parameters()) values[name] = value;
-  const Result<machine::Parameters> parameters = bridge::MakeParameters(family, machine->profile, values);
+  const Result<machine::Parameters> parameters =
+      bridge::MakeParameters(family, machine->profile, values);
   if (!parameters) return parameters.error();
-  if (Status good = CheckVariables(job.simulation(), family, *parameters); !good) return good.error();
+  if (Status good = CheckVariables(job.simulation(), family, *parameters); !good)
+    return good.error();
   std::set<int> further;
   for (v1::SlotProgram& program : *specification.mutable_simulation()->mutable_programs()) {
     const std::string what = "job.simulation.programs of slot " + std::to_string(program.slot());
     if (Status fits = CheckSize(program.program().content(), what); !fits) return fits.error();
-    if (Status fits = CheckFileFamily(program.program().file_name(), family); !fits) return fits.error();
+    if (Status fits = CheckFileFamily(program.program().file_name(), family); !fits)
+      return fits.error();
     if (!further.insert(program.slot()).second) return InvalidArgument(what + " stands twice");
     if (job.has_inline_program() && program.slot() == InlineSlotOf(job)) {
-      return InvalidArgument(what + ": the slot of job.inline_program (inline_slot, 1 when it is not given)");
+      return InvalidArgument(
+          what + ": the slot of job.inline_program (inline_slot, 1 when it is not given)");
     }
-    made.attachments.push_back({AttachmentName(program.slot()), "application/octet-stream",
-                                std::move(*program.mutable_program()->mutable_content()), {}});
+    made.attachments.push_back({AttachmentName(program.slot()),
+                                "application/octet-stream",
+                                std::move(*program.mutable_program()->mutable_content()),
+                                {}});
     program.mutable_program()->clear_content();
   }
   if (!job.has_simulation()) specification.clear_simulation();
@@ -236,10 +270,11 @@ void JobBook::Submit(const v1::SubmitJobRequest& request, const std::string& cal
     job.clear_name();
     return done(std::move(job));
   }
-  store_.Submit(std::move(*made), [done = std::move(done)](const Result<storage::SubmittedJob>& submitted) {
-    if (!submitted) return done(submitted.error());
-    done(ToProto(submitted->job));
-  });
+  store_.Submit(std::move(*made),
+                [done = std::move(done)](const Result<storage::SubmittedJob>& submitted) {
+                  if (!submitted) return done(submitted.error());
+                  done(ToProto(submitted->job));
+                });
 }
 
 Result<v1::Job> JobBook::Get(std::string_view name) {
@@ -254,14 +289,16 @@ Result<v1::Job> JobBook::WithArtifacts(const storage::JobRecord& record) {
   v1::Job job = ToProto(record);
   const auto artifacts = store_.ListArtifacts(record.id);
   if (!artifacts) return artifacts.error();
-  for (const storage::ArtifactRecord& artifact : *artifacts) *job.add_artifacts() = ToProto(artifact);
+  for (const storage::ArtifactRecord& artifact : *artifacts)
+    *job.add_artifacts() = ToProto(artifact);
   return job;
 }
 
 Result<v1::ListJobsResponse> JobBook::List(const v1::ListJobsRequest& request) {
   storage::JobQuery query;
   if (request.page_size() < 0) return InvalidArgument("page_size is below 0");
-  const int size = request.page_size() == 0 ? kPageDefault : std::min(request.page_size(), kPageMax);
+  const int size =
+      request.page_size() == 0 ? kPageDefault : std::min(request.page_size(), kPageMax);
   query.limit = size + 1;  // one more tells whether there is a next page
   if (Status applied = ApplyFilter(request.filter(), query); !applied) return applied.error();
   if (!request.page_token().empty()) {
@@ -274,7 +311,8 @@ Result<v1::ListJobsResponse> JobBook::List(const v1::ListJobsRequest& request) {
   v1::ListJobsResponse response;
   for (const storage::JobRecord& record : *records) {
     if (response.jobs_size() == size) {
-      response.set_next_page_token(std::to_string((*records)[static_cast<std::size_t>(size) - 1].id));
+      response.set_next_page_token(
+          std::to_string((*records)[static_cast<std::size_t>(size) - 1].id));
       break;
     }
     Result<v1::Job> job = WithArtifacts(record);
@@ -291,7 +329,8 @@ Result<storage::ArtifactRecord> JobBook::FindArtifact(std::int64_t job, std::str
   if (!record) return record.error();
   if (!storage::IsFinal(record->state)) {
     return Error{ErrorCode::kCellPrecondition,
-                 JobName(job) + " has not ended: its " + std::string(name) + " is made at its end", {}};
+                 JobName(job) + " has not ended: its " + std::string(name) + " is made at its end",
+                 {}};
   }
   return Error{ErrorCode::kCellNotFound, JobName(job) + " has no " + std::string(name), {}};
 }

@@ -22,11 +22,12 @@ class JobBook {
   // `store` and `config` outlive this.
   JobBook(storage::Store& store, const Config& config) : store_(store), config_(config) {}
 
-  // Checks everything that can be checked before work begins, makes the job durable, then calls `done`,
-  // from a thread of the store or before it returns. Bytes of programs are kept with the job, so that a
-  // slot that is stored again meanwhile changes nothing.
-  // Errors: CellInvalidArgument, CellUnknownMachine, FamilyInfo::no_slot and empty_slot, CellEmptyProgram,
-  // CellTooLarge, CellParameterRange, CellUnimplemented (RUN), CellRequestIdReused, CellResourceExhausted.
+  // Checks everything that can be checked before work begins, makes the job durable, then calls
+  // `done`, from a thread of the store or before it returns. Bytes of programs are kept with the
+  // job, so that a slot that is stored again meanwhile changes nothing. Errors:
+  // CellInvalidArgument, CellUnknownMachine, FamilyInfo::no_slot and empty_slot, CellEmptyProgram,
+  // CellTooLarge, CellParameterRange, CellUnimplemented (RUN), CellRequestIdReused,
+  // CellResourceExhausted.
   void Submit(const v1::SubmitJobRequest& request, const std::string& caller,
               std::function<void(Result<v1::Job>)> done);
 
@@ -45,15 +46,15 @@ class JobBook {
   Result<storage::NewJob> Prepare(const v1::SubmitJobRequest& request, const std::string& caller);
   Result<v1::Job> WithArtifacts(const storage::JobRecord& record);
   Status CheckSize(const std::string& content, const std::string& what) const;
-  Status AttachProgram(const v1::Job& job, const machine::MachineFamily& family, storage::NewJob& made,
-                       v1::Job& specification);
+  Status AttachProgram(const v1::Job& job, const machine::MachineFamily& family,
+                       storage::NewJob& made, v1::Job& specification);
 
   storage::Store& store_;
   const Config& config_;
 };
 
-// The names under which the programs of a job are kept with it: "program" for the one that is started,
-// "program-46" for a further one.
+// The names under which the programs of a job are kept with it: "program" for the one that is
+// started, "program-46" for a further one.
 std::string AttachmentName(int slot);
 inline constexpr std::string_view kMainAttachment = "program";
 

@@ -71,10 +71,12 @@ Status Apply(const std::string& field, const std::string& value, storage::JobQue
     } else if (state == "INTERRUPTED") {
       query.state = JobState::kInterrupted;
     } else {
-      return Bad("no state '" + Readable(value) + "'; there are QUEUED, RUNNING, SUCCEEDED, FAILED, CANCELLED, INTERRUPTED");
+      return Bad("no state '" + Readable(value) +
+                 "'; there are QUEUED, RUNNING, SUCCEEDED, FAILED, CANCELLED, INTERRUPTED");
     }
   } else if (field == "machine") {
-    const Result<std::string> id = ParseMachineName(value.find('/') == std::string::npos ? MachineName(value) : value);
+    const Result<std::string> id =
+        ParseMachineName(value.find('/') == std::string::npos ? MachineName(value) : value);
     if (!id) return Bad("machine: " + id.error().detail);
     query.machine = *id;
   } else if (field == "kind") {
@@ -88,10 +90,12 @@ Status Apply(const std::string& field, const std::string& value, storage::JobQue
     if (value.empty()) return Bad("caller is empty");
     query.caller = value;
   } else if (field == "finished") {
-    if (value != "true" && value != "false") return Bad("finished is true or false, not '" + Readable(value) + "'");
+    if (value != "true" && value != "false")
+      return Bad("finished is true or false, not '" + Readable(value) + "'");
     query.finished = value == "true";
   } else {
-    return Bad("no field '" + Readable(field) + "'; there are state, machine, kind, caller, finished");
+    return Bad("no field '" + Readable(field) +
+               "'; there are state, machine, kind, caller, finished");
   }
   return {};
 }

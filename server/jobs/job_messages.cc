@@ -9,15 +9,24 @@ namespace {
 
 std::string_view KindOf(const v1::JobEvent& event) {
   switch (event.what_case()) {
-    case v1::JobEvent::kState: return "state";
-    case v1::JobEvent::kDiagnostic: return "diagnostic";
-    case v1::JobEvent::kMessage: return "message";
-    case v1::JobEvent::kHalted: return "halted";
-    case v1::JobEvent::kResumed: return "resumed";
-    case v1::JobEvent::kSignal: return "signal";
-    case v1::JobEvent::kMilestone: return "milestone";
-    case v1::JobEvent::kEnded: return "ended";
-    case v1::JobEvent::WHAT_NOT_SET: break;
+    case v1::JobEvent::kState:
+      return "state";
+    case v1::JobEvent::kDiagnostic:
+      return "diagnostic";
+    case v1::JobEvent::kMessage:
+      return "message";
+    case v1::JobEvent::kHalted:
+      return "halted";
+    case v1::JobEvent::kResumed:
+      return "resumed";
+    case v1::JobEvent::kSignal:
+      return "signal";
+    case v1::JobEvent::kMilestone:
+      return "milestone";
+    case v1::JobEvent::kEnded:
+      return "ended";
+    case v1::JobEvent::WHAT_NOT_SET:
+      break;
   }
   return "";
 }
@@ -34,17 +43,25 @@ google::protobuf::Timestamp ToProto(storage::WallTime time) {
 
 v1::Job::State ToProto(storage::JobState state) {
   switch (state) {
-    case storage::JobState::kQueued: return v1::Job::STATE_QUEUED;
-    case storage::JobState::kRunning: return v1::Job::STATE_RUNNING;
-    case storage::JobState::kSucceeded: return v1::Job::STATE_SUCCEEDED;
-    case storage::JobState::kFailed: return v1::Job::STATE_FAILED;
-    case storage::JobState::kCancelled: return v1::Job::STATE_CANCELLED;
-    case storage::JobState::kInterrupted: return v1::Job::STATE_INTERRUPTED;
+    case storage::JobState::kQueued:
+      return v1::Job::STATE_QUEUED;
+    case storage::JobState::kRunning:
+      return v1::Job::STATE_RUNNING;
+    case storage::JobState::kSucceeded:
+      return v1::Job::STATE_SUCCEEDED;
+    case storage::JobState::kFailed:
+      return v1::Job::STATE_FAILED;
+    case storage::JobState::kCancelled:
+      return v1::Job::STATE_CANCELLED;
+    case storage::JobState::kInterrupted:
+      return v1::Job::STATE_INTERRUPTED;
   }
   return v1::Job::STATE_UNSPECIFIED;
 }
 
-int InlineSlotOf(const v1::Job& job) { return job.inline_slot() > 0 ? job.inline_slot() : kSlotMin; }
+int InlineSlotOf(const v1::Job& job) {
+  return job.inline_slot() > 0 ? job.inline_slot() : kSlotMin;
+}
 
 v1::Job ToProto(const storage::JobRecord& record) {
   v1::Job job;
@@ -110,7 +127,8 @@ storage::JobOutcome OutcomeOf(const v1::Outcome& outcome) {
                            .step = outcome.place().step()};
   const auto found = FindByText(outcome.code());
   if (!outcome.code().empty() && !found.empty()) made.code = found.front()->code;
-  if (outcome.kind() == v1::Outcome::KIND_COMPLETED || outcome.kind() == v1::Outcome::KIND_STOPPED) {
+  if (outcome.kind() == v1::Outcome::KIND_COMPLETED ||
+      outcome.kind() == v1::Outcome::KIND_STOPPED) {
     made.state = storage::JobState::kSucceeded;
   } else if (outcome.kind() == v1::Outcome::KIND_CANCELLED) {
     made.state = storage::JobState::kCancelled;
@@ -124,7 +142,9 @@ v1::Outcome ToProto(const storage::JobOutcome& outcome) {
     case storage::JobState::kSucceeded:
       message.set_kind(outcome.code ? v1::Outcome::KIND_STOPPED : v1::Outcome::KIND_COMPLETED);
       break;
-    case storage::JobState::kCancelled: message.set_kind(v1::Outcome::KIND_CANCELLED); break;
+    case storage::JobState::kCancelled:
+      message.set_kind(v1::Outcome::KIND_CANCELLED);
+      break;
     default: {
       // That a worker died says nothing about what the job needed.
       const bool budget = outcome.code && *outcome.code != ErrorCode::kCellWorkerDied &&

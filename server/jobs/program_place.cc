@@ -21,11 +21,14 @@ Status CheckNumber(const machine::MachineFamily& family, const ProgramName& name
   return CheckSlot(family, name.number, "program number");
 }
 
-Status CheckSlot(const machine::MachineFamily& family, std::int64_t number, std::string_view field) {
+Status CheckSlot(const machine::MachineFamily& family, std::int64_t number,
+                 std::string_view field) {
   if (number >= kSlotMin && number <= kSlotMax) return {};
   std::string allowed = "slots are " + std::to_string(kSlotMin) + " to " + std::to_string(kSlotMax);
   if (!family.info().has_executables) allowed += ", and there are no executables";
-  return Error{family.info().no_slot, std::string(field) + " is " + std::to_string(number) + "; " + allowed, {}};
+  return Error{family.info().no_slot,
+               std::string(field) + " is " + std::to_string(number) + "; " + allowed,
+               {}};
 }
 
 Error EmptySlot(const machine::MachineFamily& family, std::string_view name) {

@@ -17,8 +17,8 @@ struct ProgramPlace {
   bool executable = false;                         // named as slot + 100
 };
 
-// Errors: CellInvalidArgument for what is no name of a program, CellUnknownMachine, CellUnknownFamily,
-// FamilyInfo::no_slot for a number that the machine does not have.
+// Errors: CellInvalidArgument for what is no name of a program, CellUnknownMachine,
+// CellUnknownFamily, FamilyInfo::no_slot for a number that the machine does not have.
 Result<ProgramPlace> FindProgramPlace(storage::Store& store, std::string_view name);
 
 // FamilyInfo::no_slot for a number that machines of the family do not have.

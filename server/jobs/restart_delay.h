@@ -5,8 +5,8 @@
 
 namespace rmlcell::server {
 
-// How long a worker that ended stays away before another takes its place: not at all after a healthy life,
-// else longer and longer, so that one that cannot start keeps no processor busy.
+// How long a worker that ended stays away before another takes its place: not at all after a
+// healthy life, else longer and longer, so that one that cannot start keeps no processor busy.
 class RestartDelay {
  public:
   static constexpr std::chrono::seconds kHealthyLife{5};  // a shorter life counts as a failed start

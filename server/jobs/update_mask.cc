@@ -12,14 +12,15 @@ bool HasValue(const google::protobuf::Message& message, std::string_view name) {
       message.GetDescriptor()->FindFieldByName(std::string(name));
   RMLCELL_CHECK(field != nullptr);
   const google::protobuf::Reflection& reflection = *message.GetReflection();
-  return field->is_repeated() ? reflection.FieldSize(message, field) > 0 : reflection.HasField(message, field);
+  return field->is_repeated() ? reflection.FieldSize(message, field) > 0
+                              : reflection.HasField(message, field);
 }
 
 }  // namespace
 
-Result<std::set<std::string, std::less<>>> FieldsToUpdate(const google::protobuf::FieldMask& mask,
-                                                          const google::protobuf::Message& wanted,
-                                                          std::span<const std::string_view> fields) {
+Result<std::set<std::string, std::less<>>> FieldsToUpdate(
+    const google::protobuf::FieldMask& mask, const google::protobuf::Message& wanted,
+    std::span<const std::string_view> fields) {
   std::set<std::string, std::less<>> named;
   for (const std::string& path : mask.paths()) {
     if (path == "*") {

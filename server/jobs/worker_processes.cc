@@ -25,15 +25,20 @@ constexpr std::chrono::milliseconds kLook{20};  // how soon a dead worker is not
 Result<std::unique_ptr<WorkerProcesses>> WorkerProcesses::Start(Options options) {
   if (options.count > 0) {
     struct stat file {};
-    int failed = ::access(options.program.c_str(), X_OK) != 0 || ::stat(options.program.c_str(), &file) != 0 ? errno : 0;
+    int failed =
+        ::access(options.program.c_str(), X_OK) != 0 || ::stat(options.program.c_str(), &file) != 0
+            ? errno
+            : 0;
     if (failed == 0 && !S_ISREG(file.st_mode)) failed = EACCES;
     if (failed != 0) {
       return Error{ErrorCode::kCellConfiguration,
-                   "workers.program " + options.program + ": " + std::strerror(failed), {}};
+                   "workers.program " + options.program + ": " + std::strerror(failed),
+                   {}};
     }
   }
   std::unique_ptr<WorkerProcesses> processes(new WorkerProcesses(std::move(options)));
-  processes->watcher_ = std::jthread([raw = processes.get()](const std::stop_token& stop) { raw->Watch(stop); });
+  processes->watcher_ =
+      std::jthread([raw = processes.get()](const std::stop_token& stop) { raw->Watch(stop); });
   return processes;
 }
 
@@ -41,9 +46,9 @@ WorkerProcesses::~WorkerProcesses() { Stop(std::chrono::milliseconds(0)); }
 
 pid_t WorkerProcesses::Spawn(int number) const {
   const std::string name = "worker-" + std::to_string(::getpid()) + "-" + std::to_string(number);
-  std::vector<std::string> words = {options_.program, "--server",    options_.server,    "--name",
-                                    name,             "--log-level", options_.log_level, "--log-format",
-                                    options_.log_format};
+  std::vector<std::string> words = {options_.program,   "--server",     options_.server,
+                                    "--name",           name,           "--log-level",
+                                    options_.log_level, "--log-format", options_.log_format};
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -58,18 +63,19 @@ pid_t WorkerProcesses::Spawn(int number) const {
   pid_t process = -1;
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
-  // A group of its own: Ctrl-C at the terminal reaches the server, which stops its workers in order.
+  // A group of its own: Ctrl-C at the terminal reaches the server, which stops its workers in
+  // order.
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
   sigset_t none;
   sigemptyset(&none);
   posix_spawnattr_setsigmask(&attributes, &none);
-  // Sockets of the server stay with it: a copy in a worker would keep a port taken, or a connection of a
-  // client open, after the server closed it.
+  // Sockets of the server stay with it: a copy in a worker would keep a port taken, or a connection
+  // of a client open, after the server closed it.
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
-  const int failed =
-      posix_spawn(&process, options_.program.c_str(), &actions, &attributes, arguments.data(), environment.data());
+  const int failed = posix_spawn(&process, options_.program.c_str(), &actions, &attributes,
+                                 arguments.data(), environment.data());
   posix_spawn_file_actions_destroy(&actions);
   posix_spawnattr_destroy(&attributes);
   if (failed != 0) {
@@ -135,7 +141,8 @@ void WorkerProcesses::Stop(std::chrono::milliseconds patience) {
   const auto until = options_.clock() + patience;
   for (const auto& [process, number] : alive) ::kill(process, SIGTERM);
   while (!alive.empty()) {
-    std::erase_if(alive, [](const auto& row) { return ::waitpid(row.first, nullptr, WNOHANG) != 0; });
+    std::erase_if(alive,
+                  [](const auto& row) { return ::waitpid(row.first, nullptr, WNOHANG) != 0; });
     if (alive.empty()) break;
     if (options_.clock() >= until) {
       for (const auto& [process, number] : alive) ::kill(process, SIGKILL);

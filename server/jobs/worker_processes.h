@@ -12,8 +12,8 @@
 
 namespace rmlcell::server {
 
-// The engine workers that the server starts itself: so many processes, and another one for each that dies.
-// One that dies again and again at once is started more and more slowly.
+// The engine workers that the server starts itself: so many processes, and another one for each
+// that dies. One that dies again and again at once is started more and more slowly.
 class WorkerProcesses {
  public:
   struct Options {

@@ -22,8 +22,8 @@
 namespace rmlcell::server {
 namespace {
 
-// A comparison answers a call: its trial runs end before a client thinks that nobody is there. Loops that
-// never end are cut off by the steps, long programs by the time.
+// A comparison answers a call: its trial runs end before a client thinks that nobody is there.
+// Loops that never end are cut off by the steps, long programs by the time.
 constexpr std::int64_t kTrialStepsMax = 2'000'000;
 constexpr std::chrono::seconds kTrialTimeMax{15};
 // The picture goes into the same answer: about 1.5 MiB.
@@ -34,11 +34,16 @@ constexpr const char* kFamily = "optimo";
 
 v1::StaleExecutable::Reason ReasonOf(machine::StaleReason reason) {
   switch (reason) {
-    case machine::StaleReason::kObjectChanged: return v1::StaleExecutable::REASON_OBJECT_CHANGED;
-    case machine::StaleReason::kObjectMissing: return v1::StaleExecutable::REASON_OBJECT_MISSING;
-    case machine::StaleReason::kFunctionChanged: return v1::StaleExecutable::REASON_FUNCTION_CHANGED;
-    case machine::StaleReason::kFunctionDeleted: return v1::StaleExecutable::REASON_FUNCTION_DELETED;
-    case machine::StaleReason::kDamaged: break;
+    case machine::StaleReason::kObjectChanged:
+      return v1::StaleExecutable::REASON_OBJECT_CHANGED;
+    case machine::StaleReason::kObjectMissing:
+      return v1::StaleExecutable::REASON_OBJECT_MISSING;
+    case machine::StaleReason::kFunctionChanged:
+      return v1::StaleExecutable::REASON_FUNCTION_CHANGED;
+    case machine::StaleReason::kFunctionDeleted:
+      return v1::StaleExecutable::REASON_FUNCTION_DELETED;
+    case machine::StaleReason::kDamaged:
+      break;
   }
   return v1::StaleExecutable::REASON_DAMAGED;
 }
@@ -50,11 +55,14 @@ class LinkMaterial {
   Status Add(const v1::LinkProgramRequest& request, std::uint32_t object_limit) {
     for (const v1::LinkProgramRequest::Part& part : request.programs()) {
       if (!IsSlot(part.slot())) {
-        return Error{ErrorCode::kProgramNumber, "program number is " + std::to_string(part.slot()), {}};
+        return Error{
+            ErrorCode::kProgramNumber, "program number is " + std::to_string(part.slot()), {}};
       }
-      if (objects_.contains(part.slot()) || sources_.contains(part.slot())) return GivenTwice(part.slot());
+      if (objects_.contains(part.slot()) || sources_.contains(part.slot()))
+        return GivenTwice(part.slot());
       const v1::ProgramText& program = part.program();
-      if (program.content().empty()) return Error{ErrorCode::kCellEmptyProgram, program.file_name(), {}};
+      if (program.content().empty())
+        return Error{ErrorCode::kCellEmptyProgram, program.file_name(), {}};
       if (IsObject(program)) {
         objects_[part.slot()] = program.content();
         continue;
@@ -72,7 +80,8 @@ class LinkMaterial {
 
   // Findings beyond the usual number are counted.
   void Report(const Error& error) {
-    findings_.push_back({.code = error.code, .severity = Lookup(error.code).severity, .detail = error.detail});
+    findings_.push_back(
+        {.code = error.code, .severity = Lookup(error.code).severity, .detail = error.detail});
   }
   v1::Findings Findings() {
     const bool good = !HasErrors(findings_);
@@ -105,8 +114,9 @@ class LinkMaterial {
   void Compile(int slot, const v1::ProgramText& program) {
     const bool inch =
         optimo::FormOfFile(program.file_name(), program.content()) == optimo::FileForm::kInchSource;
-    optimo::Compilation compiled = optimo::Compile(
-        program.content(), program.file_name(), {.object_limit = object_limit_, .advice = false, .inch = inch});
+    optimo::Compilation compiled =
+        optimo::Compile(program.content(), program.file_name(),
+                        {.object_limit = object_limit_, .advice = false, .inch = inch});
     if (compiled.ok) objects_[slot] = std::move(compiled.object);
     dropped_ += compiled.diagnostics_dropped;
     for (Diagnostic& finding : compiled.diagnostics) {
@@ -127,32 +137,40 @@ class LinkMaterial {
 Result<v1::FixProgramResponse> MemoryOffice::Fix(const v1::FixProgramRequest& request) {
   const v1::ProgramText& program = request.program();
   // Refuses what names family or machine wrongly before anything is done.
-  const auto first = shelf_.Translate(request.family(), request.machine(), program, !request.errors_only());
+  const auto first =
+      shelf_.Translate(request.family(), request.machine(), program, !request.errors_only());
   if (!first) return first.error();
   const machine::MachineFamily* named = simulation::FamilyOfFileName(program.file_name());
   if (named != nullptr && !named->info().has_executables) {
-    return InvalidArgument("a stream of " + std::string(named->info().title) + " has nothing to fix");
+    return InvalidArgument("a stream of " + std::string(named->info().title) +
+                           " has nothing to fix");
   }
-  if (IsObject(program)) return Error{ErrorCode::kCellBadText, program.file_name() + " is an object, not a source", {}};
-  if (const Status good = optimo::CheckIsText(program.file_name(), program.content()); !good) return good.error();
+  if (IsObject(program))
+    return Error{ErrorCode::kCellBadText, program.file_name() + " is an object, not a source", {}};
+  if (const Status good = optimo::CheckIsText(program.file_name(), program.content()); !good)
+    return good.error();
   const auto check = [&](const machine::SourceFile& file) {
     v1::ProgramText text = program;
     text.set_content(std::string(file.bytes));
-    auto checked = shelf_.Translate(request.family(), request.machine(), text, !request.errors_only());
+    auto checked =
+        shelf_.Translate(request.family(), request.machine(), text, !request.errors_only());
     return checked ? *std::move(checked) : *first;  // the machine went away meanwhile: as it was
   };
-  optimo::Fixing fixing = optimo::FixProgram({.name = program.file_name(), .bytes = program.content()}, check);
+  optimo::Fixing fixing =
+      optimo::FixProgram({.name = program.file_name(), .bytes = program.content()}, check);
   v1::FixProgramResponse response;
   response.set_content(std::move(fixing.text));
   for (const Diagnostic& finding : fixing.fixed) *response.add_fixed() = bridge::ToProto(finding);
-  *response.mutable_findings() = bridge::FindingsOf(fixing.left.ok, fixing.left.diagnostics,
-                                                    fixing.left.diagnostics_dropped, fixing.left.figures);
+  *response.mutable_findings() =
+      bridge::FindingsOf(fixing.left.ok, fixing.left.diagnostics, fixing.left.diagnostics_dropped,
+                         fixing.left.figures);
   return response;
 }
 
 Result<v1::LinkProgramResponse> MemoryOffice::Link(const v1::LinkProgramRequest& request) {
   if (!IsSlot(request.slot())) {
-    return Error{ErrorCode::kProgramNumber, "program number is " + std::to_string(request.slot()), {}};
+    return Error{
+        ErrorCode::kProgramNumber, "program number is " + std::to_string(request.slot()), {}};
   }
   std::uint32_t object_limit = optimo::kObjectLimitStandard;
   optimo::LinkOptions options;
@@ -163,10 +181,11 @@ Result<v1::LinkProgramResponse> MemoryOffice::Link(const v1::LinkProgramRequest&
     const auto machine = store_.GetMachine(*id);
     if (!machine) return machine.error();
     if (machine->family != kFamily) {
-      return Error{ErrorCode::kCellPrecondition, "a " + machine->family + " machine has no executables", {}};
+      return Error{
+          ErrorCode::kCellPrecondition, "a " + machine->family + " machine has no executables", {}};
     }
-    const auto parameters =
-        bridge::MakeParameters(*simulation::FindFamily(kFamily), machine->profile, machine->parameters);
+    const auto parameters = bridge::MakeParameters(*simulation::FindFamily(kFamily),
+                                                   machine->profile, machine->parameters);
     if (!parameters) return parameters.error();
     object_limit = static_cast<std::uint32_t>(parameters->Number("OBJECT_LIMIT"));
     options.executable_limit = static_cast<std::uint32_t>(parameters->Number("EXECUTABLE_LIMIT"));
@@ -177,12 +196,15 @@ Result<v1::LinkProgramResponse> MemoryOffice::Link(const v1::LinkProgramRequest&
   }
   LinkMaterial material;
   if (const Status added = material.Add(request, object_limit); !added) return added.error();
-  for (storage::ProgramRecord& program : memory) material.AddStored(program.slot, std::move(program.object));
+  for (storage::ProgramRecord& program : memory)
+    material.AddStored(program.slot, std::move(program.object));
   v1::LinkProgramResponse response;
-  const Result<optimo::Executable> linked = optimo::Link(request.slot(), material.Objects(), options);
+  const Result<optimo::Executable> linked =
+      optimo::Link(request.slot(), material.Objects(), options);
   if (linked) {
     response.set_executable(optimo::EncodeExecutable(*linked));
-    for (std::size_t i = 1; i < linked->modules.size(); ++i) response.add_functions(linked->modules[i].slot);
+    for (std::size_t i = 1; i < linked->modules.size(); ++i)
+      response.add_functions(linked->modules[i].slot);
   } else if (material.good()) {  // else the program that could not be compiled is reported
     material.Report(linked.error());
   }
@@ -190,7 +212,8 @@ Result<v1::LinkProgramResponse> MemoryOffice::Link(const v1::LinkProgramRequest&
   return response;
 }
 
-Result<v1::ListStaleExecutablesResponse> MemoryOffice::ListStale(const v1::ListStaleExecutablesRequest& request) {
+Result<v1::ListStaleExecutablesResponse> MemoryOffice::ListStale(
+    const v1::ListStaleExecutablesRequest& request) {
   const Result<std::string> id = ParseMachineName(request.parent());
   if (!id) return id.error();
   const auto machine = store_.GetMachine(*id);
@@ -206,7 +229,8 @@ Result<v1::ListStaleExecutablesResponse> MemoryOffice::ListStale(const v1::ListS
   for (storage::ProgramRecord& program : *memory) {
     machine::StoredProgram& stored = programs[program.slot];
     stored.object = std::make_shared<const std::string>(std::move(program.object));
-    if (program.executable) stored.executable = std::make_shared<const std::string>(*std::move(program.executable));
+    if (program.executable)
+      stored.executable = std::make_shared<const std::string>(*std::move(program.executable));
   }
   for (const machine::StaleExecutable& stale :
        family->FindStaleExecutables(programs, {deleted->begin(), deleted->end()})) {
@@ -222,13 +246,15 @@ Result<v1::ListStaleExecutablesResponse> MemoryOffice::ListStale(const v1::ListS
   return response;
 }
 
-Result<v1::DecompileProgramResponse> MemoryOffice::Decompile(const v1::DecompileProgramRequest& request) {
+Result<v1::DecompileProgramResponse> MemoryOffice::Decompile(
+    const v1::DecompileProgramRequest& request) {
   v1::DecompileProgramResponse response;
   if (!request.name().empty()) {
     const Result<ProgramPlace> place = FindProgramPlace(store_, request.name());
     if (!place) return place.error();
-    if (place->executable) return InvalidArgument("an executable has no source; its program is " +
-                                         NameOfProgram(place->machine.id, place->slot));
+    if (place->executable)
+      return InvalidArgument("an executable has no source; its program is " +
+                             NameOfProgram(place->machine.id, place->slot));
     // One read of the record: text and object belong together.
     Result<ProgramShelf::Content> source = shelf_.Read(request.name(), v1::PROGRAM_FORM_SOURCE);
     if (!source) return source.error();
@@ -250,16 +276,20 @@ Result<v1::DecompileProgramResponse> MemoryOffice::Decompile(const v1::Decompile
 Result<MemoryOffice::StoredObject> MemoryOffice::ObjectOf(const std::string& name) {
   const Result<ProgramPlace> place = FindProgramPlace(store_, name);
   if (!place) return place.error();
-  if (place->executable) return InvalidArgument("executables are not compared; name the program of its object");
+  if (place->executable)
+    return InvalidArgument("executables are not compared; name the program of its object");
   if (place->machine.family != kFamily) {
-    return Error{ErrorCode::kCellPrecondition, "programs of a " + place->machine.family + " machine are not compared", {}};
+    return Error{ErrorCode::kCellPrecondition,
+                 "programs of a " + place->machine.family + " machine are not compared",
+                 {}};
   }
   Result<storage::ProgramRecord> program = store_.GetProgram(place->machine.id, place->slot);
   if (!program) {
     if (program.error().code != ErrorCode::kCellNotFound) return program.error();
     return EmptySlot(*place->family, name);
   }
-  const std::string title = program->source_name.empty() ? std::to_string(place->slot) : program->source_name;
+  const std::string title =
+      program->source_name.empty() ? std::to_string(place->slot) : program->source_name;
   return StoredObject{title.substr(0, title.find_last_of('.')), std::move(program->object)};
 }
 
@@ -276,7 +306,8 @@ ProgramResult<v1::DiffProgramsResponse> MemoryOffice::Diff(const v1::DiffProgram
     }
     const v1::ProgramText& text = sides[i]->text();
     if (text.content().empty()) return Error{ErrorCode::kCellEmptyProgram, text.file_name(), {}};
-    const bool object = text.form() == v1::PROGRAM_FORM_OBJECT && !bridge::IsObjectFileName(text.file_name());
+    const bool object =
+        text.form() == v1::PROGRAM_FORM_OBJECT && !bridge::IsObjectFileName(text.file_name());
     programs[i] = {.file_name = text.file_name() + (object ? ".O" : ""),
                    .bytes = std::make_shared<const std::string>(text.content())};
   }
@@ -294,9 +325,10 @@ ProgramResult<v1::DiffProgramsResponse> MemoryOffice::Diff(const v1::DiffProgram
   for (std::size_t i = 0; i < 2; ++i) {
     for (Diagnostic& finding : made->diagnostics[i]) {
       if (IsError(finding.severity) && wrong.error.detail.empty()) {
-        wrong.error = {finding.code,
-                       finding.file + " line " + std::to_string(finding.where.line) + ": " + finding.detail,
-                       finding.where};
+        wrong.error = {
+            finding.code,
+            finding.file + " line " + std::to_string(finding.where.line) + ": " + finding.detail,
+            finding.where};
       }
       wrong.diagnostics.push_back(std::move(finding));
     }

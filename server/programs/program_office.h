@@ -5,9 +5,9 @@
 #include "engine/core/result.h"
 #include "rmlcell/v1/program.pb.h"
 
-// The off-line tools on program text that a client sends (optimo.md chapters 6 and 8). Nothing is stored.
-// Only the first error of what is not the program's fault is an error of the call; the program's own are
-// its findings.
+// The off-line tools on program text that a client sends (optimo.md chapters 6 and 8). Nothing is
+// stored. Only the first error of what is not the program's fault is an error of the call; the
+// program's own are its findings.
 namespace rmlcell::server {
 
 // True for what says that it is an object, or is one by its file name or its bytes.
@@ -16,15 +16,16 @@ bool IsObject(const v1::ProgramText& program);
 // Errors: CellUnknownFamily for a text of another family, CellEmptyProgram, and those named.
 Result<v1::FormatProgramResponse> FormatText(const v1::FormatProgramRequest& request);
 
-// `now`: for the header line when the request has no date. Errors: ConvertDirection (7704) when neither
-// the file name nor the target tells the direction.
-Result<v1::ConvertProgramResponse> ConvertText(const v1::ConvertProgramRequest& request, const std::string& now);
+// `now`: for the header line when the request has no date. Errors: ConvertDirection (7704) when
+// neither the file name nor the target tells the direction.
+Result<v1::ConvertProgramResponse> ConvertText(const v1::ConvertProgramRequest& request,
+                                               const std::string& now);
 
 Result<v1::CompensateProgramResponse> CompensateText(const v1::CompensateProgramRequest& request,
                                                      const std::string& now);
 
-// Error: CellInvalidArgument for another number of rotations than none or three, or a value that is not
-// finite.
+// Error: CellInvalidArgument for another number of rotations than none or three, or a value that is
+// not finite.
 Result<v1::TransformProgramResponse> TransformText(const v1::TransformProgramRequest& request);
 
 // Error: as TransformText.

@@ -22,9 +22,9 @@ struct ProgramResult {
   std::optional<T> value;
   ProgramError error{};  // when there is no value
 
-  ProgramResult(T made) : value(std::move(made)) {}                                     // NOLINT: implicit
-  ProgramResult(Error wrong) : error{std::move(wrong), {}, 0} {}                        // NOLINT: implicit
-  ProgramResult(ProgramError wrong) : error(std::move(wrong)) {}                        // NOLINT: implicit
+  ProgramResult(T made) : value(std::move(made)) {}               // NOLINT: implicit
+  ProgramResult(Error wrong) : error{std::move(wrong), {}, 0} {}  // NOLINT: implicit
+  ProgramResult(ProgramError wrong) : error(std::move(wrong)) {}  // NOLINT: implicit
   explicit operator bool() const { return value.has_value(); }
 };
 

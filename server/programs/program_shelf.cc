@@ -61,20 +61,24 @@ ProgramError FirstError(const machine::Translation& translation) {
     if (errors++ == 0) {
       wrong.error = {diagnostic.code, diagnostic.detail, diagnostic.where};
       if (diagnostic.where.line > 0) {
-        wrong.error.detail = "line " + std::to_string(diagnostic.where.line) + ": " + diagnostic.detail;
+        wrong.error.detail =
+            "line " + std::to_string(diagnostic.where.line) + ": " + diagnostic.detail;
       }
     }
   }
-  const std::uint64_t more = errors - std::min<std::size_t>(errors, 1) + translation.diagnostics_dropped;
+  const std::uint64_t more =
+      errors - std::min<std::size_t>(errors, 1) + translation.diagnostics_dropped;
   if (more > 0) wrong.error.detail += " (and " + std::to_string(more) + " more)";
   return wrong;
 }
 
-machine::Translation TranslateFor(const machine::MachineFamily& family, const machine::Parameters& parameters,
+machine::Translation TranslateFor(const machine::MachineFamily& family,
+                                  const machine::Parameters& parameters,
                                   const v1::ProgramText& program, bool advice) {
   const bool is_object = program.form() == v1::PROGRAM_FORM_OBJECT;
-  return family.Translate({.name = is_object ? "program.O" : program.file_name(), .bytes = program.content()},
-                          parameters, {.advice = advice, .source = true});
+  return family.Translate(
+      {.name = is_object ? "program.O" : program.file_name(), .bytes = program.content()},
+      parameters, {.advice = advice, .source = true});
 }
 
 // "44.S" is program 44, other names take the place of no program of the machine when there is room.
@@ -82,7 +86,8 @@ int SlotForCheck(const std::string& file_name, const std::vector<bridge::Program
   const auto named = ParseInteger(TitleFrom(file_name));
   if (named && *named >= kSlotMin && *named <= kSlotMax) return static_cast<int>(*named);
   for (int slot = kSlotMin; slot < kSlotMax; ++slot) {
-    if (std::ranges::find(programs, slot, &bridge::ProgramInput::slot) == programs.end()) return slot;
+    if (std::ranges::find(programs, slot, &bridge::ProgramInput::slot) == programs.end())
+      return slot;
   }
   return kSlotMax;
 }
@@ -92,7 +97,8 @@ int SlotForCheck(const std::string& file_name, const std::vector<bridge::Program
 Status ProgramShelf::CheckSize(std::int64_t bytes) const {
   if (bytes <= config_.limit_program_bytes) return {};
   return Error{ErrorCode::kCellTooLarge,
-               "the program has " + std::to_string(bytes) + " bytes; limits.program_bytes of the configuration is " +
+               "the program has " + std::to_string(bytes) +
+                   " bytes; limits.program_bytes of the configuration is " +
                    std::to_string(config_.limit_program_bytes),
                {}};
 }
@@ -103,29 +109,36 @@ ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
   const machine::MachineFamily& family = *place->family;
   const storage::MachineRecord& machine = place->machine;
   if (put.bytes.empty()) return Error{ErrorCode::kCellEmptyProgram, put.file_name, {}};
-  if (Status fits = CheckSize(static_cast<std::int64_t>(put.bytes.size())); !fits) return fits.error();
+  if (Status fits = CheckSize(static_cast<std::int64_t>(put.bytes.size())); !fits)
+    return fits.error();
   if (const Status good = CheckTitle(put.title, "title"); !good) return good.error();
-  if (put.file_name.size() > kFileNameMax) return InvalidArgument("file_name is longer than 255 characters");
+  if (put.file_name.size() > kFileNameMax)
+    return InvalidArgument("file_name is longer than 255 characters");
   if (!v1::ProgramForm_IsValid(put.form)) return InvalidArgument("form is none that there is");
-  if (put.form == v1::PROGRAM_FORM_LISTING) return InvalidArgument("a listing is made of a program and cannot be stored");
-  if (place->executable || put.form == v1::PROGRAM_FORM_EXECUTABLE) return StoreExecutable(put, *place);
-  if (const Status fits = CheckFileFamily(BaseName(put.file_name), family); !fits) return fits.error();
+  if (put.form == v1::PROGRAM_FORM_LISTING)
+    return InvalidArgument("a listing is made of a program and cannot be stored");
+  if (place->executable || put.form == v1::PROGRAM_FORM_EXECUTABLE)
+    return StoreExecutable(put, *place);
+  if (const Status fits = CheckFileFamily(BaseName(put.file_name), family); !fits)
+    return fits.error();
   const Result<storage::Revision> expected = ParseEtag(put.etag);
   if (!expected) return expected.error();
   const Result<machine::Parameters> parameters =
       bridge::MakeParameters(family, machine.profile, machine.parameters);
   if (!parameters) return parameters.error();
 
-  const bool is_object = put.form == v1::PROGRAM_FORM_OBJECT || bridge::IsObjectFileName(put.file_name);
+  const bool is_object =
+      put.form == v1::PROGRAM_FORM_OBJECT || bridge::IsObjectFileName(put.file_name);
   machine::Translation translation = family.Translate(
-      {.name = is_object ? "program.O" : BaseName(put.file_name), .bytes = put.bytes}, *parameters, {});
+      {.name = is_object ? "program.O" : BaseName(put.file_name), .bytes = put.bytes}, *parameters,
+      {});
   if (!translation.ok) return FirstError(translation);
   for (Diagnostic& found : family.CheckSlot(place->slot)) {
     found.file = BaseName(put.file_name);
     translation.diagnostics.push_back(std::move(found));
   }
-  v1::Findings findings = bridge::FindingsOf(true, translation.diagnostics, translation.diagnostics_dropped,
-                                             translation.figures);
+  v1::Findings findings = bridge::FindingsOf(true, translation.diagnostics,
+                                             translation.diagnostics_dropped, translation.figures);
   storage::ProgramWrite write{.slot = place->slot,
                               .name = put.title.empty() ? TitleFrom(put.file_name) : put.title,
                               .object = std::move(translation.object),
@@ -135,7 +148,8 @@ ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
   // A stream is its own object: kept once.
   if (!is_object && write.object != put.bytes) write.source = std::move(put.bytes);
   if (put.validate_only) {
-    if (const auto fits = FindExpected(machine.id, place->slot, *expected); !fits) return fits.error();
+    if (const auto fits = FindExpected(machine.id, place->slot, *expected); !fits)
+      return fits.error();
     v1::Program program;
     program.set_name(put.name);
     program.set_title(write.name);
@@ -151,14 +165,17 @@ ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
   return program;
 }
 
-// What the store would say to a change of this slot, before it is made: nothing when the slot is empty.
-Result<std::optional<storage::ProgramSummary>> ProgramShelf::FindExpected(const std::string& machine, int slot,
-                                                                          storage::Revision expected) {
+// What the store would say to a change of this slot, before it is made: nothing when the slot is
+// empty.
+Result<std::optional<storage::ProgramSummary>> ProgramShelf::FindExpected(
+    const std::string& machine, int slot, storage::Revision expected) {
   auto found = store_.GetProgramSummary(machine, slot);
   const bool there = static_cast<bool>(found);
   if (!there && found.error().code != ErrorCode::kCellNotFound) return found.error();
-  if (expected == 0 && there) return Error{ErrorCode::kCellAlreadyExists, NameOfProgram(machine, slot), {}};
-  if (expected > 0 && !there) return Error{ErrorCode::kCellNotFound, NameOfProgram(machine, slot), {}};
+  if (expected == 0 && there)
+    return Error{ErrorCode::kCellAlreadyExists, NameOfProgram(machine, slot), {}};
+  if (expected > 0 && !there)
+    return Error{ErrorCode::kCellNotFound, NameOfProgram(machine, slot), {}};
   if (expected > 0 && found->revision != expected) {
     return Error{ErrorCode::kCellEtagMismatch, NameOfProgram(machine, slot), {}};
   }
@@ -166,26 +183,33 @@ Result<std::optional<storage::ProgramSummary>> ProgramShelf::FindExpected(const 
   return std::optional(*std::move(found));
 }
 
-ProgramResult<v1::Program> ProgramShelf::StoreExecutable(const Put& put, const ProgramPlace& place) {
+ProgramResult<v1::Program> ProgramShelf::StoreExecutable(const Put& put,
+                                                         const ProgramPlace& place) {
   const std::string& machine_id = place.machine.id;
   const int slot = place.slot;
-  if (!place.family->info().has_executables) return InvalidArgument("this machine has no executables");
+  if (!place.family->info().has_executables)
+    return InvalidArgument("this machine has no executables");
   const Result<storage::Revision> expected = ParseEtag(put.etag);
   if (!expected) return expected.error();
   // An etag is that of the object: an executable has none of its own.
-  const auto found = FindExpected(machine_id, slot, *expected == 0 ? storage::kAnyRevision : *expected);
+  const auto found =
+      FindExpected(machine_id, slot, *expected == 0 ? storage::kAnyRevision : *expected);
   if (!found) return found.error();
   if (!*found) {
-    return EmptySlot(*place.family, NameOfProgram(machine_id, slot) + ", and an executable needs its object");
+    return EmptySlot(*place.family,
+                     NameOfProgram(machine_id, slot) + ", and an executable needs its object");
   }
   if (*expected == 0 && (*found)->executable_bytes >= 0) {
-    return Error{ErrorCode::kCellAlreadyExists, "an executable of " + NameOfProgram(machine_id, slot), {}};
+    return Error{
+        ErrorCode::kCellAlreadyExists, "an executable of " + NameOfProgram(machine_id, slot), {}};
   }
-  if (const Status good = place.family->CheckExecutable(put.bytes, slot); !good) return good.error();
+  if (const Status good = place.family->CheckExecutable(put.bytes, slot); !good)
+    return good.error();
   if (!put.validate_only) {
     const auto kept = store_.PutExecutable(machine_id, slot, (*found)->revision, put.bytes);
     if (!kept) return kept.error();
-    if (!*kept) return Error{ErrorCode::kCellEtagMismatch, "the object was stored again meanwhile", {}};
+    if (!*kept)
+      return Error{ErrorCode::kCellEtagMismatch, "the object was stored again meanwhile", {}};
   }
   v1::Program program = MessageOf(machine_id, **found);
   program.set_name(NameOfProgram(machine_id, slot + kExecutableOffset));
@@ -217,7 +241,8 @@ Result<ProgramShelf::Content> ProgramShelf::Read(std::string_view name, v1::Prog
   if (place->executable) form = v1::PROGRAM_FORM_EXECUTABLE;
   const machine::MachineFamily& family = *place->family;
   const bool has_objects = family.info().has_executables;
-  const std::string base = program->source_name.empty() ? std::to_string(place->slot) : TitleFrom(program->source_name);
+  const std::string base =
+      program->source_name.empty() ? std::to_string(place->slot) : TitleFrom(program->source_name);
   Content content;
   const std::string object_sha256 = bridge::Sha256Hex(program->object);
   switch (form) {
@@ -225,33 +250,44 @@ Result<ProgramShelf::Content> ProgramShelf::Read(std::string_view name, v1::Prog
       if (!program->executable) {
         return EmptySlot(family, "executable of " + std::string(name));
       }
-      content = {.bytes = std::move(*program->executable), .form = form, .file_name = base + ".X", .sha256 = {}};
+      content = {.bytes = std::move(*program->executable),
+                 .form = form,
+                 .file_name = base + ".X",
+                 .sha256 = {}};
       break;
     case v1::PROGRAM_FORM_OBJECT:
-      content = {.bytes = std::move(program->object), .form = form, .file_name = base + ".O", .sha256 = {}};
+      content = {.bytes = std::move(program->object),
+                 .form = form,
+                 .file_name = base + ".O",
+                 .sha256 = {}};
       break;
     case v1::PROGRAM_FORM_LISTING: {
       if (!has_objects) {
-        return Error{ErrorCode::kCellPrecondition, "a " + place->machine.family + " program has no steps to list", {}};
+        return Error{ErrorCode::kCellPrecondition,
+                     "a " + place->machine.family + " program has no steps to list",
+                     {}};
       }
       Result<std::string> listing = ListingOf(program->object);
       if (!listing) return listing.error();
-      content = {.bytes = *std::move(listing), .form = form, .file_name = base + ".LST", .sha256 = {}};
+      content = {
+          .bytes = *std::move(listing), .form = form, .file_name = base + ".LST", .sha256 = {}};
       break;
     }
     default:
       if (program->source || !has_objects) {
-        content = {.bytes = program->source ? std::move(*program->source) : std::move(program->object),
-                   .form = v1::PROGRAM_FORM_SOURCE,
-                   .file_name = program->source_name.empty()
-                                    ? base + std::string(FirstExtension(family.info()))
-                                    : program->source_name,
-                   .sha256 = {},
-                   .own_text = true};
+        content = {
+            .bytes = program->source ? std::move(*program->source) : std::move(program->object),
+            .form = v1::PROGRAM_FORM_SOURCE,
+            .file_name = program->source_name.empty()
+                             ? base + std::string(FirstExtension(family.info()))
+                             : program->source_name,
+            .sha256 = {},
+            .own_text = true};
       } else if (form == v1::PROGRAM_FORM_SOURCE) {
         Result<std::string> source = family.Decompile(program->object);
         if (!source) return source.error();
-        content = {.bytes = std::move(*source), .form = form, .file_name = base + ".S", .sha256 = {}};
+        content = {
+            .bytes = std::move(*source), .form = form, .file_name = base + ".S", .sha256 = {}};
       } else {
         content = {.bytes = std::move(program->object),
                    .form = v1::PROGRAM_FORM_OBJECT,
@@ -273,7 +309,8 @@ Result<v1::ListProgramsResponse> ProgramShelf::List(const v1::ListProgramsReques
   int after = 0;
   if (!request.page_token().empty()) {
     const auto token = ParseInteger(request.page_token());
-    if (!token || *token < kSlotMin || *token > kSlotMax) return Error{ErrorCode::kCellBadPageToken, {}, {}};
+    if (!token || *token < kSlotMin || *token > kSlotMax)
+      return Error{ErrorCode::kCellBadPageToken, {}, {}};
     after = static_cast<int>(*token);
   }
   const auto programs = store_.ListPrograms(*machine, after, size + 1);
@@ -281,7 +318,8 @@ Result<v1::ListProgramsResponse> ProgramShelf::List(const v1::ListProgramsReques
   v1::ListProgramsResponse response;
   for (const storage::ProgramSummary& program : *programs) {
     if (response.programs_size() == size) {
-      response.set_next_page_token(std::to_string((*programs)[static_cast<std::size_t>(size) - 1].slot));
+      response.set_next_page_token(
+          std::to_string((*programs)[static_cast<std::size_t>(size) - 1].slot));
       break;
     }
     *response.add_programs() = MessageOf(*machine, program);
@@ -302,7 +340,8 @@ Status ProgramShelf::Delete(const v1::DeleteProgramRequest& request) {
   }
   const Status deleted = place->executable ? store_.DeleteExecutable(machine, place->slot)
                                            : store_.DeleteProgram(machine, place->slot, *expected);
-  if (!deleted && deleted.error().code == ErrorCode::kCellNotFound) return EmptySlot(*place->family, request.name());
+  if (!deleted && deleted.error().code == ErrorCode::kCellNotFound)
+    return EmptySlot(*place->family, request.name());
   return deleted;
 }
 
@@ -323,17 +362,21 @@ Result<ProgramShelf::Subject> ProgramShelf::FindSubject(const std::string& famil
   } else {
     subject.family = simulation::FamilyOfFileName(program.file_name());
   }
-  if (subject.family == nullptr) return Error{ErrorCode::kCellFamilyUnknownFromName, program.file_name(), {}};
-  if (program.content().empty()) return Error{ErrorCode::kCellEmptyProgram, program.file_name(), {}};
+  if (subject.family == nullptr)
+    return Error{ErrorCode::kCellFamilyUnknownFromName, program.file_name(), {}};
+  if (program.content().empty())
+    return Error{ErrorCode::kCellEmptyProgram, program.file_name(), {}};
   Result<machine::Parameters> parameters =
-      subject.record ? bridge::MakeParameters(*subject.family, subject.record->profile, subject.record->parameters)
-                      : bridge::MakeParameters(*subject.family, {}, {});
+      subject.record ? bridge::MakeParameters(*subject.family, subject.record->profile,
+                                              subject.record->parameters)
+                     : bridge::MakeParameters(*subject.family, {}, {});
   if (!parameters) return parameters.error();
   subject.parameters = *std::move(parameters);
   return subject;
 }
 
-Result<machine::Translation> ProgramShelf::Translate(const std::string& family_id, const std::string& machine_name,
+Result<machine::Translation> ProgramShelf::Translate(const std::string& family_id,
+                                                     const std::string& machine_name,
                                                      const v1::ProgramText& program, bool advice) {
   const Result<Subject> subject = FindSubject(family_id, machine_name, program);
   if (!subject) return subject.error();
@@ -351,7 +394,8 @@ Status ProgramShelf::AddMemory(const Subject& subject, bridge::SetupInput& input
     made.slot = program.slot;
     made.name = std::move(program.name);
     made.bytes = std::make_shared<const std::string>(std::move(program.object));
-    if (program.executable) made.executable = std::make_shared<const std::string>(*std::move(program.executable));
+    if (program.executable)
+      made.executable = std::make_shared<const std::string>(*std::move(program.executable));
   }
   const auto deleted = store_.ListDeletedPrograms(machine.id);
   if (!deleted) return deleted.error();
@@ -369,12 +413,14 @@ Status ProgramShelf::AddMemory(const Subject& subject, bridge::SetupInput& input
   return {};
 }
 
-Result<ProgramShelf::Checked> ProgramShelf::Check(const std::string& family_id, const std::string& machine_name,
+Result<ProgramShelf::Checked> ProgramShelf::Check(const std::string& family_id,
+                                                  const std::string& machine_name,
                                                   const v1::ProgramText& program, bool advice) {
   const Result<Subject> subject = FindSubject(family_id, machine_name, program);
   if (!subject) return subject.error();
   const machine::MachineFamily& family = *subject->family;
-  Checked checked{.translation = TranslateFor(family, *subject->parameters, program, advice), .motion = {}};
+  Checked checked{.translation = TranslateFor(family, *subject->parameters, program, advice),
+                  .motion = {}};
   if (!checked.translation.ok || !family.info().checked_by_running) return checked;
   bridge::SetupInput input{.family = &family, .programs = {}, .schedules = {}, .machine_state = {}};
   if (subject->record) {
@@ -382,7 +428,8 @@ Result<ProgramShelf::Checked> ProgramShelf::Check(const std::string& family_id, 
   }
   checked.slot = SlotForCheck(program.file_name(), input.programs);
   input.main_program = checked.slot;
-  const machine::RunSetup setup = bridge::SetupForCheck(input, *subject->parameters, checked.translation);
+  const machine::RunSetup setup =
+      bridge::SetupForCheck(input, *subject->parameters, checked.translation);
   auto motion = simulation::CheckMotion(family, setup, {checked.slot});
   if (!motion) return motion.error();
   checked.motion = *std::move(motion);
@@ -390,7 +437,8 @@ Result<ProgramShelf::Checked> ProgramShelf::Check(const std::string& family_id, 
     if (finding.program == checked.slot) finding.file = program.file_name();
   }
   if (!advice) {
-    std::erase_if(checked.motion.findings, [](const Diagnostic& finding) { return !IsError(finding.severity); });
+    std::erase_if(checked.motion.findings,
+                  [](const Diagnostic& finding) { return !IsError(finding.severity); });
   }
   return checked;
 }

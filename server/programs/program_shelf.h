@@ -31,9 +31,9 @@ class ProgramShelf {
     std::string bytes;
     bool validate_only = false;
   };
-  // All or nothing. Errors: CellEmptyProgram, CellTooLarge, the first compile error, CellEtagMismatch,
-  // CellUnknownMachine, FamilyInfo::no_slot, empty_slot for an executable without its object and
-  // CellInvalidArgument for that of another program (OPT-1.15).
+  // All or nothing. Errors: CellEmptyProgram, CellTooLarge, the first compile error,
+  // CellEtagMismatch, CellUnknownMachine, FamilyInfo::no_slot, empty_slot for an executable without
+  // its object and CellInvalidArgument for that of another program (OPT-1.15).
   ProgramResult<v1::Program> Store(Put put);
 
   Result<v1::Program> Get(std::string_view name);
@@ -43,7 +43,7 @@ class ProgramShelf {
     v1::ProgramForm form = v1::PROGRAM_FORM_SOURCE;
     std::string file_name;
     std::string sha256;
-    bool own_text = false;      // a source as it was stored, not made of the object
+    bool own_text = false;        // a source as it was stored, not made of the object
     std::string object_sha256{};  // of the object that it belongs to
   };
   Result<Content> Read(std::string_view name, v1::ProgramForm form);
@@ -55,15 +55,15 @@ class ProgramShelf {
   Result<machine::Translation> Translate(const std::string& family, const std::string& machine,
                                          const v1::ProgramText& program, bool advice);
 
-  // The same, and follows the motion of what has no errors; on a machine in the state in which that is, with
-  // its programs. Findings of other programs, which the checked one calls, are among them.
+  // The same, and follows the motion of what has no errors; on a machine in the state in which that
+  // is, with its programs. Findings of other programs, which the checked one calls, are among them.
   struct Checked {
     machine::Translation translation;
     simulation::MotionCheck motion;
     int slot = 0;  // that the program has in the check
   };
-  Result<Checked> Check(const std::string& family, const std::string& machine, const v1::ProgramText& program,
-                        bool advice);
+  Result<Checked> Check(const std::string& family, const std::string& machine,
+                        const v1::ProgramText& program, bool advice);
 
   // Of a whole program. Error: CellTooLarge, with the limit of the configuration.
   Status CheckSize(std::int64_t bytes) const;
@@ -77,7 +77,8 @@ class ProgramShelf {
     std::optional<storage::MachineRecord> record{};
     std::optional<machine::Parameters> parameters{};
   };
-  Result<Subject> FindSubject(const std::string& family, const std::string& machine, const v1::ProgramText& program);
+  Result<Subject> FindSubject(const std::string& family, const std::string& machine,
+                              const v1::ProgramText& program);
   Status AddMemory(const Subject& subject, bridge::SetupInput& input);
   ProgramResult<v1::Program> StoreExecutable(const Put& put, const ProgramPlace& place);
 

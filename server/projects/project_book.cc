@@ -22,7 +22,8 @@ namespace {
 constexpr int kPageDefault = 100;
 constexpr int kPageMax = 1000;
 constexpr std::size_t kNotesMax = 64 << 10;
-constexpr std::array<std::string_view, 5> kProjectFields = {"title", "notes", "programs", "laser_schedules", "processes"};
+constexpr std::array<std::string_view, 5> kProjectFields = {"title", "notes", "programs",
+                                                            "laser_schedules", "processes"};
 
 // What can be said without a machine. Languages are checked when the project is transferred.
 Status CheckParts(const v1::Project& project) {
@@ -33,7 +34,8 @@ Status CheckParts(const v1::Project& project) {
     const std::string slot = std::to_string(program.slot());
     if (!IsSlot(program.slot())) return Error{ErrorCode::kProgramNumber, "slot is " + slot, {}};
     if (Status good = CheckTitle(program.title(), "title of program " + slot); !good) return good;
-    if (!slots.insert(program.slot()).second) return Error{ErrorCode::kProjectDuplicate, "slot " + slot, {}};
+    if (!slots.insert(program.slot()).second)
+      return Error{ErrorCode::kProjectDuplicate, "slot " + slot, {}};
     if (program.source().content().empty()) {
       return Error{ErrorCode::kProjectSource, "the program of slot " + slot + " has no source", {}};
     }
@@ -44,8 +46,10 @@ Status CheckParts(const v1::Project& project) {
     if (schedule.number() < 1 || schedule.number() > 63) {
       return Error{ErrorCode::kScheduleRange, "laser schedule " + number, {}};
     }
-    if (Status good = CheckTitle(schedule.title(), "title of laser schedule " + number); !good) return good;
-    if (!schedules.insert(schedule.number()).second) return InvalidArgument("laser schedule " + number + " stands twice");
+    if (Status good = CheckTitle(schedule.title(), "title of laser schedule " + number); !good)
+      return good;
+    if (!schedules.insert(schedule.number()).second)
+      return InvalidArgument("laser schedule " + number + " stands twice");
     if (!schedule.mode().empty() && schedule.mode() != "CW" && schedule.mode() != "PULSE") {
       return InvalidArgument("laser schedule " + number + ": mode is CW or PULSE");
     }
@@ -55,7 +59,8 @@ Status CheckParts(const v1::Project& project) {
   }
   std::set<std::pair<int, int>> processes;
   for (const v1::ProjectProcess& process : project.processes()) {
-    const std::string name = std::to_string(process.kind()) + "," + std::to_string(process.process());
+    const std::string name =
+        std::to_string(process.kind()) + "," + std::to_string(process.process());
     if (!processes.insert({process.kind(), process.process()}).second) {
       return Error{ErrorCode::kProjectDuplicate, "process " + name, {}};
     }
@@ -70,8 +75,8 @@ machine::ProcessDefinition DefinitionOf(const v1::ProjectProcess& process) {
           .note = process.note()};
 }
 
-// What is wrong with a project by itself. Of what its definitions say any family may have an opinion: only
-// one has processes at all (OPT-3.01 to 3.08).
+// What is wrong with a project by itself. Of what its definitions say any family may have an
+// opinion: only one has processes at all (OPT-3.01 to 3.08).
 std::optional<ProgramError> FindFault(const v1::Project& project) {
   if (const Status good = CheckParts(project); !good) return ProgramError{good.error(), {}, 0};
   std::vector<Diagnostic> found;
@@ -80,7 +85,8 @@ std::optional<ProgramError> FindFault(const v1::Project& project) {
       std::ranges::move(family->CheckProcess(DefinitionOf(process)), std::back_inserter(found));
     }
   }
-  const auto first = std::ranges::find_if(found, [](const Diagnostic& d) { return IsError(d.severity); });
+  const auto first =
+      std::ranges::find_if(found, [](const Diagnostic& d) { return IsError(d.severity); });
   if (first == found.end()) return std::nullopt;
   Error error{first->code, first->detail, {}};
   return ProgramError{std::move(error), std::move(found), 0};
@@ -120,9 +126,10 @@ machine::ProjectBundle BundleOf(const v1::Project& project) {
   machine::ProjectBundle bundle;
   for (const v1::ProjectProgram& program : project.programs()) {
     // A name may say inch, too: the family reads it (OPT-8.72).
-    bundle.programs.push_back({.slot = program.slot(),
-                               .file = {.name = program.source().file_name(), .bytes = program.source().content()},
-                               .inch = program.units() == v1::UNITS_INCH});
+    bundle.programs.push_back(
+        {.slot = program.slot(),
+         .file = {.name = program.source().file_name(), .bytes = program.source().content()},
+         .inch = program.units() == v1::UNITS_INCH});
   }
   for (const v1::ProjectLaserSchedule& schedule : project.laser_schedules()) {
     bundle.schedules.push_back({.number = schedule.number(),
@@ -137,8 +144,9 @@ machine::ProjectBundle BundleOf(const v1::Project& project) {
 }
 
 const v1::ProjectProgram* FindProgram(const v1::Project& project, int slot) {
-  const auto found = std::ranges::find_if(project.programs(),
-                                          [&](const v1::ProjectProgram& program) { return program.slot() == slot; });
+  const auto found = std::ranges::find_if(
+      project.programs(),
+      [&](const v1::ProjectProgram& program) { return program.slot() == slot; });
   return found == project.programs().end() ? nullptr : &*found;
 }
 
@@ -171,7 +179,8 @@ Result<v1::Project> ProjectBook::Get(std::string_view name) {
 
 Result<v1::ListProjectsResponse> ProjectBook::List(const v1::ListProjectsRequest& request) {
   if (request.page_size() < 0) return InvalidArgument("page_size is below 0");
-  const int size = request.page_size() == 0 ? kPageDefault : std::min(request.page_size(), kPageMax);
+  const int size =
+      request.page_size() == 0 ? kPageDefault : std::min(request.page_size(), kPageMax);
   if (!request.page_token().empty() && !CheckResourceId(request.page_token(), "page_token")) {
     return Error{ErrorCode::kCellBadPageToken, {}, {}};
   }
@@ -185,7 +194,8 @@ Result<v1::ListProjectsResponse> ProjectBook::List(const v1::ListProjectsRequest
     }
     Result<v1::Project> project = ProjectOf(record);
     if (!project) return project.error();
-    for (v1::ProjectProgram& program : *project->mutable_programs()) program.mutable_source()->clear_content();
+    for (v1::ProjectProgram& program : *project->mutable_programs())
+      program.mutable_source()->clear_content();
     *response.add_projects() = *std::move(project);
   }
   return response;
@@ -210,7 +220,8 @@ ProgramResult<v1::Project> ProjectBook::Update(const v1::UpdateProjectRequest& r
   if (named->contains("title")) project.set_title(wanted.title());
   if (named->contains("notes")) project.set_notes(wanted.notes());
   if (named->contains("programs")) *project.mutable_programs() = wanted.programs();
-  if (named->contains("laser_schedules")) *project.mutable_laser_schedules() = wanted.laser_schedules();
+  if (named->contains("laser_schedules"))
+    *project.mutable_laser_schedules() = wanted.laser_schedules();
   if (named->contains("processes")) *project.mutable_processes() = wanted.processes();
   if (auto fault = FindFault(project)) return *std::move(fault);
   if (request.validate_only()) return project;
@@ -228,7 +239,8 @@ Status ProjectBook::Delete(const v1::DeleteProjectRequest& request) {
   return store_.DeleteProject(*id, *expected);
 }
 
-ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(const v1::TransferProjectRequest& request) {
+ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(
+    const v1::TransferProjectRequest& request) {
   const Result<v1::Project> project = Get(request.name());
   if (!project) return project.error();
   const Result<std::string> machine_id = ParseMachineName(request.machine());
@@ -239,12 +251,15 @@ ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(const v1::Trans
   if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
   const auto parameters = bridge::MakeParameters(*family, machine->profile, machine->parameters);
   if (!parameters) return parameters.error();
-  if (project->programs().empty()) return Error{ErrorCode::kProjectSource, "the project has no program", {}};
+  if (project->programs().empty())
+    return Error{ErrorCode::kProjectSource, "the project has no program", {}};
 
-  // A stream takes any bytes: by its translation alone no source of another family would be refused.
+  // A stream takes any bytes: by its translation alone no source of another family would be
+  // refused.
   for (const v1::ProjectProgram& program : project->programs()) {
     if (const Status fits = CheckFileFamily(program.source().file_name(), *family); !fits) {
-      return InvalidArgument("program " + std::to_string(program.slot()) + ": " + fits.error().detail);
+      return InvalidArgument("program " + std::to_string(program.slot()) + ": " +
+                             fits.error().detail);
     }
   }
 
@@ -252,11 +267,14 @@ ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(const v1::Trans
       family->PlanTransfer(BundleOf(*project), *parameters,
                            {.insert_missing_definitions = request.insert_missing_definitions()});
   if (!plan.ok) {
-    ProgramError wrong{.error = {ErrorCode::kProjectSource, {}, {}}, .diagnostics = plan.diagnostics};
-    const auto first = std::ranges::find_if(plan.diagnostics,
-                                            [](const Diagnostic& d) { return IsError(d.severity); });
+    ProgramError wrong{.error = {ErrorCode::kProjectSource, {}, {}},
+                       .diagnostics = plan.diagnostics};
+    const auto first = std::ranges::find_if(
+        plan.diagnostics, [](const Diagnostic& d) { return IsError(d.severity); });
     if (first != plan.diagnostics.end()) {
-      wrong.error = {first->code, "program " + std::to_string(first->program) + ": " + first->detail, first->where};
+      wrong.error = {first->code,
+                     "program " + std::to_string(first->program) + ": " + first->detail,
+                     first->where};
     }
     return wrong;
   }
@@ -269,13 +287,15 @@ ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(const v1::Trans
     made.set_name(NameOfProgram(*machine_id, program.slot));
     made.set_title(source != nullptr ? source->title() : std::string());
     made.set_object_bytes(static_cast<std::int64_t>(program.object.size()));
-    storage::ProgramWrite write{.slot = program.slot,
-                                .name = made.title(),
-                                .object = std::move(program.object),
-                                .source = {},
-                                .source_name = source != nullptr ? source->source().file_name() : std::string()};
+    storage::ProgramWrite write{
+        .slot = program.slot,
+        .name = made.title(),
+        .object = std::move(program.object),
+        .source = {},
+        .source_name = source != nullptr ? source->source().file_name() : std::string()};
     if (program.own_text && source != nullptr) {
-      write.source = source->source().content();  // the programmer's own text, inch where it is inch
+      write.source =
+          source->source().content();  // the programmer's own text, inch where it is inch
     } else if (!program.source.empty() && program.source != write.object) {
       // Another text than that of the project: its name must not say inch, or object.
       if (source != nullptr && program.source != source->source().content()) {
@@ -299,7 +319,8 @@ ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(const v1::Trans
   }
   const auto stored = store_.PutPrograms(*machine_id, writes, schedules);
   if (!stored) return stored.error();
-  for (int i = 0; i < response.programs_size() && static_cast<std::size_t>(i) < stored->size(); ++i) {
+  for (int i = 0; i < response.programs_size() && static_cast<std::size_t>(i) < stored->size();
+       ++i) {
     const storage::ProgramSummary& summary = (*stored)[static_cast<std::size_t>(i)];
     response.mutable_programs(i)->set_etag(std::to_string(summary.revision));
     response.mutable_programs(i)->set_object_sha256(summary.object_sha256);

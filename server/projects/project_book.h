@@ -8,13 +8,14 @@
 
 namespace rmlcell::server {
 
-// Projects: kept as one record each, transferred to a machine as one. Thread-safe; blocks on the store.
+// Projects: kept as one record each, transferred to a machine as one. Thread-safe; blocks on the
+// store.
 class ProjectBook {
  public:
   explicit ProjectBook(storage::Store& store) : store_(store) {}
 
-  // Errors: ProgramNumber (7101), ProjectDuplicate (7861), ProjectSource (7862), ScheduleRange, those of
-  // process definitions (7402, 7403, 7004, 7019; OPT-3.01 to 3.08), CellAlreadyExists.
+  // Errors: ProgramNumber (7101), ProjectDuplicate (7861), ProjectSource (7862), ScheduleRange,
+  // those of process definitions (7402, 7403, 7004, 7019; OPT-3.01 to 3.08), CellAlreadyExists.
   ProgramResult<v1::Project> Create(const v1::CreateProjectRequest& request);
   Result<v1::Project> Get(std::string_view name);
   Result<v1::ListProjectsResponse> List(const v1::ListProjectsRequest& request);
@@ -22,9 +23,10 @@ class ProjectBook {
   ProgramResult<v1::Project> Update(const v1::UpdateProjectRequest& request);
   Status Delete(const v1::DeleteProjectRequest& request);
 
-  // Converts, compiles and checks everything in the engine, then stores all programs and schedules in one
-  // transaction; on any error nothing is stored (OPT-8.71). Errors: ProjectDuplicate (7861),
-  // ProjectSource (7862), CellInvalidArgument for a file of another family, the first error of the programs.
+  // Converts, compiles and checks everything in the engine, then stores all programs and schedules
+  // in one transaction; on any error nothing is stored (OPT-8.71). Errors: ProjectDuplicate (7861),
+  // ProjectSource (7862), CellInvalidArgument for a file of another family, the first error of the
+  // programs.
   ProgramResult<v1::TransferProjectResponse> Transfer(const v1::TransferProjectRequest& request);
 
  private:

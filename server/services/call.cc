@@ -8,7 +8,8 @@ namespace {
 
 // gRPC sends details in a header, and clients take 8 KiB of headers: more findings are left out.
 constexpr std::size_t kDetailsMax = 6 << 10;
-// The text stands in them twice, and once in the message: with a name of a megabyte in it nothing would arrive.
+// The text stands in them twice, and once in the message: with a name of a megabyte in it nothing
+// would arrive.
 constexpr std::size_t kErrorTextMax = 1000;
 
 }  // namespace
@@ -34,17 +35,20 @@ grpc::Status ToGrpcStatus(const Error& error, const std::vector<Diagnostic>& dia
 Status CheckSize(const CallRoom& room, const google::protobuf::Message& request) {
   const auto size = static_cast<std::int64_t>(request.ByteSizeLong());
   if (size <= room.message_bytes_max) return {};
-  return Error{ErrorCode::kCellTooLarge,
-               "the message has " + std::to_string(size) + " bytes, one call takes " +
-                   std::to_string(room.message_bytes_max) +
-                   "; send a large program by chunks (UploadProgram, rmlcell put), and name its slot in a job",
-               {}};
+  return Error{
+      ErrorCode::kCellTooLarge,
+      "the message has " + std::to_string(size) + " bytes, one call takes " +
+          std::to_string(room.message_bytes_max) +
+          "; send a large program by chunks (UploadProgram, rmlcell put), and name its slot in a job",
+      {}};
 }
 
-Result<Caller> Admit(const Gate& gate, const grpc::ServerContextBase& context, std::string_view method) {
+Result<Caller> Admit(const Gate& gate, const grpc::ServerContextBase& context,
+                     std::string_view method) {
   CallFacts facts{.method = std::string(method), .peer = context.peer(), .metadata = {}};
   for (const auto& [key, value] : context.client_metadata()) {
-    facts.metadata.emplace(std::string(key.data(), key.size()), std::string(value.data(), value.size()));
+    facts.metadata.emplace(std::string(key.data(), key.size()),
+                           std::string(value.data(), value.size()));
   }
   return gate.Admit(facts);
 }
@@ -53,11 +57,12 @@ void LogCall(std::string_view method, const Caller& caller, const grpc::Status& 
              std::chrono::steady_clock::duration took) {
   const auto us = std::chrono::duration_cast<std::chrono::microseconds>(took).count();
   if (status.ok()) {
-    spdlog::debug("{} ok in {} us, caller {} at {} request {}", method, us, caller.identity, caller.peer,
-                  caller.request_id);
+    spdlog::debug("{} ok in {} us, caller {} at {} request {}", method, us, caller.identity,
+                  caller.peer, caller.request_id);
   } else {
-    spdlog::info("{} {} in {} us, caller {} at {} request {}: {}", method, static_cast<int>(status.error_code()),
-                 us, caller.identity, caller.peer, caller.request_id, status.error_message());
+    spdlog::info("{} {} in {} us, caller {} at {} request {}: {}", method,
+                 static_cast<int>(status.error_code()), us, caller.identity, caller.peer,
+                 caller.request_id, status.error_message());
   }
 }
 

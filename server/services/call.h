@@ -12,8 +12,8 @@
 #include "server/executor.h"
 #include "server/services/rpc_status.h"
 
-// The wrapper that every method goes through: it admits the caller, runs the work where it may block,
-// turns errors into statuses, and logs. Only service sources include this.
+// The wrapper that every method goes through: it admits the caller, runs the work where it may
+// block, turns errors into statuses, and logs. Only service sources include this.
 namespace rmlcell::server {
 
 // What a call needs before its own work begins.
@@ -23,12 +23,13 @@ struct CallRoom {
   std::int64_t message_bytes_max;  // limits.message_bytes
 };
 
-Result<Caller> Admit(const Gate& gate, const grpc::ServerContextBase& context, std::string_view method);
+Result<Caller> Admit(const Gate& gate, const grpc::ServerContextBase& context,
+                     std::string_view method);
 void LogCall(std::string_view method, const Caller& caller, const grpc::Status& status,
              std::chrono::steady_clock::duration took);
 
-// gRPC refuses an oversized message without a word of ours. It is told to let this much more in, so that
-// whoever is a little over gets the code and the advice; larger ones are not worth the memory.
+// gRPC refuses an oversized message without a word of ours. It is told to let this much more in, so
+// that whoever is a little over gets the code and the advice; larger ones are not worth the memory.
 inline constexpr std::int64_t kRefusalBytes = 16 << 20;
 // Error: CellTooLarge.
 Status CheckSize(const CallRoom& room, const google::protobuf::Message& request);
@@ -61,7 +62,8 @@ grpc::ServerUnaryReactor* Answer(const CallRoom& room, grpc::CallbackServerConte
 // The same for a request that may be of any size.
 template <class Work>
 grpc::ServerUnaryReactor* Answer(const CallRoom& room, grpc::CallbackServerContext* context,
-                                 const google::protobuf::Message& request, std::string_view method, Work work) {
+                                 const google::protobuf::Message& request, std::string_view method,
+                                 Work work) {
   const Status size = CheckSize(room, request);
   if (size) return Answer(room, context, method, std::move(work));
   return Answer(room, context, method,

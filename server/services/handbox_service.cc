@@ -4,14 +4,15 @@
 
 namespace rmlcell::server {
 
-grpc::ServerUnaryReactor* HandboxService::CreateHandboxSession(grpc::CallbackServerContext* context,
-                                                               const v1::CreateHandboxSessionRequest*,
-                                                               v1::HandboxSession*) {
+grpc::ServerUnaryReactor* HandboxService::CreateHandboxSession(
+    grpc::CallbackServerContext* context, const v1::CreateHandboxSessionRequest*,
+    v1::HandboxSession*) {
   return NotYet(room_, context, "HandboxService/CreateHandboxSession");
 }
 
 grpc::ServerUnaryReactor* HandboxService::PressKey(grpc::CallbackServerContext* context,
-                                                   const v1::PressKeyRequest*, v1::HandboxSession*) {
+                                                   const v1::PressKeyRequest*,
+                                                   v1::HandboxSession*) {
   return NotYet(room_, context, "HandboxService/PressKey");
 }
 
@@ -19,13 +20,14 @@ grpc::ServerWriteReactor<v1::WatchHandboxSessionResponse>* HandboxService::Watch
     grpc::CallbackServerContext* context, const v1::WatchHandboxSessionRequest*) {
   const auto caller = Admit(room_.gate, *context, "HandboxService/WatchHandboxSession");
   const Error error =
-      caller ? Error{ErrorCode::kCellUnimplemented, "HandboxService/WatchHandboxSession", {}} : caller.error();
+      caller ? Error{ErrorCode::kCellUnimplemented, "HandboxService/WatchHandboxSession", {}}
+             : caller.error();
   return new RefusedStream<v1::WatchHandboxSessionResponse>(ToGrpcStatus(error));
 }
 
-grpc::ServerUnaryReactor* HandboxService::DeleteHandboxSession(grpc::CallbackServerContext* context,
-                                                               const v1::DeleteHandboxSessionRequest*,
-                                                               google::protobuf::Empty*) {
+grpc::ServerUnaryReactor* HandboxService::DeleteHandboxSession(
+    grpc::CallbackServerContext* context, const v1::DeleteHandboxSessionRequest*,
+    google::protobuf::Empty*) {
   return NotYet(room_, context, "HandboxService/DeleteHandboxSession");
 }
 

@@ -13,7 +13,8 @@ class HandboxService final : public v1::HandboxService::CallbackService {
   grpc::ServerUnaryReactor* CreateHandboxSession(grpc::CallbackServerContext* context,
                                                  const v1::CreateHandboxSessionRequest* request,
                                                  v1::HandboxSession* response) override;
-  grpc::ServerUnaryReactor* PressKey(grpc::CallbackServerContext* context, const v1::PressKeyRequest* request,
+  grpc::ServerUnaryReactor* PressKey(grpc::CallbackServerContext* context,
+                                     const v1::PressKeyRequest* request,
                                      v1::HandboxSession* response) override;
   grpc::ServerWriteReactor<v1::WatchHandboxSessionResponse>* WatchHandboxSession(
       grpc::CallbackServerContext* context, const v1::WatchHandboxSessionRequest* request) override;

@@ -11,10 +11,11 @@
 
 namespace rmlcell::server {
 
-// The one method that does not go through the executor. Of callers that come together only the first waits
-// here for the disk; the store answers all others from its own thread, with one commit.
+// The one method that does not go through the executor. Of callers that come together only the
+// first waits here for the disk; the store answers all others from its own thread, with one commit.
 grpc::ServerUnaryReactor* JobService::SubmitJob(grpc::CallbackServerContext* context,
-                                                const v1::SubmitJobRequest* request, v1::Job* response) {
+                                                const v1::SubmitJobRequest* request,
+                                                v1::Job* response) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   const Result<Caller> caller = Admit(room_.gate, *context, "JobService/SubmitJob");
   const Status size = CheckSize(room_, *request);
@@ -23,59 +24,67 @@ grpc::ServerUnaryReactor* JobService::SubmitJob(grpc::CallbackServerContext* con
     return reactor;
   }
   const auto begin = std::chrono::steady_clock::now();
-  book_.Submit(*request, caller->identity, [reactor, response, begin, caller = *caller](Result<v1::Job> job) {
-    grpc::Status status;
-    if (job) {
-      *response = std::move(*job);
-    } else {
-      status = ToGrpcStatus(job.error());
-    }
-    LogCall("JobService/SubmitJob", caller, status, std::chrono::steady_clock::now() - begin);
-    reactor->Finish(status);
-  });
+  book_.Submit(*request, caller->identity,
+               [reactor, response, begin, caller = *caller](Result<v1::Job> job) {
+                 grpc::Status status;
+                 if (job) {
+                   *response = std::move(*job);
+                 } else {
+                   status = ToGrpcStatus(job.error());
+                 }
+                 LogCall("JobService/SubmitJob", caller, status,
+                         std::chrono::steady_clock::now() - begin);
+                 reactor->Finish(status);
+               });
   return reactor;
 }
 
 grpc::ServerUnaryReactor* JobService::GetJob(grpc::CallbackServerContext* context,
                                              const v1::GetJobRequest* request, v1::Job* response) {
-  return Answer(room_, context, *request, "JobService/GetJob", [this, request, response](const Caller&) {
-    Result<v1::Job> job = book_.Get(request->name());
-    if (!job) return ToGrpcStatus(job.error());
-    *response = std::move(*job);
-    return grpc::Status::OK;
-  });
+  return Answer(room_, context, *request, "JobService/GetJob",
+                [this, request, response](const Caller&) {
+                  Result<v1::Job> job = book_.Get(request->name());
+                  if (!job) return ToGrpcStatus(job.error());
+                  *response = std::move(*job);
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerUnaryReactor* JobService::ListJobs(grpc::CallbackServerContext* context,
                                                const v1::ListJobsRequest* request,
                                                v1::ListJobsResponse* response) {
-  return Answer(room_, context, *request, "JobService/ListJobs", [this, request, response](const Caller&) {
-    Result<v1::ListJobsResponse> jobs = book_.List(*request);
-    if (!jobs) return ToGrpcStatus(jobs.error());
-    *response = std::move(*jobs);
-    return grpc::Status::OK;
-  });
+  return Answer(room_, context, *request, "JobService/ListJobs",
+                [this, request, response](const Caller&) {
+                  Result<v1::ListJobsResponse> jobs = book_.List(*request);
+                  if (!jobs) return ToGrpcStatus(jobs.error());
+                  *response = std::move(*jobs);
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerUnaryReactor* JobService::CancelJob(grpc::CallbackServerContext* context,
-                                                const v1::CancelJobRequest* request, v1::Job* response) {
-  return Answer(room_, context, *request, "JobService/CancelJob", [this, request, response](const Caller&) {
-    const Result<std::int64_t> id = ParseJobName(request->name());
-    if (!id) return ToGrpcStatus(id.error());
-    const auto job = dispatcher_.Cancel(*id);
-    if (!job) return ToGrpcStatus(job.error());
-    *response = ToProto(*job);
-    return grpc::Status::OK;
-  });
+                                                const v1::CancelJobRequest* request,
+                                                v1::Job* response) {
+  return Answer(room_, context, *request, "JobService/CancelJob",
+                [this, request, response](const Caller&) {
+                  const Result<std::int64_t> id = ParseJobName(request->name());
+                  if (!id) return ToGrpcStatus(id.error());
+                  const auto job = dispatcher_.Cancel(*id);
+                  if (!job) return ToGrpcStatus(job.error());
+                  *response = ToProto(*job);
+                  return grpc::Status::OK;
+                });
 }
 
-grpc::ServerUnaryReactor* JobService::Order(grpc::CallbackServerContext* context, std::string_view method,
-                                            const std::string& name, int kind, double value,
-                                            v1::Job* response) {
+grpc::ServerUnaryReactor* JobService::Order(grpc::CallbackServerContext* context,
+                                            std::string_view method, const std::string& name,
+                                            int kind, double value, v1::Job* response) {
   return Answer(room_, context, method, [this, name, kind, value, response](const Caller&) {
     const Result<std::int64_t> id = ParseJobName(name);
     if (!id) return ToGrpcStatus(id.error());
-    if (const Status ordered = dispatcher_.Control(*id, static_cast<v1::WorkerControl::Kind>(kind), value); !ordered) {
+    if (const Status ordered =
+            dispatcher_.Control(*id, static_cast<v1::WorkerControl::Kind>(kind), value);
+        !ordered) {
       return ToGrpcStatus(ordered.error());
     }
     Result<v1::Job> job = book_.Get(name);
@@ -86,14 +95,18 @@ grpc::ServerUnaryReactor* JobService::Order(grpc::CallbackServerContext* context
 }
 
 grpc::ServerUnaryReactor* JobService::HoldJob(grpc::CallbackServerContext* context,
-                                              const v1::HoldJobRequest* request, v1::Job* response) {
-  const auto kind = request->at_once() ? v1::WorkerControl::KIND_STOP : v1::WorkerControl::KIND_HOLD;
+                                              const v1::HoldJobRequest* request,
+                                              v1::Job* response) {
+  const auto kind =
+      request->at_once() ? v1::WorkerControl::KIND_STOP : v1::WorkerControl::KIND_HOLD;
   return Order(context, "JobService/HoldJob", request->name(), kind, 0.0, response);
 }
 
 grpc::ServerUnaryReactor* JobService::ResumeJob(grpc::CallbackServerContext* context,
-                                                const v1::ResumeJobRequest* request, v1::Job* response) {
-  return Order(context, "JobService/ResumeJob", request->name(), v1::WorkerControl::KIND_RESUME, 0.0, response);
+                                                const v1::ResumeJobRequest* request,
+                                                v1::Job* response) {
+  return Order(context, "JobService/ResumeJob", request->name(), v1::WorkerControl::KIND_RESUME,
+               0.0, response);
 }
 
 grpc::ServerUnaryReactor* JobService::SetJobOverride(grpc::CallbackServerContext* context,
@@ -102,12 +115,12 @@ grpc::ServerUnaryReactor* JobService::SetJobOverride(grpc::CallbackServerContext
   const double percent = request->override_percent();
   if (!(percent > 0.0 && percent <= bridge::kOverrideMax)) {
     return Answer(room_, context, *request, "JobService/SetJobOverride", [](const Caller&) {
-      return ToGrpcStatus(
-          Error{ErrorCode::kCellInvalidArgument, "override_percent: allowed are above 0 to 145", {}});
+      return ToGrpcStatus(Error{
+          ErrorCode::kCellInvalidArgument, "override_percent: allowed are above 0 to 145", {}});
     });
   }
-  return Order(context, "JobService/SetJobOverride", request->name(), v1::WorkerControl::KIND_OVERRIDE, percent,
-               response);
+  return Order(context, "JobService/SetJobOverride", request->name(),
+               v1::WorkerControl::KIND_OVERRIDE, percent, response);
 }
 
 namespace {
@@ -123,14 +136,14 @@ grpc::ServerWriteReactor<Response>* Open(const CallRoom& room, grpc::CallbackSer
 
 }  // namespace
 
-grpc::ServerWriteReactor<v1::WatchJobResponse>* JobService::WatchJob(grpc::CallbackServerContext* context,
-                                                                     const v1::WatchJobRequest* request) {
+grpc::ServerWriteReactor<v1::WatchJobResponse>* JobService::WatchJob(
+    grpc::CallbackServerContext* context, const v1::WatchJobRequest* request) {
   return Open(room_, context, "JobService/WatchJob",
               MakeJobWatch({room_.executor, open_, book_, feed_, instance_id_}, *request));
 }
 
-grpc::ServerWriteReactor<v1::WatchJobsResponse>* JobService::WatchJobs(grpc::CallbackServerContext* context,
-                                                                       const v1::WatchJobsRequest* request) {
+grpc::ServerWriteReactor<v1::WatchJobsResponse>* JobService::WatchJobs(
+    grpc::CallbackServerContext* context, const v1::WatchJobsRequest* request) {
   return Open(room_, context, "JobService/WatchJobs",
               MakeJobsWatch({room_.executor, open_, book_, feed_, instance_id_}, *request));
 }
@@ -138,42 +151,47 @@ grpc::ServerWriteReactor<v1::WatchJobsResponse>* JobService::WatchJobs(grpc::Cal
 grpc::ServerUnaryReactor* JobService::GetJobReport(grpc::CallbackServerContext* context,
                                                    const v1::GetJobReportRequest* request,
                                                    v1::RunReport* response) {
-  return Answer(room_, context, *request, "JobService/GetJobReport", [this, request, response](const Caller&) {
-    const Result<std::int64_t> id = ParseJobName(request->name());
-    if (!id) return ToGrpcStatus(id.error());
-    const Result<std::string> bytes = book_.ReadArtifact(*id, "report");
-    if (!bytes) return ToGrpcStatus(bytes.error());
-    if (!response->ParseFromString(*bytes)) {
-      return ToGrpcStatus(Error{ErrorCode::kCellStoreCorrupt, "the report of " + request->name(), {}});
-    }
-    return grpc::Status::OK;
-  });
+  return Answer(room_, context, *request, "JobService/GetJobReport",
+                [this, request, response](const Caller&) {
+                  const Result<std::int64_t> id = ParseJobName(request->name());
+                  if (!id) return ToGrpcStatus(id.error());
+                  const Result<std::string> bytes = book_.ReadArtifact(*id, "report");
+                  if (!bytes) return ToGrpcStatus(bytes.error());
+                  if (!response->ParseFromString(*bytes)) {
+                    return ToGrpcStatus(Error{
+                        ErrorCode::kCellStoreCorrupt, "the report of " + request->name(), {}});
+                  }
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerWriteReactor<v1::StreamJobToolpathResponse>* JobService::StreamJobToolpath(
     grpc::CallbackServerContext* context, const v1::StreamJobToolpathRequest* request) {
   return Open(room_, context, "JobService/StreamJobToolpath",
-              MakeToolpathStream({room_.executor, open_, book_, feed_, instance_id_}, request->name(), request->level()));
+              MakeToolpathStream({room_.executor, open_, book_, feed_, instance_id_},
+                                 request->name(), request->level()));
 }
 
 grpc::ServerUnaryReactor* JobService::GetJobPicture(grpc::CallbackServerContext* context,
                                                     const v1::GetJobPictureRequest* request,
                                                     v1::GetJobPictureResponse* response) {
-  return Answer(room_, context, *request, "JobService/GetJobPicture", [this, request, response](const Caller&) {
-    const Result<std::int64_t> id = ParseJobName(request->name());
-    if (!id) return ToGrpcStatus(id.error());
-    const Result<std::string> bytes = book_.ReadArtifact(*id, "picture.svg");
-    if (!bytes) return ToGrpcStatus(bytes.error());
-    response->set_content(*bytes);
-    response->set_media_type("image/svg+xml");
-    return grpc::Status::OK;
-  });
+  return Answer(room_, context, *request, "JobService/GetJobPicture",
+                [this, request, response](const Caller&) {
+                  const Result<std::int64_t> id = ParseJobName(request->name());
+                  if (!id) return ToGrpcStatus(id.error());
+                  const Result<std::string> bytes = book_.ReadArtifact(*id, "picture.svg");
+                  if (!bytes) return ToGrpcStatus(bytes.error());
+                  response->set_content(*bytes);
+                  response->set_media_type("image/svg+xml");
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerWriteReactor<v1::StreamJobTraceResponse>* JobService::StreamJobTrace(
     grpc::CallbackServerContext* context, const v1::StreamJobTraceRequest* request) {
-  return Open(room_, context, "JobService/StreamJobTrace",
-              MakeTraceStream({room_.executor, open_, book_, feed_, instance_id_}, request->name()));
+  return Open(
+      room_, context, "JobService/StreamJobTrace",
+      MakeTraceStream({room_.executor, open_, book_, feed_, instance_id_}, request->name()));
 }
 
 }  // namespace rmlcell::server

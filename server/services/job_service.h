@@ -15,29 +15,38 @@ class JobBook;
 // Converts, calls, converts: the rules live in server/jobs.
 class JobService final : public v1::JobService::CallbackService {
  public:
-  JobService(CallRoom room, JobBook& book, Dispatcher& dispatcher, EventFeed& feed, OpenStreams& open,
-             std::string instance_id)
-      : room_(room), book_(book), dispatcher_(dispatcher), feed_(feed), open_(open),
+  JobService(CallRoom room, JobBook& book, Dispatcher& dispatcher, EventFeed& feed,
+             OpenStreams& open, std::string instance_id)
+      : room_(room),
+        book_(book),
+        dispatcher_(dispatcher),
+        feed_(feed),
+        open_(open),
         instance_id_(std::move(instance_id)) {}
 
-  grpc::ServerUnaryReactor* SubmitJob(grpc::CallbackServerContext* context, const v1::SubmitJobRequest* request,
+  grpc::ServerUnaryReactor* SubmitJob(grpc::CallbackServerContext* context,
+                                      const v1::SubmitJobRequest* request,
                                       v1::Job* response) override;
-  grpc::ServerUnaryReactor* GetJob(grpc::CallbackServerContext* context, const v1::GetJobRequest* request,
-                                   v1::Job* response) override;
-  grpc::ServerUnaryReactor* ListJobs(grpc::CallbackServerContext* context, const v1::ListJobsRequest* request,
+  grpc::ServerUnaryReactor* GetJob(grpc::CallbackServerContext* context,
+                                   const v1::GetJobRequest* request, v1::Job* response) override;
+  grpc::ServerUnaryReactor* ListJobs(grpc::CallbackServerContext* context,
+                                     const v1::ListJobsRequest* request,
                                      v1::ListJobsResponse* response) override;
-  grpc::ServerUnaryReactor* CancelJob(grpc::CallbackServerContext* context, const v1::CancelJobRequest* request,
+  grpc::ServerUnaryReactor* CancelJob(grpc::CallbackServerContext* context,
+                                      const v1::CancelJobRequest* request,
                                       v1::Job* response) override;
-  grpc::ServerUnaryReactor* HoldJob(grpc::CallbackServerContext* context, const v1::HoldJobRequest* request,
-                                    v1::Job* response) override;
-  grpc::ServerUnaryReactor* ResumeJob(grpc::CallbackServerContext* context, const v1::ResumeJobRequest* request,
+  grpc::ServerUnaryReactor* HoldJob(grpc::CallbackServerContext* context,
+                                    const v1::HoldJobRequest* request, v1::Job* response) override;
+  grpc::ServerUnaryReactor* ResumeJob(grpc::CallbackServerContext* context,
+                                      const v1::ResumeJobRequest* request,
                                       v1::Job* response) override;
   grpc::ServerUnaryReactor* SetJobOverride(grpc::CallbackServerContext* context,
-                                           const v1::SetJobOverrideRequest* request, v1::Job* response) override;
-  grpc::ServerWriteReactor<v1::WatchJobResponse>* WatchJob(grpc::CallbackServerContext* context,
-                                                           const v1::WatchJobRequest* request) override;
-  grpc::ServerWriteReactor<v1::WatchJobsResponse>* WatchJobs(grpc::CallbackServerContext* context,
-                                                             const v1::WatchJobsRequest* request) override;
+                                           const v1::SetJobOverrideRequest* request,
+                                           v1::Job* response) override;
+  grpc::ServerWriteReactor<v1::WatchJobResponse>* WatchJob(
+      grpc::CallbackServerContext* context, const v1::WatchJobRequest* request) override;
+  grpc::ServerWriteReactor<v1::WatchJobsResponse>* WatchJobs(
+      grpc::CallbackServerContext* context, const v1::WatchJobsRequest* request) override;
   grpc::ServerUnaryReactor* GetJobReport(grpc::CallbackServerContext* context,
                                          const v1::GetJobReportRequest* request,
                                          v1::RunReport* response) override;

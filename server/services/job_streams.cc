@@ -20,21 +20,25 @@ namespace {
 // Events read from the log at once; all that a watcher ever holds.
 constexpr int kReadAhead = 64;
 
-// A watcher must not wait for events that are numbered otherwise by now: it has its number of another cell, or
-// the store was put back from a backup. It is told, and never set somewhere else in silence.
+// A watcher must not wait for events that are numbered otherwise by now: it has its number of
+// another cell, or the store was put back from a backup. It is told, and never set somewhere else
+// in silence.
 Status CheckPosition(std::int64_t after, std::int64_t last, const std::string& of) {
   if (after < 0) return InvalidArgument("after_sequence is below 0");
   if (after <= last) return {};
-  return InvalidArgument("after_sequence is " + std::to_string(after) + ", the last event of " + of + " is " +
-                         std::to_string(last) + ": begin anew, with a snapshot");
+  return InvalidArgument("after_sequence is " + std::to_string(after) + ", the last event of " +
+                         of + " is " + std::to_string(last) + ": begin anew, with a snapshot");
 }
 
-// A snapshot first, then the job's events in order, then positions while nothing else is to be told; the
-// end of the job ends the stream.
+// A snapshot first, then the job's events in order, then positions while nothing else is to be
+// told; the end of the job ends the stream.
 class JobWatch final : public PullStream<v1::WatchJobResponse> {
  public:
   JobWatch(const JobStreamRoom& room, const v1::WatchJobRequest& request)
-      : PullStream(room.executor, room.open), room_(room), request_(request), cursor_(request.after_sequence()) {}
+      : PullStream(room.executor, room.open),
+        room_(room),
+        request_(request),
+        cursor_(request.after_sequence()) {}
 
  private:
   Next Make(v1::WatchJobResponse& message, grpc::Status& status) override {
@@ -97,7 +101,8 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
 
   bool MakeGoodbye(v1::WatchJobResponse& message) override {
     message.set_instance_id(room_.instance_id);
-    message.set_reconnect("the server stops; watch again after sequence " + std::to_string(cursor_));
+    message.set_reconnect("the server stops; watch again after sequence " +
+                          std::to_string(cursor_));
     return true;
   }
 
@@ -119,7 +124,10 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
 class JobsWatch final : public PullStream<v1::WatchJobsResponse> {
  public:
   JobsWatch(const JobStreamRoom& room, const v1::WatchJobsRequest& request)
-      : PullStream(room.executor, room.open), room_(room), request_(request), cursor_(request.after_sequence()) {}
+      : PullStream(room.executor, room.open),
+        room_(room),
+        request_(request),
+        cursor_(request.after_sequence()) {}
 
  private:
   Next Make(v1::WatchJobsResponse& message, grpc::Status& status) override {
@@ -170,7 +178,8 @@ class JobsWatch final : public PullStream<v1::WatchJobsResponse> {
       status = ToGrpcStatus(machines.error());
       return Next::kEnd;
     }
-    for (const storage::MachineRecord& machine : *machines) *snapshot->add_machines() = ToProto(machine);
+    for (const storage::MachineRecord& machine : *machines)
+      *snapshot->add_machines() = ToProto(machine);
     if (const Status there = CheckPosition(cursor_, snapshot->sequence(), "the cell"); !there) {
       status = ToGrpcStatus(there.error());
       return Next::kEnd;
@@ -197,7 +206,8 @@ class JobsWatch final : public PullStream<v1::WatchJobsResponse> {
 
   bool MakeGoodbye(v1::WatchJobsResponse& message) override {
     message.set_instance_id(room_.instance_id);
-    message.set_reconnect("the server stops; watch again after sequence " + std::to_string(cursor_));
+    message.set_reconnect("the server stops; watch again after sequence " +
+                          std::to_string(cursor_));
     return true;
   }
 
@@ -220,7 +230,9 @@ class FramesStream : public PullStream<Response> {
  public:
   using typename PullStream<Response>::Next;
   FramesStream(const JobStreamRoom& room, std::string job_name, std::string artifact)
-      : PullStream<Response>(room.executor, room.open), room_(room), job_name_(std::move(job_name)),
+      : PullStream<Response>(room.executor, room.open),
+        room_(room),
+        job_name_(std::move(job_name)),
         artifact_(std::move(artifact)) {}
 
  protected:
@@ -228,7 +240,9 @@ class FramesStream : public PullStream<Response> {
   virtual bool Add(std::string_view frame, Response& message) = 0;
 
   // All frames, as they are stored.
-  virtual Result<std::string> Read(std::int64_t job) { return room_.book.ReadArtifact(job, artifact_); }
+  virtual Result<std::string> Read(std::int64_t job) {
+    return room_.book.ReadArtifact(job, artifact_);
+  }
 
   const std::string& job_name() const { return job_name_; }
   JobBook& book() const { return room_.book; }
@@ -265,10 +279,11 @@ class FramesStream : public PullStream<Response> {
 // A toolpath that is coarser than the stored one by some levels of detail.
 std::string AtLevel(std::string_view frames, double stored_mm, int level) {
   std::string coarse;
-  simulation::ToolpathLevel made(simulation::LevelTolerance(stored_mm, level) - stored_mm, [&](std::string_view block) {
-    AddFrame(block, coarse);
-    return true;
-  });
+  simulation::ToolpathLevel made(simulation::LevelTolerance(stored_mm, level) - stored_mm,
+                                 [&](std::string_view block) {
+                                   AddFrame(block, coarse);
+                                   return true;
+                                 });
   while (const auto frame = TakeFrame(frames)) {
     const Result<simulation::ToolpathBlock> block = simulation::DecodeToolpathBlock(*frame);
     if (!block) break;  // ends where the stored one does
@@ -294,7 +309,8 @@ class ToolpathStream final : public FramesStream<v1::StreamJobToolpathResponse> 
     const Result<v1::Job> made_by = book().Get(job_name());
     if (!made_by) return made_by.error();
     const double asked = made_by->simulation().toolpath_tolerance_mm();
-    return AtLevel(*stored, asked > 0.0 ? asked : simulation::ToolpathOptions().tolerance_mm, level_);
+    return AtLevel(*stored, asked > 0.0 ? asked : simulation::ToolpathOptions().tolerance_mm,
+                   level_);
   }
 
   bool Add(std::string_view frame, v1::StreamJobToolpathResponse& message) override {
@@ -321,18 +337,18 @@ std::shared_ptr<PullStream<v1::WatchJobResponse>> MakeJobWatch(const JobStreamRo
   return std::make_shared<JobWatch>(room, request);
 }
 
-std::shared_ptr<PullStream<v1::WatchJobsResponse>> MakeJobsWatch(const JobStreamRoom& room,
-                                                                 const v1::WatchJobsRequest& request) {
+std::shared_ptr<PullStream<v1::WatchJobsResponse>> MakeJobsWatch(
+    const JobStreamRoom& room, const v1::WatchJobsRequest& request) {
   return std::make_shared<JobsWatch>(room, request);
 }
 
-std::shared_ptr<PullStream<v1::StreamJobToolpathResponse>> MakeToolpathStream(const JobStreamRoom& room,
-                                                                              const std::string& job_name, int level) {
+std::shared_ptr<PullStream<v1::StreamJobToolpathResponse>> MakeToolpathStream(
+    const JobStreamRoom& room, const std::string& job_name, int level) {
   return std::make_shared<ToolpathStream>(room, job_name, level);
 }
 
-std::shared_ptr<PullStream<v1::StreamJobTraceResponse>> MakeTraceStream(const JobStreamRoom& room,
-                                                                        const std::string& job_name) {
+std::shared_ptr<PullStream<v1::StreamJobTraceResponse>> MakeTraceStream(
+    const JobStreamRoom& room, const std::string& job_name) {
   return std::make_shared<TraceStream>(room, job_name, "trace");
 }
 

@@ -22,12 +22,12 @@ struct JobStreamRoom {
 
 std::shared_ptr<PullStream<v1::WatchJobResponse>> MakeJobWatch(const JobStreamRoom& room,
                                                                const v1::WatchJobRequest& request);
-std::shared_ptr<PullStream<v1::WatchJobsResponse>> MakeJobsWatch(const JobStreamRoom& room,
-                                                                 const v1::WatchJobsRequest& request);
-std::shared_ptr<PullStream<v1::StreamJobToolpathResponse>> MakeToolpathStream(const JobStreamRoom& room,
-                                                                              const std::string& job_name, int level);
-std::shared_ptr<PullStream<v1::StreamJobTraceResponse>> MakeTraceStream(const JobStreamRoom& room,
-                                                                        const std::string& job_name);
+std::shared_ptr<PullStream<v1::WatchJobsResponse>> MakeJobsWatch(
+    const JobStreamRoom& room, const v1::WatchJobsRequest& request);
+std::shared_ptr<PullStream<v1::StreamJobToolpathResponse>> MakeToolpathStream(
+    const JobStreamRoom& room, const std::string& job_name, int level);
+std::shared_ptr<PullStream<v1::StreamJobTraceResponse>> MakeTraceStream(
+    const JobStreamRoom& room, const std::string& job_name);
 
 // A stream that ends at once, for calls that are refused.
 template <class Response>

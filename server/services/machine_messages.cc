@@ -46,7 +46,8 @@ v1::Family ToProto(const machine::MachineFamily& family) {
   for (const std::string& axis : Words(info.axes)) message.add_axes(axis);
   message.set_has_executables(info.has_executables);
   message.set_has_schedules(info.has_schedules);
-  for (const machine::ParameterInfo& parameter : family.parameters()) *message.add_parameters() = ToProto(parameter);
+  for (const machine::ParameterInfo& parameter : family.parameters())
+    *message.add_parameters() = ToProto(parameter);
   for (const machine::MachineProfile& profile : family.profiles()) {
     v1::MachineProfile& made = *message.add_profiles();
     made.set_id(std::string(profile.id));
@@ -87,7 +88,8 @@ Status CheckMachine(const storage::MachineRecord& machine) {
   const machine::MachineFamily* family = simulation::FindFamily(machine.family);
   if (family == nullptr) {
     std::string known;
-    for (const machine::MachineFamily* one : simulation::Families()) known += " " + std::string(one->info().id);
+    for (const machine::MachineFamily* one : simulation::Families())
+      known += " " + std::string(one->info().id);
     return Error{ErrorCode::kCellUnknownFamily, "'" + machine.family + "'; there are" + known, {}};
   }
   if (Status good = CheckTitle(machine.title, "title"); !good) return good;

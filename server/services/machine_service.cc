@@ -35,8 +35,13 @@ storage::MachineRecord FromProto(const v1::Machine& message, const std::string& 
 
 MachineService::MachineService(CallRoom room, storage::Store& store, const Dispatcher& dispatcher,
                                const Config& config, std::string instance_id)
-    : room_(room), store_(store), dispatcher_(dispatcher), config_(config), instance_id_(std::move(instance_id)),
-      started_at_(std::chrono::floor<std::chrono::microseconds>(std::chrono::system_clock::now())) {}
+    : room_(room),
+      store_(store),
+      dispatcher_(dispatcher),
+      config_(config),
+      instance_id_(std::move(instance_id)),
+      started_at_(std::chrono::floor<std::chrono::microseconds>(std::chrono::system_clock::now())) {
+}
 
 grpc::ServerUnaryReactor* MachineService::GetCell(grpc::CallbackServerContext* context,
                                                   const v1::GetCellRequest*, v1::Cell* response) {
@@ -69,163 +74,184 @@ grpc::ServerUnaryReactor* MachineService::ListFamilies(grpc::CallbackServerConte
 grpc::ServerUnaryReactor* MachineService::CreateMachine(grpc::CallbackServerContext* context,
                                                         const v1::CreateMachineRequest* request,
                                                         v1::Machine* response) {
-  return Answer(room_, context, *request, "MachineService/CreateMachine", [this, request, response](const Caller&) {
-    if (Status id = CheckResourceId(request->machine_id(), "machine_id"); !id) return ToGrpcStatus(id.error());
-    const storage::MachineRecord record = FromProto(request->machine(), request->machine_id());
-    if (Status good = CheckMachine(record); !good) return ToGrpcStatus(good.error());
-    if (request->validate_only()) {
-      *response = ToProto(record);
-      response->clear_etag();
-      return grpc::Status::OK;
-    }
-    const auto stored = store_.PutMachine(record, 0);
-    if (!stored) return ToGrpcStatus(stored.error());
-    *response = ToProto(*stored);
-    return grpc::Status::OK;
-  });
+  return Answer(room_, context, *request, "MachineService/CreateMachine",
+                [this, request, response](const Caller&) {
+                  if (Status id = CheckResourceId(request->machine_id(), "machine_id"); !id)
+                    return ToGrpcStatus(id.error());
+                  const storage::MachineRecord record =
+                      FromProto(request->machine(), request->machine_id());
+                  if (Status good = CheckMachine(record); !good) return ToGrpcStatus(good.error());
+                  if (request->validate_only()) {
+                    *response = ToProto(record);
+                    response->clear_etag();
+                    return grpc::Status::OK;
+                  }
+                  const auto stored = store_.PutMachine(record, 0);
+                  if (!stored) return ToGrpcStatus(stored.error());
+                  *response = ToProto(*stored);
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerUnaryReactor* MachineService::GetMachine(grpc::CallbackServerContext* context,
                                                      const v1::GetMachineRequest* request,
                                                      v1::Machine* response) {
-  return Answer(room_, context, *request, "MachineService/GetMachine", [this, request, response](const Caller&) {
-    const auto id = ParseMachineName(request->name());
-    if (!id) return ToGrpcStatus(id.error());
-    const auto machine = store_.GetMachine(*id);
-    if (!machine) return ToGrpcStatus(machine.error());
-    *response = ToProto(*machine);
-    return grpc::Status::OK;
-  });
+  return Answer(room_, context, *request, "MachineService/GetMachine",
+                [this, request, response](const Caller&) {
+                  const auto id = ParseMachineName(request->name());
+                  if (!id) return ToGrpcStatus(id.error());
+                  const auto machine = store_.GetMachine(*id);
+                  if (!machine) return ToGrpcStatus(machine.error());
+                  *response = ToProto(*machine);
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerUnaryReactor* MachineService::ListMachines(grpc::CallbackServerContext* context,
                                                        const v1::ListMachinesRequest* request,
                                                        v1::ListMachinesResponse* response) {
-  return Answer(room_, context, *request, "MachineService/ListMachines", [this, request, response](const Caller&) {
-    if (request->page_size() < 0) {
-      return ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument, "page_size is below 0", {}});
-    }
-    const int size = request->page_size() == 0 ? kPageDefault : std::min(request->page_size(), kPageMax);
-    const auto machines = store_.ListMachines();
-    if (!machines) return ToGrpcStatus(machines.error());
-    for (const storage::MachineRecord& machine : *machines) {
-      if (!request->page_token().empty() && machine.id <= request->page_token()) continue;
-      if (response->machines_size() == size) {
-        response->set_next_page_token(*ParseMachineName(response->machines(size - 1).name()));
-        break;
-      }
-      *response->add_machines() = ToProto(machine);
-    }
-    return grpc::Status::OK;
-  });
+  return Answer(
+      room_, context, *request, "MachineService/ListMachines",
+      [this, request, response](const Caller&) {
+        if (request->page_size() < 0) {
+          return ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument, "page_size is below 0", {}});
+        }
+        const int size =
+            request->page_size() == 0 ? kPageDefault : std::min(request->page_size(), kPageMax);
+        const auto machines = store_.ListMachines();
+        if (!machines) return ToGrpcStatus(machines.error());
+        for (const storage::MachineRecord& machine : *machines) {
+          if (!request->page_token().empty() && machine.id <= request->page_token()) continue;
+          if (response->machines_size() == size) {
+            response->set_next_page_token(*ParseMachineName(response->machines(size - 1).name()));
+            break;
+          }
+          *response->add_machines() = ToProto(machine);
+        }
+        return grpc::Status::OK;
+      });
 }
 
 grpc::ServerUnaryReactor* MachineService::UpdateMachine(grpc::CallbackServerContext* context,
                                                         const v1::UpdateMachineRequest* request,
                                                         v1::Machine* response) {
-  return Answer(room_, context, *request, "MachineService/UpdateMachine", [this, request, response](const Caller&) {
-    const auto id = ParseMachineName(request->machine().name());
-    if (!id) return ToGrpcStatus(id.error());
-    const auto expected = ParseEtag(request->machine().etag());
-    if (!expected) return ToGrpcStatus(expected.error());
-    auto record = store_.GetMachine(*id);
-    if (!record) return ToGrpcStatus(record.error());
-    const storage::MachineRecord wanted = FromProto(request->machine(), *id);
-    if (!wanted.family.empty() && wanted.family != record->family) {
-      return ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument, "the family of a machine cannot be changed", {}});
-    }
-    const auto named = FieldsToUpdate(request->update_mask(), request->machine(), kMachineFields);
-    if (!named) return ToGrpcStatus(named.error());
-    if (named->contains("title")) record->title = wanted.title;
-    if (named->contains("profile")) record->profile = wanted.profile;
-    if (named->contains("parameters")) record->parameters = wanted.parameters;
-    if (Status good = CheckMachine(*record); !good) return ToGrpcStatus(good.error());
-    if (request->validate_only()) {
-      *response = ToProto(*record);
-      return grpc::Status::OK;
-    }
-    // Read and written by the same revision: a change in between is refused, not lost.
-    const auto stored =
-        store_.PutMachine(*record, *expected == storage::kAnyRevision ? record->revision : *expected);
-    if (!stored) return ToGrpcStatus(stored.error());
-    *response = ToProto(*stored);
-    return grpc::Status::OK;
-  });
+  return Answer(
+      room_, context, *request, "MachineService/UpdateMachine",
+      [this, request, response](const Caller&) {
+        const auto id = ParseMachineName(request->machine().name());
+        if (!id) return ToGrpcStatus(id.error());
+        const auto expected = ParseEtag(request->machine().etag());
+        if (!expected) return ToGrpcStatus(expected.error());
+        auto record = store_.GetMachine(*id);
+        if (!record) return ToGrpcStatus(record.error());
+        const storage::MachineRecord wanted = FromProto(request->machine(), *id);
+        if (!wanted.family.empty() && wanted.family != record->family) {
+          return ToGrpcStatus(Error{
+              ErrorCode::kCellInvalidArgument, "the family of a machine cannot be changed", {}});
+        }
+        const auto named =
+            FieldsToUpdate(request->update_mask(), request->machine(), kMachineFields);
+        if (!named) return ToGrpcStatus(named.error());
+        if (named->contains("title")) record->title = wanted.title;
+        if (named->contains("profile")) record->profile = wanted.profile;
+        if (named->contains("parameters")) record->parameters = wanted.parameters;
+        if (Status good = CheckMachine(*record); !good) return ToGrpcStatus(good.error());
+        if (request->validate_only()) {
+          *response = ToProto(*record);
+          return grpc::Status::OK;
+        }
+        // Read and written by the same revision: a change in between is refused, not lost.
+        const auto stored = store_.PutMachine(
+            *record, *expected == storage::kAnyRevision ? record->revision : *expected);
+        if (!stored) return ToGrpcStatus(stored.error());
+        *response = ToProto(*stored);
+        return grpc::Status::OK;
+      });
 }
 
-grpc::ServerUnaryReactor* MachineService::ListLaserSchedules(grpc::CallbackServerContext* context,
-                                                             const v1::ListLaserSchedulesRequest* request,
-                                                             v1::ListLaserSchedulesResponse* response) {
-  return Answer(room_, context, *request, "MachineService/ListLaserSchedules", [this, request, response](const Caller&) {
-    const auto id = ParseMachineName(request->parent());
-    if (!id) return ToGrpcStatus(id.error());
-    if (const auto machine = store_.GetMachine(*id); !machine) return ToGrpcStatus(machine.error());
-    const auto schedules = store_.ListSchedules(*id);
-    if (!schedules) return ToGrpcStatus(schedules.error());
-    for (const storage::ScheduleRecord& schedule : *schedules) {
-      *response->add_laser_schedules() = ToProto(schedule);
-    }
-    return grpc::Status::OK;
-  });
+grpc::ServerUnaryReactor* MachineService::ListLaserSchedules(
+    grpc::CallbackServerContext* context, const v1::ListLaserSchedulesRequest* request,
+    v1::ListLaserSchedulesResponse* response) {
+  return Answer(room_, context, *request, "MachineService/ListLaserSchedules",
+                [this, request, response](const Caller&) {
+                  const auto id = ParseMachineName(request->parent());
+                  if (!id) return ToGrpcStatus(id.error());
+                  if (const auto machine = store_.GetMachine(*id); !machine)
+                    return ToGrpcStatus(machine.error());
+                  const auto schedules = store_.ListSchedules(*id);
+                  if (!schedules) return ToGrpcStatus(schedules.error());
+                  for (const storage::ScheduleRecord& schedule : *schedules) {
+                    *response->add_laser_schedules() = ToProto(schedule);
+                  }
+                  return grpc::Status::OK;
+                });
 }
 
-grpc::ServerUnaryReactor* MachineService::PutLaserSchedule(grpc::CallbackServerContext* context,
-                                                           const v1::PutLaserScheduleRequest* request,
-                                                           v1::LaserSchedule* response) {
-  return Answer(room_, context, *request, "MachineService/PutLaserSchedule", [this, request, response](const Caller&) {
-    const v1::LaserSchedule& wanted = request->laser_schedule();
-    const auto name = ParseScheduleName(wanted.name());
-    if (!name) return ToGrpcStatus(name.error());
-    const auto expected = ParseEtag(wanted.etag());
-    if (!expected) return ToGrpcStatus(expected.error());
-    const auto machine = store_.GetMachine(name->machine);
-    if (!machine) return ToGrpcStatus(machine.error());
-    const machine::MachineFamily* family = simulation::FindFamily(machine->family);
-    if (family == nullptr || !family->info().has_schedules) {
-      return ToGrpcStatus(Error{ErrorCode::kCellPrecondition, "this machine has no laser schedules", {}});
-    }
-    if (const Status good = CheckTitle(wanted.title(), "title"); !good) return ToGrpcStatus(good.error());
-    const std::string mode = wanted.mode().empty() ? "CW" : wanted.mode();
-    if (mode != "CW" && mode != "PULSE") {
-      return ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument, "mode is CW or PULSE", {}});
-    }
-    if (!(wanted.power_percent() >= 0.0 && wanted.power_percent() <= 100.0)) {
-      return ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument, "power_percent: allowed are 0 to 100", {}});
-    }
-    const auto stored = store_.PutSchedule({.machine = name->machine,
-                                            .number = name->number,
-                                            .name = wanted.title(),
-                                            .mode = mode,
-                                            .power_percent = wanted.power_percent()},
-                                           *expected);
-    if (!stored) return ToGrpcStatus(stored.error());
-    *response = ToProto(*stored);
-    return grpc::Status::OK;
-  });
+grpc::ServerUnaryReactor* MachineService::PutLaserSchedule(
+    grpc::CallbackServerContext* context, const v1::PutLaserScheduleRequest* request,
+    v1::LaserSchedule* response) {
+  return Answer(
+      room_, context, *request, "MachineService/PutLaserSchedule",
+      [this, request, response](const Caller&) {
+        const v1::LaserSchedule& wanted = request->laser_schedule();
+        const auto name = ParseScheduleName(wanted.name());
+        if (!name) return ToGrpcStatus(name.error());
+        const auto expected = ParseEtag(wanted.etag());
+        if (!expected) return ToGrpcStatus(expected.error());
+        const auto machine = store_.GetMachine(name->machine);
+        if (!machine) return ToGrpcStatus(machine.error());
+        const machine::MachineFamily* family = simulation::FindFamily(machine->family);
+        if (family == nullptr || !family->info().has_schedules) {
+          return ToGrpcStatus(
+              Error{ErrorCode::kCellPrecondition, "this machine has no laser schedules", {}});
+        }
+        if (const Status good = CheckTitle(wanted.title(), "title"); !good)
+          return ToGrpcStatus(good.error());
+        const std::string mode = wanted.mode().empty() ? "CW" : wanted.mode();
+        if (mode != "CW" && mode != "PULSE") {
+          return ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument, "mode is CW or PULSE", {}});
+        }
+        if (!(wanted.power_percent() >= 0.0 && wanted.power_percent() <= 100.0)) {
+          return ToGrpcStatus(
+              Error{ErrorCode::kCellInvalidArgument, "power_percent: allowed are 0 to 100", {}});
+        }
+        const auto stored = store_.PutSchedule({.machine = name->machine,
+                                                .number = name->number,
+                                                .name = wanted.title(),
+                                                .mode = mode,
+                                                .power_percent = wanted.power_percent()},
+                                               *expected);
+        if (!stored) return ToGrpcStatus(stored.error());
+        *response = ToProto(*stored);
+        return grpc::Status::OK;
+      });
 }
 
-grpc::ServerUnaryReactor* MachineService::DeleteLaserSchedule(grpc::CallbackServerContext* context,
-                                                              const v1::DeleteLaserScheduleRequest* request,
-                                                              google::protobuf::Empty*) {
-  return Answer(room_, context, *request, "MachineService/DeleteLaserSchedule", [this, request](const Caller&) {
-    const auto name = ParseScheduleName(request->name());
-    if (!name) return ToGrpcStatus(name.error());
-    const Status deleted = store_.DeleteSchedule(name->machine, name->number);
-    return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
-  });
+grpc::ServerUnaryReactor* MachineService::DeleteLaserSchedule(
+    grpc::CallbackServerContext* context, const v1::DeleteLaserScheduleRequest* request,
+    google::protobuf::Empty*) {
+  return Answer(room_, context, *request, "MachineService/DeleteLaserSchedule",
+                [this, request](const Caller&) {
+                  const auto name = ParseScheduleName(request->name());
+                  if (!name) return ToGrpcStatus(name.error());
+                  const Status deleted = store_.DeleteSchedule(name->machine, name->number);
+                  return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
+                });
 }
 
 grpc::ServerWriteReactor<v1::WatchMachineResponse>* MachineService::WatchMachine(
     grpc::CallbackServerContext* context, const v1::WatchMachineRequest*) {
   const auto caller = Admit(room_.gate, *context, "MachineService/WatchMachine");
-  const Error error = caller ? Error{ErrorCode::kCellUnimplemented, "MachineService/WatchMachine", {}} : caller.error();
+  const Error error = caller
+                          ? Error{ErrorCode::kCellUnimplemented, "MachineService/WatchMachine", {}}
+                          : caller.error();
   return new RefusedStream<v1::WatchMachineResponse>(ToGrpcStatus(error));
 }
 
-#define RMLCELL_LATER(method, request, response)                                                           \
-  grpc::ServerUnaryReactor* MachineService::method(grpc::CallbackServerContext* context, const v1::request*, \
-                                                   v1::response*) {                                        \
-    return NotYet(room_, context, "MachineService/" #method);                                              \
+#define RMLCELL_LATER(method, request, response)                                         \
+  grpc::ServerUnaryReactor* MachineService::method(grpc::CallbackServerContext* context, \
+                                                   const v1::request*, v1::response*) {  \
+    return NotYet(room_, context, "MachineService/" #method);                            \
   }
 RMLCELL_LATER(SetMode, SetModeRequest, MachineState)
 RMLCELL_LATER(StartMachine, StartMachineRequest, MachineState)

@@ -13,23 +13,26 @@ struct Config;
 
 class MachineService final : public v1::MachineService::CallbackService {
  public:
-  MachineService(CallRoom room, storage::Store& store, const Dispatcher& dispatcher, const Config& config,
-                 std::string instance_id);
+  MachineService(CallRoom room, storage::Store& store, const Dispatcher& dispatcher,
+                 const Config& config, std::string instance_id);
 
-  grpc::ServerUnaryReactor* GetCell(grpc::CallbackServerContext* context, const v1::GetCellRequest* request,
-                                    v1::Cell* response) override;
+  grpc::ServerUnaryReactor* GetCell(grpc::CallbackServerContext* context,
+                                    const v1::GetCellRequest* request, v1::Cell* response) override;
   grpc::ServerUnaryReactor* ListFamilies(grpc::CallbackServerContext* context,
                                          const v1::ListFamiliesRequest* request,
                                          v1::ListFamiliesResponse* response) override;
   grpc::ServerUnaryReactor* CreateMachine(grpc::CallbackServerContext* context,
-                                          const v1::CreateMachineRequest* request, v1::Machine* response) override;
-  grpc::ServerUnaryReactor* GetMachine(grpc::CallbackServerContext* context, const v1::GetMachineRequest* request,
+                                          const v1::CreateMachineRequest* request,
+                                          v1::Machine* response) override;
+  grpc::ServerUnaryReactor* GetMachine(grpc::CallbackServerContext* context,
+                                       const v1::GetMachineRequest* request,
                                        v1::Machine* response) override;
   grpc::ServerUnaryReactor* ListMachines(grpc::CallbackServerContext* context,
                                          const v1::ListMachinesRequest* request,
                                          v1::ListMachinesResponse* response) override;
   grpc::ServerUnaryReactor* UpdateMachine(grpc::CallbackServerContext* context,
-                                          const v1::UpdateMachineRequest* request, v1::Machine* response) override;
+                                          const v1::UpdateMachineRequest* request,
+                                          v1::Machine* response) override;
   grpc::ServerUnaryReactor* ListLaserSchedules(grpc::CallbackServerContext* context,
                                                const v1::ListLaserSchedulesRequest* request,
                                                v1::ListLaserSchedulesResponse* response) override;
@@ -41,7 +44,8 @@ class MachineService final : public v1::MachineService::CallbackService {
                                                 google::protobuf::Empty* response) override;
   grpc::ServerWriteReactor<v1::WatchMachineResponse>* WatchMachine(
       grpc::CallbackServerContext* context, const v1::WatchMachineRequest* request) override;
-  grpc::ServerUnaryReactor* SetMode(grpc::CallbackServerContext* context, const v1::SetModeRequest* request,
+  grpc::ServerUnaryReactor* SetMode(grpc::CallbackServerContext* context,
+                                    const v1::SetModeRequest* request,
                                     v1::MachineState* response) override;
   grpc::ServerUnaryReactor* StartMachine(grpc::CallbackServerContext* context,
                                          const v1::StartMachineRequest* request,

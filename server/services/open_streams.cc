@@ -18,8 +18,8 @@ void OpenStreams::Remove(Stream* stream) {
 }
 
 void OpenStreams::StopAll() {
-  // ServerStops does not block and does not come back here, so the lock can be held: it keeps a stream
-  // from going away in the middle.
+  // ServerStops does not block and does not come back here, so the lock can be held: it keeps a
+  // stream from going away in the middle.
   const std::lock_guard lock(mutex_);
   stopping_ = true;
   for (Stream* stream : streams_) stream->ServerStops();

@@ -17,12 +17,13 @@ constexpr std::size_t kChunkBytes = 256 << 10;
 constexpr std::size_t kUnaryBytes = 3 << 20;
 
 v1::Findings FindingsOf(const machine::Translation& translation) {
-  return bridge::FindingsOf(translation.ok, translation.diagnostics, translation.diagnostics_dropped,
-                            translation.figures);
+  return bridge::FindingsOf(translation.ok, translation.diagnostics,
+                            translation.diagnostics_dropped, translation.figures);
 }
 
-// Takes a program in chunks. Bytes are kept in memory up to the announced size, which is checked against
-// the limit before the first chunk; they are stored when all are there and the digest is right.
+// Takes a program in chunks. Bytes are kept in memory up to the announced size, which is checked
+// against the limit before the first chunk; they are stored when all are there and the digest is
+// right.
 class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
  public:
   Upload(const CallRoom& room, ProgramShelf& shelf, Caller caller, v1::Program* response)
@@ -40,7 +41,9 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
       header_ = message_.header();
       if (const Status good = CheckHeader(); !good) return End(good.error());
     } else {
-      if (!begun_) return End(Error{ErrorCode::kCellInvalidArgument, "the first message must be the header", {}});
+      if (!begun_)
+        return End(
+            Error{ErrorCode::kCellInvalidArgument, "the first message must be the header", {}});
       if (header_.size() == 0 && !message_.chunk().empty()) {
         return End(InvalidArgument("header.size is missing: give the number of bytes that follow"));
       }
@@ -55,7 +58,8 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
 
   // What is wrong with it is told before the first byte of the program.
   Status CheckHeader() {
-    if (header_.size() < 0) return InvalidArgument("header.size is " + std::to_string(header_.size()));
+    if (header_.size() < 0)
+      return InvalidArgument("header.size is " + std::to_string(header_.size()));
     if (header_.sha256().empty()) return InvalidArgument("header.sha256 is missing");
     const std::optional<std::string> digest = bridge::ReadSha256(header_.sha256());
     if (!digest) return InvalidArgument("header.sha256 is not 64 hexadecimal digits");
@@ -65,26 +69,30 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
 
   void Store() {
     if (!begun_) return End(Error{ErrorCode::kCellInvalidArgument, "no header", {}});
-    if (header_.size() == 0) return End(Error{ErrorCode::kCellEmptyProgram, header_.file_name(), {}});
+    if (header_.size() == 0)
+      return End(Error{ErrorCode::kCellEmptyProgram, header_.file_name(), {}});
     if (bytes_.size() != static_cast<std::size_t>(header_.size())) {
       return End(Error{ErrorCode::kCellChecksum,
-                       std::to_string(bytes_.size()) + " bytes came, " + std::to_string(header_.size()) +
-                           " were announced",
+                       std::to_string(bytes_.size()) + " bytes came, " +
+                           std::to_string(header_.size()) + " were announced",
                        {}});
     }
-    if (digest_.Hex() != header_.sha256()) return End(Error{ErrorCode::kCellChecksum, "SHA-256 differs", {}});
+    if (digest_.Hex() != header_.sha256())
+      return End(Error{ErrorCode::kCellChecksum, "SHA-256 differs", {}});
     finished_ = true;
     room_.executor.Post([this] {
-      const ProgramResult<v1::Program> stored = shelf_.Store({.name = header_.name(),
-                                                              .file_name = header_.file_name(),
-                                                              .form = header_.form(),
-                                                              .title = header_.title(),
-                                                              .etag = header_.etag(),
-                                                              .bytes = std::move(bytes_),
-                                                              .validate_only = header_.validate_only()});
+      const ProgramResult<v1::Program> stored =
+          shelf_.Store({.name = header_.name(),
+                        .file_name = header_.file_name(),
+                        .form = header_.form(),
+                        .title = header_.title(),
+                        .etag = header_.etag(),
+                        .bytes = std::move(bytes_),
+                        .validate_only = header_.validate_only()});
       if (stored) *response_ = *stored.value;
       const grpc::Status status = stored ? grpc::Status::OK : ToGrpcStatus(stored.error);
-      LogCall("ProgramService/UploadProgram", caller_, status, std::chrono::steady_clock::now() - begin_);
+      LogCall("ProgramService/UploadProgram", caller_, status,
+              std::chrono::steady_clock::now() - begin_);
       Finish(status);
     });
   }
@@ -92,7 +100,8 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
   void End(const Error& error) {
     finished_ = true;
     const grpc::Status status = ToGrpcStatus(error);
-    LogCall("ProgramService/UploadProgram", caller_, status, std::chrono::steady_clock::now() - begin_);
+    LogCall("ProgramService/UploadProgram", caller_, status,
+            std::chrono::steady_clock::now() - begin_);
     Finish(status);
   }
 
@@ -119,7 +128,8 @@ class RefusedUpload final : public grpc::ServerReadReactor<v1::UploadProgramRequ
 
 class Download final : public PullStream<v1::DownloadProgramResponse> {
  public:
-  Download(Executor& executor, OpenStreams& open, ProgramShelf& shelf, const v1::DownloadProgramRequest& request)
+  Download(Executor& executor, OpenStreams& open, ProgramShelf& shelf,
+           const v1::DownloadProgramRequest& request)
       : PullStream(executor, open), shelf_(shelf), request_(request) {}
 
  private:
@@ -151,23 +161,25 @@ class Download final : public PullStream<v1::DownloadProgramResponse> {
   std::size_t sent_ = 0;
 };
 
-
 }  // namespace
 
 grpc::ServerUnaryReactor* ProgramService::PutProgram(grpc::CallbackServerContext* context,
-                                                     const v1::PutProgramRequest* request, v1::Program* response) {
-  return Answer(room_, context, *request, "ProgramService/PutProgram", [this, request, response](const Caller&) {
-    const ProgramResult<v1::Program> stored = shelf_.Store({.name = request->name(),
-                                                            .file_name = request->program().file_name(),
-                                                            .form = request->program().form(),
-                                                            .title = request->title(),
-                                                            .etag = request->etag(),
-                                                            .bytes = request->program().content(),
-                                                            .validate_only = request->validate_only()});
-    if (!stored) return ToGrpcStatus(stored.error);
-    *response = *stored.value;
-    return grpc::Status::OK;
-  });
+                                                     const v1::PutProgramRequest* request,
+                                                     v1::Program* response) {
+  return Answer(room_, context, *request, "ProgramService/PutProgram",
+                [this, request, response](const Caller&) {
+                  const ProgramResult<v1::Program> stored =
+                      shelf_.Store({.name = request->name(),
+                                    .file_name = request->program().file_name(),
+                                    .form = request->program().form(),
+                                    .title = request->title(),
+                                    .etag = request->etag(),
+                                    .bytes = request->program().content(),
+                                    .validate_only = request->validate_only()});
+                  if (!stored) return ToGrpcStatus(stored.error);
+                  *response = *stored.value;
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerReadReactor<v1::UploadProgramRequest>* ProgramService::UploadProgram(
@@ -178,31 +190,37 @@ grpc::ServerReadReactor<v1::UploadProgramRequest>* ProgramService::UploadProgram
 }
 
 grpc::ServerUnaryReactor* ProgramService::GetProgram(grpc::CallbackServerContext* context,
-                                                     const v1::GetProgramRequest* request, v1::Program* response) {
-  return Answer(room_, context, *request, "ProgramService/GetProgram", [this, request, response](const Caller&) {
-    Result<v1::Program> program = shelf_.Get(request->name());
-    if (!program) return ToGrpcStatus(program.error());
-    *response = std::move(*program);
-    return grpc::Status::OK;
-  });
+                                                     const v1::GetProgramRequest* request,
+                                                     v1::Program* response) {
+  return Answer(room_, context, *request, "ProgramService/GetProgram",
+                [this, request, response](const Caller&) {
+                  Result<v1::Program> program = shelf_.Get(request->name());
+                  if (!program) return ToGrpcStatus(program.error());
+                  *response = std::move(*program);
+                  return grpc::Status::OK;
+                });
 }
 
-grpc::ServerUnaryReactor* ProgramService::GetProgramContent(grpc::CallbackServerContext* context,
-                                                            const v1::GetProgramContentRequest* request,
-                                                            v1::GetProgramContentResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/GetProgramContent", [this, request, response](const Caller&) {
-    Result<ProgramShelf::Content> content = shelf_.Read(request->name(), request->form());
-    if (!content) return ToGrpcStatus(content.error());
-    if (content->bytes.size() > kUnaryBytes) {
-      return ToGrpcStatus(Error{ErrorCode::kCellTooLarge,
-                                std::to_string(content->bytes.size()) + " bytes: use DownloadProgram", {}});
-    }
-    response->set_content(std::move(content->bytes));
-    response->set_form(content->form);
-    response->set_file_name(content->file_name);
-    response->set_sha256(content->sha256);
-    return grpc::Status::OK;
-  });
+grpc::ServerUnaryReactor* ProgramService::GetProgramContent(
+    grpc::CallbackServerContext* context, const v1::GetProgramContentRequest* request,
+    v1::GetProgramContentResponse* response) {
+  return Answer(room_, context, *request, "ProgramService/GetProgramContent",
+                [this, request, response](const Caller&) {
+                  Result<ProgramShelf::Content> content =
+                      shelf_.Read(request->name(), request->form());
+                  if (!content) return ToGrpcStatus(content.error());
+                  if (content->bytes.size() > kUnaryBytes) {
+                    return ToGrpcStatus(
+                        Error{ErrorCode::kCellTooLarge,
+                              std::to_string(content->bytes.size()) + " bytes: use DownloadProgram",
+                              {}});
+                  }
+                  response->set_content(std::move(content->bytes));
+                  response->set_form(content->form);
+                  response->set_file_name(content->file_name);
+                  response->set_sha256(content->sha256);
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerWriteReactor<v1::DownloadProgramResponse>* ProgramService::DownloadProgram(
@@ -215,182 +233,202 @@ grpc::ServerWriteReactor<v1::DownloadProgramResponse>* ProgramService::DownloadP
 grpc::ServerUnaryReactor* ProgramService::ListPrograms(grpc::CallbackServerContext* context,
                                                        const v1::ListProgramsRequest* request,
                                                        v1::ListProgramsResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/ListPrograms", [this, request, response](const Caller&) {
-    Result<v1::ListProgramsResponse> programs = shelf_.List(*request);
-    if (!programs) return ToGrpcStatus(programs.error());
-    *response = std::move(*programs);
-    return grpc::Status::OK;
-  });
+  return Answer(room_, context, *request, "ProgramService/ListPrograms",
+                [this, request, response](const Caller&) {
+                  Result<v1::ListProgramsResponse> programs = shelf_.List(*request);
+                  if (!programs) return ToGrpcStatus(programs.error());
+                  *response = std::move(*programs);
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerUnaryReactor* ProgramService::DeleteProgram(grpc::CallbackServerContext* context,
                                                         const v1::DeleteProgramRequest* request,
                                                         google::protobuf::Empty*) {
-  return Answer(room_, context, *request, "ProgramService/DeleteProgram", [this, request](const Caller&) {
-    const Status deleted = shelf_.Delete(*request);
-    return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
-  });
+  return Answer(room_, context, *request, "ProgramService/DeleteProgram",
+                [this, request](const Caller&) {
+                  const Status deleted = shelf_.Delete(*request);
+                  return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
+                });
 }
 
 grpc::ServerUnaryReactor* ProgramService::CheckProgram(grpc::CallbackServerContext* context,
                                                        const v1::CheckProgramRequest* request,
                                                        v1::CheckProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/CheckProgram", [this, request, response](const Caller&) {
-    const auto checked =
-        shelf_.Check(request->family(), request->machine(), request->program(), !request->errors_only());
-    if (!checked) return ToGrpcStatus(checked.error());
-    *response->mutable_findings() = bridge::FindingsOf(checked->translation, checked->motion, checked->slot);
-    return grpc::Status::OK;
-  });
+  return Answer(room_, context, *request, "ProgramService/CheckProgram",
+                [this, request, response](const Caller&) {
+                  const auto checked = shelf_.Check(request->family(), request->machine(),
+                                                    request->program(), !request->errors_only());
+                  if (!checked) return ToGrpcStatus(checked.error());
+                  *response->mutable_findings() =
+                      bridge::FindingsOf(checked->translation, checked->motion, checked->slot);
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerUnaryReactor* ProgramService::CompileProgram(grpc::CallbackServerContext* context,
                                                          const v1::CompileProgramRequest* request,
                                                          v1::CompileProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/CompileProgram", [this, request, response](const Caller&) {
-    auto translation = shelf_.Translate(request->family(), {}, request->program(), true);
-    if (!translation) return ToGrpcStatus(translation.error());
-    *response->mutable_findings() = FindingsOf(*translation);
-    if (translation->ok) response->set_object(std::move(translation->object));
-    return grpc::Status::OK;
-  });
+  return Answer(room_, context, *request, "ProgramService/CompileProgram",
+                [this, request, response](const Caller&) {
+                  auto translation =
+                      shelf_.Translate(request->family(), {}, request->program(), true);
+                  if (!translation) return ToGrpcStatus(translation.error());
+                  *response->mutable_findings() = FindingsOf(*translation);
+                  if (translation->ok) response->set_object(std::move(translation->object));
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerUnaryReactor* ProgramService::FormatProgram(grpc::CallbackServerContext* context,
                                                         const v1::FormatProgramRequest* request,
                                                         v1::FormatProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/FormatProgram", [request, response](const Caller&) {
-    auto made = FormatText(*request);
-    if (!made) return ToGrpcStatus(made.error());
-    *response = *std::move(made);
-    return grpc::Status::OK;
-  });
+  return Answer(room_, context, *request, "ProgramService/FormatProgram",
+                [request, response](const Caller&) {
+                  auto made = FormatText(*request);
+                  if (!made) return ToGrpcStatus(made.error());
+                  *response = *std::move(made);
+                  return grpc::Status::OK;
+                });
 }
 
-grpc::ServerUnaryReactor* ProgramService::DecompileProgram(grpc::CallbackServerContext* context,
-                                                           const v1::DecompileProgramRequest* request,
-                                                           v1::DecompileProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/DecompileProgram", [this, request, response](const Caller&) {
-    auto made = office_.Decompile(*request);
-    if (!made) return ToGrpcStatus(made.error());
-    *response = *std::move(made);
-    return grpc::Status::OK;
-  });
+grpc::ServerUnaryReactor* ProgramService::DecompileProgram(
+    grpc::CallbackServerContext* context, const v1::DecompileProgramRequest* request,
+    v1::DecompileProgramResponse* response) {
+  return Answer(room_, context, *request, "ProgramService/DecompileProgram",
+                [this, request, response](const Caller&) {
+                  auto made = office_.Decompile(*request);
+                  if (!made) return ToGrpcStatus(made.error());
+                  *response = *std::move(made);
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerUnaryReactor* ProgramService::FixProgram(grpc::CallbackServerContext* context,
                                                      const v1::FixProgramRequest* request,
                                                      v1::FixProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/FixProgram", [this, request, response](const Caller&) {
-    auto made = office_.Fix(*request);
-    if (!made) return ToGrpcStatus(made.error());
-    *response = *std::move(made);
-    return grpc::Status::OK;
-  });
+  return Answer(room_, context, *request, "ProgramService/FixProgram",
+                [this, request, response](const Caller&) {
+                  auto made = office_.Fix(*request);
+                  if (!made) return ToGrpcStatus(made.error());
+                  *response = *std::move(made);
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerUnaryReactor* ProgramService::LinkProgram(grpc::CallbackServerContext* context,
                                                       const v1::LinkProgramRequest* request,
                                                       v1::LinkProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/LinkProgram", [this, request, response](const Caller&) {
-    auto made = office_.Link(*request);
-    if (!made) return ToGrpcStatus(made.error());
-    *response = *std::move(made);
-    return grpc::Status::OK;
-  });
+  return Answer(room_, context, *request, "ProgramService/LinkProgram",
+                [this, request, response](const Caller&) {
+                  auto made = office_.Link(*request);
+                  if (!made) return ToGrpcStatus(made.error());
+                  *response = *std::move(made);
+                  return grpc::Status::OK;
+                });
 }
 
-grpc::ServerUnaryReactor* ProgramService::ListStaleExecutables(grpc::CallbackServerContext* context,
-                                                               const v1::ListStaleExecutablesRequest* request,
-                                                               v1::ListStaleExecutablesResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/ListStaleExecutables", [this, request, response](const Caller&) {
-    auto made = office_.ListStale(*request);
-    if (!made) return ToGrpcStatus(made.error());
-    *response = *std::move(made);
-    return grpc::Status::OK;
-  });
+grpc::ServerUnaryReactor* ProgramService::ListStaleExecutables(
+    grpc::CallbackServerContext* context, const v1::ListStaleExecutablesRequest* request,
+    v1::ListStaleExecutablesResponse* response) {
+  return Answer(room_, context, *request, "ProgramService/ListStaleExecutables",
+                [this, request, response](const Caller&) {
+                  auto made = office_.ListStale(*request);
+                  if (!made) return ToGrpcStatus(made.error());
+                  *response = *std::move(made);
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerUnaryReactor* ProgramService::ShiftProgram(grpc::CallbackServerContext* context,
                                                        const v1::ShiftProgramRequest* request,
                                                        v1::ShiftProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/ShiftProgram", [request, response](const Caller&) {
-    auto made = ShiftText(*request);
-    if (!made) return ToGrpcStatus(made.error());
-    *response = *std::move(made);
-    return grpc::Status::OK;
-  });
+  return Answer(room_, context, *request, "ProgramService/ShiftProgram",
+                [request, response](const Caller&) {
+                  auto made = ShiftText(*request);
+                  if (!made) return ToGrpcStatus(made.error());
+                  *response = *std::move(made);
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerUnaryReactor* ProgramService::MakeListing(grpc::CallbackServerContext* context,
                                                       const v1::MakeListingRequest* request,
                                                       v1::MakeListingResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/MakeListing", [request, response](const Caller&) {
-    auto made = ListText(*request);
-    if (!made) return ToGrpcStatus(made.error());
-    *response = *std::move(made);
-    return grpc::Status::OK;
-  });
+  return Answer(room_, context, *request, "ProgramService/MakeListing",
+                [request, response](const Caller&) {
+                  auto made = ListText(*request);
+                  if (!made) return ToGrpcStatus(made.error());
+                  *response = *std::move(made);
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerUnaryReactor* ProgramService::DiffPrograms(grpc::CallbackServerContext* context,
                                                        const v1::DiffProgramsRequest* request,
                                                        v1::DiffProgramsResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/DiffPrograms", [this, request, response](const Caller&) {
-    ProgramResult<v1::DiffProgramsResponse> made = office_.Diff(*request);
-    if (!made) return ToGrpcStatus(made.error);
-    *response = *std::move(made.value);
-    return grpc::Status::OK;
-  });
+  return Answer(room_, context, *request, "ProgramService/DiffPrograms",
+                [this, request, response](const Caller&) {
+                  ProgramResult<v1::DiffProgramsResponse> made = office_.Diff(*request);
+                  if (!made) return ToGrpcStatus(made.error);
+                  *response = *std::move(made.value);
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerUnaryReactor* ProgramService::ConvertProgram(grpc::CallbackServerContext* context,
                                                          const v1::ConvertProgramRequest* request,
                                                          v1::ConvertProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/ConvertProgram", [request, response](const Caller&) {
-    auto made = ConvertText(*request, bridge::HeaderDate());
-    if (!made) return ToGrpcStatus(made.error());
-    *response = *std::move(made);
-    return grpc::Status::OK;
-  });
+  return Answer(room_, context, *request, "ProgramService/ConvertProgram",
+                [request, response](const Caller&) {
+                  auto made = ConvertText(*request, bridge::HeaderDate());
+                  if (!made) return ToGrpcStatus(made.error());
+                  *response = *std::move(made);
+                  return grpc::Status::OK;
+                });
 }
 
-grpc::ServerUnaryReactor* ProgramService::CompensateProgram(grpc::CallbackServerContext* context,
-                                                            const v1::CompensateProgramRequest* request,
-                                                            v1::CompensateProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/CompensateProgram", [request, response](const Caller&) {
-    auto made = CompensateText(*request, bridge::HeaderDate());
-    if (!made) return ToGrpcStatus(made.error());
-    *response = *std::move(made);
-    return grpc::Status::OK;
-  });
+grpc::ServerUnaryReactor* ProgramService::CompensateProgram(
+    grpc::CallbackServerContext* context, const v1::CompensateProgramRequest* request,
+    v1::CompensateProgramResponse* response) {
+  return Answer(room_, context, *request, "ProgramService/CompensateProgram",
+                [request, response](const Caller&) {
+                  auto made = CompensateText(*request, bridge::HeaderDate());
+                  if (!made) return ToGrpcStatus(made.error());
+                  *response = *std::move(made);
+                  return grpc::Status::OK;
+                });
 }
 
-grpc::ServerUnaryReactor* ProgramService::TransformProgram(grpc::CallbackServerContext* context,
-                                                           const v1::TransformProgramRequest* request,
-                                                           v1::TransformProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/TransformProgram", [request, response](const Caller&) {
-    auto made = TransformText(*request);
-    if (!made) return ToGrpcStatus(made.error());
-    *response = *std::move(made);
-    return grpc::Status::OK;
-  });
+grpc::ServerUnaryReactor* ProgramService::TransformProgram(
+    grpc::CallbackServerContext* context, const v1::TransformProgramRequest* request,
+    v1::TransformProgramResponse* response) {
+  return Answer(room_, context, *request, "ProgramService/TransformProgram",
+                [request, response](const Caller&) {
+                  auto made = TransformText(*request);
+                  if (!made) return ToGrpcStatus(made.error());
+                  *response = *std::move(made);
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerUnaryReactor* ProgramService::ExplainError(grpc::CallbackServerContext* context,
                                                        const v1::ExplainErrorRequest* request,
                                                        v1::ExplainErrorResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/ExplainError", [request, response](const Caller&) {
-    if (request->code().empty()) {
-      for (const CatalogueEntry& entry : Catalogue()) *response->add_errors() = bridge::Explain(entry);
-      return grpc::Status::OK;
-    }
-    for (const CatalogueEntry* entry : FindByText(request->code())) {
-      *response->add_errors() = bridge::Explain(*entry);
-    }
-    if (response->errors_size() > 0) return grpc::Status::OK;
-    return ToGrpcStatus(Error{ErrorCode::kCellNotFound, "no error '" + request->code().substr(0, 80) + "'", {}});
-  });
+  return Answer(
+      room_, context, *request, "ProgramService/ExplainError", [request, response](const Caller&) {
+        if (request->code().empty()) {
+          for (const CatalogueEntry& entry : Catalogue())
+            *response->add_errors() = bridge::Explain(entry);
+          return grpc::Status::OK;
+        }
+        for (const CatalogueEntry* entry : FindByText(request->code())) {
+          *response->add_errors() = bridge::Explain(*entry);
+        }
+        if (response->errors_size() > 0) return grpc::Status::OK;
+        return ToGrpcStatus(Error{
+            ErrorCode::kCellNotFound, "no error '" + request->code().substr(0, 80) + "'", {}});
+      });
 }
 
 }  // namespace rmlcell::server

@@ -11,17 +11,20 @@ namespace rmlcell::server {
 class MemoryOffice;
 class ProgramShelf;
 
-// Converts, calls, converts: the rules live in ProgramShelf, the offices of server/programs and the engine.
+// Converts, calls, converts: the rules live in ProgramShelf, the offices of server/programs and the
+// engine.
 class ProgramService final : public v1::ProgramService::CallbackService {
  public:
   ProgramService(CallRoom room, ProgramShelf& shelf, MemoryOffice& office, OpenStreams& open)
       : room_(room), shelf_(shelf), office_(office), open_(open) {}
 
-  grpc::ServerUnaryReactor* PutProgram(grpc::CallbackServerContext* context, const v1::PutProgramRequest* request,
+  grpc::ServerUnaryReactor* PutProgram(grpc::CallbackServerContext* context,
+                                       const v1::PutProgramRequest* request,
                                        v1::Program* response) override;
-  grpc::ServerReadReactor<v1::UploadProgramRequest>* UploadProgram(grpc::CallbackServerContext* context,
-                                                                   v1::Program* response) override;
-  grpc::ServerUnaryReactor* GetProgram(grpc::CallbackServerContext* context, const v1::GetProgramRequest* request,
+  grpc::ServerReadReactor<v1::UploadProgramRequest>* UploadProgram(
+      grpc::CallbackServerContext* context, v1::Program* response) override;
+  grpc::ServerUnaryReactor* GetProgram(grpc::CallbackServerContext* context,
+                                       const v1::GetProgramRequest* request,
                                        v1::Program* response) override;
   grpc::ServerUnaryReactor* GetProgramContent(grpc::CallbackServerContext* context,
                                               const v1::GetProgramContentRequest* request,
@@ -46,14 +49,15 @@ class ProgramService final : public v1::ProgramService::CallbackService {
   grpc::ServerUnaryReactor* DecompileProgram(grpc::CallbackServerContext* context,
                                              const v1::DecompileProgramRequest* request,
                                              v1::DecompileProgramResponse* response) override;
-  grpc::ServerUnaryReactor* FixProgram(grpc::CallbackServerContext* context, const v1::FixProgramRequest* request,
+  grpc::ServerUnaryReactor* FixProgram(grpc::CallbackServerContext* context,
+                                       const v1::FixProgramRequest* request,
                                        v1::FixProgramResponse* response) override;
   grpc::ServerUnaryReactor* LinkProgram(grpc::CallbackServerContext* context,
                                         const v1::LinkProgramRequest* request,
                                         v1::LinkProgramResponse* response) override;
-  grpc::ServerUnaryReactor* ListStaleExecutables(grpc::CallbackServerContext* context,
-                                                 const v1::ListStaleExecutablesRequest* request,
-                                                 v1::ListStaleExecutablesResponse* response) override;
+  grpc::ServerUnaryReactor* ListStaleExecutables(
+      grpc::CallbackServerContext* context, const v1::ListStaleExecutablesRequest* request,
+      v1::ListStaleExecutablesResponse* response) override;
   grpc::ServerUnaryReactor* ShiftProgram(grpc::CallbackServerContext* context,
                                          const v1::ShiftProgramRequest* request,
                                          v1::ShiftProgramResponse* response) override;

@@ -9,81 +9,91 @@ namespace rmlcell::server {
 grpc::ServerUnaryReactor* ProjectService::CreateProject(grpc::CallbackServerContext* context,
                                                         const v1::CreateProjectRequest* request,
                                                         v1::Project* response) {
-  return Answer(room_, context, *request, "ProjectService/CreateProject", [this, request, response](const Caller&) {
-    ProgramResult<v1::Project> project = book_.Create(*request);
-    if (!project) return ToGrpcStatus(project.error);
-    *response = std::move(*project.value);
-    return grpc::Status::OK;
-  });
+  return Answer(room_, context, *request, "ProjectService/CreateProject",
+                [this, request, response](const Caller&) {
+                  ProgramResult<v1::Project> project = book_.Create(*request);
+                  if (!project) return ToGrpcStatus(project.error);
+                  *response = std::move(*project.value);
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerUnaryReactor* ProjectService::GetProject(grpc::CallbackServerContext* context,
-                                                     const v1::GetProjectRequest* request, v1::Project* response) {
-  return Answer(room_, context, *request, "ProjectService/GetProject", [this, request, response](const Caller&) {
-    Result<v1::Project> project = book_.Get(request->name());
-    if (!project) return ToGrpcStatus(project.error());
-    *response = std::move(*project);
-    return grpc::Status::OK;
-  });
+                                                     const v1::GetProjectRequest* request,
+                                                     v1::Project* response) {
+  return Answer(room_, context, *request, "ProjectService/GetProject",
+                [this, request, response](const Caller&) {
+                  Result<v1::Project> project = book_.Get(request->name());
+                  if (!project) return ToGrpcStatus(project.error());
+                  *response = std::move(*project);
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerUnaryReactor* ProjectService::ListProjects(grpc::CallbackServerContext* context,
                                                        const v1::ListProjectsRequest* request,
                                                        v1::ListProjectsResponse* response) {
-  return Answer(room_, context, *request, "ProjectService/ListProjects", [this, request, response](const Caller&) {
-    Result<v1::ListProjectsResponse> projects = book_.List(*request);
-    if (!projects) return ToGrpcStatus(projects.error());
-    *response = std::move(*projects);
-    return grpc::Status::OK;
-  });
+  return Answer(room_, context, *request, "ProjectService/ListProjects",
+                [this, request, response](const Caller&) {
+                  Result<v1::ListProjectsResponse> projects = book_.List(*request);
+                  if (!projects) return ToGrpcStatus(projects.error());
+                  *response = std::move(*projects);
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerUnaryReactor* ProjectService::UpdateProject(grpc::CallbackServerContext* context,
                                                         const v1::UpdateProjectRequest* request,
                                                         v1::Project* response) {
-  return Answer(room_, context, *request, "ProjectService/UpdateProject", [this, request, response](const Caller&) {
-    ProgramResult<v1::Project> project = book_.Update(*request);
-    if (!project) return ToGrpcStatus(project.error);
-    *response = std::move(*project.value);
-    return grpc::Status::OK;
-  });
+  return Answer(room_, context, *request, "ProjectService/UpdateProject",
+                [this, request, response](const Caller&) {
+                  ProgramResult<v1::Project> project = book_.Update(*request);
+                  if (!project) return ToGrpcStatus(project.error);
+                  *response = std::move(*project.value);
+                  return grpc::Status::OK;
+                });
 }
 
 grpc::ServerUnaryReactor* ProjectService::DeleteProject(grpc::CallbackServerContext* context,
                                                         const v1::DeleteProjectRequest* request,
                                                         google::protobuf::Empty*) {
-  return Answer(room_, context, *request, "ProjectService/DeleteProject", [this, request](const Caller&) {
-    const Status deleted = book_.Delete(*request);
-    return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
-  });
+  return Answer(room_, context, *request, "ProjectService/DeleteProject",
+                [this, request](const Caller&) {
+                  const Status deleted = book_.Delete(*request);
+                  return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
+                });
 }
 
 grpc::ServerUnaryReactor* ProjectService::TransferProject(grpc::CallbackServerContext* context,
                                                           const v1::TransferProjectRequest* request,
                                                           v1::TransferProjectResponse* response) {
-  return Answer(room_, context, *request, "ProjectService/TransferProject", [this, request, response](const Caller&) {
-    ProgramResult<v1::TransferProjectResponse> transferred = book_.Transfer(*request);
-    if (!transferred) return ToGrpcStatus(transferred.error);
-    *response = std::move(*transferred.value);
-    return grpc::Status::OK;
-  });
+  return Answer(room_, context, *request, "ProjectService/TransferProject",
+                [this, request, response](const Caller&) {
+                  ProgramResult<v1::TransferProjectResponse> transferred = book_.Transfer(*request);
+                  if (!transferred) return ToGrpcStatus(transferred.error);
+                  *response = std::move(*transferred.value);
+                  return grpc::Status::OK;
+                });
 }
 
-grpc::ServerUnaryReactor* ProjectService::TransferProjectFromMachine(grpc::CallbackServerContext* context,
-                                                                     const v1::TransferProjectFromMachineRequest*,
-                                                                     v1::Project*) {
+grpc::ServerUnaryReactor* ProjectService::TransferProjectFromMachine(
+    grpc::CallbackServerContext* context, const v1::TransferProjectFromMachineRequest*,
+    v1::Project*) {
   return NotYet(room_, context, "ProjectService/TransferProjectFromMachine");
 }
 
 grpc::ServerWriteReactor<v1::ExportProjectResponse>* ProjectService::ExportProject(
     grpc::CallbackServerContext* context, const v1::ExportProjectRequest*) {
   const auto caller = Admit(room_.gate, *context, "ProjectService/ExportProject");
-  const Error error = caller ? Error{ErrorCode::kCellUnimplemented, "ProjectService/ExportProject", {}} : caller.error();
+  const Error error = caller
+                          ? Error{ErrorCode::kCellUnimplemented, "ProjectService/ExportProject", {}}
+                          : caller.error();
   return new RefusedStream<v1::ExportProjectResponse>(ToGrpcStatus(error));
 }
 
 grpc::ServerUnaryReactor* ProjectService::ImportProject(grpc::CallbackServerContext* context,
-                                                        const v1::ImportProjectRequest*, v1::Project*) {
+                                                        const v1::ImportProjectRequest*,
+                                                        v1::Project*) {
   return NotYet(room_, context, "ProjectService/ImportProject");
 }
 

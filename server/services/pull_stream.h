@@ -32,8 +32,8 @@ class OpenStreams {
   bool stopping_ = false;
 };
 
-// A server stream whose next message is made when the last one is written: a client that does not read
-// costs its cursor and one message, and slows nobody. Owns itself until the call is done.
+// A server stream whose next message is made when the last one is written: a client that does not
+// read costs its cursor and one message, and slows nobody. Owns itself until the call is done.
 template <class Response>
 class PullStream : public grpc::ServerWriteReactor<Response>,
                    public OpenStreams::Stream,
@@ -71,8 +71,8 @@ class PullStream : public grpc::ServerWriteReactor<Response>,
  protected:
   enum class Next { kMessage, kNothing, kEnd };
 
-  // Makes the next message, or says that there is none now, or how the stream ends. On the executor, never
-  // twice at once; may block.
+  // Makes the next message, or says that there is none now, or how the stream ends. On the
+  // executor, never twice at once; may block.
   virtual Next Make(Response& message, grpc::Status& status) = 0;
 
   // A last message that tells the client to come back; false: there is none of that kind.

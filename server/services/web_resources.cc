@@ -13,7 +13,8 @@
 namespace rmlcell::server {
 namespace {
 
-Result<Caller> Admit(const Gate& gate, const web::WebCallerMetadata& metadata, const std::string& method) {
+Result<Caller> Admit(const Gate& gate, const web::WebCallerMetadata& metadata,
+                     const std::string& method) {
   CallFacts facts{.method = method, .peer = "web", .metadata = {}};
   for (const auto& [key, value] : metadata) facts.metadata.emplace(key, value);
   return gate.Admit(facts);
@@ -54,7 +55,8 @@ Result<v1::ProgramForm> FormOf(const std::string& word) {
   if (word == "object") return v1::PROGRAM_FORM_OBJECT;
   if (word == "executable") return v1::PROGRAM_FORM_EXECUTABLE;
   if (word == "listing") return v1::PROGRAM_FORM_LISTING;
-  return InvalidArgument("form is '" + Readable(word) + "': use source, object, executable or listing");
+  return InvalidArgument("form is '" + Readable(word) +
+                         "': use source, object, executable or listing");
 }
 
 class Sink final : public web::UploadSink {
@@ -63,7 +65,9 @@ class Sink final : public web::UploadSink {
       : shelf_(shelf), header_(header), form_(form) {}
 
   Status Append(std::string_view chunk) override {
-    if (Status fits = shelf_.CheckSize(static_cast<std::int64_t>(bytes_.size() + chunk.size())); !fits) return fits;
+    if (Status fits = shelf_.CheckSize(static_cast<std::int64_t>(bytes_.size() + chunk.size()));
+        !fits)
+      return fits;
     digest_.Add(chunk);
     bytes_ += chunk;
     return {};
@@ -74,7 +78,8 @@ class Sink final : public web::UploadSink {
       return Refused(bridge::ToRpcStatus({ErrorCode::kCellChecksum, "SHA-256 differs", {}}));
     }
     const ProgramResult<v1::Program> stored =
-        shelf_.Store({.name = "machines/" + header_.path.machine + "/programs/" + std::to_string(header_.path.slot),
+        shelf_.Store({.name = "machines/" + header_.path.machine + "/programs/" +
+                              std::to_string(header_.path.slot),
                       .file_name = header_.file_name,
                       .form = form_,
                       .title = header_.title,
@@ -82,9 +87,12 @@ class Sink final : public web::UploadSink {
                       .bytes = std::move(bytes_),
                       .validate_only = header_.validate_only});
     if (!stored) {
-      return Refused(bridge::ToRpcStatus(stored.error.error, stored.error.diagnostics, stored.error.dropped));
+      return Refused(
+          bridge::ToRpcStatus(stored.error.error, stored.error.diagnostics, stored.error.dropped));
     }
-    return {.message_type = "rmlcell.v1.Program", .message = stored.value->SerializeAsString(), .status = {}};
+    return {.message_type = "rmlcell.v1.Program",
+            .message = stored.value->SerializeAsString(),
+            .status = {}};
   }
 
  private:
@@ -101,26 +109,29 @@ class Sink final : public web::UploadSink {
 
 }  // namespace
 
-Result<web::Resource> WebResources::Find(const web::ResourcePath& path, const web::WebCallerMetadata& metadata) {
+Result<web::Resource> WebResources::Find(const web::ResourcePath& path,
+                                         const web::WebCallerMetadata& metadata) {
   const Result<Caller> caller = Admit(gate_, metadata, "GET");
   if (!caller) return caller.error();
-  if (const auto* artifact = std::get_if<web::ArtifactPath>(&path)) return FindArtifact(book_, *artifact);
+  if (const auto* artifact = std::get_if<web::ArtifactPath>(&path))
+    return FindArtifact(book_, *artifact);
   const auto& program = std::get<web::ProgramContentPath>(path);
   const Result<v1::ProgramForm> form = FormOf(program.form);
   if (!form) return form.error();
-  Result<ProgramShelf::Content> content =
-      shelf_.Read("machines/" + program.machine + "/programs/" + std::to_string(program.slot), *form);
+  Result<ProgramShelf::Content> content = shelf_.Read(
+      "machines/" + program.machine + "/programs/" + std::to_string(program.slot), *form);
   if (!content) return content.error();
-  web::Resource resource{.media_type = content->form == v1::PROGRAM_FORM_SOURCE ? "text/plain; charset=utf-8"
-                                                                                : "application/octet-stream",
+  web::Resource resource{.media_type = content->form == v1::PROGRAM_FORM_SOURCE
+                                           ? "text/plain; charset=utf-8"
+                                           : "application/octet-stream",
                          .etag = content->sha256,
                          .file_name = content->file_name};
   resource.bytes = std::move(content->bytes);
   return resource;
 }
 
-Result<std::unique_ptr<web::UploadSink>> WebResources::BeginUpload(const web::UploadHeader& header,
-                                                                   const web::WebCallerMetadata& metadata) {
+Result<std::unique_ptr<web::UploadSink>> WebResources::BeginUpload(
+    const web::UploadHeader& header, const web::WebCallerMetadata& metadata) {
   const Result<Caller> caller = Admit(gate_, metadata, "POST");
   if (!caller) return caller.error();
   if (const Status fits = shelf_.CheckSize(header.size); !fits) return fits.error();

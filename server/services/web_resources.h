@@ -8,15 +8,17 @@ namespace rmlcell::server {
 class JobBook;
 class ProgramShelf;
 
-// What the web port serves at stable URLs: products of jobs, contents of programs. Callers pass the same
-// gate as calls do.
+// What the web port serves at stable URLs: products of jobs, contents of programs. Callers pass the
+// same gate as calls do.
 class WebResources final : public web::ResourceSource {
  public:
-  WebResources(const Gate& gate, JobBook& book, ProgramShelf& shelf) : gate_(gate), book_(book), shelf_(shelf) {}
+  WebResources(const Gate& gate, JobBook& book, ProgramShelf& shelf)
+      : gate_(gate), book_(book), shelf_(shelf) {}
 
-  Result<web::Resource> Find(const web::ResourcePath& path, const web::WebCallerMetadata& caller) override;
-  Result<std::unique_ptr<web::UploadSink>> BeginUpload(const web::UploadHeader& header,
-                                                       const web::WebCallerMetadata& caller) override;
+  Result<web::Resource> Find(const web::ResourcePath& path,
+                             const web::WebCallerMetadata& caller) override;
+  Result<std::unique_ptr<web::UploadSink>> BeginUpload(
+      const web::UploadHeader& header, const web::WebCallerMetadata& caller) override;
 
  private:
   const Gate& gate_;

@@ -29,8 +29,8 @@ class LineHandle final : public WorkerLine {
   Line* line_;
 };
 
-// One stream. What is to be sent waits in a queue: messages, and programs that are cut into messages when
-// the line takes them. The queue is bounded by what one assignment needs.
+// One stream. What is to be sent waits in a queue: messages, and programs that are cut into
+// messages when the line takes them. The queue is bounded by what one assignment needs.
 class Line final : public grpc::ServerBidiReactor<v1::WorkRequest, v1::WorkResponse> {
  public:
   explicit Line(Dispatcher& dispatcher)
@@ -91,7 +91,8 @@ class Line final : public grpc::ServerBidiReactor<v1::WorkRequest, v1::WorkRespo
     if (!ok) return End(grpc::Status::OK);
     if (worker_ == 0) {
       if (!incoming_.has_hello()) {
-        return End(ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument, "the first message must be hello", {}}));
+        return End(ToGrpcStatus(
+            Error{ErrorCode::kCellInvalidArgument, "the first message must be hello", {}}));
       }
       const Result<Dispatcher::WorkerId> joined = dispatcher_.Join(handle_, incoming_.hello());
       if (!joined) return End(ToGrpcStatus(joined.error()));

@@ -7,12 +7,14 @@ namespace rmlcell::server {
 
 class Dispatcher;
 
-// The line to engine workers: one stream each. Who joins is checked by the token that the dispatcher knows.
+// The line to engine workers: one stream each. Who joins is checked by the token that the
+// dispatcher knows.
 class WorkerService final : public v1::WorkerService::CallbackService {
  public:
   WorkerService(CallRoom room, Dispatcher& dispatcher) : room_(room), dispatcher_(dispatcher) {}
 
-  grpc::ServerBidiReactor<v1::WorkRequest, v1::WorkResponse>* Work(grpc::CallbackServerContext* context) override;
+  grpc::ServerBidiReactor<v1::WorkRequest, v1::WorkResponse>* Work(
+      grpc::CallbackServerContext* context) override;
 
  private:
   CallRoom room_;

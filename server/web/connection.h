@@ -49,7 +49,8 @@ class Exchange {
   // Nothing was written for a while.
   virtual void OnQuiet() {}
 
-  // A stream that ends when the client leaves. A client that only ends its sending still gets any other answer.
+  // A stream that ends when the client leaves. A client that only ends its sending still gets any
+  // other answer.
   virtual bool IsEndless() const { return false; }
 
   // The client left, or the server stops: let go of everything. The connection takes nothing any

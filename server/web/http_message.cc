@@ -18,7 +18,6 @@ int HexDigit(char c) {
   return -1;
 }
 
-
 bool IsControl(char c) {
   const auto byte = static_cast<unsigned char>(c);
   return byte < 0x20 || byte == 0x7F;

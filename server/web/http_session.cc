@@ -37,7 +37,7 @@ namespace {
 constexpr std::size_t kReadBytes = std::size_t{64} << 10U;  // at a time, of a body
 constexpr int kSendBufferBytes = 256 << 10;
 constexpr std::chrono::milliseconds kLingerDraining{
-    200};                                           // a stop does not wait for silent clients
+    200};  // a stop does not wait for silent clients
 constexpr std::chrono::seconds kPipelinedLook{1};
 
 std::string View(beast::string_view text) { return std::string(text.data(), text.size()); }
@@ -415,7 +415,8 @@ class HttpSession : public Connection,
     char byte = 0;
     const ssize_t size = recv(socket_.native_handle(), &byte, 1, MSG_PEEK | MSG_DONTWAIT);
     if (size == 0) {
-      // It has said all it wants to say; who waits for a stream that has no end does not half-close.
+      // It has said all it wants to say; who waits for a stream that has no end does not
+      // half-close.
       if (exchange_->IsEndless()) return Gone();
       closing_ = true;
       Arm(options_.linger_timeout);  // it may have left altogether, which looks the same

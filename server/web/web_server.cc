@@ -161,8 +161,8 @@ WebServer::WebServer(std::unique_ptr<Core> core) : core_(std::move(core)) {}
 Result<std::unique_ptr<WebServer>> WebServer::Start(WebOptions options,
                                                     std::shared_ptr<grpc::Channel> channel,
                                                     ResourceSource& resources, WebLogger logger) {
-  auto core = std::make_unique<Core>(std::move(options), std::move(channel), resources,
-                                     std::move(logger));
+  auto core =
+      std::make_unique<Core>(std::move(options), std::move(channel), resources, std::move(logger));
   if (Status status = core->Listen(); !status) return status.error();
   core->Accept();
   core->RunThreads();

@@ -34,7 +34,8 @@ struct WebOptions {
   std::chrono::milliseconds write_timeout{120'000};
   std::chrono::milliseconds quiet_interval{
       15'000};  // a comment line on event streams that are quiet
-  // For a client that was refused to come to its end, and for the answer of one that ended its sending.
+  // For a client that was refused to come to its end, and for the answer of one that ended its
+  // sending.
   std::chrono::milliseconds linger_timeout{2000};
 
   std::vector<std::string> host_names;  // names, besides loopback and `address`, that Host may have
@@ -68,9 +69,9 @@ using WebLogger = std::function<void(const WebLogEntry&)>;
 // (UNAVAILABLE becomes an event "reconnect"), Stop(), and only then the gRPC server.
 class WebServer {
  public:
-  // `channel` leads to the gRPC server and has GRPC_ARG_MAX_RECEIVE_MESSAGE_LENGTH -1, or large answers fail. `resources` outlives the
-  // WebServer. `logger` runs on threads of the gateway and must be thread-safe; it may be empty.
-  // Errors: CellPortUsed, CellConfiguration.
+  // `channel` leads to the gRPC server and has GRPC_ARG_MAX_RECEIVE_MESSAGE_LENGTH -1, or large
+  // answers fail. `resources` outlives the WebServer. `logger` runs on threads of the gateway and
+  // must be thread-safe; it may be empty. Errors: CellPortUsed, CellConfiguration.
   static Result<std::unique_ptr<WebServer>> Start(WebOptions options,
                                                   std::shared_ptr<grpc::Channel> channel,
                                                   ResourceSource& resources, WebLogger logger = {});

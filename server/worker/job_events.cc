@@ -6,7 +6,8 @@
 namespace rmlcell::server {
 namespace {
 
-// Signals that belong into the log; analogue outputs and sensors, which change all the time, are in the trace.
+// Signals that belong into the log; analogue outputs and sensors, which change all the time, are in
+// the trace.
 bool IsLogged(machine::Signal signal) {
   switch (signal) {
     case machine::Signal::kOutput:
@@ -16,8 +17,10 @@ bool IsLogged(machine::Signal signal) {
     case machine::Signal::kSchedule:
     case machine::Signal::kGas:
     case machine::Signal::kSpindle:
-    case machine::Signal::kSpindleSpeed: return true;
-    default: return false;
+    case machine::Signal::kSpindleSpeed:
+      return true;
+    default:
+      return false;
   }
 }
 
@@ -31,7 +34,8 @@ void JobEvents::Tell(v1::JobEvent event) {
   if (count_ >= kEventsMax && !event.has_halted() && !event.has_resumed()) {
     if (cut_) return;
     cut_ = true;
-    event.set_message("more happened than the log of a job takes; the report and the trace have the rest");
+    event.set_message(
+        "more happened than the log of a job takes; the report and the trace have the rest");
   }
   ++count_;
   *batch_.add_events() = std::move(event);
@@ -91,9 +95,10 @@ void JobEvents::OnMessage(SimTime at, const machine::Place&, std::string_view te
 }
 
 void JobEvents::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
-  const std::string key = std::to_string(static_cast<int>(diagnostic.code)) + "/" +
-                          std::to_string(diagnostic.program) + "/" + std::to_string(diagnostic.step) + "/" +
-                          std::to_string(diagnostic.where.line) + "/" + std::to_string(diagnostic.where.column);
+  const std::string key =
+      std::to_string(static_cast<int>(diagnostic.code)) + "/" + std::to_string(diagnostic.program) +
+      "/" + std::to_string(diagnostic.step) + "/" + std::to_string(diagnostic.where.line) + "/" +
+      std::to_string(diagnostic.where.column);
   if (told_.size() >= kFindingsTold || !told_.insert(key).second) return;
   v1::JobEvent event;
   event.set_virtual_time_ns(at.count());

@@ -10,11 +10,12 @@
 
 namespace rmlcell::server {
 
-// Chooses what of a run goes into the durable log of its job: what people would look for afterwards.
-// Moves and steps are in the trace, positions are latest-wins.
+// Chooses what of a run goes into the durable log of its job: what people would look for
+// afterwards. Moves and steps are in the trace, positions are latest-wins.
 class JobEvents final : public machine::RunObserver {
  public:
-  // Events of one job at most; a program that switches an output a million times does not fill the log.
+  // Events of one job at most; a program that switches an output a million times does not fill the
+  // log.
   static constexpr std::int64_t kEventsMax = 10'000;
   static constexpr int kBatch = 64;
 
@@ -23,7 +24,8 @@ class JobEvents final : public machine::RunObserver {
   void OnSignal(const machine::SignalChange& change) override;
   void OnHalt(const machine::Halt& halt) override;
   void OnResume(SimTime at, const machine::Place& place) override;
-  void OnProgram(SimTime at, const machine::Place& place, std::string_view what, int program) override;
+  void OnProgram(SimTime at, const machine::Place& place, std::string_view what,
+                 int program) override;
   void OnMessage(SimTime at, const machine::Place& place, std::string_view text) override;
   void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override;
 

@@ -50,7 +50,9 @@ v1::Outcome OutcomeFor(machine::OutcomeKind kind, ErrorCode code, std::string de
 class Attempt {
  public:
   Attempt(ServerLine& line, v1::WorkerAssignment assignment, const std::atomic<bool>& stopping)
-      : line_(line), assignment_(std::move(assignment)), stopping_(stopping),
+      : line_(line),
+        assignment_(std::move(assignment)),
+        stopping_(stopping),
         events_([this](const v1::WorkerEvents& events) { SendEvents(events); }),
         started_s_(ProcessorTime_s()) {}
 
@@ -93,21 +95,24 @@ class Attempt {
   }
 
   bridge::SetupInput Input() {
-    bridge::SetupInput input{.family = simulation::FindFamily(assignment_.family()),
-                             .profile = assignment_.profile(),
-                             .parameters = {assignment_.parameters().begin(), assignment_.parameters().end()},
-                             .deleted_programs = {assignment_.deleted_programs().begin(),
-                                                  assignment_.deleted_programs().end()},
-                             .main_program = assignment_.main_program(),
-                             .machine_state = assignment_.machine_state(),
-                             .default_mode = machine::Mode::kRemote};
+    bridge::SetupInput input{
+        .family = simulation::FindFamily(assignment_.family()),
+        .profile = assignment_.profile(),
+        .parameters = {assignment_.parameters().begin(), assignment_.parameters().end()},
+        .deleted_programs = {assignment_.deleted_programs().begin(),
+                             assignment_.deleted_programs().end()},
+        .main_program = assignment_.main_program(),
+        .machine_state = assignment_.machine_state(),
+        .default_mode = machine::Mode::kRemote};
     for (v1::AssignedProgram& program : *assignment_.mutable_programs()) {
-      bridge::ProgramInput made{.slot = program.slot(),
-                                .name = program.title().empty() ? program.file_name() : program.title(),
-                                .file_name = program.file_name(),
-                                .bytes = std::make_shared<const std::string>(std::move(*program.mutable_content())),
-                                .is_source = program.is_source()};
-      if (!program.executable().empty()) made.executable = std::make_shared<const std::string>(program.executable());
+      bridge::ProgramInput made{
+          .slot = program.slot(),
+          .name = program.title().empty() ? program.file_name() : program.title(),
+          .file_name = program.file_name(),
+          .bytes = std::make_shared<const std::string>(std::move(*program.mutable_content())),
+          .is_source = program.is_source()};
+      if (!program.executable().empty())
+        made.executable = std::make_shared<const std::string>(program.executable());
       input.programs.push_back(std::move(made));
     }
     if (!assignment_.default_schedules()) {
@@ -132,7 +137,8 @@ class Attempt {
       events_.OnDiagnostic(diagnostic.at.value_or(SimTime(0)), diagnostic);
     }
     report.set_diagnostics_dropped(static_cast<std::int64_t>(made.diagnostics_dropped));
-    const auto first = std::ranges::find_if(made.diagnostics, [](const Diagnostic& d) { return IsError(d.severity); });
+    const auto first = std::ranges::find_if(
+        made.diagnostics, [](const Diagnostic& d) { return IsError(d.severity); });
     outcome_ = v1::Outcome();
     outcome_.set_kind(v1::Outcome::KIND_COMPLETED);
     if (first != made.diagnostics.end()) {
@@ -148,8 +154,9 @@ class Attempt {
     SendArtifact("report", "application/x-protobuf", bytes);
   }
 
-  void ExceedOutput() { outcome_ = OutcomeFor(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellOutputBudget); }
-
+  void ExceedOutput() {
+    outcome_ = OutcomeFor(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellOutputBudget);
+  }
 
   End Check() {
     bridge::SetupInput input = Input();
@@ -161,7 +168,7 @@ class Attempt {
     for (const bridge::ProgramInput& program : input.programs) {
       if (program.slot != input.main_program) continue;
       // Checking is translating: what was stored as an object is read as one.
-      const std::string name = program.is_source                ? program.file_name
+      const std::string name = program.is_source               ? program.file_name
                                : family.info().has_executables ? "program.O"
                                                                : "program.rml";
       machine::Translation translation =
@@ -174,11 +181,13 @@ class Attempt {
       setup.inputs = bridge::InputsOf(assignment_.job().simulation());
       const auto motion = simulation::CheckMotion(family, setup, {program.slot});
       if (!motion) return Refuse(motion.error());
-      made.diagnostics.insert(made.diagnostics.end(), motion->findings.begin(), motion->findings.end());
+      made.diagnostics.insert(made.diagnostics.end(), motion->findings.begin(),
+                              motion->findings.end());
       made.diagnostics_dropped += motion->findings_dropped;
       if (!motion->cut_short.empty()) motion_check = motion->cut_short.begin()->second;
     }
-    while (const std::optional<v1::WorkResponse> message = line_.Receive(std::chrono::milliseconds(0))) {
+    while (const std::optional<v1::WorkResponse> message =
+               line_.Receive(std::chrono::milliseconds(0))) {
       Obey(*message);
       if (released_) return End::kLost;
     }
@@ -203,7 +212,8 @@ class Attempt {
 
   End Simulate() {
     const v1::SimulationOptions& options = assignment_.job().simulation();
-    const auto variables = bridge::ExpandVariables({options.variables().begin(), options.variables().end()});
+    const auto variables =
+        bridge::ExpandVariables({options.variables().begin(), options.variables().end()});
     if (!variables) return Refuse(variables.error());
     Result<bridge::SetupOutcome> made = bridge::MakeSetup(Input(), options, assignment_.budget());
     if (!made) return Refuse(made.error());
@@ -212,7 +222,8 @@ class Attempt {
       ReportFindings(*made);
       return End::kFinished;
     }
-    for (const Diagnostic& diagnostic : made->diagnostics) events_.OnDiagnostic(SimTime(0), diagnostic);
+    for (const Diagnostic& diagnostic : made->diagnostics)
+      events_.OnDiagnostic(SimTime(0), diagnostic);
     const machine::MachineFamily& family = *simulation::FindFamily(assignment_.family());
     hold_key_ = machine::HoldKey(family.info(), made->setup->mode);
     simulation::InputDescription inputs = simulation::DescribeInputs(family, *made->setup);
@@ -232,7 +243,8 @@ class Attempt {
     }
     products.picture = true;
     products.also = &events_;
-    simulation::Recorder recorder(family.Shape(made->setup->parameters), std::move(inputs), std::move(products));
+    simulation::Recorder recorder(family.Shape(made->setup->parameters), std::move(inputs),
+                                  std::move(products));
     Result<std::unique_ptr<machine::Run>> run = family.NewRun(std::move(*made->setup), recorder);
     if (!run) return Refuse(run.error());
     simulation::Simulation simulation(**run, recorder);
@@ -244,7 +256,8 @@ class Attempt {
       if (const auto value = (*run)->ReadVariable(name)) values[name] = *value;
     }
     v1::RunReport message = bridge::ToProto(report, values);
-    for (const Diagnostic& diagnostic : made->diagnostics) *message.add_diagnostics() = bridge::ToProto(diagnostic);
+    for (const Diagnostic& diagnostic : made->diagnostics)
+      *message.add_diagnostics() = bridge::ToProto(diagnostic);
     outcome_ = message.outcome();
     executables_ = (*run)->made_executables();
     std::string bytes = bridge::StableBytes(message);
@@ -264,7 +277,8 @@ class Attempt {
     return End::kFinished;
   }
 
-  End Drive(machine::Run& run, simulation::Simulation& simulation, const simulation::Recorder& recorder) {
+  End Drive(machine::Run& run, simulation::Simulation& simulation,
+            const simulation::Recorder& recorder) {
     SimTime slice = std::chrono::milliseconds(100);
     Pacer pacer(assignment_.job().simulation().pace());
     Clock::time_point last_position = Clock::now();
@@ -274,7 +288,8 @@ class Attempt {
       CarryOut(simulation);
       if (simulation.finished()) break;
       const SimTime due = pacer.Due(begin, simulation.state().time, slice);
-      const bool early = pacer.paced() && due < kPacedSliceMin && simulation.phase() == machine::RunPhase::kRunning;
+      const bool early = pacer.paced() && due < kPacedSliceMin &&
+                         simulation.phase() == machine::RunPhase::kRunning;
       const machine::RunPhase phase = early ? machine::RunPhase::kRunning : simulation.Step(due);
       const auto took = Clock::now() - begin;
       if (took < kStepTarget / 2) slice = std::min(slice * 2, kSliceMax);
@@ -311,10 +326,12 @@ class Attempt {
     return End::kFinished;
   }
 
-  // Orders wait until the run is between two steps: they come in while the run itself tells of an event.
+  // Orders wait until the run is between two steps: they come in while the run itself tells of an
+  // event.
   void Obey(const v1::WorkResponse& message) {
     const auto mine = [&](const v1::WorkerLease& lease) {
-      return lease.job() == assignment_.lease().job() && lease.fence() == assignment_.lease().fence();
+      return lease.job() == assignment_.lease().job() &&
+             lease.fence() == assignment_.lease().fence();
     };
     if (message.has_stop()) {
       stop_asked_ = true;
@@ -328,7 +345,8 @@ class Attempt {
   }
 
   bool CancelOrdered() const {
-    return std::ranges::count(orders_, v1::WorkerControl::KIND_CANCEL, &v1::WorkerControl::kind) > 0;
+    return std::ranges::count(orders_, v1::WorkerControl::KIND_CANCEL, &v1::WorkerControl::kind) >
+           0;
   }
 
   void CarryOut(simulation::Simulation& simulation) {
@@ -348,10 +366,14 @@ class Attempt {
           simulation.Apply({.at = now, .kind = machine::InputKind::kStart});
           break;
         case v1::WorkerControl::KIND_OVERRIDE:
-          simulation.Apply({.at = now, .kind = machine::InputKind::kOverride, .value = order.value()});
+          simulation.Apply(
+              {.at = now, .kind = machine::InputKind::kOverride, .value = order.value()});
           break;
-        case v1::WorkerControl::KIND_CANCEL: simulation.Cancel(); break;
-        default: break;
+        case v1::WorkerControl::KIND_CANCEL:
+          simulation.Cancel();
+          break;
+        default:
+          break;
       }
     }
   }
@@ -371,18 +393,21 @@ class Attempt {
     if (!line_.Send(message)) return;
     events_sent_ += events.events_size();
     while (events_sent_ - events_stored_ > line_.events_window() && !line_.gone() && !released_) {
-      if (std::optional<v1::WorkResponse> answer = line_.Receive(std::chrono::milliseconds(100))) Obey(*answer);
+      if (std::optional<v1::WorkResponse> answer = line_.Receive(std::chrono::milliseconds(100)))
+        Obey(*answer);
     }
   }
 
   void SendPosition(const machine::Run& run) {
     v1::WorkRequest message;
     *message.mutable_heartbeat()->mutable_lease() = assignment_.lease();
-    *message.mutable_heartbeat()->mutable_progress() = bridge::ToProto(run.state(), run.steps_executed());
+    *message.mutable_heartbeat()->mutable_progress() =
+        bridge::ToProto(run.state(), run.steps_executed());
     line_.Send(message);
   }
 
-  void SendArtifact(const std::string& name, const std::string& media_type, const std::string& bytes) {
+  void SendArtifact(const std::string& name, const std::string& media_type,
+                    const std::string& bytes) {
     for (std::size_t sent = 0; sent == 0 || sent < bytes.size(); sent += kChunkBytes) {
       v1::WorkRequest message;
       v1::WorkerArtifact& artifact = *message.mutable_artifact();
@@ -399,7 +424,8 @@ class Attempt {
     v1::WorkerFinish& finish = *message.mutable_finish();
     *finish.mutable_lease() = assignment_.lease();
     *finish.mutable_outcome() = outcome_;
-    for (const auto& [slot, executable] : executables_) (*finish.mutable_executables())[slot] = executable;
+    for (const auto& [slot, executable] : executables_)
+      (*finish.mutable_executables())[slot] = executable;
     line_.Send(message);
   }
 
@@ -429,7 +455,8 @@ bool JobRunner::Work(v1::WorkerAssignment assignment) {
   const std::int64_t memory = assignment.budget().memory_bytes();
   Attempt attempt(line_, std::move(assignment), stopping_);
   Attempt::End end = Attempt::End::kFinished;
-  // Translating a large program, a picture of a long path or a slow store may take longer than a lease.
+  // Translating a large program, a picture of a long path or a slow store may take longer than a
+  // lease.
   const std::jthread heart([&](const std::stop_token& stop) {
     std::mutex mutex;
     std::condition_variable_any wake;
@@ -437,7 +464,8 @@ bool JobRunner::Work(v1::WorkerAssignment assignment) {
     *message.mutable_heartbeat()->mutable_lease() = lease;
     for (;;) {
       std::unique_lock lock(mutex);
-      wake.wait_for(lock, stop, std::chrono::milliseconds(line_.lease_ms() / 3), [] { return false; });
+      wake.wait_for(lock, stop, std::chrono::milliseconds(line_.lease_ms() / 3),
+                    [] { return false; });
       if (stop.stop_requested()) return;
       try {
         line_.Send(message);

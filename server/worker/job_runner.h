@@ -9,12 +9,13 @@
 
 namespace rmlcell::server {
 
-// Works on one assignment: translates, runs in virtual time, tells events and positions, sends products and
-// the outcome. Everything that can go wrong with a job ends as its outcome.
+// Works on one assignment: translates, runs in virtual time, tells events and positions, sends
+// products and the outcome. Everything that can go wrong with a job ends as its outcome.
 class JobRunner {
  public:
   // `stopping` becomes true when the process is to end: the job is handed back.
-  JobRunner(ServerLine& line, const std::atomic<bool>& stopping) : line_(line), stopping_(stopping) {}
+  JobRunner(ServerLine& line, const std::atomic<bool>& stopping)
+      : line_(line), stopping_(stopping) {}
 
   // Returns when the lease is over: finished, handed back, or lost. False: the worker is to end.
   bool Work(v1::WorkerAssignment assignment);

@@ -31,8 +31,8 @@ double JobProcessorTime_s() {
   return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
 }
 
-// A job that hangs inside one step cannot end itself. Long after its budget the process is ended, and the
-// server attempts the job again by its policy.
+// A job that hangs inside one step cannot end itself. Long after its budget the process is ended,
+// and the server attempts the job again by its policy.
 void Guard() {
   for (;;) {
     std::this_thread::sleep_for(std::chrono::seconds(1));
@@ -71,7 +71,8 @@ int main(int argc, char** argv) {
   ::sigaction(SIGTERM, &action, nullptr);
   ::sigaction(SIGINT, &action, nullptr);
   const char* token = std::getenv("RMLCELL_JOIN_TOKEN");
-  auto line = ServerLine::Join({.server = server, .join_token = token != nullptr ? token : "", .name = name});
+  auto line = ServerLine::Join(
+      {.server = server, .join_token = token != nullptr ? token : "", .name = name});
   if (!line) {
     spdlog::error("{}", bridge::ErrorText(line.error()));
     return 69;
@@ -93,6 +94,7 @@ int main(int argc, char** argv) {
   (*line)->Close();
   spdlog::debug("worker {} ends", name);
   spdlog::shutdown();
-  // Static destructors of gRPC may wait for threads that wait for the server: there is nothing to save.
+  // Static destructors of gRPC may wait for threads that wait for the server: there is nothing to
+  // save.
   _exit(0);
 }

@@ -18,7 +18,9 @@ thread_local Count count;
 
 }  // namespace
 
-MemoryBudget::MemoryBudget(std::int64_t bytes) { count = {.limit = bytes, .held = 0, .exceeded = false}; }
+MemoryBudget::MemoryBudget(std::int64_t bytes) {
+  count = {.limit = bytes, .held = 0, .exceeded = false};
+}
 MemoryBudget::~MemoryBudget() { count = {}; }
 bool MemoryBudget::exceeded() { return count.exceeded; }
 
@@ -29,9 +31,10 @@ void* Take(std::size_t size, std::size_t alignment) {
     count.exceeded = true;
     throw std::bad_alloc();
   }
-  void* memory = alignment <= alignof(std::max_align_t) ? std::malloc(size > 0 ? size : 1)
-                                                        : std::aligned_alloc(alignment, (size + alignment - 1) /
-                                                                                            alignment * alignment);
+  void* memory =
+      alignment <= alignof(std::max_align_t)
+          ? std::malloc(size > 0 ? size : 1)
+          : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
   if (memory == nullptr) throw std::bad_alloc();
   if (count.limit > 0) count.held += static_cast<std::int64_t>(malloc_usable_size(memory));
   return memory;
@@ -47,8 +50,12 @@ void Give(void* memory) {
 }  // namespace rmlcell::server
 
 // The replaceable functions of the language; the others call these.
-void* operator new(std::size_t size) { return rmlcell::server::Take(size, alignof(std::max_align_t)); }
-void* operator new[](std::size_t size) { return rmlcell::server::Take(size, alignof(std::max_align_t)); }
+void* operator new(std::size_t size) {
+  return rmlcell::server::Take(size, alignof(std::max_align_t));
+}
+void* operator new[](std::size_t size) {
+  return rmlcell::server::Take(size, alignof(std::max_align_t));
+}
 void* operator new(std::size_t size, std::align_val_t alignment) {
   return rmlcell::server::Take(size, static_cast<std::size_t>(alignment));
 }
@@ -61,5 +68,9 @@ void operator delete(void* memory, std::size_t) noexcept { rmlcell::server::Give
 void operator delete[](void* memory, std::size_t) noexcept { rmlcell::server::Give(memory); }
 void operator delete(void* memory, std::align_val_t) noexcept { rmlcell::server::Give(memory); }
 void operator delete[](void* memory, std::align_val_t) noexcept { rmlcell::server::Give(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { rmlcell::server::Give(memory); }
-void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { rmlcell::server::Give(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  rmlcell::server::Give(memory);
+}
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
+  rmlcell::server::Give(memory);
+}

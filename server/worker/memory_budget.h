@@ -4,8 +4,8 @@
 
 namespace rmlcell::server {
 
-// Memory that the job in this thread may hold. While one is in force, an allocation beyond it throws
-// std::bad_alloc in this thread; other threads of the process (gRPC) are not counted.
+// Memory that the job in this thread may hold. While one is in force, an allocation beyond it
+// throws std::bad_alloc in this thread; other threads of the process (gRPC) are not counted.
 class MemoryBudget {
  public:
   explicit MemoryBudget(std::int64_t bytes);

@@ -12,8 +12,8 @@ class Pacer {
  public:
   using Instant = std::chrono::steady_clock::time_point;
 
-  // Behind by more than this the run goes on from where it is: nobody wants to see a minute in a blink because a
-  // store was slow.
+  // Behind by more than this the run goes on from where it is: nobody wants to see a minute in a
+  // blink because a store was slow.
   static constexpr std::chrono::milliseconds kLagMax{500};
   static constexpr std::chrono::milliseconds kWait{10};  // between two looks at the clock
 
@@ -22,7 +22,8 @@ class Pacer {
 
   bool paced() const { return pace_ > 0.0; }
 
-  // How much virtual time may pass now, at most `slice`. The first call, and one after Stand, begins the count.
+  // How much virtual time may pass now, at most `slice`. The first call, and one after Stand,
+  // begins the count.
   SimTime Due(Instant now, SimTime virtual_now, SimTime slice) {
     if (!paced()) return slice;
     if (!counting_ || Lag(now, virtual_now) > kLagMax * std::max(1.0, pace_)) {
@@ -30,7 +31,8 @@ class Pacer {
       begin_ = now;
       virtual_begin_ = virtual_now;
     }
-    return std::clamp(std::chrono::duration_cast<SimTime>(Lag(now, virtual_now)), SimTime(0), slice);
+    return std::clamp(std::chrono::duration_cast<SimTime>(Lag(now, virtual_now)), SimTime(0),
+                      slice);
   }
 
   // The run stands until someone lets it go on: that time is not caught up.

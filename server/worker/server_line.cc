@@ -10,8 +10,8 @@ namespace rmlcell::server {
 namespace {
 
 constexpr std::chrono::seconds kConnectPatience{5};
-// The server may send programs of 256 MiB; while the job runs nobody takes them off, so the reader stops
-// reading and the flow control of the connection holds the rest back.
+// The server may send programs of 256 MiB; while the job runs nobody takes them off, so the reader
+// stops reading and the flow control of the connection holds the rest back.
 constexpr std::size_t kInboxMax = 64;
 
 }  // namespace
@@ -30,7 +30,8 @@ Result<std::unique_ptr<ServerLine>> ServerLine::Join(const Options& options) {
   Stream& stream = *made->stream_;
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);
-  stream.channel = grpc::CreateCustomChannel(options.server, grpc::InsecureChannelCredentials(), arguments);
+  stream.channel =
+      grpc::CreateCustomChannel(options.server, grpc::InsecureChannelCredentials(), arguments);
   if (!stream.channel->WaitForConnected(std::chrono::system_clock::now() + kConnectPatience)) {
     return Error{ErrorCode::kCellUnavailable, "no server answers at " + options.server, {}};
   }
@@ -47,7 +48,8 @@ Result<std::unique_ptr<ServerLine>> ServerLine::Join(const Options& options) {
   v1::WorkResponse answer;
   if (!stream.line->Write(message) || !stream.line->Read(&answer) || !answer.has_welcome()) {
     const grpc::Status status = stream.line->Finish();
-    const ErrorCode code = status.error_code() == grpc::StatusCode::UNAUTHENTICATED ? ErrorCode::kCellJoinRefused
+    const ErrorCode code = status.error_code() == grpc::StatusCode::UNAUTHENTICATED
+                               ? ErrorCode::kCellJoinRefused
                            : status.error_code() == grpc::StatusCode::FAILED_PRECONDITION
                                ? ErrorCode::kCellVersionMismatch
                                : ErrorCode::kCellUnavailable;
@@ -84,7 +86,8 @@ ServerLine::~ServerLine() {
 
 std::optional<v1::WorkResponse> ServerLine::Receive(std::chrono::milliseconds patience) {
   std::unique_lock lock(mutex_);
-  if (!arrived_.wait_for(lock, patience, [this] { return !inbox_.empty() || gone_; })) return std::nullopt;
+  if (!arrived_.wait_for(lock, patience, [this] { return !inbox_.empty() || gone_; }))
+    return std::nullopt;
   if (inbox_.empty()) return std::nullopt;
   v1::WorkResponse message = std::move(inbox_.front());
   inbox_.pop_front();

@@ -298,7 +298,8 @@ Result<std::vector<std::string>> JobTable::KindsOf(JobState state) {
   Result<std::optional<std::string>> kind = FirstRow<std::string>(first.With(), text);
   while (kind && *kind) {
     if (!kinds.empty() && **kind <= kinds.back()) {  // a damaged index must not lead in circles
-      return Error{ErrorCode::kCellStoreCorrupt, "the index of unfinished jobs is out of order", {}};
+      return Error{
+          ErrorCode::kCellStoreCorrupt, "the index of unfinished jobs is out of order", {}};
     }
     kinds.push_back(**std::move(kind));
     kind = FirstRow<std::string>(next.With(kinds.back()), text);

@@ -45,13 +45,15 @@ Status Prepare(Database& database, const SqliteOptions& options, WallTime now) {
   return Migrate(database, Migrations(), options.path, now);
 }
 
-// Pages that do not fit into the cache go to the log before their transaction ends; when it is undone the log
-// forgets them and keeps its length. What goes wrong, such as a full disk, costs the speed only.
+// Pages that do not fit into the cache go to the log before their transaction ends; when it is
+// undone the log forgets them and keeps its length. What goes wrong, such as a full disk, costs the
+// speed only.
 void PrepareLog(Database& database, std::int64_t bytes) {
   if (bytes <= 0) return;
-  static_cast<void>(database.Execute("PRAGMA cache_size = -256; BEGIN IMMEDIATE;"
-                                     "CREATE TABLE scratch (page); INSERT INTO scratch VALUES (zeroblob(" +
-                                     std::to_string(bytes) + "))"));
+  static_cast<void>(
+      database.Execute("PRAGMA cache_size = -256; BEGIN IMMEDIATE;"
+                       "CREATE TABLE scratch (page); INSERT INTO scratch VALUES (zeroblob(" +
+                       std::to_string(bytes) + "))"));
   static_cast<void>(database.Execute("ROLLBACK"));
   static_cast<void>(database.Execute("PRAGMA cache_size = -" + std::to_string(kWriterCacheKib)));
 }

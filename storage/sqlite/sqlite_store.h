@@ -42,9 +42,9 @@ struct SqliteOptions {
   std::int64_t keep_finished_jobs = 0;
   std::int64_t keep_events = 0;
 
-  // The log has this size from the start, as far as the disk has room. A commit that writes over a part of
-  // the log waits about half as long for the disk as one that makes it grow, since the file system
-  // then has nothing to note down. About 50 ms at the opening for 16 MiB.
+  // The log has this size from the start, as far as the disk has room. A commit that writes over a
+  // part of the log waits about half as long for the disk as one that makes it grow, since the file
+  // system then has nothing to note down. About 50 ms at the opening for 16 MiB.
   std::int64_t log_bytes_prepared = 0;
 
   // Reads every page before the store is opened, and refuses a damaged file as a whole. Without it

@@ -103,7 +103,8 @@ class SqliteStore final : public Store {
   const StoreLock lock_;
   const Clock clock_;
   RequestIds request_ids_;
-  // Closed after the readers: the last one to close moves the log into the file, and a reader may not.
+  // Closed after the readers: the last one to close moves the log into the file, and a reader may
+  // not.
   const std::unique_ptr<Connection> connection_;
   const std::unique_ptr<ReaderPool> readers_;
   Watchers watchers_;

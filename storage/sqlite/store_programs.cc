@@ -35,7 +35,8 @@ Status CheckSchedule(const ScheduleRecord& schedule) {
     return InvalidArgument("laser schedule " + std::to_string(schedule.number));
   }
   // The database would make NULL of a NaN.
-  if (!std::isfinite(schedule.power_percent)) return InvalidArgument("power_percent is not a number");
+  if (!std::isfinite(schedule.power_percent))
+    return InvalidArgument("power_percent is not a number");
   return {};
 }
 
@@ -57,7 +58,8 @@ Status CheckWrites(const std::vector<ProgramWrite>& programs,
     const Status good = CheckSchedule(schedule);
     if (!good) return good;
     if (!numbers.insert(schedule.number).second) {
-      return InvalidArgument("laser schedule " + std::to_string(schedule.number) + " is written twice");
+      return InvalidArgument("laser schedule " + std::to_string(schedule.number) +
+                             " is written twice");
     }
   }
   return {};

@@ -49,8 +49,8 @@ class WaitingOperation final : public WriteOperation {
 
 }  // namespace
 
-Writer::Writer(Connection& connection, const Counters& counters,
-               const Options& options, Clock clock, std::function<void()> changed)
+Writer::Writer(Connection& connection, const Counters& counters, const Options& options,
+               Clock clock, std::function<void()> changed)
     : options_(options),
       clock_(std::move(clock)),
       changed_(std::move(changed)),

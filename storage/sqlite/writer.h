@@ -20,12 +20,12 @@
 
 namespace rmlcell::storage::sqlite {
 
-// Writes, one at a time. Operations that wait are run together in one transaction and answered after
-// its commit; one that fails is undone alone. A lone operation does not wait for company.
+// Writes, one at a time. Operations that wait are run together in one transaction and answered
+// after its commit; one that fails is undone alone. A lone operation does not wait for company.
 //
 // Whoever has the turn may use the connection. It is the writer thread, as long as callers come
-// together; a lone caller who finds nobody at work takes the turn and commits by himself, which saves
-// two switches between threads, about half as long as a commit itself.
+// together; a lone caller who finds nobody at work takes the turn and commits by himself, which
+// saves two switches between threads, about half as long as a commit itself.
 class Writer {
  public:
   struct Options {
@@ -36,14 +36,15 @@ class Writer {
   };
 
   // `changed` is called by whoever has the turn after a commit that changed jobs or events.
-  Writer(Connection& connection, const Counters& counters, const Options& options,
-         Clock clock, std::function<void()> changed);
+  Writer(Connection& connection, const Counters& counters, const Options& options, Clock clock,
+         std::function<void()> changed);
 
   // Runs and answers what waits, then stops the thread.
   ~Writer();
 
-  // Queues the operation, or runs and answers it. `bytes` is the memory that it holds: when too much waits, it is answered
-  // with CellResourceExhausted instead, by this thread. 0: never refused.
+  // Queues the operation, or runs and answers it. `bytes` is the memory that it holds: when too
+  // much waits, it is answered with CellResourceExhausted instead, by this thread. 0: never
+  // refused.
   void Post(std::unique_ptr<WriteOperation> operation, std::size_t bytes);
 
   // As of the newest commit.
@@ -110,10 +111,10 @@ class Writer {
 
   std::mutex mutex_;
   std::condition_variable work_;
-  bool turn_taken_ = true;         // guarded by mutex_; at first by the writer thread
-  bool chores_ = false;            // guarded by mutex_; a lone caller left some to the writer thread
-  std::size_t last_batch_ = 0;     // guarded by mutex_; operations taken together the last time
-  std::deque<Pending> queue_;      // guarded by mutex_
+  bool turn_taken_ = true;      // guarded by mutex_; at first by the writer thread
+  bool chores_ = false;         // guarded by mutex_; a lone caller left some to the writer thread
+  std::size_t last_batch_ = 0;  // guarded by mutex_; operations taken together the last time
+  std::deque<Pending> queue_;   // guarded by mutex_
   std::size_t waiting_bytes_ = 0;  // guarded by mutex_
   std::size_t wanted_ = 1;         // guarded by mutex_; operations that are worth waking up for
   bool stopping_ = false;          // guarded by mutex_

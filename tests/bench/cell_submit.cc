@@ -1,5 +1,6 @@
-// What a durable job costs over gRPC, against what it cannot be cheaper than: a commit of SQLite that waits
-// for the disk, and a call that does nothing. All in one run, turn by turn, so that only ratios count.
+// What a durable job costs over gRPC, against what it cannot be cheaper than: a commit of SQLite
+// that waits for the disk, and a call that does nothing. All in one run, turn by turn, so that only
+// ratios count.
 //   bench_cell_submit RMLCELLD [FOLDER [ROUNDS]]
 #include <grpcpp/grpcpp.h>
 #include <signal.h>
@@ -44,15 +45,17 @@ double Median(std::vector<double> values) {
 // rmlcelld on a free port, with its own state.
 class Server {
  public:
-  Server(const std::string& program, const std::filesystem::path& folder, int workers) : folder_(folder) {
+  Server(const std::string& program, const std::filesystem::path& folder, int workers)
+      : folder_(folder) {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
     const std::string log = (folder_ / "log").string();
     process_ = fork();
     if (process_ == 0) {
-      execl(program.c_str(), program.c_str(), "--state.directory", (folder_ / "store").c_str(), "--listen.grpc",
-            "127.0.0.1:0", "--listen.web", "127.0.0.1:0", "--log.file", log.c_str(), "--jobs.queued_max", "1000000",
-            "--workers.count", std::to_string(workers).c_str(), nullptr);
+      execl(program.c_str(), program.c_str(), "--state.directory", (folder_ / "store").c_str(),
+            "--listen.grpc", "127.0.0.1:0", "--listen.web", "127.0.0.1:0", "--log.file",
+            log.c_str(), "--jobs.queued_max", "1000000", "--workers.count",
+            std::to_string(workers).c_str(), nullptr);
       _exit(127);
     }
     for (int tries = 0; tries < 300 && address_.empty(); ++tries) {
@@ -92,7 +95,8 @@ class RawStore {
   explicit RawStore(const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder);
     sqlite3_open((folder / "raw.db").c_str(), &handle_);
-    Execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; CREATE TABLE IF NOT EXISTS row (content BLOB)");
+    Execute(
+        "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; CREATE TABLE IF NOT EXISTS row (content BLOB)");
     sqlite3_prepare_v2(handle_, "INSERT INTO row VALUES (zeroblob(400))", -1, &insert_, nullptr);
   }
   RawStore(const RawStore&) = delete;
@@ -118,7 +122,8 @@ class RawStore {
 
 struct Client {
   explicit Client(const std::shared_ptr<grpc::Channel>& channel)
-      : jobs(rmlcell::v1::JobService::NewStub(channel)), health(grpc::health::v1::Health::NewStub(channel)) {}
+      : jobs(rmlcell::v1::JobService::NewStub(channel)),
+        health(grpc::health::v1::Health::NewStub(channel)) {}
 
   std::string Submit() {
     rmlcell::v1::SubmitJobRequest request;
@@ -126,7 +131,8 @@ struct Client {
     job.set_kind(rmlcell::v1::JOB_KIND_SIMULATE);
     job.set_machine("machines/mill-1");
     job.mutable_inline_program()->set_file_name("square.rml");
-    job.mutable_inline_program()->set_content("PA;PA;VS8;!VZ4;!PZ0,200;!MC1;PU100,100;PD900,100,900,900;PU0,0;H;");
+    job.mutable_inline_program()->set_content(
+        "PA;PA;VS8;!VZ4;!PZ0,200;!MC1;PU100,100;PD900,100,900,900;PU0,0;H;");
     grpc::ClientContext context;
     rmlcell::v1::Job made;
     Must(jobs->SubmitJob(&context, request, &made));
@@ -218,7 +224,8 @@ int main(int argc, char** argv) {
     Client one(server.Connect());
     std::vector<Client> many;
     for (int i = 0; i < kClients; ++i) many.emplace_back(server.Connect());
-    std::printf("round  commit us  empty us  submit us  ratio | 64 clients: empty/s  submit/s  commits/s  ratio\n");
+    std::printf(
+        "round  commit us  empty us  submit us  ratio | 64 clients: empty/s  submit/s  commits/s  ratio\n");
     for (int round = 0; round < rounds; ++round) {
       const double commit = MedianSeconds([&] { raw.Commit(); });
       const double empty = MedianSeconds([&] { one.Empty(); });
@@ -229,8 +236,9 @@ int main(int argc, char** argv) {
       latency.push_back(submit / (commit + empty));
       share_of_empty.push_back(submits / empties);
       share_of_commits.push_back(submits / commits);
-      std::printf("%5d  %9.0f  %8.0f  %9.0f  %5.2f | %19.0f  %8.0f  %9.0f  %5.2f\n", round + 1, commit * 1e6, empty * 1e6,
-                  submit * 1e6, latency.back(), empties, submits, commits, share_of_empty.back());
+      std::printf("%5d  %9.0f  %8.0f  %9.0f  %5.2f | %19.0f  %8.0f  %9.0f  %5.2f\n", round + 1,
+                  commit * 1e6, empty * 1e6, submit * 1e6, latency.back(), empties, submits,
+                  commits, share_of_empty.back());
     }
   }
   for (int round = 0; round < rounds; ++round) {
@@ -238,10 +246,13 @@ int main(int argc, char** argv) {
     const double commits = RateOfCommits(raw);
     const double jobs = JobsToTheEnd(server);
     to_the_end.push_back(jobs / commits);
-    std::printf("round %d: %.0f durable jobs/s to the end, %.0f commits/s\n", round + 1, jobs, commits);
+    std::printf("round %d: %.0f durable jobs/s to the end, %.0f commits/s\n", round + 1, jobs,
+                commits);
   }
-  std::printf("submit latency / (commit + empty call)      %.2f   goal: at most 1.2\n", Median(latency));
-  std::printf("submit rate / empty calls, 64 clients       %.2f   goal: at least 0.8\n", Median(share_of_empty));
+  std::printf("submit latency / (commit + empty call)      %.2f   goal: at most 1.2\n",
+              Median(latency));
+  std::printf("submit rate / empty calls, 64 clients       %.2f   goal: at least 0.8\n",
+              Median(share_of_empty));
   std::printf("submit rate / single commits, 64 clients    %.2f\n", Median(share_of_commits));
   std::printf("durable jobs to the end / single commits    %.2f\n", Median(to_the_end));
   std::filesystem::remove_all(folder);

@@ -164,8 +164,9 @@ TEST(OptimoRunMotion, AnglesAreAbsolute) {
 
 // OPT-B.30, OPT-B.31: seen at 21 cycles of 0.048 s at 50 mm/s, at rest after 50.4 mm (case O04).
 TEST(OptimoRunMotion, EndIsSeenAtACycle) {
-  const Ran ran = OptimoMachine().Run(kAbsolSlowly + "MOVE (521.02,2201.2,-350.,0.,0.)/END (IL[20])\n",
-                                      {.inputs = {{At(1.0), InputKind::kLogical, 20, 1.0}}});
+  const Ran ran =
+      OptimoMachine().Run(kAbsolSlowly + "MOVE (521.02,2201.2,-350.,0.,0.)/END (IL[20])\n",
+                          {.inputs = {{At(1.0), InputKind::kLogical, 20, 1.0}}});
   EXPECT_TRUE(ran.completed());
   EXPECT_NEAR(ran.run().state().tip.tip.x, 21.02 + 50.4, 1e-3);
 }

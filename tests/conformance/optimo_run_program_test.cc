@@ -12,7 +12,6 @@ namespace {
 
 using machine::InputKind;
 
-
 // OPT-7.03, OPT-7.04, OPT-7.08: variables live on; GO drops the pending returns and starts anew.
 TEST(OptimoRunProgram, GoDropsThePendingReturns) {
   OptimoMachine machine;
@@ -125,8 +124,9 @@ TEST(OptimoRunProgram, CoordinatesAsTheActiveTypeHasThem) {
 
 // OPT-7.67: IL[16] is the START push-button.
 TEST(OptimoRunProgram, AMoveWaitsForTheButton) {
-  const Ran ran = OptimoMachine().Run(kAbsolSlowly + "MOVE (31.02,2201.2,-350.,0.,0.) / START (IL[16])\n",
-                                      {.inputs = {{At(3.0), InputKind::kLogical, 16, 1.0}}});
+  const Ran ran =
+      OptimoMachine().Run(kAbsolSlowly + "MOVE (31.02,2201.2,-350.,0.,0.) / START (IL[16])\n",
+                          {.inputs = {{At(3.0), InputKind::kLogical, 16, 1.0}}});
   ASSERT_EQ(ran.motions.size(), 1U);
   EXPECT_NEAR(ran.motions[0].start_s, 3.0, 1e-6);
 }

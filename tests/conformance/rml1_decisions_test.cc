@@ -1,5 +1,6 @@
-// The repairs and decisions of rml1.md sections 8 and 9, with examples of our own in the same form as
-// those of sections 1 to 7. Rows whose behaviour shows elsewhere have unit tests in tests/engine/rml1.
+// The repairs and decisions of rml1.md sections 8 and 9, with examples of our own in the same form
+// as those of sections 1 to 7. Rows whose behaviour shows elsewhere have unit tests in
+// tests/engine/rml1.
 #include <gtest/gtest.h>
 
 #include "tests/conformance/rml1_bench.h"

@@ -77,8 +77,8 @@ std::string TryText(std::string_view bytes) {
       }
     }
   }
-  const bool fixable =
-      std::ranges::any_of(compiled.diagnostics, [](const Diagnostic& d) { return !d.fixes.empty(); });
+  const bool fixable = std::ranges::any_of(compiled.diagnostics,
+                                           [](const Diagnostic& d) { return !d.fixes.empty(); });
   if (fixable) {
     if (const std::string wrong = TryFixes(bytes); !wrong.empty()) return wrong;
   }

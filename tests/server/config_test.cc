@@ -140,9 +140,10 @@ TEST_P(EveryKey, ChangesNothingElse) {
 }
 
 TEST(Config, TellsAVariableThatIsNearlyAKey) {
-  EXPECT_THAT(MistypedVariables({{"RMLCELL_WORKER_COUNT", "4"}}),
-              testing::ElementsAre(testing::AllOf(testing::StartsWith("RMLCELL_WORKER_COUNT is no key"),
-                                                  testing::HasSubstr("RMLCELL_WORKERS_"))));
+  EXPECT_THAT(
+      MistypedVariables({{"RMLCELL_WORKER_COUNT", "4"}}),
+      testing::ElementsAre(testing::AllOf(testing::StartsWith("RMLCELL_WORKER_COUNT is no key"),
+                                          testing::HasSubstr("RMLCELL_WORKERS_"))));
   EXPECT_THAT(MistypedVariables({{"RMLCELL_WORKERS_COUNT", "4"},
                                  {"RMLCELL_LIMITS_MESSAGE_BYTES", "65536"},
                                  {"RMLCELL_CONFIG", "a.toml"},
@@ -376,7 +377,8 @@ TEST(Config, RefusesMachineIdsThatAreNoResourceIdsOrStandTwice) {
     return ValidateConfig(config);
   };
   EXPECT_TRUE(with({"a", "b-2", "z", "za09z-"}));
-  for (const char* wrong : {"a/", "a:", "a`", "a{", "-a", "0a", "`a", "{a"}) EXPECT_FALSE(with({wrong}));
+  for (const char* wrong : {"a/", "a:", "a`", "a{", "-a", "0a", "`a", "{a"})
+    EXPECT_FALSE(with({wrong}));
   EXPECT_TRUE(with({"a" + std::string(62, 'b')}));
   EXPECT_FALSE(with({"a" + std::string(63, 'b')}));
   EXPECT_FALSE(with({""}));

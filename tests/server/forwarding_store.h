@@ -78,7 +78,8 @@ class ForwardingStore : public storage::Store {
               std::function<void(Result<storage::SubmittedJob>)> done) override {
     store_.Submit(std::move(job), std::move(done));
   }
-  Result<std::optional<storage::JobRecord>> FindSubmitted(std::string_view id, std::string_view hash) override {
+  Result<std::optional<storage::JobRecord>> FindSubmitted(std::string_view id,
+                                                          std::string_view hash) override {
     return store_.FindSubmitted(id, hash);
   }
   Result<storage::JobRecord> GetJob(std::int64_t id) override { return store_.GetJob(id); }

@@ -17,7 +17,8 @@ using storage::Eventually;
 using storage::kPatience;
 using storage::Must;
 
-// A clock for intervals that stands still until it is moved, and counts who looks at it. Thread-safe.
+// A clock for intervals that stands still until it is moved, and counts who looks at it.
+// Thread-safe.
 class TestSteadyClock {
  public:
   SteadyClock clock() {

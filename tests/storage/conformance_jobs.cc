@@ -110,8 +110,8 @@ TEST_P(StoreConformance, RepeatedRequestGivesTheFirstJob) {
   EXPECT_THAT(IdsOf(Must(store().ListJobs({}))), ElementsAre(first.job.id));
 }
 
-// store.h NewJob::queued_max: jobs that run do not count, a repeated request is no new job, and those
-// submitted in one commit are counted one by one.
+// store.h NewJob::queued_max: jobs that run do not count, a repeated request is no new job, and
+// those submitted in one commit are counted one by one.
 TEST_P(StoreConformance, SoManyJobsMayWait) {
   const auto job = [](const std::string& id) {
     return NewJob{.request_id = id, .kind = "SIMULATE", .queued_max = 2};
@@ -119,8 +119,9 @@ TEST_P(StoreConformance, SoManyJobsMayWait) {
   const SubmittedJob first = Must(store().SubmitAndWait(job("a")));
   std::vector<std::promise<Result<SubmittedJob>>> answers(5);
   for (std::size_t i = 0; i < answers.size(); ++i) {
-    store().Submit(job("b" + std::to_string(i)),
-                   [&answers, i](Result<SubmittedJob> made) { answers[i].set_value(std::move(made)); });
+    store().Submit(job("b" + std::to_string(i)), [&answers, i](Result<SubmittedJob> made) {
+      answers[i].set_value(std::move(made));
+    });
   }
   int taken = 0;
   for (auto& answer : answers) {

@@ -174,7 +174,8 @@ TEST_F(SqliteFaults, NothingIsToldOfAFailedCommit) {
   std::atomic<int> hints = 0;
   const auto watch = store().Watch([&] { ++hints; });
   faulty_disk::Fail({.on_sync = SQLITE_IOERR_FSYNC});
-  // Hints that come at the same time are told together; of so many at least one would be told alone.
+  // Hints that come at the same time are told together; of so many at least one would be told
+  // alone.
   for (int i = 0; i < 50; ++i) EXPECT_EQ(CodeOf(Submit(Numbered("r", i))), kFailed);
   EXPECT_EQ(Must(store().CountJobs()).queued, 0);
   EXPECT_FALSE(Must(store().Acquire("w", {"SIMULATE"}, kLease, {})));

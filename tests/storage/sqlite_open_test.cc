@@ -316,8 +316,8 @@ TEST(SqliteOpen, LogOfAKilledProcessIsRead) {
   EXPECT_EQ(Must(store->GetMachine("m")).title, "in the log only");
 }
 
-// sqlite_store.h log_bytes_prepared: the log is long, the store as small as ever, and what a kill leaves in the
-// log behind the last commit, which was never committed, is no part of it.
+// sqlite_store.h log_bytes_prepared: the log is long, the store as small as ever, and what a kill
+// leaves in the log behind the last commit, which was never committed, is no part of it.
 TEST(SqliteOpen, PreparedLogHoldsNothing) {
   constexpr std::int64_t kBytes = 4 << 20;
   const TestDirectory directory;

@@ -15,8 +15,8 @@
 namespace rmlcell::storage {
 namespace {
 
-// Holds the writer inside an answer until it is let go. On a thread of its own: a lone caller may be answered
-// before his call returns.
+// Holds the writer inside an answer until it is let go. On a thread of its own: a lone caller may
+// be answered before his call returns.
 class WriterHold {
  public:
   explicit WriterHold(Store& store)
@@ -151,8 +151,8 @@ TEST(SqliteWriter, AnswerThatWritesKeepsTheOrder) {
   EXPECT_THAT(order, testing::ElementsAre("answer 1", "inside 3", "answer 2"));
 }
 
-// writer.h: a lone caller commits by himself, many are answered together, and what one of them appends is
-// written in the order of his calls, whoever writes it.
+// writer.h: a lone caller commits by himself, many are answered together, and what one of them
+// appends is written in the order of his calls, whoever writes it.
 TEST(SqliteWriter, OrderHoldsWhoeverWrites) {
   SqliteBed bed;
   constexpr int kThreads = 4;
@@ -168,10 +168,9 @@ TEST(SqliteWriter, OrderHoldsWhoeverWrites) {
     for (const Lease& lease : leases) {
       threads.emplace_back([&bed, &answered, lease] {
         for (int i = 0; i < kEvents; ++i) {
-          bed.store().Append(lease, {{.kind = Numbered("e", i)}},
-                             [&answered](const Result<std::int64_t>& last) {
-                               answered += last ? 1 : 0;
-                             });
+          bed.store().Append(
+              lease, {{.kind = Numbered("e", i)}},
+              [&answered](const Result<std::int64_t>& last) { answered += last ? 1 : 0; });
           // Now and then alone, now and then in company.
           if (i % 16 == 0) Eventually([&, sent = i * kThreads / 2] { return answered >= sent; });
         }
@@ -273,7 +272,8 @@ TEST(SqliteWriter, TimesAreThoseOfTheClock) {
             before + std::chrono::hours(24 * 365 * 30));
   const Lease lease =
       Must(bed.store().Acquire("w", {"CHECK"}, std::chrono::milliseconds::max(), {}))->lease;
-  EXPECT_EQ(lease.until, bed.clock().Now() + std::chrono::days(366));  // not beyond what a time can say
+  EXPECT_EQ(lease.until,
+            bed.clock().Now() + std::chrono::days(366));  // not beyond what a time can say
   const Lease renewed = lease;
   Must(bed.store().Renew(renewed, std::chrono::milliseconds(-5)));
   EXPECT_EQ(Must(bed.store().Expire(PolicyOfTests())).size(), 1U);

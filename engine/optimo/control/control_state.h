@@ -250,9 +250,9 @@ struct ControlState {
   bool input_changed = false;  // conditions are to be tested again
   bool tasks_input = false;    // the same for the /START of WORK in the background
   bool hold_requested = false;
-  bool stop_requested = false;   // STOP on a motion that cannot be left just now
-  bool halt_after_step = false;  // SINGLE, breakpoint: also where a STOP comes before
-  bool beam_returns = false;     // START brings it back (OPT-B.34)
+  bool stop_requested = false;     // STOP on a motion that cannot be left just now
+  bool halt_after_step = false;    // SINGLE, breakpoint: also where a STOP comes before
+  bool beam_returns = false;       // START brings it back (OPT-B.34)
   std::string_view halt_reason{};  // of halt_after_step
   SimTime halted_at{0};
   std::optional<Error> deferred{};  // raised ahead of motion: handled when it is over

@@ -4,8 +4,8 @@
 
 namespace rmlcell::optimo {
 
-// The way from a state of motion to a lower speed that is held: first the acceleration is brought to
-// zero, then the speed down, if it is higher by then.
+// The way from a state of motion to a lower speed that is held: first the acceleration is brought
+// to zero, then the speed down, if it is higher by then.
 struct Lead {
   double length = 0.0;
   double speed = 0.0;  // at its end

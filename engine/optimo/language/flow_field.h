@@ -146,7 +146,7 @@ class Modes {
   bool MayBe(PathType path) const;
   bool IsDefaultPath() const;  // on all paths: never set
   bool IsDefaultCoord() const;
-  bool IsContour() const;      // on all paths: LIN, CIR or HOLE
+  bool IsContour() const;  // on all paths: LIN, CIR or HOLE
   // A contour in COORD ROBOT: on all paths, on some.
   bool IsRobotContour() const { return pairs_ != 0 && (pairs_ & ~kRobotContours) == 0; }
   bool MayBeRobotContour() const { return (pairs_ & kRobotContours) != 0; }

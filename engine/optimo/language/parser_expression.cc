@@ -142,7 +142,7 @@ bool Parser::ParseList(int& count, int keep_max, int slash_after) {
     if (!ParseExpression()) return false;
     if (++count > keep_max)
       DropExpressions(static_cast<std::uint32_t>(module_.expression_ends.size()) - 1);
-    if (Is(TokenKind::kSlash)) {  // elsewhere it divides
+    if (Is(TokenKind::kSlash)) {             // elsewhere it divides
       if (count != slash_after) count = -1;  // "/" elsewhere: the wrong number of values, OPT-B.85
       Take();
       if (count < 0) {

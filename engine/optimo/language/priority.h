@@ -2,7 +2,8 @@
 
 namespace rmlcell::optimo {
 
-// Priorities of the operators, lowest first (optimo.md B.9). A sign binds tighter than all of two sides.
+// Priorities of the operators, lowest first (optimo.md B.9). A sign binds tighter than all of two
+// sides.
 inline constexpr int kNoLevel = 0;  // no operator
 inline constexpr int kOrLevel = 1;  // and XOR
 inline constexpr int kAndLevel = 2;

@@ -50,8 +50,8 @@ class Drawing {
     }
     const Vec3 e = (leg.from - leg.centre) * (1.0 / leg.radius), f = motion::Cross(leg.axis, e);
     const double sweep = SweepOf(leg);
-    const double chord = std::max(
-        kChordMin_rad, std::min(2.0 * std::sqrt(2.0 * kChordError_mm / leg.radius), 0.5));
+    const double chord =
+        std::max(kChordMin_rad, std::min(2.0 * std::sqrt(2.0 * kChordError_mm / leg.radius), 0.5));
     const int chords = static_cast<int>(std::ceil(sweep / chord));
     Vec3 before = Flat(leg.from);
     for (int c = 1; c <= chords; ++c) {

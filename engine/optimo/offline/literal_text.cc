@@ -49,8 +49,7 @@ std::optional<double> PlainNumber(const ParsedProgram& program, std::uint32_t ex
   const ExprNode& node = program.module.nodes[range.first];
   if (range.count != 1 || !IsLiteral(node)) return std::nullopt;
   const NumberPlace place = PlaceOfNumber(program, range.first);
-  const std::optional<double> value =
-      LiteralValue(program.text.substr(place.offset, place.length));
+  const std::optional<double> value = LiteralValue(program.text.substr(place.offset, place.length));
   if (!value) return std::nullopt;
   return place.Written(*value);
 }

@@ -60,8 +60,7 @@ SegmentGrid::SegmentGrid(const std::vector<PathSegment>& segments, double reach)
   axis_v_ = spread[1].second;
   // A part of the mean length: then there are a few entries a segment, whatever their lengths, and
   // long ones that lie side by side do not share all of their cells.
-  cell_ =
-      std::max(2.0 * reach, length / (kCellsPerSegment * static_cast<double>(segments.size())));
+  cell_ = std::max(2.0 * reach, length / (kCellsPerSegment * static_cast<double>(segments.size())));
   entries_.reserve(3 * segments.size());
   for (std::size_t i = 0; i < segments.size(); ++i) {
     Cover(segments[i], 0.0, [&](std::uint64_t cell) {

@@ -108,7 +108,8 @@ TEST_F(Messages, AReportOfALaserHasItsFigures) {
   EXPECT_THAT(text, HasSubstr("cycle time    1 min 1.500 s\n"));
   EXPECT_THAT(text, HasSubstr("motion 60.000 s, dwell 1.500 s\n"));
   EXPECT_THAT(text, HasSubstr("path          30.000 mm: cut 20.000, travel 10.000\n"));
-  EXPECT_THAT(text, HasSubstr("beam          on 2.000 s, switched on 3 times, 4 pierces, 5000 J\n"));
+  EXPECT_THAT(text,
+              HasSubstr("beam          on 2.000 s, switched on 3 times, 4 pierces, 5000 J\n"));
   EXPECT_THAT(text, HasSubstr("corners       7 stops, 6 blended\n"));
   EXPECT_THAT(text, HasSubstr("look-ahead was too short 8 times\n"));
   EXPECT_THAT(text, HasSubstr("steps         17\n"));
@@ -242,7 +243,8 @@ TEST_F(Messages, AWholeReportOfALaser) {
   once.set_wanted_mm_s(2.0);
   once.set_cause("radius");
   once.set_count(1);
-  const auto axis = [&](const std::string& name, bool rotary, double speed, double share, double acceleration) {
+  const auto axis = [&](const std::string& name, bool rotary, double speed, double share,
+                        double acceleration) {
     v1::AxisFigures& made = *report.add_axes();
     made.set_axis(name);
     made.set_rotary(rotary);
@@ -275,32 +277,33 @@ TEST_F(Messages, AWholeReportOfALaser) {
   report.mutable_tip_box()->mutable_high()->set_y(2.0);
   (*report.mutable_variables())["VR[2]"] = "39.";
   report.set_motion_check("only up to step 2");
-  EXPECT_EQ(ReportText(report),
-            "outcome       stopped\n"
-            "cycle time    45.000 s\n"
-            "              motion 1.000 s, settling 2.000 s, dwell 3.000 s, pierce 4.000 s, condition 5.000 s, "
-            "operator 6.000 s, spin-up 7.000 s, loading 8.000 s, standstill 9.000 s\n"
-            "path          21.000 mm: cut 11.500, travel 9.500\n"
-            "beam          on 12.250 s, switched on 13 times, 14 pierces, 1516 J\n"
-            "              17.125 J/mm, of a step at most 18.250\n"
-            "corners       1 stops, 2 stops with /FLY, 3 reversals with /FLY, 4 straight on, 5 blended, "
-            "6 blended slower\n"
-            "              deviation up to 0.125 mm at program 44 step 22 line 23, 1.000, 2.000, 3.000\n"
-            "too slow      10 moves below their SPEED: axis 1, radius 2, too short 3, acceleration 4\n"
-            "              step 24: 25.500 of 26.500 mm/s, axis A (27 times)\n"
-            "              line 28: 1.000 of 2.000 mm/s, radius\n"
-            "              and 4 more steps\n"
-            "peak speed    X 100.5 (50 %), A 1.250\n"
-            "peak accel.   X 200.5, A 2.500 (25 %)\n"
-            "travel        6 violations\n"
-            "              step 31: B by 0.500 rad at the target, at 32.500 s\n"
-            "              and 1 more\n"
-            "steps         19\n"
-            "final tip     33.000, 34.000, 35.000\n"
-            "final column  36.000, 37.000, 38.000  A 0.250000  B 0.750000\n"
-            "tip box       -1.000, 0.000, 0.000  to  0.000, 2.000, 0.000\n"
-            "VR[2]         39.\n"
-            "motion        checked only up to step 2\n");
+  EXPECT_EQ(
+      ReportText(report),
+      "outcome       stopped\n"
+      "cycle time    45.000 s\n"
+      "              motion 1.000 s, settling 2.000 s, dwell 3.000 s, pierce 4.000 s, condition 5.000 s, "
+      "operator 6.000 s, spin-up 7.000 s, loading 8.000 s, standstill 9.000 s\n"
+      "path          21.000 mm: cut 11.500, travel 9.500\n"
+      "beam          on 12.250 s, switched on 13 times, 14 pierces, 1516 J\n"
+      "              17.125 J/mm, of a step at most 18.250\n"
+      "corners       1 stops, 2 stops with /FLY, 3 reversals with /FLY, 4 straight on, 5 blended, "
+      "6 blended slower\n"
+      "              deviation up to 0.125 mm at program 44 step 22 line 23, 1.000, 2.000, 3.000\n"
+      "too slow      10 moves below their SPEED: axis 1, radius 2, too short 3, acceleration 4\n"
+      "              step 24: 25.500 of 26.500 mm/s, axis A (27 times)\n"
+      "              line 28: 1.000 of 2.000 mm/s, radius\n"
+      "              and 4 more steps\n"
+      "peak speed    X 100.5 (50 %), A 1.250\n"
+      "peak accel.   X 200.5, A 2.500 (25 %)\n"
+      "travel        6 violations\n"
+      "              step 31: B by 0.500 rad at the target, at 32.500 s\n"
+      "              and 1 more\n"
+      "steps         19\n"
+      "final tip     33.000, 34.000, 35.000\n"
+      "final column  36.000, 37.000, 38.000  A 0.250000  B 0.750000\n"
+      "tip box       -1.000, 0.000, 0.000  to  0.000, 2.000, 0.000\n"
+      "VR[2]         39.\n"
+      "motion        checked only up to step 2\n");
 }
 
 // What did not happen is not spoken of, and a mill has no head.
@@ -315,16 +318,17 @@ TEST_F(Messages, AWholeReportOfAMill) {
   milling.set_gouge_depth_mm(0.25);
   milling.mutable_gouge_place()->set_step(4);
   milling.set_gouge_time_s(5.5);
-  EXPECT_EQ(ReportText(report),
-            "outcome       completed\n"
-            "cycle time    0.000 s\n"
-            "path          0.000 mm: cut 0.000, travel 0.000\n"
-            "plunges       2\n"
-            "tool          down 0.000 s, up 0.000 s\n"
-            "material      1.500 mm3 taken off\n"
-            "              3 motions at travel speed through material, up to 0.250 mm deep at step 4, at 5.500 s\n"
-            "steps         0\n"
-            "final tip     0.000, 0.000, 0.000\n");
+  EXPECT_EQ(
+      ReportText(report),
+      "outcome       completed\n"
+      "cycle time    0.000 s\n"
+      "path          0.000 mm: cut 0.000, travel 0.000\n"
+      "plunges       2\n"
+      "tool          down 0.000 s, up 0.000 s\n"
+      "material      1.500 mm3 taken off\n"
+      "              3 motions at travel speed through material, up to 0.250 mm deep at step 4, at 5.500 s\n"
+      "steps         0\n"
+      "final tip     0.000, 0.000, 0.000\n");
 }
 
 // A name that is longer than its column keeps a blank behind it.

@@ -56,10 +56,11 @@ TEST(Terminal, PaintsOnlyWhereItIsWanted) {
 }
 
 TEST(Terminal, TablesHaveColumnsAsWideAsTheyNeedToBe) {
-  EXPECT_EQ(Table({{"job", "state", "title"}, {"1", "succeeded", "B\xC3\xBCgel"}, {"1234", "", "x"}}),
-            "job   state      title\n"
-            "1     succeeded  B\xC3\xBCgel\n"
-            "1234             x\n");
+  EXPECT_EQ(
+      Table({{"job", "state", "title"}, {"1", "succeeded", "B\xC3\xBCgel"}, {"1234", "", "x"}}),
+      "job   state      title\n"
+      "1     succeeded  B\xC3\xBCgel\n"
+      "1234             x\n");
   EXPECT_EQ(Table({{"\xC3\xBC", "b"}, {"cc", "d\n"}}), "\xC3\xBC   b\ncc  d\\x0A\n");
   EXPECT_EQ(Table({}), "");
 }
@@ -70,13 +71,15 @@ TEST(Terminal, FixedHasSoManyDecimals) {
   EXPECT_EQ(Fixed(12.0, 0), "12");
 }
 
-// What `draw` writes to a descriptor while that is a terminal. It must be less than a terminal keeps, 4 KiB.
+// What `draw` writes to a descriptor while that is a terminal. It must be less than a terminal
+// keeps, 4 KiB.
 std::string OnTerminal(int descriptor, std::FILE* stream, const std::function<void()>& draw) {
   termios raw{};
   ::cfmakeraw(&raw);
   int outside = -1;
   int inside = -1;
-  if (::openpty(&outside, &inside, nullptr, &raw, nullptr) != 0) throw std::runtime_error("no terminal");
+  if (::openpty(&outside, &inside, nullptr, &raw, nullptr) != 0)
+    throw std::runtime_error("no terminal");
   std::fflush(stream);
   const int kept = ::dup(descriptor);
   ::dup2(inside, descriptor);
@@ -92,7 +95,9 @@ std::string OnTerminal(int descriptor, std::FILE* stream, const std::function<vo
   ::close(outside);
   return text;
 }
-std::string OnErrors(const std::function<void()>& draw) { return OnTerminal(STDERR_FILENO, stderr, draw); }
+std::string OnErrors(const std::function<void()>& draw) {
+  return OnTerminal(STDERR_FILENO, stderr, draw);
+}
 
 std::string Repeated(const std::string& cell, int count) {
   std::string text;
@@ -168,7 +173,9 @@ TEST(Colours, OnATerminalUnlessTheyAreNotWanted) {
   EXPECT_EQ(OnTerminal(STDOUT_FILENO, stdout, [] { Print("x"); }), "x\n");
 }
 
-TEST(Terminal, BlueIsSixOfThePalette) { EXPECT_EQ(Paint("a", Colour::kBlue, true), "\x1B[36ma\x1B[0m"); }
+TEST(Terminal, BlueIsSixOfThePalette) {
+  EXPECT_EQ(Paint("a", Colour::kBlue, true), "\x1B[36ma\x1B[0m");
+}
 
 }  // namespace
 }  // namespace rmlcell::cli

@@ -56,28 +56,32 @@ TEST(Answers, InitializeSaysWhatTheServerCan) {
 TEST(Answers, WhatARequestLacksIsSaid) {
   Editor editor;
   editor.Open("10 SPEED 5\n");
-  EXPECT_EQ(editor.Ask("initialize", Json::object())["error"], Refused(-32600, "initialize came before"));
+  EXPECT_EQ(editor.Ask("initialize", Json::object())["error"],
+            Refused(-32600, "initialize came before"));
   EXPECT_EQ(editor.Ask("textDocument/new", {})["error"],
             Refused(-32601, "there is no method textDocument/new"));
   const Json other = {{"textDocument", {{"uri", "file:///other.S"}}}};
-  for (const char* method : {"hover", "definition", "references", "documentHighlight", "completion",
-                             "prepareRename", "rename", "formatting", "foldingRange", "documentSymbol",
-                             "codeAction"}) {
+  for (const char* method :
+       {"hover", "definition", "references", "documentHighlight", "completion", "prepareRename",
+        "rename", "formatting", "foldingRange", "documentSymbol", "codeAction"}) {
     EXPECT_EQ(editor.Ask("textDocument/" + std::string(method), other)["error"],
               Refused(-32602, "the document is not open"))
         << method;
   }
   for (const char* method : {"hover", "definition", "references", "documentHighlight", "completion",
                              "prepareRename", "rename"}) {
-    EXPECT_EQ(editor.Ask("textDocument/" + std::string(method), {{"textDocument", kTheDocument}})["error"],
+    EXPECT_EQ(editor.Ask("textDocument/" + std::string(method),
+                         {{"textDocument", kTheDocument}})["error"],
               Refused(-32602, "there is no position"))
         << method;
   }
   EXPECT_EQ(editor.Ask("textDocument/codeAction", {{"textDocument", kTheDocument}})["error"],
             Refused(-32602, "there is no range"));
-  EXPECT_EQ(editor.Ask("textDocument/rename", PlaceAt(0, 1))["error"], Refused(-32602, "there is no new name"));
+  EXPECT_EQ(editor.Ask("textDocument/rename", PlaceAt(0, 1))["error"],
+            Refused(-32602, "there is no new name"));
   EXPECT_TRUE(editor.Result("shutdown", nullptr).is_null());
-  EXPECT_EQ(editor.Ask("textDocument/hover", PlaceAt(0, 4))["error"], Refused(-32600, "the server is shut down"));
+  EXPECT_EQ(editor.Ask("textDocument/hover", PlaceAt(0, 4))["error"],
+            Refused(-32600, "the server is shut down"));
 }
 
 // A stream has findings and nothing else.
@@ -86,7 +90,8 @@ TEST(Answers, AStreamHasNoNamesAndNoPlaces) {
   editor.Open("PU0,0;PD9,9;", "file:///work/a.rml", "rml1");
   Json place = PlaceAt(0, 1);
   place["textDocument"]["uri"] = "file:///work/a.rml";
-  for (const char* method : {"definition", "references", "documentHighlight", "completion", "formatting"}) {
+  for (const char* method :
+       {"definition", "references", "documentHighlight", "completion", "formatting"}) {
     EXPECT_TRUE(editor.Result("textDocument/" + std::string(method), place).is_null()) << method;
   }
   place["newName"] = "X";
@@ -108,20 +113,24 @@ TEST(Answers, NoticesThatCannotBeActedUponAreLogged) {
     return notice["params"]["message"].get<std::string>();
   };
   const Json nameless = {{"text", "SPEED 5\n"}};
-  EXPECT_EQ(logged("textDocument/didOpen", {{"textDocument", nameless}}), "didOpen without uri or text");
-  EXPECT_EQ(logged("textDocument/didOpen", {{"textDocument", kTheDocument}}), "didOpen without uri or text");
+  EXPECT_EQ(logged("textDocument/didOpen", {{"textDocument", nameless}}),
+            "didOpen without uri or text");
+  EXPECT_EQ(logged("textDocument/didOpen", {{"textDocument", kTheDocument}}),
+            "didOpen without uri or text");
   EXPECT_EQ(logged("textDocument/didChange", {{"textDocument", kTheDocument}}),
             "didChange of a document that is not open");
   editor.Open("SPEED 5\n");
   EXPECT_EQ(logged("textDocument/didChange", {{"textDocument", kTheDocument}}),
             "didChange without contentChanges");
-  EXPECT_EQ(logged("textDocument/didChange", {{"textDocument", kTheDocument}, {"contentChanges", 5}}),
-            "didChange without contentChanges");
   EXPECT_EQ(
-      logged("textDocument/didChange",
-             {{"textDocument", kTheDocument}, {"contentChanges", Json::array({{{"range", nullptr}}})}}),
+      logged("textDocument/didChange", {{"textDocument", kTheDocument}, {"contentChanges", 5}}),
+      "didChange without contentChanges");
+  EXPECT_EQ(
+      logged("textDocument/didChange", {{"textDocument", kTheDocument},
+                                        {"contentChanges", Json::array({{{"range", nullptr}}})}}),
       "didChange with a change that cannot be read; close and open the document");
-  EXPECT_EQ(logged("textDocument/didClose", {{"textDocument", {{"uri", "file:///other.S"}}}}), "nothing");
+  EXPECT_EQ(logged("textDocument/didClose", {{"textDocument", {{"uri", "file:///other.S"}}}}),
+            "nothing");
   EXPECT_EQ(logged("textDocument/didSave", {{"textDocument", kTheDocument}}), "nothing");
 }
 
@@ -138,7 +147,8 @@ TEST(Answers, FindingsComeWithTheVersionWhereTheEditorKnowsVersions) {
     EXPECT_EQ(editor.Diagnostics(), expected);
     editor.Notify("textDocument/didClose", {{"textDocument", kTheDocument}});
     EXPECT_EQ(editor.notices.back()["method"], "textDocument/publishDiagnostics");
-    EXPECT_EQ(editor.notices.back()["params"], (Json{{"uri", kUri}, {"diagnostics", Json::array()}}));
+    EXPECT_EQ(editor.notices.back()["params"],
+              (Json{{"uri", kUri}, {"diagnostics", Json::array()}}));
   }
 }
 
@@ -158,8 +168,12 @@ TEST(Answers, AFindingIsToldWithItsAdvice) {
 TEST(Answers, SymbolsHaveTheirPlaces) {
   Editor editor;
   editor.Open("DECLARE XHOME = VR[0]\nDECLARE N = 5\nGOSUB 20\nSTOP\n20 SPEED 5\n  RETURN\n");
-  const auto symbol = [](std::string_view name, int kind, const Range& range, const Range& selection) {
-    return Json{{"name", name}, {"kind", kind}, {"range", ToJson(range)}, {"selectionRange", ToJson(selection)}};
+  const auto symbol = [](std::string_view name, int kind, const Range& range,
+                         const Range& selection) {
+    return Json{{"name", name},
+                {"kind", kind},
+                {"range", ToJson(range)},
+                {"selectionRange", ToJson(selection)}};
   };
   Json xhome = symbol("XHOME", 13, {{0, 0}, {0, 21}}, {{0, 8}, {0, 13}});
   xhome["detail"] = "VR[0]";
@@ -171,7 +185,8 @@ TEST(Answers, SymbolsHaveTheirPlaces) {
                       symbol("4 RETURN", 24, {{5, 2}, {5, 8}}, {{5, 2}, {5, 8}})};
   const Json expected = {xhome, n, symbol("1 GOSUB 20", 24, {{2, 0}, {2, 8}}, {{2, 0}, {2, 8}}),
                          symbol("2 STOP", 24, {{3, 0}, {3, 4}}, {{3, 0}, {3, 4}}), part};
-  EXPECT_EQ(editor.Result("textDocument/documentSymbol", {{"textDocument", kTheDocument}}), expected);
+  EXPECT_EQ(editor.Result("textDocument/documentSymbol", {{"textDocument", kTheDocument}}),
+            expected);
   Editor flat(Json::object());
   flat.Open("10 SPEED 5\n");
   const auto listed = [](std::string_view name, int kind, const Range& range) {
@@ -197,10 +212,12 @@ TEST(Answers, LongStatementsAreCutInTheOutline) {
   EXPECT_EQ(name(61), "1 VR[1]=   1." + std::string(49, '0') + " ...");
 }
 
-// OPT-7.45, OPT-7.46, OPT-7.48, OPT-1.23, OPT-1.25: why something cannot be renamed, or not like that.
+// OPT-7.45, OPT-7.46, OPT-7.48, OPT-1.23, OPT-1.25: why something cannot be renamed, or not like
+// that.
 TEST(Answers, WhyARenameIsRefused) {
-  const std::string text = "DECLARE XHOME = VR[0]\nDECLARE OTHERNAME = 5\n10 SPEED XHOME\n20 GOTO 10\nGOTO 30\n"
-                           "CALL 44\nVR[1] = NONE\n; XHOME\n";
+  const std::string text =
+      "DECLARE XHOME = VR[0]\nDECLARE OTHERNAME = 5\n10 SPEED XHOME\n20 GOTO 10\nGOTO 30\n"
+      "CALL 44\nVR[1] = NONE\n; XHOME\n";
   Editor editor;
   editor.Open(text);
   const auto why = [&](std::uint32_t line, std::uint32_t character, const std::string& name) {
@@ -215,11 +232,13 @@ TEST(Answers, WhyARenameIsRefused) {
   for (const std::string name : {"", "1X", "X Y", "X_", "[", "@", "`", "{", "X/", "X:"})
     EXPECT_EQ(why(0, 9, name), letters) << name;
   EXPECT_EQ(why(0, 9, std::string(65, 'X')), letters);
-  for (const std::string name : {"A", "Z", "a", "z", "A0", "A9"}) EXPECT_EQ(why(0, 9, name), "") << name;
+  for (const std::string name : {"A", "Z", "a", "z", "A0", "A9"})
+    EXPECT_EQ(why(0, 9, name), "") << name;
   EXPECT_EQ(why(0, 9, std::string(64, 'X')), "");
   EXPECT_EQ(why(0, 9, "speed"), "'speed' is reserved: SPEED (OPT-7.48)");
-  EXPECT_EQ(why(0, 9, "OTHERNAM2"),
-            "'OTHERNAM2' is the same name as 'OTHERNAME' of this program: eight characters count (OPT-7.46)");
+  EXPECT_EQ(
+      why(0, 9, "OTHERNAM2"),
+      "'OTHERNAM2' is the same name as 'OTHERNAME' of this program: eight characters count (OPT-7.46)");
   EXPECT_EQ(why(1, 9, "OTHERNAM2"), "");  // its own name
   EXPECT_EQ(why(6, 9, "X"), "'NONE' is not declared in this program");
   EXPECT_EQ(why(4, 6, "5"), "the program has no sequence number 30");
@@ -230,7 +249,8 @@ TEST(Answers, WhyARenameIsRefused) {
   const std::string range = "a sequence number goes from 0 to 9999 (OPT-1.23)";
   for (const std::string number : {"", "-1", "10000", "00010", "x", "1.5", "+5"})
     EXPECT_EQ(why(2, 1, number), range) << number;
-  for (const std::string number : {"0", "9999", "0010", "10"}) EXPECT_EQ(why(2, 1, number), "") << number;
+  for (const std::string number : {"0", "9999", "0010", "10"})
+    EXPECT_EQ(why(2, 1, number), "") << number;
   EXPECT_EQ(why(2, 1, "20"), "sequence number 20 is taken (OPT-1.25)");
   EXPECT_EQ(why(2, 1, "30"), "there are jumps to 30 already, which now lead nowhere (OPT-7.16)");
 }
@@ -241,14 +261,19 @@ TEST(Answers, UsesOfAName) {
   editor.Open("DECLARE X = VR[0]\nSPEED X\n10 SPEED x\nGOTO 10\n");
   const Range given{{0, 8}, {0, 9}}, first{{1, 6}, {1, 7}}, second{{2, 9}, {2, 10}};
   const Range label{{2, 0}, {2, 2}}, jump{{3, 5}, {3, 7}};
-  EXPECT_EQ(editor.Result("textDocument/definition", PlaceAt(2, 9)), Json::array({Location(kUri, given)}));
-  EXPECT_EQ(editor.Result("textDocument/definition", PlaceAt(3, 6)), Json::array({Location(kUri, label)}));
+  EXPECT_EQ(editor.Result("textDocument/definition", PlaceAt(2, 9)),
+            Json::array({Location(kUri, given)}));
+  EXPECT_EQ(editor.Result("textDocument/definition", PlaceAt(3, 6)),
+            Json::array({Location(kUri, label)}));
   EXPECT_EQ(editor.Result("textDocument/references", PlaceAt(1, 6)),
             (Json{Location(kUri, first), Location(kUri, second)}));
   Json with = PlaceAt(3, 6);
   with["context"] = {{"includeDeclaration", true}};
-  EXPECT_EQ(editor.Result("textDocument/references", with), (Json{Location(kUri, label), Location(kUri, jump)}));
-  const auto mark = [](const Range& range, int kind) { return Json{{"range", ToJson(range)}, {"kind", kind}}; };
+  EXPECT_EQ(editor.Result("textDocument/references", with),
+            (Json{Location(kUri, label), Location(kUri, jump)}));
+  const auto mark = [](const Range& range, int kind) {
+    return Json{{"range", ToJson(range)}, {"kind", kind}};
+  };
   EXPECT_EQ(editor.Result("textDocument/documentHighlight", PlaceAt(1, 6)),
             (Json{mark(given, 3), mark(first, 2), mark(second, 2)}));
   EXPECT_EQ(editor.Result("textDocument/prepareRename", PlaceAt(2, 9)),

@@ -116,7 +116,8 @@ TEST(Completion, CommentsHaveDirectivesAndNothingElse) {
   EXPECT_THAT(Offered(";$|"), UnorderedElementsAre("dia", "rad", "left", "right", "none"));
   EXPECT_THAT(Offered("SPEED 90 ; rmlcell: |"), ElementsAre("allow"));
   // What stands before and behind does not count.
-  EXPECT_THAT(Offered("SPEED 5\n;$|\nSPEED 6\n"), UnorderedElementsAre("dia", "rad", "left", "right", "none"));
+  EXPECT_THAT(Offered("SPEED 5\n;$|\nSPEED 6\n"),
+              UnorderedElementsAre("dia", "rad", "left", "right", "none"));
   EXPECT_THAT(Offered("SPEED 90 ; rmlcell: |\nSPEED 80 ; slow\n"), ElementsAre("allow"));
   EXPECT_THAT(Offered("SPEED 5\n; $|\n"), IsEmpty());
   EXPECT_THAT(Offered("SPEED 5 ; rmlcell: allow |\n"), IsEmpty());
@@ -125,17 +126,20 @@ TEST(Completion, CommentsHaveDirectivesAndNothingElse) {
 // What a number or a name stands for is said beside it, with the kind that LSP has for it.
 TEST(Completion, WhatIsOfferedSaysWhatItIs) {
   Editor editor;
-  for (const char* name : {"44.S", "44.SI", "7.SI"}) editor.folder.files[std::string("file:///work/") + name] = "";
+  for (const char* name : {"44.S", "44.SI", "7.SI"})
+    editor.folder.files[std::string("file:///work/") + name] = "";
   const auto details = [&](std::string_view marked, int kind) {
     std::vector<std::string> told;
     const Json items = editor.At("textDocument/completion", marked)["result"]["items"];
     for (const Json& item : items) {
-      if (item["kind"] == kind) told.push_back(item["label"].get<std::string>() + ": " + item.value("detail", ""));
+      if (item["kind"] == kind)
+        told.push_back(item["label"].get<std::string>() + ": " + item.value("detail", ""));
     }
     return told;
   };
   EXPECT_THAT(details("FUNCTION |", 9), ElementsAre("7: 7.SI", "44: 44.S"));  // module
-  EXPECT_THAT(details("GOTO |\n10 SPEED 5\n20\n", 18), ElementsAre("10: SPEED 5", "20: "));  // reference
+  EXPECT_THAT(details("GOTO |\n10 SPEED 5\n20\n", 18),
+              ElementsAre("10: SPEED 5", "20: "));  // reference
   constexpr const char* kNames = "DECLARE EDGE = 1.5\nDECLARE HOME = VR[3]\nVR[0] = |\n";
   EXPECT_THAT(details(kNames, 21), Contains("EDGE: = 1.5"));   // constant
   EXPECT_THAT(details(kNames, 6), Contains("HOME: = VR[3]"));  // variable

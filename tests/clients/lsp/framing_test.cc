@@ -101,7 +101,8 @@ TEST(Framing, TheProblemIsNamed) {
   EXPECT_EQ(problem("Content-Length: 2x"), "Content-Length is no number");
   EXPECT_EQ(problem("Content-Length:"), "Content-Length is no number");
   EXPECT_EQ(problem("Content-Length: 99999999999999999999"), "Content-Length is no number");
-  EXPECT_EQ(problem("Content-Length: 134217729"), "a message of 134217729 bytes; at most 134217728 are read");
+  EXPECT_EQ(problem("Content-Length: 134217729"),
+            "a message of 134217729 bytes; at most 134217728 are read");
   EXPECT_EQ(problem(length + "\r\nContent-Length: 3"), "two different Content-Length");
   EXPECT_EQ(problem("Content-Length: 0\r\nContent-Length: 2"), "two different Content-Length");
   EXPECT_EQ(problem("no colon"), "a header line without a colon");
@@ -112,17 +113,19 @@ TEST(Framing, TheProblemIsNamed) {
     EXPECT_EQ(problem(length + "\r\nContent-Type: " + type), "ok") << type;
   }
   for (const std::string type : {"a; charset=utf-16", "a; CHARSET=latin1", "a; charset="}) {
-    EXPECT_EQ(problem(length + "\r\nContent-Type: " + type), "a message that is not in UTF-8") << type;
+    EXPECT_EQ(problem(length + "\r\nContent-Type: " + type), "a message that is not in UTF-8")
+        << type;
   }
 }
 
 // Reading goes on at the next mark, even one that begins within another, as often as it must.
 TEST(Framing, EachLossFindsTheNextMark) {
-  const std::string stream = "x\n\nCContent-LContent-Length: 1\n\na" + Framed("b") + "y\n\nContent-Length: z\n\n" +
-                             "Content-Length: 1\n\nc";
+  const std::string stream = "x\n\nCContent-LContent-Length: 1\n\na" + Framed("b") +
+                             "y\n\nContent-Length: z\n\n" + "Content-Length: 1\n\nc";
   for (const std::size_t piece : {1U, 5U, 1000U}) {
     std::vector<std::string> read;
-    for (const Frame& frame : Read(stream, piece)) read.push_back(frame.problem.empty() ? frame.body : "?");
+    for (const Frame& frame : Read(stream, piece))
+      read.push_back(frame.problem.empty() ? frame.body : "?");
     EXPECT_EQ(read, (std::vector<std::string>{"?", "a", "b", "?", "?", "c"})) << piece;
   }
 }

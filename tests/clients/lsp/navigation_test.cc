@@ -96,7 +96,8 @@ TEST(Navigation, ReferencesOfAProgramAreNotThoseOfItsOtherForms) {
   Editor editor;
   for (const char* name : {"13.S", "13.SI", "14.SI"})
     editor.folder.files[std::string("file:///work/") + name] = "CALL 44\n";
-  EXPECT_EQ(ReferencesOf("CALL 4|4\n", true, editor), (Strings{"12.S 0:5", "13.S 0:5", "14.SI 0:5"}));
+  EXPECT_EQ(ReferencesOf("CALL 4|4\n", true, editor),
+            (Strings{"12.S 0:5", "13.S 0:5", "14.SI 0:5"}));
 }
 
 TEST(Navigation, HighlightsTellWritingFromReading) {

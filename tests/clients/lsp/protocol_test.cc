@@ -22,8 +22,8 @@ TEST(Protocol, JsonIsRefusedWhenItIsNoneOrTooDeep) {
   EXPECT_TRUE(ReadJson("\"[[[[\\\"" + std::string(100, '[') + "\""));  // text is not nested
 }
 
-// Editors written in JavaScript send half a pair while one is typed, or cut in two. U+FFFD takes one
-// unit of UTF-16 as well, so that later positions fit.
+// Editors written in JavaScript send half a pair while one is typed, or cut in two. U+FFFD takes
+// one unit of UTF-16 as well, so that later positions fit.
 TEST(Protocol, HalfASurrogatePairIsReplaced) {
   const std::string replaced = "\xEF\xBF\xBD";
   const auto text = [](std::string_view json) {

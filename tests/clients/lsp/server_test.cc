@@ -95,9 +95,8 @@ TEST(Server, ChangesAreAppliedInTheirOrder) {
 TEST(Server, AChangeThatCannotBeReadChangesNothing) {
   Editor editor;
   editor.Open("SPEED 5\n");
-  for (const Json& broken :
-       {Json{{"range", {{"start", 5}}}, {"text", "x"}}, Json{{"range", 5}, {"text", "x"}},
-        Json{{"text", 5}}, Json::array()}) {
+  for (const Json& broken : {Json{{"range", {{"start", 5}}}, {"text", "x"}},
+                             Json{{"range", 5}, {"text", "x"}}, Json{{"text", 5}}, Json::array()}) {
     const std::size_t before = editor.notices.size();
     editor.Notify("textDocument/didChange",
                   {{"textDocument", {{"uri", kUri}, {"version", 2}}},

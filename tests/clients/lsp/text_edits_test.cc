@@ -151,7 +151,8 @@ std::vector<std::string> TitlesOf(const Json& actions) {
 }
 using Titles = std::vector<std::string>;
 
-// A finding is there at both of its ends and in between; a range that ends before it begins is a place.
+// A finding is there at both of its ends and in between; a range that ends before it begins is a
+// place.
 TEST(CodeActions, AFindingReachesFromItsFirstCharacterBehindItsLast) {
   Editor editor;
   editor.Open("STOP\n SPED 5\n");
@@ -180,7 +181,8 @@ TEST(CodeActions, OnlyKindsThatAreAskedFor) {
     }
     return found;
   };
-  const Titles quick = {"quickfix"}, all = {"source.fixAll.rmlcell"}, both = {"quickfix", "source.fixAll.rmlcell"};
+  const Titles quick = {"quickfix"}, all = {"source.fixAll.rmlcell"},
+               both = {"quickfix", "source.fixAll.rmlcell"};
   EXPECT_EQ(kinds(Json::array()), both);
   EXPECT_EQ(kinds(nullptr), both);
   EXPECT_EQ(kinds({""}), both);
@@ -189,8 +191,8 @@ TEST(CodeActions, OnlyKindsThatAreAskedFor) {
   EXPECT_EQ(kinds({"source.fixAll"}), all);
   EXPECT_EQ(kinds({"source.fixAll.rmlcell"}), all);
   EXPECT_EQ(kinds({"refactor", "quickfix"}), quick);
-  for (const Json& none : {Json{"sourc"}, Json{"source.fix"}, Json{"quickfix.more"}, Json{"source.fixAll.rmlcell.x"},
-                           Json::array({5})}) {
+  for (const Json& none : {Json{"sourc"}, Json{"source.fix"}, Json{"quickfix.more"},
+                           Json{"source.fixAll.rmlcell.x"}, Json::array({5})}) {
     EXPECT_EQ(kinds(none), Titles{}) << none.dump();
   }
 }
@@ -210,7 +212,8 @@ TEST(CodeActions, AHundredAtMost) {
   }
 }
 
-// The whole action that allows a warning, at the end of what stands on the line, wherever that ends.
+// The whole action that allows a warning, at the end of what stands on the line, wherever that
+// ends.
 TEST(CodeActions, AllowingStandsAtTheEndOfTheLine) {
   const auto allowed = [](const std::string& text, std::uint32_t line, std::uint32_t end) {
     Editor editor;

@@ -73,8 +73,8 @@ TEST(Parameters, AProfileIsAppliedWholeOrNotAtAll) {
       {.id = "a", .title = "", .values = {{"VMAX", 700.0}, {"DIRECTION", "NONE"}}}));
   EXPECT_EQ(parameters.Number("VMAX"), 700.0);
   EXPECT_EQ(parameters.Word("DIRECTION"), "NONE");
-  EXPECT_FALSE(parameters.Apply(
-      {.id = "b", .title = "", .values = {{"VMAX", 800.0}, {"OFFSET", 11.0}}}));
+  EXPECT_FALSE(
+      parameters.Apply({.id = "b", .title = "", .values = {{"VMAX", 800.0}, {"OFFSET", 11.0}}}));
   EXPECT_EQ(parameters.Number("VMAX"), 700.0);
   // Single values go over the profile.
   EXPECT_TRUE(parameters.Set("VMAX", 600.0));
@@ -114,8 +114,8 @@ TEST(Parameters, ErrorsSayWhatIsAllowed) {
             "DIRECTION takes one of ARROW EFA51 NONE");
   const Status unknown = parameters.Apply({.id = "c", .title = "", .values = {{"NEW", 1.0}}});
   EXPECT_EQ(CodeOf(unknown), ErrorCode::kCellUnknownParameter);
-  const Status word = parameters.Apply(
-      {.id = "d", .title = "", .values = {{"VMAX", 7.0}, {"DIRECTION", "X"}}});
+  const Status word =
+      parameters.Apply({.id = "d", .title = "", .values = {{"VMAX", 7.0}, {"DIRECTION", "X"}}});
   EXPECT_EQ(CodeOf(word), ErrorCode::kCellParameterRange);
   EXPECT_THAT(parameters.Changed(), IsEmpty());
 }

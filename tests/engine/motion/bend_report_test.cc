@@ -106,8 +106,8 @@ TEST(BendReport, WantedSpeeds) {
 // steadily, and all that is no bend, has no such limit.
 TEST(BendReport, SpeedsToRestartWith) {
   std::vector<MoveCommand> chain = RightAngles(3);
-  const double steady = Corner::Between(chain[0].path, chain[1].path)
-                            .PlainSpeed(1.0, StandardMachine());
+  const double steady =
+      Corner::Between(chain[0].path, chain[1].path).PlainSpeed(1.0, StandardMachine());
   EXPECT_NEAR(steady, 19.79, 0.01);
   int bends = 0;
   for (const PlannedMotion& motion : Plan(chain)) {

@@ -277,8 +277,8 @@ TEST(BendStretches, ChainsThatUseUpTheirLinesGoOn) {
 // A curve may touch several moves in line with each other: along it ACCEL is the least of them all.
 // Here it reaches 2 mm to both sides, half of the way to a stop.
 TEST(BendStretches, ACurveKeepsTheAccelerationOfAllItTouches) {
-  for (const auto& [weak, touched] : {std::pair{3, false}, {4, true}, {7, true}, {8, true},
-                                      {11, true}, {12, false}}) {
+  for (const auto& [weak, touched] :
+       {std::pair{3, false}, {4, true}, {7, true}, {8, true}, {11, true}, {12, false}}) {
     std::vector<MoveCommand> chain;
     TipPose at{{1000, 900, -200}};
     for (int k = 0; k < 16; ++k) {  // 8 x 0.5 mm along X, as many along Y

@@ -209,7 +209,8 @@ TEST(AxesFollow, NeverSaysYesInVain) {
   EXPECT_GE(yes, 30);  // of 40
 }
 
-// The way up to each place, measured in small steps, is what was asked for: gentle, sharp and turning.
+// The way up to each place, measured in small steps, is what was asked for: gentle, sharp and
+// turning.
 TEST(CornerLength, InvertsTheLength) {
   for (const CornerCurve& curve :
        {CornerCurve(PlainAt(40.0, 3.0)), CornerCurve(PlainAt(150.0, 3.0)),

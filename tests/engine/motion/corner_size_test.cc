@@ -12,7 +12,6 @@
 namespace rmlcell::motion {
 namespace {
 
-
 MachineLimits Trapezoids() {
   MachineLimits machine = StandardMachine();
   machine.tip_jerk_mm_s3 = kNoLimit;

@@ -67,11 +67,9 @@ TEST(CornerTables, HalvesTellCurvatureAndJerkFromPlaceToPlace) {
     EXPECT_GT(half.by_bend[0], 100.0) << degrees;
     EXPECT_GT(half.by_jerk[0], 0.0) << degrees;
     for (std::size_t k = 1; k <= HalfCorner::kSteps; ++k) {
-      const double way =
-          0.5 * corner.length.total() * static_cast<double>(k) / HalfCorner::kSteps;
+      const double way = 0.5 * corner.length.total() * static_cast<double>(k) / HalfCorner::kSteps;
       const double u = corner.length.ParameterAt(corner.curve, way);
-      const double by_bend =
-          std::sqrt(corner.bend / Norm(corner.curve.SecondByLength(u).tip));
+      const double by_bend = std::sqrt(corner.bend / Norm(corner.curve.SecondByLength(u).tip));
       EXPECT_LE(half.by_bend[k], by_bend) << degrees << ' ' << k;
       EXPECT_GE(half.by_bend[k], by_bend * (1.0 - 1e-3)) << degrees << ' ' << k;
       const double by_jerk = std::cbrt(corner.bend / corner.curve.JerkPerCube(u));

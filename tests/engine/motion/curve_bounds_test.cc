@@ -29,12 +29,8 @@ struct Controls {
   std::array<T, 5> first;
   std::array<T, 4> second;
   Controls(const T& p0, const T& p1, const T& v0, const T& v1, const T& c0, const T& c1) {
-    const std::array<T, 6> p{p0,
-                             p0 + v0 * 0.2,
-                             p0 + v0 * 0.4 + c0 * 0.05,
-                             p1 - v1 * 0.4 + c1 * 0.05,
-                             p1 - v1 * 0.2,
-                             p1};
+    const std::array<T, 6> p{
+        p0, p0 + v0 * 0.2, p0 + v0 * 0.4 + c0 * 0.05, p1 - v1 * 0.4 + c1 * 0.05, p1 - v1 * 0.2, p1};
     for (std::size_t k = 0; k < 5; ++k) first[k] = (p[k + 1] - p[k]) * 5.0;
     for (std::size_t k = 0; k < 4; ++k) second[k] = (first[k + 1] - first[k]) * 4.0;
   }
@@ -54,13 +50,14 @@ TEST(CurveBounds, AreThoseOfTheControlPoints) {
   for (int round = 0; round < 300; ++round) {
     const CurveEnd from = RandomEnd(dice), to = RandomEnd(dice);
     const double cut = dice.Magnitude(0.1, 10.0);
-    const double scale = 2.0 * std::sqrt(std::sqrt(0.5 * (1.0 + Dot(from.tangent, to.tangent)))) * cut;
+    const double scale =
+        2.0 * std::sqrt(std::sqrt(0.5 * (1.0 + Dot(from.tangent, to.tangent)))) * cut;
     const Controls<Vec3> tip(from.pose.tip, to.pose.tip, from.tangent * scale, to.tangent * scale,
                              from.curvature * (scale * scale), to.curvature * (scale * scale));
-    const Controls<double> a(from.pose.a_rad, to.pose.a_rad, from.a_rate * scale,
-                             to.a_rate * scale, 0.0, 0.0);
-    const Controls<double> b(from.pose.b_rad, to.pose.b_rad, from.b_rate * scale,
-                             to.b_rate * scale, 0.0, 0.0);
+    const Controls<double> a(from.pose.a_rad, to.pose.a_rad, from.a_rate * scale, to.a_rate * scale,
+                             0.0, 0.0);
+    const Controls<double> b(from.pose.b_rad, to.pose.b_rad, from.b_rate * scale, to.b_rate * scale,
+                             0.0, 0.0);
     const Vec3 bisector = from.tangent + to.tangent;
     double slowest = HUGE_VAL, second = 0.0;
     for (const Vec3& control : tip.first) {
@@ -81,9 +78,11 @@ TEST(CurveBounds, AreThoseOfTheControlPoints) {
 // The short cut of 4.3 says yes up to the bounds themselves, for each figure of each axis: the tip
 // at 1 mm for each mm of way, what turns by its bound, and the column by the arm besides.
 TEST(AxesFollow, UpToTheBoundsThemselves) {
-  const CurveEnd from{.pose = {{-4, 0, 0}, 0.1, 0.2}, .tangent = {1, 0, 0}, .a_rate = 0.01,
-                      .b_rate = -0.02};
-  const CurveEnd to{.pose = {{3.2, 2.4, 0}, 0.15, 0.1}, .tangent = {0.8, 0.6, 0}, .a_rate = 0.02,
+  const CurveEnd from{
+      .pose = {{-4, 0, 0}, 0.1, 0.2}, .tangent = {1, 0, 0}, .a_rate = 0.01, .b_rate = -0.02};
+  const CurveEnd to{.pose = {{3.2, 2.4, 0}, 0.15, 0.1},
+                    .tangent = {0.8, 0.6, 0},
+                    .a_rate = 0.02,
                     .b_rate = -0.005};
   const CornerCurve curve(from, to, 4.0);
   const CornerCurve::Bounds by_u = curve.DerivativeBounds();
@@ -131,8 +130,8 @@ TEST(CornerCurve, SlowestPlaceIsTheSlowest) {
     const double bend = dice.Uniform(-0.9, 0.9), bend_out = dice.Uniform(-0.9, 0.9);
     const CurveEnd from{.pose = {{-1, 0, 0}}, .tangent = {1, 0, 0}, .curvature = {0, bend, 0}};
     const Vec3 out{std::cos(turn), std::sin(turn), 0};
-    const CurveEnd to{.pose = {out}, .tangent = out,
-                      .curvature = Vec3{-out.y, out.x, 0} * bend_out};
+    const CurveEnd to{
+        .pose = {out}, .tangent = out, .curvature = Vec3{-out.y, out.x, 0} * bend_out};
     const CornerCurve curve(from, to, cut);
     const double place = curve.SlowestPlace();
     double slowest = HUGE_VAL;

@@ -95,8 +95,8 @@ TEST(StopAlong, EachHalfOfABendBrakesAsItsOwnMoveDoes) {
   }
 }
 
-// Straight on over moves of ever less ACCEL, 100, 20 and 10, at 50 mm/s: the weakest move on the way
-// sets acceleration and jerk of the whole ramp, and where that is too long for the moves it was
+// Straight on over moves of ever less ACCEL, 100, 20 and 10, at 50 mm/s: the weakest move on the
+// way sets acceleration and jerk of the whole ramp, and where that is too long for the moves it was
 // looked for, the next move counts too. 50/a + a/j s at 25 mm/s on average. OPT-2.16, OPT-B.31
 TEST(StopAlong, TheWeakestMoveOnTheWaySetsTheRamp) {
   constexpr double kStrong = 50.0 / 2000.0, kWeak = 50.0 / 400.0 + 400.0 / 8000.0,

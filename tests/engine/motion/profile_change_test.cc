@@ -148,7 +148,8 @@ TEST(From, EndsTheAccelerationFirst) {
   EXPECT_NEAR(up.duration_s(), 0.03 + (50.0 - way) / 36.0, 1e-9);
   const SpeedProfile down = SpeedProfile::From({0.0, 54.0, -1200.0}, 50.0, 36.0, {36, 2000, 40000});
   EXPECT_NEAR(down.duration_s(), 0.03 + (50.0 - 0.03 * (54.0 - 12.0)) / 36.0, 1e-9);
-  const SpeedProfile abrupt = SpeedProfile::From({0.0, 36.0, 900.0}, 50.0, 36.0, {36, 2000, kNoLimit});
+  const SpeedProfile abrupt =
+      SpeedProfile::From({0.0, 36.0, 900.0}, 50.0, 36.0, {36, 2000, kNoLimit});
   EXPECT_NEAR(abrupt.duration_s(), 50.0 / 36.0, 1e-12);
 }
 

@@ -334,7 +334,8 @@ TEST(Tolerance, MovesAtTheBoundItself) {
   ASSERT_EQ(motions.size(), 2u);
   EXPECT_EQ(motions[1].path.from().tip, (Vec3{0, 0, 0}));
 
-  Planner round_on(StandardMachine());  // an arc that begins 1e-6 mm behind the line goes on from it
+  Planner round_on(
+      StandardMachine());  // an arc that begins 1e-6 mm behind the line goes on from it
   ASSERT_TRUE(round_on.Append(LineOf({{-50, 0, 0}}, {}, true)));
   ASSERT_TRUE(round_on.Append(
       MoveOn(PathPiece::Circle({{1e-6, 0, 0}}, {1e-6, 20, 0}, {0, 0, 1}, 1.5, 0, 0))));

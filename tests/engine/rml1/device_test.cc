@@ -46,7 +46,8 @@ class TestDevice final : public DeviceListener {
   std::vector<Finding> findings_;
 };
 
-// RML1-3C.29, RML1-3C.35: both ends of the Z travel, -60 to 0 mm, may be named; what lies beyond changes nothing.
+// RML1-3C.29, RML1-3C.35: both ends of the Z travel, -60 to 0 mm, may be named; what lies beyond
+// changes nothing.
 TEST(Device, TakesBothEndsOfTheZTravel) {
   TestDevice device(ParametersOf("t1"));
   device.Feed("!ZO-6000;");

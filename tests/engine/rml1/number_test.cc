@@ -106,7 +106,8 @@ TEST(NumberReader, RoundsToTheNearestSingle) {
   }
 }
 
-// RML1-9.21: few digits behind many noughts: a tenth's powers are exact up to 22, and further on too.
+// RML1-9.21: few digits behind many noughts: a tenth's powers are exact up to 22, and further on
+// too.
 TEST(NumberReader, SmallDecimals) {
   for (int noughts = 15; noughts < 40; ++noughts) {
     for (const char* digits : {"1", "123", "987654321012345"}) {

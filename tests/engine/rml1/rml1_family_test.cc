@@ -140,11 +140,10 @@ TEST(Rml1Family, AdvisesWhereWanted) {
   // With the number of the command; what was not ended is no command yet.
   std::vector<std::pair<ErrorCode, int>> told;
   for (const Diagnostic& d : TranslateText(stream).diagnostics) told.emplace_back(d.code, d.step);
-  EXPECT_EQ(told, (std::vector<std::pair<ErrorCode, int>>{
-                      {ErrorCode::kRml1SpeedClamped, 1},
-                      {ErrorCode::kRml1PausedAtEnd, 2},
-                      {ErrorCode::kRml1Clipped, 3},
-                      {ErrorCode::kRml1IncompleteCommand, 0}}));
+  EXPECT_EQ(told, (std::vector<std::pair<ErrorCode, int>>{{ErrorCode::kRml1SpeedClamped, 1},
+                                                          {ErrorCode::kRml1PausedAtEnd, 2},
+                                                          {ErrorCode::kRml1Clipped, 3},
+                                                          {ErrorCode::kRml1IncompleteCommand, 0}}));
   EXPECT_TRUE(TranslateText(stream, false).diagnostics.empty());
   EXPECT_EQ(TranslateText("5;", false).diagnostics.size(), 1U);  // errors are no advice
 }

@@ -175,7 +175,8 @@ TEST(MillRunFields, OfATurn) {
   EXPECT_EQ(end.axes.b_rad, 0.0);
 }
 
-// A pause that a START of the script ends: the halt, the wait of the operator, the resume. RML1-3C.08
+// A pause that a START of the script ends: the halt, the wait of the operator, the resume.
+// RML1-3C.08
 TEST(MillRunFields, OfAPause) {
   Seen seen(ParametersOf("t1"), "!MC0;\n!NR;PU;", {{.at = 3s, .kind = InputKind::kStart}});
   ASSERT_EQ(seen.ToEnd(), RunPhase::kFinished);
@@ -206,8 +207,7 @@ TEST(MillRunFields, OfAPauseForEver) {
   EXPECT_EQ(at, seen.told.halts.at(0).at);
   EXPECT_EQ(diagnostic.code, ErrorCode::kRml1PausedAtEnd);
   EXPECT_EQ(diagnostic.severity, Lookup(ErrorCode::kRml1PausedAtEnd).severity);
-  EXPECT_EQ(diagnostic.where,
-            (SourceSpan{.line = 2, .column = 2, .length = 3, .byte_offset = 5}));
+  EXPECT_EQ(diagnostic.where, (SourceSpan{.line = 2, .column = 2, .length = 3, .byte_offset = 5}));
   EXPECT_EQ(diagnostic.program, 7);
   EXPECT_EQ(diagnostic.step, 2);
   EXPECT_TRUE(diagnostic.file.empty());
@@ -247,8 +247,8 @@ TEST(MillRunFields, OfADwellAndASpindleSpeed) {
 }
 
 // STOP at 10 mm/s, 0.25 mm of braking, 0.03 mm before the end of a line with two lines of 0.1 mm
-// behind it: the ends are passed at what is left, v^2 - 2 a s, and the last one not. In the last ramp
-// of a chain the end is reached. motion.md 6
+// behind it: the ends are passed at what is left, v^2 - 2 a s, and the last one not. In the last
+// ramp of a chain the end is reached. motion.md 6
 TEST(MillRunFields, OfTheEndsThatABrakingToolPasses) {
   TestRun run(ParametersOf("t1"), "!MC0;V20;VS10;PD1000,0,1010,0,1020,0,3000,0;");
   run->Advance(2122ms);  // 1.1 s down, 0.05 s to speed over 0.25 mm, 9.72 mm

@@ -83,7 +83,8 @@ TEST(BeamWork, TimeByPower) {
   BeamWork beam(kWatts, kSpeedMax);
   const motion::PathLimits limits{.speed = 60.0, .acceleration = 100.0};
   const auto profile = motion::SpeedProfile::Span(96.0, 0.0, 0.0, limits);
-  // The bounds at 25 and 50 mm/s are those of a class of speed, too: 30 % on the ramps, 60 % between.
+  // The bounds at 25 and 50 mm/s are those of a class of speed, too: 30 % on the ramps, 60 %
+  // between.
   EXPECT_NEAR(beam.Moving(profile, 0.0, profile.duration_s(), 1.0, {.percent_per_mm_s = 1.0}),
               kWatts * (1.2 * 0.3 + 1.0 * 0.6), 1e-9);
   const BeamHistogram histogram = beam.Histogram(FromSeconds(2.2));
@@ -95,7 +96,8 @@ TEST(BeamWork, TimeByPower) {
 }
 
 // Bounds of classes: the power of a class begins at its lower bound, 100 % belongs to the last one,
-// what lies outside to the ends; a speed of 0 and a machine without a known highest speed to class 0.
+// what lies outside to the ends; a speed of 0 and a machine without a known highest speed to class
+// 0.
 TEST(BeamWork, ClassesBeginAtTheirLowerBound) {
   const auto power_class = [](double percent) {
     BeamWork beam(kWatts, kSpeedMax);
@@ -133,9 +135,9 @@ TEST(BeamWork, APowerThatFallsWithTheSpeed) {
   BeamWork beam(kWatts, kSpeedMax);
   const auto profile =
       motion::SpeedProfile::Span(10.0, 0.0, 0.0, {.speed = 10.0, .acceleration = 10.0});
-  EXPECT_NEAR(beam.Moving(profile, 0.0, 2.0, 1.0,
-                          {.constant_percent = 80.0, .percent_per_mm_s = -10.0}),
-              kWatts * 2.0 * 0.8 * 0.4, 1e-9);
+  EXPECT_NEAR(
+      beam.Moving(profile, 0.0, 2.0, 1.0, {.constant_percent = 80.0, .percent_per_mm_s = -10.0}),
+      kWatts * 2.0 * 0.8 * 0.4, 1e-9);
   const BeamHistogram histogram = beam.Histogram(FromSeconds(2.0));
   EXPECT_NEAR(ToSeconds(histogram.by_power[0]), 0.1 + 0.4, 1e-8);
   for (std::size_t bin = 1; bin < 16; ++bin) {

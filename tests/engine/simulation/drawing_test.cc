@@ -15,11 +15,11 @@
 #include "tests/engine/simulation/laser_shape.h"
 #include "tests/engine/simulation/xml_check.h"
 
-// Whole pages against drawings/, so that no line, text or colour moves unseen: the same bytes on every
-// machine. Where they stand is a matter of taste that no rule decides; what a page has to say and to
-// measure has tests of its own in picture_test, picture_view_test, plot_test and
-// path_difference_test. A page that is to look different is written anew by the failing test, looked
-// at, and put in the place of the old one.
+// Whole pages against drawings/, so that no line, text or colour moves unseen: the same bytes on
+// every machine. Where they stand is a matter of taste that no rule decides; what a page has to say
+// and to measure has tests of its own in picture_test, picture_view_test, plot_test and
+// path_difference_test. A page that is to look different is written anew by the failing test,
+// looked at, and put in the place of the old one.
 namespace rmlcell::simulation {
 namespace drawings {
 
@@ -103,12 +103,12 @@ Script Cover() {
   const MotionOptions retract{.use = MotionUse::kRetract};
   script.Line({10, 10, -15}, {20, 20, -15}).Line({20, 20, -15}, {20, 20, -21}, plunge);
   script.Line({20, 20, -21}, {150, 20, -21}, cut);
-  script.Motion(Planned(PathPiece::Circle({{150, 20, -21}}, {140, 20, -21}, {0, 0, 1}, kPi / 2, 0, 0)),
-                cut);
-  script.Line({140, 30, -21}, {140, 90, -23.5}, cut);
   script.Motion(
-      Planned(PathPiece::Circle({{140, 90, -23.5}}, {110, 90, -23.5}, {0, 0, -1}, kTurn * 0.75, 0, 0)),
-      cut);
+      Planned(PathPiece::Circle({{150, 20, -21}}, {140, 20, -21}, {0, 0, 1}, kPi / 2, 0, 0)), cut);
+  script.Line({140, 30, -21}, {140, 90, -23.5}, cut);
+  script.Motion(Planned(PathPiece::Circle({{140, 90, -23.5}}, {110, 90, -23.5}, {0, 0, -1},
+                                          kTurn * 0.75, 0, 0)),
+                cut);
   script.Line({110, 60 + 60, -23.5}, {110, 120, -15}, retract);
   script.Line({110, 120, -15}, {40, 80, -15}).Line({40, 80, -15}, {40, 80, -26}, plunge);
   script.Line({40, 80, -26}, {40, 80, -15}, retract);
@@ -131,7 +131,8 @@ TEST(Drawing, MillFromTwoSides) {
   report.tip.Add(Vec3{152.25, 120, -15});
   report.total.cut_mm = 0.0;
   report.cycle_time = FromSeconds(59.9994);
-  report.outcome = {.kind = machine::OutcomeKind::kBudgetExceeded, .place = {.program = 1, .step = 9}};
+  report.outcome = {.kind = machine::OutcomeKind::kBudgetExceeded,
+                    .place = {.program = 1, .step = 9}};
   ExpectDrawn(PictureOf(Cover(), SmallMill(), report,
                         {.views = {PictureView::kXZ, PictureView::kYZ}, .width_px = 1000}),
               "mill_sides.svg");
@@ -140,24 +141,26 @@ TEST(Drawing, MillFromTwoSides) {
 // A contour with a slanted hole and a turning head; it failed in the last step.
 Script Hood() {
   Script script;
-  const MotionOptions cut{.use = MotionUse::kCut, .beam_on = true, .power = {.constant_percent = 80}};
+  const MotionOptions cut{
+      .use = MotionUse::kCut, .beam_on = true, .power = {.constant_percent = 80}};
   const auto pierce = [&] {
     script.Signal(Signal::kBeam, 1, 50).Wait(WaitKind::kPierce, 0.5, true, 50.0);
   };
   script.Motion(Planned(PathPiece::Line({{21, 2201, -350}}, {{1100, 700, -300}})));
   pierce();
   script.Motion(Planned(PathPiece::Line({{1100, 700, -300}}, {{1500, 700, -300}, 0.0, 0.5})), cut);
-  script.Motion(Planned(PathPiece::Line({{1500, 700, -300}, 0.0, 0.5}, {{1500, 950, -220}, 0.0, 0.5})),
-                cut);
+  script.Motion(
+      Planned(PathPiece::Line({{1500, 700, -300}, 0.0, 0.5}, {{1500, 950, -220}, 0.0, 0.5})), cut);
   script.Signal(Signal::kBeam, 0);
-  script.Motion(Planned(PathPiece::Line({{1500, 950, -220}, 0.0, 0.5}, {{1360, 820, -300}, 0.0, 0.3})));
+  script.Motion(
+      Planned(PathPiece::Line({{1500, 950, -220}, 0.0, 0.5}, {{1360, 820, -300}, 0.0, 0.3})));
   pierce();
   const double lean = 0.6;
   script.Motion(Planned(PathPiece::Circle({{1360, 820, -300}, 0.0, 0.3}, {1300, 820, -300},
                                           {0, -std::sin(lean), std::cos(lean)}, kTurn, 0.0, 0.3)),
                 cut);
-  script.Motion(Planned(PathPiece::Circle({{1360, 820, -300}, 0.0, 0.3}, {1360, 900, -300}, {1, 0, 0},
-                                          kPi, 0.0, 0.3)),
+  script.Motion(Planned(PathPiece::Circle({{1360, 820, -300}, 0.0, 0.3}, {1360, 900, -300},
+                                          {1, 0, 0}, kPi, 0.0, 0.3)),
                 cut);
   return script;
 }
@@ -217,9 +220,10 @@ TEST(Drawing, SmallAndCoarse) {
 Script CurvesOfALaser() {
   Script script;
   script.Step(1, 1).Wait(WaitKind::kPierce, 1.0, true, 50.0);
-  script.Motion(Planned(LineFrom({0, 0, 0}, {40, 10, 0}),
-                        {.speed = 20.0, .acceleration = 200.0, .jerk = 4000.0}, 0.048),
-                {.beam_on = true, .power = {.percent_per_mm_s = 75.0 / 40.0}, .programmed_mm_s = 25.0});
+  script.Motion(
+      Planned(LineFrom({0, 0, 0}, {40, 10, 0}),
+              {.speed = 20.0, .acceleration = 200.0, .jerk = 4000.0}, 0.048),
+      {.beam_on = true, .power = {.percent_per_mm_s = 75.0 / 40.0}, .programmed_mm_s = 25.0});
   script.Find(ErrorCode::kHoleRadiusZero, "radius is 0").Halt("STOP & <look>");
   script.Motion(Planned(PathPiece::Line({{40, 10, 0}, 0.0, 0.0}, {{60, 10, 5}, 0.3, -0.2}),
                         {.speed = 10.0, .acceleration = 100.0, .jerk = 4000.0}));
@@ -229,16 +233,18 @@ Script CurvesOfALaser() {
 
 TEST(Drawing, PlotOfALaser) {
   PlotRecorder recorder(Laser());
-  FakeRun run(CurvesOfALaser(), recorder, {{FromSeconds(5.0), machine::InputKind::kStart},
-                                           {FromSeconds(8.0), machine::InputKind::kStart}});
+  FakeRun run(CurvesOfALaser(), recorder,
+              {{FromSeconds(5.0), machine::InputKind::kStart},
+               {FromSeconds(8.0), machine::InputKind::kStart}});
   run.Advance(kForever);
   RunReport report = HoodReport();
   report.cycle_time = run.state().time;
   report.inputs_hash = "fedcba9876543210";
   report.engine_version = "1.2.3";
-  ExpectDrawn(recorder.Svg(report, {.curves = {PlotCurve::kSpeed, PlotCurve::kPower, PlotCurve::kAxes},
-                                    .width_px = 900}),
-              "plot.svg");
+  ExpectDrawn(
+      recorder.Svg(report, {.curves = {PlotCurve::kSpeed, PlotCurve::kPower, PlotCurve::kAxes},
+                            .width_px = 900}),
+      "plot.svg");
 }
 
 TEST(Drawing, PlotOfNothing) {
@@ -260,16 +266,17 @@ PathSketch SketchOf(const Script& script, const machine::MachineShape& shape) {
 TEST(Drawing, DifferenceOfTwoHoods) {
   Script after = Hood();
   after.Signal(Signal::kBeam, 0);
-  after.Motion(Planned(PathPiece::Line({{1360, 980, -300}, 0.0, 0.3}, {{1440, 930, -280}, 0.0, 0.3})));
+  after.Motion(
+      Planned(PathPiece::Line({{1360, 980, -300}, 0.0, 0.3}, {{1440, 930, -280}, 0.0, 0.3})));
   after.Signal(Signal::kBeam, 1, 50).Wait(WaitKind::kPierce, 0.5, true, 50.0);
   after.Motion(Planned(PathPiece::Line({{1440, 930, -280}}, {{1460, 930, -280}})),
                {.use = MotionUse::kCut, .beam_on = true});
   const machine::MachineShape shape = LaserWithTable();
   const PathSketch one = SketchOf(Hood(), shape);
   const PathSketch two = SketchOf(after, shape);
-  ExpectDrawn(PictureOfDifference({.path = one, .title = "hood.S"}, {.path = two, .title = "hood 2.S"},
-                                  shape, {{"cycle_time", "s", 61.5, 62.0625}, {"pierces", "", 2, 3}},
-                                  {.width_px = 1100}),
+  ExpectDrawn(PictureOfDifference(
+                  {.path = one, .title = "hood.S"}, {.path = two, .title = "hood 2.S"}, shape,
+                  {{"cycle_time", "s", 61.5, 62.0625}, {"pierces", "", 2, 3}}, {.width_px = 1100}),
               "difference.svg");
 }
 
@@ -294,8 +301,8 @@ TEST(Drawing, DifferenceOfTwoCovers) {
 
 TEST(Drawing, DifferenceOfNothing) {
   const PathSketch empty({}, 10);
-  ExpectDrawn(PictureOfDifference({.path = empty, .title = "a"}, {.path = empty, .title = "b"}, {}, {},
-                                  {.width_px = 900}),
+  ExpectDrawn(PictureOfDifference({.path = empty, .title = "a"}, {.path = empty, .title = "b"}, {},
+                                  {}, {.width_px = 900}),
               "difference_nothing.svg");
 }
 

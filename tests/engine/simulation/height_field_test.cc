@@ -167,9 +167,9 @@ TEST(HeightField, LiesWhereItsStockBegins) {
   HeightField here = Field(kPlate), there = Field(moved);
   EXPECT_EQ(there.columns(), 80u);
   EXPECT_EQ(there.rows(), 48u);
-  for (const auto& [from, to] : {std::pair{Vec3{3, 4, -1}, Vec3{12, 7.5, -2}},
-                                 std::pair{Vec3{16, 10, -3}, Vec3{16, 3, -3}},
-                                 std::pair{Vec3{18, 9, 1}, Vec3{18, 9, -4}}}) {
+  for (const auto& [from, to] :
+       {std::pair{Vec3{3, 4, -1}, Vec3{12, 7.5, -2}}, std::pair{Vec3{16, 10, -3}, Vec3{16, 3, -3}},
+        std::pair{Vec3{18, 9, 1}, Vec3{18, 9, -4}}}) {
     for (const MillTool& tool : {kFlat, kBall, kVee}) {
       EXPECT_NEAR(there.DepthOf(tool, from + by, to + by), here.DepthOf(tool, from, to), 1e-5);
       here.Cut(tool, from, to);
@@ -186,7 +186,8 @@ TEST(HeightField, LiesWhereItsStockBegins) {
 // 3 mm are thirty cells of 0.1, and a cell begun is a cell; a block smaller than one has one.
 TEST(HeightField, CellsCoverTheBlock) {
   const auto cells = [](double width, double cell) {
-    return Field({.x_max = width, .y_max = 1.0, .bottom = -1.0, .top = 0.0, .cell = cell}).columns();
+    return Field({.x_max = width, .y_max = 1.0, .bottom = -1.0, .top = 0.0, .cell = cell})
+        .columns();
   };
   EXPECT_EQ(cells(3.0, 0.1), 30u);
   EXPECT_EQ(cells(3.01, 0.1), 31u);
@@ -209,9 +210,9 @@ TEST(HeightField, RefusesEachSideOfABlock) {
     stock.*edge = -HUGE_VAL;
     EXPECT_FALSE(CheckStock(stock).ok());
   }
-  for (const auto& [low, high] : {std::pair{&Stock::x_min, &Stock::x_max},
-                                  std::pair{&Stock::y_min, &Stock::y_max},
-                                  std::pair{&Stock::bottom, &Stock::top}}) {
+  for (const auto& [low, high] :
+       {std::pair{&Stock::x_min, &Stock::x_max}, std::pair{&Stock::y_min, &Stock::y_max},
+        std::pair{&Stock::bottom, &Stock::top}}) {
     Stock stock = kPlate;
     stock.*high = stock.*low;
     EXPECT_FALSE(CheckStock(stock).ok());

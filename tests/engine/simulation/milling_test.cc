@@ -176,9 +176,9 @@ TEST(Stl, IsClosedAndHasItsVolume) {
   EXPECT_NEAR(six_fold / 6.0, volume, 1e-6 * volume);
 }
 
-// The body of a block that begins anywhere: every edge of a triangle is there once in each direction,
-// normals point outwards and are 1 mm long, and its corners are the centres of the corner cells. What
-// is cut below the bottom ends there.
+// The body of a block that begins anywhere: every edge of a triangle is there once in each
+// direction, normals point outwards and are 1 mm long, and its corners are the centres of the
+// corner cells. What is cut below the bottom ends there.
 TEST(Stl, EachEdgeHasItsNeighbour) {
   HeightField field = HeightField::Of({.x_min = -3.0,
                                        .x_max = 1.0,

@@ -113,8 +113,8 @@ TEST(MotionPeaks, CurveOfACorner) {
   EXPECT_NEAR(acceleration, 2500.0 * bend / 4.050462937, 1e-3);
 }
 
-// The axes of a mill go as the tip does round the bend of a chain, and its rotary axis as A: no other
-// axis moves.
+// The axes of a mill go as the tip does round the bend of a chain, and its rotary axis as A: no
+// other axis moves.
 TEST(MotionPeaks, BendOfAMill) {
   const auto motions = PlannedCorner({{0, 0, 0}}, {{100, 0, 0}}, {{100, 100, 0}});
   for (std::size_t k = 1; k <= 2; ++k) {

@@ -23,8 +23,8 @@ machine::MachineShape Shape() {
   return shape;
 }
 
-motion::PlannedMotion MoveAt(const PathPiece& path, PathLimits limits, double speed, double entry = 0.0,
-                             double exit = 0.0) {
+motion::PlannedMotion MoveAt(const PathPiece& path, PathLimits limits, double speed,
+                             double entry = 0.0, double exit = 0.0) {
   limits.speed = speed;
   motion::PlannedMotion planned;
   planned.path = path;
@@ -89,7 +89,9 @@ TEST(MoveSpeeds, TooShortOrTooLittleAcceleration) {
 // On an arc the way has 0.6 of the acceleration of the tip. To 100 mm/s and back: with 2000 mm/s2
 // 10 mm, with 1200 it is v/2 (v/a + a/j) = 5.67 mm each way.
 TEST(MoveSpeeds, AnArcHasAShareOfTheAcceleration) {
-  const auto cause = [](const PathPiece& path) { return Judged(MoveAt(path, kHalf, 100.0), 100.0)->cause; };
+  const auto cause = [](const PathPiece& path) {
+    return Judged(MoveAt(path, kHalf, 100.0), 100.0)->cause;
+  };
   const auto arc = [](double length) {
     return PathPiece::Circle({{1000, 0, 0}}, {0, 0, 0}, {0, 0, 1}, length / 1000.0, 0.0, 0.0);
   };
@@ -125,12 +127,12 @@ TEST(MoveSpeeds, SpeedsAtBothEndsCount) {
   EXPECT_EQ(cause(10.7, 50.0, 50.0), SlowCause::kAcceleration);
 }
 
-// What was reached is all that the line or arc allows: its radius, sqrt(0.8 * 2000 * 2), or an axis,
-// here A, which turns by 1 rad a millimetre.
+// What was reached is all that the line or arc allows: its radius, sqrt(0.8 * 2000 * 2), or an
+// axis, here A, which turns by 1 rad a millimetre.
 TEST(MoveSpeeds, WhatTheWayAllows) {
   const double radius_speed = std::sqrt(3200.0);
-  motion::PlannedMotion arc =
-      MoveAt(PathPiece::Circle({{2, 0, 0}}, {0, 0, 0}, {0, 0, 1}, 6.0, 0.0, 0.0), kAll, radius_speed);
+  motion::PlannedMotion arc = MoveAt(
+      PathPiece::Circle({{2, 0, 0}}, {0, 0, 0}, {0, 0, 1}, 6.0, 0.0, 0.0), kAll, radius_speed);
   const auto round = Judged(arc, 100.0);
   ASSERT_TRUE(round);
   EXPECT_EQ(round->cause, SlowCause::kRadius);

@@ -15,8 +15,8 @@ using motion::Vec3;
 
 const motion::Head kArm = motion::GantryHead{.length_mm = 300.0};
 
-// A head that turns and turns back within a corner turns, although the angles at its ends are equal;
-// either axis alone is enough.
+// A head that turns and turns back within a corner turns, although the angles at its ends are
+// equal; either axis alone is enough.
 TEST(PartCurve, TurnsWhereOneAxisTurns) {
   EXPECT_FALSE(Turns(LineFrom({0, 0, 0}, {1, 0, 0})));
   EXPECT_TRUE(Turns(PathPiece::Line({{0, 0, 0}}, {{1, 0, 0}, 0.1, 0.0})));
@@ -26,7 +26,8 @@ TEST(PartCurve, TurnsWhereOneAxisTurns) {
     bool turns;
   };
   for (const Corner& corner : {Corner{0.0, 0.0, false}, {0.2, 0.0, true}, {0.0, 0.2, true}}) {
-    const auto motions = PlannedCorner({{0, 0, 0}}, {{100, 0, 0}, corner.a, corner.b}, {{100, 100, 0}});
+    const auto motions =
+        PlannedCorner({{0, 0, 0}}, {{100, 0, 0}, corner.a, corner.b}, {{100, 100, 0}});
     ASSERT_EQ(motions.size(), 4u);
     for (const std::size_t half : {1u, 2u}) {
       EXPECT_EQ(Turns(motions[half].path), corner.turns) << corner.a << ' ' << corner.b;
@@ -58,7 +59,8 @@ TEST(PartCurve, TurningOfAPart) {
 
 // Rates are the derivatives of the places, of tip and column, whatever kind of path it is.
 TEST(PartCurve, RatesAreDerivatives) {
-  const auto corner = PlannedCorner({{0, 0, 0}, 0.0, 0.1}, {{100, 0, 0}, 0.2, 0.1}, {{100, 100, 0}, 0.2, 0.4});
+  const auto corner =
+      PlannedCorner({{0, 0, 0}, 0.0, 0.1}, {{100, 0, 0}, 0.2, 0.1}, {{100, 100, 0}, 0.2, 0.4});
   ASSERT_EQ(corner.size(), 4u);
   for (const PathPiece& path :
        {PathPiece::Line({{0, 0, 0}, 0.1, 0.5}, {{10, 5, 2}, 0.3, 0.1}),

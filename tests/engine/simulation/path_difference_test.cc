@@ -36,7 +36,8 @@ class Path {
   // Whole, from its end in the XZ plane.
   Path& Circle(const Vec3& centre, double radius, const Vec3& normal) {
     const Vec3 spoke = Vec3{normal.z, 0, -normal.x} * radius;
-    return Add(PathPiece::Circle({centre + spoke}, centre, normal, kTurn, 0.0, 0.0), MotionUse::kCut);
+    return Add(PathPiece::Circle({centre + spoke}, centre, normal, kTurn, 0.0, 0.0),
+               MotionUse::kCut);
   }
   const PathSketch& sketch() const { return sketch_; }
 
@@ -96,7 +97,8 @@ TEST(PathDifference, NearIsTheSameFarIsNot) {
   EXPECT_EQ(CutsOf(before, beside).removed, 0.0);
 }
 
-// Gaps and remains that are no longer than kSamePlace_mm go with what they touch, in common and apart.
+// Gaps and remains that are no longer than kSamePlace_mm go with what they touch, in common and
+// apart.
 TEST(PathDifference, WhatIsTooShortGoesWithItsNeighbour) {
   constexpr double k = kSamePlace_mm;
   Path before, gap, wide_gap, late, too_late;
@@ -247,22 +249,24 @@ TEST(PathDifference, PartsAddUpToTheWhole) {
 
 // What is left of a line or an arc lies where it lay: ends, middle, sweep and length.
 TEST(PathDifference, PartsKeepTheirPlace) {
-  const PathDifference lines = Compare(Path().Line({0, 0, 3}, {30, 40, 3}).sketch(), Path().Line({6, 8, 3}, {24, 32, 3}).sketch());
+  const PathDifference lines = Compare(Path().Line({0, 0, 3}, {30, 40, 3}).sketch(),
+                                       Path().Line({6, 8, 3}, {24, 32, 3}).sketch());
   ASSERT_EQ(lines.removed.elements.size(), 2u);
   EXPECT_NEAR(Distance(lines.removed.elements[0].from, {0, 0, 3}), 0.0, 1e-12);
   EXPECT_NEAR(Distance(lines.removed.elements[0].to, {6, 8, 3}), 0.0, 1e-9);
   EXPECT_NEAR(Distance(lines.removed.elements[1].from, {24, 32, 3}), 0.0, 1e-9);
   EXPECT_NEAR(Distance(lines.removed.elements[1].to, {30, 40, 3}), 0.0, 1e-12);
   EXPECT_NEAR(lines.removed.cut_mm, 20.0, 1e-9);
-  const PathDifference arcs =
-      Compare(Path().Arc({1, 2, 0}, 10.0, 0.0, kPi).sketch(), Path().Arc({1, 2, 0}, 10.0, 0.0, kPi / 2).sketch());
+  const PathDifference arcs = Compare(Path().Arc({1, 2, 0}, 10.0, 0.0, kPi).sketch(),
+                                      Path().Arc({1, 2, 0}, 10.0, 0.0, kPi / 2).sketch());
   ASSERT_EQ(arcs.removed.elements.size(), 1u);
   ASSERT_EQ(arcs.removed.circles.size(), 1u);
   const SketchElement& arc = arcs.removed.elements[0];
   EXPECT_EQ(arc.arc, 0);
   EXPECT_NEAR(Distance(arc.from, {1, 12, 0}), 0.0, 1e-9);
   EXPECT_NEAR(Distance(arc.to, {-9, 2, 0}), 0.0, 1e-9);
-  EXPECT_NEAR(Distance(arc.middle, {1 - 10 * std::sqrt(0.5), 2 + 10 * std::sqrt(0.5), 0}), 0.0, 1e-9);
+  EXPECT_NEAR(Distance(arc.middle, {1 - 10 * std::sqrt(0.5), 2 + 10 * std::sqrt(0.5), 0}), 0.0,
+              1e-9);
   EXPECT_NEAR(arcs.removed.circles[0].sweep_rad, kPi / 2, 1e-9);
   EXPECT_EQ(arcs.removed.circles[0].radius_mm, 10.0);
   EXPECT_NEAR(arcs.removed.cut_mm, 10.0 * kPi / 2, 1e-9);
@@ -312,7 +316,8 @@ TEST(PathDifference, DotsOfOneKindAtOnePlaceAreTheSame) {
     }
   }
   // Beside the one that is meant stand others: before it, behind it, and of the other kind.
-  const std::vector<Dot> many = {{{4, 6, 7}}, {{5, 1, 7}}, {{5, 6, 7}, false}, {{5, 9, 7}}, {{6, 6, 7}}, here};
+  const std::vector<Dot> many = {{{4, 6, 7}}, {{5, 1, 7}}, {{5, 6, 7}, false},
+                                 {{5, 9, 7}}, {{6, 6, 7}}, here};
   EXPECT_EQ(counts({here}, many), "1 0 5");
   EXPECT_EQ(counts(many, {here}), "1 5 0");
   const PathDifference difference = Compare(sketch_of({here}), sketch_of({{{1, 2, 3}}, here}));

@@ -93,7 +93,8 @@ TEST(PathSketch, ArcsKeepTheirCircles) {
   PathSketch sketch({}, 6);
   const auto add_circle = [&](const Vec3& centre, double radius) {
     motion::PlannedMotion planned;
-    planned.path = PathPiece::Circle({centre + Vec3{radius, 0, 0}}, centre, {0, 0, 1}, kTurn, 0.0, 0.0);
+    planned.path =
+        PathPiece::Circle({centre + Vec3{radius, 0, 0}}, centre, {0, 0, 1}, kTurn, 0.0, 0.0);
     sketch.Add({.use = MotionUse::kCut, .motion = &planned, .travelled = planned.path.length()});
   };
   for (int k = 0; k < 5; ++k) add_circle({0, 0, 0}, 5.0);
@@ -133,10 +134,12 @@ TEST(PathSketch, EverySecondDirectionGoes) {
   EXPECT_EQ(sketch.tools()[4094].tip, (Vec3{4094, 0, 0}));  // where the cut ends
   cut_until(4096);
   ASSERT_EQ(sketch.tools().size(), 2048u);
-  for (std::size_t i = 0; i < 2048; ++i) ASSERT_EQ(sketch.tools()[i].tip.x, 2.0 * static_cast<double>(i));
+  for (std::size_t i = 0; i < 2048; ++i)
+    ASSERT_EQ(sketch.tools()[i].tip.x, 2.0 * static_cast<double>(i));
   cut_until(8191);
   ASSERT_EQ(sketch.tools().size(), 2048u + 2048u - 2048u);
-  for (std::size_t i = 0; i < 2048; ++i) ASSERT_EQ(sketch.tools()[i].tip.x, 4.0 * static_cast<double>(i));
+  for (std::size_t i = 0; i < 2048; ++i)
+    ASSERT_EQ(sketch.tools()[i].tip.x, 4.0 * static_cast<double>(i));
 }
 
 // Repeated passes lie on top of each other: coarsening drops the copies first.
@@ -206,7 +209,8 @@ TEST(PathSketch, DirectionsAreOfCutsWithAHead) {
       PathSketch sketch(shape, 1000);
       motion::PlannedMotion planned;
       planned.path = LineFrom({0, 0, 0}, {1, 0, 0});
-      sketch.Add({.use = MotionUse::kCut, .motion = &planned, .travelled = 1.0, .beam_on = beam_on});
+      sketch.Add(
+          {.use = MotionUse::kCut, .motion = &planned, .travelled = 1.0, .beam_on = beam_on});
       EXPECT_EQ(sketch.tools().size(), five_axis && beam_on ? 1u : 0u);
       EXPECT_EQ(sketch.elements()[0].cuts, beam_on);
     }

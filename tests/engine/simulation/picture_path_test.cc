@@ -33,7 +33,8 @@ struct DrawnPath {
   // The data of all paths in a group, in their order.
   static std::string Data(const std::string& group) {
     std::string data;
-    for (std::size_t at = group.find(" d=\""); at != std::string::npos; at = group.find(" d=\"", at + 1)) {
+    for (std::size_t at = group.find(" d=\""); at != std::string::npos;
+         at = group.find(" d=\"", at + 1)) {
       data += group.substr(at + 4, group.find('"', at + 4) - at - 4);
     }
     return data;
@@ -42,8 +43,9 @@ struct DrawnPath {
   std::string cut() const { return Data(Group(1)); }
 };
 
-DrawnPath Draw(const std::vector<SketchElement>& elements, const std::vector<SketchCircle>& circles = {},
-           const Panel& panel = FromAbove(), std::size_t elements_max = 100'000, const DepthRange& depth = {}) {
+DrawnPath Draw(const std::vector<SketchElement>& elements,
+               const std::vector<SketchCircle>& circles = {}, const Panel& panel = FromAbove(),
+               std::size_t elements_max = 100'000, const DepthRange& depth = {}) {
   DrawnPath drawn;
   drawn.count =
       DrawPath({.elements = elements, .circles = circles}, panel, depth, elements_max, drawn.text);
@@ -60,14 +62,15 @@ SketchElement Travel(const Vec3& from, const Vec3& to, MotionUse use = MotionUse
 
 // The arc that begins at `spoke` from the centre and turns by `sweep` about `normal`.
 DrawnPath DrawArc(const Vec3& centre, const Vec3& spoke, const Vec3& normal, double sweep,
-              const Panel& panel = FromAbove()) {
+                  const Panel& panel = FromAbove()) {
   const auto at = [&](double angle) {
     return centre + spoke * std::cos(angle) + Cross(normal, spoke) * std::sin(angle);
   };
   SketchElement arc = Cut(at(0.0), at(sweep));
   arc.middle = at(0.5 * sweep);
   arc.arc = 0;
-  return Draw({arc}, {{.centre = centre, .normal = normal, .radius_mm = Norm(spoke), .sweep_rad = sweep}},
+  return Draw({arc},
+              {{.centre = centre, .normal = normal, .radius_mm = Norm(spoke), .sweep_rad = sweep}},
               panel);
 }
 
@@ -96,7 +99,8 @@ TEST(PicturePath, SteepLinesAreCutOff) {
   EXPECT_EQ(Draw({Cut({100, -170.25, 0}, {0, -169.75, 0})}).cut(), "M50 170l-50-.25");
 }
 
-// What only touches the edge is drawn, what lies beyond it is not; along each edge, and at a corner.
+// What only touches the edge is drawn, what lies beyond it is not; along each edge, and at a
+// corner.
 TEST(PicturePath, TheEdgeBelongsToWhatIsDrawn) {
   for (const double side : {-1.0, 1.0}) {
     EXPECT_EQ(Draw({Cut({side * 220, 0, 0}, {side * 220, 50, 0})}).count, 1u);
@@ -152,13 +156,15 @@ TEST(PicturePath, WhatCannotBeToldApartIsDrawnOnce) {
 // Too many elements: precision and raster get 1.6 times coarser at a time, until they fit.
 TEST(PicturePath, TooManyElementsGetCoarserStepByStep) {
   // In a raster of 0.32 px the second line falls on the first; the third does at 0.82 px.
-  const std::vector<SketchElement> beside = {Cut({0, 0, 0}, {50, 0, 0}), Cut({0, 0.15, 0}, {50, 0.15, 0}),
+  const std::vector<SketchElement> beside = {Cut({0, 0, 0}, {50, 0, 0}),
+                                             Cut({0, 0.15, 0}, {50, 0.15, 0}),
                                              Cut({0, 0.31, 0}, {50, 0.31, 0})};
   EXPECT_EQ(Draw(beside, {}, FromAbove(), 3).count, 3u);
   EXPECT_EQ(Draw(beside, {}, FromAbove(), 2).count, 2u);
   EXPECT_EQ(Draw(beside, {}, FromAbove(), 1).count, 1u);
   // Straight within 0.08 px is what follows the first, but not what follows the second.
-  const std::vector<SketchElement> bent = {Cut({0, 0, 0}, {10, 0, 0}), Cut({10, 0, 0}, {20, 0.07, 0}),
+  const std::vector<SketchElement> bent = {Cut({0, 0, 0}, {10, 0, 0}),
+                                           Cut({10, 0, 0}, {20, 0.07, 0}),
                                            Cut({20, 0.07, 0}, {30, -0.1, 0})};
   EXPECT_EQ(Draw(bent, {}, FromAbove(), 3).count, 3u);
   EXPECT_EQ(Draw(bent, {}, FromAbove(), 2).count, 2u);
@@ -202,7 +208,9 @@ TEST(PicturePath, LeaningCirclesAreEllipsesAcrossTheLean) {
 
 // A circle of less than 0.05 px in height is a line, an arc that bows by less than 0.02 px, too.
 TEST(PicturePath, FlatArcsAreLines) {
-  const auto is_arc = [](const DrawnPath& drawn) { return drawn.cut().find('a') != std::string::npos; };
+  const auto is_arc = [](const DrawnPath& drawn) {
+    return drawn.cut().find('a') != std::string::npos;
+  };
   const auto leaning = [](double lean) {
     return DrawArc({}, {100, 0, 0}, {0, std::sqrt(1.0 - lean * lean), lean}, 2.0);
   };
@@ -254,8 +262,9 @@ TEST(PicturePath, ManyCutsAreThin) {
 
 // Travel is drawn below the cuts, whatever it is for, and looks the same.
 TEST(PicturePath, TravelOfAnyUseIsOne) {
-  const DrawnPath drawn = Draw({Cut({0, 0, 0}, {9, 0, 0}), Travel({9, 0, 0}, {20, 0, 0}, MotionUse::kRetract),
-                            Travel({20, 0, 0}, {30, 0, 0}), Cut({30, 0, 0}, {30, 8, 0})});
+  const DrawnPath drawn =
+      Draw({Cut({0, 0, 0}, {9, 0, 0}), Travel({9, 0, 0}, {20, 0, 0}, MotionUse::kRetract),
+            Travel({20, 0, 0}, {30, 0, 0}), Cut({30, 0, 0}, {30, 8, 0})});
   EXPECT_EQ(drawn.count, 3u);
   EXPECT_EQ(drawn.travel(), "M9 0l21 0");
   EXPECT_EQ(drawn.cut(), "M0 0l9 0m21 0l0-8");
@@ -264,7 +273,11 @@ TEST(PicturePath, TravelOfAnyUseIsOne) {
 TEST(PicturePath, ColoursAndDashesAreThoseOfTheStrokes) {
   const std::vector<SketchElement> elements = {Cut({0, 0, 0}, {9, 0, 0})};
   std::string text;
-  DrawPath({.elements = elements, .circles = {}, .cut = "#123456", .cut_dashes = "4 2", .travel = "#654321"},
+  DrawPath({.elements = elements,
+            .circles = {},
+            .cut = "#123456",
+            .cut_dashes = "4 2",
+            .travel = "#654321"},
            FromAbove(), {}, 10, text);
   const DrawnPath drawn{.count = 1, .text = text};
   EXPECT_NE(drawn.Group(0).find("stroke=\"#654321\""), std::string::npos);
@@ -283,8 +296,8 @@ TEST(PicturePath, DepthsAreShades) {
   EXPECT_EQ(depth.ShadeOf(-14.0), 7);
   EXPECT_EQ(depth.ShadeOf(-16.0), 7);
   EXPECT_EQ(depth.ShadeOf(-99.0), 7);
-  const std::vector<SketchElement> elements = {Cut({0, 9, -1}, {9, 9, -5}), Cut({0, 0, -15}, {9, 0, -1}),
-                                               Travel({0, 5, -15}, {9, 5, -15})};
+  const std::vector<SketchElement> elements = {
+      Cut({0, 9, -1}, {9, 9, -5}), Cut({0, 0, -15}, {9, 0, -1}), Travel({0, 5, -15}, {9, 5, -15})};
   const DrawnPath drawn = Draw(elements, {}, FromAbove(), 10, depth);
   EXPECT_NE(drawn.Group(1).find("<path stroke=\"#2f8bb5\" d=\"M0-9l9 0\"/>"), std::string::npos);
   EXPECT_NE(drawn.Group(1).find("<path stroke=\"#1f1653\" d=\"M0 0l9 0\"/>"), std::string::npos);

@@ -345,7 +345,8 @@ TEST(Picture, MillionMovesGiveABoundedPicture) {
   EXPECT_EQ(XmlFault(svg), "");
 }
 
-// Nothing moved: the travel of the machine, and a word; there is no part whose place could be shown.
+// Nothing moved: the travel of the machine, and a word; there is no part whose place could be
+// shown.
 TEST(Picture, NothingMoved) {
   const std::string svg = SvgOf(Script(), Mill());
   EXPECT_EQ(CountOf(svg, ">nothing moved<"), 1u);
@@ -366,9 +367,11 @@ TEST(Picture, ManyDotsAreSmall) {
     return SvgOf(script, {});
   };
   const std::string few = drawn(300, 4.0);
-  EXPECT_EQ(CountOf(few, "r=\"2.4\" fill=\"#ffffff\" stroke=\"#e8590c\" stroke-width=\"1.2\""), 300u + 1u);
+  EXPECT_EQ(CountOf(few, "r=\"2.4\" fill=\"#ffffff\" stroke=\"#e8590c\" stroke-width=\"1.2\""),
+            300u + 1u);
   const std::string many = drawn(301, 4.0);
-  EXPECT_EQ(CountOf(many, "r=\"1.1\" fill=\"#ffffff\" stroke=\"#e8590c\" stroke-width=\".6\""), 301u);
+  EXPECT_EQ(CountOf(many, "r=\"1.1\" fill=\"#ffffff\" stroke=\"#e8590c\" stroke-width=\".6\""),
+            301u);
   EXPECT_EQ(CountOf(many, "r=\"2.4\""), 1u);  // of the legend
   EXPECT_EQ(CountOf(drawn(40, 0.0), "r=\"2.4\""), 2u + 1u);
 }

@@ -89,22 +89,26 @@ TEST(PictureView, RoomIsSharedByNeed) {
   EXPECT_NEAR(flat.panels[0].scale, 0.706, 1e-12);
   EXPECT_NEAR(flat.panels[3].scale, 0.706, 1e-12);
   // X and Y alike: 468 px each for 100 mm; 1000 mm of Z would be 4680 px, so Z decides the scale.
-  const PanelLayout tall = LayOut({four[2], four[3]}, BoxFrom({0, 0, 0}, {100, 100, 1000}), {0, 0, 1000, 0});
+  const PanelLayout tall =
+      LayOut({four[2], four[3]}, BoxFrom({0, 0, 0}, {100, 100, 1000}), {0, 0, 1000, 0});
   expect(tall.panels[0].rect, 0, 0, 468, 648);
   expect(tall.panels[1].rect, 532, 0, 468, 648);
   EXPECT_NEAR(tall.height, 648.0, 1e-9);
   EXPECT_NEAR(tall.panels[0].scale, 0.648, 1e-12);
-  // 300 and 100 mm beside each other: 702 and 234 px, 2.34 px a mm, and so for 100 and 150 mm above.
+  // 300 and 100 mm beside each other: 702 and 234 px, 2.34 px a mm, and so for 100 and 150 mm
+  // above.
   const PanelLayout usual = LayOut(four, BoxFrom({0, 0, 0}, {300, 100, 150}), {0, 0, 1000, 0});
   expect(usual.panels[1].rect, 766, 0, 234, 234);
   expect(usual.panels[2].rect, 0, 298, 702, 351);
   EXPECT_NEAR(usual.height, 234.0 + 64.0 + 351.0, 1e-9);
   EXPECT_NEAR(usual.panels[0].scale, 2.34, 1e-12);
-  const PanelLayout three = LayOut({four[0], four[1], four[2]}, BoxFrom({0, 0, 0}, {300, 100, 150}), {0, 0, 1000, 0});
+  const PanelLayout three =
+      LayOut({four[0], four[1], four[2]}, BoxFrom({0, 0, 0}, {300, 100, 150}), {0, 0, 1000, 0});
   // No axial view on the right: 12 mm, 4 % of 300, so it has 230 px and 300 mm the other 706.
   EXPECT_NEAR(three.height, 706.0 / 300.0 * (100.0 + 150.0) + 64.0, 1e-9);
   // Views in space alone are squares.
-  const PanelLayout space = LayOut({four[1], four[1]}, BoxFrom({0, 0, 0}, {300, 100, 150}), {0, 0, 1000, 0});
+  const PanelLayout space =
+      LayOut({four[1], four[1]}, BoxFrom({0, 0, 0}, {300, 100, 150}), {0, 0, 1000, 0});
   expect(space.panels[0].rect, 0, 0, 468, 468);
   expect(space.panels[1].rect, 532, 0, 468, 468);
 }

@@ -173,8 +173,8 @@ TEST(Plot, SpeedDoesNotDipWhereMotionsMeet) {
 }
 
 // Motions from 1 s to 2 s and from 7 s to 8 s that begin and end at speed, with the beam on, and a
-// wait with the beam on from 4 s to 5 s. In between nothing moves, nothing is asked for and the beam
-// is off, at once and up to the end; before the first nothing is known.
+// wait with the beam on from 4 s to 5 s. In between nothing moves, nothing is asked for and the
+// beam is off, at once and up to the end; before the first nothing is known.
 TEST(Plot, NothingHappensBetweenWhatIsTold) {
   PlotRecorder recorder(Laser());
   const auto move = [&](double x, int from_s) {
@@ -198,8 +198,8 @@ TEST(Plot, NothingHappensBetweenWhatIsTold) {
   move(150.0, 7);
   RunReport report;
   report.cycle_time = std::chrono::seconds(10);
-  const std::string svg = recorder.Svg(
-      report, {.curves = {PlotCurve::kSpeed, PlotCurve::kPower, PlotCurve::kAxes}});
+  const std::string svg =
+      recorder.Svg(report, {.curves = {PlotCurve::kSpeed, PlotCurve::kPower, PlotCurve::kAxes}});
   // Pixels above zero, or above the lowest of an axis.
   const auto heights = [&](int curve) {
     const std::vector<ScreenPoint> points = Curve(svg, curve);
@@ -239,7 +239,8 @@ TEST(Plot, AxesStandAtTheirPlaceBeforeTheFirstMotion) {
     shape.five_axis = five_axis;
     const std::string svg = Draw(script, shape, "axes").svg;
     EXPECT_EQ(CountOf(svg, ">X<"), 1u);
-    for (const char* still : {">Y<", ">Z<", ">A<", ">B<"}) EXPECT_EQ(CountOf(svg, still), 0u) << still;
+    for (const char* still : {">Y<", ">Z<", ">A<", ">B<"})
+      EXPECT_EQ(CountOf(svg, still), 0u) << still;
     const std::vector<ScreenPoint> x = Curve(svg, 0);
     EXPECT_NEAR(HeightAt(x, 0.1), x.front().y, 0.01);
     EXPECT_NEAR(x.front().y - x.back().y, 96.0 / 1.08, 0.1);  // 50 mm, with 4 % on both sides
@@ -305,8 +306,8 @@ TEST(Plot, MarksAreLimited) {
       if (halts) {
         recorder.OnHalt({.at = FromSeconds(0.005 * k), .why = "PAUSE"});
       } else {
-        recorder.OnDiagnostic(FromSeconds(0.005 * k), {.code = ErrorCode::kSpeedLimited,
-                                                      .severity = Severity::kWarning});
+        recorder.OnDiagnostic(FromSeconds(0.005 * k),
+                              {.code = ErrorCode::kSpeedLimited, .severity = Severity::kWarning});
       }
     }
     RunReport report;

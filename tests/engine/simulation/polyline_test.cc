@@ -30,8 +30,8 @@ TEST(Polyline, ChordsHaveLimits) {
   EXPECT_EQ(ChordCount(1e9, 1e6, 1e-3), kChordsMax);
 }
 
-// COORD ROBOT: B swings a tip 300 mm below its column, so the way is an arc of R 300. Every place of
-// it is within the tolerance of the polyline, chords of half the tolerance are none, and what is
+// COORD ROBOT: B swings a tip 300 mm below its column, so the way is an arc of R 300. Every place
+// of it is within the tolerance of the polyline, chords of half the tolerance are none, and what is
 // asked of a part of the way does not depend on where the part lies.
 TEST(Polyline, ASwingIsCutAsTheToleranceAllows) {
   const motion::Head head = motion::GantryHead{.length_mm = 300.0};
@@ -55,7 +55,9 @@ TEST(Polyline, ASwingIsCutAsTheToleranceAllows) {
       });
       EXPECT_EQ(before, part.to);
       EXPECT_LE(worst, tolerance);
-      EXPECT_GT(worst, tolerance / 6.0);  // halved once too often at most, with a quarter for what lies between
+      EXPECT_GT(
+          worst,
+          tolerance / 6.0);  // halved once too often at most, with a quarter for what lies between
     }
     EXPECT_EQ(counts[0], counts[1]) << tolerance;
   }

@@ -223,7 +223,7 @@ TEST(ReportFigures, EachProgramHasItsOwn) {
   const ScopeFigures& called = both.programs.at(44);
   EXPECT_NEAR(called.tip_figures.peak_speed, 40.0, 1e-6);
   EXPECT_EQ(called.tip_figures.speed_limit, 500.0);  // of a contour
-  EXPECT_GT(main.tip_figures.peak_speed, 100.0);  // of the way from the home position
+  EXPECT_GT(main.tip_figures.peak_speed, 100.0);     // of the way from the home position
   EXPECT_NEAR(called.tip.min.x, 1100.0, 1e-6);
   EXPECT_NEAR(called.tip.max.x, 1180.0, 1e-6);
   EXPECT_NEAR(called.programmed.max.y, 1050.0, 1e-9);

@@ -363,7 +363,8 @@ TEST(ReportRecorder, TheBeamCountsInItsProgram) {
   EXPECT_EQ(report.beam.by_power[10], FromSeconds(1.5));
 }
 
-// A report has room for 128 programs; each of those has all of its figures, whenever it first moved.
+// A report has room for 128 programs; each of those has all of its figures, whenever it first
+// moved.
 TEST(ReportRecorder, ProgramsOfTheReportHaveAllTheirFigures) {
   Script script;
   script.Step(0, 1);

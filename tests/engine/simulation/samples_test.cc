@@ -145,7 +145,8 @@ TEST(Samples, TimeBeforeAWaitIsNotTheWaits) {
   EXPECT_GE(dark, 10);
 }
 
-// motion.md 9: an event has the place of its own, and the lines before it keep theirs; a halt is one.
+// motion.md 9: an event has the place of its own, and the lines before it keep theirs; a halt is
+// one.
 TEST(Samples, EventsHaveTheirOwnPlace) {
   Script script;
   script.Step(1, 1).Line({0, 0, 0}, {1, 0, 0}).Nothing(1.0);

@@ -31,16 +31,16 @@ TEST(XmlText, KeepsUtf8AndReplacesWhatXmlCannotHold) {
 // RFC 3629: the first and last of each length are kept; one short of each is overlong, one more is
 // beyond Unicode or a surrogate; XML 1.0 leaves U+FFFE and U+FFFF out.
 TEST(XmlText, BoundsOfUtf8) {
-  for (const char* good : {"\x7E", "\xC2\x80", "\xDF\xBF", "\xE0\xA0\x80", "\xED\x9F\xBF",
-                           "\xEE\x80\x80", "\xEF\xBF\xBD", "\xF0\x90\x80\x80",
-                           "\xF4\x8F\xBF\xBF"}) {
+  for (const char* good :
+       {"\x7E", "\xC2\x80", "\xDF\xBF", "\xE0\xA0\x80", "\xED\x9F\xBF", "\xEE\x80\x80",
+        "\xEF\xBF\xBD", "\xF0\x90\x80\x80", "\xF4\x8F\xBF\xBF"}) {
     EXPECT_EQ(XmlText(good), good);
     EXPECT_EQ(XmlText(std::string(good) + "z"), std::string(good) + "z");
   }
   for (const std::string bad :
        {"\xC1\xBF", "\xE0\x9F\xBF", "\xED\xA0\x80", "\xED\xBF\xBF", "\xEF\xBF\xBE", "\xEF\xBF\xBF",
-        "\xF0\x8F\xBF\xBF", "\xF4\x90\x80\x80", "\xF5\x80\x80\x80", "\xC2", "\xE2\x82", "\xF0\x9F\x98",
-        "\xE2\x28\xA1", "\xE2\x82\xC0"}) {
+        "\xF0\x8F\xBF\xBF", "\xF4\x90\x80\x80", "\xF5\x80\x80\x80", "\xC2", "\xE2\x82",
+        "\xF0\x9F\x98", "\xE2\x28\xA1", "\xE2\x82\xC0"}) {
     std::string expected;
     for (const char c : bad) expected += c == '(' ? "(" : kUnknown;
     EXPECT_EQ(XmlText(bad), expected);
@@ -107,8 +107,8 @@ TEST(PathData, CommandsAreShort) {
   EXPECT_EQ(data.text(), "M10 20l1-.5-.5 0a5 2.5 30 0 1 -10.5-19.5l1 1m1 1");
 }
 
-// After a step to the left no blank separates, after one to the right or none at all it does; a pair
-// of an arc or a move is no pair of a line.
+// After a step to the left no blank separates, after one to the right or none at all it does; a
+// pair of an arc or a move is no pair of a line.
 TEST(PathData, NumbersAreSeparated) {
   PathData data;
   EXPECT_FALSE(data.StandsAt({0, 0}));

@@ -113,8 +113,8 @@ TEST(ToolpathLevel, WhatIsNearTheAnchorBindsNothing) {
   EXPECT_EQ(AllPoints(Coarser({far}, 0.08)), far.points);
 }
 
-// The first point binds the direction by asin(80 / 1000) = 0.0801 rad: one that goes off by 0.07 rad
-// passes it, one by 0.09 rad does not. Both ways, since the cone has two sides.
+// The first point binds the direction by asin(80 / 1000) = 0.0801 rad: one that goes off by 0.07
+// rad passes it, one by 0.09 rad does not. Both ways, since the cone has two sides.
 TEST(ToolpathLevel, TheConeIsAsWideAsTheTolerance) {
   for (const double side : {1.0, -1.0}) {
     const auto kept = [&](double angle) {
@@ -135,8 +135,9 @@ TEST(ToolpathLevel, ConesShareWhatBothAllow) {
       return ToolpathPoint{static_cast<std::int32_t>(std::lround(radius * std::cos(angle))),
                            static_cast<std::int32_t>(std::lround(radius * std::sin(angle))), 0};
     };
-    return AllPoints(Coarser({OneRun({{0, 0, 0}, {1000, 0, 0}, at(2000, second), at(20000, third)})},
-                             0.08))
+    return AllPoints(
+               Coarser({OneRun({{0, 0, 0}, {1000, 0, 0}, at(2000, second), at(20000, third)})},
+                       0.08))
         .size();
   };
   EXPECT_EQ(kept(0.06, 0.024), 2u);

@@ -1,4 +1,5 @@
-// What two programs do differently, as the wire and the command tell it (proto/rmlcell/v1/program.proto).
+// What two programs do differently, as the wire and the command tell it
+// (proto/rmlcell/v1/program.proto).
 #include "proto/bridge/comparison.h"
 
 #include <gmock/gmock.h>
@@ -20,7 +21,8 @@ ComparedProgram TextOf(const std::string& text, const std::string& file_name = "
   return {.file_name = file_name, .bytes = std::make_shared<const std::string>(text)};
 }
 
-ComparisonOutcome Compared(const std::string& before, const std::string& after, const ComparisonOptions& options = {}) {
+ComparisonOutcome Compared(const std::string& before, const std::string& after,
+                           const ComparisonOptions& options = {}) {
   const auto outcome = ComparePrograms(TextOf(before), TextOf(after), options);
   EXPECT_TRUE(outcome);
   return *outcome;
@@ -33,7 +35,8 @@ TEST(Comparison, EachChangeHasItsFields) {
   EXPECT_TRUE(outcome.ok);
   const v1::DiffProgramsResponse& diff = outcome.response;
   EXPECT_FALSE(diff.equal());
-  EXPECT_THAT(diff.aspects(), ElementsAre(v1::DIFF_ASPECT_TIME, v1::DIFF_ASPECT_POWER, v1::DIFF_ASPECT_OUTPUTS));
+  EXPECT_THAT(diff.aspects(),
+              ElementsAre(v1::DIFF_ASPECT_TIME, v1::DIFF_ASPECT_POWER, v1::DIFF_ASPECT_OUTPUTS));
   ASSERT_EQ(diff.steps_size(), 3);
   EXPECT_EQ(diff.steps_dropped(), 0);
   EXPECT_EQ(diff.steps(0).step_before(), 1);
@@ -67,12 +70,14 @@ TEST(Comparison, OfPathDataAndFlow) {
   EXPECT_THAT(aspects("GOTO 20\n10 VI[2]=1\n20 VI[3]=1\n", "GOTO 10\n10 VI[2]=1\n20 VI[3]=1\n"),
               ElementsAre(v1::DIFF_ASPECT_FLOW));
   // (3, 4, 0): 5 mm.
-  const v1::DiffProgramsResponse moved = Compared("MOVE (1,2,3,0,0)\n", "MOVE (4,6,3,0,0)\n").response;
+  const v1::DiffProgramsResponse moved =
+      Compared("MOVE (1,2,3,0,0)\n", "MOVE (4,6,3,0,0)\n").response;
   EXPECT_DOUBLE_EQ(moved.steps(0).target_moved_mm(), 5.0);
 }
 
 TEST(Comparison, TheSameInOtherWords) {
-  const ComparisonOutcome outcome = Compared("SPEED 5\nDELAY 1\n", "speed 5.0 ; slow\nDELAY 1.\nENDTASK\n");
+  const ComparisonOutcome outcome =
+      Compared("SPEED 5\nDELAY 1\n", "speed 5.0 ; slow\nDELAY 1.\nENDTASK\n");
   EXPECT_TRUE(outcome.ok);
   EXPECT_TRUE(outcome.response.equal());
   EXPECT_TRUE(outcome.response.compared_runs());
@@ -82,7 +87,8 @@ TEST(Comparison, TheSameInOtherWords) {
   EXPECT_EQ(outcome.response.picture_svg(), "");  // not asked for
 }
 
-// The name decides units and form: an object is what was made of its source, inches are converted first (OPT-2.04).
+// The name decides units and form: an object is what was made of its source, inches are converted
+// first (OPT-2.04).
 TEST(Comparison, InchesAndObjects) {
   const auto equal = [](const ComparedProgram& before, const ComparedProgram& after) {
     const auto outcome = ComparePrograms(before, after, {});
@@ -117,7 +123,8 @@ TEST(Comparison, ManyChanges) {
 TEST(Comparison, FiguresOfBothRuns) {
   const v1::DiffProgramsResponse diff = Compared("DELAY 1\n", "DELAY 2\n").response;
   EXPECT_TRUE(diff.compared_runs());
-  const auto cycle = std::ranges::find(diff.figures(), "cycle_time", &v1::DiffProgramsResponse::FigureChange::name);
+  const auto cycle = std::ranges::find(diff.figures(), "cycle_time",
+                                       &v1::DiffProgramsResponse::FigureChange::name);
   ASSERT_NE(cycle, diff.figures().end());
   EXPECT_EQ(cycle->unit(), "s");
   EXPECT_NEAR(cycle->after() - cycle->before(), 1.0, 1e-9);
@@ -126,7 +133,8 @@ TEST(Comparison, FiguresOfBothRuns) {
 
 // A program that halts, waits or goes on for ever has no figures, whichever of the two it is.
 TEST(Comparison, OfRunsThatDoNotEndByThemselves) {
-  const auto runs = [](const std::string& before, const std::string& after, const ComparisonOptions& options = {}) {
+  const auto runs = [](const std::string& before, const std::string& after,
+                       const ComparisonOptions& options = {}) {
     const ComparisonOutcome outcome = Compared(before, after, options);
     EXPECT_TRUE(outcome.ok);
     EXPECT_TRUE(outcome.response.compared_runs() || outcome.response.figures_size() == 0);
@@ -143,7 +151,8 @@ TEST(Comparison, OfRunsThatDoNotEndByThemselves) {
   EXPECT_TRUE(runs(ends, "DELAY 2\n", {.steps_max = 100, .go_on = [] { return true; }}));
 }
 
-// An object that does not fit into the memory of the control cannot run (OPT-1.08); its steps are compared all the same.
+// An object that does not fit into the memory of the control cannot run (OPT-1.08); its steps are
+// compared all the same.
 TEST(Comparison, OfObjectsThatAreTooLong) {
   std::string lines;
   for (int i = 0; i < 8000; ++i) lines += "VI[1]=1\n";
@@ -161,8 +170,9 @@ TEST(Comparison, OfObjectsThatAreTooLong) {
 // The picture names both by the last part of their names, and says where a run ended early.
 TEST(Comparison, ThePicture) {
   const std::string line = "COORD ABSOL\nPATH LIN\nMOVE (100.,100.,-100.,0.,0.)\n";
-  const auto outcome = ComparePrograms(TextOf(line + "MOVE (200.,100.,-100.,0.,0.)\n", "old/here/one.S"),
-                                       TextOf(line + "STOP\n", "C:\\new\\two.S"), {.picture = true});
+  const auto outcome =
+      ComparePrograms(TextOf(line + "MOVE (200.,100.,-100.,0.,0.)\n", "old/here/one.S"),
+                      TextOf(line + "STOP\n", "C:\\new\\two.S"), {.picture = true});
   ASSERT_TRUE(outcome);
   const std::string& picture = outcome->response.picture_svg();
   EXPECT_THAT(picture, HasSubstr("<svg"));
@@ -176,7 +186,8 @@ TEST(Comparison, ThePicture) {
 
 TEST(Comparison, TheNoteSaysBudgetExceededInWords) {
   ComparisonOptions options{.picture = true, .steps_max = 100};
-  const std::string goes_on = "COORD ABSOL\nMOVE (100.,100.,-100.,0.,0.)\n10 VI[2] = VI[3]\nGOTO 10\n";
+  const std::string goes_on =
+      "COORD ABSOL\nMOVE (100.,100.,-100.,0.,0.)\n10 VI[2] = VI[3]\nGOTO 10\n";
   const ComparisonOutcome outcome = Compared(goes_on, goes_on, options);
   EXPECT_THAT(outcome.response.picture_svg(), HasSubstr("budget exceeded at 1/"));
 }
@@ -185,7 +196,8 @@ TEST(Comparison, TheNoteSaysBudgetExceededInWords) {
 TEST(Comparison, ErrorsOfATextAreItsFindings) {
   for (const bool first : {true, false}) {
     const std::string wrong = "SPEED 101\nSPEED 102\n";
-    const ComparisonOutcome outcome = first ? Compared(wrong, "DELAY 1\n") : Compared("DELAY 1\n", wrong);
+    const ComparisonOutcome outcome =
+        first ? Compared(wrong, "DELAY 1\n") : Compared("DELAY 1\n", wrong);
     EXPECT_FALSE(outcome.ok);
     EXPECT_EQ(outcome.diagnostics[first ? 0 : 1].size(), 2U);
     EXPECT_EQ(outcome.diagnostics[first ? 1 : 0].size(), 0U);
@@ -200,14 +212,16 @@ TEST(Comparison, WhatIsNoProgramOfTheOptimo) {
   const ComparedProgram good = TextOf("DELAY 1\n");
   for (const bool first : {true, false}) {
     const auto refused = [&](const ComparedProgram& other) {
-      const auto outcome = first ? ComparePrograms(other, good, {}) : ComparePrograms(good, other, {});
+      const auto outcome =
+          first ? ComparePrograms(other, good, {}) : ComparePrograms(good, other, {});
       EXPECT_FALSE(outcome);
       return outcome ? Error{} : outcome.error();
     };
     const Error mill = refused(TextOf("PU;", "part.rml"));
     EXPECT_EQ(mill.code, ErrorCode::kCellInvalidArgument);
     EXPECT_THAT(mill.detail, HasSubstr("part.rml is a program for Roland"));
-    EXPECT_EQ(refused(TextOf(std::string("LMR\x01\xFF", 5), "a.O")).code, ErrorCode::kObjectCorrupt);
+    EXPECT_EQ(refused(TextOf(std::string("LMR\x01\xFF", 5), "a.O")).code,
+              ErrorCode::kObjectCorrupt);
   }
 }
 

@@ -6,7 +6,8 @@ namespace rmlcell::server {
 namespace {
 
 Caller Admitted(const Gate& gate, std::multimap<std::string, std::string> metadata) {
-  const auto caller = gate.Admit({.method = "/a.B/C", .peer = "ipv4:127.0.0.1:7", .metadata = std::move(metadata)});
+  const auto caller =
+      gate.Admit({.method = "/a.B/C", .peer = "ipv4:127.0.0.1:7", .metadata = std::move(metadata)});
   EXPECT_TRUE(caller);
   return *caller;
 }
@@ -28,7 +29,8 @@ TEST(Gate, OnlyTheGatewaySpeaksForABrowser) {
   };
   EXPECT_EQ(gate.web_secret(), "secret");
   EXPECT_EQ(peer(gate, "secret"), "web:10.1.1.1:5");
-  for (const std::string wrong : {"", "Secret", "secret ", "secre"}) EXPECT_EQ(peer(gate, wrong), "ipv4:127.0.0.1:7");
+  for (const std::string wrong : {"", "Secret", "secret ", "secre"})
+    EXPECT_EQ(peer(gate, wrong), "ipv4:127.0.0.1:7");
   EXPECT_EQ(Admitted(gate, {{"rmlcell-web-peer", "10.1.1.1:5"}}).peer, "ipv4:127.0.0.1:7");
   EXPECT_EQ(peer(Gate(""), ""), "ipv4:127.0.0.1:7");
   EXPECT_EQ(Admitted(Gate(""), {{"rmlcell-web-peer", "10.1.1.1:5"}}).peer, "ipv4:127.0.0.1:7");
@@ -41,7 +43,10 @@ TEST(Gate, ARequestIdFitsALineOfTheLog) {
   };
   EXPECT_EQ(shown("r-7"), "r-7");
   EXPECT_EQ(shown(" !}~"), " !}~");
-  EXPECT_EQ(shown("a\x1F" "b\x7F" "c\n\xC3\xBC"), "a?b?c???");
+  EXPECT_EQ(shown("a\x1F"
+                  "b\x7F"
+                  "c\n\xC3\xBC"),
+            "a?b?c???");
   EXPECT_EQ(shown(std::string(64, 'x')), std::string(64, 'x'));
   EXPECT_EQ(shown(std::string(64, 'x') + "y"), std::string(64, 'x'));
 }

@@ -12,8 +12,8 @@
 namespace rmlcell::server {
 namespace {
 
-using storage::EventRecord;
 using std::chrono::milliseconds;
+using storage::EventRecord;
 
 constexpr milliseconds kNever = std::chrono::hours(24 * 366);  // of looks without a hint
 
@@ -159,8 +159,8 @@ TEST(EventFeed, WakesTheWatchersOfTheJobAndThoseOfEverything) {
   EXPECT_EQ(two, 1);  // one commit wakes once, whatever it holds
 }
 
-// The fake log answers no question about one job: what comes, comes from memory. Issue "Watch": many
-// watchers of a job cost the store no more than one.
+// The fake log answers no question about one job: what comes, comes from memory. Issue "Watch":
+// many watchers of a job cost the store no more than one.
 TEST(EventFeed, ServesTheWatchersOfAJobFromMemory) {
   FakeLog log;
   EventFeed feed(log);
@@ -278,7 +278,8 @@ TEST(EventFeed, SkipsEventsThatAreGoneAndTellsWatchersSo) {
   log.Write(7, 1);
   ASSERT_TRUE(Eventually([&] { return feed.position() == 13; }));
   ExpectPositions(Must(feed.EventsAfter(12, 10)), 13, 1);
-  // Nor does memory leave them out in silence: who saw the second event of the first job asks the log.
+  // Nor does memory leave them out in silence: who saw the second event of the first job asks the
+  // log.
   log.Write(1, 1);
   ASSERT_TRUE(Eventually([&] { return feed.position() == 14; }));
   EXPECT_FALSE(feed.JobEvents(1, 2, 10));
@@ -343,7 +344,8 @@ TEST(EventFeed, TellsAtMostTwentyPositionsASecond) {
   FakeLog log;
   TestSteadyClock steady;
   EventFeed feed(log, {.clock = steady.clock(), .poll_interval = kNever});
-  std::vector<std::string> told;  // touched by the thread of the feed alone, until `feed` has caught up
+  std::vector<std::string>
+      told;  // touched by the thread of the feed alone, until `feed` has caught up
   std::atomic<int> tellings = 0;
   const auto watch = feed.Subscribe(1, [&, seen = std::uint64_t{0}]() mutable {
     const auto progress = feed.ProgressAfter(1, seen);

@@ -92,9 +92,7 @@ class FakeLog final : public storage::Store {
     return No();
   }
   Result<storage::ProgramRecord> GetProgram(std::string_view, int) override { return No(); }
-  Result<storage::ProgramSummary> GetProgramSummary(std::string_view, int) override {
-    return No();
-  }
+  Result<storage::ProgramSummary> GetProgramSummary(std::string_view, int) override { return No(); }
   Result<std::vector<storage::ProgramRecord>> GetProgramMemory(std::string_view) override {
     return No();
   }
@@ -129,7 +127,8 @@ class FakeLog final : public storage::Store {
   void Submit(storage::NewJob, std::function<void(Result<storage::SubmittedJob>)> done) override {
     done(No());
   }
-  Result<std::optional<storage::JobRecord>> FindSubmitted(std::string_view, std::string_view) override {
+  Result<std::optional<storage::JobRecord>> FindSubmitted(std::string_view,
+                                                          std::string_view) override {
     return No();
   }
   Result<storage::JobRecord> GetJob(std::int64_t) override { return No(); }

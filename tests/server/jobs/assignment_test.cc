@@ -223,7 +223,8 @@ TEST_F(AssignmentTest, BringsTitlesAndTheExecutableOfTheMainProgram) {
   EXPECT_EQ(made.object_revisions.size(), 2U);
 }
 
-// Programs of up to 64 KiB go with the assignment, as long as all of them together have up to 1 MiB.
+// Programs of up to 64 KiB go with the assignment, as long as all of them together have up to 1
+// MiB.
 TEST_F(AssignmentTest, FollowsTheAssignmentFromAByteMoreThanGoesWithIt) {
   constexpr std::size_t kInline = 65'536;
   Put(1, std::string(kInline + 1, 'm'));

@@ -52,7 +52,8 @@ class FakeWorker {
 
   // Waits for a job and takes it. False: none came.
   bool Take(std::chrono::milliseconds patience = kPatience);
-  // Whether a job is there to be taken now. Says that none comes only after DispatcherBed::LookAgain.
+  // Whether a job is there to be taken now. Says that none comes only after
+  // DispatcherBed::LookAgain.
   bool HasJob() { return line_->Has(v1::WorkResponse::kAssignment); }
   const v1::WorkerAssignment& assignment() const { return assignment_; }
   std::int64_t job() const { return assignment_.lease().job(); }

@@ -26,7 +26,8 @@ std::int64_t SubmitStored(storage::Store& store, int slot, const std::string& ob
       .job.id;
 }
 
-// design.md section 3: a full disk must not leave the job without an owner until its lease runs out.
+// design.md section 3: a full disk must not leave the job without an owner until its lease runs
+// out.
 TEST(DispatcherFailures, AnEndThatCannotBeStoredIsAnAttemptThatWasLost) {
   DispatcherBed bed;
   storage::Store& store = bed.server.store();
@@ -73,7 +74,8 @@ TEST(DispatcherFailures, AnEndThatCannotBeStoredInTheLastAttemptFailsTheJob) {
   EXPECT_TRUE(bed.Events(job).back().has_ended());
 }
 
-// The same where there is nothing to work on: no time of a lease passes before it is looked at again.
+// The same where there is nothing to work on: no time of a lease passes before it is looked at
+// again.
 TEST(DispatcherFailures, AJobThatCannotBeWorkedOnIsLookedAtAgainWhenItsEndIsNotStored) {
   DispatcherBed bed;
   const std::int64_t broken =
@@ -253,8 +255,8 @@ TEST(DispatcherLoss, IsToldInTheLogOfTheJob) {
   EXPECT_EQ(events[4].attempt(), 2);
 }
 
-// OPT-1.12: an executable belongs to one revision of its object; one of a program that was deleted, or
-// deleted and stored anew, is not kept.
+// OPT-1.12: an executable belongs to one revision of its object; one of a program that was deleted,
+// or deleted and stored anew, is not kept.
 TEST(DispatcherFinish, DropsExecutablesOfObjectsThatAreGone) {
   DispatcherBed bed;
   storage::Store& store = bed.server.store();

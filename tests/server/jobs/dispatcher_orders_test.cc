@@ -1,8 +1,7 @@
-#include "server/jobs/dispatcher.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "server/jobs/dispatcher.h"
 #include "server/names.h"
 #include "tests/server/jobs/dispatcher_bed.h"
 

@@ -75,7 +75,8 @@ TEST_F(JobBookTest, TheSameRequestIdIsTheSameJob) {
   EXPECT_EQ(Jobs(), 2);
 }
 
-// What decides whether a submission is another job's repetition is SHA-256, of all that it asks for.
+// What decides whether a submission is another job's repetition is SHA-256, of all that it asks
+// for.
 TEST_F(JobBookTest, ARequestIsKnownByItsSha256) {
   std::set<std::string> hashes;
   for (const std::string source : {"STOP\n", "STOP \n"}) {
@@ -89,7 +90,8 @@ TEST_F(JobBookTest, ARequestIsKnownByItsSha256) {
   EXPECT_EQ(hashes.size(), 2U);
 }
 
-// Earlier versions kept a number of 64 bits: their jobs are read, and never taken for a new request's.
+// Earlier versions kept a number of 64 bits: their jobs are read, and never taken for a new
+// request's.
 TEST_F(JobBookTest, AJobOfAnEarlierVersionIsReadAndItsRequestIdIsUsed) {
   v1::SubmitJobRequest request = Simulate();
   request.set_request_id("r");
@@ -234,14 +236,17 @@ TEST_F(JobBookTest, ChecksWhatCanBeCheckedBeforeWorkBegins) {
   EXPECT_TRUE(Submit(Simulate(std::string(2047, ';') + "\n")));
 }
 
-// RML1-5A.01, OPT-B.08: the parameters of a job go over those of its machine, and must fit together with them.
+// RML1-5A.01, OPT-B.08: the parameters of a job go over those of its machine, and must fit together
+// with them.
 TEST_F(JobBookTest, ParametersOfAJobMustFitThoseOfItsMachine) {
   Must(bed.store().PutMachine(
       {.id = "narrow", .family = "rml1", .parameters = {{"X_MIN", "300"}, {"X_MAX", "400"}}}, 0));
-  const auto code = [&](const std::string& machine, const std::string& name, const std::string& value) {
+  const auto code = [&](const std::string& machine, const std::string& name,
+                        const std::string& value) {
     v1::SubmitJobRequest request = Simulate();
     request.mutable_job()->set_machine("machines/" + machine);
-    if (machine != "optimo-1") request.mutable_job()->mutable_inline_program()->set_file_name("a.rml");
+    if (machine != "optimo-1")
+      request.mutable_job()->mutable_inline_program()->set_file_name("a.rml");
     (*request.mutable_job()->mutable_simulation()->mutable_parameters())[name] = value;
     return CodeOf(Submit(request));
   };
@@ -257,7 +262,8 @@ TEST_F(JobBookTest, ParametersOfAJobMustFitThoseOfItsMachine) {
 // OPT-7.96 to 7.101 for the laser; of a mill only what its profile has.
 TEST_F(JobBookTest, AJobMayAskForTheVariablesOfItsMachine) {
   v1::SubmitJobRequest request = Simulate();
-  for (const std::string name : {"VR[0..99]", "vi[99]", "VL[0]", "IL[1]", "OL[2]", "IA[0]", "OA[3]"}) {
+  for (const std::string name :
+       {"VR[0..99]", "vi[99]", "VL[0]", "IL[1]", "OL[2]", "IA[0]", "OA[3]"}) {
     request.mutable_job()->mutable_simulation()->add_variables(name);
   }
   EXPECT_TRUE(Submit(request));

@@ -1,4 +1,5 @@
-// The bounds of a submission and of lists, each on both sides; values from proto/rmlcell/v1/job.proto.
+// The bounds of a submission and of lists, each on both sides; values from
+// proto/rmlcell/v1/job.proto.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -178,9 +179,9 @@ TEST_F(JobLimits, OfSimulations) {
       EXPECT_EQ(asked([&](Options& o) { range.set(o, bad); }), kInvalid) << range.what << bad;
     }
   }
-  for (const auto mode : {v1::OPERATING_MODE_UNSPECIFIED, v1::OPERATING_MODE_REMOTE,
-                          v1::OPERATING_MODE_CYCLE, v1::OPERATING_MODE_SINGLE,
-                          v1::OPERATING_MODE_REPEAT}) {
+  for (const auto mode :
+       {v1::OPERATING_MODE_UNSPECIFIED, v1::OPERATING_MODE_REMOTE, v1::OPERATING_MODE_CYCLE,
+        v1::OPERATING_MODE_SINGLE, v1::OPERATING_MODE_REPEAT}) {
     EXPECT_EQ(asked([&](Options& o) { o.set_mode(mode); }), std::nullopt) << mode;
   }
   EXPECT_EQ(asked([](Options& o) { o.set_mode(static_cast<v1::OperatingMode>(99)); }), kInvalid);
@@ -223,7 +224,8 @@ TEST_F(JobLimits, OfInputsOverTime) {
   for (const int kind : {0, 99}) EXPECT_EQ(asked(1.0, kind, 1, 1.0), kInvalid) << kind;
 }
 
-// Job.inline_slot: 1 to 99, 0 is 1. SlotProgram.slot: 1 to 99, no slot twice, nor that of the inline program.
+// Job.inline_slot: 1 to 99, 0 is 1. SlotProgram.slot: 1 to 99, no slot twice, nor that of the
+// inline program.
 TEST_F(JobLimits, OfSlots) {
   const auto asked = [&](int inline_slot, const std::vector<int>& further) {
     return Asked([&](v1::Job& job) {
@@ -242,7 +244,8 @@ TEST_F(JobLimits, OfSlots) {
   EXPECT_EQ(asked(0, {1}), kInvalid);
   EXPECT_EQ(asked(5, {5}), kInvalid);
   EXPECT_EQ(asked(0, {4, 4}), kInvalid);
-  for (const int slot : {-1, 0, 100}) EXPECT_EQ(asked(0, {slot}), ErrorCode::kProgramNumber) << slot;
+  for (const int slot : {-1, 0, 100})
+    EXPECT_EQ(asked(0, {slot}), ErrorCode::kProgramNumber) << slot;
 }
 
 // limits.program_bytes for the program and for each further one.

@@ -157,11 +157,8 @@ TEST(JobMessages, AJobHasAllOfItsRecord) {
 }
 
 TEST(JobMessages, AProductHasItsPathOnTheWebPort) {
-  const v1::Artifact artifact = ToProto(storage::ArtifactRecord{.job = 17,
-                                                                .name = "report",
-                                                                .media_type = "image/svg+xml",
-                                                                .sha256 = "abc",
-                                                                .size = 33});
+  const v1::Artifact artifact = ToProto(storage::ArtifactRecord{
+      .job = 17, .name = "report", .media_type = "image/svg+xml", .sha256 = "abc", .size = 33});
   EXPECT_EQ(artifact.name(), "report");
   EXPECT_EQ(artifact.media_type(), "image/svg+xml");
   EXPECT_EQ(artifact.size(), 33);

@@ -27,7 +27,8 @@ TEST(ProgramPlace, SlotsAreOneToNinetyNine) {
     EXPECT_TRUE(CheckSlot(Optimo(), slot, "slot"));
     EXPECT_TRUE(CheckSlot(Mill(), slot, "slot"));
   }
-  for (const std::int64_t slot : {std::int64_t{0}, std::int64_t{-1}, std::int64_t{100}, INT64_MAX}) {
+  for (const std::int64_t slot :
+       {std::int64_t{0}, std::int64_t{-1}, std::int64_t{100}, INT64_MAX}) {
     const Status laser = CheckSlot(Optimo(), slot, "job.inline_slot");
     ASSERT_FALSE(laser) << slot;
     EXPECT_EQ(laser.error().code, ErrorCode::kProgramNumber);
@@ -43,7 +44,8 @@ TEST(ProgramPlace, SlotsAreOneToNinetyNine) {
 // OPT-1.11: the executable of slot n has the number n + 100; a mill has none.
 TEST(ProgramPlace, NumbersAreThoseOfTheFamily) {
   const auto checked = [](const machine::MachineFamily& family, int number) {
-    return CodeOf(CheckNumber(family, Must(ParseProgramName("machines/m/programs/" + std::to_string(number)))));
+    return CodeOf(CheckNumber(
+        family, Must(ParseProgramName("machines/m/programs/" + std::to_string(number)))));
   };
   for (const int number : {1, 99}) {
     EXPECT_EQ(checked(Optimo(), number), std::nullopt);
@@ -70,7 +72,9 @@ TEST(ProgramPlace, IsFoundByItsName) {
       Must(FindProgramPlace(bed.store(), "machines/optimo-1/programs/145"));
   EXPECT_EQ(executable.slot, 45);
   EXPECT_TRUE(executable.executable);
-  const auto code = [&](std::string_view name) { return CodeOf(FindProgramPlace(bed.store(), name)); };
+  const auto code = [&](std::string_view name) {
+    return CodeOf(FindProgramPlace(bed.store(), name));
+  };
   EXPECT_EQ(code("machines/optimo-1"), ErrorCode::kCellInvalidArgument);
   EXPECT_EQ(code("machines/none/programs/1"), ErrorCode::kCellUnknownMachine);
   EXPECT_EQ(code("machines/optimo-1/programs/100"), ErrorCode::kProgramNumber);
@@ -80,7 +84,8 @@ TEST(ProgramPlace, IsFoundByItsName) {
   // OPT-1.10: a laser says it with its own code, a mill with that of the cell.
   EXPECT_EQ(EmptySlot(Optimo(), "machines/m/programs/4").code, ErrorCode::kProgramMissing);
   EXPECT_EQ(EmptySlot(Mill(), "machines/m/programs/4").code, ErrorCode::kCellNotFound);
-  EXPECT_THAT(EmptySlot(Mill(), "machines/m/programs/4").detail, HasSubstr("machines/m/programs/4"));
+  EXPECT_THAT(EmptySlot(Mill(), "machines/m/programs/4").detail,
+              HasSubstr("machines/m/programs/4"));
 }
 
 // A name tells the family where it can: nothing of the one is stored for the other.
@@ -98,11 +103,13 @@ TEST(FileFamily, IsToldByTheEndOfTheName) {
     EXPECT_TRUE(CheckFileFamily(name, Mill())) << name;
   }
   const Status refused = CheckFileFamily("part.rml", Optimo());
-  EXPECT_EQ(refused.error().detail,
-            "part.rml is a program for Roland mill or engraver, RML-1, not for Amada OPTIMO 5-axis laser");
+  EXPECT_EQ(
+      refused.error().detail,
+      "part.rml is a program for Roland mill or engraver, RML-1, not for Amada OPTIMO 5-axis laser");
 }
 
-// AIP-134: the fields that the mask names; all of them for "*"; without a mask those that are given.
+// AIP-134: the fields that the mask names; all of them for "*"; without a mask those that are
+// given.
 TEST(UpdateMask, SaysWhichFieldsChange) {
   constexpr std::array<std::string_view, 3> kFields = {"title", "notes", "programs"};
   const auto fields = [&](const std::vector<std::string>& paths, const v1::Project& wanted) {
@@ -113,7 +120,8 @@ TEST(UpdateMask, SaysWhichFieldsChange) {
   v1::Project project;
   EXPECT_THAT(Must(fields({}, project)), IsEmpty());
   EXPECT_THAT(Must(fields({"title"}, project)), ElementsAre("title"));
-  EXPECT_THAT(Must(fields({"title", "programs", "title"}, project)), ElementsAre("programs", "title"));
+  EXPECT_THAT(Must(fields({"title", "programs", "title"}, project)),
+              ElementsAre("programs", "title"));
   EXPECT_THAT(Must(fields({"*"}, project)), ElementsAre("notes", "programs", "title"));
   project.set_title("t");
   EXPECT_THAT(Must(fields({}, project)), ElementsAre("title"));

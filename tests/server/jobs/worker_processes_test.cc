@@ -109,9 +109,9 @@ TEST_F(WorkerProcessesTest, StartsNoMoreWhenItIsToldSo) {
 
 // Patience on both sides of its end, by a clock of the test.
 TEST_F(WorkerProcessesTest, KillsWhatDoesNotEnd) {
-  auto processes = Must(WorkerProcesses::Start(
-      Options("trap 'echo > " + folder_.File("asked") + "' TERM\necho > " + folder_.File("ready") +
-              "\nwhile :; do sleep 0.05; done")));
+  auto processes = Must(
+      WorkerProcesses::Start(Options("trap 'echo > " + folder_.File("asked") + "' TERM\necho > " +
+                                     folder_.File("ready") + "\nwhile :; do sleep 0.05; done")));
   ASSERT_TRUE(Eventually([&] { return !Text("ready").empty(); }));
   std::jthread stopping([&] { processes->Stop(std::chrono::milliseconds(200)); });
   ASSERT_TRUE(Eventually([&] { return !Text("asked").empty(); }));

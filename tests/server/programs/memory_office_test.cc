@@ -131,7 +131,8 @@ TEST_F(MemoryOfficeTest, LinksOnlyWhatIsCalled) {
   EXPECT_TRUE(linked.findings().ok());
   EXPECT_EQ(linked.findings().diagnostics_size(), 0);
   EXPECT_FALSE(linked.executable().empty());
-  const auto wrong = Must(office.Link(LinkRequest(32, {{32, "FUNCTION 64\n"}, {64, "SPEED 101\n"}})));
+  const auto wrong =
+      Must(office.Link(LinkRequest(32, {{32, "FUNCTION 64\n"}, {64, "SPEED 101\n"}})));
   ASSERT_EQ(wrong.findings().diagnostics_size(), 1);
   EXPECT_EQ(wrong.findings().diagnostics(0).code(), "OPT-E7004");
   EXPECT_TRUE(wrong.executable().empty());

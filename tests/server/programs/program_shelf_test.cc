@@ -214,7 +214,8 @@ TEST_F(ProgramShelfTest, SlotsHaveTheCodesOfTheirMachine) {
     EXPECT_EQ(CodeOf(shelf.Get(Name(number, "mill-1"))), ErrorCode::kCellInvalidArgument) << number;
   }
   EXPECT_EQ(CodeOf(shelf.Get(Name(7, "mill-1"))), ErrorCode::kCellNotFound);
-  EXPECT_EQ(CodeOf(shelf.Read(Name(7, "mill-1"), v1::PROGRAM_FORM_SOURCE)), ErrorCode::kCellNotFound);
+  EXPECT_EQ(CodeOf(shelf.Read(Name(7, "mill-1"), v1::PROGRAM_FORM_SOURCE)),
+            ErrorCode::kCellNotFound);
   EXPECT_EQ(CodeOf(shelf.Get(Name(100))), ErrorCode::kProgramNumber);
   EXPECT_EQ(CodeOf(shelf.Get(Name(7))), ErrorCode::kProgramMissing);
   EXPECT_EQ(CodeOf(shelf.Get(Name(100, "none"))), ErrorCode::kCellUnknownMachine);
@@ -230,7 +231,8 @@ TEST_F(ProgramShelfTest, AStreamIsItsOwnObject) {
   EXPECT_EQ(Must(shelf.Read(Name(7, "mill-1"), v1::PROGRAM_FORM_SOURCE)).file_name, "a.rml");
   EXPECT_EQ(CodeOf(shelf.Store({.name = Name(107, "mill-1"), .bytes = "IN;"})),
             ErrorCode::kCellInvalidArgument);
-  EXPECT_EQ(CodeOf(shelf.Store({.name = Name(7, "mill-1"), .form = v1::PROGRAM_FORM_EXECUTABLE, .bytes = "IN;"})),
+  EXPECT_EQ(CodeOf(shelf.Store(
+                {.name = Name(7, "mill-1"), .form = v1::PROGRAM_FORM_EXECUTABLE, .bytes = "IN;"})),
             ErrorCode::kCellInvalidArgument);
   ASSERT_TRUE(
       shelf.Store({.name = Name(8, "mill-1"), .form = v1::PROGRAM_FORM_OBJECT, .bytes = "IN;"}));
@@ -276,7 +278,8 @@ TEST_F(ProgramShelfTest, ChecksWithoutAMachineToo) {
   text.set_content("SPEED 100\n");
   EXPECT_TRUE(Must(shelf.Translate("", "", text, true)).ok);
   EXPECT_EQ(CodeOf(shelf.Translate("lathe", "", text, true)), ErrorCode::kCellUnknownFamily);
-  EXPECT_EQ(CodeOf(shelf.Translate("", "machines/none", text, true)), ErrorCode::kCellUnknownMachine);
+  EXPECT_EQ(CodeOf(shelf.Translate("", "machines/none", text, true)),
+            ErrorCode::kCellUnknownMachine);
   text.set_file_name("a.txt");
   EXPECT_EQ(CodeOf(shelf.Translate("", "", text, true)), ErrorCode::kCellFamilyUnknownFromName);
   text.clear_content();

@@ -1,5 +1,5 @@
-// The bounds of stored programs and of their lists, each on both sides, and what is told of a program;
-// values from proto/rmlcell/v1/program.proto.
+// The bounds of stored programs and of their lists, each on both sides, and what is told of a
+// program; values from proto/rmlcell/v1/program.proto.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -79,7 +79,8 @@ TEST_F(ShelfLimits, OfBytesTitlesAndFileNames) {
 
 // Program: title and file name without a folder, sizes, a hash and the etag; times of the store.
 TEST_F(ShelfLimits, WhatIsToldOfAProgram) {
-  const v1::Program first = Stored({.name = Name(45), .file_name = "a/b\\c.part.S", .bytes = "STOP\n"});
+  const v1::Program first =
+      Stored({.name = Name(45), .file_name = "a/b\\c.part.S", .bytes = "STOP\n"});
   EXPECT_EQ(first.title(), "c.part");
   EXPECT_EQ(first.file_name(), "c.part.S");
   EXPECT_EQ(first.source_bytes(), 5);
@@ -93,15 +94,17 @@ TEST_F(ShelfLimits, WhatIsToldOfAProgram) {
   EXPECT_EQ(second.etag(), "2");
   EXPECT_EQ(second.update_time().seconds() - second.create_time().seconds(), 5);
   EXPECT_NE(second.object_sha256(), first.object_sha256());
-  EXPECT_EQ(Must(shelf.Get(Name(45))).SerializeAsString().size(),
-            [&] {
-              v1::Program program = second;
-              program.clear_findings();
-              return program.SerializeAsString().size();
-            }());
+  EXPECT_EQ(Must(shelf.Get(Name(45))).SerializeAsString().size(), [&] {
+    v1::Program program = second;
+    program.clear_findings();
+    return program.SerializeAsString().size();
+  }());
 
-  const auto asked = shelf.Store(
-      {.name = Name(46), .file_name = "x/lid.S", .title = "Lid", .bytes = "STOP\n", .validate_only = true});
+  const auto asked = shelf.Store({.name = Name(46),
+                                  .file_name = "x/lid.S",
+                                  .title = "Lid",
+                                  .bytes = "STOP\n",
+                                  .validate_only = true});
   ASSERT_TRUE(asked);
   EXPECT_EQ(asked.value->name(), Name(46));
   EXPECT_EQ(asked.value->title(), "Lid");
@@ -114,8 +117,8 @@ TEST_F(ShelfLimits, WhatIsToldOfAProgram) {
 TEST_F(ShelfLimits, AnObjectIsKnownByItsFormOrItsName) {
   const std::string object = ObjectOf("SPEED 5\nSTOP\n");
   const v1::Program by_name = Stored({.name = Name(44), .file_name = "part.O", .bytes = object});
-  const v1::Program by_form =
-      Stored({.name = Name(45), .file_name = "part", .form = v1::PROGRAM_FORM_OBJECT, .bytes = object});
+  const v1::Program by_form = Stored(
+      {.name = Name(45), .file_name = "part", .form = v1::PROGRAM_FORM_OBJECT, .bytes = object});
   for (const v1::Program& program : {by_name, by_form}) {
     EXPECT_FALSE(program.has_source_bytes());
     EXPECT_EQ(program.file_name(), "");
@@ -138,7 +141,9 @@ TEST_F(ShelfLimits, AnObjectIsKnownByItsFormOrItsName) {
 TEST_F(ShelfLimits, EachFormHasItsFileName) {
   Stored({.name = Name(32), .file_name = "part.S", .bytes = "STOP\n"});
   ASSERT_TRUE(shelf.Store({.name = Name(132), .bytes = ExecutableOf(32, "STOP\n")}));
-  const auto name = [&](v1::ProgramForm form) { return Must(shelf.Read(Name(32), form)).file_name; };
+  const auto name = [&](v1::ProgramForm form) {
+    return Must(shelf.Read(Name(32), form)).file_name;
+  };
   EXPECT_EQ(name(v1::PROGRAM_FORM_SOURCE), "part.S");
   EXPECT_EQ(name(v1::PROGRAM_FORM_OBJECT), "part.O");
   EXPECT_EQ(name(v1::PROGRAM_FORM_EXECUTABLE), "part.X");
@@ -152,9 +157,11 @@ TEST_F(ShelfLimits, EachFormHasItsFileName) {
   EXPECT_EQ(CodeOf(shelf.Read(Name(133), v1::PROGRAM_FORM_SOURCE)), ErrorCode::kProgramMissing);
 }
 
-// A check takes the slot that the name says, else the first that the machine does not use (OPT-1.10).
+// A check takes the slot that the name says, else the first that the machine does not use
+// (OPT-1.10).
 TEST_F(ShelfLimits, ACheckTakesASlotOfItsOwn) {
-  const auto slot = [&](const std::string& file_name, const std::string& machine = "machines/optimo-1") {
+  const auto slot = [&](const std::string& file_name,
+                        const std::string& machine = "machines/optimo-1") {
     v1::ProgramText text;
     text.set_file_name(file_name);
     text.set_content("STOP\n");

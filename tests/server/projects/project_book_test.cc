@@ -49,7 +49,7 @@ class ProjectBookTest : public testing::Test {
     for (const double value : values) process.add_values(value);
   }
   ProgramResult<v1::Project> Create(const std::string& id, const v1::Project& project,
-                             bool validate_only = false) {
+                                    bool validate_only = false) {
     v1::CreateProjectRequest request;
     request.set_project_id(id);
     *request.mutable_project() = project;
@@ -108,9 +108,13 @@ TEST_F(ProjectBookTest, ChecksItsPartsBeforeItIsKept) {
       {"long title", kInvalid, [](auto& p) { p.set_title(std::string(201, 't')); }},
       {"long notes", kInvalid, [](auto& p) { p.set_notes(std::string((64 << 10) + 1, 'n')); }},
       {"long title of a program", kInvalid,
-       [](auto& p) { Add(p, 1, "STOP\n"), p.mutable_programs(0)->set_title(std::string(201, 't')); }},
+       [](auto& p) {
+         Add(p, 1, "STOP\n"), p.mutable_programs(0)->set_title(std::string(201, 't'));
+       }},
       {"long title of a schedule", kInvalid,
-       [](auto& p) { AddSchedule(p, 1), p.mutable_laser_schedules(0)->set_title(std::string(201, 't')); }},
+       [](auto& p) {
+         AddSchedule(p, 1), p.mutable_laser_schedules(0)->set_title(std::string(201, 't'));
+       }},
       {"slot 0", ErrorCode::kProgramNumber, [](auto& p) { Add(p, 0, "STOP\n"); }},
       {"slot 100", ErrorCode::kProgramNumber, [](auto& p) { Add(p, 100, "STOP\n"); }},
       {"slot twice", ErrorCode::kProjectDuplicate,
@@ -129,7 +133,8 @@ TEST_F(ProjectBookTest, ChecksItsPartsBeforeItIsKept) {
        }},
       {"process 3,0", ErrorCode::kProcessNumber, [](auto& p) { Define(p, 3, 0, {}); }},
       {"process 0,10", ErrorCode::kProcessNumber, [](auto& p) { Define(p, 0, 10, {}); }},
-      {"process twice", ErrorCode::kProjectDuplicate, [](auto& p) { Define(p, 0, 1, {}), Define(p, 0, 1, {}); }},
+      {"process twice", ErrorCode::kProjectDuplicate,
+       [](auto& p) { Define(p, 0, 1, {}), Define(p, 0, 1, {}); }},
   };
   ASSERT_TRUE(Create("kept", {}));
   for (const auto& [what, code, change] : cases) {
@@ -145,7 +150,8 @@ TEST_F(ProjectBookTest, ChecksItsPartsBeforeItIsKept) {
   EXPECT_EQ(Must(book.Get("projects/kept")).etag(), "1");
 }
 
-// OPT-3.03, OPT-3.04, OPT-3.06, OPT-3.08: a definition is checked when it is kept, not when it is needed.
+// OPT-3.03, OPT-3.04, OPT-3.06, OPT-3.08: a definition is checked when it is kept, not when it is
+// needed.
 TEST_F(ProjectBookTest, ChecksTheDefinitionsOfItsProcesses) {
   const std::vector<std::tuple<int, std::initializer_list<double>, ErrorCode>> cases = {
       {0, {1.0}, ErrorCode::kArgumentCount},
@@ -276,7 +282,8 @@ TEST_F(ProjectBookTest, DeletesAndListsInPages) {
   EXPECT_EQ(book.Delete(remove).error().code, ErrorCode::kCellNotFound);
 }
 
-// The family follows from the file name: a mill would take the text of a laser program for a stream.
+// The family follows from the file name: a mill would take the text of a laser program for a
+// stream.
 TEST_F(ProjectBookTest, ATransferTakesNoProgramOfAnotherFamily) {
   v1::Project project;
   Add(project, 10, "PU;", "10.rml");
@@ -287,10 +294,12 @@ TEST_F(ProjectBookTest, ATransferTakesNoProgramOfAnotherFamily) {
   request.set_machine("machines/mill-1");
   const auto refused = book.Transfer(request);
   EXPECT_EQ(CodeOf(refused), kInvalid);
-  EXPECT_THAT(refused.error.error.detail, testing::HasSubstr("program 11: 11.S is a program for Amada OPTIMO"));
+  EXPECT_THAT(refused.error.error.detail,
+              testing::HasSubstr("program 11: 11.S is a program for Amada OPTIMO"));
   EXPECT_EQ(Must(bed.store().ListPrograms("mill-1", 0, 100)).size(), 0U);
   request.set_machine("machines/optimo-1");
-  EXPECT_THAT(book.Transfer(request).error.error.detail, testing::HasSubstr("program 10: 10.rml is a program for Roland"));
+  EXPECT_THAT(book.Transfer(request).error.error.detail,
+              testing::HasSubstr("program 10: 10.rml is a program for Roland"));
   EXPECT_EQ(Programs(), 0U);
 
   v1::Project mill;
@@ -390,8 +399,8 @@ TEST_F(ProjectBookTest, InchProgramsAreConverted) {
   }
 }
 
-// OPT-8.70, OPT-8.72: the programmer gets his own text back, under a name that tells its units. A text
-// that the transfer had to write is metric, whatever the name in the project says.
+// OPT-8.70, OPT-8.72: the programmer gets his own text back, under a name that tells its units. A
+// text that the transfer had to write is metric, whatever the name in the project says.
 TEST_F(ProjectBookTest, TheStoredSourceIsThatOfTheProgrammer) {
   v1::Project project;
   Add(project, 45, "PATH HOLE (.5)  ; inches\n", "45.SI");

@@ -1,4 +1,5 @@
-// The bounds of projects and of their lists, each on both sides; values from proto/rmlcell/v1/project.proto.
+// The bounds of projects and of their lists, each on both sides; values from
+// proto/rmlcell/v1/project.proto.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -64,9 +65,11 @@ TEST_F(ProjectLimits, PagesHaveAHundredProjectsOrSoManyAsWantedUpToAThousand) {
 
 TEST_F(ProjectLimits, OfTexts) {
   EXPECT_EQ(Asked([](v1::Project& p) { p.set_title(std::string(200, 't')); }), std::nullopt);
-  EXPECT_EQ(Asked([](v1::Project& p) { p.set_title(std::string(201, 't')); }), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(Asked([](v1::Project& p) { p.set_title(std::string(201, 't')); }),
+            ErrorCode::kCellInvalidArgument);
   EXPECT_EQ(Asked([](v1::Project& p) { p.set_notes(std::string(65'536, 'n')); }), std::nullopt);
-  EXPECT_EQ(Asked([](v1::Project& p) { p.set_notes(std::string(65'537, 'n')); }), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(Asked([](v1::Project& p) { p.set_notes(std::string(65'537, 'n')); }),
+            ErrorCode::kCellInvalidArgument);
 }
 
 // OPT-1.10: slots 1 to 99.
@@ -86,7 +89,8 @@ TEST_F(ProjectLimits, OfPrograms) {
 
 // OPT-3.44: schedules 1 to 63, power 0 to 100 %.
 TEST_F(ProjectLimits, OfLaserSchedules) {
-  const auto asked = [&](int number, const std::string& mode, double power_percent, std::size_t title) {
+  const auto asked = [&](int number, const std::string& mode, double power_percent,
+                         std::size_t title) {
     return Asked([&](v1::Project& project) {
       v1::ProjectLaserSchedule& schedule = *project.add_laser_schedules();
       schedule.set_number(number);
@@ -97,10 +101,14 @@ TEST_F(ProjectLimits, OfLaserSchedules) {
   };
   for (const int number : {1, 63}) EXPECT_EQ(asked(number, "", 50.0, 200), std::nullopt) << number;
   for (const int number : {0, 64}) EXPECT_EQ(asked(number, "", 50.0, 0), ErrorCode::kScheduleRange);
-  for (const std::string mode : {"", "CW", "PULSE"}) EXPECT_EQ(asked(1, mode, 50.0, 0), std::nullopt);
-  for (const std::string mode : {"cw", "PULSED"}) EXPECT_EQ(asked(1, mode, 50.0, 0), ErrorCode::kCellInvalidArgument);
-  for (const double power : {0.0, 100.0}) EXPECT_EQ(asked(1, "CW", power, 0), std::nullopt) << power;
-  for (const double power : {-0.001, 100.001}) EXPECT_EQ(asked(1, "CW", power, 0), ErrorCode::kCellInvalidArgument) << power;
+  for (const std::string mode : {"", "CW", "PULSE"})
+    EXPECT_EQ(asked(1, mode, 50.0, 0), std::nullopt);
+  for (const std::string mode : {"cw", "PULSED"})
+    EXPECT_EQ(asked(1, mode, 50.0, 0), ErrorCode::kCellInvalidArgument);
+  for (const double power : {0.0, 100.0})
+    EXPECT_EQ(asked(1, "CW", power, 0), std::nullopt) << power;
+  for (const double power : {-0.001, 100.001})
+    EXPECT_EQ(asked(1, "CW", power, 0), ErrorCode::kCellInvalidArgument) << power;
   EXPECT_EQ(asked(1, "CW", 50.0, 201), ErrorCode::kCellInvalidArgument);
 }
 
@@ -156,7 +164,8 @@ TEST_F(ProjectLimits, WhatIsKeptOfAProject) {
 
 // Every call that names a project says so when the name is none, and does nothing.
 TEST_F(ProjectLimits, NamesThatAreNone) {
-  for (const std::string name : {"", "lid", "projects/", "projects/Lid", "machines/lid", "projects/lid/programs/1"}) {
+  for (const std::string name :
+       {"", "lid", "projects/", "projects/Lid", "machines/lid", "projects/lid/programs/1"}) {
     EXPECT_EQ(CodeOf(book.Get(name)), ErrorCode::kCellInvalidArgument) << name;
     v1::UpdateProjectRequest update;
     update.mutable_project()->set_name(name);

@@ -22,12 +22,15 @@ v1::ErrorDetail DetailOf(const grpc::Status& status) {
 }
 
 std::vector<Diagnostic> Findings(std::size_t count) {
-  Diagnostic finding{.code = ErrorCode::kLiteralRange, .severity = Severity::kAlarm, .detail = std::string(100, 'd')};
+  Diagnostic finding{.code = ErrorCode::kLiteralRange,
+                     .severity = Severity::kAlarm,
+                     .detail = std::string(100, 'd')};
   return std::vector<Diagnostic>(count, finding);
 }
 
 TEST(CallStatus, HasCodeTextAndFindings) {
-  const grpc::Status status = ToGrpcStatus(Error{ErrorCode::kCellNotFound, "jobs/7", {}}, Findings(2), 3);
+  const grpc::Status status =
+      ToGrpcStatus(Error{ErrorCode::kCellNotFound, "jobs/7", {}}, Findings(2), 3);
   EXPECT_EQ(status.error_code(), grpc::StatusCode::NOT_FOUND);
   EXPECT_EQ(status.error_message(), bridge::ErrorText({ErrorCode::kCellNotFound, "jobs/7", {}}));
   const v1::ErrorDetail detail = DetailOf(status);
@@ -40,7 +43,9 @@ TEST(CallStatus, HasCodeTextAndFindings) {
 // A text of a thousand bytes is told whole, of a longer one its first thousand.
 TEST(CallStatus, LongTextsAreCut) {
   const auto told = [](std::size_t size) {
-    return DetailOf(ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument, std::string(size, 'x'), {}}, {}, 0)).message();
+    return DetailOf(ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument, std::string(size, 'x'), {}},
+                                 {}, 0))
+        .message();
   };
   EXPECT_EQ(told(999), std::string(999, 'x'));
   EXPECT_EQ(told(1000), std::string(1000, 'x'));
@@ -56,10 +61,13 @@ TEST(CallStatus, ManyFindingsAreCutAndCounted) {
     EXPECT_LE(status.error_details().size(), std::size_t{6} << 10) << count;
     const v1::ErrorDetail detail = DetailOf(status);
     EXPECT_GT(detail.diagnostics_size(), 0) << count;
-    EXPECT_EQ(static_cast<std::size_t>(detail.diagnostics_size() + detail.diagnostics_dropped()), count + 5) << count;
+    EXPECT_EQ(static_cast<std::size_t>(detail.diagnostics_size() + detail.diagnostics_dropped()),
+              count + 5)
+        << count;
     // Twice as many would not have fitted.
     const auto told = static_cast<std::size_t>(detail.diagnostics_size());
-    const std::size_t twice_bytes = bridge::ToRpcStatus(error, Findings(told * 2), 5).ByteSizeLong();
+    const std::size_t twice_bytes =
+        bridge::ToRpcStatus(error, Findings(told * 2), 5).ByteSizeLong();
     EXPECT_TRUE(told == count || twice_bytes > std::size_t{6} << 10) << count;
   }
 }
@@ -68,7 +76,8 @@ TEST(CallStatus, ManyFindingsAreCutAndCounted) {
 TEST(CallStatus, AFindingThatDoesNotFitIsCounted) {
   std::vector<Diagnostic> findings = Findings(1);
   findings[0].detail = std::string(7 << 10, 'd');
-  const v1::ErrorDetail detail = DetailOf(ToGrpcStatus(Error{ErrorCode::kLiteralRange, {}, {}}, findings, 0));
+  const v1::ErrorDetail detail =
+      DetailOf(ToGrpcStatus(Error{ErrorCode::kLiteralRange, {}, {}}, findings, 0));
   EXPECT_EQ(detail.diagnostics_size(), 0);
   EXPECT_EQ(detail.diagnostics_dropped(), 1);
 }

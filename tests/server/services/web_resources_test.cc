@@ -26,10 +26,13 @@ class WebResourcesTest : public testing::Test {
   WebResourcesTest() { config.limit_program_bytes = 100; }
 
   static web::UploadHeader Header(const std::string& form = {}) {
-    return {.path = {.machine = "optimo-1", .slot = 45, .form = form}, .file_name = "plate.S", .size = 9};
+    return {.path = {.machine = "optimo-1", .slot = 45, .form = form},
+            .file_name = "plate.S",
+            .size = 9};
   }
   Result<web::Resource> Find(const std::string& form) {
-    return resources.Find(web::ProgramContentPath{.machine = "optimo-1", .slot = 45, .form = form}, {});
+    return resources.Find(web::ProgramContentPath{.machine = "optimo-1", .slot = 45, .form = form},
+                          {});
   }
   // The message of the code that an upload ends with; empty: it is stored.
   std::string Upload(const web::UploadHeader& header, const std::vector<std::string>& chunks) {
@@ -99,10 +102,11 @@ TEST_F(WebResourcesTest, ProductsOfAJob) {
   const auto finished = [&](const std::string& report) {
     bed.SubmitCheck();
     const storage::Lease lease = bed.Lease();
-    Must(bed.store().Finish(lease, {},
-                            {{.name = "report", .media_type = "application/x-protobuf", .bytes = report},
-                             {.name = "picture.svg", .media_type = "image/svg+xml", .bytes = "<svg/>"}},
-                            {}));
+    Must(bed.store().Finish(
+        lease, {},
+        {{.name = "report", .media_type = "application/x-protobuf", .bytes = report},
+         {.name = "picture.svg", .media_type = "image/svg+xml", .bytes = "<svg/>"}},
+        {}));
     return std::to_string(lease.job);
   };
   v1::RunReport report;
@@ -117,12 +121,14 @@ TEST_F(WebResourcesTest, ProductsOfAJob) {
   EXPECT_EQ(picture.bytes, "<svg/>");
   EXPECT_EQ(picture.etag, bridge::Sha256Hex("<svg/>"));
   EXPECT_EQ(CodeOf(resources.Find(web::ArtifactPath{job, "trace"}, {})), ErrorCode::kCellNotFound);
-  EXPECT_EQ(CodeOf(resources.Find(web::ArtifactPath{"0", "report"}, {})), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(CodeOf(resources.Find(web::ArtifactPath{"0", "report"}, {})),
+            ErrorCode::kCellInvalidArgument);
   EXPECT_EQ(CodeOf(resources.Find(web::ArtifactPath{finished("\xFF\xFF"), "report"}, {})),
             ErrorCode::kCellStoreCorrupt);
 }
 
-// limits.program_bytes, by what is announced and by what comes: the last byte that fits, and one more.
+// limits.program_bytes, by what is announced and by what comes: the last byte that fits, and one
+// more.
 TEST_F(WebResourcesTest, ALimitOfBytes) {
   web::UploadHeader header = Header();
   for (const std::int64_t size : {-1, 0, 100}) {

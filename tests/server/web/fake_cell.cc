@@ -2,8 +2,8 @@
 
 #include <google/protobuf/any.pb.h>
 #include <grpcpp/create_channel.h>
-#include <grpcpp/security/credentials.h>
 #include <grpcpp/health_check_service_interface.h>
+#include <grpcpp/security/credentials.h>
 #include <grpcpp/server_builder.h>
 
 #include <algorithm>
@@ -248,11 +248,14 @@ FakeCell::FakeCell(WebOptions options) : services_(std::make_unique<Services>(co
   arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
   arguments.SetInt(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, kGrpcWindowBytes);
   options.secret = std::string(kSecret);
-  Result<std::unique_ptr<WebServer>> web = WebServer::Start(
-      options, grpc::CreateCustomChannel("127.0.0.1:" + std::to_string(grpc_port), grpc::InsecureChannelCredentials(), arguments), resources_, [this](const WebLogEntry& entry) {
-        const std::lock_guard lock(mutex_);
-        log_.push_back(entry);
-      });
+  Result<std::unique_ptr<WebServer>> web =
+      WebServer::Start(options,
+                       grpc::CreateCustomChannel("127.0.0.1:" + std::to_string(grpc_port),
+                                                 grpc::InsecureChannelCredentials(), arguments),
+                       resources_, [this](const WebLogEntry& entry) {
+                         const std::lock_guard lock(mutex_);
+                         log_.push_back(entry);
+                       });
   RMLCELL_CHECK(web.has_value());
   web_ = *std::move(web);
   services_->clock = std::thread([this] {

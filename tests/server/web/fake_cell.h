@@ -28,8 +28,8 @@ inline constexpr std::string_view kGetJob = "/rmlcell.v1.JobService/GetJob";
 inline constexpr std::string_view kWatchJob = "/rmlcell.v1.JobService/WatchJob";
 inline constexpr std::string_view kSecret = "only-the-gateway-knows";
 
-// The text of one message of jobs/flood. More than a window of gRPC, so that the producer waits with each
-// message until the gateway asks for it.
+// The text of one message of jobs/flood. More than a window of gRPC, so that the producer waits
+// with each message until the gateway asks for it.
 inline constexpr int kFloodBytes = 100'000;
 inline constexpr int kGrpcWindowBytes = 65'535;
 static_assert(kFloodBytes > kGrpcWindowBytes);

@@ -65,7 +65,8 @@ TEST_F(HttpLimits, MalformedRequestsGet400AndClose) {
 }
 
 TEST_F(HttpLimits, OtherVersions) {
-  EXPECT_EQ(ErrorOf(Exchange(cell_.port(), "GET / HTTP/3.0\r\nHost: localhost\r\n\r\n")), "505 CELL-E9003");
+  EXPECT_EQ(ErrorOf(Exchange(cell_.port(), "GET / HTTP/3.0\r\nHost: localhost\r\n\r\n")),
+            "505 CELL-E9003");
   // A gRPC client that took the wrong port.
   EXPECT_EQ(ErrorOf(Exchange(cell_.port(), "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n")), "505 CELL-E9003");
 }
@@ -98,7 +99,8 @@ TEST_F(HttpLimits, AbsoluteTargetsAndForeignHosts) {
       Exchange(cell_.port(), "GET http://evil.example/healthz HTTP/1.1\r\nHost: localhost\r\n\r\n")
           .status,
       403);
-  EXPECT_EQ(ErrorOf(Exchange(cell_.port(), "GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n")), "403 CELL-E9012");
+  EXPECT_EQ(ErrorOf(Exchange(cell_.port(), "GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n")),
+            "403 CELL-E9012");
 }
 
 TEST_F(HttpLimits, PipelinedRequestsAreAnsweredInOrder) {
@@ -185,20 +187,23 @@ TEST_F(HttpLimits, Headers) {
   EXPECT_EQ(Exchange(cell_.port(), Get("/healthz", many)).status, 431);
 }
 
-// Who is late with its first byte is closed without a word: then the test was too slow, and tries again.
+// Who is late with its first byte is closed without a word: then the test was too slow, and tries
+// again.
 TEST(HttpPatience, SlowRequestsAreEnded) {
   WebOptions options = AnyPort();
   options.read_timeout = milliseconds(400);
   FakeCell cell(options);
   const auto ends_with_408 = [&](std::string_view request) {
-    return FakeCell::Eventually([&] { return ErrorOf(Exchange(cell.port(), request)) == "408 CELL-E9003"; });
+    return FakeCell::Eventually(
+        [&] { return ErrorOf(Exchange(cell.port(), request)) == "408 CELL-E9003"; });
   };
   EXPECT_TRUE(ends_with_408("GET / HTTP/1.1\r\nHost: loc"));
   EXPECT_TRUE(ends_with_408(
       "POST " + std::string(kGetJob) +
       " HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: "
       "20\r\n\r\n{"));
-  // One byte now and then does not help; were each given time anew, so many would be too long a header.
+  // One byte now and then does not help; were each given time anew, so many would be too long a
+  // header.
   const auto drip = [&] {
     RawClient client(cell.port());
     while (!client.AnswersWithin(milliseconds(10)) && client.Send("G")) {

@@ -43,7 +43,8 @@ class RawClient {
   std::string ReadUntil(std::string_view mark);
   // True when the other side closed and nothing is left to be read.
   bool AtEnd();
-  // True as soon as there is something to read, an end included; false when nothing came in this time.
+  // True as soon as there is something to read, an end included; false when nothing came in this
+  // time.
   bool AnswersWithin(std::chrono::milliseconds time);
 
  private:

@@ -93,12 +93,15 @@ TEST(Guard, ARefusalSaysWhatIsWrong) {
   plain.host = "";
   EXPECT_FALSE(RefuseRequest(rules, plain));  // HTTP/1.0 need not name its host
   const std::vector<std::tuple<HttpRequest, int, std::string, std::string>> cases = {
-      {Request({{"origin", "http://localhost:5173"}, {"origin", "null"}}), 400, "CELL-E9003", "header origin stands twice"},
+      {Request({{"origin", "http://localhost:5173"}, {"origin", "null"}}), 400, "CELL-E9003",
+       "header origin stands twice"},
       {chunked, 400, "CELL-E9003", "HTTP/1.0 has no transfer encodings"},
       {Request({}, ""), 400, "CELL-E9003", "the request has no Host"},
       {Request({}, "evil.example:80"), 403, "CELL-E9012", "this server is not evil.example:80"},
-      {Request({{"origin", "http://evil.example"}}), 403, "CELL-E9012", "pages of http://evil.example may not call"},
-      {Request({{"sec-fetch-site", "cross-site"}}), 403, "CELL-E9012", "pages of other sites may not call"}};
+      {Request({{"origin", "http://evil.example"}}), 403, "CELL-E9012",
+       "pages of http://evil.example may not call"},
+      {Request({{"sec-fetch-site", "cross-site"}}), 403, "CELL-E9012",
+       "pages of other sites may not call"}};
   for (const auto& [request, status, code, detail] : cases) {
     const auto refusal = RefuseRequest(rules, request);
     ASSERT_TRUE(refusal) << detail;
@@ -150,17 +153,20 @@ TEST(Guard, PreflightForConfiguredOriginsOnly) {
 // What a preflight asks is answered to a preflight: OPTIONS by itself only says what there is.
 TEST(Guard, OptionsThatAreNoPreflight) {
   const HttpRequest plain = Request({{"origin", "http://localhost:5173"}});
-  EXPECT_EQ(AnswerOptions(Rules(), plain).headers, (HeaderList{{"Allow", "GET, HEAD, POST, OPTIONS"}}));
+  EXPECT_EQ(AnswerOptions(Rules(), plain).headers,
+            (HeaderList{{"Allow", "GET, HEAD, POST, OPTIONS"}}));
 }
 
-// A page on another network reaches a server on loopback only when the server says so, to its own pages.
+// A page on another network reaches a server on loopback only when the server says so, to its own
+// pages.
 TEST(Guard, PreflightIntoAPrivateNetwork) {
   const auto allowed = [](const std::string& origin, const std::string& asked) {
     const HttpResponse answer =
         AnswerOptions(Rules(), Request({{"origin", origin},
                                         {"access-control-request-method", "POST"},
                                         {"access-control-request-private-network", asked}}));
-    return std::ranges::count(answer.headers, HeaderList::value_type("Access-Control-Allow-Private-Network", "true"));
+    return std::ranges::count(
+        answer.headers, HeaderList::value_type("Access-Control-Allow-Private-Network", "true"));
   };
   EXPECT_EQ(allowed("http://localhost:5173", "true"), 1);
   EXPECT_EQ(allowed("HTTP://LOCALHOST:5173", "true"), 1);
@@ -175,7 +181,8 @@ TEST(Guard, CorsHeaders) {
   AddCorsHeaders(rules, Request({{"origin", "http://localhost:5173"}}), answer);
   ASSERT_EQ(answer.headers.size(), 3U);
   EXPECT_EQ(answer.headers[0], HeaderList::value_type("Vary", "Origin"));
-  EXPECT_EQ(answer.headers[1], HeaderList::value_type("Access-Control-Allow-Origin", "http://localhost:5173"));
+  EXPECT_EQ(answer.headers[1],
+            HeaderList::value_type("Access-Control-Allow-Origin", "http://localhost:5173"));
   EXPECT_EQ(answer.headers[2].first, "Access-Control-Expose-Headers");
   answer.headers.clear();
   AddCorsHeaders(rules, Request({}), answer);

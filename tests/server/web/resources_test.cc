@@ -91,7 +91,8 @@ TEST_F(Resources, Errors) {
   const RawResponse missing = Exchange(cell_.port(), Get("/v1/jobs/17/artifacts/none"));
   const auto error = [&](const std::string& request) {
     const RawResponse response = Exchange(cell_.port(), request);
-    return std::to_string(response.status) + " " + std::string(Json::parse(response.body)["details"][1]["code"]);
+    return std::to_string(response.status) + " " +
+           std::string(Json::parse(response.body)["details"][1]["code"]);
   };
   EXPECT_EQ(error(Get("/nothing")), "404 CELL-E9004");
   EXPECT_EQ(error(Get("/v1/jobs/17/artifacts/..%2f..%2fetc%2fpasswd")), "400 CELL-E9003");

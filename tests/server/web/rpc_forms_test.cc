@@ -14,7 +14,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-
 struct Frame {
   int flags = 0;
   std::string bytes;
@@ -280,7 +279,8 @@ TEST_F(RpcForms, Deadlines) {
                                   "Connect-Timeout-Ms: 100\r\n"));
   EXPECT_NE(stream.body.find("event: error\ndata: {\"code\":\"deadline_exceeded\""),
             std::string::npos);
-  // Each call that came as far as its handler was cancelled there; on a slow machine not every one does.
+  // Each call that came as far as its handler was cancelled there; on a slow machine not every one
+  // does.
   const auto all_cancelled = [&] {
     return cell_.counters().open == 0 && cell_.counters().cancelled == cell_.counters().calls;
   };

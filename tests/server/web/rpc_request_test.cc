@@ -29,7 +29,8 @@ HttpRequest RequestFor(std::string method, std::string_view path, HeaderList hea
 }
 
 TEST(MethodPaths, AServiceWithADotAndAMethod) {
-  for (const std::string_view path : {"/a.b/C", "/a.B_9/z_0Z", "/A.z/_", "/rmlcell.v1.JobService/GetJob"}) {
+  for (const std::string_view path :
+       {"/a.b/C", "/a.B_9/z_0Z", "/A.z/_", "/rmlcell.v1.JobService/GetJob"}) {
     EXPECT_TRUE(LooksLikeMethod(path)) << path;
   }
   for (const std::string_view path :

@@ -22,7 +22,8 @@ std::map<std::string, std::string> HeadersOf(const HttpResponse& response) {
   return {response.headers.begin(), response.headers.end()};
 }
 
-// A browser is told to take nothing from elsewhere, to guess no types, and to let nobody else show the page.
+// A browser is told to take nothing from elsewhere, to guess no types, and to let nobody else show
+// the page.
 TEST(StaticPages, TellTheBrowserWhatItMayDo) {
   const StaticPage page;
   for (const std::string path : {"/", "/index.html", "/page.js", "/page.css", "/favicon.svg"}) {
@@ -31,22 +32,24 @@ TEST(StaticPages, TellTheBrowserWhatItMayDo) {
     EXPECT_EQ(response->status, 200);
     std::map<std::string, std::string> headers = HeadersOf(*response);
     EXPECT_EQ(headers.size(), response->headers.size()) << path;
-    for (const std::string own :
-         {"default-src 'none'", "script-src 'self'", "style-src 'self'", "img-src 'self'", "connect-src 'self'",
-          "base-uri 'none'", "form-action 'none'", "frame-ancestors 'none'"}) {
+    for (const std::string own : {"default-src 'none'", "script-src 'self'", "style-src 'self'",
+                                  "img-src 'self'", "connect-src 'self'", "base-uri 'none'",
+                                  "form-action 'none'", "frame-ancestors 'none'"}) {
       EXPECT_NE(headers["Content-Security-Policy"].find(own), std::string::npos) << own;
     }
-    EXPECT_TRUE(headers["ETag"].starts_with('"') && headers["ETag"].ends_with('"')) << headers["ETag"];
+    EXPECT_TRUE(headers["ETag"].starts_with('"') && headers["ETag"].ends_with('"'))
+        << headers["ETag"];
     EXPECT_GT(headers["ETag"].size(), 2U);
     headers.erase("Content-Type");
     headers.erase("Content-Security-Policy");
     headers.erase("ETag");
-    EXPECT_EQ(headers, (std::map<std::string, std::string>{{"Cache-Control", "no-cache"},
-                                                           {"X-Content-Type-Options", "nosniff"},
-                                                           {"Referrer-Policy", "no-referrer"},
-                                                           {"Cross-Origin-Resource-Policy", "same-origin"},
-                                                           {"Cross-Origin-Opener-Policy", "same-origin"},
-                                                           {"X-Frame-Options", "DENY"}}))
+    EXPECT_EQ(headers,
+              (std::map<std::string, std::string>{{"Cache-Control", "no-cache"},
+                                                  {"X-Content-Type-Options", "nosniff"},
+                                                  {"Referrer-Policy", "no-referrer"},
+                                                  {"Cross-Origin-Resource-Policy", "same-origin"},
+                                                  {"Cross-Origin-Opener-Policy", "same-origin"},
+                                                  {"X-Frame-Options", "DENY"}}))
         << path;
   }
 }
@@ -65,22 +68,26 @@ TEST(StaticPages, AreNotSentTwice) {
 
 TEST(StaticPages, OtherNamesAreNone) {
   const StaticPage page;
-  for (const std::string path : {"/page", "/Page.js", "/page.js/", "//page.js", "/README.md", "/index.html.bak"}) {
+  for (const std::string path :
+       {"/page", "/Page.js", "/page.js/", "//page.js", "/README.md", "/index.html.bak"}) {
     EXPECT_FALSE(page.Find(Asking(path))) << path;
   }
 }
 
-// The bytes of a folder, of the names that are built in; FNV-1a of its authors' vectors: "", "a", "foobar".
+// The bytes of a folder, of the names that are built in; FNV-1a of its authors' vectors: "", "a",
+// "foobar".
 TEST(StaticPages, OfAFolderAreReadAtEachRequest) {
-  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "rmlcell_static_pages";
+  const std::filesystem::path folder =
+      std::filesystem::path(::testing::TempDir()) / "rmlcell_static_pages";
   std::filesystem::create_directories(folder);
   const auto write = [&](const std::string& name, const std::string& bytes) {
     std::ofstream(folder / name, std::ios::binary) << bytes;
   };
   const StaticPage page(folder.string());
   write("other.js", "x");
-  const std::map<std::string, std::string> rows = {
-      {"", "\"cbf29ce484222325\""}, {"a", "\"af63dc4c8601ec8c\""}, {"foobar", "\"85944171f73967e8\""}};
+  const std::map<std::string, std::string> rows = {{"", "\"cbf29ce484222325\""},
+                                                   {"a", "\"af63dc4c8601ec8c\""},
+                                                   {"foobar", "\"85944171f73967e8\""}};
   for (const auto& [bytes, etag] : rows) {
     write("page.js", bytes);
     const auto response = page.Find(Asking("/page.js"));

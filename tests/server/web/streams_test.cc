@@ -181,18 +181,19 @@ TEST(SlowReader, SlowsItsProducerOnly) {
   constexpr int kReceiveBytes = 64 << 10;
   constexpr int kSendBytes = 256 << 10;    // the gateway gives each connection so much
   constexpr int kSegmentBytes = 64 << 10;  // by which a buffer of the system may be overrun
-  // The system doubles what it is asked for (socket(7)). One message more is being written, and the one
-  // after it is made but larger than the window of gRPC, so it does not get away.
-  constexpr int kHeld =
-      (2 * kReceiveBytes + 2 * kSendBytes + 2 * kSegmentBytes) / kFloodBytes + 2;
+  // The system doubles what it is asked for (socket(7)). One message more is being written, and the
+  // one after it is made but larger than the window of gRPC, so it does not get away.
+  constexpr int kHeld = (2 * kReceiveBytes + 2 * kSendBytes + 2 * kSegmentBytes) / kFloodBytes + 2;
   FakeCell cell;
   RawClient client(cell.port(), kReceiveBytes);
   client.Send(Watch("flood"));
   EXPECT_EQ(client.ReadHead().status, 200);
-  // Others have hundreds of their calls answered by the same threads, in which it could make thousands.
+  // Others have hundreds of their calls answered by the same threads, in which it could make
+  // thousands.
   for (int i = 0; i < 300; ++i) {
-    ASSERT_EQ(Exchange(cell.port(), Post(kGetJob, "application/json", R"({"name":"jobs/1"})")).status,
-              200);
+    ASSERT_EQ(
+        Exchange(cell.port(), Post(kGetJob, "application/json", R"({"name":"jobs/1"})")).status,
+        200);
   }
   EXPECT_GT(cell.counters().produced, 0);
   EXPECT_LE(cell.counters().produced, kHeld);

@@ -33,7 +33,8 @@ class JobEventsTest : public testing::Test {
   JobEvents events_{[this](const v1::WorkerEvents& events) { batches_.push_back(events); }};
 };
 
-// server/worker/job_events.h: what people would look for; analogue outputs and sensors change all the time.
+// server/worker/job_events.h: what people would look for; analogue outputs and sensors change all
+// the time.
 TEST_F(JobEventsTest, KeepsTheSignalsThatPeopleLookFor) {
   std::set<Signal> kept;
   for (const Signal signal : {Signal::kOutput, Signal::kAnalogue, Signal::kShutter, Signal::kBeam,
@@ -45,7 +46,8 @@ TEST_F(JobEventsTest, KeepsTheSignalsThatPeopleLookFor) {
     if (!batches_.empty()) kept.insert(signal);
   }
   EXPECT_EQ(kept, (std::set{Signal::kOutput, Signal::kShutter, Signal::kBeam, Signal::kSchedule,
-                            Signal::kGas, Signal::kSpindle, Signal::kSpindleSpeed, Signal::kRotaryTable}));
+                            Signal::kGas, Signal::kSpindle, Signal::kSpindleSpeed,
+                            Signal::kRotaryTable}));
 }
 
 TEST_F(JobEventsTest, TellsAllOfASignal) {
@@ -74,7 +76,8 @@ TEST_F(JobEventsTest, TellsOfEachKind) {
   events_.OnResume(milliseconds(2), {});
   events_.OnProgram(milliseconds(3), {}, "call", 44);
   events_.OnMessage(milliseconds(4), {}, "hello");
-  events_.OnDiagnostic(milliseconds(5), {.code = ErrorCode::kHoleRadiusZero, .detail = "radius is 0"});
+  events_.OnDiagnostic(milliseconds(5),
+                       {.code = ErrorCode::kHoleRadiusZero, .detail = "radius is 0"});
   events_.Flush();
   const std::vector<v1::JobEvent> sent = Sent();
   ASSERT_EQ(sent.size(), 5U);
@@ -126,7 +129,10 @@ TEST_F(JobEventsTest, CutsALongLogAndSaysSo) {
 
 // A finding is told once for each place that it is about, and 200 of them.
 TEST_F(JobEventsTest, TellsEachFindingOnce) {
-  const Diagnostic first{.code = ErrorCode::kHoleRadiusZero, .where = {.line = 3, .column = 4}, .program = 1, .step = 2};
+  const Diagnostic first{.code = ErrorCode::kHoleRadiusZero,
+                         .where = {.line = 3, .column = 4},
+                         .program = 1,
+                         .step = 2};
   const auto changed = [&](auto change) {
     Diagnostic other = first;
     change(other);

@@ -12,11 +12,14 @@ using testing::HasSubstr;
 
 class JobProducts : public JobRunnerTest {
  protected:
-  static v1::WorkerAssignment CheckOf(const std::string& source) { return Assignment(v1::JOB_KIND_CHECK, source); }
+  static v1::WorkerAssignment CheckOf(const std::string& source) {
+    return Assignment(v1::JOB_KIND_CHECK, source);
+  }
   std::vector<std::string> Codes() {
     std::vector<std::string> codes;
     const v1::RunReport report = Report();
-    for (const v1::Diagnostic& diagnostic : report.diagnostics()) codes.push_back(diagnostic.code());
+    for (const v1::Diagnostic& diagnostic : report.diagnostics())
+      codes.push_back(diagnostic.code());
     return codes;
   }
 };
@@ -41,7 +44,8 @@ TEST_F(JobProducts, ACheckFindsWhatTheMotionWouldMeet) {
 
 // Advice is told and ends nothing (OPT-2.16).
 TEST_F(JobProducts, ACheckWithAdviceAloneIsGood) {
-  Work(CheckOf("COORD ABSOL\nPATH LIN\nMOVE (500.,500.,-400.,0.,1.)\nMOVE (500.,505.,-400.,0.,0.)\n"));
+  Work(CheckOf(
+      "COORD ABSOL\nPATH LIN\nMOVE (500.,500.,-400.,0.,1.)\nMOVE (500.,505.,-400.,0.,0.)\n"));
   EXPECT_THAT(Codes(), ElementsAre("OPT-E7321"));
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
   EXPECT_EQ(Outcome().code(), "");
@@ -55,7 +59,8 @@ TEST_F(JobProducts, AFaultOfTheTextIsTheOnlyOne) {
 
 // The inputs of the job are those of its check; without them the report says how far it looked.
 TEST_F(JobProducts, ACheckTakesTheInputsOfTheJob) {
-  v1::WorkerAssignment assignment = CheckOf("COORD ABSOL\nWAIT (IL[16])\nMOVE (9000.,0.,0.,0.,0.)\n");
+  v1::WorkerAssignment assignment =
+      CheckOf("COORD ABSOL\nWAIT (IL[16])\nMOVE (9000.,0.,0.,0.,0.)\n");
   Work(assignment);
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
   EXPECT_THAT(Report().motion_check(), HasSubstr("only up to step 2, line 2"));

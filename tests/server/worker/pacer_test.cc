@@ -23,7 +23,8 @@ TEST(Pacer, CountsByItsPace) {
   Pacer pacer(10.0);
   pacer.Due(At(milliseconds(0)), seconds(5), kHour);
   EXPECT_EQ(pacer.Due(At(milliseconds(20)), seconds(5), kHour), milliseconds(200));
-  EXPECT_EQ(pacer.Due(At(milliseconds(20)), seconds(5), milliseconds(50)), milliseconds(50)) << "a slice at most";
+  EXPECT_EQ(pacer.Due(At(milliseconds(20)), seconds(5), milliseconds(50)), milliseconds(50))
+      << "a slice at most";
 }
 
 TEST(Pacer, NeverGoesBack) {

@@ -33,7 +33,8 @@ TEST(OptimoFamily, AdviceIsForTheMachineAtHand) {
   EXPECT_EQ(SharpCorner("20", Standard()).find("stays 0.480 mm"), std::string::npos);
 }
 
-// OPT-B.06, OPT-B.08: a travel that ends before it begins is none; one of a single place is a clamped axis.
+// OPT-B.06, OPT-B.08: a travel that ends before it begins is none; one of a single place is a
+// clamped axis.
 TEST(OptimoFamily, RefusesTravelsThatEndBeforeTheyBegin) {
   machine::RunObserver nobody;
   for (const std::string axis : {"X", "Y", "Z", "A", "B"}) {
@@ -56,7 +57,8 @@ machine::Bytes Object(const std::string& text) {
   return std::make_shared<const std::string>(Compile(text, "", {}).object);
 }
 
-// OPT-1.13, OPT-1.15: each reason, by slot; one FUNCTION was altered, one deleted, one never stored.
+// OPT-1.13, OPT-1.15: each reason, by slot; one FUNCTION was altered, one deleted, one never
+// stored.
 TEST(OptimoFamily, SaysWhichExecutablesAreStaleAndWhy) {
   std::map<int, machine::StoredProgram> programs;
   programs[12].object = Object("VI[2]=1\n");
@@ -80,12 +82,11 @@ TEST(OptimoFamily, SaysWhichExecutablesAreStaleAndWhy) {
   EXPECT_EQ(stale[0].slot, 12);
   EXPECT_EQ(stale[0].parts[0].reason, machine::StaleReason::kDamaged);
   EXPECT_EQ(stale[1].slot, 32);
-  EXPECT_EQ(stale[1].parts,
-            (std::vector<machine::StalePart>{
-                {44, machine::StaleReason::kFunctionChanged,
-                 "FUNCTION 44 was altered since it was made"},
-                {45, machine::StaleReason::kFunctionDeleted,
-                 "FUNCTION 45 is not stored any more"}}));
+  EXPECT_EQ(
+      stale[1].parts,
+      (std::vector<machine::StalePart>{
+          {44, machine::StaleReason::kFunctionChanged, "FUNCTION 44 was altered since it was made"},
+          {45, machine::StaleReason::kFunctionDeleted, "FUNCTION 45 is not stored any more"}}));
 }
 
 }  // namespace

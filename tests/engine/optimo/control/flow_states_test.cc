@@ -38,27 +38,26 @@ std::vector<std::string> Halts(const Ran& ran) {
 // OPT-6.31: one START for each step in SINGLE: behind the last step of a CALLed program and of a
 // FUNCTION, too; behind the last one of all the program is over.
 TEST(FlowStates, SingleHaltsAtTheEndsOfModules) {
-  const Ran called = RunText("CALL 2\nVI[2]=1\n", {.programs = {{2, "VI[3]=1\n"}},
-                                                  .inputs = Starts(5),
-                                                  .mode = Mode::kSingle});
+  const Ran called =
+      RunText("CALL 2\nVI[2]=1\n",
+              {.programs = {{2, "VI[3]=1\n"}}, .inputs = Starts(5), .mode = Mode::kSingle});
   EXPECT_THAT(Halts(called), ElementsAre("SINGLE 1.1", "SINGLE 2.1"));
   EXPECT_EQ(called.outcome.kind, OutcomeKind::kCompleted);
   EXPECT_EQ(called.time_s, 2.0);
-  const Ran last = RunText("VI[2]=1\nCALL 2\n", {.programs = {{2, "VI[3]=1\n"}},
-                                                .inputs = Starts(5),
-                                                .mode = Mode::kSingle});
+  const Ran last =
+      RunText("VI[2]=1\nCALL 2\n",
+              {.programs = {{2, "VI[3]=1\n"}}, .inputs = Starts(5), .mode = Mode::kSingle});
   EXPECT_THAT(Halts(last), ElementsAre("SINGLE 1.1", "SINGLE 1.2", "SINGLE 2.1"));
-  const Ran function = RunText("VI[2]=1\nFUNCTION 44\n", {.programs = {{44, "VI[3]=1\n"}},
-                                                         .inputs = Starts(5),
-                                                         .mode = Mode::kSingle});
+  const Ran function =
+      RunText("VI[2]=1\nFUNCTION 44\n",
+              {.programs = {{44, "VI[3]=1\n"}}, .inputs = Starts(5), .mode = Mode::kSingle});
   EXPECT_THAT(Halts(function), ElementsAre("SINGLE 1.1", "SINGLE 1.2", "SINGLE 44.1"));
 }
 
 // OPT-6.31, OPT-3.51: a STOP in the program is a step like any other: one START leads behind it.
 TEST(FlowStates, AStopInSingleHaltsOnce) {
-  const Ran ran = RunText("STOP\nVI[2]=1\n", {.inputs = Starts(3),
-                                              .mode = Mode::kSingle,
-                                              .variables = {"VI[2]"}});
+  const Ran ran = RunText("STOP\nVI[2]=1\n",
+                          {.inputs = Starts(3), .mode = Mode::kSingle, .variables = {"VI[2]"}});
   EXPECT_THAT(Halts(ran), ElementsAre("STOP 1.1"));
   EXPECT_EQ(ran.time_s, 1.0);
   EXPECT_EQ(ran.variables.at("VI[2]"), "1");
@@ -66,7 +65,8 @@ TEST(FlowStates, AStopInSingleHaltsOnce) {
 
 // OPT-4.17: during the last instruction: it is finished, the machine halts, START ends the program.
 TEST(FlowStates, HoldDuringTheLastInstruction) {
-  const Ran ran = RunText("DELAY 1\n", {.inputs = {Key(0.5, InputKind::kHold), Key(3.0, InputKind::kStart)}});
+  const Ran ran =
+      RunText("DELAY 1\n", {.inputs = {Key(0.5, InputKind::kHold), Key(3.0, InputKind::kStart)}});
   EXPECT_THAT(Halts(ran), ElementsAre("HOLD 1.1"));
   EXPECT_EQ(ran.First("halt HOLD").at_s, 1.0);
   EXPECT_EQ(ran.outcome.kind, OutcomeKind::kCompleted);
@@ -75,18 +75,20 @@ TEST(FlowStates, HoldDuringTheLastInstruction) {
 
 // OPT-6.07: a breakpoint on the last step: the program is over, there is nothing to halt for.
 TEST(FlowStates, ABreakpointOnTheLastStep) {
-  const Ran ran = RunText("VI[2]=1\nVI[3]=1\n",
-                          {.inputs = Starts(1), .breakpoint = machine::ProgramStep{.program = 1, .step = 2}});
+  const Ran ran =
+      RunText("VI[2]=1\nVI[3]=1\n",
+              {.inputs = Starts(1), .breakpoint = machine::ProgramStep{.program = 1, .step = 2}});
   EXPECT_TRUE(Halts(ran).empty());
   EXPECT_EQ(ran.outcome.kind, OutcomeKind::kCompleted);
 }
 
-// OPT-B.59, OPT-B.30: a time that is over at the instant at which a DELAY ends is over: three cycles of half a second.
+// OPT-B.59, OPT-B.30: a time that is over at the instant at which a DELAY ends is over: three
+// cycles of half a second.
 TEST(FlowStates, ATimerThatIsDueWithTheEndOfADelay) {
   const auto seen = [](const std::string& delay) {
-    return Value("TIMER (1.5,900)\nDELAY " + delay +
-                     "\nVI[3]=VI[2]\nENDTASK\n900 VI[2]=1\nRETURN\n",
-                 "VI[3]", {.parameters = {{"CYCLE", "0.5"}}});
+    return Value(
+        "TIMER (1.5,900)\nDELAY " + delay + "\nVI[3]=VI[2]\nENDTASK\n900 VI[2]=1\nRETURN\n",
+        "VI[3]", {.parameters = {{"CYCLE", "0.5"}}});
   };
   EXPECT_EQ(seen("1.5"), "1");
   EXPECT_EQ(seen("1.4999"), "0");
@@ -104,16 +106,16 @@ TEST(FlowStates, ADelayOfNothing) {
   EXPECT_TRUE(with.waits.empty());
 }
 
-// OPT-2.59, OPT-2.54, OPT-B.55: a hole of /NEXT that ends on its lead, by /END or by an error: a move
-// behind it is waited for like any other.
+// OPT-2.59, OPT-2.54, OPT-B.55: a hole of /NEXT that ends on its lead, by /END or by an error: a
+// move behind it is waited for like any other.
 TEST(FlowStates, AHoleOfNextThatEndsOnItsLead) {
   const std::string hole = "MOVE (1100.,1000.,-400.,0.,0.)/VIA (1100.,1000.,-300.,0.,0.)";
   const std::string behind = "PATH LIN\nMOVE (1100.,1100.,-400.,0.,0.)\nOL[16]=ON\n";
   const double begin = ToSeconds(RunText(kThere).moves.front().at);
   for (const std::string& text :
        {kThere + "PATH HOLE (10.)\n" + hole + "/END (IL[20])/NEXT\nDELAY 5\n" + behind,
-        kThere + "PATH HOLE (10.)\nERR 10\n" + hole + "/NEXT\nDELAY 1\nVR[0]=1/VI[2]\n10 DELAY 0\n" +
-            behind}) {
+        kThere + "PATH HOLE (10.)\nERR 10\n" + hole +
+            "/NEXT\nDELAY 1\nVR[0]=1/VI[2]\n10 DELAY 0\n" + behind}) {
     const Ran ran = RunText(text, {.inputs = {{At(begin + 1.0), InputKind::kLogical, 20, 1.0}}});
     ASSERT_EQ(ran.moves.size(), 3U) << text;
     EXPECT_LT(ran.moves[1].tip.tip.x, 1080.0);

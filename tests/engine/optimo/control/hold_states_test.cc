@@ -56,8 +56,8 @@ TEST(HoldStates, TheWayIsToldWithoutAGap) {
     const double length_s = free.time_s - begin;
     for (int k = 0; k < 10; ++k) {
       const double hold = begin + length_s * (k + 0.3) / 10.0;
-      const Ran ran = RunText(text, {.inputs = {Key(hold, InputKind::kHold),
-                                                Key(hold + kGap_s, InputKind::kStart)}});
+      const Ran ran = RunText(
+          text, {.inputs = {Key(hold, InputKind::kHold), Key(hold + kGap_s, InputKind::kStart)}});
       SCOPED_TRACE(hold);
       ExpectNoGaps(ran);
       EXPECT_NEAR(motion::Distance(ran.end.tip.tip, free.end.tip.tip), 0.0, 1e-6);
@@ -73,9 +73,9 @@ TEST(HoldStates, AgainWhileBraking) {
   const Ran once = RunText(
       text, {.inputs = {Key(hold, InputKind::kHold), Key(hold + kGap_s, InputKind::kStart)}});
   for (const double later : {0.02, 0.07, 0.12}) {
-    const Ran twice = RunText(
-        text, {.inputs = {Key(hold, InputKind::kHold), Key(hold + later, InputKind::kHold),
-                          Key(hold + kGap_s, InputKind::kStart)}});
+    const Ran twice =
+        RunText(text, {.inputs = {Key(hold, InputKind::kHold), Key(hold + later, InputKind::kHold),
+                                  Key(hold + kGap_s, InputKind::kStart)}});
     EXPECT_EQ(twice.Count("halt HOLD"), 1);
     EXPECT_EQ(twice.First("halt HOLD").step, once.First("halt HOLD").step);
     EXPECT_EQ(twice.First("halt HOLD").at_s, once.First("halt HOLD").at_s);
@@ -89,11 +89,11 @@ TEST(HoldStates, AgainWhileBraking) {
 TEST(HoldStates, WhileAStopBrakes) {
   const double begin = BeginOf(kCorners);
   const double stop = begin + 1.0;
-  const Ran ran = RunText(kCorners, {.inputs = {Key(stop, InputKind::kStop),
-                                                Key(stop + 0.02, InputKind::kHold),
-                                                Key(stop + kGap_s, InputKind::kStart)}});
-  const Ran only = RunText(kCorners, {.inputs = {Key(stop, InputKind::kStop),
-                                                 Key(stop + kGap_s, InputKind::kStart)}});
+  const Ran ran =
+      RunText(kCorners, {.inputs = {Key(stop, InputKind::kStop), Key(stop + 0.02, InputKind::kHold),
+                                    Key(stop + kGap_s, InputKind::kStart)}});
+  const Ran only = RunText(
+      kCorners, {.inputs = {Key(stop, InputKind::kStop), Key(stop + kGap_s, InputKind::kStart)}});
   EXPECT_EQ(ran.First("halt STOP").at_s, only.First("halt STOP").at_s);
   EXPECT_NEAR(ran.First("halt STOP").at_s, stop + RampTime(50.0), 1e-6);
 }
@@ -102,9 +102,8 @@ TEST(HoldStates, WhileAStopBrakes) {
 TEST(HoldStates, OnTheLastMoveOfAChain) {
   const std::string text = kCorners + "OL[16]=ON\n";
   const Ran free = RunText(text);
-  const Ran ran =
-      RunText(text, {.inputs = {Key(free.time_s - 1.0, InputKind::kHold),
-                                Key(free.time_s + kGap_s, InputKind::kStart)}});
+  const Ran ran = RunText(text, {.inputs = {Key(free.time_s - 1.0, InputKind::kHold),
+                                            Key(free.time_s + kGap_s, InputKind::kStart)}});
   EXPECT_NEAR(ran.First("halt HOLD").at_s, ToSeconds(free.moves.back().at), 1e-9);
   EXPECT_EQ(ran.First("halt HOLD").step, 8);
   EXPECT_NEAR(ran.First("OL[16] 1").at_s, free.time_s + kGap_s, 1e-9);
@@ -144,7 +143,8 @@ TEST(HoldStates, InTheBendBeforeAReversal) {
   EXPECT_NEAR(ran.end.tip.tip.x, 1200.0, 1e-4);
 }
 
-// OPT-4.17, OPT-2.25: a hole is one move: on its lead, which ends in a stop, HOLD finishes the circle.
+// OPT-4.17, OPT-2.25: a hole is one move: on its lead, which ends in a stop, HOLD finishes the
+// circle.
 TEST(HoldStates, OnTheLeadOfAHole) {
   const std::string text =
       kThere +

@@ -99,8 +99,8 @@ TEST(Hold, HaltsOnATargetWhereMovesAreTooShortToBrake) {
   EXPECT_NEAR(travelled, kMoves, 1e-6);
 }
 
-// OPT-4.17: the same at 200 mm/s after 85.5 mm: at rest after 15 mm more, so just on the target at 101
-// mm, the first that can be reached.
+// OPT-4.17: the same at 200 mm/s after 85.5 mm: at rest after 15 mm more, so just on the target at
+// 101 mm, the first that can be reached.
 TEST(Hold, HaltsOnTheFirstTargetThatCanBeReached) {
   std::string text = "COORD ABSOL\nPATH LIN\nMOVE (1000.,1000.,-400.,0.,0.)\nSPEED 40\n";
   for (int k = 1; k <= 200; ++k) {
@@ -113,8 +113,8 @@ TEST(Hold, HaltsOnTheFirstTargetThatCanBeReached) {
   EXPECT_NEAR(ran.end.tip.tip.x, 1200.0, 1e-4);
 }
 
-// OPT-4.17: while it still speeds up, it has all the room there is: the first target, in the time of
-// 100 mm from rest to rest and a little more, as the acceleration is brought to zero first.
+// OPT-4.17: while it still speeds up, it has all the room there is: the first target, in the time
+// of 100 mm from rest to rest and a little more, as the acceleration is brought to zero first.
 TEST(Hold, WhileSpeedingUp) {
   const double begin = BeginOf(kTwoCorners);
   for (const double later : {0.01, 0.03, 0.06}) {
@@ -130,10 +130,11 @@ TEST(Hold, WhileSpeedingUp) {
 // override acts on it: three legs are left, two corners of them at 25 mm/s, those of case C02.
 TEST(Hold, TheRestIsAChainAgain) {
   const double begin = BeginOf(kTwoCorners);
-  const Ran twice = RunText(kTwoCorners, {.inputs = {{FromSeconds(begin + 1.0), InputKind::kHold},
-                                                     {FromSeconds(begin + 20.0), InputKind::kStart},
-                                                     {FromSeconds(begin + 23.0), InputKind::kHold},
-                                                     {FromSeconds(begin + 40.0), InputKind::kStart}}});
+  const Ran twice =
+      RunText(kTwoCorners, {.inputs = {{FromSeconds(begin + 1.0), InputKind::kHold},
+                                       {FromSeconds(begin + 20.0), InputKind::kStart},
+                                       {FromSeconds(begin + 23.0), InputKind::kHold},
+                                       {FromSeconds(begin + 40.0), InputKind::kStart}}});
   EXPECT_EQ(twice.Count("halt HOLD"), 2);
   EXPECT_LT(twice.DistanceTo({1100.0, 1000.0, -400.0}), 1e-9);
   EXPECT_NEAR(twice.DistanceTo({1100.0, 1100.0, -400.0}), kDeviation_mm, 1e-6);
@@ -150,9 +151,10 @@ TEST(Hold, TheRestIsAChainAgain) {
 // OPT-2.59, OPT-4.17: a chain that ends in a move of /NEXT, held and started: the program goes on
 // beside that move again.
 TEST(Hold, ANextMoveBehindTheHaltGoesOnBesideTheProgram) {
-  const std::string text = kThere +
-                           "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nMOVE (1100.,1100.,-400.,0.,0.)/FLY\n"
-                           "MOVE (1200.,1100.,-400.,0.,0.)/NEXT\nOL[16]=ON\n";
+  const std::string text =
+      kThere +
+      "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nMOVE (1100.,1100.,-400.,0.,0.)/FLY\n"
+      "MOVE (1200.,1100.,-400.,0.,0.)/NEXT\nOL[16]=ON\n";
   const double begin = BeginOf(text);
   const Ran ran = Held(text, begin + 1.0, begin + 20.0);
   EXPECT_EQ(ran.outcome.kind, machine::OutcomeKind::kCompleted);

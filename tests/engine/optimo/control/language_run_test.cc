@@ -6,8 +6,8 @@
 #include "engine/optimo/language/printer.h"
 #include "tests/engine/optimo/control/run_text.h"
 
-// What sentences of the language mean when they are carried out: small programs, and what is left in
-// the variables.
+// What sentences of the language mean when they are carried out: small programs, and what is left
+// in the variables.
 namespace rmlcell::optimo::testing::language_run {
 namespace {
 
@@ -47,7 +47,8 @@ TEST(LanguageRun, RelationsInConditions) {
   const std::string far = "\nIF DIST > 100 THEN 50\nVI[3]=9\nENDTASK\n50 VI[3]=5\n";
   const std::string both =
       "\nIF (VR[1] > 0.) AND IL[3] THEN 50 ELSE 60\n50 VI[3]=5\nENDTASK\n60 VI[3]=6\n";
-  const std::string open = "\nIF IL[3] AND VR[1] > 5. THEN 50 ELSE 60\n50 VI[3]=5\nENDTASK\n60 VI[3]=6\n";
+  const std::string open =
+      "\nIF IL[3] AND VR[1] > 5. THEN 50 ELSE 60\n50 VI[3]=5\nENDTASK\n60 VI[3]=6\n";
   Expect({{dist + "100.5" + far, "VI[3]", "5"},
           {dist + "100" + far, "VI[3]", "9"},
           {"VR[1]=1." + both, "VI[3]", "6"},
@@ -63,7 +64,8 @@ TEST(LanguageRun, RelationsInConditions) {
 // OPT-7.85, OPT-B.87: all relations, on both sides of equality; both forms of "not equal".
 TEST(LanguageRun, EveryRelation) {
   const std::pair<const char*, const char*> relations[] = {
-      {"<", "100"}, {"<=", "110"}, {"=", "010"}, {">=", "011"}, {">", "001"}, {"<>", "101"}, {"><", "101"}};
+      {"<", "100"}, {"<=", "110"}, {"=", "010"}, {">=", "011"},
+      {">", "001"}, {"<>", "101"}, {"><", "101"}};
   for (const auto& [relation, wanted] : relations) {
     std::string got;
     for (const char* left : {"1.5", "2.", "2.5"}) {
@@ -73,7 +75,8 @@ TEST(LanguageRun, EveryRelation) {
   }
 }
 
-// OPT-7.86, OPT-B.43, OPT-B.45: the first '=' assigns, a further one compares, logically with 0 and 1.
+// OPT-7.86, OPT-B.43, OPT-B.45: the first '=' assigns, a further one compares, logically with 0
+// and 1.
 TEST(LanguageRun, EqualsComparesAndAssigns) {
   Expect({{"VR[1]=2.\nVL[3] = VR[1] = 2.\n", "VL[3]", "1"},
           {"VR[1]=3.\nVL[3] = VR[1] = 2.\n", "VL[3]", "0"},
@@ -87,8 +90,9 @@ TEST(LanguageRun, EqualsComparesAndAssigns) {
 // OPT-7.88, OPT-7.92: logical assignments from inputs.
 TEST(LanguageRun, LogicalAssignments) {
   for (int bits = 0; bits < 4; ++bits) {
-    const RunOptions options{.inputs = {{SimTime(0), InputKind::kLogical, 32, static_cast<double>(bits & 1)},
-                                        {SimTime(0), InputKind::kLogical, 27, static_cast<double>(bits >> 1)}}};
+    const RunOptions options{
+        .inputs = {{SimTime(0), InputKind::kLogical, 32, static_cast<double>(bits & 1)},
+                   {SimTime(0), InputKind::kLogical, 27, static_cast<double>(bits >> 1)}}};
     Expect({{"OL [15] = IL [32] AND IL [27]\n", "OL[15]", bits == 3 ? "1" : "0"},
             {"OL [16] = IL [32] or IL [27]\n", "OL[16]", bits != 0 ? "1" : "0"},
             {"VL[16] = IL[32] XOR IL[27]\n", "VL[16]", bits == 1 || bits == 2 ? "1" : "0"},
@@ -120,16 +124,24 @@ TEST(LanguageRun, FormsOfNumbers) {
   EXPECT_EQ(CodeOf(RunText("WORKDEF 1,00 (5.,80.,0.,90.)\nWORK 1,0/ON\nWORK 1,00/OFF\n")), 0);
 }
 
-// OPT-B.39: what a variable shows and what the decompiler writes is the shortest form that reads back
-// to the same value, with a decimal, without an exponent from 1E-4 to 1E7; integers have no point.
+// OPT-B.39: what a variable shows and what the decompiler writes is the shortest form that reads
+// back to the same value, with a decimal, without an exponent from 1E-4 to 1E7; integers have no
+// point.
 TEST(LanguageRun, RealsAreShownShort) {
-  const std::pair<const char*, const char*> reals[] = {
-      {"1262.139005", "1262.139"}, {"80.", "80.0"},      {"-0.5", "-0.5"},
-      {"0.0001", "0.0001"},        {"0.00009", "9.0E-5"}, {"9999999.", "9999999.0"},
-      {"1E7", "10000000.0"}, {"1.5E7", "1.5E7"},            {"33.333333", "33.333332"}, {"0.", "0.0"}};
+  const std::pair<const char*, const char*> reals[] = {{"1262.139005", "1262.139"},
+                                                       {"80.", "80.0"},
+                                                       {"-0.5", "-0.5"},
+                                                       {"0.0001", "0.0001"},
+                                                       {"0.00009", "9.0E-5"},
+                                                       {"9999999.", "9999999.0"},
+                                                       {"1E7", "10000000.0"},
+                                                       {"1.5E7", "1.5E7"},
+                                                       {"33.333333", "33.333332"},
+                                                       {"0.", "0.0"}};
   for (const auto& [written, shown] : reals) {
     EXPECT_EQ(Value("VR[0]=" + std::string(written) + "\n", "VR[0]"), shown) << written;
-    EXPECT_EQ(Value("VR[0]=" + std::string(shown) + "\nVL[0]=VR[0]=" + written + "\n", "VL[0]"), "1");
+    EXPECT_EQ(Value("VR[0]=" + std::string(shown) + "\nVL[0]=VR[0]=" + written + "\n", "VL[0]"),
+              "1");
   }
   EXPECT_EQ(Value("VI[2]=5\n", "VI[2]"), "5");
   EXPECT_EQ(Value("VI[2]=80.\n", "VI[2]"), "80");
@@ -145,10 +157,11 @@ TEST(LanguageRun, PiIsFiveDecimals) {
   EXPECT_NEAR(RunText("MOVE (1000.,1000.,-50.,PI/2,0.)\n").end.axes.a_rad, 1.570795, 1e-6);
 }
 
-// OPT-B.47: overflow, division by zero and domain errors: nothing is assigned, and ERR catches them.
+// OPT-B.47: overflow, division by zero and domain errors: nothing is assigned, and ERR catches
+// them.
 TEST(LanguageRun, ArithmeticErrorsAreCaught) {
   const std::pair<const char*, const char*> errors[] = {
-      {"VR[1]=1/0", "7201"},       {"VR[1]=5 MOD 0", "7201"}, {"VI[1]=32767+1", "7203"},
+      {"VR[1]=1/0", "7201"},       {"VR[1]=5 MOD 0", "7201"},  {"VI[1]=32767+1", "7203"},
       {"VR[1]=1E18*100.", "7202"}, {"VR[1]=SQRT(-1)", "7204"}, {"VR[1]=LN(0)", "7204"}};
   for (const auto& [statement, code] : errors) {
     const Ran ran = RunText("VR[1]=4.5\nVI[1]=4\nERR 900\n" + std::string(statement) +
@@ -178,11 +191,13 @@ TEST(LanguageRun, OnlyTheTakenLabelMustExist) {
 // OPT-7.108: a REAL is truncated as a program number and as the value of ASSIGN.
 TEST(LanguageRun, RealNumbersOfPrograms) {
   const RunOptions options{.programs = {{46, "VI[3]=46\n"}, {47, "VI[3]=47\n"}}};
-  Expect({{"VR[1]=46.9\nGO VR[1]\n", "VI[3]", "46"},
-          {"VR[1]=46.9\nCALL VR[1]\n", "VI[3]", "46"},
-          {"VR[1]=5.9\nASSIGN VL[22]=VR[1] /8\nVI[3]=0\nIF VL[22] AND VL[24] AND NOT VL[23] THEN 5\nENDTASK\n"
-           "5 VI[3]=1\n", "VI[3]", "1"}},
-         options);
+  Expect(
+      {{"VR[1]=46.9\nGO VR[1]\n", "VI[3]", "46"},
+       {"VR[1]=46.9\nCALL VR[1]\n", "VI[3]", "46"},
+       {"VR[1]=5.9\nASSIGN VL[22]=VR[1] /8\nVI[3]=0\nIF VL[22] AND VL[24] AND NOT VL[23] THEN 5\nENDTASK\n"
+        "5 VI[3]=1\n",
+        "VI[3]", "1"}},
+      options);
 }
 
 // OPT-B.86, OPT-7.02: the number of GO ends at the attribute, that of CALL at its parameters.
@@ -210,8 +225,8 @@ TEST(LanguageRun, ValuesOfSysdef) {
   near(tip("SYSDEF (50.8,101.6,0,0,0,0)\nSYSDEF\n"), {10.0, 20.0, -500.0});
 }
 
-// OPT-7.38, OPT-7.37, OPT-B.55: six values or none; a value that cannot be had leaves the old offset,
-// whichever of the six it is. A warning only when all six are zero.
+// OPT-7.38, OPT-7.37, OPT-B.55: six values or none; a value that cannot be had leaves the old
+// offset, whichever of the six it is. A warning only when all six are zero.
 TEST(LanguageRun, SixValuesOfSysdef) {
   for (int n = 0; n < 6; ++n) {
     std::string failing = "SYSDEF (", one = "SYSDEF (";
@@ -254,7 +269,8 @@ TEST(LanguageRun, FlyAtAPiercingPoint) {
     EXPECT_NEAR(ran.DistanceTo(corner), 1.358847515, 1e-5);  // case C01
     EXPECT_NEAR(ran.First("shutter open").at_s, ToSeconds(ran.moves[1].at), 1e-6);
   }
-  for (const char* standing : {"WORK 1,1/ON\n", "WORK 0,0/ON\nDELAY 1\n", "WORK 1,0/ON\nDELAY 1\n"}) {
+  for (const char* standing :
+       {"WORK 1,1/ON\n", "WORK 0,0/ON\nDELAY 1\n", "WORK 1,0/ON\nDELAY 1\n"}) {
     const Ran ran = pierce(standing);
     EXPECT_EQ(ran.Count("E7304"), 1) << standing;
     EXPECT_LT(ran.DistanceTo(corner), 1e-4);
@@ -266,7 +282,8 @@ TEST(LanguageRun, FlyAtAPiercingPoint) {
 TEST(LanguageRun, WorkdefTakesItsValuesAtOnce) {
   EXPECT_TRUE(RunText("VR[30]=11.\nWORKDEF 2,0 (VR[30])\nVR[30]=12.\nWORK 2,0/ON\nWORK 2,0/OFF\n")
                   .Told("schedule 11"));
-  EXPECT_TRUE(RunText("VR[30]=11.9\nWORKDEF 2,0 (VR[30])\nWORK 2,0/ON\nWORK 2,0/OFF\n").Told("schedule 11"));
+  EXPECT_TRUE(RunText("VR[30]=11.9\nWORKDEF 2,0 (VR[30])\nWORK 2,0/ON\nWORK 2,0/OFF\n")
+                  .Told("schedule 11"));
   const Ran ran = RunText(
       "VR[1]=8.\nVR[2]=75.\nVR[3]=1.5\nVR[4]=50.\nWORKDEF 1,0 (VR[1],VR[2],VR[3],VR[4])\n"
       "VR[1]=1.\nVR[2]=1.\nVR[3]=1.\nVR[4]=1.\nWORK 1,0/ON\nSPEED 8\nCOORD ABSOL\nPATH LIN\n"
@@ -309,7 +326,8 @@ TEST(LanguageRun, EightParametersInOrder) {
   for (const std::string word : {"CALL", "FUNCTION"}) {
     const Ran ran = RunText(word + " 45 (1.,2.,3.,4.,5.,6.,7.,8.)\n", options);
     for (int n = 0; n < 8; ++n) {
-      EXPECT_EQ(ran.variables.at("VR[" + std::to_string(n) + "]"), std::to_string(n + 1) + ".0") << word;
+      EXPECT_EQ(ran.variables.at("VR[" + std::to_string(n) + "]"), std::to_string(n + 1) + ".0")
+          << word;
     }
   }
 }
@@ -320,9 +338,11 @@ TEST(LanguageRun, BreakAndSimulWithoutAProgram) {
     RunOptions options{.programs = {{44, "BREAK 2" + none + "\nVI[2]=1\nVI[2]=2\n"}}};
     EXPECT_EQ(RunText("FUNCTION 44\nVI[3]=1\nVI[3]=2\n", options).First("halt BREAK").program, 44);
     const Ran arming = RunText("SIMUL 2" + none + "\nVI[2]=1\n");
-    EXPECT_NEAR(RunText("DELAY 1\nDELAY 2\n", {.machine_state = arming.machine_state}).time_s, 2.0, 1e-9);
+    EXPECT_NEAR(RunText("DELAY 1\nDELAY 2\n", {.machine_state = arming.machine_state}).time_s, 2.0,
+                1e-9);
   }
-  const Ran named = RunText("BREAK 1,44\nFUNCTION 44\nVI[3]=1\n", {.programs = {{44, "VI[2]=1\nVI[2]=2\n"}}});
+  const Ran named =
+      RunText("BREAK 1,44\nFUNCTION 44\nVI[3]=1\n", {.programs = {{44, "VI[2]=1\nVI[2]=2\n"}}});
   EXPECT_EQ(named.First("halt BREAK").program, 44);
 }
 

@@ -4,8 +4,8 @@
 
 #include "tests/engine/optimo/control/run_text.h"
 
-// Both sides of every limit that the control looks at when a program runs: the last legal value, and
-// the first that is refused.
+// Both sides of every limit that the control looks at when a program runs: the last legal value,
+// and the first that is refused.
 namespace rmlcell::optimo::testing::limit_rules {
 namespace {
 
@@ -50,10 +50,12 @@ TEST(LimitRules, PercentagesOfMotion) {
 TEST(LimitRules, EachPercentageIsItsOwn) {
   const std::string line = "COORD ABSOL\nPATH LIN\nVR[0]=20.\nVR[1]=50.\nSPEED VR[0]\n";
   const std::string move = "MOVE (521.02,2201.2,-350.,0.,0.)\n";
-  EXPECT_NEAR(RunText(line + move).time_s, 5.0 + 2.0 * std::sqrt(100.0 / 40000.0) + kSettle_s, 1e-6);
+  EXPECT_NEAR(RunText(line + move).time_s, 5.0 + 2.0 * std::sqrt(100.0 / 40000.0) + kSettle_s,
+              1e-6);
   EXPECT_NEAR(RunText(line + "SPEED 10\nACCEL VR[1]\n" + move).time_s,
               10.0 + 2.0 * std::sqrt(50.0 / 20000.0) + kSettle_s, 1e-6);
-  const Ran corner = RunText(kThere + "VR[1]=50.\nOVERSH VR[1]\nMOVE (1100.,1000.,-400.,0.,0.)/FLY\n"
+  const Ran corner = RunText(kThere +
+                             "VR[1]=50.\nOVERSH VR[1]\nMOVE (1100.,1000.,-400.,0.,0.)/FLY\n"
                              "MOVE (1100.,1100.,-400.,0.,0.)\n");
   EXPECT_NEAR(corner.DistanceTo({1100.0, 1000.0, -400.0}), 0.480425146, 1e-5);
 }
@@ -68,17 +70,26 @@ TEST(LimitRules, ValuesOfWorkdef) {
 
 // OPT-3.06, OPT-3.07, OPT-E.7403: schedules are 1 to 63, after truncation.
 TEST(LimitRules, SchedulesOfWorkdef) {
-  Expect({"VR[0]=?\nWORKDEF 2,0 (VR[0])\n", {"1.", "63.", "63.9"}, {"0.", "0.9", "64.", "-5.", "1E9"}, 7403});
-  Expect({"VR[0]=?\nWORKDEF 1,0 (5.,80.,1.,90.,VR[0])\n", {"1.", "63."}, {"0.", "64.", "-1."}, 7403});
+  Expect({"VR[0]=?\nWORKDEF 2,0 (VR[0])\n",
+          {"1.", "63.", "63.9"},
+          {"0.", "0.9", "64.", "-5.", "1E9"},
+          7403});
+  Expect(
+      {"VR[0]=?\nWORKDEF 1,0 (5.,80.,1.,90.,VR[0])\n", {"1.", "63."}, {"0.", "64.", "-1."}, 7403});
 }
 
 // OPT-3.01, OPT-3.02, OPT-E.7402: every process from 0 to 9 of every kind can be defined and used.
 TEST(LimitRules, AllProcesses) {
   for (int p = 0; p <= 9; ++p) {
     const std::string n = std::to_string(p);
-    EXPECT_EQ(CodeOf(RunText("WORKDEF 0," + n + "\nWORK 0," + n + "/ON\nWORK 0," + n + "/OFF\n")), 0);
-    EXPECT_EQ(CodeOf(RunText("WORKDEF 1," + n + " (5.,80.,0.,90.)\nWORK 1," + n + "/ON\nWORK 1," + n + "/OFF\n")), 0);
-    EXPECT_EQ(CodeOf(RunText("WORKDEF 2," + n + " (15)\nWORK 2," + n + "/ON\nWORK 2," + n + "/OFF\n")), 0);
+    EXPECT_EQ(CodeOf(RunText("WORKDEF 0," + n + "\nWORK 0," + n + "/ON\nWORK 0," + n + "/OFF\n")),
+              0);
+    EXPECT_EQ(CodeOf(RunText("WORKDEF 1," + n + " (5.,80.,0.,90.)\nWORK 1," + n + "/ON\nWORK 1," +
+                             n + "/OFF\n")),
+              0);
+    EXPECT_EQ(
+        CodeOf(RunText("WORKDEF 2," + n + " (15)\nWORK 2," + n + "/ON\nWORK 2," + n + "/OFF\n")),
+        0);
     // OPT-3.10: only 0,0 needs none.
     EXPECT_EQ(CodeOf(RunText("WORK 0," + n + "/ON\nWORK 0," + n + "/OFF\n")), p == 0 ? 0 : 7401);
     EXPECT_EQ(CodeOf(RunText("WORK 1," + n + "/ON\n")), 7401);
@@ -102,7 +113,8 @@ TEST(LimitRules, Times) {
 
 // OPT-3.61, OPT-E.7505: SETERR takes 1 to 9999, computed values too; they are truncated.
 TEST(LimitRules, Seterr) {
-  Expect({"VR[0]=?\nSETERR VR[0]\n", {"1.", "9999.", "9999.5"}, {"0.", "0.9", "-1.", "10000."}, 7505});
+  Expect(
+      {"VR[0]=?\nSETERR VR[0]\n", {"1.", "9999.", "9999.5"}, {"0.", "0.9", "-1.", "10000."}, 7505});
   EXPECT_TRUE(RunText("VI[2]=9999\nSETERR VI[2]\n").Told("ERROR 9999"));
   EXPECT_TRUE(RunText("SETERR 1\n").Told("ERROR 1"));
   EXPECT_FALSE(RunText("VI[2]=10000\nSETERR VI[2]\n").Told("ERROR 10000"));
@@ -133,8 +145,8 @@ TEST(LimitRules, AssignGroups) {
 
 // OPT-7.103: of a group that does not fit nothing is written.
 TEST(LimitRules, ARefusedGroupIsNotWritten) {
-  const Ran ran = RunText("VI[2]=17\nASSIGN VL[12]=VI[2] /4\n",
-                          {.variables = {"VL[12]", "VL[16]", "VI[99]"}});
+  const Ran ran =
+      RunText("VI[2]=17\nASSIGN VL[12]=VI[2] /4\n", {.variables = {"VL[12]", "VL[16]", "VI[99]"}});
   EXPECT_EQ(ran.variables.at("VL[12]") + ran.variables.at("VL[16]"), "00");
   EXPECT_EQ(ran.variables.at("VI[99]"), "7206");
 }
@@ -143,7 +155,8 @@ TEST(LimitRules, ARefusedGroupIsNotWritten) {
 TEST(LimitRules, ProgramNumbers) {
   const RunOptions options{.programs = {{99, "VI[3]=1\n"}, {2, "VI[3]=1\n"}}};
   for (const std::string word : {"CALL", "GO"}) {
-    Expect({"VI[2]=?\n" + word + " VI[2]\n", {"2", "99"}, {"0", "100", "-1", "199"}, 7101, options});
+    Expect(
+        {"VI[2]=?\n" + word + " VI[2]\n", {"2", "99"}, {"0", "100", "-1", "199"}, 7101, options});
     Expect({"VR[2]=?\n" + word + " VR[2]\n", {"2.9", "99.9"}, {"0.9", "100."}, 7101, options});
     Expect({"VR[2]=?\n" + word + " VR[2]\n", {}, {"40000."}, 7203, options});
     Expect({"VI[2]=?\n" + word + " VI[2]\n", {}, {"3"}, 7102, options});
@@ -156,8 +169,8 @@ TEST(LimitRules, TheComputedGoto) {
       "VR[2]=?\nGOTO VR[2] (20,30,40)\nVI[3]=9\nENDTASK\n20 VI[3]=2\nENDTASK\n30 VI[3]=3\nENDTASK\n"
       "40 VI[3]=4\n";
   const std::pair<const char*, const char*> cases[] = {
-      {"0.", "9"}, {"0.9", "9"}, {"1.", "2"}, {"1.9", "2"}, {"2.", "3"}, {"3.", "4"},
-      {"3.9", "4"}, {"4.", "9"}, {"-1.", "9"}, {"1E18", "9"}};
+      {"0.", "9"}, {"0.9", "9"}, {"1.", "2"}, {"1.9", "2"}, {"2.", "3"},
+      {"3.", "4"}, {"3.9", "4"}, {"4.", "9"}, {"-1.", "9"}, {"1E18", "9"}};
   for (const auto& [value, wanted] : cases) {
     std::string whole = text;
     whole.replace(whole.find('?'), 1, value);
@@ -167,7 +180,8 @@ TEST(LimitRules, TheComputedGoto) {
 
 // OPT-7.21, OPT-E.7503: GOSUB_DEPTH GOSUBs are legal, one more is not; each module counts its own.
 TEST(LimitRules, GosubDepth) {
-  const std::string text = "VI[3]=?\n10 VI[2]=VI[2]+1\nIF VI[2] > VI[3] THEN 20\nGOSUB 10\n20 ENDTASK\n";
+  const std::string text =
+      "VI[3]=?\n10 VI[2]=VI[2]+1\nIF VI[2] > VI[3] THEN 20\nGOSUB 10\n20 ENDTASK\n";
   Expect({text, {"16"}, {"17"}, 7503});
   Expect({text, {"3"}, {"4"}, 7503, {.parameters = {{"GOSUB_DEPTH", "3"}}}});
   const Ran inside = RunText("GOSUB 10\nENDTASK\n10 FUNCTION 44\nRETURN\n",
@@ -181,15 +195,20 @@ TEST(LimitRules, GosubDepth) {
 // OPT-B.22, OPT-E.7307: at SPEED above 0 and ACCEL of 0.1 and more something moves, or a MOVE to
 // where the machine stands is no error.
 TEST(LimitRules, TheLeastMotion) {
-  Expect({kThere + "ACCEL ?\nMOVE (1000.1,1000.,-400.,0.,0.)\n", {"0.1", "0.2"}, {"0.", "0.0999"}, 7307});
+  Expect({kThere + "ACCEL ?\nMOVE (1000.1,1000.,-400.,0.,0.)\n",
+          {"0.1", "0.2"},
+          {"0.", "0.0999"},
+          7307});
   Expect({kThere + "SPEED ?\nMOVE (1000.1,1000.,-400.,0.,0.)\n", {"0.1", "0.01"}, {"0."}, 7307});
   Expect({kThere + "SPEED ?\nMOVE (1000.,1000.,-400.,0.,0.)\n", {"0."}, {}});
 }
 
-// OPT-4.38, OPT-E.7320: 100 % is not limited, more is, and once a run; the machine never goes faster.
+// OPT-4.38, OPT-E.7320: 100 % is not limited, more is, and once a run; the machine never goes
+// faster.
 TEST(LimitRules, TheSpeedOfTheMachine) {
-  const std::string text = "COORD ABSOL\nPATH LIN\nSPEED ?\nMOVE (1021.02,2201.2,-350.,0.,0.)\n"
-                           "MOVE (21.02,2201.2,-350.,0.,0.)\n";
+  const std::string text =
+      "COORD ABSOL\nPATH LIN\nSPEED ?\nMOVE (1021.02,2201.2,-350.,0.,0.)\n"
+      "MOVE (21.02,2201.2,-350.,0.,0.)\n";
   const auto with = [&](const std::string& speed, double percent) {
     std::string whole = text;
     whole.replace(whole.find('?'), 1, speed);
@@ -218,7 +237,8 @@ TEST(LimitRules, TheSizeOfAnExecutable) {
   EXPECT_EQ(with(kSize + 1), 0);
 }
 
-// OPT-B.73, OPT-E.7109: objects and executables together may fill CMOS to its last byte, not beyond.
+// OPT-B.73, OPT-E.7109: objects and executables together may fill CMOS to its last byte, not
+// beyond.
 TEST(LimitRules, CmosToTheLastByte) {
   std::string text;
   for (int n = 0; n < 100; ++n) text += "VR[0]=VR[1]+1.5\n";
@@ -261,13 +281,14 @@ TEST(LimitRules, TheBudgetOfTime) {
   };
   EXPECT_EQ(with(std::chrono::milliseconds(5000)), 0);
   EXPECT_EQ(with(std::chrono::milliseconds(4999)), 7902);
-  const Ran loop = RunText("10 DELAY 1\nGOTO 10\n", {.budget = {.virtual_time = std::chrono::seconds(5)}});
+  const Ran loop =
+      RunText("10 DELAY 1\nGOTO 10\n", {.budget = {.virtual_time = std::chrono::seconds(5)}});
   EXPECT_EQ(CodeOf(loop), 7902);
   EXPECT_NEAR(loop.time_s, 5.0, 1e-9);
 }
 
-// OPT-9.08, OPT-7.09: levels are counted where they are: four FUNCTIONs inside each other, again and
-// again, are no fifth.
+// OPT-9.08, OPT-7.09: levels are counted where they are: four FUNCTIONs inside each other, again
+// and again, are no fifth.
 TEST(LimitRules, LevelsEndWithTheirModules) {
   const RunOptions options{.programs = {{41, "FUNCTION 42\nFUNCTION 42\n"},
                                         {42, "FUNCTION 43\n"},

@@ -17,22 +17,51 @@ machine::Parameters Standard() { return machine::Parameters(OptimoParameterTable
 // OPT-B.01, OPT-B.02: the table of section B.1, with the limits of motion.md section 1.
 TEST(MachineRules, StandardParameters) {
   const machine::Parameters p = Standard();
-  const std::pair<const char*, double> figures[] = {
-      {"VMAX", 500},           {"AMAX", 2000},          {"JMAX", 40'000},
-      {"AXIS_SPEED_X", 500},   {"AXIS_SPEED_Y", 500},   {"AXIS_SPEED_Z", 500},
-      {"AXIS_ACCEL_X", 2000},  {"AXIS_ACCEL_Y", 2000},  {"AXIS_ACCEL_Z", 2000},
-      {"AXIS_ACCEL_A", 20},    {"AXIS_ACCEL_B", 20},    {"AXIS_JERK_X", 40'000},
-      {"AXIS_JERK_Y", 40'000}, {"AXIS_JERK_Z", 40'000}, {"AXIS_JERK_A", 400},
-      {"AXIS_JERK_B", 400},    {"HEAD_LENGTH", 300},    {"TRAVEL_X_MIN", -600},
-      {"TRAVEL_X_MAX", 3600},  {"TRAVEL_Y_MIN", -600},  {"TRAVEL_Y_MAX", 3100},
-      {"TRAVEL_Z_MIN", -1300}, {"TRAVEL_Z_MAX", 1100},  {"TRAVEL_A_MIN", -12.6},
-      {"TRAVEL_A_MAX", 12.6},  {"TRAVEL_B_MIN", -2.4},  {"TRAVEL_B_MAX", 2.4},
-      {"HOME_X", 21.02},       {"HOME_Y", 2201.2},      {"HOME_Z", -50},
-      {"HOME_A", 0},           {"HOME_B", 0},           {"MECH_ZERO_X", 0},
-      {"MECH_ZERO_Y", 0},      {"MECH_ZERO_Z", 0},      {"MECH_ZERO_A", 0},
-      {"MECH_ZERO_B", 0},      {"CYCLE", 0.048},        {"SETTLE", 0.048},
-      {"GAS_CHANNELS", 2},     {"OBJECT_LIMIT", 34'000}, {"EXECUTABLE_LIMIT", 32'768},
-      {"CMOS_SIZE", 1'048'576}, {"GOSUB_DEPTH", 16},    {"CALL_TIME", 0}};
+  const std::pair<const char*, double> figures[] = {{"VMAX", 500},
+                                                    {"AMAX", 2000},
+                                                    {"JMAX", 40'000},
+                                                    {"AXIS_SPEED_X", 500},
+                                                    {"AXIS_SPEED_Y", 500},
+                                                    {"AXIS_SPEED_Z", 500},
+                                                    {"AXIS_ACCEL_X", 2000},
+                                                    {"AXIS_ACCEL_Y", 2000},
+                                                    {"AXIS_ACCEL_Z", 2000},
+                                                    {"AXIS_ACCEL_A", 20},
+                                                    {"AXIS_ACCEL_B", 20},
+                                                    {"AXIS_JERK_X", 40'000},
+                                                    {"AXIS_JERK_Y", 40'000},
+                                                    {"AXIS_JERK_Z", 40'000},
+                                                    {"AXIS_JERK_A", 400},
+                                                    {"AXIS_JERK_B", 400},
+                                                    {"HEAD_LENGTH", 300},
+                                                    {"TRAVEL_X_MIN", -600},
+                                                    {"TRAVEL_X_MAX", 3600},
+                                                    {"TRAVEL_Y_MIN", -600},
+                                                    {"TRAVEL_Y_MAX", 3100},
+                                                    {"TRAVEL_Z_MIN", -1300},
+                                                    {"TRAVEL_Z_MAX", 1100},
+                                                    {"TRAVEL_A_MIN", -12.6},
+                                                    {"TRAVEL_A_MAX", 12.6},
+                                                    {"TRAVEL_B_MIN", -2.4},
+                                                    {"TRAVEL_B_MAX", 2.4},
+                                                    {"HOME_X", 21.02},
+                                                    {"HOME_Y", 2201.2},
+                                                    {"HOME_Z", -50},
+                                                    {"HOME_A", 0},
+                                                    {"HOME_B", 0},
+                                                    {"MECH_ZERO_X", 0},
+                                                    {"MECH_ZERO_Y", 0},
+                                                    {"MECH_ZERO_Z", 0},
+                                                    {"MECH_ZERO_A", 0},
+                                                    {"MECH_ZERO_B", 0},
+                                                    {"CYCLE", 0.048},
+                                                    {"SETTLE", 0.048},
+                                                    {"GAS_CHANNELS", 2},
+                                                    {"OBJECT_LIMIT", 34'000},
+                                                    {"EXECUTABLE_LIMIT", 32'768},
+                                                    {"CMOS_SIZE", 1'048'576},
+                                                    {"GOSUB_DEPTH", 16},
+                                                    {"CALL_TIME", 0}};
   for (const auto& [name, value] : figures) EXPECT_EQ(p.Number(name), value) << name;
   EXPECT_NEAR(p.Number("AXIS_SPEED_A"), 6.283185, 1e-6);
   EXPECT_NEAR(p.Number("AXIS_SPEED_B"), 6.283185, 1e-6);
@@ -78,9 +107,9 @@ TEST(MachineRules, EachParameterHasItsPlace) {
     EXPECT_TRUE(p.Set("MECH_ZERO_" + axes[n], 7.0 + n).ok());
   }
   const std::pair<const char*, double> figures[] = {
-      {"VMAX", 61},          {"AMAX", 62},           {"JMAX", 163},          {"SETTLE", 0.25},
-      {"HEAD_LENGTH", 65},   {"CYCLE", 0.064},       {"OBJECT_LIMIT", 201},  {"EXECUTABLE_LIMIT", 202},
-      {"CMOS_SIZE", 2003},   {"GOSUB_DEPTH", 5},     {"CALL_TIME", 1.5},     {"LASER_POWER", 204},
+      {"VMAX", 61},        {"AMAX", 62},       {"JMAX", 163},         {"SETTLE", 0.25},
+      {"HEAD_LENGTH", 65}, {"CYCLE", 0.064},   {"OBJECT_LIMIT", 201}, {"EXECUTABLE_LIMIT", 202},
+      {"CMOS_SIZE", 2003}, {"GOSUB_DEPTH", 5}, {"CALL_TIME", 1.5},    {"LASER_POWER", 204},
       {"GAS_CHANNELS", 3}};
   for (const auto& [name, value] : figures) EXPECT_TRUE(p.Set(name, value).ok()) << name;
   for (const char* name : {"TEACH_SIM", "ROTARY_TABLE"}) {
@@ -223,8 +252,8 @@ TEST(MachineRules, ForeignBytesAreRefused) {
   version_3[8] = 3;
   std::string nan = good;
   for (int k = 0; k < 4; ++k) nan[9 + k] = '\xFF';  // VR[0]
-  const std::string wrong[] = {"", "OPTSTATE", other, version_0, version_3, nan, good + '\0',
-                               good.substr(0, good.size() - 1)};
+  const std::string wrong[] = {"",        "OPTSTATE", other,       version_0,
+                               version_3, nan,        good + '\0', good.substr(0, good.size() - 1)};
   for (const std::string& bytes : wrong) {
     const Result<MachineState> read = DecodeMachineState(bytes);
     ASSERT_FALSE(bool(read)) << bytes.size();
@@ -251,7 +280,8 @@ TEST(MachineRules, ExecutionsSinceSelection) {
   };
   auto [first, state] = run_of(45, "");
   EXPECT_EQ(first, "1");
-  const std::tuple<int, const char*> later[] = {{45, "2"}, {45, "3"}, {1, "1"}, {1, "2"}, {45, "1"}};
+  const std::tuple<int, const char*> later[] = {
+      {45, "2"}, {45, "3"}, {1, "1"}, {1, "2"}, {45, "1"}};
   for (const auto& [main, wanted] : later) {
     const auto [count, after] = run_of(main, state);
     EXPECT_EQ(count, wanted) << main;
@@ -259,11 +289,12 @@ TEST(MachineRules, ExecutionsSinceSelection) {
   }
 }
 
-// OPT-7.70, OPT-B.63: a CALL is no execution of a main program, a GO is one of the other, also when it
-// goes to itself.
+// OPT-7.70, OPT-B.63: a CALL is no execution of a main program, a GO is one of the other, also when
+// it goes to itself.
 TEST(MachineRules, GoSelectsAnew) {
   EXPECT_EQ(Value("CALL 45\nVI[2]=VI[98]\n", "VI[2]", {.programs = {{45, "VI[3]=1\n"}}}), "1");
-  EXPECT_EQ(Value("VI[3]=VI[3]+1\nVI[2]=VI[98]\nIF VI[3] >= 3 THEN 9\nGO 1\n9 ENDTASK\n", "VI[2]"), "1");
+  EXPECT_EQ(Value("VI[3]=VI[3]+1\nVI[2]=VI[98]\nIF VI[3] >= 3 THEN 9\nGO 1\n9 ENDTASK\n", "VI[2]"),
+            "1");
 }
 
 // What a family says of itself, and its figures.
@@ -285,22 +316,24 @@ TEST(MachineRules, TheFamily) {
   (*run)->Advance(At(1.0));
   const std::vector<machine::Figure> figures = (*run)->figures();
   ASSERT_EQ(figures.size(), family.figures().size());
-  for (std::size_t n = 0; n < figures.size(); ++n) EXPECT_EQ(figures[n].name, family.figures()[n].name);
+  for (std::size_t n = 0; n < figures.size(); ++n)
+    EXPECT_EQ(figures[n].name, family.figures()[n].name);
   EXPECT_EQ(figures[1].value, 2.0);  // executables made: 1 and 45
 }
 
 // OPT-1.15: an executable is stored for the program that it was made of, and no other.
 TEST(MachineRules, ExecutablesBelongToTheirSlot) {
-  const std::string bytes = RunText("CALL 45\n", {.programs = {{45, "VI[2]=1\n"}}}).executables.at(45);
+  const std::string bytes =
+      RunText("CALL 45\n", {.programs = {{45, "VI[2]=1\n"}}}).executables.at(45);
   EXPECT_TRUE(OptimoFamily().CheckExecutable(bytes, 45).ok());
   const Status other = OptimoFamily().CheckExecutable(bytes, 46);
   ASSERT_FALSE(other.ok());
   EXPECT_NE(other.error().detail.find("145"), std::string::npos) << other.error().detail;
   EXPECT_FALSE(OptimoFamily().CheckExecutable("no executable", 45).ok());
   // One that lies in another slot all the same runs, with a warning.
-  const Ran ran = RunText("CALL 46\n", {.programs = {{46, "VI[2]=2\n"}},
-                                        .variables = {"VI[2]"},
-                                        .executables = {{46, bytes}}});
+  const Ran ran = RunText(
+      "CALL 46\n",
+      {.programs = {{46, "VI[2]=2\n"}}, .variables = {"VI[2]"}, .executables = {{46, bytes}}});
   EXPECT_TRUE(ran.Told("E7110"));
   EXPECT_EQ(ran.variables.at("VI[2]"), "1");
   EXPECT_EQ(CodeOf(RunText("CALL 46\n", {.programs = {{46, "VI[2]=2\n"}},
@@ -308,14 +341,15 @@ TEST(MachineRules, ExecutablesBelongToTheirSlot) {
             7034);
 }
 
-// OPT-6.42, OPT-B.65: a suspended run keeps its executable: what is stored meanwhile is for the next
-// start. A circle that was stopped goes on through its old via point to its old end.
+// OPT-6.42, OPT-B.65: a suspended run keeps its executable: what is stored meanwhile is for the
+// next start. A circle that was stopped goes on through its old via point to its old end.
 TEST(MachineRules, ASuspendedRunKeepsItsSteps) {
   const auto arc = [](const std::string& end, const std::string& via) {
-    return "COORD ABSOL\nPATH CIR\nSPEED 10\nMOVE (" + end + ",-350.,0.,0.)/VIA (" + via + ",-350.,0.,0.)\n";
+    return "COORD ABSOL\nPATH CIR\nSPEED 10\nMOVE (" + end + ",-350.,0.,0.)/VIA (" + via +
+           ",-350.,0.,0.)\n";
   };
-  machine::RunSetup stored =
-      SetupOf(arc("221.02,2201.2", "121.02,2301.2"), {.inputs = {{At(1.0), machine::InputKind::kStop}}});
+  machine::RunSetup stored = SetupOf(arc("221.02,2201.2", "121.02,2301.2"),
+                                     {.inputs = {{At(1.0), machine::InputKind::kStop}}});
   machine::RunObserver nobody;
   Result<std::unique_ptr<machine::Run>> run = OptimoFamily().NewRun(stored, nobody);
   ASSERT_TRUE(bool(run));
@@ -336,14 +370,15 @@ TEST(MachineRules, ASuspendedRunKeepsItsSteps) {
 // others are put before it, and a number that is left alone goes to the instruction behind it.
 TEST(MachineRules, SequenceNumbersStayWithTheirInstructions) {
   EXPECT_EQ(Value("GOTO 10\nVI[2]=1\n10 VI[3]=1\nVI[4]=VI[2]+10\n", "VI[4]"), "10");
-  EXPECT_EQ(Value("GOTO 10\nVI[2]=1\nVI[2]=2\nVI[2]=3\n10 VI[3]=1\nVI[4]=VI[2]+10\n", "VI[4]"), "10");
+  EXPECT_EQ(Value("GOTO 10\nVI[2]=1\nVI[2]=2\nVI[2]=3\n10 VI[3]=1\nVI[4]=VI[2]+10\n", "VI[4]"),
+            "10");
   const Ran deleted = RunText("GOTO 10\nVI[2]=1\n10\nVI[4]=VI[2]+10\n", {.variables = {"VI[4]"}});
   EXPECT_EQ(deleted.variables.at("VI[4]"), "10");
   EXPECT_THAT(deleted.steps_begun, ElementsAre(1, 3));
 }
 
-// OPT-5.16: what a recorded MOVE would hold is the position in machine coordinates: of the tip and of
-// the column. A SYSDEF makes no difference to it.
+// OPT-5.16: what a recorded MOVE would hold is the position in machine coordinates: of the tip and
+// of the column. A SYSDEF makes no difference to it.
 TEST(MachineRules, PositionsAreOfTheMachine) {
   const Ran ran = RunText(
       "COORD ABSOL\nSYSDEF (100.,100.,0.,0.5,0.,0.)\nTCP (0.,0.,5./0.,0.,-5.)\nSYSDEF\n"
@@ -356,8 +391,9 @@ TEST(MachineRules, PositionsAreOfTheMachine) {
 
 // OPT-5.20, OPT-2.21: points that were recorded as plain MOVEs run as straight moves, also in CIR.
 TEST(MachineRules, PlainMovesAreStraight) {
-  const Ran ran = RunText("COORD ABSOL\nPATH CIR\nMOVE (121.02,2301.2,-350.,0.,0.)\n"
-                          "MOVE (221.02,2201.2,-350.,0.,0.)\n");
+  const Ran ran = RunText(
+      "COORD ABSOL\nPATH CIR\nMOVE (121.02,2301.2,-350.,0.,0.)\n"
+      "MOVE (221.02,2201.2,-350.,0.,0.)\n");
   EXPECT_EQ(ran.Count("E7308"), 2);
   EXPECT_LT(ran.DistanceTo({71.02, 2251.2, -350.0}), 1e-4);
   EXPECT_LT(ran.DistanceTo({171.02, 2251.2, -350.0}), 1e-4);
@@ -365,15 +401,17 @@ TEST(MachineRules, PlainMovesAreStraight) {
 
 // OPT-5.25, OPT-2.44: /FLY belongs to its MOVE: without it the machine stops at every target.
 TEST(MachineRules, WithoutFlyEveryTargetIsReached) {
-  const Ran ran = RunText(kThere + "MOVE (1100.,1000.,-400.,0.,0.)\nMOVE (1100.,1100.,-400.,0.,0.)\n");
+  const Ran ran =
+      RunText(kThere + "MOVE (1100.,1000.,-400.,0.,0.)\nMOVE (1100.,1100.,-400.,0.,0.)\n");
   EXPECT_LT(ran.DistanceTo({1100.0, 1000.0, -400.0}), 1e-9);
   EXPECT_EQ(ran.parts[1].SpeedAt(ran.parts[1].duration_s()), 0.0);
 }
 
 // OPT-5.21: the radius of a hole is that of the last PATH HOLE of the program.
 TEST(MachineRules, TheRadiusIsThatOfThePathStep) {
-  const Ran ran = RunText("COORD ABSOL\nPATH HOLE (5.)\nPATH LIN\nPATH HOLE (12.7)\n"
-                          "MOVE (121.02,2201.2,-350.,0.,0.)/VIA (121.02,2201.2,-150.,0.,0.)\n");
+  const Ran ran = RunText(
+      "COORD ABSOL\nPATH HOLE (5.)\nPATH LIN\nPATH HOLE (12.7)\n"
+      "MOVE (121.02,2201.2,-350.,0.,0.)/VIA (121.02,2201.2,-150.,0.,0.)\n");
   EXPECT_NEAR(ran.end.tip.tip.x, 121.02 - 12.7, 1e-4);
 }
 

@@ -6,8 +6,8 @@
 #include "engine/optimo/control/optimo_family.h"
 #include "tests/engine/optimo/control/run_text.h"
 
-// Modes and keys: what START, HOLD, STOP and the emergency stop do in each mode, and where a run then
-// stands. New machines stand with the tip at (21.02, 2201.2, -350).
+// Modes and keys: what START, HOLD, STOP and the emergency stop do in each mode, and where a run
+// then stands. New machines stand with the tip at (21.02, 2201.2, -350).
 namespace rmlcell::optimo::testing::mode_rules {
 namespace {
 
@@ -67,8 +67,8 @@ TEST(ModeRules, HoldWhileAConditionIsWaitedFor) {
   const machine::InputScript script{Key(1.0, InputKind::kHold),
                                     {At(2.0), InputKind::kLogical, 20, 1.0},
                                     Key(30.0, InputKind::kStart)};
-  const Ran move = RunText(kAlongX + MoveTo(121.02, "/START (IL[20])") + "OL[16]=ON\n",
-                           {.inputs = script});
+  const Ran move =
+      RunText(kAlongX + MoveTo(121.02, "/START (IL[20])") + "OL[16]=ON\n", {.inputs = script});
   EXPECT_NEAR(move.First("halt HOLD").at_s, 2.0 + kHundred_s, kExact);
   EXPECT_EQ(move.First("halt HOLD").step, 4);
   EXPECT_NEAR(move.First("OL[16] 1").at_s, 30.0, kExact);
@@ -87,8 +87,7 @@ TEST(ModeRules, HoldWhileAConditionIsWaitedFor) {
 // OPT-4.11, OPT-4.12: HOLD is a key of SINGLE, CYCLE and REPEAT. In REMOTE it does nothing, also no
 // later.
 TEST(ModeRules, HoldIsDeadInRemote) {
-  const Ran ran =
-      RunText(kFar, {.inputs = {Key(1.0, InputKind::kHold)}, .mode = Mode::kRemote});
+  const Ran ran = RunText(kFar, {.inputs = {Key(1.0, InputKind::kHold)}, .mode = Mode::kRemote});
   EXPECT_EQ(ran.outcome.kind, OutcomeKind::kCompleted);
   EXPECT_EQ(ran.Count("halt HOLD"), 0);
   EXPECT_NEAR(ran.time_s, kFiveHundred_s + 100.0, kExact);
@@ -120,9 +119,10 @@ TEST(ModeRules, TheEmergencyStopWorksInEveryMode) {
 
 // OPT-4.14: also where the run is halted; the alarm ends it.
 TEST(ModeRules, TheEmergencyStopEndsAHaltedRun) {
-  const Ran ran = RunText("STOP\nVI[2]=1\n", {.inputs = {Key(1.0, InputKind::kEmergencyStop),
-                                                         Key(2.0, InputKind::kStart)},
-                                              .variables = {"VI[2]", "VI[99]"}});
+  const Ran ran =
+      RunText("STOP\nVI[2]=1\n",
+              {.inputs = {Key(1.0, InputKind::kEmergencyStop), Key(2.0, InputKind::kStart)},
+               .variables = {"VI[2]", "VI[99]"}});
   EXPECT_EQ(CodeOf(ran), 7610);
   EXPECT_EQ(ran.variables.at("VI[99]"), "7610");
   EXPECT_EQ(ran.variables.at("VI[2]"), "0");
@@ -130,8 +130,8 @@ TEST(ModeRules, TheEmergencyStopEndsAHaltedRun) {
 }
 
 // OPT-4.18, OPT-6.31: STOP in the middle of a LIN move, in SINGLE, CYCLE and REPEAT: at once a ramp
-// to rest over half a ramp of way, so that it stands at just 50 mm/s times the time under way; START
-// makes the rest, over the same line.
+// to rest over half a ramp of way, so that it stands at just 50 mm/s times the time under way;
+// START makes the rest, over the same line.
 TEST(ModeRules, StopHaltsAtOnceAndStartFinishesTheInstruction) {
   for (const Mode mode : {Mode::kCycle, Mode::kSingle, Mode::kRepeat}) {
     SCOPED_TRACE(static_cast<int>(mode));
@@ -165,9 +165,10 @@ TEST(ModeRules, StopHaltsAtOnceAndStartFinishesTheInstruction) {
 // length of all parts is that of the path.
 TEST(ModeRules, StopAndStartOnCurvesKeepThePath) {
   const double quarter = 0.5 * M_PI * 100.0;
-  const Ran arc = RunText("COORD ABSOL\nPATH CIR\nSPEED 10\n"
-                          "MOVE (121.02,2301.2,-350.,0.,0.)/VIA (50.30932,2271.911,-350.,0.,0.)\n",
-                          {.inputs = {Key(1.5, InputKind::kStop), Key(9.0, InputKind::kStart)}});
+  const Ran arc = RunText(
+      "COORD ABSOL\nPATH CIR\nSPEED 10\n"
+      "MOVE (121.02,2301.2,-350.,0.,0.)/VIA (50.30932,2271.911,-350.,0.,0.)\n",
+      {.inputs = {Key(1.5, InputKind::kStop), Key(9.0, InputKind::kStart)}});
   double length = 0.0;
   for (const Ran::Part& part : arc.parts) {
     length += part.done.travelled - part.done.from;
@@ -175,14 +176,16 @@ TEST(ModeRules, StopAndStartOnCurvesKeepThePath) {
     EXPECT_NEAR(std::hypot(at.x - 121.02, at.y - 2201.2), 100.0, 1e-3);
   }
   EXPECT_NEAR(length, quarter, 1e-3);
-  EXPECT_NEAR(arc.time_s, 9.0 + (quarter - 75.0) / 50.0 + kRamp_s + kSettle_s, 2e-3);  // the curve takes some of the jerk
+  EXPECT_NEAR(arc.time_s, 9.0 + (quarter - 75.0) / 50.0 + kRamp_s + kSettle_s,
+              2e-3);  // the curve takes some of the jerk
   EXPECT_EQ(arc.moves.size(), 1U);
 
   const std::string hole =
       "COORD ABSOL\nPATH HOLE (40.)\nSPEED 10\n"
       "MOVE (121.02,2201.2,-350.,0.,0.)/VIA (121.02,2201.2,-150.,0.,0.)\n";
   const Ran free = RunText(hole);
-  const Ran lead = RunText(hole, {.inputs = {Key(0.5, InputKind::kStop), Key(9.0, InputKind::kStart)}});
+  const Ran lead =
+      RunText(hole, {.inputs = {Key(0.5, InputKind::kStop), Key(9.0, InputKind::kStart)}});
   // 60 mm of lead, then the turn. What is stopped on the lead turns whole afterwards.
   EXPECT_NEAR(RestX(lead, 9.0), 21.02 + 25.0, kExact);
   EXPECT_NEAR(lead.time_s, 9.0 + free.time_s - 0.5, kExact);
@@ -191,14 +194,14 @@ TEST(ModeRules, StopAndStartOnCurvesKeepThePath) {
 // OPT-4.18: a STOP while nothing moves halts at once, whatever is waited for; the rest of a DELAY
 // comes after START, and a WAIT looks again.
 TEST(ModeRules, StopWhereNothingMoves) {
-  const Ran delay = RunText("DELAY 4\nOL[16]=ON\n", {.inputs = {Key(1.0, InputKind::kStop),
-                                                               Key(3.0, InputKind::kStart)}});
+  const Ran delay = RunText("DELAY 4\nOL[16]=ON\n",
+                            {.inputs = {Key(1.0, InputKind::kStop), Key(3.0, InputKind::kStart)}});
   EXPECT_NEAR(delay.First("halt STOP").at_s, 1.0, kExact);
   EXPECT_NEAR(delay.First("OL[16] 1").at_s, 6.0, kExact);
-  const Ran wait = RunText("WAIT IL[20]\nOL[16]=ON\n",
-                           {.inputs = {Key(1.0, InputKind::kStop),
-                                       {At(2.0), InputKind::kLogical, 20, 1.0},
-                                       Key(3.0, InputKind::kStart)}});
+  const Ran wait =
+      RunText("WAIT IL[20]\nOL[16]=ON\n", {.inputs = {Key(1.0, InputKind::kStop),
+                                                      {At(2.0), InputKind::kLogical, 20, 1.0},
+                                                      Key(3.0, InputKind::kStart)}});
   EXPECT_NEAR(wait.First("halt STOP").at_s, 1.0, kExact);
   EXPECT_NEAR(wait.First("OL[16] 1").at_s, 3.0, 0.048 + kExact);
   EXPECT_GE(wait.First("OL[16] 1").at_s, 3.0);
@@ -218,8 +221,8 @@ TEST(ModeRules, StopBesideANextMove) {
 // OPT-4.18, OPT-2.44: STOP in a chain: the corner keeps its shape (C01: 1.358847515 mm), stopped
 // before it, in it or behind it.
 TEST(ModeRules, StopInAChainKeepsTheCorner) {
-  const std::string text = kAlongX + MoveTo(121.02, "/FLY") +
-                           "MOVE (121.02,2301.2,-350.,0.,0.)\nOL[16]=ON\n";
+  const std::string text =
+      kAlongX + MoveTo(121.02, "/FLY") + "MOVE (121.02,2301.2,-350.,0.,0.)\nOL[16]=ON\n";
   for (const double at : {1.0, 1.99, 2.03, 3.0}) {
     const Ran ran =
         RunText(text, {.inputs = {Key(at, InputKind::kStop), Key(9.0, InputKind::kStart)}});
@@ -247,8 +250,7 @@ TEST(ModeRules, StartIsIgnoredUntilTheStepIsFinished) {
 // OPT-4.23: REPEAT begins again from its first step at the end, until HOLD or STOP.
 TEST(ModeRules, RepeatRunsTheStepsAgain) {
   const std::string text = "VI[2]=VI[2]+1\nDELAY 1\n";
-  const Ran held =
-      RunText(text, {.inputs = {Key(2.5, InputKind::kHold)}, .mode = Mode::kRepeat});
+  const Ran held = RunText(text, {.inputs = {Key(2.5, InputKind::kHold)}, .mode = Mode::kRepeat});
   EXPECT_THAT(held.steps_begun, ElementsAre(1, 2, 1, 2, 1, 2));
   EXPECT_NEAR(held.First("halt HOLD").at_s, 3.0, kExact);
   const Ran stopped =
@@ -268,7 +270,8 @@ TEST(ModeRules, EachRepetitionBeginsAnew) {
   const Ran ran = RunText(
       "MOVE (121.02,2201.2,-50.,0.,0.)\nMOVE (21.02,2201.2,-50.,0.,0.)\nSPEED 10\nWORK 0,0/ON\n"
       "WORK 0,0/OFF\n",
-      {.inputs = {Key(1.0, InputKind::kHold), Key(2.0, InputKind::kStart), Key(2.1, InputKind::kHold)},
+      {.inputs = {Key(1.0, InputKind::kHold), Key(2.0, InputKind::kStart),
+                  Key(2.1, InputKind::kHold)},
        .mode = Mode::kRepeat});
   EXPECT_EQ(ran.Count("shutter closed"), 1);
   ASSERT_GE(ran.moves.size(), 3U);
@@ -321,7 +324,8 @@ TEST(ModeRules, StartOfAMissingProgram) {
   EXPECT_EQ((*run)->steps_executed(), 0U);
 }
 
-// OPT-4.61: START begins at step 1, wherever the run before was broken off; a suspended run goes on.
+// OPT-4.61: START begins at step 1, wherever the run before was broken off; a suspended run goes
+// on.
 TEST(ModeRules, StartBeginsAtTheFirstStep) {
   const std::string text = "VI[2]=VI[2]+1\nSTOP\nVI[3]=VI[3]+1\n";
   const Ran broken = RunText(text, {.mode = Mode::kRemote});
@@ -382,8 +386,7 @@ TEST(ModeRules, InSingleEveryTargetIsReached) {
 // OPT-6.33, OPT-4.34: in CYCLE the bend hangs on the actual speed: at 10 % of 50 mm/s the corner of
 // case C01 shrinks with the power 1.5 of the speed (motion.md 4.3).
 TEST(ModeRules, InCycleTheBendHangsOnTheOverride) {
-  const std::string text = kAlongX + MoveTo(121.02, "/FLY") +
-                           "MOVE (121.02,2301.2,-350.,0.,0.)\n";
+  const std::string text = kAlongX + MoveTo(121.02, "/FLY") + "MOVE (121.02,2301.2,-350.,0.,0.)\n";
   const motion::Vec3 corner{121.02, 2201.2, -350.0};
   EXPECT_NEAR(RunText(text).DistanceTo(corner), 1.358847515, kReal_mm);
   EXPECT_NEAR(RunText(text, {.override_percent = 10.0}).DistanceTo(corner),
@@ -393,8 +396,8 @@ TEST(ModeRules, InCycleTheBendHangsOnTheOverride) {
 // OPT-6.07, OPT-B.29: a breakpoint at a /FLY move makes its target exact, as HOLD does; one at the
 // same step of another program does not.
 TEST(ModeRules, ABreakpointCancelsThePassage) {
-  const std::string text = kAlongX + MoveTo(121.02, "/FLY") + "OL[16]=ON\n" +
-                           "MOVE (121.02,2301.2,-350.,0.,0.)\n";
+  const std::string text =
+      kAlongX + MoveTo(121.02, "/FLY") + "OL[16]=ON\n" + "MOVE (121.02,2301.2,-350.,0.,0.)\n";
   const motion::Vec3 corner{121.02, 2201.2, -350.0};
   RunOptions options{.inputs = {Key(9.0, InputKind::kStart)}};
   options.breakpoint = machine::ProgramStep{.program = 1, .step = 4};

@@ -152,7 +152,8 @@ TEST(MotionRules, AnInputDoesNotHastenTheTakeOver) {
                            "MOVE (21.02,2101.2,-350.,0.,0.)\n";
   const Ran ran = RunText(text, {.inputs = {{At(0.51), machine::InputKind::kLogical, 20, 1.0}}});
   ASSERT_EQ(ran.moves.size(), 2U);
-  // The ramp to 50 mm/s costs 50 mm/s x half of 2 sqrt(50/40000) s, and the brake gives as much back.
+  // The ramp to 50 mm/s costs 50 mm/s x half of 2 sqrt(50/40000) s, and the brake gives as much
+  // back.
   EXPECT_NEAR(ran.moves[0].tip.tip.x, kHomeTip.x + 50.0 * 0.528, 1e-6);
   EXPECT_NEAR(ToSeconds(ran.moves[0].at), 0.528 + 2.0 * std::sqrt(50.0 / 40000.0), 1e-6);
 }
@@ -385,7 +386,8 @@ TEST(MotionRules, AnEndedMoveIsToldWhole) {
   EXPECT_NEAR(way, 50.4, 1e-6);
 }
 
-// OPT-2.59: time beside a /NEXT move is the move's; what is left of a DELAY is told from its end on.
+// OPT-2.59: time beside a /NEXT move is the move's; what is left of a DELAY is told from its end
+// on.
 TEST(MotionRules, ADelayBesideANextMoveIsToldFromItsEnd) {
   const Ran ran = RunText(kAbsol + "SPEED 10\nMOVE (121.02,2201.2,-350.,0.,0.)/NEXT\nDELAY 5\n");
   ASSERT_EQ(ran.waits.size(), 1U);
@@ -403,15 +405,16 @@ TEST(MotionRules, StopWhileSettling) {
   EXPECT_FALSE(ran.Told("OL[16] 1"));
 }
 
-// OPT-2.54: the time of a MOVE that came to its target counts no more, also where the next one waits
-// for its /START; nor does its /END.
+// OPT-2.54: the time of a MOVE that came to its target counts no more, also where the next one
+// waits for its /START; nor does its /END.
 TEST(MotionRules, TimeEndsWithItsMove) {
-  const Ran ran = RunText(kAbsol +
-                              "SPEED 10\nMOVE (121.02,2201.2,-350.,0.,0.)/TIME (5.,900)/END (IL[21])\n"
-                              "MOVE (221.02,2201.2,-350.,0.,0.)/START (IL[20])\nENDTASK\n900 VI[2]=1\nRETURN\n",
-                          {.inputs = {{At(4.0), InputKind::kLogical, 21, 1.0},
-                                      {At(10.0), InputKind::kLogical, 20, 1.0}},
-                           .variables = {"VI[2]"}});
+  const Ran ran =
+      RunText(kAbsol +
+                  "SPEED 10\nMOVE (121.02,2201.2,-350.,0.,0.)/TIME (5.,900)/END (IL[21])\n"
+                  "MOVE (221.02,2201.2,-350.,0.,0.)/START (IL[20])\nENDTASK\n900 VI[2]=1\nRETURN\n",
+              {.inputs = {{At(4.0), InputKind::kLogical, 21, 1.0},
+                          {At(10.0), InputKind::kLogical, 20, 1.0}},
+               .variables = {"VI[2]"}});
   EXPECT_EQ(ran.variables.at("VI[2]"), "0");
   EXPECT_NEAR(ran.end.tip.tip.x, 221.02, kReal_mm);
   EXPECT_GT(ran.time_s, 12.0);
@@ -426,9 +429,9 @@ TEST(MotionRules, AnInputOfTheTickIsSeenAtIt) {
 
 // OPT-3.45, OPT-3.49: a wait without beam is told without power, and so is a halt.
 TEST(MotionRules, WaitsWithoutBeamHaveNoPower) {
-  const Ran ran = RunText("DELAY 1\nWORK 0,0/ON\nDELAY 1\nSTOP\nWORK 0,0/OFF\nWAIT IL[20]\n",
-                          {.inputs = {{At(4.0), InputKind::kStart},
-                                      {At(6.0), InputKind::kLogical, 20, 1.0}}});
+  const Ran ran =
+      RunText("DELAY 1\nWORK 0,0/ON\nDELAY 1\nSTOP\nWORK 0,0/OFF\nWAIT IL[20]\n",
+              {.inputs = {{At(4.0), InputKind::kStart}, {At(6.0), InputKind::kLogical, 20, 1.0}}});
   ASSERT_EQ(ran.waits.size(), 4U);
   const double powers[] = {0.0, 100.0, 0.0, 0.0};
   for (std::size_t n = 0; n < 4; ++n) {

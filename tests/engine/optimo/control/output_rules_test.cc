@@ -26,8 +26,8 @@ MachineState StateOf(const Ran& ran) {
 
 const RunOptions kThreeGases{.parameters = {{"GAS_CHANNELS", "3"}}};
 
-// OPT-5.38, OPT-5.40, OPT-E.7409: a refused output keeps its image, and the machine does not follow:
-// the gas stays as it is, whichever of the two is on.
+// OPT-5.38, OPT-5.40, OPT-E.7409: a refused output keeps its image, and the machine does not
+// follow: the gas stays as it is, whichever of the two is on.
 TEST(OutputRules, ARefusedOutputKeepsItsImage) {
   for (const auto& [first, second, gas] :
        {std::tuple{"8", "9", "gas 2"}, std::tuple{"9", "8", "gas 3"}}) {
@@ -45,13 +45,13 @@ TEST(OutputRules, ARefusedOutputKeepsItsImage) {
 
 // OPT-5.40: off is never refused, and when the first is off the second may come.
 TEST(OutputRules, OneGasAfterTheOther) {
-  EXPECT_THAT(Told(RunText("OL[8]=ON\nOL[8]=OFF\nOL[9]=ON\nOL[8]=OFF\nOL[9]=OFF\n", kThreeGases)),
-              ElementsAre("OL[8] 1", "gas 2", "OL[8] 0", "gas 1", "OL[9] 1", "gas 3", "OL[9] 0",
-                          "gas 1"));
+  EXPECT_THAT(
+      Told(RunText("OL[8]=ON\nOL[8]=OFF\nOL[9]=ON\nOL[8]=OFF\nOL[9]=OFF\n", kThreeGases)),
+      ElementsAre("OL[8] 1", "gas 2", "OL[8] 0", "gas 1", "OL[9] 1", "gas 3", "OL[9] 0", "gas 1"));
 }
 
-// OPT-5.40, OPT-5.38: it is the output that counts, not the image: a gas that was refused is not on,
-// and one that is on already is no second one.
+// OPT-5.40, OPT-5.38: it is the output that counts, not the image: a gas that was refused is not
+// on, and one that is on already is no second one.
 TEST(OutputRules, ARefusedGasIsNotOn) {
   EXPECT_THAT(Told(RunText("OL[8]=ON\nOL[9]=ON\nOL[8]=ON\nOL[8]=OFF\nOL[8]=ON\n", kThreeGases)),
               ElementsAre("OL[8] 1", "gas 2", "E7409", "OL[8] 0", "gas 1", "OL[8] 1", "gas 2"));
@@ -59,8 +59,8 @@ TEST(OutputRules, ARefusedGasIsNotOn) {
               ElementsAre("OL[9] 1", "gas 3", "E7409", "OL[9] 0", "gas 1", "OL[9] 1", "gas 3"));
 }
 
-// OPT-5.40, OPT-7.98, OPT-6.24: where outputs follow their images again, one of two gases comes, the
-// first, and the other is refused; one that is on makes way when its image says so.
+// OPT-5.40, OPT-7.98, OPT-6.24: where outputs follow their images again, one of two gases comes,
+// the first, and the other is refused; one that is on makes way when its image says so.
 TEST(OutputRules, GasesFromTheirImages) {
   const std::string both = "OL[8]=ON\nOL[9]=ON\n";
   EXPECT_THAT(Told(RunText("UPDATE OL/OFF\n" + both + "UPDATE OL/ON\n", kThreeGases)),
@@ -74,8 +74,8 @@ TEST(OutputRules, GasesFromTheirImages) {
               ElementsAre("OL[9] 1", "gas 3", "OL[9] 0", "gas 1", "OL[8] 1", "gas 2"));
 }
 
-// OPT-5.40, OPT-2.49: between two /FLY moves it is the passage that counts: there the first gas is off
-// when the second comes. A refusal is told there too, at its own step.
+// OPT-5.40, OPT-2.49: between two /FLY moves it is the passage that counts: there the first gas is
+// off when the second comes. A refusal is told there too, at its own step.
 TEST(OutputRules, GasesOfAPassage) {
   const std::string way = "OL[8]=ON\n" + kThere + "MOVE (1100.,1000.,-400.,0.,0.)/FLY\n";
   const std::string end = "MOVE (1200.,1000.,-400.,0.,0.)\n";
@@ -90,11 +90,12 @@ TEST(OutputRules, GasesOfAPassage) {
 TEST(OutputRules, AGasOutlivesItsRun) {
   RunOptions next = kThreeGases;
   next.machine_state = RunText("OL[8]=ON\n", kThreeGases).machine_state;
-  EXPECT_THAT(Told(RunText("OL[9]=ON\nOL[8]=OFF\n", next)), ElementsAre("E7409", "OL[8] 0", "gas 1"));
+  EXPECT_THAT(Told(RunText("OL[9]=ON\nOL[8]=OFF\n", next)),
+              ElementsAre("E7409", "OL[8] 0", "gas 1"));
 }
 
-// OPT-5.41, OPT-E.931: with two channels OL[9] ON is alarm 931, also behind UPDATE; OFF is not. With
-// three it is an output. Its image stays set.
+// OPT-5.41, OPT-E.931: with two channels OL[9] ON is alarm 931, also behind UPDATE; OFF is not.
+// With three it is an output. Its image stays set.
 TEST(OutputRules, TheThirdGasNeedsItsChannel) {
   const Ran ran = RunText("OL[9]=OFF\nOL[9]=ON\nVI[2]=1\n", {.variables = {"OL[9]", "VI[2]"}});
   EXPECT_EQ(CodeOf(ran), 931);
@@ -104,8 +105,8 @@ TEST(OutputRules, TheThirdGasNeedsItsChannel) {
   EXPECT_EQ(CodeOf(RunText("OL[9]=ON\n", kThreeGases)), 0);
   // The alarm switches beam and shutter off.
   const Ran cutting = RunText("WORK 0,0/ON\nOL[9]=ON\n");
-  EXPECT_THAT(Told(cutting), ElementsAre("shutter open", "beam on 100.0", "beam off", "E931",
-                                         "shutter closed"));
+  EXPECT_THAT(Told(cutting),
+              ElementsAre("shutter open", "beam on 100.0", "beam off", "E931", "shutter closed"));
 }
 
 // OPT-5.39, OPT-B.07, OPT-5.42: 8 and 9 are gas, 11 is the sensor, the others are outputs and no
@@ -126,7 +127,8 @@ TEST(OutputRules, EveryLogicalConstant) {
     EXPECT_THAT(Told(RunText("OL[16]=" + on + "\n")), ElementsAre("OL[16] 1")) << on;
   }
   for (const std::string off : {"OFF", "FALSE", "NO", "0"}) {
-    EXPECT_THAT(Told(RunText("OL[16]=ON\nOL[16]=" + off + "\n")), ElementsAre("OL[16] 1", "OL[16] 0"));
+    EXPECT_THAT(Told(RunText("OL[16]=ON\nOL[16]=" + off + "\n")),
+                ElementsAre("OL[16] 1", "OL[16] 0"));
   }
 }
 
@@ -166,7 +168,8 @@ TEST(OutputRules, EachGroupIsSimulatedByItself) {
   EXPECT_THAT(Told(RunText("IMAGE\n" + outputs)), ElementsAre());
   EXPECT_THAT(Told(RunText("IMAGE OL, OA\n" + outputs + "REAL OA\n")), ElementsAre("OA[5] 2.5"));
   EXPECT_THAT(Told(RunText("IMAGE\n" + outputs + "REAL OL\n")), ElementsAre("OL[16] 1"));
-  EXPECT_THAT(Told(RunText("IMAGE\n" + outputs + "REAL\n")), UnorderedElementsAre("OL[16] 1", "OA[5] 2.5"));
+  EXPECT_THAT(Told(RunText("IMAGE\n" + outputs + "REAL\n")),
+              UnorderedElementsAre("OL[16] 1", "OA[5] 2.5"));
   // REAL of a group that UPDATE holds back sets nothing, and of the inputs neither.
   EXPECT_THAT(Told(RunText("UPDATE OL/OFF\nIMAGE OL\n" + outputs + "REAL OL\n")),
               ElementsAre("OA[5] 2.5"));
@@ -185,18 +188,19 @@ TEST(OutputRules, EachGroupComesBackByItself) {
               ElementsAre("OL[16] 1", "OA[5] 2.5"));
   EXPECT_THAT(Told(RunText("IMAGE\n" + outputs + "REAL IL\nREAL OA\n")), ElementsAre("OA[5] 2.5"));
   const std::string refused = "OL[8]=ON\nOL[9]=ON\n";
-  EXPECT_EQ(RunText(refused + "UPDATE OA/ON\nREAL OA\nREAL IL,IA\n", kThreeGases).Count("E7409"), 1);
+  EXPECT_EQ(RunText(refused + "UPDATE OA/ON\nREAL OA\nREAL IL,IA\n", kThreeGases).Count("E7409"),
+            1);
   EXPECT_EQ(RunText(refused + "UPDATE OL/ON\n", kThreeGases).Count("E7409"), 2);
 }
 
-// OPT-7.97, OPT-7.98, OPT-7.100: inputs of a group that is off keep their images; the other group is
-// read on.
+// OPT-7.97, OPT-7.98, OPT-7.100: inputs of a group that is off keep their images; the other group
+// is read on.
 TEST(OutputRules, InputsOfEachGroup) {
   const auto read = [](const std::string& before) {
-    const Ran ran = RunText(
-        before + "DELAY 1\nVL[0]=IL[20]\nVR[0]=IA[40]\n",
-        {.inputs = {{At(0.5), InputKind::kLogical, 20, 1.0}, {At(0.5), InputKind::kAnalogue, 40, 1.5}},
-         .variables = {"VL[0]", "VR[0]"}});
+    const Ran ran = RunText(before + "DELAY 1\nVL[0]=IL[20]\nVR[0]=IA[40]\n",
+                            {.inputs = {{At(0.5), InputKind::kLogical, 20, 1.0},
+                                        {At(0.5), InputKind::kAnalogue, 40, 1.5}},
+                             .variables = {"VL[0]", "VR[0]"}});
     return ran.variables.at("VL[0]") + " " + ran.variables.at("VR[0]");
   };
   EXPECT_EQ(read(""), "1 1.5");
@@ -225,8 +229,8 @@ TEST(OutputRules, PositionsAreReadInTheirOrder) {
   }
 }
 
-// OPT-7.65, OPT-2.59: during a motion positions are those of the moment: 50 mm/s for one second of a
-// /NEXT move, less half a ramp of 0.0707 s.
+// OPT-7.65, OPT-2.59: during a motion positions are those of the moment: 50 mm/s for one second of
+// a /NEXT move, less half a ramp of 0.0707 s.
 TEST(OutputRules, PositionsOnTheWay) {
   const std::string text =
       "SPEED 10\nMOVE (521.02,2201.2,-350.,0.,0.)/NEXT\nDELAY 1\nVR[0]=IA[0]\nVR[2]=IA[2]\n";
@@ -243,8 +247,8 @@ TEST(OutputRules, FirstAndLastVariable) {
       {.variables = {"VR[0]", "VR[99]", "VI[0]", "VI[97]", "VL[0]", "VL[99]", "VL[98]", "OL[0]",
                      "OL[99]", "OL[98]", "OA[1]", "OA[99]", "VR[7]", "VR[98]"}});
   const std::map<std::string, std::string> wanted = {
-      {"VR[0]", "1.5"}, {"VR[99]", "2.5"}, {"VI[0]", "3"},  {"VI[97]", "4"}, {"VL[0]", "1"},
-      {"VL[99]", "1"},  {"VL[98]", "0"},   {"OL[0]", "1"},  {"OL[99]", "1"}, {"OL[98]", "0"},
+      {"VR[0]", "1.5"}, {"VR[99]", "2.5"}, {"VI[0]", "3"},   {"VI[97]", "4"},  {"VL[0]", "1"},
+      {"VL[99]", "1"},  {"VL[98]", "0"},   {"OL[0]", "1"},   {"OL[99]", "1"},  {"OL[98]", "0"},
       {"OA[1]", "5.5"}, {"OA[99]", "6.5"}, {"VR[7]", "7.5"}, {"VR[98]", "0.0"}};
   EXPECT_EQ(ran.variables, wanted);
 }
@@ -281,8 +285,9 @@ TEST(OutputRules, ImagesAreKept) {
   EXPECT_EQ(state.data.oa_physical[5], 2.5F);
   EXPECT_EQ(state.data.oa[6], 3.5F);
   EXPECT_EQ(state.data.oa_physical[6], 0.0F);
-  const Ran second = RunText("VL[0]=OL[17]\nVR[0]=OA[6]\nUPDATE OL,OA/ON\n",
-                             {.variables = {"VL[0]", "VR[0]"}, .machine_state = first.machine_state});
+  const Ran second =
+      RunText("VL[0]=OL[17]\nVR[0]=OA[6]\nUPDATE OL,OA/ON\n",
+              {.variables = {"VL[0]", "VR[0]"}, .machine_state = first.machine_state});
   EXPECT_EQ(second.variables.at("VL[0]") + second.variables.at("VR[0]"), "13.5");
   EXPECT_THAT(Told(second), UnorderedElementsAre("OL[17] 1", "OA[6] 3.5"));
 }

@@ -58,7 +58,8 @@ TEST(OverrideStates, OnTheWayToTheTargetOfAHold) {
   EXPECT_NEAR(ran.DistanceTo(kThird), kAt25_mm, 1e-4);
 }
 
-// OPT-4.37, OPT-4.17: a chain that goes on with another override, and is held then: the value stays.
+// OPT-4.37, OPT-4.17: a chain that goes on with another override, and is held then: the value
+// stays.
 TEST(OverrideStates, BeforeAHold) {
   const double begin = BeginOf(kCorners);
   const Ran ran = RunText(kCorners, {.inputs = {Input(begin + 0.5, InputKind::kOverride, 50.0),
@@ -121,20 +122,21 @@ TEST(OverrideStates, OfTheLowestSpeeds) {
   EXPECT_NEAR(ran.time_s, 100.0 + 200.0, 0.1);
 }
 
-// motion.md 3.3: the head in use binds after a change as before it: B turns by 2 rad over 500 mm, so
-// the column goes the faster the longer head and tool are.
+// motion.md 3.3: the head in use binds after a change as before it: B turns by 2 rad over 500 mm,
+// so the column goes the faster the longer head and tool are.
 TEST(OverrideStates, TheLengthOfHeadAndToolBinds) {
   for (const std::string tool : {"", "TCP (0.,0.,-200.,0.,0.,-300.)\n"}) {
     for (const std::string length : {"300", "600"}) {
-      const std::string text = "COORD ABSOL\nPATH LIN\n" + tool + "MOVE (1000.,2200.,-350.,0.,0.)\n";
+      const std::string text =
+          "COORD ABSOL\nPATH LIN\n" + tool + "MOVE (1000.,2200.,-350.,0.,0.)\n";
       const std::string turning = text + "MOVE (1500.,2200.,-350.,0.,2.)\n";
-      const double begin = RunText(text, {.parameters = {{"HEAD_LENGTH", length}},
-                                          .override_percent = 10.0})
-                               .time_s;
+      const double begin =
+          RunText(text, {.parameters = {{"HEAD_LENGTH", length}}, .override_percent = 10.0}).time_s;
       const Ran whole = RunText(turning, {.parameters = {{"HEAD_LENGTH", length}}});
-      const Ran raised = RunText(turning, {.inputs = {Input(begin + 1.0, InputKind::kOverride, 100.0)},
-                                           .parameters = {{"HEAD_LENGTH", length}},
-                                           .override_percent = 10.0});
+      const Ran raised =
+          RunText(turning, {.inputs = {Input(begin + 1.0, InputKind::kOverride, 100.0)},
+                            .parameters = {{"HEAD_LENGTH", length}},
+                            .override_percent = 10.0});
       EXPECT_NEAR(raised.parts.back().motion.speed.peak_speed(),
                   whole.parts.back().motion.speed.peak_speed(), 1e-9)
           << tool << length;
@@ -142,15 +144,15 @@ TEST(OverrideStates, TheLengthOfHeadAndToolBinds) {
   }
 }
 
-// motion.md 3.3, 5.1: lower and higher, at any time of a move whose head turns: no axis is asked for
-// more than it can do, though at a lower speed it could have more acceleration.
+// motion.md 3.3, 5.1: lower and higher, at any time of a move whose head turns: no axis is asked
+// for more than it can do, though at a lower speed it could have more acceleration.
 TEST(OverrideStates, TheAxesKeepTheirLimits) {
   const std::string text = kAbsol + "MOVE (221.02,2201.2,-350.,0.,2.)\n";
   const double whole_s = RunText(text).time_s;
   for (const double percent : {10.0, 55.0, 145.0}) {
     for (int k = 1; k < 12; ++k) {
-      const Ran ran = RunText(
-          text, {.inputs = {Input(whole_s * k / 12.0, InputKind::kOverride, percent)}});
+      const Ran ran =
+          RunText(text, {.inputs = {Input(whole_s * k / 12.0, InputKind::kOverride, percent)}});
       ExpectWithinLimits(ran, true, std::to_string(percent) + " at " + std::to_string(k));
     }
   }

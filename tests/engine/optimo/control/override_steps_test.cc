@@ -4,8 +4,8 @@
 
 #include "tests/engine/optimo/control/run_text.h"
 
-// The ten steps of the feed override while a program runs. OPT-4.34 to 4.40. A ramp over a change of
-// speed v takes 2 sqrt(v / j) at the mean of both speeds; j is 40,000 mm/s3, less with ACCEL.
+// The ten steps of the feed override while a program runs. OPT-4.34 to 4.40. A ramp over a change
+// of speed v takes 2 sqrt(v / j) at the mean of both speeds; j is 40,000 mm/s3, less with ACCEL.
 namespace rmlcell::optimo::testing::override_steps {
 namespace {
 
@@ -61,8 +61,8 @@ TEST(OverrideSteps, AChangeActsAtOnceInEveryMode) {
       const double begin = mode == Mode::kSingle ? 0.04 : 0.0;
       script.push_back(Override(begin + 3.0, 55.0));
       script.push_back({At(40.0), InputKind::kHold});
-      const std::string text =
-          "COORD ABSOL\nPATH LIN\nSPEED 10\nACCEL " + std::to_string(accel) + "\n" + kFar + "DELAY 100\n";
+      const std::string text = "COORD ABSOL\nPATH LIN\nSPEED 10\nACCEL " + std::to_string(accel) +
+                               "\n" + kFar + "DELAY 100\n";
       const Ran ran = RunText(text, {.inputs = script, .mode = mode});
       SCOPED_TRACE(static_cast<int>(mode));
       ASSERT_GE(ran.parts.size(), 2U);
@@ -72,8 +72,7 @@ TEST(OverrideSteps, AChangeActsAtOnceInEveryMode) {
       EXPECT_NEAR(ran.parts[1].SpeedAt(0.5 * ramp), 38.75, 1e-6);
       EXPECT_NEAR(ran.parts[1].SpeedAt(ramp), 27.5, 1e-6);
       const double before = 50.0 * (3.0 - 0.5 * RampTime(50.0, jerk));
-      const double left =
-          500.0 - before - 38.75 * ramp - 0.5 * 27.5 * RampTime(27.5, jerk);
+      const double left = 500.0 - before - 38.75 * ramp - 0.5 * 27.5 * RampTime(27.5, jerk);
       ASSERT_GE(ran.moves.size(), 1U);
       EXPECT_NEAR(ToSeconds(ran.moves[0].at),
                   begin + 3.0 + ramp + left / 27.5 + RampTime(27.5, jerk) + kSettle_s, 1e-4);
@@ -81,20 +80,21 @@ TEST(OverrideSteps, AChangeActsAtOnceInEveryMode) {
   }
 }
 
-// OPT-4.40: at power-up it is 100 %, and neither the start of a program nor CALL, GO or a repetition
-// changes it.
+// OPT-4.40: at power-up it is 100 %, and neither the start of a program nor CALL, GO or a
+// repetition changes it.
 TEST(OverrideSteps, ProgramsDoNotChangeIt) {
   EXPECT_EQ(RunText("VI[2]=1\n").end.override_percent, 100.0);
   const std::string there = kLine + "MOVE (121.02,2201.2,-350.,0.,0.)\n";
   const std::string back = kLine + "MOVE (21.02,2201.2,-350.,0.,0.)\n";
-  const Ran ran = RunText("DELAY 1\nCALL 45\n" + there + "GO 46\n",
-                          {.programs = {{45, there + back}, {46, back}},
-                           .inputs = {Override(0.5, 40.0)}});
+  const Ran ran =
+      RunText("DELAY 1\nCALL 45\n" + there + "GO 46\n",
+              {.programs = {{45, there + back}, {46, back}}, .inputs = {Override(0.5, 40.0)}});
   ASSERT_EQ(ran.parts.size(), 4U);
   for (const Ran::Part& part : ran.parts) EXPECT_NEAR(part.SpeedAt(2.0), 20.0, 1e-9);
   EXPECT_EQ(ran.end.override_percent, 40.0);
-  const Ran repeat = RunText(there + back, {.inputs = {Override(0.001, 40.0), {At(12.0), InputKind::kHold}},
-                                            .mode = Mode::kRepeat});
+  const Ran repeat = RunText(
+      there + back,
+      {.inputs = {Override(0.001, 40.0), {At(12.0), InputKind::kHold}}, .mode = Mode::kRepeat});
   ASSERT_GE(repeat.parts.size(), 4U);
   EXPECT_NEAR(repeat.parts.back().SpeedAt(1.0), 20.0, 1e-9);
 }
@@ -104,7 +104,9 @@ TEST(OverrideSteps, OnlyMotionIsSlower) {
   for (const double percent : {10.0, 145.0}) {
     const RunOptions options{.override_percent = percent};
     EXPECT_NEAR(RunText("DELAY 2\n", options).time_s, 2.0, 1e-9);
-    EXPECT_NEAR(RunText("WORKDEF 1,0 (5.,80.,1.5,90.)\nWORK 1,0/ON\nWORK 1,0/OFF\n", options).time_s, 1.5, 1e-9);
+    EXPECT_NEAR(
+        RunText("WORKDEF 1,0 (5.,80.,1.5,90.)\nWORK 1,0/ON\nWORK 1,0/OFF\n", options).time_s, 1.5,
+        1e-9);
   }
   const Ran changed = RunText("DELAY 2\nOL[16]=ON\n", {.inputs = {Override(1.0, 10.0)}});
   EXPECT_NEAR(changed.First("OL[16] 1").at_s, 2.0, 1e-9);
@@ -133,11 +135,13 @@ TEST(OverrideSteps, TheLastOfAnInstantCounts) {
 // OPT-4.37: PTP moves and moves in COORD ROBOT go over to it as well: half the speed for the second
 // half of the way.
 TEST(OverrideSteps, ItActsOnPointToPoint) {
-  for (const std::string path : {"COORD ROBOT\nSPEED 10\nMOVE (521.02,2201.2,-50.,0.,0.)\n",
-                                 "COORD ABSOL\nPATH PTP\nSPEED 10\nMOVE (521.02,2201.2,-350.,0.,0.)\n"}) {
+  for (const std::string path :
+       {"COORD ROBOT\nSPEED 10\nMOVE (521.02,2201.2,-50.,0.,0.)\n",
+        "COORD ABSOL\nPATH PTP\nSPEED 10\nMOVE (521.02,2201.2,-350.,0.,0.)\n"}) {
     const Ran ran = RunText(path, {.inputs = {Override(5.0, 55.0)}});
     const double ramp = RampTime(22.5);
-    const double left = 500.0 - 50.0 * (5.0 - 0.5 * RampTime(50.0)) - 38.75 * ramp - 0.5 * 27.5 * RampTime(27.5);
+    const double left =
+        500.0 - 50.0 * (5.0 - 0.5 * RampTime(50.0)) - 38.75 * ramp - 0.5 * 27.5 * RampTime(27.5);
     EXPECT_NEAR(ran.time_s, 5.0 + ramp + left / 27.5 + RampTime(27.5) + kSettle_s, 1e-4) << path;
     EXPECT_NEAR(ran.end.tip.tip.x, 521.02, 1e-4);
   }

@@ -14,7 +14,8 @@ using machine::InputKind;
 constexpr int kMoves = 24;
 constexpr double kStep_mm = 10.0;
 
-// Moves of 10 mm along X from 0 on at 250 mm/s, which brakes within 24 mm; OL[20 + k] behind the k-th.
+// Moves of 10 mm along X from 0 on at 250 mm/s, which brakes within 24 mm; OL[20 + k] behind the
+// k-th.
 std::string Chain() {
   std::string text = "COORD ABSOL\nPATH LIN\nMOVE (0.,1000.,-400.,0.,0.)\nSPEED 50\n";
   for (int k = 1; k <= kMoves; ++k) {
@@ -59,15 +60,15 @@ TEST(PassageEffects, ComeOnceAndAtTheirPlace) {
   for (int n = 0; n < 20; ++n) {
     const double at = begin + whole * (n + 0.37) / 20.0;
     SCOPED_TRACE(at - begin);
-    ExpectEachAtItsPlace(RunText(text, {.inputs = {{At(at), InputKind::kStop},
-                                                   {At(at + 10.0), InputKind::kStart}}}),
-                         false);
-    const Ran held = RunText(text, {.inputs = {{At(at), InputKind::kHold},
-                                               {At(at + 10.0), InputKind::kStart}}});
+    ExpectEachAtItsPlace(
+        RunText(text, {.inputs = {{At(at), InputKind::kStop}, {At(at + 10.0), InputKind::kStart}}}),
+        false);
+    const Ran held =
+        RunText(text, {.inputs = {{At(at), InputKind::kHold}, {At(at + 10.0), InputKind::kStart}}});
     ExpectEachAtItsPlace(held, held.Told("halt HOLD"));
     for (const double percent : {25.0, 130.0}) {
-      ExpectEachAtItsPlace(
-          RunText(text, {.inputs = {{At(at), InputKind::kOverride, 0, percent}}}), false);
+      ExpectEachAtItsPlace(RunText(text, {.inputs = {{At(at), InputKind::kOverride, 0, percent}}}),
+                           false);
     }
     ExpectEachAtItsPlace(RunText(text, {.inputs = {{At(at), InputKind::kOverride, 0, 55.0},
                                                    {At(at + 0.11), InputKind::kStop},
@@ -83,20 +84,22 @@ TEST(PassageEffects, OverTwoStops) {
   const double begin = ToSeconds(RunText(text).moves.front().at);
   for (const double first : {0.2, 0.37, 0.61}) {
     for (const double second : {0.03, 10.02, 10.1, 10.3}) {
-      ExpectEachAtItsPlace(RunText(text, {.inputs = {{At(begin + first), InputKind::kStop},
-                                                     {At(begin + first + std::min(second, 10.0)),
-                                                      second < 10.0 ? InputKind::kStop : InputKind::kStart},
-                                                     {At(begin + first + second), InputKind::kStop},
-                                                     {At(begin + 20.0), InputKind::kStart}}}),
-                           false);
+      ExpectEachAtItsPlace(
+          RunText(text, {.inputs = {{At(begin + first), InputKind::kStop},
+                                    {At(begin + first + std::min(second, 10.0)),
+                                     second < 10.0 ? InputKind::kStop : InputKind::kStart},
+                                    {At(begin + first + second), InputKind::kStop},
+                                    {At(begin + 20.0), InputKind::kStart}}}),
+          false);
     }
   }
 }
 
-// OPT-3.38: what is told of the way has a duration, also where the beam comes on as the motion begins.
+// OPT-3.38: what is told of the way has a duration, also where the beam comes on as the motion
+// begins.
 TEST(PassageEffects, NoPartOfNothing) {
-  const Ran ran = RunText(kThere +
-                          "MOVE (1100.,1000.,-400.,0.,0.)/NEXT\nWORK 0,0/ON\nDELAY 1\nWORK 0,0/OFF\n");
+  const Ran ran =
+      RunText(kThere + "MOVE (1100.,1000.,-400.,0.,0.)/NEXT\nWORK 0,0/ON\nDELAY 1\nWORK 0,0/OFF\n");
   ASSERT_EQ(ran.parts.size(), 3U);
   for (const Ran::Part& part : ran.parts) EXPECT_GT(part.duration_s(), 0.0);
   EXPECT_TRUE(ran.parts[1].done.beam_on);

@@ -61,17 +61,19 @@ TEST(RunInterface, TheStateIsThatOfTheMoment) {
   EXPECT_EQ(run->steps_executed(), 5U);
 }
 
-// OPT-7.69: the speed is that of the motion under way, whenever it began: half way through the ramp.
+// OPT-7.69: the speed is that of the motion under way, whenever it began: half way through the
+// ramp.
 TEST(RunInterface, TheSpeedOfALaterMotion) {
   machine::RunObserver nobody;
-  const std::unique_ptr<machine::Run> run = RunOf(
-      SetupOf("COORD ABSOL\nPATH LIN\nSPEED 10\nDELAY 1\nMOVE (521.02,2201.2,-350.,0.,0.)\n"), nobody);
+  const std::unique_ptr<machine::Run> run =
+      RunOf(SetupOf("COORD ABSOL\nPATH LIN\nSPEED 10\nDELAY 1\nMOVE (521.02,2201.2,-350.,0.,0.)\n"),
+            nobody);
   run->Advance(At(1.0 + std::sqrt(50.0 / 40000.0)));
   EXPECT_NEAR(run->state().tip_speed_mm_s, 25.0, 1e-4);
 }
 
-// motion.md 3.4: the speed of the tip in COORD ROBOT: B turns at SPEED 10 of 6.283 rad/s round L = 300 mm;
-// with the head alone about a tip that stands it is 0.
+// motion.md 3.4: the speed of the tip in COORD ROBOT: B turns at SPEED 10 of 6.283 rad/s round L =
+// 300 mm; with the head alone about a tip that stands it is 0.
 TEST(RunInterface, TipSpeedOfTurningAxes) {
   machine::RunObserver nobody;
   const auto speed = [&](const std::string& text) {
@@ -80,7 +82,8 @@ TEST(RunInterface, TipSpeedOfTurningAxes) {
     return run->state().tip_speed_mm_s;
   };
   EXPECT_NEAR(speed("SPEED 10\nMOVE (21.02,2201.2,-50.,0.,2.)\n"), 0.1 * 2.0 * M_PI * 300.0, 1e-3);
-  EXPECT_NEAR(speed("COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (21.02,2201.2,-350.,0.,2.)\n"), 0.0, 1e-3);
+  EXPECT_NEAR(speed("COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (21.02,2201.2,-350.,0.,2.)\n"), 0.0,
+              1e-3);
 }
 
 // A run that does not let time pass comes back after so many instructions, and goes on when it is
@@ -99,8 +102,8 @@ TEST(RunInterface, OneCallDoesSoMuch) {
 // the halt.
 TEST(RunInterface, TimeOfAHaltedRun) {
   machine::RunObserver nobody;
-  const std::unique_ptr<machine::Run> waiting =
-      RunOf(SetupOf("DELAY 1\nSTOP\nDELAY 1\n", {.inputs = {{At(5.0), InputKind::kStart}}}), nobody);
+  const std::unique_ptr<machine::Run> waiting = RunOf(
+      SetupOf("DELAY 1\nSTOP\nDELAY 1\n", {.inputs = {{At(5.0), InputKind::kStart}}}), nobody);
   EXPECT_EQ(waiting->Advance(At(3.0)), RunPhase::kHalted);
   EXPECT_EQ(waiting->state().time, At(3.0));
   EXPECT_EQ(waiting->Advance(At(5.5)), RunPhase::kRunning);
@@ -132,7 +135,8 @@ TEST(RunInterface, InputsOutOfRange) {
                           {.inputs = {{SimTime(0), InputKind::kLogical, -5, 1.0},
                                       {SimTime(0), InputKind::kLogical, 500, 1.0}},
                            .variables = {"VL[0]", "VL[1]", "VL[2]"}});
-  EXPECT_EQ(ran.variables.at("VL[0]") + ran.variables.at("VL[1]") + ran.variables.at("VL[2]"), "101");
+  EXPECT_EQ(ran.variables.at("VL[0]") + ran.variables.at("VL[1]") + ran.variables.at("VL[2]"),
+            "101");
 }
 
 machine::RunSetup WithSource(const std::string& text, machine::SourceNotes notes) {
@@ -162,7 +166,8 @@ TEST(RunInterface, LinesOfSteps) {
 TEST(RunInterface, WhatACommentLetsPass) {
   const auto told = [](const std::string& text, int number, int line) {
     Findings findings;
-    RunOf(WithSource(text, {.step_lines = {5, 6}, .allowed = {{.line = line, .number = number}}}), findings)
+    RunOf(WithSource(text, {.step_lines = {5, 6}, .allowed = {{.line = line, .number = number}}}),
+          findings)
         ->Advance(At(1.0));
     return findings.found.size();
   };
@@ -174,8 +179,8 @@ TEST(RunInterface, WhatACommentLetsPass) {
   EXPECT_EQ(told("VI[2]=1\nVR[0]=1/0\n", 7201, 0), 1U);
 }
 
-// OPT-B.30: a time of a whole number of cycles is over at that cycle: 6 s are 125 of 0.048 s, though
-// the division does not come out even. 300 mm at 50 mm/s.
+// OPT-B.30: a time of a whole number of cycles is over at that cycle: 6 s are 125 of 0.048 s,
+// though the division does not come out even. 300 mm at 50 mm/s.
 TEST(RunInterface, WholeCycles) {
   const Ran ran = RunText(
       "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (521.02,2201.2,-350.,0.,0.)/TIME (6.,900)\nENDTASK\n900 RETURN\n");
@@ -186,7 +191,8 @@ TEST(RunInterface, WholeCycles) {
   EXPECT_EQ(timer.variables.at("VI[2]"), "1");
 }
 
-// OPT-9.19: FUNCTION 99 turns the table to its degrees; without a value, to 0. The position is kept.
+// OPT-9.19: FUNCTION 99 turns the table to its degrees; without a value, to 0. The position is
+// kept.
 TEST(RunInterface, TheRotaryTable) {
   const RunOptions fitted{.parameters = {{"ROTARY_TABLE", "ON"}}};
   const Ran ran = RunText("FUNCTION 99 (90.)\nFUNCTION 99 (-45.5)\nFUNCTION 99\n", fitted);

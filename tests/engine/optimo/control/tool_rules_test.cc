@@ -43,8 +43,8 @@ std::string NotZeroed() {
   return EncodeMachineState(state);
 }
 
-// OPT-4.64: with a slash or with six commas it is the same; the first three values are the offset of
-// the tip, the second three the reference point.
+// OPT-4.64: with a slash or with six commas it is the same; the first three values are the offset
+// of the tip, the second three the reference point.
 TEST(ToolRules, TwoFormsOfTcp) {
   for (const char* values : {"1.,2.,3. / 4.,5.,-6.", "1.,2.,3.,4.,5.,-6."}) {
     const MachineState state = StateAfter("TCP (" + std::string(values) + ")\n");
@@ -53,8 +53,8 @@ TEST(ToolRules, TwoFormsOfTcp) {
   }
 }
 
-// OPT-4.65, OPT-4.68: the tip is L - Z0 below the column: at Z 0 at -300 after power-up, at -297 with
-// Z0 = 3. OPT-B.02: the calibrated tool is that of a new machine.
+// OPT-4.65, OPT-4.68: the tip is L - Z0 below the column: at Z 0 at -300 after power-up, at -297
+// with Z0 = 3. OPT-B.02: the calibrated tool is that of a new machine.
 TEST(ToolRules, TheTipMovesTowardsTheLens) {
   ExpectTip("MOVE (500.,600.,0.,0.,0.)\n", {500.0, 600.0, -300.0});
   ExpectTip("TCP (0.,0.,3./0.,0.,-6.)\nMOVE (500.,600.,0.,0.,0.)\n", {500.0, 600.0, -297.0});
@@ -118,11 +118,13 @@ TEST(ToolRules, TcpMovesNothing) {
 
 // OPT-4.67: until another TCP, over CALL, GO and the end of the program, in ABSOL moves.
 TEST(ToolRules, TheLastTcpHolds) {
-  const Ran called = RunText("TCP (0.,0.,9./0.,0.,-5.)\nCALL 90\nCOORD ABSOL\nMOVE (500.,600.,-300.,0.,0.)\n",
-                             {.programs = {{90, "TCP (0.,0.,3./0.,0.,-6.)\n"}}});
+  const Ran called =
+      RunText("TCP (0.,0.,9./0.,0.,-5.)\nCALL 90\nCOORD ABSOL\nMOVE (500.,600.,-300.,0.,0.)\n",
+              {.programs = {{90, "TCP (0.,0.,3./0.,0.,-6.)\n"}}});
   EXPECT_NEAR(called.end.axes.column.z, -3.0, kReal_mm);
-  const Ran later = RunText("GO 46\n", {.programs = {{46, "COORD ABSOL\nMOVE (500.,600.,-300.,0.,0.)\n"}},
-                                        .machine_state = called.machine_state});
+  const Ran later =
+      RunText("GO 46\n", {.programs = {{46, "COORD ABSOL\nMOVE (500.,600.,-300.,0.,0.)\n"}},
+                          .machine_state = called.machine_state});
   EXPECT_NEAR(later.end.axes.column.z, -3.0, kReal_mm);
   const Ran other = RunText("TCP (0.,0.,0./0.,0.,-5.)\nCOORD ABSOL\nMOVE (500.,600.,-300.,0.,0.)\n",
                             {.machine_state = later.machine_state});
@@ -149,8 +151,8 @@ TEST(ToolRules, AFailingTcpChangesNothing) {
 // one that changes any of its three values does.
 TEST(ToolRules, OnlyATcpThatMovesTheTipCancelsAPassage) {
   const auto chain = [](const std::string& values) {
-    return RunText(kThere + "TCP (0.,0.,1./0.,0.,-5.)\nMOVE (1100.,1000.,-400.,0.,0.)/FLY\nTCP (" + values +
-                   ")\nMOVE (1100.,1100.,-400.,0.,0.)\n");
+    return RunText(kThere + "TCP (0.,0.,1./0.,0.,-5.)\nMOVE (1100.,1000.,-400.,0.,0.)/FLY\nTCP (" +
+                   values + ")\nMOVE (1100.,1100.,-400.,0.,0.)\n");
   };
   const motion::Vec3 corner{1100.0, 1000.0, -400.0};
   for (const char* same : {"0.,0.,1./0.,0.,-5.", "0.,0.,1./0.,0.,-6."}) {
@@ -169,7 +171,8 @@ TEST(ToolRules, OnlyATcpThatMovesTheTipCancelsAPassage) {
 // OPT-4.48: an axis system that is not zeroed lets a program run to its first MOVE, and no further;
 // ZERO makes it ready.
 TEST(ToolRules, NotZeroed) {
-  const RunOptions cold{.mode = Mode::kRemote, .variables = {"VI[2]"}, .machine_state = NotZeroed()};
+  const RunOptions cold{
+      .mode = Mode::kRemote, .variables = {"VI[2]"}, .machine_state = NotZeroed()};
   const Ran refused = RunText("VI[2]=1\nMOVE (10.,0.,0.,0.,0.)\nVI[2]=2\n", cold);
   EXPECT_EQ(CodeOf(refused), 7310);
   EXPECT_EQ(refused.outcome.place.step, 2);
@@ -240,8 +243,8 @@ TEST(ToolRules, EachGroupGoesToItsMechanicalZero) {
   EXPECT_NEAR(ran.end.axes.column.x, 10.0, 1e-9);
 }
 
-// OPT-4.50: what the console starts: the zero procedure, and then program 4. Without a program 4 that
-// is 7102.
+// OPT-4.50: what the console starts: the zero procedure, and then program 4. Without a program 4
+// that is 7102.
 TEST(ToolRules, ZeroFromTheConsoleGoesOnWithProgramFour) {
   RunOptions options{.programs = {{4, "VI[2]=1\nMOVE (21.02,2201.2,-50.,0.,0.)\n"}},
                      .mode = Mode::kRemote,
@@ -262,8 +265,8 @@ TEST(ToolRules, ZeroFromTheConsoleGoesOnWithProgramFour) {
 // OPT-4.18, OPT-4.49: STOP halts the zero procedure, START finishes it.
 TEST(ToolRules, StopDuringTheZeroProcedure) {
   const Ran plain = RunText("ZERO\nVI[2]=1\n");
-  const Ran ran = RunText("ZERO\nVI[2]=1\n", {.inputs = {{At(10.0), InputKind::kStop},
-                                                        {At(20.0), InputKind::kStart}}});
+  const Ran ran = RunText(
+      "ZERO\nVI[2]=1\n", {.inputs = {{At(10.0), InputKind::kStop}, {At(20.0), InputKind::kStart}}});
   EXPECT_EQ(ran.First("halt STOP").step, 1);
   EXPECT_THAT(Groups(ran), ElementsAre("ZERO_Z", "ZERO_AB", "ZERO_XY"));
   EXPECT_NEAR(ran.end.axes.column.x, 0.0, 1e-9);

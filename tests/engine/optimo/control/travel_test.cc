@@ -149,8 +149,8 @@ TEST(Travel, AHaltDoesNotHideThem) {
   EXPECT_EQ(CodeOf(ran), 7301);
 }
 
-// OPT-2.49: a chain without an end never begins to move before the steps run out; what it would do is
-// told.
+// OPT-2.49: a chain without an end never begins to move before the steps run out; what it would do
+// is told.
 TEST(Travel, AnEndlessChainTellsThemToo) {
   const Ran ran = RunText(std::string(kAbsol) +
                               "10 MOVE (1000.,1000.,-400.,0.,0.)/FLY\n"

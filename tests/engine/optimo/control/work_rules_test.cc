@@ -3,8 +3,8 @@
 
 #include "tests/engine/optimo/control/run_text.h"
 
-// WORK step by step: which process, which power, what goes on beside the program, and when. OPT-3.13
-// to 3.44
+// WORK step by step: which process, which power, what goes on beside the program, and when.
+// OPT-3.13 to 3.44
 namespace rmlcell::optimo::testing::work_rules {
 namespace {
 
@@ -26,20 +26,25 @@ machine::InputChange Input(double at_s, int index, double value) {
 TEST(WorkRules, FlagsOfAllProcesses) {
   for (int p = 0; p <= 7; ++p) {
     const std::string n = std::to_string(p);
-    for (const std::string& definition : {"WORKDEF 0," + n + "\nWORK 0,", "WORKDEF 1," + n + " (5.,80.,0.,90.)\nWORK 1,",
-                                         "WORKDEF 2," + n + " (15)\nWORK 2,"}) {
-      const Ran ran = RunText(definition + n + "/ON\nVL[0]=IL[" + std::to_string(87 + p) + "]\nVL[1]=IL[" +
-                                  std::to_string(p == 0 ? 94 : 86 + p) + "]\n",
+    for (const std::string& definition :
+         {"WORKDEF 0," + n + "\nWORK 0,", "WORKDEF 1," + n + " (5.,80.,0.,90.)\nWORK 1,",
+          "WORKDEF 2," + n + " (15)\nWORK 2,"}) {
+      const Ran ran = RunText(definition + n + "/ON\nVL[0]=IL[" + std::to_string(87 + p) +
+                                  "]\nVL[1]=IL[" + std::to_string(p == 0 ? 94 : 86 + p) + "]\n",
                               {.variables = {"VL[0]", "VL[1]"}});
       EXPECT_EQ(ran.variables.at("VL[0]") + ran.variables.at("VL[1]"), "10") << definition;
       EXPECT_EQ(ran.Count("E7408"), 1) << definition;
     }
   }
-  EXPECT_EQ(Value("WORKDEF 2,0 (15)\nWORK 2,0/ON\nWORK 0,0/ON\nWORK 2,0/OFF\nVL[0]=IL[87]\nWORK 0,0/OFF\n", "VL[0]"), "1");
+  EXPECT_EQ(
+      Value(
+          "WORKDEF 2,0 (15)\nWORK 2,0/ON\nWORK 0,0/ON\nWORK 2,0/OFF\nVL[0]=IL[87]\nWORK 0,0/OFF\n",
+          "VL[0]"),
+      "1");
 }
 
-// OPT-3.15: on an EFA-51 shutter and beam are one: whatever takes the beam closes it, and its return
-// opens it.
+// OPT-3.15: on an EFA-51 shutter and beam are one: whatever takes the beam closes it, and its
+// return opens it.
 TEST(WorkRules, TheShutterOfAnEfa51) {
   RunOptions efa{.inputs = {{At(1.0), InputKind::kStop}, {At(3.0), InputKind::kStart}},
                  .parameters = {{"LASER", "EFA51"}}};
@@ -47,17 +52,19 @@ TEST(WorkRules, TheShutterOfAnEfa51) {
               ElementsAre("shutter open", "beam on 100.0", "wait dwell 1.0", "beam off",
                           "shutter closed", "halt STOP", "wait operator 2.0", "shutter open",
                           "beam on 100.0", "wait dwell 1.0", "beam off", "shutter closed"));
-  EXPECT_THAT(Told(RunText("ERR 9\nWORK 0,0/ON\nVR[0]=1/0\n9 DELAY 1\n", {.parameters = {{"LASER", "EFA51"}}})),
+  EXPECT_THAT(Told(RunText("ERR 9\nWORK 0,0/ON\nVR[0]=1/0\n9 DELAY 1\n",
+                           {.parameters = {{"LASER", "EFA51"}}})),
               ElementsAre("shutter open", "beam on 100.0", "beam off", "shutter closed", "E7201",
                           "wait dwell 1.0"));
 }
 
-// OPT-3.42, OPT-E.7406: OL[2] and OL[12] to OL[15] block the ramp of an EFA-51, their neighbours and
-// WORK 0 do not; no channel does on an ARROW.
+// OPT-3.42, OPT-E.7406: OL[2] and OL[12] to OL[15] block the ramp of an EFA-51, their neighbours
+// and WORK 0 do not; no channel does on an ARROW.
 TEST(WorkRules, EachModulationOutputBlocksTheRamp) {
   const auto code = [](int output, const std::string& work, const std::string& laser) {
-    return CodeOf(RunText("WORKDEF 1,0 (8.,75.,0.,50.)\nOL[" + std::to_string(output) + "]=ON\n" + work,
-                          {.parameters = {{"LASER", laser}}}));
+    return CodeOf(
+        RunText("WORKDEF 1,0 (8.,75.,0.,50.)\nOL[" + std::to_string(output) + "]=ON\n" + work,
+                {.parameters = {{"LASER", laser}}}));
   };
   const std::string ramp = "WORK 1,0/ON\nWORK 1,0/OFF\n";
   for (const int output : {2, 12, 13, 14, 15}) {
@@ -74,10 +81,12 @@ TEST(WorkRules, ThePowerOfTheSchedule) {
                                                       {.number = 12, .power_percent = 60.0}};
   const RunOptions options{.schedules = schedules};
   EXPECT_TRUE(RunText("WORK 0,0/ON\nWORK 0,0/OFF\n", options).Told("beam on 100.0"));
-  EXPECT_TRUE(RunText("WORKDEF 2,0 (12)\nWORK 2,0/ON\nWORK 0,0/ON\nWORK 0,0/OFF\nWORK 2,0/OFF\n", options)
-                  .Told("beam on 60.0"));
-  EXPECT_TRUE(RunText("WORKDEF 2,0 (11)\nWORK 2,0/ON\nWORK 0,0/ON\nWORK 0,0/OFF\nWORK 2,0/OFF\n", options)
-                  .Told("beam on 40.0"));
+  EXPECT_TRUE(
+      RunText("WORKDEF 2,0 (12)\nWORK 2,0/ON\nWORK 0,0/ON\nWORK 0,0/OFF\nWORK 2,0/OFF\n", options)
+          .Told("beam on 60.0"));
+  EXPECT_TRUE(
+      RunText("WORKDEF 2,0 (11)\nWORK 2,0/ON\nWORK 0,0/ON\nWORK 0,0/OFF\nWORK 2,0/OFF\n", options)
+          .Told("beam on 40.0"));
 }
 
 // OPT-3.24, OPT-E.7411: the warning is for a beam that a WORK 0 or 1 wants, and that is on.
@@ -86,7 +95,9 @@ TEST(WorkRules, WhenScheduleOffIsWarnedOf) {
   EXPECT_EQ(RunText(definitions + "WORK 0,0/ON\nWORK 2,5/OFF\nWORK 0,0/OFF\n").Count("E7411"), 1);
   EXPECT_EQ(RunText(definitions + "WORK 1,1/ON\nWORK 2,5/OFF\nWORK 1,1/OFF\n").Count("E7411"), 1);
   EXPECT_EQ(RunText(definitions + "WORK 2,5/ON\nWORK 2,5/OFF\n").Count("E7411"), 0);
-  EXPECT_EQ(RunText(definitions + "WORK 0,0/ON\nWORK 2,5/OFF\nWORK 2,5/OFF\nWORK 0,0/OFF\n").Count("E7411"), 1);
+  EXPECT_EQ(RunText(definitions + "WORK 0,0/ON\nWORK 2,5/OFF\nWORK 2,5/OFF\nWORK 0,0/OFF\n")
+                .Count("E7411"),
+            1);
 }
 
 // OPT-3.33, OPT-E.7407: any process holds GO and CALL back, also one of kind 2 or with number 9.
@@ -102,24 +113,28 @@ TEST(WorkRules, AnyProcessHoldsACallBack) {
   }
 }
 
-// OPT-3.12, OPT-3.35: WORKDEFs are not passed to a CALLed program, and come back with the caller; the
-// shutter stays as it is over the CALL, and closes at GO.
+// OPT-3.12, OPT-3.35: WORKDEFs are not passed to a CALLed program, and come back with the caller;
+// the shutter stays as it is over the CALL, and closes at GO.
 TEST(WorkRules, DefinitionsAndShutterOverCalls) {
   const std::string define = "WORKDEF 1,0 (8.,75.,0.,50.)\n";
   EXPECT_EQ(CodeOf(RunText(define + "CALL 50\n", {.programs = {{50, "WORK 1,0/ON\n"}}})), 7401);
-  const Ran ran = RunText(define + "WORK 1,0/ON\nWORK 1,0/OFF\nCALL 50\nWORK 1,0/ON\nWORK 1,0/OFF\n",
-                          {.programs = {{50, "WORKDEF 1,1 (8.,75.,0.,50.)\nDELAY 1\n"}}});
+  const Ran ran =
+      RunText(define + "WORK 1,0/ON\nWORK 1,0/OFF\nCALL 50\nWORK 1,0/ON\nWORK 1,0/OFF\n",
+              {.programs = {{50, "WORKDEF 1,1 (8.,75.,0.,50.)\nDELAY 1\n"}}});
   EXPECT_EQ(CodeOf(ran), 0);
   EXPECT_EQ(ran.Count("shutter open"), 1);
   EXPECT_EQ(ran.Count("shutter closed"), 1);
-  EXPECT_EQ(CodeOf(RunText("CALL 50\nWORK 1,1/ON\n", {.programs = {{50, "WORKDEF 1,1 (8.,75.,0.,50.)\n"}}})), 7401);
+  EXPECT_EQ(CodeOf(RunText("CALL 50\nWORK 1,1/ON\n",
+                           {.programs = {{50, "WORKDEF 1,1 (8.,75.,0.,50.)\n"}}})),
+            7401);
   const Ran go = RunText("WORK 0,0/ON\nWORK 0,0/OFF\nGO 50\n", {.programs = {{50, "DELAY 1\n"}}});
   EXPECT_NEAR(go.First("shutter closed").at_s, 0.0, 1e-9);
 }
 
 // OPT-3.11: a process keeps the values that it was turned ON with until the next ON.
 TEST(WorkRules, ANewDefinitionIsForTheNextOn) {
-  const Ran ran = RunText(kThere +
+  const Ran ran = RunText(
+      kThere +
       "WORKDEF 1,0 (10.,60.,0.,50.)\nWORK 1,0/ON\nWORKDEF 1,0 (10.,30.,0.,50.)\n"
       "MOVE (1100.,1000.,-400.,0.,0.)\nWORK 1,0/ON\nMOVE (1200.,1000.,-400.,0.,0.)\nWORK 1,0/OFF\n");
   ASSERT_EQ(ran.parts.size(), 3U);
@@ -130,7 +145,8 @@ TEST(WorkRules, ANewDefinitionIsForTheNextOn) {
 // OPT-3.38, OPT-B.30: /START with /NEXT is looked at with each input and each CYCLE, here for a
 // variable that the program sets: 1 s is over at 21 cycles.
 TEST(WorkRules, AConditionInTheBackgroundSeesVariables) {
-  const Ran ran = RunText("VL[3]=OFF\nWORK 0,0/ON/START (VL[3])/NEXT\nDELAY 1\nVL[3]=ON\nDELAY 1\nWORK 0,0/OFF\n");
+  const Ran ran = RunText(
+      "VL[3]=OFF\nWORK 0,0/ON/START (VL[3])/NEXT\nDELAY 1\nVL[3]=ON\nDELAY 1\nWORK 0,0/OFF\n");
   EXPECT_NEAR(ran.First("beam on 100.0").at_s, 21 * 0.048, 1e-9);
   EXPECT_EQ(ran.First("beam on 100.0").step, 2);
   const Ran off = RunText("VL[3]=OFF\nWORK 0,0/ON/END (VL[3])\nDELAY 1\nVL[3]=ON\nDELAY 1\n");
@@ -149,7 +165,8 @@ TEST(WorkRules, ConditionsThatAreTrueAtOnce) {
 
 // OPT-3.38: an OFF may wait for its /START as well.
 TEST(WorkRules, OffMayWaitToo) {
-  const Ran ran = RunText("WORK 0,0/ON\nWORK 0,0/OFF/START (IL[20])/NEXT\nDELAY 2\n", {.inputs = {Input(1.25, 20, 1.0)}});
+  const Ran ran = RunText("WORK 0,0/ON\nWORK 0,0/OFF/START (IL[20])/NEXT\nDELAY 2\n",
+                          {.inputs = {Input(1.25, 20, 1.0)}});
   EXPECT_NEAR(ran.First("beam off").at_s, 1.25, 1e-9);
   EXPECT_EQ(ran.Count("E7408"), 0);
 }
@@ -163,20 +180,23 @@ TEST(WorkRules, ANewWorkOfTheSameProcessReplacesTheOneThatWaits) {
   EXPECT_EQ(replaced.Count("beam on 100.0"), 0);
   const Ran stays = RunText(waits + "WORK 0,0/OFF\nDELAY 2\nWORK 0,1/OFF\n", {.inputs = script});
   EXPECT_NEAR(stays.First("beam on 100.0").at_s, 1.0, 1e-9);
-  const Ran other_kind = RunText("WORKDEF 2,1 (15)\n" + waits + "WORK 2,1/OFF\nDELAY 2\nWORK 0,1/OFF\n", {.inputs = script});
+  const Ran other_kind = RunText(
+      "WORKDEF 2,1 (15)\n" + waits + "WORK 2,1/OFF\nDELAY 2\nWORK 0,1/OFF\n", {.inputs = script});
   EXPECT_NEAR(other_kind.First("beam on 100.0").at_s, 1.0, 1e-9);
 }
 
-// OPT-3.38, OPT-3.32: a dwell in the background is over when another WORK 0 or 1, or WORK 2 OFF, has
-// decided about the beam.
+// OPT-3.38, OPT-3.32: a dwell in the background is over when another WORK 0 or 1, or WORK 2 OFF,
+// has decided about the beam.
 TEST(WorkRules, ADwellEndsWithTheBeam) {
-  const std::string dwell = "WORKDEF 1,0 (10.,60.,1.5,95.)\nWORKDEF 2,0 (15)\nWORKDEF 2,1 (16)\n" + kThere + "WORK 1,0/ON/NEXT\n";
+  const std::string dwell = "WORKDEF 1,0 (10.,60.,1.5,95.)\nWORKDEF 2,0 (15)\nWORKDEF 2,1 (16)\n" +
+                            kThere + "WORK 1,0/ON/NEXT\n";
   const std::string move = "MOVE (1200.,1000.,-400.,0.,0.)\nWORK 1,0/OFF\nWORK 0,0/OFF\n";
   const auto power = [&](const std::string& between, double at_s) {
     const Ran ran = RunText(dwell + between + move);
     double t = ToSeconds(ran.parts[1].done.start) + at_s;
     for (const Ran::Part& part : ran.parts) {
-      if (ToSeconds(part.done.start) <= t && t < ToSeconds(part.done.end)) return part.PowerAt(t - ToSeconds(part.done.start));
+      if (ToSeconds(part.done.start) <= t && t < ToSeconds(part.done.end))
+        return part.PowerAt(t - ToSeconds(part.done.start));
     }
     return -1.0;
   };
@@ -191,8 +211,9 @@ TEST(WorkRules, ADwellEndsWithTheBeam) {
 
 // OPT-3.38: what goes on beside a program ends with it, and stands still while a CALLed one runs.
 TEST(WorkRules, BackgroundWorkBelongsToItsProgram) {
-  const Ran ended = RunText("CALL 45\nDELAY 2\n", {.programs = {{45, "WORK 0,0/ON/START (IL[20])/NEXT\n"}},
-                                                  .inputs = {Input(1.0, 20, 1.0)}});
+  const Ran ended = RunText(
+      "CALL 45\nDELAY 2\n",
+      {.programs = {{45, "WORK 0,0/ON/START (IL[20])/NEXT\n"}}, .inputs = {Input(1.0, 20, 1.0)}});
   EXPECT_EQ(ended.Count("beam on 100.0"), 0);
   const Ran waits = RunText("WORK 0,0/ON/START (IL[20])/NEXT\nCALL 45\nDELAY 1\nWORK 0,0/OFF\n",
                             {.programs = {{45, "DELAY 2\n"}}, .inputs = {Input(1.0, 20, 1.0)}});
@@ -202,7 +223,8 @@ TEST(WorkRules, BackgroundWorkBelongsToItsProgram) {
 
 // OPT-3.38, OPT-3.53: an error of a condition in the background is one of the WORK, and is caught.
 TEST(WorkRules, AnErrorOfABackgroundCondition) {
-  const std::string text = "VI[5]=1\nWORK 0,0/ON/END (1/VI[5] > 2)\nVI[5]=0\nDELAY 1\nENDTASK\n900 VI[2]=VI[99]\n";
+  const std::string text =
+      "VI[5]=1\nWORK 0,0/ON/END (1/VI[5] > 2)\nVI[5]=0\nDELAY 1\nENDTASK\n900 VI[2]=VI[99]\n";
   const Ran ran = RunText(text);
   EXPECT_EQ(CodeOf(ran), 7201);
   EXPECT_EQ(ran.outcome.place.step, 2);
@@ -226,13 +248,18 @@ TEST(WorkRules, AStopHoldsABackgroundDwellUp) {
 // OPT-3.19, OPT-E.7410: with the door open no WORK 0 or 1 comes on, also one from the background; a
 // schedule may be selected.
 TEST(WorkRules, BehindAnOpenDoor) {
-  const machine::InputScript open{{SimTime(0), InputKind::kDoor, 0, 1.0}, {At(1.0), InputKind::kStart}};
-  EXPECT_EQ(CodeOf(RunText("DELAY 1\nWORKDEF 1,0 (8.,75.,0.,50.)\nWORK 1,0/ON\n", {.inputs = open})), 7410);
-  EXPECT_EQ(CodeOf(RunText("DELAY 1\nWORKDEF 2,0 (15)\nWORK 2,0/ON\nWORK 2,0/OFF\n", {.inputs = open})), 0);
+  const machine::InputScript open{{SimTime(0), InputKind::kDoor, 0, 1.0},
+                                  {At(1.0), InputKind::kStart}};
+  EXPECT_EQ(
+      CodeOf(RunText("DELAY 1\nWORKDEF 1,0 (8.,75.,0.,50.)\nWORK 1,0/ON\n", {.inputs = open})),
+      7410);
+  EXPECT_EQ(
+      CodeOf(RunText("DELAY 1\nWORKDEF 2,0 (15)\nWORK 2,0/ON\nWORK 2,0/OFF\n", {.inputs = open})),
+      0);
 }
 
-// OPT-3.17, OPT-B.56: START with the door open is an alarm when the beam would return or the shutter
-// would open again, and the door closed afterwards helps no more; else the program goes on.
+// OPT-3.17, OPT-B.56: START with the door open is an alarm when the beam would return or the
+// shutter would open again, and the door closed afterwards helps no more; else the program goes on.
 TEST(WorkRules, StartWithTheDoorOpen) {
   const machine::InputScript script{{At(1.0), InputKind::kDoor, 0, 1.0},
                                     {At(2.0), InputKind::kStart},

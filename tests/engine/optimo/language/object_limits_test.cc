@@ -5,8 +5,8 @@
 
 #include "tests/engine/optimo/language/compile_text.h"
 
-// How many names, ignored lines and sequence numbers of a table an object can hold: names and lines have
-// numbers of 16 bits, of which the last means none. What fits comes back from the object.
+// How many names, ignored lines and sequence numbers of a table an object can hold: names and lines
+// have numbers of 16 bits, of which the last means none. What fits comes back from the object.
 namespace rmlcell::optimo::object_limits {
 namespace {
 
@@ -60,8 +60,8 @@ TEST(ObjectLimits, Names) {
   EXPECT_EQ(found->where.length, 6);
 }
 
-// OPT-7.17, OPT-B.69: the table of a computed GOTO, as long as an object within OBJECT_LIMIT can be,
-// and almost as long as a statement.
+// OPT-7.17, OPT-B.69: the table of a computed GOTO, as long as an object within OBJECT_LIMIT can
+// be, and almost as long as a statement.
 TEST(ObjectLimits, SequenceNumbersOfATable) {
   const auto table = [](int count) {
     return "10 GOTO VR[2] (10" + Repeated(",10", count - 1) + ")\n";

@@ -70,9 +70,9 @@ TEST_F(Staleness, EveryFunctionConcernedIsNamed) {
   Make(32);
   Store(44, "SPEED 7\n");
   Delete(45);
-  EXPECT_EQ(Stale(), (std::vector<StaleExecutable>{{32,
-                                                    {{45, StaleReason::kFunctionDeleted},
-                                                     {44, StaleReason::kFunctionChanged}}}}));
+  EXPECT_EQ(Stale(),
+            (std::vector<StaleExecutable>{
+                {32, {{45, StaleReason::kFunctionDeleted}, {44, StaleReason::kFunctionChanged}}}}));
 }
 
 // OPT-1.12, OPT-1.14, OPT-1.15
@@ -82,9 +82,9 @@ TEST_F(Staleness, AnAlteredProgramAgesItsOwn) {
   Make(32);
   Store(32, "FUNCTION 44\nSPEED 5\n");
   Store(44, "SPEED 7\n");
-  EXPECT_EQ(Stale(), (std::vector<StaleExecutable>{{32,
-                                                    {{32, StaleReason::kObjectChanged},
-                                                     {44, StaleReason::kFunctionChanged}}}}));
+  EXPECT_EQ(Stale(),
+            (std::vector<StaleExecutable>{
+                {32, {{32, StaleReason::kObjectChanged}, {44, StaleReason::kFunctionChanged}}}}));
   objects_.erase(32);
   EXPECT_EQ(Stale()[0].parts[0].reason, StaleReason::kObjectMissing);
 }

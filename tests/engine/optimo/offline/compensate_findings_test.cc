@@ -12,8 +12,8 @@ namespace {
 std::vector<std::string> TextsOf(const Compensation& compensation) {
   std::vector<std::string> texts;
   for (const Diagnostic& d : compensation.diagnostics) {
-    texts.push_back(std::to_string(d.where.line) + " " + std::to_string(Lookup(d.code).number) + ": " +
-                    d.detail);
+    texts.push_back(std::to_string(d.where.line) + " " + std::to_string(Lookup(d.code).number) +
+                    ": " + d.detail);
   }
   return texts;
 }
@@ -21,8 +21,10 @@ std::vector<std::string> TextsOf(const Compensation& compensation) {
 using Texts = std::vector<std::string>;
 
 // Line 4 is the pierce point, the moves begin in line 6.
-Compensation Cut(const std::string& radius, const std::string& moves, const std::string& start = "0,0,0,0,0") {
-  return Compensate(";$rad=" + radius + "\n;$left\nPATH LIN\nMOVE (" + start + ")\nWORK 0,0/ON\n" + moves);
+Compensation Cut(const std::string& radius, const std::string& moves,
+                 const std::string& start = "0,0,0,0,0") {
+  return Compensate(";$rad=" + radius + "\n;$left\nPATH LIN\nMOVE (" + start + ")\nWORK 0,0/ON\n" +
+                    moves);
 }
 
 // OPT-8.15, OPT-8.16: A = 0 and B = pi/2 lay the head along -Y: u x d is +Z for a cut along +X, and
@@ -38,15 +40,14 @@ TEST(CompensateFindings, CornersUnderATiltedHeadLieAcrossIt) {
       << cut.text;
 }
 
-// OPT-2.20, OPT-8.18: where the angles at the start of an arc are no numbers, those of the via point
-// count: A = pi and B = pi/2 lay the head along the radius there, so left is +Z.
+// OPT-2.20, OPT-8.18: where the angles at the start of an arc are no numbers, those of the via
+// point count: A = pi and B = pi/2 lay the head along the radius there, so left is +Z.
 TEST(CompensateFindings, AnglesOfTheViaPointCountWhereTheStartHasNone) {
   for (const std::string start : {"VR[1],1.5707963268", "1.5707963268,VR[1]", "VR[1],VR[2]"}) {
     const std::string head =
         ";$rad=1\n;$left\nPATH CIR\nMOVE (10,0,0," + start + ")\nWORK 0,0/ON\n";
-    const Compensation result =
-        Compensate(head +
-                   "MOVE (-10,0,0,4.7123889804,1.5707963268)/VIA (0,10,0,3.1415926536,1.5707963268)\n");
+    const Compensation result = Compensate(
+        head + "MOVE (-10,0,0,4.7123889804,1.5707963268)/VIA (0,10,0,3.1415926536,1.5707963268)\n");
     ASSERT_TRUE(result.ok);
     EXPECT_EQ(result.text.substr(head.size()),
               "MOVE (-10.00000,0.00000,1.00000,4.71239,1.57080)/VIA "
@@ -69,8 +70,8 @@ TEST(CompensateFindings, GougesSayHowFarTheyGo) {
   EXPECT_TRUE(narrow.ok);
   EXPECT_EQ(TextsOf(narrow), (Texts{"7" + near, back, "9" + near}));
   for (const Diagnostic& d : narrow.diagnostics) EXPECT_EQ(d.severity, Severity::kWarning);
-  // The wide one is near on its way from the pierce point, too: (21, 0) lies 21 * 2 / hypot(22, 2) from
-  // the line to (22, 2).
+  // The wide one is near on its way from the pierce point, too: (21, 0) lies 21 * 2 / hypot(22, 2)
+  // from the line to (22, 2).
   const std::string first =
       "6 7812: the compensated path comes within 1.901 mm of the contour, and the beam has a radius of "
       "2.0 mm: it cuts 0.099 mm into the part";
@@ -82,11 +83,14 @@ TEST(CompensateFindings, WhatIsNoNumberIsSaid) {
   EXPECT_EQ(TextsOf(Cut("1", "MOVE (VR[1],0,0,0,0)\nMOVE (10,0,0,0,0)\nMOVE (20,0,0,0,0)\n")),
             (Texts{"6 7805: a coordinate is no plain number",
                    "7 7805: the point where this move starts is not known as numbers"}));
-  for (const std::string move : {"0,VR[1],0,0,0", "0,0,VR[1],0,0", "0,0,0,VR[1],0", "0,0,0,0,VR[1]"}) {
-    EXPECT_EQ(TextsOf(Cut("1", "MOVE (" + move + ")\n")), (Texts{"6 7805: a coordinate is no plain number"}))
+  for (const std::string move :
+       {"0,VR[1],0,0,0", "0,0,VR[1],0,0", "0,0,0,VR[1],0", "0,0,0,0,VR[1]"}) {
+    EXPECT_EQ(TextsOf(Cut("1", "MOVE (" + move + ")\n")),
+              (Texts{"6 7805: a coordinate is no plain number"}))
         << move;
   }
-  for (const std::string via : {"VR[1],1,0,0,0", "1,VR[1],0,0,0", "1,1,VR[1],0,0", "1,1,0,0,VR[1]"}) {
+  for (const std::string via :
+       {"VR[1],1,0,0,0", "1,VR[1],0,0,0", "1,1,VR[1],0,0", "1,1,0,0,VR[1]"}) {
     EXPECT_EQ(TextsOf(Cut("1", "PATH CIR\nMOVE (2,0,0,0,0)/VIA (" + via + ")\n")),
               (Texts{"7 7805: a coordinate is no plain number"}))
         << via;
@@ -100,12 +104,15 @@ TEST(CompensateFindings, WhatIsNoNumberIsSaid) {
             (Texts{"6 7805: the radius is no plain number"}));
 }
 
-// OPT-8.09, OPT-E.7803: with the beam on neither side nor amount may change; what stays the same, and
-// what comes before the beam, is no change.
+// OPT-8.09, OPT-E.7803: with the beam on neither side nor amount may change; what stays the same,
+// and what comes before the beam, is no change.
 TEST(CompensateFindings, OnlyAChangeUnderTheBeamIsOne) {
-  EXPECT_TRUE(TextsOf(Cut("1", ";$left\n;$rad=1\n;$dia=2\nWORK 0,0/OFF\n;$right\n;$rad=3\n")).empty());
-  EXPECT_EQ(TextsOf(Cut("1", ";$none\n")), (Texts{"6 7803: the side changes while the beam is on"}));
-  EXPECT_EQ(TextsOf(Cut("1", ";$dia=1\n")), (Texts{"6 7803: the amount changes while the beam is on"}));
+  EXPECT_TRUE(
+      TextsOf(Cut("1", ";$left\n;$rad=1\n;$dia=2\nWORK 0,0/OFF\n;$right\n;$rad=3\n")).empty());
+  EXPECT_EQ(TextsOf(Cut("1", ";$none\n")),
+            (Texts{"6 7803: the side changes while the beam is on"}));
+  EXPECT_EQ(TextsOf(Cut("1", ";$dia=1\n")),
+            (Texts{"6 7803: the amount changes while the beam is on"}));
   EXPECT_EQ(TextsOf(Compensate("SPEED 5\n;$dia=-1\n;$middle\n")),
             (Texts{"2 7802: the amount is no number of at least 0", "3 7802: unknown directive"}));
 }

@@ -426,10 +426,10 @@ TEST(Compensate, WhatEndsAndBeginsAContour) {
   EXPECT_EQ(first("COORD ABSOL\n"), "9.00000,1.00000");
   EXPECT_EQ(first("PATH CIR\n"), "9.00000,1.00000");
   // OPT-8.06: also where nothing is done in between.
-  for (const std::string end : {"WORK 0,0/OFF\n", "PATH PTP\n", "PATH HOLE (5)\n", "PATH PTP\nPATH LIN\n",
-                                "PATH HOLE (5)\nPATH LIN\n", "WORK 0,0/OFF\nWORK 0,0/ON\n",
-                                "COORD ROBOT\nPATH PTP\n", "COORD ROBOT\nCOORD ABSOL\n", "SYSDEF\n",
-                                "TCP (0,0,0/0,0,-5)\n"}) {
+  for (const std::string end :
+       {"WORK 0,0/OFF\n", "PATH PTP\n", "PATH HOLE (5)\n", "PATH PTP\nPATH LIN\n",
+        "PATH HOLE (5)\nPATH LIN\n", "WORK 0,0/OFF\nWORK 0,0/ON\n", "COORD ROBOT\nPATH PTP\n",
+        "COORD ROBOT\nCOORD ABSOL\n", "SYSDEF\n", "TCP (0,0,0/0,0,-5)\n"}) {
     const std::string point = first(end);
     EXPECT_EQ(point, end.starts_with("TCP") ? "" : "10.00000,1.00000") << end;
   }

@@ -274,9 +274,10 @@ TEST(ContourAdvice, TheOrderOfSettingsDoesNotMatter) {
 // contour_advice.h: COORD moves nothing: the place is known as long as no MOVE was in ROBOT.
 TEST(ContourAdvice, CoordMovesNothing) {
   const auto told = [](const std::string& between) {
-    return FindingsWith("COORD ABSOL\nPATH LIN\nSPEED 10\nWORK 0,0/ON\nMOVE (0,0,0,0,0)\n" + between +
-                            "COORD ABSOL\nMOVE (100,0,0,0,0)/FLY\nMOVE (100,100,0,0,0)\nWORK 0,0/OFF\n",
-                        ErrorCode::kFlySharp)
+    return FindingsWith(
+               "COORD ABSOL\nPATH LIN\nSPEED 10\nWORK 0,0/ON\nMOVE (0,0,0,0,0)\n" + between +
+                   "COORD ABSOL\nMOVE (100,0,0,0,0)/FLY\nMOVE (100,100,0,0,0)\nWORK 0,0/OFF\n",
+               ErrorCode::kFlySharp)
         .size();
   };
   EXPECT_EQ(told(""), 1U);

@@ -217,8 +217,8 @@ TEST(OffsetPath, WhatCannotBeOffsetIsRefused) {
   EXPECT_EQ(refused({line, ArcOf(plane, -1, 0, 1, 0, M_PI / 2)}, 0.9), "7808 0");
 }
 
-// OPT-8.79, OPT-B.79: curves meet as circles only where both legs lie across the tool, to a cosine of
-// 1 - 1e-6 of the arc and a sine of 1e-6 of the line; else the corner is that of their tangents.
+// OPT-8.79, OPT-B.79: curves meet as circles only where both legs lie across the tool, to a cosine
+// of 1 - 1e-6 of the arc and a sine of 1e-6 of the line; else the corner is that of their tangents.
 TEST(OffsetPath, LegsThatLeanMeetByTheirTangents) {
   const double heading = M_PI / 3, offset = 0.5, radius = 2.0;
   const Vec3 tool{0, 0, 1}, out{std::cos(heading), std::sin(heading), 0};
@@ -254,8 +254,8 @@ TEST(OffsetPath, LegsThatLeanMeetByTheirTangents) {
   }
 }
 
-// What counts as nothing: a way of a nanometre, a tangent that leaves the tool by a sine of 1e-6, an
-// arc that is left with half of the last decimal (OPT-8.11).
+// What counts as nothing: a way of a nanometre, a tangent that leaves the tool by a sine of 1e-6,
+// an arc that is left with half of the last decimal (OPT-8.11).
 TEST(OffsetPath, HowLittleIsNothing) {
   EXPECT_EQ(LineOf(kPlanes[0], 0, 0, 0.7e-9, 0).tangent_to, Vec3{});
   ExpectNear(LineOf(kPlanes[0], 0, 0, 1.5e-9, 0).tangent_to, {1, 0, 0});

@@ -428,20 +428,23 @@ TEST_F(Project, TextsThatTheTransferMadeAreToldFromTheOwn) {
   EXPECT_EQ(plan.programs[3].source, "     SPEED 6\n");
 }
 
-// OPT-8.46, OPT-8.71: what may still be inches is told of its program and file, and stops the transfer
-// where it is an error; what is no RML is told by the compiler alone.
+// OPT-8.46, OPT-8.71: what may still be inches is told of its program and file, and stops the
+// transfer where it is an error; what is no RML is told by the compiler alone.
 TEST_F(Project, WhatCouldNotBeConvertedIsTold) {
   Add(45, "SPEED 5\nMOVE (1.+2.*VR[86],0,0,0,0)\n", true);
   Add(46, "SPED 5\n", true);
   const machine::TransferPlan plan = Plan();
   std::vector<std::string> told;
   for (const Diagnostic& d : plan.diagnostics) {
-    told.push_back(std::to_string(d.program) + " " + d.file + ":" + std::to_string(d.where.line) + " " +
-                   std::to_string(Lookup(d.code).number));
+    told.push_back(std::to_string(d.program) + " " + d.file + ":" + std::to_string(d.where.line) +
+                   " " + std::to_string(Lookup(d.code).number));
   }
   EXPECT_EQ(std::ranges::count(told, "45 45.SI:2 7709"), 1);
-  EXPECT_EQ(std::ranges::count_if(told, [](const std::string& text) { return text.ends_with("7711"); }), 0);
-  EXPECT_TRUE(std::ranges::any_of(told, [](const std::string& text) { return text.starts_with("46 46.SI:1 "); }));
+  EXPECT_EQ(
+      std::ranges::count_if(told, [](const std::string& text) { return text.ends_with("7711"); }),
+      0);
+  EXPECT_TRUE(std::ranges::any_of(
+      told, [](const std::string& text) { return text.starts_with("46 46.SI:1 "); }));
 }
 
 }  // namespace

@@ -33,9 +33,8 @@ TEST(Transform, TurnsPointsAndHead) {
 
 // OPT-8.76, OPT-B.40: a number in parentheses has the sign before them.
 TEST(Transform, NumbersInParenthesesHaveTheirSign) {
-  EXPECT_EQ(
-      Transform("MOVE (-(10),-(-20),-(30),0,0)\n", RigidMotion::Of({1, 2, 40}, 0, 0, 0)).text,
-      "MOVE (-(9.0),-(-22.0),-(-10.0),0.0,0.0)\n");
+  EXPECT_EQ(Transform("MOVE (-(10),-(-20),-(30),0,0)\n", RigidMotion::Of({1, 2, 40}, 0, 0, 0)).text,
+            "MOVE (-(9.0),-(-22.0),-(-10.0),0.0,0.0)\n");
 }
 
 // OPT-B.80
