@@ -36,6 +36,7 @@ libgtest-dev            # the test framework
 libgmock-dev            # its matchers
 librapidcheck-dev       # properties over random inputs
 libbenchmark-dev        # benchmarks
+clang-format            # the shape of the sources
 python3-grpcio          # a client in another language
 python3-protobuf        # its messages
 valgrind                # counts instructions: the gate of the planner's cost
