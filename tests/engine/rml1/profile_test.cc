@@ -326,7 +326,9 @@ TEST(Profile, RefusesMisfits) {
     machine::Parameters parameters = ParametersOf("t1");
     for (const auto& [name, value] : values) EXPECT_TRUE(parameters.Set(name, value).ok());
     const Result<Profile> profile = MakeProfile(parameters);
-    return profile ? std::string("none") : profile.error().detail;
+    if (profile) return std::string("none");
+    EXPECT_EQ(profile.error().code, ErrorCode::kCellParameterRange);
+    return profile.error().detail;
   };
   EXPECT_EQ(refusal({{"X_MAX", 0.0}}), "X_MIN is 0, not below X_MAX, which is 0");
   EXPECT_EQ(refusal({{"Y_MIN", 150.0}}), "Y_MIN is 150, not below Y_MAX, which is 150");
