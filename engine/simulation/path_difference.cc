@@ -147,8 +147,8 @@ void Append(PathShare& part, const SketchElement& element, const std::vector<Ske
 
 class Comparison {
  public:
-  explicit Comparison(const PathSketch& other)
-      : other_(other), tree_(Boxes(other), kSamePlace_mm) {}
+  Comparison(const PathSketch& other, std::uint64_t pairs_max)
+      : other_(other), tree_(Boxes(other), kSamePlace_mm), pairs_left_(pairs_max) {}
 
   // Divides the elements of `path` by whether the other path runs there, too.
   void Divide(const PathSketch& path, PathShare* common, PathShare& alone) {
@@ -166,7 +166,7 @@ class Comparison {
     }
   }
 
-  bool exact() const { return pairs_ < kPairsMax; }
+  bool exact() const { return exact_; }
 
  private:
   static std::vector<machine::Box> Boxes(const PathSketch& path) {
@@ -181,7 +181,9 @@ class Comparison {
   void Cover(const PathSketch& path, const SketchElement& element, double length,
              Coverage& coverage) {
     tree_.Visit(BoxOf(element, path.circles()), [&](std::size_t index) {
-      if (++pairs_ >= kPairsMax) return false;
+      exact_ = pairs_left_ > 0;
+      if (!exact_) return false;
+      --pairs_left_;
       const SketchElement& there = other_.elements()[index];
       if (there.cuts != element.cuts || (there.arc < 0) != (element.arc < 0)) return true;
       if (element.arc < 0) {
@@ -198,7 +200,8 @@ class Comparison {
 
   const PathSketch& other_;
   BoxTree tree_;
-  std::uint64_t pairs_ = 0;
+  std::uint64_t pairs_left_;
+  bool exact_ = true;
 };
 
 // Dots of `path` that the other one has, and those that it has not.
@@ -232,11 +235,11 @@ machine::Box PathShare::box() const {
   return box;
 }
 
-PathDifference Compare(const PathSketch& before, const PathSketch& after) {
+PathDifference Compare(const PathSketch& before, const PathSketch& after, std::uint64_t pairs_max) {
   PathDifference difference;
-  Comparison with_after(after);
+  Comparison with_after(after, pairs_max);
   with_after.Divide(before, nullptr, difference.removed);
-  Comparison with_before(before);
+  Comparison with_before(before, pairs_max);
   with_before.Divide(after, &difference.common, difference.added);
   DivideDots(before, after, nullptr, difference.removed);
   DivideDots(after, before, &difference.common, difference.added);

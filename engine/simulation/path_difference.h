@@ -34,6 +34,8 @@ struct PathDifference {
   PathShare added;    // of the path after alone
   bool exact = true;  // false: kPairsMax was not enough
 };
-PathDifference Compare(const PathSketch& before, const PathSketch& after);
+// `pairs_max`: for the elements of each of them.
+PathDifference Compare(const PathSketch& before, const PathSketch& after,
+                       std::uint64_t pairs_max = kPairsMax);
 
 }  // namespace rmlcell::simulation

@@ -69,7 +69,8 @@ bool Control::NeverMoves() const {
   return modal().speed_percent <= 0.0 || modal().accel_percent < kAccelLeast_percent;
 }
 
-// False: an error was raised, or the MOVE stands until its /TIME (no_motion).
+// False: nothing is on its way. It ends where it begins, an error was raised, or the MOVE stands
+// until its /TIME (no_motion).
 bool Control::AppendMotion(const motion::PathPiece& path, const Instruction& i,
                            const MoveNote& note, bool settles) {
   double speed = modal().speed_percent * kPercent * s_.override_percent * kPercent;
@@ -122,7 +123,7 @@ bool Control::AppendMotion(const motion::PathPiece& path, const Instruction& i,
                         .feed_mm_s = kept.feed_mm_s,
                         .path = note.path == PathType::kPtp ? "PTP" : "LIN"});
     }
-    return true;
+    return false;
   }
   s_.notes.emplace_back(command.tag, kept);
   if (const Status appended = s_.planner.Append(command); !appended) {
@@ -234,7 +235,6 @@ void Control::Move(const Instruction& i) {
     }
   }
   if (!InTravel(path, note) || !AppendMotion(path, i, note, true)) return NotUnderWay(i);
-  if (path.length() <= 0.0) return Unwatch();
   WatchAndGoOn(i, first_tag, ran_ahead);
 }
 
@@ -262,7 +262,7 @@ void Control::WatchAndGoOn(const Instruction& i, std::uint64_t first_tag, bool r
 }
 
 // motion.md 3.3: a line to the circle, a stop, one full turn.
-// False: an error was raised.
+// False: nothing is on its way.
 bool Control::MoveHole(const Instruction& i, const motion::TipPose& from,
                        const motion::TipPose& target, MoveNote note) {
   if (!i.Has(kVia)) {

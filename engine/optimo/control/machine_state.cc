@@ -102,8 +102,9 @@ void Visit(Archive& archive, State& state) {
 }
 
 void WriteStep(Writer& writer, const std::optional<machine::ProgramStep>& step) {
-  writer.Number(step ? step->program : 0);
-  writer.Number(step ? step->step : 0);
+  const machine::ProgramStep written = step.value_or(machine::ProgramStep{});
+  writer.Number(written.program);
+  writer.Number(written.step);
 }
 
 std::optional<machine::ProgramStep> ReadStep(Reader& reader) {

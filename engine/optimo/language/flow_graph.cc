@@ -104,18 +104,20 @@ std::vector<bool> FlowGraph::LeadingTo(const std::vector<bool>& goals, bool call
 
 std::vector<bool> FlowGraph::ReachOnLevel(std::uint32_t from) const {
   std::vector<bool> reached(size() + 1U);
-  std::vector<std::uint32_t> open = {from};
+  std::vector<std::uint32_t> open;
+  const auto reach = [&](std::uint32_t at) {
+    if (reached[at]) return;
+    reached[at] = true;
+    open.push_back(at);
+  };
+  reach(from);
   std::vector<Successor> room;
-  reached[from] = true;
   while (!open.empty()) {
     const std::uint32_t at = open.back();
     open.pop_back();
     if (at == size()) continue;
-    for (const Successor& successor : From(at, room)) {
-      if (successor.edge == Edge::kCall || successor.edge == Edge::kTimed || reached[successor.to])
-        continue;
-      reached[successor.to] = true;
-      open.push_back(successor.to);
+    for (const Successor& s : From(at, room)) {
+      if (s.edge != Edge::kCall && s.edge != Edge::kTimed) reach(s.to);
     }
   }
   return reached;

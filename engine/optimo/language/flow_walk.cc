@@ -101,7 +101,9 @@ void FlowWalk::Follow(bool any_error) {
     open.pop_front();
     waiting[at] = false;
     FlowState state = states_[slots_[at]];
-    for (bool on = true; on && at < graph_.size();) {
+    if (at == graph_.size()) continue;
+    bool on = false;
+    do {
       on = false;
       FlowState after = state;
       Pass(at, after);
@@ -114,11 +116,8 @@ void FlowWalk::Follow(bool any_error) {
       }
       ++at;
       state = after;
-      if (on && leaders_[at]) {
-        enter(at, state);
-        on = false;
-      }
-    }
+    } while (on && !leaders_[at]);
+    if (on) enter(at, state);
   }
 }
 

@@ -169,7 +169,9 @@ void ContourAdviser::PassMove(const Instruction& i) {
   const std::optional<PathPiece> piece = at_ ? PieceTo(i, target) : std::nullopt;
   if (piece && path_ != PathType::kPtp && piece->tip_length_mm() > 0.0) AdviseHead(i, target);
   const bool timed = speed_ && accel_ && oversh_;
-  if (piece && timed && piece->length() > 0.0) {
+  if (!piece || !timed) {
+    FinishChain();
+  } else if (piece->length() > 0.0) {  // on the spot it adds nothing, as in the planner
     const bool tip = path_ == PathType::kPtp;
     chain_.push_back(
         {&i,
@@ -182,10 +184,8 @@ void ContourAdviser::PassMove(const Instruction& i) {
           .fly = i.Has(kFly),
           .tag = chain_.size()},
          beam_});
-    if (!i.Has(kFly)) FinishChain();
-  } else {
-    FinishChain();
   }
+  if (!i.Has(kFly)) FinishChain();
   at_ = target;
   if (i.Has(kEnd) || i.Has(kTime) || i.Has(kNext)) {  // it may end elsewhere
     FinishChain();

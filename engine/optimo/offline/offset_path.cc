@@ -1,5 +1,6 @@
 #include "engine/optimo/offline/offset_path.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -28,14 +29,10 @@ struct PlaneCurve {
 };
 
 // One of the points where both curves meet, the nearest to the origin; nothing when they do not.
+// Precondition: one of them is a circle.
 std::optional<std::pair<double, double>> NearestMeeting(const PlaneCurve& a, const PlaneCurve& b) {
   std::vector<std::pair<double, double>> points;
-  if (!a.circle && !b.circle) {
-    const double cross = a.dx * b.dy - a.dy * b.dx;
-    if (std::fabs(cross) < kTiny) return std::nullopt;
-    const double t = ((b.x - a.x) * b.dy - (b.y - a.y) * b.dx) / cross;
-    points.emplace_back(a.x + t * a.dx, a.y + t * a.dy);
-  } else if (a.circle != b.circle) {
+  if (a.circle != b.circle) {
     const PlaneCurve& line = a.circle ? b : a;
     const PlaneCurve& circle = a.circle ? a : b;
     const double along = (circle.x - line.x) * line.dx + (circle.y - line.y) * line.dy;
@@ -57,11 +54,8 @@ std::optional<std::pair<double, double>> NearestMeeting(const PlaneCurve& a, con
     points.emplace_back(a.x + along * ux - half * uy, a.y + along * uy + half * ux);
     points.emplace_back(a.x + along * ux + half * uy, a.y + along * uy - half * ux);
   }
-  std::pair<double, double> best = points.front();
-  for (const auto& point : points) {
-    if (std::hypot(point.first, point.second) < std::hypot(best.first, best.second)) best = point;
-  }
-  return best;
+  return *std::ranges::min_element(
+      points, {}, [](const auto& point) { return std::hypot(point.first, point.second); });
 }
 
 // Towards the centre: the offset makes the arc smaller.

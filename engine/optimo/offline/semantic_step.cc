@@ -1,5 +1,6 @@
 #include "engine/optimo/offline/semantic_step.h"
 
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -11,7 +12,7 @@ namespace {
 bool IsPlain(Expression value) { return value.size() == 1 && value[0].op != Node::kVariable; }
 
 void Append(std::uint32_t value, std::string& to) {
-  for (int byte = 0; byte < 4; ++byte) to += static_cast<char>(value >> (8 * byte) & 0xFF);
+  for (const char byte : std::bit_cast<std::array<char, sizeof(value)>>(value)) to += byte;
 }
 
 // Names stand for what they were declared as; 5, 5.0 and a constant of that value are the same, as

@@ -166,6 +166,21 @@ TEST(BendStretches, KeepTheirSpeedBehindTheRamp) {
   }
 }
 
+// A dip right behind the start lets no ramp be above the speed of the dip, however open the middle
+// is: then that is the speed all along, and not the one of the start.
+TEST(BendStretches, ADipBehindTheStartIsTheSpeedAllAlong) {
+  constexpr PathLimits kGentle{.acceleration = 100.0, .jerk = 1000.0};
+  for (std::size_t dip = 1; dip < BendSpeeds::kSteps; ++dip) {
+    BendSpeeds speeds = Speeds([](std::size_t k) { return k < BendSpeeds::kSteps ? 10.0 : 20.0; });
+    speeds.most[dip] = 9.0;
+    const BendStretches bend = StretchesOf(speeds, 1.0, kGentle);
+    EXPECT_EQ(bend.count, 1u);
+    EXPECT_EQ(bend.start, 9.0) << dip;
+    EXPECT_EQ(bend.open, 9.0) << dip;
+    EXPECT_EQ(bend.middle, 9.0) << dip;
+  }
+}
+
 // Open between the start and the middle: two stretches, each up and down again, both as far as the
 // side that is the shorter way allows.
 TEST(BendStretches, OpenBetween) {

@@ -71,6 +71,22 @@ TEST(PathDifference, DivisionDirectionAndRepetitionDoNotCount) {
   EXPECT_NEAR(lengths.common, 100.0, 1e-9);
 }
 
+// As many pairs are looked at as may be, and not one more: what is left counts as different.
+TEST(PathDifference, PairsHaveALimit) {
+  Path before;
+  before.Line({0, 0, 0}, {10, 0, 0}).Line({0, 50, 0}, {10, 50, 0}).Line({0, 90, 0}, {10, 90, 0});
+  const auto cuts = [&](std::uint64_t pairs) {
+    const PathDifference difference = Compare(before.sketch(), before.sketch(), pairs);
+    EXPECT_EQ(difference.exact, pairs >= 3) << pairs;
+    return difference.common.cut_mm;
+  };
+  EXPECT_NEAR(cuts(0), 0.0, 1e-9);
+  EXPECT_NEAR(cuts(1), 10.0, 1e-9);
+  EXPECT_NEAR(cuts(2), 20.0, 1e-9);
+  EXPECT_NEAR(cuts(3), 30.0, 1e-9);
+  EXPECT_NEAR(cuts(4), 30.0, 1e-9);
+}
+
 // A line that became shorter at one end and longer at the other: 10 mm gone, 5 mm new, 40 mm kept.
 TEST(PathDifference, LinesAreDividedWhereTheyPart) {
   Path before, after;

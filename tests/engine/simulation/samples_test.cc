@@ -145,6 +145,25 @@ TEST(Samples, TimeBeforeAWaitIsNotTheWaits) {
   EXPECT_GE(dark, 10);
 }
 
+// And so before a motion: the beam is off until it begins, whatever was before.
+TEST(Samples, TimeBeforeAMotionIsNotTheMotions) {
+  for (const bool bright : {false, true}) {
+    Script script;
+    script.Step(1, 1).Line({0, 0, 0}, {1, 0, 0});
+    if (bright) script.Wait(machine::WaitKind::kPierce, 1.0, true, 50.0);
+    script.Step(1, 2).Nothing(1.0);
+    script.Step(1, 3).Line({1, 0, 0}, {2, 0, 0});
+    int dark = 0, lit = 0;
+    for (const Row& row : Sampled(script, 10.0)) {
+      if (row[12] != "1") continue;
+      ++(row[10] == "50.0000" ? lit : dark);
+      EXPECT_TRUE(row[10] == "50.0000" || row[10] == "0.0000") << row[10];
+    }
+    EXPECT_EQ(lit, bright ? 10 : 0);
+    EXPECT_GE(dark, 10);
+  }
+}
+
 // motion.md 9: an event has the place of its own, and the lines before it keep theirs; a halt is
 // one.
 TEST(Samples, EventsHaveTheirOwnPlace) {

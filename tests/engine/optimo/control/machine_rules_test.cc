@@ -328,6 +328,7 @@ TEST(MachineRules, ExecutablesBelongToTheirSlot) {
   EXPECT_TRUE(OptimoFamily().CheckExecutable(bytes, 45).ok());
   const Status other = OptimoFamily().CheckExecutable(bytes, 46);
   ASSERT_FALSE(other.ok());
+  EXPECT_EQ(other.error().code, ErrorCode::kCellInvalidArgument);
   EXPECT_NE(other.error().detail.find("145"), std::string::npos) << other.error().detail;
   EXPECT_FALSE(OptimoFamily().CheckExecutable("no executable", 45).ok());
   // One that lies in another slot all the same runs, with a warning.

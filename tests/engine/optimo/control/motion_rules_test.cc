@@ -420,6 +420,19 @@ TEST(MotionRules, TimeEndsWithItsMove) {
   EXPECT_GT(ran.time_s, 12.0);
 }
 
+// OPT-2.54: a MOVE that ends where it begins is over at once, on whichever path, and so is its
+// time.
+TEST(MotionRules, AMoveOnTheSpotIsOverAtOnce) {
+  for (const std::string path : {"LIN", "CIR", "PTP", "HOLE (5.)"}) {
+    const Ran ran = RunText("COORD ABSOL\nPATH LIN\nMOVE (121.,2201.,-350.,0.,0.)\nPATH " + path +
+                                "\nVR[1]=IA[0]\nMOVE (121.,2201.,-350.,0.,0.)/TIME (1.,900)\n"
+                                "DELAY 5\nENDTASK\n900 VI[2]=1\nRETURN\n",
+                            {.variables = {"VI[2]"}});
+    EXPECT_EQ(ran.variables.at("VI[2]"), "0") << path;
+    EXPECT_LT(motion::Distance(ran.end.tip.tip, {121.0, 2201.0, -350.0}), kReal_mm) << path;
+  }
+}
+
 // OPT-B.30: an input of the instant of a tick is seen at that tick: 21 x 0.048 s.
 TEST(MotionRules, AnInputOfTheTickIsSeenAtIt) {
   const Ran ran = RunText(kAbsol + "SPEED 10\nMOVE (321.02,2201.2,-350.,0.,0.)/END (IL[20])\n",

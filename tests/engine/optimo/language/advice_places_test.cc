@@ -201,6 +201,14 @@ TEST(AdvicePlaces, OfPassages) {
                            "MOVE (.005,0.,0.,0.,0.)/FLY\nMOVE (.010,0.,0.,0.,0.)/FLY\n"
                            "{MOVE (.015,0.,0.,0.,0.)/FLY}\nMOVE (9.,0.,0.,0.,0.)/FLY\n" +
                            move;
+  // What the GOSUB of a TIMER moves begins a new row of moves; what does not move leaves it going
+  // on.
+  const std::string ahead = "MOVE (.005,0.,0.,0.,0.)/FLY\n", back = "MOVE (0.,0.,0.,0.,0.)/FLY\n",
+                    timer = kAbsolLin + ahead + back + "TIMER (9.,900)\nTIMER /DIS\n",
+                    timed = timer + ahead + back + "{MOVE (.005,0.,0.,0.,0.)/FLY}\n" + move +
+                            "ENDTASK\n900 MOVE (0.,0.,0.,0.,0.)\nRETURN\n",
+                    quiet = timer + "{MOVE (.005,0.,0.,0.,0.)/FLY}\n" + move +
+                            "ENDTASK\n900 VI[1]=1\nRETURN\n";
   const std::vector<AdviceRow> rows = {
       {last, 7032, "OPT-2.47", "/FLY on the last MOVE of the program"},
       {ends, 7032, "OPT-2.47", "/FLY on the last MOVE of the program"},
@@ -214,6 +222,8 @@ TEST(AdvicePlaces, OfPassages) {
       {to_hole, 7032, "OPT-2.53", "/FLY on the move to a hole"},
       {small, 7314, "OPT-2.51", "/FLY on a move shorter than 1 mm, and the next move stops"},
       {tiny, 7314, "OPT-2.52", "/FLY on several moves in a row shorter than 0.01 mm"},
+      {timed, 7314, "OPT-2.52", "/FLY on several moves in a row shorter than 0.01 mm"},
+      {quiet, 7314, "OPT-2.52", "/FLY on several moves in a row shorter than 0.01 mm"},
   };
   for (const AdviceRow& row : rows) ExpectAdvice(row);
 }

@@ -65,5 +65,26 @@ TEST(Alignment, ManyDifferencesAreBounded) {
   EXPECT_EQ(pairs.size(), 2001U);
 }
 
+// alignment.h: as many differences as the limit still leave the longest; one more does not. The
+// first sequence has `gone` elements more behind its first one, the second a few at its end, all of
+// them between two ends that are equal in no place.
+TEST(Alignment, TheLimitOfDifferencesIsTheLastThatIsKept) {
+  constexpr std::size_t kCommon = 50, kNew = 3;
+  for (const std::size_t gone : {kDifferencesMax - kNew, kDifferencesMax - kNew + 1}) {
+    Keys a(gone, 1), b;
+    for (std::size_t i = 0; i < kCommon; ++i) {
+      a.push_back(100 + i);
+      b.push_back(100 + i);
+    }
+    b.insert(b.end(), kNew, 2);
+    const auto pairs = Align(a, b);
+    ExpectOrdered(pairs, a, b);
+    EXPECT_EQ(pairs.size(), gone + kNew <= kDifferencesMax ? kCommon : 0U);
+    const auto back = Align(b, a);
+    ExpectOrdered(back, b, a);
+    EXPECT_EQ(back.size(), pairs.size());
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::optimo

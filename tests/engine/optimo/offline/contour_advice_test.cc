@@ -198,6 +198,21 @@ TEST(ContourAdvice, AttributesOfTheMovesOfACorner) {
   EXPECT_EQ(told("/FLY", "VR[1])"), 0U);
 }
 
+// motion/planner.h: a MOVE on the spot adds nothing, but one without /FLY makes the corner a stop.
+TEST(ContourAdvice, MovesOnTheSpotAreNoCorner) {
+  const auto told = [](const std::string& between) {
+    return FindingsWith(CornerOf(90, between), ErrorCode::kFlySharp);
+  };
+  const std::string stay = "MOVE (100,0,0,0,0)";
+  for (const std::string& passes : {stay + "/FLY\n", stay + "/FLY\n" + stay + "/FLY\n"}) {
+    ASSERT_EQ(told(passes).size(), 1U) << passes;
+    EXPECT_EQ(told(passes)[0].line, 6) << passes;
+  }
+  EXPECT_EQ(told(stay + "\n").size(), 0U);
+  EXPECT_EQ(told(stay + "/FLY\n" + stay + "\n").size(), 0U);
+  EXPECT_EQ(told(stay + "\n" + stay + "/FLY\n").size(), 0U);
+}
+
 // OPT-E.7319: on both sides of straight down, either way, and what is said of which move.
 TEST(ContourAdvice, TheSwingOfTheHeadIsTold) {
   const auto told = [](const std::string& from, const std::string& to) {

@@ -76,6 +76,19 @@ TEST_F(Project, SchedulesMustBeThere) {
   EXPECT_FALSE(Plan().ok);
 }
 
+// OPT-3.44, OPT-8.68: only 1 to 63 are schedules that could be missing.
+TEST_F(Project, TheFirstAndTheLastScheduleMayBeMissing) {
+  for (const auto& [schedule, missing] :
+       std::vector<std::pair<double, bool>>{{0, false}, {1, true}, {63, true}, {64, false}}) {
+    bundle_ = {};
+    Define(2, 0, {schedule});
+    Add(45, "SPEED 5\n");
+    const std::vector<int> numbers = Findings();
+    EXPECT_EQ(std::ranges::count(numbers, 7862), missing ? 1 : 0) << schedule;
+    EXPECT_EQ(std::ranges::count(numbers, 7403), missing ? 0 : 1) << schedule;
+  }
+}
+
 // OPT-3.01, OPT-3.02, OPT-3.06, OPT-3.08
 TEST_F(Project, DefinitionsAreChecked) {
   const auto errors = [](int kind, int process, std::vector<double> values) {
