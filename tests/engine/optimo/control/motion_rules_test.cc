@@ -420,16 +420,27 @@ TEST(MotionRules, TimeEndsWithItsMove) {
   EXPECT_GT(ran.time_s, 12.0);
 }
 
-// OPT-2.54: a MOVE that ends where it begins is over at once, on whichever path, and so is its
-// time.
-TEST(MotionRules, AMoveOnTheSpotIsOverAtOnce) {
+// OPT-2.54, OPT-2.59, OPT-7.68: a MOVE that ends where it begins takes no time, on whichever path.
+// So none runs out: not while the one before is still on its way, 2 s long, nor while the one
+// behind waits for its /START; and that one is waited for.
+TEST(MotionRules, AMoveOnTheSpotIsOver) {
   for (const std::string path : {"LIN", "CIR", "PTP", "HOLE (5.)"}) {
-    const Ran ran = RunText("COORD ABSOL\nPATH LIN\nMOVE (121.,2201.,-350.,0.,0.)\nPATH " + path +
-                                "\nVR[1]=IA[0]\nMOVE (121.,2201.,-350.,0.,0.)/TIME (1.,900)\n"
-                                "DELAY 5\nENDTASK\n900 VI[2]=1\nRETURN\n",
-                            {.variables = {"VI[2]"}});
-    EXPECT_EQ(ran.variables.at("VI[2]"), "0") << path;
-    EXPECT_LT(motion::Distance(ran.end.tip.tip, {121.0, 2201.0, -350.0}), kReal_mm) << path;
+    for (const std::string before : {"", "/FLY"}) {
+      for (const std::string how :
+           {"", "/FLY", "/NEXT", "/FLY/NEXT", "/TIME (1.,900)", "/FLY/TIME (1.,900)",
+            "/TIME (1.,900)/NEXT", "/END (IL[21])", "/END (IL[21])/NEXT"}) {
+        const Ran ran = RunText(
+            kAbsol + "SPEED 10\nMOVE (121.,2201.2,-350.,0.,0.)" + before + "\nPATH " + path +
+                "\nMOVE (121.,2201.2,-350.,0.,0.)" + how +
+                "\nPATH LIN\nMOVE (221.,2201.2,-350.,0.,0.)/START (IL[20])\nVL[1]=IL[95]\n"
+                "ENDTASK\n900 VI[2]=1\nRETURN\n",
+            {.inputs = {{At(6.0), InputKind::kLogical, 20, 1.0}}, .variables = {"VI[2]", "VL[1]"}});
+        EXPECT_EQ(ran.variables.at("VI[2]"), "0") << path << before << how;
+        EXPECT_EQ(ran.variables.at("VL[1]"), "0") << path << before << how;
+        EXPECT_NEAR(ran.end.tip.tip.x, 221.0, kReal_mm) << path << before << how;
+        EXPECT_GT(ran.time_s, 8.0) << path << before << how;
+      }
+    }
   }
 }
 
