@@ -65,9 +65,9 @@ TEST(Alignment, ManyDifferencesAreBounded) {
   EXPECT_EQ(pairs.size(), 2001U);
 }
 
-// alignment.h: as many differences as the limit still leave the longest; one more does not. The
-// first sequence has `gone` elements more behind its first one, the second a few at its end, all of
-// them between two ends that are equal in no place.
+// alignment.h: with kDifferencesMax differences the longest is found, with one more only what
+// stands at the same distance from the first: here nothing, as one has `gone` elements more at its
+// front.
 TEST(Alignment, TheLimitOfDifferencesIsTheLastThatIsKept) {
   constexpr std::size_t kCommon = 50, kNew = 3;
   for (const std::size_t gone : {kDifferencesMax - kNew, kDifferencesMax - kNew + 1}) {
