@@ -8,6 +8,7 @@
 #include <set>
 
 #include "engine/core/units.h"
+#include "engine/optimo/offline/translate.h"
 #include "engine/simulation/families.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/setup.h"
@@ -15,6 +16,7 @@
 #include "server/jobs/job_messages.h"
 #include "server/jobs/update_mask.h"
 #include "server/names.h"
+#include "server/readable.h"
 
 namespace rmlcell::server {
 namespace {
@@ -24,6 +26,19 @@ constexpr int kPageMax = 1000;
 constexpr std::size_t kNotesMax = 64 << 10;
 constexpr std::array<std::string_view, 5> kProjectFields = {"title", "notes", "programs",
                                                             "laser_schedules", "processes"};
+
+// Whoever reads the name takes the text for inches: units that say otherwise would be believed by
+// nobody.
+Status CheckUnits(const v1::ProjectProgram& program) {
+  const std::string& name = program.source().file_name();
+  if (program.units() != v1::UNITS_METRIC ||
+      optimo::FormOfFile(name, program.source().content()) != optimo::FileForm::kInchSource) {
+    return {};
+  }
+  return InvalidArgument("program " + std::to_string(program.slot()) +
+                         ": units are UNITS_METRIC, but the name " + Readable(name) +
+                         " says inch: leave the units out, or rename the file");
+}
 
 // What can be said without a machine. Languages are checked when the project is transferred.
 Status CheckParts(const v1::Project& project) {
@@ -39,6 +54,7 @@ Status CheckParts(const v1::Project& project) {
     if (program.source().content().empty()) {
       return Error{ErrorCode::kProjectSource, "the program of slot " + slot + " has no source", {}};
     }
+    if (Status good = CheckUnits(program); !good) return good;
   }
   std::set<int> schedules;
   for (const v1::ProjectLaserSchedule& schedule : project.laser_schedules()) {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "engine/core/letters.h"
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
+#include "proto/bridge/sha256.h"
 
 namespace rmlcell::web {
 namespace {
@@ -118,11 +118,11 @@ UploadRoute RouteUpload(const HttpRequest& request, const ProgramContentPath& pa
     return refuse(0, "validate_only is neither true nor false");
   }
   header.validate_only = validate_only == "true";
-  header.sha256 = LowerCase(header.sha256);
-  const bool is_hash = header.sha256.size() == 64 && std::ranges::all_of(header.sha256, [](char c) {
-                         return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
-                       });
-  if (!header.sha256.empty() && !is_hash) return refuse(0, "sha256 is not 64 hexadecimal digits");
+  if (!header.sha256.empty()) {
+    std::optional<std::string> digest = bridge::ReadSha256(header.sha256);
+    if (!digest) return refuse(0, "sha256 is not 64 hexadecimal digits");
+    header.sha256 = *std::move(digest);
+  }
   const std::string_view length = request.Header("content-length");
   if (!length.empty()) header.size = ParseInteger(length).value_or(-1);
   return route;

@@ -313,6 +313,14 @@ class Refusals(unittest.TestCase):
                       ("simulate @a.S --state-in @none", "CELL-E9022", "@none")])
         self.accepted("simulate --slot 1=@a.S --slot 99=@b.S --main 99", "simulate --slot 44=@a.S")
 
+    def test_what_does_not_go_to_a_server(self):
+        (self.folder / "large.rml").write_bytes(b" " * ((3 << 20) + 1))
+        (self.folder / "project.json").write_text('{"title": ')
+        self.refused([("submit mill-1 @large.rml", "CELL-E9007", "@large.rml has 3145729 bytes, a job takes 3145728 with it"),
+                      ("submit mill-1 @none.rml", "CELL-E9022", "@none.rml"),
+                      ("projects create door @project.json", "CELL-E9024", "@project.json: "),
+                      ("projects create door @none.json", "CELL-E9022", "@none.json")])
+
     def test_files_that_cannot_be_written(self):
         options = ("--svg {}", "--plot speed {}", "--samples 100 {}", "--state-out {}")
         self.refused([(f"simulate @a.S {option.format('/dev/full')}", "CELL-E9023", "/dev/full: ") for option in options])

@@ -2,7 +2,7 @@
 """Machines and their laser schedules as gRPC clients see them: every field, every refusal."""
 import unittest
 
-from cell import Cell, WithCell, eventually, grpc, handbox_pb2, handbox_pb2_grpc, inline_job, job_pb2, machine_pb2, submit, wait_for_end
+from cell import Cell, WithCell, detail_of, eventually, grpc, handbox_pb2, handbox_pb2_grpc, inline_job, job_pb2, machine_pb2, submit, wait_for_end
 
 BAD = grpc.StatusCode.INVALID_ARGUMENT
 UNKNOWN = grpc.StatusCode.NOT_FOUND
@@ -199,6 +199,16 @@ class Schedules(WithCell):
         self.refused(stub.ListLaserSchedules, machine_pb2.ListLaserSchedulesRequest(parent="none"), BAD, "CELL-E9003")
         self.refused(stub.DeleteLaserSchedule, machine_pb2.DeleteLaserScheduleRequest(name="none"), BAD, "CELL-E9003")
         self.assertEqual(self.listed("mill-1"), [])
+
+
+class Workers(WithCell):
+    def test_a_worker_says_hello_first(self):
+        work = self.cell.channel().stream_stream("/rmlcell.v1.WorkerService/Work")
+        with self.assertRaises(grpc.RpcError) as caught:
+            list(work(iter([b""]), timeout=60))
+        self.assertEqual(caught.exception.code(), BAD)
+        detail = detail_of(caught.exception)
+        self.assertEqual((detail.code, detail.message), ("CELL-E9003", "the first message must be hello"))
 
 
 class Orders(WithCell):

@@ -104,7 +104,7 @@ class CommandLine(unittest.TestCase):
         done = subprocess.run([BIN / "rmlcell", "link", main, self.folder, "-o", self.folder / "no.X"],
                               capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 1)
-        self.assertRegex(done.stderr, r"45\.S: .*CELL-E.*program 45 is called")
+        self.assertRegex(done.stderr, r"45\.S: .*CELL-E9017.*program 45 is called")
         self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
 
     # OPT-B.40
@@ -517,6 +517,7 @@ class Services(unittest.TestCase):
             os.close(inside)
             os.close(terminal)
         self.assertEqual(done.returncode, 2, done)
+        self.assertTrue(done.stderr.startswith("rmlcell: CELL-E9026: "), done.stderr)
         self.assertIn("-o FILE", done.stderr)
 
     def test_diff(self):

@@ -40,6 +40,8 @@ class Uploads(WithCell):
         self.refused_upload([header(data), chunk(data), chunk(b" ")], "CELL-E9016", "more bytes than the header says")
         self.refused_upload([header(data), chunk(data[:-1])], "CELL-E9016", f"{len(data) - 1} bytes came, {len(data)} were announced")
         self.refused_upload([header(data, sha256="0" * 64), chunk(data)], "CELL-E9016", "SHA-256 differs")
+        self.refused_upload([header(b"")], "CELL-E9017", "a.rml")
+        self.refused_upload([header(b""), chunk(data)], "CELL-E9003", "header.size is missing")
         self.refused(self.cell.programs().GetProgram, program_pb2.GetProgramRequest(name="machines/mill-1/programs/9"),
                      UNKNOWN, "CELL-E9004")
 

@@ -53,6 +53,19 @@ TEST(Content, ChunksComeBackAsTheyWereEncoded) {
   }
 }
 
+// Noise with an end that shrinks a little: somewhere the compressed form is exactly as long as the
+// chunk itself, by whose size what is kept is told apart.
+TEST(Content, ChunksComeBackWhateverCompressingGains) {
+  for (const std::size_t tail : {100U, 200U, 300U}) {
+    for (std::size_t repeated = 0; repeated < 60; ++repeated) {
+      const std::string chunk = Noise(131'072 + tail, 1) + std::string(repeated, 'a');
+      std::string content;
+      Must(Decode(Must(Encode(chunk)), chunk.size(), content));
+      EXPECT_TRUE(content == chunk) << tail << " " << repeated;
+    }
+  }
+}
+
 // Toolpaths shrink, noise is kept as it is.
 TEST(Content, TextIsCompressed) {
   EXPECT_LT(Must(Encode(PlotText(kMiB))).size(), kMiB / 3);

@@ -91,6 +91,24 @@ TEST(Check, TheExtensionDecidesThenTheLanguage) {
 
 TEST(Check, AnEmptyTextIsNoError) { EXPECT_EQ(DiagnosticsOf(""), Json::array()); }
 
+// check.h: texts of up to 64 MiB are checked; of a longer one only that is said.
+TEST(Check, ATextThatIsTooLongIsNotChecked) {
+  const auto check = [](std::size_t size) {
+    std::string text = "SPEED 101\n;";
+    text.resize(size, 'x');
+    return CheckDocument({"file:///a.S", "optimo-rml", 1, std::move(text), Encoding::kUtf16});
+  };
+  const Findings checked = check(std::size_t{64} << 20);
+  ASSERT_FALSE(checked.list.empty());
+  for (const Diagnostic& finding : checked.list) EXPECT_NE(finding.code, ErrorCode::kCellTooLarge);
+  const Findings left = check((std::size_t{64} << 20) + 1);
+  ASSERT_EQ(left.list.size(), 1U);
+  EXPECT_EQ(left.list[0].code, ErrorCode::kCellTooLarge);
+  EXPECT_EQ(left.list[0].severity, Severity::kWarning);
+  EXPECT_EQ(left.list[0].detail, "the text has 67108865 bytes; at most 67108864 are checked");
+  EXPECT_EQ(left.dropped, 0U);
+}
+
 TEST(Check, MoreThanAThousandFindingsAreCounted) {
   std::string text;
   for (int i = 0; i < 1500; ++i) text += "SPEED 101\n";

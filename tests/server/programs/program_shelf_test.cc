@@ -117,7 +117,9 @@ TEST_F(ProgramShelfTest, AnEtagThatDoesNotFitChangesNothing) {
     };
     EXPECT_EQ(put(45, first), ErrorCode::kCellEtagMismatch);
     EXPECT_EQ(put(45, "none"), ErrorCode::kCellAlreadyExists);
-    EXPECT_EQ(put(46, second), ErrorCode::kCellNotFound);
+    for (const std::string& etag : {first, second}) {
+      EXPECT_EQ(put(46, etag), ErrorCode::kCellNotFound) << etag;
+    }
     EXPECT_EQ(put(45, "junk"), ErrorCode::kCellEtagMismatch);
   }
   EXPECT_EQ(Delete(45, first).error().code, ErrorCode::kCellEtagMismatch);

@@ -5,6 +5,7 @@
 #include "server/programs/memory_office.h"
 #include "tests/server/engine_bytes.h"
 #include "tests/server/failing_store.h"
+#include "tests/server/forwarding_store.h"
 #include "tests/server/server_bed.h"
 
 namespace rmlcell::server {
@@ -116,6 +117,31 @@ TEST_F(ProgramStoreFailures, AFixGoesOnWithWhatWasFoundBefore) {
   const auto fixed = Must(office.Fix(fix));
   EXPECT_TRUE(store.failed());
   EXPECT_EQ(fixed.content(), "SPEED 20\n");
+}
+
+// Another client stores the object between the look at it and the executable for it.
+class HastyStore final : public ForwardingStore {
+ public:
+  explicit HastyStore(storage::Store& store) : ForwardingStore(store), another_(store) {}
+  Result<storage::ProgramSummary> GetProgramSummary(std::string_view machine, int slot) override {
+    auto found = another_.GetProgramSummary(machine, slot);
+    Must(another_.PutPrograms(machine, {{.slot = slot, .object = ObjectOf("SPEED 5\n")}}, {}));
+    return found;
+  }
+
+ private:
+  storage::Store& another_;
+};
+
+TEST_F(ProgramStoreFailures, AnExecutableOfAnObjectThatIsGone) {
+  Put(45);
+  HastyStore hasty(bed.store());
+  ProgramShelf meanwhile(hasty, config);
+  const auto stored = meanwhile.Store({.name = Name(145), .bytes = ExecutableOf(45, "STOP\n")});
+  ASSERT_FALSE(stored);
+  EXPECT_EQ(stored.error.error.code, ErrorCode::kCellEtagMismatch);
+  EXPECT_EQ(stored.error.error.detail, "the object was stored again meanwhile");
+  EXPECT_EQ(Must(bed.store().GetProgram("optimo-1", 45)).executable, std::nullopt);
 }
 
 }  // namespace

@@ -87,6 +87,54 @@ TEST_F(ProjectLimits, OfPrograms) {
   EXPECT_EQ(asked(1, 201), ErrorCode::kCellInvalidArgument);
 }
 
+// ProjectProgram.units: metric against a name that says inch (OPT-8.72) is refused; inch counts for
+// any name, and without units the name counts.
+TEST_F(ProjectLimits, UnitsThatContradictTheNameOfTheFile) {
+  const auto asked = [&](v1::Units units, const std::string& name) {
+    v1::CreateProjectRequest request;
+    request.set_project_id("asked");
+    request.set_validate_only(true);
+    for (const int slot : {45, 46}) {
+      v1::ProjectProgram& program = *request.mutable_project()->add_programs();
+      program.set_slot(slot);
+      program.mutable_source()->set_content("STOP\n");
+      if (slot == 45) continue;
+      program.mutable_source()->set_file_name(name);
+      program.set_units(units);
+    }
+    const auto created = book.Create(request);
+    return created ? "" : created.error.error.detail;
+  };
+  for (const std::string name : {"46.SI", "46.si", "hole.Si"}) {
+    EXPECT_EQ(asked(v1::UNITS_METRIC, name), "program 46: units are UNITS_METRIC, but the name " +
+                                                 name + " says inch: leave the units out, or " +
+                                                 "rename the file");
+    EXPECT_EQ(asked(v1::UNITS_INCH, name), "");
+    EXPECT_EQ(asked(v1::UNITS_UNSPECIFIED, name), "");
+  }
+  for (const std::string name : {"", "46.S", "SI.S", "46.CMP", "46.O"}) {
+    for (const v1::Units units : {v1::UNITS_UNSPECIFIED, v1::UNITS_METRIC, v1::UNITS_INCH})
+      EXPECT_EQ(asked(units, name), "") << name;
+  }
+  const auto change = [](v1::Project& project) {
+    v1::ProjectProgram& program = *project.add_programs();
+    program.set_slot(45);
+    program.mutable_source()->set_file_name("45.SI");
+    program.mutable_source()->set_content("STOP\n");
+    program.set_units(v1::UNITS_METRIC);
+  };
+  EXPECT_EQ(Asked(change), ErrorCode::kCellInvalidArgument);
+  v1::CreateProjectRequest kept;
+  kept.set_project_id("kept");
+  ASSERT_TRUE(book.Create(kept));
+  v1::UpdateProjectRequest update;
+  change(*update.mutable_project());
+  update.mutable_project()->set_name("projects/kept");
+  const auto updated = book.Update(update);
+  ASSERT_FALSE(updated);
+  EXPECT_EQ(updated.error.error.code, ErrorCode::kCellInvalidArgument);
+}
+
 // OPT-3.44: schedules 1 to 63, power 0 to 100 %.
 TEST_F(ProjectLimits, OfLaserSchedules) {
   const auto asked = [&](int number, const std::string& mode, double power_percent,

@@ -58,20 +58,23 @@ TEST(ResourceRoutes, Slots) {
 
 TEST(UploadRoutes, Query) {
   const ProgramContentPath path{.machine = "optimo-1", .slot = 45, .form = {}};
-  const std::string hash(64, 'A');
+  const std::string hash = "0189AFaf" + std::string(56, 'A');
   const UploadRoute route = RouteUpload(At("/", "file_name=M%C3%BChle+1.S&sha256=" + hash +
                                                     "&etag=none&validate_only=true&title=x%26y"),
                                         path);
   ASSERT_FALSE(route.refusal);
   EXPECT_EQ(route.header.file_name, "M\xC3\xBChle 1.S");
-  EXPECT_EQ(route.header.sha256, std::string(64, 'a'));
+  EXPECT_EQ(route.header.sha256, "0189afaf" + std::string(56, 'a'));
   EXPECT_EQ(route.header.etag, "none");
   EXPECT_EQ(route.header.title, "x&y");
   EXPECT_EQ(route.header.size, 12);
   EXPECT_TRUE(route.header.validate_only);
   for (const std::string& query : {std::string("sha256=12"), "sha256=" + std::string(64, 'g'),
                                    std::string("validate_only=yes"), std::string("title=%f")}) {
-    EXPECT_TRUE(RouteUpload(At("/", query), path).refusal) << query;
+    const UploadRoute refused = RouteUpload(At("/", query), path);
+    ASSERT_TRUE(refused.refusal) << query;
+    EXPECT_EQ(refused.refusal->status.code, kCodeInvalidArgument) << query;
+    EXPECT_EQ(refused.refusal->http_status, 0) << query;
   }
 }
 

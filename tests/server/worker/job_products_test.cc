@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "server/jobs/framing.h"
 #include "tests/server/worker/runner_bed.h"
 
 namespace rmlcell::server {
@@ -87,6 +88,43 @@ TEST_F(JobProducts, ACheckLooksAtTheProgramOfTheJob) {
   Work(assignment);
   EXPECT_THAT(Codes(), ElementsAre());
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
+}
+
+// report.proto, TraceRecord: numbered from 1 without a gap; times are those at which a wait ended.
+TEST_F(JobProducts, TheTraceTellsWhatHappenedInItsOrder) {
+  v1::WorkerAssignment assignment =
+      Assignment(v1::JOB_KIND_SIMULATE, "OL[20]=ON\nDELAY 1.5\nOL[20]=OFF\n");
+  assignment.mutable_job()->mutable_simulation()->set_trace(true);
+  Work(assignment);
+  const std::string bytes = Artifacts()["trace"];
+  std::string_view rest = bytes;
+  std::int64_t records = 0;
+  std::string last;
+  std::vector<std::pair<double, double>> output;  // values of output 20 and their times
+  std::vector<std::pair<double, double>> waits;   // durations, and when they ended
+  while (const auto frame = TakeFrame(rest)) {
+    v1::TraceRecord record;
+    ASSERT_TRUE(record.ParseFromArray(frame->data(), static_cast<int>(frame->size())));
+    EXPECT_EQ(record.number(), ++records);
+    if (record.kind() == "signal" && record.index() == 20)
+      output.emplace_back(record.value(), record.time_s());
+    if (record.kind() == "wait") waits.emplace_back(record.duration_s(), record.time_s());
+    last = record.kind();
+  }
+  EXPECT_EQ(rest, "");
+  EXPECT_THAT(output, ElementsAre(std::pair(1.0, 0.0), std::pair(0.0, 1.5)));
+  EXPECT_THAT(waits, ElementsAre(std::pair(1.5, 1.5)));
+  EXPECT_EQ(last, "end");
+}
+
+// framing.h: the toolpath is kept as frames, whole ones to the end.
+TEST_F(JobProducts, TheToolpathIsASeriesOfFrames) {
+  Work(Assignment(v1::JOB_KIND_SIMULATE, "PA;VS8;!MC1;PU1000,1000;Z1000,1000,-50;PU0,0;", "rml1"));
+  const std::string bytes = Artifacts()["toolpath"];
+  std::string_view rest = bytes;
+  ASSERT_TRUE(TakeFrame(rest));
+  while (TakeFrame(rest)) continue;
+  EXPECT_EQ(rest, "");
 }
 
 // Budget.output_bytes: so many bytes of output and not one more.

@@ -1,0 +1,168 @@
+// What the embedded store says where its file or its disk is not as it should be: the code of each
+// refusal, and that nothing else suffers.
+#include <gmock/gmock.h>
+#include <sqlite3.h>
+#include <sys/stat.h>
+
+#include "storage/sqlite/content_staging.h"
+#include "storage/sqlite/migrations.h"
+#include "storage/sqlite/store_files.h"
+#include "storage/sqlite/tables.h"
+#include "storage/sqlite/writer.h"
+#include "tests/storage/sqlite_bed.h"
+
+namespace rmlcell::storage::sqlite {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr auto kCorruptFile = ErrorCode::kCellStoreCorrupt;
+constexpr auto kFailedFile = ErrorCode::kCellStoreFailed;
+
+// 9104: a record whose bytes are gone is told as such in lists and by itself; others are served.
+TEST(SqliteRefusals, RecordsWithoutTheirBytes) {
+  SqliteBed bed;
+  bed.LeaveUnchecked();
+  Must(bed.store().PutMachine({.id = "m"}, 0));
+  Must(bed.store().PutPrograms("m", {{.slot = 1, .object = "gone"}, {.slot = 2, .object = "b"}},
+                               {}));
+  Must(bed.store().SubmitAndWait({.kind = "CHECK",
+                                  .attachments = {{.name = "lost", .bytes = "lost bytes"},
+                                                  {.name = "main", .bytes = "main bytes"}}}));
+  bed.Close();
+  ExecuteIn(bed.path(),
+            "DELETE FROM blob WHERE id = (SELECT object_blob FROM program WHERE slot = 1)"
+            " OR id = (SELECT blob FROM artifact WHERE name = 'lost')");
+  bed.Reopen();
+  const auto program = bed.store().GetProgramSummary("m", 1);
+  ASSERT_EQ(CodeOf(program), kCorruptFile);
+  EXPECT_THAT(program.error().detail, HasSubstr("slot 1"));
+  EXPECT_EQ(CodeOf(bed.store().ListPrograms("m", 0, 10)), kCorruptFile);
+  EXPECT_EQ(Must(bed.store().ListPrograms("m", 1, 10)).size(), 1U);
+  EXPECT_EQ(Must(bed.store().GetProgramSummary("m", 2)).object_bytes, 1);
+  const auto artifact = bed.store().GetArtifact(1, "lost");
+  ASSERT_EQ(CodeOf(artifact), kCorruptFile);
+  EXPECT_THAT(artifact.error().detail, HasSubstr("artifact lost of job 1"));
+  EXPECT_EQ(CodeOf(bed.store().ListArtifacts(1)), kCorruptFile);
+  EXPECT_EQ(Must(bed.store().GetArtifact(1, "main")).size, 10);
+}
+
+// An index that is ordered otherwise than the store compares: a list ends with an error, not in
+// circles.
+TEST(SqliteRefusals, IndexInAnotherOrder) {
+  SqliteBed bed;
+  for (const char* kind : {"a", "B"}) Must(bed.store().SubmitAndWait({.kind = kind}));
+  EXPECT_EQ(Must(bed.store().ListJobs({.limit = 10})).size(), 2U);
+  bed.Close();
+  ExecuteIn(bed.path(),
+            "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET sql ="
+            " replace(sql, 'kind TEXT NOT NULL', 'kind TEXT COLLATE NOCASE NOT NULL')"
+            " WHERE name = 'job'; PRAGMA writable_schema = RESET; REINDEX");
+  bed.Reopen();
+  const auto jobs = bed.store().ListJobs({.limit = 10});
+  ASSERT_EQ(CodeOf(jobs), kCorruptFile);
+  EXPECT_THAT(jobs.error().detail, HasSubstr("out of order"));
+  EXPECT_EQ(Must(bed.store().ListJobs({.kind = "a", .limit = 10})).size(), 1U);
+}
+
+TEST(SqliteRefusals, PathThatIsNoRegularFile) {
+  const TestDirectory directory;
+  const std::string path = directory.File("pipe");
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  const Status refused = MakePrivateFile(path);
+  ASSERT_EQ(CodeOf(refused), kFailedFile);
+  EXPECT_THAT(refused.error().detail, HasSubstr("not a regular file"));
+}
+
+// A write-ahead log needs memory that processes share; file systems without it are refused.
+TEST(SqliteRefusals, FileSystemWithoutSharedMemory) {
+  const TestDirectory directory;
+  const auto refused = OpenSqliteStore({.path = directory.File("cell.db"), .vfs = "unix-none"});
+  ASSERT_EQ(CodeOf(refused), kFailedFile);
+  EXPECT_THAT(refused.error().detail, HasSubstr("journal mode"));
+}
+
+// A connection to the file of a store that is closed.
+class SqliteAlone : public testing::Test {
+ protected:
+  SqliteAlone() { Must(OpenSqliteStore({.path = path_})).reset(); }
+  Database Open() { return Must(Database::Open(path_, Database::Access::kReadWrite, {})); }
+
+  const TestDirectory directory_;
+  const std::string path_ = directory_.File("cell.db");
+};
+
+// database.h: the first column of the first row; an error when there is none.
+TEST_F(SqliteAlone, QuestionWithoutAnAnswer) {
+  Database database = Open();
+  EXPECT_EQ(Must(database.Number("SELECT 7")), 7);
+  EXPECT_EQ(Must(database.Text("SELECT 'seven'")), "seven");
+  EXPECT_EQ(CodeOf(database.Number("SELECT id FROM job")), kCorruptFile);
+  EXPECT_EQ(CodeOf(database.Text("SELECT kind FROM job")), kCorruptFile);
+}
+
+TEST_F(SqliteAlone, CopyThatCannotBeMade) {
+  const Database database = Open();
+  const Status refused = database.CopyTo(directory_.File("none/copy"));
+  ASSERT_EQ(CodeOf(refused), kFailedFile);
+  EXPECT_THAT(refused.error().detail, HasSubstr("none/copy"));
+  EXPECT_FALSE(std::filesystem::exists(directory_.File("none")));
+}
+
+class SqliteOwnWriter : public SqliteAlone {
+ protected:
+  SqliteOwnWriter() {
+    sqlite3_commit_hook(
+        connection_.database.handle(),
+        [](void* test) {
+          static_cast<SqliteOwnWriter*>(test)->NoteCommit();
+          return 0;
+        },
+        this);
+  }
+  // Commits that changed something.
+  void NoteCommit() {
+    const std::int64_t changes = connection_.database.total_changes();
+    if (changes != changes_) ++commits_;
+    changes_ = changes;
+  }
+
+  Connection connection_{Open()};
+  std::int64_t changes_ = 0;
+  std::atomic<int> commits_ = 0;
+};
+
+constexpr Writer::Options kRoomy{.keep = {},
+                                 .waiting_operations_max = 100,
+                                 .waiting_bytes_max = std::size_t{100} << 20,
+                                 .group_window = {}};
+
+// A write that runs out of memory, or meets another mistake, fails alone, and nothing of it stays.
+TEST_F(SqliteOwnWriter, WriteThatThrows) {
+  Writer writer(connection_, {}, kRoomy, SystemTime, [] {});
+  const Status failed = writer.Do([](WriteContext& context) -> Status {
+    context.counters.queued_jobs += 1;
+    Must(context.tables.marks.Set(MarkTable::kJob, 99));
+    throw std::runtime_error("no room for it");
+  });
+  ASSERT_EQ(CodeOf(failed), ErrorCode::kCellInternal);
+  EXPECT_EQ(failed.error().detail, "no room for it");
+  EXPECT_EQ(writer.job_counts().queued, 0);
+  EXPECT_EQ(Must(writer.Do(
+                [](WriteContext& context) { return context.tables.marks.Get(MarkTable::kJob); })),
+            0);
+}
+
+// content_staging.cc: a large content goes ahead in writes of 4 MiB, so that others get their turn
+// between them, and the disk is not asked for each chunk. Noise does not shrink: 9 MiB are three
+// writes, behind the one that makes the blob.
+TEST_F(SqliteOwnWriter, LargeContentGoesAheadInWritesOf4MiB) {
+  Writer writer(connection_, {}, kRoomy, SystemTime, [] {});
+  const std::string content = Noise(std::size_t{9} << 20, 1);
+  const StagedContent staged =
+      Must(StagedContent::Make(writer, content, StagedContent::Place::kBlob));
+  EXPECT_EQ(commits_, 4);
+}
+
+}  // namespace
+}  // namespace rmlcell::storage::sqlite
