@@ -49,6 +49,68 @@ TEST(Facts, RulesOfInstructionsAreExplained) {
   }
 }
 
+// OPT-7.104, OPT-7.105, OPT-7.106: every variable by what is kept in it, place for place.
+TEST(Facts, EachVariableSaysWhatIsKeptInIt) {
+  using optimo::VariableGroup;
+  struct Row {
+    VariableGroup group;
+    int first, last;
+    std::string word;  // of what is told; empty: nothing
+  };
+  const Row rows[] = {
+      {VariableGroup::kVr, 0, 25, "customers"},
+      {VariableGroup::kVr, 26, 42, "without unit"},
+      {VariableGroup::kVr, 43, 59, "Amada"},
+      {VariableGroup::kVr, 60, 63, "WORKDEF 1,00"},
+      {VariableGroup::kVr, 64, 64, "speed 1"},
+      {VariableGroup::kVr, 65, 68, "WORKDEF 1,01"},
+      {VariableGroup::kVr, 69, 69, "speed 2"},
+      {VariableGroup::kVr, 70, 73, "WORKDEF 1,02"},
+      {VariableGroup::kVr, 74, 74, "speed 3"},
+      {VariableGroup::kVr, 75, 78, "WORKDEF 1,03"},
+      {VariableGroup::kVr, 79, 79, "speed 4"},
+      {VariableGroup::kVr, 80, 85, "TCP"},
+      {VariableGroup::kVr, 86, 91, "SYSDEF 1"},
+      {VariableGroup::kVr, 92, 97, "SYSDEF 2"},
+      {VariableGroup::kVr, 98, 99, "system"},
+      {VariableGroup::kVi, 0, 0, ""},
+      {VariableGroup::kVi, 1, 1, "chaining"},
+      {VariableGroup::kVi, 2, 69, "customers"},
+      {VariableGroup::kVi, 70, 97, "Amada"},
+      {VariableGroup::kVi, 98, 98, "runs"},
+      {VariableGroup::kVi, 99, 99, "error"},
+      {VariableGroup::kVl, 0, 79, "customers"},
+      {VariableGroup::kVl, 80, 99, "Amada"},
+      {VariableGroup::kOl, 0, 1, "system"},
+      {VariableGroup::kOl, 2, 2, "EFA-51"},
+      {VariableGroup::kOl, 3, 7, "system"},
+      {VariableGroup::kOl, 8, 9, "gas"},
+      {VariableGroup::kOl, 10, 10, "system"},
+      {VariableGroup::kOl, 11, 11, "sensor"},
+      {VariableGroup::kOl, 12, 15, "system"},
+      {VariableGroup::kOl, 16, 16, "customers"},
+      {VariableGroup::kOl, 17, 31, "system"},
+      {VariableGroup::kOl, 32, 99, ""},
+      {VariableGroup::kIl, 0, 15, "system"},
+      {VariableGroup::kIl, 16, 16, "START"},
+      {VariableGroup::kIl, 17, 31, "system"},
+      {VariableGroup::kIl, 32, 86, ""},
+      {VariableGroup::kIl, 87, 94, "process with number"},
+      {VariableGroup::kIl, 95, 95, "motion"},
+      {VariableGroup::kIl, 96, 99, "reserved"},
+  };
+  for (const Row& row : rows) {
+    for (int index = row.first; index <= row.last; ++index) {
+      const std::string note = VariableNote({row.group, static_cast<std::uint8_t>(index)});
+      if (row.word.empty()) {
+        EXPECT_EQ(note, "") << index;
+      } else {
+        EXPECT_NE(note.find(row.word), std::string::npos) << index << ": " << note;
+      }
+    }
+  }
+}
+
 TEST(Facts, AnUnknownRuleHasNoText) {
   EXPECT_EQ(TextOfRule("OPT-nonsense"), "");
   EXPECT_EQ(TextOfRule(""), "");
