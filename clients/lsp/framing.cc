@@ -1,7 +1,6 @@
 #include "clients/lsp/framing.h"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <utility>
 

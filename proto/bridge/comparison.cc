@@ -72,14 +72,14 @@ Result<std::optional<simulation::TrialRun>> Run(const ComparedProgram& program,
   message.set_override_percent(100.0);
   v1::Budget budget;
   budget.set_steps(options.steps_max);
-  SetupOutcome made =
-      *MakeSetup(input, message, budget);  // a machine as it comes: no parameter can be wrong
-  if (!made.setup) return std::optional<simulation::TrialRun>();
+  Result<SetupOutcome> made = MakeSetup(input, message, budget);
+  if (!made) return made.error();
+  if (!made->setup) return std::optional<simulation::TrialRun>();
   simulation::SimulationOptions how;
   if (options.go_on)
     how.progress = [&options](const simulation::Progress&) { return options.go_on(); };
   Result<simulation::TrialRun> run =
-      simulation::RunForComparison(*family, *std::move(made.setup), std::move(how));
+      simulation::RunForComparison(*family, *std::move(made->setup), std::move(how));
   if (!run) return run.error();
   return std::optional(*std::move(run));
 }
