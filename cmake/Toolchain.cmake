@@ -14,6 +14,7 @@ if(NOT CMAKE_BUILD_TYPE)
 endif()
 
 find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED)  # by every preset: the engine's geometry
 
 # Same bytes on every machine: no contraction, no reassociation (docs/ARCHITECTURE.md, determinism).
 add_compile_options(-ffp-contract=off)

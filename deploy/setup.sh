@@ -14,6 +14,7 @@ lld                     # links in a third of the time
 pkg-config              # finds zstd, which has no CMake file
 ca-certificates         # for package managers
 # --- libraries
+libeigen3-dev           # vectors, rotations, frames, solves (headers only)
 libgrpc++-dev           # calls and streams
 protobuf-compiler-grpc  # generates the services
 libprotobuf-dev         # messages

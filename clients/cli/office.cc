@@ -287,8 +287,7 @@ int Transform(const TransformOptions& options) {
   std::array<double, 3> move{}, turn{};
   std::ranges::copy(options.move, move.begin());
   std::ranges::copy(options.turn, turn.begin());
-  const auto motion =
-      optimo::RigidMotion::Of({move[0], move[1], move[2]}, turn[0], turn[1], turn[2]);
+  const auto motion = motion::RigidMotionOf({move[0], move[1], move[2]}, turn[0], turn[1], turn[2]);
   return Rewrite(options, [&](const std::string& text) { return optimo::Transform(text, motion); });
 }
 

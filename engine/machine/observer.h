@@ -57,11 +57,12 @@ struct MoveDone {
   Place place{};
   motion::TipPose tip{};  // machine frame; work units of a mill are in the family's figures
   motion::AxisPose axes{};
-  motion::Vec3 program_point{};  // as programmed: program frame, or device units of a stream
-  double rotary_a = 0.0;         // as programmed: rad, or degrees of a stream
-  double feed_mm_s = 0.0;        // speed limit of the motion
-  std::string_view path{};       // "LIN", "CIR", "ZERO_Z", "PU" ...
-  bool programmed = true;        // false: the machine went there by a procedure of its own
+  motion::ProgramPoint
+      program_point{};      // as programmed: program frame, or device units of a stream
+  double rotary_a = 0.0;    // as programmed: rad, or degrees of a stream
+  double feed_mm_s = 0.0;   // speed limit of the motion
+  std::string_view path{};  // "LIN", "CIR", "ZERO_Z", "PU" ...
+  bool programmed = true;   // false: the machine went there by a procedure of its own
 };
 
 // A state that outsiders can see: an output, the beam, a spindle.

@@ -10,14 +10,14 @@ namespace rmlcell::machine {
 
 // An axis-parallel box in space, mm. A new one is empty: it holds no point.
 struct Box {
-  motion::Vec3 min{kNone, kNone, kNone};
-  motion::Vec3 max{-kNone, -kNone, -kNone};
+  motion::MachinePoint min{kNone, kNone, kNone};
+  motion::MachinePoint max{-kNone, -kNone, -kNone};
 
-  bool empty() const { return min.x > max.x; }
-  double diagonal_mm() const { return empty() ? 0.0 : Distance(min, max); }
-  void Add(const motion::Vec3& p) {
-    min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
-    max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
+  bool empty() const { return min.x() > max.x(); }
+  double diagonal_mm() const { return empty() ? 0.0 : (min - max).norm(); }
+  void Add(const motion::MachinePoint& p) {
+    min = {std::min(min.x(), p.x()), std::min(min.y(), p.y()), std::min(min.z(), p.z())};
+    max = {std::max(max.x(), p.x()), std::max(max.y(), p.y()), std::max(max.z(), p.z())};
   }
   void Add(const Box& other) {
     if (other.empty()) return;
@@ -42,7 +42,7 @@ struct MachineShape {
 
   // Program zero in the machine frame, when it is one for the whole run (a mill's work origin).
   bool has_work_origin = false;
-  motion::Vec3 work_origin;
+  motion::MachinePoint work_origin;
 
   // What the machine can do: the 100 % of shares and speed classes. Nothing: not known.
   std::optional<motion::MachineLimits> limits;

@@ -69,16 +69,18 @@ AxisDerivatives Bounds(const PathPiece& path, const Head& head) {
   const double swing = arm * (a + b);
   const double whirl = arm * (a + b) * (a + b);
   AxisDerivatives q;
-  Vec3 first = path.Tangent(0.0);
-  Vec3 second;
+  MachineVector first = path.Tangent(0.0);
+  MachineVector second;
   if (path.kind() == PathPiece::Kind::kArc) {
-    const Vec3& n = path.normal();
-    first = {std::sqrt(std::max(0.0, 1.0 - n.x * n.x)), std::sqrt(std::max(0.0, 1.0 - n.y * n.y)),
-             std::sqrt(std::max(0.0, 1.0 - n.z * n.z))};
+    const MachineVector& n = path.normal();
+    first = {std::sqrt(std::max(0.0, 1.0 - n.x() * n.x())),
+             std::sqrt(std::max(0.0, 1.0 - n.y() * n.y())),
+             std::sqrt(std::max(0.0, 1.0 - n.z() * n.z()))};
     second = first * (1.0 / path.radius_mm());
   }
-  q.first = {std::abs(first.x) + swing, std::abs(first.y) + swing, std::abs(first.z) + swing, a, b};
-  q.second = {second.x + whirl, second.y + whirl, second.z + whirl, 0.0, 0.0};
+  q.first = {std::abs(first.x()) + swing, std::abs(first.y()) + swing, std::abs(first.z()) + swing,
+             a, b};
+  q.second = {second.x() + whirl, second.y() + whirl, second.z() + whirl, 0.0, 0.0};
   return q;
 }
 
@@ -96,12 +98,12 @@ AxisDerivatives DerivativesAt(const PathPiece& path, const Head& head, double s)
   const PathDerivatives first = path.First(s);
   const PathDerivatives second = path.Second(s);
   if (path.in_axes()) {
-    return {.first = {first.tip.x, first.tip.y, first.tip.z, first.a, first.b},
-            .second = {second.tip.x, second.tip.y, second.tip.z, second.a, second.b}};
+    return {.first = {first.tip.x(), first.tip.y(), first.tip.z(), first.a, first.b},
+            .second = {second.tip.x(), second.tip.y(), second.tip.z(), second.a, second.b}};
   }
   if (first.a == 0.0 && first.b == 0.0 && second.a == 0.0 && second.b == 0.0) {
-    return {.first = {first.tip.x, first.tip.y, first.tip.z, 0.0, 0.0},
-            .second = {second.tip.x, second.tip.y, second.tip.z, 0.0, 0.0}};
+    return {.first = {first.tip.x(), first.tip.y(), first.tip.z(), 0.0, 0.0},
+            .second = {second.tip.x(), second.tip.y(), second.tip.z(), 0.0, 0.0}};
   }
   return ThroughHead(head, path.At(s), first, second);
 }
@@ -139,7 +141,7 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
     const double rate = std::abs(first.a) + std::abs(first.b);
     const double half = 0.5 * path.length();
     const double drift = half * head.reach_mm() * rate * rate;
-    const double wanted = std::ceil(std::max(drift / Norm(first.tip), half * rate) / kRoom);
+    const double wanted = std::ceil(std::max(drift / first.tip.norm(), half * rate) / kRoom);
     if (wanted <= static_cast<double>(kPartsMax)) {
       const auto parts = static_cast<std::size_t>(std::max(wanted, 1.0));
       const double share = 1.0 / static_cast<double>(parts);

@@ -15,8 +15,8 @@ constexpr double kReversalHalfCosine = 0.043619387365336;  // a turn of 175 degr
 constexpr double kEqual = 1e-9;    // relative, for curvatures and rates that meet
 constexpr double kNoRate = 1e-12;  // rad/mm
 
-bool Same(const Vec3& a, const Vec3& b) {
-  return Distance(a, b) <= kEqual * std::max(Norm(a), Norm(b));
+bool Same(const MachineVector& a, const MachineVector& b) {
+  return (a - b).norm() <= kEqual * std::max(a.norm(), b.norm());
 }
 bool Same(double a, double b) {
   return std::abs(a - b) <= std::max(kEqual * std::max(std::abs(a), std::abs(b)), kNoRate);
@@ -27,8 +27,8 @@ bool Same(double a, double b) {
 void Corner::Assign(const PathPiece& before, const PathPiece& after) {
   const PathDerivatives in = before.First(before.length());
   const PathDerivatives out = after.First(0.0);
-  half_sine_ = std::min(0.5 * Distance(in.tip, out.tip), 1.0);
-  half_cosine_ = std::sqrt(std::max(0.0, 0.5 * (1.0 + Dot(in.tip, out.tip))));
+  half_sine_ = std::min(0.5 * (in.tip - out.tip).norm(), 1.0);
+  half_cosine_ = std::sqrt(std::max(0.0, 0.5 * (1.0 + in.tip.dot(out.tip))));
   lines_ = before.kind() == PathPiece::Kind::kLine && after.kind() == PathPiece::Kind::kLine;
   const bool turns = in.a != 0.0 || in.b != 0.0 || out.a != 0.0 || out.b != 0.0;
   plain_ = lines_ && !turns;
@@ -46,10 +46,10 @@ void Corner::Assign(const PathPiece& before, const PathPiece& after) {
     b_jump_ = std::abs(out.b - in.b);
   }
   if (!lines_) {
-    const Vec3 bend_in = before.Second(before.length()).tip;
-    const Vec3 bend_out = after.Second(0.0).tip;
+    const MachineVector bend_in = before.Second(before.length()).tip;
+    const MachineVector bend_out = after.Second(0.0).tip;
     smooth = Same(bend_in, bend_out);
-    curvature_jump_ = Distance(bend_in, bend_out);
+    curvature_jump_ = (bend_in - bend_out).norm();
     for (const PathPiece* piece : {&before, &after}) {
       if (piece->kind() != PathPiece::Kind::kArc) continue;
       cut_max_mm_ = std::min(cut_max_mm_, 0.5 * piece->radius_mm());
@@ -110,9 +110,10 @@ BendSpeeds Corner::PlainSpeeds(double cut, double top, const MachineLimits& mach
   return speeds;
 }
 
-double JunctionSpeed(const Vec3& tangent_in, const Vec3& tangent_out, double jump_mm_s) {
-  const Vec3 turn = tangent_out - tangent_in;
-  return jump_mm_s / std::max({std::abs(turn.x), std::abs(turn.y), std::abs(turn.z)});
+double JunctionSpeed(const MachineVector& tangent_in, const MachineVector& tangent_out,
+                     double jump_mm_s) {
+  const MachineVector turn = tangent_out - tangent_in;
+  return jump_mm_s / std::max({std::abs(turn.x()), std::abs(turn.y()), std::abs(turn.z())});
 }
 
 CurveEnd EndAt(const PathPiece& path, double s) {
@@ -154,7 +155,7 @@ double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLim
   const auto allowed = [&](double u) {
     const PathDerivatives first = curve.FirstByLength(u);
     const PathDerivatives second = curve.SecondByLength(u);
-    const double kappa = Norm(second.tip);
+    const double kappa = second.tip.norm();
     double speed = SpeedWithinAxes(ThroughHead(head, curve.At(u), first, second), machine.axes);
     if (kappa > 0.0) speed = std::min(speed, std::sqrt(normal / kappa));
     if (std::isfinite(jerk)) {
@@ -168,7 +169,7 @@ double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLim
   // Near a cusp all happens between two samples: as far about the sharpest place as the curve needs
   // to turn.
   const double sharpest = curve.SlowestPlace();
-  const double width = curve.Speed(sharpest) / Norm(curve.Derivative(sharpest, 2).tip);
+  const double width = curve.Speed(sharpest) / curve.Derivative(sharpest, 2).tip.norm();
   if (!(width * kIntervals < 4.0)) return least;
   constexpr double kWidths = 8.0;
   const double from = std::max(0.0, sharpest - kWidths * width);

@@ -85,7 +85,8 @@ class Corner {
 
 // The speed at which the direction may change from one to the other when no axis may jump by more
 // than `jump_mm_s`; infinite straight on. motion.md section 7.
-double JunctionSpeed(const Vec3& tangent_in, const Vec3& tangent_out, double jump_mm_s);
+double JunctionSpeed(const MachineVector& tangent_in, const MachineVector& tangent_out,
+                     double jump_mm_s);
 
 // The end of a piece at `s`, as a curve meets it.
 CurveEnd EndAt(const PathPiece& path, double s);

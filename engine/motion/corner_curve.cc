@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace rmlcell::motion {
 namespace {
@@ -16,8 +17,9 @@ constexpr std::array<double, 4> kWeight{0.3626837833783620, 0.3137066458778873, 
 // The quintic from p0 to p0 + h with these first and second derivatives at u = 0 and 1;
 // motion.md 4.2.
 template <class T>
-void Fit(std::array<T, 6>& c, const T& p0, const T& h, const T& v0, const T& v1, const T& c0,
-         const T& c1) {
+void Fit(std::array<T, 6>& c, const std::type_identity_t<T>& p0, const std::type_identity_t<T>& h,
+         const std::type_identity_t<T>& v0, const std::type_identity_t<T>& v1,
+         const std::type_identity_t<T>& c0, const std::type_identity_t<T>& c1) {
   c[0] = p0;
   c[1] = v0;
   c[2] = c0 * 0.5;
@@ -45,9 +47,10 @@ T Third(const std::array<T, 6>& c, double u) {
 
 }  // namespace
 
-double CornerCurve::Scale(const Vec3& tangent_in, const Vec3& tangent_out, double cut_mm) {
+double CornerCurve::Scale(const MachineVector& tangent_in, const MachineVector& tangent_out,
+                          double cut_mm) {
   // rho = 2 sqrt(cos(theta/2)) keeps the peak of curvature low at every angle.
-  const double half_cosine = std::sqrt(std::max(0.0, 0.5 * (1.0 + Dot(tangent_in, tangent_out))));
+  const double half_cosine = std::sqrt(std::max(0.0, 0.5 * (1.0 + tangent_in.dot(tangent_out))));
   return 2.0 * std::sqrt(half_cosine) * cut_mm;
 }
 
@@ -77,7 +80,7 @@ CornerCurve::CornerCurve(const PlainCorner& corner) {
   const double cut = corner.cut_mm;
   const double scale = Scale(corner.tangent_in, corner.tangent_out, cut);
   Fit(tip_, corner.at.tip - corner.tangent_in * cut, (corner.tangent_in + corner.tangent_out) * cut,
-      corner.tangent_in * scale, corner.tangent_out * scale, Vec3{}, Vec3{});
+      corner.tangent_in * scale, corner.tangent_out * scale, MachineVector{}, MachineVector{});
   a_[0] = corner.at.a_rad;
   b_[0] = corner.at.b_rad;
 }
@@ -95,7 +98,7 @@ PathDerivatives CornerCurve::Derivative(double u, int order) const {
 
 PathDerivatives CornerCurve::FirstByLength(double u) const {
   const PathDerivatives d = Derivative(u, 1);
-  const double per_mm = 1.0 / (in_axes() ? way_s_ : Norm(d.tip));
+  const double per_mm = 1.0 / (in_axes() ? way_s_ : d.tip.norm());
   return {d.tip * per_mm, d.a * per_mm, d.b * per_mm};
 }
 
@@ -106,38 +109,38 @@ PathDerivatives CornerCurve::SecondByLength(double u) const {
     const double square = 1.0 / (way_s_ * way_s_);
     return {e.tip * square, e.a * square, e.b * square};
   }
-  const double square = 1.0 / Dot(d.tip, d.tip);
-  const double along = Dot(d.tip, e.tip) * square;  // d(|p'|)/du over |p'|
+  const double square = 1.0 / d.tip.dot(d.tip);
+  const double along = d.tip.dot(e.tip) * square;  // d(|p'|)/du over |p'|
   return {(e.tip - d.tip * along) * square, (e.a - d.a * along) * square,
           (e.b - d.b * along) * square};
 }
 
 double CornerCurve::JerkPerCube(double u) const {
-  const Vec3 first = First(tip_, u);
-  const Vec3 second = Second(tip_, u);
-  const Vec3 third = Third(tip_, u);
-  const double square = Dot(first, first);
+  const MachineVector first = First(tip_, u);
+  const MachineVector second = Second(tip_, u);
+  const MachineVector third = Third(tip_, u);
+  const double square = first.dot(first);
   const double speed = std::sqrt(square);
-  const Vec3 cross = Cross(first, second);
-  const Vec3 change = Cross(first, third);
-  const double n = Norm(cross);
+  const MachineVector cross = first.cross(second);
+  const MachineVector change = first.cross(third);
+  const double n = cross.norm();
   const double kappa = n / (square * speed);
-  const double n_change = n > 0.0 ? Dot(cross, change) / n : Norm(change);
+  const double n_change = n > 0.0 ? cross.dot(change) / n : change.norm();
   const double kappa_change =
-      (n_change / (square * speed) - 3.0 * n * Dot(first, second) / (square * square * speed)) /
+      (n_change / (square * speed) - 3.0 * n * first.dot(second) / (square * square * speed)) /
       speed;
   return std::sqrt(kappa_change * kappa_change + kappa * kappa * kappa * kappa);
 }
 
 CornerCurve::Bounds CornerCurve::DerivativeBounds() const {
   // Control points of the first derivative (degree 4) and the second (degree 3).
-  const auto first = [](const auto& c) {
-    return std::array{c[1], c[1] + c[2] * 0.5, c[1] + c[2] + c[3] * 0.5,
-                      c[1] + c[2] * 1.5 + c[3] * 1.5 + c[4], First(c, 1.0)};
+  const auto first = []<class T>(const std::array<T, 6>& c) {
+    return std::array<T, 5>{c[1], c[1] + c[2] * 0.5, c[1] + c[2] + c[3] * 0.5,
+                            c[1] + c[2] * 1.5 + c[3] * 1.5 + c[4], First(c, 1.0)};
   };
-  const auto second = [](const auto& c) {
-    return std::array{c[2] * 2.0, c[2] * 2.0 + c[3] * 2.0, c[2] * 2.0 + c[3] * 4.0 + c[4] * 4.0,
-                      Second(c, 1.0)};
+  const auto second = []<class T>(const std::array<T, 6>& c) {
+    return std::array<T, 4>{c[2] * 2.0, c[2] * 2.0 + c[3] * 2.0,
+                            c[2] * 2.0 + c[3] * 4.0 + c[4] * 4.0, Second(c, 1.0)};
   };
   const auto largest = [](const auto& values) {
     double most = 0.0;
@@ -145,14 +148,14 @@ CornerCurve::Bounds CornerCurve::DerivativeBounds() const {
     return most;
   };
   Bounds bounds;
-  const std::array<Vec3, 5> tip = first(tip_);
-  const Vec3 sum = tip[0] + tip[4];  // along the bisector: both ends have the same length
-  const double along = Norm(sum);
+  const std::array<MachineVector, 5> tip = first(tip_);
+  const MachineVector sum = tip[0] + tip[4];  // along the bisector: both ends have the same length
+  const double along = sum.norm();
   double least = HUGE_VAL;
-  for (const Vec3& control : tip) least = std::min(least, Dot(control, sum));
+  for (const MachinePoint& control : tip) least = std::min(least, control.dot(sum));
   bounds.slowest = least / along;
   double square = 0.0;
-  for (const Vec3& control : second(tip_)) square = std::max(square, Dot(control, control));
+  for (const MachinePoint& control : second(tip_)) square = std::max(square, control.dot(control));
   bounds.tip_second = std::sqrt(square);
   bounds.a_first = largest(first(a_));
   bounds.b_first = largest(first(b_));
@@ -161,7 +164,7 @@ CornerCurve::Bounds CornerCurve::DerivativeBounds() const {
   return bounds;
 }
 
-double CornerCurve::Speed(double u) const { return Norm(First(tip_, u)); }
+double CornerCurve::Speed(double u) const { return First(tip_, u).norm(); }
 
 double CornerCurve::Integral(double from, double to) const {
   const double middle = 0.5 * (from + to);
@@ -187,18 +190,18 @@ double CornerCurve::SlowestPlace() const {
   }
   // Newton on d|p'|^2 / du, which has a simple root near a cusp.
   for (int step = 0; step < 8; ++step) {
-    const Vec3 first = Derivative(where, 1).tip;
-    const Vec3 second = Derivative(where, 2).tip;
-    const double slope = Dot(second, second) + Dot(first, Derivative(where, 3).tip);
+    const MachineVector first = Derivative(where, 1).tip;
+    const MachineVector second = Derivative(where, 2).tip;
+    const double slope = second.dot(second) + first.dot(Derivative(where, 3).tip);
     if (!(slope > 0.0)) break;
-    where = std::clamp(where - Dot(first, second) / slope, 0.0, 1.0);
+    where = std::clamp(where - first.dot(second) / slope, 0.0, 1.0);
   }
   return where;
 }
 
 bool CornerCurve::HasCusp(double cut_mm) const {
   constexpr double kSharpest = 574.0;  // 10 K(175 degrees), motion.md 4.2: curvature x cut
-  const double bend = Norm(SecondByLength(SlowestPlace()).tip);
+  const double bend = SecondByLength(SlowestPlace()).tip.norm();
   return !(bend * cut_mm < kSharpest);  // also when it stands still there
 }
 
@@ -262,27 +265,27 @@ double CornerLength::ParameterAt(const CornerCurve& curve, double s) const {
   return u;
 }
 
-double CornerCurve::DistanceFrom(const Vec3& point) const {
+double CornerCurve::DistanceFrom(const MachinePoint& point) const {
   constexpr int kSamples = 64;
   double best = 0.0;
   double best_square = HUGE_VAL;
   for (int k = 0; k <= kSamples; ++k) {
     const double u = static_cast<double>(k) / kSamples;
-    const Vec3 gap = Value(tip_, u) - point;
-    if (Dot(gap, gap) < best_square) {
-      best_square = Dot(gap, gap);
+    const MachineVector gap = Value(tip_, u) - point;
+    if (gap.dot(gap) < best_square) {
+      best_square = gap.dot(gap);
       best = u;
     }
   }
   // Newton on the foot point; the curve is nearly a parabola at this scale.
   for (int step = 0; step < 6; ++step) {
-    const Vec3 gap = Value(tip_, best) - point;
-    const Vec3 first = First(tip_, best);
-    const double slope = Dot(first, first) + Dot(gap, Second(tip_, best));
+    const MachineVector gap = Value(tip_, best) - point;
+    const MachineVector first = First(tip_, best);
+    const double slope = first.dot(first) + gap.dot(Second(tip_, best));
     if (!(slope > 0.0)) break;
-    best = std::clamp(best - Dot(gap, first) / slope, 0.0, 1.0);
+    best = std::clamp(best - gap.dot(first) / slope, 0.0, 1.0);
   }
-  return std::min(std::sqrt(best_square), Distance(Value(tip_, best), point));
+  return std::min(std::sqrt(best_square), (Value(tip_, best) - point).norm());
 }
 
 }  // namespace rmlcell::motion

@@ -11,15 +11,15 @@ namespace rmlcell::motion {
 // rates of the head (rad/mm).
 struct CurveEnd {
   TipPose pose;
-  Vec3 tangent;
-  Vec3 curvature;
+  MachineVector tangent;
+  MachineVector curvature;
   double a_rate = 0.0;
   double b_rate = 0.0;
 };
 
 // Derivatives of a path by its own variable.
 struct PathDerivatives {
-  Vec3 tip;
+  MachinePoint tip;
   double a = 0.0;
   double b = 0.0;
 };
@@ -28,8 +28,8 @@ struct PathDerivatives {
 // every corner is one, so motions carry this and not the coefficients.
 struct PlainCorner {
   TipPose at;
-  Vec3 tangent_in;
-  Vec3 tangent_out;
+  MachineVector tangent_in;
+  MachineVector tangent_out;
   double cut_mm = 0.0;  // the curve begins and ends this far from the corner
 
   TipPose Start() const { return {at.tip - tangent_in * cut_mm, at.a_rad, at.b_rad}; }
@@ -81,7 +81,7 @@ class CornerCurve {
   Bounds DerivativeBounds() const;
 
   // Distance of `point` from the curve, and from its nearest place.
-  double DistanceFrom(const Vec3& point) const;
+  double DistanceFrom(const MachinePoint& point) const;
 
   double Speed(double u) const;  // |dp/du|
   // Where that is least, and with it the curve sharpest.
@@ -93,12 +93,13 @@ class CornerCurve {
   double Integral(double u_from, double u_to) const;  // arc length, one panel
 
  private:
-  static double Scale(const Vec3& tangent_in, const Vec3& tangent_out, double cut_mm);
+  static double Scale(const MachineVector& tangent_in, const MachineVector& tangent_out,
+                      double cut_mm);
   void FitEnds(const CurveEnd& from, const CurveEnd& to, double scale);
   bool turns_ = false;  // the head; else only the first of a_ and b_ counts
   double way_s_ = 0.0;
   // Coefficients of u^0 .. u^5.
-  std::array<Vec3, 6> tip_{};
+  std::array<MachineVector, 6> tip_{};
   std::array<double, 6> a_{};
   std::array<double, 6> b_{};
 };

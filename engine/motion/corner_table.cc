@@ -10,8 +10,8 @@ namespace {
 
 CornerCurve PlainCurve(double half_sine, double half_cosine) {
   // A corner of cut 1 at the origin, symmetric about the Y axis.
-  const Vec3 in{half_cosine, -half_sine, 0.0};
-  const Vec3 out{half_cosine, half_sine, 0.0};
+  const MachineVector in{half_cosine, -half_sine, 0.0};
+  const MachineVector out{half_cosine, half_sine, 0.0};
   return CornerCurve({.pose = {-in}, .tangent = in, .curvature = {}},
                      {.pose = {out}, .tangent = out, .curvature = {}}, 1.0);
 }
@@ -140,7 +140,7 @@ class HalfTable {
       for (std::size_t i = 0; i < node.by_bend.size(); ++i) {
         const double way = 0.5 * length.total() * static_cast<double>(i) / HalfCorner::kSteps;
         const double u = length.ParameterAt(curve, way);
-        const double kappa = Norm(curve.SecondByLength(u).tip);
+        const double kappa = curve.SecondByLength(u).tip.norm();
         const double jerk = curve.JerkPerCube(u);
         node.by_bend[i] = static_cast<float>(std::min(std::sqrt(bend / kappa), kMost));
         node.by_jerk[i] = static_cast<float>(std::min(std::cbrt(bend / jerk), kMost));
@@ -222,8 +222,8 @@ HalfCorner CornerHalf(double half_sine, double half_cosine) {
 double CornerArcLength(double rho) { return LengthTable::Get().At(rho); }
 
 PlainMeasure::PlainMeasure(const PlainCorner& corner) {
-  const Vec3 turn = corner.tangent_out - corner.tangent_in;
-  const double half_sine_square = 0.25 * Dot(turn, turn);
+  const MachineVector turn = corner.tangent_out - corner.tangent_in;
+  const double half_sine_square = 0.25 * turn.dot(turn);
   known_ = half_sine_square <= MeasureTable::kSquareMax;
   if (known_) coefficients_ = MeasureTable::Get().At(half_sine_square);
 }

@@ -12,7 +12,9 @@ constexpr double kNormalPointTooClose_mm = 1e-6;
 constexpr double kOnAxis_mm = 1e-6;
 constexpr double kNearlyParallel = 0.9;  // cosine between the hole axis and the program's X axis
 
-Vec3 InPlane(const Vec3& v, const Vec3& normal) { return v - normal * Dot(v, normal); }
+MachineVector InPlane(const MachineVector& v, const MachineVector& normal) {
+  return v - normal * v.dot(normal);
+}
 
 }  // namespace
 
@@ -20,25 +22,25 @@ Result<HolePath> HoleThrough(const HoleCommand& hole) {
   if (!(hole.radius_mm > 0.0)) {
     return Error{ErrorCode::kHoleRadiusZero, "radius is " + ShortestText(hole.radius_mm), {}};
   }
-  const Vec3 axis = hole.normal_point - hole.centre.tip;
-  const double axis_length = Norm(axis);
+  const MachineVector axis = hole.normal_point - hole.centre.tip;
+  const double axis_length = axis.norm();
   if (!(axis_length > kNormalPointTooClose_mm)) {
     return Error{ErrorCode::kHoleNormalUndefined, "the normal point is the centre", {}};
   }
-  const Vec3 normal = axis * (1.0 / axis_length);
+  const MachineVector normal = axis * (1.0 / axis_length);
 
   HolePath path;
-  Vec3 outward = InPlane(hole.from.tip - hole.centre.tip, normal);
-  path.starts_on_axis = Norm(outward) <= kOnAxis_mm;
+  MachineVector outward = InPlane(hole.from.tip - hole.centre.tip, normal);
+  path.starts_on_axis = outward.norm() <= kOnAxis_mm;
   if (path.starts_on_axis) {
-    const bool along_x = std::abs(Dot(normal, hole.program_x)) > kNearlyParallel;
+    const bool along_x = std::abs(normal.dot(hole.program_x)) > kNearlyParallel;
     outward = InPlane(along_x ? hole.program_y : hole.program_x, normal);
   }
-  outward = outward * (1.0 / Norm(outward));
-  const Vec3 entry = hole.centre.tip + outward * hole.radius_mm;
+  outward = outward * (1.0 / outward.norm());
+  const MachineVector entry = hole.centre.tip + outward * hole.radius_mm;
 
   TipPose at_entry{entry, hole.centre.a_rad, hole.centre.b_rad};
-  if (Distance(hole.from.tip, entry) <= kTipLengthZero_mm) {
+  if ((hole.from.tip - entry).norm() <= kTipLengthZero_mm) {
     at_entry.a_rad = hole.from.a_rad;  // the head turns over the circle instead, OPT-2.32
     at_entry.b_rad = hole.from.b_rad;
   } else {

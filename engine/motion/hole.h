@@ -8,11 +8,12 @@ namespace rmlcell::motion {
 struct HoleCommand {
   TipPose from;
   TipPose centre;  // its angles are those of the circle
-  Vec3
+  MachineVector
       normal_point;  // the circle runs counter-clockwise seen from here; its distance has no effect
   double radius_mm = 0.0;
-  Vec3 program_x{1.0, 0.0, 0.0};  // axes of the program frame: where a start on the axis enters
-  Vec3 program_y{0.0, 1.0, 0.0};
+  ProgramVector program_x{1.0, 0.0,
+                          0.0};  // axes of the program frame: where a start on the axis enters
+  ProgramVector program_y{0.0, 1.0, 0.0};
 };
 
 // A hole as two motions: the lead ends at rest without settling, the circle ends where it began.

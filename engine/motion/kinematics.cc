@@ -9,7 +9,8 @@
 namespace rmlcell::motion {
 namespace {
 
-// The vector from the tip to the column in the machine frame, and its derivatives by A and B.
+// The vector from the tip to the column in the machine frame, w(A, B) = Rz(A) Rx(B) r, and its
+// derivatives.
 struct HeadVector {
   double sin_a, cos_a;
   double x;     // r_x
@@ -24,16 +25,22 @@ struct HeadVector {
     m = y * cos_b - z * sin_b;
     n = y * sin_b + z * cos_b;
   }
-  Vec3 Value() const { return {x * cos_a - m * sin_a, x * sin_a + m * cos_a, n}; }
-  Vec3 ByA() const { return {-x * sin_a - m * cos_a, x * cos_a - m * sin_a, 0.0}; }
-  Vec3 ByB() const { return {n * sin_a, -n * cos_a, m}; }
-  Vec3 ByAA() const { return {m * sin_a - x * cos_a, -x * sin_a - m * cos_a, 0.0}; }
-  Vec3 ByAB() const { return {n * cos_a, n * sin_a, 0.0}; }
-  Vec3 ByBB() const { return {m * sin_a, -m * cos_a, -n}; }
+  MachineVector Value() const { return {x * cos_a - m * sin_a, x * sin_a + m * cos_a, n}; }
+  // Its columns: by A and by B.
+  Eigen::Matrix<double, 3, 2> Jacobian() const {
+    Eigen::Matrix<double, 3, 2> by;
+    by << -x * sin_a - m * cos_a, n * sin_a,  //
+        x * cos_a - m * sin_a, -n * cos_a,    //
+        0.0, m;
+    return by;
+  }
+  MachineVector ByAA() const { return {m * sin_a - x * cos_a, -x * sin_a - m * cos_a, 0.0}; }
+  MachineVector ByAB() const { return {n * cos_a, n * sin_a, 0.0}; }
+  MachineVector ByBB() const { return {m * sin_a, -m * cos_a, -n}; }
 };
 
-AxisValues Together(const Vec3& column, double a, double b) {
-  return {column.x, column.y, column.z, a, b};
+AxisValues Together(const MachinePoint& column, double a, double b) {
+  return {column.x(), column.y(), column.z(), a, b};
 }
 
 // The angle that differs from `angle` by whole turns and is nearest to `near`.
@@ -73,10 +80,10 @@ void ForEachRangePoint(const PathPiece& path, Look look) {
 
   // Where the circle is farthest along X, Y and Z: tangent(x) = t cos x + c sin x has no such
   // component.
-  const Vec3 t = path.Tangent(0.0);
-  const Vec3 c = path.Curvature(0.0) * path.radius_mm();
+  const MachineVector t = path.Tangent(0.0);
+  const MachineVector c = path.Curvature(0.0) * path.radius_mm();
   for (const auto& [along, inward] :
-       {std::pair{t.x, c.x}, std::pair{t.y, c.y}, std::pair{t.z, c.z}}) {
+       {std::pair{t.x(), c.x()}, std::pair{t.y(), c.y()}, std::pair{t.z(), c.z()}}) {
     double angle = std::atan2(-along, inward);
     if (angle < 0.0) angle += kPi;
     for (; angle < path.sweep_rad(); angle += kPi) look(angle * path.radius_mm());
@@ -85,40 +92,31 @@ void ForEachRangePoint(const PathPiece& path, Look look) {
 
 }  // namespace
 
-ToolAxes AxesOfTool(double a_rad, double b_rad) {
-  const double sin_a = std::sin(a_rad);
-  const double cos_a = std::cos(a_rad);
-  const double sin_b = std::sin(b_rad);
-  const double cos_b = std::cos(b_rad);
-  return {.x = {cos_a, sin_a, 0.0},
-          .y = {-sin_a * cos_b, cos_a * cos_b, sin_b},
-          .u = {sin_a * sin_b, -cos_a * sin_b, cos_b}};
-}
-
-Vec3 GantryHead::Offset(double a_rad, double b_rad) const {
+MachineVector GantryHead::Offset(double a_rad, double b_rad) const {
   return HeadVector(*this, a_rad, b_rad).Value();
 }
 
 Swing GantryHead::SwingOf(double a_rad, double b_rad, const TipRates& first,
                           const TipRates& second) const {
   const HeadVector w(*this, a_rad, b_rad);
-  const Vec3 by_a = w.ByA();
-  const Vec3 by_b = w.ByB();
-  return {.first = by_a * first.a + by_b * first.b,
-          .second = by_a * second.a + by_b * second.b + w.ByAA() * (first.a * first.a) +
+  const Eigen::Matrix<double, 3, 2> by = w.Jacobian();
+  return {.first = by * Eigen::Vector2d(first.a, first.b),
+          .second = by * Eigen::Vector2d(second.a, second.b) + w.ByAA() * (first.a * first.a) +
                     w.ByAB() * (2.0 * first.a * first.b) + w.ByBB() * (first.b * first.b)};
 }
 
-double GantryHead::reach_mm() const { return Norm({tool.x_mm, tool.y_mm, length_mm - tool.z_mm}); }
+double GantryHead::reach_mm() const {
+  return MachineVector(tool.x_mm, tool.y_mm, length_mm - tool.z_mm).norm();
+}
 
 AxisPose Head::ColumnOf(const TipPose& pose) const {
-  const Vec3 offset =
+  const MachineVector offset =
       std::visit([&](const auto& head) { return head.Offset(pose.a_rad, pose.b_rad); }, kind_);
   return {pose.tip + offset, pose.a_rad, pose.b_rad};
 }
 
 TipPose Head::TipOf(const AxisPose& pose) const {
-  const Vec3 offset =
+  const MachineVector offset =
       std::visit([&](const auto& head) { return head.Offset(pose.a_rad, pose.b_rad); }, kind_);
   return {pose.column - offset, pose.a_rad, pose.b_rad};
 }
@@ -140,11 +138,11 @@ BothAxisRates Head::RatesOfBoth(double a_rad, double b_rad, const TipRates& firs
           Together(second.tip + swing.second, second.a, second.b)};
 }
 
-HeadAngles AnglesOf(const Vec3& u, const HeadAngles& near) {
-  const double across = std::hypot(u.x, u.y);
-  const double b = std::atan2(across, u.z);
+HeadAngles AnglesOf(const MachineVector& u, const HeadAngles& near) {
+  const double across = std::hypot(u.x(), u.y());
+  const double b = std::atan2(across, u.z());
   if (across < kAlongZ) return {near.a_rad, b};
-  const double a = std::atan2(u.x, -u.y);
+  const double a = std::atan2(u.x(), -u.y());
   const HeadAngles first{NearestTurn(a, near.a_rad), b};
   const HeadAngles twin{NearestTurn(a + kPi, near.a_rad), -b};
   const auto distance = [&near](const HeadAngles& angles) {
@@ -154,10 +152,6 @@ HeadAngles AnglesOf(const Vec3& u, const HeadAngles& near) {
 }
 
 AxisPose Jogged(const AxisPose& from, const Head& head, const Jog& jog) {
-  const auto step = [&jog](Vec3 column) {
-    (jog.axis == 0 ? column.x : jog.axis == 1 ? column.y : column.z) += jog.distance;
-    return column;
-  };
   AxisPose to = from;
   if (jog.axis >= 3) {
     TipPose held = head.TipOf(from);
@@ -168,35 +162,13 @@ AxisPose Jogged(const AxisPose& from, const Head& head, const Jog& jog) {
     return to;
   }
   if (jog.mode != JogMode::kTool) {
-    to.column = step(from.column);
+    to.column[jog.axis] += jog.distance;
     return to;
   }
-  const ToolAxes axes = AxesOfTool(from.a_rad, from.b_rad);
   const double sign = jog.tool_z_down && jog.axis > 0 ? -1.0 : 1.0;
-  const Vec3& direction = jog.axis == 0 ? axes.x : jog.axis == 1 ? axes.y : axes.u;
+  const MachineVector direction = ToolRotation(from.a_rad, from.b_rad).col(jog.axis);
   to.column = from.column + direction * (sign * jog.distance);
   return to;
-}
-
-WorkOffset::WorkOffset(const Vec3& translation, double rz_rad, double ry_rad, double rx_rad)
-    : translation_(translation) {
-  const double cz = std::cos(rz_rad), sz = std::sin(rz_rad);
-  const double cy = std::cos(ry_rad), sy = std::sin(ry_rad);
-  const double cx = std::cos(rx_rad), sx = std::sin(rx_rad);
-  x_ = {cz * cy, sz * cy, -sy};
-  y_ = {cz * sy * sx - sz * cx, sz * sy * sx + cz * cx, cy * sx};
-  z_ = {cz * sy * cx + sz * sx, sz * sy * cx - cz * sx, cy * cx};
-}
-
-Vec3 WorkOffset::DirectionToMachine(const Vec3& d) const { return x_ * d.x + y_ * d.y + z_ * d.z; }
-
-Vec3 WorkOffset::ToMachine(const Vec3& program_point) const {
-  return translation_ + DirectionToMachine(program_point);
-}
-
-Vec3 WorkOffset::ToProgram(const Vec3& machine_point) const {
-  const Vec3 p = machine_point - translation_;
-  return {Dot(x_, p), Dot(y_, p), Dot(z_, p)};
 }
 
 TravelExcess WorstExcess(const AxisPose& pose, const AxisLimits& limits) {

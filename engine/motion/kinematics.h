@@ -3,6 +3,7 @@
 #include <array>
 #include <variant>
 
+#include "engine/motion/geometry/frames.h"
 #include "engine/motion/path.h"
 
 namespace rmlcell::motion {
@@ -10,15 +11,12 @@ namespace rmlcell::motion {
 // Column position (crossing of the A and B axes) and head angles: what the five axes of the gantry
 // do.
 struct AxisPose {
-  Vec3 column;
+  MachinePoint column;
   double a_rad = 0.0;
   double b_rad = 0.0;
 
   bool operator==(const AxisPose&) const = default;
 };
-
-inline constexpr int kAxisCount = 5;  // X Y Z A B
-using AxisValues = std::array<double, kAxisCount>;
 
 // Speed, acceleration, jerk and travel of each axis: mm and rad.
 struct AxisLimits {
@@ -28,14 +26,6 @@ struct AxisLimits {
   AxisValues travel_min{};
   AxisValues travel_max{};
 };
-
-// R(A,B) = Rz(A) Rx(B); columns are the tool axes in the machine frame. motion.md 2.1.
-struct ToolAxes {
-  Vec3 x;
-  Vec3 y;
-  Vec3 u;  // from the tip towards the head
-};
-ToolAxes AxesOfTool(double a_rad, double b_rad);
 
 // Tool offset of TCP: tool coordinates, Z towards the lens. motion.md 2.2.
 struct ToolOffset {
@@ -48,7 +38,7 @@ struct ToolOffset {
 
 // How the tip and the head angles change, by time or by path length.
 struct TipRates {
-  Vec3 tip;
+  MachinePoint tip;
   double a = 0.0;
   double b = 0.0;
 };
@@ -60,8 +50,8 @@ struct BothAxisRates {
 
 // What the column does beyond the tip while the head turns: first and second rates.
 struct Swing {
-  Vec3 first;
-  Vec3 second;
+  MachineVector first;
+  MachineVector second;
 };
 
 // Where the column stands off the tip, and how that changes when the head turns: all that one
@@ -73,7 +63,7 @@ struct GantryHead {
   double length_mm = 300.0;
   ToolOffset tool{};
 
-  Vec3 Offset(double a_rad, double b_rad) const;
+  MachineVector Offset(double a_rad, double b_rad) const;
   // motion.md 2.4
   Swing SwingOf(double a_rad, double b_rad, const TipRates& first, const TipRates& second) const;
   // The farthest that the column ever stands off: bounds of the above.
@@ -85,7 +75,7 @@ struct GantryHead {
 // A mill: the axes X Y Z are where the tip is. Its rotary axis, when it has one, turns the work: A.
 // motion.md section 7.
 struct MillHead {
-  Vec3 Offset(double, double) const { return {}; }
+  MachineVector Offset(double, double) const { return {}; }
   Swing SwingOf(double, double, const TipRates&, const TipRates&) const { return {}; }
   double reach_mm() const { return 0.0; }
 
@@ -124,7 +114,7 @@ struct HeadAngles {
   double a_rad = 0.0;
   double b_rad = 0.0;
 };
-HeadAngles AnglesOf(const Vec3& u, const HeadAngles& near);
+HeadAngles AnglesOf(const MachineVector& u, const HeadAngles& near);
 
 // Jog by a distance (mm or rad) along one axis, 0..4 for X Y Z A B. motion.md section 6.
 // kRobot: one axis alone. kAbsolute: A or B with the tip held. kTool: X Y Z along the tool axes.
@@ -136,24 +126,6 @@ struct Jog {
   bool tool_z_down = false;  // TCP with Z0 < Z1: Z (and with it Y) reversed, motion.md 2.2
 };
 AxisPose Jogged(const AxisPose& from, const Head& head, const Jog& jog);
-
-// SYSDEF: p_machine = T + Rz(c) Ry(b) Rx(a) p_program. Angles stay those of the machine.
-// motion.md 2.3.
-class WorkOffset {
- public:
-  WorkOffset() = default;  // identity
-  WorkOffset(const Vec3& translation, double rz_rad, double ry_rad, double rx_rad);
-
-  Vec3 ToMachine(const Vec3& program_point) const;
-  Vec3 ToProgram(const Vec3& machine_point) const;
-  Vec3 DirectionToMachine(const Vec3& program_direction) const;
-
- private:
-  Vec3 translation_;
-  Vec3 x_{1.0, 0.0, 0.0};  // columns of the rotation
-  Vec3 y_{0.0, 1.0, 0.0};
-  Vec3 z_{0.0, 0.0, 1.0};
-};
 
 // By how much, in mm or rad, an axis of `pose` leaves its travel; 0 when it does not. OPT-B.08.
 struct TravelExcess {

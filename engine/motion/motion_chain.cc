@@ -19,7 +19,7 @@ bool Equal(const PathLimits& a, const PathLimits& b) {
 
 bool Contiguous(const TipPose& a, const TipPose& b) {
   return a.a_rad == b.a_rad && a.b_rad == b.b_rad &&
-         (a.tip == b.tip || Distance(a.tip, b.tip) <= kContiguous_mm);
+         (a.tip == b.tip || (a.tip - b.tip).norm() <= kContiguous_mm);
 }
 
 bool AxesKeepUp(const MachineLimits& machine) {

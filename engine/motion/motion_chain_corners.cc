@@ -22,8 +22,8 @@ double TipDistance(const CornerCurve& curve, const Head& head, const TipPose& ta
     return head.TipOf({axes.tip, axes.a_rad, axes.b_rad}).tip;
   };
   constexpr int kIntervals = 32;
-  const Vec3 tip = tip_of(target);
-  return LeastAlong([&](double u) { return Distance(tip_of(curve.At(u)), tip); }, 1.0, kIntervals);
+  const MachinePoint tip = tip_of(target);
+  return LeastAlong([&](double u) { return (tip_of(curve.At(u)) - tip).norm(); }, 1.0, kIntervals);
 }
 
 }  // namespace

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kCollinear_mm = kArcPointTolerance_mm;
 
-bool IsFinite(const Vec3& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+bool IsFinite(const MachinePoint& p) {
+  return std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z());
 }
 
 }  // namespace
@@ -20,7 +20,7 @@ PathPiece PathPiece::Line(const TipPose& from, const TipPose& to) {
   PathPiece piece;
   piece.from_ = from;
   piece.to_ = to;
-  const double distance = Distance(from.tip, to.tip);
+  const double distance = (from.tip - to.tip).norm();
   if (distance > kTipLengthZero_mm) {
     piece.kind_ = Kind::kLine;
     piece.length_ = distance;
@@ -45,12 +45,12 @@ PathPiece PathPiece::Joint(const TipPose& from, const TipPose& to) {
   return piece;
 }
 
-Result<PathPiece::Arc3> PathPiece::ArcThrough(const TipPose& from, const Vec3& via,
+Result<PathPiece::Arc3> PathPiece::ArcThrough(const TipPose& from, const MachinePoint& via,
                                               const TipPose& to) {
-  const Vec3 a = via - from.tip;
-  const Vec3 b = to.tip - from.tip;
-  const double chord = Norm(b);
-  const double to_via = Norm(a);
+  const MachineVector a = via - from.tip;
+  const MachineVector b = to.tip - from.tip;
+  const double chord = b.norm();
+  const double to_via = a.norm();
   if (!std::isfinite(chord) || !std::isfinite(to_via) || !IsFinite(from.tip)) {
     return Error{ErrorCode::kArcUndefined, "a coordinate is not a number", {}};
   }
@@ -60,24 +60,24 @@ Result<PathPiece::Arc3> PathPiece::ArcThrough(const TipPose& from, const Vec3& v
     }
     return Arc3{ArcCase::kNoTipMotion, Line(from, to)};
   }
-  if (to_via <= kArcPointTolerance_mm || Distance(via, to.tip) <= kArcPointTolerance_mm) {
+  if (to_via <= kArcPointTolerance_mm || (via - to.tip).norm() <= kArcPointTolerance_mm) {
     return Arc3{ArcCase::kLineWarned, Line(from, to)};
   }
   // In the plane of the three points, with the chord as abscissa: the via point lies at (along,
   // -height) and the centre at (chord / 2, rise). Both ends are equally far from it by
   // construction, so the arc ends at the target however large the radius; motion.md 3.2 gives the
   // same circle.
-  const Vec3 chord_unit = b * (1.0 / chord);
-  const double along = Dot(a, chord_unit);
-  const Vec3 offset = a - chord_unit * along;
-  const double height = Norm(offset);
+  const MachineVector chord_unit = b * (1.0 / chord);
+  const double along = a.dot(chord_unit);
+  const MachineVector offset = a - chord_unit * along;
+  const double height = offset.norm();
   if (height <= kCollinear_mm) {
     if (along > 0.0 && along < chord) return Arc3{ArcCase::kLineWarned, Line(from, to)};
     return Error{ErrorCode::kArcUndefined,
                  "the via point is on the line through start and target, outside them",
                  {}};
   }
-  const Vec3 up = offset * (-1.0 / height);
+  const MachineVector up = offset * (-1.0 / height);
   const double rise = (along * (chord - along) - height * height) / (2.0 * height);
   const double radius = std::hypot(0.5 * chord, rise);
   const double sine = 0.5 * chord / radius;  // of half the sweep
@@ -90,7 +90,7 @@ Result<PathPiece::Arc3> PathPiece::ArcThrough(const TipPose& from, const Vec3& v
   piece.to_ = to;
   piece.tangent_ = chord_unit * cosine - up * sine;
   const ArcShape shape{.centre = from.tip + chord_unit * (0.5 * chord) + up * rise,
-                       .normal = Cross(chord_unit, up),
+                       .normal = chord_unit.cross(up),
                        .inward = chord_unit * sine + up * cosine,
                        .radius_mm = radius,
                        .sweep_rad = 2.0 * std::atan2(0.5 * chord, rise)};
@@ -99,10 +99,11 @@ Result<PathPiece::Arc3> PathPiece::ArcThrough(const TipPose& from, const Vec3& v
   return arc;
 }
 
-PathPiece PathPiece::Circle(const TipPose& from, const Vec3& centre, const Vec3& normal,
-                            double sweep_rad, double a_to_rad, double b_to_rad) {
-  const Vec3 inward = centre - from.tip;
-  const double radius = Norm(inward);
+PathPiece PathPiece::Circle(const TipPose& from, const MachinePoint& centre,
+                            const MachineVector& normal, double sweep_rad, double a_to_rad,
+                            double b_to_rad) {
+  const MachineVector inward = centre - from.tip;
+  const double radius = inward.norm();
   const ArcShape shape{.centre = centre,
                        .normal = normal,
                        .inward = inward * (1.0 / radius),
@@ -113,7 +114,7 @@ PathPiece PathPiece::Circle(const TipPose& from, const Vec3& centre, const Vec3&
   piece.length_ = radius * sweep_rad;
   piece.from_ = from;
   piece.to_ = {from.tip, a_to_rad, b_to_rad};
-  piece.tangent_ = Cross(shape.inward, normal);
+  piece.tangent_ = shape.inward.cross(normal);
   piece.shape_ = shape;
   if (sweep_rad != kTurn) piece.to_.tip = piece.ArcPoint(sweep_rad);
   return piece;
@@ -149,7 +150,7 @@ void PathPiece::AssignPartOffLine(const PathPiece& whole, double s_from, double 
 
 double PathPiece::tip_length_mm() const { return by_sigma() ? 0.0 : length_; }
 
-Vec3 PathPiece::ArcPoint(double angle) const {
+MachineVector PathPiece::ArcPoint(double angle) const {
   // From the start point, not from the centre: a radius of 1e8 mm then costs no digits.
   const double half_sine = std::sin(0.5 * angle);
   const double radius = arc().radius_mm;
@@ -174,7 +175,7 @@ PathDerivatives PathPiece::FirstOffLine(double s) const {
     const BlendCurve blend(*this);
     return blend.curve().FirstByLength(blend.ParameterAt(s));
   }
-  Vec3 tip = length_ > 0.0 ? (to_.tip - from_.tip) * (1.0 / length_) : Vec3{};
+  MachinePoint tip = length_ > 0.0 ? (to_.tip - from_.tip) * (1.0 / length_) : MachineVector{};
   if (kind_ == Kind::kArc) {
     const double angle = s / radius_mm();
     tip = tangent_ * std::cos(angle) + arc().inward * std::sin(angle);

@@ -49,12 +49,13 @@ class PathPiece {
   enum class ArcCase { kArc, kLine, kLineWarned, kNoTipMotion };
   struct Arc3;
   // Errors: ArcUndefined (7305) when no single circle goes through the three points.
-  static Result<Arc3> ArcThrough(const TipPose& from, const Vec3& via, const TipPose& to);
+  static Result<Arc3> ArcThrough(const TipPose& from, const MachinePoint& via, const TipPose& to);
 
   // A turn of `sweep_rad` about `normal` (unit) through `from`; right-handed, sweep above 0.
   // `centre` is the foot of `from` on the axis; a sweep of one turn ends exactly where it began.
-  static PathPiece Circle(const TipPose& from, const Vec3& centre, const Vec3& normal,
-                          double sweep_rad, double a_to_rad, double b_to_rad);
+  static PathPiece Circle(const TipPose& from, const MachinePoint& centre,
+                          const MachineVector& normal, double sweep_rad, double a_to_rad,
+                          double b_to_rad);
 
   // To stand at the place `s`: length 0.
   PathPiece Standing(double s) const {
@@ -131,8 +132,10 @@ class PathPiece {
     return kind_ == Kind::kLine ? PathDerivatives{tangent_, a_rate(), b_rate()} : FirstOffLine(s);
   }
   PathDerivatives Second(double s) const;
-  Vec3 Tangent(double s) const { return kind_ == Kind::kLine ? tangent_ : FirstOffLine(s).tip; }
-  Vec3 Curvature(double s) const { return Second(s).tip; }
+  [[gnu::always_inline]] MachineVector Tangent(double s) const {
+    return kind_ == Kind::kLine ? tangent_ : FirstOffLine(s).tip;
+  }
+  MachineVector Curvature(double s) const { return Second(s).tip; }
 
   // The same places by u for kBlend pieces, whose s must be turned into u first: see CornerLength.
   double curve_start() const {
@@ -141,8 +144,8 @@ class PathPiece {
   }
 
   // Arcs only.
-  const Vec3& centre() const { return arc().centre; }
-  const Vec3& normal() const { return arc().normal; }
+  const MachineVector& centre() const { return arc().centre; }
+  const MachineVector& normal() const { return arc().normal; }
   double radius_mm() const { return arc().radius_mm; }
   double sweep_rad() const { return arc().sweep_rad; }
 
@@ -155,9 +158,9 @@ class PathPiece {
 
  private:
   struct ArcShape {
-    Vec3 centre;
-    Vec3 normal;
-    Vec3 inward;  // unit vector from the start to the centre
+    MachinePoint centre;
+    MachineVector normal;
+    MachineVector inward;  // unit vector from the start to the centre
     double radius_mm = 0.0;
     double sweep_rad = 0.0;
   };
@@ -173,7 +176,7 @@ class PathPiece {
     to_ = to;
   }
   void AssignShape(const PathPiece& other);
-  Vec3 ArcPoint(double angle) const;
+  MachinePoint ArcPoint(double angle) const;
   PathDerivatives FirstOffLine(double s) const;
   TipPose OnLine(double s) const {
     if (!(s > 0.0)) return from_;
@@ -193,7 +196,7 @@ class PathPiece {
   double length_ = 0.0;
   TipPose from_;
   TipPose to_;
-  Vec3 tangent_;  // lines and arcs: unit tangent at the start
+  MachineVector tangent_;  // lines and arcs: unit tangent at the start
   // Of arcs and blends. Other kinds may hold what the piece was before.
   std::variant<std::monostate, ArcShape, CurvePart, PlainPart> shape_;
 };

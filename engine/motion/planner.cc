@@ -15,8 +15,8 @@ constexpr double kAccelerationFractionMin = 0.001;
 // Lengths in mm or angles in rad that no machine can have would only overflow later.
 bool IsUsable(double value) { return std::abs(value) <= kLargest; }
 bool IsUsable(const TipPose& pose) {
-  return std::abs(pose.tip.x) + std::abs(pose.tip.y) + std::abs(pose.tip.z) + std::abs(pose.a_rad) +
-             std::abs(pose.b_rad) <=
+  return std::abs(pose.tip.x()) + std::abs(pose.tip.y()) + std::abs(pose.tip.z()) +
+             std::abs(pose.a_rad) + std::abs(pose.b_rad) <=
          kLargest;
 }
 
@@ -34,7 +34,7 @@ bool NeedsAnchor(const PathPiece& path, const TipPose* end) {
   if (end == nullptr) return false;
   const bool straight = path.kind() == PathPiece::Kind::kLine ||
                         path.kind() == PathPiece::Kind::kRotary || !(path.length() > 0.0);
-  return straight && Distance(end->tip, path.from().tip) <= kGap_mm &&
+  return straight && (end->tip - path.from().tip).norm() <= kGap_mm &&
          end->a_rad == path.from().a_rad && end->b_rad == path.from().b_rad;
 }
 

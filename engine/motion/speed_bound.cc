@@ -43,8 +43,8 @@ SpeedBound TightestBound(const PathPiece& path, const Head& head, const MachineL
   for (int k = 0; k <= intervals; ++k) {
     const double s = path.length() * k / intervals;
     if (arc) {  // what the bend takes of the axes by itself; with a steady head all that is taken
-      const Vec3 bend = path.Second(s).tip;
-      for (const auto& [axis, value] : {std::pair{0, bend.x}, {1, bend.y}, {2, bend.z}}) {
+      const MachineVector bend = path.Second(s).tip;
+      for (const auto& [axis, value] : {std::pair{0, bend.x()}, {1, bend.y()}, {2, bend.z()}}) {
         if (value == 0.0) continue;
         const double acceleration = machine.axes.acceleration[static_cast<std::size_t>(axis)];
         keep(SpeedBound::Cause::kRadius, -1,

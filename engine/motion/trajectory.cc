@@ -14,21 +14,22 @@ PathDerivatives Sum(const PathDerivatives& x, const PathDerivatives& y) {
   return {x.tip + y.tip, x.a + y.a, x.b + y.b};
 }
 
-Vec3 ColumnPart(const AxisValues& values) { return {values[0], values[1], values[2]}; }
-AxisValues Values(const Vec3& column, double a, double b) {
-  return {column.x, column.y, column.z, a, b};
+MachineVector ColumnPart(const AxisValues& values) { return {values[0], values[1], values[2]}; }
+AxisValues Values(const MachinePoint& column, double a, double b) {
+  return {column.x(), column.y(), column.z(), a, b};
 }
 
 constexpr int kHalvingsMax = 12;  // of a blend: 4096 chords
 constexpr int kChordsMax = 1 << 20;
 
 // Halves [u0, u1] until the middle of each chord is near enough.
-void Halve(const CornerCurve& curve, double u0, double u1, const Vec3& p0, const Vec3& p1,
-           double tolerance_mm, int depth, std::vector<Vec3>& points) {
+void Halve(const CornerCurve& curve, double u0, double u1, const MachinePoint& p0,
+           const MachinePoint& p1, double tolerance_mm, int depth,
+           std::vector<MachinePoint>& points) {
   const double middle = 0.5 * (u0 + u1);
-  const Vec3 on_curve = curve.At(middle).tip;
+  const MachinePoint on_curve = curve.At(middle).tip;
   // The first cut is always made: an S would hide behind its own chord.
-  const bool near = Distance(on_curve, (p0 + p1) * 0.5) <= tolerance_mm;
+  const bool near = (on_curve - ((p0 + p1) * 0.5)).norm() <= tolerance_mm;
   if (depth >= kHalvingsMax || (near && depth > 1)) {
     points.push_back(p1);
     return;
@@ -55,8 +56,8 @@ TrajectoryPoint PointAt(const PathPlace& place, const Head& head, const PathStat
   const TipRates turning_more{{}, acceleration.a, acceleration.b};
   // What the head's turning adds to the column over the tip.
   const BothAxisRates by_turning = head.RatesOfBoth(pose.a_rad, pose.b_rad, turning, turning_more);
-  const Vec3 swing = ColumnPart(by_turning.first);
-  const Vec3 whirl = ColumnPart(by_turning.second);
+  const MachineVector swing = ColumnPart(by_turning.first);
+  const MachineVector whirl = ColumnPart(by_turning.second);
 
   TrajectoryPoint point;
   if (place.in_axes) {
@@ -102,7 +103,7 @@ void LongSum::Add(double value) {
   sum_ = total;
 }
 
-void AppendPolyline(const PathPiece& path, double tolerance_mm, std::vector<Vec3>& points) {
+void AppendPolyline(const PathPiece& path, double tolerance_mm, std::vector<MachinePoint>& points) {
   if (points.empty() || points.back() != path.from().tip) points.push_back(path.from().tip);
   if (path.kind() == PathPiece::Kind::kArc) {
     const double radius = path.radius_mm();

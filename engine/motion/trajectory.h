@@ -12,13 +12,13 @@ namespace rmlcell::motion {
 // The state of the machine at one instant.
 struct TrajectoryPoint {
   TipPose tip;
-  Vec3 tip_velocity;
-  Vec3 tip_acceleration;
+  MachineVector tip_velocity;
+  MachineVector tip_acceleration;
   AxisValues axes{};  // X Y Z of the column, A, B
   AxisValues axis_velocity{};
   AxisValues axis_acceleration{};
 
-  double tip_speed() const { return Norm(tip_velocity); }
+  double tip_speed() const { return tip_velocity.norm(); }
 };
 
 // The state of a path with these derivatives by s, where it is passed as `state` says.
@@ -98,6 +98,6 @@ class SampleTimes {
 // Corner points of a polyline that stays within `tolerance_mm` of the tip path, both ends included;
 // the first is left out when `points` already ends there. Of pieces in_axes() the column is drawn.
 // motion.md section 9.
-void AppendPolyline(const PathPiece& path, double tolerance_mm, std::vector<Vec3>& points);
+void AppendPolyline(const PathPiece& path, double tolerance_mm, std::vector<MachinePoint>& points);
 
 }  // namespace rmlcell::motion

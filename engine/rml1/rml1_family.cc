@@ -154,8 +154,8 @@ machine::MachineShape MillFamily::Shape(const machine::Parameters& parameters) c
   const Result<Profile> made = MakeProfile(parameters);
   if (!made) return {};
   const Profile& p = *made;
-  const auto mm = [&p](double x, double y, double z) {
-    return motion::Vec3{x, y, z} * (1.0 / p.units_per_mm);
+  const auto mm = [&p](double x, double y, double z) -> motion::MachinePoint {
+    return motion::MachineVector{x, y, z} * (1.0 / p.units_per_mm);
   };
   machine::MachineShape shape;
   shape.travel.Add(mm(p.x.low, p.y.low, p.z.low));

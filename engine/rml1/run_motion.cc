@@ -140,7 +140,7 @@ void MillRun::ReportLeg(double travelled) {
   s.physical.OnRide({.from = from,
                      .to = to,
                      .use = m.action.use,
-                     .length_mm = motion::Distance(path.from().tip, path.At(travelled).tip),
+                     .length_mm = (path.At(travelled).tip - path.from().tip).norm(),
                      .time_s = ToSeconds(s.now - s.busy_from),
                      .first = m.first_leg},
                     s.device.registers());
@@ -198,7 +198,7 @@ motion::TipPose MillRun::TipNow() const {
 Point MillRun::ToolAt(const motion::TipPose& pose) const {
   const double units = profile().units_per_mm;
   const double sense = profile().rotary_reversed ? -1.0 : 1.0;
-  return {pose.tip.x * units, pose.tip.y * units, pose.tip.z * units,
+  return {pose.tip.x() * units, pose.tip.y() * units, pose.tip.z() * units,
           sense * pose.a_rad / kRadPerDegree};
 }
 

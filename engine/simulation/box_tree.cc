@@ -10,8 +10,9 @@ namespace {
 constexpr std::uint32_t kLeafMax = 8;
 
 bool Touch(const machine::Box& a, const machine::Box& b, double reach) {
-  return a.min.x <= b.max.x + reach && b.min.x <= a.max.x + reach && a.min.y <= b.max.y + reach &&
-         b.min.y <= a.max.y + reach && a.min.z <= b.max.z + reach && b.min.z <= a.max.z + reach;
+  return a.min.x() <= b.max.x() + reach && b.min.x() <= a.max.x() + reach &&
+         a.min.y() <= b.max.y() + reach && b.min.y() <= a.max.y() + reach &&
+         a.min.z() <= b.max.z() + reach && b.min.z() <= a.max.z() + reach;
 }
 
 }  // namespace
@@ -34,12 +35,12 @@ void BoxTree::Build(std::uint32_t begin, std::uint32_t end) {
     nodes_[here].behind = static_cast<std::uint32_t>(nodes_.size());
     return;
   }
-  const motion::Vec3 size = box.max - box.min;
-  const double longest = std::max({size.x, size.y, size.z});
+  const motion::MachineVector size = box.max - box.min;
+  const double longest = std::max({size.x(), size.y(), size.z()});
   const auto middle = [&](std::uint32_t index) {
     const machine::Box& one = boxes_[index];
-    if (longest == size.x) return one.min.x + one.max.x;
-    return longest == size.y ? one.min.y + one.max.y : one.min.z + one.max.z;
+    if (longest == size.x()) return one.min.x() + one.max.x();
+    return longest == size.y() ? one.min.y() + one.max.y() : one.min.z() + one.max.z();
   };
   const std::uint32_t half = begin + (end - begin) / 2;
   const auto at = [&](std::uint32_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };

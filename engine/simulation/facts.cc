@@ -1,6 +1,7 @@
 #include "engine/simulation/facts.h"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <map>
 #include <utility>
@@ -11,9 +12,10 @@
 namespace rmlcell::simulation {
 namespace {
 
-using motion::Vec3;
+using motion::MachineVector;
 
 constexpr std::string_view kNone = "none";
+constexpr std::array kCoordinates{"_x", "_y", "_z"};
 constexpr int kDecimals = 6;  // lengths to 1e-6 mm, times to 1e-6 s: motion.md 8.2
 
 std::string Real(double value) { return TrimmedText(value, kDecimals); }
@@ -90,7 +92,7 @@ class Table {
   void AddCorners();
   void AddPositions();
   void AddPoint(const std::string& name, const std::string& unit, const std::string& text,
-                std::function<Vec3(const RunReport&)> point);
+                std::function<MachineVector(const RunReport&)> point);
   void AddBox(const std::string& name, const std::string& unit, const std::string& text,
               machine::Box ScopeFigures::*box);
   void AddAxes();
@@ -276,14 +278,10 @@ void Table::AddCorners() {
 }
 
 void Table::AddPoint(const std::string& name, const std::string& unit, const std::string& text,
-                     std::function<Vec3(const RunReport&)> point) {
-  constexpr std::pair<const char*, double Vec3::*> kCoordinates[] = {
-      {"_x", &Vec3::x}, {"_y", &Vec3::y}, {"_z", &Vec3::z}};
-  for (const auto& [suffix, coordinate] : kCoordinates) {
-    Add(name + suffix + Unit(unit), unit, CoordinateName(suffix) + text,
-        [point, coordinate = coordinate](const RunReport& r) {
-          return Real(point(r).*coordinate);
-        });
+                     std::function<MachineVector(const RunReport&)> point) {
+  for (int i = 0; i < 3; ++i) {
+    Add(name + kCoordinates[i] + Unit(unit), unit, CoordinateName(kCoordinates[i]) + text,
+        [point, i](const RunReport& r) { return Real(point(r)[i]); });
   }
 }
 
@@ -302,16 +300,14 @@ void Table::AddPositions() {
 
 void Table::AddBox(const std::string& name, const std::string& unit, const std::string& text,
                    machine::Box ScopeFigures::*box) {
-  constexpr std::pair<const char*, double Vec3::*> kCoordinates[] = {
-      {"_x", &Vec3::x}, {"_y", &Vec3::y}, {"_z", &Vec3::z}};
-  for (const auto& [suffix, coordinate] : kCoordinates) {
+  for (int i = 0; i < 3; ++i) {
     for (const bool low : {true, false}) {
-      Add(name + suffix + (low ? "_min" : "_max") + Unit(unit), unit,
-          (low ? "least " : "greatest ") + CoordinateName(suffix) + text,
-          [box, low, coordinate = coordinate](const RunReport& r) {
+      Add(name + kCoordinates[i] + (low ? "_min" : "_max") + Unit(unit), unit,
+          (low ? "least " : "greatest ") + CoordinateName(kCoordinates[i]) + text,
+          [box, low, i](const RunReport& r) {
             const machine::Box& b = r.*box;
             if (b.empty()) return std::string(kNone);
-            return Real((low ? b.min : b.max).*coordinate);
+            return Real((low ? b.min : b.max)[i]);
           });
     }
   }

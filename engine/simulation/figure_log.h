@@ -23,7 +23,7 @@ class FigureLog {
     const std::optional<SlowMove>& slow;
   };
   void Add(const Motion& motion);
-  void AddProgrammed(const motion::Vec3& point) { programmed_.Add(point); }
+  void AddProgrammed(const motion::MachinePoint& point) { programmed_.Add(point); }
 
   BeamTimes& beam() { return beam_; }
 

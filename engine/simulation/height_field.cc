@@ -8,7 +8,8 @@
 namespace rmlcell::simulation {
 namespace {
 
-using motion::Vec3;
+using motion::MachinePoint;
+using motion::MachineVector;
 
 struct Span {
   double low = HUGE_VAL;
@@ -21,24 +22,24 @@ struct Span {
 
 // Where a row at `y` meets the way of a disc of `radius`: the hull of what it has in common with
 // the disc at both ends and with the strip between.
-Span SweptPart(const Vec3& from, const Vec3& to, double radius, double y) {
+Span SweptPart(const MachinePoint& from, const MachinePoint& to, double radius, double y) {
   Span span;
-  for (const Vec3& centre : {from, to}) {
-    const double half_2 = radius * radius - (y - centre.y) * (y - centre.y);
+  for (const MachinePoint& centre : {from, to}) {
+    const double half_2 = radius * radius - (y - centre.y()) * (y - centre.y());
     if (half_2 < 0.0) continue;
-    span.Include(centre.x - std::sqrt(half_2), centre.x + std::sqrt(half_2));
+    span.Include(centre.x() - std::sqrt(half_2), centre.x() + std::sqrt(half_2));
   }
-  const double dx = to.x - from.x;
-  const double dy = to.y - from.y;
+  const double dx = to.x() - from.x();
+  const double dy = to.y() - from.y();
   if (std::abs(dy) * radius <= 0.0) return span;
   // The strip is bounded by lines along the way, `radius` off it; the row meets both.
   const double length = std::hypot(dx, dy);
   const double off_x = -dy / length * radius;
   const double off_y = dx / length * radius;
   for (const double side : {-1.0, 1.0}) {
-    const double share = (y - (from.y + side * off_y)) / dy;
+    const double share = (y - (from.y() + side * off_y)) / dy;
     if (share < 0.0 || share > 1.0) continue;
-    const double x = from.x + side * off_x + share * dx;
+    const double x = from.x() + side * off_x + share * dx;
     span.Include(x, x);
   }
   return span;
@@ -87,9 +88,9 @@ HeightField::HeightField(const Stock& stock, std::size_t columns, std::size_t ro
 
 // Visits the cells whose centres the tool comes over, with the least height of its surface there.
 template <class Visit>
-void HeightField::ForEachSwept(const MillTool& tool, const Vec3& from, const Vec3& to, Rows rows,
-                               Visit visit) const {
-  if (std::min(from.z, to.z) >= stock_.top) return;
+void HeightField::ForEachSwept(const MillTool& tool, const MachinePoint& from,
+                               const MachinePoint& to, Rows rows, Visit visit) const {
+  if (std::min(from.z(), to.z()) >= stock_.top) return;
   const ToolPass pass(tool, from, to);
   switch (tool.shape) {
     case MillTool::Shape::kFlat:
@@ -113,10 +114,10 @@ void HeightField::ForEachUnder(const ToolPass& pass, Rows rows, Least least, Vis
     const double index = std::ceil((place - begin) / stock_.cell - 0.5);
     return static_cast<std::size_t>(std::clamp(index, 0.0, static_cast<double>(count)));
   };
-  const Vec3& from = pass.from();
-  const Vec3& to = pass.to();
-  const double y_low = std::min(from.y, to.y) - pass.radius_mm();
-  const double y_high = std::max(from.y, to.y) + pass.radius_mm();
+  const MachinePoint& from = pass.from();
+  const MachinePoint& to = pass.to();
+  const double y_low = std::min(from.y(), to.y()) - pass.radius_mm();
+  const double y_high = std::max(from.y(), to.y()) + pass.radius_mm();
   const std::size_t end_row =
       std::min(std::min(rows.end, rows_), cell_at(y_high, stock_.y_min, rows_) + 1);
   for (std::size_t row = std::max(rows.begin, cell_at(y_low, stock_.y_min, rows_)); row < end_row;
@@ -127,20 +128,22 @@ void HeightField::ForEachUnder(const ToolPass& pass, Rows rows, Least least, Vis
     const std::size_t first = cell_at(span.low, stock_.x_min, columns_);
     const std::size_t end = std::min(columns_, cell_at(span.high, stock_.x_min, columns_) + 1);
     for (std::size_t column = first; column < end; ++column) {
-      const double x = stock_.x_min + (static_cast<double>(column) + 0.5) * stock_.cell - from.x;
-      visit(row * columns_ + column,
-            static_cast<float>(least(pass.AlongOf(x, y - from.y), pass.AcrossOf(x, y - from.y))));
+      const double x = stock_.x_min + (static_cast<double>(column) + 0.5) * stock_.cell - from.x();
+      visit(row * columns_ + column, static_cast<float>(least(pass.AlongOf(x, y - from.y()),
+                                                              pass.AcrossOf(x, y - from.y()))));
     }
   }
 }
 
-void HeightField::Cut(const MillTool& tool, const Vec3& from, const Vec3& to, Rows rows) {
+void HeightField::Cut(const MillTool& tool, const MachinePoint& from, const MachinePoint& to,
+                      Rows rows) {
   ForEachSwept(tool, from, to, rows, [this](std::size_t cell, float height) {
     heights_[cell] = std::min(heights_[cell], height);
   });
 }
 
-double HeightField::DepthOf(const MillTool& tool, const Vec3& from, const Vec3& to) const {
+double HeightField::DepthOf(const MillTool& tool, const MachinePoint& from,
+                            const MachinePoint& to) const {
   const auto bottom = static_cast<float>(stock_.bottom);
   float deepest = 0.0f;
   ForEachSwept(tool, from, to, all_rows(), [&](std::size_t cell, float height) {

@@ -41,13 +41,15 @@ class HeightField {
 
   // Takes away what the tool sweeps on a straight move. Rows that nobody else cuts at the same
   // time.
-  void Cut(const MillTool& tool, const motion::Vec3& from, const motion::Vec3& to, Rows rows);
-  void Cut(const MillTool& tool, const motion::Vec3& from, const motion::Vec3& to) {
+  void Cut(const MillTool& tool, const motion::MachinePoint& from, const motion::MachinePoint& to,
+           Rows rows);
+  void Cut(const MillTool& tool, const motion::MachinePoint& from, const motion::MachinePoint& to) {
     Cut(tool, from, to, all_rows());
   }
 
   // How deep the tool would go into what is there on that move; 0 when it stays clear.
-  double DepthOf(const MillTool& tool, const motion::Vec3& from, const motion::Vec3& to) const;
+  double DepthOf(const MillTool& tool, const motion::MachinePoint& from,
+                 const motion::MachinePoint& to) const;
 
   std::size_t columns() const { return columns_; }
   std::size_t rows() const { return rows_; }
@@ -64,8 +66,8 @@ class HeightField {
   HeightField(const Stock& stock, std::size_t columns, std::size_t rows);
 
   template <class Visit>
-  void ForEachSwept(const MillTool& tool, const motion::Vec3& from, const motion::Vec3& to,
-                    Rows rows, Visit visit) const;
+  void ForEachSwept(const MillTool& tool, const motion::MachinePoint& from,
+                    const motion::MachinePoint& to, Rows rows, Visit visit) const;
   template <class Least, class Visit>
   void ForEachUnder(const ToolPass& pass, Rows rows, Least least, Visit visit) const;
 

@@ -17,19 +17,20 @@ Status CheckTool(const MillTool& tool) {
   return {};
 }
 
-ToolPass::ToolPass(const MillTool& tool, const motion::Vec3& from, const motion::Vec3& to)
+ToolPass::ToolPass(const MillTool& tool, const motion::MachinePoint& from,
+                   const motion::MachinePoint& to)
     : from_(from),
       to_(to),
       radius_(tool.radius_mm),
       tip_radius_(tool.tip_radius_mm),
-      length_(std::hypot(to.x - from.x, to.y - from.y)),
+      length_(std::hypot(to.x() - from.x(), to.y() - from.y())),
       upright_(!(length_ > 0.0)),
-      z_(upright_ ? std::min(from.z, to.z) : from.z) {
+      z_(upright_ ? std::min(from.z(), to.z()) : from.z()) {
   if (tool.shape == MillTool::Shape::kVee) rise_ = 1.0 / std::tan(tool.half_angle_rad);
   if (upright_) return;
-  way_x_ = (to.x - from.x) / length_;
-  way_y_ = (to.y - from.y) / length_;
-  slope_ = (to.z - from.z) / length_;
+  way_x_ = (to.x() - from.x()) / length_;
+  way_y_ = (to.y() - from.y()) / length_;
+  slope_ = (to.z() - from.z()) / length_;
   lead_ = slope_ / std::sqrt(1.0 + slope_ * slope_);
 }
 
@@ -57,11 +58,11 @@ double ToolPass::LeastOfVee(double along, double across) const {
   return least;
 }
 
-std::optional<double> SweptHeight(const MillTool& tool, const motion::Vec3& from,
-                                  const motion::Vec3& to, double x, double y) {
+std::optional<double> SweptHeight(const MillTool& tool, const motion::MachinePoint& from,
+                                  const motion::MachinePoint& to, double x, double y) {
   const ToolPass pass(tool, from, to);
-  const double along = pass.AlongOf(x - from.x, y - from.y);
-  const double across = pass.AcrossOf(x - from.x, y - from.y);
+  const double along = pass.AlongOf(x - from.x(), y - from.y());
+  const double across = pass.AcrossOf(x - from.x(), y - from.y());
   const double least = tool.shape == MillTool::Shape::kFlat   ? pass.LeastOfFlat(along, across)
                        : tool.shape == MillTool::Shape::kBall ? pass.LeastOfBall(along, across)
                                                               : pass.LeastOfVee(along, across);

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "engine/core/result.h"
-#include "engine/motion/vec3.h"
+#include "engine/motion/geometry/frames.h"
 
 namespace rmlcell::simulation {
 
@@ -28,10 +28,10 @@ Status CheckTool(const MillTool& tool);
 // where the tool does not come over it.
 class ToolPass {
  public:
-  ToolPass(const MillTool& tool, const motion::Vec3& from, const motion::Vec3& to);
+  ToolPass(const MillTool& tool, const motion::MachinePoint& from, const motion::MachinePoint& to);
 
-  const motion::Vec3& from() const { return from_; }
-  const motion::Vec3& to() const { return to_; }
+  const motion::MachineVector& from() const { return from_; }
+  const motion::MachineVector& to() const { return to_; }
   double radius_mm() const { return radius_; }
 
   // Of a point at (x, y) from the start of the move. A plunge: all of its distance is across.
@@ -68,8 +68,8 @@ class ToolPass {
     return {half, low, std::max(low, high), half_2 >= 0.0 && low <= high};
   }
 
-  motion::Vec3 from_;
-  motion::Vec3 to_;
+  motion::MachineVector from_;
+  motion::MachinePoint to_;
   double radius_;
   double tip_radius_;
   double rise_ = 0.0;  // of a vee tool by its radius
@@ -83,7 +83,7 @@ class ToolPass {
 };
 
 // The same for any shape, at a point of the plane; nothing where the tool does not come over it.
-std::optional<double> SweptHeight(const MillTool& tool, const motion::Vec3& from,
-                                  const motion::Vec3& to, double x, double y);
+std::optional<double> SweptHeight(const MillTool& tool, const motion::MachinePoint& from,
+                                  const motion::MachinePoint& to, double x, double y);
 
 }  // namespace rmlcell::simulation

@@ -13,15 +13,15 @@ Status CheckMilling(const Milling& milling) {
 }
 
 MillingRecorder::MillingRecorder(const machine::MachineShape& shape, const Milling& milling)
-    : origin_(shape.has_work_origin ? shape.work_origin : motion::Vec3{}),
+    : origin_(shape.has_work_origin ? shape.work_origin : motion::MachineVector{}),
       tool_(milling.tool),
       material_(HeightField::Of(milling.stock).value()) {}
 
 void MillingRecorder::OnMotion(const machine::MotionDone& done) {
   const motion::PathPiece& path = done.motion->path;
   if (path.kind() != motion::PathPiece::Kind::kLine) return;  // the rotary axis alone
-  const motion::Vec3 from = path.At(done.from).tip - origin_;
-  const motion::Vec3 to = path.At(done.travelled).tip - origin_;
+  const motion::MachinePoint from = path.At(done.from).tip - origin_;
+  const motion::MachinePoint to = path.At(done.travelled).tip - origin_;
   if (done.programmed_mm_s <= 0.0) {
     const double depth = material_.DepthOf(tool_, from, to);
     if (depth > kGougeLeast_mm) {

@@ -28,7 +28,7 @@ class MillingRecorder final : public machine::RunObserver {
   const HeightField& material() const { return material_; }
 
  private:
-  motion::Vec3 origin_;  // of the block's frame, machine frame
+  motion::MachinePoint origin_;  // of the block's frame, machine frame
   MillTool tool_;
   HeightField material_;
   MillingFigures figures_;

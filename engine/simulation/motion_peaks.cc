@@ -12,8 +12,9 @@ namespace rmlcell::simulation {
 namespace {
 
 using motion::AxisValues;
+using motion::MachinePoint;
+using motion::MachineVector;
 using motion::PathPiece;
-using motion::Vec3;
 
 constexpr int kSamplesMin = 4;    // of a phase: ends and three between
 constexpr int kSamplesMax = 512;  // 25 rad of turning
@@ -21,19 +22,21 @@ constexpr int kSamplesMax = 512;  // 25 rad of turning
 void Raise(double& peak, double value) { peak = std::max(peak, std::abs(value)); }
 
 // What the axes do when they go as the tip does.
-AxisValues FollowingTip(const Vec3& tip, double a, double b) { return {tip.x, tip.y, tip.z, a, b}; }
+AxisValues FollowingTip(const MachinePoint& tip, double a, double b) {
+  return {tip.x(), tip.y(), tip.z(), a, b};
+}
 
 struct Instant {
-  Vec3 tip_velocity;
-  Vec3 tip_acceleration;
+  MachineVector tip_velocity;
+  MachineVector tip_acceleration;
   AxisValues axis_velocity{};
   AxisValues axis_acceleration{};
 };
 
 void Add(MotionPeaks& peaks, const Instant& at) {
-  Raise(peaks.tip_speed, Norm(at.tip_velocity));
-  Raise(peaks.tip_acceleration, Norm(at.tip_acceleration));
-  for (std::size_t i = 0; i < peaks.axis_speed.size(); ++i) {
+  Raise(peaks.tip_speed, at.tip_velocity.norm());
+  Raise(peaks.tip_acceleration, at.tip_acceleration.norm());
+  for (int i = 0; i < motion::kAxisCount; ++i) {
     Raise(peaks.axis_speed[i], at.axis_velocity[i]);
     Raise(peaks.axis_acceleration[i], at.axis_acceleration[i]);
   }
@@ -41,8 +44,8 @@ void Add(MotionPeaks& peaks, const Instant& at) {
 
 // The mean jerk between two instants of one phase.
 void AddJerk(MotionPeaks& peaks, const Instant& before, const Instant& after, double duration_s) {
-  Raise(peaks.tip_jerk, Norm(after.tip_acceleration - before.tip_acceleration) / duration_s);
-  for (std::size_t i = 0; i < peaks.axis_jerk.size(); ++i) {
+  Raise(peaks.tip_jerk, (after.tip_acceleration - before.tip_acceleration).norm() / duration_s);
+  for (int i = 0; i < motion::kAxisCount; ++i) {
     Raise(peaks.axis_jerk[i],
           (after.axis_acceleration[i] - before.axis_acceleration[i]) / duration_s);
   }
@@ -66,17 +69,15 @@ MotionPeaks Straight(const motion::PlannedMotion& motion, bool five_axis, double
   });
   const motion::PathDerivatives first = motion.path.First(0.0);
   const bool stands = motion.path.kind() == PathPiece::Kind::kRotary;
-  const Vec3 tip = stands ? Vec3{} : first.tip;
+  const MachineVector tip = stands ? MachineVector{} : first.tip;
   const AxisValues axes = FollowingTip(tip, first.a, five_axis ? first.b : 0.0);
   MotionPeaks peaks;
-  peaks.tip_speed = Norm(tip) * speed;
-  peaks.tip_acceleration = Norm(tip) * acceleration;
-  peaks.tip_jerk = Norm(tip) * jerk;
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    peaks.axis_speed[i] = std::abs(axes[i]) * speed;
-    peaks.axis_acceleration[i] = std::abs(axes[i]) * acceleration;
-    peaks.axis_jerk[i] = std::abs(axes[i]) * jerk;
-  }
+  peaks.tip_speed = tip.norm() * speed;
+  peaks.tip_acceleration = tip.norm() * acceleration;
+  peaks.tip_jerk = tip.norm() * jerk;
+  peaks.axis_speed = axes.cwiseAbs() * speed;
+  peaks.axis_acceleration = axes.cwiseAbs() * acceleration;
+  peaks.axis_jerk = axes.cwiseAbs() * jerk;
   return peaks;
 }
 
@@ -92,8 +93,8 @@ class PlainArc {
   Instant At(const motion::PathState& state) const {
     const double sine = std::sin(state.s * per_radius_);
     const double cosine = std::cos(state.s * per_radius_);
-    const Vec3 tangent = along_ * cosine + inward_ * sine;
-    const Vec3 normal = (inward_ * cosine - along_ * sine) * per_radius_;
+    const MachineVector tangent = along_ * cosine + inward_ * sine;
+    const MachineVector normal = (inward_ * cosine - along_ * sine) * per_radius_;
     Instant at;
     at.tip_velocity = tangent * state.speed;
     at.tip_acceleration = tangent * state.acceleration + normal * (state.speed * state.speed);
@@ -103,8 +104,8 @@ class PlainArc {
   }
 
  private:
-  Vec3 along_;
-  Vec3 inward_;
+  MachineVector along_;
+  MachineVector inward_;
   double per_radius_;
   double a_;  // rotary axis of a mill
 };

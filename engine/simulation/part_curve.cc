@@ -6,8 +6,9 @@
 
 namespace rmlcell::simulation {
 
+using motion::MachinePoint;
+using motion::MachineVector;
 using motion::PathPiece;
-using motion::Vec3;
 
 bool Turns(const PathPiece& path) {
   if (path.a_rate() != 0.0 || path.b_rate() != 0.0) return true;
@@ -19,7 +20,7 @@ bool Turns(const PathPiece& path) {
   return in.a != 0.0 || in.b != 0.0 || out.a != 0.0 || out.b != 0.0;
 }
 
-Vec3 TipAt(const PathPiece& path, const motion::Head& head, double s) {
+MachinePoint TipAt(const PathPiece& path, const motion::Head& head, double s) {
   const motion::TipPose pose = path.At(s);
   if (!path.in_axes()) return pose.tip;
   return head.TipOf({pose.tip, pose.a_rad, pose.b_rad}).tip;
@@ -51,28 +52,28 @@ motion::PathDerivatives PartCurve::Rate(double p) const {
 }
 
 // What the turning of the head adds to the motion of the column over that of the tip.
-Vec3 PartCurve::Swing(double p) const {
+MachineVector PartCurve::Swing(double p) const {
   const motion::PathDerivatives rate = Rate(p);
   const motion::TipPose pose = Pose(p);
   const motion::AxisValues swing = part_.head.Rates(pose.a_rad, pose.b_rad, {{}, rate.a, rate.b});
   return {swing[0], swing[1], swing[2]};
 }
 
-Vec3 PartCurve::Tip(double p) const {
+MachineVector PartCurve::Tip(double p) const {
   const motion::TipPose pose = Pose(p);
   return part_.path.in_axes() ? part_.head.TipOf({pose.tip, pose.a_rad, pose.b_rad}).tip : pose.tip;
 }
 
-Vec3 PartCurve::Column(double p) const {
+MachineVector PartCurve::Column(double p) const {
   const motion::TipPose pose = Pose(p);
   return part_.path.in_axes() ? pose.tip : part_.head.ColumnOf(pose).column;
 }
 
-Vec3 PartCurve::TipRate(double p) const {
+MachineVector PartCurve::TipRate(double p) const {
   return part_.path.in_axes() ? Rate(p).tip - Swing(p) : Rate(p).tip;
 }
 
-Vec3 PartCurve::ColumnRate(double p) const {
+MachineVector PartCurve::ColumnRate(double p) const {
   return part_.path.in_axes() ? Rate(p).tip : Rate(p).tip + Swing(p);
 }
 

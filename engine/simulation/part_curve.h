@@ -17,7 +17,7 @@ struct PathPart {
 bool Turns(const motion::PathPiece& path);
 
 // The tip at `s`.
-motion::Vec3 TipAt(const motion::PathPiece& path, const motion::Head& head, double s);
+motion::MachinePoint TipAt(const motion::PathPiece& path, const motion::Head& head, double s);
 
 // A part as a function of a parameter p that grows along it: s itself, but on the curve of a blend
 // its own variable u, since finding a place by s means to measure the curve.
@@ -32,16 +32,16 @@ class PartCurve {
   // Angle that head and tangent turn through along the part, at most: how finely to look at it.
   double turning_rad() const { return turning_rad_; }
 
-  motion::Vec3 Tip(double p) const;
-  motion::Vec3 Column(double p) const;
-  motion::Vec3 TipRate(double p) const;     // by p
-  motion::Vec3 ColumnRate(double p) const;  // by p
-  motion::TipPose Pose(double p) const;     // the column where the path is in_axes()
+  motion::MachinePoint Tip(double p) const;
+  motion::MachinePoint Column(double p) const;
+  motion::MachineVector TipRate(double p) const;     // by p
+  motion::MachineVector ColumnRate(double p) const;  // by p
+  motion::TipPose Pose(double p) const;              // the column where the path is in_axes()
   motion::PathDerivatives Rate(double p) const;
 
  private:
   bool blend() const { return part_.path.kind() == motion::PathPiece::Kind::kBlend; }
-  motion::Vec3 Swing(double p) const;
+  motion::MachineVector Swing(double p) const;
 
   const PathPart& part_;
   motion::CornerCurve curve_;  // of a blend

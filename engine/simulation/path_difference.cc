@@ -13,7 +13,8 @@
 namespace rmlcell::simulation {
 namespace {
 
-using motion::Vec3;
+using motion::MachinePoint;
+using motion::MachineVector;
 
 // A stretch of an element, mm from its beginning.
 struct Stretch {
@@ -22,7 +23,7 @@ struct Stretch {
 };
 
 double LengthOf(const SketchElement& element, const std::vector<SketchCircle>& circles) {
-  if (element.arc < 0) return Distance(element.from, element.to);
+  if (element.arc < 0) return (element.from - element.to).norm();
   const SketchCircle& circle = circles[static_cast<std::size_t>(element.arc)];
   return circle.radius_mm * circle.sweep_rad;
 }
@@ -42,14 +43,14 @@ machine::Box BoxOf(const SketchElement& element, const std::vector<SketchCircle>
 
 // Where on line `a` line `b` runs along it.
 std::optional<Stretch> AlongLine(const SketchElement& a, double length, const SketchElement& b) {
-  const Vec3 way = (a.to - a.from) * (1.0 / length);
-  const double from = Dot(b.from - a.from, way);
-  const double to = Dot(b.to - a.from, way);
+  const MachineVector way = (a.to - a.from) * (1.0 / length);
+  const double from = (b.from - a.from).dot(way);
+  const double to = (b.to - a.from).dot(way);
   const Stretch both{std::max(0.0, std::min(from, to)), std::min(length, std::max(from, to))};
   if (!(both.end - both.begin > kSamePlace_mm) || from == to) return std::nullopt;
   for (const double at : {both.begin, both.end}) {
-    const Vec3 on_b = b.from + (b.to - b.from) * ((at - from) / (to - from));
-    if (Distance(on_b, a.from + way * at) > kSamePlace_mm) return std::nullopt;
+    const MachinePoint on_b = b.from + (b.to - b.from) * ((at - from) / (to - from));
+    if ((on_b - (a.from + way * at)).norm() > kSamePlace_mm) return std::nullopt;
   }
   return both;
 }
@@ -59,16 +60,16 @@ std::optional<Stretch> AlongLine(const SketchElement& a, double length, const Sk
 std::array<std::optional<Stretch>, 2> AlongArc(const SketchElement& a, const SketchCircle& of_a,
                                                const SketchElement& b, const SketchCircle& of_b) {
   std::array<std::optional<Stretch>, 2> found;
-  const double cosine = Dot(of_a.normal, of_b.normal);
-  const double tilt_mm = of_a.radius_mm * Norm(Cross(of_a.normal, of_b.normal));
-  if (Distance(of_a.centre, of_b.centre) > kSamePlace_mm || tilt_mm > kSamePlace_mm ||
+  const double cosine = of_a.normal.dot(of_b.normal);
+  const double tilt_mm = of_a.radius_mm * of_a.normal.cross(of_b.normal).norm();
+  if ((of_a.centre - of_b.centre).norm() > kSamePlace_mm || tilt_mm > kSamePlace_mm ||
       std::abs(of_a.radius_mm - of_b.radius_mm) > kSamePlace_mm) {
     return found;
   }
-  const Vec3 spoke = (a.from - of_a.centre) * (1.0 / of_a.radius_mm);
-  const Vec3 side = Cross(of_a.normal, spoke);
-  const Vec3 start = (cosine > 0.0 ? b.from : b.to) - of_a.centre;
-  double begin = std::atan2(Dot(start, side), Dot(start, spoke));
+  const MachineVector spoke = (a.from - of_a.centre) * (1.0 / of_a.radius_mm);
+  const MachineVector side = of_a.normal.cross(spoke);
+  const MachinePoint start = (cosine > 0.0 ? b.from : b.to) - of_a.centre;
+  double begin = std::atan2(start.dot(side), start.dot(spoke));
   if (begin < 0.0) begin += kTurn;
   std::size_t count = 0;
   for (const double from : {begin, begin - kTurn}) {
@@ -123,14 +124,14 @@ void Append(PathShare& part, const SketchElement& element, const std::vector<Ske
   SketchElement piece = element;
   const double share_begin = stretch.begin / length, share_end = stretch.end / length;
   if (element.arc < 0) {
-    const Vec3 way = element.to - element.from;
+    const MachineVector way = element.to - element.from;
     piece.from = element.from + way * share_begin;
     piece.to = element.to - way * (1.0 - share_end);
   } else {
     SketchCircle circle = circles[static_cast<std::size_t>(element.arc)];
-    const Vec3 spoke = element.from - circle.centre;
-    const Vec3 side = Cross(circle.normal, spoke);
-    const auto at = [&](double share) {
+    const MachineVector spoke = element.from - circle.centre;
+    const MachineVector side = circle.normal.cross(spoke);
+    const auto at = [&](double share) -> MachinePoint {
       const double angle = share * circle.sweep_rad;
       return circle.centre + spoke * std::cos(angle) + side * std::sin(angle);
     };
@@ -208,15 +209,15 @@ class Comparison {
 void DivideDots(const PathSketch& path, const PathSketch& other, PathShare* common,
                 PathShare& alone) {
   std::vector<SketchDot> there = other.dots();
-  std::ranges::sort(there, {}, [](const SketchDot& dot) { return dot.at.x; });
+  std::ranges::sort(there, {}, [](const SketchDot& dot) { return dot.at.x(); });
   for (const SketchDot& dot : path.dots()) {
-    auto near = std::ranges::lower_bound(there, dot.at.x - kSamePlace_mm, {},
-                                         [](const SketchDot& d) { return d.at.x; });
-    while (near != there.end() && near->at.x <= dot.at.x + kSamePlace_mm &&
-           (near->pierce != dot.pierce || Distance(near->at, dot.at) > kSamePlace_mm)) {
+    auto near = std::ranges::lower_bound(there, dot.at.x() - kSamePlace_mm, {},
+                                         [](const SketchDot& d) { return d.at.x(); });
+    while (near != there.end() && near->at.x() <= dot.at.x() + kSamePlace_mm &&
+           (near->pierce != dot.pierce || (near->at - dot.at).norm() > kSamePlace_mm)) {
       ++near;
     }
-    const bool found = near != there.end() && near->at.x <= dot.at.x + kSamePlace_mm;
+    const bool found = near != there.end() && near->at.x() <= dot.at.x() + kSamePlace_mm;
     if (!found) alone.dots.push_back(dot);
     if (found && common != nullptr) common->dots.push_back(dot);
   }

@@ -8,10 +8,9 @@
 namespace rmlcell::simulation {
 namespace {
 
+using motion::MachinePoint;
+using motion::MachineVector;
 using motion::PathPiece;
-using motion::Vec3;
-
-constexpr std::array kCoordinates = {&Vec3::x, &Vec3::y, &Vec3::z};
 
 // Turning points kept of one coordinate and part. A turn of an arc has two; the head of the widest
 // rotary axis (4 turns) swings the column eight times.
@@ -46,16 +45,16 @@ CoordinateSweep Straight(double from, double to) {
   return {std::min(from, to), std::max(from, to), std::abs(to - from), 0, sign, sign};
 }
 
-PointSweep Straight(const Vec3& from, const Vec3& to) {
-  return {Straight(from.x, to.x), Straight(from.y, to.y), Straight(from.z, to.z)};
+PointSweep Straight(const MachinePoint& from, const MachinePoint& to) {
+  return {Straight(from.x(), to.x()), Straight(from.y(), to.y()), Straight(from.z(), to.z())};
 }
 
 // Arcs have closed forms: the derivative of a coordinate is t cos x + c sin x.
-TurningPoints ArcTurns(const PathPart& part, double Vec3::*coordinate) {
+TurningPoints ArcTurns(const PathPart& part, std::size_t coordinate) {
   TurningPoints turning;
   const double radius = part.path.radius_mm();
-  const double along = part.path.Tangent(0.0).*coordinate;
-  const double inward = part.path.Curvature(0.0).*coordinate * radius;
+  const double along = part.path.Tangent(0.0)[coordinate];
+  const double inward = part.path.Curvature(0.0)[coordinate] * radius;
   if (std::hypot(along, inward) < kStanding) return turning;
   const double begin = part.from / radius;
   const double end = part.to / radius;
@@ -119,11 +118,9 @@ template <class Position, class Rate>
 PointSweep Sampled(const PartCurve& curve, Position position, Rate rate) {
   PointSweep sweep;
   for (std::size_t i = 0; i < 3; ++i) {
-    double Vec3::*const coordinate = kCoordinates[i];
-    const TurningPoints turning =
-        SampledTurns(curve, [&](double p) { return rate(p).*coordinate; });
-    sweep[i] = SweepOver(curve.begin(), turning, curve.end(),
-                         [&](double p) { return position(p).*coordinate; });
+    const TurningPoints turning = SampledTurns(curve, [&](double p) { return rate(p)[i]; });
+    sweep[i] =
+        SweepOver(curve.begin(), turning, curve.end(), [&](double p) { return position(p)[i]; });
   }
   return sweep;
 }
@@ -131,8 +128,8 @@ PointSweep Sampled(const PartCurve& curve, Position position, Rate rate) {
 PointSweep ArcSweep(const PathPart& part) {
   PointSweep sweep;
   for (std::size_t i = 0; i < 3; ++i) {
-    sweep[i] = SweepOver(part.from, ArcTurns(part, kCoordinates[i]), part.to,
-                         [&](double s) { return part.path.At(s).tip.*kCoordinates[i]; });
+    sweep[i] = SweepOver(part.from, ArcTurns(part, i), part.to,
+                         [&](double s) { return part.path.At(s).tip[i]; });
   }
   return sweep;
 }
@@ -141,8 +138,8 @@ PointSweep ArcSweep(const PathPart& part) {
 
 machine::Box BoxOf(const PointSweep& sweep) {
   machine::Box box;
-  box.Add(Vec3{sweep[0].minimum, sweep[1].minimum, sweep[2].minimum});
-  box.Add(Vec3{sweep[0].maximum, sweep[1].maximum, sweep[2].maximum});
+  box.Add(MachineVector{sweep[0].minimum, sweep[1].minimum, sweep[2].minimum});
+  box.Add(MachineVector{sweep[0].maximum, sweep[1].maximum, sweep[2].maximum});
   return box;
 }
 
@@ -164,11 +161,11 @@ PointSweep ColumnSweep(const PathPart& part) {
     return Straight(path.At(part.from).tip, path.At(part.to).tip);
   }
   if (!Turns(path) && !path.in_axes()) {  // as the tip goes, somewhere above it
-    const Vec3 arm = part.head.ColumnOf(path.from()).column - path.from().tip;
+    const MachineVector arm = part.head.ColumnOf(path.from()).column - path.from().tip;
     PointSweep sweep = TipSweep(part);
     for (std::size_t i = 0; i < 3; ++i) {
-      sweep[i].minimum += arm.*kCoordinates[i];
-      sweep[i].maximum += arm.*kCoordinates[i];
+      sweep[i].minimum += arm[i];
+      sweep[i].maximum += arm[i];
     }
     return sweep;
   }
@@ -196,7 +193,7 @@ double TipLength(const PathPart& part) {
   if (path.kind() == PathPiece::Kind::kRotary || !(path.length() > 0.0)) return 0.0;
   if (!path.in_axes()) return part.to - part.from;
   if (path.kind() == PathPiece::Kind::kJoint && !Turns(path)) {
-    return Norm(path.to().tip - path.from().tip) * (part.to - part.from) / path.length();
+    return (path.to().tip - path.from().tip).norm() * (part.to - part.from) / path.length();
   }
   // Gauss-Legendre with five nodes on panels of at most kSampleAngle_rad: error below 1e-12 of the
   // length, unless the tip all but stands somewhere.
@@ -208,7 +205,7 @@ double TipLength(const PathPart& part) {
   double length = 0.0;
   for (int k = 0; k < panels; ++k) {
     const double middle = curve.begin() + half * (2.0 * k + 1.0);
-    const auto speed = [&](double node) { return Norm(curve.TipRate(middle + half * node)); };
+    const auto speed = [&](double node) { return curve.TipRate(middle + half * node).norm(); };
     length += half * kWeights[0] * speed(0.0);
     for (std::size_t i = 1; i < kNodes.size(); ++i) {
       length += half * kWeights[i] * (speed(kNodes[i]) + speed(-kNodes[i]));

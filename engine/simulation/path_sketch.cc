@@ -9,7 +9,8 @@
 namespace rmlcell::simulation {
 namespace {
 
-using motion::Vec3;
+using motion::MachinePoint;
+using motion::MachineVector;
 
 // More dots than this run together in any picture.
 constexpr std::size_t kDotsMax = 20'000;
@@ -22,8 +23,8 @@ constexpr double kCurveTolerance_mm = 0.01;
 constexpr double kFirstShare = 5e-5;
 constexpr double kCoarserSketch = 2.0;
 
-bool IsFinite(const Vec3& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+bool IsFinite(const MachinePoint& p) {
+  return std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z());
 }
 
 }  // namespace
@@ -34,8 +35,8 @@ PathSketch::PathSketch(const machine::MachineShape& shape, std::size_t elements_
 void PathSketch::Add(const machine::MotionDone& done) {
   const motion::PathPiece& path = done.motion->path;
   const PathPart part{path, done.motion->head, done.from, done.travelled};
-  const Vec3 from = TipAt(path, part.head, part.from);
-  const Vec3 to = TipAt(path, part.head, part.to);
+  const MachinePoint from = TipAt(path, part.head, part.from);
+  const MachinePoint to = TipAt(path, part.head, part.to);
   if (!IsFinite(from) || !IsFinite(to)) return;
   if (!moved_) start_ = from;
   moved_ = true;
@@ -70,7 +71,7 @@ void PathSketch::Add(const machine::MotionDone& done) {
 
 void PathSketch::PushCurve(const machine::MotionDone& done, SketchElement element) {
   const PathPart part{done.motion->path, done.motion->head, done.from, done.travelled};
-  ForEachVertex(part, kCurveTolerance_mm, [&](double /*s*/, const Vec3& tip) {
+  ForEachVertex(part, kCurveTolerance_mm, [&](double /*s*/, const MachinePoint& tip) {
     element.to = tip;
     if (element.from != element.to) Push(element);
     element.from = tip;
@@ -93,7 +94,7 @@ void PathSketch::AddTool(const machine::MotionDone& done) {
   const motion::PathPiece& path = done.motion->path;
   const motion::TipPose pose = path.At(done.travelled);
   tools_.push_back({TipAt(path, done.motion->head, done.travelled),
-                    motion::AxesOfTool(pose.a_rad, pose.b_rad).u});
+                    motion::ToolDirection(pose.a_rad, pose.b_rad)});
   if (tools_.size() < kToolsMax) return;
   for (std::size_t i = 0; 2 * i < tools_.size(); ++i) tools_[i] = tools_[2 * i];
   tools_.resize((tools_.size() + 1) / 2);

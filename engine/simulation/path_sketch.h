@@ -11,21 +11,21 @@
 namespace rmlcell::simulation {
 
 struct SketchCircle {
-  motion::Vec3 centre;
-  motion::Vec3 normal;  // unit; the arc runs counter-clockwise seen from its tip
+  motion::MachinePoint centre;
+  motion::MachineVector normal;  // unit; the arc runs counter-clockwise seen from its tip
   double radius_mm = 0.0;
   double sweep_rad = 0.0;
 };
 
 struct SketchDot {
-  motion::Vec3 at;
+  motion::MachinePoint at;
   bool pierce = false;  // else a plunge
 };
 
 // Where the tool pointed while it cut.
 struct SketchTool {
-  motion::Vec3 tip;
-  motion::Vec3 towards_head;  // unit
+  motion::MachinePoint tip;
+  motion::MachineVector towards_head;  // unit
 };
 
 // The path of a run in bounded memory. Up to `elements_max` elements it is exact. After that it is
@@ -48,8 +48,8 @@ class PathSketch {
   const machine::Box& box() const { return box_; }  // of everything, true extremes
   const machine::Box& cut_box() const { return cut_box_; }
   bool moved() const { return moved_; }
-  const motion::Vec3& start() const { return start_; }
-  const motion::Vec3& end() const { return end_; }
+  const motion::MachineVector& start() const { return start_; }
+  const motion::MachineVector& end() const { return end_; }
   double tolerance_mm() const { return tolerance_mm_; }  // 0: exact
 
  private:
@@ -72,8 +72,8 @@ class PathSketch {
   machine::Box cut_box_;
   bool moved_ = false;
   bool plunging_ = false;
-  motion::Vec3 start_;
-  motion::Vec3 end_;
+  motion::MachinePoint start_;
+  motion::MachineVector end_;
   double tolerance_mm_ = 0.0;
 };
 

@@ -24,8 +24,8 @@ enum class PictureView { kXY, kXZ, kYZ, kDirection };
 struct PictureOptions {
   // Up to four. Empty: XY for a mill; XY, direction, XZ and YZ for a machine with five axes.
   std::vector<PictureView> views;
-  motion::Vec3 direction{1.0, -1.0, 0.8};  // of kDirection: from the part towards the eye
-  int width_px = 1600;                     // of the whole picture; its height follows
+  motion::MachineVector direction{1.0, -1.0, 0.8};  // of kDirection: from the part towards the eye
+  int width_px = 1600;                              // of the whole picture; its height follows
 };
 
 // Collects what a picture needs, in bounded memory.

@@ -54,8 +54,8 @@ class PageWriter {
     double high = -HUGE_VAL;
     for (const SketchElement& element : sketch_.elements()) {
       if (!element.cuts) continue;
-      low = std::min({low, element.from.z, element.to.z});
-      high = std::max(high, std::min(element.from.z, element.to.z));
+      low = std::min({low, element.from.z(), element.to.z()});
+      high = std::max(high, std::min(element.from.z(), element.to.z()));
     }
     if (!(high - low > kFlat_mm)) return {};
     return {.low_mm = low, .high_mm = high, .shaded = true};
@@ -156,10 +156,10 @@ class PageWriter {
     }
     const machine::Box& box = report_.cut.empty() ? report_.tip : report_.cut;
     if (!box.empty()) {
-      const motion::Vec3 size = box.max - box.min;
+      const motion::MachineVector size = box.max - box.min;
       const auto side = [](double mm) { return TrimmedText(mm, mm < 100.0 ? 2 : 1); };
       row(report_.cut.empty() ? "extent" : "cut extent",
-          side(size.x) + " × " + side(size.y) + " × " + side(size.z) + " mm");
+          side(size.x()) + " × " + side(size.y()) + " × " + side(size.z()) + " mm");
     }
     row("steps", std::to_string(report_.steps_executed));
     if (!report_.findings.empty()) {
@@ -243,14 +243,14 @@ class PageWriter {
     y += 20.0;
     machine::Box all = travel;
     all.Add(sketch_.box());
-    const double width = all.max.x - all.min.x;
-    const double height = all.max.y - all.min.y;
+    const double width = all.max.x() - all.min.x();
+    const double height = all.max.y() - all.min.y();
     if (!(width > 0.0) || !(height > 0.0)) return y;
     const double scale = std::min(kPictureColumn / width, 190.0 / height);
     const auto place = [&](const machine::Box& box) {
-      return ScreenRect{column_x_ + (box.min.x - all.min.x) * scale,
-                        y + (all.max.y - box.max.y) * scale, (box.max.x - box.min.x) * scale,
-                        (box.max.y - box.min.y) * scale};
+      return ScreenRect{column_x_ + (box.min.x() - all.min.x()) * scale,
+                        y + (all.max.y() - box.max.y()) * scale,
+                        (box.max.x() - box.min.x()) * scale, (box.max.y() - box.min.y()) * scale};
     };
     AppendRect(body_, place(travel),
                "fill=\"#ffffff\" stroke=\"#b0894a\" stroke-width=\"1.2\" "
@@ -275,9 +275,9 @@ class PageWriter {
       return FixedText(low, 0) + " to " + FixedText(high, 0);
     };
     AppendText(body_, {column_x_, y},
-               "X " + range(travel.min.x, travel.max.x) + ", Y " +
-                   range(travel.min.y, travel.max.y) + ", Z " + range(travel.min.z, travel.max.z) +
-                   " mm",
+               "X " + range(travel.min.x(), travel.max.x()) + ", Y " +
+                   range(travel.min.y(), travel.max.y()) + ", Z " +
+                   range(travel.min.z(), travel.max.z()) + " mm",
                {.size = 11.0, .colour = kFaint});
     return y + 12.0;
   }

@@ -1,6 +1,7 @@
 #include "engine/simulation/picture_panel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <tuple>
@@ -11,7 +12,7 @@
 namespace rmlcell::simulation {
 namespace {
 
-using motion::Vec3;
+using motion::MachineVector;
 
 constexpr double kTick_px = 78.0;      // least distance of ruler marks
 constexpr double kScaleBar_px = 90.0;  // least length of the scale bar
@@ -59,9 +60,9 @@ void DrawRulers(const Panel& panel, std::string& out) {
 void DrawBox(const machine::Box& box, const Panel& panel, std::string_view style,
              std::string& out) {
   const auto corner = [&](unsigned bits) {
-    return panel.Project({(bits & 1) != 0 ? box.max.x : box.min.x,
-                          (bits & 2) != 0 ? box.max.y : box.min.y,
-                          (bits & 4) != 0 ? box.max.z : box.min.z});
+    return panel.Project({(bits & 1) != 0 ? box.max.x() : box.min.x(),
+                          (bits & 2) != 0 ? box.max.y() : box.min.y(),
+                          (bits & 4) != 0 ? box.max.z() : box.min.z()});
   };
   std::set<std::tuple<double, double, double, double>>
       drawn;  // an axial view sees edges behind each other
@@ -162,15 +163,14 @@ void DrawScaleBar(const Panel& panel, std::string& out) {
 void DrawTriad(const Panel& panel, std::string& out) {
   constexpr double kArm_px = 34.0;
   const ScreenPoint middle{panel.rect.x + 56.0, panel.rect.y + panel.rect.height - 56.0};
-  constexpr std::pair<Vec3, const char*> kAxes[] = {
-      {{1, 0, 0}, "X"}, {{0, 1, 0}, "Y"}, {{0, 0, 1}, "Z"}};
-  for (const auto& [axis, name] : kAxes) {
-    const double right = Dot(axis, panel.frame.right);
-    const double up = Dot(axis, panel.frame.up);
+  constexpr std::array kNames{"X", "Y", "Z"};
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    const double right = panel.frame.right[i];
+    const double up = panel.frame.up[i];
     const ScreenPoint tip{middle.x + kArm_px * right, middle.y - kArm_px * up};
     AppendLine(out, middle, tip, Stroke(kFaint, 1.6, "stroke-linecap=\"round\""));
     AppendText(out, {middle.x + (kArm_px + 11.0) * right, middle.y - (kArm_px + 11.0) * up + 4.0},
-               name, {.size = 11.5, .colour = kInk, .anchor = "middle", .bold = true});
+               kNames[i], {.size = 11.5, .colour = kInk, .anchor = "middle", .bold = true});
   }
 }
 

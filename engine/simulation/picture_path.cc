@@ -10,7 +10,8 @@
 namespace rmlcell::simulation {
 namespace {
 
-using motion::Vec3;
+using motion::MachinePoint;
+using motion::MachineVector;
 
 constexpr double kPrecision_px = 0.05;   // of straight neighbours merged into one line
 constexpr double kAlike_px = 0.2;        // closer strokes cannot be told apart
@@ -29,12 +30,14 @@ enum class Layer { kTravel, kCut };
 // A circle as a panel sees it: an ellipse.
 struct SeenCircle {
   PathData::Ellipse ellipse;
-  Vec3 spoke;  // from the centre to the start of the arc, mm
-  Vec3 side;   // the same, a quarter turn on
-  Vec3 centre;
+  MachineVector spoke;  // from the centre to the start of the arc, mm
+  MachineVector side;   // the same, a quarter turn on
+  MachinePoint centre;
   double sweep = 0.0;
 
-  Vec3 At(double angle) const { return centre + spoke * std::cos(angle) + side * std::sin(angle); }
+  MachinePoint At(double angle) const {
+    return centre + spoke * std::cos(angle) + side * std::sin(angle);
+  }
 };
 
 // What part of a segment lies inside a rectangle (Liang and Barsky).
@@ -62,7 +65,7 @@ std::optional<Clip> ClipTo(const ScreenRect& rect, const ScreenPoint& a, const S
   return clip;
 }
 
-ScreenPoint Flat(const Vec3& p) { return {p.x, p.y}; }
+ScreenPoint Flat(const MachinePoint& p) { return {p.x(), p.y()}; }
 
 class PathDrawing {
  public:
@@ -95,7 +98,7 @@ class PathDrawing {
   std::size_t size() const { return elements_.size(); }
 
  private:
-  Vec3 OnPage(const Vec3& point) const {
+  MachineVector OnPage(const MachinePoint& point) const {
     const ScreenPoint p = panel_.Project(point);
     return {p.x, p.y, 0.0};
   }
@@ -106,7 +109,7 @@ class PathDrawing {
     flat.to = OnPage(element.to);
     flat.arc = -1;
     if (element.cuts && depth_.shaded) {
-      const double z = std::min(element.from.z, element.to.z);
+      const double z = std::min(element.from.z(), element.to.z());
       flat.shade = static_cast<std::uint8_t>(depth_.ShadeOf(z));
     }
     if (!element.cuts) flat.use = machine::MotionUse::kTravel;  // one look for all that does not
@@ -119,11 +122,11 @@ class PathDrawing {
 
   void PushLine(const SketchElement& line) {
     // A drilled hole is a dot from above; a rapid move towards the eye is nothing.
-    if (!line.cuts && Distance(line.from, line.to) < kPrecision_px) return;
+    if (!line.cuts && (line.from - line.to).norm() < kPrecision_px) return;
     const std::optional<Clip> clip = ClipTo(clip_, Flat(line.from), Flat(line.to));
     if (!clip) return;
     SketchElement inside = line;
-    const Vec3 way = line.to - line.from;
+    const MachineVector way = line.to - line.from;
     inside.from = line.from + way * clip->begin;
     inside.to = line.to - way * (1.0 - clip->end);
     elements_.push_back(inside);
@@ -131,26 +134,27 @@ class PathDrawing {
 
   void ProjectArc(const SketchElement& element, SketchElement flat) {
     const SketchCircle& circle = CircleOf(element);
-    const Vec3 centre = OnPage(circle.centre);
+    const MachinePoint centre = OnPage(circle.centre);
     const double radius = circle.radius_mm * panel_.scale;
-    const bool near = centre.x + radius >= clip_.x && centre.x - radius <= clip_.x + clip_.width &&
-                      centre.y + radius >= clip_.y && centre.y - radius <= clip_.y + clip_.height;
+    const bool near =
+        centre.x() + radius >= clip_.x && centre.x() - radius <= clip_.x + clip_.width &&
+        centre.y() + radius >= clip_.y && centre.y() - radius <= clip_.y + clip_.height;
     if (!near) return;
     flat.middle = OnPage(element.middle);
-    const Vec3 chord_middle = (flat.from + flat.to) * 0.5;
-    if (circle.sweep_rad < kPi && Distance(flat.middle, chord_middle) < kStraight_px) {
+    const MachineVector chord_middle = (flat.from + flat.to) * 0.5;
+    if (circle.sweep_rad < kPi && (flat.middle - chord_middle).norm() < kStraight_px) {
       PushLine(flat);
       return;
     }
-    const double lean = Dot(circle.normal, panel_.frame.towards_eye);
+    const double lean = circle.normal.dot(panel_.frame.towards_eye);
     if (radius * std::abs(lean) < kEdgeOn_px) {
       PushEdgeOn(element, flat);
       return;
     }
     SeenCircle seen;
     // The long axis lies across the way that the normal leans to.
-    const double right = Dot(circle.normal, panel_.frame.right);
-    const double up = Dot(circle.normal, panel_.frame.up);
+    const double right = circle.normal.dot(panel_.frame.right);
+    const double up = circle.normal.dot(panel_.frame.up);
     const bool tilted = std::hypot(right, up) > 1e-9;
     seen.ellipse = {.rx = radius,
                     .ry = tilted ? radius * std::abs(lean) : radius,
@@ -159,7 +163,7 @@ class PathDrawing {
                     .clockwise = lean < 0.0};
     seen.centre = circle.centre;
     seen.spoke = element.from - circle.centre;
-    seen.side = Cross(circle.normal, seen.spoke);
+    seen.side = circle.normal.cross(seen.spoke);
     seen.sweep = circle.sweep_rad;
     flat.arc = static_cast<std::int32_t>(circles_.size());
     circles_.push_back(seen);
@@ -169,11 +173,11 @@ class PathDrawing {
   // To and fro on a line: as far as the circle reaches.
   void PushEdgeOn(const SketchElement& element, SketchElement flat) {
     const SketchCircle& circle = CircleOf(element);
-    const Vec3 spoke = element.from - circle.centre;
-    const Vec3 side = Cross(circle.normal, spoke);
-    const Vec3 axis = Cross(circle.normal, panel_.frame.towards_eye);
+    const MachineVector spoke = element.from - circle.centre;
+    const MachineVector side = circle.normal.cross(spoke);
+    const MachineVector axis = circle.normal.cross(panel_.frame.towards_eye);
     // The ends of the line: where the derivative of the place along `axis` is zero.
-    double angle = std::atan2(Dot(side, axis), Dot(spoke, axis));
+    double angle = std::atan2(side.dot(axis), spoke.dot(axis));
     angle -= kPi * std::floor(angle / kPi);
     for (; angle < circle.sweep_rad; angle += kPi) {
       SketchElement part = flat;
@@ -192,7 +196,7 @@ class PathDrawing {
   double StrokeWidth() const {
     double length = 0.0;
     for (const SketchElement& element : elements_) {
-      if (element.cuts) length += Distance(element.from, element.to);
+      if (element.cuts) length += (element.from - element.to).norm();
     }
     const double area = panel_.rect.width * panel_.rect.height;
     return std::clamp(length > 0.0 ? 0.5 * area / length : kBoldest_px, kFinest_px, kBoldest_px);

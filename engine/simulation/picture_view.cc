@@ -8,7 +8,8 @@
 namespace rmlcell::simulation {
 namespace {
 
-using motion::Vec3;
+using motion::MachinePoint;
+using motion::MachineVector;
 
 constexpr double kMargin = 0.06;  // around what is shown, of the larger extent: a line gets room
 constexpr double kWholeIfWithin = 1.8;  // the path is shown whole when at most this much larger
@@ -18,9 +19,9 @@ constexpr double kGap_px = 64.0;  // between panels: the rulers of the next one
 constexpr double kPanelMin_px = 230.0;
 constexpr double kPanelHeightMax_px = 900.0;  // of all rows
 
-Vec3 Unit(const Vec3& v) {
-  const double length = Norm(v);
-  return length > 0.0 ? v * (1.0 / length) : Vec3{};
+MachineVector Unit(const MachineVector& v) {
+  const double length = v.norm();
+  return length > 0.0 ? v * (1.0 / length) : MachineVector{};
 }
 
 // Shares the room among two rows or columns by what they need, but leaves each its least.
@@ -33,7 +34,7 @@ std::pair<double, double> Share(double room, double first, double second) {
 
 }  // namespace
 
-ViewFrame FrameOf(PictureView view, const Vec3& direction) {
+ViewFrame FrameOf(PictureView view, const MachineVector& direction) {
   switch (view) {
     case PictureView::kXY:
       return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, "X", "Y", "XY from above"};
@@ -46,10 +47,10 @@ ViewFrame FrameOf(PictureView view, const Vec3& direction) {
   }
   ViewFrame frame;
   frame.towards_eye = Unit(direction);
-  if (frame.towards_eye == Vec3{}) frame.towards_eye = {0, 0, 1};
-  frame.right = Unit(Cross({0, 0, 1}, frame.towards_eye));
-  if (frame.right == Vec3{}) frame.right = {1, 0, 0};  // straight from above or below
-  frame.up = Cross(frame.towards_eye, frame.right);
+  if (frame.towards_eye == MachineVector{}) frame.towards_eye = {0, 0, 1};
+  frame.right = Unit(MachineVector::UnitZ().cross(frame.towards_eye));
+  if (frame.right == MachineVector{}) frame.right = {1, 0, 0};  // straight from above or below
+  frame.up = frame.towards_eye.cross(frame.right);
   frame.title = "in space";
   return frame;
 }
@@ -69,11 +70,12 @@ std::vector<ViewFrame> FramesOf(const PictureOptions& options, const machine::Ma
 
 Extent ExtentOf(const machine::Box& box, const ViewFrame& frame) {
   Extent extent{HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL};
-  for (const double x : {box.min.x, box.max.x}) {
-    for (const double y : {box.min.y, box.max.y}) {
-      for (const double z : {box.min.z, box.max.z}) {
-        const double u = Dot({x, y, z}, frame.right);
-        const double v = Dot({x, y, z}, frame.up);
+  for (const double x : {box.min.x(), box.max.x()}) {
+    for (const double y : {box.min.y(), box.max.y()}) {
+      for (const double z : {box.min.z(), box.max.z()}) {
+        const MachinePoint corner{x, y, z};
+        const double u = corner.dot(frame.right);
+        const double v = corner.dot(frame.up);
         extent.left = std::min(extent.left, u);
         extent.right = std::max(extent.right, u);
         extent.bottom = std::min(extent.bottom, v);
@@ -84,9 +86,9 @@ Extent ExtentOf(const machine::Box& box, const ViewFrame& frame) {
   return extent;
 }
 
-ScreenPoint Panel::Project(const Vec3& point) const {
-  return {rect.x + 0.5 * rect.width + (Dot(point, frame.right) - middle_right) * scale,
-          rect.y + 0.5 * rect.height - (Dot(point, frame.up) - middle_up) * scale};
+ScreenPoint Panel::Project(const MachinePoint& point) const {
+  return {rect.x + 0.5 * rect.width + (point.dot(frame.right) - middle_right) * scale,
+          rect.y + 0.5 * rect.height - (point.dot(frame.up) - middle_up) * scale};
 }
 
 Extent Panel::visible() const {
@@ -164,12 +166,12 @@ machine::Box BoxToShow(const machine::Box& all, const machine::Box& cut,
   const bool whole = cut.empty() || all.diagonal_mm() <= kWholeIfWithin * cut.diagonal_mm();
   machine::Box box = whole ? all : cut;
   if (box.empty()) box = travel;
-  if (box.empty()) box.Add(Vec3{});
-  const Vec3 size = box.max - box.min;
-  const double largest = std::max({size.x, size.y, size.z, kSmallest_mm});
+  if (box.empty()) box.Add(MachineVector{});
+  const MachineVector size = box.max - box.min;
+  const double largest = std::max({size.x(), size.y(), size.z(), kSmallest_mm});
   const double margin = kMargin * largest;
-  box.Add(box.min - Vec3{margin, margin, margin});
-  box.Add(box.max + Vec3{margin, margin, margin});
+  box.Add(box.min - MachineVector{margin, margin, margin});
+  box.Add(box.max + MachineVector{margin, margin, margin});
   return box;
 }
 

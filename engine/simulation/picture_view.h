@@ -12,14 +12,14 @@ namespace rmlcell::simulation {
 
 // Directions of a view in the machine frame, unit vectors.
 struct ViewFrame {
-  motion::Vec3 right;
-  motion::Vec3 up;
-  motion::Vec3 towards_eye;
+  motion::MachineVector right;
+  motion::MachineVector up;
+  motion::MachineVector towards_eye;
   std::string across;  // name of the axis to the right; empty for an oblique view
   std::string upward;
   std::string title;
 };
-ViewFrame FrameOf(PictureView view, const motion::Vec3& direction);
+ViewFrame FrameOf(PictureView view, const motion::MachineVector& direction);
 
 // The views that are wanted, up to four, or those that suit the machine.
 std::vector<ViewFrame> FramesOf(const PictureOptions& options, const machine::MachineShape& shape);
@@ -50,7 +50,7 @@ struct Panel {
   double middle_right = 0.0;  // what stands in the middle of the panel, along right and up
   double middle_up = 0.0;
 
-  ScreenPoint Project(const motion::Vec3& point) const;
+  ScreenPoint Project(const motion::MachinePoint& point) const;
   Extent visible() const;
 };
 

@@ -59,13 +59,13 @@ struct PlotRecorder::State {
         done.beam_on ? std::clamp(done.power.constant_percent + done.power.percent_per_mm_s * speed,
                                   0.0, 100.0)
                      : 0.0;
-    const motion::AxisValues axes = shape.five_axis
-                                        ? point.axes
-                                        : motion::AxisValues{point.tip.tip.x, point.tip.tip.y,
-                                                             point.tip.tip.z, point.tip.a_rad};
+    const motion::AxisValues axes =
+        shape.five_axis ? point.axes
+                        : motion::AxisValues{point.tip.tip.x(), point.tip.tip.y(),
+                                             point.tip.tip.z(), point.tip.a_rad, 0.0};
     std::copy(axes.begin(), axes.end(), values.begin() + PlotPage::kFirstAxis);
     if (!std::exchange(moved, true)) {  // until now they stood here, and nobody had told where
-      for (std::size_t k = 0; k < axes.size(); ++k)
+      for (std::size_t k = 0; k < motion::kAxisCount; ++k)
         curves.envelope.Amend(PlotPage::kFirstAxis + k, axes[k]);
     }
     curves.envelope.Add(std::min(done.start + FromSeconds(t_s), done.end), values);

@@ -8,7 +8,8 @@
 namespace rmlcell::simulation {
 namespace {
 
-using motion::Vec3;
+using motion::MachinePoint;
+using motion::MachineVector;
 
 // Halvings of a part before a chord is taken as it is: 1/65536 of a swing is far below any
 // tolerance.
@@ -16,11 +17,12 @@ constexpr int kHalvingsMax = 16;
 // The first guess: a curve that turns to and fro within less cannot be told from its middle points.
 constexpr double kFirstChord_rad = 0.5;
 
-double DistanceToSegment(const Vec3& point, const Vec3& a, const Vec3& b) {
-  const Vec3 along = b - a;
-  const double squared = Dot(along, along);
-  const double share = squared > 0.0 ? std::clamp(Dot(point - a, along) / squared, 0.0, 1.0) : 0.0;
-  return Distance(point, a + along * share);
+double DistanceToSegment(const MachinePoint& point, const MachineVector& a,
+                         const MachineVector& b) {
+  const MachineVector along = b - a;
+  const double squared = along.dot(along);
+  const double share = squared > 0.0 ? std::clamp((point - a).dot(along) / squared, 0.0, 1.0) : 0.0;
+  return (point - (a + along * share)).norm();
 }
 
 }  // namespace
@@ -38,11 +40,11 @@ double CurveCutter::NextCut(double p) const {
   double step = whole;
   if (curve_.turning_rad() > kFirstChord_rad) step *= kFirstChord_rad / curve_.turning_rad();
   const double shortest = whole / (1 << kHalvingsMax);
-  const Vec3 from = curve_.Tip(p);
+  const MachinePoint from = curve_.Tip(p);
   for (;; step *= 0.5) {
     const double end = p + step >= curve_.end() - 0.5 * shortest ? curve_.end() : p + step;
     if (step <= shortest) return end;
-    const Vec3 to = curve_.Tip(end);
+    const MachinePoint to = curve_.Tip(end);
     const auto off = [&](double share) {
       return DistanceToSegment(curve_.Tip(p + (end - p) * share), from, to);
     };

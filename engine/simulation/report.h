@@ -78,7 +78,7 @@ struct StepFigures {
 struct FinalPosition {
   motion::TipPose tip;
   motion::AxisPose axes;
-  motion::Vec3 program_point;
+  motion::ProgramPoint program_point;
   double program_a = 0.0;  // rad, or degrees of a stream
   double program_b = 0.0;
 
@@ -113,7 +113,7 @@ struct CornerFigures {
   std::uint64_t capped = 0;          // blended slower, because of a short neighbour or an axis
   double deviation_mm_max = 0.0;     // of the path from a target
   machine::Place deviation_place;
-  motion::Vec3 deviation_point;  // the tip in the middle of that corner
+  motion::MachineVector deviation_point;  // the tip in the middle of that corner
 
   bool operator==(const CornerFigures&) const = default;
 };
@@ -180,7 +180,7 @@ struct AxisViolation {
   double excess = 0.0;     // mm or rad
   bool at_target = false;  // the target lies outside; else the path on the way
   motion::AxisPose axes;   // where it is worst
-  motion::Vec3 tip;
+  motion::MachinePoint tip;
   SimTime first_at{0};  // that the step did it: a motion begins
   std::uint64_t count = 1;
 

@@ -56,10 +56,10 @@ struct SampleRecorder::State {
       block += ',';
     };
     add(time_s, 9);
-    for (std::size_t i = 0; i < axes.size(); ++i) add(axes[i], i < 3 ? 6 : 9);
-    add(tip.x, 6);
-    add(tip.y, 6);
-    add(tip.z, 6);
+    for (int i = 0; i < motion::kAxisCount; ++i) add(axes[i], i < 3 ? 6 : 9);
+    add(tip.x(), 6);
+    add(tip.y(), 6);
+    add(tip.z(), 6);
     add(speed, 6);
     add(power, 4);
     block += std::to_string(place.program) + ',' + std::to_string(place.step) + ',';
@@ -82,7 +82,8 @@ struct SampleRecorder::State {
 
   void StandAt(const motion::TipPose& pose, const motion::AxisValues& of_axes) {
     tip = pose.tip;
-    axes = shape.five_axis ? of_axes : motion::AxisValues{tip.x, tip.y, tip.z, pose.a_rad, 0.0};
+    axes =
+        shape.five_axis ? of_axes : motion::AxisValues{tip.x(), tip.y(), tip.z(), pose.a_rad, 0.0};
     known = true;
   }
 
@@ -97,7 +98,7 @@ struct SampleRecorder::State {
   bool known = false;     // where the machine is
   double looked_s = 0.0;  // when it was there
   motion::AxisValues axes{};
-  motion::Vec3 tip;
+  motion::MachinePoint tip;
   double speed = 0.0;
   double power = 0.0;
   machine::Place place;
@@ -110,7 +111,7 @@ SampleRecorder::SampleRecorder(const machine::MachineShape& shape, double rate_h
 SampleRecorder::~SampleRecorder() = default;
 
 void SampleRecorder::StandsAt(const motion::TipPose& tip, const motion::AxisPose& axes) {
-  state_->StandAt(tip, {axes.column.x, axes.column.y, axes.column.z, axes.a_rad, axes.b_rad});
+  state_->StandAt(tip, {axes.column.x(), axes.column.y(), axes.column.z(), axes.a_rad, axes.b_rad});
 }
 
 void SampleRecorder::OnMotion(const machine::MotionDone& done) {

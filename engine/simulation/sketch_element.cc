@@ -8,7 +8,8 @@
 namespace rmlcell::simulation {
 namespace {
 
-using motion::Vec3;
+using motion::MachinePoint;
+using motion::MachineVector;
 
 // Hash of what an element looks like at a resolution, the same from either end.
 class LookKey {
@@ -37,8 +38,8 @@ class LookKey {
     return static_cast<std::uint64_t>(
         std::llround(std::clamp(value * per_cell_, -kFarthest, kFarthest)));
   }
-  std::uint64_t Cell(const Vec3& p) const {
-    return Mix(Mix(Coordinate(p.x), Coordinate(p.y)), Coordinate(p.z));
+  std::uint64_t Cell(const MachinePoint& p) const {
+    return Mix(Mix(Coordinate(p.x()), Coordinate(p.y())), Coordinate(p.z()));
   }
 
   double per_cell_;
@@ -50,25 +51,25 @@ class Stretch {
   explicit Stretch(double tolerance) : tolerance_(tolerance) {}
 
   void Begin(const SketchElement& element) {
-    const Vec3 way = element.to - element.from;
-    const double length = Norm(way);
-    direction_ = length > tolerance_ ? way * (1.0 / length) : Vec3{};
+    const MachineVector way = element.to - element.from;
+    const double length = way.norm();
+    direction_ = length > tolerance_ ? way * (1.0 / length) : MachineVector{};
   }
 
   // Whether `next` goes on straight from `last`, which grew so far.
   bool Takes(const SketchElement& last, const SketchElement& next) const {
     if (last.arc >= 0 || next.arc >= 0 || !last.SameLook(next)) return false;
-    if (!(Distance(last.to, next.from) <= tolerance_)) return false;
-    const Vec3 way = next.to - last.from;
-    if (direction_ == Vec3{}) return Norm(way) <= tolerance_;
-    const double along = Dot(way, direction_);
-    return along >= Dot(last.to - last.from, direction_) &&
-           Norm(way - direction_ * along) <= tolerance_;
+    if (!((last.to - next.from).norm() <= tolerance_)) return false;
+    const MachineVector way = next.to - last.from;
+    if (direction_ == MachineVector{}) return way.norm() <= tolerance_;
+    const double along = way.dot(direction_);
+    return along >= (last.to - last.from).dot(direction_) &&
+           (way - direction_ * along).norm() <= tolerance_;
   }
 
  private:
   double tolerance_;
-  Vec3 direction_;
+  MachineVector direction_;
 };
 
 }  // namespace
@@ -78,7 +79,7 @@ void MergeStraight(std::vector<SketchElement>& elements, double tolerance) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < elements.size(); ++i) {
     SketchElement element = elements[i];
-    if (element.arc >= 0 && Distance(element.from, element.middle) <= tolerance) element.arc = -1;
+    if (element.arc >= 0 && (element.from - element.middle).norm() <= tolerance) element.arc = -1;
     if (kept > 0 && stretch.Takes(elements[kept - 1], element)) {
       elements[kept - 1].to = element.to;
       continue;

@@ -10,10 +10,10 @@ namespace rmlcell::simulation {
 // A line or an arc of a path, as a picture needs it. In the machine frame in mm, or on a page in
 // pixels with z = 0.
 struct SketchElement {
-  motion::Vec3 from{};
-  motion::Vec3 to{};
-  motion::Vec3 middle{};  // of an arc
-  std::int32_t arc = -1;  // index of its circle; -1: a line
+  motion::MachinePoint from{};
+  motion::MachinePoint to{};
+  motion::MachinePoint middle{};  // of an arc
+  std::int32_t arc = -1;          // index of its circle; -1: a line
   machine::MotionUse use = machine::MotionUse::kTravel;
   bool cuts = false;
   std::uint8_t shade = 0;  // what else makes it look different

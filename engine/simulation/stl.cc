@@ -8,7 +8,7 @@
 namespace rmlcell::simulation {
 namespace {
 
-using motion::Vec3;
+using motion::MachineVector;
 
 // The surface of the body, triangle by triangle, seen counter-clockwise from outside.
 template <class Visit>
@@ -18,11 +18,12 @@ void ForEachTriangle(const HeightField& field, Visit visit) {
   const std::size_t ny = field.rows();
   const auto at = [&](std::size_t column, std::size_t row, bool top) {
     const double height = std::max(static_cast<double>(field.height(column, row)), stock.bottom);
-    return Vec3{stock.x_min + (static_cast<double>(column) + 0.5) * stock.cell,
-                stock.y_min + (static_cast<double>(row) + 0.5) * stock.cell,
-                top ? height : stock.bottom};
+    return MachineVector{stock.x_min + (static_cast<double>(column) + 0.5) * stock.cell,
+                         stock.y_min + (static_cast<double>(row) + 0.5) * stock.cell,
+                         top ? height : stock.bottom};
   };
-  const auto quad = [&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const auto quad = [&](const MachineVector& a, const MachineVector& b, const MachineVector& c,
+                        const MachineVector& d) {
     visit(a, b, c);
     visit(a, c, d);
   };
@@ -54,8 +55,8 @@ void PutLittle(std::string& bytes, std::uint32_t value) {
     bytes += static_cast<char>(static_cast<unsigned char>(value >> shift & 0xFF));
 }
 
-void PutVector(std::string& bytes, const Vec3& v) {
-  for (const double c : {v.x, v.y, v.z})
+void PutVector(std::string& bytes, const MachineVector& v) {
+  for (const double c : {v.x(), v.y(), v.z()})
     PutLittle(bytes, std::bit_cast<std::uint32_t>(static_cast<float>(c)));
 }
 
@@ -67,19 +68,20 @@ bool WriteStl(const HeightField& field, const std::function<bool(std::string_vie
   bytes.resize(80, ' ');
   PutLittle(bytes, TriangleCount(field));
   bool wanted = true;
-  ForEachTriangle(field, [&](const Vec3& a, const Vec3& b, const Vec3& c) {
-    if (!wanted) return;
-    const Vec3 across = Cross(b - a, c - a);
-    const double length = Norm(across);
-    PutVector(bytes, length > 0.0 ? across * (1.0 / length) : Vec3{});
-    PutVector(bytes, a);
-    PutVector(bytes, b);
-    PutVector(bytes, c);
-    bytes.append(2, '\0');
-    if (bytes.size() < kPortion) return;
-    wanted = sink(bytes);
-    bytes.clear();
-  });
+  ForEachTriangle(field,
+                  [&](const MachineVector& a, const MachineVector& b, const MachineVector& c) {
+                    if (!wanted) return;
+                    const MachineVector across = (b - a).cross(c - a);
+                    const double length = across.norm();
+                    PutVector(bytes, length > 0.0 ? across * (1.0 / length) : MachineVector{});
+                    PutVector(bytes, a);
+                    PutVector(bytes, b);
+                    PutVector(bytes, c);
+                    bytes.append(2, '\0');
+                    if (bytes.size() < kPortion) return;
+                    wanted = sink(bytes);
+                    bytes.clear();
+                  });
   return wanted && sink(bytes);
 }
 

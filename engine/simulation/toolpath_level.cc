@@ -8,18 +8,18 @@
 namespace rmlcell::simulation {
 namespace {
 
-using motion::Vec3;
+using motion::MachineVector;
 
 constexpr double kUmPerMillimetre = 1000.0;
 
-Vec3 Way(const ToolpathPoint& from, const ToolpathPoint& to) {
+MachineVector Way(const ToolpathPoint& from, const ToolpathPoint& to) {
   return {static_cast<double>(to.x_um) - from.x_um, static_cast<double>(to.y_um) - from.y_um,
           static_cast<double>(to.z_um) - from.z_um};
 }
 
 // Of two unit vectors; precise for small ones, too.
-double AngleBetween(const Vec3& a, const Vec3& b) {
-  return 2.0 * std::atan2(Norm(a - b), Norm(a + b));
+double AngleBetween(const MachineVector& a, const MachineVector& b) {
+  return 2.0 * std::atan2((a - b).norm(), (a + b).norm());
 }
 
 bool JoinsTo(const ToolpathRun& before, const ToolpathRun& run) {
@@ -61,11 +61,12 @@ void ToolpathLevel::Follow(const ToolpathRun& run, const ToolpathPoint* points) 
   }
   run_ = run;
   double length = 0.0;
-  for (std::uint32_t k = 1; k < run.point_count; ++k) length += Norm(Way(points[k - 1], points[k]));
+  for (std::uint32_t k = 1; k < run.point_count; ++k)
+    length += Way(points[k - 1], points[k]).norm();
   const double duration = static_cast<double>(run.end_us - run.start_us);
   double done = 0.0;
   for (std::uint32_t k = 1; k < run.point_count; ++k) {
-    done += Norm(Way(points[k - 1], points[k]));
+    done += Way(points[k - 1], points[k]).norm();
     const double share = length > 0.0 ? done / length : 1.0;
     Add({points[k], run.start_us + std::llround(share * duration)});
   }
@@ -74,8 +75,8 @@ void ToolpathLevel::Follow(const ToolpathRun& run, const ToolpathPoint* points) 
 
 // A line from the anchor to the end of `way` passes everything left out, and does not end short of
 // it.
-bool ToolpathLevel::Reaches(const Vec3& way) const {
-  const double distance = Norm(way);
+bool ToolpathLevel::Reaches(const MachineVector& way) const {
+  const double distance = way.norm();
   if (distance < farthest_um_) return false;
   if (half_angle_rad_ < 0.0) return true;
   return AngleBetween(axis_, way * (1.0 / distance)) <= half_angle_rad_;
@@ -83,11 +84,11 @@ bool ToolpathLevel::Reaches(const Vec3& way) const {
 
 // The end of `way` is left out, too: lines have to pass it within the tolerance. Of what two cones
 // share the largest cone is taken, so that the cost of a point is the same for ever.
-void ToolpathLevel::Narrow(const Vec3& way) {
-  const double distance = Norm(way);
+void ToolpathLevel::Narrow(const MachineVector& way) {
+  const double distance = way.norm();
   if (distance <= tolerance_um_) return;  // the anchor is near enough
   farthest_um_ = std::max(farthest_um_, distance);
-  const Vec3 direction = way * (1.0 / distance);
+  const MachineVector direction = way * (1.0 / distance);
   const double half = std::asin(tolerance_um_ / distance);
   if (half_angle_rad_ < 0.0) {
     axis_ = direction;
@@ -101,15 +102,15 @@ void ToolpathLevel::Narrow(const Vec3& way) {
   } else if (between + half_angle_rad_ > half) {
     const double shared = 0.5 * (half_angle_rad_ + half - between);
     const double turn = half_angle_rad_ - shared;  // of the axis, towards `direction`
-    const Vec3 across = direction - axis_ * Dot(axis_, direction);
-    const double sideways = Norm(across);
+    const MachineVector across = direction - axis_ * axis_.dot(direction);
+    const double sideways = across.norm();
     if (sideways > 0.0) axis_ = axis_ * std::cos(turn) + across * (std::sin(turn) / sideways);
     half_angle_rad_ = std::max(0.0, shared);
   }
 }
 
 void ToolpathLevel::Add(const Vertex& next) {
-  const Vec3 way = Way(anchor_, next.point);
+  const MachineVector way = Way(anchor_, next.point);
   if (moved_) {
     Narrow(Way(anchor_, last_.point));
     if (!Reaches(way)) Keep();

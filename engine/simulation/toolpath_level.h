@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "engine/motion/vec3.h"
+#include "engine/motion/geometry/frames.h"
 #include "engine/simulation/toolpath_writer.h"
 
 // Levels of detail of a toolpath: each has eight times the tolerance of the one before. motion.md
@@ -35,8 +35,8 @@ class ToolpathLevel {
 
   void Follow(const ToolpathRun& run, const ToolpathPoint* points);
   void Add(const Vertex& next);
-  bool Reaches(const motion::Vec3& way) const;
-  void Narrow(const motion::Vec3& way);
+  bool Reaches(const motion::MachineVector& way) const;
+  void Narrow(const motion::MachineVector& way);
   void Keep();
   void Close();
 
@@ -49,7 +49,7 @@ class ToolpathLevel {
   bool moved_ = false;    // last_ is beyond anchor_
   // Directions from the anchor in which a line passes all that was left out: a cone. Half angle
   // below zero: any.
-  motion::Vec3 axis_;
+  motion::MachineVector axis_;
   double half_angle_rad_ = -1.0;
   double farthest_um_ = 0.0;  // of what was left out, from the anchor
 };

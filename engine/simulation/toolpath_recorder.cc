@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 #include <utility>
 
 #include "engine/simulation/polyline.h"
@@ -10,7 +9,8 @@
 namespace rmlcell::simulation {
 namespace {
 
-using motion::Vec3;
+using motion::MachinePoint;
+using motion::MachineVector;
 
 // Of the tolerance, what merging may take: dropped vertices lie at most twice this off the result.
 constexpr double kMergeShare = 0.025;
@@ -24,8 +24,8 @@ std::int32_t Micrometres(double mm) {
   return um == um ? static_cast<std::int32_t>(std::llround(um)) : 0;
 }
 
-ToolpathPoint PointOf(const Vec3& tip) {
-  return {Micrometres(tip.x), Micrometres(tip.y), Micrometres(tip.z)};
+ToolpathPoint PointOf(const MachinePoint& tip) {
+  return {Micrometres(tip.x()), Micrometres(tip.y()), Micrometres(tip.z())};
 }
 
 std::int64_t Microseconds(SimTime time) {
@@ -44,9 +44,13 @@ SimTime TimeAt(const machine::MotionDone& done, double s) {
   const auto place_at = [&](std::int64_t ns) {
     return done.motion->speed.At(done.profile_start_s + ToSeconds(SimTime(ns) - done.start)).s;
   };
-  const auto times = std::views::iota(done.start.count(), done.end.count());
-  const auto found = std::ranges::lower_bound(times, s, {}, place_at);
-  return done.start + SimTime(found - times.begin());
+  std::int64_t before = done.start.count() - 1;  // not there yet, or the start
+  std::int64_t reached = done.end.count();
+  while (reached - before > 1) {
+    const std::int64_t middle = before + (reached - before) / 2;
+    (place_at(middle) < s ? before : reached) = middle;
+  }
+  return SimTime(reached);
 }
 
 }  // namespace
@@ -72,7 +76,7 @@ void ToolpathRecorder::OnMotion(const machine::MotionDone& done) {
   if (writer_.closed()) return;
   const motion::PathPiece& path = done.motion->path;
   const motion::Head& head = done.motion->head;
-  const Vec3 first = TipAt(path, head, done.from);
+  const MachineVector first = TipAt(path, head, done.from);
   const ToolpathRun run{.program = done.place.program,
                         .step = done.place.step,
                         .use = done.use,
@@ -86,28 +90,28 @@ void ToolpathRecorder::OnMotion(const machine::MotionDone& done) {
     stretch_ = {.anchor = first, .direction = {}, .last = first, .open = false};
   }
   ForEachVertex({path, head, done.from, done.travelled}, chord_tolerance_mm_,
-                [&](double s, const Vec3& tip) {
+                [&](double s, const MachinePoint& tip) {
                   // Only the end of a block needs the time of a vertex on the way.
                   Vertex(tip, writer_.full_with_next() ? TimeAt(done, s) : done.end);
                 });
   writer_.EndAt(Microseconds(done.end));
 }
 
-bool ToolpathRecorder::Merges(const Vec3& tip) {
+bool ToolpathRecorder::Merges(const MachinePoint& tip) {
   if (!stretch_.open) return false;
-  if (Dot(stretch_.direction, stretch_.direction) == 0.0) {
-    const Vec3 along = stretch_.last - stretch_.anchor;
-    const double length = Norm(along);
+  if (stretch_.direction.dot(stretch_.direction) == 0.0) {
+    const MachineVector along = stretch_.last - stretch_.anchor;
+    const double length = along.norm();
     if (length <= merge_tolerance_mm_) return false;  // too short to give a direction
     stretch_.direction = along * (1.0 / length);
   }
-  const Vec3 off = tip - stretch_.anchor;
-  const double forward = Dot(off, stretch_.direction);
-  if (forward <= Dot(stretch_.last - stretch_.anchor, stretch_.direction)) return false;
-  return Norm(off - stretch_.direction * forward) <= merge_tolerance_mm_;
+  const MachineVector off = tip - stretch_.anchor;
+  const double forward = off.dot(stretch_.direction);
+  if (forward <= (stretch_.last - stretch_.anchor).dot(stretch_.direction)) return false;
+  return (off - stretch_.direction * forward).norm() <= merge_tolerance_mm_;
 }
 
-void ToolpathRecorder::Vertex(const Vec3& tip, SimTime at) {
+void ToolpathRecorder::Vertex(const MachinePoint& tip, SimTime at) {
   if (writer_.closed()) return;
   const ToolpathPoint point = PointOf(tip);
   if (writer_.run().point_count > 1) {

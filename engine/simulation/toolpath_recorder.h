@@ -35,14 +35,14 @@ class ToolpathRecorder final : public machine::RunObserver {
  private:
   // The straight stretch that the last vertex belongs to.
   struct Stretch {
-    motion::Vec3 anchor;     // its first vertex
-    motion::Vec3 direction;  // unit; zero while nothing was merged
-    motion::Vec3 last;       // its last vertex, which is the last point of the block
-    bool open = false;       // false: the last vertex stays, whatever comes
+    motion::MachineVector anchor;     // its first vertex
+    motion::MachineVector direction;  // unit; zero while nothing was merged
+    motion::MachinePoint last;        // its last vertex, which is the last point of the block
+    bool open = false;                // false: the last vertex stays, whatever comes
   };
 
-  void Vertex(const motion::Vec3& tip, SimTime at);
-  bool Merges(const motion::Vec3& tip);
+  void Vertex(const motion::MachinePoint& tip, SimTime at);
+  bool Merges(const motion::MachinePoint& tip);
   int SpeedClassOf(const machine::MotionDone& done) const;
 
   double speed_max_mm_s_;

@@ -40,7 +40,7 @@ struct TraceRecord {
   // kMove
   motion::TipPose tip;  // machine frame
   motion::AxisPose axes;
-  motion::Vec3 program_point;
+  motion::ProgramPoint program_point;
   double program_a = 0.0;
   double program_b = 0.0;
   double feed_mm_s = 0.0;

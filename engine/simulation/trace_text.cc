@@ -20,9 +20,9 @@ void Number(std::string& line, double value, int decimals) {
   Word(line, TrimmedText(value, decimals));
 }
 
-void Point(std::string& line, std::string_view name, const motion::Vec3& point) {
+void Point(std::string& line, std::string_view name, const motion::MachinePoint& point) {
   Word(line, name);
-  for (const double value : {point.x, point.y, point.z}) Number(line, value, kLengthDecimals);
+  for (const double value : {point.x(), point.y(), point.z()}) Number(line, value, kLengthDecimals);
 }
 
 void Named(std::string& line, std::string_view name, double value, int decimals) {

@@ -7,11 +7,11 @@
 namespace rmlcell::bridge {
 namespace {
 
-v1::Point ToProto(const motion::Vec3& point) {
+v1::Point ToProto(const motion::MachinePoint& point) {
   v1::Point message;
-  message.set_x(point.x);
-  message.set_y(point.y);
-  message.set_z(point.z);
+  message.set_x(point.x());
+  message.set_y(point.y());
+  message.set_z(point.z());
   return message;
 }
 

@@ -41,7 +41,7 @@ Status CheckMetricText(const v1::ProgramText& program) {
 }
 
 struct Offset {
-  motion::Vec3 move;             // mm
+  motion::MachineVector move;    // mm
   std::array<double, 3> turn{};  // about Z, Y, X, rad
 };
 
@@ -53,7 +53,7 @@ Result<Offset> OffsetOf(const v1::Point& translation,
   }
   Offset offset{{translation.x(), translation.y(), translation.z()}, {}};
   std::ranges::copy(rotation, offset.turn.begin());
-  for (const double value : {offset.move.x, offset.move.y, offset.move.z, offset.turn[0],
+  for (const double value : {offset.move.x(), offset.move.y(), offset.move.z(), offset.turn[0],
                              offset.turn[1], offset.turn[2]}) {
     if (!std::isfinite(value)) return InvalidArgument("translation and rotation must be finite");
   }
@@ -126,7 +126,7 @@ Result<v1::TransformProgramResponse> TransformText(const v1::TransformProgramReq
   const Result<Offset> by = OffsetOf(request.translation(), request.rotation());
   if (!by) return by.error();
   const optimo::Rewriting made = optimo::Transform(
-      program.content(), optimo::RigidMotion::Of(by->move, by->turn[0], by->turn[1], by->turn[2]));
+      program.content(), motion::RigidMotionOf(by->move, by->turn[0], by->turn[1], by->turn[2]));
   v1::TransformProgramResponse response;
   response.set_content(made.text);
   *response.mutable_findings() = FindingsOf(made.diagnostics);
@@ -138,9 +138,9 @@ Result<v1::ShiftProgramResponse> ShiftText(const v1::ShiftProgramRequest& reques
   if (const Status good = CheckMetricText(program); !good) return good.error();
   const Result<Offset> by = OffsetOf(request.translation(), request.rotation());
   if (!by) return by.error();
-  const optimo::Rewriting made =
-      optimo::Shift(program.content(),
-                    {by->move.x, by->move.y, by->move.z, by->turn[0], by->turn[1], by->turn[2]});
+  const optimo::Rewriting made = optimo::Shift(
+      program.content(),
+      {by->move.x(), by->move.y(), by->move.z(), by->turn[0], by->turn[1], by->turn[2]});
   v1::ShiftProgramResponse response;
   response.set_content(made.text);
   *response.mutable_findings() = FindingsOf(made.diagnostics);

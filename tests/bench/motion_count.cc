@@ -15,8 +15,8 @@ std::vector<MoveCommand> Arcs(int count) {
   std::vector<MoveCommand> chain = Contour(count, false);
   for (MoveCommand& move : chain) {
     const TipPose from = move.path.from(), to = move.path.to();
-    const Vec3 way = to.tip - from.tip;
-    const Vec3 via = from.tip + way * 0.5 + Vec3{-way.y, way.x, 0.0} * 0.01;
+    const MachineVector way = to.tip - from.tip;
+    const MachinePoint via = from.tip + way * 0.5 + MachineVector{-way.y(), way.x(), 0.0} * 0.01;
     if (const Result<PathPiece::Arc3> arc = PathPiece::ArcThrough(from, via, to)) {
       move.path = arc->path;
     }

@@ -58,7 +58,7 @@ struct Outcome {
 
 Outcome RunPeer(const Peer& peer, const std::vector<MoveCommand>& chain, double* sum) {
   constexpr double kCycle_s = 0.001;
-  const Vec3& start = chain.front().path.from().tip;
+  const MachinePoint& start = chain.front().path.from().tip;
   const double xyz[3] = {start.x, start.y, start.z};
   const MachineLimits machine = StandardMachine();
   if (peer.open(kCycle_s, machine.tip_speed_mm_s, machine.tip_acceleration_mm_s2, 0.0, xyz) != 0) {
@@ -71,7 +71,7 @@ Outcome RunPeer(const Peer& peer, const std::vector<MoveCommand>& chain, double*
   for (;;) {
     double begin = Now();
     while (next < chain.size() && peer.full() == 0) {
-      const Vec3& to = chain[next].path.to().tip;
+      const MachinePoint& to = chain[next].path.to().tip;
       const double end[3] = {to.x, to.y, to.z};
       const double speed = chain[next].speed_fraction * machine.tip_speed_mm_s;
       if (peer.add_line(end, speed, machine.tip_acceleration_mm_s2, static_cast<int>(next)) != 0) {
@@ -129,7 +129,7 @@ Outcome RunOurs(const std::vector<MoveCommand>& chain, const MachineLimits& mach
       if (times.NextWithin(duration)) {
         const MotionView view(motion);
         times.Through(duration, [&](double, double t) {
-          const Vec3 tip = view.PoseAt(t).tip;
+          const MachinePoint tip = view.PoseAt(t).tip;
           *sum += tip.x + tip.y + tip.z;
           ++samples;
         });

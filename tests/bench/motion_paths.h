@@ -35,7 +35,8 @@ inline std::vector<MoveCommand> Contour(int count, bool head, double speed_fract
 }
 
 // Through the points, /FLY at each, from rest to rest.
-inline std::vector<MoveCommand> Polyline(const std::vector<Vec3>& points, double speed_fraction) {
+inline std::vector<MoveCommand> Polyline(const std::vector<MachinePoint>& points,
+                                         double speed_fraction) {
   std::vector<MoveCommand> chain;
   for (std::size_t k = 1; k < points.size(); ++k) {
     MoveCommand move;
@@ -49,13 +50,13 @@ inline std::vector<MoveCommand> Polyline(const std::vector<Vec3>& points, double
 }
 
 // `legs` of one length, each turned from the last by `turn_rad`, to the same side or in turns.
-inline std::vector<Vec3> Legs(int legs, double length_mm, double turn_rad, bool zigzag,
-                              double rise_mm = 0.0) {
-  std::vector<Vec3> points{{1000.0, 900.0, -200.0}};
+inline std::vector<MachinePoint> Legs(int legs, double length_mm, double turn_rad, bool zigzag,
+                                      double rise_mm = 0.0) {
+  std::vector<MachinePoint> points{{1000.0, 900.0, -200.0}};
   double direction = zigzag ? -0.5 * turn_rad : 0.0;
   for (int k = 0; k < legs; ++k) {
-    points.push_back(points.back() + Vec3{length_mm * std::cos(direction),
-                                          length_mm * std::sin(direction), rise_mm});
+    points.push_back(points.back() + MachineVector{length_mm * std::cos(direction),
+                                                   length_mm * std::sin(direction), rise_mm});
     direction += zigzag && k % 2 == 1 ? -turn_rad : turn_rad;
   }
   return points;

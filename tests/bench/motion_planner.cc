@@ -59,9 +59,9 @@ double BareRate(const std::vector<MoveCommand>& chain, double& sum) {
     return std::min(cap, Reach(from, length, limits));
   };
   for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
-    const Vec3 in = chain[k].path.to().tip - chain[k].path.from().tip;
-    const Vec3 out = chain[k + 1].path.to().tip - chain[k + 1].path.from().tip;
-    const double cosine = Dot(in, out) / std::sqrt(Dot(in, in) * Dot(out, out));
+    const MachineVector in = chain[k].path.to().tip - chain[k].path.from().tip;
+    const MachineVector out = chain[k + 1].path.to().tip - chain[k + 1].path.from().tip;
+    const double cosine = in.dot(out) / std::sqrt(in.dot(in) * out.dot(out));
     const double corner = 30.0 * std::sqrt(std::max(0.0, 0.5 * (1.0 + cosine)));
     speed[k + 1] = reachable(speed[k], chain[k].path.length(), corner);
   }

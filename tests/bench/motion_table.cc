@@ -57,9 +57,9 @@ double Bound(const std::vector<PlannedMotion>& motions, const std::vector<MoveCo
       if (blend) {
         const CornerCurve& curve = motion.path.curve();
         const double u = by_length->ParameterAt(curve, motion.path.curve_start() + s);
-        curvature = Norm(curve.SecondByLength(u).tip);
+        curvature = curve.SecondByLength(u).tip.norm();
       } else {
-        curvature = Norm(motion.path.Curvature(s));
+        curvature = motion.path.Curvature(s).norm();
       }
       double square = speed * speed;
       if (curve_jerk && blend) {
@@ -70,7 +70,7 @@ double Bound(const std::vector<PlannedMotion>& motions, const std::vector<MoveCo
               .tip;
         };
         const double low = std::max(s - q, 0.0), high = std::min(s + q, length);
-        const double change = Norm(across(high) - across(low)) / (high - low);
+        const double change = (across(high) - across(low)).norm() / (high - low);
         square =
             std::min(square, std::pow(machine.normal_jerk() / std::max(change, 1e-12), 2.0 / 3.0));
       }

@@ -63,18 +63,18 @@ Figures MillJob(const json& input) {
 
 // The points at which the tool arrives when it follows the commanded ones, within the box.
 Figures Clip(const json& input) {
-  const Vec3 low = PointOf(input.at("box").at(0));
-  const Vec3 high = PointOf(input.at("box").at(1));
-  if (!(low.x < high.x) || !(low.y < high.y) || !(low.z < high.z))
+  const MachinePoint low = PointOf(input.at("box").at(0));
+  const MachinePoint high = PointOf(input.at("box").at(1));
+  if (!(low.x() < high.x()) || !(low.y() < high.y()) || !(low.z() < high.z()))
     throw SenselessCase("the box ends before it begins");
   rml1::Profile profile;
   const double units = profile.units_per_mm;
-  profile.x = {low.x * units, high.x * units};
-  profile.y = {low.y * units, high.y * units};
-  profile.z = {low.z * units, high.z * units};
+  profile.x = {low.x() * units, high.x() * units};
+  profile.y = {low.y() * units, high.y() * units};
+  profile.z = {low.z() * units, high.z() * units};
   const auto in_units = [&](const json& point) {
-    const Vec3 p = PointOf(point) * units;
-    return rml1::Point{p.x, p.y, p.z, 0.0};
+    const MachinePoint p = PointOf(point) * units;
+    return rml1::Point{p.x(), p.y(), p.z(), 0.0};
   };
   const json& points = input.at("points");
   rml1::Carriage carriage(profile);

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "engine/core/number_text.h"
-#include "engine/motion/vec3.h"
+#include "engine/motion/geometry/frames.h"
 
 // How the inputs of reference cases are read. Members that are missing or of another type throw
 // nlohmann::json::exception.
@@ -16,7 +16,7 @@ struct SenselessCase : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-inline Vec3 PointOf(const nlohmann::json& j) {
+inline MachineVector PointOf(const nlohmann::json& j) {
   return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/motion/feed_steps.h"
+#include "engine/motion/geometry/frames.h"
 #include "engine/motion/hole.h"
 #include "engine/motion/interruption.h"
 #include "engine/motion/laser_power.h"
@@ -17,10 +18,10 @@ namespace {
 
 using nlohmann::json;
 
-void Put(Figures& figures, const std::string& name, const Vec3& v) {
-  figures[name + ".x"] = v.x;
-  figures[name + ".y"] = v.y;
-  figures[name + ".z"] = v.z;
+void Put(Figures& figures, const std::string& name, const MachineVector& v) {
+  figures[name + ".x"] = v.x();
+  figures[name + ".y"] = v.y();
+  figures[name + ".z"] = v.z();
 }
 
 TipPose Pose(const json& tip, const json& ab) {
@@ -30,26 +31,27 @@ TipPose Pose(const json& tip, const json& ab) {
 Head HeadOf(const json& input) {
   GantryHead head;
   if (input.contains("tcp")) {
-    const Vec3 offset = PointOf(input.at("tcp"));
-    head.tool = {offset.x, offset.y, offset.z};
+    const MachineVector offset = PointOf(input.at("tcp"));
+    head.tool = {offset.x(), offset.y(), offset.z()};
   }
   return head;
 }
 
-WorkOffset OffsetOf(const json& input) {
+MachineFromProgram OffsetOf(const json& input) {
   const json& s = input.at("sysdef");
-  return {PointOf(s), s.at(3).get<double>(), s.at(4).get<double>(), s.at(5).get<double>()};
+  return RigidMotionOf(PointOf(s), s.at(3).get<double>(), s.at(4).get<double>(),
+                       s.at(5).get<double>());
 }
 
-Figures ToolDirection(const json& input) {
+Figures DirectionOf(const json& input) {
   Figures figures;
-  Put(figures, "u", AxesOfTool(NumberOf(input, "A"), NumberOf(input, "B")).u);
+  Put(figures, "u", ToolDirection(NumberOf(input, "A"), NumberOf(input, "B")));
   return figures;
 }
 
 Figures Inverse(const json& input) {
   Figures figures;
-  const Vec3 tip = OffsetOf(input).ToMachine(PointOf(input.at("tip")));
+  const MachinePoint tip = OffsetOf(input) * PointOf(input.at("tip"));
   Put(figures, "machine_tip", tip);
   Put(figures, "column",
       HeadOf(input).ColumnOf({tip, NumberOf(input, "A"), NumberOf(input, "B")}).column);
@@ -59,7 +61,7 @@ Figures Inverse(const json& input) {
 Figures Forward(const json& input) {
   Figures figures;
   const AxisPose axes{PointOf(input.at("column")), NumberOf(input, "A"), NumberOf(input, "B")};
-  Put(figures, "tip", OffsetOf(input).ToProgram(HeadOf(input).TipOf(axes).tip));
+  Put(figures, "tip", OffsetOf(input).inverse() * HeadOf(input).TipOf(axes).tip);
   return figures;
 }
 
@@ -330,7 +332,7 @@ Figures EndCondition(const json& input) {
 
 Result<Figures> Compute(const json& input) try {
   const std::string f = input.at("f").get<std::string>();
-  if (f == "tool_direction") return ToolDirection(input);
+  if (f == "tool_direction") return DirectionOf(input);
   if (f == "inverse") return Inverse(input);
   if (f == "forward") return Forward(input);
   if (f == "column_rates") return ColumnRates(input);

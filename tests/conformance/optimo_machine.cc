@@ -157,16 +157,15 @@ double Ran::BeamLength() const {
   for (const Motion& motion : motions) length += motion.beam ? motion.length_mm : 0.0;
   return length;
 }
-double Ran::NearestTo(const motion::Vec3& point) const {
+double Ran::NearestTo(const motion::MachinePoint& point) const {
   double nearest = HUGE_VAL;
   for (const Motion& motion : motions) {
     for (std::size_t n = 0; n + 1 < motion.poses.size(); ++n) {
       // Between two poses the path is nearly straight.
-      const motion::Vec3 a = motion.poses[n].tip, d = motion.poses[n + 1].tip - a;
-      const double square = motion::Dot(d, d);
-      const double share =
-          square > 0.0 ? std::clamp(motion::Dot(point - a, d) / square, 0.0, 1.0) : 0.0;
-      nearest = std::fmin(nearest, motion::Distance(point, a + d * share));
+      const motion::MachineVector a = motion.poses[n].tip, d = motion.poses[n + 1].tip - a;
+      const double square = d.dot(d);
+      const double share = square > 0.0 ? std::clamp((point - a).dot(d) / square, 0.0, 1.0) : 0.0;
+      nearest = std::fmin(nearest, (point - (a + d * share)).norm());
     }
   }
   return nearest;

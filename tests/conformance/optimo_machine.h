@@ -56,7 +56,7 @@ class Ran {
   std::vector<Motion> motions;
   double BeamLength() const;  // mm cut with the beam on
   // The nearest that the tip came to a point of the machine frame.
-  double NearestTo(const motion::Vec3& point) const;
+  double NearestTo(const motion::MachinePoint& point) const;
 
  private:
   friend class OptimoMachine;

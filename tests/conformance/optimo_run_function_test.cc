@@ -116,7 +116,7 @@ TEST(OptimoRunFunction, ModalValuesAreShared) {
   ASSERT_EQ(ran.moves.size(), 2U);
   EXPECT_EQ(ran.moves[1].path, "LIN");
   EXPECT_NEAR(ran.moves[1].feed_mm_s, 150.0, 1e-9);
-  EXPECT_NEAR(ran.run().state().tip.tip.x, 621.02, 1e-3);
+  EXPECT_NEAR(ran.run().state().tip.tip.x(), 621.02, 1e-3);
 }
 
 // OPT-9.26, OPT-9.21: copies in, nothing back; every activation has its own.
@@ -169,14 +169,14 @@ TEST(OptimoRunSamples, SampleOne) {
   EXPECT_LT(ran.NearestTo({1034.7706, 1427.226, 458.978}), 0.02);
   EXPECT_NEAR(ran.BeamLength(), 12.7 + 2 * M_PI * 12.7, 1e-2);
   ASSERT_GE(ran.moves.size(), 3U);
-  EXPECT_NEAR(ran.moves[2].tip.tip.x, 1047.4706, 1e-3);
-  EXPECT_NEAR(ran.moves[2].tip.tip.y, 1427.226, 1e-3);
-  EXPECT_NEAR(ran.moves[2].tip.tip.z, 446.278, 1e-3);
+  EXPECT_NEAR(ran.moves[2].tip.tip.x(), 1047.4706, 1e-3);
+  EXPECT_NEAR(ran.moves[2].tip.tip.y(), 1427.226, 1e-3);
+  EXPECT_NEAR(ran.moves[2].tip.tip.z(), 446.278, 1e-3);
   const machine::RunState end = ran.run().state();
-  EXPECT_NEAR(end.tip.tip.x, 1034.7706, 1e-3);
-  EXPECT_NEAR(end.tip.tip.z, -569.722, 1e-3);
-  EXPECT_NEAR(end.axes.column.x, 1114.776, 2e-3);
-  EXPECT_NEAR(end.axes.column.y, 1138.091, 2e-3);
+  EXPECT_NEAR(end.tip.tip.x(), 1034.7706, 1e-3);
+  EXPECT_NEAR(end.tip.tip.z(), -569.722, 1e-3);
+  EXPECT_NEAR(end.axes.column.x(), 1114.776, 2e-3);
+  EXPECT_NEAR(end.axes.column.y(), 1138.091, 2e-3);
 }
 
 // OPT-10.05, OPT-10.06, OPT-10.07, OPT-10.08: sample 2 cuts three contours in a cylinder of radius
@@ -196,10 +196,10 @@ TEST(OptimoRunSamples, SampleTwo) {
   double worst = 0.0;
   const double x0 = 1262.139, y0 = 719.940;
   for (const machine::MoveDone& move : ran.moves) {
-    const motion::Vec3 radial{move.program_point.x, move.program_point.y, 0.0};
-    if (std::fabs(motion::Norm(radial) - 139.7) > 0.1) continue;
-    const motion::Vec3 u = motion::AxesOfTool(move.rotary_a, M_PI / 2).u;
-    worst = std::fmax(worst, std::acos(motion::Dot(u, radial) / motion::Norm(radial)));
+    const motion::MachineVector radial{move.program_point.x(), move.program_point.y(), 0.0};
+    if (std::fabs(radial.norm() - 139.7) > 0.1) continue;
+    const motion::MachineVector u = motion::ToolDirection(move.rotary_a, M_PI / 2);
+    worst = std::fmax(worst, std::acos(u.dot(radial) / radial.norm()));
   }
   EXPECT_GT(worst, 0.0);
   EXPECT_LT(worst, 0.65 * kRadPerDegree);
@@ -207,9 +207,9 @@ TEST(OptimoRunSamples, SampleTwo) {
   bool right = false, left = false;
   for (const Ran::Motion& motion : ran.motions) {
     for (const motion::TipPose& pose : motion.poses) {
-      if (!motion.beam || std::fabs(pose.tip.y - y0) > 0.5) continue;
-      if (pose.tip.x > x0 + 139 && std::fabs(pose.a_rad - 1.5708) < 0.005) right = true;
-      if (pose.tip.x < x0 - 139 && std::fabs(pose.a_rad + 1.5708) < 0.005) left = true;
+      if (!motion.beam || std::fabs(pose.tip.y() - y0) > 0.5) continue;
+      if (pose.tip.x() > x0 + 139 && std::fabs(pose.a_rad - 1.5708) < 0.005) right = true;
+      if (pose.tip.x() < x0 - 139 && std::fabs(pose.a_rad + 1.5708) < 0.005) left = true;
     }
   }
   EXPECT_TRUE(right && left);
@@ -218,7 +218,7 @@ TEST(OptimoRunSamples, SampleTwo) {
   EXPECT_LT(ran.NearestTo({x0 - 52.962, y0 + 129.275, 242.290 - 832.697}), 0.01);
   EXPECT_LT(ran.NearestTo({x0, y0 + 139.7, 354.584 - 832.443}), 0.01);
   // It ends in CALL 2.
-  EXPECT_NEAR(ran.run().state().axes.column.z, -50.0, 1e-6);
+  EXPECT_NEAR(ran.run().state().axes.column.z(), -50.0, 1e-6);
   EXPECT_NEAR(ran.run().state().axes.b_rad, 0.0, 1e-9);
 }
 
@@ -247,17 +247,17 @@ TEST(OptimoRunSamples, ZUp) {
       "OL[11]=ON\nMOVE (1000.,1000.,-600.,0.8,0.5)\nCALL 2\n");
   EXPECT_TRUE(ran.completed());
   ASSERT_EQ(ran.moves.size(), 3U);
-  EXPECT_NEAR(ran.moves[1].axes.column.z, -50.0, 1e-6);
+  EXPECT_NEAR(ran.moves[1].axes.column.z(), -50.0, 1e-6);
   EXPECT_NEAR(ran.moves[1].axes.b_rad, 0.0, 1e-9);
   EXPECT_NEAR(ran.moves[1].axes.a_rad, 0.8, 1e-6);
   EXPECT_NEAR(ran.moves[2].axes.a_rad, 0.0, 1e-9);
-  EXPECT_NEAR(ran.run().state().axes.column.x, 1000.0, 1e-4);
+  EXPECT_NEAR(ran.run().state().axes.column.x(), 1000.0, 1e-4);
   for (const int output : {8, 9, 11, 12, 13, 14, 15, 22, 23, 24, 25, 26, 27, 28, 29})
     EXPECT_EQ(ran.Var("OL[" + std::to_string(output) + "]"), "0") << output;
   // The tool of 90: the tip is 297 mm below the column, and no offset moves it.
-  EXPECT_NEAR(ran.run().state().tip.tip.z, -50.0 - 297.0, 1e-6);
+  EXPECT_NEAR(ran.run().state().tip.tip.z(), -50.0 - 297.0, 1e-6);
   const Ran next = machine.Run("COORD ABSOL\nMOVE (1000.,1000.,-400.,0.,0.)\n");
-  EXPECT_NEAR(next.run().state().axes.column.x, 1000.0, 1e-4);
+  EXPECT_NEAR(next.run().state().axes.column.x(), 1000.0, 1e-4);
 }
 
 // OPT-10.15, OPT-10.18, OPT-B.82, OPT-B.84: home return from anywhere, Z first.
@@ -267,18 +267,18 @@ TEST(OptimoRunSamples, HomeReturn) {
   const Ran ran = machine.Run("MOVE (1500.,300.,-700.,1.,-0.7)\nCALL 4\n");
   EXPECT_TRUE(ran.completed());
   ASSERT_GE(ran.moves.size(), 4U);
-  EXPECT_NEAR(ran.moves[1].axes.column.z, -50.0, 1e-6);
-  EXPECT_NEAR(ran.moves[1].axes.column.x, 1500.0, 1e-3);
+  EXPECT_NEAR(ran.moves[1].axes.column.z(), -50.0, 1e-6);
+  EXPECT_NEAR(ran.moves[1].axes.column.x(), 1500.0, 1e-3);
   const motion::AxisPose home = ran.run().state().axes;
-  EXPECT_NEAR(home.column.x, 21.02, 1e-4);
-  EXPECT_NEAR(home.column.y, 2201.2, 1e-3);
-  EXPECT_NEAR(home.column.z, -50.0, 1e-6);
+  EXPECT_NEAR(home.column.x(), 21.02, 1e-4);
+  EXPECT_NEAR(home.column.y(), 2201.2, 1e-3);
+  EXPECT_NEAR(home.column.z(), -50.0, 1e-6);
   EXPECT_NEAR(home.a_rad, 0.0, 1e-9);
   EXPECT_NEAR(home.b_rad, 0.0, 1e-9);
   // The listed one of the manual does the same with it.
   if (CorpusProgram("special-4.S").empty()) return;
   machine.Store(4, CorpusProgram("special-4.S"));
-  EXPECT_NEAR(machine.Run("CALL 4\n").run().state().axes.column.x, 21.02, 1e-4);
+  EXPECT_NEAR(machine.Run("CALL 4\n").run().state().axes.column.x(), 21.02, 1e-4);
 }
 
 // OPT-B.82: the programs of the house need no comment by the checker.

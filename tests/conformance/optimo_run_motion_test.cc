@@ -18,9 +18,9 @@ TEST(OptimoRunMotion, TheTipComesToTheTarget) {
       "COORD ABSOL\nMOVE (1200, 170.5, -118.3, 0.5, 0.12)\n"
       "MOVE (1200, 170.5, -118.3, 0.5, 0.12)\n");
   const motion::TipPose tip = ran.run().state().tip;
-  EXPECT_NEAR(tip.tip.x, 1200.0, 1e-3);
-  EXPECT_NEAR(tip.tip.y, 170.5, 1e-3);
-  EXPECT_NEAR(tip.tip.z, -118.3, 1e-3);
+  EXPECT_NEAR(tip.tip.x(), 1200.0, 1e-3);
+  EXPECT_NEAR(tip.tip.y(), 170.5, 1e-3);
+  EXPECT_NEAR(tip.tip.z(), -118.3, 1e-3);
   EXPECT_NEAR(tip.a_rad, 0.5, 1e-6);
   EXPECT_NEAR(tip.b_rad, 0.12, 1e-6);
 }
@@ -33,14 +33,14 @@ TEST(OptimoRunMotion, ProgramsStartWithTheDefaults) {
       OptimoMachine().Run("VR[0] = IA[0]\nVR[1] = IA[2]\nMOVE (121.02,2201.2,-50.,0.,0.)\n");
   EXPECT_EQ(ran.Var("VR[0]"), "21.02");
   EXPECT_EQ(ran.Var("VR[1]"), "-50.0");
-  EXPECT_NEAR(ran.run().state().axes.column.x, 121.02, 1e-4);
+  EXPECT_NEAR(ran.run().state().axes.column.x(), 121.02, 1e-4);
   EXPECT_NEAR(ran.time_s(), 2 * 0.225 + (100.0 - 78.75) / 350.0 + 0.048, 1e-4);
 }
 
 // OPT-2.11: the same program on the customer's machine: tip coordinates, LIN at 70 %.
 TEST(OptimoRunMotion, TheCustomerMachineStartsInAbsolAndLin) {
   const Ran ran = OptimoMachine().Profile("pw-1993").Run("MOVE (521.02,2201.2,-350.,0.,0.)\n");
-  EXPECT_NEAR(ran.run().state().tip.tip.x, 521.02, 1e-3);
+  EXPECT_NEAR(ran.run().state().tip.tip.x(), 521.02, 1e-3);
   ASSERT_EQ(ran.moves.size(), 1U);
   EXPECT_EQ(ran.moves[0].path, "LIN");
   EXPECT_NEAR(ran.moves[0].feed_mm_s, 350.0, 1e-9);
@@ -64,8 +64,8 @@ TEST(OptimoRunMotion, AHoleSwitchesNothing) {
                                       "MOVE (100.,50.,-550.,0.,0.)/VIA (100.,50.,-450.,0.,0.)\n");
   EXPECT_TRUE(ran.completed());
   EXPECT_TRUE(ran.Events().empty());
-  EXPECT_NEAR(ran.run().state().tip.tip.x, 125.0, 1e-6);
-  EXPECT_NEAR(ran.run().state().tip.tip.z, -550.0, 1e-6);
+  EXPECT_NEAR(ran.run().state().tip.tip.x(), 125.0, 1e-6);
+  EXPECT_NEAR(ran.run().state().tip.tip.z(), -550.0, 1e-6);
   EXPECT_LT(ran.NearestTo({75, 50, -550}), 0.05);
 }
 
@@ -145,7 +145,7 @@ TEST(OptimoRunMotion, AMoveTakesOverFromANextMove) {
                                       "MOVE (1500.,1000.,-400.,0.,0.)/NEXT\nDELAY 2\n"
                                       "MOVE (1000.,1200.,-400.,0.,0.)\n");
   EXPECT_TRUE(ran.completed());
-  EXPECT_NEAR(ran.run().state().tip.tip.y, 1200.0, 1e-6);
+  EXPECT_NEAR(ran.run().state().tip.tip.y(), 1200.0, 1e-6);
   EXPECT_GT(ran.NearestTo({1500, 1000, -400}), 300.0);
 }
 
@@ -168,7 +168,7 @@ TEST(OptimoRunMotion, EndIsSeenAtACycle) {
       OptimoMachine().Run(kAbsolSlowly + "MOVE (521.02,2201.2,-350.,0.,0.)/END (IL[20])\n",
                           {.inputs = {{At(1.0), InputKind::kLogical, 20, 1.0}}});
   EXPECT_TRUE(ran.completed());
-  EXPECT_NEAR(ran.run().state().tip.tip.x, 21.02 + 50.4, 1e-3);
+  EXPECT_NEAR(ran.run().state().tip.tip.x(), 21.02 + 50.4, 1e-3);
 }
 
 // OPT-B.32: /END that ends the move leaves no passage; /TIME counts the wait of /START.

@@ -75,7 +75,7 @@ TEST(OptimoRunProgram, AnOffsetReplacesTheOneBefore) {
       "COORD ABSOL\nVR[86]=900.\nOA[5]=1000.\nSYSDEF (VR[86],OA[5],0.,0.,0.,0.)\n"
       "SYSDEF (VR[86],OA[5],0.,0.,0.,0.)\nVR[86]=5.\nMOVE (10.,20.,-500.,0.,0.)\nVR[0]=IA[0]\n"
       "VR[1]=IA[1]\n");
-  EXPECT_NEAR(ran.run().state().tip.tip.x, 910.0, 1e-3);
+  EXPECT_NEAR(ran.run().state().tip.tip.x(), 910.0, 1e-3);
   EXPECT_NEAR(ran.Number("VR[0]"), 910.0, 1e-3);
   EXPECT_NEAR(ran.Number("VR[1]"), 1020.0, 1e-3);
 }
@@ -85,16 +85,16 @@ TEST(OptimoRunProgram, AnOffsetReplacesTheOneBefore) {
 TEST(OptimoRunProgram, WhatAnOffsetLeavesAlone) {
   OptimoMachine machine;
   const Ran robot = machine.Run("SYSDEF (50.,60.,70.,1.5708,0,0)\nMOVE (100.,200.,-60.,0.,0.)\n");
-  EXPECT_NEAR(robot.run().state().axes.column.x, 100.0, 1e-6);
-  EXPECT_NEAR(robot.run().state().axes.column.y, 200.0, 1e-6);
+  EXPECT_NEAR(robot.run().state().axes.column.x(), 100.0, 1e-6);
+  EXPECT_NEAR(robot.run().state().axes.column.y(), 200.0, 1e-6);
   const Ran next = machine.Run("COORD ABSOL\nMOVE (1000.,-500.,-500.,0.,0.5)\n");
   // Rz of 90 degrees: (1000,-500) -> (500,1000), then the translation.
-  EXPECT_NEAR(next.run().state().tip.tip.x, 550.0, 0.01);
-  EXPECT_NEAR(next.run().state().tip.tip.y, 1060.0, 0.01);
-  EXPECT_NEAR(next.run().state().tip.tip.z, -430.0, 0.01);
+  EXPECT_NEAR(next.run().state().tip.tip.x(), 550.0, 0.01);
+  EXPECT_NEAR(next.run().state().tip.tip.y(), 1060.0, 0.01);
+  EXPECT_NEAR(next.run().state().tip.tip.z(), -430.0, 0.01);
   EXPECT_NEAR(next.run().state().axes.a_rad, 0.0, 1e-9);
   const Ran cancelled = machine.Run("SYSDEF\nCOORD ABSOL\nMOVE (1000.,500.,-500.,0.,0.)\n");
-  EXPECT_NEAR(cancelled.run().state().tip.tip.x, 1000.0, 1e-6);
+  EXPECT_NEAR(cancelled.run().state().tip.tip.x(), 1000.0, 1e-6);
 }
 
 // OPT-7.61, OPT-7.63, OPT-7.64: both ends of VI; a new machine is all zero; analogue images.
@@ -186,7 +186,7 @@ TEST(OptimoRunProgram, TheCallingExample) {
   EXPECT_TRUE(ran.Has("wait pierce 1.2"));
   EXPECT_EQ(ran.Var("VR[20]"), "30.0");
   // TCP moved the tip by 5 mm towards the lens: 295 mm below the column.
-  EXPECT_NEAR(ran.run().state().axes.column.z - ran.run().state().tip.tip.z, 295.0, 1e-6);
+  EXPECT_NEAR(ran.run().state().axes.column.z() - ran.run().state().tip.tip.z(), 295.0, 1e-6);
 }
 
 // OPT-B.53, OPT-B.54: what a program starts with, and what it leaves.
@@ -199,7 +199,7 @@ TEST(OptimoRunProgram, WhatStartsAnewAndWhatStays) {
       machine.Run("VL[0]=OL[40]\nOL[41]=ON\nMOVE (121.02,2201.2,-50.,0.,0.)\nVR[0]=1/0\n");
   EXPECT_EQ(ran.Var("VL[0]"), "1");
   EXPECT_TRUE(ran.Has("OL[41] 1"));
-  EXPECT_NEAR(ran.run().state().axes.column.x, 121.02, 1e-4);
+  EXPECT_NEAR(ran.run().state().axes.column.x(), 121.02, 1e-4);
   EXPECT_EQ(ran.code(), 7201);
 }
 

@@ -17,9 +17,9 @@ class TraceObserver final : public machine::RunObserver {
   }
   void OnMove(const machine::MoveDone& move) override {
     seen.trace.push_back({.kind = Event::Kind::kMove,
-                          .x = move.program_point.x,
-                          .y = move.program_point.y,
-                          .z = move.program_point.z,
+                          .x = move.program_point.x(),
+                          .y = move.program_point.y(),
+                          .z = move.program_point.z(),
                           .a = move.rotary_a,
                           .feed = move.feed_mm_s});
   }

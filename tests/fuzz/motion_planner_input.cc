@@ -69,7 +69,7 @@ std::string PlanBytes(std::span<const std::uint8_t> data) {
     const std::uint8_t what = bytes.Byte();
     if (what % 16 == 0) planner.Stop();
     if (what % 16 == 1) planner.Mark(what);
-    const TipPose to{{at.tip.x + bytes.Number(), at.tip.y + bytes.Number(), at.tip.z},
+    const TipPose to{{at.tip.x() + bytes.Number(), at.tip.y() + bytes.Number(), at.tip.z()},
                      what % 3 == 0 ? bytes.Number() : at.a_rad,
                      at.b_rad};
     MoveCommand move;

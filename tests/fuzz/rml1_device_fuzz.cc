@@ -152,9 +152,9 @@ void CheckRun(const machine::Parameters& parameters, const std::string& stream,
   RMLCELL_CHECK(run->outcome().kind == machine::OutcomeKind::kCompleted);
   RMLCELL_CHECK(observer.moves.size() == whole.moves.size());
   for (std::size_t i = 0; i < whole.moves.size(); ++i) {
-    const motion::Vec3& tip = observer.moves[i].tip.tip;
-    RMLCELL_CHECK(std::abs(tip.x * units - whole.moves[i].x) < 1e-3);
-    RMLCELL_CHECK(std::abs(tip.z * units - whole.moves[i].z) < 1e-3);
+    const motion::MachinePoint& tip = observer.moves[i].tip.tip;
+    RMLCELL_CHECK(std::abs(tip.x() * units - whole.moves[i].x) < 1e-3);
+    RMLCELL_CHECK(std::abs(tip.z() * units - whole.moves[i].z) < 1e-3);
   }
   RMLCELL_CHECK(run->ReadVariable("ERR") == std::to_string(whole.command_error));
   RMLCELL_CHECK(run->ReadVariable("COM") == std::to_string(whole.link_error));

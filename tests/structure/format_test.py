@@ -80,13 +80,17 @@ T Far(std::span<const T> of = {},
 }
 bool operator==(const S& a, const S& b) { return true; }
 TEST_F(Suite, Name) {
+  Use(10'000);
+}
+int After() {
+  return f("'", 2'0);
 }
 S::~S() {}
 }  // namespace a
 """
         found = [(name, line, lines) for name, line, lines in function_lengths.functions_of_cpp(text)]
-        self.assertEqual(found, [("S", 9, 3), ("Far", 16, 6), ("operator==", 22, 1), ("TEST_F(Suite,Name)", 23, 2),
-                                 ("S::~S", 25, 1)])
+        self.assertEqual(found, [("S", 9, 3), ("Far", 16, 6), ("operator==", 22, 1), ("TEST_F(Suite,Name)", 23, 3),
+                                 ("After", 26, 3), ("S::~S", 29, 1)])
 
     def test_python_counts_from_the_definition_to_its_end(self):
         self.assertEqual(function_lengths.functions_of_python("x = 1\ndef f():\n    a = 1\n    return a\n"),

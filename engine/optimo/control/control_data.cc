@@ -43,8 +43,9 @@ double Control::InputNow(VariableGroup group, int index) const {
     return s_.machine.data.il_physical[static_cast<std::size_t>(index)] ? 1.0 : 0.0;
   }
   if (index <= 2) {
-    const motion::Vec3 point = modal().coord == CoordType::kAbsol ? TipNow().tip : AxesNow().column;
-    return index == 0 ? point.x : index == 1 ? point.y : point.z;
+    const motion::MachinePoint point =
+        modal().coord == CoordType::kAbsol ? TipNow().tip : AxesNow().column;
+    return index == 0 ? point.x() : index == 1 ? point.y() : point.z();
   }
   if (index == 3) return AxesNow().a_rad;
   if (index == 4) return AxesNow().b_rad;

@@ -42,7 +42,7 @@ std::optional<motion::TipPose> Control::Target(const Instruction& i, bool via) {
 motion::TipPose Control::FromProgram(const std::array<double, 5>& v) const {
   motion::TipPose pose{.tip = {v[0], v[1], v[2]}, .a_rad = v[3], .b_rad = v[4]};
   if (modal().coord == CoordType::kAbsol)
-    pose.tip = s_.machine.work_offset.transform().ToMachine(pose.tip);
+    pose.tip = s_.machine.work_offset.frame() * motion::ProgramPoint(pose.tip);
   return pose;
 }
 
@@ -276,14 +276,13 @@ bool Control::MoveHole(const Instruction& i, const motion::TipPose& from,
   }
   const std::optional<motion::TipPose> normal = Target(i, true);
   if (!normal) return false;
-  const motion::WorkOffset frame = s_.machine.work_offset.transform();
-  const Result<motion::HolePath> hole =
-      motion::HoleThrough({.from = from,
-                           .centre = target,
-                           .normal_point = normal->tip,
-                           .radius_mm = modal().hole_radius_mm,
-                           .program_x = frame.DirectionToMachine({1.0, 0.0, 0.0}),
-                           .program_y = frame.DirectionToMachine({0.0, 1.0, 0.0})});
+  const motion::MachineFromProgram frame = s_.machine.work_offset.frame();
+  const Result<motion::HolePath> hole = motion::HoleThrough({.from = from,
+                                                             .centre = target,
+                                                             .normal_point = normal->tip,
+                                                             .radius_mm = modal().hole_radius_mm,
+                                                             .program_x = frame.linear().col(0),
+                                                             .program_y = frame.linear().col(1)});
   if (!hole) {
     Raise(hole.error().code, hole.error().detail);
     return false;
@@ -393,13 +392,13 @@ void Control::ZeroAxes() {
     s_.planner.Mark(tag);
   };
   motion::AxisPose to = pose;
-  to.column.z = zero.column.z;
+  to.column.z() = zero.column.z();
   move(to);
   to.a_rad = zero.a_rad;
   to.b_rad = zero.b_rad;
   move(to);
-  to.column.x = zero.column.x;
-  to.column.y = zero.column.y;
+  to.column.x() = zero.column.x();
+  to.column.y() = zero.column.y();
   move(to);
   s_.planned_axes = to;
   s_.machine.zeroed = true;

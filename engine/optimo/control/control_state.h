@@ -120,7 +120,7 @@ struct BeyondTravel {
 // What is told when a motion begins and when it is over.
 struct MoveNote {
   machine::Place place{};
-  motion::Vec3 program_point{};
+  motion::ProgramPoint program_point{};
   double program_a = 0.0;
   double feed_mm_s = 0.0;
   PathType path = PathType::kPtp;

@@ -87,9 +87,9 @@ void Visit(Archive& archive, State& state) {
   archive.All(data.ia_physical);
   archive.All(data.ol_physical);
   archive.All(data.oa_physical);
-  archive.Number(state.axes.column.x);
-  archive.Number(state.axes.column.y);
-  archive.Number(state.axes.column.z);
+  archive.Number(state.axes.column.x());
+  archive.Number(state.axes.column.y());
+  archive.Number(state.axes.column.z());
   archive.Number(state.axes.a_rad);
   archive.Number(state.axes.b_rad);
   archive.Number(state.tool.offset.x_mm);

@@ -7,6 +7,7 @@
 
 #include "engine/core/result.h"
 #include "engine/machine/run.h"
+#include "engine/motion/geometry/frames.h"
 #include "engine/motion/kinematics.h"
 #include "engine/optimo/control/optimo_parameters.h"
 #include "engine/optimo/language/ast.h"
@@ -40,9 +41,10 @@ struct WorkOffsetState {
   bool active = false;
   std::array<double, 6> values{};  // dx dy dz, rz ry rx
 
-  motion::WorkOffset transform() const {
-    if (!active) return {};
-    return {{values[0], values[1], values[2]}, values[3], values[4], values[5]};
+  motion::MachineFromProgram frame() const {
+    if (!active) return motion::MachineFromProgram::Identity();
+    return motion::RigidMotionOf({values[0], values[1], values[2]}, values[3], values[4],
+                                 values[5]);
   }
 };
 

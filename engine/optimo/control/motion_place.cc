@@ -10,17 +10,16 @@ namespace {
 
 using Kind = motion::PathPiece::Kind;
 
-double PlaceOnArc(const motion::PathPiece& arc, const motion::Vec3& point) {
-  const motion::Vec3 start = arc.from().tip - arc.centre();
-  const motion::Vec3 here = point - arc.centre();
-  double angle =
-      std::atan2(motion::Dot(arc.normal(), motion::Cross(start, here)), motion::Dot(start, here));
+double PlaceOnArc(const motion::PathPiece& arc, const motion::MachinePoint& point) {
+  const motion::MachinePoint start = arc.from().tip - arc.centre();
+  const motion::MachinePoint here = point - arc.centre();
+  double angle = std::atan2(arc.normal().dot(start.cross(here)), start.dot(here));
   if (angle < 0.0) angle += kTurn;
   return angle * arc.radius_mm();
 }
 
 motion::AxisValues Values(const motion::TipPose& pose) {
-  return {pose.tip.x, pose.tip.y, pose.tip.z, pose.a_rad, pose.b_rad};
+  return {pose.tip.x(), pose.tip.y(), pose.tip.z(), pose.a_rad, pose.b_rad};
 }
 
 // By the axis that goes farthest.
@@ -42,7 +41,7 @@ std::optional<PlaceOnMove> PlaceOf(const motion::PathPiece& motion, const motion
   if (motion.kind() != move.kind() || !(motion.length() > 0.0)) return std::nullopt;
   switch (motion.kind()) {
     case Kind::kLine:
-      return PlaceOnMove{.begin = motion::Distance(motion.from().tip, move.from().tip)};
+      return PlaceOnMove{.begin = (motion.from().tip - move.from().tip).norm()};
     case Kind::kArc:
       return PlaceOnMove{.begin = PlaceOnArc(move, motion.from().tip)};
     case Kind::kJoint:

@@ -84,7 +84,7 @@ constexpr std::array<std::string_view, motion::kAxisCount> kAxisNames = {"X", "Y
 motion::AxisValues PerAxis(const machine::Parameters& parameters, const std::string& before,
                            const std::string& after) {
   motion::AxisValues values{};
-  for (std::size_t i = 0; i < values.size(); ++i) {
+  for (std::size_t i = 0; i < motion::kAxisCount; ++i) {
     values[i] = parameters.Number(before + std::string(kAxisNames[i]) + after);
   }
   return values;
@@ -159,8 +159,10 @@ machine::MachineShape ShapeOf(const OptimoParameters& parameters) {
   machine::MachineShape shape;
   shape.five_axis = true;
   const motion::AxisLimits& axes = parameters.limits.axes;
-  shape.travel.Add(motion::Vec3{axes.travel_min[0], axes.travel_min[1], axes.travel_min[2]});
-  shape.travel.Add(motion::Vec3{axes.travel_max[0], axes.travel_max[1], axes.travel_max[2]});
+  shape.travel.Add(
+      motion::MachineVector{axes.travel_min[0], axes.travel_min[1], axes.travel_min[2]});
+  shape.travel.Add(
+      motion::MachineVector{axes.travel_max[0], axes.travel_max[1], axes.travel_max[2]});
   shape.limits = parameters.limits;
   shape.laser_watts = parameters.laser_w;
   return shape;

@@ -56,14 +56,14 @@ class Compensator {
   void PassWork(const Instruction& i);
   void PassSysdef(const Instruction& i);
   void TurnTool();
-  std::optional<Vec3> EndOf(const Instruction& i) const;
+  std::optional<ProgramPoint> EndOf(const Instruction& i) const;
   void CompensateHole(const Instruction& move);
   void AddLeg(const Instruction& i);
   void FinishChain();
   void LookForGouges(const std::vector<OffsetLeg>& moved);
   void Rewrite(const Instruction& i, const OffsetLeg& moved);
   void RewriteNumber(std::uint32_t node, double value);
-  std::optional<Vec3> Point(std::uint32_t first_expression) const;
+  std::optional<ProgramPoint> Point(std::uint32_t first_expression) const;
 
   bool Wanted() const { return beam_ && amount_ && side_ != CutSide::kNone; }
   bool Active() const { return Wanted() && path_ != PathType::kPtp; }
@@ -84,9 +84,9 @@ class Compensator {
   bool hole_advice_given_ = false;
   HolePath hole_;
   ProgramFrame frame_;
-  std::optional<Vec3> at_;                       // where the tip is, as far as it is known
+  std::optional<ProgramPoint> at_;               // where the tip is, as far as it is known
   std::optional<double> head_a_at_, head_b_at_;  // rad
-  Vec3 tool_at_{0.0, 0.0, 1.0};
+  ProgramPoint tool_at_{0.0, 0.0, 1.0};
   std::vector<Leg> chain_;
   std::vector<const Instruction*> chain_moves_;
   double chain_offset_ = 0.0;
@@ -177,7 +177,7 @@ void Compensator::Pass(const Instruction& i) {
 // The head stays where it is: its point gets other coordinates, and its direction, too.
 void Compensator::PassSysdef(const Instruction& i) {
   FinishChain();
-  const std::optional<Vec3> in_machine = at_ ? frame_.PointToMachine(*at_) : std::nullopt;
+  const std::optional<ProgramPoint> in_machine = at_ ? frame_.PointToMachine(*at_) : std::nullopt;
   if (!frame_.Set(p_, i)) {
     Report(ErrorCode::kCompSysdef, i, "a rotation of SYSDEF is no number; it is taken as 0",
            "OPT-8.23");
@@ -188,7 +188,7 @@ void Compensator::PassSysdef(const Instruction& i) {
 
 void Compensator::TurnTool() {
   if (head_a_at_ && head_b_at_)
-    tool_at_ = frame_.DirectionToProgram(ToolDirection(*head_a_at_, *head_b_at_));
+    tool_at_ = frame_.DirectionToProgram(motion::ToolDirection(*head_a_at_, *head_b_at_));
 }
 
 void Compensator::PassWork(const Instruction& i) {
@@ -205,11 +205,11 @@ void Compensator::PassWork(const Instruction& i) {
   }
 }
 
-std::optional<Vec3> Compensator::Point(std::uint32_t first) const {
+std::optional<ProgramPoint> Compensator::Point(std::uint32_t first) const {
   const auto x = PlainNumber(p_, first), y = PlainNumber(p_, first + 1),
              z = PlainNumber(p_, first + 2);
   if (!x || !y || !z) return std::nullopt;
-  return Vec3{*x, *y, *z};
+  return ProgramVector{*x, *y, *z};
 }
 
 void Compensator::PassMove(const Instruction& i) {
@@ -231,11 +231,11 @@ void Compensator::PassMove(const Instruction& i) {
 }
 
 // Where the tip is after a move, as programmed, in the coordinates of the program.
-std::optional<Vec3> Compensator::EndOf(const Instruction& i) const {
+std::optional<ProgramPoint> Compensator::EndOf(const Instruction& i) const {
   if (coord_ == CoordType::kRobot) return std::nullopt;
-  const std::optional<Vec3> target = Point(i.first_expression);
+  const std::optional<ProgramPoint> target = Point(i.first_expression);
   if (path_ != PathType::kHole || !i.Has(kVia)) return target;
-  const std::optional<Vec3> beside = Point(i.first_expression + 5);
+  const std::optional<ProgramPoint> beside = Point(i.first_expression + 5);
   if (!target || !beside || !at_ || !hole_.radius) return std::nullopt;
   return HoleEnd(*at_, *target, *beside, *hole_.radius);
 }
@@ -273,17 +273,17 @@ void Compensator::AddLeg(const Instruction& i) {
            plain ? "the point where this move starts is not known as numbers"
                  : "a coordinate is no plain number",
            "OPT-8.20");
-    at_ = plain ? std::optional<Vec3>({*values[0], *values[1], *values[2]}) : std::nullopt;
+    at_ = plain ? std::optional<ProgramPoint>({*values[0], *values[1], *values[2]}) : std::nullopt;
     return;
   }
   Leg leg;
   leg.from = *at_;
   leg.to = {*values[0], *values[1], *values[2]};
   leg.tool_from = tool_at_;
-  leg.tool_to = frame_.DirectionToProgram(ToolDirection(*values[3], *values[4]));
+  leg.tool_to = frame_.DirectionToProgram(motion::ToolDirection(*values[3], *values[4]));
   leg.tool_via = leg.tool_to;
   if (path_ == PathType::kCir && i.Has(kVia)) {
-    leg.via = Vec3{*values[5], *values[6], *values[7]};
+    leg.via = ProgramVector{*values[5], *values[6], *values[7]};
     const auto arc = motion::PathPiece::ArcThrough({leg.from}, *leg.via, {leg.to});
     if (!arc) Report(arc.error().code, i, arc.error().detail, "OPT-E.7305");
   }
@@ -295,9 +295,9 @@ void Compensator::AddLeg(const Instruction& i) {
     const auto on_the_way = [&](const std::optional<double>& from, double to, double via) {
       return from ? *from + share * (to - *from) : via;
     };
-    leg.tool_via =
-        frame_.DirectionToProgram(ToolDirection(on_the_way(head_a_at_, *values[3], *values[8]),
-                                                on_the_way(head_b_at_, *values[4], *values[9])));
+    leg.tool_via = frame_.DirectionToProgram(
+        motion::ToolDirection(on_the_way(head_a_at_, *values[3], *values[8]),
+                              on_the_way(head_b_at_, *values[4], *values[9])));
   }
   chain_offset_ = SignedOffset();
   chain_.push_back(leg);
@@ -348,8 +348,10 @@ void Compensator::Rewrite(const Instruction& i, const OffsetLeg& moved) {
   const std::uint32_t count = i.Has(kVia) ? 10 : 5;
   for (std::uint32_t v = 0; v < count; ++v) {
     double value = *PlainNumber(p_, i.first_expression + v);
-    const Vec3* point = v < 3 ? &moved.to : v >= 5 && v < 8 && moved.via ? &*moved.via : nullptr;
-    if (point != nullptr) value = v % 5 == 0 ? point->x : v % 5 == 1 ? point->y : point->z;
+    const ProgramPoint* point = v < 3                          ? &moved.to
+                                : v >= 5 && v < 8 && moved.via ? &*moved.via
+                                                               : nullptr;
+    if (point != nullptr) value = v % 5 == 0 ? point->x() : v % 5 == 1 ? point->y() : point->z();
     RewriteNumber(module_.FirstNode(i.first_expression + v), value);
   }
 }

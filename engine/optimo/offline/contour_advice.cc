@@ -229,8 +229,8 @@ void ContourAdviser::AdviseCorner(const ChainMove& before, const ChainMove& afte
   if (!motion::IsBlend(corner.passage)) return;
   const PathPiece& in = before.command.path;
   const PathPiece& out = after.command.path;
-  const motion::Vec3 a = in.Tangent(in.length()), b = out.Tangent(0.0);
-  const double turn = std::atan2(motion::Norm(motion::Cross(a, b)), motion::Dot(a, b));
+  const motion::MachineVector a = in.Tangent(in.length()), b = out.Tangent(0.0);
+  const double turn = std::atan2(a.cross(b).norm(), a.dot(b));
   if (turn > kSharp_rad && before.beam && after.beam) {
     findings_.Add(ErrorCode::kFlySharp, p_.At(*before.instruction),
                   "the contour turns by " + FixedText(turn / kRadPerDegree, 1) +

@@ -25,9 +25,9 @@ constexpr std::size_t kSegmentsMax = 1'000'000;
 constexpr std::size_t kLookupsMax = 50'000'000;
 
 double SweepOf(const Leg& arc) {
-  const Vec3 e = (arc.from - arc.centre) * (1.0 / arc.radius), f = motion::Cross(arc.axis, e);
-  const Vec3 end = arc.to - arc.centre;
-  const double angle = std::atan2(motion::Dot(end, f), motion::Dot(end, e));
+  const ProgramVector e = (arc.from - arc.centre) * (1.0 / arc.radius), f = arc.axis.cross(e);
+  const ProgramPoint end = arc.to - arc.centre;
+  const double angle = std::atan2(end.dot(f), end.dot(e));
   return angle > 0.0 ? angle : angle + 2.0 * std::numbers::pi;
 }
 
@@ -36,27 +36,27 @@ class Drawing {
  public:
   explicit Drawing(const std::vector<Leg>& legs) : along_(legs.front().tool_from) {
     for (const Leg& leg : legs) {
-      flat_ = flat_ && motion::Dot(leg.tool_to, along_) > kSameTool &&
-              (!leg.via || motion::Dot(leg.tool_via, along_) > kSameTool);
+      flat_ = flat_ && leg.tool_to.dot(along_) > kSameTool &&
+              (!leg.via || leg.tool_via.dot(along_) > kSameTool);
     }
   }
   bool flat() const { return flat_; }
-  Vec3 Flat(const Vec3& p) const { return flat_ ? p - along_ * motion::Dot(p, along_) : p; }
+  ProgramVector Flat(const ProgramPoint& p) const { return flat_ ? p - along_ * p.dot(along_) : p; }
 
   void Add(const Leg& leg, std::size_t index, std::vector<PathSegment>& to) const {
     if (!leg.is_arc) {
       to.push_back({Flat(leg.from), Flat(leg.to), index});
       return;
     }
-    const Vec3 e = (leg.from - leg.centre) * (1.0 / leg.radius), f = motion::Cross(leg.axis, e);
+    const ProgramVector e = (leg.from - leg.centre) * (1.0 / leg.radius), f = leg.axis.cross(e);
     const double sweep = SweepOf(leg);
     const double chord =
         std::max(kChordMin_rad, std::min(2.0 * std::sqrt(2.0 * kChordError_mm / leg.radius), 0.5));
     const int chords = static_cast<int>(std::ceil(sweep / chord));
-    Vec3 before = Flat(leg.from);
+    ProgramVector before = Flat(leg.from);
     for (int c = 1; c <= chords; ++c) {
       const double at = sweep * c / chords;
-      const Vec3 point =
+      const ProgramPoint point =
           c == chords ? Flat(leg.to)
                       : Flat(leg.centre + (e * std::cos(at) + f * std::sin(at)) * leg.radius);
       to.push_back({before, point, index});
@@ -65,7 +65,7 @@ class Drawing {
   }
 
  private:
-  Vec3 along_;
+  ProgramVector along_;
   bool flat_ = true;
 };
 
@@ -102,7 +102,7 @@ std::optional<Closing> FindClosing(const std::vector<PathSegment>& contour, std:
   }
   // A tab: it would come to the end of a move, had it gone on.
   const PathSegment& last = contour.back();
-  const double length = motion::Distance(last.from, last.to);
+  const double length = (last.from - last.to).norm();
   if (length < kTouching_mm) return std::nullopt;
   const PathSegment tab{last.to, last.to + (last.to - last.from) * (kTabMax_mm / length), 0};
   for (std::size_t i = 0; i < lead.size() && lead[i].leg + 2 <= last.leg; ++i) {
@@ -124,16 +124,16 @@ Edges WithoutLeads(std::vector<PathSegment> contour, std::size_t legs) {
   PathSegment& last = edges.segments.back();
   first.from = first.from + (first.to - first.from) * closing->on_first;
   last.to = last.from + (last.to - last.from) * closing->on_last;
-  edges.start = motion::Distance(first.from, contour.front().from) <= kTouching_mm;
+  edges.start = (first.from - contour.front().from).norm() <= kTouching_mm;
   return edges;
 }
 
 // Calls `use` for the parts of a segment that lie outside the ball.
 template <class Use>
-void OutsideOfBall(const PathSegment& s, const Vec3& centre, double radius, const Use& use) {
-  const Vec3 along = s.to - s.from, from = s.from - centre;
-  const double a = motion::Dot(along, along), b = motion::Dot(along, from),
-               c = motion::Dot(from, from) - radius * radius;
+void OutsideOfBall(const PathSegment& s, const ProgramPoint& centre, double radius,
+                   const Use& use) {
+  const ProgramVector along = s.to - s.from, from = s.from - centre;
+  const double a = along.dot(along), b = along.dot(from), c = from.dot(from) - radius * radius;
   const double root2 = b * b - a * c;
   if (a <= 0.0 || root2 <= 0.0) {
     if (c > 0.0) use(s);
@@ -149,7 +149,7 @@ void OutsideOfBall(const PathSegment& s, const Vec3& centre, double radius, cons
 bool RunsBack(const Leg& leg, const Leg& moved) {
   if (leg.is_arc && moved.is_arc) return SweepOf(moved) > SweepOf(leg) + std::numbers::pi;
   if (leg.is_arc) return false;
-  return motion::Dot(moved.to - moved.from, leg.tangent_from) < -kGougeTolerance_mm;
+  return (moved.to - moved.from).dot(leg.tangent_from) < -kGougeTolerance_mm;
 }
 
 }  // namespace
@@ -166,7 +166,7 @@ GougeSearch FindGouges(const std::vector<Leg>& legs, const std::vector<OffsetLeg
 
   std::vector<PathSegment> contour, path;
   std::vector<bool> runs_back(legs.size());
-  Vec3 at = legs.front().from;
+  ProgramPoint at = legs.front().from;
   for (std::size_t k = 0; k < legs.size(); ++k) {
     if (contour.size() + path.size() > kSegmentsMax) {
       search.unchecked_from = k;
@@ -182,7 +182,7 @@ GougeSearch FindGouges(const std::vector<Leg>& legs, const std::vector<OffsetLeg
     runs_back[k] = k > 0 && RunsBack(legs[k], moved);
     at = moved.to;
   }
-  const Vec3 start = drawing.Flat(legs.front().from);
+  const ProgramPoint start = drawing.Flat(legs.front().from);
   const Edges edges = WithoutLeads(std::move(contour), legs.size());
   const SegmentGrid grid(edges.segments, radius);
 

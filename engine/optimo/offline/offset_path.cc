@@ -14,11 +14,11 @@ constexpr double kTangent = 1.0 - 1e-9;  // n1 . n2 of a joint without a corner
 constexpr double kNoRadius = 5e-6;       // half of the last decimal written (OPT-8.11)
 constexpr double kInPlane = 1.0 - 1e-6;  // cosine between the axis of an arc and the tool
 
-Vec3 Unit(const Vec3& v) {
-  const double norm = motion::Norm(v);
-  return norm < kTiny ? Vec3{} : v * (1.0 / norm);
+ProgramVector Unit(const ProgramVector& v) {
+  const double norm = v.norm();
+  return norm < kTiny ? ProgramVector{} : v * (1.0 / norm);
 }
-bool IsZero(const Vec3& v) { return v == Vec3{}; }
+bool IsZero(const ProgramVector& v) { return v == ProgramVector{}; }
 
 // A leg's offset curve in the plane normal to the tool, about the corner as origin.
 struct PlaneCurve {
@@ -59,49 +59,51 @@ std::optional<std::pair<double, double>> NearestMeeting(const PlaneCurve& a, con
 }
 
 // Towards the centre: the offset makes the arc smaller.
-double OffsetRadius(const Leg& arc, const Vec3& at, const Vec3& normal, double offset) {
-  const Vec3 inward = Unit(arc.centre - at);
-  return arc.radius - offset * motion::Dot(normal, inward);
+double OffsetRadius(const Leg& arc, const ProgramPoint& at, const ProgramVector& normal,
+                    double offset) {
+  const ProgramVector inward = Unit(arc.centre - at);
+  return arc.radius - offset * normal.dot(inward);
 }
 
-PlaneCurve CurveOf(const Leg& leg, const Vec3& corner, const Vec3& tangent, const Vec3& normal,
-                   const Vec3& ex, const Vec3& ey, double offset) {
+PlaneCurve CurveOf(const Leg& leg, const ProgramPoint& corner, const ProgramVector& tangent,
+                   const ProgramVector& normal, const ProgramVector& ex, const ProgramVector& ey,
+                   double offset) {
   PlaneCurve curve;
   if (leg.is_arc) {
     curve.circle = true;
-    const Vec3 to_centre = leg.centre - corner;
-    curve.x = motion::Dot(to_centre, ex);
-    curve.y = motion::Dot(to_centre, ey);
+    const ProgramVector to_centre = leg.centre - corner;
+    curve.x = to_centre.dot(ex);
+    curve.y = to_centre.dot(ey);
     curve.radius = OffsetRadius(leg, corner, normal, offset);
   } else {
-    const Vec3 shift = normal * offset;
-    curve.x = motion::Dot(shift, ex);
-    curve.y = motion::Dot(shift, ey);
-    curve.dx = motion::Dot(tangent, ex);
-    curve.dy = motion::Dot(tangent, ey);
+    const ProgramVector shift = normal * offset;
+    curve.x = shift.dot(ex);
+    curve.y = shift.dot(ey);
+    curve.dx = tangent.dot(ex);
+    curve.dy = tangent.dot(ey);
   }
   return curve;
 }
 
-bool InPlane(const Leg& leg, const Vec3& tangent, const Vec3& tool) {
-  if (leg.is_arc) return std::fabs(motion::Dot(leg.axis, tool)) > kInPlane;
-  return std::fabs(motion::Dot(tangent, tool)) < 1e-6;
+bool InPlane(const Leg& leg, const ProgramVector& tangent, const ProgramPoint& tool) {
+  if (leg.is_arc) return std::fabs(leg.axis.dot(tool)) > kInPlane;
+  return std::fabs(tangent.dot(tool)) < 1e-6;
 }
 
 // The new place of the corner between two legs. OPT-8.16, OPT-8.79, OPT-B.79
-std::optional<Vec3> Corner(const Leg& before, const Leg& after, double offset) {
-  const Vec3& tool = before.tool_to;
-  Vec3 n1 = LeftNormal(tool, before.tangent_to),
-       n2 = LeftNormal(after.tool_from, after.tangent_from);
+std::optional<ProgramPoint> Corner(const Leg& before, const Leg& after, double offset) {
+  const ProgramPoint& tool = before.tool_to;
+  ProgramVector n1 = LeftNormal(tool, before.tangent_to),
+                n2 = LeftNormal(after.tool_from, after.tangent_from);
   if (IsZero(n1)) n1 = n2;
   if (IsZero(n2)) n2 = n1;
   if (IsZero(n1)) return before.to;
-  const double cosine = motion::Dot(n1, n2);
+  const double cosine = n1.dot(n2);
   if (cosine < kTurnsBack) return std::nullopt;
   const bool arc = before.is_arc || after.is_arc;
   if (arc && cosine < kTangent && InPlane(before, before.tangent_to, tool) &&
       InPlane(after, after.tangent_from, tool)) {
-    const Vec3 ex = Unit(before.tangent_to), ey = motion::Cross(tool, ex);
+    const ProgramVector ex = Unit(before.tangent_to), ey = tool.cross(ex);
     const auto meeting =
         NearestMeeting(CurveOf(before, before.to, before.tangent_to, n1, ex, ey, offset),
                        CurveOf(after, before.to, after.tangent_from, n2, ex, ey, offset));
@@ -113,7 +115,8 @@ std::optional<Vec3> Corner(const Leg& before, const Leg& after, double offset) {
 
 bool ArcIsConsumed(const Leg& leg, double offset) {
   if (!leg.is_arc) return false;
-  const auto consumed = [&](const Vec3& at, const Vec3& tool, const Vec3& tangent) {
+  const auto consumed = [&](const ProgramPoint& at, const ProgramPoint& tool,
+                            const ProgramVector& tangent) {
     return OffsetRadius(leg, at, LeftNormal(tool, tangent), offset) <= kNoRadius;
   };
   return consumed(leg.from, leg.tool_from, leg.tangent_from) ||
@@ -122,31 +125,26 @@ bool ArcIsConsumed(const Leg& leg, double offset) {
 
 }  // namespace
 
-Vec3 ToolDirection(double a, double b) {
-  return {std::sin(a) * std::sin(b), -std::cos(a) * std::sin(b), std::cos(b)};
-}
-
-Vec3 LeftNormal(const Vec3& tool, const Vec3& tangent) {
-  const Vec3 side = motion::Cross(tool, tangent);
-  return motion::Norm(side) < 1e-6 ? Vec3{} : Unit(side);
+ProgramVector LeftNormal(const ProgramPoint& tool, const ProgramVector& tangent) {
+  const ProgramVector side = tool.cross(tangent);
+  return side.norm() < 1e-6 ? ProgramVector{} : Unit(side);
 }
 
 void Prepare(Leg& leg) {
   leg.is_arc = false;
   if (leg.via) {
     // Centre of the circle through three points, from the first one.
-    const Vec3 p = *leg.via - leg.from, q = leg.to - leg.from;
-    const Vec3 normal = motion::Cross(p, q);
-    const double area2 = motion::Dot(normal, normal);
-    if (std::sqrt(area2) > kTiny * (1.0 + motion::Norm(p) * motion::Norm(q))) {
-      const Vec3 to_centre =
-          motion::Cross(normal, p * motion::Dot(q, q) - q * motion::Dot(p, p)) * (0.5 / area2);
+    const ProgramPoint p = *leg.via - leg.from, q = leg.to - leg.from;
+    const ProgramVector normal = p.cross(q);
+    const double area2 = normal.dot(normal);
+    if (std::sqrt(area2) > kTiny * (1.0 + p.norm() * q.norm())) {
+      const ProgramVector to_centre = normal.cross(p * q.dot(q) - q * p.dot(p)) * (0.5 / area2);
       leg.is_arc = true;
       leg.centre = leg.from + to_centre;
       leg.axis = Unit(normal);
-      leg.radius = motion::Norm(to_centre);
-      const auto tangent = [&](const Vec3& at) {
-        return Unit(motion::Cross(leg.axis, at - leg.centre));
+      leg.radius = to_centre.norm();
+      const auto tangent = [&](const ProgramPoint& at) {
+        return Unit(leg.axis.cross(at - leg.centre));
       };
       leg.tangent_from = tangent(leg.from);
       leg.tangent_via = tangent(*leg.via);
@@ -159,20 +157,19 @@ void Prepare(Leg& leg) {
 
 double ShareAtVia(const Leg& leg) {
   if (!leg.is_arc) return 0.5;
-  const Vec3 e = Unit(leg.from - leg.centre), f = motion::Cross(leg.axis, e);
-  const auto angle = [&](const Vec3& at) {
-    const double turned =
-        std::atan2(motion::Dot(at - leg.centre, f), motion::Dot(at - leg.centre, e));
+  const ProgramVector e = Unit(leg.from - leg.centre), f = leg.axis.cross(e);
+  const auto angle = [&](const ProgramPoint& at) {
+    const double turned = std::atan2((at - leg.centre).dot(f), (at - leg.centre).dot(e));
     return turned > 0.0 ? turned : turned + 2.0 * std::numbers::pi;
   };
   return angle(*leg.via) / angle(leg.to);
 }
 
-std::optional<Vec3> HoleEnd(const Vec3& from, const Vec3& centre, const Vec3& beside,
-                            double radius) {
-  const Vec3 axis = Unit(beside - centre);
-  const Vec3 out = from - centre;
-  const Vec3 towards = Unit(out - axis * motion::Dot(out, axis));
+std::optional<ProgramPoint> HoleEnd(const ProgramPoint& from, const ProgramPoint& centre,
+                                    const ProgramVector& beside, double radius) {
+  const ProgramVector axis = Unit(beside - centre);
+  const ProgramVector out = from - centre;
+  const ProgramVector towards = Unit(out - axis * out.dot(axis));
   if (IsZero(axis) || IsZero(towards)) return std::nullopt;
   return centre + towards * radius;
 }
@@ -191,7 +188,7 @@ Result<std::vector<OffsetLeg>> OffsetChain(const std::vector<Leg>& legs, double 
     }
     OffsetLeg moved;
     if (k + 1 < legs.size()) {
-      const std::optional<Vec3> corner = Corner(leg, legs[k + 1], offset);
+      const std::optional<ProgramPoint> corner = Corner(leg, legs[k + 1], offset);
       if (!corner)
         return Error{
             ErrorCode::kCompCorner, "the path turns back, or the offset curves do not meet", {}};

@@ -4,27 +4,25 @@
 #include <vector>
 
 #include "engine/core/result.h"
-#include "engine/motion/vec3.h"
+#include "engine/motion/geometry/frames.h"
 
 // The sideways offset of a cut path in space (optimo.md 8.1). Private to the folder. mm; directions
 // are unit vectors.
 namespace rmlcell::optimo {
 
-using motion::Vec3;
-
-// u(A, B), from the tip towards the head. OPT-B.03
-Vec3 ToolDirection(double a_rad, double b_rad);
+using motion::ProgramPoint;
+using motion::ProgramVector;
 
 // One cutting move, as programmed.
 struct Leg {
-  Vec3 from, to;
-  std::optional<Vec3> via;  // an arc, when the three points are no line
-  Vec3 tool_from, tool_to, tool_via;
+  ProgramPoint from, to;
+  std::optional<ProgramPoint> via;  // an arc, when the three points are no line
+  ProgramPoint tool_from, tool_to, tool_via;
 
   // Filled by Prepare.
-  Vec3 tangent_from, tangent_to, tangent_via;  // zero when there is no motion
+  ProgramVector tangent_from, tangent_to, tangent_via;  // zero when there is no motion
   bool is_arc = false;
-  Vec3 centre, axis;  // the arc runs counter-clockwise about `axis`
+  ProgramPoint centre, axis;  // the arc runs counter-clockwise about `axis`
   double radius = 0.0;
 };
 void Prepare(Leg& leg);
@@ -33,16 +31,16 @@ double ShareAtVia(const Leg& leg);
 
 // Side of the path at a point: u x d, to the left of the cut; zero when d is zero or along u.
 // OPT-8.15
-Vec3 LeftNormal(const Vec3& tool, const Vec3& tangent);
+ProgramVector LeftNormal(const ProgramPoint& tool, const ProgramVector& tangent);
 
 // Where a hole ends: the point of its circle nearest to `from`, for the axis from `centre` to
 // `beside` (OPT-2.23, OPT-B.10). Nothing without an axis, or on it.
-std::optional<Vec3> HoleEnd(const Vec3& from, const Vec3& centre, const Vec3& beside,
-                            double radius);
+std::optional<ProgramPoint> HoleEnd(const ProgramPoint& from, const ProgramPoint& centre,
+                                    const ProgramVector& beside, double radius);
 
 struct OffsetLeg {
-  Vec3 to;
-  std::optional<Vec3> via;
+  ProgramPoint to;
+  std::optional<ProgramPoint> via;
 };
 
 // Offsets a chain of legs by `offset`, positive to the left; the first leg starts at its programmed

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <array>
 #include <optional>
 
-#include "engine/motion/vec3.h"
+#include "engine/motion/geometry/frames.h"
 #include "engine/optimo/language/program.h"
 
 namespace rmlcell::optimo {
@@ -16,31 +15,26 @@ class ProgramFrame {
   // is 0 then.
   bool Set(const ParsedProgram& program, const Instruction& sysdef);
 
-  // A direction of the machine in program coordinates.
-  motion::Vec3 DirectionToProgram(const motion::Vec3& d) const {
-    return {motion::Dot(columns_[0], d), motion::Dot(columns_[1], d), motion::Dot(columns_[2], d)};
-  }
-  motion::Vec3 DirectionToMachine(const motion::Vec3& d) const {
-    return columns_[0] * d.x + columns_[1] * d.y + columns_[2] * d.z;
+  // For directions: machine from program.
+  const motion::Rotation& rotation() const { return rotation_; }
+  motion::ProgramVector DirectionToProgram(const motion::MachineVector& d) const {
+    return rotation_.transpose() * d;
   }
 
   // Nothing where SYSDEF has values that are no numbers.
-  std::optional<motion::Vec3> PointToMachine(const motion::Vec3& p) const {
+  std::optional<motion::MachinePoint> PointToMachine(const motion::ProgramPoint& p) const {
     if (!translation_) return std::nullopt;
-    return *translation_ + DirectionToMachine(p);
+    return *translation_ + rotation_ * p;
   }
-  std::optional<motion::Vec3> PointToProgram(const motion::Vec3& p) const {
+  std::optional<motion::ProgramPoint> PointToProgram(const motion::MachinePoint& p) const {
     if (!translation_) return std::nullopt;
     return DirectionToProgram(p - *translation_);
   }
 
  private:
-  std::array<motion::Vec3, 3> columns_ = {motion::Vec3{1, 0, 0}, motion::Vec3{0, 1, 0},
-                                          motion::Vec3{0, 0, 1}};
-  std::optional<motion::Vec3> translation_ = motion::Vec3{};  // only while all six are numbers
+  motion::Rotation rotation_ = motion::Rotation::Identity();
+  // Only while all six are numbers.
+  std::optional<motion::MachineVector> translation_ = motion::MachineVector::Zero();
 };
-
-// The columns of Rz(rz) Ry(ry) Rx(rx), rad.
-std::array<motion::Vec3, 3> RotationColumns(double rz, double ry, double rx);
 
 }  // namespace rmlcell::optimo

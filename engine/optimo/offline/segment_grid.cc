@@ -6,7 +6,8 @@
 namespace rmlcell::optimo {
 namespace {
 
-using motion::Vec3;
+using motion::ProgramPoint;
+using motion::ProgramVector;
 
 constexpr double kNoLength2 = 1e-18;
 // A coordinate is a cell number between 0 and twice this: 31 bits, far from the ends of a uint32_t.
@@ -19,16 +20,16 @@ double Share(double value) { return std::clamp(value, 0.0, 1.0); }
 }  // namespace
 
 NearestPoints NearestPointsOf(const PathSegment& a, const PathSegment& b) {
-  const Vec3 along_a = a.to - a.from, along_b = b.to - b.from, between = a.from - b.from;
-  const double aa = motion::Dot(along_a, along_a), bb = motion::Dot(along_b, along_b);
-  const double b_between = motion::Dot(along_b, between), a_between = motion::Dot(along_a, between);
+  const ProgramVector along_a = a.to - a.from, along_b = b.to - b.from, between = a.from - b.from;
+  const double aa = along_a.dot(along_a), bb = along_b.dot(along_b);
+  const double b_between = along_b.dot(between), a_between = along_a.dot(between);
   NearestPoints nearest;
   if (aa <= kNoLength2 && bb > kNoLength2) {
     nearest.on_b = Share(b_between / bb);
   } else if (aa > kNoLength2 && bb <= kNoLength2) {
     nearest.on_a = Share(-a_between / aa);
   } else if (aa > kNoLength2) {
-    const double ab = motion::Dot(along_a, along_b), parallel = aa * bb - ab * ab;
+    const double ab = along_a.dot(along_b), parallel = aa * bb - ab * ab;
     // Parallel ones: anywhere on a will do to begin with.
     if (parallel > 1e-12 * aa * bb)
       nearest.on_a = Share((ab * b_between - a_between * bb) / parallel);
@@ -38,7 +39,7 @@ NearestPoints NearestPointsOf(const PathSegment& a, const PathSegment& b) {
       nearest.on_a = Share((ab * nearest.on_b - a_between) / aa);
     }
   }
-  nearest.distance = motion::Norm(between + along_a * nearest.on_a - along_b * nearest.on_b);
+  nearest.distance = (between + along_a * nearest.on_a - along_b * nearest.on_b).norm();
   return nearest;
 }
 
@@ -47,14 +48,14 @@ SegmentGrid::SegmentGrid(const std::vector<PathSegment>& segments, double reach)
   low_ = high_ = segments.front().from;
   double length = 0.0;
   for (const PathSegment& s : segments) {
-    for (const Vec3& p : {s.from, s.to}) {
-      low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y), std::min(low_.z, p.z)};
-      high_ = {std::max(high_.x, p.x), std::max(high_.y, p.y), std::max(high_.z, p.z)};
+    for (const ProgramPoint& p : {s.from, s.to}) {
+      low_ = {std::min(low_.x(), p.x()), std::min(low_.y(), p.y()), std::min(low_.z(), p.z())};
+      high_ = {std::max(high_.x(), p.x()), std::max(high_.y(), p.y()), std::max(high_.z(), p.z())};
     }
-    length += motion::Distance(s.from, s.to);
+    length += (s.from - s.to).norm();
   }
   std::array<std::pair<double, int>, 3> spread = {
-      {{high_.x - low_.x, 0}, {high_.y - low_.y, 1}, {high_.z - low_.z, 2}}};
+      {{high_.x() - low_.x(), 0}, {high_.y() - low_.y(), 1}, {high_.z() - low_.z(), 2}}};
   std::ranges::stable_sort(spread, [](const auto& a, const auto& b) { return a.first > b.first; });
   axis_u_ = spread[0].second;
   axis_v_ = spread[1].second;
@@ -73,7 +74,7 @@ SegmentGrid::SegmentGrid(const std::vector<PathSegment>& segments, double reach)
 }
 
 PathSegment SegmentGrid::Clipped(const PathSegment& segment) const {
-  const Vec3 along = segment.to - segment.from;
+  const ProgramVector along = segment.to - segment.from;
   double first = 0.0, last = 1.0;
   for (const int axis : {axis_u_, axis_v_}) {
     const double from = Coordinate(segment.from, axis), d = Coordinate(along, axis);

@@ -60,35 +60,18 @@ double Nearest(double angle, double old) {
 
 }  // namespace
 
-RigidMotion RigidMotion::Of(const motion::Vec3& translation, double rz, double ry, double rx) {
-  return {translation, RotationColumns(rz, ry, rx)};
-}
-
-motion::Vec3 RigidMotion::Turn(const motion::Vec3& d) const {
-  return columns[0] * d.x + columns[1] * d.y + columns[2] * d.z;
-}
-
-RigidMotion RigidMotion::Inverse() const {
-  RigidMotion inverse;
-  inverse.columns = {motion::Vec3{columns[0].x, columns[1].x, columns[2].x},
-                     motion::Vec3{columns[0].y, columns[1].y, columns[2].y},
-                     motion::Vec3{columns[0].z, columns[1].z, columns[2].z}};
-  inverse.translation = -inverse.Turn(translation);
-  return inverse;
-}
-
-HeadAngles TurnHead(const HeadAngles& old, const RigidMotion& motion, std::optional<double> swing) {
-  const motion::Vec3 u = motion.Turn(ToolDirection(old.a, old.b));
-  const double across = std::hypot(u.x, u.y);
-  const double b = std::atan2(across, u.z);
-  const double about_z = std::atan2(motion.columns[0].y, motion.columns[0].x);
+HeadAngles TurnHead(const HeadAngles& old, const motion::Rotation& turn,
+                    std::optional<double> swing) {
+  const motion::MachineVector u = turn * motion::ToolDirection(old.a, old.b);
+  const double across = std::hypot(u.x(), u.y());
+  const double b = std::atan2(across, u.z());
+  const double about_z = std::atan2(turn(1, 0), turn(0, 0));
   if (across < kStraightDown) return {old.a + about_z, b};
-  const double a = std::atan2(u.x, -u.y);
+  const double a = std::atan2(u.x(), -u.y());
   const double to = swing ? old.a + *swing : old.a + kTieShare * about_z;
   const HeadAngles one{Nearest(a, to), b}, twin{Nearest(a + kPi, to), -b};
   if (swing) return std::fabs(twin.a - to) < std::fabs(one.a - to) ? twin : one;
-  if (std::hypot(motion.columns[2].x, motion.columns[2].y) < kStraightDown &&
-      motion.columns[2].z > 0.0) {
+  if (std::hypot(turn(0, 2), turn(1, 2)) < kStraightDown && turn(2, 2) > 0.0) {
     return old.b < 0.0 ? twin : one;
   }
   const auto distance = [&](const HeadAngles& angles) {
@@ -97,7 +80,7 @@ HeadAngles TurnHead(const HeadAngles& old, const RigidMotion& motion, std::optio
   return distance(twin) < distance(one) ? twin : one;
 }
 
-Rewriting Transform(std::string_view text, const RigidMotion& motion) {
+Rewriting Transform(std::string_view text, const motion::RigidMotion& motion) {
   Findings findings;
   const ParsedProgram program = Parse(text, findings);
   NumberEdits edits{program, findings};
@@ -122,21 +105,16 @@ Rewriting Transform(std::string_view text, const RigidMotion& motion) {
                      "a coordinate is no plain number", "OPT-8.77");
         break;
       }
-      const motion::Vec3 point = motion.Move({*v[0], *v[1], *v[2]});
+      const motion::ProgramPoint point = motion * motion::ProgramPoint(*v[0], *v[1], *v[2]);
       // The head refers to the machine, the motion to the coordinates of the MOVE: turn there and
       // back. SYSDEF does not act on ROBOT (OPT-7.33).
       const ProgramFrame& in = robot ? machine : frame;
-      RigidMotion in_machine;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const motion::Vec3 axis = c == 0   ? motion::Vec3{1, 0, 0}
-                                  : c == 1 ? motion::Vec3{0, 1, 0}
-                                           : motion::Vec3{0, 0, 1};
-        in_machine.columns[c] = in.DirectionToMachine(motion.Turn(in.DirectionToProgram(axis)));
-      }
+      const motion::Rotation& turned = in.rotation();
+      const motion::Rotation in_machine = turned * motion.linear() * turned.transpose();
       const HeadAngles head = TurnHead({*v[3], *v[4]}, in_machine, swing);
       if (std::fabs(std::sin(*v[4])) > kNearlyDown && std::fabs(std::sin(head.b)) > kNearlyDown)
         swing = head.a - *v[3];
-      const std::array<double, 5> values = {point.x, point.y, point.z, head.a, head.b};
+      const std::array<double, 5> values = {point.x(), point.y(), point.z(), head.a, head.b};
       for (std::uint32_t n = 0; n < 5; ++n) {
         edits.Put(i, i.first_expression + first + n, values[n]);
       }

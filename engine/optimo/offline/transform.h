@@ -7,23 +7,10 @@
 #include <vector>
 
 #include "engine/core/diagnostic.h"
-#include "engine/motion/vec3.h"
+#include "engine/motion/geometry/frames.h"
 
 // TRANSFOR and RMLSHIFT: moving a program by rewriting its numbers (optimo.md 8.4).
 namespace rmlcell::optimo {
-
-// p' = translation + R p, with R given by its columns.
-struct RigidMotion {
-  motion::Vec3 translation;  // mm
-  std::array<motion::Vec3, 3> columns = {motion::Vec3{1, 0, 0}, motion::Vec3{0, 1, 0},
-                                         motion::Vec3{0, 0, 1}};
-
-  // Angles in the order of SYSDEF: Rz(rz) Ry(ry) Rx(rx), rad.
-  static RigidMotion Of(const motion::Vec3& translation, double rz, double ry, double rx);
-  RigidMotion Inverse() const;
-  motion::Vec3 Turn(const motion::Vec3& direction) const;
-  motion::Vec3 Move(const motion::Vec3& point) const { return translation + Turn(point); }
-};
 
 struct HeadAngles {
   double a = 0.0, b = 0.0;  // rad
@@ -36,7 +23,7 @@ struct HeadAngles {
 //   - behind that the one that swings A most nearly as `swing`, what A turned by before: chosen
 //   anew
 //     for each move, the head would swing by half a turn in the middle of a contour.
-HeadAngles TurnHead(const HeadAngles& old, const RigidMotion& motion,
+HeadAngles TurnHead(const HeadAngles& old, const motion::Rotation& turn,
                     std::optional<double> swing = {});
 
 struct Rewriting {
@@ -55,7 +42,7 @@ struct Rewriting {
 // the text stays (OPT-8.76, OPT-8.77). Errors: 7851 for a coordinate, or a rotation of SYSDEF, that
 // is no plain number; 7004 where a number would leave the range of REAL, as with a motion that is
 // not finite; those of the parser.
-Rewriting Transform(std::string_view text, const RigidMotion& motion);
+Rewriting Transform(std::string_view text, const motion::RigidMotion& motion);
 
 // RMLSHIFT: adds to the plain numbers that the program assigns to VR[86] to VR[91]: X, Y, Z, rz,
 // ry, rx (OPT-8.74, OPT-B.81). Errors: 7852 when there is none; 7004 as above.

@@ -58,9 +58,9 @@ TEST(FamilyTables, EveryProfileHasATravel) {
       ASSERT_TRUE(parameters.Apply(profile));
       const MachineShape shape = family->Shape(parameters);
       ASSERT_FALSE(shape.travel.empty()) << profile.id;
-      EXPECT_LT(shape.travel.min.x, shape.travel.max.x) << profile.id;
-      EXPECT_LT(shape.travel.min.y, shape.travel.max.y) << profile.id;
-      EXPECT_LT(shape.travel.min.z, shape.travel.max.z) << profile.id;
+      EXPECT_LT(shape.travel.min.x(), shape.travel.max.x()) << profile.id;
+      EXPECT_LT(shape.travel.min.y(), shape.travel.max.y()) << profile.id;
+      EXPECT_LT(shape.travel.min.z(), shape.travel.max.z()) << profile.id;
     }
   }
 }

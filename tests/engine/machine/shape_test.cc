@@ -10,20 +10,20 @@ namespace {
 TEST(Box, IsEmptyUntilAPointIsAdded) {
   Box box;
   EXPECT_TRUE(box.empty());
-  box.Add(motion::Vec3{1, 2, 3});
+  box.Add(motion::MachineVector{1, 2, 3});
   EXPECT_FALSE(box.empty());
-  EXPECT_EQ(box.min, (motion::Vec3{1, 2, 3}));
-  EXPECT_EQ(box.max, (motion::Vec3{1, 2, 3}));
+  EXPECT_EQ(box.min, (motion::MachineVector{1, 2, 3}));
+  EXPECT_EQ(box.max, (motion::MachineVector{1, 2, 3}));
 }
 
 TEST(Box, GrowsInEachDirectionAlone) {
   Box box;
-  box.Add(motion::Vec3{0, 0, 0});
-  box.Add(motion::Vec3{-1, 5, 0});
-  box.Add(motion::Vec3{3, -2, -7});
-  box.Add(motion::Vec3{1, 1, -1});  // inside
-  EXPECT_EQ(box.min, (motion::Vec3{-1, -2, -7}));
-  EXPECT_EQ(box.max, (motion::Vec3{3, 5, 0}));
+  box.Add(motion::MachineVector{0, 0, 0});
+  box.Add(motion::MachineVector{-1, 5, 0});
+  box.Add(motion::MachineVector{3, -2, -7});
+  box.Add(motion::MachineVector{1, 1, -1});  // inside
+  EXPECT_EQ(box.min, (motion::MachineVector{-1, -2, -7}));
+  EXPECT_EQ(box.max, (motion::MachineVector{3, 5, 0}));
 }
 
 TEST(Box, AnEmptyOneAddsNothing) {
@@ -31,24 +31,24 @@ TEST(Box, AnEmptyOneAddsNothing) {
   box.Add(Box());
   EXPECT_TRUE(box.empty());
   EXPECT_EQ(box, Box());
-  box.Add(motion::Vec3{1, 1, 1});
+  box.Add(motion::MachineVector{1, 1, 1});
   const Box before = box;
   box.Add(Box());
   EXPECT_EQ(box, before);
   Box other;
-  other.Add(motion::Vec3{-1, 0, 2});
+  other.Add(motion::MachineVector{-1, 0, 2});
   box.Add(other);
-  EXPECT_EQ(box.min, (motion::Vec3{-1, 0, 1}));
-  EXPECT_EQ(box.max, (motion::Vec3{1, 1, 2}));
+  EXPECT_EQ(box.min, (motion::MachineVector{-1, 0, 1}));
+  EXPECT_EQ(box.max, (motion::MachineVector{1, 1, 2}));
 }
 
 // From corner to corner; 0 of an empty one, and of a point.
 TEST(Box, DiagonalGoesFromCornerToCorner) {
   Box box;
   EXPECT_EQ(box.diagonal_mm(), 0.0);
-  box.Add(motion::Vec3{1, 2, 3});
+  box.Add(motion::MachineVector{1, 2, 3});
   EXPECT_EQ(box.diagonal_mm(), 0.0);
-  box.Add(motion::Vec3{-1, 5, 9});
+  box.Add(motion::MachineVector{-1, 5, 9});
   EXPECT_DOUBLE_EQ(box.diagonal_mm(), 7.0);
 }
 

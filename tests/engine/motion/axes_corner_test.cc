@@ -57,11 +57,11 @@ TEST(AxesCorner, RightAngle) {
   const double bend_s = std::sqrt(6.0 * 250.0 / 40000.0);
   EXPECT_EQ(motions[1].corner.passage, Passage::kBlend);
   EXPECT_NEAR(motions[1].duration_s() + motions[2].duration_s(), bend_s, 1e-12);
-  EXPECT_NEAR(motions[0].path.to().tip.x, 1000.0 - 250.0 * 0.5 * bend_s, 1e-9);
-  EXPECT_NEAR(motions[3].path.from().tip.y, 250.0 * 0.5 * bend_s, 1e-9);
+  EXPECT_NEAR(motions[0].path.to().tip.x(), 1000.0 - 250.0 * 0.5 * bend_s, 1e-9);
+  EXPECT_NEAR(motions[3].path.from().tip.y(), 250.0 * 0.5 * bend_s, 1e-9);
   const double deviation = 3.0 / 32.0 * bend_s * 250.0;
-  EXPECT_NEAR(motions[1].path.to().tip.x, 1000.0 - deviation, 1e-9);
-  EXPECT_NEAR(motions[1].path.to().tip.y, deviation, 1e-9);
+  EXPECT_NEAR(motions[1].path.to().tip.x(), 1000.0 - deviation, 1e-9);
+  EXPECT_NEAR(motions[1].path.to().tip.y(), deviation, 1e-9);
   EXPECT_NEAR(motions[1].corner.deviation_mm, std::sqrt(2.0) * deviation, 1e-9);
   EXPECT_NEAR(CycleTime(motions), 8.0 + (250.0 / 2000.0 + 2000.0 / 40000.0) + 0.048, 1e-9);
 }
@@ -122,8 +122,8 @@ TEST(AxesCorner, ShortNeighbourLowersBothSpeeds) {
   const CornerReport corner = FirstCorner(motions);
   EXPECT_EQ(corner.passage, Passage::kBlendCapped);
   EXPECT_NEAR(corner.speed, std::cbrt(4.0 * 0.02 * 0.02 / 0.0375), 1e-9);
-  EXPECT_NEAR(motions[1].path.from().tip.x, 1000.0 - 250.0 * 0.02, 1e-9);
-  EXPECT_NEAR(motions[2].path.to().tip.y, 5.0, 1e-9);
+  EXPECT_NEAR(motions[1].path.from().tip.x(), 1000.0 - 250.0 * 0.02, 1e-9);
+  EXPECT_NEAR(motions[2].path.to().tip.y(), 5.0, 1e-9);
 }
 
 // From 500 to 100 mm/s on one line: speeds change, and yet the target lies on the way.
@@ -195,7 +195,7 @@ TEST(AxesCorner, RandomChainsKeepTheLimitsOfEveryAxis) {
       const MotionView view(motion);
       const TrajectoryPoint begin = view.At(0.0);
       if (!first) {
-        EXPECT_NEAR(Distance({begin.axes[0], begin.axes[1], begin.axes[2]}, last.column), 0, 1e-9);
+        EXPECT_NEAR((begin.axes.head<3>() - last.column).norm(), 0, 1e-9);
         EXPECT_NEAR(begin.axes[3], last.a_rad, 1e-12) << seed;
       }
       first = false;
@@ -216,7 +216,7 @@ TEST(AxesCorner, RandomChainsKeepTheLimitsOfEveryAxis) {
       last = {{end.axes[0], end.axes[1], end.axes[2]}, end.axes[3], end.axes[4]};
     }
     const TipPose& target = chain.back().path.to();
-    EXPECT_NEAR(Distance(last.column, target.tip), 0.0, 1e-9) << seed;
+    EXPECT_NEAR((last.column - target.tip).norm(), 0.0, 1e-9) << seed;
     EXPECT_NEAR(last.b_rad, target.b_rad, 1e-12) << seed;
 
     std::vector<MoveCommand> flown = chain;

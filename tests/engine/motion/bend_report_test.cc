@@ -18,7 +18,7 @@ std::vector<MoveCommand> RightAngles(int legs) {
   for (int k = 0; k < legs; ++k) {
     MoveCommand move;
     TipPose to = at;
-    (k % 2 == 0 ? to.tip.x : to.tip.y) += 2.0;
+    (k % 2 == 0 ? to.tip.x() : to.tip.y()) += 2.0;
     move.path = PathPiece::Line(at, to);
     move.speed_fraction = 0.3;
     move.fly = k + 1 < legs;
@@ -46,14 +46,14 @@ TEST(BendReport, TellsSpeedAndDistanceInTheMiddle) {
       if (!IsBlend(motion.corner.passage)) continue;
       ++bends;
       if (motion.speed.peak_speed() > motion.speed.At(0.0).speed * (1 + 1e-9)) ++varying;
-      const Vec3& corner = chain[motion.tag].path.to().tip;
+      const MachinePoint& corner = chain[motion.tag].path.to().tip;
       double nearest = HUGE_VAL;
       double step = 0.0;
       for (std::size_t half = k; half <= k + 1; ++half) {
         const PathPiece& path = motions[half].path;
         step = std::max(step, path.length() / 200);
         for (int n = 0; n <= 200; ++n) {
-          nearest = std::min(nearest, Distance(path.At(path.length() * n / 200).tip, corner));
+          nearest = std::min(nearest, (path.At(path.length() * n / 200).tip - corner).norm());
         }
       }
       // Half a step beside the nearest place the distance is greater by step^2 / (8 nearest), some

@@ -30,7 +30,7 @@ struct Turn {
   }
   double Allowed(double s) const {
     const double u = length->ParameterAt(curve, s);
-    const double bend = Norm(curve.SecondByLength(u).tip);
+    const double bend = curve.SecondByLength(u).tip.norm();
     return std::min(std::sqrt(1600.0 / bend), std::cbrt(32000.0 / curve.JerkPerCube(u)));
   }
   Corner corner;
@@ -210,7 +210,7 @@ std::vector<MoveCommand> Zigzag(int legs, double leg_mm, double speed) {
   for (int k = 0; k < legs; ++k) {
     MoveCommand move;
     TipPose to = at;
-    (k % 2 == 0 ? to.tip.x : to.tip.y) += leg_mm;
+    (k % 2 == 0 ? to.tip.x() : to.tip.y()) += leg_mm;
     move.path = PathPiece::Line(at, to);
     move.speed_fraction = speed;
     move.fly = k + 1 < legs;
@@ -299,7 +299,7 @@ TEST(BendStretches, ACurveKeepsTheAccelerationOfAllItTouches) {
     for (int k = 0; k < 16; ++k) {  // 8 x 0.5 mm along X, as many along Y
       MoveCommand move;
       TipPose to = at;
-      (k < 8 ? to.tip.x : to.tip.y) += 0.5;
+      (k < 8 ? to.tip.x() : to.tip.y()) += 0.5;
       move.path = PathPiece::Line(at, to);
       move.speed_fraction = 0.3;
       move.acceleration_fraction = k == weak ? 0.05 : 1.0;

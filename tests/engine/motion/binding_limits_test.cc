@@ -351,7 +351,7 @@ TEST(BindingLimits, PlansKeepThem) {
   machine.tip_jerk_mm_s3 = kNoLimit;
   machine.axes.speed[1] = 40.0;
   machine.settling_s = 0.0;
-  const auto time = [&](const Vec3& to) {
+  const auto time = [&](const MachinePoint& to) {
     Planner planner(machine);
     MoveCommand move = MoveOn(PathPiece::Line({}, {to}));
     move.speed_fraction = 0.1;

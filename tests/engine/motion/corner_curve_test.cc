@@ -102,9 +102,10 @@ TEST(CornerCurve, DerivativesByLength) {
     EXPECT_NEAR(second.a, (at(h).a_rad - 2 * at(0).a_rad + at(-h).a_rad) / (h * h), 1e-5);
     EXPECT_NEAR(second.b, (at(h).b_rad - 2 * at(0).b_rad + at(-h).b_rad) / (h * h), 1e-5);
     const double q = 5e-3;
-    const Vec3 third = (at(3 * q).tip - at(q).tip * 3.0 + at(-q).tip * 3.0 - at(-3 * q).tip) *
-                       (1.0 / (8 * q * q * q));
-    EXPECT_NEAR(curve.JerkPerCube(u), Norm(third), 1e-3 * Norm(third));
+    const MachineVector third =
+        (at(3 * q).tip - at(q).tip * 3.0 + at(-q).tip * 3.0 - at(-3 * q).tip) *
+        (1.0 / (8 * q * q * q));
+    EXPECT_NEAR(curve.JerkPerCube(u), third.norm(), 1e-3 * third.norm());
   }
 }
 
@@ -117,8 +118,8 @@ TEST(CornerCurve, BoundsHold) {
     for (int k = 0; k <= 2000; ++k) {
       const PathDerivatives first = curve.Derivative(k / 2000.0, 1);
       const PathDerivatives second = curve.Derivative(k / 2000.0, 2);
-      slowest = std::min(slowest, Norm(first.tip));
-      tip = std::max(tip, Norm(second.tip));
+      slowest = std::min(slowest, first.tip.norm());
+      tip = std::max(tip, second.tip.norm());
       a1 = std::max(a1, std::abs(first.a));
       b1 = std::max(b1, std::abs(first.b));
       a2 = std::max(a2, std::abs(second.a));
@@ -163,7 +164,7 @@ TEST(SpeedOnCurve, EachLimitAlone) {
     MachineLimits machine = strong;
     machine.tip_acceleration_mm_s2 = 2000.0;
     expect(machine,
-           dense([&](double u) { return std::sqrt(1600.0 / Norm(curve.SecondByLength(u).tip)); }));
+           dense([&](double u) { return std::sqrt(1600.0 / curve.SecondByLength(u).tip.norm()); }));
     machine = strong;
     machine.tip_jerk_mm_s3 = 40000.0;
     expect(machine, dense([&](double u) { return std::cbrt(32000.0 / curve.JerkPerCube(u)); }));
@@ -190,7 +191,7 @@ TEST(AxesFollow, NeverSaysYesInVain) {
   for (const double degrees : {2.0, 10.0, 25.0, 50.0}) {
     const CornerCurve curve = Turning(degrees, 5.0);
     double bend = 0.0;
-    for (int k = 0; k <= 4000; ++k) bend = std::max(bend, Norm(curve.SecondByLength(k / 4e3).tip));
+    for (int k = 0; k <= 4000; ++k) bend = std::max(bend, curve.SecondByLength(k / 4e3).tip.norm());
     for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
       for (AxisValues AxisLimits::*figure : {&AxisLimits::speed, &AxisLimits::acceleration}) {
         MachineLimits machine;
@@ -285,10 +286,10 @@ CornerCurve NearCusp(double degrees) {
   const double turn = 0.5 * degrees * kRadPerDegree;
   return CornerCurve({.pose = {{-std::cos(turn), -0.4, 0}},
                       .tangent = {std::cos(turn), std::sin(turn), 0},
-                      .curvature = Vec3{-std::sin(turn), std::cos(turn), 0} * 0.5},
+                      .curvature = MachineVector{-std::sin(turn), std::cos(turn), 0} * 0.5},
                      {.pose = {{std::cos(turn), -0.4, 0}},
                       .tangent = {std::cos(turn), -std::sin(turn), 0},
-                      .curvature = Vec3{std::sin(turn), std::cos(turn), 0} * 0.5},
+                      .curvature = MachineVector{std::sin(turn), std::cos(turn), 0} * 0.5},
                      2.0);
 }
 
@@ -307,7 +308,7 @@ TEST(CornerCurve, CuspIsTenTimesTheSharpestTurn) {
     const double cut = 0.5 * in.radius_mm() * i / 20000.0;
     const CornerCurve curve(EndAt(in, in.length() - cut), EndAt(out, cut), cut);
     const double place = curve.SlowestPlace();
-    const double sharp = Norm(curve.SecondByLength(place).tip) * cut / k;
+    const double sharp = curve.SecondByLength(place).tip.norm() * cut / k;
     if (curve.HasCusp(cut)) {
       ++cusps;
       least_of_cusps = std::min(least_of_cusps, sharp);
@@ -335,10 +336,10 @@ TEST(CornerLength, NearACusp) {
     const CornerLength length(curve);
     constexpr int kChords = 200000;
     double chords = 0.0;
-    Vec3 last = curve.At(0.0).tip;
+    MachinePoint last = curve.At(0.0).tip;
     for (int k = 1; k <= kChords; ++k) {
-      const Vec3 here = curve.At(static_cast<double>(k) / kChords).tip;
-      chords += Distance(last, here);
+      const MachinePoint here = curve.At(static_cast<double>(k) / kChords).tip;
+      chords += (last - here).norm();
       last = here;
       if (k % 20000 != 0) continue;
       EXPECT_NEAR(length.ParameterAt(curve, chords), static_cast<double>(k) / kChords, 2e-6);
@@ -354,11 +355,11 @@ TEST(CornerCurve, DistanceFromAPoint) {
   const CornerCurve curve(PlainAt(90.0, 2.0));
   EXPECT_NEAR(curve.DistanceFrom({-95, -2, 3}), 100.0, 1e-9);
   const TipPose at = curve.At(0.3);
-  const Vec3 tangent = curve.FirstByLength(0.3).tip;
-  const Vec3 across{-tangent.z, 0, tangent.x};
+  const MachineVector tangent = curve.FirstByLength(0.3).tip;
+  const MachineVector across{-tangent.z(), 0, tangent.x()};
   EXPECT_NEAR(curve.DistanceFrom(at.tip + across * 0.05), 0.05, 1e-9);
   EXPECT_NEAR(curve.DistanceFrom(at.tip - across * 0.05), 0.05, 1e-9);
-  EXPECT_NEAR(curve.DistanceFrom(at.tip + Vec3{0, 0.7, 0}), 0.7, 1e-9);
+  EXPECT_NEAR(curve.DistanceFrom(at.tip + MachineVector{0, 0.7, 0}), 0.7, 1e-9);
 }
 
 // In COORD ROBOT the curve is measured by time, which grows evenly with u.

@@ -110,8 +110,8 @@ TEST(CornerSize, WhereTheHeadStartsToTurn) {
 // Half of the smaller radius is all that it may take.
 TEST(CornerSize, WhereTheCurvatureJumps) {
   const PathPiece left = PathPiece::Circle({{50, 0, 0}}, {50, 20, 0}, {0, 0, 1}, 1.0, 0, 0);
-  const Vec3 end = left.to().tip;
-  const Vec3 out = (end - left.centre()) * (1.0 / 20.0);
+  const MachinePoint end = left.to().tip;
+  const MachineVector out = (end - left.centre()) * (1.0 / 20.0);
   const PathPiece right = PathPiece::Circle({end}, end + out * 50.0, {0, 0, -1}, 1.0, 0, 0);
   for (const bool turned : {false, true}) {
     const Corner corner =
@@ -246,8 +246,9 @@ TEST(CornerSize, StraightOnToAMillionth) {
 
 // Every axis has to change its speed by less than the jump. motion.md section 7
 TEST(JunctionSpeed, TheWorstAxisSetsIt) {
-  const Vec3 in{0.6, 0.0, 0.8};
-  for (const Vec3& change : {Vec3{0.5, 0.1, -0.2}, Vec3{0.2, -0.5, 0.1}, Vec3{0.1, 0.2, -0.5}}) {
+  const MachineVector in{0.6, 0.0, 0.8};
+  for (const MachineVector& change : {MachineVector{0.5, 0.1, -0.2}, MachineVector{0.2, -0.5, 0.1},
+                                      MachineVector{0.1, 0.2, -0.5}}) {
     EXPECT_NEAR(JunctionSpeed(in, in + change, 3.0), 6.0, 1e-12);
     EXPECT_NEAR(JunctionSpeed(in + change, in, 3.0), 6.0, 1e-12);
   }
@@ -281,9 +282,9 @@ TEST(AxesCorner, EveryAxisByItsOwnFigures) {
   for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
     const auto along = [axis](double way) {
       TipPose pose;
-      (axis == 0   ? pose.tip.x
-       : axis == 1 ? pose.tip.y
-       : axis == 2 ? pose.tip.z
+      (axis == 0   ? pose.tip.x()
+       : axis == 1 ? pose.tip.y()
+       : axis == 2 ? pose.tip.z()
        : axis == 3 ? pose.a_rad
                    : pose.b_rad) = way;
       return pose;

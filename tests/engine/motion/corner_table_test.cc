@@ -30,7 +30,7 @@ struct TableCorner {
   }
 
   double half_sine, half_cosine, rho, bend;
-  Vec3 in, out;
+  MachineVector in, out;
   CornerCurve curve;
   CornerLength length;
 };
@@ -69,7 +69,7 @@ TEST(CornerTables, HalvesTellCurvatureAndJerkFromPlaceToPlace) {
     for (std::size_t k = 1; k <= HalfCorner::kSteps; ++k) {
       const double way = 0.5 * corner.length.total() * static_cast<double>(k) / HalfCorner::kSteps;
       const double u = corner.length.ParameterAt(corner.curve, way);
-      const double by_bend = std::sqrt(corner.bend / Norm(corner.curve.SecondByLength(u).tip));
+      const double by_bend = std::sqrt(corner.bend / corner.curve.SecondByLength(u).tip.norm());
       EXPECT_LE(half.by_bend[k], by_bend) << degrees << ' ' << k;
       EXPECT_GE(half.by_bend[k], by_bend * (1.0 - 1e-3)) << degrees << ' ' << k;
       const double by_jerk = std::cbrt(corner.bend / corner.curve.JerkPerCube(u));

@@ -51,19 +51,20 @@ TEST(CurveBounds, AreThoseOfTheControlPoints) {
     const CurveEnd from = RandomEnd(dice), to = RandomEnd(dice);
     const double cut = dice.Magnitude(0.1, 10.0);
     const double scale =
-        2.0 * std::sqrt(std::sqrt(0.5 * (1.0 + Dot(from.tangent, to.tangent)))) * cut;
-    const Controls<Vec3> tip(from.pose.tip, to.pose.tip, from.tangent * scale, to.tangent * scale,
-                             from.curvature * (scale * scale), to.curvature * (scale * scale));
+        2.0 * std::sqrt(std::sqrt(0.5 * (1.0 + from.tangent.dot(to.tangent)))) * cut;
+    const Controls<MachinePoint> tip(from.pose.tip, to.pose.tip, from.tangent * scale,
+                                     to.tangent * scale, from.curvature * (scale * scale),
+                                     to.curvature * (scale * scale));
     const Controls<double> a(from.pose.a_rad, to.pose.a_rad, from.a_rate * scale, to.a_rate * scale,
                              0.0, 0.0);
     const Controls<double> b(from.pose.b_rad, to.pose.b_rad, from.b_rate * scale, to.b_rate * scale,
                              0.0, 0.0);
-    const Vec3 bisector = from.tangent + to.tangent;
+    const MachineVector bisector = from.tangent + to.tangent;
     double slowest = HUGE_VAL, second = 0.0;
-    for (const Vec3& control : tip.first) {
-      slowest = std::min(slowest, Dot(control, bisector) / Norm(bisector));
+    for (const MachinePoint& control : tip.first) {
+      slowest = std::min(slowest, control.dot(bisector) / bisector.norm());
     }
-    for (const Vec3& control : tip.second) second = std::max(second, Norm(control));
+    for (const MachinePoint& control : tip.second) second = std::max(second, control.norm());
     const CornerCurve::Bounds bounds = CornerCurve(from, to, cut).DerivativeBounds();
     const double room = 1e-9 * (1.0 + second);
     ASSERT_NEAR(bounds.slowest, slowest, room) << round;
@@ -129,9 +130,9 @@ TEST(CornerCurve, SlowestPlaceIsTheSlowest) {
     const double cut = 1.0, turn = dice.Uniform(0.0, 2.9);
     const double bend = dice.Uniform(-0.9, 0.9), bend_out = dice.Uniform(-0.9, 0.9);
     const CurveEnd from{.pose = {{-1, 0, 0}}, .tangent = {1, 0, 0}, .curvature = {0, bend, 0}};
-    const Vec3 out{std::cos(turn), std::sin(turn), 0};
+    const MachineVector out{std::cos(turn), std::sin(turn), 0};
     const CurveEnd to{
-        .pose = {out}, .tangent = out, .curvature = Vec3{-out.y, out.x, 0} * bend_out};
+        .pose = {out}, .tangent = out, .curvature = MachineVector{-out.y(), out.x(), 0} * bend_out};
     const CornerCurve curve(from, to, cut);
     const double place = curve.SlowestPlace();
     double slowest = HUGE_VAL;

@@ -34,7 +34,7 @@ TEST(Hole, EntersAtTheNearestPointAndTurnsLeft) {
 // The distance of the normal point has no effect. OPT-2.25
 TEST(Hole, UsesOnlyTheDirectionOfTheNormalPoint) {
   HoleCommand near = kHole;
-  near.normal_point.z = -549.9;
+  near.normal_point.z() = -549.9;
   const Result<HolePath> hole = HoleThrough(near);
   ASSERT_TRUE(hole);
   ExpectNear(hole->circle.At(0.25 * hole->circle.length()).tip, {100, 75, -550});
@@ -76,7 +76,7 @@ TEST(Hole, StartOnTheCircle) {
 // OPT-B.13, OPT-B.15, OPT-2.27: radius first, then the normal point.
 TEST(Hole, Errors) {
   HoleCommand hole = kHole;
-  hole.normal_point = hole.centre.tip + Vec3{0, 0, 1e-6};
+  hole.normal_point = hole.centre.tip + MachineVector{0, 0, 1e-6};
   EXPECT_EQ(HoleThrough(hole).error().code, ErrorCode::kHoleNormalUndefined);
   hole.radius_mm = 0.0;
   EXPECT_EQ(HoleThrough(hole).error().code, ErrorCode::kHoleRadiusZero);

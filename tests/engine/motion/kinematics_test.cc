@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine/core/units.h"
+#include "engine/motion/geometry/frames.h"
 #include "tests/engine/motion/expect_near.h"
 #include "tests/engine/motion/standard_machine.h"
 
@@ -14,10 +15,10 @@ namespace {
 
 // Along the outward radial of sample 2's cylinder. OPT-B.03
 TEST(ToolAxes, PointAlongTheRadial) {
-  ExpectNear(AxesOfTool(0.528, 1.5708).u, {0.503807, -0.863816, -0.000004}, 1e-6);
-  ExpectNear(AxesOfTool(0.0, kPi / 2).u, {0, -1, 0});
-  ExpectNear(AxesOfTool(kPi / 2, kPi / 2).u, {1, 0, 0});
-  ExpectNear(AxesOfTool(1.0, 0.0).u, {0, 0, 1});
+  ExpectNear(ToolDirection(0.528, 1.5708), {0.503807, -0.863816, -0.000004}, 1e-6);
+  ExpectNear(ToolDirection(0.0, kPi / 2), {0, -1, 0});
+  ExpectNear(ToolDirection(kPi / 2, kPi / 2), {1, 0, 0});
+  ExpectNear(ToolDirection(1.0, 0.0), {0, 0, 1});
 }
 
 // OPT-2.06, OPT-2.07, OPT-B.04, OPT-B.05
@@ -79,25 +80,25 @@ TEST(Head, ReachBoundsTheSwing) {
   for (double a = -6.0; a < 6.0; a += 0.37) {
     for (double b = -2.4; b < 2.4; b += 0.31) {
       const Swing swing = head.SwingOf(a, b, {{}, 0.4, -0.9}, {{}, -2.0, 0.3});
-      EXPECT_LE(Norm(swing.first), head.reach_mm() * 1.3 * (1 + 1e-12));
-      EXPECT_LE(Norm(swing.second), head.reach_mm() * (1.3 * 1.3 + 2.3) * (1 + 1e-12));
+      EXPECT_LE(swing.first.norm(), head.reach_mm() * 1.3 * (1 + 1e-12));
+      EXPECT_LE(swing.second.norm(), head.reach_mm() * (1.3 * 1.3 + 2.3) * (1 + 1e-12));
     }
   }
 }
 
 // OPT-B.09: the manual's order of the rotations.
 TEST(WorkOffset, TurnsAboutZThenYThenX) {
-  const WorkOffset offset({100, 200, -500}, 1.570796, 0.0, 1.570796);
-  ExpectNear(offset.ToMachine({0, 10, 0}), {100, 200, -490}, 1e-4);
-  ExpectNear(offset.ToProgram(offset.ToMachine({1, 2, 3})), {1, 2, 3});
-  EXPECT_EQ(WorkOffset{}.ToMachine({1, 2, 3}), (Vec3{1, 2, 3}));
+  const MachineFromProgram offset = RigidMotionOf({100, 200, -500}, 1.570796, 0.0, 1.570796);
+  ExpectNear(offset * ProgramPoint(0, 10, 0), {100, 200, -490}, 1e-4);
+  ExpectNear(offset.inverse() * (offset * ProgramPoint(1, 2, 3)), {1, 2, 3});
+  EXPECT_EQ(RigidMotionOf({0, 0, 0}, 0, 0, 0) * ProgramPoint(1, 2, 3), MachinePoint(1, 2, 3));
 }
 
 // motion.md 2.5: the nearer of both solutions and of their turns; A is kept along Z.
 TEST(AnglesOf, TakesTheNearestSolution) {
   for (const double a : {-7.0, -3.0, 0.2, 3.3, 9.0}) {
     for (const double b : {-1.2, -0.3, 0.4, 2.0}) {
-      const HeadAngles found = AnglesOf(AxesOfTool(a, b).u, {a + 0.1, b - 0.05});
+      const HeadAngles found = AnglesOf(ToolDirection(a, b), {a + 0.1, b - 0.05});
       EXPECT_NEAR(found.a_rad, a, 1e-12);
       EXPECT_NEAR(found.b_rad, b, 1e-12);
     }
@@ -110,14 +111,16 @@ TEST(AnglesOf, TakesTheNearestSolution) {
 TEST(Jog, MovesOneAxisOrHoldsTheTip) {
   const Head head;
   const AxisPose from{{1000, 900, -300}, 0.4, 0.9};
-  EXPECT_EQ(Jogged(from, head, {JogMode::kRobot, 2, 5.0}).column.z, -295.0);
+  EXPECT_EQ(Jogged(from, head, {JogMode::kRobot, 2, 5.0}).column.z(), -295.0);
   EXPECT_EQ(Jogged(from, head, {JogMode::kTool, 4, 0.1}).column, from.column);
   const AxisPose held = Jogged(from, head, {JogMode::kAbsolute, 3, 0.2});
   EXPECT_DOUBLE_EQ(held.a_rad, 0.6);
   ExpectNear(head.TipOf(held).tip, head.TipOf(from).tip);
-  const Vec3 up = Jogged(from, head, {JogMode::kTool, 2, 10.0, false}).column - from.column;
-  const Vec3 down = Jogged(from, head, {JogMode::kTool, 2, 10.0, true}).column - from.column;
-  ExpectNear(up, AxesOfTool(0.4, 0.9).u * 10.0);
+  const MachineVector up =
+      Jogged(from, head, {JogMode::kTool, 2, 10.0, false}).column - from.column;
+  const MachineVector down =
+      Jogged(from, head, {JogMode::kTool, 2, 10.0, true}).column - from.column;
+  ExpectNear(up, ToolDirection(0.4, 0.9) * 10.0);
   ExpectNear(down, -up);
 }
 

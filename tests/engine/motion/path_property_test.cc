@@ -57,7 +57,7 @@ void AssertSameWay(const std::vector<PlannedMotion>& first,
     const double share = static_cast<double>(k) / kPlaces;
     const TipPose here = expected(one.At(one.length() * share));
     const TipPose there = two.At(two.length() * (backwards ? 1.0 - share : share));
-    RC_ASSERT(Distance(here.tip, there.tip) <= 1e-6);
+    RC_ASSERT((here.tip - there.tip).norm() <= 1e-6);
     RC_ASSERT(std::abs(here.a_rad - there.a_rad) <= 1e-6);
     RC_ASSERT(std::abs(here.b_rad - there.b_rad) <= 1e-6);
   }
@@ -110,7 +110,7 @@ RC_GTEST_PROP(PathProperty, ShiftedGoesTheShiftedWay, ()) {
   const std::vector<MoveCommand> chain = RandomChain(drawn.seed, drawn.count);
   std::vector<MoveCommand> shifted = chain;
   const auto shift = [](const TipPose& p) {
-    return TipPose{p.tip + Vec3{128.0, -64.0, 32.0}, p.a_rad, p.b_rad};
+    return TipPose{p.tip + MachineVector{128.0, -64.0, 32.0}, p.a_rad, p.b_rad};
   };
   for (MoveCommand& move : shifted) move.path = Moved(move.path, shift);
   const std::vector<PlannedMotion> first = Plan(chain), second = Plan(shifted);
@@ -126,8 +126,9 @@ RC_GTEST_PROP(PathProperty, TurnedByAnyAngleGoesTheTurnedWay, ()) {
   const std::vector<MoveCommand> chain = RandomChain(drawn.seed, drawn.count, {.head = false});
   std::vector<MoveCommand> turned = chain;
   const auto turn = [c = std::cos(angle), s = std::sin(angle)](const TipPose& p) {
-    return TipPose{
-        {c * p.tip.x - s * p.tip.y, s * p.tip.x + c * p.tip.y, p.tip.z}, p.a_rad, p.b_rad};
+    return TipPose{{c * p.tip.x() - s * p.tip.y(), s * p.tip.x() + c * p.tip.y(), p.tip.z()},
+                   p.a_rad,
+                   p.b_rad};
   };
   for (MoveCommand& move : turned) move.path = Moved(move.path, turn);
   MachineLimits machine = StandardMachine();
@@ -148,7 +149,7 @@ RC_GTEST_PROP(PathProperty, TurnedByAQuarterWithTheHeadGoesTheTurnedWay, ()) {
   const std::vector<MoveCommand> chain = RandomChain(drawn.seed, drawn.count);
   std::vector<MoveCommand> turned = chain;
   const auto turn = [quarters](TipPose p) {
-    for (int k = 0; k < quarters; ++k) p.tip = {-p.tip.y, p.tip.x, p.tip.z};
+    for (int k = 0; k < quarters; ++k) p.tip = {-p.tip.y(), p.tip.x(), p.tip.z()};
     p.a_rad += quarters * kPi / 2;
     return p;
   };
@@ -203,10 +204,10 @@ RC_GTEST_PROP(PathProperty, LowerOverrideChangesNothingBetweenCorners, ()) {
       if (motion.path.kind() != PathPiece::Kind::kLine) continue;
       const PathPiece& whole = chain[static_cast<std::size_t>(motion.tag)].path;
       for (const TipPose& end : {motion.path.from(), motion.path.to()}) {
-        const double along = Dot(end.tip - whole.from().tip, whole.Tangent(0.0));
+        const double along = (end.tip - whole.from().tip).dot(whole.Tangent(0.0));
         RC_ASSERT(along >= -1e-9);
         RC_ASSERT(along <= whole.length() + 1e-9);
-        RC_ASSERT(Distance(whole.At(along).tip, end.tip) <= 1e-9);
+        RC_ASSERT((whole.At(along).tip - end.tip).norm() <= 1e-9);
       }
     }
   }

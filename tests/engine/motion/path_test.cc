@@ -11,7 +11,7 @@
 namespace rmlcell::motion {
 namespace {
 
-PathPiece ArcOf(const Vec3& from, const Vec3& via, const Vec3& to) {
+PathPiece ArcOf(const MachinePoint& from, const MachinePoint& via, const MachinePoint& to) {
   const Result<PathPiece::Arc3> arc = PathPiece::ArcThrough({from}, via, {to});
   EXPECT_TRUE(arc);
   return arc ? arc->path : PathPiece{};
@@ -63,7 +63,7 @@ TEST(PathArc, MayBeTiltedAndLongerThanAHalfCircle) {
 // Every case of the table of motion.md 3.2. OPT-B.16, OPT-B.18
 TEST(PathArc, DegenerateCases) {
   using Case = PathPiece::ArcCase;
-  const auto through = [](const Vec3& via, const Vec3& to, double b = 0.0) {
+  const auto through = [](const MachinePoint& via, const MachinePoint& to, double b = 0.0) {
     return PathPiece::ArcThrough({{0, 0, 0}}, via, {to, 0.0, b});
   };
   EXPECT_EQ(through({5, 0, 0}, {10, 0, 0})->kind, Case::kLineWarned);      // between
@@ -74,7 +74,7 @@ TEST(PathArc, DegenerateCases) {
   EXPECT_EQ(through({0, 0, 0}, {0, 0, 0}, 1.0)->kind, Case::kNoTipMotion);
   EXPECT_EQ(through({0, 0, 0}, {0, 0, 0}, 1.0)->path.kind(), PathPiece::Kind::kRotary);
   EXPECT_EQ(through({0, 0, 0}, {0, 0, 0})->path.length(), 0.0);
-  for (const Vec3& via : {Vec3{15, 0, 0}, Vec3{-5, 0, 0}}) {
+  for (const MachinePoint& via : {MachineVector{15, 0, 0}, MachineVector{-5, 0, 0}}) {
     ASSERT_FALSE(through(via, {10, 0, 0}));
     EXPECT_EQ(through(via, {10, 0, 0}).error().code, ErrorCode::kArcUndefined);
   }
@@ -93,7 +93,7 @@ TEST(PathArc, StaysAccurateWhenNearlyStraight) {
     ExpectNear(arc.At(0.5 * arc.length()).tip, {3500, 2000 - h, -500}, 1e-9);
     ExpectNear(arc.At(arc.length() * (1.0 - 1e-12)).tip, {4000, 2000, -500}, 2e-9);
     // Half way to the via point a parabola is off by less than h^3: y = 3/4 h.
-    EXPECT_NEAR(arc.At(0.25 * arc.length()).tip.y, 2000 - 0.75 * h, 1e-6 * h + 1e-9);
+    EXPECT_NEAR(arc.At(0.25 * arc.length()).tip.y(), 2000 - 0.75 * h, 1e-6 * h + 1e-9);
   }
 }
 
@@ -123,11 +123,11 @@ TEST(PathArc, DerivativesAgreeWithDifferences) {
   const double h = 1e-4;
   for (const double share : {0.1, 0.37, 0.9}) {
     const double s = share * arc.length();
-    const Vec3 before = arc.At(s - h).tip, here = arc.At(s).tip, after = arc.At(s + h).tip;
+    const MachineVector before = arc.At(s - h).tip, here = arc.At(s).tip, after = arc.At(s + h).tip;
     ExpectNear(arc.Tangent(s), (after - before) * (0.5 / h), 1e-8);
     ExpectNear(arc.Curvature(s), (after - here * 2.0 + before) * (1.0 / (h * h)), 1e-6);
-    EXPECT_NEAR(Norm(arc.Tangent(s)), 1.0, 1e-14);
-    EXPECT_NEAR(Norm(arc.Curvature(s)), 1.0 / arc.radius_mm(), 1e-14);
+    EXPECT_NEAR(arc.Tangent(s).norm(), 1.0, 1e-14);
+    EXPECT_NEAR(arc.Curvature(s).norm(), 1.0 / arc.radius_mm(), 1e-14);
   }
 }
 

@@ -54,15 +54,15 @@ class Checker {
     if (k > 0) {
       const PlannedMotion& before = plan_.motions[k - 1];
       // Relative to 1 m: chains may wander far from the origin.
-      const double far = std::max(1.0, Norm(begin.tip.tip) / 1000.0);
-      Most(here, "jump of place in nm", 1e6 * Distance(last_.tip.tip, begin.tip.tip), 0.0,
+      const double far = std::max(1.0, begin.tip.tip.norm() / 1000.0);
+      Most(here, "jump of place in nm", 1e6 * (last_.tip.tip - begin.tip.tip).norm(), 0.0,
            1e-3 * far);
       Most(here, "jump of A", std::abs(last_.tip.a_rad - begin.tip.a_rad), 0.0, 1e-10);
-      Most(here, "jump of velocity", Distance(last_.tip_velocity, begin.tip_velocity), 0.0,
+      Most(here, "jump of velocity", (last_.tip_velocity - begin.tip_velocity).norm(), 0.0,
            1e-6 + 1e-6 * begin.tip_speed());
       const bool stood = begin.tip_speed() == 0.0;
       if (std::isfinite(plan_.machine.tip_jerk_mm_s3) && !stood) {
-        Most(here, "jump of acceleration", Distance(last_.tip_acceleration, begin.tip_acceleration),
+        Most(here, "jump of acceleration", (last_.tip_acceleration - begin.tip_acceleration).norm(),
              0.0, 1e-3 + 1e-6 * plan_.machine.tip_acceleration_mm_s2);
       }
       Most(here, "jump of path speed",
@@ -111,8 +111,8 @@ class Checker {
       const double step = std::min(duration / 8, 2e-3);
       if (contour && motion.path.kind() == PathPiece::Kind::kLine && step >= 2e-4) {
         const auto at = [&](double t) { return view.PoseAt(phase_start + 0.5 * duration + t).tip; };
-        const Vec3 third = at(3 * step) - at(step) * 3.0 + at(-step) * 3.0 - at(-3 * step);
-        Most(motion, "path jerk", Norm(third) / (8 * step * step * step),
+        const MachineVector third = at(3 * step) - at(step) * 3.0 + at(-step) * 3.0 - at(-3 * step);
+        Most(motion, "path jerk", third.norm() / (8 * step * step * step),
              move.acceleration_fraction * m.tip_jerk_mm_s3, 8e-12 / (step * step * step));
       }
       const int last = k + 1 == motion.speed.phase_count() ? plan_.samples_per_phase
@@ -124,8 +124,8 @@ class Checker {
         const double s = motion.speed.At(t).s;
         Most(motion, "way back", last_s - s, 0.0, 1e-9);
         last_s = s;
-        const double speed = 0.5 / h * Distance(p2.tip, p0.tip);
-        const double acceleration = Norm(p2.tip - p1.tip * 2.0 + p0.tip) / (h * h);
+        const double speed = 0.5 / h * (p2.tip - p0.tip).norm();
+        const double acceleration = (p2.tip - p1.tip * 2.0 + p0.tip).norm() / (h * h);
         if (contour) {
           Most(motion, "tip speed", speed,
                std::min(move.speed_fraction * m.tip_speed_mm_s, motion.limits.speed),
@@ -133,10 +133,11 @@ class Checker {
           Most(motion, "tip acceleration", acceleration, m.tip_acceleration_mm_s2, room);
         }
         if (blend && Varies(motion.speed)) {
-          const Vec3 along = (p2.tip - p0.tip) * (1.0 / std::max(Norm(p2.tip - p0.tip), 1e-300));
-          const Vec3 second = (p2.tip - p1.tip * 2.0 + p0.tip) * (1.0 / (h * h));
-          const double tangential = Dot(second, along);
-          Most(motion, "acceleration across a blend", Norm(second - along * tangential),
+          const MachineVector along =
+              (p2.tip - p0.tip) * (1.0 / std::max((p2.tip - p0.tip).norm(), 1e-300));
+          const MachineVector second = (p2.tip - p1.tip * 2.0 + p0.tip) * (1.0 / (h * h));
+          const double tangential = second.dot(along);
+          Most(motion, "acceleration across a blend", (second - along * tangential).norm(),
                m.normal_acceleration(), room);
           // The chord between two places is not quite the tangent: 0.1 % where the bend is tight.
           const double along_most = m.curve_tangential * m.tip_acceleration_mm_s2;
@@ -149,20 +150,16 @@ class Checker {
           // the curve's torsion adds what motion.md 4.3 does not count.
           const double q = 5e-5;
           if (planar && std::isfinite(m.tip_jerk_mm_s3) && t > 3 * q && t + 3 * q < moving) {
-            const Vec3 third = view.PoseAt(t + 3 * q).tip - view.PoseAt(t + q).tip * 3.0 +
-                               view.PoseAt(t - q).tip * 3.0 - view.PoseAt(t - 3 * q).tip;
-            Most(motion, "jerk in a blend", Norm(third) / (8 * q * q * q), m.normal_jerk(),
+            const MachineVector third = view.PoseAt(t + 3 * q).tip - view.PoseAt(t + q).tip * 3.0 +
+                                        view.PoseAt(t - q).tip * 3.0 - view.PoseAt(t - 3 * q).tip;
+            Most(motion, "jerk in a blend", third.norm() / (8 * q * q * q), m.normal_jerk(),
                  8e-12 / (q * q * q));
           }
         }
         const AxisPose a0 = motion.head.ColumnOf(p0), a1 = motion.head.ColumnOf(p1),
                        a2 = motion.head.ColumnOf(p2);
         const auto axis = [](const AxisPose& a, std::size_t n) {
-          return n == 0   ? a.column.x
-                 : n == 1 ? a.column.y
-                 : n == 2 ? a.column.z
-                 : n == 3 ? a.a_rad
-                          : a.b_rad;
+          return n < 3 ? a.column[n] : n == 3 ? a.a_rad : a.b_rad;
         };
         for (std::size_t n = 0; n < kAxisCount; ++n) {
           const double v = 0.5 / h * std::abs(axis(a2, n) - axis(a0, n));
@@ -186,15 +183,15 @@ class Checker {
     const double q = 5e-5 * speed;
     if (s < 3 * q || s + 3 * q > motion.path.length() || q < 1e-6) return;
     const auto at = [&](double place) { return motion.path.At(place).tip; };
-    const Vec3 third = at(s + 3 * q) - at(s + q) * 3.0 + at(s - q) * 3.0 - at(s - 3 * q);
+    const MachineVector third = at(s + 3 * q) - at(s + q) * 3.0 + at(s - q) * 3.0 - at(s - 3 * q);
     const double cube = speed * speed * speed / (8 * q * q * q);
-    Most(motion, "jerk in a blend", Norm(third) * cube, plan_.machine.normal_jerk(), 8e-12 * cube);
+    Most(motion, "jerk in a blend", third.norm() * cube, plan_.machine.normal_jerk(), 8e-12 * cube);
   }
 
   // Stops meet their target; the way round a /FLY target keeps the distance that is reported.
   void Target(const PlannedMotion& motion, const MoveCommand& move) {
-    const Vec3& target = move.path.to().tip;
-    const double gap = Distance(motion.path.to().tip, target);
+    const MachinePoint& target = move.path.to().tip;
+    const double gap = (motion.path.to().tip - target).norm();
     if (!IsBlend(motion.corner.passage)) {
       if (motion.path.kind() != PathPiece::Kind::kBlend)
         Most(motion, "distance from the target", gap, 0.0, 1e-9);

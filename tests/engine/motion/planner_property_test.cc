@@ -98,7 +98,8 @@ RC_GTEST_PROP(PlannerProperty, TurnedAndShiftedTakesTheSameTime, ()) {
   std::vector<MoveCommand> chain = RandomChain(drawn.seed, drawn.count, {.arcs = false});
   std::vector<MoveCommand> turned = chain;
   const auto turn = [](const TipPose& p) {
-    return TipPose{{100.0 - p.tip.y, p.tip.x - 70.0, p.tip.z + 12.0}, p.a_rad + kPi / 2, p.b_rad};
+    return TipPose{
+        {100.0 - p.tip.y(), p.tip.x() - 70.0, p.tip.z() + 12.0}, p.a_rad + kPi / 2, p.b_rad};
   };
   for (MoveCommand& move : turned)
     move.path = PathPiece::Line(turn(move.path.from()), turn(move.path.to()));
@@ -146,7 +147,7 @@ RC_GTEST_PROP(PlannerProperty, SplitLinesTakeTheSameTime, ()) {
   Dice dice(drawn.seed + 1);
   std::vector<MoveCommand> split;
   for (const MoveCommand& move : chain) {
-    const Vec3 a = move.path.from().tip, b = move.path.to().tip;
+    const MachineVector a = move.path.from().tip, b = move.path.to().tip;
     MoveCommand first = move, second = move;
     const TipPose middle{a + (b - a) * dice.Uniform(0.1, 0.9), move.path.to().a_rad,
                          move.path.to().b_rad};

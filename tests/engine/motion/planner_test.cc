@@ -13,7 +13,8 @@
 namespace rmlcell::motion {
 namespace {
 
-MoveCommand LineTo(const Vec3& from, const Vec3& to, std::uint64_t tag, bool fly = false) {
+MoveCommand LineTo(const MachinePoint& from, const MachinePoint& to, std::uint64_t tag,
+                   bool fly = false) {
   MoveCommand move;
   move.path = PathPiece::Line({from}, {to});
   move.speed_fraction = 0.1;
@@ -134,15 +135,15 @@ TEST(Planner, BlendOfARightAngle) {
     motions.push_back(std::get<PlannedMotion>(*item));
   }
   ASSERT_EQ(motions.size(), 4u);
-  EXPECT_NEAR(motions[0].path.to().tip.x, 100.0 - 4.0505, 5e-5);
+  EXPECT_NEAR(motions[0].path.to().tip.x(), 100.0 - 4.0505, 5e-5);
   EXPECT_FALSE(motions[0].ends_move);
   EXPECT_TRUE(motions[1].ends_move);
   EXPECT_EQ(motions[1].corner.passage, Passage::kBlend);
-  EXPECT_NEAR(Distance(motions[1].path.to().tip, {100, 0, 0}), 1.3588, 5e-5);
+  EXPECT_NEAR((motions[1].path.to().tip - MachinePoint{100, 0, 0}).norm(), 1.3588, 5e-5);
   EXPECT_EQ(motions[1].path.to(), motions[2].path.from());
   EXPECT_DOUBLE_EQ(motions[1].speed.duration_s(), motions[1].path.length() / 50.0);
   EXPECT_EQ(motions[2].tag, 2u);
-  EXPECT_EQ(motions[3].path.to().tip, (Vec3{100, 100, 0}));
+  EXPECT_EQ(motions[3].path.to().tip, (MachineVector{100, 100, 0}));
 }
 
 // What stands against a blend; motion.md 4.4. OPT-B.25, OPT-B.27, OPT-2.39
@@ -195,7 +196,7 @@ TEST(Planner, CurvesWithACuspAreStops) {
     PathPiece out;
     double speed;
   };
-  const auto arc = [](const Vec3& from, const Vec3& via, const Vec3& to) {
+  const auto arc = [](const MachinePoint& from, const MachinePoint& via, const MachinePoint& to) {
     return PathPiece::ArcThrough({from}, via, {to}).value().path;
   };
   const std::vector<Corner2> corners = {
@@ -243,9 +244,9 @@ TEST(Planner, MoveToWhereTheMachineIs) {
 // Steps below 1e-6 mm add up: a thousand of them are a way of 1e-4 mm.
 TEST(Planner, TinyStepsAreNotLost) {
   Planner planner(StandardMachine());
-  Vec3 at;
+  MachinePoint at;
   for (int k = 1; k <= 1000; ++k) {
-    const Vec3 to{1e-7 * k, 0, 0};
+    const MachinePoint to{1e-7 * k, 0, 0};
     ASSERT_TRUE(planner.Append(LineTo(at, to, 1, true)));
     at = to;
   }
@@ -254,7 +255,7 @@ TEST(Planner, TinyStepsAreNotLost) {
   TipPose last;
   while (const std::optional<PlannedItem> item = planner.Next()) {
     const PathPiece& path = std::get<PlannedMotion>(*item).path;
-    EXPECT_LE(Distance(path.from().tip, last.tip), 1e-15);
+    EXPECT_LE((path.from().tip - last.tip).norm(), 1e-15);
     last = path.to();
     length += path.length();
   }
@@ -269,20 +270,20 @@ TEST(Planner, BendKeepsToTheArcBehindIt) {
   const MoveCommand north = LineTo({0, -20, 0}, {}, 1, true);
   MoveCommand arc = north;  // 0.05 mm of a circle of 1000 mm, then a line
   arc.path = PathPiece::Circle({}, {-1000, 0, 0}, {0, 0, 1}, 5e-5, 0, 0);
-  const Vec3 end = arc.path.to().tip;
+  const MachinePoint end = arc.path.to().tip;
   Planner planner(machine);
-  for (const MoveCommand& move : {north, arc, LineTo(end, end + Vec3{30, 0, 0}, 3)}) {
+  for (const MoveCommand& move : {north, arc, LineTo(end, end + MachineVector{30, 0, 0}, 3)}) {
     ASSERT_TRUE(planner.Append(move));
   }
   planner.Stop();
   TipPose last{{0, -20, 0}};
   while (const std::optional<PlannedItem> item = planner.Next()) {
     const PathPiece& path = std::get<PlannedMotion>(*item).path;
-    EXPECT_LE(Distance(path.from().tip, last.tip), 1e-12);
-    EXPECT_LE(Distance(path.At(0.0).tip, last.tip), 1e-9);
+    EXPECT_LE((path.from().tip - last.tip).norm(), 1e-12);
+    EXPECT_LE((path.At(0.0).tip - last.tip).norm(), 1e-9);
     last = path.to();
   }
-  EXPECT_EQ(last.tip, end + (Vec3{30, 0, 0}));
+  EXPECT_EQ(last.tip, end + (MachineVector{30, 0, 0}));
 }
 
 // Behind a bend come more points straight on, each with another SPEED, than the window holds, and
@@ -292,18 +293,18 @@ TEST(Planner, WindowFullOfPointsThatABendSwallows) {
   for (const double step_mm : {1e-3, 1e-2, 1e-1}) {
     for (const int count : {20, 31, 33, 40, 64, 80}) {
       Planner planner(StandardMachine(), 64);
-      Vec3 at{1000, 900, -200};
+      MachinePoint at{1000, 900, -200};
       double way = 0.0, planned = 0.0;
       TipPose last{at};
-      const auto go = [&](const Vec3& step, double speed, bool fly) {
+      const auto go = [&](const MachineVector& step, double speed, bool fly) {
         MoveCommand move = LineTo(at, at + step, 1, fly);
         move.speed_fraction = speed;
         at = at + step;
-        way += Norm(step);
+        way += step.norm();
         ASSERT_TRUE(planner.Append(move));
         while (const std::optional<PlannedItem> item = planner.Next()) {
           const PathPiece& path = std::get<PlannedMotion>(*item).path;
-          ASSERT_LE(Distance(path.from().tip, last.tip), 1e-9);
+          ASSERT_LE((path.from().tip - last.tip).norm(), 1e-9);
           last = path.to();
           planned += path.length();
         }

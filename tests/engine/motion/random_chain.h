@@ -24,10 +24,10 @@ class Dice {
     return std::exp(Uniform(std::log(low), std::log(high)));
   }
   bool Chance(double share) { return Uniform(0.0, 1.0) < share; }
-  Vec3 Direction() {
+  MachineVector Direction() {
     for (;;) {
-      const Vec3 v{Uniform(-1, 1), Uniform(-1, 1), Uniform(-1, 1)};
-      const double n = Norm(v);
+      const MachineVector v{Uniform(-1, 1), Uniform(-1, 1), Uniform(-1, 1)};
+      const double n = v.norm();
       if (n > 0.05 && n < 1.0) return v * (1.0 / n);
     }
   }
@@ -49,7 +49,7 @@ inline std::vector<MoveCommand> RandomChain(std::uint64_t seed, int count,
   Dice dice(seed);
   std::vector<MoveCommand> chain;
   TipPose at{{1000.0, 900.0, -200.0}, 0.3, 0.4};
-  Vec3 direction = dice.Direction();
+  MachineVector direction = dice.Direction();
   double speed = 0.3, acceleration = 1.0, overshoot = 1.0;
   for (int k = 0; k < count; ++k) {
     MoveCommand move;
@@ -59,7 +59,7 @@ inline std::vector<MoveCommand> RandomChain(std::uint64_t seed, int count,
     if (!dice.Chance(0.1)) {  // else straight on
       const double turn = dice.Magnitude(0.01, 3.0);
       direction = direction + dice.Direction() * turn;
-      direction = direction * (1.0 / Norm(direction));
+      direction = direction * (1.0 / direction.norm());
     }
     const double length = dice.Magnitude(options.shortest_mm, options.longest_mm);
     TipPose to{at.tip + direction * length, at.a_rad, at.b_rad};
@@ -69,8 +69,8 @@ inline std::vector<MoveCommand> RandomChain(std::uint64_t seed, int count,
     }
     move.path = PathPiece::Line(at, to);
     if (options.arcs && length > 0.01 && dice.Chance(0.3)) {
-      const Vec3 via = at.tip + direction * (0.5 * length) +
-                       dice.Direction() * (dice.Uniform(0.02, 0.6) * length);
+      const MachinePoint via = at.tip + direction * (0.5 * length) +
+                               dice.Direction() * (dice.Uniform(0.02, 0.6) * length);
       if (const Result<PathPiece::Arc3> arc = PathPiece::ArcThrough(at, via, to)) {
         move.path = arc->path;
         direction = move.path.Tangent(move.path.length());

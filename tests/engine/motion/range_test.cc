@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/core/units.h"
+#include "engine/motion/geometry/frames.h"
 #include "engine/motion/kinematics.h"
 #include "tests/engine/motion/expect_near.h"
 #include "tests/engine/motion/standard_machine.h"
@@ -16,19 +17,21 @@ namespace {
 // R(A,B) = Rz(A) Rx(B), all three axes. motion.md 2.1
 TEST(ToolAxes, AreThoseOfTheMatrix) {
   const double a = 0.7, b = -0.4;
-  const ToolAxes axes = AxesOfTool(a, b);
-  ExpectNear(axes.x, {std::cos(a), std::sin(a), 0}, 1e-15);
-  ExpectNear(axes.y, {-std::sin(a) * std::cos(b), std::cos(a) * std::cos(b), std::sin(b)}, 1e-15);
-  ExpectNear(axes.u, {std::sin(a) * std::sin(b), -std::cos(a) * std::sin(b), std::cos(b)}, 1e-15);
-  ExpectNear(Cross(axes.x, axes.y), axes.u, 1e-15);
+  const Rotation axes = ToolRotation(a, b);
+  ExpectNear(axes.col(0), {std::cos(a), std::sin(a), 0}, 1e-15);
+  ExpectNear(axes.col(1), {-std::sin(a) * std::cos(b), std::cos(a) * std::cos(b), std::sin(b)},
+             1e-15);
+  ExpectNear(axes.col(2), {std::sin(a) * std::sin(b), -std::cos(a) * std::sin(b), std::cos(b)},
+             1e-15);
+  ExpectNear(axes.col(0).cross(axes.col(1)), axes.col(2), 1e-15);
 }
 
 // With a tool offset in all directions: r = (-X0, -Y0, L - Z0) along the tool axes. motion.md 2.2
 TEST(Head, OffsetOfTheTool) {
   const GantryHead head{.length_mm = 200.0, .tool = {5.0, -7.0, 11.0}};
   for (const auto& [a, b] : {std::pair{0.0, 0.0}, {0.9, 0.5}, {-2.0, -1.3}}) {
-    const ToolAxes axes = AxesOfTool(a, b);
-    ExpectNear(head.Offset(a, b), axes.x * -5.0 + axes.y * 7.0 + axes.u * 189.0, 1e-12);
+    const Rotation axes = ToolRotation(a, b);
+    ExpectNear(head.Offset(a, b), axes * MachineVector(-5.0, 7.0, 189.0), 1e-12);
   }
   EXPECT_NEAR(head.reach_mm(), std::sqrt(25.0 + 49.0 + 189.0 * 189.0), 1e-12);
 }
@@ -70,9 +73,9 @@ TEST(AnglesOf, AlongZ) {
 TEST(Jog, EachAxisInEachMode) {
   const Head head = GantryHead{.tool = {3.0, -4.0, 20.0}};
   const AxisPose from{{1000, 900, -300}, 0.4, 0.9};
-  const ToolAxes tool = AxesOfTool(0.4, 0.9);
-  const Vec3 machine[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  const Vec3 along_tool[3] = {tool.x, tool.y, tool.u};
+  const Rotation tool = ToolRotation(0.4, 0.9);
+  const MachinePoint machine[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const MachineVector along_tool[3] = {tool.col(0), tool.col(1), tool.col(2)};
   for (int axis = 0; axis < 3; ++axis) {
     for (const JogMode mode : {JogMode::kRobot, JogMode::kAbsolute}) {
       for (const bool down : {false, true}) {
@@ -101,32 +104,36 @@ TEST(Jog, EachAxisInEachMode) {
     ExpectNear(head.TipOf(held).tip, head.TipOf(from).tip, 1e-10);
     EXPECT_DOUBLE_EQ(held.a_rad, a);
     EXPECT_DOUBLE_EQ(held.b_rad, b);
-    EXPECT_GT(Distance(held.column, from.column), 10.0);
+    EXPECT_GT((held.column - from.column).norm(), 10.0);
   }
 }
 
 // T Rz(c) Ry(b) Rx(a), each turn by itself and all together, against turning one after the other.
 TEST(WorkOffset, IsOneTurnAfterTheOther) {
-  const auto about_x = [](const Vec3& p, double t) {
-    return Vec3{p.x, p.y * std::cos(t) - p.z * std::sin(t), p.y * std::sin(t) + p.z * std::cos(t)};
+  const auto about_x = [](const MachinePoint& p, double t) {
+    return MachineVector{p.x(), p.y() * std::cos(t) - p.z() * std::sin(t),
+                         p.y() * std::sin(t) + p.z() * std::cos(t)};
   };
-  const auto about_y = [](const Vec3& p, double t) {
-    return Vec3{p.x * std::cos(t) + p.z * std::sin(t), p.y, p.z * std::cos(t) - p.x * std::sin(t)};
+  const auto about_y = [](const MachinePoint& p, double t) {
+    return MachineVector{p.x() * std::cos(t) + p.z() * std::sin(t), p.y(),
+                         p.z() * std::cos(t) - p.x() * std::sin(t)};
   };
-  const auto about_z = [](const Vec3& p, double t) {
-    return Vec3{p.x * std::cos(t) - p.y * std::sin(t), p.x * std::sin(t) + p.y * std::cos(t), p.z};
+  const auto about_z = [](const MachinePoint& p, double t) {
+    return MachineVector{p.x() * std::cos(t) - p.y() * std::sin(t),
+                         p.x() * std::sin(t) + p.y() * std::cos(t), p.z()};
   };
   for (const auto& [c, b, a] : {std::array{0.5, 0.0, 0.0},
                                 {0.0, 0.5, 0.0},
                                 {0.0, 0.0, 0.5},
                                 {0.3, -0.8, 1.9},
                                 {-2.5, 1.1, -0.4}}) {
-    const WorkOffset offset({10, -20, 30}, c, b, a);
-    for (const Vec3& p : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}, Vec3{4, 5, 6}}) {
-      const Vec3 turned = about_z(about_y(about_x(p, a), b), c);
-      ExpectNear(offset.DirectionToMachine(p), turned, 1e-14);
-      ExpectNear(offset.ToMachine(p), turned + Vec3{10, -20, 30}, 1e-13);
-      ExpectNear(offset.ToProgram(offset.ToMachine(p)), p, 1e-13);
+    const MachineFromProgram offset = RigidMotionOf({10, -20, 30}, c, b, a);
+    for (const MachinePoint& p : {MachineVector{1, 0, 0}, MachineVector{0, 1, 0},
+                                  MachineVector{0, 0, 1}, MachineVector{4, 5, 6}}) {
+      const MachineVector turned = about_z(about_y(about_x(p, a), b), c);
+      ExpectNear(offset.linear() * p, turned, 1e-14);
+      ExpectNear(offset * p, turned + MachineVector{10, -20, 30}, 1e-13);
+      ExpectNear(offset.inverse() * (offset * p), p, 1e-13);
     }
   }
 }
@@ -138,9 +145,9 @@ TEST(Travel, BothEndsOfEveryAxis) {
     const auto i = static_cast<std::size_t>(axis);
     const auto at = [axis](double value) {
       AxisPose pose;
-      (axis == 0   ? pose.column.x
-       : axis == 1 ? pose.column.y
-       : axis == 2 ? pose.column.z
+      (axis == 0   ? pose.column.x()
+       : axis == 1 ? pose.column.y()
+       : axis == 2 ? pose.column.z()
        : axis == 3 ? pose.a_rad
                    : pose.b_rad) = value;
       return pose;
@@ -206,9 +213,9 @@ TEST(Travel, PointsOfAnArc) {
 
 // Every quadrant of a circle in space, X Y Z up and down, inside an arc that leaves it out or not.
 TEST(Travel, QuadrantsInAllDirections) {
-  const Vec3 n{0.48, 0.6, 0.64};  // unit
+  const MachineVector n{0.48, 0.6, 0.64};  // unit
   for (int axis = 0; axis < 3; ++axis) {
-    const double across = axis == 0 ? n.x : axis == 1 ? n.y : n.z;
+    const double across = axis == 0 ? n.x() : axis == 1 ? n.y() : n.z();
     const double amplitude = 70.0 * std::sqrt(1.0 - across * across);
     for (const bool high : {true, false}) {
       AxisLimits limits;
@@ -216,7 +223,8 @@ TEST(Travel, QuadrantsInAllDirections) {
       limits.travel_max.fill(1e6);
       const auto i = static_cast<std::size_t>(axis);
       (high ? limits.travel_max : limits.travel_min)[i] = (high ? 1.0 : -1.0) * (amplitude - 1.0);
-      const Vec3 side = Cross(n, {1, 0, 0}) * (70.0 / std::sqrt(1.0 - n.x * n.x));
+      const MachineVector side =
+          n.cross(MachineVector::UnitX()) * (70.0 / std::sqrt(1.0 - n.x() * n.x()));
       const PathPiece circle = PathPiece::Circle({side}, {}, n, kTurn, 0, 0);
       const TravelExcess worst = WorstExcess(circle, MillHead{}, limits);
       EXPECT_EQ(worst.axis, axis);

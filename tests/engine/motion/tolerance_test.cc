@@ -45,7 +45,7 @@ TEST(Tolerance, TipLengthZero) {
 // Arc points coincide within 1e-4 mm: start and target, via and either end. motion.md 3.2
 TEST(Tolerance, ArcPoints) {
   using Case = PathPiece::ArcCase;
-  const auto kind = [](const Vec3& via, const Vec3& to) {
+  const auto kind = [](const MachinePoint& via, const MachinePoint& to) {
     return PathPiece::ArcThrough({}, via, {to})->kind;
   };
   EXPECT_EQ(kind({5e-5, 5e-5, 0}, {0.99e-4, 0, 0}), Case::kNoTipMotion);
@@ -111,11 +111,11 @@ TEST(Tolerance, EntryOfAHoleOnItsAxis) {
   for (const double sign : {1.0, -1.0}) {
     for (const double cosine : {0.899, 0.901}) {
       const double sine = std::sqrt(1.0 - cosine * cosine);
-      const Vec3 normal{sign * cosine, 0, sine};
+      const MachineVector normal{sign * cosine, 0, sine};
       const HolePath path =
           HoleThrough({.from = {}, .centre = {}, .normal_point = normal, .radius_mm = 2.0}).value();
-      const Vec3 along_x = Vec3{sine, 0, -sign * cosine} * 2.0;
-      ExpectNear(path.circle.from().tip, cosine < 0.9 ? along_x : Vec3{0, 2, 0}, 1e-12);
+      const MachineVector along_x = MachineVector{sine, 0, -sign * cosine} * 2.0;
+      ExpectNear(path.circle.from().tip, cosine < 0.9 ? along_x : MachineVector{0, 2, 0}, 1e-12);
       EXPECT_DOUBLE_EQ(path.circle.length(), 2.0 * kTurn);
     }
   }
@@ -169,7 +169,7 @@ TEST(Tolerance, LinesBeginWhereTheMachineIs) {
     ASSERT_TRUE(planner.Append(LineOf({{10 + gap, 0, 0}}, {{20, 0, 0}})));
     const auto motions = Drained(planner);
     ASSERT_EQ(motions.size(), 2u);
-    EXPECT_EQ(motions[1].path.from().tip.x, gap < 1e-3 ? 10.0 : 10.0 + gap);
+    EXPECT_EQ(motions[1].path.from().tip.x(), gap < 1e-3 ? 10.0 : 10.0 + gap);
   }
   for (const TipPose& from :
        {TipPose{{10.0005, 0, 0}, 1e-9, 0}, TipPose{{10.0005, 0, 0}, 0, 1e-9}}) {
@@ -275,10 +275,10 @@ TEST(BeginMoving, InAxesBySigma) {
 // from the chord lies on it. motion.md 1, 3.2; OPT-B.16, OPT-B.18
 TEST(Tolerance, ArcPointsAtTheBoundItself) {
   using Case = PathPiece::ArcCase;
-  const auto through = [](const Vec3& via, const Vec3& to) {
+  const auto through = [](const MachinePoint& via, const MachinePoint& to) {
     return PathPiece::ArcThrough({}, via, {to});
   };
-  const auto kind = [&](const Vec3& via, const Vec3& to) {
+  const auto kind = [&](const MachinePoint& via, const MachinePoint& to) {
     const Result<PathPiece::Arc3> arc = through(via, to);
     return arc ? std::optional(arc->kind) : std::nullopt;
   };
@@ -296,7 +296,7 @@ TEST(Tolerance, HolesAtTheBoundItself) {
   HoleCommand hole{
       .from = {{0, 1e-6, 5}}, .centre = {}, .normal_point = {0, 0, 1e-6}, .radius_mm = 5.0};
   EXPECT_EQ(HoleThrough(hole).error().code, ErrorCode::kHoleNormalUndefined);
-  hole.normal_point.z = 1.0;
+  hole.normal_point.z() = 1.0;
   EXPECT_TRUE(HoleThrough(hole)->starts_on_axis);
   // The smallest hole begins 1e-6 mm from its circle: the head turns over the circle.
   const HoleCommand tiny{.from = {{2e-6, 0, 0}, 0.1, 0.2},
@@ -332,7 +332,7 @@ TEST(Tolerance, MovesAtTheBoundItself) {
   ASSERT_TRUE(planner.Append(LineOf({{1e-3, 0, 0}}, {{10, 0, 0}})));
   const std::vector<PlannedMotion> motions = Drained(planner);
   ASSERT_EQ(motions.size(), 2u);
-  EXPECT_EQ(motions[1].path.from().tip, (Vec3{0, 0, 0}));
+  EXPECT_EQ(motions[1].path.from().tip, (MachineVector{0, 0, 0}));
 
   Planner round_on(
       StandardMachine());  // an arc that begins 1e-6 mm behind the line goes on from it

@@ -74,25 +74,25 @@ TEST(SampleTimes, AreExactMultiples) {
   EXPECT_NEAR(times.elapsed_s(), end, 1e-15);
 }
 
-double DistanceToChord(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 ab = b - a;
-  const double square = Dot(ab, ab);
-  const double share = square > 0.0 ? std::clamp(Dot(p - a, ab) / square, 0.0, 1.0) : 0.0;
-  return Distance(p, a + ab * share);
+double DistanceToChord(const MachinePoint& p, const MachineVector& a, const MachineVector& b) {
+  const MachineVector ab = b - a;
+  const double square = ab.dot(ab);
+  const double share = square > 0.0 ? std::clamp((p - a).dot(ab) / square, 0.0, 1.0) : 0.0;
+  return (p - (a + ab * share)).norm();
 }
 
 // The polyline keeps its tolerance on lines, arcs and blends, and ends where the path ends.
 TEST(Polyline, StaysWithinItsTolerance) {
   for (const double tolerance : {0.001, 0.01, 0.5}) {
     for (const PlannedMotion& motion : Plan(RandomChain(11, 40, {.shortest_mm = 0.1}))) {
-      std::vector<Vec3> points;
+      std::vector<MachinePoint> points;
       AppendPolyline(motion.path, tolerance, points);
       ASSERT_GE(points.size(), 2u);
       EXPECT_EQ(points.front(), motion.path.from().tip);
       EXPECT_EQ(points.back(), motion.path.to().tip);
       const PathPiece& path = motion.path;
       for (int k = 1; k < 60; ++k) {
-        const Vec3 p = path.At(path.length() * k / 60).tip;
+        const MachinePoint p = path.At(path.length() * k / 60).tip;
         double nearest = HUGE_VAL;
         for (std::size_t i = 1; i < points.size(); ++i) {
           nearest = std::min(nearest, DistanceToChord(p, points[i - 1], points[i]));
@@ -105,7 +105,7 @@ TEST(Polyline, StaysWithinItsTolerance) {
 
 // ceil(phi / (2 acos(1 - tol/R))): a circle of radius 100 at 0.01 needs 223 chords.
 TEST(Polyline, ArcHasAsManyChordsAsNeeded) {
-  std::vector<Vec3> points;
+  std::vector<MachinePoint> points;
   AppendPolyline(PathPiece::Circle({{100, 0, 0}}, {0, 0, 0}, {0, 0, 1}, kTurn, 0, 0), 0.01, points);
   EXPECT_EQ(points.size(),
             1 + static_cast<std::size_t>(std::ceil(kTurn / (2 * std::acos(1 - 1e-4)))));
@@ -117,7 +117,7 @@ TEST(Polyline, CoarseArcs) {
   for (const auto& [sweep, chords] :
        {std::pair{kTurn, 4u}, {0.5 * kTurn, 2u}, {0.24 * kTurn, 1u}, {0.26 * kTurn, 2u}}) {
     for (const double tolerance : {60.0, 99.0, 100.0, 1e6}) {
-      std::vector<Vec3> points;
+      std::vector<MachinePoint> points;
       AppendPolyline(PathPiece::Circle({{100, 0, 0}}, {0, 0, 0}, {0, 0, 1}, sweep, 0, 0), tolerance,
                      points);
       EXPECT_EQ(points.size(), 1 + chords) << sweep << " " << tolerance;
@@ -127,14 +127,15 @@ TEST(Polyline, CoarseArcs) {
 
 // Pieces one behind the other share their point; what does not move the tip adds none.
 TEST(Polyline, GoesOn) {
-  std::vector<Vec3> points;
+  std::vector<MachinePoint> points;
   AppendPolyline(PathPiece::Line({}, {{10, 0, 0}}), 0.01, points);
   AppendPolyline(PathPiece::Line({{10, 0, 0}}, {{10, 5, 0}}), 0.01, points);
   AppendPolyline(PathPiece::Line({{10, 5, 0}}, {{10, 5, 0}, 1, 0}), 0.01, points);
   AppendPolyline(PathPiece::Line({{10, 5, 0}}, {{10, 5, 0}}), 0.01, points);
-  EXPECT_EQ(points, (std::vector<Vec3>{{0, 0, 0}, {10, 0, 0}, {10, 5, 0}}));
+  EXPECT_EQ(points, (std::vector<MachinePoint>{{0, 0, 0}, {10, 0, 0}, {10, 5, 0}}));
   AppendPolyline(PathPiece::Joint({{20, 5, 0}}, {{20, 5, 7}}), 0.01, points);
-  EXPECT_EQ(points, (std::vector<Vec3>{{0, 0, 0}, {10, 0, 0}, {10, 5, 0}, {20, 5, 0}, {20, 5, 7}}));
+  EXPECT_EQ(points,
+            (std::vector<MachinePoint>{{0, 0, 0}, {10, 0, 0}, {10, 5, 0}, {20, 5, 0}, {20, 5, 7}}));
 }
 
 // A number next to which the sum so far is small is not lost, nor what it hides.
@@ -189,7 +190,7 @@ TEST(MotionView, TipAndColumnAgree) {
       EXPECT_NEAR(here.axis_acceleration[i],
                   (after.axis_velocity[i] - before.axis_velocity[i]) * 0.5 / h, 0.5);
     }
-    EXPECT_NEAR(here.tip_speed(), Norm(here.tip_velocity), 1e-12);
+    EXPECT_NEAR(here.tip_speed(), here.tip_velocity.norm(), 1e-12);
     ExpectNear(view.PoseAt(t).tip, here.tip.tip, 1e-12);
   }
 }

@@ -14,10 +14,10 @@ std::vector<MoveCommand> TurningBends(std::uint64_t seed) {
   Dice dice(seed);
   std::vector<MoveCommand> chain;
   TipPose at{{1000.0, 900.0, -200.0}, 0.3, 0.4};
-  Vec3 heading{1.0, 0.0, 0.0};
+  MachineVector heading{1.0, 0.0, 0.0};
   for (int k = 0; k < kBends; ++k) {
     heading = heading + dice.Direction() * 0.7;
-    heading = heading * (1.0 / Norm(heading));
+    heading = heading * (1.0 / heading.norm());
     TipPose to{at.tip + heading * dice.Uniform(1.0, 12.0), at.a_rad + dice.Uniform(-0.25, 0.25),
                at.b_rad + dice.Uniform(-0.25, 0.25)};
     MoveCommand move;

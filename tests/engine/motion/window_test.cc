@@ -14,7 +14,7 @@ class Counted {
  public:
   Counted(const MachineLimits& machine, std::size_t window) : planner_(machine, window) {}
 
-  void Go(const Vec3& step, double speed) {
+  void Go(const MachineVector& step, double speed) {
     MoveCommand move;
     move.path = PathPiece::Line({at_}, {at_ + step});
     move.speed_fraction = speed;
@@ -40,7 +40,7 @@ class Counted {
     }
   }
   Planner planner_;
-  Vec3 at_{1000, 900, -200};
+  MachineVector at_{1000, 900, -200};
   std::size_t waiting_ = 0;
   std::size_t most_ = 0;
 };
@@ -112,13 +112,13 @@ std::vector<std::vector<MoveCommand>> KindsOfChains() {
   std::vector<std::vector<MoveCommand>> chains;
   const auto add = [&](auto change) {
     std::vector<MoveCommand> chain;
-    Vec3 at{1000, 900, -200};
+    MachinePoint at{1000, 900, -200};
     for (int k = 0; k < kMoves; ++k) {
       MoveCommand move;
       move.speed_fraction = 0.1;
       move.fly = k + 1 < kMoves;
       move.tag = static_cast<std::uint64_t>(k);
-      const Vec3 step = change(move, k);
+      const MachineVector step = change(move, k);
       move.path = move.kind == MoveCommand::Kind::kPointToPointAxes
                       ? PathPiece::Joint({at}, {at + step})
                       : PathPiece::Line({at}, {at + step});
@@ -129,19 +129,19 @@ std::vector<std::vector<MoveCommand>> KindsOfChains() {
   };
   add([](MoveCommand& move, int) {
     move.fly = false;
-    return Vec3{3, 0, 0};
+    return MachineVector{3, 0, 0};
   });
   add([](MoveCommand& move, int k) {
     move.speed_fraction = 0.6;
-    return k % 2 == 0 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    return k % 2 == 0 ? MachineVector{1, 0, 0} : MachineVector{0, 1, 0};
   });
   add([](MoveCommand& move, int k) {
     move.speed_fraction = k % 2 == 0 ? 0.1 : 0.15;
-    return Vec3{2, 0, 0};
+    return MachineVector{2, 0, 0};
   });
   add([](MoveCommand& move, int k) {
     move.kind = MoveCommand::Kind::kPointToPointAxes;
-    return k % 2 == 0 ? Vec3{50, 0, 0} : Vec3{0, 30, 0};
+    return k % 2 == 0 ? MachineVector{50, 0, 0} : MachineVector{0, 30, 0};
   });
   chains.push_back(RandomChain(5, kMoves, {.shortest_mm = 0.1, .longest_mm = 20.0}));
   return chains;

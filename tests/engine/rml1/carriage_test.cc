@@ -87,7 +87,7 @@ TEST(Carriage, ReturnsOverTheTopWhenSomethingElseCameBetween) {
     run.AdvanceToEnd();
     std::vector<int> found;  // in work coordinates
     for (const machine::MoveDone& move : run.seen().moves()) {
-      found.push_back(static_cast<int>(std::lround(move.program_point.z)));
+      found.push_back(static_cast<int>(std::lround(move.program_point.z())));
     }
     return found;
   };

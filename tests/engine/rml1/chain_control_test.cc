@@ -35,23 +35,23 @@ constexpr double kCornerX = 10.0;
 
 // Every place that the tool was at lies on the L, and it went along it once.
 void ExpectPathOfL(const TestRun& run) {
-  motion::Vec3 last{0.0, 0.0, -20.0};
+  motion::MachinePoint last{0.0, 0.0, -20.0};
   double length = 0.0;
   const auto& motions = run.seen().motions();
   for (std::size_t k = 1; k < motions.size(); ++k) {
     const RunRecord::Motion& m = motions[k];
-    const motion::Vec3 from = m.planned.path.from().tip;
-    const motion::Vec3 to = m.planned.path.At(m.travelled).tip;
-    EXPECT_LE(motion::Distance(from, last), 2e-9);
-    for (const motion::Vec3& p : {from, to}) {
-      EXPECT_LE(std::min(std::abs(p.y), std::abs(p.x - kCornerX)), 1e-9);
+    const motion::MachinePoint from = m.planned.path.from().tip;
+    const motion::MachinePoint to = m.planned.path.At(m.travelled).tip;
+    EXPECT_LE((from - last).norm(), 2e-9);
+    for (const motion::MachinePoint& p : {from, to}) {
+      EXPECT_LE(std::min(std::abs(p.y()), std::abs(p.x() - kCornerX)), 1e-9);
     }
-    length += motion::Distance(from, to);
+    length += (from - to).norm();
     last = to;
   }
   EXPECT_NEAR(length, 20.0, 1e-7);
-  EXPECT_NEAR(last.x, kCornerX, 1e-9);
-  EXPECT_NEAR(last.y, 10.0, 1e-9);
+  EXPECT_NEAR(last.x(), kCornerX, 1e-9);
+  EXPECT_NEAR(last.y(), 10.0, 1e-9);
   ASSERT_EQ(run.seen().moves().size(), 201U);  // each motion is told once
 }
 
@@ -69,12 +69,12 @@ TEST(MillChainControl, StopsBehindACorner) {
   const double key = kLower + kLine - 0.035 + 3.0 / 200.0;
   run->Advance(FromSeconds(key));
   EXPECT_NEAR(run->state().tip_speed_mm_s, 7.0, 1e-6);
-  EXPECT_NEAR(run->state().tip.tip.x, 9.9, 1e-8);
+  EXPECT_NEAR(run->state().tip.tip.x(), 9.9, 1e-8);
   run.Press(InputKind::kStop);
   ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
   EXPECT_NEAR(run.time_s(), key + 0.035, 1e-8);
-  EXPECT_NEAR(run->state().tip.tip.x, 10.0, 1e-9);
-  EXPECT_NEAR(run->state().tip.tip.y, 0.0225, 1e-7);
+  EXPECT_NEAR(run->state().tip.tip.x(), 10.0, 1e-9);
+  EXPECT_NEAR(run->state().tip.tip.y(), 0.0225, 1e-7);
   EXPECT_EQ(run->state().tip_speed_mm_s, 0.0);
   run.Press(InputKind::kStart);
   ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
@@ -90,11 +90,11 @@ TEST(MillChainControl, HoldsAtTheFirstEndThatCanBeReached) {
   const double speed = std::sqrt(9.0 + 400.0 * 0.15);
   const double key = kLower + kLine - (speed - 3.0) / 200.0;
   run->Advance(FromSeconds(key));
-  EXPECT_NEAR(run->state().tip.tip.x, 9.85, 1e-7);
+  EXPECT_NEAR(run->state().tip.tip.x(), 9.85, 1e-7);
   run.Press(InputKind::kHold);
   ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
-  EXPECT_NEAR(run->state().tip.tip.x, 10.0, 1e-9);
-  EXPECT_NEAR(run->state().tip.tip.y, 0.1, 1e-9);
+  EXPECT_NEAR(run->state().tip.tip.x(), 10.0, 1e-9);
+  EXPECT_NEAR(run->state().tip.tip.y(), 0.1, 1e-9);
   EXPECT_EQ(run.seen().Events().back(), "halt HOLD");
   // Behind the corner up from 3 mm/s and down to rest in 0.1 mm: peak^2 = 4.5 + 20.
   const double peak = std::sqrt(24.5);
@@ -109,7 +109,7 @@ TEST(MillChainControl, HoldsAtTheFirstEndThatCanBeReached) {
   early->Advance(FromSeconds(kLower + 0.5));
   early.Press(InputKind::kHold);
   ASSERT_EQ(early.AdvanceToEnd(), RunPhase::kHalted);
-  EXPECT_NEAR(early->state().tip.tip.x, 10.0, 1e-9);
+  EXPECT_NEAR(early->state().tip.tip.x(), 10.0, 1e-9);
   EXPECT_NEAR(early.time_s(), kLower + 1.05, 1e-7);
 }
 
@@ -131,11 +131,11 @@ TEST(MillChainControl, BrakesOverTheEndsOfMotions) {
   TestRun run(ParametersOf("t1"), StepsOfL());
   const double key = kLower + 0.05 + (5.0 - 0.25) / 10.0;
   run->Advance(FromSeconds(key));
-  EXPECT_NEAR(run->state().tip.tip.x, 5.0, 1e-8);
+  EXPECT_NEAR(run->state().tip.tip.x(), 5.0, 1e-8);
   run.Press(InputKind::kOverride, 50.0);
   run->Advance(FromSeconds(key + 0.025));
   EXPECT_NEAR(run->state().tip_speed_mm_s, 5.0, 1e-6);
-  EXPECT_NEAR(run->state().tip.tip.x, 5.1875, 1e-7);
+  EXPECT_NEAR(run->state().tip.tip.x(), 5.1875, 1e-7);
   ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
   const double to_corner = (25.0 - 9.0) / 400.0;  // mm from 5 to 3 mm/s
   const double rest = 5.0 / 200.0 + (5.0 - 0.1875 - to_corner) / 5.0 + 2.0 / 200.0;
@@ -245,7 +245,7 @@ TEST(MillChainControl, KeepsWhatWasRidden) {
   EXPECT_EQ(run->outcome().kind, OutcomeKind::kStopped);
   EXPECT_EQ(run.seen().moves().size(), 51U);
   EXPECT_NEAR(run.figures().at("cut_length"), 20.0 + 5.05, 1e-7);  // with the plunge
-  EXPECT_NEAR(run->state().tip.tip.x, 5.05, 1e-8);
+  EXPECT_NEAR(run->state().tip.tip.x(), 5.05, 1e-8);
 
   machine::RunSetup setup = SetupOf(ParametersOf("t1"), "!MC0;VS10;PD1000,0;PD2000,0;PD3000,0;");
   setup.budget.steps = 3;
@@ -286,8 +286,8 @@ TEST(MillChainControl, KeepsThePathWhateverKeysArePressed) {
       if (motions[k].start_s == motions[k - 1].end_s && before > 0.0) {
         EXPECT_NEAR(m.speed.At(0.0).speed, before, 1e-5);
       }
-      const bool corner =
-          std::abs(m.path.from().tip.x - kCornerX) < 1e-9 && std::abs(m.path.from().tip.y) < 1e-9;
+      const bool corner = std::abs(m.path.from().tip.x() - kCornerX) < 1e-9 &&
+                          std::abs(m.path.from().tip.y()) < 1e-9;
       EXPECT_TRUE(!corner || m.speed.At(0.0).speed <= 3.0 + 1e-6);
     }
   }

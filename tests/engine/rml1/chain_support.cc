@@ -25,16 +25,16 @@ machine::Parameters MotionTestProfile() {
 ChainPlan PlanOf(const std::vector<Vertex>& chain, double acceleration, double jump) {
   const std::size_t n = chain.size();
   std::vector<double> length(n, 0.0);
-  std::vector<motion::Vec3> direction(n);
+  std::vector<motion::MachinePoint> direction(n);
   for (std::size_t k = 1; k < n; ++k) {
-    length[k] = motion::Distance(chain[k].at, chain[k - 1].at);
+    length[k] = (chain[k].at - chain[k - 1].at).norm();
     direction[k] = (chain[k].at - chain[k - 1].at) * (1.0 / length[k]);
   }
   ChainPlan plan;
   plan.speeds.assign(n, 0.0);
   for (std::size_t k = 1; k + 1 < n; ++k) {
-    const motion::Vec3 turn = direction[k + 1] - direction[k];
-    const double most = std::max({std::abs(turn.x), std::abs(turn.y), std::abs(turn.z)});
+    const motion::MachineVector turn = direction[k + 1] - direction[k];
+    const double most = std::max({std::abs(turn.x()), std::abs(turn.y()), std::abs(turn.z())});
     plan.speeds[k] = std::min(chain[k].speed, chain[k + 1].speed);
     if (most > 0.0) plan.speeds[k] = std::min(plan.speeds[k], jump / most);
   }
@@ -70,8 +70,8 @@ Velocity VelocityAt(const RunRecord::Motion& motion, double time_s) {
 }
 
 double LargestJump(const Velocity& before, const Velocity& after) {
-  const motion::Vec3 jump = after.tip - before.tip;
-  return std::max({std::abs(jump.x), std::abs(jump.y), std::abs(jump.z)});
+  const motion::MachineVector jump = after.tip - before.tip;
+  return std::max({std::abs(jump.x()), std::abs(jump.y()), std::abs(jump.z())});
 }
 
 }  // namespace rmlcell::rml1

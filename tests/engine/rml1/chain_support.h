@@ -14,7 +14,7 @@ machine::Parameters MotionTestProfile();
 // A vertex of a polyline in the machine frame, mm and degrees, and the speed at which the tool is
 // to come there.
 struct Vertex {
-  motion::Vec3 at;
+  motion::MachinePoint at;
   double a_deg = 0.0;
   double speed = 0.0;
 };
@@ -31,7 +31,7 @@ ChainPlan PlanOf(const std::vector<Vertex>& chain, double acceleration, double j
 // Velocity of the tool at a time within a motion, from its places just before and after: mm/s, and
 // deg/s of the rotary axis.
 struct Velocity {
-  motion::Vec3 tip;
+  motion::MachinePoint tip;
   double a_deg_s = 0.0;
 };
 Velocity VelocityAt(const RunRecord::Motion& motion, double time_s);

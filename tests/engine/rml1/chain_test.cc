@@ -29,7 +29,7 @@ double TimeOf(const std::vector<RunRecord::Motion>& motions) {
 }
 
 double SpeedAtEnd(const RunRecord::Motion& motion) {
-  return motion::Norm(VelocityAt(motion, motion.planned.speed.duration_s()).tip);
+  return VelocityAt(motion, motion.planned.speed.duration_s()).tip.norm();
 }
 
 // R01 to R03 of motion.md section 12: speed words below, within and between the steps.
@@ -170,7 +170,7 @@ TEST(MillChain, AgreesWithThePlanThatSeesAll) {
       x = std::clamp(x + dx, 0, 15000);
       y = std::clamp(y + dy, 0, 15000);
       z = three ? std::clamp(z + dz, -3900, 1900) : 0;
-      const motion::Vec3 at{x / 100.0, y / 100.0, -20.0 + z / 100.0};
+      const motion::MachinePoint at{x / 100.0, y / 100.0, -20.0 + z / 100.0};
       if (at == chain.back().at) continue;
       const std::string word = std::to_string(speed);
       const std::string xy = std::to_string(x) + "," + std::to_string(y);
@@ -196,13 +196,14 @@ TEST(MillChain, AgreesWithThePlanThatSeesAll) {
       }
       for (int i = 1; i < 8; ++i) {
         const double t = duration * i / 8.0;
-        EXPECT_LE(motion::Norm(VelocityAt(m, t).tip), chain[k + 1].speed * (1.0 + 1e-6));
+        EXPECT_LE(VelocityAt(m, t).tip.norm(), chain[k + 1].speed * (1.0 + 1e-6));
       }
       const double h = duration / 64.0;
       const auto place = [&](double t) { return m.planned.path.At(m.planned.speed.At(t).s).tip; };
       for (int i = 1; i < 64; ++i) {
-        const motion::Vec3 bend = place(h * (i - 1)) - place(h * i) * 2.0 + place(h * (i + 1));
-        EXPECT_LE(motion::Norm(bend) / (h * h), 200.0 * (1.0 + 1e-6) + 1e-12 / (h * h));
+        const motion::MachineVector bend =
+            place(h * (i - 1)) - place(h * i) * 2.0 + place(h * (i + 1));
+        EXPECT_LE(bend.norm() / (h * h), 200.0 * (1.0 + 1e-6) + 1e-12 / (h * h));
       }
     }
   }

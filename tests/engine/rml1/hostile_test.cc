@@ -102,7 +102,7 @@ TEST(HostileStreams, LooksForTheNextMotionOverSeveralCalls) {
   EXPECT_DOUBLE_EQ(stopped->state().tip_speed_mm_s, 10.0);
   stopped.Press(machine::InputKind::kStop);
   ASSERT_EQ(stopped.AdvanceToEnd(), machine::RunPhase::kHalted);
-  EXPECT_NEAR(stopped->state().tip.tip.x, 10.25, 1e-9);  // 10 mm/s take 0.25 mm to brake
+  EXPECT_NEAR(stopped->state().tip.tip.x(), 10.25, 1e-9);  // 10 mm/s take 0.25 mm to brake
 }
 
 // RML1-9.06, motion.md 5.5: a million lines of one chain need no more than ten thousand do, and a

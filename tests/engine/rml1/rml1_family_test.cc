@@ -69,10 +69,10 @@ TEST(Rml1Family, ListsItsFigures) {
 TEST(Rml1Family, TellsTheShapeOfAMachine) {
   machine::Parameters parameters = ParametersOf("mdx-40a-rotary");
   const machine::MachineShape shape = Rml1Family().Shape(parameters);
-  EXPECT_EQ(shape.travel.min, (motion::Vec3{34, 0, -68}));
-  EXPECT_EQ(shape.travel.max, (motion::Vec3{305, 305, 0}));
+  EXPECT_EQ(shape.travel.min, (motion::MachineVector{34, 0, -68}));
+  EXPECT_EQ(shape.travel.max, (motion::MachineVector{305, 305, 0}));
   EXPECT_TRUE(shape.has_work_origin);
-  EXPECT_EQ(shape.work_origin, (motion::Vec3{34, 0, -20}));
+  EXPECT_EQ(shape.work_origin, (motion::MachineVector{34, 0, -20}));
   EXPECT_FALSE(shape.five_axis);
   EXPECT_EQ(shape.laser_watts, 0.0);
   ASSERT_TRUE(shape.limits.has_value());

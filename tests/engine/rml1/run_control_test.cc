@@ -139,12 +139,12 @@ TEST(MillRunControl, MovesSteadilyBetweenEvents) {
   double fastest = 0.0;
   while (run->Advance(last.time + kTick) != RunPhase::kFinished) {
     const machine::RunState now = run->state();
-    const double step = motion::Distance(now.tip.tip, last.tip.tip);
+    const double step = (last.tip.tip - now.tip.tip).norm();
     ASSERT_LE(step, 60.0 * ToSeconds(now.time - last.time) + 1e-9);
     fastest = std::max(fastest, now.tip_speed_mm_s);
-    EXPECT_GE(now.tip.tip.x, 0.0);
-    EXPECT_LE(now.tip.tip.x, 200.0);
-    EXPECT_LE(now.tip.tip.z, 0.0);
+    EXPECT_GE(now.tip.tip.x(), 0.0);
+    EXPECT_LE(now.tip.tip.x(), 200.0);
+    EXPECT_LE(now.tip.tip.z(), 0.0);
     EXPECT_GE(now.progress, last.progress);
     last = now;
   }
@@ -176,7 +176,7 @@ TEST(MillRunControl, StopsOnThePath) {
   run.Press(InputKind::kStop);
   ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
   EXPECT_NEAR(run.time_s(), lower + 0.5 + 0.3, 1e-6);
-  EXPECT_NEAR(run->state().tip.tip.x, 9 + 12 + 9, 1e-5);
+  EXPECT_NEAR(run->state().tip.tip.x(), 9 + 12 + 9, 1e-5);
   run.Press(InputKind::kStart);
   ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
   EXPECT_NEAR(run.time_s(), lower + 0.8 + TrapezoidTime(30, 60), 1e-6);
@@ -193,7 +193,7 @@ TEST(MillRunControl, StopsNoLaterThanTheMotionItself) {
   run->Advance(FromSeconds(end - 0.01));
   run.Press(InputKind::kStop);
   ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
-  EXPECT_NEAR(run->state().tip.tip.x, 60.0, 1e-6);
+  EXPECT_NEAR(run->state().tip.tip.x(), 60.0, 1e-6);
   EXPECT_NEAR(run.time_s(), end, 1e-6);
   run.Press(InputKind::kStart);
   ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
@@ -248,7 +248,7 @@ TEST(MillRunControl, ChangesSpeedInTheMiddleOfAMotion) {
   TestRun run(ParametersOf("t1"), "!MC0;VS10;PD2000,0;");
   const double lower = TrapezoidTime(20, 2);
   run->Advance(FromSeconds(lower + 1.025));
-  EXPECT_NEAR(run->state().tip.tip.x, 10.0, 1e-6);
+  EXPECT_NEAR(run->state().tip.tip.x(), 10.0, 1e-6);
   run.Press(InputKind::kOverride, 50.0);
   run->Advance(FromSeconds(lower + 1.5));
   EXPECT_NEAR(run->state().tip_speed_mm_s, 5.0, 1e-9);
@@ -291,7 +291,7 @@ TEST(MillRunControl, FreezesOnAnEmergencyStop) {
   EXPECT_EQ(run->state().phase, RunPhase::kFinished);
   EXPECT_EQ(run->outcome().kind, OutcomeKind::kStopped);
   EXPECT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
-  EXPECT_NEAR(run->state().tip.tip.x, 21.0, 1e-6);
+  EXPECT_NEAR(run->state().tip.tip.x(), 21.0, 1e-6);
   EXPECT_FALSE(run->state().spindle_on);
   EXPECT_EQ(run.seen().Events().back(), "stop");
   EXPECT_NEAR(run.seen().motions().back().travelled, 21.0, 1e-6);

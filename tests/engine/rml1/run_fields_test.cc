@@ -140,9 +140,9 @@ TEST(MillRunFields, OfACut) {
     const machine::MoveDone& move = told.moves[k];
     ExpectTime(move.at, ends[k + 1]);
     EXPECT_EQ(move.place, cut);
-    EXPECT_EQ(move.tip.tip, (motion::Vec3{k == 0 ? 0.0 : 10.0, 0, -20}));
+    EXPECT_EQ(move.tip.tip, (motion::MachineVector{k == 0 ? 0.0 : 10.0, 0, -20}));
     EXPECT_EQ(move.axes.column, move.tip.tip);
-    EXPECT_EQ(move.program_point, (motion::Vec3{k == 0 ? 0.0 : 1000.0, 0, 0}));
+    EXPECT_EQ(move.program_point, (motion::MachineVector{k == 0 ? 0.0 : 1000.0, 0, 0}));
     EXPECT_EQ(move.feed_mm_s, feeds[k]);
     EXPECT_EQ(move.path, "PD");
     EXPECT_TRUE(move.programmed);
@@ -160,13 +160,13 @@ TEST(MillRunFields, OfATurn) {
   ASSERT_EQ(seen.ToEnd(), RunPhase::kFinished);
   ASSERT_EQ(seen.told.moves.size(), 1u);
   const machine::MoveDone& move = seen.told.moves[0];
-  EXPECT_EQ(move.tip.tip, (motion::Vec3{57, 30, -23}));
+  EXPECT_EQ(move.tip.tip, (motion::MachineVector{57, 30, -23}));
   EXPECT_NEAR(move.tip.a_rad, -45.0 * kRadPerDegree, 1e-12);
   EXPECT_EQ(move.tip.b_rad, 0.0);
   EXPECT_EQ(move.axes.column, move.tip.tip);
   EXPECT_EQ(move.axes.a_rad, move.tip.a_rad);
   EXPECT_EQ(move.axes.b_rad, 0.0);
-  EXPECT_EQ(move.program_point, (motion::Vec3{700, 0, -300}));
+  EXPECT_EQ(move.program_point, (motion::MachineVector{700, 0, -300}));
   EXPECT_EQ(move.rotary_a, 45.0);
   EXPECT_EQ(move.path, "!ZE");
   const machine::RunState end = seen.run->state();
@@ -254,7 +254,7 @@ TEST(MillRunFields, OfTheEndsThatABrakingToolPasses) {
   run->Advance(2122ms);  // 1.1 s down, 0.05 s to speed over 0.25 mm, 9.72 mm
   run.Press(InputKind::kStop);
   ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
-  EXPECT_NEAR(run->state().tip.tip.x, 10.22, 1e-6);
+  EXPECT_NEAR(run->state().tip.tip.x(), 10.22, 1e-6);
   const auto& motions = run.seen().motions();
   ASSERT_EQ(motions.size(), 6u);  // down, the way to the STOP, four lines
   const double squares[4] = {100.0 - 12.0, 100.0 - 52.0, 100.0 - 92.0, 0.0};
@@ -301,8 +301,8 @@ TEST(MillRunFields, OfTheState) {
   EXPECT_EQ(state.time, 1550ms);
   EXPECT_EQ(state.place.step, 3);
   EXPECT_EQ(state.instruction, "PD");
-  EXPECT_NEAR(state.tip.tip.x, 4.25, 1e-6);
-  EXPECT_EQ(state.tip.tip.z, -20.0);
+  EXPECT_NEAR(state.tip.tip.x(), 4.25, 1e-6);
+  EXPECT_EQ(state.tip.tip.z(), -20.0);
   EXPECT_EQ(state.axes.column, state.tip.tip);
   EXPECT_NEAR(state.tip_speed_mm_s, 10.0, 1e-9);
   EXPECT_TRUE(state.spindle_on);

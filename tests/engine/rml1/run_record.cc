@@ -10,8 +10,8 @@ namespace {
 
 std::string Coordinates(const machine::MoveDone& move) {
   std::ostringstream out;
-  out << TrimmedText(move.program_point.x, 3) << ',' << TrimmedText(move.program_point.y, 3) << ','
-      << TrimmedText(move.program_point.z, 3);
+  out << TrimmedText(move.program_point.x(), 3) << ',' << TrimmedText(move.program_point.y(), 3)
+      << ',' << TrimmedText(move.program_point.z(), 3);
   if (move.rotary_a != 0.0) out << ',' << TrimmedText(move.rotary_a, 3);
   return out.str();
 }

@@ -107,8 +107,8 @@ TEST(MillRun, TakesTheUnitOfTheProfile) {
   TestRun run(ParametersOf("mdx-20"), "PU400,-0;PD400,800;");
   run.AdvanceToEnd();
   EXPECT_EQ(run.variable("X"), "400");
-  EXPECT_NEAR(run->state().tip.tip.x, 10.0, 1e-9);
-  EXPECT_NEAR(run->state().tip.tip.y, 20.0, 1e-9);
+  EXPECT_NEAR(run->state().tip.tip.x(), 10.0, 1e-9);
+  EXPECT_NEAR(run->state().tip.tip.y(), 20.0, 1e-9);
   EXPECT_EQ(run.figures().at("cut_length"), 20.0);  // Z1 = Z2 = 0: no plunge
   EXPECT_EQ(run.figures().at("programmed.cut_length"), 800.0);
 }
@@ -218,7 +218,7 @@ TEST(MillRun, LetsEscapeKOvertakeBufferedData) {
   run.Press(InputKind::kStart);
   ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
   ASSERT_EQ(run.seen().moves().size(), 2U);
-  EXPECT_EQ(run.seen().moves()[1].program_point.y, 200.0);
+  EXPECT_EQ(run.seen().moves()[1].program_point.y(), 200.0);
 }
 
 // RML1-9.35: flow control stops the sender when the buffer is full, and nothing is lost; an ESC.K
@@ -247,7 +247,7 @@ TEST(MillRun, PausesAtTheEdgeOfTheRange) {
   EXPECT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
   run.Press(InputKind::kStart);
   ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
-  EXPECT_EQ(run.seen().moves()[2].program_point, (motion::Vec3{19000, 0, 1000}));
+  EXPECT_EQ(run.seen().moves()[2].program_point, (motion::MachineVector{19000, 0, 1000}));
   EXPECT_EQ(run.variable("X"), "0");
 }
 

@@ -9,9 +9,9 @@
 namespace rmlcell::simulation {
 namespace {
 
-using motion::Vec3;
+using motion::MachineVector;
 
-machine::Box BoxFrom(const Vec3& low, const Vec3& size) {
+machine::Box BoxFrom(const motion::MachinePoint& low, const MachineVector& size) {
   machine::Box box;
   box.Add(low);
   box.Add(low + size);
@@ -34,8 +34,8 @@ TEST(BoxTree, ReachesAsFarAsItIsTold) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const bool above : {true, false}) {
       const auto found_at = [&](double gap) {
-        Vec3 low;
-        (axis == 0 ? low.x : axis == 1 ? low.y : low.z) = above ? 1.0 + gap : -1.0 - gap;
+        motion::MachinePoint low;
+        (axis == 0 ? low.x() : axis == 1 ? low.y() : low.z()) = above ? 1.0 + gap : -1.0 - gap;
         return Touching(tree, BoxFrom(low, {1, 1, 1})).size();
       };
       EXPECT_EQ(found_at(0.5), 1u) << axis << above;
@@ -51,14 +51,15 @@ TEST(BoxTree, OfNothingFindsNothing) {
 // Each box that touches is found, once, and no other: as looking at all of them tells, along
 // whichever axis the boxes lie.
 TEST(BoxTree, FindsWhatLookingAtAllFinds) {
-  for (const Vec3& spread : {Vec3{100, 3, 3}, Vec3{3, 100, 3}, Vec3{3, 3, 100}, Vec3{9, 9, 9}}) {
+  for (const MachineVector& spread : {MachineVector{100, 3, 3}, MachineVector{3, 100, 3},
+                                      MachineVector{3, 3, 100}, MachineVector{9, 9, 9}}) {
     std::uint32_t seed = 7;
     const auto next = [&] {
       seed = seed * 1664525U + 1013904223U;
       return static_cast<double>(seed >> 8) / (1 << 24);
     };
     const auto random_box = [&] {
-      return BoxFrom({next() * spread.x, next() * spread.y, next() * spread.z},
+      return BoxFrom({next() * spread.x(), next() * spread.y(), next() * spread.z()},
                      {next(), next(), next()});
     };
     std::vector<machine::Box> boxes;
@@ -73,9 +74,9 @@ TEST(BoxTree, FindsWhatLookingAtAllFinds) {
           return std::max(low_a - high_b, low_b - high_a) > kReach;
         };
         const machine::Box& box = boxes[i];
-        if (!apart(box.min.x, box.max.x, asked.min.x, asked.max.x) &&
-            !apart(box.min.y, box.max.y, asked.min.y, asked.max.y) &&
-            !apart(box.min.z, box.max.z, asked.min.z, asked.max.z)) {
+        if (!apart(box.min.x(), box.max.x(), asked.min.x(), asked.max.x()) &&
+            !apart(box.min.y(), box.max.y(), asked.min.y(), asked.max.y()) &&
+            !apart(box.min.z(), box.max.z(), asked.min.z(), asked.max.z())) {
           expected.insert(i);
         }
       }

@@ -42,7 +42,7 @@ TEST(CornerLog, KeepsTheFirstOfTheLargestDeviations) {
                                            {Passage::kBlend, 0.125}});
   EXPECT_EQ(corners.deviation_mm_max, 0.5);
   EXPECT_EQ(corners.deviation_place.step, 2);
-  EXPECT_EQ(corners.deviation_point, (motion::Vec3{20, 0, 0}));
+  EXPECT_EQ(corners.deviation_point, (motion::MachineVector{20, 0, 0}));
   EXPECT_EQ(CornersOf({{Passage::kStop, 0.0}}).deviation_place.step, 0);  // none
 }
 

@@ -26,8 +26,8 @@ namespace drawings {
 using machine::MotionUse;
 using machine::Signal;
 using machine::WaitKind;
+using motion::MachineVector;
 using motion::PathPiece;
-using motion::Vec3;
 
 void ExpectDrawn(const std::string& svg, const std::string& name) {
   EXPECT_EQ(XmlFault(svg), "");
@@ -53,8 +53,8 @@ void ExpectDrawn(const std::string& svg, const std::string& name) {
 
 machine::MachineShape SmallMill() {
   machine::MachineShape shape;
-  shape.travel.Add(Vec3{0, 0, -60});
-  shape.travel.Add(Vec3{200, 150, 0});
+  shape.travel.Add(MachineVector{0, 0, -60});
+  shape.travel.Add(MachineVector{200, 150, 0});
   shape.has_work_origin = true;
   shape.work_origin = {12, 15, -20};
   return shape;
@@ -62,8 +62,8 @@ machine::MachineShape SmallMill() {
 
 machine::MachineShape LaserWithTable() {
   machine::MachineShape shape = Laser();
-  shape.travel.Add(Vec3{-600, -600, -1300});
-  shape.travel.Add(Vec3{3600, 3100, 1100});
+  shape.travel.Add(MachineVector{-600, -600, -1300});
+  shape.travel.Add(MachineVector{3600, 3100, 1100});
   return shape;
 }
 
@@ -87,8 +87,8 @@ RunReport MillReport() {
   report.total.cut_mm = 123.4567;
   report.total.travel_mm = 45.678912;
   report.total.plunges = 3;
-  report.cut.Add(Vec3{20, 20, -26});
-  report.cut.Add(Vec3{152.25, 90.125, -20});
+  report.cut.Add(MachineVector{20, 20, -26});
+  report.cut.Add(MachineVector{152.25, 90.125, -20});
   report.findings.resize(2);
   report.findings_dropped = 3;
   return report;
@@ -127,8 +127,8 @@ TEST(Drawing, MillFromTwoSides) {
   report.findings.clear();
   report.findings_dropped = 0;
   report.cut = {};
-  report.tip.Add(Vec3{10, 10, -26});
-  report.tip.Add(Vec3{152.25, 120, -15});
+  report.tip.Add(MachineVector{10, 10, -26});
+  report.tip.Add(MachineVector{152.25, 120, -15});
   report.total.cut_mm = 0.0;
   report.cycle_time = FromSeconds(59.9994);
   report.outcome = {.kind = machine::OutcomeKind::kBudgetExceeded,
@@ -177,8 +177,8 @@ RunReport HoodReport() {
   report.total.pierces = 2;
   report.total.cut_energy_j = 52345.0;
   report.total.pierce_energy_j = 750.0;
-  report.cut.Add(Vec3{1100, 700, -350});
-  report.cut.Add(Vec3{1500, 980, -220});
+  report.cut.Add(MachineVector{1100, 700, -350});
+  report.cut.Add(MachineVector{1500, 980, -220});
   report.outcome = {.kind = machine::OutcomeKind::kFailed,
                     .code = ErrorCode::kHoleRadiusZero,
                     .place = {.program = 45, .step = 7}};
@@ -207,7 +207,7 @@ TEST(Drawing, NothingMoved) {
 // A small part in the corner of a large machine, drawn coarser.
 TEST(Drawing, SmallAndCoarse) {
   machine::MachineShape shape = SmallMill();
-  shape.travel.Add(Vec3{4000, 3000, 0});
+  shape.travel.Add(MachineVector{4000, 3000, 0});
   PathSketch sketch(shape, 12);
   motion::PlannedMotion planned;
   for (int k = 0; k < 40; ++k) {

@@ -28,7 +28,7 @@ RunReport SomeReport() {
   report.total.pierces = 3;
   report.total.cut_energy_j = 5625.0;
   report.total.pierce_energy_j = 750.0;
-  report.tip.Add(motion::Vec3{-1, 2, 3});
+  report.tip.Add(motion::MachineVector{-1, 2, 3});
   report.changed_parameters = {{"LASER", "EFA51"}, {"VMAX", "423.333"}};
   AxisFigures a{.name = "A", .rotary = true, .travel = 6.28, .minimum = -3.14, .maximum = 3.14};
   report.axes = {a};

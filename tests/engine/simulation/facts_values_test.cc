@@ -203,8 +203,8 @@ TEST(FactsValues, Boxes) {
   RunReport report;
   const auto box = [](double first) {
     machine::Box made;
-    made.Add(motion::Vec3{first, first + 1, first + 2});
-    made.Add(motion::Vec3{first + 3, first + 4, first + 5});
+    made.Add(motion::MachineVector{first, first + 1, first + 2});
+    made.Add(motion::MachineVector{first + 3, first + 4, first + 5});
     return made;
   };
   report.programmed = box(10);

@@ -34,7 +34,8 @@ inline motion::PlannedMotion Planned(const motion::PathPiece& path,
   return planned;
 }
 
-inline motion::PathPiece LineFrom(const motion::Vec3& from, const motion::Vec3& to) {
+inline motion::PathPiece LineFrom(const motion::MachinePoint& from,
+                                  const motion::MachinePoint& to) {
   return motion::PathPiece::Line({from}, {to});
 }
 
@@ -120,12 +121,12 @@ class Script {
     return *this;
   }
 
-  Script& Line(const motion::Vec3& from, const motion::Vec3& to,
+  Script& Line(const motion::MachinePoint& from, const motion::MachinePoint& to,
                const MotionOptions& options = {}) {
     return Motion(Planned(LineFrom(from, to)), options);
   }
 
-  Script& Move(const motion::Vec3& tip, double feed_mm_s, std::string path,
+  Script& Move(const motion::MachinePoint& tip, double feed_mm_s, std::string path,
                bool programmed = true) {
     return Instant([=, place = place_](machine::RunObserver& to, SimTime at) {
       to.OnMove({.at = at,

@@ -13,7 +13,7 @@
 namespace rmlcell::simulation {
 namespace {
 
-using motion::Vec3;
+using motion::MachineVector;
 using Shape = MillTool::Shape;
 
 const MillTool kFlat{.shape = Shape::kFlat, .radius_mm = 1.5};
@@ -30,14 +30,14 @@ double Surface(const MillTool& tool, double d) {
 }
 
 // motion.md 9, by many positions of the tool instead of a formula.
-std::optional<double> ByPositions(const MillTool& tool, const Vec3& from, const Vec3& to, double x,
-                                  double y) {
+std::optional<double> ByPositions(const MillTool& tool, const motion::MachinePoint& from,
+                                  const motion::MachinePoint& to, double x, double y) {
   std::optional<double> least;
   for (int k = 0; k <= 4000; ++k) {
-    const Vec3 at = from + (to - from) * (k / 4000.0);
-    const double d = std::hypot(x - at.x, y - at.y);
+    const motion::MachinePoint at = from + (to - from) * (k / 4000.0);
+    const double d = std::hypot(x - at.x(), y - at.y());
     if (d > tool.radius_mm) continue;
-    const double z = at.z + Surface(tool, d);
+    const double z = at.z() + Surface(tool, d);
     if (!least || z < *least) least = z;
   }
   return least;
@@ -61,10 +61,10 @@ TEST(MillTool, SweepsWhatItsPositionsDo) {
   std::mt19937 random(5);  // NOLINT: the same every time
   std::uniform_real_distribution<double> place(-6.0, 6.0);
   for (int round = 0; round < 40; ++round) {
-    const Vec3 from{place(random), place(random), place(random)};
-    Vec3 to{place(random), place(random), place(random)};
-    if (round % 5 == 0) to.z = from.z;
-    if (round % 8 == 0) to = {from.x, from.y, to.z};  // a plunge
+    const motion::MachinePoint from{place(random), place(random), place(random)};
+    motion::MachinePoint to{place(random), place(random), place(random)};
+    if (round % 5 == 0) to.z() = from.z();
+    if (round % 8 == 0) to = {from.x(), from.y(), to.z()};  // a plunge
     for (const MillTool& tool : {kFlat, kBall, kVee}) {
       const double x = place(random), y = place(random);
       const auto closed = SweptHeight(tool, from, to, x, y);
@@ -72,7 +72,7 @@ TEST(MillTool, SweepsWhatItsPositionsDo) {
       if (!found) continue;  // a grazing touch falls between two positions
       ASSERT_TRUE(closed);
       // Between two positions the tool goes down by at most its way times what its flank rises.
-      const double step = Distance(from, to) / 4000.0;
+      const double step = (from - to).norm() / 4000.0;
       EXPECT_LE(*closed, *found + 1e-9);
       if (tool.shape != Shape::kBall) {
         EXPECT_GE(*closed, *found - 4.0 * step - 1e-9);
@@ -124,16 +124,17 @@ TEST(HeightField, CutsNothingBeyondItsBottomOrBesideIt) {
 TEST(HeightField, IsTheSameInAnyOrderAndByAnyRows) {
   struct Move {
     MillTool tool;
-    Vec3 from;
-    Vec3 to;
+    motion::MachinePoint from;
+    motion::MachinePoint to;
   };
   std::mt19937 random(3);  // NOLINT: the same every time
   std::uniform_real_distribution<double> x(-2.0, 22.0), y(-2.0, 14.0), z(-4.0, 1.0);
   std::vector<Move> moves;
   for (int k = 0; k < 60; ++k) {
-    const Vec3 from{x(random), y(random), z(random)};
-    const Vec3 to = k % 7 == 0 ? Vec3{from.x, from.y, z(random)}
-                               : Vec3{x(random), y(random), k % 3 == 0 ? from.z : z(random)};
+    const motion::MachinePoint from{x(random), y(random), z(random)};
+    const motion::MachinePoint to =
+        k % 7 == 0 ? MachineVector{from.x(), from.y(), z(random)}
+                   : MachineVector{x(random), y(random), k % 3 == 0 ? from.z() : z(random)};
     moves.push_back({k % 3 == 0 ? kFlat : k % 3 == 1 ? kBall : kVee, from, to});
   }
   HeightField field = Field(kPlate);
@@ -163,13 +164,13 @@ TEST(HeightField, LiesWhereItsStockBegins) {
   Stock moved = kPlate;  // by binary fractions, so that all digits stay
   moved.x_min -= 32.0, moved.x_max -= 32.0, moved.y_min += 64.0, moved.y_max += 64.0;
   moved.bottom += 8.0, moved.top += 8.0;
-  const Vec3 by{-32.0, 64.0, 8.0};
+  const MachineVector by{-32.0, 64.0, 8.0};
   HeightField here = Field(kPlate), there = Field(moved);
   EXPECT_EQ(there.columns(), 80u);
   EXPECT_EQ(there.rows(), 48u);
-  for (const auto& [from, to] :
-       {std::pair{Vec3{3, 4, -1}, Vec3{12, 7.5, -2}}, std::pair{Vec3{16, 10, -3}, Vec3{16, 3, -3}},
-        std::pair{Vec3{18, 9, 1}, Vec3{18, 9, -4}}}) {
+  for (const auto& [from, to] : {std::pair{MachineVector{3, 4, -1}, MachineVector{12, 7.5, -2}},
+                                 std::pair{MachineVector{16, 10, -3}, MachineVector{16, 3, -3}},
+                                 std::pair{MachineVector{18, 9, 1}, MachineVector{18, 9, -4}}}) {
     for (const MillTool& tool : {kFlat, kBall, kVee}) {
       EXPECT_NEAR(there.DepthOf(tool, from + by, to + by), here.DepthOf(tool, from, to), 1e-5);
       here.Cut(tool, from, to);

@@ -17,8 +17,8 @@ namespace rmlcell::simulation {
 namespace {
 
 using machine::MotionUse;
+using motion::MachineVector;
 using motion::PathPiece;
-using motion::Vec3;
 
 machine::MachineShape MillShape() {
   machine::MachineShape shape;
@@ -32,8 +32,9 @@ const Milling kSlot{
     .tool = {.shape = MillTool::Shape::kFlat, .radius_mm = 1.5}};
 
 // A straight motion in work coordinates; a feed rate of 0 is travel.
-void Tell(MillingRecorder& recorder, const Vec3& from, const Vec3& to, double feed_mm_s, int step) {
-  const Vec3 origin = MillShape().work_origin;
+void Tell(MillingRecorder& recorder, const motion::MachinePoint& from,
+          const motion::MachinePoint& to, double feed_mm_s, int step) {
+  const motion::MachinePoint origin = MillShape().work_origin;
   motion::PlannedMotion planned;
   planned.path = PathPiece::Line({from + origin}, {to + origin});
   recorder.OnMotion({.start = std::chrono::seconds(step),
@@ -89,8 +90,9 @@ TEST(MillingRecorder, KeepsTheDeepestGouge) {
 TEST(MillingRecorder, TakesOffWhatWasTravelled) {
   MillingRecorder recorder(MillShape(), kSlot);
   motion::PlannedMotion planned;
-  const Vec3 origin = MillShape().work_origin;
-  planned.path = PathPiece::Line({Vec3{2, 6, -2} + origin}, {Vec3{18, 6, -2} + origin});
+  const motion::MachinePoint origin = MillShape().work_origin;
+  planned.path =
+      PathPiece::Line({MachineVector{2, 6, -2} + origin}, {MachineVector{18, 6, -2} + origin});
   recorder.OnMotion({.motion = &planned, .from = 3.0, .travelled = 13.0, .programmed_mm_s = 8.0});
   EXPECT_NEAR(recorder.Figures().removed_mm3, 2.0 * (30.0 + kPi * 2.25), 0.3);
 }
@@ -160,9 +162,9 @@ TEST(Stl, IsClosedAndHasItsVolume) {
       const auto value = [&](std::size_t c) {
         return double{std::bit_cast<float>(number(at + 4 * c))};
       };
-      return Vec3{value(0), value(1), value(2)};
+      return MachineVector{value(0), value(1), value(2)};
     };
-    six_fold += Dot(corner(0), Cross(corner(1), corner(2)));
+    six_fold += corner(0).dot(corner(1).cross(corner(2)));
   }
   // Over each square between four centres: two triangles, (a + b + c) / 3 each.
   double volume = 0.0;
@@ -202,29 +204,29 @@ TEST(Stl, EachEdgeHasItsNeighbour) {
     return double{std::bit_cast<float>(value)};
   };
   const auto vector = [&](std::size_t at) {
-    return Vec3{number(at), number(at + 4), number(at + 8)};
+    return MachineVector{number(at), number(at + 4), number(at + 8)};
   };
   using Corner = std::tuple<double, double, double>;
-  const auto key = [](const Vec3& v) { return Corner{v.x, v.y, v.z}; };
+  const auto key = [](const MachineVector& v) { return Corner{v.x(), v.y(), v.z()}; };
   std::map<std::pair<Corner, Corner>, int> edges;
   machine::Box box;
   for (std::size_t at = 84; at + 50 <= bytes.size(); at += 50) {
-    const Vec3 corners[] = {vector(at + 12), vector(at + 24), vector(at + 36)};
-    const Vec3 across = Cross(corners[1] - corners[0], corners[2] - corners[0]);
-    const Vec3 normal = vector(at);
+    const motion::MachinePoint corners[] = {vector(at + 12), vector(at + 24), vector(at + 36)};
+    const MachineVector across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    const MachineVector normal = vector(at);
     EXPECT_EQ(bytes.substr(at + 48, 2), std::string(2, '\0'));
-    if (Norm(across) > 0.0) {
-      EXPECT_NEAR(Distance(normal, across * (1.0 / Norm(across))), 0.0, 1e-5);
+    if (across.norm() > 0.0) {
+      EXPECT_NEAR((normal - (across * (1.0 / across.norm()))).norm(), 0.0, 1e-5);
     } else {
-      EXPECT_EQ(normal, Vec3{});
+      EXPECT_EQ(normal, MachineVector{});
     }
     for (std::size_t k = 0; k < 3; ++k) {
       box.Add(corners[k]);
       ++edges[{key(corners[k]), key(corners[(k + 1) % 3])}];
     }
   }
-  EXPECT_EQ(box.min, (Vec3{-2.75, 5.25, -2.0}));
-  EXPECT_EQ(box.max, (Vec3{0.75, 7.75, 1.0}));
+  EXPECT_EQ(box.min, (MachineVector{-2.75, 5.25, -2.0}));
+  EXPECT_EQ(box.max, (MachineVector{0.75, 7.75, 1.0}));
   // The bottom is two triangles, so the lower edges of the sides are parts of its sides; above them
   // each edge has its neighbour.
   for (const auto& [edge, count] : edges) {

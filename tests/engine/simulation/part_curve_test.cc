@@ -10,8 +10,8 @@
 namespace rmlcell::simulation {
 namespace {
 
+using motion::MachineVector;
 using motion::PathPiece;
-using motion::Vec3;
 
 const motion::Head kArm = motion::GantryHead{.length_mm = 300.0};
 
@@ -71,13 +71,14 @@ TEST(PartCurve, RatesAreDerivatives) {
     const PartCurve curve(part);
     const double p = 0.5 * (curve.begin() + curve.end());
     const double step = 1e-6 * (curve.end() - curve.begin());
-    const Vec3 tip = (curve.Tip(p + step) - curve.Tip(p - step)) * (0.5 / step);
-    const Vec3 column = (curve.Column(p + step) - curve.Column(p - step)) * (0.5 / step);
-    const double scale = Norm(tip) + Norm(column);
-    EXPECT_NEAR(Distance(curve.TipRate(p), tip), 0.0, 1e-6 * scale);
-    EXPECT_NEAR(Distance(curve.ColumnRate(p), column), 0.0, 1e-6 * scale);
-    EXPECT_NEAR(Distance(curve.Tip(curve.begin()), TipAt(path, kArm, part.from)), 0.0, 1e-6);
-    EXPECT_NEAR(Distance(curve.Tip(curve.end()), TipAt(path, kArm, part.to)), 0.0, 1e-6);
+    const motion::MachinePoint tip = (curve.Tip(p + step) - curve.Tip(p - step)) * (0.5 / step);
+    const motion::MachinePoint column =
+        (curve.Column(p + step) - curve.Column(p - step)) * (0.5 / step);
+    const double scale = tip.norm() + column.norm();
+    EXPECT_NEAR((curve.TipRate(p) - tip).norm(), 0.0, 1e-6 * scale);
+    EXPECT_NEAR((curve.ColumnRate(p) - column).norm(), 0.0, 1e-6 * scale);
+    EXPECT_NEAR((curve.Tip(curve.begin()) - TipAt(path, kArm, part.from)).norm(), 0.0, 1e-6);
+    EXPECT_NEAR((curve.Tip(curve.end()) - TipAt(path, kArm, part.to)).norm(), 0.0, 1e-6);
   }
 }
 

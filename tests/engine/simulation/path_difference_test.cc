@@ -18,24 +18,26 @@ namespace rmlcell::simulation {
 namespace {
 
 using machine::MotionUse;
+using motion::MachineVector;
 using motion::PathPiece;
-using motion::Vec3;
 
 class Path {
  public:
-  Path& Line(const Vec3& from, const Vec3& to, MotionUse use = MotionUse::kCut) {
+  Path& Line(const motion::MachinePoint& from, const motion::MachinePoint& to,
+             MotionUse use = MotionUse::kCut) {
     return Add(LineFrom(from, to), use);
   }
   // Counter-clockwise about Z, or clockwise where `sweep` is below zero.
-  Path& Arc(const Vec3& centre, double radius, double begin, double sweep) {
-    const Vec3 from = centre + Vec3{radius * std::cos(begin), radius * std::sin(begin), 0};
+  Path& Arc(const motion::MachinePoint& centre, double radius, double begin, double sweep) {
+    const motion::MachinePoint from =
+        centre + MachineVector{radius * std::cos(begin), radius * std::sin(begin), 0};
     return Add(PathPiece::Circle({from}, centre, {0, 0, sweep < 0 ? -1.0 : 1.0}, std::abs(sweep),
                                  0.0, 0.0),
                MotionUse::kCut);
   }
   // Whole, from its end in the XZ plane.
-  Path& Circle(const Vec3& centre, double radius, const Vec3& normal) {
-    const Vec3 spoke = Vec3{normal.z, 0, -normal.x} * radius;
+  Path& Circle(const motion::MachinePoint& centre, double radius, const MachineVector& normal) {
+    const MachineVector spoke = MachineVector{normal.z(), 0, -normal.x()} * radius;
     return Add(PathPiece::Circle({centre + spoke}, centre, normal, kTurn, 0.0, 0.0),
                MotionUse::kCut);
   }
@@ -94,9 +96,11 @@ TEST(PathDifference, LinesAreDividedWhereTheyPart) {
   after.Line({10, 0, 7}, {55, 0, 7});
   const PathDifference difference = Compare(before.sketch(), after.sketch());
   ASSERT_EQ(difference.removed.elements.size(), 1U);
-  EXPECT_NEAR(Distance(difference.removed.elements[0].to, {10, 0, 7}), 0.0, 1e-9);
+  EXPECT_NEAR((difference.removed.elements[0].to - motion::MachinePoint{10, 0, 7}).norm(), 0.0,
+              1e-9);
   ASSERT_EQ(difference.added.elements.size(), 1U);
-  EXPECT_NEAR(Distance(difference.added.elements[0].from, {50, 0, 7}), 0.0, 1e-9);
+  EXPECT_NEAR((difference.added.elements[0].from - motion::MachinePoint{50, 0, 7}).norm(), 0.0,
+              1e-9);
   EXPECT_NEAR(difference.common.cut_mm, 40.0, 1e-9);
 }
 
@@ -162,7 +166,8 @@ TEST(PathDifference, PlacesAreNoPath) {
 // Circles are the same up to kSamePlace_mm in every respect, and not a bit beyond: the place of the
 // centre, the radius, and how far the rim of one leans out of the plane of the other.
 TEST(PathDifference, CirclesAreTheSameUpToTheTolerance) {
-  const auto in_common = [](const Vec3& centre, double radius, const Vec3& normal) {
+  const auto in_common = [](const motion::MachinePoint& centre, double radius,
+                            const MachineVector& normal) {
     Path before, after;
     before.Circle({0, 0, 0}, 1.0, {0, 0, 1});
     after.Circle(centre, radius, normal);
@@ -170,8 +175,10 @@ TEST(PathDifference, CirclesAreTheSameUpToTheTolerance) {
     EXPECT_TRUE(lengths.common == 0.0 || lengths.removed == 0.0);
     return lengths.common > 0.0;
   };
-  const auto leaning = [](double sine) { return Vec3{sine, 0, std::sqrt(1.0 - sine * sine)}; };
-  const Vec3 up{0, 0, 1};
+  const auto leaning = [](double sine) {
+    return MachineVector{sine, 0, std::sqrt(1.0 - sine * sine)};
+  };
+  const MachineVector up{0, 0, 1};
   EXPECT_TRUE(in_common({kSamePlace_mm, 0, 0}, 1.0, up));
   EXPECT_FALSE(in_common({1.001 * kSamePlace_mm, 0, 0}, 1.0, up));
   EXPECT_TRUE(in_common({0, 0, 0}, 1.0 - 0.999 * kSamePlace_mm, up));
@@ -227,7 +234,7 @@ TEST(PathDifference, ArcsAreDividedWhereTheyPart) {
   EXPECT_NEAR(CutsOf(half, other).common, 0.0, 1e-6);
   const PathDifference difference = Compare(half.sketch(), most.sketch());
   ASSERT_EQ(difference.added.elements.size(), 1U);
-  EXPECT_NEAR(Distance(difference.added.elements[0].to, {5, -5, 0}), 0.0, 1e-6);
+  EXPECT_NEAR((difference.added.elements[0].to - motion::MachinePoint{5, -5, 0}).norm(), 0.0, 1e-6);
 }
 
 // A full circle against another start of it.
@@ -250,7 +257,8 @@ TEST(PathDifference, PartsAddUpToTheWhole) {
       for (Path* path : {&before, &after}) {
         const double x = grid(), y = grid(), length = 1.0 + grid();
         const bool across = random() % 2 == 0;
-        path->Line({x, y, 0}, across ? Vec3{x + length, y, 0} : Vec3{x, y + length, 0});
+        path->Line({x, y, 0},
+                   across ? MachineVector{x + length, y, 0} : MachineVector{x, y + length, 0});
         (path == &before ? before_mm : after_mm) += length;
       }
     }
@@ -268,10 +276,10 @@ TEST(PathDifference, PartsKeepTheirPlace) {
   const PathDifference lines = Compare(Path().Line({0, 0, 3}, {30, 40, 3}).sketch(),
                                        Path().Line({6, 8, 3}, {24, 32, 3}).sketch());
   ASSERT_EQ(lines.removed.elements.size(), 2u);
-  EXPECT_NEAR(Distance(lines.removed.elements[0].from, {0, 0, 3}), 0.0, 1e-12);
-  EXPECT_NEAR(Distance(lines.removed.elements[0].to, {6, 8, 3}), 0.0, 1e-9);
-  EXPECT_NEAR(Distance(lines.removed.elements[1].from, {24, 32, 3}), 0.0, 1e-9);
-  EXPECT_NEAR(Distance(lines.removed.elements[1].to, {30, 40, 3}), 0.0, 1e-12);
+  EXPECT_NEAR((lines.removed.elements[0].from - motion::MachinePoint{0, 0, 3}).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((lines.removed.elements[0].to - motion::MachinePoint{6, 8, 3}).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((lines.removed.elements[1].from - motion::MachinePoint{24, 32, 3}).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((lines.removed.elements[1].to - motion::MachinePoint{30, 40, 3}).norm(), 0.0, 1e-12);
   EXPECT_NEAR(lines.removed.cut_mm, 20.0, 1e-9);
   const PathDifference arcs = Compare(Path().Arc({1, 2, 0}, 10.0, 0.0, kPi).sketch(),
                                       Path().Arc({1, 2, 0}, 10.0, 0.0, kPi / 2).sketch());
@@ -279,16 +287,18 @@ TEST(PathDifference, PartsKeepTheirPlace) {
   ASSERT_EQ(arcs.removed.circles.size(), 1u);
   const SketchElement& arc = arcs.removed.elements[0];
   EXPECT_EQ(arc.arc, 0);
-  EXPECT_NEAR(Distance(arc.from, {1, 12, 0}), 0.0, 1e-9);
-  EXPECT_NEAR(Distance(arc.to, {-9, 2, 0}), 0.0, 1e-9);
-  EXPECT_NEAR(Distance(arc.middle, {1 - 10 * std::sqrt(0.5), 2 + 10 * std::sqrt(0.5), 0}), 0.0,
-              1e-9);
+  EXPECT_NEAR((arc.from - motion::MachinePoint{1, 12, 0}).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((arc.to - motion::MachinePoint{-9, 2, 0}).norm(), 0.0, 1e-9);
+  EXPECT_NEAR(
+      (arc.middle - motion::MachinePoint{1 - 10 * std::sqrt(0.5), 2 + 10 * std::sqrt(0.5), 0})
+          .norm(),
+      0.0, 1e-9);
   EXPECT_NEAR(arcs.removed.circles[0].sweep_rad, kPi / 2, 1e-9);
   EXPECT_EQ(arcs.removed.circles[0].radius_mm, 10.0);
   EXPECT_NEAR(arcs.removed.cut_mm, 10.0 * kPi / 2, 1e-9);
   EXPECT_EQ(arcs.removed.travel_mm, 0.0);
   machine::Box seen;
-  for (const Vec3& p : {arc.from, arc.to, arc.middle}) seen.Add(p);
+  for (const motion::MachinePoint& p : {arc.from, arc.to, arc.middle}) seen.Add(p);
   EXPECT_EQ(arcs.removed.box(), seen);
 }
 
@@ -296,14 +306,14 @@ TEST(PathDifference, PartsKeepTheirPlace) {
 // several at one X each is looked at.
 TEST(PathDifference, DotsOfOneKindAtOnePlaceAreTheSame) {
   struct Dot {
-    Vec3 at;
+    motion::MachinePoint at;
     bool pierce = true;
   };
   const auto sketch_of = [](const std::vector<Dot>& dots) {
     PathSketch sketch({}, 100);
     for (const Dot& dot : dots) {
       motion::PlannedMotion planned;
-      planned.path = LineFrom(dot.at + Vec3{0, 0, 9}, dot.at);
+      planned.path = LineFrom(dot.at + MachineVector{0, 0, 9}, dot.at);
       sketch.Add({.use = dot.pierce ? MotionUse::kTravel : MotionUse::kPlunge,
                   .motion = &planned,
                   .travelled = planned.path.length()});
@@ -324,9 +334,10 @@ TEST(PathDifference, DotsOfOneKindAtOnePlaceAreTheSame) {
   EXPECT_EQ(counts({}, {here}), "0 0 1");
   EXPECT_EQ(counts({here}, {{{5, 6, 7}, false}}), "0 1 1");
   EXPECT_EQ(counts({{{5, 6, 7}, false}}, {{{5, 6, 7}, false}}), "1 0 0");
-  for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
+  for (const MachineVector& axis :
+       {MachineVector{1, 0, 0}, MachineVector{0, 1, 0}, MachineVector{0, 0, 1}}) {
     for (const double side : {-1.0, 1.0}) {
-      const Vec3 way = axis * (side * kSamePlace_mm);
+      const MachineVector way = axis * (side * kSamePlace_mm);
       EXPECT_EQ(counts({here}, {{here.at + way * 0.99}}), "1 0 0");
       EXPECT_EQ(counts({here}, {{here.at + way * 1.01}}), "0 1 1");
     }
@@ -337,13 +348,13 @@ TEST(PathDifference, DotsOfOneKindAtOnePlaceAreTheSame) {
   EXPECT_EQ(counts({here}, many), "1 0 5");
   EXPECT_EQ(counts(many, {here}), "1 5 0");
   const PathDifference difference = Compare(sketch_of({here}), sketch_of({{{1, 2, 3}}, here}));
-  EXPECT_EQ(difference.added.dots[0].at, (Vec3{1, 2, 3}));
+  EXPECT_EQ(difference.added.dots[0].at, (MachineVector{1, 2, 3}));
   EXPECT_TRUE(difference.added.dots[0].pierce);
   EXPECT_EQ(difference.common.dots[0].at, here.at);
   PathShare dots;
   dots.dots = {{.at = {1, 2, 3}}, {.at = {-1, 5, 0}}};
-  EXPECT_EQ(dots.box().min, (Vec3{-1, 2, 0}));
-  EXPECT_EQ(dots.box().max, (Vec3{1, 5, 3}));
+  EXPECT_EQ(dots.box().min, (MachineVector{-1, 2, 0}));
+  EXPECT_EQ(dots.box().max, (MachineVector{1, 5, 3}));
 }
 
 // Against looking at every box.
@@ -352,8 +363,8 @@ TEST(BoxTree, FindsWhatTouches) {
   const auto number = [&] { return static_cast<double>(random() % 1000); };
   std::vector<machine::Box> boxes(500);
   for (machine::Box& box : boxes) {
-    box.Add(Vec3{number(), number(), number()});
-    box.Add(box.min + Vec3{number() * 0.1, number() * 0.1, number() * 0.1});
+    box.Add(MachineVector{number(), number(), number()});
+    box.Add(box.min + MachineVector{number() * 0.1, number() * 0.1, number() * 0.1});
   }
   const BoxTree tree(boxes, 0.5);
   for (int round = 0; round < 100; ++round) {
@@ -365,9 +376,9 @@ TEST(BoxTree, FindsWhatTouches) {
     });
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       const machine::Box& b = boxes[i];
-      const bool touches = b.min.x <= wanted.max.x + 0.5 && wanted.min.x <= b.max.x + 0.5 &&
-                           b.min.y <= wanted.max.y + 0.5 && wanted.min.y <= b.max.y + 0.5 &&
-                           b.min.z <= wanted.max.z + 0.5 && wanted.min.z <= b.max.z + 0.5;
+      const bool touches = b.min.x() <= wanted.max.x() + 0.5 && wanted.min.x() <= b.max.x() + 0.5 &&
+                           b.min.y() <= wanted.max.y() + 0.5 && wanted.min.y() <= b.max.y() + 0.5 &&
+                           b.min.z() <= wanted.max.z() + 0.5 && wanted.min.z() <= b.max.z() + 0.5;
       EXPECT_EQ(found[i], touches) << i;
     }
   }

@@ -15,8 +15,8 @@ namespace {
 
 using motion::GantryHead;
 using motion::Head;
+using motion::MachineVector;
 using motion::PathPiece;
-using motion::Vec3;
 
 constexpr double kHalfRoot2 = std::numbers::sqrt2 / 2.0;
 
@@ -60,7 +60,7 @@ TEST(PathExtent, PartOfAnArc) {
 // A circle about (1,1,1)/sqrt(3): in every coordinate it reaches R sqrt(1 - 1/3) from its centre.
 TEST(PathExtent, TiltedCircle) {
   const double third = 1.0 / std::sqrt(3.0);
-  const Vec3 start{20.0 + 3.0 / std::sqrt(2.0), 30.0 - 3.0 / std::sqrt(2.0), 40.0};
+  const motion::MachinePoint start{20.0 + 3.0 / std::sqrt(2.0), 30.0 - 3.0 / std::sqrt(2.0), 40.0};
   const PathPiece circle =
       PathPiece::Circle({start}, {20, 30, 40}, {third, third, third}, kTurn, 0.0, 0.0);
   const PointSweep sweep = TipSweep({circle, Head{}, 0.0, circle.length()});
@@ -148,7 +148,7 @@ TEST(PathExtent, CurveTurnsRound) {
     const PointSweep sweep = TipSweep({planned.path, Head{}, 0.0, planned.path.length()});
     double sampled = -1e9;
     for (int k = 0; k <= 5000; ++k) {
-      sampled = std::max(sampled, planned.path.At(planned.path.length() * k / 5000).tip.x);
+      sampled = std::max(sampled, planned.path.At(planned.path.length() * k / 5000).tip.x());
     }
     EXPECT_GE(sweep[0].maximum, sampled - 1e-12);
     EXPECT_NEAR(sweep[0].maximum, sampled, 1e-6);
@@ -196,24 +196,24 @@ TEST(PathExtent, PassageInAxes) {
     const PathPart part{planned.path, planned.head, 0.0, planned.path.length()};
     const PointSweep tip = TipSweep(part), column = ColumnSweep(part);
     double length = 0.0, highest = -1e9, column_highest = -1e9;
-    Vec3 last = TipAt(planned.path, planned.head, 0.0);
+    motion::MachinePoint last = TipAt(planned.path, planned.head, 0.0);
     for (int k = 0; k <= 10000; ++k) {
       const double s = planned.path.length() * k / 10000.0;
-      const Vec3 here = TipAt(planned.path, planned.head, s);
-      length += motion::Distance(here, last);
+      const motion::MachinePoint here = TipAt(planned.path, planned.head, s);
+      length += (here - last).norm();
       last = here;
-      highest = std::max(highest, here.x);
-      column_highest = std::max(column_highest, planned.path.At(s).tip.x);
+      highest = std::max(highest, here.x());
+      column_highest = std::max(column_highest, planned.path.At(s).tip.x());
     }
     EXPECT_NEAR(TipLength(part), length, 1e-6);
     EXPECT_NEAR(tip[0].maximum, highest, 1e-6);
     EXPECT_NEAR(column[0].maximum, column_highest, 1e-6);
     int vertices = 0;
     double drawn = 0.0;
-    Vec3 vertex = TipAt(planned.path, planned.head, 0.0);
-    ForEachVertex(part, 0.01, [&](double, const Vec3& next) {
+    motion::MachinePoint vertex = TipAt(planned.path, planned.head, 0.0);
+    ForEachVertex(part, 0.01, [&](double, const motion::MachinePoint& next) {
       ++vertices;
-      drawn += motion::Distance(next, vertex);
+      drawn += (next - vertex).norm();
       vertex = next;
     });
     EXPECT_GT(vertices, 2);

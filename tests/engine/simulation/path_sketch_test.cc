@@ -12,10 +12,10 @@ namespace rmlcell::simulation {
 namespace {
 
 using machine::MotionUse;
+using motion::MachineVector;
 using motion::PathPiece;
-using motion::Vec3;
 
-void AddLine(PathSketch& sketch, const Vec3& from, const Vec3& to,
+void AddLine(PathSketch& sketch, const motion::MachinePoint& from, const motion::MachinePoint& to,
              MotionUse use = MotionUse::kCut) {
   motion::PlannedMotion planned;
   planned.path = LineFrom(from, to);
@@ -27,7 +27,7 @@ TEST(PathSketch, IsExactUpToItsLimit) {
   constexpr std::size_t kLimit = 100;
   PathSketch sketch({}, kLimit);
   const auto corner = [](std::size_t k) {
-    return Vec3{static_cast<double>(k), k % 2 == 0 ? 0.0 : 1.0, 0};
+    return MachineVector{static_cast<double>(k), k % 2 == 0 ? 0.0 : 1.0, 0};
   };
   for (std::size_t k = 0; k < kLimit; ++k) AddLine(sketch, corner(k), corner(k + 1));
   EXPECT_EQ(sketch.elements().size(), kLimit);
@@ -41,25 +41,25 @@ TEST(PathSketch, IsExactUpToItsLimit) {
 TEST(PathSketch, LongPathsStayInBounds) {
   constexpr std::size_t kLimit = 20'000;
   PathSketch sketch({}, kLimit);
-  Vec3 at{0, 0, 0};
+  motion::MachinePoint at{0, 0, 0};
   for (int row = 0; row < 1000; ++row) {
     for (int k = 1; k <= 1000; ++k) {
       const double x = row % 2 == 0 ? 0.1 * k : 100.0 - 0.1 * k;
-      const Vec3 next{x, 0.1 * row, -std::abs(std::sin(0.05 * x))};
+      const motion::MachinePoint next{x, 0.1 * row, -std::abs(std::sin(0.05 * x))};
       AddLine(sketch, at, next);
       at = next;
     }
   }
   EXPECT_LE(sketch.elements().size(), kLimit);
-  EXPECT_NEAR(sketch.cut_box().max.x, 100.0, 1e-9);
-  EXPECT_NEAR(sketch.cut_box().max.y, 99.9, 1e-9);
+  EXPECT_NEAR(sketch.cut_box().max.x(), 100.0, 1e-9);
+  EXPECT_NEAR(sketch.cut_box().max.y(), 99.9, 1e-9);
   machine::Box kept;
   for (const SketchElement& element : sketch.elements()) {
     kept.Add(element.from);
     kept.Add(element.to);
   }
-  EXPECT_NEAR(kept.max.x, 100.0, 3 * sketch.tolerance_mm());
-  EXPECT_NEAR(kept.max.y, 99.9, 3 * sketch.tolerance_mm());
+  EXPECT_NEAR(kept.max.x(), 100.0, 3 * sketch.tolerance_mm());
+  EXPECT_NEAR(kept.max.y(), 99.9, 3 * sketch.tolerance_mm());
   EXPECT_LT(sketch.tolerance_mm(), 2.0);
 }
 
@@ -91,10 +91,10 @@ TEST(PathSketch, ToleranceDoublesUntilHalfIsFree) {
 // Arcs that are left keep their circles, whatever was dropped before them.
 TEST(PathSketch, ArcsKeepTheirCircles) {
   PathSketch sketch({}, 6);
-  const auto add_circle = [&](const Vec3& centre, double radius) {
+  const auto add_circle = [&](const motion::MachinePoint& centre, double radius) {
     motion::PlannedMotion planned;
-    planned.path =
-        PathPiece::Circle({centre + Vec3{radius, 0, 0}}, centre, {0, 0, 1}, kTurn, 0.0, 0.0);
+    planned.path = PathPiece::Circle({centre + MachineVector{radius, 0, 0}}, centre, {0, 0, 1},
+                                     kTurn, 0.0, 0.0);
     sketch.Add({.use = MotionUse::kCut, .motion = &planned, .travelled = planned.path.length()});
   };
   for (int k = 0; k < 5; ++k) add_circle({0, 0, 0}, 5.0);
@@ -131,15 +131,15 @@ TEST(PathSketch, EverySecondDirectionGoes) {
   };
   cut_until(4095);
   ASSERT_EQ(sketch.tools().size(), 4095u);
-  EXPECT_EQ(sketch.tools()[4094].tip, (Vec3{4094, 0, 0}));  // where the cut ends
+  EXPECT_EQ(sketch.tools()[4094].tip, (MachineVector{4094, 0, 0}));  // where the cut ends
   cut_until(4096);
   ASSERT_EQ(sketch.tools().size(), 2048u);
   for (std::size_t i = 0; i < 2048; ++i)
-    ASSERT_EQ(sketch.tools()[i].tip.x, 2.0 * static_cast<double>(i));
+    ASSERT_EQ(sketch.tools()[i].tip.x(), 2.0 * static_cast<double>(i));
   cut_until(8191);
   ASSERT_EQ(sketch.tools().size(), 2048u + 2048u - 2048u);
   for (std::size_t i = 0; i < 2048; ++i)
-    ASSERT_EQ(sketch.tools()[i].tip.x, 4.0 * static_cast<double>(i));
+    ASSERT_EQ(sketch.tools()[i].tip.x(), 4.0 * static_cast<double>(i));
 }
 
 // Repeated passes lie on top of each other: coarsening drops the copies first.
@@ -167,12 +167,12 @@ TEST(PathSketch, KeepsArcsPlungesAndPierces) {
   ASSERT_EQ(sketch.elements().size(), 2u);
   ASSERT_EQ(sketch.elements()[0].arc, 0);
   EXPECT_EQ(sketch.circle(0).radius_mm, 12.0);
-  EXPECT_NEAR(sketch.elements()[0].middle.x, -12.0, 1e-12);
-  EXPECT_NEAR(sketch.box().min.x, -12.0, 1e-12);
+  EXPECT_NEAR(sketch.elements()[0].middle.x(), -12.0, 1e-12);
+  EXPECT_NEAR(sketch.box().min.x(), -12.0, 1e-12);
   ASSERT_EQ(sketch.dots().size(), 2u);
   EXPECT_FALSE(sketch.dots()[0].pierce);
   EXPECT_TRUE(sketch.dots()[1].pierce);
-  EXPECT_EQ(sketch.dots()[1].at, (Vec3{12, 0, -3}));
+  EXPECT_EQ(sketch.dots()[1].at, (MachineVector{12, 0, -3}));
 }
 
 TEST(PathSketch, NonsensePositionsAreLeftOut) {
@@ -180,7 +180,7 @@ TEST(PathSketch, NonsensePositionsAreLeftOut) {
   AddLine(sketch, {0, 0, 0}, {std::nan(""), 0, 0});
   AddLine(sketch, {0, 0, 0}, {HUGE_VAL, 0, 0});
   EXPECT_TRUE(sketch.elements().empty());
-  EXPECT_TRUE(sketch.box().empty() || sketch.box().max == Vec3{});
+  EXPECT_TRUE(sketch.box().empty() || sketch.box().max == MachineVector{});
 }
 
 // The head's direction is kept for some of the cuts, however many there are.
@@ -196,7 +196,7 @@ TEST(PathSketch, ToolDirectionsAreBounded) {
   }
   EXPECT_LE(sketch.tools().size(), 4096u);
   EXPECT_GE(sketch.tools().size(), 2000u);
-  EXPECT_NEAR(sketch.tools()[0].towards_head.y, -1.0, 1e-12);  // u at A = 0, B = pi/2
+  EXPECT_NEAR(sketch.tools()[0].towards_head.y(), -1.0, 1e-12);  // u at A = 0, B = pi/2
 }
 
 // Only a head has a direction, and only where it cuts.
@@ -230,11 +230,11 @@ TEST(PathSketch, WhatAMillCuts) {
   for (const SketchElement& element : sketch.elements()) cuts.push_back(element.cuts);
   EXPECT_EQ(cuts, (std::vector<bool>{false, true, true, true, false, true}));
   EXPECT_EQ(sketch.dots().size(), 2u);
-  EXPECT_EQ(sketch.start(), (Vec3{0, 0, 0}));
-  EXPECT_EQ(sketch.end(), (Vec3{3, 0, -1}));
-  EXPECT_EQ(sketch.cut_box().min, (Vec3{1, 0, -2}));
-  EXPECT_EQ(sketch.cut_box().max, (Vec3{3, 0, 5}));
-  EXPECT_EQ(sketch.box().min, (Vec3{0, 0, -2}));
+  EXPECT_EQ(sketch.start(), (MachineVector{0, 0, 0}));
+  EXPECT_EQ(sketch.end(), (MachineVector{3, 0, -1}));
+  EXPECT_EQ(sketch.cut_box().min, (MachineVector{1, 0, -2}));
+  EXPECT_EQ(sketch.cut_box().max, (MachineVector{3, 0, 5}));
+  EXPECT_EQ(sketch.box().min, (MachineVector{0, 0, -2}));
 }
 
 // Neighbours that go straight on are one; no vertex is farther off than twice the tolerance.
@@ -248,7 +248,7 @@ TEST(MergeStraight, MergesWithinTheTolerance) {
   elements.push_back({.from = {100, 10, 0}, .to = {100, 5, 0}});  // back: not straight on
   MergeStraight(elements, 0.2);
   ASSERT_EQ(elements.size(), 3u);
-  EXPECT_EQ(elements[0].to, (Vec3{100, 0, 0}));
+  EXPECT_EQ(elements[0].to, (MachineVector{100, 0, 0}));
 }
 
 TEST(DropAlike, DropsCopiesFromEitherEnd) {

@@ -13,7 +13,7 @@ namespace rmlcell::simulation {
 namespace {
 
 using machine::MotionUse;
-using motion::Vec3;
+using motion::MachineVector;
 
 // A panel of 400 x 300 px about the point 0,0 of the page: a millimetre is a pixel, so (x, y, z) of
 // the machine stands at (x, -y). What lies up to 20 px beyond its edges is drawn.
@@ -52,25 +52,26 @@ DrawnPath Draw(const std::vector<SketchElement>& elements,
   return drawn;
 }
 
-SketchElement Cut(const Vec3& from, const Vec3& to) {
+SketchElement Cut(const motion::MachinePoint& from, const motion::MachinePoint& to) {
   return {.from = from, .to = to, .use = MotionUse::kCut, .cuts = true};
 }
 
-SketchElement Travel(const Vec3& from, const Vec3& to, MotionUse use = MotionUse::kTravel) {
+SketchElement Travel(const motion::MachinePoint& from, const motion::MachinePoint& to,
+                     MotionUse use = MotionUse::kTravel) {
   return {.from = from, .to = to, .use = use};
 }
 
 // The arc that begins at `spoke` from the centre and turns by `sweep` about `normal`.
-DrawnPath DrawArc(const Vec3& centre, const Vec3& spoke, const Vec3& normal, double sweep,
-                  const Panel& panel = FromAbove()) {
-  const auto at = [&](double angle) {
-    return centre + spoke * std::cos(angle) + Cross(normal, spoke) * std::sin(angle);
+DrawnPath DrawArc(const motion::MachinePoint& centre, const MachineVector& spoke,
+                  const MachineVector& normal, double sweep, const Panel& panel = FromAbove()) {
+  const auto at = [&](double angle) -> motion::MachinePoint {
+    return centre + spoke * std::cos(angle) + normal.cross(spoke) * std::sin(angle);
   };
   SketchElement arc = Cut(at(0.0), at(sweep));
   arc.middle = at(0.5 * sweep);
   arc.arc = 0;
   return Draw({arc},
-              {{.centre = centre, .normal = normal, .radius_mm = Norm(spoke), .sweep_rad = sweep}},
+              {{.centre = centre, .normal = normal, .radius_mm = spoke.norm(), .sweep_rad = sweep}},
               panel);
 }
 
@@ -174,7 +175,7 @@ TEST(PicturePath, TooManyElementsGetCoarserStepByStep) {
 // An arc is an arc of the picture in pieces of at most 2.5 rad, so that its ends stay well apart.
 // Counter-clockwise from +X, the page's Y goes down.
 TEST(PicturePath, ArcsAreInPiecesThatAreNotTooLong) {
-  const Vec3 spoke{100, 0, 0};
+  const MachineVector spoke{100, 0, 0};
   const auto pieces = [&](double sweep) {
     const std::string data = DrawArc({}, spoke, {0, 0, 1}, sweep).cut();
     return std::count(data.begin(), data.end(), 'a');
@@ -193,13 +194,13 @@ TEST(PicturePath, ArcsAreInPiecesThatAreNotTooLong) {
 // way that the normal leans to. From below it turns the other way.
 TEST(PicturePath, LeaningCirclesAreEllipsesAcrossTheLean) {
   const double sine = std::sqrt(0.75);
-  const auto data = [](const Vec3& spoke, const Vec3& normal) {
+  const auto data = [](const MachineVector& spoke, const MachineVector& normal) {
     return DrawArc({}, spoke, normal, 0.5).cut();
   };
   EXPECT_NE(data({100, 0, 0}, {0, sine, 0.5}).find("a100 50 0 0 0 "), std::string::npos);
   EXPECT_NE(data({0, 100, 0}, {sine, 0, 0.5}).find("a100 50 90 0 0 "), std::string::npos);
   const double slant = sine * std::sqrt(0.5);
-  const Vec3 spoke{100 * std::sqrt(0.5), -100 * std::sqrt(0.5), 0};
+  const MachineVector spoke{100 * std::sqrt(0.5), -100 * std::sqrt(0.5), 0};
   EXPECT_NE(data(spoke, {slant, slant, 0.5}).find("a100 50 45 0 0 "), std::string::npos);
   EXPECT_NE(data(spoke, {slant, slant, -0.5}).find("a100 50 45 0 1 "), std::string::npos);
   // A normal that is off by rounding does not lean.
@@ -226,7 +227,7 @@ TEST(PicturePath, FlatArcsAreLines) {
 // A circle seen from its edge is a line to and fro, as far as the circle reaches. About +Y from
 // (30, 0, 40) x is 30 cos t + 40 sin t: 50 at the farthest.
 TEST(PicturePath, CirclesFromTheirEdgeAreLinesToAndFro) {
-  const auto data = [](const Vec3& spoke, double sweep) {
+  const auto data = [](const MachineVector& spoke, double sweep) {
     return DrawArc({}, spoke, {0, 1, 0}, sweep).cut();
   };
   EXPECT_EQ(data({30, 0, 40}, 0.9), "M30 0l" + std::string("19.98 0"));  // 30 cos 0.9 + 40 sin 0.9

@@ -18,13 +18,13 @@ namespace rmlcell::simulation {
 namespace {
 
 using machine::MotionUse;
+using motion::MachineVector;
 using motion::PathPiece;
-using motion::Vec3;
 
 machine::MachineShape Mill() {
   machine::MachineShape shape;
-  shape.travel.Add(Vec3{0, 0, -60});
-  shape.travel.Add(Vec3{200, 150, 0});
+  shape.travel.Add(MachineVector{0, 0, -60});
+  shape.travel.Add(MachineVector{200, 150, 0});
   shape.has_work_origin = true;
   shape.work_origin = {10, 10, -20};
   return shape;
@@ -32,8 +32,8 @@ machine::MachineShape Mill() {
 
 machine::MachineShape LaserWithTravel() {
   machine::MachineShape shape = Laser();
-  shape.travel.Add(Vec3{-600, -600, -1300});
-  shape.travel.Add(Vec3{3600, 3100, 1100});
+  shape.travel.Add(MachineVector{-600, -600, -1300});
+  shape.travel.Add(MachineVector{3600, 3100, 1100});
   return shape;
 }
 
@@ -173,7 +173,7 @@ TEST(Picture, DotsArePierces) {
   std::vector<double> dots;
   for (const SketchDot& dot : recorder.sketch().dots()) {
     EXPECT_TRUE(dot.pierce);
-    dots.push_back(dot.at.x);
+    dots.push_back(dot.at.x());
   }
   EXPECT_EQ(dots, (std::vector<double>{0.0, 20.0}));
   EXPECT_EQ(recorder.elements(), 4u);
@@ -322,7 +322,7 @@ TEST(Picture, ArcTurnsTheRightWay) {
 TEST(Picture, MillionMovesGiveABoundedPicture) {
   PictureRecorder recorder(Mill());
   motion::PlannedMotion planned;
-  Vec3 at{0, 0, -21};
+  motion::MachinePoint at{0, 0, -21};
   // Scattered lines that cannot be merged: the worst case.
   std::uint64_t state = 1;
   const auto next = [&state](double range) {
@@ -330,7 +330,7 @@ TEST(Picture, MillionMovesGiveABoundedPicture) {
     return range * static_cast<double>(state >> 40) / static_cast<double>(1 << 24);
   };
   for (int k = 0; k < 1'000'000; ++k) {
-    const Vec3 to{next(200.0), next(150.0), -21.0 - next(5.0)};
+    const motion::MachinePoint to{next(200.0), next(150.0), -21.0 - next(5.0)};
     planned.path = LineFrom(at, to);
     recorder.OnMotion({.use = k % 3 == 0 ? MotionUse::kTravel : MotionUse::kCut,
                        .motion = &planned,

@@ -10,9 +10,9 @@
 namespace rmlcell::simulation {
 namespace {
 
-using motion::Vec3;
+using motion::MachineVector;
 
-machine::Box BoxFrom(const Vec3& a, const Vec3& b) {
+machine::Box BoxFrom(const MachineVector& a, const MachineVector& b) {
   machine::Box box;
   box.Add(a);
   box.Add(b);
@@ -23,11 +23,12 @@ machine::Box BoxFrom(const Vec3& a, const Vec3& b) {
 TEST(PictureView, FramesAreRightHanded) {
   for (const PictureView view :
        {PictureView::kXY, PictureView::kXZ, PictureView::kYZ, PictureView::kDirection}) {
-    for (const Vec3& direction : {Vec3{1, -1, 0.8}, Vec3{0, 0, 5}, Vec3{0, 0, -1}, Vec3{}}) {
+    for (const MachineVector& direction : {MachineVector{1, -1, 0.8}, MachineVector{0, 0, 5},
+                                           MachineVector{0, 0, -1}, MachineVector{}}) {
       const ViewFrame frame = FrameOf(view, direction);
-      EXPECT_NEAR(Distance(Cross(frame.right, frame.up), frame.towards_eye), 0.0, 1e-12);
-      EXPECT_NEAR(Norm(frame.right), 1.0, 1e-12);
-      EXPECT_NEAR(Norm(frame.up), 1.0, 1e-12);
+      EXPECT_NEAR((frame.right.cross(frame.up) - frame.towards_eye).norm(), 0.0, 1e-12);
+      EXPECT_NEAR(frame.right.norm(), 1.0, 1e-12);
+      EXPECT_NEAR(frame.up.norm(), 1.0, 1e-12);
     }
   }
 }
@@ -35,8 +36,8 @@ TEST(PictureView, FramesAreRightHanded) {
 // Z stays upright in the view from a direction.
 TEST(PictureView, ObliqueViewKeepsZUpright) {
   const ViewFrame frame = FrameOf(PictureView::kDirection, {3, -2, 1});
-  EXPECT_NEAR(Dot({0, 0, 1}, frame.right), 0.0, 1e-12);
-  EXPECT_GT(Dot({0, 0, 1}, frame.up), 0.0);
+  EXPECT_NEAR(frame.right.z(), 0.0, 1e-12);
+  EXPECT_GT(frame.up.z(), 0.0);
 }
 
 // One view: the box fits and touches in one direction at least; its middle is in the middle.
@@ -116,9 +117,10 @@ TEST(PictureView, RoomIsSharedByNeed) {
 // What is shown: the whole path, or the cuts where that is more than 1.8 times as large; 6 % of the
 // largest side around it. Without a path the travel, without that a point of 0.05 mm.
 TEST(PictureView, WhatIsShown) {
-  const auto expect = [](const machine::Box& box, const Vec3& low, const Vec3& high) {
-    EXPECT_NEAR(Distance(box.min, low), 0.0, 1e-9);
-    EXPECT_NEAR(Distance(box.max, high), 0.0, 1e-9);
+  const auto expect = [](const machine::Box& box, const motion::MachinePoint& low,
+                         const motion::MachinePoint& high) {
+    EXPECT_NEAR((box.min - low).norm(), 0.0, 1e-9);
+    EXPECT_NEAR((box.max - high).norm(), 0.0, 1e-9);
   };
   const machine::Box cut = BoxFrom({0, 0, 0}, {100, 0, 0});
   expect(BoxToShow(BoxFrom({0, 0, 0}, {179, 0, 0}), cut, {}), {-10.74, -10.74, -10.74},
@@ -159,11 +161,11 @@ TEST(PictureView, ViewsAreInLine) {
   const Panel& yz = layout.panels[3];
   EXPECT_EQ(xy.scale, xz.scale);
   EXPECT_EQ(xz.scale, yz.scale);
-  const Vec3 point{33, 44, 55};
+  const motion::MachinePoint point{33, 44, 55};
   EXPECT_NEAR(xy.Project(point).x, xz.Project(point).x, 1e-9);
   EXPECT_NEAR(xz.Project(point).y, yz.Project(point).y, 1e-9);
   for (const Panel& panel : layout.panels) {
-    for (const Vec3& corner : {box.min, box.max}) {
+    for (const motion::MachinePoint& corner : {box.min, box.max}) {
       const ScreenPoint p = panel.Project(corner);
       EXPECT_GE(p.x, panel.rect.x - 1e-6);
       EXPECT_LE(p.x, panel.rect.x + panel.rect.width + 1e-6);
@@ -177,11 +179,12 @@ TEST(PictureView, ViewsAreInLine) {
 
 // From a part of 2 mm to one of 3 m, flat, thin or a point: always a scale that can be drawn.
 TEST(PictureView, AnyExtentCanBeDrawn) {
-  for (const Vec3& size : {Vec3{2, 1, 0}, Vec3{3000, 1500, 800}, Vec3{0, 0, 0}, Vec3{3000, 0, 0},
-                           Vec3{0, 1e-6, 0}, Vec3{1e9, 1, 1}}) {
+  for (const MachineVector& size :
+       {MachineVector{2, 1, 0}, MachineVector{3000, 1500, 800}, MachineVector{0, 0, 0},
+        MachineVector{3000, 0, 0}, MachineVector{0, 1e-6, 0}, MachineVector{1e9, 1, 1}}) {
     PathSketch sketch({}, 100);
     motion::PlannedMotion planned;
-    planned.path = motion::PathPiece::Line({{5, 5, 5}}, {Vec3{5, 5, 5} + size});
+    planned.path = motion::PathPiece::Line({{5, 5, 5}}, {MachineVector{5, 5, 5} + size});
     sketch.Add({.motion = &planned, .travelled = planned.path.length()});
     const machine::Box box = BoxToShow(sketch, {});
     for (const std::vector<PictureView>& views :

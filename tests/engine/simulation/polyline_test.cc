@@ -42,13 +42,13 @@ TEST(Polyline, ASwingIsCutAsTheToleranceAllows) {
     for (const int half : {0, 1}) {
       const PathPart part{path, head, 0.5 * half * path.length(), 0.5 * (half + 1) * path.length()};
       double before = part.from;
-      motion::Vec3 from = TipAt(path, head, before);
+      motion::MachinePoint from = TipAt(path, head, before);
       double worst = 0.0;
-      ForEachVertex(part, tolerance, [&](double s, const motion::Vec3& tip) {
+      ForEachVertex(part, tolerance, [&](double s, const motion::MachinePoint& tip) {
         EXPECT_GT(s, before);
-        EXPECT_NEAR(Distance(tip, TipAt(path, head, s)), 0.0, 1e-9);
-        const motion::Vec3 middle = TipAt(path, head, 0.5 * (before + s));
-        worst = std::max(worst, Distance(middle, (from + tip) * 0.5));
+        EXPECT_NEAR((tip - TipAt(path, head, s)).norm(), 0.0, 1e-9);
+        const motion::MachinePoint middle = TipAt(path, head, 0.5 * (before + s));
+        worst = std::max(worst, (middle - ((from + tip) * 0.5)).norm());
         before = s;
         from = tip;
         ++counts[half];
@@ -70,11 +70,12 @@ TEST(Polyline, AWholeTurnIsNoPoint) {
   const motion::PathPiece path =
       motion::PathPiece::Joint({{0, 0, 300}, 0.0, 0.0}, {{0, 0, 300}, 0.0, kTurn});
   double way = 0.0;
-  motion::Vec3 from = TipAt(path, head, 0.0);
-  ForEachVertex({path, head, 0.0, path.length()}, 1.0, [&](double, const motion::Vec3& tip) {
-    way += Distance(from, tip);
-    from = tip;
-  });
+  motion::MachinePoint from = TipAt(path, head, 0.0);
+  ForEachVertex({path, head, 0.0, path.length()}, 1.0,
+                [&](double, const motion::MachinePoint& tip) {
+                  way += (from - tip).norm();
+                  from = tip;
+                });
   EXPECT_NEAR(way, 300.0 * kTurn, 10.0);
 }
 

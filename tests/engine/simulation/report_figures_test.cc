@@ -146,8 +146,8 @@ TEST(ReportFigures, Corners) {
   EXPECT_EQ(bend.corners.stops, 2u);
   EXPECT_NEAR(bend.corners.deviation_mm_max, 1.358847515, 1e-6);
   EXPECT_EQ(bend.corners.deviation_place.step, 5);
-  EXPECT_NEAR(bend.corners.deviation_point.x, 1100.0 - 1.358847515 / std::sqrt(2.0), 1e-6);
-  EXPECT_NEAR(bend.corners.deviation_point.y, 1000.0 + 1.358847515 / std::sqrt(2.0), 1e-6);
+  EXPECT_NEAR(bend.corners.deviation_point.x(), 1100.0 - 1.358847515 / std::sqrt(2.0), 1e-6);
+  EXPECT_NEAR(bend.corners.deviation_point.y(), 1000.0 + 1.358847515 / std::sqrt(2.0), 1e-6);
   const RunReport back =
       ReportOf(start + "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nMOVE (1000.,1001.,-400.,0.,0.)\n");
   EXPECT_EQ(back.corners.reversals, 1u);
@@ -224,10 +224,10 @@ TEST(ReportFigures, EachProgramHasItsOwn) {
   EXPECT_NEAR(called.tip_figures.peak_speed, 40.0, 1e-6);
   EXPECT_EQ(called.tip_figures.speed_limit, 500.0);  // of a contour
   EXPECT_GT(main.tip_figures.peak_speed, 100.0);     // of the way from the home position
-  EXPECT_NEAR(called.tip.min.x, 1100.0, 1e-6);
-  EXPECT_NEAR(called.tip.max.x, 1180.0, 1e-6);
-  EXPECT_NEAR(called.programmed.max.y, 1050.0, 1e-9);
-  EXPECT_NEAR(called.column.max.z, -100.0, 1e-6);
+  EXPECT_NEAR(called.tip.min.x(), 1100.0, 1e-6);
+  EXPECT_NEAR(called.tip.max.x(), 1180.0, 1e-6);
+  EXPECT_NEAR(called.programmed.max.y(), 1050.0, 1e-9);
+  EXPECT_NEAR(called.column.max.z(), -100.0, 1e-6);
   EXPECT_EQ(called.corners.blended, 1u);
   EXPECT_EQ(main.corners.blended, 0u);
   EXPECT_EQ(main.corners.stops + called.corners.stops, both.corners.stops);

@@ -15,8 +15,8 @@ namespace {
 using machine::MotionUse;
 using machine::Signal;
 using machine::WaitKind;
+using motion::MachineVector;
 using motion::PathPiece;
-using motion::Vec3;
 
 RunReport ReportOf(const Script& script, const machine::MachineShape& shape) {
   ReportRecorder recorder(shape);
@@ -99,9 +99,9 @@ TEST(ReportRecorder, LengthsOfAMill) {
   EXPECT_NEAR(report.total.plunge_mm, 6, 1e-12);
   EXPECT_NEAR(report.total.tip_path_mm, 39, 1e-12);
   EXPECT_EQ(report.total.plunges, 2u);
-  EXPECT_EQ(report.cut.min, (Vec3{10, 0, -1}));
-  EXPECT_EQ(report.cut.max, (Vec3{30, 0, 2}));
-  EXPECT_EQ(report.tip.min, (Vec3{0, 0, -1}));
+  EXPECT_EQ(report.cut.min, (MachineVector{10, 0, -1}));
+  EXPECT_EQ(report.cut.max, (MachineVector{30, 0, 2}));
+  EXPECT_EQ(report.tip.min, (MachineVector{0, 0, -1}));
 }
 
 // Case W03 of motion.md 12: one cut of 200 mm at SPEED 8 with WORKDEF 1,0 (8,75,1,50): beam on
@@ -130,7 +130,7 @@ TEST(ReportRecorder, LaserCutOfTheReference) {
   EXPECT_NEAR(report.total.cut_mm, 200.0, 1e-12);
   EXPECT_NEAR(report.total.travel_mm, 100.0, 1e-12);
   EXPECT_EQ(report.total.shutter_open, report.cycle_time);
-  EXPECT_EQ(report.cut.max, (Vec3{200, 0, 0}));
+  EXPECT_EQ(report.cut.max, (MachineVector{200, 0, 0}));
   EXPECT_EQ(report.shortfall.moves, 0u);
   // The second step holds the cut, the first the pierce.
   EXPECT_EQ(report.steps[0].figures.pierces, 1u);
@@ -199,7 +199,7 @@ TEST(ReportRecorder, MotionInParts) {
   EXPECT_NEAR(ToSeconds(report.cycle_time), 1.0 + ramp_s, 1e-9);
   EXPECT_EQ(report.total.time.settling, SimTime::zero());
   EXPECT_NEAR(report.total.tip_path_mm, half + 25.0 * ramp_s, 1e-9);
-  EXPECT_NEAR(report.tip.max.x, rest, 1e-12);
+  EXPECT_NEAR(report.tip.max.x(), rest, 1e-12);
   EXPECT_EQ(report.shortfall.moves, 0u);
 }
 
@@ -245,8 +245,8 @@ TEST(ReportRecorder, AxisFigures) {
   EXPECT_NEAR(laser.axes[4].peak_speed, 1.0, 1e-9);
   EXPECT_NEAR(laser.axes[3].speed_limit, 2.0 * kPi, 1e-12);
   EXPECT_EQ(laser.total.tip_path_mm, 0.0);
-  EXPECT_NEAR(laser.column.max.z, 300.0, 1e-9);  // straight above at B = 0
-  EXPECT_TRUE(laser.tip.max == Vec3{} && laser.tip.min == Vec3{});
+  EXPECT_NEAR(laser.column.max.z(), 300.0, 1e-9);  // straight above at B = 0
+  EXPECT_TRUE(laser.tip.max == MachineVector{} && laser.tip.min == MachineVector{});
 }
 
 // Cases C01 and C03 of motion.md 12: a corner of 90 degrees between legs of 100 mm at SPEED 10. The
@@ -267,12 +267,12 @@ TEST(ReportRecorder, CornerOfTheReference) {
   EXPECT_NEAR(report.corners.deviation_mm_max, 1.358847515, 1e-6);
   EXPECT_EQ(report.corners.deviation_place.step, 1);
   const double off = 1.358847515 / std::sqrt(2.0);
-  EXPECT_NEAR(report.corners.deviation_point.x, 100.0 - off, 1e-6);
-  EXPECT_NEAR(report.corners.deviation_point.y, off, 1e-6);
+  EXPECT_NEAR(report.corners.deviation_point.x(), 100.0 - off, 1e-6);
+  EXPECT_NEAR(report.corners.deviation_point.y(), off, 1e-6);
   EXPECT_NEAR(report.steps[0].figures.tip_path_mm, 0.5 * 198.564458478, 1e-6);
   EXPECT_EQ(report.shortfall.moves, 0u);
-  EXPECT_NEAR(report.tip.max.x, 100.0, 1e-9);
-  EXPECT_NEAR(report.tip.min.y, 0.0, 1e-9);
+  EXPECT_NEAR(report.tip.max.x(), 100.0, 1e-9);
+  EXPECT_NEAR(report.tip.min.y(), 0.0, 1e-9);
 }
 
 // A head that turns to a corner and back again has the same angle at both ends of the curve; it
@@ -299,10 +299,10 @@ TEST(ReportRecorder, BoxOfACircle) {
       PathPiece::Circle({{112, 50, 0}}, {100, 50, 0}, {0, 0, 1}, kTurn, 0.0, 0.0);
   script.Motion(Planned(circle), {.use = MotionUse::kCut});
   const RunReport report = ReportOf(script, {});
-  EXPECT_NEAR(report.cut.min.x, 88.0, 1e-9);
-  EXPECT_NEAR(report.cut.max.x, 112.0, 1e-9);
-  EXPECT_NEAR(report.cut.min.y, 38.0, 1e-9);
-  EXPECT_NEAR(report.cut.max.y, 62.0, 1e-9);
+  EXPECT_NEAR(report.cut.min.x(), 88.0, 1e-9);
+  EXPECT_NEAR(report.cut.max.x(), 112.0, 1e-9);
+  EXPECT_NEAR(report.cut.min.y(), 38.0, 1e-9);
+  EXPECT_NEAR(report.cut.max.y(), 62.0, 1e-9);
   EXPECT_NEAR(report.total.cut_mm, 24.0 * kPi, 1e-9);
 }
 
@@ -321,9 +321,9 @@ TEST(ReportRecorder, OutcomeFindingsAndPosition) {
   EXPECT_EQ(report.outcome.place.step, 3);
   ASSERT_EQ(report.findings.size(), 1u);
   EXPECT_EQ(report.findings[0].count, 2u);
-  EXPECT_EQ(report.final_position.tip.tip, (Vec3{3, 4, 0}));
-  EXPECT_EQ(report.final_position.program_point, (Vec3{3, 4, 0}));
-  EXPECT_EQ(report.programmed.max, (Vec3{3, 4, 0}));
+  EXPECT_EQ(report.final_position.tip.tip, (MachineVector{3, 4, 0}));
+  EXPECT_EQ(report.final_position.program_point, (MachineVector{3, 4, 0}));
+  EXPECT_EQ(report.programmed.max, (MachineVector{3, 4, 0}));
   EXPECT_EQ(report.figures.size(), 1u);
 }
 
@@ -333,9 +333,9 @@ TEST(ReportRecorder, AMoveOfTheMachineIsNotProgrammed) {
   script.Step(1, 1).Line({}, {3, 4, 0}).Move({3, 4, 0}, 50.0, "LIN");
   script.Step(1, 2).Line({3, 4, 0}, {9, 9, 9}).Move({9, 9, 9}, 0.0, "ZERO_Z", false);
   const RunReport report = ReportOf(script, {});
-  EXPECT_EQ(report.programmed.max, (Vec3{3, 4, 0}));
-  EXPECT_EQ(report.final_position.program_point, (Vec3{3, 4, 0}));
-  EXPECT_EQ(report.final_position.tip.tip, (Vec3{9, 9, 9}));
+  EXPECT_EQ(report.programmed.max, (MachineVector{3, 4, 0}));
+  EXPECT_EQ(report.final_position.program_point, (MachineVector{3, 4, 0}));
+  EXPECT_EQ(report.final_position.tip.tip, (MachineVector{9, 9, 9}));
 }
 
 // motion.md 8.2: what the beam does counts in the program that does it, and in no other: moving,
@@ -375,12 +375,12 @@ TEST(ReportRecorder, ProgramsOfTheReportHaveAllTheirFigures) {
   const RunReport report = ReportOf(script, {});
   ASSERT_EQ(report.programs.size(), 128u);
   for (int program = 1; program < 128; ++program) {
-    EXPECT_EQ(report.programs.at(program).tip.max.x, 1.0 * program);
+    EXPECT_EQ(report.programs.at(program).tip.max.x(), 1.0 * program);
     EXPECT_EQ(report.programs.at(program).total.cut_mm, 1.0 * program);
   }
-  EXPECT_EQ(report.programs.at(0).tip.max.y, 7.0);
+  EXPECT_EQ(report.programs.at(0).tip.max.y(), 7.0);
   EXPECT_EQ(report.programs.at(0).total.cut_mm, 7.0);
-  EXPECT_EQ(report.tip.max.x, 128.0);  // of the job, whatever its programs have
+  EXPECT_EQ(report.tip.max.x(), 128.0);  // of the job, whatever its programs have
 }
 
 // A report on the way holds what was told so far and changes nothing of the end.

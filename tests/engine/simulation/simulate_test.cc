@@ -15,7 +15,8 @@ using machine::RunPhase;
 
 Script Square() {
   Script script;
-  const motion::Vec3 corners[] = {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}, {0, 0, 0}};
+  const motion::MachinePoint corners[] = {
+      {0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}, {0, 0, 0}};
   for (int k = 1; k < 5; ++k) {
     script.Step(1, k).Line(corners[k - 1], corners[k], {.use = machine::MotionUse::kCut});
     script.Move(corners[k], 50.0, "LIN").Wait(machine::WaitKind::kDwell, 0.1);

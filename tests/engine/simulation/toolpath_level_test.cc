@@ -12,7 +12,7 @@ namespace rmlcell::simulation {
 namespace {
 
 using machine::MotionUse;
-using motion::Vec3;
+using motion::MachineVector;
 
 ToolpathRun RunOf(int step, std::int64_t start_us, std::int64_t end_us, std::uint32_t points) {
   return {.program = 1,
@@ -47,18 +47,18 @@ std::vector<ToolpathBlock> Coarser(const std::vector<ToolpathBlock>& blocks, dou
   return coarse;
 }
 
-Vec3 Place(const ToolpathPoint& p) {
+motion::MachinePoint Place(const ToolpathPoint& p) {
   return {static_cast<double>(p.x_um), static_cast<double>(p.y_um), static_cast<double>(p.z_um)};
 }
 
-double ToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 along = b - a;
-  const double squared = Dot(along, along);
-  const double t = squared > 0.0 ? std::clamp(Dot(p - a, along) / squared, 0.0, 1.0) : 0.0;
-  return Distance(p, a + along * t);
+double ToSegment(const motion::MachinePoint& p, const MachineVector& a, const MachineVector& b) {
+  const MachineVector along = b - a;
+  const double squared = along.dot(along);
+  const double t = squared > 0.0 ? std::clamp((p - a).dot(along) / squared, 0.0, 1.0) : 0.0;
+  return (p - (a + along * t)).norm();
 }
 
-double ToPolyline(const Vec3& p, const std::vector<ToolpathPoint>& points) {
+double ToPolyline(const motion::MachinePoint& p, const std::vector<ToolpathPoint>& points) {
   double best = HUGE_VAL;
   for (std::size_t i = 1; i < points.size(); ++i)
     best = std::min(best, ToSegment(p, Place(points[i - 1]), Place(points[i])));
@@ -70,7 +70,7 @@ double Farthest(const std::vector<ToolpathPoint>& of, const std::vector<Toolpath
   double worst = 0.0;
   for (std::size_t i = 1; i < of.size(); ++i) {
     for (int k = 0; k < 4; ++k) {
-      const Vec3 a = Place(of[i - 1]);
+      const MachineVector a = Place(of[i - 1]);
       worst = std::max(worst, ToPolyline(a + (Place(of[i]) - a) * (k / 4.0), from));
     }
   }

@@ -15,8 +15,8 @@ namespace rmlcell::simulation {
 namespace {
 
 using machine::MotionUse;
+using motion::MachineVector;
 using motion::PathPiece;
-using motion::Vec3;
 
 struct Recorded {
   std::vector<ToolpathBlock> blocks;
@@ -42,14 +42,15 @@ Recorded Record(const Script& script, ToolpathOptions options = {}) {
   return recorded;
 }
 
-double DistanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 along = b - a;
-  const double squared = Dot(along, along);
-  const double t = squared > 0.0 ? std::clamp(Dot(p - a, along) / squared, 0.0, 1.0) : 0.0;
-  return Distance(p, a + along * t);
+double DistanceToSegment(const motion::MachinePoint& p, const MachineVector& a,
+                         const MachineVector& b) {
+  const MachineVector along = b - a;
+  const double squared = along.dot(along);
+  const double t = squared > 0.0 ? std::clamp((p - a).dot(along) / squared, 0.0, 1.0) : 0.0;
+  return (p - (a + along * t)).norm();
 }
 
-Vec3 Millimetres(const ToolpathPoint& p) {
+MachineVector Millimetres(const ToolpathPoint& p) {
   return {p.x_um / 1000.0, p.y_um / 1000.0, p.z_um / 1000.0};
 }
 
@@ -58,7 +59,7 @@ double WorstDistance(const PathPiece& path, const motion::Head& head, const Tool
   double worst = 0.0;
   for (int k = 0; k <= 2000; ++k) {
     const double s = path.length() * k / 2000;
-    Vec3 tip = path.At(s).tip;
+    motion::MachinePoint tip = path.At(s).tip;
     if (path.in_axes()) {
       const motion::TipPose pose = path.At(s);
       tip = head.TipOf({pose.tip, pose.a_rad, pose.b_rad}).tip;
@@ -180,7 +181,7 @@ TEST(ToolpathRecorder, KeepsWithinTheToleranceOnCurves) {
 // on.
 TEST(ToolpathRecorder, MergingStaysWithinTheTolerance) {
   const double tolerance = 0.05;
-  std::vector<Vec3> vertices;
+  std::vector<motion::MachinePoint> vertices;
   Script script;
   script.Step(1, 1);
   for (int k = 0; k <= 1000; ++k) {
@@ -192,7 +193,7 @@ TEST(ToolpathRecorder, MergingStaysWithinTheTolerance) {
   const ToolpathBlock& block = recorded.blocks[0];
   EXPECT_LT(block.points.size(), 200u);
   double worst = 0.0;
-  for (const Vec3& vertex : vertices) {
+  for (const motion::MachinePoint& vertex : vertices) {
     double best = HUGE_VAL;
     for (std::size_t i = 1; i < block.points.size(); ++i) {
       best = std::min(best, DistanceToSegment(vertex, Millimetres(block.points[i - 1]),
@@ -232,13 +233,14 @@ TEST(ToolpathRecorder, BlocksFollowEachOther) {
 TEST(ToolpathRecorder, StraightOnIsOneLineBehindABreak) {
   Script full;
   full.Step(1, 1);
-  Vec3 at;
+  motion::MachinePoint at;
   for (int k = 1; k < static_cast<int>(kToolpathBlockPoints); ++k) {
-    const Vec3 next{1.0 * k, k % 2 * 1.0, 0};
+    const motion::MachinePoint next{1.0 * k, k % 2 * 1.0, 0};
     full.Line(at, next);
     at = next;
   }
-  full.Line(at, at + Vec3{5, 0, 0}).Line(at + Vec3{5, 0, 0}, at + Vec3{9, 0, 0});
+  full.Line(at, at + MachineVector{5, 0, 0})
+      .Line(at + MachineVector{5, 0, 0}, at + MachineVector{9, 0, 0});
   const Recorded two_blocks = Record(full);
   ASSERT_EQ(two_blocks.blocks.size(), 2u);
   EXPECT_EQ(two_blocks.blocks[0].points.size(), kToolpathBlockPoints);
@@ -291,7 +293,7 @@ TEST(ToolpathRecorder, LongArcGoesOnInTheNextBlock) {
     EXPECT_EQ(block.runs[0].start_us, last_us);
     last_us = block.runs[0].end_us;
     for (std::size_t i = 1; i < block.points.size(); ++i) {
-      way += Distance(Millimetres(block.points[i - 1]), Millimetres(block.points[i]));
+      way += (Millimetres(block.points[i - 1]) - Millimetres(block.points[i])).norm();
     }
     if (&block == &recorded.blocks.back()) break;
     // All of the way is at 50 mm/s but the first ramp, which costs half its time: 0.0354 s.

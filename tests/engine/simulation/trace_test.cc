@@ -134,7 +134,7 @@ TEST(Trace, RecordsHoldWhatWasTold) {
   ASSERT_EQ(records.size(), 4u);
   EXPECT_EQ(records[0].at, SimTime(5));
   EXPECT_EQ(records[0].place.byte_offset, 4);
-  EXPECT_EQ(records[0].axes.column, (motion::Vec3{4, 5, 6}));
+  EXPECT_EQ(records[0].axes.column, (motion::MachineVector{4, 5, 6}));
   EXPECT_EQ(records[0].program_a, 0.75);
   EXPECT_EQ(records[0].program_b, 0.5);
   EXPECT_EQ(records[1].place.program, 45);

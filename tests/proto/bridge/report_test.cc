@@ -52,8 +52,8 @@ const std::string kFigures =
 
 machine::Box BoxOf(double low, double high) {
   machine::Box box;
-  box.Add(motion::Vec3{low, low + 1, low + 2});
-  box.Add(motion::Vec3{high, high + 1, high + 2});
+  box.Add(motion::MachineVector{low, low + 1, low + 2});
+  box.Add(motion::MachineVector{high, high + 1, high + 2});
   return box;
 }
 

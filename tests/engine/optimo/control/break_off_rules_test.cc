@@ -70,7 +70,7 @@ TEST(BreakOffRules, TheTimeBudgetCutsAMotion) {
   EXPECT_NEAR(ran.parts[0].duration_s(), 3.0, 1e-9);
   // 3 s at 50 mm/s, less half of the ramp.
   EXPECT_NEAR(ran.parts[0].done.travelled, 150.0 - 50.0 * std::sqrt(50.0 / 40000.0), 1e-6);
-  EXPECT_NEAR(ran.end.tip.tip.x, 21.02 + ran.parts[0].done.travelled, 1e-6);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 21.02 + ran.parts[0].done.travelled, 1e-6);
   EXPECT_EQ(ran.outcome.place.step, 4);
 }
 

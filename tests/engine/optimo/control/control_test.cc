@@ -14,11 +14,11 @@ using ::testing::ElementsAre;
 // OPT-2.06, OPT-2.07: what ABSOL and ROBOT coordinates mean; L = 300.
 TEST(Motion, AbsolIsTheTipAndRobotTheColumn) {
   const Ran absol = RunText(std::string(kAbsol) + "MOVE (100.,100.,-400.,0.,1.5708)\n");
-  EXPECT_NEAR(absol.end.tip.tip.x, 100.0, 1e-3);
-  EXPECT_NEAR(absol.end.axes.column.y, -200.0, 0.01);
+  EXPECT_NEAR(absol.end.tip.tip.x(), 100.0, 1e-3);
+  EXPECT_NEAR(absol.end.axes.column.y(), -200.0, 0.01);
   const Ran robot = RunText("COORD ROBOT\nMOVE (100.,100.,-400.,0.,0.)\n");
-  EXPECT_NEAR(robot.end.axes.column.z, -400.0, 1e-9);
-  EXPECT_NEAR(robot.end.tip.tip.z, -700.0, 1e-9);
+  EXPECT_NEAR(robot.end.axes.column.z(), -400.0, 1e-9);
+  EXPECT_NEAR(robot.end.tip.tip.z(), -700.0, 1e-9);
 }
 
 // OPT-2.08: LIN in COORD ROBOT is an error of the MOVE, not of PATH or COORD.
@@ -40,9 +40,9 @@ TEST(Motion, HoleEndsWhereItEntered) {
   const Ran ran = RunText(std::string(kAbsol) +
                           "MOVE (130.,50.,-540.,0.,0.)\nPATH HOLE (25.)\n"
                           "MOVE (100.,50.,-550.,0.,0.)/VIA (100.,50.,-450.,0.,0.)\n");
-  EXPECT_NEAR(ran.end.tip.tip.x, 125.0, 1e-6);
-  EXPECT_NEAR(ran.end.tip.tip.y, 50.0, 1e-6);
-  EXPECT_NEAR(ran.end.tip.tip.z, -550.0, 1e-6);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 125.0, 1e-6);
+  EXPECT_NEAR(ran.end.tip.tip.y(), 50.0, 1e-6);
+  EXPECT_NEAR(ran.end.tip.tip.z(), -550.0, 1e-6);
 }
 
 // OPT-2.35: a computed SPEED out of range is an error of the program, and the old value stays.
@@ -102,7 +102,7 @@ TEST(Motion, NextBehindAPassage) {
   EXPECT_NEAR(next.First("OL[20] 1").at_s, ToSeconds(plain.moves[1].at), 1e-6);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_NEAR(ToSeconds(next.moves[k].at), ToSeconds(plain.moves[k].at), 1e-6) << k;
-    EXPECT_NEAR(motion::Distance(next.moves[k].tip.tip, plain.moves[k].tip.tip), 0.0, 1e-6) << k;
+    EXPECT_NEAR((next.moves[k].tip.tip - plain.moves[k].tip.tip).norm(), 0.0, 1e-6) << k;
   }
 }
 
@@ -121,7 +121,7 @@ TEST(Motion, StopOvertakesAHold) {
     ASSERT_TRUE(ran.Told("halt STOP"));
     EXPECT_NEAR(ran.First("halt STOP").at_s, 3.0 + 2.0 * std::sqrt(50.0 / 40000.0), 1e-6);
     EXPECT_EQ(ran.outcome.kind, machine::OutcomeKind::kCompleted);
-    EXPECT_NEAR(motion::Distance(ran.end.tip.tip, plain.end.tip.tip), 0.0, 1e-9);
+    EXPECT_NEAR((ran.end.tip.tip - plain.end.tip.tip).norm(), 0.0, 1e-9);
   }
 }
 
@@ -148,7 +148,7 @@ TEST(Motion, WhatEndsAChainOfPassages) {
                               "MOVE (600.,1800.,-300.,0.,0.)\nOL[20]=1\n"
                               "MOVE (100.,1800.,-300.,0.,0.)\n");
   ASSERT_EQ(nowhere.moves.size(), 4u);
-  EXPECT_EQ(nowhere.moves[2].tip.tip, (motion::Vec3{600.0, 1800.0, -300.0}));
+  EXPECT_EQ(nowhere.moves[2].tip.tip, (motion::MachineVector{600.0, 1800.0, -300.0}));
   EXPECT_GE(nowhere.moves[2].at, nowhere.moves[1].at);
   EXPECT_EQ(nowhere.Count("E7304"), 1);
   const Ran turn = RunText(there + "MOVE (600.,1500.,-300.,0.5,0.)\n");
@@ -163,7 +163,7 @@ TEST(Motion, FlyBeforeCoordAndBeforeTheEnd) {
   EXPECT_TRUE(RunText(fly + "COORD ABSOL\n").Told("E7304"));
   const Ran end = RunText(fly);
   EXPECT_TRUE(end.Told("E7304"));
-  EXPECT_NEAR(end.end.tip.tip.x, 1100.0, 1e-9);
+  EXPECT_NEAR(end.end.tip.tip.x(), 1100.0, 1e-9);
 }
 
 // OPT-2.54, OPT-2.55: when /TIME runs out the motion is abandoned, the GOSUB made, RETURN goes on
@@ -177,7 +177,7 @@ TEST(Motion, TimeRunsOut) {
               {.variables = {"VI[2]", "VI[3]"}});
   EXPECT_EQ(ran.variables.at("VI[2]"), "5");
   EXPECT_EQ(ran.variables.at("VI[3]"), "6");
-  EXPECT_NEAR(ran.end.tip.tip.x, 1100.0, 5.0);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 1100.0, 5.0);
 }
 
 // OPT-2.57: /START waits; OPT-2.58: /END true from the beginning means no motion.
@@ -188,7 +188,7 @@ TEST(Motion, StartAndEndConditions) {
   const Ran end =
       RunText(std::string(kAbsol) + "MOVE (1000.,1000.,-400.,0.,0.)/END (IL[20])\nVI[2] = 1\n",
               {.inputs = {{At(0.0), InputKind::kLogical, 20, 1.0}}, .variables = {"VI[2]"}});
-  EXPECT_NEAR(end.end.axes.column.x, 21.02, 1e-9);
+  EXPECT_NEAR(end.end.axes.column.x(), 21.02, 1e-9);
   EXPECT_EQ(end.variables.at("VI[2]"), "1");
 }
 
@@ -208,7 +208,7 @@ TEST(Motion, StopAndStartReachTheTarget) {
                           {.inputs = {{At(2.0), InputKind::kStop}, {At(5.0), InputKind::kStart}}});
   EXPECT_EQ(ran.outcome.kind, OutcomeKind::kCompleted);
   EXPECT_TRUE(ran.Told("halt STOP"));
-  EXPECT_NEAR(ran.end.tip.tip.x, 500.0, 1e-9);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 500.0, 1e-9);
 }
 
 // OPT-3.14: ARROW: the shutter opens at the first ON and closes at the end; later only the beam
@@ -322,7 +322,7 @@ TEST(Control, CallOfMissingPrograms) {
 TEST(Control, CallKeepsTheCallersModalValues) {
   const Ran ran = RunText("COORD ABSOL\nCALL 2\nMOVE (10.,20.,-500.,0.,0.)\n",
                           {.programs = {{2, "COORD ROBOT\nSYSDEF (1000.,1000.,0.,0.,0.,0.)\n"}}});
-  EXPECT_NEAR(ran.end.tip.tip.x, 1010.0, 1e-9);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 1010.0, 1e-9);
 }
 
 // OPT-7.13: a program may call itself within four levels; the fifth is 7501.
@@ -374,10 +374,10 @@ TEST(Control, GosubDepthAndStrayReturn) {
 TEST(Control, SysdefRotatesAboutZThenYThenX) {
   const Ran z =
       RunText("COORD ABSOL\nSYSDEF (1000.,1000.,-500.,1.570796,0,0)\nMOVE (10.,0.,0.,0.,0.)\n");
-  EXPECT_NEAR(z.end.tip.tip.y, 1010.0, 1e-4);
+  EXPECT_NEAR(z.end.tip.tip.y(), 1010.0, 1e-4);
   const Ran zx = RunText(
       "COORD ABSOL\nSYSDEF (1000.,1000.,-500.,1.570796,0,1.570796)\nMOVE (0.,10.,0.,0.,0.)\n");
-  EXPECT_NEAR(zx.end.tip.tip.z, -490.0, 1e-4);
+  EXPECT_NEAR(zx.end.tip.tip.z(), -490.0, 1e-4);
 }
 
 // OPT-7.98, OPT-7.101: UPDATE OFF disconnects the images; ON sets the outputs from them.

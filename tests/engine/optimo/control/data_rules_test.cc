@@ -106,10 +106,10 @@ TEST(DataRules, OneWorkOffsetAtATime) {
   const Ran twice = RunText(
       "COORD ABSOL\nSYSDEF (1000.,1000.,-400.,0,0,0)\nSYSDEF (1000.,1000.,-400.,0,0,0)\nMOVE "
       "(10.,20.,0.,0.,0.)\n");
-  EXPECT_NEAR(twice.end.tip.tip.x, 1010.0, kReal);
+  EXPECT_NEAR(twice.end.tip.tip.x(), 1010.0, kReal);
   const Ran none = RunText(
       "COORD ABSOL\nSYSDEF (1000.,1000.,-400.,0,0,0)\nSYSDEF\nMOVE (10.,20.,-100.,0.,0.)\n");
-  EXPECT_NEAR(none.end.tip.tip.x, 10.0, kReal);
+  EXPECT_NEAR(none.end.tip.tip.x(), 10.0, kReal);
 }
 
 // OPT-7.31, OPT-7.32: values may be variables and analogue inputs; they are taken when SYSDEF is
@@ -118,18 +118,18 @@ TEST(DataRules, OffsetValuesAreTakenAtOnce) {
   const Ran ran = RunText(
       "COORD ABSOL\nVR[86]=1000.\nSYSDEF (VR[86],IA[1],-400.,0.,0.,0.)\nVR[86]=5.\nMOVE "
       "(10.,-1000.,0.,0.,0.)\n");
-  EXPECT_NEAR(ran.end.tip.tip.x, 1010.0, kReal);
-  EXPECT_NEAR(ran.end.tip.tip.y, 1201.2, kReal);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 1010.0, kReal);
+  EXPECT_NEAR(ran.end.tip.tip.y(), 1201.2, kReal);
 }
 
 // OPT-7.33, OPT-7.34: ROBOT moves are not shifted, and the head does not turn with the system.
 TEST(DataRules, OffsetsAreForTheTipOnly) {
   const Ran robot = RunText("SYSDEF (100.,100.,0.,0,0,0)\nCOORD ROBOT\nMOVE (0.,0.,0.,0.,0.)\n");
-  EXPECT_NEAR(robot.end.axes.column.x, 0.0, kReal);
+  EXPECT_NEAR(robot.end.axes.column.x(), 0.0, kReal);
   const Ran turned =
       RunText("COORD ABSOL\nSYSDEF (1000.,1000.,-400.,1.5708,0,0)\nMOVE (10.,0.,0.,0.,0.)\n");
   EXPECT_NEAR(turned.end.axes.a_rad, 0.0, 1e-9);
-  EXPECT_NEAR(turned.end.tip.tip.y, 1010.0, 1e-3);
+  EXPECT_NEAR(turned.end.tip.tip.y(), 1010.0, 1e-3);
 }
 
 // OPT-7.33: via point, centre and normal of a hole are shifted as well.
@@ -138,8 +138,8 @@ TEST(DataRules, OffsetsShiftTheHole) {
       "COORD ABSOL\nPATH LIN\nSYSDEF (1000.,1000.,-400.,0,0,0)\nMOVE (130.,50.,10.,0.,0.)\nPATH "
       "HOLE (25.)\n"
       "MOVE (100.,50.,0.,0.,0.)/VIA (100.,50.,100.,0.,0.)\n");
-  EXPECT_NEAR(ran.end.tip.tip.x, 1125.0, kReal);
-  EXPECT_NEAR(ran.end.tip.tip.y, 1050.0, kReal);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 1125.0, kReal);
+  EXPECT_NEAR(ran.end.tip.tip.y(), 1050.0, kReal);
   EXPECT_LT(ran.DistanceTo({1100.0, 1075.0, -400.0}), kReal);
 }
 
@@ -150,7 +150,7 @@ TEST(DataRules, OffsetsStay) {
   const Ran second =
       RunText("GO 47\n", {.programs = {{47, "COORD ABSOL\nMOVE (10.,20.,0.,0.,0.)\n"}},
                           .machine_state = first.machine_state});
-  EXPECT_NEAR(second.end.tip.tip.x, 1010.0, kReal);
+  EXPECT_NEAR(second.end.tip.tip.x(), 1010.0, kReal);
 }
 
 // OPT-7.40: IA stays in machine coordinates.
@@ -171,7 +171,7 @@ TEST(DataRules, ToolOffsetsStay) {
   EXPECT_TRUE(first.parts.empty());
   const Ran second = RunText("COORD ABSOL\nMOVE (100.,97.,-400.,0.,1.570796)\n",
                              {.machine_state = first.machine_state});
-  EXPECT_NEAR(second.end.axes.column.y, 97.0 - 297.0, 1e-2);
+  EXPECT_NEAR(second.end.axes.column.y(), 97.0 - 297.0, 1e-2);
 }
 
 // The state of a machine is read back as it was written; one of the version before is read too.

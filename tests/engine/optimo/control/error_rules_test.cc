@@ -403,7 +403,7 @@ TEST(ErrorRules, EmergencyStop) {
   EXPECT_EQ(ran.Count("beam off"), 1);
   EXPECT_EQ(ran.Count("shutter closed"), 1);
   // 2 s at 50 mm/s, less half of the ramp.
-  EXPECT_NEAR(ran.end.tip.tip.x, 21.02 + 100.0 - 50.0 * std::sqrt(50.0 / 40000.0), 1e-6);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 21.02 + 100.0 - 50.0 * std::sqrt(50.0 / 40000.0), 1e-6);
 }
 
 // OPT-E.7901, OPT-E.7902, OPT-E.7904: what the cell ends: beam off and shutter closed.

@@ -118,7 +118,7 @@ TEST(FlowStates, AHoleOfNextThatEndsOnItsLead) {
             "/NEXT\nDELAY 1\nVR[0]=1/VI[2]\n10 DELAY 0\n" + behind}) {
     const Ran ran = RunText(text, {.inputs = {{At(begin + 1.0), InputKind::kLogical, 20, 1.0}}});
     ASSERT_EQ(ran.moves.size(), 3U) << text;
-    EXPECT_LT(ran.moves[1].tip.tip.x, 1080.0);
+    EXPECT_LT(ran.moves[1].tip.tip.x(), 1080.0);
     EXPECT_EQ(ran.First("OL[16] 1").at_s, ToSeconds(ran.moves[2].at)) << text;
     EXPECT_EQ(ran.First("OL[16] 1").at_s, ran.time_s);
   }

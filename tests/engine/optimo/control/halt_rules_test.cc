@@ -41,7 +41,7 @@ TEST(HaltRules, HoldFinishesTheFirstTargetThatCanBeReached) {
                                                  Key(begin + 30.0, InputKind::kStart)}});
       SCOPED_TRACE(at);
       if (k == 2 && spare < 0.0) {  // the last target is the end of the program
-        EXPECT_NEAR(ran.moves.back().tip.tip.x, 1200.0, 1e-4);
+        EXPECT_NEAR(ran.moves.back().tip.tip.x(), 1200.0, 1e-4);
         continue;
       }
       const int target = spare > 0.0 ? k : k + 1;
@@ -71,7 +71,7 @@ TEST(HaltRules, HoldWhileSpeedingUp) {
       const Ran ran = RunText(text, {.inputs = {Key(begin + one.after_s, InputKind::kHold),
                                                 Key(begin + 30.0, InputKind::kStart)}});
       EXPECT_EQ(ran.First("halt HOLD").step, spare > 0.0 ? 5 : 6) << first;
-      EXPECT_NEAR(ran.moves.back().tip.tip.x, first + 600.0, 1e-4);
+      EXPECT_NEAR(ran.moves.back().tip.tip.x(), first + 600.0, 1e-4);
       ExpectWithinLimits(ran, true, "first target at " + std::to_string(first));
     }
   }
@@ -112,7 +112,7 @@ TEST(HaltRules, EffectsOfPassagesBeforeAHold) {
       EXPECT_NEAR(at, 0.15 + 10.0 * k / 500.0, 1e-6) << k;
     }
   }
-  EXPECT_NEAR(held.moves.back().tip.tip.x, 600.0, 1e-4);
+  EXPECT_NEAR(held.moves.back().tip.tip.x(), 600.0, 1e-4);
   ExpectWithinLimits(held, true, "many short moves");
 }
 
@@ -165,7 +165,7 @@ TEST(HaltRules, HoldInCoordRobotAfterAChangeOfTheOverride) {
       bool passed = false;
       for (const machine::MoveDone& move : ran.moves) {
         const motion::AxisPose& at = move.axes;
-        const double all[] = {at.column.x, at.column.y, at.column.z, at.a_rad, at.b_rad};
+        const double all[] = {at.column.x(), at.column.y(), at.column.z(), at.a_rad, at.b_rad};
         passed =
             passed || std::abs(all[axis.index] - reached) < 1e-6 * std::max(1.0, std::abs(reached));
       }
@@ -194,7 +194,7 @@ TEST(HaltRules, HoldOnACircleAfterAChangeOfTheOverride) {
   const double left = 150.0 * M_PI - 50.0 * (7.0 - 0.5 * ramp) - 37.5 * half - 12.5 * half;
   EXPECT_NEAR(ran.First("halt HOLD").at_s, begin + 7.0 + 2.0 * half + left / 25.0 + kSettle_s,
               5e-3);
-  EXPECT_NEAR(ran.moves.back().tip.tip.x, -100.0, 1e-4);
+  EXPECT_NEAR(ran.moves.back().tip.tip.x(), -100.0, 1e-4);
   ExpectWithinLimits(ran, true, "circle");
 }
 

@@ -27,7 +27,7 @@ void ExpectNoGaps(const Ran& ran) {
     const motion::TipPose from = before.motion.path.At(before.done.travelled);
     const motion::TipPose to = here.motion.path.At(here.done.from);
     if (before.motion.path.in_axes() == here.motion.path.in_axes()) {
-      EXPECT_NEAR(motion::Distance(from.tip, to.tip), 0.0, 1e-6) << k;
+      EXPECT_NEAR((to.tip - from.tip).norm(), 0.0, 1e-6) << k;
     }
     const double gap = ToSeconds(here.done.start - before.done.end);
     EXPECT_TRUE(gap == 0.0 || gap > 1.0) << gap << " s before part " << k;
@@ -60,7 +60,7 @@ TEST(HoldStates, TheWayIsToldWithoutAGap) {
           text, {.inputs = {Key(hold, InputKind::kHold), Key(hold + kGap_s, InputKind::kStart)}});
       SCOPED_TRACE(hold);
       ExpectNoGaps(ran);
-      EXPECT_NEAR(motion::Distance(ran.end.tip.tip, free.end.tip.tip), 0.0, 1e-6);
+      EXPECT_NEAR((free.end.tip.tip - ran.end.tip.tip).norm(), 0.0, 1e-6);
       EXPECT_EQ(ran.moves.size(), free.moves.size());
     }
   }
@@ -122,7 +122,7 @@ TEST(HoldStates, BeforeAReversal) {
                                             Key(begin + kGap_s, InputKind::kStart)}});
   EXPECT_EQ(ran.First("halt HOLD").step, 5);
   EXPECT_NEAR(ran.First("halt HOLD").at_s, begin + 100.0 / 50.0 + RampTime(50.0) + kSettle_s, 1e-6);
-  EXPECT_NEAR(ran.end.tip.tip.y, 1100.0, 1e-4);
+  EXPECT_NEAR(ran.end.tip.tip.y(), 1100.0, 1e-4);
   EXPECT_EQ(ran.parts.size(), RunText(text).parts.size());
   EXPECT_EQ(ran.Count("E7316"), 1);  // the reversal is told all the same
 }
@@ -140,7 +140,7 @@ TEST(HoldStates, InTheBendBeforeAReversal) {
       text, {.inputs = {Key(bend, InputKind::kHold), Key(begin + kGap_s, InputKind::kStart)}});
   EXPECT_EQ(ran.First("halt HOLD").step, 6);
   EXPECT_NEAR(ran.First("halt HOLD").at_s, begin + 4.089999848, 1e-6);  // case C01
-  EXPECT_NEAR(ran.end.tip.tip.x, 1200.0, 1e-4);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 1200.0, 1e-4);
 }
 
 // OPT-4.17, OPT-2.25: a hole is one move: on its lead, which ends in a stop, HOLD finishes the
@@ -158,7 +158,7 @@ TEST(HoldStates, OnTheLeadOfAHole) {
   const double turn = 20.0 * M_PI;
   EXPECT_NEAR(ran.First("halt HOLD").at_s,
               begin + (90.0 + turn) / 50.0 + 2.0 * RampTime(50.0) + kSettle_s, 1e-3);
-  EXPECT_NEAR(ran.end.tip.tip.x, 1000.0, 1e-4);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 1000.0, 1e-4);
 }
 
 }  // namespace

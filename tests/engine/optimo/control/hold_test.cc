@@ -49,7 +49,7 @@ TEST(Hold, HaltsAtTheFirstTarget) {
   EXPECT_NEAR(ran.First("halt HOLD").at_s,
               begin + 100.0 / 50.0 + 2.0 * std::sqrt(50.0 / 40000.0) + 0.048, 1e-6);
   EXPECT_LT(ran.DistanceTo({1100.0, 1000.0, -400.0}), 1e-9);
-  EXPECT_NEAR(ran.end.tip.tip.y, 1200.0, 1e-4);
+  EXPECT_NEAR(ran.end.tip.tip.y(), 1200.0, 1e-4);
 }
 
 // OPT-4.17: inside the bend the next move is finished too.
@@ -88,7 +88,7 @@ TEST(Hold, HaltsOnATargetWhereMovesAreTooShortToBrake) {
   EXPECT_LE(target, 85 + 15 + 8);
   EXPECT_GT(halt.at_s, hold + 0.15);
   EXPECT_LT(halt.at_s, hold + 0.35);
-  EXPECT_NEAR(ran.end.tip.tip.x, 1000.0 + kMoves, 1e-4);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 1000.0 + kMoves, 1e-4);
   double travelled = 0.0;
   for (const Ran::Part& part : ran.parts) {
     if (part.motion.path.kind() == motion::PathPiece::Kind::kLine &&
@@ -110,7 +110,7 @@ TEST(Hold, HaltsOnTheFirstTargetThatCanBeReached) {
   const double begin = BeginOf(text);
   const Ran ran = Held(text, begin + 0.5025, begin + 20.0);
   EXPECT_EQ(ran.First("halt HOLD").step - 4, 101);
-  EXPECT_NEAR(ran.end.tip.tip.x, 1200.0, 1e-4);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 1200.0, 1e-4);
 }
 
 // OPT-4.17: while it still speeds up, it has all the room there is: the first target, in the time
@@ -139,7 +139,7 @@ TEST(Hold, TheRestIsAChainAgain) {
   EXPECT_LT(twice.DistanceTo({1100.0, 1000.0, -400.0}), 1e-9);
   EXPECT_NEAR(twice.DistanceTo({1100.0, 1100.0, -400.0}), kDeviation_mm, 1e-6);
   EXPECT_LT(twice.DistanceTo({1200.0, 1100.0, -400.0}), 1e-9);
-  EXPECT_NEAR(twice.end.tip.tip.y, 1200.0, 1e-4);
+  EXPECT_NEAR(twice.end.tip.tip.y(), 1200.0, 1e-4);
   const Ran slower = RunText(
       kTwoCorners, {.inputs = {{FromSeconds(begin + 1.0), InputKind::kHold},
                                {FromSeconds(begin + 20.0), InputKind::kStart},

@@ -64,7 +64,7 @@ TEST(InterruptionLimits, StopAndStartInABendThatTurnsTheHead) {
                                               {FromSeconds(9.0), InputKind::kStart, 0, 1.0}}});
     const std::string what = "STOP at " + std::to_string(at);
     EXPECT_EQ(ran.outcome.kind, machine::OutcomeKind::kCompleted) << what;
-    EXPECT_NEAR(motion::Distance(ran.end.tip.tip, plain.end.tip.tip), 0.0, 1e-6) << what;
+    EXPECT_NEAR((plain.end.tip.tip - ran.end.tip.tip).norm(), 0.0, 1e-6) << what;
     ExpectWithinLimits(ran, true, what);
   }
 }
@@ -113,7 +113,7 @@ TEST(InterruptionLimits, RandomProgramsKeepThemWhateverComes) {
     }
     const Ran ran = RunText(text, {.inputs = inputs});
     EXPECT_EQ(ran.outcome.kind, machine::OutcomeKind::kCompleted) << what;
-    EXPECT_NEAR(motion::Distance(ran.end.tip.tip, plain.end.tip.tip), 0.0, 1e-6) << what;
+    EXPECT_NEAR((plain.end.tip.tip - ran.end.tip.tip).norm(), 0.0, 1e-6) << what;
     ExpectWithinLimits(ran, !robot, what);
   }
 }

@@ -211,10 +211,10 @@ TEST(LanguageRun, ValuesOfSysdef) {
   const auto tip = [](const std::string& text) {
     return RunText("COORD ABSOL\n" + text + "MOVE (10.,20.,-500.,0.,0.)\n").end.tip.tip;
   };
-  const auto near = [](const motion::Vec3& at, const motion::Vec3& wanted) {
-    EXPECT_NEAR(at.x, wanted.x, 1e-3);
-    EXPECT_NEAR(at.y, wanted.y, 1e-3);
-    EXPECT_NEAR(at.z, wanted.z, 1e-3);
+  const auto near = [](const motion::MachinePoint& at, const motion::MachineVector& wanted) {
+    EXPECT_NEAR(at.x(), wanted.x(), 1e-3);
+    EXPECT_NEAR(at.y(), wanted.y(), 1e-3);
+    EXPECT_NEAR(at.z(), wanted.z(), 1e-3);
   };
   near(tip("SYSDEF (50.8,101.6,0,0,0,0)\n"), {60.8, 121.6, -500.0});
   near(tip("SYSDEF (0,0,30.5,0,0,0)\n"), {10.0, 20.0, -469.5});
@@ -236,8 +236,8 @@ TEST(LanguageRun, SixValuesOfSysdef) {
     }
     const Ran ran = RunText("COORD ABSOL\nSYSDEF (50.,60.,0.,0.,0.,0.)\nERR 9\n" + failing +
                             ")\nENDTASK\n9 MOVE (10.,20.,-500.,0.,0.)\n");
-    EXPECT_NEAR(ran.end.tip.tip.x, 60.0, 1e-4) << failing;
-    EXPECT_NEAR(ran.end.tip.tip.y, 80.0, 1e-4) << failing;
+    EXPECT_NEAR(ran.end.tip.tip.x(), 60.0, 1e-4) << failing;
+    EXPECT_NEAR(ran.end.tip.tip.y(), 80.0, 1e-4) << failing;
     EXPECT_FALSE(RunText(one + ")\n").Told("E7311")) << one;
   }
   EXPECT_TRUE(RunText("SYSDEF (0,0,0,0,0,0)\n").Told("E7311"));
@@ -262,7 +262,7 @@ TEST(LanguageRun, FlyAtAPiercingPoint) {
                    "MOVE (1100.,1000.,-400.,0.,0.)/FLY\n" + between +
                    "MOVE (1100.,1100.,-400.,0.,0.)\nWORK 0,0/OFF\nWORK 1,0/OFF\nWORK 1,1/OFF\n");
   };
-  const motion::Vec3 corner{1100.0, 1000.0, -400.0};
+  const motion::MachinePoint corner{1100.0, 1000.0, -400.0};
   for (const char* flying : {"WORK 0,0/ON\n", "WORK 1,0/ON\n"}) {
     const Ran ran = pierce(flying);
     EXPECT_EQ(ran.Count("E7304"), 0) << flying;

@@ -144,8 +144,8 @@ TEST(MachineRules, EachParameterHasItsPlace) {
 
   const machine::MachineShape shape = OptimoFamily().Shape(p);
   EXPECT_TRUE(shape.five_axis);
-  EXPECT_EQ(shape.travel.min, (motion::Vec3{-41, -42, -43}));
-  EXPECT_EQ(shape.travel.max, (motion::Vec3{51, 52, 53}));
+  EXPECT_EQ(shape.travel.min, (motion::MachineVector{-41, -42, -43}));
+  EXPECT_EQ(shape.travel.max, (motion::MachineVector{51, 52, 53}));
   ASSERT_TRUE(shape.limits.has_value());
   EXPECT_EQ(shape.limits->tip_speed_mm_s, 61);
   EXPECT_EQ(shape.laser_watts, 204);
@@ -360,11 +360,11 @@ TEST(MachineRules, ASuspendedRunKeepsItsSteps) {
   double top = 0.0;
   const SimTime begin = (*run)->state().time;
   for (int k = 0; (*run)->Advance(begin + At(0.1 * k)) == machine::RunPhase::kRunning; ++k) {
-    top = std::max(top, (*run)->state().tip.tip.y);
+    top = std::max(top, (*run)->state().tip.tip.y());
   }
   EXPECT_NEAR(top, 2301.2, 0.1);
-  EXPECT_NEAR((*run)->state().tip.tip.x, 221.02, 1e-4);
-  EXPECT_NEAR((*run)->state().tip.tip.y, 2201.2, 1e-4);
+  EXPECT_NEAR((*run)->state().tip.tip.x(), 221.02, 1e-4);
+  EXPECT_NEAR((*run)->state().tip.tip.y(), 2201.2, 1e-4);
 }
 
 // OPT-6.44, OPT-1.27: in the text of a program a sequence number stays with its instruction when
@@ -384,10 +384,10 @@ TEST(MachineRules, PositionsAreOfTheMachine) {
   const Ran ran = RunText(
       "COORD ABSOL\nSYSDEF (100.,100.,0.,0.5,0.,0.)\nTCP (0.,0.,5./0.,0.,-5.)\nSYSDEF\n"
       "MOVE (100.,200.,-500.,0.,0.)\nSYSDEF (50.,60.,0.,0.,0.,0.)\n");
-  EXPECT_NEAR(ran.end.tip.tip.x, 100.0, 1e-4);
-  EXPECT_NEAR(ran.end.tip.tip.y, 200.0, 1e-4);
-  EXPECT_NEAR(ran.end.tip.tip.z, -500.0, 1e-4);
-  EXPECT_NEAR(ran.end.axes.column.z, -205.0, 1e-4);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 100.0, 1e-4);
+  EXPECT_NEAR(ran.end.tip.tip.y(), 200.0, 1e-4);
+  EXPECT_NEAR(ran.end.tip.tip.z(), -500.0, 1e-4);
+  EXPECT_NEAR(ran.end.axes.column.z(), -205.0, 1e-4);
 }
 
 // OPT-5.20, OPT-2.21: points that were recorded as plain MOVEs run as straight moves, also in CIR.
@@ -413,7 +413,7 @@ TEST(MachineRules, TheRadiusIsThatOfThePathStep) {
   const Ran ran = RunText(
       "COORD ABSOL\nPATH HOLE (5.)\nPATH LIN\nPATH HOLE (12.7)\n"
       "MOVE (121.02,2201.2,-350.,0.,0.)/VIA (121.02,2201.2,-150.,0.,0.)\n");
-  EXPECT_NEAR(ran.end.tip.tip.x, 121.02 - 12.7, 1e-4);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 121.02 - 12.7, 1e-4);
 }
 
 }  // namespace

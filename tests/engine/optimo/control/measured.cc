@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/motion/axes.h"
 #include "engine/motion/kinematics.h"
 #include "engine/motion/machine_limits.h"
 #include "engine/motion/trajectory.h"
@@ -15,7 +16,7 @@ namespace rmlcell::optimo::testing {
 namespace {
 
 struct Where {
-  motion::Vec3 tip;
+  motion::MachinePoint tip;
   std::array<double, 5> axes{};
 };
 
@@ -26,7 +27,7 @@ Where WhereIn(const Ran::Part& part, double time_s) {
   const motion::AxisPose axes =
       joint ? motion::AxisPose{pose.tip, pose.a_rad, pose.b_rad} : part.motion.head.ColumnOf(pose);
   return {joint ? part.motion.head.TipOf(axes).tip : pose.tip,
-          {axes.column.x, axes.column.y, axes.column.z, axes.a_rad, axes.b_rad}};
+          {axes.column.x(), axes.column.y(), axes.column.z(), axes.a_rad, axes.b_rad}};
 }
 
 // The motion under way then, or the last one before: places are walked through in order.
@@ -48,12 +49,12 @@ Measured MeasuredFrom(const Ran& ran, double step_s) {
   for (double t = first; t <= ran.time_s + 2.0 * step_s; t += step_s) {
     const Where here = WhereAt(ran, part, t);
     const double square = step_s * step_s;
-    const double tip = motion::Norm(here.tip - old.tip * 2.0 + older.tip) / square;
+    const double tip = (here.tip - old.tip * 2.0 + older.tip).norm() / square;
     if (tip > found.tip_mm_s2) {
       found.tip_mm_s2 = tip;
       found.tip_at_s = t;
     }
-    for (std::size_t i = 0; i < here.axes.size(); ++i) {
+    for (const std::size_t i : motion::kAxes) {
       const double share = std::abs(here.axes[i] - 2.0 * old.axes[i] + older.axes[i]) / square /
                            machine.axes.acceleration[i];
       if (share > found.axes) {

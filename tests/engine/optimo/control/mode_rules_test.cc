@@ -46,7 +46,7 @@ double RestX(const Ran& ran, double time_s) {
   double x = 21.02;
   for (const Ran::Part& part : ran.parts) {
     if (ToSeconds(part.done.end) > time_s + kExact) break;
-    x = part.motion.path.At(part.done.travelled).tip.x;
+    x = part.motion.path.At(part.done.travelled).tip.x();
   }
   return x;
 }
@@ -56,7 +56,7 @@ TEST(ModeRules, HoldFinishesTheInstruction) {
   const Ran ran = RunText(kFar, {.inputs = {Key(1.0, InputKind::kHold)}});
   EXPECT_NEAR(ran.First("halt HOLD").at_s, kFiveHundred_s, kExact);
   EXPECT_EQ(ran.First("halt HOLD").step, 4);
-  EXPECT_NEAR(ran.end.tip.tip.x, 521.02, kReal_mm);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 521.02, kReal_mm);
   EXPECT_EQ(ran.end.phase, RunPhase::kHalted);
   EXPECT_FALSE(ran.Told("OL[16] 1"));
 }
@@ -109,7 +109,7 @@ TEST(ModeRules, TheEmergencyStopWorksInEveryMode) {
     EXPECT_NEAR(ran.time_s, 2.0, kExact);
     // In SINGLE the MOVE begins at the fourth START.
     const double begin = mode == Mode::kSingle ? 0.4 : 0.0;
-    EXPECT_NEAR(ran.end.tip.tip.x, 21.02 + 50.0 * (2.0 - begin - 0.5 * kRamp_s), kExact);
+    EXPECT_NEAR(ran.end.tip.tip.x(), 21.02 + 50.0 * (2.0 - begin - 0.5 * kRamp_s), kExact);
     ASSERT_GE(ran.told.size(), 2U);
     EXPECT_EQ(ran.told.back(), "shutter closed");
     EXPECT_EQ(ran.told[ran.told.size() - 2], "beam off");
@@ -148,10 +148,10 @@ TEST(ModeRules, StopHaltsAtOnceAndStartFinishesTheInstruction) {
     EXPECT_LT(ran.DistanceTo({271.02, 2201.2, -350.0}), kReal_mm);
     ASSERT_GE(ran.moves.size(), 1U);
     EXPECT_NEAR(ToSeconds(ran.moves[0].at), 9.0 + 250.0 / 50.0 + kRamp_s + kSettle_s, kExact);
-    EXPECT_NEAR(ran.moves[0].tip.tip.x, 521.02, kReal_mm);
+    EXPECT_NEAR(ran.moves[0].tip.tip.x(), 521.02, kReal_mm);
     for (const Ran::Part& part : ran.parts) {
       if (ToSeconds(part.done.end) > 14.5) break;
-      EXPECT_NEAR(part.motion.path.At(part.done.travelled).tip.y, 2201.2, kReal_mm);
+      EXPECT_NEAR(part.motion.path.At(part.done.travelled).tip.y(), 2201.2, kReal_mm);
     }
     if (mode == Mode::kSingle) {
       EXPECT_EQ(ran.First("halt SINGLE").step, 1);
@@ -172,8 +172,8 @@ TEST(ModeRules, StopAndStartOnCurvesKeepThePath) {
   double length = 0.0;
   for (const Ran::Part& part : arc.parts) {
     length += part.done.travelled - part.done.from;
-    const motion::Vec3 at = part.motion.path.At(part.done.travelled).tip;
-    EXPECT_NEAR(std::hypot(at.x - 121.02, at.y - 2201.2), 100.0, 1e-3);
+    const motion::MachinePoint at = part.motion.path.At(part.done.travelled).tip;
+    EXPECT_NEAR(std::hypot(at.x() - 121.02, at.y() - 2201.2), 100.0, 1e-3);
   }
   EXPECT_NEAR(length, quarter, 1e-3);
   EXPECT_NEAR(arc.time_s, 9.0 + (quarter - 75.0) / 50.0 + kRamp_s + kSettle_s,
@@ -215,7 +215,7 @@ TEST(ModeRules, StopBesideANextMove) {
   EXPECT_EQ(ran.First("halt STOP").step, 5);
   EXPECT_NEAR(ran.First("OL[16] 1").at_s, 5.0 + 3.0 - kRamp_s, kExact);
   EXPECT_NEAR(ran.time_s, 5.0 + 450.0 / 50.0 + kRamp_s + kSettle_s, kExact);
-  EXPECT_NEAR(ran.end.tip.tip.x, 521.02, kReal_mm);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 521.02, kReal_mm);
 }
 
 // OPT-4.18, OPT-2.44: STOP in a chain: the corner keeps its shape (C01: 1.358847515 mm), stopped
@@ -230,7 +230,7 @@ TEST(ModeRules, StopInAChainKeepsTheCorner) {
     EXPECT_EQ(ran.outcome.kind, OutcomeKind::kCompleted);
     EXPECT_NEAR(ran.First("halt STOP").at_s, at + kRamp_s, 1e-3);
     EXPECT_NEAR(ran.DistanceTo({121.02, 2201.2, -350.0}), 1.358847515, 1e-4);
-    EXPECT_NEAR(ran.moves.back().tip.tip.y, 2301.2, kReal_mm);
+    EXPECT_NEAR(ran.moves.back().tip.tip.y(), 2301.2, kReal_mm);
   }
 }
 
@@ -387,7 +387,7 @@ TEST(ModeRules, InSingleEveryTargetIsReached) {
 // case C01 shrinks with the power 1.5 of the speed (motion.md 4.3).
 TEST(ModeRules, InCycleTheBendHangsOnTheOverride) {
   const std::string text = kAlongX + MoveTo(121.02, "/FLY") + "MOVE (121.02,2301.2,-350.,0.,0.)\n";
-  const motion::Vec3 corner{121.02, 2201.2, -350.0};
+  const motion::MachinePoint corner{121.02, 2201.2, -350.0};
   EXPECT_NEAR(RunText(text).DistanceTo(corner), 1.358847515, kReal_mm);
   EXPECT_NEAR(RunText(text, {.override_percent = 10.0}).DistanceTo(corner),
               1.358847515 * std::pow(0.1, 1.5), kReal_mm);
@@ -398,7 +398,7 @@ TEST(ModeRules, InCycleTheBendHangsOnTheOverride) {
 TEST(ModeRules, ABreakpointCancelsThePassage) {
   const std::string text =
       kAlongX + MoveTo(121.02, "/FLY") + "OL[16]=ON\n" + "MOVE (121.02,2301.2,-350.,0.,0.)\n";
-  const motion::Vec3 corner{121.02, 2201.2, -350.0};
+  const motion::MachinePoint corner{121.02, 2201.2, -350.0};
   RunOptions options{.inputs = {Key(9.0, InputKind::kStart)}};
   options.breakpoint = machine::ProgramStep{.program = 1, .step = 4};
   const Ran here = RunText(text, options);

@@ -16,14 +16,14 @@ using machine::InputKind;
 constexpr double kCycle_s = 0.048;
 constexpr double kReal_mm = 1e-4;  // literals have seven digits (OPT-B.37)
 // The tip at home, with the head pointing down, is 300 mm below the column.
-constexpr motion::Vec3 kHomeTip{21.02, 2201.2, -350.0};
+const motion::MachinePoint kHomeTip{21.02, 2201.2, -350.0};
 
 // OPT-2.05: five absolute coordinates in the active system.
 TEST(MotionRules, AMoveEndsAtItsFiveCoordinates) {
   const Ran ran = RunText("COORD ABSOL\nMOVE (1200, 170.5, -118.3, 0.5, 0.12)\n");
-  EXPECT_NEAR(ran.end.tip.tip.x, 1200.0, 1e-3);
-  EXPECT_NEAR(ran.end.tip.tip.y, 170.5, 1e-3);
-  EXPECT_NEAR(ran.end.tip.tip.z, -118.3, 1e-3);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 1200.0, 1e-3);
+  EXPECT_NEAR(ran.end.tip.tip.y(), 170.5, 1e-3);
+  EXPECT_NEAR(ran.end.tip.tip.z(), -118.3, 1e-3);
   EXPECT_NEAR(ran.end.axes.a_rad, 0.5, 1e-6);
   EXPECT_NEAR(ran.end.axes.b_rad, 0.12, 1e-6);
 }
@@ -34,7 +34,7 @@ TEST(MotionRules, AProgramBeginsWithTheDefaults) {
   const Ran ran = RunText("MOVE (371.02, 2201.2, -50., 0., 0.)\n");
   ASSERT_EQ(ran.moves.size(), 1U);
   EXPECT_EQ(ran.moves[0].path, "PTP");
-  EXPECT_NEAR(ran.end.axes.column.x, 371.02, kReal_mm);
+  EXPECT_NEAR(ran.end.axes.column.x(), 371.02, kReal_mm);
   EXPECT_NEAR(ran.time_s, 350.0 / 350.0 + 350.0 / 2000.0 + 2000.0 / 40000.0 + kSettle_s, 1e-6);
 }
 
@@ -44,7 +44,7 @@ TEST(MotionRules, TheCustomerProfileBeginsInAbsolLin) {
   const Ran ran = RunText("MOVE (721.02, 2201.2, -350., 0., 0.)\n", {.profile = "pw-1993"});
   ASSERT_EQ(ran.moves.size(), 1U);
   EXPECT_EQ(ran.moves[0].path, "LIN");
-  EXPECT_NEAR(ran.end.tip.tip.x, 721.02, kReal_mm);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 721.02, kReal_mm);
   EXPECT_NEAR(ran.time_s, 700.0 / 350.0 + 350.0 / 2000.0 + 2000.0 / 40000.0 + kSettle_s, 1e-6);
 }
 
@@ -86,9 +86,9 @@ TEST(MotionRules, AHoleIsALineAStopAndATurn) {
   EXPECT_EQ(centre.parts[1].done.end, centre.parts[2].done.start);
 
   const Ran above = RunText(kAbsol + "SPEED 50\nMOVE (1203.,1120.,-250.,0.,0.)\n" + hole);
-  EXPECT_NEAR(above.end.tip.tip.x, 1212.7, kReal_mm);
-  EXPECT_NEAR(above.end.tip.tip.y, 1120.0, kReal_mm);
-  EXPECT_NEAR(above.end.tip.tip.z, -350.0, kReal_mm);
+  EXPECT_NEAR(above.end.tip.tip.x(), 1212.7, kReal_mm);
+  EXPECT_NEAR(above.end.tip.tip.y(), 1120.0, kReal_mm);
+  EXPECT_NEAR(above.end.tip.tip.z(), -350.0, kReal_mm);
 }
 
 // OPT-2.30: PATH LIN takes no notice of /VIA: the point 50 mm beside the line stays 50 mm away.
@@ -137,11 +137,11 @@ TEST(MotionRules, AMoveTakesOverFromNext) {
   EXPECT_EQ(CodeOf(ran), 0);
   ASSERT_EQ(ran.moves.size(), 2U);
   // Below 50 mm/s the whole time, braking included: less than 0.048 s and one ramp.
-  EXPECT_GT(ran.moves[0].tip.tip.x, kHomeTip.x);
-  EXPECT_LT(ran.moves[0].tip.tip.x,
-            kHomeTip.x + 50.0 * (kCycle_s + 2.0 * std::sqrt(50.0 / 40000.0)));
-  EXPECT_NEAR(ran.end.tip.tip.y, 2101.2, kReal_mm);
-  EXPECT_NEAR(ran.end.tip.tip.x, 21.02, kReal_mm);
+  EXPECT_GT(ran.moves[0].tip.tip.x(), kHomeTip.x());
+  EXPECT_LT(ran.moves[0].tip.tip.x(),
+            kHomeTip.x() + 50.0 * (kCycle_s + 2.0 * std::sqrt(50.0 / 40000.0)));
+  EXPECT_NEAR(ran.end.tip.tip.y(), 2101.2, kReal_mm);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 21.02, kReal_mm);
 }
 
 // OPT-2.59, motion.md 6: the take-over is at the next tick, whatever happens before it. The MOVE is
@@ -154,7 +154,7 @@ TEST(MotionRules, AnInputDoesNotHastenTheTakeOver) {
   ASSERT_EQ(ran.moves.size(), 2U);
   // The ramp to 50 mm/s costs 50 mm/s x half of 2 sqrt(50/40000) s, and the brake gives as much
   // back.
-  EXPECT_NEAR(ran.moves[0].tip.tip.x, kHomeTip.x + 50.0 * 0.528, 1e-6);
+  EXPECT_NEAR(ran.moves[0].tip.tip.x(), kHomeTip.x() + 50.0 * 0.528, 1e-6);
   EXPECT_NEAR(ToSeconds(ran.moves[0].at), 0.528 + 2.0 * std::sqrt(50.0 / 40000.0), 1e-6);
 }
 
@@ -171,7 +171,7 @@ TEST(MotionRules, AMoveThatTookOverIsWaitedFor) {
   EXPECT_EQ(CodeOf(ran), 0);
   EXPECT_EQ(ran.variables.at("VL[0]"), "0");
   EXPECT_EQ(ran.variables.at("VL[1]"), "0");
-  EXPECT_NEAR(ran.end.tip.tip.y, 2101.2, kReal_mm);
+  EXPECT_NEAR(ran.end.tip.tip.y(), 2101.2, kReal_mm);
 }
 
 // OPT-2.60, OPT-B.89: CALL, and the end of the program, wait for the end of a /NEXT move.
@@ -180,7 +180,7 @@ TEST(MotionRules, CallWaitsForTheNextMove) {
                           {.programs = {{46, "VR[0] = IA[0]\n"}}, .variables = {"VR[0]"}});
   EXPECT_NEAR(std::stod(ran.variables.at("VR[0]")), 521.02, kReal_mm);
   const Ran end = RunText("MOVE (521.02,2201.2,-50.,0.,0.)/NEXT\n");
-  EXPECT_NEAR(end.end.axes.column.x, 521.02, kReal_mm);
+  EXPECT_NEAR(end.end.axes.column.x(), 521.02, kReal_mm);
 }
 
 // OPT-7.68, OPT-7.69: IL[95] is 1 from the first instant of a motion; OA[0] is mm/s times the
@@ -204,7 +204,7 @@ TEST(MotionRules, SpeedAndMotionFlagCanBeRead) {
 TEST(MotionRules, EndIsSeenAtTheNextTick) {
   const Ran ran = RunText(kAbsol + "SPEED 10\nMOVE (321.02,2201.2,-350.,0.,0.)/END (IL[20])\n",
                           {.inputs = {{At(1.0), InputKind::kLogical, 20, 1.0}}});
-  EXPECT_NEAR(ran.end.tip.tip.x, kHomeTip.x + 50.4, 1e-6);
+  EXPECT_NEAR(ran.end.tip.tip.x(), kHomeTip.x() + 50.4, 1e-6);
   EXPECT_NEAR(ran.time_s, 1.078710678, 1e-6);
 }
 
@@ -217,7 +217,7 @@ TEST(MotionRules, EndStopsAHoleWhereItIs) {
                   "MOVE (221.02,2201.2,-350.,0.,0.)/VIA (221.02,2201.2,-150.,0.,0.)/END "
                   "(IL[20])\nVI[2] = 1\n",
               {.inputs = {{At(1.0), InputKind::kLogical, 20, 1.0}}, .variables = {"VI[2]"}});
-  EXPECT_NEAR(ran.end.tip.tip.x, kHomeTip.x + 50.4, 1e-6);
+  EXPECT_NEAR(ran.end.tip.tip.x(), kHomeTip.x() + 50.4, 1e-6);
   EXPECT_EQ(ran.variables.at("VI[2]"), "1");
 }
 
@@ -228,8 +228,8 @@ TEST(MotionRules, EndCancelsThePassage) {
                   "SPEED 10\nMOVE (321.02,2201.2,-350.,0.,0.)/FLY/END (IL[20])\nVR[0] = IA[0]\n"
                   "MOVE (321.02,2101.2,-350.,0.,0.)\n",
               {.inputs = {{At(1.0), InputKind::kLogical, 20, 1.0}}, .variables = {"VR[0]"}});
-  EXPECT_NEAR(std::stod(ran.variables.at("VR[0]")), kHomeTip.x + 50.4, kReal_mm);
-  EXPECT_NEAR(ran.end.tip.tip.y, 2101.2, kReal_mm);
+  EXPECT_NEAR(std::stod(ran.variables.at("VR[0]")), kHomeTip.x() + 50.4, kReal_mm);
+  EXPECT_NEAR(ran.end.tip.tip.y(), 2101.2, kReal_mm);
 }
 
 // OPT-B.32, OPT-2.55: the time of /TIME counts the wait for /START; no motion is made, the GOSUB
@@ -256,7 +256,7 @@ TEST(MotionRules, TimeOfANextMoveRunsOut) {
           "VI[3] = VI[2]\nENDTASK\n900 VI[2] = VI[2] + 1\nRETURN\n",
       {.variables = {"VI[3]"}});
   EXPECT_EQ(ran.variables.at("VI[3]"), "1");
-  EXPECT_NEAR(ran.end.tip.tip.x, kHomeTip.x + 100.8, 1e-6);
+  EXPECT_NEAR(ran.end.tip.tip.x(), kHomeTip.x() + 100.8, 1e-6);
 }
 
 // OPT-2.58: the condition of a /NEXT move is its own, whatever module runs meanwhile.
@@ -265,7 +265,7 @@ TEST(MotionRules, EndOfANextMoveIsWatchedInsideAFunction) {
       kAbsol +
           "SPEED 10\nVL[3] = OFF\nMOVE (521.02,2201.2,-350.,0.,0.)/NEXT/END (VL[3])\nFUNCTION 44\n",
       {.programs = {{44, "DELAY 1.\nVL[3] = ON\nDELAY 1.\n"}}});
-  EXPECT_NEAR(ran.end.tip.tip.x, kHomeTip.x + 50.4, 1e-6);
+  EXPECT_NEAR(ran.end.tip.tip.x(), kHomeTip.x() + 50.4, 1e-6);
 }
 
 // OPT-B.33: /START with /NEXT: the program waits for the condition, then motion and program go on
@@ -276,7 +276,7 @@ TEST(MotionRules, StartWithNextWaitsForTheCondition) {
       {.inputs = {{At(2.0), InputKind::kLogical, 21, 1.0}}, .variables = {"VL[0]"}});
   EXPECT_EQ(ran.variables.at("VL[0]"), "1");
   EXPECT_NEAR(ran.First("OL[16] 1").at_s, 2.0, 1e-9);
-  EXPECT_NEAR(ran.end.tip.tip.x, 1000.0, kReal_mm);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 1000.0, kReal_mm);
 }
 
 // OPT-B.34: one beam-off and one beam-on for a STOP and START while cutting; the shutter stays
@@ -318,11 +318,11 @@ TEST(MotionRules, ZeroEndsAtTheMechanicalZero) {
   EXPECT_THAT(ran.variables, ::testing::Each(::testing::Pair(::testing::_, "0.0")));
   ASSERT_EQ(ran.parts.size(), 4U);
   const motion::TipPose after_z = ran.parts[1].motion.path.to();
-  EXPECT_NEAR(after_z.tip.z, 0.0, 1e-9);
-  EXPECT_NEAR(after_z.tip.x, 500.0, 1e-9);
+  EXPECT_NEAR(after_z.tip.z(), 0.0, 1e-9);
+  EXPECT_NEAR(after_z.tip.x(), 500.0, 1e-9);
   EXPECT_NEAR(after_z.a_rad, 1.0, 1e-6);
   const motion::TipPose after_head = ran.parts[2].motion.path.to();
-  EXPECT_NEAR(after_head.tip.x, 500.0, 1e-9);
+  EXPECT_NEAR(after_head.tip.x(), 500.0, 1e-9);
   EXPECT_NEAR(after_head.a_rad, 0.0, 1e-9);
 }
 
@@ -338,15 +338,15 @@ TEST(MotionRules, ZeroIsTold) {
     EXPECT_EQ(ran.moves[n].at, ran.parts[n].done.end);
   }
   EXPECT_EQ(ran.moves[1].path, "ZERO_Z");
-  EXPECT_NEAR(ran.moves[1].axes.column.z, 0.0, 1e-9);
-  EXPECT_NEAR(ran.moves[1].axes.column.x, 500.0, 1e-9);
+  EXPECT_NEAR(ran.moves[1].axes.column.z(), 0.0, 1e-9);
+  EXPECT_NEAR(ran.moves[1].axes.column.x(), 500.0, 1e-9);
   EXPECT_NEAR(ran.moves[1].axes.a_rad, 1.0, 1e-6);
   EXPECT_EQ(ran.moves[2].path, "ZERO_AB");
   EXPECT_NEAR(ran.moves[2].axes.a_rad, 0.0, 1e-9);
-  EXPECT_NEAR(ran.moves[2].axes.column.x, 500.0, 1e-9);
+  EXPECT_NEAR(ran.moves[2].axes.column.x(), 500.0, 1e-9);
   EXPECT_EQ(ran.moves[3].path, "ZERO_XY");
-  EXPECT_NEAR(ran.moves[3].axes.column.x, 0.0, 1e-9);
-  EXPECT_NEAR(ran.moves[3].axes.column.y, 0.0, 1e-9);
+  EXPECT_NEAR(ran.moves[3].axes.column.x(), 0.0, 1e-9);
+  EXPECT_NEAR(ran.moves[3].axes.column.y(), 0.0, 1e-9);
 }
 
 // OPT-4.49: a machine that stands at its zero finds it again, without a motion.
@@ -401,7 +401,7 @@ TEST(MotionRules, StopWhileSettling) {
   const Ran ran = RunText(kAbsol + "SPEED 10\nMOVE (121.02,2201.2,-350.,0.,0.)\nOL[16]=ON\n",
                           {.inputs = {{At(settled - 0.02), InputKind::kStop}}});
   EXPECT_EQ(ran.Count("halt STOP"), 1);
-  EXPECT_NEAR(ran.end.tip.tip.x, 121.02, kReal_mm);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 121.02, kReal_mm);
   EXPECT_FALSE(ran.Told("OL[16] 1"));
 }
 
@@ -416,7 +416,7 @@ TEST(MotionRules, TimeEndsWithItsMove) {
                           {At(10.0), InputKind::kLogical, 20, 1.0}},
                .variables = {"VI[2]"}});
   EXPECT_EQ(ran.variables.at("VI[2]"), "0");
-  EXPECT_NEAR(ran.end.tip.tip.x, 221.02, kReal_mm);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 221.02, kReal_mm);
   EXPECT_GT(ran.time_s, 12.0);
 }
 
@@ -437,7 +437,7 @@ TEST(MotionRules, AMoveOnTheSpotIsOver) {
             {.inputs = {{At(6.0), InputKind::kLogical, 20, 1.0}}, .variables = {"VI[2]", "VL[1]"}});
         EXPECT_EQ(ran.variables.at("VI[2]"), "0") << path << before << how;
         EXPECT_EQ(ran.variables.at("VL[1]"), "0") << path << before << how;
-        EXPECT_NEAR(ran.end.tip.tip.x, 221.0, kReal_mm) << path << before << how;
+        EXPECT_NEAR(ran.end.tip.tip.x(), 221.0, kReal_mm) << path << before << how;
         EXPECT_GT(ran.time_s, 8.0) << path << before << how;
       }
     }
@@ -448,7 +448,7 @@ TEST(MotionRules, AMoveOnTheSpotIsOver) {
 TEST(MotionRules, AnInputOfTheTickIsSeenAtIt) {
   const Ran ran = RunText(kAbsol + "SPEED 10\nMOVE (321.02,2201.2,-350.,0.,0.)/END (IL[20])\n",
                           {.inputs = {{At(1.008), InputKind::kLogical, 20, 1.0}}});
-  EXPECT_NEAR(ran.end.tip.tip.x, kHomeTip.x + 50.4, 1e-6);
+  EXPECT_NEAR(ran.end.tip.tip.x(), kHomeTip.x() + 50.4, 1e-6);
 }
 
 // OPT-3.45, OPT-3.49: a wait without beam is told without power, and so is a halt.

@@ -22,7 +22,7 @@ const RunOptions kReadBoth{.variables = {"VI[2]", "VI[3]", "VI[4]"}};
 void ExpectNoMotion(const Ran& ran) {
   EXPECT_EQ(ran.outcome.kind, OutcomeKind::kCompleted);
   EXPECT_TRUE(ran.parts.empty());
-  EXPECT_EQ(ran.end.tip.tip.x, 21.02);
+  EXPECT_EQ(ran.end.tip.tip.x(), 21.02);
 }
 
 // OPT-B.22, OPT-2.54, OPT-2.55: nothing moves, the GOSUB is made when the time is over, and RETURN
@@ -68,7 +68,7 @@ TEST(NoMotionRules, WithoutATimeItIsAnError) {
       "MOVE (221.02,2201.2,-350.,0.,0.)\n");
   EXPECT_EQ(CodeOf(chain), 7307);
   EXPECT_EQ(chain.outcome.place.step, 5);
-  EXPECT_NEAR(chain.end.tip.tip.x, 121.02, 1e-4);
+  EXPECT_NEAR(chain.end.tip.tip.x(), 121.02, 1e-4);
 }
 
 // OPT-2.58, OPT-B.30: /END ends it where it stands, at a tick of its own clock; no GOSUB then.
@@ -101,7 +101,7 @@ TEST(NoMotionRules, TheNextMoveTakesOver) {
       Standing("/TIME (2.,900)/NEXT", "SPEED 10\nMOVE (121.02,2201.2,-350.,0,0)\nDELAY 5\n"),
       kReadBoth);
   EXPECT_EQ(ran.outcome.kind, OutcomeKind::kCompleted);
-  EXPECT_NEAR(ran.end.tip.tip.x, 121.02, 1e-4);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 121.02, 1e-4);
   EXPECT_EQ(ran.variables.at("VI[3]"), "0");
 }
 
@@ -113,7 +113,7 @@ TEST(NoMotionRules, BehindAFlyMove) {
       kReadBoth);
   EXPECT_EQ(ran.outcome.kind, OutcomeKind::kCompleted);
   EXPECT_TRUE(ran.Told("E7304"));
-  EXPECT_NEAR(ran.end.tip.tip.x, 121.02, 1e-4);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 121.02, 1e-4);
   EXPECT_EQ(ran.variables.at("VI[3]"), "1");
   ASSERT_EQ(ran.parts.size(), 1U);
   EXPECT_NEAR(ran.time_s, ToSeconds(ran.parts[0].done.end) + 1.008, 1e-9);

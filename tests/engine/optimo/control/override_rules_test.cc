@@ -26,8 +26,8 @@ const std::string kChain =
     "MOVE (321.02,2201.2,-350.,0.,0.)/FLY\n"
     "MOVE (321.02,1901.2,-350.,0.,0.)/FLY\n"
     "MOVE (621.02,1901.2,-350.,0.,0.)\n";
-constexpr motion::Vec3 kFirst{321.02, 2201.2, -350.0};
-constexpr motion::Vec3 kSecond{321.02, 1901.2, -350.0};
+const motion::MachineVector kFirst{321.02, 2201.2, -350.0};
+const motion::MachineVector kSecond{321.02, 1901.2, -350.0};
 
 Ran ChangedAt(double time_s, double percent, const std::string& text = kChain) {
   return RunText(text, {.inputs = {{FromSeconds(time_s), InputKind::kOverride, 0, percent}}});
@@ -46,7 +46,7 @@ void ExpectSmooth(const Ran& ran) {
     const Ran::Part& here = ran.parts[k];
     const motion::TipPose from = before.motion.path.At(before.done.travelled);
     const motion::TipPose to = here.motion.path.At(here.done.from);
-    EXPECT_NEAR(motion::Distance(from.tip, to.tip), 0.0, 1e-6) << k;
+    EXPECT_NEAR((from.tip - to.tip).norm(), 0.0, 1e-6) << k;
     EXPECT_NEAR(before.SpeedAt(before.duration_s()), here.SpeedAt(0.0), 1e-3) << k;
   }
 }
@@ -147,7 +147,7 @@ TEST(OverrideRules, AnyChangeAtAnyTimeIsSmooth) {
                       {FromSeconds(first + 0.07), InputKind::kOverride, 0, 145.0 - percent}}});
       SCOPED_TRACE(first);
       EXPECT_EQ(ran.outcome.kind, machine::OutcomeKind::kCompleted);
-      EXPECT_NEAR(motion::Distance(ran.end.tip.tip, plain.end.tip.tip), 0.0, 1e-6);
+      EXPECT_NEAR((ran.end.tip.tip - plain.end.tip.tip).norm(), 0.0, 1e-6);
       ExpectSmooth(ran);
     }
   }

@@ -25,9 +25,9 @@ const std::string kCorners =
     kThere +
     "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nMOVE (1100.,1100.,-400.,0.,0.)/FLY\n"
     "MOVE (1200.,1100.,-400.,0.,0.)/FLY\nMOVE (1200.,1200.,-400.,0.,0.)\n";
-constexpr motion::Vec3 kFirst{1100.0, 1000.0, -400.0};
-constexpr motion::Vec3 kSecond{1100.0, 1100.0, -400.0};
-constexpr motion::Vec3 kThird{1200.0, 1100.0, -400.0};
+const motion::MachineVector kFirst{1100.0, 1000.0, -400.0};
+const motion::MachineVector kSecond{1100.0, 1100.0, -400.0};
+const motion::MachineVector kThird{1200.0, 1100.0, -400.0};
 constexpr double kAt25_mm = 0.480425146;
 const double kLeg_s = 100.0 / 50.0 + RampTime(50.0) + kSettle_s;
 
@@ -91,7 +91,7 @@ TEST(OverrideStates, TheRampOfEndIsNotChanged) {
                                               Input(2.03, InputKind::kOverride, percent)}});
     ASSERT_EQ(ran.moves.size(), 1U);
     EXPECT_NEAR(ToSeconds(ran.moves[0].at), 2.016 + RampTime(50.0), 1e-6) << percent;
-    EXPECT_NEAR(ran.moves[0].tip.tip.x, 21.02 + 50.0 * 2.016, 1e-6) << percent;
+    EXPECT_NEAR(ran.moves[0].tip.tip.x(), 21.02 + 50.0 * 2.016, 1e-6) << percent;
   }
 }
 

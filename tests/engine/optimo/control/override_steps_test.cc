@@ -143,7 +143,7 @@ TEST(OverrideSteps, ItActsOnPointToPoint) {
     const double left =
         500.0 - 50.0 * (5.0 - 0.5 * RampTime(50.0)) - 38.75 * ramp - 0.5 * 27.5 * RampTime(27.5);
     EXPECT_NEAR(ran.time_s, 5.0 + ramp + left / 27.5 + RampTime(27.5) + kSettle_s, 1e-4) << path;
-    EXPECT_NEAR(ran.end.tip.tip.x, 521.02, 1e-4);
+    EXPECT_NEAR(ran.end.tip.tip.x(), 521.02, 1e-4);
   }
 }
 

@@ -152,9 +152,8 @@ TEST(ParameterRanges, PartsAreFoundOnTheirMoves) {
       EXPECT_NEAR(place->scale, 1.0, 1e-9);
       const motion::PathPiece rest = RestOfMove(move, *place, 0.01 * length);
       EXPECT_NEAR(rest.length(), (0.99 - begin) * length, 1e-9 * length);
-      EXPECT_NEAR(motion::Distance(rest.to().tip, move.to().tip), 0.0, 1e-9);
-      EXPECT_NEAR(motion::Distance(rest.from().tip, move.At((begin + 0.01) * length).tip), 0.0,
-                  1e-6);
+      EXPECT_NEAR((move.to().tip - rest.to().tip).norm(), 0.0, 1e-9);
+      EXPECT_NEAR((move.At((begin + 0.01) * length).tip - rest.from().tip).norm(), 0.0, 1e-6);
       if (!move.in_axes()) continue;
       // The same part, measured by twice as much.
       part.MeasureBy(2.0 * part.length());
@@ -164,8 +163,7 @@ TEST(ParameterRanges, PartsAreFoundOnTheirMoves) {
       EXPECT_NEAR(measured->scale, 0.5, 1e-9);
       const motion::PathPiece half = RestOfMove(move, *measured, 0.02 * length);
       EXPECT_NEAR(half.length(), 2.0 * (0.99 - begin) * length, 1e-9 * length);
-      EXPECT_NEAR(motion::Distance(half.from().tip, move.At((begin + 0.01) * length).tip), 0.0,
-                  1e-6);
+      EXPECT_NEAR((move.At((begin + 0.01) * length).tip - half.from().tip).norm(), 0.0, 1e-6);
     }
   }
   // Of another kind, or of no length: there is no such place.

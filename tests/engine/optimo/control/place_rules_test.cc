@@ -79,7 +79,7 @@ TEST(PlaceRules, StopHaltsAtTheMoveUnderWay) {
   EXPECT_THAT(ran.First("OL[16] 1"), IsAt(1, 9));
   EXPECT_EQ(ran.outcome.kind, machine::OutcomeKind::kCompleted);
   EXPECT_EQ(ran.Count("beam on 100.0"), 2);
-  EXPECT_NEAR(ran.moves.back().tip.tip.x, 321.02, 1e-4);
+  EXPECT_NEAR(ran.moves.back().tip.tip.x(), 321.02, 1e-4);
 }
 
 // OPT-3.17: a door opened during a chain takes beam and shutter at the move under way.

@@ -49,9 +49,9 @@ TEST(RunInterface, TheStateIsThatOfTheMoment) {
   EXPECT_EQ(state.place.program, 1);
   EXPECT_EQ(state.place.step, 5);
   EXPECT_EQ(state.instruction, "MOVE");
-  EXPECT_NEAR(state.tip.tip.x, 21.02 + 27.5 * (2.0 - 0.5 * ramp_s), 1e-6);
-  EXPECT_NEAR(state.axes.column.x, state.tip.tip.x, 1e-9);
-  EXPECT_NEAR(state.axes.column.z, -50.0, 1e-9);
+  EXPECT_NEAR(state.tip.tip.x(), 21.02 + 27.5 * (2.0 - 0.5 * ramp_s), 1e-6);
+  EXPECT_NEAR(state.axes.column.x(), state.tip.tip.x(), 1e-9);
+  EXPECT_NEAR(state.axes.column.z(), -50.0, 1e-9);
   EXPECT_NEAR(state.tip_speed_mm_s, 27.5, 1e-9);
   EXPECT_EQ(state.override_percent, 55.0);
   EXPECT_TRUE(state.beam_on);
@@ -184,7 +184,7 @@ TEST(RunInterface, WhatACommentLetsPass) {
 TEST(RunInterface, WholeCycles) {
   const Ran ran = RunText(
       "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (521.02,2201.2,-350.,0.,0.)/TIME (6.,900)\nENDTASK\n900 RETURN\n");
-  EXPECT_NEAR(ran.end.tip.tip.x, 21.02 + 300.0, 1e-6);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 21.02 + 300.0, 1e-6);
   EXPECT_NEAR(ran.time_s, 6.0 + 2.0 * std::sqrt(50.0 / 40000.0), 1e-6);
   const Ran timer = RunText("TIMER (6.,900)\nDELAY 6\nVI[2]=VI[3]\nENDTASK\n900 VI[3]=1\nRETURN\n",
                             {.variables = {"VI[2]"}});

@@ -138,7 +138,7 @@ const Diagnostic& Ran::Finding(int code) const {
   return none;
 }
 
-double Ran::DistanceTo(const motion::Vec3& point) const {
+double Ran::DistanceTo(const motion::MachinePoint& point) const {
   constexpr int kSamples = 512;  // of a part; the best of them is refined by thirds
   constexpr int kThirds = 80;
   double best = HUGE_VAL;
@@ -148,7 +148,7 @@ double Ran::DistanceTo(const motion::Vec3& point) const {
       const bool joint = part.motion.path.in_axes();
       const motion::TipPose tip =
           joint ? part.motion.head.TipOf({pose.tip, pose.a_rad, pose.b_rad}) : pose;
-      return motion::Norm(tip.tip - point);
+      return (tip.tip - point).norm();
     };
     const double from = part.done.from;
     const double step = (part.done.travelled - from) / kSamples;

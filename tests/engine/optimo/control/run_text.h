@@ -49,8 +49,9 @@ struct Ran {
   // Preconditions: it was told.
   const Event& First(const std::string& what) const;
   const Diagnostic& Finding(int code) const;
-  double DistanceTo(const motion::Vec3& point) const;  // of the tip path, where it comes nearest
-  double BeamOnLength() const;                         // mm of tip path with the beam on
+  double DistanceTo(
+      const motion::MachinePoint& point) const;  // of the tip path, where it comes nearest
+  double BeamOnLength() const;                   // mm of tip path with the beam on
 };
 
 struct RunOptions {

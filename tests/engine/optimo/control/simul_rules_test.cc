@@ -17,7 +17,7 @@ using ::testing::ElementsAre;
 using ::testing::UnorderedElementsAre;
 
 // The tip where a new machine stands: home, the head 300 mm long and straight down. OPT-B.02
-const motion::Vec3 kHomeTip{21.02, 2201.2, -350.0};
+const motion::MachinePoint kHomeTip{21.02, 2201.2, -350.0};
 
 ProgramStep Step(int step, int program = 1) { return {.program = program, .step = step}; }
 
@@ -162,8 +162,8 @@ TEST(SimulRules, ModalValuesAndVariablesHold) {
   ASSERT_EQ(ran.moves.size(), 1U);
   EXPECT_EQ(ran.moves[0].path, "LIN");
   EXPECT_NEAR(ran.moves[0].feed_mm_s, 50.0, 1e-9);  // 10 % of VMAX
-  EXPECT_NEAR(ran.moves[0].tip.tip.x, kHomeTip.x + 100.0, 1e-4);
-  EXPECT_NEAR(ran.moves[0].tip.tip.y, kHomeTip.y, 1e-3);
+  EXPECT_NEAR(ran.moves[0].tip.tip.x(), kHomeTip.x() + 100.0, 1e-4);
+  EXPECT_NEAR(ran.moves[0].tip.tip.y(), kHomeTip.y(), 1e-3);
   ASSERT_EQ(ran.parts.size(), 1U);
   EXPECT_NEAR(ran.parts[0].motion.limits.acceleration, 1000.0, 1e-9);  // 50 % of AMAX
 }
@@ -174,8 +174,8 @@ TEST(SimulRules, TheToolOffsetHolds) {
                           {.simul = Step(3)});
   const Ran real =
       RunText("COORD ABSOL\nTCP (0,0,-10./0,0,-15.)\nMOVE (21.02,2201.2,-350.,0.,0.)\n");
-  EXPECT_NEAR(std::abs(ran.end.axes.column.z - -50.0), 10.0, 1e-4);
-  EXPECT_EQ(ran.end.axes.column.z, real.end.axes.column.z);
+  EXPECT_NEAR(std::abs(ran.end.axes.column.z() - -50.0), 10.0, 1e-4);
+  EXPECT_EQ(ran.end.axes.column.z(), real.end.axes.column.z());
 }
 
 // OPT-6.17: jumps, GOSUB, FUNCTION, CALL and GO are followed.
@@ -209,7 +209,7 @@ TEST(SimulRules, TheMachineDoesNotMove) {
                           {.simul = Step(10)});
   ASSERT_EQ(ran.parts.size(), 1U);
   EXPECT_EQ(ran.parts[0].done.start, SimTime(0));
-  EXPECT_NEAR(motion::Norm(ran.parts[0].motion.path.At(0.0).tip - kHomeTip), 0.0, 1e-6);
+  EXPECT_NEAR((ran.parts[0].motion.path.At(0.0).tip - kHomeTip).norm(), 0.0, 1e-6);
   EXPECT_NEAR(Travelled(ran), 100.0, 1e-4);
   EXPECT_EQ(ran.moves.size(), 1U);
   EXPECT_EQ(ran.moves[0].place.step, 10);
@@ -261,7 +261,7 @@ TEST(SimulRules, ACircleFirstBeginsAtTheActualPosition) {
   EXPECT_EQ(CodeOf(ran), 0);
   EXPECT_NEAR(Travelled(ran), 50.0 * kPi, 1e-3);
   EXPECT_NEAR(ran.DistanceTo({71.02, 2251.2, -350.0}), 0.0, 1e-4);
-  EXPECT_NEAR(ran.end.tip.tip.x, 121.02, 1e-4);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 121.02, 1e-4);
 }
 
 // OPT-6.20: the process counts as ON or OFF, the beam stays off and the shutter closed, in the
@@ -344,7 +344,7 @@ TEST(SimulRules, ZeroIsNotPerformed) {
   EXPECT_TRUE(ran.parts.empty());
   EXPECT_EQ(ran.time_s, 0.0);
   EXPECT_FALSE(StateOf(ran).zeroed);
-  EXPECT_EQ(StateOf(ran).axes.column.x, 21.02);
+  EXPECT_EQ(StateOf(ran).axes.column.x(), 21.02);
   const Ran zeroed = RunText(text, {.simul = Step(3)});  // a zeroed machine stays so
   EXPECT_EQ(CodeOf(zeroed), 0);
   EXPECT_TRUE(StateOf(zeroed).zeroed);

@@ -87,7 +87,8 @@ TEST(TimerRules, TheGosubOfANextMoveBelongsToItsModule) {
       {.programs = {{44, kAlongX + kFar + "/TIME (2.,900)/NEXT\nENDTASK\n900 VI[3]=7\nRETURN\n"}},
        .variables = {"VI[3]", "VI[4]"}});
   EXPECT_EQ(ValuesOf(dropped), "00");
-  EXPECT_NEAR(dropped.end.tip.tip.x, 21.02 + 50.0 * 42 * 0.048, 1e-6);  // and yet its time was over
+  EXPECT_NEAR(dropped.end.tip.tip.x(), 21.02 + 50.0 * 42 * 0.048,
+              1e-6);  // and yet its time was over
 }
 
 // OPT-7.97: a loop may read an input a thousand times in one instant; from then on each further

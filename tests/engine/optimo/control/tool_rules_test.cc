@@ -23,11 +23,11 @@ MachineState StateAfter(const std::string& text) {
   return state ? *state : MachineState{};
 }
 
-void ExpectTip(const std::string& text, const motion::Vec3& tip) {
+void ExpectTip(const std::string& text, const motion::MachinePoint& tip) {
   const Ran ran = RunText(text);
-  EXPECT_NEAR(ran.end.tip.tip.x, tip.x, kReal_mm) << text;
-  EXPECT_NEAR(ran.end.tip.tip.y, tip.y, kReal_mm) << text;
-  EXPECT_NEAR(ran.end.tip.tip.z, tip.z, kReal_mm) << text;
+  EXPECT_NEAR(ran.end.tip.tip.x(), tip.x(), kReal_mm) << text;
+  EXPECT_NEAR(ran.end.tip.tip.y(), tip.y(), kReal_mm) << text;
+  EXPECT_NEAR(ran.end.tip.tip.z(), tip.z(), kReal_mm) << text;
 }
 
 // The warnings of TCP, in order.
@@ -121,14 +121,14 @@ TEST(ToolRules, TheLastTcpHolds) {
   const Ran called =
       RunText("TCP (0.,0.,9./0.,0.,-5.)\nCALL 90\nCOORD ABSOL\nMOVE (500.,600.,-300.,0.,0.)\n",
               {.programs = {{90, "TCP (0.,0.,3./0.,0.,-6.)\n"}}});
-  EXPECT_NEAR(called.end.axes.column.z, -3.0, kReal_mm);
+  EXPECT_NEAR(called.end.axes.column.z(), -3.0, kReal_mm);
   const Ran later =
       RunText("GO 46\n", {.programs = {{46, "COORD ABSOL\nMOVE (500.,600.,-300.,0.,0.)\n"}},
                           .machine_state = called.machine_state});
-  EXPECT_NEAR(later.end.axes.column.z, -3.0, kReal_mm);
+  EXPECT_NEAR(later.end.axes.column.z(), -3.0, kReal_mm);
   const Ran other = RunText("TCP (0.,0.,0./0.,0.,-5.)\nCOORD ABSOL\nMOVE (500.,600.,-300.,0.,0.)\n",
                             {.machine_state = later.machine_state});
-  EXPECT_NEAR(other.end.axes.column.z, 0.0, kReal_mm);
+  EXPECT_NEAR(other.end.axes.column.z(), 0.0, kReal_mm);
 }
 
 // OPT-B.55, OPT-4.72: a TCP whose values cannot be had changes nothing, whichever of the six it is.
@@ -154,7 +154,7 @@ TEST(ToolRules, OnlyATcpThatMovesTheTipCancelsAPassage) {
     return RunText(kThere + "TCP (0.,0.,1./0.,0.,-5.)\nMOVE (1100.,1000.,-400.,0.,0.)/FLY\nTCP (" +
                    values + ")\nMOVE (1100.,1100.,-400.,0.,0.)\n");
   };
-  const motion::Vec3 corner{1100.0, 1000.0, -400.0};
+  const motion::MachinePoint corner{1100.0, 1000.0, -400.0};
   for (const char* same : {"0.,0.,1./0.,0.,-5.", "0.,0.,1./0.,0.,-6."}) {
     const Ran ran = chain(same);
     EXPECT_EQ(ran.Count("E7304"), 0) << same;
@@ -229,7 +229,7 @@ TEST(ToolRules, EachGroupGoesToItsMechanicalZero) {
   ASSERT_EQ(ran.moves.size(), 3U);
   const auto axes = [&](std::size_t n) {
     const motion::AxisPose& at = ran.moves[n].axes;
-    return std::vector<double>{at.column.x, at.column.y, at.column.z, at.a_rad, at.b_rad};
+    return std::vector<double>{at.column.x(), at.column.y(), at.column.z(), at.a_rad, at.b_rad};
   };
   using Axes = std::vector<double>;
   const auto are = [](const Axes& wanted) {
@@ -238,9 +238,9 @@ TEST(ToolRules, EachGroupGoesToItsMechanicalZero) {
   EXPECT_THAT(axes(0), are({21.02, 2201.2, 30.0, 0.0, 0.0}));
   EXPECT_THAT(axes(1), are({21.02, 2201.2, 30.0, 0.4, 0.5}));
   EXPECT_THAT(axes(2), are({10.0, 20.0, 30.0, 0.4, 0.5}));
-  EXPECT_LT(motion::Distance(ran.moves[2].program_point, {10.0, 20.0, 30.0}), 1e-9);
+  EXPECT_LT((ran.moves[2].program_point - motion::ProgramPoint{10.0, 20.0, 30.0}).norm(), 1e-9);
   EXPECT_NEAR(ran.moves[2].rotary_a, 0.4, 1e-9);
-  EXPECT_NEAR(ran.end.axes.column.x, 10.0, 1e-9);
+  EXPECT_NEAR(ran.end.axes.column.x(), 10.0, 1e-9);
 }
 
 // OPT-4.50: what the console starts: the zero procedure, and then program 4. Without a program 4
@@ -259,7 +259,7 @@ TEST(ToolRules, ZeroFromTheConsoleGoesOnWithProgramFour) {
   const Ran without = RunText("ZERO\nGO 4\n", options);
   EXPECT_EQ(CodeOf(without), 7102);
   EXPECT_THAT(Groups(without), ElementsAre("ZERO_Z", "ZERO_AB", "ZERO_XY"));
-  EXPECT_NEAR(without.end.axes.column.y, 0.0, 1e-9);
+  EXPECT_NEAR(without.end.axes.column.y(), 0.0, 1e-9);
 }
 
 // OPT-4.18, OPT-4.49: STOP halts the zero procedure, START finishes it.
@@ -269,7 +269,7 @@ TEST(ToolRules, StopDuringTheZeroProcedure) {
       "ZERO\nVI[2]=1\n", {.inputs = {{At(10.0), InputKind::kStop}, {At(20.0), InputKind::kStart}}});
   EXPECT_EQ(ran.First("halt STOP").step, 1);
   EXPECT_THAT(Groups(ran), ElementsAre("ZERO_Z", "ZERO_AB", "ZERO_XY"));
-  EXPECT_NEAR(ran.end.axes.column.x, 0.0, 1e-9);
+  EXPECT_NEAR(ran.end.axes.column.x(), 0.0, 1e-9);
   EXPECT_GT(ran.time_s, plain.time_s + 9.9);
 }
 

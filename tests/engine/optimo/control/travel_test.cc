@@ -39,8 +39,8 @@ TEST(Travel, AForecastTellsAllViolationsOfARun) {
   EXPECT_NEAR(ran.violations[0].excess, 5400.0, 1e-9);
   EXPECT_TRUE(ran.violations[0].at_target);
   EXPECT_EQ(ran.violations[0].at, SimTime(0));
-  EXPECT_NEAR(ran.violations[0].axes.column.x, 9000.0, 1e-9);
-  EXPECT_NEAR(ran.violations[0].tip.tip.z, -350.0, 1e-9);
+  EXPECT_NEAR(ran.violations[0].axes.column.x(), 9000.0, 1e-9);
+  EXPECT_NEAR(ran.violations[0].tip.tip.z(), -350.0, 1e-9);
   EXPECT_EQ(ran.violations[1].axis, 3);
   EXPECT_NEAR(ran.violations[1].excess, 0.4, 1e-9);
   EXPECT_EQ(ran.violations[2].axis, 4);
@@ -55,7 +55,7 @@ TEST(Travel, AForecastTellsAllViolationsOfARun) {
   EXPECT_EQ(ran.outcome.kind, OutcomeKind::kFailed);
   EXPECT_EQ(CodeOf(ran), 7301);
   EXPECT_EQ(ran.outcome.place.step, 2);
-  EXPECT_NEAR(ran.end.axes.column.x, 1000.0, 1e-9);
+  EXPECT_NEAR(ran.end.axes.column.x(), 1000.0, 1e-9);
 }
 
 // OPT-B.08: in RUN it is an alarm at its place, and nothing moves.
@@ -79,7 +79,7 @@ TEST(Travel, AnArcLeavesItOnTheWay) {
   ASSERT_EQ(ran.violations.size(), 1U);
   EXPECT_NEAR(ran.violations[0].excess, 50.0, 1e-6);
   EXPECT_FALSE(ran.violations[0].at_target);
-  EXPECT_NEAR(ran.violations[0].tip.tip.y, 1150.0, 1e-6);
+  EXPECT_NEAR(ran.violations[0].tip.tip.y(), 1150.0, 1e-6);
   EXPECT_EQ(ran.findings.front().detail, "X on the way leaves its travel by 50.000 mm");
   EXPECT_EQ(CodeOf(RunText(program)), 7301);
 }
@@ -127,7 +127,7 @@ TEST(Travel, ATargetBeyondAllMeasureIsLeftOut) {
                           {.forecast = true});
   EXPECT_EQ(StepsOf(ran, 7301), std::vector{2});
   EXPECT_EQ(CodeOf(ran), 7301);
-  EXPECT_NEAR(ran.end.axes.column.x, 50.0, 1e-9);
+  EXPECT_NEAR(ran.end.axes.column.x(), 50.0, 1e-9);
 }
 
 // OPT-B.15, OPT-B.08: both parts of a hole are looked at; the circle of radius 50 round (3580,1000)

@@ -68,7 +68,7 @@ TEST(WatchRules, TheTimeOfAMoveIsOverWithIt) {
     SCOPED_TRACE(way.name);
     EXPECT_EQ(ran.outcome.kind, OutcomeKind::kCompleted);
     EXPECT_EQ(ran.variables.at("VI[3]"), std::to_string(way.gosubs));
-    EXPECT_NEAR(ran.end.tip.tip.x, 221.02, 1e-4);
+    EXPECT_NEAR(ran.end.tip.tip.x(), 221.02, 1e-4);
     EXPECT_GE(ran.time_s, 30.0);
   }
 }
@@ -80,11 +80,11 @@ TEST(WatchRules, TheEndOfAMoveIsOverWithIt) {
     SCOPED_TRACE(way.name);
     const Ran end = RunWay(way, MoveTo(921.02, "/END (IL[22])"), {Input(40.0, 21, 1.0)});
     EXPECT_EQ(end.variables.at("VI[3]"), std::to_string(way.gosubs));
-    EXPECT_NEAR(end.end.tip.tip.x, 921.02, 1e-4);
+    EXPECT_NEAR(end.end.tip.tip.x(), 921.02, 1e-4);
     const Ran time =
         RunWay(way, "DELAY 6\n" + MoveTo(921.02, "/TIME (99.,900)"), {Input(12.0, 21, 1.0)});
     EXPECT_EQ(time.variables.at("VI[3]"), std::to_string(way.gosubs));
-    EXPECT_NEAR(time.end.tip.tip.x, 921.02, 1e-4);
+    EXPECT_NEAR(time.end.tip.tip.x(), 921.02, 1e-4);
     EXPECT_EQ(time.variables.at("VI[4]"), "0");
   }
 }
@@ -99,10 +99,10 @@ TEST(WatchRules, EachMoveHasItsOwnTime) {
     const Ran::Part& last = ran.parts.back();
     ASSERT_GE(ran.parts.size(), 2U);
     // 63 ticks at 50 mm/s and the ramp to rest.
-    const double way_mm = last.motion.path.At(last.done.travelled).tip.x -
+    const double way_mm = last.motion.path.At(last.done.travelled).tip.x() -
                           ran.parts[ran.parts.size() - 2]
                               .motion.path.At(ran.parts[ran.parts.size() - 2].done.from)
-                              .tip.x;
+                              .tip.x();
     EXPECT_NEAR(way_mm, 50.0 * 63 * kTick_s, 1e-4);
   }
 }
@@ -145,11 +145,11 @@ TEST(WatchRules, TheClockOfEndBeginsWithTheMove) {
   const Ran ran = RunText(Program("DELAY .01\n" + MoveTo(521.02, "/END (IL[20])")),
                           {.inputs = {Input(1.0, 20, 1.0)}});
   EXPECT_NEAR(ran.time_s, 0.01 + 21 * kTick_s + kRamp_s, 1e-6);
-  EXPECT_NEAR(ran.end.tip.tip.x, 21.02 + 50.0 * 21 * kTick_s, 1e-6);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 21.02 + 50.0 * 21 * kTick_s, 1e-6);
   // An input that is gone again at the tick was not seen.
   const Ran missed = RunText(Program(MoveTo(521.02, "/END (IL[20])")),
                              {.inputs = {Input(1.01, 20, 1.0), Input(1.05, 20, 0.0)}});
-  EXPECT_NEAR(missed.end.tip.tip.x, 521.02, 1e-4);
+  EXPECT_NEAR(missed.end.tip.tip.x(), 521.02, 1e-4);
 }
 
 // OPT-2.49, OPT-2.54: behind a /FLY passage the clock begins with the motion, not where the program
@@ -181,7 +181,7 @@ TEST(WatchRules, TheTimeOfANextMove) {
                                   "DELAY 1\nVI[5]=VI[3]\nDELAY 2\nVI[6]=VI[3]\n"),
                           {.variables = {"VI[5]", "VI[6]"}});
   EXPECT_EQ(ran.variables.at("VI[5]") + ran.variables.at("VI[6]"), "01");
-  EXPECT_NEAR(ran.end.tip.tip.x, 21.02 + 50.0 * 42 * kTick_s, 1e-6);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 21.02 + 50.0 * 42 * kTick_s, 1e-6);
 }
 
 // OPT-2.59, OPT-B.30: the next MOVE takes over at the next tick of the system's clock: the first
@@ -191,9 +191,9 @@ TEST(WatchRules, TakingOverAtATick) {
       RunText(Program(MoveTo(521.02, "/NEXT") + "DELAY 1.001\nMOVE (21.02,2101.2,-350.,0.,0.)\n"));
   ASSERT_EQ(ran.moves.size(), 2U);
   EXPECT_NEAR(ToSeconds(ran.moves[0].at), 21 * kTick_s + kRamp_s, 1e-6);
-  EXPECT_NEAR(ran.moves[0].tip.tip.x, 21.02 + 50.0 * 21 * kTick_s, 1e-6);
-  EXPECT_NEAR(ran.end.tip.tip.x, 21.02, 1e-4);
-  EXPECT_NEAR(ran.end.tip.tip.y, 2101.2, 1e-4);
+  EXPECT_NEAR(ran.moves[0].tip.tip.x(), 21.02 + 50.0 * 21 * kTick_s, 1e-6);
+  EXPECT_NEAR(ran.end.tip.tip.x(), 21.02, 1e-4);
+  EXPECT_NEAR(ran.end.tip.tip.y(), 2101.2, 1e-4);
 }
 
 }  // namespace

@@ -125,7 +125,7 @@ TEST(OfficePlaces, OfGouges) {
 
 // OPT-8.74, OPT-8.75, OPT-8.77, OPT-7.62
 TEST(OfficePlaces, OfTransformAndShift) {
-  const RigidMotion up = RigidMotion::Of({0, 0, 1e18}, 0, 0, 0);
+  const motion::RigidMotion up = motion::RigidMotionOf({0, 0, 1e18}, 0, 0, 0);
   const Tool transform = [&](const std::string& text) {
     Rewriting made = Transform(text, up);
     return Answer{made.ok, std::move(made.diagnostics)};

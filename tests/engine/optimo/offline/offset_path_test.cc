@@ -10,15 +10,12 @@
 namespace rmlcell::optimo {
 namespace {
 
-using motion::Cross;
-using motion::Distance;
-using motion::Dot;
-using motion::Norm;
+using motion::ToolDirection;
 
 // A right-handed plane somewhere in space; the tool stands on it.
 struct Plane {
-  Vec3 origin, ex, ey, ez;
-  Vec3 At(double x, double y) const { return origin + ex * x + ey * y; }
+  ProgramPoint origin, ex, ey, ez;
+  ProgramPoint At(double x, double y) const { return origin + ex * x + ey * y; }
 };
 
 const std::array<Plane, 3> kPlanes = {
@@ -57,7 +54,7 @@ std::vector<OffsetLeg> MustOffset(const std::vector<Leg>& legs, double offset) {
   return moved ? *moved : std::vector<OffsetLeg>(legs.size());
 }
 
-void ExpectNear(const Vec3& a, const Vec3& b) { EXPECT_LT(Distance(a, b), 1e-9); }
+void ExpectNear(const ProgramVector& a, const ProgramVector& b) { EXPECT_LT((a - b).norm(), 1e-9); }
 
 // OPT-2.19: centre, radius and directions of arcs either way round, over half a turn and more.
 TEST(OffsetPath, ArcsGoThroughTheirThreePoints) {
@@ -69,7 +66,7 @@ TEST(OffsetPath, ArcsGoThroughTheirThreePoints) {
       EXPECT_NEAR(leg.radius, 5.0, 1e-9);
       const double turn = sweep > 0.0 ? 1.0 : -1.0;
       ExpectNear(leg.axis, plane.ez * turn);
-      const auto tangent = [&](double angle) {
+      const auto tangent = [&](double angle) -> ProgramVector {
         return plane.ex * (-std::sin(angle) * turn) + plane.ey * (std::cos(angle) * turn);
       };
       ExpectNear(leg.tangent_from, tangent(0.3));
@@ -80,7 +77,7 @@ TEST(OffsetPath, ArcsGoThroughTheirThreePoints) {
     const Leg line = LineOf(plane, 1, 2, 4, 6);
     EXPECT_FALSE(line.is_arc);
     EXPECT_EQ(ShareAtVia(line), 0.5);
-    for (const Vec3& tangent : {line.tangent_from, line.tangent_via, line.tangent_to})
+    for (const ProgramVector& tangent : {line.tangent_from, line.tangent_via, line.tangent_to})
       ExpectNear(tangent, plane.ex * 0.6 + plane.ey * 0.8);
   }
 }
@@ -93,9 +90,9 @@ TEST(OffsetPath, PointsOnALineMakeNoArc) {
   EXPECT_FALSE(leg.is_arc);
   ExpectNear(leg.tangent_from, kPlanes[1].ex);
   const Leg none = LineOf(kPlanes[1], 5, 5, 5, 5);
-  EXPECT_EQ(none.tangent_to, Vec3{});
-  EXPECT_EQ(LeftNormal({0, 0, 1}, {}), Vec3{});
-  EXPECT_EQ(LeftNormal({0, 0, 1}, {0, 0, -1}), Vec3{});
+  EXPECT_EQ(none.tangent_to, ProgramVector{});
+  EXPECT_EQ(LeftNormal({0, 0, 1}, {}), ProgramVector{});
+  EXPECT_EQ(LeftNormal({0, 0, 1}, {0, 0, -1}), ProgramVector{});
   ExpectNear(LeftNormal({0, 0, 1}, {1, 0, 0}), {0, 1, 0});
 }
 
@@ -148,16 +145,16 @@ TEST(OffsetPath, CornersWithArcsLieOnTheConcentricCircle) {
                          std::sin(heading) * std::cos(start) * turn;  // 1: tangent, -1: back
     if (along < -0.5 || along > 0.95) continue;
     const auto moved = MustOffset({line, arc}, offset);
-    const Vec3 corner = moved[0].to;
-    const Vec3 normal = plane.ex * -std::sin(heading) + plane.ey * std::cos(heading);
-    EXPECT_NEAR(Dot(corner - plane.origin, normal), offset, 1e-9);
+    const ProgramPoint corner = moved[0].to;
+    const ProgramVector normal = plane.ex * -std::sin(heading) + plane.ey * std::cos(heading);
+    EXPECT_NEAR((corner - plane.origin).dot(normal), offset, 1e-9);
     const double new_radius = radius - turn * offset;  // left of a left turn is inside
-    EXPECT_NEAR(Distance(corner, plane.At(cx, cy)), new_radius, 1e-9);
-    EXPECT_NEAR(Dot(corner - plane.origin, plane.ez), 0.0, 1e-9);
-    EXPECT_LT(Distance(corner, plane.origin), 4.0 * std::fabs(offset) + 1e-9);
-    EXPECT_NEAR(Distance(moved[1].to, plane.At(cx, cy)), new_radius, 1e-9);
+    EXPECT_NEAR((corner - plane.At(cx, cy)).norm(), new_radius, 1e-9);
+    EXPECT_NEAR((corner - plane.origin).dot(plane.ez), 0.0, 1e-9);
+    EXPECT_LT((corner - plane.origin).norm(), 4.0 * std::fabs(offset) + 1e-9);
+    EXPECT_NEAR((moved[1].to - plane.At(cx, cy)).norm(), new_radius, 1e-9);
     ASSERT_TRUE(moved[1].via);
-    EXPECT_NEAR(Distance(*moved[1].via, plane.At(cx, cy)), new_radius, 1e-9);
+    EXPECT_NEAR((*moved[1].via - plane.At(cx, cy)).norm(), new_radius, 1e-9);
     // The same corner, run the other way: left becomes right.
     Leg back = ArcOf(plane, cx, cy, radius, start + sweep, start);
     const auto again = MustOffset(
@@ -181,12 +178,12 @@ TEST(OffsetPath, CornersOfTwoArcsLieOnBothCircles) {
           const double end_1 = -turn_1 * M_PI / 2, begin_2 = heading - turn_2 * M_PI / 2;
           const Leg first = ArcOf(plane, c1x, c1y, r1, end_1 - turn_1 * 1.2, end_1);
           const Leg second = ArcOf(plane, c2x, c2y, r2, begin_2, begin_2 + turn_2 * 1.2);
-          ASSERT_LT(Distance(first.to, second.from), 1e-9);
-          const Vec3 corner = MustOffset({first, second}, offset)[0].to;
-          EXPECT_NEAR(Distance(corner, plane.At(c1x, c1y)), r1 - turn_1 * offset, 1e-9);
-          EXPECT_NEAR(Distance(corner, plane.At(c2x, c2y)), r2 - turn_2 * offset, 1e-9);
-          EXPECT_LT(Distance(corner, plane.origin), 1.2);  // offset / cos 30 is 0.92
-          EXPECT_NEAR(Dot(corner - plane.origin, plane.ez), 0.0, 1e-9);
+          ASSERT_LT((first.to - second.from).norm(), 1e-9);
+          const ProgramPoint corner = MustOffset({first, second}, offset)[0].to;
+          EXPECT_NEAR((corner - plane.At(c1x, c1y)).norm(), r1 - turn_1 * offset, 1e-9);
+          EXPECT_NEAR((corner - plane.At(c2x, c2y)).norm(), r2 - turn_2 * offset, 1e-9);
+          EXPECT_LT((corner - plane.origin).norm(), 1.2);  // offset / cos 30 is 0.92
+          EXPECT_NEAR((corner - plane.origin).dot(plane.ez), 0.0, 1e-9);
         }
       }
     }
@@ -221,17 +218,19 @@ TEST(OffsetPath, WhatCannotBeOffsetIsRefused) {
 // of 1 - 1e-6 of the arc and a sine of 1e-6 of the line; else the corner is that of their tangents.
 TEST(OffsetPath, LegsThatLeanMeetByTheirTangents) {
   const double heading = M_PI / 3, offset = 0.5, radius = 2.0;
-  const Vec3 tool{0, 0, 1}, out{std::cos(heading), std::sin(heading), 0};
-  const Vec3 by_tangents = (Vec3{0, 1, 0} + Vec3{-out.y, out.x, 0}) * (offset / 1.5);
+  const ProgramPoint tool{0, 0, 1}, out{std::cos(heading), std::sin(heading), 0};
+  const ProgramVector by_tangents =
+      (ProgramVector{0, 1, 0} + ProgramVector{-out.y(), out.x(), 0}) * (offset / 1.5);
   const auto corner = [&](double line_sine, double arc_cosine) {
     Leg line;
     line.from = {-20, 0, -20 * line_sine};
     line.tool_from = line.tool_to = line.tool_via = tool;
     Prepare(line);
-    const Vec3 across = Cross(tool, out);
-    const Vec3 axis = tool * arc_cosine + across * std::sqrt(1.0 - arc_cosine * arc_cosine);
-    const Vec3 to_centre = Cross(axis, out) * radius;
-    const auto at = [&](double angle) {
+    const ProgramVector across = tool.cross(out);
+    const ProgramVector axis =
+        tool * arc_cosine + across * std::sqrt(1.0 - arc_cosine * arc_cosine);
+    const ProgramVector to_centre = axis.cross(out) * radius;
+    const auto at = [&](double angle) -> ProgramPoint {
       return to_centre - to_centre * std::cos(angle) + out * (radius * std::sin(angle));
     };
     Leg arc;
@@ -242,24 +241,24 @@ TEST(OffsetPath, LegsThatLeanMeetByTheirTangents) {
     return MustOffset({line, arc}, offset)[0].to;
   };
   for (const auto& [sine, cosine] : {std::pair{0.0, 1.0 - 1.5e-6}, {1.5e-6, 1.0}, {-1.5e-6, 1.0}}) {
-    EXPECT_LT(Distance(corner(sine, cosine), by_tangents), 1e-4) << sine << " " << cosine;
+    EXPECT_LT((corner(sine, cosine) - by_tangents).norm(), 1e-4) << sine << " " << cosine;
   }
   // On the concentric circle, to which the line beside the first leg leads.
-  const Vec3 centre = Cross(tool, out) * radius;
+  const ProgramPoint centre = tool.cross(out) * radius;
   for (const auto& [sine, cosine] : {std::pair{0.0, 1.0 - 0.7e-6}, {0.7e-6, 1.0}, {-0.7e-6, 1.0}}) {
-    const Vec3 point = corner(sine, cosine);
-    EXPECT_NEAR(point.y, offset, 1e-3);
-    EXPECT_NEAR(Distance(point, centre), radius - offset, 1e-3);
-    EXPECT_GT(Distance(point, by_tangents), 0.02);
+    const ProgramPoint point = corner(sine, cosine);
+    EXPECT_NEAR(point.y(), offset, 1e-3);
+    EXPECT_NEAR((point - centre).norm(), radius - offset, 1e-3);
+    EXPECT_GT((point - by_tangents).norm(), 0.02);
   }
 }
 
 // What counts as nothing: a way of a nanometre, a tangent that leaves the tool by a sine of 1e-6,
 // an arc that is left with half of the last decimal (OPT-8.11).
 TEST(OffsetPath, HowLittleIsNothing) {
-  EXPECT_EQ(LineOf(kPlanes[0], 0, 0, 0.7e-9, 0).tangent_to, Vec3{});
+  EXPECT_EQ(LineOf(kPlanes[0], 0, 0, 0.7e-9, 0).tangent_to, ProgramVector{});
   ExpectNear(LineOf(kPlanes[0], 0, 0, 1.5e-9, 0).tangent_to, {1, 0, 0});
-  EXPECT_EQ(LeftNormal({0, 0, 1}, {0.7e-6, 0, 1}), Vec3{});
+  EXPECT_EQ(LeftNormal({0, 0, 1}, {0.7e-6, 0, 1}), ProgramVector{});
   ExpectNear(LeftNormal({0, 0, 1}, {1.5e-6, 0, 1}), {0, 1, 0});
   const Leg arc = ArcOf(kPlanes[2], 0, 2, 2, -M_PI / 2, 0);
   std::size_t failed{};
@@ -271,7 +270,7 @@ TEST(OffsetPath, HowLittleIsNothing) {
 TEST(OffsetPath, AHoleEndsWhereItsCircleIsNearest) {
   ExpectNear(*HoleEnd({30, 40, 7}, {0, 0, 2}, {0, 0, 9}, 5.0), {3, 4, 2});
   ExpectNear(*HoleEnd({1, 4, 9}, {1, 1, 1}, {5, 1, 1}, 2.0),
-             Vec3{1, 1, 1} + Vec3{0, 3, 8} * (2.0 / std::hypot(3.0, 8.0)));
+             ProgramVector{1, 1, 1} + ProgramVector{0, 3, 8} * (2.0 / std::hypot(3.0, 8.0)));
   EXPECT_FALSE(HoleEnd({0, 0, 7}, {0, 0, 2}, {0, 0, 9}, 5.0));    // on the axis
   EXPECT_FALSE(HoleEnd({30, 40, 7}, {0, 0, 2}, {0, 0, 2}, 5.0));  // no axis
 }

@@ -10,9 +10,11 @@
 namespace rmlcell::optimo {
 namespace {
 
-using motion::Vec3;
+using motion::MachineVector;
 
-Vec3 PointAt(const PathSegment& s, double share) { return s.from + (s.to - s.from) * share; }
+motion::MachinePoint PointAt(const PathSegment& s, double share) {
+  return s.from + (s.to - s.from) * share;
+}
 
 struct Row {
   PathSegment a, b;
@@ -61,14 +63,13 @@ TEST(SegmentGrid, NoOtherPointsAreNearer) {
     const PathSegment a{{dice(), dice(), dice()}, {dice(), dice(), dice()}},
         b{{dice(), dice(), dice()}, {dice(), dice(), dice()}};
     const NearestPoints nearest = NearestPointsOf(a, b);
-    EXPECT_NEAR(motion::Distance(PointAt(a, nearest.on_a), PointAt(b, nearest.on_b)),
-                nearest.distance, 1e-9);
+    EXPECT_NEAR((PointAt(a, nearest.on_a) - PointAt(b, nearest.on_b)).norm(), nearest.distance,
+                1e-9);
     EXPECT_GE(std::min(nearest.on_a, nearest.on_b), 0.0);
     EXPECT_LE(std::max(nearest.on_a, nearest.on_b), 1.0);
     for (int i = 0; i <= 40; ++i) {
       for (int j = 0; j <= 40; ++j) {
-        EXPECT_GE(motion::Distance(PointAt(a, i / 40.0), PointAt(b, j / 40.0)),
-                  nearest.distance - 1e-9);
+        EXPECT_GE((PointAt(a, i / 40.0) - PointAt(b, j / 40.0)).norm(), nearest.distance - 1e-9);
       }
     }
   }
@@ -86,11 +87,11 @@ TEST(SegmentGrid, AllWithinReachAreVisited) {
         c[axis] = axis == flat ? static_cast<double>(random() % 3)
                                : (static_cast<double>(random() % 2001) / 1000.0 - 1.0) * size;
       }
-      return Vec3{c[0], c[1], c[2]};
+      return MachineVector{c[0], c[1], c[2]};
     };
     std::vector<PathSegment> segments;
     for (int s = 0; s < 40; ++s) {
-      const Vec3 from = point(50.0);
+      const motion::MachinePoint from = point(50.0);
       segments.push_back({from, round % 2 == 0 ? from + point(3.0) : point(50.0), 0});
     }
     const double reach = 0.5 + static_cast<double>(random() % 60) / 10.0;

@@ -16,36 +16,41 @@
 namespace rmlcell::optimo {
 namespace {
 
+using motion::MachineVector;
+using motion::RigidMotion;
+using motion::RigidMotionOf;
+using motion::ToolDirection;
+
 int FirstFinding(const Rewriting& rewriting) {
   return rewriting.diagnostics.empty() ? 0 : Lookup(rewriting.diagnostics[0].code).number;
 }
 
 // OPT-8.76: a rotation of 90 degrees about Z.
 TEST(Transform, TurnsPointsAndHead) {
-  const RigidMotion quarter = RigidMotion::Of({}, kPi / 2, 0, 0);
+  const RigidMotion quarter = RigidMotionOf({}, kPi / 2, 0, 0);
   const Rewriting turned = Transform("10 MOVE (10,0,-500,0,0.5)/FLY ; c\nSPEED 5\n", quarter);
   ASSERT_TRUE(turned.ok);
   EXPECT_EQ(turned.text, "10 MOVE (0.0,10.0,-500.0,1.570796,0.5)/FLY ; c\nSPEED 5\n");
   EXPECT_EQ(
-      Transform("MOVE (1,2,3,0,0)/VIA (4,5,6,0,0)\n", RigidMotion::Of({100, 0, -1}, 0, 0, 0)).text,
+      Transform("MOVE (1,2,3,0,0)/VIA (4,5,6,0,0)\n", RigidMotionOf({100, 0, -1}, 0, 0, 0)).text,
       "MOVE (101.0,2.0,2.0,0.0,0.0)/VIA (104.0,5.0,5.0,0.0,0.0)\n");
 }
 
 // OPT-8.76, OPT-B.40: a number in parentheses has the sign before them.
 TEST(Transform, NumbersInParenthesesHaveTheirSign) {
-  EXPECT_EQ(Transform("MOVE (-(10),-(-20),-(30),0,0)\n", RigidMotion::Of({1, 2, 40}, 0, 0, 0)).text,
+  EXPECT_EQ(Transform("MOVE (-(10),-(-20),-(30),0,0)\n", RigidMotionOf({1, 2, 40}, 0, 0, 0)).text,
             "MOVE (-(9.0),-(-22.0),-(-10.0),0.0,0.0)\n");
 }
 
 // OPT-B.80
 TEST(Transform, ChoosesTheNearestHeadAngles) {
-  const RigidMotion quarter = RigidMotion::Of({}, kPi / 2, 0, 0);
-  const HeadAngles negative = TurnHead({0.0, -0.5}, quarter);
+  const RigidMotion quarter = RigidMotionOf({}, kPi / 2, 0, 0);
+  const HeadAngles negative = TurnHead({0.0, -0.5}, quarter.linear());
   EXPECT_NEAR(negative.a, kPi / 2, 1e-12);
   EXPECT_NEAR(negative.b, -0.5, 1e-12);
-  const HeadAngles far = TurnHead({12.0, 0.5}, quarter);
+  const HeadAngles far = TurnHead({12.0, 0.5}, quarter.linear());
   EXPECT_NEAR(far.a, 12.0 + kPi / 2, 1e-9);
-  const HeadAngles down = TurnHead({0.3, 0.0}, quarter);
+  const HeadAngles down = TurnHead({0.3, 0.0}, quarter.linear());
   EXPECT_NEAR(down.a, 0.3 + kPi / 2, 1e-12);
   EXPECT_NEAR(down.b, 0.0, 1e-12);
 }
@@ -54,10 +59,10 @@ TEST(Transform, ChoosesTheNearestHeadAngles) {
 // way it is meant for all moves, and back again.
 TEST(Transform, ATurnAboutZLeavesB) {
   for (const double turn : {2.0, 3.0, kPi, -kPi, 3.14159265, -2.5}) {
-    const RigidMotion motion = RigidMotion::Of({}, turn, 0, 0);
+    const RigidMotion motion = RigidMotionOf({}, turn, 0, 0);
     for (const double b : {0.02, 0.3, 1.5, 1.6, 2.3, -0.3, -2.0}) {
       for (const double a : {-9.0, -kPi, 0.0, 0.2, kPi, 3.5256}) {
-        const HeadAngles head = TurnHead({a, b}, motion);
+        const HeadAngles head = TurnHead({a, b}, motion.linear());
         EXPECT_NEAR(head.b, b, 1e-12);
         EXPECT_NEAR(head.a, a + turn, 1e-9);
       }
@@ -69,10 +74,11 @@ TEST(Transform, ATurnAboutZLeavesB) {
 TEST(Transform, TheToolTurnsWithThePart) {
   for (const double a : {-3.0, 0.4, 2.8}) {
     for (const double b : {-1.5, -0.2, 0.7, 2.0}) {
-      const RigidMotion motion = RigidMotion::Of({1, 2, 3}, 0.7, -0.3, 1.1);
-      const HeadAngles head = TurnHead({a, b}, motion);
-      const Vec3 expected = motion.Turn(ToolDirection(a, b)), found = ToolDirection(head.a, head.b);
-      EXPECT_NEAR(motion::Distance(expected, found), 0.0, 1e-12);
+      const RigidMotion motion = RigidMotionOf({1, 2, 3}, 0.7, -0.3, 1.1);
+      const HeadAngles head = TurnHead({a, b}, motion.linear());
+      const MachineVector expected = motion.linear() * (ToolDirection(a, b)),
+                          found = ToolDirection(head.a, head.b);
+      EXPECT_NEAR((expected - found).norm(), 0.0, 1e-12);
     }
   }
 }
@@ -82,7 +88,7 @@ TEST(Transform, TheToolTurnsWithThePart) {
 // system's X, which is the machine's Y: u becomes (sin 0.5, 0, cos 0.5), A = pi/2.
 TEST(Transform, SysdefActsOnAbsolMovesOnly) {
   const std::string head = "SYSDEF (0,0,0,1.5707963268,0,0)\nCOORD ";
-  const RigidMotion tilt = RigidMotion::Of({}, 0, 0, 0.5);
+  const RigidMotion tilt = RigidMotionOf({}, 0, 0, 0.5);
   EXPECT_EQ(Transform(head + "ROBOT\nMOVE (100,0,0,1,0)\n", tilt).text,
             head + "ROBOT\nMOVE (100.0,0.0,0.0,0.0,0.5)\n");
   EXPECT_EQ(Transform(head + "ABSOL\nMOVE (100,0,0,1,0)\n", tilt).text,
@@ -106,12 +112,12 @@ TEST(Transform, NeedsPlainNumbers) {
 // OPT-7.62, OPT-E.7004: what the control cannot hold is not written.
 TEST(Transform, NumbersThatAreNoneAreNotWritten) {
   for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL, 1e19}) {
-    const Rewriting moved = Transform("MOVE (1,2,3,0,0)\n", RigidMotion::Of({bad, 0, 0}, 0, 0, 0));
+    const Rewriting moved = Transform("MOVE (1,2,3,0,0)\n", RigidMotionOf({bad, 0, 0}, 0, 0, 0));
     EXPECT_FALSE(moved.ok) << bad;
     EXPECT_EQ(FirstFinding(moved), 7004) << bad;
     EXPECT_EQ(FirstFinding(Shift("VR[86] = 1.\n", {bad, 0, 0, 0, 0, 0})), 7004) << bad;
   }
-  EXPECT_EQ(FirstFinding(Transform("MOVE (1,2,3,0,0)\n", RigidMotion::Of({}, 0, std::nan(""), 0))),
+  EXPECT_EQ(FirstFinding(Transform("MOVE (1,2,3,0,0)\n", RigidMotionOf({}, 0, std::nan(""), 0))),
             7004);
   EXPECT_TRUE(Shift("VR[86] = 1.\n", {9e18, 0, 0, 0, 0, 0}).ok);
   const double max = std::ldexp(1.0, 63);
@@ -126,8 +132,8 @@ TEST(Transform, TheInverseBringsItBack) {
   const std::string text =
       "MOVE (100.25,-30.5,12.125,0.4,0.7) /VIA (1.5,2.5,3.5,-0.4,1.2)\nMOVE "
       "(1.0,2.0,3.0,3.1,1.5)\n";
-  const RigidMotion motion = RigidMotion::Of({10, -20, 30}, 0.5, 0.0, 0.0);
-  const Rewriting back = Transform(Transform(text, motion).text, motion.Inverse());
+  const RigidMotion motion = RigidMotionOf({10, -20, 30}, 0.5, 0.0, 0.0);
+  const Rewriting back = Transform(Transform(text, motion).text, motion.inverse());
   ASSERT_TRUE(back.ok);
   Findings none;
   const ParsedProgram a = Parse(text, none), b = Parse(back.text, none);
@@ -205,18 +211,18 @@ TEST(Transform, RandomProgramsComeBackFromTheInverse) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     RandomMoves random(seed);
     const std::string text = random.Make(20);
-    const motion::Vec3 shift{random.Number(500'000'000), random.Number(500'000'000),
-                             random.Number(500'000'000)};
+    const MachineVector shift{random.Number(500'000'000), random.Number(500'000'000),
+                              random.Number(500'000'000)};
     const double turn = random.Number(1'500'000);
     // About Z alone the head keeps its B, and A turns with the part; else the tool's direction says
     // whether the head is right.
     const bool about_z = seed % 2 == 0;
     const RigidMotion motion =
-        about_z ? RigidMotion::Of(shift, turn, 0, 0)
-                : RigidMotion::Of(shift, turn, random.Number(3'000'000), random.Number(3'000'000));
+        about_z ? RigidMotionOf(shift, turn, 0, 0)
+                : RigidMotionOf(shift, turn, random.Number(3'000'000), random.Number(3'000'000));
     const Rewriting there = Transform(text, motion);
     ASSERT_TRUE(there.ok);
-    const Rewriting back = Transform(there.text, motion.Inverse());
+    const Rewriting back = Transform(there.text, motion.inverse());
     ASSERT_TRUE(back.ok);
     const MoveNumbers a = NumbersOf(text), b = NumbersOf(there.text), c = NumbersOf(back.text);
     ASSERT_EQ(b.rest, a.rest);
@@ -225,16 +231,15 @@ TEST(Transform, RandomProgramsComeBackFromTheInverse) {
     for (std::size_t n = 0; n < a.poses.size(); ++n) {
       // The distance of two points is that of the moved ones.
       const auto point = [](const MoveNumbers& m, std::size_t k) {
-        return motion::Vec3{m.poses[k][0], m.poses[k][1], m.poses[k][2]};
+        return MachineVector{m.poses[k][0], m.poses[k][1], m.poses[k][2]};
       };
-      EXPECT_NEAR(motion::Distance(point(b, 0), point(b, n)),
-                  motion::Distance(point(a, 0), point(a, n)), 2e-6);
+      EXPECT_NEAR((point(b, 0) - point(b, n)).norm(), (point(a, 0) - point(a, n)).norm(), 2e-6);
       for (std::size_t v = 0; v < (about_z ? 5U : 3U); ++v)
         EXPECT_NEAR(c.poses[n][v], a.poses[n][v], kOneDecimal) << n << ' ' << v;
-      const motion::Vec3 old = ToolDirection(a.poses[n][3], a.poses[n][4]);
-      const motion::Vec3 turned = ToolDirection(b.poses[n][3], b.poses[n][4]);
-      EXPECT_NEAR(motion::Distance(motion.Turn(old), turned), 0.0, 1e-6);
-      EXPECT_NEAR(motion::Distance(ToolDirection(c.poses[n][3], c.poses[n][4]), old), 0.0, 2e-6);
+      const motion::MachinePoint old = ToolDirection(a.poses[n][3], a.poses[n][4]);
+      const MachineVector turned = ToolDirection(b.poses[n][3], b.poses[n][4]);
+      EXPECT_NEAR((motion.linear() * (old)-turned).norm(), 0.0, 1e-6);
+      EXPECT_NEAR((ToolDirection(c.poses[n][3], c.poses[n][4]) - old).norm(), 0.0, 2e-6);
     }
   }
 }
@@ -245,14 +250,13 @@ TEST(Transform, NearStraightDownTheDirectionComesBack) {
   for (const std::string b : {"0.1", "0.01", "0.001", "0.000016"}) {
     const std::string text = "MOVE (100.0,50.0,-20.0,0.7," + b + ")\n";
     for (const bool about_z : {false, true}) {
-      const RigidMotion motion = about_z ? RigidMotion::Of({1, 2, 3}, 0.5, 0, 0)
-                                         : RigidMotion::Of({1, 2, 3}, 0.5, 0.4, 0.3);
-      const Rewriting back = Transform(Transform(text, motion).text, motion.Inverse());
+      const RigidMotion motion =
+          about_z ? RigidMotionOf({1, 2, 3}, 0.5, 0, 0) : RigidMotionOf({1, 2, 3}, 0.5, 0.4, 0.3);
+      const Rewriting back = Transform(Transform(text, motion).text, motion.inverse());
       ASSERT_TRUE(back.ok);
       const std::array<double, 5> pose = NumbersOf(back.text).poses[0];
       const double old_b = std::stod(b);
-      EXPECT_NEAR(motion::Distance(ToolDirection(pose[3], pose[4]), ToolDirection(0.7, old_b)), 0.0,
-                  2e-6);
+      EXPECT_NEAR((ToolDirection(pose[3], pose[4]) - ToolDirection(0.7, old_b)).norm(), 0.0, 2e-6);
       EXPECT_NEAR(pose[3], 0.7, about_z ? kOneDecimal : 1.5e-6 / std::sin(old_b) + kOneDecimal)
           << b;
       EXPECT_NEAR(pose[0], 100.0, kOneDecimal);
@@ -283,7 +287,7 @@ TEST(Transform, AContourStaysSmooth) {
     text += "MOVE (" + std::to_string(k) + ".0,0.0,0.0," + std::to_string(0.1 * k) + "," +
             std::to_string(1.2 + 0.01 * k) + ")\n";
   }
-  const RigidMotion motion = RigidMotion::Of({1, 2, 3}, 2.2, 0.1, -0.2);
+  const RigidMotion motion = RigidMotionOf({1, 2, 3}, 2.2, 0.1, -0.2);
   const Rewriting turned = Transform(text, motion);
   ASSERT_TRUE(turned.ok);
   const auto poses = NumbersOf(turned.text).poses;
@@ -292,7 +296,7 @@ TEST(Transform, AContourStaysSmooth) {
     EXPECT_LT(std::fabs(poses[k][3] - poses[k - 1][3]), 0.2) << k;
     EXPECT_LT(std::fabs(poses[k][4] - poses[k - 1][4]), 0.1) << k;
   }
-  const Rewriting back = Transform(turned.text, motion.Inverse());
+  const Rewriting back = Transform(turned.text, motion.inverse());
   ASSERT_TRUE(back.ok);
   const auto wanted = NumbersOf(text).poses, found = NumbersOf(back.text).poses;
   ASSERT_EQ(wanted.size(), found.size());
