@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # What takes hours: rare interleavings, races, and inputs that nobody thought of. Writes a summary to
 # tests/results/long.txt. Needs build/release, as tests/run.sh leaves it.
-#   bash tests/long.sh [kills] [crashes] [races] [fuzz] [load] [mutation]      default: all
+#   bash tests/long.sh [kills] [crashes] [races] [fuzz] [load] [mutation] [behaviour]      default: all
 # ROUNDS=100, FUZZ_SECONDS=600, LOAD_ROUNDS=20, MUTATIONS=300 and SEED=1 say how much.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 rounds=${ROUNDS:-100}
 seconds=${FUZZ_SECONDS:-600}
-parts=${*:-kills crashes races fuzz load mutation}
+parts=${*:-kills crashes races fuzz load mutation behaviour}
 export RMLCELL_BIN=$PWD/build/release/bin RMLCELL_STUBS=$PWD/build/release/tests/integration/stubs
 export RMLCELL_SHARED=${RMLCELL_SHARED:-$PWD/../shared}
 
@@ -141,10 +141,20 @@ if [ -f "$summary" ]; then
   printf '%s' "${kept:+$kept
 }" >"$summary"
 fi
+# What 2,500 programs say, byte by byte, against the committed hashes.
+behaviour() {
+  if python3 -B tests/behaviour/behaviour.py check "$RMLCELL_BIN" tests/behaviour/hashes.txt >build/long/behaviour.log
+  then
+    note "behaviour: $(tail -n 1 build/long/behaviour.log)"
+  else
+    fail "behaviour, see build/long/behaviour.log"
+  fi
+}
+
 for part in $parts; do
   case $part in
-    kills | crashes | races | fuzz | load | mutation) $part ;;
-    *) echo "usage: bash tests/long.sh [kills] [crashes] [races] [fuzz] [load] [mutation]" >&2; exit 2 ;;
+    kills | crashes | races | fuzz | load | mutation | behaviour) $part ;;
+    *) echo "usage: bash tests/long.sh [kills] [crashes] [races] [fuzz] [load] [mutation] [behaviour]" >&2; exit 2 ;;
   esac
 done
 exit $failed

@@ -11,7 +11,8 @@
 #include "clients/cli/terminal.h"
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
-#include "engine/simulation/motion_check.h"
+#include "engine/families/families.h"
+#include "engine/simulation/run/motion_check.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/setup.h"
@@ -149,7 +150,8 @@ int Check(const CheckOptions& options) {
     const Result<std::string> text = bridge::ReadFile(options.inputs_file, kFileBytesMax);
     if (!text) return Refuse(text.error());
     v1::SimulationOptions scripted;
-    const Status parsed = bridge::ParseInputFile(*text, options.inputs_file, scripted);
+    const Status parsed =
+        bridge::ParseInputFile(*text, options.inputs_file, families::OverrideMax(), scripted);
     if (!parsed) return Refuse(parsed.error());
     inputs = bridge::InputsOf(scripted);
   }

@@ -8,7 +8,7 @@
 #include "clients/cli/messages.h"
 #include "clients/cli/program_files.h"
 #include "clients/cli/terminal.h"
-#include "engine/optimo/offline/fix_program.h"
+#include "engine/families/families.h"
 #include "proto/bridge/findings.h"
 #include "rmlcell/v1/program.pb.h"
 
@@ -93,11 +93,14 @@ std::string PatchText(const std::string& file, std::string_view before, std::str
 int FixFile(const std::string& file, const std::string& text,
             const std::function<machine::Translation(const machine::SourceFile&)>& check,
             const FixOptions& options) {
-  if (const Status good = optimo::CheckIsText(file, text); !good) {
+  const auto family = families::FamilyWithTools(file);
+  const Status good = family ? (*family)->tools()->CheckIsText(file, text) : Status(family.error());
+  if (!good) {
     Complain(bridge::ErrorText(good.error()));
     return kUsage;
   }
-  const optimo::Fixing fixing = optimo::FixProgram({.name = file, .bytes = text}, check);
+  const machine::RepairedText fixing =
+      (*family)->tools()->Fix({.name = file, .bytes = text}, check);
   const bool changed = fixing.text != text;
   if (changed && !options.dry_run) {
     if (const Status written = WriteWholeFile(file, fixing.text); !written) {

@@ -12,8 +12,8 @@
 #include "clients/cli/program_files.h"
 #include "clients/cli/terminal.h"
 #include "engine/core/number_text.h"
-#include "engine/simulation/facts.h"
-#include "engine/simulation/simulate.h"
+#include "engine/simulation/report/facts.h"
+#include "engine/simulation/run/simulate.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/report.h"
@@ -100,14 +100,15 @@ std::vector<std::string> SplitCommas(const std::string& text) {
 }
 
 // The options of the command line as the message that jobs have too.
-Result<v1::SimulationOptions> OptionsMessage(const SimulateOptions& options) {
+Result<v1::SimulationOptions> OptionsMessage(const SimulateOptions& options,
+                                             const machine::MachineFamily& family) {
+  const double override_max = family.info().override_max_percent;
   v1::SimulationOptions message;
   const Result<v1::OperatingMode> mode = ParseMode(options.mode);
   if (!mode) return mode.error();
   message.set_mode(*mode);
-  if (!(options.override_percent > 0.0 && options.override_percent <= 145.0)) {
-    return Error{ErrorCode::kCellUsage, "--override: allowed are above 0 to 145", {}};
-  }
+  if (const Status valid = bridge::CheckOverride(options.override_percent, override_max); !valid)
+    return Error{ErrorCode::kCellUsage, "--override: " + valid.error().detail, {}};
   message.set_override_percent(options.override_percent);
   if (!options.simul.empty()) {
     const Result<v1::StepPlace> place = ParseStepPlace(options.simul);
@@ -122,7 +123,8 @@ Result<v1::SimulationOptions> OptionsMessage(const SimulateOptions& options) {
   if (!options.inputs_file.empty()) {
     const Result<std::string> text = bridge::ReadFile(options.inputs_file, kFileBytesMax);
     if (!text) return text.error();
-    if (Status parsed = bridge::ParseInputFile(*text, options.inputs_file, message); !parsed)
+    if (Status parsed = bridge::ParseInputFile(*text, options.inputs_file, override_max, message);
+        !parsed)
       return parsed.error();
   }
   return message;
@@ -182,7 +184,7 @@ int Simulate(const SimulateOptions& options) {
   Result<LoadedFiles> loaded = LoadFiles(options.files, options.slots, options.main_slot,
                                          options.family.empty() ? machine->family : options.family);
   if (!loaded) return Refuse(loaded.error());
-  const Result<v1::SimulationOptions> message = OptionsMessage(options);
+  const Result<v1::SimulationOptions> message = OptionsMessage(options, *loaded->family);
   if (!message) return Refuse(message.error());
   for (const v1::StepPlace* place : {&message->simul(), &message->breakpoint()}) {
     const bool there = place->program() == 0 ||

@@ -7,7 +7,7 @@
 #include "clients/cli/program_files.h"
 #include "clients/cli/terminal.h"
 #include "engine/core/number_text.h"
-#include "engine/simulation/families.h"
+#include "engine/families/families.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/setup.h"
 
@@ -81,7 +81,7 @@ nlohmann::ordered_json ParametersJson(const machine::MachineFamily& family,
 int ListParameters(const std::string& family_id, const std::string& profile_id, bool json) {
   if (family_id.empty()) {
     nlohmann::ordered_json families = nlohmann::ordered_json::array();
-    for (const machine::MachineFamily* family : simulation::Families()) {
+    for (const machine::MachineFamily* family : families::Families()) {
       if (json) {
         families.push_back(FamilyJson(*family));
         continue;

@@ -2,8 +2,8 @@
 
 #include <fstream>
 
-#include "engine/simulation/milling_text.h"
-#include "engine/simulation/stl.h"
+#include "engine/simulation/material/milling_text.h"
+#include "engine/simulation/material/stl.h"
 
 namespace rmlcell::cli {
 

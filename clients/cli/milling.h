@@ -2,7 +2,7 @@
 
 #include "clients/cli/local.h"
 #include "engine/machine/shape.h"
-#include "engine/simulation/milling_recorder.h"
+#include "engine/simulation/material/milling_recorder.h"
 
 // Block and tool of `simulate`, and the file that shows what is left.
 namespace rmlcell::cli {

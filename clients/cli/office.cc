@@ -11,16 +11,7 @@
 #include "clients/cli/terminal.h"
 #include "clients/cli/tool_answer.h"
 #include "engine/core/number_text.h"
-#include "engine/optimo/language/compiler.h"
-#include "engine/optimo/language/formatter.h"
-#include "engine/optimo/language/linker.h"
-#include "engine/optimo/language/source_map.h"
-#include "engine/optimo/offline/compensate.h"
-#include "engine/optimo/offline/contour_advice.h"
-#include "engine/optimo/offline/convert.h"
-#include "engine/optimo/offline/listing.h"
-#include "engine/optimo/offline/transform.h"
-#include "engine/optimo/offline/translate.h"
+#include "engine/families/families.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/header_date.h"
@@ -28,13 +19,13 @@
 namespace rmlcell::cli {
 namespace {
 
-constexpr const char* kMapExtension = ".MAP";
+using machine::FileForm;
 
-std::string WithExtension(const std::string& file, const char* extension) {
+std::string WithExtension(const std::string& file, std::string_view extension) {
   return std::filesystem::path(file).replace_extension(extension).string();
 }
 
-optimo::FileNames Names(const std::string& input, const std::string& output) {
+machine::FileNames Names(const std::string& input, const std::string& output) {
   const auto name = [](const std::string& path) {
     return std::filesystem::path(path).filename().string();
   };
@@ -50,32 +41,36 @@ Error NoBytesInJson() {
 }
 
 struct Source {
+  const machine::MachineFamily* family = nullptr;
   std::string text;
   bool inch = false;
+
+  const machine::Tools& tools() const { return *family->tools(); }
 };
 
 // The source of a file: an object is decompiled.
 Result<Source> ReadSource(const std::string& file) {
+  const auto family = families::FamilyWithTools(file);
+  if (!family) return family.error();
   Result<std::string> bytes = bridge::ReadFile(file, kFileBytesMax);
   if (!bytes) return bytes.error();
-  const optimo::FileForm form = optimo::FormOfFile(file, *bytes);
-  if (form != optimo::FileForm::kObject) {
-    return Source{*std::move(bytes), form == optimo::FileForm::kInchSource};
+  const FileForm form = (*family)->tools()->FormOf(file, *bytes);
+  if (form != FileForm::kObject) {
+    return Source{*family, *std::move(bytes), form == FileForm::kInchSource};
   }
-  Result<std::string> text = optimo::ObjectToSource(*bytes);
+  Result<std::string> text = (*family)->Decompile(*bytes);
   if (!text) return text.error();
-  return Source{*std::move(text), false};
+  return Source{*family, *std::move(text), false};
 }
 
 // The object of a file; its findings go into the answer. Nothing when it has errors.
-std::optional<optimo::Compilation> CompileFile(const std::string& file, const Source& source,
-                                               bool advice, ToolAnswer& answer) {
-  optimo::Compilation compiled = optimo::Compile(
-      source.text, file,
-      {.object_limit = optimo::kObjectLimitStandard,
-       .advice = advice,
-       .inch = source.inch,
-       .further_advice = optimo::ContourAdvice(optimo::ContourMachine::Standard())});
+std::optional<machine::CompiledProgram> CompileFile(const std::string& file, const Source& source,
+                                                    machine::CompileOptions options,
+                                                    ToolAnswer& answer) {
+  options.inch = source.inch;
+  machine::CompiledProgram compiled =
+      source.tools().Compile({.name = file, .bytes = source.text},
+                             machine::Parameters(source.family->parameters()), options);
   answer.Found(compiled.diagnostics, compiled.diagnostics_dropped, source.text);
   if (!compiled.ok) return std::nullopt;
   return compiled;
@@ -88,43 +83,49 @@ int Compile(const ToolOptions& options, bool map) {
   const Result<Source> source = ReadSource(file);
   if (!source) return Refuse(source.error());
   if (source->text.empty()) return Refuse({ErrorCode::kCellEmptyProgram, file, {}});
-  const std::string target = options.output.empty() ? WithExtension(file, ".O") : options.output;
+  const machine::FileExtensions& extensions = source->tools().extensions();
+  const std::string target =
+      options.output.empty() ? WithExtension(file, extensions.object) : options.output;
   if (options.json && target == "-") return Refuse(NoBytesInJson());
   ToolAnswer answer(file, options.json);
-  const auto compiled = CompileFile(file, *source, true, answer);
+  const auto compiled = CompileFile(file, *source, {.source_map = map}, answer);
   if (!compiled) return answer.Failed();
   if (map && target == "-")
     return Refuse({ErrorCode::kCellUsage, "--map: the object goes into no file", {}});
   if (map) {
-    const std::string bytes =
-        optimo::EncodeSourceMap(optimo::MapSource(source->text, source->inch, compiled->object));
-    if (const Status written = WriteWholeFile(WithExtension(target, kMapExtension), bytes);
-        !written) {
+    const std::string file_of_map = WithExtension(target, extensions.source_map);
+    if (const Status written = WriteWholeFile(file_of_map, compiled->source_map); !written)
       return Refuse(written.error());
-    }
   }
   return answer.Deliver(compiled->object, target,
                         "object of " + std::to_string(compiled->object.size()) + " bytes, " +
-                            std::to_string(compiled->module.step_count) + " steps");
+                            std::to_string(compiled->steps) + " steps");
 }
 
 int Decompile(const ToolOptions& options) {
   const std::string& file = options.file;
+  const auto family = families::FamilyWithTools(file);
+  if (!family) return Refuse(family.error());
+  const machine::Tools& tools = *(*family)->tools();
   const Result<std::string> bytes = bridge::ReadFile(file, kFileBytesMax);
   if (!bytes) return Refuse(bytes.error());
   // A map that is not there, cannot be read, or is of another object is passed over.
   const Result<std::string> map =
-      bridge::ReadFile(WithExtension(file, kMapExtension), kFileBytesMax);
-  const Result<optimo::RecoveredSource> source =
-      optimo::RecoverSource(*bytes, map ? std::optional<std::string_view>(*map) : std::nullopt);
+      bridge::ReadFile(WithExtension(file, tools.extensions().source_map), kFileBytesMax);
+  const Result<machine::RecoveredSource> source =
+      tools.Decompile(*bytes, map ? std::optional<std::string_view>(*map) : std::nullopt);
   if (!source) return Refuse(source.error());
   return ToolAnswer(file, options.json)
       .Deliver(source->text, OrStandardOutput(options.output), "source of " + file);
 }
 
 int Link(const LinkOptions& options) {
+  const auto family = families::FamilyWithTools(options.files.front());
+  if (!family) return Refuse(family.error());
+  const machine::Tools& tools = *(*family)->tools();
   const Result<LoadedFiles> loaded =
-      LoadFiles(options.files, options.slots, options.main_slot, "optimo", EmptyInFolders::kTaken);
+      LoadFiles(options.files, options.slots, options.main_slot, std::string((*family)->info().id),
+                EmptyInFolders::kTaken);
   if (!loaded) return Refuse(loaded.error());
   if (options.json && options.output == "-") return Refuse(NoBytesInJson());
   ToolAnswer answer(options.files.front(), options.json);
@@ -149,26 +150,27 @@ int Link(const LinkOptions& options) {
       good = false;
       return std::nullopt;
     }
-    const optimo::FileForm form = optimo::FormOfFile(program->file_name, *program->bytes);
-    if (form == optimo::FileForm::kObject) return objects[slot] = *program->bytes;
+    const FileForm form = tools.FormOf(program->file_name, *program->bytes);
+    if (form == FileForm::kObject) return objects[slot] = *program->bytes;
     const auto compiled =
-        CompileFile(program->file_name, {*program->bytes, form == optimo::FileForm::kInchSource},
-                    false, answer);
+        CompileFile(program->file_name, {*family, *program->bytes, form == FileForm::kInchSource},
+                    {.advice = false}, answer);
     if (!compiled) {
       good = false;
       return std::nullopt;
     }
     return objects[slot] = compiled->object;
   };
-  const Result<optimo::Executable> linked = optimo::Link(loaded->main_slot, lookup, {});
+  const Result<machine::LinkedProgram> linked =
+      tools.Link(loaded->main_slot, lookup, machine::Parameters((*family)->parameters()));
   if (!good) return answer.Failed();  // said already
   if (!linked) return answer.Failed(linked.error());
   std::string what = "executable of program " + std::to_string(loaded->main_slot);
-  for (std::size_t i = 1; i < linked->modules.size(); ++i) {
-    what += (i == 1 ? " with FUNCTION " : ", ") + std::to_string(linked->modules[i].slot);
+  for (std::size_t i = 0; i < linked->functions.size(); ++i) {
+    what += (i == 0 ? " with FUNCTION " : ", ") + std::to_string(linked->functions[i]);
   }
   what += "; store it in slot " + std::to_string(loaded->main_slot + kExecutableOffset);
-  return answer.Deliver(optimo::EncodeExecutable(*linked), options.output, what);
+  return answer.Deliver(linked->executable, options.output, what);
 }
 
 int Format(const FormatOptions& options) {
@@ -176,18 +178,19 @@ int Format(const FormatOptions& options) {
   for (const std::string& file : options.files) {
     const Result<std::string> text = bridge::ReadFile(file, kFileBytesMax);
     if (!text) return Refuse(text.error());
-    if (optimo::FormOfFile(file, *text) == optimo::FileForm::kObject) {
+    const auto family = families::FamilyWithTools(file);
+    if (!family) return Refuse(family.error());
+    const machine::Tools& tools = *(*family)->tools();
+    if (tools.FormOf(file, *text) == FileForm::kObject) {
       return Refuse({ErrorCode::kCellBadText,
                      file + " is an object; rmlcell decompile gives its source",
                      {}});
     }
     ToolAnswer answer(file, options.json);
-    optimo::Compilation read = optimo::Compile(*text, file, {.object_limit = 0, .advice = false});
-    const bool inch = optimo::FormOfFile(file, *text) == optimo::FileForm::kInchSource;
+    const machine::FormattedText formatted = tools.Format({.name = file, .bytes = *text});
     // It stays as it is where it cannot be read; say why.
-    const bool bad = !read.ok && !inch;
-    if (bad) answer.Found(read.diagnostics, read.diagnostics_dropped, *text);
-    const optimo::Formatting formatted = optimo::Format(*text);
+    const bool bad = !formatted.readable;
+    if (bad) answer.Found(formatted.diagnostics, formatted.diagnostics_dropped, *text);
     if (formatted.changed && !options.check_only) {
       if (const Status written = WriteWholeFile(file, formatted.text); !written)
         return Refuse(written.error());
@@ -203,7 +206,10 @@ int Format(const FormatOptions& options) {
 }
 
 int Convert(const std::vector<std::string>& arguments, bool json) {
-  const auto request = optimo::ReadConvertArguments(arguments);
+  const auto family = families::FamilyWithTools(arguments.empty() ? "" : arguments.front());
+  if (!family) return Refuse(family.error());
+  const machine::Tools& tools = *(*family)->tools();
+  const auto request = tools.ReadConvertArguments(arguments);
   if (!request) return Refuse(request.error());
   if (!*request) {
     Print(
@@ -212,24 +218,24 @@ int Convert(const std::vector<std::string>& arguments, bool json) {
         "convert FILE [OUT] /i     any other name, to inches; /m to millimetres");
     return kUsage;
   }
-  const optimo::ConvertRequest& wanted = **request;
+  const machine::ConvertRequest& wanted = **request;
   const Result<std::string> text = bridge::ReadFile(wanted.input, kFileBytesMax);
   if (!text) return Refuse({ErrorCode::kConvertInput, text.error().detail, {}});
-  if (optimo::FormOfFile(wanted.input, *text) == optimo::FileForm::kObject) {
+  if (tools.FormOf(wanted.input, *text) == FileForm::kObject) {
     return Refuse({ErrorCode::kCellBadText,
                    wanted.input + " is an object; rmlcell decompile gives its source",
                    {}});
   }
-  const optimo::Conversion converted =
-      optimo::Convert(*text, wanted.direction, Names(wanted.input, wanted.output));
+  const machine::RewrittenText converted =
+      tools.Convert(*text, wanted.direction, Names(wanted.input, wanted.output));
   ToolAnswer answer(wanted.input, json);
   answer.Found(converted.diagnostics, 0, *text);
   if (const Status written = WriteWholeFile(wanted.output, converted.text); !written) {
     return Refuse({ErrorCode::kConvertOutput, written.error().detail, {}});
   }
   return answer.Written(converted.text, wanted.output,
-                        wanted.direction == optimo::Direction::kToInch ? "inches and degrees"
-                                                                       : "millimetres and radians",
+                        wanted.direction == machine::Direction::kToInch ? "inches and degrees"
+                                                                        : "millimetres and radians",
                         HasErrors(converted.diagnostics) ? kProgramErrors : kGood);
 }
 
@@ -237,9 +243,11 @@ int Compensate(const ToolOptions& options) {
   const std::string& file = options.file;
   const Result<Source> source = ReadSource(file);
   if (!source) return Refuse(source.error());
-  const std::string target = options.output.empty() ? WithExtension(file, ".CMP") : options.output;
-  const optimo::Compensation made =
-      optimo::Compensate(source->text, Names(file, target), source->inch);
+  const machine::Tools& tools = source->tools();
+  const std::string target =
+      options.output.empty() ? WithExtension(file, tools.extensions().compensated) : options.output;
+  const machine::RewrittenText made =
+      tools.Compensate(source->text, Names(file, target), source->inch);
   ToolAnswer answer(file, options.json);
   answer.Found(made.diagnostics, 0, source->text);
   return made.ok ? answer.Deliver(made.text, target, "compensated") : answer.Failed();
@@ -248,12 +256,14 @@ int Compensate(const ToolOptions& options) {
 namespace {
 
 int Rewrite(const ToolOptions& options,
-            const std::function<optimo::Rewriting(const std::string&)>& rewrite) {
+            machine::RewrittenText (machine::Tools::*rewrite)(std::string_view,
+                                                              const machine::Displacement&) const,
+            const machine::Displacement& by) {
   const std::string& file = options.file;
   const Result<Source> source = ReadSource(file);
   if (!source) return Refuse(source.error());
   if (source->inch) return Refuse({ErrorCode::kSourceIsInch, file, {}});
-  const optimo::Rewriting made = rewrite(source->text);
+  const machine::RewrittenText made = (source->tools().*rewrite)(source->text, by);
   ToolAnswer answer(file, options.json);
   answer.Found(made.diagnostics, 0, source->text);
   return made.ok
@@ -277,28 +287,31 @@ int Transform(const TransformOptions& options) {
          {}});
   }
   if (!options.shift.empty()) {
-    std::array<double, 6> by{};
-    std::ranges::copy(options.shift, by.begin());
-    return Rewrite(options, [&](const std::string& text) { return optimo::Shift(text, by); });
+    std::array<double, 6> values{};
+    std::ranges::copy(options.shift, values.begin());
+    return Rewrite(options, &machine::Tools::Shift,
+                   {.move_mm = {values[0], values[1], values[2]},
+                    .turn_rad = {values[3], values[4], values[5]}});
   }
   if (options.move.empty() && options.turn.empty()) {
     return Refuse({ErrorCode::kCellUsage, "nothing to do: give --move, --turn or --shift", {}});
   }
-  std::array<double, 3> move{}, turn{};
-  std::ranges::copy(options.move, move.begin());
-  std::ranges::copy(options.turn, turn.begin());
-  const auto motion = motion::RigidMotionOf({move[0], move[1], move[2]}, turn[0], turn[1], turn[2]);
-  return Rewrite(options, [&](const std::string& text) { return optimo::Transform(text, motion); });
+  machine::Displacement by;
+  std::ranges::copy(options.move, by.move_mm.begin());
+  std::ranges::copy(options.turn, by.turn_rad.begin());
+  return Rewrite(options, &machine::Tools::Transform, by);
 }
 
 int List(const ToolOptions& options) {
   const Result<Source> source = ReadSource(options.file);
   if (!source) return Refuse(source.error());
   ToolAnswer answer(options.file, options.json);
-  const auto compiled = CompileFile(options.file, {source->text, false}, false, answer);
+  const auto compiled =
+      CompileFile(options.file, {source->family, source->text, false}, {.advice = false}, answer);
   if (!compiled) return answer.Failed();
-  return answer.Deliver(optimo::List(compiled->module), OrStandardOutput(options.output),
-                        "list of " + options.file);
+  const Result<std::string> listing = source->tools().List(compiled->object);
+  if (!listing) return answer.Failed(listing.error());
+  return answer.Deliver(*listing, OrStandardOutput(options.output), "list of " + options.file);
 }
 
 }  // namespace rmlcell::cli

@@ -9,6 +9,7 @@
 #include "clients/cli/terminal.h"
 #include "engine/core/letters.h"
 #include "engine/core/number_text.h"
+#include "engine/families/families.h"
 #include "proto/bridge/comparison.h"
 #include "proto/bridge/findings.h"
 
@@ -18,7 +19,9 @@ namespace {
 using Response = v1::DiffProgramsResponse;
 
 Result<bridge::ComparedProgram> ReadProgram(const std::string& file) {
-  const Result<LoadedFiles> loaded = LoadFiles({file}, {}, 0, "optimo");
+  const auto family = families::FamilyWithTools(file);
+  if (!family) return family.error();
+  const Result<LoadedFiles> loaded = LoadFiles({file}, {}, 0, std::string((*family)->info().id));
   if (!loaded) return loaded.error();
   return bridge::ComparedProgram{
       .file_name = file, .bytes = loaded->programs.front().bytes, .slot = loaded->main_slot};

@@ -16,7 +16,7 @@
 
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
-#include "engine/simulation/families.h"
+#include "engine/families/families.h"
 #include "proto/bridge/files.h"
 
 namespace rmlcell::cli {
@@ -92,13 +92,13 @@ Status WriteWholeFile(const std::string& path, std::string_view bytes) {
 Result<const machine::MachineFamily*> FamilyFor(const std::string& id,
                                                 const std::string& file_name) {
   if (!id.empty()) {
-    if (const machine::MachineFamily* family = simulation::FindFamily(id)) return family;
+    if (const machine::MachineFamily* family = families::FindFamily(id)) return family;
     std::string known;
-    for (const machine::MachineFamily* one : simulation::Families())
+    for (const machine::MachineFamily* one : families::Families())
       known += " " + std::string(one->info().id);
     return Error{ErrorCode::kCellUnknownFamily, "'" + id + "'; there are" + known, {}};
   }
-  if (const machine::MachineFamily* family = simulation::FamilyOfFileName(file_name)) return family;
+  if (const machine::MachineFamily* family = families::FamilyOfFileName(file_name)) return family;
   return Error{ErrorCode::kCellFamilyUnknownFromName, "'" + file_name + "': give --family", {}};
 }
 
@@ -144,7 +144,7 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files,
     std::ranges::sort(inside);
     for (const fs::path& path : inside) {
       const auto slot = SlotFromName(path);
-      const machine::MachineFamily* family = simulation::FamilyOfFileName(path.string());
+      const machine::MachineFamily* family = families::FamilyOfFileName(path.string());
       if (slot && family != nullptr && (wanted == nullptr || family == wanted) &&
           fs::is_regular_file(path, error)) {
         wanted = family;

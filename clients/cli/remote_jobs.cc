@@ -8,6 +8,7 @@
 #include "clients/cli/program_files.h"
 #include "clients/cli/remote_call.h"
 #include "clients/cli/terminal.h"
+#include "engine/families/families.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
 #include "rmlcell/v1/job.grpc.pb.h"
@@ -150,7 +151,9 @@ int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
   if (!wanted.inputs_file.empty()) {
     const Result<std::string> text = bridge::ReadFile(wanted.inputs_file, kFileBytesMax);
     if (!text) return Refuse(text.error());
-    if (Status parsed = bridge::ParseInputFile(*text, wanted.inputs_file, options); !parsed) {
+    if (Status parsed =
+            bridge::ParseInputFile(*text, wanted.inputs_file, families::OverrideMax(), options);
+        !parsed) {
       return Refuse(parsed.error());
     }
   }

@@ -10,6 +10,7 @@
 #include "clients/cli/terminal.h"
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
+#include "engine/families/families.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/setup.h"
@@ -150,7 +151,7 @@ v1::ProgramForm FormOf(const std::string& form, const std::string& output) {
   if (form == "object") return v1::PROGRAM_FORM_OBJECT;
   if (form == "executable") return v1::PROGRAM_FORM_EXECUTABLE;
   if (form == "listing") return v1::PROGRAM_FORM_LISTING;
-  if (form.empty() && bridge::IsObjectFileName(output)) return v1::PROGRAM_FORM_OBJECT;
+  if (form.empty() && families::IsObjectFileName(output)) return v1::PROGRAM_FORM_OBJECT;
   return v1::PROGRAM_FORM_SOURCE;
 }
 

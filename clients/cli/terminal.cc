@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "engine/core/hex.h"
 #include "engine/core/number_text.h"
 
 namespace rmlcell::cli {
@@ -54,14 +55,13 @@ std::string Paint(std::string_view text, Colour colour, bool on) {
 }
 
 std::string Visible(std::string_view text) {
-  constexpr std::string_view kDigits = "0123456789ABCDEF";
   std::string visible;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
     if (byte >= 0x20 && byte != 0x7F) {
       visible += c;
     } else {
-      visible += {'\\', 'x', kDigits[byte >> 4U], kDigits[byte & 15U]};
+      visible += "\\x" + HexByte(c);
     }
   }
   return visible;

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "clients/lsp/program_folder.h"
+#include "engine/families/families.h"
 #include "engine/machine/family.h"
 #include "engine/optimo/language/compiler.h"
 #include "engine/optimo/offline/translate.h"
-#include "engine/simulation/families.h"
 
 namespace rmlcell::lsp {
 namespace {
@@ -48,8 +48,7 @@ Findings CheckInch(const Document& document) {
 }  // namespace
 
 Family FamilyOf(const Document& document) {
-  const machine::MachineFamily* family =
-      simulation::FamilyOfFileName(FileNameOfUri(document.uri()));
+  const machine::MachineFamily* family = families::FamilyOfFileName(FileNameOfUri(document.uri()));
   if (family != nullptr) return family->info().id == "rml1" ? Family::kRml1 : Family::kOptimo;
   return document.language() == kRml1Language ? Family::kRml1 : Family::kOptimo;
 }
@@ -68,7 +67,7 @@ Findings CheckDocument(const Document& document) {
   const bool rml1 = FamilyOf(document) == Family::kRml1;
   if (!rml1 && optimo::FormOfFile(name, text) == optimo::FileForm::kInchSource)
     return CheckInch(document);
-  const machine::MachineFamily* family = simulation::FindFamily(rml1 ? "rml1" : "optimo");
+  const machine::MachineFamily* family = families::FindFamily(rml1 ? "rml1" : "optimo");
   machine::Translation translation = family->Translate(
       {.name = name, .bytes = text}, machine::Parameters(family->parameters()), {.advice = true});
   return {std::move(translation.diagnostics), translation.diagnostics_dropped};

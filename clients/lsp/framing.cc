@@ -13,12 +13,6 @@ namespace {
 constexpr std::string_view kMark = "Content-Length:";
 constexpr std::size_t kFirstRoom = std::size_t{1} << 20;  // no more is taken on a promise alone
 
-std::string_view Trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
 std::optional<std::size_t> ReadLength(std::string_view text) {
   const std::optional<long long> length = ParseInteger(text);
   if (!length || *length < 0) return std::nullopt;

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "engine/core/hex.h"
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
 
@@ -77,17 +78,13 @@ std::optional<std::string> PathOfUri(std::string_view uri) {
 
 std::string UriOfPath(std::string_view path) {
   constexpr std::string_view kPlain = "-._~/";
-  constexpr std::string_view kHex = "0123456789ABCDEF";
   std::string uri(kScheme);
   for (const char c : path) {
-    const auto byte = static_cast<unsigned char>(c);
     const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
     if (letter || kPlain.find(c) != std::string_view::npos) {
       uri += c;
     } else {
-      uri += '%';
-      uri += kHex[byte >> 4];
-      uri += kHex[byte & 15];
+      uri += '%' + HexByte(c);
     }
   }
   return uri;

@@ -31,21 +31,36 @@ constexpr bool IsIndexedByCode() {
 }
 static_assert(IsIndexedByCode(), "Lookup reads the row by its code");
 
+template <class Use>
+void ForEachRow(Use use) {
+  std::ranges::for_each(kCatalogue, use);
+  for (const ErrorTable& table : OwnErrorTables()) std::ranges::for_each(table.rows, use);
+}
+
 }  // namespace
 
 std::span<const CatalogueEntry> Catalogue() { return kCatalogue; }
 
+[[gnu::weak]] std::span<const ErrorTable> OwnErrorTables() { return {}; }
+
 const CatalogueEntry& Lookup(ErrorCode code) {
   const auto index = static_cast<std::size_t>(code);
-  RMLCELL_CHECK(index < kCatalogue.size());
-  return kCatalogue[index];
+  if (index < kCatalogue.size()) return kCatalogue[index];
+  RMLCELL_CHECK(index >= kOwnErrorFirst);
+  const std::size_t own = index - kOwnErrorFirst;
+  const std::span<const ErrorTable> tables = OwnErrorTables();
+  RMLCELL_CHECK(own / kOwnErrorsMax < tables.size());
+  const std::span<const CatalogueEntry> rows = tables[own / kOwnErrorsMax].rows;
+  RMLCELL_CHECK(own % kOwnErrorsMax < rows.size());
+  return rows[own % kOwnErrorsMax];
 }
 
 std::optional<ErrorCode> FindError(ErrorFamily family, int number) {
-  for (const CatalogueEntry& entry : kCatalogue) {
-    if (entry.family == family && entry.number == number) return entry.code;
-  }
-  return std::nullopt;
+  const CatalogueEntry* found = nullptr;
+  ForEachRow([&](const CatalogueEntry& entry) {
+    if (found == nullptr && entry.family == family && entry.number == number) found = &entry;
+  });
+  return found == nullptr ? std::nullopt : std::optional(found->code);
 }
 
 std::string_view FamilyPrefix(ErrorFamily family) {
@@ -56,8 +71,13 @@ std::string_view FamilyPrefix(ErrorFamily family) {
       return "RML1";
     case ErrorFamily::kCell:
       return "CELL";
+    default:
+      break;
   }
-  return "";
+  const auto table =
+      static_cast<std::size_t>(family) - static_cast<std::size_t>(ErrorFamily::kFirstOfTables);
+  const std::span<const ErrorTable> tables = OwnErrorTables();
+  return table < tables.size() ? tables[table].prefix : std::string_view{};
 }
 
 std::string_view SeverityName(Severity severity) {
@@ -146,7 +166,7 @@ std::vector<const CatalogueEntry*> FindByText(std::string_view text) {
   }
   if (!digits.empty() && (digits.front() == 'E' || digits.front() == 'e')) digits.remove_prefix(1);
   const auto number = ParseInteger(digits);
-  for (const CatalogueEntry& entry : kCatalogue) {
+  ForEachRow([&](const CatalogueEntry& entry) {
     const bool same_family =
         family.empty() || EqualIgnoringCase(family, FamilyPrefix(entry.family));
     const bool same_number = number && *number == entry.number && same_family;
@@ -154,7 +174,7 @@ std::vector<const CatalogueEntry*> FindByText(std::string_view text) {
         EqualIgnoringCase(text, ConstantName(entry.code))) {
       found.push_back(&entry);
     }
-  }
+  });
   return found;
 }
 

@@ -10,7 +10,12 @@ namespace rmlcell {
 
 // Every error, alarm and warning has one number, kept as the manuals print it (optimo.md section C,
 // rml1.md sections 4 and 6). Our own: 7000-7999 Optimo, 8000-8999 RML-1 advice, 9000-9999 the cell.
-enum class ErrorFamily { kOptimo, kRml1, kCell };
+enum class ErrorFamily {
+  kOptimo,
+  kRml1,
+  kCell,
+  kFirstOfTables,  // and up: of tables that machine families bring, in their order
+};
 
 // What the machine does about it; optimo.md section C explains each.
 enum class Severity {
@@ -45,6 +50,25 @@ struct CatalogueEntry {
 
 // All rows, in the order of engine/core/catalogue.def.
 std::span<const CatalogueEntry> Catalogue();
+
+// The codes of a machine family that stand in its own folder. Row n has the code OwnError(table, n)
+// and the family of that table.
+struct ErrorTable {
+  std::string_view prefix;  // "PLT"
+  std::span<const CatalogueEntry> rows;
+};
+inline constexpr int kOwnErrorFirst = 100'000;
+inline constexpr int kOwnErrorsMax = 10'000;  // of one table
+constexpr ErrorCode OwnError(int table, int row) {
+  return static_cast<ErrorCode>(kOwnErrorFirst + table * kOwnErrorsMax + row);
+}
+constexpr ErrorFamily OwnErrorFamily(int table) {
+  return static_cast<ErrorFamily>(static_cast<int>(ErrorFamily::kFirstOfTables) + table);
+}
+
+// By the number of the table. The registry of families defines this (engine/families/registry.cc);
+// a program that is linked without it has none.
+std::span<const ErrorTable> OwnErrorTables();
 
 const CatalogueEntry& Lookup(ErrorCode code);
 

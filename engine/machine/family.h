@@ -8,8 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/machine/program_file.h"
 #include "engine/machine/run.h"
 #include "engine/machine/shape.h"
+#include "engine/machine/tools.h"
 
 namespace rmlcell::machine {
 
@@ -22,6 +24,7 @@ struct FamilyInfo {
   bool has_schedules = false;       // laser schedules and process definitions
   bool checked_by_running = false;  // Translate does not follow the motion: CHECK runs the program
   bool hold_in_remote = false;      // the HOLD key works in mode REMOTE, too
+  double override_max_percent = 100.0;  // of the feed rate; the least is above 0
   // The machine's own codes for a number that is no slot, and for a slot without program. A machine
   // without program memory has none: the cell keeps its programs, and says so in its own words.
   ErrorCode no_slot = ErrorCode::kCellInvalidArgument;
@@ -34,28 +37,6 @@ inline InputKind HoldKey(const FamilyInfo& info, Mode mode) {
   const bool works = mode != Mode::kRemote || info.hold_in_remote;
   return works ? InputKind::kHold : InputKind::kStop;
 }
-
-// A program text or stream as it comes from a user.
-struct SourceFile {
-  std::string name{};  // decides units: .SI is inch
-  std::string_view bytes{};
-};
-
-// What the machine would store, and what there is to say about it.
-struct Translation {
-  bool ok = false;  // false: nothing may be stored
-  std::string object{};
-  std::vector<Diagnostic> diagnostics{};  // in order of place; at most kDiagnosticsMax
-  std::uint64_t diagnostics_dropped = 0;
-  std::vector<Figure> figures{};  // "steps", "object_bytes" ...
-  SourceNotes source{};           // empty: not asked for, or none
-};
-inline constexpr std::size_t kDiagnosticsMax = 1000;
-
-struct CheckOptions {
-  bool advice = true;   // lint findings of severity warning and advice
-  bool source = false;  // fill in Translation::source
-};
 
 // A process definition of a project: WORKDEF n, p with its parameters. OPT-3.01 to 3.08.
 struct ProcessDefinition {
@@ -125,7 +106,7 @@ struct StaleExecutable {
 };
 
 // One machine family. A new family is one folder under engine/ and one line in
-// engine/simulation/families.cc.
+// engine/families/registry.cc.
 // Stateless; every method may be called from several threads at once.
 class MachineFamily {
  public:
@@ -163,9 +144,13 @@ class MachineFamily {
     return {};
   }
 
-  // Checks a project and makes what its transfer would store.
+  // Checks a project and makes what its transfer would store. That of a machine whose programs are
+  // kept as they come: it has no schedules and no processes, and no other units.
   virtual TransferPlan PlanTransfer(const ProjectBundle& project, const Parameters& parameters,
-                                    const TransferOptions& options) const = 0;
+                                    const TransferOptions& options) const;
+
+  // The tools for program texts; null: programs are streams.
+  virtual const Tools* tools() const { return nullptr; }
 
   // Canonical source of an object. A family without objects of its own gives the bytes back.
   // Errors: ObjectCorrupt (7034).

@@ -5,7 +5,7 @@
 
 #include "engine/core/diagnostic.h"
 #include "engine/core/units.h"
-#include "engine/motion/planner.h"
+#include "engine/motion/planner/planner.h"
 
 namespace rmlcell::machine {
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-#include "engine/motion/planner.h"
+#include "engine/motion/planner/planner.h"
 
 namespace rmlcell::machine {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/motion/path.h"
+#include "engine/motion/geometry/path.h"
 
 namespace rmlcell::rml1 {
 namespace {

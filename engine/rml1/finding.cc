@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "engine/core/hex.h"
 #include "engine/core/number_text.h"
 
 namespace rmlcell::rml1 {
@@ -49,8 +50,7 @@ static_assert(IsIndexedByKind(), "one row per FindingKind, in its order");
 // 'X', or 0x9F where the byte is no printing character.
 std::string ByteText(unsigned char byte) {
   if (byte > 0x20 && byte < 0x7F) return {'\'', static_cast<char>(byte), '\''};
-  constexpr std::string_view kDigits = "0123456789ABCDEF";
-  return {'0', 'x', kDigits[byte >> 4U], kDigits[byte & 0xFU]};
+  return "0x" + HexByte(static_cast<char>(byte));
 }
 
 }  // namespace

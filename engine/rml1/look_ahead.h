@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "engine/motion/planner.h"
-#include "engine/motion/ring.h"
+#include "engine/core/ring.h"
+#include "engine/motion/planner/planner.h"
 #include "engine/rml1/action.h"
 #include "engine/rml1/profile.h"
 
@@ -87,7 +87,7 @@ class LookAhead {
 
   const Profile* profile_;
   motion::MachineLimits limits_;
-  motion::Ring<Motion> motions_;
+  Ring<Motion> motions_;
   Point end_;                    // of the last of them
   Chain chain_ = Chain::kAlone;  // that the last of them leaves open
   double override_percent_;

@@ -4,7 +4,7 @@
 
 #include "engine/core/result.h"
 #include "engine/machine/parameters.h"
-#include "engine/motion/feed_steps.h"
+#include "engine/motion/planner/feed_steps.h"
 #include "engine/rml1/command_reader.h"
 
 namespace rmlcell::rml1 {

@@ -1,7 +1,6 @@
 #include "engine/rml1/rml1_family.h"
 
 #include <algorithm>
-#include <set>
 
 #include "engine/rml1/figures.h"
 #include "engine/rml1/physical.h"
@@ -18,7 +17,8 @@ constexpr machine::FamilyInfo kInfo = {.id = "rml1",
                                        .axes = "X Y Z A",
                                        .has_executables = false,
                                        .has_schedules = false,
-                                       .hold_in_remote = true};  // it has no such mode
+                                       .hold_in_remote = true,  // it has no such mode
+                                       .override_max_percent = 145.0};
 
 Diagnostic Plain(ErrorCode code, std::string detail) {
   return {.code = code,
@@ -143,9 +143,6 @@ class MillFamily final : public machine::MachineFamily {
   machine::Translation Translate(const machine::SourceFile& file,
                                  const machine::Parameters& parameters,
                                  const machine::CheckOptions& options) const override;
-  machine::TransferPlan PlanTransfer(const machine::ProjectBundle& project,
-                                     const machine::Parameters& parameters,
-                                     const machine::TransferOptions& options) const override;
   Result<std::unique_ptr<machine::Run>> NewRun(machine::RunSetup setup,
                                                machine::RunObserver& observer) const override;
 };
@@ -188,44 +185,6 @@ machine::Translation MillFamily::Translate(const machine::SourceFile& file,
   translation.figures.push_back(
       {.name = "object_bytes", .unit = "bytes", .value = static_cast<double>(file.bytes.size())});
   return translation;
-}
-
-machine::TransferPlan MillFamily::PlanTransfer(const machine::ProjectBundle& project,
-                                               const machine::Parameters& parameters,
-                                               const machine::TransferOptions& /*options*/) const {
-  machine::TransferPlan plan;
-  const auto refuse = [&plan](std::string detail, const std::string& file, int slot) {
-    plan.diagnostics.push_back(Plain(ErrorCode::kCellInvalidArgument, std::move(detail)));
-    plan.diagnostics.back().file = file;
-    plan.diagnostics.back().program = slot;
-    plan.ok = false;
-  };
-  plan.ok = true;
-  if (!project.schedules.empty()) refuse("a mill has no laser schedules", {}, 0);
-  if (!project.processes.empty()) refuse("a mill has no process definitions", {}, 0);
-  std::set<int> slots;
-  for (const machine::ProjectProgram& program : project.programs) {
-    const std::string& name = program.file.name;
-    const int slot = program.slot;
-    if (!IsSlot(slot))
-      refuse("slot " + std::to_string(slot) + " is not one of 1 to 99", name, slot);
-    if (!slots.insert(slot).second) {
-      refuse("slot " + std::to_string(slot) + " has two programs", name, slot);
-    }
-    if (program.inch) refuse("a stream is in units of its machine, not in inches", name, slot);
-    machine::Translation translation = Translate(program.file, parameters, {});
-    for (Diagnostic& diagnostic : translation.diagnostics) {
-      diagnostic.program = slot;
-      if (plan.diagnostics.size() < machine::kDiagnosticsMax) {
-        plan.diagnostics.push_back(std::move(diagnostic));
-      }
-    }
-    plan.ok = plan.ok && translation.ok;
-    plan.programs.push_back(
-        {.slot = slot, .source = translation.object, .object = std::move(translation.object)});
-  }
-  if (!plan.ok) plan.programs.clear();  // every program or none
-  return plan;
 }
 
 Result<std::unique_ptr<machine::Run>> MillFamily::NewRun(machine::RunSetup setup,

@@ -26,6 +26,7 @@ motion::MachineLimits MillLimits(const Profile& profile) {
   limits.tip_acceleration_mm_s2 = a;
   limits.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
   limits.settling_s = 0.0;
+  limits.corners = motion::MachineLimits::Corners::kThrough;
   limits.junction_jump_mm_s = profile.speed_jump_mm_s;
   limits.junction_jump_a_rad_s = rotary * profile.speed_jump_mm_s / a;
   limits.axes.speed = {xy, xy, z, profile.rotary_speed_deg_s * kRadPerDegree, 0.0};

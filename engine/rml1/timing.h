@@ -1,9 +1,9 @@
 #pragma once
 
 #include "engine/core/units.h"
-#include "engine/motion/machine_limits.h"
-#include "engine/motion/path.h"
-#include "engine/motion/speed_profile.h"
+#include "engine/motion/geometry/path.h"
+#include "engine/motion/kinematics/machine_limits.h"
+#include "engine/motion/profile/speed_profile.h"
 #include "engine/rml1/action.h"
 #include "engine/rml1/profile.h"
 

@@ -7,16 +7,17 @@
 #include <vector>
 
 #include "engine/machine/family.h"
-#include "engine/simulation/picture.h"
+#include "engine/simulation/picture/picture.h"
 #include "rmlcell/v1/program.pb.h"
 
-// What two Optimo programs do differently, the same over the wire and on a laptop.
+// What two programs of a family with tools do differently, the same over the wire and on a laptop.
 namespace rmlcell::bridge {
 
 struct ComparedProgram {
   std::string file_name;  // decides units and form, and is its title
   machine::Bytes bytes;
-  int slot = 1;  // where it runs, alone in the program memory
+  bool is_object = false;  // whatever the name says
+  int slot = 1;            // where it runs, alone in the program memory
 };
 
 struct ComparisonOptions {

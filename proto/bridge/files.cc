@@ -23,12 +23,6 @@ Error BadText(const std::string& name, int line, int column, const std::string& 
           SourceSpan{.line = line, .column = column}};
 }
 
-std::string_view Trim(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
 // ON, OPEN, TRUE, YES are 1; OFF, CLOSED, FALSE, NO are 0; else a number.
 std::optional<double> ValueOf(std::string_view text) {
   const std::string word = UpperCase(text);
@@ -125,7 +119,7 @@ Result<MachineFile> ParseMachineFile(std::string_view text, const std::string& n
   }
 }
 
-Status ParseInputFile(std::string_view text, const std::string& name,
+Status ParseInputFile(std::string_view text, const std::string& name, double override_max,
                       v1::SimulationOptions& options) {
   int line_number = 0;
   while (!text.empty()) {
@@ -133,7 +127,7 @@ Status ParseInputFile(std::string_view text, const std::string& name,
     const std::size_t end = std::min(text.find('\n'), text.size());
     std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
-    line = Trim(line.substr(0, line.find('#')));
+    line = Trimmed(line.substr(0, line.find('#')));
     if (line.empty()) continue;
     const std::size_t blank = line.find_first_of(" \t");
     const auto at = ParseDouble(line.substr(0, blank));
@@ -141,9 +135,9 @@ Status ParseInputFile(std::string_view text, const std::string& name,
       return BadText(name, line_number, 1,
                      "a line begins with the time in seconds, from 0: 0.5 IL[20] = 1");
     }
-    std::string_view rest = Trim(line.substr(blank));
+    std::string_view rest = Trimmed(line.substr(blank));
     const std::size_t equals = rest.find('=');
-    const std::string_view what = Trim(rest.substr(0, equals));
+    const std::string_view what = Trimmed(rest.substr(0, equals));
     v1::ScriptedInput input;
     input.set_at_s(*at);
     if (!SetKind(what, input)) {
@@ -157,11 +151,11 @@ Status ParseInputFile(std::string_view text, const std::string& name,
                                                                            : " takes no value"));
     }
     if (equals != std::string_view::npos) {
-      const auto value = ValueOf(Trim(rest.substr(equals + 1)));
+      const auto value = ValueOf(Trimmed(rest.substr(equals + 1)));
       if (!value)
         return BadText(name, line_number, 0, "the value is no number, ON, OFF, OPEN or CLOSED");
       input.set_value(*value);
-      if (const Status valid = CheckInputValue(input); !valid) {
+      if (const Status valid = CheckInputValue(input, override_max); !valid) {
         return BadText(name, line_number, static_cast<int>(blank) + 2, valid.error().detail);
       }
     }
@@ -170,7 +164,15 @@ Status ParseInputFile(std::string_view text, const std::string& name,
   return {};
 }
 
-Status CheckInputValue(const v1::ScriptedInput& input) {
+Status CheckOverride(double percent, double override_max) {
+  if (percent > 0.0 && percent <= override_max) return {};
+  return Error{ErrorCode::kCellInvalidArgument,
+               "the value is " + ShortestText(percent) + "; allowed are above 0 to " +
+                   ShortestText(override_max) + " %",
+               {}};
+}
+
+Status CheckInputValue(const v1::ScriptedInput& input, double override_max) {
   const double value = input.value();
   const auto wrong = [&](const std::string& allowed) {
     return Error{ErrorCode::kCellInvalidArgument,
@@ -183,8 +185,7 @@ Status CheckInputValue(const v1::ScriptedInput& input) {
       if (value != 0.0 && value != 1.0) return wrong("allowed are 0 and 1");
       break;
     case v1::ScriptedInput::KIND_OVERRIDE:
-      if (!(value > 0.0 && value <= kOverrideMax)) return wrong("allowed are above 0 to 145 %");
-      break;
+      return CheckOverride(value, override_max);
     default:
       if (!std::isfinite(value)) return wrong("a number is needed");
   }

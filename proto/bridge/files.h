@@ -27,14 +27,16 @@ Result<MachineFile> ParseMachineFile(std::string_view text, const std::string& n
 
 // Input file: one change a line, "SECONDS WHAT [= VALUE]", # begins a comment:
 //   0.5 IL[20] = 1      2.0 START      3.25 OVERRIDE = 55      4 DOOR = OPEN
-// Appends to options.inputs. Errors: CellBadText with line and column.
-Status ParseInputFile(std::string_view text, const std::string& name,
+// Appends to options.inputs. `override_max` as CheckInputValue. Errors: CellBadText with line and
+// column.
+Status ParseInputFile(std::string_view text, const std::string& name, double override_max,
                       v1::SimulationOptions& options);
 
-inline constexpr double kOverrideMax = 145.0;  // %
-
 // Whether the value of an input can be: logical ones and the door are 0 or 1, the feed override is
-// above 0 to 145 %, numbers are finite. Error: CellInvalidArgument.
-Status CheckInputValue(const v1::ScriptedInput& input);
+// above 0 to that of the family (percent), numbers are finite. Error: CellInvalidArgument.
+Status CheckInputValue(const v1::ScriptedInput& input, double override_max);
+
+// Error: CellInvalidArgument, "allowed are above 0 to 145 %".
+Status CheckOverride(double percent, double override_max);
 
 }  // namespace rmlcell::bridge

@@ -5,7 +5,7 @@
 
 #include "engine/core/diagnostic.h"
 #include "engine/machine/family.h"
-#include "engine/simulation/motion_check.h"
+#include "engine/simulation/run/motion_check.h"
 
 namespace google::rpc {
 class Status;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "engine/simulation/report.h"
-#include "engine/simulation/trace.h"
+#include "engine/simulation/report/report.h"
+#include "engine/simulation/report/trace.h"
 
 namespace rmlcell::v1 {
 class JobProgress;

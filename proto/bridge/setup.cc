@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "engine/core/number_text.h"
+#include "engine/families/families.h"
 #include "rmlcell/v1/job.pb.h"
 
 namespace rmlcell::bridge {
@@ -37,7 +38,7 @@ bool AddProgram(const SetupInput& input, const ProgramInput& program, machine::R
                 SetupOutcome& outcome) {
   machine::StoredProgram stored{
       .name = program.name, .object = program.bytes, .executable = program.executable};
-  if (program.is_source && !IsObjectFileName(program.file_name)) {
+  if (program.is_source && !families::IsObjectFileName(program.file_name)) {
     machine::Translation translation = input.family->Translate(
         {.name = program.file_name, .bytes = *program.bytes}, setup.parameters,
         {.advice = program.slot == input.main_program, .source = true});
@@ -59,10 +60,6 @@ bool AddProgram(const SetupInput& input, const ProgramInput& program, machine::R
 }
 
 }  // namespace
-
-bool IsObjectFileName(const std::string& file_name) {
-  return file_name.size() > 2 && (file_name.ends_with(".O") || file_name.ends_with(".o"));
-}
 
 Result<machine::Parameters> MakeParameters(const machine::MachineFamily& family,
                                            const std::string& profile,

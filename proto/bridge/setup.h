@@ -65,9 +65,6 @@ Result<machine::Parameters> MakeParameters(const machine::MachineFamily& family,
 machine::InputChange FromProto(const v1::ScriptedInput& input);
 machine::InputScript InputsOf(const v1::SimulationOptions& options);  // in order of time
 
-// True when the name says that the bytes are an object: ".O".
-bool IsObjectFileName(const std::string& file_name);
-
 // "VR[0..9]", "VI[99]", "Z1" -> the single names, at most 1,000. Error: CellInvalidArgument.
 Result<std::vector<std::string>> ExpandVariables(const std::vector<std::string>& names);
 

@@ -4,6 +4,8 @@
 
 #include <array>
 
+#include "engine/core/hex.h"
+
 namespace rmlcell::bridge {
 
 struct Sha256::Context {
@@ -27,13 +29,7 @@ std::string Sha256::Hex() {
   std::array<unsigned char, EVP_MAX_MD_SIZE> raw{};
   unsigned size = 0;
   EVP_DigestFinal_ex(context_->digest.get(), raw.data(), &size);
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string hex;
-  for (unsigned i = 0; i < size; ++i) {
-    hex += kDigits[raw[i] >> 4];
-    hex += kDigits[raw[i] & 15];
-  }
-  return hex;
+  return HexOf(std::string(raw.begin(), raw.begin() + size));
 }
 
 std::optional<std::string> ReadSha256(std::string_view text) {

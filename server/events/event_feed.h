@@ -12,8 +12,8 @@
 #include <thread>
 #include <vector>
 
+#include "server/base/steady_clock.h"
 #include "server/events/feed_rhythm.h"
-#include "server/steady_clock.h"
 #include "storage/store.h"
 
 namespace rmlcell::server {

@@ -1,10 +1,10 @@
 #include "server/jobs/assignment.h"
 
-#include "engine/simulation/families.h"
-#include "server/config.h"
+#include "engine/families/families.h"
+#include "server/base/config.h"
+#include "server/base/names.h"
 #include "server/jobs/job_book.h"
-#include "server/jobs/job_messages.h"
-#include "server/names.h"
+#include "server/records/job_messages.h"
 
 namespace rmlcell::server {
 namespace {
@@ -109,7 +109,7 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
   }
   std::string main_title;
   std::optional<std::string> main_executable;
-  const machine::MachineFamily* family = simulation::FindFamily(machine->family);
+  const machine::MachineFamily* family = families::FindFamily(machine->family);
   // A mill runs one stream; only a family whose programs call each other needs the whole memory.
   const bool only_read =
       family != nullptr && !family->info().checked_by_running && job.kind() == v1::JOB_KIND_CHECK;

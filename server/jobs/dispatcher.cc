@@ -1,13 +1,13 @@
 #include <spdlog/spdlog.h>
 
 #include "proto/bridge/findings.h"
-#include "server/config.h"
+#include "server/base/config.h"
+#include "server/base/executor.h"
+#include "server/base/names.h"
+#include "server/base/version.h"
 #include "server/events/event_feed.h"
-#include "server/executor.h"
 #include "server/jobs/dispatcher_worker.h"
-#include "server/jobs/job_messages.h"
-#include "server/names.h"
-#include "server/version.h"
+#include "server/records/job_messages.h"
 
 namespace rmlcell::server {
 namespace {

@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "rmlcell/v1/worker.pb.h"
-#include "server/steady_clock.h"
+#include "server/base/steady_clock.h"
 #include "storage/store.h"
 
 namespace rmlcell::server {

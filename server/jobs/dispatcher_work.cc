@@ -4,12 +4,12 @@
 #include <algorithm>
 
 #include "proto/bridge/findings.h"
-#include "server/config.h"
+#include "server/base/config.h"
+#include "server/base/names.h"
 #include "server/events/event_feed.h"
 #include "server/jobs/assignment.h"
 #include "server/jobs/dispatcher_worker.h"
-#include "server/jobs/job_messages.h"
-#include "server/names.h"
+#include "server/records/job_messages.h"
 
 namespace rmlcell::server {
 namespace {

@@ -6,18 +6,18 @@
 
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
-#include "engine/simulation/families.h"
+#include "engine/families/families.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/setup.h"
 #include "proto/bridge/sha256.h"
-#include "server/config.h"
-#include "server/jobs/file_family.h"
+#include "server/base/config.h"
+#include "server/base/names.h"
+#include "server/base/readable.h"
 #include "server/jobs/job_filter.h"
-#include "server/jobs/job_messages.h"
-#include "server/jobs/program_place.h"
-#include "server/names.h"
-#include "server/readable.h"
+#include "server/records/file_family.h"
+#include "server/records/job_messages.h"
+#include "server/records/program_place.h"
 
 namespace rmlcell::server {
 namespace {
@@ -61,10 +61,10 @@ Status CheckStepPlace(const v1::StepPlace& place, const std::string& field,
 }
 
 Status CheckSimulation(const v1::SimulationOptions& options, const machine::MachineFamily& family) {
-  const double override_percent = options.override_percent();
-  if (!(override_percent >= 0.0 && override_percent <= bridge::kOverrideMax)) {
-    return InvalidArgument("job.simulation.override_percent is " + ShortestText(override_percent) +
-                           ", allowed are above 0 to 145");
+  const double override_max = family.info().override_max_percent;
+  if (options.override_percent() != 0.0) {
+    const Status valid = bridge::CheckOverride(options.override_percent(), override_max);
+    if (!valid) return InvalidArgument("job.simulation.override_percent: " + valid.error().detail);
   }
   if (!(options.toolpath_tolerance_mm() >= 0.0 && options.toolpath_tolerance_mm() <= 100.0)) {
     return InvalidArgument("job.simulation.toolpath_tolerance_mm: allowed are 0 to 100");
@@ -97,7 +97,7 @@ Status CheckSimulation(const v1::SimulationOptions& options, const machine::Mach
     }
     if (input.index() < 0 || input.index() > 99)
       return InvalidArgument("job.simulation.inputs: index is 0 to 99");
-    if (const Status valid = bridge::CheckInputValue(input); !valid) {
+    if (const Status valid = bridge::CheckInputValue(input, override_max); !valid) {
       return InvalidArgument("job.simulation.inputs: " + valid.error().detail);
     }
   }
@@ -203,7 +203,7 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
   if (!machine_id) return machine_id.error();
   const Result<storage::MachineRecord> machine = store_.GetMachine(*machine_id);
   if (!machine) return machine.error();
-  const machine::MachineFamily* known = simulation::FindFamily(machine->family);
+  const machine::MachineFamily* known = families::FindFamily(machine->family);
   if (known == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
   const machine::MachineFamily& family = *known;
   if (Status valid = CheckSimulation(job.simulation(), family); !valid) return valid.error();
@@ -283,6 +283,19 @@ Result<v1::Job> JobBook::Get(std::string_view name) {
   const Result<storage::JobRecord> record = store_.GetJob(*id);
   if (!record) return record.error();
   return WithArtifacts(*record);
+}
+
+Status JobBook::CheckOverride(std::string_view name, double percent) {
+  const Result<std::int64_t> id = ParseJobName(name);
+  if (!id) return id.error();
+  const Result<storage::JobRecord> record = store_.GetJob(*id);
+  if (!record) return record.error();
+  const auto machine = store_.GetMachine(record->machine);
+  if (!machine) return machine.error();
+  const machine::MachineFamily* family = families::FindFamily(machine->family);
+  if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
+  const Status valid = bridge::CheckOverride(percent, family->info().override_max_percent);
+  return valid ? valid : InvalidArgument("override_percent: " + valid.error().detail);
 }
 
 Result<v1::Job> JobBook::WithArtifacts(const storage::JobRecord& record) {

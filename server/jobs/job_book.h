@@ -32,6 +32,9 @@ class JobBook {
               std::function<void(Result<v1::Job>)> done);
 
   Result<v1::Job> Get(std::string_view name);
+  // Whether the machine of the job can have this feed override. Errors: CellInvalidArgument,
+  // CellNotFound.
+  Status CheckOverride(std::string_view name, double percent);
   Result<v1::ListJobsResponse> List(const v1::ListJobsRequest& request);
 
   // A product, and what is known of it. CellNotFound with what there is.

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "engine/core/letters.h"
-#include "server/names.h"
-#include "server/readable.h"
+#include "server/base/names.h"
+#include "server/base/readable.h"
 
 namespace rmlcell::server {
 namespace {

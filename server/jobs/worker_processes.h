@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "engine/core/result.h"
-#include "server/steady_clock.h"
+#include "server/base/steady_clock.h"
 
 namespace rmlcell::server {
 

@@ -6,18 +6,14 @@
 #include <utility>
 
 #include "engine/core/units.h"
-#include "engine/optimo/language/compiler.h"
-#include "engine/optimo/language/linker.h"
-#include "engine/optimo/offline/fix_program.h"
-#include "engine/optimo/offline/translate.h"
-#include "engine/simulation/families.h"
+#include "engine/families/families.h"
 #include "proto/bridge/comparison.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/setup.h"
 #include "proto/bridge/sha256.h"
-#include "server/jobs/program_place.h"
-#include "server/names.h"
+#include "server/base/names.h"
 #include "server/programs/program_office.h"
+#include "server/records/program_place.h"
 
 namespace rmlcell::server {
 namespace {
@@ -30,7 +26,6 @@ constexpr std::chrono::seconds kTrialTimeMax{15};
 constexpr std::size_t kPictureElementsMax = 60'000;
 // The rest of an answer, within 4 MiB, for changes of ordinary length.
 constexpr std::size_t kChangesMax = 10'000;
-constexpr const char* kFamily = "optimo";
 
 v1::StaleExecutable::Reason ReasonOf(machine::StaleReason reason) {
   switch (reason) {
@@ -51,8 +46,11 @@ v1::StaleExecutable::Reason ReasonOf(machine::StaleReason reason) {
 // The objects that a link may take, and what was said while they were made.
 class LinkMaterial {
  public:
+  LinkMaterial(const machine::Tools& tools, const machine::Parameters& parameters)
+      : tools_(tools), parameters_(parameters) {}
+
   // Those of the request. Error: as MemoryOffice::Link.
-  Status Add(const v1::LinkProgramRequest& request, std::uint32_t object_limit) {
+  Status Add(const v1::LinkProgramRequest& request) {
     for (const v1::LinkProgramRequest::Part& part : request.programs()) {
       if (!IsSlot(part.slot())) {
         return Error{
@@ -69,7 +67,6 @@ class LinkMaterial {
       }
       sources_.emplace(part.slot(), &program);
     }
-    object_limit_ = object_limit;
     return {};
   }
 
@@ -94,7 +91,7 @@ class LinkMaterial {
   bool good() const { return !HasErrors(findings_); }
 
   // Compiles what is asked for, and nothing else (OPT-9.02).
-  optimo::ObjectLookup Objects() {
+  machine::ObjectLookup Objects() {
     return [this](int slot) -> std::optional<std::string_view> {
       if (const auto source = sources_.find(slot); source != sources_.end()) {
         Compile(slot, *source->second);
@@ -113,10 +110,10 @@ class LinkMaterial {
 
   void Compile(int slot, const v1::ProgramText& program) {
     const bool inch =
-        optimo::FormOfFile(program.file_name(), program.content()) == optimo::FileForm::kInchSource;
-    optimo::Compilation compiled =
-        optimo::Compile(program.content(), program.file_name(),
-                        {.object_limit = object_limit_, .advice = false, .inch = inch});
+        tools_.FormOf(program.file_name(), program.content()) == machine::FileForm::kInchSource;
+    machine::CompiledProgram compiled =
+        tools_.Compile({.name = program.file_name(), .bytes = program.content()}, parameters_,
+                       {.advice = false, .inch = inch});
     if (compiled.ok) objects_[slot] = std::move(compiled.object);
     dropped_ += compiled.diagnostics_dropped;
     for (Diagnostic& finding : compiled.diagnostics) {
@@ -125,8 +122,9 @@ class LinkMaterial {
     }
   }
 
+  const machine::Tools& tools_;
+  const machine::Parameters& parameters_;
   std::map<int, const v1::ProgramText*> sources_;  // of the request, not compiled yet
-  std::uint32_t object_limit_ = 0;
   std::map<int, std::string> objects_;
   std::vector<Diagnostic> findings_;
   std::uint64_t dropped_ = 0;
@@ -140,14 +138,12 @@ Result<v1::FixProgramResponse> MemoryOffice::Fix(const v1::FixProgramRequest& re
   const auto first =
       shelf_.Translate(request.family(), request.machine(), program, !request.errors_only());
   if (!first) return first.error();
-  const machine::MachineFamily* named = simulation::FamilyOfFileName(program.file_name());
-  if (named != nullptr && !named->info().has_executables) {
-    return InvalidArgument("a stream of " + std::string(named->info().title) +
-                           " has nothing to fix");
-  }
+  const auto family = families::FamilyWithTools(program.file_name());
+  if (!family) return family.error();
+  const machine::Tools& tools = *(*family)->tools();
   if (IsObject(program))
     return Error{ErrorCode::kCellBadText, program.file_name() + " is an object, not a source", {}};
-  if (const Status good = optimo::CheckIsText(program.file_name(), program.content()); !good)
+  if (const Status good = tools.CheckIsText(program.file_name(), program.content()); !good)
     return good.error();
   const auto check = [&](const machine::SourceFile& file) {
     v1::ProgramText text = program;
@@ -156,8 +152,8 @@ Result<v1::FixProgramResponse> MemoryOffice::Fix(const v1::FixProgramRequest& re
         shelf_.Translate(request.family(), request.machine(), text, !request.errors_only());
     return checked ? *std::move(checked) : *first;  // the machine went away meanwhile: as it was
   };
-  optimo::Fixing fixing =
-      optimo::FixProgram({.name = program.file_name(), .bytes = program.content()}, check);
+  machine::RepairedText fixing =
+      tools.Fix({.name = program.file_name(), .bytes = program.content()}, check);
   v1::FixProgramResponse response;
   response.set_content(std::move(fixing.text));
   for (const Diagnostic& finding : fixing.fixed) *response.add_fixed() = bridge::ToProto(finding);
@@ -172,39 +168,38 @@ Result<v1::LinkProgramResponse> MemoryOffice::Link(const v1::LinkProgramRequest&
     return Error{
         ErrorCode::kProgramNumber, "program number is " + std::to_string(request.slot()), {}};
   }
-  std::uint32_t object_limit = optimo::kObjectLimitStandard;
-  optimo::LinkOptions options;
+  const auto usual = families::FamilyWithTools({});
+  if (!usual) return usual.error();
+  const machine::MachineFamily* family = *usual;
+  machine::Parameters parameters(family->parameters());
   std::vector<storage::ProgramRecord> memory;
   if (!request.machine().empty()) {
     const Result<std::string> id = ParseMachineName(request.machine());
     if (!id) return id.error();
     const auto machine = store_.GetMachine(*id);
     if (!machine) return machine.error();
-    if (machine->family != kFamily) {
+    family = families::FindFamily(machine->family);
+    if (family == nullptr || family->tools() == nullptr) {
       return Error{
           ErrorCode::kCellPrecondition, "a " + machine->family + " machine has no executables", {}};
     }
-    const auto parameters = bridge::MakeParameters(*simulation::FindFamily(kFamily),
-                                                   machine->profile, machine->parameters);
-    if (!parameters) return parameters.error();
-    object_limit = static_cast<std::uint32_t>(parameters->Number("OBJECT_LIMIT"));
-    options.executable_limit = static_cast<std::uint32_t>(parameters->Number("EXECUTABLE_LIMIT"));
-    options.rotary_table = parameters->Word("ROTARY_TABLE") == "ON";
+    auto made = bridge::MakeParameters(*family, machine->profile, machine->parameters);
+    if (!made) return made.error();
+    parameters = *std::move(made);
     auto stored = store_.GetProgramMemory(*id);
     if (!stored) return stored.error();
     memory = *std::move(stored);
   }
-  LinkMaterial material;
-  if (const Status added = material.Add(request, object_limit); !added) return added.error();
+  LinkMaterial material(*family->tools(), parameters);
+  if (const Status added = material.Add(request); !added) return added.error();
   for (storage::ProgramRecord& program : memory)
     material.AddStored(program.slot, std::move(program.object));
   v1::LinkProgramResponse response;
-  const Result<optimo::Executable> linked =
-      optimo::Link(request.slot(), material.Objects(), options);
+  Result<machine::LinkedProgram> linked =
+      family->tools()->Link(request.slot(), material.Objects(), parameters);
   if (linked) {
-    response.set_executable(optimo::EncodeExecutable(*linked));
-    for (std::size_t i = 1; i < linked->modules.size(); ++i)
-      response.add_functions(linked->modules[i].slot);
+    response.set_executable(std::move(linked->executable));
+    for (const int slot : linked->functions) response.add_functions(slot);
   } else if (material.good()) {  // else the program that could not be compiled is reported
     material.Report(linked.error());
   }
@@ -218,7 +213,7 @@ Result<v1::ListStaleExecutablesResponse> MemoryOffice::ListStale(
   if (!id) return id.error();
   const auto machine = store_.GetMachine(*id);
   if (!machine) return machine.error();
-  const machine::MachineFamily* family = simulation::FindFamily(machine->family);
+  const machine::MachineFamily* family = families::FindFamily(machine->family);
   v1::ListStaleExecutablesResponse response;
   if (family == nullptr || !family->info().has_executables) return response;
   auto memory = store_.GetProgramMemory(*id);
@@ -267,7 +262,9 @@ Result<v1::DecompileProgramResponse> MemoryOffice::Decompile(
   } else if (request.object().empty()) {
     return Error{ErrorCode::kCellEmptyProgram, "give an object, or the name of a program", {}};
   }
-  Result<std::string> text = simulation::FindFamily(kFamily)->Decompile(request.object());
+  const auto family = families::FamilyWithTools({});
+  if (!family) return family.error();
+  Result<std::string> text = (*family)->Decompile(request.object());
   if (!text) return text.error();
   response.set_content(*std::move(text));
   return response;
@@ -278,7 +275,8 @@ Result<MemoryOffice::StoredObject> MemoryOffice::ObjectOf(const std::string& nam
   if (!place) return place.error();
   if (place->executable)
     return InvalidArgument("executables are not compared; name the program of its object");
-  if (place->machine.family != kFamily) {
+  const machine::Tools* tools = place->family->tools();
+  if (tools == nullptr) {
     return Error{ErrorCode::kCellPrecondition,
                  "programs of a " + place->machine.family + " machine are not compared",
                  {}};
@@ -290,7 +288,9 @@ Result<MemoryOffice::StoredObject> MemoryOffice::ObjectOf(const std::string& nam
   }
   const std::string title =
       program->source_name.empty() ? std::to_string(place->slot) : program->source_name;
-  return StoredObject{title.substr(0, title.find_last_of('.')), std::move(program->object)};
+  return StoredObject{
+      title.substr(0, title.find_last_of('.')) + std::string(tools->extensions().object),
+      std::move(program->object)};
 }
 
 ProgramResult<v1::DiffProgramsResponse> MemoryOffice::Diff(const v1::DiffProgramsRequest& request) {
@@ -300,16 +300,16 @@ ProgramResult<v1::DiffProgramsResponse> MemoryOffice::Diff(const v1::DiffProgram
     if (sides[i]->program_case() == v1::DiffProgramsRequest::Side::kName) {
       Result<StoredObject> stored = ObjectOf(sides[i]->name());
       if (!stored) return stored.error();
-      programs[i] = {.file_name = stored->title + ".O",
+      programs[i] = {.file_name = stored->file_name,
                      .bytes = std::make_shared<const std::string>(std::move(stored->object))};
       continue;
     }
     const v1::ProgramText& text = sides[i]->text();
     if (text.content().empty()) return Error{ErrorCode::kCellEmptyProgram, text.file_name(), {}};
-    const bool object =
-        text.form() == v1::PROGRAM_FORM_OBJECT && !bridge::IsObjectFileName(text.file_name());
-    programs[i] = {.file_name = text.file_name() + (object ? ".O" : ""),
-                   .bytes = std::make_shared<const std::string>(text.content())};
+    const bool object = text.form() == v1::PROGRAM_FORM_OBJECT;
+    programs[i] = {.file_name = text.file_name(),
+                   .bytes = std::make_shared<const std::string>(text.content()),
+                   .is_object = object};
   }
   const auto until = std::chrono::steady_clock::now() + kTrialTimeMax;
   Result<bridge::ComparisonOutcome> made = bridge::ComparePrograms(

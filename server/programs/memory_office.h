@@ -38,7 +38,7 @@ class MemoryOffice {
 
  private:
   struct StoredObject {
-    std::string title;
+    std::string file_name;
     std::string object;
   };
   Result<StoredObject> ObjectOf(const std::string& name);

@@ -5,13 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "engine/optimo/language/compiler.h"
-#include "engine/optimo/language/formatter.h"
-#include "engine/optimo/offline/compensate.h"
-#include "engine/optimo/offline/convert.h"
-#include "engine/optimo/offline/listing.h"
-#include "engine/optimo/offline/transform.h"
-#include "engine/optimo/offline/translate.h"
+#include "engine/families/families.h"
 #include "proto/bridge/findings.h"
 
 namespace rmlcell::server {
@@ -21,156 +15,154 @@ v1::Findings FindingsOf(const std::vector<Diagnostic>& findings, std::uint64_t d
   return bridge::FindingsOf(!HasErrors(findings), findings, dropped, {});
 }
 
-bool IsInch(const v1::ProgramText& program) {
-  return optimo::FormOfFile(program.file_name(), program.content()) ==
-         optimo::FileForm::kInchSource;
-}
+using machine::FileForm;
 
-Status CheckText(const v1::ProgramText& program) {
-  if (program.content().empty())
-    return Error{ErrorCode::kCellEmptyProgram, program.file_name(), {}};
-  if (IsObject(program))
-    return InvalidArgument("an object is no source; DecompileProgram gives its source");
-  return {};
-}
-
-Status CheckMetricText(const v1::ProgramText& program) {
-  if (const Status good = CheckText(program); !good) return good;
-  if (IsInch(program)) return Error{ErrorCode::kSourceIsInch, program.file_name(), {}};
-  return {};
-}
-
-struct Offset {
-  motion::MachineVector move;    // mm
-  std::array<double, 3> turn{};  // about Z, Y, X, rad
+// A text that one of the tools is asked for.
+struct ToolText {
+  const machine::MachineFamily* family = nullptr;
+  const machine::Tools* tools = nullptr;
+  machine::SourceFile file;
+  bool inch = false;
 };
 
-Result<Offset> OffsetOf(const v1::Point& translation,
-                        const google::protobuf::RepeatedField<double>& rotation) {
+Result<ToolText> AnyForm(const v1::ProgramText& program) {
+  if (program.content().empty())
+    return Error{ErrorCode::kCellEmptyProgram, program.file_name(), {}};
+  const Result<const machine::MachineFamily*> family =
+      families::FamilyWithTools(program.file_name());
+  if (!family) return family.error();
+  const machine::Tools* tools = (*family)->tools();
+  const FileForm form = tools->FormOf(program.file_name(), program.content());
+  return ToolText{*family,
+                  tools,
+                  {.name = program.file_name(), .bytes = program.content()},
+                  form == FileForm::kInchSource};
+}
+
+Result<ToolText> SourceText(const v1::ProgramText& program) {
+  Result<ToolText> text = AnyForm(program);
+  if (text && IsObject(program))
+    return InvalidArgument("an object is no source; DecompileProgram gives its source");
+  return text;
+}
+
+Result<ToolText> MetricText(const v1::ProgramText& program) {
+  Result<ToolText> text = SourceText(program);
+  if (text && text->inch) return Error{ErrorCode::kSourceIsInch, program.file_name(), {}};
+  return text;
+}
+
+Result<machine::Displacement> DisplacementOf(
+    const v1::Point& translation, const google::protobuf::RepeatedField<double>& rotation) {
   if (!rotation.empty() && rotation.size() != 3) {
     return InvalidArgument("rotation has " + std::to_string(rotation.size()) +
                            " values, needs none or three");
   }
-  Offset offset{{translation.x(), translation.y(), translation.z()}, {}};
-  std::ranges::copy(rotation, offset.turn.begin());
-  for (const double value : {offset.move.x(), offset.move.y(), offset.move.z(), offset.turn[0],
-                             offset.turn[1], offset.turn[2]}) {
-    if (!std::isfinite(value)) return InvalidArgument("translation and rotation must be finite");
-  }
-  return offset;
+  machine::Displacement by{.move_mm = {translation.x(), translation.y(), translation.z()}};
+  std::ranges::copy(rotation, by.turn_rad.begin());
+  const auto finite = [](double value) { return std::isfinite(value); };
+  if (!std::ranges::all_of(by.move_mm, finite) || !std::ranges::all_of(by.turn_rad, finite))
+    return InvalidArgument("translation and rotation must be finite");
+  return by;
+}
+
+template <class Response>
+Response ResponseOf(machine::RewrittenText made) {
+  Response response;
+  response.set_content(std::move(made.text));
+  *response.mutable_findings() = FindingsOf(made.diagnostics);
+  return response;
 }
 
 }  // namespace
 
 bool IsObject(const v1::ProgramText& program) {
-  return program.form() == v1::PROGRAM_FORM_OBJECT ||
-         optimo::FormOfFile(program.file_name(), program.content()) == optimo::FileForm::kObject;
+  if (program.form() == v1::PROGRAM_FORM_OBJECT) return true;
+  const auto family = families::FamilyWithTools(program.file_name());
+  return family &&
+         (*family)->tools()->FormOf(program.file_name(), program.content()) == FileForm::kObject;
 }
 
 Result<v1::FormatProgramResponse> FormatText(const v1::FormatProgramRequest& request) {
-  const v1::ProgramText& program = request.program();
-  if (const Status good = CheckText(program); !good) return good.error();
-  const optimo::Compilation read =
-      optimo::Compile(program.content(), program.file_name(), {.object_limit = 0, .advice = false});
+  const Result<ToolText> text = SourceText(request.program());
+  if (!text) return text.error();
+  machine::FormattedText made = text->tools->Format(text->file);
   v1::FormatProgramResponse response;
-  response.set_content(optimo::Format(program.content()).text);
-  // The numbers of an inch source are not for the control; only its form matters here.
-  if (!IsInch(program))
-    *response.mutable_findings() = FindingsOf(read.diagnostics, read.diagnostics_dropped);
+  response.set_content(std::move(made.text));
+  if (!text->inch)
+    *response.mutable_findings() = FindingsOf(made.diagnostics, made.diagnostics_dropped);
   return response;
 }
 
 Result<v1::ConvertProgramResponse> ConvertText(const v1::ConvertProgramRequest& request,
                                                const std::string& now) {
   const v1::ProgramText& program = request.program();
-  if (const Status good = CheckText(program); !good) return good.error();
+  const Result<ToolText> text = SourceText(program);
+  if (!text) return text.error();
   std::vector<std::string> arguments = {program.file_name().empty() ? "program"
                                                                     : program.file_name()};
   if (!request.output_name().empty()) arguments.push_back(request.output_name());
   if (request.target() == v1::ConvertProgramRequest::TARGET_METRIC) arguments.emplace_back("/m");
   if (request.target() == v1::ConvertProgramRequest::TARGET_INCH) arguments.emplace_back("/i");
-  const auto wanted = optimo::ReadConvertArguments(arguments);
+  const auto wanted = text->tools->ReadConvertArguments(arguments);
   if (!wanted) return wanted.error();
   if (!*wanted) return InvalidArgument("program.file_name is empty");
-  const optimo::Conversion made =
-      optimo::Convert(program.content(), (*wanted)->direction,
-                      optimo::FileNames{.input = (*wanted)->input,
-                                        .output = (*wanted)->output,
-                                        .date = request.date().empty() ? now : request.date()});
-  v1::ConvertProgramResponse response;
-  response.set_content(made.text);
+  auto response = ResponseOf<v1::ConvertProgramResponse>(
+      text->tools->Convert(program.content(), (*wanted)->direction,
+                           {.input = (*wanted)->input,
+                            .output = (*wanted)->output,
+                            .date = request.date().empty() ? now : request.date()}));
   response.set_file_name((*wanted)->output);
-  *response.mutable_findings() = FindingsOf(made.diagnostics);
   return response;
 }
 
 Result<v1::CompensateProgramResponse> CompensateText(const v1::CompensateProgramRequest& request,
                                                      const std::string& now) {
   const v1::ProgramText& program = request.program();
-  if (const Status good = CheckText(program); !good) return good.error();
-  const std::string output =
-      std::filesystem::path(program.file_name()).replace_extension(".CMP").string();
-  const optimo::Compensation made = optimo::Compensate(
-      program.content(),
-      optimo::FileNames{.input = program.file_name(), .output = output, .date = now},
-      IsInch(program));
-  v1::CompensateProgramResponse response;
-  response.set_content(made.text);
-  *response.mutable_findings() = FindingsOf(made.diagnostics);
-  return response;
+  const Result<ToolText> text = SourceText(program);
+  if (!text) return text.error();
+  const std::string output = std::filesystem::path(program.file_name())
+                                 .replace_extension(text->tools->extensions().compensated)
+                                 .string();
+  return ResponseOf<v1::CompensateProgramResponse>(text->tools->Compensate(
+      program.content(), {.input = program.file_name(), .output = output, .date = now},
+      text->inch));
 }
 
 Result<v1::TransformProgramResponse> TransformText(const v1::TransformProgramRequest& request) {
-  const v1::ProgramText& program = request.program();
-  if (const Status good = CheckMetricText(program); !good) return good.error();
-  const Result<Offset> by = OffsetOf(request.translation(), request.rotation());
+  const Result<ToolText> text = MetricText(request.program());
+  if (!text) return text.error();
+  const auto by = DisplacementOf(request.translation(), request.rotation());
   if (!by) return by.error();
-  const optimo::Rewriting made = optimo::Transform(
-      program.content(), motion::RigidMotionOf(by->move, by->turn[0], by->turn[1], by->turn[2]));
-  v1::TransformProgramResponse response;
-  response.set_content(made.text);
-  *response.mutable_findings() = FindingsOf(made.diagnostics);
-  return response;
+  return ResponseOf<v1::TransformProgramResponse>(text->tools->Transform(text->file.bytes, *by));
 }
 
 Result<v1::ShiftProgramResponse> ShiftText(const v1::ShiftProgramRequest& request) {
-  const v1::ProgramText& program = request.program();
-  if (const Status good = CheckMetricText(program); !good) return good.error();
-  const Result<Offset> by = OffsetOf(request.translation(), request.rotation());
+  const Result<ToolText> text = MetricText(request.program());
+  if (!text) return text.error();
+  const auto by = DisplacementOf(request.translation(), request.rotation());
   if (!by) return by.error();
-  const optimo::Rewriting made = optimo::Shift(
-      program.content(),
-      {by->move.x(), by->move.y(), by->move.z(), by->turn[0], by->turn[1], by->turn[2]});
-  v1::ShiftProgramResponse response;
-  response.set_content(made.text);
-  *response.mutable_findings() = FindingsOf(made.diagnostics);
-  return response;
+  return ResponseOf<v1::ShiftProgramResponse>(text->tools->Shift(text->file.bytes, *by));
 }
 
 Result<v1::MakeListingResponse> ListText(const v1::MakeListingRequest& request) {
-  const v1::ProgramText& program = request.program();
-  if (program.content().empty())
-    return Error{ErrorCode::kCellEmptyProgram, program.file_name(), {}};
+  const Result<ToolText> text = AnyForm(request.program());
+  if (!text) return text.error();
+  std::string object = request.program().content();
   v1::MakeListingResponse response;
-  if (IsObject(program)) {
-    Result<std::string> listing = ListingOf(program.content());
-    if (!listing) return listing.error();
-    response.set_content(*std::move(listing));
-    response.mutable_findings()->set_ok(true);
-    return response;
+  response.mutable_findings()->set_ok(true);
+  if (!IsObject(request.program())) {
+    machine::CompiledProgram compiled =
+        text->tools->Compile(text->file, machine::Parameters(text->family->parameters()),
+                             {.advice = false, .inch = text->inch, .any_size = true});
+    *response.mutable_findings() = FindingsOf(compiled.diagnostics, compiled.diagnostics_dropped);
+    if (!compiled.ok) return response;
+    object = std::move(compiled.object);
   }
-  const optimo::Compilation read =
-      optimo::Compile(program.content(), program.file_name(),
-                      {.object_limit = 0, .advice = false, .inch = IsInch(program)});
-  if (read.ok) response.set_content(optimo::List(read.module));
-  *response.mutable_findings() = FindingsOf(read.diagnostics, read.diagnostics_dropped);
+  Result<std::string> listing = text->tools->List(object);
+  if (!listing) return listing.error();
+  response.set_content(*std::move(listing));
   return response;
-}
-
-Result<std::string> ListingOf(const std::string& object) {
-  const Result<optimo::Module> module = optimo::DecodeObject(object);
-  if (!module) return module.error();
-  return optimo::List(*module);
 }
 
 }  // namespace rmlcell::server

@@ -33,6 +33,5 @@ Result<v1::ShiftProgramResponse> ShiftText(const v1::ShiftProgramRequest& reques
 
 // OPT-8.73. Errors: ObjectCorrupt (7034).
 Result<v1::MakeListingResponse> ListText(const v1::MakeListingRequest& request);
-Result<std::string> ListingOf(const std::string& object);
 
 }  // namespace rmlcell::server

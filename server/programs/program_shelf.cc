@@ -4,16 +4,16 @@
 
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
-#include "engine/simulation/families.h"
+#include "engine/families/families.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/setup.h"
 #include "proto/bridge/sha256.h"
-#include "server/config.h"
-#include "server/jobs/file_family.h"
-#include "server/jobs/job_messages.h"
-#include "server/jobs/program_place.h"
-#include "server/names.h"
+#include "server/base/config.h"
+#include "server/base/names.h"
 #include "server/programs/program_office.h"
+#include "server/records/file_family.h"
+#include "server/records/job_messages.h"
+#include "server/records/program_place.h"
 
 namespace rmlcell::server {
 namespace {
@@ -75,10 +75,10 @@ ProgramError FirstError(const machine::Translation& translation) {
 machine::Translation TranslateFor(const machine::MachineFamily& family,
                                   const machine::Parameters& parameters,
                                   const v1::ProgramText& program, bool advice) {
-  const bool is_object = program.form() == v1::PROGRAM_FORM_OBJECT;
-  return family.Translate(
-      {.name = is_object ? "program.O" : program.file_name(), .bytes = program.content()},
-      parameters, {.advice = advice, .source = true});
+  return family.Translate({.name = program.file_name(),
+                           .bytes = program.content(),
+                           .is_object = program.form() == v1::PROGRAM_FORM_OBJECT},
+                          parameters, {.advice = advice, .source = true});
 }
 
 // "44.S" is program 44, other names take the place of no program of the machine when there is room.
@@ -90,6 +90,47 @@ int SlotForCheck(const std::string& file_name, const std::vector<bridge::Program
       return slot;
   }
   return kSlotMax;
+}
+
+// A program in one of its forms, and the ending of the file that it would be.
+struct FormBytes {
+  std::string bytes;
+  v1::ProgramForm form = v1::PROGRAM_FORM_SOURCE;
+  std::string_view extension;
+  bool own_text = false;  // as it was stored
+};
+
+Result<FormBytes> BytesIn(v1::ProgramForm form, storage::ProgramRecord& program,
+                          const ProgramPlace& place, std::string_view name) {
+  const machine::MachineFamily& family = *place.family;
+  const machine::Tools* tools = family.tools();
+  if (form == v1::PROGRAM_FORM_EXECUTABLE) {
+    if (!program.executable || tools == nullptr)
+      return EmptySlot(family, "executable of " + std::string(name));
+    return FormBytes{std::move(*program.executable), form, tools->extensions().executable};
+  }
+  if (form == v1::PROGRAM_FORM_LISTING) {
+    if (tools == nullptr) {
+      return Error{ErrorCode::kCellPrecondition,
+                   "a " + place.machine.family + " program has no steps to list",
+                   {}};
+    }
+    Result<std::string> listing = tools->List(program.object);
+    if (!listing) return listing.error();
+    return FormBytes{*std::move(listing), form, tools->extensions().listing};
+  }
+  const std::string_view source_extension = FirstExtension(family.info());
+  if (form != v1::PROGRAM_FORM_OBJECT && (program.source || tools == nullptr)) {
+    return FormBytes{program.source ? std::move(*program.source) : std::move(program.object),
+                     v1::PROGRAM_FORM_SOURCE, source_extension, true};
+  }
+  if (form == v1::PROGRAM_FORM_SOURCE) {
+    Result<std::string> source = family.Decompile(program.object);
+    if (!source) return source.error();
+    return FormBytes{*std::move(source), form, source_extension};
+  }
+  return FormBytes{std::move(program.object), v1::PROGRAM_FORM_OBJECT,
+                   tools == nullptr ? source_extension : tools->extensions().object};
 }
 
 }  // namespace
@@ -128,9 +169,9 @@ ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
   if (!parameters) return parameters.error();
 
   const bool is_object =
-      put.form == v1::PROGRAM_FORM_OBJECT || bridge::IsObjectFileName(put.file_name);
+      put.form == v1::PROGRAM_FORM_OBJECT || families::IsObjectFileName(put.file_name);
   machine::Translation translation = family.Translate(
-      {.name = is_object ? "program.O" : BaseName(put.file_name), .bytes = put.bytes}, *parameters,
+      {.name = BaseName(put.file_name), .bytes = put.bytes, .is_object = is_object}, *parameters,
       {});
   if (!translation.ok) return FirstError(translation);
   for (Diagnostic& found : family.CheckSlot(place->slot)) {
@@ -239,61 +280,18 @@ Result<ProgramShelf::Content> ProgramShelf::Read(std::string_view name, v1::Prog
     return EmptySlot(*place->family, name);
   }
   if (place->executable) form = v1::PROGRAM_FORM_EXECUTABLE;
-  const machine::MachineFamily& family = *place->family;
-  const bool has_objects = family.info().has_executables;
-  const std::string base =
-      program->source_name.empty() ? std::to_string(place->slot) : TitleFrom(program->source_name);
-  Content content;
   const std::string object_sha256 = bridge::Sha256Hex(program->object);
-  switch (form) {
-    case v1::PROGRAM_FORM_EXECUTABLE:
-      if (!program->executable) {
-        return EmptySlot(family, "executable of " + std::string(name));
-      }
-      content = {.bytes = std::move(*program->executable),
-                 .form = form,
-                 .file_name = base + ".X",
-                 .sha256 = {}};
-      break;
-    case v1::PROGRAM_FORM_OBJECT:
-      content = {.bytes = std::move(program->object),
-                 .form = form,
-                 .file_name = base + ".O",
-                 .sha256 = {}};
-      break;
-    case v1::PROGRAM_FORM_LISTING: {
-      if (!has_objects) {
-        return Error{ErrorCode::kCellPrecondition,
-                     "a " + place->machine.family + " program has no steps to list",
-                     {}};
-      }
-      Result<std::string> listing = ListingOf(program->object);
-      if (!listing) return listing.error();
-      content = {
-          .bytes = *std::move(listing), .form = form, .file_name = base + ".LST", .sha256 = {}};
-      break;
-    }
-    default:
-      if (program->source || !has_objects) {
-        content = {
-            .bytes = program->source ? std::move(*program->source) : std::move(program->object),
-            .form = v1::PROGRAM_FORM_SOURCE,
-            .file_name = program->source_name.empty()
-                             ? base + std::string(FirstExtension(family.info()))
-                             : program->source_name,
-            .sha256 = {},
-            .own_text = true};
-      } else if (form == v1::PROGRAM_FORM_SOURCE) {
-        Result<std::string> source = family.Decompile(program->object);
-        if (!source) return source.error();
-        content = {
-            .bytes = std::move(*source), .form = form, .file_name = base + ".S", .sha256 = {}};
-      } else {
-        content = {.bytes = std::move(program->object),
-                   .form = v1::PROGRAM_FORM_OBJECT,
-                   .file_name = base + ".O",
-                   .sha256 = {}};
-      }
+  Result<FormBytes> made = BytesIn(form, *program, *place, name);
+  if (!made) return made.error();
+  Content content{.bytes = std::move(made->bytes),
+                  .form = made->form,
+                  .file_name = program->source_name,
+                  .sha256 = {},
+                  .own_text = made->own_text};
+  if (!made->own_text || content.file_name.empty()) {
+    const std::string base = program->source_name.empty() ? std::to_string(place->slot)
+                                                          : TitleFrom(program->source_name);
+    content.file_name = base + std::string(made->extension);
   }
   content.sha256 = bridge::Sha256Hex(content.bytes);
   content.object_sha256 = object_sha256;
@@ -354,13 +352,13 @@ Result<ProgramShelf::Subject> ProgramShelf::FindSubject(const std::string& famil
     if (!id) return id.error();
     auto machine = store_.GetMachine(*id);
     if (!machine) return machine.error();
-    subject.family = simulation::FindFamily(machine->family);
+    subject.family = families::FindFamily(machine->family);
     subject.record = *std::move(machine);
   } else if (!family_id.empty()) {
-    subject.family = simulation::FindFamily(family_id);
+    subject.family = families::FindFamily(family_id);
     if (subject.family == nullptr) return Error{ErrorCode::kCellUnknownFamily, family_id, {}};
   } else {
-    subject.family = simulation::FamilyOfFileName(program.file_name());
+    subject.family = families::FamilyOfFileName(program.file_name());
   }
   if (subject.family == nullptr)
     return Error{ErrorCode::kCellFamilyUnknownFromName, program.file_name(), {}};

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/machine/family.h"
-#include "engine/simulation/motion_check.h"
+#include "engine/simulation/run/motion_check.h"
 #include "proto/bridge/setup.h"
 #include "rmlcell/v1/program.pb.h"
 #include "server/programs/program_result.h"

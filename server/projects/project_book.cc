@@ -8,15 +8,14 @@
 #include <set>
 
 #include "engine/core/units.h"
-#include "engine/optimo/offline/translate.h"
-#include "engine/simulation/families.h"
+#include "engine/families/families.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/setup.h"
-#include "server/jobs/file_family.h"
-#include "server/jobs/job_messages.h"
-#include "server/jobs/update_mask.h"
-#include "server/names.h"
-#include "server/readable.h"
+#include "server/base/names.h"
+#include "server/base/readable.h"
+#include "server/records/file_family.h"
+#include "server/records/job_messages.h"
+#include "server/records/update_mask.h"
 
 namespace rmlcell::server {
 namespace {
@@ -31,8 +30,10 @@ constexpr std::array<std::string_view, 5> kProjectFields = {"title", "notes", "p
 // nobody.
 Status CheckUnits(const v1::ProjectProgram& program) {
   const std::string& name = program.source().file_name();
-  if (program.units() != v1::UNITS_METRIC ||
-      optimo::FormOfFile(name, program.source().content()) != optimo::FileForm::kInchSource) {
+  if (program.units() != v1::UNITS_METRIC) return {};
+  const auto family = families::FamilyWithTools(name);
+  if (!family || (*family)->tools()->FormOf(name, program.source().content()) !=
+                     machine::FileForm::kInchSource) {
     return {};
   }
   return InvalidArgument("program " + std::to_string(program.slot()) +
@@ -96,7 +97,7 @@ machine::ProcessDefinition DefinitionOf(const v1::ProjectProcess& process) {
 std::optional<ProgramError> FindFault(const v1::Project& project) {
   if (const Status good = CheckParts(project); !good) return ProgramError{good.error(), {}, 0};
   std::vector<Diagnostic> found;
-  for (const machine::MachineFamily* family : simulation::Families()) {
+  for (const machine::MachineFamily* family : families::Families()) {
     for (const v1::ProjectProcess& process : project.processes()) {
       std::ranges::move(family->CheckProcess(DefinitionOf(process)), std::back_inserter(found));
     }
@@ -263,7 +264,7 @@ ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(
   if (!machine_id) return machine_id.error();
   const auto machine = store_.GetMachine(*machine_id);
   if (!machine) return machine.error();
-  const machine::MachineFamily* family = simulation::FindFamily(machine->family);
+  const machine::MachineFamily* family = families::FindFamily(machine->family);
   if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
   const auto parameters = bridge::MakeParameters(*family, machine->profile, machine->parameters);
   if (!parameters) return parameters.error();

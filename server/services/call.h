@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "server/auth/caller.h"
-#include "server/executor.h"
+#include "server/base/executor.h"
 #include "server/services/rpc_status.h"
 
 // The wrapper that every method goes through: it admits the caller, runs the work where it may

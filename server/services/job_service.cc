@@ -2,11 +2,11 @@
 
 #include "proto/bridge/files.h"
 #include "rmlcell/v1/worker.pb.h"
+#include "server/base/names.h"
 #include "server/events/event_feed.h"
 #include "server/jobs/dispatcher.h"
 #include "server/jobs/job_book.h"
-#include "server/jobs/job_messages.h"
-#include "server/names.h"
+#include "server/records/job_messages.h"
 #include "server/services/job_streams.h"
 
 namespace rmlcell::server {
@@ -82,6 +82,10 @@ grpc::ServerUnaryReactor* JobService::Order(grpc::CallbackServerContext* context
   return Answer(room_, context, method, [this, name, kind, value, response](const Caller&) {
     const Result<std::int64_t> id = ParseJobName(name);
     if (!id) return ToGrpcStatus(id.error());
+    if (kind == v1::WorkerControl::KIND_OVERRIDE) {
+      if (const Status valid = book_.CheckOverride(name, value); !valid)
+        return ToGrpcStatus(valid.error());
+    }
     if (const Status ordered =
             dispatcher_.Control(*id, static_cast<v1::WorkerControl::Kind>(kind), value);
         !ordered) {
@@ -112,15 +116,8 @@ grpc::ServerUnaryReactor* JobService::ResumeJob(grpc::CallbackServerContext* con
 grpc::ServerUnaryReactor* JobService::SetJobOverride(grpc::CallbackServerContext* context,
                                                      const v1::SetJobOverrideRequest* request,
                                                      v1::Job* response) {
-  const double percent = request->override_percent();
-  if (!(percent > 0.0 && percent <= bridge::kOverrideMax)) {
-    return Answer(room_, context, *request, "JobService/SetJobOverride", [](const Caller&) {
-      return ToGrpcStatus(Error{
-          ErrorCode::kCellInvalidArgument, "override_percent: allowed are above 0 to 145", {}});
-    });
-  }
   return Order(context, "JobService/SetJobOverride", request->name(),
-               v1::WorkerControl::KIND_OVERRIDE, percent, response);
+               v1::WorkerControl::KIND_OVERRIDE, request->override_percent(), response);
 }
 
 namespace {

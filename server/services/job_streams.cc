@@ -5,13 +5,13 @@
 #include <set>
 
 #include "engine/core/number_text.h"
-#include "engine/simulation/toolpath_level.h"
-#include "engine/simulation/toolpath_recorder.h"
+#include "engine/simulation/toolpath/toolpath_level.h"
+#include "engine/simulation/toolpath/toolpath_recorder.h"
+#include "server/base/names.h"
 #include "server/events/event_feed.h"
-#include "server/jobs/framing.h"
 #include "server/jobs/job_book.h"
-#include "server/jobs/job_messages.h"
-#include "server/names.h"
+#include "server/records/framing.h"
+#include "server/records/job_messages.h"
 #include "server/services/machine_messages.h"
 
 namespace rmlcell::server {
@@ -224,7 +224,7 @@ class JobsWatch final : public PullStream<v1::WatchJobsResponse> {
   std::unique_ptr<EventFeed::Subscription> subscription_;
 };
 
-// Products that are a series of frames (server/jobs/framing.h), some frames a message.
+// Products that are a series of frames (server/records/framing.h), some frames a message.
 template <class Response>
 class FramesStream : public PullStream<Response> {
  public:

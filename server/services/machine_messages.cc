@@ -3,11 +3,11 @@
 #include <sstream>
 
 #include "engine/core/number_text.h"
+#include "engine/families/families.h"
 #include "engine/machine/family.h"
-#include "engine/simulation/families.h"
 #include "proto/bridge/setup.h"
-#include "server/jobs/job_messages.h"
-#include "server/names.h"
+#include "server/base/names.h"
+#include "server/records/job_messages.h"
 
 namespace rmlcell::server {
 namespace {
@@ -85,10 +85,10 @@ v1::LaserSchedule ToProto(const storage::ScheduleRecord& record) {
 }
 
 Status CheckMachine(const storage::MachineRecord& machine) {
-  const machine::MachineFamily* family = simulation::FindFamily(machine.family);
+  const machine::MachineFamily* family = families::FindFamily(machine.family);
   if (family == nullptr) {
     std::string known;
-    for (const machine::MachineFamily* one : simulation::Families())
+    for (const machine::MachineFamily* one : families::Families())
       known += " " + std::string(one->info().id);
     return Error{ErrorCode::kCellUnknownFamily, "'" + machine.family + "'; there are" + known, {}};
   }

@@ -4,16 +4,16 @@
 #include <array>
 #include <map>
 
+#include "engine/families/families.h"
 #include "engine/machine/family.h"
-#include "engine/simulation/families.h"
-#include "server/config.h"
+#include "server/base/config.h"
+#include "server/base/names.h"
+#include "server/base/version.h"
 #include "server/jobs/dispatcher.h"
-#include "server/jobs/job_messages.h"
-#include "server/jobs/update_mask.h"
-#include "server/names.h"
+#include "server/records/job_messages.h"
+#include "server/records/update_mask.h"
 #include "server/services/job_streams.h"
 #include "server/services/machine_messages.h"
-#include "server/version.h"
 
 namespace rmlcell::server {
 namespace {
@@ -64,7 +64,7 @@ grpc::ServerUnaryReactor* MachineService::ListFamilies(grpc::CallbackServerConte
                                                        const v1::ListFamiliesRequest*,
                                                        v1::ListFamiliesResponse* response) {
   return Answer(room_, context, "MachineService/ListFamilies", [response](const Caller&) {
-    for (const machine::MachineFamily* family : simulation::Families()) {
+    for (const machine::MachineFamily* family : families::Families()) {
       *response->add_families() = ToProto(*family);
     }
     return grpc::Status::OK;
@@ -200,7 +200,7 @@ grpc::ServerUnaryReactor* MachineService::PutLaserSchedule(
         if (!expected) return ToGrpcStatus(expected.error());
         const auto machine = store_.GetMachine(name->machine);
         if (!machine) return ToGrpcStatus(machine.error());
-        const machine::MachineFamily* family = simulation::FindFamily(machine->family);
+        const machine::MachineFamily* family = families::FindFamily(machine->family);
         if (family == nullptr || !family->info().has_schedules) {
           return ToGrpcStatus(
               Error{ErrorCode::kCellPrecondition, "this machine has no laser schedules", {}});

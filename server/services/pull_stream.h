@@ -6,7 +6,7 @@
 #include <mutex>
 #include <set>
 
-#include "server/executor.h"
+#include "server/base/executor.h"
 #include "server/services/rpc_status.h"
 
 namespace rmlcell::server {

@@ -5,10 +5,10 @@
 #include "proto/bridge/findings.h"
 #include "proto/bridge/sha256.h"
 #include "rmlcell/v1/report.pb.h"
+#include "server/base/names.h"
+#include "server/base/readable.h"
 #include "server/jobs/job_book.h"
-#include "server/names.h"
 #include "server/programs/program_shelf.h"
-#include "server/readable.h"
 
 namespace rmlcell::server {
 namespace {

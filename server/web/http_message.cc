@@ -6,6 +6,7 @@
 #include <chrono>
 #include <ctime>
 
+#include "engine/core/hex.h"
 #include "engine/core/letters.h"
 
 namespace rmlcell::web {
@@ -28,7 +29,7 @@ template <class Each>
 bool AnyElement(std::string_view list, Each each) {
   while (!list.empty()) {
     const std::size_t comma = list.find(',');
-    if (each(Trim(list.substr(0, comma)))) return true;
+    if (each(Trimmed(list.substr(0, comma), kBlanks))) return true;
     if (comma == std::string_view::npos) break;
     list.remove_prefix(comma + 1);
   }
@@ -157,7 +158,7 @@ QueryValue QueryParameter(std::string_view query, std::string_view name) {
 }
 
 std::string MediaType(std::string_view content_type) {
-  return LowerCase(Trim(content_type.substr(0, content_type.find(';'))));
+  return LowerCase(Trimmed(content_type.substr(0, content_type.find(';')), kBlanks));
 }
 
 bool Accepts(std::string_view accept, std::string_view media_type) {
@@ -174,7 +175,6 @@ bool EtagMatches(std::string_view if_none_match, std::string_view etag) {
 }
 
 std::string ContentDisposition(std::string_view kind, std::string_view file_name) {
-  constexpr std::string_view kHex = "0123456789ABCDEF";
   std::string plain;
   std::string encoded;
   for (const char c : file_name) {
@@ -186,20 +186,12 @@ std::string ContentDisposition(std::string_view kind, std::string_view file_name
     if (safe) {
       encoded += c;
     } else {
-      encoded += '%';
-      encoded += kHex[byte >> 4U];
-      encoded += kHex[byte & 15U];
+      encoded += '%' + HexByte(c);
     }
   }
   std::string out = std::string(kind) + "; filename=\"" + plain + "\"";
   if (plain != file_name) out += "; filename*=UTF-8''" + encoded;
   return out;
-}
-
-std::string_view Trim(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
 }
 
 std::string HttpDate() {

@@ -86,6 +86,6 @@ std::string HttpDate();
 // What stands before a chunk of a body. RFC 9112 7.1
 std::string ChunkHead(std::size_t size);
 
-std::string_view Trim(std::string_view text);  // blanks and tabs
+inline constexpr std::string_view kBlanks = " \t";  // of header fields
 
 }  // namespace rmlcell::web

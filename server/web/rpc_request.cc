@@ -79,8 +79,8 @@ bool CharsetIsUtf8(std::string_view content_type) {
   const std::string lower = LowerCase(content_type);
   const std::size_t at = lower.find("charset=");
   if (at == std::string::npos) return true;
-  std::string_view charset = Trim(std::string_view(lower).substr(at + 8));
-  charset = Trim(charset.substr(0, charset.find(';')));
+  std::string_view charset = Trimmed(std::string_view(lower).substr(at + 8), kBlanks);
+  charset = Trimmed(charset.substr(0, charset.find(';')), kBlanks);
   return charset == "utf-8" || charset == "\"utf-8\"" || charset == "utf8";
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "engine/core/hex.h"
 #include "google/rpc/status.pb.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
@@ -64,8 +65,6 @@ std::size_t CharacterLength(std::string_view text) {
   if (lead == 0xF4 && byte(1) > 0x8F) return 0;
   return length;
 }
-
-constexpr std::string_view kHex = "0123456789ABCDEF";
 
 // "google.rpc.ErrorInfo" of "type.googleapis.com/google.rpc.ErrorInfo".
 std::string TypeName(const std::string& type_url) {
@@ -133,9 +132,7 @@ std::string EncodeGrpcMessage(std::string_view message) {
     if (byte >= 0x20 && byte < 0x7F && c != '%') {
       out += c;
     } else {
-      out += '%';
-      out += kHex[byte >> 4U];
-      out += kHex[byte & 15U];
+      out += '%' + HexByte(static_cast<char>(byte));
     }
   }
   return out;
@@ -157,8 +154,7 @@ std::string JsonString(std::string_view text) {
       out += text.front();
     } else if (byte < 0x20 || byte == 0x7F) {
       out += "\\u00";
-      out += kHex[byte >> 4U];
-      out += kHex[byte & 15U];
+      out += HexByte(static_cast<char>(byte));
     } else {
       out += text.substr(0, length);
     }

@@ -1,6 +1,6 @@
 #include "server/worker/job_events.h"
 
-#include "engine/simulation/trace.h"
+#include "engine/simulation/report/trace.h"
 #include "proto/bridge/findings.h"
 
 namespace rmlcell::server {

@@ -11,14 +11,14 @@
 #include <utility>
 #include <vector>
 
-#include "engine/simulation/families.h"
-#include "engine/simulation/motion_check.h"
-#include "engine/simulation/simulate.h"
+#include "engine/families/families.h"
+#include "engine/simulation/run/motion_check.h"
+#include "engine/simulation/run/simulate.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/report.h"
 #include "proto/bridge/setup.h"
-#include "server/jobs/framing.h"
+#include "server/records/framing.h"
 #include "server/worker/job_events.h"
 #include "server/worker/memory_budget.h"
 #include "server/worker/pacer.h"
@@ -96,7 +96,7 @@ class Attempt {
 
   bridge::SetupInput Input() {
     bridge::SetupInput input{
-        .family = simulation::FindFamily(assignment_.family()),
+        .family = families::FindFamily(assignment_.family()),
         .profile = assignment_.profile(),
         .parameters = {assignment_.parameters().begin(), assignment_.parameters().end()},
         .deleted_programs = {assignment_.deleted_programs().begin(),
@@ -168,11 +168,9 @@ class Attempt {
     for (const bridge::ProgramInput& program : input.programs) {
       if (program.slot != input.main_program) continue;
       // Checking is translating: what was stored as an object is read as one.
-      const std::string name = program.is_source               ? program.file_name
-                               : family.info().has_executables ? "program.O"
-                                                               : "program.rml";
-      machine::Translation translation =
-          family.Translate({.name = name, .bytes = *program.bytes}, *parameters, {.source = true});
+      machine::Translation translation = family.Translate(
+          {.name = program.file_name, .bytes = *program.bytes, .is_object = !program.is_source},
+          *parameters, {.source = true});
       for (Diagnostic& diagnostic : translation.diagnostics) diagnostic.program = program.slot;
       made.diagnostics = std::move(translation.diagnostics);
       made.diagnostics_dropped = translation.diagnostics_dropped;
@@ -224,7 +222,7 @@ class Attempt {
     }
     for (const Diagnostic& diagnostic : made->diagnostics)
       events_.OnDiagnostic(SimTime(0), diagnostic);
-    const machine::MachineFamily& family = *simulation::FindFamily(assignment_.family());
+    const machine::MachineFamily& family = *families::FindFamily(assignment_.family());
     hold_key_ = machine::HoldKey(family.info(), made->setup->mode);
     simulation::InputDescription inputs = simulation::DescribeInputs(family, *made->setup);
     simulation::Products products;

@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "proto/bridge/findings.h"
-#include "server/log.h"
-#include "server/version.h"
+#include "server/base/log.h"
+#include "server/base/version.h"
 #include "server/worker/job_runner.h"
 #include "server/worker/server_line.h"
 

@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "rmlcell/v1/worker.grpc.pb.h"
-#include "server/version.h"
+#include "server/base/version.h"
 
 namespace rmlcell::server {
 namespace {

@@ -1,5 +1,6 @@
 #include "storage/sqlite/artifact_table.h"
 
+#include "engine/core/hex.h"
 #include "storage/sqlite/content.h"
 
 namespace rmlcell::storage::sqlite {
@@ -21,7 +22,7 @@ Result<ArtifactRecord> ReadArtifact(const Query& row) {
   return ArtifactRecord{.job = row.Integer(0),
                         .name = row.Text(1),
                         .media_type = row.Text(2),
-                        .sha256 = HexText(row.View(3)),
+                        .sha256 = HexOf(row.View(3)),
                         .size = row.Integer(4)};
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/core/hex.h"
 #include "storage/sqlite/content.h"
 
 namespace rmlcell::storage::sqlite {
@@ -52,8 +53,7 @@ Result<std::int64_t> BlobTable::PutBlob(const PreparedContent& content) {
     return **known;
   }
   if (content.must_exist) {
-    return Error{
-        ErrorCode::kCellNotFound, "no content with SHA-256 " + HexText(content.sha256), {}};
+    return Error{ErrorCode::kCellNotFound, "no content with SHA-256 " + HexOf(content.sha256), {}};
   }
   return content.staged_blob != 0 ? Seal(content) : InsertWhole(content);
 }

@@ -14,7 +14,6 @@ constexpr std::size_t kSha256Bytes = 32;
 constexpr int kLevel = 3;
 // Below this a frame saves less room than the time is worth: rows lie in pages of 4 KiB anyway.
 constexpr std::size_t kCompressedMin = 512;
-constexpr std::string_view kHexDigits = "0123456789abcdef";
 
 }  // namespace
 
@@ -26,30 +25,6 @@ std::string Sha256(std::string_view content) {
                               EVP_sha256(), nullptr);
   RMLCELL_CHECK(done == 1 && size == kSha256Bytes);
   return digest;
-}
-
-std::string HexText(std::string_view bytes) {
-  std::string text;
-  text.reserve(bytes.size() * 2);
-  for (const char byte : bytes) {
-    const auto value = static_cast<unsigned char>(byte);
-    text += kHexDigits[value >> 4];
-    text += kHexDigits[value & 0xF];
-  }
-  return text;
-}
-
-std::optional<std::string> BytesOfHex(std::string_view lower_case) {
-  if (lower_case.size() % 2 != 0) return std::nullopt;
-  std::string bytes;
-  bytes.reserve(lower_case.size() / 2);
-  for (std::size_t i = 0; i < lower_case.size(); i += 2) {
-    const std::size_t high = kHexDigits.find(lower_case[i]);
-    const std::size_t low = kHexDigits.find(lower_case[i + 1]);
-    if (high == std::string_view::npos || low == std::string_view::npos) return std::nullopt;
-    bytes += static_cast<char>(high << 4 | low);
-  }
-  return bytes;
 }
 
 Result<std::string> Encode(std::string_view chunk) {

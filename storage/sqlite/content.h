@@ -30,9 +30,6 @@ inline std::string_view Chunk(std::string_view content, std::size_t number) {
 
 std::string Sha256(std::string_view content);  // 32 bytes
 
-std::string HexText(std::string_view bytes);                         // lower case
-std::optional<std::string> BytesOfHex(std::string_view lower_case);  // nothing: not hexadecimal
-
 // One chunk as a zstd frame, or as it is where that is not smaller or would not pay. So what has
 // the size of the chunk is the chunk. Errors: CellStoreFailed, out of memory.
 Result<std::string> Encode(std::string_view chunk);

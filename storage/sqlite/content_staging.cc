@@ -1,5 +1,6 @@
 #include "storage/sqlite/content_staging.h"
 
+#include "engine/core/hex.h"
 #include "storage/sqlite/content.h"
 
 namespace rmlcell::storage::sqlite {

@@ -1,5 +1,6 @@
 #include "storage/sqlite/program_table.h"
 
+#include "engine/core/hex.h"
 #include "storage/sqlite/content.h"
 
 namespace rmlcell::storage::sqlite {
@@ -34,7 +35,7 @@ Result<ProgramSummary> ReadSummary(const Query& row) {
                         .object_bytes = row.Integer(7),
                         .source_bytes = row.OptionalInteger(8).value_or(-1),
                         .executable_bytes = row.OptionalInteger(9).value_or(-1),
-                        .object_sha256 = HexText(row.View(6)),
+                        .object_sha256 = HexOf(row.View(6)),
                         .revision = row.Integer(3),
                         .created_at = row.Time(4),
                         .updated_at = row.Time(5)};

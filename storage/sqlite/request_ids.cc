@@ -3,6 +3,8 @@
 #include <array>
 #include <random>
 
+#include "engine/core/hex.h"
+
 namespace rmlcell::storage::sqlite {
 namespace {
 
@@ -30,7 +32,6 @@ std::string RequestIds::Make(WallTime now) {
   // mixed number, all of it, and ten bits of the seed.
   const std::uint64_t high = milliseconds << 16 | 0x7000U | (mixed >> 52);
   const std::uint64_t low = std::uint64_t{1} << 63 | (mixed << 12 >> 2) | (seed_ & 0x3FFU);
-  constexpr std::string_view kDigits = "0123456789abcdef";
   constexpr std::array<int, 4> kDashes = {8, 13, 18, 23};
   std::string text(36, '-');
   int digit = 0;
@@ -39,7 +40,8 @@ std::string RequestIds::Make(WallTime now) {
       continue;
     }
     const std::uint64_t half = digit < 16 ? high : low;
-    text[static_cast<std::size_t>(place)] = kDigits[half >> (60 - 4 * (digit % 16)) & 0xFU];
+    text[static_cast<std::size_t>(place)] =
+        HexDigit(static_cast<unsigned>(half >> (60 - 4 * (digit % 16))));
     ++digit;
   }
   return text;

@@ -1,6 +1,7 @@
 // Jobs, leases, events and artifacts.
 #include <algorithm>
 
+#include "engine/core/hex.h"
 #include "storage/sqlite/content.h"
 #include "storage/sqlite/content_staging.h"
 #include "storage/sqlite/job_life.h"

@@ -141,6 +141,8 @@ def main():
     known = dict(reversed(line.split(" ", 1)) for line in options.hashes.read_text(encoding="utf-8").splitlines())
     found = {}
     each(options.bin.resolve() / "rmlcell", lambda name, said: found.update({path_of(pathlib.Path(), name).name.removesuffix(".gz"): hash_of(said)}))
+    if not SHARED.exists():  # the corpora are elsewhere
+        known = {name: value for name, value in known.items() if name in found}
     wrong = [name for name in sorted(known | found) if known.get(name) != found.get(name)]
     for name in wrong:
         print(name)

@@ -42,6 +42,7 @@ int Main(std::string_view what, int count) {
   }
   if (what == "mill") {  // polylines as they are, acceleration-limited: motion.md section 7
     machine.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
+    machine.corners = MachineLimits::Corners::kThrough;
     machine.junction_jump_mm_s = 3.0;
   }
   Planner planner(machine);

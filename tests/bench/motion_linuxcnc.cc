@@ -13,7 +13,7 @@
 #include <limits>
 #include <string>
 
-#include "engine/motion/trajectory.h"
+#include "engine/motion/ride/trajectory.h"
 #include "tests/bench/motion_paths.h"
 
 namespace rmlcell::motion {

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/motion/speed_passes.h"
+#include "engine/motion/profile/speed_passes.h"
 #include "tests/bench/motion_paths.h"
 
 namespace rmlcell::motion {

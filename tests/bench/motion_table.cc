@@ -9,7 +9,7 @@
 #include <limits>
 #include <optional>
 
-#include "engine/motion/trajectory.h"
+#include "engine/motion/ride/trajectory.h"
 #include "tests/bench/motion_paths.h"
 
 namespace rmlcell::motion {

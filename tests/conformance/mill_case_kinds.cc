@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <limits>
 
-#include "engine/motion/feed_steps.h"
-#include "engine/motion/planner.h"
+#include "engine/motion/planner/feed_steps.h"
+#include "engine/motion/planner/planner.h"
 #include "engine/rml1/carriage.h"
-#include "engine/simulation/mill_tool.h"
+#include "engine/simulation/material/mill_tool.h"
 #include "tests/conformance/motion_case_input.h"
 
 namespace rmlcell::motion {
@@ -21,6 +21,7 @@ MachineLimits TestMill() {
   mill.tip_acceleration_mm_s2 = 200.0;
   mill.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
   mill.settling_s = 0.0;
+  mill.corners = MachineLimits::Corners::kThrough;
   mill.junction_jump_mm_s = 3.0;
   mill.axes.speed.fill(kLargest);
   mill.axes.acceleration.fill(kLargest);

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/motion/feed_steps.h"
 #include "engine/motion/geometry/frames.h"
-#include "engine/motion/hole.h"
-#include "engine/motion/interruption.h"
-#include "engine/motion/laser_power.h"
+#include "engine/motion/geometry/hole.h"
+#include "engine/motion/planner/feed_steps.h"
+#include "engine/motion/ride/interruption.h"
+#include "engine/motion/ride/laser_power.h"
 #include "tests/conformance/mill_case_kinds.h"
 #include "tests/conformance/motion_case_input.h"
 #include "tests/engine/motion/standard_machine.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/core/number_text.h"
-#include "engine/motion/kinematics.h"
+#include "engine/motion/kinematics/kinematics.h"
 #include "engine/optimo/control/optimo_family.h"
 #include "engine/optimo/language/compiler.h"
 #include "engine/optimo/language/linker.h"

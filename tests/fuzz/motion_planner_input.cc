@@ -47,7 +47,10 @@ std::string PlanBytes(std::span<const std::uint8_t> data) {
   MachineLimits machine = StandardMachine();
   const std::uint8_t mode = bytes.Byte();
   if ((mode & 1) != 0) machine.tip_jerk_mm_s3 = HUGE_VAL;
-  if ((mode & 2) != 0) machine.junction_jump_mm_s = 3.0;
+  if ((mode & 2) != 0) {
+    machine.corners = MachineLimits::Corners::kThrough;
+    machine.junction_jump_mm_s = 3.0;
+  }
   Planner planner(machine, 64);
   std::string wrong;
   const auto drain = [&] {

@@ -50,16 +50,16 @@ std::string WordsOf(std::string_view text) {
   return words;
 }
 
-// Fixing comes to rest, and harms neither lines nor comments.
+// RepairedText comes to rest, and harms neither lines nor comments.
 std::string TryFixes(std::string_view bytes) {
   const ProgramCheck check = [](const machine::SourceFile& file) {
     return TranslateOptimo(file, {}, 0);
   };
-  const Fixing fixed = FixProgram({.name = "a.S", .bytes = bytes}, check);
+  const RepairedText fixed = FixProgram({.name = "a.S", .bytes = bytes}, check);
   if (LinesOf(fixed.text) != LinesOf(bytes)) return "fixing took a line: " + fixed.text;
   if (std::ranges::count(fixed.text, ';') != std::ranges::count(bytes, ';'))
     return "fixing took a comment: " + fixed.text;
-  const Fixing again = FixProgram({.name = "a.S", .bytes = fixed.text}, check);
+  const RepairedText again = FixProgram({.name = "a.S", .bytes = fixed.text}, check);
   if (again.text != fixed.text) return "fixing does not come to rest: " + fixed.text;
   return {};
 }

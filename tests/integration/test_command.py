@@ -287,7 +287,7 @@ class Refusals(unittest.TestCase):
         self.refused([(f"simulate @a.S --budget {text}", "CELL-E9026", f"'{part}': write steps=N,time=SECONDS")
                       for text, part in (("steps=0", "steps=0"), ("steps", "steps"), ("time=9,time=-1", "time=-1"),
                                          ("time=0", "time=0"), ("step=5", "step=5"), ("time=x", "time=x"))])
-        self.refused([(f"simulate @a.S --override {text}", "CELL-E9026", "--override: allowed are above 0 to 145")
+        self.refused([(f"simulate @a.S --override {text}", "CELL-E9026", f"--override: the value is {float(text):g}; allowed are above 0 to 145 %")
                       for text in ("0", "-1", "145.5")])
         self.refused([("simulate @a.S --mode fast", "CELL-E9026", "'fast': modes are cycle, remote, single, repeat"),
                       ("simulate @a.S --plot torque @p.svg", "CELL-E9026", "'torque': curves are speed, power, axes"),

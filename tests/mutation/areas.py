@@ -10,7 +10,8 @@ class Area:
 
 
 AREAS = {
-    "motion": Area(("engine/core", "engine/machine", "engine/motion"),
+    "motion": Area(("engine/core", "engine/machine", "engine/motion/geometry", "engine/motion/profile",
+                    "engine/motion/kinematics", "engine/motion/corner", "engine/motion/planner", "engine/motion/ride"),
                    ("core_test", "machine_test", "motion_test", "motion_reference_test", "rml1_test",
                     "simulation_test", "optimo_control_test", "optimo_language_test",
                     "motion_property_test")),
@@ -26,13 +27,15 @@ AREAS = {
     "control": Area(("engine/optimo/control",),
                     ("optimo_control_test", "optimo_run_conformance_test", "simulation_test",
                      "motion_reference_test")),
-    "simulation": Area(("engine/simulation",),
+    "simulation": Area(("engine/families", "engine/simulation/path", "engine/simulation/report",
+                        "engine/simulation/toolpath", "engine/simulation/picture", "engine/simulation/material",
+                        "engine/simulation/run"),
                        ("simulation_test", "optimo_run_conformance_test", "rml1_test", "rml1_examples_test",
                         "integration_test_command")),
     "store": Area(("storage", "storage/sqlite"),
                   ("storage_sqlite_conformance_test", "storage_sqlite_test", "storage_sqlite_crash_test",
                    "server_jobs_test", "server_projects_test")),
-    "jobs": Area(("server", "server/jobs", "server/events", "server/worker", "server/programs", "server/projects"),
+    "jobs": Area(("server/base", "server/cell", "server/records", "server/jobs", "server/events", "server/worker", "server/programs", "server/projects"),
                  ("server_test", "server_command_line_test", "server_worker_test", "server_worker_runner_test", "server_projects_test",
                   "server_programs_test", "server_jobs_test", "server_events_test",
                   "integration_test_cell", "integration_test_office", "integration_test_programs")),

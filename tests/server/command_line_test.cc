@@ -10,8 +10,8 @@
 #include <functional>
 #include <sstream>
 
-#include "server/config.h"
-#include "server/version.h"
+#include "server/base/config.h"
+#include "server/base/version.h"
 #include "tests/storage/sqlite_bed.h"
 
 // The program itself, asked for its configuration: what is set where, and what it says about

@@ -2,12 +2,12 @@
 
 #include <stdexcept>
 
-#include "engine/simulation/families.h"
+#include "engine/families/families.h"
 
 namespace rmlcell::server {
 
 std::string ObjectOf(const std::string& source) {
-  const machine::MachineFamily& family = *simulation::FindFamily("optimo");
+  const machine::MachineFamily& family = *families::FindFamily("optimo");
   machine::Translation translation = family.Translate({.name = "a.S", .bytes = source},
                                                       machine::Parameters(family.parameters()), {});
   if (!translation.ok) throw std::runtime_error("does not compile: " + source);
@@ -15,7 +15,7 @@ std::string ObjectOf(const std::string& source) {
 }
 
 std::string ExecutableOf(int slot, const std::string& source) {
-  const machine::MachineFamily& family = *simulation::FindFamily("optimo");
+  const machine::MachineFamily& family = *families::FindFamily("optimo");
   machine::RunSetup setup{machine::Parameters(family.parameters())};
   setup.programs[slot].object = std::make_shared<const std::string>(ObjectOf(source));
   setup.main_program = slot;

@@ -1,4 +1,4 @@
-#include "server/names.h"
+#include "server/base/names.h"
 
 #include <gtest/gtest.h>
 

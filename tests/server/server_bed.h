@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "server/steady_clock.h"
+#include "server/base/steady_clock.h"
 #include "storage/store.h"
 #include "tests/storage/sqlite_bed.h"
 

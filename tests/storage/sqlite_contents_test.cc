@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "engine/core/hex.h"
 #include "storage/sqlite/content.h"
 #include "tests/storage/sqlite_bed.h"
 
@@ -30,7 +31,7 @@ class SqliteContents : public testing::Test {
 
 // FIPS 180-2, appendix B.1.
 TEST(Content, Sha256IsThatOfTheStandard) {
-  EXPECT_EQ(HexText(Sha256("abc")),
+  EXPECT_EQ(HexOf(Sha256("abc")),
             "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 

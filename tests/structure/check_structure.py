@@ -10,53 +10,93 @@ import os
 import re
 import sys
 
-# A room is a folder, or single files of it where they stand on another level than the rest. Of each: the
-# rooms whose headers it may include, apart from its own. A room that is not listed is a breach.
+# A room is a folder. Of each: the rooms whose headers it may include, apart from its own. A room that is not
+# listed is a breach.
 GEOMETRY = "engine/motion/geometry"
-ENGINE = ["engine/core", GEOMETRY, "engine/motion", "engine/machine"]
+PROFILE = "engine/motion/profile"
+KINEMATICS = "engine/motion/kinematics"
+CORNER = "engine/motion/corner"
+PLANNER = "engine/motion/planner"
+RIDE = "engine/motion/ride"
+MOTION = [GEOMETRY, PROFILE, KINEMATICS, CORNER, PLANNER, RIDE]  # each may include those before it
+ENGINE = ["engine/core", "engine/machine"] + MOTION
+PATH = "engine/simulation/path"
+REPORT = "engine/simulation/report"
+TOOLPATH = "engine/simulation/toolpath"
+PICTURE = "engine/simulation/picture"
+MATERIAL = "engine/simulation/material"
+RUN = "engine/simulation/run"
+SIMULATION = [PATH, REPORT, TOOLPATH, PICTURE, MATERIAL, RUN]
 MAY_INCLUDE = {
     "engine/core": [],
     GEOMETRY: ["engine/core"],
-    "engine/motion": ["engine/core", GEOMETRY],
-    "engine/machine": ["engine/core", GEOMETRY, "engine/motion"],
+    PROFILE: ["engine/core"],
+    KINEMATICS: ["engine/core", GEOMETRY, PROFILE],
+    CORNER: ["engine/core", GEOMETRY, PROFILE, KINEMATICS],
+    PLANNER: ["engine/core", GEOMETRY, PROFILE, KINEMATICS, CORNER],
+    RIDE: ["engine/core", GEOMETRY, PROFILE, KINEMATICS, PLANNER],
+    "engine/machine": ["engine/core"] + MOTION,
     "engine/rml1": ENGINE,
     "engine/optimo/language": ["engine/core"],
     "engine/optimo/offline": ENGINE + ["engine/optimo/language"],
     "engine/optimo/control": ENGINE + ["engine/optimo/language", "engine/optimo/offline"],
-    "engine/simulation": ENGINE + ["engine/rml1", "engine/optimo/control"],
+    "engine/families": ["engine/core", "engine/machine", "engine/rml1", "engine/optimo/control"],
+    PATH: ENGINE,
+    REPORT: ENGINE + ["engine/families", PATH],
+    TOOLPATH: ENGINE + [PATH],
+    PICTURE: ENGINE + ["engine/families", PATH, REPORT],
+    MATERIAL: ENGINE + [REPORT],
+    RUN: ENGINE + [REPORT, TOOLPATH, PICTURE, MATERIAL],
     "storage": ["engine/core"],
     "storage/sqlite": ["engine/core", "storage"],
     "proto/bridge": ["engine/core", "engine/machine", "engine/optimo/language", "engine/optimo/offline",
-                     "engine/simulation", "proto"],
-    # config, names, executor, log, steady_clock: what every room of the server may use.
-    "server": ["engine/core", "storage"],
+                     "engine/families", REPORT, PICTURE, RUN, "proto"],
+    # What every room of the server may use.
+    "server/base": ["engine/core", "storage"],
     "server/auth": ["engine/core"],
-    "server/events": ["engine/core", "server", "storage"],
-    "server/jobs": ["engine/core", "engine/machine", "engine/simulation", "proto", "proto/bridge", "server",
-                    "server/events", "storage"],
-    "server/programs": ["engine/core", "engine/machine", "engine/motion", "engine/optimo/language",
-                        "engine/optimo/offline", "engine/simulation", "proto", "proto/bridge",
-                        "server", "server/jobs", "storage"],
-    "server/projects": ["engine/core", "engine/machine", "engine/optimo/offline", "engine/simulation",
-                        "proto", "proto/bridge", "server", "server/jobs", "server/programs", "storage"],
+    "server/events": ["engine/core", "server/base", "storage"],
+    # What programs, projects and jobs share.
+    "server/records": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "server/base",
+                       "storage"],
+    "server/jobs": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "server/base",
+                    "server/events", "server/records", "storage"],
+    "server/programs": ["engine/core", "engine/machine", GEOMETRY, "engine/optimo/language",
+                        "engine/optimo/offline", "engine/families", RUN, "proto", "proto/bridge",
+                        "server/base", "server/records", "storage"],
+    "server/projects": ["engine/core", "engine/machine", "engine/optimo/offline", "engine/families",
+                        "proto", "proto/bridge", "server/base", "server/records", "server/programs", "storage"],
     "server/web": ["engine/core", "proto", "proto/bridge"],
-    "server/services": ["engine/core", "engine/machine", "engine/simulation", "proto", "proto/bridge",
-                        "server", "server/auth", "server/events", "server/jobs", "server/programs",
-                        "server/projects", "server/web", "storage"],
+    "server/services": ["engine/core", "engine/machine", "engine/families", TOOLPATH, "proto", "proto/bridge",
+                        "server/base", "server/auth", "server/events", "server/records", "server/jobs",
+                        "server/programs", "server/projects", "server/web", "storage"],
     # The engine worker: a process of its own, without the store.
-    "server/worker": ["engine/core", "engine/machine", "engine/simulation", "proto", "proto/bridge",
-                      "server", "server/jobs"],
+    "server/worker": ["engine/core", "engine/machine", "engine/families", REPORT, RUN, "proto", "proto/bridge",
+                      "server/base", "server/records"],
     # The wiring of the server.
-    "server/cell": ["engine/core", "proto/bridge", "server", "server/auth", "server/events", "server/jobs",
-                    "server/programs", "server/projects", "server/services", "server/web", "storage",
+    "server/cell": ["engine/core", "proto/bridge", "server/base", "server/auth", "server/events", "server/records",
+                    "server/jobs", "server/programs", "server/projects", "server/services", "server/web", "storage",
                     "storage/sqlite"],
     # The language server: the languages and no server.
     "clients/lsp": ["engine/core", "engine/machine", "engine/optimo/language", "engine/optimo/offline",
-                    "engine/simulation"],
+                    "engine/families"],
     "clients/cli": ["clients/lsp", "engine/core", "engine/machine", "engine/optimo/language", "engine/optimo/offline",
-                    "engine/simulation", "proto", "proto/bridge"],
+                    "engine/families", REPORT, MATERIAL, RUN, "proto", "proto/bridge"],
 }
-ROOM_OF_FILE = {"server/cell.h": "server/cell", "server/cell.cc": "server/cell", "server/main.cc": "server/cell"}
+# Of these rooms others may include no other header.
+PUBLIC = {
+    GEOMETRY: ["frames.h", "path.h", "hole.h", "corner_curve.h", "corner_table.h", "blend_curve.h", "least.h"],
+    PROFILE: ["speed_profile.h", "speed_passes.h", "ramp_plan.h"],
+    KINEMATICS: ["kinematics.h", "axes.h", "machine_limits.h", "axis_demand.h", "speed_bound.h"],
+    CORNER: ["corner.h", "axes_corner.h"],
+    PLANNER: ["planner.h", "feed_steps.h"],
+    RIDE: ["trajectory.h", "interruption.h"],
+    PATH: ["part_curve.h", "path_extent.h", "polyline.h", "profile_phases.h", "motion_peaks.h"],
+    REPORT: ["report.h", "report_recorder.h", "finding_list.h", "facts.h", "trace.h", "samples.h"],
+    TOOLPATH: ["toolpath_recorder.h", "toolpath_level.h"],
+    PICTURE: ["picture.h", "picture_difference.h", "plot.h"],
+    MATERIAL: ["milling_recorder.h", "milling_text.h", "stl.h"],
+    RUN: ["simulate.h", "motion_check.h", "trial_run.h"],
+}
 # Headers made of the .proto files.
 PROTO_HEADERS = ("rmlcell/v1/", "google/rpc/", "google/api/", "grpc/health/")
 
@@ -94,7 +134,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
 def room_of(path):
-    return ROOM_OF_FILE.get(path) or os.path.dirname(path)
+    return os.path.dirname(path)
 
 
 def room_of_header(header):
@@ -127,6 +167,8 @@ def check_includes(path, lines, breaches):
         other = room_of_header(header)
         if other is not None and other != room and other not in MAY_INCLUDE[room]:
             breaches.append(f"{path}:{number}: {room} may not include {header}")
+        elif other != room and os.path.basename(header) not in PUBLIC.get(other, [os.path.basename(header)]):
+            breaches.append(f"{path}:{number}: {header} is private to its room")
         if path.endswith(".h") and HEAVY.match(header):
             allowed = HEAVY_HEADERS.get(path) or HEAVY_HEADERS.get(room)
             if allowed is None or not header.startswith(allowed):

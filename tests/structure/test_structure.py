@@ -75,8 +75,8 @@ class AMadeUpHouse(unittest.TestCase):
 
     GOOD = {
         "engine/core/result.h": "#pragma once\n#include <string>\n",
-        "engine/motion/path.h": '#pragma once\n#include "engine/core/result.h"\n',
-        "engine/motion/path.cc": '#include "engine/motion/path.h"\n// std::cout is not used here\n'
+        "engine/motion/geometry/path.h": '#pragma once\n#include "engine/core/result.h"\n',
+        "engine/motion/geometry/path.cc": '#include "engine/motion/geometry/path.h"\n// std::cout is not used here\n'
                                  'const char* kText = "printf";\nstatic const int kOne = 1;\n'
                                  "static constexpr double kTwo = 2.0;\nstatic_assert(kOne == 1);\n"
                                  "static int Sum(int a, int b) { return a + b; }\n",
@@ -85,7 +85,7 @@ class AMadeUpHouse(unittest.TestCase):
         "server/jobs/dispatcher.cc": '#include "server/jobs/dispatcher.h"\n#include <boost/asio/post.hpp>\n'
                                      "#include <thread>\n",
         "server/services/call.h": "#pragma once\n#include <grpcpp/grpcpp.h>\n",
-        "server/cell.cc": '#include "storage/sqlite/sqlite_store.h"\n',
+        "server/cell/cell.cc": '#include "storage/sqlite/sqlite_store.h"\n',
         "tests/motion_test.cc": "#include <thread>\n",
     }
 
@@ -119,29 +119,42 @@ class AMadeUpHouse(unittest.TestCase):
 
     def test_wrong_directions(self):
         for path, header in [
-            ("engine/core/a.h", "engine/motion/path.h"),
-            ("engine/motion/a.cc", "storage/store.h"),
+            ("engine/core/a.h", "engine/motion/geometry/path.h"),
+            ("engine/motion/geometry/a.cc", "storage/store.h"),
             ("engine/machine/a.cc", "engine/rml1/device.h"),
             ("engine/rml1/a.cc", "engine/optimo/language/ast.h"),
             ("engine/optimo/language/a.cc", "engine/machine/run.h"),
-            ("engine/simulation/a.cc", "rmlcell/v1/job.pb.h"),
-            ("storage/a.h", "engine/motion/path.h"),
+            ("engine/simulation/run/a.cc", "rmlcell/v1/job.pb.h"),
+            ("storage/a.h", "engine/motion/geometry/path.h"),
             ("storage/a.h", "storage/sqlite/sqlite_store.h"),
-            ("proto/bridge/a.cc", "server/names.h"),
+            ("proto/bridge/a.cc", "server/base/names.h"),
             ("server/jobs/a.cc", "storage/sqlite/sqlite_store.h"),
             ("server/jobs/a.cc", "server/services/call.h"),
             ("server/programs/a.cc", "server/services/call.h"),
-            ("server/names.h", "server/jobs/dispatcher.h"),
+            ("server/base/names.h", "server/jobs/dispatcher.h"),
             ("server/worker/a.cc", "storage/sqlite/sqlite_store.h"),
-            ("clients/cli/a.cc", "server/names.h"),
+            ("clients/cli/a.cc", "server/base/names.h"),
             ("clients/cli/a.cc", "tests/a.h"),
         ]:
             with self.subTest(path=path, header=header):
                 self.assert_breach(path, f'// a\n#include "{header}"\n', f"may not include {header}")
 
+    def test_what_is_private_to_a_room(self):
+        self.assert_breach("engine/motion/ride/a.cc", '#include "engine/motion/planner/motion_chain.h"\n',
+                           "is private to its room")
+        self.assertEqual(self.breaches("engine/motion/planner/a.cc", '#include "engine/motion/planner/motion_chain.h"\n'),
+                         [])
+        self.assert_breach("engine/motion/profile/a.cc", '#include "engine/motion/planner/motion_chain.h"\n',
+                           "may not include")
+
+    def test_what_is_public_is_there(self):
+        for room, headers in structure.PUBLIC.items():
+            for header in headers:
+                self.assertTrue(os.path.isfile(os.path.join(ROOT, room, header)), f"{room}/{header}")
+
     def test_an_include_with_blanks_counts_too(self):
-        self.assert_breach("engine/core/a.h", '  #  include   "engine/motion/path.h"\n', "may not include")
-        self.assert_breach("engine/core/a.h", "#include <engine/motion/path.h>\n", "may not include")
+        self.assert_breach("engine/core/a.h", '  #  include   "engine/motion/geometry/path.h"\n', "may not include")
+        self.assert_breach("engine/core/a.h", "#include <engine/motion/geometry/path.h>\n", "may not include")
 
     def test_a_room_that_is_not_in_the_table(self):
         self.assert_breach("engine/plasma/torch.h", "#pragma once\n", "does not stand in the table")
@@ -161,7 +174,7 @@ class AMadeUpHouse(unittest.TestCase):
                      "static int calls = 0;", "  static std::map<int, int> seen;", "static std::string last{};",
                      'const char* home = std::getenv("HOME");'):
             with self.subTest(line=line):
-                self.assert_breach("engine/motion/a.cc", line + "\n", "the engine may not")
+                self.assert_breach("engine/motion/geometry/a.cc", line + "\n", "the engine may not")
         self.assertEqual(self.breaches("server/jobs/a.cc", "std::mutex lock;\nstatic int calls = 0;\n"), [])
 
     def test_long_files(self):

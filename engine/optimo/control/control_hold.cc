@@ -2,7 +2,7 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/motion/interruption.h"
+#include "engine/motion/ride/interruption.h"
 #include "engine/optimo/control/control.h"
 #include "engine/optimo/control/lead.h"
 #include "engine/optimo/control/motion_place.h"

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "engine/core/number_text.h"
-#include "engine/motion/hole.h"
+#include "engine/motion/geometry/hole.h"
 #include "engine/optimo/control/control.h"
 
 // MOVE and the instructions that decide how it moves.

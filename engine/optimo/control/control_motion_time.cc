@@ -2,8 +2,8 @@
 #include <cmath>
 #include <span>
 
-#include "engine/motion/interruption.h"
-#include "engine/motion/trajectory.h"
+#include "engine/motion/ride/interruption.h"
+#include "engine/motion/ride/trajectory.h"
 #include "engine/optimo/control/control.h"
 
 // Motions as time passes: from the planner to the observer.

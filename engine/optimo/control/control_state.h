@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/machine/run.h"
-#include "engine/motion/planner.h"
+#include "engine/motion/planner/planner.h"
 #include "engine/optimo/control/laser_unit.h"
 #include "engine/optimo/control/machine_state.h"
 #include "engine/optimo/language/linker.h"

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "engine/core/number_text.h"
-#include "engine/motion/speed_bound.h"
+#include "engine/motion/kinematics/speed_bound.h"
 #include "engine/optimo/control/control.h"
 
 // Motions that ask more of an axis than it can do: way or speed.

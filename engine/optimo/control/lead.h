@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engine/motion/speed_profile.h"
+#include "engine/motion/profile/speed_profile.h"
 
 namespace rmlcell::optimo {
 

@@ -8,7 +8,7 @@
 #include "engine/core/result.h"
 #include "engine/machine/run.h"
 #include "engine/motion/geometry/frames.h"
-#include "engine/motion/kinematics.h"
+#include "engine/motion/kinematics/kinematics.h"
 #include "engine/optimo/control/optimo_parameters.h"
 #include "engine/optimo/language/ast.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "engine/core/units.h"
-#include "engine/motion/kinematics.h"
+#include "engine/motion/kinematics/kinematics.h"
 
 namespace rmlcell::optimo {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "engine/motion/path.h"
+#include "engine/motion/geometry/path.h"
 
 namespace rmlcell::optimo {
 

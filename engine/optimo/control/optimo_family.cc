@@ -4,6 +4,7 @@
 
 #include "engine/core/units.h"
 #include "engine/optimo/control/optimo_run.h"
+#include "engine/optimo/control/optimo_tools.h"
 #include "engine/optimo/language/compiler.h"
 #include "engine/optimo/language/linker.h"
 #include "engine/optimo/language/staleness.h"
@@ -21,6 +22,7 @@ constexpr machine::FamilyInfo kInfo = {.id = "optimo",
                                        .has_schedules = true,
                                        .checked_by_running = true,
                                        .hold_in_remote = false,  // OPT-4.17
+                                       .override_max_percent = 145.0,
                                        .no_slot = ErrorCode::kProgramNumber,
                                        .empty_slot = ErrorCode::kProgramMissing};
 
@@ -44,10 +46,6 @@ machine::StaleReason ReasonOf(StaleReason reason) {
       break;
   }
   return machine::StaleReason::kDamaged;
-}
-
-ContourMachine ContourMachineOf(const OptimoParameters& resolved) {
-  return {.limits = resolved.limits, .head_length_mm = resolved.head_length_mm};
 }
 
 class Family final : public machine::MachineFamily {
@@ -76,6 +74,8 @@ class Family final : public machine::MachineFamily {
     return TranslateOptimo(file, options, static_cast<std::uint32_t>(resolved.object_limit),
                            ContourMachineOf(resolved));
   }
+
+  const machine::Tools* tools() const override { return &OptimoTools(); }
 
   std::vector<Diagnostic> CheckSlot(int slot) const override { return CheckProgramNumber(slot); }
 

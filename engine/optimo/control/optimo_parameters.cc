@@ -168,4 +168,8 @@ machine::MachineShape ShapeOf(const OptimoParameters& parameters) {
   return shape;
 }
 
+ContourMachine ContourMachineOf(const OptimoParameters& parameters) {
+  return {.limits = parameters.limits, .head_length_mm = parameters.head_length_mm};
+}
+
 }  // namespace rmlcell::optimo

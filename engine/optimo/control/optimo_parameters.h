@@ -6,8 +6,9 @@
 #include "engine/core/result.h"
 #include "engine/machine/parameters.h"
 #include "engine/machine/shape.h"
-#include "engine/motion/planner.h"
+#include "engine/motion/planner/planner.h"
 #include "engine/optimo/language/ast.h"
+#include "engine/optimo/offline/contour_advice.h"
 
 namespace rmlcell::optimo {
 
@@ -44,5 +45,7 @@ Status CheckFit(const machine::Parameters& parameters);
 // Precondition: `parameters` are of OptimoParameterTable, and fit together.
 OptimoParameters Resolve(const machine::Parameters& parameters);
 machine::MachineShape ShapeOf(const OptimoParameters& parameters);
+// What the advice on paths needs to know of it.
+ContourMachine ContourMachineOf(const OptimoParameters& parameters);
 
 }  // namespace rmlcell::optimo

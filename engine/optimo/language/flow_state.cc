@@ -6,25 +6,27 @@
 namespace rmlcell::optimo {
 namespace {
 
-using Beams = Choice<Beam>;
+using Beams = Choice<BeamThere>;
 using Sensors = Choice<Sensor>;
 
 // What becomes of each value, in the order of the enumeration.
 constexpr std::array<Beams::Values, 8> kBeamOn = {
-    Beams::Bit(Beam::kFresh), Beams::Bit(Beam::kFresh), Beams::Bit(Beam::kFresh),
-    Beams::Bit(Beam::kFresh), Beams::Bit(Beam::kOn),    Beams::Bit(Beam::kFresh)};
+    Beams::Bit(BeamThere::kFresh), Beams::Bit(BeamThere::kFresh), Beams::Bit(BeamThere::kFresh),
+    Beams::Bit(BeamThere::kFresh), Beams::Bit(BeamThere::kOn),    Beams::Bit(BeamThere::kFresh)};
 constexpr std::array<Beams::Values, 8> kBeamOnRamp = {
-    Beams::Bit(Beam::kFreshRamp), Beams::Bit(Beam::kFreshRamp), Beams::Bit(Beam::kFreshRamp),
-    Beams::Bit(Beam::kFreshRamp), Beams::Bit(Beam::kOn),        Beams::Bit(Beam::kFreshRamp)};
+    Beams::Bit(BeamThere::kFreshRamp), Beams::Bit(BeamThere::kFreshRamp),
+    Beams::Bit(BeamThere::kFreshRamp), Beams::Bit(BeamThere::kFreshRamp),
+    Beams::Bit(BeamThere::kOn),        Beams::Bit(BeamThere::kFreshRamp)};
 constexpr std::array<Beams::Values, 8> kBeamOff = {
-    Beams::Bit(Beam::kOff),     Beams::Bit(Beam::kJustOff), Beams::Bit(Beam::kJustOff),
-    Beams::Bit(Beam::kJustOff), Beams::Bit(Beam::kJustOff), Beams::Bit(Beam::kOff)};
+    Beams::Bit(BeamThere::kOff),     Beams::Bit(BeamThere::kJustOff),
+    Beams::Bit(BeamThere::kJustOff), Beams::Bit(BeamThere::kJustOff),
+    Beams::Bit(BeamThere::kJustOff), Beams::Bit(BeamThere::kOff)};
 constexpr std::array<Beams::Values, 8> kBeamDwell = {
-    Beams::Bit(Beam::kOff), Beams::Bit(Beam::kJustOff), Beams::Bit(Beam::kOn),
-    Beams::Bit(Beam::kOn),  Beams::Bit(Beam::kOn),      Beams::Bit(Beam::kUnknown)};
+    Beams::Bit(BeamThere::kOff), Beams::Bit(BeamThere::kJustOff), Beams::Bit(BeamThere::kOn),
+    Beams::Bit(BeamThere::kOn),  Beams::Bit(BeamThere::kOn),      Beams::Bit(BeamThere::kUnknown)};
 constexpr std::array<Beams::Values, 8> kBeamMove = {
-    Beams::Bit(Beam::kOff), Beams::Bit(Beam::kOff), Beams::Bit(Beam::kOn),
-    Beams::Bit(Beam::kOn),  Beams::Bit(Beam::kOn),  Beams::Bit(Beam::kUnknown)};
+    Beams::Bit(BeamThere::kOff), Beams::Bit(BeamThere::kOff), Beams::Bit(BeamThere::kOn),
+    Beams::Bit(BeamThere::kOn),  Beams::Bit(BeamThere::kOn),  Beams::Bit(BeamThere::kUnknown)};
 constexpr std::array<Sensors::Values, 8> kSensorSeen = {
     Sensors::Bit(Sensor::kOffSeen), Sensors::Bit(Sensor::kOffSeen), Sensors::Bit(Sensor::kOn),
     Sensors::Bit(Sensor::kUnknown)};
@@ -49,7 +51,7 @@ void StepWork(const Dwells& dwells, const Instruction& i, FlowState& state) {
     if (i.numbers[0] == 0) state.beam.Map(kBeamOn);
     if (i.numbers[0] == 1) {
       const bool none = dwells.Of(i.numbers[1]) == Dwells::Kind::kNone;
-      state.beam = none ? state.beam : Beams::Of(Beam::kOn);
+      state.beam = none ? state.beam : Beams::Of(BeamThere::kOn);
       if (none) state.beam.Map(kBeamOnRamp);
     }
     if (i.numbers[0] != 2) state.sensor.Map(kSensorSeen);
@@ -57,7 +59,7 @@ void StepWork(const Dwells& dwells, const Instruction& i, FlowState& state) {
     Add(ProcessBit(i), state.off, state.on);
     state.beam.Map(kBeamOff);  // WORK 2 OFF, too: OPT-3.24
   }
-  if (i.Has(kStart) || i.Has(kEnd)) state.beam = Beams::Of(Beam::kUnknown);
+  if (i.Has(kStart) || i.Has(kEnd)) state.beam = Beams::Of(BeamThere::kUnknown);
 }
 
 void StepOutput(const Module& module, const Instruction& i, FlowState& state) {
@@ -122,7 +124,7 @@ void StepFunction(FlowState& state) {
 // Modal values and WORKDEFs come back; that no process is ON is what it needs to be made at all
 // (OPT-7.12, OPT-3.33).
 void StepCall(FlowState& state) {
-  state.beam = Beams::Of(Beam::kOff);
+  state.beam = Beams::Of(BeamThere::kOff);
   state.gas_2 = state.gas_3 = Choice<Output>::Of(Output::kUnknown);
   state.sensor = Sensors::Of(Sensor::kUnknown);
   state.turned = Choice<Turned>::Of(Turned::kUnknown);
@@ -201,7 +203,7 @@ FlowState FlowState::AtStart() {
   FlowState state;
   state.reached = true;
   state.modes = Modes::AtStart();
-  state.beam = Beams::Of(Beam::kOff);
+  state.beam = Beams::Of(BeamThere::kOff);
   state.gas_2 = state.gas_3 = Choice<Output>::Of(Output::kOff);
   state.sensor = Sensors::Of(Sensor::kOff);
   state.turned = Choice<Turned>::Of(Turned::kNo);
@@ -217,7 +219,7 @@ FlowState FlowState::Unknown() {
   FlowState state;
   state.reached = true;
   state.modes = Modes::Unknown();
-  state.beam = Beams::Of(Beam::kUnknown);
+  state.beam = Beams::Of(BeamThere::kUnknown);
   state.gas_2 = state.gas_3 = Choice<Output>::Of(Output::kUnknown);
   state.sensor = Sensors::Of(Sensor::kUnknown);
   state.turned = Choice<Turned>::Of(Turned::kUnknown);
@@ -229,7 +231,7 @@ FlowState FlowState::Unknown() {
 
 FlowState FlowState::InErrorHandler() {
   FlowState state = Unknown();
-  state.beam = Beams::Of(Beam::kOff);
+  state.beam = Beams::Of(BeamThere::kOff);
   state.on = {};
   state.off = {kAllProcesses, 0};
   return state;
@@ -254,7 +256,7 @@ FlowState FlowState::Kept() {
 }
 
 bool FlowState::BeamIsOn() const {
-  return beam.IsAmong(Beams::Bits({Beam::kFresh, Beam::kFreshRamp, Beam::kOn}));
+  return beam.IsAmong(Beams::Bits({BeamThere::kFresh, BeamThere::kFreshRamp, BeamThere::kOn}));
 }
 
 void FlowState::Then(const FlowState& next) {

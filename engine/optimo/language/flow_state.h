@@ -15,7 +15,7 @@ namespace rmlcell::optimo {
 
 // kFresh: on, with no dwell yet and no motion; kFreshRamp: by a WORK 1 whose delay is 0. kJustOff:
 // off, and the next MOVE leaves the part.
-enum class Beam : std::uint8_t { kOff, kJustOff, kFresh, kFreshRamp, kOn, kUnknown };
+enum class BeamThere : std::uint8_t { kOff, kJustOff, kFresh, kFreshRamp, kOn, kUnknown };
 enum class Output : std::uint8_t { kOff, kOn, kUnknown };
 // kOffSeen: off, and a WORK ON or a MOVE came since.
 enum class Sensor : std::uint8_t { kOff, kOffSeen, kOn, kUnknown };
@@ -44,7 +44,7 @@ VariableSet VariablesSetBy(const Module& module, const Instruction& instruction)
 struct FlowState {
   bool reached = false;
   Modes modes;
-  Choice<Beam> beam;
+  Choice<BeamThere> beam;
   Choice<Output> gas_2, gas_3;
   Choice<Sensor> sensor;
   Choice<Turned> turned;

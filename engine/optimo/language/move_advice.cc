@@ -80,7 +80,7 @@ void MoveAdviser::AdvisePath(const Instruction& i, const FlowState& state) {
 
 void MoveAdviser::AdviseSpeed(std::uint32_t at, const FlowState& state) {
   const Instruction& i = module_.instructions[at];
-  const bool fresh = state.beam.Is(Beam::kFresh), ramp = state.beam.Is(Beam::kFreshRamp);
+  const bool fresh = state.beam.Is(BeamThere::kFresh), ramp = state.beam.Is(BeamThere::kFreshRamp);
   if ((fresh || ramp) && state.modes.IsContour() && !i.Has(kStart)) {
     Note(i, ErrorCode::kPracticeAdvice,
          fresh ? "the beam was switched on without a dwell to pierce"
@@ -110,7 +110,7 @@ void MoveAdviser::AdviseSpeed(std::uint32_t at, const FlowState& state) {
   } else if (before_on && speed > kApproachMax) {
     Note(i, ErrorCode::kPracticeAdvice,
          SpeedText(speed) + " to the pierce point; the approach takes 10 %", "OPT-5.46");
-  } else if (state.beam.Is(Beam::kJustOff) && speed > kLeavingMax) {
+  } else if (state.beam.Is(BeamThere::kJustOff) && speed > kLeavingMax) {
     Note(i, ErrorCode::kPracticeAdvice,
          SpeedText(speed) + " away from the part; leaving takes at most 20 %", "OPT-5.46");
   }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/core/check.h"
+#include "engine/core/hex.h"
 #include "engine/optimo/language/nearest_word.h"
 
 namespace rmlcell::optimo {
@@ -385,11 +386,10 @@ std::string Parser::Quoted(const Token& token) const {
   std::string text = "'";
   for (const char c : lexer_.TextOf(token).substr(0, kQuotedMax)) {
     const auto byte = static_cast<unsigned char>(c);
-    constexpr std::string_view kDigits = "0123456789ABCDEF";
     if (byte >= 0x20 && byte < 0x7F) {
       text += c;
     } else {
-      text += {'\\', 'x', kDigits[byte >> 4], kDigits[byte & 15]};
+      text += "\\x" + HexByte(c);
     }
   }
   if (token.length > kQuotedMax) text += "...";

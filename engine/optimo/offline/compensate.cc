@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "engine/core/number_text.h"
-#include "engine/motion/path.h"
+#include "engine/motion/geometry/path.h"
 #include "engine/optimo/language/program.h"
 #include "engine/optimo/offline/cutter_directive.h"
 #include "engine/optimo/offline/gouge.h"

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "engine/motion/planner.h"
+#include "engine/motion/planner/planner.h"
 #include "engine/optimo/language/program.h"
 
 namespace rmlcell::optimo {

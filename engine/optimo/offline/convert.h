@@ -8,20 +8,16 @@
 
 #include "engine/core/diagnostic.h"
 #include "engine/core/result.h"
+#include "engine/machine/tools.h"
 
 // CONVERT: an inch-degree source into the equivalent millimetre-radian source, or back
 // (optimo.md 8.2, 8.3). Only numbers that are linear or rotary measurements change; layout and
 // comments stay.
 namespace rmlcell::optimo {
 
-enum class Direction { kToMetric, kToInch };
-
-// For the first line of the output; the engine reads no clock (OPT-B.77).
-struct FileNames {
-  std::string input;
-  std::string output;
-  std::string date;  // "Tue Apr 20 13:37:33 1993"
-};
+using machine::ConvertRequest;
+using machine::Direction;
+using machine::FileNames;
 
 struct Conversion {
   std::string text;
@@ -36,13 +32,6 @@ inline constexpr std::uint32_t kConvertTokensMax = 200;
 // With `names` a header line is put before the first line (OPT-8.51).
 Conversion Convert(std::string_view text, Direction direction,
                    const std::optional<FileNames>& names = {});
-
-// What a call of CONVERT asks for.
-struct ConvertRequest {
-  std::string input;
-  std::string output;
-  Direction direction = Direction::kToMetric;
-};
 
 // Reads the arguments: filename[.ext] [out] [/i or /m] (OPT-8.54 to 8.67). Nothing when there are
 // no arguments: then the parameters are to be explained. An argument that begins with '/' and has

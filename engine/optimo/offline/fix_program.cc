@@ -31,10 +31,10 @@ machine::Translation CheckForm(const machine::SourceFile& file) {
 
 }  // namespace
 
-Fixing FixProgram(const machine::SourceFile& file, const ProgramCheck& check) {
+RepairedText FixProgram(const machine::SourceFile& file, const ProgramCheck& check) {
   const bool inch = FormOfFile(file.name, file.bytes) == FileForm::kInchSource;
   const ProgramCheck look = inch ? ProgramCheck(CheckForm) : check;
-  Fixing fixing{.text = std::string(file.bytes), .fixed = {}, .left = {}};
+  RepairedText fixing{.text = std::string(file.bytes), .fixed = {}, .left = {}};
   fixing.left = look({file.name, fixing.text});
   for (int round = 0; round < kRoundsMax; ++round) {
     const std::vector<Diagnostic>& found = fixing.left.diagnostics;

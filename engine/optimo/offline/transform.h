@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/core/diagnostic.h"
+#include "engine/machine/tools.h"
 #include "engine/motion/geometry/frames.h"
 
 // TRANSFOR and RMLSHIFT: moving a program by rewriting its numbers (optimo.md 8.4).
@@ -26,11 +26,7 @@ struct HeadAngles {
 HeadAngles TurnHead(const HeadAngles& old, const motion::Rotation& turn,
                     std::optional<double> swing = {});
 
-struct Rewriting {
-  bool ok = false;  // false: the text is empty, nothing may be written
-  std::string text;
-  std::vector<Diagnostic> diagnostics;
-};
+using Rewriting = machine::RewrittenText;
 
 // Six decimals (OPT-8.77) say where the tip is to 5e-7 mm, and where the tool points to 1e-6. What
 // they cannot keep is A near B = 0: there A turns the tool about itself, and half a unit of the

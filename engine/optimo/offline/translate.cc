@@ -60,7 +60,7 @@ machine::Translation TranslateOptimo(const machine::SourceFile& file,
                                      const ContourMachine& contour_machine) {
   if (file.bytes.empty())
     return Refuse(ErrorCode::kCellEmptyProgram, "the file is empty", file.name);
-  const FileForm form = FormOfFile(file.name, file.bytes);
+  const FileForm form = file.is_object ? FileForm::kObject : FormOfFile(file.name, file.bytes);
   if (form == FileForm::kObject) {
     const Result<Module> module = DecodeObject(file.bytes);
     if (!module) return Refuse(module.error().code, module.error().detail, file.name);

@@ -8,7 +8,7 @@ namespace rmlcell::optimo {
 
 // Unit and form of a file by its name: .S .CMP metric source, .SI inch source, .O object
 // (OPT-8.72). Anything else is metric source, unless its bytes begin like an object.
-enum class FileForm { kMetricSource, kInchSource, kObject };
+using machine::FileForm;
 FileForm FormOfFile(std::string_view name, std::string_view bytes);
 
 // What the control would store: a source is checked and compiled, an object is checked and taken as

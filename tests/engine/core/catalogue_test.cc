@@ -133,6 +133,8 @@ TEST(Catalogue, NumbersAreThoseOfTheirFamilyAndUnique) {
       case ErrorFamily::kCell:
         EXPECT_TRUE(entry.number >= 9000 && entry.number <= 9999) << entry.symbol;
         break;
+      case ErrorFamily::kFirstOfTables:
+        ADD_FAILURE() << entry.symbol;
     }
   }
 }
@@ -257,6 +259,14 @@ TEST(Catalogue, IsSearchedByWhatAPersonMayWrite) {
     EXPECT_EQ(FindError(entry.family, entry.number), entry.code);
   }
   EXPECT_EQ(FindError(ErrorFamily::kCell, 348), std::nullopt);
+}
+
+// A program without a registry of families has the catalogue alone.
+TEST(Catalogue, HasNoTablesOfItsOwnWithoutFamilies) {
+  EXPECT_TRUE(OwnErrorTables().empty());
+  EXPECT_EQ(FamilyPrefix(OwnErrorFamily(0)), "");
+  EXPECT_EQ(static_cast<int>(OwnError(0, 1)), 100'001);
+  EXPECT_EQ(static_cast<int>(OwnError(2, 0)), 120'000);
 }
 
 }  // namespace

@@ -26,5 +26,14 @@ TEST(Letters, AreComparedWithoutTheirCase) {
   EXPECT_FALSE(EqualIgnoringCase("@", "`"));
 }
 
+TEST(Letters, BlanksAtBothEndsGo) {
+  EXPECT_EQ(Trimmed(" \t a b\r\r"), "a b");
+  EXPECT_EQ(Trimmed("a"), "a");
+  EXPECT_EQ(Trimmed(" \t\r"), "");
+  EXPECT_EQ(Trimmed(""), "");
+  EXPECT_EQ(Trimmed("\na\n"), "\na\n");
+  EXPECT_EQ(Trimmed("\ta\r", " \t"), "a\r");
+}
+
 }  // namespace
 }  // namespace rmlcell

@@ -3,7 +3,7 @@
 #include <map>
 #include <set>
 
-#include "engine/simulation/families.h"
+#include "engine/families/families.h"
 
 // The tables that families hand over, whatever the family.
 namespace rmlcell::machine {
@@ -16,7 +16,7 @@ std::string Upper(std::string_view text) {
 }
 
 TEST(FamilyTables, ParametersAreCompleteAndTheirDefaultsAreInRange) {
-  for (const MachineFamily* family : simulation::Families()) {
+  for (const MachineFamily* family : families::Families()) {
     std::set<std::string> names;
     for (const ParameterInfo& info : family->parameters()) {
       const std::string where = std::string(family->info().id) + " " + std::string(info.name);
@@ -38,7 +38,7 @@ TEST(FamilyTables, ParametersAreCompleteAndTheirDefaultsAreInRange) {
 }
 
 TEST(FamilyTables, EveryProfileCanBeApplied) {
-  for (const MachineFamily* family : simulation::Families()) {
+  for (const MachineFamily* family : families::Families()) {
     std::set<std::string_view> ids;
     for (const MachineProfile& profile : family->profiles()) {
       EXPECT_TRUE(ids.insert(profile.id).second) << profile.id;
@@ -52,7 +52,7 @@ TEST(FamilyTables, EveryProfileCanBeApplied) {
 
 // A travel whose ends are the wrong way round, or a machine without one, makes no picture.
 TEST(FamilyTables, EveryProfileHasATravel) {
-  for (const MachineFamily* family : simulation::Families()) {
+  for (const MachineFamily* family : families::Families()) {
     for (const MachineProfile& profile : family->profiles()) {
       Parameters parameters(family->parameters());
       ASSERT_TRUE(parameters.Apply(profile));
@@ -68,29 +68,29 @@ TEST(FamilyTables, EveryProfileHasATravel) {
 TEST(FamilyTables, IdsAndExtensionsBelongToOneFamily) {
   std::set<std::string_view> ids;
   std::set<std::string> extensions;
-  for (const MachineFamily* family : simulation::Families()) {
+  for (const MachineFamily* family : families::Families()) {
     EXPECT_TRUE(ids.insert(family->info().id).second);
-    EXPECT_EQ(simulation::FindFamily(family->info().id), family);
+    EXPECT_EQ(families::FindFamily(family->info().id), family);
     std::string_view rest = family->info().extensions;
     while (!rest.empty()) {
       const std::size_t end = std::min(rest.find(' '), rest.size());
       const std::string extension(rest.substr(0, end));
       EXPECT_EQ(extension.front(), '.');
       EXPECT_TRUE(extensions.insert(Upper(extension)).second) << extension;
-      EXPECT_EQ(simulation::FamilyOfFileName("a" + extension), family);
-      EXPECT_EQ(simulation::FamilyOfFileName("a" + Upper(extension)), family);
+      EXPECT_EQ(families::FamilyOfFileName("a" + extension), family);
+      EXPECT_EQ(families::FamilyOfFileName("a" + Upper(extension)), family);
       rest.remove_prefix(std::min(end + 1, rest.size()));
     }
   }
-  EXPECT_EQ(simulation::FindFamily("lathe"), nullptr);
-  EXPECT_EQ(simulation::FindFamily(""), nullptr);
-  EXPECT_EQ(simulation::FamilyOfFileName("a.txt"), nullptr);
-  EXPECT_EQ(simulation::FamilyOfFileName(""), nullptr);
+  EXPECT_EQ(families::FindFamily("lathe"), nullptr);
+  EXPECT_EQ(families::FindFamily(""), nullptr);
+  EXPECT_EQ(families::FamilyOfFileName("a.txt"), nullptr);
+  EXPECT_EQ(families::FamilyOfFileName(""), nullptr);
 }
 
 // docs/facts.md: a figure is known by its name.
 TEST(FamilyTables, FiguresHaveNamesUnitsAndMeanings) {
-  for (const MachineFamily* family : simulation::Families()) {
+  for (const MachineFamily* family : families::Families()) {
     std::set<std::string_view> names;
     for (const FigureInfo& figure : family->figures()) {
       EXPECT_TRUE(names.insert(figure.name).second) << figure.name;
@@ -114,7 +114,7 @@ TEST(HoldKey, HoldsARunOfEveryFamily) {
     void OnHalt(const Halt& halt) override { why = halt.why; }
     std::string why;
   };
-  for (const MachineFamily* family : simulation::Families()) {
+  for (const MachineFamily* family : families::Families()) {
     const FamilyInfo& info = family->info();
     const Case& one = cases.at(info.id);
     for (const Mode mode : {Mode::kRemote, Mode::kCycle}) {

@@ -1,12 +1,12 @@
 // Passages between moves in COORD ROBOT: motion.md 4.5.
-#include "engine/motion/axes_corner.h"
+#include "engine/motion/corner/axes_corner.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "engine/motion/trajectory.h"
+#include "engine/motion/ride/trajectory.h"
 #include "tests/engine/motion/random_chain.h"
 
 namespace rmlcell::motion {

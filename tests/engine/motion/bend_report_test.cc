@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/motion/trajectory.h"
+#include "engine/motion/ride/trajectory.h"
 #include "tests/engine/motion/random_chain.h"
 
 namespace rmlcell::motion {

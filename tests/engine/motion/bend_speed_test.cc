@@ -1,5 +1,5 @@
 // Bends passed with changing speed: level 2 of motion.md 5.4 inside the bends of 4.3.
-#include "engine/motion/bend_speed.h"
+#include "engine/motion/corner/bend_speed.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "engine/core/units.h"
-#include "engine/motion/corner.h"
-#include "engine/motion/trajectory.h"
+#include "engine/motion/corner/corner.h"
+#include "engine/motion/ride/trajectory.h"
 #include "tests/engine/motion/random_chain.h"
 
 namespace rmlcell::motion {

@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "engine/core/units.h"
-#include "engine/motion/axis_demand.h"
-#include "engine/motion/planner.h"
-#include "engine/motion/speed_bound.h"
+#include "engine/motion/kinematics/axis_demand.h"
+#include "engine/motion/kinematics/speed_bound.h"
+#include "engine/motion/planner/planner.h"
 #include "tests/engine/motion/standard_machine.h"
 
 namespace rmlcell::motion {

@@ -1,15 +1,15 @@
 // The curve of a bend by itself: its bounds, its length, its sharpest place. motion.md 4.2, 4.3, 9.
-#include "engine/motion/corner_curve.h"
+#include "engine/motion/geometry/corner_curve.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "engine/motion/axis_demand.h"
-#include "engine/motion/blend_curve.h"
-#include "engine/motion/corner.h"
-#include "engine/motion/least.h"
+#include "engine/motion/corner/corner.h"
+#include "engine/motion/geometry/blend_curve.h"
+#include "engine/motion/geometry/least.h"
+#include "engine/motion/kinematics/axis_demand.h"
 #include "tests/engine/motion/expect_near.h"
 #include "tests/engine/motion/random_chain.h"
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "engine/motion/axes_corner.h"
+#include "engine/motion/corner/axes_corner.h"
 #include "tests/engine/motion/random_chain.h"
 #include "tests/engine/motion/standard_machine.h"
 

@@ -1,4 +1,4 @@
-#include "engine/motion/corner_table.h"
+#include "engine/motion/geometry/corner_table.h"
 
 #include <gtest/gtest.h>
 

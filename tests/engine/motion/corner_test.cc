@@ -1,4 +1,4 @@
-#include "engine/motion/corner.h"
+#include "engine/motion/corner/corner.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "engine/motion/corner.h"
-#include "engine/motion/corner_curve.h"
+#include "engine/motion/corner/corner.h"
+#include "engine/motion/geometry/corner_curve.h"
 #include "tests/engine/motion/random_chain.h"
 
 namespace rmlcell::motion {

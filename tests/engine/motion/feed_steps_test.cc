@@ -1,4 +1,4 @@
-#include "engine/motion/feed_steps.h"
+#include "engine/motion/planner/feed_steps.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/motion/hole.h"
+#include "engine/motion/geometry/hole.h"
 
 #include <gtest/gtest.h>
 

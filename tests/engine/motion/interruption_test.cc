@@ -1,11 +1,11 @@
-#include "engine/motion/interruption.h"
+#include "engine/motion/ride/interruption.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <tuple>
 
-#include "engine/motion/trajectory.h"
+#include "engine/motion/ride/trajectory.h"
 #include "tests/engine/motion/plan_check.h"
 #include "tests/engine/motion/random_chain.h"
 

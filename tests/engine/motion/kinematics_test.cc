@@ -1,4 +1,4 @@
-#include "engine/motion/kinematics.h"
+#include "engine/motion/kinematics/kinematics.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/motion/laser_power.h"
+#include "engine/motion/ride/laser_power.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/motion/axis_demand.h"
+#include "engine/motion/kinematics/axis_demand.h"
 #include "tests/engine/motion/standard_machine.h"
 
 namespace rmlcell::motion {

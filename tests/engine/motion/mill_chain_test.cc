@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "engine/motion/planner.h"
+#include "engine/motion/planner/planner.h"
 #include "tests/engine/motion/standard_machine.h"
 
 namespace rmlcell::motion {
@@ -16,6 +16,7 @@ MachineLimits Mill() {
   mill.tip_acceleration_mm_s2 = 200.0;
   mill.tip_jerk_mm_s3 = std::numeric_limits<double>::infinity();
   mill.settling_s = 0.0;
+  mill.corners = MachineLimits::Corners::kThrough;
   mill.junction_jump_mm_s = 3.0;
   mill.junction_jump_a_rad_s = 0.5;
   return mill;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "engine/core/units.h"
-#include "engine/motion/trajectory.h"
+#include "engine/motion/ride/trajectory.h"
 #include "tests/engine/motion/random_chain.h"
 #include "tests/engine/motion/whole_planner.h"
 

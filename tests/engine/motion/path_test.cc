@@ -1,4 +1,4 @@
-#include "engine/motion/path.h"
+#include "engine/motion/geometry/path.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/motion/trajectory.h"
+#include "engine/motion/ride/trajectory.h"
 
 namespace rmlcell::motion {
 

@@ -1,4 +1,4 @@
-#include "engine/motion/planner.h"
+#include "engine/motion/planner/planner.h"
 
 #include <gtest/gtest.h>
 

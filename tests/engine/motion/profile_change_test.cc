@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "engine/motion/interruption.h"
-#include "engine/motion/laser_power.h"
+#include "engine/motion/ride/interruption.h"
+#include "engine/motion/ride/laser_power.h"
 #include "tests/engine/motion/expect_near.h"
 #include "tests/engine/motion/random_chain.h"
 #include "tests/engine/motion/standard_machine.h"

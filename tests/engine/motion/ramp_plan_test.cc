@@ -1,5 +1,5 @@
 // Level 2 of motion.md 5.4: ramps across the ends of stretches.
-#include "engine/motion/ramp_plan.h"
+#include "engine/motion/profile/ramp_plan.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 
 #include "engine/core/units.h"
 #include "engine/motion/geometry/frames.h"
-#include "engine/motion/kinematics.h"
+#include "engine/motion/kinematics/kinematics.h"
 #include "tests/engine/motion/expect_near.h"
 #include "tests/engine/motion/standard_machine.h"
 

@@ -1,4 +1,4 @@
-#include "engine/motion/speed_bound.h"
+#include "engine/motion/kinematics/speed_bound.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/motion/speed_passes.h"
+#include "engine/motion/profile/speed_passes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/motion/speed_profile.h"
+#include "engine/motion/profile/speed_profile.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "engine/core/units.h"
-#include "engine/motion/planner.h"
+#include "engine/motion/planner/planner.h"
 
 namespace rmlcell::motion {
 

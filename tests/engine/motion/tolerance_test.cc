@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "engine/motion/hole.h"
+#include "engine/motion/geometry/hole.h"
 #include "tests/engine/motion/expect_near.h"
 #include "tests/engine/motion/random_chain.h"
 

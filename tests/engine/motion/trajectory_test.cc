@@ -1,4 +1,4 @@
-#include "engine/motion/trajectory.h"
+#include "engine/motion/ride/trajectory.h"
 
 #include <gtest/gtest.h>
 

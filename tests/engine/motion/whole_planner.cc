@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/motion/trajectory.h"
+#include "engine/motion/ride/trajectory.h"
 
 namespace rmlcell::motion {
 namespace {

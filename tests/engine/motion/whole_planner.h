@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "engine/motion/planner.h"
+#include "engine/motion/planner/planner.h"
 
 namespace rmlcell::motion {
 

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "engine/motion/trajectory.h"
+#include "engine/motion/ride/trajectory.h"
 #include "tests/engine/motion/random_chain.h"
 
 namespace rmlcell::motion {

@@ -197,10 +197,10 @@ TEST(Rml1Family, RefusesWhatAMillCannotTake) {
   };
   machine::ProjectBundle schedules = BundleOf(1, "PU;");
   schedules.schedules.push_back({.number = 1, .name = "x"});
-  EXPECT_EQ(refusal(schedules), "a mill has no laser schedules");
+  EXPECT_EQ(refusal(schedules), "Roland mill or engraver, RML-1 has no laser schedules");
   machine::ProjectBundle processes = BundleOf(1, "PU;");
   processes.processes.push_back({.kind = 1, .process = 1, .values = {}, .note = {}});
-  EXPECT_EQ(refusal(processes), "a mill has no process definitions");
+  EXPECT_EQ(refusal(processes), "Roland mill or engraver, RML-1 has no process definitions");
   machine::ProjectBundle inch = BundleOf(1, "PU;");
   inch.programs[0].inch = true;
   EXPECT_EQ(refusal(inch), "a stream is in units of its machine, not in inches");

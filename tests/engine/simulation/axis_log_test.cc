@@ -1,4 +1,4 @@
-#include "engine/simulation/axis_log.h"
+#include "engine/simulation/report/axis_log.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/simulation/beam_work.h"
+#include "engine/simulation/report/beam_work.h"
 
 #include <gtest/gtest.h>
 

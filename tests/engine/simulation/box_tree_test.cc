@@ -1,4 +1,4 @@
-#include "engine/simulation/box_tree.h"
+#include "engine/simulation/picture/box_tree.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/simulation/corner_log.h"
+#include "engine/simulation/report/corner_log.h"
 
 #include <gtest/gtest.h>
 

@@ -6,11 +6,11 @@
 #include <string>
 
 #include "engine/core/units.h"
-#include "engine/simulation/path_sketch.h"
-#include "engine/simulation/picture.h"
-#include "engine/simulation/picture_difference.h"
-#include "engine/simulation/picture_page.h"
-#include "engine/simulation/plot.h"
+#include "engine/simulation/picture/path_sketch.h"
+#include "engine/simulation/picture/picture.h"
+#include "engine/simulation/picture/picture_difference.h"
+#include "engine/simulation/picture/picture_page.h"
+#include "engine/simulation/picture/plot.h"
 #include "tests/engine/simulation/fake_run.h"
 #include "tests/engine/simulation/laser_shape.h"
 #include "tests/engine/simulation/xml_check.h"

@@ -1,4 +1,4 @@
-#include "engine/simulation/facts.h"
+#include "engine/simulation/report/facts.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 
-#include "engine/simulation/families.h"
+#include "engine/families/families.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -130,7 +130,7 @@ std::string PageOfTheDocuments() {
 TEST(Facts, DocumentListsExactlyTheKeys) {
   std::set<std::string> printed;
   for (const Fact& fact : Facts(RunReport{})) printed.insert(fact.key);
-  for (const machine::MachineFamily* family : Families()) {
+  for (const machine::MachineFamily* family : families::Families()) {
     for (const machine::FigureInfo& figure : family->figures()) {
       printed.insert(std::string(family->info().id) + '.' + std::string(figure.name));
     }

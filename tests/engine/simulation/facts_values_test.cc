@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "engine/simulation/facts.h"
+#include "engine/simulation/report/facts.h"
 
 // Which figure of a report stands under which key: every figure has a value of its own, so none can
 // stand for another.

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "engine/machine/family.h"
-#include "engine/motion/planner.h"
+#include "engine/motion/planner/planner.h"
 #include "tests/engine/motion/standard_machine.h"
 
 // A run that does what a test scripts, through the same observer that real machines use.

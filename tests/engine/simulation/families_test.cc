@@ -1,4 +1,4 @@
-#include "engine/simulation/families.h"
+#include "engine/families/families.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "engine/simulation/version.h"
+#include "engine/simulation/run/version.h"
 #include "tests/engine/simulation/fake_family.h"
 
 namespace rmlcell::simulation {
@@ -16,54 +16,54 @@ namespace {
 TEST(Families, ExtensionsAreComparedWithoutCase) {
   const FakeFamily family;
   const machine::FamilyInfo& info = family.info();
-  EXPECT_TRUE(ClaimsExtension(info, ".fk"));
-  EXPECT_TRUE(ClaimsExtension(info, ".FAKE"));
-  EXPECT_FALSE(ClaimsExtension(info, ".fak"));
-  EXPECT_FALSE(ClaimsExtension(info, ""));
-  EXPECT_FALSE(ClaimsExtension(info, "fk"));
+  EXPECT_TRUE(families::ClaimsExtension(info, ".fk"));
+  EXPECT_TRUE(families::ClaimsExtension(info, ".FAKE"));
+  EXPECT_FALSE(families::ClaimsExtension(info, ".fak"));
+  EXPECT_FALSE(families::ClaimsExtension(info, ""));
+  EXPECT_FALSE(families::ClaimsExtension(info, "fk"));
 }
 
 // Only letters have two cases: what stands beside them in ASCII is itself.
 TEST(Families, OnlyLettersHaveTwoCases) {
   const machine::FamilyInfo info{.extensions = ".AZ .B@ .C["};
   for (const char* same : {".AZ", ".az", ".Az", ".b@", ".c["}) {
-    EXPECT_TRUE(ClaimsExtension(info, same)) << same;
+    EXPECT_TRUE(families::ClaimsExtension(info, same)) << same;
   }
   for (const char* other : {".b`", ".c{", ".A", ".AZ ", ".AZ .B@"}) {
-    EXPECT_FALSE(ClaimsExtension(info, other)) << other;
+    EXPECT_FALSE(families::ClaimsExtension(info, other)) << other;
   }
 }
 
 // The extension is what follows the last point of the name itself, whichever way folders are
 // written.
 TEST(Families, OfFileNames) {
-  const machine::MachineFamily* optimo = FindFamily("optimo");
+  const machine::MachineFamily* optimo = families::FindFamily("optimo");
   ASSERT_NE(optimo, nullptr);
   for (const char* name : {"part.S", "part.si", "a.b.S", "C:\\old.d\\part.S", "x.rml/part.cmp"}) {
-    EXPECT_EQ(FamilyOfFileName(name), optimo) << name;
+    EXPECT_EQ(families::FamilyOfFileName(name), optimo) << name;
   }
-  EXPECT_EQ(FamilyOfFileName("old.S\\part"), nullptr);
-  EXPECT_EQ(FamilyOfFileName("part.S.bak"), nullptr);
+  EXPECT_EQ(families::FamilyOfFileName("old.S\\part"), nullptr);
+  EXPECT_EQ(families::FamilyOfFileName("part.S.bak"), nullptr);
 }
 
 TEST(Families, NamesOfNobody) {
-  EXPECT_EQ(FindFamily("no such family"), nullptr);
-  EXPECT_EQ(FamilyOfFileName("part.xyz"), nullptr);
-  EXPECT_EQ(FamilyOfFileName("part"), nullptr);
-  EXPECT_EQ(FamilyOfFileName(""), nullptr);
-  EXPECT_EQ(FamilyOfFileName("old.rml/part"), nullptr);  // the extension of a folder
+  EXPECT_EQ(families::FindFamily("no such family"), nullptr);
+  EXPECT_EQ(families::FamilyOfFileName("part.xyz"), nullptr);
+  EXPECT_EQ(families::FamilyOfFileName("part"), nullptr);
+  EXPECT_EQ(families::FamilyOfFileName(""), nullptr);
+  EXPECT_EQ(families::FamilyOfFileName("old.rml/part"), nullptr);  // the extension of a folder
 }
 
 // A family is found by its own id and by each of its extensions, and no two share one.
 TEST(Families, EachIsFoundByIdAndExtension) {
   std::set<std::string_view> ids;
-  for (const machine::MachineFamily* family : Families()) {
+  for (const machine::MachineFamily* family : families::Families()) {
     ASSERT_NE(family, nullptr);
     EXPECT_TRUE(ids.insert(family->info().id).second);
-    EXPECT_EQ(FindFamily(family->info().id), family);
+    EXPECT_EQ(families::FindFamily(family->info().id), family);
     const std::string extensions(family->info().extensions);
     const std::string first = extensions.substr(0, extensions.find(' '));
-    EXPECT_EQ(FamilyOfFileName("folder.d/part" + first), family);
+    EXPECT_EQ(families::FamilyOfFileName("folder.d/part" + first), family);
   }
 }
 
@@ -74,6 +74,37 @@ TEST(Version, IsThatOfTheProject) {
   std::string wanted = "VERSION ";
   wanted += kEngineVersion;
   EXPECT_NE(text.find(wanted + ' '), std::string::npos);
+}
+
+// The tools for a text are those of the family that its name tells; a name that tells nothing is
+// that of the first one with tools, and a stream has none.
+TEST(Families, ToolsGoByTheName) {
+  for (const char* name : {"a.S", "a.si", "a.CMP", "a.O", "part", ""}) {
+    const auto family = families::FamilyWithTools(name);
+    ASSERT_TRUE(family) << name;
+    EXPECT_EQ((*family)->info().id, "optimo") << name;
+    EXPECT_NE((*family)->tools(), nullptr);
+  }
+  const auto none = families::FamilyWithTools("a.rml");
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, ErrorCode::kCellInvalidArgument);
+  EXPECT_NE(none.error().detail.find("a.rml"), std::string::npos);
+}
+
+TEST(Families, ObjectsGoByTheName) {
+  EXPECT_TRUE(families::IsObjectFileName("12.O"));
+  EXPECT_TRUE(families::IsObjectFileName("12.o"));
+  for (const char* name : {"12.S", "12", "o", "12.rml", "12.O.S"})
+    EXPECT_FALSE(families::IsObjectFileName(name)) << name;
+}
+
+// The keys of both controls go to 145 %; a machine that says nothing takes no more than its
+// programs ask for.
+TEST(Families, TheOverrideHasTheRangeOfTheFamily) {
+  for (const machine::MachineFamily* family : families::Families())
+    EXPECT_EQ(family->info().override_max_percent, 145.0) << family->info().id;
+  EXPECT_EQ(families::OverrideMax(), 145.0);
+  EXPECT_EQ(machine::FamilyInfo{}.override_max_percent, 100.0);
 }
 
 }  // namespace

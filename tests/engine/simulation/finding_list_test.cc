@@ -1,4 +1,4 @@
-#include "engine/simulation/finding_list.h"
+#include "engine/simulation/report/finding_list.h"
 
 #include <gtest/gtest.h>
 

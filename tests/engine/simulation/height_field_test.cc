@@ -1,4 +1,4 @@
-#include "engine/simulation/height_field.h"
+#include "engine/simulation/material/height_field.h"
 
 #include <gtest/gtest.h>
 

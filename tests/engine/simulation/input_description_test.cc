@@ -1,4 +1,4 @@
-#include "engine/simulation/input_description.h"
+#include "engine/simulation/run/input_description.h"
 
 #include <gtest/gtest.h>
 

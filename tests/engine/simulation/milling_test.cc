@@ -8,9 +8,9 @@
 #include <tuple>
 
 #include "engine/core/units.h"
-#include "engine/simulation/milling_recorder.h"
-#include "engine/simulation/milling_text.h"
-#include "engine/simulation/stl.h"
+#include "engine/simulation/material/milling_recorder.h"
+#include "engine/simulation/material/milling_text.h"
+#include "engine/simulation/material/stl.h"
 #include "tests/engine/simulation/fake_run.h"
 
 namespace rmlcell::simulation {

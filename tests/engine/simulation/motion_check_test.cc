@@ -1,8 +1,8 @@
-#include "engine/simulation/motion_check.h"
+#include "engine/simulation/run/motion_check.h"
 
 #include <gtest/gtest.h>
 
-#include "engine/simulation/families.h"
+#include "engine/families/families.h"
 #include "tests/engine/simulation/fake_family.h"
 
 namespace rmlcell::simulation {
@@ -10,7 +10,7 @@ namespace {
 
 // A memory of Optimo programs, as CHECK gets them.
 machine::RunSetup Memory(const std::map<int, std::string>& programs) {
-  const machine::MachineFamily& family = *FindFamily("optimo");
+  const machine::MachineFamily& family = *families::FindFamily("optimo");
   machine::RunSetup setup{machine::Parameters(family.parameters())};
   for (const auto& [slot, text] : programs) {
     machine::Translation made =
@@ -27,7 +27,7 @@ MotionCheck Checked(const std::map<int, std::string>& programs, const std::set<i
                     const machine::InputScript& inputs = {}) {
   machine::RunSetup setup = Memory(programs);
   setup.inputs = inputs;
-  const auto check = CheckMotion(*FindFamily("optimo"), setup, slots);
+  const auto check = CheckMotion(*families::FindFamily("optimo"), setup, slots);
   EXPECT_TRUE(check);
   return *check;
 }
@@ -166,7 +166,7 @@ TEST(MotionCheck, ARingIsLookedAtOnce) {
 
 // RML1-5A.01: a mill cuts off what lies outside; its translation says so already.
 TEST(MotionCheck, AMillHasNone) {
-  const machine::MachineFamily& mill = *FindFamily("rml1");
+  const machine::MachineFamily& mill = *families::FindFamily("rml1");
   machine::RunSetup setup{machine::Parameters(mill.parameters())};
   setup.programs[1].object = std::make_shared<const std::string>("PD;PA99999,0;");
   const auto check = CheckMotion(mill, setup, {1});

@@ -1,4 +1,4 @@
-#include "engine/simulation/motion_peaks.h"
+#include "engine/simulation/path/motion_peaks.h"
 
 #include <gtest/gtest.h>
 

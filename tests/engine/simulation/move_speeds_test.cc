@@ -1,4 +1,4 @@
-#include "engine/simulation/move_speeds.h"
+#include "engine/simulation/report/move_speeds.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/simulation/part_curve.h"
+#include "engine/simulation/path/part_curve.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/simulation/path_difference.h"
+#include "engine/simulation/picture/path_difference.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "engine/core/units.h"
-#include "engine/simulation/box_tree.h"
-#include "engine/simulation/picture_difference.h"
+#include "engine/simulation/picture/box_tree.h"
+#include "engine/simulation/picture/picture_difference.h"
 #include "tests/engine/simulation/fake_run.h"
 #include "tests/engine/simulation/laser_shape.h"
 #include "tests/engine/simulation/xml_check.h"

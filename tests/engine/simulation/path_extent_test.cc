@@ -1,4 +1,4 @@
-#include "engine/simulation/path_extent.h"
+#include "engine/simulation/path/path_extent.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "engine/core/units.h"
-#include "engine/simulation/polyline.h"
+#include "engine/simulation/path/polyline.h"
 #include "tests/engine/motion/standard_machine.h"
 #include "tests/engine/simulation/fake_run.h"
 

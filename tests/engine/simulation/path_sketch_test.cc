@@ -1,4 +1,4 @@
-#include "engine/simulation/path_sketch.h"
+#include "engine/simulation/picture/path_sketch.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/simulation/picture_path.h"
+#include "engine/simulation/picture/picture_path.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/simulation/picture.h"
+#include "engine/simulation/picture/picture.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "engine/core/units.h"
-#include "engine/simulation/path_sketch.h"
-#include "engine/simulation/picture_page.h"
+#include "engine/simulation/picture/path_sketch.h"
+#include "engine/simulation/picture/picture_page.h"
 #include "tests/engine/motion/standard_machine.h"
 #include "tests/engine/simulation/fake_run.h"
 #include "tests/engine/simulation/laser_shape.h"

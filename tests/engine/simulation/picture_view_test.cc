@@ -1,11 +1,11 @@
-#include "engine/simulation/picture_view.h"
+#include "engine/simulation/picture/picture_view.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
-#include "engine/simulation/picture_panel.h"
+#include "engine/simulation/picture/picture_panel.h"
 
 namespace rmlcell::simulation {
 namespace {

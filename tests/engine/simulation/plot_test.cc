@@ -1,4 +1,4 @@
-#include "engine/simulation/plot.h"
+#include "engine/simulation/picture/plot.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "engine/simulation/plot_page.h"
+#include "engine/simulation/picture/plot_page.h"
 #include "tests/engine/simulation/fake_run.h"
 #include "tests/engine/simulation/laser_shape.h"
 #include "tests/engine/simulation/xml_check.h"

@@ -1,4 +1,4 @@
-#include "engine/simulation/polyline.h"
+#include "engine/simulation/path/polyline.h"
 
 #include <gtest/gtest.h>
 

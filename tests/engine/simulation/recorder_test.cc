@@ -1,10 +1,10 @@
-#include "engine/simulation/recorder.h"
+#include "engine/simulation/run/recorder.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "engine/simulation/version.h"
+#include "engine/simulation/run/version.h"
 #include "tests/engine/simulation/fake_run.h"
 
 namespace rmlcell::simulation {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "engine/simulation/families.h"
-#include "engine/simulation/motion_peaks.h"
-#include "engine/simulation/simulate.h"
+#include "engine/families/families.h"
+#include "engine/simulation/path/motion_peaks.h"
+#include "engine/simulation/run/simulate.h"
 
 // The figures of motion.md 8.2 for whole programs, each worked out by hand. The standard machine
 // stands at column (21.02, 2201.2, -50), tip 300 mm below it; 500 mm/s, 2000 mm/s2, 40,000 mm/s3
@@ -21,7 +21,7 @@ struct Told {
 
 // Programs by slot; that of the lowest one is started.
 RunReport ReportOf(const std::map<int, std::string>& programs, const Told& told = {}) {
-  const machine::MachineFamily& family = *FindFamily("optimo");
+  const machine::MachineFamily& family = *families::FindFamily("optimo");
   machine::RunSetup setup{machine::Parameters(family.parameters())};
   for (const auto& [name, value] : told.parameters) {
     EXPECT_TRUE(setup.parameters.Set(name, std::string_view(value)).ok());

@@ -1,4 +1,4 @@
-#include "engine/simulation/report_recorder.h"
+#include "engine/simulation/report/report_recorder.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/simulation/samples.h"
+#include "engine/simulation/report/samples.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "engine/core/number_text.h"
-#include "engine/motion/trajectory.h"
-#include "engine/simulation/families.h"
-#include "engine/simulation/simulate.h"
+#include "engine/families/families.h"
+#include "engine/motion/ride/trajectory.h"
+#include "engine/simulation/run/simulate.h"
 #include "tests/engine/motion/standard_machine.h"
 #include "tests/engine/simulation/fake_run.h"
 
@@ -218,7 +218,7 @@ TEST(Samples, BeginBeforeTheFirstMotion) {
 
 // motion.md 9, 8.1: the same of a program without a motion: dwelling, then with the beam on.
 TEST(Samples, OfAProgramWithoutAMotion) {
-  const machine::MachineFamily& family = *FindFamily("optimo");
+  const machine::MachineFamily& family = *families::FindFamily("optimo");
   machine::RunSetup setup{machine::Parameters(family.parameters())};
   machine::Translation made =
       family.Translate({.name = "test.S", .bytes = "DELAY 1\nWORK 0,0/ON\nDELAY 1\nWORK 0,0/OFF\n"},

@@ -1,11 +1,11 @@
-#include "engine/simulation/simulate.h"
+#include "engine/simulation/run/simulate.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
-#include "engine/simulation/facts.h"
+#include "engine/simulation/report/facts.h"
 #include "tests/engine/simulation/fake_family.h"
 
 namespace rmlcell::simulation {

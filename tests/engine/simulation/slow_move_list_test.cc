@@ -1,4 +1,4 @@
-#include "engine/simulation/slow_move_list.h"
+#include "engine/simulation/report/slow_move_list.h"
 
 #include <gtest/gtest.h>
 

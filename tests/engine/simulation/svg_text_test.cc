@@ -1,4 +1,4 @@
-#include "engine/simulation/svg_text.h"
+#include "engine/simulation/picture/svg_text.h"
 
 #include <gtest/gtest.h>
 

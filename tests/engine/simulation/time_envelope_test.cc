@@ -1,4 +1,4 @@
-#include "engine/simulation/time_envelope.h"
+#include "engine/simulation/picture/time_envelope.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/simulation/time_ledger.h"
+#include "engine/simulation/report/time_ledger.h"
 
 #include <gtest/gtest.h>
 

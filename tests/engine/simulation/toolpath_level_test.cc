@@ -1,4 +1,4 @@
-#include "engine/simulation/toolpath_level.h"
+#include "engine/simulation/toolpath/toolpath_level.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/simulation/toolpath_recorder.h"
+#include "engine/simulation/toolpath/toolpath_recorder.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/simulation/toolpath.h"
+#include "engine/simulation/toolpath/toolpath.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/simulation/trace.h"
+#include "engine/simulation/report/trace.h"
 
 #include <gtest/gtest.h>
 

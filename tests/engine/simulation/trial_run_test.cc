@@ -1,18 +1,18 @@
-#include "engine/simulation/trial_run.h"
+#include "engine/simulation/run/trial_run.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
-#include "engine/simulation/families.h"
+#include "engine/families/families.h"
 #include "tests/engine/simulation/fake_family.h"
 
 namespace rmlcell::simulation {
 namespace {
 
 Result<TrialRun> RunTrial(const std::string& text) {
-  const machine::MachineFamily& family = *FindFamily("optimo");
+  const machine::MachineFamily& family = *families::FindFamily("optimo");
   machine::RunSetup setup{machine::Parameters(family.parameters())};
   machine::Translation made =
       family.Translate({.name = "test.S", .bytes = text}, setup.parameters, {});

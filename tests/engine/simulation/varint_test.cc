@@ -1,4 +1,4 @@
-#include "engine/simulation/varint.h"
+#include "engine/simulation/toolpath/varint.h"
 
 #include <gtest/gtest.h>
 

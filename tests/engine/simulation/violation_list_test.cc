@@ -1,4 +1,4 @@
-#include "engine/simulation/violation_list.h"
+#include "engine/simulation/report/violation_list.h"
 
 #include <gtest/gtest.h>
 

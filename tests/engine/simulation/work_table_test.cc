@@ -1,4 +1,4 @@
-#include "engine/simulation/work_table.h"
+#include "engine/simulation/report/work_table.h"
 
 #include <gtest/gtest.h>
 

@@ -79,7 +79,7 @@ TEST(InputFile, EveryInput) {
       "closed\n"
       "4 START\n5 RESUME\n6 HOLD\n7 STOP\n8 EMERGENCY\n9 OVERRIDE = 145\n"
       "10 IL[1] = on\n11 IL[1] = true\n12 IL[1] = yes\n13 IL[1] = false\n14 IL[1] = no",
-      "in.txt", options);
+      "in.txt", 145.0, options);
   ASSERT_TRUE(read) << read.error().detail;
   const auto logical = [](int index, double at, int value) {
     return "inputs { at_s: " + std::to_string(at) +
@@ -125,7 +125,7 @@ TEST(InputFile, MistakesAreNamedWithTheirPlace) {
            {"1 OVERRIDE = 146", 1, 3, "the value is 146; allowed are above 0 to 145 %"},
            {"1 OVERRIDE = 0", 1, 3, "the value is 0; allowed are above 0 to 145 %"}}) {
     v1::SimulationOptions options;
-    const Status read = ParseInputFile(text, "in.txt", options);
+    const Status read = ParseInputFile(text, "in.txt", 145.0, options);
     ASSERT_FALSE(read) << text;
     EXPECT_EQ(read.error().code, ErrorCode::kCellBadText);
     EXPECT_EQ(read.error().detail, "in.txt:" + std::to_string(line) + ": " + said);
@@ -139,14 +139,14 @@ TEST(InputValue, AnaloguesAreNumbers) {
   v1::ScriptedInput input;
   input.set_kind(v1::ScriptedInput::KIND_ANALOGUE_INPUT);
   input.set_value(1e300);
-  EXPECT_TRUE(CheckInputValue(input));
+  EXPECT_TRUE(CheckInputValue(input, 145.0));
   input.set_value(std::numeric_limits<double>::infinity());
-  ASSERT_FALSE(CheckInputValue(input));
-  EXPECT_EQ(CheckInputValue(input).error().code, ErrorCode::kCellInvalidArgument);
+  ASSERT_FALSE(CheckInputValue(input, 145.0));
+  EXPECT_EQ(CheckInputValue(input, 145.0).error().code, ErrorCode::kCellInvalidArgument);
   input.set_kind(v1::ScriptedInput::KIND_OVERRIDE);
-  EXPECT_FALSE(CheckInputValue(input));
+  EXPECT_FALSE(CheckInputValue(input, 145.0));
   input.set_value(std::numeric_limits<double>::quiet_NaN());
-  EXPECT_FALSE(CheckInputValue(input));
+  EXPECT_FALSE(CheckInputValue(input, 145.0));
 }
 
 // FIPS 180-4: the message "abc", the empty one, and one of more than a block.

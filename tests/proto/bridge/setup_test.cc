@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/simulation/families.h"
+#include "engine/families/families.h"
 #include "rmlcell/v1/job.pb.h"
 
 namespace rmlcell::bridge {
@@ -16,7 +16,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const machine::MachineFamily& Optimo() { return *simulation::FindFamily("optimo"); }
+const machine::MachineFamily& Optimo() { return *families::FindFamily("optimo"); }
 
 ProgramInput Source(int slot, const std::string& text, const std::string& name = "p.S") {
   return {.slot = slot,
@@ -199,11 +199,11 @@ TEST(SetupForCheck, LeavesOutWhatHasErrors) {
 }
 
 TEST(ObjectFileName, EndsInO) {
-  EXPECT_TRUE(IsObjectFileName("1.O"));
-  EXPECT_TRUE(IsObjectFileName("12.o"));
-  EXPECT_FALSE(IsObjectFileName(".O"));
-  EXPECT_FALSE(IsObjectFileName("12.S"));
-  EXPECT_FALSE(IsObjectFileName("12O"));
+  EXPECT_TRUE(families::IsObjectFileName("1.O"));
+  EXPECT_TRUE(families::IsObjectFileName("12.o"));
+  EXPECT_FALSE(families::IsObjectFileName(".O"));
+  EXPECT_FALSE(families::IsObjectFileName("12.S"));
+  EXPECT_FALSE(families::IsObjectFileName("12O"));
 }
 
 TEST(Variables, RangesAreWrittenOut) {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "server/config.h"
+#include "server/base/config.h"
 #include "server/jobs/job_book.h"
 #include "tests/server/server_bed.h"
 

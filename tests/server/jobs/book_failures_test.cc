@@ -3,7 +3,7 @@
 
 #include <future>
 
-#include "server/config.h"
+#include "server/base/config.h"
 #include "server/jobs/assignment.h"
 #include "server/jobs/job_book.h"
 #include "tests/server/failing_store.h"

@@ -5,12 +5,12 @@
 #include <map>
 #include <mutex>
 
-#include "server/config.h"
+#include "server/base/config.h"
+#include "server/base/executor.h"
+#include "server/base/version.h"
 #include "server/events/event_feed.h"
-#include "server/executor.h"
 #include "server/jobs/dispatcher.h"
-#include "server/jobs/job_messages.h"
-#include "server/version.h"
+#include "server/records/job_messages.h"
 #include "tests/server/forwarding_store.h"
 #include "tests/server/server_bed.h"
 

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "server/base/names.h"
 #include "server/jobs/dispatcher.h"
-#include "server/names.h"
 #include "tests/server/jobs/dispatcher_bed.h"
 
 namespace rmlcell::server {

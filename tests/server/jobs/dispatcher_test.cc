@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "server/names.h"
+#include "server/base/names.h"
 #include "tests/server/jobs/dispatcher_bed.h"
 
 namespace rmlcell::server {

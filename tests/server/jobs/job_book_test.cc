@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "engine/core/number_text.h"
-#include "engine/simulation/families.h"
+#include "engine/families/families.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/sha256.h"
-#include "server/config.h"
-#include "server/names.h"
+#include "server/base/config.h"
+#include "server/base/names.h"
 #include "tests/server/server_bed.h"
 
 namespace rmlcell::server {
@@ -109,7 +109,7 @@ TEST_F(JobBookTest, AJobOfAnEarlierVersionIsReadAndItsRequestIdIsUsed) {
 // The entries of a map have no order: a repeated request is the same whatever order they come in.
 TEST_F(JobBookTest, TheSameRequestIsRecognisedWithManyParameters) {
   std::vector<std::pair<std::string, std::string>> parameters;
-  for (const machine::ParameterInfo& info : simulation::FindFamily("optimo")->parameters()) {
+  for (const machine::ParameterInfo& info : families::FindFamily("optimo")->parameters()) {
     if (info.choices.empty()) parameters.emplace_back(info.name, ShortestText(info.standard));
   }
   ASSERT_GE(parameters.size(), 8U);

@@ -8,9 +8,9 @@
 #include <future>
 #include <limits>
 
-#include "server/config.h"
+#include "server/base/config.h"
+#include "server/base/names.h"
 #include "server/jobs/job_book.h"
-#include "server/names.h"
 #include "tests/server/server_bed.h"
 
 namespace rmlcell::server {

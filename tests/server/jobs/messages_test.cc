@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
-#include "server/executor.h"
-#include "server/jobs/framing.h"
-#include "server/jobs/job_messages.h"
-#include "server/names.h"
+#include "server/base/executor.h"
+#include "server/base/names.h"
+#include "server/records/framing.h"
+#include "server/records/job_messages.h"
 #include "tests/server/server_bed.h"
 
 namespace rmlcell::server {

@@ -4,11 +4,11 @@
 
 #include <array>
 
-#include "engine/simulation/families.h"
+#include "engine/families/families.h"
 #include "rmlcell/v1/project.pb.h"
-#include "server/jobs/file_family.h"
-#include "server/jobs/program_place.h"
-#include "server/jobs/update_mask.h"
+#include "server/records/file_family.h"
+#include "server/records/program_place.h"
+#include "server/records/update_mask.h"
 #include "tests/server/server_bed.h"
 
 namespace rmlcell::server {
@@ -18,8 +18,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const machine::MachineFamily& Optimo() { return *simulation::FindFamily("optimo"); }
-const machine::MachineFamily& Mill() { return *simulation::FindFamily("rml1"); }
+const machine::MachineFamily& Optimo() { return *families::FindFamily("optimo"); }
+const machine::MachineFamily& Mill() { return *families::FindFamily("rml1"); }
 
 // OPT-1.10: slots 1 to 99. The code is the machine's own where it has one.
 TEST(ProgramPlace, SlotsAreOneToNinetyNine) {

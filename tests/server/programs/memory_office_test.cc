@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "server/config.h"
+#include "server/base/config.h"
 #include "tests/server/engine_bytes.h"
 #include "tests/server/server_bed.h"
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "engine/optimo/language/linker.h"
-#include "server/config.h"
+#include "server/base/config.h"
 #include "server/programs/memory_office.h"
 #include "server/programs/program_office.h"
 #include "tests/server/engine_bytes.h"

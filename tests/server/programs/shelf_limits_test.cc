@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "server/config.h"
+#include "server/base/config.h"
 #include "server/programs/program_shelf.h"
 #include "tests/server/engine_bytes.h"
 #include "tests/server/server_bed.h"

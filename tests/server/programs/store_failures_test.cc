@@ -1,7 +1,7 @@
 // Whichever call to the store fails in the middle of something, its error is what the caller hears.
 #include <gtest/gtest.h>
 
-#include "server/config.h"
+#include "server/base/config.h"
 #include "server/programs/memory_office.h"
 #include "tests/server/engine_bytes.h"
 #include "tests/server/failing_store.h"

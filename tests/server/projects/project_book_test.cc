@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "server/config.h"
+#include "server/base/config.h"
 #include "tests/server/engine_bytes.h"
 #include "tests/server/server_bed.h"
 

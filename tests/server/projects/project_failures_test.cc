@@ -1,7 +1,7 @@
 // Whichever call to the store fails in the middle of something, its error is what the caller hears.
 #include <gtest/gtest.h>
 
-#include "server/config.h"
+#include "server/base/config.h"
 #include "server/projects/project_book.h"
 #include "tests/server/failing_store.h"
 #include "tests/server/server_bed.h"

@@ -8,7 +8,7 @@
 #include "proto/bridge/sha256.h"
 #include "rmlcell/v1/program.pb.h"
 #include "rmlcell/v1/report.pb.h"
-#include "server/config.h"
+#include "server/base/config.h"
 #include "server/jobs/job_book.h"
 #include "server/programs/program_shelf.h"
 #include "tests/server/engine_bytes.h"

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "engine/core/letters.h"
 #include "server/web/rpc_status.h"
 
 namespace rmlcell::web {
@@ -70,9 +71,9 @@ TEST(HttpText, TypesAndLists) {
 }
 
 TEST(HttpText, BlanksAtBothEnds) {
-  EXPECT_EQ(Trim(" \t a \t b \t "), "a \t b");
-  EXPECT_EQ(Trim(" \t"), "");
-  EXPECT_EQ(Trim("a\n"), "a\n");
+  EXPECT_EQ(Trimmed(" \t a \t b \t ", kBlanks), "a \t b");
+  EXPECT_EQ(Trimmed(" \t", kBlanks), "");
+  EXPECT_EQ(Trimmed("a\n", kBlanks), "a\n");
 }
 
 TEST(HttpText, NamesOfFiles) {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "server/jobs/framing.h"
+#include "server/records/framing.h"
 #include "tests/server/worker/runner_bed.h"
 
 namespace rmlcell::server {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "server/version.h"
+#include "server/base/version.h"
 #include "tests/server/worker/runner_bed.h"
 
 namespace rmlcell::server {

@@ -6,10 +6,10 @@
 #include <array>
 #include <cmath>
 
-#include "engine/motion/axes.h"
-#include "engine/motion/kinematics.h"
-#include "engine/motion/machine_limits.h"
-#include "engine/motion/trajectory.h"
+#include "engine/motion/kinematics/axes.h"
+#include "engine/motion/kinematics/kinematics.h"
+#include "engine/motion/kinematics/machine_limits.h"
+#include "engine/motion/ride/trajectory.h"
 #include "tests/engine/motion/standard_machine.h"
 
 namespace rmlcell::optimo::testing {

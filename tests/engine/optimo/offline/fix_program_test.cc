@@ -12,13 +12,13 @@ machine::Translation CheckErrors(const machine::SourceFile& file) {
   return TranslateOptimo(file, {.advice = false});
 }
 
-Fixing FixText(std::string_view text, const std::string& name = "part.S") {
+RepairedText FixText(std::string_view text, const std::string& name = "part.S") {
   return FixProgram({.name = name, .bytes = text}, CheckAll);
 }
 
 // OPT-7.91, OPT-2.61: two findings, two repairs; blanks, comments and CR LF stay.
 TEST(FixProgram, RepairsAndKeepsLayoutAndComments) {
-  const Fixing fixing =
+  const RepairedText fixing =
       FixText("\tSPEDE   20\t; slow\r\n; alone\r\nMOVE (1.,2.,3.,0.,0.) / INF ; x\r\n");
   EXPECT_EQ(fixing.text, "\tSPEED   20\t; slow\r\n; alone\r\nMOVE (1.,2.,3.,0.,0.) ; x\r\n");
   ASSERT_EQ(fixing.fixed.size(), 2U);
@@ -31,17 +31,17 @@ TEST(FixProgram, RepairsAndKeepsLayoutAndComments) {
 
 // OPT-7.91, OPT-2.47: /FLY before the end is seen only when the word before it can be read.
 TEST(FixProgram, RepairsWhatAnEarlierRepairBringsToLight) {
-  const Fixing fixing = FixText("COORD ABSOL\nMOEV (1000.,900.,-500.,0.,0.)/FLY\n");
+  const RepairedText fixing = FixText("COORD ABSOL\nMOEV (1000.,900.,-500.,0.,0.)/FLY\n");
   EXPECT_EQ(fixing.text, "COORD ABSOL\nMOVE (1000.,900.,-500.,0.,0.)\n");
   EXPECT_EQ(fixing.fixed.size(), 2U);
 }
 
-// Fixing again changes nothing, and there is nothing left that could be.
+// RepairedText again changes nothing, and there is nothing left that could be.
 TEST(FixProgram, ComesToRest) {
   for (const std::string text : {"SPEDE 20\nMOVE (1.,2.,3.,0.,0.)/FLY/INF\n", "SPEED 101\n", "\n",
                                  "SYSDEF (0,0,0,0,0,0)\nDEFINE PAR = INT\nXYZZY\n"}) {
-    const Fixing once = FixText(text);
-    const Fixing twice = FixText(once.text);
+    const RepairedText once = FixText(text);
+    const RepairedText twice = FixText(once.text);
     EXPECT_EQ(twice.text, once.text) << text;
     EXPECT_TRUE(twice.fixed.empty()) << text;
   }
@@ -49,7 +49,7 @@ TEST(FixProgram, ComesToRest) {
 
 // OPT-2.12: what has no obvious repair stays as it is, and is told.
 TEST(FixProgram, LeavesWhatItCannotRepair) {
-  const Fixing fixing = FixText("SPEED 101 ; too fast\n");
+  const RepairedText fixing = FixText("SPEED 101 ; too fast\n");
   EXPECT_EQ(fixing.text, "SPEED 101 ; too fast\n");
   EXPECT_TRUE(fixing.fixed.empty());
   EXPECT_FALSE(fixing.left.ok);
@@ -65,7 +65,7 @@ TEST(FixProgram, RepairsOnlyWhatTheCheckTells) {
 // OPT-2.04, OPT-7.91: an inch source is refused, but its form can be repaired; its numbers are not
 // taken for millimetres.
 TEST(FixProgram, RepairsTheFormOfInchSources) {
-  const Fixing fixing = FixText("SPEDE 20\nMOVE (1.,2.,-3.,90.,0.)\n", "part.SI");
+  const RepairedText fixing = FixText("SPEDE 20\nMOVE (1.,2.,-3.,90.,0.)\n", "part.SI");
   EXPECT_EQ(fixing.text, "SPEED 20\nMOVE (1.,2.,-3.,90.,0.)\n");
   ASSERT_EQ(fixing.left.diagnostics.size(), 1U);
   EXPECT_EQ(fixing.left.diagnostics[0].code, ErrorCode::kSourceIsInch);
@@ -78,7 +78,7 @@ TEST(FixProgram, RepairsMoreThanOneListOfFindings) {
     text += "SPEDE 20\n";
     wanted += "SPEED 20\n";
   }
-  const Fixing fixing = FixText(text);
+  const RepairedText fixing = FixText(text);
   EXPECT_EQ(fixing.text, wanted);
   EXPECT_EQ(fixing.fixed.size(), 2500U);
 }

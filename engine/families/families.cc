@@ -1,0 +1,78 @@
+#include "engine/families/families.h"
+
+#include <algorithm>
+#include <string>
+
+#include "engine/core/letters.h"
+
+namespace rmlcell::families {
+namespace {
+
+// "part.SI" of "jobs/old.d/part.SI" -> ".SI"; empty when the name has no extension.
+std::string_view ExtensionOf(std::string_view name) {
+  const std::size_t folder = name.find_last_of("/\\");
+  if (folder != std::string_view::npos) name.remove_prefix(folder + 1);
+  const std::size_t dot = name.rfind('.');
+  return dot == std::string_view::npos ? std::string_view{} : name.substr(dot);
+}
+
+}  // namespace
+
+bool ClaimsExtension(const machine::FamilyInfo& info, std::string_view extension) {
+  std::string_view left = info.extensions;
+  while (!left.empty()) {
+    const std::size_t end = std::min(left.find(' '), left.size());
+    if (!extension.empty() && EqualIgnoringCase(left.substr(0, end), extension)) return true;
+    left.remove_prefix(std::min(end + 1, left.size()));
+  }
+  return false;
+}
+
+const machine::MachineFamily* FindFamily(std::string_view id) {
+  for (const machine::MachineFamily* family : Families()) {
+    if (family->info().id == id) return family;
+  }
+  return nullptr;
+}
+
+const machine::MachineFamily* FamilyOfFileName(std::string_view name) {
+  const std::string_view extension = ExtensionOf(name);
+  for (const machine::MachineFamily* family : Families()) {
+    if (ClaimsExtension(family->info(), extension)) return family;
+  }
+  return nullptr;
+}
+
+Result<const machine::MachineFamily*> FamilyWithTools(std::string_view name) {
+  const machine::MachineFamily* family = FamilyOfFileName(name);
+  if (family == nullptr) {
+    const auto with_tools = std::ranges::find_if(
+        Families(), [](const machine::MachineFamily* one) { return one->tools() != nullptr; });
+    if (with_tools != Families().end()) return *with_tools;
+  } else if (family->tools() != nullptr) {
+    return family;
+  }
+  return Error{ErrorCode::kCellInvalidArgument,
+               std::string(name) + " is a program for " +
+                   (family == nullptr ? "no machine with" : std::string(family->info().title)) +
+                   ": there are no tools for its streams",
+               {}};
+}
+
+bool IsObjectFileName(std::string_view name) {
+  const std::string_view extension = ExtensionOf(name);
+  if (extension.empty() || extension.size() == name.size()) return false;  // ".O" is a name alone
+  return std::ranges::any_of(Families(), [extension](const machine::MachineFamily* family) {
+    const machine::Tools* tools = family->tools();
+    return tools != nullptr && EqualIgnoringCase(extension, tools->extensions().object);
+  });
+}
+
+double OverrideMax() {
+  double most = 0.0;
+  for (const machine::MachineFamily* family : Families())
+    most = std::max(most, family->info().override_max_percent);
+  return most;
+}
+
+}  // namespace rmlcell::families

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "engine/core/result.h"
+#include "engine/machine/family.h"
+
+// The machine families that this build knows. A new one is one line in registry.cc.
+namespace rmlcell::families {
+
+std::span<const machine::MachineFamily* const> Families();
+
+// Null when there is none.
+const machine::MachineFamily* FindFamily(std::string_view id);
+
+// By the extension of a file name, compared without case: "part.SI". Null when no family claims it.
+const machine::MachineFamily* FamilyOfFileName(std::string_view name);
+
+// The family whose tools (machine::Tools) a text is for: that of its file name; of a name that says
+// nothing the first one that has any. Error: CellInvalidArgument for a family without tools.
+Result<const machine::MachineFamily*> FamilyWithTools(std::string_view name);
+
+// The greatest feed override that any family takes, percent.
+double OverrideMax();
+
+// Whether the name says that the bytes are an object of some family.
+bool IsObjectFileName(std::string_view name);
+
+// Whether a family reads files with this extension (".si").
+bool ClaimsExtension(const machine::FamilyInfo& info, std::string_view extension);
+
+}  // namespace rmlcell::families

@@ -1,0 +1,49 @@
+#include "engine/machine/family.h"
+
+#include <set>
+#include <utility>
+
+#include "engine/core/units.h"
+
+namespace rmlcell::machine {
+
+TransferPlan MachineFamily::PlanTransfer(const ProjectBundle& project, const Parameters& parameters,
+                                         const TransferOptions& /*options*/) const {
+  TransferPlan plan{.ok = true};
+  const auto refuse = [&plan](std::string detail, const std::string& file, int slot) {
+    constexpr ErrorCode kCode = ErrorCode::kCellInvalidArgument;
+    Diagnostic finding{.code = kCode,
+                       .severity = Lookup(kCode).severity,
+                       .detail = std::move(detail),
+                       .file = file};
+    finding.program = slot;
+    plan.diagnostics.push_back(std::move(finding));
+    plan.ok = false;
+  };
+  const std::string title(info().title);
+  if (!project.schedules.empty()) refuse(title + " has no laser schedules", {}, 0);
+  if (!project.processes.empty()) refuse(title + " has no process definitions", {}, 0);
+  std::set<int> slots;
+  for (const ProjectProgram& program : project.programs) {
+    const std::string& name = program.file.name;
+    const int slot = program.slot;
+    if (!IsSlot(slot))
+      refuse("slot " + std::to_string(slot) + " is not one of 1 to 99", name, slot);
+    if (!slots.insert(slot).second)
+      refuse("slot " + std::to_string(slot) + " has two programs", name, slot);
+    if (program.inch) refuse("a stream is in units of its machine, not in inches", name, slot);
+    Translation translation = Translate(program.file, parameters, {});
+    for (Diagnostic& diagnostic : translation.diagnostics) {
+      diagnostic.program = slot;
+      if (plan.diagnostics.size() < kDiagnosticsMax)
+        plan.diagnostics.push_back(std::move(diagnostic));
+    }
+    plan.ok = plan.ok && translation.ok;
+    plan.programs.push_back(
+        {.slot = slot, .source = translation.object, .object = std::move(translation.object)});
+  }
+  if (!plan.ok) plan.programs.clear();  // every program or none
+  return plan;
+}
+
+}  // namespace rmlcell::machine

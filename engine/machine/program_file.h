@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/diagnostic.h"
+#include "engine/machine/run.h"
+
+namespace rmlcell::machine {
+
+// A program text or stream as it comes from a user.
+struct SourceFile {
+  std::string name{};  // decides units: .SI is inch
+  std::string_view bytes{};
+  bool is_object = false;  // whatever the name says
+};
+
+// What the machine would store, and what there is to say about it.
+struct Translation {
+  bool ok = false;  // false: nothing may be stored
+  std::string object{};
+  std::vector<Diagnostic> diagnostics{};  // in order of place; at most kDiagnosticsMax
+  std::uint64_t diagnostics_dropped = 0;
+  std::vector<Figure> figures{};  // "steps", "object_bytes" ...
+  SourceNotes source{};           // empty: not asked for, or none
+};
+inline constexpr std::size_t kDiagnosticsMax = 1000;
+
+struct CheckOptions {
+  bool advice = true;   // lint findings of severity warning and advice
+  bool source = false;  // fill in Translation::source
+};
+
+}  // namespace rmlcell::machine

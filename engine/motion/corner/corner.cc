@@ -1,0 +1,181 @@
+#include "engine/motion/corner/corner.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/motion/geometry/corner_table.h"
+#include "engine/motion/geometry/least.h"
+#include "engine/motion/kinematics/axes.h"
+
+namespace rmlcell::motion {
+namespace {
+
+constexpr double kStraightHalfSine = 0.5e-6;               // a turn of 1e-6 rad
+constexpr double kReversalHalfCosine = 0.043619387365336;  // a turn of 175 degrees
+constexpr double kEqual = 1e-9;    // relative, for curvatures and rates that meet
+constexpr double kNoRate = 1e-12;  // rad/mm
+
+bool Same(const MachineVector& a, const MachineVector& b) {
+  return (a - b).norm() <= kEqual * std::max(a.norm(), b.norm());
+}
+bool Same(double a, double b) {
+  return std::abs(a - b) <= std::max(kEqual * std::max(std::abs(a), std::abs(b)), kNoRate);
+}
+
+}  // namespace
+
+void Corner::Assign(const PathPiece& before, const PathPiece& after) {
+  const PathDerivatives in = before.First(before.length());
+  const PathDerivatives out = after.First(0.0);
+  half_sine_ = std::min(0.5 * (in.tip - out.tip).norm(), 1.0);
+  half_cosine_ = std::sqrt(std::max(0.0, 0.5 * (1.0 + in.tip.dot(out.tip))));
+  lines_ = before.kind() == PathPiece::Kind::kLine && after.kind() == PathPiece::Kind::kLine;
+  const bool turns = in.a != 0.0 || in.b != 0.0 || out.a != 0.0 || out.b != 0.0;
+  plain_ = lines_ && !turns;
+  cut_max_mm_ = HUGE_VAL;
+  curvature_jump_ = a_jump_ = b_jump_ = 0.0;
+  straight_ = half_sine_ <= kStraightHalfSine;
+  if (half_cosine_ < kReversalHalfCosine) {
+    passage_ = Passage::kStopReversal;
+    return;
+  }
+  bool smooth = true;
+  if (!plain_) {
+    straight_ = straight_ && Same(in.a, out.a) && Same(in.b, out.b);
+    a_jump_ = std::abs(out.a - in.a);
+    b_jump_ = std::abs(out.b - in.b);
+  }
+  if (!lines_) {
+    const MachineVector bend_in = before.Second(before.length()).tip;
+    const MachineVector bend_out = after.Second(0.0).tip;
+    smooth = Same(bend_in, bend_out);
+    curvature_jump_ = (bend_in - bend_out).norm();
+    for (const PathPiece* piece : {&before, &after}) {
+      if (piece->kind() != PathPiece::Kind::kArc) continue;
+      cut_max_mm_ = std::min(cut_max_mm_, 0.5 * piece->radius_mm());
+    }
+  }
+  passage_ = straight_ && smooth ? Passage::kThrough : Passage::kBlend;
+  if (passage_ == Passage::kThrough) return;
+  rho_ = CornerRho(half_cosine_);
+  bend_ = CornerBend(half_sine_, half_cosine_, rho_);
+  jerk_ = CornerJerk(half_sine_, half_cosine_, bend_);
+}
+
+double Corner::CutFor(double w, const MachineLimits& machine) const {
+  const double square = w * w;
+  const double cube = square * w;
+  const double jerk = machine.normal_jerk();
+  double cut = std::max({bend_ * square / machine.normal_acceleration(),
+                         std::sqrt(jerk_ * cube / jerk), 1.2 * curvature_jump_ * cube / jerk});
+  // Trapezoids have no limit on the jerk of the axes either: docs/decisions/0015.
+  const bool jerk_limited = std::isfinite(jerk);
+  const auto widen = [&](double jump, std::size_t axis) {
+    if (!(jump > 0.0)) return;
+    cut = std::max(cut, 0.75 * jump * square / machine.axes.acceleration[axis]);
+    if (jerk_limited) cut = std::max(cut, std::sqrt(1.5 * jump * cube / machine.axes.jerk[axis]));
+  };
+  widen(a_jump_, 3);
+  widen(b_jump_, 4);
+  return cut;
+}
+
+double Corner::PlainLength(double cut_mm) const { return cut_mm * CornerArcLength(rho_); }
+
+double Corner::PlainDeviation(double cut_mm) const {
+  return cut_mm * half_sine_ * (1.0 - 5.0 * rho_ / 16.0);
+}
+
+double Corner::PlainBow(double cut_mm) const { return cut_mm * (0.5 - 5.0 * rho_ / 32.0); }
+
+double Corner::PlainSpeed(double cut_mm, const MachineLimits& machine) const {
+  const double by_acceleration = std::sqrt(machine.normal_acceleration() * cut_mm / bend_);
+  if (std::isinf(machine.tip_jerk_mm_s3)) return by_acceleration;
+  const double jerk = CornerJerkPeak(half_sine_, half_cosine_, bend_);
+  return std::min(by_acceleration, std::cbrt(machine.normal_jerk() * cut_mm * cut_mm / jerk));
+}
+
+BendSpeeds Corner::PlainSpeeds(double cut, double top, const MachineLimits& machine) const {
+  // Plans look at these places only, and ramps bend a little between them.
+  constexpr double kBetween = 1.0 - 3e-3;
+  const HalfCorner half = CornerHalf(half_sine_, half_cosine_);
+  const double by_bend = std::sqrt(machine.normal_acceleration() * cut / bend_);
+  const double by_jerk = std::cbrt(machine.normal_jerk() * cut * cut / bend_);
+  const double least = PlainSpeed(cut, machine);  // holds everywhere
+  BendSpeeds speeds;
+  for (std::size_t k = 0; k < speeds.most.size(); ++k) {
+    const double here = kBetween * std::min(by_bend * half.by_bend[k], by_jerk * half.by_jerk[k]);
+    speeds.most[k] = std::min(std::max(here, least), top);
+  }
+  return speeds;
+}
+
+double JunctionSpeed(const MachineVector& tangent_in, const MachineVector& tangent_out,
+                     double jump_mm_s) {
+  const MachineVector turn = tangent_out - tangent_in;
+  return jump_mm_s / std::max({std::abs(turn.x()), std::abs(turn.y()), std::abs(turn.z())});
+}
+
+CurveEnd EndAt(const PathPiece& path, double s) {
+  const PathDerivatives first = path.First(s);
+  return {.pose = path.At(s),
+          .tangent = first.tip,
+          .curvature = path.Second(s).tip,
+          .a_rate = first.a,
+          .b_rate = first.b};
+}
+
+bool AxesFollow(const CornerCurve& curve, const Head& head, const MachineLimits& machine,
+                double speed, double bend_per_mm) {
+  const CornerCurve::Bounds by_u = curve.DerivativeBounds();
+  if (!(by_u.slowest > 0.0)) return false;
+  const double per_mm = 1.0 / by_u.slowest;
+  const double stretch = by_u.tip_second * per_mm;  // of (p' p'') / |p'|
+  const double a = by_u.a_first * per_mm;
+  const double b = by_u.b_first * per_mm;
+  const double aa = (by_u.a_second + by_u.a_first * stretch) * per_mm * per_mm;
+  const double bb = (by_u.b_second + by_u.b_first * stretch) * per_mm * per_mm;
+  const double arm = head.reach_mm();
+  const double first = 1.0 + arm * (a + b);
+  const double second = bend_per_mm + arm * (aa + bb + (a + b) * (a + b));
+  const AxisLimits& axes = machine.axes;
+  const double square = speed * speed;
+  bool enough = a * speed <= axes.speed[3] && b * speed <= axes.speed[4] &&
+                aa * square <= axes.acceleration[3] && bb * square <= axes.acceleration[4];
+  for (const std::size_t i : kLinearAxes) {
+    enough = enough && first * speed <= axes.speed[i] && second * square <= axes.acceleration[i];
+  }
+  return enough;
+}
+
+double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLimits& machine,
+                    double enough) {
+  const double normal = machine.normal_acceleration();
+  const double jerk = machine.normal_jerk();
+  const auto allowed = [&](double u) {
+    const PathDerivatives first = curve.FirstByLength(u);
+    const PathDerivatives second = curve.SecondByLength(u);
+    const double kappa = second.tip.norm();
+    double speed = SpeedWithinAxes(ThroughHead(head, curve.At(u), first, second), machine.axes);
+    if (kappa > 0.0) speed = std::min(speed, std::sqrt(normal / kappa));
+    if (std::isfinite(jerk)) {
+      const double per_cube = curve.JerkPerCube(u);
+      if (per_cube > 0.0) speed = std::min(speed, std::cbrt(jerk / per_cube));
+    }
+    return speed;
+  };
+  constexpr int kIntervals = 48;
+  const double least = LeastAlong(allowed, 1.0, kIntervals, enough);
+  // Near a cusp all happens between two samples: as far about the sharpest place as the curve needs
+  // to turn.
+  const double sharpest = curve.SlowestPlace();
+  const double width = curve.Speed(sharpest) / curve.Derivative(sharpest, 2).tip.norm();
+  if (!(width * kIntervals < 4.0)) return least;
+  constexpr double kWidths = 8.0;
+  const double from = std::max(0.0, sharpest - kWidths * width);
+  const double to = std::min(1.0, sharpest + kWidths * width);
+  return std::min(least, LeastAlong([&](double u) { return allowed(from + u); }, to - from,
+                                    kIntervals, enough));
+}
+
+}  // namespace rmlcell::motion

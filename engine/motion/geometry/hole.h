@@ -1,0 +1,30 @@
+#pragma once
+
+#include "engine/motion/geometry/path.h"
+
+namespace rmlcell::motion {
+
+// What PATH HOLE needs: everything in the machine frame.
+struct HoleCommand {
+  TipPose from;
+  TipPose centre;  // its angles are those of the circle
+  MachineVector
+      normal_point;  // the circle runs counter-clockwise seen from here; its distance has no effect
+  double radius_mm = 0.0;
+  ProgramVector program_x{1.0, 0.0,
+                          0.0};  // axes of the program frame: where a start on the axis enters
+  ProgramVector program_y{0.0, 1.0, 0.0};
+};
+
+// A hole as two motions: the lead ends at rest without settling, the circle ends where it began.
+struct HolePath {
+  PathPiece lead;               // length 0 when the start lies on the circle
+  PathPiece circle;             // one full turn
+  bool starts_on_axis = false;  // error 129 of the teach simulator, OPT-2.28
+};
+
+// motion.md 3.3; OPT-B.10 to B.14. Errors, in this order (OPT-B.15): HoleRadiusZero (348),
+// HoleNormalUndefined (7309).
+Result<HolePath> HoleThrough(const HoleCommand& hole);
+
+}  // namespace rmlcell::motion

@@ -1,0 +1,206 @@
+#include "engine/motion/kinematics/axis_demand.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/core/units.h"
+#include "engine/motion/geometry/least.h"
+#include "engine/motion/kinematics/axes.h"
+
+namespace rmlcell::motion {
+namespace {
+
+constexpr double kSampleAngle_rad = 0.05;  // motion.md 5.1: at most this much turning per interval
+constexpr int kIntervalsMin = 16;
+constexpr double kTurningMax_rad =
+    60.0;  // more than any travel: bounds will do, a search would last
+
+// The least of the axes' answers to `ask`, which gives a limit for one axis.
+template <class Ask>
+double Least(Ask ask) {
+  double least = HUGE_VAL;
+  for (const std::size_t axis : kAxes) least = std::min(least, ask(axis));
+  return least;
+}
+
+double SpeedAllowed(const AxisDerivatives& q, const AxisLimits& axes, const AxisShares& shares) {
+  return Least([&](std::size_t i) {
+    const double by_speed = shares.speed * axes.speed[i] / std::abs(q.first[i]);
+    return std::min(by_speed, std::sqrt(0.5 * shares.acceleration * axes.acceleration[i] /
+                                        std::abs(q.second[i])));
+  });
+}
+
+double AccelerationAllowed(const AxisDerivatives& q, const AxisLimits& axes,
+                           const AxisShares& shares, double speed) {
+  return Least([&](std::size_t i) {
+    const double taken = std::abs(q.second[i]) * speed * speed;
+    return (shares.acceleration * axes.acceleration[i] - taken) / std::abs(q.first[i]);
+  });
+}
+
+double JerkAllowed(const AxisDerivatives& q, const AxisLimits& axes, const AxisShares& shares) {
+  return Least(
+      [&](std::size_t i) { return shares.acceleration * axes.jerk[i] / std::abs(q.first[i]); });
+}
+
+// Whether no axis is asked for more than it can, without a division: nearly always so.
+bool Allows(const AxisDerivatives& q, const AxisLimits& axes, const AxisShares& shares,
+            const PathLimits& limits) {
+  const double square = limits.speed * limits.speed;
+  bool enough = true;
+  for (const std::size_t i : kAxes) {
+    const double along = std::abs(q.first[i]);
+    const double across = std::abs(q.second[i]) * square;
+    const double acceleration = shares.acceleration * axes.acceleration[i];
+    enough = enough && along * limits.speed <= shares.speed * axes.speed[i] &&
+             2.0 * across <= acceleration && across + along * limits.acceleration <= acceleration &&
+             (along * limits.jerk <= shares.acceleration * axes.jerk[i] || std::isinf(limits.jerk));
+  }
+  return enough;
+}
+
+// Upper bounds of both derivatives over the whole piece, cheap: enough for most moves.
+AxisDerivatives Bounds(const PathPiece& path, const Head& head) {
+  const double arm = head.reach_mm();
+  const double a = std::abs(path.a_rate());
+  const double b = std::abs(path.b_rate());
+  const double swing = arm * (a + b);
+  const double whirl = arm * (a + b) * (a + b);
+  AxisDerivatives q;
+  MachineVector first = path.Tangent(0.0);
+  MachineVector second;
+  if (path.kind() == PathPiece::Kind::kArc) {
+    const MachineVector& n = path.normal();
+    first = {std::sqrt(std::max(0.0, 1.0 - n.x() * n.x())),
+             std::sqrt(std::max(0.0, 1.0 - n.y() * n.y())),
+             std::sqrt(std::max(0.0, 1.0 - n.z() * n.z()))};
+    second = first * (1.0 / path.radius_mm());
+  }
+  q.first = {std::abs(first.x()) + swing, std::abs(first.y()) + swing, std::abs(first.z()) + swing,
+             a, b};
+  q.second = {second.x() + whirl, second.y() + whirl, second.z() + whirl, 0.0, 0.0};
+  return q;
+}
+
+}  // namespace
+
+double SpeedWithinAxes(const AxisDerivatives& q, const AxisLimits& axes) {
+  return Least([&](std::size_t i) {
+    const double by_speed = axes.speed[i] / std::abs(q.first[i]);
+    if (q.second[i] == 0.0) return by_speed;
+    return std::min(by_speed, std::sqrt(axes.acceleration[i] / std::abs(q.second[i])));
+  });
+}
+
+AxisDerivatives DerivativesAt(const PathPiece& path, const Head& head, double s) {
+  const PathDerivatives first = path.First(s);
+  const PathDerivatives second = path.Second(s);
+  if (path.in_axes()) {
+    return {.first = {first.tip.x(), first.tip.y(), first.tip.z(), first.a, first.b},
+            .second = {second.tip.x(), second.tip.y(), second.tip.z(), second.a, second.b}};
+  }
+  if (first.a == 0.0 && first.b == 0.0 && second.a == 0.0 && second.b == 0.0) {
+    return {.first = {first.tip.x(), first.tip.y(), first.tip.z(), 0.0, 0.0},
+            .second = {second.tip.x(), second.tip.y(), second.tip.z(), 0.0, 0.0}};
+  }
+  return ThroughHead(head, path.At(s), first, second);
+}
+
+AxisDerivatives ThroughHead(const Head& head, const TipPose& pose, const PathDerivatives& first,
+                            const PathDerivatives& second) {
+  const BothAxisRates rates = head.RatesOfBoth(
+      pose.a_rad, pose.b_rad, {first.tip, first.a, first.b}, {second.tip, second.a, second.b});
+  return {.first = rates.first, .second = rates.second};
+}
+
+PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits& axes,
+                      const AxisShares& shares, PathLimits limits) {
+  const bool turns = path.a_rate() != 0.0 || path.b_rate() != 0.0;
+  const bool arc = path.kind() == PathPiece::Kind::kArc;
+  const bool constant = path.kind() == PathPiece::Kind::kJoint || (!arc && !turns);
+  const AxisDerivatives bounds = constant ? DerivativesAt(path, head, 0.0) : Bounds(path, head);
+  const auto by_bounds = [&] {
+    limits.speed = std::min(limits.speed, SpeedAllowed(bounds, axes, shares));
+    limits.acceleration =
+        std::min(limits.acceleration, AccelerationAllowed(bounds, axes, shares, limits.speed));
+    if (std::isfinite(limits.jerk))
+      limits.jerk = std::min(limits.jerk, JerkAllowed(bounds, axes, shares));
+    return limits;
+  };
+  if (constant) return by_bounds();
+  if (Allows(bounds, axes, shares, limits)) return limits;
+
+  if (!arc) {
+    // A short turn: places in the middle of a few parts, and how far the derivatives can get away
+    // from them. Within 1 % of what there is, motion.md 5.1.
+    constexpr double kRoom = 0.004;
+    constexpr std::size_t kPartsMax = 8;
+    const PathDerivatives first = path.First(0.0);  // and everywhere: there is no second one
+    const double rate = std::abs(first.a) + std::abs(first.b);
+    const double half = 0.5 * path.length();
+    const double drift = half * head.reach_mm() * rate * rate;
+    const double wanted = std::ceil(std::max(drift / first.tip.norm(), half * rate) / kRoom);
+    if (wanted <= static_cast<double>(kPartsMax)) {
+      const auto parts = static_cast<std::size_t>(std::max(wanted, 1.0));
+      const double share = 1.0 / static_cast<double>(parts);
+      std::array<AxisDerivatives, kPartsMax> at;
+      std::array<AxisDerivatives, kPartsMax> around;
+      PathLimits sure = limits;  // kept all along
+      PathLimits most = limits;  // more than the places looked at allow there is not
+      for (std::size_t k = 0; k < parts; ++k) {
+        const double s = path.length() * (static_cast<double>(k) + 0.5) * share;
+        at[k] = around[k] = ThroughHead(head, path.At(s), first, {});
+        AxisDerivatives& q = around[k];
+        for (const std::size_t i : kLinearAxes) {
+          q.first[i] = std::abs(q.first[i]) + drift * share;
+          q.second[i] = std::abs(q.second[i]) + drift * share * rate;
+        }
+        if (Allows(q, axes, shares, limits)) continue;
+        sure.speed = std::min(sure.speed, SpeedAllowed(q, axes, shares));
+        most.speed = std::min(most.speed, SpeedAllowed(at[k], axes, shares));
+        if (std::isinf(limits.jerk)) continue;
+        sure.jerk = std::min(sure.jerk, JerkAllowed(q, axes, shares));
+        most.jerk = std::min(most.jerk, JerkAllowed(at[k], axes, shares));
+      }
+      for (std::size_t k = 0; k < parts; ++k) {
+        if (Allows(around[k], axes, shares, sure)) continue;
+        const auto allowed = [&](const AxisDerivatives& q) {
+          return AccelerationAllowed(q, axes, shares, sure.speed);
+        };
+        sure.acceleration = std::min(sure.acceleration, allowed(around[k]));
+        most.acceleration = std::min(most.acceleration, allowed(at[k]));
+      }
+      // An axis that moves little beside the others may be told too little of: then it is searched.
+      constexpr double kNear = 0.99;
+      if (sure.speed >= kNear * most.speed && sure.acceleration >= kNear * most.acceleration &&
+          sure.jerk >= kNear * most.jerk) {
+        return sure;
+      }
+    }
+  }
+
+  const double turning = std::abs(path.to().a_rad - path.from().a_rad) +
+                         std::abs(path.to().b_rad - path.from().b_rad) +
+                         (arc ? path.sweep_rad() : 0.0);
+  if (!(turning <= kTurningMax_rad)) return by_bounds();
+  const int intervals =
+      std::max(static_cast<int>(std::ceil(turning / kSampleAngle_rad)), kIntervalsMin);
+  const auto least = [&](auto limit) {
+    return LeastAlong([&](double s) { return limit(DerivativesAt(path, head, s)); }, path.length(),
+                      intervals);
+  };
+  limits.speed = std::min(
+      limits.speed, least([&](const AxisDerivatives& q) { return SpeedAllowed(q, axes, shares); }));
+  limits.acceleration = std::min(limits.acceleration, least([&](const AxisDerivatives& q) {
+                                   return AccelerationAllowed(q, axes, shares, limits.speed);
+                                 }));
+  if (std::isfinite(limits.jerk)) {
+    limits.jerk = std::min(
+        limits.jerk, least([&](const AxisDerivatives& q) { return JerkAllowed(q, axes, shares); }));
+  }
+  return limits;
+}
+
+}  // namespace rmlcell::motion

@@ -1,0 +1,211 @@
+#include "engine/motion/kinematics/kinematics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/core/units.h"
+
+namespace rmlcell::motion {
+namespace {
+
+// The vector from the tip to the column in the machine frame, w(A, B) = Rz(A) Rx(B) r, and its
+// derivatives.
+struct HeadVector {
+  double sin_a, cos_a;
+  double x;     // r_x
+  double m, n;  // r turned about the tool's X axis: components across and along Z
+
+  HeadVector(const GantryHead& head, double a_rad, double b_rad)
+      : sin_a(std::sin(a_rad)), cos_a(std::cos(a_rad)), x(-head.tool.x_mm) {
+    const double sin_b = std::sin(b_rad);
+    const double cos_b = std::cos(b_rad);
+    const double y = -head.tool.y_mm;
+    const double z = head.length_mm - head.tool.z_mm;
+    m = y * cos_b - z * sin_b;
+    n = y * sin_b + z * cos_b;
+  }
+  MachineVector Value() const { return {x * cos_a - m * sin_a, x * sin_a + m * cos_a, n}; }
+  // Its columns: by A and by B.
+  Eigen::Matrix<double, 3, 2> Jacobian() const {
+    Eigen::Matrix<double, 3, 2> by;
+    by << -x * sin_a - m * cos_a, n * sin_a,  //
+        x * cos_a - m * sin_a, -n * cos_a,    //
+        0.0, m;
+    return by;
+  }
+  MachineVector ByAA() const { return {m * sin_a - x * cos_a, -x * sin_a - m * cos_a, 0.0}; }
+  MachineVector ByAB() const { return {n * cos_a, n * sin_a, 0.0}; }
+  MachineVector ByBB() const { return {m * sin_a, -m * cos_a, -n}; }
+};
+
+AxisValues Together(const MachinePoint& column, double a, double b) {
+  return {column.x(), column.y(), column.z(), a, b};
+}
+
+// The angle that differs from `angle` by whole turns and is nearest to `near`.
+double NearestTurn(double angle, double near) {
+  return angle + kTurn * std::round((near - angle) / kTurn);
+}
+
+constexpr double kAlongZ = 1e-9;   // below: the direction does not tell A
+constexpr int kRangePieces = 16;   // 17 points on any piece, motion.md 2.6
+constexpr int kRangePerTurn = 32;  // on arcs
+
+void KeepWorse(TravelExcess& worst, const TravelExcess& other) {
+  if (other.excess > worst.excess) worst = other;
+}
+
+// By how much a value lies outside the travel of its axis; 0 inside.
+double ExcessOf(std::size_t axis, double value, const AxisLimits& limits) {
+  if (std::isnan(value)) return std::numeric_limits<double>::infinity();
+  return std::max({limits.travel_min[axis] - value, value - limits.travel_max[axis], 0.0});
+}
+
+AxisPose AxesAt(const PathPiece& path, const Head& head, double s) {
+  const TipPose pose = path.At(s);
+  return path.in_axes() ? AxisPose{pose.tip, pose.a_rad, pose.b_rad} : head.ColumnOf(pose);
+}
+
+// The places of a path at which its range is looked at: motion.md 2.6.
+template <class Look>
+void ForEachRangePoint(const PathPiece& path, Look look) {
+  const bool arc = path.kind() == PathPiece::Kind::kArc;
+  const int pieces =
+      arc ? std::max(kRangePieces,
+                     static_cast<int>(std::ceil(path.sweep_rad() / kTurn * kRangePerTurn)))
+          : kRangePieces;
+  for (int k = 0; k <= pieces; ++k) look(path.length() * k / pieces);
+  if (!arc) return;
+
+  // Where the circle is farthest along X, Y and Z: tangent(x) = t cos x + c sin x has no such
+  // component.
+  const MachineVector t = path.Tangent(0.0);
+  const MachineVector c = path.Curvature(0.0) * path.radius_mm();
+  for (const auto& [along, inward] :
+       {std::pair{t.x(), c.x()}, std::pair{t.y(), c.y()}, std::pair{t.z(), c.z()}}) {
+    double angle = std::atan2(-along, inward);
+    if (angle < 0.0) angle += kPi;
+    for (; angle < path.sweep_rad(); angle += kPi) look(angle * path.radius_mm());
+  }
+}
+
+}  // namespace
+
+MachineVector GantryHead::Offset(double a_rad, double b_rad) const {
+  return HeadVector(*this, a_rad, b_rad).Value();
+}
+
+Swing GantryHead::SwingOf(double a_rad, double b_rad, const TipRates& first,
+                          const TipRates& second) const {
+  const HeadVector w(*this, a_rad, b_rad);
+  const Eigen::Matrix<double, 3, 2> by = w.Jacobian();
+  return {.first = by * Eigen::Vector2d(first.a, first.b),
+          .second = by * Eigen::Vector2d(second.a, second.b) + w.ByAA() * (first.a * first.a) +
+                    w.ByAB() * (2.0 * first.a * first.b) + w.ByBB() * (first.b * first.b)};
+}
+
+double GantryHead::reach_mm() const {
+  return MachineVector(tool.x_mm, tool.y_mm, length_mm - tool.z_mm).norm();
+}
+
+AxisPose Head::ColumnOf(const TipPose& pose) const {
+  const MachineVector offset =
+      std::visit([&](const auto& head) { return head.Offset(pose.a_rad, pose.b_rad); }, kind_);
+  return {pose.tip + offset, pose.a_rad, pose.b_rad};
+}
+
+TipPose Head::TipOf(const AxisPose& pose) const {
+  const MachineVector offset =
+      std::visit([&](const auto& head) { return head.Offset(pose.a_rad, pose.b_rad); }, kind_);
+  return {pose.column - offset, pose.a_rad, pose.b_rad};
+}
+
+double Head::reach_mm() const {
+  return std::visit([](const auto& head) { return head.reach_mm(); }, kind_);
+}
+
+AxisValues Head::Rates(double a_rad, double b_rad, const TipRates& first) const {
+  if (first.a == 0.0 && first.b == 0.0) return Together(first.tip, 0.0, 0.0);
+  return RatesOfBoth(a_rad, b_rad, first, {}).first;
+}
+
+BothAxisRates Head::RatesOfBoth(double a_rad, double b_rad, const TipRates& first,
+                                const TipRates& second) const {
+  const Swing swing = std::visit(
+      [&](const auto& head) { return head.SwingOf(a_rad, b_rad, first, second); }, kind_);
+  return {Together(first.tip + swing.first, first.a, first.b),
+          Together(second.tip + swing.second, second.a, second.b)};
+}
+
+HeadAngles AnglesOf(const MachineVector& u, const HeadAngles& near) {
+  const double across = std::hypot(u.x(), u.y());
+  const double b = std::atan2(across, u.z());
+  if (across < kAlongZ) return {near.a_rad, b};
+  const double a = std::atan2(u.x(), -u.y());
+  const HeadAngles first{NearestTurn(a, near.a_rad), b};
+  const HeadAngles twin{NearestTurn(a + kPi, near.a_rad), -b};
+  const auto distance = [&near](const HeadAngles& angles) {
+    return std::abs(angles.a_rad - near.a_rad) + std::abs(angles.b_rad - near.b_rad);
+  };
+  return distance(twin) < distance(first) ? twin : first;
+}
+
+AxisPose Jogged(const AxisPose& from, const Head& head, const Jog& jog) {
+  AxisPose to = from;
+  if (jog.axis >= 3) {
+    TipPose held = head.TipOf(from);
+    (jog.axis == 3 ? held.a_rad : held.b_rad) += jog.distance;
+    if (jog.mode == JogMode::kAbsolute) return head.ColumnOf(held);
+    to.a_rad = held.a_rad;
+    to.b_rad = held.b_rad;
+    return to;
+  }
+  if (jog.mode != JogMode::kTool) {
+    to.column[jog.axis] += jog.distance;
+    return to;
+  }
+  const double sign = jog.tool_z_down && jog.axis > 0 ? -1.0 : 1.0;
+  const MachineVector direction = ToolRotation(from.a_rad, from.b_rad).col(jog.axis);
+  to.column = from.column + direction * (sign * jog.distance);
+  return to;
+}
+
+TravelExcess WorstExcess(const AxisPose& pose, const AxisLimits& limits) {
+  const AxisValues values = Together(pose.column, pose.a_rad, pose.b_rad);
+  TravelExcess worst;
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    const auto i = static_cast<std::size_t>(axis);
+    const double excess = ExcessOf(i, values[i], limits);
+    KeepWorse(worst, {excess > 0.0 ? axis : -1, excess});
+  }
+  return worst;
+}
+
+double ExcessOfAxis(int axis, const AxisPose& pose, const AxisLimits& limits) {
+  const auto i = static_cast<std::size_t>(axis);
+  return ExcessOf(i, Together(pose.column, pose.a_rad, pose.b_rad)[i], limits);
+}
+
+TravelExcess WorstExcess(const PathPiece& path, const Head& head, const AxisLimits& limits) {
+  TravelExcess worst;
+  ForEachRangePoint(
+      path, [&](double s) { KeepWorse(worst, WorstExcess(AxesAt(path, head, s), limits)); });
+  return worst;
+}
+
+std::array<PlacedExcess, kAxisCount> ExcessOfEach(const PathPiece& path, const Head& head,
+                                                  const AxisLimits& limits) {
+  std::array<PlacedExcess, kAxisCount> worst{};
+  ForEachRangePoint(path, [&](double s) {
+    const AxisPose pose = AxesAt(path, head, s);
+    const AxisValues values = Together(pose.column, pose.a_rad, pose.b_rad);
+    for (std::size_t i = 0; i < worst.size(); ++i) {
+      const double excess = ExcessOf(i, values[i], limits);
+      if (excess > worst[i].excess) worst[i] = {excess, s};
+    }
+  });
+  return worst;
+}
+
+}  // namespace rmlcell::motion

@@ -1,0 +1,363 @@
+// The last stage of the chain: spans with their final speeds become motions and marks.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/motion/planner/motion_chain.h"
+
+namespace rmlcell::motion {
+namespace {
+
+// Spans timed together: each gives at most three cells, itself and two stretches of a bend.
+constexpr std::size_t kSectionMax = RampPlan::kCellsMax / 3;
+
+}  // namespace
+
+const PlannedItem* MotionChain::Next() {
+  while (items_.empty()) {
+    if (section_left_ == 0) {
+      section_left_ = SectionSize();
+      if (section_left_ == 0) return nullptr;
+      PlanSection();
+    }
+    items_.Rewind();
+    EmitMove();
+  }
+  const PlannedItem* item = &items_.front();  // nothing is written there before the next call
+  items_.PopFront();
+  return item;
+}
+
+// How many spans are timed together next; 0 when that is not known yet.
+std::size_t MotionChain::SectionSize() {
+  const std::size_t known = speeds_.final_count();
+  if (known <= section_knots_) return 0;
+  while (spans_.first() + section_seen_ < spans_.end()) {
+    const Span& span = spans_[spans_.first() + section_seen_];
+    if (section_knots_ + span.knots() > known) break;
+    ++section_seen_;
+    section_knots_ += span.knots();
+    const Number moves = span.last_move - spans_.front().first_move;
+    if (EndsSection(span, section_knots_ - 1) || section_seen_ == kSectionMax ||
+        moves >= window_ / 2) {
+      section_knots_ = 0;
+      return std::exchange(section_seen_, 0);
+    }
+  }
+  return 0;
+}
+
+// A knot that is passed as fast as it may be: the speed has no slope there in any good plan.
+bool MotionChain::EndsSection(const Span& span, std::size_t last_knot) const {
+  if (!machine_.ramps_across_passages || std::isinf(machine_.tip_jerk_mm_s3)) return true;
+  constexpr double kReaches = 1.0 - 1e-12;
+  if (speeds_.speed(last_knot) >= span.cap * kReaches) return true;
+  const bool varies = span.in_stretches || (span.head_steady && axes_follow_ramps_);
+  return IsBlend(span.report.passage) && !varies;
+}
+
+// Times the spans of the section that begins with the oldest one.
+void MotionChain::PlanSection() {
+  // Only a chain that begins moving can be too fast: the passes see to the rest.
+  constexpr double kRoom = 1.0 + 1e-9;
+  const Span& first = spans_.front();
+  if (last_speed_ > speeds_.speed() * kRoom &&
+      RampLength(last_speed_, speeds_.speed(), first.limits) > first.length * kRoom) {
+    starts_too_fast_ = true;
+  }
+  section_cell_ = 0;
+  place_ = {};
+  place_ramp_ = 0;
+  alone_ = section_left_ == 1 && !first.in_stretches;
+  if (alone_) {
+    lone_ = SpeedProfile::Span(first.length, last_speed_, speeds_.speed(), first.limits);
+    return;
+  }
+  // What lies between the knots at both ends, each with the speed of level 1 at its end. The curve
+  // behind the last knot is passed steadily, unless it has knots itself.
+  cells_.clear();
+  most_.clear();
+  most_.reserve(section_left_ * (2 * BendSpeeds::kSteps + 1));  // cells look into it
+  std::size_t knot = 0;
+  for (std::size_t k = 0; k < section_left_; ++k) {
+    const Span& span = spans_[spans_.first() + k];
+    const double speed = speeds_.speed(knot);
+    const bool blend = IsBlend(span.report.passage);
+    const bool free = blend && !span.in_stretches;
+    if (span.length > 0.0) {
+      cells_.push_back({span.length, span.limits, speed, free ? RampCell::kNoCap : span.cap, {}});
+    } else if (!cells_.empty() && !free) {  // a bend begins where the last one ends
+      cells_.back().end_cap = std::min(cells_.back().end_cap, span.cap);
+    }
+    if (span.in_stretches) {
+      AddCurve(span, knot);
+    } else if (blend && k + 1 < section_left_) {
+      PathLimits limits = LimitsOnCurve(span.corner_move, span.report.cut_mm);
+      limits.speed = span.cap;
+      cells_.push_back({span.curve_length, limits, speed, RampCell::kNoCap, {}});
+    }
+    knot += span.knots();
+  }
+  if (!cells_.empty()) ramps_.Plan(cells_, last_speed_);
+}
+
+// The stretches of the curve behind a span whose own knot is `knot`.
+void MotionChain::AddCurve(const Span& span, std::size_t knot) {
+  PathLimits limits = LimitsInStretches(span);
+  const Stretches stretches = StretchesIn(span);
+  const std::size_t count = span.curve_knots();
+  std::span<const double> most;
+  if (count <= 2 && span.stretches.open > span.stretches.start) {
+    const BendSpeeds half = SpeedsAlong(span);
+    const std::size_t begin = most_.size();
+    most_.insert(most_.end(), half.most.begin(), half.most.end());
+    most_.insert(most_.end(), half.most.rbegin() + 1, half.most.rend());
+    most = std::span(most_).subspan(begin);
+  }
+  double begin = 0.0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Stretch& stretch = stretches[k];
+    limits.speed = stretch.most;
+    RampCell cell{stretch.end - begin, limits, speeds_.speed(knot + 1 + k), stretch.end_cap, {}};
+    if (!most.empty()) {
+      const std::size_t steps = 2 * BendSpeeds::kSteps / count;
+      cell.most = most.subspan(k * steps, steps + 1);
+    }
+    cells_.push_back(cell);
+    begin = stretch.end;
+  }
+}
+
+// The part of a ramp to `to`, from where the last part ended.
+void MotionChain::TakeRamp(SpeedProfile& speed, const SpeedProfile& ramp, double to) {
+  if (place_.s == 0.0 && to == ramp.end().s) {
+    speed = ramp;
+    return;
+  }
+  ramp.PartTo(place_, to, speed);
+}
+
+// The ramp of the present cell; another one begins at its beginning.
+const SpeedProfile& MotionChain::PresentRamp() {
+  const std::size_t ramp = ramps_.timing()[section_cell_].ramp;
+  if (ramp != place_ramp_) {
+    place_ramp_ = ramp;
+    place_ = {};
+  }
+  return ramps_.ramps()[ramp];
+}
+
+// The part of the span to `to` of its length, or to its end.
+void MotionChain::TakePart(SpeedProfile& speed, double to, bool to_end) {
+  if (alone_) return TakeRamp(speed, lone_, to_end ? spans_.front().length : to);
+  const SpeedProfile& ramp = PresentRamp();
+  const RampPlan::Timing& timing = ramps_.timing()[section_cell_];
+  TakeRamp(speed, ramp, to_end ? timing.to : std::min(timing.from + to, timing.to));
+}
+
+// The part of a curve to `to` of its length, or to where another ramp begins: that is `to` then.
+void MotionChain::TakeStretches(SpeedProfile& speed, CurveCells& cells, double& to) {
+  const SpeedProfile& ramp = PresentRamp();
+  double on_ramp_to = 0.0;
+  for (bool more = true; more;) {
+    const RampPlan::Timing& timing = ramps_.timing()[section_cell_];
+    const double start = cells.at == 0 ? 0.0 : cells.end[cells.at - 1];
+    const double end = cells.end[cells.at];
+    const bool whole = to >= end;
+    on_ramp_to = whole ? timing.to : std::min(timing.from + (to - start), timing.to);
+    if (whole) {
+      ++section_cell_;
+      ++cells.at;
+    }
+    more = whole && cells.at < cells.count && to > end &&
+           ramps_.timing()[section_cell_].ramp == place_ramp_;
+    if (!more) to = std::min(to, end);
+  }
+  TakeRamp(speed, ramp, on_ramp_to);
+}
+
+// Motions are made where they wait to be taken: they are large. The slot holds an old one, so every
+// member is set here or by the caller (path, speed).
+[[gnu::always_inline]] inline PlannedMotion& MotionChain::NewMotion(const Span& span,
+                                                                    const Move& source) {
+  PlannedItem& slot = items_.PushSlot();
+  auto* motion = std::get_if<PlannedMotion>(&slot);
+  if (motion == nullptr) motion = &slot.emplace<PlannedMotion>();
+  motion->tag = source.tag;
+  motion->head = source.head;
+  motion->limits = span.limits;
+  motion->settling_s = 0.0;
+  motion->restart_speed = kLargest;
+  return *motion;
+}
+
+inline void MotionChain::FinishMotion(const Span& span, Number move, PlannedMotion& motion,
+                                      bool ends_move) {
+  motion.ends_move = ends_move;
+  if (ends_move) {
+    EndMove(span, move, motion);
+  } else {
+    motion.corner = {};
+  }
+}
+
+// What is left of the next move between the curves at its ends, and the curve behind it when the
+// span ends there.
+void MotionChain::EmitMove() {
+  Span& span = spans_.front();
+  const bool blend = IsBlend(span.report.passage);
+  if (span.length > 0.0) {
+    if (!emitting_) {
+      emitting_ = true;
+      emit_move_ = span.first_move;
+      emit_done_ = 0.0;
+    }
+    for (bool emitted = false; !emitted && emit_move_ <= span.last_move; ++emit_move_) {
+      const Move& move = moves_[emit_move_];
+      const PathPiece& path = move.path;
+      const bool last = emit_move_ == span.last_move;
+      const double from = emit_move_ == span.first_move ? span.x_from : 0.0;
+      const double to = last ? span.x_to : path.length();
+      if (!(to > from)) continue;
+      PlannedMotion& motion = NewMotion(span, move);
+      if (from == 0.0 && to == path.length()) {
+        motion.path = path;
+      } else {
+        motion.path.AssignPart(path, from, to);
+      }
+      emit_done_ += to - from;
+      TakePart(motion.speed, emit_done_, last);
+      const bool reaches_end = to == path.length() && !(blend && emit_move_ == span.corner_move);
+      FinishMotion(span, emit_move_, motion, reaches_end);
+      emitted = true;
+    }
+    if (emit_move_ <= span.last_move) return;
+    emitting_ = false;
+    ++section_cell_;
+  }
+  span.report.speed = speeds_.speed();
+  const std::size_t knots = span.knots();
+  const double end_speed = speeds_.speed(knots - 1);
+  if (blend) EmitCurve(span);
+  last_speed_ = end_speed;
+  if (decided_ > spans_.first()) {
+    decided_knots_ -= knots;
+  } else {
+    ++decided_;
+  }
+  spans_.PopFront();
+  for (std::size_t k = 0; k < knots; ++k) speeds_.Pop();
+  --section_left_;
+}
+
+void MotionChain::EmitCurve(Span& span) {
+  const double half = 0.5 * span.curve_length;
+  CurveCells cells;  // none: steady
+  if (span.in_stretches || section_left_ > 1) {
+    cells.count = span.in_stretches ? span.curve_knots() : 1;
+    for (std::size_t k = 0; k < cells.count; ++k) {
+      cells.end[k] = span.in_stretches ? span.curve_end(k) : span.curve_length;
+    }
+    // The speed in the middle, which is an end of a stretch when there are some.
+    const std::size_t cell = section_cell_ + (cells.count > 1 ? cells.count / 2 - 1 : 0);
+    const RampPlan::Timing& timing = ramps_.timing()[cell];
+    const SpeedProfile& ramp = ramps_.ramps()[timing.ramp];
+    const double middle = cells.count > 1 ? timing.to : 0.5 * (timing.from + timing.to);
+    span.report.speed = ramp.At(ramp.TimeAt(middle)).speed;
+  }
+  const TipPose& middle = span.curve_middle;
+  if (span.plain) {
+    const PlainCorner corner = PlainCornerAt(span.corner_move, span.report.cut_mm);
+    const TipPose start = corner.Start(), finish = corner.Finish();
+    EmitHalves(span, corner, {start, middle, half, 0.0}, {middle, finish, half, half}, cells);
+  } else {
+    const CornerCurve& curve = curves_.front();
+    const TipPose start = curve.At(0.0), finish = curve.At(1.0);
+    EmitHalves(span, curve, {start, middle, half, 0.0}, {middle, finish, half, half}, cells);
+    curves_.PopFront();
+  }
+}
+
+// The curve is cut where its middle is, and where points that it swallows are: they lie on its
+// halves as they would lie on the straight pieces.
+template <class Shape>
+void MotionChain::EmitHalves(const Span& span, const Shape& shape, const Half& first,
+                             const Half& second, CurveCells& cells) {
+  const double cut = span.report.cut_mm;
+  const double half = first.length;
+  // First half: from the end of the span to the corner.
+  double x = 0.0;  // way from the start of the curve to the end of the move
+  double s = 0.0;
+  for (Number k = span.last_move; k <= span.corner_move; ++k) {
+    double to = half;
+    if (k < span.corner_move) {
+      x += moves_[k].path.length() - (k == span.last_move ? span.x_to : 0.0);
+      to = std::min(half * std::max(x, 0.0) / cut, half);
+    }
+    if (!(to > s)) continue;
+    EmitCurvePart(span, k, shape, first, {s, to, true}, cells);
+    s = to;
+  }
+  // Second half: to the place where the next span begins.
+  x = 0.0;
+  s = 0.0;
+  for (Number k = span.corner_move + 1;; ++k) {
+    x += moves_[k].path.length();
+    const bool last = x >= cut || k + 1 == moves_.end();
+    double to = last ? half : std::min(half * x / cut, half);
+    if (half + to >= half + half)
+      to = half;  // what is left is less than the last digit of the curve
+    if (to > s) EmitCurvePart(span, k, shape, second, {s, to, !last}, cells);
+    s = std::max(s, to);
+    if (last) break;
+  }
+}
+
+template <class Shape>
+void MotionChain::EmitCurvePart(const Span& span, Number move, const Shape& shape, const Half& half,
+                                const HalfPart& part, CurveCells& cells) {
+  // A half is one motion, but for its moves and where the ramp changes.
+  for (double s = part.s_from; s < part.s_to;) {
+    PlannedMotion& motion = NewMotion(span, moves_[move]);
+    motion.limits = moves_[move].limits;
+    double s_to = part.s_to;
+    if (cells.count == 0) {
+      // A STOP on the way brakes as the move does that this part belongs to.
+      motion.speed = SpeedProfile::Steady(s_to - s, span.report.speed);
+      motion.limits.acceleration = std::min(
+          motion.limits.acceleration, machine_.curve_tangential * machine_.tip_acceleration_mm_s2);
+      motion.limits.speed = span.report.speed;
+    } else {
+      motion.limits = cells_[section_cell_].limits;  // the ramp runs through both halves
+      if (span.in_stretches) {
+        motion.restart_speed =
+            std::min({span.stretches.start, span.stretches.open, span.stretches.middle});
+      }
+      double to = half.begin + s_to;
+      TakeStretches(motion.speed, cells, to);
+      s_to = to < half.begin + s_to ? to - half.begin : s_to;
+    }
+    motion.path.AssignCorner(shape, half.begin, half.length, half.from, half.to);
+    if (s != 0.0 || s_to != half.length) motion.path = motion.path.Part(s, s_to);
+    FinishMotion(span, move, motion, part.ends_move && s_to == part.s_to);
+    s = s_to;
+  }
+}
+
+void MotionChain::EndMove(const Span& span, Number move, PlannedMotion& motion) {
+  if (move == span.corner_move) {
+    motion.corner = span.report;
+    if (!IsBlend(span.report.passage)) motion.corner.speed = motion.speed.end().speed;
+    motion.settling_s = span.settling_s;
+  } else {
+    motion.corner = {.passage = Passage::kThrough, .speed = motion.speed.end().speed};
+  }
+  while (!marks_.empty() && marks_.front().after_move <= move) {
+    items_.Push(PlannedMark{marks_.front().tag});
+    marks_.PopFront();
+  }
+  while (moves_.first() < move) moves_.PopFront();
+  if (move == span.corner_move && moves_.end() == move + 1 && !open_) moves_.PopFront();
+}
+
+}  // namespace rmlcell::motion

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "engine/motion/profile/speed_profile.h"
+
+namespace rmlcell::motion {
+
+// A stretch of way with limits of its own, and the speed at its end when every stretch is timed by
+// itself, with acceleration zero between them (level 1).
+struct RampCell {
+  double length = 0.0;
+  PathLimits limits;
+  double end_speed = 0.0;
+  double end_cap = kNoCap;  // of the speed at its end, besides the limits on both sides
+  // In a bend the highest speeds at equal steps from its beginning to its end. Ramps of this
+  // stretch alone, with acceleration zero at both ends, keep them without being asked; others are
+  // looked at. Empty: limits.speed everywhere.
+  std::span<const double> most{};
+
+  static constexpr double kNoCap = std::numeric_limits<double>::infinity();
+};
+
+// Ramps that run across the ends of stretches: level 2 of motion.md 5.4. First the two passes
+// again, with every stretch free to change its speed, curves too. Between the ends that are then
+// passed as fast as they may be, one ramp takes the place of several wherever it keeps the limits
+// of each: up to kExactMax stretches all ways to join neighbours are tried, longer ways are split
+// at the stretch that one ramp breaks most. Never slower than level 1, and no speed at the ends of
+// the whole way changes. Without a limit on jerk every stretch is timed by itself. Reused for many
+// ways: it keeps its memory.
+class RampPlan {
+ public:
+  // Stretches looked at together: 1 m of lines of 2 mm with their curves, more than any ramp takes.
+  static constexpr std::size_t kCellsMax = 2560;
+
+  struct Timing {
+    std::size_t ramp = 0;  // of ramps()
+    double from = 0.0;     // where the stretch lies on it
+    double to = 0.0;
+  };
+
+  // Preconditions: 1 to kCellsMax cells of length above 0; level 1 is feasible from `start_speed`.
+  void Plan(std::span<const RampCell> cells, double start_speed);
+
+  const std::vector<SpeedProfile>& ramps() const { return ramps_; }
+  const std::vector<Timing>& timing() const { return timing_; }  // one for each cell
+
+ private:
+  static constexpr std::size_t kExactMax = 8;  // the work grows with the cube
+
+  struct Try;
+  bool Pass();
+  void LevelOne();
+  double Best(std::size_t first, std::size_t last);
+  double BestOfAll(std::size_t first, std::size_t last);
+  Try Together(std::size_t first, std::size_t last) const;
+  double TimeApart(std::size_t first, std::size_t last) const;
+  double CapAfter(std::size_t cell) const;
+  struct Excess;
+  void LookAlong(const SpeedProfile& ramp, std::size_t cell, double from, double to,
+                 Excess& excess) const;
+  void Append(const SpeedProfile& ramp, std::size_t last);
+  double SpeedBefore(std::size_t cell) const {
+    return cell == 0 ? start_speed_ : speeds_[cell - 1];
+  }
+
+  std::span<const RampCell> cells_;
+  double start_speed_ = 0.0;
+  std::vector<double> speeds_;  // at the end of each cell
+  std::vector<SpeedProfile> ramps_;
+  std::vector<std::size_t> last_cell_;  // of each ramp
+  std::vector<Timing> timing_;
+};
+
+}  // namespace rmlcell::motion

@@ -1,0 +1,393 @@
+#include "engine/motion/profile/speed_profile.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rmlcell::motion {
+namespace {
+
+// Ramp lengths are compared against lengths that other formulas gave: this much relative room.
+constexpr double kRoundingRoom = 1e-12;
+
+struct Ramp {
+  double duration_s = 0.0;
+  double edge_s = 0.0;        // of each jerk phase; 0 for a trapezoid
+  double acceleration = 0.0;  // in the middle, without sign
+};
+
+Ramp RampOf(double change, const PathLimits& limits) {
+  const double a = limits.acceleration;
+  const double j = limits.jerk;
+  if (!(change > 0.0)) return {};
+  if (std::isinf(j)) return {change / a, 0.0, a};
+  if (change <= a * a / j) {
+    const double edge = std::sqrt(change / j);
+    return {2.0 * edge, edge, edge * j};
+  }
+  return {change / a + a / j, a / j, a};
+}
+
+// The root of f(y) = want for f increasing and convex or nearly so, from an upper bound: Newton
+// steps, halved whenever they leave the bracket. `f` returns value and derivative.
+template <class F>
+double Root(F f, double want, double high) {
+  constexpr int kStepsMax = 200;  // bisection alone ends after 64
+  double low = 0.0;
+  double y = high;
+  for (int step = 0; step < kStepsMax; ++step) {
+    const auto [value, slope] = f(y);
+    const double miss = value - want;
+    if (miss > 0.0) {
+      high = y;
+    } else {
+      low = y;
+    }
+    double next = slope > 0.0 ? y - miss / slope : low;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (std::abs(next - y) <= 4e-16 * high || next == low || next == high) return next;
+    y = next;
+  }
+  return y;
+}
+
+struct ValueAndSlope {
+  double value;
+  double slope;
+};
+
+// Length of a ramp between `low` and low + change, and its derivative by change.
+ValueAndSlope RampLengthBy(double low, double change, const PathLimits& limits) {
+  const double a = limits.acceleration;
+  const double j = limits.jerk;
+  const double mean = low + 0.5 * change;
+  if (std::isinf(j)) return {mean * change / a, (low + change) / a};
+  if (change <= a * a / j) {
+    const double root = std::sqrt(change / j);
+    return {2.0 * mean * root, change > 0.0 ? root + mean / (root * j) : HUGE_VAL};
+  }
+  const double time = change / a + a / j;
+  return {mean * time, 0.5 * time + mean / a};
+}
+
+// How far a profile between `top` and top - drop rises above the top when it never cruises.
+double PeakRise(double length, double top, double drop, const PathLimits& limits) {
+  const double a = limits.acceleration;
+  const double j = limits.jerk;
+  if (top == 0.0) {  // rest to rest: closed
+    if (std::isinf(j)) return std::sqrt(a * length);
+    if (length < 2.0 * a * a * a / (j * j)) return std::cbrt(0.25 * j * length * length);
+    const double b = a * a / j;
+    return 0.5 * (std::sqrt(b * b + 4.0 * a * length) - b);
+  }
+  // By y = sqrt(rise) both ramp lengths are smooth, increasing and convex.
+  const double low = top - drop;
+  const auto both = [&](double y) {
+    const double up = y * y;
+    const double down = drop + up;
+    const ValueAndSlope from_top = RampLengthBy(top, up, limits);
+    const double top_slope =
+        !std::isinf(j) && up <= a * a / j
+            ? (2.0 * top + 3.0 * up) / std::sqrt(j)  // of (2 top + y^2) y / sqrt(j)
+            : from_top.slope * 2.0 * y;
+    const ValueAndSlope from_low = RampLengthBy(low, down, limits);
+    const double low_slope = down > 0.0 && y > 0.0 ? from_low.slope * 2.0 * y : 0.0;
+    return ValueAndSlope{from_top.value + from_low.value, top_slope + low_slope};
+  };
+  const double y = Root(both, length, std::sqrt(std::max(limits.speed - top, 0.0)));
+  return y * y;
+}
+
+}  // namespace
+
+double Reach(double v0, double length, const PathLimits& limits) {
+  const double a = limits.acceleration;
+  const double j = limits.jerk;
+  if (!(length > 0.0)) return v0;
+  if (std::isinf(j)) return std::sqrt(v0 * v0 + 2.0 * a * length);
+  const double b = a * a / j;
+  if ((v0 + 0.5 * b) * (2.0 * a / j) <= length) {
+    const double c = v0 * b - v0 * v0 - 2.0 * a * length;
+    return 0.5 * (std::sqrt(b * b - 4.0 * c) - b);
+  }
+  // y^3 + 2 v0 y = length sqrt(j): Newton from above, where the cubic is convex. Leaving out either
+  // term gives an upper bound, and the lower of the two is within a factor 1.5 of the root.
+  const double want = length * std::sqrt(j);
+  double y = v0 > 0.0 ? want / (2.0 * v0) : HUGE_VAL;
+  if (!(y * y <= 2.0 * v0)) y = std::cbrt(want);
+  if (v0 > 0.0) {
+    constexpr int kStepsMax = 8;  // 5 do, with the guess above
+    for (int step = 0; step < kStepsMax; ++step) {
+      const double square = y * y;
+      const double next = (2.0 * square * y + want) / (3.0 * square + 2.0 * v0);
+      const bool done = std::abs(next - y) <= 1e-15 * y;
+      y = next;
+      if (done) break;
+    }
+  }
+  return v0 + y * y;
+}
+
+double ReachMinimum(double v0_low, double v0_high, double length, const PathLimits& limits) {
+  const double a = limits.acceleration;
+  const double j = limits.jerk;
+  if (std::isinf(j)) return Reach(v0_low, length, limits);
+  const double b = a * a / j;
+  // Where the derivative of Reach by v0 is 0: y^2 = 2 v0 in the short regime, v0 = b / 2 in the
+  // other.
+  double worst = 0.5 * b;
+  if (length < b * 2.0 * a / j) {
+    const double y = std::cbrt(0.5 * length * std::sqrt(j));
+    worst = 0.5 * y * y;
+  }
+  return Reach(std::clamp(worst, v0_low, v0_high), length, limits);
+}
+
+SpeedProfile SpeedProfile::Span(double length, double v0, double v1, const PathLimits& limits) {
+  // Most spans of a contour of short lines.
+  if (v0 == v1 && v0 >= limits.speed && length > 0.0) return Steady(length, v0);
+  SpeedProfile profile;
+  profile.end_ = {std::max(length, 0.0), v1, 0.0};
+  PathState state{0.0, v0, 0.0};
+  if (length > 0.0) profile.AddSpan(state, length, v1, limits);
+  return profile;
+}
+
+SpeedProfile SpeedProfile::From(const PathState& state, double end_s, double v1,
+                                const PathLimits& limits) {
+  SpeedProfile profile;
+  profile.end_ = {end_s, v1, 0.0};
+  profile.peak_speed_ = state.speed;
+  PathState now = state;
+  if (now.acceleration != 0.0 && std::isfinite(limits.jerk)) {
+    const double sign = now.acceleration > 0.0 ? 1.0 : -1.0;
+    profile.AddPhase(now, sign * now.acceleration / limits.jerk, now.acceleration,
+                     -sign * limits.jerk);
+  }
+  now.speed = std::max(now.speed, 0.0);  // rounding
+  PathLimits span = limits;
+  const double left = end_s - now.s;
+  const double slow = limits.speed;
+  if (now.speed > slow) {
+    const double down = RampLength(now.speed, slow, limits);
+    if (down + RampLength(slow, v1, limits) <= left) {
+      // The last part is one ramp more, of which the cruise at the new speed takes what is left.
+      profile.AddRamp(now, now.speed - slow, -1.0, slow, limits);
+    } else {
+      span.speed = now.speed;
+    }
+  }
+  if (end_s > now.s) profile.AddSpan(now, end_s, v1, span);
+  return profile;
+}
+
+// From state.s, with acceleration zero, to end_s.
+void SpeedProfile::AddSpan(PathState& state, double end_s, double v1, const PathLimits& limits) {
+  const double length = end_s - state.s;
+  const double v0 = state.speed;
+  const double top = std::max(v0, v1);
+  const double drop = std::abs(v1 - v0);
+  const double direct = RampLength(v0, v1, limits);
+  if (direct > length * (1.0 + kRoundingRoom)) {
+    // The ends come from Reach, whose last digits the length of a ramp hangs on. The same ramp in
+    // the time that there is; but where the ends differ by nothing else (the ramp between two
+    // neighbouring numbers near 500 mm/s is longer than 1e-6 mm), one speed, the mean of both.
+    peak_speed_ = std::max(peak_speed_, top);
+    const double time = 2.0 * length / (v0 + v1);
+    const Ramp ramp = RampOf(drop, limits);
+    const double squeeze = time / ramp.duration_s;
+    constexpr double kSameRamp = 1.0 - 1e-6;  // its acceleration and jerk are above by that at most
+    if (squeeze < kSameRamp) {
+      state.speed = 0.5 * (v0 + v1);
+      AddPhase(state, time, 0.0, 0.0);
+      state.speed = v1;
+      return;
+    }
+    const double sign = v1 > v0 ? 1.0 : -1.0;
+    const double edge = ramp.edge_s * squeeze;
+    const double a = sign * ramp.acceleration / squeeze;
+    if (edge > 0.0) AddPhase(state, edge, 0.0, a / edge);
+    AddPhase(state, time - 2.0 * edge, a, 0.0);
+    if (edge > 0.0) AddPhase(state, edge, a, -a / edge);
+    return;
+  }
+
+  // The peak as a rise above the higher end: where the two are close, their difference has no
+  // digits.
+  double rise = std::max(limits.speed - top, 0.0);
+  double cruise = length - RampLength(top, top + rise, limits) -
+                  RampLengthBy(top - drop, drop + rise, limits).value;
+  if (cruise < 0.0) {
+    rise = direct >= length * (1.0 - kRoundingRoom) ? 0.0 : PeakRise(length, top, drop, limits);
+    cruise = 0.0;
+  }
+  const double peak = top + rise;
+  peak_speed_ = std::max(peak_speed_, peak);
+  if (!(peak > 0.0)) return;  // a length that underflows
+
+  AddRamp(state, v0 < v1 ? drop + rise : rise, 1.0, peak, limits);
+  if (cruise > kRoundingRoom * length) AddPhase(state, cruise / peak, 0.0, 0.0);
+  AddRamp(state, v0 < v1 ? rise : drop + rise, -1.0, v1, limits);
+}
+
+void SpeedProfile::AddPhase(PathState& state, double duration_s, double acceleration, double jerk) {
+  if (!(duration_s > 0.0)) return;
+  state.acceleration = acceleration;
+  phases_[static_cast<std::size_t>(count_++)] = {duration_s, jerk, state};
+  const double t = duration_s;
+  const double bend = jerk == 0.0 ? 0.0 : t * jerk / 6.0;  // spares the division
+  state.s += t * (state.speed + t * (0.5 * acceleration + bend));
+  state.speed += t * (acceleration + 0.5 * t * jerk);
+  duration_s_ += duration_s;
+}
+
+void SpeedProfile::AddRamp(PathState& state, double change, double sign, double to_speed,
+                           const PathLimits& limits) {
+  const Ramp ramp = RampOf(change, limits);
+  const double a = sign * ramp.acceleration;
+  if (ramp.edge_s == 0.0) {
+    AddPhase(state, ramp.duration_s, a, 0.0);
+  } else {
+    AddPhase(state, ramp.edge_s, 0.0, sign * limits.jerk);
+    AddPhase(state, ramp.duration_s - 2.0 * ramp.edge_s, a, 0.0);
+    AddPhase(state, ramp.edge_s, a, -sign * limits.jerk);
+  }
+  state.speed = to_speed;  // exactly, whatever the phases added up to
+}
+
+PathState SpeedProfile::At(double t_s) const {
+  if (count_ == 0 || t_s >= duration_s_) return end_;
+  double t = std::max(t_s, 0.0);
+  int index = 0;
+  while (index + 1 < count_ && t >= phases_[static_cast<std::size_t>(index)].duration_s) {
+    t -= phases_[static_cast<std::size_t>(index)].duration_s;
+    ++index;
+  }
+  const Phase& p = phases_[static_cast<std::size_t>(index)];
+  t = std::min(t, p.duration_s);
+  PathState state;
+  const double bend = p.jerk == 0.0 ? 0.0 : t * p.jerk / 6.0;
+  state.s = p.start.s + t * (p.start.speed + t * (0.5 * p.start.acceleration + bend));
+  state.speed = p.start.speed + t * (p.start.acceleration + 0.5 * t * p.jerk);
+  state.acceleration = p.start.acceleration + t * p.jerk;
+  // Rounding must not carry the last phase past its end.
+  state.s = std::min(state.s, end_.s);
+  state.speed = std::max(state.speed, 0.0);
+  return state;
+}
+
+void SpeedProfile::Advance(Place& place, double s) const {
+  place.s = s;
+  while (place.phase < count_ && s >= PhaseEnd(place.phase)) {
+    place.phase_start_s += phases_[static_cast<std::size_t>(place.phase)].duration_s;
+    ++place.phase;
+  }
+}
+
+// How long after the start of a phase it has gone `wanted`.
+double SpeedProfile::TimeWithin(const Phase& phase, double wanted) {
+  if (wanted <= 0.0) return 0.0;
+  const double v = phase.start.speed;
+  if (phase.jerk == 0.0) {  // closed: most of most profiles
+    const double a = phase.start.acceleration;
+    const double root = a == 0.0 ? v : std::sqrt(std::max(v * v + 2.0 * a * wanted, 0.0));
+    return std::min(2.0 * wanted / (v + root), phase.duration_s);
+  }
+  const auto travelled = [&](double t) {
+    const double speed = v + t * (phase.start.acceleration + 0.5 * t * phase.jerk);
+    const double way = t * (v + t * (0.5 * phase.start.acceleration + t * phase.jerk / 6.0));
+    return ValueAndSlope{way, speed};
+  };
+  return Root(travelled, wanted, phase.duration_s);
+}
+
+double SpeedProfile::TimeAt(double s) const {
+  Place place;
+  Advance(place, s);
+  return TimeOf(place);
+}
+
+SpeedProfile SpeedProfile::Scaled(double factor) const {
+  const auto scale = [&](PathState& state) {
+    state = {state.s * factor, state.speed * factor, state.acceleration * factor};
+  };
+  SpeedProfile scaled = *this;
+  for (int k = 0; k < count_; ++k) {
+    Phase& phase = scaled.phases_[static_cast<std::size_t>(k)];
+    phase.jerk *= factor;
+    scale(phase.start);
+  }
+  scale(scaled.end_);
+  scaled.peak_speed_ *= factor;
+  return scaled;
+}
+
+SpeedProfile SpeedProfile::Part(double s_from, double s_to) const {
+  Place place;
+  Advance(place, s_from);
+  SpeedProfile part;
+  PartTo(place, s_to, part);
+  return part;
+}
+
+SpeedProfile SpeedProfile::ChangingPartTo(Place& place, double s_to) const {
+  const Place begin = place;
+  const double t_from = TimeOf(begin);
+  Advance(place, s_to);
+  const double t_to = s_to >= end_.s ? duration_s_ : TimeOf(place);
+  SpeedProfile part;
+  double time = begin.phase_start_s;
+  for (int k = begin.phase; k < count_ && time < t_to; ++k) {
+    const Phase& phase = phases_[static_cast<std::size_t>(k)];
+    const double from = std::max(t_from - time, 0.0);
+    const double to = std::min(t_to - time, phase.duration_s);
+    time += phase.duration_s;
+    if (!(to > from)) continue;
+    const PathState& start = phase.start;
+    PathState state;
+    const double bend = phase.jerk == 0.0 ? 0.0 : from * phase.jerk / 6.0;  // spares the division
+    state.s = start.s + from * (start.speed + from * (0.5 * start.acceleration + bend)) - begin.s;
+    state.speed = start.speed + from * (start.acceleration + 0.5 * from * phase.jerk);
+    part.peak_speed_ = std::max(part.peak_speed_, state.speed);
+    part.AddPhase(state, to - from, start.acceleration + from * phase.jerk, phase.jerk);
+    part.peak_speed_ = std::max(part.peak_speed_, state.speed);
+  }
+  part.end_ = At(t_to);
+  part.end_.s = s_to - begin.s;
+  return part;
+}
+
+SpeedProfile SpeedProfile::StopFrom(double t_s, const PathLimits& limits) const {
+  SpeedProfile stop;
+  PathState state = At(t_s);
+  stop.peak_speed_ = state.speed;
+  const double a = state.acceleration;
+  const double j = limits.jerk;
+  if (std::isinf(j)) {
+    stop.AddRamp(state, state.speed, -1.0, 0.0, limits);
+  } else if (a >= 0.0) {
+    stop.AddPhase(state, a / j, a, -j);
+    stop.peak_speed_ = state.speed;
+    stop.AddRamp(state, state.speed, -1.0, 0.0, limits);
+  } else {
+    // Already slowing down: the rest of the ramp that began at a higher speed. A ramp to
+    // acceleration zero first would take more room than a motion that is about to end has left.
+    const double began = state.speed + a * a / (2.0 * j);
+    const double share = -a;
+    Ramp ramp = RampOf(began, limits);
+    ramp.acceleration = std::max(ramp.acceleration, share);
+    if (state.speed <= a * a / (2.0 * j)) {
+      stop.AddPhase(state, 2.0 * state.speed / share, a, a * a / (2.0 * state.speed));
+    } else {
+      const double grow = (ramp.acceleration - share) / j;
+      const double release = ramp.acceleration / j;
+      stop.AddPhase(state, grow, a, -j);
+      const double left = state.speed - 0.5 * ramp.acceleration * release;
+      stop.AddPhase(state, std::max(left, 0.0) / ramp.acceleration, -ramp.acceleration, 0.0);
+      stop.AddPhase(state, release, -ramp.acceleration, j);
+    }
+  }
+  stop.end_ = {state.s, 0.0, 0.0};
+  return stop;
+}
+
+}  // namespace rmlcell::motion

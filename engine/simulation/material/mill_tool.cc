@@ -1,0 +1,73 @@
+#include "engine/simulation/material/mill_tool.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/units.h"
+
+namespace rmlcell::simulation {
+Status CheckTool(const MillTool& tool) {
+  if (!(tool.radius_mm > 0.0) || !std::isfinite(tool.radius_mm))
+    return InvalidArgument("the radius of a tool is above 0 mm");
+  if (tool.shape != MillTool::Shape::kVee) return {};
+  if (!(tool.half_angle_rad > 0.0) || !(tool.half_angle_rad < 0.5 * kPi))
+    return InvalidArgument("half the angle of a vee tool lies between 0 and 90 degrees");
+  if (!(tool.tip_radius_mm >= 0.0) || !(tool.tip_radius_mm <= tool.radius_mm))
+    return InvalidArgument("the tip of a vee tool is no wider than its shaft");
+  return {};
+}
+
+ToolPass::ToolPass(const MillTool& tool, const motion::MachinePoint& from,
+                   const motion::MachinePoint& to)
+    : from_(from),
+      to_(to),
+      radius_(tool.radius_mm),
+      tip_radius_(tool.tip_radius_mm),
+      length_(std::hypot(to.x() - from.x(), to.y() - from.y())),
+      upright_(!(length_ > 0.0)),
+      z_(upright_ ? std::min(from.z(), to.z()) : from.z()) {
+  if (tool.shape == MillTool::Shape::kVee) rise_ = 1.0 / std::tan(tool.half_angle_rad);
+  if (upright_) return;
+  way_x_ = (to.x() - from.x()) / length_;
+  way_y_ = (to.y() - from.y()) / length_;
+  slope_ = (to.z() - from.z()) / length_;
+  lead_ = slope_ / std::sqrt(1.0 + slope_ * slope_);
+}
+
+// The height over the point is convex in the tool's place: its least is at an end, where it stands
+// still, or where the flat tip begins.
+double ToolPass::LeastOfVee(double along, double across) const {
+  const Reach r = ReachOf(along, across);
+  if (!r.hit) return HUGE_VAL;
+  const auto at = [&](double place) {
+    const double t = std::clamp(place, r.low, r.high);
+    const double distance = std::hypot(along - t, across);
+    return z_ + slope_ * t + std::max(0.0, distance - tip_radius_) * rise_;
+  };
+  double least = std::min(at(r.low), at(r.high));
+  const double steepness = slope_ / rise_;
+  if (std::abs(steepness) < 1.0) {
+    const double ahead = across * steepness / std::sqrt(1.0 - steepness * steepness);
+    least = std::min(least, at(along - ahead));
+  }
+  const double flat_2 = tip_radius_ * tip_radius_ - across * across;
+  if (flat_2 > 0.0) {
+    least = std::min(least, at(along - std::sqrt(flat_2)));
+    least = std::min(least, at(along + std::sqrt(flat_2)));
+  }
+  return least;
+}
+
+std::optional<double> SweptHeight(const MillTool& tool, const motion::MachinePoint& from,
+                                  const motion::MachinePoint& to, double x, double y) {
+  const ToolPass pass(tool, from, to);
+  const double along = pass.AlongOf(x - from.x(), y - from.y());
+  const double across = pass.AcrossOf(x - from.x(), y - from.y());
+  const double least = tool.shape == MillTool::Shape::kFlat   ? pass.LeastOfFlat(along, across)
+                       : tool.shape == MillTool::Shape::kBall ? pass.LeastOfBall(along, across)
+                                                              : pass.LeastOfVee(along, across);
+  if (std::isinf(least)) return std::nullopt;
+  return least;
+}
+
+}  // namespace rmlcell::simulation

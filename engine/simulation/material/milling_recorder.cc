@@ -1,0 +1,45 @@
+#include "engine/simulation/material/milling_recorder.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+constexpr double kGougeLeast_mm = 1e-3;  // less is rounding of heights and places
+
+}  // namespace
+
+Status CheckMilling(const Milling& milling) {
+  if (Status sound = CheckTool(milling.tool); !sound) return sound;
+  return CheckStock(milling.stock);
+}
+
+MillingRecorder::MillingRecorder(const machine::MachineShape& shape, const Milling& milling)
+    : origin_(shape.has_work_origin ? shape.work_origin : motion::MachineVector{}),
+      tool_(milling.tool),
+      material_(HeightField::Of(milling.stock).value()) {}
+
+void MillingRecorder::OnMotion(const machine::MotionDone& done) {
+  const motion::PathPiece& path = done.motion->path;
+  if (path.kind() != motion::PathPiece::Kind::kLine) return;  // the rotary axis alone
+  const motion::MachinePoint from = path.At(done.from).tip - origin_;
+  const motion::MachinePoint to = path.At(done.travelled).tip - origin_;
+  if (done.programmed_mm_s <= 0.0) {
+    const double depth = material_.DepthOf(tool_, from, to);
+    if (depth > kGougeLeast_mm) {
+      ++figures_.gouges;
+      if (depth > figures_.gouge_depth_mm) {
+        figures_.gouge_depth_mm = depth;
+        figures_.gouge_place = done.place;
+        figures_.gouge_at = done.start;
+      }
+    }
+  }
+  material_.Cut(tool_, from, to);
+}
+
+MillingFigures MillingRecorder::Figures() const {
+  MillingFigures figures = figures_;
+  figures.removed_mm3 = material_.removed_mm3();
+  return figures;
+}
+
+}  // namespace rmlcell::simulation

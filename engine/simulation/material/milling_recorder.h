@@ -1,0 +1,37 @@
+#pragma once
+
+#include "engine/machine/shape.h"
+#include "engine/simulation/material/height_field.h"
+#include "engine/simulation/report/report.h"
+
+namespace rmlcell::simulation {
+
+// A block on the table of a mill and the tool that mills it. The block is given from the work
+// origin as it is when the run begins.
+struct Milling {
+  Stock stock;
+  MillTool tool;
+};
+// Errors: CellInvalidArgument, as CheckTool and CheckStock have them.
+Status CheckMilling(const Milling& milling);
+
+// Takes the material away that the motions of a run sweep, and tells where the tool went into it at
+// travel speed. motion.md section 9.
+class MillingRecorder final : public machine::RunObserver {
+ public:
+  // Precondition: CheckMilling is well.
+  MillingRecorder(const machine::MachineShape& shape, const Milling& milling);
+
+  void OnMotion(const machine::MotionDone& done) override;
+
+  MillingFigures Figures() const;
+  const HeightField& material() const { return material_; }
+
+ private:
+  motion::MachinePoint origin_;  // of the block's frame, machine frame
+  MillTool tool_;
+  HeightField material_;
+  MillingFigures figures_;
+};
+
+}  // namespace rmlcell::simulation

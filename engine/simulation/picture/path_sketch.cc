@@ -1,0 +1,126 @@
+#include "engine/simulation/picture/path_sketch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/simulation/path/polyline.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+using motion::MachinePoint;
+using motion::MachineVector;
+
+// More dots than this run together in any picture.
+constexpr std::size_t kDotsMax = 20'000;
+// Tool directions kept; a picture shows some of them.
+constexpr std::size_t kToolsMax = 4096;
+// Curves that are neither line nor arc, as chords: below a pixel on the largest screen for parts up
+// to 40 m.
+constexpr double kCurveTolerance_mm = 0.01;
+// The first tolerance, as a share of the size: a tenth of a pixel of a large picture.
+constexpr double kFirstShare = 5e-5;
+constexpr double kCoarserSketch = 2.0;
+
+bool IsFinite(const MachinePoint& p) {
+  return std::isfinite(p.x()) && std::isfinite(p.y()) && std::isfinite(p.z());
+}
+
+}  // namespace
+
+PathSketch::PathSketch(const machine::MachineShape& shape, std::size_t elements_max)
+    : shape_(shape), elements_max_(elements_max) {}
+
+void PathSketch::Add(const machine::MotionDone& done) {
+  const motion::PathPiece& path = done.motion->path;
+  const PathPart part{path, done.motion->head, done.from, done.travelled};
+  const MachinePoint from = TipAt(path, part.head, part.from);
+  const MachinePoint to = TipAt(path, part.head, part.to);
+  if (!IsFinite(from) || !IsFinite(to)) return;
+  if (!moved_) start_ = from;
+  moved_ = true;
+  end_ = to;
+
+  const bool tool_in = shape_.laser_watts <= 0.0 && (done.use == machine::MotionUse::kCut ||
+                                                     done.use == machine::MotionUse::kPlunge);
+  SketchElement element{.from = from, .to = to, .use = done.use, .cuts = done.beam_on || tool_in};
+  const machine::Box box = BoxOf(TipSweep(part));
+  box_.Add(box);
+  if (element.cuts) cut_box_.Add(box);
+  if (done.use == machine::MotionUse::kPlunge) {
+    if (!plunging_) AddDot({.at = to});
+    plunging_ = true;
+  } else {
+    plunging_ = false;
+  }
+  if (element.cuts && shape_.five_axis) AddTool(done);
+
+  if (path.kind() == motion::PathPiece::Kind::kArc) {
+    element.arc = static_cast<std::int32_t>(circles_.size());
+    element.middle = path.At(0.5 * (part.from + part.to)).tip;
+    circles_.push_back({.centre = path.centre(),
+                        .normal = path.normal(),
+                        .radius_mm = path.radius_mm(),
+                        .sweep_rad = (part.to - part.from) / path.radius_mm()});
+    Push(element);
+  } else {
+    PushCurve(done, element);
+  }
+}
+
+void PathSketch::PushCurve(const machine::MotionDone& done, SketchElement element) {
+  const PathPart part{done.motion->path, done.motion->head, done.from, done.travelled};
+  ForEachVertex(part, kCurveTolerance_mm, [&](double /*s*/, const MachinePoint& tip) {
+    element.to = tip;
+    if (element.from != element.to) Push(element);
+    element.from = tip;
+  });
+}
+
+void PathSketch::Push(const SketchElement& element) {
+  elements_.push_back(element);
+  if (elements_.size() > elements_max_) Coarsen();
+}
+
+void PathSketch::AddDot(const SketchDot& dot) {
+  if (dots_.size() < kDotsMax) dots_.push_back(dot);
+}
+
+void PathSketch::AddPierce() { AddDot({.at = end_, .pierce = true}); }
+
+void PathSketch::AddTool(const machine::MotionDone& done) {
+  if (tool_count_++ % tool_stride_ != 0) return;
+  const motion::PathPiece& path = done.motion->path;
+  const motion::TipPose pose = path.At(done.travelled);
+  tools_.push_back({TipAt(path, done.motion->head, done.travelled),
+                    motion::ToolDirection(pose.a_rad, pose.b_rad)});
+  if (tools_.size() < kToolsMax) return;
+  for (std::size_t i = 0; 2 * i < tools_.size(); ++i) tools_[i] = tools_[2 * i];
+  tools_.resize((tools_.size() + 1) / 2);
+  tool_stride_ *= 2;
+}
+
+void PathSketch::Coarsen() {
+  const double first = std::max(box_.diagonal_mm() * kFirstShare, 1e-9);
+  tolerance_mm_ = std::max(first, tolerance_mm_);
+  // With a tolerance of the whole size everything is alike: this ends.
+  for (;; tolerance_mm_ *= kCoarserSketch) {
+    MergeStraight(elements_, tolerance_mm_);
+    DropAlike(elements_, tolerance_mm_);
+    if (elements_.size() <= elements_max_ / 2) break;
+  }
+  PackCircles();
+}
+
+void PathSketch::PackCircles() {
+  std::vector<SketchCircle> kept;
+  for (SketchElement& element : elements_) {
+    if (element.arc < 0) continue;
+    kept.push_back(circle(element.arc));
+    element.arc = static_cast<std::int32_t>(kept.size() - 1);
+  }
+  circles_ = std::move(kept);
+}
+
+}  // namespace rmlcell::simulation

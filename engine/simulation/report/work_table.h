@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <utility>
+
+#include "engine/motion/ride/trajectory.h"
+#include "engine/simulation/report/report.h"
+
+namespace rmlcell::simulation {
+
+// Adds up what a run does: in all, by program and by step, in bounded memory. motion.md 8.2.
+class WorkTable {
+ public:
+  WorkTable() = default;
+  WorkTable(const WorkTable&) = delete;  // it remembers places within itself
+  WorkTable& operator=(const WorkTable&) = delete;
+
+  // `work` was done at `place`.
+  void Add(const machine::Place& place, const WorkFigures& work);
+
+  // Whether what a program does is counted by program; once it is, it stays so.
+  bool HasRoomFor(int program) { return ProgramOf(program) != nullptr; }
+
+  // Writes total, steps, rest and the totals of the programs of the report.
+  void WriteTo(RunReport& report) const;
+
+ private:
+  // Sums of a million small lengths keep their digits.
+  struct Sum {
+    WorkFigures counts;
+    motion::LongSum tip_path, cut, travel, plunge, cut_energy, pierce_energy;
+
+    void Add(const WorkFigures& work);
+    WorkFigures Total() const;
+  };
+  struct Step {
+    int line = 0;
+    Sum sum;
+  };
+
+  Sum* StepOf(const machine::Place& place);
+  Sum* ProgramOf(int program);
+
+  Sum total_;
+  Sum rest_;
+  std::map<int, Sum> programs_;
+  std::map<std::pair<int, int>, Step> steps_;  // by program and step
+  // Most work is at the step of the work before it.
+  std::pair<int, int> last_step_{-1, -1};
+  Sum* last_sum_ = nullptr;
+  int last_program_ = -1;
+  Sum* last_program_sum_ = nullptr;
+};
+
+}  // namespace rmlcell::simulation

@@ -1,0 +1,141 @@
+#include "engine/simulation/run/motion_check.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "engine/simulation/report/finding_list.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+bool IsOfMotion(ErrorCode code) {
+  return code == ErrorCode::kTargetOutOfTravel || code == ErrorCode::kSpeedHeldByAxis ||
+         code == ErrorCode::kFlyReversal || code == ErrorCode::kNoMotion;
+}
+
+// What one run tells about its motion, and which programs take part.
+class MotionListener final : public machine::RunObserver {
+ public:
+  void OnStep(SimTime /*at*/, const machine::Place& place,
+              std::string_view /*instruction*/) override {
+    if (place.program != last_program_) reached_.insert(place.program);
+    last_program_ = place.program;
+  }
+  void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override {
+    if (!IsOfMotion(diagnostic.code)) return;
+    Diagnostic told = diagnostic;
+    // With what comes from outside the speed may be another.
+    if (told.code == ErrorCode::kNoMotion) told.severity = Severity::kWarning;
+    findings_.Add(at, told);
+  }
+
+  const FindingList& findings() const { return findings_; }
+  const std::set<int>& reached() const { return reached_; }
+
+ private:
+  FindingList findings_;
+  std::set<int> reached_;
+  int last_program_ = -1;
+};
+
+struct CheckedRun {
+  MotionListener listener;
+  std::string cut_short;
+};
+
+// Empty: the program was followed to its end.
+std::string WhyCutShort(const machine::Outcome& outcome) {
+  if (!outcome.code || *outcome.code == ErrorCode::kTargetOutOfTravel) return {};
+  const CatalogueEntry& entry = Lookup(*outcome.code);
+  std::string text = "not at all";
+  if (outcome.place.step > 0) text = "only up to step " + std::to_string(outcome.place.step);
+  if (outcome.place.line > 0) text += ", line " + std::to_string(outcome.place.line);
+  text += ": " + CodeText(entry.code) + ' ';
+  text += outcome.detail.empty() ? std::string(entry.when) : outcome.detail;
+  return text;
+}
+
+// To the end. No report is made: that would take more time than the run. Where the program halts,
+// the next scripted input may let it go on, else START is given; a START that changes nothing never
+// will.
+void Drive(machine::Run& run, const machine::InputScript& inputs) {
+  std::optional<std::pair<SimTime, std::uint64_t>> started;
+  for (;;) {
+    const SimTime now = run.state().time;
+    const machine::RunPhase phase = run.Advance(now + kCheckTimeMax);
+    if (phase == machine::RunPhase::kFinished) return;
+    if (phase == machine::RunPhase::kRunning) continue;
+    const std::pair here{run.state().time, run.steps_executed()};
+    const auto next = std::upper_bound(
+        inputs.begin(), inputs.end(), here.first,
+        [](SimTime at, const machine::InputChange& input) { return at < input.at; });
+    if (next != inputs.end()) {
+      if (run.Advance(next->at) != machine::RunPhase::kHalted || run.state().time > here.first) {
+        continue;
+      }
+    }
+    if (started == here) {
+      run.End(machine::OutcomeKind::kStopped, ErrorCode::kCellWaitsForever);
+      return;
+    }
+    started = here;
+    run.Apply({here.first, machine::InputKind::kStart, 0, 1.0});
+  }
+}
+
+Status RunForCheck(const machine::MachineFamily& family, machine::RunSetup setup,
+                   CheckedRun& checked) {
+  setup.mode = machine::Mode::kCycle;
+  setup.forecast = true;
+  setup.budget = {.steps = kCheckStepsMax, .virtual_time = kCheckTimeMax};
+  const machine::InputScript inputs = setup.inputs;
+  const auto run = family.NewRun(std::move(setup), checked.listener);
+  if (!run) return run.error();
+  Drive(**run, inputs);
+  checked.cut_short = WhyCutShort((*run)->outcome());
+  return {};
+}
+
+}  // namespace
+
+Result<MotionCheck> CheckMotion(const machine::MachineFamily& family,
+                                const machine::RunSetup& setup, const std::set<int>& slots) {
+  MotionCheck check;
+  if (!family.info().checked_by_running) return check;
+  std::map<int, CheckedRun> runs;
+  std::set<int> called;
+  for (const int slot : slots) {
+    machine::RunSetup one = setup;
+    one.main_program = slot;
+    CheckedRun& run = runs[slot];
+    if (const Status ran = RunForCheck(family, std::move(one), run); !ran) return ran.error();
+    for (const int program : run.listener.reached()) {
+      if (program != slot) called.insert(program);
+    }
+  }
+  FindingList all;
+  std::set<int> covered;
+  const auto take = [&](int slot) {
+    const CheckedRun& run = runs.at(slot);
+    covered.insert(run.listener.reached().begin(), run.listener.reached().end());
+    covered.insert(slot);
+    if (!run.cut_short.empty()) check.cut_short[slot] = run.cut_short;
+    for (const Finding& finding : run.listener.findings().findings()) {
+      all.Add(finding.first_at, finding.diagnostic);
+    }
+    check.findings_dropped += run.listener.findings().dropped();
+  };
+  for (const int slot : slots) {
+    if (!called.contains(slot)) take(slot);
+  }
+  for (const int slot : slots) {  // those that run each other in a ring
+    if (!covered.contains(slot)) take(slot);
+  }
+  for (const Finding& finding : all.findings()) check.findings.push_back(finding.diagnostic);
+  check.findings_dropped += all.dropped();
+  return check;
+}
+
+}  // namespace rmlcell::simulation

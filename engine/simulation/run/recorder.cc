@@ -1,0 +1,150 @@
+#include "engine/simulation/run/recorder.h"
+
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "engine/simulation/report/report_recorder.h"
+#include "engine/simulation/run/version.h"
+
+namespace rmlcell::simulation {
+
+struct Recorder::State {
+  State(const machine::MachineShape& shape, InputDescription description, Products products)
+      : inputs(std::move(description)), report(shape) {
+    Join(products.also);
+    Join(&report);
+    if (products.trace) {
+      Join(&trace.emplace(std::move(products.trace), products.trace_records_max));
+    }
+    if (products.toolpath) {
+      Join(&toolpath.emplace(shape, products.toolpath_options, std::move(products.toolpath)));
+    }
+    if (products.picture) Join(&picture.emplace(shape));
+    if (products.plot) Join(&plot.emplace(shape));
+    if (products.samples) {
+      Join(&samples.emplace(shape, products.samples_hz, std::move(products.samples)));
+    }
+    if (products.milling) Join(&milling.emplace(shape, *products.milling));
+  }
+
+  void Join(machine::RunObserver* observer) {
+    if (observer != nullptr) observers[count++] = observer;
+  }
+
+  template <class Tell>
+  void All(Tell tell) {
+    for (std::size_t i = 0; i < count; ++i) tell(*observers[i]);
+  }
+
+  InputDescription inputs;
+  ReportRecorder report;
+  std::optional<TraceRecorder> trace;
+  std::optional<ToolpathRecorder> toolpath;
+  std::optional<PictureRecorder> picture;
+  std::optional<PlotRecorder> plot;
+  std::optional<SampleRecorder> samples;
+  std::optional<MillingRecorder> milling;
+  std::array<machine::RunObserver*, 8> observers{};
+  std::size_t count = 0;
+};
+
+Recorder::Recorder(const machine::MachineShape& shape, InputDescription inputs, Products products)
+    : state_(std::make_unique<State>(shape, std::move(inputs), std::move(products))) {}
+
+Recorder::~Recorder() = default;
+
+void Recorder::OnStep(SimTime at, const machine::Place& place, std::string_view instruction) {
+  state_->All([&](machine::RunObserver& to) { to.OnStep(at, place, instruction); });
+}
+void Recorder::OnMotion(const machine::MotionDone& done) {
+  state_->All([&](machine::RunObserver& to) { to.OnMotion(done); });
+}
+void Recorder::OnMove(const machine::MoveDone& move) {
+  state_->All([&](machine::RunObserver& to) { to.OnMove(move); });
+}
+void Recorder::OnSignal(const machine::SignalChange& change) {
+  state_->All([&](machine::RunObserver& to) { to.OnSignal(change); });
+}
+void Recorder::OnWait(const machine::Wait& wait) {
+  state_->All([&](machine::RunObserver& to) { to.OnWait(wait); });
+}
+void Recorder::OnHalt(const machine::Halt& halt) {
+  state_->All([&](machine::RunObserver& to) { to.OnHalt(halt); });
+}
+void Recorder::OnResume(SimTime at, const machine::Place& place) {
+  state_->All([&](machine::RunObserver& to) { to.OnResume(at, place); });
+}
+void Recorder::OnProgram(SimTime at, const machine::Place& place, std::string_view what,
+                         int program) {
+  state_->All([&](machine::RunObserver& to) { to.OnProgram(at, place, what, program); });
+}
+void Recorder::OnMessage(SimTime at, const machine::Place& place, std::string_view text) {
+  state_->All([&](machine::RunObserver& to) { to.OnMessage(at, place, text); });
+}
+void Recorder::OnViolation(const machine::TravelViolation& violation) {
+  state_->All([&](machine::RunObserver& to) { to.OnViolation(violation); });
+}
+void Recorder::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
+  state_->All([&](machine::RunObserver& to) { to.OnDiagnostic(at, diagnostic); });
+}
+
+void Recorder::Begin(const machine::Run& run) {
+  const machine::RunState state = run.state();
+  if (state_->samples) state_->samples->StandsAt(state.tip, state.axes);
+}
+
+bool Recorder::cut_off() const {
+  return (state_->trace && state_->trace->dropped() > 0) ||
+         (state_->toolpath && !state_->toolpath->complete());
+}
+
+const InputDescription& Recorder::inputs() const { return state_->inputs; }
+
+void Recorder::Finish(const machine::Run& run) {
+  const SimTime at = run.state().time;
+  state_->report.Finish(at);
+  if (state_->trace) state_->trace->End(at, run.outcome());
+  if (state_->toolpath) state_->toolpath->Finish();
+  if (state_->samples) state_->samples->Finish(at);
+}
+
+RunReport Recorder::Report(const machine::Run& run) const {
+  RunReport report = state_->report.Report(run);
+  report.family = state_->inputs.family;
+  report.title = state_->inputs.title;
+  report.engine_version = kEngineVersion;
+  report.inputs_hash = state_->inputs.hash;
+  report.changed_parameters = state_->inputs.changed_parameters;
+  if (const auto& trace = state_->trace) {
+    report.trace = {.made = true,
+                    .complete = trace->dropped() == 0,
+                    .records = trace->records(),
+                    .dropped = trace->dropped()};
+  }
+  if (const auto& toolpath = state_->toolpath) {
+    report.toolpath = {.made = true,
+                       .complete = toolpath->complete(),
+                       .records = toolpath->points(),
+                       .bytes = toolpath->bytes()};
+  }
+  if (const auto& picture = state_->picture) {
+    report.picture = {.made = true, .complete = picture->exact(), .records = picture->elements()};
+  }
+  if (state_->milling) report.milling = state_->milling->Figures();
+  return report;
+}
+
+const HeightField* Recorder::material() const {
+  return state_->milling ? &state_->milling->material() : nullptr;
+}
+
+std::string Recorder::Svg(const RunReport& report, const PictureOptions& options) const {
+  return state_->picture ? state_->picture->Svg(report, options) : std::string();
+}
+
+std::string Recorder::PlotSvg(const RunReport& report, const PlotOptions& options) const {
+  return state_->plot ? state_->plot->Svg(report, options) : std::string();
+}
+
+}  // namespace rmlcell::simulation

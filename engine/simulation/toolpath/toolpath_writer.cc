@@ -1,0 +1,81 @@
+#include "engine/simulation/toolpath/toolpath_writer.h"
+
+#include <utility>
+
+#include "engine/core/check.h"
+
+namespace rmlcell::simulation {
+
+ToolpathWriter::ToolpathWriter(std::uint64_t bytes_max, ToolpathSink sink)
+    : bytes_max_(bytes_max), sink_(std::move(sink)) {
+  RMLCELL_CHECK(sink_);
+  block_.points.reserve(kToolpathBlockPoints);
+}
+
+// A run that was opened and then went nowhere: takes it back, with its point unless that is the
+// last one of the run before.
+void ToolpathWriter::DropEmptyRun() {
+  if (block_.runs.empty() || block_.runs.back().point_count > 1) return;
+  const std::uint32_t point = block_.runs.back().first_point;
+  block_.runs.pop_back();
+  const bool shared = !block_.runs.empty() &&
+                      block_.runs.back().first_point + block_.runs.back().point_count > point;
+  if (!shared) block_.points.pop_back();
+}
+
+void ToolpathWriter::Open(const ToolpathRun& run, const ToolpathPoint& first) {
+  DropEmptyRun();
+  // A run needs two points: its first one and one more.
+  if (block_.points.size() + 2 > kToolpathBlockPoints) Flush();
+  const bool joined = !block_.points.empty() && block_.points.back() == first;
+  if (!joined) {
+    block_.points.push_back(first);
+    ++points_;
+  }
+  block_.runs.push_back(run);
+  ToolpathRun& opened = block_.runs.back();
+  opened.end_us = run.start_us;
+  opened.first_point = static_cast<std::uint32_t>(block_.points.size() - 1);
+  opened.point_count = 1;
+  open_ = true;
+}
+
+bool ToolpathWriter::Add(const ToolpathPoint& point, std::int64_t at_us) {
+  block_.points.push_back(point);
+  ++points_;
+  ++block_.runs.back().point_count;
+  if (block_.points.size() < kToolpathBlockPoints) return false;
+  ToolpathRun rest = block_.runs.back();
+  block_.runs.back().end_us = at_us;
+  Flush();
+  if (closed_) return false;
+  rest.start_us = at_us;
+  Open(rest, point);
+  return true;
+}
+
+void ToolpathWriter::EndAt(std::int64_t at_us) {
+  if (open_ && !closed_) block_.runs.back().end_us = at_us;
+}
+
+void ToolpathWriter::Flush() {
+  open_ = false;
+  DropEmptyRun();
+  if (!block_.runs.empty()) {
+    const std::string bytes = EncodeToolpathBlock(block_);
+    if (bytes_ + bytes.size() > bytes_max_ || !sink_(bytes)) {
+      closed_ = true;
+    } else {
+      bytes_ += bytes.size();
+      ++blocks_;
+    }
+  }
+  block_.points.clear();
+  block_.runs.clear();
+}
+
+void ToolpathWriter::Finish() {
+  if (!closed_) Flush();
+}
+
+}  // namespace rmlcell::simulation

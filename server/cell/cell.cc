@@ -1,0 +1,306 @@
+#include "server/cell/cell.h"
+
+#include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/grpcpp.h>
+#include <grpcpp/health_check_service_interface.h>
+#include <spdlog/spdlog.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <random>
+#include <thread>
+
+#include "engine/core/hex.h"
+#include "engine/core/number_text.h"
+#include "server/base/executor.h"
+#include "server/events/event_feed.h"
+#include "server/jobs/dispatcher.h"
+#include "server/jobs/job_book.h"
+#include "server/jobs/worker_processes.h"
+#include "server/programs/memory_office.h"
+#include "server/programs/program_shelf.h"
+#include "server/projects/project_book.h"
+#include "server/services/handbox_service.h"
+#include "server/services/job_service.h"
+#include "server/services/machine_messages.h"
+#include "server/services/machine_service.h"
+#include "server/services/program_service.h"
+#include "server/services/project_service.h"
+#include "server/services/web_resources.h"
+#include "server/services/worker_service.h"
+#include "server/web/web_server.h"
+#include "storage/sqlite/sqlite_store.h"
+
+namespace rmlcell::server {
+namespace {
+
+// Threads for work that may block: the store mostly, so there are more of them than cores.
+constexpr int kExecutorThreads = 8;
+
+// What the log of the store grows to between two checkpoints of a cell that is not busy.
+constexpr std::int64_t kLogBytesPrepared = 17 << 20;
+
+// Keepalive for shop-floor networks: a client that is gone without a word is noticed within a
+// minute.
+constexpr int kKeepaliveTime_ms = 40'000;
+constexpr int kKeepaliveTimeout_ms = 15'000;
+
+std::string RandomText() {
+  std::random_device device;
+  std::string text;
+  for (int i = 0; i < 32; ++i) text += HexDigit(device());
+  return text;
+}
+
+std::string PathOfOwnProgram() {
+  std::error_code error;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+  return error ? std::string() : self.parent_path().string();
+}
+
+// A server that listens on a unix socket has it taken away by the next one without a word: gRPC
+// removes the file before it makes its own, which is right only for one that a dead server left
+// behind.
+bool IsUnixSocketInUse(const std::string& address) {
+  if (!address.starts_with("unix:")) return false;
+  std::string path = address.substr(std::string_view("unix:").size());
+  if (path.starts_with("//")) path.erase(0, 2);
+  sockaddr_un name{};
+  if (path.size() >= sizeof(name.sun_path)) return false;  // gRPC refuses it
+  name.sun_family = AF_UNIX;
+  path.copy(name.sun_path, path.size());
+  const int probe = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (probe < 0) return false;
+  const bool answers =
+      ::connect(probe, reinterpret_cast<const sockaddr*>(&name), sizeof(name)) == 0 ||
+      errno == EAGAIN;
+  ::close(probe);
+  return answers;
+}
+
+Error PortUsed(const std::string& address) {
+  return {ErrorCode::kCellPortUsed, "cannot listen on " + address, {}};
+}
+
+}  // namespace
+
+struct Cell::Parts {
+  explicit Parts(const Config& configuration) : config(configuration) {}
+
+  Config config;
+  std::string instance_id = RandomText();
+  std::unique_ptr<storage::Store> store;
+  std::unique_ptr<Executor> executor;
+  std::unique_ptr<EventFeed> feed;
+  std::unique_ptr<Dispatcher> dispatcher;
+  OpenStreams open;
+  Gate gate{RandomText()};
+  std::unique_ptr<JobBook> book;
+  std::unique_ptr<ProgramShelf> shelf;
+  std::unique_ptr<MemoryOffice> office;
+  std::unique_ptr<ProjectBook> projects;
+  std::unique_ptr<JobService> job_service;
+  std::unique_ptr<MachineService> machine_service;
+  std::unique_ptr<ProgramService> program_service;
+  std::unique_ptr<ProjectService> project_service;
+  std::unique_ptr<HandboxService> handbox_service;
+  std::unique_ptr<WorkerService> worker_service;
+  std::unique_ptr<WebResources> resources;
+  std::unique_ptr<grpc::Server> server;
+  std::unique_ptr<web::WebServer> web;
+  std::unique_ptr<WorkerProcesses> processes;
+  std::vector<std::string> grpc_addresses;
+  bool stopped = false;
+
+  Status OpenStore();
+  Status MakeMachines();
+  Status Listen(const std::string& join_token);
+  Status ListenWeb();
+  Status StartWorkers(const std::string& join_token);
+};
+
+Status Cell::Parts::OpenStore() {
+  auto opened = storage::OpenSqliteStore({.path = config.state_directory + "/cell.db",
+                                          .keep_finished_jobs = config.jobs_keep_finished,
+                                          .log_bytes_prepared = kLogBytesPrepared});
+  if (!opened) {
+    Error error = opened.error();
+    if (error.code == ErrorCode::kCellStoreCorrupt) {
+      error.detail +=
+          "; the server does not start with it. Use another state.directory for an empty store";
+    }
+    return error;
+  }
+  store = std::move(*opened);
+  return MakeMachines();
+}
+
+// The machines of the configuration that the store does not have yet.
+Status Cell::Parts::MakeMachines() {
+  for (const MachineConfig& machine : config.machines) {
+    const storage::MachineRecord record{.id = machine.id,
+                                        .family = machine.family,
+                                        .title = machine.title,
+                                        .profile = machine.profile};
+    if (Status good = CheckMachine(record); !good) {
+      return Error{
+          ErrorCode::kCellConfiguration, "machine " + machine.id + ": " + good.error().detail, {}};
+    }
+    const auto stored = store->PutMachine(record, 0);
+    if (!stored && stored.error().code != ErrorCode::kCellAlreadyExists) return stored.error();
+  }
+  return {};
+}
+
+Status Cell::Parts::Listen(const std::string& join_token) {
+  executor = std::make_unique<Executor>(kExecutorThreads);
+  feed = std::make_unique<EventFeed>(*store);
+  dispatcher = std::make_unique<Dispatcher>(*store, *feed, config, *executor, join_token);
+  book = std::make_unique<JobBook>(*store, config);
+  shelf = std::make_unique<ProgramShelf>(*store, config);
+  office = std::make_unique<MemoryOffice>(*store, *shelf);
+  projects = std::make_unique<ProjectBook>(*store);
+  const CallRoom room{gate, *executor, config.limit_message_bytes};
+  job_service = std::make_unique<JobService>(room, *book, *dispatcher, *feed, open, instance_id);
+  machine_service =
+      std::make_unique<MachineService>(room, *store, *dispatcher, config, instance_id);
+  program_service = std::make_unique<ProgramService>(room, *shelf, *office, open);
+  project_service = std::make_unique<ProjectService>(room, *projects);
+  handbox_service = std::make_unique<HandboxService>(room);
+  worker_service = std::make_unique<WorkerService>(room, *dispatcher);
+
+  grpc::EnableDefaultHealthCheckService(true);
+  grpc::reflection::InitProtoReflectionServerBuilderPlugin();
+  grpc::ServerBuilder builder;
+  // Without this a second server on the same port starts without a word and takes part of the
+  // calls.
+  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveTime_ms);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeout_ms);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
+  builder.SetMaxReceiveMessageSize(static_cast<int>(config.limit_message_bytes + kRefusalBytes));
+  builder.SetMaxSendMessageSize(-1);
+  for (const std::string& address : config.listen_grpc) {
+    if (IsUnixSocketInUse(address)) return PortUsed(address);
+  }
+  std::vector<int> ports(config.listen_grpc.size(), 0);
+  for (std::size_t i = 0; i < ports.size(); ++i) {
+    builder.AddListeningPort(config.listen_grpc[i], grpc::InsecureServerCredentials(), &ports[i]);
+  }
+  for (grpc::Service* service : std::initializer_list<grpc::Service*>{
+           job_service.get(), machine_service.get(), program_service.get(), project_service.get(),
+           handbox_service.get(), worker_service.get()}) {
+    builder.RegisterService(service);
+  }
+  server = builder.BuildAndStart();
+  for (std::size_t i = 0; i < ports.size(); ++i) {
+    const std::string& address = config.listen_grpc[i];
+    const bool unix_socket = address.starts_with("unix:");
+    if (server == nullptr || (ports[i] == 0 && !unix_socket)) return PortUsed(address);
+    grpc_addresses.push_back(unix_socket ? address
+                                         : address.substr(0, address.rfind(':') + 1) +
+                                               std::to_string(ports[i]));
+  }
+  return {};
+}
+
+Status Cell::Parts::ListenWeb() {
+  if (config.listen_web.empty()) return {};
+  const std::size_t colon = config.listen_web.rfind(':');
+  std::string host = config.listen_web.substr(0, colon);
+  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
+  resources = std::make_unique<WebResources>(gate, *book, *shelf);
+  grpc::ChannelArguments arguments;
+  arguments.SetInt(GRPC_ARG_MAX_RECEIVE_MESSAGE_LENGTH, -1);
+  auto started = web::WebServer::Start(
+      {.address = host,
+       .port = static_cast<int>(*ParseInteger(config.listen_web.substr(colon + 1))),
+       .call_bytes_max = static_cast<std::size_t>(config.limit_message_bytes),
+       .upload_bytes_max = static_cast<std::size_t>(config.limit_program_bytes),
+       .connections_max = static_cast<std::size_t>(config.web_connections_max),
+       .origins = config.web_origins,
+       .secret = gate.web_secret()},
+      grpc::CreateCustomChannel(grpc_addresses.front(), grpc::InsecureChannelCredentials(),
+                                arguments),
+      *resources, [](const web::WebLogEntry& entry) {
+        spdlog::debug("{} {} {} {} bytes in {} us, {}", entry.method, entry.path, entry.http_status,
+                      entry.bytes_sent, entry.duration.count(), entry.peer);
+      });
+  if (!started) return started.error();
+  web = std::move(*started);
+  return {};
+}
+
+Status Cell::Parts::StartWorkers(const std::string& join_token) {
+  int count = static_cast<int>(config.workers_count);
+  if (count < 0) count = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const std::string program = config.workers_program.empty()
+                                  ? PathOfOwnProgram() + "/rmlcell-worker"
+                                  : config.workers_program;
+  auto started = WorkerProcesses::Start({.program = program,
+                                         .server = grpc_addresses.front(),
+                                         .join_token = join_token,
+                                         .log_level = config.log_level,
+                                         .log_format = config.log_format,
+                                         .count = count});
+  if (!started) return started.error();
+  processes = std::move(*started);
+  return {};
+}
+
+Cell::Cell(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+
+Result<std::unique_ptr<Cell>> Cell::Start(const Config& config) {
+  std::unique_ptr<Cell> cell(new Cell(std::make_unique<Parts>(config)));
+  Parts& parts = *cell->parts_;
+  const std::string join_token =
+      config.workers_join_token.empty() ? RandomText() : config.workers_join_token;
+  // The lock of the store first: a second server on the same store must not listen for a moment.
+  if (Status opened = parts.OpenStore(); !opened) return opened.error();
+  if (Status listening = parts.Listen(join_token); !listening) return listening.error();
+  if (Status listening = parts.ListenWeb(); !listening) return listening.error();
+  if (Status started = parts.StartWorkers(join_token); !started) return started.error();
+  return cell;
+}
+
+Cell::~Cell() { Stop(); }
+
+void Cell::Stop() {
+  Parts& parts = *parts_;
+  if (parts.stopped) return;
+  parts.stopped = true;
+  const auto patience = std::chrono::milliseconds(
+      static_cast<std::int64_t>(parts.config.shutdown_timeout_s * 1000.0));
+  const auto deadline = std::chrono::system_clock::now() + patience;
+  if (parts.server != nullptr && parts.server->GetHealthCheckService() != nullptr) {
+    parts.server->GetHealthCheckService()->SetServingStatus(false);
+  }
+  if (parts.web != nullptr) parts.web->StopAccepting();
+  parts.open.StopAll();
+  // Workers end when the dispatcher asks for their jobs.
+  if (parts.processes != nullptr) parts.processes->StartNoMore();
+  if (parts.dispatcher != nullptr) parts.dispatcher->Drain(patience / 2);
+  if (parts.processes != nullptr) parts.processes->Stop(patience / 4);
+  if (parts.web != nullptr) parts.web->Stop(patience / 4);
+  if (parts.server != nullptr) parts.server->Shutdown(deadline);
+  // Calls are over; what they posted still runs.
+  parts.web.reset();
+  parts.server.reset();
+  parts.executor.reset();
+  parts.dispatcher.reset();
+  parts.feed.reset();
+  parts.store.reset();
+}
+
+const std::vector<std::string>& Cell::grpc_addresses() const { return parts_->grpc_addresses; }
+
+std::string Cell::web_address() const {
+  if (parts_->web == nullptr) return {};
+  return parts_->config.listen_web.substr(0, parts_->config.listen_web.rfind(':') + 1) +
+         std::to_string(parts_->web->port());
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,176 @@
+#include "server/records/job_messages.h"
+
+#include "engine/core/units.h"
+#include "proto/bridge/findings.h"
+#include "server/base/names.h"
+
+namespace rmlcell::server {
+namespace {
+
+std::string_view KindOf(const v1::JobEvent& event) {
+  switch (event.what_case()) {
+    case v1::JobEvent::kState:
+      return "state";
+    case v1::JobEvent::kDiagnostic:
+      return "diagnostic";
+    case v1::JobEvent::kMessage:
+      return "message";
+    case v1::JobEvent::kHalted:
+      return "halted";
+    case v1::JobEvent::kResumed:
+      return "resumed";
+    case v1::JobEvent::kSignal:
+      return "signal";
+    case v1::JobEvent::kMilestone:
+      return "milestone";
+    case v1::JobEvent::kEnded:
+      return "ended";
+    case v1::JobEvent::WHAT_NOT_SET:
+      break;
+  }
+  return "";
+}
+
+}  // namespace
+
+google::protobuf::Timestamp ToProto(storage::WallTime time) {
+  const std::int64_t us = time.time_since_epoch().count();
+  google::protobuf::Timestamp message;
+  message.set_seconds(us / 1'000'000);
+  message.set_nanos(static_cast<std::int32_t>(us % 1'000'000) * 1000);
+  return message;
+}
+
+v1::Job::State ToProto(storage::JobState state) {
+  switch (state) {
+    case storage::JobState::kQueued:
+      return v1::Job::STATE_QUEUED;
+    case storage::JobState::kRunning:
+      return v1::Job::STATE_RUNNING;
+    case storage::JobState::kSucceeded:
+      return v1::Job::STATE_SUCCEEDED;
+    case storage::JobState::kFailed:
+      return v1::Job::STATE_FAILED;
+    case storage::JobState::kCancelled:
+      return v1::Job::STATE_CANCELLED;
+    case storage::JobState::kInterrupted:
+      return v1::Job::STATE_INTERRUPTED;
+  }
+  return v1::Job::STATE_UNSPECIFIED;
+}
+
+int InlineSlotOf(const v1::Job& job) {
+  return job.inline_slot() > 0 ? job.inline_slot() : kSlotMin;
+}
+
+v1::Job ToProto(const storage::JobRecord& record) {
+  v1::Job job;
+  // A specification that cannot be read leaves the rest of the job visible.
+  if (!job.ParseFromString(record.specification)) job.Clear();
+  job.set_name(JobName(record.id));
+  job.set_machine(MachineName(record.machine));
+  job.set_title(record.title);
+  job.set_attempts_max(record.attempts_max);
+  job.set_state(ToProto(record.state));
+  job.set_attempts(record.attempts);
+  job.set_cancel_requested(record.cancel_requested);
+  job.set_last_sequence(record.last_sequence);
+  job.set_caller(record.caller);
+  *job.mutable_create_time() = ToProto(record.created_at);
+  if (record.started_at) *job.mutable_start_time() = ToProto(*record.started_at);
+  if (record.finished_at) *job.mutable_end_time() = ToProto(*record.finished_at);
+  if (record.outcome) *job.mutable_outcome() = ToProto(*record.outcome);
+  return job;
+}
+
+v1::Artifact ToProto(const storage::ArtifactRecord& record) {
+  v1::Artifact artifact;
+  artifact.set_name(record.name);
+  artifact.set_media_type(record.media_type);
+  artifact.set_size(record.size);
+  artifact.set_sha256(record.sha256);
+  artifact.set_url_path("/v1/" + JobName(record.job) + "/artifacts/" + record.name);
+  return artifact;
+}
+
+v1::JobEvent ToProto(const storage::EventRecord& record) {
+  v1::JobEvent event;
+  if (!event.ParseFromString(record.payload)) event.set_message("an event that cannot be read");
+  event.set_sequence(record.sequence);
+  event.set_job(JobName(record.job));
+  event.set_attempt(record.attempt);
+  *event.mutable_time() = ToProto(record.at);
+  return event;
+}
+
+storage::NewEvent ToRecord(const v1::JobEvent& event) {
+  return {.kind = std::string(KindOf(event)), .payload = event.SerializeAsString()};
+}
+
+storage::NewEvent StateEvent(storage::JobState state) {
+  v1::JobEvent event;
+  event.set_state(ToProto(state));
+  return ToRecord(event);
+}
+
+storage::NewEvent EndedEvent(const v1::Outcome& outcome) {
+  v1::JobEvent event;
+  *event.mutable_ended() = outcome;
+  return ToRecord(event);
+}
+
+storage::JobOutcome OutcomeOf(const v1::Outcome& outcome) {
+  storage::JobOutcome made{.state = storage::JobState::kFailed,
+                           .code = {},
+                           .detail = outcome.message(),
+                           .program = outcome.place().program(),
+                           .step = outcome.place().step()};
+  const auto found = FindByText(outcome.code());
+  if (!outcome.code().empty() && !found.empty()) made.code = found.front()->code;
+  if (outcome.kind() == v1::Outcome::KIND_COMPLETED ||
+      outcome.kind() == v1::Outcome::KIND_STOPPED) {
+    made.state = storage::JobState::kSucceeded;
+  } else if (outcome.kind() == v1::Outcome::KIND_CANCELLED) {
+    made.state = storage::JobState::kCancelled;
+  }
+  return made;
+}
+
+v1::Outcome ToProto(const storage::JobOutcome& outcome) {
+  v1::Outcome message;
+  switch (outcome.state) {
+    case storage::JobState::kSucceeded:
+      message.set_kind(outcome.code ? v1::Outcome::KIND_STOPPED : v1::Outcome::KIND_COMPLETED);
+      break;
+    case storage::JobState::kCancelled:
+      message.set_kind(v1::Outcome::KIND_CANCELLED);
+      break;
+    default: {
+      // That a worker died says nothing about what the job needed.
+      const bool budget = outcome.code && *outcome.code != ErrorCode::kCellWorkerDied &&
+                          Lookup(*outcome.code).severity == Severity::kBudget;
+      message.set_kind(budget ? v1::Outcome::KIND_BUDGET_EXCEEDED : v1::Outcome::KIND_FAILED);
+    }
+  }
+  if (outcome.code) {
+    const CatalogueEntry& entry = Lookup(*outcome.code);
+    message.set_code(CodeText(*outcome.code));
+    message.set_symbol(ConstantName(*outcome.code));
+    message.set_advice(std::string(entry.advice));
+    message.set_message(std::string(entry.when));
+  }
+  if (!outcome.detail.empty()) message.set_message(outcome.detail);
+  if (outcome.program > 0) message.mutable_place()->set_program(outcome.program);
+  if (outcome.step > 0) message.mutable_place()->set_step(outcome.step);
+  return message;
+}
+
+storage::JobOutcome WorkerDiedOutcome() {
+  return {.state = storage::JobState::kFailed,
+          .code = ErrorCode::kCellWorkerDied,
+          .detail = {},
+          .program = 0,
+          .step = 0};
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,38 @@
+#include "server/records/program_place.h"
+
+#include "engine/core/units.h"
+#include "engine/families/families.h"
+
+namespace rmlcell::server {
+
+Result<ProgramPlace> FindProgramPlace(storage::Store& store, std::string_view name) {
+  Result<ProgramName> parsed = ParseProgramName(name);
+  if (!parsed) return parsed.error();
+  Result<storage::MachineRecord> machine = store.GetMachine(parsed->machine);
+  if (!machine) return machine.error();
+  const machine::MachineFamily* family = families::FindFamily(machine->family);
+  if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
+  if (const Status there = CheckNumber(*family, *parsed); !there) return there.error();
+  return ProgramPlace{*std::move(machine), family, parsed->slot, parsed->executable};
+}
+
+Status CheckNumber(const machine::MachineFamily& family, const ProgramName& name) {
+  if (name.slot != 0 && (!name.executable || family.info().has_executables)) return {};
+  return CheckSlot(family, name.number, "program number");
+}
+
+Status CheckSlot(const machine::MachineFamily& family, std::int64_t number,
+                 std::string_view field) {
+  if (number >= kSlotMin && number <= kSlotMax) return {};
+  std::string allowed = "slots are " + std::to_string(kSlotMin) + " to " + std::to_string(kSlotMax);
+  if (!family.info().has_executables) allowed += ", and there are no executables";
+  return Error{family.info().no_slot,
+               std::string(field) + " is " + std::to_string(number) + "; " + allowed,
+               {}};
+}
+
+Error EmptySlot(const machine::MachineFamily& family, std::string_view name) {
+  return {family.info().empty_slot, "there is no " + std::string(name), {}};
+}
+
+}  // namespace rmlcell::server

@@ -1,0 +1,280 @@
+#include "tests/plotter/plotter.h"
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+namespace rmlcell::plotter {
+namespace {
+
+using machine::OutcomeKind, machine::RunPhase;
+
+constexpr double kSpeed_mm_s = 200.0;
+constexpr ErrorCode kSyntax = OwnError(kErrorTable, 0);
+constexpr ErrorCode kNoPen = OwnError(kErrorTable, 1);
+constexpr CatalogueEntry kErrors[] = {
+    {kSyntax, OwnErrorFamily(kErrorTable), 1, "PlotterSyntax", Severity::kCompile,
+     "a line that is no command", "write SP, PU, PD or WT with its numbers"},
+    {kNoPen, OwnErrorFamily(kErrorTable), 2, "PlotterNoPen", Severity::kProgram,
+     "drawing without a pen", "take a pen with SP first"},
+};
+
+struct Command {
+  std::string_view name;  // "PD"
+  double x = 0.0;         // mm; s of WT, the number of the pen of SP
+  double y = 0.0;
+  int line = 0;
+};
+
+bool TakeNumber(std::string_view& text, double& number) {
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (read.ec != std::errc{}) return false;
+  text.remove_prefix(static_cast<std::size_t>(read.ptr - text.data()));
+  return true;
+}
+
+bool ReadLine(std::string_view text, Command& command) {
+  if (text.size() < 4 || text[2] != ' ') return false;
+  command.name = text.substr(0, 2);
+  text.remove_prefix(3);
+  if (!TakeNumber(text, command.x)) return false;
+  if (command.name == "SP") return text.empty() && command.x >= 0.0 && command.x <= 8.0;
+  if (command.name == "WT") return text.empty() && command.x >= 0.0;
+  if (command.name != "PU" && command.name != "PD") return false;
+  if (text.empty() || text.front() != ',') return false;
+  text.remove_prefix(1);
+  return TakeNumber(text, command.y) && text.empty();
+}
+
+std::vector<Command> Read(std::string_view text, std::vector<Diagnostic>& findings) {
+  std::vector<Command> commands;
+  for (int line = 1; !text.empty(); ++line) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view words = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    Command command{.name = {}, .line = line};
+    if (words.empty()) continue;
+    if (ReadLine(words, command)) {
+      commands.push_back(command);
+    } else {
+      findings.push_back({.code = kSyntax,
+                          .severity = Severity::kCompile,
+                          .detail = "no command: " + std::string(words.substr(0, 20)),
+                          .where = {.line = line, .column = 1}});
+    }
+  }
+  return commands;
+}
+
+motion::MachineLimits Limits(const machine::Parameters& parameters) {
+  motion::MachineLimits limits;
+  limits.tip_speed_mm_s = kSpeed_mm_s;
+  limits.settling_s = 0.0;
+  limits.axes.speed.fill(kSpeed_mm_s);
+  limits.axes.acceleration.fill(2000.0);
+  limits.axes.jerk.fill(40'000.0);
+  limits.axes.travel_max.fill(parameters.Number("SIZE"));
+  return limits;
+}
+
+// All that changes while a program runs: a copy of it is a snapshot.
+struct State final : machine::RunSnapshot {
+  SimTime now{0};
+  SimTime busy_until{0};  // of the command on its way
+  std::size_t next = 0;   // command
+  std::size_t input = 0;
+  int pen = 0;
+  motion::MachinePoint at;
+  double override_percent = 100.0;
+  bool hold = false;
+  RunPhase phase = RunPhase::kRunning;
+  machine::Outcome outcome;
+};
+
+class PlotterRun final : public machine::Run {
+ public:
+  PlotterRun(machine::RunSetup setup, machine::RunObserver& observer)
+      : setup_(std::move(setup)), observer_(observer) {
+    std::vector<Diagnostic> findings;  // it was stored, so there are none
+    commands_ = Read(*setup_.programs.at(setup_.main_program).object, findings);
+    s_.override_percent = setup_.override_percent;
+  }
+
+  RunPhase Advance(SimTime until) override {
+    while (s_.phase != RunPhase::kFinished) {
+      const bool halted = s_.phase == RunPhase::kHalted;
+      const SimTime free = halted ? SimTime::max() : s_.busy_until;
+      const SimTime input = s_.input < setup_.inputs.size()
+                                ? std::max(setup_.inputs[s_.input].at, s_.now)
+                                : SimTime::max();
+      if (input <= std::min(until, free)) {
+        s_.now = input;
+        Apply(setup_.inputs[s_.input++]);
+      } else if (halted || until <= free) {
+        if (!halted) s_.now = std::max(s_.now, until);
+        return s_.phase;
+      } else {
+        s_.now = std::max(s_.now, free);
+        Next();
+      }
+    }
+    return s_.phase;
+  }
+
+  void Apply(const machine::InputChange& input) override {
+    using Kind = machine::InputKind;
+    if (input.kind == Kind::kOverride) s_.override_percent = input.value;
+    if (input.kind == Kind::kHold || input.kind == Kind::kStop) s_.hold = true;
+    if (input.kind != Kind::kStart || s_.phase != RunPhase::kHalted) return;
+    s_.hold = false;
+    s_.phase = RunPhase::kRunning;
+    observer_.OnResume(s_.now, place());
+  }
+
+  void End(OutcomeKind kind, ErrorCode code) override {
+    s_.phase = RunPhase::kFinished;
+    s_.outcome = {.kind = kind, .place = place()};
+    if (kind != OutcomeKind::kCompleted) s_.outcome.code = code;
+  }
+
+  machine::RunState state() const override {
+    return {.time = s_.now,
+            .phase = s_.phase,
+            .place = place(),
+            .tip = {s_.at},
+            .axes = {s_.at},
+            .override_percent = s_.override_percent};
+  }
+  const machine::Outcome& outcome() const override { return s_.outcome; }
+  std::uint64_t steps_executed() const override { return s_.next; }
+  std::optional<std::string> ReadVariable(std::string_view name) const override {
+    return name == "PEN" ? std::optional(std::to_string(s_.pen)) : std::nullopt;
+  }
+  std::vector<machine::Figure> figures() const override { return {}; }
+  std::string SaveMachine() const override { return {}; }
+  std::unique_ptr<machine::RunSnapshot> Save() const override {
+    return std::make_unique<State>(s_);
+  }
+  void Restore(const machine::RunSnapshot& snapshot) override {
+    s_ = static_cast<const State&>(snapshot);
+  }
+
+ private:
+  machine::Place place() const {
+    return {.program = setup_.main_program,
+            .step = static_cast<int>(s_.next),
+            .line = s_.next == 0 ? 0 : commands_[s_.next - 1].line};
+  }
+
+  void Next() {
+    if (s_.hold) {
+      s_.phase = RunPhase::kHalted;
+      observer_.OnHalt({.at = s_.now, .place = place(), .why = "HOLD"});
+      return;
+    }
+    if (s_.next == commands_.size()) return End(OutcomeKind::kCompleted, {});
+    const Command& command = commands_[s_.next++];
+    observer_.OnStep(s_.now, place(), command.name);
+    if (command.name == "SP") {
+      s_.pen = static_cast<int>(command.x);
+    } else if (command.name == "WT") {
+      s_.busy_until = s_.now + FromSeconds(command.x);
+      observer_.OnWait({.start = s_.now, .end = s_.busy_until, .place = place()});
+    } else if (command.name == "PD" && s_.pen == 0) {
+      observer_.OnDiagnostic(
+          s_.now, {.code = kNoPen, .severity = Severity::kProgram, .detail = "PD without a pen"});
+      End(OutcomeKind::kFailed, kNoPen);
+    } else {
+      Go(command.name == "PD", {command.x, command.y, 0.0});
+    }
+  }
+
+  void Go(bool draws, const motion::MachinePoint& to) {
+    motion::Planner planner(Limits(setup_.parameters));
+    const Status good = planner.Append({.path = motion::PathPiece::Line({s_.at}, {to}),
+                                        .head = motion::MillHead{},
+                                        .speed_fraction = s_.override_percent / 100.0});
+    if (!good) return End(OutcomeKind::kFailed, good.error().code);
+    planner.Stop();
+    while (const auto item = planner.Next()) {
+      const auto& motion = std::get<motion::PlannedMotion>(*item);
+      const SimTime start = std::max(s_.now, s_.busy_until);
+      s_.busy_until = start + FromSeconds(motion.duration_s());
+      observer_.OnMotion({.start = start,
+                          .end = s_.busy_until,
+                          .place = place(),
+                          .use = draws ? machine::MotionUse::kCut : machine::MotionUse::kTravel,
+                          .motion = &motion,
+                          .travelled = motion.path.length(),
+                          .programmed_mm_s = kSpeed_mm_s});
+    }
+    s_.at = to;
+    observer_.OnMove({.at = s_.busy_until,
+                      .place = place(),
+                      .tip = {to},
+                      .axes = {to},
+                      .program_point = to,
+                      .feed_mm_s = kSpeed_mm_s,
+                      .path = draws ? "PD" : "PU"});
+  }
+
+  machine::RunSetup setup_;
+  machine::RunObserver& observer_;
+  std::vector<Command> commands_;
+  State s_;
+};
+
+constexpr machine::ParameterInfo kParameters[] = {
+    {"SIZE", "mm", 300.0, 10.0, 3000.0, {}, "width and height of the paper", {}}};
+constexpr machine::FamilyInfo kInfo{.id = "plotter",
+                                    .title = "Pen plotter",
+                                    .extensions = ".PLT",
+                                    .axes = "X Y",
+                                    .hold_in_remote = true,
+                                    .override_max_percent = 120.0};
+
+class Family final : public machine::MachineFamily {
+ public:
+  const machine::FamilyInfo& info() const override { return kInfo; }
+  std::span<const machine::ParameterInfo> parameters() const override { return kParameters; }
+  std::span<const machine::MachineProfile> profiles() const override { return {}; }
+  bool HasVariable(const machine::Parameters&, std::string_view name) const override {
+    return name == "PEN";
+  }
+
+  machine::MachineShape Shape(const machine::Parameters& parameters) const override {
+    const double size = parameters.Number("SIZE");
+    machine::MachineShape shape;
+    shape.travel.Add(motion::MachinePoint{0.0, 0.0, 0.0});
+    shape.travel.Add(motion::MachinePoint{size, size, 0.0});
+    shape.limits = Limits(parameters);
+    return shape;
+  }
+
+  machine::Translation Translate(const machine::SourceFile& file, const machine::Parameters&,
+                                 const machine::CheckOptions&) const override {
+    machine::Translation made;
+    const std::size_t steps = Read(file.bytes, made.diagnostics).size();
+    for (Diagnostic& finding : made.diagnostics) finding.file = file.name;
+    made.ok = made.diagnostics.empty();
+    made.object = file.bytes;
+    made.figures.push_back({"steps", "", static_cast<double>(steps)});
+    return made;
+  }
+
+  Result<std::unique_ptr<machine::Run>> NewRun(machine::RunSetup setup,
+                                               machine::RunObserver& observer) const override {
+    return std::unique_ptr<machine::Run>(std::make_unique<PlotterRun>(std::move(setup), observer));
+  }
+};
+
+}  // namespace
+
+ErrorTable Errors() { return {.prefix = "PLT", .rows = kErrors}; }
+
+const machine::MachineFamily& PlotterFamily() {
+  static const Family family;
+  return family;
+}
+
+}  // namespace rmlcell::plotter
