@@ -49,8 +49,7 @@ MAY_INCLUDE = {
     RUN: ENGINE + [REPORT, TOOLPATH, PICTURE, MATERIAL],
     "storage": ["engine/core"],
     "storage/sqlite": ["engine/core", "storage"],
-    "proto/bridge": ["engine/core", "engine/machine", "engine/optimo/language", "engine/optimo/offline",
-                     "engine/families", REPORT, PICTURE, RUN, "proto"],
+    "proto/bridge": ["engine/core", "engine/machine", "engine/families", REPORT, PICTURE, RUN, "proto"],
     # What every room of the server may use.
     "server/base": ["engine/core", "storage"],
     "server/auth": ["engine/core"],
@@ -60,11 +59,8 @@ MAY_INCLUDE = {
                        "storage"],
     "server/jobs": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "server/base",
                     "server/events", "server/records", "storage"],
-    "server/programs": ["engine/core", "engine/machine", GEOMETRY, "engine/optimo/language",
-                        "engine/optimo/offline", "engine/families", RUN, "proto", "proto/bridge",
-                        "server/base", "server/records", "storage"],
-    "server/projects": ["engine/core", "engine/machine", "engine/optimo/offline", "engine/families",
-                        "proto", "proto/bridge", "server/base", "server/records", "server/programs", "storage"],
+    "server/programs": ["engine/core", "engine/machine", "engine/families", RUN, "proto", "proto/bridge", "server/base", "server/records", "storage"],
+    "server/projects": ["engine/core", "engine/machine", "engine/families", "proto", "proto/bridge", "server/base", "server/records", "server/programs", "storage"],
     "server/web": ["engine/core", "proto", "proto/bridge"],
     "server/services": ["engine/core", "engine/machine", "engine/families", TOOLPATH, "proto", "proto/bridge",
                         "server/base", "server/auth", "server/events", "server/records", "server/jobs",
@@ -79,8 +75,7 @@ MAY_INCLUDE = {
     # The language server: the languages and no server.
     "clients/lsp": ["engine/core", "engine/machine", "engine/optimo/language", "engine/optimo/offline",
                     "engine/families"],
-    "clients/cli": ["clients/lsp", "engine/core", "engine/machine", "engine/optimo/language", "engine/optimo/offline",
-                    "engine/families", REPORT, MATERIAL, RUN, "proto", "proto/bridge"],
+    "clients/cli": ["clients/lsp", "engine/core", "engine/machine", "engine/families", REPORT, MATERIAL, RUN, "proto", "proto/bridge"],
 }
 # Of these rooms others may include no other header.
 PUBLIC = {

@@ -8,12 +8,12 @@ namespace rmlcell::motion {
 struct HoleCommand {
   TipPose from;
   TipPose centre;  // its angles are those of the circle
-  MachineVector
-      normal_point;  // the circle runs counter-clockwise seen from here; its distance has no effect
+  // The circle runs counter-clockwise seen from here; the distance has no effect.
+  MachinePoint normal_point;
   double radius_mm = 0.0;
-  ProgramVector program_x{1.0, 0.0,
-                          0.0};  // axes of the program frame: where a start on the axis enters
-  ProgramVector program_y{0.0, 1.0, 0.0};
+  // The axes of the program's frame: where a start on the axis enters.
+  MachineVector program_x{1.0, 0.0, 0.0};
+  MachineVector program_y{0.0, 1.0, 0.0};
 };
 
 // A hole as two motions: the lead ends at rest without settling, the circle ends where it began.

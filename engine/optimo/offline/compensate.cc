@@ -86,7 +86,7 @@ class Compensator {
   ProgramFrame frame_;
   std::optional<ProgramPoint> at_;               // where the tip is, as far as it is known
   std::optional<double> head_a_at_, head_b_at_;  // rad
-  ProgramPoint tool_at_{0.0, 0.0, 1.0};
+  ProgramVector tool_at_{0.0, 0.0, 1.0};
   std::vector<Leg> chain_;
   std::vector<const Instruction*> chain_moves_;
   double chain_offset_ = 0.0;

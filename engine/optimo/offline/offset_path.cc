@@ -85,14 +85,14 @@ PlaneCurve CurveOf(const Leg& leg, const ProgramPoint& corner, const ProgramVect
   return curve;
 }
 
-bool InPlane(const Leg& leg, const ProgramVector& tangent, const ProgramPoint& tool) {
+bool InPlane(const Leg& leg, const ProgramVector& tangent, const ProgramVector& tool) {
   if (leg.is_arc) return std::fabs(leg.axis.dot(tool)) > kInPlane;
   return std::fabs(tangent.dot(tool)) < 1e-6;
 }
 
 // The new place of the corner between two legs. OPT-8.16, OPT-8.79, OPT-B.79
 std::optional<ProgramPoint> Corner(const Leg& before, const Leg& after, double offset) {
-  const ProgramPoint& tool = before.tool_to;
+  const ProgramVector& tool = before.tool_to;
   ProgramVector n1 = LeftNormal(tool, before.tangent_to),
                 n2 = LeftNormal(after.tool_from, after.tangent_from);
   if (IsZero(n1)) n1 = n2;
@@ -115,7 +115,7 @@ std::optional<ProgramPoint> Corner(const Leg& before, const Leg& after, double o
 
 bool ArcIsConsumed(const Leg& leg, double offset) {
   if (!leg.is_arc) return false;
-  const auto consumed = [&](const ProgramPoint& at, const ProgramPoint& tool,
+  const auto consumed = [&](const ProgramPoint& at, const ProgramVector& tool,
                             const ProgramVector& tangent) {
     return OffsetRadius(leg, at, LeftNormal(tool, tangent), offset) <= kNoRadius;
   };
@@ -125,7 +125,7 @@ bool ArcIsConsumed(const Leg& leg, double offset) {
 
 }  // namespace
 
-ProgramVector LeftNormal(const ProgramPoint& tool, const ProgramVector& tangent) {
+ProgramVector LeftNormal(const ProgramVector& tool, const ProgramVector& tangent) {
   const ProgramVector side = tool.cross(tangent);
   return side.norm() < 1e-6 ? ProgramVector{} : Unit(side);
 }
@@ -134,7 +134,7 @@ void Prepare(Leg& leg) {
   leg.is_arc = false;
   if (leg.via) {
     // Centre of the circle through three points, from the first one.
-    const ProgramPoint p = *leg.via - leg.from, q = leg.to - leg.from;
+    const ProgramVector p = *leg.via - leg.from, q = leg.to - leg.from;
     const ProgramVector normal = p.cross(q);
     const double area2 = normal.dot(normal);
     if (std::sqrt(area2) > kTiny * (1.0 + p.norm() * q.norm())) {
@@ -166,7 +166,7 @@ double ShareAtVia(const Leg& leg) {
 }
 
 std::optional<ProgramPoint> HoleEnd(const ProgramPoint& from, const ProgramPoint& centre,
-                                    const ProgramVector& beside, double radius) {
+                                    const ProgramPoint& beside, double radius) {
   const ProgramVector axis = Unit(beside - centre);
   const ProgramVector out = from - centre;
   const ProgramVector towards = Unit(out - axis * out.dot(axis));

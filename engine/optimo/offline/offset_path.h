@@ -17,12 +17,13 @@ using motion::ProgramVector;
 struct Leg {
   ProgramPoint from, to;
   std::optional<ProgramPoint> via;  // an arc, when the three points are no line
-  ProgramPoint tool_from, tool_to, tool_via;
+  ProgramVector tool_from, tool_to, tool_via;
 
   // Filled by Prepare.
   ProgramVector tangent_from, tangent_to, tangent_via;  // zero when there is no motion
   bool is_arc = false;
-  ProgramPoint centre, axis;  // the arc runs counter-clockwise about `axis`
+  ProgramPoint centre;
+  ProgramVector axis;  // the arc runs counter-clockwise about it
   double radius = 0.0;
 };
 void Prepare(Leg& leg);
@@ -31,12 +32,12 @@ double ShareAtVia(const Leg& leg);
 
 // Side of the path at a point: u x d, to the left of the cut; zero when d is zero or along u.
 // OPT-8.15
-ProgramVector LeftNormal(const ProgramPoint& tool, const ProgramVector& tangent);
+ProgramVector LeftNormal(const ProgramVector& tool, const ProgramVector& tangent);
 
 // Where a hole ends: the point of its circle nearest to `from`, for the axis from `centre` to
 // `beside` (OPT-2.23, OPT-B.10). Nothing without an axis, or on it.
 std::optional<ProgramPoint> HoleEnd(const ProgramPoint& from, const ProgramPoint& centre,
-                                    const ProgramVector& beside, double radius);
+                                    const ProgramPoint& beside, double radius);
 
 struct OffsetLeg {
   ProgramPoint to;
