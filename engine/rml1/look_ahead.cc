@@ -51,7 +51,7 @@ void LookAhead::EndChain() {
 
 bool LookAhead::NextLeg(Leg& leg) {
   if (motions_.empty()) return false;
-  if (intent_ == Intent::kStop) {
+  if (intent_ == motion::RideIntent::kStop) {
     Brake(leg);
     return true;
   }
@@ -103,7 +103,7 @@ void LookAhead::Feed() {
   }
   brake_speed_ = braked;
   ++fed_;
-  held_ = intent_ == Intent::kHold && braked == 0.0;
+  held_ = intent_ == motion::RideIntent::kHold && braked == 0.0;
   if (!motion.ends_chain && !held_) return;
   planner_.Stop();
   brake_speed_ = 0.0;
@@ -175,7 +175,7 @@ void LookAhead::Finish(double speed) {
   motions_.PopFront();
 }
 
-void LookAhead::Replan(Intent intent, double override_percent) {
+void LookAhead::Replan(motion::RideIntent intent, double override_percent) {
   intent_ = intent;
   override_percent_ = override_percent;
   starved_ += planner_.lookahead_starved();

@@ -4,6 +4,7 @@
 
 #include "engine/core/ring.h"
 #include "engine/motion/planner/planner.h"
+#include "engine/motion/ride/ride_protocol.h"
 #include "engine/rml1/action.h"
 #include "engine/rml1/profile.h"
 
@@ -29,20 +30,12 @@ class LookAhead {
   // Something stands behind the last motion that the tool must stand for.
   void EndChain();
 
-  // What the tool is to do.
-  enum class Intent : std::uint8_t {
-    kGo,
-    kHold,  // stand at the next end of a motion where that is possible
-    kStop,  // brake at once, on the path
-  };
-  Intent intent() const { return intent_; }
-
   // A part of the oldest motion, or all of it: the path and its timing.
   struct Leg {
     motion::PlannedMotion ride;
     double feed_mm_s = 0.0;    // speed of the motion, override included
     bool ends_motion = false;  // false: another leg follows, or a halt
-    bool halts = false;        // the tool comes to rest on the way; kStop
+    bool halts = false;        // the tool comes to rest on the way: STOP
   };
   // The next leg of the oldest motion, which begins where the last one ended. False: what comes
   // behind must be read first.
@@ -64,7 +57,7 @@ class LookAhead {
   void Finish(double speed);
 
   // From here on with this intent and override. What NextLeg gave before is void.
-  void Replan(Intent intent, double override_percent);
+  void Replan(motion::RideIntent intent, double override_percent);
   // An override that changes no motion begun: for the next one.
   void SetOverride(double percent) { override_percent_ = percent; }
 
@@ -91,7 +84,7 @@ class LookAhead {
   Point end_;                    // of the last of them
   Chain chain_ = Chain::kAlone;  // that the last of them leaves open
   double override_percent_;
-  Intent intent_ = Intent::kGo;
+  motion::RideIntent intent_ = motion::RideIntent::kGo;
 
   double speed_ = 0.0;
   double ridden_ = 0.0;  // of the oldest motion

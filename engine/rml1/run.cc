@@ -258,14 +258,18 @@ void MillRun::PressStart() {
   State& s = state_;
   if (s.halt != HaltCause::kNone) return EndHalt();
   s.halt_wanted = HaltCause::kNone;
-  if (Moves() && s.ahead.intent() == LookAhead::Intent::kHold) PlanAnew(LookAhead::Intent::kGo);
+  if (!Moves() || s.ride.intent() != motion::RideIntent::kHold) return;
+  s.ride.Resume();
+  PlanAnew();
 }
 
 void MillRun::PressHold() {
   State& s = state_;
   if (s.halt != HaltCause::kNone || s.halt_wanted != HaltCause::kNone) return;
   s.halt_wanted = HaltCause::kHold;
-  if (Moves() && s.ahead.intent() == LookAhead::Intent::kGo) PlanAnew(LookAhead::Intent::kHold);
+  if (!Moves() || !s.ride.may_hold()) return;
+  s.ride.Hold();
+  PlanAnew();
 }
 
 // Brakes on the path, or stops the clock of a wait; standing still it is a HOLD.
@@ -274,7 +278,9 @@ void MillRun::PressStop() {
   if (s.halt != HaltCause::kNone) return;
   s.halt_wanted = HaltCause::kStop;
   if (Moves()) {
-    if (s.ahead.intent() != LookAhead::Intent::kStop) PlanAnew(LookAhead::Intent::kStop);
+    if (!s.ride.may_stop()) return;
+    s.ride.Stop();
+    PlanAnew();
   } else if (s.busy == Busy::kWait) {
     s.wait_left = s.busy_until - s.now;
     EndWait();
@@ -288,12 +294,12 @@ void MillRun::ChangeOverride(double percent) {
   if (std::isnan(percent)) return;
   const double before = s.override_percent;
   s.override_percent = std::clamp(percent, kOverrideMin, kOverrideMax);
-  const bool stays = !Moves() || s.ahead.intent() == LookAhead::Intent::kStop ||
+  const bool stays = !Moves() || s.ride.intent() == motion::RideIntent::kStop ||
                      s.motion.action.rapid || s.override_percent == before;
   if (stays) {
     s.ahead.SetOverride(s.override_percent);
   } else {
-    PlanAnew(s.ahead.intent());
+    PlanAnew();
   }
 }
 
@@ -306,6 +312,7 @@ void MillRun::BeginHalt(HaltCause cause) {
   s.halt = cause;
   s.halt_wanted = HaltCause::kNone;
   s.halted_at = s.now;
+  if (s.ride.comes_to_rest()) s.ride.Rest();
   observer_.OnHalt({.at = s.now, .place = s.place, .why = why});
   const bool for_ever = cause == HaltCause::kPause && s.next_input == setup_.inputs.size();
   if (!for_ever) return;

@@ -79,6 +79,7 @@ class MillRun final : public machine::Run {
     Sender sender;
     Scout scout;
     LookAhead ahead;
+    motion::RideProtocol ride;
     std::size_t next_input = 0;
     VirtualClock clock;
     SimTime now{0};
@@ -137,7 +138,7 @@ class MillRun final : public machine::Run {
   void EndMotion(double speed);
   void ReportLeg(double travelled);
   void EndWait();
-  void PlanAnew(LookAhead::Intent intent);
+  void PlanAnew();
   void ResumeMotion();
   bool Moves() const { return state_.busy == Busy::kMotion || state_.ahead.speed() > 0.0; }
   double ElapsedInLeg() const;

@@ -35,8 +35,11 @@ void MillRun::Begin(const Action& action) {
 // The tool is where the last motion ended, and may be on its way.
 void MillRun::BeginMotion(const Action& action) {
   State& s = state_;
-  const bool after_halt = s.ahead.intent() != LookAhead::Intent::kGo && !Moves();
-  if (after_halt) s.ahead.Replan(LookAhead::Intent::kGo, s.override_percent);
+  const bool after_halt = !s.ride.goes() && !Moves();
+  if (after_halt) {
+    s.ride.Resume();
+    s.ahead.Replan(s.ride.intent(), s.override_percent);
+  }
   s.motion.action = action;
   s.motion.from = s.tool;
   s.motion.first_leg = true;
@@ -156,7 +159,7 @@ void MillRun::ReportLeg(double travelled) {
 
 // What a key or another override makes of the motions ahead; motion.md section 6. The leg ends here
 // and now, and the next one begins at the same speed.
-void MillRun::PlanAnew(LookAhead::Intent intent) {
+void MillRun::PlanAnew() {
   State& s = state_;
   s.clock.Set(s.now);
   if (s.busy == Busy::kMotion && s.motion.planned) {
@@ -173,15 +176,16 @@ void MillRun::PlanAnew(LookAhead::Intent intent) {
     }
   }
   if (s.busy == Busy::kMotion && s.ahead.NothingLeft()) EndMotion(s.ahead.speed());
-  s.ahead.Replan(intent, s.override_percent);
+  s.ahead.Replan(s.ride.intent(), s.override_percent);
 }
 
 // From where STOP left the tool, with the override of now. A HOLD that came on the way lets it end.
 void MillRun::ResumeMotion() {
   State& s = state_;
   s.rest_left = false;
-  const bool hold = s.halt_wanted == HaltCause::kHold;
-  s.ahead.Replan(hold ? LookAhead::Intent::kHold : LookAhead::Intent::kGo, s.override_percent);
+  s.ride.Resume();
+  if (s.halt_wanted == HaltCause::kHold) s.ride.Hold();
+  s.ahead.Replan(s.ride.intent(), s.override_percent);
   s.busy = Busy::kMotion;
   s.busy_from = s.busy_until = s.now;
 }

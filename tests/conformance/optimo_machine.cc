@@ -9,9 +9,9 @@
 #include <sstream>
 
 #include "engine/core/number_text.h"
-#include "engine/optimo/control/machine_state.h"
 #include "engine/optimo/control/optimo_family.h"
 #include "engine/optimo/language/compiler.h"
+#include "engine/optimo/machine/machine_state.h"
 
 namespace rmlcell::optimo::testing {
 namespace {

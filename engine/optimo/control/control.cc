@@ -1,7 +1,6 @@
 #include "engine/optimo/control/control.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -10,7 +9,7 @@
 namespace rmlcell::optimo {
 namespace {
 
-constexpr std::uint64_t kUnlimitedSteps = std::numeric_limits<std::uint64_t>::max();
+using machine::RunPhase;
 
 // What a run sets replaces what the machine kept; step 0 switches it off.
 void Replace(std::optional<machine::ProgramStep>& kept,
@@ -20,244 +19,211 @@ void Replace(std::optional<machine::ProgramStep>& kept,
   if (set->step == 0) kept.reset();
 }
 
-}  // namespace
-
-Loaded Load(Executable executable) {
-  auto loaded = std::make_shared<LoadedProgram>();
-  loaded->executable = std::move(executable);
-  loaded->index.reserve(loaded->executable.modules.size());
-  for (const LinkedModule& linked : loaded->executable.modules)
-    loaded->index.emplace_back(linked.module);
-  return loaded;
+machine::RunSetup WithBudget(machine::RunSetup setup) {
+  if (setup.budget.steps == 0) setup.budget.steps = std::numeric_limits<std::uint64_t>::max();
+  if (setup.budget.virtual_time <= SimTime(0)) setup.budget.virtual_time = kForever;
+  return setup;
 }
+
+}  // namespace
 
 Control::Control(OptimoParameters parameters, machine::RunSetup setup,
                  machine::RunObserver& observer)
     : parameters_(std::move(parameters)),
-      setup_(std::move(setup)),
-      observer_(observer),
-      s_(parameters_.limits) {
-  if (setup_.budget.steps == 0) setup_.budget.steps = kUnlimitedSteps;
-  if (setup_.budget.virtual_time <= SimTime(0)) setup_.budget.virtual_time = kForever;
-  for (const auto& [slot, program] : setup_.programs) {
-    if (IsSlot(slot)) sources_[static_cast<std::size_t>(slot)] = program.source.get();
-  }
-  s_.machine = NewMachine(parameters_);
+      setup_(WithBudget(std::move(setup))),
+      cycle_(parameters_.cycle_s),
+      s_(parameters_.limits),
+      telling_(now(), setup_, observer),
+      travel_(s_.travel, now(), parameters_, telling_, setup_.forecast),
+      ride_(s_.ride, now(), parameters_, travel_, telling_, *this),
+      actuators_(now(), parameters_, setup_, telling_, ride_),
+      effects_(s_.effects, actuators_, ride_),
+      counter_(s_.counter, now(), parameters_, setup_, telling_),
+      data_(now(), parameters_, counter_, ride_, effects_),
+      waits_(s_.waits, now(), cycle_, telling_, ride_),
+      watch_(s_.watch, now(), cycle_, counter_, ride_, data_, waits_),
+      works_(s_.works, now(), parameters_, cycle_, telling_, counter_, ride_, actuators_, effects_,
+             data_, waits_),
+      halts_(s_.halts, now(), telling_, ride_, actuators_, waits_, works_),
+      moves_(s_.moves, now(), parameters_, telling_, counter_, data_, travel_, ride_, effects_,
+             waits_, watch_, halts_.requests()),
+      flow_(now(), parameters_, cycle_, telling_, counter_, data_, effects_, waits_),
+      alarms_(s_.alarms, now(), telling_, counter_, ride_, actuators_, waits_, watch_) {
+  MachineState& machine = now().machine;
+  machine = NewMachine(parameters_);
   if (!setup_.machine_state.empty()) {
-    if (Result<MachineState> state = DecodeMachineState(setup_.machine_state)) s_.machine = *state;
+    if (Result<MachineState> state = DecodeMachineState(setup_.machine_state)) machine = *state;
   }
-  s_.planned_axes = s_.machine.axes;
-  s_.mode = setup_.mode;
-  s_.override_percent = setup_.override_percent;
+  ride_.PutAt(machine.axes);
+  now().mode = setup_.mode;
+  now().override_percent = setup_.override_percent;
   // What is set for this run replaces what the machine kept, and is kept like it (OPT-6.08, 6.14).
-  Replace(s_.machine.breakpoint, setup_.breakpoint);
-  s_.breakpoint = s_.machine.breakpoint;
-  Replace(s_.machine.simul, setup_.simul);
-  if (s_.machine.simul) s_.simulated = {.active = true, .until = *s_.machine.simul};
-  s_.machine.simul.reset();
-  StartMain();
+  Replace(machine.breakpoint, setup_.breakpoint);
+  Replace(machine.simul, setup_.simul);
+  if (machine.simul) now().simulated = {.active = true, .until = *machine.simul};
+  machine.simul.reset();
+  // START: the program begins, in SINGLE with its first step (OPT-6.31).
+  const Result<Loaded> main = counter_.Acquire(setup_.main_program, false);
+  if (main) {
+    BeginMain(*main, setup_.main_program);
+  } else {
+    Raise(main.error());
+  }
 }
 
-int Control::LineOf(int slot, std::uint32_t step) const {
-  const machine::SourceNotes* source = sources_[static_cast<std::size_t>(slot)];
-  const bool known = source != nullptr && step >= 1 && step <= source->step_lines.size();
-  return known ? source->step_lines[step - 1] : 0;
-}
-
-// START: the program begins, in SINGLE with its first step (OPT-6.31).
-void Control::StartMain() {
-  const std::optional<Loaded> main = Acquire(setup_.main_program, false);
-  if (!main) return;
-  Begin(*main, {});
-  CountExecution(setup_.main_program);
-}
-
-// VI[98]: executions of the main program since it was selected. OPT-7.70, OPT-B.63
-void Control::CountExecution(int slot) {
-  float& count = s_.machine.data.vi[98];
-  if (s_.machine.selected != slot) count = 0.0F;
-  s_.machine.selected = slot;
-  if (count < kIntegerMax) count += 1.0F;
-}
-
-// The instant so many seconds from now; far beyond any run when there is no such instant.
-SimTime Control::After(double seconds) const {
-  constexpr SimTime kFar = kForever / 4;  // a halt may still be added
-  return std::min(s_.now, kFar) + std::min(FromSeconds(seconds), kFar);
-}
-
-// The first tick of the system cycle, counted from now, at which so many seconds are over. OPT-B.30
-SimTime Control::TickAfter(double seconds) const {
-  constexpr double kSame = 1e-9;  // of a cycle: a whole number of cycles stays one
-  return After(std::ceil(seconds / parameters_.cycle_s - kSame) * parameters_.cycle_s);
-}
-
-machine::RunPhase Control::Advance(SimTime until) {
+RunPhase Control::Advance(SimTime until) {
   int carried_out = 0;
   for (;;) {
-    if (s_.phase == machine::RunPhase::kFinished) return s_.phase;
+    if (now().phase == RunPhase::kFinished) return now().phase;
     ApplyScripted();
-    if (s_.phase == machine::RunPhase::kHalted) {
+    if (now().phase == RunPhase::kFinished) return now().phase;
+    const bool scripted = s_.next_input < setup_.inputs.size();
+    if (now().phase == RunPhase::kHalted) {
       // Time stands for the program; the next scripted key may come.
-      const bool more =
-          s_.next_input < setup_.inputs.size() && setup_.inputs[s_.next_input].at <= until;
-      if (!more) {
-        if (s_.next_input < setup_.inputs.size()) s_.now = std::max(s_.now, until);
-        return s_.phase;
-      }
-      s_.now = std::max(s_.now, setup_.inputs[s_.next_input].at);
+      if (!scripted) return now().phase;
+      const SimTime key = setup_.inputs[s_.next_input].at;
+      now().now = std::max(now().now, std::min(key, until));
+      if (key > until) return now().phase;
       continue;
     }
-    if (s_.phase == machine::RunPhase::kFinished) return s_.phase;
     if (MayFetch()) {
-      if (++carried_out > kStepsPerAdvance) return s_.phase;
+      if (++carried_out > kStepsPerAdvance) return now().phase;
       Fetch();
       continue;
     }
     const SimTime next = NextEvent(until);
-    if (next == kForever && until == kForever) return s_.phase;  // nothing is to come: time stands
-    if (next > until) {
-      LetTimePass(until);
-      return s_.phase;
-    }
-    LetTimePass(next);
+    if (next == kForever && until == kForever) return now().phase;  // nothing is to come
+    const SimTime to = std::min({next, until, setup_.budget.virtual_time});
+    now().now = std::max(now().now, to);
+    if (next > until) return now().phase;
     ApplyScripted();  // an input of this instant is seen by the conditions of this instant
-    if (s_.phase != machine::RunPhase::kRunning) continue;
+    if (!now().running()) continue;
     ActOnTime();
-    if (s_.now >= until && !MayFetch() && NextEvent(until) > until) return s_.phase;
+    if (now().now >= until && !MayFetch() && NextEvent(until) > until) return now().phase;
   }
 }
 
 bool Control::MayFetch() const {
-  return s_.phase == machine::RunPhase::kRunning && s_.pending.kind == Pending::Kind::kNone &&
-         !s_.halting && (!Busy() || s_.background || (s_.stop_requested && s_.passing));
-}
-
-// The next tick of the system cycle after now, counted from `since`. OPT-B.30
-SimTime Control::NextTick(SimTime since) const {
-  const SimTime cycle = FromSeconds(parameters_.cycle_s);
-  return since + ((s_.now - since) / cycle + 1) * cycle;
+  return now().running() && !waits_.waits() && !ride_.protocol().comes_to_rest() &&
+         (!ride_.busy() || ride_.beside() || (halts_.requests().stop && ride_.passing()));
 }
 
 // Nothing outside can change the condition any more, and no motion either.
 bool Control::WaitsForEver() const {
-  const bool times_out = s_.pending.of_move && s_.time_gosub;
-  return s_.pending.kind == Pending::Kind::kCondition && !Busy() && !times_out &&
-         s_.next_input >= setup_.inputs.size();
+  return waits_.pending().kind == Pending::Kind::kCondition && !ride_.busy() &&
+         !watch_.times_out() && s_.next_input >= setup_.inputs.size();
 }
 
 SimTime Control::NextEvent(SimTime until) const {
-  SimTime next = kForever;
-  if (s_.next_input < setup_.inputs.size())
-    next = std::max(s_.now, setup_.inputs[s_.next_input].at);
-  if (s_.active) {
-    next = std::min(next, s_.active->end);
-  } else if (!s_.timeline.empty()) {
-    next = s_.now;
-  }
+  const SimTime time = now().now;
   const bool last_input = s_.next_input >= setup_.inputs.size();
-  if ((Watching() || s_.no_motion) && !s_.deferred) {
-    // Where the program stands and no input is to come, ticks would show nothing new.
-    const bool settled =
-        s_.pending.kind == Pending::Kind::kNoMotion && !Busy() && last_input && !s_.input_changed;
-    if (s_.end_condition && !settled) next = std::min(next, NextTick(s_.watched_since));
-    if (s_.time_gosub && !s_.time_ran_out) next = std::min(next, std::max(s_.now, s_.time_due));
-  }
-  const bool times_out = s_.pending.of_move && s_.time_gosub;
-  switch (s_.pending.kind) {
+  SimTime next = ride_.NextEvent();
+  if (!last_input) next = std::min(next, std::max(time, setup_.inputs[s_.next_input].at));
+  if (!alarms_.deferred()) next = std::min(next, watch_.NextEvent(last_input));
+  const Pending& pending = waits_.pending();
+  switch (pending.kind) {
     case Pending::Kind::kTime:
-      next = std::min(next, s_.pending.until);
+      next = std::min(next, pending.until);
       break;
     case Pending::Kind::kCondition:
-      if (times_out) next = std::min(next, std::max(s_.now, s_.time_due));
-      next = std::min(next, NextTick(s_.pending.since));
+      if (watch_.times_out()) next = std::min(next, watch_.time_due());
+      next = std::min(next, cycle_.NextTick(time, pending.since));
       break;
     case Pending::Kind::kTakeOver:
-      next = std::min(next, Busy() ? s_.pending.until : s_.now);
+      next = std::min(next, ride_.busy() ? pending.until : time);
       break;
     case Pending::Kind::kStandstill:
-      if (!Busy()) next = s_.now;
+      if (!ride_.busy()) next = time;
       break;
     case Pending::Kind::kNoMotion:
     case Pending::Kind::kNone:
       break;
   }
   if (WaitsForEver()) next = kForever;  // ticks would show nothing new
-  next = std::min(next, NextTask());
-  if (s_.input_changed && s_.pending.kind == Pending::Kind::kCondition) next = s_.now;
-  return std::min(next, std::max(setup_.budget.virtual_time, s_.now + SimTime(1)) <= until
-                            ? setup_.budget.virtual_time
-                            : kForever);
-}
-
-void Control::LetTimePass(SimTime to) {
-  s_.now = std::max(s_.now, std::min(to, setup_.budget.virtual_time));
+  if (!alarms_.deferred()) next = std::min(next, works_.NextEvent());
+  if (waits_.input_changed() && pending.kind == Pending::Kind::kCondition) next = time;
+  const SimTime budget = setup_.budget.virtual_time;
+  return std::max(budget, time + SimTime(1)) <= until ? std::min(next, budget) : next;
 }
 
 // Whatever is due now, in a fixed order: motion first, then what waits for it.
 void Control::ActOnTime() {
-  if (s_.active && s_.now >= s_.active->end) ArriveAtEnd();
-  if (s_.phase != machine::RunPhase::kRunning) return;
-  if (!s_.active && !s_.timeline.empty()) StartNextItem();
-  if (s_.phase != machine::RunPhase::kRunning) return;
-  if (s_.halting && !Busy()) return HaltOnPath();
-  if (s_.stop_requested && s_.active && BringToHalt() && !Busy()) return HaltOnPath();
-  WatchMove();
-  RunTasks();
-  if (s_.phase != machine::RunPhase::kRunning) return;
-  Pending& pending = s_.pending;
+  if (ride_.active() != nullptr && now().now >= ride_.active()->end) {
+    if (const std::optional<std::uint64_t> tag = ride_.Arrive()) watch_.OnMoveOver(*tag);
+    waits_.ToldByMotion();
+    works_.MarkStale();
+  }
+  ride_.Start();
+  if (ride_.protocol().comes_to_rest() && !ride_.busy()) return halts_.HaltOnPath();
+  if (halts_.requests().stop && ride_.active() != nullptr && ride_.Stop()) {
+    halts_.requests().stop = false;
+    if (!ride_.busy()) return halts_.HaltOnPath();
+  }
+  if (!alarms_.deferred()) {
+    const bool rides = watch_.watches();
+    if (const Status looked = watch_.Look(); !looked) {
+      Raise(looked.error());
+      if (rides) ride_.EndHere();
+    }
+  }
+  if (now().running() && !alarms_.deferred()) {
+    if (const std::optional<Works::Failure> failure = works_.Run()) {
+      const machine::Place in_execution = std::exchange(now().place, failure->place);
+      Raise(failure->error);
+      if (now().running()) now().place = in_execution;
+    }
+  }
+  works_.InputSeen();
+  if (now().running()) ActOnPending();
+  // What can go on without time may do so: more than the budget is too much, not all of it.
+  const SimTime budget = setup_.budget.virtual_time;
+  if (!now().running() || now().now < budget || MayFetch()) return;
+  std::string detail = "the run takes longer than " + TrimmedText(ToSeconds(budget), 9) + " s";
+  if (WaitsForEver()) detail += ": it waits for a condition, and no input is to come";
+  now().place = ride_.place();
+  Finish(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kTimeBudget, std::move(detail));
+}
+
+void Control::ActOnPending() {
+  const Pending& pending = waits_.pending();
   switch (pending.kind) {
     case Pending::Kind::kStandstill:
-      if (Busy()) break;
-      pending = {};
-      if (s_.deferred) {
-        const Error error = *s_.deferred;
-        s_.deferred.reset();
-        s_.place = s_.deferred_place;
-        HandleError(error);
+      if (ride_.busy()) break;
+      waits_.End();
+      if (const std::optional<Error> fatal = alarms_.HandleDeferred()) {
+        Finish(machine::OutcomeKind::kFailed, fatal->code, fatal->detail);
       }
       break;
     case Pending::Kind::kTime:
-      if (s_.now < pending.until) break;
-      TellWait();
-      if (pending.wait == machine::WaitKind::kPierce) s_.beam.power = s_.power_before_pierce;
-      pending = {};
+      if (now().now < pending.until) break;
+      waits_.Tell();
+      if (pending.wait == machine::WaitKind::kPierce) now().beam.power = pending.after;
+      waits_.End();
       break;
     case Pending::Kind::kCondition: {
-      s_.input_changed = false;
-      const std::optional<bool> met = Truth(pending.expression);
-      if (!met || !*met) break;
-      TellWait();
-      pending = {};
-      s_.condition_met = true;
+      waits_.InputSeen();
+      const Result<bool> met = data_.Truth(pending.expression);
+      if (!met) {
+        Raise(met.error());
+      } else if (*met) {
+        waits_.EndMet();
+      }
       break;
     }
     case Pending::Kind::kTakeOver:
-      if (Busy() && s_.now < pending.until) break;
-      s_.background = false;  // from here on it is a motion like any other that is waited for
-      pending = {};
-      if (!Busy()) break;  // it came to its end before
-      pending = {.kind = Pending::Kind::kStandstill};
-      if (s_.active) EndMotionHere();
-      s_.timeline.clear();
+      if (ride_.busy() && now().now < pending.until) break;
+      waits_.End();
+      if (ride_.TakeOver()) waits_.BeginStandstill();
       break;
-    case Pending::Kind::kNoMotion:  // WatchMove ends it
+    case Pending::Kind::kNoMotion:  // the watch ends it
     case Pending::Kind::kNone:
       break;
-  }
-  // What can go on without time may do so: more than the budget is too much, not all of it.
-  if (s_.phase == machine::RunPhase::kRunning && s_.now >= setup_.budget.virtual_time &&
-      !MayFetch()) {
-    std::string detail =
-        "the run takes longer than " + TrimmedText(ToSeconds(setup_.budget.virtual_time), 9) + " s";
-    if (WaitsForEver()) detail += ": it waits for a condition, and no input is to come";
-    BreakOff(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kTimeBudget, std::move(detail));
   }
 }
 
 void Control::ApplyScripted() {
-  while (s_.next_input < setup_.inputs.size() && setup_.inputs[s_.next_input].at <= s_.now &&
-         s_.phase != machine::RunPhase::kFinished) {
+  while (s_.next_input < setup_.inputs.size() && setup_.inputs[s_.next_input].at <= now().now &&
+         now().phase != RunPhase::kFinished) {
     const machine::InputChange input = setup_.inputs[s_.next_input++];
     // Of several overrides of one instant the last one counts (motion.md 10, property 12).
     if (input.kind == machine::InputKind::kOverride && s_.next_input < setup_.inputs.size()) {
@@ -269,219 +235,118 @@ void Control::ApplyScripted() {
 }
 
 void Control::Apply(const machine::InputChange& input) {
-  if (s_.phase == machine::RunPhase::kFinished) return;
-  s_.input_changed = true;
-  s_.tasks_input = true;
-  MarkTasks();
+  if (now().phase == RunPhase::kFinished) return;
+  waits_.InputChanged();
+  works_.InputChanged();
+  works_.MarkStale();
+  MachineState& machine = now().machine;
   const auto index = static_cast<std::size_t>(std::clamp(input.index, 0, kVariableIndexMax));
   switch (input.kind) {
     case machine::InputKind::kLogical:
-      s_.machine.data.il_physical[index] = input.value != 0.0;
+      machine.data.il_physical[index] = input.value != 0.0;
       break;
     case machine::InputKind::kAnalogue:
-      s_.machine.data.ia_physical[index] = static_cast<float>(input.value);
+      machine.data.ia_physical[index] = static_cast<float>(input.value);
       break;
     case machine::InputKind::kOverride:
-      ChangeOverride(input.value);
+      ride_.ChangeOverride(input.value);
       break;
     case machine::InputKind::kDoor:
-      s_.machine.door_open = input.value != 0.0;
-      if (!s_.machine.door_open) break;
-      // An open door acts as STOP, and the shutter closes (OPT-B.34, OPT-3.17).
-      if (s_.phase == machine::RunPhase::kRunning)
-        Apply({.at = s_.now, .kind = machine::InputKind::kStop});
-      CloseBehindDoor();
+      machine.door_open = input.value != 0.0;
+      if (!machine.door_open) break;
+      PressStop();  // an open door acts as STOP, and the shutter closes (OPT-B.34, OPT-3.17)
+      actuators_.CloseForDoor();
       break;
     case machine::InputKind::kStart:
-      Resume();
+      PressStart();
       break;
     case machine::InputKind::kHold:
-      if (s_.mode == machine::Mode::kRemote) break;
-      s_.hold_requested = true;
-      if (s_.phase == machine::RunPhase::kRunning) EndAtATarget();
+      if (now().mode == machine::Mode::kRemote) break;
+      halts_.requests().hold = true;
+      if (now().running()) ride_.Hold();
       break;
     case machine::InputKind::kStop:
-      if (s_.phase != machine::RunPhase::kRunning) break;
-      // A HOLD that is still on its way to the target is overtaken, a STOP is not.
-      if (s_.halting && (s_.held.empty() || !s_.interrupted.empty())) break;
-      if (!Busy() && !s_.passing) {
-        Halt("STOP");
-      } else if (s_.active && !s_.active->ended && BringToHalt()) {
-        if (!Busy()) HaltOnPath();
-      } else {
-        s_.stop_requested = true;
-      }
+      PressStop();
       break;
-    case machine::InputKind::kEmergencyStop:
-      EmergencyStop();
+    case machine::InputKind::kEmergencyStop:  // no motion is modelled after it (motion.md 6)
+      machine.data.vi[99] = static_cast<float>(Lookup(ErrorCode::kEmergencyStop).number);
+      End(machine::OutcomeKind::kFailed, ErrorCode::kEmergencyStop);
       break;
   }
 }
 
-void Control::CloseBehindDoor() {
-  const machine::Place in_execution = std::exchange(s_.place, PlaceOfMotion());
-  SuspendBeam();
-  if (s_.beam.shutter_open) {
-    s_.beam.shutter_was_open = true;
-    CloseShutter();
+// A HOLD that is still on its way to the target is overtaken, a STOP is not.
+void Control::PressStop() {
+  if (!now().running() || !ride_.protocol().may_stop()) return;
+  if (!ride_.busy() && !ride_.passing()) return halts_.Halt("STOP");
+  const ActiveMotion* active = ride_.active();
+  if (active == nullptr || active->ended || !ride_.Stop()) {
+    halts_.requests().stop = true;
+    return;
   }
-  s_.place = in_execution;
+  halts_.requests().stop = false;
+  if (!ride_.busy()) halts_.HaltOnPath();
 }
 
-// Reports what was not yet reported of the wait under way. While a motion goes on (/NEXT) there is
-// nothing to report: that time is the motion's.
-void Control::TellWait() {
-  Pending& pending = s_.pending;
-  const bool timed = pending.kind == Pending::Kind::kTime;
-  const bool condition =
-      pending.kind == Pending::Kind::kCondition || pending.kind == Pending::Kind::kNoMotion;
-  if (!timed && !condition) return;
-  if (!s_.active && s_.now > pending.told) {
-    observer_.OnWait({.start = pending.told,
-                      .end = s_.now,
-                      .place = pending.place,
-                      .kind = timed ? pending.wait : machine::WaitKind::kCondition,
-                      .beam_on = s_.beam.on,
-                      .power_percent = s_.beam.on ? s_.beam.power.constant_percent : 0.0});
-  }
-  pending.told = s_.now;
+void Control::PressStart() {
+  if (now().phase != RunPhase::kHalted) return;
+  if (!now().machine.door_open || !actuators_.wants_restore()) return halts_.Resume();
+  // An alarm: no ERR catches it (OPT-B.56).
+  constexpr ErrorCode kCode = ErrorCode::kShutterInterlock;
+  const std::string detail = "START with the operator door open";
+  now().machine.data.vi[99] = static_cast<float>(Lookup(kCode).number);
+  telling_.Warn(kCode, detail, "OPT-3.17");
+  Finish(machine::OutcomeKind::kFailed, kCode, detail);
 }
 
-// The step that the machine is at: the program runs ahead of /FLY moves, but not of one of /NEXT,
-// which goes on beside it.
-machine::Place Control::PlaceOfMotion() const {
-  return s_.active && !s_.background ? s_.active->note.place : s_.place;
-}
-
-// The motions are at rest, and go on at START: the halt belongs to the move that was under way.
-void Control::HaltOnPath() {
-  s_.halting = false;
-  s_.place_ahead = std::exchange(s_.place, s_.halted_behind);
-  Halt(s_.held.empty() || !s_.interrupted.empty() ? "STOP" : "HOLD");
-}
-
-void Control::Halt(std::string_view why) {
-  TellWait();
-  s_.phase = machine::RunPhase::kHalted;
-  s_.halted_at = s_.now;
-  s_.hold_requested = false;
-  s_.stop_requested = false;
-  SuspendBeam();
-  observer_.OnHalt({.at = s_.now, .place = s_.place, .why = why});
-}
-
-// The halt up to now: the operator is waited for.
-void Control::TellHalt() {
-  if (s_.now <= s_.halted_at) return;
-  observer_.OnWait({.start = s_.halted_at,
-                    .end = s_.now,
-                    .place = s_.place,
-                    .kind = machine::WaitKind::kOperator});
-}
-
-void Control::Resume() {
-  if (s_.phase != machine::RunPhase::kHalted) return;
-  if (s_.machine.door_open && (s_.beam_returns || s_.beam.shutter_was_open)) {
-    // An alarm: no ERR catches it (OPT-B.56).
-    constexpr std::string_view kDetail = "START with the operator door open";
-    s_.machine.data.vi[99] = static_cast<float>(Lookup(ErrorCode::kShutterInterlock).number);
-    Warn(ErrorCode::kShutterInterlock, std::string(kDetail), "OPT-3.17");
-    return Finish(machine::OutcomeKind::kFailed, ErrorCode::kShutterInterlock,
-                  std::string(kDetail));
+void Control::Raise(const Error& error) {
+  if (const std::optional<Error> fatal = alarms_.Raise(error)) {
+    Finish(machine::OutcomeKind::kFailed, fatal->code, fatal->detail);
   }
-  TellHalt();
-  // A wait that was under way lasts as long as before: time stood still for it.
-  const SimTime stood = s_.now - s_.halted_at;
-  if (s_.pending.kind != Pending::Kind::kNone) {
-    s_.pending.since = s_.now;
-    s_.pending.told = s_.now;
-    s_.pending.until += stood;
-  }
-  for (WorkTask& task : program().work_tasks) {
-    task.since += stood;
-    task.until += stood;
-  }
-  s_.phase = machine::RunPhase::kRunning;
-  observer_.OnResume(s_.now, s_.place);
-  if (s_.beam.shutter_was_open) {
-    s_.beam.shutter_was_open = false;
-    OpenShutter();
-  }
-  if (s_.beam_returns) {
-    s_.beam_returns = false;
-    BeamOn(s_.beam.power);
-  }
-  const bool interrupted = !s_.interrupted.empty();
-  s_.timeline.insert(s_.timeline.begin(), s_.interrupted.begin(), s_.interrupted.end());
-  s_.interrupted.clear();
-  PlanHeld();
-  if (!Busy()) GoesOnInBackground(false);
-  const bool overridden = std::exchange(s_.override_while_stopped, false);
-  if (interrupted && overridden) {
-    StartNextItem();
-    AdaptMotions();
-  }
-  if (s_.place_ahead) s_.place = *std::exchange(s_.place_ahead, std::nullopt);
-}
-
-// The state freezes: no motion is modelled after it (motion.md 6).
-void Control::EmergencyStop() {
-  s_.machine.data.vi[99] = 7610.0F;
-  BreakOff(machine::OutcomeKind::kFailed, ErrorCode::kEmergencyStop, {});
-}
-
-void Control::End(machine::OutcomeKind kind, ErrorCode code) {
-  if (s_.phase != machine::RunPhase::kFinished) BreakOff(kind, code, {});
 }
 
 // From outside, wherever the machine is: at its place, not where the program has run ahead to.
-void Control::BreakOff(machine::OutcomeKind kind, ErrorCode code, std::string detail) {
-  s_.place = PlaceOfMotion();
-  Finish(kind, code, std::move(detail));
+void Control::End(machine::OutcomeKind kind, ErrorCode code) {
+  if (now().phase == RunPhase::kFinished) return;
+  now().place = ride_.place();
+  Finish(kind, code, {});
 }
 
-// Beam off, shutter closed, whatever the reason (OPT-3.16, 3.18, B.54). What goes on is told up to
-// now.
+// What goes on is told up to now.
 void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail) {
-  if (s_.phase == machine::RunPhase::kHalted) {
-    TellHalt();
+  if (now().phase == RunPhase::kHalted) {
+    halts_.Tell();
   } else {
-    TellWait();
+    waits_.Tell();
   }
-  if (s_.active) {
-    TellMotion(s_.now);
-    s_.machine.axes = AxesNow();
-    s_.active.reset();
-  }
+  ride_.Freeze();
   // A chain of /FLY moves that never stands is still being planned: the run would have come there.
-  if (code == ErrorCode::kStepBudget) {
-    for (auto& [tag, note] : s_.notes) TellViolations(note.place, std::exchange(note.beyond, {}));
+  if (code == ErrorCode::kStepBudget) ride_.TellViolationsToCome();
+  ride_.DropAll();
+  actuators_.AllOff();
+  if (now().simulating() && !now().machine.simul) {
+    now().machine.simul = now().simulated.until;  // its step was not reached: OPT-6.14
   }
-  s_.timeline.clear();
-  s_.held.clear();
-  s_.interrupted.clear();
-  BeamOff();
-  CloseShutter();
-  s_.beam_returns = false;
-  if (s_.simulated.active && !s_.machine.simul) {
-    s_.machine.simul = s_.simulated.until;  // its step was not reached: OPT-6.14
-  }
-  s_.phase = machine::RunPhase::kFinished;
-  s_.outcome = {.kind = kind, .code = code, .detail = std::move(detail), .place = s_.place};
-  FailOfViolations();
+  now().phase = RunPhase::kFinished;
+  s_.outcome = {.kind = kind, .code = code, .detail = std::move(detail), .place = now().place};
+  travel_.Judge(s_.outcome);
+}
+
+std::optional<std::string> Control::ReadVariable(std::string_view name) const {
+  return ReadByName(now().machine.data, name);
 }
 
 machine::RunState Control::Snapshot() const {
   machine::RunState state;
-  state.time = s_.now;
-  state.phase = s_.phase;
-  state.place = s_.active ? s_.active->note.place : s_.place;
-  state.instruction = Describe(s_.op).name;
-  state.tip = TipNow();
-  state.axes = AxesNow();
-  state.tip_speed_mm_s = TipSpeedNow();
-  state.override_percent = s_.override_percent;
-  state.beam_on = s_.beam.on;
+  state.time = now().now;
+  state.phase = now().phase;
+  state.place = ride_.active() != nullptr ? ride_.active()->note.place : now().place;
+  state.instruction = Describe(now().op).name;
+  state.tip = ride_.tip();
+  state.axes = ride_.axes();
+  state.tip_speed_mm_s = ride_.tip_speed_mm_s();
+  state.override_percent = now().override_percent;
+  state.beam_on = now().beam.on;
   return state;
 }
 

@@ -13,8 +13,8 @@ class Snapshot final : public machine::RunSnapshot {
 
 std::vector<machine::Figure> OptimoRun::figures() const {
   const ControlState& state = control_.state();
-  return {{"lookahead_starved", "", static_cast<double>(state.planner.lookahead_starved())},
-          {"executables_made", "", static_cast<double>(state.made_executables.size())}};
+  return {{"lookahead_starved", "", static_cast<double>(state.ride.planner.lookahead_starved())},
+          {"executables_made", "", static_cast<double>(state.counter.made_executables.size())}};
 }
 
 std::unique_ptr<machine::RunSnapshot> OptimoRun::Save() const {

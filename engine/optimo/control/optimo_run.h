@@ -23,9 +23,11 @@ class OptimoRun final : public machine::Run {
     return control_.ReadVariable(name);
   }
   std::vector<machine::Figure> figures() const override;
-  std::string SaveMachine() const override { return EncodeMachineState(control_.state().machine); }
+  std::string SaveMachine() const override {
+    return EncodeMachineState(control_.state().situation.machine);
+  }
   std::map<int, std::string> made_executables() const override {
-    return control_.state().made_executables;
+    return control_.state().counter.made_executables;
   }
   std::unique_ptr<machine::RunSnapshot> Save() const override;
   void Restore(const machine::RunSnapshot& snapshot) override;

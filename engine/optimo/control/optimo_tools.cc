@@ -3,11 +3,11 @@
 #include <utility>
 
 #include "engine/core/units.h"
-#include "engine/optimo/control/optimo_parameters.h"
 #include "engine/optimo/language/compiler.h"
 #include "engine/optimo/language/formatter.h"
 #include "engine/optimo/language/linker.h"
 #include "engine/optimo/language/source_map.h"
+#include "engine/optimo/machine/optimo_parameters.h"
 #include "engine/optimo/offline/compensate.h"
 #include "engine/optimo/offline/contour_advice.h"
 #include "engine/optimo/offline/convert.h"

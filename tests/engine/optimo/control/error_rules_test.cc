@@ -3,8 +3,8 @@
 #include <cmath>
 #include <ostream>
 
-#include "engine/optimo/control/machine_state.h"
 #include "engine/optimo/control/optimo_family.h"
+#include "engine/optimo/machine/machine_state.h"
 #include "tests/engine/optimo/control/run_text.h"
 
 // Each code that the control raises while a program runs: by a small program, told with its place.

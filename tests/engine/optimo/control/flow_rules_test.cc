@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "engine/optimo/control/machine_state.h"
+#include "engine/optimo/machine/machine_state.h"
 #include "tests/engine/optimo/control/run_text.h"
 
 // Which instruction is carried out next: programs, functions, errors, timers, START and HOLD.

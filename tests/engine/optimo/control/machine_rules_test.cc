@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "engine/optimo/control/machine_state.h"
 #include "engine/optimo/control/optimo_family.h"
-#include "engine/optimo/control/optimo_parameters.h"
+#include "engine/optimo/machine/machine_state.h"
+#include "engine/optimo/machine/optimo_parameters.h"
 #include "tests/engine/optimo/control/run_text.h"
 
 // The parameters of the machine, what it keeps from run to run, and what is counted over runs.

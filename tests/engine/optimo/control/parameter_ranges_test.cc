@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "engine/core/units.h"
-#include "engine/optimo/control/laser_unit.h"
-#include "engine/optimo/control/motion_place.h"
 #include "engine/optimo/control/optimo_family.h"
-#include "engine/optimo/control/optimo_parameters.h"
+#include "engine/optimo/machine/laser_unit.h"
+#include "engine/optimo/machine/optimo_parameters.h"
+#include "engine/optimo/ride/motion_place.h"
 
 // What a machine can be set to: both ends of each range are allowed, what is beyond is not. A
 // machine that is stored with such a value stays usable.

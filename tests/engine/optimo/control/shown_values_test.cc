@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "engine/optimo/control/machine_state.h"
+#include "engine/optimo/machine/machine_state.h"
 #include "tests/engine/optimo/control/run_text.h"
 
 // How a run shows variables, and what it says of a TCP.

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "engine/optimo/control/machine_state.h"
+#include "engine/optimo/machine/machine_state.h"
 #include "tests/engine/optimo/control/run_text.h"
 
 // SIMUL: the dry run up to a step, chapter 6.

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "engine/optimo/control/machine_state.h"
-#include "engine/optimo/control/optimo_parameters.h"
+#include "engine/optimo/machine/machine_state.h"
+#include "engine/optimo/machine/optimo_parameters.h"
 #include "tests/engine/optimo/control/run_text.h"
 
 // TCP, and the zero procedure. New machines stand at home: column (21.02, 2201.2, -50), head down.

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "engine/machine/observer.h"
-#include "engine/optimo/control/optimo_parameters.h"
+#include "engine/optimo/machine/optimo_parameters.h"
 
 namespace rmlcell::optimo {
 
@@ -38,6 +38,7 @@ struct Beam {
   machine::PowerBySpeed power{};
   bool shutter_open = false;
   bool shutter_was_open = false;  // closed by the door; START opens it again (OPT-3.62)
+  bool returns = false;           // off while the motion is held: START brings it back (OPT-B.34)
 };
 
 // WORKDEF 1 after its dwell: proportional to the tip speed (OPT-3.39, motion.md 8.1).

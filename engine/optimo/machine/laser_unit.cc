@@ -1,4 +1,4 @@
-#include "engine/optimo/control/laser_unit.h"
+#include "engine/optimo/machine/laser_unit.h"
 
 #include <algorithm>
 

@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "engine/motion/ride/interruption.h"
-#include "engine/optimo/control/control.h"
-#include "engine/optimo/control/lead.h"
-#include "engine/optimo/control/motion_place.h"
+#include "engine/optimo/ride/lead.h"
+#include "engine/optimo/ride/motion_place.h"
+#include "engine/optimo/ride/ride.h"
 
 // HOLD inside a chain of /FLY passages: the move under way becomes exact. The program has run ahead
 // by then; what it appended behind that move waits, and is planned anew at START. motion.md 6,
@@ -18,28 +18,25 @@ constexpr double kReaches = 1.0 + 1e-9;  // rounding, where braking takes just t
 }  // namespace
 
 // The command that was appended with this tag; null when it is over.
-const motion::MoveCommand* Control::Appended(std::uint64_t tag) const {
+const motion::MoveCommand* Ride::Appended(std::uint64_t tag) const {
   for (const AppendedItem& item : s_.appended) {
     if (item.tag == tag && item.move) return &*item.move;
   }
   return nullptr;
 }
 
-// Ends the motions at the first target where the machine can come to rest: that of the move under
-// way, or of a later one when its passage has begun or is too near. Nothing changes on the last
-// move, or when not enough is planned yet.
-void Control::EndAtATarget() {
-  if (!s_.active || s_.halting) return;
+void Ride::Hold() {
+  if (!s_.active || !s_.protocol.may_hold()) return;
   std::vector<motion::PlannedItem> kept;  // between the motion under way and the exact one
   motion::PlannedMotion exact = s_.active->motion;
-  motion::PathState state = exact.speed.At(ToSeconds(s_.now - s_.active->start));
+  motion::PathState state = StateNow();
   auto next = s_.timeline.begin();
   const std::uint64_t own = exact.tag;
   std::uint64_t following = own;  // the move after it
   for (bool under_way = true;; under_way = false) {
     if (exact.tag != own && following == own) following = exact.tag;
     // Neither of the two is long enough: braking takes more of them.
-    if (exact.tag > following) return EndOverManyMoves();
+    if (exact.tag > following) return HoldOverManyMoves();
     const bool last = s_.appended.empty() || s_.appended.back().tag <= exact.tag;
     const motion::MoveCommand* command = Appended(exact.tag);
     if (last || command == nullptr) return;
@@ -67,7 +64,7 @@ void Control::EndAtATarget() {
         exact.ends_move = true;
         exact.corner = {};
         if (under_way) {
-          TellMotion(s_.now);
+          TellMotion(situation_.now);
           s_.active->motion = exact;
           BeginProfile();
         } else {
@@ -90,12 +87,10 @@ void Control::EndAtATarget() {
 
 // Where moves are too short to come to rest on one of them: the first target that can be reached at
 // rest, over as many of them as that takes.
-void Control::EndOverManyMoves() {
+void Ride::HoldOverManyMoves() {
   std::vector<motion::PlannedItem> kept;
   motion::PlannedMotion here = s_.active->motion;
-  ChainPlace place{.motion = here,
-                   .state = here.speed.At(ToSeconds(s_.now - s_.active->start)),
-                   .under_way = true};
+  ChainPlace place{.motion = here, .state = StateNow(), .under_way = true};
   std::optional<Onward> onward;
   for (auto next = s_.timeline.begin();; ++next) {
     const motion::MoveCommand* command = Appended(place.motion.tag);
@@ -144,29 +139,29 @@ void Control::EndOverManyMoves() {
   planner->Stop();
   while (std::optional<motion::PlannedItem> item = planner->Next()) s_.timeline.push_back(*item);
   HoldAllBehind(target);
-  if (!s_.active) StartNextItem();
+  Start();
 }
 
 // The move of this tag is the last one before the halt; everything that was appended behind it is
 // held back.
-void Control::HoldBehind(std::uint64_t tag, const std::vector<motion::PlannedItem>& kept) {
+void Ride::HoldBehind(std::uint64_t tag, const std::vector<motion::PlannedItem>& kept) {
   s_.halted_behind = NoteOf(tag)->place;
   s_.timeline.assign(kept.begin(), kept.end());
   HoldAllBehind(tag);
 }
 
-void Control::HoldAllBehind(std::uint64_t target) {
+void Ride::HoldAllBehind(std::uint64_t target) {
   std::erase_if(s_.appended, [&](AppendedItem& item) {
     if (item.tag <= target) return false;
     s_.held.push_back(std::move(item));
     return true;
   });
   s_.planner = motion::Planner(parameters_.limits);
-  s_.halting = true;
+  s_.protocol.Hold();
 }
 
 // START after such a HOLD: the moves that were held back, from rest.
-void Control::PlanHeld() {
+void Ride::PlanHeld() {
   if (s_.held.empty()) return;
   for (AppendedItem& item : s_.held) {
     if (!item.move) {
@@ -179,7 +174,7 @@ void Control::PlanHeld() {
   }
   s_.held.clear();
   if (!s_.passing) s_.planner.Stop();
-  DrainPlanner();
+  Drain();
 }
 
 }  // namespace rmlcell::optimo

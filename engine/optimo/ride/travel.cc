@@ -1,3 +1,5 @@
+#include "engine/optimo/ride/travel.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -5,9 +7,7 @@
 
 #include "engine/core/number_text.h"
 #include "engine/motion/kinematics/speed_bound.h"
-#include "engine/optimo/control/control.h"
 
-// Motions that ask more of an axis than it can do: way or speed.
 namespace rmlcell::optimo {
 namespace {
 
@@ -47,9 +47,9 @@ std::string TextOf(const std::vector<BeyondTravel>& beyond) {
 
 // Every axis that leaves its travel, the target first where that lies outside. A motion that comes
 // back from where the one before it should not have gone is not to blame for its start.
-std::vector<BeyondTravel> Control::BeyondTravelOf(const motion::PathPiece& path) const {
+std::vector<BeyondTravel> Travel::BeyondTravelOf(const motion::PathPiece& path) const {
   const motion::AxisLimits& limits = parameters_.limits.axes;
-  const motion::Head head = HeadNow();
+  const motion::Head head = HeadOf(situation_.machine, parameters_);
   const bool joint = path.in_axes();
   const auto axes_at = [&](const motion::TipPose& pose) {
     return joint ? motion::AxisPose{pose.tip, pose.a_rad, pose.b_rad} : head.ColumnOf(pose);
@@ -72,35 +72,30 @@ std::vector<BeyondTravel> Control::BeyondTravelOf(const motion::PathPiece& path)
   return beyond;
 }
 
-// motion.md 2.6. False: an alarm was raised. In a forecast the note says what is to be told.
-bool Control::InTravel(const motion::PathPiece& path, MoveNote& note) {
+Result<std::vector<BeyondTravel>> Travel::Look(const motion::PathPiece& path,
+                                               const machine::Place& place) {
   std::vector<BeyondTravel> beyond = BeyondTravelOf(path);
-  if (beyond.empty()) return true;
-  if (setup_.forecast) {
-    note.beyond = std::move(beyond);
-    return true;
-  }
+  if (beyond.empty() || forecast_) return beyond;
   // The target is looked at first, and only then the way to it.
   const auto outside = [](const BeyondTravel& one) { return one.at_target; };
   if (std::ranges::any_of(beyond, outside)) std::erase_if(beyond, std::not_fn(outside));
-  TellViolations(note.place, beyond);
-  Raise(ErrorCode::kTargetOutOfTravel, TextOf(beyond));
-  return false;
+  TellViolations(place, beyond);
+  return Error{ErrorCode::kTargetOutOfTravel, TextOf(beyond), {}};
 }
 
-// Now: where the motion begins, or where it is refused.
-void Control::TellViolations(const machine::Place& place, const std::vector<BeyondTravel>& beyond) {
+void Travel::TellViolations(const machine::Place& place, const std::vector<BeyondTravel>& beyond) {
   if (beyond.empty()) return;
   for (const BeyondTravel& one : beyond) {
-    observer_.OnViolation({.at = s_.now,
-                           .place = place,
-                           .axis = one.axis,
-                           .excess = one.excess,
-                           .at_target = one.at_target,
-                           .axes = one.axes,
-                           .tip = HeadNow().TipOf(one.axes)});
+    telling_.observer().OnViolation(
+        {.at = situation_.now,
+         .place = place,
+         .axis = one.axis,
+         .excess = one.excess,
+         .at_target = one.at_target,
+         .axes = one.axes,
+         .tip = HeadOf(situation_.machine, parameters_).TipOf(one.axes)});
   }
-  if (!setup_.forecast) return;  // the alarm says the rest
+  if (!forecast_) return;  // the alarm says the rest
   const Diagnostic finding{.code = ErrorCode::kTargetOutOfTravel,
                            .severity = Severity::kProgram,
                            .detail = TextOf(beyond),
@@ -108,51 +103,51 @@ void Control::TellViolations(const machine::Place& place, const std::vector<Beyo
                            .where = {.line = place.line},
                            .program = place.program,
                            .step = place.step,
-                           .at = s_.now};
+                           .at = situation_.now};
   ++s_.violations;
   if (!s_.first_violation) s_.first_violation = finding;
-  Tell(finding);
+  telling_.Tell(finding);
 }
 
-// A forecast that found violations has not shown a program that the machine could run.
-void Control::FailOfViolations() {
-  const bool went_well = s_.outcome.kind == machine::OutcomeKind::kCompleted ||
-                         s_.outcome.kind == machine::OutcomeKind::kStopped;
+void Travel::Judge(machine::Outcome& outcome) const {
+  const bool went_well = outcome.kind == machine::OutcomeKind::kCompleted ||
+                         outcome.kind == machine::OutcomeKind::kStopped;
   if (!s_.first_violation || !went_well) return;
   const Diagnostic& first = *s_.first_violation;
   std::string detail = first.detail;
   if (s_.violations > 1) {
     detail = std::to_string(s_.violations) + " motions leave the travel; the first: " + detail;
   }
-  s_.outcome = {.kind = machine::OutcomeKind::kFailed,
-                .code = first.code,
-                .detail = std::move(detail),
-                .place = {.program = first.program, .step = first.step, .line = first.where.line}};
+  outcome = {.kind = machine::OutcomeKind::kFailed,
+             .code = first.code,
+             .detail = std::move(detail),
+             .place = {.program = first.program, .step = first.step, .line = first.where.line}};
 }
 
-// OPT-2.16: the contour that begins slows down for an axis. Once for each step.
-void Control::TellSpeedHeld(const motion::PlannedMotion& motion, const MoveNote& note) {
+void Travel::TellSpeedHeld(const motion::PlannedMotion& motion, const machine::Place& place,
+                           double feed_mm_s) {
   const auto kind = motion.path.kind();
   const bool contour =
       kind == motion::PathPiece::Kind::kLine || kind == motion::PathPiece::Kind::kArc;
-  if (!contour || note.feed_mm_s <= 0.0 || motion.limits.speed >= note.feed_mm_s * kFullSpeed) {
+  if (!contour || feed_mm_s <= 0.0 || motion.limits.speed >= feed_mm_s * kFullSpeed) {
     return;
   }
-  if (s_.held_by_axis.contains({note.place.program, note.place.step})) return;
+  if (s_.held_by_axis.contains({place.program, place.step})) return;
   const motion::SpeedBound bound =
-      motion::TightestBound(motion.path, motion.head, parameters_.limits, note.feed_mm_s);
+      motion::TightestBound(motion.path, motion.head, parameters_.limits, feed_mm_s);
   if (bound.cause != motion::SpeedBound::Cause::kAxis) return;
-  s_.held_by_axis.emplace(note.place.program, note.place.step);
-  Tell({.code = ErrorCode::kSpeedHeldByAxis,
-        .severity = Lookup(ErrorCode::kSpeedHeldByAxis).severity,
-        .detail = "axis " + std::string(NameOfAxis(bound.axis)) + " allows " +
-                  FixedText(motion.limits.speed, 3) + " mm/s of " + FixedText(note.feed_mm_s, 3) +
-                  "; reached " + FixedText(motion.speed.peak_speed(), 3) + " mm/s",
-        .rule = "OPT-2.16",
-        .where = {.line = note.place.line},
-        .program = note.place.program,
-        .step = note.place.step,
-        .at = s_.now});
+  s_.held_by_axis.emplace(place.program, place.step);
+  telling_.Tell({.code = ErrorCode::kSpeedHeldByAxis,
+                 .severity = Lookup(ErrorCode::kSpeedHeldByAxis).severity,
+                 .detail = "axis " + std::string(NameOfAxis(bound.axis)) + " allows " +
+                           FixedText(motion.limits.speed, 3) + " mm/s of " +
+                           FixedText(feed_mm_s, 3) + "; reached " +
+                           FixedText(motion.speed.peak_speed(), 3) + " mm/s",
+                 .rule = "OPT-2.16",
+                 .where = {.line = place.line},
+                 .program = place.program,
+                 .step = place.step,
+                 .at = situation_.now});
 }
 
 }  // namespace rmlcell::optimo

@@ -1,4 +1,4 @@
-#include "engine/optimo/control/machine_state.h"
+#include "engine/optimo/machine/machine_state.h"
 
 #include <bit>
 #include <cstring>

@@ -1,4 +1,4 @@
-#include "engine/optimo/control/optimo_parameters.h"
+#include "engine/optimo/machine/optimo_parameters.h"
 
 #include <array>
 #include <string>

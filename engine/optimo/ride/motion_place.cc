@@ -1,4 +1,4 @@
-#include "engine/optimo/control/motion_place.h"
+#include "engine/optimo/ride/motion_place.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "engine/optimo/control/lead.h"
+#include "engine/optimo/ride/lead.h"
 
 #include <algorithm>
 #include <cmath>

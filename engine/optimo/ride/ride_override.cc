@@ -1,3 +1,5 @@
+#include "engine/optimo/ride/ride.h"
+
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -5,31 +7,23 @@
 #include <vector>
 
 #include "engine/motion/ride/interruption.h"
-#include "engine/optimo/control/control.h"
-#include "engine/optimo/control/lead.h"
-#include "engine/optimo/control/motion_place.h"
+#include "engine/optimo/ride/lead.h"
+#include "engine/optimo/ride/motion_place.h"
 
 // The feed override changed while the machine moves. motion.md 6, OPT-4.38
 namespace rmlcell::optimo {
 
-// Motions not begun are planned with the new value. The one under way goes over to it from where it
-// is; a bend that has begun, or is too near to slow down before it, keeps its shape and speed. A
-// machine that brakes for a stop too near for anything else goes on braking.
-void Control::ChangeOverride(double percent) {
-  const double before = s_.override_percent;
+void Ride::ChangeOverride(double percent) {
+  const double before = situation_.override_percent;
   if (!(percent > 0.0) || percent == before) return;
-  s_.override_percent = percent;
+  situation_.override_percent = percent;
   for (AppendedItem& item : s_.held) AdaptToOverride(item);
-  if (s_.halting || !s_.interrupted.empty()) {
-    s_.override_while_stopped = true;  // a ramp to rest is not changed: what is behind it is
-    return;
-  }
-  AdaptMotions();
+  if (s_.protocol.TakesOverride()) AdaptMotions();
 }
 
 // The motions planned with another override, from the one under way on.
-void Control::AdaptMotions() {
-  if (!s_.active || s_.active->ended || s_.now >= s_.active->arrival) return;
+void Ride::AdaptMotions() {
+  if (!s_.active || s_.active->ended || situation_.now >= s_.active->arrival) return;
   if (ReplanChain()) return;
   ActiveMotion& active = *s_.active;
   if (active.motion.speed.end().speed > 0.0 || active.note.speed_percent <= 0.0) return;
@@ -42,10 +36,10 @@ void Control::AdaptMotions() {
   // The axes may have more room at the new speed; until that is reached the old limits hold.
   motion::PathLimits limits = motion::LimitsOf(command, parameters_.limits);
   limits.acceleration = std::min(limits.acceleration, active.motion.limits.acceleration);
-  const motion::PathState here = active.motion.speed.At(ToSeconds(s_.now - active.start));
+  const motion::PathState here = StateNow();
   const double length = active.motion.path.length();
   if (!motion::FromFits(here, length, 0.0, limits)) return;
-  TellMotion(s_.now);
+  TellMotion(situation_.now);
   motion::SpeedProfile changed = motion::SpeedProfile::From(here, length, 0.0, limits);
   active.motion.limits = limits;
   active.motion.path = active.motion.path.Part(here.s, length);
@@ -53,12 +47,12 @@ void Control::AdaptMotions() {
   BeginProfile();
 }
 
-double Control::FractionOf(const MoveNote& note) const {
-  return std::min(note.speed_percent * s_.override_percent * 1e-4, 1.0);
+double Ride::FractionOf(const MoveNote& note) const {
+  return std::min(note.speed_percent * situation_.override_percent * 1e-4, 1.0);
 }
 
 // A command that was appended with another override, and what is told of its feed rate.
-void Control::AdaptToOverride(AppendedItem& item) {
+void Ride::AdaptToOverride(AppendedItem& item) {
   MoveNote* note = NoteOf(item.tag);
   if (note == nullptr) return;  // a mark
   item.move->speed_fraction = FractionOf(*note);
@@ -68,10 +62,10 @@ void Control::AdaptToOverride(AppendedItem& item) {
 }
 
 // From the first place on where that is possible; false: there is none.
-bool Control::ReplanChain() {
+bool Ride::ReplanChain() {
   std::vector<motion::PlannedItem> kept;  // between the motion under way and that place
   motion::PlannedMotion here = s_.active->motion;
-  motion::PathState state = here.speed.At(ToSeconds(s_.now - s_.active->start));
+  motion::PathState state = StateNow();
   auto next = s_.timeline.begin();
   for (bool under_way = true;; under_way = false) {
     if (ReplanFrom({.motion = here, .state = state, .under_way = under_way}, kept)) return true;
@@ -88,7 +82,7 @@ bool Control::ReplanChain() {
 }
 
 // False: not from this motion. Nothing has changed then.
-bool Control::ReplanFrom(const ChainPlace& place, const std::vector<motion::PlannedItem>& kept) {
+bool Ride::ReplanFrom(const ChainPlace& place, const std::vector<motion::PlannedItem>& kept) {
   const motion::MoveCommand* command = Appended(place.motion.tag);
   if (command == nullptr) return false;
   AppendedItem rest{.tag = place.motion.tag, .move = *command};
@@ -106,16 +100,16 @@ bool Control::ReplanFrom(const ChainPlace& place, const std::vector<motion::Plan
   *own = rest;
   GoOnward(place, *onward, kept);
   s_.planner = *std::move(planner);
-  DrainPlanner();
-  if (!s_.active) StartNextItem();
+  Drain();
+  Start();
   return true;
 }
 
 // How the chain could go on from here under `command`, not faster than `speed`; nothing when it
 // cannot.
-std::optional<Control::Onward> Control::OnwardFrom(const ChainPlace& place,
-                                                   const motion::MoveCommand& command,
-                                                   double speed) const {
+std::optional<Ride::Onward> Ride::OnwardFrom(const ChainPlace& place,
+                                             const motion::MoveCommand& command,
+                                             double speed) const {
   const motion::PlannedMotion& here = place.motion;
   const auto own = std::ranges::find(s_.appended, here.tag, &AppendedItem::tag);
   const std::optional<PlaceOnMove> on_move = PlaceOf(here.path, command.path);
@@ -141,8 +135,8 @@ std::optional<Control::Onward> Control::OnwardFrom(const ChainPlace& place,
 }
 
 // Nothing when what follows cannot be met from there, even if the chain ended with `later`.
-std::optional<motion::Planner> Control::PlanOnward(const Onward& onward,
-                                                   std::span<const AppendedItem> later) const {
+std::optional<motion::Planner> Ride::PlanOnward(const Onward& onward,
+                                                std::span<const AppendedItem> later) const {
   motion::Planner planner(parameters_.limits);
   planner.BeginMoving(onward.speed_on_move);
   if (!planner.Append(onward.first)) return std::nullopt;
@@ -160,9 +154,9 @@ std::optional<motion::Planner> Control::PlanOnward(const Onward& onward,
 }
 
 // The way to the place where the new plan begins takes the place of what was planned.
-void Control::GoOnward(const ChainPlace& place, const Onward& onward,
-                       const std::vector<motion::PlannedItem>& kept) {
-  if (place.under_way) TellMotion(s_.now);
+void Ride::GoOnward(const ChainPlace& place, const Onward& onward,
+                    const std::vector<motion::PlannedItem>& kept) {
+  if (place.under_way) TellMotion(situation_.now);
   s_.timeline.assign(kept.begin(), kept.end());
   if (onward.lead_length > 0.0) {
     const motion::PlannedMotion& here = place.motion;
@@ -183,7 +177,7 @@ void Control::GoOnward(const ChainPlace& place, const Onward& onward,
       s_.timeline.emplace_back(lead);
     }
   } else if (place.under_way) {
-    s_.machine.axes = AxesNow();
+    situation_.machine.axes = axes();
     s_.active.reset();
   }
   // One measure for the whole chain: a STOP runs from one motion into the next.

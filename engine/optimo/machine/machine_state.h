@@ -9,8 +9,8 @@
 #include "engine/machine/run.h"
 #include "engine/motion/geometry/frames.h"
 #include "engine/motion/kinematics/kinematics.h"
-#include "engine/optimo/control/optimo_parameters.h"
 #include "engine/optimo/language/ast.h"
+#include "engine/optimo/machine/optimo_parameters.h"
 
 namespace rmlcell::optimo {
 

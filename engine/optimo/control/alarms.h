@@ -1,0 +1,62 @@
+#pragma once
+
+#include <optional>
+
+#include "engine/core/result.h"
+#include "engine/optimo/control/actuators.h"
+#include "engine/optimo/control/move_watch.h"
+#include "engine/optimo/control/program_counter.h"
+#include "engine/optimo/control/waits.h"
+#include "engine/optimo/machine/telling.h"
+#include "engine/optimo/ride/ride.h"
+
+namespace rmlcell::optimo {
+
+struct AlarmState {
+  // Raised ahead of motion: handled when it is over.
+  std::optional<Error> deferred{};
+  machine::Place deferred_place{};
+};
+
+// Errors of instructions: the failing one has no effect, whatever moves comes to rest, the beam
+// goes off, and the program goes on at its ERR label or is over. OPT-3.55 to 3.59
+//
+//   none       Raise           handled, where the machine stands; else deferred, and the control
+//                              waits for standstill
+//   deferred   Raise           stays: the first error counts
+//   deferred   HandleDeferred  handled
+class Alarms {
+ public:
+  Alarms(AlarmState& state, Situation& situation, const Telling& telling, ProgramCounter& counter,
+         Ride& ride, Actuators& actuators, Waits& waits, MoveWatch& watch)
+      : s_(state),
+        situation_(situation),
+        telling_(telling),
+        counter_(counter),
+        ride_(ride),
+        actuators_(actuators),
+        waits_(waits),
+        watch_(watch) {}
+
+  bool deferred() const { return s_.deferred.has_value(); }
+
+  // At the place of the situation. The error that ends the run, or nothing when it goes on.
+  [[nodiscard]] std::optional<Error> Raise(const Error& error);
+  [[nodiscard]] std::optional<Error> HandleDeferred();
+
+ private:
+  std::optional<Error> Handle(const Error& error);
+  Error NoHandler(int label);
+  void SetLastError(ErrorCode code);
+
+  AlarmState& s_;
+  Situation& situation_;
+  const Telling& telling_;
+  ProgramCounter& counter_;
+  Ride& ride_;
+  Actuators& actuators_;
+  Waits& waits_;
+  MoveWatch& watch_;
+};
+
+}  // namespace rmlcell::optimo

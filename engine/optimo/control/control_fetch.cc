@@ -1,0 +1,307 @@
+#include <utility>
+
+#include "engine/optimo/control/control.h"
+
+// One instruction after the other.
+namespace rmlcell::optimo {
+namespace {
+
+// Whether a motion of /NEXT is finished before this instruction. `main`: it stands in the main
+// module. OPT-B.89
+bool WaitsForNext(const Instruction& i, bool main) {
+  switch (i.op) {
+    case Op::kCall:
+    case Op::kGo:
+    case Op::kZero:
+    case Op::kPause:
+    case Op::kStop:
+    case Op::kTcp:
+    case Op::kCoord:
+      return true;
+    case Op::kEndtask:
+      return main;
+    default:
+      return false;
+  }
+}
+
+bool IsAt(const std::optional<machine::ProgramStep>& step, const machine::Place& place) {
+  return step && step->program == place.program && step->step == place.step;
+}
+
+}  // namespace
+
+// Carries out the next instruction, or finds out that the machine must stand first.
+void Control::Fetch() {
+  const std::uint32_t at = counter_.index().SkipDeclares(counter_.frame().next);
+  const bool at_end = at >= counter_.module().instructions.size();
+  if (halts_.due()) {
+    if (StandFirst()) return;
+    HaltRequests& requests = halts_.requests();
+    const std::string_view after_step = std::exchange(requests.after_step, {});
+    const bool over = at_end && counter_.call_level() == 1 && !counter_.in_function();
+    if (after_step.empty()) return halts_.Halt(requests.stop ? "STOP" : "HOLD");
+    if (!over) return halts_.Halt(after_step);
+  }
+  if (!ride_.passing() && !waits_.condition_met()) {
+    if (const std::optional<int> label = counter_.TakeDueGosub()) {
+      if (const Status made = counter_.Gosub(*label); !made) Raise(made.error());
+      return;
+    }
+  }
+  if (at_end) {
+    const bool function = counter_.in_function();
+    if (!function && ride_.passing()) {
+      telling_.Warn(ErrorCode::kFlyCancelled, "/FLY before the end of the program", "OPT-2.47");
+    }
+    if (function || !StandFirst()) EndModule();
+    return;
+  }
+  const Instruction& i = counter_.module().instructions[at];
+  const machine::Place here = telling_.PlaceOf(counter_.linked().slot, i.step);
+  if (now().simulating() && IsAt(now().simulated.until, here)) {
+    EndSimulation(here);
+    if (!now().running()) return;
+  }
+  if (s_.steps >= setup_.budget.steps) {
+    return Finish(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kStepBudget,
+                  std::to_string(s_.steps) + " steps were executed");
+  }
+  now().place = here;
+  now().op = i.op;
+  if (!MayCarryOut(i)) return;
+  const bool polls =
+      i.reads_machine && i.op != Op::kMove && !waits_.condition_met() && !now().simulating();
+  if (polls && waits_.PollingTakesTime(here.program, at)) return;
+  if (!waits_.condition_met()) {
+    waits_.BeginInstruction();
+    telling_.observer().OnStep(now().now, now().place, Describe(i.op).name);
+  }
+  counter_.frame().next = at + 1;
+  if (const Status executed = Execute(i); !executed) Raise(executed.error());
+  if (waits_.pending().kind == Pending::Kind::kCondition) {
+    counter_.frame().next = at;  // carried out again when the condition is met
+    return;
+  }
+  waits_.EndInstruction();
+  ++s_.steps;
+  works_.MarkStale();
+  if (!now().running()) return;
+  if (IsAt(now().machine.breakpoint, here)) {
+    halts_.requests().after_step = "BREAK";
+  } else if (now().mode == machine::Mode::kSingle) {
+    halts_.requests().after_step = "SINGLE";
+  }
+}
+
+// True: something moves, and the instruction is fetched again when it is over.
+bool Control::StandFirst() {
+  if (watch_.stands()) {
+    waits_.BeginNoMotion();
+    return true;
+  }
+  if (!ride_.passing() && !ride_.busy()) return false;
+  ride_.EndChain();
+  waits_.BeginStandstill();
+  return true;
+}
+
+// False: the motion that goes on must be over before, or the instruction may not stand here.
+bool Control::MayCarryOut(const Instruction& i) {
+  const bool anew = !waits_.condition_met();
+  if (watch_.stands()) {
+    if (i.op == Op::kMove && anew) watch_.EndStanding();  // takes over at once: it stands
+    if (watch_.stands() && WaitsForNext(i, !counter_.in_function())) return !StandFirst();
+  }
+  const bool passing = ride_.passing();
+  if (!passing && !ride_.busy()) return true;
+  if (passing && i.op == Op::kCoord && static_cast<CoordType>(i.choice) != counter_.modal().coord) {
+    // A failing instruction is an executed step like any other.
+    telling_.observer().OnStep(now().now, now().place, Describe(i.op).name);
+    ++s_.steps;
+    Raise({ErrorCode::kFlyBeforeCoord, "COORD changes the coordinate type after a /FLY move", {}});
+    return false;
+  }
+  if (ride_.beside() && i.op == Op::kMove && anew) {
+    // The new motion takes over at the next tick (motion.md 6, /NEXT).
+    waits_.Begin(
+        {.kind = Pending::Kind::kTakeOver, .until = cycle_.NextTick(now().now, SimTime(0))});
+    return false;
+  }
+  if (!NeedsStandstill(i) && ride_.RunsAhead()) return true;
+  if (passing) {
+    telling_.Warn(
+        ErrorCode::kFlyCancelled,
+        "/FLY before " + std::string(Describe(i.op).name) + ": the machine stops at the target",
+        "OPT-2.48");
+  }
+  StandFirst();
+  return false;
+}
+
+// Only asked while a /FLY passage is open or a /NEXT motion is under way. OPT-2.48, OPT-B.89
+bool Control::NeedsStandstill(const Instruction& i) {
+  const bool main = !counter_.in_function();
+  if (ride_.beside()) return WaitsForNext(i, main);
+  if (i.reads_machine) return true;
+  const FlyClass fly = Describe(i.op).fly;
+  if (fly != FlyClass::kDepends) return fly == FlyClass::kStandstill;
+  switch (i.op) {
+    case Op::kMove:
+    case Op::kTcp:
+      return moves_.NeedsStandstill(i);
+    case Op::kWork:
+      return works_.NeedsStandstill(i);
+    case Op::kEndtask:
+      return main;
+    default:
+      return true;
+  }
+}
+
+// The first time that control comes to the step: from here on all is real (OPT-6.13, 6.14). What
+// the simulated steps asked for takes effect here.
+void Control::EndSimulation(const machine::Place& here) {
+  const int schedule = now().simulated.schedule;
+  now().simulated = {};
+  now().place = here;
+  if (const Status connected = data_.ConnectOutputs(kAllGroups); !connected) {
+    Raise(connected.error());
+  }
+  if (!now().running() || schedule == 0) return;
+  actuators_.Carry({.kind = PassageEffect::Kind::kSchedule, .place = here, .index = schedule});
+}
+
+Status Control::Execute(const Instruction& i) {
+  const auto step_of = [&] {
+    const int program = i.numbers[1] > 0 ? i.numbers[1] : counter_.linked().slot;
+    return machine::ProgramStep{.program = program, .step = i.numbers[0]};
+  };
+  switch (i.op) {
+    case Op::kMove:
+    case Op::kCoord:
+    case Op::kPath:
+    case Op::kSpeed:
+    case Op::kAccel:
+    case Op::kOversh:
+    case Op::kSysdef:
+    case Op::kTcp:
+    case Op::kZero:
+      return moves_.Execute(i);
+    case Op::kWorkdef:
+      return works_.Define(i);
+    case Op::kWork:
+      return works_.Work(i);
+    case Op::kLet:
+    case Op::kAssign:
+    case Op::kUpdate:
+    case Op::kImage:
+    case Op::kReal:
+      return data_.Execute(i);
+    case Op::kGo:
+      return GoTo(i);
+    case Op::kReturn:
+      if (!counter_.in_gosub() && !counter_.in_function()) {
+        return Error{ErrorCode::kReturnWithoutGosub, {}, {}};
+      }
+      if (!counter_.in_gosub()) {
+        EndModule();
+      } else {
+        counter_.ReturnFromGosub();
+      }
+      return {};
+    case Op::kEndtask:
+      EndModule();
+      return {};
+    case Op::kPause:
+    case Op::kStop: {  // OPT-3.49 to 3.52, OPT-B.66
+      const std::string_view name = i.op == Op::kPause ? "PAUSE" : "STOP";
+      if (now().mode != machine::Mode::kRemote) {
+        halts_.Halt(name);
+        return {};
+      }
+      constexpr ErrorCode kCode = ErrorCode::kStopNotRestartable;
+      telling_.Warn(kCode, std::string(name) + " in REMOTE", "OPT-3.50");
+      Finish(machine::OutcomeKind::kStopped, kCode, std::string(name));
+      return {};
+    }
+    case Op::kBreak:  // stays when the program ends: OPT-6.08
+      now().machine.breakpoint = step_of();
+      return {};
+    case Op::kSimul:  // of the next start, not of this run: OPT-6.16
+      now().machine.simul = step_of();
+      return {};
+    case Op::kTask:
+    case Op::kDeclare:
+    case Op::kDefine:
+    case Op::kIgnored:
+    case Op::kInvalid:
+      return {};
+    default:
+      return flow_.Execute(i);
+  }
+}
+
+Status Control::GoTo(const Instruction& i) {
+  const Result<int> slot = flow_.ProgramNumber(counter_.module().Value(i, 0));
+  if (!slot) return slot.error();
+  if (counter_.program().processes.any_on()) {
+    return Error{
+        ErrorCode::kWorkActiveAtCall, "GO " + std::to_string(*slot) + " with a WORK ON", {}};
+  }
+  const Result<Loaded> next = counter_.Acquire(*slot, false);
+  if (!next) return next.error();
+  if (i.Has(kCycle)) now().mode = machine::Mode::kCycle;
+  if (i.Has(kRepeat)) now().mode = machine::Mode::kRepeat;
+  if (i.Has(kSingle)) now().mode = machine::Mode::kSingle;
+  actuators_.BeamOff();
+  actuators_.CloseShutter();
+  telling_.observer().OnProgram(now().now, now().place, "go", *slot);
+  now().machine.selected = 0;  // GO selects it anew
+  BeginMain(*next, *slot);
+  if (i.Has(kSingle)) halts_.Halt("SINGLE");  // waits for START before its first step, OPT-B.62
+  return {};
+}
+
+// VI[98]: executions of the main program since it was selected. OPT-7.70, OPT-B.63
+void Control::BeginMain(const Loaded& main, int slot) {
+  counter_.Clear();
+  counter_.Begin(main, {});
+  MachineState& machine = now().machine;
+  float& count = machine.data.vi[98];
+  if (machine.selected != slot) count = 0.0F;
+  machine.selected = slot;
+  if (count < kIntegerMax) count += 1.0F;
+}
+
+// Of a program the machine stands. OPT-3.34, 3.35, B.54
+void Control::EndModule() {
+  if (counter_.in_function()) return counter_.LeaveFunction();
+  ProgramContext& program = counter_.program();
+  program.work_tasks.clear();
+  if (program.processes.any_on()) {
+    telling_.Warn(ErrorCode::kWorkActiveAtEnd, "the program ends with a WORK ON", "OPT-3.34");
+    program.processes.AllOff();
+    actuators_.BeamOff();
+  }
+  if (counter_.call_level() > 1) {
+    counter_.EndProgram();
+    telling_.observer().OnProgram(now().now, now().place, "return",
+                                  counter_.program().program->slot());
+    return;
+  }
+  actuators_.BeamOff();
+  actuators_.CloseShutter();
+  if (now().mode != machine::Mode::kRepeat) {
+    return Finish(machine::OutcomeKind::kCompleted, std::nullopt, {});
+  }
+  const Loaded main = program.program;
+  BeginMain(main, main->slot());
+  // A program that carries nothing out still takes its turn: else time would stand for ever.
+  if (s_.steps == s_.steps_at_repeat) {
+    waits_.BeginTime(cycle_.seconds(), machine::WaitKind::kLoad);
+  }
+  s_.steps_at_repeat = s_.steps;
+}
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,250 @@
+#include "engine/optimo/control/data_access.h"
+
+namespace rmlcell::optimo {
+namespace {
+
+constexpr int kFirstWorkFlag = 87;  // IL[87 + p], OPT-3.37
+constexpr int kLastWorkFlag = 94;
+constexpr int kMotionFlag = 95;  // OPT-7.68
+
+// PAR of an activation that need not be the innermost any more.
+class WithParameters final : public VariableAccess {
+ public:
+  WithParameters(VariableAccess& others, const std::array<float, kParameterCount>& parameters)
+      : others_(others), parameters_(parameters) {}
+  float Read(Variable variable) override {
+    if (variable.group != VariableGroup::kPar) return others_.Read(variable);
+    return parameters_[variable.index % kParameterCount];
+  }
+
+ private:
+  VariableAccess& others_;
+  const std::array<float, kParameterCount>& parameters_;
+};
+
+}  // namespace
+
+bool DataAccess::Connected(std::uint8_t group) const {
+  return (counter_.modal().updated & group) != 0 && (counter_.modal().imaged & group) == 0 &&
+         !situation_.simulating();
+}
+
+// The outside as it is now.
+double DataAccess::InputNow(VariableGroup group, int index) const {
+  if (group == VariableGroup::kIl) {
+    if (index >= kFirstWorkFlag && index <= kLastWorkFlag) {
+      return counter_.program().processes.flag(index - kFirstWorkFlag) ? 1.0 : 0.0;
+    }
+    if (index == kMotionFlag) return ride_.moves() || ride_.more_to_come() ? 1.0 : 0.0;
+    return situation_.machine.data.il_physical[static_cast<std::size_t>(index)] ? 1.0 : 0.0;
+  }
+  if (index <= 2) {
+    const motion::MachinePoint point =
+        counter_.modal().coord == CoordType::kAbsol ? ride_.tip().tip : ride_.axes().column;
+    return index == 0 ? point.x() : index == 1 ? point.y() : point.z();
+  }
+  if (index == 3) return ride_.axes().a_rad;
+  if (index == 4) return ride_.axes().b_rad;
+  return situation_.machine.data.ia_physical[static_cast<std::size_t>(index)];
+}
+
+float DataAccess::Read(Variable variable) {
+  DataArea& data = situation_.machine.data;
+  const auto n = static_cast<std::size_t>(variable.index);
+  switch (variable.group) {
+    case VariableGroup::kVr:
+      return data.vr[n];
+    case VariableGroup::kVi:
+      return data.vi[n];
+    case VariableGroup::kVl:
+      return data.vl[n] ? 1.0F : 0.0F;
+    case VariableGroup::kIl:
+      // Work and motion flags are the control's own: they hold in simulation too (OPT-6.20).
+      if (Connected(kGroupIl) || (n >= kFirstWorkFlag && n <= kMotionFlag)) {
+        data.il[n] = InputNow(variable.group, variable.index) != 0.0;
+      }
+      return data.il[n] ? 1.0F : 0.0F;
+    case VariableGroup::kOl:
+      return data.ol[n] ? 1.0F : 0.0F;
+    case VariableGroup::kIa:
+      if (Connected(kGroupIa))
+        data.ia[n] = static_cast<float>(InputNow(variable.group, variable.index));
+      return data.ia[n];
+    case VariableGroup::kOa:
+      if (n == 0)
+        return static_cast<float>(ride_.tip_speed_mm_s() * parameters_.cycle_s);  // OPT-7.69
+      return data.oa[n];
+    case VariableGroup::kPar:
+      return counter_.frame().parameters[n % kParameterCount];
+  }
+  return 0.0F;
+}
+
+// On error nothing was written.
+Status DataAccess::Write(Variable variable, float number) {
+  DataArea& data = situation_.machine.data;
+  const auto n = static_cast<std::size_t>(variable.index);
+  switch (variable.group) {
+    case VariableGroup::kVr:
+      data.vr[n] = number;
+      break;
+    case VariableGroup::kVi:
+      data.vi[n] = number;
+      break;
+    case VariableGroup::kVl:
+      data.vl[n] = number != 0.0F;
+      break;
+    case VariableGroup::kOl:
+      return SetOutput(variable.index, number != 0.0F);
+    case VariableGroup::kOa:
+      data.oa[n] = number;
+      if (Connected(kGroupOa)) {
+        effects_.Show({.kind = PassageEffect::Kind::kAnalogue,
+                       .place = situation_.place,
+                       .index = variable.index,
+                       .value = number});
+      }
+      break;
+    case VariableGroup::kPar:
+      counter_.frame().parameters[n % kParameterCount] = number;
+      break;
+    case VariableGroup::kIl:
+    case VariableGroup::kIa:
+      break;  // refused by the checker (OPT-7.66)
+  }
+  return {};
+}
+
+// The image takes the value in any case; the machine follows unless the output is refused
+// (OPT-5.38): a second gas when its turn comes, for the first may go off at the same passage.
+Status DataAccess::SetOutput(int index, bool on) {
+  situation_.machine.data.ol[static_cast<std::size_t>(index)] = on;
+  if (!Connected(kGroupOl)) return {};
+  if (on && index == kGas3 && parameters_.gas_channels < 3) {
+    return Error{ErrorCode::kGas3NotFitted, {}, {}};
+  }
+  effects_.Show({.kind = PassageEffect::Kind::kOutput,
+                 .place = situation_.place,
+                 .index = index,
+                 .value = on ? 1.0 : 0.0});
+  return {};
+}
+
+Result<Value> DataAccess::Eval(Expression expression) { return Evaluate(expression, *this); }
+
+Result<double> DataAccess::Real(Expression expression) {
+  const Result<Value> value = Evaluate(expression, *this);
+  if (!value) return value.error();
+  return static_cast<double>(value->number);
+}
+
+ExprRange DataAccess::RangeOf(Expression expression) const {
+  return {.first = static_cast<std::uint32_t>(expression.data() - counter_.module().nodes.data()),
+          .count = static_cast<std::uint32_t>(expression.size())};
+}
+
+Condition DataAccess::ConditionOf(Expression expression) const {
+  return {.program = counter_.program().program,
+          .module = counter_.frame().module,
+          .expression = RangeOf(expression),
+          .parameters = counter_.frame().parameters};
+}
+
+Result<bool> DataAccess::Truth(ExprRange range) {
+  const Result<Value> value =
+      Evaluate({counter_.module().nodes.data() + range.first, range.count}, *this);
+  if (!value) return value.error();
+  return value->truth();
+}
+
+Result<bool> DataAccess::Truth(const Condition& condition) {
+  const Module& owner =
+      condition.program->executable.modules[static_cast<std::size_t>(condition.module)].module;
+  WithParameters variables(*this, condition.parameters);
+  const Result<Value> value = Evaluate(
+      {owner.nodes.data() + condition.expression.first, condition.expression.count}, variables);
+  if (!value) return value.error();
+  return value->truth();
+}
+
+Status DataAccess::Execute(const Instruction& i) {
+  if (i.op == Op::kLet) return Let(i);
+  if (i.op == Op::kAssign) return Assign(i);
+  return SetGroups(i);
+}
+
+Status DataAccess::Let(const Instruction& i) {
+  const Module& module = counter_.module();
+  const ExprNode& target = module.Value(i, 0).back();
+  const Result<Value> value = Eval(module.Value(i, 1));
+  if (!value) return value.error();
+  const ValueType type = target.group == VariableGroup::kPar ? module.parameter_types[target.index]
+                                                             : TypeOf(target.group);
+  const Result<float> converted = ConvertTo(type, *value);
+  if (!converted) return converted.error();
+  return Write(target.variable(), *converted);
+}
+
+// ASSIGN v = value / n: the value in binary, least significant bit first. OPT-7.102, 7.103
+Status DataAccess::Assign(const Instruction& i) {
+  const ExprNode& target = counter_.module().Value(i, 0).back();
+  const Result<double> value = Real(counter_.module().Value(i, 1));
+  if (!value) return value.error();
+  const Result<int> number = TruncateToInteger(static_cast<float>(*value));
+  if (!number) return number.error();
+  const int width = i.numbers[0];
+  if (*number < 0 || (width < 16 && *number >= (1 << width)) ||
+      target.index + width > kVariableCount) {
+    return Error{ErrorCode::kAssignGroup,
+                 std::to_string(*number) + " into " + std::to_string(width) + " places from " +
+                     std::string(GroupName(target.group)) + "[" + std::to_string(target.index) +
+                     "]",
+                 {}};
+  }
+  for (int bit = 0; bit < width; ++bit) {
+    const Variable place{target.group, static_cast<std::uint8_t>(target.index + bit)};
+    const Status written = Write(place, static_cast<float>(*number >> bit & 1));
+    if (!written) return written;
+  }
+  return {};
+}
+
+// Outputs that become connected are set from their images at that moment.
+Status DataAccess::SetGroups(const Instruction& i) {
+  Modal& modal = counter_.modal();
+  if (i.op == Op::kUpdate && i.Has(kOn)) {
+    modal.updated = static_cast<std::uint8_t>(modal.updated | i.choice);
+  } else if (i.op == Op::kUpdate) {
+    modal.updated = static_cast<std::uint8_t>(modal.updated & ~i.choice);
+  } else if (i.op == Op::kImage) {
+    modal.imaged = static_cast<std::uint8_t>(modal.imaged | i.choice);
+  } else {
+    modal.imaged = static_cast<std::uint8_t>(modal.imaged & ~i.choice);
+  }
+  return ConnectOutputs(i.choice);
+}
+
+Status DataAccess::ConnectOutputs(std::uint8_t groups) {
+  const DataArea& data = situation_.machine.data;
+  const bool logical = (groups & kGroupOl) != 0;
+  const bool analogue = (groups & kGroupOa) != 0 && Connected(kGroupOa);
+  // Gas 3 makes way for gas 2, whose output comes first below.
+  if (logical && !data.ol[kGas3]) {
+    if (Status off = SetOutput(kGas3, false); !off) return off;
+  }
+  for (int n = 0; n < kVariableCount; ++n) {
+    const auto at = static_cast<std::size_t>(n);
+    if (logical) {
+      if (Status set = SetOutput(n, data.ol[at]); !set) return set;
+    }
+    if (!analogue) continue;
+    effects_.Show({.kind = PassageEffect::Kind::kAnalogue,
+                   .place = situation_.place,
+                   .index = n,
+                   .value = data.oa[at]},
+                  PassageEffects::When::kNow);
+  }
+  return {};
+}
+
+}  // namespace rmlcell::optimo

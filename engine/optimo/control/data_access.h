@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+
+#include "engine/optimo/control/passage_effects.h"
+#include "engine/optimo/control/program_counter.h"
+#include "engine/optimo/language/evaluate.h"
+#include "engine/optimo/ride/ride.h"
+
+namespace rmlcell::optimo {
+
+// Variables, the images of inputs and outputs, and the expressions that read them; the instructions
+// LET, ASSIGN, UPDATE, IMAGE and REAL.
+//
+// An image follows the outside while it is connected: UPDATE ON and no IMAGE (OPT-7.98, 7.100). In
+// simulation nothing outside is read or written (OPT-6.24, 6.25).
+class DataAccess : private VariableAccess {
+ public:
+  DataAccess(Situation& situation, const OptimoParameters& parameters, ProgramCounter& counter,
+             const Ride& ride, PassageEffects& effects)
+      : situation_(situation),
+        parameters_(parameters),
+        counter_(counter),
+        ride_(ride),
+        effects_(effects) {}
+
+  // Precondition: the instruction is one of those above. Errors: of the expression,
+  // IntegerOverflow, AssignGroup, Gas3NotFitted.
+  Status Execute(const Instruction& i);
+
+  // Of the module in execution. Errors: of Evaluate.
+  Result<Value> Eval(Expression expression);
+  Result<double> Real(Expression expression);
+  Result<bool> Truth(ExprRange expression);
+  ExprRange RangeOf(Expression expression) const;
+  // To be tested later, with the PAR of now.
+  Condition ConditionOf(Expression expression) const;
+  Result<bool> Truth(const Condition& condition);
+
+  // Physical outputs of these groups follow their images again: UPDATE ON, REAL, the end of a
+  // simulation. Errors: Gas3NotFitted.
+  Status ConnectOutputs(std::uint8_t groups);
+
+ private:
+  float Read(Variable variable) override;
+  Status Write(Variable variable, float number);
+  Status SetOutput(int index, bool on);
+  Status Let(const Instruction& i);
+  Status Assign(const Instruction& i);
+  Status SetGroups(const Instruction& i);
+  double InputNow(VariableGroup group, int index) const;
+  bool Connected(std::uint8_t group) const;
+
+  Situation& situation_;
+  const OptimoParameters& parameters_;
+  ProgramCounter& counter_;
+  const Ride& ride_;
+  PassageEffects& effects_;
+};
+
+}  // namespace rmlcell::optimo

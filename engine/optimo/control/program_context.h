@@ -1,0 +1,100 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "engine/machine/observer.h"
+#include "engine/optimo/language/linker.h"
+#include "engine/optimo/machine/laser_unit.h"
+
+// What a program has of its own while it runs: values, copied with a snapshot. Programs are shared
+// and never change (OPT-B.65).
+namespace rmlcell::optimo {
+
+// An executable as it was loaded.
+struct LoadedProgram {
+  Executable executable{};
+  std::vector<ModuleIndex> index{};  // parallel to executable.modules
+
+  int slot() const { return executable.modules.front().slot; }
+};
+using Loaded = std::shared_ptr<const LoadedProgram>;
+Loaded Load(Executable executable);
+
+// One activation of a module: main, or a FUNCTION.
+struct Frame {
+  int module = 0;                        // of the executable
+  std::uint32_t next = 0;                // instruction
+  std::vector<std::uint32_t> returns{};  // of GOSUB
+  std::optional<int> error_label{};      // ERR, OPT-3.57
+  std::array<float, kParameterCount> parameters{};
+};
+
+// Values that hold until they are changed; common to the modules of an executable (OPT-9.16).
+struct Modal {
+  CoordType coord = CoordType::kRobot;
+  PathType path = PathType::kPtp;
+  double hole_radius_mm = 0.0;
+  double speed_percent = 70.0;
+  double accel_percent = 100.0;
+  double oversh_percent = 100.0;
+  std::uint8_t updated = kAllGroups;  // UPDATE ON
+  std::uint8_t imaged = 0;            // IMAGE
+};
+
+// TIMER. It belongs to the activation that set it: sequence numbers are local to a module.
+struct ProgramTimer {
+  SimTime due{0};
+  SimTime period{0};
+  int label = 0;
+  bool repeats = false;
+  std::size_t level = 0;    // ProgramContext::frames.size() where it was set
+  std::size_t running = 0;  // depth of its GOSUB while that runs; 0: it does not
+};
+
+// A GOSUB that is made between two instructions: /TIME of a /NEXT motion.
+struct DueGosub {
+  int label = 0;
+  std::size_t level = 0;
+};
+
+// An expression that is tested while the program goes on: with the PAR of its own activation.
+struct Condition {
+  Loaded program{};
+  int module = 0;
+  ExprRange expression{};
+  std::array<float, kParameterCount> parameters{};
+};
+
+// A WORK that is not over when the program goes on: /START with /NEXT, the dwell with /NEXT, /END.
+// OPT-3.38
+struct WorkTask {
+  enum class Stage { kStart, kDwell, kEnd };
+  Stage stage = Stage::kStart;
+  machine::Place place{};
+  int kind = 0;
+  int process = 0;
+  bool on = true;
+  bool stale = true;              // something happened since its condition was tested last
+  SimTime since{0};               // of the instruction; conditions are tested each CYCLE from here
+  SimTime until{0};               // kDwell
+  machine::PowerBySpeed after{};  // kDwell: the power then
+  std::optional<Condition> start{};
+  std::optional<Condition> end{};
+};
+
+// A program that runs or waits for the one that it CALLed.
+struct ProgramContext {
+  Loaded program{};
+  std::vector<Frame> frames{};  // main module first
+  Modal modal{};
+  Processes processes{};
+  std::optional<ProgramTimer> timer{};
+  SimTime timer_left{0};  // stands still while a CALLed program runs, OPT-B.89
+  std::optional<DueGosub> due_gosub{};
+  std::vector<WorkTask> work_tasks{};  // stand still while a CALLed program runs
+};
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,76 @@
+#include "engine/optimo/control/waits.h"
+
+namespace rmlcell::optimo {
+
+void Waits::Begin(const Pending& pending) {
+  s_.pending = pending;
+  s_.pending.since = situation_.now;
+  s_.pending.told = situation_.now;
+  s_.pending.place = situation_.place;
+}
+
+void Waits::BeginTime(double seconds, machine::WaitKind kind) {
+  Begin({.kind = Pending::Kind::kTime, .until = After(situation_.now, seconds), .wait = kind});
+}
+
+void Waits::BeginCondition(ExprRange expression, bool of_move) {
+  Begin({.kind = Pending::Kind::kCondition, .expression = expression, .of_move = of_move});
+}
+
+void Waits::Tell() {
+  Pending& pending = s_.pending;
+  const bool timed = pending.kind == Pending::Kind::kTime;
+  const bool condition =
+      pending.kind == Pending::Kind::kCondition || pending.kind == Pending::Kind::kNoMotion;
+  if (!timed && !condition) return;
+  if (ride_.active() == nullptr && situation_.now > pending.told) {
+    const Beam& beam = situation_.beam;
+    telling_.observer().OnWait({.start = pending.told,
+                                .end = situation_.now,
+                                .place = pending.place,
+                                .kind = timed ? pending.wait : machine::WaitKind::kCondition,
+                                .beam_on = beam.on,
+                                .power_percent = beam.on ? beam.power.constant_percent : 0.0});
+  }
+  pending.told = situation_.now;
+}
+
+void Waits::End() {
+  Tell();
+  s_.pending = {};
+}
+
+void Waits::EndMet() {
+  End();
+  s_.condition_met = true;
+}
+
+void Waits::Shift(SimTime stood) {
+  if (!waits()) return;
+  s_.pending.since = situation_.now;
+  s_.pending.told = situation_.now;
+  s_.pending.until += stood;
+}
+
+bool Waits::PollingTakesTime(int slot, std::uint32_t instruction) {
+  constexpr int kReadsAtOnce = 1000;  // loops that count to less are not slowed
+  Polling& polling = s_.polling;
+  if (polling.program != slot || polling.instruction != instruction) {
+    if (polling.at != situation_.now) {
+      polling = {.program = slot, .instruction = instruction, .at = situation_.now, .count = 1};
+    }
+    return false;
+  }
+  if (polling.at != situation_.now) {
+    polling.at = situation_.now;
+    polling.count = 0;
+  }
+  if (++polling.count > kReadsAtOnce) polling.slow = true;
+  if (!polling.slow || polling.count == 1) return false;
+  Begin({.kind = Pending::Kind::kTime,
+         .until = cycle_.NextTick(situation_.now, SimTime(0)),
+         .wait = machine::WaitKind::kCondition});
+  return true;
+}
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,99 @@
+#pragma once
+
+#include "engine/machine/run.h"
+#include "engine/optimo/language/ast.h"
+#include "engine/optimo/machine/situation.h"
+#include "engine/optimo/machine/system_cycle.h"
+#include "engine/optimo/machine/telling.h"
+#include "engine/optimo/ride/ride.h"
+
+namespace rmlcell::optimo {
+
+// What the control waits for before it goes on with the program.
+struct Pending {
+  enum class Kind {
+    kNone,
+    kStandstill,  // motions to be over, then the program goes on at the same instruction
+    kTime,        // until `until`
+    kCondition,   // until the expression of the instruction is true, then it is carried out
+    kTakeOver,    // the next tick, when the /NEXT motion is brought to rest
+    kNoMotion,    // the end of a MOVE that never moves (move_watch.h)
+  };
+  Kind kind = Kind::kNone;
+  SimTime since{0};
+  SimTime until{0};
+  SimTime told{0};  // reported up to here
+  machine::WaitKind wait = machine::WaitKind::kDwell;
+  machine::Place place{};         // of the instruction that waits
+  ExprRange expression{};         // kCondition: of the module of the innermost frame
+  bool of_move = false;           // kCondition: /START of a MOVE, whose /TIME counts the wait
+  machine::PowerBySpeed after{};  // kTime, WaitKind::kPierce: the power of the beam then
+};
+
+// A loop that reads an input again and again, and lets no time pass by itself.
+struct Polling {
+  int program = 0;
+  std::uint32_t instruction = 0;
+  SimTime at{-1};     // when it was read last
+  int count = 0;      // how often at that instant
+  bool slow = false;  // each further time takes a CYCLE
+};
+
+struct WaitState {
+  Pending pending{};
+  Polling polling{};
+  bool condition_met = false;    // that the instruction in execution waited for
+  bool input_changed = false;    // conditions are to be tested again, before the next tick
+  SimTime instruction_since{0};  // when the instruction in execution began
+};
+
+// The waits of the program, which are told in parts: up to what changes meanwhile. While a motion
+// goes on beside the program (/NEXT) there is nothing to tell: that time is the motion's.
+class Waits {
+ public:
+  Waits(WaitState& state, const Situation& situation, SystemCycle cycle, const Telling& telling,
+        const Ride& ride)
+      : s_(state), situation_(situation), cycle_(cycle), telling_(telling), ride_(ride) {}
+
+  const Pending& pending() const { return s_.pending; }
+  bool waits() const { return s_.pending.kind != Pending::Kind::kNone; }
+  bool condition_met() const { return s_.condition_met; }
+  bool input_changed() const { return s_.input_changed; }
+  SimTime instruction_since() const { return s_.instruction_since; }
+
+  // From now on, for the instruction in execution.
+  void Begin(const Pending& pending);
+  void BeginTime(double seconds, machine::WaitKind kind);
+  void BeginCondition(ExprRange expression, bool of_move = false);
+  void BeginStandstill() { Begin({.kind = Pending::Kind::kStandstill}); }
+  void BeginNoMotion() { Begin({.kind = Pending::Kind::kNoMotion}); }
+  // Tells what of the wait was not yet told: up to now.
+  void Tell();
+  // From here on it is told: what was before is the motion's.
+  void ToldByMotion() { s_.pending.told = situation_.now; }
+  // It is over, and told.
+  void End();
+  // The condition that the instruction waited for is true: it is carried out.
+  void EndMet();
+  // The machine stood halted so long, and with it the time of this wait.
+  void Shift(SimTime stood);
+
+  void BeginInstruction() { s_.instruction_since = situation_.now; }
+  void EndInstruction() { s_.condition_met = false; }
+  void InputChanged() { s_.input_changed = true; }
+  void InputSeen() { s_.input_changed = false; }
+
+  // An instruction that reads an input over and over in one instant waits for something to change
+  // outside: from its thousandth time on each further one takes a CYCLE, in which the control
+  // samples its inputs. True: it waits, and is fetched again then.
+  bool PollingTakesTime(int slot, std::uint32_t instruction);
+
+ private:
+  WaitState& s_;
+  const Situation& situation_;
+  const SystemCycle cycle_;
+  const Telling& telling_;
+  const Ride& ride_;
+};
+
+}  // namespace rmlcell::optimo

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "engine/machine/observer.h"
+#include "engine/motion/planner/planner.h"
+#include "engine/optimo/language/ast.h"
+#include "engine/optimo/ride/travel.h"
+
+namespace rmlcell::optimo {
+
+// What is told when a motion begins and when it is over.
+struct MoveNote {
+  machine::Place place{};
+  motion::ProgramPoint program_point{};
+  double program_a = 0.0;
+  double feed_mm_s = 0.0;
+  PathType path = PathType::kPtp;
+  bool last = true;  // of its MOVE; false: the lead of a hole
+  bool fly = false;
+  motion::MoveCommand::Kind kind = motion::MoveCommand::Kind::kContour;
+  double speed_percent = 0.0;  // as programmed; for a change of the override on the way
+  double accel_fraction = 1.0;
+  std::vector<BeyondTravel> beyond{};  // a forecast: told when the motion begins
+};
+
+// A command as the planner got it, kept until its motion is over; without a move: a mark.
+struct AppendedItem {
+  std::uint64_t tag = 0;
+  std::optional<motion::MoveCommand> move{};
+};
+
+// A motion under way.
+struct ActiveMotion {
+  motion::PlannedMotion motion{};
+  MoveNote note{};
+  SimTime start{0};
+  SimTime arrival{0};  // end of the profile
+  SimTime end{0};      // with settling
+  SimTime told{0};     // parts up to here were reported
+  bool ended = false;  // brought to rest by /END, /TIME or a MOVE that takes over
+
+  double s_at(SimTime time) const { return motion.speed.At(ToSeconds(time - start)).s; }
+};
+
+}  // namespace rmlcell::optimo

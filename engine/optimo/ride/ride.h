@@ -1,0 +1,211 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "engine/motion/planner/planner.h"
+#include "engine/motion/ride/ride_protocol.h"
+#include "engine/optimo/ride/move_note.h"
+#include "engine/optimo/ride/travel.h"
+
+// The motions of the machine in time: planned, under way, interrupted, held back.
+namespace rmlcell::optimo {
+
+// Whether the program goes on beside a motion of /NEXT. A halt on the path leaves it as it is: the
+// motion goes on at START as it did before.
+enum class Beside : std::uint8_t {
+  kNo,
+  kComes,  // behind a /FLY passage: from the motion of RideState::beside_from on
+  kNow,    // beside the one under way
+};
+
+struct RideState {
+  explicit RideState(const motion::MachineLimits& limits) : planner(limits) {}
+
+  motion::Planner planner;
+  motion::AxisPose planned_axes{};  // after everything that was appended
+  std::uint64_t next_tag = 1;
+  std::deque<std::pair<std::uint64_t, MoveNote>> notes{};  // of motions not over, by tag
+  std::deque<AppendedItem> appended{};                     // while /FLY passages are open
+  bool passing = false;                                    // see Ride::passing
+  int run_ahead = 0;                                       // see Ride::RunsAhead
+
+  std::deque<motion::PlannedItem> timeline{};  // to come
+  std::optional<ActiveMotion> active{};        // under way
+  Beside beside = Beside::kNo;
+  std::uint64_t beside_from = 0;
+
+  motion::RideProtocol protocol{};
+  std::deque<motion::PlannedItem> interrupted{};  // STOP: what follows at START
+  std::deque<AppendedItem> held{};                // HOLD: what follows at START
+  machine::Place halted_behind{};  // the move that HOLD made exact, or that STOP interrupted
+};
+
+// Told by a ride, at the time of its situation.
+class RideListener {
+ public:
+  virtual ~RideListener() = default;
+  virtual void OnMark(std::uint64_t tag) = 0;          // the mark was passed
+  virtual void OnMotionBegins(std::uint64_t tag) = 0;  // and is under way from now on
+};
+
+// What is appended becomes motions that begin as soon as the one before is over. The program runs
+// ahead of /FLY passages: a motion whose passage is open may be held back until it is decided.
+//
+// Time is that of the situation: whoever lets it pass calls Arrive() at NextEvent(), and Start().
+class Ride {
+ public:
+  Ride(RideState& state, Situation& situation, const OptimoParameters& parameters, Travel& travel,
+       const Telling& telling, RideListener& listener)
+      : s_(state),
+        situation_(situation),
+        parameters_(parameters),
+        travel_(travel),
+        telling_(telling),
+        listener_(listener) {}
+
+  // --- ride.cc: motions one after the other ---
+
+  // Motions are under way or to come.
+  bool busy() const { return s_.active || !s_.timeline.empty(); }
+  // The planner may hold a /FLY motion back.
+  bool passing() const { return s_.passing; }
+  bool beside() const { return s_.beside == Beside::kNow; }
+  const ActiveMotion* active() const { return s_.active ? &*s_.active : nullptr; }
+  bool moves() const { return s_.active && situation_.now < s_.active->arrival; }
+  bool waits_to_start() const { return !s_.active && !s_.timeline.empty(); }
+  bool more_to_come() const { return !s_.timeline.empty(); }
+
+  motion::Head head() const { return HeadOf(situation_.machine, parameters_); }
+  motion::TipPose tip() const;
+  motion::AxisPose axes() const;
+  double tip_speed_mm_s() const;
+  const motion::AxisPose& planned_axes() const { return s_.planned_axes; }
+  std::uint64_t next_tag() const { return s_.next_tag; }
+  std::uint64_t lookahead_starved() const { return s_.planner.lookahead_starved(); }
+  // The step that the machine is at: the program runs ahead of /FLY moves, but not of one of /NEXT,
+  // which goes on beside it.
+  machine::Place place() const;
+
+  // The machine stands there, and nothing is planned.
+  void PutAt(const motion::AxisPose& axes) { s_.planned_axes = axes; }
+
+  // The motion behind all others. Errors: of Planner::Append; nothing has changed then.
+  Status Append(motion::MoveCommand command, const MoveNote& note);
+  // Something that happens behind what was appended: its tag.
+  std::uint64_t AppendMark();
+  // The machine stands behind what was appended: the passage that is open becomes a stop.
+  void EndChain();
+  // The program goes on beside the motions from this tag on. `ran_ahead`: they are behind a /FLY
+  // passage, and it waits for them to begin.
+  void GoOnBeside(std::uint64_t tag, bool ran_ahead);
+  // One more instruction is carried out between two motions of a passage. False: they are too many,
+  // and the passage becomes a stop.
+  bool RunsAhead();
+
+  // Marks take effect at once, motions begin.
+  void Start();
+  // When the motion under way is over, or one is to begin; kForever when none is.
+  SimTime NextEvent() const;
+  // The motion under way is over. The tag of its move when that is over, too, and told.
+  std::optional<std::uint64_t> Arrive();
+  // Reports what of the motion under way was not yet reported: something about it changes now.
+  void TellUpToNow();
+
+  // The motion under way comes to rest on its path, at once, and its move is over where it stands:
+  // /END, /TIME, a MOVE that takes over. Such moves end in a stop, so the ramp never leaves their
+  // path.
+  void EndHere();
+  // A MOVE takes over from that of /NEXT. False: it came to its end before.
+  bool TakeOver();
+  // An error: what goes on beside the program ends here, the rest where it would. False: the
+  // machine stands.
+  bool EndForError();
+  // The run is over: the machine stays where it is.
+  void Freeze();
+  // Tells what the motions not begun would leave their travel by.
+  void TellViolationsToCome();
+  void DropAll();
+
+  // --- ride_stop.cc, ride_hold.cc, ride_override.cc: keys on the way. motion.md 6 ---
+
+  motion::RideProtocol& protocol() { return s_.protocol; }
+  const motion::RideProtocol& protocol() const { return s_.protocol; }
+
+  // HOLD: ends the motions at the first target where the machine can come to rest: that of the move
+  // under way, or of a later one when its passage has begun or is too near. The program has run
+  // ahead by then; what it appended behind that move waits, and is planned anew at START. Nothing
+  // changes on the last move, or when not enough is planned yet. OPT-4.17
+  void Hold();
+  // STOP: the machine comes to rest along the planned path, over as many motions as that takes, and
+  // START goes on from there over the same path. False: not enough is planned yet to come to rest
+  // on; the program runs ahead a little more. OPT-4.18
+  bool Stop();
+  // It has come to rest for either: the place of the move that was under way.
+  machine::Place Rest();
+  // START
+  void Resume();
+  // Motions not begun are planned with the new value. The one under way goes over to it from where
+  // it is; a bend that has begun, or is too near to slow down before it, keeps its shape and speed.
+  // A machine that brakes for a stop too near for anything else goes on braking. OPT-4.38
+  void ChangeOverride(double percent);
+
+ private:
+  struct ChainPlace {
+    motion::PlannedMotion motion;
+    motion::PathState state;
+    bool under_way = false;
+  };
+  // Where a chain that is planned anew goes on: after the way that brings the acceleration to zero,
+  // and the speed down where it must.
+  struct Onward {
+    std::size_t own = 0;         // of RideState::appended: the command of that place
+    double lead_length = 0.0;    // of that way, by the s of the motion
+    double speed = 0.0;          // at its end, by the same s
+    double speed_on_move = 0.0;  // by that of the command
+    double measure = 1.0;        // s of what is planned anew per s of the motion
+    motion::MoveCommand first;   // what is left of the command then
+  };
+
+  void Drain();
+  void BeginProfile();
+  void TellMotion(SimTime until);
+  const MoveNote* NoteOf(std::uint64_t tag) const;
+  MoveNote* NoteOf(std::uint64_t tag);
+  const motion::MoveCommand* Appended(std::uint64_t tag) const;
+  motion::PathState StateNow() const;
+
+  void HoldOverManyMoves();
+  void HoldBehind(std::uint64_t tag, const std::vector<motion::PlannedItem>& kept);
+  void HoldAllBehind(std::uint64_t target);
+  void PlanHeld();
+
+  double FractionOf(const MoveNote& note) const;
+  void AdaptToOverride(AppendedItem& item);
+  void AdaptMotions();
+  bool ReplanChain();
+  bool ReplanFrom(const ChainPlace& place, const std::vector<motion::PlannedItem>& kept);
+  std::optional<Onward> OnwardFrom(const ChainPlace& place, const motion::MoveCommand& command,
+                                   double speed) const;
+  std::optional<motion::Planner> PlanOnward(const Onward& onward,
+                                            std::span<const AppendedItem> later) const;
+  void GoOnward(const ChainPlace& place, const Onward& onward,
+                const std::vector<motion::PlannedItem>& kept);
+
+  RideState& s_;
+  Situation& situation_;
+  const OptimoParameters& parameters_;
+  Travel& travel_;
+  const Telling& telling_;
+  RideListener& listener_;
+};
+
+// "LIN", as moves are told.
+std::string_view NameOfPath(PathType path);
+
+}  // namespace rmlcell::optimo
