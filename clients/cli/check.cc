@@ -12,7 +12,7 @@
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
 #include "engine/families/families.h"
-#include "engine/simulation/run/motion_check.h"
+#include "engine/simulation/run/rehearsal.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/setup.h"
@@ -24,7 +24,7 @@ namespace {
 // One program of the command line, and what there is to say about it.
 struct CheckedFile {
   std::string name;
-  std::string text;
+  machine::Bytes text;
   const machine::MachineFamily* family = nullptr;
   std::optional<machine::Parameters> parameters;
   machine::Translation translation;
@@ -34,11 +34,10 @@ struct CheckedFile {
   bool ok() const { return translation.ok && !motion.has_errors(); }
 };
 
-machine::StoredProgram StoredFrom(const CheckedFile& file) {
-  return {.name = file.name,
-          .object = std::make_shared<const std::string>(file.translation.object),
-          .executable = nullptr,
-          .source = std::make_shared<const machine::SourceNotes>(file.translation.source)};
+simulation::MemoryProgram InMemory(const CheckedFile& file) {
+  return {.slot = file.slot,
+          .name = file.name,
+          .translation = std::make_shared<const machine::Translation>(file.translation)};
 }
 
 // The files of one family make one program memory, so that they can call each other: each in the
@@ -65,12 +64,11 @@ Status CheckMotions(std::vector<CheckedFile*>& files, const machine::InputScript
                     bool advice) {
   ChooseSlots(files);
   std::map<int, CheckedFile*> by_slot;
-  machine::RunSetup memory(*files.front()->parameters);
-  memory.inputs = inputs;
+  simulation::ProgramMemory memory{.family = files.front()->family};
   std::set<int> slots;
   for (CheckedFile* file : files) {
     if (file->slot == 0) continue;
-    memory.programs[file->slot] = StoredFrom(*file);
+    memory.programs.push_back(InMemory(*file));
     by_slot[file->slot] = file;
     slots.insert(file->slot);
   }
@@ -87,17 +85,17 @@ Status CheckMotions(std::vector<CheckedFile*>& files, const machine::InputScript
       if (owner != owners.end()) owner->second->motion.cut_short[slot] = why;
     }
   };
-  const machine::MachineFamily& family = *files.front()->family;
-  const auto check = simulation::CheckMotion(family, memory, slots);
+  const machine::Parameters& parameters = *files.front()->parameters;
+  const auto check = simulation::CheckMotionOf(memory, parameters, slots, inputs);
   if (!check) return check.error();
   take(*check, by_slot);
   for (CheckedFile* file : files) {
     if (file->slot > 0) continue;
     // Its slot is that of another file: it takes the place of that one.
     file->slot = SlotFromName(file->name).value_or(kSlotMin);
-    machine::RunSetup alone = memory;
-    alone.programs[file->slot] = StoredFrom(*file);
-    const auto own = simulation::CheckMotion(family, alone, {file->slot});
+    simulation::ProgramMemory alone = memory;
+    alone.programs.push_back(InMemory(*file));
+    const auto own = simulation::CheckMotionOf(alone, parameters, {file->slot}, inputs);
     if (!own) return own.error();
     take(*own, {{file->slot, file}});
   }
@@ -108,10 +106,11 @@ Status Translate(CheckedFile& file, const CheckOptions& options) {
   Result<std::string> text = bridge::ReadFile(file.name, kFileBytesMax);
   if (!text) return text.error();
   if (text->empty()) return Error{ErrorCode::kCellEmptyProgram, file.name, {}};
-  file.text = *std::move(text);
+  file.text = std::make_shared<const std::string>(*std::move(text));
   file.translation =
-      file.family->Translate({.name = file.name, .bytes = file.text}, *file.parameters,
-                             {.advice = !options.errors_only, .source = true});
+      simulation::TranslateProgram(*file.family, *file.parameters,
+                                   {.file_name = file.name, .bytes = file.text, .is_source = true},
+                                   {.advice = !options.errors_only, .source = true});
   return {};
 }
 
@@ -121,8 +120,8 @@ void Show(const CheckedFile& file, bool json) {
     Print(Json(bridge::FindingsOf(translation, file.motion, file.slot)));
     return;
   }
-  PrintFindings(translation.diagnostics, translation.diagnostics_dropped, file.text);
-  PrintFindings(file.motion.findings, file.motion.findings_dropped, file.text);
+  PrintFindings(translation.diagnostics, translation.diagnostics_dropped, *file.text);
+  PrintFindings(file.motion.findings, file.motion.findings_dropped, *file.text);
   const std::size_t findings = translation.diagnostics.size() + translation.diagnostics_dropped +
                                file.motion.findings.size() + file.motion.findings_dropped;
   std::string line = file.name + ": " +
@@ -159,10 +158,9 @@ int Check(const CheckOptions& options) {
   for (const std::string& name : options.files) {
     const auto family = FamilyFor(options.family.empty() ? machine->family : options.family, name);
     if (!family) return Refuse(family.error());
-    auto parameters = bridge::MakeParameters(**family, machine->profile, machine->parameters);
+    auto parameters = machine::MakeParameters(**family, machine->profile, machine->parameters);
     if (!parameters) return Refuse(parameters.error());
-    files.push_back(
-        {.name = name, .text = {}, .family = *family, .parameters = *std::move(parameters)});
+    files.push_back({.name = name, .family = *family, .parameters = *std::move(parameters)});
   }
   int exit_code = kGood;
   if (options.fix) {

@@ -132,12 +132,12 @@ Result<v1::SimulationOptions> OptionsMessage(const SimulateOptions& options,
 
 // --executable 44 makes the executable of program 44 beforehand; --executable 44=FILE brings one.
 Status AddExecutables(const SimulateOptions& options, const machine::MachineFamily& family,
-                      std::vector<bridge::ProgramInput>& programs, std::vector<int>& to_make) {
+                      std::vector<simulation::MemoryProgram>& programs, std::vector<int>& to_make) {
   for (const std::string& text : options.executables) {
     const Result<std::pair<int, std::string>> named = ParseSlotFile(text);
     if (!named) return named.error();
     if (named->second.empty()) {
-      if (std::ranges::find(programs, named->first, &bridge::ProgramInput::slot) ==
+      if (std::ranges::find(programs, named->first, &simulation::MemoryProgram::slot) ==
           programs.end()) {
         return Error{
             ErrorCode::kCellUsage, "--executable " + text + ": there is no such program", {}};
@@ -148,7 +148,8 @@ Status AddExecutables(const SimulateOptions& options, const machine::MachineFami
     Result<std::string> bytes = bridge::ReadFile(named->second, kFileBytesMax);
     if (!bytes) return bytes.error();
     if (const Status good = family.CheckExecutable(*bytes, named->first); !good) return good;
-    const auto program = std::ranges::find(programs, named->first, &bridge::ProgramInput::slot);
+    const auto program =
+        std::ranges::find(programs, named->first, &simulation::MemoryProgram::slot);
     if (program == programs.end()) {
       return Error{ErrorCode::kCellUsage,
                    "--executable " + text + ": there is no program " + std::to_string(named->first),
@@ -187,9 +188,10 @@ int Simulate(const SimulateOptions& options) {
   const Result<v1::SimulationOptions> message = OptionsMessage(options, *loaded->family);
   if (!message) return Refuse(message.error());
   for (const v1::StepPlace* place : {&message->simul(), &message->breakpoint()}) {
-    const bool there = place->program() == 0 ||
-                       std::ranges::find(loaded->programs, place->program(),
-                                         &bridge::ProgramInput::slot) != loaded->programs.end();
+    const bool there =
+        place->program() == 0 ||
+        std::ranges::find(loaded->programs, place->program(), &simulation::MemoryProgram::slot) !=
+            loaded->programs.end();
     if (!there) {
       return Refuse({ErrorCode::kCellUsage,
                      "--simul, --break: there is no program " + std::to_string(place->program()),
@@ -213,16 +215,14 @@ int Simulate(const SimulateOptions& options) {
     state = std::move(*bytes);
   }
 
-  const bridge::SetupInput input{
+  const simulation::ProgramMemory memory{
       .family = loaded->family,
       .profile = options.profile.empty() ? machine->profile : options.profile,
       .parameters = machine->parameters,
       .programs = loaded->programs,
-      .main_program = loaded->main_slot,
-      .schedules = std::nullopt,
-      .machine_state = state,
-      .default_mode = machine::Mode::kCycle};
-  Result<bridge::SetupOutcome> outcome = bridge::MakeSetup(input, *message, budget);
+      .machine_state = state};
+  Result<simulation::PreparedRun> outcome = simulation::PrepareRun(
+      memory, bridge::RunOptionsOf(*message, budget, loaded->main_slot, machine::Mode::kCycle));
   if (!outcome) return Refuse(outcome.error());
   if (!outcome->setup) {
     if (options.json) {

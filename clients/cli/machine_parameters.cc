@@ -94,7 +94,7 @@ int ListParameters(const std::string& family_id, const std::string& profile_id, 
   }
   const auto family = FamilyFor(family_id, {});
   if (!family) return Refuse(family.error());
-  const Result<machine::Parameters> parameters = bridge::MakeParameters(**family, profile_id, {});
+  const Result<machine::Parameters> parameters = machine::MakeParameters(**family, profile_id, {});
   if (!parameters) return Refuse(parameters.error());
   if (json) {
     nlohmann::ordered_json answer = FamilyJson(**family);

@@ -172,6 +172,18 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
   }
 }
 
+// What the verbs of a server are given on the command line; each uses its own.
+struct RemoteArguments {
+  std::string machine, project, job;
+  std::string file, form, output, etag, filter;
+  int slot = 0;
+  int limit = 20;
+  std::int64_t after = 0;
+  bool check_only = false;
+  bool insert = false;
+  SubmitRequest submit;
+};
+
 CLI::App* RemoteVerb(CLI::App& app, const char* name, const char* text, const std::string& examples,
                      Remote& remote) {
   CLI::App* verb = app.add_subcommand(name, text);
@@ -182,16 +194,13 @@ CLI::App* RemoteVerb(CLI::App& app, const char* name, const char* text, const st
   return verb;
 }
 
-void AddProgramVerbs(CLI::App& app, Remote& remote, int& exit_code) {
-  static std::string machine, file, form, output, etag;
-  static int slot = 0;
-  static bool check_only = false;
+void AddProgramVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exit_code) {
   RemoteVerb(app, "machines", "List the machines of the cell", "  rmlcell machines", remote)
       ->callback([&] { exit_code = Machines(remote); });
   CLI::App* programs = RemoteVerb(app, "programs", "List the programs of a machine",
                                   "  rmlcell programs mill-1", remote);
-  programs->add_option("MACHINE", machine)->required();
-  programs->callback([&] { exit_code = Programs(remote, machine); });
+  programs->add_option("MACHINE", given.machine)->required();
+  programs->callback([&] { exit_code = Programs(remote, given.machine); });
   CLI::App* put = RemoteVerb(
       app, "put", "Store a program in a slot of a machine",
       "  rmlcell put mill-1 7 part.rml                  as it is, or refused with all that is "
@@ -199,13 +208,16 @@ void AddProgramVerbs(CLI::App& app, Remote& remote, int& exit_code) {
       "  rmlcell put optimo-1 44 44.S --check-only      say what would be stored\n"
       "  rmlcell put optimo-1 44 44.S --etag 3          only if nobody has changed it since",
       remote);
-  put->add_option("MACHINE", machine)->required();
-  put->add_option("SLOT", slot, "1 to 99; 101 to 199 for an executable")->required();
-  put->add_option("FILE", file)->required();
-  put->add_option("--etag", etag,
+  put->add_option("MACHINE", given.machine)->required();
+  put->add_option("SLOT", given.slot, "1 to 99; 101 to 199 for an executable")->required();
+  put->add_option("FILE", given.file)->required();
+  put->add_option("--etag", given.etag,
                   "only if the program still has this etag; none: only if the slot is empty");
-  put->add_flag("--check-only", check_only, "say what would be stored");
-  put->callback([&] { exit_code = PutProgram(remote, machine, slot, file, etag, check_only); });
+  put->add_flag("--check-only", given.check_only, "say what would be stored");
+  put->callback([&] {
+    exit_code =
+        PutProgram(remote, given.machine, given.slot, given.file, given.etag, given.check_only);
+  });
   CLI::App* get = RemoteVerb(
       app, "get", "Get a program of a machine",
       "  rmlcell get optimo-1 44                        its source: as it was stored, or decompiled\n"
@@ -213,35 +225,33 @@ void AddProgramVerbs(CLI::App& app, Remote& remote, int& exit_code) {
       "  rmlcell get optimo-1 44 -o 44.O                its object\n"
       "  rmlcell get optimo-1 144 -o 144.X              its executable",
       remote);
-  get->add_option("MACHINE", machine)->required();
-  get->add_option("SLOT", slot)->required();
-  get->add_option("--form", form,
+  get->add_option("MACHINE", given.machine)->required();
+  get->add_option("SLOT", given.slot)->required();
+  get->add_option("--form", given.form,
                   "source, object, executable, listing; default: source, object into a file .O")
       ->check(CLI::IsMember({"source", "object", "executable", "listing"}));
-  get->add_option("-o,--output", output, "file; default: standard output");
-  get->callback([&] { exit_code = GetProgram(remote, machine, slot, form, output); });
+  get->add_option("-o,--output", given.output, "file; default: standard output");
+  get->callback(
+      [&] { exit_code = GetProgram(remote, given.machine, given.slot, given.form, given.output); });
   CLI::App* remove =
       RemoteVerb(app, "delete", "Delete a program, or the executable of slot - 100",
                  "  rmlcell delete optimo-1 44                     the program and its executable\n"
                  "  rmlcell delete optimo-1 144                    the executable alone",
                  remote);
-  remove->add_option("MACHINE", machine)->required();
-  remove->add_option("SLOT", slot)->required();
-  remove->callback([&] { exit_code = DeleteProgram(remote, machine, slot); });
+  remove->add_option("MACHINE", given.machine)->required();
+  remove->add_option("SLOT", given.slot)->required();
+  remove->callback([&] { exit_code = DeleteProgram(remote, given.machine, given.slot); });
   CLI::App* stale = RemoteVerb(
       app, "stale", "Say which executables of a machine are older than its programs, and why",
       "  rmlcell stale optimo-1                         they run the old FUNCTION code until "
       "they are deleted\n"
       "  rmlcell delete optimo-1 132                    the next run of 32 links again",
       remote);
-  stale->add_option("MACHINE", machine)->required();
-  stale->callback([&] { exit_code = StaleExecutables(remote, machine); });
+  stale->add_option("MACHINE", given.machine)->required();
+  stale->callback([&] { exit_code = StaleExecutables(remote, given.machine); });
 }
 
-void AddProjectVerbs(CLI::App& app, Remote& remote, int& exit_code) {
-  static std::string project, machine, file;
-  static bool insert = false;
-  static bool check_only = false;
+void AddProjectVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exit_code) {
   CLI::App* projects = RemoteVerb(
       app, "projects", "List, make, show, update, delete and transfer projects",
       "  rmlcell projects                               all of them\n"
@@ -257,36 +267,34 @@ void AddProjectVerbs(CLI::App& app, Remote& remote, int& exit_code) {
   CLI::App* list = projects->add_subcommand("list", "List the projects");
   list->callback([&] { exit_code = Projects(remote); });
   CLI::App* show = projects->add_subcommand("show", "Print a project as JSON");
-  show->add_option("PROJECT", project)->required();
-  show->callback([&] { exit_code = GetProject(remote, project); });
+  show->add_option("PROJECT", given.project)->required();
+  show->callback([&] { exit_code = GetProject(remote, given.project); });
   CLI::App* create = projects->add_subcommand(
       "create", "Make a project of a folder or of a JSON file (message Project)");
-  create->add_option("PROJECT", project)->required();
-  create->add_option("PATH", file, "folder with files like 12.S, or JSON file")->required();
-  create->callback([&] { exit_code = CreateProject(remote, project, file); });
+  create->add_option("PROJECT", given.project)->required();
+  create->add_option("PATH", given.file, "folder with files like 12.S, or JSON file")->required();
+  create->callback([&] { exit_code = CreateProject(remote, given.project, given.file); });
   CLI::App* update = projects->add_subcommand(
       "update", "Put a folder or a JSON file (message Project) in place of a project");
-  update->add_option("PROJECT", project)->required();
-  update->add_option("PATH", file, "folder with files like 12.S, or JSON file")->required();
-  update->callback([&] { exit_code = UpdateProject(remote, project, file); });
+  update->add_option("PROJECT", given.project)->required();
+  update->add_option("PATH", given.file, "folder with files like 12.S, or JSON file")->required();
+  update->callback([&] { exit_code = UpdateProject(remote, given.project, given.file); });
   CLI::App* remove = projects->add_subcommand("delete", "Delete a project");
-  remove->add_option("PROJECT", project)->required();
-  remove->callback([&] { exit_code = DeleteProject(remote, project); });
+  remove->add_option("PROJECT", given.project)->required();
+  remove->callback([&] { exit_code = DeleteProject(remote, given.project); });
   CLI::App* transfer = projects->add_subcommand(
       "transfer", "Compile and store a project on a machine: all or nothing");
-  transfer->add_option("PROJECT", project)->required();
-  transfer->add_option("MACHINE", machine)->required();
-  transfer->add_flag("--insert", insert, "insert missing WORKDEFs of the project");
-  transfer->add_flag("--check-only", check_only, "say what would be stored");
-  transfer->callback(
-      [&] { exit_code = TransferProject(remote, project, machine, insert, check_only); });
+  transfer->add_option("PROJECT", given.project)->required();
+  transfer->add_option("MACHINE", given.machine)->required();
+  transfer->add_flag("--insert", given.insert, "insert missing WORKDEFs of the project");
+  transfer->add_flag("--check-only", given.check_only, "say what would be stored");
+  transfer->callback([&] {
+    exit_code =
+        TransferProject(remote, given.project, given.machine, given.insert, given.check_only);
+  });
 }
 
-void AddJobVerbs(CLI::App& app, Remote& remote, int& exit_code) {
-  static SubmitRequest submit;
-  static std::string job, filter, output;
-  static int limit = 20;
-  static std::int64_t after = 0;
+void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exit_code) {
   CLI::App* verb = RemoteVerb(
       app, "submit", "Submit a job",
       "  rmlcell submit mill-1 --slot 7 --watch         a stored program, watched live\n"
@@ -294,25 +302,25 @@ void AddJobVerbs(CLI::App& app, Remote& remote, int& exit_code) {
       "  rmlcell submit optimo-1 part.S --pace 1 --watch   as fast as the machine would be\n"
       "  rmlcell submit optimo-1 part.S --kind check    only what is wrong with it",
       remote);
-  verb->add_option("MACHINE", submit.machine)->required();
-  verb->add_option("FILE", submit.file, "a program for this job only; or give --slot");
-  verb->add_option("--slot", submit.slot, "slot of a stored program, or where FILE goes")
+  verb->add_option("MACHINE", given.submit.machine)->required();
+  verb->add_option("FILE", given.submit.file, "a program for this job only; or give --slot");
+  verb->add_option("--slot", given.submit.slot, "slot of a stored program, or where FILE goes")
       ->check(CLI::Range(1, 99));
-  verb->add_option("--kind", submit.kind, "simulate or check")
+  verb->add_option("--kind", given.submit.kind, "simulate or check")
       ->check(CLI::IsMember({"simulate", "check", "run"}));
-  verb->add_option("--title", submit.title);
-  verb->add_option("--request-id", submit.request_id, "repeating it gives the same job");
-  verb->add_option("--override", submit.override_percent, "feed override, percent");
-  verb->add_option("--pace", submit.pace,
+  verb->add_option("--title", given.submit.title);
+  verb->add_option("--request-id", given.submit.request_id, "repeating it gives the same job");
+  verb->add_option("--override", given.submit.override_percent, "feed override, percent");
+  verb->add_option("--pace", given.submit.pace,
                    "1: as fast as the machine would be; 10: ten times; 0: at once")
       ->check(CLI::Range(0.0, 1000.0));
-  verb->add_option("--inputs", submit.inputs_file, "external inputs and keys over time");
-  verb->add_flag("--trace", submit.trace, "keep a trace");
-  verb->add_flag("--watch", submit.watch, "watch the job to its end");
+  verb->add_option("--inputs", given.submit.inputs_file, "external inputs and keys over time");
+  verb->add_flag("--trace", given.submit.trace, "keep a trace");
+  verb->add_flag("--watch", given.submit.watch, "watch the job to its end");
   verb->callback([&] {
-    if (submit.file.empty() && submit.slot == 0)
+    if (given.submit.file.empty() && given.submit.slot == 0)
       throw CLI::ValidationError("submit", "give a FILE or --slot");
-    exit_code = SubmitJob(remote, submit);
+    exit_code = SubmitJob(remote, given.submit);
   });
   CLI::App* watch =
       RemoteVerb(app, "watch", "Watch a job live to its end",
@@ -320,34 +328,34 @@ void AddJobVerbs(CLI::App& app, Remote& remote, int& exit_code) {
                  "  rmlcell watch 17 --after 120                   what came after event 120\n"
                  "  rmlcell watch 17 --json | jq .event            for a script",
                  remote);
-  watch->add_option("JOB", job)->required();
-  watch->add_option("--after", after, "events after this sequence number only");
-  watch->callback([&] { exit_code = WatchJob(remote, job, after); });
+  watch->add_option("JOB", given.job)->required();
+  watch->add_option("--after", given.after, "events after this sequence number only");
+  watch->callback([&] { exit_code = WatchJob(remote, given.job, given.after); });
   CLI::App* jobs =
       RemoteVerb(app, "jobs", "List jobs, newest first",
                  "  rmlcell jobs                                   the newest 20\n"
                  "  rmlcell jobs --filter 'state = FAILED AND machine = machines/mill-1'",
                  remote);
-  jobs->add_option("--filter", filter, "state = FAILED AND machine = machines/mill-1");
-  jobs->add_option("--limit", limit)->check(CLI::Range(1, 1000));
-  jobs->callback([&] { exit_code = Jobs(remote, filter, limit); });
+  jobs->add_option("--filter", given.filter, "state = FAILED AND machine = machines/mill-1");
+  jobs->add_option("--limit", given.limit)->check(CLI::Range(1, 1000));
+  jobs->callback([&] { exit_code = Jobs(remote, given.filter, given.limit); });
   CLI::App* show = RemoteVerb(app, "job", "Show one job", "  rmlcell job 17", remote);
-  show->add_option("JOB", job)->required();
-  show->callback([&] { exit_code = ShowJob(remote, job); });
+  show->add_option("JOB", given.job)->required();
+  show->callback([&] { exit_code = ShowJob(remote, given.job); });
   CLI::App* cancel = RemoteVerb(app, "cancel", "Cancel a job", "  rmlcell cancel 17", remote);
-  cancel->add_option("JOB", job)->required();
-  cancel->callback([&] { exit_code = CancelJob(remote, job); });
+  cancel->add_option("JOB", given.job)->required();
+  cancel->callback([&] { exit_code = CancelJob(remote, given.job); });
   CLI::App* report = RemoteVerb(app, "report", "Show the report of a job",
                                 "  rmlcell report 17\n"
                                 "  rmlcell report 17 --json",
                                 remote);
-  report->add_option("JOB", job)->required();
-  report->callback([&] { exit_code = JobReport(remote, job); });
+  report->add_option("JOB", given.job)->required();
+  report->callback([&] { exit_code = JobReport(remote, given.job); });
   CLI::App* picture = RemoteVerb(app, "picture", "Get the picture of a job (SVG)",
                                  "  rmlcell picture 17 -o part.svg", remote);
-  picture->add_option("JOB", job)->required();
-  picture->add_option("-o,--output", output, "file; default: standard output");
-  picture->callback([&] { exit_code = JobPicture(remote, job, output); });
+  picture->add_option("JOB", given.job)->required();
+  picture->add_option("-o,--output", given.output, "file; default: standard output");
+  picture->callback([&] { exit_code = JobPicture(remote, given.job, given.output); });
 }
 
 }  // namespace
@@ -363,12 +371,13 @@ int main(int argc, char** argv) {
   // verb.
   if (const char* server = std::getenv("RMLCELL_SERVER"); server != nullptr && *server != '\0')
     remote.server = server;
+  RemoteArguments given;
   int exit_code = kGood;
   AddLocalVerbs(app, exit_code);
-  AddOfficeVerbs(app, exit_code);
-  AddProgramVerbs(app, remote, exit_code);
-  AddProjectVerbs(app, remote, exit_code);
-  AddJobVerbs(app, remote, exit_code);
+  AddTextToolVerbs(app, exit_code);
+  AddProgramVerbs(app, remote, given, exit_code);
+  AddProjectVerbs(app, remote, given, exit_code);
+  AddJobVerbs(app, remote, given, exit_code);
   const auto named = [&](CLI::App* verb) { return argc > 1 && verb->get_name() == argv[1]; };
   if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(named).empty()) {
     Complain("there is no verb '" + std::string(argv[1]) + "'; rmlcell --help lists them");

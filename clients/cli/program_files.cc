@@ -24,16 +24,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Result<bridge::ProgramInput> ReadProgram(const std::string& file, int slot, bool may_be_empty) {
+Result<simulation::MemoryProgram> ReadProgram(const std::string& file, int slot,
+                                              bool may_be_empty) {
   Result<std::string> bytes = bridge::ReadFile(file, kFileBytesMax);
   if (!bytes) return bytes.error();
   if (bytes->empty() && !may_be_empty) return Error{ErrorCode::kCellEmptyProgram, file, {}};
-  return bridge::ProgramInput{.slot = slot,
-                              .name = fs::path(file).stem().string(),
-                              .file_name = file,
-                              .bytes = std::make_shared<const std::string>(std::move(*bytes)),
-                              .is_source = true,
-                              .executable = nullptr};
+  return simulation::MemoryProgram{.slot = slot,
+                                   .name = fs::path(file).stem().string(),
+                                   .file_name = file,
+                                   .bytes = std::make_shared<const std::string>(std::move(*bytes)),
+                                   .is_source = true,
+                                   .executable = nullptr};
 }
 
 }  // namespace
@@ -198,7 +199,7 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files,
     }
     if (!IsSlot(slot))
       return Error{ErrorCode::kProgramNumber, "program number is " + std::to_string(slot), {}};
-    Result<bridge::ProgramInput> program = ReadProgram(file, slot, in_folders.contains(file));
+    Result<simulation::MemoryProgram> program = ReadProgram(file, slot, in_folders.contains(file));
     if (!program) return program.error();
     if (file == first_file) loaded.main_slot = slot;
     loaded.programs.push_back(std::move(*program));

@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/machine/family.h"
+#include "engine/simulation/run/rehearsal.h"
 #include "proto/bridge/files.h"
-#include "proto/bridge/setup.h"
 
 namespace rmlcell::cli {
 
@@ -16,7 +15,7 @@ inline constexpr std::int64_t kFileBytesMax = std::int64_t{256} << 20;
 
 struct LoadedFiles {
   const machine::MachineFamily* family = nullptr;
-  std::vector<bridge::ProgramInput> programs;
+  std::vector<simulation::MemoryProgram> programs;
   int main_slot = 0;
 };
 

@@ -43,7 +43,7 @@ Status AddNumberedPrograms(const std::string& folder, v1::Project& project) {
   // A project starts none of its programs: which one is the main program does not matter.
   const Result<LoadedFiles> files = LoadFiles({folder}, {}, kSlotMin, {});
   if (!files) return files.error();
-  for (const bridge::ProgramInput& found : files->programs) {
+  for (const simulation::MemoryProgram& found : files->programs) {
     v1::ProjectProgram& program = *project.add_programs();
     program.set_slot(found.slot);
     program.mutable_source()->set_file_name(fs::path(found.file_name).filename().string());

@@ -9,7 +9,7 @@
 
 namespace rmlcell::cli {
 
-// What a tool of the office answers about one file: for people findings on standard error and a
+// What an off-line tool answers about one file: for people findings on standard error and a
 // word about what was written, or with --json one object on standard output:
 //   {"file": "12.S", "ok": true, "output": "12.O", "bytes": 93, "text": "object of 93 bytes, 4
 //   steps",

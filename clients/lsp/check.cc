@@ -9,6 +9,7 @@
 #include "engine/machine/family.h"
 #include "engine/optimo/language/compiler.h"
 #include "engine/optimo/offline/translate.h"
+#include "engine/simulation/run/rehearsal.h"
 
 namespace rmlcell::lsp {
 namespace {
@@ -68,8 +69,10 @@ Findings CheckDocument(const Document& document) {
   if (!rml1 && optimo::FormOfFile(name, text) == optimo::FileForm::kInchSource)
     return CheckInch(document);
   const machine::MachineFamily* family = families::FindFamily(rml1 ? "rml1" : "optimo");
-  machine::Translation translation = family->Translate(
-      {.name = name, .bytes = text}, machine::Parameters(family->parameters()), {.advice = true});
+  machine::Translation translation = simulation::TranslateProgram(
+      *family, machine::Parameters(family->parameters()),
+      {.file_name = name, .bytes = std::make_shared<const std::string>(text), .is_source = true},
+      {.advice = true});
   return {std::move(translation.diagnostics), translation.diagnostics_dropped};
 }
 

@@ -26,6 +26,10 @@ class Ring {
     RMLCELL_CHECK(number >= first_ && number < end_);
     return slots_[Slot(number)];
   }
+  const T& operator[](Number number) const {
+    RMLCELL_CHECK(number >= first_ && number < end_);
+    return slots_[Slot(number)];
+  }
   T& front() { return (*this)[first_]; }
   T& back() { return (*this)[end_ - 1]; }
 

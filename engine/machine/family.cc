@@ -1,5 +1,6 @@
 #include "engine/machine/family.h"
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -44,6 +45,28 @@ TransferPlan MachineFamily::PlanTransfer(const ProjectBundle& project, const Par
   }
   if (!plan.ok) plan.programs.clear();  // every program or none
   return plan;
+}
+
+Result<Parameters> MakeParameters(const MachineFamily& family, const std::string& profile,
+                                  const std::map<std::string, std::string>& parameters) {
+  Parameters made(family.parameters());
+  if (!profile.empty()) {
+    const auto profiles = family.profiles();
+    const auto found = std::ranges::find_if(
+        profiles, [&](const MachineProfile& candidate) { return candidate.id == profile; });
+    if (found == profiles.end()) {
+      std::string known;
+      for (const MachineProfile& candidate : profiles) known += " " + std::string(candidate.id);
+      return Error{
+          ErrorCode::kCellInvalidArgument, "no profile '" + profile + "'; there are" + known, {}};
+    }
+    if (const Status applied = made.Apply(*found); !applied) return applied.error();
+  }
+  for (const auto& [name, value] : parameters) {
+    if (const Status set = made.Set(name, std::string_view(value)); !set) return set.error();
+  }
+  if (const Status fit = family.CheckParameters(made); !fit) return fit.error();
+  return made;
 }
 
 }  // namespace rmlcell::machine

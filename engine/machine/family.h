@@ -152,12 +152,6 @@ class MachineFamily {
   // The tools for program texts; null: programs are streams.
   virtual const Tools* tools() const { return nullptr; }
 
-  // Canonical source of an object. A family without objects of its own gives the bytes back.
-  // Errors: ObjectCorrupt (7034).
-  virtual Result<std::string> Decompile(std::string_view object) const {
-    return std::string(object);
-  }
-
   // Whether bytes are an executable of this family, made of the program of this slot (1..99).
   // Errors: ObjectCorrupt (7034), CellInvalidArgument for that of another program.
   virtual Status CheckExecutable(std::string_view /*executable*/, int /*slot*/) const { return {}; }
@@ -173,5 +167,11 @@ class MachineFamily {
   // `observer` must outlive the run.
   virtual Result<std::unique_ptr<Run>> NewRun(RunSetup setup, RunObserver& observer) const = 0;
 };
+
+// Parameters of a machine: defaults of the family, then the profile, then single values. Errors:
+// CellInvalidArgument (no such profile), CellUnknownParameter, CellParameterRange, also of values
+// that do not fit together.
+Result<Parameters> MakeParameters(const MachineFamily& family, const std::string& profile,
+                                  const std::map<std::string, std::string>& parameters);
 
 }  // namespace rmlcell::machine

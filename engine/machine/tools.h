@@ -15,7 +15,7 @@
 #include "engine/machine/program_file.h"
 #include "engine/machine/run.h"
 
-// What can be done with program texts without running them: the tools of the programmer's office.
+// What can be done with program texts without running them: the tools of a programmer.
 // A family whose programs are texts has them (MachineFamily::tools), one with streams has none.
 namespace rmlcell::machine {
 
@@ -60,7 +60,6 @@ struct FormattedText {
 
 // The endings of files that tools make and read.
 struct FileExtensions {
-  std::string_view source{};       // ".S"
   std::string_view object{};       // ".O"
   std::string_view executable{};   // ".X"
   std::string_view listing{};      // ".LST"
@@ -169,7 +168,8 @@ class Tools {
   virtual CompiledProgram Compile(const SourceFile& file, const Parameters& parameters,
                                   const CompileOptions& options) const = 0;
 
-  // A map that is damaged or of another object is passed over. Errors: ObjectCorrupt (7034).
+  // Canonical source, or the programmer's own by the map of its compilation; a map that is damaged
+  // or of another object is passed over. Errors: ObjectCorrupt (7034).
   virtual Result<RecoveredSource> Decompile(std::string_view object,
                                             std::optional<std::string_view> source_map) const = 0;
 

@@ -107,7 +107,7 @@ void MillRun::EndLeg() {
   const motion::PathState end = leg.ride.speed.end();
   ReportLeg(end.s);
   if (leg.ends_motion) return EndMotion(end.speed);
-  s.tool = ToolAt(leg.ride.path.At(end.s));
+  s.tool = ToolAt(leg.ride.path.At(end.s).tip());
   s.ahead.Ride({.length = end.s, .speed = end.speed, .tool = s.tool});
   s.motion.planned = false;  // PlanLeg sees when it has come to rest for a STOP
   s.busy_from = s.busy_until = s.now;
@@ -137,13 +137,13 @@ void MillRun::ReportLeg(double travelled) {
   const motion::PathPiece& path = m.leg.ride.path;
   const bool not_begun = s.now == s.busy_from && travelled < path.length();
   if (not_begun) return;
-  const Point from = m.first_leg ? m.from : ToolAt(path.from());
+  const Point from = m.first_leg ? m.from : ToolAt(path.from().tip());
   const bool to_end = m.leg.ends_motion && travelled >= path.length();
-  const Point to = to_end ? m.action.to : ToolAt(path.At(travelled));
+  const Point to = to_end ? m.action.to : ToolAt(path.At(travelled).tip());
   s.physical.OnRide({.from = from,
                      .to = to,
                      .use = m.action.use,
-                     .length_mm = (path.At(travelled).tip - path.from().tip).norm(),
+                     .length_mm = (path.At(travelled).point - path.from().point).norm(),
                      .time_s = ToSeconds(s.now - s.busy_from),
                      .first = m.first_leg},
                     s.device.registers());
@@ -169,7 +169,7 @@ void MillRun::PlanAnew() {
       EndLeg();
     } else {
       ReportLeg(along.s);
-      s.tool = ToolAt(path.At(along.s));
+      s.tool = ToolAt(path.At(along.s).tip());
       s.ahead.Ride({.length = along.s, .speed = along.speed, .tool = s.tool});
       s.motion.planned = false;
       s.busy_from = s.busy_until = s.now;
@@ -196,7 +196,7 @@ motion::TipPose MillRun::TipNow() const {
   const State& s = state_;
   if (s.busy != Busy::kMotion || !s.motion.planned) return PoseOf(profile(), s.tool);
   const motion::PlannedMotion& ride = s.motion.leg.ride;
-  return ride.path.At(ride.speed.At(ElapsedInLeg()).s);
+  return ride.path.At(ride.speed.At(ElapsedInLeg()).s).tip();
 }
 
 Point MillRun::ToolAt(const motion::TipPose& pose) const {

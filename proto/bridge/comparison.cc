@@ -62,19 +62,16 @@ Result<std::optional<simulation::TrialRun>> Run(const machine::MachineFamily& fa
                                                 const ComparedProgram& program,
                                                 const ComparisonOptions& options) {
   const bool object = FormOf(family, program) == machine::FileForm::kObject;
-  const SetupInput input{.family = &family,
-                         .programs = {{.slot = program.slot,
-                                       .name = BaseName(program.file_name),
-                                       .file_name = program.file_name,
-                                       .bytes = program.bytes,
-                                       .is_source = !object,
-                                       .executable = nullptr}},
-                         .main_program = program.slot};
-  v1::SimulationOptions message;
-  message.set_override_percent(100.0);
-  v1::Budget budget;
-  budget.set_steps(options.steps_max);
-  Result<SetupOutcome> made = MakeSetup(input, message, budget);
+  const simulation::ProgramMemory memory{.family = &family,
+                                         .programs = {{.slot = program.slot,
+                                                       .name = BaseName(program.file_name),
+                                                       .file_name = program.file_name,
+                                                       .bytes = program.bytes,
+                                                       .is_source = !object}}};
+  simulation::RunOptions how_to_run{.main_program = program.slot};
+  if (options.steps_max > 0)
+    how_to_run.budget.steps = static_cast<std::uint64_t>(options.steps_max);
+  Result<simulation::PreparedRun> made = simulation::PrepareRun(memory, how_to_run);
   if (!made) return made.error();
   if (!made->setup) return std::optional<simulation::TrialRun>();
   simulation::SimulationOptions how;

@@ -4,7 +4,6 @@
 #include <cctype>
 
 #include "engine/core/number_text.h"
-#include "engine/families/families.h"
 #include "rmlcell/v1/job.pb.h"
 
 namespace rmlcell::bridge {
@@ -33,58 +32,7 @@ std::optional<machine::ProgramStep> StepOf(const v1::StepPlace& place, int main_
                               .step = place.step()};
 }
 
-// Translates one program into the setup. False: it has errors.
-bool AddProgram(const SetupInput& input, const ProgramInput& program, machine::RunSetup& setup,
-                SetupOutcome& outcome) {
-  machine::StoredProgram stored{
-      .name = program.name, .object = program.bytes, .executable = program.executable};
-  if (program.is_source && !families::IsObjectFileName(program.file_name)) {
-    machine::Translation translation = input.family->Translate(
-        {.name = program.file_name, .bytes = *program.bytes}, setup.parameters,
-        {.advice = program.slot == input.main_program, .source = true});
-    for (Diagnostic& diagnostic : translation.diagnostics) {
-      if (outcome.diagnostics.size() >= machine::kDiagnosticsMax) {
-        ++outcome.diagnostics_dropped;
-        continue;
-      }
-      diagnostic.program = program.slot;
-      outcome.diagnostics.push_back(std::move(diagnostic));
-    }
-    outcome.diagnostics_dropped += translation.diagnostics_dropped;
-    if (!translation.ok) return false;
-    stored.object = std::make_shared<const std::string>(std::move(translation.object));
-    stored.source = std::make_shared<const machine::SourceNotes>(std::move(translation.source));
-  }
-  setup.programs[program.slot] = std::move(stored);
-  return true;
-}
-
 }  // namespace
-
-Result<machine::Parameters> MakeParameters(const machine::MachineFamily& family,
-                                           const std::string& profile,
-                                           const std::map<std::string, std::string>& parameters) {
-  machine::Parameters made(family.parameters());
-  if (!profile.empty()) {
-    const auto profiles = family.profiles();
-    const auto found = std::ranges::find_if(
-        profiles,
-        [&](const machine::MachineProfile& candidate) { return candidate.id == profile; });
-    if (found == profiles.end()) {
-      std::string known;
-      for (const machine::MachineProfile& candidate : profiles)
-        known += " " + std::string(candidate.id);
-      return Error{
-          ErrorCode::kCellInvalidArgument, "no profile '" + profile + "'; there are" + known, {}};
-    }
-    if (const Status applied = made.Apply(*found); !applied) return applied.error();
-  }
-  for (const auto& [name, value] : parameters) {
-    if (const Status set = made.Set(name, std::string_view(value)); !set) return set.error();
-  }
-  if (const Status fit = family.CheckParameters(made); !fit) return fit.error();
-  return made;
-}
 
 machine::InputChange FromProto(const v1::ScriptedInput& input) {
   machine::InputChange change{
@@ -124,55 +72,21 @@ machine::InputScript InputsOf(const v1::SimulationOptions& options) {
   return inputs;
 }
 
-Result<SetupOutcome> MakeSetup(const SetupInput& input, const v1::SimulationOptions& options,
-                               const v1::Budget& budget) {
-  std::map<std::string, std::string> values = input.parameters;
-  for (const auto& [name, value] : options.parameters()) values[name] = value;
-  Result<machine::Parameters> parameters = MakeParameters(*input.family, input.profile, values);
-  if (!parameters) return parameters.error();
-
-  machine::RunSetup setup(std::move(*parameters));
-  setup.deleted_programs = {input.deleted_programs.begin(), input.deleted_programs.end()};
-  setup.main_program = input.main_program;
-  setup.schedules = input.schedules;
-  setup.machine_state = input.machine_state;
-  setup.mode = FromProto(options.mode(), input.default_mode);
-  setup.forecast = true;  // who moves a machine says otherwise
-  if (options.override_percent() > 0.0) setup.override_percent = options.override_percent();
-  if (options.has_breakpoint()) setup.breakpoint = StepOf(options.breakpoint(), input.main_program);
-  if (options.has_simul()) setup.simul = StepOf(options.simul(), input.main_program);
-  setup.inputs = InputsOf(options);
-  if (budget.steps() > 0) setup.budget.steps = static_cast<std::uint64_t>(budget.steps());
-  if (budget.virtual_time_s() > 0.0)
-    setup.budget.virtual_time = FromSeconds(budget.virtual_time_s());
-
-  SetupOutcome outcome;
-  bool good = true;
-  for (const ProgramInput& program : input.programs) {
-    if (!AddProgram(input, program, setup, outcome)) good = false;
+simulation::RunOptions RunOptionsOf(const v1::SimulationOptions& options, const v1::Budget& budget,
+                                    int main_program, machine::Mode default_mode) {
+  simulation::RunOptions run{
+      .main_program = main_program,
+      .parameters = {options.parameters().begin(), options.parameters().end()},
+      .mode = FromProto(options.mode(), default_mode),
+      .inputs = InputsOf(options)};
+  if (options.override_percent() > 0.0) run.override_percent = options.override_percent();
+  if (options.has_breakpoint()) run.breakpoint = StepOf(options.breakpoint(), main_program);
+  if (options.has_simul()) run.simul = StepOf(options.simul(), main_program);
+  if (budget.steps() > 0) run.budget.steps = static_cast<std::uint64_t>(budget.steps());
+  if (budget.virtual_time_s() > 0.0) {
+    run.budget.virtual_time = FromSeconds(budget.virtual_time_s());
   }
-  if (good) outcome.setup.emplace(std::move(setup));
-  return outcome;
-}
-
-machine::RunSetup SetupForCheck(const SetupInput& input, machine::Parameters parameters,
-                                const machine::Translation& main) {
-  machine::RunSetup setup(std::move(parameters));
-  setup.deleted_programs = {input.deleted_programs.begin(), input.deleted_programs.end()};
-  setup.main_program = input.main_program;
-  setup.schedules = input.schedules;
-  setup.machine_state = input.machine_state;
-  SetupOutcome ignored;
-  for (const ProgramInput& program : input.programs) {
-    if (program.slot != input.main_program) AddProgram(input, program, setup, ignored);
-  }
-  machine::StoredProgram stored{
-      .name = {},
-      .object = std::make_shared<const std::string>(main.object),
-      .executable = nullptr,
-      .source = std::make_shared<const machine::SourceNotes>(main.source)};
-  setup.programs[input.main_program] = std::move(stored);
-  return setup;
+  return run;
 }
 
 Result<std::vector<std::string>> ExpandVariables(const std::vector<std::string>& names) {

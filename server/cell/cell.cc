@@ -20,8 +20,8 @@
 #include "server/jobs/dispatcher.h"
 #include "server/jobs/job_book.h"
 #include "server/jobs/worker_processes.h"
-#include "server/programs/memory_office.h"
-#include "server/programs/program_shelf.h"
+#include "server/programs/memory_tools.h"
+#include "server/programs/program_book.h"
 #include "server/projects/project_book.h"
 #include "server/services/handbox_service.h"
 #include "server/services/job_service.h"
@@ -99,8 +99,8 @@ struct Cell::Parts {
   OpenStreams open;
   Gate gate{RandomText()};
   std::unique_ptr<JobBook> book;
-  std::unique_ptr<ProgramShelf> shelf;
-  std::unique_ptr<MemoryOffice> office;
+  std::unique_ptr<ProgramBook> programs;
+  std::unique_ptr<MemoryTools> tools;
   std::unique_ptr<ProjectBook> projects;
   std::unique_ptr<JobService> job_service;
   std::unique_ptr<MachineService> machine_service;
@@ -160,14 +160,14 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   feed = std::make_unique<EventFeed>(*store);
   dispatcher = std::make_unique<Dispatcher>(*store, *feed, config, *executor, join_token);
   book = std::make_unique<JobBook>(*store, config);
-  shelf = std::make_unique<ProgramShelf>(*store, config);
-  office = std::make_unique<MemoryOffice>(*store, *shelf);
+  programs = std::make_unique<ProgramBook>(*store, config);
+  tools = std::make_unique<MemoryTools>(*store, *programs);
   projects = std::make_unique<ProjectBook>(*store);
   const CallRoom room{gate, *executor, config.limit_message_bytes};
   job_service = std::make_unique<JobService>(room, *book, *dispatcher, *feed, open, instance_id);
   machine_service =
       std::make_unique<MachineService>(room, *store, *dispatcher, config, instance_id);
-  program_service = std::make_unique<ProgramService>(room, *shelf, *office, open);
+  program_service = std::make_unique<ProgramService>(room, *programs, *tools, open);
   project_service = std::make_unique<ProjectService>(room, *projects);
   handbox_service = std::make_unique<HandboxService>(room);
   worker_service = std::make_unique<WorkerService>(room, *dispatcher);
@@ -212,7 +212,7 @@ Status Cell::Parts::ListenWeb() {
   const std::size_t colon = config.listen_web.rfind(':');
   std::string host = config.listen_web.substr(0, colon);
   if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
-  resources = std::make_unique<WebResources>(gate, *book, *shelf);
+  resources = std::make_unique<WebResources>(gate, *book, *programs);
   grpc::ChannelArguments arguments;
   arguments.SetInt(GRPC_ARG_MAX_RECEIVE_MESSAGE_LENGTH, -1);
   auto started = web::WebServer::Start(

@@ -227,7 +227,7 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
   std::map<std::string, std::string> values = machine->parameters;
   for (const auto& [name, value] : job.simulation().parameters()) values[name] = value;
   const Result<machine::Parameters> parameters =
-      bridge::MakeParameters(family, machine->profile, values);
+      machine::MakeParameters(family, machine->profile, values);
   if (!parameters) return parameters.error();
   if (Status good = CheckVariables(job.simulation(), family, *parameters); !good)
     return good.error();

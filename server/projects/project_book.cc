@@ -266,7 +266,7 @@ ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(
   if (!machine) return machine.error();
   const machine::MachineFamily* family = families::FindFamily(machine->family);
   if (family == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
-  const auto parameters = bridge::MakeParameters(*family, machine->profile, machine->parameters);
+  const auto parameters = machine::MakeParameters(*family, machine->profile, machine->parameters);
   if (!parameters) return parameters.error();
   if (project->programs().empty())
     return Error{ErrorCode::kProjectSource, "the project has no program", {}};

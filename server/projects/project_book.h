@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "rmlcell/v1/project.pb.h"
-#include "server/programs/program_shelf.h"
+#include "server/programs/program_book.h"
 #include "storage/store.h"
 
 namespace rmlcell::server {

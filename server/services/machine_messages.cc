@@ -93,7 +93,7 @@ Status CheckMachine(const storage::MachineRecord& machine) {
     return Error{ErrorCode::kCellUnknownFamily, "'" + machine.family + "'; there are" + known, {}};
   }
   if (Status good = CheckTitle(machine.title, "title"); !good) return good;
-  const auto parameters = bridge::MakeParameters(*family, machine.profile, machine.parameters);
+  const auto parameters = machine::MakeParameters(*family, machine.profile, machine.parameters);
   if (!parameters) return parameters.error();
   return {};
 }

@@ -5,9 +5,9 @@
 #include "proto/bridge/findings.h"
 #include "proto/bridge/header_date.h"
 #include "proto/bridge/sha256.h"
-#include "server/programs/memory_office.h"
-#include "server/programs/program_office.h"
-#include "server/programs/program_shelf.h"
+#include "server/programs/memory_tools.h"
+#include "server/programs/program_book.h"
+#include "server/programs/text_tools.h"
 #include "server/services/job_streams.h"
 
 namespace rmlcell::server {
@@ -26,8 +26,8 @@ v1::Findings FindingsOf(const machine::Translation& translation) {
 // right.
 class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
  public:
-  Upload(const CallRoom& room, ProgramShelf& shelf, Caller caller, v1::Program* response)
-      : room_(room), shelf_(shelf), caller_(std::move(caller)), response_(response) {
+  Upload(const CallRoom& room, ProgramBook& programs, Caller caller, v1::Program* response)
+      : room_(room), programs_(programs), caller_(std::move(caller)), response_(response) {
     StartRead(&message_);
   }
 
@@ -64,7 +64,7 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
     const std::optional<std::string> digest = bridge::ReadSha256(header_.sha256());
     if (!digest) return InvalidArgument("header.sha256 is not 64 hexadecimal digits");
     header_.set_sha256(*digest);
-    return shelf_.CheckSize(header_.size());
+    return programs_.CheckSize(header_.size());
   }
 
   void Store() {
@@ -82,13 +82,13 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
     finished_ = true;
     room_.executor.Post([this] {
       const ProgramResult<v1::Program> stored =
-          shelf_.Store({.name = header_.name(),
-                        .file_name = header_.file_name(),
-                        .form = header_.form(),
-                        .title = header_.title(),
-                        .etag = header_.etag(),
-                        .bytes = std::move(bytes_),
-                        .validate_only = header_.validate_only()});
+          programs_.Store({.name = header_.name(),
+                           .file_name = header_.file_name(),
+                           .form = header_.form(),
+                           .title = header_.title(),
+                           .etag = header_.etag(),
+                           .bytes = std::move(bytes_),
+                           .validate_only = header_.validate_only()});
       if (stored) *response_ = *stored.value;
       const grpc::Status status = stored ? grpc::Status::OK : ToGrpcStatus(stored.error);
       LogCall("ProgramService/UploadProgram", caller_, status,
@@ -108,7 +108,7 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
   void OnDone() override { delete this; }
 
   CallRoom room_;
-  ProgramShelf& shelf_;
+  ProgramBook& programs_;
   Caller caller_;
   v1::Program* response_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
@@ -128,15 +128,15 @@ class RefusedUpload final : public grpc::ServerReadReactor<v1::UploadProgramRequ
 
 class Download final : public PullStream<v1::DownloadProgramResponse> {
  public:
-  Download(Executor& executor, OpenStreams& open, ProgramShelf& shelf,
+  Download(Executor& executor, OpenStreams& open, ProgramBook& programs,
            const v1::DownloadProgramRequest& request)
-      : PullStream(executor, open), shelf_(shelf), request_(request) {}
+      : PullStream(executor, open), programs_(programs), request_(request) {}
 
  private:
   Next Make(v1::DownloadProgramResponse& message, grpc::Status& status) override {
     if (!begun_) {
       begun_ = true;
-      Result<ProgramShelf::Content> content = shelf_.Read(request_.name(), request_.form());
+      Result<ProgramBook::Content> content = programs_.Read(request_.name(), request_.form());
       if (!content) {
         status = ToGrpcStatus(content.error());
         return Next::kEnd;
@@ -154,9 +154,9 @@ class Download final : public PullStream<v1::DownloadProgramResponse> {
     return Next::kMessage;
   }
 
-  ProgramShelf& shelf_;
+  ProgramBook& programs_;
   v1::DownloadProgramRequest request_;
-  ProgramShelf::Content content_;
+  ProgramBook::Content content_;
   bool begun_ = false;
   std::size_t sent_ = 0;
 };
@@ -169,13 +169,13 @@ grpc::ServerUnaryReactor* ProgramService::PutProgram(grpc::CallbackServerContext
   return Answer(room_, context, *request, "ProgramService/PutProgram",
                 [this, request, response](const Caller&) {
                   const ProgramResult<v1::Program> stored =
-                      shelf_.Store({.name = request->name(),
-                                    .file_name = request->program().file_name(),
-                                    .form = request->program().form(),
-                                    .title = request->title(),
-                                    .etag = request->etag(),
-                                    .bytes = request->program().content(),
-                                    .validate_only = request->validate_only()});
+                      programs_.Store({.name = request->name(),
+                                       .file_name = request->program().file_name(),
+                                       .form = request->program().form(),
+                                       .title = request->title(),
+                                       .etag = request->etag(),
+                                       .bytes = request->program().content(),
+                                       .validate_only = request->validate_only()});
                   if (!stored) return ToGrpcStatus(stored.error);
                   *response = *stored.value;
                   return grpc::Status::OK;
@@ -186,7 +186,7 @@ grpc::ServerReadReactor<v1::UploadProgramRequest>* ProgramService::UploadProgram
     grpc::CallbackServerContext* context, v1::Program* response) {
   Result<Caller> caller = Admit(room_.gate, *context, "ProgramService/UploadProgram");
   if (!caller) return new RefusedUpload(ToGrpcStatus(caller.error()));
-  return new Upload(room_, shelf_, std::move(*caller), response);
+  return new Upload(room_, programs_, std::move(*caller), response);
 }
 
 grpc::ServerUnaryReactor* ProgramService::GetProgram(grpc::CallbackServerContext* context,
@@ -194,7 +194,7 @@ grpc::ServerUnaryReactor* ProgramService::GetProgram(grpc::CallbackServerContext
                                                      v1::Program* response) {
   return Answer(room_, context, *request, "ProgramService/GetProgram",
                 [this, request, response](const Caller&) {
-                  Result<v1::Program> program = shelf_.Get(request->name());
+                  Result<v1::Program> program = programs_.Get(request->name());
                   if (!program) return ToGrpcStatus(program.error());
                   *response = std::move(*program);
                   return grpc::Status::OK;
@@ -206,8 +206,8 @@ grpc::ServerUnaryReactor* ProgramService::GetProgramContent(
     v1::GetProgramContentResponse* response) {
   return Answer(room_, context, *request, "ProgramService/GetProgramContent",
                 [this, request, response](const Caller&) {
-                  Result<ProgramShelf::Content> content =
-                      shelf_.Read(request->name(), request->form());
+                  Result<ProgramBook::Content> content =
+                      programs_.Read(request->name(), request->form());
                   if (!content) return ToGrpcStatus(content.error());
                   if (content->bytes.size() > kUnaryBytes) {
                     return ToGrpcStatus(
@@ -227,7 +227,7 @@ grpc::ServerWriteReactor<v1::DownloadProgramResponse>* ProgramService::DownloadP
     grpc::CallbackServerContext* context, const v1::DownloadProgramRequest* request) {
   const Result<Caller> caller = Admit(room_.gate, *context, "ProgramService/DownloadProgram");
   if (!caller) return new RefusedStream<v1::DownloadProgramResponse>(ToGrpcStatus(caller.error()));
-  return std::make_shared<Download>(room_.executor, open_, shelf_, *request)->Begin();
+  return std::make_shared<Download>(room_.executor, open_, programs_, *request)->Begin();
 }
 
 grpc::ServerUnaryReactor* ProgramService::ListPrograms(grpc::CallbackServerContext* context,
@@ -235,7 +235,7 @@ grpc::ServerUnaryReactor* ProgramService::ListPrograms(grpc::CallbackServerConte
                                                        v1::ListProgramsResponse* response) {
   return Answer(room_, context, *request, "ProgramService/ListPrograms",
                 [this, request, response](const Caller&) {
-                  Result<v1::ListProgramsResponse> programs = shelf_.List(*request);
+                  Result<v1::ListProgramsResponse> programs = programs_.List(*request);
                   if (!programs) return ToGrpcStatus(programs.error());
                   *response = std::move(*programs);
                   return grpc::Status::OK;
@@ -247,7 +247,7 @@ grpc::ServerUnaryReactor* ProgramService::DeleteProgram(grpc::CallbackServerCont
                                                         google::protobuf::Empty*) {
   return Answer(room_, context, *request, "ProgramService/DeleteProgram",
                 [this, request](const Caller&) {
-                  const Status deleted = shelf_.Delete(*request);
+                  const Status deleted = programs_.Delete(*request);
                   return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
                 });
 }
@@ -257,8 +257,8 @@ grpc::ServerUnaryReactor* ProgramService::CheckProgram(grpc::CallbackServerConte
                                                        v1::CheckProgramResponse* response) {
   return Answer(room_, context, *request, "ProgramService/CheckProgram",
                 [this, request, response](const Caller&) {
-                  const auto checked = shelf_.Check(request->family(), request->machine(),
-                                                    request->program(), !request->errors_only());
+                  const auto checked = programs_.Check(request->family(), request->machine(),
+                                                       request->program(), !request->errors_only());
                   if (!checked) return ToGrpcStatus(checked.error());
                   *response->mutable_findings() =
                       bridge::FindingsOf(checked->translation, checked->motion, checked->slot);
@@ -272,7 +272,7 @@ grpc::ServerUnaryReactor* ProgramService::CompileProgram(grpc::CallbackServerCon
   return Answer(room_, context, *request, "ProgramService/CompileProgram",
                 [this, request, response](const Caller&) {
                   auto translation =
-                      shelf_.Translate(request->family(), {}, request->program(), true);
+                      programs_.Translate(request->family(), {}, request->program(), true);
                   if (!translation) return ToGrpcStatus(translation.error());
                   *response->mutable_findings() = FindingsOf(*translation);
                   if (translation->ok) response->set_object(std::move(translation->object));
@@ -297,7 +297,7 @@ grpc::ServerUnaryReactor* ProgramService::DecompileProgram(
     v1::DecompileProgramResponse* response) {
   return Answer(room_, context, *request, "ProgramService/DecompileProgram",
                 [this, request, response](const Caller&) {
-                  auto made = office_.Decompile(*request);
+                  auto made = tools_.Decompile(*request);
                   if (!made) return ToGrpcStatus(made.error());
                   *response = *std::move(made);
                   return grpc::Status::OK;
@@ -309,7 +309,7 @@ grpc::ServerUnaryReactor* ProgramService::FixProgram(grpc::CallbackServerContext
                                                      v1::FixProgramResponse* response) {
   return Answer(room_, context, *request, "ProgramService/FixProgram",
                 [this, request, response](const Caller&) {
-                  auto made = office_.Fix(*request);
+                  auto made = tools_.Fix(*request);
                   if (!made) return ToGrpcStatus(made.error());
                   *response = *std::move(made);
                   return grpc::Status::OK;
@@ -321,7 +321,7 @@ grpc::ServerUnaryReactor* ProgramService::LinkProgram(grpc::CallbackServerContex
                                                       v1::LinkProgramResponse* response) {
   return Answer(room_, context, *request, "ProgramService/LinkProgram",
                 [this, request, response](const Caller&) {
-                  auto made = office_.Link(*request);
+                  auto made = tools_.Link(*request);
                   if (!made) return ToGrpcStatus(made.error());
                   *response = *std::move(made);
                   return grpc::Status::OK;
@@ -333,7 +333,7 @@ grpc::ServerUnaryReactor* ProgramService::ListStaleExecutables(
     v1::ListStaleExecutablesResponse* response) {
   return Answer(room_, context, *request, "ProgramService/ListStaleExecutables",
                 [this, request, response](const Caller&) {
-                  auto made = office_.ListStale(*request);
+                  auto made = tools_.ListStale(*request);
                   if (!made) return ToGrpcStatus(made.error());
                   *response = *std::move(made);
                   return grpc::Status::OK;
@@ -369,7 +369,7 @@ grpc::ServerUnaryReactor* ProgramService::DiffPrograms(grpc::CallbackServerConte
                                                        v1::DiffProgramsResponse* response) {
   return Answer(room_, context, *request, "ProgramService/DiffPrograms",
                 [this, request, response](const Caller&) {
-                  ProgramResult<v1::DiffProgramsResponse> made = office_.Diff(*request);
+                  ProgramResult<v1::DiffProgramsResponse> made = tools_.Diff(*request);
                   if (!made) return ToGrpcStatus(made.error);
                   *response = *std::move(made.value);
                   return grpc::Status::OK;

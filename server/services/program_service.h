@@ -8,15 +8,15 @@
 
 namespace rmlcell::server {
 
-class MemoryOffice;
-class ProgramShelf;
+class MemoryTools;
+class ProgramBook;
 
-// Converts, calls, converts: the rules live in ProgramShelf, the offices of server/programs and the
+// Converts, calls, converts: the rules live in ProgramBook, the tools of server/programs and the
 // engine.
 class ProgramService final : public v1::ProgramService::CallbackService {
  public:
-  ProgramService(CallRoom room, ProgramShelf& shelf, MemoryOffice& office, OpenStreams& open)
-      : room_(room), shelf_(shelf), office_(office), open_(open) {}
+  ProgramService(CallRoom room, ProgramBook& programs, MemoryTools& tools, OpenStreams& open)
+      : room_(room), programs_(programs), tools_(tools), open_(open) {}
 
   grpc::ServerUnaryReactor* PutProgram(grpc::CallbackServerContext* context,
                                        const v1::PutProgramRequest* request,
@@ -82,8 +82,8 @@ class ProgramService final : public v1::ProgramService::CallbackService {
 
  private:
   CallRoom room_;
-  ProgramShelf& shelf_;
-  MemoryOffice& office_;
+  ProgramBook& programs_;
+  MemoryTools& tools_;
   OpenStreams& open_;
 };
 

@@ -1,6 +1,6 @@
 #include "server/services/project_service.h"
 
-#include "server/programs/program_shelf.h"
+#include "server/programs/program_book.h"
 #include "server/projects/project_book.h"
 #include "server/services/job_streams.h"
 

@@ -8,7 +8,7 @@
 #include "server/base/names.h"
 #include "server/base/readable.h"
 #include "server/jobs/job_book.h"
-#include "server/programs/program_shelf.h"
+#include "server/programs/program_book.h"
 
 namespace rmlcell::server {
 namespace {
@@ -61,11 +61,11 @@ Result<v1::ProgramForm> FormOf(const std::string& word) {
 
 class Sink final : public web::UploadSink {
  public:
-  Sink(ProgramShelf& shelf, const web::UploadHeader& header, v1::ProgramForm form)
-      : shelf_(shelf), header_(header), form_(form) {}
+  Sink(ProgramBook& programs, const web::UploadHeader& header, v1::ProgramForm form)
+      : programs_(programs), header_(header), form_(form) {}
 
   Status Append(std::string_view chunk) override {
-    if (Status fits = shelf_.CheckSize(static_cast<std::int64_t>(bytes_.size() + chunk.size()));
+    if (Status fits = programs_.CheckSize(static_cast<std::int64_t>(bytes_.size() + chunk.size()));
         !fits)
       return fits;
     digest_.Add(chunk);
@@ -78,14 +78,14 @@ class Sink final : public web::UploadSink {
       return Refused(bridge::ToRpcStatus({ErrorCode::kCellChecksum, "SHA-256 differs", {}}));
     }
     const ProgramResult<v1::Program> stored =
-        shelf_.Store({.name = "machines/" + header_.path.machine + "/programs/" +
-                              std::to_string(header_.path.slot),
-                      .file_name = header_.file_name,
-                      .form = form_,
-                      .title = header_.title,
-                      .etag = header_.etag,
-                      .bytes = std::move(bytes_),
-                      .validate_only = header_.validate_only});
+        programs_.Store({.name = "machines/" + header_.path.machine + "/programs/" +
+                                 std::to_string(header_.path.slot),
+                         .file_name = header_.file_name,
+                         .form = form_,
+                         .title = header_.title,
+                         .etag = header_.etag,
+                         .bytes = std::move(bytes_),
+                         .validate_only = header_.validate_only});
     if (!stored) {
       return Refused(
           bridge::ToRpcStatus(stored.error.error, stored.error.diagnostics, stored.error.dropped));
@@ -100,7 +100,7 @@ class Sink final : public web::UploadSink {
     return {.message_type = {}, .message = {}, .status = status.SerializeAsString()};
   }
 
-  ProgramShelf& shelf_;
+  ProgramBook& programs_;
   web::UploadHeader header_;
   v1::ProgramForm form_;
   bridge::Sha256 digest_;
@@ -118,7 +118,7 @@ Result<web::Resource> WebResources::Find(const web::ResourcePath& path,
   const auto& program = std::get<web::ProgramContentPath>(path);
   const Result<v1::ProgramForm> form = FormOf(program.form);
   if (!form) return form.error();
-  Result<ProgramShelf::Content> content = shelf_.Read(
+  Result<ProgramBook::Content> content = programs_.Read(
       "machines/" + program.machine + "/programs/" + std::to_string(program.slot), *form);
   if (!content) return content.error();
   web::Resource resource{.media_type = content->form == v1::PROGRAM_FORM_SOURCE
@@ -134,10 +134,10 @@ Result<std::unique_ptr<web::UploadSink>> WebResources::BeginUpload(
     const web::UploadHeader& header, const web::WebCallerMetadata& metadata) {
   const Result<Caller> caller = Admit(gate_, metadata, "POST");
   if (!caller) return caller.error();
-  if (const Status fits = shelf_.CheckSize(header.size); !fits) return fits.error();
+  if (const Status fits = programs_.CheckSize(header.size); !fits) return fits.error();
   const Result<v1::ProgramForm> form = FormOf(header.path.form);
   if (!form) return form.error();
-  return std::unique_ptr<web::UploadSink>(std::make_unique<Sink>(shelf_, header, *form));
+  return std::unique_ptr<web::UploadSink>(std::make_unique<Sink>(programs_, header, *form));
 }
 
 }  // namespace rmlcell::server

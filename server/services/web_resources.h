@@ -6,14 +6,14 @@
 namespace rmlcell::server {
 
 class JobBook;
-class ProgramShelf;
+class ProgramBook;
 
 // What the web port serves at stable URLs: products of jobs, contents of programs. Callers pass the
 // same gate as calls do.
 class WebResources final : public web::ResourceSource {
  public:
-  WebResources(const Gate& gate, JobBook& book, ProgramShelf& shelf)
-      : gate_(gate), book_(book), shelf_(shelf) {}
+  WebResources(const Gate& gate, JobBook& book, ProgramBook& programs)
+      : gate_(gate), book_(book), programs_(programs) {}
 
   Result<web::Resource> Find(const web::ResourcePath& path,
                              const web::WebCallerMetadata& caller) override;
@@ -23,7 +23,7 @@ class WebResources final : public web::ResourceSource {
  private:
   const Gate& gate_;
   JobBook& book_;
-  ProgramShelf& shelf_;
+  ProgramBook& programs_;
 };
 
 }  // namespace rmlcell::server

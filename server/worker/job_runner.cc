@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "engine/families/families.h"
-#include "engine/simulation/run/motion_check.h"
+#include "engine/simulation/run/rehearsal.h"
 #include "engine/simulation/run/simulate.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
@@ -94,18 +94,16 @@ class Attempt {
     return true;
   }
 
-  bridge::SetupInput Input() {
-    bridge::SetupInput input{
+  simulation::ProgramMemory Memory() {
+    simulation::ProgramMemory memory{
         .family = families::FindFamily(assignment_.family()),
         .profile = assignment_.profile(),
         .parameters = {assignment_.parameters().begin(), assignment_.parameters().end()},
         .deleted_programs = {assignment_.deleted_programs().begin(),
                              assignment_.deleted_programs().end()},
-        .main_program = assignment_.main_program(),
-        .machine_state = assignment_.machine_state(),
-        .default_mode = machine::Mode::kRemote};
+        .machine_state = assignment_.machine_state()};
     for (v1::AssignedProgram& program : *assignment_.mutable_programs()) {
-      bridge::ProgramInput made{
+      simulation::MemoryProgram made{
           .slot = program.slot(),
           .name = program.title().empty() ? program.file_name() : program.title(),
           .file_name = program.file_name(),
@@ -113,22 +111,22 @@ class Attempt {
           .is_source = program.is_source()};
       if (!program.executable().empty())
         made.executable = std::make_shared<const std::string>(program.executable());
-      input.programs.push_back(std::move(made));
+      memory.programs.push_back(std::move(made));
     }
     if (!assignment_.default_schedules()) {
-      input.schedules.emplace();
+      memory.schedules.emplace();
       for (const v1::AssignedSchedule& schedule : assignment_.schedules()) {
-        input.schedules->push_back({.number = schedule.number(),
-                                    .name = schedule.title(),
-                                    .mode = schedule.mode(),
-                                    .power_percent = schedule.power_percent()});
+        memory.schedules->push_back({.number = schedule.number(),
+                                     .name = schedule.title(),
+                                     .mode = schedule.mode(),
+                                     .power_percent = schedule.power_percent()});
       }
     }
-    return input;
+    return memory;
   }
 
   // A translation that fails ends the job with its first error; the findings are its report.
-  void ReportFindings(const bridge::SetupOutcome& made, const std::string& motion_check = {}) {
+  void ReportFindings(const simulation::PreparedRun& made, const std::string& motion_check = {}) {
     v1::RunReport report;
     report.set_family(assignment_.family());
     report.set_motion_check(bridge::Utf8(motion_check));
@@ -159,31 +157,23 @@ class Attempt {
   }
 
   End Check() {
-    bridge::SetupInput input = Input();
-    const machine::MachineFamily& family = *input.family;
-    const auto parameters = bridge::MakeParameters(family, input.profile, input.parameters);
+    const simulation::ProgramMemory memory = Memory();
+    const auto parameters =
+        machine::MakeParameters(*memory.family, memory.profile, memory.parameters);
     if (!parameters) return Refuse(parameters.error());
-    bridge::SetupOutcome made;
+    const int slot = assignment_.main_program();
+    Result<simulation::ProgramCheck> check = simulation::CheckProgram(
+        memory, *parameters, slot, true, bridge::InputsOf(assignment_.job().simulation()));
+    if (!check) return Refuse(check.error());
+    machine::Translation& translation = check->translation;
+    for (Diagnostic& diagnostic : translation.diagnostics) diagnostic.program = slot;
+    simulation::PreparedRun found{
+        .diagnostics = std::move(translation.diagnostics),
+        .diagnostics_dropped = translation.diagnostics_dropped + check->motion.findings_dropped};
+    found.diagnostics.insert(found.diagnostics.end(), check->motion.findings.begin(),
+                             check->motion.findings.end());
     std::string motion_check;
-    for (const bridge::ProgramInput& program : input.programs) {
-      if (program.slot != input.main_program) continue;
-      // Checking is translating: what was stored as an object is read as one.
-      machine::Translation translation = family.Translate(
-          {.name = program.file_name, .bytes = *program.bytes, .is_object = !program.is_source},
-          *parameters, {.source = true});
-      for (Diagnostic& diagnostic : translation.diagnostics) diagnostic.program = program.slot;
-      made.diagnostics = std::move(translation.diagnostics);
-      made.diagnostics_dropped = translation.diagnostics_dropped;
-      if (!translation.ok) continue;
-      machine::RunSetup setup = bridge::SetupForCheck(input, *parameters, translation);
-      setup.inputs = bridge::InputsOf(assignment_.job().simulation());
-      const auto motion = simulation::CheckMotion(family, setup, {program.slot});
-      if (!motion) return Refuse(motion.error());
-      made.diagnostics.insert(made.diagnostics.end(), motion->findings.begin(),
-                              motion->findings.end());
-      made.diagnostics_dropped += motion->findings_dropped;
-      if (!motion->cut_short.empty()) motion_check = motion->cut_short.begin()->second;
-    }
+    if (!check->motion.cut_short.empty()) motion_check = check->motion.cut_short.begin()->second;
     while (const std::optional<v1::WorkResponse> message =
                line_.Receive(std::chrono::milliseconds(0))) {
       Obey(*message);
@@ -194,7 +184,7 @@ class Attempt {
       outcome_ = OutcomeFor(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellProcessorBudget);
       return End::kFinished;
     }
-    ReportFindings(made, motion_check);
+    ReportFindings(found, motion_check);
     return End::kFinished;
   }
 
@@ -213,7 +203,9 @@ class Attempt {
     const auto variables =
         bridge::ExpandVariables({options.variables().begin(), options.variables().end()});
     if (!variables) return Refuse(variables.error());
-    Result<bridge::SetupOutcome> made = bridge::MakeSetup(Input(), options, assignment_.budget());
+    Result<simulation::PreparedRun> made = simulation::PrepareRun(
+        Memory(), bridge::RunOptionsOf(options, assignment_.budget(), assignment_.main_program(),
+                                       machine::Mode::kRemote));
     if (!made) return Refuse(made.error());
     if (CancelOrdered()) return Cancelled();
     if (!made->setup) {

@@ -58,8 +58,8 @@ struct Outcome {
 
 Outcome RunPeer(const Peer& peer, const std::vector<MoveCommand>& chain, double* sum) {
   constexpr double kCycle_s = 0.001;
-  const MachinePoint& start = chain.front().path.from().tip;
-  const double xyz[3] = {start.x, start.y, start.z};
+  const MachinePoint& start = chain.front().path.from().point;
+  const double xyz[3] = {start.x(), start.y(), start.z()};
   const MachineLimits machine = StandardMachine();
   if (peer.open(kCycle_s, machine.tip_speed_mm_s, machine.tip_acceleration_mm_s2, 0.0, xyz) != 0) {
     return {};
@@ -71,8 +71,8 @@ Outcome RunPeer(const Peer& peer, const std::vector<MoveCommand>& chain, double*
   for (;;) {
     double begin = Now();
     while (next < chain.size() && peer.full() == 0) {
-      const MachinePoint& to = chain[next].path.to().tip;
-      const double end[3] = {to.x, to.y, to.z};
+      const MachinePoint& to = chain[next].path.to().point;
+      const double end[3] = {to.x(), to.y(), to.z()};
       const double speed = chain[next].speed_fraction * machine.tip_speed_mm_s;
       if (peer.add_line(end, speed, machine.tip_acceleration_mm_s2, static_cast<int>(next)) != 0) {
         return {};
@@ -130,7 +130,7 @@ Outcome RunOurs(const std::vector<MoveCommand>& chain, const MachineLimits& mach
         const MotionView view(motion);
         times.Through(duration, [&](double, double t) {
           const MachinePoint tip = view.PoseAt(t).tip;
-          *sum += tip.x + tip.y + tip.z;
+          *sum += tip.x() + tip.y() + tip.z();
           ++samples;
         });
       } else {

@@ -59,8 +59,8 @@ double BareRate(const std::vector<MoveCommand>& chain, double& sum) {
     return std::min(cap, Reach(from, length, limits));
   };
   for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
-    const MachineVector in = chain[k].path.to().tip - chain[k].path.from().tip;
-    const MachineVector out = chain[k + 1].path.to().tip - chain[k + 1].path.from().tip;
+    const MachineVector in = chain[k].path.to().point - chain[k].path.from().point;
+    const MachineVector out = chain[k + 1].path.to().point - chain[k + 1].path.from().point;
     const double cosine = in.dot(out) / std::sqrt(in.dot(in) * out.dot(out));
     const double corner = 30.0 * std::sqrt(std::max(0.0, 0.5 * (1.0 + cosine)));
     speed[k + 1] = reachable(speed[k], chain[k].path.length(), corner);

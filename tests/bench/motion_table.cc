@@ -57,7 +57,7 @@ double Bound(const std::vector<PlannedMotion>& motions, const std::vector<MoveCo
       if (blend) {
         const CornerCurve& curve = motion.path.curve();
         const double u = by_length->ParameterAt(curve, motion.path.curve_start() + s);
-        curvature = curve.SecondByLength(u).tip.norm();
+        curvature = curve.SecondByLength(u).point.norm();
       } else {
         curvature = motion.path.Curvature(s).norm();
       }
@@ -67,7 +67,7 @@ double Bound(const std::vector<PlannedMotion>& motions, const std::vector<MoveCo
         const auto across = [&](double at) {
           const CornerCurve& curve = motion.path.curve();
           return curve.SecondByLength(by_length->ParameterAt(curve, motion.path.curve_start() + at))
-              .tip;
+              .point;
         };
         const double low = std::max(s - q, 0.0), high = std::min(s + q, length);
         const double change = (across(high) - across(low)).norm() / (high - low);

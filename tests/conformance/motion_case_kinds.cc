@@ -149,8 +149,8 @@ Figures Hole(const json& input) {
   Figures figures{{"length", hole->lead.length() + hole->circle.length()},
                   {"v_circle", circle.limits.speed},
                   {"T", lead.duration_s() + circle.duration_s()}};
-  Put(figures, "entry", hole->circle.from().tip);
-  Put(figures, "quarter", hole->circle.At(0.25 * hole->circle.length()).tip);
+  Put(figures, "entry", hole->circle.from().point);
+  Put(figures, "quarter", hole->circle.At(0.25 * hole->circle.length()).point);
   return figures;
 }
 
@@ -187,7 +187,7 @@ Figures PointToPoint(const json& input, bool axes) {
   if (axes) {
     move.kind = MoveCommand::Kind::kPointToPointAxes;
     const auto pose = [](const json& q) {
-      return TipPose{PointOf(q), q.at(3).get<double>(), q.at(4).get<double>()};
+      return AxisPose{PointOf(q), q.at(3).get<double>(), q.at(4).get<double>()};
     };
     move.path = PathPiece::Joint(pose(input.at("q0")), pose(input.at("q1")));
   } else {

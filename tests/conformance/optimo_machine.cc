@@ -80,11 +80,7 @@ class Ran::Listener final : public machine::RunObserver {
     if (!path.by_sigma()) motion.length_mm = done.travelled - done.from;
     for (int n = 0; n <= kPosesOfMotion; ++n) {
       const double s = done.from + (done.travelled - done.from) * n / kPosesOfMotion;
-      motion::TipPose pose = path.At(s);
-      if (path.in_axes()) {
-        pose = done.motion->head.TipOf({pose.tip, pose.a_rad, pose.b_rad});
-      }
-      motion.poses.push_back(pose);
+      motion.poses.push_back(motion::TipOn(path, done.motion->head, path.At(s)));
     }
     motions.push_back(std::move(motion));
   }

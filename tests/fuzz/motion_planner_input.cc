@@ -84,7 +84,7 @@ std::string PlanBytes(std::span<const std::uint8_t> data) {
     }
     if (what % 7 == 0) {
       move.kind = MoveCommand::Kind::kPointToPointAxes;
-      move.path = PathPiece::Joint(at, to);
+      move.path = PathPiece::Joint({at.tip, at.a_rad, at.b_rad}, {to.tip, to.a_rad, to.b_rad});
     }
     move.speed_fraction = what % 11 == 0 ? bytes.Number() : 0.3;
     move.acceleration_fraction = what % 13 == 0 ? bytes.Number() : 1.0;

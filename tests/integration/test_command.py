@@ -331,7 +331,7 @@ class Refusals(unittest.TestCase):
                       ("decompile @a.O -o @no/x.S", "CELL-E9023", "@no/x.S: "),
                       ("convert @a.S @no/x.SI", "OPT-E7706", "@no/x.SI: ")])
 
-    def test_office(self):
+    def test_tools(self):
         self.refused([("compile @empty.S", "CELL-E9017", "@empty.S"), ("compile @none.S", "CELL-E9022", "@none.S"),
                       ("compile @a.S --json -o -", "CELL-E9026", "--json says what was written"),
                       ("compile @a.S --map -o -", "CELL-E9026", "--map: the object goes into no file"),

@@ -49,7 +49,7 @@ MAY_INCLUDE = {
     TOOLPATH: ENGINE + [PATH],
     PICTURE: ENGINE + ["engine/families", PATH, REPORT],
     MATERIAL: ENGINE + [REPORT],
-    RUN: ENGINE + [REPORT, TOOLPATH, PICTURE, MATERIAL],
+    RUN: ENGINE + ["engine/families", REPORT, TOOLPATH, PICTURE, MATERIAL],
     "storage": ["engine/core"],
     "storage/sqlite": ["engine/core", "storage"],
     "proto/bridge": ["engine/core", "engine/machine", "engine/families", REPORT, PICTURE, RUN, "proto"],
@@ -77,7 +77,7 @@ MAY_INCLUDE = {
                     "storage/sqlite"],
     # The language server: the languages and no server.
     "clients/lsp": ["engine/core", "engine/machine", "engine/optimo/language", "engine/optimo/offline",
-                    "engine/families"],
+                    "engine/families", RUN],
     "clients/cli": ["clients/lsp", "engine/core", "engine/machine", "engine/families", REPORT, MATERIAL, RUN, "proto", "proto/bridge"],
 }
 # Of these rooms others may include no other header.
@@ -93,7 +93,7 @@ PUBLIC = {
     TOOLPATH: ["toolpath_recorder.h", "toolpath_level.h"],
     PICTURE: ["picture.h", "picture_difference.h", "plot.h"],
     MATERIAL: ["milling_recorder.h", "milling_text.h", "stl.h"],
-    RUN: ["simulate.h", "motion_check.h", "trial_run.h"],
+    RUN: ["simulate.h", "motion_check.h", "rehearsal.h", "trial_run.h"],
 }
 # Headers made of the .proto files.
 PROTO_HEADERS = ("rmlcell/v1/", "google/rpc/", "google/api/", "grpc/health/")

@@ -12,7 +12,9 @@ constexpr double kSameSpeed = 1e-6;  // of that of the axis: no more than a turn
 
 constexpr double kReversalCosine = -0.99619469809174555;  // 175 degrees
 
-AxisValues Values(const PathDerivatives& d) { return {d.tip.x(), d.tip.y(), d.tip.z(), d.a, d.b}; }
+AxisValues Values(const PathDerivatives& d) {
+  return {d.point.x(), d.point.y(), d.point.z(), d.a, d.b};
+}
 
 }  // namespace
 

@@ -27,8 +27,8 @@ bool Same(double a, double b) {
 void Corner::Assign(const PathPiece& before, const PathPiece& after) {
   const PathDerivatives in = before.First(before.length());
   const PathDerivatives out = after.First(0.0);
-  half_sine_ = std::min(0.5 * (in.tip - out.tip).norm(), 1.0);
-  half_cosine_ = std::sqrt(std::max(0.0, 0.5 * (1.0 + in.tip.dot(out.tip))));
+  half_sine_ = std::min(0.5 * (in.point - out.point).norm(), 1.0);
+  half_cosine_ = std::sqrt(std::max(0.0, 0.5 * (1.0 + in.point.dot(out.point))));
   lines_ = before.kind() == PathPiece::Kind::kLine && after.kind() == PathPiece::Kind::kLine;
   const bool turns = in.a != 0.0 || in.b != 0.0 || out.a != 0.0 || out.b != 0.0;
   plain_ = lines_ && !turns;
@@ -46,8 +46,8 @@ void Corner::Assign(const PathPiece& before, const PathPiece& after) {
     b_jump_ = std::abs(out.b - in.b);
   }
   if (!lines_) {
-    const MachineVector bend_in = before.Second(before.length()).tip;
-    const MachineVector bend_out = after.Second(0.0).tip;
+    const MachineVector bend_in = before.Second(before.length()).point;
+    const MachineVector bend_out = after.Second(0.0).point;
     smooth = Same(bend_in, bend_out);
     curvature_jump_ = (bend_in - bend_out).norm();
     for (const PathPiece* piece : {&before, &after}) {
@@ -119,8 +119,8 @@ double JunctionSpeed(const MachineVector& tangent_in, const MachineVector& tange
 CurveEnd EndAt(const PathPiece& path, double s) {
   const PathDerivatives first = path.First(s);
   return {.pose = path.At(s),
-          .tangent = first.tip,
-          .curvature = path.Second(s).tip,
+          .tangent = first.point,
+          .curvature = path.Second(s).point,
           .a_rate = first.a,
           .b_rate = first.b};
 }
@@ -155,7 +155,7 @@ double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLim
   const auto allowed = [&](double u) {
     const PathDerivatives first = curve.FirstByLength(u);
     const PathDerivatives second = curve.SecondByLength(u);
-    const double kappa = second.tip.norm();
+    const double kappa = second.point.norm();
     double speed = SpeedWithinAxes(ThroughHead(head, curve.At(u), first, second), machine.axes);
     if (kappa > 0.0) speed = std::min(speed, std::sqrt(normal / kappa));
     if (std::isfinite(jerk)) {
@@ -169,7 +169,7 @@ double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLim
   // Near a cusp all happens between two samples: as far about the sharpest place as the curve needs
   // to turn.
   const double sharpest = curve.SlowestPlace();
-  const double width = curve.Speed(sharpest) / curve.Derivative(sharpest, 2).tip.norm();
+  const double width = curve.Speed(sharpest) / curve.Derivative(sharpest, 2).point.norm();
   if (!(width * kIntervals < 4.0)) return least;
   constexpr double kWidths = 8.0;
   const double from = std::max(0.0, sharpest - kWidths * width);

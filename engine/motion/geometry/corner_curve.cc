@@ -68,8 +68,8 @@ CornerCurve CornerCurve::InAxes(const CurveEnd& from, const CurveEnd& to, double
 void CornerCurve::FitEnds(const CurveEnd& from, const CurveEnd& to, double scale) {
   turns_ = true;
   const double square = scale * scale;
-  Fit(tip_, from.pose.tip, to.pose.tip - from.pose.tip, from.tangent * scale, to.tangent * scale,
-      from.curvature * square, to.curvature * square);
+  Fit(tip_, from.pose.point, to.pose.point - from.pose.point, from.tangent * scale,
+      to.tangent * scale, from.curvature * square, to.curvature * square);
   Fit(a_, from.pose.a_rad, to.pose.a_rad - from.pose.a_rad, from.a_rate * scale, to.a_rate * scale,
       0.0, 0.0);
   Fit(b_, from.pose.b_rad, to.pose.b_rad - from.pose.b_rad, from.b_rate * scale, to.b_rate * scale,
@@ -79,13 +79,14 @@ void CornerCurve::FitEnds(const CurveEnd& from, const CurveEnd& to, double scale
 CornerCurve::CornerCurve(const PlainCorner& corner) {
   const double cut = corner.cut_mm;
   const double scale = Scale(corner.tangent_in, corner.tangent_out, cut);
-  Fit(tip_, corner.at.tip - corner.tangent_in * cut, (corner.tangent_in + corner.tangent_out) * cut,
-      corner.tangent_in * scale, corner.tangent_out * scale, MachineVector{}, MachineVector{});
+  Fit(tip_, corner.at.point - corner.tangent_in * cut,
+      (corner.tangent_in + corner.tangent_out) * cut, corner.tangent_in * scale,
+      corner.tangent_out * scale, MachineVector{}, MachineVector{});
   a_[0] = corner.at.a_rad;
   b_[0] = corner.at.b_rad;
 }
 
-TipPose CornerCurve::At(double u) const {
+PathPose CornerCurve::At(double u) const {
   if (!turns_) return {Value(tip_, u), a_[0], b_[0]};
   return {Value(tip_, u), Value(a_, u), Value(b_, u)};
 }
@@ -98,8 +99,8 @@ PathDerivatives CornerCurve::Derivative(double u, int order) const {
 
 PathDerivatives CornerCurve::FirstByLength(double u) const {
   const PathDerivatives d = Derivative(u, 1);
-  const double per_mm = 1.0 / (in_axes() ? way_s_ : d.tip.norm());
-  return {d.tip * per_mm, d.a * per_mm, d.b * per_mm};
+  const double per_mm = 1.0 / (in_axes() ? way_s_ : d.point.norm());
+  return {d.point * per_mm, d.a * per_mm, d.b * per_mm};
 }
 
 PathDerivatives CornerCurve::SecondByLength(double u) const {
@@ -107,11 +108,11 @@ PathDerivatives CornerCurve::SecondByLength(double u) const {
   const PathDerivatives e = Derivative(u, 2);
   if (in_axes()) {
     const double square = 1.0 / (way_s_ * way_s_);
-    return {e.tip * square, e.a * square, e.b * square};
+    return {e.point * square, e.a * square, e.b * square};
   }
-  const double square = 1.0 / d.tip.dot(d.tip);
-  const double along = d.tip.dot(e.tip) * square;  // d(|p'|)/du over |p'|
-  return {(e.tip - d.tip * along) * square, (e.a - d.a * along) * square,
+  const double square = 1.0 / d.point.dot(d.point);
+  const double along = d.point.dot(e.point) * square;  // d(|p'|)/du over |p'|
+  return {(e.point - d.point * along) * square, (e.a - d.a * along) * square,
           (e.b - d.b * along) * square};
 }
 
@@ -190,9 +191,9 @@ double CornerCurve::SlowestPlace() const {
   }
   // Newton on d|p'|^2 / du, which has a simple root near a cusp.
   for (int step = 0; step < 8; ++step) {
-    const MachineVector first = Derivative(where, 1).tip;
-    const MachineVector second = Derivative(where, 2).tip;
-    const double slope = second.dot(second) + first.dot(Derivative(where, 3).tip);
+    const MachineVector first = Derivative(where, 1).point;
+    const MachineVector second = Derivative(where, 2).point;
+    const double slope = second.dot(second) + first.dot(Derivative(where, 3).point);
     if (!(slope > 0.0)) break;
     where = std::clamp(where - first.dot(second) / slope, 0.0, 1.0);
   }
@@ -201,7 +202,7 @@ double CornerCurve::SlowestPlace() const {
 
 bool CornerCurve::HasCusp(double cut_mm) const {
   constexpr double kSharpest = 574.0;  // 10 K(175 degrees), motion.md 4.2: curvature x cut
-  const double bend = SecondByLength(SlowestPlace()).tip.norm();
+  const double bend = SecondByLength(SlowestPlace()).point.norm();
   return !(bend * cut_mm < kSharpest);  // also when it stands still there
 }
 

@@ -10,7 +10,7 @@ namespace rmlcell::motion {
 // Where a corner curve leaves or joins a path: pose, unit tangent, curvature vector (1/mm) and the
 // rates of the head (rad/mm).
 struct CurveEnd {
-  TipPose pose;
+  PathPose pose;
   MachineVector tangent;
   MachineVector curvature;
   double a_rate = 0.0;
@@ -19,7 +19,7 @@ struct CurveEnd {
 
 // Derivatives of a path by its own variable.
 struct PathDerivatives {
-  MachinePoint tip;
+  MachineVector point;
   double a = 0.0;
   double b = 0.0;
 };
@@ -27,13 +27,13 @@ struct PathDerivatives {
 // Where two lines meet, passed with a steady head: all that the curve there follows from. Nearly
 // every corner is one, so motions carry this and not the coefficients.
 struct PlainCorner {
-  TipPose at;
+  PathPose at;
   MachineVector tangent_in;
   MachineVector tangent_out;
   double cut_mm = 0.0;  // the curve begins and ends this far from the corner
 
-  TipPose Start() const { return {at.tip - tangent_in * cut_mm, at.a_rad, at.b_rad}; }
-  TipPose Finish() const { return {at.tip + tangent_out * cut_mm, at.a_rad, at.b_rad}; }
+  PathPose Start() const { return {at.point - tangent_in * cut_mm, at.a_rad, at.b_rad}; }
+  PathPose Finish() const { return {at.point + tangent_out * cut_mm, at.a_rad, at.b_rad}; }
 };
 
 // The curve of a /FLY passage: a quintic in X Y Z A B whose position, tangent, curvature and head
@@ -58,7 +58,7 @@ class CornerCurve {
   double way_s() const { return way_s_; }  // in_axes: the length of the curve in that measure
 
   // u runs from 0 to 1.
-  TipPose At(double u) const;
+  PathPose At(double u) const;
   PathDerivatives Derivative(double u, int order) const;  // by u; order 1 to 3
 
   // Derivatives by s, which is arc length but in_axes: first (the tangent), second (the curvature

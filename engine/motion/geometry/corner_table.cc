@@ -12,8 +12,8 @@ CornerCurve PlainCurve(double half_sine, double half_cosine) {
   // A corner of cut 1 at the origin, symmetric about the Y axis.
   const MachineVector in{half_cosine, -half_sine, 0.0};
   const MachineVector out{half_cosine, half_sine, 0.0};
-  return CornerCurve({.pose = {-in}, .tangent = in, .curvature = {}},
-                     {.pose = {out}, .tangent = out, .curvature = {}}, 1.0);
+  return CornerCurve({.pose = {-in, 0.0, 0.0}, .tangent = in, .curvature = {}},
+                     {.pose = {out, 0.0, 0.0}, .tangent = out, .curvature = {}}, 1.0);
 }
 
 // The weights of four neighbouring nodes for a place `t` behind the second one: the cubic through
@@ -140,7 +140,7 @@ class HalfTable {
       for (std::size_t i = 0; i < node.by_bend.size(); ++i) {
         const double way = 0.5 * length.total() * static_cast<double>(i) / HalfCorner::kSteps;
         const double u = length.ParameterAt(curve, way);
-        const double kappa = curve.SecondByLength(u).tip.norm();
+        const double kappa = curve.SecondByLength(u).point.norm();
         const double jerk = curve.JerkPerCube(u);
         node.by_bend[i] = static_cast<float>(std::min(std::sqrt(bend / kappa), kMost));
         node.by_jerk[i] = static_cast<float>(std::min(std::cbrt(bend / jerk), kMost));

@@ -36,7 +36,7 @@ PathPiece PathPiece::Line(const TipPose& from, const TipPose& to) {
   return piece;
 }
 
-PathPiece PathPiece::Joint(const TipPose& from, const TipPose& to) {
+PathPiece PathPiece::Joint(const AxisPose& from, const AxisPose& to) {
   PathPiece piece;
   piece.kind_ = Kind::kJoint;
   piece.from_ = from;
@@ -116,7 +116,7 @@ PathPiece PathPiece::Circle(const TipPose& from, const MachinePoint& centre,
   piece.to_ = {from.tip, a_to_rad, b_to_rad};
   piece.tangent_ = shape.inward.cross(normal);
   piece.shape_ = shape;
-  if (sweep_rad != kTurn) piece.to_.tip = piece.ArcPoint(sweep_rad);
+  if (sweep_rad != kTurn) piece.to_.point = piece.ArcPoint(sweep_rad);
   return piece;
 }
 
@@ -154,19 +154,19 @@ MachineVector PathPiece::ArcPoint(double angle) const {
   // From the start point, not from the centre: a radius of 1e8 mm then costs no digits.
   const double half_sine = std::sin(0.5 * angle);
   const double radius = arc().radius_mm;
-  return from_.tip + tangent_ * (radius * std::sin(angle)) +
+  return from_.point + tangent_ * (radius * std::sin(angle)) +
          arc().inward * (radius * 2.0 * half_sine * half_sine);
 }
 
-TipPose PathPiece::OffLine(double s) const {
+PathPose PathPiece::OffLine(double s) const {
   if (!(s > 0.0)) return from_;
   if (s >= length_) return to_;
   if (kind_ == Kind::kBlend) {
     const BlendCurve blend(*this);
     return blend.curve().At(blend.ParameterAt(s));
   }
-  TipPose pose = OnLine(s);
-  if (kind_ == Kind::kArc) pose.tip = ArcPoint(s / radius_mm());
+  PathPose pose = OnLine(s);
+  if (kind_ == Kind::kArc) pose.point = ArcPoint(s / radius_mm());
   return pose;
 }
 
@@ -175,7 +175,7 @@ PathDerivatives PathPiece::FirstOffLine(double s) const {
     const BlendCurve blend(*this);
     return blend.curve().FirstByLength(blend.ParameterAt(s));
   }
-  MachinePoint tip = length_ > 0.0 ? (to_.tip - from_.tip) * (1.0 / length_) : MachineVector{};
+  MachinePoint tip = length_ > 0.0 ? (to_.point - from_.point) * (1.0 / length_) : MachineVector{};
   if (kind_ == Kind::kArc) {
     const double angle = s / radius_mm();
     tip = tangent_ * std::cos(angle) + arc().inward * std::sin(angle);

@@ -33,8 +33,8 @@ class PathPiece {
   // kRotary when the tip does not move but an angle does; length 0 when nothing changes.
   static PathPiece Line(const TipPose& from, const TipPose& to);
 
-  // Straight in the five axes; `from` and `to` hold column positions, not tips.
-  static PathPiece Joint(const TipPose& from, const TipPose& to);
+  // Straight in the five axes.
+  static PathPiece Joint(const AxisPose& from, const AxisPose& to);
 
   // Pieces in_axes(): s shall run from 0 to this.
   void MeasureBy(double length) {
@@ -59,8 +59,8 @@ class PathPiece {
 
   // To stand at the place `s`: length 0.
   PathPiece Standing(double s) const {
-    const TipPose pose = At(s);
-    return in_axes() ? Joint(pose, pose) : Line(pose, pose);
+    const PathPose pose = At(s);
+    return in_axes() ? Joint(pose.axes(), pose.axes()) : Line(pose.tip(), pose.tip());
   }
 
   // The piece between two values of s, 0 <= s_from < s_to <= length(). Not for sigma pieces.
@@ -90,21 +90,21 @@ class PathPiece {
     return RateOf(from_.a_rad, to_.a_rad);
   }
   double b_rate() const { return RateOf(from_.b_rad, to_.b_rad); }
-  const TipPose& from() const { return from_; }
-  const TipPose& to() const { return to_; }
+  const PathPose& from() const { return from_; }
+  const PathPose& to() const { return to_; }
 
   // Makes this piece the half of a corner curve: its arc length, and the poses at its ends. `start`
   // is the arc length of the curve before it.
-  void AssignCorner(const CornerCurve& curve, double start, double length, const TipPose& from,
-                    const TipPose& to) {
+  void AssignCorner(const CornerCurve& curve, double start, double length, const PathPose& from,
+                    const PathPose& to) {
     AssignBlend(length, from, to);
     auto* part = std::get_if<CurvePart>(&shape_);
     if (part == nullptr) part = &shape_.emplace<CurvePart>();
     part->start = start;
     part->curve = curve;
   }
-  void AssignCorner(const PlainCorner& corner, double start, double length, const TipPose& from,
-                    const TipPose& to) {  // `length` is half of the whole
+  void AssignCorner(const PlainCorner& corner, double start, double length, const PathPose& from,
+                    const PathPose& to) {  // `length` is half of the whole
     AssignBlend(length, from, to);
     auto* part = std::get_if<PlainPart>(&shape_);
     if (part == nullptr) part = &shape_.emplace<PlainPart>();
@@ -125,7 +125,7 @@ class PathPiece {
 
   // Outside 0..length() the nearer end; the ends are from() and to() to the last bit.
   // On a kBlend piece this measures the curve each time; MotionView does it once.
-  TipPose At(double s) const { return kind_ == Kind::kLine ? OnLine(s) : OffLine(s); }
+  PathPose At(double s) const { return kind_ == Kind::kLine ? OnLine(s) : OffLine(s); }
 
   // Derivatives of the pose by s: the unit tangent and the curvature vector (1/mm), or by sigma.
   [[gnu::always_inline]] PathDerivatives First(double s) const {
@@ -133,9 +133,9 @@ class PathPiece {
   }
   PathDerivatives Second(double s) const;
   [[gnu::always_inline]] MachineVector Tangent(double s) const {
-    return kind_ == Kind::kLine ? tangent_ : FirstOffLine(s).tip;
+    return kind_ == Kind::kLine ? tangent_ : FirstOffLine(s).point;
   }
-  MachineVector Curvature(double s) const { return Second(s).tip; }
+  MachineVector Curvature(double s) const { return Second(s).point; }
 
   // The same places by u for kBlend pieces, whose s must be turned into u first: see CornerLength.
   double curve_start() const {
@@ -169,7 +169,7 @@ class PathPiece {
     CornerCurve curve;
   };
   const ArcShape& arc() const { return *std::get_if<ArcShape>(&shape_); }
-  void AssignBlend(double length, const TipPose& from, const TipPose& to) {
+  void AssignBlend(double length, const PathPose& from, const PathPose& to) {
     kind_ = Kind::kBlend;
     length_ = length;
     from_ = from;
@@ -178,15 +178,15 @@ class PathPiece {
   void AssignShape(const PathPiece& other);
   MachinePoint ArcPoint(double angle) const;
   PathDerivatives FirstOffLine(double s) const;
-  TipPose OnLine(double s) const {
+  PathPose OnLine(double s) const {
     if (!(s > 0.0)) return from_;
     if (s >= length_) return to_;
     const double share = s / length_;
-    return {from_.tip + (to_.tip - from_.tip) * share,
+    return {from_.point + (to_.point - from_.point) * share,
             from_.a_rad + (to_.a_rad - from_.a_rad) * share,
             from_.b_rad + (to_.b_rad - from_.b_rad) * share};
   }
-  TipPose OffLine(double s) const;
+  PathPose OffLine(double s) const;
   void AssignPartOffLine(const PathPiece& whole, double s_from, double s_to);
   double RateOf(double from, double to) const {
     return to != from && length_ > 0.0 ? (to - from) / length_ : 0.0;
@@ -194,8 +194,8 @@ class PathPiece {
 
   Kind kind_ = Kind::kLine;
   double length_ = 0.0;
-  TipPose from_;
-  TipPose to_;
+  PathPose from_;
+  PathPose to_;
   MachineVector tangent_;  // lines and arcs: unit tangent at the start
   // Of arcs and blends. Other kinds may hold what the piece was before.
   std::variant<std::monostate, ArcShape, CurvePart, PlainPart> shape_;

@@ -98,20 +98,20 @@ AxisDerivatives DerivativesAt(const PathPiece& path, const Head& head, double s)
   const PathDerivatives first = path.First(s);
   const PathDerivatives second = path.Second(s);
   if (path.in_axes()) {
-    return {.first = {first.tip.x(), first.tip.y(), first.tip.z(), first.a, first.b},
-            .second = {second.tip.x(), second.tip.y(), second.tip.z(), second.a, second.b}};
+    return {.first = {first.point.x(), first.point.y(), first.point.z(), first.a, first.b},
+            .second = {second.point.x(), second.point.y(), second.point.z(), second.a, second.b}};
   }
   if (first.a == 0.0 && first.b == 0.0 && second.a == 0.0 && second.b == 0.0) {
-    return {.first = {first.tip.x(), first.tip.y(), first.tip.z(), 0.0, 0.0},
-            .second = {second.tip.x(), second.tip.y(), second.tip.z(), 0.0, 0.0}};
+    return {.first = {first.point.x(), first.point.y(), first.point.z(), 0.0, 0.0},
+            .second = {second.point.x(), second.point.y(), second.point.z(), 0.0, 0.0}};
   }
   return ThroughHead(head, path.At(s), first, second);
 }
 
-AxisDerivatives ThroughHead(const Head& head, const TipPose& pose, const PathDerivatives& first,
+AxisDerivatives ThroughHead(const Head& head, const PathPose& pose, const PathDerivatives& first,
                             const PathDerivatives& second) {
   const BothAxisRates rates = head.RatesOfBoth(
-      pose.a_rad, pose.b_rad, {first.tip, first.a, first.b}, {second.tip, second.a, second.b});
+      pose.a_rad, pose.b_rad, {first.point, first.a, first.b}, {second.point, second.a, second.b});
   return {.first = rates.first, .second = rates.second};
 }
 
@@ -141,7 +141,7 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
     const double rate = std::abs(first.a) + std::abs(first.b);
     const double half = 0.5 * path.length();
     const double drift = half * head.reach_mm() * rate * rate;
-    const double wanted = std::ceil(std::max(drift / first.tip.norm(), half * rate) / kRoom);
+    const double wanted = std::ceil(std::max(drift / first.point.norm(), half * rate) / kRoom);
     if (wanted <= static_cast<double>(kPartsMax)) {
       const auto parts = static_cast<std::size_t>(std::max(wanted, 1.0));
       const double share = 1.0 / static_cast<double>(parts);

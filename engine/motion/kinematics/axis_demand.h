@@ -14,7 +14,7 @@ struct AxisDerivatives {
 AxisDerivatives DerivativesAt(const PathPiece& path, const Head& head, double s);
 
 // The same from the derivatives of the pose.
-AxisDerivatives ThroughHead(const Head& head, const TipPose& pose, const PathDerivatives& first,
+AxisDerivatives ThroughHead(const Head& head, const PathPose& pose, const PathDerivatives& first,
                             const PathDerivatives& second);
 
 // The highest constant speed along a path that the axes allow where its derivatives are `q`: all of

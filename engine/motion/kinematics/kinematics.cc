@@ -63,8 +63,7 @@ double ExcessOf(std::size_t axis, double value, const AxisLimits& limits) {
 }
 
 AxisPose AxesAt(const PathPiece& path, const Head& head, double s) {
-  const TipPose pose = path.At(s);
-  return path.in_axes() ? AxisPose{pose.tip, pose.a_rad, pose.b_rad} : head.ColumnOf(pose);
+  return AxesOn(path, head, path.At(s));
 }
 
 // The places of a path at which its range is looked at: motion.md 2.6.
@@ -113,6 +112,14 @@ AxisPose Head::ColumnOf(const TipPose& pose) const {
   const MachineVector offset =
       std::visit([&](const auto& head) { return head.Offset(pose.a_rad, pose.b_rad); }, kind_);
   return {pose.tip + offset, pose.a_rad, pose.b_rad};
+}
+
+TipPose TipOn(const PathPiece& path, const Head& head, const PathPose& place) {
+  return path.in_axes() ? head.TipOf(place.axes()) : place.tip();
+}
+
+AxisPose AxesOn(const PathPiece& path, const Head& head, const PathPose& place) {
+  return path.in_axes() ? place.axes() : head.ColumnOf(place.tip());
 }
 
 TipPose Head::TipOf(const AxisPose& pose) const {

@@ -8,16 +8,6 @@
 
 namespace rmlcell::motion {
 
-// Column position (crossing of the A and B axes) and head angles: what the five axes of the gantry
-// do.
-struct AxisPose {
-  MachinePoint column;
-  double a_rad = 0.0;
-  double b_rad = 0.0;
-
-  bool operator==(const AxisPose&) const = default;
-};
-
 // Speed, acceleration, jerk and travel of each axis: mm and rad.
 struct AxisLimits {
   AxisValues speed{};
@@ -38,7 +28,7 @@ struct ToolOffset {
 
 // How the tip and the head angles change, by time or by path length.
 struct TipRates {
-  MachinePoint tip;
+  MachineVector tip;
   double a = 0.0;
   double b = 0.0;
 };
@@ -106,6 +96,10 @@ class Head {
  private:
   Kind kind_;
 };
+
+// What the tip, and what the axes do at a place of this path.
+TipPose TipOn(const PathPiece& path, const Head& head, const PathPose& place);
+AxisPose AxesOn(const PathPiece& path, const Head& head, const PathPose& place);
 
 // The head angles for a tool direction `u` (need not be a unit vector), of the two solutions and
 // their turns the one nearest to `near` in |dA| + |dB|; A stays where it is when u is along Z.

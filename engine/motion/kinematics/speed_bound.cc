@@ -43,7 +43,7 @@ SpeedBound TightestBound(const PathPiece& path, const Head& head, const MachineL
   for (int k = 0; k <= intervals; ++k) {
     const double s = path.length() * k / intervals;
     if (arc) {  // what the bend takes of the axes by itself; with a steady head all that is taken
-      const MachineVector bend = path.Second(s).tip;
+      const MachineVector bend = path.Second(s).point;
       for (const auto& [axis, value] : {std::pair{0, bend.x()}, {1, bend.y()}, {2, bend.z()}}) {
         if (value == 0.0) continue;
         const double acceleration = machine.axes.acceleration[static_cast<std::size_t>(axis)];

@@ -14,8 +14,8 @@ constexpr double kAccelerationFractionMin = 0.001;
 
 // Lengths in mm or angles in rad that no machine can have would only overflow later.
 bool IsUsable(double value) { return std::abs(value) <= kLargest; }
-bool IsUsable(const TipPose& pose) {
-  return std::abs(pose.tip.x()) + std::abs(pose.tip.y()) + std::abs(pose.tip.z()) +
+bool IsUsable(const PathPose& pose) {
+  return std::abs(pose.point.x()) + std::abs(pose.point.y()) + std::abs(pose.point.z()) +
              std::abs(pose.a_rad) + std::abs(pose.b_rad) <=
          kLargest;
 }
@@ -29,12 +29,12 @@ bool IsAboveZero(const PathLimits& limits) {
 
 // Moves too short to be made leave a gap between where the machine is and where the next move
 // believes it begins: a line begins where the machine is.
-bool NeedsAnchor(const PathPiece& path, const TipPose* end) {
+bool NeedsAnchor(const PathPiece& path, const PathPose* end) {
   constexpr double kGap_mm = 1e-3;  // a thousand such moves
   if (end == nullptr) return false;
   const bool straight = path.kind() == PathPiece::Kind::kLine ||
                         path.kind() == PathPiece::Kind::kRotary || !(path.length() > 0.0);
-  return straight && (end->tip - path.from().tip).norm() <= kGap_mm &&
+  return straight && (end->point - path.from().point).norm() <= kGap_mm &&
          end->a_rad == path.from().a_rad && end->b_rad == path.from().b_rad;
 }
 
@@ -71,13 +71,13 @@ Planner::Planner(Planner&&) noexcept = default;
 Planner& Planner::operator=(Planner&&) noexcept = default;
 
 Status Planner::Append(const MoveCommand& move) {
-  const TipPose* end = chain_->end();
+  const PathPose* end = chain_->end();
   const bool goes_on = end != nullptr && move.path.from() == *end;  // from where all is well
   if (!goes_on) {
     if (!IsUsable(move.path.from())) return NotUsable();
     if (NeedsAnchor(move.path, end)) {
       MoveCommand anchored = move;
-      anchored.path = PathPiece::Line(*end, move.path.to());
+      anchored.path = PathPiece::Line(end->tip(), move.path.to().tip());
       return Append(anchored);
     }
   }

@@ -34,7 +34,7 @@ constexpr std::array<double, 5> kEases{1.0, 0.5, 0.25, 0.125, 0.0625};
 // motion.md 5.1, which leave room for ramps anywhere.
 bool AxesCan(const PlannedMotion& motion, const AxisLimits& axes) {
   if (motion.path.kind() != PathPiece::Kind::kBlend) return true;
-  constexpr double kRoom = 1.0 + 1e-3;  // plans use up the limits; 0.1 % is no harm
+  constexpr double kAsksMost = 1.0 + 1e-3;  // plans use up the limits; 0.1 % is no harm
   constexpr int kPlaces = 32;
   for (int k = 0; k <= kPlaces; ++k) {
     const PathState state = motion.speed.At(motion.speed.duration_s() * k / kPlaces);
@@ -42,7 +42,7 @@ bool AxesCan(const PlannedMotion& motion, const AxisLimits& axes) {
     for (const std::size_t i : kAxes) {
       const double asked =
           q.first[i] * state.acceleration + q.second[i] * state.speed * state.speed;
-      if (std::abs(asked) > axes.acceleration[i] * kRoom) return false;
+      if (std::abs(asked) > axes.acceleration[i] * kAsksMost) return false;
     }
   }
   return true;

@@ -9,9 +9,11 @@
 namespace rmlcell::motion {
 namespace {
 
-PathDerivatives Scaled(const PathDerivatives& d, double k) { return {d.tip * k, d.a * k, d.b * k}; }
+PathDerivatives Scaled(const PathDerivatives& d, double k) {
+  return {d.point * k, d.a * k, d.b * k};
+}
 PathDerivatives Sum(const PathDerivatives& x, const PathDerivatives& y) {
-  return {x.tip + y.tip, x.a + y.a, x.b + y.b};
+  return {x.point + y.point, x.a + y.a, x.b + y.b};
 }
 
 MachineVector ColumnPart(const AxisValues& values) { return {values[0], values[1], values[2]}; }
@@ -27,7 +29,7 @@ void Halve(const CornerCurve& curve, double u0, double u1, const MachinePoint& p
            const MachinePoint& p1, double tolerance_mm, int depth,
            std::vector<MachinePoint>& points) {
   const double middle = 0.5 * (u0 + u1);
-  const MachinePoint on_curve = curve.At(middle).tip;
+  const MachinePoint on_curve = curve.At(middle).point;
   // The first cut is always made: an S would hide behind its own chord.
   const bool near = (on_curve - ((p0 + p1) * 0.5)).norm() <= tolerance_mm;
   if (depth >= kHalvingsMax || (near && depth > 1)) {
@@ -46,7 +48,7 @@ TrajectoryPoint PointAt(const PathPiece& path, const Head& head, const PathState
 }
 
 TrajectoryPoint PointAt(const PathPlace& place, const Head& head, const PathState& state) {
-  const TipPose& pose = place.pose;
+  const PathPose& pose = place.pose;
   const PathDerivatives& first = place.first;
   const PathDerivatives& second = place.second;
   const PathDerivatives velocity = Scaled(first, state.speed);
@@ -61,21 +63,20 @@ TrajectoryPoint PointAt(const PathPlace& place, const Head& head, const PathStat
 
   TrajectoryPoint point;
   if (place.in_axes) {
-    const AxisPose axes{pose.tip, pose.a_rad, pose.b_rad};
-    point.tip = head.TipOf(axes);
-    point.tip_velocity = velocity.tip - swing;
-    point.tip_acceleration = acceleration.tip - whirl;
-    point.axes = Values(pose.tip, pose.a_rad, pose.b_rad);
-    point.axis_velocity = Values(velocity.tip, velocity.a, velocity.b);
-    point.axis_acceleration = Values(acceleration.tip, acceleration.a, acceleration.b);
+    point.tip = head.TipOf(pose.axes());
+    point.tip_velocity = velocity.point - swing;
+    point.tip_acceleration = acceleration.point - whirl;
+    point.axes = Values(pose.point, pose.a_rad, pose.b_rad);
+    point.axis_velocity = Values(velocity.point, velocity.a, velocity.b);
+    point.axis_acceleration = Values(acceleration.point, acceleration.a, acceleration.b);
     return point;
   }
-  point.tip = pose;
-  point.tip_velocity = velocity.tip;
-  point.tip_acceleration = acceleration.tip;
-  point.axes = Values(head.ColumnOf(pose).column, pose.a_rad, pose.b_rad);
-  point.axis_velocity = Values(velocity.tip + swing, velocity.a, velocity.b);
-  point.axis_acceleration = Values(acceleration.tip + whirl, acceleration.a, acceleration.b);
+  point.tip = pose.tip();
+  point.tip_velocity = velocity.point;
+  point.tip_acceleration = acceleration.point;
+  point.axes = Values(head.ColumnOf(pose.tip()).column, pose.a_rad, pose.b_rad);
+  point.axis_velocity = Values(velocity.point + swing, velocity.a, velocity.b);
+  point.axis_acceleration = Values(acceleration.point + whirl, acceleration.a, acceleration.b);
   return point;
 }
 
@@ -92,9 +93,8 @@ TrajectoryPoint MotionView::At(double t_s) const {
 
 TipPose MotionView::PoseAt(double t_s) const {
   const double s = motion_.speed.PlaceAt(t_s);
-  const TipPose pose = blend_ ? blend_->curve().At(blend_->ParameterAt(s)) : motion_.path.At(s);
-  if (!motion_.path.in_axes()) return pose;
-  return motion_.head.TipOf({pose.tip, pose.a_rad, pose.b_rad});
+  const PathPose pose = blend_ ? blend_->curve().At(blend_->ParameterAt(s)) : motion_.path.At(s);
+  return TipOn(motion_.path, motion_.head, pose);
 }
 
 void LongSum::Add(double value) {
@@ -104,22 +104,22 @@ void LongSum::Add(double value) {
 }
 
 void AppendPolyline(const PathPiece& path, double tolerance_mm, std::vector<MachinePoint>& points) {
-  if (points.empty() || points.back() != path.from().tip) points.push_back(path.from().tip);
+  if (points.empty() || points.back() != path.from().point) points.push_back(path.from().point);
   if (path.kind() == PathPiece::Kind::kArc) {
     const double radius = path.radius_mm();
     const double step = tolerance_mm < radius ? 2.0 * std::acos(1.0 - tolerance_mm / radius) : kPi;
     const double wanted = std::ceil(path.sweep_rad() / std::min(step, 0.5 * kPi));
     const int chords = static_cast<int>(std::clamp(wanted, 1.0, static_cast<double>(kChordsMax)));
-    for (int k = 1; k < chords; ++k) points.push_back(path.At(path.length() * k / chords).tip);
+    for (int k = 1; k < chords; ++k) points.push_back(path.At(path.length() * k / chords).point);
   } else if (path.kind() == PathPiece::Kind::kBlend) {
     const BlendCurve blend(path);
     const double from = blend.ParameterAt(0.0);
     const double to = blend.ParameterAt(path.length());
-    Halve(blend.curve(), from, to, path.from().tip, path.to().tip, tolerance_mm, 0, points);
+    Halve(blend.curve(), from, to, path.from().point, path.to().point, tolerance_mm, 0, points);
     return;
   }
   if (path.length() > 0.0 && path.kind() != PathPiece::Kind::kRotary)
-    points.push_back(path.to().tip);
+    points.push_back(path.to().point);
 }
 
 }  // namespace rmlcell::motion

@@ -24,8 +24,8 @@ struct TrajectoryPoint {
 // The state of a path with these derivatives by s, where it is passed as `state` says.
 // motion.md 2.4.
 struct PathPlace {
-  bool in_axes = false;  // `pose` and the derivatives are those of the column
-  TipPose pose;
+  bool in_axes = false;  // pose and derivatives are those of the axes
+  PathPose pose;
   PathDerivatives first;
   PathDerivatives second;
 };

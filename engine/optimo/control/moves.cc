@@ -82,6 +82,11 @@ motion::TipPose Moves::TipAt(const Coordinates& v) const {
           .b_rad = v[4]};
 }
 
+// Of COORD ROBOT.
+motion::AxisPose Moves::AxesAt(const Coordinates& v) {
+  return {.column = {v[0], v[1], v[2]}, .a_rad = v[3], .b_rad = v[4]};
+}
+
 // A MOVE to where the motions so far end.
 bool Moves::GoesNowhere(const Instruction& i) {
   const Modal& modal = counter_.modal();
@@ -91,8 +96,7 @@ bool Moves::GoesNowhere(const Instruction& i) {
   if (!to) return true;
   const motion::AxisPose& from = ride_.planned_axes();
   const motion::PathPiece path =
-      robot ? motion::PathPiece::Joint({from.column, from.a_rad, from.b_rad},
-                                       {{(*to)[0], (*to)[1], (*to)[2]}, (*to)[3], (*to)[4]})
+      robot ? motion::PathPiece::Joint(from, AxesAt(*to))
             : motion::PathPiece::Line(ride_.head().TipOf(from), TipAt(*to));
   return !(path.length() > 0.0);
 }
@@ -185,11 +189,7 @@ Result<bool> Moves::AppendPath(const Programmed& move) {
   const Modal& modal = counter_.modal();
   const motion::AxisPose& axes = ride_.planned_axes();
   if (modal.coord == CoordType::kRobot) {
-    const Coordinates& v = move.target;
-    return Append(move.i,
-                  motion::PathPiece::Joint({axes.column, axes.a_rad, axes.b_rad},
-                                           {{v[0], v[1], v[2]}, v[3], v[4]}),
-                  move.note);
+    return Append(move.i, motion::PathPiece::Joint(axes, AxesAt(move.target)), move.note);
   }
   const motion::TipPose from = ride_.head().TipOf(axes);
   if (modal.path == PathType::kHole) return AppendHole(move, from);
@@ -432,11 +432,9 @@ Status Moves::ZeroAxes() {
 }
 
 Status Moves::ZeroGroup(int group, const motion::AxisPose& to) {
-  const motion::AxisPose& from = ride_.planned_axes();
   motion::MoveCommand command;
   command.kind = motion::MoveCommand::Kind::kPointToPointAxes;
-  command.path = motion::PathPiece::Joint({from.column, from.a_rad, from.b_rad},
-                                          {to.column, to.a_rad, to.b_rad});
+  command.path = motion::PathPiece::Joint(ride_.planned_axes(), to);
   command.head = ride_.head();
   command.speed_fraction = 0.1;  // no override: OPT-4.51
   if (command.path.length() > 0.0) {

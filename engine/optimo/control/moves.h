@@ -79,6 +79,7 @@ class Moves {
   Result<Coordinates> TargetOf(const Instruction& i);
   Result<motion::TipPose> ViaOf(const Instruction& i);
   motion::TipPose TipAt(const Coordinates& v) const;
+  static motion::AxisPose AxesAt(const Coordinates& v);
   bool GoesNowhere(const Instruction& i);
   bool NeverMoves() const;
 

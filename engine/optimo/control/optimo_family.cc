@@ -92,10 +92,6 @@ class Family final : public machine::MachineFamily {
                                 ContourMachineOf(resolved));
   }
 
-  Result<std::string> Decompile(std::string_view object) const override {
-    return ObjectToSource(object);
-  }
-
   Status CheckExecutable(std::string_view executable, int slot) const override {
     const Result<Executable> decoded = DecodeExecutable(executable);
     if (!decoded) return decoded.error();

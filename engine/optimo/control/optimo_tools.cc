@@ -20,8 +20,7 @@
 namespace rmlcell::optimo {
 namespace {
 
-constexpr machine::FileExtensions kExtensions{.source = ".S",
-                                              .object = ".O",
+constexpr machine::FileExtensions kExtensions{.object = ".O",
                                               .executable = ".X",
                                               .listing = ".LST",
                                               .compensated = ".CMP",

@@ -112,22 +112,14 @@ enum class PathType : std::uint8_t { kPtp, kLin, kCir, kHole };
 inline constexpr std::uint8_t kGroupIl = 1, kGroupOl = 2, kGroupIa = 4, kGroupOa = 8,
                               kAllGroups = 15;
 
-// One instruction. What its fields hold, by op (values: expressions of its own, before those of
-// attributes; targets: sequence numbers jumped to):
-//   MOVE        values X Y Z A B; attributes
-//   COORD       choice CoordType            PATH     choice PathType; HOLE: values radius
-//   SPEED ACCEL OVERSH DELAY SETERR WAIT    values v
-//   SYSDEF      values none or six          TCP      values six
-//   WORKDEF     numbers n, p; values        WORK     numbers n, p; attributes ON or OFF ...
-//   GO          values program; attributes  CALL     values program, arguments
-//   FUNCTION    numbers[0] program; values program (literal or constant), arguments
-//   GOTO GOSUB ERR  targets[0]              GotoTable values selector (a variable); targets
-//   IF          values condition; targets THEN [, ELSE]
-//   TASK        numbers[0]                  TIMER    values seconds, targets[0]; or attribute DIS
-//   LET         values target (one kVariable node), right-hand side
-//   DECLARE     name; values the value      DEFINE   numbers[0] PAR index; choice ValueType
-//   ASSIGN      values target, value; numbers[0] width
-//   UPDATE IMAGE REAL  choice groups        BREAK SIMUL  numbers step, program (0: the own one)
+// One instruction. What its fields hold is said by its operands, in order (operands.h), and by its
+// attributes: values are expressions of its own, before those of attributes; targets are sequence
+// numbers jumped to. Besides:
+//   COORD       choice CoordType       PATH      choice PathType       DEFINE    choice ValueType
+//   FUNCTION    numbers[0] program, too
+//   SYSDEF      values none or six     LET       values target, right-hand side
+//   DEFINE      numbers[0] PAR index   ASSIGN    numbers[0] width
+//   BREAK SIMUL numbers[1] program, 0: the own one
 //   ignored     name: index of Module::texts, "CONT 3"
 struct Instruction {
   Op op = Op::kInvalid;

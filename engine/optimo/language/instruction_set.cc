@@ -15,7 +15,18 @@ constexpr std::array<Op, kWordCount> MakeOpOfWord() {
 }
 constexpr std::array<Op, kWordCount> kOpOfWord = MakeOpOfWord();
 
+constexpr std::array<OperandCounts, kOpCount> MakeCounts() {
+  std::array<OperandCounts, kOpCount> counts{};
+  for (const InstructionInfo& row : kInstructionSet) {
+    counts[static_cast<std::size_t>(row.op)] = CountOf(row.operands);
+  }
+  return counts;
+}
+constexpr std::array<OperandCounts, kOpCount> kCounts = MakeCounts();
+
 }  // namespace
+
+const OperandCounts& CountOf(Op op) { return kCounts[static_cast<std::size_t>(op)]; }
 
 Op OpOf(Word word) { return kOpOfWord[static_cast<std::size_t>(word)]; }
 

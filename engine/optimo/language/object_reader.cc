@@ -17,6 +17,14 @@ namespace {
 constexpr int kLabelMax = 9999;
 constexpr std::uint64_t kTargetsMax = kStatementTokensMax / 2;  // a comma between two
 
+bool IsVariable(Expression value) {
+  return value.size() == 1 && (value[0].op == Node::kVariable || value[0].op == Node::kName);
+}
+
+bool IsWholeNumber(Expression value) {
+  return value.size() == 1 && value[0].op == Node::kInteger && value[0].number >= 0.0F;
+}
+
 // Accepts exactly what EncodeObject can write, or could once: so what was accepted, decompiled and
 // compiled again is the same object.
 class Reader {
@@ -40,8 +48,9 @@ class Reader {
   void ReadExpression();
   void ReadLeaf(unsigned tag, ExprNode& node);
   void RequireForm(const Instruction& i);
-  bool IsVariable(const Instruction& i, int position) const;
-  bool IsWholeNumber(const Instruction& i, int position) const;
+  void RequireOperand(const Instruction& i, const Operand& operand, int& value,
+                      std::size_t& number);
+  void RequireOwn(const Instruction& i);
   void Require(bool condition) {
     if (!condition) in_.Refuse();
   }
@@ -98,25 +107,27 @@ void Reader::ReadRecord() {
     Require(i.attributes != 0 && (i.attributes & ~Describe(i.op).attributes) == 0);
   }
   if (i.op == Op::kIgnored) return ReadIgnored(i);
-  const ObjectForm form = FormOf(i.op);
-  if (form.choice) i.choice = static_cast<std::uint8_t>(in_.Byte());
-  for (std::size_t n = 0; n < form.numbers; ++n)
+  const OperandCounts& counts = CountOf(i.op);
+  if (counts.choice) i.choice = static_cast<std::uint8_t>(in_.Byte());
+  for (std::size_t n = 0; n < counts.numbers; ++n)
     i.numbers[n] = static_cast<std::uint16_t>(in_.Whole(0xFFFF));
-  if (form.name) {
+  if (counts.name) {
     i.name = static_cast<std::uint16_t>(in_.Whole(kNoName - 1U));
     Require(i.name == next_name_++ && i.name < module_->names.size());
   }
-  i.value_count = form.value_count;
-  if (form.values == ValueCount::kCounted) {
+  i.value_count = counts.values;
+  if (counts.values_vary) {
     i.value_count = static_cast<std::uint8_t>(in_.Byte());
-    Require(i.value_count <= form.value_count);
+    Require(i.value_count <= counts.values);
   }
   const std::uint32_t expressions = module_->ExpressionCount(i);
   for (std::uint32_t e = 0; e < expressions && !in_.bad(); ++e) ReadExpression();
   std::uint64_t targets = i.Has(kTime) ? 1 : 0;
-  if (form.targets == TargetCount::kOne) ++targets;
-  if (form.targets == TargetCount::kWithValue) targets += i.value_count;
-  if (form.targets == TargetCount::kCounted) targets = in_.Whole(kTargetsMax);
+  if (counts.targets_vary) {
+    targets = in_.Whole(kTargetsMax);
+  } else {
+    targets += counts.targets_with_value ? i.value_count : counts.targets;
+  }
   for (std::uint64_t t = 0; t < targets && !in_.bad(); ++t) {
     const unsigned label = in_.Fixed16();
     Require(label <= kLabelMax);
@@ -212,75 +223,91 @@ void Reader::ReadExpression() {
   module_->EndExpression();
 }
 
-bool Reader::IsVariable(const Instruction& i, int position) const {
-  const Expression value = module_->Value(i, position);
-  return value.size() == 1 && (value[0].op == Node::kVariable || value[0].op == Node::kName);
-}
-
-bool Reader::IsWholeNumber(const Instruction& i, int position) const {
-  const Expression value = module_->Value(i, position);
-  return value.size() == 1 && value[0].op == Node::kInteger && value[0].number >= 0.0F;
-}
-
-// What the grammar demands and the checker takes for granted.
+// What the grammar demands and the checker takes for granted, by the operands; then what no row of
+// them says.
 void Reader::RequireForm(const Instruction& i) {
   for (std::uint32_t e = 0; e < module_->ExpressionCount(i); ++e) {
     Require(PrintedNesting(module_->expression(i.first_expression + e), i.op == Op::kTcp) <=
             kNestingMax);
   }
+  int value = 0;
+  std::size_t number = 0;
+  for (const Operand& operand : Describe(i.op).operands) {
+    RequireOperand(i, operand, value, number);
+    if (in_.bad()) return;
+  }
+  RequireOwn(i);
+}
+
+void Reader::RequireOperand(const Instruction& i, const Operand& operand, int& value,
+                            std::size_t& number) {
+  const auto next_value = [&] { return module_->Value(i, value++); };
+  const bool there = value < i.value_count;
+  switch (operand.kind) {
+    case Operand::Kind::kValue:
+      if (there) ++value;  // the time of TIMER may be missing
+      return;
+    case Operand::Kind::kVariable:
+      return Require(there && IsVariable(next_value()));
+    case Operand::Kind::kProgram: {
+      if (!there) return in_.Refuse();
+      const Expression given = next_value();
+      return Require(IsVariable(given) || IsWholeNumber(given));
+    }
+    case Operand::Kind::kConstant: {
+      if (!there) return in_.Refuse();
+      const Expression given = next_value();
+      return Require(given.size() == 1 && (given[0].op == Node::kName || IsWholeNumber(given)));
+    }
+    case Operand::Kind::kLiteral: {
+      const Expression given = next_value();
+      return Require(given.size() == 1 && given[0].op != Node::kName);
+    }
+    case Operand::Kind::kBits: {
+      const Expression given = next_value();
+      return Require(IsVariable(given) || (given.size() == 1 && given[0].op == Node::kInteger));
+    }
+    case Operand::Kind::kList: {
+      const int left = i.value_count - value;
+      return Require((left == 0 && operand.optional) || left >= operand.low);
+    }
+    case Operand::Kind::kNumber: {
+      const unsigned given = i.numbers[number++];
+      return Require(given >= operand.low && given <= operand.high);
+    }
+    case Operand::Kind::kChoice:
+      return Require(i.choice < operand.words.size());
+    case Operand::Kind::kGroups:
+      return Require(i.choice >= 1 && i.choice <= kAllGroups);
+    case Operand::Kind::kLabels:
+      return Require(i.target_count >= 1);
+    case Operand::Kind::kText:
+    case Operand::Kind::kTool:
+    case Operand::Kind::kName:
+    case Operand::Kind::kLabel:
+      return;
+  }
+}
+
+void Reader::RequireOwn(const Instruction& i) {
   const bool on = i.Has(kOn), off = i.Has(kOff);
   switch (i.op) {
-    case Op::kCoord:
-      return Require(i.choice <= 1);
     case Op::kPath:
-      return Require(i.choice <= 3 && (i.choice == static_cast<std::uint8_t>(PathType::kHole)) ==
-                                          (i.value_count == 1));
-    case Op::kSysdef:
-      return Require(i.value_count == 0 || i.value_count == 6);
+      return Require((i.choice == static_cast<std::uint8_t>(PathType::kHole)) ==
+                     (i.value_count == 1));
     case Op::kWorkdef: {
       const unsigned kind = i.numbers[0], count = i.value_count;
-      const bool fits = kind == 0 ? count == 0 : kind == 1 ? count == 4 || count == 5 : count == 1;
-      return Require(kind <= 2 && i.numbers[1] <= 9 && fits);
+      return Require(kind == 0 ? count == 0 : kind == 1 ? count == 4 || count == 5 : count == 1);
     }
     case Op::kWork:
-      return Require(i.numbers[0] <= 2 && i.numbers[1] <= 9 && on != off);
+    case Op::kUpdate:
+      return Require(on != off);
     case Op::kGo:
-      Require((i.attributes & (i.attributes - 1)) == 0);
-      return Require(IsVariable(i, 0) || IsWholeNumber(i, 0));
-    case Op::kCall:
-      return Require(i.value_count >= 1 && (IsVariable(i, 0) || IsWholeNumber(i, 0)));
-    case Op::kFunction: {
-      if (i.value_count < 1) return in_.Refuse();
-      const Expression number = module_->Value(i, 0);
-      return Require(number.size() == 1 && (number[0].op == Node::kName || IsWholeNumber(i, 0)));
-    }
-    case Op::kGotoTable:
-      return Require(IsVariable(i, 0) && i.target_count >= 1);
+      return Require((i.attributes & (i.attributes - 1)) == 0);
     case Op::kIf:
       return Require(i.target_count == 1 || i.target_count == 2);
     case Op::kTimer:
       return Require(i.value_count == 1 ? !i.Has(kDis) : i.attributes == kDis);
-    case Op::kLet:
-      return Require(IsVariable(i, 0));
-    case Op::kDeclare: {
-      const Expression value = module_->Value(i, 0);
-      return Require(value.size() == 1 && value[0].op != Node::kName);
-    }
-    case Op::kDefine:
-      return Require(i.numbers[0] < kParameterCount && i.choice <= 2);
-    case Op::kAssign: {
-      const Expression value = module_->Value(i, 1);
-      return Require(IsVariable(i, 0) && value.size() == 1 &&
-                     (IsVariable(i, 1) || value[0].op == Node::kInteger));
-    }
-    case Op::kUpdate:
-      return Require(i.choice >= 1 && i.choice <= kAllGroups && on != off);
-    case Op::kImage:
-    case Op::kReal:
-      return Require(i.choice >= 1 && i.choice <= kAllGroups);
-    case Op::kBreak:
-    case Op::kSimul:
-      return Require(i.numbers[0] >= 1 && i.numbers[0] <= 9999 && i.numbers[1] <= 99);
     default:
       return;
   }

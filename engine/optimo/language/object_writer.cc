@@ -84,15 +84,15 @@ void WriteRecord(const Module& module, const Instruction& i, ByteWriter& out) {
   if (i.label_count > 0) WriteLabels(module.Labels(i), out);
   if (i.attributes != 0) out.Whole(i.attributes);
   if (i.op == Op::kIgnored) return out.Text(module.texts[i.name]);
-  const ObjectForm form = FormOf(i.op);
-  if (form.choice) out.Byte(i.choice);
-  for (std::size_t n = 0; n < form.numbers; ++n) out.Whole(i.numbers[n]);
-  if (form.name) out.Whole(i.name);
-  if (form.values == ValueCount::kCounted) out.Byte(i.value_count);
+  const OperandCounts& counts = CountOf(i.op);
+  if (counts.choice) out.Byte(i.choice);
+  for (std::size_t n = 0; n < counts.numbers; ++n) out.Whole(i.numbers[n]);
+  if (counts.name) out.Whole(i.name);
+  if (counts.values_vary) out.Byte(i.value_count);
   const std::uint32_t expressions = module.ExpressionCount(i);
   for (std::uint32_t e = 0; e < expressions; ++e)
     WriteExpression(module.expression(i.first_expression + e), out);
-  if (form.targets == TargetCount::kCounted) out.Whole(i.target_count);
+  if (counts.targets_vary) out.Whole(i.target_count);
   for (std::uint32_t t = 0; t < i.target_count; ++t)
     out.Fixed16(module.targets[i.first_target + t]);
 }

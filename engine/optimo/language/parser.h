@@ -38,24 +38,22 @@ class Parser {
   void OrderAttributeParts();
 
   // Instructions, parser_instructions.cc
-  bool ParseMove();
-  bool ParseCoord();
+  bool ParseOperands();
+  bool Begins(const Operand& operand);
+  bool ParseOperand(const Operand& operand, std::size_t& number);
+  bool ParseCountedList(const Operand& operand);
+  bool ParseNumber(const Operand& operand, std::uint16_t& number);
+  bool ParseChoice(const Operand& operand);
   bool ParsePath();
-  bool ParseOneValue();
-  bool ParseSysdef();
   bool ParseTcp();
   bool ParseWorkdef();
   bool ParseCall();
   bool ParseFunction();
   bool ParseGoto();
-  bool ParseIf();
-  bool ParseTask();
   bool ParseTimer();
   bool ParseDeclare();
   bool ParseDefine();
   bool ParseAssign();
-  bool ParseImage();
-  bool ParseBreak();
   bool ParseGroups();
   bool ParseProcess();
   bool ParseProgramNumber();

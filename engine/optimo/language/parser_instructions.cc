@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 
 #include "engine/optimo/language/nearest_word.h"
@@ -17,42 +18,20 @@ bool Parser::ParseInstruction(Word word) {
   Take();
   instruction_.op = OpOf(word);
   switch (instruction_.op) {
-    case Op::kMove:
-      return ParseMove();
-    case Op::kCoord:
-      return ParseCoord();
     case Op::kPath:
       return ParsePath();
-    case Op::kSpeed:
-    case Op::kAccel:
-    case Op::kOversh:
-    case Op::kDelay:
-    case Op::kSeterr:
-    case Op::kWait:
-      return ParseOneValue();
-    case Op::kSysdef:
-      return ParseSysdef();
     case Op::kTcp:
       return ParseTcp();
     case Op::kWorkdef:
       return ParseWorkdef();
     case Op::kWork:
       return ParseProcess();
-    case Op::kGo:
-      return ParseProgramNumber();
     case Op::kCall:
       return ParseCall();
     case Op::kFunction:
       return ParseFunction();
     case Op::kGoto:
       return ParseGoto();
-    case Op::kGosub:
-    case Op::kErr:
-      return ParseJumpLabel();
-    case Op::kIf:
-      return ParseIf();
-    case Op::kTask:
-      return ParseTask();
     case Op::kTimer:
       return ParseTimer();
     case Op::kLet:
@@ -63,71 +42,93 @@ bool Parser::ParseInstruction(Word word) {
       return ParseDefine();
     case Op::kAssign:
       return ParseAssign();
-    case Op::kUpdate:
-      return ParseGroups();
-    case Op::kImage:
-    case Op::kReal:
-      return ParseImage();
-    case Op::kBreak:
-    case Op::kSimul:
-      return ParseBreak();
     default:
-      return true;  // RETURN ENDTASK PAUSE STOP NOERR ZERO stand alone
+      return ParseOperands();
   }
 }
 
-// "MOVE" vec5 { "/" moveattr }                                                  OPT-2.01
-bool Parser::ParseMove() {
-  if (!Is(TokenKind::kOpen))
-    return FailAt(first_, ErrorCode::kArgumentCount, CountText("MOVE", 0, "5"), "OPT-2.01");
-  int count = 0;
-  if (!ParseList(count, 5)) return false;
-  if (count != 5)
-    return FailAt(first_, ErrorCode::kArgumentCount, CountText("MOVE", count, "5"), "OPT-2.01");
-  instruction_.value_count = 5;
+// By the rows of operands.h; the instructions above say more about what is wrong.
+bool Parser::ParseOperands() {
+  std::size_t number = 0;
+  for (const Operand& operand : Describe(instruction_.op).operands) {
+    if (operand.optional && !Begins(operand)) {
+      if (operand.kind == Operand::Kind::kGroups) instruction_.choice = kAllGroups;
+      return true;
+    }
+    if (!ParseOperand(operand, number)) return false;
+  }
   return true;
 }
 
-bool Parser::ParseCoord() {
-  const bool absol = TakeWord(Word::kAbsol);
-  if (!absol && !TakeWord(Word::kRobot)) return Fail("ABSOL or ROBOT");
-  instruction_.choice = static_cast<std::uint8_t>(absol ? CoordType::kAbsol : CoordType::kRobot);
+bool Parser::Begins(const Operand& operand) {
+  switch (operand.kind) {
+    case Operand::Kind::kGroups:
+      return !Is(TokenKind::kEnd) && !Is(TokenKind::kSlash);
+    case Operand::Kind::kText:
+      return operand.text == ", " ? Is(TokenKind::kComma) : Peek().word == Word::kElse;
+    default:
+      return Is(TokenKind::kOpen);
+  }
+}
+
+bool Parser::ParseOperand(const Operand& operand, std::size_t& number) {
+  switch (operand.kind) {
+    case Operand::Kind::kText:
+      if (operand.text == " THEN ") return ExpectWord(Word::kThen, operand.missing);
+      if (operand.text == " ELSE ") return ExpectWord(Word::kElse, operand.missing);
+      return Expect(TokenKind::kComma, operand.missing);
+    case Operand::Kind::kList:
+      return ParseCountedList(operand);
+    case Operand::Kind::kNumber:
+      return ParseNumber(operand, instruction_.numbers[number++]);
+    case Operand::Kind::kChoice:
+      return ParseChoice(operand);
+    case Operand::Kind::kGroups:
+      return ParseGroups();
+    case Operand::Kind::kLabel:
+      return ParseJumpLabel();
+    case Operand::Kind::kProgram:
+      return ParseProgramNumber();
+    default:
+      ++instruction_.value_count;
+      return ParseExpression();
+  }
+}
+
+// "MOVE (", "SYSDEF (": all of the values, or a word about how many there are.
+bool Parser::ParseCountedList(const Operand& operand) {
+  int count = 0;
+  if (Is(TokenKind::kOpen) && !ParseList(count, operand.high)) return false;
+  if (count < operand.low || count > operand.high) {
+    return FailAt(first_, ErrorCode::kArgumentCount,
+                  CountText(Describe(instruction_.op).name, count, operand.missing), operand.rule);
+  }
+  instruction_.value_count = static_cast<std::uint8_t>(count);
   return true;
+}
+
+bool Parser::ParseNumber(const Operand& operand, std::uint16_t& number) {
+  const Token token = Peek();
+  if (!ParseWhole(operand.missing, number)) return false;
+  if (number >= operand.low && number <= operand.high) return true;
+  return FailAt(token, ErrorCode::kLiteralRange, std::string(operand.range), operand.rule);
+}
+
+bool Parser::ParseChoice(const Operand& operand) {
+  for (std::size_t n = 0; n < operand.words.size(); ++n) {
+    if (!TakeWord(operand.words[n])) continue;
+    instruction_.choice = static_cast<std::uint8_t>(n);
+    return true;
+  }
+  return Fail(operand.missing);
 }
 
 // "PATH" ( "PTP" | "LIN" | "CIR" | "HOLE" "(" expr ")" )                        OPT-2.12
 bool Parser::ParsePath() {
-  PathType path = PathType::kHole;
-  if (TakeWord(Word::kPtp)) {
-    path = PathType::kPtp;
-  } else if (TakeWord(Word::kLin)) {
-    path = PathType::kLin;
-  } else if (TakeWord(Word::kCir)) {
-    path = PathType::kCir;
-  } else if (!TakeWord(Word::kHole)) {
-    return Fail("PTP, LIN, CIR or HOLE");
-  }
-  instruction_.choice = static_cast<std::uint8_t>(path);
-  if (path != PathType::kHole) return true;
+  if (!ParseChoice(operands::kPath[0])) return false;
+  if (instruction_.choice != static_cast<std::uint8_t>(PathType::kHole)) return true;
   instruction_.value_count = 1;
   return ParseParenthesised();
-}
-
-bool Parser::ParseOneValue() {
-  instruction_.value_count = 1;
-  return ParseExpression();
-}
-
-bool Parser::ParseSysdef() {
-  if (!Is(TokenKind::kOpen)) return true;
-  int count = 0;
-  if (!ParseList(count, 6)) return false;
-  if (count != 6) {
-    return FailAt(first_, ErrorCode::kArgumentCount, CountText("SYSDEF", count, "6 or none"),
-                  "OPT-7.38");
-  }
-  instruction_.value_count = 6;
-  return true;
 }
 
 // "TCP" "(" three values ( "/" | "," ) three values ")"                         OPT-4.64
@@ -242,15 +243,6 @@ bool Parser::ParseGoto() {
   return Expect(TokenKind::kClose, "',' or ')'");
 }
 
-// "IF" expr "THEN" label [ "ELSE" label ]                                       OPT-7.23
-bool Parser::ParseIf() {
-  instruction_.value_count = 1;
-  return ParseExpression() && ExpectWord(Word::kThen, "THEN") && ParseJumpLabel() &&
-         (!TakeWord(Word::kElse) || ParseJumpLabel());
-}
-
-bool Parser::ParseTask() { return ParseWhole("a task number", instruction_.numbers[0]); }
-
 // "(" expr "," label ")"
 bool Parser::ParseTimeAndLabel(std::string_view what) {
   if (!Expect(TokenKind::kOpen, "'(' and a time")) return false;
@@ -335,18 +327,13 @@ bool Parser::ParseDefine() {
   }
   if (!Expect(TokenKind::kEqual, "'='")) return false;
   const Token type = Peek();
-  if (TakeWord(Word::kFloat)) {
-    instruction_.choice = static_cast<std::uint8_t>(ValueType::kReal);
-  } else if (TakeWord(Word::kInt)) {
-    instruction_.choice = static_cast<std::uint8_t>(ValueType::kInteger);
-  } else if (TakeWord(Word::kLogic)) {
-    instruction_.choice = static_cast<std::uint8_t>(ValueType::kLogical);
-  } else if (type.kind == TokenKind::kWord) {
+  const Operand& types = operands::kDefine.back();
+  const bool known = type.kind == TokenKind::kWord &&
+                     std::ranges::find(types.words, type.word) != types.words.end();
+  if (type.kind == TokenKind::kWord && !known) {
     return FailAt(type, ErrorCode::kDefineInvalid, "a type is FLOAT, INT or LOGIC", "OPT-9.23");
-  } else {
-    return Fail("FLOAT, INT or LOGIC");
   }
-  return true;
+  return ParseChoice(types);
 }
 
 // "ASSIGN" target "=" ( integer | target ) "/" integer                          OPT-7.102
@@ -385,28 +372,6 @@ bool Parser::ParseGroups() {
       return Fail("IL, OL, IA or OA");
     }
   } while (TryTake(TokenKind::kComma));
-  return true;
-}
-
-bool Parser::ParseImage() {
-  if (!Is(TokenKind::kEnd) && !Is(TokenKind::kSlash)) return ParseGroups();
-  instruction_.choice = kAllGroups;
-  return true;
-}
-
-// ( "BREAK" | "SIMUL" ) integer [ "," integer ]                                 OPT-6.11, OPT-6.16
-bool Parser::ParseBreak() {
-  const Token step = Peek();
-  if (!ParseWhole("a step number", instruction_.numbers[0])) return false;
-  if (instruction_.numbers[0] < 1 || instruction_.numbers[0] > 9999) {
-    return FailAt(step, ErrorCode::kLiteralRange, "steps go from 1 to 9999", "OPT-6.15");
-  }
-  if (!TryTake(TokenKind::kComma)) return true;
-  const Token program = Peek();
-  if (!ParseWhole("a program number", instruction_.numbers[1])) return false;
-  if (instruction_.numbers[1] > 99) {
-    return FailAt(program, ErrorCode::kLiteralRange, "program numbers go from 1 to 99", "OPT-6.15");
-  }
   return true;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "engine/optimo/language/priority.h"
@@ -217,10 +218,6 @@ void PrintTcp(const Module& module, const Instruction& i, std::string& out) {
   out += ')';
 }
 
-void PrintValues(const Module& module, const Instruction& i, int from, std::string& out) {
-  PrintList(module, i.value_count - from, out, [&](int v) { return module.Value(i, from + v); });
-}
-
 void PrintTargets(const Module& module, const Instruction& i, std::string& out) {
   bool first = true;
   for (const std::uint16_t label : module.Targets(i)) {
@@ -277,119 +274,80 @@ void PrintAttributes(const Module& module, const Instruction& i, std::string& ou
   }
 }
 
-std::string_view PathName(std::uint8_t choice) {
-  constexpr std::array<std::string_view, 4> kNames = {"PTP", "LIN", "CIR", "HOLE"};
-  return kNames[choice];
-}
+// Writes what stands between the word of an instruction and its attributes, part by part.
+class OperandPrinter {
+ public:
+  OperandPrinter(const Module& module, const Instruction& i, std::string& out)
+      : module_(module), i_(i), out_(out), targets_(module.Targets(i)) {}
 
-std::string_view DefineTypeName(std::uint8_t choice) {
-  constexpr std::array<std::string_view, 3> kNames = {"FLOAT", "INT", "LOGIC"};
-  return kNames[choice];
-}
-
-// What stands between the instruction word (with its blank) and the attributes.
-void PrintOperands(const Module& module, const Instruction& i, std::string& out) {
-  const auto value = [&](int v) { PrintExpression(module, module.Value(i, v), out); };
-  switch (i.op) {
-    case Op::kMove:
-      return PrintValues(module, i, 0, out);
-    case Op::kSysdef:
-      if (i.value_count > 0) PrintValues(module, i, 0, out);
-      return;
-    case Op::kTcp:
-      return PrintTcp(module, i, out);
-    case Op::kCoord:
-      out += i.choice == static_cast<std::uint8_t>(CoordType::kAbsol) ? "ABSOL" : "ROBOT";
-      return;
-    case Op::kPath:
-      out += PathName(i.choice);
-      if (i.value_count == 0) return;
-      out += ' ';
-      return PrintValues(module, i, 0, out);
-    case Op::kSpeed:
-    case Op::kAccel:
-    case Op::kOversh:
-    case Op::kDelay:
-    case Op::kSeterr:
-    case Op::kWait:
-    case Op::kGo:
-      return value(0);
-    case Op::kWorkdef:
-    case Op::kWork:
-      PrintInteger(i.numbers[0], out);
-      out += ',';
-      PrintInteger(i.numbers[1], out);
-      if (i.value_count == 0) return;
-      out += ' ';
-      return PrintValues(module, i, 0, out);
-    case Op::kCall:
-    case Op::kFunction:
-      value(0);
-      if (i.value_count == 1) return;
-      out += ' ';
-      return PrintValues(module, i, 1, out);
-    case Op::kGoto:
-    case Op::kGosub:
-    case Op::kErr:
-      return PrintTargets(module, i, out);
-    case Op::kGotoTable:
-      value(0);
-      out += " (";
-      PrintTargets(module, i, out);
-      out += ')';
-      return;
-    case Op::kIf: {
-      value(0);
-      const auto targets = module.Targets(i);
-      out += " THEN ";
-      PrintInteger(targets[0], out);
-      if (targets.size() < 2) return;
-      out += " ELSE ";
-      PrintInteger(targets[1], out);
-      return;
+  void Print(std::span<const Operand> operands) {
+    for (std::size_t n = 0; n < operands.size(); ++n) {
+      if (operands[n].optional && !IsThere(operands.subspan(n))) return;
+      PrintOne(operands[n], n == 0);
     }
-    case Op::kTask:
-      return PrintInteger(i.numbers[0], out);
-    case Op::kTimer:
-      if (i.value_count > 0)
-        PrintTimeAndLabel(module, module.Value(i, 0), module.Targets(i)[0], out);
-      return;
-    case Op::kLet:
-      value(0);
-      out += " = ";
-      return value(1);
-    case Op::kDeclare:
-      PrintName(module, i.name, out);
-      out += " = ";
-      return value(0);
-    case Op::kDefine:
-      out += "PAR[";
-      PrintInteger(i.numbers[0], out);
-      out += "] = ";
-      out += DefineTypeName(i.choice);
-      return;
-    case Op::kAssign:
-      value(0);
-      out += " = ";
-      value(1);
-      out += " /";
-      return PrintInteger(i.numbers[0], out);
-    case Op::kUpdate:
-      return PrintGroups(i.choice, out);
-    case Op::kImage:
-    case Op::kReal:
-      if (i.choice != kAllGroups) PrintGroups(i.choice, out);
-      return;
-    case Op::kBreak:
-    case Op::kSimul:
-      PrintInteger(i.numbers[0], out);
-      if (i.numbers[1] == 0) return;
-      out += ", ";
-      return PrintInteger(i.numbers[1], out);
-    default:
-      return;
   }
-}
+
+ private:
+  // Whether an instruction has what begins here and may be left out: its first part but for text.
+  bool IsThere(std::span<const Operand> rest) const {
+    const auto part = std::ranges::find_if(
+        rest, [](const Operand& operand) { return operand.kind != Operand::Kind::kText; });
+    switch (part->kind) {
+      case Operand::Kind::kLabel:
+        return label_ < targets_.size();
+      case Operand::Kind::kNumber:
+        return i_.numbers[number_] != 0;
+      case Operand::Kind::kGroups:
+        return i_.choice != kAllGroups;
+      default:
+        return value_ < i_.value_count;
+    }
+  }
+
+  void PrintOne(const Operand& operand, bool first) {
+    switch (operand.kind) {
+      case Operand::Kind::kText:
+        out_ += operand.text;
+        return;
+      case Operand::Kind::kList:
+        if (!first) out_ += ' ';
+        PrintList(module_, i_.value_count - value_, out_,
+                  [&](int v) { return module_.Value(i_, value_ + v); });
+        value_ = i_.value_count;
+        return;
+      case Operand::Kind::kTool:
+        return PrintTcp(module_, i_, out_);
+      case Operand::Kind::kNumber:
+        return PrintInteger(i_.numbers[number_++], out_);
+      case Operand::Kind::kChoice:
+        out_ += Describe(operand.words[i_.choice]).text;
+        return;
+      case Operand::Kind::kGroups:
+        return PrintGroups(i_.choice, out_);
+      case Operand::Kind::kName:
+        return PrintName(module_, i_.name, out_);
+      case Operand::Kind::kLabel:
+        return PrintInteger(targets_[label_++], out_);
+      case Operand::Kind::kLabels:
+        return PrintTargets(module_, i_, out_);
+      case Operand::Kind::kValue:
+      case Operand::Kind::kVariable:
+      case Operand::Kind::kProgram:
+      case Operand::Kind::kConstant:
+      case Operand::Kind::kLiteral:
+      case Operand::Kind::kBits:
+        return PrintExpression(module_, module_.Value(i_, value_++), out_);
+    }
+  }
+
+  const Module& module_;
+  const Instruction& i_;
+  std::string& out_;
+  std::span<const std::uint16_t> targets_;
+  int value_ = 0;  // the next ones
+  std::size_t number_ = 0;
+  std::size_t label_ = 0;
+};
 
 }  // namespace
 
@@ -480,7 +438,7 @@ void PrintStatement(const Module& module, const Instruction& instruction, std::s
   const std::size_t bare = out.size();
   out += ' ';
   const std::size_t begin = out.size();
-  PrintOperands(module, instruction, out);
+  OperandPrinter(module, instruction, out).Print(Describe(instruction.op).operands);
   if (out.size() == begin) out.resize(bare);
   PrintAttributes(module, instruction, out);
 }

@@ -11,15 +11,16 @@ namespace {
 using Kind = motion::PathPiece::Kind;
 
 double PlaceOnArc(const motion::PathPiece& arc, const motion::MachinePoint& point) {
-  const motion::MachinePoint start = arc.from().tip - arc.centre();
-  const motion::MachinePoint here = point - arc.centre();
+  const motion::MachineVector start = arc.from().point - arc.centre();
+  const motion::MachineVector here = point - arc.centre();
   double angle = std::atan2(arc.normal().dot(start.cross(here)), start.dot(here));
   if (angle < 0.0) angle += kTurn;
   return angle * arc.radius_mm();
 }
 
-motion::AxisValues Values(const motion::TipPose& pose) {
-  return {pose.tip.x(), pose.tip.y(), pose.tip.z(), pose.a_rad, pose.b_rad};
+motion::AxisValues Values(const motion::PathPose& place) {
+  const motion::AxisPose pose = place.axes();
+  return {pose.column.x(), pose.column.y(), pose.column.z(), pose.a_rad, pose.b_rad};
 }
 
 // By the axis that goes farthest.
@@ -41,9 +42,9 @@ std::optional<PlaceOnMove> PlaceOf(const motion::PathPiece& motion, const motion
   if (motion.kind() != move.kind() || !(motion.length() > 0.0)) return std::nullopt;
   switch (motion.kind()) {
     case Kind::kLine:
-      return PlaceOnMove{.begin = (motion.from().tip - move.from().tip).norm()};
+      return PlaceOnMove{.begin = (motion.from().point - move.from().point).norm()};
     case Kind::kArc:
-      return PlaceOnMove{.begin = PlaceOnArc(move, motion.from().tip)};
+      return PlaceOnMove{.begin = PlaceOnArc(move, motion.from().point)};
     case Kind::kJoint:
       return PlaceInAxes(motion, move);
     default:

@@ -52,9 +52,7 @@ Status Ride::Append(motion::MoveCommand command, const MoveNote& note) {
   command.tag = s_.next_tag++;
   if (Status appended = s_.planner.Append(command); !appended) return appended;
   s_.notes.emplace_back(command.tag, note);
-  const motion::TipPose& to = command.path.to();
-  s_.planned_axes = command.path.in_axes() ? motion::AxisPose{to.tip, to.a_rad, to.b_rad}
-                                           : command.head.ColumnOf(to);
+  s_.planned_axes = motion::AxesOn(command.path, command.head, command.path.to());
   if (note.fly || s_.passing) s_.appended.push_back({.tag = command.tag, .move = command});
   s_.passing = note.fly;
   s_.run_ahead = 0;
@@ -165,10 +163,8 @@ std::optional<std::uint64_t> Ride::Arrive() {
   const ActiveMotion done = std::move(*s_.active);
   s_.active.reset();
   const motion::PathPiece& path = done.motion.path;
-  const motion::TipPose pose = path.At(done.s_at(done.arrival));
   motion::AxisPose& axes = situation_.machine.axes;
-  axes = path.in_axes() ? motion::AxisPose{pose.tip, pose.a_rad, pose.b_rad}
-                        : done.motion.head.ColumnOf(pose);
+  axes = motion::AxesOn(path, done.motion.head, path.At(done.s_at(done.arrival)));
   if (done.ended) {
     s_.timeline.clear();
     s_.planned_axes = axes;
@@ -263,16 +259,13 @@ motion::PathState Ride::StateNow() const {
 motion::TipPose Ride::tip() const {
   if (!s_.active) return head().TipOf(situation_.machine.axes);
   const motion::PlannedMotion& motion = s_.active->motion;
-  const motion::TipPose pose = motion.path.At(StateNow().s);
-  return motion.path.in_axes() ? motion.head.TipOf({pose.tip, pose.a_rad, pose.b_rad}) : pose;
+  return motion::TipOn(motion.path, motion.head, motion.path.At(StateNow().s));
 }
 
 motion::AxisPose Ride::axes() const {
   if (!s_.active) return situation_.machine.axes;
   const motion::PlannedMotion& motion = s_.active->motion;
-  const motion::TipPose pose = motion.path.At(StateNow().s);
-  if (motion.path.in_axes()) return {pose.tip, pose.a_rad, pose.b_rad};
-  return motion.head.ColumnOf(pose);
+  return motion::AxesOn(motion.path, motion.head, motion.path.At(StateNow().s));
 }
 
 double Ride::tip_speed_mm_s() const {

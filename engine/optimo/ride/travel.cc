@@ -50,9 +50,8 @@ std::string TextOf(const std::vector<BeyondTravel>& beyond) {
 std::vector<BeyondTravel> Travel::BeyondTravelOf(const motion::PathPiece& path) const {
   const motion::AxisLimits& limits = parameters_.limits.axes;
   const motion::Head head = HeadOf(situation_.machine, parameters_);
-  const bool joint = path.in_axes();
-  const auto axes_at = [&](const motion::TipPose& pose) {
-    return joint ? motion::AxisPose{pose.tip, pose.a_rad, pose.b_rad} : head.ColumnOf(pose);
+  const auto axes_at = [&](const motion::PathPose& place) {
+    return motion::AxesOn(path, head, place);
   };
   const auto worst = motion::ExcessOfEach(path, head, limits);
   std::vector<BeyondTravel> beyond;

@@ -30,8 +30,8 @@ class ToolPass {
  public:
   ToolPass(const MillTool& tool, const motion::MachinePoint& from, const motion::MachinePoint& to);
 
-  const motion::MachineVector& from() const { return from_; }
-  const motion::MachineVector& to() const { return to_; }
+  const motion::MachinePoint& from() const { return from_; }
+  const motion::MachinePoint& to() const { return to_; }
   double radius_mm() const { return radius_; }
 
   // Of a point at (x, y) from the start of the move. A plunge: all of its distance is across.
@@ -68,7 +68,7 @@ class ToolPass {
     return {half, low, std::max(low, high), half_2 >= 0.0 && low <= high};
   }
 
-  motion::MachineVector from_;
+  motion::MachinePoint from_;
   motion::MachinePoint to_;
   double radius_;
   double tip_radius_;

@@ -20,8 +20,8 @@ MillingRecorder::MillingRecorder(const machine::MachineShape& shape, const Milli
 void MillingRecorder::OnMotion(const machine::MotionDone& done) {
   const motion::PathPiece& path = done.motion->path;
   if (path.kind() != motion::PathPiece::Kind::kLine) return;  // the rotary axis alone
-  const motion::MachinePoint from = path.At(done.from).tip - origin_;
-  const motion::MachinePoint to = path.At(done.travelled).tip - origin_;
+  const motion::MachinePoint from = path.At(done.from).point - origin_;
+  const motion::MachinePoint to = path.At(done.travelled).point - origin_;
   if (done.programmed_mm_s <= 0.0) {
     const double depth = material_.DepthOf(tool_, from, to);
     if (depth > kGougeLeast_mm) {

@@ -69,7 +69,7 @@ MotionPeaks Straight(const motion::PlannedMotion& motion, bool five_axis, double
   });
   const motion::PathDerivatives first = motion.path.First(0.0);
   const bool stands = motion.path.kind() == PathPiece::Kind::kRotary;
-  const MachineVector tip = stands ? MachineVector{} : first.tip;
+  const MachineVector tip = stands ? MachineVector{} : first.point;
   const AxisValues axes = FollowingTip(tip, first.a, five_axis ? first.b : 0.0);
   MotionPeaks peaks;
   peaks.tip_speed = tip.norm() * speed;

@@ -21,9 +21,7 @@ bool Turns(const PathPiece& path) {
 }
 
 MachinePoint TipAt(const PathPiece& path, const motion::Head& head, double s) {
-  const motion::TipPose pose = path.At(s);
-  if (!path.in_axes()) return pose.tip;
-  return head.TipOf({pose.tip, pose.a_rad, pose.b_rad}).tip;
+  return motion::TipOn(path, head, path.At(s)).tip;
 }
 
 PartCurve::PartCurve(const PathPart& part) : part_(part), begin_(part.from), end_(part.to) {
@@ -40,7 +38,7 @@ PartCurve::PartCurve(const PathPart& part) : part_(part), begin_(part.from), end
   }
 }
 
-motion::TipPose PartCurve::Pose(double p) const {
+motion::PathPose PartCurve::Pose(double p) const {
   return blend() ? curve_.At(p) : part_.path.At(p);
 }
 
@@ -54,27 +52,25 @@ motion::PathDerivatives PartCurve::Rate(double p) const {
 // What the turning of the head adds to the motion of the column over that of the tip.
 MachineVector PartCurve::Swing(double p) const {
   const motion::PathDerivatives rate = Rate(p);
-  const motion::TipPose pose = Pose(p);
+  const motion::PathPose pose = Pose(p);
   const motion::AxisValues swing = part_.head.Rates(pose.a_rad, pose.b_rad, {{}, rate.a, rate.b});
   return {swing[0], swing[1], swing[2]};
 }
 
-MachineVector PartCurve::Tip(double p) const {
-  const motion::TipPose pose = Pose(p);
-  return part_.path.in_axes() ? part_.head.TipOf({pose.tip, pose.a_rad, pose.b_rad}).tip : pose.tip;
+MachinePoint PartCurve::Tip(double p) const {
+  return motion::TipOn(part_.path, part_.head, Pose(p)).tip;
 }
 
-MachineVector PartCurve::Column(double p) const {
-  const motion::TipPose pose = Pose(p);
-  return part_.path.in_axes() ? pose.tip : part_.head.ColumnOf(pose).column;
+MachinePoint PartCurve::Column(double p) const {
+  return motion::AxesOn(part_.path, part_.head, Pose(p)).column;
 }
 
 MachineVector PartCurve::TipRate(double p) const {
-  return part_.path.in_axes() ? Rate(p).tip - Swing(p) : Rate(p).tip;
+  return part_.path.in_axes() ? Rate(p).point - Swing(p) : Rate(p).point;
 }
 
 MachineVector PartCurve::ColumnRate(double p) const {
-  return part_.path.in_axes() ? Rate(p).tip : Rate(p).tip + Swing(p);
+  return part_.path.in_axes() ? Rate(p).point : Rate(p).point + Swing(p);
 }
 
 }  // namespace rmlcell::simulation

@@ -36,7 +36,7 @@ class PartCurve {
   motion::MachinePoint Column(double p) const;
   motion::MachineVector TipRate(double p) const;     // by p
   motion::MachineVector ColumnRate(double p) const;  // by p
-  motion::TipPose Pose(double p) const;              // the column where the path is in_axes()
+  motion::PathPose Pose(double p) const;
   motion::PathDerivatives Rate(double p) const;
 
  private:

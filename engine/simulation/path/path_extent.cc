@@ -129,7 +129,7 @@ PointSweep ArcSweep(const PathPart& part) {
   PointSweep sweep;
   for (std::size_t i = 0; i < 3; ++i) {
     sweep[i] = SweepOver(part.from, ArcTurns(part, i), part.to,
-                         [&](double s) { return part.path.At(s).tip[i]; });
+                         [&](double s) { return part.path.At(s).point[i]; });
   }
   return sweep;
 }
@@ -158,10 +158,10 @@ PointSweep TipSweep(const PathPart& part) {
 PointSweep ColumnSweep(const PathPart& part) {
   const PathPiece& path = part.path;
   if (path.kind() == PathPiece::Kind::kJoint) {
-    return Straight(path.At(part.from).tip, path.At(part.to).tip);
+    return Straight(path.At(part.from).point, path.At(part.to).point);
   }
   if (!Turns(path) && !path.in_axes()) {  // as the tip goes, somewhere above it
-    const MachineVector arm = part.head.ColumnOf(path.from()).column - path.from().tip;
+    const MachineVector arm = part.head.ColumnOf(path.from().tip()).column - path.from().point;
     PointSweep sweep = TipSweep(part);
     for (std::size_t i = 0; i < 3; ++i) {
       sweep[i].minimum += arm[i];
@@ -177,8 +177,8 @@ PointSweep ColumnSweep(const PathPart& part) {
 
 std::array<CoordinateSweep, 2> RotarySweep(const PathPart& part) {
   if (part.path.kind() != PathPiece::Kind::kBlend || !Turns(part.path)) {
-    const motion::TipPose from = part.path.At(part.from);
-    const motion::TipPose to = part.path.At(part.to);
+    const motion::PathPose from = part.path.At(part.from);
+    const motion::PathPose to = part.path.At(part.to);
     return {Straight(from.a_rad, to.a_rad), Straight(from.b_rad, to.b_rad)};
   }
   const PartCurve curve(part);
@@ -193,7 +193,7 @@ double TipLength(const PathPart& part) {
   if (path.kind() == PathPiece::Kind::kRotary || !(path.length() > 0.0)) return 0.0;
   if (!path.in_axes()) return part.to - part.from;
   if (path.kind() == PathPiece::Kind::kJoint && !Turns(path)) {
-    return (path.to().tip - path.from().tip).norm() * (part.to - part.from) / path.length();
+    return (path.to().point - path.from().point).norm() * (part.to - part.from) / path.length();
   }
   // Gauss-Legendre with five nodes on panels of at most kSampleAngle_rad: error below 1e-12 of the
   // length, unless the tip all but stands somewhere.

@@ -38,7 +38,7 @@ void ForEachVertex(const PathPart& part, double tolerance_mm, Take take) {
     const int chords = ChordCount(path.radius_mm(), sweep, tolerance_mm);
     for (int k = 1; k < chords; ++k) {
       const double s = part.from + (part.to - part.from) * k / chords;
-      take(s, path.At(s).tip);
+      take(s, path.At(s).point);
     }
   } else if (bows || path.kind() == Kind::kBlend) {
     const PartCurve curve(part);

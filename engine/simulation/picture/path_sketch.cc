@@ -58,7 +58,7 @@ void PathSketch::Add(const machine::MotionDone& done) {
 
   if (path.kind() == motion::PathPiece::Kind::kArc) {
     element.arc = static_cast<std::int32_t>(circles_.size());
-    element.middle = path.At(0.5 * (part.from + part.to)).tip;
+    element.middle = path.At(0.5 * (part.from + part.to)).point;
     circles_.push_back({.centre = path.centre(),
                         .normal = path.normal(),
                         .radius_mm = path.radius_mm(),
@@ -92,7 +92,7 @@ void PathSketch::AddPierce() { AddDot({.at = end_, .pierce = true}); }
 void PathSketch::AddTool(const machine::MotionDone& done) {
   if (tool_count_++ % tool_stride_ != 0) return;
   const motion::PathPiece& path = done.motion->path;
-  const motion::TipPose pose = path.At(done.travelled);
+  const motion::PathPose pose = path.At(done.travelled);
   tools_.push_back({TipAt(path, done.motion->head, done.travelled),
                     motion::ToolDirection(pose.a_rad, pose.b_rad)});
   if (tools_.size() < kToolsMax) return;

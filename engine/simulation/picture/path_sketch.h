@@ -48,8 +48,8 @@ class PathSketch {
   const machine::Box& box() const { return box_; }  // of everything, true extremes
   const machine::Box& cut_box() const { return cut_box_; }
   bool moved() const { return moved_; }
-  const motion::MachineVector& start() const { return start_; }
-  const motion::MachineVector& end() const { return end_; }
+  const motion::MachinePoint& start() const { return start_; }
+  const motion::MachinePoint& end() const { return end_; }
   double tolerance_mm() const { return tolerance_mm_; }  // 0: exact
 
  private:
@@ -73,7 +73,7 @@ class PathSketch {
   bool moved_ = false;
   bool plunging_ = false;
   motion::MachinePoint start_;
-  motion::MachineVector end_;
+  motion::MachinePoint end_;
   double tolerance_mm_ = 0.0;
 };
 

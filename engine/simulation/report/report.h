@@ -113,7 +113,7 @@ struct CornerFigures {
   std::uint64_t capped = 0;          // blended slower, because of a short neighbour or an axis
   double deviation_mm_max = 0.0;     // of the path from a target
   machine::Place deviation_place;
-  motion::MachineVector deviation_point;  // the tip in the middle of that corner
+  motion::MachinePoint deviation_point;  // the tip in the middle of that corner
 
   bool operator==(const CornerFigures&) const = default;
 };

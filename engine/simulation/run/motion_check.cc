@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/simulation/report/finding_list.h"
+#include "engine/simulation/run/drive.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -57,43 +58,22 @@ std::string WhyCutShort(const machine::Outcome& outcome) {
   return text;
 }
 
-// To the end. No report is made: that would take more time than the run. Where the program halts,
-// the next scripted input may let it go on, else START is given; a START that changes nothing never
-// will.
-void Drive(machine::Run& run, const machine::InputScript& inputs) {
-  std::optional<std::pair<SimTime, std::uint64_t>> started;
-  for (;;) {
-    const SimTime now = run.state().time;
-    const machine::RunPhase phase = run.Advance(now + kCheckTimeMax);
-    if (phase == machine::RunPhase::kFinished) return;
-    if (phase == machine::RunPhase::kRunning) continue;
-    const std::pair here{run.state().time, run.steps_executed()};
-    const auto next = std::upper_bound(
-        inputs.begin(), inputs.end(), here.first,
-        [](SimTime at, const machine::InputChange& input) { return at < input.at; });
-    if (next != inputs.end()) {
-      if (run.Advance(next->at) != machine::RunPhase::kHalted || run.state().time > here.first) {
-        continue;
-      }
-    }
-    if (started == here) {
-      run.End(machine::OutcomeKind::kStopped, ErrorCode::kCellWaitsForever);
-      return;
-    }
-    started = here;
-    run.Apply({here.first, machine::InputKind::kStart, 0, 1.0});
-  }
-}
-
 Status RunForCheck(const machine::MachineFamily& family, machine::RunSetup setup,
                    CheckedRun& checked) {
   setup.mode = machine::Mode::kCycle;
   setup.forecast = true;
   setup.budget = {.steps = kCheckStepsMax, .virtual_time = kCheckTimeMax};
-  const machine::InputScript inputs = setup.inputs;
+  std::vector<SimTime> input_times;
+  for (const machine::InputChange& input : setup.inputs) input_times.push_back(input.at);
   const auto run = family.NewRun(std::move(setup), checked.listener);
   if (!run) return run.error();
-  Drive(**run, inputs);
+  // No report is made: that would take more time than the run.
+  Drive drive(**run, input_times);
+  while (drive.Step(kCheckTimeMax) != machine::RunPhase::kFinished) {
+    if (drive.phase() == machine::RunPhase::kHalted && !drive.Start()) {
+      drive.End(machine::OutcomeKind::kStopped, ErrorCode::kCellWaitsForever);
+    }
+  }
   checked.cut_short = WhyCutShort((*run)->outcome());
   return {};
 }

@@ -5,46 +5,17 @@
 #include <utility>
 
 namespace rmlcell::simulation {
-namespace {
-
-SimTime Later(SimTime time, SimTime by) { return time > kForever - by ? kForever : time + by; }
-
-}  // namespace
-
-Simulation::Simulation(machine::Run& run, Recorder& recorder) : run_(run), recorder_(recorder) {
-  recorder_.Begin(run_);
-}
-
-machine::RunPhase Simulation::Step(SimTime slice) {
-  if (finished()) return phase_;
-  // Also for a slice of zero: a caller that does not advance must not loop for ever.
-  const SimTime now = run_.state().time;
-  phase_ = run_.Advance(Later(now, std::max(slice, SimTime(1))));
-  while (phase_ == machine::RunPhase::kHalted) {
-    // Scripted inputs end a halt when their time comes, however long that is.
-    const std::vector<SimTime>& inputs = recorder_.inputs().input_times;
-    const auto next = std::upper_bound(inputs.begin(), inputs.end(), run_.state().time);
-    if (next == inputs.end()) break;
-    const SimTime before = run_.state().time;
-    phase_ = run_.Advance(*next);
-    if (phase_ == machine::RunPhase::kHalted && run_.state().time == before) break;
-  }
-  return phase_;
-}
-
-void Simulation::End(machine::OutcomeKind kind, ErrorCode code) {
-  if (finished()) return;
-  run_.End(kind, code);
-  phase_ = machine::RunPhase::kFinished;
+Simulation::Simulation(machine::Run& run, Recorder& recorder)
+    : recorder_(recorder), drive_(run, recorder.inputs().input_times) {
+  recorder_.Begin(run);
 }
 
 RunReport Simulation::Finish() {
-  recorder_.Finish(run_);
-  return recorder_.Report(run_);
+  recorder_.Finish(drive_.run());
+  return Report();
 }
 
 RunReport RunToEnd(Simulation& simulation, const SimulationOptions& options) {
-  std::optional<Progress> started;  // where START was last given
   while (simulation.Step(options.slice) != machine::RunPhase::kFinished) {
     if (options.progress) {
       const Progress here{simulation.state(), simulation.steps_executed(), simulation.cut_off()};
@@ -58,15 +29,7 @@ RunReport RunToEnd(Simulation& simulation, const SimulationOptions& options) {
       break;
     }
     if (simulation.phase() != machine::RunPhase::kHalted) continue;
-    // START that changes nothing will never do.
-    const Progress here{simulation.state(), simulation.steps_executed(), simulation.cut_off()};
-    const bool stuck =
-        started && started->state.time == here.state.time && started->steps == here.steps;
-    if (options.at_halt == AtHalt::kStart && !stuck) {
-      started = here;
-      simulation.Apply({here.state.time, machine::InputKind::kStart, 0, 1.0});
-      continue;
-    }
+    if (options.at_halt == AtHalt::kStart && simulation.Start()) continue;
     simulation.End(machine::OutcomeKind::kStopped, ErrorCode::kCellWaitsForever);
     break;
   }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "engine/machine/family.h"
+#include "engine/simulation/run/drive.h"
 #include "engine/simulation/run/recorder.h"
 
 // Drives a run through virtual time. Nothing here looks at a clock: who paces a run against real
@@ -27,31 +28,32 @@ class Simulation {
 
   // Goes on by `slice` of virtual time, at most. While halted with scripted inputs to come, up to
   // the next of them. kHalted: nothing scripted will make it go on; apply a key, or end it.
-  machine::RunPhase Step(SimTime slice);
+  machine::RunPhase Step(SimTime slice) { return drive_.Step(slice); }
+  // START, where it is halted. False: the START before changed nothing, and none ever will.
+  bool Start() { return drive_.Start(); }
 
   // A key or input at the present time. Hold, resume, stop and override act through this.
-  void Apply(const machine::InputChange& input) { run_.Apply(input); }
+  void Apply(const machine::InputChange& input) { drive_.run().Apply(input); }
 
   // Ends the run here: CANCELLED with CellCancelled, or a budget of the caller with its code.
   void Cancel() { End(machine::OutcomeKind::kCancelled, ErrorCode::kCellCancelled); }
-  void End(machine::OutcomeKind kind, ErrorCode code);
+  void End(machine::OutcomeKind kind, ErrorCode code) { drive_.End(kind, code); }
 
-  machine::RunPhase phase() const { return phase_; }
-  bool finished() const { return phase_ == machine::RunPhase::kFinished; }
-  machine::RunState state() const { return run_.state(); }
-  std::uint64_t steps_executed() const { return run_.steps_executed(); }
+  machine::RunPhase phase() const { return drive_.phase(); }
+  bool finished() const { return drive_.finished(); }
+  machine::RunState state() const { return drive_.run().state(); }
+  std::uint64_t steps_executed() const { return drive_.run().steps_executed(); }
   bool cut_off() const { return recorder_.cut_off(); }  // a product is over its budget
 
   // The report so far, for people who watch.
-  RunReport Report() const { return recorder_.Report(run_); }
+  RunReport Report() const { return recorder_.Report(drive_.run()); }
 
   // Precondition: finished(). Closes the products; once.
   RunReport Finish();
 
  private:
-  machine::Run& run_;
   Recorder& recorder_;
-  machine::RunPhase phase_ = machine::RunPhase::kRunning;
+  Drive drive_;
 };
 
 // How far a run is; views are valid during the call.

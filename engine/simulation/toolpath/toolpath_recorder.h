@@ -35,7 +35,7 @@ class ToolpathRecorder final : public machine::RunObserver {
  private:
   // The straight stretch that the last vertex belongs to.
   struct Stretch {
-    motion::MachineVector anchor;     // its first vertex
+    motion::MachinePoint anchor;      // its first vertex
     motion::MachineVector direction;  // unit; zero while nothing was merged
     motion::MachinePoint last;        // its last vertex, which is the last point of the block
     bool open = false;                // false: the last vertex stays, whatever comes

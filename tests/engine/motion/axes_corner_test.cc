@@ -12,7 +12,7 @@
 namespace rmlcell::motion {
 namespace {
 
-MoveCommand InAxes(const TipPose& from, const TipPose& to, double speed, bool fly = true) {
+MoveCommand InAxes(const AxisPose& from, const AxisPose& to, double speed, bool fly = true) {
   MoveCommand move;
   move.kind = MoveCommand::Kind::kPointToPointAxes;
   move.path = PathPiece::Joint(from, to);
@@ -44,9 +44,9 @@ CornerReport FirstCorner(const std::vector<PlannedMotion>& motions) {
   return {};
 }
 
-const TipPose kHere{{0, 0, 0}};
-const TipPose kEast{{1000, 0, 0}};
-const TipPose kNorthEast{{1000, 1000, 0}};
+const AxisPose kHere{{0, 0, 0}};
+const AxisPose kEast{{1000, 0, 0}};
+const AxisPose kNorthEast{{1000, 1000, 0}};
 
 // X at 250 mm/s, then Y: the speeds of both axes change by 250, T_b = max(1.5 x 250 / 2000,
 // sqrt(6 x 250 / 40000)) = 0.193649 s, the deviation of each axis 3/32 T_b 250 = 4.538655 mm. Each
@@ -57,11 +57,11 @@ TEST(AxesCorner, RightAngle) {
   const double bend_s = std::sqrt(6.0 * 250.0 / 40000.0);
   EXPECT_EQ(motions[1].corner.passage, Passage::kBlend);
   EXPECT_NEAR(motions[1].duration_s() + motions[2].duration_s(), bend_s, 1e-12);
-  EXPECT_NEAR(motions[0].path.to().tip.x(), 1000.0 - 250.0 * 0.5 * bend_s, 1e-9);
-  EXPECT_NEAR(motions[3].path.from().tip.y(), 250.0 * 0.5 * bend_s, 1e-9);
+  EXPECT_NEAR(motions[0].path.to().point.x(), 1000.0 - 250.0 * 0.5 * bend_s, 1e-9);
+  EXPECT_NEAR(motions[3].path.from().point.y(), 250.0 * 0.5 * bend_s, 1e-9);
   const double deviation = 3.0 / 32.0 * bend_s * 250.0;
-  EXPECT_NEAR(motions[1].path.to().tip.x(), 1000.0 - deviation, 1e-9);
-  EXPECT_NEAR(motions[1].path.to().tip.y(), deviation, 1e-9);
+  EXPECT_NEAR(motions[1].path.to().point.x(), 1000.0 - deviation, 1e-9);
+  EXPECT_NEAR(motions[1].path.to().point.y(), deviation, 1e-9);
   EXPECT_NEAR(motions[1].corner.deviation_mm, std::sqrt(2.0) * deviation, 1e-9);
   EXPECT_NEAR(CycleTime(motions), 8.0 + (250.0 / 2000.0 + 2000.0 / 40000.0) + 0.048, 1e-9);
 }
@@ -122,8 +122,8 @@ TEST(AxesCorner, ShortNeighbourLowersBothSpeeds) {
   const CornerReport corner = FirstCorner(motions);
   EXPECT_EQ(corner.passage, Passage::kBlendCapped);
   EXPECT_NEAR(corner.speed, std::cbrt(4.0 * 0.02 * 0.02 / 0.0375), 1e-9);
-  EXPECT_NEAR(motions[1].path.from().tip.x(), 1000.0 - 250.0 * 0.02, 1e-9);
-  EXPECT_NEAR(motions[2].path.to().tip.y(), 5.0, 1e-9);
+  EXPECT_NEAR(motions[1].path.from().point.x(), 1000.0 - 250.0 * 0.02, 1e-9);
+  EXPECT_NEAR(motions[2].path.to().point.y(), 5.0, 1e-9);
 }
 
 // From 500 to 100 mm/s on one line: speeds change, and yet the target lies on the way.
@@ -136,8 +136,8 @@ TEST(AxesCorner, OnALineNothingDeviates) {
 
 // A move cut in two goes through as one; where its axes turn back it stops, motion.md 4.4.
 TEST(AxesCorner, StraightOnAndBack) {
-  const TipPose to{{900, 300, -60}, 0.9, 0.3};
-  const TipPose third{{300, 100, -20}, 0.3, 0.1};
+  const AxisPose to{{900, 300, -60}, 0.9, 0.3};
+  const AxisPose third{{300, 100, -20}, 0.3, 0.1};
   const auto whole = PlanOf({InAxes(kHere, to, 0.4, false)});
   const auto parts = PlanOf({InAxes(kHere, third, 0.4), InAxes(third, to, 0.4, false)});
   EXPECT_EQ(FirstCorner(parts).passage, Passage::kThrough);
@@ -146,7 +146,7 @@ TEST(AxesCorner, StraightOnAndBack) {
   EXPECT_EQ(FirstCorner(back).passage, Passage::kStopReversal);
   const auto mixed = PlanOf({InAxes(kHere, kEast, 0.4), [] {
                                MoveCommand line;
-                               line.path = PathPiece::Line(kEast, kNorthEast);
+                               line.path = PathPiece::Line({{1000, 0, 0}}, {{1000, 1000, 0}});
                                return line;
                              }()});
   EXPECT_EQ(FirstCorner(mixed).passage, Passage::kStopNeighbour);
@@ -156,17 +156,18 @@ std::vector<MoveCommand> RandomAxesChain(Dice& dice) {
   std::vector<MoveCommand> chain;
   const int count = static_cast<int>(dice.Uniform(1.0, 12.0));
   const auto pose = [&] {
-    return TipPose{{dice.Uniform(-500, 3500), dice.Uniform(-500, 3000), dice.Uniform(-1200, 1000)},
-                   dice.Uniform(-6, 6),
-                   dice.Uniform(-2, 2)};
+    return AxisPose{{dice.Uniform(-500, 3500), dice.Uniform(-500, 3000), dice.Uniform(-1200, 1000)},
+                    dice.Uniform(-6, 6),
+                    dice.Uniform(-2, 2)};
   };
-  TipPose at = pose();
+  AxisPose at = pose();
   double share = 0.5, acceleration = 1.0, overshoot = 1.0;
   for (int k = 0; k < count; ++k) {
-    const TipPose far = pose();
+    const AxisPose far = pose();
     const double part = dice.Magnitude(1e-3, 1.0);  // of the way there
-    const TipPose to{at.tip + (far.tip - at.tip) * part, at.a_rad + (far.a_rad - at.a_rad) * part,
-                     at.b_rad + (far.b_rad - at.b_rad) * part};
+    const AxisPose to{at.column + (far.column - at.column) * part,
+                      at.a_rad + (far.a_rad - at.a_rad) * part,
+                      at.b_rad + (far.b_rad - at.b_rad) * part};
     if (dice.Chance(0.3)) share = dice.Magnitude(0.01, 1.0);
     if (dice.Chance(0.2)) acceleration = dice.Magnitude(0.05, 1.0);
     if (dice.Chance(0.2)) overshoot = dice.Uniform(0.0, 1.0);
@@ -215,8 +216,8 @@ TEST(AxesCorner, RandomChainsKeepTheLimitsOfEveryAxis) {
       const TrajectoryPoint end = view.At(motion.duration_s());
       last = {{end.axes[0], end.axes[1], end.axes[2]}, end.axes[3], end.axes[4]};
     }
-    const TipPose& target = chain.back().path.to();
-    EXPECT_NEAR((last.column - target.tip).norm(), 0.0, 1e-9) << seed;
+    const AxisPose target = chain.back().path.to().axes();
+    EXPECT_NEAR((last.column - target.column).norm(), 0.0, 1e-9) << seed;
     EXPECT_NEAR(last.b_rad, target.b_rad, 1e-12) << seed;
 
     std::vector<MoveCommand> flown = chain;
@@ -225,7 +226,8 @@ TEST(AxesCorner, RandomChainsKeepTheLimitsOfEveryAxis) {
       move.overshoot_fraction = 1.0;
     }
     std::vector<MoveCommand> back(flown.rbegin(), flown.rend());
-    for (MoveCommand& move : back) move.path = PathPiece::Joint(move.path.to(), move.path.from());
+    for (MoveCommand& move : back)
+      move.path = PathPiece::Joint(move.path.to().axes(), move.path.from().axes());
     const double forth = CycleTime(PlanOf(flown, machine));
     EXPECT_NEAR(CycleTime(PlanOf(back, machine)), forth, 1e-9 * forth) << seed;
   }

@@ -46,14 +46,14 @@ TEST(BendReport, TellsSpeedAndDistanceInTheMiddle) {
       if (!IsBlend(motion.corner.passage)) continue;
       ++bends;
       if (motion.speed.peak_speed() > motion.speed.At(0.0).speed * (1 + 1e-9)) ++varying;
-      const MachinePoint& corner = chain[motion.tag].path.to().tip;
+      const MachinePoint& corner = chain[motion.tag].path.to().point;
       double nearest = HUGE_VAL;
       double step = 0.0;
       for (std::size_t half = k; half <= k + 1; ++half) {
         const PathPiece& path = motions[half].path;
         step = std::max(step, path.length() / 200);
         for (int n = 0; n <= 200; ++n) {
-          nearest = std::min(nearest, (path.At(path.length() * n / 200).tip - corner).norm());
+          nearest = std::min(nearest, (path.At(path.length() * n / 200).point - corner).norm());
         }
       }
       // Half a step beside the nearest place the distance is greater by step^2 / (8 nearest), some

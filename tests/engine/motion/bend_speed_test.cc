@@ -30,7 +30,7 @@ struct Turn {
   }
   double Allowed(double s) const {
     const double u = length->ParameterAt(curve, s);
-    const double bend = curve.SecondByLength(u).tip.norm();
+    const double bend = curve.SecondByLength(u).point.norm();
     return std::min(std::sqrt(1600.0 / bend), std::cbrt(32000.0 / curve.JerkPerCube(u)));
   }
   Corner corner;

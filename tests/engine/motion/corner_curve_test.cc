@@ -47,17 +47,17 @@ TEST(CornerCurve, MiddleOfTheHermiteForm) {
                     .b_rate = 0.02};
   const CornerCurve curve(from, to, 2.5);
   const double scale = 2.5 * 2.0 * std::sqrt(std::sqrt(0.5));  // 90 degrees
-  const TipPose middle = curve.At(0.5);
-  ExpectNear(middle.tip,
-             (from.pose.tip + to.pose.tip) * 0.5 +
+  const PathPose middle = curve.At(0.5);
+  ExpectNear(middle.point,
+             (from.pose.point + to.pose.point) * 0.5 +
                  (from.tangent - to.tangent) * (scale * 5.0 / 32.0) +
                  (from.curvature + to.curvature) * (scale * scale / 64.0),
              1e-12);
   EXPECT_NEAR(middle.a_rad, 0.7 + 5.0 / 32.0 * scale * 0.08, 1e-12);
   EXPECT_NEAR(middle.b_rad, -0.35 - 5.0 / 32.0 * scale * 0.03, 1e-12);
   // The slope there: 15/8 (p1 - p0) - 7/16 (v0 + v1) + (c1 - c0)/32.
-  ExpectNear(curve.Derivative(0.5, 1).tip,
-             (to.pose.tip - from.pose.tip) * 1.875 -
+  ExpectNear(curve.Derivative(0.5, 1).point,
+             (to.pose.point - from.pose.point) * 1.875 -
                  (from.tangent + to.tangent) * (0.4375 * scale) +
                  (to.curvature - from.curvature) * (scale * scale / 32.0),
              1e-12);
@@ -71,11 +71,11 @@ TEST(CornerCurve, PlainIsTheSameCurve) {
     const CornerCurve ends(
         {.pose = corner.Start(), .tangent = corner.tangent_in, .curvature = {}},
         {.pose = corner.Finish(), .tangent = corner.tangent_out, .curvature = {}}, 2.0);
-    ExpectNear(corner.Start().tip, {5, -2, 3}, 1e-12);
-    ExpectNear(corner.Finish().tip, corner.at.tip + corner.tangent_out * 2.0, 1e-12);
+    ExpectNear(corner.Start().point, {5, -2, 3}, 1e-12);
+    ExpectNear(corner.Finish().point, corner.at.point + corner.tangent_out * 2.0, 1e-12);
     for (const double u : {0.0, 0.2, 0.5, 0.9, 1.0}) {
-      ExpectNear(plain.At(u).tip, ends.At(u).tip, 1e-12);
-      ExpectNear(plain.SecondByLength(u).tip, ends.SecondByLength(u).tip, 1e-11);
+      ExpectNear(plain.At(u).point, ends.At(u).point, 1e-12);
+      ExpectNear(plain.SecondByLength(u).point, ends.SecondByLength(u).point, 1e-11);
       EXPECT_EQ(plain.At(u).a_rad, 0.4);
       EXPECT_EQ(plain.At(u).b_rad, -0.3);
     }
@@ -95,15 +95,16 @@ TEST(CornerCurve, DerivativesByLength) {
     };
     const double u = length.ParameterAt(curve, share * length.total());
     const PathDerivatives first = curve.FirstByLength(u), second = curve.SecondByLength(u);
-    ExpectNear(first.tip, (at(h).tip - at(-h).tip) * (0.5 / h), 1e-6);
+    ExpectNear(first.point, (at(h).point - at(-h).point) * (0.5 / h), 1e-6);
     EXPECT_NEAR(first.a, (at(h).a_rad - at(-h).a_rad) * (0.5 / h), 1e-6);
     EXPECT_NEAR(first.b, (at(h).b_rad - at(-h).b_rad) * (0.5 / h), 1e-6);
-    ExpectNear(second.tip, (at(h).tip - at(0).tip * 2.0 + at(-h).tip) * (1.0 / (h * h)), 1e-5);
+    ExpectNear(second.point, (at(h).point - at(0).point * 2.0 + at(-h).point) * (1.0 / (h * h)),
+               1e-5);
     EXPECT_NEAR(second.a, (at(h).a_rad - 2 * at(0).a_rad + at(-h).a_rad) / (h * h), 1e-5);
     EXPECT_NEAR(second.b, (at(h).b_rad - 2 * at(0).b_rad + at(-h).b_rad) / (h * h), 1e-5);
     const double q = 5e-3;
     const MachineVector third =
-        (at(3 * q).tip - at(q).tip * 3.0 + at(-q).tip * 3.0 - at(-3 * q).tip) *
+        (at(3 * q).point - at(q).point * 3.0 + at(-q).point * 3.0 - at(-3 * q).point) *
         (1.0 / (8 * q * q * q));
     EXPECT_NEAR(curve.JerkPerCube(u), third.norm(), 1e-3 * third.norm());
   }
@@ -118,8 +119,8 @@ TEST(CornerCurve, BoundsHold) {
     for (int k = 0; k <= 2000; ++k) {
       const PathDerivatives first = curve.Derivative(k / 2000.0, 1);
       const PathDerivatives second = curve.Derivative(k / 2000.0, 2);
-      slowest = std::min(slowest, first.tip.norm());
-      tip = std::max(tip, second.tip.norm());
+      slowest = std::min(slowest, first.point.norm());
+      tip = std::max(tip, second.point.norm());
       a1 = std::max(a1, std::abs(first.a));
       b1 = std::max(b1, std::abs(first.b));
       a2 = std::max(a2, std::abs(second.a));
@@ -163,8 +164,9 @@ TEST(SpeedOnCurve, EachLimitAlone) {
     };
     MachineLimits machine = strong;
     machine.tip_acceleration_mm_s2 = 2000.0;
-    expect(machine,
-           dense([&](double u) { return std::sqrt(1600.0 / curve.SecondByLength(u).tip.norm()); }));
+    expect(machine, dense([&](double u) {
+             return std::sqrt(1600.0 / curve.SecondByLength(u).point.norm());
+           }));
     machine = strong;
     machine.tip_jerk_mm_s3 = 40000.0;
     expect(machine, dense([&](double u) { return std::cbrt(32000.0 / curve.JerkPerCube(u)); }));
@@ -191,7 +193,8 @@ TEST(AxesFollow, NeverSaysYesInVain) {
   for (const double degrees : {2.0, 10.0, 25.0, 50.0}) {
     const CornerCurve curve = Turning(degrees, 5.0);
     double bend = 0.0;
-    for (int k = 0; k <= 4000; ++k) bend = std::max(bend, curve.SecondByLength(k / 4e3).tip.norm());
+    for (int k = 0; k <= 4000; ++k)
+      bend = std::max(bend, curve.SecondByLength(k / 4e3).point.norm());
     for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
       for (AxisValues AxisLimits::*figure : {&AxisLimits::speed, &AxisLimits::acceleration}) {
         MachineLimits machine;
@@ -274,7 +277,7 @@ TEST(BlendCurve, HalvesMeetInTheMiddle) {
     // A part of a half keeps its places.
     const PathPiece part = second.Part(0.25 * half, 0.75 * half);
     EXPECT_NEAR(part.length(), 0.5 * half, 1e-12);
-    ExpectNear(part.At(0.3 * part.length()).tip, second.At(0.4 * half).tip, 1e-9);
+    ExpectNear(part.At(0.3 * part.length()).point, second.At(0.4 * half).point, 1e-9);
     ExpectNear(part.Tangent(0.2), second.Tangent(0.25 * half + 0.2), 1e-9);
     ExpectNear(part.Curvature(0.2), second.Curvature(0.25 * half + 0.2), 1e-8);
   }
@@ -284,10 +287,10 @@ TEST(BlendCurve, HalvesMeetInTheMiddle) {
 // there turn back, the sharper the curve.
 CornerCurve NearCusp(double degrees) {
   const double turn = 0.5 * degrees * kRadPerDegree;
-  return CornerCurve({.pose = {{-std::cos(turn), -0.4, 0}},
+  return CornerCurve({.pose = {{-std::cos(turn), -0.4, 0}, 0, 0},
                       .tangent = {std::cos(turn), std::sin(turn), 0},
                       .curvature = MachineVector{-std::sin(turn), std::cos(turn), 0} * 0.5},
-                     {.pose = {{std::cos(turn), -0.4, 0}},
+                     {.pose = {{std::cos(turn), -0.4, 0}, 0, 0},
                       .tangent = {std::cos(turn), -std::sin(turn), 0},
                       .curvature = MachineVector{std::sin(turn), std::cos(turn), 0} * 0.5},
                      2.0);
@@ -308,7 +311,7 @@ TEST(CornerCurve, CuspIsTenTimesTheSharpestTurn) {
     const double cut = 0.5 * in.radius_mm() * i / 20000.0;
     const CornerCurve curve(EndAt(in, in.length() - cut), EndAt(out, cut), cut);
     const double place = curve.SlowestPlace();
-    const double sharp = curve.SecondByLength(place).tip.norm() * cut / k;
+    const double sharp = curve.SecondByLength(place).point.norm() * cut / k;
     if (curve.HasCusp(cut)) {
       ++cusps;
       least_of_cusps = std::min(least_of_cusps, sharp);
@@ -336,9 +339,9 @@ TEST(CornerLength, NearACusp) {
     const CornerLength length(curve);
     constexpr int kChords = 200000;
     double chords = 0.0;
-    MachinePoint last = curve.At(0.0).tip;
+    MachinePoint last = curve.At(0.0).point;
     for (int k = 1; k <= kChords; ++k) {
-      const MachinePoint here = curve.At(static_cast<double>(k) / kChords).tip;
+      const MachinePoint here = curve.At(static_cast<double>(k) / kChords).point;
       chords += (last - here).norm();
       last = here;
       if (k % 20000 != 0) continue;
@@ -354,12 +357,12 @@ TEST(CornerLength, NearACusp) {
 TEST(CornerCurve, DistanceFromAPoint) {
   const CornerCurve curve(PlainAt(90.0, 2.0));
   EXPECT_NEAR(curve.DistanceFrom({-95, -2, 3}), 100.0, 1e-9);
-  const TipPose at = curve.At(0.3);
-  const MachineVector tangent = curve.FirstByLength(0.3).tip;
+  const PathPose at = curve.At(0.3);
+  const MachineVector tangent = curve.FirstByLength(0.3).point;
   const MachineVector across{-tangent.z(), 0, tangent.x()};
-  EXPECT_NEAR(curve.DistanceFrom(at.tip + across * 0.05), 0.05, 1e-9);
-  EXPECT_NEAR(curve.DistanceFrom(at.tip - across * 0.05), 0.05, 1e-9);
-  EXPECT_NEAR(curve.DistanceFrom(at.tip + MachineVector{0, 0.7, 0}), 0.7, 1e-9);
+  EXPECT_NEAR(curve.DistanceFrom(at.point + across * 0.05), 0.05, 1e-9);
+  EXPECT_NEAR(curve.DistanceFrom(at.point - across * 0.05), 0.05, 1e-9);
+  EXPECT_NEAR(curve.DistanceFrom(at.point + MachineVector{0, 0.7, 0}), 0.7, 1e-9);
 }
 
 // In COORD ROBOT the curve is measured by time, which grows evenly with u.
@@ -369,11 +372,11 @@ TEST(CornerCurve, InAxesIsEven) {
   CornerCurve curve = CornerCurve::InAxes(EndAt(in, 0.9), EndAt(out, 0.1), 0.1);
   EXPECT_TRUE(curve.in_axes());
   EXPECT_DOUBLE_EQ(curve.way_s(), 0.2);
-  ExpectNear(curve.FirstByLength(0.0).tip, {100, 0, 0}, 1e-9);
+  ExpectNear(curve.FirstByLength(0.0).point, {100, 0, 0}, 1e-9);
   EXPECT_NEAR(curve.FirstByLength(1.0).b, -1.0, 1e-9);
   // Half way both are at half speed and the change is fastest: 3/2 of the change over the time.
-  ExpectNear(curve.FirstByLength(0.5).tip, {50, 25, 0}, 1e-9);
-  ExpectNear(curve.SecondByLength(0.5).tip, {-750, 375, 0}, 1e-8);
+  ExpectNear(curve.FirstByLength(0.5).point, {50, 25, 0}, 1e-9);
+  ExpectNear(curve.SecondByLength(0.5).point, {-750, 375, 0}, 1e-8);
   EXPECT_NEAR(curve.SecondByLength(0.5).a, -7.5, 1e-9);
   EXPECT_NEAR(curve.SecondByLength(0.5).b, -7.5, 1e-9);
   const CornerLength length(curve);

@@ -110,15 +110,15 @@ TEST(CornerSize, WhereTheHeadStartsToTurn) {
 // Half of the smaller radius is all that it may take.
 TEST(CornerSize, WhereTheCurvatureJumps) {
   const PathPiece left = PathPiece::Circle({{50, 0, 0}}, {50, 20, 0}, {0, 0, 1}, 1.0, 0, 0);
-  const MachinePoint end = left.to().tip;
+  const MachinePoint end = left.to().point;
   const MachineVector out = (end - left.centre()) * (1.0 / 20.0);
   const PathPiece right = PathPiece::Circle({end}, end + out * 50.0, {0, 0, -1}, 1.0, 0, 0);
   for (const bool turned : {false, true}) {
     const Corner corner =
-        turned
-            ? Corner::Between(PathPiece::Circle(right.to(), right.centre(), {0, 0, 1}, 1.0, 0, 0),
-                              PathPiece::Circle(left.to(), left.centre(), {0, 0, -1}, 1.0, 0, 0))
-            : Corner::Between(left, right);
+        turned ? Corner::Between(
+                     PathPiece::Circle(right.to().tip(), right.centre(), {0, 0, 1}, 1.0, 0, 0),
+                     PathPiece::Circle(left.to().tip(), left.centre(), {0, 0, -1}, 1.0, 0, 0))
+               : Corner::Between(left, right);
     EXPECT_EQ(corner.passage(), Passage::kBlend);
     EXPECT_TRUE(corner.straight());
     EXPECT_FALSE(corner.lines());
@@ -281,10 +281,10 @@ TEST(AxesCorner, TimeOfTheBend) {
 TEST(AxesCorner, EveryAxisByItsOwnFigures) {
   for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
     const auto along = [axis](double way) {
-      TipPose pose;
-      (axis == 0   ? pose.tip.x()
-       : axis == 1 ? pose.tip.y()
-       : axis == 2 ? pose.tip.z()
+      AxisPose pose;
+      (axis == 0   ? pose.column.x()
+       : axis == 1 ? pose.column.y()
+       : axis == 2 ? pose.column.z()
        : axis == 3 ? pose.a_rad
                    : pose.b_rad) = way;
       return pose;
@@ -305,12 +305,12 @@ TEST(AxesCorner, EveryAxisByItsOwnFigures) {
 // degrees between speeds as shares of the highest: X has 500 mm/s, A 2 pi rad/s.
 // docs/decisions/0014
 TEST(AxesCorner, StraightOnAndBackBothSides) {
-  const auto passage = [](const TipPose& first, const TipPose& second) {
-    const TipPose start{{10, 10, 10}, 1, 1};
-    const auto sum = [](const TipPose& p, const TipPose& q) {
-      return TipPose{p.tip + q.tip, p.a_rad + q.a_rad, p.b_rad + q.b_rad};
+  const auto passage = [](const AxisPose& first, const AxisPose& second) {
+    const AxisPose start{{10, 10, 10}, 1, 1};
+    const auto sum = [](const AxisPose& p, const AxisPose& q) {
+      return AxisPose{p.column + q.column, p.a_rad + q.a_rad, p.b_rad + q.b_rad};
     };
-    const TipPose middle = sum(start, first);
+    const AxisPose middle = sum(start, first);
     return AxesCorner(PathPiece::Joint(start, middle),
                       PathPiece::Joint(middle, sum(middle, second)), 1.0, StandardMachine())
         .passage();

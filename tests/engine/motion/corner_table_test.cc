@@ -19,8 +19,8 @@ struct TableCorner {
         bend(CornerBend(half_sine, half_cosine, rho)),
         in{half_cosine, -half_sine, 0.0},
         out{half_cosine, half_sine, 0.0},
-        curve({.pose = {-in}, .tangent = in, .curvature = {}},
-              {.pose = {out}, .tangent = out, .curvature = {}}, 1.0),
+        curve({.pose = {-in, 0, 0}, .tangent = in, .curvature = {}},
+              {.pose = {out, 0, 0}, .tangent = out, .curvature = {}}, 1.0),
         length(curve) {}
 
   double JerkPeak() const {
@@ -69,7 +69,7 @@ TEST(CornerTables, HalvesTellCurvatureAndJerkFromPlaceToPlace) {
     for (std::size_t k = 1; k <= HalfCorner::kSteps; ++k) {
       const double way = 0.5 * corner.length.total() * static_cast<double>(k) / HalfCorner::kSteps;
       const double u = corner.length.ParameterAt(corner.curve, way);
-      const double by_bend = std::sqrt(corner.bend / corner.curve.SecondByLength(u).tip.norm());
+      const double by_bend = std::sqrt(corner.bend / corner.curve.SecondByLength(u).point.norm());
       EXPECT_LE(half.by_bend[k], by_bend) << degrees << ' ' << k;
       EXPECT_GE(half.by_bend[k], by_bend * (1.0 - 1e-3)) << degrees << ' ' << k;
       const double by_jerk = std::cbrt(corner.bend / corner.curve.JerkPerCube(u));

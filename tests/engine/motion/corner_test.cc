@@ -36,11 +36,11 @@ TEST(Corner, CurvatureAndDeviationFollowTheFormulas) {
     const double k =
         0.75 * rho * std::sin(half) / std::pow(std::cos(half) * (15.0 / 8 - 7 * rho / 16), 2);
     const Bend bend = Of(degrees, 2.0);
-    const double middle = bend.curve.SecondByLength(0.5).tip.norm();
+    const double middle = bend.curve.SecondByLength(0.5).point.norm();
     EXPECT_NEAR(middle, k / 2.0, 1e-9 * k);
     double peak = 0.0;
     for (int i = 0; i <= 2000; ++i)
-      peak = std::max(peak, bend.curve.SecondByLength(i / 2000.0).tip.norm());
+      peak = std::max(peak, bend.curve.SecondByLength(i / 2000.0).point.norm());
     EXPECT_NEAR(peak, k / 2.0, 1e-9 * k) << degrees;
     const double deviation = 2.0 * std::sin(half) * (1 - 5 * rho / 16);
     EXPECT_NEAR(bend.corner.PlainDeviation(2.0), deviation, 1e-12);
@@ -76,12 +76,12 @@ TEST(Corner, LengthAndTriangle) {
     EXPECT_NEAR(bend.corner.PlainLength(1.0), CornerLength(bend.curve).total(), 1e-10) << degrees;
     double chords = 0.0;
     for (int k = 1; k <= 20000; ++k) {
-      chords += (bend.curve.At((k - 1) / 20000.0).tip - bend.curve.At(k / 20000.0).tip).norm();
+      chords += (bend.curve.At((k - 1) / 20000.0).point - bend.curve.At(k / 20000.0).point).norm();
     }
     EXPECT_NEAR(CornerLength(bend.curve).total(), chords, 2e-8) << degrees;
     const double turn = degrees * kPi / 180.0;
     for (int k = 0; k <= 100; ++k) {
-      const MachinePoint p = bend.curve.At(k / 100.0).tip;
+      const MachinePoint p = bend.curve.At(k / 100.0).point;
       // Coordinates along both legs, from the corner: -x * in + y * out.
       const double y = p.y() / std::sin(turn);
       const double x = y * std::cos(turn) - p.x();
@@ -97,10 +97,11 @@ TEST(CornerCurve, ParameterInvertsTheLength) {
   for (const double degrees : {1.0, 90.0, 150.0, 174.9}) {
     const CornerCurve curve = Of(degrees, 30.0).curve;
     const CornerLength length(curve);
-    MachinePoint last = curve.At(0.0).tip;
+    MachinePoint last = curve.At(0.0).point;
     const int steps = 3000;
     for (int k = 1; k <= steps; ++k) {
-      const MachinePoint here = curve.At(length.ParameterAt(curve, length.total() * k / steps)).tip;
+      const MachinePoint here =
+          curve.At(length.ParameterAt(curve, length.total() * k / steps)).point;
       // Chord against arc: kappa^2 s^3 / 24, with kappa at most 18 / 30 and s of 0.02.
       EXPECT_NEAR((last - here).norm(), length.total() / steps, 2e-7) << degrees << " " << k;
       last = here;
@@ -117,10 +118,10 @@ TEST(CornerCurve, MeetsBothPieces) {
   const CurveEnd from = EndAt(in, 48.0), to = EndAt(arc->path, 2.0);
   const CornerCurve curve(from, to, 2.0);
   for (const auto& [u, end] : {std::pair{0.0, from}, std::pair{1.0, to}}) {
-    EXPECT_LE((curve.At(u).tip - end.pose.tip).norm(), 1e-12);
+    EXPECT_LE((curve.At(u).point - end.pose.point).norm(), 1e-12);
     EXPECT_NEAR(curve.At(u).a_rad, end.pose.a_rad, 1e-14);
-    EXPECT_LE((curve.FirstByLength(u).tip - end.tangent).norm(), 1e-13);
-    EXPECT_LE((curve.SecondByLength(u).tip - end.curvature).norm(), 1e-13);
+    EXPECT_LE((curve.FirstByLength(u).point - end.tangent).norm(), 1e-13);
+    EXPECT_LE((curve.SecondByLength(u).point - end.curvature).norm(), 1e-13);
     EXPECT_NEAR(curve.FirstByLength(u).b, end.b_rate, 1e-14);
     EXPECT_NEAR(curve.SecondByLength(u).b, 0.0, 1e-13);
   }

@@ -52,7 +52,7 @@ TEST(CurveBounds, AreThoseOfTheControlPoints) {
     const double cut = dice.Magnitude(0.1, 10.0);
     const double scale =
         2.0 * std::sqrt(std::sqrt(0.5 * (1.0 + from.tangent.dot(to.tangent)))) * cut;
-    const Controls<MachinePoint> tip(from.pose.tip, to.pose.tip, from.tangent * scale,
+    const Controls<MachinePoint> tip(from.pose.point, to.pose.point, from.tangent * scale,
                                      to.tangent * scale, from.curvature * (scale * scale),
                                      to.curvature * (scale * scale));
     const Controls<double> a(from.pose.a_rad, to.pose.a_rad, from.a_rate * scale, to.a_rate * scale,
@@ -112,8 +112,9 @@ TEST(AxesFollow, UpToTheBoundsThemselves) {
     EXPECT_FALSE(follow(axis, 1.0, 1.0 - 1e-12)) << axis;
   }
   // A curve that turns back has no bound of its speed from below: nothing is known.
-  const CornerCurve back({.pose = {{0, 0, 0}}, .tangent = {1, 0, 0}, .curvature = {}},
-                         {.pose = {{-40, 1, 0}}, .tangent = {0.8, 0.6, 0}, .curvature = {}}, 4.0);
+  const CornerCurve back({.pose = {{0, 0, 0}, 0, 0}, .tangent = {1, 0, 0}, .curvature = {}},
+                         {.pose = {{-40, 1, 0}, 0, 0}, .tangent = {0.8, 0.6, 0}, .curvature = {}},
+                         4.0);
   ASSERT_LT(back.DerivativeBounds().slowest, 0.0);
   MachineLimits strong;
   strong.axes.speed.fill(1e9);
@@ -129,10 +130,12 @@ TEST(CornerCurve, SlowestPlaceIsTheSlowest) {
   for (int round = 0; round < 400; ++round) {
     const double cut = 1.0, turn = dice.Uniform(0.0, 2.9);
     const double bend = dice.Uniform(-0.9, 0.9), bend_out = dice.Uniform(-0.9, 0.9);
-    const CurveEnd from{.pose = {{-1, 0, 0}}, .tangent = {1, 0, 0}, .curvature = {0, bend, 0}};
+    const CurveEnd from{
+        .pose = {{-1, 0, 0}, 0, 0}, .tangent = {1, 0, 0}, .curvature = {0, bend, 0}};
     const MachineVector out{std::cos(turn), std::sin(turn), 0};
-    const CurveEnd to{
-        .pose = {out}, .tangent = out, .curvature = MachineVector{-out.y(), out.x(), 0} * bend_out};
+    const CurveEnd to{.pose = {out, 0, 0},
+                      .tangent = out,
+                      .curvature = MachineVector{-out.y(), out.x(), 0} * bend_out};
     const CornerCurve curve(from, to, cut);
     const double place = curve.SlowestPlace();
     double slowest = HUGE_VAL;

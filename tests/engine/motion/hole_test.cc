@@ -21,13 +21,13 @@ TEST(Hole, EntersAtTheNearestPointAndTurnsLeft) {
   EXPECT_FALSE(hole->starts_on_axis);
   EXPECT_NEAR(hole->lead.length() + hole->circle.length(), std::hypot(5.0, 10.0) + 50.0 * kPi,
               1e-12);
-  ExpectNear(hole->lead.to().tip, {125, 50, -550});
+  ExpectNear(hole->lead.to().point, {125, 50, -550});
   EXPECT_EQ(hole->lead.to().b_rad, 0.5);
   const double quarter = 0.25 * hole->circle.length();
-  ExpectNear(hole->circle.At(quarter).tip, {100, 75, -550});
-  ExpectNear(hole->circle.At(2 * quarter).tip, {75, 50, -550});
-  ExpectNear(hole->circle.At(3 * quarter).tip, {100, 25, -550});
-  EXPECT_EQ(hole->circle.to().tip, hole->circle.from().tip);
+  ExpectNear(hole->circle.At(quarter).point, {100, 75, -550});
+  ExpectNear(hole->circle.At(2 * quarter).point, {75, 50, -550});
+  ExpectNear(hole->circle.At(3 * quarter).point, {100, 25, -550});
+  EXPECT_EQ(hole->circle.to().point, hole->circle.from().point);
   EXPECT_EQ(hole->circle.b_rate(), 0.0);
 }
 
@@ -37,7 +37,7 @@ TEST(Hole, UsesOnlyTheDirectionOfTheNormalPoint) {
   near.normal_point.z() = -549.9;
   const Result<HolePath> hole = HoleThrough(near);
   ASSERT_TRUE(hole);
-  ExpectNear(hole->circle.At(0.25 * hole->circle.length()).tip, {100, 75, -550});
+  ExpectNear(hole->circle.At(0.25 * hole->circle.length()).point, {100, 75, -550});
 }
 
 // Seen from the other side the turn is the other way. OPT-B.10
@@ -45,7 +45,7 @@ TEST(Hole, IsRightHandedAboutTheNormal) {
   const Result<HolePath> hole = HoleThrough(
       {.from = {{10, 0, 0}}, .centre = {{0, 0, 0}}, .normal_point = {0, 0, -1}, .radius_mm = 5.0});
   ASSERT_TRUE(hole);
-  ExpectNear(hole->circle.At(0.25 * hole->circle.length()).tip, {0, -5, 0});
+  ExpectNear(hole->circle.At(0.25 * hole->circle.length()).point, {0, -5, 0});
 }
 
 // OPT-B.12, OPT-2.28: on the axis the entry lies along the program's X, or Y when X is the axis.
@@ -54,12 +54,12 @@ TEST(Hole, StartOnTheAxis) {
       .from = {{0, 0, 7}}, .centre = {{0, 0, 0}}, .normal_point = {0, 0, 1}, .radius_mm = 5.0};
   ASSERT_TRUE(HoleThrough(hole));
   EXPECT_TRUE(HoleThrough(hole)->starts_on_axis);
-  ExpectNear(HoleThrough(hole)->circle.from().tip, {5, 0, 0});
+  ExpectNear(HoleThrough(hole)->circle.from().point, {5, 0, 0});
   hole.normal_point = {1, 0, 0};
   hole.from.tip = {3, 0, 0};
-  ExpectNear(HoleThrough(hole)->circle.from().tip, {0, 5, 0});
+  ExpectNear(HoleThrough(hole)->circle.from().point, {0, 5, 0});
   hole.program_x = {0, 0, 1};  // a turned work offset
-  ExpectNear(HoleThrough(hole)->circle.from().tip, {0, 0, 5});
+  ExpectNear(HoleThrough(hole)->circle.from().point, {0, 0, 5});
 }
 
 // OPT-2.32: without a straight part the head turns over the circle.

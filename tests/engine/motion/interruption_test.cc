@@ -117,7 +117,7 @@ TEST(StopAlong, TheWeakestMoveOnTheWaySetsTheRamp) {
     // With ACCEL 100 the speed never gets to 2000 mm/s2: 2 sqrt(50/40000).
     const double ramp_s = time == kStrong ? 2.0 * std::sqrt(50.0 / 40000.0) : time;
     EXPECT_NEAR(Length(stop.motions), 25.0 * ramp_s, 1e-9) << second_mm << " " << left_mm;
-    EXPECT_NEAR(stop.motions[0].path.from().tip.x(), 100.0 - left_mm, 1e-9);
+    EXPECT_NEAR(stop.motions[0].path.from().point.x(), 100.0 - left_mm, 1e-9);
   }
 }
 
@@ -218,9 +218,9 @@ TEST(RestartAlong, ManyHaltsKeepThePath) {
         while (piece + 1 < plan.size() && x > begin + plan[piece].path.length()) {
           begin += plan[piece++].path.length();
         }
-        const TipPose here = motion.path.At(motion.path.length() * share);
-        const TipPose wanted = plan[piece].path.At(x - begin);
-        ASSERT_LE((here.tip - wanted.tip).norm(), 1e-6) << seed;
+        const PathPose here = motion.path.At(motion.path.length() * share);
+        const PathPose wanted = plan[piece].path.At(x - begin);
+        ASSERT_LE((here.point - wanted.point).norm(), 1e-6) << seed;
         ASSERT_NEAR(here.a_rad, wanted.a_rad, 1e-6) << seed;
         ASSERT_NEAR(here.b_rad, wanted.b_rad, 1e-6) << seed;
       }
@@ -256,8 +256,8 @@ TEST(StopAlong, RestsOnALineAndGoesOn) {
   EXPECT_FALSE(braking.ends_move);
   EXPECT_EQ(braking.settling_s, 0.0);
   EXPECT_EQ(braking.tag, 7u);
-  EXPECT_NEAR(braking.path.from().tip.x(), 50.0, 1e-9);
-  EXPECT_NEAR(braking.path.to().tip.x(), stop.s, 1e-9);
+  EXPECT_NEAR(braking.path.from().point.x(), 50.0, 1e-9);
+  EXPECT_NEAR(braking.path.to().point.x(), stop.s, 1e-9);
   EXPECT_NEAR(braking.speed.duration_s(), kRamp_s, 1e-9);
 
   const std::vector<PlannedMotion> rest = RestartAlong(plan, stop.s, StandardMachine().axes);
@@ -293,7 +293,7 @@ TEST(StopAlong, AtTheEndNothingIsLeftButToSettle) {
   EXPECT_EQ(rest[0].speed.duration_s(), 0.0);
   EXPECT_EQ(rest[0].duration_s(), 0.048);
   EXPECT_EQ(rest[0].path.length(), 0.0);
-  EXPECT_EQ(rest[0].path.from().tip, (MachineVector{100, 0, 0}));
+  EXPECT_EQ(rest[0].path.from().point, (MachineVector{100, 0, 0}));
   EXPECT_TRUE(rest[0].ends_move);
 }
 

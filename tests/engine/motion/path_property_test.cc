@@ -38,7 +38,7 @@ class Way {
     std::size_t k = 0;
     while (k + 1 < motions_.size() && reached_[k] < x) ++k;
     const PathPiece& path = motions_[k].path;
-    return path.At(x - (reached_[k] - path.tip_length_mm()));
+    return path.At(x - (reached_[k] - path.tip_length_mm())).tip();
   }
 
  private:
@@ -69,9 +69,9 @@ TipPose AsItIs(const TipPose& pose) { return pose; }
 template <class Move>
 PathPiece Moved(const PathPiece& path, Move move) {
   if (path.kind() != PathPiece::Kind::kArc)
-    return PathPiece::Line(move(path.from()), move(path.to()));
-  const TipPose via = move(path.At(0.5 * path.length()));
-  return PathPiece::ArcThrough(move(path.from()), via.tip, move(path.to()))->path;
+    return PathPiece::Line(move(path.from().tip()), move(path.to().tip()));
+  const TipPose via = move(path.At(0.5 * path.length()).tip());
+  return PathPiece::ArcThrough(move(path.from().tip()), via.tip, move(path.to().tip()))->path;
 }
 
 // Property 5: backwards, all /FLY, lines and arcs with a turning head: the same path. Where and how
@@ -89,12 +89,12 @@ RC_GTEST_PROP(PathProperty, BackwardsGoesTheSameWay, ()) {
   std::vector<MoveCommand> back;
   for (auto move = there.rbegin(); move != there.rend(); ++move) {
     MoveCommand turned = *move;
-    turned.path = PathPiece::Line(move->path.to(), move->path.from());
+    turned.path = PathPiece::Line(move->path.to().tip(), move->path.from().tip());
     if (move->path.kind() == PathPiece::Kind::kArc) {
-      turned.path =
-          PathPiece::ArcThrough(move->path.to(), move->path.At(0.5 * move->path.length()).tip,
-                                move->path.from())
-              ->path;
+      turned.path = PathPiece::ArcThrough(move->path.to().tip(),
+                                          move->path.At(0.5 * move->path.length()).point,
+                                          move->path.from().tip())
+                        ->path;
     }
     turned.tag = back.size();
     back.push_back(turned);
@@ -168,9 +168,9 @@ RC_GTEST_PROP(PathProperty, SplitLinesGoTheSameWay, ()) {
   std::vector<MoveCommand> split;
   for (const MoveCommand& move : chain) {
     MoveCommand first = move, second = move;
-    const TipPose middle = move.path.At(move.path.length() * dice.Uniform(0.1, 0.9));
-    first.path = PathPiece::Line(move.path.from(), middle);
-    second.path = PathPiece::Line(middle, move.path.to());
+    const TipPose middle = move.path.At(move.path.length() * dice.Uniform(0.1, 0.9)).tip();
+    first.path = PathPiece::Line(move.path.from().tip(), middle);
+    second.path = PathPiece::Line(middle, move.path.to().tip());
     first.fly = true;
     first.overshoot_fraction = 1.0;
     first.tag = split.size();
@@ -203,11 +203,11 @@ RC_GTEST_PROP(PathProperty, LowerOverrideChangesNothingBetweenCorners, ()) {
     for (const PlannedMotion& motion : Plan(each)) {
       if (motion.path.kind() != PathPiece::Kind::kLine) continue;
       const PathPiece& whole = chain[static_cast<std::size_t>(motion.tag)].path;
-      for (const TipPose& end : {motion.path.from(), motion.path.to()}) {
-        const double along = (end.tip - whole.from().tip).dot(whole.Tangent(0.0));
+      for (const PathPose& end : {motion.path.from(), motion.path.to()}) {
+        const double along = (end.point - whole.from().point).dot(whole.Tangent(0.0));
         RC_ASSERT(along >= -1e-9);
         RC_ASSERT(along <= whole.length() + 1e-9);
-        RC_ASSERT((whole.At(along).tip - end.tip).norm() <= 1e-9);
+        RC_ASSERT((whole.At(along).point - end.point).norm() <= 1e-9);
       }
     }
   }

@@ -22,8 +22,8 @@ TEST(PathLine, AdvancesTipAndHeadTogether) {
   const PathPiece line =
       PathPiece::Line({{1200, 1120, -150}, 0, 0}, {{2200, 1220, -250}, 0.5, 0.5});
   EXPECT_NEAR(line.length(), std::sqrt(1000.0 * 1000.0 + 2.0 * 100.0 * 100.0), 1e-12);
-  const TipPose middle = line.At(0.5 * line.length());
-  ExpectNear(middle.tip, {1700, 1170, -200}, 1e-9);
+  const PathPose middle = line.At(0.5 * line.length());
+  ExpectNear(middle.point, {1700, 1170, -200}, 1e-9);
   EXPECT_NEAR(middle.a_rad, 0.25, 1e-15);
   EXPECT_NEAR(middle.b_rad, 0.25, 1e-15);
   EXPECT_EQ(line.At(line.length()), line.to());
@@ -47,7 +47,7 @@ TEST(PathArc, GoesThroughTheViaPoint) {
   EXPECT_NEAR(arc.radius_mm(), 10.0, 1e-12);
   ExpectNear(arc.centre(), {10, 0, 0}, 1e-12);
   EXPECT_NEAR(arc.length(), 10.0 * kPi, 1e-12);
-  ExpectNear(arc.At(0.5 * arc.length()).tip, {10, 10, 0}, 1e-12);
+  ExpectNear(arc.At(0.5 * arc.length()).point, {10, 10, 0}, 1e-12);
   ExpectNear(arc.normal(), {0, 0, -1}, 1e-15);
 }
 
@@ -90,10 +90,10 @@ TEST(PathArc, StaysAccurateWhenNearlyStraight) {
   for (const double h : {2e-4, 1e-2, 1.0}) {
     const PathPiece arc = ArcOf({3000, 2000, -500}, {3500, 2000 - h, -500}, {4000, 2000, -500});
     EXPECT_NEAR(arc.radius_mm() / ((250000.0 + h * h) / (2.0 * h)), 1.0, 1e-8);
-    ExpectNear(arc.At(0.5 * arc.length()).tip, {3500, 2000 - h, -500}, 1e-9);
-    ExpectNear(arc.At(arc.length() * (1.0 - 1e-12)).tip, {4000, 2000, -500}, 2e-9);
+    ExpectNear(arc.At(0.5 * arc.length()).point, {3500, 2000 - h, -500}, 1e-9);
+    ExpectNear(arc.At(arc.length() * (1.0 - 1e-12)).point, {4000, 2000, -500}, 2e-9);
     // Half way to the via point a parabola is off by less than h^3: y = 3/4 h.
-    EXPECT_NEAR(arc.At(0.25 * arc.length()).tip.y(), 2000 - 0.75 * h, 1e-6 * h + 1e-9);
+    EXPECT_NEAR(arc.At(0.25 * arc.length()).point.y(), 2000 - 0.75 * h, 1e-6 * h + 1e-9);
   }
 }
 
@@ -103,7 +103,7 @@ TEST(PathArc, TwoArcsMakeACircle) {
   const PathPiece first = ArcOf({0, 139.7, 354.584}, {139.7, 0, 354.584}, {0, -139.7, 354.584});
   const PathPiece second = ArcOf({0, -139.7, 354.584}, {-139.7, 0, 354.584}, {0, 139.7, 354.584});
   EXPECT_NEAR(first.length() + second.length(), kTurn * 139.7, 1e-9);
-  ExpectNear(second.At(second.length() * (1.0 - 1e-13)).tip, {0, 139.7, 354.584}, 1e-9);
+  ExpectNear(second.At(second.length() * (1.0 - 1e-13)).point, {0, 139.7, 354.584}, 1e-9);
 }
 
 // The head goes straight from its start to its target angle, in proportion to the arc. OPT-2.20,
@@ -123,7 +123,8 @@ TEST(PathArc, DerivativesAgreeWithDifferences) {
   const double h = 1e-4;
   for (const double share : {0.1, 0.37, 0.9}) {
     const double s = share * arc.length();
-    const MachineVector before = arc.At(s - h).tip, here = arc.At(s).tip, after = arc.At(s + h).tip;
+    const MachineVector before = arc.At(s - h).point, here = arc.At(s).point,
+                        after = arc.At(s + h).point;
     ExpectNear(arc.Tangent(s), (after - before) * (0.5 / h), 1e-8);
     ExpectNear(arc.Curvature(s), (after - here * 2.0 + before) * (1.0 / (h * h)), 1e-6);
     EXPECT_NEAR(arc.Tangent(s).norm(), 1.0, 1e-14);
@@ -135,7 +136,7 @@ TEST(PathPart, IsTheSamePathBetweenTwoPlaces) {
   const PathPiece arc = ArcOf({1, 2, 3}, {4, -5, 6}, {7, 8, -9});
   const PathPiece part = arc.Part(0.2 * arc.length(), 0.7 * arc.length());
   EXPECT_NEAR(part.length(), 0.5 * arc.length(), 1e-12);
-  ExpectNear(part.At(0.3 * part.length()).tip, arc.At(0.35 * arc.length()).tip, 1e-12);
+  ExpectNear(part.At(0.3 * part.length()).point, arc.At(0.35 * arc.length()).point, 1e-12);
   ExpectNear(part.Tangent(part.length()), arc.Tangent(0.7 * arc.length()), 1e-14);
   const PathPiece line = PathPiece::Line({{0, 0, 0}, 0, 0}, {{10, 0, 0}, 1, 2});
   EXPECT_NEAR(line.Part(2, 5).At(1).b_rad, 0.6, 1e-15);
@@ -145,7 +146,7 @@ TEST(PathPart, IsTheSamePathBetweenTwoPlaces) {
 TEST(PathJoint, IsStraightInTheAxes) {
   const PathPiece move = PathPiece::Joint({{0, 0, 0}, 0, 0}, {{100, 50, 0}, 0, 0});
   EXPECT_EQ(move.length(), 1.0);
-  ExpectNear(move.At(0.5).tip, {50, 25, 0}, 1e-12);
+  ExpectNear(move.At(0.5).point, {50, 25, 0}, 1e-12);
   EXPECT_EQ(PathPiece::Joint({{1, 2, 3}, 4, 5}, {{1, 2, 3}, 4, 5}).length(), 0.0);
 }
 

@@ -182,7 +182,7 @@ class Checker {
   void CurveJerk(const PlannedMotion& motion, double s, double speed) {
     const double q = 5e-5 * speed;
     if (s < 3 * q || s + 3 * q > motion.path.length() || q < 1e-6) return;
-    const auto at = [&](double place) { return motion.path.At(place).tip; };
+    const auto at = [&](double place) { return motion.path.At(place).point; };
     const MachineVector third = at(s + 3 * q) - at(s + q) * 3.0 + at(s - q) * 3.0 - at(s - 3 * q);
     const double cube = speed * speed * speed / (8 * q * q * q);
     Most(motion, "jerk in a blend", third.norm() * cube, plan_.machine.normal_jerk(), 8e-12 * cube);
@@ -190,8 +190,8 @@ class Checker {
 
   // Stops meet their target; the way round a /FLY target keeps the distance that is reported.
   void Target(const PlannedMotion& motion, const MoveCommand& move) {
-    const MachinePoint& target = move.path.to().tip;
-    const double gap = (motion.path.to().tip - target).norm();
+    const MachinePoint& target = move.path.to().point;
+    const double gap = (motion.path.to().point - target).norm();
     if (!IsBlend(motion.corner.passage)) {
       if (motion.path.kind() != PathPiece::Kind::kBlend)
         Most(motion, "distance from the target", gap, 0.0, 1e-9);

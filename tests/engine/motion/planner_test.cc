@@ -135,15 +135,15 @@ TEST(Planner, BlendOfARightAngle) {
     motions.push_back(std::get<PlannedMotion>(*item));
   }
   ASSERT_EQ(motions.size(), 4u);
-  EXPECT_NEAR(motions[0].path.to().tip.x(), 100.0 - 4.0505, 5e-5);
+  EXPECT_NEAR(motions[0].path.to().point.x(), 100.0 - 4.0505, 5e-5);
   EXPECT_FALSE(motions[0].ends_move);
   EXPECT_TRUE(motions[1].ends_move);
   EXPECT_EQ(motions[1].corner.passage, Passage::kBlend);
-  EXPECT_NEAR((motions[1].path.to().tip - MachinePoint{100, 0, 0}).norm(), 1.3588, 5e-5);
+  EXPECT_NEAR((motions[1].path.to().point - MachinePoint{100, 0, 0}).norm(), 1.3588, 5e-5);
   EXPECT_EQ(motions[1].path.to(), motions[2].path.from());
   EXPECT_DOUBLE_EQ(motions[1].speed.duration_s(), motions[1].path.length() / 50.0);
   EXPECT_EQ(motions[2].tag, 2u);
-  EXPECT_EQ(motions[3].path.to().tip, (MachineVector{100, 100, 0}));
+  EXPECT_EQ(motions[3].path.to().point, (MachineVector{100, 100, 0}));
 }
 
 // What stands against a blend; motion.md 4.4. OPT-B.25, OPT-B.27, OPT-2.39
@@ -255,8 +255,8 @@ TEST(Planner, TinyStepsAreNotLost) {
   TipPose last;
   while (const std::optional<PlannedItem> item = planner.Next()) {
     const PathPiece& path = std::get<PlannedMotion>(*item).path;
-    EXPECT_LE((path.from().tip - last.tip).norm(), 1e-15);
-    last = path.to();
+    EXPECT_LE((path.from().point - last.tip).norm(), 1e-15);
+    last = path.to().tip();
     length += path.length();
   }
   EXPECT_NEAR(length, 1e-4, 1.1e-6);  // the last step of up to 1e-6 mm is dropped
@@ -270,7 +270,7 @@ TEST(Planner, BendKeepsToTheArcBehindIt) {
   const MoveCommand north = LineTo({0, -20, 0}, {}, 1, true);
   MoveCommand arc = north;  // 0.05 mm of a circle of 1000 mm, then a line
   arc.path = PathPiece::Circle({}, {-1000, 0, 0}, {0, 0, 1}, 5e-5, 0, 0);
-  const MachinePoint end = arc.path.to().tip;
+  const MachinePoint end = arc.path.to().point;
   Planner planner(machine);
   for (const MoveCommand& move : {north, arc, LineTo(end, end + MachineVector{30, 0, 0}, 3)}) {
     ASSERT_TRUE(planner.Append(move));
@@ -279,9 +279,9 @@ TEST(Planner, BendKeepsToTheArcBehindIt) {
   TipPose last{{0, -20, 0}};
   while (const std::optional<PlannedItem> item = planner.Next()) {
     const PathPiece& path = std::get<PlannedMotion>(*item).path;
-    EXPECT_LE((path.from().tip - last.tip).norm(), 1e-12);
-    EXPECT_LE((path.At(0.0).tip - last.tip).norm(), 1e-9);
-    last = path.to();
+    EXPECT_LE((path.from().point - last.tip).norm(), 1e-12);
+    EXPECT_LE((path.At(0.0).point - last.tip).norm(), 1e-9);
+    last = path.to().tip();
   }
   EXPECT_EQ(last.tip, end + (MachineVector{30, 0, 0}));
 }
@@ -304,8 +304,8 @@ TEST(Planner, WindowFullOfPointsThatABendSwallows) {
         ASSERT_TRUE(planner.Append(move));
         while (const std::optional<PlannedItem> item = planner.Next()) {
           const PathPiece& path = std::get<PlannedMotion>(*item).path;
-          ASSERT_LE((path.from().tip - last.tip).norm(), 1e-9);
-          last = path.to();
+          ASSERT_LE((path.from().point - last.tip).norm(), 1e-9);
+          last = path.to().tip();
           planned += path.length();
         }
       };

@@ -199,7 +199,7 @@ TEST(RestartAlong, FromRestOnALine) {
   const std::vector<PlannedMotion> plan = Plan(chain);
   const auto rest = RestartAlong(plan, 40.0, StandardMachine().axes);
   ASSERT_EQ(rest.size(), 1u);
-  EXPECT_EQ(rest[0].path.from().tip, (MachineVector{40, 0, 0}));
+  EXPECT_EQ(rest[0].path.from().point, (MachineVector{40, 0, 0}));
   EXPECT_NEAR(rest[0].path.length(), 60.0, 1e-12);
   EXPECT_NEAR(rest[0].speed.duration_s(), 60.0 / 50.0 + 2.0 * std::sqrt(50.0 / 40000.0), 1e-9);
   EXPECT_EQ(rest[0].settling_s, 0.048);
@@ -208,7 +208,7 @@ TEST(RestartAlong, FromRestOnALine) {
   ASSERT_EQ(settling.size(), 1u);
   EXPECT_EQ(settling[0].speed.duration_s(), 0.0);
   EXPECT_EQ(settling[0].path.length(), 0.0);
-  EXPECT_EQ(settling[0].path.from().tip, (MachineVector{100, 0, 0}));
+  EXPECT_EQ(settling[0].path.from().point, (MachineVector{100, 0, 0}));
   EXPECT_EQ(settling[0].settling_s, 0.048);
   std::vector<PlannedMotion> no_settling = plan;
   no_settling[0].settling_s = 0.0;

@@ -89,10 +89,10 @@ TEST(Tolerance, Holes) {
   };
   const HolePath on_axis = with([](HoleCommand& h) { h.from.tip = {0, 0.99e-6, 5}; });
   EXPECT_TRUE(on_axis.starts_on_axis);
-  ExpectNear(on_axis.circle.from().tip, {5, 0, 0});
+  ExpectNear(on_axis.circle.from().point, {5, 0, 0});
   const HolePath off_axis = with([](HoleCommand& h) { h.from.tip = {0, 1.01e-6, 5}; });
   EXPECT_FALSE(off_axis.starts_on_axis);
-  ExpectNear(off_axis.circle.from().tip, {0, 5, 0});
+  ExpectNear(off_axis.circle.from().point, {0, 5, 0});
   EXPECT_EQ(with([](HoleCommand& h) { h.from.tip = {5 + 0.99e-6, 0, 0}; }).lead.length(), 0.0);
   EXPECT_GT(with([](HoleCommand& h) { h.from.tip = {5 + 1.01e-6, 0, 0}; }).lead.length(), 0.0);
   HoleCommand hole = standard;
@@ -115,7 +115,7 @@ TEST(Tolerance, EntryOfAHoleOnItsAxis) {
       const HolePath path =
           HoleThrough({.from = {}, .centre = {}, .normal_point = normal, .radius_mm = 2.0}).value();
       const MachineVector along_x = MachineVector{sine, 0, -sign * cosine} * 2.0;
-      ExpectNear(path.circle.from().tip, cosine < 0.9 ? along_x : MachineVector{0, 2, 0}, 1e-12);
+      ExpectNear(path.circle.from().point, cosine < 0.9 ? along_x : MachineVector{0, 2, 0}, 1e-12);
       EXPECT_DOUBLE_EQ(path.circle.length(), 2.0 * kTurn);
     }
   }
@@ -169,7 +169,7 @@ TEST(Tolerance, LinesBeginWhereTheMachineIs) {
     ASSERT_TRUE(planner.Append(LineOf({{10 + gap, 0, 0}}, {{20, 0, 0}})));
     const auto motions = Drained(planner);
     ASSERT_EQ(motions.size(), 2u);
-    EXPECT_EQ(motions[1].path.from().tip.x(), gap < 1e-3 ? 10.0 : 10.0 + gap);
+    EXPECT_EQ(motions[1].path.from().point.x(), gap < 1e-3 ? 10.0 : 10.0 + gap);
   }
   for (const TipPose& from :
        {TipPose{{10.0005, 0, 0}, 1e-9, 0}, TipPose{{10.0005, 0, 0}, 0, 1e-9}}) {
@@ -309,7 +309,7 @@ TEST(Tolerance, HolesAtTheBoundItself) {
   hole = {.from = {}, .centre = {}, .normal_point = {1, 0, 0}, .radius_mm = 5.0};
   hole.program_x = {0.9, std::sqrt(0.19), 0};
   hole.program_y = {0, 0, 1};
-  ExpectNear(HoleThrough(hole)->circle.from().tip, {0, 5, 0}, 1e-12);
+  ExpectNear(HoleThrough(hole)->circle.from().point, {0, 5, 0}, 1e-12);
 }
 
 // Numbers of exactly 1e12, times of exactly 1e9 s, gaps of exactly 1e-3 mm. OPT-B.22
@@ -332,7 +332,7 @@ TEST(Tolerance, MovesAtTheBoundItself) {
   ASSERT_TRUE(planner.Append(LineOf({{1e-3, 0, 0}}, {{10, 0, 0}})));
   const std::vector<PlannedMotion> motions = Drained(planner);
   ASSERT_EQ(motions.size(), 2u);
-  EXPECT_EQ(motions[1].path.from().tip, (MachineVector{0, 0, 0}));
+  EXPECT_EQ(motions[1].path.from().point, (MachineVector{0, 0, 0}));
 
   Planner round_on(
       StandardMachine());  // an arc that begins 1e-6 mm behind the line goes on from it
@@ -346,10 +346,12 @@ TEST(Tolerance, MovesAtTheBoundItself) {
 // motion.md 3
 TEST(PathPiece, EndsAreExact) {
   const TipPose from{{0.1, 0.2, 0.3}, 0.4, 0.5}, to{{7.7, -3.3, 1.9}, -1.1, 0.7};
-  for (const PathPiece& path : {PathPiece::Line(from, to), PathPiece::Joint(from, to),
-                                PathPiece::ArcThrough(from, {3.1, 4.7, -0.3}, to)->path,
-                                PathPiece::Line(from, {from.tip, 1.3, -0.9})}) {
-    const TipPose end = path.to();
+  for (const PathPiece& path :
+       {PathPiece::Line(from, to),
+        PathPiece::Joint({from.tip, from.a_rad, from.b_rad}, {to.tip, to.a_rad, to.b_rad}),
+        PathPiece::ArcThrough(from, {3.1, 4.7, -0.3}, to)->path,
+        PathPiece::Line(from, {from.tip, 1.3, -0.9})}) {
+    const PathPose end = path.to();
     EXPECT_EQ(path.At(0.0), from);
     EXPECT_EQ(path.At(-1.0), from);
     EXPECT_EQ(path.At(path.length()), end);

@@ -88,11 +88,11 @@ TEST(Polyline, StaysWithinItsTolerance) {
       std::vector<MachinePoint> points;
       AppendPolyline(motion.path, tolerance, points);
       ASSERT_GE(points.size(), 2u);
-      EXPECT_EQ(points.front(), motion.path.from().tip);
-      EXPECT_EQ(points.back(), motion.path.to().tip);
+      EXPECT_EQ(points.front(), motion.path.from().point);
+      EXPECT_EQ(points.back(), motion.path.to().point);
       const PathPiece& path = motion.path;
       for (int k = 1; k < 60; ++k) {
-        const MachinePoint p = path.At(path.length() * k / 60).tip;
+        const MachinePoint p = path.At(path.length() * k / 60).point;
         double nearest = HUGE_VAL;
         for (std::size_t i = 1; i < points.size(); ++i) {
           nearest = std::min(nearest, DistanceToChord(p, points[i - 1], points[i]));
@@ -172,7 +172,9 @@ TEST(MotionView, TipAndColumnAgree) {
   for (const bool joint : {true, false}) {
     MoveCommand move;
     const TipPose from{{10, 20, 30}, 0.2, 0.3}, to{{110, -40, 70}, 1.2, -0.8};
-    move.path = joint ? PathPiece::Joint(from, to) : PathPiece::Line(from, to);
+    move.path =
+        joint ? PathPiece::Joint({from.tip, from.a_rad, from.b_rad}, {to.tip, to.a_rad, to.b_rad})
+              : PathPiece::Line(from, to);
     if (joint) move.kind = MoveCommand::Kind::kPointToPointAxes;
     move.head = GantryHead{.length_mm = 120.0, .tool = {3.0, -5.0, 8.0}};
     const std::vector<PlannedMotion> plan = Plan({move});

@@ -19,7 +19,7 @@ class Counted {
     move.path = PathPiece::Line({at_}, {at_ + step});
     move.speed_fraction = speed;
     move.fly = true;
-    at_ = move.path.to().tip;
+    at_ = move.path.to().point;
     ASSERT_TRUE(planner_.Append(move));
     ++waiting_;
     most_ = std::max(most_, waiting_);

@@ -40,8 +40,8 @@ void ExpectPathOfL(const TestRun& run) {
   const auto& motions = run.seen().motions();
   for (std::size_t k = 1; k < motions.size(); ++k) {
     const RunRecord::Motion& m = motions[k];
-    const motion::MachinePoint from = m.planned.path.from().tip;
-    const motion::MachinePoint to = m.planned.path.At(m.travelled).tip;
+    const motion::MachinePoint from = m.planned.path.from().point;
+    const motion::MachinePoint to = m.planned.path.At(m.travelled).point;
     EXPECT_LE((from - last).norm(), 2e-9);
     for (const motion::MachinePoint& p : {from, to}) {
       EXPECT_LE(std::min(std::abs(p.y()), std::abs(p.x() - kCornerX)), 1e-9);
@@ -286,8 +286,8 @@ TEST(MillChainControl, KeepsThePathWhateverKeysArePressed) {
       if (motions[k].start_s == motions[k - 1].end_s && before > 0.0) {
         EXPECT_NEAR(m.speed.At(0.0).speed, before, 1e-5);
       }
-      const bool corner = std::abs(m.path.from().tip.x() - kCornerX) < 1e-9 &&
-                          std::abs(m.path.from().tip.y()) < 1e-9;
+      const bool corner = std::abs(m.path.from().point.x() - kCornerX) < 1e-9 &&
+                          std::abs(m.path.from().point.y()) < 1e-9;
       EXPECT_TRUE(!corner || m.speed.At(0.0).speed <= 3.0 + 1e-6);
     }
   }

@@ -65,7 +65,7 @@ Velocity VelocityAt(const RunRecord::Motion& motion, double time_s) {
   const double to = std::min(from + kStep_s, duration);
   const auto pose = [&](double t) { return motion.planned.path.At(motion.planned.speed.At(t).s); };
   const double rate = 1.0 / (to - from);
-  return {.tip = (pose(to).tip - pose(from).tip) * rate,
+  return {.tip = (pose(to).point - pose(from).point) * rate,
           .a_deg_s = (pose(to).a_rad - pose(from).a_rad) * rate / kRadPerDegree};
 }
 

@@ -199,7 +199,7 @@ TEST(MillChain, AgreesWithThePlanThatSeesAll) {
         EXPECT_LE(VelocityAt(m, t).tip.norm(), chain[k + 1].speed * (1.0 + 1e-6));
       }
       const double h = duration / 64.0;
-      const auto place = [&](double t) { return m.planned.path.At(m.planned.speed.At(t).s).tip; };
+      const auto place = [&](double t) { return m.planned.path.At(m.planned.speed.At(t).s).point; };
       for (int i = 1; i < 64; ++i) {
         const motion::MachineVector bend =
             place(h * (i - 1)) - place(h * i) * 2.0 + place(h * (i + 1));

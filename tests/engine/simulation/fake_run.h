@@ -101,7 +101,7 @@ class Script {
                                      .beam_on = options.beam_on,
                                      .power = options.power});
                       }});
-    items_.back().pose = shared->path.to();
+    items_.back().pose = shared->path.to().tip();
     return *this;
   }
 

@@ -148,7 +148,7 @@ TEST(PathExtent, CurveTurnsRound) {
     const PointSweep sweep = TipSweep({planned.path, Head{}, 0.0, planned.path.length()});
     double sampled = -1e9;
     for (int k = 0; k <= 5000; ++k) {
-      sampled = std::max(sampled, planned.path.At(planned.path.length() * k / 5000).tip.x());
+      sampled = std::max(sampled, planned.path.At(planned.path.length() * k / 5000).point.x());
     }
     EXPECT_GE(sweep[0].maximum, sampled - 1e-12);
     EXPECT_NEAR(sweep[0].maximum, sampled, 1e-6);
@@ -203,7 +203,7 @@ TEST(PathExtent, PassageInAxes) {
       length += (here - last).norm();
       last = here;
       highest = std::max(highest, here.x());
-      column_highest = std::max(column_highest, planned.path.At(s).tip.x());
+      column_highest = std::max(column_highest, planned.path.At(s).point.x());
     }
     EXPECT_NEAR(TipLength(part), length, 1e-6);
     EXPECT_NEAR(tip[0].maximum, highest, 1e-6);

@@ -59,11 +59,7 @@ double WorstDistance(const PathPiece& path, const motion::Head& head, const Tool
   double worst = 0.0;
   for (int k = 0; k <= 2000; ++k) {
     const double s = path.length() * k / 2000;
-    motion::MachinePoint tip = path.At(s).tip;
-    if (path.in_axes()) {
-      const motion::TipPose pose = path.At(s);
-      tip = head.TipOf({pose.tip, pose.a_rad, pose.b_rad}).tip;
-    }
+    const motion::MachinePoint tip = motion::TipOn(path, head, path.At(s)).tip;
     double best = HUGE_VAL;
     for (std::size_t i = 1; i < block.points.size(); ++i) {
       best = std::min(best, DistanceToSegment(tip, Millimetres(block.points[i - 1]),

@@ -18,31 +18,40 @@ using testing::HasSubstr;
 
 const machine::MachineFamily& Optimo() { return *families::FindFamily("optimo"); }
 
-ProgramInput Source(int slot, const std::string& text, const std::string& name = "p.S") {
+simulation::MemoryProgram Source(int slot, const std::string& text,
+                                 const std::string& name = "p.S") {
   return {.slot = slot,
           .name = "part",
           .file_name = name,
           .bytes = std::make_shared<const std::string>(text),
-          .is_source = true,
-          .executable = nullptr};
+          .is_source = true};
 }
 
-SetupInput InputOf(std::vector<ProgramInput> programs) {
-  return {.family = &Optimo(), .programs = std::move(programs), .main_program = 12};
+simulation::ProgramMemory MemoryOf(std::vector<simulation::MemoryProgram> programs) {
+  return {.family = &Optimo(), .programs = std::move(programs)};
+}
+
+// Of program 12.
+Result<simulation::PreparedRun> Prepare(const simulation::ProgramMemory& memory,
+                                        const v1::SimulationOptions& options,
+                                        const v1::Budget& budget,
+                                        machine::Mode default_mode = machine::Mode::kRemote) {
+  return simulation::PrepareRun(memory, RunOptionsOf(options, budget, 12, default_mode));
 }
 
 TEST(MakeParameters, DefaultsThenProfileThenValues) {
-  const auto plain = MakeParameters(Optimo(), "", {});
+  const auto plain = machine::MakeParameters(Optimo(), "", {});
   ASSERT_TRUE(plain);
   EXPECT_EQ(plain->Number("VMAX"), 500.0);
-  EXPECT_EQ(MakeParameters(Optimo(), "mc-1000ipm", {})->Number("VMAX"), 423.333);
-  EXPECT_EQ(MakeParameters(Optimo(), "mc-1000ipm", {{"VMAX", "300"}})->Number("VMAX"), 300.0);
+  EXPECT_EQ(machine::MakeParameters(Optimo(), "mc-1000ipm", {})->Number("VMAX"), 423.333);
+  EXPECT_EQ(machine::MakeParameters(Optimo(), "mc-1000ipm", {{"VMAX", "300"}})->Number("VMAX"),
+            300.0);
   const auto code = [](const std::string& profile,
                        const std::map<std::string, std::string>& values) {
-    return MakeParameters(Optimo(), profile, values).error().code;
+    return machine::MakeParameters(Optimo(), profile, values).error().code;
   };
   EXPECT_EQ(code("lathe", {}), ErrorCode::kCellInvalidArgument);
-  EXPECT_THAT(MakeParameters(Optimo(), "lathe", {}).error().detail,
+  EXPECT_THAT(machine::MakeParameters(Optimo(), "lathe", {}).error().detail,
               HasSubstr("no profile 'lathe'; there are standard mc-1000ipm"));
   EXPECT_EQ(code("", {{"COLOUR", "1"}}), ErrorCode::kCellUnknownParameter);
   EXPECT_EQ(code("", {{"VMAX", "-1"}}), ErrorCode::kCellParameterRange);
@@ -85,8 +94,8 @@ TEST(Inputs, EachKindAndTheOrderOfTime) {
   EXPECT_EQ(script[1].at, script[0].at + std::chrono::seconds(0));
 }
 
-TEST(MakeSetup, TakesEverythingOver) {
-  SetupInput input = InputOf({Source(12, "SPEED 20\n"), Source(13, "SPEED 30\n")});
+TEST(PrepareRun, TakesEverythingOver) {
+  simulation::ProgramMemory input = MemoryOf({Source(12, "SPEED 20\n"), Source(13, "SPEED 30\n")});
   input.programs.push_back({.slot = 14,
                             .name = "object",
                             .file_name = "q.O",
@@ -108,7 +117,7 @@ TEST(MakeSetup, TakesEverythingOver) {
   v1::Budget budget;
   budget.set_steps(9);
   budget.set_virtual_time_s(10.0);
-  const auto made = MakeSetup(input, options, budget);
+  const auto made = Prepare(input, options, budget);
   ASSERT_TRUE(made);
   ASSERT_TRUE(made->setup);
   const machine::RunSetup& setup = *made->setup;
@@ -138,22 +147,23 @@ TEST(MakeSetup, TakesEverythingOver) {
   EXPECT_FALSE(setup.programs.at(14).source);
 }
 
-TEST(MakeSetup, ModesAndWhatIsNotAskedFor) {
-  SetupInput input = InputOf({Source(12, "SPEED 20\n")});
-  input.default_mode = machine::Mode::kCycle;
+TEST(PrepareRun, ModesAndWhatIsNotAskedFor) {
+  simulation::ProgramMemory input = MemoryOf({Source(12, "SPEED 20\n")});
   v1::SimulationOptions options;
   const auto mode = [&](v1::OperatingMode asked) {
     options.set_mode(asked);
-    return MakeSetup(input, options, {})->setup->mode;
+    return Prepare(input, options, {}, machine::Mode::kCycle)->setup->mode;
   };
   EXPECT_EQ(mode(v1::OPERATING_MODE_UNSPECIFIED), machine::Mode::kCycle);
   EXPECT_EQ(mode(v1::OPERATING_MODE_REMOTE), machine::Mode::kRemote);
   EXPECT_EQ(mode(v1::OPERATING_MODE_SINGLE), machine::Mode::kSingle);
   EXPECT_EQ(mode(v1::OPERATING_MODE_REPEAT), machine::Mode::kRepeat);
-  input.default_mode = machine::Mode::kRemote;
-  EXPECT_EQ(mode(v1::OPERATING_MODE_CYCLE), machine::Mode::kCycle);
+  options.set_mode(v1::OPERATING_MODE_UNSPECIFIED);
+  EXPECT_EQ(Prepare(input, options, {})->setup->mode, machine::Mode::kRemote);
+  options.set_mode(v1::OPERATING_MODE_CYCLE);
+  EXPECT_EQ(Prepare(input, options, {})->setup->mode, machine::Mode::kCycle);
   const machine::RunSetup plain(machine::Parameters(Optimo().parameters()));
-  const auto made = MakeSetup(input, options, {});
+  const auto made = Prepare(input, options, {});
   EXPECT_EQ(made->setup->override_percent, 100.0);
   EXPECT_FALSE(made->setup->breakpoint);
   EXPECT_FALSE(made->setup->simul);
@@ -162,9 +172,10 @@ TEST(MakeSetup, ModesAndWhatIsNotAskedFor) {
 }
 
 // Every program is translated, also behind one with errors; advice is for the main one alone.
-TEST(MakeSetup, FindingsOfEveryProgram) {
-  const auto made = MakeSetup(
-      InputOf({Source(13, "SPEDE 20\n"), Source(12, "SPEED\n"), Source(14, "SPEED 20\n")}), {}, {});
+TEST(PrepareRun, FindingsOfEveryProgram) {
+  const auto made =
+      Prepare(MemoryOf({Source(13, "SPEDE 20\n"), Source(12, "SPEED\n"), Source(14, "SPEED 20\n")}),
+              {}, {});
   ASSERT_TRUE(made);
   EXPECT_FALSE(made->setup);
   std::vector<int> slots;
@@ -173,29 +184,39 @@ TEST(MakeSetup, FindingsOfEveryProgram) {
   EXPECT_EQ(made->diagnostics_dropped, 0U);
   std::string many;
   for (int n = 0; n < 1500; ++n) many += "SPEDE 20\n";
-  const auto most = MakeSetup(InputOf({Source(13, many), Source(12, many)}), {}, {});
+  const auto most = Prepare(MemoryOf({Source(13, many), Source(12, many)}), {}, {});
   EXPECT_EQ(most->diagnostics.size() + most->diagnostics_dropped, 3000U);
   EXPECT_EQ(most->diagnostics.size(), machine::kDiagnosticsMax);
 }
 
-TEST(SetupForCheck, LeavesOutWhatHasErrors) {
-  SetupInput input =
-      InputOf({Source(12, "SPEED 20\n"), Source(13, "SPEDE 20\n"), Source(14, "SPEED 30\n")});
-  input.deleted_programs = {5};
-  input.schedules = std::vector<machine::LaserSchedule>{};
-  input.machine_state = "state";
-  machine::Translation main;
-  main.object = "translated";
-  const machine::RunSetup setup =
-      SetupForCheck(input, machine::Parameters(Optimo().parameters()), main);
-  EXPECT_EQ(setup.main_program, 12);
-  EXPECT_EQ(*setup.programs.at(12).object, "translated");
-  EXPECT_TRUE(setup.programs.at(12).source);
-  EXPECT_FALSE(setup.programs.contains(13));
-  EXPECT_TRUE(setup.programs.contains(14));
-  EXPECT_THAT(setup.deleted_programs, ElementsAre(5));
-  EXPECT_TRUE(setup.schedules);
-  EXPECT_EQ(setup.machine_state, "state");
+// A program that the checked one calls is run with it; one with errors is as if it were not there.
+TEST(CheckProgram, RunsTheOthersOfTheMemoryThatAreGood) {
+  const machine::Parameters parameters(Optimo().parameters());
+  const auto check = [&](const std::string& main) {
+    return *simulation::CheckProgram(MemoryOf({Source(12, main), Source(13, "SPEDE 20\n"),
+                                               Source(14, "MOVE (99999.,0.,0.,0.,0.)\n")}),
+                                     parameters, 12, true, {});
+  };
+  const simulation::ProgramCheck called = check("CALL 14\n");
+  EXPECT_TRUE(called.translation.ok);
+  ASSERT_EQ(called.motion.findings.size(), 1U);
+  EXPECT_EQ(called.motion.findings[0].code, ErrorCode::kTargetOutOfTravel);
+  EXPECT_EQ(called.motion.findings[0].program, 14);
+  EXPECT_FALSE(called.ok());
+  EXPECT_TRUE(called.motion.cut_short.empty());
+  const simulation::ProgramCheck missing = check("CALL 13\n");
+  EXPECT_TRUE(missing.motion.findings.empty());
+  EXPECT_THAT(missing.motion.cut_short.at(12), HasSubstr("OPT-E7102"));
+  // Its text alone, when that is bad; and what stands later takes the place of what stood there.
+  const simulation::ProgramCheck bad = check("CALL\n");
+  EXPECT_FALSE(bad.ok());
+  EXPECT_TRUE(bad.motion.cut_short.empty());
+  const auto last = simulation::CheckProgram(
+      MemoryOf({Source(12, "CALL 13\n"), Source(12, "SPEED 20\n")}), parameters, 12, true, {});
+  EXPECT_TRUE(last->ok());
+  EXPECT_TRUE(last->motion.cut_short.empty());
+  EXPECT_EQ(simulation::CheckProgram(MemoryOf({}), parameters, 12, true, {}).error().code,
+            ErrorCode::kProgramMissing);
 }
 
 TEST(ObjectFileName, EndsInO) {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "server/base/config.h"
-#include "server/programs/memory_office.h"
+#include "server/programs/memory_tools.h"
 #include "tests/server/engine_bytes.h"
 #include "tests/server/failing_store.h"
 #include "tests/server/forwarding_store.h"
@@ -22,15 +22,15 @@ class ProgramStoreFailures : public testing::Test {
     text.set_content("STOP\n");
     return text;
   }
-  std::optional<ErrorCode> Store(ProgramShelf::Put put) {
-    const auto stored = shelf.Store(std::move(put));
+  std::optional<ErrorCode> Store(ProgramBook::Put put) {
+    const auto stored = programs.Store(std::move(put));
     return stored ? std::nullopt : std::optional(stored.error.error.code);
   }
   std::optional<ErrorCode> Delete(int number, const std::string& etag = "") {
     v1::DeleteProgramRequest request;
     request.set_name(Name(number));
     request.set_etag(etag);
-    const Status deleted = shelf.Delete(request);
+    const Status deleted = programs.Delete(request);
     return deleted ? std::nullopt : std::optional(deleted.error().code);
   }
   void Put(int slot) {
@@ -44,11 +44,11 @@ class ProgramStoreFailures : public testing::Test {
   ServerBed bed;
   FailingStore store{bed.store()};
   Config config;
-  ProgramShelf shelf{store, config};
-  MemoryOffice office{store, shelf};
+  ProgramBook programs{store, config};
+  MemoryTools tools{store, programs};
 };
 
-TEST_F(ProgramStoreFailures, OfTheShelf) {
+TEST_F(ProgramStoreFailures, OfTheProgramBook) {
   Expect("storing", 2,
          [&] { return Store({.name = Name(45), .file_name = "a.S", .bytes = "STOP\n"}); });
   Expect("asking whether it can be stored", 2, [&] {
@@ -60,51 +60,52 @@ TEST_F(ProgramStoreFailures, OfTheShelf) {
   });
   Expect("storing an executable", 3,
          [&] { return Store({.name = Name(145), .bytes = ExecutableOf(45, "STOP\n")}); });
-  Expect("getting", 2, [&] { return CodeOf(shelf.Get(Name(45))); });
-  Expect("reading", 2, [&] { return CodeOf(shelf.Read(Name(45), v1::PROGRAM_FORM_SOURCE)); });
+  Expect("getting", 2, [&] { return CodeOf(programs.Get(Name(45))); });
+  Expect("reading", 2, [&] { return CodeOf(programs.Read(Name(45), v1::PROGRAM_FORM_SOURCE)); });
   Expect("listing", 2, [&] {
     v1::ListProgramsRequest request;
     request.set_parent("machines/optimo-1");
-    return CodeOf(shelf.List(request));
+    return CodeOf(programs.List(request));
   });
   Expect("translating", 1,
-         [&] { return CodeOf(shelf.Translate("", "machines/optimo-1", Text(), true)); });
-  Expect("checking", 4, [&] { return CodeOf(shelf.Check("", "machines/optimo-1", Text(), true)); });
+         [&] { return CodeOf(programs.Translate("", "machines/optimo-1", Text(), true)); });
+  Expect("checking", 4,
+         [&] { return CodeOf(programs.Check("", "machines/optimo-1", Text(), true)); });
   Expect("deleting an executable", 3, [&] { return Delete(145); });
   Expect("deleting", 2, [&] { return Delete(45); });
 }
 
-TEST_F(ProgramStoreFailures, OfTheOffice) {
+TEST_F(ProgramStoreFailures, OfTheTools) {
   Put(44);
   Put(45);
   Expect("linking", 2, [&] {
     v1::LinkProgramRequest request;
     request.set_slot(45);
     request.set_machine("machines/optimo-1");
-    return CodeOf(office.Link(request));
+    return CodeOf(tools.Link(request));
   });
   Expect("looking for stale executables", 3, [&] {
     v1::ListStaleExecutablesRequest request;
     request.set_parent("machines/optimo-1");
-    return CodeOf(office.ListStale(request));
+    return CodeOf(tools.ListStale(request));
   });
   Expect("decompiling", 3, [&] {
     v1::DecompileProgramRequest request;
     request.set_name(Name(45));
-    return CodeOf(office.Decompile(request));
+    return CodeOf(tools.Decompile(request));
   });
   Expect("comparing", 4, [&]() -> std::optional<ErrorCode> {
     v1::DiffProgramsRequest request;
     request.mutable_before()->set_name(Name(44));
     request.mutable_after()->set_name(Name(45));
-    const auto diff = office.Diff(request);
+    const auto diff = tools.Diff(request);
     return diff ? std::nullopt : std::optional(diff.error.error.code);
   });
   v1::FixProgramRequest fix;
   *fix.mutable_program() = Text();
   fix.set_machine("machines/optimo-1");
   store.FailAt(1);
-  EXPECT_EQ(CodeOf(office.Fix(fix)), ErrorCode::kCellStoreFailed);
+  EXPECT_EQ(CodeOf(tools.Fix(fix)), ErrorCode::kCellStoreFailed);
 }
 
 // The machine goes away while its program is being mended: what was found before stays true.
@@ -114,7 +115,7 @@ TEST_F(ProgramStoreFailures, AFixGoesOnWithWhatWasFoundBefore) {
   fix.mutable_program()->set_content("SPEDE 20\n");
   fix.set_machine("machines/optimo-1");
   store.FailAt(2);
-  const auto fixed = Must(office.Fix(fix));
+  const auto fixed = Must(tools.Fix(fix));
   EXPECT_TRUE(store.failed());
   EXPECT_EQ(fixed.content(), "SPEED 20\n");
 }
@@ -136,7 +137,7 @@ class HastyStore final : public ForwardingStore {
 TEST_F(ProgramStoreFailures, AnExecutableOfAnObjectThatIsGone) {
   Put(45);
   HastyStore hasty(bed.store());
-  ProgramShelf meanwhile(hasty, config);
+  ProgramBook meanwhile(hasty, config);
   const auto stored = meanwhile.Store({.name = Name(145), .bytes = ExecutableOf(45, "STOP\n")});
   ASSERT_FALSE(stored);
   EXPECT_EQ(stored.error.error.code, ErrorCode::kCellEtagMismatch);

@@ -10,7 +10,7 @@
 #include "rmlcell/v1/report.pb.h"
 #include "server/base/config.h"
 #include "server/jobs/job_book.h"
-#include "server/programs/program_shelf.h"
+#include "server/programs/program_book.h"
 #include "tests/server/engine_bytes.h"
 #include "tests/server/server_bed.h"
 
@@ -50,8 +50,8 @@ class WebResourcesTest : public testing::Test {
   Config config;
   Gate gate{"secret"};
   JobBook book{bed.store(), config};
-  ProgramShelf shelf{bed.store(), config};
-  WebResources resources{gate, book, shelf};
+  ProgramBook programs{bed.store(), config};
+  WebResources resources{gate, book, programs};
   v1::Program stored;
 };
 

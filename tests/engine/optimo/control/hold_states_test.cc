@@ -24,10 +24,10 @@ void ExpectNoGaps(const Ran& ran) {
   for (std::size_t k = 1; k < ran.parts.size(); ++k) {
     const Ran::Part& before = ran.parts[k - 1];
     const Ran::Part& here = ran.parts[k];
-    const motion::TipPose from = before.motion.path.At(before.done.travelled);
-    const motion::TipPose to = here.motion.path.At(here.done.from);
+    const motion::PathPose from = before.motion.path.At(before.done.travelled);
+    const motion::PathPose to = here.motion.path.At(here.done.from);
     if (before.motion.path.in_axes() == here.motion.path.in_axes()) {
-      EXPECT_NEAR((to.tip - from.tip).norm(), 0.0, 1e-6) << k;
+      EXPECT_NEAR((to.point - from.point).norm(), 0.0, 1e-6) << k;
     }
     const double gap = ToSeconds(here.done.start - before.done.end);
     EXPECT_TRUE(gap == 0.0 || gap > 1.0) << gap << " s before part " << k;

@@ -22,11 +22,10 @@ struct Where {
 
 Where WhereIn(const Ran::Part& part, double time_s) {
   const double within = time_s - ToSeconds(part.done.start) + part.done.profile_start_s;
-  const motion::TipPose pose = part.motion.path.At(part.motion.speed.At(within).s);
-  const bool joint = part.motion.path.in_axes();
-  const motion::AxisPose axes =
-      joint ? motion::AxisPose{pose.tip, pose.a_rad, pose.b_rad} : part.motion.head.ColumnOf(pose);
-  return {joint ? part.motion.head.TipOf(axes).tip : pose.tip,
+  const motion::PathPiece& path = part.motion.path;
+  const motion::PathPose place = path.At(part.motion.speed.At(within).s);
+  const motion::AxisPose axes = motion::AxesOn(path, part.motion.head, place);
+  return {motion::TipOn(path, part.motion.head, place).tip,
           {axes.column.x(), axes.column.y(), axes.column.z(), axes.a_rad, axes.b_rad}};
 }
 

@@ -46,7 +46,7 @@ double RestX(const Ran& ran, double time_s) {
   double x = 21.02;
   for (const Ran::Part& part : ran.parts) {
     if (ToSeconds(part.done.end) > time_s + kExact) break;
-    x = part.motion.path.At(part.done.travelled).tip.x();
+    x = part.motion.path.At(part.done.travelled).point.x();
   }
   return x;
 }
@@ -151,7 +151,7 @@ TEST(ModeRules, StopHaltsAtOnceAndStartFinishesTheInstruction) {
     EXPECT_NEAR(ran.moves[0].tip.tip.x(), 521.02, kReal_mm);
     for (const Ran::Part& part : ran.parts) {
       if (ToSeconds(part.done.end) > 14.5) break;
-      EXPECT_NEAR(part.motion.path.At(part.done.travelled).tip.y(), 2201.2, kReal_mm);
+      EXPECT_NEAR(part.motion.path.At(part.done.travelled).point.y(), 2201.2, kReal_mm);
     }
     if (mode == Mode::kSingle) {
       EXPECT_EQ(ran.First("halt SINGLE").step, 1);
@@ -172,7 +172,7 @@ TEST(ModeRules, StopAndStartOnCurvesKeepThePath) {
   double length = 0.0;
   for (const Ran::Part& part : arc.parts) {
     length += part.done.travelled - part.done.from;
-    const motion::MachinePoint at = part.motion.path.At(part.done.travelled).tip;
+    const motion::MachinePoint at = part.motion.path.At(part.done.travelled).point;
     EXPECT_NEAR(std::hypot(at.x() - 121.02, at.y() - 2201.2), 100.0, 1e-3);
   }
   EXPECT_NEAR(length, quarter, 1e-3);

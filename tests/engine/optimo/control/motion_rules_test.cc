@@ -317,12 +317,12 @@ TEST(MotionRules, ZeroEndsAtTheMechanicalZero) {
       {.variables = {"VR[0]", "VR[1]", "VR[2]", "VR[3]"}});
   EXPECT_THAT(ran.variables, ::testing::Each(::testing::Pair(::testing::_, "0.0")));
   ASSERT_EQ(ran.parts.size(), 4U);
-  const motion::TipPose after_z = ran.parts[1].motion.path.to();
-  EXPECT_NEAR(after_z.tip.z(), 0.0, 1e-9);
-  EXPECT_NEAR(after_z.tip.x(), 500.0, 1e-9);
+  const motion::AxisPose after_z = ran.parts[1].motion.path.to().axes();
+  EXPECT_NEAR(after_z.column.z(), 0.0, 1e-9);
+  EXPECT_NEAR(after_z.column.x(), 500.0, 1e-9);
   EXPECT_NEAR(after_z.a_rad, 1.0, 1e-6);
-  const motion::TipPose after_head = ran.parts[2].motion.path.to();
-  EXPECT_NEAR(after_head.tip.x(), 500.0, 1e-9);
+  const motion::AxisPose after_head = ran.parts[2].motion.path.to().axes();
+  EXPECT_NEAR(after_head.column.x(), 500.0, 1e-9);
   EXPECT_NEAR(after_head.a_rad, 0.0, 1e-9);
 }
 

@@ -44,9 +44,9 @@ void ExpectSmooth(const Ran& ran) {
   for (std::size_t k = 1; k < ran.parts.size(); ++k) {
     const Ran::Part& before = ran.parts[k - 1];
     const Ran::Part& here = ran.parts[k];
-    const motion::TipPose from = before.motion.path.At(before.done.travelled);
-    const motion::TipPose to = here.motion.path.At(here.done.from);
-    EXPECT_NEAR((from.tip - to.tip).norm(), 0.0, 1e-6) << k;
+    const motion::PathPose from = before.motion.path.At(before.done.travelled);
+    const motion::PathPose to = here.motion.path.At(here.done.from);
+    EXPECT_NEAR((from.point - to.point).norm(), 0.0, 1e-6) << k;
     EXPECT_NEAR(before.SpeedAt(before.duration_s()), here.SpeedAt(0.0), 1e-3) << k;
   }
 }

@@ -138,8 +138,8 @@ TEST(ParameterRanges, PartsAreFoundOnTheirMoves) {
       double v[] = {1.0, 1.0, 1.0, 1.0, 1.0};
       v[axis] = way;
       moves.push_back(motion::PathPiece::Joint(
-          {.tip = {5, 6, 7}, .a_rad = 0.5, .b_rad = -0.5},
-          {.tip = {5 + v[0], 6 + v[1], 7 + v[2]}, .a_rad = 0.5 + v[3], .b_rad = -0.5 + v[4]}));
+          {.column = {5, 6, 7}, .a_rad = 0.5, .b_rad = -0.5},
+          {.column = {5 + v[0], 6 + v[1], 7 + v[2]}, .a_rad = 0.5 + v[3], .b_rad = -0.5 + v[4]}));
     }
   }
   for (const motion::PathPiece& move : moves) {
@@ -152,8 +152,8 @@ TEST(ParameterRanges, PartsAreFoundOnTheirMoves) {
       EXPECT_NEAR(place->scale, 1.0, 1e-9);
       const motion::PathPiece rest = RestOfMove(move, *place, 0.01 * length);
       EXPECT_NEAR(rest.length(), (0.99 - begin) * length, 1e-9 * length);
-      EXPECT_NEAR((move.to().tip - rest.to().tip).norm(), 0.0, 1e-9);
-      EXPECT_NEAR((move.At((begin + 0.01) * length).tip - rest.from().tip).norm(), 0.0, 1e-6);
+      EXPECT_NEAR((move.to().point - rest.to().point).norm(), 0.0, 1e-9);
+      EXPECT_NEAR((move.At((begin + 0.01) * length).point - rest.from().point).norm(), 0.0, 1e-6);
       if (!move.in_axes()) continue;
       // The same part, measured by twice as much.
       part.MeasureBy(2.0 * part.length());
@@ -163,7 +163,7 @@ TEST(ParameterRanges, PartsAreFoundOnTheirMoves) {
       EXPECT_NEAR(measured->scale, 0.5, 1e-9);
       const motion::PathPiece half = RestOfMove(move, *measured, 0.02 * length);
       EXPECT_NEAR(half.length(), 2.0 * (0.99 - begin) * length, 1e-9 * length);
-      EXPECT_NEAR((move.At((begin + 0.01) * length).tip - half.from().tip).norm(), 0.0, 1e-6);
+      EXPECT_NEAR((move.At((begin + 0.01) * length).point - half.from().point).norm(), 0.0, 1e-6);
     }
   }
   // Of another kind, or of no length: there is no such place.

@@ -34,7 +34,7 @@ double XAt(const Ran& ran, double time_s) {
     if (begin > time_s) break;
     const double into = std::min(time_s, ToSeconds(part.done.end)) - begin;
     const double s = part.motion.speed.At(part.done.profile_start_s + into).s;
-    x = part.motion.path.At(std::min(s, part.motion.path.length())).tip.x();
+    x = part.motion.path.At(std::min(s, part.motion.path.length())).point.x();
   }
   return x;
 }

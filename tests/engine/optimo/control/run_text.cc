@@ -144,11 +144,8 @@ double Ran::DistanceTo(const motion::MachinePoint& point) const {
   double best = HUGE_VAL;
   for (const Part& part : parts) {
     const auto distance = [&](double s) {
-      const motion::TipPose pose = part.motion.path.At(s);
-      const bool joint = part.motion.path.in_axes();
-      const motion::TipPose tip =
-          joint ? part.motion.head.TipOf({pose.tip, pose.a_rad, pose.b_rad}) : pose;
-      return (tip.tip - point).norm();
+      const motion::PathPiece& path = part.motion.path;
+      return (motion::TipOn(path, part.motion.head, path.At(s)).tip - point).norm();
     };
     const double from = part.done.from;
     const double step = (part.done.travelled - from) / kSamples;

@@ -209,7 +209,7 @@ TEST(SimulRules, TheMachineDoesNotMove) {
                           {.simul = Step(10)});
   ASSERT_EQ(ran.parts.size(), 1U);
   EXPECT_EQ(ran.parts[0].done.start, SimTime(0));
-  EXPECT_NEAR((ran.parts[0].motion.path.At(0.0).tip - kHomeTip).norm(), 0.0, 1e-6);
+  EXPECT_NEAR((ran.parts[0].motion.path.At(0.0).point - kHomeTip).norm(), 0.0, 1e-6);
   EXPECT_NEAR(Travelled(ran), 100.0, 1e-4);
   EXPECT_EQ(ran.moves.size(), 1U);
   EXPECT_EQ(ran.moves[0].place.step, 10);

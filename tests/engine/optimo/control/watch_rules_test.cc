@@ -99,10 +99,10 @@ TEST(WatchRules, EachMoveHasItsOwnTime) {
     const Ran::Part& last = ran.parts.back();
     ASSERT_GE(ran.parts.size(), 2U);
     // 63 ticks at 50 mm/s and the ramp to rest.
-    const double way_mm = last.motion.path.At(last.done.travelled).tip.x() -
+    const double way_mm = last.motion.path.At(last.done.travelled).point.x() -
                           ran.parts[ran.parts.size() - 2]
                               .motion.path.At(ran.parts[ran.parts.size() - 2].done.from)
-                              .tip.x();
+                              .point.x();
     EXPECT_NEAR(way_mm, 50.0 * 63 * kTick_s, 1e-4);
   }
 }

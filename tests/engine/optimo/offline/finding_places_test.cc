@@ -10,11 +10,11 @@
 #include "engine/optimo/offline/transform.h"
 #include "tests/engine/optimo/language/marked_text.h"
 
-// What the tools of the office say, and of what: braces stand around it. `says` begins the text.
+// What the off-line tools say, and of what: braces stand around it. `says` begins the text.
 namespace rmlcell::optimo {
 namespace {
 
-struct OfficeRow {
+struct ToolRow {
   std::string text;
   int number;
   std::string_view rule;
@@ -28,7 +28,7 @@ struct Answer {
 };
 using Tool = std::function<Answer(const std::string&)>;
 
-void ExpectSaid(const Tool& tool, const OfficeRow& row) {
+void ExpectSaid(const Tool& tool, const ToolRow& row) {
   const Marked marked = WithoutBraces(row.text);
   const Answer answer = tool(marked.text);
   EXPECT_EQ(answer.ok, row.ok) << row.text;
@@ -48,10 +48,10 @@ Answer Compensated(const std::string& text) {
 }
 
 // OPT-8.05, OPT-8.09, OPT-8.10, OPT-8.22, OPT-8.23
-TEST(OfficePlaces, OfCompensationAndItsDirectives) {
+TEST(ToolPlaces, OfCompensationAndItsDirectives) {
   const std::string set = ";$rad=1\n;$left\nPATH LIN\nMOVE (0,0,0,0,0)\n",
                     on = set + "WORK 0,0/ON\n";
-  const std::vector<OfficeRow> rows = {
+  const std::vector<ToolRow> rows = {
       {"SPEED 5\n{;$middle}\n", 7802, "OPT-8.05", "unknown directive"},
       {"SPEED 5\n{;$dia=x}\n", 7802, "OPT-8.05", "the amount is no number of at least 0"},
       {"{;$rad=-0.001}\n", 7802, "OPT-8.05", "the amount is no number of at least 0"},
@@ -71,7 +71,7 @@ TEST(OfficePlaces, OfCompensationAndItsDirectives) {
        true},
       {"{SYSDEF (0,0,0,0,0,VR[1])}\n", 7811, "OPT-8.23", "a rotation of SYSDEF is no number", true},
   };
-  for (const OfficeRow& row : rows) ExpectSaid(Compensated, row);
+  for (const ToolRow& row : rows) ExpectSaid(Compensated, row);
   // The same amount or side again changes nothing, and neither do other instructions.
   for (const std::string& text :
        {on + ";$rad=1\n;$dia=2\n;$left\n", set + "WORK 0,0/ON\nWORK 0,0/OFF\n;$right\n;$rad=9\n",
@@ -83,11 +83,11 @@ TEST(OfficePlaces, OfCompensationAndItsDirectives) {
 }
 
 // OPT-8.14, OPT-8.19, OPT-8.20, OPT-8.21, OPT-B.91
-TEST(OfficePlaces, OfCompensatedMoves) {
+TEST(ToolPlaces, OfCompensatedMoves) {
   const std::string set = ";$rad=1\n;$left\n", right = ";$rad=1\n;$right\n",
                     on = set + "PATH LIN\nMOVE (0,0,0,0,0)\nWORK 0,0/ON\n",
                     hole = "\nWORK 0,0/ON\nMOVE (0,0,0,0,0)/VIA (0,0,9,0,0)\n";
-  const std::vector<OfficeRow> rows = {
+  const std::vector<ToolRow> rows = {
       {on + "{MOVE (VR[1],0,0,0,0)}\n", 7805, "OPT-8.20", "a coordinate is no plain number"},
       {on + "{MOVE (1,0,0,0,VR[1])}\n", 7805, "OPT-8.20", "a coordinate is no plain number"},
       {on + "PATH CIR\n{MOVE (9,0,0,0,0)/VIA (4,4,0,0,VR[1])}\n", 7805, "OPT-8.20",
@@ -106,11 +106,11 @@ TEST(OfficePlaces, OfCompensatedMoves) {
       {right + "PATH HOLE (1.001)\nWORK 0,0/ON\n{MOVE (0,0,0,0,0)/VIA (0,0,9,0,0)}\n", 7033,
        "OPT-B.91", "at holes left means larger", true},
   };
-  for (const OfficeRow& row : rows) ExpectSaid(Compensated, row);
+  for (const ToolRow& row : rows) ExpectSaid(Compensated, row);
 }
 
 // OPT-8.16; 7812 is ours: how near, how wide, how deep.
-TEST(OfficePlaces, OfGouges) {
+TEST(ToolPlaces, OfGouges) {
   const Compensation made = Compensate(
       ";$dia=3\n;$left\nPATH LIN\nMOVE (10,17.75,0,0,0)\nWORK 0,0/ON\n"
       "MOVE (10,0,0,0,0)\nMOVE (20,0,0,0,0)\nMOVE (20,19,0,0,0)\nMOVE (0,19,0,0,0)\n"
@@ -124,7 +124,7 @@ TEST(OfficePlaces, OfGouges) {
 }
 
 // OPT-8.74, OPT-8.75, OPT-8.77, OPT-7.62
-TEST(OfficePlaces, OfTransformAndShift) {
+TEST(ToolPlaces, OfTransformAndShift) {
   const motion::RigidMotion up = motion::RigidMotionOf({0, 0, 1e18}, 0, 0, 0);
   const Tool transform = [&](const std::string& text) {
     Rewriting made = Transform(text, up);
@@ -134,19 +134,19 @@ TEST(OfficePlaces, OfTransformAndShift) {
     Rewriting made = Shift(text, {1e18, 0, 0, 0, 0, 0});
     return Answer{made.ok, std::move(made.diagnostics)};
   };
-  const std::vector<OfficeRow> transformed = {
+  const std::vector<ToolRow> transformed = {
       {"SPEED 5\n{MOVE (1,2,3,4,VR[1])}\n", 7851, "OPT-8.77", "a coordinate is no plain number"},
       {"{MOVE (1,2,3,0,0)/VIA (VR[1],2,3,0,0)}\n", 7851, "OPT-8.77",
        "a coordinate is no plain number"},
       {"{SYSDEF (1,2,3,0,VR[1],0)}\n", 7851, "OPT-8.77", "a rotation of SYSDEF"},
       {"SPEED 5\n{MOVE (1,2,9E18,0,0)}\n", 7004, "OPT-7.62", "a number would become larger"},
   };
-  for (const OfficeRow& row : transformed) ExpectSaid(transform, row);
-  const std::vector<OfficeRow> shifted = {
+  for (const ToolRow& row : transformed) ExpectSaid(transform, row);
+  const std::vector<ToolRow> shifted = {
       {"SPEED 5\n{VR[86] = 9E18}\n", 7004, "OPT-7.62", "a number would become larger"},
       {"{LET VR[86] = 9E18}\nVR[87] = 5.\n", 7004, "OPT-7.62", "a number would become larger"},
   };
-  for (const OfficeRow& row : shifted) ExpectSaid(shift, row);
+  for (const ToolRow& row : shifted) ExpectSaid(shift, row);
   // Nothing to shift belongs to the program as a whole.
   for (const std::string text :
        {"VR[85] = 1.\nVR[92] = 1.\n", "VR[86] = VR[1]\n", "VI[86] = 5\n"}) {
@@ -159,20 +159,20 @@ TEST(OfficePlaces, OfTransformAndShift) {
 }
 
 // OPT-8.35, OPT-8.46, OPT-8.53, OPT-8.65
-TEST(OfficePlaces, OfConversion) {
+TEST(ToolPlaces, OfConversion) {
   const Tool convert = [](const std::string& text) {
     return Answer{true, Convert(text, Direction::kToMetric).diagnostics};
   };
   std::string sum = "VI[2] = 1";  // tokens: VI [ 2 ] = 1, then two each
   for (int n = 0; n < 98; ++n) sum += "+1";
-  const std::vector<OfficeRow> rows = {
+  const std::vector<ToolRow> rows = {
       {"SPEED 5\n{VR[1] = VR[2] + 1. + 2.}\n", 7709, "OPT-8.46", "numbers left alone", true},
       {"DECLARE K = 5.\nVR[1] = {K}\n", 7710, "OPT-8.35", "a declared constant stands where", true},
       {"VR[4] = {PI}\n", 7710, "OPT-8.35", "PI stands where a measurement belongs", true},
       {"SPEED 5\nSPEED 5 {PATH} LIN\n", 7711, "OPT-8.53", "the line is copied: ", true},
       {"5 {" + sum + "}\n", 7708, "OPT-8.65", "more than 200 symbols", true},
   };
-  for (const OfficeRow& row : rows) ExpectSaid(convert, row);
+  for (const ToolRow& row : rows) ExpectSaid(convert, row);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "server/programs/program_office.h"
+#include "server/programs/text_tools.h"
 
 #include <algorithm>
 #include <array>

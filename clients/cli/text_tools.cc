@@ -1,4 +1,4 @@
-#include "clients/cli/office.h"
+#include "clients/cli/text_tools.h"
 
 #include <algorithm>
 #include <array>
@@ -58,9 +58,9 @@ Result<Source> ReadSource(const std::string& file) {
   if (form != FileForm::kObject) {
     return Source{*family, *std::move(bytes), form == FileForm::kInchSource};
   }
-  Result<std::string> text = (*family)->Decompile(*bytes);
-  if (!text) return text.error();
-  return Source{*family, *std::move(text), false};
+  Result<machine::RecoveredSource> source = (*family)->tools()->Decompile(*bytes, std::nullopt);
+  if (!source) return source.error();
+  return Source{*family, std::move(source->text), false};
 }
 
 // The object of a file; its findings go into the answer. Nothing when it has errors.
@@ -134,7 +134,8 @@ int Link(const LinkOptions& options) {
   bool good = true;
   const auto lookup = [&](int slot) -> std::optional<std::string_view> {
     if (const auto made = objects.find(slot); made != objects.end()) return made->second;
-    const auto program = std::ranges::find(loaded->programs, slot, &bridge::ProgramInput::slot);
+    const auto program =
+        std::ranges::find(loaded->programs, slot, &simulation::MemoryProgram::slot);
     if (program == loaded->programs.end()) return std::nullopt;
     if (program->bytes->empty()) {
       constexpr ErrorCode kEmpty = ErrorCode::kCellEmptyProgram;

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "server/base/config.h"
-#include "server/programs/program_shelf.h"
+#include "server/programs/program_book.h"
 #include "tests/server/engine_bytes.h"
 #include "tests/server/server_bed.h"
 
@@ -19,13 +19,13 @@ std::optional<ErrorCode> RefusedWith(const ProgramResult<v1::Program>& stored) {
 }
 using testing::HasSubstr;
 
-class ShelfLimits : public testing::Test {
+class ProgramBookLimits : public testing::Test {
  protected:
   static std::string Name(int number, const std::string& machine = "optimo-1") {
     return "machines/" + machine + "/programs/" + std::to_string(number);
   }
-  v1::Program Stored(ProgramShelf::Put put) {
-    auto stored = shelf.Store(std::move(put));
+  v1::Program Stored(ProgramBook::Put put) {
+    auto stored = programs.Store(std::move(put));
     if (!stored) throw std::runtime_error(stored.error.error.detail);
     return *std::move(stored.value);
   }
@@ -34,16 +34,16 @@ class ShelfLimits : public testing::Test {
     request.set_parent("machines/mill-1");
     request.set_page_size(size);
     request.set_page_token(token);
-    return Must(shelf.List(request));
+    return Must(programs.List(request));
   }
 
   ServerBed bed;
   Config config;
-  ProgramShelf shelf{bed.store(), config};
+  ProgramBook programs{bed.store(), config};
 };
 
 // ListProgramsRequest.page_size: 0 is all 99; more are all of them, too.
-TEST_F(ShelfLimits, APageHasUpToNinetyNinePrograms) {
+TEST_F(ProgramBookLimits, APageHasUpToNinetyNinePrograms) {
   std::vector<storage::ProgramWrite> writes;
   for (int slot = 1; slot <= 99; ++slot) writes.push_back({.slot = slot, .object = "IN;"});
   Must(bed.store().PutPrograms("mill-1", writes, {}));
@@ -62,13 +62,13 @@ TEST_F(ShelfLimits, APageHasUpToNinetyNinePrograms) {
   EXPECT_EQ(Page(1, "99").programs_size(), 0);
 }
 
-TEST_F(ShelfLimits, OfBytesTitlesAndFileNames) {
+TEST_F(ProgramBookLimits, OfBytesTitlesAndFileNames) {
   const auto code = [&](std::size_t bytes, std::size_t title, std::size_t name) {
-    return RefusedWith(shelf.Store({.name = Name(45),
-                                    .file_name = std::string(name, 'f'),
-                                    .title = std::string(title, 't'),
-                                    .bytes = std::string(bytes - 1, ';') + "\n",
-                                    .validate_only = true}));
+    return RefusedWith(programs.Store({.name = Name(45),
+                                       .file_name = std::string(name, 'f'),
+                                       .title = std::string(title, 't'),
+                                       .bytes = std::string(bytes - 1, ';') + "\n",
+                                       .validate_only = true}));
   };
   config.limit_program_bytes = 1024;
   EXPECT_EQ(code(1024, 200, 255), std::nullopt);
@@ -78,7 +78,7 @@ TEST_F(ShelfLimits, OfBytesTitlesAndFileNames) {
 }
 
 // Program: title and file name without a folder, sizes, a hash and the etag; times of the store.
-TEST_F(ShelfLimits, WhatIsToldOfAProgram) {
+TEST_F(ProgramBookLimits, WhatIsToldOfAProgram) {
   const v1::Program first =
       Stored({.name = Name(45), .file_name = "a/b\\c.part.S", .bytes = "STOP\n"});
   EXPECT_EQ(first.title(), "c.part");
@@ -94,17 +94,17 @@ TEST_F(ShelfLimits, WhatIsToldOfAProgram) {
   EXPECT_EQ(second.etag(), "2");
   EXPECT_EQ(second.update_time().seconds() - second.create_time().seconds(), 5);
   EXPECT_NE(second.object_sha256(), first.object_sha256());
-  EXPECT_EQ(Must(shelf.Get(Name(45))).SerializeAsString().size(), [&] {
+  EXPECT_EQ(Must(programs.Get(Name(45))).SerializeAsString().size(), [&] {
     v1::Program program = second;
     program.clear_findings();
     return program.SerializeAsString().size();
   }());
 
-  const auto asked = shelf.Store({.name = Name(46),
-                                  .file_name = "x/lid.S",
-                                  .title = "Lid",
-                                  .bytes = "STOP\n",
-                                  .validate_only = true});
+  const auto asked = programs.Store({.name = Name(46),
+                                     .file_name = "x/lid.S",
+                                     .title = "Lid",
+                                     .bytes = "STOP\n",
+                                     .validate_only = true});
   ASSERT_TRUE(asked);
   EXPECT_EQ(asked.value->name(), Name(46));
   EXPECT_EQ(asked.value->title(), "Lid");
@@ -114,7 +114,7 @@ TEST_F(ShelfLimits, WhatIsToldOfAProgram) {
 }
 
 // An object is known by its form or by its name, and has no text of its own.
-TEST_F(ShelfLimits, AnObjectIsKnownByItsFormOrItsName) {
+TEST_F(ProgramBookLimits, AnObjectIsKnownByItsFormOrItsName) {
   const std::string object = ObjectOf("SPEED 5\nSTOP\n");
   const v1::Program by_name = Stored({.name = Name(44), .file_name = "part.O", .bytes = object});
   const v1::Program by_form = Stored(
@@ -123,49 +123,49 @@ TEST_F(ShelfLimits, AnObjectIsKnownByItsFormOrItsName) {
     EXPECT_FALSE(program.has_source_bytes());
     EXPECT_EQ(program.file_name(), "");
     EXPECT_EQ(program.title(), "part");
-    const auto unspecified = Must(shelf.Read(program.name(), v1::PROGRAM_FORM_UNSPECIFIED));
+    const auto unspecified = Must(programs.Read(program.name(), v1::PROGRAM_FORM_UNSPECIFIED));
     EXPECT_EQ(unspecified.form, v1::PROGRAM_FORM_OBJECT);  // what there is of it
     EXPECT_EQ(unspecified.bytes, object);
     EXPECT_FALSE(unspecified.own_text);
   }
   Stored({.name = Name(46), .file_name = "part.S", .bytes = "STOP\n"});
-  const auto source = Must(shelf.Read(Name(46), v1::PROGRAM_FORM_UNSPECIFIED));
+  const auto source = Must(programs.Read(Name(46), v1::PROGRAM_FORM_UNSPECIFIED));
   EXPECT_EQ(source.form, v1::PROGRAM_FORM_SOURCE);
   EXPECT_EQ(source.bytes, "STOP\n");
   EXPECT_TRUE(source.own_text);
   // FIPS 180-2, as sha256sum gives it.
   EXPECT_EQ(source.sha256, "2af183be253fd571e13dd3d310357f3a1ccc7b18502a83ed918e0b88a1e5355f");
-  EXPECT_EQ(source.object_sha256, Must(shelf.Get(Name(46))).object_sha256());
+  EXPECT_EQ(source.object_sha256, Must(programs.Get(Name(46))).object_sha256());
 }
 
-TEST_F(ShelfLimits, EachFormHasItsFileName) {
+TEST_F(ProgramBookLimits, EachFormHasItsFileName) {
   Stored({.name = Name(32), .file_name = "part.S", .bytes = "STOP\n"});
-  ASSERT_TRUE(shelf.Store({.name = Name(132), .bytes = ExecutableOf(32, "STOP\n")}));
+  ASSERT_TRUE(programs.Store({.name = Name(132), .bytes = ExecutableOf(32, "STOP\n")}));
   const auto name = [&](v1::ProgramForm form) {
-    return Must(shelf.Read(Name(32), form)).file_name;
+    return Must(programs.Read(Name(32), form)).file_name;
   };
   EXPECT_EQ(name(v1::PROGRAM_FORM_SOURCE), "part.S");
   EXPECT_EQ(name(v1::PROGRAM_FORM_OBJECT), "part.O");
   EXPECT_EQ(name(v1::PROGRAM_FORM_EXECUTABLE), "part.X");
   EXPECT_EQ(name(v1::PROGRAM_FORM_LISTING), "part.LST");
-  EXPECT_THAT(Must(shelf.Read(Name(32), v1::PROGRAM_FORM_LISTING)).bytes, HasSubstr("STOP"));
+  EXPECT_THAT(Must(programs.Read(Name(32), v1::PROGRAM_FORM_LISTING)).bytes, HasSubstr("STOP"));
   Stored({.name = Name(7, "mill-1"), .file_name = "a.rml", .bytes = "IN;"});
-  EXPECT_EQ(CodeOf(shelf.Read(Name(7, "mill-1"), v1::PROGRAM_FORM_LISTING)),
+  EXPECT_EQ(CodeOf(programs.Read(Name(7, "mill-1"), v1::PROGRAM_FORM_LISTING)),
             ErrorCode::kCellPrecondition);
-  EXPECT_EQ(CodeOf(shelf.Read(Name(33), v1::PROGRAM_FORM_SOURCE)), ErrorCode::kProgramMissing);
+  EXPECT_EQ(CodeOf(programs.Read(Name(33), v1::PROGRAM_FORM_SOURCE)), ErrorCode::kProgramMissing);
   Stored({.name = Name(33), .file_name = "part.S", .bytes = "STOP\n"});
-  EXPECT_EQ(CodeOf(shelf.Read(Name(133), v1::PROGRAM_FORM_SOURCE)), ErrorCode::kProgramMissing);
+  EXPECT_EQ(CodeOf(programs.Read(Name(133), v1::PROGRAM_FORM_SOURCE)), ErrorCode::kProgramMissing);
 }
 
 // A check takes the slot that the name says, else the first that the machine does not use
 // (OPT-1.10).
-TEST_F(ShelfLimits, ACheckTakesASlotOfItsOwn) {
+TEST_F(ProgramBookLimits, ACheckTakesASlotOfItsOwn) {
   const auto slot = [&](const std::string& file_name,
                         const std::string& machine = "machines/optimo-1") {
     v1::ProgramText text;
     text.set_file_name(file_name);
     text.set_content("STOP\n");
-    return Must(shelf.Check("", machine, text, true)).slot;
+    return Must(programs.Check("", machine, text, true)).slot;
   };
   EXPECT_EQ(slot("part.S"), 1);
   EXPECT_EQ(slot("part.S", ""), 1);
@@ -183,9 +183,10 @@ TEST_F(ShelfLimits, ACheckTakesASlotOfItsOwn) {
 }
 
 // An error shows its line and how many more there are; a single one says nothing of more.
-TEST_F(ShelfLimits, TheFirstErrorStandsForAll) {
+TEST_F(ProgramBookLimits, TheFirstErrorStandsForAll) {
   const auto detail = [&](const std::string& source) {
-    return shelf.Store({.name = Name(45), .file_name = "a.S", .bytes = source}).error.error.detail;
+    return programs.Store({.name = Name(45), .file_name = "a.S", .bytes = source})
+        .error.error.detail;
   };
   EXPECT_THAT(detail("STOP\nSPEED 101\n"), testing::StartsWith("line 2: "));
   EXPECT_THAT(detail("STOP\nSPEED 101\n"), testing::Not(HasSubstr("more")));

@@ -1,4 +1,4 @@
-#include "server/programs/program_shelf.h"
+#include "server/programs/program_book.h"
 
 #include <algorithm>
 
@@ -10,7 +10,7 @@
 #include "proto/bridge/sha256.h"
 #include "server/base/config.h"
 #include "server/base/names.h"
-#include "server/programs/program_office.h"
+#include "server/programs/text_tools.h"
 #include "server/records/file_family.h"
 #include "server/records/job_messages.h"
 #include "server/records/program_place.h"
@@ -82,11 +82,12 @@ machine::Translation TranslateFor(const machine::MachineFamily& family,
 }
 
 // "44.S" is program 44, other names take the place of no program of the machine when there is room.
-int SlotForCheck(const std::string& file_name, const std::vector<bridge::ProgramInput>& programs) {
+int SlotForCheck(const std::string& file_name,
+                 const std::vector<simulation::MemoryProgram>& programs) {
   const auto named = ParseInteger(TitleFrom(file_name));
   if (named && *named >= kSlotMin && *named <= kSlotMax) return static_cast<int>(*named);
   for (int slot = kSlotMin; slot < kSlotMax; ++slot) {
-    if (std::ranges::find(programs, slot, &bridge::ProgramInput::slot) == programs.end())
+    if (std::ranges::find(programs, slot, &simulation::MemoryProgram::slot) == programs.end())
       return slot;
   }
   return kSlotMax;
@@ -125,9 +126,9 @@ Result<FormBytes> BytesIn(v1::ProgramForm form, storage::ProgramRecord& program,
                      v1::PROGRAM_FORM_SOURCE, source_extension, true};
   }
   if (form == v1::PROGRAM_FORM_SOURCE) {
-    Result<std::string> source = family.Decompile(program.object);
+    Result<machine::RecoveredSource> source = tools->Decompile(program.object, std::nullopt);
     if (!source) return source.error();
-    return FormBytes{*std::move(source), form, source_extension};
+    return FormBytes{std::move(source->text), form, source_extension};
   }
   return FormBytes{std::move(program.object), v1::PROGRAM_FORM_OBJECT,
                    tools == nullptr ? source_extension : tools->extensions().object};
@@ -135,7 +136,7 @@ Result<FormBytes> BytesIn(v1::ProgramForm form, storage::ProgramRecord& program,
 
 }  // namespace
 
-Status ProgramShelf::CheckSize(std::int64_t bytes) const {
+Status ProgramBook::CheckSize(std::int64_t bytes) const {
   if (bytes <= config_.limit_program_bytes) return {};
   return Error{ErrorCode::kCellTooLarge,
                "the program has " + std::to_string(bytes) +
@@ -144,7 +145,7 @@ Status ProgramShelf::CheckSize(std::int64_t bytes) const {
                {}};
 }
 
-ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
+ProgramResult<v1::Program> ProgramBook::Store(Put put) {
   const Result<ProgramPlace> place = FindProgramPlace(store_, put.name);
   if (!place) return place.error();
   const machine::MachineFamily& family = *place->family;
@@ -165,7 +166,7 @@ ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
   const Result<storage::Revision> expected = ParseEtag(put.etag);
   if (!expected) return expected.error();
   const Result<machine::Parameters> parameters =
-      bridge::MakeParameters(family, machine.profile, machine.parameters);
+      machine::MakeParameters(family, machine.profile, machine.parameters);
   if (!parameters) return parameters.error();
 
   const bool is_object =
@@ -208,7 +209,7 @@ ProgramResult<v1::Program> ProgramShelf::Store(Put put) {
 
 // What the store would say to a change of this slot, before it is made: nothing when the slot is
 // empty.
-Result<std::optional<storage::ProgramSummary>> ProgramShelf::FindExpected(
+Result<std::optional<storage::ProgramSummary>> ProgramBook::FindExpected(
     const std::string& machine, int slot, storage::Revision expected) {
   auto found = store_.GetProgramSummary(machine, slot);
   const bool there = static_cast<bool>(found);
@@ -224,8 +225,7 @@ Result<std::optional<storage::ProgramSummary>> ProgramShelf::FindExpected(
   return std::optional(*std::move(found));
 }
 
-ProgramResult<v1::Program> ProgramShelf::StoreExecutable(const Put& put,
-                                                         const ProgramPlace& place) {
+ProgramResult<v1::Program> ProgramBook::StoreExecutable(const Put& put, const ProgramPlace& place) {
   const std::string& machine_id = place.machine.id;
   const int slot = place.slot;
   if (!place.family->info().has_executables)
@@ -258,7 +258,7 @@ ProgramResult<v1::Program> ProgramShelf::StoreExecutable(const Put& put,
   return program;
 }
 
-Result<v1::Program> ProgramShelf::Get(std::string_view name) {
+Result<v1::Program> ProgramBook::Get(std::string_view name) {
   const Result<ProgramPlace> place = FindProgramPlace(store_, name);
   if (!place) return place.error();
   const auto found = store_.GetProgramSummary(place->machine.id, place->slot);
@@ -270,7 +270,7 @@ Result<v1::Program> ProgramShelf::Get(std::string_view name) {
   return program;
 }
 
-Result<ProgramShelf::Content> ProgramShelf::Read(std::string_view name, v1::ProgramForm form) {
+Result<ProgramBook::Content> ProgramBook::Read(std::string_view name, v1::ProgramForm form) {
   if (!v1::ProgramForm_IsValid(form)) return InvalidArgument("form is none that there is");
   const Result<ProgramPlace> place = FindProgramPlace(store_, name);
   if (!place) return place.error();
@@ -298,7 +298,7 @@ Result<ProgramShelf::Content> ProgramShelf::Read(std::string_view name, v1::Prog
   return content;
 }
 
-Result<v1::ListProgramsResponse> ProgramShelf::List(const v1::ListProgramsRequest& request) {
+Result<v1::ListProgramsResponse> ProgramBook::List(const v1::ListProgramsRequest& request) {
   const Result<std::string> machine = ParseMachineName(request.parent());
   if (!machine) return machine.error();
   if (const auto known = store_.GetMachine(*machine); !known) return known.error();
@@ -325,7 +325,7 @@ Result<v1::ListProgramsResponse> ProgramShelf::List(const v1::ListProgramsReques
   return response;
 }
 
-Status ProgramShelf::Delete(const v1::DeleteProgramRequest& request) {
+Status ProgramBook::Delete(const v1::DeleteProgramRequest& request) {
   const Result<ProgramPlace> place = FindProgramPlace(store_, request.name());
   if (!place) return place.error();
   const std::string& machine = place->machine.id;
@@ -343,9 +343,9 @@ Status ProgramShelf::Delete(const v1::DeleteProgramRequest& request) {
   return deleted;
 }
 
-Result<ProgramShelf::Subject> ProgramShelf::FindSubject(const std::string& family_id,
-                                                        const std::string& machine_name,
-                                                        const v1::ProgramText& program) {
+Result<ProgramBook::Subject> ProgramBook::FindSubject(const std::string& family_id,
+                                                      const std::string& machine_name,
+                                                      const v1::ProgramText& program) {
   Subject subject;
   if (!machine_name.empty()) {
     const Result<std::string> id = ParseMachineName(machine_name);
@@ -365,30 +365,30 @@ Result<ProgramShelf::Subject> ProgramShelf::FindSubject(const std::string& famil
   if (program.content().empty())
     return Error{ErrorCode::kCellEmptyProgram, program.file_name(), {}};
   Result<machine::Parameters> parameters =
-      subject.record ? bridge::MakeParameters(*subject.family, subject.record->profile,
-                                              subject.record->parameters)
-                     : bridge::MakeParameters(*subject.family, {}, {});
+      subject.record ? machine::MakeParameters(*subject.family, subject.record->profile,
+                                               subject.record->parameters)
+                     : machine::MakeParameters(*subject.family, {}, {});
   if (!parameters) return parameters.error();
   subject.parameters = *std::move(parameters);
   return subject;
 }
 
-Result<machine::Translation> ProgramShelf::Translate(const std::string& family_id,
-                                                     const std::string& machine_name,
-                                                     const v1::ProgramText& program, bool advice) {
+Result<machine::Translation> ProgramBook::Translate(const std::string& family_id,
+                                                    const std::string& machine_name,
+                                                    const v1::ProgramText& program, bool advice) {
   const Result<Subject> subject = FindSubject(family_id, machine_name, program);
   if (!subject) return subject.error();
   return TranslateFor(*subject->family, *subject->parameters, program, advice);
 }
 
 // The programs of the machine, its schedules and the state in which it stands.
-Status ProgramShelf::AddMemory(const Subject& subject, bridge::SetupInput& input) {
+Status ProgramBook::AddMemory(const Subject& subject, simulation::ProgramMemory& input) {
   const storage::MachineRecord& machine = *subject.record;
   input.machine_state = machine.state;
   auto memory = store_.GetProgramMemory(machine.id);
   if (!memory) return memory.error();
   for (storage::ProgramRecord& program : *memory) {
-    bridge::ProgramInput& made = input.programs.emplace_back();
+    simulation::MemoryProgram& made = input.programs.emplace_back();
     made.slot = program.slot;
     made.name = std::move(program.name);
     made.bytes = std::make_shared<const std::string>(std::move(program.object));
@@ -411,26 +411,27 @@ Status ProgramShelf::AddMemory(const Subject& subject, bridge::SetupInput& input
   return {};
 }
 
-Result<ProgramShelf::Checked> ProgramShelf::Check(const std::string& family_id,
-                                                  const std::string& machine_name,
-                                                  const v1::ProgramText& program, bool advice) {
+Result<ProgramBook::Checked> ProgramBook::Check(const std::string& family_id,
+                                                const std::string& machine_name,
+                                                const v1::ProgramText& program, bool advice) {
   const Result<Subject> subject = FindSubject(family_id, machine_name, program);
   if (!subject) return subject.error();
   const machine::MachineFamily& family = *subject->family;
-  Checked checked{.translation = TranslateFor(family, *subject->parameters, program, advice),
-                  .motion = {}};
-  if (!checked.translation.ok || !family.info().checked_by_running) return checked;
-  bridge::SetupInput input{.family = &family, .programs = {}, .schedules = {}, .machine_state = {}};
-  if (subject->record) {
-    if (const Status added = AddMemory(*subject, input); !added) return added.error();
+  simulation::ProgramMemory memory{.family = &family};
+  if (subject->record && family.info().checked_by_running) {
+    if (const Status added = AddMemory(*subject, memory); !added) return added.error();
   }
-  checked.slot = SlotForCheck(program.file_name(), input.programs);
-  input.main_program = checked.slot;
-  const machine::RunSetup setup =
-      bridge::SetupForCheck(input, *subject->parameters, checked.translation);
-  auto motion = simulation::CheckMotion(family, setup, {checked.slot});
-  if (!motion) return motion.error();
-  checked.motion = *std::move(motion);
+  const int slot = SlotForCheck(program.file_name(), memory.programs);
+  memory.programs.push_back({.slot = slot,
+                             .file_name = program.file_name(),
+                             .bytes = std::make_shared<const std::string>(program.content()),
+                             .is_source = program.form() != v1::PROGRAM_FORM_OBJECT});
+  Result<simulation::ProgramCheck> check =
+      simulation::CheckProgram(memory, *subject->parameters, slot, advice, {});
+  if (!check) return check.error();
+  Checked checked{.translation = std::move(check->translation),
+                  .motion = std::move(check->motion),
+                  .slot = slot};
   for (Diagnostic& finding : checked.motion.findings) {
     if (finding.program == checked.slot) finding.file = program.file_name();
   }

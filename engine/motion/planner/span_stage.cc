@@ -1,11 +1,11 @@
-// The middle stage of the chain: corners get their curves, and what those leave of the legs becomes
-// spans.
+#include "engine/motion/planner/span_stage.h"
+
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/number_text.h"
 #include "engine/motion/geometry/least.h"
 #include "engine/motion/kinematics/axes.h"
-#include "engine/motion/planner/motion_chain.h"
 
 namespace rmlcell::motion {
 namespace {
@@ -17,21 +17,44 @@ constexpr double kSameLimit = 1e-9;  // relative
 constexpr double kLeavesRoom = 0.95;
 
 // How near the tip comes to where it would be at `target`, on a curve of the axes.
-double TipDistance(const CornerCurve& curve, const Head& head, const TipPose& target) {
-  const auto tip_of = [&](const TipPose& axes) {
-    return head.TipOf({axes.tip, axes.a_rad, axes.b_rad}).tip;
+double TipDistance(const CornerCurve& curve, const Head& head, const PathPose& target) {
+  const auto tip_of = [&](const PathPose& axes) {
+    return head.TipOf({axes.point, axes.a_rad, axes.b_rad}).tip;
   };
   constexpr int kIntervals = 32;
   const MachinePoint tip = tip_of(target);
   return LeastAlong([&](double u) { return (tip_of(curve.At(u)) - tip).norm(); }, 1.0, kIntervals);
 }
 
+bool AxesKeepUp(const MachineLimits& machine) {
+  bool enough = true;
+  for (const std::size_t i : kLinearAxes) {
+    enough = enough && machine.axes.speed[i] >= machine.tip_speed_mm_s &&
+             machine.axes.acceleration[i] >= machine.normal_acceleration();
+  }
+  return enough;
+}
+
+// The tip's acceleration is at most that of the machine, whatever its speed does on a curve.
+bool AxesFollowRamps(const MachineLimits& machine) {
+  bool enough = AxesKeepUp(machine);
+  for (const std::size_t i : kLinearAxes) {
+    enough = enough && machine.axes.acceleration[i] >= machine.tip_acceleration_mm_s2 &&
+             (std::isinf(machine.tip_jerk_mm_s3) || machine.axes.jerk[i] >= machine.tip_jerk_mm_s3);
+  }
+  return enough;
+}
+
 }  // namespace
+
+SpanStage::SpanStage(const MachineLimits& machine, std::size_t window)
+    : LegStage(machine, window),
+      axes_keep_up_(AxesKeepUp(machine)),
+      axes_follow_ramps_(AxesFollowRamps(machine)) {}
 
 // The length of the run that begins behind `leg`, or at least `enough` of it; nothing when that is
 // not known yet.
-std::optional<double> MotionChain::LengthAfter(Number leg, double enough,
-                                               bool accept_what_is_there) {
+std::optional<double> SpanStage::LengthAfter(Number leg, double enough, bool accept_what_is_there) {
   double length = 0.0;
   for (Number k = leg + 1; k < legs_.end(); ++k) {
     length += legs_[k].length;
@@ -45,7 +68,7 @@ std::optional<double> MotionChain::LengthAfter(Number leg, double enough,
 
 // Points passed straight on that the curve of `cut` at the end of `leg` swallows keep their speed:
 // the least of them; nothing when they are not known yet.
-std::optional<double> MotionChain::SpeedWithin(Number leg, double cut, bool accept_what_is_there) {
+std::optional<double> SpanStage::SpeedWithin(Number leg, double cut, bool accept_what_is_there) {
   double least = HUGE_VAL;
   double beyond = 0.0;
   for (Number k = leg + 1; k < legs_.end() && beyond + legs_[k].length < cut; ++k) {
@@ -58,7 +81,7 @@ std::optional<double> MotionChain::SpeedWithin(Number leg, double cut, bool acce
   return least;
 }
 
-bool MotionChain::Resolve(bool accept_what_is_there) {
+bool SpanStage::Resolve(bool accept_what_is_there) {
   if (running_.final_count() == 0) return false;
   const Number number = resolving_;
   Leg& leg = legs_[number];
@@ -138,8 +161,8 @@ bool MotionChain::Resolve(bool accept_what_is_there) {
 }
 
 // The highest steady speed up to `wanted` on the curve that was just made.
-double MotionChain::SpeedOn(const Span& span, const Leg& leg, double cut, double wanted,
-                            bool capped) {
+double SpanStage::SpeedOn(const Span& span, const Leg& leg, double cut, double wanted,
+                          bool capped) {
   if (leg.in_axes) return capped ? std::min(wanted, leg.axes_corner.SpeedFor(cut)) : wanted;
   double speed = wanted;
   if (leg.corner.lines() && capped) speed = std::min(speed, leg.corner.PlainSpeed(cut, machine_));
@@ -154,20 +177,20 @@ double MotionChain::SpeedOn(const Span& span, const Leg& leg, double cut, double
   return std::min(speed, SpeedOnCurve(curve, head, machine_, speed));
 }
 
-PlainCorner MotionChain::PlainCornerAt(Number corner_move, double cut) {
+PlainCorner SpanStage::PlainCornerAt(Number corner_move, double cut) {
   const PathPiece& in = moves_[corner_move].path;
   return {in.to(), in.Tangent(0.0), moves_[corner_move + 1].path.Tangent(0.0), cut};
 }
 
-void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
+void SpanStage::MakeCurve(Span& span, const Leg& leg, double cut) {
   const Move& in = moves_[leg.last_move];
   span.plain = !leg.in_axes && leg.corner.plain();
   if (span.plain) {
     const PathPiece& out = moves_[leg.last_move + 1].path;
     span.curve_length = leg.corner.PlainLength(cut);
     span.curve_middle = in.path.to();
-    span.curve_middle.tip =
-        in.path.to().tip + (out.Tangent(0.0) - in.path.Tangent(0.0)) * leg.corner.PlainBow(cut);
+    span.curve_middle.point =
+        in.path.to().point + (out.Tangent(0.0) - in.path.Tangent(0.0)) * leg.corner.PlainBow(cut);
     span.report.deviation_mm = leg.corner.PlainDeviation(cut);
     return;
   }
@@ -190,12 +213,12 @@ void MotionChain::MakeCurve(Span& span, const Leg& leg, double cut) {
   const CornerLength length(curve);
   span.curve_length = length.total();
   span.curve_middle = curve.At(length.ParameterAt(curve, 0.5 * span.curve_length));
-  span.report.deviation_mm = curve.DistanceFrom(in.path.to().tip);
+  span.report.deviation_mm = curve.DistanceFrom(in.path.to().point);
 }
 
 // The curve between the place at the distance `cut` before the corner and that behind it; both may
 // lie some moves away.
-CornerCurve MotionChain::CurveAround(const Leg& leg, double cut, bool& head_steady) {
+CornerCurve SpanStage::CurveAround(const Leg& leg, double cut, bool& head_steady) {
   Number before = leg.last_move;
   double left = cut;
   while (left > moves_[before].path.length()) {
@@ -219,7 +242,7 @@ CornerCurve MotionChain::CurveAround(const Leg& leg, double cut, bool& head_stea
 
 // A bend that cannot be passed at OVERSH x Vb but at `steady` may be faster where it is less tight,
 // up to `most`. motion.md 5.4
-void MotionChain::ChooseStretches(Span& span, const Leg& leg, double steady, double most) {
+void SpanStage::ChooseStretches(Span& span, const Leg& leg, double steady, double most) {
   if (!machine_.ramps_across_passages || !axes_follow_ramps_ || !span.head_steady) return;
   if (steady >= leg.limit * (1.0 - kSameLimit)) return;
   span.in_stretches = true;
@@ -239,7 +262,7 @@ void MotionChain::ChooseStretches(Span& span, const Leg& leg, double steady, dou
 }
 
 // Those of every move that a curve touches.
-PathLimits MotionChain::LimitsOnCurve(Number corner_move, double cut) {
+PathLimits SpanStage::LimitsOnCurve(Number corner_move, double cut) {
   PathLimits limits = moves_[corner_move].limits;
   const auto lower = [&](const Move& move) {
     limits.acceleration = std::min(limits.acceleration, move.limits.acceleration);
@@ -258,7 +281,7 @@ PathLimits MotionChain::LimitsOnCurve(Number corner_move, double cut) {
   return limits;
 }
 
-PathLimits MotionChain::LimitsInStretches(const Span& span) {
+PathLimits SpanStage::LimitsInStretches(const Span& span) {
   PathLimits limits = LimitsOnCurve(span.corner_move, span.report.cut_mm);
   limits.speed = span.stretches.open;
   if (span.head_steady && axes_follow_ramps_) return limits;
@@ -277,13 +300,13 @@ PathLimits MotionChain::LimitsInStretches(const Span& span) {
 }
 
 // How fast the curve behind a span may be passed from place to place. Precondition: it is plain.
-BendSpeeds MotionChain::SpeedsAlong(const Span& span) {
+BendSpeeds SpanStage::SpeedsAlong(const Span& span) {
   Corner corner;
   corner.Assign(moves_[span.corner_move].path, moves_[span.corner_move + 1].path);
   return corner.PlainSpeeds(span.report.cut_mm, span.stretches.open, machine_);
 }
 
-MotionChain::Stretches MotionChain::StretchesIn(const Span& span) {
+SpanStage::Stretches SpanStage::StretchesIn(const Span& span) {
   const BendStretches& most = span.stretches;
   Stretches stretches;
   for (std::size_t k = 0; k < most.count; ++k) {
@@ -301,7 +324,7 @@ MotionChain::Stretches MotionChain::StretchesIn(const Span& span) {
 }
 
 // The knots of a span from its `first` on.
-void MotionChain::PushKnots(const Span& span, std::size_t first) {
+void SpanStage::PushKnots(const Span& span, std::size_t first) {
   if (first == 0) {
     const bool through = span.report.passage == Passage::kThrough;
     speeds_.Push(span.length, span.limits, through ? span.report.wanted_speed : span.cap);
@@ -320,7 +343,7 @@ void MotionChain::PushKnots(const Span& span, std::size_t first) {
 // A chain of steady bends that use up the lines between them has one speed, which its slowest bend
 // sets: nothing is decided before its end. Where the window is full, its bends are passed with
 // changing speed, where need be a little slower, so that what comes later need not be known.
-void MotionChain::LetBendsVary() {
+void SpanStage::LetBendsVary() {
   SeeDecided();
   std::size_t known = speeds_.final_count() - decided_knots_;  // knots of the span
   speeds_.DropOpen();
@@ -337,7 +360,7 @@ void MotionChain::LetBendsVary() {
 
 // The legs from the start of the run to `last_leg`, less what the curves at both ends take, become
 // spans.
-void MotionChain::CloseRun(Number last_leg, double total, const Span& closing, double speed_cap) {
+void SpanStage::CloseRun(Number last_leg, double total, const Span& closing, double speed_cap) {
   const double begin = run_cut_;
   const double end = std::max(total - closing.report.cut_mm, begin);
   double leg_start = 0.0;
@@ -392,6 +415,33 @@ void MotionChain::CloseRun(Number last_leg, double total, const Span& closing, d
     span.cap = span.report.passage == Passage::kThrough ? legs_[closes ? last_leg : k].limit : cap;
     PushKnots(span, 0);
     if (closes) break;
+  }
+}
+
+void SpanStage::AcceptHalfOfSpans() {
+  LetBendsVary();
+  speeds_.Settle();
+  speeds_.Accept(speeds_.size() / 2);
+}
+
+void SpanStage::DumpSpans(std::string& out) const {
+  std::size_t knot = 0;
+  for (Number k = spans_.first(); k < spans_.end(); ++k) {
+    const Span& span = spans_[k];
+    out += "span " + std::to_string(k) + ": moves " + std::to_string(span.first_move) + " from " +
+           FixedText(span.x_from, 3) + " to " + std::to_string(span.last_move) + " at " +
+           FixedText(span.x_to, 3) + ", length " + FixedText(span.length, 3) + ", " +
+           std::string(NameOf(span.report.passage)) + " at most " + FixedText(span.cap, 3);
+    if (IsBlend(span.report.passage)) {
+      out += ", cut " + FixedText(span.report.cut_mm, 3) + ", curve " +
+             FixedText(span.curve_length, 3);
+      if (span.in_stretches) out += " in " + std::to_string(span.curve_knots()) + " stretches";
+    }
+    out += knot + span.knots() <= speeds_.final_count()
+               ? ", passed at " + FixedText(speeds_.speed(knot), 3)
+               : std::string(", open");
+    knot += span.knots();
+    out += '\n';
   }
 }
 

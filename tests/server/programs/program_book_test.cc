@@ -1,4 +1,4 @@
-#include "server/programs/program_shelf.h"
+#include "server/programs/program_book.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,37 +16,37 @@ std::optional<ErrorCode> CodeOf(const ProgramResult<T>& result) {
   return result ? std::nullopt : std::optional(result.error.error.code);
 }
 
-class ProgramShelfTest : public testing::Test {
+class ProgramBookTest : public testing::Test {
  protected:
-  using Put = ProgramShelf::Put;
+  using Put = ProgramBook::Put;
   static std::string Name(int number, const std::string& machine = "optimo-1") {
     return "machines/" + machine + "/programs/" + std::to_string(number);
   }
   ProgramResult<v1::Program> Store(int number, const std::string& source,
                                    const std::string& etag = {}) {
-    return shelf.Store(
+    return programs.Store(
         {.name = Name(number), .file_name = "part.S", .etag = etag, .bytes = source});
   }
   ProgramResult<v1::Program> StoreExecutable(int number, const std::string& bytes,
                                              const std::string& etag = {}) {
-    return shelf.Store(
+    return programs.Store(
         {.name = Name(number), .form = v1::PROGRAM_FORM_EXECUTABLE, .etag = etag, .bytes = bytes});
   }
-  v1::Program Get(int number) { return Must(shelf.Get(Name(number))); }
+  v1::Program Get(int number) { return Must(programs.Get(Name(number))); }
   Status Delete(int number, const std::string& etag = {}) {
     v1::DeleteProgramRequest request;
     request.set_name(Name(number));
     request.set_etag(etag);
-    return shelf.Delete(request);
+    return programs.Delete(request);
   }
 
   ServerBed bed;
   Config config;
-  ProgramShelf shelf{bed.store(), config};
+  ProgramBook programs{bed.store(), config};
 };
 
 // OPT-1.10: objects under numbers 1 to 99.
-TEST_F(ProgramShelfTest, StoresSourceAsObjectAndGivesBothBack) {
+TEST_F(ProgramBookTest, StoresSourceAsObjectAndGivesBothBack) {
   const auto stored = Store(45, "SPEED 5\nSTOP\n");
   ASSERT_TRUE(stored) << stored.error.error.detail;
   EXPECT_EQ(stored.value->name(), Name(45));
@@ -54,44 +54,44 @@ TEST_F(ProgramShelfTest, StoresSourceAsObjectAndGivesBothBack) {
   EXPECT_EQ(stored.value->file_name(), "part.S");
   EXPECT_EQ(stored.value->source_bytes(), 13);
   EXPECT_FALSE(stored.value->has_executable_bytes());
-  const auto source = Must(shelf.Read(Name(45), v1::PROGRAM_FORM_SOURCE));
+  const auto source = Must(programs.Read(Name(45), v1::PROGRAM_FORM_SOURCE));
   EXPECT_EQ(source.bytes, "SPEED 5\nSTOP\n");
   EXPECT_EQ(source.file_name, "part.S");
-  const auto object = Must(shelf.Read(Name(45), v1::PROGRAM_FORM_OBJECT));
+  const auto object = Must(programs.Read(Name(45), v1::PROGRAM_FORM_OBJECT));
   EXPECT_EQ(object.file_name, "part.O");
   EXPECT_EQ(object.bytes, ObjectOf("SPEED 5\nSTOP\n"));
   // The object stored elsewhere decompiles to a source that compiles to it again.
   ASSERT_TRUE(
-      shelf.Store({.name = Name(46), .form = v1::PROGRAM_FORM_OBJECT, .bytes = object.bytes}));
-  const auto decompiled = Must(shelf.Read(Name(46), v1::PROGRAM_FORM_SOURCE));
+      programs.Store({.name = Name(46), .form = v1::PROGRAM_FORM_OBJECT, .bytes = object.bytes}));
+  const auto decompiled = Must(programs.Read(Name(46), v1::PROGRAM_FORM_SOURCE));
   EXPECT_EQ(decompiled.file_name, "46.S");
   EXPECT_EQ(ObjectOf(decompiled.bytes), object.bytes);
 }
 
 // OPT-1.10: 0, 100 and 200 are no program numbers.
-TEST_F(ProgramShelfTest, RefusesOtherNumbersAndBadBytes) {
+TEST_F(ProgramBookTest, RefusesOtherNumbersAndBadBytes) {
   for (const int number : {0, 100, 200, -1})
     EXPECT_EQ(CodeOf(Store(number, "STOP\n")), ErrorCode::kProgramNumber);
   EXPECT_EQ(CodeOf(Store(1, "")), ErrorCode::kCellEmptyProgram);
   config.limit_program_bytes = 1024;
   EXPECT_EQ(CodeOf(Store(1, std::string(1025, ';'))), ErrorCode::kCellTooLarge);
-  EXPECT_EQ(CodeOf(shelf.Store({.name = "machines/none/programs/1", .bytes = "STOP\n"})),
+  EXPECT_EQ(CodeOf(programs.Store({.name = "machines/none/programs/1", .bytes = "STOP\n"})),
             ErrorCode::kCellUnknownMachine);
-  EXPECT_EQ(CodeOf(shelf.Store({.name = "programs/1", .bytes = "STOP\n"})),
+  EXPECT_EQ(CodeOf(programs.Store({.name = "programs/1", .bytes = "STOP\n"})),
             ErrorCode::kCellInvalidArgument);
-  EXPECT_EQ(CodeOf(shelf.Store({.name = Name(1), .file_name = "a.rml", .bytes = "IN;"})),
+  EXPECT_EQ(CodeOf(programs.Store({.name = Name(1), .file_name = "a.rml", .bytes = "IN;"})),
             ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(CodeOf(programs.Store(
+                {.name = Name(1), .form = v1::PROGRAM_FORM_OBJECT, .bytes = "no object"})),
+            ErrorCode::kObjectCorrupt);
   EXPECT_EQ(
-      CodeOf(shelf.Store({.name = Name(1), .form = v1::PROGRAM_FORM_OBJECT, .bytes = "no object"})),
-      ErrorCode::kObjectCorrupt);
-  EXPECT_EQ(
-      CodeOf(shelf.Store({.name = Name(1), .title = std::string(201, 't'), .bytes = "STOP\n"})),
+      CodeOf(programs.Store({.name = Name(1), .title = std::string(201, 't'), .bytes = "STOP\n"})),
       ErrorCode::kCellInvalidArgument);
   EXPECT_EQ(Must(bed.store().ListPrograms("optimo-1", 0, 100)).size(), 0U);
 }
 
 // A program with errors is not stored, and the one that was there stays with its executable.
-TEST_F(ProgramShelfTest, AProgramWithErrorsChangesNothing) {
+TEST_F(ProgramBookTest, AProgramWithErrorsChangesNothing) {
   ASSERT_TRUE(Store(45, "STOP\n"));
   ASSERT_TRUE(StoreExecutable(145, ExecutableOf(45, "STOP\n")));
   const v1::Program before = Get(45);
@@ -103,17 +103,17 @@ TEST_F(ProgramShelfTest, AProgramWithErrorsChangesNothing) {
   EXPECT_EQ(Get(45).SerializeAsString(), before.SerializeAsString());
 }
 
-TEST_F(ProgramShelfTest, AnEtagThatDoesNotFitChangesNothing) {
+TEST_F(ProgramBookTest, AnEtagThatDoesNotFitChangesNothing) {
   const std::string first = Store(45, "STOP\n").value->etag();
   const std::string second = Store(45, "SPEED 5\n", first).value->etag();
   EXPECT_NE(first, second);
   for (const bool validate_only : {true, false}) {
     const auto put = [&](int slot, const std::string& etag) {
-      return CodeOf(shelf.Store({.name = Name(slot),
-                                 .file_name = "a.S",
-                                 .etag = etag,
-                                 .bytes = "SPEED 6\n",
-                                 .validate_only = validate_only}));
+      return CodeOf(programs.Store({.name = Name(slot),
+                                    .file_name = "a.S",
+                                    .etag = etag,
+                                    .bytes = "SPEED 6\n",
+                                    .validate_only = validate_only}));
     };
     EXPECT_EQ(put(45, first), ErrorCode::kCellEtagMismatch);
     EXPECT_EQ(put(45, "none"), ErrorCode::kCellAlreadyExists);
@@ -123,21 +123,21 @@ TEST_F(ProgramShelfTest, AnEtagThatDoesNotFitChangesNothing) {
     EXPECT_EQ(put(45, "junk"), ErrorCode::kCellEtagMismatch);
   }
   EXPECT_EQ(Delete(45, first).error().code, ErrorCode::kCellEtagMismatch);
-  EXPECT_EQ(Must(shelf.Read(Name(45), v1::PROGRAM_FORM_SOURCE)).bytes, "SPEED 5\n");
+  EXPECT_EQ(Must(programs.Read(Name(45), v1::PROGRAM_FORM_SOURCE)).bytes, "SPEED 5\n");
   EXPECT_TRUE(Store(46, "STOP\n", "none"));
   EXPECT_TRUE(Delete(45, second));
 }
 
-TEST_F(ProgramShelfTest, AskingOnlyStoresNothing) {
-  const auto asked =
-      shelf.Store({.name = Name(45), .file_name = "a.S", .bytes = "STOP\n", .validate_only = true});
+TEST_F(ProgramBookTest, AskingOnlyStoresNothing) {
+  const auto asked = programs.Store(
+      {.name = Name(45), .file_name = "a.S", .bytes = "STOP\n", .validate_only = true});
   ASSERT_TRUE(asked);
   EXPECT_GT(asked.value->object_bytes(), 0);
-  EXPECT_EQ(CodeOf(shelf.Get(Name(45))), ErrorCode::kProgramMissing);
+  EXPECT_EQ(CodeOf(programs.Get(Name(45))), ErrorCode::kProgramMissing);
 }
 
 // OPT-10.17, OPT-E.7413: stored, and told of.
-TEST_F(ProgramShelfTest, NumbersUpToSevenAreReserved) {
+TEST_F(ProgramBookTest, NumbersUpToSevenAreReserved) {
   const auto reserved = Store(5, "STOP\n");
   ASSERT_TRUE(reserved);
   ASSERT_EQ(reserved.value->findings().diagnostics_size(), 1);
@@ -146,7 +146,7 @@ TEST_F(ProgramShelfTest, NumbersUpToSevenAreReserved) {
 }
 
 // OPT-1.12: altering or deleting an object deletes its executable, and OPT-1.13: no other one.
-TEST_F(ProgramShelfTest, AnAlteredObjectLosesItsExecutableAndOthersKeepTheirs) {
+TEST_F(ProgramBookTest, AnAlteredObjectLosesItsExecutableAndOthersKeepTheirs) {
   for (const int slot : {32, 44}) {
     ASSERT_TRUE(Store(slot, "STOP\n"));
     ASSERT_TRUE(StoreExecutable(slot + 100, ExecutableOf(slot, "STOP\n")));
@@ -154,18 +154,18 @@ TEST_F(ProgramShelfTest, AnAlteredObjectLosesItsExecutableAndOthersKeepTheirs) {
   }
   ASSERT_TRUE(Store(44, "SPEED 5\nSTOP\n"));
   EXPECT_FALSE(Get(44).has_executable_bytes());
-  EXPECT_EQ(CodeOf(shelf.Get(Name(144))), ErrorCode::kProgramMissing);
+  EXPECT_EQ(CodeOf(programs.Get(Name(144))), ErrorCode::kProgramMissing);
   EXPECT_TRUE(Get(32).has_executable_bytes());
-  EXPECT_TRUE(shelf.Get(Name(132)));
+  EXPECT_TRUE(programs.Get(Name(132)));
   ASSERT_TRUE(Delete(44));
-  EXPECT_EQ(CodeOf(shelf.Get(Name(44))), ErrorCode::kProgramMissing);
+  EXPECT_EQ(CodeOf(programs.Get(Name(44))), ErrorCode::kProgramMissing);
   EXPECT_TRUE(Get(32).has_executable_bytes());
   ASSERT_TRUE(Delete(32));
-  EXPECT_EQ(CodeOf(shelf.Get(Name(132))), ErrorCode::kProgramMissing);
+  EXPECT_EQ(CodeOf(programs.Get(Name(132))), ErrorCode::kProgramMissing);
 }
 
 // OPT-1.14: an executable can be deleted on its own; the object stays.
-TEST_F(ProgramShelfTest, AnExecutableIsDeletedOnItsOwn) {
+TEST_F(ProgramBookTest, AnExecutableIsDeletedOnItsOwn) {
   const std::string etag = Store(32, "STOP\n").value->etag();
   ASSERT_TRUE(StoreExecutable(132, ExecutableOf(32, "STOP\n")));
   EXPECT_EQ(Delete(132, "99").error().code, ErrorCode::kCellEtagMismatch);
@@ -178,7 +178,7 @@ TEST_F(ProgramShelfTest, AnExecutableIsDeletedOnItsOwn) {
 }
 
 // OPT-1.15: an executable made off-line is stored under n + 100 if object n is there.
-TEST_F(ProgramShelfTest, AnExecutableNeedsItsObject) {
+TEST_F(ProgramBookTest, AnExecutableNeedsItsObject) {
   const std::string executable = ExecutableOf(32, "STOP\n");
   EXPECT_EQ(CodeOf(StoreExecutable(132, executable)), ErrorCode::kProgramMissing);
   EXPECT_EQ(CodeOf(StoreExecutable(200, executable)), ErrorCode::kProgramNumber);
@@ -194,55 +194,56 @@ TEST_F(ProgramShelfTest, AnExecutableNeedsItsObject) {
   EXPECT_EQ(Get(132).name(), Name(132));
   EXPECT_EQ(CodeOf(StoreExecutable(132, executable, "none")), ErrorCode::kCellAlreadyExists);
   EXPECT_TRUE(StoreExecutable(32, executable));  // the form says which one is meant
-  const auto read = Must(shelf.Read(Name(132), v1::PROGRAM_FORM_UNSPECIFIED));
+  const auto read = Must(programs.Read(Name(132), v1::PROGRAM_FORM_UNSPECIFIED));
   EXPECT_EQ(read.bytes, executable);
   EXPECT_EQ(read.form, v1::PROGRAM_FORM_EXECUTABLE);
   EXPECT_EQ(Get(32).etag(), etag);
 }
 
-TEST_F(ProgramShelfTest, AFormIsOneThatThereIs) {
+TEST_F(ProgramBookTest, AFormIsOneThatThereIs) {
   ASSERT_TRUE(Store(45, "STOP\n"));
   constexpr auto kNone = static_cast<v1::ProgramForm>(99);
-  EXPECT_EQ(CodeOf(shelf.Read(Name(45), kNone)), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(CodeOf(programs.Read(Name(45), kNone)), ErrorCode::kCellInvalidArgument);
   for (const v1::ProgramForm form : {kNone, v1::PROGRAM_FORM_LISTING}) {
-    EXPECT_EQ(CodeOf(shelf.Store({.name = Name(46), .form = form, .bytes = "STOP\n"})),
+    EXPECT_EQ(CodeOf(programs.Store({.name = Name(46), .form = form, .bytes = "STOP\n"})),
               ErrorCode::kCellInvalidArgument);
   }
 }
 
 // Codes of an Optimo are of an Optimo: a mill has none for slots.
-TEST_F(ProgramShelfTest, SlotsHaveTheCodesOfTheirMachine) {
+TEST_F(ProgramBookTest, SlotsHaveTheCodesOfTheirMachine) {
   for (const int number : {0, 100, 107, 199}) {
-    EXPECT_EQ(CodeOf(shelf.Get(Name(number, "mill-1"))), ErrorCode::kCellInvalidArgument) << number;
+    EXPECT_EQ(CodeOf(programs.Get(Name(number, "mill-1"))), ErrorCode::kCellInvalidArgument)
+        << number;
   }
-  EXPECT_EQ(CodeOf(shelf.Get(Name(7, "mill-1"))), ErrorCode::kCellNotFound);
-  EXPECT_EQ(CodeOf(shelf.Read(Name(7, "mill-1"), v1::PROGRAM_FORM_SOURCE)),
+  EXPECT_EQ(CodeOf(programs.Get(Name(7, "mill-1"))), ErrorCode::kCellNotFound);
+  EXPECT_EQ(CodeOf(programs.Read(Name(7, "mill-1"), v1::PROGRAM_FORM_SOURCE)),
             ErrorCode::kCellNotFound);
-  EXPECT_EQ(CodeOf(shelf.Get(Name(100))), ErrorCode::kProgramNumber);
-  EXPECT_EQ(CodeOf(shelf.Get(Name(7))), ErrorCode::kProgramMissing);
-  EXPECT_EQ(CodeOf(shelf.Get(Name(100, "none"))), ErrorCode::kCellUnknownMachine);
+  EXPECT_EQ(CodeOf(programs.Get(Name(100))), ErrorCode::kProgramNumber);
+  EXPECT_EQ(CodeOf(programs.Get(Name(7))), ErrorCode::kProgramMissing);
+  EXPECT_EQ(CodeOf(programs.Get(Name(100, "none"))), ErrorCode::kCellUnknownMachine);
 }
 
 // A mill keeps the stream itself, and has no executables.
-TEST_F(ProgramShelfTest, AStreamIsItsOwnObject) {
+TEST_F(ProgramBookTest, AStreamIsItsOwnObject) {
   const auto stored =
-      shelf.Store({.name = Name(7, "mill-1"), .file_name = "a.rml", .bytes = "IN;PU0,0;"});
+      programs.Store({.name = Name(7, "mill-1"), .file_name = "a.rml", .bytes = "IN;PU0,0;"});
   ASSERT_TRUE(stored);
   EXPECT_FALSE(stored.value->has_source_bytes());  // kept once
-  EXPECT_EQ(Must(shelf.Read(Name(7, "mill-1"), v1::PROGRAM_FORM_SOURCE)).bytes, "IN;PU0,0;");
-  EXPECT_EQ(Must(shelf.Read(Name(7, "mill-1"), v1::PROGRAM_FORM_SOURCE)).file_name, "a.rml");
-  EXPECT_EQ(CodeOf(shelf.Store({.name = Name(107, "mill-1"), .bytes = "IN;"})),
+  EXPECT_EQ(Must(programs.Read(Name(7, "mill-1"), v1::PROGRAM_FORM_SOURCE)).bytes, "IN;PU0,0;");
+  EXPECT_EQ(Must(programs.Read(Name(7, "mill-1"), v1::PROGRAM_FORM_SOURCE)).file_name, "a.rml");
+  EXPECT_EQ(CodeOf(programs.Store({.name = Name(107, "mill-1"), .bytes = "IN;"})),
             ErrorCode::kCellInvalidArgument);
-  EXPECT_EQ(CodeOf(shelf.Store(
+  EXPECT_EQ(CodeOf(programs.Store(
                 {.name = Name(7, "mill-1"), .form = v1::PROGRAM_FORM_EXECUTABLE, .bytes = "IN;"})),
             ErrorCode::kCellInvalidArgument);
   ASSERT_TRUE(
-      shelf.Store({.name = Name(8, "mill-1"), .form = v1::PROGRAM_FORM_OBJECT, .bytes = "IN;"}));
-  EXPECT_EQ(Must(shelf.Read(Name(8, "mill-1"), v1::PROGRAM_FORM_SOURCE)).file_name,
+      programs.Store({.name = Name(8, "mill-1"), .form = v1::PROGRAM_FORM_OBJECT, .bytes = "IN;"}));
+  EXPECT_EQ(Must(programs.Read(Name(8, "mill-1"), v1::PROGRAM_FORM_SOURCE)).file_name,
             "8.RML");  // as the family writes its extension
 }
 
-TEST_F(ProgramShelfTest, ListsSlotsInPages) {
+TEST_F(ProgramBookTest, ListsSlotsInPages) {
   for (const int slot : {99, 1, 45, 44, 7}) ASSERT_TRUE(Store(slot, "STOP\n"));
   v1::ListProgramsRequest request;
   request.set_parent("machines/optimo-1");
@@ -250,7 +251,7 @@ TEST_F(ProgramShelfTest, ListsSlotsInPages) {
   std::vector<std::string> names;
   int pages = 0;
   for (; pages < 10; ++pages) {
-    const v1::ListProgramsResponse page = Must(shelf.List(request));
+    const v1::ListProgramsResponse page = Must(programs.List(request));
     for (const v1::Program& program : page.programs()) names.push_back(program.name());
     request.set_page_token(page.next_page_token());
     if (page.next_page_token().empty()) break;
@@ -259,33 +260,33 @@ TEST_F(ProgramShelfTest, ListsSlotsInPages) {
   EXPECT_THAT(names, testing::ElementsAre(Name(1), Name(7), Name(44), Name(45), Name(99)));
   for (const std::string token : {"x", "0", "100", "-1", "4294967297", "18446744073709551617"}) {
     request.set_page_token(token);
-    EXPECT_EQ(CodeOf(shelf.List(request)), ErrorCode::kCellBadPageToken) << token;
+    EXPECT_EQ(CodeOf(programs.List(request)), ErrorCode::kCellBadPageToken) << token;
   }
   request.clear_page_token();
   request.set_page_size(-1);
-  EXPECT_EQ(CodeOf(shelf.List(request)), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(CodeOf(programs.List(request)), ErrorCode::kCellInvalidArgument);
   request.set_page_size(0);
-  EXPECT_EQ(Must(shelf.List(request)).programs_size(), 5);
+  EXPECT_EQ(Must(programs.List(request)).programs_size(), 5);
   request.set_parent("machines/none");
-  EXPECT_EQ(CodeOf(shelf.List(request)), ErrorCode::kCellUnknownMachine);
+  EXPECT_EQ(CodeOf(programs.List(request)), ErrorCode::kCellUnknownMachine);
 }
 
-TEST_F(ProgramShelfTest, ChecksWithoutAMachineToo) {
+TEST_F(ProgramBookTest, ChecksWithoutAMachineToo) {
   v1::ProgramText text;
   text.set_file_name("a.S");
   text.set_content("SPEED 101\n");
-  EXPECT_FALSE(Must(shelf.Translate("", "", text, true)).ok);
-  EXPECT_FALSE(Must(shelf.Translate("optimo", "", text, true)).ok);
-  EXPECT_FALSE(Must(shelf.Translate("", "machines/optimo-1", text, true)).ok);
+  EXPECT_FALSE(Must(programs.Translate("", "", text, true)).ok);
+  EXPECT_FALSE(Must(programs.Translate("optimo", "", text, true)).ok);
+  EXPECT_FALSE(Must(programs.Translate("", "machines/optimo-1", text, true)).ok);
   text.set_content("SPEED 100\n");
-  EXPECT_TRUE(Must(shelf.Translate("", "", text, true)).ok);
-  EXPECT_EQ(CodeOf(shelf.Translate("lathe", "", text, true)), ErrorCode::kCellUnknownFamily);
-  EXPECT_EQ(CodeOf(shelf.Translate("", "machines/none", text, true)),
+  EXPECT_TRUE(Must(programs.Translate("", "", text, true)).ok);
+  EXPECT_EQ(CodeOf(programs.Translate("lathe", "", text, true)), ErrorCode::kCellUnknownFamily);
+  EXPECT_EQ(CodeOf(programs.Translate("", "machines/none", text, true)),
             ErrorCode::kCellUnknownMachine);
   text.set_file_name("a.txt");
-  EXPECT_EQ(CodeOf(shelf.Translate("", "", text, true)), ErrorCode::kCellFamilyUnknownFromName);
+  EXPECT_EQ(CodeOf(programs.Translate("", "", text, true)), ErrorCode::kCellFamilyUnknownFromName);
   text.clear_content();
-  EXPECT_EQ(CodeOf(shelf.Translate("optimo", "", text, true)), ErrorCode::kCellEmptyProgram);
+  EXPECT_EQ(CodeOf(programs.Translate("optimo", "", text, true)), ErrorCode::kCellEmptyProgram);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "rmlcell/v1/program.pb.h"
-#include "server/programs/program_shelf.h"
+#include "server/programs/program_book.h"
 #include "storage/store.h"
 
 namespace rmlcell::server {
@@ -12,9 +12,9 @@ namespace rmlcell::server {
 // Errors everywhere: CellInvalidArgument for a name that is none, CellUnknownMachine,
 // ProgramMissing (7102) for a slot that is empty, CellEmptyProgram; those of a method beyond that
 // are listed with it.
-class MemoryOffice {
+class MemoryTools {
  public:
-  MemoryOffice(storage::Store& store, ProgramShelf& shelf) : store_(store), shelf_(shelf) {}
+  MemoryTools(storage::Store& store, ProgramBook& programs) : store_(store), programs_(programs) {}
 
   // Errors: CellBadText for what is no text, CellInvalidArgument for a family whose programs are
   // streams.
@@ -44,7 +44,7 @@ class MemoryOffice {
   Result<StoredObject> ObjectOf(const std::string& name);
 
   storage::Store& store_;
-  ProgramShelf& shelf_;
+  ProgramBook& programs_;
 };
 
 }  // namespace rmlcell::server

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "clients/cli/office.h"
+#include "clients/cli/text_tools.h"
 #include "clients/cli/verbs.h"
 #include "clients/lsp/stdio.h"
 
@@ -24,7 +24,7 @@ CLI::App* FileVerb(CLI::App& app, const char* name, const char* text, const char
 
 }  // namespace
 
-void AddOfficeVerbs(CLI::App& app, int& exit_code) {
+void AddTextToolVerbs(CLI::App& app, int& exit_code) {
   {
     auto arguments = std::make_shared<ToolOptions>();
     auto map = std::make_shared<bool>(false);

@@ -5,7 +5,7 @@
 
 namespace rmlcell::cli {
 
-// The tools of the programming office: they read and write files of Optimo programs and need no
+// The off-line tools: they read and write files of Optimo programs and need no
 // server. An `output` of "-" is standard output; empty: the name that the tool gives it. Files are
 // written whole or not at all.
 

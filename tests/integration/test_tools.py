@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The tools of the programming office, from the command line and over gRPC."""
+"""The off-line tools, from the command line and over gRPC."""
 import datetime
 import json
 import math

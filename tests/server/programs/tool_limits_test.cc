@@ -6,8 +6,8 @@
 
 #include "engine/optimo/language/linker.h"
 #include "server/base/config.h"
-#include "server/programs/memory_office.h"
-#include "server/programs/program_office.h"
+#include "server/programs/memory_tools.h"
+#include "server/programs/text_tools.h"
 #include "tests/server/engine_bytes.h"
 #include "tests/server/server_bed.h"
 
@@ -16,7 +16,7 @@ namespace {
 
 using testing::ElementsAre;
 
-class OfficeLimits : public testing::Test {
+class ToolLimits : public testing::Test {
  protected:
   struct LinkPart {
     int slot;
@@ -39,7 +39,7 @@ class OfficeLimits : public testing::Test {
   }
   // Why it was refused, or the code of the first finding, or nothing.
   std::string Linked(const v1::LinkProgramRequest& request) {
-    const auto linked = office.Link(request);
+    const auto linked = tools.Link(request);
     if (!linked) return "refused " + CodeText(linked.error().code);
     EXPECT_EQ(linked->executable().empty(), !linked->findings().ok());
     return linked->findings().diagnostics_size() > 0 ? linked->findings().diagnostics(0).code()
@@ -51,12 +51,12 @@ class OfficeLimits : public testing::Test {
 
   ServerBed bed;
   Config config;
-  ProgramShelf shelf{bed.store(), config};
-  MemoryOffice office{bed.store(), shelf};
+  ProgramBook programs{bed.store(), config};
+  MemoryTools tools{bed.store(), programs};
 };
 
 // OPT-1.10: numbers 1 to 99, of the program and of each part.
-TEST_F(OfficeLimits, SlotsOfALink) {
+TEST_F(ToolLimits, SlotsOfALink) {
   for (const int slot : {1, 99}) EXPECT_EQ(Linked(LinkOf(slot, {{slot, "STOP\n"}})), "") << slot;
   for (const int slot : {-1, 0, 100}) {
     const std::string refused = "refused " + CodeText(ErrorCode::kProgramNumber);
@@ -72,7 +72,7 @@ TEST_F(OfficeLimits, SlotsOfALink) {
   EXPECT_EQ(Linked(LinkOf(1, {{1, object, true}})), "");
 }
 
-TEST_F(OfficeLimits, MachinesOfALink) {
+TEST_F(ToolLimits, MachinesOfALink) {
   const auto linked = [&](const std::string& machine) {
     return Linked(LinkOf(1, {{1, "STOP\n"}}, machine));
   };
@@ -85,7 +85,7 @@ TEST_F(OfficeLimits, MachinesOfALink) {
 }
 
 // OPT-9.02: executables smaller than the limit of the machine; OPT-1.08: objects up to theirs.
-TEST_F(OfficeLimits, AMachineHasLimitsOfItsOwn) {
+TEST_F(ToolLimits, AMachineHasLimitsOfItsOwn) {
   std::string long_program;
   for (int i = 0; i < 40; ++i) long_program += "VI[2] = VI[3]\n";
   const std::string bytes = ObjectOf(long_program);
@@ -107,7 +107,7 @@ TEST_F(OfficeLimits, AMachineHasLimitsOfItsOwn) {
 }
 
 // OPT-9.19: the rotary table is built into the control that has one.
-TEST_F(OfficeLimits, ARotaryTableIsNoMissingFunction) {
+TEST_F(ToolLimits, ARotaryTableIsNoMissingFunction) {
   Machine("table", {{"ROTARY_TABLE", "ON"}});
   const std::vector<LinkPart> parts = {{1, "FUNCTION 99 (90.)\n"}};
   EXPECT_EQ(Linked(LinkOf(1, parts, "machines/table")), "");
@@ -116,12 +116,12 @@ TEST_F(OfficeLimits, ARotaryTableIsNoMissingFunction) {
 }
 
 // What is sent goes before what is stored, a source as well as an object.
-TEST_F(OfficeLimits, ALinkTakesWhatIsSentFirst) {
+TEST_F(ToolLimits, ALinkTakesWhatIsSentFirst) {
   Must(
       bed.store().PutPrograms("optimo-1", {{.slot = 44, .object = ObjectOf("FUNCTION 45\n")}}, {}));
   const auto functions = [&](const LinkPart& part) {
     const auto linked =
-        Must(office.Link(LinkOf(1, {{1, "FUNCTION 44\n"}, part}, "machines/optimo-1")));
+        Must(tools.Link(LinkOf(1, {{1, "FUNCTION 44\n"}, part}, "machines/optimo-1")));
     EXPECT_TRUE(linked.findings().ok());
     return std::vector<int>(linked.functions().begin(), linked.functions().end());
   };
@@ -131,7 +131,7 @@ TEST_F(OfficeLimits, ALinkTakesWhatIsSentFirst) {
 }
 
 // DiffProgramsRequest: names of programs that are there, texts that are not empty.
-TEST_F(OfficeLimits, SidesOfAComparison) {
+TEST_F(ToolLimits, SidesOfAComparison) {
   Must(bed.store().PutPrograms("optimo-1", {{.slot = 45, .object = ObjectOf("STOP\n")}}, {}));
   const auto compared = [&](const std::string& name) {
     v1::DiffProgramsRequest request;
@@ -139,7 +139,7 @@ TEST_F(OfficeLimits, SidesOfAComparison) {
     request.mutable_before()->mutable_text()->set_form(v1::PROGRAM_FORM_OBJECT);
     request.mutable_before()->mutable_text()->set_content(ObjectOf("STOP\n"));
     request.mutable_after()->set_name(name);
-    const auto diff = office.Diff(request);
+    const auto diff = tools.Diff(request);
     if (!diff) return CodeText(diff.error.error.code);
     return std::string(diff.value->equal() ? "equal" : "different");
   };
@@ -150,13 +150,13 @@ TEST_F(OfficeLimits, SidesOfAComparison) {
 }
 
 // An error shows its file, its line and its own code.
-TEST_F(OfficeLimits, AComparisonOfWhatHasErrors) {
+TEST_F(ToolLimits, AComparisonOfWhatHasErrors) {
   v1::DiffProgramsRequest request;
   request.mutable_before()->mutable_text()->set_file_name("old.S");
   request.mutable_before()->mutable_text()->set_content("STOP\n");
   request.mutable_after()->mutable_text()->set_file_name("new.S");
   request.mutable_after()->mutable_text()->set_content("STOP\nSPEED 101\nSPEED 102\n");
-  const auto diff = office.Diff(request);
+  const auto diff = tools.Diff(request);
   ASSERT_FALSE(diff);
   EXPECT_EQ(diff.error.error.code, ErrorCode::kLiteralRange);
   EXPECT_THAT(diff.error.error.detail, testing::StartsWith("new.S line 2: "));

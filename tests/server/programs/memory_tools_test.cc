@@ -1,4 +1,4 @@
-#include "server/programs/memory_office.h"
+#include "server/programs/memory_tools.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,28 +17,28 @@ constexpr const char* kLine =
     "COORD ABSOL\nPATH LIN\nSPEED 10\nMOVE (1000.,900.,-500.,0.,0.)   ; here\n"
     "MOVE (1010.,900.,-500.,0.,0.)\n";
 
-class MemoryOfficeTest : public testing::Test {
+class MemoryToolsTest : public testing::Test {
  protected:
   static std::string Name(int number) {
     return "machines/optimo-1/programs/" + std::to_string(number);
   }
   void Store(int number, const std::string& source, const std::string& file_name = "part.S") {
     const auto stored =
-        shelf.Store({.name = Name(number), .file_name = file_name, .bytes = source});
+        programs.Store({.name = Name(number), .file_name = file_name, .bytes = source});
     ASSERT_TRUE(stored) << stored.error.error.detail;
   }
   void StoreObject(int number, const std::string& object) {
     ASSERT_TRUE(
-        shelf.Store({.name = Name(number), .form = v1::PROGRAM_FORM_OBJECT, .bytes = object}));
+        programs.Store({.name = Name(number), .form = v1::PROGRAM_FORM_OBJECT, .bytes = object}));
   }
   void StoreExecutable(int number, const std::string& bytes) {
-    ASSERT_TRUE(shelf.Store(
+    ASSERT_TRUE(programs.Store(
         {.name = Name(number + 100), .form = v1::PROGRAM_FORM_EXECUTABLE, .bytes = bytes}));
   }
   void Delete(int number) {
     v1::DeleteProgramRequest request;
     request.set_name(Name(number));
-    ASSERT_TRUE(shelf.Delete(request));
+    ASSERT_TRUE(programs.Delete(request));
   }
   static v1::LinkProgramRequest LinkRequest(int slot, const std::map<int, std::string>& programs) {
     v1::LinkProgramRequest request;
@@ -56,7 +56,7 @@ class MemoryOfficeTest : public testing::Test {
     v1::ListStaleExecutablesRequest request;
     request.set_parent(machine);
     std::vector<std::string> lines;
-    const auto listed = Must(office.ListStale(request));
+    const auto listed = Must(tools.ListStale(request));
     const auto number = [](const std::string& name) { return name.substr(name.rfind('/') + 1); };
     for (const v1::StaleExecutable& stale : listed.executables()) {
       for (const v1::StaleExecutable::Part& part : stale.parts()) {
@@ -72,23 +72,23 @@ class MemoryOfficeTest : public testing::Test {
     v1::DecompileProgramRequest request;
     request.set_name(name);
     request.set_object(object);
-    return office.Decompile(request);
+    return tools.Decompile(request);
   }
 
   ServerBed bed;
   Config config;
-  ProgramShelf shelf{bed.store(), config};
-  MemoryOffice office{bed.store(), shelf};
+  ProgramBook programs{bed.store(), config};
+  MemoryTools tools{bed.store(), programs};
 };
 
 // OPT-1.12, OPT-1.13: an altered or deleted FUNCTION, and the program's own object; storing the
 // program again drops its executable.
-TEST_F(MemoryOfficeTest, StaleExecutablesAreNamedWithTheirReasons) {
+TEST_F(MemoryToolsTest, StaleExecutablesAreNamedWithTheirReasons) {
   Store(44, "VI[2]=1\n");
   Store(45, "VI[3]=1\n");
   Store(32, "FUNCTION 45\nFUNCTION 44\n");
   Store(12, "VI[4]=1\n");
-  const auto linked = Must(office.Link([] {
+  const auto linked = Must(tools.Link([] {
     v1::LinkProgramRequest request;
     request.set_slot(32);
     request.set_machine("machines/optimo-1");
@@ -110,14 +110,13 @@ TEST_F(MemoryOfficeTest, StaleExecutablesAreNamedWithTheirReasons) {
   EXPECT_THAT(Stale("machines/mill-1"), ElementsAre());
   v1::ListStaleExecutablesRequest request;
   request.set_parent("machines/none");
-  EXPECT_EQ(CodeOf(office.ListStale(request)), ErrorCode::kCellUnknownMachine);
+  EXPECT_EQ(CodeOf(tools.ListStale(request)), ErrorCode::kCellUnknownMachine);
 }
 
 // OPT-1.15: linked off-line with a FUNCTION that this machine never had.
-TEST_F(MemoryOfficeTest, AFunctionThatWasNeverStoredMakesNothingStale) {
+TEST_F(MemoryToolsTest, AFunctionThatWasNeverStoredMakesNothingStale) {
   Store(32, "FUNCTION 44\n");
-  const auto linked =
-      Must(office.Link(LinkRequest(32, {{32, "FUNCTION 44\n"}, {44, "VI[2]=1\n"}})));
+  const auto linked = Must(tools.Link(LinkRequest(32, {{32, "FUNCTION 44\n"}, {44, "VI[2]=1\n"}})));
   StoreExecutable(32, linked.executable());
   EXPECT_THAT(Stale(), ElementsAre());
   Store(44, "VI[2]=2\n");  // now there is one, and it is another
@@ -125,48 +124,48 @@ TEST_F(MemoryOfficeTest, AFunctionThatWasNeverStoredMakesNothingStale) {
 }
 
 // OPT-9.02: what nobody calls is not compiled.
-TEST_F(MemoryOfficeTest, LinksOnlyWhatIsCalled) {
-  const auto linked = Must(office.Link(
-      LinkRequest(32, {{32, "FUNCTION 44\n"}, {44, "VI[2]=1\n"}, {64, "SPEED 101\n"}})));
+TEST_F(MemoryToolsTest, LinksOnlyWhatIsCalled) {
+  const auto linked = Must(
+      tools.Link(LinkRequest(32, {{32, "FUNCTION 44\n"}, {44, "VI[2]=1\n"}, {64, "SPEED 101\n"}})));
   EXPECT_TRUE(linked.findings().ok());
   EXPECT_EQ(linked.findings().diagnostics_size(), 0);
   EXPECT_FALSE(linked.executable().empty());
   const auto wrong =
-      Must(office.Link(LinkRequest(32, {{32, "FUNCTION 64\n"}, {64, "SPEED 101\n"}})));
+      Must(tools.Link(LinkRequest(32, {{32, "FUNCTION 64\n"}, {64, "SPEED 101\n"}})));
   ASSERT_EQ(wrong.findings().diagnostics_size(), 1);
   EXPECT_EQ(wrong.findings().diagnostics(0).code(), "OPT-E7004");
   EXPECT_TRUE(wrong.executable().empty());
 }
 
 // OPT-9.02: the FUNCTIONs that it needs in order of first use, from the request before the machine.
-TEST_F(MemoryOfficeTest, LinksWhatIsSentAndWhatIsStored) {
+TEST_F(MemoryToolsTest, LinksWhatIsSentAndWhatIsStored) {
   Store(44, "VI[2]=1\n");
   v1::LinkProgramRequest request = LinkRequest(32, {{32, "FUNCTION 45\nFUNCTION 44\n"}});
-  const auto missing = Must(office.Link(request));
+  const auto missing = Must(tools.Link(request));
   EXPECT_EQ(missing.executable(), "");
   EXPECT_FALSE(missing.findings().ok());
   EXPECT_EQ(missing.findings().diagnostics(0).code(), CodeText(ErrorCode::kFunctionMissing));
 
   request = LinkRequest(32, {{32, "FUNCTION 45\nFUNCTION 44\n"}, {45, "VI[3]=1\n"}});
   request.set_machine("machines/optimo-1");
-  const auto linked = Must(office.Link(request));
+  const auto linked = Must(tools.Link(request));
   EXPECT_TRUE(linked.findings().ok());
   EXPECT_THAT(linked.functions(), ElementsAre(45, 44));
 
   request = LinkRequest(32, {{32, "SPEED 101\n"}});
-  const auto wrong = Must(office.Link(request));
+  const auto wrong = Must(tools.Link(request));
   EXPECT_EQ(wrong.executable(), "");
   EXPECT_EQ(wrong.findings().diagnostics(0).place().program(), 32);
 
   *request.add_programs() = request.programs(0);
-  EXPECT_EQ(CodeOf(office.Link(request)), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(CodeOf(tools.Link(request)), ErrorCode::kCellInvalidArgument);
   request.set_slot(100);
-  EXPECT_EQ(CodeOf(office.Link(request)), ErrorCode::kProgramNumber);
+  EXPECT_EQ(CodeOf(tools.Link(request)), ErrorCode::kProgramNumber);
 }
 
 // OPT-8.70: the programmer's own text, comments and blanks included, while the object is that of
 // the text; else what the decompiler writes.
-TEST_F(MemoryOfficeTest, TheProgrammerGetsHisOwnTextBack) {
+TEST_F(MemoryToolsTest, TheProgrammerGetsHisOwnTextBack) {
   const std::string own = "; mine\nspeed   20   ; slow\n";
   Store(45, own, "slow.S");
   const std::string object = ObjectOf(own);
@@ -192,28 +191,28 @@ TEST_F(MemoryOfficeTest, TheProgrammerGetsHisOwnTextBack) {
 }
 
 // OPT-7.91: fixes and what is left; with the parameters of the machine that is named.
-TEST_F(MemoryOfficeTest, FixesATextWithoutStoringIt) {
+TEST_F(MemoryToolsTest, FixesATextWithoutStoringIt) {
   v1::FixProgramRequest request;
   request.mutable_program()->set_file_name("a.S");
   request.mutable_program()->set_content("SPEDE 20 ; slow\nSPEED 101\n");
-  const auto fixed = Must(office.Fix(request));
+  const auto fixed = Must(tools.Fix(request));
   EXPECT_EQ(fixed.content(), "SPEED 20 ; slow\nSPEED 101\n");
   ASSERT_EQ(fixed.fixed_size(), 1);
   EXPECT_EQ(fixed.fixed(0).place().line(), 1);
   EXPECT_FALSE(fixed.findings().ok());
   request.set_machine("machines/none");
-  EXPECT_EQ(CodeOf(office.Fix(request)), ErrorCode::kCellUnknownMachine);
+  EXPECT_EQ(CodeOf(tools.Fix(request)), ErrorCode::kCellUnknownMachine);
   request.clear_machine();
   request.mutable_program()->set_content(ObjectOf("SPEED 20\n"));
-  EXPECT_EQ(CodeOf(office.Fix(request)), ErrorCode::kCellBadText);
+  EXPECT_EQ(CodeOf(tools.Fix(request)), ErrorCode::kCellBadText);
   request.mutable_program()->set_file_name("a.rml");
   request.mutable_program()->set_content("IN;");
-  EXPECT_EQ(CodeOf(office.Fix(request)), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(CodeOf(tools.Fix(request)), ErrorCode::kCellInvalidArgument);
 }
 
 // A text against a stored program: the step, how far its target moved, and the figures of both
 // runs.
-TEST_F(MemoryOfficeTest, ComparesTextsAndStoredPrograms) {
+TEST_F(MemoryToolsTest, ComparesTextsAndStoredPrograms) {
   Store(45, kLine);
   v1::DiffProgramsRequest request;
   request.mutable_before()->set_name(Name(45));
@@ -222,7 +221,7 @@ TEST_F(MemoryOfficeTest, ComparesTextsAndStoredPrograms) {
   request.mutable_after()->mutable_text()->set_file_name("new.S");
   request.mutable_after()->mutable_text()->set_content(moved);
   request.set_picture(true);
-  const auto diff = office.Diff(request);
+  const auto diff = tools.Diff(request);
   ASSERT_TRUE(diff) << diff.error.error.detail;
   EXPECT_FALSE(diff.value->equal());
   ASSERT_EQ(diff.value->steps_size(), 1);
@@ -233,32 +232,32 @@ TEST_F(MemoryOfficeTest, ComparesTextsAndStoredPrograms) {
   EXPECT_THAT(diff.value->picture_svg(), HasSubstr("3.000 mm travel"));  // added
 
   request.mutable_after()->set_name(Name(45));
-  const auto same = office.Diff(request);
+  const auto same = tools.Diff(request);
   ASSERT_TRUE(same);
   EXPECT_TRUE(same.value->equal());
 }
 
 // A loop that never ends is given up, a program with errors is refused with its findings.
-TEST_F(MemoryOfficeTest, ComparisonsEnd) {
+TEST_F(MemoryToolsTest, ComparisonsEnd) {
   v1::DiffProgramsRequest request;
   for (v1::DiffProgramsRequest::Side* side : {request.mutable_before(), request.mutable_after()}) {
     side->mutable_text()->set_file_name("a.S");
     side->mutable_text()->set_content("10 VI[2] = VI[3]\nGOTO 10\n");
   }
-  const auto diff = office.Diff(request);
+  const auto diff = tools.Diff(request);
   ASSERT_TRUE(diff);
   EXPECT_TRUE(diff.value->equal());
   EXPECT_FALSE(diff.value->compared_runs());
   request.mutable_after()->mutable_text()->set_content("SPEED 101\nSPEED 102\n");
-  const auto wrong = office.Diff(request);
+  const auto wrong = tools.Diff(request);
   ASSERT_FALSE(wrong);
   EXPECT_EQ(wrong.error.diagnostics.size(), 2u);
   request.mutable_after()->mutable_text()->set_file_name("a.rml");
-  EXPECT_EQ(office.Diff(request).error.error.code, ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(tools.Diff(request).error.error.code, ErrorCode::kCellInvalidArgument);
   request.mutable_after()->set_name("machines/mill-1/programs/7");
-  EXPECT_EQ(office.Diff(request).error.error.code, ErrorCode::kCellPrecondition);
+  EXPECT_EQ(tools.Diff(request).error.error.code, ErrorCode::kCellPrecondition);
   request.clear_after();
-  EXPECT_EQ(office.Diff(request).error.error.code, ErrorCode::kCellEmptyProgram);
+  EXPECT_EQ(tools.Diff(request).error.error.code, ErrorCode::kCellEmptyProgram);
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
-// The last stage of the chain: spans with their final speeds become motions and marks.
+#include "engine/motion/planner/item_stage.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "engine/motion/planner/motion_chain.h"
+#include "engine/core/number_text.h"
 
 namespace rmlcell::motion {
 namespace {
@@ -13,7 +14,7 @@ constexpr std::size_t kSectionMax = RampPlan::kCellsMax / 3;
 
 }  // namespace
 
-const PlannedItem* MotionChain::Next() {
+const PlannedItem* ItemStage::Next() {
   while (items_.empty()) {
     if (section_left_ == 0) {
       section_left_ = SectionSize();
@@ -29,7 +30,7 @@ const PlannedItem* MotionChain::Next() {
 }
 
 // How many spans are timed together next; 0 when that is not known yet.
-std::size_t MotionChain::SectionSize() {
+std::size_t ItemStage::SectionSize() {
   const std::size_t known = speeds_.final_count();
   if (known <= section_knots_) return 0;
   while (spans_.first() + section_seen_ < spans_.end()) {
@@ -48,16 +49,16 @@ std::size_t MotionChain::SectionSize() {
 }
 
 // A knot that is passed as fast as it may be: the speed has no slope there in any good plan.
-bool MotionChain::EndsSection(const Span& span, std::size_t last_knot) const {
+bool ItemStage::EndsSection(const Span& span, std::size_t last_knot) const {
   if (!machine_.ramps_across_passages || std::isinf(machine_.tip_jerk_mm_s3)) return true;
   constexpr double kReaches = 1.0 - 1e-12;
   if (speeds_.speed(last_knot) >= span.cap * kReaches) return true;
-  const bool varies = span.in_stretches || (span.head_steady && axes_follow_ramps_);
+  const bool varies = span.in_stretches || MayVary(span);
   return IsBlend(span.report.passage) && !varies;
 }
 
 // Times the spans of the section that begins with the oldest one.
-void MotionChain::PlanSection() {
+void ItemStage::PlanSection() {
   // Only a chain that begins moving can be too fast: the passes see to the rest.
   constexpr double kRoom = 1.0 + 1e-9;
   const Span& first = spans_.front();
@@ -102,7 +103,7 @@ void MotionChain::PlanSection() {
 }
 
 // The stretches of the curve behind a span whose own knot is `knot`.
-void MotionChain::AddCurve(const Span& span, std::size_t knot) {
+void ItemStage::AddCurve(const Span& span, std::size_t knot) {
   PathLimits limits = LimitsInStretches(span);
   const Stretches stretches = StretchesIn(span);
   const std::size_t count = span.curve_knots();
@@ -129,7 +130,7 @@ void MotionChain::AddCurve(const Span& span, std::size_t knot) {
 }
 
 // The part of a ramp to `to`, from where the last part ended.
-void MotionChain::TakeRamp(SpeedProfile& speed, const SpeedProfile& ramp, double to) {
+void ItemStage::TakeRamp(SpeedProfile& speed, const SpeedProfile& ramp, double to) {
   if (place_.s == 0.0 && to == ramp.end().s) {
     speed = ramp;
     return;
@@ -138,7 +139,7 @@ void MotionChain::TakeRamp(SpeedProfile& speed, const SpeedProfile& ramp, double
 }
 
 // The ramp of the present cell; another one begins at its beginning.
-const SpeedProfile& MotionChain::PresentRamp() {
+const SpeedProfile& ItemStage::PresentRamp() {
   const std::size_t ramp = ramps_.timing()[section_cell_].ramp;
   if (ramp != place_ramp_) {
     place_ramp_ = ramp;
@@ -148,7 +149,7 @@ const SpeedProfile& MotionChain::PresentRamp() {
 }
 
 // The part of the span to `to` of its length, or to its end.
-void MotionChain::TakePart(SpeedProfile& speed, double to, bool to_end) {
+void ItemStage::TakePart(SpeedProfile& speed, double to, bool to_end) {
   if (alone_) return TakeRamp(speed, lone_, to_end ? spans_.front().length : to);
   const SpeedProfile& ramp = PresentRamp();
   const RampPlan::Timing& timing = ramps_.timing()[section_cell_];
@@ -156,7 +157,7 @@ void MotionChain::TakePart(SpeedProfile& speed, double to, bool to_end) {
 }
 
 // The part of a curve to `to` of its length, or to where another ramp begins: that is `to` then.
-void MotionChain::TakeStretches(SpeedProfile& speed, CurveCells& cells, double& to) {
+void ItemStage::TakeStretches(SpeedProfile& speed, CurveCells& cells, double& to) {
   const SpeedProfile& ramp = PresentRamp();
   double on_ramp_to = 0.0;
   for (bool more = true; more;) {
@@ -178,8 +179,8 @@ void MotionChain::TakeStretches(SpeedProfile& speed, CurveCells& cells, double& 
 
 // Motions are made where they wait to be taken: they are large. The slot holds an old one, so every
 // member is set here or by the caller (path, speed).
-[[gnu::always_inline]] inline PlannedMotion& MotionChain::NewMotion(const Span& span,
-                                                                    const Move& source) {
+[[gnu::always_inline]] inline PlannedMotion& ItemStage::NewMotion(const Span& span,
+                                                                  const Move& source) {
   PlannedItem& slot = items_.PushSlot();
   auto* motion = std::get_if<PlannedMotion>(&slot);
   if (motion == nullptr) motion = &slot.emplace<PlannedMotion>();
@@ -191,8 +192,8 @@ void MotionChain::TakeStretches(SpeedProfile& speed, CurveCells& cells, double& 
   return *motion;
 }
 
-inline void MotionChain::FinishMotion(const Span& span, Number move, PlannedMotion& motion,
-                                      bool ends_move) {
+inline void ItemStage::FinishMotion(const Span& span, Number move, PlannedMotion& motion,
+                                    bool ends_move) {
   motion.ends_move = ends_move;
   if (ends_move) {
     EndMove(span, move, motion);
@@ -203,7 +204,7 @@ inline void MotionChain::FinishMotion(const Span& span, Number move, PlannedMoti
 
 // What is left of the next move between the curves at its ends, and the curve behind it when the
 // span ends there.
-void MotionChain::EmitMove() {
+void ItemStage::EmitMove() {
   Span& span = spans_.front();
   const bool blend = IsBlend(span.report.passage);
   if (span.length > 0.0) {
@@ -236,21 +237,14 @@ void MotionChain::EmitMove() {
     ++section_cell_;
   }
   span.report.speed = speeds_.speed();
-  const std::size_t knots = span.knots();
-  const double end_speed = speeds_.speed(knots - 1);
+  const double end_speed = speeds_.speed(span.knots() - 1);
   if (blend) EmitCurve(span);
   last_speed_ = end_speed;
-  if (decided_ > spans_.first()) {
-    decided_knots_ -= knots;
-  } else {
-    ++decided_;
-  }
-  spans_.PopFront();
-  for (std::size_t k = 0; k < knots; ++k) speeds_.Pop();
+  PopSpan();
   --section_left_;
 }
 
-void MotionChain::EmitCurve(Span& span) {
+void ItemStage::EmitCurve(Span& span) {
   const double half = 0.5 * span.curve_length;
   CurveCells cells;  // none: steady
   if (span.in_stretches || section_left_ > 1) {
@@ -265,14 +259,14 @@ void MotionChain::EmitCurve(Span& span) {
     const double middle = cells.count > 1 ? timing.to : 0.5 * (timing.from + timing.to);
     span.report.speed = ramp.At(ramp.TimeAt(middle)).speed;
   }
-  const TipPose& middle = span.curve_middle;
+  const PathPose& middle = span.curve_middle;
   if (span.plain) {
     const PlainCorner corner = PlainCornerAt(span.corner_move, span.report.cut_mm);
-    const TipPose start = corner.Start(), finish = corner.Finish();
+    const PathPose start = corner.Start(), finish = corner.Finish();
     EmitHalves(span, corner, {start, middle, half, 0.0}, {middle, finish, half, half}, cells);
   } else {
     const CornerCurve& curve = curves_.front();
-    const TipPose start = curve.At(0.0), finish = curve.At(1.0);
+    const PathPose start = curve.At(0.0), finish = curve.At(1.0);
     EmitHalves(span, curve, {start, middle, half, 0.0}, {middle, finish, half, half}, cells);
     curves_.PopFront();
   }
@@ -281,8 +275,8 @@ void MotionChain::EmitCurve(Span& span) {
 // The curve is cut where its middle is, and where points that it swallows are: they lie on its
 // halves as they would lie on the straight pieces.
 template <class Shape>
-void MotionChain::EmitHalves(const Span& span, const Shape& shape, const Half& first,
-                             const Half& second, CurveCells& cells) {
+void ItemStage::EmitHalves(const Span& span, const Shape& shape, const Half& first,
+                           const Half& second, CurveCells& cells) {
   const double cut = span.report.cut_mm;
   const double half = first.length;
   // First half: from the end of the span to the corner.
@@ -314,8 +308,8 @@ void MotionChain::EmitHalves(const Span& span, const Shape& shape, const Half& f
 }
 
 template <class Shape>
-void MotionChain::EmitCurvePart(const Span& span, Number move, const Shape& shape, const Half& half,
-                                const HalfPart& part, CurveCells& cells) {
+void ItemStage::EmitCurvePart(const Span& span, Number move, const Shape& shape, const Half& half,
+                              const HalfPart& part, CurveCells& cells) {
   // A half is one motion, but for its moves and where the ramp changes.
   for (double s = part.s_from; s < part.s_to;) {
     PlannedMotion& motion = NewMotion(span, moves_[move]);
@@ -344,7 +338,7 @@ void MotionChain::EmitCurvePart(const Span& span, Number move, const Shape& shap
   }
 }
 
-void MotionChain::EndMove(const Span& span, Number move, PlannedMotion& motion) {
+void ItemStage::EndMove(const Span& span, Number move, PlannedMotion& motion) {
   if (move == span.corner_move) {
     motion.corner = span.report;
     if (!IsBlend(span.report.passage)) motion.corner.speed = motion.speed.end().speed;
@@ -358,6 +352,35 @@ void MotionChain::EndMove(const Span& span, Number move, PlannedMotion& motion) 
   }
   while (moves_.first() < move) moves_.PopFront();
   if (move == span.corner_move && moves_.end() == move + 1 && !open_) moves_.PopFront();
+}
+
+void ItemStage::AddMark(std::uint64_t tag) {
+  if (!open_ && moves_.empty()) {
+    items_.Push(PlannedMark{tag});
+  } else {
+    marks_.Push({tag, moves_.end() - 1});
+  }
+}
+
+void ItemStage::DumpItems(std::string& out) const {
+  if (section_left_ > 0) {
+    out += "section: " + std::to_string(section_left_) + " spans, from " +
+           FixedText(last_speed_, 3) + (alone_ ? ", one profile\n" : ", ramps across\n");
+  }
+  for (std::uint64_t k = items_.first(); k < items_.end(); ++k) {
+    if (const auto* motion = std::get_if<PlannedMotion>(&items_[k])) {
+      out += "motion " + std::to_string(motion->tag) + ": length " +
+             FixedText(motion->path.length(), 3) + " in " + FixedText(motion->duration_s(), 6) +
+             " s" + (motion->ends_move ? ", " + std::string(NameOf(motion->corner.passage)) : "") +
+             '\n';
+    } else {
+      out += "mark " + std::to_string(std::get<PlannedMark>(items_[k]).tag) + '\n';
+    }
+  }
+  for (std::uint64_t k = marks_.first(); k < marks_.end(); ++k) {
+    out += "mark " + std::to_string(marks_[k].tag) + ": waits for move " +
+           std::to_string(marks_[k].after_move) + '\n';
+  }
 }
 
 }  // namespace rmlcell::motion

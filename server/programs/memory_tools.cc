@@ -1,4 +1,4 @@
-#include "server/programs/memory_office.h"
+#include "server/programs/memory_tools.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include "proto/bridge/setup.h"
 #include "proto/bridge/sha256.h"
 #include "server/base/names.h"
-#include "server/programs/program_office.h"
+#include "server/programs/text_tools.h"
 #include "server/records/program_place.h"
 
 namespace rmlcell::server {
@@ -49,7 +49,7 @@ class LinkMaterial {
   LinkMaterial(const machine::Tools& tools, const machine::Parameters& parameters)
       : tools_(tools), parameters_(parameters) {}
 
-  // Those of the request. Error: as MemoryOffice::Link.
+  // Those of the request. Error: as MemoryTools::Link.
   Status Add(const v1::LinkProgramRequest& request) {
     for (const v1::LinkProgramRequest::Part& part : request.programs()) {
       if (!IsSlot(part.slot())) {
@@ -132,11 +132,11 @@ class LinkMaterial {
 
 }  // namespace
 
-Result<v1::FixProgramResponse> MemoryOffice::Fix(const v1::FixProgramRequest& request) {
+Result<v1::FixProgramResponse> MemoryTools::Fix(const v1::FixProgramRequest& request) {
   const v1::ProgramText& program = request.program();
   // Refuses what names family or machine wrongly before anything is done.
   const auto first =
-      shelf_.Translate(request.family(), request.machine(), program, !request.errors_only());
+      programs_.Translate(request.family(), request.machine(), program, !request.errors_only());
   if (!first) return first.error();
   const auto family = families::FamilyWithTools(program.file_name());
   if (!family) return family.error();
@@ -149,7 +149,7 @@ Result<v1::FixProgramResponse> MemoryOffice::Fix(const v1::FixProgramRequest& re
     v1::ProgramText text = program;
     text.set_content(std::string(file.bytes));
     auto checked =
-        shelf_.Translate(request.family(), request.machine(), text, !request.errors_only());
+        programs_.Translate(request.family(), request.machine(), text, !request.errors_only());
     return checked ? *std::move(checked) : *first;  // the machine went away meanwhile: as it was
   };
   machine::RepairedText fixing =
@@ -163,7 +163,7 @@ Result<v1::FixProgramResponse> MemoryOffice::Fix(const v1::FixProgramRequest& re
   return response;
 }
 
-Result<v1::LinkProgramResponse> MemoryOffice::Link(const v1::LinkProgramRequest& request) {
+Result<v1::LinkProgramResponse> MemoryTools::Link(const v1::LinkProgramRequest& request) {
   if (!IsSlot(request.slot())) {
     return Error{
         ErrorCode::kProgramNumber, "program number is " + std::to_string(request.slot()), {}};
@@ -183,7 +183,7 @@ Result<v1::LinkProgramResponse> MemoryOffice::Link(const v1::LinkProgramRequest&
       return Error{
           ErrorCode::kCellPrecondition, "a " + machine->family + " machine has no executables", {}};
     }
-    auto made = bridge::MakeParameters(*family, machine->profile, machine->parameters);
+    auto made = machine::MakeParameters(*family, machine->profile, machine->parameters);
     if (!made) return made.error();
     parameters = *std::move(made);
     auto stored = store_.GetProgramMemory(*id);
@@ -207,7 +207,7 @@ Result<v1::LinkProgramResponse> MemoryOffice::Link(const v1::LinkProgramRequest&
   return response;
 }
 
-Result<v1::ListStaleExecutablesResponse> MemoryOffice::ListStale(
+Result<v1::ListStaleExecutablesResponse> MemoryTools::ListStale(
     const v1::ListStaleExecutablesRequest& request) {
   const Result<std::string> id = ParseMachineName(request.parent());
   if (!id) return id.error();
@@ -241,7 +241,7 @@ Result<v1::ListStaleExecutablesResponse> MemoryOffice::ListStale(
   return response;
 }
 
-Result<v1::DecompileProgramResponse> MemoryOffice::Decompile(
+Result<v1::DecompileProgramResponse> MemoryTools::Decompile(
     const v1::DecompileProgramRequest& request) {
   v1::DecompileProgramResponse response;
   if (!request.name().empty()) {
@@ -251,7 +251,7 @@ Result<v1::DecompileProgramResponse> MemoryOffice::Decompile(
       return InvalidArgument("an executable has no source; its program is " +
                              NameOfProgram(place->machine.id, place->slot));
     // One read of the record: text and object belong together.
-    Result<ProgramShelf::Content> source = shelf_.Read(request.name(), v1::PROGRAM_FORM_SOURCE);
+    Result<ProgramBook::Content> source = programs_.Read(request.name(), v1::PROGRAM_FORM_SOURCE);
     if (!source) return source.error();
     if (request.object().empty() || source->object_sha256 == bridge::Sha256Hex(request.object())) {
       response.set_content(std::move(source->bytes));
@@ -264,13 +264,14 @@ Result<v1::DecompileProgramResponse> MemoryOffice::Decompile(
   }
   const auto family = families::FamilyWithTools({});
   if (!family) return family.error();
-  Result<std::string> text = (*family)->Decompile(request.object());
-  if (!text) return text.error();
-  response.set_content(*std::move(text));
+  Result<machine::RecoveredSource> source =
+      (*family)->tools()->Decompile(request.object(), std::nullopt);
+  if (!source) return source.error();
+  response.set_content(std::move(source->text));
   return response;
 }
 
-Result<MemoryOffice::StoredObject> MemoryOffice::ObjectOf(const std::string& name) {
+Result<MemoryTools::StoredObject> MemoryTools::ObjectOf(const std::string& name) {
   const Result<ProgramPlace> place = FindProgramPlace(store_, name);
   if (!place) return place.error();
   if (place->executable)
@@ -293,7 +294,7 @@ Result<MemoryOffice::StoredObject> MemoryOffice::ObjectOf(const std::string& nam
       std::move(program->object)};
 }
 
-ProgramResult<v1::DiffProgramsResponse> MemoryOffice::Diff(const v1::DiffProgramsRequest& request) {
+ProgramResult<v1::DiffProgramsResponse> MemoryTools::Diff(const v1::DiffProgramsRequest& request) {
   const std::array sides = {&request.before(), &request.after()};
   std::array<bridge::ComparedProgram, 2> programs;
   for (std::size_t i = 0; i < 2; ++i) {

@@ -18,9 +18,9 @@ struct ProgramPlace;
 
 // The program memory of machines: translation, checks and storage of programs.
 // Thread-safe; blocks on the store and on compilation.
-class ProgramShelf {
+class ProgramBook {
  public:
-  ProgramShelf(storage::Store& store, const Config& config) : store_(store), config_(config) {}
+  ProgramBook(storage::Store& store, const Config& config) : store_(store), config_(config) {}
 
   struct Put {
     std::string name;  // resource name
@@ -79,7 +79,7 @@ class ProgramShelf {
   };
   Result<Subject> FindSubject(const std::string& family, const std::string& machine,
                               const v1::ProgramText& program);
-  Status AddMemory(const Subject& subject, bridge::SetupInput& input);
+  Status AddMemory(const Subject& subject, simulation::ProgramMemory& input);
   ProgramResult<v1::Program> StoreExecutable(const Put& put, const ProgramPlace& place);
 
   storage::Store& store_;

@@ -4,9 +4,9 @@
 
 #include "clients/cli/findings_text.h"
 #include "clients/cli/messages.h"
-#include "clients/cli/office.h"
 #include "clients/cli/program_files.h"
 #include "clients/cli/terminal.h"
+#include "clients/cli/text_tools.h"
 #include "engine/core/letters.h"
 #include "engine/core/number_text.h"
 #include "engine/families/families.h"

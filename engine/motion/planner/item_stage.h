@@ -1,0 +1,96 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "engine/motion/planner/span_stage.h"
+#include "engine/motion/profile/ramp_plan.h"
+
+namespace rmlcell::motion {
+
+// The last stage of the chain. Spans are cut back into moves, on demand, and become motions and
+// marks. Spans between two knots that are passed as fast as they may be are a section: they are
+// timed together, and ramps run across the knots between (motion.md 5.4).
+class ItemStage : public SpanStage {
+ public:
+  const PlannedItem* Next();  // see Planner::NextInPlace
+
+  // The section that is given out and the items and marks that wait, a line each.
+  void DumpItems(std::string& out) const;
+
+ protected:
+  ItemStage(const MachineLimits& machine, std::size_t window) : SpanStage(machine, window) {}
+
+  void BeginItemsAt(double speed) { last_speed_ = speed; }
+  void AddMark(std::uint64_t tag);
+  bool item_starts_too_fast() const { return starts_too_fast_; }
+
+ private:
+  struct WaitingMark {
+    std::uint64_t tag = 0;
+    Number after_move = 0;
+  };
+  // The stretches of a curve that ramps pass; none: it is passed steadily.
+  struct CurveCells {
+    std::size_t count = 0;
+    std::size_t at = 0;  // the present one
+    std::array<double, BendStretches::kAbrupt> end{};
+  };
+  // One half of a corner curve, `begin` behind its start, and which part of it belongs to a move.
+  struct Half {
+    const PathPose& from;
+    const PathPose& to;
+    double length;
+    double begin;
+  };
+  struct HalfPart {
+    double s_from;
+    double s_to;
+    bool ends_move;
+  };
+
+  std::size_t SectionSize();
+  bool EndsSection(const Span& span, std::size_t last_knot) const;
+  void PlanSection();
+  void AddCurve(const Span& span, std::size_t knot);
+  void TakeRamp(SpeedProfile& speed, const SpeedProfile& ramp, double to);
+  const SpeedProfile& PresentRamp();
+  void TakePart(SpeedProfile& speed, double to, bool to_end);
+  void TakeStretches(SpeedProfile& speed, CurveCells& cells, double& to);
+  void EmitMove();
+  void EmitCurve(Span& span);
+  template <class Shape>  // PlainCorner or CornerCurve
+  void EmitHalves(const Span& span, const Shape& shape, const Half& first, const Half& second,
+                  CurveCells& cells);
+  template <class Shape>
+  void EmitCurvePart(const Span& span, Number move, const Shape& shape, const Half& half,
+                     const HalfPart& part, CurveCells& cells);
+  PlannedMotion& NewMotion(const Span& span, const Move& source);
+  void EndMove(const Span& span, Number move, PlannedMotion& motion);
+  void FinishMotion(const Span& span, Number move, PlannedMotion& motion, bool ends_move);
+
+  double last_speed_ = 0.0;  // at the end of the last emitted span
+  bool starts_too_fast_ = false;
+  std::size_t section_seen_ = 0;   // spans known not to end the next section
+  std::size_t section_knots_ = 0;  // theirs
+
+  // The section that is given out move by move, so that a span of thousands of them takes no room.
+  std::size_t section_left_ = 0;  // its spans from the oldest one on
+  bool alone_ = false;            // it has but one span, timed by lone_; else by ramps_
+  SpeedProfile lone_;
+  std::vector<RampCell> cells_;
+  std::vector<double> most_;  // of the bends among them: RampCell::most
+  RampPlan ramps_;
+  std::size_t section_cell_ = 0;  // the present one of cells_
+  std::size_t place_ramp_ = 0;    // of ramps_
+  SpeedProfile::Place place_;     // on it, or on lone_: where the last part ended
+  bool emitting_ = false;         // some moves of the oldest span are out already
+  Number emit_move_ = 0;          // its next
+  double emit_done_ = 0.0;        // length of those that are out
+
+  Ring<WaitingMark> marks_;
+  Ring<PlannedItem> items_;  // final, not yet taken: those of one move and the curve behind it
+};
+
+}  // namespace rmlcell::motion

@@ -1,0 +1,123 @@
+#include "engine/simulation/run/rehearsal.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/families/families.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+machine::StoredProgram Stored(const MemoryProgram& program) {
+  return {.name = program.name, .object = program.bytes, .executable = program.executable};
+}
+
+void TakeTranslation(const machine::Translation& translation, machine::StoredProgram& stored) {
+  stored.object = std::make_shared<const std::string>(translation.object);
+  stored.source = std::make_shared<const machine::SourceNotes>(translation.source);
+}
+
+// Into the setup; translated first, where it is a source. False: it has errors.
+bool AddProgram(const machine::MachineFamily& family, const MemoryProgram& program,
+                machine::RunSetup& setup, PreparedRun& prepared) {
+  machine::StoredProgram stored = Stored(program);
+  if (program.translation != nullptr) {
+    TakeTranslation(*program.translation, stored);
+  } else if (program.is_source && !families::IsObjectFileName(program.file_name)) {
+    const bool main = program.slot == setup.main_program;
+    machine::Translation translation =
+        TranslateProgram(family, setup.parameters, program, {.advice = main, .source = true});
+    for (Diagnostic& diagnostic : translation.diagnostics) {
+      if (prepared.diagnostics.size() >= machine::kDiagnosticsMax) {
+        ++prepared.diagnostics_dropped;
+        continue;
+      }
+      diagnostic.program = program.slot;
+      prepared.diagnostics.push_back(std::move(diagnostic));
+    }
+    prepared.diagnostics_dropped += translation.diagnostics_dropped;
+    if (!translation.ok) return false;
+    stored.object = std::make_shared<const std::string>(std::move(translation.object));
+    stored.source = std::make_shared<const machine::SourceNotes>(std::move(translation.source));
+  }
+  setup.programs[program.slot] = std::move(stored);
+  return true;
+}
+
+machine::RunSetup SetupOf(const ProgramMemory& memory, machine::Parameters parameters) {
+  machine::RunSetup setup(std::move(parameters));
+  setup.deleted_programs = {memory.deleted_programs.begin(), memory.deleted_programs.end()};
+  setup.schedules = memory.schedules;
+  setup.machine_state = memory.machine_state;
+  return setup;
+}
+
+}  // namespace
+
+Result<PreparedRun> PrepareRun(const ProgramMemory& memory, const RunOptions& options) {
+  std::map<std::string, std::string> values = memory.parameters;
+  for (const auto& [name, value] : options.parameters) values[name] = value;
+  Result<machine::Parameters> parameters =
+      machine::MakeParameters(*memory.family, memory.profile, values);
+  if (!parameters) return parameters.error();
+  machine::RunSetup setup = SetupOf(memory, *std::move(parameters));
+  setup.main_program = options.main_program;
+  setup.mode = options.mode;
+  setup.forecast = true;  // who moves a machine says otherwise
+  setup.override_percent = options.override_percent;
+  setup.breakpoint = options.breakpoint;
+  setup.simul = options.simul;
+  setup.inputs = options.inputs;
+  setup.budget = options.budget;
+  PreparedRun prepared;
+  bool good = true;
+  for (const MemoryProgram& program : memory.programs) {
+    if (!AddProgram(*memory.family, program, setup, prepared)) good = false;
+  }
+  if (good) prepared.setup.emplace(std::move(setup));
+  return prepared;
+}
+
+machine::Translation TranslateProgram(const machine::MachineFamily& family,
+                                      const machine::Parameters& parameters,
+                                      const MemoryProgram& program,
+                                      const machine::CheckOptions& options) {
+  return family.Translate(
+      {.name = program.file_name, .bytes = *program.bytes, .is_object = !program.is_source},
+      parameters, options);
+}
+
+Result<ProgramCheck> CheckProgram(const ProgramMemory& memory,
+                                  const machine::Parameters& parameters, int slot, bool advice,
+                                  const machine::InputScript& inputs) {
+  ProgramMemory ready = memory;
+  const auto last =
+      std::ranges::find(ready.programs.rbegin(), ready.programs.rend(), slot, &MemoryProgram::slot);
+  if (last == ready.programs.rend()) {
+    return Error{memory.family->info().empty_slot, "program " + std::to_string(slot), {}};
+  }
+  MemoryProgram& program = *last;
+  ProgramCheck check{.translation = TranslateProgram(*memory.family, parameters, program,
+                                                     {.advice = advice, .source = true})};
+  if (!check.translation.ok || !memory.family->info().checked_by_running) return check;
+  program.translation = std::make_shared<const machine::Translation>(check.translation);
+  program.executable = nullptr;  // of what it was before
+  Result<MotionCheck> motion = CheckMotionOf(ready, parameters, {slot}, inputs);
+  if (!motion) return motion.error();
+  check.motion = *std::move(motion);
+  return check;
+}
+
+Result<MotionCheck> CheckMotionOf(const ProgramMemory& memory,
+                                  const machine::Parameters& parameters, const std::set<int>& slots,
+                                  const machine::InputScript& inputs) {
+  machine::RunSetup setup = SetupOf(memory, parameters);
+  setup.inputs = inputs;
+  PreparedRun ignored;
+  for (const MemoryProgram& program : memory.programs) {
+    AddProgram(*memory.family, program, setup, ignored);
+  }
+  return CheckMotion(*memory.family, setup, slots);
+}
+
+}  // namespace rmlcell::simulation
