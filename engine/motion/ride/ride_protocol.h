@@ -55,7 +55,8 @@ class RideProtocol {
     return goes();
   }
 
-  // True: an override that came meanwhile is still to be taken over.
+  // START; where the table has "-" for it, the caller does not ask. True: an override that came
+  // meanwhile is still to be taken over.
   bool Resume() {
     intent_ = RideIntent::kGo;
     rests_ = false;

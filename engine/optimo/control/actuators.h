@@ -29,7 +29,7 @@ struct PassageEffect {
 //             shutter   beam
 //   BeamOn    opens     on        its power is another one when it is on already
 //   BeamOff   -         off       with the EFA-51 the shutter closes, too (OPT-3.15)
-//   Suspend   -         off       until Restore: held, stopped, door open (OPT-B.34)
+//   Suspend   as BeamOff         until Restore: held, stopped, door open (OPT-B.34)
 class Actuators {
  public:
   Actuators(Situation& situation, const OptimoParameters& parameters,
@@ -50,7 +50,7 @@ class Actuators {
   void Suspend();
   // The door: what is open closes behind it, until Restore. OPT-3.17, OPT-3.62
   void CloseForDoor();
-  // START. Precondition: may_restore() when the door is open.
+  // Whether START would open the shutter or bring the beam back: not while the door is open.
   bool wants_restore() const { return situation_.beam.returns || situation_.beam.shutter_was_open; }
   void Restore();
   // The run is over, whatever the reason. OPT-3.16, 3.18, B.54

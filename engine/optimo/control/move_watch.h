@@ -35,14 +35,18 @@ struct WatchState {
 // /END and /TIME of a MOVE: at its start, at each tick, when time runs out. With /NEXT the program
 // goes on meanwhile. OPT-2.54 to 2.58
 //
-//   kIdle     Arm       kArmed
-//   kArmed    Watch     kWatches; kComes, where the program has run ahead
-//             Stand     kStands
+//   kIdle     Arm       kArmed: the MOVE has /TIME
+//   kIdle,    Watch     kWatches; kComes, where the program has run ahead
+//   kArmed    Stand     kStands
+//   kArmed    Disarm    kIdle: its /END was true at once
 //             time out  kIdle, and the GOSUB: no motion is made
 //   kComes    begins    kWatches, and its time runs from here
-//   kWatches  time out  kRanOut
+//   kWatches  /END      stays, and the motion ends where it is
+//             time out  kRanOut, and the motion ends where it is
+//             arrives   kIdle
 //   kRanOut   arrives   kIdle, and the GOSUB
-//   kStands   time out  kIdle, and the GOSUB
+//   kStands   /END      kIdle
+//             time out  kIdle, and the GOSUB
 //   any       Clear     kIdle: the MOVE is over, came to nothing, or an error ended it
 class MoveWatch {
  public:

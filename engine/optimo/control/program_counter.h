@@ -34,6 +34,7 @@ class ProgramCounter {
         setup_(setup),
         telling_(telling) {}
 
+  // Before the main program began, or when there is none: then nothing below may be asked.
   bool empty() const { return s_.programs.empty(); }
   ProgramContext& program() { return s_.programs.back(); }
   const ProgramContext& program() const { return s_.programs.back(); }

@@ -18,6 +18,10 @@ namespace rmlcell::optimo {
 
 // Whether the program goes on beside a motion of /NEXT. A halt on the path leaves it as it is: the
 // motion goes on at START as it did before.
+//
+//   any     GoOnBeside   kNow; kComes behind a /FLY passage; kNo when nothing is under way
+//   kComes  it begins    kNow
+//   any     all is over, TakeOver   kNo
 enum class Beside : std::uint8_t {
   kNo,
   kComes,  // behind a /FLY passage: from the motion of RideState::beside_from on
