@@ -71,7 +71,7 @@ Findings CheckDocument(const Document& document) {
   const machine::MachineFamily* family = families::FindFamily(rml1 ? "rml1" : "optimo");
   machine::Translation translation = simulation::TranslateProgram(
       *family, machine::Parameters(family->parameters()),
-      {.file_name = name, .bytes = std::make_shared<const std::string>(text), .is_source = true},
+      {.file_name = name, .bytes = simulation::Borrowed(text), .is_source = true},
       {.advice = true});
   return {std::move(translation.diagnostics), translation.diagnostics_dropped};
 }

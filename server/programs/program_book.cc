@@ -424,7 +424,7 @@ Result<ProgramBook::Checked> ProgramBook::Check(const std::string& family_id,
   const int slot = SlotForCheck(program.file_name(), memory.programs);
   memory.programs.push_back({.slot = slot,
                              .file_name = program.file_name(),
-                             .bytes = std::make_shared<const std::string>(program.content()),
+                             .bytes = simulation::Borrowed(program.content()),
                              .is_source = program.form() != v1::PROGRAM_FORM_OBJECT});
   Result<simulation::ProgramCheck> check =
       simulation::CheckProgram(memory, *subject->parameters, slot, advice, {});

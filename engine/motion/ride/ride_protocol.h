@@ -30,7 +30,6 @@ class RideProtocol {
  public:
   RideIntent intent() const { return intent_; }
   bool goes() const { return intent_ == RideIntent::kGo; }
-  bool rests() const { return rests_; }
   bool comes_to_rest() const { return !goes() && !rests_; }
   bool may_hold() const { return goes(); }
   bool may_stop() const { return intent_ != RideIntent::kStop && !rests_; }

@@ -21,7 +21,7 @@ std::optional<Error> Alarms::HandleDeferred() {
 }
 
 std::optional<Error> Alarms::Handle(const Error& error) {
-  SetLastError(error.code);
+  SetLastError(situation_.machine, error.code);
   waits_.End();
   waits_.EndInstruction();
   watch_.Clear();
@@ -66,13 +66,8 @@ Error Alarms::NoHandler(int label) {
                  .where = {.line = place.line},
                  .program = place.program,
                  .step = place.step});
-  SetLastError(error.code);
+  SetLastError(situation_.machine, error.code);
   return error;
-}
-
-// VI[99]
-void Alarms::SetLastError(ErrorCode code) {
-  situation_.machine.data.vi[99] = static_cast<float>(Lookup(code).number);
 }
 
 }  // namespace rmlcell::optimo

@@ -47,7 +47,6 @@ class Alarms {
  private:
   std::optional<Error> Handle(const Error& error);
   Error NoHandler(int label);
-  void SetLastError(ErrorCode code);
 
   AlarmState& s_;
   Situation& situation_;

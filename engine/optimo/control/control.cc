@@ -269,7 +269,7 @@ void Control::Apply(const machine::InputChange& input) {
       PressStop();
       break;
     case machine::InputKind::kEmergencyStop:  // no motion is modelled after it (motion.md 6)
-      machine.data.vi[99] = static_cast<float>(Lookup(ErrorCode::kEmergencyStop).number);
+      SetLastError(machine, ErrorCode::kEmergencyStop);
       End(machine::OutcomeKind::kFailed, ErrorCode::kEmergencyStop);
       break;
   }
@@ -294,7 +294,7 @@ void Control::PressStart() {
   // An alarm: no ERR catches it (OPT-B.56).
   constexpr ErrorCode kCode = ErrorCode::kShutterInterlock;
   const std::string detail = "START with the operator door open";
-  now().machine.data.vi[99] = static_cast<float>(Lookup(kCode).number);
+  SetLastError(now().machine, kCode);
   telling_.Warn(kCode, detail, "OPT-3.17");
   Finish(machine::OutcomeKind::kFailed, kCode, detail);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "engine/optimo/control/passage_effects.h"
@@ -31,6 +32,17 @@ class DataAccess : private VariableAccess {
   // Of the module in execution. Errors: of Evaluate.
   Result<Value> Eval(Expression expression);
   Result<double> Real(Expression expression);
+  // The first `count` of these expressions, in order; the rest of the array is 0.
+  template <std::size_t N, class ExpressionAt>
+  Result<std::array<double, N>> Reals(int count, ExpressionAt at) {
+    std::array<double, N> values{};
+    for (int n = 0; n < count; ++n) {
+      const Result<double> value = Real(at(n));
+      if (!value) return value.error();
+      values[static_cast<std::size_t>(n)] = *value;
+    }
+    return values;
+  }
   Result<bool> Truth(ExprRange expression);
   ExprRange RangeOf(Expression expression) const;
   // To be tested later, with the PAR of now.

@@ -56,23 +56,13 @@ bool Moves::NeedsStandstill(const Instruction& i) {
 }
 
 Result<Moves::Coordinates> Moves::TargetOf(const Instruction& i) {
-  Coordinates v{};
-  for (int n = 0; n < 5; ++n) {
-    const Result<double> value = data_.Real(counter_.module().Value(i, n));
-    if (!value) return value.error();
-    v[static_cast<std::size_t>(n)] = *value;
-  }
-  return v;
+  return data_.Reals<5>(5, [&](int n) { return counter_.module().Value(i, n); });
 }
 
 Result<motion::TipPose> Moves::ViaOf(const Instruction& i) {
-  Coordinates v{};
-  for (int n = 0; n < 5; ++n) {
-    const Result<double> value = data_.Real(counter_.module().Via(i, n));
-    if (!value) return value.error();
-    v[static_cast<std::size_t>(n)] = *value;
-  }
-  return TipAt(v);
+  const auto via = data_.Reals<5>(5, [&](int n) { return counter_.module().Via(i, n); });
+  if (!via) return via.error();
+  return TipAt(*via);
 }
 
 // In the machine frame.
@@ -368,13 +358,7 @@ Status Moves::SetPercent(const Instruction& i) {
 }
 
 Result<std::array<double, 6>> Moves::SixValues(const Instruction& i) {
-  std::array<double, 6> v{};
-  for (int n = 0; n < 6; ++n) {
-    const Result<double> value = data_.Real(counter_.module().Value(i, n));
-    if (!value) return value.error();
-    v[static_cast<std::size_t>(n)] = *value;
-  }
-  return v;
+  return data_.Reals<6>(6, [&](int n) { return counter_.module().Value(i, n); });
 }
 
 Status Moves::SetWorkOffset(const Instruction& i) {

@@ -19,12 +19,10 @@ bool AnyOf(const std::array<bool, kProcessesPerKind>& on) {
 }  // namespace
 
 Status Works::Define(const Instruction& i) {
-  std::array<double, 5> v{};
-  for (int n = 0; n < i.value_count; ++n) {
-    const Result<double> value = data_.Real(counter_.module().Value(i, n));
-    if (!value) return value.error();
-    v[static_cast<std::size_t>(n)] = *value;
-  }
+  const auto values =
+      data_.Reals<5>(i.value_count, [&](int n) { return counter_.module().Value(i, n); });
+  if (!values) return values.error();
+  const std::array<double, 5>& v = *values;
   const auto refuse = [&](std::string_view what, double value) {
     return Error{
         ErrorCode::kValueRange, std::string(what) + " of WORKDEF is " + ShortestText(value), {}};

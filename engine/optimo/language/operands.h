@@ -109,7 +109,7 @@ inline constexpr std::array kDefine = {
     Operand{.kind = Kind::kChoice, .missing = "FLOAT, INT or LOGIC", .words = kTypeWords}};
 inline constexpr std::array kAssign = {
     Operand{.kind = Kind::kVariable, .missing = "a variable or name"}, kEquals,
-    Operand{.kind = Kind::kBits},
+    Operand{.kind = Kind::kBits, .missing = "a number or a variable"},
     Operand{.text = " /", .missing = "'/' and the number of outputs"},
     Operand{.kind = Kind::kNumber, .missing = "the number of outputs"}};
 inline constexpr std::array kGroups = {

@@ -197,12 +197,7 @@ bool Parser::ParseAssignment(bool after_let) {
     const auto known = names_.find(target.key);
     if (known == names_.end() || !declared_[known->second]) return FailUnknown(target);
   }
-  if (!ParseTarget("a variable or name") || !Expect(TokenKind::kEqual, "'='") ||
-      !ParseExpression()) {
-    return false;
-  }
-  instruction_.value_count = 2;
-  return true;
+  return ParseOperands();
 }
 
 std::string IgnoredText(Word word, std::string_view rest) {

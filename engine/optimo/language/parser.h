@@ -39,6 +39,7 @@ class Parser {
 
   // Instructions, parser_instructions.cc
   bool ParseOperands();
+  bool IsText(std::string_view text);
   bool Begins(const Operand& operand);
   bool ParseOperand(const Operand& operand, std::size_t& number);
   bool ParseCountedList(const Operand& operand);
@@ -53,14 +54,14 @@ class Parser {
   bool ParseTimer();
   bool ParseDeclare();
   bool ParseDefine();
-  bool ParseAssign();
+  bool ParseBits(const Operand& operand);
   bool ParseGroups();
   bool ParseProcess();
   bool ParseProgramNumber();
   bool ParseArguments();
   bool ParseAttributes();
   bool ParseAttribute(const Token& word, Attribute attribute);
-  bool ParseTimeAndLabel(std::string_view what);
+  bool ParseTimeAndLabel();
 
   // Values, parser_expression.cc
   bool ParseExpression();     // appends one expression

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <string>
 
+#include "engine/core/letters.h"
 #include "engine/optimo/language/nearest_word.h"
 #include "engine/optimo/language/parser.h"
 
@@ -40,8 +41,6 @@ bool Parser::ParseInstruction(Word word) {
       return ParseDeclare();
     case Op::kDefine:
       return ParseDefine();
-    case Op::kAssign:
-      return ParseAssign();
     default:
       return ParseOperands();
   }
@@ -60,12 +59,31 @@ bool Parser::ParseOperands() {
   return true;
 }
 
+// A fixed text of the rows is one token: a word, or a sign with blanks around it for people.
+bool Parser::IsText(std::string_view text) {
+  const std::string_view token = Trimmed(text);
+  switch (token.front()) {
+    case ',':
+      return Is(TokenKind::kComma);
+    case '(':
+      return Is(TokenKind::kOpen);
+    case ')':
+      return Is(TokenKind::kClose);
+    case '=':
+      return Is(TokenKind::kEqual);
+    case '/':
+      return Is(TokenKind::kSlash);
+    default:
+      return Peek().word != Word::kNone && Describe(Peek().word).text == token;
+  }
+}
+
 bool Parser::Begins(const Operand& operand) {
   switch (operand.kind) {
     case Operand::Kind::kGroups:
       return !Is(TokenKind::kEnd) && !Is(TokenKind::kSlash);
     case Operand::Kind::kText:
-      return operand.text == ", " ? Is(TokenKind::kComma) : Peek().word == Word::kElse;
+      return IsText(operand.text);
     default:
       return Is(TokenKind::kOpen);
   }
@@ -74,9 +92,9 @@ bool Parser::Begins(const Operand& operand) {
 bool Parser::ParseOperand(const Operand& operand, std::size_t& number) {
   switch (operand.kind) {
     case Operand::Kind::kText:
-      if (operand.text == " THEN ") return ExpectWord(Word::kThen, operand.missing);
-      if (operand.text == " ELSE ") return ExpectWord(Word::kElse, operand.missing);
-      return Expect(TokenKind::kComma, operand.missing);
+      if (!IsText(operand.text)) return Fail(operand.missing);
+      Take();
+      return true;
     case Operand::Kind::kList:
       return ParseCountedList(operand);
     case Operand::Kind::kNumber:
@@ -87,8 +105,19 @@ bool Parser::ParseOperand(const Operand& operand, std::size_t& number) {
       return ParseGroups();
     case Operand::Kind::kLabel:
       return ParseJumpLabel();
+    case Operand::Kind::kLabels:
+      do {
+        if (!ParseJumpLabel()) return false;
+      } while (TryTake(TokenKind::kComma));
+      return true;
     case Operand::Kind::kProgram:
       return ParseProgramNumber();
+    case Operand::Kind::kVariable:
+      ++instruction_.value_count;
+      return ParseTarget(operand.missing);
+    case Operand::Kind::kBits:
+      ++instruction_.value_count;
+      return ParseBits(operand);
     default:
       ++instruction_.value_count;
       return ParseExpression();
@@ -150,10 +179,10 @@ bool Parser::ParseTcp() {
 // integer "," integer                                                           OPT-3.01, OPT-3.13
 bool Parser::ParseProcess() {
   const Token kind = Peek();
-  if (!ParseWhole("the kind 0, 1 or 2", instruction_.numbers[0])) return false;
-  if (!Expect(TokenKind::kComma, "',' and the process number")) return false;
+  if (!ParseWhole(operands::kProcess[0].missing, instruction_.numbers[0])) return false;
+  if (!Expect(TokenKind::kComma, operands::kProcess[1].missing)) return false;
   const Token process = Peek();
-  if (!ParseWhole("a process number", instruction_.numbers[1])) return false;
+  if (!ParseWhole(operands::kProcess[2].missing, instruction_.numbers[1])) return false;
   if (instruction_.numbers[0] > 2) {
     return FailAt(kind, ErrorCode::kProcessNumber, "the kind of a process is 0, 1 or 2",
                   "OPT-3.02");
@@ -194,7 +223,7 @@ bool Parser::ParseWorkdef() {
 // prog := integer | target                                                      OPT-7.01, OPT-7.07
 bool Parser::ParseProgramNumber() {
   instruction_.value_count = 1;
-  if (!Is(TokenKind::kNumber)) return ParseTarget("a program number");
+  if (!Is(TokenKind::kNumber)) return ParseTarget(operands::kProgram[0].missing);
   if (!Peek().whole) return Fail("a whole program number");
   if (!ParseLiteral(false, Token{})) return false;
   module_.EndExpression();
@@ -234,20 +263,15 @@ bool Parser::ParseFunction() {
 bool Parser::ParseGoto() {
   if (!Is(TokenKind::kWord)) return ParseJumpLabel();
   instruction_.op = Op::kGotoTable;
-  instruction_.value_count = 1;
-  if (!ParseTarget("a sequence number or a variable")) return false;
-  if (!Expect(TokenKind::kOpen, "'(' and sequence numbers")) return false;
-  do {
-    if (!ParseJumpLabel()) return false;
-  } while (TryTake(TokenKind::kComma));
-  return Expect(TokenKind::kClose, "',' or ')'");
+  return ParseOperands();
 }
 
 // "(" expr "," label ")"
-bool Parser::ParseTimeAndLabel(std::string_view what) {
-  if (!Expect(TokenKind::kOpen, "'(' and a time")) return false;
-  return ParseExpression() && Expect(TokenKind::kComma, "',' and a sequence number") &&
-         ParseJumpLabel() && Expect(TokenKind::kClose, what);
+bool Parser::ParseTimeAndLabel() {
+  const auto& rows = operands::kTimer;
+  return Expect(TokenKind::kOpen, rows[0].missing) && ParseExpression() &&
+         Expect(TokenKind::kComma, rows[2].missing) && ParseJumpLabel() &&
+         Expect(TokenKind::kClose, rows[4].missing);
 }
 
 // "TIMER" ( "(" expr "," label ")" [ "/" "AUTO" ] | "/" "DIS" )                 OPT-B.59
@@ -259,12 +283,12 @@ bool Parser::ParseTimer() {
     return true;
   }
   instruction_.value_count = 1;
-  return ParseTimeAndLabel("')'");
+  return ParseTimeAndLabel();
 }
 
 // "DECLARE" name "=" ( [ sign ] number | logical | "PI" | variable | par )      OPT-7.41
 bool Parser::ParseDeclare() {
-  if (!Is(TokenKind::kWord)) return Fail("a name");
+  if (!Is(TokenKind::kWord)) return Fail(operands::kDeclare[0].missing);
   const Token name = Take();
   if (const Word reserved = FindWord(name.key); reserved != Word::kNone) {
     refused_.set(static_cast<std::size_t>(reserved));
@@ -275,7 +299,7 @@ bool Parser::ParseDeclare() {
   }
   instruction_.name = InternName(name);
   instruction_.value_count = 1;
-  if (!Expect(TokenKind::kEqual, "'='")) return false;
+  if (!Expect(TokenKind::kEqual, operands::kEquals.missing)) return false;
   if (Is(TokenKind::kEnd)) return Fail("a number, a constant or a variable");
   const Token value = Peek();
   const bool group = value.kind == TokenKind::kWord && value.word != Word::kNone &&
@@ -311,12 +335,12 @@ bool Parser::ParseDeclare() {
 bool Parser::ParseDefine() {
   const Token what = Peek();
   if (!TakeWord(Word::kPar)) {
-    if (what.kind != TokenKind::kWord) return Fail("PAR");
+    if (what.kind != TokenKind::kWord) return Fail(operands::kDefine[0].missing);
     return FailAt(what, ErrorCode::kDefineInvalid, "DEFINE gives the type of a PAR", "OPT-9.23");
   }
   if (TryTake(TokenKind::kOpenIndex)) {
     const Token index = Peek();
-    if (!ParseWhole("an index", instruction_.numbers[0])) return false;
+    if (!ParseWhole(operands::kDefine[1].missing, instruction_.numbers[0])) return false;
     if (!Expect(TokenKind::kCloseIndex, "']'")) return false;
     if (instruction_.numbers[0] >= kParameterCount) {
       return FailAt(index, ErrorCode::kIndexRange, "PAR has the indices 0..7", "OPT-9.21");
@@ -325,7 +349,7 @@ bool Parser::ParseDefine() {
     findings_.Add(ErrorCode::kDefineWithoutIndex, PlaceOf(what), "DEFINE PAR means PAR[0]",
                   "OPT-9.24", {{what.offset, static_cast<int>(what.length), "PAR[0]"}});
   }
-  if (!Expect(TokenKind::kEqual, "'='")) return false;
+  if (!Expect(TokenKind::kEqual, operands::kEquals.missing)) return false;
   const Token type = Peek();
   const Operand& types = operands::kDefine.back();
   const bool known = type.kind == TokenKind::kWord &&
@@ -337,24 +361,19 @@ bool Parser::ParseDefine() {
 }
 
 // "ASSIGN" target "=" ( integer | target ) "/" integer                          OPT-7.102
-bool Parser::ParseAssign() {
-  instruction_.value_count = 2;
-  if (!ParseTarget("a variable or name") || !Expect(TokenKind::kEqual, "'='")) return false;
+bool Parser::ParseBits(const Operand& operand) {
   const Token& value = Peek();
   const Token& follower = Peek(1);
-  if (value.kind == TokenKind::kNumber ||
-      (value.kind == TokenKind::kMinus && follower.kind == TokenKind::kNumber)) {
-    if (!ParseSigned()) return false;
-    if (module_.nodes.back().op != Node::kInteger) {
-      at_ -= 1;
-      return Fail("a whole number up to 32767");
-    }
-    module_.EndExpression();
-  } else if (!ParseTarget("a number or a variable")) {
-    return false;
+  const bool number = value.kind == TokenKind::kNumber ||
+                      (value.kind == TokenKind::kMinus && follower.kind == TokenKind::kNumber);
+  if (!number) return ParseTarget(operand.missing);
+  if (!ParseSigned()) return false;
+  if (module_.nodes.back().op != Node::kInteger) {
+    at_ -= 1;
+    return Fail("a whole number up to 32767");
   }
-  return Expect(TokenKind::kSlash, "'/' and the number of outputs") &&
-         ParseWhole("the number of outputs", instruction_.numbers[0]);
+  module_.EndExpression();
+  return true;
 }
 
 // group { "," group }                                                           OPT-7.98, OPT-B.61
@@ -369,7 +388,7 @@ bool Parser::ParseGroups() {
     } else if (TakeWord(Word::kOa)) {
       instruction_.choice |= kGroupOa;
     } else {
-      return Fail("IL, OL, IA or OA");
+      return Fail(operands::kGroups[0].missing);
     }
   } while (TryTake(TokenKind::kComma));
   return true;
@@ -427,7 +446,7 @@ bool Parser::ParseAttribute(const Token& word, Attribute attribute) {
       if (!ParseParenthesised()) return false;
       break;
     case kTime:
-      if (!ParseTimeAndLabel("')'")) return false;
+      if (!ParseTimeAndLabel()) return false;
       break;
     default:
       return true;

@@ -31,6 +31,11 @@ struct Situation {
   bool simulating() const { return simulated.active; }
 };
 
+// VI[99], the number of the last error.
+inline void SetLastError(MachineState& machine, ErrorCode code) {
+  machine.data.vi[99] = static_cast<float>(Lookup(code).number);
+}
+
 // What carries the tool, with the TCP in force. motion.md 2.2
 inline motion::Head HeadOf(const MachineState& machine, const OptimoParameters& parameters) {
   return motion::GantryHead{.length_mm = parameters.head_length_mm, .tool = machine.tool.offset};
