@@ -6,6 +6,7 @@
 #include "clients/cli/terminal.h"
 #include "engine/core/diagnostic.h"
 #include "engine/core/letters.h"
+#include "engine/families/families.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
 
@@ -175,12 +176,31 @@ void AddMilling(const v1::RunReport& report, Rows& rows) {
               PlaceText(milling.gouge_place()) + ", at " + Fixed(milling.gouge_time_s(), 3) + " s");
 }
 
-// A figure of the family, by name; 0 when the run has none of it.
-double FamilyFigure(const v1::RunReport& report, std::string_view name) {
+// 0 when the run has none of it.
+double FigureOf(const v1::RunReport& report, std::string_view name) {
   for (const v1::Figure& figure : report.figures()) {
     if (figure.name() == name) return figure.value();
   }
   return 0.0;
+}
+
+// What the family wants to be read of its own figures.
+void AddFamilyFigures(const v1::RunReport& report, const machine::MachineFamily& family,
+                      Rows& rows) {
+  std::string_view row;
+  for (const machine::FigureInfo& info : family.figures()) {
+    if (info.row.empty()) continue;
+    const double value = FigureOf(report, info.name);
+    if (value == 0.0 && !info.when_zero) continue;
+    std::string said(info.said);
+    said.replace(said.find('#'), 1, Fixed(value, info.unit.empty() ? 0 : 3));
+    if (info.row == row) {
+      rows.back().second += ", " + said;
+    } else {
+      rows.emplace_back(info.row, std::move(said));
+      row = info.row;
+    }
+  }
 }
 
 // What a run did; a job that only checks has none of it.
@@ -206,7 +226,11 @@ void AddFigures(const v1::RunReport& report, Rows& rows) {
   rows.emplace_back("path", Fixed(total.path_length_mm(), 3) + " mm: cut " +
                                 Fixed(total.cut_length_mm(), 3) + ", travel " +
                                 Fixed(total.travel_length_mm(), 3));
-  if (report.family() == "optimo") {
+  const machine::MachineFamily* family = families::FindFamily(report.family());
+  const machine::MachineShape shape =
+      family == nullptr ? machine::MachineShape()
+                        : family->Shape(machine::Parameters(family->parameters()));
+  if (shape.laser_watts > 0.0) {
     rows.emplace_back("beam", "on " + Fixed(total.beam_on_s(), 3) + " s, switched on " +
                                   std::to_string(total.beam_switches()) + " times, " +
                                   std::to_string(total.pierces()) + " pierces, " +
@@ -215,18 +239,10 @@ void AddFigures(const v1::RunReport& report, Rows& rows) {
       rows.emplace_back("", Fixed(total.energy_j_per_mm(), 3) + " J/mm, of a step at most " +
                                 Fixed(total.energy_j_per_mm_max(), 3));
     }
-  } else {
+  } else if (family != nullptr) {
     rows.emplace_back("plunges", std::to_string(total.plunges()));
-    rows.emplace_back("tool", "down " + Fixed(FamilyFigure(report, "tool_down_time"), 3) +
-                                  " s, up " + Fixed(FamilyFigure(report, "tool_up_time"), 3) +
-                                  " s");
-    if (const double clipped = FamilyFigure(report, "clipped_length"); clipped > 0.0) {
-      rows.emplace_back("clipped", Fixed(clipped, 3) + " mm beyond the cutting range");
-    }
-    if (const double clamps = FamilyFigure(report, "speed_clamps"); clamps > 0.0) {
-      rows.emplace_back("speeds", Fixed(clamps, 0) + " limited to those of the machine");
-    }
   }
+  if (family != nullptr) AddFamilyFigures(report, *family, rows);
   AddCorners(report, rows);
   AddSlowMoves(report, rows);
   AddPeaks(report, rows);
@@ -234,7 +250,7 @@ void AddFigures(const v1::RunReport& report, Rows& rows) {
   AddViolations(report, rows);
   rows.emplace_back("steps", std::to_string(total.steps()));
   rows.emplace_back("final tip", PointText(report.final_position().tip()));
-  if (report.family() == "optimo") {
+  if (shape.five_axis) {
     rows.emplace_back("final column", PointText(report.final_position().column()) + "  A " +
                                           Fixed(report.final_position().a(), 6) + "  B " +
                                           Fixed(report.final_position().b(), 6));

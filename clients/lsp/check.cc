@@ -6,9 +6,6 @@
 
 #include "clients/lsp/program_folder.h"
 #include "engine/families/families.h"
-#include "engine/machine/family.h"
-#include "engine/optimo/language/compiler.h"
-#include "engine/optimo/offline/translate.h"
 #include "engine/simulation/run/rehearsal.h"
 
 namespace rmlcell::lsp {
@@ -23,56 +20,42 @@ int SeverityOf(const Diagnostic& finding) {
   return finding.severity == Severity::kAdvice ? kSeverityInformation : kSeverityWarning;
 }
 
-Diagnostic Plain(ErrorCode code, Severity severity, std::string detail, std::string rule) {
-  return {.code = code,
-          .severity = severity,
-          .detail = std::move(detail),
-          .rule = std::move(rule),
-          .file = {},
-          .where = {},
-          .fixes = {}};
-}
-
-Findings CheckInch(const Document& document) {
-  optimo::Compilation compiled = optimo::Compile(document.text(), {}, {});
-  // A short distance in inches is none in millimetres. Contours, whose advice depends on units, are
-  // not looked at.
-  std::erase_if(compiled.diagnostics,
-                [](const Diagnostic& d) { return d.code == ErrorCode::kShortFly; });
-  compiled.diagnostics.insert(
-      compiled.diagnostics.begin(),
-      Plain(ErrorCode::kSourceIsInch, Severity::kAdvice,
-            "inches and degrees: convert the file before it is compiled", "OPT-2.04"));
-  return {std::move(compiled.diagnostics), compiled.diagnostics_dropped};
-}
-
 }  // namespace
 
-Family FamilyOf(const Document& document) {
+const machine::MachineFamily& FamilyOf(const Document& document) {
   const machine::MachineFamily* family = families::FamilyOfFileName(FileNameOfUri(document.uri()));
-  if (family != nullptr) return family->info().id == "rml1" ? Family::kRml1 : Family::kOptimo;
-  return document.language() == kRml1Language ? Family::kRml1 : Family::kOptimo;
+  if (family != nullptr) return *family;
+  const auto& known = families::Families();
+  const auto named = std::ranges::find_if(known, [&](const machine::MachineFamily* one) {
+    return one->info().editor_language == document.language();
+  });
+  if (named != known.end() && !document.language().empty()) return **named;
+  const auto written = std::ranges::find_if(
+      known, [](const machine::MachineFamily* one) { return one->editing() != nullptr; });
+  return written != known.end() ? **written : *known.front();
 }
 
 Findings CheckDocument(const Document& document) {
   const std::string& text = document.text();
   if (text.empty()) return {};
   if (text.size() > kCheckedBytesMax) {
-    return {{Plain(ErrorCode::kCellTooLarge, Severity::kWarning,
-                   "the text has " + std::to_string(text.size()) + " bytes; at most " +
-                       std::to_string(kCheckedBytesMax) + " are checked",
-                   {})},
+    return {{{.code = ErrorCode::kCellTooLarge,
+              .severity = Severity::kWarning,
+              .detail = "the text has " + std::to_string(text.size()) + " bytes; at most " +
+                        std::to_string(kCheckedBytesMax) + " are checked",
+              .rule = {},
+              .file = {},
+              .where = {},
+              .fixes = {}}},
             0};
   }
-  const std::string name = FileNameOfUri(document.uri());
-  const bool rml1 = FamilyOf(document) == Family::kRml1;
-  if (!rml1 && optimo::FormOfFile(name, text) == optimo::FileForm::kInchSource)
-    return CheckInch(document);
-  const machine::MachineFamily* family = families::FindFamily(rml1 ? "rml1" : "optimo");
-  machine::Translation translation = simulation::TranslateProgram(
-      *family, machine::Parameters(family->parameters()),
-      {.file_name = name, .bytes = simulation::Borrowed(text), .is_source = true},
-      {.advice = true});
+  const machine::MachineFamily& family = FamilyOf(document);
+  machine::Translation translation =
+      simulation::TranslateProgram(family, machine::Parameters(family.parameters()),
+                                   {.file_name = FileNameOfUri(document.uri()),
+                                    .bytes = simulation::Borrowed(text),
+                                    .is_source = true},
+                                   {.advice = true, .unconverted = true});
   return {std::move(translation.diagnostics), translation.diagnostics_dropped};
 }
 

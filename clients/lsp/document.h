@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "clients/lsp/text_position.h"
+#include "engine/core/line_table.h"
 
 namespace rmlcell::lsp {
 

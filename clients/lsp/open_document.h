@@ -20,14 +20,14 @@ struct Server::OpenDocument {
   explicit OpenDocument(Document made) : document(std::move(made)) {}
 
   void Changed() {
-    index.reset();
+    program.reset();
     findings.reset();
     unpublished = true;
   }
 
   Document document;
-  std::unique_ptr<ProgramIndex> index;  // of the present text, when something asked for it
-  std::optional<Findings> findings;     // of the present text
+  std::unique_ptr<machine::EditedProgram> program;  // of the present text, once somebody asked
+  std::optional<Findings> findings;                 // of the present text
   bool unpublished = true;
 };
 

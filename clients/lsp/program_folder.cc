@@ -1,12 +1,13 @@
 #include "clients/lsp/program_folder.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
+#include <utility>
 
 #include "engine/core/hex.h"
+#include "engine/core/letters.h"
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
 
@@ -16,8 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kScheme = "file://";
-// In the order in which one is taken for the program.
-constexpr std::array<std::string_view, 3> kExtensions = {".s", ".si", ".cmp"};
 
 struct Found {
   int number = 0;
@@ -55,14 +54,12 @@ std::optional<std::string> Unescaped(std::string_view text) {
   return out;
 }
 
-std::size_t ExtensionRank(std::string_view name) {
+std::size_t ExtensionRank(std::string_view name, SourceExtensions extensions) {
   const std::size_t dot = name.rfind('.');
-  if (dot == std::string_view::npos) return kExtensions.size();
-  std::string lower(name.substr(dot));
-  std::ranges::transform(lower, lower.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
-  });
-  return static_cast<std::size_t>(std::ranges::find(kExtensions, lower) - kExtensions.begin());
+  if (dot == std::string_view::npos) return extensions.size();
+  const auto found = std::ranges::find_if(
+      extensions, [&](std::string_view one) { return EqualIgnoringCase(one, name.substr(dot)); });
+  return static_cast<std::size_t>(found - extensions.begin());
 }
 
 }  // namespace
@@ -96,15 +93,16 @@ std::string FileNameOfUri(std::string_view uri) {
   return slash == std::string::npos ? whole : whole.substr(slash + 1);
 }
 
-std::optional<int> ProgramNumberOf(std::string_view uri) {
+std::optional<int> ProgramNumberOf(std::string_view uri, SourceExtensions extensions) {
   const std::string name = FileNameOfUri(uri);
-  if (ExtensionRank(name) == kExtensions.size()) return std::nullopt;
+  if (ExtensionRank(name, extensions) == extensions.size()) return std::nullopt;
   const auto number = ParseInteger(name.substr(0, name.rfind('.')));
   if (!number || *number < kSlotMin || *number > kSlotMax) return std::nullopt;
   return static_cast<int>(*number);
 }
 
-std::vector<NumberedFile> DiskFolder::Programs(std::string_view uri) const {
+std::vector<machine::NumberedFile> DiskFolder::Programs(std::string_view uri,
+                                                        SourceExtensions extensions) const {
   const std::optional<std::string> path = PathOfUri(uri);
   if (!path) return {};
   std::vector<Found> found;
@@ -114,14 +112,18 @@ std::vector<NumberedFile> DiskFolder::Programs(std::string_view uri) const {
        !error && entry != end && looked_at < kFolderEntriesMax;
        entry.increment(error), ++looked_at) {
     const std::string file = entry->path().string();
-    const std::optional<int> number = ProgramNumberOf(file);
+    const std::optional<int> number = ProgramNumberOf(file, extensions);
     std::error_code ignored;
     if (number && entry->is_regular_file(ignored))
-      found.push_back({*number, ExtensionRank(file), file});
+      found.push_back({*number, ExtensionRank(file, extensions), file});
   }
   std::ranges::sort(found, ComesBefore);
-  std::vector<NumberedFile> programs;
-  for (const Found& one : found) programs.push_back({one.number, UriOfPath(one.path)});
+  std::vector<machine::NumberedFile> programs;
+  for (const Found& one : found) {
+    std::string uri_of_one = UriOfPath(one.path);
+    std::string name = FileNameOfUri(uri_of_one);
+    programs.push_back({one.number, std::move(uri_of_one), std::move(name)});
+  }
   return programs;
 }
 

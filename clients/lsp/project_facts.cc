@@ -1,6 +1,7 @@
 #include "clients/lsp/project_facts.h"
 
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "clients/lsp/protocol.h"
 #include "engine/core/number_text.h"
@@ -9,11 +10,11 @@ namespace rmlcell::lsp {
 namespace {
 
 // The rows of a list of the project of this folder.
-std::vector<Json> RowsOf(const OpenProgram& program, std::string_view list) {
-  const std::string& uri = program.document.uri();
+std::vector<Json> RowsOf(const ProgramFolder& folder, std::string_view uri, std::string_view list) {
   const std::size_t slash = uri.rfind('/');
-  if (slash == std::string::npos) return {};
-  const Result<std::string> text = program.folder.Read(uri.substr(0, slash + 1) + "project.json");
+  if (slash == std::string_view::npos) return {};
+  const Result<std::string> text =
+      folder.Read(std::string(uri.substr(0, slash + 1)) + "project.json");
   const auto project = text ? ReadJson(*text) : std::nullopt;
   const Json* rows = project ? Member(*project, {list}) : nullptr;
   if (rows == nullptr || !rows->is_array()) return {};
@@ -26,8 +27,8 @@ std::string NumberText(const Json* number) {
 
 }  // namespace
 
-std::string ScheduleNote(const OpenProgram& program, int number) {
-  for (const Json& row : RowsOf(program, "laserSchedules")) {
+std::string ScheduleNote(const ProgramFolder& folder, std::string_view uri, int number) {
+  for (const Json& row : RowsOf(folder, uri, "laserSchedules")) {
     if (NumberMember(row, {"number"}) != number) continue;
     std::string note = TextMember(row, {"mode"}).value_or("CW");
     const std::string power = NumberText(Member(row, {"powerPercent"}));
@@ -39,8 +40,8 @@ std::string ScheduleNote(const OpenProgram& program, int number) {
   return {};
 }
 
-std::string ProcessNote(const OpenProgram& program, int kind, int process) {
-  for (const Json& row : RowsOf(program, "processes")) {
+std::string ProcessNote(const ProgramFolder& folder, std::string_view uri, int kind, int process) {
+  for (const Json& row : RowsOf(folder, uri, "processes")) {
     if (NumberMember(row, {"kind"}).value_or(0) != kind ||
         NumberMember(row, {"process"}).value_or(0) != process) {
       continue;

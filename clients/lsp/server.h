@@ -15,9 +15,9 @@
 #include "clients/lsp/check.h"
 #include "clients/lsp/document.h"
 #include "clients/lsp/framing.h"
-#include "clients/lsp/open_program.h"
 #include "clients/lsp/program_folder.h"
 #include "clients/lsp/protocol.h"
+#include "clients/lsp/surroundings.h"
 
 namespace rmlcell::lsp {
 
@@ -89,8 +89,8 @@ class Server {
   OpenDocument* Find(const Json& parameters);
   OpenDocument* FindUri(std::string_view uri);
   const Findings& Checked(OpenDocument& open);
-  const ProgramIndex& Index(OpenDocument& open);
-  OpenProgram Program(OpenDocument& open);
+  const machine::EditedProgram* Look(OpenDocument& open);
+  DocumentSurroundings Around(const OpenDocument& open);
 
   // server_requests.cc: one method of textDocument/ each
   struct Place;

@@ -86,21 +86,20 @@ const Findings& Server::Checked(OpenDocument& open) {
   return *open.findings;
 }
 
-const ProgramIndex& Server::Index(OpenDocument& open) {
-  if (open.index == nullptr) {
-    const bool searched = FamilyOf(open.document) == Family::kOptimo &&
-                          open.document.text().size() <= kCheckedBytesMax;
-    open.index = std::make_unique<ProgramIndex>(searched ? std::string_view(open.document.text())
-                                                         : std::string_view());
-  }
-  return *open.index;
+// Null: a stream, or a text that is too long to be searched.
+const machine::EditedProgram* Server::Look(OpenDocument& open) {
+  const machine::Editing* editing = FamilyOf(open.document).editing();
+  const std::string& text = open.document.text();
+  if (open.program == nullptr && editing != nullptr && text.size() <= kCheckedBytesMax)
+    open.program = editing->Look(text);
+  return open.program.get();
 }
 
-OpenProgram Server::Program(OpenDocument& open) {
-  return {.document = open.document,
-          .index = Index(open),
-          .folder = folder_,
-          .open = [this](std::string_view uri) -> const Document* {
+DocumentSurroundings Server::Around(const OpenDocument& open) {
+  const machine::Editing* editing = FamilyOf(open.document).editing();
+  return {open.document, folder_,
+          editing == nullptr ? SourceExtensions() : editing->source_extensions(),
+          [this](std::string_view uri) -> const Document* {
             const OpenDocument* found = FindUri(uri);
             return found == nullptr ? nullptr : &found->document;
           }};

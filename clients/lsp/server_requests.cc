@@ -1,26 +1,28 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "clients/lsp/completion.h"
-#include "clients/lsp/hover.h"
-#include "clients/lsp/navigation.h"
+#include "clients/lsp/answers.h"
 #include "clients/lsp/open_document.h"
-#include "clients/lsp/outline.h"
-#include "clients/lsp/rename.h"
 #include "clients/lsp/text_edits.h"
 
-// What editors ask about a document. Streams for mills have findings and nothing else.
+// What editors ask about a document. Streams have findings and nothing else.
 namespace rmlcell::lsp {
 namespace {
 
 RequestError NotOpen() { return {ErrorNumber::kInvalidParams, "the document is not open"}; }
+
+RequestError NoNames(const Document& document) {
+  return {ErrorNumber::kRequestFailed, FamilyOf(document).editing() == nullptr
+                                           ? "a stream has no names"
+                                           : "the text is too long to be searched"};
+}
 
 }  // namespace
 
 struct Server::Place {
   OpenDocument* open = nullptr;
   std::size_t offset = 0;
-  bool optimo = true;
+  const machine::EditedProgram* program = nullptr;  // null: it has findings alone
 };
 
 std::variant<Server::Place, RequestError> Server::ReadPlace(const Json& parameters) {
@@ -29,89 +31,97 @@ std::variant<Server::Place, RequestError> Server::ReadPlace(const Json& paramete
   const Json* position = Member(parameters, {"position"});
   const auto read = position == nullptr ? std::nullopt : ReadPosition(*position);
   if (!read) return RequestError{ErrorNumber::kInvalidParams, "there is no position"};
-  return Place{open, open->document.OffsetOf(*read), FamilyOf(open->document) == Family::kOptimo};
+  return Place{open, open->document.OffsetOf(*read), Look(*open)};
 }
 
 Server::Answer Server::OnHover(const Json& parameters) {
   const auto place = ReadPlace(parameters);
   if (const auto* wrong = std::get_if<RequestError>(&place)) return *wrong;
-  const auto& [open, offset, optimo] = std::get<Place>(place);
+  const auto& [open, offset, program] = std::get<Place>(place);
   std::span<const Diagnostic> findings;
   if (open->findings) findings = open->findings->list;  // a hover does not wait for a check
-  return optimo ? Hover(Program(*open), offset, findings)
-                : HoverFindings(open->document, offset, findings);
+  std::optional<machine::HoverNote> note;
+  if (program != nullptr) note = program->Hover(offset, Around(*open));
+  return HoverAnswer(open->document, offset, note, findings, FamilyOf(open->document).editing());
 }
 
 Server::Answer Server::OnDefinition(const Json& parameters) {
   const auto place = ReadPlace(parameters);
   if (const auto* wrong = std::get_if<RequestError>(&place)) return *wrong;
-  const auto& [open, offset, optimo] = std::get<Place>(place);
-  if (!optimo) return Json(nullptr);
-  return Definition(Program(*open), offset);
+  const auto& [open, offset, program] = std::get<Place>(place);
+  if (program == nullptr) return Json(nullptr);
+  return Locations(open->document, program->Definition(offset, Around(*open)));
 }
 
 Server::Answer Server::OnReferences(const Json& parameters) {
   const auto place = ReadPlace(parameters);
   if (const auto* wrong = std::get_if<RequestError>(&place)) return *wrong;
-  const auto& [open, offset, optimo] = std::get<Place>(place);
-  if (!optimo) return Json(nullptr);
-  return References(Program(*open), offset,
-                    FlagMember(parameters, {"context", "includeDeclaration"}));
+  const auto& [open, offset, program] = std::get<Place>(place);
+  if (program == nullptr) return Json(nullptr);
+  const bool with_definition = FlagMember(parameters, {"context", "includeDeclaration"});
+  return Locations(open->document, program->References(offset, with_definition, Around(*open)));
 }
 
 Server::Answer Server::OnHighlight(const Json& parameters) {
   const auto place = ReadPlace(parameters);
   if (const auto* wrong = std::get_if<RequestError>(&place)) return *wrong;
-  const auto& [open, offset, optimo] = std::get<Place>(place);
-  if (!optimo) return Json(nullptr);
-  return Highlights(Program(*open), offset);
+  const auto& [open, offset, program] = std::get<Place>(place);
+  if (program == nullptr) return Json(nullptr);
+  return Highlights(open->document, program->Highlights(offset));
 }
 
 Server::Answer Server::OnCompletion(const Json& parameters) {
   const auto place = ReadPlace(parameters);
   if (const auto* wrong = std::get_if<RequestError>(&place)) return *wrong;
-  const auto& [open, offset, optimo] = std::get<Place>(place);
-  if (!optimo) return Json(nullptr);
-  return Complete(Program(*open), offset);
+  const auto& [open, offset, program] = std::get<Place>(place);
+  if (program == nullptr) return Json(nullptr);
+  return CompletionList(open->document, program->Complete(offset, Around(*open)));
 }
 
 Server::Answer Server::OnPrepareRename(const Json& parameters) {
   const auto place = ReadPlace(parameters);
   if (const auto* wrong = std::get_if<RequestError>(&place)) return *wrong;
-  const auto& [open, offset, optimo] = std::get<Place>(place);
-  if (!optimo) return RequestError{ErrorNumber::kRequestFailed, "a stream has no names"};
-  return PrepareRename(Program(*open), offset);
+  const auto& [open, offset, program] = std::get<Place>(place);
+  if (program == nullptr) return NoNames(open->document);
+  const auto found = program->Renamable(offset);
+  if (const auto* refused = std::get_if<machine::Refusal>(&found))
+    return RequestError{ErrorNumber::kRequestFailed, refused->why};
+  return RenamePlace(open->document, std::get<machine::TextSpan>(found));
 }
 
 Server::Answer Server::OnRename(const Json& parameters) {
   const auto place = ReadPlace(parameters);
   if (const auto* wrong = std::get_if<RequestError>(&place)) return *wrong;
-  const auto& [open, offset, optimo] = std::get<Place>(place);
-  if (!optimo) return RequestError{ErrorNumber::kRequestFailed, "a stream has no names"};
+  const auto& [open, offset, program] = std::get<Place>(place);
+  if (program == nullptr) return NoNames(open->document);
   const auto name = TextMember(parameters, {"newName"});
   if (!name) return RequestError{ErrorNumber::kInvalidParams, "there is no new name"};
-  return Rename(Program(*open), offset, *name);
+  const auto places = program->Rename(offset, *name);
+  if (const auto* refused = std::get_if<machine::Refusal>(&places))
+    return RequestError{ErrorNumber::kRequestFailed, refused->why};
+  return RenameEdits(open->document, std::get<std::vector<machine::TextSpan>>(places), *name);
 }
 
 Server::Answer Server::OnFormatting(const Json& parameters) {
   OpenDocument* open = Find(parameters);
   if (open == nullptr) return NotOpen();
-  const bool formatted = FamilyOf(open->document) == Family::kOptimo &&
-                         open->document.text().size() <= kCheckedBytesMax;
-  if (!formatted) return Json(nullptr);
+  if (Look(*open) == nullptr) return Json(nullptr);
   return FormattingEdits(open->document);
 }
 
 Server::Answer Server::OnFolding(const Json& parameters) {
   OpenDocument* open = Find(parameters);
   if (open == nullptr) return NotOpen();
-  return FoldingRanges(open->document, Index(*open));
+  const machine::EditedProgram* program = Look(*open);
+  return program == nullptr ? Json::array() : FoldingRanges(program->Folds());
 }
 
 Server::Answer Server::OnSymbols(const Json& parameters) {
   OpenDocument* open = Find(parameters);
   if (open == nullptr) return NotOpen();
-  return Symbols(open->document, Index(*open), nested_symbols_);
+  const machine::EditedProgram* program = Look(*open);
+  return program == nullptr ? Json::array()
+                            : Symbols(open->document, program->Outline(), nested_symbols_);
 }
 
 Server::Answer Server::OnCodeAction(const Json& parameters) {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/optimo/language/fixes.h"
-#include "engine/optimo/language/formatter.h"
+#include "clients/lsp/program_folder.h"
+#include "engine/core/text_fixes.h"
 
 namespace rmlcell::lsp {
 namespace {
@@ -77,7 +77,8 @@ std::string TitleOf(const Diagnostic& finding, std::string_view text) {
 
 class Actions {
  public:
-  Actions(const Document& document, const Json* only) : document_(document), only_(only) {}
+  Actions(const Document& document, const machine::Editing* editing, const Json* only)
+      : document_(document), editing_(editing), only_(only) {}
 
   Json Make(const Findings& findings, const Range& range) {
     const std::size_t from = document_.OffsetOf(range.start);
@@ -88,12 +89,11 @@ class Actions {
       if (!here || actions_.size() >= kActionsMax || !Wanted(only_, kQuickFix)) continue;
       if (!finding.fixes.empty())
         Add(TitleOf(finding, document_.text()), kQuickFix, finding.fixes, &finding);
-      if (!IsError(finding.severity) && Lookup(finding.code).family == ErrorFamily::kOptimo)
-        AddSilence(finding, marked.begin);
+      AddAllowance(finding);
     }
     if (!Wanted(only_, kFixAll)) return std::move(actions_);
     std::vector<Fix> all;
-    for (const std::size_t at : optimo::RepairableFindings(document_.text(), findings.list)) {
+    for (const std::size_t at : RepairableFindings(document_.text(), findings.list)) {
       const std::vector<Fix>& fixes = findings.list[at].fixes;
       all.insert(all.end(), fixes.begin(), fixes.end());
     }
@@ -118,31 +118,17 @@ class Actions {
     actions_.push_back(std::move(action));
   }
 
-  // "; rmlcell: allow 7033" on the line where the statement begins; into a comment that is there.
-  void AddSilence(const Diagnostic& finding, std::size_t begin) {
-    const std::string& text = document_.text();
-    if (begin < text.size() && text[begin] == ';') return;  // of a directive itself
-    const std::size_t line_end = std::min(text.find('\n', begin), text.size());
-    const std::size_t line = begin == 0 ? 0 : text.rfind('\n', begin - 1) + 1;
+  void AddAllowance(const Diagnostic& finding) {
+    const auto change =
+        editing_ == nullptr ? std::nullopt : editing_->Allow(document_.text(), finding);
+    if (!change) return;
     const std::string number = std::to_string(Lookup(finding.code).number);
-    std::size_t end = line_end;
-    while (end > line && (text[end - 1] == '\r' || text[end - 1] == ' ' || text[end - 1] == '\t'))
-      --end;
-    const std::string_view row = std::string_view(text).substr(line, end - line);
-    const std::size_t comment = row.find(';');
-    // Only one comment can stand on a line, and a directive ends at its first word.
-    if (comment != std::string_view::npos &&
-        (row.find("rmlcell: allow", comment) == std::string_view::npos ||
-         row.find_last_of("0123456789") + 1 != row.size()))
-      return;
-    const std::string insertion =
-        comment == std::string_view::npos ? "  ; rmlcell: allow " + number : " " + number;
-    Add("Allow " + number + " on this line", kQuickFix,
-        {Fix{static_cast<std::int64_t>(end), 0, insertion}}, &finding);
+    Add("Allow " + number + " on this line", kQuickFix, {*change}, &finding);
     if (!actions_.empty()) actions_.back()["isPreferred"] = false;
   }
 
   const Document& document_;
+  const machine::Editing* editing_;
   const Json* only_;
   Json actions_ = Json::array();
 };
@@ -151,7 +137,10 @@ class Actions {
 
 Json FormattingEdits(const Document& document) {
   Json edits = Json::array();
-  const optimo::Formatting formatted = optimo::Format(document.text());
+  const machine::Tools* tools = FamilyOf(document).tools();
+  if (tools == nullptr) return edits;
+  const machine::FormattedText formatted =
+      tools->Format({.name = FileNameOfUri(document.uri()), .bytes = document.text()});
   if (!formatted.changed) return edits;
   const std::vector<std::string_view> before = LinesOf(document.text());
   const std::vector<std::string_view> after = LinesOf(formatted.text);
@@ -190,7 +179,7 @@ Json FormattingEdits(const Document& document) {
 
 Json CodeActions(const Document& document, const Findings& findings, const Range& range,
                  const Json* only) {
-  return Actions(document, only).Make(findings, range);
+  return Actions(document, FamilyOf(document).editing(), only).Make(findings, range);
 }
 
 }  // namespace rmlcell::lsp

@@ -10,8 +10,8 @@
 // Changes to a document that the editor carries out.
 namespace rmlcell::lsp {
 
-// TextEdit objects that bring an Optimo program into canonical layout, line by line, so that
-// cursors and marks of the editor stay; empty when it is, or when it cannot be parsed.
+// TextEdit objects that bring a program into canonical layout, line by line, so that cursors and
+// marks of the editor stay; empty when it is, when it cannot be parsed, and for streams.
 Json FormattingEdits(const Document& document);
 
 // CodeAction objects for `range`: the fixes of findings there, all fixes of the text as `rmlcell

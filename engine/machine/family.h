@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/machine/editing.h"
 #include "engine/machine/program_file.h"
 #include "engine/machine/run.h"
 #include "engine/machine/shape.h"
@@ -16,12 +17,13 @@
 namespace rmlcell::machine {
 
 struct FamilyInfo {
-  std::string_view id{};            // "optimo"
-  std::string_view title{};         // "Amada OPTIMO 5-axis laser"
-  std::string_view extensions{};    // ".S .SI .CMP .O", space separated, compared without case
-  std::string_view axes{};          // "X Y Z A B"
-  bool has_executables = false;     // makes executables at slot + 100
-  bool has_schedules = false;       // laser schedules and process definitions
+  std::string_view id{};               // "optimo"
+  std::string_view title{};            // "Amada OPTIMO 5-axis laser"
+  std::string_view extensions{};       // ".S .SI .CMP .O", space separated, compared without case
+  std::string_view axes{};             // "X Y Z A B"
+  std::string_view editor_language{};  // how editors call its programs: "optimo-rml"
+  bool has_executables = false;        // makes executables at slot + 100
+  bool has_schedules = false;          // laser schedules and process definitions
   bool checked_by_running = false;  // Translate does not follow the motion: CHECK runs the program
   bool hold_in_remote = false;      // the HOLD key works in mode REMOTE, too
   double override_max_percent = 100.0;  // of the feed rate; the least is above 0
@@ -80,6 +82,12 @@ struct FigureInfo {
   std::string_view name{};  // "programmed.cut_length"
   std::string_view unit{};  // "mm"; empty for counts
   std::string_view text{};  // what it means, one sentence
+
+  // In the report that people read: the row and what it says, with '#' for the number. Figures that
+  // follow each other in one row share it. Empty: it stands among the facts alone.
+  std::string_view row{};   // "tool"
+  std::string_view said{};  // "up # s"
+  bool when_zero = false;   // said of nothing, too
 };
 
 // Why an executable is no longer what a new link of the stored objects would give (OPT-1.12
@@ -151,6 +159,9 @@ class MachineFamily {
 
   // The tools for program texts; null: programs are streams.
   virtual const Tools* tools() const { return nullptr; }
+
+  // What an editor asks about program texts; null: nobody writes them by hand.
+  virtual const Editing* editing() const { return nullptr; }
 
   // Whether bytes are an executable of this family, made of the program of this slot (1..99).
   // Errors: ObjectCorrupt (7034), CellInvalidArgument for that of another program.

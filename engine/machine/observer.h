@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string_view>
 
@@ -29,6 +30,9 @@ struct PowerBySpeed {
   double constant_percent = 0.0;
   double percent_per_mm_s = 0.0;
 
+  double PercentAt(double tip_speed_mm_s) const {
+    return std::clamp(constant_percent + percent_per_mm_s * tip_speed_mm_s, 0.0, 100.0);
+  }
   bool operator==(const PowerBySpeed&) const = default;
 };
 

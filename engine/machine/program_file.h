@@ -31,6 +31,9 @@ inline constexpr std::size_t kDiagnosticsMax = 1000;
 struct CheckOptions {
   bool advice = true;   // lint findings of severity warning and advice
   bool source = false;  // fill in Translation::source
+  // The text is still being written: a source in units of its own is checked as it stands, with the
+  // advice to convert it, and advice that depends on units is left out.
+  bool unconverted = false;
 };
 
 }  // namespace rmlcell::machine

@@ -15,6 +15,7 @@ constexpr machine::FamilyInfo kInfo = {.id = "rml1",
                                        .title = "Roland mill or engraver, RML-1",
                                        .extensions = ".RML .PRN",
                                        .axes = "X Y Z A",
+                                       .editor_language = "rml1",
                                        .has_executables = false,
                                        .has_schedules = false,
                                        .hold_in_remote = true,  // it has no such mode

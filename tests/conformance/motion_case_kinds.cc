@@ -8,7 +8,8 @@
 #include "engine/motion/geometry/hole.h"
 #include "engine/motion/planner/feed_steps.h"
 #include "engine/motion/ride/interruption.h"
-#include "engine/motion/ride/laser_power.h"
+#include "engine/optimo/machine/laser_unit.h"
+#include "engine/simulation/report/beam_work.h"
 #include "tests/conformance/mill_case_kinds.h"
 #include "tests/conformance/motion_case_input.h"
 #include "tests/engine/motion/standard_machine.h"
@@ -253,15 +254,14 @@ Figures PlanCase(const json& input) {
   return figures;
 }
 
-PowerLaw LawOf(double speed, double power) {
-  return {.speed_percent = speed,
-          .power_percent = power,
-          .tip_speed_max_mm_s = StandardMachine().tip_speed_mm_s};
+machine::PowerBySpeed RampOf(double speed, double power) {
+  return optimo::RampedPower({.speed_percent = speed, .power_percent = power},
+                             StandardMachine().tip_speed_mm_s);
 }
 
 Figures Power(const json& input) {
-  const PowerLaw law = LawOf(PositiveOf(input, "speed"), NumberOf(input, "power"));
-  return {{"power_pct", law.PercentAt(NumberOf(input, "v"))}};
+  const auto ramp = RampOf(PositiveOf(input, "speed"), NumberOf(input, "power"));
+  return {{"power_pct", ramp.PercentAt(NumberOf(input, "v"))}};
 }
 
 Figures Cut(const json& input) {
@@ -270,8 +270,9 @@ Figures Cut(const json& input) {
   const double rated = NumberOf(input, "laser_W");
   const PlannedMotion motion = Single({.path = PathPiece::Line({}, {{length, 0.0, 0.0}}),
                                        .speed_fraction = NumberOf(input, "speed") / 100.0});
-  const PowerLaw law = LawOf(PositiveOf(input, "wd_speed"), NumberOf(input, "wd_power"));
-  const double energy = EnergyOf(motion.speed, law, rated);
+  const auto ramp = RampOf(PositiveOf(input, "wd_speed"), NumberOf(input, "wd_power"));
+  const double energy = simulation::BeamWork(rated, StandardMachine().tip_speed_mm_s)
+                            .Moving(motion.speed, 0.0, motion.duration_s(), 1.0, ramp);
   const double beam_on = delay + motion.duration_s();
   return {{"beam_on", beam_on},
           {"E_pierce", rated * NumberOf(input, "peak") / 100.0 * delay},

@@ -12,8 +12,8 @@ constexpr const char* kUri = "file:///w/12.S";
 
 class NoFolder final : public ProgramFolder {
  public:
-  std::vector<NumberedFile> Programs(std::string_view) const override {
-    return {{44, "file:///w/44.S"}};
+  std::vector<machine::NumberedFile> Programs(std::string_view, SourceExtensions) const override {
+    return {{44, "file:///w/44.S", "44.S"}};
   }
   Result<std::string> Read(std::string_view) const override {
     return std::string("; a rectangle\nVR[0] = PAR[0]\n");

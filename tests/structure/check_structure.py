@@ -39,10 +39,11 @@ MAY_INCLUDE = {
     "engine/rml1": ENGINE,
     "engine/optimo/language": ["engine/core"],
     "engine/optimo/offline": ENGINE + ["engine/optimo/language"],
+    "engine/optimo/editing": ["engine/core", "engine/machine", "engine/optimo/language", "engine/optimo/offline"],
     "engine/optimo/machine": ENGINE + ["engine/optimo/language", "engine/optimo/offline"],
     "engine/optimo/ride": ENGINE + ["engine/optimo/language", "engine/optimo/machine"],
-    "engine/optimo/control": ENGINE + ["engine/optimo/language", "engine/optimo/offline", "engine/optimo/machine",
-                                       "engine/optimo/ride"],
+    "engine/optimo/control": ENGINE + ["engine/optimo/language", "engine/optimo/offline", "engine/optimo/editing",
+                                       "engine/optimo/machine", "engine/optimo/ride"],
     "engine/families": ["engine/core", "engine/machine", "engine/rml1", "engine/optimo/control"],
     PATH: ENGINE,
     REPORT: ENGINE + ["engine/families", PATH],
@@ -75,9 +76,8 @@ MAY_INCLUDE = {
     "server/cell": ["engine/core", "proto/bridge", "server/base", "server/auth", "server/events", "server/records",
                     "server/jobs", "server/programs", "server/projects", "server/services", "server/web", "storage",
                     "storage/sqlite"],
-    # The language server: the languages and no server.
-    "clients/lsp": ["engine/core", "engine/machine", "engine/optimo/language", "engine/optimo/offline",
-                    "engine/families", RUN],
+    # The language server: no server and no language.
+    "clients/lsp": ["engine/core", "engine/machine", "engine/families", RUN],
     "clients/cli": ["clients/lsp", "engine/core", "engine/machine", "engine/families", REPORT, MATERIAL, RUN, "proto", "proto/bridge"],
 }
 # Of these rooms others may include no other header.
@@ -88,6 +88,7 @@ PUBLIC = {
     CORNER: ["corner.h", "axes_corner.h"],
     PLANNER: ["planner.h", "feed_steps.h"],
     RIDE: ["trajectory.h", "interruption.h", "ride_protocol.h"],
+    "engine/optimo/editing": ["optimo_editing.h"],
     PATH: ["part_curve.h", "path_extent.h", "polyline.h", "profile_phases.h", "motion_peaks.h"],
     REPORT: ["report.h", "report_recorder.h", "finding_list.h", "facts.h", "trace.h", "samples.h"],
     TOOLPATH: ["toolpath_recorder.h", "toolpath_level.h"],

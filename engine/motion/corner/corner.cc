@@ -46,10 +46,10 @@ void Corner::Assign(const PathPiece& before, const PathPiece& after) {
     b_jump_ = std::abs(out.b - in.b);
   }
   if (!lines_) {
-    const MachineVector bend_in = before.Second(before.length()).point;
-    const MachineVector bend_out = after.Second(0.0).point;
-    smooth = Same(bend_in, bend_out);
-    curvature_jump_ = (bend_in - bend_out).norm();
+    const MachineVector curvature_in = before.Second(before.length()).point;
+    const MachineVector curvature_out = after.Second(0.0).point;
+    smooth = Same(curvature_in, curvature_out);
+    curvature_jump_ = (curvature_in - curvature_out).norm();
     for (const PathPiece* piece : {&before, &after}) {
       if (piece->kind() != PathPiece::Kind::kArc) continue;
       cut_max_mm_ = std::min(cut_max_mm_, 0.5 * piece->radius_mm());
@@ -58,15 +58,15 @@ void Corner::Assign(const PathPiece& before, const PathPiece& after) {
   passage_ = straight_ && smooth ? Passage::kThrough : Passage::kBlend;
   if (passage_ == Passage::kThrough) return;
   rho_ = CornerRho(half_cosine_);
-  bend_ = CornerBend(half_sine_, half_cosine_, rho_);
-  jerk_ = CornerJerk(half_sine_, half_cosine_, bend_);
+  curvature_ = CornerCurvature(half_sine_, half_cosine_, rho_);
+  jerk_ = CornerJerk(half_sine_, half_cosine_, curvature_);
 }
 
 double Corner::CutFor(double w, const MachineLimits& machine) const {
   const double square = w * w;
   const double cube = square * w;
   const double jerk = machine.normal_jerk();
-  double cut = std::max({bend_ * square / machine.normal_acceleration(),
+  double cut = std::max({curvature_ * square / machine.normal_acceleration(),
                          std::sqrt(jerk_ * cube / jerk), 1.2 * curvature_jump_ * cube / jerk});
   // Trapezoids have no limit on the jerk of the axes either: docs/decisions/0015.
   const bool jerk_limited = std::isfinite(jerk);
@@ -89,9 +89,9 @@ double Corner::PlainDeviation(double cut_mm) const {
 double Corner::PlainBow(double cut_mm) const { return cut_mm * (0.5 - 5.0 * rho_ / 32.0); }
 
 double Corner::PlainSpeed(double cut_mm, const MachineLimits& machine) const {
-  const double by_acceleration = std::sqrt(machine.normal_acceleration() * cut_mm / bend_);
+  const double by_acceleration = std::sqrt(machine.normal_acceleration() * cut_mm / curvature_);
   if (std::isinf(machine.tip_jerk_mm_s3)) return by_acceleration;
-  const double jerk = CornerJerkPeak(half_sine_, half_cosine_, bend_);
+  const double jerk = CornerJerkPeak(half_sine_, half_cosine_, curvature_);
   return std::min(by_acceleration, std::cbrt(machine.normal_jerk() * cut_mm * cut_mm / jerk));
 }
 
@@ -99,12 +99,13 @@ BendSpeeds Corner::PlainSpeeds(double cut, double top, const MachineLimits& mach
   // Plans look at these places only, and ramps bend a little between them.
   constexpr double kBetween = 1.0 - 3e-3;
   const HalfCorner half = CornerHalf(half_sine_, half_cosine_);
-  const double by_bend = std::sqrt(machine.normal_acceleration() * cut / bend_);
-  const double by_jerk = std::cbrt(machine.normal_jerk() * cut * cut / bend_);
+  const double by_curvature = std::sqrt(machine.normal_acceleration() * cut / curvature_);
+  const double by_jerk = std::cbrt(machine.normal_jerk() * cut * cut / curvature_);
   const double least = PlainSpeed(cut, machine);  // holds everywhere
   BendSpeeds speeds;
   for (std::size_t k = 0; k < speeds.most.size(); ++k) {
-    const double here = kBetween * std::min(by_bend * half.by_bend[k], by_jerk * half.by_jerk[k]);
+    const double here =
+        kBetween * std::min(by_curvature * half.by_curvature[k], by_jerk * half.by_jerk[k]);
     speeds.most[k] = std::min(std::max(here, least), top);
   }
   return speeds;
@@ -126,7 +127,7 @@ CurveEnd EndAt(const PathPiece& path, double s) {
 }
 
 bool AxesFollow(const CornerCurve& curve, const Head& head, const MachineLimits& machine,
-                double speed, double bend_per_mm) {
+                double speed, double curvature_per_mm) {
   const CornerCurve::Bounds by_u = curve.DerivativeBounds();
   if (!(by_u.slowest > 0.0)) return false;
   const double per_mm = 1.0 / by_u.slowest;
@@ -137,7 +138,7 @@ bool AxesFollow(const CornerCurve& curve, const Head& head, const MachineLimits&
   const double bb = (by_u.b_second + by_u.b_first * stretch) * per_mm * per_mm;
   const double arm = head.reach_mm();
   const double first = 1.0 + arm * (a + b);
-  const double second = bend_per_mm + arm * (aa + bb + (a + b) * (a + b));
+  const double second = curvature_per_mm + arm * (aa + bb + (a + b) * (a + b));
   const AxisLimits& axes = machine.axes;
   const double square = speed * speed;
   bool enough = a * speed <= axes.speed[3] && b * speed <= axes.speed[4] &&

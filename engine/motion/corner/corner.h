@@ -65,7 +65,7 @@ class Corner {
   double PlainSpeed(double cut_mm, const MachineLimits& machine) const;
   // The highest speed from place to place, none above `top`. With a limit on jerk.
   BendSpeeds PlainSpeeds(double cut_mm, double top_mm_s, const MachineLimits& machine) const;
-  double PlainCurvature(double cut_mm) const { return bend_ / cut_mm; }
+  double PlainCurvature(double cut_mm) const { return curvature_ / cut_mm; }
 
  private:
   Passage passage_ = Passage::kStop;
@@ -74,9 +74,9 @@ class Corner {
   bool straight_ = false;
   double half_sine_ = 0.0;  // of the turn
   double half_cosine_ = 1.0;
-  double rho_ = 0.0;   // of motion.md 4.2
-  double bend_ = 0.0;  // K of motion.md 4.2: peak curvature times cut
-  double jerk_ = 0.0;  // J of 4.3
+  double rho_ = 0.0;        // of motion.md 4.2
+  double curvature_ = 0.0;  // K of motion.md 4.2: peak curvature times cut
+  double jerk_ = 0.0;       // J of 4.3
   double curvature_jump_ = 0.0;
   double a_jump_ = 0.0;  // of the head rates, rad/mm
   double b_jump_ = 0.0;
@@ -92,10 +92,10 @@ double JunctionSpeed(const MachineVector& tangent_in, const MachineVector& tange
 CurveEnd EndAt(const PathPiece& path, double s);
 
 // Whether a curve between two lines, whose tip may be as fast as `speed`, can be passed at that
-// speed by the axes too: by bounds, so no is only a maybe. `bend_per_mm` is the peak of its
+// speed by the axes too: by bounds, so no is only a maybe. `curvature_per_mm` is the peak of its
 // curvature.
 bool AxesFollow(const CornerCurve& curve, const Head& head, const MachineLimits& machine,
-                double speed, double bend_per_mm);
+                double speed, double curvature_per_mm);
 
 // The highest speed at which a curve can be passed: normal acceleration, jerk and axes.
 // motion.md 4.3; to 1e-9. When it is above `enough` that is all that can be told from it.

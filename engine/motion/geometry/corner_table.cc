@@ -60,7 +60,7 @@ class LengthTable {
 
 // About what the peak of path jerk is, at every angle, and smooth: J has corners, which straight
 // lines between the nodes of a table would cut.
-double JerkScale(double tangent, double bend) { return 3.0 * tangent + bend * bend; }
+double JerkScale(double tangent, double curvature) { return 3.0 * tangent + curvature * curvature; }
 
 // By theta/2. Apart from the lengths: it takes longer, and only corners that are capped ask for it.
 class JerkTable {
@@ -92,7 +92,7 @@ class JerkTable {
       const double least =
           LeastAlong([&](double u) { return 1.0 / curve.JerkPerCube(u); }, 0.5, kIntervals);
       share_[static_cast<std::size_t>(k)] =
-          1.0 / (least * JerkScale(s / c, CornerBend(s, c, CornerRho(c))));
+          1.0 / (least * JerkScale(s / c, CornerCurvature(s, c, CornerRho(c))));
     }
   }
   std::array<double, kNodes> share_{};
@@ -111,8 +111,9 @@ class HalfTable {
     const auto t = static_cast<float>(x - k);
     const Node* at = &nodes_[static_cast<std::size_t>(k)];
     HalfCorner half;
-    for (std::size_t i = 0; i < half.by_bend.size(); ++i) {
-      half.by_bend[i] = kRoom * (at[0].by_bend[i] + (at[1].by_bend[i] - at[0].by_bend[i]) * t);
+    for (std::size_t i = 0; i < half.by_curvature.size(); ++i) {
+      half.by_curvature[i] =
+          kRoom * (at[0].by_curvature[i] + (at[1].by_curvature[i] - at[0].by_curvature[i]) * t);
       half.by_jerk[i] = kRoom * (at[0].by_jerk[i] + (at[1].by_jerk[i] - at[0].by_jerk[i]) * t);
     }
     return half;
@@ -124,7 +125,7 @@ class HalfTable {
   static constexpr double kRoom = 1.0 - 3e-4;     // what straight lines between nodes may lack
   static constexpr double kMost = 1e3;            // where the curve is straight
   struct Node {
-    std::array<float, HalfCorner::kSteps + 1> by_bend;
+    std::array<float, HalfCorner::kSteps + 1> by_curvature;
     std::array<float, HalfCorner::kSteps + 1> by_jerk;
   };
 
@@ -135,15 +136,15 @@ class HalfTable {
       const double c = std::cos(half_turn);
       const CornerCurve curve = PlainCurve(s, c);
       const CornerLength length(curve);
-      const double bend = CornerBend(s, c, CornerRho(c));
+      const double curvature = CornerCurvature(s, c, CornerRho(c));
       Node& node = nodes_[static_cast<std::size_t>(k)];
-      for (std::size_t i = 0; i < node.by_bend.size(); ++i) {
+      for (std::size_t i = 0; i < node.by_curvature.size(); ++i) {
         const double way = 0.5 * length.total() * static_cast<double>(i) / HalfCorner::kSteps;
         const double u = length.ParameterAt(curve, way);
         const double kappa = curve.SecondByLength(u).point.norm();
         const double jerk = curve.JerkPerCube(u);
-        node.by_bend[i] = static_cast<float>(std::min(std::sqrt(bend / kappa), kMost));
-        node.by_jerk[i] = static_cast<float>(std::min(std::cbrt(bend / jerk), kMost));
+        node.by_curvature[i] = static_cast<float>(std::min(std::sqrt(curvature / kappa), kMost));
+        node.by_jerk[i] = static_cast<float>(std::min(std::cbrt(curvature / jerk), kMost));
       }
     }
   }
@@ -211,8 +212,9 @@ class MeasureTable {
 
 }  // namespace
 
-double CornerJerkPeak(double half_sine, double half_cosine, double bend) {
-  return JerkTable::Get().At(half_sine, half_cosine) * JerkScale(half_sine / half_cosine, bend);
+double CornerJerkPeak(double half_sine, double half_cosine, double curvature) {
+  return JerkTable::Get().At(half_sine, half_cosine) *
+         JerkScale(half_sine / half_cosine, curvature);
 }
 
 HalfCorner CornerHalf(double half_sine, double half_cosine) {

@@ -16,26 +16,26 @@ namespace rmlcell::motion {
 inline double CornerRho(double half_cosine) { return 2.0 * std::sqrt(half_cosine); }
 
 // K: peak curvature.
-inline double CornerBend(double half_sine, double half_cosine, double rho) {
+inline double CornerCurvature(double half_sine, double half_cosine, double rho) {
   const double middle = half_cosine * (15.0 / 8.0 - 7.0 * rho / 16.0);
   return 0.75 * rho * half_sine / (middle * middle);
 }
 
 // J: bounds path jerk per speed cubed from above.
-inline double CornerJerk(double half_sine, double half_cosine, double bend) {
+inline double CornerJerk(double half_sine, double half_cosine, double curvature) {
   const double t = half_sine / half_cosine;
-  return std::max(t * std::min(3.0 + 1.2 * t, 4.75), 1.04 * bend * bend);
+  return std::max(t * std::min(3.0 + 1.2 * t, 4.75), 1.04 * curvature * curvature);
 }
 
 // The true peak of that; never below it.
-double CornerJerkPeak(double half_sine, double half_cosine, double bend);
+double CornerJerkPeak(double half_sine, double half_cosine, double curvature);
 
 // What the local limits of speed along the first half of the curve are made of, at equal steps of
-// arc length: the curvature there is bend / by_bend^2 for a curve of cut 1, and path jerk per speed
-// cubed is bend / by_jerk^3. Rounded down.
+// arc length: the curvature there is curvature / by_curvature^2 for a curve of cut 1, and path jerk
+// per speed cubed is curvature / by_jerk^3. Rounded down.
 struct HalfCorner {
   static constexpr std::size_t kSteps = 24;
-  std::array<double, kSteps + 1> by_bend;
+  std::array<double, kSteps + 1> by_curvature;
   std::array<double, kSteps + 1> by_jerk;
 };
 HalfCorner CornerHalf(double half_sine, double half_cosine);

@@ -114,9 +114,9 @@ class SpeedProfile {
     }
     const Phase& p = phases_[k];
     t = std::min(t, p.duration_s);
-    const double bend = p.jerk == 0.0 ? 0.0 : t * p.jerk / 6.0;
+    const double from_jerk = p.jerk == 0.0 ? 0.0 : t * p.jerk / 6.0;
     // Rounding must not carry the last phase past its end.
-    return std::min(p.start.s + t * (p.start.speed + t * (0.5 * p.start.acceleration + bend)),
+    return std::min(p.start.s + t * (p.start.speed + t * (0.5 * p.start.acceleration + from_jerk)),
                     end_.s);
   }
 

@@ -4,23 +4,23 @@
 
 namespace rmlcell::optimo {
 
-std::optional<Error> Alarms::Raise(const Error& error) {
-  if (s_.deferred) return std::nullopt;
+Status Alarms::Raise(const Error& error) {
+  if (s_.deferred) return {};
   if (!ride_.EndForError()) return Handle(error);
   s_.deferred = error;
   s_.deferred_place = situation_.place;
   waits_.BeginStandstill();
-  return std::nullopt;
+  return {};
 }
 
-std::optional<Error> Alarms::HandleDeferred() {
-  if (!s_.deferred) return std::nullopt;
+Status Alarms::HandleDeferred() {
+  if (!s_.deferred) return {};
   const Error error = *std::exchange(s_.deferred, std::nullopt);
   situation_.place = s_.deferred_place;
   return Handle(error);
 }
 
-std::optional<Error> Alarms::Handle(const Error& error) {
+Status Alarms::Handle(const Error& error) {
   SetLastError(situation_.machine, error.code);
   waits_.End();
   waits_.EndInstruction();
@@ -51,7 +51,7 @@ std::optional<Error> Alarms::Handle(const Error& error) {
   counter_.program().frames.resize(catching + 1);
   counter_.frame().error_label.reset();  // taking the handler disarms it, OPT-3.55
   counter_.frame().next = *handler;
-  return std::nullopt;
+  return {};
 }
 
 // The label of ERR is missing: a second error, which nothing can catch. OPT-3.59, OPT-E.60

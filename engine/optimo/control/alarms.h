@@ -40,12 +40,12 @@ class Alarms {
 
   bool deferred() const { return s_.deferred.has_value(); }
 
-  // At the place of the situation. The error that ends the run, or nothing when it goes on.
-  [[nodiscard]] std::optional<Error> Raise(const Error& error);
-  [[nodiscard]] std::optional<Error> HandleDeferred();
+  // At the place of the situation. Error: the one that ends the run; good when it goes on.
+  Status Raise(const Error& error);
+  Status HandleDeferred();
 
  private:
-  std::optional<Error> Handle(const Error& error);
+  Status Handle(const Error& error);
   Error NoHandler(int label);
 
   AlarmState& s_;

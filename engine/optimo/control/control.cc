@@ -190,8 +190,8 @@ void Control::ActOnPending() {
     case Pending::Kind::kStandstill:
       if (ride_.busy()) break;
       waits_.End();
-      if (const std::optional<Error> fatal = alarms_.HandleDeferred()) {
-        Finish(machine::OutcomeKind::kFailed, fatal->code, fatal->detail);
+      if (const Status handled = alarms_.HandleDeferred(); !handled) {
+        Finish(machine::OutcomeKind::kFailed, handled.error().code, handled.error().detail);
       }
       break;
     case Pending::Kind::kTime:
@@ -300,8 +300,8 @@ void Control::PressStart() {
 }
 
 void Control::Raise(const Error& error) {
-  if (const std::optional<Error> fatal = alarms_.Raise(error)) {
-    Finish(machine::OutcomeKind::kFailed, fatal->code, fatal->detail);
+  if (const Status handled = alarms_.Raise(error); !handled) {
+    Finish(machine::OutcomeKind::kFailed, handled.error().code, handled.error().detail);
   }
 }
 

@@ -5,6 +5,7 @@
 #include "engine/core/units.h"
 #include "engine/optimo/control/optimo_run.h"
 #include "engine/optimo/control/optimo_tools.h"
+#include "engine/optimo/editing/optimo_editing.h"
 #include "engine/optimo/language/compiler.h"
 #include "engine/optimo/language/linker.h"
 #include "engine/optimo/language/staleness.h"
@@ -18,6 +19,7 @@ constexpr machine::FamilyInfo kInfo = {.id = "optimo",
                                        .title = "Amada OPTIMO 5-axis laser",
                                        .extensions = ".S .SI .CMP .O",
                                        .axes = "X Y Z A B",
+                                       .editor_language = "optimo-rml",
                                        .has_executables = true,
                                        .has_schedules = true,
                                        .checked_by_running = true,
@@ -76,6 +78,7 @@ class Family final : public machine::MachineFamily {
   }
 
   const machine::Tools* tools() const override { return &OptimoTools(); }
+  const machine::Editing* editing() const override { return &OptimoEditing(); }
 
   std::vector<Diagnostic> CheckSlot(int slot) const override { return CheckProgramNumber(slot); }
 

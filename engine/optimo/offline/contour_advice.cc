@@ -241,7 +241,7 @@ void ContourAdviser::AdviseCorner(const ChainMove& before, const ChainMove& afte
   const double cost = corner.wanted_speed - corner.speed;
   if (corner.passage == motion::Passage::kBlendCapped && cost > kCostMin * corner.wanted_speed) {
     findings_.AddAs(Severity::kAdvice, ErrorCode::kFlyCapped, p_.At(*before.instruction),
-                    "a short neighbour makes the bend tighter: " + FixedText(corner.speed, 1) +
+                    "a short neighbour makes the blend tighter: " + FixedText(corner.speed, 1) +
                         " mm/s in its middle instead of " + FixedText(corner.wanted_speed, 1),
                     "OPT-E.7318");
   }

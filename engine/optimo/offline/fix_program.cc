@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/core/text_fixes.h"
 #include "engine/optimo/language/compiler.h"
-#include "engine/optimo/language/fixes.h"
 #include "engine/optimo/offline/translate.h"
 
 namespace rmlcell::optimo {

@@ -34,6 +34,30 @@ machine::Translation Refuse(ErrorCode code, std::string detail, const std::strin
   return refused;
 }
 
+// An inch source that is being written. A short distance in inches is none in millimetres, and
+// contours, whose advice depends on units, are not looked at.
+machine::Translation CheckUnconverted(const machine::SourceFile& file, bool advice) {
+  Compilation compiled = Compile(
+      file.bytes, file.name,
+      {.advice = advice, .diagnostics_max = machine::kDiagnosticsMax, .further_advice = {}});
+  machine::Translation checked;
+  checked.diagnostics = std::move(compiled.diagnostics);
+  checked.diagnostics_dropped = compiled.diagnostics_dropped;
+  std::erase_if(checked.diagnostics,
+                [](const Diagnostic& finding) { return finding.code == ErrorCode::kShortFly; });
+  if (!advice) return checked;
+  checked.diagnostics.insert(
+      checked.diagnostics.begin(),
+      {.code = ErrorCode::kSourceIsInch,
+       .severity = Severity::kAdvice,
+       .detail = "inches and degrees: convert the file before it is compiled",
+       .rule = "OPT-2.04",
+       .file = file.name,
+       .where = {},
+       .fixes = {}});
+  return checked;
+}
+
 }  // namespace
 
 FileForm FormOfFile(std::string_view name, std::string_view bytes) {
@@ -74,6 +98,8 @@ machine::Translation TranslateOptimo(const machine::SourceFile& file,
     AddFigures(*module, 0, accepted);
     return accepted;
   }
+  if (options.unconverted && form == FileForm::kInchSource)
+    return CheckUnconverted(file, options.advice);
   Compilation compiled = Compile(file.bytes, file.name,
                                  {.object_limit = object_limit,
                                   .advice = options.advice,

@@ -14,10 +14,10 @@ struct MotionPeaks {
   motion::AxisValues axis_jerk{};
 };
 
-// Between two times of the motion's profile. Exact where the tip goes straight and no axis turns;
-// on curves from samples at most kPeakSampleAngle_rad apart, so at most 0.2 % too low; jerks there
-// are means between two samples.
-// `five_axis` as in machine::MachineShape: otherwise the tip is what the axes move.
+// Between two times of the motion's speed profile. Exact where the tip goes straight and no axis
+// turns; on curves from samples at most kPeakSampleAngle_rad apart, so at most 0.2 % too low; jerks
+// there are means between two samples. `five_axis` as in machine::MachineShape: otherwise the tip
+// is what the axes move.
 inline constexpr double kPeakSampleAngle_rad = 0.05;
 MotionPeaks PeaksOf(const motion::PlannedMotion& motion, bool five_axis, double from_s,
                     double to_s);

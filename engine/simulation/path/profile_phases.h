@@ -7,8 +7,8 @@
 
 namespace rmlcell::simulation {
 
-// A time of the motion's profile. A run tells times in whole nanoseconds, which may lie behind the
-// end of a profile: a motion that passes on does not stand there.
+// A time of the motion's speed profile. A run tells times in whole nanoseconds, which may lie
+// behind the end of it: a motion that passes on does not stand there.
 inline double TimeWithin(const motion::PlannedMotion& motion, double t_s) {
   return motion.speed.end().speed > 0.0 ? std::min(t_s, motion.speed.duration_s()) : t_s;
 }
@@ -26,7 +26,7 @@ struct PhasePart {
   }
 };
 
-// Calls `take` with every stretch of the profile between two of its times, in order.
+// Calls `take` with every stretch of the speed profile between two of its times, in order.
 template <class Take>
 void ForEachPhase(const motion::SpeedProfile& profile, double from_s, double to_s, Take take) {
   double begin = 0.0;

@@ -12,11 +12,6 @@ namespace {
 constexpr double kFull_percent = 100.0;
 constexpr double kBin_percent = 5.0;
 
-double PercentAt(const machine::PowerBySpeed& power, double tip_speed) {
-  return std::clamp(power.constant_percent + power.percent_per_mm_s * tip_speed, 0.0,
-                    kFull_percent);
-}
-
 // Times within a phase at which the speed passes one of the values that matter: bounds of classes,
 // and where the power reaches 0 or 100 %. Each value is passed at most twice.
 class Crossings {
@@ -111,7 +106,7 @@ double BeamWork::Moving(const motion::SpeedProfile& profile, double from_s, doub
       // Mean speed: the stretch lies in one class, and the power is linear in the speed or
       // constant.
       const double speed = tip_per_s * (part.PlaceAt(end) - part.PlaceAt(begin)) / duration;
-      const double percent = PercentAt(power, speed);
+      const double percent = power.PercentAt(speed);
       percent_s.Add(percent * duration);
       Count(duration, speed, percent);
       begin = end;

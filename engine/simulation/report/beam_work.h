@@ -26,8 +26,8 @@ class BeamWork {
   BeamWork(double laser_watts, double tip_speed_max_mm_s)
       : watts_(laser_watts), speed_max_(tip_speed_max_mm_s) {}
 
-  // A motion with the beam on, between two times of its profile. `tip_per_s` is what the tip moves
-  // per unit of the profile's s: 1, or 0 where it stands (A and B turn), or the tip's length of a
+  // A motion with the beam on, between two times of its speed profile. `tip_per_s` is what the tip
+  // moves per unit of that s: 1, or 0 where it stands (A and B turn), or the tip's length of a
   // sigma piece. Exact also where the power saturates on the way. Returns the energy in J.
   double Moving(const motion::SpeedProfile& profile, double from_s, double to_s, double tip_per_s,
                 const machine::PowerBySpeed& power);

@@ -137,7 +137,7 @@ TEST_F(Messages, AReportOfAMillHasItsOwn) {
   report.mutable_milling()->set_removed_mm3(8.0);
   const std::string text = ReportText(report);
   EXPECT_THAT(text, HasSubstr("plunges       3\n"));
-  EXPECT_THAT(text, HasSubstr("tool          down 4.000 s, up 5.000 s\n"));
+  EXPECT_THAT(text, HasSubstr("tool          up 5.000 s, down 4.000 s\n"));
   EXPECT_THAT(text, HasSubstr("clipped       6.000 mm beyond the cutting range\n"));
   EXPECT_THAT(text, HasSubstr("speeds        7 limited to those of the machine\n"));
   EXPECT_THAT(text, HasSubstr("material      8.000 mm3 taken off\n"));
@@ -324,7 +324,7 @@ TEST_F(Messages, AWholeReportOfAMill) {
       "cycle time    0.000 s\n"
       "path          0.000 mm: cut 0.000, travel 0.000\n"
       "plunges       2\n"
-      "tool          down 0.000 s, up 0.000 s\n"
+      "tool          up 0.000 s, down 0.000 s\n"
       "material      1.500 mm3 taken off\n"
       "              3 motions at travel speed through material, up to 0.250 mm deep at step 4, at 5.500 s\n"
       "steps         0\n"
@@ -393,6 +393,7 @@ TEST_F(Messages, TheLeastThatIsTold) {
   EXPECT_THAT(text, HasSubstr("peak accel.   Z 0.5\n"));
   EXPECT_THAT(text, HasSubstr("and 1 more findings\n"));
   v1::RunReport mill;
+  mill.set_family("rml1");
   mill.mutable_total();
   for (const char* name : {"clipped_length", "speed_clamps"}) {
     v1::Figure& figure = *mill.add_figures();

@@ -81,12 +81,12 @@ TEST(Check, AStreamForAMillHasItsFindings) {
 
 TEST(Check, TheExtensionDecidesThenTheLanguage) {
   const auto family = [](std::string uri, std::string language) {
-    return FamilyOf({std::move(uri), std::move(language), 0, {}, Encoding::kUtf16});
+    return FamilyOf({std::move(uri), std::move(language), 0, {}, Encoding::kUtf16}).info().id;
   };
-  EXPECT_EQ(family("file:///a.PRN", "optimo-rml"), Family::kRml1);
-  EXPECT_EQ(family("file:///a.s", "rml1"), Family::kOptimo);
-  EXPECT_EQ(family("untitled:Untitled-1", "rml1"), Family::kRml1);
-  EXPECT_EQ(family("untitled:Untitled-1", "optimo-rml"), Family::kOptimo);
+  EXPECT_EQ(family("file:///a.PRN", "optimo-rml"), "rml1");
+  EXPECT_EQ(family("file:///a.s", "rml1"), "optimo");
+  EXPECT_EQ(family("untitled:Untitled-1", "rml1"), "rml1");
+  EXPECT_EQ(family("untitled:Untitled-1", "optimo-rml"), "optimo");
 }
 
 TEST(Check, AnEmptyTextIsNoError) { EXPECT_EQ(DiagnosticsOf(""), Json::array()); }

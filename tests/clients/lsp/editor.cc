@@ -7,14 +7,15 @@
 
 namespace rmlcell::lsp {
 
-std::vector<NumberedFile> FakeFolder::Programs(std::string_view uri) const {
+std::vector<machine::NumberedFile> FakeFolder::Programs(std::string_view uri,
+                                                        SourceExtensions extensions) const {
   const std::string_view home = uri.substr(0, uri.rfind('/') + 1);
-  std::vector<NumberedFile> found;
+  std::vector<machine::NumberedFile> found;
   for (const auto& [name, text] : files) {
-    const auto number = ProgramNumberOf(name);
-    if (number && name.starts_with(home)) found.push_back({*number, name});
+    const auto number = ProgramNumberOf(name, extensions);
+    if (number && name.starts_with(home)) found.push_back({*number, name, FileNameOfUri(name)});
   }
-  std::ranges::stable_sort(found, {}, &NumberedFile::number);
+  std::ranges::stable_sort(found, {}, &machine::NumberedFile::number);
   return found;
 }
 

@@ -14,7 +14,8 @@ namespace rmlcell::lsp {
 // Files by their URI; nothing of the disk.
 class FakeFolder final : public ProgramFolder {
  public:
-  std::vector<NumberedFile> Programs(std::string_view uri) const override;
+  std::vector<machine::NumberedFile> Programs(std::string_view uri,
+                                              SourceExtensions extensions) const override;
   Result<std::string> Read(std::string_view uri) const override;
 
   std::map<std::string, std::string, std::less<>> files;

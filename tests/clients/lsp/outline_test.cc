@@ -1,4 +1,4 @@
-#include "clients/lsp/outline.h"
+#include "engine/optimo/editing/outline.h"
 
 #include <gtest/gtest.h>
 
@@ -55,13 +55,14 @@ TEST(Outline, ALongProgramHasItsNumbersAndNamesAlone) {
   const auto count = [](std::uint32_t steps) {
     std::string text = "10 STOP\n";
     for (std::uint32_t i = 1; i < steps; ++i) text += "SPEED 5\n";
-    const Document document(kUri, {}, 0, text, Encoding::kUtf16);
-    const ProgramIndex index(document.text());
-    const Json symbols = Symbols(document, index, true);
+    Editor editor;
+    editor.Open(text);
+    const Json symbols =
+        editor.Result("textDocument/documentSymbol", {{"textDocument", {{"uri", kUri}}}});
     return symbols[0].contains("children") ? symbols[0]["children"].size() : 0U;
   };
-  EXPECT_EQ(count(kOutlineStepsMax), kOutlineStepsMax);
-  EXPECT_EQ(count(kOutlineStepsMax + 1), 0U);
+  EXPECT_EQ(count(optimo::editing::kOutlineStepsMax), optimo::editing::kOutlineStepsMax);
+  EXPECT_EQ(count(optimo::editing::kOutlineStepsMax + 1), 0U);
 }
 
 TEST(Outline, AnEditorWithoutTreesGetsAList) {

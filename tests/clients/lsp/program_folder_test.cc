@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 
@@ -11,6 +12,8 @@ namespace rmlcell::lsp {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 3> kExtensions = {".S", ".SI", ".CMP"};
 
 TEST(ProgramFolder, PathsAndUrisGoBothWays) {
   for (const char* path : {"/work/12.S", "/a b/\xC3\xA4%20?#.S", "/"})
@@ -36,12 +39,12 @@ TEST(ProgramFolder, PathsAndUrisGoBothWays) {
 
 // OPT-1.10
 TEST(ProgramFolder, AProgramNumberIsTheWholeNameFrom1To99) {
-  EXPECT_EQ(ProgramNumberOf("file:///work/44.S"), 44);
-  EXPECT_EQ(ProgramNumberOf("/work/007.si"), 7);
-  EXPECT_EQ(ProgramNumberOf("44.CMP"), 44);
+  EXPECT_EQ(ProgramNumberOf("file:///work/44.S", kExtensions), 44);
+  EXPECT_EQ(ProgramNumberOf("/work/007.si", kExtensions), 7);
+  EXPECT_EQ(ProgramNumberOf("44.CMP", kExtensions), 44);
   for (const char* name :
        {"0.S", "100.S", "44.O", "44.rml", "44", "a44.S", "4 4.S", "-4.S", ".S", ""})
-    EXPECT_EQ(ProgramNumberOf(name), std::nullopt) << name;
+    EXPECT_EQ(ProgramNumberOf(name, kExtensions), std::nullopt) << name;
 }
 
 class OnDisk : public testing::Test {
@@ -65,10 +68,12 @@ TEST_F(OnDisk, ProgramsOfTheFolderAreOrderedByNumberAndForm) {
   for (const char* name : {"44.CMP", "44.S", "7.SI", "100.S", "notes.txt", "12.O"})
     Write(name, "x");
   fs::create_directory(folder_ / "9.S");
-  EXPECT_EQ(disk_.Programs(Uri("12.S")),
-            (std::vector<NumberedFile>{{7, Uri("7.SI")}, {44, Uri("44.S")}, {44, Uri("44.CMP")}}));
-  EXPECT_TRUE(disk_.Programs("untitled:1").empty());
-  EXPECT_TRUE(disk_.Programs(UriOfPath("/nowhere/at/all/12.S")).empty());
+  EXPECT_EQ(
+      disk_.Programs(Uri("12.S"), kExtensions),
+      (std::vector<machine::NumberedFile>{
+          {7, Uri("7.SI"), "7.SI"}, {44, Uri("44.S"), "44.S"}, {44, Uri("44.CMP"), "44.CMP"}}));
+  EXPECT_TRUE(disk_.Programs("untitled:1", kExtensions).empty());
+  EXPECT_TRUE(disk_.Programs(UriOfPath("/nowhere/at/all/12.S"), kExtensions).empty());
 }
 
 TEST_F(OnDisk, FilesAreReadUpToALimitAndNothingElseIs) {

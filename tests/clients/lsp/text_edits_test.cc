@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/optimo/language/fixes.h"
+#include "engine/core/text_fixes.h"
 #include "engine/optimo/language/formatter.h"
 #include "tests/clients/lsp/editor.h"
 
@@ -95,8 +95,7 @@ TEST(CodeActions, AllFixesAtOnceAreThoseOfTheEngine) {
   ASSERT_EQ(actions.size(), 1U);
   EXPECT_EQ(actions[0]["kind"], "source.fixAll.rmlcell");
   const Findings findings = CheckDocument({kUri, {}, 0, text, Encoding::kUtf16});
-  EXPECT_EQ(Applied(text, actions[0]["edit"]["changes"][kUri]),
-            optimo::ApplyFixes(text, findings.list));
+  EXPECT_EQ(Applied(text, actions[0]["edit"]["changes"][kUri]), ApplyFixes(text, findings.list));
   EXPECT_EQ(ActionsOf(editor, {{0, 0}, {0, 0}}, {{"only", {"refactor"}}}), Json::array());
 }
 

@@ -95,6 +95,8 @@ TEST(FamilyTables, FiguresHaveNamesUnitsAndMeanings) {
     for (const FigureInfo& figure : family->figures()) {
       EXPECT_TRUE(names.insert(figure.name).second) << figure.name;
       EXPECT_FALSE(figure.text.empty()) << figure.name;
+      EXPECT_EQ(figure.said.find('#') != std::string_view::npos, !figure.row.empty())
+          << figure.name;
     }
   }
 }

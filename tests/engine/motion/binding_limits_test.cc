@@ -132,11 +132,11 @@ TEST(BindingLimits, ShortTurnsAreWithinOnePercent) {
         PathPiece::Line({{0, 0, 0}, 0.7, 0.4}, {{3, -2, 1}, 0.7 + turn, 0.4 - 0.6 * turn});
     const MoveCommand move = MoveOn(line, GantryHead{.tool = {7.0, -3.0, 2.0}});
     for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
-      MachineLimits by_speed = Strong(), by_bend = Strong(), by_jerk = Strong();
+      MachineLimits by_speed = Strong(), by_curvature = Strong(), by_jerk = Strong();
       by_speed.axes.speed[axis] = 0.01;
-      by_bend.axes.acceleration[axis] = 0.5;
+      by_curvature.axes.acceleration[axis] = 0.5;
       by_jerk.axes.jerk[axis] = 3.0;
-      const PathLimits bend = LimitsOf(move, by_bend);
+      const PathLimits bend = LimitsOf(move, by_curvature);
       double speed = 1000.0, bent = 1000.0, acceleration = kPlenty, jerk = 1e3 * kPlenty;
       for (int k = 0; k <= 4000; ++k) {
         const AxisDerivatives q = DerivativesAt(line, move.head, line.length() * k / 4000.0);

@@ -16,7 +16,7 @@ struct TableCorner {
       : half_sine(std::sin(degrees * kPi / 360.0)),
         half_cosine(std::cos(degrees * kPi / 360.0)),
         rho(CornerRho(half_cosine)),
-        bend(CornerBend(half_sine, half_cosine, rho)),
+        curvature(CornerCurvature(half_sine, half_cosine, rho)),
         in{half_cosine, -half_sine, 0.0},
         out{half_cosine, half_sine, 0.0},
         curve({.pose = {-in, 0, 0}, .tangent = in, .curvature = {}},
@@ -29,7 +29,7 @@ struct TableCorner {
     return most;
   }
 
-  double half_sine, half_cosine, rho, bend;
+  double half_sine, half_cosine, rho, curvature;
   MachineVector in, out;
   CornerCurve curve;
   CornerLength length;
@@ -50,7 +50,7 @@ TEST(CornerTables, LengthIsThatOfTheCurve) {
 TEST(CornerTables, JerkPeakIsThatOfTheCurve) {
   for (double degrees = 0.003; degrees < kSharpest_deg; degrees += kStep_deg) {
     const TableCorner corner(degrees);
-    const double told = CornerJerkPeak(corner.half_sine, corner.half_cosine, corner.bend);
+    const double told = CornerJerkPeak(corner.half_sine, corner.half_cosine, corner.curvature);
     const double peak = corner.JerkPeak();
     EXPECT_GE(told, peak) << degrees;
     EXPECT_LE(told, peak * (1.0 + 1e-5)) << degrees;
@@ -64,15 +64,16 @@ TEST(CornerTables, HalvesTellCurvatureAndJerkFromPlaceToPlace) {
     const TableCorner corner(degrees);
     const HalfCorner half = CornerHalf(corner.half_sine, corner.half_cosine);
     // The ends of the curve are straight: there the share is any large number.
-    EXPECT_GT(half.by_bend[0], 100.0) << degrees;
+    EXPECT_GT(half.by_curvature[0], 100.0) << degrees;
     EXPECT_GT(half.by_jerk[0], 0.0) << degrees;
     for (std::size_t k = 1; k <= HalfCorner::kSteps; ++k) {
       const double way = 0.5 * corner.length.total() * static_cast<double>(k) / HalfCorner::kSteps;
       const double u = corner.length.ParameterAt(corner.curve, way);
-      const double by_bend = std::sqrt(corner.bend / corner.curve.SecondByLength(u).point.norm());
-      EXPECT_LE(half.by_bend[k], by_bend) << degrees << ' ' << k;
-      EXPECT_GE(half.by_bend[k], by_bend * (1.0 - 1e-3)) << degrees << ' ' << k;
-      const double by_jerk = std::cbrt(corner.bend / corner.curve.JerkPerCube(u));
+      const double by_curvature =
+          std::sqrt(corner.curvature / corner.curve.SecondByLength(u).point.norm());
+      EXPECT_LE(half.by_curvature[k], by_curvature) << degrees << ' ' << k;
+      EXPECT_GE(half.by_curvature[k], by_curvature * (1.0 - 1e-3)) << degrees << ' ' << k;
+      const double by_jerk = std::cbrt(corner.curvature / corner.curve.JerkPerCube(u));
       EXPECT_LE(half.by_jerk[k], by_jerk) << degrees << ' ' << k;
       EXPECT_GE(half.by_jerk[k], by_jerk * (1.0 - 1e-3)) << degrees << ' ' << k;
     }

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "engine/motion/ride/interruption.h"
-#include "engine/motion/ride/laser_power.h"
 #include "tests/engine/motion/expect_near.h"
 #include "tests/engine/motion/random_chain.h"
 #include "tests/engine/motion/standard_machine.h"
@@ -276,26 +275,6 @@ TEST(StopAlong, EndsAndPlanEnds) {
   EXPECT_FALSE(across.motions[1].ends_move);
   EXPECT_EQ(across.index, 1u);
   EXPECT_EQ(StopAlong(plan, late, axes).index, 1u);
-}
-
-// motion.md 8.1: below saturation energy goes by the way alone, above it by the time; 40 mm/s here
-// is 75 %, 53.33 mm/s full. Slowing down takes what speeding up does.
-TEST(EnergyOf, SpeedingUpAndSlowingDown) {
-  const PowerLaw law{.speed_percent = 8.0, .power_percent = 75.0, .tip_speed_max_mm_s = 500.0};
-  EXPECT_DOUBLE_EQ(law.PercentAt(-1.0), 0.0);
-  EXPECT_DOUBLE_EQ(law.PercentAt(20.0), 37.5);
-  const PathLimits limits{80, 2000, kNoLimit};
-  const double up = EnergyOf(SpeedProfile::Span(30.0, 10.0, 80.0, limits), law, 1000.0);
-  const double down = EnergyOf(SpeedProfile::Span(30.0, 80.0, 10.0, limits), law, 1000.0);
-  EXPECT_NEAR(up, down, 1e-9 * up);
-  // By hand: to 53.33 mm/s over (53.33^2 - 100) / 4000 mm, 18.75 J each mm; then full.
-  const double full = 160.0 / 3.0;
-  const double way = (full * full - 100.0) / 4000.0;
-  const double time = (80.0 - full) / 2000.0 + (30.0 - (6400.0 - 100.0) / 4000.0) / 80.0;
-  EXPECT_NEAR(up, 18.75 * way + 1000.0 * time, 1e-9 * up);
-  // Saturated all along: by time alone.
-  const SpeedProfile fast = SpeedProfile::Span(30.0, 80.0, 80.0, limits);
-  EXPECT_NEAR(EnergyOf(fast, law, 1000.0), 1000.0 * fast.duration_s(), 1e-9);
 }
 
 }  // namespace

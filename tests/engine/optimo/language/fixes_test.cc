@@ -1,7 +1,6 @@
-#include "engine/optimo/language/fixes.h"
-
 #include <gtest/gtest.h>
 
+#include "engine/core/text_fixes.h"
 #include "tests/engine/optimo/language/compile_text.h"
 
 namespace rmlcell::optimo {

@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "engine/optimo/language/fixes.h"
+#include "engine/core/text_fixes.h"
 #include "tests/engine/optimo/language/compile_text.h"
 
 namespace rmlcell::optimo {

@@ -92,7 +92,7 @@ TEST(ContourAdvice, ShortNeighboursCostSpeed) {
   ASSERT_EQ(told.size(), 2U);
   EXPECT_EQ(told[0].line, 5);
   EXPECT_EQ(told[1].line, 6);
-  const std::string before = "a short neighbour makes the bend tighter: ",
+  const std::string before = "a short neighbour makes the blend tighter: ",
                     after = " mm/s in its middle instead of 50.0";
   ASSERT_TRUE(told[0].detail.starts_with(before));
   ASSERT_TRUE(told[0].detail.ends_with(after)) << told[0].detail;

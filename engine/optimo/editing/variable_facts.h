@@ -4,13 +4,13 @@
 
 #include "engine/optimo/language/ast.h"
 
-namespace rmlcell::lsp {
+namespace rmlcell::optimo::editing {
 
 // What a variable is for: type, who may write it, what the system or the shop's convention keeps in
 // it, with rules. Markdown.
-std::string VariableFacts(optimo::Variable variable);
+std::string VariableFacts(Variable variable);
 
 // The same in a few words, for lists: "tip or column X". Empty when the variable is free.
-std::string VariableNote(optimo::Variable variable);
+std::string VariableNote(Variable variable);
 
-}  // namespace rmlcell::lsp
+}  // namespace rmlcell::optimo::editing

@@ -1,13 +1,11 @@
-#include "clients/lsp/word_facts.h"
+#include "engine/optimo/editing/word_facts.h"
 
 #include <array>
 
 #include "engine/core/check.h"
 
-namespace rmlcell::lsp {
+namespace rmlcell::optimo::editing {
 namespace {
-
-using optimo::Word;
 
 constexpr std::string_view kUnavailable =
     "Not available on the Optimo: an error wherever it stands.";
@@ -151,4 +149,4 @@ const WordFact& FactOf(Word word) {
   return kWordFacts[static_cast<std::size_t>(word) - 1];
 }
 
-}  // namespace rmlcell::lsp
+}  // namespace rmlcell::optimo::editing

@@ -1,33 +1,20 @@
-#include "clients/lsp/completion.h"
+#include "engine/optimo/editing/completion.h"
 
 #include <algorithm>
 #include <array>
 #include <initializer_list>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <utility>
 
-#include "clients/lsp/variable_facts.h"
-#include "clients/lsp/word_facts.h"
+#include "engine/optimo/editing/variable_facts.h"
+#include "engine/optimo/editing/word_facts.h"
 #include "engine/optimo/language/instruction_set.h"
 
-namespace rmlcell::lsp {
+namespace rmlcell::optimo::editing {
 namespace {
 
-using optimo::Token;
-using optimo::TokenKind;
-using optimo::Word;
-using optimo::WordGroup;
-
-// Of LSP.
-enum Kind : int {
-  kFunction = 3,
-  kVariable = 6,
-  kModule = 9,
-  kKeyword = 14,
-  kReference = 18,
-  kConstant = 21,
-};
+using Kind = machine::Suggestion::Kind;
 
 constexpr std::size_t kNamesMax = 1000;  // of a list; typing on narrows it
 constexpr std::size_t kLabelsMax = 1000;
@@ -46,44 +33,39 @@ bool StartsIgnoringCase(std::string_view text, std::string_view beginning) {
 
 class Completer {
  public:
-  Completer(const OpenProgram& program, std::size_t offset)
-      : program_(program),
-        index_(program.index),
-        text_(program.document.text()),
-        offset_(offset),
-        begin_(offset) {
+  Completer(const ProgramIndex& index, std::size_t offset, const machine::Surroundings& around)
+      : index_(index), around_(around), text_(index.text()), offset_(offset), begin_(offset) {
     while (begin_ > 0 && IsWordPart(text_[begin_ - 1])) --begin_;
     typed_ = text_.substr(begin_, offset - begin_);
-    range_ = PositionFinder(program.document).Span(begin_, offset);
+    made_.typed = {begin_, offset};
   }
 
-  Json Make() {
-    if (const optimo::Comment* comment = index_.CommentAt(offset_)) {
+  machine::Suggestions Make() {
+    if (const Comment* comment = index_.CommentAt(offset_)) {
       InComment(*comment);
     } else {
       InStatement();
     }
-    return {{"isIncomplete", cut_}, {"items", std::move(items_)}};
+    return std::move(made_);
   }
 
  private:
   void Add(std::string_view label, Kind kind, std::string_view detail, std::string_view text = {}) {
     if (!StartsIgnoringCase(label, typed_)) return;
-    Json item = {
-        {"label", label}, {"kind", static_cast<int>(kind)}, {"textEdit", TextEdit(range_, label)}};
-    if (!detail.empty()) item["detail"] = detail;
-    if (!text.empty()) item["documentation"] = Markdown(text);
-    items_.push_back(std::move(item));
+    made_.list.push_back({.kind = kind,
+                          .label = std::string(label),
+                          .detail = std::string(detail),
+                          .text = std::string(text)});
   }
-  void AddWord(Word word, Kind kind = kKeyword) {
+  void AddWord(Word word, Kind kind = Kind::kWord) {
     const WordFact& fact = FactOf(word);
     Add(Describe(word).text, kind, fact.form, fact.text);
   }
   void AddWords(std::initializer_list<Word> words) {
     for (const Word word : words) AddWord(word);
   }
-  void AddGroup(WordGroup group, Kind kind = kKeyword) {
-    for (const optimo::WordInfo& row : optimo::ReservedWords()) {
+  void AddGroup(WordGroup group, Kind kind = Kind::kWord) {
+    for (const WordInfo& row : ReservedWords()) {
       if (row.group == group) AddWord(row.word, kind);
     }
   }
@@ -101,8 +83,8 @@ class Completer {
         !GoesOn(*statement)) {
       from = text_.rfind('\n', begin_ - 1) + 1;
     }
-    std::vector<optimo::Comment> comments;
-    optimo::Lexer lexer(text_.substr(from, begin_ - from), comments);
+    std::vector<Comment> comments;
+    Lexer lexer(text_.substr(from, begin_ - from), comments);
     if (!lexer.NextStatement()) return;
     for (std::size_t at = 0; lexer.At(at).kind != TokenKind::kEnd && at < kTokensMax; ++at)
       tokens_.push_back(lexer.At(at));
@@ -151,14 +133,14 @@ class Completer {
         if (alone) {
           AddPrograms();
           AddNames();
-          if (first != Word::kFunction) AddGroup(WordGroup::kVariable, kVariable);
+          if (first != Word::kFunction) AddGroup(WordGroup::kVariable, Kind::kVariable);
           return;
         }
         break;
       case Word::kDeclare:
         if (alone || last.kind != TokenKind::kEqual) return;
-        AddGroup(WordGroup::kVariable, kVariable);
-        AddGroup(WordGroup::kConstant, kConstant);
+        AddGroup(WordGroup::kVariable, Kind::kVariable);
+        AddGroup(WordGroup::kConstant, Kind::kConstant);
         return;
       case Word::kSysdef:
       case Word::kTask:
@@ -183,25 +165,25 @@ class Completer {
   }
 
   void AtStart() {
-    for (const optimo::WordInfo& row : optimo::ReservedWords()) {
+    for (const WordInfo& row : ReservedWords()) {
       if (row.group == WordGroup::kInstruction) AddWord(row.word);
     }
     AddNames();
-    AddGroup(WordGroup::kVariable, kVariable);
+    AddGroup(WordGroup::kVariable, Kind::kVariable);
   }
 
   void InExpression() {
     AddNames();
-    AddGroup(WordGroup::kVariable, kVariable);
-    AddGroup(WordGroup::kFunction, kFunction);
-    AddGroup(WordGroup::kConstant, kConstant);
+    AddGroup(WordGroup::kVariable, Kind::kVariable);
+    AddGroup(WordGroup::kFunction, Kind::kFunction);
+    AddGroup(WordGroup::kConstant, Kind::kConstant);
     AddWord(Word::kNot);
   }
 
   // A slash inside parentheses divides, and so does one in an instruction without attributes.
   bool IsAttributePlace(Word first) const {
-    const optimo::Op op = first == Word::kNone ? optimo::Op::kInvalid : optimo::OpOf(first);
-    if (optimo::Describe(op).attributes == 0) return false;
+    const Op op = first == Word::kNone ? Op::kInvalid : OpOf(first);
+    if (Describe(op).attributes == 0) return false;
     int depth = 0;
     for (const Token& token : tokens_) {
       if (token.kind == TokenKind::kOpen) ++depth;
@@ -211,12 +193,12 @@ class Completer {
   }
 
   void AddAttributes(Word first) {
-    const std::uint16_t allowed = optimo::Describe(optimo::OpOf(first)).attributes;
-    for (const optimo::AttributeInfo& attribute : optimo::kAttributes) {
+    const std::uint16_t allowed = Describe(OpOf(first)).attributes;
+    for (const AttributeInfo& attribute : kAttributes) {
       const bool given = std::ranges::any_of(tokens_, [&](const Token& token) {
         return token.kind == TokenKind::kWord && token.word == attribute.word;
       });
-      if ((allowed & attribute.bit) != 0 && attribute.bit != optimo::kInf && !given)
+      if ((allowed & attribute.bit) != 0 && attribute.bit != kInf && !given)
         AddWord(attribute.word);
     }
   }
@@ -252,13 +234,13 @@ class Completer {
     for (const Use& use : index_.uses()) {
       if (use.kind != UseKind::kLabel || !seen.insert(use.number).second) continue;
       if (seen.size() > kLabelsMax) {
-        cut_ = true;
+        made_.cut = true;
         return;
       }
       std::string detail;
       const StatementPlace& statement = index_.statements()[use.statement];
       if (!statement.lone_label) detail = index_.TextOf(statement).substr(0, kDetailMax);
-      Add(std::to_string(use.number), kReference, detail);
+      Add(std::to_string(use.number), Kind::kSequenceNumber, detail);
     }
   }
 
@@ -266,23 +248,24 @@ class Completer {
     std::size_t count = 0;
     for (const Declaration& declaration : index_.declarations()) {
       if (++count > kNamesMax) {
-        cut_ = true;
+        made_.cut = true;
         return;
       }
       const Use& name = index_.uses()[declaration.use];
       const std::string value(index_.text().substr(
           declaration.value_begin,
           std::min(kDetailMax, std::size_t{declaration.value_end} - declaration.value_begin)));
-      Add(index_.TextOf(name), declaration.variable ? kVariable : kConstant, "= " + value);
+      Add(index_.TextOf(name), declaration.variable ? Kind::kVariable : Kind::kConstant,
+          "= " + value);
     }
   }
 
   void AddPrograms() {
     int last = 0;
-    for (const NumberedFile& file : program_.folder.Programs(program_.document.uri())) {
+    for (const machine::NumberedFile& file : around_.Programs()) {
       if (file.number == last) continue;
       last = file.number;
-      Add(std::to_string(file.number), kModule, FileNameOfUri(file.uri));
+      Add(std::to_string(file.number), Kind::kProgram, file.name);
     }
   }
 
@@ -293,30 +276,29 @@ class Completer {
                                     Word::kOl, Word::kIa, Word::kOa, Word::kPar};
     const auto found = std::ranges::find(kGroups, word);
     if (found == kGroups.end()) return;
-    const auto group = static_cast<optimo::VariableGroup>(found - kGroups.begin());
-    const int most = group == optimo::VariableGroup::kPar ? optimo::kParameterCount - 1
-                                                          : optimo::kVariableIndexMax;
+    const auto group = static_cast<VariableGroup>(found - kGroups.begin());
+    const int most = group == VariableGroup::kPar ? kParameterCount - 1 : kVariableIndexMax;
     for (int index = 0; index <= most; ++index) {
-      Add(std::to_string(index), kVariable,
+      Add(std::to_string(index), Kind::kVariable,
           VariableNote({group, static_cast<std::uint8_t>(index)}));
     }
     AddNames();
   }
 
   // ";$" directives of the compensation (OPT-8.03, 8.04), "; rmlcell:" ones of the checker.
-  void InComment(const optimo::Comment& comment) {
+  void InComment(const Comment& comment) {
     const std::string_view before = text_.substr(comment.begin, begin_ - comment.begin);
     if (before == ";$") {
-      Add("dia", kKeyword, ";$dia=0.4", "Diameter of the beam for cutter compensation.");
-      Add("rad", kKeyword, ";$rad=0.2", "Radius of the beam for cutter compensation.");
-      Add("left", kKeyword, ";$left", "The cut lies left of the programmed path.");
-      Add("right", kKeyword, ";$right", "The cut lies right of the programmed path.");
-      Add("none", kKeyword, ";$none", "No compensation from here on.");
+      Add("dia", Kind::kWord, ";$dia=0.4", "Diameter of the beam for cutter compensation.");
+      Add("rad", Kind::kWord, ";$rad=0.2", "Radius of the beam for cutter compensation.");
+      Add("left", Kind::kWord, ";$left", "The cut lies left of the programmed path.");
+      Add("right", Kind::kWord, ";$right", "The cut lies right of the programmed path.");
+      Add("none", Kind::kWord, ";$none", "No compensation from here on.");
     }
     const std::size_t mark = before.find("rmlcell:");
     if (mark != std::string_view::npos &&
         before.find_first_not_of(" \t", mark + 8) == std::string_view::npos) {
-      Add("allow", kKeyword, "rmlcell: allow 7033",
+      Add("allow", Kind::kWord, "rmlcell: allow 7033",
           "Silences warnings and advice of these numbers on this line; on a line of its own for "
           "the "
           "next statement, with `in file` for the whole text.");
@@ -326,22 +308,21 @@ class Completer {
   static constexpr std::size_t kDetailMax = 60;    // bytes
   static constexpr std::size_t kTokensMax = 2000;  // of a statement that is being typed
 
-  const OpenProgram& program_;
   const ProgramIndex& index_;
+  const machine::Surroundings& around_;
   std::string_view text_;
   std::size_t offset_;
   std::size_t begin_;  // of the word that is being typed
   std::string_view typed_;
-  Range range_;
   std::vector<Token> tokens_;
-  Json items_ = Json::array();
-  bool cut_ = false;
+  machine::Suggestions made_;
 };
 
 }  // namespace
 
-Json Complete(const OpenProgram& program, std::size_t offset) {
-  return Completer(program, offset).Make();
+machine::Suggestions Complete(const ProgramIndex& index, std::size_t offset,
+                              const machine::Surroundings& around) {
+  return Completer(index, offset, around).Make();
 }
 
-}  // namespace rmlcell::lsp
+}  // namespace rmlcell::optimo::editing

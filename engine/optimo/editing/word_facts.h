@@ -6,10 +6,10 @@
 #include "engine/optimo/language/words.h"
 
 // What a programmer wants to know of a reserved word, in a line.
-namespace rmlcell::lsp {
+namespace rmlcell::optimo::editing {
 
 struct WordFact {
-  optimo::Word word = optimo::Word::kNone;
+  Word word = Word::kNone;
   std::string_view form{};  // how it is written; empty: as the word itself
   std::string_view text{};  // what it does
 };
@@ -17,6 +17,6 @@ struct WordFact {
 // One row for every reserved word, in the order of words.def.
 std::span<const WordFact> WordFacts();
 // Precondition: word is not kNone.
-const WordFact& FactOf(optimo::Word word);
+const WordFact& FactOf(Word word);
 
-}  // namespace rmlcell::lsp
+}  // namespace rmlcell::optimo::editing

@@ -1,9 +1,9 @@
-#include "clients/lsp/rule_facts.h"
+#include "engine/optimo/editing/rule_facts.h"
 
 #include <algorithm>
 #include <array>
 
-namespace rmlcell::lsp {
+namespace rmlcell::optimo::editing {
 namespace {
 
 // clang-format off
@@ -165,7 +165,7 @@ constexpr std::array kRuleFacts = {
     RuleFact{"OPT-B.85", "A slash before an attribute ends the expression; in TCP it parts the two points."},
     RuleFact{"OPT-B.88", "A PAR is defined once."},
     RuleFact{"OPT-E.7023", "The word is accepted and does nothing."},
-    RuleFact{"OPT-E.7318", "A bend is slower where a short neighbour leaves it no room."},
+    RuleFact{"OPT-E.7318", "A blend is passed more slowly where a short neighbour leaves it no room."},
     RuleFact{"OPT-E.7319", "Near B = 0 a turn of A swings the head round for a small change of direction."},
 };
 // clang-format on
@@ -180,4 +180,4 @@ std::string_view TextOfRule(std::string_view id) {
   return found != kRuleFacts.end() && found->id == id ? found->text : std::string_view();
 }
 
-}  // namespace rmlcell::lsp
+}  // namespace rmlcell::optimo::editing

@@ -7,13 +7,13 @@
 #include <set>
 #include <string>
 
-#include "clients/lsp/rule_facts.h"
-#include "clients/lsp/variable_facts.h"
-#include "clients/lsp/word_facts.h"
 #include "engine/core/catalogue.h"
+#include "engine/optimo/editing/rule_facts.h"
+#include "engine/optimo/editing/variable_facts.h"
+#include "engine/optimo/editing/word_facts.h"
 #include "engine/optimo/language/instruction_set.h"
 
-namespace rmlcell::lsp {
+namespace rmlcell::optimo::editing {
 namespace {
 
 namespace fs = std::filesystem;
@@ -30,7 +30,7 @@ TEST(Facts, EveryRuleThatTheCheckerNamesIsExplained) {
   std::set<std::string> named;
   const std::regex rule("\"(OPT-[0-9BE]+\\.[0-9]+)\"");
   std::vector<fs::path> sources = {root / "engine/optimo/offline/contour_advice.cc",
-                                   root / "clients/lsp/variable_facts.cc"};
+                                   root / "engine/optimo/editing/variable_facts.cc"};
   for (const auto& entry : fs::directory_iterator(root / "engine/optimo/language"))
     sources.push_back(entry.path());
   for (const fs::path& path : sources) {
@@ -43,7 +43,7 @@ TEST(Facts, EveryRuleThatTheCheckerNamesIsExplained) {
 }
 
 TEST(Facts, RulesOfInstructionsAreExplained) {
-  for (const optimo::InstructionInfo& row : optimo::kInstructionSet) {
+  for (const InstructionInfo& row : kInstructionSet) {
     if (row.rule.empty()) continue;
     EXPECT_NE(TextOfRule(row.rule), "") << row.rule;
   }
@@ -51,7 +51,6 @@ TEST(Facts, RulesOfInstructionsAreExplained) {
 
 // OPT-7.104, OPT-7.105, OPT-7.106: every variable by what is kept in it, place for place.
 TEST(Facts, EachVariableSaysWhatIsKeptInIt) {
-  using optimo::VariableGroup;
   struct Row {
     VariableGroup group;
     int first, last;
@@ -135,13 +134,13 @@ TEST(Facts, FormsNameTheirWord) {
   }
 }
 
-std::string Note(optimo::VariableGroup group, int index) {
+std::string Note(VariableGroup group, int index) {
   return VariableNote({group, static_cast<std::uint8_t>(index)});
 }
 
 // OPT-7.66, OPT-7.104, OPT-7.105, OPT-3.37, OPT-8.30
 TEST(Facts, VariablesSayWhatTheyAreKeptFor) {
-  using enum optimo::VariableGroup;
+  using enum VariableGroup;
   EXPECT_NE(Note(kVr, 50).find("Amada"), std::string::npos);
   EXPECT_EQ(Note(kVr, 42).find("Amada"), std::string::npos);
   EXPECT_NE(Note(kVr, 86).find("SYSDEF 1"), std::string::npos);
@@ -156,4 +155,4 @@ TEST(Facts, VariablesSayWhatTheyAreKeptFor) {
 }
 
 }  // namespace
-}  // namespace rmlcell::lsp
+}  // namespace rmlcell::optimo::editing

@@ -11,7 +11,9 @@
 // Where what stands in an Optimo program: sequence numbers and the jumps to them, names, variables,
 // programs that are called, laser processes. Made from the tokens alone, so that it holds for a
 // program that is being written and does not parse yet.
-namespace rmlcell::lsp {
+namespace rmlcell::optimo::editing {
+
+inline constexpr std::uint32_t kSequenceNumberMax = 9999;  // OPT-1.23
 
 enum class UseKind : std::uint8_t {
   kWord,      // a reserved word
@@ -24,18 +26,18 @@ enum class UseKind : std::uint8_t {
 
 struct Use {
   UseKind kind = UseKind::kWord;
-  bool declares = false;                                     // kName behind DECLARE
-  optimo::Word word = optimo::Word::kNone;                   // kWord
-  optimo::VariableGroup group = optimo::VariableGroup::kVr;  // kVariable
-  std::uint16_t number = 0;                                  // of label, jump, program, variable
-  std::uint32_t begin = 0;                                   // byte offsets
+  bool declares = false;                     // kName behind DECLARE
+  Word word = Word::kNone;                   // kWord
+  VariableGroup group = VariableGroup::kVr;  // kVariable
+  std::uint16_t number = 0;                  // of label, jump, program, variable
+  std::uint32_t begin = 0;                   // byte offsets
   std::uint32_t end = 0;
   std::uint32_t statement = 0;
-  optimo::NameKey key = 0;  // kName: what counts of it
+  NameKey key = 0;  // kName: what counts of it
 };
 
 struct StatementPlace {
-  optimo::Word word = optimo::Word::kNone;  // the first; kNone: an assignment, or a lone label
+  Word word = Word::kNone;  // the first; kNone: an assignment, or a lone label
   bool lone_label = false;
   std::uint32_t step = 0;   // as the control counts; 0: none
   std::uint32_t begin = 0;  // of its sequence number, if it has one
@@ -46,12 +48,12 @@ struct StatementPlace {
 
 // DECLARE NAME = value.
 struct Declaration {
-  optimo::NameKey key = 0;
+  NameKey key = 0;
   std::uint32_t use = 0;  // of the name
   std::uint32_t value_begin = 0;
   std::uint32_t value_end = 0;
-  std::optional<optimo::Variable> variable{};  // nothing: a constant
-  std::optional<std::uint32_t> whole{};        // the value of an integer constant, no sign
+  std::optional<Variable> variable{};    // nothing: a constant
+  std::optional<std::uint32_t> whole{};  // the value of an integer constant, no sign
 };
 
 // WORKDEF n,p (...) and WORK n,p /ON or /OFF.
@@ -74,7 +76,7 @@ class ProgramIndex {
   const std::vector<StatementPlace>& statements() const { return statements_; }
   const std::vector<Declaration>& declarations() const { return declarations_; }
   const std::vector<ProcessUse>& processes() const { return processes_; }
-  const std::vector<optimo::Comment>& comments() const { return comments_; }
+  const std::vector<Comment>& comments() const { return comments_; }
   std::uint32_t step_count() const { return steps_; }
 
   // What stands at `offset`, or ends there; null: nothing of meaning.
@@ -82,11 +84,11 @@ class ProgramIndex {
   // The statement that `offset` is in or, between two, the one before; null before the first.
   const StatementPlace* StatementAt(std::size_t offset) const;
   // The comment that `offset` is in, its ';' excluded; null: none.
-  const optimo::Comment* CommentAt(std::size_t offset) const;
+  const Comment* CommentAt(std::size_t offset) const;
 
   const Use* FindLabel(int number) const;
   // The first declaration of a name.
-  const Declaration* FindDeclaration(optimo::NameKey key) const;
+  const Declaration* FindDeclaration(NameKey key) const;
   // The step that a sequence number leads to; step_count() + 1 is the end of the program.
   std::uint32_t StepOfLabel(const Use& label) const;
 
@@ -105,7 +107,7 @@ class ProgramIndex {
   std::vector<StatementPlace> statements_;
   std::vector<Declaration> declarations_;
   std::vector<ProcessUse> processes_;
-  std::vector<optimo::Comment> comments_;
+  std::vector<Comment> comments_;
   std::uint32_t steps_ = 0;
 };
 
@@ -113,4 +115,4 @@ class ProgramIndex {
 // WORKDEF, or has none.
 const ProcessUse* ProcessOf(const ProgramIndex& index, const StatementPlace& statement);
 
-}  // namespace rmlcell::lsp
+}  // namespace rmlcell::optimo::editing

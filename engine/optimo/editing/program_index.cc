@@ -1,37 +1,29 @@
-#include "clients/lsp/program_index.h"
+#include "engine/optimo/editing/program_index.h"
 
 #include <algorithm>
 
-namespace rmlcell::lsp {
-
-using optimo::Lexer;
-using optimo::Token;
-using optimo::TokenKind;
-using optimo::Word;
-using optimo::WordGroup;
+namespace rmlcell::optimo::editing {
 
 namespace {
 
-constexpr std::uint32_t kLabelMax = 9999;  // OPT-1.23
-
-std::optional<optimo::VariableGroup> GroupOf(Word word) {
+std::optional<VariableGroup> GroupOf(Word word) {
   switch (word) {
     case Word::kVr:
-      return optimo::VariableGroup::kVr;
+      return VariableGroup::kVr;
     case Word::kVi:
-      return optimo::VariableGroup::kVi;
+      return VariableGroup::kVi;
     case Word::kVl:
-      return optimo::VariableGroup::kVl;
+      return VariableGroup::kVl;
     case Word::kIl:
-      return optimo::VariableGroup::kIl;
+      return VariableGroup::kIl;
     case Word::kOl:
-      return optimo::VariableGroup::kOl;
+      return VariableGroup::kOl;
     case Word::kIa:
-      return optimo::VariableGroup::kIa;
+      return VariableGroup::kIa;
     case Word::kOa:
-      return optimo::VariableGroup::kOa;
+      return VariableGroup::kOa;
     case Word::kPar:
-      return optimo::VariableGroup::kPar;
+      return VariableGroup::kPar;
     default:
       return std::nullopt;
   }
@@ -53,7 +45,7 @@ class ProgramIndex::Builder {
   void ReadTokens(std::size_t at);
   // Reads what begins at token `at`; returns the token behind it.
   std::size_t ReadToken(std::size_t at);
-  std::size_t ReadVariable(std::size_t at, optimo::VariableGroup group);
+  std::size_t ReadVariable(std::size_t at, VariableGroup group);
   bool IsJump(std::size_t at);
   bool IsProgram(std::size_t at);
   void ReadDeclaration(std::size_t at);
@@ -90,7 +82,7 @@ void ProgramIndex::Builder::ReadStatement() {
   body_ = 0;
   if (first.kind == TokenKind::kNumber) {
     body_ = 1;
-    if (first.whole && first.digits <= kLabelMax) {
+    if (first.whole && first.digits <= kSequenceNumberMax) {
       Add(UseKind::kLabel, first, first).number = static_cast<std::uint16_t>(first.digits);
     }
   }
@@ -174,9 +166,9 @@ std::size_t ProgramIndex::Builder::ReadToken(std::size_t at) {
 }
 
 // VR [ 5 ]; with a name as index the group is a word and the name a name.
-std::size_t ProgramIndex::Builder::ReadVariable(std::size_t at, optimo::VariableGroup group) {
+std::size_t ProgramIndex::Builder::ReadVariable(std::size_t at, VariableGroup group) {
   const Token word = lexer_.At(at);
-  if (IsWhole(at + 2, optimo::kVariableIndexMax) && Is(at + 3, TokenKind::kCloseIndex)) {
+  if (IsWhole(at + 2, kVariableIndexMax) && Is(at + 3, TokenKind::kCloseIndex)) {
     const auto index = static_cast<std::uint16_t>(lexer_.At(at + 2).digits);
     Use& use = Add(UseKind::kVariable, word, lexer_.At(at + 3));
     use.group = group;
@@ -190,7 +182,7 @@ std::size_t ProgramIndex::Builder::ReadVariable(std::size_t at, optimo::Variable
 // GOTO 20, GOSUB 100, ERR 900, THEN 50, ELSE 60, GOTO VI[2] (20, 30), /TIME (2.5, 900),
 // TIMER (5.0, 900).
 bool ProgramIndex::Builder::IsJump(std::size_t at) {
-  if (!IsWhole(at, kLabelMax) || at == 0) return false;
+  if (!IsWhole(at, kSequenceNumberMax) || at == 0) return false;
   const Token& before = lexer_.At(at - 1);
   if (before.kind == TokenKind::kWord) {
     const bool begins = at - 1 == body_;
@@ -205,7 +197,7 @@ bool ProgramIndex::Builder::IsJump(std::size_t at) {
 
 // GO 46, CALL 2, FUNCTION 44; the second number of BREAK 7, 45 and SIMUL.
 bool ProgramIndex::Builder::IsProgram(std::size_t at) {
-  if (!IsWhole(at, kLabelMax)) return false;
+  if (!IsWhole(at, kSequenceNumberMax)) return false;
   if (at == body_ + 1) {
     return first_ == Word::kGo || first_ == Word::kCall || first_ == Word::kFunction;
   }
@@ -226,11 +218,11 @@ void ProgramIndex::Builder::ReadDeclaration(std::size_t at) {
     const Use& use = to_.uses_[u];
     if (use.declares) made.use = u;
     if (use.kind == UseKind::kVariable)
-      made.variable = optimo::Variable{use.group, static_cast<std::uint8_t>(use.number)};
+      made.variable = Variable{use.group, static_cast<std::uint8_t>(use.number)};
   }
   made.value_begin = lexer_.At(at + 3).offset;
   made.value_end = statement.end;
-  if (IsWhole(at + 3, optimo::kDigitsMax) && Is(at + 4, TokenKind::kEnd))
+  if (IsWhole(at + 3, kDigitsMax) && Is(at + 4, TokenKind::kEnd))
     made.whole = lexer_.At(at + 3).digits;
 }
 
@@ -251,7 +243,7 @@ void ProgramIndex::Builder::ReadProcess(std::size_t at) {
 }
 
 ProgramIndex::ProgramIndex(std::string_view text) : text_(text.substr(0, text.find('\x1A'))) {
-  if (text_.size() > optimo::kSourceBytesMax) text_ = {};
+  if (text_.size() > kSourceBytesMax) text_ = {};
   Builder(*this).Run();
 }
 
@@ -269,10 +261,10 @@ const StatementPlace* ProgramIndex::StatementAt(std::size_t offset) const {
   return behind == statements_.begin() ? nullptr : &*std::prev(behind);
 }
 
-const optimo::Comment* ProgramIndex::CommentAt(std::size_t offset) const {
-  const auto behind = std::ranges::lower_bound(comments_, offset, {}, &optimo::Comment::begin);
+const Comment* ProgramIndex::CommentAt(std::size_t offset) const {
+  const auto behind = std::ranges::lower_bound(comments_, offset, {}, &Comment::begin);
   if (behind == comments_.begin()) return nullptr;
-  const optimo::Comment& comment = *std::prev(behind);
+  const Comment& comment = *std::prev(behind);
   return offset <= comment.end ? &comment : nullptr;
 }
 
@@ -282,7 +274,7 @@ const Use* ProgramIndex::FindLabel(int number) const {
   return found == uses_.end() ? nullptr : &*found;
 }
 
-const Declaration* ProgramIndex::FindDeclaration(optimo::NameKey key) const {
+const Declaration* ProgramIndex::FindDeclaration(NameKey key) const {
   const auto found = std::ranges::find(declarations_, key, &Declaration::key);
   return found == declarations_.end() ? nullptr : &*found;
 }
@@ -301,4 +293,4 @@ const ProcessUse* ProcessOf(const ProgramIndex& index, const StatementPlace& sta
   return found != index.processes().end() && found->statement == number ? &*found : nullptr;
 }
 
-}  // namespace rmlcell::lsp
+}  // namespace rmlcell::optimo::editing

@@ -1,4 +1,4 @@
-#include "clients/lsp/program_index.h"
+#include "engine/optimo/editing/program_index.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "engine/optimo/language/checker.h"
 
-namespace rmlcell::lsp {
+namespace rmlcell::optimo::editing {
 namespace {
 
 // "jump 900 900" for each use that is no word, in order: kind, number or text.
@@ -77,9 +77,9 @@ TEST(ProgramIndex, StepsAreCountedAsTheCheckerCountsThem) {
       "; a comment\nDECLARE X = VR[0]\n10 SPEED 5\n20\n30 ; alone\nMOVE (1,2,\n 3,0,0)/\nFLY\n"
       "CONT 3 /\nSPEED 7 ; last\n40\n";
   const ProgramIndex index(kText);
-  optimo::Findings findings;
-  optimo::ParsedProgram program = optimo::Parse(kText, findings);
-  optimo::Check(program, findings);
+  Findings findings;
+  ParsedProgram program = Parse(kText, findings);
+  Check(program, findings);
   EXPECT_EQ(index.step_count(), program.module.step_count);
   EXPECT_EQ(index.step_count(), 4U);
   EXPECT_EQ(index.StepOfLabel(*index.FindLabel(20)), 2U);
@@ -132,4 +132,4 @@ TEST(ProgramIndex, NothingBehindTheEndOfTextCounts) {
 }
 
 }  // namespace
-}  // namespace rmlcell::lsp
+}  // namespace rmlcell::optimo::editing

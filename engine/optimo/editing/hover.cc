@@ -1,25 +1,20 @@
-#include "clients/lsp/hover.h"
+#include "engine/optimo/editing/hover.h"
 
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
 #include <string>
 
-#include "clients/lsp/check.h"
-#include "clients/lsp/project_facts.h"
-#include "clients/lsp/rule_facts.h"
-#include "clients/lsp/variable_facts.h"
-#include "clients/lsp/word_facts.h"
 #include "engine/core/number_text.h"
+#include "engine/optimo/editing/neighbours.h"
+#include "engine/optimo/editing/rule_facts.h"
+#include "engine/optimo/editing/variable_facts.h"
+#include "engine/optimo/editing/word_facts.h"
 #include "engine/optimo/language/instruction_set.h"
 #include "engine/optimo/offline/house_programs.h"
 
-namespace rmlcell::lsp {
+namespace rmlcell::optimo::editing {
 namespace {
 
-using optimo::Word;
-
-constexpr std::size_t kFindingsMax = 3;  // of one place; more is a wall of text
 constexpr std::size_t kQuotedMax = 120;  // bytes of a program text in a hover
 
 // A piece of the program as code, in one line.
@@ -46,8 +41,9 @@ std::string Plural(std::size_t count, std::string_view what) {
 
 class HoverText {
  public:
-  HoverText(const OpenProgram& program, const Use& use)
-      : index_(program.index), program_(program), use_(use) {}
+  HoverText(const ProgramIndex& index, const LineTable& lines, const machine::Surroundings& around,
+            const Use& use)
+      : index_(index), lines_(lines), around_(around), use_(use) {}
 
   std::string Make() const {
     switch (use_.kind) {
@@ -67,16 +63,21 @@ class HoverText {
   }
 
  private:
+  // As editors count lines.
+  std::string LineText(std::size_t offset) const {
+    return std::to_string(lines_.LineOf(offset) + 1);
+  }
+
   std::string OfWord() const {
     const WordFact& fact = FactOf(use_.word);
-    const optimo::WordInfo& info = Describe(use_.word);
+    const WordInfo& info = Describe(use_.word);
     std::string text = "**" + std::string(info.text) + "**";
     if (!fact.form.empty()) text += " `" + std::string(fact.form) + "`";
     text += "\n\n" + std::string(fact.text);
-    const optimo::Op op = optimo::OpOf(use_.word);
+    const Op op = OpOf(use_.word);
     const StatementPlace& statement = index_.statements()[use_.statement];
-    if (op != optimo::Op::kInvalid && statement.word == use_.word) {
-      text += "\n\n" + RuleLine(optimo::Describe(op).rule) + " (" + std::string(info.rule) + ")";
+    if (op != Op::kInvalid && statement.word == use_.word) {
+      text += "\n\n" + RuleLine(Describe(op).rule) + " (" + std::string(info.rule) + ")";
       if (statement.step > 0) text += "\n\nStep " + std::to_string(statement.step);
     } else {
       text += "\n\nRule " + std::string(info.rule);
@@ -102,7 +103,7 @@ class HoverText {
     } else {
       text = DefinitionOf(process, name);
     }
-    const std::string project = ProcessNote(program_, process.kind, process.process);
+    const std::string project = around_.ProcessNote(process.kind, process.process);
     return project.empty() ? text : text + "\n\nIn project.json: " + project;
   }
 
@@ -119,9 +120,8 @@ class HoverText {
       return "\n\nThis program has no WORKDEF " + name + ". " + RuleLine("OPT-3.09");
     }
     const StatementPlace& place = index_.statements()[nearest->statement];
-    const Position at = program_.document.PositionOf(place.body);
-    return "\n\nDefined on line " + std::to_string(at.line + 1) + ": " +
-           Code(index_.TextOf(place)) + Parameters(place, process.kind);
+    return "\n\nDefined on line " + LineText(place.body) + ": " + Code(index_.TextOf(place)) +
+           Parameters(place, process.kind);
   }
 
   // The values of a WORKDEF with what they mean.
@@ -164,7 +164,7 @@ class HoverText {
     const std::size_t last = written.find_last_not_of(" \t");
     const auto number = ParseDouble(written.substr(first, last - first + 1));
     if (!number || !(*number >= 1.0 && *number < 64.0)) return {};
-    const std::string note = ScheduleNote(program_, static_cast<int>(*number));
+    const std::string note = around_.ScheduleNote(static_cast<int>(*number));
     return note.empty() ? note : " (" + note + ")";
   }
 
@@ -181,11 +181,10 @@ class HoverText {
         "**" + std::string(index_.TextOf(at)) + "** = " +
         Code(index_.text().substr(declaration->value_begin,
                                   declaration->value_end - declaration->value_begin));
-    const Position line = program_.document.PositionOf(at.begin);
-    text += "\n\nDeclared on line " + std::to_string(line.line + 1) + ", used " +
-            std::to_string(uses) + (uses == 1 ? " time." : " times.");
+    text += "\n\nDeclared on line " + LineText(at.begin) + ", used " + std::to_string(uses) +
+            (uses == 1 ? " time." : " times.");
     if (declaration->variable) text += "\n\n" + VariableFacts(*declaration->variable);
-    if (name.size() > optimo::kNameLength) text += "\n\n" + RuleLine("OPT-7.46");
+    if (name.size() > kNameLength) text += "\n\n" + RuleLine("OPT-7.46");
     if (const auto called = CalledProgram(index_, use_)) text += "\n\n" + OfProgram(*called);
     return text;
   }
@@ -201,9 +200,8 @@ class HoverText {
       if (other.kind != UseKind::kJump || other.number != use_.number) continue;
       ++(index_.statements()[other.statement].word == Word::kGosub ? gosubs : jumps);
     }
-    const Position at = program_.document.PositionOf(label->begin);
     const std::uint32_t step = index_.StepOfLabel(*label);
-    std::string text = "**Sequence number " + number + "** on line " + std::to_string(at.line + 1) +
+    std::string text = "**Sequence number " + number + "** on line " + LineText(label->begin) +
                        (step > index_.step_count() ? ", the end of the program"
                                                    : ", step " + std::to_string(step)) +
                        "\n\n" + Plural(jumps, "jump") + ", " + Plural(gosubs, "GOSUB") + " to it.";
@@ -219,24 +217,24 @@ class HoverText {
 
   std::string OfProgram(int number) const {
     std::string text = "**Program " + std::to_string(number) + "**";
-    const auto neighbour = FindNeighbour(program_, number);
+    const auto neighbour = FindNeighbour(around_, number);
     if (!neighbour) {
       text += "\n\nThere is no file " + std::to_string(number) + ".S in this folder.";
-      for (const optimo::HouseProgram& house : optimo::HousePrograms()) {
+      for (const HouseProgram& house : HousePrograms()) {
         if (house.slot == number) text += " On the control it is " + std::string(house.name) + ".";
       }
       return text;
     }
     const ProgramIndex other(neighbour->text);
-    text += " in `" + FileNameOfUri(neighbour->uri) + "`, " + Plural(other.step_count(), "step");
+    text += " in `" + neighbour->name + "`, " + Plural(other.step_count(), "step");
     if (!other.comments().empty()) {
-      const optimo::Comment& first = other.comments().front();
+      const Comment& first = other.comments().front();
       const bool head = other.statements().empty() || first.begin < other.statements()[0].begin;
       if (head) text += "\n\n" + Code(other.text().substr(first.begin, first.end - first.begin));
     }
     int parameters = 0;
     for (const Use& use : other.uses()) {
-      if (use.kind == UseKind::kVariable && use.group == optimo::VariableGroup::kPar)
+      if (use.kind == UseKind::kVariable && use.group == VariableGroup::kPar)
         parameters = std::max(parameters, use.number + 1);
     }
     if (parameters > 0) text += "\n\nReads PAR[0] to PAR[" + std::to_string(parameters - 1) + "].";
@@ -244,7 +242,7 @@ class HoverText {
   }
 
   std::string OfVariable() const {
-    const optimo::Variable variable{use_.group, static_cast<std::uint8_t>(use_.number)};
+    const Variable variable{use_.group, static_cast<std::uint8_t>(use_.number)};
     std::string text = VariableFacts(variable);
     std::string names;
     for (const Declaration& declaration : index_.declarations()) {
@@ -257,46 +255,19 @@ class HoverText {
   }
 
   const ProgramIndex& index_;
-  const OpenProgram& program_;
+  const LineTable& lines_;
+  const machine::Surroundings& around_;
   const Use& use_;
 };
 
-std::string FindingsText(std::size_t offset, std::span<const Diagnostic> findings,
-                         std::string_view text) {
-  std::string all;
-  std::size_t told = 0;
-  for (const Diagnostic& finding : findings) {
-    const Marked marked = PlaceOf(finding, text);
-    if (finding.where.byte_offset < 0 || offset < marked.begin || offset > marked.end) continue;
-    if (++told > kFindingsMax) break;
-    const CatalogueEntry& entry = Lookup(finding.code);
-    if (!all.empty()) all += "\n\n";
-    all += "**" + CodeText(finding.code) + "** (" + std::string(SeverityName(finding.severity)) +
-           "): " + std::string(entry.when) + "\n\nWhat to do: " + std::string(entry.advice);
-    if (!finding.rule.empty()) all += "\n\n" + RuleLine(finding.rule);
-  }
-  return all;
-}
-
 }  // namespace
 
-Json Hover(const OpenProgram& program, std::size_t offset, std::span<const Diagnostic> findings) {
-  const Use* use = program.index.CommentAt(offset) != nullptr ? nullptr : program.index.At(offset);
-  std::string text = use == nullptr ? std::string() : HoverText(program, *use).Make();
-  const std::string wrong = FindingsText(offset, findings, program.document.text());
-  if (!wrong.empty()) text += (text.empty() ? "" : "\n\n---\n\n") + wrong;
-  if (text.empty()) return nullptr;
-  Json hover = {{"contents", Markdown(text)}};
-  if (use != nullptr)
-    hover["range"] = ToJson(PositionFinder(program.document).Span(use->begin, use->end));
-  return hover;
+std::optional<machine::HoverNote> Hover(const ProgramIndex& index, const LineTable& lines,
+                                        std::size_t offset, const machine::Surroundings& around) {
+  const Use* use = index.CommentAt(offset) != nullptr ? nullptr : index.At(offset);
+  if (use == nullptr) return std::nullopt;
+  return machine::HoverNote{.text = HoverText(index, lines, around, *use).Make(),
+                            .of = {use->begin, use->end}};
 }
 
-Json HoverFindings(const Document& document, std::size_t offset,
-                   std::span<const Diagnostic> findings) {
-  const std::string wrong = FindingsText(offset, findings, document.text());
-  if (wrong.empty()) return nullptr;
-  return {{"contents", Markdown(wrong)}};
-}
-
-}  // namespace rmlcell::lsp
+}  // namespace rmlcell::optimo::editing

@@ -1,28 +1,27 @@
-#include "clients/lsp/rename.h"
+#include "engine/optimo/editing/rename.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
-#include "clients/lsp/navigation.h"
 #include "engine/core/number_text.h"
+#include "engine/optimo/editing/navigation.h"
 
-namespace rmlcell::lsp {
+namespace rmlcell::optimo::editing {
 namespace {
 
+using machine::Refusal;
+
 constexpr std::size_t kNameBytesMax = 64;  // only eight count
-constexpr int kLabelMax = 9999;            // OPT-1.23
 constexpr std::size_t kLabelDigitsMax = 4;
 
-RequestError Refuse(std::string why) { return {ErrorNumber::kRequestFailed, std::move(why)}; }
+Refusal Refuse(std::string why) { return {std::move(why)}; }
 
 bool IsLetter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
 // What can be renamed here, or why it cannot.
-std::variant<const Use*, RequestError> Renamable(const OpenProgram& program, std::size_t offset) {
-  const ProgramIndex& index = program.index;
+std::variant<const Use*, Refusal> RenamableUse(const ProgramIndex& index, std::size_t offset) {
   const Use* use = index.CommentAt(offset) != nullptr ? nullptr : index.At(offset);
   if (use == nullptr) return Refuse("there is no name or sequence number here");
   switch (use->kind) {
@@ -45,13 +44,13 @@ std::variant<const Use*, RequestError> Renamable(const OpenProgram& program, std
   return Refuse("there is no name or sequence number here");
 }
 
-std::optional<RequestError> CheckName(const ProgramIndex& index, const Use& use,
-                                      const std::string& name) {
+std::optional<Refusal> CheckName(const ProgramIndex& index, const Use& use,
+                                 const std::string& name) {
   const bool word = !name.empty() && name.size() <= kNameBytesMax && IsLetter(name.front()) &&
                     std::ranges::all_of(name, [](char c) { return IsLetter(c) || IsDigit(c); });
   if (!word) return Refuse("a name begins with a letter and has letters and digits (OPT-7.45)");
-  const optimo::NameKey key = optimo::PackName(name);
-  if (const optimo::Word reserved = optimo::FindWord(key); reserved != optimo::Word::kNone)
+  const NameKey key = PackName(name);
+  if (const Word reserved = FindWord(key); reserved != Word::kNone)
     return Refuse("'" + name + "' is reserved: " + std::string(Describe(reserved).text) +
                   " (OPT-7.48)");
   if (key == use.key) return std::nullopt;
@@ -64,11 +63,11 @@ std::optional<RequestError> CheckName(const ProgramIndex& index, const Use& use,
   return std::nullopt;
 }
 
-std::optional<RequestError> CheckLabel(const ProgramIndex& index, const Use& use,
-                                       const std::string& name) {
+std::optional<Refusal> CheckLabel(const ProgramIndex& index, const Use& use,
+                                  const std::string& name) {
   const auto number = ParseInteger(name);
   const bool good = number && name.size() <= kLabelDigitsMax &&
-                    std::ranges::all_of(name, IsDigit) && *number <= kLabelMax;
+                    std::ranges::all_of(name, IsDigit) && *number <= kSequenceNumberMax;
   if (!good) return Refuse("a sequence number goes from 0 to 9999 (OPT-1.23)");
   if (*number == use.number) return std::nullopt;
   if (index.FindLabel(static_cast<int>(*number)) != nullptr)
@@ -83,27 +82,25 @@ std::optional<RequestError> CheckLabel(const ProgramIndex& index, const Use& use
 
 }  // namespace
 
-std::variant<Json, RequestError> PrepareRename(const OpenProgram& program, std::size_t offset) {
-  const auto found = Renamable(program, offset);
-  if (const auto* refused = std::get_if<RequestError>(&found)) return *refused;
+std::variant<machine::TextSpan, Refusal> Renamable(const ProgramIndex& index, std::size_t offset) {
+  const auto found = RenamableUse(index, offset);
+  if (const auto* refused = std::get_if<Refusal>(&found)) return *refused;
   const Use& use = *std::get<const Use*>(found);
-  return Json{{"range", ToJson(PositionFinder(program.document).Span(use.begin, use.end))},
-              {"placeholder", program.index.TextOf(use)}};
+  return machine::TextSpan{use.begin, use.end};
 }
 
-std::variant<Json, RequestError> Rename(const OpenProgram& program, std::size_t offset,
-                                        const std::string& new_name) {
-  const auto found = Renamable(program, offset);
-  if (const auto* refused = std::get_if<RequestError>(&found)) return *refused;
+std::variant<std::vector<machine::TextSpan>, Refusal> Rename(const ProgramIndex& index,
+                                                             std::size_t offset,
+                                                             const std::string& name) {
+  const auto found = RenamableUse(index, offset);
+  if (const auto* refused = std::get_if<Refusal>(&found)) return *refused;
   const Use& use = *std::get<const Use*>(found);
-  const auto wrong = use.kind == UseKind::kName ? CheckName(program.index, use, new_name)
-                                                : CheckLabel(program.index, use, new_name);
+  const auto wrong =
+      use.kind == UseKind::kName ? CheckName(index, use, name) : CheckLabel(index, use, name);
   if (wrong) return *wrong;
-  Json edits = Json::array();
-  PositionFinder positions(program.document);
-  for (const Use* same : SameUses(program.index, use))
-    edits.push_back(TextEdit(positions.Span(same->begin, same->end), new_name));
-  return Json{{"changes", {{program.document.uri(), std::move(edits)}}}};
+  std::vector<machine::TextSpan> places;
+  for (const Use* same : SameUses(index, use)) places.push_back({same->begin, same->end});
+  return places;
 }
 
-}  // namespace rmlcell::lsp
+}  // namespace rmlcell::optimo::editing

@@ -1,15 +1,12 @@
-#include "clients/lsp/variable_facts.h"
+#include "engine/optimo/editing/variable_facts.h"
 
 #include <array>
 #include <string_view>
 
 #include "engine/optimo/language/units_of_variables.h"
 
-namespace rmlcell::lsp {
+namespace rmlcell::optimo::editing {
 namespace {
-
-using optimo::Variable;
-using optimo::VariableGroup;
 
 struct Fact {
   VariableGroup group;
@@ -113,16 +110,16 @@ std::string VariableFacts(Variable variable) {
   }
   if (IsReadOnly(variable)) text += "\n\nA program cannot write it (OPT-7.66).";
   switch (UnitOf(variable)) {
-    case optimo::Unit::kLinear:
+    case Unit::kLinear:
       text += "\n\nCONVERT takes its numbers for lengths (OPT-8.30).";
       break;
-    case optimo::Unit::kRotary:
+    case Unit::kRotary:
       text += "\n\nCONVERT takes its numbers for angles (OPT-8.30).";
       break;
-    case optimo::Unit::kNone:
+    case Unit::kNone:
       break;
   }
   return text;
 }
 
-}  // namespace rmlcell::lsp
+}  // namespace rmlcell::optimo::editing

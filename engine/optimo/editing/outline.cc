@@ -1,26 +1,17 @@
-#include "clients/lsp/outline.h"
+#include "engine/optimo/editing/outline.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <utility>
 
-namespace rmlcell::lsp {
+namespace rmlcell::optimo::editing {
 namespace {
 
-using optimo::Word;
-
-// Of LSP.
-enum SymbolKind : int {
-  kModule = 2,
-  kFunction = 12,
-  kVariable = 13,
-  kConstant = 14,
-  kKey = 20,
-  kEvent = 24
-};
+using machine::FoldedLines;
+using machine::OutlinePart;
 
 constexpr std::size_t kNameMax = 60;  // bytes of a statement in the outline
 
@@ -31,36 +22,28 @@ std::string OneLine(std::string_view text) {
   return text.size() > kNameMax ? line + " ..." : line;
 }
 
-class Outline {
+class OutlineMaker {
  public:
-  Outline(const Document& document, const ProgramIndex& index)
-      : index_(index), positions_(document) {}
+  explicit OutlineMaker(const ProgramIndex& index) : index_(index) {}
 
-  Json Make() {
+  std::vector<OutlinePart> Make() {
     for (const Declaration& declaration : index_.declarations()) {
       const Use& name = index_.uses()[declaration.use];
       const StatementPlace& statement = index_.statements()[name.statement];
-      symbols_.push_back(
-          Symbol(std::string(index_.TextOf(name)), declaration.variable ? kVariable : kConstant,
-                 statement.begin, statement.end, name.begin, name.end,
-                 OneLine(index_.text().substr(declaration.value_begin,
-                                              declaration.value_end - declaration.value_begin))));
+      parts_.push_back(
+          {.kind =
+               declaration.variable ? OutlinePart::Kind::kVariable : OutlinePart::Kind::kConstant,
+           .name = std::string(index_.TextOf(name)),
+           .detail = OneLine(index_.text().substr(declaration.value_begin,
+                                                  declaration.value_end - declaration.value_begin)),
+           .whole = {statement.begin, statement.end},
+           .name_at = {name.begin, name.end}});
     }
     Parts();
-    return std::move(symbols_);
+    return std::move(parts_);
   }
 
  private:
-  Json Symbol(std::string name, SymbolKind kind, std::size_t begin, std::size_t end,
-              std::size_t name_begin, std::size_t name_end, std::string detail) {
-    Json symbol = {{"name", std::move(name)},
-                   {"kind", static_cast<int>(kind)},
-                   {"range", ToJson(positions_.Span(begin, end))},
-                   {"selectionRange", ToJson(positions_.Span(name_begin, name_end))}};
-    if (!detail.empty()) symbol["detail"] = std::move(detail);
-    return symbol;
-  }
-
   // One part for each sequence number, up to the next one.
   void Parts() {
     std::set<int> gosubs;
@@ -69,7 +52,7 @@ class Outline {
         gosubs.insert(use.number);
     }
     const bool steps = index_.step_count() <= kOutlineStepsMax;
-    Json children = Json::array();
+    std::vector<OutlinePart> within;
     const Use* label = nullptr;
     std::size_t begin = 0;
     std::size_t end = 0;
@@ -77,15 +60,18 @@ class Outline {
       if (label != nullptr) {
         const bool subroutine = gosubs.contains(label->number);
         const std::uint32_t step = index_.StepOfLabel(*label);
-        Json part = Symbol(std::to_string(label->number), subroutine ? kFunction : kKey, begin,
-                           std::max<std::size_t>(end, label->end), label->begin, label->end,
-                           step > index_.step_count() ? "end" : "step " + std::to_string(step));
-        if (!children.empty()) part["children"] = std::move(children);
-        symbols_.push_back(std::move(part));
+        parts_.push_back(
+            {.kind =
+                 subroutine ? OutlinePart::Kind::kSubroutine : OutlinePart::Kind::kSequenceNumber,
+             .name = std::to_string(label->number),
+             .detail = step > index_.step_count() ? "end" : "step " + std::to_string(step),
+             .whole = {begin, std::max<std::size_t>(end, label->end)},
+             .name_at = {label->begin, label->end},
+             .parts = std::move(within)});
       } else {
-        for (Json& child : children) symbols_.push_back(std::move(child));
+        std::ranges::move(within, std::back_inserter(parts_));
       }
-      children = Json::array();
+      within.clear();
     };
     for (const StatementPlace& statement : index_.statements()) {
       const bool labelled = statement.first_use < index_.uses().size() &&
@@ -98,35 +84,24 @@ class Outline {
       }
       end = statement.end;
       if (!steps || statement.step == 0) continue;
-      children.push_back(
-          Symbol(std::to_string(statement.step) + " " + OneLine(index_.TextOf(statement)), kEvent,
-                 statement.body, statement.end, statement.body, statement.end, {}));
+      within.push_back(
+          {.kind = OutlinePart::Kind::kStep,
+           .name = std::to_string(statement.step) + " " + OneLine(index_.TextOf(statement)),
+           .whole = {statement.body, statement.end},
+           .name_at = {statement.body, statement.end}});
     }
     close();
   }
 
   const ProgramIndex& index_;
-  PositionFinder positions_;
-  Json symbols_ = Json::array();
+  std::vector<OutlinePart> parts_;
 };
 
-void Flatten(const Json& symbol, const std::string& uri, const std::string& container, Json& to) {
-  Json flat = {{"name", symbol["name"]},
-               {"kind", symbol["kind"]},
-               {"location", {{"uri", uri}, {"range", symbol["range"]}}}};
-  if (!container.empty()) flat["containerName"] = container;
-  to.push_back(std::move(flat));
-  if (const auto children = symbol.find("children"); children != symbol.end()) {
-    for (const Json& child : *children) Flatten(child, uri, symbol["name"], to);
-  }
-}
-
-class Folder {
+class FoldMaker {
  public:
-  Folder(const Document& document, const ProgramIndex& index)
-      : document_(document), index_(index) {}
+  FoldMaker(const ProgramIndex& index, const LineTable& lines) : index_(index), lines_(lines) {}
 
-  Json Make() {
+  std::vector<FoldedLines> Make() {
     Comments();
     Declarations();
     std::set<int> gosubs;
@@ -140,7 +115,7 @@ class Folder {
     const auto& statements = index_.statements();
     for (std::size_t s = 0; s < statements.size(); ++s) {
       const StatementPlace& statement = statements[s];
-      Add(statement.body, statement.end, nullptr);
+      Add(statement.body, statement.end, FoldedLines::Kind::kStatements);
       const Use* label = statement.first_use < index_.uses().size()
                              ? &index_.uses()[statement.first_use]
                              : nullptr;
@@ -149,7 +124,7 @@ class Folder {
         subroutine = statement.begin;
       }
       if (statement.word == Word::kReturn && subroutine != kNowhere) {
-        Add(subroutine, statement.end, "region");
+        Add(subroutine, statement.end, FoldedLines::Kind::kRegion);
         subroutine = kNowhere;
       }
       while (process < index_.processes().size() && index_.processes()[process].statement < s)
@@ -160,47 +135,44 @@ class Folder {
       const std::pair<int, int> number(use.kind, use.process);
       if (!use.defines && use.on) on[number] = statement.begin;
       if (!use.defines && use.off && on.contains(number)) {
-        Add(on[number], statement.end, "region");
+        Add(on[number], statement.end, FoldedLines::Kind::kRegion);
         on.erase(number);
       }
     }
-    return std::move(ranges_);
+    return std::move(folds_);
   }
 
  private:
   static constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
 
-  std::size_t LineOf(std::size_t offset) const { return document_.lines().LineOf(offset); }
+  std::size_t LineOf(std::size_t offset) const { return lines_.LineOf(offset); }
 
-  void Add(std::size_t begin, std::size_t end, const char* kind) {
+  void Add(std::size_t begin, std::size_t end, FoldedLines::Kind kind) {
     const std::size_t first = LineOf(begin);
     const std::size_t last = LineOf(end);
-    if (last <= first) return;
-    Json range = {{"startLine", first}, {"endLine", last}};
-    if (kind != nullptr) range["kind"] = kind;
-    ranges_.push_back(std::move(range));
+    if (last > first) folds_.push_back({.kind = kind, .first = first, .last = last});
   }
 
   // Whether nothing but blanks stands before it on its line.
   bool Alone(std::size_t offset) const {
-    const std::size_t begin = document_.lines().Begin(LineOf(offset));
+    const std::size_t begin = lines_.Begin(LineOf(offset));
     return index_.text().substr(begin, offset - begin).find_first_not_of(" \t") ==
            std::string_view::npos;
   }
 
   void Comments() {
-    const optimo::Comment* first = nullptr;
-    const optimo::Comment* last = nullptr;
-    for (const optimo::Comment& comment : index_.comments()) {
+    const Comment* first = nullptr;
+    const Comment* last = nullptr;
+    for (const Comment& comment : index_.comments()) {
       if (!Alone(comment.begin)) continue;
       if (last != nullptr && LineOf(comment.begin) != LineOf(last->begin) + 1) {
-        Add(first->begin, last->begin, "comment");
+        Add(first->begin, last->begin, FoldedLines::Kind::kComment);
         first = nullptr;
       }
       if (first == nullptr) first = &comment;
       last = &comment;
     }
-    if (first != nullptr) Add(first->begin, last->begin, "comment");
+    if (first != nullptr) Add(first->begin, last->begin, FoldedLines::Kind::kComment);
   }
 
   void Declarations() {
@@ -212,29 +184,23 @@ class Folder {
         last = &statement;
         continue;
       }
-      if (first != nullptr) Add(first->begin, last->end, nullptr);
+      if (first != nullptr) Add(first->begin, last->end, FoldedLines::Kind::kStatements);
       first = nullptr;
     }
-    if (first != nullptr) Add(first->begin, last->end, nullptr);
+    if (first != nullptr) Add(first->begin, last->end, FoldedLines::Kind::kStatements);
   }
 
-  const Document& document_;
   const ProgramIndex& index_;
-  Json ranges_ = Json::array();
+  const LineTable& lines_;
+  std::vector<FoldedLines> folds_;
 };
 
 }  // namespace
 
-Json Symbols(const Document& document, const ProgramIndex& index, bool nested) {
-  Json symbols = Outline(document, index).Make();
-  if (nested) return symbols;
-  Json flat = Json::array();
-  for (const Json& symbol : symbols) Flatten(symbol, document.uri(), {}, flat);
-  return flat;
+std::vector<OutlinePart> Outline(const ProgramIndex& index) { return OutlineMaker(index).Make(); }
+
+std::vector<FoldedLines> Folds(const ProgramIndex& index, const LineTable& lines) {
+  return FoldMaker(index, lines).Make();
 }
 
-Json FoldingRanges(const Document& document, const ProgramIndex& index) {
-  return Folder(document, index).Make();
-}
-
-}  // namespace rmlcell::lsp
+}  // namespace rmlcell::optimo::editing
