@@ -7,6 +7,7 @@
 #include "engine/core/diagnostic.h"
 #include "engine/core/letters.h"
 #include "engine/families/families.h"
+#include "engine/machine/shape.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
 

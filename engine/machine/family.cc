@@ -5,8 +5,11 @@
 #include <utility>
 
 #include "engine/core/units.h"
+#include "engine/machine/shape.h"
 
 namespace rmlcell::machine {
+
+MachineShape MachineFamily::Shape(const Parameters& /*parameters*/) const { return {}; }
 
 TransferPlan MachineFamily::PlanTransfer(const ProjectBundle& project, const Parameters& parameters,
                                          const TransferOptions& /*options*/) const {

@@ -10,11 +10,14 @@
 
 #include "engine/machine/editing.h"
 #include "engine/machine/program_file.h"
-#include "engine/machine/run.h"
-#include "engine/machine/shape.h"
+#include "engine/machine/run_setup.h"
 #include "engine/machine/tools.h"
 
 namespace rmlcell::machine {
+
+class Run;            // run.h
+class RunObserver;    // observer.h
+struct MachineShape;  // shape.h
 
 struct FamilyInfo {
   std::string_view id{};               // "optimo"
@@ -137,7 +140,7 @@ class MachineFamily {
   virtual std::span<const FigureInfo> figures() const { return {}; }
 
   // What report and pictures need to know of a machine with these parameters.
-  virtual MachineShape Shape(const Parameters& /*parameters*/) const { return {}; }
+  virtual MachineShape Shape(const Parameters& parameters) const;
 
   // Checks and translates. Bad programs are diagnostics, not errors.
   virtual Translation Translate(const SourceFile& file, const Parameters& parameters,

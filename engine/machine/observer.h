@@ -6,19 +6,10 @@
 
 #include "engine/core/diagnostic.h"
 #include "engine/core/units.h"
+#include "engine/machine/outcome.h"
 #include "engine/motion/planner/planner.h"
 
 namespace rmlcell::machine {
-
-// Where in the programs something happened.
-struct Place {
-  int program = 0;  // slot of the module; 0 for a stream without slot
-  int step = 0;     // as the control counts; for a stream the number of the command from 1
-  int line = 0;     // 0 when no text is known
-  std::int64_t byte_offset = -1;  // streams: of the command's first byte
-
-  bool operator==(const Place&) const = default;
-};
 
 // What a motion is for. Families map their own notions onto it; pictures and lengths depend on it.
 enum class MotionUse { kTravel, kCut, kPlunge, kRetract };

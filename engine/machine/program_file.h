@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "engine/core/diagnostic.h"
-#include "engine/machine/run.h"
+#include "engine/machine/outcome.h"
+#include "engine/machine/run_setup.h"
 
 namespace rmlcell::machine {
 

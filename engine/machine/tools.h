@@ -13,7 +13,6 @@
 #include "engine/core/result.h"
 #include "engine/machine/parameters.h"
 #include "engine/machine/program_file.h"
-#include "engine/machine/run.h"
 
 // What can be done with program texts without running them: the tools of a programmer.
 // A family whose programs are texts has them (MachineFamily::tools), one with streams has none.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/machine/shape.h"
 #include "engine/rml1/figures.h"
 #include "engine/rml1/physical.h"
 #include "engine/rml1/run.h"

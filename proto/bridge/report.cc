@@ -183,7 +183,8 @@ v1::RunReport ToProto(const simulation::RunReport& report,
   *message.mutable_total() = ToProto(report.total);
   *message.mutable_final_position() =
       PositionOf(report.final_position.tip, report.final_position.axes);
-  *message.mutable_final_program_point() = ToProto(report.final_position.program_point);
+  *message.mutable_final_program_point() =
+      ToProto(report.final_position.program_point.from_origin());
   message.add_final_program_angles(report.final_position.program_a);
   message.add_final_program_angles(report.final_position.program_b);
   message.set_shutter_open_s(ToSeconds(report.total.shutter_open));
@@ -249,7 +250,7 @@ v1::TraceRecord ToProto(const simulation::TraceRecord& record) {
   switch (record.kind) {
     case TraceKind::kMove:
       message.set_text(std::string(record.text));
-      *message.mutable_point() = ToProto(record.program_point);
+      *message.mutable_point() = ToProto(record.program_point.from_origin());
       message.add_angles(record.program_a);
       message.add_angles(record.program_b);
       *message.mutable_position() = PositionOf(record.tip, record.axes);

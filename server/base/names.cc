@@ -111,6 +111,11 @@ Status CheckTitle(std::string_view title, std::string_view field) {
                          " characters");
 }
 
+Result<int> PageSize(int asked, PageSizes sizes) {
+  if (asked < 0) return InvalidArgument("page_size is below 0");
+  return asked == 0 ? sizes.fallback : std::min(asked, sizes.max);
+}
+
 std::string MachineName(std::string_view id) { return "machines/" + std::string(id); }
 std::string ProjectName(std::string_view id) { return "projects/" + std::string(id); }
 std::string JobName(std::int64_t id) { return "jobs/" + std::to_string(id); }

@@ -7,8 +7,8 @@
 #include "engine/core/result.h"
 #include "storage/records.h"
 
-// Resource names and etags of the API (proto/rmlcell/v1). Errors: CellInvalidArgument with the form
-// expected. A thing has exactly one name: numbers have no sign and no leading zero.
+// Resource names, etags and page sizes of the API (proto/rmlcell/v1). Errors: CellInvalidArgument
+// with the form expected. A thing has exactly one name: numbers have no sign and no leading zero.
 namespace rmlcell::server {
 
 // 1 to 63 characters: a-z, 0-9, '-', beginning with a letter.
@@ -41,6 +41,14 @@ Result<storage::Revision> ParseEtag(std::string_view etag);
 
 // Titles are for people: at most 200 characters. Error: CellInvalidArgument, naming the field.
 Status CheckTitle(std::string_view title, std::string_view field);
+
+// How many entries a page of a list has: `fallback` where none is asked for, never above `max`.
+// Error: CellInvalidArgument below 0.
+struct PageSizes {
+  int fallback = 0;
+  int max = 0;
+};
+Result<int> PageSize(int asked, PageSizes sizes);
 
 std::string MachineName(std::string_view id);
 std::string ProjectName(std::string_view id);

@@ -22,8 +22,7 @@
 namespace rmlcell::server {
 namespace {
 
-constexpr int kPageDefault = 50;
-constexpr int kPageMax = 1000;
+constexpr PageSizes kJobPages{.fallback = 50, .max = 1000};
 constexpr int kSnapshotJobs = 200;
 constexpr std::size_t kRequestIdMax = 64;
 constexpr double kPaceMax = 1000.0;  // faster is not to be told from as fast as possible
@@ -309,10 +308,9 @@ Result<v1::Job> JobBook::WithArtifacts(const storage::JobRecord& record) {
 
 Result<v1::ListJobsResponse> JobBook::List(const v1::ListJobsRequest& request) {
   storage::JobQuery query;
-  if (request.page_size() < 0) return InvalidArgument("page_size is below 0");
-  const int size =
-      request.page_size() == 0 ? kPageDefault : std::min(request.page_size(), kPageMax);
-  query.limit = size + 1;  // one more tells whether there is a next page
+  const Result<int> size = PageSize(request.page_size(), kJobPages);
+  if (!size) return size.error();
+  query.limit = *size + 1;  // one more tells whether there is a next page
   if (Status applied = ApplyFilter(request.filter(), query); !applied) return applied.error();
   if (!request.page_token().empty()) {
     const auto before = ParseInteger(request.page_token());
@@ -323,9 +321,9 @@ Result<v1::ListJobsResponse> JobBook::List(const v1::ListJobsRequest& request) {
   if (!records) return records.error();
   v1::ListJobsResponse response;
   for (const storage::JobRecord& record : *records) {
-    if (response.jobs_size() == size) {
+    if (response.jobs_size() == *size) {
       response.set_next_page_token(
-          std::to_string((*records)[static_cast<std::size_t>(size) - 1].id));
+          std::to_string((*records)[static_cast<std::size_t>(*size) - 1].id));
       break;
     }
     Result<v1::Job> job = WithArtifacts(record);

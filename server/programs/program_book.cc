@@ -302,8 +302,8 @@ Result<v1::ListProgramsResponse> ProgramBook::List(const v1::ListProgramsRequest
   const Result<std::string> machine = ParseMachineName(request.parent());
   if (!machine) return machine.error();
   if (const auto known = store_.GetMachine(*machine); !known) return known.error();
-  if (request.page_size() < 0) return InvalidArgument("page_size is below 0");
-  const int size = request.page_size() == 0 ? kSlotMax : std::min(request.page_size(), kSlotMax);
+  const Result<int> size = PageSize(request.page_size(), {.fallback = kSlotMax, .max = kSlotMax});
+  if (!size) return size.error();
   int after = 0;
   if (!request.page_token().empty()) {
     const auto token = ParseInteger(request.page_token());
@@ -311,13 +311,13 @@ Result<v1::ListProgramsResponse> ProgramBook::List(const v1::ListProgramsRequest
       return Error{ErrorCode::kCellBadPageToken, {}, {}};
     after = static_cast<int>(*token);
   }
-  const auto programs = store_.ListPrograms(*machine, after, size + 1);
+  const auto programs = store_.ListPrograms(*machine, after, *size + 1);
   if (!programs) return programs.error();
   v1::ListProgramsResponse response;
   for (const storage::ProgramSummary& program : *programs) {
-    if (response.programs_size() == size) {
+    if (response.programs_size() == *size) {
       response.set_next_page_token(
-          std::to_string((*programs)[static_cast<std::size_t>(size) - 1].slot));
+          std::to_string((*programs)[static_cast<std::size_t>(*size) - 1].slot));
       break;
     }
     *response.add_programs() = MessageOf(*machine, program);

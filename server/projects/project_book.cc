@@ -20,8 +20,7 @@
 namespace rmlcell::server {
 namespace {
 
-constexpr int kPageDefault = 100;
-constexpr int kPageMax = 1000;
+constexpr PageSizes kProjectPages{.fallback = 100, .max = 1000};
 constexpr std::size_t kNotesMax = 64 << 10;
 constexpr std::array<std::string_view, 5> kProjectFields = {"title", "notes", "programs",
                                                             "laser_schedules", "processes"};
@@ -195,18 +194,17 @@ Result<v1::Project> ProjectBook::Get(std::string_view name) {
 }
 
 Result<v1::ListProjectsResponse> ProjectBook::List(const v1::ListProjectsRequest& request) {
-  if (request.page_size() < 0) return InvalidArgument("page_size is below 0");
-  const int size =
-      request.page_size() == 0 ? kPageDefault : std::min(request.page_size(), kPageMax);
+  const Result<int> size = PageSize(request.page_size(), kProjectPages);
+  if (!size) return size.error();
   if (!request.page_token().empty() && !CheckResourceId(request.page_token(), "page_token")) {
     return Error{ErrorCode::kCellBadPageToken, {}, {}};
   }
-  const auto records = store_.ListProjects(request.page_token(), size + 1);
+  const auto records = store_.ListProjects(request.page_token(), *size + 1);
   if (!records) return records.error();
   v1::ListProjectsResponse response;
   for (const storage::ProjectRecord& record : *records) {
-    if (response.projects_size() == size) {
-      response.set_next_page_token((*records)[static_cast<std::size_t>(size) - 1].id);
+    if (response.projects_size() == *size) {
+      response.set_next_page_token((*records)[static_cast<std::size_t>(*size) - 1].id);
       break;
     }
     Result<v1::Project> project = ProjectOf(record);

@@ -18,8 +18,7 @@
 namespace rmlcell::server {
 namespace {
 
-constexpr int kPageDefault = 100;
-constexpr int kPageMax = 1000;
+constexpr PageSizes kMachinePages{.fallback = 100, .max = 1000};
 constexpr std::int64_t kUnaryProgramBytes = 3 << 20;
 constexpr std::array<std::string_view, 3> kMachineFields = {"title", "profile", "parameters"};
 
@@ -113,17 +112,14 @@ grpc::ServerUnaryReactor* MachineService::ListMachines(grpc::CallbackServerConte
   return Answer(
       room_, context, *request, "MachineService/ListMachines",
       [this, request, response](const Caller&) {
-        if (request->page_size() < 0) {
-          return ToGrpcStatus(Error{ErrorCode::kCellInvalidArgument, "page_size is below 0", {}});
-        }
-        const int size =
-            request->page_size() == 0 ? kPageDefault : std::min(request->page_size(), kPageMax);
+        const Result<int> size = PageSize(request->page_size(), kMachinePages);
+        if (!size) return ToGrpcStatus(size.error());
         const auto machines = store_.ListMachines();
         if (!machines) return ToGrpcStatus(machines.error());
         for (const storage::MachineRecord& machine : *machines) {
           if (!request->page_token().empty() && machine.id <= request->page_token()) continue;
-          if (response->machines_size() == size) {
-            response->set_next_page_token(*ParseMachineName(response->machines(size - 1).name()));
+          if (response->machines_size() == *size) {
+            response->set_next_page_token(*ParseMachineName(response->machines(*size - 1).name()));
             break;
           }
           *response->add_machines() = ToProto(machine);

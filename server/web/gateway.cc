@@ -15,7 +15,7 @@ Plan Answer(HttpResponse response) {
   return plan;
 }
 
-Plan Refuse(int http_status, ErrorCode code, std::string detail, std::string allow = {}) {
+Plan RefusePlan(int http_status, ErrorCode code, std::string detail, std::string allow = {}) {
   RpcRefusal refusal{.status = FromError({code, std::move(detail), {}}),
                      .http_status = http_status,
                      .headers = {}};
@@ -41,7 +41,7 @@ Plan PlanMethod(const Gateway& gateway, const HttpRequest& request, HeaderList m
 
 Plan PlanResource(const Gateway& gateway, const HttpRequest& request, const ResourceRoute& route,
                   HeaderList metadata) {
-  if (!route.path) return Refuse(400, ErrorCode::kCellInvalidArgument, route.problem);
+  if (!route.path) return RefusePlan(400, ErrorCode::kCellInvalidArgument, route.problem);
   Plan plan;
   if (IsRead(request)) {
     plan.exchange = [&gateway, path = *route.path, metadata = std::move(metadata)](
@@ -53,8 +53,8 @@ Plan PlanResource(const Gateway& gateway, const HttpRequest& request, const Reso
   const auto* program = std::get_if<ProgramContentPath>(&*route.path);
   const bool may_post = program != nullptr;
   if (request.method != "POST" || !may_post) {
-    return Refuse(405, ErrorCode::kCellUnimplemented, request.method + " is not offered here",
-                  may_post ? "GET, HEAD, POST" : "GET, HEAD");
+    return RefusePlan(405, ErrorCode::kCellUnimplemented, request.method + " is not offered here",
+                      may_post ? "GET, HEAD, POST" : "GET, HEAD");
   }
   UploadRoute upload = RouteUpload(request, *program);
   if (upload.refusal) return Answer(JsonRefusal(*upload.refusal, false));
@@ -69,10 +69,10 @@ Plan PlanResource(const Gateway& gateway, const HttpRequest& request, const Reso
 
 Plan PlanPage(const Gateway& gateway, const HttpRequest& request) {
   std::optional<HttpResponse> file = gateway.page.Find(request);
-  if (!file) return Refuse(404, ErrorCode::kCellNotFound, "nothing at " + request.path);
+  if (!file) return RefusePlan(404, ErrorCode::kCellNotFound, "nothing at " + request.path);
   if (!IsRead(request)) {
-    return Refuse(405, ErrorCode::kCellUnimplemented, request.method + " is not offered here",
-                  "GET, HEAD");
+    return RefusePlan(405, ErrorCode::kCellUnimplemented, request.method + " is not offered here",
+                      "GET, HEAD");
   }
   return Answer(*std::move(file));
 }
@@ -85,7 +85,8 @@ Plan MakePlan(const Gateway& gateway, const HttpRequest& request) {
   }
   if (request.method == "OPTIONS") return Answer(AnswerOptions(gateway.rules, request));
   if (request.path == "/healthz") {
-    if (!IsRead(request)) return Refuse(405, ErrorCode::kCellUnimplemented, "use GET", "GET, HEAD");
+    if (!IsRead(request))
+      return RefusePlan(405, ErrorCode::kCellUnimplemented, "use GET", "GET, HEAD");
     Plan plan;
     plan.exchange = [&gateway](std::shared_ptr<Connection> connection, const HttpRequest& full) {
       return MakeHealthExchange(gateway, full, std::move(connection));
@@ -97,8 +98,8 @@ Plan MakePlan(const Gateway& gateway, const HttpRequest& request) {
   if (!method && !resource.is_resource) return PlanPage(gateway, request);
   std::optional<HeaderList> metadata = CallerMetadata(gateway.rules, request);
   if (!metadata) {
-    return Refuse(400, ErrorCode::kCellInvalidArgument,
-                  "a header has characters that cannot be sent on");
+    return RefusePlan(400, ErrorCode::kCellInvalidArgument,
+                      "a header has characters that cannot be sent on");
   }
   if (method) return PlanMethod(gateway, request, *std::move(metadata));
   return PlanResource(gateway, request, resource, *std::move(metadata));

@@ -40,8 +40,8 @@ Head HeadOf(const json& input) {
 
 MachineFromProgram OffsetOf(const json& input) {
   const json& s = input.at("sysdef");
-  return RigidMotionOf(PointOf(s), s.at(3).get<double>(), s.at(4).get<double>(),
-                       s.at(5).get<double>());
+  return MachineFromProgram(RigidMotionOf(PointOf(s), s.at(3).get<double>(), s.at(4).get<double>(),
+                                          s.at(5).get<double>()));
 }
 
 Figures DirectionOf(const json& input) {
@@ -52,7 +52,7 @@ Figures DirectionOf(const json& input) {
 
 Figures Inverse(const json& input) {
   Figures figures;
-  const MachinePoint tip = OffsetOf(input) * PointOf(input.at("tip"));
+  const MachinePoint tip = OffsetOf(input) * ProgramPoint(PointOf(input.at("tip")));
   Put(figures, "machine_tip", tip);
   Put(figures, "column",
       HeadOf(input).ColumnOf({tip, NumberOf(input, "A"), NumberOf(input, "B")}).column);
@@ -62,7 +62,7 @@ Figures Inverse(const json& input) {
 Figures Forward(const json& input) {
   Figures figures;
   const AxisPose axes{PointOf(input.at("column")), NumberOf(input, "A"), NumberOf(input, "B")};
-  Put(figures, "tip", OffsetOf(input).inverse() * HeadOf(input).TipOf(axes).tip);
+  Put(figures, "tip", OffsetOf(input).ToProgram(HeadOf(input).TipOf(axes).tip).from_origin());
   return figures;
 }
 

@@ -1,6 +1,7 @@
 #include "tests/conformance/rml1_bench.h"
 
 #include "engine/core/number_text.h"
+#include "engine/machine/run.h"
 #include "engine/rml1/rml1_family.h"
 #include "engine/rml1/variables.h"
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/core/check.h"
+#include "engine/machine/run.h"
 #include "engine/rml1/device.h"
 #include "engine/rml1/profile.h"
 #include "engine/rml1/rml1_family.h"

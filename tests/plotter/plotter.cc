@@ -4,6 +4,10 @@
 #include <charconv>
 #include <utility>
 
+#include "engine/machine/observer.h"
+#include "engine/machine/run.h"
+#include "engine/machine/shape.h"
+
 namespace rmlcell::plotter {
 namespace {
 
@@ -213,7 +217,7 @@ class PlotterRun final : public machine::Run {
                       .place = place(),
                       .tip = {to},
                       .axes = {to},
-                      .program_point = to,
+                      .program_point = motion::ProgramPoint(to),
                       .feed_mm_s = kSpeed_mm_s,
                       .path = draws ? "PD" : "PU"});
   }

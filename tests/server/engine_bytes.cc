@@ -3,6 +3,8 @@
 #include <stdexcept>
 
 #include "engine/families/families.h"
+#include "engine/machine/observer.h"
+#include "engine/machine/run.h"
 
 namespace rmlcell::server {
 

@@ -114,5 +114,14 @@ TEST(Names, EtagsAreRevisionsOfOurs) {
   }
 }
 
+TEST(Names, PagesHaveTheSizeAskedForUpToTheMost) {
+  constexpr PageSizes kSizes{.fallback = 50, .max = 1000};
+  EXPECT_EQ(CodeOf(PageSize(-1, kSizes)), ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(*PageSize(0, kSizes), 50);
+  EXPECT_EQ(*PageSize(1, kSizes), 1);
+  EXPECT_EQ(*PageSize(1000, kSizes), 1000);
+  EXPECT_EQ(*PageSize(1001, kSizes), 1000);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

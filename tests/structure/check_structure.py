@@ -82,7 +82,7 @@ MAY_INCLUDE = {
 }
 # Of these rooms others may include no other header.
 PUBLIC = {
-    GEOMETRY: ["frames.h", "path.h", "hole.h", "corner_curve.h", "corner_table.h", "blend_curve.h", "least.h"],
+    GEOMETRY: ["frames.h", "pose.h", "path.h", "hole.h", "corner_curve.h", "corner_table.h", "blend_curve.h", "least.h"],
     PROFILE: ["speed_profile.h", "speed_passes.h", "ramp_plan.h"],
     KINEMATICS: ["kinematics.h", "axes.h", "machine_limits.h", "axis_demand.h", "speed_bound.h"],
     CORNER: ["corner.h", "axes_corner.h"],

@@ -14,9 +14,28 @@ namespace rmlcell::motion {
 using MachinePoint = Eigen::Vector3d;
 using MachineVector = Eigen::Vector3d;  // directions, differences and derivatives of points
 
-// The frame of the part program: that of the machine, moved and turned by SYSDEF.
-using ProgramPoint = Eigen::Vector3d;
+// The frame of the part program: that of the machine, moved and turned by SYSDEF, or the units of a
+// stream from its origin. Directions, and places as vectors from its origin where one program is
+// worked on by itself.
 using ProgramVector = Eigen::Vector3d;
+
+// A place in that frame, where both frames meet: nothing takes it for one in the machine.
+class ProgramPoint {
+ public:
+  ProgramPoint() = default;
+  ProgramPoint(double x, double y, double z) : from_origin_(x, y, z) {}
+  explicit ProgramPoint(const ProgramVector& from_origin) : from_origin_(from_origin) {}
+
+  double x() const { return from_origin_.x(); }
+  double y() const { return from_origin_.y(); }
+  double z() const { return from_origin_.z(); }
+  const ProgramVector& from_origin() const { return from_origin_; }
+
+  bool operator==(const ProgramPoint&) const = default;
+
+ private:
+  ProgramVector from_origin_;
+};
 
 inline constexpr int kAxisCount = 5;  // X Y Z of the column, A, B: mm and rad
 using AxisValues = Eigen::Matrix<double, kAxisCount, 1>;
@@ -39,8 +58,22 @@ using RigidMotion = Eigen::Isometry3d;
 RigidMotion RigidMotionOf(const Eigen::Vector3d& translation, double rz_rad, double ry_rad,
                           double rx_rad);
 
-// Where the frame of the part program lies in that of the machine: p_machine = m * p_program.
-// Angles of the head stay those of the machine. motion.md 2.3.
-using MachineFromProgram = RigidMotion;
+// Where the frame of the part program lies in that of the machine; new: in the same place. Angles
+// of the head stay those of the machine. motion.md 2.3.
+class MachineFromProgram {
+ public:
+  MachineFromProgram() = default;
+  explicit MachineFromProgram(const RigidMotion& motion) : motion_(motion) {}
+
+  MachinePoint operator*(const ProgramPoint& point) const { return motion_ * point.from_origin(); }
+  ProgramPoint ToProgram(const MachinePoint& point) const {
+    return ProgramPoint(ProgramVector(motion_.inverse() * point));
+  }
+  // Its columns are the axes of the program.
+  Rotation axes() const { return motion_.linear(); }
+
+ private:
+  RigidMotion motion_ = RigidMotion::Identity();
+};
 
 }  // namespace rmlcell::motion

@@ -223,13 +223,13 @@ Result<bool> Moves::AppendHole(const Programmed& move, const motion::TipPose& fr
   }
   const Result<motion::TipPose> normal = ViaOf(i);
   if (!normal) return normal.error();
-  const motion::MachineFromProgram frame = situation_.machine.work_offset.frame();
+  const motion::Rotation program_axes = situation_.machine.work_offset.frame().axes();
   const Result<motion::HolePath> hole = motion::HoleThrough({.from = from,
                                                              .centre = target,
                                                              .normal_point = normal->tip,
                                                              .radius_mm = radius,
-                                                             .program_x = frame.linear().col(0),
-                                                             .program_y = frame.linear().col(1)});
+                                                             .program_x = program_axes.col(0),
+                                                             .program_y = program_axes.col(1)});
   if (!hole) return hole.error();
   if (hole->starts_on_axis && parameters_.teach_simulator) {
     return Error{

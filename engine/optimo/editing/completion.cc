@@ -322,6 +322,8 @@ class Completer {
 
 machine::Suggestions Complete(const ProgramIndex& index, std::size_t offset,
                               const machine::Surroundings& around) {
+  // Behind the end that Ctrl-Z makes there is no program.
+  if (offset > index.text().size()) return {.typed = {offset, offset}};
   return Completer(index, offset, around).Make();
 }
 

@@ -42,9 +42,9 @@ struct WorkOffsetState {
   std::array<double, 6> values{};  // dx dy dz, rz ry rx
 
   motion::MachineFromProgram frame() const {
-    if (!active) return motion::MachineFromProgram::Identity();
-    return motion::RigidMotionOf({values[0], values[1], values[2]}, values[3], values[4],
-                                 values[5]);
+    if (!active) return {};
+    return motion::MachineFromProgram(
+        motion::RigidMotionOf({values[0], values[1], values[2]}, values[3], values[4], values[5]));
   }
 };
 

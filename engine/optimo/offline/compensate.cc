@@ -56,14 +56,14 @@ class Compensator {
   void PassWork(const Instruction& i);
   void PassSysdef(const Instruction& i);
   void TurnTool();
-  std::optional<ProgramPoint> EndOf(const Instruction& i) const;
+  std::optional<ProgramVector> EndOf(const Instruction& i) const;
   void CompensateHole(const Instruction& move);
   void AddLeg(const Instruction& i);
   void FinishChain();
   void LookForGouges(const std::vector<OffsetLeg>& moved);
   void Rewrite(const Instruction& i, const OffsetLeg& moved);
   void RewriteNumber(std::uint32_t node, double value);
-  std::optional<ProgramPoint> Point(std::uint32_t first_expression) const;
+  std::optional<ProgramVector> Point(std::uint32_t first_expression) const;
 
   bool Wanted() const { return beam_ && amount_ && side_ != CutSide::kNone; }
   bool Active() const { return Wanted() && path_ != PathType::kPtp; }
@@ -84,7 +84,7 @@ class Compensator {
   bool hole_advice_given_ = false;
   HolePath hole_;
   ProgramFrame frame_;
-  std::optional<ProgramPoint> at_;               // where the tip is, as far as it is known
+  std::optional<ProgramVector> at_;              // where the tip is, as far as it is known
   std::optional<double> head_a_at_, head_b_at_;  // rad
   ProgramVector tool_at_{0.0, 0.0, 1.0};
   std::vector<Leg> chain_;
@@ -177,12 +177,15 @@ void Compensator::Pass(const Instruction& i) {
 // The head stays where it is: its point gets other coordinates, and its direction, too.
 void Compensator::PassSysdef(const Instruction& i) {
   FinishChain();
-  const std::optional<ProgramPoint> in_machine = at_ ? frame_.PointToMachine(*at_) : std::nullopt;
+  const std::optional<motion::MachinePoint> in_machine =
+      at_ ? frame_.PointToMachine(motion::ProgramPoint(*at_)) : std::nullopt;
   if (!frame_.Set(p_, i)) {
     Report(ErrorCode::kCompSysdef, i, "a rotation of SYSDEF is no number; it is taken as 0",
            "OPT-8.23");
   }
-  at_ = in_machine ? frame_.PointToProgram(*in_machine) : std::nullopt;
+  at_.reset();
+  const auto in_program = in_machine ? frame_.PointToProgram(*in_machine) : std::nullopt;
+  if (in_program) at_ = in_program->from_origin();
   TurnTool();
 }
 
@@ -205,7 +208,7 @@ void Compensator::PassWork(const Instruction& i) {
   }
 }
 
-std::optional<ProgramPoint> Compensator::Point(std::uint32_t first) const {
+std::optional<ProgramVector> Compensator::Point(std::uint32_t first) const {
   const auto x = PlainNumber(p_, first), y = PlainNumber(p_, first + 1),
              z = PlainNumber(p_, first + 2);
   if (!x || !y || !z) return std::nullopt;
@@ -231,11 +234,11 @@ void Compensator::PassMove(const Instruction& i) {
 }
 
 // Where the tip is after a move, as programmed, in the coordinates of the program.
-std::optional<ProgramPoint> Compensator::EndOf(const Instruction& i) const {
+std::optional<ProgramVector> Compensator::EndOf(const Instruction& i) const {
   if (coord_ == CoordType::kRobot) return std::nullopt;
-  const std::optional<ProgramPoint> target = Point(i.first_expression);
+  const std::optional<ProgramVector> target = Point(i.first_expression);
   if (path_ != PathType::kHole || !i.Has(kVia)) return target;
-  const std::optional<ProgramPoint> beside = Point(i.first_expression + 5);
+  const std::optional<ProgramVector> beside = Point(i.first_expression + 5);
   if (!target || !beside || !at_ || !hole_.radius) return std::nullopt;
   return HoleEnd(*at_, *target, *beside, *hole_.radius);
 }
@@ -273,7 +276,7 @@ void Compensator::AddLeg(const Instruction& i) {
            plain ? "the point where this move starts is not known as numbers"
                  : "a coordinate is no plain number",
            "OPT-8.20");
-    at_ = plain ? std::optional<ProgramPoint>({*values[0], *values[1], *values[2]}) : std::nullopt;
+    at_ = plain ? std::optional<ProgramVector>({*values[0], *values[1], *values[2]}) : std::nullopt;
     return;
   }
   Leg leg;
@@ -348,9 +351,9 @@ void Compensator::Rewrite(const Instruction& i, const OffsetLeg& moved) {
   const std::uint32_t count = i.Has(kVia) ? 10 : 5;
   for (std::uint32_t v = 0; v < count; ++v) {
     double value = *PlainNumber(p_, i.first_expression + v);
-    const ProgramPoint* point = v < 3                          ? &moved.to
-                                : v >= 5 && v < 8 && moved.via ? &*moved.via
-                                                               : nullptr;
+    const ProgramVector* point = v < 3                          ? &moved.to
+                                 : v >= 5 && v < 8 && moved.via ? &*moved.via
+                                                                : nullptr;
     if (point != nullptr) value = v % 5 == 0 ? point->x() : v % 5 == 1 ? point->y() : point->z();
     RewriteNumber(module_.FirstNode(i.first_expression + v), value);
   }

@@ -26,7 +26,7 @@ constexpr std::size_t kLookupsMax = 50'000'000;
 
 double SweepOf(const Leg& arc) {
   const ProgramVector e = (arc.from - arc.centre) * (1.0 / arc.radius), f = arc.axis.cross(e);
-  const ProgramPoint end = arc.to - arc.centre;
+  const ProgramVector end = arc.to - arc.centre;
   const double angle = std::atan2(end.dot(f), end.dot(e));
   return angle > 0.0 ? angle : angle + 2.0 * std::numbers::pi;
 }
@@ -41,7 +41,9 @@ class Drawing {
     }
   }
   bool flat() const { return flat_; }
-  ProgramVector Flat(const ProgramPoint& p) const { return flat_ ? p - along_ * p.dot(along_) : p; }
+  ProgramVector Flat(const ProgramVector& p) const {
+    return flat_ ? p - along_ * p.dot(along_) : p;
+  }
 
   void Add(const Leg& leg, std::size_t index, std::vector<PathSegment>& to) const {
     if (!leg.is_arc) {
@@ -56,7 +58,7 @@ class Drawing {
     ProgramVector before = Flat(leg.from);
     for (int c = 1; c <= chords; ++c) {
       const double at = sweep * c / chords;
-      const ProgramPoint point =
+      const ProgramVector point =
           c == chords ? Flat(leg.to)
                       : Flat(leg.centre + (e * std::cos(at) + f * std::sin(at)) * leg.radius);
       to.push_back({before, point, index});
@@ -130,7 +132,7 @@ Edges WithoutLeads(std::vector<PathSegment> contour, std::size_t legs) {
 
 // Calls `use` for the parts of a segment that lie outside the ball.
 template <class Use>
-void OutsideOfBall(const PathSegment& s, const ProgramPoint& centre, double radius,
+void OutsideOfBall(const PathSegment& s, const ProgramVector& centre, double radius,
                    const Use& use) {
   const ProgramVector along = s.to - s.from, from = s.from - centre;
   const double a = along.dot(along), b = along.dot(from), c = from.dot(from) - radius * radius;
@@ -166,7 +168,7 @@ GougeSearch FindGouges(const std::vector<Leg>& legs, const std::vector<OffsetLeg
 
   std::vector<PathSegment> contour, path;
   std::vector<bool> runs_back(legs.size());
-  ProgramPoint at = legs.front().from;
+  ProgramVector at = legs.front().from;
   for (std::size_t k = 0; k < legs.size(); ++k) {
     if (contour.size() + path.size() > kSegmentsMax) {
       search.unchecked_from = k;
@@ -182,7 +184,7 @@ GougeSearch FindGouges(const std::vector<Leg>& legs, const std::vector<OffsetLeg
     runs_back[k] = k > 0 && RunsBack(legs[k], moved);
     at = moved.to;
   }
-  const ProgramPoint start = drawing.Flat(legs.front().from);
+  const ProgramVector start = drawing.Flat(legs.front().from);
   const Edges edges = WithoutLeads(std::move(contour), legs.size());
   const SegmentGrid grid(edges.segments, radius);
 

@@ -59,13 +59,13 @@ std::optional<std::pair<double, double>> NearestMeeting(const PlaneCurve& a, con
 }
 
 // Towards the centre: the offset makes the arc smaller.
-double OffsetRadius(const Leg& arc, const ProgramPoint& at, const ProgramVector& normal,
+double OffsetRadius(const Leg& arc, const ProgramVector& at, const ProgramVector& normal,
                     double offset) {
   const ProgramVector inward = Unit(arc.centre - at);
   return arc.radius - offset * normal.dot(inward);
 }
 
-PlaneCurve CurveOf(const Leg& leg, const ProgramPoint& corner, const ProgramVector& tangent,
+PlaneCurve CurveOf(const Leg& leg, const ProgramVector& corner, const ProgramVector& tangent,
                    const ProgramVector& normal, const ProgramVector& ex, const ProgramVector& ey,
                    double offset) {
   PlaneCurve curve;
@@ -91,7 +91,7 @@ bool InPlane(const Leg& leg, const ProgramVector& tangent, const ProgramVector& 
 }
 
 // The new place of the corner between two legs. OPT-8.16, OPT-8.79, OPT-B.79
-std::optional<ProgramPoint> Corner(const Leg& before, const Leg& after, double offset) {
+std::optional<ProgramVector> Corner(const Leg& before, const Leg& after, double offset) {
   const ProgramVector& tool = before.tool_to;
   ProgramVector n1 = LeftNormal(tool, before.tangent_to),
                 n2 = LeftNormal(after.tool_from, after.tangent_from);
@@ -115,7 +115,7 @@ std::optional<ProgramPoint> Corner(const Leg& before, const Leg& after, double o
 
 bool ArcIsConsumed(const Leg& leg, double offset) {
   if (!leg.is_arc) return false;
-  const auto consumed = [&](const ProgramPoint& at, const ProgramVector& tool,
+  const auto consumed = [&](const ProgramVector& at, const ProgramVector& tool,
                             const ProgramVector& tangent) {
     return OffsetRadius(leg, at, LeftNormal(tool, tangent), offset) <= kNoRadius;
   };
@@ -143,7 +143,7 @@ void Prepare(Leg& leg) {
       leg.centre = leg.from + to_centre;
       leg.axis = Unit(normal);
       leg.radius = to_centre.norm();
-      const auto tangent = [&](const ProgramPoint& at) {
+      const auto tangent = [&](const ProgramVector& at) {
         return Unit(leg.axis.cross(at - leg.centre));
       };
       leg.tangent_from = tangent(leg.from);
@@ -158,15 +158,15 @@ void Prepare(Leg& leg) {
 double ShareAtVia(const Leg& leg) {
   if (!leg.is_arc) return 0.5;
   const ProgramVector e = Unit(leg.from - leg.centre), f = leg.axis.cross(e);
-  const auto angle = [&](const ProgramPoint& at) {
+  const auto angle = [&](const ProgramVector& at) {
     const double turned = std::atan2((at - leg.centre).dot(f), (at - leg.centre).dot(e));
     return turned > 0.0 ? turned : turned + 2.0 * std::numbers::pi;
   };
   return angle(*leg.via) / angle(leg.to);
 }
 
-std::optional<ProgramPoint> HoleEnd(const ProgramPoint& from, const ProgramPoint& centre,
-                                    const ProgramPoint& beside, double radius) {
+std::optional<ProgramVector> HoleEnd(const ProgramVector& from, const ProgramVector& centre,
+                                     const ProgramVector& beside, double radius) {
   const ProgramVector axis = Unit(beside - centre);
   const ProgramVector out = from - centre;
   const ProgramVector towards = Unit(out - axis * out.dot(axis));
@@ -188,7 +188,7 @@ Result<std::vector<OffsetLeg>> OffsetChain(const std::vector<Leg>& legs, double 
     }
     OffsetLeg moved;
     if (k + 1 < legs.size()) {
-      const std::optional<ProgramPoint> corner = Corner(leg, legs[k + 1], offset);
+      const std::optional<ProgramVector> corner = Corner(leg, legs[k + 1], offset);
       if (!corner)
         return Error{
             ErrorCode::kCompCorner, "the path turns back, or the offset curves do not meet", {}};

@@ -10,19 +10,18 @@
 // are unit vectors.
 namespace rmlcell::optimo {
 
-using motion::ProgramPoint;
 using motion::ProgramVector;
 
 // One cutting move, as programmed.
 struct Leg {
-  ProgramPoint from, to;
-  std::optional<ProgramPoint> via;  // an arc, when the three points are no line
+  ProgramVector from, to;
+  std::optional<ProgramVector> via;  // an arc, when the three points are no line
   ProgramVector tool_from, tool_to, tool_via;
 
   // Filled by Prepare.
   ProgramVector tangent_from, tangent_to, tangent_via;  // zero when there is no motion
   bool is_arc = false;
-  ProgramPoint centre;
+  ProgramVector centre;
   ProgramVector axis;  // the arc runs counter-clockwise about it
   double radius = 0.0;
 };
@@ -36,12 +35,12 @@ ProgramVector LeftNormal(const ProgramVector& tool, const ProgramVector& tangent
 
 // Where a hole ends: the point of its circle nearest to `from`, for the axis from `centre` to
 // `beside` (OPT-2.23, OPT-B.10). Nothing without an axis, or on it.
-std::optional<ProgramPoint> HoleEnd(const ProgramPoint& from, const ProgramPoint& centre,
-                                    const ProgramPoint& beside, double radius);
+std::optional<ProgramVector> HoleEnd(const ProgramVector& from, const ProgramVector& centre,
+                                     const ProgramVector& beside, double radius);
 
 struct OffsetLeg {
-  ProgramPoint to;
-  std::optional<ProgramPoint> via;
+  ProgramVector to;
+  std::optional<ProgramVector> via;
 };
 
 // Offsets a chain of legs by `offset`, positive to the left; the first leg starts at its programmed

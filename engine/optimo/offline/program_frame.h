@@ -24,11 +24,11 @@ class ProgramFrame {
   // Nothing where SYSDEF has values that are no numbers.
   std::optional<motion::MachinePoint> PointToMachine(const motion::ProgramPoint& p) const {
     if (!translation_) return std::nullopt;
-    return *translation_ + rotation_ * p;
+    return *translation_ + rotation_ * p.from_origin();
   }
   std::optional<motion::ProgramPoint> PointToProgram(const motion::MachinePoint& p) const {
     if (!translation_) return std::nullopt;
-    return DirectionToProgram(p - *translation_);
+    return motion::ProgramPoint(DirectionToProgram(p - *translation_));
   }
 
  private:

@@ -6,7 +6,6 @@
 namespace rmlcell::optimo {
 namespace {
 
-using motion::ProgramPoint;
 using motion::ProgramVector;
 
 constexpr double kNoLength2 = 1e-18;
@@ -48,7 +47,7 @@ SegmentGrid::SegmentGrid(const std::vector<PathSegment>& segments, double reach)
   low_ = high_ = segments.front().from;
   double length = 0.0;
   for (const PathSegment& s : segments) {
-    for (const ProgramPoint& p : {s.from, s.to}) {
+    for (const ProgramVector& p : {s.from, s.to}) {
       low_ = {std::min(low_.x(), p.x()), std::min(low_.y(), p.y()), std::min(low_.z(), p.z())};
       high_ = {std::max(high_.x(), p.x()), std::max(high_.y(), p.y()), std::max(high_.z(), p.z())};
     }

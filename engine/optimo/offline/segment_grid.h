@@ -12,7 +12,7 @@ namespace rmlcell::optimo {
 // Straight pieces of paths in space, mm, and which of them lie near another one. Private to the
 // folder.
 struct PathSegment {
-  motion::ProgramPoint from, to;
+  motion::ProgramVector from, to;
   std::size_t leg = 0;  // of which it is a part
 };
 
@@ -58,9 +58,9 @@ class SegmentGrid {
   // The part of it that lies where there are segments, and a little more; a point when there is
   // none.
   PathSegment Clipped(const PathSegment& segment) const;
-  double U(const motion::ProgramPoint& p) const { return Coordinate(p, axis_u_); }
-  double V(const motion::ProgramPoint& p) const { return Coordinate(p, axis_v_); }
-  static double Coordinate(const motion::ProgramPoint& p, int axis) {
+  double U(const motion::ProgramVector& p) const { return Coordinate(p, axis_u_); }
+  double V(const motion::ProgramVector& p) const { return Coordinate(p, axis_v_); }
+  static double Coordinate(const motion::ProgramVector& p, int axis) {
     return axis == 0 ? p.x() : axis == 1 ? p.y() : p.z();
   }
   std::uint32_t CellOf(double value) const;
@@ -69,7 +69,7 @@ class SegmentGrid {
   double reach_;
   double cell_ = 1.0;  // mm
   int axis_u_ = 0, axis_v_ = 1;
-  motion::ProgramPoint low_, high_;                               // of all segments
+  motion::ProgramVector low_, high_;                              // of all segments
   std::vector<std::pair<std::uint64_t, std::uint32_t>> entries_;  // cell, segment; sorted
 };
 

@@ -105,7 +105,7 @@ Rewriting Transform(std::string_view text, const motion::RigidMotion& motion) {
                      "a coordinate is no plain number", "OPT-8.77");
         break;
       }
-      const motion::ProgramPoint point = motion * motion::ProgramPoint(*v[0], *v[1], *v[2]);
+      const motion::ProgramVector point = motion * motion::ProgramVector(*v[0], *v[1], *v[2]);
       // The head refers to the machine, the motion to the coordinates of the MOVE: turn there and
       // back. SYSDEF does not act on ROBOT (OPT-7.33).
       const ProgramFrame& in = robot ? machine : frame;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "engine/machine/observer.h"
 #include "engine/machine/shape.h"
 #include "engine/simulation/material/height_field.h"
 #include "engine/simulation/report/report.h"

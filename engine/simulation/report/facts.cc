@@ -295,7 +295,7 @@ void Table::AddPositions() {
   Add("final_b_rad", "rad", "B at the end",
       [](const RunReport& r) { return Real(r.final_position.axes.b_rad); });
   AddPoint("final_point", "", "last point as the program wrote it, in its own frame and units",
-           [](const RunReport& r) { return r.final_position.program_point; });
+           [](const RunReport& r) { return r.final_position.program_point.from_origin(); });
 }
 
 void Table::AddBox(const std::string& name, const std::string& unit, const std::string& text,

@@ -23,7 +23,7 @@ class FigureLog {
     const std::optional<SlowMove>& slow;
   };
   void Add(const Motion& motion);
-  void AddProgrammed(const motion::MachinePoint& point) { programmed_.Add(point); }
+  void AddProgrammed(const motion::ProgramPoint& point) { programmed_.Add(point.from_origin()); }
 
   BeamTimes& beam() { return beam_; }
 

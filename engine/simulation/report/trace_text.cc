@@ -51,7 +51,7 @@ void MoveText(std::string& line, const TraceRecord& record) {
   Point(line, "tip", record.tip.tip);
   Named(line, "A", record.tip.a_rad, kAngleDecimals);
   Named(line, "B", record.tip.b_rad, kAngleDecimals);
-  Point(line, "point", record.program_point);
+  Point(line, "point", record.program_point.from_origin());
   Named(line, "feed", record.feed_mm_s, kLengthDecimals);
 }
 

@@ -5,6 +5,7 @@
 #include <tuple>
 #include <vector>
 
+#include "engine/machine/observer.h"
 #include "engine/simulation/report/report.h"
 
 namespace rmlcell::simulation {

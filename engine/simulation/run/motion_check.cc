@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "engine/machine/observer.h"
 #include "engine/simulation/report/finding_list.h"
 #include "engine/simulation/run/drive.h"
 

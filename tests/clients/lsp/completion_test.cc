@@ -41,6 +41,11 @@ TEST(Completion, AStatementBeginsWithAnInstructionANameOrAVariable) {
   EXPECT_THAT(Offered("SPEED 5 \n  |\nSPEED 6\n"), Contains("MOVE"));
 }
 
+TEST(Completion, BehindTheEndMarkNothingIsOffered) {
+  EXPECT_THAT(Offered("MOVE P1\x1Awo|\n"), IsEmpty());
+  EXPECT_THAT(Offered("MO|\x1A\n"), Contains("MOVE"));
+}
+
 TEST(Completion, WhatIsTypedNarrowsTheListAndIsReplaced) {
   EXPECT_THAT(Offered("wo|\n"), ElementsAre("WORK", "WORKDEF"));
   Editor editor;

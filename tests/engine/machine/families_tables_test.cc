@@ -4,6 +4,9 @@
 #include <set>
 
 #include "engine/families/families.h"
+#include "engine/machine/observer.h"
+#include "engine/machine/run.h"
+#include "engine/machine/shape.h"
 
 // The tables that families hand over, whatever the family.
 namespace rmlcell::machine {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/machine/observer.h"
 #include "engine/machine/run.h"
 
 namespace rmlcell::machine {

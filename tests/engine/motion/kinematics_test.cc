@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "engine/core/units.h"
 #include "engine/motion/geometry/frames.h"
@@ -86,12 +87,17 @@ TEST(Head, ReachBoundsTheSwing) {
   }
 }
 
+// A place of the program is never taken for one of the machine, nor the other way round.
+static_assert(!std::is_convertible_v<ProgramPoint, MachinePoint>);
+static_assert(!std::is_convertible_v<MachinePoint, ProgramPoint>);
+static_assert(!std::is_convertible_v<TipPose, AxisPose>);
+
 // OPT-B.09: the manual's order of the rotations.
 TEST(WorkOffset, TurnsAboutZThenYThenX) {
-  const MachineFromProgram offset = RigidMotionOf({100, 200, -500}, 1.570796, 0.0, 1.570796);
+  const MachineFromProgram offset(RigidMotionOf({100, 200, -500}, 1.570796, 0.0, 1.570796));
   ExpectNear(offset * ProgramPoint(0, 10, 0), {100, 200, -490}, 1e-4);
-  ExpectNear(offset.inverse() * (offset * ProgramPoint(1, 2, 3)), {1, 2, 3});
-  EXPECT_EQ(RigidMotionOf({0, 0, 0}, 0, 0, 0) * ProgramPoint(1, 2, 3), MachinePoint(1, 2, 3));
+  ExpectNear(offset.ToProgram(offset * ProgramPoint(1, 2, 3)).from_origin(), {1, 2, 3});
+  EXPECT_EQ(MachineFromProgram() * ProgramPoint(1, 2, 3), MachinePoint(1, 2, 3));
 }
 
 // motion.md 2.5: the nearer of both solutions and of their turns; A is kept along Z.

@@ -127,13 +127,13 @@ TEST(WorkOffset, IsOneTurnAfterTheOther) {
                                 {0.0, 0.0, 0.5},
                                 {0.3, -0.8, 1.9},
                                 {-2.5, 1.1, -0.4}}) {
-    const MachineFromProgram offset = RigidMotionOf({10, -20, 30}, c, b, a);
-    for (const MachinePoint& p : {MachineVector{1, 0, 0}, MachineVector{0, 1, 0},
-                                  MachineVector{0, 0, 1}, MachineVector{4, 5, 6}}) {
+    const MachineFromProgram offset(RigidMotionOf({10, -20, 30}, c, b, a));
+    for (const ProgramVector& p : {ProgramVector{1, 0, 0}, ProgramVector{0, 1, 0},
+                                   ProgramVector{0, 0, 1}, ProgramVector{4, 5, 6}}) {
       const MachineVector turned = about_z(about_y(about_x(p, a), b), c);
-      ExpectNear(offset.linear() * p, turned, 1e-14);
-      ExpectNear(offset * p, turned + MachineVector{10, -20, 30}, 1e-13);
-      ExpectNear(offset.inverse() * (offset * p), p, 1e-13);
+      ExpectNear(offset.axes() * p, turned, 1e-14);
+      ExpectNear(offset * ProgramPoint(p), turned + MachineVector{10, -20, 30}, 1e-13);
+      ExpectNear(offset.ToProgram(offset * ProgramPoint(p)).from_origin(), p, 1e-13);
     }
   }
 }

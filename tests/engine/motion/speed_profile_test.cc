@@ -12,7 +12,7 @@ namespace rmlcell::motion {
 namespace {
 
 constexpr double kNoJerkLimit = std::numeric_limits<double>::infinity();
-constexpr PathLimits kLimits{350.0, 2000.0, 40000.0};
+constexpr PathLimits kPathLimits{350.0, 2000.0, 40000.0};
 
 // Speed, acceleration and place at both sides of each phase edge agree, and no limit is passed.
 void ExpectSound(const SpeedProfile& p, double length, double v0, double v1,
@@ -48,12 +48,13 @@ void ExpectSound(const SpeedProfile& p, double length, double v0, double v1,
 
 // motion.md 5.2: t = 2 sqrt(D/j) up to D = a^2/j = 100 mm/s, D/a + a/j above.
 TEST(Ramp, BothRegimesMeetAtTheBoundary) {
-  EXPECT_DOUBLE_EQ(RampTime(0, 25, kLimits), 2.0 * std::sqrt(25.0 / 40000.0));
-  EXPECT_DOUBLE_EQ(RampTime(10, 210, kLimits), 200.0 / 2000.0 + 0.05);
-  EXPECT_NEAR(RampTime(0, 100 * (1 - 1e-9), kLimits), RampTime(0, 100 * (1 + 1e-9), kLimits), 1e-9);
-  EXPECT_DOUBLE_EQ(RampLength(210, 10, kLimits), 110.0 * 0.15);
+  EXPECT_DOUBLE_EQ(RampTime(0, 25, kPathLimits), 2.0 * std::sqrt(25.0 / 40000.0));
+  EXPECT_DOUBLE_EQ(RampTime(10, 210, kPathLimits), 200.0 / 2000.0 + 0.05);
+  EXPECT_NEAR(RampTime(0, 100 * (1 - 1e-9), kPathLimits),
+              RampTime(0, 100 * (1 + 1e-9), kPathLimits), 1e-9);
+  EXPECT_DOUBLE_EQ(RampLength(210, 10, kPathLimits), 110.0 * 0.15);
   EXPECT_DOUBLE_EQ(RampTime(0, 50, {350, 2000, kNoJerkLimit}), 0.025);
-  EXPECT_EQ(RampTime(70, 70, kLimits), 0.0);
+  EXPECT_EQ(RampTime(70, 70, kPathLimits), 0.0);
 }
 
 // motion.md 5.2: a ramp down is the ramp up in reverse, to the last digit.
@@ -71,36 +72,36 @@ TEST(Ramp, IsTheSameUpAndDown) {
 
 // OPT-2.36: run-up from rest to 50 mm/s takes 0.0707 s, with ACCEL 50 0.1000 s.
 TEST(Ramp, ManualsRunUp) {
-  EXPECT_NEAR(RampTime(0, 50, kLimits), 0.0707, 5e-5);
+  EXPECT_NEAR(RampTime(0, 50, kPathLimits), 0.0707, 5e-5);
   EXPECT_NEAR(RampTime(0, 50, {350, 1000, 20000}), 0.1000, 5e-5);
 }
 
 // The ramp to the speed reached takes exactly the length, on both sides of the regime boundary.
 TEST(Reach, InvertsTheRampLength) {
   for (const double v0 : {0.0, 1e-12, 1e-6, 0.3, 50.0, 180.0, 500.0}) {
-    const double boundary = RampLength(v0, v0 + 100.0, kLimits);
+    const double boundary = RampLength(v0, v0 + 100.0, kPathLimits);
     for (const double length :
          {1e-9, 1e-3, 0.4, boundary * (1 - 1e-9), boundary * (1 + 1e-9), 300.0}) {
-      const double v1 = Reach(v0, length, kLimits);
+      const double v1 = Reach(v0, length, kPathLimits);
       // To the last digits of v1: near 500 mm/s one unit of them is worth 1e-6 mm.
       const double digit = 4e-16 * v1;
-      EXPECT_LE(RampLength(v0, std::max(v0, v1 - digit), kLimits), length * (1 + 1e-9)) << v0;
-      EXPECT_GE(RampLength(v0, v1 + digit, kLimits), length * (1 - 1e-9)) << v0;
+      EXPECT_LE(RampLength(v0, std::max(v0, v1 - digit), kPathLimits), length * (1 + 1e-9)) << v0;
+      EXPECT_GE(RampLength(v0, v1 + digit, kPathLimits), length * (1 - 1e-9)) << v0;
       EXPECT_GE(v1, v0);
     }
     EXPECT_DOUBLE_EQ(Reach(v0, 10.0, {350, 2000, kNoJerkLimit}), std::sqrt(v0 * v0 + 40000.0));
   }
-  EXPECT_EQ(Reach(7.0, 0.0, kLimits), 7.0);
+  EXPECT_EQ(Reach(7.0, 0.0, kPathLimits), 7.0);
 }
 
 // Rest to rest, both sides of length 2 a^3 / j^2 = 10 mm: there the peak is 100 mm/s, reached by
 // two jerk phases of 0.05 s each way. motion.md 5.2.
 TEST(Span, RestToRestAtTheRegimeBoundary) {
   for (const double length : {10.0 * (1 - 1e-9), 10.0, 10.0 * (1 + 1e-9)}) {
-    const SpeedProfile p = SpeedProfile::Span(length, 0, 0, kLimits);
+    const SpeedProfile p = SpeedProfile::Span(length, 0, 0, kPathLimits);
     EXPECT_NEAR(p.peak_speed(), 100.0, 1e-6);
     EXPECT_NEAR(p.duration_s(), 0.2, 1e-9);
-    ExpectSound(p, length, 0, 0, kLimits);
+    ExpectSound(p, length, 0, 0, kPathLimits);
   }
 }
 
@@ -126,9 +127,9 @@ TEST(Span, IsSymmetric) {
   std::uniform_real_distribution<double> extra(-6.0, 3.0);
   for (int k = 0; k < 1000; ++k) {
     const double v0 = speed(random), v1 = speed(random);
-    const double length = RampLength(v0, v1, kLimits) + std::pow(10.0, extra(random));
-    const SpeedProfile there = SpeedProfile::Span(length, v0, v1, kLimits);
-    const SpeedProfile back = SpeedProfile::Span(length, v1, v0, kLimits);
+    const double length = RampLength(v0, v1, kPathLimits) + std::pow(10.0, extra(random));
+    const SpeedProfile there = SpeedProfile::Span(length, v0, v1, kPathLimits);
+    const SpeedProfile back = SpeedProfile::Span(length, v1, v0, kPathLimits);
     EXPECT_NEAR(there.duration_s(), back.duration_s(), 1e-12 * std::max(1.0, there.duration_s()));
     EXPECT_NEAR(there.peak_speed(), back.peak_speed(), 1e-9);
   }
@@ -149,7 +150,7 @@ TEST(Span, TendsToTheTrapezoid) {
 
 // At() returns the place within a phase by its cubic: S02 is symmetric about 0.15 s, half way.
 TEST(Span, PlaceAtAnyTime) {
-  const SpeedProfile p = SpeedProfile::Span(30.0, 0, 0, kLimits);
+  const SpeedProfile p = SpeedProfile::Span(30.0, 0, 0, kPathLimits);
   EXPECT_NEAR(p.At(0.15).s, 15.0, 1e-12);
   EXPECT_NEAR(p.At(0.15).speed, 200.0, 1e-9);
   EXPECT_NEAR(p.At(0.03).s, 40000.0 * 0.03 * 0.03 * 0.03 / 6.0, 1e-12);
@@ -157,7 +158,7 @@ TEST(Span, PlaceAtAnyTime) {
   EXPECT_EQ(p.At(-1.0).s, 0.0);
   EXPECT_EQ(p.At(9.0).s, 30.0);
   EXPECT_EQ(SpeedProfile{}.At(1.0).s, 0.0);
-  EXPECT_EQ(SpeedProfile::Span(0.0, 0, 0, kLimits).duration_s(), 0.0);
+  EXPECT_EQ(SpeedProfile::Span(0.0, 0, 0, kPathLimits).duration_s(), 0.0);
 }
 
 // OPT-B.31, case O03: from 100 mm/s to rest takes 0.1 s and 5 mm.
@@ -172,7 +173,7 @@ TEST(StopFrom, CruisingIsOneRamp) {
 // At 0.03 s of S02: a = 1200, v = 18. Acceleration to zero takes 0.03 s and brings 36 mm/s, then
 // 2 sqrt(36/40000) = 0.06 s to rest.
 TEST(StopFrom, SpeedingUpFirstEndsTheAcceleration) {
-  const SpeedProfile stop = SpeedProfile::Span(30.0, 0, 0, kLimits).StopFrom(0.03, kLimits);
+  const SpeedProfile stop = SpeedProfile::Span(30.0, 0, 0, kPathLimits).StopFrom(0.03, kPathLimits);
   EXPECT_NEAR(stop.duration_s(), 0.09, 1e-12);
   EXPECT_NEAR(stop.peak_speed(), 36.0, 1e-9);
   EXPECT_NEAR(stop.At(0.03).speed, 36.0, 1e-9);

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "engine/machine/shape.h"
 #include "tests/engine/rml1/run_support.h"
 
 namespace rmlcell::rml1 {

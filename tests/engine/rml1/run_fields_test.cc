@@ -142,7 +142,7 @@ TEST(MillRunFields, OfACut) {
     EXPECT_EQ(move.place, cut);
     EXPECT_EQ(move.tip.tip, (motion::MachineVector{k == 0 ? 0.0 : 10.0, 0, -20}));
     EXPECT_EQ(move.axes.column, move.tip.tip);
-    EXPECT_EQ(move.program_point, (motion::MachineVector{k == 0 ? 0.0 : 1000.0, 0, 0}));
+    EXPECT_EQ(move.program_point, (motion::ProgramPoint{k == 0 ? 0.0 : 1000.0, 0, 0}));
     EXPECT_EQ(move.feed_mm_s, feeds[k]);
     EXPECT_EQ(move.path, "PD");
     EXPECT_TRUE(move.programmed);
@@ -166,7 +166,7 @@ TEST(MillRunFields, OfATurn) {
   EXPECT_EQ(move.axes.column, move.tip.tip);
   EXPECT_EQ(move.axes.a_rad, move.tip.a_rad);
   EXPECT_EQ(move.axes.b_rad, 0.0);
-  EXPECT_EQ(move.program_point, (motion::MachineVector{700, 0, -300}));
+  EXPECT_EQ(move.program_point, (motion::ProgramPoint{700, 0, -300}));
   EXPECT_EQ(move.rotary_a, 45.0);
   EXPECT_EQ(move.path, "!ZE");
   const machine::RunState end = seen.run->state();

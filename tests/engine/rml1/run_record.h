@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/machine/observer.h"
 #include "engine/machine/run.h"
 
 namespace rmlcell::rml1 {

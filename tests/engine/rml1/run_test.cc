@@ -247,7 +247,7 @@ TEST(MillRun, PausesAtTheEdgeOfTheRange) {
   EXPECT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
   run.Press(InputKind::kStart);
   ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kFinished);
-  EXPECT_EQ(run.seen().moves()[2].program_point, (motion::MachineVector{19000, 0, 1000}));
+  EXPECT_EQ(run.seen().moves()[2].program_point, (motion::ProgramPoint{19000, 0, 1000}));
   EXPECT_EQ(run.variable("X"), "0");
 }
 

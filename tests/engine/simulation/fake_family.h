@@ -4,6 +4,8 @@
 #include <memory>
 #include <utility>
 
+#include "engine/machine/observer.h"
+#include "engine/machine/run.h"
 #include "tests/engine/simulation/fake_run.h"
 
 namespace rmlcell::simulation {

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "engine/machine/family.h"
+#include "engine/machine/observer.h"
+#include "engine/machine/run.h"
 #include "engine/motion/planner/planner.h"
 #include "tests/engine/motion/standard_machine.h"
 
@@ -133,7 +135,7 @@ class Script {
                  .place = place,
                  .tip = {tip},
                  .axes = {tip},
-                 .program_point = tip,
+                 .program_point = motion::ProgramPoint(tip),
                  .rotary_a = 0.0,
                  .feed_mm_s = feed_mm_s,
                  .path = path,

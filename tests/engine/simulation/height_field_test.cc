@@ -14,17 +14,17 @@ namespace rmlcell::simulation {
 namespace {
 
 using motion::MachineVector;
-using Shape = MillTool::Shape;
+using ToolShape = MillTool::Shape;
 
-const MillTool kFlat{.shape = Shape::kFlat, .radius_mm = 1.5};
-const MillTool kBall{.shape = Shape::kBall, .radius_mm = 1.5};
+const MillTool kFlat{.shape = ToolShape::kFlat, .radius_mm = 1.5};
+const MillTool kBall{.shape = ToolShape::kBall, .radius_mm = 1.5};
 const MillTool kVee{
-    .shape = Shape::kVee, .radius_mm = 3.0, .half_angle_rad = kPi / 6, .tip_radius_mm = 0.2};
+    .shape = ToolShape::kVee, .radius_mm = 3.0, .half_angle_rad = kPi / 6, .tip_radius_mm = 0.2};
 
 // The surface of the tool above its lowest point, at a distance from its axis.
 double Surface(const MillTool& tool, double d) {
-  if (tool.shape == Shape::kFlat) return 0.0;
-  if (tool.shape == Shape::kBall)
+  if (tool.shape == ToolShape::kFlat) return 0.0;
+  if (tool.shape == ToolShape::kBall)
     return tool.radius_mm - std::sqrt(std::max(0.0, tool.radius_mm * tool.radius_mm - d * d));
   return std::max(0.0, d - tool.tip_radius_mm) / std::tan(tool.half_angle_rad);
 }
@@ -50,10 +50,10 @@ TEST(MillTool, RefusesWhatCannotBe) {
   EXPECT_TRUE(CheckTool(kVee));
   EXPECT_FALSE(CheckTool({.radius_mm = 0.0}));
   EXPECT_FALSE(CheckTool({.radius_mm = NAN}));
-  EXPECT_FALSE(CheckTool({.shape = Shape::kVee, .radius_mm = 1.0, .half_angle_rad = 0.0}));
-  EXPECT_FALSE(CheckTool({.shape = Shape::kVee, .radius_mm = 1.0, .half_angle_rad = kPi / 2}));
+  EXPECT_FALSE(CheckTool({.shape = ToolShape::kVee, .radius_mm = 1.0, .half_angle_rad = 0.0}));
+  EXPECT_FALSE(CheckTool({.shape = ToolShape::kVee, .radius_mm = 1.0, .half_angle_rad = kPi / 2}));
   EXPECT_FALSE(CheckTool(
-      {.shape = Shape::kVee, .radius_mm = 1.0, .half_angle_rad = 0.5, .tip_radius_mm = 1.1}));
+      {.shape = ToolShape::kVee, .radius_mm = 1.0, .half_angle_rad = 0.5, .tip_radius_mm = 1.1}));
 }
 
 // motion.md 10, property 14: against brute force over 4000 positions.
@@ -74,7 +74,7 @@ TEST(MillTool, SweepsWhatItsPositionsDo) {
       // Between two positions the tool goes down by at most its way times what its flank rises.
       const double step = (from - to).norm() / 4000.0;
       EXPECT_LE(*closed, *found + 1e-9);
-      if (tool.shape != Shape::kBall) {
+      if (tool.shape != ToolShape::kBall) {
         EXPECT_GE(*closed, *found - 4.0 * step - 1e-9);
       }
     }
@@ -226,7 +226,7 @@ TEST(HeightField, RefusesEachSideOfABlock) {
 // Both sides of each limit of a tool.
 TEST(MillTool, LimitsOfATool) {
   const auto vee = [](double half_angle, double tip) {
-    return CheckTool({.shape = Shape::kVee,
+    return CheckTool({.shape = ToolShape::kVee,
                       .radius_mm = 1.0,
                       .half_angle_rad = half_angle,
                       .tip_radius_mm = tip})

@@ -322,7 +322,7 @@ TEST(ReportRecorder, OutcomeFindingsAndPosition) {
   ASSERT_EQ(report.findings.size(), 1u);
   EXPECT_EQ(report.findings[0].count, 2u);
   EXPECT_EQ(report.final_position.tip.tip, (MachineVector{3, 4, 0}));
-  EXPECT_EQ(report.final_position.program_point, (MachineVector{3, 4, 0}));
+  EXPECT_EQ(report.final_position.program_point, (motion::ProgramPoint{3, 4, 0}));
   EXPECT_EQ(report.programmed.max, (MachineVector{3, 4, 0}));
   EXPECT_EQ(report.figures.size(), 1u);
 }
@@ -334,7 +334,7 @@ TEST(ReportRecorder, AMoveOfTheMachineIsNotProgrammed) {
   script.Step(1, 2).Line({3, 4, 0}, {9, 9, 9}).Move({9, 9, 9}, 0.0, "ZERO_Z", false);
   const RunReport report = ReportOf(script, {});
   EXPECT_EQ(report.programmed.max, (MachineVector{3, 4, 0}));
-  EXPECT_EQ(report.final_position.program_point, (MachineVector{3, 4, 0}));
+  EXPECT_EQ(report.final_position.program_point, (motion::ProgramPoint{3, 4, 0}));
   EXPECT_EQ(report.final_position.tip.tip, (MachineVector{9, 9, 9}));
 }
 

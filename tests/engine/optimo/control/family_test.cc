@@ -3,6 +3,8 @@
 #include <memory>
 #include <string>
 
+#include "engine/machine/observer.h"
+#include "engine/machine/run.h"
 #include "engine/optimo/control/optimo_family.h"
 #include "engine/optimo/language/compiler.h"
 #include "engine/optimo/language/linker.h"

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "engine/machine/family.h"
+#include "engine/machine/observer.h"
+#include "engine/machine/run.h"
 
 namespace rmlcell::optimo::testing {
 

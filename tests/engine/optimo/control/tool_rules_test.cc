@@ -238,7 +238,9 @@ TEST(ToolRules, EachGroupGoesToItsMechanicalZero) {
   EXPECT_THAT(axes(0), are({21.02, 2201.2, 30.0, 0.0, 0.0}));
   EXPECT_THAT(axes(1), are({21.02, 2201.2, 30.0, 0.4, 0.5}));
   EXPECT_THAT(axes(2), are({10.0, 20.0, 30.0, 0.4, 0.5}));
-  EXPECT_LT((ran.moves[2].program_point - motion::ProgramPoint{10.0, 20.0, 30.0}).norm(), 1e-9);
+  EXPECT_LT(
+      (ran.moves[2].program_point.from_origin() - motion::ProgramVector{10.0, 20.0, 30.0}).norm(),
+      1e-9);
   EXPECT_NEAR(ran.moves[2].rotary_a, 0.4, 1e-9);
   EXPECT_NEAR(ran.end.axes.column.x(), 10.0, 1e-9);
 }

@@ -14,8 +14,8 @@ using motion::ToolDirection;
 
 // A right-handed plane somewhere in space; the tool stands on it.
 struct Plane {
-  ProgramPoint origin, ex, ey, ez;
-  ProgramPoint At(double x, double y) const { return origin + ex * x + ey * y; }
+  ProgramVector origin, ex, ey, ez;
+  ProgramVector At(double x, double y) const { return origin + ex * x + ey * y; }
 };
 
 const std::array<Plane, 3> kPlanes = {
@@ -145,7 +145,7 @@ TEST(OffsetPath, CornersWithArcsLieOnTheConcentricCircle) {
                          std::sin(heading) * std::cos(start) * turn;  // 1: tangent, -1: back
     if (along < -0.5 || along > 0.95) continue;
     const auto moved = MustOffset({line, arc}, offset);
-    const ProgramPoint corner = moved[0].to;
+    const ProgramVector corner = moved[0].to;
     const ProgramVector normal = plane.ex * -std::sin(heading) + plane.ey * std::cos(heading);
     EXPECT_NEAR((corner - plane.origin).dot(normal), offset, 1e-9);
     const double new_radius = radius - turn * offset;  // left of a left turn is inside
@@ -179,7 +179,7 @@ TEST(OffsetPath, CornersOfTwoArcsLieOnBothCircles) {
           const Leg first = ArcOf(plane, c1x, c1y, r1, end_1 - turn_1 * 1.2, end_1);
           const Leg second = ArcOf(plane, c2x, c2y, r2, begin_2, begin_2 + turn_2 * 1.2);
           ASSERT_LT((first.to - second.from).norm(), 1e-9);
-          const ProgramPoint corner = MustOffset({first, second}, offset)[0].to;
+          const ProgramVector corner = MustOffset({first, second}, offset)[0].to;
           EXPECT_NEAR((corner - plane.At(c1x, c1y)).norm(), r1 - turn_1 * offset, 1e-9);
           EXPECT_NEAR((corner - plane.At(c2x, c2y)).norm(), r2 - turn_2 * offset, 1e-9);
           EXPECT_LT((corner - plane.origin).norm(), 1.2);  // offset / cos 30 is 0.92
@@ -218,7 +218,7 @@ TEST(OffsetPath, WhatCannotBeOffsetIsRefused) {
 // of 1 - 1e-6 of the arc and a sine of 1e-6 of the line; else the corner is that of their tangents.
 TEST(OffsetPath, LegsThatLeanMeetByTheirTangents) {
   const double heading = M_PI / 3, offset = 0.5, radius = 2.0;
-  const ProgramPoint tool{0, 0, 1}, out{std::cos(heading), std::sin(heading), 0};
+  const ProgramVector tool{0, 0, 1}, out{std::cos(heading), std::sin(heading), 0};
   const ProgramVector by_tangents =
       (ProgramVector{0, 1, 0} + ProgramVector{-out.y(), out.x(), 0}) * (offset / 1.5);
   const auto corner = [&](double line_sine, double arc_cosine) {
@@ -230,7 +230,7 @@ TEST(OffsetPath, LegsThatLeanMeetByTheirTangents) {
     const ProgramVector axis =
         tool * arc_cosine + across * std::sqrt(1.0 - arc_cosine * arc_cosine);
     const ProgramVector to_centre = axis.cross(out) * radius;
-    const auto at = [&](double angle) -> ProgramPoint {
+    const auto at = [&](double angle) -> ProgramVector {
       return to_centre - to_centre * std::cos(angle) + out * (radius * std::sin(angle));
     };
     Leg arc;
@@ -244,9 +244,9 @@ TEST(OffsetPath, LegsThatLeanMeetByTheirTangents) {
     EXPECT_LT((corner(sine, cosine) - by_tangents).norm(), 1e-4) << sine << " " << cosine;
   }
   // On the concentric circle, to which the line beside the first leg leads.
-  const ProgramPoint centre = tool.cross(out) * radius;
+  const ProgramVector centre = tool.cross(out) * radius;
   for (const auto& [sine, cosine] : {std::pair{0.0, 1.0 - 0.7e-6}, {0.7e-6, 1.0}, {-0.7e-6, 1.0}}) {
-    const ProgramPoint point = corner(sine, cosine);
+    const ProgramVector point = corner(sine, cosine);
     EXPECT_NEAR(point.y(), offset, 1e-3);
     EXPECT_NEAR((point - centre).norm(), radius - offset, 1e-3);
     EXPECT_GT((point - by_tangents).norm(), 0.02);

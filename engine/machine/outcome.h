@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "engine/core/catalogue.h"
+
+namespace rmlcell::machine {
+
+// Where in the programs something happened.
+struct Place {
+  int program = 0;  // slot of the module; 0 for a stream without slot
+  int step = 0;     // as the control counts; for a stream the number of the command from 1
+  int line = 0;     // 0 when no text is known
+  std::int64_t byte_offset = -1;  // streams: of the command's first byte
+
+  bool operator==(const Place&) const = default;
+};
+
+enum class OutcomeKind { kCompleted, kStopped, kFailed, kCancelled, kBudgetExceeded };
+struct Outcome {
+  OutcomeKind kind = OutcomeKind::kCompleted;
+  std::optional<ErrorCode> code{};  // the machine's own; none when completed
+  std::string detail{};
+  Place place{};  // of the last step, or where it failed
+};
+
+// A figure that a family computes about a finished run, with a stable name.
+struct Figure {
+  std::string name{};  // "programmed.cut_length"
+  std::string unit{};  // "mm"; empty for counts
+  double value = 0.0;
+};
+
+}  // namespace rmlcell::machine
