@@ -171,7 +171,8 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files,
         ErrorCode::kCellUsage, "no program: give a file, or a folder with files like 12.S", {}};
 
   std::map<int, std::string> used;
-  for (const auto& [slot, file] : found) {
+  for (auto& [slot, file] : found) {
+    if (slot == 0 && file == first_file) slot = main_slot;  // 0: none is asked for
     const auto [row, is_new] = used.emplace(slot, file);
     if (!is_new && slot != 0) {
       return Error{ErrorCode::kCellUsage,
@@ -190,12 +191,8 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files,
   int free_slot = 1;
   for (auto& [slot, file] : found) {
     if (slot == 0) {
-      if (file == first_file && main_slot > 0) {
-        slot = main_slot;
-      } else {
-        while (used.contains(free_slot) || free_slot == main_slot) ++free_slot;
-        slot = free_slot++;
-      }
+      while (used.contains(free_slot) || free_slot == main_slot) ++free_slot;
+      slot = free_slot++;
     }
     if (!IsSlot(slot))
       return Error{ErrorCode::kProgramNumber, "program number is " + std::to_string(slot), {}};

@@ -1,0 +1,137 @@
+// clients/cli/program_files.h: a file is written whole or not at all.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "clients/cli/program_files.h"
+#include "tests/clients/cli/cli_folder.h"
+
+namespace rmlcell::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::UnorderedElementsAre;
+
+unsigned ModeOf(const std::string& path) {
+  struct stat status {};
+  EXPECT_EQ(::stat(path.c_str(), &status), 0) << path;
+  return status.st_mode & 07777U;
+}
+
+// No file of this process gets larger than this while it lives.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{.rlim_cur = bytes, .rlim_max = before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int);
+};
+
+class WriteWholeFileTest : public testing::Test {
+ protected:
+  static void ExpectUnwritable(const Status& written, const std::string& path) {
+    ASSERT_FALSE(written);
+    EXPECT_EQ(written.error().code, ErrorCode::kCellFileUnwritable);
+    EXPECT_TRUE(written.error().detail.starts_with(path + ": ")) << written.error().detail;
+  }
+  CliFolder folder;
+};
+
+TEST_F(WriteWholeFileTest, ANewFileHasAllBytesAndTheModeOfTheUser) {
+  const mode_t before = ::umask(027);
+  const std::string bytes("a\0b\r\n", 5);
+  EXPECT_TRUE(WriteWholeFile(folder.File("new"), bytes));
+  EXPECT_TRUE(WriteWholeFile(folder.File("empty"), ""));
+  EXPECT_EQ(::umask(before), 027U);  // as it was
+  EXPECT_EQ(folder.Read("new"), bytes);
+  EXPECT_EQ(folder.Read("empty"), "");
+  EXPECT_EQ(ModeOf(folder.File("new")), 0640U);
+  EXPECT_THAT(folder.Names(), UnorderedElementsAre("new", "empty"));
+}
+
+TEST_F(WriteWholeFileTest, AnotherFileTakesTheModeOfTheOldOne) {
+  const std::string path = folder.Put("a.S", "a long text that was there before");
+  for (const mode_t mode : {0600, 0755, 0666}) {
+    ASSERT_EQ(::chmod(path.c_str(), mode), 0);
+    EXPECT_TRUE(WriteWholeFile(path, "short"));
+    EXPECT_EQ(folder.Read("a.S"), "short");
+    EXPECT_EQ(ModeOf(path), mode);
+  }
+  EXPECT_THAT(folder.Names(), ElementsAre("a.S"));
+}
+
+TEST_F(WriteWholeFileTest, ALinkStaysALink) {
+  const std::string path = folder.Put("below/a.S", "old");
+  const std::string link = folder.File("link.S");
+  fs::create_symlink("below/a.S", link);
+  EXPECT_TRUE(WriteWholeFile(link, "new"));
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(fs::read_symlink(link), "below/a.S");
+  EXPECT_FALSE(fs::is_symlink(path));
+  EXPECT_EQ(folder.Read("below/a.S"), "new");
+}
+
+// Nobody may make a file beside it: the name leaves no room for one, whoever runs the test.
+TEST_F(WriteWholeFileTest, WhereNoFileCanBeMadeTheOldOneStays) {
+  const std::string name(250, 'n');
+  const std::string path = folder.Put(name, "old");
+  ExpectUnwritable(WriteWholeFile(path, "new"), path);
+  EXPECT_EQ(folder.Read(name), "old");
+  const std::string nowhere = folder.File("none/a.S");
+  ExpectUnwritable(WriteWholeFile(nowhere, "new"), nowhere);
+  EXPECT_THAT(folder.Names(), ElementsAre(name));
+}
+
+TEST_F(WriteWholeFileTest, AFileThatCannotBeWrittenToItsEndLeavesTheOldOne) {
+  const std::string path = folder.Put("a.S", "old");
+  {
+    const FileSizeLimit limit(4096);
+    EXPECT_TRUE(WriteWholeFile(path, std::string(4096, 'x')));
+    ExpectUnwritable(WriteWholeFile(path, std::string(4097, 'y')), path);
+    ExpectUnwritable(WriteWholeFile(folder.File("b.S"), std::string(4097, 'y')),
+                     folder.File("b.S"));
+  }
+  EXPECT_EQ(folder.Read("a.S"), std::string(4096, 'x'));
+  EXPECT_THAT(folder.Names(), ElementsAre("a.S"));
+}
+
+TEST_F(WriteWholeFileTest, APipeTakesTheBytesAndStaysAPipe) {
+  const std::string path = folder.File("pipe");
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  const int reader = ::open(path.c_str(), O_RDONLY | O_NONBLOCK);  // or the writer would wait
+  ASSERT_GE(reader, 0);
+  EXPECT_TRUE(WriteWholeFile(path, "into the pipe"));
+  char room[64] = {};
+  EXPECT_EQ(::read(reader, room, sizeof room), 13);
+  EXPECT_STREQ(room, "into the pipe");
+  ::close(reader);
+  EXPECT_TRUE(fs::is_fifo(path));
+  EXPECT_THAT(folder.Names(), ElementsAre("pipe"));
+}
+
+TEST_F(WriteWholeFileTest, ADeviceIsWrittenAsItIs) {
+  EXPECT_TRUE(WriteWholeFile("/dev/null", "bytes"));
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+  ExpectUnwritable(WriteWholeFile("/dev/full", "bytes"), "/dev/full");
+  ExpectUnwritable(WriteWholeFile(folder.path(), "bytes"), folder.path());  // a folder
+}
+
+}  // namespace
+}  // namespace rmlcell::cli
