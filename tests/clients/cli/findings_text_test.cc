@@ -1,0 +1,91 @@
+#include "clients/cli/findings_text.h"
+
+#include <gtest/gtest.h>
+
+#include "clients/cli/terminal.h"
+#include "tests/clients/cli/cli_folder.h"
+
+namespace rmlcell::cli {
+namespace {
+
+constexpr std::string_view kSource = "COORD ABSOL\r\n\tSPEED 200\nSTOP\n";
+
+Diagnostic Advice(SourceSpan where) {
+  return {.code = ErrorCode::kNameUndeclared,
+          .severity = Severity::kAdvice,
+          .detail = "look here",
+          .rule = "OPT-2.01",
+          .file = "a.S",
+          .where = where};
+}
+
+std::string Printed(const std::vector<Diagnostic>& findings, std::uint64_t dropped,
+                    std::string_view source) {
+  const Told told = Hear([&] {
+    PrintFindings(findings, dropped, source);
+    return 0;
+  });
+  EXPECT_EQ(told.errors, "");
+  return told.output;
+}
+
+// clients/cli/findings_text.h: with the source line of each and a caret below it.
+TEST(FindingsText, ACaretStandsBelowThePlace) {
+  EXPECT_EQ(Printed({Advice({.line = 2, .column = 8, .length = 3})}, 0, kSource),
+            "a.S:2:8: advice OPT-E7011: look here [OPT-2.01]\n"
+            "  \tSPEED 200\n"
+            "  \t      ^~~\n");
+  EXPECT_EQ(Printed({Advice({.line = 1, .column = 1, .length = 5})}, 0, kSource),
+            "a.S:1:1: advice OPT-E7011: look here [OPT-2.01]\n"
+            "  COORD ABSOL\n"
+            "  ^~~~~\n");
+}
+
+TEST(FindingsText, WithoutALineThereIsNoCaret) {
+  const std::string line = "a.S:2:8: advice OPT-E7011: look here [OPT-2.01]\n";
+  EXPECT_EQ(Printed({Advice({.line = 2, .column = 8, .length = 3})}, 0, {}), line);
+  EXPECT_EQ(Printed({Advice({.line = 9, .column = 1})}, 0, kSource),
+            "a.S:9:1: advice OPT-E7011: look here [OPT-2.01]\n");
+  EXPECT_EQ(Printed({Advice({})}, 0, kSource), "a.S: advice OPT-E7011: look here [OPT-2.01]\n");
+}
+
+TEST(FindingsText, EachHasItsOwnLineAndThoseLeftOutAreCounted) {
+  Diagnostic error = Advice({.line = 3, .column = 1, .length = 4});
+  error.severity = Severity::kCompile;
+  EXPECT_EQ(Printed({Advice({.line = 1, .column = 7}), error}, 12, kSource),
+            "a.S:1:7: advice OPT-E7011: look here [OPT-2.01]\n"
+            "  COORD ABSOL\n"
+            "        ^\n"
+            "a.S:3:1: error OPT-E7011: look here [OPT-2.01]; declare the name before its first "
+            "use, or correct the word\n"
+            "  STOP\n"
+            "  ^~~~\n"
+            "and 12 more findings\n");
+  EXPECT_EQ(Printed({}, 0, kSource), "");
+  EXPECT_EQ(Printed({}, 1, kSource), "and 1 more findings\n");
+}
+
+TEST(FindingsText, ComplaintsGoToStandardError) {
+  const std::vector<Diagnostic> findings = {Advice({.line = 2, .column = 2, .length = 5})};
+  const Told told = Hear([&] {
+    ComplainOf(findings, 3, kSource);
+    return 0;
+  });
+  EXPECT_EQ(told.output, "");
+  EXPECT_EQ(told.errors,
+            "a.S:2:2: advice OPT-E7011: look here [OPT-2.01]\n"
+            "  \tSPEED 200\n"
+            "  \t^~~~~\n"
+            "and 3 more findings\n");
+}
+
+TEST(FindingsText, ARefusalSaysWhyAndGivesTheCodeOfWrongUse) {
+  const Told told = Hear([] { return Refuse({ErrorCode::kCellUsage, "no program", {}}); });
+  EXPECT_EQ(told.exit_code, 2);
+  EXPECT_EQ(told.output, "");
+  EXPECT_EQ(told.errors,
+            "rmlcell: CELL-E9026: the command was used wrongly: no program; see --help\n");
+}
+
+}  // namespace
+}  // namespace rmlcell::cli

@@ -1,0 +1,213 @@
+// Repairs in place, and the patch that shows them.
+#include "clients/cli/fix.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <sstream>
+
+#include "tests/clients/cli/cli_folder.h"
+
+namespace rmlcell::cli {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+// SPEDE has a fix, WRONG has none, STYLE is advice without one.
+machine::Translation CheckWords(const machine::SourceFile& file) {
+  machine::Translation found{.ok = true};
+  const auto look = [&](std::string_view word, Severity severity, const std::string& better) {
+    for (std::size_t at = file.bytes.find(word); at != std::string_view::npos;
+         at = file.bytes.find(word, at + 1)) {
+      Diagnostic finding{.code = ErrorCode::kNameUndeclared,
+                         .severity = severity,
+                         .detail = std::string(word),
+                         .file = file.name,
+                         .where = {.line = 1, .column = 1}};
+      const int length = static_cast<int>(word.size());
+      if (!better.empty()) finding.fixes.push_back({static_cast<std::int64_t>(at), length, better});
+      found.ok = found.ok && !IsError(severity);
+      found.diagnostics.push_back(std::move(finding));
+    }
+  };
+  look("SPEDE", Severity::kCompile, "SPEED");
+  look("WRONG", Severity::kCompile, "");
+  look("STYLE", Severity::kAdvice, "");
+  return found;
+}
+
+class FixFileTest : public testing::Test {
+ protected:
+  // Fixes a file with this text in the folder.
+  Told Fix(const std::string& text, const FixOptions& options) {
+    const std::string file = folder.Put("a.S", text);
+    return Hear([&] { return FixFile(file, text, CheckWords, options); });
+  }
+  CliFolder folder;
+};
+
+TEST_F(FixFileTest, WritesWhatIsRepairedAndSaysSo) {
+  const Told told = Fix("SPEDE 20\r\n\tSPEDE 30 ; slow", {});
+  EXPECT_EQ(told.exit_code, 0);
+  EXPECT_EQ(folder.Read("a.S"), "SPEED 20\r\n\tSPEED 30 ; slow");
+  EXPECT_THAT(told.output, HasSubstr("fixed  " + folder.File("a.S") + ":1:1: error OPT-E7011"));
+  EXPECT_TRUE(told.output.ends_with(folder.File("a.S") + ": 2 fixed, 0 left, can be stored\n"))
+      << told.output;
+  EXPECT_EQ(told.errors, "");
+}
+
+TEST_F(FixFileTest, TheExitCodeIsThatOfACheckOfTheResult) {
+  Told told = Fix("SPEDE 20\nWRONG\n", {});
+  EXPECT_EQ(told.exit_code, 1);
+  EXPECT_EQ(folder.Read("a.S"), "SPEED 20\nWRONG\n");
+  EXPECT_THAT(told.output, HasSubstr("a.S: 1 fixed, 1 left, has errors\n"));
+  told = Fix("SPEDE 20\nSTYLE\n", {});
+  EXPECT_EQ(told.exit_code, 0);
+  EXPECT_THAT(told.output, HasSubstr("a.S: 1 fixed, 1 left, can be stored\n"));
+  told = Fix("SPEED 20\n", {});
+  EXPECT_EQ(told.exit_code, 0);
+  EXPECT_THAT(told.output, HasSubstr("a.S: 0 fixed, 0 left, can be stored\n"));
+}
+
+// The file is not there: writing it would fail, or make it.
+TEST_F(FixFileTest, WritesOnlyWhenSomethingChanged) {
+  const std::string nowhere = folder.File("none/a.S");
+  const auto fix = [&](const std::string& text, const FixOptions& options) {
+    return Hear([&] { return FixFile(nowhere, text, CheckWords, options); });
+  };
+  EXPECT_EQ(fix("SPEED 20\n", {}).exit_code, 0);
+  EXPECT_EQ(fix("WRONG\n", {}).exit_code, 1);
+  const Told told = fix("SPEDE 20\n", {});
+  EXPECT_EQ(told.exit_code, 2);
+  EXPECT_EQ(told.output, "");
+  EXPECT_THAT(told.errors, HasSubstr("CELL-E9023"));
+  EXPECT_EQ(fix("SPEDE 20\n", {.dry_run = true}).exit_code, 1);
+  EXPECT_TRUE(folder.Names().empty());
+}
+
+TEST_F(FixFileTest, ADryRunShowsThePatchAndWritesNothing) {
+  const std::string text = "STOP\nSPEDE 20\n";
+  Told told = Fix(text, {.dry_run = true});
+  EXPECT_EQ(told.exit_code, 1);
+  EXPECT_EQ(folder.Read("a.S"), text);
+  const std::string file = folder.File("a.S");
+  EXPECT_EQ(told.output, "--- " + file + "\n+++ " + file + "\n@@ -2 +2 @@\n-SPEDE 20\n+SPEED 20\n");
+  told = Fix("SPEED 20\nSTYLE\n", {.dry_run = true});  // nothing would change
+  EXPECT_EQ(told.exit_code, 0);
+  EXPECT_EQ(told.output, "");
+  told = Fix("WRONG\n", {.dry_run = true});
+  EXPECT_EQ(told.exit_code, 1);
+  EXPECT_EQ(told.output, "");
+}
+
+TEST_F(FixFileTest, AnswersAsAMessage) {
+  for (const bool dry_run : {false, true}) {
+    const Told told = Fix("SPEDE\nSTYLE", {.dry_run = dry_run, .json = true});
+    EXPECT_EQ(told.exit_code, dry_run ? 1 : 0);
+    EXPECT_EQ(folder.Read("a.S"), dry_run ? "SPEDE\nSTYLE" : "SPEED\nSTYLE");
+    const json answer = json::parse(told.output, nullptr, false);
+    EXPECT_EQ(answer["content"], "U1BFRUQKU1RZTEU=");  // SPEED, line end, STYLE
+    ASSERT_EQ(answer["fixed"].size(), 1U);
+    EXPECT_EQ(answer["fixed"][0]["message"], "SPEDE");
+    EXPECT_EQ(answer["findings"]["ok"], true);
+    ASSERT_EQ(answer["findings"]["diagnostics"].size(), 1U);
+    EXPECT_EQ(answer["findings"]["diagnostics"][0]["message"], "STYLE");
+  }
+  const json bad =
+      json::parse(Fix("WRONG", {.dry_run = false, .json = true}).output, nullptr, false);
+  EXPECT_EQ(bad["findings"]["ok"], false);
+}
+
+TEST_F(FixFileTest, WhatIsNoTextIsRefusedUnlookedAt) {
+  const auto never = [](const machine::SourceFile&) -> machine::Translation {
+    ADD_FAILURE() << "it was checked";
+    return {};
+  };
+  for (const auto& [name, text] :
+       {std::pair{"a.rml", std::string("PU;")}, {"a.S", std::string("SPEDE\0", 6)}}) {
+    const std::string file = folder.Put(name, text);
+    const Told told = Hear([&] { return FixFile(file, text, never, {}); });
+    EXPECT_EQ(told.exit_code, 2) << name;
+    EXPECT_EQ(told.output, "");
+    EXPECT_TRUE(told.errors.starts_with("rmlcell: CELL-E")) << told.errors;
+    EXPECT_EQ(folder.Read(name), text);
+  }
+}
+
+std::string Hunks(std::string_view before, std::string_view after) {
+  const std::string patch = PatchText("f", before, after);
+  constexpr std::string_view kHead = "--- f\n+++ f\n";
+  EXPECT_TRUE(patch.starts_with(kHead)) << patch;
+  return patch.substr(std::min(kHead.size(), patch.size()));
+}
+
+// The form of `diff -U0`: a range without lines is named by the line before it.
+TEST(PatchText, NamesTheLinesThatDiffer) {
+  EXPECT_EQ(PatchText("f", "a\nb\n", "a\nb\n"), "");
+  EXPECT_EQ(PatchText("f", "", ""), "");
+  EXPECT_EQ(Hunks("a\nb\nc\n", "a\nB\nc\n"), "@@ -2 +2 @@\n-b\n+B\n");
+  EXPECT_EQ(Hunks("a\nc\n", "a\nb\nc\n"), "@@ -1,0 +2 @@\n+b\n");
+  EXPECT_EQ(Hunks("a\nb\nc\n", "a\nc\n"), "@@ -2 +1,0 @@\n-b\n");
+  EXPECT_EQ(Hunks("", "a\nb\n"), "@@ -0,0 +1,2 @@\n+a\n+b\n");
+  EXPECT_EQ(Hunks("a\nb\n", ""), "@@ -1,2 +0,0 @@\n-a\n-b\n");
+  // Behind a line more, both sides count for themselves.
+  EXPECT_EQ(Hunks("a\nb\nc\nd\n", "new\na\nb\nc\nD\n"),
+            "@@ -0,0 +1 @@\n+new\n@@ -4 +5 @@\n-d\n+D\n");
+}
+
+TEST(PatchText, LineEndsAreLinesOfTheirOwnKind) {
+  EXPECT_EQ(Hunks("a\r\n", "a\n"), "@@ -1 +1 @@\n-a\r\n+a\n");
+  EXPECT_EQ(Hunks("a", "b"),
+            "@@ -1 +1 @@\n-a\n\\ No newline at end of file\n+b\n\\ No newline at end of file\n");
+  EXPECT_EQ(Hunks("a", "a\n"), "@@ -1 +1 @@\n-a\n\\ No newline at end of file\n+a\n");
+}
+
+// What such a patch makes of a text. Its lines end in line feeds.
+std::string Patched(const std::string& before, const std::string& patch) {
+  std::vector<std::string> lines;
+  std::istringstream text(before), hunks(patch);
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  std::string after, line;
+  std::size_t taken = 0;
+  while (std::getline(hunks, line)) {
+    if (line.starts_with("@@ -")) {
+      const auto first = static_cast<std::size_t>(std::stoi(line.substr(4)));
+      const bool none = line.substr(4, line.find(' ', 4) - 4).ends_with(",0");
+      while (taken + (none ? 0 : 1) < first) after += lines.at(taken++) + "\n";
+    } else if (line.starts_with("-") && !line.starts_with("---")) {
+      EXPECT_EQ(lines.at(taken++), line.substr(1));
+    } else if (line.starts_with("+") && !line.starts_with("+++")) {
+      after += line.substr(1) + "\n";
+    }
+  }
+  while (taken < lines.size()) after += lines[taken++] + "\n";
+  return after;
+}
+
+// However far the texts are apart: also beyond the lines that are searched for where they agree.
+TEST(PatchText, MakesTheOneTextOfTheOther) {
+  std::mt19937 random(7);
+  for (int round = 0; round < 200; ++round) {
+    std::string before, after;
+    const unsigned lines = round % 20 == 0 ? 500 : 12;
+    for (unsigned i = 0; i < lines; ++i) {
+      const std::string line(1, static_cast<char>('a' + random() % 4));
+      if (random() % 4 != 0) before += line + "\n";
+      if (random() % 4 != 0) after += line + "\n";
+    }
+    EXPECT_EQ(Patched(before, PatchText("f", before, after)), after) << round;
+  }
+  std::string ones, twos;
+  for (int i = 0; i < 300; ++i) {
+    ones += "one " + std::to_string(i) + "\n";
+    twos += "two " + std::to_string(i) + "\n";
+  }
+  EXPECT_EQ(Patched(ones, PatchText("f", ones, twos)), twos);
+}
+
+}  // namespace
+}  // namespace rmlcell::cli

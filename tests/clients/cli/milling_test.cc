@@ -1,0 +1,86 @@
+#include "clients/cli/milling.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/clients/cli/cli_folder.h"
+
+namespace rmlcell::cli {
+namespace {
+
+using testing::HasSubstr;
+
+machine::MachineShape Mill() {
+  machine::MachineShape shape;
+  shape.has_work_origin = true;
+  return shape;
+}
+
+SimulateOptions Block(const std::string& stock, const std::string& tool, double cell_mm = 0.1) {
+  SimulateOptions options;
+  options.stock = stock;
+  options.tool = tool;
+  options.cell_mm = cell_mm;
+  return options;
+}
+
+void ExpectInvalid(const SimulateOptions& options, const machine::MachineShape& shape,
+                   const std::string& detail) {
+  const auto milling = MillingOf(options, shape);
+  ASSERT_FALSE(milling) << detail;
+  EXPECT_EQ(milling.error().code, ErrorCode::kCellInvalidArgument);
+  EXPECT_THAT(milling.error().detail, HasSubstr(detail));
+}
+
+TEST(MillingOf, BlockAndToolAreAsWrittenWithTheCellsAskedFor) {
+  const auto milling = MillingOf(Block("100x80x10@-5,-6,2", "ball:3", 0.25), Mill());
+  ASSERT_TRUE(milling);
+  EXPECT_EQ(milling->stock, (simulation::Stock{.x_min = -5,
+                                               .x_max = 95,
+                                               .y_min = -6,
+                                               .y_max = 74,
+                                               .bottom = -8,
+                                               .top = 2,
+                                               .cell = 0.25}));
+  EXPECT_EQ(milling->tool.shape, simulation::MillTool::Shape::kBall);
+  EXPECT_EQ(milling->tool.radius_mm, 1.5);
+}
+
+TEST(MillingOf, ALaserTakesNothingOffABlock) {
+  ExpectInvalid(Block("100x80x10", "flat:3"), {}, "--stock is for mills");
+}
+
+TEST(MillingOf, ABlockOrAToolThatCannotBeIsRefused) {
+  ExpectInvalid(Block("100x80", "flat:3"), Mill(), "'100x80' is no block");
+  ExpectInvalid(Block("0x80x10", "flat:3"), Mill(), "ends before it begins");
+  ExpectInvalid(Block("100x80x10", ""), Mill(), "'' is no tool");
+  ExpectInvalid(Block("100x80x10", "flat:0"), Mill(), "above 0 mm");
+  ExpectInvalid(Block("100x80x10", "flat:3", 0.0), Mill(), "have no size");
+  ExpectInvalid(Block("100x80x10", "flat:3", -1.0), Mill(), "have no size");
+  ExpectInvalid(Block("100x80x10", "flat:3", 1e-6), Mill(), "make the cells larger");
+}
+
+TEST(WriteMaterial, AFileThatCannotBeWrittenIsAnError) {
+  const CliFolder folder;
+  const auto material = simulation::HeightField::Of(
+      {.x_min = 0, .x_max = 2, .y_min = 0, .y_max = 2, .bottom = -1, .top = 0, .cell = 1});
+  ASSERT_TRUE(material);
+  for (const std::string& path : {folder.File("none/a.stl"), std::string("/dev/full")}) {
+    const Status written = WriteMaterial(*material, path);
+    ASSERT_FALSE(written) << path;
+    EXPECT_EQ(written.error().code, ErrorCode::kCellFileUnwritable);
+    EXPECT_THAT(written.error().detail, HasSubstr(path));
+  }
+  EXPECT_TRUE(WriteMaterial(*material, folder.File("a.stl")));
+  // A binary STL: 80 bytes of heading, the number of triangles, 50 bytes for each.
+  const std::string bytes = folder.Read("a.stl");
+  ASSERT_GT(bytes.size(), 84U);
+  const auto byte = [&](std::size_t i) {
+    return std::size_t{static_cast<unsigned char>(bytes[i])};
+  };
+  const std::size_t triangles = byte(80) | byte(81) << 8 | byte(82) << 16 | byte(83) << 24;
+  EXPECT_EQ(bytes.size(), 84 + 50 * triangles);
+}
+
+}  // namespace
+}  // namespace rmlcell::cli

@@ -1,0 +1,83 @@
+#include "clients/cli/remote_call.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "google/rpc/status.pb.h"
+#include "proto/bridge/findings.h"
+#include "tests/clients/cli/cli_folder.h"
+
+namespace rmlcell::cli {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(FullName, ANameIsTakenWithItsCollectionAndWithout) {
+  EXPECT_EQ(FullName("jobs", "17"), "jobs/17");
+  EXPECT_EQ(FullName("jobs", "jobs/17"), "jobs/17");
+  EXPECT_EQ(FullName("machines", "optimo-1"), "machines/optimo-1");
+  EXPECT_EQ(FullName("projects", "projects"), "projects/projects");
+  EXPECT_EQ(FullName("projects", "projects-2"), "projects/projects-2");
+  EXPECT_EQ(FullName("machines", "jobs/17"), "machines/jobs/17");  // which the server refuses
+}
+
+// What a server makes of an error.
+grpc::Status StatusOf(const Error& error, const std::vector<Diagnostic>& findings = {},
+                      std::uint64_t dropped = 0) {
+  const google::rpc::Status rich = bridge::ToRpcStatus(error, findings, dropped);
+  return {static_cast<grpc::StatusCode>(rich.code()), rich.message(), rich.SerializeAsString()};
+}
+
+Told HearRefused(const grpc::Status& status, bool as_json = false) {
+  return Hear([&] { return Refused(status, {.server = "127.0.0.1:1", .json = as_json}); });
+}
+
+TEST(Refused, TheExitCodeTellsWrongUseFromTheRest) {
+  Told told = HearRefused(StatusOf({ErrorCode::kCellInvalidArgument, "slot is 0", {}}));
+  EXPECT_EQ(told.exit_code, 2);
+  EXPECT_EQ(told.output, "");
+  EXPECT_THAT(told.errors, HasSubstr("rmlcell: CELL-E9003: "));
+  EXPECT_THAT(told.errors, HasSubstr("slot is 0"));
+  EXPECT_EQ(HearRefused(StatusOf({ErrorCode::kCellNotFound, "jobs/7", {}})).exit_code, 3);
+  EXPECT_EQ(HearRefused(StatusOf({ErrorCode::kCellEtagMismatch, {}, {}})).exit_code, 3);
+}
+
+TEST(Refused, WithoutAServerItsAddressIsTold) {
+  const Told told = HearRefused({grpc::StatusCode::UNAVAILABLE, "connection refused"}, true);
+  EXPECT_EQ(told.exit_code, 3);
+  EXPECT_EQ(told.output, "");
+  EXPECT_THAT(told.errors, HasSubstr("no server answers at 127.0.0.1:1 (connection refused)"));
+  // A server that stops is one that answers.
+  const Told stops = HearRefused(StatusOf({ErrorCode::kCellUnavailable, "it stops", {}}));
+  EXPECT_EQ(stops.exit_code, 3);
+  EXPECT_THAT(stops.errors, HasSubstr("CELL-E9002"));
+}
+
+TEST(Refused, FindingsOfAProgramAreShownAndAreErrorsOfTheProgram) {
+  const std::vector<Diagnostic> findings = {{.code = ErrorCode::kNameUndeclared,
+                                             .severity = Severity::kCompile,
+                                             .detail = "SPEDE",
+                                             .file = "12.S",
+                                             .where = {.line = 3, .column = 1}}};
+  const grpc::Status status = StatusOf({ErrorCode::kNameUndeclared, "has errors", {}}, findings, 5);
+  const Told told = HearRefused(status);
+  EXPECT_EQ(told.exit_code, 1);
+  EXPECT_EQ(told.output, "");
+  EXPECT_THAT(told.errors, HasSubstr("\nrmlcell: 12.S:3:1: error OPT-E7011: SPEDE"));
+  EXPECT_THAT(told.errors, HasSubstr("\nrmlcell: and 5 more findings\n"));
+  EXPECT_EQ(HearRefused(status, true).exit_code, 1);
+}
+
+TEST(Refused, TheDetailsArePrintedAsJsonWhereThatIsAskedFor) {
+  const Told told = HearRefused(StatusOf({ErrorCode::kCellNotFound, "jobs/7", {}}), true);
+  const auto status = nlohmann::json::parse(told.output, nullptr, false);
+  EXPECT_EQ(status["code"], 5);  // NOT_FOUND
+  ASSERT_EQ(status["details"].size(), 2U);
+  EXPECT_EQ(status["details"][1]["code"], "CELL-E9004");
+  EXPECT_EQ(status["details"][1]["message"], "jobs/7");
+}
+
+}  // namespace
+}  // namespace rmlcell::cli
