@@ -309,7 +309,10 @@ class ToolpathStream final : public FramesStream<v1::StreamJobToolpathResponse> 
     const Result<v1::Job> made_by = book().Get(job_name());
     if (!made_by) return made_by.error();
     const double asked = made_by->simulation().toolpath_tolerance_mm();
-    return AtLevel(*stored, asked > 0.0 ? asked : simulation::ToolpathOptions().tolerance_mm,
+    const double used = asked > 0.0 ? asked : simulation::ToolpathOptions().tolerance_mm;
+    return AtLevel(*stored,
+                   std::clamp(used, simulation::kToolpathToleranceMin_mm,
+                              simulation::kToolpathToleranceMax_mm),  // as the recorder does
                    level_);
   }
 
