@@ -82,5 +82,27 @@ TEST(CallStatus, AFindingThatDoesNotFitIsCounted) {
   EXPECT_EQ(detail.diagnostics_dropped(), 1);
 }
 
+// limits.message_bytes holds for the message as it goes over the wire, and is no limit below.
+TEST(CallSize, AMessageOfTheLimitPassesAndOneByteMoreDoesNot) {
+  const Gate gate("secret");
+  Executor executor(1);
+  v1::ErrorDetail request;
+  request.set_message(std::string(1000, 'x'));
+  const auto size = static_cast<std::int64_t>(request.SerializeAsString().size());
+  const auto check = [&](std::int64_t bytes_max) {
+    return CheckSize({.gate = gate, .executor = executor, .message_bytes_max = bytes_max}, request);
+  };
+  EXPECT_TRUE(check(size + 1));
+  EXPECT_TRUE(check(size));
+  const Status refused = check(size - 1);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kCellTooLarge);
+  EXPECT_EQ(refused.error().detail.find("the message has " + std::to_string(size) +
+                                        " bytes, one call takes " + std::to_string(size - 1)),
+            0U)
+      << refused.error().detail;
+  EXPECT_NE(refused.error().detail.find("by chunks"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

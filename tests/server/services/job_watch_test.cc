@@ -1,0 +1,203 @@
+// WatchJob, as proto/rmlcell/v1/job.proto and docs/api.md ("Watching") have it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "server/base/names.h"
+#include "tests/server/services/stream_bed.h"
+
+namespace rmlcell::server {
+namespace {
+
+using testing::ElementsAre;
+
+class JobWatchTest : public testing::Test {
+ protected:
+  // What is told, in a word: "snapshot", "2 text", "3 ended", "at 7 steps", "come back".
+  static std::string WordOf(const v1::WatchJobResponse& message) {
+    EXPECT_EQ(message.instance_id(), StreamBed::kInstance);
+    EXPECT_EQ(message.sequence(), message.has_event() ? message.event().sequence() : 0);
+    if (message.has_snapshot()) return "snapshot";
+    if (message.has_progress())
+      return "at " + std::to_string(message.progress().steps()) + " steps";
+    if (message.has_event()) {
+      const v1::JobEvent& event = message.event();
+      const std::string what = event.has_ended()     ? "ended"
+                               : event.has_message() ? event.message()
+                                                     : "state";
+      return std::to_string(event.sequence()) + " " + what;
+    }
+    return message.what_case() == v1::WatchJobResponse::kReconnect ? "come back" : "nothing";
+  }
+  static std::vector<std::string> Words(const std::vector<v1::WatchJobResponse>& messages) {
+    std::vector<std::string> words;
+    for (const v1::WatchJobResponse& message : messages) words.push_back(WordOf(message));
+    return words;
+  }
+  static std::string NextOf(OpenedStream<v1::WatchJobResponse>& stream) {
+    return WordOf(stream.Next());
+  }
+
+  StreamBed room;
+};
+
+TEST_F(JobWatchTest, ASnapshotFirstThenEveryEventInOrderUpToTheEndOfTheJob) {
+  const std::int64_t job = room.Submit();
+  const storage::Lease lease = room.bed.Lease();
+  room.Say(lease, {"a", "b"});
+  auto watch = room.Watch(job);
+  const v1::WatchJobResponse first = watch.Next();
+  EXPECT_EQ(WordOf(first), "snapshot");
+  EXPECT_EQ(first.snapshot().name(), JobName(job));
+  EXPECT_EQ(first.snapshot().state(), v1::Job::STATE_RUNNING);
+  EXPECT_EQ(first.snapshot().last_sequence(), 3);
+  EXPECT_EQ(NextOf(watch), "1 state");
+  EXPECT_EQ(NextOf(watch), "2 a");
+  EXPECT_EQ(NextOf(watch), "3 b");
+  room.Say(lease, {"c"});  // while it is watched
+  EXPECT_EQ(NextOf(watch), "4 c");
+  room.Finish(lease);
+  EXPECT_THAT(Words(watch.Rest()), ElementsAre("5 ended"));
+  watch.ExpectGoodEnd();
+}
+
+// More than are read from the log at once.
+TEST_F(JobWatchTest, OfManyEventsEachIsToldOnce) {
+  const std::int64_t job = room.Submit();
+  const storage::Lease lease = room.bed.Lease();
+  std::vector<std::string> texts, words{"snapshot", "1 state"};
+  for (int i = 2; i < 202; ++i) {
+    texts.push_back("x");
+    words.push_back(std::to_string(i) + " x");
+  }
+  room.Say(lease, texts);
+  room.Finish(lease);
+  words.push_back("202 ended");
+  auto watch = room.Watch(job);
+  EXPECT_EQ(Words(watch.Rest()), words);
+  watch.ExpectGoodEnd();
+}
+
+TEST_F(JobWatchTest, GoesOnAfterTheSequenceThatTheClientHas) {
+  const std::int64_t job = room.Submit();
+  const storage::Lease lease = room.bed.Lease();
+  room.Say(lease, {"a", "b"});
+  {
+    auto watch = room.Watch(job, 2);
+    EXPECT_EQ(NextOf(watch), "snapshot");
+    EXPECT_EQ(NextOf(watch), "3 b");
+  }
+  auto watch = room.Watch(job, 3);  // the last one: what comes next is waited for
+  EXPECT_EQ(NextOf(watch), "snapshot");
+  room.Finish(lease);
+  EXPECT_THAT(Words(watch.Rest()), ElementsAre("4 ended"));
+  watch.ExpectGoodEnd();
+}
+
+TEST_F(JobWatchTest, AJobThatHasEndedIsToldToItsEnd) {
+  const std::int64_t job = room.Submit();
+  const storage::Lease lease = room.bed.Lease();
+  room.Say(lease, {"a"});
+  room.Finish(lease);
+  auto from_the_second = room.Watch(job, 1);
+  EXPECT_THAT(Words(from_the_second.Rest()), ElementsAre("snapshot", "2 a", "3 ended"));
+  from_the_second.ExpectGoodEnd();
+  // Nothing is left to be told: it does not wait for what never comes.
+  auto from_the_last = room.Watch(job, 3);
+  EXPECT_THAT(Words(from_the_last.Rest()), ElementsAre("snapshot"));
+  from_the_last.ExpectGoodEnd();
+}
+
+// It comes of another cell, or of before a backup was put back: told, and nothing else.
+TEST_F(JobWatchTest, ASequenceThatTheJobDoesNotHaveIsRefused) {
+  const std::int64_t job = room.Submit();
+  room.Say(room.bed.Lease(), {"a"});
+  auto below = room.Watch(job, -1);
+  below.ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "after_sequence is below 0");
+  auto beyond = room.Watch(job, 3);
+  beyond.ExpectRefused(
+      grpc::StatusCode::INVALID_ARGUMENT,
+      "after_sequence is 3, the last event of the job is 2: begin anew, with a snapshot");
+}
+
+TEST_F(JobWatchTest, WhatIsNoJobIsRefused) {
+  auto unknown = room.Watch(7);
+  unknown.ExpectRefused(grpc::StatusCode::NOT_FOUND, "CELL-E9004");
+  v1::WatchJobRequest request;
+  request.set_name("job 7");
+  auto misnamed = room.Watch(request);
+  misnamed.ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "CELL-E9003");
+}
+
+// Events that are no longer kept cannot be told: the number from which they are there is.
+TEST(JobWatchOfAShortLog, EventsThatAreGoneAreSaidToBeGone) {
+  StreamBed room({.keep_events = 10});
+  const std::int64_t job = room.Submit();
+  room.Say(room.bed.Lease(), std::vector<std::string>(50, "x"));
+  ASSERT_TRUE(Eventually([&] { return Must(room.bed.store().GetJob(job)).events_gone_until > 1; }));
+  auto watch = room.Watch(job, 1);
+  EXPECT_TRUE(watch.Next().has_snapshot());
+  watch.ExpectRefused(grpc::StatusCode::OUT_OF_RANGE, "CELL-E9021");
+}
+
+TEST_F(JobWatchTest, PositionsComeWhenNoEventIsToBeTold) {
+  const std::int64_t job = room.Submit();
+  const storage::Lease lease = room.bed.Lease();
+  room.Say(lease, {"a"});
+  room.TellSteps(job, 7);
+  auto watch = room.Watch(job);
+  for (const char* word : {"snapshot", "1 state", "2 a", "at 7 steps"})
+    EXPECT_EQ(NextOf(watch), word);
+  room.Say(lease, {"b"});
+  EXPECT_EQ(NextOf(watch), "3 b");  // the same position is not told twice
+  room.TellSteps(job, 8);
+  EXPECT_EQ(NextOf(watch), "at 8 steps");
+  room.Finish(lease);
+  EXPECT_THAT(Words(watch.Rest()), ElementsAre("4 ended"));
+  watch.ExpectGoodEnd();
+}
+
+TEST_F(JobWatchTest, PositionsAreLeftOutWhereOnlyEventsAreWanted) {
+  const std::int64_t job = room.Submit();
+  const storage::Lease lease = room.bed.Lease();
+  room.TellSteps(job, 7);
+  auto watch = room.Watch(job, 0, true);
+  EXPECT_EQ(NextOf(watch), "snapshot");
+  EXPECT_EQ(NextOf(watch), "1 state");
+  room.TellSteps(job, 8);
+  room.Say(lease, {"a"});
+  EXPECT_EQ(NextOf(watch), "2 a");
+  room.Finish(lease);
+  EXPECT_THAT(Words(watch.Rest()), ElementsAre("3 ended"));
+  watch.ExpectGoodEnd();
+}
+
+TEST_F(JobWatchTest, AServerThatStopsSaysWhereToGoOn) {
+  const std::int64_t job = room.Submit();
+  room.Say(room.bed.Lease(), {"a", "b"});
+  auto watch = room.Watch(job, 1);
+  for (const char* word : {"snapshot", "2 a", "3 b"}) EXPECT_EQ(NextOf(watch), word);
+  room.open.StopAll();
+  const v1::WatchJobResponse goodbye = watch.Next();
+  EXPECT_EQ(WordOf(goodbye), "come back");
+  EXPECT_EQ(goodbye.reconnect(), "the server stops; watch again after sequence 3");
+  watch.ExpectRefused(grpc::StatusCode::UNAVAILABLE, "CELL-E9002");
+  // A watch that begins now gets no further than it was.
+  auto late = room.Watch(job, 2);
+  EXPECT_EQ(late.Next().reconnect(), "the server stops; watch again after sequence 2");
+  late.ExpectRefused(grpc::StatusCode::UNAVAILABLE, "the server stops");
+}
+
+TEST_F(JobWatchTest, AClientThatIsGoneLeavesNoStream) {
+  const std::int64_t job = room.Submit();
+  auto watch = room.Watch(job);
+  EXPECT_EQ(NextOf(watch), "snapshot");
+  EXPECT_EQ(room.open.count(), 1U);
+  watch.Cancel();
+  EXPECT_TRUE(Eventually([&] { return room.open.count() == 0; }));
+}
+
+}  // namespace
+}  // namespace rmlcell::server
