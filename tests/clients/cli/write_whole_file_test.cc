@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -126,11 +127,29 @@ TEST_F(WriteWholeFileTest, APipeTakesTheBytesAndStaysAPipe) {
   EXPECT_THAT(folder.Names(), ElementsAre("pipe"));
 }
 
+// A device of the test's own: a mistake would put a file in the place of the machine's.
 TEST_F(WriteWholeFileTest, ADeviceIsWrittenAsItIs) {
-  EXPECT_TRUE(WriteWholeFile("/dev/null", "bytes"));
-  EXPECT_TRUE(fs::is_character_file("/dev/null"));
-  ExpectUnwritable(WriteWholeFile("/dev/full", "bytes"), "/dev/full");
-  ExpectUnwritable(WriteWholeFile(folder.path(), "bytes"), folder.path());  // a folder
+  const std::string null = folder.File("null");
+  const std::string full = folder.File("full");
+  if (::mknod(null.c_str(), S_IFCHR | 0600, ::makedev(1, 3)) != 0 ||
+      ::mknod(full.c_str(), S_IFCHR | 0600, ::makedev(1, 7)) != 0) {
+    GTEST_SKIP() << "this user may not make devices here";
+  }
+  const int usable = ::open(null.c_str(), O_WRONLY);
+  if (usable < 0) GTEST_SKIP() << "devices do not work here";
+  ::close(usable);
+  EXPECT_TRUE(WriteWholeFile(null, "bytes"));
+  ExpectUnwritable(WriteWholeFile(full, "bytes"), full);
+  EXPECT_TRUE(fs::is_character_file(null));
+  EXPECT_TRUE(fs::is_character_file(full));
+  EXPECT_THAT(folder.Names(), UnorderedElementsAre("null", "full"));
+}
+
+TEST_F(WriteWholeFileTest, AFolderIsNoFile) {
+  folder.Put("below/a.S", "old");
+  const std::string below = folder.File("below");
+  ExpectUnwritable(WriteWholeFile(below, "bytes"), below);
+  EXPECT_EQ(folder.Read("below/a.S"), "old");
 }
 
 }  // namespace
