@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <sstream>
@@ -127,8 +128,11 @@ TEST_F(FixFileTest, WhatIsNoTextIsRefusedUnlookedAt) {
     ADD_FAILURE() << "it was checked";
     return {};
   };
-  for (const auto& [name, text] :
-       {std::pair{"a.rml", std::string("PU;")}, {"a.S", std::string("SPEDE\0", 6)}}) {
+  const std::map<std::string, std::string> files = {{"a.rml", "PU;"},
+                                                    {"a.S", std::string("SPEDE\0", 6)}};
+  for (const auto& row : files) {
+    const std::string& name = row.first;
+    const std::string& text = row.second;
     const std::string file = folder.Put(name, text);
     const Told told = Hear([&] { return FixFile(file, text, never, {}); });
     EXPECT_EQ(told.exit_code, 2) << name;

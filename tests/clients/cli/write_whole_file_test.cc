@@ -69,7 +69,7 @@ TEST_F(WriteWholeFileTest, ANewFileHasAllBytesAndTheModeOfTheUser) {
 
 TEST_F(WriteWholeFileTest, AnotherFileTakesTheModeOfTheOldOne) {
   const std::string path = folder.Put("a.S", "a long text that was there before");
-  for (const mode_t mode : {0600, 0755, 0666}) {
+  for (const mode_t mode : {0600U, 0755U, 0666U}) {
     ASSERT_EQ(::chmod(path.c_str(), mode), 0);
     EXPECT_TRUE(WriteWholeFile(path, "short"));
     EXPECT_EQ(folder.Read("a.S"), "short");
