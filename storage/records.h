@@ -102,6 +102,7 @@ struct JobOutcome {
   std::string detail{};
   int program = 0;  // where it ended, 0: not known
   int step = 0;
+  std::string judgement{};  // opaque; what the part will come out like, where that is known
 };
 
 struct JobRecord {

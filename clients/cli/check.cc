@@ -9,6 +9,7 @@
 #include "clients/cli/messages.h"
 #include "clients/cli/program_files.h"
 #include "clients/cli/terminal.h"
+#include "clients/cli/verdict_text.h"
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
 #include "engine/families/families.h"
@@ -114,29 +115,40 @@ Status Translate(CheckedFile& file, const CheckOptions& options) {
   return {};
 }
 
-void Show(const CheckedFile& file, bool json) {
+// The figures that people want of a check: those that the family gives a row, else all on one line.
+std::string FigureText(const CheckedFile& file) {
+  const std::string rows = FigureRows(*file.family, file.translation.figures);
+  if (!rows.empty()) return rows;
+  std::string line;
+  for (const machine::Figure& figure : file.translation.figures) {
+    if (figure.value == 0.0) continue;
+    line += (line.empty() ? "" : ", ") + figure.name + " " + ShortestText(figure.value) +
+            (figure.unit.empty() ? "" : " " + figure.unit);
+  }
+  return line.empty() ? line : "  " + line + "\n";
+}
+
+// What there is to say; the exit code.
+int Show(const CheckedFile& file, const CheckOptions& options) {
   const machine::Translation& translation = file.translation;
-  if (json) {
-    Print(Json(bridge::FindingsOf(translation, file.motion, file.slot)));
-    return;
+  const v1::Findings found = bridge::FindingsOf(*file.family, translation, file.motion, file.slot);
+  const int exit_code = file.ok() ? ExitOf(found.verdict(), options.strict) : int{kProgramErrors};
+  if (options.json) {
+    Print(Json(found));
+    return exit_code;
   }
   PrintFindings(translation.diagnostics, translation.diagnostics_dropped, *file.text);
   PrintFindings(file.motion.findings, file.motion.findings_dropped, *file.text);
   const std::size_t findings = translation.diagnostics.size() + translation.diagnostics_dropped +
                                file.motion.findings.size() + file.motion.findings_dropped;
-  std::string line = file.name + ": " +
-                     (!file.ok()      ? "has errors"
-                      : findings == 0 ? "good"
-                                      : "can be stored");
+  std::string line = file.name + ": " + VerdictText(found.verdict());
   if (findings > 0)
     line += ", " + std::to_string(findings) + (findings == 1 ? " finding" : " findings");
-  for (const machine::Figure& figure : translation.figures) {
-    if (figure.value == 0.0) continue;
-    line += ", " + figure.name + " " + ShortestText(figure.value) +
-            (figure.unit.empty() ? "" : " " + figure.unit);
-  }
   Print(line);
   for (const auto& [slot, why] : file.motion.cut_short) Print("  motion checked " + why);
+  for (const v1::VerdictReason& reason : found.reasons()) Print("  " + ReasonLine(reason));
+  PrintRaw(FigureText(file));
+  return exit_code;
 }
 
 }  // namespace
@@ -158,7 +170,8 @@ int Check(const CheckOptions& options) {
   for (const std::string& name : options.files) {
     const auto family = FamilyFor(options.family.empty() ? machine->family : options.family, name);
     if (!family) return Refuse(family.error());
-    auto parameters = machine::MakeParameters(**family, machine->profile, machine->parameters);
+    const std::string& profile = options.profile.empty() ? machine->profile : options.profile;
+    auto parameters = machine::MakeParameters(**family, profile, machine->parameters);
     if (!parameters) return Refuse(parameters.error());
     files.push_back({.name = name, .family = *family, .parameters = *std::move(parameters)});
   }
@@ -199,8 +212,7 @@ int Check(const CheckOptions& options) {
       if (const Status translated = Translate(file, options); !translated)
         return Refuse(translated.error());
     }
-    if (!file.ok()) exit_code = kProgramErrors;
-    Show(file, options.json);
+    exit_code = std::max(exit_code, Show(file, options));
     // A stream may be of hundreds of megabytes.
     file.text = {};
     file.translation = {};

@@ -13,18 +13,49 @@ namespace {
 std::string Text(const std::vector<Diagnostic>& findings, std::uint64_t dropped,
                  std::string_view source, bool colour) {
   std::string all;
+  KindsShown kinds;
   for (const Diagnostic& finding : findings) {
+    if (!kinds.Show(CodeText(finding.code), finding.where.line)) continue;
     const std::string text = FormatDiagnostic(finding, source);
     const std::size_t line_end = std::min(text.find('\n'), text.size());
     all += Paint(text.substr(0, line_end),
                  IsError(finding.severity) ? Colour::kRed : Colour::kYellow, colour) +
            text.substr(line_end) + "\n";
   }
+  all += kinds.Rest();
   if (dropped > 0) all += "and " + std::to_string(dropped) + " more findings\n";
   return all;
 }
 
 }  // namespace
+
+bool KindsShown::Show(const std::string& code, int line) {
+  Kind& kind = kinds_[code];
+  if (kind.shown < kShownMax) {
+    ++kind.shown;
+    return true;
+  }
+  ++kind.left_out;
+  if (line > 0 && (kind.first_line == 0 || line < kind.first_line)) kind.first_line = line;
+  kind.last_line = std::max(kind.last_line, line);
+  return false;
+}
+
+std::string KindsShown::Rest() const {
+  std::string text;
+  for (const auto& [code, kind] : kinds_) {
+    if (kind.left_out == 0) continue;
+    text += "and " + std::to_string(kind.left_out) + " more " + code;
+    if (kind.first_line > 0 && kind.first_line == kind.last_line) {
+      text += ", line " + std::to_string(kind.first_line);
+    } else if (kind.first_line > 0) {
+      text +=
+          ", lines " + std::to_string(kind.first_line) + " to " + std::to_string(kind.last_line);
+    }
+    text += "\n";
+  }
+  return text;
+}
 
 void PrintFindings(const std::vector<Diagnostic>& findings, std::uint64_t dropped,
                    std::string_view source) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -8,6 +10,26 @@
 #include "engine/core/result.h"
 
 namespace rmlcell::cli {
+
+// Of many findings of one kind the first few are shown, and the others counted: nobody reads a
+// thousand lines of one code.
+class KindsShown {
+ public:
+  // Whether this one is to be shown. `line` 0: not known.
+  bool Show(const std::string& code, int line);
+  // "and 95 more RML1-E2, lines 12 to 300" for each kind that was cut, with line ends.
+  std::string Rest() const;
+
+ private:
+  static constexpr std::uint64_t kShownMax = 5;
+  struct Kind {
+    std::uint64_t shown = 0;
+    std::uint64_t left_out = 0;
+    int first_line = 0;
+    int last_line = 0;
+  };
+  std::map<std::string, Kind> kinds_;
+};
 
 // Findings with the source line of each and a caret below it; `source` may be empty.
 // To standard output: they are what was asked for.

@@ -11,6 +11,7 @@
 #include "clients/cli/milling.h"
 #include "clients/cli/program_files.h"
 #include "clients/cli/terminal.h"
+#include "clients/cli/verdict_text.h"
 #include "engine/core/number_text.h"
 #include "engine/simulation/report/facts.h"
 #include "engine/simulation/run/simulate.h"
@@ -341,10 +342,7 @@ int Simulate(const SimulateOptions& options) {
     DropFindings(outcome->diagnostics, report);
     PrintRaw(ReportText(report));
   }
-  const machine::OutcomeKind kind = result->report.outcome.kind;
-  return kind == machine::OutcomeKind::kCompleted || kind == machine::OutcomeKind::kStopped
-             ? kGood
-             : kProgramErrors;
+  return ExitOf(report.outcome(), options.strict);
 }
 
 int Explain(const std::vector<std::string>& codes, bool json) {

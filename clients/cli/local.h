@@ -9,12 +9,14 @@ namespace rmlcell::cli {
 struct CheckOptions {
   std::vector<std::string> files;
   std::string family;
+  std::string profile;
   std::string machine_file;
   std::string inputs_file;  // what comes from outside while the motion is checked
   bool errors_only = false;
   bool fix = false;      // repair the files, and check what comes out
   bool dry_run = false;  // with fix: show what would change, and write nothing
   bool json = false;
+  bool strict = false;  // a DOUBTFUL verdict is an exit code of 1, too
 };
 int Check(const CheckOptions& options);
 
@@ -45,6 +47,7 @@ struct SimulateOptions {
   bool trace = false;
   bool facts = false;
   bool json = false;
+  bool strict = false;
 };
 int Simulate(const SimulateOptions& options);
 

@@ -38,39 +38,46 @@ constexpr const char* kExamples = R"(Examples:
   rmlcell report 17; rmlcell picture 17 -o p.svg
 
 Each verb has its own --help and examples. Verbs that need a server take --server HOST:PORT or unix:/PATH
-(environment: RMLCELL_SERVER). Exit codes: 0 good, 1 the program has errors, 2 wrong use, 3 server.)";
+(environment: RMLCELL_SERVER). Exit codes: 0 good, 1 the program has
+errors or its verdict is BAD (with --strict DOUBTFUL, too), 2 wrong use, 3 server.)";
+
+constexpr const char* kStrictText = "exit with 1 when the verdict is DOUBTFUL, too";
+
+void AddCheckVerb(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<CheckOptions>();
+  CLI::App* verb =
+      app.add_subcommand("check", "Say what is wrong with programs, before anything moves");
+  verb->footer(
+      "Examples:\n"
+      "  rmlcell check part.S                    one program: errors, warnings, advice, each "
+      "with place and rule\n"
+      "  rmlcell check progs/*.S --errors-only   errors alone; exit code 1 when there is one\n"
+      "  rmlcell check part.S --fix              apply the fixes; layout and comments stay\n"
+      "  rmlcell check part.S --fix --dry-run    show them as a patch\n"
+      "  rmlcell check 45.S 44.S --inputs keys.txt  programs that call each other, with inputs\n"
+      "  rmlcell check part.S --json             for an editor or a script\n\n"
+      "Motion is followed as a run with these inputs (default: all off) would do it: axes that leave\n"
+      "their travel are errors, axes that hold a contour back are advice.");
+  verb->add_option("FILES", options->files, "programs")->required();
+  verb->add_option("--family", options->family, "optimo or rml1; default: from the file name");
+  verb->add_option("--profile", options->profile, "named machine, such as srm-20 or pw-1993");
+  verb->add_option("--machine", options->machine_file,
+                   "machine file (TOML): family, profile, [parameters]");
+  verb->add_option("--inputs", options->inputs_file,
+                   "what comes from outside over time, while the motion is checked");
+  verb->add_flag("--errors-only", options->errors_only, "leave warnings and advice out");
+  CLI::Option* fix =
+      verb->add_flag("--fix", options->fix, "repair what has one obvious repair, in the files");
+  verb->add_flag("--dry-run", options->dry_run,
+                 "with --fix: show the changes as a patch; write nothing")
+      ->needs(fix);
+  verb->add_flag("--strict", options->strict, kStrictText);
+  verb->add_flag("--json", options->json, "print findings as JSON, one line a file");
+  verb->callback([options, &exit_code] { exit_code = Check(*options); });
+}
 
 void AddLocalVerbs(CLI::App& app, int& exit_code) {
-  {
-    auto options = std::make_shared<CheckOptions>();
-    CLI::App* verb =
-        app.add_subcommand("check", "Say what is wrong with programs, before anything moves");
-    verb->footer(
-        "Examples:\n"
-        "  rmlcell check part.S                    one program: errors, warnings, advice, each "
-        "with place and rule\n"
-        "  rmlcell check progs/*.S --errors-only   errors alone; exit code 1 when there is one\n"
-        "  rmlcell check part.S --fix              apply the fixes; layout and comments stay\n"
-        "  rmlcell check part.S --fix --dry-run    show them as a patch\n"
-        "  rmlcell check 45.S 44.S --inputs keys.txt  programs that call each other, with inputs\n"
-        "  rmlcell check part.S --json             for an editor or a script\n\n"
-        "Motion is followed as a run with these inputs (default: all off) would do it: axes that leave\n"
-        "their travel are errors, axes that hold a contour back are advice.");
-    verb->add_option("FILES", options->files, "programs")->required();
-    verb->add_option("--family", options->family, "optimo or rml1; default: from the file name");
-    verb->add_option("--machine", options->machine_file,
-                     "machine file (TOML): family, profile, [parameters]");
-    verb->add_option("--inputs", options->inputs_file,
-                     "what comes from outside over time, while the motion is checked");
-    verb->add_flag("--errors-only", options->errors_only, "leave warnings and advice out");
-    CLI::Option* fix =
-        verb->add_flag("--fix", options->fix, "repair what has one obvious repair, in the files");
-    verb->add_flag("--dry-run", options->dry_run,
-                   "with --fix: show the changes as a patch; write nothing")
-        ->needs(fix);
-    verb->add_flag("--json", options->json, "print findings as JSON, one line a file");
-    verb->callback([options, &exit_code] { exit_code = Check(*options); });
-  }
+  AddCheckVerb(app, exit_code);
   {
     auto options = std::make_shared<SimulateOptions>();
     CLI::App* verb = app.add_subcommand("simulate", "Run a program in virtual time and report");
@@ -136,6 +143,7 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
     CLI::Option* facts =
         verb->add_flag("--facts", options->facts, "key: value lines for scripts (docs/facts.md)");
     verb->add_flag("--json", options->json, "print the report as JSON")->excludes(facts);
+    verb->add_flag("--strict", options->strict, kStrictText);
     verb->callback([options, &exit_code] { exit_code = Simulate(*options); });
   }
   {
@@ -180,6 +188,7 @@ struct RemoteArguments {
   int limit = 20;
   std::int64_t after = 0;
   bool check_only = false;
+  bool force = false;
   bool insert = false;
   SubmitRequest submit;
 };
@@ -214,9 +223,12 @@ void AddProgramVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int&
   put->add_option("--etag", given.etag,
                   "only if the program still has this etag; none: only if the slot is empty");
   put->add_flag("--check-only", given.check_only, "say what would be stored");
+  put->add_flag("--force", given.force,
+                "store what looks like no program of the machine at all, too");
   put->callback([&] {
     exit_code =
-        PutProgram(remote, given.machine, given.slot, given.file, given.etag, given.check_only);
+        PutProgram(remote, given.machine, given.slot, given.file,
+                   {.etag = given.etag, .check_only = given.check_only, .force = given.force});
   });
   CLI::App* get = RemoteVerb(
       app, "get", "Get a program of a machine",
@@ -316,7 +328,8 @@ void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exi
       ->check(CLI::Range(0.0, 1000.0));
   verb->add_option("--inputs", given.submit.inputs_file, "external inputs and keys over time");
   verb->add_flag("--trace", given.submit.trace, "keep a trace");
-  verb->add_flag("--watch", given.submit.watch, "watch the job to its end");
+  CLI::Option* watched = verb->add_flag("--watch", given.submit.watch, "watch the job to its end");
+  verb->add_flag("--strict", given.submit.strict, kStrictText)->needs(watched);
   verb->callback([&] {
     if (given.submit.file.empty() && given.submit.slot == 0)
       throw CLI::ValidationError("submit", "give a FILE or --slot");
@@ -330,7 +343,9 @@ void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exi
                  remote);
   watch->add_option("JOB", given.job)->required();
   watch->add_option("--after", given.after, "events after this sequence number only");
-  watch->callback([&] { exit_code = WatchJob(remote, given.job, given.after); });
+  watch->add_flag("--strict", given.submit.strict, kStrictText);
+  watch->callback(
+      [&] { exit_code = WatchJob(remote, given.job, given.after, given.submit.strict); });
   CLI::App* jobs =
       RemoteVerb(app, "jobs", "List jobs, newest first",
                  "  rmlcell jobs                                   the newest 20\n"

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <tuple>
 
+#include "clients/cli/findings_text.h"
 #include "clients/cli/terminal.h"
+#include "clients/cli/verdict_text.h"
 #include "engine/core/diagnostic.h"
 #include "engine/core/letters.h"
 #include "engine/families/families.h"
@@ -16,14 +18,6 @@ namespace {
 
 std::string PointText(const v1::Point& point) {
   return Fixed(point.x(), 3) + ", " + Fixed(point.y(), 3) + ", " + Fixed(point.z(), 3);
-}
-
-std::string PlaceText(const v1::SourcePlace& place) {
-  std::string text;
-  if (place.program() > 0) text += "program " + std::to_string(place.program());
-  if (place.step() > 0) text += (text.empty() ? "step " : " step ") + std::to_string(place.step());
-  if (place.line() > 0) text += (text.empty() ? "line " : " line ") + std::to_string(place.line());
-  return text;
 }
 
 }  // namespace
@@ -49,7 +43,8 @@ std::string OutcomeLine(const v1::Outcome& outcome) {
   std::string text;
   switch (outcome.kind()) {
     case v1::Outcome::KIND_COMPLETED:
-      text = Paint("completed", Colour::kGreen, colour);
+      text = outcome.verdict() == v1::VERDICT_BAD ? "completed"
+                                                  : Paint("completed", Colour::kGreen, colour);
       break;
     case v1::Outcome::KIND_STOPPED:
       text = Paint("stopped", Colour::kYellow, colour);
@@ -77,6 +72,39 @@ std::string OutcomeLine(const v1::Outcome& outcome) {
 namespace {
 
 using Rows = std::vector<std::pair<std::string, std::string>>;
+
+// Figures that follow each other with one name of a row share it. `value` is 0 for what there is
+// none of.
+template <class Value>
+void AddFigureRows(const machine::MachineFamily& family, machine::FigureInfo::Where where,
+                   Value value, Rows& rows) {
+  std::string_view row;
+  for (const machine::FigureInfo& info : family.figures()) {
+    if (info.row.empty() ||
+        (info.where != where && info.where != machine::FigureInfo::Where::kBoth))
+      continue;
+    const double amount = value(info.name);
+    if (amount == 0.0 && !info.when_zero) continue;
+    std::string said(info.said);
+    said.replace(said.find('#'), 1, Fixed(amount, info.unit.empty() ? 0 : 3));
+    if (info.row == row) {
+      rows.back().second += ", " + said;
+    } else {
+      rows.emplace_back(info.row, std::move(said));
+      row = info.row;
+    }
+  }
+}
+
+std::string TextOf(const Rows& rows) {
+  std::string text;
+  for (const auto& [name, value] : rows) {
+    text += Paint(name + std::string(14 - std::min<std::size_t>(13, name.size()), ' '),
+                  Colour::kDim, ColourOnOutput()) +
+            value + "\n";
+  }
+  return text;
+}
 
 constexpr int kListedMax = 5;  // of a list that the report has in full as JSON
 
@@ -188,20 +216,9 @@ double FigureOf(const v1::RunReport& report, std::string_view name) {
 // What the family wants to be read of its own figures.
 void AddFamilyFigures(const v1::RunReport& report, const machine::MachineFamily& family,
                       Rows& rows) {
-  std::string_view row;
-  for (const machine::FigureInfo& info : family.figures()) {
-    if (info.row.empty()) continue;
-    const double value = FigureOf(report, info.name);
-    if (value == 0.0 && !info.when_zero) continue;
-    std::string said(info.said);
-    said.replace(said.find('#'), 1, Fixed(value, info.unit.empty() ? 0 : 3));
-    if (info.row == row) {
-      rows.back().second += ", " + said;
-    } else {
-      rows.emplace_back(info.row, std::move(said));
-      row = info.row;
-    }
-  }
+  AddFigureRows(
+      family, machine::FigureInfo::Where::kReport,
+      [&](std::string_view name) { return FigureOf(report, name); }, rows);
 }
 
 // What a run did; a job that only checks has none of it.
@@ -272,22 +289,40 @@ void AddFigures(const v1::RunReport& report, Rows& rows) {
 
 std::string ReportText(const v1::RunReport& report) {
   Rows rows;
-  rows.emplace_back("outcome", OutcomeLine(report.outcome()));
+  const v1::Outcome& outcome = report.outcome();
+  if (outcome.verdict() != v1::VERDICT_UNSPECIFIED) {
+    rows.emplace_back("verdict", VerdictText(outcome.verdict()));
+    for (const v1::VerdictReason& reason : outcome.reasons())
+      rows.emplace_back("", ReasonLine(reason));
+  }
+  rows.emplace_back("outcome", OutcomeLine(outcome));
   if (report.has_total()) AddFigures(report, rows);
   if (!report.motion_check().empty())
     rows.emplace_back("motion", "checked " + report.motion_check());
-  std::string text;
-  for (const auto& [name, value] : rows) {
-    text += Paint(name + std::string(14 - std::min<std::size_t>(13, name.size()), ' '),
-                  Colour::kDim, ColourOnOutput()) +
-            value + "\n";
+  std::string text = TextOf(rows);
+  KindsShown kinds;
+  for (const v1::Diagnostic& diagnostic : report.diagnostics()) {
+    if (kinds.Show(diagnostic.code(), diagnostic.place().line()))
+      text += FindingLine(diagnostic) + "\n";
   }
-  for (const v1::Diagnostic& diagnostic : report.diagnostics())
-    text += FindingLine(diagnostic) + "\n";
+  text += kinds.Rest();
   if (report.diagnostics_dropped() > 0) {
     text += "and " + std::to_string(report.diagnostics_dropped()) + " more findings\n";
   }
   return text;
+}
+
+std::string FigureRows(const machine::MachineFamily& family,
+                       const std::vector<machine::Figure>& figures) {
+  Rows rows;
+  AddFigureRows(
+      family, machine::FigureInfo::Where::kCheck,
+      [&](std::string_view name) {
+        const auto found = std::ranges::find(figures, name, &machine::Figure::name);
+        return found == figures.end() ? 0.0 : found->value;
+      },
+      rows);
+  return TextOf(rows);
 }
 
 std::string EventLine(const v1::JobEvent& event) {
@@ -316,7 +351,9 @@ std::string EventLine(const v1::JobEvent& event) {
     case v1::JobEvent::kMilestone:
       return text + event.milestone();
     case v1::JobEvent::kEnded:
-      return text + "ended: " + OutcomeLine(event.ended());
+      text += "ended: " + OutcomeLine(event.ended());
+      if (event.ended().verdict() == v1::VERDICT_UNSPECIFIED) return text;
+      return text + "; verdict " + VerdictLine(event.ended().verdict(), event.ended().reasons());
     case v1::JobEvent::WHAT_NOT_SET:
       break;
   }

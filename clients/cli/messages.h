@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "engine/machine/family.h"
 #include "rmlcell/v1/job.pb.h"
 
 // Messages as JSON and as text for people.
@@ -13,6 +14,9 @@ namespace rmlcell::cli {
 std::string Json(const google::protobuf::Message& message);
 
 std::string ReportText(const v1::RunReport& report);
+// The rows that a family gives its figures of a check; empty when it gives none.
+std::string FigureRows(const machine::MachineFamily& family,
+                       const std::vector<machine::Figure>& figures);
 std::string OutcomeLine(const v1::Outcome& outcome);
 std::string EventLine(const v1::JobEvent& event);
 std::string StateName(v1::Job::State state);  // "running"

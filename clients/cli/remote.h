@@ -14,8 +14,13 @@ struct Remote {
 
 int Machines(const Remote& remote);
 int Programs(const Remote& remote, const std::string& machine);
+struct PutOptions {
+  std::string etag;
+  bool check_only = false;
+  bool force = false;  // what looks like no program of the machine at all, too
+};
 int PutProgram(const Remote& remote, const std::string& machine, int slot, const std::string& file,
-               const std::string& etag, bool check_only);
+               const PutOptions& options);
 int GetProgram(const Remote& remote, const std::string& machine, int slot, const std::string& form,
                const std::string& output);
 int DeleteProgram(const Remote& remote, const std::string& machine, int slot);
@@ -41,9 +46,10 @@ struct SubmitRequest {
   double pace = 0.0;  // virtual seconds a real second; 0: as fast as possible
   bool trace = false;
   bool watch = false;
+  bool strict = false;  // with watch: a DOUBTFUL verdict is an exit code of 1, too
 };
 int SubmitJob(const Remote& remote, const SubmitRequest& request);
-int WatchJob(const Remote& remote, const std::string& job, std::int64_t after);
+int WatchJob(const Remote& remote, const std::string& job, std::int64_t after, bool strict);
 int Jobs(const Remote& remote, const std::string& filter, int limit);
 int ShowJob(const Remote& remote, const std::string& job);
 int CancelJob(const Remote& remote, const std::string& job);

@@ -8,6 +8,7 @@
 #include "clients/cli/program_files.h"
 #include "clients/cli/remote_call.h"
 #include "clients/cli/terminal.h"
+#include "clients/cli/verdict_text.h"
 #include "engine/families/families.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
@@ -15,13 +16,6 @@
 
 namespace rmlcell::cli {
 namespace {
-
-int ExitOf(const v1::Outcome& outcome) {
-  return outcome.kind() == v1::Outcome::KIND_COMPLETED ||
-                 outcome.kind() == v1::Outcome::KIND_STOPPED
-             ? kGood
-             : kProgramErrors;
-}
 
 // A random id, so that a repeated submission after a lost answer gives the same job.
 std::string NewRequestId() {
@@ -49,7 +43,7 @@ constexpr std::size_t kInlineBytesMax = 3 << 20;
 
 // One connection of a watch. Moves `after` on; true: the job ended, and `exit_code` is set.
 bool WatchOnce(const Remote& remote, v1::JobService::Stub& stub, const std::string& name,
-               std::int64_t& after, int& exit_code, grpc::Status& status) {
+               bool strict, std::int64_t& after, int& exit_code, grpc::Status& status) {
   grpc::ClientContext context;
   v1::WatchJobRequest request;
   request.set_name(name);
@@ -65,7 +59,7 @@ bool WatchOnce(const Remote& remote, v1::JobService::Stub& stub, const std::stri
       Print(remote.json ? Json(message) : EventLine(message.event()));
       if (message.event().has_ended()) {
         ended = true;
-        exit_code = ExitOf(message.event().ended());
+        exit_code = ExitOf(message.event().ended(), strict);
         // A short job is over before its first position: the bar says all the same how far it came.
         if (!remote.json && exit_code == kGood) progress.Leave(1.0, name);
       }
@@ -85,7 +79,7 @@ bool WatchOnce(const Remote& remote, v1::JobService::Stub& stub, const std::stri
       if (remote.json) Print(Json(message));
       if (job.has_end_time() && job.last_sequence() <= after) {
         ended = true;
-        exit_code = ExitOf(job.outcome());
+        exit_code = ExitOf(job.outcome(), strict);
       }
     }
   }
@@ -95,7 +89,7 @@ bool WatchOnce(const Remote& remote, v1::JobService::Stub& stub, const std::stri
 
 }  // namespace
 
-int WatchJob(const Remote& remote, const std::string& job, std::int64_t after) {
+int WatchJob(const Remote& remote, const std::string& job, std::int64_t after, bool strict) {
   // What reads from a pipe wants each event when it happens.
   std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   const auto stub = v1::JobService::NewStub(Connect(remote));
@@ -106,7 +100,7 @@ int WatchJob(const Remote& remote, const std::string& job, std::int64_t after) {
     int exit_code = kGood;
     grpc::Status status;
     const std::int64_t before = after;
-    if (WatchOnce(remote, *stub, name, after, exit_code, status)) return exit_code;
+    if (WatchOnce(remote, *stub, name, strict, after, exit_code, status)) return exit_code;
     // A server that stops cancels what it cannot end in time.
     const bool away = status.ok() || status.error_code() == grpc::StatusCode::UNAVAILABLE ||
                       status.error_code() == grpc::StatusCode::CANCELLED;
@@ -172,7 +166,7 @@ int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
   }
   if (!status.ok()) return Refused(status, remote);
   Print(remote.json ? Json(made) : made.name());
-  return wanted.watch ? WatchJob(remote, made.name(), 0) : kGood;
+  return wanted.watch ? WatchJob(remote, made.name(), 0, wanted.strict) : kGood;
 }
 
 int Jobs(const Remote& remote, const std::string& filter, int limit) {
@@ -190,10 +184,11 @@ int Jobs(const Remote& remote, const std::string& filter, int limit) {
     return kGood;
   }
   std::vector<std::vector<std::string>> rows = {
-      {"JOB", "STATE", "KIND", "MACHINE", "TITLE", "SUBMITTED", "CODE"}};
+      {"JOB", "STATE", "VERDICT", "KIND", "MACHINE", "TITLE", "SUBMITTED", "CODE"}};
   for (const v1::Job& job : response.jobs()) {
     const std::string kind = v1::JobKind_Name(job.kind());
     rows.push_back({job.name().substr(5), StateName(job.state()),
+                    VerdictText(job.outcome().verdict()),
                     kind.substr(std::min<std::size_t>(9, kind.size())),
                     job.machine().substr(std::min<std::size_t>(9, job.machine().size())),
                     job.title().empty() ? job.program() : job.title(), When(job.create_time()),
@@ -218,7 +213,14 @@ int ShowJob(const Remote& remote, const std::string& job) {
   }
   Print(response.name() + "  " + StateName(response.state()) + "  " + response.machine() + "  " +
         response.title());
-  if (response.has_outcome()) Print("outcome   " + OutcomeLine(response.outcome()));
+  if (response.has_outcome()) {
+    const v1::Outcome& outcome = response.outcome();
+    Print("outcome   " + OutcomeLine(outcome));
+    if (outcome.verdict() != v1::VERDICT_UNSPECIFIED)
+      Print("verdict   " + VerdictText(outcome.verdict()));
+    for (const v1::VerdictReason& reason : outcome.reasons())
+      Print("          " + ReasonLine(reason));
+  }
   for (const v1::Artifact& artifact : response.artifacts()) {
     Print("product   " + artifact.name() + "  " + Bytes(artifact.size()) + "  " +
           artifact.url_path());

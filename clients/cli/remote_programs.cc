@@ -113,7 +113,7 @@ int Programs(const Remote& remote, const std::string& machine) {
 }
 
 int PutProgram(const Remote& remote, const std::string& machine, int slot, const std::string& file,
-               const std::string& etag, bool check_only) {
+               const PutOptions& options) {
   const Result<std::string> bytes = bridge::ReadFile(file, kFileBytesMax);
   if (!bytes) return Refuse(bytes.error());
   const auto stub = v1::ProgramService::NewStub(Connect(remote));
@@ -127,21 +127,23 @@ int PutProgram(const Remote& remote, const std::string& machine, int slot, const
     request.set_name(ProgramName(machine, slot));
     request.mutable_program()->set_file_name(bridge::Utf8(base));
     request.mutable_program()->set_content(*bytes);
-    request.set_etag(etag);
-    request.set_validate_only(check_only);
+    request.set_etag(options.etag);
+    request.set_validate_only(options.check_only);
+    request.set_force(options.force);
     status = stub->PutProgram(&context, request, &program);
   } else {
     v1::UploadProgramRequest::Header header;
     header.set_name(ProgramName(machine, slot));
     header.set_file_name(bridge::Utf8(base));
-    header.set_etag(etag);
+    header.set_etag(options.etag);
     header.set_size(static_cast<std::int64_t>(bytes->size()));
     header.set_sha256(bridge::Sha256Hex(*bytes));
-    header.set_validate_only(check_only);
+    header.set_validate_only(options.check_only);
+    header.set_force(options.force);
     status = Upload(*stub, header, *bytes, program);
   }
   if (!status.ok()) return Refused(status, remote);
-  return PrintStored(remote, program, check_only);
+  return PrintStored(remote, program, options.check_only);
 }
 
 namespace {

@@ -49,11 +49,11 @@ _rmlcell_options() {
   local remote="--help --server --json"
   case $1 in
     "") echo "--help --version" ;;
-    check) echo "--help --family --machine --inputs --errors-only --fix --dry-run --json" ;;
+    check) echo "--help --family --profile --machine --inputs --errors-only --fix --dry-run --strict --json" ;;
     simulate)
       echo "--help --slot --main --executable --family --profile --machine --inputs --mode --override --simul" \
         "--break --budget --vars --svg --samples --plot --stock --tool --cell --stl" \
-        "--state-in --state-out --trace --facts --json" ;;
+        "--state-in --state-out --trace --facts --strict --json" ;;
     explain) echo "--help --json" ;;
     diff) echo "--help --svg --json" ;;
     parameters) echo "--help --profile --json" ;;
@@ -65,11 +65,11 @@ _rmlcell_options() {
     lsp) echo "--help --stdio" ;;
     transform) echo "--help --move --turn --shift --output --json" ;;
     machines | programs | delete | stale | projects | job | cancel | report) echo "$remote" ;;
-    put) echo "$remote --etag --check-only" ;;
+    put) echo "$remote --etag --check-only --force" ;;
     get) echo "$remote --form --output" ;;
     submit)
-      echo "$remote --slot --kind --title --request-id --override --pace --inputs --trace --watch" ;;
-    watch) echo "$remote --after" ;;
+      echo "$remote --slot --kind --title --request-id --override --pace --inputs --trace --watch --strict" ;;
+    watch) echo "$remote --after --strict" ;;
     jobs) echo "$remote --filter --limit" ;;
     picture) echo "$remote --output" ;;
     "projects list" | "projects show" | "projects create" | "projects update" | "projects delete") echo "--help" ;;

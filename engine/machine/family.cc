@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "engine/core/letters.h"
 #include "engine/core/units.h"
 #include "engine/machine/shape.h"
 
@@ -50,13 +51,29 @@ TransferPlan MachineFamily::PlanTransfer(const ProjectBundle& project, const Par
   return plan;
 }
 
+namespace {
+
+// "SRM-20", "srm20" and "srm_20" are the srm-20.
+bool SameName(std::string_view a, std::string_view b) {
+  const auto plain = [](std::string_view name) {
+    std::string letters;
+    for (const char c : name) {
+      if (c != '-' && c != '_' && c != ' ') letters += c;
+    }
+    return letters;
+  };
+  return EqualIgnoringCase(plain(a), plain(b));
+}
+
+}  // namespace
+
 Result<Parameters> MakeParameters(const MachineFamily& family, const std::string& profile,
                                   const std::map<std::string, std::string>& parameters) {
   Parameters made(family.parameters());
   if (!profile.empty()) {
     const auto profiles = family.profiles();
     const auto found = std::ranges::find_if(
-        profiles, [&](const MachineProfile& candidate) { return candidate.id == profile; });
+        profiles, [&](const MachineProfile& candidate) { return SameName(candidate.id, profile); });
     if (found == profiles.end()) {
       std::string known;
       for (const MachineProfile& candidate : profiles) known += " " + std::string(candidate.id);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <set>
@@ -12,6 +13,7 @@
 #include "engine/machine/program_file.h"
 #include "engine/machine/run_setup.h"
 #include "engine/machine/tools.h"
+#include "engine/machine/verdict.h"
 
 namespace rmlcell::machine {
 
@@ -91,6 +93,8 @@ struct FigureInfo {
   std::string_view row{};   // "tool"
   std::string_view said{};  // "up # s"
   bool when_zero = false;   // said of nothing, too
+  enum class Where : std::uint8_t { kReport, kCheck, kBoth };
+  Where where = Where::kReport;  // has the row
 };
 
 // Why an executable is no longer what a new link of the stored objects would give (OPT-1.12
@@ -138,6 +142,9 @@ class MachineFamily {
 
   // Every figure that Run::figures can hold; docs/facts.md lists them.
   virtual std::span<const FigureInfo> figures() const { return {}; }
+
+  // By which of its figures a run of this family is judged, most serious rules first.
+  virtual std::span<const VerdictRule> verdict_rules() const { return {}; }
 
   // What report and pictures need to know of a machine with these parameters.
   virtual MachineShape Shape(const Parameters& parameters) const;

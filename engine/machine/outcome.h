@@ -31,6 +31,7 @@ struct Figure {
   std::string name{};  // "programmed.cut_length"
   std::string unit{};  // "mm"; empty for counts
   double value = 0.0;
+  Place first{};  // where it first came to be above 0; step 0: it has no place
 };
 
 }  // namespace rmlcell::machine

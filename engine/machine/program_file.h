@@ -35,6 +35,8 @@ struct CheckOptions {
   // The text is still being written: a source in units of its own is checked as it stands, with the
   // advice to convert it, and advice that depends on units is left out.
   bool unconverted = false;
+  // Take what looks like no program of the family at all, too, where its machine would.
+  bool forced = false;
 };
 
 }  // namespace rmlcell::machine

@@ -102,6 +102,12 @@ void Carriage::MoveXY(const Context& context, double x, double y) {
          {.speed_mm_s = context.profile.travel_speed, .chain = Chain::kToolUp, .rapid = true});
     }
   }
+  if (registers.tool_down) {
+    const double all_of_it = HUGE_VAL;  // whatever its height: a tool that is down cuts
+    const double low = follows ? share.low : 1.0;
+    if (low > 0.0) NoteLost(from, Between(from, to, low), all_of_it);
+    if (follows && share.high < 1.0) NoteLost(Between(from, to, share.high), to, all_of_it);
+  }
   if (range_.HasXY(to)) {
     if (share.low > 0.0) NoteClipped(share.low * length);
     return;
@@ -135,6 +141,7 @@ void Carriage::MoveXYZ(const Context& context, const Point& to) {
     }
     outside_ = true;
     beyond += DistanceXYZ(piece.from, piece.to);
+    NoteLost(piece.from, piece.to, context.registers.z0);
     if (piece.region == Region::kBelow) Follow(context, piece, dwell);
   }
   TurnRotary(context, to.a, dwell);
@@ -280,6 +287,26 @@ void Carriage::NoteClipped(double length) {
   if (!(length > zero_)) return;
   clipped_length_ += length;
   ++clipped_sets_;
+}
+
+// The part of a line below `surface_z`. Straight up cuts nothing.
+void Carriage::NoteLost(const Point& from, const Point& to, double surface_z) {
+  const bool up = SameXY(from, to) && to.z >= from.z;
+  if (up || std::min(from.z, to.z) >= surface_z) return;
+  Point a = from;
+  Point b = to;
+  if (a.z > surface_z) a = Between(from, to, (surface_z - from.z) / (to.z - from.z));
+  if (b.z > surface_z) b = Between(from, to, (surface_z - from.z) / (to.z - from.z));
+  const double length = DistanceXYZ(a, b);
+  if (!(length > zero_)) return;
+  lost_.length += length;
+  for (const Point& p : {a, b}) {
+    lost_.x_low = std::max(lost_.x_low, range_.x.low - p.x);
+    lost_.x_high = std::max(lost_.x_high, p.x - range_.x.high);
+    lost_.y_low = std::max(lost_.y_low, range_.y.low - p.y);
+    lost_.y_high = std::max(lost_.y_high, p.y - range_.y.high);
+    lost_.z_low = std::max(lost_.z_low, range_.bottom() - p.z);
+  }
 }
 
 bool Carriage::SameXY(const Point& a, const Point& b) const {

@@ -8,6 +8,17 @@
 
 namespace rmlcell::rml1 {
 
+// What a stream would have cut beyond the travel, and how far it leads beyond each face. Device
+// units; 0 where it stays inside.
+struct LostCut {
+  double length = 0.0;
+  double x_low = 0.0;
+  double x_high = 0.0;
+  double y_low = 0.0;
+  double y_high = 0.0;
+  double z_low = 0.0;
+};
+
 // The axes of the device: turns commanded points into physical motions.
 //
 // It keeps two positions, in device units from the machine's zero. The logical one follows the
@@ -51,6 +62,8 @@ class Carriage {
   // Logical way that the tool could not follow, in device units, and the sets concerned.
   double clipped_length() const { return clipped_length_; }
   std::uint64_t clipped_sets() const { return clipped_sets_; }
+  // The part of that which would have been in the work: with the tool down, or below Z 0.
+  const LostCut& lost() const { return lost_; }
 
  private:
   struct Stroke {
@@ -76,6 +89,7 @@ class Carriage {
   void LeaveXY(const Context& context);
   void PauseAtEntry(const Context& context, bool allowed);
   void NoteClipped(double length);
+  void NoteLost(const Point& from, const Point& to, double surface_z);
   bool SameXY(const Point& a, const Point& b) const;
 
   CuttingRange range_;
@@ -86,6 +100,7 @@ class Carriage {
   bool parked_ = false;   // a two-axis motion left the tool at its boundary, at a safe height
   double clipped_length_ = 0.0;
   std::uint64_t clipped_sets_ = 0;
+  LostCut lost_;
 };
 
 // The highest speed up to `wanted` at which no axis exceeds its own; motion.md section 7.

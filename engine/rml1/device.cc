@@ -42,6 +42,23 @@ FindingKind KindOf(LinkError error) {
   }
 }
 
+// Errors that leave the tool somewhere else than the program says.
+bool LosesPosition(FindingKind kind) {
+  switch (kind) {
+    case FindingKind::kAxisTwice:
+    case FindingKind::kAxisValue:
+    case FindingKind::kAxisLetter:
+    case FindingKind::kAxesTogether:
+    case FindingKind::kLeftOver:
+    case FindingKind::kValueRange:
+    case FindingKind::kHeightRange:
+    case FindingKind::kTravelRange:
+      return true;
+    default:
+      return false;
+  }
+}
+
 }  // namespace
 
 Device::Device(const Profile& profile)
@@ -96,7 +113,10 @@ bool Device::Step(DeviceListener& listener) {
   if (buffer_.empty()) return false;
   const DataBuffer::Entry entry = buffer_.front();
   const Reading reading = reader_.Put(entry.byte, entry.offset);
-  if (reading.taken) buffer_.Pop();
+  if (reading.taken) {
+    buffer_.Pop();
+    ++bytes_read_;
+  }
   if (reading.kind != Reading::Kind::kNothing) OnReading(reading, entry, listener);
   return true;
 }
@@ -154,6 +174,7 @@ void Device::OnReadError(const DataBuffer::Entry& at, DeviceListener& listener) 
     BeginCommand(listener);
   } else {
     programmed_.OnDiscarded(error == ReadError::kUnknownName || error == ReadError::kUnknownCall);
+    bytes_foreign_ += static_cast<std::uint64_t>(reader_.error_length());
   }
   Log(command_errors_,
       {.kind = KindOf(error),
@@ -214,7 +235,16 @@ void Device::Report(FindingKind kind, DeviceListener& listener, double value) {
       listener);
 }
 
+double Device::foreign_percent() const {
+  constexpr std::uint64_t kFew = 256;  // a mistyped letter in a line is no other language
+  return 100.0 * static_cast<double>(bytes_foreign_) /
+         static_cast<double>(std::max(bytes_read_, kFew));
+}
+
 void Device::Log(ErrorLog& log, Finding finding, DeviceListener& listener) {
+  if (LosesPosition(finding.kind)) {
+    if (positions_refused_++ == 0) first_refused_ = command_;
+  }
   const bool was_cut = log.cut();
   const int number = Lookup(RowOf(finding.kind).code).number;
   if (log.Add(number, finding.offset)) {

@@ -80,6 +80,14 @@ class Device {
   const CommandPlace& command() const { return command_; }
   std::uint64_t commands_done() const { return commands_done_; }  // executed to their end
   std::uint64_t speeds_limited() const { return speeds_limited_; }
+  // Coordinates and tool heights that were refused: the tool does not go where the program says.
+  std::uint64_t positions_refused() const { return positions_refused_; }
+  // Of the bytes that came out of the buffer, or of 256 where they are fewer, those that belong to
+  // no command, in percent.
+  double foreign_percent() const;
+  // Where the first set lost a part that it would have cut; number 0: none did.
+  const CommandPlace& first_lost() const { return first_lost_; }
+  const CommandPlace& first_refused() const { return first_refused_; }
 
   // The state of an earlier run (machine_state.h), limited to what this profile can do. Only before
   // the first byte.
@@ -113,7 +121,7 @@ class Device {
   // device_commands.cc
   void BeginCommand(DeviceListener& listener);
   void ApplyEffects(const CommandRow& row);
-  void NoteClipping(std::uint64_t sets_before, DeviceListener& listener);
+  void NoteClipping(double lost_before, DeviceListener& listener);
   bool TakeCoordinate(DeviceListener& listener);
   void RunSet(DeviceListener& listener);
   void RunBare();
@@ -159,6 +167,11 @@ class Device {
   std::int64_t last_offset_ = 0;  // of the byte received last
   std::uint64_t commands_done_ = 0;
   std::uint64_t speeds_limited_ = 0;
+  std::uint64_t positions_refused_ = 0;
+  std::uint64_t bytes_read_ = 0;
+  std::uint64_t bytes_foreign_ = 0;
+  CommandPlace first_lost_;
+  CommandPlace first_refused_;
   std::array<int, kFindingKindCount> advised_{};
 };
 

@@ -58,7 +58,7 @@ bool Device::TakeCoordinate(DeviceListener& listener) {
 void Device::RunSet(DeviceListener& listener) {
   const CommandRow& row = reader_.row();
   const auto [a, b, c] = operands_.set;
-  const std::uint64_t clipped = carriage_.clipped_sets();
+  const double lost = carriage_.lost().length;
   ApplyEffects(row);
   const Point& logical = carriage_.logical();
   const bool absolute = registers_.absolute;
@@ -74,7 +74,7 @@ void Device::RunSet(DeviceListener& listener) {
     carriage_.ToToolHeight(context());
     carriage_.MoveXY(context(), x, y);
   }
-  NoteClipping(clipped, listener);
+  NoteClipping(lost, listener);
 }
 
 // A command with sets, without any parameter.
@@ -85,8 +85,11 @@ void Device::RunBare() {
   if (row.tool != ToolChange::kNone) carriage_.ToToolHeight(context());
 }
 
-void Device::NoteClipping(std::uint64_t sets_before, DeviceListener& listener) {
-  if (carriage_.clipped_sets() == sets_before || clip_told_ == command_.number) return;
+// A lift above the top or a parking place beyond the travel costs nothing: it is only counted.
+void Device::NoteClipping(double lost_before, DeviceListener& listener) {
+  if (!(carriage_.lost().length > lost_before)) return;
+  if (first_lost_.number == 0) first_lost_ = command_;
+  if (clip_told_ == command_.number) return;
   clip_told_ = command_.number;
   Advise(FindingKind::kClipped, listener);
 }
@@ -213,9 +216,9 @@ void Device::OnGroup(DeviceListener& listener) {
   }
   const Programmed::AxisGroup& named = group_.named;
   if (named.has_x || named.has_y || named.has_z) programmed_.OnGroup(named);
-  const std::uint64_t clipped = carriage_.clipped_sets();
+  const double lost = carriage_.lost().length;
   carriage_.MoveXYZ(context(), group_.to);
-  NoteClipping(clipped, listener);
+  NoteClipping(lost, listener);
   ClearGroup();
 }
 
@@ -230,6 +233,7 @@ double Device::NearestSpeed(const motion::FeedSteps& steps, DeviceListener& list
 
 // F, VS: never an error (RML1-3A.46, RML1-3B.28).
 void Device::SetXYSpeed(DeviceListener& listener) {
+  registers_.xy_speed_given = operands_.count > 0;
   registers_.xy_speed =
       operands_.count == 0 ? profile_->xy_speed : NearestSpeed(profile_->xy_speeds, listener);
 }
@@ -238,10 +242,12 @@ void Device::SetXYSpeed(DeviceListener& listener) {
 void Device::SetZSpeed(DeviceListener& listener) {
   if (operands_.count == 0) {
     registers_.z_speed = profile_->z_speed;
+    registers_.z_speed_given = false;
   } else if (!operands_.fixed[0].Within(kIntMin, kIntMax)) {
     Report(FindingKind::kSettingRange, listener, operands_.fixed[0].decimal);
   } else {
     registers_.z_speed = NearestSpeed(profile_->z_speeds, listener);
+    registers_.z_speed_given = true;
   }
 }
 
@@ -333,6 +339,7 @@ void Device::RestoreDefaults() {
   registers_.absolute = true;
   registers_.xy_speed = profile_->xy_speed;
   registers_.z_speed = profile_->z_speed;
+  registers_.xy_speed_given = registers_.z_speed_given = false;
   registers_.dwell_ms = 0;
   registers_.rotation = true;
   registers_.z1 = profile_->z1;

@@ -1,5 +1,6 @@
 #include "engine/rml1/figures.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -9,6 +10,7 @@ namespace {
 struct Source {
   const Device& device;
   const Physical::Totals& tool;
+  const CutWatch& watch;
   double mm;  // of one device unit
   bool rotary;
   std::optional<std::uint64_t> starved;
@@ -40,18 +42,25 @@ Value Commands(const Source& s) {
   return IfAny(s.device.programmed().count(kOp));
 }
 
+// How far below the surface the tool stands.
+double DepthNow(const Source& s) {
+  const double below = s.device.registers().z0 - s.device.carriage().physical().z;
+  return std::max(0.0, below) * s.mm;
+}
+
 struct Row {
   machine::FigureInfo info;
   Value (*value)(const Source&);
+  CommandPlace (*first)(const Source&) = nullptr;  // the command that was the first to do it
 };
 
 // clang-format off
 constexpr std::array kRows = {
-    Row{{"commands", "", "commands carried out to their end"}, [](const Source& s) -> Value { return Count(s.device.commands_done()); }},
-    Row{{"motions", "", "motions of the tool"}, [](const Source& s) -> Value { return Count(s.tool.motions); }},
-    Row{{"cut_length", "mm", "way of the tool in the work: cuts and plunges"}, [](const Source& s) -> Value { return s.tool.cut_mm; }},
-    Row{{"travel_length", "mm", "the rest of its way"}, [](const Source& s) -> Value { return s.tool.travel_mm; }},
-    Row{{"plunges", "", "times that the tool went down into the work by itself"}, [](const Source& s) -> Value { return Count(s.tool.plunges); }},
+    Row{{"commands", "", "commands carried out to their end", "commands", "#", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return Count(s.device.commands_done()); }},
+    Row{{"motions", "", "motions of the tool", "motions", "#", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return Count(s.tool.motions); }},
+    Row{{"cut_length", "mm", "way of the tool in the work: cuts and plunges", "path", "cut # mm", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return s.tool.cut_mm; }},
+    Row{{"travel_length", "mm", "the rest of its way", "path", "travel # mm", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return s.tool.travel_mm; }},
+    Row{{"plunges", "", "times that the tool went down into the work by itself", "plunges", "#", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return Count(s.tool.plunges); }},
     Row{{"motion_time", "s", "moving"}, [](const Source& s) -> Value { return s.tool.motion_s; }},
     Row{{"tool_up_time", "s", "moving or waiting in tool state up", "tool", "up # s", true}, [](const Source& s) -> Value { return s.tool.up_s; }},
     Row{{"tool_down_time", "s", "moving or waiting in tool state down", "tool", "down # s", true}, [](const Source& s) -> Value { return s.tool.down_s; }},
@@ -65,17 +74,31 @@ constexpr std::array kRows = {
     Row{{"box.ymax", "units", "greatest Y of the tool, work coordinates"}, [](const Source& s) -> Value { return High(s.tool.y); }},
     Row{{"box.zmin", "units", "least Z of the tool, work coordinates"}, [](const Source& s) -> Value { return Low(s.tool.z); }},
     Row{{"box.zmax", "units", "greatest Z of the tool, work coordinates"}, [](const Source& s) -> Value { return High(s.tool.z); }},
-    Row{{"box_mm.xmin", "mm", "least X of the tool, work coordinates"}, [](const Source& s) -> Value { return Low(s.tool.x, s.mm); }},
-    Row{{"box_mm.xmax", "mm", "greatest X of the tool, work coordinates"}, [](const Source& s) -> Value { return High(s.tool.x, s.mm); }},
-    Row{{"box_mm.ymin", "mm", "least Y of the tool, work coordinates"}, [](const Source& s) -> Value { return Low(s.tool.y, s.mm); }},
-    Row{{"box_mm.ymax", "mm", "greatest Y of the tool, work coordinates"}, [](const Source& s) -> Value { return High(s.tool.y, s.mm); }},
-    Row{{"box_mm.zmin", "mm", "least Z of the tool, work coordinates"}, [](const Source& s) -> Value { return Low(s.tool.z, s.mm); }},
-    Row{{"box_mm.zmax", "mm", "greatest Z of the tool, work coordinates"}, [](const Source& s) -> Value { return High(s.tool.z, s.mm); }},
+    Row{{"box_mm.xmin", "mm", "least X of the tool, work coordinates", "X", "from # mm", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return Low(s.tool.x, s.mm); }},
+    Row{{"box_mm.xmax", "mm", "greatest X of the tool, work coordinates", "X", "to # mm", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return High(s.tool.x, s.mm); }},
+    Row{{"box_mm.ymin", "mm", "least Y of the tool, work coordinates", "Y", "from # mm", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return Low(s.tool.y, s.mm); }},
+    Row{{"box_mm.ymax", "mm", "greatest Y of the tool, work coordinates", "Y", "to # mm", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return High(s.tool.y, s.mm); }},
+    Row{{"box_mm.zmin", "mm", "least Z of the tool, work coordinates", "Z", "from # mm", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return Low(s.tool.z, s.mm); }},
+    Row{{"box_mm.zmax", "mm", "greatest Z of the tool, work coordinates", "Z", "to # mm", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return High(s.tool.z, s.mm); }},
     Row{{"box.amin", "deg", "least angle of the rotary axis"}, [](const Source& s) -> Value { return s.rotary ? Low(s.tool.a) : std::nullopt; }},
     Row{{"box.amax", "deg", "greatest angle of the rotary axis"}, [](const Source& s) -> Value { return s.rotary ? High(s.tool.a) : std::nullopt; }},
-    Row{{"clipped_length", "mm", "programmed way beyond the cutting range", "clipped", "# mm beyond the cutting range"}, [](const Source& s) -> Value { return s.device.carriage().clipped_length() * s.mm; }},
+    Row{{"clipped_length", "mm", "programmed way beyond the cutting range", "clipped", "# mm beyond the cutting range", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return s.device.carriage().clipped_length() * s.mm; }},
     Row{{"clipped_sets", "", "coordinate sets that led beyond it"}, [](const Source& s) -> Value { return Count(s.device.carriage().clipped_sets()); }},
-    Row{{"speed_clamps", "", "speed words beyond the machine", "speeds", "# limited to those of the machine"}, [](const Source& s) -> Value { return Count(s.device.speeds_limited()); }},
+    Row{{"clipped_cut_length", "mm", "the part of that which would have been in the work"}, [](const Source& s) -> Value { return s.device.carriage().lost().length * s.mm; }, [](const Source& s) { return s.device.first_lost(); }},
+    Row{{"clipped_x_low", "mm", "how far the work leads beyond the least X of the travel"}, [](const Source& s) -> Value { return s.device.carriage().lost().x_low * s.mm; }},
+    Row{{"clipped_x_high", "mm", "how far it leads beyond the greatest X"}, [](const Source& s) -> Value { return s.device.carriage().lost().x_high * s.mm; }},
+    Row{{"clipped_y_low", "mm", "how far it leads beyond the least Y"}, [](const Source& s) -> Value { return s.device.carriage().lost().y_low * s.mm; }},
+    Row{{"clipped_y_high", "mm", "how far it leads beyond the greatest Y"}, [](const Source& s) -> Value { return s.device.carriage().lost().y_high * s.mm; }},
+    Row{{"clipped_z_low", "mm", "how far it leads below the travel"}, [](const Source& s) -> Value { return s.device.carriage().lost().z_low * s.mm; }},
+    Row{{"positions_refused", "", "coordinates and tool heights that were refused: the tool does not go where the program says"}, [](const Source& s) -> Value { return Count(s.device.positions_refused()); }, [](const Source& s) { return s.device.first_refused(); }},
+    Row{{"foreign_share", "%", "bytes that belong to no command, of 256 at least"}, [](const Source& s) -> Value { return s.device.foreign_percent(); }},
+    Row{{"spindle_stands_length", "mm", "way in the work while the spindle stands"}, [](const Source& s) -> Value { return s.watch.spindle_stands().mm; }, [](const Source& s) { return s.watch.spindle_stands().first; }},
+    Row{{"no_clearance_length", "mm", "way across at travel speed, not above the surface of the work, Z 0"}, [](const Source& s) -> Value { return s.watch.no_clearance().mm; }, [](const Source& s) { return s.watch.no_clearance().first; }},
+    Row{{"feed_not_given_length", "mm", "way in the work at a speed that the program did not set"}, [](const Source& s) -> Value { return s.watch.feed_not_given().mm; }, [](const Source& s) { return s.watch.feed_not_given().first; }},
+    Row{{"depth_at_end", "mm", "how far below the surface the tool stands at the end"}, [](const Source& s) -> Value { return DepthNow(s); }},
+    Row{{"spindle_on_at_end", "", "1 when the spindle turns at the end"}, [](const Source& s) -> Value { return s.device.spindle_turns() ? 1.0 : 0.0; }},
+    Row{{"nothing_cut", "", "1 when the tool never was in the work"}, [](const Source& s) -> Value { return s.tool.cut_mm > 0.0 ? 0.0 : 1.0; }},
+    Row{{"speed_clamps", "", "speed words beyond the machine", "speeds", "# limited to those of the machine", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return Count(s.device.speeds_limited()); }},
     Row{{"error_register", "", "command error register"}, [](const Source& s) -> Value { return static_cast<double>(s.device.command_errors().value()); }},
     Row{{"communication_register", "", "communication error register"}, [](const Source& s) -> Value { return static_cast<double>(s.device.link_errors().value()); }},
     Row{{"errors", "", "command errors"}, [](const Source& s) -> Value { return Count(s.device.command_errors().total()); }},
@@ -155,6 +178,7 @@ std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& phy
   const Profile& profile = physical.profile();
   const Source source{.device = device,
                       .tool = physical.totals(),
+                      .watch = physical.watch(),
                       .mm = 1.0 / profile.units_per_mm,
                       .rotary = profile.has_rotary,
                       .starved = starved};
@@ -162,7 +186,13 @@ std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& phy
   for (const Row& row : kRows) {
     const Value value = row.value(source);
     if (!value) continue;
-    figures.push_back({std::string(row.info.name), std::string(row.info.unit), *value});
+    machine::Figure figure{std::string(row.info.name), std::string(row.info.unit), *value};
+    if (row.first != nullptr && *value > 0.0) {
+      const CommandPlace first = row.first(source);
+      figure.first.step = static_cast<int>(first.number);
+      figure.first.byte_offset = first.offset;
+    }
+    figures.push_back(std::move(figure));
   }
   return figures;
 }

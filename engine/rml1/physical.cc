@@ -4,7 +4,7 @@ namespace rmlcell::rml1 {
 
 using machine::MotionUse;
 
-void Physical::OnRide(const Ride& ride, const Registers& registers) {
+void Physical::OnRide(const Ride& ride, const Registers& registers, const CommandPlace& command) {
   const bool first_ever = !totals_.x.known;
   const auto add_point = [&](const Point& p) {
     totals_.x.Add(p.x - profile_->origin_x);
@@ -21,6 +21,14 @@ void Physical::OnRide(const Ride& ride, const Registers& registers) {
   const bool in_work = ride.use == MotionUse::kCut || ride.use == MotionUse::kPlunge;
   (in_work ? totals_.cut_mm : totals_.travel_mm) += ride.length_mm;
   totals_.motion_s += ride.time_s;
+  watch_.OnRide({.from = ride.from,
+                 .to = ride.to,
+                 .length_mm = ride.length_mm,
+                 .in_work = in_work,
+                 .rapid = ride.rapid,
+                 .by_xy_speed = ride.chain == Chain::kToolDown,
+                 .spindle_turns = ride.spindle_turns},
+                registers, command);
   AddToState(ride.time_s, registers);
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "engine/machine/run.h"
+#include "engine/rml1/cut_watch.h"
 #include "engine/rml1/device.h"
 
 namespace rmlcell::rml1 {
@@ -20,10 +21,13 @@ class Physical {
     double length_mm = 0.0;
     double time_s = 0.0;
     bool first = true;  // of its motion; false: the rest of one that was cut
+    bool rapid = false;
+    Chain chain = Chain::kAlone;
+    bool spindle_turns = false;
   };
   // Cut length is what the tool did in the work, cuts and plunges, as in every report of the cell;
   // travel length is the rest.
-  void OnRide(const Ride& ride, const Registers& registers);
+  void OnRide(const Ride& ride, const Registers& registers, const CommandPlace& command);
 
   void OnDwell(double time_s, const Registers& registers);
   void OnSpindleWait(double time_s, const Registers& registers);
@@ -46,6 +50,7 @@ class Physical {
     Extent a;  // degrees
   };
   const Totals& totals() const { return totals_; }
+  const CutWatch& watch() const { return watch_; }
   const Profile& profile() const { return *profile_; }
 
  private:
@@ -53,6 +58,7 @@ class Physical {
 
   const Profile* profile_;
   Totals totals_;
+  CutWatch watch_;
 };
 
 }  // namespace rmlcell::rml1

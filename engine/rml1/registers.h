@@ -19,8 +19,10 @@ struct Registers {
 
   bool absolute = true;
   bool tool_down = false;
-  double xy_speed;  // F, VS: mm/s
-  double z_speed;   // V, !VZ: mm/s
+  double xy_speed;              // F, VS: mm/s
+  double z_speed;               // V, !VZ: mm/s
+  bool xy_speed_given = false;  // by the program, and not the default of the machine
+  bool z_speed_given = false;
   int dwell_ms = 0;
   double z0;
   double z1;

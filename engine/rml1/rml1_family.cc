@@ -2,12 +2,14 @@
 
 #include <algorithm>
 
+#include "engine/core/number_text.h"
 #include "engine/machine/shape.h"
 #include "engine/rml1/figures.h"
 #include "engine/rml1/physical.h"
 #include "engine/rml1/run.h"
 #include "engine/rml1/timing.h"
 #include "engine/rml1/variables.h"
+#include "engine/rml1/verdict_rules.h"
 
 namespace rmlcell::rml1 {
 namespace {
@@ -95,6 +97,7 @@ class Rehearsal {
                         "RML1-9.42", {.length = 1, .byte_offset = device_.pending_offset()}, 0);
   }
 
+  const Device& device() const { return device_; }
   std::vector<machine::Figure> Figures() const { return FiguresOf(device_, physical_); }
 
  private:
@@ -105,8 +108,11 @@ class Rehearsal {
       physical_.OnRide({.from = tool_,
                         .to = action.to,
                         .use = action.use,
-                        .length_mm = DistanceXYZ(tool_, action.to) / profile_.units_per_mm},
-                       device_.registers());
+                        .length_mm = DistanceXYZ(tool_, action.to) / profile_.units_per_mm,
+                        .rapid = action.rapid,
+                        .chain = action.chain,
+                        .spindle_turns = device_.spindle_turns()},
+                       device_.registers(), device_.command());
       tool_ = action.to;
     } else if (action.kind == Action::Kind::kPause && pauses_told_ < kPausesMax) {
       ++pauses_told_;
@@ -141,6 +147,7 @@ class MillFamily final : public machine::MachineFamily {
     return profile && HasRegister(*profile, name);
   }
   std::span<const machine::FigureInfo> figures() const override { return FigureTable(); }
+  std::span<const machine::VerdictRule> verdict_rules() const override { return VerdictRules(); }
   machine::MachineShape Shape(const machine::Parameters& parameters) const override;
   machine::Translation Translate(const machine::SourceFile& file,
                                  const machine::Parameters& parameters,
@@ -181,9 +188,24 @@ machine::Translation MillFamily::Translate(const machine::SourceFile& file,
   Findings findings(file, options.advice, translation);
   Rehearsal rehearsal(*profile, findings);
   rehearsal.Run(file.bytes);
+  const double foreign_percent = rehearsal.device().foreign_percent();
+  if (foreign_percent > kForeignShareMax_percent && !options.forced) {
+    translation.figures = rehearsal.Figures();
+    translation.diagnostics.insert(
+        translation.diagnostics.begin(),
+        Plain(ErrorCode::kRml1NoProgram,
+              FixedText(foreign_percent, 1) + " % of the bytes belong to no command"));
+    translation.diagnostics.front().file = file.name;
+    return translation;
+  }
   translation.ok = true;
   translation.object = std::string(file.bytes);
   translation.figures = rehearsal.Figures();
+  LineCounter lines;
+  for (machine::Figure& figure : translation.figures) {
+    if (figure.first.step > 0)
+      figure.first.line = lines.At(file.bytes, figure.first.byte_offset, 0).line;
+  }
   translation.figures.push_back(
       {.name = "object_bytes", .unit = "bytes", .value = static_cast<double>(file.bytes.size())});
   return translation;

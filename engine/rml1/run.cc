@@ -405,7 +405,15 @@ std::optional<std::string> MillRun::ReadVariable(std::string_view name) const {
 }
 
 std::vector<machine::Figure> MillRun::figures() const {
-  return FiguresOf(state_.device, state_.physical, state_.ahead.starved());
+  std::vector<machine::Figure> figures =
+      FiguresOf(state_.device, state_.physical, state_.ahead.starved());
+  LineCounter lines;
+  for (machine::Figure& figure : figures) {
+    if (figure.first.step == 0) continue;
+    figure.first.program = setup_.main_program;
+    figure.first.line = lines.At(stream(), figure.first.byte_offset, 0).line;
+  }
+  return figures;
 }
 
 // A run that was cut short leaves the tool where it stands, and the spindle off.

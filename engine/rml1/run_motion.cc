@@ -145,8 +145,11 @@ void MillRun::ReportLeg(double travelled) {
                      .use = m.action.use,
                      .length_mm = (path.At(travelled).point - path.from().point).norm(),
                      .time_s = ToSeconds(s.now - s.busy_from),
-                     .first = m.first_leg},
-                    s.device.registers());
+                     .first = m.first_leg,
+                     .rapid = m.action.rapid,
+                     .chain = m.action.chain,
+                     .spindle_turns = s.device.spindle_turns()},
+                    s.device.registers(), s.device.command());
   observer_.OnMotion({.start = s.busy_from,
                       .end = s.now,
                       .place = s.place,

@@ -2,6 +2,7 @@
 
 #include <google/protobuf/any.pb.h>
 
+#include "engine/simulation/run/rehearsal.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "rmlcell/v1/common.pb.h"
@@ -10,6 +11,35 @@
 
 namespace rmlcell::bridge {
 namespace {
+
+v1::Verdict ToProto(machine::Verdict verdict) {
+  switch (verdict) {
+    case machine::Verdict::kGood:
+      return v1::VERDICT_GOOD;
+    case machine::Verdict::kDoubtful:
+      return v1::VERDICT_DOUBTFUL;
+    case machine::Verdict::kBad:
+      return v1::VERDICT_BAD;
+  }
+  return v1::VERDICT_UNSPECIFIED;
+}
+
+template <class Message>
+void AddJudgement(const machine::Judgement& judgement, Message& message) {
+  message.set_verdict(ToProto(judgement.verdict));
+  for (const machine::Reason& reason : judgement.reasons) {
+    v1::VerdictReason& made = *message.add_reasons();
+    made.set_verdict(ToProto(reason.verdict));
+    made.set_code(CodeText(reason.code));
+    made.set_symbol(ConstantName(reason.code));
+    made.set_message(Utf8(reason.said));
+    made.set_advice(std::string(Lookup(reason.code).advice));
+    made.set_amount(reason.amount);
+    made.set_unit(reason.unit);
+    if (reason.first.step > 0 || reason.first.line > 0)
+      *made.mutable_first() = bridge::ToProto(reason.first);
+  }
+}
 
 v1::Severity SeverityToProto(Severity severity) {
   switch (severity) {
@@ -139,6 +169,15 @@ v1::Figure ToProto(const machine::Figure& figure) {
   return message;
 }
 
+v1::SourcePlace ToProto(const machine::Place& place) {
+  v1::SourcePlace message;
+  message.set_program(place.program);
+  message.set_step(place.step);
+  message.set_line(place.line);
+  if (place.byte_offset >= 0) message.set_byte_offset(place.byte_offset);
+  return message;
+}
+
 v1::Outcome ToProto(const machine::Outcome& outcome) {
   v1::Outcome message;
   switch (outcome.kind) {
@@ -166,12 +205,22 @@ v1::Outcome ToProto(const machine::Outcome& outcome) {
     message.set_advice(std::string(entry.advice));
     if (outcome.detail.empty()) message.set_message(std::string(entry.when));
   }
-  v1::SourcePlace& place = *message.mutable_place();
-  place.set_program(outcome.place.program);
-  place.set_step(outcome.place.step);
-  place.set_line(outcome.place.line);
-  if (outcome.place.byte_offset >= 0) place.set_byte_offset(outcome.place.byte_offset);
+  *message.mutable_place() = ToProto(outcome.place);
   return message;
+}
+
+v1::Outcome ToProto(const machine::Outcome& outcome, const machine::Judgement& judgement) {
+  v1::Outcome message = ToProto(outcome);
+  SetJudgement(judgement, message);
+  return message;
+}
+
+void SetJudgement(const machine::Judgement& judgement, v1::Outcome& message) {
+  AddJudgement(judgement, message);
+}
+
+void SetJudgement(const machine::Judgement& judgement, v1::Findings& message) {
+  AddJudgement(judgement, message);
 }
 
 v1::ErrorExplanation Explain(const CatalogueEntry& entry) {
@@ -195,7 +244,8 @@ v1::Findings FindingsOf(bool ok, const std::vector<Diagnostic>& diagnostics, std
   return message;
 }
 
-v1::Findings FindingsOf(const machine::Translation& translation,
+v1::Findings FindingsOf(const machine::MachineFamily& family,
+                        const machine::Translation& translation,
                         const simulation::MotionCheck& motion, int slot) {
   v1::Findings message =
       FindingsOf(translation.ok && !motion.has_errors(), translation.diagnostics,
@@ -204,6 +254,7 @@ v1::Findings FindingsOf(const machine::Translation& translation,
     *message.add_diagnostics() = ToProto(diagnostic);
   const auto cut_short = motion.cut_short.find(slot);
   if (cut_short != motion.cut_short.end()) message.set_motion_check(Utf8(cut_short->second));
+  SetJudgement(simulation::JudgeCheck(family, translation, motion), message);
   return message;
 }
 

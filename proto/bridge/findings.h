@@ -29,15 +29,21 @@ v1::Diagnostic ToProto(const Diagnostic& diagnostic);
 std::string Utf8(const std::string& text);
 
 v1::Figure ToProto(const machine::Figure& figure);
+v1::SourcePlace ToProto(const machine::Place& place);
 v1::Outcome ToProto(const machine::Outcome& outcome);
+// With what was judged of it; the message has verdict and reasons: an Outcome, or Findings.
+v1::Outcome ToProto(const machine::Outcome& outcome, const machine::Judgement& judgement);
+void SetJudgement(const machine::Judgement& judgement, v1::Outcome& message);
+void SetJudgement(const machine::Judgement& judgement, v1::Findings& message);
 v1::ErrorExplanation Explain(const CatalogueEntry& entry);
 
 // The findings of a translation or a transfer.
 v1::Findings FindingsOf(bool ok, const std::vector<Diagnostic>& diagnostics, std::uint64_t dropped,
                         const std::vector<machine::Figure>& figures);
 
-// The findings of a check: of the translation, then of the motion.
-v1::Findings FindingsOf(const machine::Translation& translation,
+// The findings of a check: of the translation, then of the motion, with what is judged of them.
+v1::Findings FindingsOf(const machine::MachineFamily& family,
+                        const machine::Translation& translation,
                         const simulation::MotionCheck& motion, int slot);
 
 // Back to engine values, for those that print findings which came over the wire. Unknown codes

@@ -15,6 +15,10 @@ v1::Point ToProto(const motion::MachinePoint& point) {
   return message;
 }
 
+void SetPlace(const machine::Place& place, v1::SourcePlace& message) {
+  message = bridge::ToProto(place);
+}
+
 v1::Position PositionOf(const motion::TipPose& tip, const motion::AxisPose& axes) {
   v1::Position message;
   *message.mutable_tip() = ToProto(tip.tip);
@@ -22,13 +26,6 @@ v1::Position PositionOf(const motion::TipPose& tip, const motion::AxisPose& axes
   message.set_a(axes.a_rad);
   message.set_b(axes.b_rad);
   return message;
-}
-
-void SetPlace(const machine::Place& place, v1::SourcePlace& message) {
-  message.set_program(place.program);
-  message.set_step(place.step);
-  message.set_line(place.line);
-  if (place.byte_offset >= 0) message.set_byte_offset(place.byte_offset);
 }
 
 template <class Message>
@@ -179,7 +176,7 @@ v1::RunReport ToProto(const simulation::RunReport& report,
   v1::RunReport message;
   message.set_family(report.family);
   message.set_title(report.title);
-  *message.mutable_outcome() = ToProto(report.outcome);
+  *message.mutable_outcome() = ToProto(report.outcome, report.judgement);
   *message.mutable_total() = ToProto(report.total);
   *message.mutable_final_position() =
       PositionOf(report.final_position.tip, report.final_position.axes);
@@ -223,6 +220,8 @@ v1::RunReport ToProto(const simulation::RunReport& report,
     figures.set_gouge_depth_mm(milling->gouge_depth_mm);
     if (milling->gouges > 0) SetPlace(milling->gouge_place, *figures.mutable_gouge_place());
     figures.set_gouge_time_s(ToSeconds(milling->gouge_at));
+    figures.set_below_mm(milling->below_mm);
+    if (milling->below_mm > 0.0) SetPlace(milling->below_place, *figures.mutable_below_place());
   }
   for (const simulation::AxisViolation& violation : report.violations) {
     *message.add_violations() = ToProto(violation);

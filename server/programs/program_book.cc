@@ -173,7 +173,7 @@ ProgramResult<v1::Program> ProgramBook::Store(Put put) {
       put.form == v1::PROGRAM_FORM_OBJECT || families::IsObjectFileName(put.file_name);
   machine::Translation translation = family.Translate(
       {.name = BaseName(put.file_name), .bytes = put.bytes, .is_object = is_object}, *parameters,
-      {});
+      {.forced = put.force});
   if (!translation.ok) return FirstError(translation);
   for (Diagnostic& found : family.CheckSlot(place->slot)) {
     found.file = BaseName(put.file_name);
@@ -429,7 +429,8 @@ Result<ProgramBook::Checked> ProgramBook::Check(const std::string& family_id,
   Result<simulation::ProgramCheck> check =
       simulation::CheckProgram(memory, *subject->parameters, slot, advice, {});
   if (!check) return check.error();
-  Checked checked{.translation = std::move(check->translation),
+  Checked checked{.family = &family,
+                  .translation = std::move(check->translation),
                   .motion = std::move(check->motion),
                   .slot = slot};
   for (Diagnostic& finding : checked.motion.findings) {

@@ -30,6 +30,7 @@ class ProgramBook {
     std::string etag;
     std::string bytes;
     bool validate_only = false;
+    bool force = false;
   };
   // All or nothing. Errors: CellEmptyProgram, CellTooLarge, the first compile error,
   // CellEtagMismatch, CellUnknownMachine, FamilyInfo::no_slot, empty_slot for an executable without
@@ -58,6 +59,7 @@ class ProgramBook {
   // The same, and follows the motion of what has no errors; on a machine in the state in which that
   // is, with its programs. Findings of other programs, which the checked one calls, are among them.
   struct Checked {
+    const machine::MachineFamily* family = nullptr;
     machine::Translation translation;
     simulation::MotionCheck motion;
     int slot = 0;  // that the program has in the check

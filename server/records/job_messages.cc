@@ -31,6 +31,14 @@ std::string_view KindOf(const v1::JobEvent& event) {
   return "";
 }
 
+// Verdict and reasons alone.
+std::string JudgementBytes(const v1::Outcome& outcome) {
+  v1::Outcome judged;
+  judged.set_verdict(outcome.verdict());
+  *judged.mutable_reasons() = outcome.reasons();
+  return judged.SerializeAsString();
+}
+
 }  // namespace
 
 google::protobuf::Timestamp ToProto(storage::WallTime time) {
@@ -124,7 +132,8 @@ storage::JobOutcome OutcomeOf(const v1::Outcome& outcome) {
                            .code = {},
                            .detail = outcome.message(),
                            .program = outcome.place().program(),
-                           .step = outcome.place().step()};
+                           .step = outcome.place().step(),
+                           .judgement = JudgementBytes(outcome)};
   const auto found = FindByText(outcome.code());
   if (!outcome.code().empty() && !found.empty()) made.code = found.front()->code;
   if (outcome.kind() == v1::Outcome::KIND_COMPLETED ||
@@ -138,6 +147,8 @@ storage::JobOutcome OutcomeOf(const v1::Outcome& outcome) {
 
 v1::Outcome ToProto(const storage::JobOutcome& outcome) {
   v1::Outcome message;
+  // A judgement that cannot be read leaves the rest of the outcome visible.
+  if (!message.ParseFromString(outcome.judgement)) message.Clear();
   switch (outcome.state) {
     case storage::JobState::kSucceeded:
       message.set_kind(outcome.code ? v1::Outcome::KIND_STOPPED : v1::Outcome::KIND_COMPLETED);
@@ -170,7 +181,8 @@ storage::JobOutcome WorkerDiedOutcome() {
           .code = ErrorCode::kCellWorkerDied,
           .detail = {},
           .program = 0,
-          .step = 0};
+          .step = 0,
+          .judgement = {}};
 }
 
 }  // namespace rmlcell::server

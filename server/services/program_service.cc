@@ -88,7 +88,8 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
                            .title = header_.title(),
                            .etag = header_.etag(),
                            .bytes = std::move(bytes_),
-                           .validate_only = header_.validate_only()});
+                           .validate_only = header_.validate_only(),
+                           .force = header_.force()});
       if (stored) *response_ = *stored.value;
       const grpc::Status status = stored ? grpc::Status::OK : ToGrpcStatus(stored.error);
       LogCall("ProgramService/UploadProgram", caller_, status,
@@ -175,7 +176,8 @@ grpc::ServerUnaryReactor* ProgramService::PutProgram(grpc::CallbackServerContext
                                        .title = request->title(),
                                        .etag = request->etag(),
                                        .bytes = request->program().content(),
-                                       .validate_only = request->validate_only()});
+                                       .validate_only = request->validate_only(),
+                                       .force = request->force()});
                   if (!stored) return ToGrpcStatus(stored.error);
                   *response = *stored.value;
                   return grpc::Status::OK;
@@ -260,8 +262,8 @@ grpc::ServerUnaryReactor* ProgramService::CheckProgram(grpc::CallbackServerConte
                   const auto checked = programs_.Check(request->family(), request->machine(),
                                                        request->program(), !request->errors_only());
                   if (!checked) return ToGrpcStatus(checked.error());
-                  *response->mutable_findings() =
-                      bridge::FindingsOf(checked->translation, checked->motion, checked->slot);
+                  *response->mutable_findings() = bridge::FindingsOf(
+                      *checked->family, checked->translation, checked->motion, checked->slot);
                   return grpc::Status::OK;
                 });
 }

@@ -14,6 +14,7 @@
 #include "engine/families/families.h"
 #include "engine/simulation/run/rehearsal.h"
 #include "engine/simulation/run/simulate.h"
+#include "engine/simulation/verdict/verdict.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/report.h"
@@ -126,7 +127,8 @@ class Attempt {
   }
 
   // A translation that fails ends the job with its first error; the findings are its report.
-  void ReportFindings(const simulation::PreparedRun& made, const std::string& motion_check = {}) {
+  void ReportFindings(const simulation::PreparedRun& made, const machine::Judgement& judgement,
+                      const std::string& motion_check = {}) {
     v1::RunReport report;
     report.set_family(assignment_.family());
     report.set_motion_check(bridge::Utf8(motion_check));
@@ -146,6 +148,7 @@ class Attempt {
       outcome_.mutable_place()->set_line(first->where.line);
       outcome_.mutable_place()->set_column(first->where.column);
     }
+    bridge::SetJudgement(judgement, outcome_);
     *report.mutable_outcome() = outcome_;
     const std::string bytes = bridge::StableBytes(report);
     if (!Fits(bytes.size())) return ExceedOutput();
@@ -167,6 +170,8 @@ class Attempt {
     if (!check) return Refuse(check.error());
     machine::Translation& translation = check->translation;
     for (Diagnostic& diagnostic : translation.diagnostics) diagnostic.program = slot;
+    const machine::Judgement judgement =
+        simulation::JudgeCheck(*memory.family, translation, check->motion);
     simulation::PreparedRun found{
         .diagnostics = std::move(translation.diagnostics),
         .diagnostics_dropped = translation.diagnostics_dropped + check->motion.findings_dropped};
@@ -184,7 +189,7 @@ class Attempt {
       outcome_ = OutcomeFor(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellProcessorBudget);
       return End::kFinished;
     }
-    ReportFindings(found, motion_check);
+    ReportFindings(found, judgement, motion_check);
     return End::kFinished;
   }
 
@@ -209,7 +214,7 @@ class Attempt {
     if (!made) return Refuse(made.error());
     if (CancelOrdered()) return Cancelled();
     if (!made->setup) {
-      ReportFindings(*made);
+      ReportFindings(*made, simulation::JudgeFindings(made->diagnostics));
       return End::kFinished;
     }
     for (const Diagnostic& diagnostic : made->diagnostics)

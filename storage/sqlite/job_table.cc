@@ -11,7 +11,7 @@ std::string SelectJob(const std::string& from) {
   return "SELECT id, request_id, request_hash, machine, kind, title, caller, state,"
          " cancel_requested, attempts, attempts_max, attempts_begun, last_sequence,"
          " events_gone_until, created_at, started_at, finished_at, outcome_code, outcome_detail,"
-         " outcome_program, outcome_step FROM job " +
+         " outcome_program, outcome_step, outcome_judgement FROM job " +
          from;
 }
 
@@ -62,7 +62,8 @@ Result<JobRow> Read(const Query& row) {
                                     .code = {},
                                     .detail = row.Text(18),
                                     .program = row.Small(19),
-                                    .step = row.Small(20)};
+                                    .step = row.Small(20),
+                                    .judgement = row.Text(21)};
     if (!row.IsNull(17)) SetCode(*result.job.outcome, row.Text(17));
   }
   return result;
@@ -102,7 +103,8 @@ JobTable::JobTable(Database& database, BlobTable& blobs)
           database,
           "UPDATE job SET state = ?2, cancel_requested = ?3, attempts = ?4, attempts_begun = ?5,"
           " last_sequence = ?6, started_at = ?7, finished_at = ?8, outcome_code = ?9,"
-          " outcome_detail = ?10, outcome_program = ?11, outcome_step = ?12 WHERE id = ?1"),
+          " outcome_detail = ?10, outcome_program = ?11, outcome_step = ?12,"
+          " outcome_judgement = ?13 WHERE id = ?1"),
       set_last_sequence_(database, "UPDATE job SET last_sequence = ?2 WHERE id = ?1"),
       set_events_gone_(database, "UPDATE job SET events_gone_until = ?2 WHERE id = ?1"),
       put_specification_(database,
@@ -159,7 +161,7 @@ Status JobTable::Update(const JobRow& row) {
   return update_
       .With(job.id, static_cast<int>(job.state), job.cancel_requested, job.attempts,
             row.attempts_begun, job.last_sequence, job.started_at, job.finished_at, code,
-            outcome.detail, outcome.program, outcome.step)
+            outcome.detail, outcome.program, outcome.step, Bytes{outcome.judgement})
       .Run();
 }
 

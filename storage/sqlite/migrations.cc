@@ -9,6 +9,8 @@ namespace {
 
 constexpr Migration kMigrations[] = {
     {1, "machines, programs, schedules, projects, jobs, events, artifacts", kFirstSchema},
+    {2, "what was judged of a job",
+     "ALTER TABLE job ADD COLUMN outcome_judgement BLOB NOT NULL DEFAULT x'';"},
 };
 
 // In the transaction of the first step, so that a file is either empty or known as ours.

@@ -25,8 +25,9 @@ REPORT = "engine/simulation/report"
 TOOLPATH = "engine/simulation/toolpath"
 PICTURE = "engine/simulation/picture"
 MATERIAL = "engine/simulation/material"
+VERDICT = "engine/simulation/verdict"
 RUN = "engine/simulation/run"
-SIMULATION = [PATH, REPORT, TOOLPATH, PICTURE, MATERIAL, RUN]
+SIMULATION = [PATH, REPORT, TOOLPATH, PICTURE, MATERIAL, VERDICT, RUN]
 MAY_INCLUDE = {
     "engine/core": [],
     GEOMETRY: ["engine/core"],
@@ -50,7 +51,8 @@ MAY_INCLUDE = {
     TOOLPATH: ENGINE + [PATH],
     PICTURE: ENGINE + ["engine/families", PATH, REPORT],
     MATERIAL: ENGINE + [REPORT],
-    RUN: ENGINE + ["engine/families", REPORT, TOOLPATH, PICTURE, MATERIAL],
+    VERDICT: ENGINE + ["engine/families", REPORT],
+    RUN: ENGINE + ["engine/families", REPORT, TOOLPATH, PICTURE, MATERIAL, VERDICT],
     "storage": ["engine/core"],
     "storage/sqlite": ["engine/core", "storage"],
     "proto/bridge": ["engine/core", "engine/machine", "engine/families", REPORT, PICTURE, RUN, "proto"],
@@ -70,7 +72,7 @@ MAY_INCLUDE = {
                         "server/base", "server/auth", "server/events", "server/records", "server/jobs",
                         "server/programs", "server/projects", "server/web", "storage"],
     # The engine worker: a process of its own, without the store.
-    "server/worker": ["engine/core", "engine/machine", "engine/families", REPORT, RUN, "proto", "proto/bridge",
+    "server/worker": ["engine/core", "engine/machine", "engine/families", REPORT, VERDICT, RUN, "proto", "proto/bridge",
                       "server/base", "server/records"],
     # The wiring of the server.
     "server/cell": ["engine/core", "proto/bridge", "server/base", "server/auth", "server/events", "server/records",
@@ -94,6 +96,7 @@ PUBLIC = {
     TOOLPATH: ["toolpath_recorder.h", "toolpath_level.h"],
     PICTURE: ["picture.h", "picture_difference.h", "plot.h"],
     MATERIAL: ["milling_recorder.h", "milling_text.h", "stl.h"],
+    VERDICT: ["verdict.h"],
     RUN: ["simulate.h", "motion_check.h", "rehearsal.h", "trial_run.h"],
 }
 # Headers made of the .proto files.

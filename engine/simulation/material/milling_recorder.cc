@@ -1,5 +1,7 @@
 #include "engine/simulation/material/milling_recorder.h"
 
+#include <algorithm>
+
 namespace rmlcell::simulation {
 namespace {
 
@@ -33,7 +35,24 @@ void MillingRecorder::OnMotion(const machine::MotionDone& done) {
       }
     }
   }
+  NoteBelow(from, to, done.place);
   material_.Cut(tool_, from, to);
+}
+
+// Only over the block: beside it the table may be lower.
+void MillingRecorder::NoteBelow(const motion::MachinePoint& from, const motion::MachinePoint& to,
+                                const machine::Place& place) {
+  const Stock& block = material_.stock();
+  const double below = block.bottom - std::min(from.z(), to.z());
+  if (below <= kGougeLeast_mm) return;
+  const auto beside = [&](double a, double b, double low, double high) {
+    return std::max(a, b) < low - tool_.radius_mm || std::min(a, b) > high + tool_.radius_mm;
+  };
+  if (beside(from.x(), to.x(), block.x_min, block.x_max) ||
+      beside(from.y(), to.y(), block.y_min, block.y_max))
+    return;
+  if (!(figures_.below_mm > 0.0)) figures_.below_place = place;
+  figures_.below_mm = std::max(figures_.below_mm, below);
 }
 
 MillingFigures MillingRecorder::Figures() const {

@@ -29,6 +29,9 @@ class MillingRecorder final : public machine::RunObserver {
   const HeightField& material() const { return material_; }
 
  private:
+  void NoteBelow(const motion::MachinePoint& from, const motion::MachinePoint& to,
+                 const machine::Place& place);
+
   motion::MachinePoint origin_;  // of the block's frame, machine frame
   MillTool tool_;
   HeightField material_;

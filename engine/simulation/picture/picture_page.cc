@@ -17,6 +17,25 @@ constexpr double kPictureFooter = 30.0;
 constexpr int kPictureWidthMin = 640;
 constexpr std::size_t kPictureTitleMax = 60;  // characters of a title that fit
 
+constexpr std::size_t kReasonsDrawn = 4;
+constexpr std::size_t kReasonLine = 38;  // characters that fit beside the picture
+
+struct VerdictPaint {
+  std::string_view ground;
+  std::string_view text;
+};
+VerdictPaint PaintOf(machine::Verdict verdict) {
+  switch (verdict) {
+    case machine::Verdict::kGood:
+      return {"#e6f4ea", "#1e6b34"};
+    case machine::Verdict::kDoubtful:
+      return {"#fff3d1", "#7a4b00"};
+    case machine::Verdict::kBad:
+      return {"#fde8e8", "#b42318"};
+  }
+  return {"#fde8e8", "#b42318"};
+}
+
 std::string Length(double mm) { return FixedText(mm, mm == 0.0 ? 0 : mm < 100.0 ? 3 : 1) + " mm"; }
 
 class PageWriter {
@@ -64,9 +83,10 @@ class PageWriter {
   std::string Opening(double height) const {
     const std::string size = Pixels(width_) + "\" height=\"" + Pixels(std::ceil(height));
     std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-    out += "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + size + "\" viewBox=\"0 0 " +
-           Pixels(width_) + ' ' + Pixels(std::ceil(height)) +
-           "\" font-family=\"Inter, 'Helvetica Neue', Arial, 'Liberation Sans', sans-serif\">\n";
+    out +=
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + size + "\" viewBox=\"0 0 " +
+        Pixels(width_) + ' ' + Pixels(std::ceil(height)) +
+        "\" style=\"max-width:100%;height:auto\" font-family=\"Inter, 'Helvetica Neue', Arial, 'Liberation Sans', sans-serif\">\n";
     out += "<title>" + XmlText(TitleText()) + "</title>\n";
     out += "<desc>" + XmlText(Summary()) + "</desc>\n";
     AppendRect(out, {0, 0, static_cast<double>(width_), std::ceil(height)}, "fill=\"#f7f9fa\"");
@@ -122,13 +142,39 @@ class PageWriter {
 
   // Figures, legend and place, from `y` on; returns where they end.
   double DrawColumn(double y) {
-    AppendRect(body_, {column_x_, y, kPictureColumn, 30.0},
-               completed() ? "fill=\"#e6f4ea\" rx=\"5\"" : "fill=\"#fde8e8\" rx=\"5\"");
-    AppendText(body_, {column_x_ + 12.0, y + 20.0}, OutcomeLine(),
-               {.size = 14.0, .colour = completed() ? "#1e6b34" : "#b42318", .bold = true});
-    y = DrawFigures(y + 56.0);
+    y = DrawVerdict(y);
+    y = DrawFigures(y + 26.0);
     y = DrawLegend(y + 18.0);
     return DrawPlace(y + 18.0);
+  }
+
+  // The verdict and the end as a badge, and what makes it so.
+  double DrawVerdict(double y) {
+    const VerdictPaint paint = PaintOf(report_.judgement.verdict);
+    const std::string text =
+        std::string(machine::VerdictText(report_.judgement.verdict)) + ", " + OutcomeLine();
+    AppendRect(body_, {column_x_, y, kPictureColumn, 30.0},
+               "fill=\"" + std::string(paint.ground) + "\" rx=\"5\"");
+    AppendText(body_, {column_x_ + 12.0, y + 20.0}, text,
+               {.size = 14.0, .colour = paint.text, .bold = true});
+    y += 30.0;
+    std::size_t told = 0;
+    for (const machine::Reason& reason : report_.judgement.reasons) {
+      if (told++ == kReasonsDrawn) break;
+      y += 6.0;
+      for (const std::string& line : Wrapped(reason.said, kReasonLine)) {
+        y += 16.0;
+        AppendText(body_, {column_x_ + 12.0, y}, line,
+                   {.size = 12.0, .colour = PaintOf(reason.verdict).text});
+      }
+    }
+    if (report_.judgement.reasons.size() > kReasonsDrawn) {
+      y += 22.0;
+      const std::size_t more = report_.judgement.reasons.size() - kReasonsDrawn;
+      AppendText(body_, {column_x_ + 12.0, y}, "and " + std::to_string(more) + " more",
+                 {.size = 12.0, .colour = kFaint});
+    }
+    return y;
   }
 
   void Heading(double y, std::string_view text) {

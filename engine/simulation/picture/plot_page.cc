@@ -13,9 +13,10 @@ namespace rmlcell::simulation {
 namespace {
 
 constexpr double kPlotHeader = 84.0;
-constexpr double kPlotLeft = 92.0;  // titles and ticks of the panels
-constexpr double kMarkRow = 22.0;   // names of the marks
-constexpr double kPlotGap = 22.0;   // between panels
+constexpr std::size_t kReasonPlotted = 80;  // characters
+constexpr double kPlotLeft = 92.0;          // titles and ticks of the panels
+constexpr double kMarkRow = 22.0;           // names of the marks
+constexpr double kPlotGap = 22.0;           // between panels
 constexpr double kTimeAxis = 46.0;
 constexpr double kPlotFooter = 22.0;
 constexpr int kPlotWidthMin = 640;
@@ -175,9 +176,13 @@ void PlotPage::DrawHeader() {
   std::string outcome(OutcomeText(report_.outcome.kind));
   std::replace(outcome.begin(), outcome.end(), '_', ' ');
   if (report_.outcome.code) outcome += "  " + CodeText(*report_.outcome.code);
-  const bool completed = report_.outcome.kind == machine::OutcomeKind::kCompleted;
-  AppendText(body_, {kPageMargin, 64.0}, outcome,
-             {.size = 14.0, .colour = completed ? kFaint : "#b42318"});
+  const machine::Judgement& judged = report_.judgement;
+  outcome = std::string(machine::VerdictText(judged.verdict)) + ", " + outcome;
+  if (!judged.reasons.empty())
+    outcome += ": " + Shortened(judged.reasons.front().said, kReasonPlotted);
+  AppendText(
+      body_, {kPageMargin, 64.0}, outcome,
+      {.size = 14.0, .colour = judged.verdict == machine::Verdict::kGood ? kFaint : "#b42318"});
   const double right = page_width_ - kPageMargin;
   AppendText(body_, {right, 40.0}, DurationText(report_.cycle_time),
              {.size = 24.0, .anchor = "end", .bold = true});

@@ -45,6 +45,23 @@ std::string Shortened(std::string_view text, std::size_t bytes) {
   return std::string(text.substr(0, bytes)) + "…";
 }
 
+std::vector<std::string> Wrapped(std::string_view text, std::size_t bytes) {
+  constexpr std::size_t kLinesMax = 3;
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    if (text.size() <= bytes || lines.size() + 1 == kLinesMax) {
+      lines.push_back(Shortened(text, bytes));
+      break;
+    }
+    std::size_t end = text.rfind(' ', bytes);
+    const bool word_too_long = end == std::string_view::npos || end == 0;
+    if (word_too_long) end = std::min(text.find(' '), text.size());
+    lines.push_back(Shortened(text.substr(0, end), bytes));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
 std::string XmlText(std::string_view text) {
   std::string out;
   out.reserve(text.size());

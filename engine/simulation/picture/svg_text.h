@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 // Pieces of SVG text. Lengths on the picture are pixels, written in hundredths.
 namespace rmlcell::simulation {
@@ -13,6 +14,10 @@ std::string XmlText(std::string_view text);
 
 // The first `bytes` of a text that is longer, ended by an ellipsis; no character is cut in two.
 std::string Shortened(std::string_view text, std::size_t bytes);
+
+// A text in lines of at most so many bytes, cut at blanks; a word that is longer is shortened. At
+// most three lines: the last one ends with an ellipsis where there would be more.
+std::vector<std::string> Wrapped(std::string_view text, std::size_t bytes);
 
 // "12.5", "-0.07", "3".
 void AppendPixels(std::string& out, std::int64_t hundredths);

@@ -157,6 +157,22 @@ void Table::AddRun() {
   Add("outcome_line", "", "line of the text, when known", [](const RunReport& r) {
     return r.outcome.place.line > 0 ? std::to_string(r.outcome.place.line) : std::string(kNone);
   });
+  Add("verdict", "", "what the part will come out like: GOOD, DOUBTFUL, BAD or running",
+      [](const RunReport& r) {
+        return r.finished ? std::string(machine::VerdictText(r.judgement.verdict)) : "running";
+      });
+  Add("verdict_reasons", "", "how many rules spoke against it (docs/verdict.md)",
+      [](const RunReport& r) { return Count(r.judgement.reasons.size()); });
+  Add("verdict_codes", "", "their codes, most serious first", [](const RunReport& r) {
+    std::string codes;
+    for (const machine::Reason& reason : r.judgement.reasons)
+      codes += (codes.empty() ? "" : " ") + CodeText(reason.code);
+    return Line(codes);
+  });
+  Add("verdict_because", "", "what the most serious one says", [](const RunReport& r) {
+    return r.judgement.reasons.empty() ? std::string(kNone)
+                                       : Line(r.judgement.reasons.front().said);
+  });
   Add("steps_executed", "", "steps that the machine carried out",
       [](const RunReport& r) { return Count(r.steps_executed); });
   Add("halts", "", "times that the run waited for a person",
@@ -275,6 +291,8 @@ void Table::AddCorners() {
       of_material([](const MillingFigures& m) { return Count(m.gouges); }));
   Add("gouge_depth_mm", "mm", "depth of the deepest of them",
       of_material([](const MillingFigures& m) { return Real(m.gouge_depth_mm); }));
+  Add("below_block_mm", "mm", "how far the tool went below that block",
+      of_material([](const MillingFigures& m) { return Real(m.below_mm); }));
 }
 
 void Table::AddPoint(const std::string& name, const std::string& unit, const std::string& text,

@@ -194,6 +194,8 @@ struct MillingFigures {
   double gouge_depth_mm = 0.0;  // of the deepest
   machine::Place gouge_place;   // where that was
   SimTime gouge_at{0};
+  double below_mm = 0.0;       // how far the tool went below the block
+  machine::Place below_place;  // where it did first
 
   bool operator==(const MillingFigures&) const = default;
 };
@@ -236,8 +238,9 @@ struct RunReport : ScopeFigures {
   std::string inputs_hash;  // of everything the run depends on; see input_description.h
   std::map<std::string, std::string> changed_parameters;  // those that differ from the defaults
 
-  bool finished = false;     // false: a report on the way
-  machine::Outcome outcome;  // meaningless before
+  bool finished = false;         // false: a report on the way
+  machine::Outcome outcome;      // meaningless before
+  machine::Judgement judgement;  // the same
   SimTime cycle_time{0};
   std::uint64_t steps_executed = 0;
   std::uint64_t halts = 0;

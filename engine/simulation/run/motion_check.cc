@@ -45,7 +45,33 @@ class MotionListener final : public machine::RunObserver {
 struct CheckedRun {
   MotionListener listener;
   std::string cut_short;
+  machine::Outcome outcome;
+  SimTime ended_at{0};
 };
+
+// Where the programs that are there are the only ones there are, a run of them fails for sure. That
+// a program or FUNCTION is missing tells of what was given to the check, and not of the run.
+bool FailsForSure(const machine::Outcome& outcome) {
+  if (outcome.kind != machine::OutcomeKind::kFailed || !outcome.code) return false;
+  switch (*outcome.code) {
+    case ErrorCode::kProgramMissing:
+    case ErrorCode::kFunctionMissing:
+    case ErrorCode::kCallNotExecutable:
+    case ErrorCode::kTargetOutOfTravel:  // told by itself, with its axis
+      return false;
+    default:
+      return true;
+  }
+}
+
+Diagnostic DiagnosticOf(const machine::Outcome& outcome) {
+  return {.code = *outcome.code,
+          .severity = Lookup(*outcome.code).severity,
+          .detail = outcome.detail,
+          .where = {.line = outcome.place.line},
+          .program = outcome.place.program,
+          .step = outcome.place.step};
+}
 
 // Empty: the program was followed to its end.
 std::string WhyCutShort(const machine::Outcome& outcome) {
@@ -75,7 +101,9 @@ Status RunForCheck(const machine::MachineFamily& family, machine::RunSetup setup
       drive.End(machine::OutcomeKind::kStopped, ErrorCode::kCellWaitsForever);
     }
   }
-  checked.cut_short = WhyCutShort((*run)->outcome());
+  checked.outcome = (*run)->outcome();
+  checked.ended_at = (*run)->state().time;
+  checked.cut_short = WhyCutShort(checked.outcome);
   return {};
 }
 
@@ -106,6 +134,7 @@ Result<MotionCheck> CheckMotion(const machine::MachineFamily& family,
     for (const Finding& finding : run.listener.findings().findings()) {
       all.Add(finding.first_at, finding.diagnostic);
     }
+    if (FailsForSure(run.outcome)) all.Add(run.ended_at, DiagnosticOf(run.outcome));
     check.findings_dropped += run.listener.findings().dropped();
   };
   for (const int slot : slots) {

@@ -12,7 +12,7 @@ namespace rmlcell::simulation {
 // CHECK of what no text tells: where the motion of a program leaves the travel of an axis (7301),
 // and where an axis holds it back (7321). The program runs in virtual time with the inputs of the
 // setup, by default all off, START being given at every halt; what such a run would do is told,
-// with its time, and nothing else.
+// with its time, and that it fails, where it does.
 //
 // Bounds, whatever the program does: an object of 34,000 bytes has some thousand steps, so this is
 // many times round the longest one, and a part takes less than a day.

@@ -6,6 +6,7 @@
 
 #include "engine/simulation/report/report_recorder.h"
 #include "engine/simulation/run/version.h"
+#include "engine/simulation/verdict/verdict.h"
 
 namespace rmlcell::simulation {
 
@@ -132,6 +133,7 @@ RunReport Recorder::Report(const machine::Run& run) const {
     report.picture = {.made = true, .complete = picture->exact(), .records = picture->elements()};
   }
   if (state_->milling) report.milling = state_->milling->Figures();
+  if (report.finished) report.judgement = Judge(report);
   return report;
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/families/families.h"
+#include "engine/simulation/verdict/verdict.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -82,9 +83,11 @@ machine::Translation TranslateProgram(const machine::MachineFamily& family,
                                       const machine::Parameters& parameters,
                                       const MemoryProgram& program,
                                       const machine::CheckOptions& options) {
+  machine::CheckOptions told = options;
+  told.forced = told.forced || !program.is_source;  // that was said when it was stored
   return family.Translate(
       {.name = program.file_name, .bytes = *program.bytes, .is_object = !program.is_source},
-      parameters, options);
+      parameters, told);
 }
 
 Result<ProgramCheck> CheckProgram(const ProgramMemory& memory,
@@ -118,6 +121,13 @@ Result<MotionCheck> CheckMotionOf(const ProgramMemory& memory,
     AddProgram(*memory.family, program, setup, ignored);
   }
   return CheckMotion(*memory.family, setup, slots);
+}
+
+machine::Judgement JudgeCheck(const machine::MachineFamily& family,
+                              const machine::Translation& translation, const MotionCheck& motion) {
+  if (!translation.ok) return JudgeFindings(translation.diagnostics);
+  if (motion.has_errors()) return JudgeFindings(motion.findings);
+  return JudgeFigures(family, translation.figures);
 }
 
 }  // namespace rmlcell::simulation

@@ -78,6 +78,10 @@ struct ProgramCheck {
   bool ok() const { return translation.ok && !motion.has_errors(); }
 };
 
+// What a check says of the part that would come out.
+machine::Judgement JudgeCheck(const machine::MachineFamily& family,
+                              const machine::Translation& translation, const MotionCheck& motion);
+
 // Errors: those of MachineFamily::NewRun; that of a slot without program.
 Result<ProgramCheck> CheckProgram(const ProgramMemory& memory,
                                   const machine::Parameters& parameters, int slot, bool advice,

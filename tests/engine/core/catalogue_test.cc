@@ -141,7 +141,7 @@ TEST(Catalogue, NumbersAreThoseOfTheirFamilyAndUnique) {
 
 // design.md section 5: clients and logs know the cell's codes by number, so a number keeps its
 // meaning for good; a new code is a new line here. What ends a run is a budget, a finding that cuts
-// the others short is advice, all else refuses a request.
+// the others short is advice, what judges a part is a warning, all else refuses a request.
 TEST(Catalogue, NumbersOfTheCellKeepTheirMeaning) {
   const std::map<int, std::string_view> cell = {
       {9001, "CellInternal"},        {9002, "CellUnavailable"},
@@ -167,7 +167,8 @@ TEST(Catalogue, NumbersOfTheCellKeepTheirMeaning) {
       {9304, "CellStepBudget"},      {9305, "CellTimeBudget"},
       {9306, "CellOutputBudget"},    {9307, "CellCancelled"},
       {9308, "CellWaitsForever"},    {9309, "CellVersionMismatch"},
-      {9310, "CellJoinRefused"},
+      {9310, "CellJoinRefused"},     {9401, "CellGouge"},
+      {9402, "CellBelowBlock"},
   };
   std::size_t rows = 0;
   for (const CatalogueEntry& entry : Catalogue()) {
@@ -176,7 +177,9 @@ TEST(Catalogue, NumbersOfTheCellKeepTheirMeaning) {
     ASSERT_TRUE(cell.contains(entry.number)) << entry.number;
     EXPECT_EQ(entry.symbol, cell.at(entry.number));
     const bool budget = entry.number >= 9301 && entry.number <= 9308;
+    const bool verdict = entry.number >= 9401;
     EXPECT_EQ(entry.severity, budget                 ? Severity::kBudget
+                              : verdict              ? Severity::kWarning
                               : entry.number == 9025 ? Severity::kAdvice
                                                      : Severity::kRequest)
         << entry.number;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/engine/rml1/run_support.h"
 
 namespace rmlcell::rml1 {
@@ -206,14 +208,38 @@ TEST(Device, RoundsEverySpeedDown) {
   }
 }
 
-// RML1-5A.01: what the tool could not follow is told once a command, and measured.
+// RML1-5A.01: what the tool could not follow is measured. That it was work is told, once a command;
+// a lift above the top, or a way beyond the travel with the tool up, is nobody's loss.
 TEST(Device, AdvisesOnClippedMotion) {
   TestDevice device(ParametersOf("t1"));
   device.Feed("PU25000,0,26000,0;PU0,0;Z0,0,2500,0,0,2000;");
-  EXPECT_EQ(device.CountOf(FindingKind::kClipped), 3);
+  EXPECT_EQ(device.CountOf(FindingKind::kClipped), 0);
+  EXPECT_EQ(device->carriage().lost().length, 0.0);
   EXPECT_EQ(device->carriage().clipped_sets(), 5U);
   // Out: 5000, 1000; back: 6000; above the top: up 500 and down 500.
   EXPECT_NEAR(device->carriage().clipped_length(), 13000.0, 1e-6);
+}
+
+// T1 has X and Y from 0 to 20000 and 15000, Z 0 to -6000 with Z0 at -2000.
+TEST(Device, TellsWhatIsLostOfTheWork) {
+  TestDevice device(ParametersOf("t1"));
+  device.Feed("PD25000,0,26000,0;PU0,0;");
+  EXPECT_EQ(device.CountOf(FindingKind::kClipped), 1);
+  EXPECT_NEAR(device->carriage().lost().length, 6000.0, 1e-6);
+  EXPECT_NEAR(device->carriage().lost().x_high, 6000.0, 1e-6);
+  EXPECT_EQ(device->carriage().lost().x_low, 0.0);
+  EXPECT_EQ(device->first_lost().number, 1U);
+  // Above Z 0 nothing is lost, below it from there on: half of a slope of 5000 along and 200 down.
+  device.Feed("Z20000,100,100,25000,100,-100;");
+  EXPECT_EQ(device.CountOf(FindingKind::kClipped), 2);
+  EXPECT_NEAR(device->carriage().lost().length, 6000.0 + std::hypot(2500.0, 100.0), 1e-6);
+  // Straight up beyond the travel cuts nothing; down it would have.
+  device.Feed("Z25000,100,100;");
+  EXPECT_NEAR(device->carriage().lost().length, 6000.0 + std::hypot(2500.0, 100.0), 1e-6);
+  // Below the travel, 500 deep: the way there, and along it.
+  device.Feed("PU100,100;Z100,100,-4500,200,100,-4500;");
+  EXPECT_NEAR(device->carriage().lost().z_low, 500.0, 1e-6);
+  EXPECT_NEAR(device->carriage().lost().length, 6000.0 + std::hypot(2500.0, 100.0) + 600.0, 1e-6);
 }
 
 // Advice is bounded: RML1-9.06.

@@ -60,8 +60,8 @@ TEST(Finding, OfCommandErrors) {
        "RML1-E1 RML1-2.09 8+1 0: the name that ends with ';' is no "
        "command"},
       {"PU;PD0,9000000;", "RML1-E3 RML1-2.34 3+2 2: a coordinate of PD becomes 9e+06"},
-      {"PU8000000,0;PR;R8000000,0;",
-       "RML1-E8002 RML1-5A.01 0+2 1: the tool could not follow PU to "
+      {"PD8000000,0;PR;R8000000,0;",
+       "RML1-E8002 RML1-5A.01 0+2 1: the tool could not follow PD to "
        "its end"},
       {"!ZE X9000000;", "RML1-E3 RML1-2.34 0+3 1: a coordinate of !ZE becomes 9e+06"},
       {"PU;@1;", "RML1-E3 RML1-3C.13 3+1 2: a tool height of 1"},

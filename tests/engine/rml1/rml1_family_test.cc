@@ -11,9 +11,10 @@
 namespace rmlcell::rml1 {
 namespace {
 
+// Whatever it is.
 machine::Translation TranslateText(std::string_view bytes, bool advice = true) {
   return Rml1Family().Translate({.name = "part.rml", .bytes = bytes}, ParametersOf("t1"),
-                                {.advice = advice});
+                                {.advice = advice, .forced = true});
 }
 
 TEST(Rml1Family, TellsWhatItIs) {
@@ -90,6 +91,27 @@ TEST(Rml1Family, TranslatesAnyBytesToThemselves) {
   EXPECT_EQ(translation.object, bytes);
 }
 
+// What is no RML-1 is refused, unless it is forced: more than a tenth of it belongs to no command.
+TEST(Rml1Family, RefusesWhatIsNoRml1) {
+  const auto translate = [](const std::string& bytes) {
+    return Rml1Family().Translate({.name = "part.rml", .bytes = bytes}, ParametersOf("t1"), {});
+  };
+  const std::string good = "PU100,100;";  // 10 bytes
+  std::string stream;
+  for (int k = 0; k < 90; ++k) stream += good;
+  EXPECT_TRUE(translate(stream + std::string(100, '$')).ok);  // 100 of 1000
+  const machine::Translation refused = translate(stream + std::string(101, '$'));
+  EXPECT_FALSE(refused.ok);
+  EXPECT_EQ(refused.object, "");
+  ASSERT_FALSE(refused.diagnostics.empty());
+  EXPECT_EQ(refused.diagnostics[0].code, ErrorCode::kRml1NoProgram);
+  EXPECT_EQ(refused.diagnostics[0].detail, "10.1 % of the bytes belong to no command");
+  EXPECT_TRUE(TranslateText(stream + std::string(101, '$')).ok);  // forced
+  // A few letters are looked at as 256: 25 of them are less than a tenth, 26 more.
+  EXPECT_TRUE(translate(std::string(25, '$')).ok);
+  EXPECT_FALSE(translate(std::string(26, '$')).ok);
+}
+
 TEST(Rml1Family, RefusesAnEmptyStream) {
   const machine::Translation translation = TranslateText("");
   EXPECT_FALSE(translation.ok);
@@ -137,7 +159,7 @@ TEST(Rml1Family, BoundsWhatItTellsOfPauses) {
 
 // RML1-9.42, RML1-3C.08, RML1-3A.46: advice, and silence where none is wanted.
 TEST(Rml1Family, AdvisesWhereWanted) {
-  const std::string stream = "F99;!NR;PU30000,0;PU1,1";
+  const std::string stream = "F99;!NR;PD30000,0;PU1,1";
   // With the number of the command; what was not ended is no command yet.
   std::vector<std::pair<ErrorCode, int>> told;
   for (const Diagnostic& d : TranslateText(stream).diagnostics) told.emplace_back(d.code, d.step);

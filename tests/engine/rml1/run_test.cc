@@ -241,8 +241,7 @@ TEST(MillRun, PausesAtTheEdgeOfTheRange) {
   TestRun run(parameters, "!MC0;Z21000,0,2000;Z19000,0,1000;PU0,0;");
   ASSERT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
   EXPECT_THAT(run.seen().Events(),
-              ElementsAre("step 1 !MC", "step 2 Z", "diagnostic RML1-E8002",
-                          "move 20000.0,0.0,2000.0", "step 3 Z", "diagnostic RML1-E8002",
+              ElementsAre("step 1 !MC", "step 2 Z", "move 20000.0,0.0,2000.0", "step 3 Z",
                           "move 20000.0,0.0,1500.0", "halt OVER_AREA", "diagnostic RML1-E8006"));
   EXPECT_EQ(run.AdvanceToEnd(), RunPhase::kHalted);
   run.Press(InputKind::kStart);

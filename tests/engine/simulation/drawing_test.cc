@@ -11,6 +11,7 @@
 #include "engine/simulation/picture/picture_difference.h"
 #include "engine/simulation/picture/picture_page.h"
 #include "engine/simulation/picture/plot.h"
+#include "engine/simulation/verdict/verdict.h"
 #include "tests/engine/simulation/fake_run.h"
 #include "tests/engine/simulation/laser_shape.h"
 #include "tests/engine/simulation/xml_check.h"
@@ -51,6 +52,11 @@ void ExpectDrawn(const std::string& svg, const std::string& name) {
                 << "\nthe new drawing: " << made;
 }
 
+RunReport Judged(RunReport report) {
+  report.judgement = Judge(report);
+  return report;
+}
+
 machine::MachineShape SmallMill() {
   machine::MachineShape shape;
   shape.travel.Add(MachineVector{0, 0, -60});
@@ -72,7 +78,7 @@ std::string PictureOf(const Script& script, const machine::MachineShape& shape,
   PictureRecorder recorder(shape);
   FakeRun run(script, recorder);
   run.Advance(kForever);
-  return recorder.Svg(report, options);
+  return recorder.Svg(Judged(report), options);
 }
 
 RunReport MillReport() {
@@ -241,17 +247,17 @@ TEST(Drawing, PlotOfALaser) {
   report.cycle_time = run.state().time;
   report.inputs_hash = "fedcba9876543210";
   report.engine_version = "1.2.3";
-  ExpectDrawn(
-      recorder.Svg(report, {.curves = {PlotCurve::kSpeed, PlotCurve::kPower, PlotCurve::kAxes},
+  ExpectDrawn(recorder.Svg(Judged(report),
+                           {.curves = {PlotCurve::kSpeed, PlotCurve::kPower, PlotCurve::kAxes},
                             .width_px = 900}),
-      "plot.svg");
+              "plot.svg");
 }
 
 TEST(Drawing, PlotOfNothing) {
   PlotRecorder recorder(SmallMill());
   RunReport report;
   report.cycle_time = FromSeconds(2.0);
-  ExpectDrawn(recorder.Svg(report, {.curves = {PlotCurve::kAxes}, .width_px = 10}),
+  ExpectDrawn(recorder.Svg(Judged(report), {.curves = {PlotCurve::kAxes}, .width_px = 10}),
               "plot_nothing.svg");
 }
 

@@ -185,7 +185,7 @@ TEST(Picture, ShowsWhatTheIssueAsksFor) {
   const std::string mill = SvgOf(SomeMilling(), Mill());
   EXPECT_EQ(CountOf(mill, "<path"), 1u + 2u);  // travel; two depths of cut
   for (const char* word : {">travel<", ">plunge<", ">start<", ">end<", ">travel of the machine<",
-                           ">X mm<", ">Y mm<", ">completed<"}) {
+                           ">X mm<", ">Y mm<", ">GOOD, completed<"}) {
     EXPECT_GE(CountOf(mill, word), 1u) << word;
   }
   const std::string laser = SvgOf(SomeLaserWork(), LaserWithTravel());

@@ -184,8 +184,9 @@ TEST(Encoding, IsStable) {
   EXPECT_EQ(StableJson(one, false), StableJson(other, false));
   v1::Outcome outcome;
   outcome.set_code("X");
-  EXPECT_EQ(StableJson(outcome, false),
-            R"({"kind":"KIND_UNSPECIFIED","code":"X","symbol":"","message":"","advice":""})");
+  EXPECT_EQ(
+      StableJson(outcome, false),
+      R"({"kind":"KIND_UNSPECIFIED","code":"X","symbol":"","message":"","advice":"","verdict":"VERDICT_UNSPECIFIED","reasons":[]})");
   EXPECT_NE(StableJson(outcome, true)->find("\n \"code\": \"X\""), std::string::npos);
 }
 

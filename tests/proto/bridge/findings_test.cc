@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/families/families.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "rmlcell/v1/common.pb.h"
@@ -163,25 +164,30 @@ TEST(FindingsMessage, OfATranslationAndItsMotion) {
   translation.diagnostics = {Whole()};
   translation.diagnostics_dropped = 3;
   translation.figures = {{.name = "steps", .unit = "", .value = 7.0}};
+  const machine::MachineFamily& family = *families::FindFamily("optimo");
   simulation::MotionCheck motion;
   motion.findings_dropped = 4;
   motion.cut_short = {{45, "only up to step 2"}};
-  const v1::Findings good = FindingsOf(translation, motion, 45);
+  const v1::Findings good = FindingsOf(family, translation, motion, 45);
   EXPECT_TRUE(good.ok());
   EXPECT_EQ(good.diagnostics_size(), 1);
   EXPECT_EQ(good.diagnostics_dropped(), 7);
   EXPECT_EQ(good.motion_check(), "only up to step 2");
+  EXPECT_EQ(good.verdict(), v1::VERDICT_GOOD);
   ASSERT_EQ(good.figures_size(), 1);
   EXPECT_EQ(good.figures(0).name(), "steps");
   EXPECT_EQ(good.figures(0).value(), 7.0);
-  EXPECT_EQ(FindingsOf(translation, motion, 44).motion_check(), "");
+  EXPECT_EQ(FindingsOf(family, translation, motion, 44).motion_check(), "");
   motion.findings = {{.code = ErrorCode::kTargetOutOfTravel, .severity = Severity::kProgram}};
-  const v1::Findings bad = FindingsOf(translation, motion, 45);
+  const v1::Findings bad = FindingsOf(family, translation, motion, 45);
   EXPECT_FALSE(bad.ok());
   ASSERT_EQ(bad.diagnostics_size(), 2);
   EXPECT_EQ(bad.diagnostics(1).code(), CodeText(ErrorCode::kTargetOutOfTravel));
+  EXPECT_EQ(bad.verdict(), v1::VERDICT_BAD);
+  ASSERT_EQ(bad.reasons_size(), 1);
+  EXPECT_EQ(bad.reasons(0).code(), CodeText(ErrorCode::kTargetOutOfTravel));
   translation.ok = false;
-  EXPECT_FALSE(FindingsOf(translation, {}, 45).ok());
+  EXPECT_FALSE(FindingsOf(family, translation, {}, 45).ok());
 }
 
 // The codes of gRPC, as docs/api.md tells what to do on each.

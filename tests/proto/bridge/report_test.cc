@@ -126,10 +126,12 @@ const std::string kStill =
     "final_program_angles: 0 ";
 
 TEST(ReportMessage, OfARunThatDidNothing) {
-  ExpectMessage(ToProto(RunReport{}, {}),
-                "outcome { kind: KIND_COMPLETED place {} } total { times {} } " + kStill +
-                    "corners {} axes {} trace { complete: true } toolpath { complete: true } "
-                    "picture { complete: true } collisions: 'not modelled'");
+  ExpectMessage(
+      ToProto(RunReport{}, {}),
+      "outcome { kind: KIND_COMPLETED place {} verdict: VERDICT_GOOD } total { times {} } " +
+          kStill +
+          "corners {} axes {} trace { complete: true } toolpath { complete: true } "
+          "picture { complete: true } collisions: 'not modelled'");
 }
 
 TEST(ReportMessage, EveryFigureHasItsField) {
@@ -195,7 +197,8 @@ TEST(ReportMessage, EveryFigureHasItsField) {
       "family: 'optimo' title: 'part' outcome { kind: KIND_FAILED code: 'OPT-E348' symbol: '" +
           std::string(ConstantName(ErrorCode::kHoleRadiusZero)) +
           "' message: 'radius is 0' advice: '" + std::string(hole.advice) +
-          "' place { program: 1 step: 2 line: 3 byte_offset: 4 } } total { " + kFigures +
+          "' place { program: 1 step: 2 line: 3 byte_offset: 4 } verdict: VERDICT_GOOD } total { " +
+          kFigures +
           "} final_position { tip { x: 1 y: 2 z: 3 } column { x: 4 y: 5 z: 6 } a: 0.75 b: 0.125 } "
           "final_program_point { x: 7 y: 8 z: 9 } final_program_angles: 10 final_program_angles: "
           "11 "
@@ -218,6 +221,32 @@ TEST(ReportMessage, EveryFigureHasItsField) {
           "picture { made: true complete: true records: 4 } collisions: 'not modelled' "
           "milling { removed_mm3: 1 gouges: 2 gouge_depth_mm: 3 gouge_place { program: 4 step: 5 } "
           "gouge_time_s: 6 }");
+}
+
+TEST(ReportMessage, AVerdictHasItsReasons) {
+  RunReport report;
+  report.judgement.Add({.code = ErrorCode::kFlyReversal,
+                        .verdict = machine::Verdict::kDoubtful,
+                        .said = "2.5 mm too much",
+                        .amount = 2.5,
+                        .unit = "mm",
+                        .first = {.program = 1, .step = 2}});
+  report.judgement.Add({.code = ErrorCode::kFlyReversal, .verdict = machine::Verdict::kBad});
+  const CatalogueEntry& turn = Lookup(ErrorCode::kFlyReversal);
+  const std::string code =
+      "code: '" + CodeText(turn.code) + "' symbol: '" + std::string(ConstantName(turn.code)) + "' ";
+  const std::string advice = "advice: '" + std::string(turn.advice) + "' ";
+  ExpectMessage(
+      ToProto(report, {}).outcome(),
+      "kind: KIND_COMPLETED place {} verdict: VERDICT_BAD reasons { verdict: VERDICT_BAD " + code +
+          advice + "} reasons { verdict: VERDICT_DOUBTFUL " + code + "message: '2.5 mm too much' " +
+          advice + "amount: 2.5 unit: 'mm' first { program: 1 step: 2 } }");
+}
+
+TEST(ReportMessage, AToolBelowTheBlockHasItsPlace) {
+  RunReport report;
+  report.milling = {.below_mm = 7.0, .below_place = {.program = 8, .step = 9}};
+  ExpectMessage(ToProto(report, {}).milling(), "below_mm: 7 below_place { program: 8 step: 9 }");
 }
 
 // What did not happen has no place: no gouge, no deviation, no beam, no limit to have a share of.

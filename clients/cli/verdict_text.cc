@@ -1,0 +1,58 @@
+#include "clients/cli/verdict_text.h"
+
+#include "clients/cli/terminal.h"
+
+namespace rmlcell::cli {
+
+std::string VerdictText(v1::Verdict verdict) {
+  const bool colour = ColourOnOutput();
+  switch (verdict) {
+    case v1::VERDICT_GOOD:
+      return Paint("GOOD", Colour::kGreen, colour);
+    case v1::VERDICT_DOUBTFUL:
+      return Paint("DOUBTFUL", Colour::kYellow, colour);
+    case v1::VERDICT_BAD:
+      return Paint("BAD", Colour::kRed, colour);
+    default:
+      return {};
+  }
+}
+
+std::string PlaceText(const v1::SourcePlace& place) {
+  std::string text;
+  if (place.program() > 0) text += "program " + std::to_string(place.program());
+  if (place.step() > 0) text += (text.empty() ? "step " : " step ") + std::to_string(place.step());
+  if (place.line() > 0) text += (text.empty() ? "line " : " line ") + std::to_string(place.line());
+  return text;
+}
+
+std::string ReasonLine(const v1::VerdictReason& reason) {
+  std::string text = Visible(reason.message()) + " (" + reason.code();
+  if (const std::string place = PlaceText(reason.first()); !place.empty()) text += ", " + place;
+  text += ")";
+  if (!reason.advice().empty()) text += "; " + reason.advice();
+  return text;
+}
+
+std::string VerdictLine(v1::Verdict verdict, const VerdictReasons& reasons) {
+  std::string text = VerdictText(verdict);
+  if (!reasons.empty()) text += ", " + Visible(reasons[0].message());
+  if (reasons.size() > 1) text += " (and " + std::to_string(reasons.size() - 1) + " more)";
+  return text;
+}
+
+int ExitOf(v1::Verdict verdict, bool strict) {
+  const bool good = verdict == v1::VERDICT_GOOD || (verdict == v1::VERDICT_DOUBTFUL && !strict);
+  return good ? kGood : kProgramErrors;
+}
+
+int ExitOf(const v1::Outcome& outcome, bool strict) {
+  if (outcome.verdict() != v1::VERDICT_UNSPECIFIED) return ExitOf(outcome.verdict(), strict);
+  // A job that ended before anything was judged, or that an older server ran.
+  return outcome.kind() == v1::Outcome::KIND_COMPLETED ||
+                 outcome.kind() == v1::Outcome::KIND_STOPPED
+             ? kGood
+             : kProgramErrors;
+}
+
+}  // namespace rmlcell::cli

@@ -1,0 +1,54 @@
+#include "engine/rml1/verdict_rules.h"
+
+#include <array>
+
+namespace rmlcell::rml1 {
+namespace {
+
+using machine::Verdict;
+using machine::VerdictRule;
+
+// What the rounding of a post processor makes of nothing.
+constexpr double kRounding_mm = 0.01;
+
+constexpr std::array kRules = {
+    VerdictRule{ErrorCode::kRml1NoProgram, "foreign_share", kForeignShareMax_percent, Verdict::kBad,
+                "# % of the bytes belong to no command"},
+    VerdictRule{ErrorCode::kRml1PositionRefused, "positions_refused", 0.0, Verdict::kBad,
+                "coordinates or heights that were refused: #"},
+    VerdictRule{ErrorCode::kRml1Clipped, "clipped_cut_length", kRounding_mm, Verdict::kBad,
+                "# mm of the work lie beyond the travel and are not cut"},
+    VerdictRule{ErrorCode::kRml1Clipped, "clipped_x_low", kRounding_mm, Verdict::kBad,
+                "the work leads # mm beyond the least X: move the origin to greater X"},
+    VerdictRule{ErrorCode::kRml1Clipped, "clipped_x_high", kRounding_mm, Verdict::kBad,
+                "the work leads # mm beyond the greatest X: move the origin to less X"},
+    VerdictRule{ErrorCode::kRml1Clipped, "clipped_y_low", kRounding_mm, Verdict::kBad,
+                "the work leads # mm beyond the least Y: move the origin to greater Y"},
+    VerdictRule{ErrorCode::kRml1Clipped, "clipped_y_high", kRounding_mm, Verdict::kBad,
+                "the work leads # mm beyond the greatest Y: move the origin to less Y"},
+    VerdictRule{ErrorCode::kRml1Clipped, "clipped_z_low", kRounding_mm, Verdict::kBad,
+                "the work leads # mm below the travel: raise Z0"},
+    VerdictRule{ErrorCode::kRml1SpindleStands, "spindle_stands_length", kRounding_mm, Verdict::kBad,
+                "# mm in the work while the spindle stands"},
+    VerdictRule{ErrorCode::kRml1NoClearance, "no_clearance_length", kRounding_mm,
+                Verdict::kDoubtful,
+                "# mm across at travel speed, not above the surface of the work"},
+    VerdictRule{ErrorCode::kRml1EndsInWork, "depth_at_end", kRounding_mm, Verdict::kDoubtful,
+                "the tool stays # mm deep in the work at the end"},
+    VerdictRule{ErrorCode::kRml1SpindleLeftOn, "spindle_on_at_end", 0.0, Verdict::kDoubtful,
+                "the spindle turns on at the end"},
+    VerdictRule{ErrorCode::kRml1FeedNotGiven, "feed_not_given_length", kRounding_mm,
+                Verdict::kDoubtful, "# mm in the work at a speed that the program did not set"},
+    VerdictRule{ErrorCode::kRml1NotUnderstood, "errors", 0.0, Verdict::kDoubtful,
+                "places that are no command, or lack parameters: #"},
+    VerdictRule{ErrorCode::kRml1NotUnderstood, "communication_errors", 0.0, Verdict::kDoubtful,
+                "communication errors: #"},
+    VerdictRule{ErrorCode::kRml1NothingCut, "nothing_cut", 0.0, Verdict::kDoubtful,
+                "the tool never goes into the work"},
+};
+
+}  // namespace
+
+std::span<const VerdictRule> VerdictRules() { return kRules; }
+
+}  // namespace rmlcell::rml1

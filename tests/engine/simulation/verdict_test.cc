@@ -1,0 +1,317 @@
+// Verdicts of whole runs. For each rule the smallest program that breaks it, and one that just does
+// not. docs/verdict.md lists the rules.
+#include "engine/simulation/verdict/verdict.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "engine/core/number_text.h"
+#include "engine/families/families.h"
+#include "engine/simulation/material/milling_text.h"
+#include "engine/simulation/run/simulate.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+using machine::Judgement;
+using machine::Verdict;
+
+const machine::MachineFamily& Mill() { return *families::FindFamily("rml1"); }
+
+machine::Parameters MillOf(const std::string& profile) {
+  return *machine::MakeParameters(Mill(), profile, {});
+}
+
+Judgement VerdictOf(const machine::MachineFamily& family, const machine::Parameters& parameters,
+                    const std::string& object, SimulationRequest request = {}) {
+  machine::RunSetup setup(parameters);
+  setup.main_program = 1;
+  setup.programs[1].object = std::make_shared<const std::string>(object);
+  setup.forecast = true;
+  const auto result = Simulate(family, std::move(setup), std::move(request));
+  EXPECT_TRUE(result);
+  return result ? result->report.judgement : Judgement{.verdict = Verdict::kBad, .reasons = {}};
+}
+
+// On the test profile T1: 0..200 x 0..150 x -60..0 mm, Z0 20 mm below the top, 100 units a mm.
+Judgement OfStream(const std::string& stream) { return VerdictOf(Mill(), MillOf("t1"), stream); }
+
+Judgement OfStreamInBlock(const std::string& stream, const std::string& stock) {
+  SimulationRequest request;
+  request.products.milling = Milling{.stock = *ParseStock(stock), .tool = *ParseTool("flat:3")};
+  return VerdictOf(Mill(), MillOf("t1"), stream, std::move(request));
+}
+
+std::string Text(const Judgement& judgement) {
+  std::string text(machine::VerdictText(judgement.verdict));
+  for (const machine::Reason& reason : judgement.reasons) {
+    text += "; " + CodeText(reason.code) + ' ' + reason.said;
+    if (reason.first.step > 0) text += " @" + std::to_string(reason.first.step);
+  }
+  return text;
+}
+
+// Feed rates, heights of 1 mm down and 2 mm up, a spindle; then the work; then an orderly end.
+std::string Work(const std::string& commands) {
+  return "VS10;!VZ10;!PZ-100,200;!MC1;PU100,100;" + commands + "PU0,0;!MC0;";
+}
+
+TEST(Verdict, OfAnOrderlyProgramIsGood) {
+  EXPECT_EQ(Text(OfStream(Work("PD200,100;"))), "GOOD");
+  // A lift above the top and a parking place beyond the travel cost nothing.
+  EXPECT_EQ(Text(OfStream(Work("PD200,100;Z200,100,9000;PU0,90000;"))), "GOOD");
+}
+
+// The work may lead 0.01 mm, one unit, beyond the travel: that is rounding.
+TEST(Verdict, OfWorkBeyondTheTravel) {
+  const std::string lost = " mm of the work lie beyond the travel and are not cut @6; ";
+  EXPECT_EQ(Text(OfStream(Work("PD20001,100;"))), "GOOD");
+  EXPECT_EQ(Text(OfStream(Work("PD20002,100;"))),
+            "BAD; RML1-E8002 0.020" + lost +
+                "RML1-E8002 the work leads 0.020 mm beyond the greatest X: move the origin to less "
+                "X");
+  EXPECT_EQ(Text(OfStream(Work("PD-1,100;"))), "GOOD");
+  EXPECT_EQ(Text(OfStream(Work("PD-2,100;"))),
+            "BAD; RML1-E8002 0.020" + lost +
+                "RML1-E8002 the work leads 0.020 mm beyond the least X: move the origin to greater "
+                "X");
+  EXPECT_EQ(Text(OfStream(Work("PD100,15001;"))), "GOOD");
+  EXPECT_EQ(Text(OfStream(Work("PD100,15002;"))),
+            "BAD; RML1-E8002 0.020" + lost +
+                "RML1-E8002 the work leads 0.020 mm beyond the greatest Y: move the origin to less "
+                "Y");
+  EXPECT_EQ(Text(OfStream(Work("PD100,-1;"))), "GOOD");
+  EXPECT_EQ(Text(OfStream(Work("PD100,-2;"))),
+            "BAD; RML1-E8002 0.020" + lost +
+                "RML1-E8002 the work leads 0.020 mm beyond the least Y: move the origin to greater "
+                "Y");
+  EXPECT_EQ(Text(OfStream(Work("Z100,100,-4001;"))), "GOOD");
+  EXPECT_EQ(Text(OfStream(Work("Z100,100,-4002;"))),
+            "BAD; RML1-E8002 0.020" + lost +
+                "RML1-E8002 the work leads 0.020 mm below the travel: raise Z0");
+}
+
+TEST(Verdict, OfCoordinatesThatAreRefused) {
+  EXPECT_EQ(Text(OfStream(Work("PD200,100,300;"))),
+            "BAD; RML1-E8008 coordinates or heights that were refused: 1 @6; RML1-E8014 places "
+            "that are no command, or lack parameters: 1");
+  EXPECT_EQ(Text(OfStream(Work("PD200,100,300,100;"))), "GOOD");
+}
+
+TEST(Verdict, OfWhatIsNotUnderstood) {
+  EXPECT_EQ(Text(OfStream(Work("$PD200,100;"))),
+            "DOUBTFUL; RML1-E8014 places that are no command, or lack parameters: 1");
+  // RML1-4.05: the letter of a sequence that there is not is judged as a command, too.
+  EXPECT_EQ(Text(OfStream(Work("\x1b.B;PD200,100;"))),
+            "DOUBTFUL; RML1-E8014 places that are no command, or lack parameters: 1; RML1-E8014 "
+            "communication errors: 1");
+}
+
+TEST(Verdict, OfWhatIsNoRml1) {
+  std::string stream = Work("PD200,100;");
+  stream += std::string(900 - stream.size(), ';');
+  EXPECT_EQ(OfStream(stream + std::string(100, '$')).verdict, Verdict::kDoubtful);
+  const Judgement none = OfStream(stream + std::string(101, '$'));
+  EXPECT_EQ(none.verdict, Verdict::kBad);
+  ASSERT_FALSE(none.reasons.empty());
+  EXPECT_EQ(none.reasons[0].said, "10.1 % of the bytes belong to no command");
+  EXPECT_EQ(none.reasons[0].unit, "%");
+}
+
+// Down 1 mm and along 1 mm with the spindle off.
+TEST(Verdict, OfASpindleThatStands) {
+  EXPECT_EQ(Text(OfStream("VS10;!VZ10;!PZ-100,200;!MC0;PU100,100;PD200,100;PU0,0;")),
+            "BAD; RML1-E8009 2.000 mm in the work while the spindle stands @6");
+  EXPECT_EQ(Text(OfStream("VS10;!VZ10;!PZ-100,200;!MC0;PU100,100;!MC1;PD200,100;PU0,0;!MC0;")),
+            "GOOD");
+}
+
+TEST(Verdict, OfTravelWithoutClearance) {
+  const auto with_height = [](const std::string& up) {
+    return OfStream("VS10;!VZ10;!PZ-100," + up + ";!MC1;PU100,100;PD200,100;PU500,500;!MC0;");
+  };
+  // 1.414 mm before the hole and 5 mm behind the cut.
+  EXPECT_EQ(Text(with_height("0")),
+            "DOUBTFUL; RML1-E8010 6.414 mm across at travel speed, not above the surface of the "
+            "work @5");
+  EXPECT_EQ(Text(with_height("1")), "GOOD");
+}
+
+TEST(Verdict, OfTheEnd) {
+  EXPECT_EQ(Text(OfStream("VS10;!VZ10;!PZ-100,200;!MC1;PU100,100;PD200,100;!MC0;")),
+            "DOUBTFUL; RML1-E8011 the tool stays 1.000 mm deep in the work at the end");
+  EXPECT_EQ(Text(OfStream("VS10;!VZ10;!PZ-100,200;!MC1;PU100,100;PD200,100;Z200,100,-1;!MC0;")),
+            "GOOD");
+  EXPECT_EQ(Text(OfStream("VS10;!VZ10;!PZ-100,200;!MC1;PU100,100;PD200,100;PU0,0;")),
+            "DOUBTFUL; RML1-E8012 the spindle turns on at the end");
+}
+
+// The plunge of 1 mm goes by the speed of Z, the stroke of 1 mm by that of X and Y.
+TEST(Verdict, OfFeedRatesThatNobodyGave) {
+  const std::string rest = "!PZ-100,200;!MC1;PU100,100;PD200,100;PU0,0;!MC0;";
+  const std::string said = " mm in the work at a speed that the program did not set @";
+  EXPECT_EQ(Text(OfStream(rest)), "DOUBTFUL; RML1-E8013 2.000" + said + "4");
+  EXPECT_EQ(Text(OfStream("VS10;" + rest)), "DOUBTFUL; RML1-E8013 1.000" + said + "5");
+  EXPECT_EQ(Text(OfStream("!VZ10;" + rest)), "DOUBTFUL; RML1-E8013 1.000" + said + "5");
+  EXPECT_EQ(Text(OfStream("VS10;!VZ10;DF;" + rest)), "DOUBTFUL; RML1-E8013 2.000" + said + "7");
+  EXPECT_EQ(Text(OfStream("VS10;!VZ10;" + rest)), "GOOD");
+}
+
+TEST(Verdict, OfAToolThatNeverCuts) {
+  EXPECT_EQ(Text(OfStream(Work("PU200,100;"))),
+            "DOUBTFUL; RML1-E8015 the tool never goes into the work");
+}
+
+// motion.md 9: the top of the block 3 mm above Z 0 is higher than the tool travels.
+TEST(Verdict, OfTravelThroughTheBlock) {
+  EXPECT_EQ(Text(OfStreamInBlock(Work("PD200,100;"), "20x20x10@0,0,2")), "GOOD");
+  const Judgement judgement = OfStreamInBlock(Work("PD200,100;"), "20x20x10@0,0,3");
+  EXPECT_EQ(judgement.verdict, Verdict::kBad);
+  EXPECT_EQ(judgement.reasons[0].code, ErrorCode::kCellGouge);
+  EXPECT_EQ(judgement.reasons[0].first.step, 5);
+}
+
+// A block of 10 mm: through it by a little is how one cuts out, by more than 1 mm it is the table.
+TEST(Verdict, OfAToolBelowTheBlock) {
+  const auto down_to = [](const std::string& z) {
+    return Text(OfStreamInBlock(Work("Z100,100," + z + ";"), "20x20x10"));
+  };
+  EXPECT_EQ(down_to("-1000"), "GOOD");
+  EXPECT_EQ(down_to("-1010"), "DOUBTFUL; CELL-E9402 the tool goes 0.100 mm below the block @6");
+  EXPECT_EQ(down_to("-1200"), "BAD; CELL-E9402 the tool goes 2.000 mm below the block @6");
+  // Beside the block, by its radius of 1.5 mm and more, the tool may go as deep as it likes.
+  const std::string beside = Work("PU2151,100;Z2151,100,-1200;");
+  EXPECT_EQ(Text(OfStreamInBlock(beside, "20x20x10")), "GOOD");
+}
+
+TEST(Verdict, OfHowARunEnds) {
+  RunReport report;
+  EXPECT_EQ(Text(Judge(report)), "GOOD");
+  report.outcome = {.kind = machine::OutcomeKind::kFailed,
+                    .code = ErrorCode::kHoleRadiusZero,
+                    .detail = "radius is 0",
+                    .place = {.program = 1, .step = 7}};
+  EXPECT_EQ(Text(Judge(report)), "BAD; OPT-E348 radius is 0 @7");
+  report.outcome = {.kind = machine::OutcomeKind::kStopped, .code = ErrorCode::kCellWaitsForever};
+  EXPECT_EQ(Judge(report).verdict, Verdict::kDoubtful);
+  report.outcome = {.kind = machine::OutcomeKind::kCancelled, .code = ErrorCode::kCellCancelled};
+  EXPECT_EQ(Judge(report).verdict, Verdict::kBad);
+  report.outcome = {.kind = machine::OutcomeKind::kBudgetExceeded,
+                    .code = ErrorCode::kCellTimeBudget};
+  EXPECT_EQ(Judge(report).verdict, Verdict::kBad);
+  report.outcome = {.kind = machine::OutcomeKind::kStopped, .detail = "emergency stop"};
+  EXPECT_EQ(Judge(report).verdict, Verdict::kDoubtful);
+}
+
+// An axis beyond its travel is told once: by the outcome, or, where the run went on, by its rule.
+TEST(Verdict, OfAnAxisBeyondItsTravel) {
+  RunReport report;
+  report.violations = {{.place = {.program = 1, .step = 3}, .axis = "X", .excess = 2.0}};
+  report.violations_dropped = 2;
+  EXPECT_EQ(Text(Judge(report)), "BAD; OPT-E7301 motions that leave the travel of an axis: 3 @3");
+  report.outcome = {.kind = machine::OutcomeKind::kFailed,
+                    .code = ErrorCode::kTargetOutOfTravel,
+                    .detail = "X by 2 mm"};
+  EXPECT_EQ(Text(Judge(report)), "BAD; OPT-E7301 X by 2 mm");
+}
+
+TEST(Verdict, OfFindingsIsBadWithAnError) {
+  Diagnostic warning{.code = ErrorCode::kFlyReversal, .severity = Severity::kWarning};
+  Diagnostic error{.code = ErrorCode::kSyntax,
+                   .severity = Severity::kCompile,
+                   .detail = "MOVE what",
+                   .where = {.line = 4}};
+  EXPECT_EQ(Text(JudgeFindings(std::vector{warning})), "GOOD");
+  const Judgement judgement = JudgeFindings(std::vector{warning, error});
+  EXPECT_EQ(Text(judgement), "BAD; OPT-E7003 MOVE what");
+  EXPECT_EQ(judgement.reasons[0].first.line, 4);
+}
+
+TEST(Judgement, KeepsTheMostSeriousFirst) {
+  Judgement judgement;
+  judgement.Add({.verdict = Verdict::kDoubtful, .said = "a"});
+  judgement.Add({.verdict = Verdict::kBad, .said = "b"});
+  judgement.Add({.verdict = Verdict::kDoubtful, .said = "c"});
+  judgement.Add({.verdict = Verdict::kBad, .said = "d"});
+  std::string order;
+  for (const machine::Reason& reason : judgement.reasons) order += reason.said;
+  EXPECT_EQ(order, "bdac");
+  EXPECT_EQ(judgement.verdict, Verdict::kBad);
+}
+
+// A check, which carries out a stream at once, says the same as a run of it.
+TEST(Verdict, OfACheckIsThatOfTheRun) {
+  const std::string streams[] = {Work("PD200,100;"), Work("PD20002,100;Z100,100,-4100;"),
+                                 Work("PD200,100,300;$$;PU50000,0;"), "PD100,100;",
+                                 "!PZ-100,0;PU100,100;PD5,5;!MC0;PU200,200;PD300,200;"};
+  for (const std::string& stream : streams) {
+    const machine::Translation checked =
+        Mill().Translate({.name = "part.rml", .bytes = stream}, MillOf("t1"), {});
+    EXPECT_EQ(Text(JudgeFigures(Mill(), checked.figures)), Text(OfStream(stream))) << stream;
+  }
+}
+
+std::string FileText(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+// The page has the rules in their order.
+TEST(Verdict, DocumentListsExactlyTheRules) {
+  std::string listed;
+  std::istringstream page(FileText(RMLCELL_SOURCE_DIR "/docs/verdict.md"));
+  for (std::string line; std::getline(page, line);) {
+    if (line.starts_with("| `")) listed += line + "\n";
+  }
+  std::string rules;
+  const auto add = [&](const machine::VerdictRule& rule) {
+    rules += "| `" + CodeText(rule.code) + "` | `" + std::string(rule.figure) + "` | " +
+             ShortestText(rule.limit) + " | " + std::string(machine::VerdictText(rule.verdict)) +
+             " | " + std::string(rule.said) + " |\n";
+  };
+  for (const VerdictRuleInfo& info : CommonVerdictRules()) add(info.rule);
+  for (const machine::MachineFamily* family : families::Families()) {
+    for (const machine::VerdictRule& rule : family->verdict_rules()) {
+      add(rule);
+      EXPECT_TRUE(std::ranges::any_of(family->figures(), [&](const machine::FigureInfo& info) {
+        return info.name == rule.figure;
+      })) << rule.figure;
+    }
+  }
+  EXPECT_EQ(listed, rules);
+}
+
+// What people judged of real programs, by hand and before the rules first ran on them.
+TEST(Verdict, OfRealProgramsIsThatOfPeople) {
+  const std::string corpus = RMLCELL_SHARED_DIR "/corpus/rml1/";
+  if (!std::ifstream(corpus + "SOURCES.md")) GTEST_SKIP() << "the shared corpus is not here";
+  std::istringstream table(
+      FileText(RMLCELL_SOURCE_DIR "/tests/conformance/rml1_corpus_verdicts.csv"));
+  std::string line;
+  std::getline(table, line);
+  int files = 0;
+  while (std::getline(table, line)) {
+    std::istringstream cells(line);
+    std::string file, profile, verdict;
+    std::getline(cells, file, ',');
+    std::getline(cells, profile, ',');
+    std::getline(cells, verdict, ',');
+    const std::string stream = FileText(corpus + file);
+    ASSERT_FALSE(stream.empty()) << file;
+    const machine::Translation checked =
+        Mill().Translate({.name = file, .bytes = stream}, MillOf(profile), {});
+    EXPECT_EQ(machine::VerdictText(JudgeFigures(Mill(), checked.figures).verdict), verdict) << file;
+    ++files;
+  }
+  EXPECT_EQ(files, 25);
+}
+
+}  // namespace
+}  // namespace rmlcell::simulation
