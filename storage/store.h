@@ -98,15 +98,13 @@ class Store {
   virtual ~Store() = default;
 
   // --- machines
-  // -------------------------------------------------------------------------------------
   virtual Result<std::vector<MachineRecord>> ListMachines() = 0;  // by id
   virtual Result<MachineRecord> GetMachine(std::string_view id) = 0;
   // The revision and times of `machine` are not looked at. CellInvalidArgument: no id.
   virtual Result<MachineRecord> PutMachine(const MachineRecord& machine, Revision expected) = 0;
 
   // --- programs
-  // ------------------------------------------------------------------------------------- Slots in
-  // order, those after `after_slot`.
+  // Slots in order, those after `after_slot`.
   virtual Result<std::vector<ProgramSummary>> ListPrograms(std::string_view machine, int after_slot,
                                                            int limit) = 0;
   virtual Result<ProgramRecord> GetProgram(std::string_view machine, int slot) = 0;  // CellNotFound
@@ -135,7 +133,6 @@ class Store {
   virtual Status DeleteExecutable(std::string_view machine, int slot) = 0;
 
   // --- laser schedules
-  // ------------------------------------------------------------------------------
   virtual Result<std::vector<ScheduleRecord>> ListSchedules(
       std::string_view machine) = 0;  // by number
   // CellInvalidArgument: number out of range.
@@ -143,8 +140,7 @@ class Store {
   virtual Status DeleteSchedule(std::string_view machine, int number) = 0;  // CellNotFound
 
   // --- projects
-  // ------------------------------------------------------------------------------------- By id,
-  // those after `after_id`.
+  // By id, those after `after_id`.
   virtual Result<std::vector<ProjectRecord>> ListProjects(std::string_view after_id, int limit) = 0;
   virtual Result<ProjectRecord> GetProject(std::string_view id) = 0;  // CellNotFound
   // As PutMachine.
@@ -152,7 +148,6 @@ class Store {
   virtual Status DeleteProject(std::string_view id, Revision expected) = 0;  // CellNotFound
 
   // --- jobs
-  // -----------------------------------------------------------------------------------------
   // Durable before `done` is called, from a thread of the store or before Submit() returns: many
   // submissions share one commit. `done` is called once, does not throw, and is brief, as the next
   // commit waits for it; it may call this store. Attachments are hashed and compressed by the
@@ -178,9 +173,8 @@ class Store {
                                           const std::vector<NewEvent>& events) = 0;
 
   // --- leases; all times by the clock of the store
-  // ----------------------------------------------------- A job has at most one holder. A lease
-  // that ran out stays its holder's until Expire() takes it: work that was done is kept while
-  // nobody else has begun it.
+  // A job has at most one holder. A lease that ran out stays its holder's until Expire() takes it:
+  // work that was done is kept while nobody else has begun it.
   //
   // The oldest queued job of one of `kinds`, or nothing. `events` are appended to it. It may have
   // cancel_requested, when an earlier holder gave it back: the new one ends it.
@@ -212,9 +206,9 @@ class Store {
   virtual Result<std::vector<JobRecord>> Expire(const LossPolicy& policy) = 0;
 
   // --- events and artifacts
-  // ---------------------------------------------------------------------------- In order, those
-  // after the number given. CellEventsGone when some of these were removed (a store may be told to
-  // bound what it keeps): from JobRecord::events_gone_until and EventsGoneUntil() on all are there.
+  // In order, those after the number given. CellEventsGone when some of these were removed (a store
+  // may be told to bound what it keeps): from JobRecord::events_gone_until and EventsGoneUntil() on
+  // all are there.
   virtual Result<std::vector<EventRecord>> JobEvents(std::int64_t job, std::int64_t after_sequence,
                                                      int limit) = 0;
   virtual Result<std::vector<EventRecord>> AllEvents(std::int64_t after_position, int limit) = 0;

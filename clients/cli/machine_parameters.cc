@@ -30,6 +30,18 @@ std::string ProfileLines(const machine::MachineFamily& family) {
   return lines;
 }
 
+// Where the profile has its figure from; empty where it has none of its own.
+std::string_view SourceOf(const machine::MachineFamily& family, std::string_view profile,
+                          std::string_view parameter) {
+  for (const machine::MachineProfile& one : family.profiles()) {
+    if (one.id != profile) continue;
+    for (const machine::ParameterValue& value : one.values) {
+      if (value.name == parameter) return value.source;
+    }
+  }
+  return {};
+}
+
 std::string MachineFile(const machine::MachineFamily& family, const std::string& profile,
                         const machine::Parameters& parameters) {
   std::string text =
@@ -39,6 +51,9 @@ std::string MachineFile(const machine::MachineFamily& family, const std::string&
   for (const machine::ParameterInfo& parameter : family.parameters()) {
     text += "# " + std::string(parameter.text) + " (" + RangeText(parameter) + "; " +
             std::string(parameter.rule) + ")\n";
+    if (const std::string_view source = SourceOf(family, parameters.profile(), parameter.name);
+        !source.empty())
+      text += "# source: " + std::string(source) + "\n";
     text += std::string(parameter.name) + " = " +
             (parameter.choices.empty() ? ShortestText(parameters.Number(parameter.name))
                                        : Quoted(parameters.Word(parameter.name))) +
@@ -71,6 +86,9 @@ nlohmann::ordered_json ParametersJson(const machine::MachineFamily& family,
       one["value"] = parameters.Word(parameter.name);
       one["choices"] = parameter.choices;
     }
+    if (const std::string_view source = SourceOf(family, parameters.profile(), parameter.name);
+        !source.empty())
+      one["source"] = source;
     all.push_back(std::move(one));
   }
   return all;

@@ -221,8 +221,19 @@ void AddFamilyFigures(const v1::RunReport& report, const machine::MachineFamily&
       [&](std::string_view name) { return FigureOf(report, name); }, rows);
 }
 
+// "Roland monoFab SRM-20 (srm-20)". That nobody said which machine it is must not be overlooked.
+std::string MachineText(const machine::MachineFamily& family, const std::string& profile) {
+  for (const machine::MachineProfile& one : family.profiles()) {
+    if (one.id == profile) return std::string(one.title) + " (" + profile + ")";
+  }
+  return std::string(family.info().title) +
+         "; no profile was named (--profile NAME, see rmlcell parameters): the defaults count";
+}
+
 // What a run did; a job that only checks has none of it.
 void AddFigures(const v1::RunReport& report, Rows& rows) {
+  const machine::MachineFamily* family = families::FindFamily(report.family());
+  if (family != nullptr) rows.emplace_back("machine", MachineText(*family, report.profile()));
   const v1::WorkFigures& total = report.total();
   const v1::RunTimes& times = total.times();
   rows.emplace_back("cycle time", Duration(times.cycle_s()));
@@ -244,7 +255,6 @@ void AddFigures(const v1::RunReport& report, Rows& rows) {
   rows.emplace_back("path", Fixed(total.path_length_mm(), 3) + " mm: cut " +
                                 Fixed(total.cut_length_mm(), 3) + ", travel " +
                                 Fixed(total.travel_length_mm(), 3));
-  const machine::MachineFamily* family = families::FindFamily(report.family());
   const machine::MachineShape shape =
       family == nullptr ? machine::MachineShape()
                         : family->Shape(machine::Parameters(family->parameters()));

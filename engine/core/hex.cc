@@ -4,6 +4,22 @@
 
 namespace rmlcell {
 
+std::optional<unsigned> HexValue(char digit) {
+  if (digit >= '0' && digit <= '9') return static_cast<unsigned>(digit - '0');
+  if (digit >= 'a' && digit <= 'f') return static_cast<unsigned>(digit - 'a' + 10);
+  if (digit >= 'A' && digit <= 'F') return static_cast<unsigned>(digit - 'A' + 10);
+  return std::nullopt;
+}
+
+std::string HexNumber(std::uint64_t value) {
+  std::string text;
+  do {
+    text.insert(text.begin(), HexDigit(static_cast<unsigned>(value)));
+    value >>= 4U;
+  } while (value != 0);
+  return text;
+}
+
 std::string HexOf(std::string_view bytes) {
   std::string text;
   text.reserve(2 * bytes.size());

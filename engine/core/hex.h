@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -8,6 +9,12 @@ namespace rmlcell {
 
 // The least four bits as a digit, 0 to 9 and a to f.
 constexpr char HexDigit(unsigned value) { return "0123456789abcdef"[value & 0xFU]; }
+
+// What a digit stands for, of either case; nothing for another character.
+std::optional<unsigned> HexValue(char digit);
+
+// A number without leading zeros, a to f small.
+std::string HexNumber(std::uint64_t value);
 
 // Two digits a byte, a to f small: digests, identifiers.
 std::string HexOf(std::string_view bytes);

@@ -75,6 +75,7 @@ Status Parameters::Apply(const MachineProfile& profile) {
   for (const ParameterValue& value : profile.values) {
     if (const Status set = changed.Set(value.name, value.Text()); !set) return set;
   }
+  changed.profile_ = profile.id;
   *this = std::move(changed);
   return {};
 }

@@ -32,6 +32,7 @@ struct ParameterInfo {
 struct ParameterValue {
   std::string_view name;
   std::variant<double, std::string_view> value;  // a number or a word
+  std::string_view source{};                     // where it is from; "estimate"; empty: not told
 
   std::string Text() const;  // as Set reads it
 };
@@ -52,6 +53,8 @@ class Parameters {
   Status Set(std::string_view name, double value);
   Status Set(std::string_view name, std::string_view text);  // a word, or a number as text
   Status Apply(const MachineProfile& profile);
+  // The profile that was applied last; empty: none was.
+  const std::string& profile() const { return profile_; }
 
   // Precondition: the family has this parameter, and it is a number, or a word.
   double Number(std::string_view name) const;
@@ -66,6 +69,7 @@ class Parameters {
   const ParameterInfo* Find(std::string_view name) const;
 
   std::span<const ParameterInfo> table_;
+  std::string profile_;
   std::map<std::string, double, std::less<>> numbers_;
   std::map<std::string, std::string, std::less<>> words_;
 };

@@ -1,13 +1,12 @@
 #include <array>
 
+#include "engine/machine/profile_files.h"
 #include "engine/rml1/profile.h"
 
 namespace rmlcell::rml1 {
 namespace {
 
-using machine::MachineProfile;
 using machine::ParameterInfo;
-using machine::ParameterValue;
 
 // The defaults are the test profile T1 of rml1.md 0.2: the machine of the specification's examples.
 // clang-format off
@@ -56,140 +55,15 @@ constexpr std::array kParameters = {
 };
 // clang-format on
 
-// The small Modela mills differ in their table only.
-MachineProfile Modela(std::string_view id, std::string_view title, double x_max, double y_max) {
-  return {.id = id,
-          .title = title,
-          .values = {{"UNITS_PER_MM", 40.0},
-                     {"X_MAX", x_max},
-                     {"Y_MAX", y_max},
-                     {"Z_MIN", -60.5},
-                     {"Z2", 0.0},
-                     {"XY_SPEED_MIN", 0.1},
-                     {"XY_SPEED_MAX", 15.0},
-                     {"Z_SPEED_MIN", 0.1},
-                     {"Z_SPEED_MAX", 15.0},
-                     {"TRAVEL_SPEED", 15.0},
-                     {"SPINDLE_MIN", 6500.0},
-                     {"SPINDLE_MAX", 6500.0},
-                     {"SPINDLE_CONTROL", "NONE"},
-                     {"SPIN_UP", 2.0},
-                     {"SPIN_DOWN", 2.0},
-                     {"STEP", 0.025}}};
-}
-
-// T1A, T1N, T1S, T1F of rml1.md 0.2, then the machines of rml1-profiles.md. Where that table has no
-// figure the default stands. Z0 is 20 mm below the top on all of them, where an operator might put
-// the surface of the work: programs lift the tool above it.
-const std::vector<MachineProfile>& Profiles() {
-  static const std::vector<MachineProfile> profiles = {
-      {.id = "t1", .title = "Test profile T1", .values = {}},
-      {.id = "t1a",
-       .title = "Test profile T1A: with a rotary axis",
-       .values = {{"AXES", "XYZA"}, {"Y_WITH_A", "NO"}}},
-      {.id = "t1n", .title = "Test profile T1N: axes X, Z and A", .values = {{"AXES", "XZA"}}},
-      {.id = "t1s",
-       .title = "Test profile T1S: spindle speed by stages only",
-       .values = {{"SPINDLE_CONTROL", "STAGES"}}},
-      {.id = "t1f",
-       .title = "Test profile T1F: spindle speed not set by command",
-       .values = {{"SPINDLE_CONTROL", "NONE"}}},
-      {.id = "srm-20",
-       .title = "Roland monoFab SRM-20",
-       .values = {{"X_MAX", 203.2},
-                  {"Y_MAX", 152.4},
-                  {"Z_MIN", -60.5},
-                  {"Z2", 0.0},
-                  {"XY_SPEED_MIN", 0.1},
-                  {"XY_SPEED_MAX", 30.0},
-                  {"Z_SPEED_MIN", 0.1},
-                  {"Z_SPEED_MAX", 30.0},
-                  {"TRAVEL_SPEED", 30.0},
-                  {"SPINDLE_MIN", 3000.0},
-                  {"SPINDLE_MAX", 7000.0},
-                  {"SPIN_UP", 2.0},
-                  {"SPIN_DOWN", 2.0},
-                  {"STEP", 0.000998}}},
-      Modela("mdx-15", "Roland Modela MDX-15", 152.4, 101.6),
-      Modela("mdx-20", "Roland Modela MDX-20", 203.2, 152.4),
-      {.id = "mdx-40a",
-       .title = "Roland MDX-40A",
-       .values = {{"X_MAX", 305.0},
-                  {"Y_MAX", 305.0},
-                  {"Z_MIN", -105.0},
-                  {"Z2", 0.0},
-                  {"XY_SPEED_MIN", 0.1},
-                  {"XY_SPEED_MAX", 50.0},
-                  {"Z_SPEED_MIN", 0.1},
-                  {"Z_SPEED_MAX", 30.0},
-                  {"TRAVEL_SPEED", 50.0},
-                  {"SPIN_UP", 2.0},
-                  {"SPIN_DOWN", 2.0},
-                  {"STEP", 0.002}}},
-      {.id = "mdx-40a-rotary",
-       .title = "Roland MDX-40A with rotary axis ZCL-40A",
-       .values = {{"X_MIN", 34.0},
-                  {"X_MAX", 305.0},
-                  {"Y_MAX", 305.0},
-                  {"Z_MIN", -68.0},
-                  {"ORIGIN_X", 34.0},
-                  {"Z2", 0.0},
-                  {"XY_SPEED_MIN", 0.1},
-                  {"XY_SPEED_MAX", 50.0},
-                  {"Z_SPEED_MIN", 0.1},
-                  {"Z_SPEED_MAX", 30.0},
-                  {"TRAVEL_SPEED", 50.0},
-                  {"AXES", "XYZA"},
-                  {"SPIN_UP", 2.0},
-                  {"SPIN_DOWN", 2.0},
-                  {"STEP", 0.002}}},
-      {.id = "mdx-50",
-       .title = "Roland MDX-50",
-       .values = {{"X_MAX", 400.0},
-                  {"Y_MAX", 305.0},
-                  {"Z_MIN", -135.0},
-                  {"Z2", 0.0},
-                  {"XY_SPEED_MIN", 0.1},
-                  {"XY_SPEED_MAX", 60.0},
-                  {"Z_SPEED_MIN", 0.1},
-                  {"Z_SPEED_MAX", 60.0},
-                  {"SPIN_UP", 2.0},
-                  {"SPIN_DOWN", 2.0},
-                  {"SKIP", "TOOL_CHANGE"}}},
-      {.id = "mdx-540",
-       .title = "Roland MDX-540",
-       .values = {{"X_MAX", 500.0},
-                  {"Y_MAX", 400.0},
-                  {"Z_MIN", -155.0},
-                  {"Z2", 0.0},
-                  {"XY_SPEED_MAX", 125.0},
-                  {"Z_SPEED_MAX", 125.0},
-                  {"TRAVEL_SPEED", 125.0},
-                  {"SPINDLE_MIN", 3000.0},
-                  {"SPINDLE_MAX", 12000.0},
-                  {"SPIN_UP", 2.0},
-                  {"SPIN_DOWN", 2.0},
-                  {"SKIP", "VPANEL"}}},
-      {.id = "pnc-3200",
-       .title = "Roland PNC-3200",
-       .values = {{"X_MAX", 250.0},
-                  {"Y_MAX", 150.0},
-                  {"Z_MIN", -150.0},
-                  {"Z2", 0.0},
-                  {"Z_SPEED_MAX", 30.0},
-                  {"SPINDLE_MIN", 3000.0},
-                  {"SPINDLE_MAX", 8000.0},
-                  {"SPINDLE_CONTROL", "STAGES"},
-                  {"SPIN_UP", 2.0},
-                  {"SPIN_DOWN", 2.0},
-                  {"AXIS_COMMAND", "NO"}}},
-  };
-  return profiles;
-}
-
 }  // namespace
 
 std::span<const ParameterInfo> ParameterTable() { return kParameters; }
-std::span<const MachineProfile> MachineProfiles() { return Profiles(); }
+// T1 and its kin of rml1.md 0.2, then the machines of rml1-profiles.md. Where a file has no figure
+// the default stands. Z0 is 20 mm below the top on all of them, where an operator might put the
+// surface of the work: programs lift the tool above it.
+std::span<const machine::MachineProfile> MachineProfiles() {
+  static const machine::ProfileFiles profiles(ProfileTexts());
+  return profiles.all();
+}
 
 }  // namespace rmlcell::rml1

@@ -4,6 +4,7 @@
 
 #include "engine/core/result.h"
 #include "engine/machine/parameters.h"
+#include "engine/machine/profile_files.h"
 #include "engine/motion/planner/feed_steps.h"
 #include "engine/rml1/command_reader.h"
 
@@ -69,7 +70,10 @@ struct Profile {
 // The machine parameters of the family; their defaults are the test profile T1 of rml1.md 0.2.
 std::span<const machine::ParameterInfo> ParameterTable();
 
-// The test profiles and the machines of rml1-profiles.md.
+// The files of engine/rml1/profiles, in the order of engine/rml1/CMakeLists.txt.
+std::span<const machine::ProfileText> ProfileTexts();
+
+// The same, read: the test profiles and the machines of rml1-profiles.md.
 std::span<const machine::MachineProfile> MachineProfiles();
 
 // Error: CellParameterRange when two parameters do not fit together (a travel of nothing, a lowest

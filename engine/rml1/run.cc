@@ -258,7 +258,7 @@ void MillRun::PressStart() {
   State& s = state_;
   if (s.halt != HaltCause::kNone) return EndHalt();
   s.halt_wanted = HaltCause::kNone;
-  if (!Moves() || s.ride.intent() != motion::RideIntent::kHold) return;
+  if (!Moves() || !s.ride.may_resume()) return;
   s.ride.Resume();
   PlanAnew();
 }
@@ -294,9 +294,8 @@ void MillRun::ChangeOverride(double percent) {
   if (std::isnan(percent)) return;
   const double before = s.override_percent;
   s.override_percent = std::clamp(percent, kOverrideMin, kOverrideMax);
-  const bool stays = !Moves() || s.ride.intent() == motion::RideIntent::kStop ||
-                     s.motion.action.rapid || s.override_percent == before;
-  if (stays) {
+  if (s.override_percent == before) return;
+  if (!s.ride.Override() || !Moves() || s.motion.action.rapid) {
     s.ahead.SetOverride(s.override_percent);
   } else {
     PlanAnew();
@@ -355,6 +354,7 @@ void MillRun::End(OutcomeKind kind, ErrorCode code) {
 // The tool stands where it is, and the spindle stops.
 void MillRun::Freeze() {
   State& s = state_;
+  s.ride.Finish();
   if (s.busy == Busy::kMotion && s.motion.planned) {
     const double travelled = s.motion.leg.ride.speed.At(ElapsedInLeg()).s;
     const Point stopped_at = ToolAt(TipNow());

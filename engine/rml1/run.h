@@ -79,7 +79,7 @@ class MillRun final : public machine::Run {
     Sender sender;
     Scout scout;
     LookAhead ahead;
-    motion::RideProtocol ride;
+    motion::RideProtocol ride{motion::HoldRamp::kPlannedAnew};
     std::size_t next_input = 0;
     VirtualClock clock;
     SimTime now{0};

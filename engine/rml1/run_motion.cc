@@ -57,6 +57,7 @@ bool MillRun::PlanLeg(std::size_t sent_max) {
   if (s.motion.leg.halts && !(s.ahead.speed() > 0.0)) {  // at rest for a STOP
     s.busy = Busy::kNothing;
     s.rest_left = true;
+    s.ride.Rest();
   } else {
     StartLeg();
   }
@@ -117,6 +118,7 @@ void MillRun::EndMotion(double speed) {
   State& s = state_;
   s.busy = Busy::kNothing;
   s.ahead.Finish(speed);
+  if (!(speed > 0.0) && s.ride.comes_to_rest()) s.ride.Rest();
   s.tool = s.motion.action.to;
   const motion::TipPose tip = PoseOf(profile(), s.tool);
   observer_.OnMove({.at = s.now,

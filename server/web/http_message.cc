@@ -12,13 +12,6 @@
 namespace rmlcell::web {
 namespace {
 
-int HexDigit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
 bool IsControl(char c) {
   const auto byte = static_cast<unsigned char>(c);
   return byte < 0x20 || byte == 0x7F;
@@ -130,10 +123,10 @@ std::optional<std::string> PercentDecode(std::string_view text, bool plus_is_bla
       out += text[i];
     } else {
       if (text.size() - i < 3) return std::nullopt;
-      const int high = HexDigit(text[i + 1]);
-      const int low = HexDigit(text[i + 2]);
-      if (high < 0 || low < 0) return std::nullopt;
-      out += static_cast<char>(high * 16 + low);
+      const std::optional<unsigned> high = HexValue(text[i + 1]);
+      const std::optional<unsigned> low = HexValue(text[i + 2]);
+      if (!high || !low) return std::nullopt;
+      out += static_cast<char>(*high * 16 + *low);
       i += 2;
     }
   }
@@ -204,11 +197,7 @@ std::string HttpDate() {
   return std::string(text.data(), size);
 }
 
-std::string ChunkHead(std::size_t size) {
-  std::array<char, 16> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), size, 16).ptr;
-  return std::string(digits.data(), end) + "\r\n";
-}
+std::string ChunkHead(std::size_t size) { return HexNumber(size) + "\r\n"; }
 
 void SetTarget(std::string_view target, HttpRequest& request) {
   for (const std::string_view scheme : {"http://", "https://"}) {

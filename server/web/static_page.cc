@@ -1,10 +1,10 @@
 #include "server/web/static_page.h"
 
-#include <array>
-#include <charconv>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
+
+#include "engine/core/hex.h"
 
 namespace rmlcell::web {
 namespace {
@@ -34,9 +34,7 @@ std::string_view TypeOf(std::string_view name) {
 std::string EtagOf(std::string_view bytes) {
   std::uint64_t hash = 0xCBF29CE484222325U;
   for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3U;
-  std::array<char, 16> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), hash, 16).ptr;
-  return std::string(digits.data(), end);
+  return HexNumber(hash);
 }
 
 std::optional<std::string> ReadFile(const std::string& path) {

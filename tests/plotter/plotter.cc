@@ -11,7 +11,7 @@
 namespace rmlcell::plotter {
 namespace {
 
-using machine::OutcomeKind, machine::RunPhase;
+using machine::OutcomeKind, machine::Parameters, machine::RunPhase;
 
 constexpr double kSpeed_mm_s = 200.0;
 constexpr ErrorCode kSyntax = OwnError(kErrorTable, 0);
@@ -44,8 +44,8 @@ bool ReadLine(std::string_view text, Command& command) {
   if (!TakeNumber(text, command.x)) return false;
   if (command.name == "SP") return text.empty() && command.x >= 0.0 && command.x <= 8.0;
   if (command.name == "WT") return text.empty() && command.x >= 0.0;
-  if (command.name != "PU" && command.name != "PD") return false;
-  if (text.empty() || text.front() != ',') return false;
+  const bool moves = command.name == "PU" || command.name == "PD";
+  if (!moves || !text.starts_with(',')) return false;
   text.remove_prefix(1);
   return TakeNumber(text, command.y) && text.empty();
 }
@@ -70,7 +70,7 @@ std::vector<Command> Read(std::string_view text, std::vector<Diagnostic>& findin
   return commands;
 }
 
-motion::MachineLimits Limits(const machine::Parameters& parameters) {
+motion::MachineLimits Limits(const Parameters& parameters) {
   motion::MachineLimits limits;
   limits.tip_speed_mm_s = kSpeed_mm_s;
   limits.settling_s = 0.0;
@@ -173,8 +173,7 @@ class PlotterRun final : public machine::Run {
   void Next() {
     if (s_.hold) {
       s_.phase = RunPhase::kHalted;
-      observer_.OnHalt({.at = s_.now, .place = place(), .why = "HOLD"});
-      return;
+      return observer_.OnHalt({.at = s_.now, .place = place(), .why = "HOLD"});
     }
     if (s_.next == commands_.size()) return End(OutcomeKind::kCompleted, {});
     const Command& command = commands_[s_.next++];
@@ -242,20 +241,17 @@ class Family final : public machine::MachineFamily {
   const machine::FamilyInfo& info() const override { return kInfo; }
   std::span<const machine::ParameterInfo> parameters() const override { return kParameters; }
   std::span<const machine::MachineProfile> profiles() const override { return {}; }
-  bool HasVariable(const machine::Parameters&, std::string_view name) const override {
+  bool HasVariable(const Parameters&, std::string_view name) const override {
     return name == "PEN";
   }
-
-  machine::MachineShape Shape(const machine::Parameters& parameters) const override {
-    const double size = parameters.Number("SIZE");
+  machine::MachineShape Shape(const Parameters& parameters) const override {
     machine::MachineShape shape;
-    shape.travel.Add(motion::MachinePoint{0.0, 0.0, 0.0});
-    shape.travel.Add(motion::MachinePoint{size, size, 0.0});
+    for (const double corner : {0.0, parameters.Number("SIZE")})
+      shape.travel.Add(motion::MachinePoint{corner, corner, 0.0});
     shape.limits = Limits(parameters);
     return shape;
   }
-
-  machine::Translation Translate(const machine::SourceFile& file, const machine::Parameters&,
+  machine::Translation Translate(const machine::SourceFile& file, const Parameters&,
                                  const machine::CheckOptions&) const override {
     machine::Translation made;
     const std::size_t steps = Read(file.bytes, made.diagnostics).size();
@@ -265,7 +261,6 @@ class Family final : public machine::MachineFamily {
     made.figures.push_back({"steps", "", static_cast<double>(steps)});
     return made;
   }
-
   Result<std::unique_ptr<machine::Run>> NewRun(machine::RunSetup setup,
                                                machine::RunObserver& observer) const override {
     return std::unique_ptr<machine::Run>(std::make_unique<PlotterRun>(std::move(setup), observer));

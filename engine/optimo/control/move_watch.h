@@ -36,9 +36,11 @@ struct WatchState {
 // goes on meanwhile. OPT-2.54 to 2.58
 //
 //   kIdle     Arm       kArmed: the MOVE has /TIME
-//   kIdle,    Watch     kWatches; kComes, where the program has run ahead
-//   kArmed    Stand     kStands
-//   kArmed    Disarm    kIdle: its /END was true at once
+//             Watch     kWatches; kComes, where the program has run ahead
+//             Stand     kStands
+//   kArmed    Watch     kWatches; kComes, where the program has run ahead
+//             Stand     kStands
+//             Disarm    kIdle: its /END was true at once
 //             time out  kIdle, and the GOSUB: no motion is made
 //   kComes    begins    kWatches, and its time runs from here
 //   kWatches  /END      stays, and the motion ends where it is

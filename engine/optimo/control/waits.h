@@ -14,8 +14,9 @@ namespace rmlcell::optimo {
 //   kind         begun by                                ended by
 //   kStandstill  StandFirst, an error ahead of motion    nothing is under way (Control)
 //   kTime        DELAY, a pierce, CALL, polling          its time (Control)
-//   kCondition   WAIT, /START of MOVE and WORK           the expression is true (Control), /TIME
-//   (watch) kTakeOver    a MOVE beside a motion of /NEXT         the next tick: then kStandstill
+//   kCondition   WAIT, /START of MOVE and WORK           the expression is true (Control), or
+//                                                        /TIME (watch)
+//   kTakeOver    a MOVE beside a motion of /NEXT         the next tick: then kStandstill
 //   kNoMotion    a MOVE that never moves                 its /END or /TIME (watch)
 //
 // An error ends whatever it is.

@@ -230,6 +230,7 @@ bool Ride::EndForError() {
 }
 
 void Ride::Freeze() {
+  s_.protocol.Finish();
   if (!s_.active) return;
   TellMotion(situation_.now);
   situation_.machine.axes = axes();

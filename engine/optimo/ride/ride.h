@@ -44,7 +44,7 @@ struct RideState {
   Beside beside = Beside::kNo;
   std::uint64_t beside_from = 0;
 
-  motion::RideProtocol protocol{};
+  motion::RideProtocol protocol{motion::HoldRamp::kStays};
   std::deque<motion::PlannedItem> interrupted{};  // STOP: what follows at START
   std::deque<AppendedItem> held{};                // HOLD: what follows at START
   machine::Place halted_behind{};  // the move that HOLD made exact, or that STOP interrupted

@@ -18,7 +18,7 @@ void Ride::ChangeOverride(double percent) {
   if (!(percent > 0.0) || percent == before) return;
   situation_.override_percent = percent;
   for (AppendedItem& item : s_.held) AdaptToOverride(item);
-  if (s_.protocol.TakesOverride()) AdaptMotions();
+  if (s_.protocol.Override()) AdaptMotions();
 }
 
 // The motions planned with another override, from the one under way on.

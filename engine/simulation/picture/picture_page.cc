@@ -120,8 +120,8 @@ class PageWriter {
     AppendText(body_, {kPageMargin, 44.0}, Shortened(TitleText(), kPictureTitleMax),
                {.size = 26.0, .bold = true});
     const machine::MachineFamily* family = families::FindFamily(report_.family);
-    const std::string machine =
-        family != nullptr ? std::string(family->info().title) : report_.family;
+    std::string machine = family != nullptr ? std::string(family->info().title) : report_.family;
+    if (!report_.profile.empty()) machine += ", " + report_.profile;
     AppendText(body_, {kPageMargin, 70.0}, machine, {.size = 14.0, .colour = kFaint});
     const double right = width_ - kPageMargin;
     AppendText(body_, {right, 44.0}, DurationText(report_.cycle_time),

@@ -124,6 +124,8 @@ std::string CoordinateName(std::string_view suffix) {
 
 void Table::AddRun() {
   Add("family", "", "machine family", [](const RunReport& r) { return Line(r.family); });
+  Add("profile", "", "profile of the machine, such as srm-20; none: the defaults of the family",
+      [](const RunReport& r) { return Line(r.profile); });
   Add("title", "", "name of the program", [](const RunReport& r) { return Line(r.title); });
   Add("inputs_hash", "", "fingerprint of everything the run depends on",
       [](const RunReport& r) { return Line(r.inputs_hash); });

@@ -116,6 +116,7 @@ RunReport Recorder::Report(const machine::Run& run) const {
   report.title = state_->inputs.title;
   report.engine_version = kEngineVersion;
   report.inputs_hash = state_->inputs.hash;
+  report.profile = state_->inputs.profile;
   report.changed_parameters = state_->inputs.changed_parameters;
   if (const auto& trace = state_->trace) {
     report.trace = {.made = true,

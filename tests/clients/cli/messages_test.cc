@@ -183,12 +183,7 @@ TEST_F(Messages, VariablesStandInOrder) {
 }
 
 // All that the report of a laser can say, in its order. Each figure has a value of its own.
-TEST_F(Messages, AWholeReportOfALaser) {
-  v1::RunReport report;
-  report.set_family("optimo");
-  report.mutable_outcome()->set_kind(v1::Outcome::KIND_STOPPED);
-  v1::WorkFigures& total = *report.mutable_total();
-  v1::RunTimes& times = *total.mutable_times();
+void SetEachTime(v1::RunTimes& times) {
   times.set_cycle_s(45.0);
   times.set_motion_s(1.0);
   times.set_settling_s(2.0);
@@ -199,6 +194,14 @@ TEST_F(Messages, AWholeReportOfALaser) {
   times.set_spin_up_s(7.0);
   times.set_load_s(8.0);
   times.set_standstill_s(9.0);
+}
+
+TEST_F(Messages, AWholeReportOfALaser) {
+  v1::RunReport report;
+  report.set_family("optimo");
+  report.mutable_outcome()->set_kind(v1::Outcome::KIND_STOPPED);
+  v1::WorkFigures& total = *report.mutable_total();
+  SetEachTime(*total.mutable_times());
   total.set_path_length_mm(21.0);
   total.set_cut_length_mm(11.5);
   total.set_travel_length_mm(9.5);
@@ -280,6 +283,8 @@ TEST_F(Messages, AWholeReportOfALaser) {
   EXPECT_EQ(
       ReportText(report),
       "outcome       stopped\n"
+      "machine       Amada OPTIMO 5-axis laser; no profile was named (--profile NAME, see rmlcell "
+      "parameters): the defaults count\n"
       "cycle time    45.000 s\n"
       "              motion 1.000 s, settling 2.000 s, dwell 3.000 s, pierce 4.000 s, condition 5.000 s, "
       "operator 6.000 s, spin-up 7.000 s, loading 8.000 s, standstill 9.000 s\n"
@@ -310,7 +315,18 @@ TEST_F(Messages, AWholeReportOfALaser) {
 TEST_F(Messages, AWholeReportOfAMill) {
   v1::RunReport report;
   report.set_family("rml1");
-  report.mutable_outcome()->set_kind(v1::Outcome::KIND_COMPLETED);
+  report.set_profile("srm-20");
+  v1::Outcome& outcome = *report.mutable_outcome();
+  outcome.set_kind(v1::Outcome::KIND_COMPLETED);
+  outcome.set_verdict(v1::VERDICT_BAD);
+  v1::VerdictReason& first = *outcome.add_reasons();
+  first.set_message("3 motions");
+  first.set_code("CELL-E9401");
+  first.set_advice("lift the tool");
+  first.mutable_first()->set_step(4);
+  v1::VerdictReason& second = *outcome.add_reasons();
+  second.set_message("deep");
+  second.set_code("RML1-E8002");
   report.mutable_total()->set_plunges(2);
   v1::MillingFigures& milling = *report.mutable_milling();
   milling.set_removed_mm3(1.5);
@@ -320,7 +336,11 @@ TEST_F(Messages, AWholeReportOfAMill) {
   milling.set_gouge_time_s(5.5);
   EXPECT_EQ(
       ReportText(report),
+      "verdict       BAD\n"
+      "              3 motions (CELL-E9401, step 4); lift the tool\n"
+      "              deep (RML1-E8002)\n"
       "outcome       completed\n"
+      "machine       Roland monoFab SRM-20 (srm-20)\n"
       "cycle time    0.000 s\n"
       "path          0.000 mm: cut 0.000, travel 0.000\n"
       "plunges       2\n"
@@ -404,6 +424,23 @@ TEST_F(Messages, TheLeastThatIsTold) {
   EXPECT_THAT(ReportText(mill), HasSubstr("clipped       1.000 mm beyond the cutting range\n"));
   EXPECT_THAT(ReportText(mill), HasSubstr("speeds        1 limited to those of the machine\n"));
   EXPECT_THAT(ReportText(mill), HasSubstr("1 motions at travel speed through material"));
+}
+
+// Of many findings of one kind five are shown, and the others told in one line.
+TEST_F(Messages, FindingsOfOneKindAreCounted) {
+  v1::RunReport report;
+  for (int line = 1; line <= 7; ++line) {
+    v1::Diagnostic& finding = *report.add_diagnostics();
+    finding.set_code("RML1-E1");
+    finding.set_message("here");
+    finding.mutable_place()->set_line(line);
+  }
+  report.add_diagnostics()->set_code("RML1-E2");
+  const std::string text = ReportText(report);
+  EXPECT_NE(text.find("\n5: "), std::string::npos) << text;
+  EXPECT_EQ(text.find("\n6: "), std::string::npos) << text;
+  EXPECT_NE(text.find("RML1-E2"), std::string::npos);
+  EXPECT_NE(text.find("\nand 2 more RML1-E1, lines 6 to 7\n"), std::string::npos) << text;
 }
 
 }  // namespace

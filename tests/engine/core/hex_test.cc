@@ -15,6 +15,20 @@ TEST(Hex, TwoDigitsAByte) {
   EXPECT_EQ(HexDigit(0x1F), 'f');  // the least four bits
 }
 
+TEST(Hex, NumbersHaveNoLeadingZeros) {
+  EXPECT_EQ(HexNumber(0), "0");
+  EXPECT_EQ(HexNumber(0x1a0), "1a0");
+  EXPECT_EQ(HexNumber(UINT64_MAX), "ffffffffffffffff");
+}
+
+TEST(Hex, DigitsOfEitherCase) {
+  EXPECT_EQ(HexValue('0'), 0U);
+  EXPECT_EQ(HexValue('9'), 9U);
+  EXPECT_EQ(HexValue('a'), 10U);
+  EXPECT_EQ(HexValue('F'), 15U);
+  for (const char none : {'/', ':', '@', 'G', '`', 'g', '\0'}) EXPECT_FALSE(HexValue(none));
+}
+
 TEST(Hex, AndBackAgain) {
   EXPECT_EQ(BytesOfHex("000fa9ff"), std::string("\x00\x0F\xA9\xFF", 4));
   EXPECT_EQ(BytesOfHex(""), "");
