@@ -17,6 +17,7 @@
 #include "engine/simulation/run/simulate.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
+#include "proto/bridge/framing.h"
 #include "proto/bridge/report.h"
 #include "proto/bridge/setup.h"
 
@@ -178,6 +179,24 @@ Status MakeExecutable(const machine::MachineFamily& family, machine::RunSetup& s
   return {};
 }
 
+// The files that were asked for; what goes to standard output ("-") is not written here.
+Status WriteProducts(const SimulateOptions& options, const simulation::SimulationResult& result,
+                     const std::string& toolpath) {
+  if (result.material && !options.stl.empty()) {
+    if (Status written = WriteMaterial(*result.material, options.stl); !written) return written;
+  }
+  const std::pair<std::string, std::string_view> files[] = {
+      {options.toolpath, toolpath},
+      {options.plot.empty() ? std::string() : options.plot[1], result.plot},
+      {options.svg, result.svg},
+      {options.state_out, result.machine_state}};
+  for (const auto& [name, bytes] : files) {
+    if (name.empty() || name == "-") continue;
+    if (Status written = WriteWholeFile(name, bytes); !written) return written;
+  }
+  return {};
+}
+
 }  // namespace
 
 int Simulate(const SimulateOptions& options) {
@@ -255,6 +274,13 @@ int Simulate(const SimulateOptions& options) {
     };
   }
   request.products.picture = !options.svg.empty();
+  std::string toolpath;
+  if (!options.toolpath.empty()) {
+    request.products.toolpath = [&toolpath](std::string_view block) {
+      bridge::AddFrame(block, toolpath);
+      return true;
+    };
+  }
   std::ofstream samples;
   if (!options.samples.empty()) {
     const Result<double> rate = simulation::ParseSampleRate(options.samples[0]);
@@ -298,31 +324,16 @@ int Simulate(const SimulateOptions& options) {
   progress.Clear();
   if (!result) return Refuse(result.error());
 
-  if (result->material && !options.stl.empty()) {
-    if (Status written = WriteMaterial(*result->material, options.stl); !written)
-      return Refuse(written.error());
-  }
+  if (const Status written = WriteProducts(options, *result, toolpath); !written)
+    return Refuse(written.error());
   if (samples.is_open()) {
     samples.close();
     if (!samples)
       return Refuse(
           {ErrorCode::kCellFileUnwritable, options.samples[1] + ": not written to its end", {}});
   }
-  const std::string plot_file = options.plot.empty() ? std::string() : options.plot[1];
-  const bool plot_on_output = plot_file == "-";
-  if (!plot_file.empty() && !plot_on_output) {
-    if (Status written = WriteWholeFile(plot_file, result->plot); !written)
-      return Refuse(written.error());
-  }
   const bool picture_on_output = options.svg == "-";
-  if (!options.svg.empty() && !picture_on_output) {
-    if (Status written = WriteWholeFile(options.svg, result->svg); !written)
-      return Refuse(written.error());
-  }
-  if (!options.state_out.empty()) {
-    if (Status written = WriteWholeFile(options.state_out, result->machine_state); !written)
-      return Refuse(written.error());
-  }
+  const bool plot_on_output = !options.plot.empty() && options.plot[1] == "-";
   const auto unknown = std::ranges::find_if(
       *variables, [&](const std::string& name) { return !result->variables.contains(name); });
   if (unknown != variables->end()) Complain("the machine has no variable " + *unknown);

@@ -36,6 +36,7 @@ struct SimulateOptions {
   std::string budget;      // "steps=N,time=S"
   std::string variables;   // "VR[0..9],VI[99]"
   std::string svg;
+  std::string toolpath;
   std::vector<std::string> samples;  // rate and file; empty: none
   std::vector<std::string> plot;     // curves and file; empty: none
   std::string stock;                 // "100x80x10"; empty: material is not modelled

@@ -76,76 +76,80 @@ void AddCheckVerb(CLI::App& app, int& exit_code) {
   verb->callback([options, &exit_code] { exit_code = Check(*options); });
 }
 
+void AddSimulateVerb(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<SimulateOptions>();
+  CLI::App* verb = app.add_subcommand("simulate", "Run a program in virtual time and report");
+  verb->footer(
+      "Examples:\n"
+      "  rmlcell simulate part.rml --svg part.svg       figures, and a picture\n"
+      "  rmlcell simulate 45.S --plot speed,power t.svg curves over time\n"
+      "  rmlcell simulate part.rml --stock 100x80x10 --tool flat:3 --stl part.stl   what is left\n"
+      "  rmlcell simulate 32.S progs/ --trace           progs/44.S and the like fill the program "
+      "memory\n"
+      "  rmlcell simulate part.S --simul 12/40          dry up to step 40 of program 12, real "
+      "after it\n"
+      "  rmlcell simulate part.S --inputs keys.txt --vars 'VR[0..9],VI[99]'\n"
+      "  rmlcell simulate part.S --facts | grep cycle   key: value lines for scripts");
+  verb->add_option("FILES", options->files,
+                   "the program, then further ones or folders of 12.S, 44.S ...");
+  verb->add_option("--slot", options->slots, "44=FILE: a further program of the memory")
+      ->expected(-1)
+      ->allow_extra_args(false);
+  verb->add_option("--main", options->main_slot, "slot of the program that is started")
+      ->check(CLI::Range(1, 99));
+  verb->add_option("--executable", options->executables,
+                   "44: make the executable of program 44 beforehand; 44=FILE: bring one")
+      ->allow_extra_args(false);
+  verb->add_option("--family", options->family, "optimo or rml1; default: from the file name");
+  verb->add_option("--profile", options->profile, "named machine, such as srm-20 or pw-1993");
+  verb->add_option("--machine", options->machine_file,
+                   "machine file (TOML): family, profile, [parameters]");
+  verb->add_option("--inputs", options->inputs_file,
+                   "external inputs and keys over time, a line each: 0.5 IL[20] = 1");
+  verb->add_option("--mode", options->mode, "cycle (START given once), remote, single, repeat");
+  verb->add_option("--override", options->override_percent, "feed override, percent");
+  verb->add_option("--simul", options->simul, "P/S: dry run up to step S of program P; off");
+  verb->add_option("--break", options->breakpoint, "P/S: halt after step S of program P; off");
+  verb->add_option("--budget", options->budget,
+                   "steps=N,time=SECONDS: end the run when it needs more");
+  verb->add_option("--vars", options->variables, "variables to show at the end: VR[0..9],VI[99]");
+  verb->add_option("--svg", options->svg, "write a picture of the toolpath");
+  verb->add_option("--toolpath", options->toolpath,
+                   "write the toolpath that a viewer draws (docs/toolpath.md)");
+  verb->add_option("--samples", options->samples,
+                   "RATE FILE: write where the machine is, RATE times a second, as CSV")
+      ->type_size(2)
+      ->expected(1)
+      ->allow_extra_args(false);
+  verb->add_option("--plot", options->plot,
+                   "CURVES FILE: write curves over time, of speed,power,axes")
+      ->type_size(2)
+      ->expected(1)
+      ->allow_extra_args(false);
+  CLI::Option* stock =
+      verb->add_option("--stock", options->stock,
+                       "100x80x10[@X,Y,TOP]: a block on a mill's table, mm from the work origin");
+  CLI::Option* tool =
+      verb->add_option("--tool", options->tool, "flat:D, ball:D, vee:D:ANGLE[:TIP]: what mills it");
+  stock->needs(tool);
+  tool->needs(stock);
+  verb->add_option("--cell", options->cell_mm,
+                   "edge of the cells that the block is looked at in, mm; default 0.1")
+      ->needs(stock);
+  verb->add_option("--stl", options->stl, "write what is left of the block")->needs(stock);
+  verb->add_option("--state-in", options->state_in, "machine state of an earlier run");
+  verb->add_option("--state-out", options->state_out, "keep the machine state for a later run");
+  verb->add_flag("--trace", options->trace, "list all that was observable, in order");
+  CLI::Option* facts =
+      verb->add_flag("--facts", options->facts, "key: value lines for scripts (docs/facts.md)");
+  verb->add_flag("--json", options->json, "print the report as JSON")->excludes(facts);
+  verb->add_flag("--strict", options->strict, kStrictText);
+  verb->callback([options, &exit_code] { exit_code = Simulate(*options); });
+}
+
 void AddLocalVerbs(CLI::App& app, int& exit_code) {
   AddCheckVerb(app, exit_code);
-  {
-    auto options = std::make_shared<SimulateOptions>();
-    CLI::App* verb = app.add_subcommand("simulate", "Run a program in virtual time and report");
-    verb->footer(
-        "Examples:\n"
-        "  rmlcell simulate part.rml --svg part.svg       figures, and a picture\n"
-        "  rmlcell simulate 45.S --plot speed,power t.svg curves over time\n"
-        "  rmlcell simulate part.rml --stock 100x80x10 --tool flat:3 --stl part.stl   what is left\n"
-        "  rmlcell simulate 32.S progs/ --trace           progs/44.S and the like fill the program "
-        "memory\n"
-        "  rmlcell simulate part.S --simul 12/40          dry up to step 40 of program 12, real "
-        "after it\n"
-        "  rmlcell simulate part.S --inputs keys.txt --vars 'VR[0..9],VI[99]'\n"
-        "  rmlcell simulate part.S --facts | grep cycle   key: value lines for scripts");
-    verb->add_option("FILES", options->files,
-                     "the program, then further ones or folders of 12.S, 44.S ...");
-    verb->add_option("--slot", options->slots, "44=FILE: a further program of the memory")
-        ->expected(-1)
-        ->allow_extra_args(false);
-    verb->add_option("--main", options->main_slot, "slot of the program that is started")
-        ->check(CLI::Range(1, 99));
-    verb->add_option("--executable", options->executables,
-                     "44: make the executable of program 44 beforehand; 44=FILE: bring one")
-        ->allow_extra_args(false);
-    verb->add_option("--family", options->family, "optimo or rml1; default: from the file name");
-    verb->add_option("--profile", options->profile, "named machine, such as srm-20 or pw-1993");
-    verb->add_option("--machine", options->machine_file,
-                     "machine file (TOML): family, profile, [parameters]");
-    verb->add_option("--inputs", options->inputs_file,
-                     "external inputs and keys over time, a line each: 0.5 IL[20] = 1");
-    verb->add_option("--mode", options->mode, "cycle (START given once), remote, single, repeat");
-    verb->add_option("--override", options->override_percent, "feed override, percent");
-    verb->add_option("--simul", options->simul, "P/S: dry run up to step S of program P; off");
-    verb->add_option("--break", options->breakpoint, "P/S: halt after step S of program P; off");
-    verb->add_option("--budget", options->budget,
-                     "steps=N,time=SECONDS: end the run when it needs more");
-    verb->add_option("--vars", options->variables, "variables to show at the end: VR[0..9],VI[99]");
-    verb->add_option("--svg", options->svg, "write a picture of the toolpath");
-    verb->add_option("--samples", options->samples,
-                     "RATE FILE: write where the machine is, RATE times a second, as CSV")
-        ->type_size(2)
-        ->expected(1)
-        ->allow_extra_args(false);
-    verb->add_option("--plot", options->plot,
-                     "CURVES FILE: write curves over time, of speed,power,axes")
-        ->type_size(2)
-        ->expected(1)
-        ->allow_extra_args(false);
-    CLI::Option* stock =
-        verb->add_option("--stock", options->stock,
-                         "100x80x10[@X,Y,TOP]: a block on a mill's table, mm from the work origin");
-    CLI::Option* tool = verb->add_option("--tool", options->tool,
-                                         "flat:D, ball:D, vee:D:ANGLE[:TIP]: what mills it");
-    stock->needs(tool);
-    tool->needs(stock);
-    verb->add_option("--cell", options->cell_mm,
-                     "edge of the cells that the block is looked at in, mm; default 0.1")
-        ->needs(stock);
-    verb->add_option("--stl", options->stl, "write what is left of the block")->needs(stock);
-    verb->add_option("--state-in", options->state_in, "machine state of an earlier run");
-    verb->add_option("--state-out", options->state_out, "keep the machine state for a later run");
-    verb->add_flag("--trace", options->trace, "list all that was observable, in order");
-    CLI::Option* facts =
-        verb->add_flag("--facts", options->facts, "key: value lines for scripts (docs/facts.md)");
-    verb->add_flag("--json", options->json, "print the report as JSON")->excludes(facts);
-    verb->add_flag("--strict", options->strict, kStrictText);
-    verb->callback([options, &exit_code] { exit_code = Simulate(*options); });
-  }
+  AddSimulateVerb(app, exit_code);
   {
     auto family = std::make_shared<std::string>();
     auto profile = std::make_shared<std::string>();

@@ -136,6 +136,12 @@ const STATES = {
   STATE_CANCELLED: ["Cancelled", "off"],
   STATE_INTERRUPTED: ["Interrupted", "bad"],
 };
+// What the part will come out like says more than that a job was done.
+const VERDICTS = {
+  VERDICT_GOOD: ["Good", "good"],
+  VERDICT_DOUBTFUL: ["Doubtful", "wait"],
+  VERDICT_BAD: ["Bad", "bad"],
+};
 const KINDS = { JOB_KIND_CHECK: "check", JOB_KIND_SIMULATE: "simulation", JOB_KIND_RUN: "run" };
 const ACTIVITIES = {
   ACTIVITY_IDLE: ["Idle", "off"],
@@ -205,10 +211,13 @@ function scheduleDraw() {
   });
 }
 
+const REASONS_SHOWN = 3;
+
 const FILTERS = {
   all: () => true,
   active: (job) => !isFinished(job.state),
-  failed: (job) => job.state === "STATE_FAILED" || job.state === "STATE_INTERRUPTED",
+  failed: (job) => job.state === "STATE_FAILED" || job.state === "STATE_INTERRUPTED" ||
+    job.outcome?.verdict === "VERDICT_BAD",
 };
 
 function draw() {
@@ -290,7 +299,8 @@ function fillRow(row, job) {
   const tries = job.attempts > 1 ? ` \u00b7 attempt ${job.attempts}` : "";
   setText(row.sub, `#${lastPart(job.name)} \u00b7 ${KINDS[job.kind] ?? "job"}${tries}`);
   setText(row.machine, lastPart(job.machine));
-  const [word, tone] = STATES[job.state] ?? ["Unknown", "off"];
+  const judged = job.state === "STATE_SUCCEEDED" ? VERDICTS[job.outcome?.verdict] : undefined;
+  const [word, tone] = judged ?? STATES[job.state] ?? ["Unknown", "off"];
   const held = progress.get(job.name)?.held && job.state === "STATE_RUNNING";
   setText(row.chip, held ? "Held" : word);
   row.chip.dataset.tone = held ? "wait" : tone;
@@ -328,12 +338,20 @@ function drawOutcome(row, job) {
   row.outcome.replaceChildren();
   if (!outcome) return;
   const words = OUTCOMES[outcome.kind] ?? "";
-  if (!outcome.code) {
+  const reasons = outcome.code ? [] : outcome.reasons ?? [];
+  if (outcome.code) {
+    row.outcome.append(explainLink(outcome.code), ` ${outcome.message || words}`,
+      element("div", { className: "sub" }, placeText(outcome.place)));
+  } else {
     row.outcome.append(words);
-    return;
   }
-  row.outcome.append(explainLink(outcome.code), ` ${outcome.message || words}`,
-    element("div", { className: "sub" }, placeText(outcome.place)));
+  for (const reason of reasons.slice(0, REASONS_SHOWN)) {
+    row.outcome.append(element("div", { className: "reason" }, explainLink(reason.code), ` ${reason.message}`,
+      element("div", { className: "sub" }, [placeText(reason.first), reason.advice].filter(Boolean).join(" \u00b7 "))));
+  }
+  if (reasons.length > REASONS_SHOWN) {
+    row.outcome.append(element("div", { className: "sub" }, `and ${reasons.length - REASONS_SHOWN} more in the report`));
+  }
 }
 
 function drawResults(row, job) {

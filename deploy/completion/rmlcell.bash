@@ -52,7 +52,7 @@ _rmlcell_options() {
     check) echo "--help --family --profile --machine --inputs --errors-only --fix --dry-run --strict --json" ;;
     simulate)
       echo "--help --slot --main --executable --family --profile --machine --inputs --mode --override --simul" \
-        "--break --budget --vars --svg --samples --plot --stock --tool --cell --stl" \
+        "--break --budget --vars --svg --toolpath --samples --plot --stock --tool --cell --stl" \
         "--state-in --state-out --trace --facts --strict --json" ;;
     explain) echo "--help --json" ;;
     diff) echo "--help --svg --json" ;;
@@ -81,7 +81,7 @@ _rmlcell_options() {
 _rmlcell_takes_value() {
   case $1 in
     --slot | --main | --executable | --family | --profile | --machine | --inputs | --mode | --override | \
-      --simul | --break | --budget | --vars | --svg | --samples | --plot | --stock | --tool | --cell | --stl | --state-in | --state-out | --server | --etag | --form | \
+      --simul | --break | --budget | --vars | --svg | --toolpath | --samples | --plot | --stock | --tool | --cell | --stl | --state-in | --state-out | --server | --etag | --form | \
       --output | -o | --kind | --title | --request-id | --pace | --after | --filter | --limit | --move | --turn | --shift) return 0 ;;
   esac
   return 1
@@ -116,7 +116,7 @@ _rmlcell_values() {
     --plot)
       compopt -o nospace 2>/dev/null
       _rmlcell_offer speed power axes speed,power,axes ;;
-    --inputs | --state-in | --state-out | --output | -o) _rmlcell_files ;;
+    --inputs | --toolpath | --state-in | --state-out | --output | -o) _rmlcell_files ;;
     --slot) [[ $verb == submit && -n ${given[0]:-} ]] && _rmlcell_slots "${given[0]}" ;;
   esac
 }

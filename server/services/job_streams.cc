@@ -7,10 +7,10 @@
 #include "engine/core/number_text.h"
 #include "engine/simulation/toolpath/toolpath_level.h"
 #include "engine/simulation/toolpath/toolpath_recorder.h"
+#include "proto/bridge/framing.h"
 #include "server/base/names.h"
 #include "server/events/event_feed.h"
 #include "server/jobs/job_book.h"
-#include "server/records/framing.h"
 #include "server/records/job_messages.h"
 #include "server/services/machine_messages.h"
 
@@ -224,7 +224,7 @@ class JobsWatch final : public PullStream<v1::WatchJobsResponse> {
   std::unique_ptr<EventFeed::Subscription> subscription_;
 };
 
-// Products that are a series of frames (server/records/framing.h), some frames a message.
+// Products that are a series of frames (proto/bridge/framing.h), some frames a message.
 template <class Response>
 class FramesStream : public PullStream<Response> {
  public:
@@ -261,7 +261,7 @@ class FramesStream : public PullStream<Response> {
       rest_ = bytes_;
     }
     bool any = false;
-    while (const auto frame = TakeFrame(rest_)) {
+    while (const auto frame = bridge::TakeFrame(rest_)) {
       any = true;
       if (!Add(*frame, message)) break;
     }
@@ -281,10 +281,10 @@ std::string AtLevel(std::string_view frames, double stored_mm, int level) {
   std::string coarse;
   simulation::ToolpathLevel made(simulation::LevelTolerance(stored_mm, level) - stored_mm,
                                  [&](std::string_view block) {
-                                   AddFrame(block, coarse);
+                                   bridge::AddFrame(block, coarse);
                                    return true;
                                  });
-  while (const auto frame = TakeFrame(frames)) {
+  while (const auto frame = bridge::TakeFrame(frames)) {
     const Result<simulation::ToolpathBlock> block = simulation::DecodeToolpathBlock(*frame);
     if (!block) break;  // ends where the stored one does
     made.Take(*block);

@@ -19,6 +19,7 @@ function(rmlcell_embed_page target folder)
                      "  return {\n${rows}  };\n}\n\n}  // namespace rmlcell::web\n")
   set(source ${CMAKE_CURRENT_BINARY_DIR}/embedded_page.cc)
   file(CONFIGURE OUTPUT ${source} CONTENT "${body}" @ONLY)
-  set_source_files_properties(${source} PROPERTIES OBJECT_DEPENDS "${paths}")
+  # A source of its own: of one that is compiled together with others nobody sees what it depends on.
+  set_source_files_properties(${source} PROPERTIES OBJECT_DEPENDS "${paths}" SKIP_UNITY_BUILD_INCLUSION ON)
   target_sources(${target} PRIVATE ${source})
 endfunction()

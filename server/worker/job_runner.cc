@@ -17,9 +17,9 @@
 #include "engine/simulation/verdict/verdict.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
+#include "proto/bridge/framing.h"
 #include "proto/bridge/report.h"
 #include "proto/bridge/setup.h"
-#include "server/records/framing.h"
 #include "server/worker/job_events.h"
 #include "server/worker/memory_budget.h"
 #include "server/worker/pacer.h"
@@ -225,12 +225,12 @@ class Attempt {
     simulation::Products products;
     if (options.trace()) {
       products.trace = [this](const simulation::TraceRecord& record) {
-        AddFrame(bridge::ToProto(record).SerializeAsString(), trace_);
+        bridge::AddFrame(bridge::ToProto(record).SerializeAsString(), trace_);
         return Fits();
       };
     }
     products.toolpath = [this](std::string_view block) {
-      AddFrame(block, toolpath_);
+      bridge::AddFrame(block, toolpath_);
       return Fits();
     };
     if (options.toolpath_tolerance_mm() > 0.0) {

@@ -7,7 +7,7 @@
     behaviour.py check BIN HASHES         runs them all and compares with the hashes of a file
 
 What is kept: findings of `check` as JSON; report, trace and exit status of `simulate` as JSON and as facts; the
-samples and the picture of the path. Ends with 1 when something differs.
+samples, the picture and the toolpath. Ends with 1 when something differs.
 """
 import argparse
 import concurrent.futures
@@ -47,10 +47,10 @@ def what_it_does(command, program):
         for words in (["check", *files, "--json", *family, *inputs],
                       ["simulate", program.file_name, *slots, *main, *family, *inputs, *program.words, "--json", "--trace"],
                       ["simulate", program.file_name, *slots, *main, *family, *inputs, *program.words, "--facts",
-                       "--samples", "20", "samples.csv", "--svg", "path.svg"]):
+                       "--samples", "20", "samples.csv", "--svg", "path.svg", "--toolpath", "path.blocks"]):
             done = subprocess.run([command, *words], cwd=place, capture_output=True, timeout=600, check=False)
             parts += [f"== {' '.join(words)}: {done.returncode}\n".encode(), done.stdout, b"-- errors\n", done.stderr]
-        for name in ("samples.csv", "path.svg"):
+        for name in ("samples.csv", "path.svg", "path.blocks"):
             path = place / name
             parts += [f"== {name}\n".encode(), path.read_bytes() if path.exists() else b"none\n"]
         return b"".join(parts)

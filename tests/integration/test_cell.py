@@ -1,6 +1,9 @@
 """The cell as its clients meet it: jobs and kills."""
 import math
 import os
+import pathlib
+import subprocess
+import tempfile
 import threading
 import time
 import unittest
@@ -8,7 +11,7 @@ import urllib.error
 import urllib.request
 import uuid
 
-from cell import (COMPLETED, ENDLESS, FAILED, LONG, SQUARE, Cell, WithCell, detail_of, eventually, grpc, inline_job,
+from cell import (BIN, COMPLETED, ENDLESS, FAILED, LONG, SQUARE, Cell, WithCell, common_pb2, detail_of, eventually, grpc, inline_job,
                   job_pb2, machine_pb2, program_pb2, submit, wait_for_end, wait_until_it_runs)
 
 
@@ -30,6 +33,33 @@ class Jobs(WithCell):
         self.assertIn(b"<svg", picture.content)
         blocks = list(stub.StreamJobToolpath(job_pb2.StreamJobToolpathRequest(name=job.name)))
         self.assertGreater(len(blocks), 0)
+        # The same file as the job's comes out of the command without a server: docs/toolpath.md.
+        with tempfile.TemporaryDirectory() as folder:
+            source = pathlib.Path(folder, "square.rml")
+            source.write_text(SQUARE)
+            path = pathlib.Path(folder, "square.path")
+            subprocess.run([BIN / "rmlcell", "simulate", source, "--profile", "srm-20", "--toolpath", path],
+                           check=True, stdout=subprocess.DEVNULL)
+            framed = b"".join(len(one.block).to_bytes(4, "little") + one.block for one in blocks)
+            self.assertEqual(path.read_bytes(), framed)
+
+    def test_the_verdict_stands_beside_the_outcome(self):
+        # docs/verdict.md: lost work is BAD although the job succeeded; the same in job, event and report.
+        stub = self.cell.jobs()
+        source = "VS10;!VZ10;!PZ-100,200;!MC1;PU100,100;PD90000,100;PU0,0;!MC0;"
+        job = submit(stub, inline_job("mill-1", "beyond.rml", source))
+        ended = wait_for_end(stub, job.name)[-1].ended
+        self.assertEqual(ended.kind, COMPLETED)
+        done = stub.GetJob(job_pb2.GetJobRequest(name=job.name))
+        self.assertEqual(done.state, job_pb2.Job.STATE_SUCCEEDED)
+        report = stub.GetJobReport(job_pb2.GetJobReportRequest(name=job.name))
+        for outcome in (ended, done.outcome, report.outcome):
+            self.assertEqual(outcome.verdict, common_pb2.VERDICT_BAD)
+            self.assertEqual([reason.code for reason in outcome.reasons], ["RML1-E8002", "RML1-E8002"])
+            # X ends at 203.2 mm.
+            self.assertAlmostEqual(outcome.reasons[0].amount, 900.0 - 203.2, places=6)
+        check = submit(stub, inline_job("mill-1", "beyond.rml", source, job_pb2.JOB_KIND_CHECK))
+        self.assertEqual(wait_for_end(stub, check.name)[-1].ended.verdict, common_pb2.VERDICT_BAD)
 
     def test_a_toolpath_comes_in_levels_of_detail(self):
         stub = self.cell.jobs()

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "proto/bridge/framing.h"
 #include "server/base/executor.h"
 #include "server/base/names.h"
-#include "server/records/framing.h"
 #include "server/records/job_messages.h"
 #include "tests/server/server_bed.h"
 
@@ -16,25 +16,25 @@ TEST(Framing, GivesTheFramesBackOneByOne) {
   const std::vector<std::string> frames = {"", "a", std::string(300, 'b'), std::string("\0\xFF", 2),
                                            std::string(70'000, 'c')};
   std::string bytes;
-  for (const std::string& frame : frames) AddFrame(frame, bytes);
+  for (const std::string& frame : frames) bridge::AddFrame(frame, bytes);
   EXPECT_EQ(bytes.substr(0, 9),
             std::string("\0\0\0\0\1\0\0\0a", 9));  // length first, least significant byte first
   std::string_view rest = bytes;
-  for (const std::string& frame : frames) EXPECT_EQ(TakeFrame(rest), frame);
-  EXPECT_EQ(TakeFrame(rest), std::nullopt);
+  for (const std::string& frame : frames) EXPECT_EQ(bridge::TakeFrame(rest), frame);
+  EXPECT_EQ(bridge::TakeFrame(rest), std::nullopt);
 }
 
 TEST(Framing, AFrameThatIsCutOffIsNone) {
   std::string bytes;
-  AddFrame("whole", bytes);
-  AddFrame("cut off", bytes);
+  bridge::AddFrame("whole", bytes);
+  bridge::AddFrame("cut off", bytes);
   for (std::size_t missing = 1; missing < 11; ++missing) {
     std::string_view rest = std::string_view(bytes).substr(0, bytes.size() - missing);
-    EXPECT_EQ(TakeFrame(rest), "whole");
-    EXPECT_EQ(TakeFrame(rest), std::nullopt) << missing;
+    EXPECT_EQ(bridge::TakeFrame(rest), "whole");
+    EXPECT_EQ(bridge::TakeFrame(rest), std::nullopt) << missing;
   }
   std::string_view huge("\xFF\xFF\xFF\xFFtext", 8);
-  EXPECT_EQ(TakeFrame(huge), std::nullopt);
+  EXPECT_EQ(bridge::TakeFrame(huge), std::nullopt);
 }
 
 TEST(JobMessages, AnOutcomeKeepsStateCodeTextAndPlace) {

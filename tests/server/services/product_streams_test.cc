@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "engine/simulation/toolpath/toolpath.h"
+#include "proto/bridge/framing.h"
 #include "server/base/names.h"
-#include "server/records/framing.h"
 #include "tests/server/services/stream_bed.h"
 
 namespace rmlcell::server {
@@ -34,7 +34,7 @@ std::string BlockWithBend(std::int32_t aside_um) {
 
 std::string Frames(const std::vector<std::string>& blocks) {
   std::string bytes;
-  for (const std::string& block : blocks) AddFrame(block, bytes);
+  for (const std::string& block : blocks) bridge::AddFrame(block, bytes);
   return bytes;
 }
 
@@ -141,7 +141,7 @@ TEST_F(ProductStreamsTest, ATraceComesInOrderByManyRecordsAMessage) {
   for (int i = 1; i <= kRecords; ++i) {
     v1::TraceRecord record;
     record.set_number(i);
-    AddFrame(record.SerializeAsString(), frames);
+    bridge::AddFrame(record.SerializeAsString(), frames);
   }
   auto stream = room.Trace(JobName(room.Ended("trace", frames)));
   const std::vector<v1::StreamJobTraceResponse> messages = stream.Rest();

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "server/records/framing.h"
+#include "proto/bridge/framing.h"
 #include "tests/server/worker/runner_bed.h"
 
 namespace rmlcell::server {
@@ -102,7 +102,7 @@ TEST_F(JobProducts, TheTraceTellsWhatHappenedInItsOrder) {
   std::string last;
   std::vector<std::pair<double, double>> output;  // values of output 20 and their times
   std::vector<std::pair<double, double>> waits;   // durations, and when they ended
-  while (const auto frame = TakeFrame(rest)) {
+  while (const auto frame = bridge::TakeFrame(rest)) {
     v1::TraceRecord record;
     ASSERT_TRUE(record.ParseFromArray(frame->data(), static_cast<int>(frame->size())));
     EXPECT_EQ(record.number(), ++records);
@@ -122,8 +122,8 @@ TEST_F(JobProducts, TheToolpathIsASeriesOfFrames) {
   Work(Assignment(v1::JOB_KIND_SIMULATE, "PA;VS8;!MC1;PU1000,1000;Z1000,1000,-50;PU0,0;", "rml1"));
   const std::string bytes = Artifacts()["toolpath"];
   std::string_view rest = bytes;
-  ASSERT_TRUE(TakeFrame(rest));
-  while (TakeFrame(rest)) continue;
+  ASSERT_TRUE(bridge::TakeFrame(rest));
+  while (bridge::TakeFrame(rest)) continue;
   EXPECT_EQ(rest, "");
 }
 

@@ -7,7 +7,7 @@
 
 // Products that are a series (toolpath blocks, trace records) are kept as frames: four bytes of
 // length, least significant first, then the bytes.
-namespace rmlcell::server {
+namespace rmlcell::bridge {
 
 inline void AddFrame(std::string_view frame, std::string& bytes) {
   const auto size = static_cast<std::uint32_t>(frame.size());
@@ -27,4 +27,4 @@ inline std::optional<std::string_view> TakeFrame(std::string_view& rest) {
   return frame;
 }
 
-}  // namespace rmlcell::server
+}  // namespace rmlcell::bridge
