@@ -66,6 +66,10 @@ class Run {
   // "VR[5]" -> "7.0"; nothing when the family has no such variable.
   virtual std::optional<std::string> ReadVariable(std::string_view name) const = 0;
 
+  // What it did hung on something that was there before it and that nothing of it has set: a
+  // variable, an input, the parameters of a subroutine. Another time it may do something else.
+  virtual bool relies_on_what_was() const { return false; }
+
   virtual std::vector<Figure> figures() const = 0;
 
   // What the machine keeps for the next run: variables, images, offsets, position. Versioned bytes.

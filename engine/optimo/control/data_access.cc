@@ -6,6 +6,7 @@ namespace {
 constexpr int kFirstWorkFlag = 87;  // IL[87 + p], OPT-3.37
 constexpr int kLastWorkFlag = 94;
 constexpr int kMotionFlag = 95;  // OPT-7.68
+constexpr int kFirstOwnVi = 98;  // the control writes VI[98] and VI[99] itself
 
 // PAR of an activation that need not be the innermost any more.
 class WithParameters final : public VariableAccess {
@@ -51,14 +52,20 @@ double DataAccess::InputNow(VariableGroup group, int index) const {
 float DataAccess::Read(Variable variable) {
   DataArea& data = situation_.machine.data;
   const auto n = static_cast<std::size_t>(variable.index);
+  Reliance& reliance = situation_.reliance;
+  const auto rely = [&reliance](bool on) { reliance.on_what_was = reliance.on_what_was || on; };
   switch (variable.group) {
     case VariableGroup::kVr:
+      rely(!reliance.vr[n]);
       return data.vr[n];
     case VariableGroup::kVi:
+      rely(!reliance.vi[n] && n < kFirstOwnVi);
       return data.vi[n];
     case VariableGroup::kVl:
+      rely(!reliance.vl[n]);
       return data.vl[n] ? 1.0F : 0.0F;
     case VariableGroup::kIl:
+      rely(n < kFirstWorkFlag);
       // Work and motion flags are the control's own: they hold in simulation too (OPT-6.20).
       if (Connected(kGroupIl) || (n >= kFirstWorkFlag && n <= kMotionFlag)) {
         data.il[n] = InputNow(variable.group, variable.index) != 0.0;
@@ -67,6 +74,7 @@ float DataAccess::Read(Variable variable) {
     case VariableGroup::kOl:
       return data.ol[n] ? 1.0F : 0.0F;
     case VariableGroup::kIa:
+      rely(true);
       if (Connected(kGroupIa))
         data.ia[n] = static_cast<float>(InputNow(variable.group, variable.index));
       return data.ia[n];
@@ -75,6 +83,7 @@ float DataAccess::Read(Variable variable) {
         return static_cast<float>(ride_.tip_speed_mm_s() * parameters_.cycle_s);  // OPT-7.69
       return data.oa[n];
     case VariableGroup::kPar:
+      rely(counter_.level() == 1);
       return counter_.frame().parameters[n % kParameterCount];
   }
   return 0.0F;
@@ -87,12 +96,15 @@ Status DataAccess::Write(Variable variable, float number) {
   switch (variable.group) {
     case VariableGroup::kVr:
       data.vr[n] = number;
+      situation_.reliance.vr[n] = true;
       break;
     case VariableGroup::kVi:
       data.vi[n] = number;
+      situation_.reliance.vi[n] = true;
       break;
     case VariableGroup::kVl:
       data.vl[n] = number != 0.0F;
+      situation_.reliance.vl[n] = true;
       break;
     case VariableGroup::kOl:
       return SetOutput(variable.index, number != 0.0F);

@@ -25,6 +25,7 @@ Status Moves::Execute(const Instruction& i) {
       return Move(i);
     case Op::kCoord:
       counter_.modal().coord = static_cast<CoordType>(i.choice);
+      counter_.modal().coord_given = true;
       return {};
     case Op::kPath:
       return SetPath(i);
@@ -103,6 +104,7 @@ Status Moves::Move(const Instruction& i) {
   if (!*begins) return {};
   const Modal& modal = counter_.modal();
   if (modal.coord == CoordType::kRobot && modal.path != PathType::kPtp) {
+    if (!modal.coord_given) situation_.reliance.on_what_was = true;
     return Error{ErrorCode::kPathNeedsAbsol, "PATH LIN, CIR and HOLE need COORD ABSOL", {}};
   }
   if (!situation_.machine.zeroed && !situation_.simulating()) {

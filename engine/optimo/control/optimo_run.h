@@ -22,6 +22,9 @@ class OptimoRun final : public machine::Run {
   std::optional<std::string> ReadVariable(std::string_view name) const override {
     return control_.ReadVariable(name);
   }
+  bool relies_on_what_was() const override {
+    return control_.state().situation.reliance.on_what_was;
+  }
   std::vector<machine::Figure> figures() const override;
   std::string SaveMachine() const override {
     return EncodeMachineState(control_.state().situation.machine);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <bitset>
+
 #include "engine/machine/run.h"
 #include "engine/optimo/language/instruction_set.h"
 #include "engine/optimo/machine/laser_unit.h"
@@ -16,6 +18,14 @@ struct Simulated {
 
 // Where a run is, as all parts of the control see it: the instant, the instruction, the machine.
 // A value.
+// Whether what the run does hangs on something that nothing of it has set.
+struct Reliance {
+  std::bitset<100> vr{};  // written by the run
+  std::bitset<100> vi{};
+  std::bitset<100> vl{};
+  bool on_what_was = false;
+};
+
 struct Situation {
   SimTime now{0};
   machine::RunPhase phase = machine::RunPhase::kRunning;
@@ -26,6 +36,7 @@ struct Situation {
   Simulated simulated{};
   MachineState machine{};
   Beam beam{};
+  Reliance reliance{};
 
   bool running() const { return phase == machine::RunPhase::kRunning; }
   bool simulating() const { return simulated.active; }

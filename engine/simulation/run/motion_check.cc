@@ -47,11 +47,15 @@ struct CheckedRun {
   std::string cut_short;
   machine::Outcome outcome;
   SimTime ended_at{0};
+  bool for_sure = false;  // it failed, and so does every other
 };
 
-// Where the programs that are there are the only ones there are, a run of them fails for sure. That
-// a program or FUNCTION is missing tells of what was given to the check, and not of the run.
-bool FailsForSure(const machine::Outcome& outcome) {
+// Whether every run of these programs fails as this one did. That a program or FUNCTION is missing
+// tells of what was given to the check; and what hangs on a variable, an input or a parameter that
+// nothing has set may be another time otherwise: a program that others call is checked alone, too.
+bool FailsForSure(const machine::Run& run) {
+  if (run.relies_on_what_was()) return false;
+  const machine::Outcome& outcome = run.outcome();
   if (outcome.kind != machine::OutcomeKind::kFailed || !outcome.code) return false;
   switch (*outcome.code) {
     case ErrorCode::kProgramMissing:
@@ -102,6 +106,7 @@ Status RunForCheck(const machine::MachineFamily& family, machine::RunSetup setup
     }
   }
   checked.outcome = (*run)->outcome();
+  checked.for_sure = FailsForSure(**run);
   checked.ended_at = (*run)->state().time;
   checked.cut_short = WhyCutShort(checked.outcome);
   return {};
@@ -134,7 +139,7 @@ Result<MotionCheck> CheckMotion(const machine::MachineFamily& family,
     for (const Finding& finding : run.listener.findings().findings()) {
       all.Add(finding.first_at, finding.diagnostic);
     }
-    if (FailsForSure(run.outcome)) all.Add(run.ended_at, DiagnosticOf(run.outcome));
+    if (run.for_sure) all.Add(run.ended_at, DiagnosticOf(run.outcome));
     check.findings_dropped += run.listener.findings().dropped();
   };
   for (const int slot : slots) {

@@ -164,6 +164,33 @@ TEST(MotionCheck, ARingIsLookedAtOnce) {
   EXPECT_EQ(check.findings[0].program, 44);
 }
 
+// A check fails where every run of these programs fails: with code and place of the failure.
+TEST(MotionCheck, FailsWhereEveryRunFails) {
+  const auto fault = [](const std::map<int, std::string>& programs) -> std::string {
+    const MotionCheck check = Checked(programs, {45});
+    EXPECT_FALSE(check.cut_short.empty());
+    if (!check.has_errors()) return "";
+    const Diagnostic& last = check.findings.back();
+    return CodeText(last.code) + " " + std::to_string(last.program) + "/" +
+           std::to_string(last.step) + " line " + std::to_string(last.where.line);
+  };
+  EXPECT_EQ(fault({{45, "COORD ABSOL\nVR[1] = 5.\nVR[2] = VR[1] / (VR[1] - 5.)\n"}}),
+            "OPT-E7201 45/3 line 3");
+  EXPECT_EQ(fault({{45, "COORD ROBOT\nPATH LIN\nMOVE (1000.,900.,-400.,0.,0.)\n"}}),
+            "OPT-E7302 45/3 line 3");
+  EXPECT_EQ(fault({{45, "CALL 44\n"}, {44, "VI[1] = 0\nVR[2] = 1. / VI[1]\n"}}),
+            "OPT-E7201 44/2 line 2");
+  // What nothing of the run has set may be another time otherwise: variables, inputs, the
+  // parameters of a FUNCTION, the COORD of a caller; and a program may be there another time.
+  for (const char* unsure : {"VR[2] = 1. / VR[1]\n", "VR[2] = 1. / VI[1]\n", "VR[2] = 1. / IA[5]\n",
+                             "IF VL[1] THEN 10\nVR[2] = 1. / 0.\n10 VR[3] = 1.\n",
+                             "IF IL[1] THEN 10\nVR[2] = 1. / 0.\n10 VR[3] = 1.\n",
+                             "DEFINE PAR[0] = FLOAT\nVR[2] = 1. / PAR[0]\n",
+                             "PATH LIN\nMOVE (1000.,900.,-400.,0.,0.)\n", "CALL 44\n"}) {
+    EXPECT_EQ(fault({{45, unsure}}), "") << unsure;
+  }
+}
+
 // RML1-5A.01: a mill cuts off what lies outside; its translation says so already.
 TEST(MotionCheck, AMillHasNone) {
   const machine::MachineFamily& mill = *families::FindFamily("rml1");
