@@ -277,12 +277,13 @@ void AddProjectVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int&
       "  rmlcell projects transfer door optimo-1 --insert",
       remote);
   projects->require_subcommand(0, 1);
+  projects->fallthrough();  // --server and --json may stand at the end, too
   projects->callback([&, projects] {
     if (projects->get_subcommands().empty()) exit_code = Projects(remote);
   });
   CLI::App* list = projects->add_subcommand("list", "List the projects");
   list->callback([&] { exit_code = Projects(remote); });
-  CLI::App* show = projects->add_subcommand("show", "Print a project as JSON");
+  CLI::App* show = projects->add_subcommand("show", "Print what is in a project");
   show->add_option("PROJECT", given.project)->required();
   show->callback([&] { exit_code = GetProject(remote, given.project); });
   CLI::App* create = projects->add_subcommand(

@@ -188,7 +188,7 @@ int Jobs(const Remote& remote, const std::string& filter, int limit) {
   for (const v1::Job& job : response.jobs()) {
     const std::string kind = v1::JobKind_Name(job.kind());
     rows.push_back({job.name().substr(5), StateName(job.state()),
-                    VerdictText(job.outcome().verdict()),
+                    VerdictName(job.outcome().verdict()),
                     kind.substr(std::min<std::size_t>(9, kind.size())),
                     job.machine().substr(std::min<std::size_t>(9, job.machine().size())),
                     job.title().empty() ? job.program() : job.title(), When(job.create_time()),

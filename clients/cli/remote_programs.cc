@@ -8,6 +8,7 @@
 #include "clients/cli/project_files.h"
 #include "clients/cli/remote_call.h"
 #include "clients/cli/terminal.h"
+#include "engine/core/letters.h"
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
 #include "engine/families/families.h"
@@ -257,6 +258,40 @@ int Projects(const Remote& remote) {
   return kGood;
 }
 
+namespace {
+
+// What is in a project; the texts of its programs come with --json.
+void PrintProject(const v1::Project& project) {
+  Print(project.name() + "  " + Visible(project.title()));
+  if (!project.notes().empty()) Print(Visible(project.notes()));
+  std::vector<std::vector<std::string>> programs = {{"SLOT", "TITLE", "FILE", "UNITS", "SIZE"}};
+  for (const v1::ProjectProgram& program : project.programs()) {
+    programs.push_back({std::to_string(program.slot()), program.title(),
+                        program.source().file_name(),
+                        LowerCase(v1::Units_Name(program.units()).substr(6)),
+                        Bytes(static_cast<std::int64_t>(program.source().content().size()))});
+  }
+  if (programs.size() > 1) PrintRaw("\n" + Table(std::move(programs)));
+  std::vector<std::vector<std::string>> schedules = {{"SCHEDULE", "TITLE", "MODE", "POWER %"}};
+  for (const v1::ProjectLaserSchedule& schedule : project.laser_schedules()) {
+    schedules.push_back({std::to_string(schedule.number()), schedule.title(),
+                         schedule.mode().empty() ? "CW" : schedule.mode(),
+                         ShortestText(schedule.power_percent())});
+  }
+  if (schedules.size() > 1) PrintRaw("\n" + Table(std::move(schedules)));
+  std::vector<std::vector<std::string>> processes = {{"WORKDEF", "VALUES", "NOTE"}};
+  for (const v1::ProjectProcess& process : project.processes()) {
+    std::string values;
+    for (const double value : process.values())
+      values += (values.empty() ? "" : ", ") + ShortestText(value);
+    processes.push_back({std::to_string(process.kind()) + "," + std::to_string(process.process()),
+                         std::move(values), process.note()});
+  }
+  if (processes.size() > 1) PrintRaw("\n" + Table(std::move(processes)));
+}
+
+}  // namespace
+
 int GetProject(const Remote& remote, const std::string& project) {
   const auto stub = v1::ProjectService::NewStub(Connect(remote));
   grpc::ClientContext context;
@@ -266,7 +301,11 @@ int GetProject(const Remote& remote, const std::string& project) {
   v1::Project response;
   const grpc::Status status = stub->GetProject(&context, request, &response);
   if (!status.ok()) return Refused(status, remote);
-  Print(Json(response));
+  if (remote.json) {
+    Print(Json(response));
+    return kGood;
+  }
+  PrintProject(response);
   return kGood;
 }
 

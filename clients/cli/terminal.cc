@@ -80,9 +80,29 @@ void Complain(std::string_view text) {
   std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
+namespace {
+
+// A title of 200 characters must not push the columns behind it out of sight.
+constexpr std::size_t kCellMax = 60;
+
+bool Continues(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }
+
+// The first characters of a text that is wider, ended by an ellipsis; none is cut in two.
+std::string CutToWidth(std::string text, std::size_t characters) {
+  if (Width(text) <= characters) return text;
+  std::size_t end = 0;
+  for (std::size_t kept = 0; kept + 1 < characters; ++kept) {
+    ++end;
+    while (end < text.size() && Continues(text[end])) ++end;
+  }
+  return text.substr(0, end) + "…";
+}
+
+}  // namespace
+
 std::string Table(std::vector<std::vector<std::string>> rows) {
   for (auto& row : rows) {
-    for (std::string& cell : row) cell = Visible(cell);
+    for (std::string& cell : row) cell = CutToWidth(Visible(cell), kCellMax);
   }
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {

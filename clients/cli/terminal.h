@@ -26,8 +26,8 @@ std::string Visible(std::string_view text);
 void PrintRaw(std::string_view text);  // to standard output, as it is
 void Complain(std::string_view text);  // to standard error, "rmlcell: ..."
 
-// Columns as wide as they need to be; numbers are not aligned specially. The first row is the
-// heading.
+// Columns as wide as they need to be, cells of more than 60 characters cut; numbers are not aligned
+// specially. The first row is the heading.
 std::string Table(std::vector<std::vector<std::string>> rows);
 
 // One line on standard error that is drawn over; draws nothing when standard error is no terminal.

@@ -4,18 +4,24 @@
 
 namespace rmlcell::cli {
 
-std::string VerdictText(v1::Verdict verdict) {
-  const bool colour = ColourOnOutput();
+std::string VerdictName(v1::Verdict verdict) {
   switch (verdict) {
     case v1::VERDICT_GOOD:
-      return Paint("GOOD", Colour::kGreen, colour);
+      return "GOOD";
     case v1::VERDICT_DOUBTFUL:
-      return Paint("DOUBTFUL", Colour::kYellow, colour);
+      return "DOUBTFUL";
     case v1::VERDICT_BAD:
-      return Paint("BAD", Colour::kRed, colour);
+      return "BAD";
     default:
       return {};
   }
+}
+
+std::string VerdictText(v1::Verdict verdict) {
+  const Colour colour = verdict == v1::VERDICT_GOOD  ? Colour::kGreen
+                        : verdict == v1::VERDICT_BAD ? Colour::kRed
+                                                     : Colour::kYellow;
+  return Paint(VerdictName(verdict), colour, ColourOnOutput());
 }
 
 std::string PlaceText(const v1::SourcePlace& place) {

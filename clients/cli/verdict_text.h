@@ -13,7 +13,9 @@ namespace rmlcell::cli {
 
 using VerdictReasons = google::protobuf::RepeatedPtrField<v1::VerdictReason>;
 
-// "GOOD" in its colour; empty when nothing was judged.
+// "GOOD"; empty when nothing was judged.
+std::string VerdictName(v1::Verdict verdict);
+// In its colour.
 std::string VerdictText(v1::Verdict verdict);
 
 // "12.500 mm of the work lie beyond the travel (RML1-E8002, step 5 line 7); move the work origin".

@@ -445,7 +445,7 @@ class Remote(unittest.TestCase):
             done = run("projects", "create", "door", folder, server=at)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn("door", run("projects", "list", server=at).stdout)
-            kept = json.loads(run("projects", "show", "door", server=at).stdout)
+            kept = json.loads(run("projects", "show", "door", "--json", server=at).stdout)
             self.assertEqual([p["slot"] for p in kept["programs"]], [31, 32])
             self.assertEqual(kept["title"], "Door")
             self.assertEqual(run("projects", "transfer", "door", "optimo-1", server=at).returncode, 0)
@@ -453,7 +453,7 @@ class Remote(unittest.TestCase):
             # Named in the file, and so the only program; its bytes lie beside the file.
             (folder / "project.json").write_text('{"programs": [{"slot": 40, "source": {"fileName": "31.S"}}]}')
             self.assertEqual(run("projects", "update", "door", folder, server=at).returncode, 0)
-            kept = json.loads(run("projects", "show", "door", server=at).stdout)
+            kept = json.loads(run("projects", "show", "door", "--json", server=at).stdout)
             self.assertEqual([p["slot"] for p in kept["programs"]], [40])
             (folder / "project.json").write_text('{"programs": [{"slot": 40, "source": {"fileName": "none.S"}}]}')
             done = run("projects", "update", "door", folder, server=at)

@@ -65,6 +65,16 @@ TEST(Terminal, TablesHaveColumnsAsWideAsTheyNeedToBe) {
   EXPECT_EQ(Table({}), "");
 }
 
+// A title of 200 characters leaves the columns behind it where they can be seen.
+TEST(Terminal, LongCellsAreCut) {
+  const std::string sixty(60, 'x');
+  EXPECT_EQ(Table({{sixty, "b"}}), sixty + "  b\n");
+  EXPECT_EQ(Table({{sixty + "yz", "b"}}), sixty.substr(1) + "…  b\n");
+  std::string umlauts;
+  for (int k = 0; k < 61; ++k) umlauts += "ü";
+  EXPECT_EQ(Table({{umlauts, "b"}}), umlauts.substr(0, 59 * 2) + "…  b\n");
+}
+
 TEST(Terminal, FixedHasSoManyDecimals) {
   EXPECT_EQ(Fixed(1.25, 3), "1.250");
   EXPECT_EQ(Fixed(-0.5, 1), "-0.5");
