@@ -141,11 +141,14 @@ int Show(const CheckedFile& file, const CheckOptions& options) {
   PrintFindings(file.motion.findings, file.motion.findings_dropped, *file.text);
   const std::size_t findings = translation.diagnostics.size() + translation.diagnostics_dropped +
                                file.motion.findings.size() + file.motion.findings_dropped;
-  std::string line = file.name + ": " + VerdictText(found.verdict());
+  std::string line = Visible(file.name) + ": " + VerdictText(found.verdict());
   if (findings > 0)
     line += ", " + std::to_string(findings) + (findings == 1 ? " finding" : " findings");
   Print(line);
-  for (const auto& [slot, why] : file.motion.cut_short) Print("  motion checked " + why);
+  // Where it fails the reasons do not say how far it was looked at.
+  if (!file.ok()) {
+    for (const auto& [slot, why] : file.motion.cut_short) Print("  motion checked " + why);
+  }
   for (const v1::VerdictReason& reason : found.reasons()) Print("  " + ReasonLine(reason));
   PrintRaw(FigureText(file));
   return exit_code;

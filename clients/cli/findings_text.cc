@@ -18,7 +18,7 @@ std::string Text(const std::vector<Diagnostic>& findings, std::uint64_t dropped,
     if (!kinds.Show(CodeText(finding.code), finding.where.line)) continue;
     const std::string text = FormatDiagnostic(finding, source);
     const std::size_t line_end = std::min(text.find('\n'), text.size());
-    all += Paint(text.substr(0, line_end),
+    all += Paint(Visible(text.substr(0, line_end)),
                  IsError(finding.severity) ? Colour::kRed : Colour::kYellow, colour) +
            text.substr(line_end) + "\n";
   }

@@ -15,6 +15,7 @@
 #include "engine/core/number_text.h"
 #include "engine/simulation/report/facts.h"
 #include "engine/simulation/run/simulate.h"
+#include "engine/simulation/verdict/verdict.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/framing.h"
@@ -179,6 +180,32 @@ Status MakeExecutable(const machine::MachineFamily& family, machine::RunSetup& s
   return {};
 }
 
+// A program that cannot run: its findings, and a verdict all the same.
+int TellWhyNot(const SimulateOptions& options, const LoadedFiles& loaded,
+               const simulation::PreparedRun& prepared) {
+  const machine::Judgement judgement = simulation::JudgeFindings(prepared.diagnostics);
+  if (options.json) {
+    v1::Findings found =
+        bridge::FindingsOf(false, prepared.diagnostics, prepared.diagnostics_dropped, {});
+    bridge::SetJudgement(judgement, found);
+    Print(Json(found));
+  } else if (options.facts) {
+    simulation::RunReport report;
+    report.family = loaded.family->info().id;
+    report.finished = true;
+    report.outcome.kind = machine::OutcomeKind::kFailed;
+    if (!judgement.reasons.empty()) report.outcome.code = judgement.reasons.front().code;
+    report.judgement = judgement;
+    PrintRaw(simulation::FactsText(report));
+  } else {
+    std::string_view source;
+    if (loaded.programs.size() == 1) source = *loaded.programs.front().bytes;
+    PrintFindings(prepared.diagnostics, prepared.diagnostics_dropped, source);
+    PrintRaw("verdict       " + VerdictText(v1::VERDICT_BAD) + "\n");
+  }
+  return kProgramErrors;
+}
+
 // The files that were asked for; what goes to standard output ("-") is not written here.
 Status WriteProducts(const SimulateOptions& options, const simulation::SimulationResult& result,
                      const std::string& toolpath) {
@@ -244,17 +271,7 @@ int Simulate(const SimulateOptions& options) {
   Result<simulation::PreparedRun> outcome = simulation::PrepareRun(
       memory, bridge::RunOptionsOf(*message, budget, loaded->main_slot, machine::Mode::kCycle));
   if (!outcome) return Refuse(outcome.error());
-  if (!outcome->setup) {
-    if (options.json) {
-      Print(
-          Json(bridge::FindingsOf(false, outcome->diagnostics, outcome->diagnostics_dropped, {})));
-    } else {
-      std::string_view source;
-      if (loaded->programs.size() == 1) source = *loaded->programs.front().bytes;
-      PrintFindings(outcome->diagnostics, outcome->diagnostics_dropped, source);
-    }
-    return kProgramErrors;
-  }
+  if (!outcome->setup) return TellWhyNot(options, *loaded, *outcome);
   for (const int slot : executables_to_make) {
     if (Status made = MakeExecutable(*loaded->family, *outcome->setup, slot); !made)
       return Refuse(made.error());

@@ -223,11 +223,13 @@ void AddFamilyFigures(const v1::RunReport& report, const machine::MachineFamily&
 
 // "Roland monoFab SRM-20 (srm-20)". That nobody said which machine it is must not be overlooked.
 std::string MachineText(const machine::MachineFamily& family, const std::string& profile) {
-  for (const machine::MachineProfile& one : family.profiles()) {
-    if (one.id == profile) return std::string(one.title) + " (" + profile + ")";
-  }
-  return std::string(family.info().title) +
-         "; no profile was named (--profile NAME, see rmlcell parameters): the defaults count";
+  const auto profiles = family.profiles();
+  const auto found = std::ranges::find(profiles, profile, &machine::MachineProfile::id);
+  if (found != profiles.end()) return std::string(found->title) + " (" + profile + ")";
+  if (profiles.empty()) return std::string(family.info().title);
+  // The first one is what the defaults of the family are.
+  return std::string(profiles.front().title) + " (" + std::string(profiles.front().id) +
+         "): no profile was named";
 }
 
 // What a run did; a job that only checks has none of it.

@@ -56,7 +56,9 @@ void Carriage::Place(const Point& at) {
 void Carriage::ToToolHeight(const Context& context) {
   const Registers& registers = context.registers;
   const double z = registers.tool_z(context.profile);
+  const double before = logical_.z;
   logical_.z = z;
+  if (registers.tool_down) NoteLostDepth(context, before);
   if (!range_.HasXY(logical_)) return;
   Point to = range_.Nearest(logical_);
   to.a = physical_.a;
@@ -307,6 +309,16 @@ void Carriage::NoteLost(const Point& from, const Point& to, double surface_z) {
     lost_.y_high = std::max(lost_.y_high, p.y - range_.y.high);
     lost_.z_low = std::max(lost_.z_low, range_.bottom() - p.z);
   }
+}
+
+// The tool goes down beyond the travel, or not as deep as the program says (RML1-9.23).
+void Carriage::NoteLostDepth(const Context& context, double from_z) {
+  const Registers& registers = context.registers;
+  Point from = logical_;
+  Point to = logical_;
+  to.z = registers.z0 + registers.z1;
+  from.z = range_.HasXY(logical_) ? range_.bottom() : from_z;
+  if (to.z < from.z) NoteLost(from, to, registers.z0);
 }
 
 bool Carriage::SameXY(const Point& a, const Point& b) const {

@@ -89,6 +89,7 @@ class Carriage {
   void LeaveXY(const Context& context);
   void PauseAtEntry(const Context& context, bool allowed);
   void NoteClipped(double length);
+  void NoteLostDepth(const Context& context, double from_z);
   void NoteLost(const Point& from, const Point& to, double surface_z);
   bool SameXY(const Point& a, const Point& b) const;
 

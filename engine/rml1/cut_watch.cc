@@ -24,7 +24,9 @@ void CutWatch::OnRide(const Ride& ride, const Registers& registers, const Comman
   if (ride.in_work) {
     const bool given = ride.by_xy_speed ? registers.xy_speed_given : registers.z_speed_given;
     if (ride.spindle_turns && given) return;
-    const double mm = ShareNotAbove(ride.from, ride.to, registers.z0) * ride.length_mm;
+    // Along the surface nothing is cut: pens and drag knives go there with the spindle off.
+    const double below = registers.z0 - 2.0 * kSameHeight;
+    const double mm = ShareNotAbove(ride.from, ride.to, below) * ride.length_mm;
     if (!ride.spindle_turns) Add(spindle_stands_, mm, command);
     if (!given) Add(feed_not_given_, mm, command);
   } else if (ride.rapid && (ride.from.x != ride.to.x || ride.from.y != ride.to.y)) {

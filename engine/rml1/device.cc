@@ -215,7 +215,7 @@ void Device::OnEnd(DeviceListener& listener) {
     Advise(FindingKind::kSkippedName, listener);
   } else if (row.shape == Shape::kSets) {
     if (!operands_.any) {
-      RunBare();
+      RunBare(listener);
     } else if (operands_.count > 0 && !operands_.dropped) {
       Report(FindingKind::kLeftOver, listener);  // RML1-9.15, RML1-9.16
     }

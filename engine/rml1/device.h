@@ -124,7 +124,7 @@ class Device {
   void NoteClipping(double lost_before, DeviceListener& listener);
   bool TakeCoordinate(DeviceListener& listener);
   void RunSet(DeviceListener& listener);
-  void RunBare();
+  void RunBare(DeviceListener& listener);
   void RunFixed(DeviceListener& listener);
   void OnAxisValue(DeviceListener& listener);
   void OnGroup(DeviceListener& listener);

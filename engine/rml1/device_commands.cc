@@ -78,11 +78,13 @@ void Device::RunSet(DeviceListener& listener) {
 }
 
 // A command with sets, without any parameter.
-void Device::RunBare() {
+void Device::RunBare(DeviceListener& listener) {
   const CommandRow& row = reader_.row();
+  const double lost = carriage_.lost().length;
   ApplyEffects(row);
   programmed_.OnBare(row);
   if (row.tool != ToolChange::kNone) carriage_.ToToolHeight(context());
+  NoteClipping(lost, listener);
 }
 
 // A lift above the top or a parking place beyond the travel costs nothing: it is only counted.

@@ -14,6 +14,7 @@ struct Source {
   double mm;  // of one device unit
   bool rotary;
   std::optional<std::uint64_t> starved;
+  bool ended;
 };
 
 using Value = std::optional<double>;
@@ -60,10 +61,10 @@ constexpr std::array kRows = {
     Row{{"motions", "", "motions of the tool", "motions", "#", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return Count(s.tool.motions); }},
     Row{{"cut_length", "mm", "way of the tool in the work: cuts and plunges", "path", "cut # mm", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return s.tool.cut_mm; }},
     Row{{"travel_length", "mm", "the rest of its way", "path", "travel # mm", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return s.tool.travel_mm; }},
-    Row{{"plunges", "", "times that the tool went down into the work by itself", "plunges", "#", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return Count(s.tool.plunges); }},
+    Row{{"plunges", "", "times that the tool went down into the work; steps of one way down are one", "plunges", "#", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return Count(s.tool.plunges); }},
     Row{{"motion_time", "s", "moving"}, [](const Source& s) -> Value { return s.tool.motion_s; }},
-    Row{{"tool_up_time", "s", "moving or waiting in tool state up", "tool", "up # s", true}, [](const Source& s) -> Value { return s.tool.up_s; }},
-    Row{{"tool_down_time", "s", "moving or waiting in tool state down", "tool", "down # s", true}, [](const Source& s) -> Value { return s.tool.down_s; }},
+    Row{{"tool_up_time", "s", "the rest of the time of motions and waits", "tool", "up # s", true}, [](const Source& s) -> Value { return s.tool.up_s; }},
+    Row{{"tool_down_time", "s", "moving or waiting in the work, or in tool state down", "tool", "down # s", true}, [](const Source& s) -> Value { return s.tool.down_s; }},
     Row{{"dwell_time", "s", "waits of W and !DW"}, [](const Source& s) -> Value { return s.tool.dwell_s; }},
     Row{{"spindle_time", "s", "waits for the spindle to turn steadily or to stand"}, [](const Source& s) -> Value { return s.tool.spindle_s; }},
     Row{{"halted_time", "s", "waits for a key"}, [](const Source& s) -> Value { return s.tool.halted_s; }},
@@ -95,9 +96,10 @@ constexpr std::array kRows = {
     Row{{"spindle_stands_length", "mm", "way in the work while the spindle stands"}, [](const Source& s) -> Value { return s.watch.spindle_stands().mm; }, [](const Source& s) { return s.watch.spindle_stands().first; }},
     Row{{"no_clearance_length", "mm", "way across at travel speed, not above the surface of the work, Z 0"}, [](const Source& s) -> Value { return s.watch.no_clearance().mm; }, [](const Source& s) { return s.watch.no_clearance().first; }},
     Row{{"feed_not_given_length", "mm", "way in the work at a speed that the program did not set"}, [](const Source& s) -> Value { return s.watch.feed_not_given().mm; }, [](const Source& s) { return s.watch.feed_not_given().first; }},
-    Row{{"depth_at_end", "mm", "how far below the surface the tool stands at the end"}, [](const Source& s) -> Value { return DepthNow(s); }},
-    Row{{"spindle_on_at_end", "", "1 when the spindle turns at the end"}, [](const Source& s) -> Value { return s.device.spindle_turns() ? 1.0 : 0.0; }},
-    Row{{"nothing_cut", "", "1 when the tool never was in the work"}, [](const Source& s) -> Value { return s.tool.cut_mm > 0.0 ? 0.0 : 1.0; }},
+    Row{{"depth_at_end", "mm", "how far below the surface the tool stands at the end"}, [](const Source& s) -> Value { return s.ended ? Value(DepthNow(s)) : std::nullopt; }},
+    Row{{"spindle_on_at_end", "", "1 when the spindle turns at the end"}, [](const Source& s) -> Value { return s.ended ? Value(s.device.spindle_turns() ? 1.0 : 0.0) : std::nullopt; }},
+    Row{{"incomplete_at_end", "", "1 when the data ends inside a command, which is not carried out"}, [](const Source& s) -> Value { return s.ended ? Value(s.device.pending() ? 1.0 : 0.0) : std::nullopt; }},
+    Row{{"nothing_cut", "", "1 when the tool never was in the work"}, [](const Source& s) -> Value { return s.ended ? Value(s.tool.cut_mm > 0.0 ? 0.0 : 1.0) : std::nullopt; }},
     Row{{"speed_clamps", "", "speed words beyond the machine", "speeds", "# limited to those of the machine", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return Count(s.device.speeds_limited()); }},
     Row{{"error_register", "", "command error register"}, [](const Source& s) -> Value { return static_cast<double>(s.device.command_errors().value()); }},
     Row{{"communication_register", "", "communication error register"}, [](const Source& s) -> Value { return static_cast<double>(s.device.link_errors().value()); }},
@@ -173,7 +175,7 @@ std::span<const machine::FigureInfo> FigureTable() {
   return infos;
 }
 
-std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& physical,
+std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& physical, bool ended,
                                        std::optional<std::uint64_t> starved) {
   const Profile& profile = physical.profile();
   const Source source{.device = device,
@@ -181,7 +183,8 @@ std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& phy
                       .watch = physical.watch(),
                       .mm = 1.0 / profile.units_per_mm,
                       .rotary = profile.has_rotary,
-                      .starved = starved};
+                      .starved = starved,
+                      .ended = ended};
   std::vector<machine::Figure> figures;
   for (const Row& row : kRows) {
     const Value value = row.value(source);

@@ -15,8 +15,9 @@ std::span<const machine::FigureInfo> FigureTable();
 
 // The figures of a device and of what its tool did; those that have nothing to say (an extent of no
 // points, a command that did not occur) are left out.
-// `starved`: of the look-ahead, where motions were timed.
-std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& physical,
+// `starved`: of the look-ahead, where motions were timed. `ended`: the stream was carried out to
+// its end; else nothing is said of how it ends.
+std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& physical, bool ended,
                                        std::optional<std::uint64_t> starved = {});
 
 }  // namespace rmlcell::rml1

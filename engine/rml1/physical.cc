@@ -14,10 +14,10 @@ void Physical::OnRide(const Ride& ride, const Registers& registers, const Comman
   };
   if (first_ever) add_point(ride.from);
   add_point(ride.to);
-  if (ride.first) {
-    ++totals_.motions;
-    if (ride.use == MotionUse::kPlunge) ++totals_.plunges;
-  }
+  if (ride.first) ++totals_.motions;
+  const bool plunges = ride.use == MotionUse::kPlunge;
+  if (plunges && !plunging_) ++totals_.plunges;
+  plunging_ = plunges;
   const bool in_work = ride.use == MotionUse::kCut || ride.use == MotionUse::kPlunge;
   (in_work ? totals_.cut_mm : totals_.travel_mm) += ride.length_mm;
   totals_.motion_s += ride.time_s;
@@ -29,21 +29,22 @@ void Physical::OnRide(const Ride& ride, const Registers& registers, const Comman
                  .by_xy_speed = ride.chain == Chain::kToolDown,
                  .spindle_turns = ride.spindle_turns},
                 registers, command);
-  AddToState(ride.time_s, registers);
+  AddToState(ride.time_s, in_work || registers.tool_down);
+  depth_ = registers.z0 - ride.to.z;
 }
 
 void Physical::OnDwell(double time_s, const Registers& registers) {
   totals_.dwell_s += time_s;
-  AddToState(time_s, registers);
+  AddToState(time_s, registers.tool_down || depth_ > 0.0);
 }
 
 void Physical::OnSpindleWait(double time_s, const Registers& registers) {
   totals_.spindle_s += time_s;
-  AddToState(time_s, registers);
+  AddToState(time_s, registers.tool_down || depth_ > 0.0);
 }
 
-void Physical::AddToState(double time_s, const Registers& registers) {
-  (registers.tool_down ? totals_.down_s : totals_.up_s) += time_s;
+void Physical::AddToState(double time_s, bool down) {
+  (down ? totals_.down_s : totals_.up_s) += time_s;
 }
 
 }  // namespace rmlcell::rml1

@@ -35,10 +35,10 @@ class Physical {
 
   struct Totals {
     std::uint64_t motions = 0;
-    std::uint64_t plunges = 0;
+    std::uint64_t plunges = 0;  // that follow each other are one
     double cut_mm = 0.0;
     double travel_mm = 0.0;
-    double up_s = 0.0;  // motions and waits, by tool state
+    double up_s = 0.0;  // motions and waits: down in the work and in tool state down, else up
     double down_s = 0.0;
     double motion_s = 0.0;
     double dwell_s = 0.0;
@@ -54,10 +54,12 @@ class Physical {
   const Profile& profile() const { return *profile_; }
 
  private:
-  void AddToState(double time_s, const Registers& registers);
+  void AddToState(double time_s, bool down);
 
   const Profile* profile_;
   Totals totals_;
+  bool plunging_ = false;
+  double depth_ = 0.0;  // of the tool below the surface, device units
   CutWatch watch_;
 };
 

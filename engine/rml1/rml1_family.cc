@@ -98,7 +98,7 @@ class Rehearsal {
   }
 
   const Device& device() const { return device_; }
-  std::vector<machine::Figure> Figures() const { return FiguresOf(device_, physical_); }
+  std::vector<machine::Figure> Figures() const { return FiguresOf(device_, physical_, true); }
 
  private:
   void CarryOut() {

@@ -405,8 +405,10 @@ std::optional<std::string> MillRun::ReadVariable(std::string_view name) const {
 }
 
 std::vector<machine::Figure> MillRun::figures() const {
-  std::vector<machine::Figure> figures =
-      FiguresOf(state_.device, state_.physical, state_.ahead.starved());
+  std::vector<machine::Figure> figures = FiguresOf(
+      state_.device, state_.physical,
+      state_.phase == RunPhase::kFinished && state_.outcome.kind == OutcomeKind::kCompleted,
+      state_.ahead.starved());
   LineCounter lines;
   for (machine::Figure& figure : figures) {
     if (figure.first.step == 0) continue;

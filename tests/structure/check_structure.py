@@ -80,7 +80,7 @@ MAY_INCLUDE = {
                     "storage/sqlite"],
     # The language server: no server and no language.
     "clients/lsp": ["engine/core", "engine/machine", "engine/families", RUN],
-    "clients/cli": ["clients/lsp", "engine/core", "engine/machine", "engine/families", REPORT, MATERIAL, RUN, "proto", "proto/bridge"],
+    "clients/cli": ["clients/lsp", "engine/core", "engine/machine", "engine/families", REPORT, MATERIAL, VERDICT, RUN, "proto", "proto/bridge"],
 }
 # Of these rooms others may include no other header.
 PUBLIC = {

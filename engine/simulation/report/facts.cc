@@ -201,7 +201,8 @@ void Table::AddWork() {
          &WorkFigures::cut_mm);
   Figure("travel_length_mm", "mm", "the rest", &WorkFigures::travel_mm);
   Figure("plunge_length_mm", "mm", "plunges, part of the cut length", &WorkFigures::plunge_mm);
-  Counter("plunges", "times that the tool went down into the work", &WorkFigures::plunges);
+  Counter("plunges", "times that the tool went down into the work; steps of one way down are one",
+          &WorkFigures::plunges);
   Add("beam_on_s", "s", "time with the beam on",
       [](const RunReport& r) { return Seconds(r.total.beam_on); });
   Counter("beam_switches", "times that the beam went on", &WorkFigures::beam_switches);

@@ -127,7 +127,13 @@ machine::Judgement JudgeCheck(const machine::MachineFamily& family,
                               const machine::Translation& translation, const MotionCheck& motion) {
   if (!translation.ok) return JudgeFindings(translation.diagnostics);
   if (motion.has_errors()) return JudgeFindings(motion.findings);
-  return JudgeFigures(family, translation.figures);
+  machine::Judgement judgement = JudgeFigures(family, translation.figures);
+  for (const auto& [slot, why] : motion.cut_short) {
+    judgement.Add({.code = ErrorCode::kCellCheckCutShort,
+                   .verdict = machine::Verdict::kDoubtful,
+                   .said = "motion checked " + why});
+  }
+  return judgement;
 }
 
 }  // namespace rmlcell::simulation

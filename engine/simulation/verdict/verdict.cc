@@ -29,6 +29,9 @@ Measured BelowBlock(const RunReport& r) {
   if (!r.milling) return {};
   return {r.milling->below_mm, r.milling->below_place};
 }
+Measured BlockUntouched(const RunReport& r) {
+  return {r.milling && !(r.milling->removed_mm3 > 0.0) ? 1.0 : 0.0, {}};
+}
 Measured TravelLeft(const RunReport& r) {
   if (r.violations.empty()) return {};
   return {static_cast<double>(r.violations.size() + r.violations_dropped),
@@ -44,6 +47,7 @@ constexpr std::array kRules = {
     CommonRule{{{ErrorCode::kCellGouge, "gouges", 0.0, Verdict::kBad, "motions at travel speed through material: #"}, "", "motions at travel speed through the block that was given"}, Gouges},
     CommonRule{{{ErrorCode::kCellBelowBlock, "below_block", kThroughTheBlock_mm, Verdict::kBad, "the tool goes # mm below the block"}, "mm", "how far the tool goes below the block that was given"}, BelowBlock},
     CommonRule{{{ErrorCode::kCellBelowBlock, "below_block", kRounding_mm, Verdict::kDoubtful, "the tool goes # mm below the block"}, "mm", "how far the tool goes below the block that was given"}, BelowBlock},
+    CommonRule{{{ErrorCode::kCellBlockUntouched, "block_untouched", 0.0, Verdict::kDoubtful, "the tool takes nothing off the block"}, "", "1 when nothing is taken off the block that was given"}, BlockUntouched},
 };
 // clang-format on
 

@@ -283,8 +283,7 @@ TEST_F(Messages, AWholeReportOfALaser) {
   EXPECT_EQ(
       ReportText(report),
       "outcome       stopped\n"
-      "machine       Amada OPTIMO 5-axis laser; no profile was named (--profile NAME, see rmlcell "
-      "parameters): the defaults count\n"
+      "machine       Optimo of 30 m/min with ARROW laser (standard): no profile was named\n"
       "cycle time    45.000 s\n"
       "              motion 1.000 s, settling 2.000 s, dwell 3.000 s, pierce 4.000 s, condition 5.000 s, "
       "operator 6.000 s, spin-up 7.000 s, loading 8.000 s, standstill 9.000 s\n"

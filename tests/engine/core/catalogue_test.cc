@@ -168,7 +168,8 @@ TEST(Catalogue, NumbersOfTheCellKeepTheirMeaning) {
       {9306, "CellOutputBudget"},    {9307, "CellCancelled"},
       {9308, "CellWaitsForever"},    {9309, "CellVersionMismatch"},
       {9310, "CellJoinRefused"},     {9401, "CellGouge"},
-      {9402, "CellBelowBlock"},
+      {9402, "CellBelowBlock"},      {9403, "CellBlockUntouched"},
+      {9404, "CellCheckCutShort"},
   };
   std::size_t rows = 0;
   for (const CatalogueEntry& entry : Catalogue()) {

@@ -96,20 +96,52 @@ TEST(Verdict, OfWorkBeyondTheTravel) {
                 "RML1-E8002 the work leads 0.020 mm below the travel: raise Z0");
 }
 
+// Tool heights are lost, too: a hole beyond the travel, and one that a moved Z0 takes below it.
+TEST(Verdict, OfHolesThatAreNotDrilled) {
+  EXPECT_EQ(
+      Text(OfStream(Work("PU30000,100;PD;PU;PU200,100;PD300,100;"))),
+      "BAD; RML1-E8002 1.000 mm of the work lie beyond the travel and are not cut @7; "
+      "RML1-E8002 the work leads 100.000 mm beyond the greatest X: move the origin to less X");
+  // Z0 55 mm below the top, the tool 10 mm below it: the travel ends at 60 mm.
+  const std::string deep = "VS10;!VZ10;!PZ-1000,200;!ZO-5500;!MC1;PU100,100;PD200,100;PU0,0;!MC0;";
+  EXPECT_EQ(Text(OfStream(deep)),
+            "BAD; RML1-E8002 5.000 mm of the work lie beyond the travel and are not cut @7; "
+            "RML1-E8002 the work leads 5.000 mm below the travel: raise Z0");
+}
+
+TEST(Verdict, OfDataThatEndsInsideACommand) {
+  EXPECT_EQ(Text(OfStream(Work("PD200,100;") + "PD300,300")),
+            "DOUBTFUL; RML1-E8001 the data ends inside a command: the last one is not carried out");
+}
+
+// How a stream would have ended is not known of a run that did not get there.
+TEST(Verdict, OfAPauseSaysNothingOfTheEnd) {
+  const Judgement judgement = OfStream(Work("PD200,100;!NR;"));
+  EXPECT_EQ(judgement.verdict, Verdict::kDoubtful);
+  ASSERT_EQ(judgement.reasons.size(), 1U);
+  EXPECT_EQ(judgement.reasons[0].code, ErrorCode::kCellWaitsForever);
+}
+
+// A pen goes along the surface with the spindle off.
+TEST(Verdict, OfAStrokeAlongTheSurfaceIsGood) {
+  EXPECT_EQ(Text(OfStream("VS10;!VZ10;!PZ0,200;!MC0;PU100,100;PD200,100;PU0,0;")), "GOOD");
+}
+
 TEST(Verdict, OfCoordinatesThatAreRefused) {
   EXPECT_EQ(Text(OfStream(Work("PD200,100,300;"))),
             "BAD; RML1-E8008 coordinates or heights that were refused: 1 @6; RML1-E8014 places "
-            "that are no command, or lack parameters: 1");
+            "that are no command, or have wrong parameters: 1");
   EXPECT_EQ(Text(OfStream(Work("PD200,100,300,100;"))), "GOOD");
 }
 
 TEST(Verdict, OfWhatIsNotUnderstood) {
   EXPECT_EQ(Text(OfStream(Work("$PD200,100;"))),
-            "DOUBTFUL; RML1-E8014 places that are no command, or lack parameters: 1");
+            "DOUBTFUL; RML1-E8014 places that are no command, or have wrong parameters: 1");
   // RML1-4.05: the letter of a sequence that there is not is judged as a command, too.
-  EXPECT_EQ(Text(OfStream(Work("\x1b.B;PD200,100;"))),
-            "DOUBTFUL; RML1-E8014 places that are no command, or lack parameters: 1; RML1-E8014 "
-            "communication errors: 1");
+  EXPECT_EQ(
+      Text(OfStream(Work("\x1b.B;PD200,100;"))),
+      "DOUBTFUL; RML1-E8014 places that are no command, or have wrong parameters: 1; RML1-E8014 "
+      "communication errors: 1");
 }
 
 TEST(Verdict, OfWhatIsNoRml1) {
@@ -176,6 +208,11 @@ TEST(Verdict, OfTravelThroughTheBlock) {
   EXPECT_EQ(judgement.reasons[0].first.step, 5);
 }
 
+TEST(Verdict, OfABlockThatIsNotThere) {
+  EXPECT_EQ(Text(OfStreamInBlock(Work("PD200,100;"), "10x10x10@100,100,0")),
+            "DOUBTFUL; CELL-E9403 the tool takes nothing off the block");
+}
+
 // A block of 10 mm: through it by a little is how one cuts out, by more than 1 mm it is the table.
 TEST(Verdict, OfAToolBelowTheBlock) {
   const auto down_to = [](const std::string& z) {
@@ -185,7 +222,7 @@ TEST(Verdict, OfAToolBelowTheBlock) {
   EXPECT_EQ(down_to("-1010"), "DOUBTFUL; CELL-E9402 the tool goes 0.100 mm below the block @6");
   EXPECT_EQ(down_to("-1200"), "BAD; CELL-E9402 the tool goes 2.000 mm below the block @6");
   // Beside the block, by its radius of 1.5 mm and more, the tool may go as deep as it likes.
-  const std::string beside = Work("PU2151,100;Z2151,100,-1200;");
+  const std::string beside = Work("PD200,100;PU2151,100;Z2151,100,-1200,2151,100,200;");
   EXPECT_EQ(Text(OfStreamInBlock(beside, "20x20x10")), "GOOD");
 }
 
@@ -286,6 +323,36 @@ TEST(Verdict, DocumentListsExactlyTheRules) {
     }
   }
   EXPECT_EQ(listed, rules);
+}
+
+// One meaning in check, run and report: docs/facts.md. Steps of one way down are one plunge.
+TEST(Figures, MeanOneThingInCheckRunAndReport) {
+  const std::pair<std::string, double> streams[] = {
+      {Work("PD200,100;"), 1},
+      {Work("Z100,100,100,100,100,-10,100,100,-20,300,100,-20;Z300,100,-40;Z300,100,200;"), 2},
+      {Work("PD200,100;PU;PD300,100;Z300,100,-150;"), 3},
+      {Work("Z100,100,-10;Z100,100,-5;Z100,100,-20;"), 2}};
+  for (const auto& [stream, plunges] : streams) {
+    machine::RunSetup setup(MillOf("t1"));
+    setup.main_program = 1;
+    setup.programs[1].object = std::make_shared<const std::string>(stream);
+    const auto run = Simulate(Mill(), std::move(setup), {});
+    ASSERT_TRUE(run);
+    const auto figure = [](const std::vector<machine::Figure>& figures, std::string_view name) {
+      const auto found = std::ranges::find(figures, name, &machine::Figure::name);
+      return found == figures.end() ? -1.0 : found->value;
+    };
+    const auto checked = Mill().Translate({.name = "a.rml", .bytes = stream}, MillOf("t1"), {});
+    const auto& of_run = run->report.figures;
+    EXPECT_EQ(static_cast<double>(run->report.total.plunges), plunges) << stream;
+    EXPECT_EQ(figure(of_run, "plunges"), plunges) << stream;
+    EXPECT_EQ(figure(checked.figures, "plunges"), plunges) << stream;
+    EXPECT_NEAR(figure(of_run, "cut_length"), run->report.total.cut_mm, 1e-9) << stream;
+    EXPECT_NEAR(figure(checked.figures, "cut_length"), run->report.total.cut_mm, 1e-9) << stream;
+    EXPECT_EQ(figure(checked.figures, "motions"), figure(of_run, "motions")) << stream;
+    // What the tool does in the work it does down, by whatever commands.
+    EXPECT_GT(figure(of_run, "tool_down_time"), 0.0) << stream;
+  }
 }
 
 // What people judged of real programs, by hand and before the rules first ran on them.

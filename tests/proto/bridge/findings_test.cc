@@ -173,7 +173,10 @@ TEST(FindingsMessage, OfATranslationAndItsMotion) {
   EXPECT_EQ(good.diagnostics_size(), 1);
   EXPECT_EQ(good.diagnostics_dropped(), 7);
   EXPECT_EQ(good.motion_check(), "only up to step 2");
-  EXPECT_EQ(good.verdict(), v1::VERDICT_GOOD);
+  // Not followed to its end: what comes behind is not known.
+  EXPECT_EQ(good.verdict(), v1::VERDICT_DOUBTFUL);
+  ASSERT_EQ(good.reasons_size(), 1);
+  EXPECT_EQ(good.reasons(0).message(), "motion checked only up to step 2");
   ASSERT_EQ(good.figures_size(), 1);
   EXPECT_EQ(good.figures(0).name(), "steps");
   EXPECT_EQ(good.figures(0).value(), 7.0);
