@@ -206,20 +206,26 @@ int TellWhyNot(const SimulateOptions& options, const LoadedFiles& loaded,
   return kProgramErrors;
 }
 
-// The files that were asked for; what goes to standard output ("-") is not written here.
+// The files that were asked for. A picture or plot that goes to standard output ("-") is not
+// written here.
 Status WriteProducts(const SimulateOptions& options, const simulation::SimulationResult& result,
                      const std::string& toolpath) {
   if (result.material && !options.stl.empty()) {
     if (Status written = WriteMaterial(*result.material, options.stl); !written) return written;
   }
-  const std::pair<std::string, std::string_view> files[] = {
+  struct Product {
+    std::string file;
+    std::string_view bytes;
+    bool may_be_output = false;
+  };
+  const Product products[] = {
       {options.toolpath, toolpath},
-      {options.plot.empty() ? std::string() : options.plot[1], result.plot},
-      {options.svg, result.svg},
+      {options.plot.empty() ? std::string() : options.plot[1], result.plot, true},
+      {options.svg, result.svg, true},
       {options.state_out, result.machine_state}};
-  for (const auto& [name, bytes] : files) {
-    if (name.empty() || name == "-") continue;
-    if (Status written = WriteWholeFile(name, bytes); !written) return written;
+  for (const Product& product : products) {
+    if (product.file.empty() || (product.may_be_output && product.file == "-")) continue;
+    if (Status written = WriteWholeFile(product.file, product.bytes); !written) return written;
   }
   return {};
 }

@@ -200,4 +200,13 @@ std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& phy
   return figures;
 }
 
+void PlaceFigures(std::string_view stream, int program, std::vector<machine::Figure>& figures) {
+  LineCounter lines;
+  for (machine::Figure& figure : figures) {
+    if (figure.first.step == 0) continue;
+    figure.first.program = program;
+    figure.first.line = lines.At(stream, figure.first.byte_offset, 0).line;
+  }
+}
+
 }  // namespace rmlcell::rml1

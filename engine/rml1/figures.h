@@ -20,4 +20,7 @@ std::span<const machine::FigureInfo> FigureTable();
 std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& physical, bool ended,
                                        std::optional<std::uint64_t> starved = {});
 
+// Gives the places of figures their program and line.
+void PlaceFigures(std::string_view stream, int program, std::vector<machine::Figure>& figures);
+
 }  // namespace rmlcell::rml1

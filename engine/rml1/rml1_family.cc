@@ -201,11 +201,7 @@ machine::Translation MillFamily::Translate(const machine::SourceFile& file,
   translation.ok = true;
   translation.object = std::string(file.bytes);
   translation.figures = rehearsal.Figures();
-  LineCounter lines;
-  for (machine::Figure& figure : translation.figures) {
-    if (figure.first.step > 0)
-      figure.first.line = lines.At(file.bytes, figure.first.byte_offset, 0).line;
-  }
+  PlaceFigures(file.bytes, 0, translation.figures);
   translation.figures.push_back(
       {.name = "object_bytes", .unit = "bytes", .value = static_cast<double>(file.bytes.size())});
   return translation;

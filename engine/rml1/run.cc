@@ -409,12 +409,7 @@ std::vector<machine::Figure> MillRun::figures() const {
       state_.device, state_.physical,
       state_.phase == RunPhase::kFinished && state_.outcome.kind == OutcomeKind::kCompleted,
       state_.ahead.starved());
-  LineCounter lines;
-  for (machine::Figure& figure : figures) {
-    if (figure.first.step == 0) continue;
-    figure.first.program = setup_.main_program;
-    figure.first.line = lines.At(stream(), figure.first.byte_offset, 0).line;
-  }
+  PlaceFigures(stream(), setup_.main_program, figures);
   return figures;
 }
 

@@ -27,6 +27,7 @@ v1::Verdict ToProto(machine::Verdict verdict) {
 template <class Message>
 void AddJudgement(const machine::Judgement& judgement, Message& message) {
   message.set_verdict(ToProto(judgement.verdict));
+  message.clear_reasons();
   for (const machine::Reason& reason : judgement.reasons) {
     v1::VerdictReason& made = *message.add_reasons();
     made.set_verdict(ToProto(reason.verdict));

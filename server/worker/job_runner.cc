@@ -44,7 +44,8 @@ double ProcessorTime_s() {
 }
 
 v1::Outcome OutcomeFor(machine::OutcomeKind kind, ErrorCode code, std::string detail = {}) {
-  return bridge::ToProto(machine::Outcome{.kind = kind, .code = code, .detail = std::move(detail)});
+  const machine::Outcome outcome{.kind = kind, .code = code, .detail = std::move(detail)};
+  return bridge::ToProto(outcome, simulation::JudgeOutcome(outcome));
 }
 
 // One attempt.

@@ -49,23 +49,42 @@ double DataAccess::InputNow(VariableGroup group, int index) const {
   return situation_.machine.data.ia_physical[static_cast<std::size_t>(index)];
 }
 
+// Whether the run itself has given the variable its value: an instruction, a caller, the control.
+bool DataAccess::IsOfTheRun(Variable variable) const {
+  const int n = variable.index;
+  switch (variable.group) {
+    case VariableGroup::kVi:
+      if (n >= kFirstOwnVi) return true;
+      break;
+    case VariableGroup::kIl:
+      return n >= kFirstWorkFlag && n <= kMotionFlag;
+    case VariableGroup::kIa:
+      return false;
+    case VariableGroup::kOa:
+      if (n == 0) return true;
+      break;
+    case VariableGroup::kPar:
+      if (counter_.level() > 1) return true;
+      break;
+    default:
+      break;
+  }
+  const auto& written = situation_.reliance.written[static_cast<std::size_t>(variable.group)];
+  return written[static_cast<std::size_t>(n)];
+}
+
 float DataAccess::Read(Variable variable) {
   DataArea& data = situation_.machine.data;
   const auto n = static_cast<std::size_t>(variable.index);
-  Reliance& reliance = situation_.reliance;
-  const auto rely = [&reliance](bool on) { reliance.on_what_was = reliance.on_what_was || on; };
+  if (!IsOfTheRun(variable)) situation_.reliance.on_what_was = true;
   switch (variable.group) {
     case VariableGroup::kVr:
-      rely(!reliance.vr[n]);
       return data.vr[n];
     case VariableGroup::kVi:
-      rely(!reliance.vi[n] && n < kFirstOwnVi);
       return data.vi[n];
     case VariableGroup::kVl:
-      rely(!reliance.vl[n]);
       return data.vl[n] ? 1.0F : 0.0F;
     case VariableGroup::kIl:
-      rely(n < kFirstWorkFlag);
       // Work and motion flags are the control's own: they hold in simulation too (OPT-6.20).
       if (Connected(kGroupIl) || (n >= kFirstWorkFlag && n <= kMotionFlag)) {
         data.il[n] = InputNow(variable.group, variable.index) != 0.0;
@@ -74,7 +93,6 @@ float DataAccess::Read(Variable variable) {
     case VariableGroup::kOl:
       return data.ol[n] ? 1.0F : 0.0F;
     case VariableGroup::kIa:
-      rely(true);
       if (Connected(kGroupIa))
         data.ia[n] = static_cast<float>(InputNow(variable.group, variable.index));
       return data.ia[n];
@@ -83,7 +101,6 @@ float DataAccess::Read(Variable variable) {
         return static_cast<float>(ride_.tip_speed_mm_s() * parameters_.cycle_s);  // OPT-7.69
       return data.oa[n];
     case VariableGroup::kPar:
-      rely(counter_.level() == 1);
       return counter_.frame().parameters[n % kParameterCount];
   }
   return 0.0F;
@@ -93,18 +110,16 @@ float DataAccess::Read(Variable variable) {
 Status DataAccess::Write(Variable variable, float number) {
   DataArea& data = situation_.machine.data;
   const auto n = static_cast<std::size_t>(variable.index);
+  situation_.reliance.written[static_cast<std::size_t>(variable.group)][n] = true;
   switch (variable.group) {
     case VariableGroup::kVr:
       data.vr[n] = number;
-      situation_.reliance.vr[n] = true;
       break;
     case VariableGroup::kVi:
       data.vi[n] = number;
-      situation_.reliance.vi[n] = true;
       break;
     case VariableGroup::kVl:
       data.vl[n] = number != 0.0F;
-      situation_.reliance.vl[n] = true;
       break;
     case VariableGroup::kOl:
       return SetOutput(variable.index, number != 0.0F);

@@ -55,6 +55,7 @@ class DataAccess : private VariableAccess {
 
  private:
   float Read(Variable variable) override;
+  bool IsOfTheRun(Variable variable) const;
   Status Write(Variable variable, float number);
   Status SetOutput(int index, bool on);
   Status Let(const Instruction& i);

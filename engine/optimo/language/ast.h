@@ -19,6 +19,7 @@ enum class ValueType : std::uint8_t { kReal, kInteger, kLogical };
 std::string_view TypeName(ValueType type);  // "REAL"
 
 enum class VariableGroup : std::uint8_t { kVr, kVi, kVl, kIl, kOl, kIa, kOa, kPar };
+inline constexpr std::size_t kVariableGroups = static_cast<std::size_t>(VariableGroup::kPar) + 1;
 std::string_view GroupName(VariableGroup group);  // "VR"
 
 inline constexpr int kVariableIndexMax = 99;  // OPT-7.59

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <bitset>
 
 #include "engine/machine/run.h"
@@ -16,16 +17,15 @@ struct Simulated {
   int schedule = 0;  // selected last; 0: none
 };
 
-// Where a run is, as all parts of the control see it: the instant, the instruction, the machine.
-// A value.
 // Whether what the run does hangs on something that nothing of it has set.
 struct Reliance {
-  std::bitset<100> vr{};  // written by the run
-  std::bitset<100> vi{};
-  std::bitset<100> vl{};
+  std::array<std::bitset<kVariableIndexMax + 1>, kVariableGroups>
+      written{};  // by the run; by group
   bool on_what_was = false;
 };
 
+// Where a run is, as all parts of the control see it: the instant, the instruction, the machine.
+// A value.
 struct Situation {
   SimTime now{0};
   machine::RunPhase phase = machine::RunPhase::kRunning;

@@ -51,18 +51,6 @@ constexpr std::array kRules = {
 };
 // clang-format on
 
-// What an end says by itself.
-void JudgeOutcome(const machine::Outcome& outcome, machine::Judgement& judgement) {
-  if (outcome.kind == machine::OutcomeKind::kCompleted) return;
-  const bool stopped = outcome.kind == machine::OutcomeKind::kStopped;
-  machine::Reason reason{.code = outcome.code.value_or(ErrorCode::kCellWaitsForever),
-                         .verdict = stopped ? Verdict::kDoubtful : Verdict::kBad,
-                         .said = outcome.detail,
-                         .first = outcome.place};
-  if (reason.said.empty()) reason.said = std::string(Lookup(reason.code).when);
-  judgement.Add(std::move(reason));
-}
-
 // One figure may have several limits: the most serious rule speaks for all of them.
 bool Told(const machine::Judgement& judgement, const machine::VerdictRule& rule) {
   return std::ranges::any_of(judgement.reasons, [&](const machine::Reason& reason) {
@@ -90,9 +78,21 @@ std::span<const VerdictRuleInfo> CommonVerdictRules() {
   return infos;
 }
 
-machine::Judgement Judge(const RunReport& report) {
+machine::Judgement JudgeOutcome(const machine::Outcome& outcome) {
   machine::Judgement judgement;
-  JudgeOutcome(report.outcome, judgement);
+  if (outcome.kind == machine::OutcomeKind::kCompleted) return judgement;
+  const bool stopped = outcome.kind == machine::OutcomeKind::kStopped;
+  machine::Reason reason{.code = outcome.code.value_or(ErrorCode::kCellWaitsForever),
+                         .verdict = stopped ? Verdict::kDoubtful : Verdict::kBad,
+                         .said = outcome.detail,
+                         .first = outcome.place};
+  if (reason.said.empty()) reason.said = std::string(Lookup(reason.code).when);
+  judgement.Add(std::move(reason));
+  return judgement;
+}
+
+machine::Judgement Judge(const RunReport& report) {
+  machine::Judgement judgement = JudgeOutcome(report.outcome);
   for (const CommonRule& rule : kRules) {
     const machine::VerdictRule& what = rule.info.rule;
     const Measured measured = rule.measure(report);

@@ -13,6 +13,9 @@ namespace rmlcell::simulation {
 // Of a run that is over, by the rules for every machine and those of its family.
 machine::Judgement Judge(const RunReport& report);
 
+// Of an end alone: a job that was cancelled, or needed more than its budget.
+machine::Judgement JudgeOutcome(const machine::Outcome& outcome);
+
 // Of a check, which has the figures of the family and no run.
 machine::Judgement JudgeFigures(const machine::MachineFamily& family,
                                 std::span<const machine::Figure> figures);

@@ -185,6 +185,8 @@ TEST(MotionCheck, FailsWhereEveryRunFails) {
   for (const char* unsure : {"VR[2] = 1. / VR[1]\n", "VR[2] = 1. / VI[1]\n", "VR[2] = 1. / IA[5]\n",
                              "IF VL[1] THEN 10\nVR[2] = 1. / 0.\n10 VR[3] = 1.\n",
                              "IF IL[1] THEN 10\nVR[2] = 1. / 0.\n10 VR[3] = 1.\n",
+                             "IF IL[96] THEN 10\nVR[2] = 1. / 0.\n10 VR[3] = 1.\n",
+                             "IF OL[20] THEN 10\nVR[2] = 1. / 0.\n10 VR[3] = 1.\n",
                              "DEFINE PAR[0] = FLOAT\nVR[2] = 1. / PAR[0]\n",
                              "PATH LIN\nMOVE (1000.,900.,-400.,0.,0.)\n", "CALL 44\n"}) {
     EXPECT_EQ(fault({{45, unsure}}), "") << unsure;
