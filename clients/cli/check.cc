@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <set>
+#include <utility>
+#include <vector>
 
 #include "clients/cli/findings_text.h"
 #include "clients/cli/fix.h"
@@ -11,9 +12,8 @@
 #include "clients/cli/terminal.h"
 #include "clients/cli/verdict_text.h"
 #include "engine/core/number_text.h"
-#include "engine/core/units.h"
 #include "engine/families/families.h"
-#include "engine/simulation/run/rehearsal.h"
+#include "engine/simulation/run/joint_check.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/setup.h"
@@ -35,70 +35,28 @@ struct CheckedFile {
   bool ok() const { return translation.ok && !motion.has_errors(); }
 };
 
-simulation::MemoryProgram InMemory(const CheckedFile& file) {
-  return {.slot = file.slot,
-          .name = file.name,
-          .translation = std::make_shared<const machine::Translation>(file.translation)};
-}
-
-// The files of one family make one program memory, so that they can call each other: each in the
-// slot of its name, the others in free ones. Those that find no room (a slot that is named twice)
-// are left out.
-void ChooseSlots(std::vector<CheckedFile*>& files) {
-  std::map<int, const CheckedFile*> used;
-  for (CheckedFile* file : files) {
-    const std::optional<int> named = SlotFromName(file->name);
-    if (named && used.emplace(*named, file).second) file->slot = *named;
-  }
-  int free_slot = kSlotMin;
-  for (CheckedFile* file : files) {
-    if (file->slot > 0 || SlotFromName(file->name)) continue;
-    while (used.contains(free_slot)) ++free_slot;
-    if (!IsSlot(free_slot)) break;
-    used.emplace(free_slot, file);
-    file->slot = free_slot;
-  }
-}
-
-// Runs what was translated, and gives each finding to the file that it is in.
-Status CheckMotions(std::vector<CheckedFile*>& files, const machine::InputScript& inputs,
+// Runs what was translated: files of one family.
+Status CheckMotions(const std::vector<CheckedFile*>& files, const machine::InputScript& inputs,
                     bool advice) {
-  ChooseSlots(files);
-  std::map<int, CheckedFile*> by_slot;
-  simulation::ProgramMemory memory{.family = files.front()->family};
-  std::set<int> slots;
-  for (CheckedFile* file : files) {
-    if (file->slot == 0) continue;
-    memory.programs.push_back(InMemory(*file));
-    by_slot[file->slot] = file;
-    slots.insert(file->slot);
+  std::vector<simulation::JointProgram> programs;
+  for (const CheckedFile* file : files) {
+    programs.push_back({.program = {.slot = SlotFromName(file->name).value_or(0),
+                                    .name = file->name,
+                                    .translation = std::make_shared<const machine::Translation>(
+                                        file->translation)}});
   }
-  const auto take = [&](const simulation::MotionCheck& check,
-                        const std::map<int, CheckedFile*>& owners) {
-    for (Diagnostic finding : check.findings) {
-      const auto owner = owners.find(finding.program);
-      if (owner == owners.end() || (!advice && !IsError(finding.severity))) continue;
-      finding.file = owner->second->name;
-      owner->second->motion.findings.push_back(std::move(finding));
+  const CheckedFile& any = *files.front();
+  const Status checked = simulation::CheckTogether(*any.family, *any.parameters, programs, inputs);
+  if (!checked) return checked;
+  for (std::size_t n = 0; n < files.size(); ++n) {
+    CheckedFile& file = *files[n];
+    file.slot = programs[n].program.slot;
+    file.motion = std::move(programs[n].motion);
+    if (!advice) {
+      std::erase_if(file.motion.findings,
+                    [](const Diagnostic& finding) { return !IsError(finding.severity); });
     }
-    for (const auto& [slot, why] : check.cut_short) {
-      const auto owner = owners.find(slot);
-      if (owner != owners.end()) owner->second->motion.cut_short[slot] = why;
-    }
-  };
-  const machine::Parameters& parameters = *files.front()->parameters;
-  const auto check = simulation::CheckMotionOf(memory, parameters, slots, inputs);
-  if (!check) return check.error();
-  take(*check, by_slot);
-  for (CheckedFile* file : files) {
-    if (file->slot > 0) continue;
-    // Its slot is that of another file: it takes the place of that one.
-    file->slot = SlotFromName(file->name).value_or(kSlotMin);
-    simulation::ProgramMemory alone = memory;
-    alone.programs.push_back(InMemory(*file));
-    const auto own = simulation::CheckMotionOf(alone, parameters, {file->slot}, inputs);
-    if (!own) return own.error();
-    take(*own, {{file->slot, file}});
+    for (Diagnostic& finding : file.motion.findings) finding.file = file.name;
   }
   return {};
 }

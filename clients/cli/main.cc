@@ -60,14 +60,15 @@ void AddCheckVerb(CLI::App& app, int& exit_code) {
       "their travel are errors, axes that hold a contour back are advice.");
   verb->add_option("FILES", options->files, "programs")->required();
   verb->add_option("--family", options->family, "optimo or rml1; default: from the file name");
-  verb->add_option("--profile", options->profile, "named machine, such as srm-20 or pw-1993");
+  verb->add_option("--profile", options->profile,
+                   "profile of a machine model, such as srm-20 or pw-1993");
   verb->add_option("--machine", options->machine_file,
                    "machine file (TOML): family, profile, [parameters]");
   verb->add_option("--inputs", options->inputs_file,
-                   "what comes from outside over time, while the motion is checked");
+                   "inputs and keys over time, while the motion is checked");
   verb->add_flag("--errors-only", options->errors_only, "leave warnings and advice out");
   CLI::Option* fix =
-      verb->add_flag("--fix", options->fix, "repair what has one obvious repair, in the files");
+      verb->add_flag("--fix", options->fix, "apply the fixes of findings, in the files");
   verb->add_flag("--dry-run", options->dry_run,
                  "with --fix: show the changes as a patch; write nothing")
       ->needs(fix);
@@ -92,24 +93,27 @@ void AddSimulateVerb(CLI::App& app, int& exit_code) {
       "  rmlcell simulate part.S --facts | grep cycle   key: value lines for scripts");
   verb->add_option("FILES", options->files,
                    "the program, then further ones or folders of 12.S, 44.S ...");
-  verb->add_option("--slot", options->slots, "44=FILE: a further program of the memory")
+  verb->add_option("--slot", options->slots, "44=FILE: a further program, in slot 44")
       ->expected(-1)
       ->allow_extra_args(false);
   verb->add_option("--main", options->main_slot, "slot of the program that is started")
       ->check(CLI::Range(1, 99));
   verb->add_option("--executable", options->executables,
-                   "44: make the executable of program 44 beforehand; 44=FILE: bring one")
+                   "44: link program 44 beforehand; 44=FILE: its executable")
       ->allow_extra_args(false);
   verb->add_option("--family", options->family, "optimo or rml1; default: from the file name");
-  verb->add_option("--profile", options->profile, "named machine, such as srm-20 or pw-1993");
+  verb->add_option("--profile", options->profile,
+                   "profile of a machine model, such as srm-20 or pw-1993");
   verb->add_option("--machine", options->machine_file,
                    "machine file (TOML): family, profile, [parameters]");
   verb->add_option("--inputs", options->inputs_file,
-                   "external inputs and keys over time, a line each: 0.5 IL[20] = 1");
+                   "inputs and keys over time, a line each: 0.5 IL[20] = 1");
   verb->add_option("--mode", options->mode, "cycle (START given once), remote, single, repeat");
-  verb->add_option("--override", options->override_percent, "feed override, percent");
-  verb->add_option("--simul", options->simul, "P/S: dry run up to step S of program P; off");
-  verb->add_option("--break", options->breakpoint, "P/S: halt after step S of program P; off");
+  verb->add_option("--override", options->override_percent,
+                   "override of the programmed speed, percent");
+  verb->add_option("--simul", options->simul, "P/S: dry run up to step S of program P; off: none");
+  verb->add_option("--break", options->breakpoint,
+                   "P/S: halt after step S of program P; off: none");
   verb->add_option("--budget", options->budget,
                    "steps=N,time=SECONDS: end the run when it needs more");
   verb->add_option("--vars", options->variables, "variables to show at the end: VR[0..9],VI[99]");
@@ -137,9 +141,10 @@ void AddSimulateVerb(CLI::App& app, int& exit_code) {
                    "edge of the cells that the block is looked at in, mm; default 0.1")
       ->needs(stock);
   verb->add_option("--stl", options->stl, "write what is left of the block")->needs(stock);
-  verb->add_option("--state-in", options->state_in, "machine state of an earlier run");
+  verb->add_option("--state-in", options->state_in,
+                   "begin with the machine state that an earlier run kept");
   verb->add_option("--state-out", options->state_out, "keep the machine state for a later run");
-  verb->add_flag("--trace", options->trace, "list all that was observable, in order");
+  verb->add_flag("--trace", options->trace, "write the trace: a line for each thing that happened");
   CLI::Option* facts =
       verb->add_flag("--facts", options->facts, "key: value lines for scripts (docs/facts.md)");
   verb->add_flag("--json", options->json, "print the report as JSON")->excludes(facts);
@@ -327,11 +332,12 @@ void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exi
       ->check(CLI::IsMember({"simulate", "check", "run"}));
   verb->add_option("--title", given.submit.title);
   verb->add_option("--request-id", given.submit.request_id, "repeating it gives the same job");
-  verb->add_option("--override", given.submit.override_percent, "feed override, percent");
+  verb->add_option("--override", given.submit.override_percent,
+                   "override of the programmed speed, percent");
   verb->add_option("--pace", given.submit.pace,
                    "1: as fast as the machine would be; 10: ten times; 0: at once")
       ->check(CLI::Range(0.0, 1000.0));
-  verb->add_option("--inputs", given.submit.inputs_file, "external inputs and keys over time");
+  verb->add_option("--inputs", given.submit.inputs_file, "inputs and keys over time");
   verb->add_flag("--trace", given.submit.trace, "keep a trace");
   CLI::Option* watched = verb->add_flag("--watch", given.submit.watch, "watch the job to its end");
   verb->add_flag("--strict", given.submit.strict, kStrictText)->needs(watched);

@@ -197,7 +197,7 @@ void AddViolations(const v1::RunReport& report, Rows& rows) {
 void AddMilling(const v1::RunReport& report, Rows& rows) {
   if (!report.has_milling()) return;
   const v1::MillingFigures& milling = report.milling();
-  rows.emplace_back("material", Fixed(milling.removed_mm3(), 3) + " mm3 taken off");
+  rows.emplace_back("material", Fixed(milling.removed_mm3(), 3) + " mm3 removed");
   if (milling.gouges() == 0) return;
   rows.emplace_back(
       "", std::to_string(milling.gouges()) + " motions at travel speed through material, up to " +

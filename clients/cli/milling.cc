@@ -10,7 +10,7 @@ namespace rmlcell::cli {
 Result<simulation::Milling> MillingOf(const SimulateOptions& options,
                                       const machine::MachineShape& shape) {
   if (!shape.has_work_origin)
-    return InvalidArgument("--stock is for mills: this machine takes nothing off a block");
+    return InvalidArgument("--stock is for mills: this machine removes no material");
   Result<simulation::Stock> stock = simulation::ParseStock(options.stock);
   if (!stock) return stock.error();
   Result<simulation::MillTool> tool = simulation::ParseTool(options.tool);

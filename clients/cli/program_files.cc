@@ -206,7 +206,7 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files,
     loaded.main_slot = loaded.programs.front().slot;
   if (loaded.main_slot == 0) {
     return Error{
-        ErrorCode::kCellUsage, "several programs: say which one is started, --main 12", {}};
+        ErrorCode::kCellUsage, "several programs: say which one is started, such as --main 12", {}};
   }
   return loaded;
 }

@@ -135,7 +135,7 @@ void AddTextToolVerbs(CLI::App& app, int& exit_code) {
         "  rmlcell diff 12.S 12.O               layout, comments and names do not count\n"
         "  rmlcell diff old.S new.S --svg d.svg  both paths: removed, added, common");
     verb->add_option("A", options->before, "a program")->required();
-    verb->add_option("B", options->after, "another one")->required();
+    verb->add_option("B", options->after, "the program it is compared with")->required();
     verb->add_option("--svg", options->svg, "write a picture of both paths, - for standard output");
     verb->add_flag("--json", options->json, "as JSON");
     verb->callback([options, &exit_code] { exit_code = Diff(*options); });
@@ -148,7 +148,7 @@ void AddTextToolVerbs(CLI::App& app, int& exit_code) {
         "  rmlcell lsp                          on standard input and output; editors start it\n"
         "clients/vscode has an extension; any editor with a language server client will do.");
     auto stdio = std::make_shared<bool>(false);
-    verb->add_flag("--stdio", *stdio, "what it does anyway; some editors say it");
+    verb->add_flag("--stdio", *stdio, "accepted: standard input and output are what it serves on");
     verb->callback(
         [stdio, &exit_code] { exit_code = lsp::RunOnDescriptors(STDIN_FILENO, STDOUT_FILENO); });
   }

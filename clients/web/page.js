@@ -150,11 +150,11 @@ const ACTIVITIES = {
   ACTIVITY_ALARM: ["Alarm", "bad"],
 };
 const OUTCOMES = {
-  KIND_COMPLETED: "Ran to its end",
-  KIND_STOPPED: "Stopped where nothing starts it again",
-  KIND_FAILED: "Ended by an error",
+  KIND_COMPLETED: "Completed",
+  KIND_STOPPED: "Stopped: it waits for START, and nothing gives it",
+  KIND_FAILED: "Failed",
   KIND_CANCELLED: "Cancelled",
-  KIND_BUDGET_EXCEEDED: "Needed more than its budget",
+  KIND_BUDGET_EXCEEDED: "Budget exceeded",
 };
 
 // Until the job itself is read again.
@@ -480,7 +480,7 @@ async function explain(code) {
     body.replaceChildren(...(answer.errors ?? []).map((error) => {
       const list = element("dl");
       for (const [word, text] of [["What happened", error.when], ["The machine", error.effect],
-        ["What helps", error.advice], ["Symbol", error.symbol], ["Severity", severityWord(error.severity)]]) {
+        ["What to do", error.advice], ["Symbol", error.symbol], ["Severity", severityWord(error.severity)]]) {
         if (text) list.append(element("dt", {}, word), element("dd", {}, text));
       }
       return list;

@@ -49,20 +49,18 @@ void LookAhead::EndChain() {
   if (fed_ == motions_.end()) planner_.Stop();
 }
 
-bool LookAhead::NextLeg(Leg& leg) {
+bool LookAhead::NextLeg(motion::PlannedMotion& ride, Leg& leg) {
   if (motions_.empty()) return false;
   if (intent_ == motion::RideIntent::kStop) {
-    Brake(leg);
+    Brake(ride, leg);
     return true;
   }
   for (;;) {
     if (const motion::PlannedItem* item = planner_.NextInPlace()) {
-      leg.ride = std::get<motion::PlannedMotion>(*item);
-      RMLCELL_CHECK(leg.ride.tag >> 1U == motions_.first());
-      leg.ends_motion = (leg.ride.tag & 1U) != 0;
-      leg.ride.ends_move = leg.ends_motion;
-      leg.halts = false;
-      leg.feed_mm_s = motions_.front().feed_mm_s;
+      ride = std::get<motion::PlannedMotion>(*item);
+      RMLCELL_CHECK(ride.tag >> 1U == motions_.first());
+      ride.ends_move = (ride.tag & 1U) != 0;
+      leg = {.feed_mm_s = motions_.front().feed_mm_s};
       return true;
     }
     if (fed_ == motions_.end()) return false;
@@ -124,28 +122,27 @@ void LookAhead::Append(const motion::PathPiece& path, const motion::PathLimits& 
 
 // The part of the oldest motion on the ramp to rest: the limits of each motion on the way are its
 // own, so that nowhere the tool is faster than it was planned to be.
-void LookAhead::Brake(Leg& leg) {
+void LookAhead::Brake(motion::PlannedMotion& ride, Leg& leg) {
   const Motion& motion = motions_.front();
   const MotionPlan plan = PlanMotion(*profile_, motion.from, motion.action, override_percent_);
   const double a = plan.limits.acceleration;
-  leg = {};
-  leg.feed_mm_s = plan.feed_mm_s;
-  leg.ride.path = RestOf(plan.path, true);
-  leg.ride.head = motion::MillHead{};
-  leg.ride.limits = plan.limits;
-  const double length = leg.ride.path.length();
+  ride = {};
+  ride.path = RestOf(plan.path, true);
+  ride.head = motion::MillHead{};
+  ride.limits = plan.limits;
+  const double length = ride.path.length();
   const double ramp = speed_ * speed_ / (2.0 * a);
   double end = motion.ends_chain ? 0.0 : Braked(speed_, length, a);
-  leg.halts = end == 0.0 && ramp < length * (1.0 - kRoom);
-  leg.ends_motion = leg.ride.ends_move = !leg.halts;
-  if (leg.ends_motion) {
-    leg.ride.corner.passage = end > 0.0 ? motion::Passage::kThrough : motion::Passage::kStop;
-    leg.ride.corner.speed = end;
+  leg = {.feed_mm_s = plan.feed_mm_s, .halts = end == 0.0 && ramp < length * (1.0 - kRoom)};
+  ride.ends_move = !leg.halts;
+  if (ride.ends_move) {
+    ride.corner.passage = end > 0.0 ? motion::Passage::kThrough : motion::Passage::kStop;
+    ride.corner.speed = end;
   }
   if (!(speed_ > 0.0)) return;  // it stands
   motion::PathLimits limits = plan.limits;
   limits.speed = speed_;
-  leg.ride.speed = motion::SpeedProfile::Span(leg.halts ? ramp : length, speed_, end, limits);
+  ride.speed = motion::SpeedProfile::Span(leg.halts ? ramp : length, speed_, end, limits);
 }
 
 // A turn by itself begins anew where the tool is: by mm a speed stays what it is, by the share of a

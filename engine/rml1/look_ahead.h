@@ -30,16 +30,15 @@ class LookAhead {
   // Something stands behind the last motion that the tool must stand for.
   void EndChain();
 
-  // A part of the oldest motion, or all of it: the path and its timing.
+  // A part of the oldest motion, or all of it, besides its path and timing (motion::PlannedMotion;
+  // ends_move there: no other leg follows, nor a halt).
   struct Leg {
-    motion::PlannedMotion ride;
-    double feed_mm_s = 0.0;    // speed of the motion, override included
-    bool ends_motion = false;  // false: another leg follows, or a halt
-    bool halts = false;        // the tool comes to rest on the way: STOP
+    double feed_mm_s = 0.0;  // speed of the motion, override included
+    bool halts = false;      // the tool comes to rest on the way: STOP
   };
   // The next leg of the oldest motion, which begins where the last one ended. False: what comes
   // behind must be read first.
-  bool NextLeg(Leg& leg);
+  bool NextLeg(motion::PlannedMotion& ride, Leg& leg);
 
   // Speed of the tool where the next leg begins, along its path.
   double speed() const { return speed_; }
@@ -75,7 +74,7 @@ class LookAhead {
   void Feed();
   void Append(const motion::PathPiece& path, const motion::PathLimits& limits, bool ends_motion,
               double passage_speed);
-  void Brake(Leg& leg);
+  void Brake(motion::PlannedMotion& ride, Leg& leg);
   motion::PathPiece RestOf(const motion::PathPiece& path, bool oldest) const;
 
   const Profile* profile_;

@@ -136,7 +136,7 @@ RunPhase MillRun::Advance(SimTime until) {
     s.now = next;
     if (scripted && input_at <= s.now) {
       Handle(setup_.inputs[s.next_input++]);
-    } else if (s.busy == Busy::kMotion && !s.motion.planned) {
+    } else if (s.busy == Busy::kMotion && s.ride.under_way() == nullptr) {
       if (!PlanLeg(ahead_max)) return s.phase = RunPhase::kRunning;
     } else if (s.busy != Busy::kNothing) {
       EndBusy();
@@ -258,8 +258,8 @@ void MillRun::PressStart() {
   State& s = state_;
   if (s.halt != HaltCause::kNone) return EndHalt();
   s.halt_wanted = HaltCause::kNone;
-  if (!Moves() || !s.ride.may_resume()) return;
-  s.ride.Resume();
+  if (!Moves() || !s.ride.protocol().may_resume()) return;
+  s.ride.protocol().Resume();
   PlanAnew();
 }
 
@@ -267,8 +267,8 @@ void MillRun::PressHold() {
   State& s = state_;
   if (s.halt != HaltCause::kNone || s.halt_wanted != HaltCause::kNone) return;
   s.halt_wanted = HaltCause::kHold;
-  if (!Moves() || !s.ride.may_hold()) return;
-  s.ride.Hold();
+  if (!Moves() || !s.ride.protocol().may_hold()) return;
+  s.ride.protocol().Hold();
   PlanAnew();
 }
 
@@ -278,8 +278,8 @@ void MillRun::PressStop() {
   if (s.halt != HaltCause::kNone) return;
   s.halt_wanted = HaltCause::kStop;
   if (Moves()) {
-    if (!s.ride.may_stop()) return;
-    s.ride.Stop();
+    if (!s.ride.protocol().may_stop()) return;
+    s.ride.protocol().Stop();
     PlanAnew();
   } else if (s.busy == Busy::kWait) {
     s.wait_left = s.busy_until - s.now;
@@ -295,7 +295,7 @@ void MillRun::ChangeOverride(double percent) {
   const double before = s.override_percent;
   s.override_percent = std::clamp(percent, kOverrideMin, kOverrideMax);
   if (s.override_percent == before) return;
-  if (!s.ride.Override() || !Moves() || s.motion.action.rapid) {
+  if (!s.ride.protocol().Override() || !Moves() || s.motion.action.rapid) {
     s.ahead.SetOverride(s.override_percent);
   } else {
     PlanAnew();
@@ -311,7 +311,7 @@ void MillRun::BeginHalt(HaltCause cause) {
   s.halt = cause;
   s.halt_wanted = HaltCause::kNone;
   s.halted_at = s.now;
-  if (s.ride.comes_to_rest()) s.ride.Rest();
+  if (s.ride.protocol().comes_to_rest()) s.ride.protocol().Rest();
   observer_.OnHalt({.at = s.now, .place = s.place, .why = why});
   const bool for_ever = cause == HaltCause::kPause && s.next_input == setup_.inputs.size();
   if (!for_ever) return;
@@ -354,16 +354,15 @@ void MillRun::End(OutcomeKind kind, ErrorCode code) {
 // The tool stands where it is, and the spindle stops.
 void MillRun::Freeze() {
   State& s = state_;
-  s.ride.Finish();
-  if (s.busy == Busy::kMotion && s.motion.planned) {
-    const double travelled = s.motion.leg.ride.speed.At(ElapsedInLeg()).s;
+  if (const motion::MotionUnderWay* leg = s.ride.under_way()) {
     const Point stopped_at = ToolAt(TipNow());
-    ReportLeg(travelled);
+    ReportLeg(leg->At(s.now).s);
     s.tool = stopped_at;
   } else if (s.busy == Busy::kWait) {
     EndWait();
   }
   s.busy = Busy::kNothing;
+  s.ride.Finish();
   if (s.device.spindle_turns()) EmitSignal(machine::Signal::kSpindle, 0.0, 0.0);
 }
 
@@ -385,9 +384,8 @@ machine::RunState MillRun::state() const {
   if (s.place.step > 0) state.instruction = RowOf(s.device.command().op).name;
   state.tip = TipNow();
   state.axes = {.column = state.tip.tip, .a_rad = state.tip.a_rad, .b_rad = 0.0};
-  if (s.busy == Busy::kMotion && s.motion.planned) {
-    const motion::PlannedMotion& ride = s.motion.leg.ride;
-    if (!ride.path.by_sigma()) state.tip_speed_mm_s = ride.speed.At(ElapsedInLeg()).speed;
+  if (const motion::MotionUnderWay* leg = s.ride.under_way()) {
+    state.tip_speed_mm_s = leg->TipSpeedAt(s.now);
   } else if (s.phase != RunPhase::kFinished) {
     state.tip_speed_mm_s = s.ahead.speed();
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/machine/run.h"
+#include "engine/motion/ride/path_ride.h"
 #include "engine/rml1/device.h"
 #include "engine/rml1/look_ahead.h"
 #include "engine/rml1/physical.h"
@@ -55,11 +56,11 @@ class MillRun final : public machine::Run {
   enum class HaltCause : std::uint8_t { kNone, kPause, kHold, kStop, kSingle, kBreakpoint };
 
   // The motion in progress. It is ridden in legs: one, but for a STOP or an override on the way.
+  // Between two legs, and until the first is known, none is under way: the tool passes there.
   struct Motion {
     Action action;
     Point from;
     bool first_leg = true;
-    bool planned = false;  // false: the leg is not known, the tool passes its start
     LookAhead::Leg leg;
   };
 
@@ -79,7 +80,7 @@ class MillRun final : public machine::Run {
     Sender sender;
     Scout scout;
     LookAhead ahead;
-    motion::RideProtocol ride{motion::HoldRamp::kPlannedAnew};
+    motion::PathRide ride{motion::HoldRamp::kPlannedAnew};  // the leg under way
     std::size_t next_input = 0;
     VirtualClock clock;
     SimTime now{0};
@@ -135,13 +136,13 @@ class MillRun final : public machine::Run {
   void StartLeg();
   void EndBusy();
   void EndLeg();
+  void LeaveLeg(const motion::PathState& along);
   void EndMotion(double speed);
   void ReportLeg(double travelled);
   void EndWait();
   void PlanAnew();
   void ResumeMotion();
   bool Moves() const { return state_.busy == Busy::kMotion || state_.ahead.speed() > 0.0; }
-  double ElapsedInLeg() const;
   Point ToolAt(const motion::TipPose& pose) const;
   motion::TipPose TipNow() const;
   void EmitSignal(machine::Signal signal, double value, double detail);

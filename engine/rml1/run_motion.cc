@@ -35,15 +35,16 @@ void MillRun::Begin(const Action& action) {
 // The tool is where the last motion ended, and may be on its way.
 void MillRun::BeginMotion(const Action& action) {
   State& s = state_;
-  const bool after_halt = !s.ride.goes() && !Moves();
+  motion::RideProtocol& protocol = s.ride.protocol();
+  const bool after_halt = !protocol.goes() && !Moves();
   if (after_halt) {
-    s.ride.Resume();
-    s.ahead.Replan(s.ride.intent(), s.override_percent);
+    protocol.Resume();
+    s.ahead.Replan(protocol.intent(), s.override_percent);
   }
   s.motion.action = action;
   s.motion.from = s.tool;
   s.motion.first_leg = true;
-  s.motion.planned = false;
+  s.ride.Leave();
   s.busy = Busy::kMotion;
   s.busy_from = s.busy_until = s.now;
 }
@@ -51,13 +52,13 @@ void MillRun::BeginMotion(const Action& action) {
 // False: the bytes that may be read ahead now are used up.
 bool MillRun::PlanLeg(std::size_t sent_max) {
   State& s = state_;
-  while (!s.ahead.NextLeg(s.motion.leg)) {
+  while (!s.ahead.NextLeg(s.ride.place().motion, s.motion.leg)) {
     if (!s.scout.Read(stream(), halts_, sent_max, s.ahead)) return false;
   }
   if (s.motion.leg.halts && !(s.ahead.speed() > 0.0)) {  // at rest for a STOP
     s.busy = Busy::kNothing;
     s.rest_left = true;
-    s.ride.Rest();
+    s.ride.protocol().Rest();
   } else {
     StartLeg();
   }
@@ -66,10 +67,10 @@ bool MillRun::PlanLeg(std::size_t sent_max) {
 
 void MillRun::StartLeg() {
   State& s = state_;
-  s.motion.planned = true;
   s.busy_from = s.now;
-  s.clock.Add(s.motion.leg.ride.duration_s());
+  s.clock.Add(s.ride.place().motion.duration_s());
   s.busy_until = std::max(s.now, s.clock.time());
+  s.ride.BeginInPlace(s.busy_from, s.busy_until);
 }
 
 void MillRun::BeginWait(WaitKind kind, double seconds) {
@@ -104,13 +105,24 @@ void MillRun::EndWait() {
 
 void MillRun::EndLeg() {
   State& s = state_;
-  const LookAhead::Leg& leg = s.motion.leg;
-  const motion::PathState end = leg.ride.speed.end();
-  ReportLeg(end.s);
-  if (leg.ends_motion) return EndMotion(end.speed);
-  s.tool = ToolAt(leg.ride.path.At(end.s).tip());
-  s.ahead.Ride({.length = end.s, .speed = end.speed, .tool = s.tool});
-  s.motion.planned = false;  // PlanLeg sees when it has come to rest for a STOP
+  const motion::PlannedMotion& leg = s.ride.place().motion;
+  const motion::PathState end = leg.speed.end();
+  if (leg.ends_move) {
+    ReportLeg(end.s);
+    s.ride.Leave();
+    EndMotion(end.speed);
+  } else {
+    LeaveLeg(end);  // PlanLeg sees when it has come to rest for a STOP
+  }
+}
+
+// The motion goes on from there, with another leg.
+void MillRun::LeaveLeg(const motion::PathState& along) {
+  State& s = state_;
+  ReportLeg(along.s);
+  s.tool = ToolAt(s.ride.place().motion.path.At(along.s).tip());
+  s.ahead.Ride({.length = along.s, .speed = along.speed, .tool = s.tool});
+  s.ride.Leave();
   s.busy_from = s.busy_until = s.now;
 }
 
@@ -118,7 +130,7 @@ void MillRun::EndMotion(double speed) {
   State& s = state_;
   s.busy = Busy::kNothing;
   s.ahead.Finish(speed);
-  if (!(speed > 0.0) && s.ride.comes_to_rest()) s.ride.Rest();
+  if (!(speed > 0.0) && s.ride.protocol().comes_to_rest()) s.ride.protocol().Rest();
   s.tool = s.motion.action.to;
   const motion::TipPose tip = PoseOf(profile(), s.tool);
   observer_.OnMove({.at = s.now,
@@ -136,11 +148,12 @@ void MillRun::EndMotion(double speed) {
 void MillRun::ReportLeg(double travelled) {
   State& s = state_;
   const Motion& m = s.motion;
-  const motion::PathPiece& path = m.leg.ride.path;
+  const motion::PlannedMotion& leg = s.ride.place().motion;
+  const motion::PathPiece& path = leg.path;
   const bool not_begun = s.now == s.busy_from && travelled < path.length();
   if (not_begun) return;
   const Point from = m.first_leg ? m.from : ToolAt(path.from().tip());
-  const bool to_end = m.leg.ends_motion && travelled >= path.length();
+  const bool to_end = leg.ends_move && travelled >= path.length();
   const Point to = to_end ? m.action.to : ToolAt(path.At(travelled).tip());
   s.physical.OnRide({.from = from,
                      .to = to,
@@ -156,7 +169,7 @@ void MillRun::ReportLeg(double travelled) {
                       .end = s.now,
                       .place = s.place,
                       .use = m.action.use,
-                      .motion = &m.leg.ride,
+                      .motion = &leg,
                       .travelled = travelled,
                       .programmed_mm_s = m.action.rapid ? 0.0 : m.leg.feed_mm_s});
   s.motion.first_leg = false;
@@ -167,41 +180,34 @@ void MillRun::ReportLeg(double travelled) {
 void MillRun::PlanAnew() {
   State& s = state_;
   s.clock.Set(s.now);
-  if (s.busy == Busy::kMotion && s.motion.planned) {
-    const motion::PathPiece& path = s.motion.leg.ride.path;
-    const motion::PathState along = s.motion.leg.ride.speed.At(ElapsedInLeg());
-    if (path.length() - along.s <= LookAhead::kNothing_mm) {
+  if (const motion::MotionUnderWay* leg = s.ride.under_way()) {
+    const motion::PathState along = leg->At(s.now);
+    if (leg->motion.path.length() - along.s <= LookAhead::kNothing_mm) {
       EndLeg();
     } else {
-      ReportLeg(along.s);
-      s.tool = ToolAt(path.At(along.s).tip());
-      s.ahead.Ride({.length = along.s, .speed = along.speed, .tool = s.tool});
-      s.motion.planned = false;
-      s.busy_from = s.busy_until = s.now;
+      LeaveLeg(along);
     }
   }
   if (s.busy == Busy::kMotion && s.ahead.NothingLeft()) EndMotion(s.ahead.speed());
-  s.ahead.Replan(s.ride.intent(), s.override_percent);
+  s.ahead.Replan(s.ride.protocol().intent(), s.override_percent);
 }
 
 // From where STOP left the tool, with the override of now. A HOLD that came on the way lets it end.
 void MillRun::ResumeMotion() {
   State& s = state_;
   s.rest_left = false;
-  s.ride.Resume();
-  if (s.halt_wanted == HaltCause::kHold) s.ride.Hold();
-  s.ahead.Replan(s.ride.intent(), s.override_percent);
+  motion::RideProtocol& protocol = s.ride.protocol();
+  protocol.Resume();
+  if (s.halt_wanted == HaltCause::kHold) protocol.Hold();
+  s.ahead.Replan(protocol.intent(), s.override_percent);
   s.busy = Busy::kMotion;
   s.busy_from = s.busy_until = s.now;
 }
 
-double MillRun::ElapsedInLeg() const { return ToSeconds(state_.now - state_.busy_from); }
-
 motion::TipPose MillRun::TipNow() const {
   const State& s = state_;
-  if (s.busy != Busy::kMotion || !s.motion.planned) return PoseOf(profile(), s.tool);
-  const motion::PlannedMotion& ride = s.motion.leg.ride;
-  return ride.path.At(ride.speed.At(ElapsedInLeg()).s).tip();
+  const motion::MotionUnderWay* leg = s.ride.under_way();
+  return leg == nullptr ? PoseOf(profile(), s.tool) : leg->TipAt(s.now);
 }
 
 Point MillRun::ToolAt(const motion::TipPose& pose) const {

@@ -148,14 +148,14 @@ SimTime Control::NextEvent(SimTime until) const {
 
 // Whatever is due now, in a fixed order: motion first, then what waits for it.
 void Control::ActOnTime() {
-  if (ride_.active() != nullptr && now().now >= ride_.active()->end) {
+  if (ride_.under_way() != nullptr && now().now >= ride_.under_way()->end) {
     if (const std::optional<std::uint64_t> tag = ride_.Arrive()) watch_.OnMoveOver(*tag);
     waits_.ToldByMotion();
     works_.MarkStale();
   }
   ride_.Start();
   if (ride_.protocol().comes_to_rest() && !ride_.busy()) return halts_.HaltOnPath();
-  if (halts_.requests().stop && ride_.active() != nullptr && ride_.Stop()) {
+  if (halts_.requests().stop && ride_.under_way() != nullptr && ride_.Stop()) {
     halts_.requests().stop = false;
     if (!ride_.busy()) return halts_.HaltOnPath();
   }
@@ -279,7 +279,7 @@ void Control::Apply(const machine::InputChange& input) {
 void Control::PressStop() {
   if (!now().running() || !ride_.protocol().may_stop()) return;
   if (!ride_.busy() && !ride_.passing()) return halts_.Halt("STOP");
-  const ActiveMotion* active = ride_.active();
+  const motion::MotionUnderWay* active = ride_.under_way();
   if (active == nullptr || active->ended || !ride_.Stop()) {
     halts_.requests().stop = true;
     return;
@@ -322,7 +322,6 @@ void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, s
   ride_.Freeze();
   // A chain of /FLY moves that never stands is still being planned: the run would have come there.
   if (code == ErrorCode::kStepBudget) ride_.TellViolationsToCome();
-  ride_.DropAll();
   actuators_.AllOff();
   if (now().simulating() && !now().machine.simul) {
     now().machine.simul = now().simulated.until;  // its step was not reached: OPT-6.14
@@ -340,7 +339,7 @@ machine::RunState Control::Snapshot() const {
   machine::RunState state;
   state.time = now().now;
   state.phase = now().phase;
-  state.place = ride_.active() != nullptr ? ride_.active()->note.place : now().place;
+  state.place = ride_.motion_place();
   state.instruction = Describe(now().op).name;
   state.tip = ride_.tip();
   state.axes = ride_.axes();

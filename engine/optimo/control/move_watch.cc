@@ -34,7 +34,7 @@ void MoveWatch::Clear() {
 
 bool MoveWatch::watches() const {
   if (s_.stage != WatchStage::kWatches && s_.stage != WatchStage::kRanOut) return false;
-  const ActiveMotion* active = ride_.active();
+  const motion::MotionUnderWay* active = ride_.under_way();
   return active != nullptr && !active->ended && active->motion.tag >= s_.first &&
          active->motion.tag <= s_.last;
 }

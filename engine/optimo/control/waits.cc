@@ -23,7 +23,7 @@ void Waits::Tell() {
   const bool condition =
       pending.kind == Pending::Kind::kCondition || pending.kind == Pending::Kind::kNoMotion;
   if (!timed && !condition) return;
-  if (ride_.active() == nullptr && situation_.now > pending.told) {
+  if (ride_.under_way() == nullptr && situation_.now > pending.told) {
     const Beam& beam = situation_.beam;
     telling_.observer().OnWait({.start = pending.told,
                                 .end = situation_.now,

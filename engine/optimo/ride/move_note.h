@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "engine/machine/observer.h"
@@ -24,25 +22,6 @@ struct MoveNote {
   double speed_percent = 0.0;  // as programmed; for a change of the override on the way
   double accel_fraction = 1.0;
   std::vector<BeyondTravel> beyond{};  // a forecast: told when the motion begins
-};
-
-// A command as the planner got it, kept until its motion is over; without a move: a mark.
-struct AppendedItem {
-  std::uint64_t tag = 0;
-  std::optional<motion::MoveCommand> move{};
-};
-
-// A motion under way.
-struct ActiveMotion {
-  motion::PlannedMotion motion{};
-  MoveNote note{};
-  SimTime start{0};
-  SimTime arrival{0};  // end of the profile
-  SimTime end{0};      // with settling
-  SimTime told{0};     // parts up to here were reported
-  bool ended = false;  // brought to rest by /END, /TIME or a MOVE that takes over
-
-  double s_at(SimTime time) const { return motion.speed.At(ToSeconds(time - start)).s; }
 };
 
 }  // namespace rmlcell::optimo

@@ -2,20 +2,12 @@
 
 #include <algorithm>
 
-#include "engine/motion/ride/trajectory.h"
-
 namespace rmlcell::optimo {
 namespace {
 
 // Instructions that run ahead between two motions of a /FLY passage. A loop without motion would
 // run ahead for ever; a passage that needs more than this becomes a stop.
 constexpr int kRunAheadMax = 10'000;
-
-// Exactly the end once it has arrived: times are rounded to 1 ns, the profile may be a little
-// longer.
-double PlaceOf(const ActiveMotion& active, SimTime time) {
-  return time >= active.arrival ? active.motion.path.length() : active.s_at(time);
-}
 
 template <class Notes>
 auto* Find(Notes& notes, std::uint64_t tag) {
@@ -45,7 +37,7 @@ MoveNote* Ride::NoteOf(std::uint64_t tag) { return Find(s_.notes, tag); }
 
 void Ride::Drain() {
   while (std::optional<motion::PlannedItem> item = s_.planner.Next())
-    s_.timeline.push_back(std::move(*item));
+    s_.path.to_come().push_back(std::move(*item));
 }
 
 Status Ride::Append(motion::MoveCommand command, const MoveNote& note) {
@@ -53,7 +45,7 @@ Status Ride::Append(motion::MoveCommand command, const MoveNote& note) {
   if (Status appended = s_.planner.Append(command); !appended) return appended;
   s_.notes.emplace_back(command.tag, note);
   s_.planned_axes = motion::AxesOn(command.path, command.head, command.path.to());
-  if (note.fly || s_.passing) s_.appended.push_back({.tag = command.tag, .move = command});
+  if (note.fly || s_.passing) s_.path.appended().push_back({.tag = command.tag, .move = command});
   s_.passing = note.fly;
   s_.run_ahead = 0;
   Drain();
@@ -62,7 +54,7 @@ Status Ride::Append(motion::MoveCommand command, const MoveNote& note) {
 
 std::uint64_t Ride::AppendMark() {
   const std::uint64_t tag = s_.next_tag++;
-  if (s_.passing) s_.appended.push_back({.tag = tag, .move = std::nullopt});
+  if (s_.passing) s_.path.appended().push_back({.tag = tag, .move = std::nullopt});
   s_.planner.Mark(tag);
   Drain();
   return tag;
@@ -93,113 +85,99 @@ bool Ride::RunsAhead() {
 
 void Ride::Start() {
   while (waits_to_start()) {
-    motion::PlannedItem& next = s_.timeline.front();
-    if (const auto* mark = std::get_if<motion::PlannedMark>(&next)) {
+    if (const auto* mark = std::get_if<motion::PlannedMark>(&s_.path.to_come().front())) {
       const std::uint64_t tag = mark->tag;
-      s_.timeline.pop_front();
+      s_.path.to_come().pop_front();
       listener_.OnMark(tag);
       continue;
     }
-    s_.active.emplace();
-    ActiveMotion& active = *s_.active;
-    active.motion = std::get<motion::PlannedMotion>(next);
-    s_.timeline.pop_front();
-    const std::uint64_t tag = active.motion.tag;
+    const motion::PlannedMotion& motion = s_.path.Begin(situation_.now).motion;
+    const std::uint64_t tag = motion.tag;
+    s_.note = {};
     if (s_.beside == Beside::kComes && tag >= s_.beside_from) s_.beside = Beside::kNow;
     if (MoveNote* note = NoteOf(tag)) {
       const std::vector<BeyondTravel> beyond = std::move(note->beyond);
       note->beyond.clear();
       travel_.TellViolations(note->place, beyond);
-      active.note = *note;
+      s_.note = *note;
     }
-    travel_.TellSpeedHeld(active.motion, active.note.place, active.note.feed_mm_s);
+    travel_.TellSpeedHeld(motion, s_.note.place, s_.note.feed_mm_s);
     while (!s_.notes.empty() && s_.notes.front().first < tag) s_.notes.pop_front();
-    while (!s_.appended.empty() && s_.appended.front().tag < tag) s_.appended.pop_front();
-    BeginProfile();
+    s_.path.ForgetBefore(tag);
     listener_.OnMotionBegins(tag);
   }
 }
 
 SimTime Ride::NextEvent() const {
-  if (s_.active) return s_.active->end;
-  return s_.timeline.empty() ? kForever : situation_.now;
-}
-
-// The profile of the motion under way begins now.
-void Ride::BeginProfile() {
-  ActiveMotion& active = *s_.active;
-  active.start = situation_.now;
-  active.told = situation_.now;
-  active.arrival = situation_.now + FromSeconds(active.motion.speed.duration_s());
-  active.end = active.arrival + FromSeconds(active.motion.settling_s);
+  if (under_way() != nullptr) return under_way()->end;
+  return more_to_come() ? situation_.now : kForever;
 }
 
 void Ride::TellUpToNow() {
-  if (s_.active) TellMotion(situation_.now);
+  if (under_way() != nullptr) TellMotion(situation_.now);
 }
 
 // Reports the part of the motion under way from what was told up to `until`.
 void Ride::TellMotion(SimTime until) {
-  ActiveMotion& active = *s_.active;
+  motion::MotionUnderWay& active = *s_.path.under_way();
   if (until <= active.told && until < active.end) return;
   const Beam& beam = situation_.beam;
   telling_.observer().OnMotion(
       {.start = active.told,
        .end = until,
-       .place = active.note.place,
+       .place = s_.note.place,
        .use = beam.on ? machine::MotionUse::kCut : machine::MotionUse::kTravel,
        .motion = &active.motion,
-       .from = PlaceOf(active, active.told),
-       .travelled = PlaceOf(active, until),
+       .from = active.PlaceAt(active.told),
+       .travelled = active.PlaceAt(until),
        .profile_start_s = ToSeconds(active.told - active.start),
-       .programmed_mm_s = active.note.feed_mm_s,
+       .programmed_mm_s = s_.note.feed_mm_s,
        .beam_on = beam.on,
        .power = beam.power});
   active.told = until;
 }
 
 std::optional<std::uint64_t> Ride::Arrive() {
-  TellMotion(s_.active->end);
-  const ActiveMotion done = std::move(*s_.active);
-  s_.active.reset();
-  const motion::PathPiece& path = done.motion.path;
+  TellMotion(under_way()->end);
+  s_.path.Leave();
+  const motion::MotionUnderWay& done = s_.path.place();
   motion::AxisPose& axes = situation_.machine.axes;
-  axes = motion::AxesOn(path, done.motion.head, path.At(done.s_at(done.arrival)));
+  axes = done.AxesAt(done.arrival);
   if (done.ended) {
-    s_.timeline.clear();
+    s_.path.to_come().clear();
     s_.planned_axes = axes;
   }
-  if (!busy() && !s_.protocol.comes_to_rest()) s_.beside = Beside::kNo;
+  if (!busy() && !protocol().comes_to_rest()) s_.beside = Beside::kNo;
   if (!done.ended && !done.motion.ends_move) return std::nullopt;
   const motion::CornerReport& corner = done.motion.corner;
   if (corner.passage == motion::Passage::kStopReversal) {
-    telling_.WarnAt(done.note.place, ErrorCode::kFlyReversal,
+    telling_.WarnAt(s_.note.place, ErrorCode::kFlyReversal,
                     "the path turns back: the machine stops at the target", "OPT-B.25");
   }
   if (corner.passage == motion::Passage::kStopNeighbour) {
     telling_.WarnAt(
-        done.note.place, ErrorCode::kFlyCancelled,
+        s_.note.place, ErrorCode::kFlyCancelled,
         "/FLY beside a motion that cannot be passed into: the machine stops at the target",
         "OPT-2.48");
   }
-  if (!done.note.last && !done.ended) return std::nullopt;
+  if (!s_.note.last && !done.ended) return std::nullopt;
   telling_.observer().OnMove({.at = situation_.now,
-                              .place = done.note.place,
+                              .place = s_.note.place,
                               .tip = head().TipOf(axes),
                               .axes = axes,
-                              .program_point = done.note.program_point,
-                              .rotary_a = done.note.program_a,
-                              .feed_mm_s = done.note.feed_mm_s,
-                              .path = NameOfPath(done.note.path)});
+                              .program_point = s_.note.program_point,
+                              .rotary_a = s_.note.program_a,
+                              .feed_mm_s = s_.note.feed_mm_s,
+                              .path = NameOfPath(s_.note.path)});
   return done.motion.tag;
 }
 
 void Ride::EndHere() {
-  ActiveMotion& active = *s_.active;
+  motion::MotionUnderWay& active = *s_.path.under_way();
   if (situation_.now >= active.arrival) return;  // it stands already
   const motion::SpeedProfile ramp =
       active.motion.speed.StopFrom(ToSeconds(situation_.now - active.start), active.motion.limits);
-  const double here = active.s_at(situation_.now);
+  const double here = active.At(situation_.now).s;
   const double rest = std::min(ramp.end().s, active.motion.path.length());
   TellMotion(situation_.now);
   active.ended = true;
@@ -211,30 +189,30 @@ void Ride::EndHere() {
     active.motion.path = active.motion.path.Standing(here);
     active.motion.speed = motion::SpeedProfile();
   }
-  BeginProfile();
+  active.Begin(situation_.now);
 }
 
 bool Ride::TakeOver() {
   s_.beside = Beside::kNo;  // from here on it is a motion like any other that is waited for
   if (!busy()) return false;
-  if (s_.active) EndHere();
-  s_.timeline.clear();
+  if (under_way() != nullptr) EndHere();
+  s_.path.to_come().clear();
   return true;
 }
 
 bool Ride::EndForError() {
   if (!passing() && !busy()) return false;
-  if (beside() && s_.active) EndHere();
+  if (beside() && under_way() != nullptr) EndHere();
   EndChain();
   return true;
 }
 
 void Ride::Freeze() {
-  s_.protocol.Finish();
-  if (!s_.active) return;
-  TellMotion(situation_.now);
-  situation_.machine.axes = axes();
-  s_.active.reset();
+  if (under_way() != nullptr) {
+    TellMotion(situation_.now);
+    situation_.machine.axes = axes();
+  }
+  s_.path.Finish();
 }
 
 void Ride::TellViolationsToCome() {
@@ -243,39 +221,22 @@ void Ride::TellViolationsToCome() {
   }
 }
 
-void Ride::DropAll() {
-  s_.timeline.clear();
-  s_.held.clear();
-  s_.interrupted.clear();
-}
-
 machine::Place Ride::place() const {
-  return s_.active && !beside() ? s_.active->note.place : situation_.place;
-}
-
-motion::PathState Ride::StateNow() const {
-  return s_.active->motion.speed.At(ToSeconds(situation_.now - s_.active->start));
+  return under_way() != nullptr && !beside() ? s_.note.place : situation_.place;
 }
 
 motion::TipPose Ride::tip() const {
-  if (!s_.active) return head().TipOf(situation_.machine.axes);
-  const motion::PlannedMotion& motion = s_.active->motion;
-  return motion::TipOn(motion.path, motion.head, motion.path.At(StateNow().s));
+  if (under_way() == nullptr) return head().TipOf(situation_.machine.axes);
+  return under_way()->TipAt(situation_.now);
 }
 
 motion::AxisPose Ride::axes() const {
-  if (!s_.active) return situation_.machine.axes;
-  const motion::PlannedMotion& motion = s_.active->motion;
-  return motion::AxesOn(motion.path, motion.head, motion.path.At(StateNow().s));
+  if (under_way() == nullptr) return situation_.machine.axes;
+  return under_way()->AxesAt(situation_.now);
 }
 
 double Ride::tip_speed_mm_s() const {
-  if (!moves()) return 0.0;
-  const motion::PathState here = StateNow();
-  const motion::PathPiece& path = s_.active->motion.path;
-  if (!path.by_sigma()) return here.speed;
-  if (path.kind() == motion::PathPiece::Kind::kRotary) return 0.0;
-  return motion::PointAt(path, s_.active->motion.head, here).tip_speed();
+  return moves() ? under_way()->TipSpeedAt(situation_.now) : 0.0;
 }
 
 }  // namespace rmlcell::optimo

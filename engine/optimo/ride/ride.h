@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/motion/planner/planner.h"
-#include "engine/motion/ride/ride_protocol.h"
+#include "engine/motion/ride/path_ride.h"
 #include "engine/optimo/ride/move_note.h"
 #include "engine/optimo/ride/travel.h"
 
@@ -35,18 +35,14 @@ struct RideState {
   motion::AxisPose planned_axes{};  // after everything that was appended
   std::uint64_t next_tag = 1;
   std::deque<std::pair<std::uint64_t, MoveNote>> notes{};  // of motions not over, by tag
-  std::deque<AppendedItem> appended{};                     // while /FLY passages are open
   bool passing = false;                                    // see Ride::passing
   int run_ahead = 0;                                       // see Ride::RunsAhead
 
-  std::deque<motion::PlannedItem> timeline{};  // to come
-  std::optional<ActiveMotion> active{};        // under way
+  // Commands are kept in it while /FLY passages are open.
+  motion::PathRide path{motion::HoldRamp::kStays};
+  MoveNote note{};  // of the motion under way
   Beside beside = Beside::kNo;
   std::uint64_t beside_from = 0;
-
-  motion::RideProtocol protocol{motion::HoldRamp::kStays};
-  std::deque<motion::PlannedItem> interrupted{};  // STOP: what follows at START
-  std::deque<AppendedItem> held{};                // HOLD: what follows at START
   machine::Place halted_behind{};  // the move that HOLD made exact, or that STOP interrupted
 };
 
@@ -76,14 +72,14 @@ class Ride {
   // --- ride.cc: motions one after the other ---
 
   // Motions are under way or to come.
-  bool busy() const { return s_.active || !s_.timeline.empty(); }
+  bool busy() const { return s_.path.busy(); }
   // The planner may hold a /FLY motion back.
   bool passing() const { return s_.passing; }
   bool beside() const { return s_.beside == Beside::kNow; }
-  const ActiveMotion* active() const { return s_.active ? &*s_.active : nullptr; }
-  bool moves() const { return s_.active && situation_.now < s_.active->arrival; }
-  bool waits_to_start() const { return !s_.active && !s_.timeline.empty(); }
-  bool more_to_come() const { return !s_.timeline.empty(); }
+  const motion::MotionUnderWay* under_way() const { return s_.path.under_way(); }
+  bool moves() const { return under_way() != nullptr && situation_.now < under_way()->arrival; }
+  bool waits_to_start() const { return s_.path.waits_to_begin(); }
+  bool more_to_come() const { return !s_.path.to_come().empty(); }
 
   motion::Head head() const { return HeadOf(situation_.machine, parameters_); }
   motion::TipPose tip() const;
@@ -95,6 +91,10 @@ class Ride {
   // The step that the machine is at: the program runs ahead of /FLY moves, but not of one of /NEXT,
   // which goes on beside it.
   machine::Place place() const;
+  // The same, but of a motion of /NEXT, too.
+  machine::Place motion_place() const {
+    return under_way() != nullptr ? s_.note.place : situation_.place;
+  }
 
   // The machine stands there, and nothing is planned.
   void PutAt(const motion::AxisPose& axes) { s_.planned_axes = axes; }
@@ -130,16 +130,15 @@ class Ride {
   // An error: what goes on beside the program ends here, the rest where it would. False: the
   // machine stands.
   bool EndForError();
-  // The run is over: the machine stays where it is.
+  // The run is over: the machine stays where it is, and nothing follows.
   void Freeze();
   // Tells what the motions not begun would leave their travel by.
   void TellViolationsToCome();
-  void DropAll();
 
   // --- ride_stop.cc, ride_hold.cc, ride_override.cc: keys on the way. motion.md 6 ---
 
-  motion::RideProtocol& protocol() { return s_.protocol; }
-  const motion::RideProtocol& protocol() const { return s_.protocol; }
+  motion::RideProtocol& protocol() { return s_.path.protocol(); }
+  const motion::RideProtocol& protocol() const { return s_.path.protocol(); }
 
   // HOLD: ends the motions at the first target where the machine can come to rest: that of the move
   // under way, or of a later one when its passage has begun or is too near. The program has run
@@ -168,7 +167,7 @@ class Ride {
   // Where a chain that is planned anew goes on: after the way that brings the acceleration to zero,
   // and the speed down where it must.
   struct Onward {
-    std::size_t own = 0;         // of RideState::appended: the command of that place
+    std::size_t own = 0;         // of the commands appended: that of that place
     double lead_length = 0.0;    // of that way, by the s of the motion
     double speed = 0.0;          // at its end, by the same s
     double speed_on_move = 0.0;  // by that of the command
@@ -177,27 +176,24 @@ class Ride {
   };
 
   void Drain();
-  void BeginProfile();
   void TellMotion(SimTime until);
   const MoveNote* NoteOf(std::uint64_t tag) const;
   MoveNote* NoteOf(std::uint64_t tag);
-  const motion::MoveCommand* Appended(std::uint64_t tag) const;
-  motion::PathState StateNow() const;
 
   void HoldOverManyMoves();
   void HoldBehind(std::uint64_t tag, const std::vector<motion::PlannedItem>& kept);
-  void HoldAllBehind(std::uint64_t target);
+  void HoldCommandsBehind(std::uint64_t target);
   void PlanHeld();
 
   double FractionOf(const MoveNote& note) const;
-  void AdaptToOverride(AppendedItem& item);
+  void AdaptToOverride(motion::AppendedCommand& item);
   void AdaptMotions();
   bool ReplanChain();
   bool ReplanFrom(const ChainPlace& place, const std::vector<motion::PlannedItem>& kept);
   std::optional<Onward> OnwardFrom(const ChainPlace& place, const motion::MoveCommand& command,
                                    double speed) const;
   std::optional<motion::Planner> PlanOnward(const Onward& onward,
-                                            std::span<const AppendedItem> later) const;
+                                            std::span<const motion::AppendedCommand> later) const;
   void GoOnward(const ChainPlace& place, const Onward& onward,
                 const std::vector<motion::PlannedItem>& kept);
 

@@ -17,35 +17,29 @@ constexpr double kReaches = 1.0 + 1e-9;  // rounding, where braking takes just t
 
 }  // namespace
 
-// The command that was appended with this tag; null when it is over.
-const motion::MoveCommand* Ride::Appended(std::uint64_t tag) const {
-  for (const AppendedItem& item : s_.appended) {
-    if (item.tag == tag && item.move) return &*item.move;
-  }
-  return nullptr;
-}
-
 void Ride::Hold() {
-  if (!s_.active || !s_.protocol.may_hold()) return;
+  if (under_way() == nullptr || !protocol().may_hold()) return;
+  motion::MotionUnderWay& active = *s_.path.under_way();
   std::vector<motion::PlannedItem> kept;  // between the motion under way and the exact one
-  motion::PlannedMotion exact = s_.active->motion;
-  motion::PathState state = StateNow();
-  auto next = s_.timeline.begin();
+  motion::PlannedMotion exact = active.motion;
+  motion::PathState state = active.At(situation_.now);
+  auto next = s_.path.to_come().begin();
   const std::uint64_t own = exact.tag;
   std::uint64_t following = own;  // the move after it
   for (bool under_way = true;; under_way = false) {
     if (exact.tag != own && following == own) following = exact.tag;
     // Neither of the two is long enough: braking takes more of them.
     if (exact.tag > following) return HoldOverManyMoves();
-    const bool last = s_.appended.empty() || s_.appended.back().tag <= exact.tag;
-    const motion::MoveCommand* command = Appended(exact.tag);
+    const auto& appended = s_.path.appended();
+    const bool last = appended.empty() || appended.back().tag <= exact.tag;
+    const motion::MoveCommand* command = s_.path.Appended(exact.tag);
     if (last || command == nullptr) return;
     if (exact.speed.end().speed <= 0.0 && NoteOf(exact.tag)->last) {
       // It stands at this target anyway: where the path turns back, before what cannot be passed.
       exact.settling_s = parameters_.limits.settling_s;
       if (under_way) {
-        s_.active->motion.settling_s = exact.settling_s;
-        s_.active->end = s_.active->arrival + FromSeconds(exact.settling_s);
+        active.motion.settling_s = exact.settling_s;
+        active.end = active.arrival + FromSeconds(exact.settling_s);
       } else {
         kept.emplace_back(exact);
       }
@@ -65,8 +59,8 @@ void Ride::Hold() {
         exact.corner = {};
         if (under_way) {
           TellMotion(situation_.now);
-          s_.active->motion = exact;
-          BeginProfile();
+          active.motion = exact;
+          active.Begin(situation_.now);
         } else {
           kept.emplace_back(exact);
         }
@@ -76,11 +70,11 @@ void Ride::Hold() {
     if (!under_way) kept.emplace_back(exact);
     state = exact.speed.end();
     state.s = 0.0;
-    for (; next != s_.timeline.end() && std::holds_alternative<motion::PlannedMark>(*next);
+    for (; next != s_.path.to_come().end() && std::holds_alternative<motion::PlannedMark>(*next);
          ++next) {
       kept.push_back(*next);
     }
-    if (next == s_.timeline.end()) return;
+    if (next == s_.path.to_come().end()) return;
     exact = std::get<motion::PlannedMotion>(*next++);
   }
 }
@@ -89,29 +83,30 @@ void Ride::Hold() {
 // rest, over as many of them as that takes.
 void Ride::HoldOverManyMoves() {
   std::vector<motion::PlannedItem> kept;
-  motion::PlannedMotion here = s_.active->motion;
-  ChainPlace place{.motion = here, .state = StateNow(), .under_way = true};
+  ChainPlace place{
+      .motion = under_way()->motion, .state = under_way()->At(situation_.now), .under_way = true};
   std::optional<Onward> onward;
-  for (auto next = s_.timeline.begin();; ++next) {
-    const motion::MoveCommand* command = Appended(place.motion.tag);
+  for (auto next = s_.path.to_come().begin();; ++next) {
+    const motion::MoveCommand* command = s_.path.Appended(place.motion.tag);
     if (command == nullptr) return;
     onward = OnwardFrom(place, *command, motion::kLargest);
     if (onward) break;
     if (!place.under_way) kept.emplace_back(place.motion);
-    for (; next != s_.timeline.end() && std::holds_alternative<motion::PlannedMark>(*next);
+    for (; next != s_.path.to_come().end() && std::holds_alternative<motion::PlannedMark>(*next);
          ++next) {
       kept.push_back(*next);
     }
-    if (next == s_.timeline.end()) return;
+    if (next == s_.path.to_come().end()) return;
     place = {.motion = std::get<motion::PlannedMotion>(*next), .state = {}, .under_way = false};
     place.state = place.motion.speed.At(0.0);
   }
   // With the chain cut off behind the nth item; the more of them, the easier.
-  const std::vector<AppendedItem> later(
-      s_.appended.begin() + static_cast<std::ptrdiff_t>(onward->own) + 1, s_.appended.end());
+  const auto& appended = s_.path.appended();
+  const std::vector<motion::AppendedCommand> later(
+      appended.begin() + static_cast<std::ptrdiff_t>(onward->own) + 1, appended.end());
   const auto planned = [&](std::size_t count) {
-    std::vector<AppendedItem> items(later.begin(),
-                                    later.begin() + static_cast<std::ptrdiff_t>(count));
+    std::vector<motion::AppendedCommand> items(later.begin(),
+                                               later.begin() + static_cast<std::ptrdiff_t>(count));
     if (!items.back().move) return std::optional<motion::Planner>();
     items.back().move->fly = false;
     return PlanOnward(*onward, items);
@@ -137,8 +132,9 @@ void Ride::HoldOverManyMoves() {
   s_.halted_behind = NoteOf(target)->place;
   GoOnward(place, *onward, kept);
   planner->Stop();
-  while (std::optional<motion::PlannedItem> item = planner->Next()) s_.timeline.push_back(*item);
-  HoldAllBehind(target);
+  while (std::optional<motion::PlannedItem> item = planner->Next())
+    s_.path.to_come().push_back(*item);
+  HoldCommandsBehind(target);
   Start();
 }
 
@@ -146,33 +142,29 @@ void Ride::HoldOverManyMoves() {
 // held back.
 void Ride::HoldBehind(std::uint64_t tag, const std::vector<motion::PlannedItem>& kept) {
   s_.halted_behind = NoteOf(tag)->place;
-  s_.timeline.assign(kept.begin(), kept.end());
-  HoldAllBehind(tag);
+  s_.path.to_come().assign(kept.begin(), kept.end());
+  HoldCommandsBehind(tag);
 }
 
-void Ride::HoldAllBehind(std::uint64_t target) {
-  std::erase_if(s_.appended, [&](AppendedItem& item) {
-    if (item.tag <= target) return false;
-    s_.held.push_back(std::move(item));
-    return true;
-  });
+void Ride::HoldCommandsBehind(std::uint64_t target) {
+  s_.path.HoldBehind(target);
   s_.planner = motion::Planner(parameters_.limits);
-  s_.protocol.Hold();
 }
 
 // START after such a HOLD: the moves that were held back, from rest.
 void Ride::PlanHeld() {
-  if (s_.held.empty()) return;
-  for (AppendedItem& item : s_.held) {
+  auto& held = s_.path.held();
+  if (held.empty()) return;
+  for (motion::AppendedCommand& item : held) {
     if (!item.move) {
       s_.planner.Mark(item.tag);
     } else {
       // It was accepted before, with the same limits.
       RMLCELL_CHECK(bool(s_.planner.Append(*item.move)));
     }
-    s_.appended.push_back(std::move(item));
+    s_.path.appended().push_back(std::move(item));
   }
-  s_.held.clear();
+  held.clear();
   if (!s_.passing) s_.planner.Stop();
   Drain();
 }

@@ -17,26 +17,26 @@ void Ride::ChangeOverride(double percent) {
   const double before = situation_.override_percent;
   if (!(percent > 0.0) || percent == before) return;
   situation_.override_percent = percent;
-  for (AppendedItem& item : s_.held) AdaptToOverride(item);
-  if (s_.protocol.Override()) AdaptMotions();
+  for (motion::AppendedCommand& item : s_.path.held()) AdaptToOverride(item);
+  if (protocol().Override()) AdaptMotions();
 }
 
 // The motions planned with another override, from the one under way on.
 void Ride::AdaptMotions() {
-  if (!s_.active || s_.active->ended || situation_.now >= s_.active->arrival) return;
+  if (!moves() || under_way()->ended) return;
   if (ReplanChain()) return;
-  ActiveMotion& active = *s_.active;
-  if (active.motion.speed.end().speed > 0.0 || active.note.speed_percent <= 0.0) return;
+  motion::MotionUnderWay& active = *s_.path.under_way();
+  if (active.motion.speed.end().speed > 0.0 || s_.note.speed_percent <= 0.0) return;
   motion::MoveCommand command;
-  command.kind = active.note.kind;
+  command.kind = s_.note.kind;
   command.path = active.motion.path;
   command.head = active.motion.head;
-  command.speed_fraction = FractionOf(active.note);
-  command.acceleration_fraction = active.note.accel_fraction;
+  command.speed_fraction = FractionOf(s_.note);
+  command.acceleration_fraction = s_.note.accel_fraction;
   // The axes may have more room at the new speed; until that is reached the old limits hold.
   motion::PathLimits limits = motion::LimitsOf(command, parameters_.limits);
   limits.acceleration = std::min(limits.acceleration, active.motion.limits.acceleration);
-  const motion::PathState here = StateNow();
+  const motion::PathState here = active.At(situation_.now);
   const double length = active.motion.path.length();
   if (!motion::FromFits(here, length, 0.0, limits)) return;
   TellMotion(situation_.now);
@@ -44,7 +44,7 @@ void Ride::AdaptMotions() {
   active.motion.limits = limits;
   active.motion.path = active.motion.path.Part(here.s, length);
   active.motion.speed = changed.Part(here.s, length);
-  BeginProfile();
+  active.Begin(situation_.now);
 }
 
 double Ride::FractionOf(const MoveNote& note) const {
@@ -52,7 +52,7 @@ double Ride::FractionOf(const MoveNote& note) const {
 }
 
 // A command that was appended with another override, and what is told of its feed rate.
-void Ride::AdaptToOverride(AppendedItem& item) {
+void Ride::AdaptToOverride(motion::AppendedCommand& item) {
   MoveNote* note = NoteOf(item.tag);
   if (note == nullptr) return;  // a mark
   item.move->speed_fraction = FractionOf(*note);
@@ -64,35 +64,36 @@ void Ride::AdaptToOverride(AppendedItem& item) {
 // From the first place on where that is possible; false: there is none.
 bool Ride::ReplanChain() {
   std::vector<motion::PlannedItem> kept;  // between the motion under way and that place
-  motion::PlannedMotion here = s_.active->motion;
-  motion::PathState state = StateNow();
-  auto next = s_.timeline.begin();
+  motion::PlannedMotion here = under_way()->motion;
+  motion::PathState state = under_way()->At(situation_.now);
+  auto next = s_.path.to_come().begin();
   for (bool under_way = true;; under_way = false) {
     if (ReplanFrom({.motion = here, .state = state, .under_way = under_way}, kept)) return true;
     if (!under_way) kept.emplace_back(here);
     state = here.speed.end();
     state.s = 0.0;
-    for (; next != s_.timeline.end() && std::holds_alternative<motion::PlannedMark>(*next);
+    for (; next != s_.path.to_come().end() && std::holds_alternative<motion::PlannedMark>(*next);
          ++next) {
       kept.push_back(*next);
     }
-    if (next == s_.timeline.end()) return false;
+    if (next == s_.path.to_come().end()) return false;
     here = std::get<motion::PlannedMotion>(*next++);
   }
 }
 
 // False: not from this motion. Nothing has changed then.
 bool Ride::ReplanFrom(const ChainPlace& place, const std::vector<motion::PlannedItem>& kept) {
-  const motion::MoveCommand* command = Appended(place.motion.tag);
+  const motion::MoveCommand* command = s_.path.Appended(place.motion.tag);
   if (command == nullptr) return false;
-  AppendedItem rest{.tag = place.motion.tag, .move = *command};
+  motion::AppendedCommand rest{.tag = place.motion.tag, .move = *command};
   AdaptToOverride(rest);
   const double speed = motion::LimitsOf(*rest.move, parameters_.limits).speed;
   const std::optional<Onward> onward = OnwardFrom(place, *rest.move, speed);
   if (!onward) return false;
-  const auto own = s_.appended.begin() + static_cast<std::ptrdiff_t>(onward->own);
-  std::vector<AppendedItem> later(std::next(own), s_.appended.end());
-  for (AppendedItem& item : later) AdaptToOverride(item);
+  auto& appended = s_.path.appended();
+  const auto own = appended.begin() + static_cast<std::ptrdiff_t>(onward->own);
+  std::vector<motion::AppendedCommand> later(std::next(own), appended.end());
+  for (motion::AppendedCommand& item : later) AdaptToOverride(item);
   std::optional<motion::Planner> planner = PlanOnward(*onward, later);
   if (!planner) return false;
   if (!s_.passing) planner->Stop();
@@ -111,7 +112,8 @@ std::optional<Ride::Onward> Ride::OnwardFrom(const ChainPlace& place,
                                              const motion::MoveCommand& command,
                                              double speed) const {
   const motion::PlannedMotion& here = place.motion;
-  const auto own = std::ranges::find(s_.appended, here.tag, &AppendedItem::tag);
+  const auto& appended = s_.path.appended();
+  const auto own = std::ranges::find(appended, here.tag, &motion::AppendedCommand::tag);
   const std::optional<PlaceOnMove> on_move = PlaceOf(here.path, command.path);
   if (!on_move) return std::nullopt;
   const Lead lead = LeadFrom(place.state, here.limits, speed / on_move->scale);
@@ -122,7 +124,7 @@ std::optional<Ride::Onward> Ride::OnwardFrom(const ChainPlace& place,
   const double begin = on_move->begin + end * on_move->scale;
   constexpr double kLeft = 1e-3;  // mm; of sigma: less of a move is not worth a plan
   if (end > here.path.length() || begin > command.path.length() - kLeft) return std::nullopt;
-  Onward onward{.own = static_cast<std::size_t>(own - s_.appended.begin()),
+  Onward onward{.own = static_cast<std::size_t>(own - appended.begin()),
                 .lead_length = lead.length,
                 .speed = lead.speed,
                 .speed_on_move = lead.speed * on_move->scale,
@@ -135,12 +137,12 @@ std::optional<Ride::Onward> Ride::OnwardFrom(const ChainPlace& place,
 }
 
 // Nothing when what follows cannot be met from there, even if the chain ended with `later`.
-std::optional<motion::Planner> Ride::PlanOnward(const Onward& onward,
-                                                std::span<const AppendedItem> later) const {
+std::optional<motion::Planner> Ride::PlanOnward(
+    const Onward& onward, std::span<const motion::AppendedCommand> later) const {
   motion::Planner planner(parameters_.limits);
   planner.BeginMoving(onward.speed_on_move);
   if (!planner.Append(onward.first)) return std::nullopt;
-  for (const AppendedItem& item : later) {
+  for (const motion::AppendedCommand& item : later) {
     if (!item.move) {
       planner.Mark(item.tag);
     } else if (!planner.Append(*item.move)) {
@@ -157,7 +159,7 @@ std::optional<motion::Planner> Ride::PlanOnward(const Onward& onward,
 void Ride::GoOnward(const ChainPlace& place, const Onward& onward,
                     const std::vector<motion::PlannedItem>& kept) {
   if (place.under_way) TellMotion(situation_.now);
-  s_.timeline.assign(kept.begin(), kept.end());
+  s_.path.to_come().assign(kept.begin(), kept.end());
   if (onward.lead_length > 0.0) {
     const motion::PlannedMotion& here = place.motion;
     motion::PlannedMotion lead = here;
@@ -171,18 +173,21 @@ void Ride::GoOnward(const ChainPlace& place, const Onward& onward,
     lead.ends_move = false;
     lead.corner = {};
     if (place.under_way) {
-      s_.active->motion = lead;
-      BeginProfile();
+      s_.path.under_way()->motion = lead;
+      s_.path.under_way()->Begin(situation_.now);
     } else {
-      s_.timeline.emplace_back(lead);
+      s_.path.to_come().emplace_back(lead);
     }
   } else if (place.under_way) {
     situation_.machine.axes = axes();
-    s_.active.reset();
+    s_.path.Leave();
   }
   // One measure for the whole chain: a STOP runs from one motion into the next.
-  if (s_.active && s_.active->motion.path.in_axes()) s_.active->motion.MeasureBy(onward.measure);
-  for (motion::PlannedItem& item : s_.timeline) {
+  if (motion::MotionUnderWay* active = s_.path.under_way();
+      active != nullptr && active->motion.path.in_axes()) {
+    active->motion.MeasureBy(onward.measure);
+  }
+  for (motion::PlannedItem& item : s_.path.to_come()) {
     auto* planned = std::get_if<motion::PlannedMotion>(&item);
     if (planned != nullptr && planned->path.in_axes()) planned->MeasureBy(onward.measure);
   }

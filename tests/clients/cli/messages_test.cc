@@ -140,7 +140,7 @@ TEST_F(Messages, AReportOfAMillHasItsOwn) {
   EXPECT_THAT(text, HasSubstr("tool          up 5.000 s, down 4.000 s\n"));
   EXPECT_THAT(text, HasSubstr("clipped       6.000 mm beyond the cutting range\n"));
   EXPECT_THAT(text, HasSubstr("speeds        7 limited to those of the machine\n"));
-  EXPECT_THAT(text, HasSubstr("material      8.000 mm3 taken off\n"));
+  EXPECT_THAT(text, HasSubstr("material      8.000 mm3 removed\n"));
   EXPECT_THAT(text, Not(HasSubstr("motions at travel speed")));
   EXPECT_THAT(text, Not(HasSubstr("beam")));
 }
@@ -344,7 +344,7 @@ TEST_F(Messages, AWholeReportOfAMill) {
       "path          0.000 mm: cut 0.000, travel 0.000\n"
       "plunges       2\n"
       "tool          up 0.000 s, down 0.000 s\n"
-      "material      1.500 mm3 taken off\n"
+      "material      1.500 mm3 removed\n"
       "              3 motions at travel speed through material, up to 0.250 mm deep at step 4, at 5.500 s\n"
       "steps         0\n"
       "final tip     0.000, 0.000, 0.000\n");

@@ -1,0 +1,107 @@
+#include "engine/motion/ride/path_ride.h"
+
+#include <algorithm>
+#include <span>
+
+#include "engine/core/check.h"
+
+namespace rmlcell::motion {
+
+MotionUnderWay& PathRide::Begin(SimTime now) {
+  RMLCELL_CHECK(waits_to_begin());
+  under_way_.motion = std::get<PlannedMotion>(std::move(to_come_.front()));
+  under_way_.ended = false;
+  to_come_.pop_front();
+  under_way_.Begin(now);
+  rides_ = true;
+  return under_way_;
+}
+
+void PathRide::BeginInPlace(SimTime now, SimTime until) {
+  under_way_.Begin(now, until);
+  rides_ = true;
+}
+
+const MoveCommand* PathRide::Appended(std::uint64_t tag) const {
+  for (const AppendedCommand& command : appended_) {
+    if (command.tag == tag && command.move) return &*command.move;
+  }
+  return nullptr;
+}
+
+void PathRide::ForgetBefore(std::uint64_t tag) {
+  while (!appended_.empty() && appended_.front().tag < tag) appended_.pop_front();
+}
+
+std::optional<PathRide::StopPlan> PathRide::PlanStop(SimTime now, const AxisLimits& axes) const {
+  RMLCELL_CHECK(rides_);
+  StopPlan plan;
+  plan.ahead.push_back(under_way_.motion);
+  for (const PlannedItem& item : to_come_) {
+    if (const auto* planned = std::get_if<PlannedMotion>(&item)) {
+      plan.ahead.push_back(*planned);
+    } else {
+      plan.marks.emplace_back(plan.ahead.size() - 1, std::get<PlannedMark>(item));
+    }
+  }
+  plan.ramp = StopAlong(plan.ahead, ToSeconds(now - under_way_.start), axes);
+  if (!plan.ramp.complete) return std::nullopt;
+  plan.rests_on = plan.ahead[plan.ramp.index].tag;
+  return plan;
+}
+
+void PathRide::Stop(const StopPlan& plan, const AxisLimits& axes) {
+  const StopOnPath& ramp = plan.ramp;
+  const auto add_marks = [&](std::size_t behind, std::deque<PlannedItem>& items) {
+    for (const auto& [place, mark] : plan.marks) {
+      if (place == behind) items.emplace_back(mark);
+    }
+  };
+  rides_ = false;
+  to_come_.clear();
+  const std::size_t first = ramp.index + 1 - std::min(ramp.motions.size(), ramp.index + 1);
+  for (std::size_t n = 0; n < ramp.motions.size(); ++n) {
+    to_come_.emplace_back(ramp.motions[n]);
+    if (first + n < ramp.index) add_marks(first + n, to_come_);
+  }
+  const std::span<const PlannedMotion> left = std::span(plan.ahead).subspan(ramp.index);
+  std::vector<PlannedMotion> restart = RestartAlong(left, ramp.s, axes);
+  if (!ramp.motions.empty() && ramp.motions.back().ends_move && !restart.empty()) {
+    PlannedMotion& settling = restart.front();  // all that is left of that move
+    if (!(settling.path.length() > 0.0)) settling.ends_move = false;
+  }
+  interrupted_.clear();
+  // RestartAlong leaves out the first motion when the machine stands at its end.
+  const std::size_t dropped = left.size() - restart.size();
+  for (std::size_t k = 0; k < left.size(); ++k) {
+    if (k >= dropped) interrupted_.emplace_back(restart[k - dropped]);
+    add_marks(ramp.index + k, interrupted_);
+  }
+  protocol_.Stop();
+}
+
+void PathRide::HoldBehind(std::uint64_t tag) {
+  std::erase_if(appended_, [&](AppendedCommand& command) {
+    if (command.tag <= tag) return false;
+    held_.push_back(std::move(command));
+    return true;
+  });
+  protocol_.Hold();
+}
+
+bool PathRide::TakeUpInterrupted() {
+  if (interrupted_.empty()) return false;
+  to_come_.insert(to_come_.begin(), interrupted_.begin(), interrupted_.end());
+  interrupted_.clear();
+  return true;
+}
+
+void PathRide::Finish() {
+  protocol_.Finish();
+  rides_ = false;
+  to_come_.clear();
+  interrupted_.clear();
+  held_.clear();
+}
+
+}  // namespace rmlcell::motion

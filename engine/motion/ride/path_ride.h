@@ -1,0 +1,104 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "engine/motion/planner/planner.h"
+#include "engine/motion/ride/interruption.h"
+#include "engine/motion/ride/motion_under_way.h"
+#include "engine/motion/ride/ride_protocol.h"
+
+namespace rmlcell::motion {
+
+// A command as the planner got it, kept so that it can be planned anew; without a move: a mark.
+struct AppendedCommand {
+  std::uint64_t tag = 0;
+  std::optional<MoveCommand> move{};
+};
+
+// What a machine rides: the motion under way, what is planned to follow it, what a STOP interrupted
+// and what a HOLD keeps back; with the protocol of the keys. A value: a snapshot is a copy.
+//
+//                  under way + to come          interrupted           held
+//   Stop(plan)     the ramp to rest             the rest, from there  -
+//   HoldBehind     the family's: up to a target -                     the commands behind it
+//   Resume         interrupted comes first      empty                 the family plans it
+//   Finish         nothing                      empty                 empty
+//
+// How motions are planned, and what belongs to one besides its plan, is the family's. One that
+// plans its path anew from wherever it is, as a mill does, has nothing to come here and interrupts
+// nothing: it Leaves the motion under way, and begins another.
+class PathRide {
+ public:
+  explicit PathRide(HoldRamp ramp) : protocol_(ramp) {}
+
+  RideProtocol& protocol() { return protocol_; }
+  const RideProtocol& protocol() const { return protocol_; }
+
+  // --- one motion after the other ---
+
+  // Null: none. It is over when the machine Leaves it, not by time alone.
+  const MotionUnderWay* under_way() const { return rides_ ? &under_way_ : nullptr; }
+  MotionUnderWay* under_way() { return rides_ ? &under_way_ : nullptr; }
+  std::deque<PlannedItem>& to_come() { return to_come_; }
+  const std::deque<PlannedItem>& to_come() const { return to_come_; }
+  bool busy() const { return rides_ || !to_come_.empty(); }
+  bool waits_to_begin() const { return !rides_ && !to_come_.empty(); }
+
+  // The first to come, which is a motion, is under way from now on. Precondition: none is.
+  MotionUnderWay& Begin(SimTime now);
+  // The one in place(), which the caller has filled.
+  void BeginInPlace(SimTime now, SimTime until);
+  MotionUnderWay& place() { return under_way_; }
+  // No longer under way; its values stay in place().
+  void Leave() { rides_ = false; }
+
+  // --- commands whose motions are not over, for who plans them anew ---
+
+  std::deque<AppendedCommand>& appended() { return appended_; }
+  const std::deque<AppendedCommand>& appended() const { return appended_; }
+  // Of the move with this tag; null when it is over.
+  const MoveCommand* Appended(std::uint64_t tag) const;
+  // Those before this tag are over.
+  void ForgetBefore(std::uint64_t tag);
+
+  // --- keys ---
+
+  // STOP at `now`: how the machine comes to rest along what is planned. Nothing when that ends
+  // before the machine stands. Precondition: a motion is under way.
+  struct StopPlan {
+    StopOnPath ramp;
+    std::vector<PlannedMotion> ahead;                        // from the one under way on
+    std::vector<std::pair<std::size_t, PlannedMark>> marks;  // each behind a motion of `ahead`
+    std::uint64_t rests_on = 0;                              // tag
+  };
+  std::optional<StopPlan> PlanStop(SimTime now, const AxisLimits& axes) const;
+  // Nothing is under way then; the ramp is to come.
+  void Stop(const StopPlan& plan, const AxisLimits& axes);
+
+  // HOLD at the end of the move with this tag: the commands behind it are held back. What leads to
+  // that end is the caller's to plan.
+  void HoldBehind(std::uint64_t tag);
+  std::deque<AppendedCommand>& held() { return held_; }
+
+  // START after a STOP: what was interrupted comes first. False: nothing was.
+  bool TakeUpInterrupted();
+
+  // The run is over: nothing is left to ride.
+  void Finish();
+
+ private:
+  RideProtocol protocol_;
+  bool rides_ = false;
+  MotionUnderWay under_way_{};
+  std::deque<PlannedItem> to_come_{};
+  std::deque<PlannedItem> interrupted_{};
+  std::deque<AppendedCommand> appended_{};
+  std::deque<AppendedCommand> held_{};
+};
+
+}  // namespace rmlcell::motion

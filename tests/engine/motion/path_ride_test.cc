@@ -1,0 +1,184 @@
+// What is under way, to come, interrupted and held, by the table of path_ride.h. motion.md section
+// 6
+#include "engine/motion/ride/path_ride.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/motion/plan_check.h"
+#include "tests/engine/motion/random_chain.h"
+
+namespace rmlcell::motion {
+namespace {
+
+constexpr SimTime kBegin = std::chrono::seconds(5);
+
+// Three lines of 100 mm straight on, passed at 50 mm/s, with the tags 1 to 3.
+std::vector<PlannedMotion> StraightOn() {
+  std::vector<MoveCommand> chain(3);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double from_mm = 100.0 * static_cast<double>(k);
+    chain[k].path = PathPiece::Line({{from_mm, 0, 0}}, {{from_mm + 100.0, 0, 0}});
+    chain[k].speed_fraction = 0.1;
+    chain[k].fly = k < 2;
+    chain[k].tag = k + 1;
+  }
+  return Plan(chain);
+}
+
+// Behind each of the lines comes a mark: tags 11 to 13.
+PathRide RideOver(const std::vector<PlannedMotion>& motions) {
+  PathRide ride(HoldRamp::kStays);
+  for (const PlannedMotion& motion : motions) {
+    ride.to_come().emplace_back(motion);
+    if (motion.ends_move) ride.to_come().emplace_back(PlannedMark{motion.tag + 10});
+  }
+  return ride;
+}
+
+// "1 m11 2": the tags of what is to come.
+std::string TagsToCome(const PathRide& ride) {
+  std::string tags;
+  for (const PlannedItem& item : ride.to_come()) {
+    const auto* motion = std::get_if<PlannedMotion>(&item);
+    tags += tags.empty() ? "" : " ";
+    tags += motion != nullptr ? std::to_string(motion->tag)
+                              : "m" + std::to_string(std::get<PlannedMark>(item).tag);
+  }
+  return tags;
+}
+
+double LengthToCome(const PathRide& ride) {
+  double sum_mm = 0.0;
+  for (const PlannedItem& item : ride.to_come()) {
+    if (const auto* motion = std::get_if<PlannedMotion>(&item)) sum_mm += motion->path.length();
+  }
+  return sum_mm;
+}
+
+TEST(PathRide, BeginsOneMotionAfterTheOther) {
+  const std::vector<PlannedMotion> motions = StraightOn();
+  ASSERT_EQ(motions.size(), 3u);
+  PathRide ride = RideOver(motions);
+  EXPECT_TRUE(ride.waits_to_begin());
+  EXPECT_EQ(ride.under_way(), nullptr);
+
+  ride.Begin(kBegin);
+  ASSERT_NE(ride.under_way(), nullptr);
+  EXPECT_FALSE(ride.waits_to_begin());
+  EXPECT_EQ(TagsToCome(ride), "m11 2 m12 3 m13");
+  const MotionUnderWay& first = *ride.under_way();
+  EXPECT_EQ(first.motion.tag, 1u);
+  EXPECT_EQ(first.start, kBegin);
+  EXPECT_EQ(first.arrival, kBegin + FromSeconds(motions[0].speed.duration_s()));
+  EXPECT_EQ(first.end, first.arrival);  // it passes on: no standstill behind it
+  EXPECT_EQ(first.PlaceAt(kBegin), 0.0);
+  EXPECT_EQ(first.PlaceAt(first.arrival), 100.0);
+  EXPECT_NEAR(first.TipSpeedAt(first.arrival), 50.0, 1e-6);
+
+  ride.Leave();
+  EXPECT_EQ(ride.under_way(), nullptr);
+  EXPECT_TRUE(ride.busy());
+}
+
+// The last one stands: its end is that much later than its arrival.
+TEST(PathRide, CountsTheStandstillBehindAMotion) {
+  PathRide ride(HoldRamp::kStays);
+  PlannedMotion last = StraightOn().back();
+  last.settling_s = 0.25;
+  ride.to_come().emplace_back(last);
+  const MotionUnderWay& active = ride.Begin(kBegin);
+  EXPECT_EQ(active.end - active.arrival, std::chrono::milliseconds(250));
+  EXPECT_EQ(active.TipAt(active.arrival).tip.x(), 300.0);
+}
+
+// At 50 mm/s it takes more than 1 mm to come to rest, and less than 50: a STOP 1 mm before the end
+// of the first line rests on the second. The mark between them is on the ramp, that behind the
+// second waits with what is left of it.
+TEST(PathRide, StopLeavesTheRestForStart) {
+  const std::vector<PlannedMotion> motions = StraightOn();
+  PathRide ride = RideOver(motions);
+  const SimTime now = ride.Begin(kBegin).start + FromSeconds(motions[0].speed.TimeAt(99.0));
+  const AxisLimits axes = StandardMachine().axes;
+  const auto plan = ride.PlanStop(now, axes);
+  ASSERT_TRUE(plan.has_value());
+  EXPECT_EQ(plan->rests_on, 2u);
+  EXPECT_NE(ride.under_way(), nullptr);  // a plan changes nothing
+
+  ride.Stop(*plan, axes);
+  EXPECT_EQ(ride.under_way(), nullptr);
+  EXPECT_TRUE(ride.protocol().comes_to_rest());
+  EXPECT_EQ(TagsToCome(ride), "1 m11 2");
+  const double ramp_mm = LengthToCome(ride);
+  EXPECT_GT(ramp_mm, 1.0);
+  EXPECT_LT(ramp_mm, 50.0);
+
+  ride.to_come().clear();  // ridden
+  EXPECT_TRUE(ride.TakeUpInterrupted());
+  EXPECT_EQ(TagsToCome(ride), "2 m12 3 m13");
+  EXPECT_NEAR(ramp_mm + LengthToCome(ride), 201.0, 1e-6);
+  EXPECT_FALSE(ride.TakeUpInterrupted());
+}
+
+// What follows the first line is not planned yet, and 1 mm is too little to come to rest.
+TEST(PathRide, DoesNotStopWhereNotEnoughIsPlanned) {
+  const std::vector<PlannedMotion> motions = StraightOn();
+  PathRide ride(HoldRamp::kStays);
+  ride.to_come().emplace_back(motions[0]);
+  const SimTime now = ride.Begin(kBegin).start + FromSeconds(motions[0].speed.TimeAt(99.0));
+  EXPECT_FALSE(ride.PlanStop(now, StandardMachine().axes).has_value());
+  EXPECT_TRUE(ride.protocol().goes());
+}
+
+TEST(PathRide, HoldKeepsTheCommandsBehindItsTarget) {
+  PathRide ride(HoldRamp::kStays);
+  for (const std::uint64_t tag : {1u, 2u, 4u}) {
+    ride.appended().push_back({.tag = tag, .move = MoveCommand{}});
+  }
+  ride.appended().push_back({.tag = 5, .move = std::nullopt});
+  EXPECT_NE(ride.Appended(4), nullptr);
+  EXPECT_EQ(ride.Appended(5), nullptr);  // a mark
+  ride.ForgetBefore(2);
+  EXPECT_EQ(ride.Appended(1), nullptr);
+
+  ride.HoldBehind(2);
+  EXPECT_EQ(ride.protocol().intent(), RideIntent::kHold);
+  EXPECT_NE(ride.Appended(2), nullptr);
+  EXPECT_EQ(ride.Appended(4), nullptr);
+  ASSERT_EQ(ride.held().size(), 2u);
+  EXPECT_EQ(ride.held()[0].tag, 4u);
+  EXPECT_EQ(ride.held()[1].tag, 5u);
+}
+
+TEST(PathRide, FinishLeavesNothingToRide) {
+  const std::vector<PlannedMotion> motions = StraightOn();
+  PathRide ride = RideOver(motions);
+  ride.appended().push_back({.tag = 3, .move = MoveCommand{}});
+  const SimTime now = ride.Begin(kBegin).start + FromSeconds(motions[0].speed.TimeAt(99.0));
+  const AxisLimits axes = StandardMachine().axes;
+  const auto plan = ride.PlanStop(now, axes);
+  ASSERT_TRUE(plan.has_value());
+  const PathRide kept = ride;  // a snapshot goes on by itself
+  ride.Stop(*plan, axes);
+  ride.Finish();
+  EXPECT_FALSE(ride.busy());
+  EXPECT_FALSE(ride.TakeUpInterrupted());
+  EXPECT_TRUE(ride.protocol().goes());
+  EXPECT_TRUE(kept.busy());
+  EXPECT_EQ(TagsToCome(kept), "m11 2 m12 3 m13");
+}
+
+// A machine that plans its path anew has nothing to come: it fills the place, and says until when.
+TEST(PathRide, BeginsInPlaceUntilTheTimeOfTheMachine) {
+  PathRide ride(HoldRamp::kPlannedAnew);
+  ride.place().motion = StraightOn().front();
+  EXPECT_EQ(ride.under_way(), nullptr);
+  ride.BeginInPlace(kBegin, kBegin + std::chrono::seconds(2));
+  ASSERT_NE(ride.under_way(), nullptr);
+  EXPECT_EQ(ride.under_way()->end, std::chrono::seconds(7));
+  ride.Leave();
+  EXPECT_FALSE(ride.busy());
+  EXPECT_EQ(ride.place().motion.tag, 1u);
+}
+
+}  // namespace
+}  // namespace rmlcell::motion

@@ -1,0 +1,76 @@
+#include "engine/simulation/run/joint_check.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/families/families.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+const machine::MachineFamily& Optimo() { return *families::FindFamily("optimo"); }
+
+// A file as a check gets it; `slot` as its name tells it.
+JointProgram File(const std::string& text, int slot = 0) {
+  const machine::Parameters parameters(Optimo().parameters());
+  machine::Translation made =
+      Optimo().Translate({.name = "test.S", .bytes = text}, parameters, {.source = true});
+  EXPECT_TRUE(made.ok) << text;
+  return {
+      .program = {.slot = slot, .translation = std::make_shared<const machine::Translation>(made)}};
+}
+
+std::vector<JointProgram> Checked(std::vector<JointProgram> files) {
+  const machine::Parameters parameters(Optimo().parameters());
+  EXPECT_TRUE(CheckTogether(Optimo(), parameters, files, {}).ok());
+  return files;
+}
+
+// X goes to 3000 mm (optimo.md 11.4): 4000 is outside.
+const std::string kOutside = "COORD ABSOL\nPATH LIN\nMOVE (4000.,0.,0.,0.,0.)\n";
+const std::string kInside = "COORD ABSOL\nPATH LIN\nMOVE (400.,0.,0.,0.,0.)\n";
+
+TEST(CheckTogether, ProgramsCallEachOtherAndEachGetsItsOwnFindings) {
+  const auto files = Checked({File("CALL 44\n", 45), File(kOutside, 44)});
+  EXPECT_TRUE(files[0].motion.findings.empty());
+  ASSERT_EQ(files[1].motion.findings.size(), 1u);
+  EXPECT_EQ(files[1].motion.findings[0].step, 3);
+  EXPECT_TRUE(files[0].motion.cut_short.empty());
+}
+
+// Files without a number take the free slots, in their order, and are checked all the same.
+TEST(CheckTogether, FilesWithoutANumberTakeFreeSlots) {
+  const auto files = Checked({File(kInside), File(kInside, 1), File(kOutside)});
+  EXPECT_EQ(files[0].program.slot, 2);
+  EXPECT_EQ(files[1].program.slot, 1);
+  EXPECT_EQ(files[2].program.slot, 3);
+  EXPECT_TRUE(files[0].motion.findings.empty());
+  EXPECT_EQ(files[2].motion.findings.size(), 1u);
+}
+
+// Both are 44.S: who calls 44 gets the first, and the second is checked alone, with the others.
+TEST(CheckTogether, TheSecondOfOneSlotIsCheckedInItsPlace) {
+  const auto files = Checked(
+      {File("CALL 44\n", 45), File(kInside, 44), File(kOutside, 44), File("CALL 45\n", 44)});
+  EXPECT_TRUE(files[0].motion.findings.empty());
+  EXPECT_TRUE(files[1].motion.findings.empty());
+  EXPECT_EQ(files[2].program.slot, 44);
+  EXPECT_EQ(files[2].motion.findings.size(), 1u);
+  // It calls 45, and that calls it: the check ends at the first bound, and says so here alone.
+  EXPECT_EQ(files[3].motion.cut_short.count(44), 1u);
+  EXPECT_TRUE(files[0].motion.cut_short.empty());
+}
+
+// The 100th file without a number finds no slot free: it is checked in the place of the first.
+TEST(CheckTogether, MoreFilesThanSlotsAreAllChecked) {
+  std::vector<JointProgram> files;
+  for (int n = 0; n < 99; ++n) files.push_back(File(kInside));
+  files.push_back(File(kOutside));
+  const auto checked = Checked(files);
+  EXPECT_EQ(checked[98].program.slot, 99);
+  EXPECT_EQ(checked[99].program.slot, 1);
+  EXPECT_EQ(checked[99].motion.findings.size(), 1u);
+  EXPECT_TRUE(checked[0].motion.findings.empty());
+}
+
+}  // namespace
+}  // namespace rmlcell::simulation
