@@ -115,7 +115,7 @@ int Show(const CheckedFile& file, const CheckOptions& options) {
 }  // namespace
 
 int Check(const CheckOptions& options) {
-  const Result<bridge::MachineFile> machine = ReadMachine(options.machine_file);
+  const Result<bridge::MachineFile> machine = ReadMachine(options.machine);
   if (!machine) return Refuse(machine.error());
   machine::InputScript inputs;
   if (!options.inputs_file.empty()) {
@@ -129,10 +129,9 @@ int Check(const CheckOptions& options) {
   }
   std::vector<CheckedFile> files;
   for (const std::string& name : options.files) {
-    const auto family = FamilyFor(options.family.empty() ? machine->family : options.family, name);
+    const auto family = FamilyFor(machine->family, name);
     if (!family) return Refuse(family.error());
-    const std::string& profile = options.profile.empty() ? machine->profile : options.profile;
-    auto parameters = machine::MakeParameters(**family, profile, machine->parameters);
+    auto parameters = machine::MakeParameters(**family, machine->profile, machine->parameters);
     if (!parameters) return Refuse(parameters.error());
     files.push_back({.name = name, .family = *family, .parameters = *std::move(parameters)});
   }

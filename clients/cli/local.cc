@@ -233,10 +233,10 @@ Status WriteProducts(const SimulateOptions& options, const simulation::Simulatio
 }  // namespace
 
 int Simulate(const SimulateOptions& options) {
-  const Result<bridge::MachineFile> machine = ReadMachine(options.machine_file);
+  const Result<bridge::MachineFile> machine = ReadMachine(options.machine);
   if (!machine) return Refuse(machine.error());
-  Result<LoadedFiles> loaded = LoadFiles(options.files, options.slots, options.main_slot,
-                                         options.family.empty() ? machine->family : options.family);
+  Result<LoadedFiles> loaded =
+      LoadFiles(options.files, options.slots, options.main_slot, machine->family);
   if (!loaded) return Refuse(loaded.error());
   const Result<v1::SimulationOptions> message = OptionsMessage(options, *loaded->family);
   if (!message) return Refuse(message.error());
@@ -268,12 +268,11 @@ int Simulate(const SimulateOptions& options) {
     state = std::move(*bytes);
   }
 
-  const simulation::ProgramMemory memory{
-      .family = loaded->family,
-      .profile = options.profile.empty() ? machine->profile : options.profile,
-      .parameters = machine->parameters,
-      .programs = loaded->programs,
-      .machine_state = state};
+  const simulation::ProgramMemory memory{.family = loaded->family,
+                                         .profile = machine->profile,
+                                         .parameters = machine->parameters,
+                                         .programs = loaded->programs,
+                                         .machine_state = state};
   Result<simulation::PreparedRun> outcome = simulation::PrepareRun(
       memory, bridge::RunOptionsOf(*message, budget, loaded->main_slot, machine::Mode::kCycle));
   if (!outcome) return Refuse(outcome.error());

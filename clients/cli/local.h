@@ -5,12 +5,17 @@
 
 namespace rmlcell::cli {
 
+// For which machine: options on the command line go before those of a file.
+struct MachineChoice {
+  std::string family;
+  std::string profile;
+  std::string file;  // TOML
+};
+
 // Verbs that need no server.
 struct CheckOptions {
   std::vector<std::string> files;
-  std::string family;
-  std::string profile;
-  std::string machine_file;
+  MachineChoice machine;
   std::string inputs_file;  // what comes from outside while the motion is checked
   bool errors_only = false;
   bool fix = false;      // repair the files, and check what comes out
@@ -25,9 +30,7 @@ struct SimulateOptions {
   std::vector<std::string> slots;        // "44=FILE"
   std::vector<std::string> executables;  // "44", or "44=FILE"
   int main_slot = 0;                     // 0: from the file name, else 1
-  std::string family;
-  std::string profile;
-  std::string machine_file;
+  MachineChoice machine;
   std::string inputs_file;
   std::string mode = "cycle";
   double override_percent = 100.0;

@@ -43,6 +43,13 @@ errors or its verdict is BAD (with --strict DOUBTFUL, too), 2 wrong use, 3 serve
 
 constexpr const char* kStrictText = "exit with 1 when the verdict is DOUBTFUL, too";
 
+void AddMachineOptions(CLI::App* verb, MachineChoice& machine) {
+  verb->add_option("--family", machine.family, "optimo or rml1; default: from the file name");
+  verb->add_option("--profile", machine.profile,
+                   "profile of a machine model, such as srm-20 or pw-1993");
+  verb->add_option("--machine", machine.file, "machine file (TOML): family, profile, [parameters]");
+}
+
 void AddCheckVerb(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CheckOptions>();
   CLI::App* verb =
@@ -59,11 +66,7 @@ void AddCheckVerb(CLI::App& app, int& exit_code) {
       "Motion is followed as a run with these inputs (default: all off) would do it: axes that leave\n"
       "their travel are errors, axes that hold a contour back are advice.");
   verb->add_option("FILES", options->files, "programs")->required();
-  verb->add_option("--family", options->family, "optimo or rml1; default: from the file name");
-  verb->add_option("--profile", options->profile,
-                   "profile of a machine model, such as srm-20 or pw-1993");
-  verb->add_option("--machine", options->machine_file,
-                   "machine file (TOML): family, profile, [parameters]");
+  AddMachineOptions(verb, options->machine);
   verb->add_option("--inputs", options->inputs_file,
                    "inputs and keys over time, while the motion is checked");
   verb->add_flag("--errors-only", options->errors_only, "leave warnings and advice out");
@@ -101,11 +104,7 @@ void AddSimulateVerb(CLI::App& app, int& exit_code) {
   verb->add_option("--executable", options->executables,
                    "44: link program 44 beforehand; 44=FILE: its executable")
       ->allow_extra_args(false);
-  verb->add_option("--family", options->family, "optimo or rml1; default: from the file name");
-  verb->add_option("--profile", options->profile,
-                   "profile of a machine model, such as srm-20 or pw-1993");
-  verb->add_option("--machine", options->machine_file,
-                   "machine file (TOML): family, profile, [parameters]");
+  AddMachineOptions(verb, options->machine);
   verb->add_option("--inputs", options->inputs_file,
                    "inputs and keys over time, a line each: 0.5 IL[20] = 1");
   verb->add_option("--mode", options->mode, "cycle (START given once), remote, single, repeat");

@@ -46,11 +46,18 @@ std::optional<int> SlotFromName(const fs::path& path) {
   return static_cast<int>(*number);
 }
 
-Result<bridge::MachineFile> ReadMachine(const std::string& path) {
-  if (path.empty()) return bridge::MachineFile{};
-  const Result<std::string> text = bridge::ReadFile(path, kFileBytesMax);
-  if (!text) return text.error();
-  return bridge::ParseMachineFile(*text, path);
+Result<bridge::MachineFile> ReadMachine(const MachineChoice& choice) {
+  bridge::MachineFile machine;
+  if (!choice.file.empty()) {
+    const Result<std::string> text = bridge::ReadFile(choice.file, kFileBytesMax);
+    if (!text) return text.error();
+    Result<bridge::MachineFile> read = bridge::ParseMachineFile(*text, choice.file);
+    if (!read) return read.error();
+    machine = *std::move(read);
+  }
+  if (!choice.family.empty()) machine.family = choice.family;
+  if (!choice.profile.empty()) machine.profile = choice.profile;
+  return machine;
 }
 
 Status WriteWholeFile(const std::string& path, std::string_view bytes) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "clients/cli/local.h"
 #include "engine/simulation/run/rehearsal.h"
 #include "proto/bridge/files.h"
 
@@ -36,8 +37,8 @@ std::optional<int> SlotFromName(const std::filesystem::path& path);
 // "44=FILE" -> 44, FILE; "44" -> 44 and nothing.
 Result<std::pair<int, std::string>> ParseSlotFile(const std::string& text);
 
-// The machine file; without a path the defaults. Errors: CellFileUnreadable, CellBadText.
-Result<bridge::MachineFile> ReadMachine(const std::string& path);
+// Without a file what is chosen on the command line. Errors: CellFileUnreadable, CellBadText.
+Result<bridge::MachineFile> ReadMachine(const MachineChoice& choice);
 
 // Writes a file whole or not at all: what stood under this name before is there until the new one
 // is on the disk, and keeps its mode. Error: CellFileUnwritable.
