@@ -17,6 +17,15 @@
 namespace rmlcell::cli {
 namespace {
 
+// "234.0 of 868.0 s"; how long it takes is not always known.
+std::string TimeText(const v1::JobProgress& at) {
+  constexpr double kSeconds = 1e-9;
+  std::string text = Fixed(static_cast<double>(at.virtual_time_ns()) * kSeconds, 1);
+  if (at.has_planned_time_ns())
+    text += " of " + Fixed(static_cast<double>(at.planned_time_ns()) * kSeconds, 1);
+  return text + " s";
+}
+
 // A random id, so that a repeated submission after a lost answer gives the same job.
 std::string NewRequestId() {
   std::random_device device;
@@ -69,8 +78,8 @@ bool WatchOnce(const Remote& remote, v1::JobService::Stub& stub, const std::stri
         Print(Json(message));
       } else {
         progress.Show(at.has_progress() ? at.progress() : -1.0,
-                      Fixed(static_cast<double>(at.virtual_time_ns()) * 1e-9, 1) + " s  " +
-                          at.instruction() + "  X " + Fixed(at.position().tip().x(), 2) + " Y " +
+                      TimeText(at) + "  " + at.instruction() + "  X " +
+                          Fixed(at.position().tip().x(), 2) + " Y " +
                           Fixed(at.position().tip().y(), 2) + " Z " +
                           Fixed(at.position().tip().z(), 2));
       }

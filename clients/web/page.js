@@ -321,7 +321,8 @@ function drawProgress(row, job) {
   else row.bar.value = now.progress;
   setText(row.percent, now.progress === undefined ? "" : `${Math.floor(now.progress * 100)} %`);
   const parts = [placeText(now.place), now.instruction];
-  if (now.virtualTimeNs) parts.push(duration(Number(now.virtualTimeNs) / 1e9));
+  const planned = now.plannedTimeNs ? ` of ${duration(Number(now.plannedTimeNs) / 1e9)}` : "";
+  if (now.virtualTimeNs) parts.push(duration(Number(now.virtualTimeNs) / 1e9) + planned);
   if (now.speedMmS) parts.push(`${now.speedMmS.toFixed(1)} mm/s`);
   const tip = now.position?.tip;
   if (tip) parts.push(`X ${tip.x.toFixed(2)}  Y ${tip.y.toFixed(2)}  Z ${tip.z.toFixed(2)}`);

@@ -14,6 +14,7 @@
 #include "engine/families/families.h"
 #include "engine/simulation/run/rehearsal.h"
 #include "engine/simulation/run/simulate.h"
+#include "engine/simulation/run/timetable.h"
 #include "engine/simulation/verdict/verdict.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
@@ -204,6 +205,27 @@ class Attempt {
     return End::kFinished;
   }
 
+  // What the run leaves, into the buffers of this attempt while they fit its budget.
+  simulation::Products ProductsOf(const v1::SimulationOptions& options) {
+    simulation::Products products;
+    if (options.trace()) {
+      products.trace = [this](const simulation::TraceRecord& record) {
+        bridge::AddFrame(bridge::ToProto(record).SerializeAsString(), trace_);
+        return Fits();
+      };
+    }
+    products.toolpath = [this](std::string_view block) {
+      bridge::AddFrame(block, toolpath_);
+      return Fits();
+    };
+    if (options.toolpath_tolerance_mm() > 0.0) {
+      products.toolpath_options.tolerance_mm = options.toolpath_tolerance_mm();
+    }
+    products.picture = true;
+    products.also = &events_;
+    return products;
+  }
+
   End Simulate() {
     const v1::SimulationOptions& options = assignment_.job().simulation();
     const auto variables =
@@ -223,24 +245,13 @@ class Attempt {
     const machine::MachineFamily& family = *families::FindFamily(assignment_.family());
     hold_key_ = machine::HoldKey(family.info(), made->setup->mode);
     simulation::InputDescription inputs = simulation::DescribeInputs(family, *made->setup);
-    simulation::Products products;
-    if (options.trace()) {
-      products.trace = [this](const simulation::TraceRecord& record) {
-        bridge::AddFrame(bridge::ToProto(record).SerializeAsString(), trace_);
-        return Fits();
-      };
-    }
-    products.toolpath = [this](std::string_view block) {
-      bridge::AddFrame(block, toolpath_);
-      return Fits();
-    };
-    if (options.toolpath_tolerance_mm() > 0.0) {
-      products.toolpath_options.tolerance_mm = options.toolpath_tolerance_mm();
-    }
-    products.picture = true;
-    products.also = &events_;
     simulation::Recorder recorder(family.Shape(made->setup->parameters), std::move(inputs),
-                                  std::move(products));
+                                  ProductsOf(options));
+    if (options.pace() > 0.0) {  // else it is over as soon as that would be known
+      Result<std::unique_ptr<simulation::TimetableRun>> timetable_run =
+          simulation::TimetableRun::Of(family, *made->setup);
+      if (timetable_run) timetable_run_ = *std::move(timetable_run);
+    }
     Result<std::unique_ptr<machine::Run>> run = family.NewRun(std::move(*made->setup), recorder);
     if (!run) return Refuse(run.error());
     simulation::Simulation simulation(**run, recorder);
@@ -281,6 +292,7 @@ class Attempt {
     SendPosition(run);
     while (!simulation.finished()) {
       const Clock::time_point begin = Clock::now();
+      PlanTime(begin);
       CarryOut(simulation);
       if (simulation.finished()) break;
       const SimTime due = pacer.Due(begin, simulation.state().time, slice);
@@ -320,6 +332,17 @@ class Attempt {
       }
     }
     return End::kFinished;
+  }
+
+  // How long the program takes is found out beside the run, a little at a time; not for ever, for a
+  // program that has no end.
+  void PlanTime(Clock::time_point begin) {
+    constexpr std::chrono::milliseconds kAtATime{5};
+    constexpr std::chrono::seconds kTogether{10};
+    if (!timetable_run_ || timetable_run_->timetable().total()) return;
+    while (!timetable_run_->Advance() && Clock::now() - begin < kAtATime) continue;
+    planned_for_ += Clock::now() - begin;
+    if (!timetable_run_->timetable().total() && planned_for_ > kTogether) timetable_run_.reset();
   }
 
   // Orders wait until the run is between two steps: they come in while the run itself tells of an
@@ -397,8 +420,16 @@ class Attempt {
   void SendPosition(const machine::Run& run) {
     v1::WorkRequest message;
     *message.mutable_heartbeat()->mutable_lease() = assignment_.lease();
-    *message.mutable_heartbeat()->mutable_progress() =
-        bridge::ToProto(run.state(), run.steps_executed());
+    v1::JobProgress& progress = *message.mutable_heartbeat()->mutable_progress();
+    progress = bridge::ToProto(run.state(), run.steps_executed());
+    if (assignment_.job().simulation().pace() > 0.0) {
+      progress.clear_progress();
+      if (timetable_run_ && timetable_run_->timetable().total()) {
+        simulation::Timetable& timetable = timetable_run_->timetable();
+        progress.set_progress(timetable.ShareAt(run.steps_executed(), run.state().time));
+        progress.set_planned_time_ns(timetable.total()->count());
+      }
+    }
     line_.Send(message);
   }
 
@@ -432,6 +463,8 @@ class Attempt {
   double started_s_;
   v1::Outcome outcome_;
   std::map<int, std::string> executables_;
+  std::unique_ptr<simulation::TimetableRun> timetable_run_;  // of a run with a pace
+  Clock::duration planned_for_{0};
   std::string trace_;
   std::string toolpath_;
   std::size_t event_bytes_ = 0;

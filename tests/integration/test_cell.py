@@ -93,6 +93,25 @@ class Jobs(WithCell):
         took = time.monotonic() - begin
         self.assertGreaterEqual(took, 1.5)  # however slow the machine: less would be too fast
         self.assertGreater(len({t for t in seen if 0.0 < t < 1.5}), 0)  # live on the way
+
+    def test_progress_of_a_paced_job_is_by_time(self):
+        stub = self.cell.jobs()
+        # One step of 2 s and many that take none: by steps or bytes it would be nearly over at once.
+        source = "".join(f"VR[{n}] = {n}.\n" for n in range(50)) + "DELAY 2.\n"
+        job = inline_job("optimo-1", "late.S", source)
+        job.simulation.pace = 1.0
+        seen = [m.progress for m in stub.WatchJob(job_pb2.WatchJobRequest(name=submit(stub, job).name), timeout=60)
+                if m.HasField("progress")]
+        known = [one for one in seen if one.HasField("planned_time_ns")]
+        self.assertTrue(known)
+        self.assertEqual({one.planned_time_ns for one in known}, {2_000_000_000})
+        for one in known:
+            self.assertAlmostEqual(one.progress, one.virtual_time_ns / 2e9, delta=0.06)
+        self.assertEqual([one.progress for one in known], sorted(one.progress for one in known))
+
+    def test_a_pace_has_its_bounds(self):
+        stub = self.cell.jobs()
+        job = inline_job("optimo-1", "slow.S", "DELAY 1.5\n")
         job.simulation.pace = 1001.0
         with self.assertRaises(grpc.RpcError) as caught:
             submit(stub, job)

@@ -108,7 +108,7 @@ PUBLIC = {
     PICTURE: ["picture.h", "picture_difference.h", "plot.h"],
     MATERIAL: ["milling_recorder.h", "milling_text.h", "stl.h"],
     VERDICT: ["verdict.h"],
-    RUN: ["simulate.h", "motion_check.h", "rehearsal.h", "joint_check.h", "trial_run.h"],
+    RUN: ["simulate.h", "motion_check.h", "rehearsal.h", "joint_check.h", "timetable.h", "trial_run.h"],
     "storage/sqlite": ["sqlite_store.h"],
     "server/events": ["event_feed.h"],
     "server/jobs": ["dispatcher.h", "job_book.h", "worker_processes.h"],
