@@ -74,8 +74,8 @@ Status Translate(CheckedFile& file, const CheckOptions& options) {
 }
 
 // The figures that people want of a check: those that the family gives a row, else all on one line.
-std::string FigureText(const CheckedFile& file) {
-  const std::string rows = FigureRows(*file.family, file.translation.figures);
+std::string FigureText(const CheckedFile& file, Zero zero) {
+  const std::string rows = FigureRows(*file.family, file.translation.figures, zero);
   if (!rows.empty()) return rows;
   std::string line;
   for (const machine::Figure& figure : file.translation.figures) {
@@ -108,7 +108,7 @@ int Show(const CheckedFile& file, const CheckOptions& options) {
     for (const auto& [slot, why] : file.motion.cut_short) Print("  motion checked " + why);
   }
   for (const v1::VerdictReason& reason : found.reasons()) Print("  " + ReasonLine(reason));
-  PrintRaw(FigureText(file));
+  PrintRaw(FigureText(file, options.machine_coordinates ? Zero::kMachine : Zero::kWork));
   return exit_code;
 }
 
@@ -131,7 +131,10 @@ int Check(const CheckOptions& options) {
   for (const std::string& name : options.files) {
     const auto family = FamilyFor(machine->family, name);
     if (!family) return Refuse(family.error());
-    auto parameters = machine::MakeParameters(**family, machine->profile, machine->parameters);
+    std::map<std::string, std::string> changed = machine->parameters;
+    if (const Status placed = PlaceOrigin(options.machine.origin, **family, changed); !placed)
+      return Refuse(placed.error());
+    auto parameters = machine::MakeParameters(**family, machine->profile, changed);
     if (!parameters) return Refuse(parameters.error());
     files.push_back({.name = name, .family = *family, .parameters = *std::move(parameters)});
   }

@@ -230,27 +230,34 @@ Status WriteProducts(const SimulateOptions& options, const simulation::Simulatio
   return {};
 }
 
+// Whether the programs that --simul and --break name are in the memory.
+Status CheckPlaces(const v1::SimulationOptions& options, const LoadedFiles& loaded) {
+  for (const v1::StepPlace* place : {&options.simul(), &options.breakpoint()}) {
+    const bool there = place->program() == 0 ||
+                       std::ranges::find(loaded.programs, place->program(),
+                                         &simulation::MemoryProgram::slot) != loaded.programs.end();
+    if (there) continue;
+    return Error{ErrorCode::kCellUsage,
+                 "--simul, --break: there is no program " + std::to_string(place->program()),
+                 {}};
+  }
+  return {};
+}
+
 }  // namespace
 
 int Simulate(const SimulateOptions& options) {
-  const Result<bridge::MachineFile> machine = ReadMachine(options.machine);
+  Result<bridge::MachineFile> machine = ReadMachine(options.machine);
   if (!machine) return Refuse(machine.error());
   Result<LoadedFiles> loaded =
       LoadFiles(options.files, options.slots, options.main_slot, machine->family);
   if (!loaded) return Refuse(loaded.error());
+  const Status placed = PlaceOrigin(options.machine.origin, *loaded->family, machine->parameters);
+  if (!placed) return Refuse(placed.error());
   const Result<v1::SimulationOptions> message = OptionsMessage(options, *loaded->family);
   if (!message) return Refuse(message.error());
-  for (const v1::StepPlace* place : {&message->simul(), &message->breakpoint()}) {
-    const bool there =
-        place->program() == 0 ||
-        std::ranges::find(loaded->programs, place->program(), &simulation::MemoryProgram::slot) !=
-            loaded->programs.end();
-    if (!there) {
-      return Refuse({ErrorCode::kCellUsage,
-                     "--simul, --break: there is no program " + std::to_string(place->program()),
-                     {}});
-    }
-  }
+  const Status there = CheckPlaces(*message, *loaded);
+  if (!there) return Refuse(there.error());
   v1::Budget budget;
   if (Status parsed = ParseBudget(options.budget, budget); !parsed) return Refuse(parsed.error());
   const auto variables = bridge::ExpandVariables(SplitCommas(options.variables));
@@ -296,6 +303,7 @@ int Simulate(const SimulateOptions& options) {
     };
   }
   request.products.picture = !options.svg.empty();
+  request.picture.machine_frame = options.machine_coordinates;
   std::string toolpath;
   if (!options.toolpath.empty()) {
     request.products.toolpath = [&toolpath](std::string_view block) {
@@ -373,7 +381,7 @@ int Simulate(const SimulateOptions& options) {
   } else {
     PrintFindings(outcome->diagnostics, outcome->diagnostics_dropped, {});
     DropFindings(outcome->diagnostics, report);
-    PrintRaw(ReportText(report));
+    PrintRaw(ReportText(report, options.machine_coordinates ? Zero::kMachine : Zero::kWork));
   }
   return ExitOf(report.outcome(), options.strict);
 }

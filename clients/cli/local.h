@@ -10,6 +10,8 @@ struct MachineChoice {
   std::string family;
   std::string profile;
   std::string file;  // TOML
+  std::vector<double>
+      origin;  // of the program on the machine: X, Y and perhaps Z, mm; empty: as it is
 };
 
 // Verbs that need no server.
@@ -21,7 +23,8 @@ struct CheckOptions {
   bool fix = false;      // repair the files, and check what comes out
   bool dry_run = false;  // with fix: show what would change, and write nothing
   bool json = false;
-  bool strict = false;  // a DOUBTFUL verdict is an exit code of 1, too
+  bool machine_coordinates = false;  // in the figures, too
+  bool strict = false;               // a DOUBTFUL verdict is an exit code of 1, too
 };
 int Check(const CheckOptions& options);
 
@@ -51,6 +54,7 @@ struct SimulateOptions {
   bool trace = false;
   bool facts = false;
   bool json = false;
+  bool machine_coordinates = false;  // in place of those from the work origin
   bool strict = false;
 };
 int Simulate(const SimulateOptions& options);

@@ -41,6 +41,8 @@ Each verb has its own --help and examples. Verbs that need a server take --serve
 (environment: RMLCELL_SERVER). Exit codes: 0 good, 1 the program has
 errors or its verdict is BAD (with --strict DOUBTFUL, too), 2 wrong use, 3 server.)";
 
+constexpr const char* kMachineCoordinatesText =
+    "positions from the zero of the machine, not of the work";
 constexpr const char* kStrictText = "exit with 1 when the verdict is DOUBTFUL, too";
 
 void AddMachineOptions(CLI::App* verb, MachineChoice& machine) {
@@ -48,6 +50,9 @@ void AddMachineOptions(CLI::App* verb, MachineChoice& machine) {
   verb->add_option("--profile", machine.profile,
                    "profile of a machine model, such as srm-20 or pw-1993");
   verb->add_option("--machine", machine.file, "machine file (TOML): family, profile, [parameters]");
+  verb->add_option("--origin", machine.origin,
+                   "X,Y[,Z]: where the work origin of a mill lies on the machine, mm")
+      ->delimiter(',');
 }
 
 void AddCheckVerb(CLI::App& app, int& exit_code) {
@@ -75,9 +80,27 @@ void AddCheckVerb(CLI::App& app, int& exit_code) {
   verb->add_flag("--dry-run", options->dry_run,
                  "with --fix: show the changes as a patch; write nothing")
       ->needs(fix);
+  verb->add_flag("--machine-coordinates", options->machine_coordinates, kMachineCoordinatesText);
   verb->add_flag("--strict", options->strict, kStrictText);
   verb->add_flag("--json", options->json, "print findings as JSON, one line a file");
   verb->callback([options, &exit_code] { exit_code = Check(*options); });
+}
+
+// Files about the path that was run.
+void AddPathProducts(CLI::App* verb, SimulateOptions& options) {
+  verb->add_option("--svg", options.svg, "write a picture of the toolpath");
+  verb->add_option("--toolpath", options.toolpath,
+                   "write the toolpath that a viewer draws (docs/toolpath.md)");
+  verb->add_option("--samples", options.samples,
+                   "RATE FILE: write where the machine is, RATE times a second, as CSV")
+      ->type_size(2)
+      ->expected(1)
+      ->allow_extra_args(false);
+  verb->add_option("--plot", options.plot,
+                   "CURVES FILE: write curves over time, of speed,power,axes")
+      ->type_size(2)
+      ->expected(1)
+      ->allow_extra_args(false);
 }
 
 void AddSimulateVerb(CLI::App& app, int& exit_code) {
@@ -116,19 +139,7 @@ void AddSimulateVerb(CLI::App& app, int& exit_code) {
   verb->add_option("--budget", options->budget,
                    "steps=N,time=SECONDS: end the run when it needs more");
   verb->add_option("--vars", options->variables, "variables to show at the end: VR[0..9],VI[99]");
-  verb->add_option("--svg", options->svg, "write a picture of the toolpath");
-  verb->add_option("--toolpath", options->toolpath,
-                   "write the toolpath that a viewer draws (docs/toolpath.md)");
-  verb->add_option("--samples", options->samples,
-                   "RATE FILE: write where the machine is, RATE times a second, as CSV")
-      ->type_size(2)
-      ->expected(1)
-      ->allow_extra_args(false);
-  verb->add_option("--plot", options->plot,
-                   "CURVES FILE: write curves over time, of speed,power,axes")
-      ->type_size(2)
-      ->expected(1)
-      ->allow_extra_args(false);
+  AddPathProducts(verb, *options);
   CLI::Option* stock =
       verb->add_option("--stock", options->stock,
                        "100x80x10[@X,Y,TOP]: a block on a mill's table, mm from the work origin");
@@ -147,6 +158,7 @@ void AddSimulateVerb(CLI::App& app, int& exit_code) {
   CLI::Option* facts =
       verb->add_flag("--facts", options->facts, "key: value lines for scripts (docs/facts.md)");
   verb->add_flag("--json", options->json, "print the report as JSON")->excludes(facts);
+  verb->add_flag("--machine-coordinates", options->machine_coordinates, kMachineCoordinatesText);
   verb->add_flag("--strict", options->strict, kStrictText);
   verb->callback([options, &exit_code] { exit_code = Simulate(*options); });
 }
@@ -198,6 +210,7 @@ struct RemoteArguments {
   bool check_only = false;
   bool force = false;
   bool insert = false;
+  bool machine_coordinates = false;
   SubmitRequest submit;
 };
 
@@ -375,7 +388,8 @@ void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exi
                                 "  rmlcell report 17 --json",
                                 remote);
   report->add_option("JOB", given.job)->required();
-  report->callback([&] { exit_code = JobReport(remote, given.job); });
+  report->add_flag("--machine-coordinates", given.machine_coordinates, kMachineCoordinatesText);
+  report->callback([&] { exit_code = JobReport(remote, given.job, given.machine_coordinates); });
   CLI::App* picture = RemoteVerb(app, "picture", "Get the picture of a job (SVG)",
                                  "  rmlcell picture 17 -o part.svg", remote);
   picture->add_option("JOB", given.job)->required();

@@ -73,20 +73,20 @@ namespace {
 
 using Rows = std::vector<std::pair<std::string, std::string>>;
 
-// Figures that follow each other with one name of a row share it. `value` is 0 for what there is
-// none of.
+// Figures that follow each other with one name of a row share it. `value`: nothing for what there
+// is none of.
 template <class Value>
 void AddFigureRows(const machine::MachineFamily& family, machine::FigureInfo::Where where,
                    Value value, Rows& rows) {
   std::string_view row;
   for (const machine::FigureInfo& info : family.figures()) {
-    if (info.row.empty() ||
-        (info.where != where && info.where != machine::FigureInfo::Where::kBoth))
-      continue;
-    const double amount = value(info.name);
-    if (amount == 0.0 && !info.when_zero) continue;
+    using enum machine::FigureInfo::Where;
+    const bool in_both = info.where == kBoth && where != kCheckMachine;
+    if (info.row.empty() || (info.where != where && !in_both)) continue;
+    const std::optional<double> amount = value(info.name);
+    if (!amount || (*amount == 0.0 && !info.when_zero)) continue;
     std::string said(info.said);
-    said.replace(said.find('#'), 1, Fixed(amount, info.unit.empty() ? 0 : 3));
+    said.replace(said.find('#'), 1, Fixed(*amount, info.unit.empty() ? 0 : 3));
     if (info.row == row) {
       rows.back().second += ", " + said;
     } else {
@@ -205,12 +205,11 @@ void AddMilling(const v1::RunReport& report, Rows& rows) {
               PlaceText(milling.gouge_place()) + ", at " + Fixed(milling.gouge_time_s(), 3) + " s");
 }
 
-// 0 when the run has none of it.
-double FigureOf(const v1::RunReport& report, std::string_view name) {
+std::optional<double> FigureOf(const v1::RunReport& report, std::string_view name) {
   for (const v1::Figure& figure : report.figures()) {
     if (figure.name() == name) return figure.value();
   }
-  return 0.0;
+  return std::nullopt;
 }
 
 // What the family wants to be read of its own figures.
@@ -232,8 +231,35 @@ std::string MachineText(const machine::MachineFamily& family, const std::string&
          "): no profile was named";
 }
 
+// Where the tip ends and went: as the program counts, or the machine.
+void AddPositions(const v1::RunReport& report, const machine::MachineShape& shape, Zero zero,
+                  Rows& rows) {
+  const bool from_work = report.has_work_origin() && zero == Zero::kWork;
+  const v1::Point origin = from_work ? report.work_origin() : v1::Point();
+  const auto text = [&origin](v1::Point point) {
+    point.set_x(point.x() - origin.x());
+    point.set_y(point.y() - origin.y());
+    point.set_z(point.z() - origin.z());
+    return PointText(point);
+  };
+  rows.emplace_back("final tip", text(report.final_position().tip()));
+  if (shape.five_axis) {
+    rows.emplace_back("final column", PointText(report.final_position().column()) + "  A " +
+                                          Fixed(report.final_position().a(), 6) + "  B " +
+                                          Fixed(report.final_position().b(), 6));
+  }
+  if (report.has_tip_box()) {
+    rows.emplace_back("tip box",
+                      text(report.tip_box().low()) + "  to  " + text(report.tip_box().high()));
+  }
+  if (!report.has_work_origin()) return;
+  rows.emplace_back("work origin", PointText(report.work_origin()) +
+                                       " on the machine; positions are from " +
+                                       (from_work ? "the work origin" : "the zero of the machine"));
+}
+
 // What a run did; a job that only checks has none of it.
-void AddFigures(const v1::RunReport& report, Rows& rows) {
+void AddFigures(const v1::RunReport& report, Zero zero, Rows& rows) {
   const machine::MachineFamily* family = families::FindFamily(report.family());
   if (family != nullptr) rows.emplace_back("machine", MachineText(*family, report.profile()));
   const v1::WorkFigures& total = report.total();
@@ -279,16 +305,7 @@ void AddFigures(const v1::RunReport& report, Rows& rows) {
   AddMilling(report, rows);
   AddViolations(report, rows);
   rows.emplace_back("steps", std::to_string(total.steps()));
-  rows.emplace_back("final tip", PointText(report.final_position().tip()));
-  if (shape.five_axis) {
-    rows.emplace_back("final column", PointText(report.final_position().column()) + "  A " +
-                                          Fixed(report.final_position().a(), 6) + "  B " +
-                                          Fixed(report.final_position().b(), 6));
-  }
-  if (report.has_tip_box()) {
-    rows.emplace_back("tip box", PointText(report.tip_box().low()) + "  to  " +
-                                     PointText(report.tip_box().high()));
-  }
+  AddPositions(report, shape, zero, rows);
   // A map of Protocol Buffers has another order each time: by kind and number.
   const auto first = rows.insert(rows.end(), report.variables().begin(), report.variables().end());
   const auto order = [](const auto& row) {
@@ -299,7 +316,7 @@ void AddFigures(const v1::RunReport& report, Rows& rows) {
 
 }  // namespace
 
-std::string ReportText(const v1::RunReport& report) {
+std::string ReportText(const v1::RunReport& report, Zero zero) {
   Rows rows;
   const v1::Outcome& outcome = report.outcome();
   if (outcome.verdict() != v1::VERDICT_UNSPECIFIED) {
@@ -308,7 +325,7 @@ std::string ReportText(const v1::RunReport& report) {
       rows.emplace_back("", ReasonLine(reason));
   }
   rows.emplace_back("outcome", OutcomeLine(outcome));
-  if (report.has_total()) AddFigures(report, rows);
+  if (report.has_total()) AddFigures(report, zero, rows);
   if (!report.motion_check().empty())
     rows.emplace_back("motion", "checked " + report.motion_check());
   std::string text = TextOf(rows);
@@ -325,15 +342,15 @@ std::string ReportText(const v1::RunReport& report) {
 }
 
 std::string FigureRows(const machine::MachineFamily& family,
-                       const std::vector<machine::Figure>& figures) {
+                       const std::vector<machine::Figure>& figures, Zero zero) {
   Rows rows;
-  AddFigureRows(
-      family, machine::FigureInfo::Where::kCheck,
-      [&](std::string_view name) {
-        const auto found = std::ranges::find(figures, name, &machine::Figure::name);
-        return found == figures.end() ? 0.0 : found->value;
-      },
-      rows);
+  const auto value = [&](std::string_view name) -> std::optional<double> {
+    const auto found = std::ranges::find(figures, name, &machine::Figure::name);
+    return found == figures.end() ? std::nullopt : std::optional(found->value);
+  };
+  AddFigureRows(family, machine::FigureInfo::Where::kCheck, value, rows);
+  if (zero == Zero::kMachine)
+    AddFigureRows(family, machine::FigureInfo::Where::kCheckMachine, value, rows);
   return TextOf(rows);
 }
 

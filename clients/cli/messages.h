@@ -13,10 +13,12 @@ namespace rmlcell::cli {
 // One line; zero values are shown, since people look for them.
 std::string Json(const google::protobuf::Message& message);
 
-std::string ReportText(const v1::RunReport& report);
+// Positions from the work origin, where the program has one, unless the machine's are wanted.
+enum class Zero { kWork, kMachine };
+std::string ReportText(const v1::RunReport& report, Zero zero = Zero::kWork);
 // The rows that a family gives its figures of a check; empty when it gives none.
 std::string FigureRows(const machine::MachineFamily& family,
-                       const std::vector<machine::Figure>& figures);
+                       const std::vector<machine::Figure>& figures, Zero zero = Zero::kWork);
 std::string OutcomeLine(const v1::Outcome& outcome);
 std::string EventLine(const v1::JobEvent& event);
 std::string StateName(v1::Job::State state);  // "running"

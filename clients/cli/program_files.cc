@@ -60,6 +60,23 @@ Result<bridge::MachineFile> ReadMachine(const MachineChoice& choice) {
   return machine;
 }
 
+Status PlaceOrigin(const std::vector<double>& origin, const machine::MachineFamily& family,
+                   std::map<std::string, std::string>& parameters) {
+  if (origin.empty()) return {};
+  const auto& names = family.info().origin_parameters;
+  if (names[0].empty()) {
+    return Error{ErrorCode::kCellUsage,
+                 "--origin: programs of " + std::string(family.info().title) +
+                     " set their work offset themselves",
+                 {}};
+  }
+  if (origin.size() < 2 || origin.size() > names.size())
+    return Error{ErrorCode::kCellUsage, "--origin: give X,Y or X,Y,Z in mm", {}};
+  for (std::size_t axis = 0; axis < origin.size(); ++axis)
+    parameters[std::string(names[axis])] = ShortestText(origin[axis]);
+  return {};
+}
+
 Status WriteWholeFile(const std::string& path, std::string_view bytes) {
   const auto failed = [&](int error) {
     return Error{

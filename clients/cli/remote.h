@@ -53,7 +53,7 @@ int WatchJob(const Remote& remote, const std::string& job, std::int64_t after, b
 int Jobs(const Remote& remote, const std::string& filter, int limit);
 int ShowJob(const Remote& remote, const std::string& job);
 int CancelJob(const Remote& remote, const std::string& job);
-int JobReport(const Remote& remote, const std::string& job);
+int JobReport(const Remote& remote, const std::string& job, bool machine_coordinates);
 int JobPicture(const Remote& remote, const std::string& job, const std::string& output);
 
 }  // namespace rmlcell::cli

@@ -250,7 +250,7 @@ int CancelJob(const Remote& remote, const std::string& job) {
   return kGood;
 }
 
-int JobReport(const Remote& remote, const std::string& job) {
+int JobReport(const Remote& remote, const std::string& job, bool machine_coordinates) {
   const auto stub = v1::JobService::NewStub(Connect(remote));
   grpc::ClientContext context;
   Prepare(context);
@@ -262,7 +262,7 @@ int JobReport(const Remote& remote, const std::string& job) {
   if (remote.json) {
     Print(Json(report));
   } else {
-    PrintRaw(ReportText(report));
+    PrintRaw(ReportText(report, machine_coordinates ? Zero::kMachine : Zero::kWork));
   }
   return kGood;
 }

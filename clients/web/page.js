@@ -324,7 +324,7 @@ function drawProgress(row, job) {
   const planned = now.plannedTimeNs ? ` of ${duration(Number(now.plannedTimeNs) / 1e9)}` : "";
   if (now.virtualTimeNs) parts.push(duration(Number(now.virtualTimeNs) / 1e9) + planned);
   if (now.speedMmS) parts.push(`${now.speedMmS.toFixed(1)} mm/s`);
-  const tip = now.position?.tip;
+  const tip = now.workTip ?? now.position?.tip;  // a mill's as its program counts
   if (tip) parts.push(`X ${tip.x.toFixed(2)}  Y ${tip.y.toFixed(2)}  Z ${tip.z.toFixed(2)}`);
   setText(row.where, parts.filter(Boolean).join(" \u00b7 "));
   if (row.outcome.firstChild !== row.barLine) row.outcome.replaceChildren(row.barLine, row.where);

@@ -49,11 +49,11 @@ _rmlcell_options() {
   local remote="--help --server --json"
   case $1 in
     "") echo "--help --version" ;;
-    check) echo "--help --family --profile --machine --inputs --errors-only --fix --dry-run --strict --json" ;;
+    check) echo "--help --family --profile --machine --origin --inputs --errors-only --fix --dry-run --machine-coordinates --strict --json" ;;
     simulate)
-      echo "--help --slot --main --executable --family --profile --machine --inputs --mode --override --simul" \
+      echo "--help --slot --main --executable --family --profile --machine --origin --inputs --mode --override --simul" \
         "--break --budget --vars --svg --toolpath --samples --plot --stock --tool --cell --stl" \
-        "--state-in --state-out --trace --facts --strict --json" ;;
+        "--state-in --state-out --trace --facts --machine-coordinates --strict --json" ;;
     explain) echo "--help --json" ;;
     diff) echo "--help --svg --json" ;;
     parameters) echo "--help --profile --json" ;;
@@ -64,11 +64,12 @@ _rmlcell_options() {
     convert) echo "--help --json" ;;
     lsp) echo "--help --stdio" ;;
     transform) echo "--help --move --turn --shift --output --json" ;;
-    machines | programs | delete | stale | projects | job | cancel | report) echo "$remote" ;;
+    machines | programs | delete | stale | projects | job | cancel) echo "$remote" ;;
     put) echo "$remote --etag --check-only --force" ;;
     get) echo "$remote --form --output" ;;
     submit)
       echo "$remote --slot --kind --title --request-id --override --pace --inputs --trace --watch --strict" ;;
+    report) echo "$remote --machine-coordinates" ;;
     watch) echo "$remote --after --strict" ;;
     jobs) echo "$remote --filter --limit" ;;
     picture) echo "$remote --output" ;;
@@ -80,7 +81,7 @@ _rmlcell_options() {
 # True when an option takes a value in the next word.
 _rmlcell_takes_value() {
   case $1 in
-    --slot | --main | --executable | --family | --profile | --machine | --inputs | --mode | --override | \
+    --slot | --main | --executable | --family | --profile | --machine | --origin | --inputs | --mode | --override | \
       --simul | --break | --budget | --vars | --svg | --toolpath | --samples | --plot | --stock | --tool | --cell | --stl | --state-in | --state-out | --server | --etag | --form | \
       --output | -o | --kind | --title | --request-id | --pace | --after | --filter | --limit | --move | --turn | --shift) return 0 ;;
   esac

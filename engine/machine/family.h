@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -31,6 +32,9 @@ struct FamilyInfo {
   bool has_schedules = false;          // laser schedules and process definitions
   bool checked_by_running = false;  // Translate does not follow the motion: CHECK runs the program
   bool hold_in_remote = false;      // the HOLD key works in mode REMOTE, too
+  // Parameters that say where program zero lies on the machine: X, Y and Z, in mm. Empty: programs
+  // set it themselves.
+  std::array<std::string_view, 3> origin_parameters{};
   double override_max_percent = 100.0;  // of the feed rate; the least is above 0
   // The machine's own codes for a number that is no slot, and for a slot without program. A machine
   // without program memory has none: the cell keeps its programs, and says so in its own words.
@@ -93,7 +97,8 @@ struct FigureInfo {
   std::string_view row{};   // "tool"
   std::string_view said{};  // "up # s"
   bool when_zero = false;   // said of nothing, too
-  enum class Where : std::uint8_t { kReport, kCheck, kBoth };
+  // kCheckMachine: of a check, when machine coordinates are asked for.
+  enum class Where : std::uint8_t { kReport, kCheck, kBoth, kCheckMachine };
   Where where = Where::kReport;  // has the row
 };
 

@@ -32,6 +32,8 @@ struct RunState {
   double override_percent = 100.0;
   bool beam_on = false;
   bool spindle_on = false;
+  // Program zero in the machine frame, where a program has one: what X 0, Y 0, Z 0 mean now.
+  std::optional<motion::MachinePoint> work_origin{};
   double progress = -1.0;  // 0..1 where the length of the program is known, else below 0
 };
 

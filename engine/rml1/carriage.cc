@@ -308,6 +308,9 @@ void Carriage::NoteLost(const Point& from, const Point& to, double surface_z) {
     lost_.y_low = std::max(lost_.y_low, range_.y.low - p.y);
     lost_.y_high = std::max(lost_.y_high, p.y - range_.y.high);
     lost_.z_low = std::max(lost_.z_low, range_.bottom() - p.z);
+    lost_.x.Add(p.x);
+    lost_.y.Add(p.y);
+    lost_.z.Add(p.z);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "engine/rml1/action.h"
 #include "engine/rml1/clipping.h"
+#include "engine/rml1/extent.h"
 #include "engine/rml1/registers.h"
 
 namespace rmlcell::rml1 {
@@ -17,6 +18,9 @@ struct LostCut {
   double y_low = 0.0;
   double y_high = 0.0;
   double z_low = 0.0;
+  Extent x;  // where it lies, from the machine's zero
+  Extent y;
+  Extent z;
 };
 
 // The axes of the device: turns commanded points into physical motions.
@@ -64,6 +68,7 @@ class Carriage {
   std::uint64_t clipped_sets() const { return clipped_sets_; }
   // The part of that which would have been in the work: with the tool down, or below Z 0.
   const LostCut& lost() const { return lost_; }
+  const CuttingRange& range() const { return range_; }
 
  private:
   struct Stroke {

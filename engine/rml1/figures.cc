@@ -11,7 +11,9 @@ struct Source {
   const Device& device;
   const Physical::Totals& tool;
   const CutWatch& watch;
-  double mm;  // of one device unit
+  double mm;     // of one device unit
+  Point origin;  // of the work, device units
+  WorkFit fit;
   bool rotary;
   std::optional<std::uint64_t> starved;
   bool ended;
@@ -28,6 +30,7 @@ Value Low(const Extent& extent, double factor = 1.0) {
 Value High(const Extent& extent, double factor = 1.0) {
   return extent.known ? Value(extent.high * factor) : std::nullopt;
 }
+Value Moved(Value value, double by) { return value ? Value(*value + by) : std::nullopt; }
 Value IfAny(std::uint64_t count) { return count > 0 ? Value(Count(count)) : std::nullopt; }
 
 template <int kNumber>
@@ -47,6 +50,10 @@ Value Commands(const Source& s) {
 double DepthNow(const Source& s) {
   const double below = s.device.registers().z0 - s.device.carriage().physical().z;
   return std::max(0.0, below) * s.mm;
+}
+
+Value IfFits(const WorkFit::Axis& axis, double value) {
+  return axis.known && axis.over == 0.0 ? Value(value) : std::nullopt;
 }
 
 struct Row {
@@ -81,16 +88,31 @@ constexpr std::array kRows = {
     Row{{"box_mm.ymax", "mm", "greatest Y of the tool, work coordinates", "Y", "to # mm", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return High(s.tool.y, s.mm); }},
     Row{{"box_mm.zmin", "mm", "least Z of the tool, work coordinates", "Z", "from # mm", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return Low(s.tool.z, s.mm); }},
     Row{{"box_mm.zmax", "mm", "greatest Z of the tool, work coordinates", "Z", "to # mm", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return High(s.tool.z, s.mm); }},
+    Row{{"machine_mm.xmin", "mm", "the same, machine coordinates", "machine X", "from # mm", true, machine::FigureInfo::Where::kCheckMachine}, [](const Source& s) -> Value { return Moved(Low(s.tool.x, s.mm), s.origin.x * s.mm); }},
+    Row{{"machine_mm.xmax", "mm", "the same, machine coordinates", "machine X", "to # mm", true, machine::FigureInfo::Where::kCheckMachine}, [](const Source& s) -> Value { return Moved(High(s.tool.x, s.mm), s.origin.x * s.mm); }},
+    Row{{"machine_mm.ymin", "mm", "the same, machine coordinates", "machine Y", "from # mm", true, machine::FigureInfo::Where::kCheckMachine}, [](const Source& s) -> Value { return Moved(Low(s.tool.y, s.mm), s.origin.y * s.mm); }},
+    Row{{"machine_mm.ymax", "mm", "the same, machine coordinates", "machine Y", "to # mm", true, machine::FigureInfo::Where::kCheckMachine}, [](const Source& s) -> Value { return Moved(High(s.tool.y, s.mm), s.origin.y * s.mm); }},
+    Row{{"machine_mm.zmin", "mm", "the same, machine coordinates", "machine Z", "from # mm", true, machine::FigureInfo::Where::kCheckMachine}, [](const Source& s) -> Value { return Moved(Low(s.tool.z, s.mm), s.origin.z * s.mm); }},
+    Row{{"machine_mm.zmax", "mm", "the same, machine coordinates", "machine Z", "to # mm", true, machine::FigureInfo::Where::kCheckMachine}, [](const Source& s) -> Value { return Moved(High(s.tool.z, s.mm), s.origin.z * s.mm); }},
+    Row{{"origin.xmin", "mm", "least X of the work origin on the machine so that the work fits its travel", "origin X", "may be from # mm", true, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return IfFits(s.fit.x, s.fit.x.low); }},
+    Row{{"origin.xmax", "mm", "greatest such X", "origin X", "to # mm", true, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return IfFits(s.fit.x, s.fit.x.high); }},
+    Row{{"origin.ymin", "mm", "least Y of the work origin on the machine so that the work fits its travel", "origin Y", "may be from # mm", true, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return IfFits(s.fit.y, s.fit.y.low); }},
+    Row{{"origin.ymax", "mm", "greatest such Y", "origin Y", "to # mm", true, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return IfFits(s.fit.y, s.fit.y.high); }},
+    Row{{"origin.zmin", "mm", "least Z of the work origin on the machine (Z0) so that the work fits its travel", "origin Z", "may be from # mm", true, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return IfFits(s.fit.z, s.fit.z.low); }},
+    Row{{"origin.zmax", "mm", "greatest such Z", "origin Z", "to # mm", true, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return IfFits(s.fit.z, s.fit.z.high); }},
+    Row{{"oversize_x", "mm", "by how much the work is larger than the travel of X"}, [](const Source& s) -> Value { return s.fit.x.over; }},
+    Row{{"oversize_y", "mm", "by how much it is larger than the travel of Y"}, [](const Source& s) -> Value { return s.fit.y.over; }},
+    Row{{"oversize_z", "mm", "by how much it is deeper than the travel of Z"}, [](const Source& s) -> Value { return s.fit.z.over; }},
     Row{{"box.amin", "deg", "least angle of the rotary axis"}, [](const Source& s) -> Value { return s.rotary ? Low(s.tool.a) : std::nullopt; }},
     Row{{"box.amax", "deg", "greatest angle of the rotary axis"}, [](const Source& s) -> Value { return s.rotary ? High(s.tool.a) : std::nullopt; }},
     Row{{"clipped_length", "mm", "programmed way beyond the cutting range", "clipped", "# mm beyond the cutting range", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return s.device.carriage().clipped_length() * s.mm; }},
     Row{{"clipped_sets", "", "coordinate sets that led beyond it"}, [](const Source& s) -> Value { return Count(s.device.carriage().clipped_sets()); }},
     Row{{"clipped_cut_length", "mm", "the part of that which would have been in the work"}, [](const Source& s) -> Value { return s.device.carriage().lost().length * s.mm; }, [](const Source& s) { return s.device.first_lost(); }},
-    Row{{"clipped_x_low", "mm", "how far the work leads beyond the least X of the travel"}, [](const Source& s) -> Value { return s.device.carriage().lost().x_low * s.mm; }},
-    Row{{"clipped_x_high", "mm", "how far it leads beyond the greatest X"}, [](const Source& s) -> Value { return s.device.carriage().lost().x_high * s.mm; }},
-    Row{{"clipped_y_low", "mm", "how far it leads beyond the least Y"}, [](const Source& s) -> Value { return s.device.carriage().lost().y_low * s.mm; }},
-    Row{{"clipped_y_high", "mm", "how far it leads beyond the greatest Y"}, [](const Source& s) -> Value { return s.device.carriage().lost().y_high * s.mm; }},
-    Row{{"clipped_z_low", "mm", "how far it leads below the travel"}, [](const Source& s) -> Value { return s.device.carriage().lost().z_low * s.mm; }},
+    Row{{"clipped_x_low", "mm", "how far the work leads beyond the least X of the travel; of work that fits, as the next four"}, [](const Source& s) -> Value { return s.fit.x.over > 0.0 ? std::nullopt : Value(s.device.carriage().lost().x_low * s.mm); }},
+    Row{{"clipped_x_high", "mm", "how far it leads beyond the greatest X"}, [](const Source& s) -> Value { return s.fit.x.over > 0.0 ? std::nullopt : Value(s.device.carriage().lost().x_high * s.mm); }},
+    Row{{"clipped_y_low", "mm", "how far it leads beyond the least Y"}, [](const Source& s) -> Value { return s.fit.y.over > 0.0 ? std::nullopt : Value(s.device.carriage().lost().y_low * s.mm); }},
+    Row{{"clipped_y_high", "mm", "how far it leads beyond the greatest Y"}, [](const Source& s) -> Value { return s.fit.y.over > 0.0 ? std::nullopt : Value(s.device.carriage().lost().y_high * s.mm); }},
+    Row{{"clipped_z_low", "mm", "how far it leads below the travel"}, [](const Source& s) -> Value { return s.fit.z.over > 0.0 ? std::nullopt : Value(s.device.carriage().lost().z_low * s.mm); }},
     Row{{"positions_refused", "", "coordinates and tool heights that were refused: the tool does not go where the program says"}, [](const Source& s) -> Value { return Count(s.device.positions_refused()); }, [](const Source& s) { return s.device.first_refused(); }},
     Row{{"foreign_share", "%", "bytes that belong to no command, of 256 at least"}, [](const Source& s) -> Value { return s.device.foreign_percent(); }},
     Row{{"spindle_stands_length", "mm", "way in the work while the spindle stands"}, [](const Source& s) -> Value { return s.watch.spindle_stands().mm; }, [](const Source& s) { return s.watch.spindle_stands().first; }},
@@ -178,10 +200,14 @@ std::span<const machine::FigureInfo> FigureTable() {
 std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& physical, bool ended,
                                        std::optional<std::uint64_t> starved) {
   const Profile& profile = physical.profile();
+  const Point origin{profile.origin_x, profile.origin_y, device.registers().z0, 0.0};
   const Source source{.device = device,
                       .tool = physical.totals(),
                       .watch = physical.watch(),
                       .mm = 1.0 / profile.units_per_mm,
+                      .origin = origin,
+                      .fit = FitOf(physical.totals().work, device.carriage().lost(), origin,
+                                   device.carriage().range(), profile.units_per_mm),
                       .rotary = profile.has_rotary,
                       .starved = starved,
                       .ended = ended};

@@ -20,6 +20,13 @@ void Physical::OnRide(const Ride& ride, const Registers& registers, const Comman
   plunging_ = plunges;
   const bool in_work = ride.use == MotionUse::kCut || ride.use == MotionUse::kPlunge;
   (in_work ? totals_.cut_mm : totals_.travel_mm) += ride.length_mm;
+  if (in_work) {
+    for (const Point& p : {ride.from, ride.to}) {
+      totals_.work.x.Add(p.x - profile_->origin_x);
+      totals_.work.y.Add(p.y - profile_->origin_y);
+      totals_.work.z.Add(p.z - registers.z0);
+    }
+  }
   totals_.motion_s += ride.time_s;
   watch_.OnRide({.from = ride.from,
                  .to = ride.to,

@@ -5,6 +5,7 @@
 #include "engine/machine/run.h"
 #include "engine/rml1/cut_watch.h"
 #include "engine/rml1/device.h"
+#include "engine/rml1/work_fit.h"
 
 namespace rmlcell::rml1 {
 
@@ -48,6 +49,7 @@ class Physical {
     Extent y;
     Extent z;
     Extent a;  // degrees
+    WorkExtent work;
   };
   const Totals& totals() const { return totals_; }
   const CutWatch& watch() const { return watch_; }

@@ -4,22 +4,10 @@
 #include <cstdint>
 
 #include "engine/rml1/command_table.h"
+#include "engine/rml1/extent.h"
 #include "engine/rml1/number.h"
 
 namespace rmlcell::rml1 {
-
-// Lowest and highest of what was added.
-struct Extent {
-  double low = 0.0;
-  double high = 0.0;
-  bool known = false;
-
-  void Add(double value) {
-    if (!known || value < low) low = value;
-    if (!known || value > high) high = value;
-    known = true;
-  }
-};
 
 // What a program asks for, whatever machine runs it: command counts, extents and lengths in the
 // units of the stream. It keeps a position and a mode of its own, fed with the commands that the

@@ -391,6 +391,9 @@ machine::RunState MillRun::state() const {
   }
   state.override_percent = s.override_percent;
   state.spindle_on = SpindleTurns();
+  state.work_origin =
+      motion::MachinePoint(profile().origin_x, profile().origin_y, s.device.registers().z0) /
+      profile().units_per_mm;
   const double size = static_cast<double>(stream().size());
   state.progress =
       size > 0.0 ? static_cast<double>(s.sender.sent() - s.device.waiting()) / size : 1.0;

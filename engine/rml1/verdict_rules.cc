@@ -16,6 +16,15 @@ constexpr std::array kRules = {
                 "# % of the bytes belong to no command"},
     VerdictRule{ErrorCode::kRml1PositionRefused, "positions_refused", 0.0, Verdict::kBad,
                 "coordinates or heights that were refused: #"},
+    VerdictRule{
+        ErrorCode::kRml1Clipped, "oversize_x", kRounding_mm, Verdict::kBad,
+        "the work is # mm longer in X than the travel: wherever its origin is, it does not fit"},
+    VerdictRule{
+        ErrorCode::kRml1Clipped, "oversize_y", kRounding_mm, Verdict::kBad,
+        "the work is # mm longer in Y than the travel: wherever its origin is, it does not fit"},
+    VerdictRule{
+        ErrorCode::kRml1Clipped, "oversize_z", kRounding_mm, Verdict::kBad,
+        "the work is # mm deeper than the travel of Z: wherever its origin is, it does not fit"},
     VerdictRule{ErrorCode::kRml1Clipped, "clipped_cut_length", kRounding_mm, Verdict::kBad,
                 "# mm of the work lie beyond the travel and are not cut"},
     VerdictRule{ErrorCode::kRml1Clipped, "clipped_x_low", kRounding_mm, Verdict::kBad,

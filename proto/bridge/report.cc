@@ -181,6 +181,7 @@ v1::RunReport ToProto(const simulation::RunReport& report,
   *message.mutable_total() = ToProto(report.total);
   *message.mutable_final_position() =
       PositionOf(report.final_position.tip, report.final_position.axes);
+  if (report.work_origin) *message.mutable_work_origin() = ToProto(*report.work_origin);
   *message.mutable_final_program_point() =
       ToProto(report.final_position.program_point.from_origin());
   message.add_final_program_angles(report.final_position.program_a);
@@ -296,6 +297,7 @@ v1::JobProgress ToProto(const machine::RunState& state, std::uint64_t steps) {
   SetPlace(state.place, *message.mutable_place());
   message.set_instruction(std::string(state.instruction));
   *message.mutable_position() = PositionOf(state.tip, state.axes);
+  if (state.work_origin) *message.mutable_work_tip() = ToProto(state.tip.tip - *state.work_origin);
   message.set_speed_mm_s(state.tip_speed_mm_s);
   message.set_override_percent(state.override_percent);
   message.set_tool_on(state.beam_on || state.spindle_on);

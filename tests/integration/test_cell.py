@@ -56,8 +56,9 @@ class Jobs(WithCell):
         for outcome in (ended, done.outcome, report.outcome):
             self.assertEqual(outcome.verdict, common_pb2.VERDICT_BAD)
             self.assertEqual([reason.code for reason in outcome.reasons], ["RML1-E8002", "RML1-E8002"])
-            # X ends at 203.2 mm.
-            self.assertAlmostEqual(outcome.reasons[0].amount, 900.0 - 203.2, places=6)
+            # X ends at 203.2 mm; from 1 mm on the work is 899 mm long.
+            self.assertAlmostEqual(outcome.reasons[0].amount, 899.0 - 203.2, places=6)
+            self.assertAlmostEqual(outcome.reasons[1].amount, 900.0 - 203.2, places=6)
         check = submit(stub, inline_job("mill-1", "beyond.rml", source, job_pb2.JOB_KIND_CHECK))
         self.assertEqual(wait_for_end(stub, check.name)[-1].ended.verdict, common_pb2.VERDICT_BAD)
 

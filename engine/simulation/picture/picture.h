@@ -26,6 +26,7 @@ struct PictureOptions {
   std::vector<PictureView> views;
   motion::MachineVector direction{1.0, -1.0, 0.8};  // of kDirection: from the part towards the eye
   int width_px = 1600;                              // of the whole picture; its height follows
+  bool machine_frame = false;  // rulers count from the zero of the machine, not of the work
 };
 
 // Collects what a picture needs, in bounded memory.

@@ -55,7 +55,8 @@ class DifferencePage {
     const ScreenRect area{kPageMargin + kRulerLeft, kDifferenceHeader + kPageMargin, panels_width,
                           0.0};
     const machine::Box shown = BoxToShow(all, cut, shape.travel);
-    whole_ = LayOut(FramesOf(options, shape), shown, area);
+    zero_text_ = ZeroText(options, shape);
+    whole_ = LayOut(FramesOf(options, shape), shown, area, ZeroOf(options, shape));
     bottom_ = area.y + whole_.height + kRulerBelow;
 
     machine::Box changed = difference_.removed.box();
@@ -64,7 +65,8 @@ class DifferencePage {
       closer_y_ = bottom_ + kCaption;
       std::vector<ViewFrame> frames = {FrameOf(PictureView::kXY, options.direction)};
       if (shape.five_axis) frames.push_back(FrameOf(PictureView::kXZ, options.direction));
-      closer_ = LayOut(frames, BoxToShow(changed, {}, {}), {area.x, closer_y_, panels_width, 0.0});
+      closer_ = LayOut(frames, BoxToShow(changed, {}, {}), {area.x, closer_y_, panels_width, 0.0},
+                       ZeroOf(options, shape));
       bottom_ = closer_y_ + closer_.height + kRulerBelow;
     }
     const std::size_t panels = whole_.panels.size() + closer_.panels.size();
@@ -83,8 +85,7 @@ class DifferencePage {
     for (const Panel& panel : closer_.panels) DrawOne(panel, ++id);
     const double height = std::ceil(std::max(bottom_, DrawColumn(kDifferenceHeader + kPageMargin)) +
                                     kDifferenceFooter);
-    AppendText(body_, {kPageMargin, height - 14.0}, "machine frame, mm",
-               {.size = 11.0, .colour = kFaint});
+    AppendText(body_, {kPageMargin, height - 14.0}, zero_text_, {.size = 11.0, .colour = kFaint});
     return Opening(height) + body_ + "</svg>\n";
   }
 
@@ -238,6 +239,7 @@ class DifferencePage {
   const std::vector<ComparedFigure>& figures_;
   PathDifference difference_;
   int width_ = 0;
+  std::string_view zero_text_;
   PanelLayout whole_;
   PanelLayout closer_;
   double closer_y_ = 0.0;

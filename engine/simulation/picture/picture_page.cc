@@ -43,13 +43,17 @@ class PageWriter {
   PageWriter(const PathSketch& sketch, const machine::MachineShape& shape, const RunReport& report,
              const PictureOptions& options)
       : sketch_(sketch), shape_(shape), report_(report) {
+    if (report.work_origin) shape_.work_origin = *report.work_origin;
+    zero_ = ZeroOf(options, shape_);
+    zero_text_ = ZeroText(options, shape_);
     width_ = std::clamp(options.width_px, kPictureWidthMin, kPageWidthMax);
     const std::vector<ViewFrame> frames = FramesOf(options, shape);
     depth_ = DepthOf(frames);
     const double panels_width =
         width_ - 2.0 * kPageMargin - kRulerLeft - kPictureColumn - kColumnGap;
-    layout_ = LayOut(frames, BoxToShow(sketch, shape.travel),
-                     {kPageMargin + kRulerLeft, kPictureHeader + kPageMargin, panels_width, 0.0});
+    layout_ =
+        LayOut(frames, BoxToShow(sketch, shape.travel),
+               {kPageMargin + kRulerLeft, kPictureHeader + kPageMargin, panels_width, 0.0}, zero_);
     column_x_ = width_ - kPageMargin - kPictureColumn;
   }
 
@@ -227,7 +231,8 @@ class PageWriter {
         AppendRect(body_, {x + 5.5 * shade, y - 4.0, 5.7, 8.0},
                    "fill=\"" + std::string(kShadeColours[shade]) + '"');
       }
-      name("cut, Z " + FixedText(depth_.high_mm, 2) + " to " + FixedText(depth_.low_mm, 2));
+      name("cut, Z " + FixedText(depth_.high_mm - zero_.z(), 2) + " to " +
+           FixedText(depth_.low_mm - zero_.z(), 2));
     } else {
       AppendLine(body_, {x, y}, {x + 44.0, y},
                  "stroke=\"" + std::string(kCutColour) + "\" stroke-width=\"2.2\"");
@@ -329,17 +334,19 @@ class PageWriter {
   }
 
   void DrawFooter(double height) {
-    std::string text = "machine frame, mm";
+    std::string text(zero_text_);
     if (!report_.inputs_hash.empty()) text += "   ·   inputs " + report_.inputs_hash.substr(0, 12);
     if (!report_.engine_version.empty()) text += "   ·   engine " + report_.engine_version;
     AppendText(body_, {kPageMargin, height - 14.0}, text, {.size = 11.0, .colour = "#93a0ab"});
   }
 
   const PathSketch& sketch_;
-  const machine::MachineShape& shape_;
+  machine::MachineShape shape_;  // with the work origin of the end
   const RunReport& report_;
   int width_ = 0;
   DepthRange depth_;
+  motion::MachinePoint zero_;
+  std::string_view zero_text_;
   PanelLayout layout_;
   double column_x_ = 0.0;
   std::string body_;

@@ -39,14 +39,16 @@ void DrawRulers(const Panel& panel, std::string& out) {
   const double step = NiceStep(kTick_px / panel.scale);
   const std::string grid = Stroke(kGrid, 1.0);
   const TextStyle label{.size = 11.0, .colour = kFaint, .anchor = "middle"};
-  for (double u = std::ceil(seen.left / step) * step; u <= seen.right; u += step) {
-    const double x = rect.x + (u - seen.left) * panel.scale;
+  const double left = seen.left - panel.zero.dot(panel.frame.right);
+  for (double u = std::ceil(left / step) * step; u <= left + seen.width(); u += step) {
+    const double x = rect.x + (u - left) * panel.scale;
     AppendLine(out, {x, rect.y}, {x, rect.y + rect.height}, grid);
     AppendText(out, {x, rect.y + rect.height + 15.0}, TickText(u, step), label);
   }
   const TextStyle side{.size = 11.0, .colour = kFaint, .anchor = "end"};
-  for (double v = std::ceil(seen.bottom / step) * step; v <= seen.top; v += step) {
-    const double y = rect.y + rect.height - (v - seen.bottom) * panel.scale;
+  const double bottom = seen.bottom - panel.zero.dot(panel.frame.up);
+  for (double v = std::ceil(bottom / step) * step; v <= bottom + seen.height(); v += step) {
+    const double y = rect.y + rect.height - (v - bottom) * panel.scale;
     AppendLine(out, {rect.x, y}, {rect.x + rect.width, y}, grid);
     AppendText(out, {rect.x - 6.0, y + 4.0}, TickText(v, step), side);
   }
@@ -147,7 +149,11 @@ void DrawStartAndEnd(const PanelContent& content, const Panel& panel, std::strin
 
 // Below the panel: nothing of the path lies under it.
 void DrawScaleBar(const Panel& panel, std::string& out) {
-  const double length_mm = NiceStep(kScaleBar_px / panel.scale);
+  // Its figure stands clear of the name of the axis.
+  constexpr double kFigure_px = 60.0, kAxisName_px = 44.0;
+  double length_mm = NiceStep(kScaleBar_px / panel.scale);
+  if (length_mm * panel.scale + kFigure_px + kAxisName_px > panel.rect.width)
+    length_mm = NiceStep(0.25 * kScaleBar_px / panel.scale);
   const double length = length_mm * panel.scale;
   const double x = panel.rect.x;
   const double y = panel.rect.y + panel.rect.height + 27.0;

@@ -98,8 +98,18 @@ Extent Panel::visible() const {
           middle_up + half_height};
 }
 
+motion::MachinePoint ZeroOf(const PictureOptions& options, const machine::MachineShape& shape) {
+  const bool from_work = shape.has_work_origin && !options.machine_frame;
+  return from_work ? shape.work_origin : motion::MachinePoint(0.0, 0.0, 0.0);
+}
+
+std::string_view ZeroText(const PictureOptions& options, const machine::MachineShape& shape) {
+  const bool from_work = shape.has_work_origin && !options.machine_frame;
+  return from_work ? "from the work origin, mm" : "machine frame, mm";
+}
+
 PanelLayout LayOut(const std::vector<ViewFrame>& frames, const machine::Box& box,
-                   const ScreenRect& area) {
+                   const ScreenRect& area, const motion::MachinePoint& zero) {
   PanelLayout layout;
   std::vector<Extent> extents;
   for (const ViewFrame& frame : frames) extents.push_back(ExtentOf(box, frame));
@@ -145,6 +155,7 @@ PanelLayout LayOut(const std::vector<ViewFrame>& frames, const machine::Box& box
   double common = HUGE_VAL;
   for (std::size_t k = 0; k < layout.panels.size(); ++k) {
     Panel& panel = layout.panels[k];
+    panel.zero = zero;
     panel.middle_right = 0.5 * (extents[k].left + extents[k].right);
     panel.middle_up = 0.5 * (extents[k].bottom + extents[k].top);
     panel.scale =

@@ -49,6 +49,7 @@ struct Panel {
   double scale = 1.0;
   double middle_right = 0.0;  // what stands in the middle of the panel, along right and up
   double middle_up = 0.0;
+  motion::MachinePoint zero{0.0, 0.0, 0.0};  // what the rulers count from
 
   ScreenPoint Project(const motion::MachinePoint& point) const;
   Extent visible() const;
@@ -62,7 +63,12 @@ struct PanelLayout {
   double height = 0.0;
 };
 PanelLayout LayOut(const std::vector<ViewFrame>& frames, const machine::Box& box,
-                   const ScreenRect& area);
+                   const ScreenRect& area, const motion::MachinePoint& zero = {0.0, 0.0, 0.0});
+
+// What rulers and heights of a picture count from: the work origin, where there is one; and what
+// the page says of that.
+motion::MachinePoint ZeroOf(const PictureOptions& options, const machine::MachineShape& shape);
+std::string_view ZeroText(const PictureOptions& options, const machine::MachineShape& shape);
 
 // What the panels show: the cut with a margin; all of the path when that is not much more, or when
 // nothing was cut; the travel of the machine when nothing moved. Never without extent.

@@ -315,6 +315,13 @@ void Table::AddPositions() {
       [](const RunReport& r) { return Real(r.final_position.axes.a_rad); });
   Add("final_b_rad", "rad", "B at the end",
       [](const RunReport& r) { return Real(r.final_position.axes.b_rad); });
+  for (int i = 0; i < 3; ++i) {
+    Add("work_origin" + std::string(kCoordinates[i]) + "_mm", "mm",
+        CoordinateName(kCoordinates[i]) + "work origin of a mill at the end, machine frame",
+        [i](const RunReport& r) {
+          return r.work_origin ? Real((*r.work_origin)[i]) : std::string(kNone);
+        });
+  }
   AddPoint("final_point", "", "last point as the program wrote it, in its own frame and units",
            [](const RunReport& r) { return r.final_position.program_point.from_origin(); });
 }

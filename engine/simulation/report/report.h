@@ -246,6 +246,7 @@ struct RunReport : ScopeFigures {
   std::uint64_t steps_executed = 0;
   std::uint64_t halts = 0;
   FinalPosition final_position;
+  std::optional<motion::MachinePoint> work_origin;  // at the end, machine frame
 
   std::uint64_t lookahead_starved = 0;  // knots that the planner decided before it saw enough
 

@@ -263,6 +263,7 @@ RunReport ReportRecorder::Report(const machine::Run& run) const {
   report.final_position = last_;
   report.final_position.tip = state.tip;
   report.final_position.axes = state.axes;
+  report.work_origin = state.work_origin;
   work_.WriteTo(report);
   if (shutter_open_) {
     report.total.shutter_open += time_.reached() - shutter_since_ - shutter_counted_;

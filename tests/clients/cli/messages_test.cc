@@ -343,7 +343,6 @@ TEST_F(Messages, AWholeReportOfAMill) {
       "cycle time    0.000 s\n"
       "path          0.000 mm: cut 0.000, travel 0.000\n"
       "plunges       2\n"
-      "tool          up 0.000 s, down 0.000 s\n"
       "material      1.500 mm3 removed\n"
       "              3 motions at travel speed through material, up to 0.250 mm deep at step 4, at 5.500 s\n"
       "steps         0\n"

@@ -194,6 +194,23 @@ TEST(Picture, ShowsWhatTheIssueAsksFor) {
   EXPECT_GE(CountOf(laser, ">direction of the head<"), 1u);
 }
 
+// Rulers and heights count from the work origin, at (10, 10, -20), or from the machine's zero.
+TEST(Picture, CountsFromTheWorkOriginUnlessTheMachinesIsWanted) {
+  const Script cut = Script()
+                         .Line({10, 10, 5}, {10, 10, -21}, {.use = MotionUse::kPlunge})
+                         .Line({10, 10, -21}, {60, 10, -21}, {.use = MotionUse::kCut})
+                         .Line({60, 10, -21}, {60, 50, -23}, {.use = MotionUse::kCut});
+  const std::string work = SvgOf(cut, Mill(), Completed(), {});
+  EXPECT_EQ(CountOf(work, ">cut, Z -1.00 to -3.00<"), 1);
+  EXPECT_EQ(CountOf(work, "from the work origin, mm"), 1);
+  EXPECT_EQ(CountOf(work, ">50</text>"), 1);  // X ends there
+  EXPECT_EQ(CountOf(work, ">60</text>"), 0);
+  const std::string machine = SvgOf(cut, Mill(), Completed(), {.machine_frame = true});
+  EXPECT_EQ(CountOf(machine, ">cut, Z -21.00 to -23.00<"), 1);
+  EXPECT_EQ(CountOf(machine, "machine frame, mm"), 1);
+  EXPECT_EQ(CountOf(machine, ">60</text>"), 1);
+}
+
 // Depth is told by shade where a mill is seen from above alone, and cut more than 0.01 mm deep in
 // places: from the highest cut, by its deeper end, to the deepest.
 TEST(Picture, DepthsHaveShadesFromAboveOnly) {
@@ -206,7 +223,7 @@ TEST(Picture, DepthsHaveShadesFromAboveOnly) {
   const auto shaded = [](const Script& script, const machine::MachineShape& shape,
                          const std::vector<PictureView>& views) {
     const std::string svg = SvgOf(script, shape, Completed(), {.views = views});
-    return CountOf(svg, ">cut, Z -1.00 to ") == 1;
+    return CountOf(svg, ">cut, Z 19.00 to ") == 1;  // Z 0 of the work is at -20
   };
   EXPECT_TRUE(shaded(milled(2.0), Mill(), {}));
   EXPECT_TRUE(shaded(milled(0.011), Mill(), {PictureView::kXY}));

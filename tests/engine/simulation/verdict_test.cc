@@ -100,8 +100,8 @@ TEST(Verdict, OfWorkBeyondTheTravel) {
 TEST(Verdict, OfHolesThatAreNotDrilled) {
   EXPECT_EQ(
       Text(OfStream(Work("PU30000,100;PD;PU;PU200,100;PD300,100;"))),
-      "BAD; RML1-E8002 1.000 mm of the work lie beyond the travel and are not cut @7; "
-      "RML1-E8002 the work leads 100.000 mm beyond the greatest X: move the origin to less X");
+      "BAD; RML1-E8002 the work is 98.000 mm longer in X than the travel: wherever its origin is, "
+      "it does not fit; RML1-E8002 1.000 mm of the work lie beyond the travel and are not cut @7");
   // Z0 55 mm below the top, the tool 10 mm below it: the travel ends at 60 mm.
   const std::string deep = "VS10;!VZ10;!PZ-1000,200;!ZO-5500;!MC1;PU100,100;PD200,100;PU0,0;!MC0;";
   EXPECT_EQ(Text(OfStream(deep)),
