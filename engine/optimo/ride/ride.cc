@@ -143,18 +143,20 @@ void Ride::TellMotion(SimTime until) {
   ActiveMotion& active = *s_.active;
   if (until <= active.told && until < active.end) return;
   const Beam& beam = situation_.beam;
-  telling_.observer().OnMotion(
-      {.start = active.told,
-       .end = until,
-       .place = active.note.place,
-       .use = beam.on ? machine::MotionUse::kCut : machine::MotionUse::kTravel,
-       .motion = &active.motion,
-       .from = PlaceOf(active, active.told),
-       .travelled = PlaceOf(active, until),
-       .profile_start_s = ToSeconds(active.told - active.start),
-       .programmed_mm_s = active.note.feed_mm_s,
-       .beam_on = beam.on,
-       .power = beam.power});
+  const machine::MotionDone done{
+      .start = active.told,
+      .end = until,
+      .place = active.note.place,
+      .use = beam.on ? machine::MotionUse::kCut : machine::MotionUse::kTravel,
+      .motion = &active.motion,
+      .from = PlaceOf(active, active.told),
+      .travelled = PlaceOf(active, until),
+      .profile_start_s = ToSeconds(active.told - active.start),
+      .programmed_mm_s = active.note.feed_mm_s,
+      .beam_on = beam.on,
+      .power = beam.power};
+  listener_.OnMotionTold(done);
+  telling_.observer().OnMotion(done);
   active.told = until;
 }
 
