@@ -167,6 +167,8 @@ TEST(LaserVerdict, OfABeamThatStands) {
             "DOUBTFUL; OPT-E7420 the beam stays 0.998 s on a tip that stands @6");
   EXPECT_EQ(with_stand("DELAY .96\n"),
             "BAD; OPT-E7420 the beam stays 1.008 s on a tip that stands @6");
+  // Two stands are two.
+  EXPECT_EQ(with_stand("DELAY .05\n" + To("15.") + "DELAY .05\n"), "GOOD");
   // The head turns about the tip, motion.md 3.5: A by 0.5 rad with up to 0.1 * 2 pi rad/s and 400
   // rad/s3, 0.5 / 0.62832 + 2 sqrt(0.62832 / 400) = 0.875 s, and 0.048 s before and behind it.
   EXPECT_EQ(VerdictOfCut(From("0.") + kOn + To("10.") + To("10.", "0.5") + To("20.", "0.5") + kOff),
@@ -247,6 +249,15 @@ TEST(LaserVerdict, OfAHeadThatTurnsStraightDown) {
   EXPECT_EQ(swing("0.5237", "0.0174", "0.0174"), said);
   EXPECT_EQ(swing("0.5237", "-0.0174", "-0.0174"), said);
   EXPECT_EQ(swing("0.5237", "0.0175", "0.0175"), "GOOD");
+  // 20 degrees and 20 degrees: on end, and with the head away from there in between.
+  const auto twice = [](const std::string& between) {
+    return VerdictOfCut(From("0.") + kOn + To("100.", "0.349") + between + To("500.", "0.698") +
+                        kOff);
+  };
+  EXPECT_EQ(twice(""),
+            "DOUBTFUL; OPT-E7319 A turns 39.992 degrees in a contour within 1 degree of B = 0 @6");
+  EXPECT_EQ(twice(To("200.", "0.349", "0.1") + To("300.", "0.349", "0.1") + To("400.", "0.349")),
+            "GOOD");
   // Across: of the 1 rad that A turns, 10 degrees while B comes from 1 degree and goes to -1.
   EXPECT_EQ(swing("1.", "0.1", "-0.1"), "GOOD");
 }
@@ -308,6 +319,15 @@ TEST(Contours, HaveTimeLengthAndEnergy) {
   EXPECT_EQ(report.cut_figures.contours, 2U);
   EXPECT_EQ(report.cut_figures.longest, cut.time);
   EXPECT_EQ(report.cut_figures.energy_max_j, cut.energy_j());
+}
+
+// Of a ramp to 50 mm/s the way above 40 takes sqrt(20 / 40000) = 0.02236 s, 1.043498 mm; the rest
+// of 1.767767 mm is slow, at both ends.
+TEST(Contours, HaveTheirSlowLength) {
+  const RunReport report = ReportOfCut(From("0.") + kOn + To("200.") + kOff);
+  ASSERT_EQ(report.contours.size(), 1U);
+  EXPECT_NEAR(report.contours[0].slow_mm, 2.0 * (1.767767 - 1.043498), 1e-5);
+  EXPECT_EQ(report.cut_figures.slow_percent.value, 0.0);
 }
 
 // OPT-B.34: the machine takes the beam away while it is halted, and gives it back. What the program
