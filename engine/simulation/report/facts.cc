@@ -286,9 +286,9 @@ void Table::AddContours() {
   worst("standing_beam_max_s", "s",
         "longest time of the beam on a standing tip, with power, that is no piercing",
         &CutFigures::standing_s);
-  worst("singular_swing_max_rad", "rad",
-        "most that A turns on end in a contour within 1 degree of B = 0",
-        &CutFigures::singular_rad);
+  Add("singular_swing_max_deg", "deg",
+      "most that A turns on end in a contour within 1 degree of B = 0",
+      [](const RunReport& r) { return Real(r.cut_figures.singular_rad.value / kRadPerDegree); });
   for (std::size_t i = 0; i < CutFigures{}.near_end.size(); ++i) {
     const std::string axis(1, "xyzab"[i]);
     const std::string unit = i < 3 ? "mm" : "rad";

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "engine/families/families.h"
+#include "engine/simulation/report/facts.h"
 #include "engine/simulation/report/report_recorder.h"
 #include "engine/simulation/run/simulate.h"
 #include "engine/simulation/verdict/verdict.h"
@@ -328,6 +329,21 @@ TEST(Contours, HaveTheirSlowLength) {
   ASSERT_EQ(report.contours.size(), 1U);
   EXPECT_NEAR(report.contours[0].slow_mm, 2.0 * (1.767767 - 1.043498), 1e-5);
   EXPECT_EQ(report.cut_figures.slow_percent.value, 0.0);
+}
+
+// docs/verdict.md: a figure with its unit is the key of the fact.
+TEST(LaserVerdict, LooksAtFiguresThatAreFacts) {
+  std::set<std::string> keys;
+  for (const FactKey& fact : FactKeys()) keys.emplace(fact.key);
+  int looked_at = 0;
+  for (const VerdictRuleInfo& info : CommonVerdictRules()) {
+    if (Lookup(info.rule.code).family != ErrorFamily::kOptimo) continue;
+    if (info.rule.code == ErrorCode::kTargetOutOfTravel) continue;  // a list: violations
+    const std::string unit(info.unit == "%" ? "percent" : info.unit);
+    EXPECT_TRUE(keys.contains(std::string(info.rule.figure) + '_' + unit)) << info.rule.figure;
+    ++looked_at;
+  }
+  EXPECT_EQ(looked_at, 12);
 }
 
 // OPT-B.34: the machine takes the beam away while it is halted, and gives it back. What the program
