@@ -1,6 +1,7 @@
 #include "clients/cli/messages.h"
 
 #include <algorithm>
+#include <functional>
 #include <tuple>
 
 #include "clients/cli/findings_text.h"
@@ -178,6 +179,27 @@ void AddPeaks(const v1::RunReport& report, Rows& rows) {
   rows.emplace_back("peak accel.", accelerations);
 }
 
+// Those that take longest. The beam's row has their sum.
+void AddContours(const v1::RunReport& report, Rows& rows) {
+  if (report.contours().empty()) return;
+  std::vector<const v1::Contour*> longest;
+  for (const v1::Contour& contour : report.contours()) longest.push_back(&contour);
+  std::ranges::stable_sort(longest, std::ranges::greater(), &v1::Contour::time_s);
+  const std::int64_t all = report.contours_size() + report.contours_dropped();
+  rows.emplace_back("contours", std::to_string(all) + (all > kListedMax ? ", the longest:" : ""));
+  if (longest.size() > kListedMax) longest.resize(kListedMax);
+  for (const v1::Contour* contour : longest) {
+    std::string text = PlaceText(contour->place()) + ": " + Fixed(contour->time_s(), 3) + " s, " +
+                       Fixed(contour->length_mm(), 3) + " mm, " + Fixed(contour->energy_j(), 0) +
+                       " J";
+    if (contour->pierce_energy_j() > 0.0)
+      text += ", " + Fixed(contour->pierce_energy_j(), 0) + " of them while it stands";
+    if (contour->slow_length_mm() > 0.0)
+      text += ", " + Fixed(contour->slow_length_mm(), 3) + " mm slow";
+    rows.emplace_back("", std::move(text));
+  }
+}
+
 void AddViolations(const v1::RunReport& report, Rows& rows) {
   const auto& violations = report.violations();
   if (violations.empty()) return;
@@ -298,6 +320,7 @@ void AddFigures(const v1::RunReport& report, Zero zero, Rows& rows) {
   } else if (family != nullptr) {
     rows.emplace_back("plunges", std::to_string(total.plunges()));
   }
+  AddContours(report, rows);
   if (family != nullptr) AddFamilyFigures(report, *family, rows);
   AddCorners(report, rows);
   AddSlowMoves(report, rows);

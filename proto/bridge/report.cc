@@ -145,6 +145,55 @@ void SetScope(const simulation::ScopeFigures& scope, Message& message) {
   for (const simulation::AxisFigures& axis : scope.axes) *message.add_axes() = ToProto(axis);
 }
 
+v1::Contour ToProto(const simulation::Contour& contour) {
+  v1::Contour message;
+  SetPlace(contour.place, *message.mutable_place());
+  message.set_begin_s(ToSeconds(contour.begin));
+  message.set_time_s(ToSeconds(contour.time));
+  message.set_length_mm(contour.length_mm);
+  message.set_slow_length_mm(contour.slow_mm);
+  message.set_energy_j(contour.energy_j());
+  message.set_pierce_energy_j(contour.pierce_energy_j);
+  return message;
+}
+
+v1::CutFigures ToProto(const simulation::CutFigures& cut) {
+  v1::CutFigures message;
+  message.set_contours(static_cast<std::int64_t>(cut.contours));
+  message.set_time_s_max(ToSeconds(cut.longest));
+  message.set_energy_j_max(cut.energy_max_j);
+  const auto set = [&message](const simulation::Extreme& extreme,
+                              v1::CutExtreme* (v1::CutFigures::*field)()) {
+    if (!(extreme.value > 0.0)) return;
+    v1::CutExtreme& made = *(message.*field)();
+    made.set_value(extreme.value);
+    SetPlace(extreme.place, *made.mutable_place());
+  };
+  set(cut.slow_percent, &v1::CutFigures::mutable_slow_percent);
+  set(cut.hot_mm, &v1::CutFigures::mutable_hot_stretch_mm);
+  set(cut.weak_mm, &v1::CutFigures::mutable_weak_stretch_mm);
+  set(cut.uncontrolled_mm, &v1::CutFigures::mutable_ptp_mm);
+  set(cut.standing_s, &v1::CutFigures::mutable_standing_s);
+  set(cut.singular_rad, &v1::CutFigures::mutable_singular_rad);
+  for (std::size_t i = 0; i < cut.near_end.size(); ++i) {
+    const simulation::Extreme& extreme = cut.near_end[i];
+    if (!(extreme.value > 0.0)) continue;
+    v1::NearEnd& end = *message.add_near_ends();
+    end.set_axis(std::string(1, "XYZAB"[i]));
+    end.set_rotary(i >= 3);
+    end.set_depth(extreme.value);
+    SetPlace(extreme.place, *end.mutable_place());
+  }
+  return message;
+}
+
+void SetContours(const simulation::RunReport& report, v1::RunReport& message) {
+  for (const simulation::Contour& contour : report.contours)
+    *message.add_contours() = ToProto(contour);
+  message.set_contours_dropped(static_cast<std::int64_t>(report.contours_dropped));
+  if (report.cut_figures.contours > 0) *message.mutable_cut() = ToProto(report.cut_figures);
+}
+
 v1::AxisViolation ToProto(const simulation::AxisViolation& violation) {
   v1::AxisViolation message;
   SetPlace(violation.place, *message.mutable_place());
@@ -225,6 +274,7 @@ v1::RunReport ToProto(const simulation::RunReport& report,
     figures.set_below_mm(milling->below_mm);
     if (milling->below_mm > 0.0) SetPlace(milling->below_place, *figures.mutable_below_place());
   }
+  SetContours(report, message);
   for (const simulation::AxisViolation& violation : report.violations) {
     *message.add_violations() = ToProto(violation);
   }

@@ -36,7 +36,9 @@ void Actuators::Take(const PassageEffect& effect) {
     case PassageEffect::Kind::kBeamOn:
       return BeamOn(effect.power);
     case PassageEffect::Kind::kBeamOff:
-      return BeamOff();
+      Darken();
+      situation_.beam.asked = effect.value != 0.0;
+      return;
     case PassageEffect::Kind::kSchedule:
       if (machine.schedule == effect.index) return;
       machine.schedule = effect.index;
@@ -53,9 +55,11 @@ void Actuators::SetOutput(int index, double value) {
   Bits& outputs = situation_.machine.data.ol_physical;
   const auto n = static_cast<std::size_t>(index);
   const bool on = value != 0.0;
+  if (situation_.gas_refused == index) situation_.gas_refused = 0;
   if (outputs[n] == on) return;
   const int other = OtherGas(index);
   if (on && other >= 0 && outputs[static_cast<std::size_t>(other)]) {
+    situation_.gas_refused = index;
     return telling_.Warn(ErrorCode::kGasConflict,
                          "OL[" + std::to_string(index) + "] while another assist gas is on",
                          "OPT-5.40");
@@ -87,11 +91,17 @@ void Actuators::BeamOn(const machine::PowerBySpeed& power) {
   OpenShutter();
   Beam& beam = situation_.beam;
   const bool was_on = std::exchange(beam.on, true);
+  beam.asked = true;
   beam.power = power;
   if (!was_on) telling_.Signal(machine::Signal::kBeam, 0, 1.0, power.constant_percent);
 }
 
 void Actuators::BeamOff() {
+  Darken();
+  situation_.beam.asked = false;
+}
+
+void Actuators::Darken() {
   Beam& beam = situation_.beam;
   if (!beam.on) return;
   ride_.TellUpToNow();
@@ -103,7 +113,7 @@ void Actuators::BeamOff() {
 void Actuators::Suspend() {
   if (!situation_.beam.on) return;
   situation_.beam.returns = true;
-  BeamOff();
+  Darken();
 }
 
 void Actuators::CloseForDoor() {

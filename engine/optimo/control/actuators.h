@@ -19,7 +19,7 @@ struct PassageEffect {
   Kind kind = Kind::kOutput;
   machine::Place place{};
   int index = 0;
-  double value = 0.0;
+  double value = 0.0;  // kBeamOff: 1 where WORK 0 or 1 is ON all the same
   machine::PowerBySpeed power{};
 };
 
@@ -44,6 +44,7 @@ class Actuators {
   void Carry(const PassageEffect& effect);
 
   void BeamOn(const machine::PowerBySpeed& power);
+  // No process asks for it any more.
   void BeamOff();
   void CloseShutter();
   // The beam, while motion is held: START brings it back.
@@ -65,6 +66,7 @@ class Actuators {
   void Take(const PassageEffect& effect);
   void SetOutput(int index, double value);
   void OpenShutter();
+  void Darken();
   void TellZeroed(int group);
 
   Situation& situation_;

@@ -42,6 +42,7 @@ Control::Control(OptimoParameters parameters, machine::RunSetup setup,
       data_(now(), parameters_, counter_, ride_, effects_),
       waits_(s_.waits, now(), cycle_, telling_, ride_),
       watch_(s_.watch, now(), cycle_, counter_, ride_, data_, waits_),
+      process_watch_(s_.process_watch, now()),
       works_(s_.works, now(), parameters_, cycle_, telling_, counter_, ride_, actuators_, effects_,
              data_, waits_),
       halts_(s_.halts, now(), telling_, ride_, actuators_, waits_, works_),
@@ -333,6 +334,14 @@ void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, s
 
 std::optional<std::string> Control::ReadVariable(std::string_view name) const {
   return ReadByName(now().machine.data, name);
+}
+
+std::vector<machine::Figure> Control::figures() const {
+  std::vector<machine::Figure> figures = {
+      {"lookahead_starved", "", static_cast<double>(s_.ride.planner.lookahead_starved())},
+      {"executables_made", "", static_cast<double>(s_.counter.made_executables.size())}};
+  for (machine::Figure& figure : process_watch_.figures()) figures.push_back(std::move(figure));
+  return figures;
 }
 
 machine::RunState Control::Snapshot() const {

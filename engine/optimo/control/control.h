@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/optimo/control/actuators.h"
 #include "engine/optimo/control/alarms.h"
@@ -12,6 +13,7 @@
 #include "engine/optimo/control/move_watch.h"
 #include "engine/optimo/control/moves.h"
 #include "engine/optimo/control/passage_effects.h"
+#include "engine/optimo/control/process_watch.h"
 #include "engine/optimo/control/program_counter.h"
 #include "engine/optimo/control/waits.h"
 #include "engine/optimo/control/works.h"
@@ -35,6 +37,7 @@ struct ControlState {
   PassageEffectState effects{};
   WaitState waits{};
   WatchState watch{};
+  ProcessWatchState process_watch{};
   WorkState works{};
   MoveState moves{};
   HaltState halts{};
@@ -69,6 +72,7 @@ class Control final : private RideListener {
   std::optional<std::string> ReadVariable(std::string_view name) const;
 
   const ControlState& state() const { return s_; }
+  std::vector<machine::Figure> figures() const;
   void Restore(const ControlState& state) { s_ = state; }
 
  private:
@@ -85,6 +89,7 @@ class Control final : private RideListener {
   void Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail);
   void OnMark(std::uint64_t tag) override { effects_.OnMark(tag); }
   void OnMotionBegins(std::uint64_t tag) override { watch_.OnMotionBegins(tag); }
+  void OnMotionTold(const machine::MotionDone& done) override { process_watch_.OnMotion(done); }
 
   // --- control_fetch.cc: one instruction after the other ---
   void Fetch();
@@ -115,6 +120,7 @@ class Control final : private RideListener {
   DataAccess data_;
   Waits waits_;
   MoveWatch watch_;
+  ProcessWatch process_watch_;
   Works works_;
   Halts halts_;
   Moves moves_;

@@ -281,6 +281,7 @@ void Control::EndModule() {
   program.work_tasks.clear();
   if (program.processes.any_on()) {
     telling_.Warn(ErrorCode::kWorkActiveAtEnd, "the program ends with a WORK ON", "OPT-3.34");
+    if (program.processes.beam_on()) process_watch_.OnLeftOn(now().place);
     program.processes.AllOff();
     actuators_.BeamOff();
   }

@@ -1,10 +1,12 @@
 #include "engine/optimo/control/optimo_family.h"
 
 #include <array>
+#include <vector>
 
 #include "engine/core/units.h"
 #include "engine/optimo/control/optimo_run.h"
 #include "engine/optimo/control/optimo_tools.h"
+#include "engine/optimo/control/process_watch.h"
 #include "engine/optimo/editing/optimo_editing.h"
 #include "engine/optimo/language/compiler.h"
 #include "engine/optimo/language/linker.h"
@@ -28,11 +30,20 @@ constexpr machine::FamilyInfo kInfo = {.id = "optimo",
                                        .no_slot = ErrorCode::kProgramNumber,
                                        .empty_slot = ErrorCode::kProgramMissing};
 
-constexpr std::array kFigures = {
+constexpr std::array kCounts = {
     machine::FigureInfo{"lookahead_starved", "",
                         "knots that the planner had to decide before it could see enough"},
     machine::FigureInfo{"executables_made", "", "executables that the run had to make"},
 };
+
+std::span<const machine::FigureInfo> Figures() {
+  static const auto figures = [] {
+    std::vector<machine::FigureInfo> all(kCounts.begin(), kCounts.end());
+    for (const machine::FigureInfo& info : ProcessWatch::FigureTable()) all.push_back(info);
+    return all;
+  }();
+  return figures;
+}
 
 machine::StaleReason ReasonOf(StaleReason reason) {
   switch (reason) {
@@ -64,7 +75,10 @@ class Family final : public machine::MachineFamily {
                    std::string_view name) const override {
     return ReadByName(DataArea(), name).has_value();
   }
-  std::span<const machine::FigureInfo> figures() const override { return kFigures; }
+  std::span<const machine::FigureInfo> figures() const override { return Figures(); }
+  std::span<const machine::VerdictRule> verdict_rules() const override {
+    return ProcessWatch::VerdictRules();
+  }
   machine::MachineShape Shape(const machine::Parameters& parameters) const override {
     return ShapeOf(Resolve(parameters));
   }

@@ -11,12 +11,6 @@ class Snapshot final : public machine::RunSnapshot {
 
 }  // namespace
 
-std::vector<machine::Figure> OptimoRun::figures() const {
-  const ControlState& state = control_.state();
-  return {{"lookahead_starved", "", static_cast<double>(state.ride.planner.lookahead_starved())},
-          {"executables_made", "", static_cast<double>(state.counter.made_executables.size())}};
-}
-
 std::unique_ptr<machine::RunSnapshot> OptimoRun::Save() const {
   return std::make_unique<Snapshot>(control_.state());
 }

@@ -25,7 +25,7 @@ class OptimoRun final : public machine::Run {
   bool relies_on_what_was() const override {
     return control_.state().situation.reliance.on_what_was;
   }
-  std::vector<machine::Figure> figures() const override;
+  std::vector<machine::Figure> figures() const override { return control_.figures(); }
   std::string SaveMachine() const override {
     return EncodeMachineState(control_.state().situation.machine);
   }

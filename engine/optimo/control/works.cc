@@ -12,10 +12,6 @@ namespace {
 constexpr int kScheduleMin = 1;
 constexpr int kScheduleMax = 63;
 
-bool AnyOf(const std::array<bool, kProcessesPerKind>& on) {
-  return std::ranges::any_of(on, [](bool b) { return b; });
-}
-
 }  // namespace
 
 Status Works::Define(const Instruction& i) {
@@ -194,7 +190,7 @@ void Works::SwitchOff(int kind, int process, When when) {
   processes.on[static_cast<std::size_t>(kind)][static_cast<std::size_t>(process)] = false;
   if (situation_.simulating()) return;
   if (kind == 2) {
-    if ((AnyOf(processes.on[0]) || AnyOf(processes.on[1])) && situation_.beam.on) {
+    if (processes.beam_on() && situation_.beam.on) {
       telling_.Warn(ErrorCode::kBeamOffBySchedule,
                     "WORK 2," + std::to_string(process) + " /OFF switches the beam off",
                     "OPT-3.24");
@@ -202,7 +198,10 @@ void Works::SwitchOff(int kind, int process, When when) {
     std::erase_if(counter_.program().work_tasks,
                   [](const WorkTask& task) { return task.stage == WorkTask::Stage::kDwell; });
   }
-  effects_.Show({.kind = PassageEffect::Kind::kBeamOff, .place = situation_.place}, when);
+  effects_.Show({.kind = PassageEffect::Kind::kBeamOff,
+                 .place = situation_.place,
+                 .value = processes.beam_on() ? 1.0 : 0.0},
+                when);
 }
 
 SimTime Works::NextEvent() const {

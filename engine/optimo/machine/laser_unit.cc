@@ -3,11 +3,16 @@
 #include <algorithm>
 
 namespace rmlcell::optimo {
+namespace {
 
-bool Processes::any_on() const {
-  return std::ranges::any_of(
-      on, [](const auto& kind) { return std::ranges::any_of(kind, [](bool b) { return b; }); });
+bool AnyOf(const std::array<bool, kProcessesPerKind>& on) {
+  return std::ranges::any_of(on, [](bool b) { return b; });
 }
+
+}  // namespace
+
+bool Processes::any_on() const { return beam_on() || AnyOf(on[2]); }
+bool Processes::beam_on() const { return AnyOf(on[0]) || AnyOf(on[1]); }
 
 bool Processes::flag(int process) const {
   return std::ranges::any_of(

@@ -28,6 +28,7 @@ struct Processes {
   std::array<std::array<bool, kProcessesPerKind>, kProcessKinds> on{};
 
   bool any_on() const;
+  bool beam_on() const;          // WORK 0 or 1, which have the beam
   bool flag(int process) const;  // IL[87 + p], OPT-3.37
   void AllOff() { on = {}; }
 };
@@ -35,6 +36,7 @@ struct Processes {
 // What the beam does: of the laser itself, one per machine. Times and events are the caller's.
 struct Beam {
   bool on = false;
+  bool asked = false;  // WORK 0 or 1 is ON where the tip is, whatever took the beam away
   machine::PowerBySpeed power{};
   bool shutter_open = false;
   bool shutter_was_open = false;  // closed by the door; START opens it again (OPT-3.62)

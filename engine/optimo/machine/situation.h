@@ -36,6 +36,7 @@ struct Situation {
   Simulated simulated{};
   MachineState machine{};
   Beam beam{};
+  int gas_refused = 0;  // OL of the assist gas that was switched on last and is refused, OPT-5.40
   Reliance reliance{};
 
   bool running() const { return phase == machine::RunPhase::kRunning; }

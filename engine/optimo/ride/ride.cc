@@ -122,18 +122,20 @@ void Ride::TellMotion(SimTime until) {
   motion::MotionUnderWay& active = *s_.path.under_way();
   if (until <= active.told && until < active.end) return;
   const Beam& beam = situation_.beam;
-  telling_.observer().OnMotion(
-      {.start = active.told,
-       .end = until,
-       .place = s_.note.place,
-       .use = beam.on ? machine::MotionUse::kCut : machine::MotionUse::kTravel,
-       .motion = &active.motion,
-       .from = active.PlaceAt(active.told),
-       .travelled = active.PlaceAt(until),
-       .profile_start_s = ToSeconds(active.told - active.start),
-       .programmed_mm_s = s_.note.feed_mm_s,
-       .beam_on = beam.on,
-       .power = beam.power});
+  const machine::MotionDone done{
+      .start = active.told,
+      .end = until,
+      .place = s_.note.place,
+      .use = beam.on ? machine::MotionUse::kCut : machine::MotionUse::kTravel,
+      .motion = &active.motion,
+      .from = active.PlaceAt(active.told),
+      .travelled = active.PlaceAt(until),
+      .profile_start_s = ToSeconds(active.told - active.start),
+      .programmed_mm_s = s_.note.feed_mm_s,
+      .beam_on = beam.on,
+      .power = beam.power};
+  listener_.OnMotionTold(done);
+  telling_.observer().OnMotion(done);
   active.told = until;
 }
 

@@ -50,8 +50,9 @@ struct RideState {
 class RideListener {
  public:
   virtual ~RideListener() = default;
-  virtual void OnMark(std::uint64_t tag) = 0;          // the mark was passed
-  virtual void OnMotionBegins(std::uint64_t tag) = 0;  // and is under way from now on
+  virtual void OnMark(std::uint64_t tag) = 0;                      // the mark was passed
+  virtual void OnMotionBegins(std::uint64_t tag) = 0;              // and is under way from now on
+  virtual void OnMotionTold(const machine::MotionDone& done) = 0;  // or a part of one
 };
 
 // What is appended becomes motions that begin as soon as the one before is over. The program runs

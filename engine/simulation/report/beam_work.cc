@@ -12,8 +12,8 @@ namespace {
 constexpr double kFull_percent = 100.0;
 constexpr double kBin_percent = 5.0;
 
-// Times within a phase at which the speed passes one of the values that matter: bounds of classes,
-// and where the power reaches 0 or 100 %. Each value is passed at most twice.
+// Times within a phase at which the speed passes one of the values that matter: bounds of classes
+// and of a pace, and where the power reaches 0 or 100 %. Each value is passed at most twice.
 class Crossings {
  public:
   explicit Crossings(const PhasePart& part) : part_(part) {
@@ -66,7 +66,7 @@ class Crossings {
   const PhasePart& part_;
   double low_ = 0.0;
   double high_ = 0.0;
-  std::array<double, 2 * (kSpeedBins + kPowerBins + 2)> times_{};
+  std::array<double, 2 * (kSpeedBins + kPowerBins + 2 + CutPace::kBounds)> times_{};
   std::size_t count_ = 0;
 };
 
@@ -86,7 +86,7 @@ std::array<SimTime, N> Rounded(const std::array<motion::LongSum, N>& sums, SimTi
 }  // namespace
 
 double BeamWork::Moving(const motion::SpeedProfile& profile, double from_s, double to_s,
-                        double tip_per_s, const machine::PowerBySpeed& power) {
+                        double tip_per_s, const machine::PowerBySpeed& power, CutPace* pace) {
   motion::LongSum percent_s;
   ForEachPhase(profile, from_s, to_s, [&](const PhasePart& part) {
     Crossings crossings(part);
@@ -98,6 +98,9 @@ double BeamWork::Moving(const motion::SpeedProfile& profile, double from_s, doub
       const double zero = -power.constant_percent / slope;
       if (slope > 0.0) crossings.AddGrid(zero, width, kPowerBins + 1);
       if (slope < 0.0) crossings.AddGrid(zero - kPowerBins * width, width, kPowerBins + 1);
+      if (pace != nullptr) {
+        for (const double bound : pace->bounds()) crossings.Add(bound / tip_per_s);
+      }
     }
     double begin = 0.0;
     const auto stretch = [&](double end) {
@@ -109,6 +112,7 @@ double BeamWork::Moving(const motion::SpeedProfile& profile, double from_s, doub
       const double percent = power.PercentAt(speed);
       percent_s.Add(percent * duration);
       Count(duration, speed, percent);
+      if (pace != nullptr) pace->Add(duration, speed, percent);
       begin = end;
     };
     for (const double t : crossings.Sorted()) stretch(t);

@@ -5,6 +5,7 @@
 #include "engine/core/units.h"
 #include "engine/machine/observer.h"
 #include "engine/motion/ride/trajectory.h"
+#include "engine/simulation/report/cut_pace.h"
 #include "engine/simulation/report/report.h"
 
 namespace rmlcell::simulation {
@@ -28,9 +29,10 @@ class BeamWork {
 
   // A motion with the beam on, between two times of its speed profile. `tip_per_s` is what the tip
   // moves per unit of that s: 1, or 0 where it stands (A and B turn), or the tip's length of a
-  // sigma piece. Exact also where the power saturates on the way. Returns the energy in J.
+  // sigma piece. Exact also where the power saturates on the way. Returns the energy in J. `pace`
+  // is shown the stretches of the motion in order; null: nobody looks.
   double Moving(const motion::SpeedProfile& profile, double from_s, double to_s, double tip_per_s,
-                const machine::PowerBySpeed& power);
+                const machine::PowerBySpeed& power, CutPace* pace = nullptr);
 
   // The beam on a standing tip. Returns the energy in J.
   double Standing(double duration_s, double power_percent);

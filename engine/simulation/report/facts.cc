@@ -53,6 +53,7 @@ class Table {
     AddTimes();
     AddWork();
     AddBeamTimes();
+    AddContours();
     AddCorners();
     AddPositions();
     AddBox("programmed", "", "points as the program wrote them", &ScopeFigures::programmed);
@@ -89,6 +90,7 @@ class Table {
   void AddTimes();
   void AddWork();
   void AddBeamTimes();
+  void AddContours();
   void AddCorners();
   void AddPositions();
   void AddPoint(const std::string& name, const std::string& unit, const std::string& text,
@@ -254,6 +256,46 @@ void Table::AddBeamTimes() {
         "beam on at a power from " + std::to_string(k * kClass_percent) + " to " +
             std::to_string((k + 1) * kClass_percent) + " %",
         [k](const RunReport& r) { return Seconds(r.beam.by_power[static_cast<std::size_t>(k)]); });
+  }
+}
+
+// How well the beam cuts, at the worst place: what the rules of docs/verdict.md look at.
+void Table::AddContours() {
+  Add("contours", "", "connected cuts: from the beam's going on to its going off",
+      [](const RunReport& r) { return Count(r.cut_figures.contours); });
+  Add("contour_time_max_s", "s", "longest time of the beam on in a contour",
+      [](const RunReport& r) { return Seconds(r.cut_figures.longest); });
+  Add("contour_energy_max_j", "J", "greatest energy of a contour, its piercing included",
+      [](const RunReport& r) { return Real(r.cut_figures.energy_max_j); });
+  const auto worst = [this](std::string key, std::string unit, std::string text,
+                            Extreme CutFigures::*figure) {
+    Add(std::move(key), std::move(unit), std::move(text),
+        [figure](const RunReport& r) { return Real((r.cut_figures.*figure).value); });
+  };
+  worst("slow_contour_max_percent", "%",
+        "greatest share of a contour below 0.8 of its SPEED, first and last ramp left out",
+        &CutFigures::slow_percent);
+  worst("hot_stretch_max_mm", "mm",
+        "longest stretch of a contour with more than 1.5 times the energy by length of the process",
+        &CutFigures::hot_mm);
+  worst("weak_stretch_max_mm", "mm",
+        "longest stretch of a contour with less than 0.8 of the energy by length of the process",
+        &CutFigures::weak_mm);
+  worst("ptp_cut_length_mm", "mm", "way with the beam on at a speed that no SPEED holds",
+        &CutFigures::uncontrolled_mm);
+  worst("standing_beam_max_s", "s",
+        "longest time of the beam on a standing tip, with power, that is no piercing",
+        &CutFigures::standing_s);
+  Add("singular_swing_max_deg", "deg",
+      "most that A turns on end in a contour within 1 degree of B = 0",
+      [](const RunReport& r) { return Real(r.cut_figures.singular_rad.value / kRadPerDegree); });
+  for (std::size_t i = 0; i < CutFigures{}.near_end.size(); ++i) {
+    const std::string axis(1, "xyzab"[i]);
+    const std::string unit = i < 3 ? "mm" : "rad";
+    Add("near_end_" + axis + '_' + unit, unit,
+        std::string("how far a contour goes into the last ") + (i < 3 ? "5 mm" : "degree") +
+            " of the travel of " + "XYZAB"[i],
+        [i](const RunReport& r) { return Real(r.cut_figures.near_end[i].value); });
   }
 }
 

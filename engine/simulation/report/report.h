@@ -162,6 +162,56 @@ struct BeamHistogram {
   bool operator==(const BeamHistogram&) const = default;
 };
 
+// One connected cut: what a beam does from going on to going off. A halt on the way, during which
+// the machine takes the beam away and gives it back, is not its end.
+inline constexpr std::size_t kReportedContoursMax = 1000;
+struct Contour {
+  machine::Place place;  // that switched the beam on
+  SimTime begin{0};
+  SimTime time{0};  // with the beam on
+  double length_mm = 0.0;
+  double slow_mm = 0.0;  // of it below kSlowSpeed of the speed asked for
+  double cut_energy_j = 0.0;
+  double pierce_energy_j = 0.0;  // on a standing tip
+
+  double energy_j() const { return cut_energy_j + pierce_energy_j; }
+  bool operator==(const Contour&) const = default;
+};
+
+// The most of something, and where that was.
+struct Extreme {
+  double value = 0.0;
+  machine::Place place{};
+
+  void Raise(double seen, const machine::Place& where) {
+    if (seen > value) *this = {.value = seen, .place = where};
+  }
+  bool operator==(const Extreme&) const = default;
+};
+
+// How near the cuts of a beam keep to what is asked of them, at the worst place. By these a laser
+// is judged: docs/verdict.md has the limits, decision 0021 their reasons.
+inline constexpr double kSlowSpeed = 0.8;   // of the speed asked for: below it is slow
+inline constexpr double kHotEnergy = 1.5;   // of the energy by length asked for: above it is hot
+inline constexpr double kWeakEnergy = 0.8;  // of the same: below it is weak
+inline constexpr double kEndZone_mm = 5.0;  // before the end of the travel of X, Y, Z
+inline constexpr double kEndZone_rad = kRadPerDegree;  // of A and B
+struct CutFigures {
+  std::uint64_t contours = 0;
+  SimTime longest{0};         // of the times of contours
+  double energy_max_j = 0.0;  // of one contour
+
+  Extreme slow_percent;     // of the length of a contour, its first and last ramp left out
+  Extreme hot_mm;           // of a stretch
+  Extreme weak_mm;          // of a stretch
+  Extreme uncontrolled_mm;  // in all, where no speed is asked for; the first place
+  Extreme standing_s;       // of one stand with power that is no piercing
+  Extreme singular_rad;     // that A turns in one go within 1 degree of B = 0
+  std::array<Extreme, motion::kAxisCount> near_end{};  // how far into the end zone of an axis
+
+  bool operator==(const CutFigures&) const = default;
+};
+
 // A finding of the run; the same finding at the same step is counted, not repeated.
 struct Finding {
   Diagnostic diagnostic;
@@ -260,6 +310,9 @@ struct RunReport : ScopeFigures {
   std::uint64_t slow_moves_dropped = 0;   // at further steps, past kReportedSlowMovesMax
   std::vector<AxisViolation> violations;  // in order of first occurrence
   std::uint64_t violations_dropped = 0;   // at further steps, past kReportedViolationsMax
+  std::vector<Contour> contours;          // of a beam, in order of time
+  std::uint64_t contours_dropped = 0;     // further ones, past kReportedContoursMax
+  CutFigures cut_figures;                 // of them all
   std::vector<machine::Figure> figures;   // the family's own
   std::optional<MillingFigures> milling;  // nothing: not asked for
 

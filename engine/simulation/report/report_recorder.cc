@@ -56,6 +56,7 @@ ReportRecorder::ReportRecorder(const machine::MachineShape& shape)
       time_([this](const TimeLedger::Gap& gap) { CountStandstill(gap); }),
       job_(shape),
       beam_(shape.laser_watts, TipSpeedMax(shape)),
+      contours_(shape),
       speeds_(shape) {}
 
 // Null: one program too many. The next time of the beam counts in what is given here.
@@ -91,6 +92,7 @@ void ReportRecorder::CountStandstill(const TimeLedger::Gap& gap) {
     work.beam_on = gap.length();
     LogOf(gap.place.program);
     work.pierce_energy_j = beam_.Standing(ToSeconds(gap.length()), 0.0);
+    contours_.Add(work);
   }
   work_.Add(gap.place, work);
 }
@@ -105,6 +107,7 @@ void ReportRecorder::OnStep(SimTime at, const machine::Place& place,
                             std::string_view /*instruction*/) {
   time_.Leave(at, Now());
   place_ = place;
+  contours_.Step();
   WorkFigures work;
   work.steps = 1;
   work_.Add(place, work);
@@ -128,11 +131,12 @@ void ReportRecorder::OnMotion(const machine::MotionDone& done) {
     LogOf(done.place.program);
     work.beam_on = claimed;
     const double way = done.travelled - done.from;
-    work.cut_energy_j = beam_.Moving(motion.speed, done.profile_start_s, profile_end_s,
-                                     way > 0.0 ? length / way : 0.0, done.power);
+    work.cut_energy_j =
+        beam_.Moving(motion.speed, done.profile_start_s, profile_end_s,
+                     way > 0.0 ? length / way : 0.0, done.power, contours_.PaceOf(done));
     work.cut_energy_j += beam_.Standing(ToSeconds(work.time.settling), done.power.constant_percent);
   }
-  AddShape(done, profile_end_s, length);
+  AddShape(done, profile_end_s, work);
   stands_since_beam_on_ = false;
   work_.Add(done.place, work);
 }
@@ -147,7 +151,7 @@ void ReportRecorder::AddLengths(const machine::MotionDone& done, double length, 
 }
 
 void ReportRecorder::AddShape(const machine::MotionDone& done, double profile_end_s,
-                              double length) {
+                              const WorkFigures& work) {
   const motion::PlannedMotion& motion = *done.motion;
   const PathPart part{motion.path, motion.head, done.from, done.travelled};
   const PointSweep tip = TipSweep(part);
@@ -157,8 +161,13 @@ void ReportRecorder::AddShape(const machine::MotionDone& done, double profile_en
   const AxisLog::Motion axes{.xyz = column,
                              .ab = rotary,
                              .peaks = peaks,
-                             .tip_path_mm = length,
+                             .tip_path_mm = work.tip_path_mm,
                              .tip_limited = !shape_.five_axis || done.programmed_mm_s > 0.0};
+  if (done.beam_on) {
+    contours_.Add({.done = done, .work = work, .column = column, .rotary = rotary});
+  } else {
+    contours_.Travel();
+  }
   const machine::Box tip_box = BoxOf(tip);
   const machine::Box column_box = BoxOf(column);
   const std::optional<SlowMove> slow = speeds_.Add(done);
@@ -194,7 +203,9 @@ void ReportRecorder::OnSignal(const machine::SignalChange& change) {
       work_.Add(change.place, work);
       stands_since_beam_on_ = true;
       pierce_counted_ = false;
+      contours_.BeamOn(change.at, change.place);
     }
+    if (!on) contours_.BeamOff();
     beam_on_ = on;
   }
   if (change.signal == Signal::kShutter && on != shutter_open_) {
@@ -223,12 +234,14 @@ void ReportRecorder::OnWait(const machine::Wait& wait) {
       work.pierces = 1;
       pierce_counted_ = true;
     }
+    contours_.Add(wait, work, pierces);
   }
   work_.Add(wait.place, work);
 }
 
 void ReportRecorder::OnHalt(const machine::Halt& halt) {
   time_.Leave(halt.at, Now());
+  contours_.Halt();
   halted_ = true;
   ++halts_;
 }
@@ -278,6 +291,7 @@ RunReport ReportRecorder::Report(const machine::Run& run) const {
   report.slow_moves_dropped = slow_moves_.dropped();
   report.findings = findings_.findings();
   report.findings_dropped = findings_.dropped();
+  contours_.WriteTo(report);
   report.violations = violations_.violations();
   report.violations_dropped = violations_.dropped();
   report.figures = run.figures();

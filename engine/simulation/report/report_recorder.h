@@ -2,6 +2,7 @@
 
 #include "engine/machine/observer.h"
 #include "engine/simulation/report/beam_work.h"
+#include "engine/simulation/report/contour_log.h"
 #include "engine/simulation/report/figure_log.h"
 #include "engine/simulation/report/finding_list.h"
 #include "engine/simulation/report/move_speeds.h"
@@ -42,7 +43,7 @@ class ReportRecorder final : public machine::RunObserver {
   void CountStandstill(const TimeLedger::Gap& gap);
   bool Cuts(const machine::MotionDone& done) const;
   void AddLengths(const machine::MotionDone& done, double length, WorkFigures& work);
-  void AddShape(const machine::MotionDone& done, double profile_end_s, double length);
+  void AddShape(const machine::MotionDone& done, double profile_end_s, const WorkFigures& work);
   FigureLog* LogOf(int program);
   SimTime ShutterShare(SimTime end, SimTime claimed);
   void CloseShutter(SimTime at, const machine::Place& place);
@@ -53,6 +54,7 @@ class ReportRecorder final : public machine::RunObserver {
   FigureLog job_;
   std::map<int, FigureLog> programs_;  // of those that work_ has room for
   BeamWork beam_;
+  ContourLog contours_;
   MoveSpeeds speeds_;
   SlowMoveList slow_moves_;
   FindingList findings_;

@@ -5,21 +5,12 @@
 #include <utility>
 
 #include "engine/families/families.h"
+#include "engine/simulation/verdict/cut_rules.h"
 
 namespace rmlcell::simulation {
 namespace {
 
 using machine::Verdict;
-
-// A figure of every machine; nothing where the run has none of it.
-struct Measured {
-  double value = 0.0;
-  machine::Place first{};
-};
-struct CommonRule {
-  VerdictRuleInfo info;
-  Measured (*measure)(const RunReport&);
-};
 
 Measured Gouges(const RunReport& r) {
   if (!r.milling) return {};
@@ -43,11 +34,11 @@ constexpr double kRounding_mm = 0.01;
 
 // clang-format off
 constexpr std::array kRules = {
-    CommonRule{{{ErrorCode::kTargetOutOfTravel, "travel_violations", 0.0, Verdict::kBad, "motions that leave the travel of an axis: #"}, "", "motions that leave the travel of an axis"}, TravelLeft},
-    CommonRule{{{ErrorCode::kCellGouge, "gouges", 0.0, Verdict::kBad, "motions at travel speed through material: #"}, "", "motions at travel speed through the block that was given"}, Gouges},
-    CommonRule{{{ErrorCode::kCellBelowBlock, "below_block", kThroughTheBlock_mm, Verdict::kBad, "the tool goes # mm below the block"}, "mm", "how far the tool goes below the block that was given"}, BelowBlock},
-    CommonRule{{{ErrorCode::kCellBelowBlock, "below_block", kRounding_mm, Verdict::kDoubtful, "the tool goes # mm below the block"}, "mm", "how far the tool goes below the block that was given"}, BelowBlock},
-    CommonRule{{{ErrorCode::kCellBlockUntouched, "block_untouched", 0.0, Verdict::kDoubtful, "the tool takes nothing off the block"}, "", "1 when nothing is taken off the block that was given"}, BlockUntouched},
+    MeasuredRule{{{ErrorCode::kTargetOutOfTravel, "travel_violations", 0.0, Verdict::kBad, "motions that leave the travel of an axis: #"}, "", "motions that leave the travel of an axis"}, TravelLeft},
+    MeasuredRule{{{ErrorCode::kCellGouge, "gouges", 0.0, Verdict::kBad, "motions at travel speed through material: #"}, "", "motions at travel speed through the block that was given"}, Gouges},
+    MeasuredRule{{{ErrorCode::kCellBelowBlock, "below_block", kThroughTheBlock_mm, Verdict::kBad, "the tool goes # mm below the block"}, "mm", "how far the tool goes below the block that was given"}, BelowBlock},
+    MeasuredRule{{{ErrorCode::kCellBelowBlock, "below_block", kRounding_mm, Verdict::kDoubtful, "the tool goes # mm below the block"}, "mm", "how far the tool goes below the block that was given"}, BelowBlock},
+    MeasuredRule{{{ErrorCode::kCellBlockUntouched, "block_untouched", 0.0, Verdict::kDoubtful, "the tool takes nothing off the block"}, "", "1 when nothing is taken off the block that was given"}, BlockUntouched},
 };
 // clang-format on
 
@@ -56,6 +47,20 @@ bool Told(const machine::Judgement& judgement, const machine::VerdictRule& rule)
   return std::ranges::any_of(judgement.reasons, [&](const machine::Reason& reason) {
     return reason.code == rule.code && reason.verdict > rule.verdict;
   });
+}
+
+void AddMeasuredRules(std::span<const MeasuredRule> rules, const RunReport& report,
+                      machine::Judgement& judgement) {
+  for (const MeasuredRule& rule : rules) {
+    const machine::VerdictRule& what = rule.info.rule;
+    const Measured measured = rule.measure(report);
+    // The outcome may have said it.
+    const bool said = report.outcome.code == what.code || Told(judgement, what);
+    if (!(measured.value > what.limit) || said) continue;
+    judgement.Add(machine::ReasonOf(
+        what,
+        {.unit = std::string(rule.info.unit), .value = measured.value, .first = measured.first}));
+  }
 }
 
 void AddFamilyRules(const machine::MachineFamily& family, std::span<const machine::Figure> figures,
@@ -71,8 +76,9 @@ void AddFamilyRules(const machine::MachineFamily& family, std::span<const machin
 
 std::span<const VerdictRuleInfo> CommonVerdictRules() {
   static const auto infos = [] {
-    std::array<VerdictRuleInfo, kRules.size()> made;
-    std::ranges::transform(kRules, made.begin(), &CommonRule::info);
+    std::vector<VerdictRuleInfo> made;
+    for (const MeasuredRule& rule : kRules) made.push_back(rule.info);
+    for (const MeasuredRule& rule : CutRules()) made.push_back(rule.info);
     return made;
   }();
   return infos;
@@ -93,17 +99,8 @@ machine::Judgement JudgeOutcome(const machine::Outcome& outcome) {
 
 machine::Judgement Judge(const RunReport& report) {
   machine::Judgement judgement = JudgeOutcome(report.outcome);
-  for (const CommonRule& rule : kRules) {
-    const machine::VerdictRule& what = rule.info.rule;
-    const Measured measured = rule.measure(report);
-    // The outcome may have said it.
-    const bool said = report.outcome.code == what.code || Told(judgement, what);
-    if (measured.value > what.limit && !said) {
-      judgement.Add(machine::ReasonOf(
-          what,
-          {.unit = std::string(rule.info.unit), .value = measured.value, .first = measured.first}));
-    }
-  }
+  AddMeasuredRules(kRules, report, judgement);
+  AddMeasuredRules(CutRules(), report, judgement);
   if (const machine::MachineFamily* family = families::FindFamily(report.family))
     AddFamilyRules(*family, report.figures, judgement);
   return judgement;

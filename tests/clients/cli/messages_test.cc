@@ -310,6 +310,38 @@ TEST_F(Messages, AWholeReportOfALaser) {
       "motion        checked only up to step 2\n");
 }
 
+// The five that take longest, in the order of time where they take the same.
+TEST_F(Messages, ContoursOfALaser) {
+  v1::RunReport report;
+  report.mutable_total();
+  const auto add = [&](int step, double time_s) -> v1::Contour& {
+    v1::Contour& contour = *report.add_contours();
+    contour.mutable_place()->set_step(step);
+    contour.set_time_s(time_s);
+    return contour;
+  };
+  add(1, 2.0).set_length_mm(10.5);
+  v1::Contour& longest = add(2, 6.0);
+  longest.set_length_mm(100.0);
+  longest.set_slow_length_mm(3.25);
+  longest.set_energy_j(1500.4);
+  longest.set_pierce_energy_j(450.0);
+  add(3, 2.0);
+  EXPECT_THAT(ReportText(report),
+              HasSubstr("contours      3\n"
+                        "              step 2: 6.000 s, 100.000 mm, 1500 J, 450 of them while it "
+                        "stands, 3.250 mm slow\n"
+                        "              step 1: 2.000 s, 10.500 mm, 0 J\n"
+                        "              step 3: 2.000 s, 0.000 mm, 0 J\n"
+                        "steps"));
+  for (int step = 4; step <= 6; ++step) add(step, 3.0);
+  report.set_contours_dropped(2);
+  const std::string text = ReportText(report);
+  EXPECT_THAT(text, HasSubstr("contours      8, the longest:\n              step 2: "));
+  EXPECT_THAT(text, HasSubstr("step 6: 3.000 s, 0.000 mm, 0 J\n              step 1: "));
+  EXPECT_THAT(text, Not(HasSubstr("step 3:")));
+}
+
 // What did not happen is not spoken of, and a mill has no head.
 TEST_F(Messages, AWholeReportOfAMill) {
   v1::RunReport report;

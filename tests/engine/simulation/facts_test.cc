@@ -161,7 +161,7 @@ TEST(Facts, UnitsEndTheKeys) {
       {"s", "_s"},         {"mm", "_mm"},         {"J", "_j"},         {"J/mm", "_j_per_mm"},
       {"rad", "_rad"},     {"mm3", "_mm3"},       {"mm/s", "_mm_s"},   {"mm/s2", "_mm_s2"},
       {"rad/s", "_rad_s"}, {"rad/s2", "_rad_s2"}, {"mm/s3", "_mm_s3"}, {"rad/s3", "_rad_s3"},
-      {"bytes", "_bytes"}};
+      {"bytes", "_bytes"}, {"%", "_percent"},     {"deg", "_deg"}};
   for (const FactKey& key : FactKeys()) {
     if (key.unit.empty()) continue;
     ASSERT_TRUE(endings.contains(key.unit)) << key.unit;

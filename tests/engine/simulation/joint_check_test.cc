@@ -7,21 +7,21 @@
 namespace rmlcell::simulation {
 namespace {
 
-const machine::MachineFamily& Optimo() { return *families::FindFamily("optimo"); }
+const machine::MachineFamily& TheOptimo() { return *families::FindFamily("optimo"); }
 
 // A file as a check gets it; `slot` as its name tells it.
 JointProgram File(const std::string& text, int slot = 0) {
-  const machine::Parameters parameters(Optimo().parameters());
+  const machine::Parameters parameters(TheOptimo().parameters());
   machine::Translation made =
-      Optimo().Translate({.name = "test.S", .bytes = text}, parameters, {.source = true});
+      TheOptimo().Translate({.name = "test.S", .bytes = text}, parameters, {.source = true});
   EXPECT_TRUE(made.ok) << text;
   return {
       .program = {.slot = slot, .translation = std::make_shared<const machine::Translation>(made)}};
 }
 
 std::vector<JointProgram> Checked(std::vector<JointProgram> files) {
-  const machine::Parameters parameters(Optimo().parameters());
-  EXPECT_TRUE(CheckTogether(Optimo(), parameters, files, {}).ok());
+  const machine::Parameters parameters(TheOptimo().parameters());
+  EXPECT_TRUE(CheckTogether(TheOptimo(), parameters, files, {}).ok());
   return files;
 }
 

@@ -14,6 +14,7 @@
 #include "engine/families/families.h"
 #include "engine/simulation/material/milling_text.h"
 #include "engine/simulation/run/simulate.h"
+#include "tests/engine/simulation/verdict_text.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -47,51 +48,42 @@ Judgement OfStreamInBlock(const std::string& stream, const std::string& stock) {
   return VerdictOf(Mill(), MillOf("t1"), stream, std::move(request));
 }
 
-std::string Text(const Judgement& judgement) {
-  std::string text(machine::VerdictText(judgement.verdict));
-  for (const machine::Reason& reason : judgement.reasons) {
-    text += "; " + CodeText(reason.code) + ' ' + reason.said;
-    if (reason.first.step > 0) text += " @" + std::to_string(reason.first.step);
-  }
-  return text;
-}
-
 // Feed rates, heights of 1 mm down and 2 mm up, a spindle; then the work; then an orderly end.
 std::string Work(const std::string& commands) {
   return "VS10;!VZ10;!PZ-100,200;!MC1;PU100,100;" + commands + "PU0,0;!MC0;";
 }
 
 TEST(Verdict, OfAnOrderlyProgramIsGood) {
-  EXPECT_EQ(Text(OfStream(Work("PD200,100;"))), "GOOD");
+  EXPECT_EQ(TextOf(OfStream(Work("PD200,100;"))), "GOOD");
   // A lift above the top and a parking place beyond the travel cost nothing.
-  EXPECT_EQ(Text(OfStream(Work("PD200,100;Z200,100,9000;PU0,90000;"))), "GOOD");
+  EXPECT_EQ(TextOf(OfStream(Work("PD200,100;Z200,100,9000;PU0,90000;"))), "GOOD");
 }
 
 // The work may lead 0.01 mm, one unit, beyond the travel: that is rounding.
 TEST(Verdict, OfWorkBeyondTheTravel) {
   const std::string lost = " mm of the work lie beyond the travel and are not cut @6; ";
-  EXPECT_EQ(Text(OfStream(Work("PD20001,100;"))), "GOOD");
-  EXPECT_EQ(Text(OfStream(Work("PD20002,100;"))),
+  EXPECT_EQ(TextOf(OfStream(Work("PD20001,100;"))), "GOOD");
+  EXPECT_EQ(TextOf(OfStream(Work("PD20002,100;"))),
             "BAD; RML1-E8002 0.020" + lost +
                 "RML1-E8002 the work leads 0.020 mm beyond the greatest X: move the origin to less "
                 "X");
-  EXPECT_EQ(Text(OfStream(Work("PD-1,100;"))), "GOOD");
-  EXPECT_EQ(Text(OfStream(Work("PD-2,100;"))),
+  EXPECT_EQ(TextOf(OfStream(Work("PD-1,100;"))), "GOOD");
+  EXPECT_EQ(TextOf(OfStream(Work("PD-2,100;"))),
             "BAD; RML1-E8002 0.020" + lost +
                 "RML1-E8002 the work leads 0.020 mm beyond the least X: move the origin to greater "
                 "X");
-  EXPECT_EQ(Text(OfStream(Work("PD100,15001;"))), "GOOD");
-  EXPECT_EQ(Text(OfStream(Work("PD100,15002;"))),
+  EXPECT_EQ(TextOf(OfStream(Work("PD100,15001;"))), "GOOD");
+  EXPECT_EQ(TextOf(OfStream(Work("PD100,15002;"))),
             "BAD; RML1-E8002 0.020" + lost +
                 "RML1-E8002 the work leads 0.020 mm beyond the greatest Y: move the origin to less "
                 "Y");
-  EXPECT_EQ(Text(OfStream(Work("PD100,-1;"))), "GOOD");
-  EXPECT_EQ(Text(OfStream(Work("PD100,-2;"))),
+  EXPECT_EQ(TextOf(OfStream(Work("PD100,-1;"))), "GOOD");
+  EXPECT_EQ(TextOf(OfStream(Work("PD100,-2;"))),
             "BAD; RML1-E8002 0.020" + lost +
                 "RML1-E8002 the work leads 0.020 mm beyond the least Y: move the origin to greater "
                 "Y");
-  EXPECT_EQ(Text(OfStream(Work("Z100,100,-4001;"))), "GOOD");
-  EXPECT_EQ(Text(OfStream(Work("Z100,100,-4002;"))),
+  EXPECT_EQ(TextOf(OfStream(Work("Z100,100,-4001;"))), "GOOD");
+  EXPECT_EQ(TextOf(OfStream(Work("Z100,100,-4002;"))),
             "BAD; RML1-E8002 0.020" + lost +
                 "RML1-E8002 the work leads 0.020 mm below the travel: raise Z0");
 }
@@ -99,18 +91,18 @@ TEST(Verdict, OfWorkBeyondTheTravel) {
 // Tool heights are lost, too: a hole beyond the travel, and one that a moved Z0 takes below it.
 TEST(Verdict, OfHolesThatAreNotDrilled) {
   EXPECT_EQ(
-      Text(OfStream(Work("PU30000,100;PD;PU;PU200,100;PD300,100;"))),
+      TextOf(OfStream(Work("PU30000,100;PD;PU;PU200,100;PD300,100;"))),
       "BAD; RML1-E8002 the work is 98.000 mm longer in X than the travel: wherever its origin is, "
       "it does not fit; RML1-E8002 1.000 mm of the work lie beyond the travel and are not cut @7");
   // Z0 55 mm below the top, the tool 10 mm below it: the travel ends at 60 mm.
   const std::string deep = "VS10;!VZ10;!PZ-1000,200;!ZO-5500;!MC1;PU100,100;PD200,100;PU0,0;!MC0;";
-  EXPECT_EQ(Text(OfStream(deep)),
+  EXPECT_EQ(TextOf(OfStream(deep)),
             "BAD; RML1-E8002 5.000 mm of the work lie beyond the travel and are not cut @7; "
             "RML1-E8002 the work leads 5.000 mm below the travel: raise Z0");
 }
 
 TEST(Verdict, OfDataThatEndsInsideACommand) {
-  EXPECT_EQ(Text(OfStream(Work("PD200,100;") + "PD300,300")),
+  EXPECT_EQ(TextOf(OfStream(Work("PD200,100;") + "PD300,300")),
             "DOUBTFUL; RML1-E8001 the data ends inside a command: the last one is not carried out");
 }
 
@@ -124,22 +116,22 @@ TEST(Verdict, OfAPauseSaysNothingOfTheEnd) {
 
 // A pen goes along the surface with the spindle off.
 TEST(Verdict, OfAStrokeAlongTheSurfaceIsGood) {
-  EXPECT_EQ(Text(OfStream("VS10;!VZ10;!PZ0,200;!MC0;PU100,100;PD200,100;PU0,0;")), "GOOD");
+  EXPECT_EQ(TextOf(OfStream("VS10;!VZ10;!PZ0,200;!MC0;PU100,100;PD200,100;PU0,0;")), "GOOD");
 }
 
 TEST(Verdict, OfCoordinatesThatAreRefused) {
-  EXPECT_EQ(Text(OfStream(Work("PD200,100,300;"))),
+  EXPECT_EQ(TextOf(OfStream(Work("PD200,100,300;"))),
             "BAD; RML1-E8008 coordinates or heights that were refused: 1 @6; RML1-E8014 places "
             "that are no command, or have wrong parameters: 1");
-  EXPECT_EQ(Text(OfStream(Work("PD200,100,300,100;"))), "GOOD");
+  EXPECT_EQ(TextOf(OfStream(Work("PD200,100,300,100;"))), "GOOD");
 }
 
 TEST(Verdict, OfWhatIsNotUnderstood) {
-  EXPECT_EQ(Text(OfStream(Work("$PD200,100;"))),
+  EXPECT_EQ(TextOf(OfStream(Work("$PD200,100;"))),
             "DOUBTFUL; RML1-E8014 places that are no command, or have wrong parameters: 1");
   // RML1-4.05: the letter of a sequence that there is not is judged as a command, too.
   EXPECT_EQ(
-      Text(OfStream(Work("\x1b.B;PD200,100;"))),
+      TextOf(OfStream(Work("\x1b.B;PD200,100;"))),
       "DOUBTFUL; RML1-E8014 places that are no command, or have wrong parameters: 1; RML1-E8014 "
       "communication errors: 1");
 }
@@ -157,9 +149,9 @@ TEST(Verdict, OfWhatIsNoRml1) {
 
 // Down 1 mm and along 1 mm with the spindle off.
 TEST(Verdict, OfASpindleThatStands) {
-  EXPECT_EQ(Text(OfStream("VS10;!VZ10;!PZ-100,200;!MC0;PU100,100;PD200,100;PU0,0;")),
+  EXPECT_EQ(TextOf(OfStream("VS10;!VZ10;!PZ-100,200;!MC0;PU100,100;PD200,100;PU0,0;")),
             "BAD; RML1-E8009 2.000 mm in the work while the spindle stands @6");
-  EXPECT_EQ(Text(OfStream("VS10;!VZ10;!PZ-100,200;!MC0;PU100,100;!MC1;PD200,100;PU0,0;!MC0;")),
+  EXPECT_EQ(TextOf(OfStream("VS10;!VZ10;!PZ-100,200;!MC0;PU100,100;!MC1;PD200,100;PU0,0;!MC0;")),
             "GOOD");
 }
 
@@ -168,18 +160,18 @@ TEST(Verdict, OfTravelWithoutClearance) {
     return OfStream("VS10;!VZ10;!PZ-100," + up + ";!MC1;PU100,100;PD200,100;PU500,500;!MC0;");
   };
   // 1.414 mm before the hole and 5 mm behind the cut.
-  EXPECT_EQ(Text(with_height("0")),
+  EXPECT_EQ(TextOf(with_height("0")),
             "DOUBTFUL; RML1-E8010 6.414 mm across at travel speed, not above the surface of the "
             "work @5");
-  EXPECT_EQ(Text(with_height("1")), "GOOD");
+  EXPECT_EQ(TextOf(with_height("1")), "GOOD");
 }
 
 TEST(Verdict, OfTheEnd) {
-  EXPECT_EQ(Text(OfStream("VS10;!VZ10;!PZ-100,200;!MC1;PU100,100;PD200,100;!MC0;")),
+  EXPECT_EQ(TextOf(OfStream("VS10;!VZ10;!PZ-100,200;!MC1;PU100,100;PD200,100;!MC0;")),
             "DOUBTFUL; RML1-E8011 the tool stays 1.000 mm deep in the work at the end");
-  EXPECT_EQ(Text(OfStream("VS10;!VZ10;!PZ-100,200;!MC1;PU100,100;PD200,100;Z200,100,-1;!MC0;")),
+  EXPECT_EQ(TextOf(OfStream("VS10;!VZ10;!PZ-100,200;!MC1;PU100,100;PD200,100;Z200,100,-1;!MC0;")),
             "GOOD");
-  EXPECT_EQ(Text(OfStream("VS10;!VZ10;!PZ-100,200;!MC1;PU100,100;PD200,100;PU0,0;")),
+  EXPECT_EQ(TextOf(OfStream("VS10;!VZ10;!PZ-100,200;!MC1;PU100,100;PD200,100;PU0,0;")),
             "DOUBTFUL; RML1-E8012 the spindle turns on at the end");
 }
 
@@ -187,21 +179,21 @@ TEST(Verdict, OfTheEnd) {
 TEST(Verdict, OfFeedRatesThatNobodyGave) {
   const std::string rest = "!PZ-100,200;!MC1;PU100,100;PD200,100;PU0,0;!MC0;";
   const std::string said = " mm in the work at a speed that the program did not set @";
-  EXPECT_EQ(Text(OfStream(rest)), "DOUBTFUL; RML1-E8013 2.000" + said + "4");
-  EXPECT_EQ(Text(OfStream("VS10;" + rest)), "DOUBTFUL; RML1-E8013 1.000" + said + "5");
-  EXPECT_EQ(Text(OfStream("!VZ10;" + rest)), "DOUBTFUL; RML1-E8013 1.000" + said + "5");
-  EXPECT_EQ(Text(OfStream("VS10;!VZ10;DF;" + rest)), "DOUBTFUL; RML1-E8013 2.000" + said + "7");
-  EXPECT_EQ(Text(OfStream("VS10;!VZ10;" + rest)), "GOOD");
+  EXPECT_EQ(TextOf(OfStream(rest)), "DOUBTFUL; RML1-E8013 2.000" + said + "4");
+  EXPECT_EQ(TextOf(OfStream("VS10;" + rest)), "DOUBTFUL; RML1-E8013 1.000" + said + "5");
+  EXPECT_EQ(TextOf(OfStream("!VZ10;" + rest)), "DOUBTFUL; RML1-E8013 1.000" + said + "5");
+  EXPECT_EQ(TextOf(OfStream("VS10;!VZ10;DF;" + rest)), "DOUBTFUL; RML1-E8013 2.000" + said + "7");
+  EXPECT_EQ(TextOf(OfStream("VS10;!VZ10;" + rest)), "GOOD");
 }
 
 TEST(Verdict, OfAToolThatNeverCuts) {
-  EXPECT_EQ(Text(OfStream(Work("PU200,100;"))),
+  EXPECT_EQ(TextOf(OfStream(Work("PU200,100;"))),
             "DOUBTFUL; RML1-E8015 the tool never goes into the work");
 }
 
 // motion.md 9: the top of the block 3 mm above Z 0 is higher than the tool travels.
 TEST(Verdict, OfTravelThroughTheBlock) {
-  EXPECT_EQ(Text(OfStreamInBlock(Work("PD200,100;"), "20x20x10@0,0,2")), "GOOD");
+  EXPECT_EQ(TextOf(OfStreamInBlock(Work("PD200,100;"), "20x20x10@0,0,2")), "GOOD");
   const Judgement judgement = OfStreamInBlock(Work("PD200,100;"), "20x20x10@0,0,3");
   EXPECT_EQ(judgement.verdict, Verdict::kBad);
   EXPECT_EQ(judgement.reasons[0].code, ErrorCode::kCellGouge);
@@ -209,31 +201,31 @@ TEST(Verdict, OfTravelThroughTheBlock) {
 }
 
 TEST(Verdict, OfABlockThatIsNotThere) {
-  EXPECT_EQ(Text(OfStreamInBlock(Work("PD200,100;"), "10x10x10@100,100,0")),
+  EXPECT_EQ(TextOf(OfStreamInBlock(Work("PD200,100;"), "10x10x10@100,100,0")),
             "DOUBTFUL; CELL-E9403 the tool takes nothing off the block");
 }
 
 // A block of 10 mm: through it by a little is how one cuts out, by more than 1 mm it is the table.
 TEST(Verdict, OfAToolBelowTheBlock) {
   const auto down_to = [](const std::string& z) {
-    return Text(OfStreamInBlock(Work("Z100,100," + z + ";"), "20x20x10"));
+    return TextOf(OfStreamInBlock(Work("Z100,100," + z + ";"), "20x20x10"));
   };
   EXPECT_EQ(down_to("-1000"), "GOOD");
   EXPECT_EQ(down_to("-1010"), "DOUBTFUL; CELL-E9402 the tool goes 0.100 mm below the block @6");
   EXPECT_EQ(down_to("-1200"), "BAD; CELL-E9402 the tool goes 2.000 mm below the block @6");
   // Beside the block, by its radius of 1.5 mm and more, the tool may go as deep as it likes.
   const std::string beside = Work("PD200,100;PU2151,100;Z2151,100,-1200,2151,100,200;");
-  EXPECT_EQ(Text(OfStreamInBlock(beside, "20x20x10")), "GOOD");
+  EXPECT_EQ(TextOf(OfStreamInBlock(beside, "20x20x10")), "GOOD");
 }
 
 TEST(Verdict, OfHowARunEnds) {
   RunReport report;
-  EXPECT_EQ(Text(Judge(report)), "GOOD");
+  EXPECT_EQ(TextOf(Judge(report)), "GOOD");
   report.outcome = {.kind = machine::OutcomeKind::kFailed,
                     .code = ErrorCode::kHoleRadiusZero,
                     .detail = "radius is 0",
                     .place = {.program = 1, .step = 7}};
-  EXPECT_EQ(Text(Judge(report)), "BAD; OPT-E348 radius is 0 @7");
+  EXPECT_EQ(TextOf(Judge(report)), "BAD; OPT-E348 radius is 0 @7");
   report.outcome = {.kind = machine::OutcomeKind::kStopped, .code = ErrorCode::kCellWaitsForever};
   EXPECT_EQ(Judge(report).verdict, Verdict::kDoubtful);
   report.outcome = {.kind = machine::OutcomeKind::kCancelled, .code = ErrorCode::kCellCancelled};
@@ -250,11 +242,11 @@ TEST(Verdict, OfAnAxisBeyondItsTravel) {
   RunReport report;
   report.violations = {{.place = {.program = 1, .step = 3}, .axis = "X", .excess = 2.0}};
   report.violations_dropped = 2;
-  EXPECT_EQ(Text(Judge(report)), "BAD; OPT-E7301 motions that leave the travel of an axis: 3 @3");
+  EXPECT_EQ(TextOf(Judge(report)), "BAD; OPT-E7301 motions that leave the travel of an axis: 3 @3");
   report.outcome = {.kind = machine::OutcomeKind::kFailed,
                     .code = ErrorCode::kTargetOutOfTravel,
                     .detail = "X by 2 mm"};
-  EXPECT_EQ(Text(Judge(report)), "BAD; OPT-E7301 X by 2 mm");
+  EXPECT_EQ(TextOf(Judge(report)), "BAD; OPT-E7301 X by 2 mm");
 }
 
 TEST(Verdict, OfFindingsIsBadWithAnError) {
@@ -263,9 +255,9 @@ TEST(Verdict, OfFindingsIsBadWithAnError) {
                    .severity = Severity::kCompile,
                    .detail = "MOVE what",
                    .where = {.line = 4}};
-  EXPECT_EQ(Text(JudgeFindings(std::vector{warning})), "GOOD");
+  EXPECT_EQ(TextOf(JudgeFindings(std::vector{warning})), "GOOD");
   const Judgement judgement = JudgeFindings(std::vector{warning, error});
-  EXPECT_EQ(Text(judgement), "BAD; OPT-E7003 MOVE what");
+  EXPECT_EQ(TextOf(judgement), "BAD; OPT-E7003 MOVE what");
   EXPECT_EQ(judgement.reasons[0].first.line, 4);
 }
 
@@ -289,7 +281,7 @@ TEST(Verdict, OfACheckIsThatOfTheRun) {
   for (const std::string& stream : streams) {
     const machine::Translation checked =
         Mill().Translate({.name = "part.rml", .bytes = stream}, MillOf("t1"), {});
-    EXPECT_EQ(Text(JudgeFigures(Mill(), checked.figures)), Text(OfStream(stream))) << stream;
+    EXPECT_EQ(TextOf(JudgeFigures(Mill(), checked.figures)), TextOf(OfStream(stream))) << stream;
   }
 }
 

@@ -223,6 +223,42 @@ TEST(ReportMessage, EveryFigureHasItsField) {
           "gouge_time_s: 6 }");
 }
 
+TEST(ReportMessage, EveryFigureOfContoursHasItsField) {
+  RunReport report;
+  report.contours = {{.place = {.program = 1, .step = 2},
+                      .begin = Seconds(3),
+                      .time = Seconds(4),
+                      .length_mm = 5.0,
+                      .slow_mm = 6.0,
+                      .cut_energy_j = 7.0,
+                      .pierce_energy_j = 8.0}};
+  report.contours_dropped = 9;
+  report.cut_figures = {.contours = 10,
+                        .longest = Seconds(11),
+                        .energy_max_j = 12.0,
+                        .slow_percent = {.value = 13.0, .place = {.step = 14}},
+                        .hot_mm = {.value = 15.0, .place = {.step = 16}},
+                        .weak_mm = {.value = 17.0, .place = {.step = 18}},
+                        .uncontrolled_mm = {.value = 19.0, .place = {.step = 20}},
+                        .standing_s = {.value = 21.0, .place = {.step = 22}},
+                        .singular_rad = {.value = 23.0, .place = {.step = 24}}};
+  report.cut_figures.near_end[2] = {.value = 25.0, .place = {.step = 26}};
+  report.cut_figures.near_end[4] = {.value = 27.0, .place = {.step = 28}};
+  ExpectMessage(
+      ToProto(report, {}),
+      ToProto(RunReport{}, {}).DebugString() +
+          "contours { place { program: 1 step: 2 } begin_s: 3 time_s: 4 length_mm: 5 "
+          "slow_length_mm: 6 energy_j: 15 pierce_energy_j: 8 } contours_dropped: 9 "
+          "cut { contours: 10 time_s_max: 11 energy_j_max: 12 "
+          "slow_percent { value: 13 place { step: 14 } } "
+          "hot_stretch_mm { value: 15 place { step: 16 } } "
+          "weak_stretch_mm { value: 17 place { step: 18 } } "
+          "ptp_mm { value: 19 place { step: 20 } } standing_s { value: 21 place { step: 22 } } "
+          "singular_rad { value: 23 place { step: 24 } } "
+          "near_ends { axis: 'Z' depth: 25 place { step: 26 } } "
+          "near_ends { axis: 'B' rotary: true depth: 27 place { step: 28 } } }");
+}
+
 TEST(ReportMessage, AVerdictHasItsReasons) {
   RunReport report;
   report.judgement.Add({.code = ErrorCode::kFlyReversal,
