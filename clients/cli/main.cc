@@ -126,17 +126,7 @@ void AddSimulateVerb(CLI::App& app, int& exit_code) {
       ->type_size(2)
       ->expected(1)
       ->allow_extra_args(false);
-  CLI::Option* stock =
-      verb->add_option("--stock", options->stock,
-                       "100x80x10[@X,Y,TOP]: a block on a mill's table, mm from the work origin");
-  CLI::Option* tool =
-      verb->add_option("--tool", options->tool, "flat:D, ball:D, vee:D:ANGLE[:TIP]: what mills it");
-  stock->needs(tool);
-  tool->needs(stock);
-  verb->add_option("--cell", options->cell_mm,
-                   "edge of the cells that the block is looked at in, mm; default 0.1")
-      ->needs(stock);
-  verb->add_option("--stl", options->stl, "write what is left of the block")->needs(stock);
+  AddMillingOptions(*verb, options->milling);
   verb->add_option("--state-in", options->state_in, "machine state of an earlier run");
   verb->add_option("--state-out", options->state_out, "keep the machine state for a later run");
   verb->add_flag("--trace", options->trace, "list all that was observable, in order");

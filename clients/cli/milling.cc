@@ -1,13 +1,32 @@
 #include "clients/cli/milling.h"
 
 #include <fstream>
+#include <functional>
 
 #include "engine/simulation/material/milling_text.h"
 #include "engine/simulation/material/stl.h"
 
 namespace rmlcell::cli {
+namespace {
 
-Result<simulation::Milling> MillingOf(const SimulateOptions& options,
+using Sink = std::function<bool(std::string_view)>;
+
+// Lets `write` hand the bytes of a file over in portions.
+Status WritePortions(const std::string& file, const std::function<bool(const Sink&)>& write) {
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  const bool written = write([&stream](std::string_view bytes) {
+    return static_cast<bool>(
+        stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size())));
+  });
+  stream.close();
+  if (!written || !stream)
+    return Error{ErrorCode::kCellFileUnwritable, file + ": cannot be written", {}};
+  return {};
+}
+
+}  // namespace
+
+Result<simulation::Milling> MillingOf(const MillingOptions& options,
                                       const machine::MachineShape& shape) {
   if (!shape.has_work_origin)
     return InvalidArgument("--stock is for mills: this machine takes nothing off a block");
@@ -21,15 +40,13 @@ Result<simulation::Milling> MillingOf(const SimulateOptions& options,
   return milling;
 }
 
-Status WriteMaterial(const simulation::HeightField& material, const std::string& file) {
-  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  const bool written = simulation::WriteStl(material, [&stream](std::string_view bytes) {
-    return static_cast<bool>(
-        stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size())));
-  });
-  stream.close();
-  if (!written || !stream)
-    return Error{ErrorCode::kCellFileUnwritable, file + ": cannot be written", {}};
+Status WriteMaterial(const simulation::HeightField& material, const MillingOptions& options) {
+  if (!options.stl.empty()) {
+    Status written = WritePortions(options.stl, [&](const Sink& sink) {
+      return simulation::WriteStl(material, options.stl_tolerance_mm, sink);
+    });
+    if (!written) return written;
+  }
   return {};
 }
 

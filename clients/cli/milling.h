@@ -1,17 +1,33 @@
 #pragma once
 
-#include "clients/cli/local.h"
+#include <string>
+
 #include "engine/machine/shape.h"
 #include "engine/simulation/material/milling_recorder.h"
 
-// Block and tool of `simulate`, and the file that shows what is left.
+namespace CLI {
+class App;
+}
+
+// Block and tool of `simulate`, and the files that show what is left.
 namespace rmlcell::cli {
 
+struct MillingOptions {
+  std::string stock;  // "100x80x10"; empty: material is not modelled
+  std::string tool;   // "flat:3"
+  double cell_mm = 0.1;
+  std::string stl;  // file; empty: none
+  double stl_tolerance_mm = 0.01;
+};
+
+// On the command line of a verb. `options` must outlive it.
+void AddMillingOptions(CLI::App& verb, MillingOptions& options);
+
 // Errors: CellInvalidArgument for a machine that mills nothing, a block or a tool that cannot be.
-Result<simulation::Milling> MillingOf(const SimulateOptions& options,
+Result<simulation::Milling> MillingOf(const MillingOptions& options,
                                       const machine::MachineShape& shape);
 
-// Errors: CellFileUnwritable.
-Status WriteMaterial(const simulation::HeightField& material, const std::string& file);
+// The files that were asked for. Errors: CellFileUnwritable.
+Status WriteMaterial(const simulation::HeightField& material, const MillingOptions& options);
 
 }  // namespace rmlcell::cli

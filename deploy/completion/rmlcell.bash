@@ -53,6 +53,7 @@ _rmlcell_options() {
     simulate)
       echo "--help --slot --main --executable --family --profile --machine --inputs --mode --override --simul" \
         "--break --budget --vars --svg --toolpath --samples --plot --stock --tool --cell --stl" \
+        "--stl-tolerance" \
         "--state-in --state-out --trace --facts --strict --json" ;;
     explain) echo "--help --json" ;;
     diff) echo "--help --svg --json" ;;
@@ -81,7 +82,8 @@ _rmlcell_options() {
 _rmlcell_takes_value() {
   case $1 in
     --slot | --main | --executable | --family | --profile | --machine | --inputs | --mode | --override | \
-      --simul | --break | --budget | --vars | --svg | --toolpath | --samples | --plot | --stock | --tool | --cell | --stl | --state-in | --state-out | --server | --etag | --form | \
+      --simul | --break | --budget | --vars | --svg | --toolpath | --samples | --plot | --stock | --tool | --cell | --stl | --stl-tolerance | \
+      --state-in | --state-out | --server | --etag | --form | \
       --output | -o | --kind | --title | --request-id | --pace | --after | --filter | --limit | --move | --turn | --shift) return 0 ;;
   esac
   return 1
@@ -110,6 +112,7 @@ _rmlcell_values() {
     --machine) _rmlcell_files .toml ;;
     --svg) _rmlcell_files .svg ;;
     --stl) _rmlcell_files .stl ;;
+    --stl-tolerance) _rmlcell_offer 0.01 0.1 0 ;;
     --stock) _rmlcell_offer 100x80x10 ;;
     --tool) _rmlcell_offer flat:3 ball:3 vee:6:60 ;;
     --samples) _rmlcell_offer 10 100 1000 10000 ;;

@@ -1,0 +1,83 @@
+"""What a mill leaves of a block: rmlcell simulate --stock and all that goes with it (docs/material.md)."""
+import os
+import pathlib
+import struct
+import subprocess
+import tempfile
+import unittest
+
+BIN = pathlib.Path(os.environ["RMLCELL_BIN"])
+
+# A groove of 20 mm along X, 1 mm deep, with clearance on the way. 100 units a mm; along the middle of cells of 0.2 mm.
+GROOVE = "VS10;!VZ10;!PZ-100,200;!MC1;PU2010,1510;PD4010,1510;PU0,0;!MC0;"
+BLOCK = ("--stock", "60x30x5", "--tool", "flat:3", "--cell", "0.2")
+
+
+class Material(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.groove = self.folder / "groove.rml"
+        self.groove.write_text(GROOVE)
+
+    def simulate(self, *words, program=None):
+        return subprocess.run([BIN / "rmlcell", "simulate", program or self.groove, "--profile", "t1", *map(str, words)],
+                              capture_output=True, text=True, timeout=120,
+                              env={**os.environ, "NO_COLOR": "1"})
+
+    def good(self, *words, **more):
+        done = self.simulate(*BLOCK, *words, **more)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return done.stdout
+
+    def refused(self, code, text, *words):
+        done = self.simulate(*words)
+        self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+        self.assertIn(code, done.stderr)
+        self.assertIn(text, done.stderr)
+
+    def facts(self, *words, program=None):
+        done = self.simulate(*BLOCK, *words, "--facts", program=program)
+        return dict(line.split(": ", 1) for line in done.stdout.splitlines() if ": " in line)
+
+
+class Stl(Material):
+    def triangles(self, *words, program=None):
+        path = self.folder / "a.stl"
+        self.good("--stl", path, *words, program=program)
+        data = path.read_bytes()
+        count = struct.unpack_from("<I", data, 80)[0]
+        self.assertEqual(len(data), 84 + 50 * count)
+        return [struct.unpack_from("<12f", data, 84 + 50 * k) for k in range(count)]
+
+    # An untouched plate of 60 x 30 mm is a box: 12 triangles, less than a kilobyte.
+    def test_a_plate_is_a_box(self):
+        up = self.folder / "up.rml"
+        up.write_text("PA;PU0,0;")
+        found = self.triangles(program=up)
+        self.assertEqual(len(found), 12)
+        corners = {t[3 * k:3 * k + 3] for t in found for k in (1, 2, 3)}
+        self.assertEqual(corners, {(x, y, z) for x in (0.0, 60.0) for y in (0.0, 30.0) for z in (-5.0, 0.0)})
+
+    # What is missing is what the report says was taken off: 20 mm x 3 mm x 1 mm and two half discs.
+    def test_the_body_lacks_what_was_taken_off(self):
+        volume = 0.0
+        for t in self.triangles("--stl-tolerance", "0"):
+            (ax, ay, az), (bx, by, bz), (cx, cy, cz) = t[3:6], t[6:9], t[9:12]
+            volume += (ax * (by * cz - bz * cy) - ay * (bx * cz - bz * cx) + az * (bx * cy - by * cx)) / 6
+        self.assertAlmostEqual(60 * 30 * 5 - volume, 20 * 3 + 7.07, delta=0.7)
+
+    def test_a_coarser_body_has_fewer_triangles(self):
+        self.assertLess(len(self.triangles("--stl-tolerance", "2")), len(self.triangles()))
+
+    def test_refusals(self):
+        for words, text in ((("--stl-tolerance", "0.1"), "--stl"), ((*BLOCK, "--stl", "a.stl", "--stl-tolerance", "-1"), "tolerance"),
+                            (("--stl", "a.stl"), "--stock")):
+            done = self.simulate(*words)
+            self.assertEqual(done.returncode, 2, done.stdout)
+            self.assertIn(text, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
