@@ -3,7 +3,9 @@
 #include <fstream>
 #include <functional>
 
+#include "engine/simulation/material/height_map.h"
 #include "engine/simulation/material/milling_text.h"
+#include "engine/simulation/material/relief.h"
 #include "engine/simulation/material/stl.h"
 
 namespace rmlcell::cli {
@@ -41,11 +43,22 @@ Result<simulation::Milling> MillingOf(const MillingOptions& options,
 }
 
 Status WriteMaterial(const simulation::HeightField& material, const MillingOptions& options) {
-  if (!options.stl.empty()) {
-    Status written = WritePortions(options.stl, [&](const Sink& sink) {
-      return simulation::WriteStl(material, options.stl_tolerance_mm, sink);
-    });
-    if (!written) return written;
+  struct Product {
+    const std::string& file;
+    std::function<bool(const Sink&)> write;
+  };
+  const Product products[] = {
+      {options.stl,
+       [&](const Sink& sink) {
+         return simulation::WriteStl(material, options.stl_tolerance_mm, sink);
+       }},
+      {options.relief, [&](const Sink& sink) { return simulation::WriteRelief(material, sink); }},
+      {options.height_map,
+       [&](const Sink& sink) { return simulation::WriteHeightMap(material, sink); }},
+  };
+  for (const Product& product : products) {
+    if (product.file.empty()) continue;
+    if (Status written = WritePortions(product.file, product.write); !written) return written;
   }
   return {};
 }

@@ -18,6 +18,8 @@ struct MillingOptions {
   double cell_mm = 0.1;
   std::string stl;  // file; empty: none
   double stl_tolerance_mm = 0.01;
+  std::string relief;      // file; empty: none
+  std::string height_map;  // file; empty: none
 };
 
 // On the command line of a verb. `options` must outlive it.

@@ -22,6 +22,12 @@ void AddMillingOptions(CLI::App& verb, MillingOptions& options) {
                   "how far its surface may be off, mm; default 0.01")
       ->check(CLI::Range(0.0, 1000.0))
       ->needs(stl);
+  verb.add_option("--relief", options.relief,
+                  "write a shaded picture of what is left, from above (PNG)")
+      ->needs(stock);
+  verb.add_option("--height-map", options.height_map,
+                  "write the heights of what is left as a grey picture of 16 bits (PNG)")
+      ->needs(stock);
 }
 
 }  // namespace rmlcell::cli

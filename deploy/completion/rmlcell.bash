@@ -53,7 +53,7 @@ _rmlcell_options() {
     simulate)
       echo "--help --slot --main --executable --family --profile --machine --inputs --mode --override --simul" \
         "--break --budget --vars --svg --toolpath --samples --plot --stock --tool --cell --stl" \
-        "--stl-tolerance" \
+        "--stl-tolerance --relief --height-map" \
         "--state-in --state-out --trace --facts --strict --json" ;;
     explain) echo "--help --json" ;;
     diff) echo "--help --svg --json" ;;
@@ -82,7 +82,7 @@ _rmlcell_options() {
 _rmlcell_takes_value() {
   case $1 in
     --slot | --main | --executable | --family | --profile | --machine | --inputs | --mode | --override | \
-      --simul | --break | --budget | --vars | --svg | --toolpath | --samples | --plot | --stock | --tool | --cell | --stl | --stl-tolerance | \
+      --simul | --break | --budget | --vars | --svg | --toolpath | --samples | --plot | --stock | --tool | --cell | --stl | --stl-tolerance | --relief | --height-map | \
       --state-in | --state-out | --server | --etag | --form | \
       --output | -o | --kind | --title | --request-id | --pace | --after | --filter | --limit | --move | --turn | --shift) return 0 ;;
   esac
@@ -112,6 +112,7 @@ _rmlcell_values() {
     --machine) _rmlcell_files .toml ;;
     --svg) _rmlcell_files .svg ;;
     --stl) _rmlcell_files .stl ;;
+    --relief | --height-map) _rmlcell_files .png ;;
     --stl-tolerance) _rmlcell_offer 0.01 0.1 0 ;;
     --stock) _rmlcell_offer 100x80x10 ;;
     --tool) _rmlcell_offer flat:3 ball:3 vee:6:60 ;;

@@ -5,6 +5,7 @@ import struct
 import subprocess
 import tempfile
 import unittest
+import zlib
 
 BIN = pathlib.Path(os.environ["RMLCELL_BIN"])
 
@@ -77,6 +78,60 @@ class Stl(Material):
             done = self.simulate(*words)
             self.assertEqual(done.returncode, 2, done.stdout)
             self.assertIn(text, done.stderr)
+
+    def test_a_file_that_cannot_be_written(self):
+        for option in ("--stl", "--relief", "--height-map"):
+            for path in ("/dev/full", self.folder / "no" / "x"):
+                self.refused("CELL-E9023", f"{path}: cannot be written", *BLOCK, option, path)
+
+
+def chunks(data):
+    at = 8
+    while at < len(data):
+        length, kind = struct.unpack_from(">I4s", data, at)
+        yield kind.decode(), data[at + 8:at + 8 + length]
+        at += 12 + length
+
+
+class Pictures(Material):
+    def written(self, option, name="a.png", *words):
+        path = self.folder / name
+        self.good(option, path, *words)
+        return path.read_bytes()
+
+    # 60 x 30 mm in cells of 0.2 mm: 300 x 150 pixels, 5000 a metre. The floor is 1 mm below the top of 5 mm: 4/5 of 65535.
+    def test_a_height_map(self):
+        data = self.written("--height-map")
+        found = list(chunks(data))
+        self.assertEqual(struct.unpack(">IIBBBBB", found[0][1]), (300, 150, 16, 0, 0, 0, 0))
+        self.assertEqual(struct.unpack(">IIB", dict(found)["pHYs"]), (5000, 5000, 1))
+        texts = dict(content.decode().split("\0") for kind, content in found if kind == "tEXt")
+        self.assertEqual((texts["Bottom mm"], texts["Top mm"], texts["Cell mm"]), ("-5", "0", "0.2"))
+        self.assertEqual(set(self.heights(data)), {65535, 52428})
+
+    @staticmethod
+    def heights(data):
+        """Pixels of a grey PNG of 16 bits, by the format: filters of rows undone."""
+        width, height = struct.unpack_from(">II", next(content for kind, content in chunks(data) if kind == "IHDR"))
+        raw = zlib.decompress(b"".join(content for kind, content in chunks(data) if kind == "IDAT"))
+        before = bytearray(2 * width)
+        for y in range(height):
+            kind, line = raw[y * (2 * width + 1)], bytearray(raw[y * (2 * width + 1) + 1:(y + 1) * (2 * width + 1)])
+            for k in range(2 * width):
+                a, b, c = line[k - 2] if k > 1 else 0, before[k], before[k - 2] if k > 1 else 0
+                p = a + b - c
+                paeth = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
+                line[k] = (line[k] + (0, a, b, (a + b) // 2, paeth)[kind]) & 255
+            yield from struct.unpack(f">{width}H", line)
+            before = line
+
+    def test_a_relief(self):
+        found = list(chunks(self.written("--relief")))
+        self.assertEqual(struct.unpack(">IIBBBBB", found[0][1]), (300, 150, 8, 2, 0, 0, 0))
+
+    def test_the_same_bytes_each_time(self):
+        for option in ("--relief", "--height-map", "--stl"):
+            self.assertEqual(self.written(option, "a"), self.written(option, "b"))
 
 
 if __name__ == "__main__":

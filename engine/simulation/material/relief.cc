@@ -1,0 +1,106 @@
+#include "engine/simulation/material/relief.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/simulation/material/png.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+using Colour = std::array<int, 3>;
+
+constexpr Colour kUntouched = {222, 184, 135};
+constexpr Colour kMilled = {190, 200, 210};
+constexpr Colour kThrough = {24, 48, 104};
+constexpr double kDeepest = 0.55;  // how bright milled ground is at the bottom
+constexpr double kShade = 0.25;    // how bright a slope in the shade is
+
+// How much light falls on a slope, by what falls on level ground: from the upper left, 45 degrees
+// high, which is the direction (-1/2, 1/2, sqrt(1/2)).
+double LightOn(double slope_x, double slope_y) {
+  const double level = std::sqrt(0.5);
+  const double facing = 0.5 * slope_x - 0.5 * slope_y + level;
+  const double direct = facing / std::sqrt(1.0 + slope_x * slope_x + slope_y * slope_y) / level;
+  return kShade + (1.0 - kShade) * std::max(0.0, direct);
+}
+
+class Shading {
+ public:
+  explicit Shading(const HeightField& field) : field_(field), stock_(field.stock()) {}
+
+  Colour At(std::size_t column, std::size_t row) const {
+    const double height = field_.height(column, row);
+    if (height <= static_cast<float>(stock_.bottom)) return kThrough;
+    const double light = LightOn(SlopeX(column, row), SlopeY(column, row));
+    if (height >= static_cast<float>(stock_.top)) return Lit(kUntouched, light);
+    const double depth = (stock_.top - height) / (stock_.top - stock_.bottom);
+    return Lit(kMilled, light * (1.0 - (1.0 - kDeepest) * depth));
+  }
+
+ private:
+  static Colour Lit(const Colour& colour, double light) {
+    Colour lit{};
+    for (std::size_t k = 0; k < 3; ++k)
+      lit[k] = static_cast<int>(std::clamp(std::round(colour[k] * light), 0.0, 255.0));
+    return lit;
+  }
+
+  // Between both neighbours; at the edge of the block the cell is its own neighbour.
+  double SlopeX(std::size_t column, std::size_t row) const {
+    const std::size_t low = column > 0 ? column - 1 : 0;
+    const std::size_t high = std::min(column + 1, field_.columns() - 1);
+    return Rise(field_.height(low, row), field_.height(high, row), high - low);
+  }
+  double SlopeY(std::size_t column, std::size_t row) const {
+    const std::size_t low = row > 0 ? row - 1 : 0;
+    const std::size_t high = std::min(row + 1, field_.rows() - 1);
+    return Rise(field_.height(column, low), field_.height(column, high), high - low);
+  }
+  double Rise(float low, float high, std::size_t cells) const {
+    if (cells == 0) return 0.0;
+    const double floor = stock_.bottom;
+    return (std::max<double>(high, floor) - std::max<double>(low, floor)) /
+           (static_cast<double>(cells) * stock_.cell);
+  }
+
+  const HeightField& field_;
+  const Stock& stock_;
+};
+
+}  // namespace
+
+bool WriteRelief(const HeightField& field, const std::function<bool(std::string_view)>& sink) {
+  const std::size_t longest = std::max(field.columns(), field.rows());
+  const std::size_t square = (longest + kReliefPixelsMax - 1) / kReliefPixelsMax;
+  const Shading shading(field);
+  const PngHeading heading{.width = (field.columns() + square - 1) / square,
+                           .height = (field.rows() + square - 1) / square,
+                           .form = PngHeading::Form::kColour8,
+                           .pixel_mm = field.stock().cell * static_cast<double>(square),
+                           .texts = {{"Software", "rmlcell"}}};
+  return WritePng(
+      heading,
+      [&](std::size_t from_above, std::span<std::uint8_t> bytes) {
+        const std::size_t end = field.rows() - from_above * square;
+        const std::size_t begin = end - std::min(end, square);
+        for (std::size_t pixel = 0; pixel < heading.width; ++pixel) {
+          const std::size_t left = pixel * square;
+          const std::size_t right = std::min(left + square, field.columns());
+          Colour sum{};
+          for (std::size_t row = begin; row < end; ++row) {
+            for (std::size_t column = left; column < right; ++column) {
+              const Colour one = shading.At(column, row);
+              for (std::size_t k = 0; k < 3; ++k) sum[k] += one[k];
+            }
+          }
+          const int cells = static_cast<int>((end - begin) * (right - left));
+          for (std::size_t k = 0; k < 3; ++k)
+            bytes[3 * pixel + k] = static_cast<std::uint8_t>((sum[k] + cells / 2) / cells);
+        }
+      },
+      sink);
+}
+
+}  // namespace rmlcell::simulation
