@@ -211,7 +211,8 @@ int TellWhyNot(const SimulateOptions& options, const LoadedFiles& loaded,
 Status WriteProducts(const SimulateOptions& options, const simulation::SimulationResult& result,
                      const std::string& toolpath) {
   if (result.material) {
-    if (Status written = WriteMaterial(*result.material, options.milling); !written) return written;
+    if (Status written = WriteMaterial(*result.material, result.target, options.milling); !written)
+      return written;
   }
   struct Product {
     std::string file;
@@ -327,7 +328,7 @@ int Simulate(const SimulateOptions& options) {
   }
   if (!options.milling.stock.empty()) {
     Result<simulation::Milling> milling =
-        MillingOf(options.milling, loaded->family->Shape(outcome->setup->parameters));
+        MillingOf(options.milling, loaded->family->Shape(outcome->setup->parameters), memory);
     if (!milling) return Refuse(milling.error());
     request.products.milling = *milling;
   }

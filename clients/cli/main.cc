@@ -85,6 +85,7 @@ void AddSimulateVerb(CLI::App& app, int& exit_code) {
       "  rmlcell simulate 45.S --plot speed,power t.svg curves over time\n"
       "  rmlcell simulate part.rml --stock 100x80x10 --tool flat:3 --stl part.stl   what is left\n"
       "  rmlcell simulate part.rml --stock 100x80x10 --tool ball:3 --relief part.png   the same as a picture\n"
+      "  rmlcell simulate new.rml --stock 100x80x10 --tool flat:3:flute=12 --target old.rml   beside what should be left\n"
       "  rmlcell simulate 32.S progs/ --trace           progs/44.S and the like fill the program "
       "memory\n"
       "  rmlcell simulate part.S --simul 12/40          dry up to step 40 of program 12, real "

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "engine/machine/shape.h"
 #include "engine/simulation/material/milling_recorder.h"
+#include "engine/simulation/run/rehearsal.h"
 
 namespace CLI {
 class App;
@@ -20,16 +22,24 @@ struct MillingOptions {
   double stl_tolerance_mm = 0.01;
   std::string relief;      // file; empty: none
   std::string height_map;  // file; empty: none
+  std::string target;      // file: what should be left; empty: nothing is compared
+  double target_tolerance_mm = 0.1;
+  std::string target_png;  // file; empty: none
 };
 
 // On the command line of a verb. `options` must outlive it.
 void AddMillingOptions(CLI::App& verb, MillingOptions& options);
 
-// Errors: CellInvalidArgument for a machine that mills nothing, a block or a tool that cannot be.
+// `machine`: on whose table the block is; a target that is a program runs on it, too. Errors:
+// CellInvalidArgument for a machine that mills nothing, a block or a tool that cannot be; those of
+// simulation::ReadTarget, of the target's file and, where that is a program, of its run.
 Result<simulation::Milling> MillingOf(const MillingOptions& options,
-                                      const machine::MachineShape& shape);
+                                      const machine::MachineShape& shape,
+                                      const simulation::ProgramMemory& machine);
 
 // The files that were asked for. Errors: CellFileUnwritable.
-Status WriteMaterial(const simulation::HeightField& material, const MillingOptions& options);
+Status WriteMaterial(const simulation::HeightField& material,
+                     const std::optional<simulation::Target>& target,
+                     const MillingOptions& options);
 
 }  // namespace rmlcell::cli

@@ -8,8 +8,9 @@ void AddMillingOptions(CLI::App& verb, MillingOptions& options) {
   CLI::Option* stock =
       verb.add_option("--stock", options.stock,
                       "100x80x10[@X,Y,TOP]: a block on a mill's table, mm from the work origin");
-  CLI::Option* tool =
-      verb.add_option("--tool", options.tool, "flat:D, ball:D, vee:D:ANGLE[:TIP]: what mills it");
+  CLI::Option* tool = verb.add_option(
+      "--tool", options.tool,
+      "flat:D, ball:D, vee:D:ANGLE[:TIP], with :flute=L:shank=D:holder=D@L: what mills it");
   stock->needs(tool);
   tool->needs(stock);
   verb.add_option("--cell", options.cell_mm,
@@ -28,6 +29,17 @@ void AddMillingOptions(CLI::App& verb, MillingOptions& options) {
   verb.add_option("--height-map", options.height_map,
                   "write the heights of what is left as a grey picture of 16 bits (PNG)")
       ->needs(stock);
+  CLI::Option* target =
+      verb.add_option("--target", options.target,
+                      "what should be left: a height map, an STL, or another program")
+          ->needs(stock);
+  verb.add_option("--target-tolerance", options.target_tolerance_mm,
+                  "up to which a difference is none, mm; default 0.1")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->needs(target);
+  verb.add_option("--target-png", options.target_png,
+                  "write a picture of what is too deep (red) and left too much (blue)")
+      ->needs(target);
 }
 
 }  // namespace rmlcell::cli

@@ -1,4 +1,5 @@
 """What a mill leaves of a block: rmlcell simulate --stock and all that goes with it (docs/material.md)."""
+import json
 import os
 import pathlib
 import struct
@@ -132,6 +133,113 @@ class Pictures(Material):
     def test_the_same_bytes_each_time(self):
         for option in ("--relief", "--height-map", "--stl"):
             self.assertEqual(self.written(option, "a"), self.written(option, "b"))
+
+
+# The same groove, 1.5 mm deep.
+DEEPER = GROOVE.replace("-100", "-150")
+
+
+class Tools(Material):
+    def test_a_shank_in_material_is_bad(self):
+        for tool, code, wanted in (("flat:3:flute=1", 0, "0.0"), ("flat:3:flute=0.5", 1, "0.5"), ("flat:3:flute=0.5:shank=2", 1, "0.5"),
+                                   ("flat:3:holder=20@0.75", 1, "0.25"), ("flat:3", 0, "0.0")):
+            with self.subTest(tool):
+                done = self.simulate("--stock", "60x30x5", "--tool", tool, "--facts")
+                self.assertEqual(done.returncode, code, done.stdout)
+                self.assertIn(f"shank_depth_mm: {wanted}\n", done.stdout)
+                self.assertEqual("CELL-E9411" in self.simulate("--stock", "60x30x5", "--tool", tool).stdout, code == 1)
+
+    # 1 mm deep with a tool of 0.8 mm.
+    def test_a_deep_pass_is_doubtful(self):
+        words = ("--stock", "60x30x5", "--tool", "flat:0.8")
+        self.assertEqual(self.simulate(*words).returncode, 0)
+        done = self.simulate(*words, "--strict")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("one pass is as deep as 125.0 % of the width of the tool (CELL-E9412", done.stdout)
+
+    def test_figures_of_the_cut(self):
+        facts = self.facts()
+        self.assertAlmostEqual(float(facts["removed_volume_mm3"]) + float(facts["remaining_volume_mm3"]), 60 * 30 * 5, places=3)
+        self.assertEqual((facts["deepest_cut_mm"], facts["deepest_pass_mm"], facts["target_left_mm"]), ("1.0", "1.0", "none"))
+
+    def test_refusals(self):
+        for tool, text in (("flat:3:neck=2", "'flat:3:neck=2' is no tool"), ("flat:3:shank=6", "say flute=LENGTH"),
+                           ("ball:3:flute=1", "make flute longer"), ("drill:3", "is no tool: write flat:3, ball:3")):
+            self.refused("CELL-E9003", text, "--stock", "60x30x5", "--tool", tool)
+
+
+class Targets(Material):
+    def setUp(self):
+        super().setUp()
+        self.deeper = self.folder / "deeper.rml"
+        self.deeper.write_text(DEEPER)
+
+    def targets(self, program):
+        """The three forms of what `program` leaves."""
+        self.good("--stl", self.folder / "t.stl", "--height-map", self.folder / "t.png", program=program)
+        return self.folder / "t.stl", self.folder / "t.png", program
+
+    # A program beside what it leaves itself: all good. Heights of the map are half a grey value off at most.
+    def test_itself(self):
+        for target in self.targets(self.groove):
+            facts = self.facts("--target", target, "--target-tolerance", "0.02")
+            self.assertEqual(facts["target_good_share"], "1.0", target)
+            self.assertLess(float(facts["target_deep_mm"]), 0.011)
+            self.assertEqual(facts["verdict"], "GOOD")
+
+    # 0.5 mm are left of about 20 x 3 mm and two half discs; that is doubtful, and an exit code of 0.
+    def test_too_much_left(self):
+        for target in self.targets(self.deeper):
+            with self.subTest(target.name):
+                facts = self.facts("--target", target)
+                self.assertAlmostEqual(float(facts["target_left_mm"]), 0.5, delta=0.011)
+                self.assertEqual((facts["target_deep_mm"] < "0.011", facts["verdict"]), (True, "DOUBTFUL"))
+                self.assertAlmostEqual(float(facts["target_left_volume_mm3"]), 0.5 * 67, delta=6)
+                self.assertIn("CELL-E9414", self.simulate(*BLOCK, "--target", target).stdout)
+                self.assertEqual(self.simulate(*BLOCK, "--target", target, "--strict").returncode, 1)
+                self.assertEqual(self.facts("--target", target, "--target-tolerance", "0.52")["verdict"], "GOOD")
+
+    def test_too_deep(self):
+        for target in self.targets(self.groove):
+            with self.subTest(target.name):
+                done = self.simulate(*BLOCK, "--target", target, program=self.deeper)
+                self.assertEqual(done.returncode, 1, done.stdout)
+                self.assertIn("CELL-E9413", done.stdout)
+                self.assertRegex(done.stdout, r"too deep by up to 0.[45]\d\d mm at X \d+\.\d+, Y 1[3-6]")
+                self.assertNotIn("too much left", done.stdout)
+
+    def test_the_picture(self):
+        path = self.folder / "d.png"
+        self.simulate(*BLOCK, "--target", self.groove, "--target-png", path, program=self.deeper)
+        found = list(chunks(path.read_bytes()))
+        self.assertEqual(struct.unpack(">IIBBBBB", found[0][1]), (300, 150, 8, 2, 0, 0, 0))
+        raw = zlib.decompress(b"".join(content for kind, content in found if kind == "IDAT"))
+        self.assertEqual(raw[1:4], bytes([214, 214, 214]))  # a corner: good
+
+    def test_the_report_as_json(self):
+        milling = json.loads(self.simulate(*BLOCK, "--target", self.deeper, "--json").stdout)["milling"]
+        self.assertEqual(milling["target"]["leftMm"], 0.5)
+        self.assertEqual(milling["target"]["toleranceMm"], 0.1)
+        self.assertEqual(milling["toolDiameterMm"], 3)
+
+    def test_refusals(self):
+        def file(name, data):
+            (self.folder / name).write_bytes(data)
+            return self.folder / name
+        rows = (("CELL-E9022", "none.stl", self.folder / "none.stl"),
+                ("CELL-E9024", "no STL: it neither begins", file("a.stl", b"no body")),
+                ("CELL-E9024", "line 2: 'faced'", file("b.stl", b"solid\nfaced\n")),
+                ("CELL-E9024", "no height map", file("c.png", b"\x89PNG\r\n\x1a\n")),
+                ("CELL-E9003", "lies beside the block", file("d.stl", b"solid\nfacet normal 0 0 1\nvertex 900 0 0\n"
+                                                             b"vertex 901 0 0\nvertex 900 1 0\nendfacet\n")),
+                ("CELL-E9017", "e.rml", file("e.rml", b"")))
+        for code, text, target in rows:
+            with self.subTest(text):
+                self.refused(code, text, *BLOCK, "--target", target)
+        self.assertIn("--stock", self.simulate("--target", self.groove).stderr)
+        self.assertIn("--target", self.simulate(*BLOCK, "--target-png", "x.png").stderr)
+        self.assertEqual(self.simulate(*BLOCK, "--target", self.groove, "--target-tolerance", "-1").returncode, 2)
+        self.refused("CELL-E9023", "/dev/full", *BLOCK, "--target", self.groove, "--target-png", "/dev/full")
 
 
 if __name__ == "__main__":

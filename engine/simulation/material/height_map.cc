@@ -77,6 +77,10 @@ Result<HeightMap> ReadHeightMap(std::string_view bytes) {
   map.stock.y_max = map.stock.y_min + static_cast<double>(map.rows) * map.stock.cell;
   if (Status sound = CheckStock(map.stock); !sound)
     return Error{ErrorCode::kCellBadText, "no height map: " + sound.error().detail, {}};
+  for (const double end : {map.stock.bottom, map.stock.top}) {
+    if (!std::isfinite(static_cast<float>(end)))
+      return Error{ErrorCode::kCellBadText, "no height map: its heights are out of reach", {}};
+  }
   const double step = StepOf(map.stock);
   map.heights.reserve(map.columns * map.rows);
   for (std::size_t row = map.rows; row-- > 0;) {

@@ -12,7 +12,6 @@ namespace rmlcell::simulation {
 // darker the deeper, and what was cut through dark blue. A pixel is a cell; of blocks with more
 // than kReliefPixelsMax columns or rows a pixel is the mean of a square of cells. The bytes are
 // valid during the call of `sink`; it returns false when it wants no more, and so does this.
-inline constexpr std::size_t kReliefPixelsMax = 2048;
 bool WriteRelief(const HeightField& field, const std::function<bool(std::string_view)>& sink);
 
 }  // namespace rmlcell::simulation

@@ -136,6 +136,8 @@ TEST(HeightMap, RefusesAPictureWithoutItsScale) {
   heading.texts[2].second = "1";
   heading.texts[4].second = "-1";
   ExpectRefused(Png(heading), "ends before it begins");
+  heading.texts[4].second = "1e39";
+  ExpectRefused(Png(heading), "its heights are out of reach");
 }
 
 // Cut short anywhere, or with any byte changed, it is refused: checksums cover all of it.

@@ -127,6 +127,84 @@ TEST(MillingText, ReadsTools) {
   for (const char* wrong :
        {"", "flat", "flat:", "flat:0", "flat:-1", "flat:3:2", "vee:6", "vee:6:180", "drill:3"})
     EXPECT_FALSE(ParseTool(wrong)) << wrong;
+  EXPECT_EQ(ParseTool("cone:6:60")->shape, MillTool::Shape::kVee);
+  EXPECT_EQ(ParseTool("engrave:6:30:0.1")->tip_radius_mm, 0.05);
+  EXPECT_EQ(ParseTool("end:3")->shape, MillTool::Shape::kFlat);
+}
+
+// What is above the cutting end follows by name, in any order.
+TEST(MillingText, ReadsShanksAndHolders) {
+  const Result<MillTool> tool = ParseTool("flat:3:flute=12:shank=6:holder=20@25");
+  ASSERT_TRUE(tool);
+  EXPECT_EQ(tool->radius_mm, 1.5);
+  EXPECT_EQ(tool->flute_mm, 12.0);
+  EXPECT_EQ(tool->shank_radius_mm, 3.0);
+  EXPECT_EQ(tool->holder_radius_mm, 10.0);
+  EXPECT_EQ(tool->holder_from_mm, 25.0);
+  const Result<MillTool> vee = ParseTool("vee:6:90:0.2:holder=20@9:flute=4");
+  ASSERT_TRUE(vee);
+  EXPECT_EQ(vee->tip_radius_mm, 0.1);
+  EXPECT_EQ(vee->flute_mm, 4.0);
+  EXPECT_EQ(vee->holder_from_mm, 9.0);
+  EXPECT_EQ(ParseTool("flat:3")->flute_mm, 0.0);
+  EXPECT_TRUE(ParseTool("ball:3:flute=1.5"));  // as high as its end
+  EXPECT_TRUE(ParseTool("flat:3:flute=5:holder=9@5"));
+  const std::pair<const char*, const char*> refused[] = {
+      {"flat:3:flute", "is no tool"},
+      {"flat:3:flute=", "is no tool"},
+      {"flat:3:flute=0", "is no tool"},
+      {"flat:3:flute=long", "is no tool"},
+      {"flat:3:neck=2", "is no tool"},
+      {"flat:3:flute=5:2", "is no tool"},
+      {"flute=5", "is no tool"},
+      {"flat:flute=5", "is no tool"},
+      {"flat:3:holder=20", "is no tool"},
+      {"flat:3:holder=0@20", "is no tool"},
+      {"flat:3:holder=20@20@20", "is no tool"},
+      {"flat:3:shank=6", "say flute=LENGTH"},
+      {"ball:3:flute=1.4", "its end alone is 1.5 mm high"},
+      {"vee:6:90:flute=2.9", "its end alone is 3.0 mm high"},
+      {"flat:3:flute=9:holder=20@8", "begins below the end of what cuts"},
+      {"flat:3:holder=20@-1", "above 0 mm"}};
+  for (const auto& [text, why] : refused) {
+    const Result<MillTool> wrong = ParseTool(text);
+    ASSERT_FALSE(wrong) << text;
+    EXPECT_NE(wrong.error().detail.find(why), std::string::npos) << wrong.error().detail;
+  }
+}
+
+// The most that one motion across takes off: not a plunge, not travel, not what was cut before; a
+// ramp of 45 degrees is a pass, a steeper one none.
+TEST(MillingRecorder, TellsTheDeepestPass) {
+  MillingRecorder recorder(MillShape(), kSlot);
+  Tell(recorder, {5, 6, 5}, {5, 6, -4}, 2.0, 1);
+  Tell(recorder, {10, 9, 1}, {12, 9, -1.25}, 2.0, 2);
+  Tell(recorder, {2, 2, -3}, {8, 2, -3}, 0.0, 3);
+  EXPECT_EQ(recorder.Figures().deepest_pass_mm, 0.0);
+  Tell(recorder, {15, 10, 0}, {16.5, 10, -1.5}, 2.0, 4);
+  EXPECT_NEAR(recorder.Figures().deepest_pass_mm, 1.5, 1e-6);
+  EXPECT_EQ(recorder.Figures().pass_place.step, 4);
+  Tell(recorder, {5, 6, -2.5}, {12, 6, -2.5}, 2.0, 5);
+  Tell(recorder, {5, 6, -4}, {12, 6, -4}, 2.0, 6);
+  const MillingFigures figures = recorder.Figures();
+  EXPECT_NEAR(figures.deepest_pass_mm, 2.5, 1e-6);
+  EXPECT_EQ(figures.pass_place.step, 5);
+  EXPECT_EQ(figures.tool_diameter_mm, 3.0);
+  EXPECT_NEAR(figures.deepest_cut_mm, 4.0, 1e-6);
+  EXPECT_NEAR(figures.remaining_mm3 + figures.removed_mm3, 20.0 * 12.0 * 5.0, 1e-6);
+}
+
+// A shank of 3 mm above 2 mm that cut, 3 mm deep: 1 mm of it in material, once.
+TEST(MillingRecorder, TellsTheShankInMaterial) {
+  Milling milling = kSlot;
+  milling.tool = *ParseTool("flat:3:flute=2");
+  MillingRecorder recorder(MillShape(), milling);
+  Tell(recorder, {5, 6, 5}, {5, 6, -3}, 2.0, 1);
+  EXPECT_EQ(recorder.Figures().shank_depth_mm, 0.0);
+  Tell(recorder, {5, 6, -3}, {9, 6, -3}, 2.0, 2);
+  Tell(recorder, {9, 6, -3}, {12, 6, -2.5}, 2.0, 3);
+  EXPECT_NEAR(recorder.Figures().shank_depth_mm, 1.0, 1e-6);
+  EXPECT_EQ(recorder.Figures().shank_place.step, 2);
 }
 
 }  // namespace
