@@ -1,19 +1,15 @@
 #include "engine/simulation/material/relief.h"
 
 #include <gtest/gtest.h>
-#include <png.h>
 
-#include <array>
 #include <cmath>
 #include <string>
-#include <vector>
 
 #include "engine/core/units.h"
+#include "tests/engine/simulation/png_picture.h"
 
 namespace rmlcell::simulation {
 namespace {
-
-using Rgb = std::array<int, 3>;
 
 constexpr Rgb kWood = {222, 184, 135};
 
@@ -26,27 +22,6 @@ std::string ReliefOf(const HeightField& field) {
   return bytes;
 }
 
-// By the simple half of libpng, which shares nothing with ours.
-struct Picture {
-  explicit Picture(const std::string& bytes) {
-    png_image image{};
-    image.version = PNG_IMAGE_VERSION;
-    EXPECT_NE(png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()), 0);
-    image.format = PNG_FORMAT_RGB;
-    width = image.width;
-    height = image.height;
-    pixels.resize(PNG_IMAGE_SIZE(image));
-    EXPECT_NE(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr), 0);
-  }
-  Rgb At(std::size_t column, std::size_t row_from_above) const {
-    const std::size_t at = 3 * (row_from_above * width + column);
-    return {pixels[at], pixels[at + 1], pixels[at + 2]};
-  }
-  std::size_t width = 0;
-  std::size_t height = 0;
-  std::vector<std::uint8_t> pixels;
-};
-
 HeightField Ten() {
   return HeightField::Of({.x_max = 10.0, .y_max = 8.0, .bottom = -2.0, .top = 0.0, .cell = 0.5})
       .value();
@@ -55,7 +30,7 @@ HeightField Ten() {
 // What no tool touched is the colour of wood all over; the picture is as wide as the block has
 // cells.
 TEST(Relief, UntouchedGroundIsTheColourOfWood) {
-  const Picture picture(ReliefOf(Ten()));
+  const PngPicture picture(ReliefOf(Ten()));
   EXPECT_EQ(picture.width, 20u);
   EXPECT_EQ(picture.height, 16u);
   for (std::size_t row = 0; row < 16; ++row) {
@@ -69,7 +44,7 @@ TEST(Relief, GroundIsTheDarkerTheDeeper) {
   HeightField field = Ten();
   field.Cut({.radius_mm = 1.6}, {2, 2, -1}, {2, 2, -1});
   field.Cut({.radius_mm = 1.6}, {8, 6, -2}, {8, 6, -2});
-  const Picture picture(ReliefOf(field));
+  const PngPicture picture(ReliefOf(field));
   EXPECT_EQ(picture.At(4, 16 - 1 - 4), (Rgb{147, 155, 163}));
   EXPECT_EQ(picture.At(16, 16 - 1 - 12), (Rgb{24, 48, 104}));
   EXPECT_EQ(picture.At(16, 16 - 1 - 4), kWood);
@@ -83,7 +58,7 @@ TEST(Relief, LightComesFromTheUpperLeft) {
           .value();
   field.Cut({.shape = MillTool::Shape::kVee, .radius_mm = 16.0, .half_angle_rad = kPi / 4},
             {20, 20, -15}, {20, 20, -15});
-  const Picture picture(ReliefOf(field));
+  const PngPicture picture(ReliefOf(field));
   // 7.5 mm deep on both sides: 0.8875 of the grey. The wall of 45 degrees to the upper left faces
   // away: 0.25 remains; the one to the lower right has the light straight on: sqrt(2) times it.
   const double away = 0.25;
@@ -104,7 +79,7 @@ TEST(Relief, WideBlocksAreDrawnSmaller) {
       HeightField::Of({.x_max = 2049.0, .y_max = 3.0, .bottom = -1.0, .top = 0.0, .cell = 1.0})
           .value();
   field.Cut({.radius_mm = 0.3}, {0.5, 2.5, -9}, {0.5, 2.5, -9});
-  const Picture picture(ReliefOf(field));
+  const PngPicture picture(ReliefOf(field));
   EXPECT_EQ(picture.width, 1025u);
   EXPECT_EQ(picture.height, 2u);
   EXPECT_EQ(picture.At(1000, 0), kWood);

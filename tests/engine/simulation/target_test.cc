@@ -7,6 +7,7 @@
 #include <string>
 
 #include "engine/simulation/material/milling_recorder.h"
+#include "tests/engine/simulation/png_picture.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -107,16 +108,27 @@ TEST(Target, BelongsToTheCellsOfItsBlock) {
   EXPECT_FALSE(CheckMilling(milling));
 }
 
-// The picture: grey, red, blue and white, by the definition of its header.
+// Of a target 1 mm below the top: a pit of 1.5 mm is half a millimetre too deep, ground at -1 good,
+// the rest left untouched. From grey (214) by 0.3 to the full colour at ten times the tolerance, 1
+// mm: red by 0.3 + 0.7 / 2, blue by all of it.
 TEST(Target, IsDrawnWhereItDiffers) {
+  HeightField field = TargetBlock();
+  field.Cut({.radius_mm = 1.1}, {2, -1, -1}, {2, 1, -1});
+  field.Cut({.radius_mm = 0.4}, {2, 0, -1.5}, {2, 0, -1.5});
+  const Target target = With(AllAt(-1.0f), 79, std::numeric_limits<float>::quiet_NaN());
   std::string bytes;
-  EXPECT_TRUE(WriteDifference(TargetBlock(), AllAt(-0.5f), [&](std::string_view part) {
+  EXPECT_TRUE(WriteDifference(field, target, [&](std::string_view part) {
     bytes += part;
     return true;
   }));
-  EXPECT_EQ(bytes.substr(1, 3), "PNG");
-  EXPECT_FALSE(
-      WriteDifference(TargetBlock(), AllAt(-0.5f), [](std::string_view) { return false; }));
+  const PngPicture picture(bytes);
+  EXPECT_EQ(picture.width, 10u);
+  EXPECT_EQ(picture.height, 8u);
+  EXPECT_EQ(picture.At(1, 3), (Rgb{198, 75, 75}));    // 214 - 0.65 * 24, 214 - 0.65 * 214
+  EXPECT_EQ(picture.At(2, 6), (Rgb{214, 214, 214}));  // milled as it should be
+  EXPECT_EQ(picture.At(8, 7), (Rgb{0, 60, 200}));     // 1 mm left
+  EXPECT_EQ(picture.At(9, 0), (Rgb{255, 255, 255}));  // the target says nothing of the last cell
+  EXPECT_FALSE(WriteDifference(field, target, [](std::string_view) { return false; }));
 }
 
 }  // namespace
