@@ -15,6 +15,7 @@ pkg-config              # finds zstd, which has no CMake file
 ca-certificates         # for package managers
 # --- libraries
 libeigen3-dev           # vectors, rotations, frames, solves (headers only)
+libpng-dev              # pictures of what a mill leaves
 libgrpc++-dev           # calls and streams
 protobuf-compiler-grpc  # generates the services
 libprotobuf-dev         # messages

@@ -210,8 +210,9 @@ int TellWhyNot(const SimulateOptions& options, const LoadedFiles& loaded,
 // written here.
 Status WriteProducts(const SimulateOptions& options, const simulation::SimulationResult& result,
                      const std::string& toolpath) {
-  if (result.material && !options.stl.empty()) {
-    if (Status written = WriteMaterial(*result.material, options.stl); !written) return written;
+  if (result.material) {
+    if (Status written = WriteMaterial(*result.material, result.target, options.milling); !written)
+      return written;
   }
   struct Product {
     std::string file;
@@ -332,9 +333,9 @@ int Simulate(const SimulateOptions& options) {
     request.products.plot = true;
     request.plot.curves = *std::move(curves);
   }
-  if (!options.stock.empty()) {
+  if (!options.milling.stock.empty()) {
     Result<simulation::Milling> milling =
-        MillingOf(options, loaded->family->Shape(outcome->setup->parameters));
+        MillingOf(options.milling, loaded->family->Shape(outcome->setup->parameters), memory);
     if (!milling) return Refuse(milling.error());
     request.products.milling = *milling;
   }

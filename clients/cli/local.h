@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "clients/cli/milling.h"
+
 namespace rmlcell::cli {
 
 // For which machine: options on the command line go before those of a file.
@@ -45,10 +47,7 @@ struct SimulateOptions {
   std::string toolpath;
   std::vector<std::string> samples;  // rate and file; empty: none
   std::vector<std::string> plot;     // curves and file; empty: none
-  std::string stock;                 // "100x80x10"; empty: material is not modelled
-  std::string tool;                  // "flat:3"
-  double cell_mm = 0.1;
-  std::string stl;
+  MillingOptions milling;
   std::string state_in;
   std::string state_out;
   bool trace = false;

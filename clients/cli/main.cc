@@ -111,6 +111,8 @@ void AddSimulateVerb(CLI::App& app, int& exit_code) {
       "  rmlcell simulate part.rml --svg part.svg       figures, and a picture\n"
       "  rmlcell simulate 45.S --plot speed,power t.svg curves over time\n"
       "  rmlcell simulate part.rml --stock 100x80x10 --tool flat:3 --stl part.stl   what is left\n"
+      "  rmlcell simulate part.rml --stock 100x80x10 --tool ball:3 --relief part.png   the same as a picture\n"
+      "  rmlcell simulate new.rml --stock 100x80x10 --tool flat:3:flute=12 --target old.rml   beside what should be left\n"
       "  rmlcell simulate 32.S progs/ --trace           progs/44.S and the like fill the program "
       "memory\n"
       "  rmlcell simulate part.S --simul 12/40          dry up to step 40 of program 12, real "
@@ -140,17 +142,7 @@ void AddSimulateVerb(CLI::App& app, int& exit_code) {
                    "steps=N,time=SECONDS: end the run when it needs more");
   verb->add_option("--vars", options->variables, "variables to show at the end: VR[0..9],VI[99]");
   AddPathProducts(verb, *options);
-  CLI::Option* stock =
-      verb->add_option("--stock", options->stock,
-                       "100x80x10[@X,Y,TOP]: a block on a mill's table, mm from the work origin");
-  CLI::Option* tool =
-      verb->add_option("--tool", options->tool, "flat:D, ball:D, vee:D:ANGLE[:TIP]: what mills it");
-  stock->needs(tool);
-  tool->needs(stock);
-  verb->add_option("--cell", options->cell_mm,
-                   "edge of the cells that the block is looked at in, mm; default 0.1")
-      ->needs(stock);
-  verb->add_option("--stl", options->stl, "write what is left of the block")->needs(stock);
+  AddMillingOptions(*verb, options->milling);
   verb->add_option("--state-in", options->state_in,
                    "begin with the machine state that an earlier run kept");
   verb->add_option("--state-out", options->state_out, "keep the machine state for a later run");

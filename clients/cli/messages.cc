@@ -216,15 +216,45 @@ void AddViolations(const v1::RunReport& report, Rows& rows) {
   if (all > kListedMax) rows.emplace_back("", "and " + std::to_string(all - kListedMax) + " more");
 }
 
+void AddTarget(const v1::TargetFigures& target, Rows& rows) {
+  rows.emplace_back("target", Fixed(target.good_percent(), 2) + " % of " +
+                                  Fixed(target.compared_mm2(), 1) + " mm2 within " +
+                                  Fixed(target.tolerance_mm(), 3) + " mm");
+  const auto tell = [&](const char* what, double most_mm, double volume_mm3, double x, double y) {
+    if (!(most_mm > 0.0)) return;
+    rows.emplace_back("", what + Fixed(most_mm, 3) + " mm at X " + Fixed(x, 3) + ", Y " +
+                              Fixed(y, 3) + "; " + Fixed(volume_mm3, 3) + " mm3 in all");
+  };
+  tell("too deep by up to ", target.deep_mm(), target.deep_mm3(), target.deep_x_mm(),
+       target.deep_y_mm());
+  tell("too much left, up to ", target.left_mm(), target.left_mm3(), target.left_x_mm(),
+       target.left_y_mm());
+}
+
 void AddMilling(const v1::RunReport& report, Rows& rows) {
   if (!report.has_milling()) return;
   const v1::MillingFigures& milling = report.milling();
   rows.emplace_back("material", Fixed(milling.removed_mm3(), 3) + " mm3 removed");
-  if (milling.gouges() == 0) return;
-  rows.emplace_back(
-      "", std::to_string(milling.gouges()) + " motions at travel speed through material, up to " +
-              Fixed(milling.gouge_depth_mm(), 3) + " mm deep at " +
-              PlaceText(milling.gouge_place()) + ", at " + Fixed(milling.gouge_time_s(), 3) + " s");
+  if (milling.remaining_mm3() > 0.0) {
+    rows.emplace_back("", Fixed(milling.remaining_mm3(), 3) + " mm3 left, the deepest cut " +
+                              Fixed(milling.deepest_cut_mm(), 3) + " mm below the top");
+  }
+  if (milling.has_pass_place()) {
+    rows.emplace_back("", "deepest pass " + Fixed(milling.deepest_pass_mm(), 3) + " mm at " +
+                              PlaceText(milling.pass_place()));
+  }
+  if (milling.has_shank_place()) {
+    rows.emplace_back("", "shank or holder " + Fixed(milling.shank_depth_mm(), 3) +
+                              " mm in material at " + PlaceText(milling.shank_place()));
+  }
+  if (milling.gouges() > 0) {
+    rows.emplace_back("", std::to_string(milling.gouges()) +
+                              " motions at travel speed through material, up to " +
+                              Fixed(milling.gouge_depth_mm(), 3) + " mm deep at " +
+                              PlaceText(milling.gouge_place()) + ", at " +
+                              Fixed(milling.gouge_time_s(), 3) + " s");
+  }
+  if (milling.has_target()) AddTarget(milling.target(), rows);
 }
 
 std::optional<double> FigureOf(const v1::RunReport& report, std::string_view name) {

@@ -1,14 +1,99 @@
 #include "clients/cli/milling.h"
 
 #include <fstream>
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
 
+#include "clients/cli/program_files.h"
+#include "engine/simulation/material/height_map.h"
 #include "engine/simulation/material/milling_text.h"
+#include "engine/simulation/material/relief.h"
 #include "engine/simulation/material/stl.h"
+#include "engine/simulation/material/target_files.h"
+#include "engine/simulation/run/simulate.h"
+#include "proto/bridge/files.h"
 
 namespace rmlcell::cli {
+namespace {
 
-Result<simulation::Milling> MillingOf(const SimulateOptions& options,
-                                      const machine::MachineShape& shape) {
+using Sink = std::function<bool(std::string_view)>;
+
+// Lets `write` hand the bytes of a file over in portions.
+Status WritePortions(const std::string& file, const std::function<bool(const Sink&)>& write) {
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  const bool written = write([&stream](std::string_view bytes) {
+    return static_cast<bool>(
+        stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size())));
+  });
+  stream.close();
+  if (!written || !stream)
+    return Error{ErrorCode::kCellFileUnwritable, file + ": cannot be written", {}};
+  return {};
+}
+
+Error WithFile(const std::string& file, Error error) {
+  error.detail = "--target " + file + ": " + error.detail;
+  return error;
+}
+
+// What another program leaves of the same block.
+Result<std::vector<float>> MilledBy(const std::string& file,
+                                    const simulation::ProgramMemory& machine,
+                                    const simulation::Milling& milling) {
+  const Result<LoadedFiles> loaded =
+      LoadFiles({file}, {}, 0, std::string(machine.family->info().id));
+  if (!loaded) return loaded.error();
+  simulation::ProgramMemory memory = machine;
+  memory.programs = loaded->programs;
+  memory.machine_state.clear();
+  Result<simulation::PreparedRun> prepared = simulation::PrepareRun(
+      memory, {.main_program = loaded->main_slot, .mode = machine::Mode::kCycle});
+  if (!prepared) return prepared.error();
+  if (!prepared->setup)
+    return Error{ErrorCode::kCellBadText, "the program has errors: rmlcell check lists them", {}};
+  simulation::SimulationRequest request;
+  request.products.milling = milling;
+  Result<simulation::SimulationResult> result =
+      simulation::Simulate(*loaded->family, std::move(*prepared->setup), std::move(request));
+  if (!result) return result.error();
+  const machine::Outcome& outcome = result->report.outcome;
+  if (outcome.kind != machine::OutcomeKind::kCompleted) {
+    return Error{outcome.code.value_or(ErrorCode::kCellWaitsForever),
+                 "the program does not run to its end; " + outcome.detail,
+                 {}};
+  }
+  return result->material->heights();
+}
+
+bool IsNamedStl(const std::string& file) {
+  const std::size_t dot = file.rfind('.');
+  const std::string_view end = dot == std::string_view::npos ? file : file.substr(dot);
+  return end == ".stl" || end == ".STL" || end == ".Stl";
+}
+
+// A height map, a body, or what another program leaves.
+Result<simulation::Target> TargetOf(const MillingOptions& options,
+                                    const simulation::ProgramMemory& machine,
+                                    const simulation::Milling& milling) {
+  constexpr std::uint64_t kTargetBytesMax = 1u << 30;
+  const Result<std::string> bytes = bridge::ReadFile(options.target, kTargetBytesMax);
+  if (!bytes) return bytes.error();
+  const bool read = simulation::IsPng(*bytes) || IsNamedStl(options.target);
+  Result<std::vector<float>> heights = read ? simulation::ReadTarget(*bytes, milling.stock)
+                                            : MilledBy(options.target, machine, milling);
+  if (!heights) return WithFile(options.target, heights.error());
+  return simulation::Target{
+      .heights = std::make_shared<const std::vector<float>>(*std::move(heights)),
+      .tolerance_mm = options.target_tolerance_mm};
+}
+
+}  // namespace
+
+Result<simulation::Milling> MillingOf(const MillingOptions& options,
+                                      const machine::MachineShape& shape,
+                                      const simulation::ProgramMemory& machine) {
   if (!shape.has_work_origin)
     return InvalidArgument("--stock is for mills: this machine removes no material");
   Result<simulation::Stock> stock = simulation::ParseStock(options.stock);
@@ -18,18 +103,37 @@ Result<simulation::Milling> MillingOf(const SimulateOptions& options,
   stock->cell = options.cell_mm;
   simulation::Milling milling{.stock = *stock, .tool = *tool};
   if (Status sound = simulation::CheckMilling(milling); !sound) return sound.error();
+  if (options.target.empty()) return milling;
+  Result<simulation::Target> target = TargetOf(options, machine, milling);
+  if (!target) return target.error();
+  milling.target = *std::move(target);
+  if (Status sound = simulation::CheckMilling(milling); !sound) return sound.error();
   return milling;
 }
 
-Status WriteMaterial(const simulation::HeightField& material, const std::string& file) {
-  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  const bool written = simulation::WriteStl(material, [&stream](std::string_view bytes) {
-    return static_cast<bool>(
-        stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size())));
-  });
-  stream.close();
-  if (!written || !stream)
-    return Error{ErrorCode::kCellFileUnwritable, file + ": cannot be written", {}};
+Status WriteMaterial(const simulation::HeightField& material,
+                     const std::optional<simulation::Target>& target,
+                     const MillingOptions& options) {
+  struct Product {
+    const std::string& file;
+    std::function<bool(const Sink&)> write;
+  };
+  const std::string none;
+  const Product products[] = {
+      {options.stl,
+       [&](const Sink& sink) {
+         return simulation::WriteStl(material, options.stl_tolerance_mm, sink);
+       }},
+      {options.relief, [&](const Sink& sink) { return simulation::WriteRelief(material, sink); }},
+      {options.height_map,
+       [&](const Sink& sink) { return simulation::WriteHeightMap(material, sink); }},
+      {target ? options.target_png : none,
+       [&](const Sink& sink) { return simulation::WriteDifference(material, *target, sink); }},
+  };
+  for (const Product& product : products) {
+    if (product.file.empty()) continue;
+    if (Status written = WritePortions(product.file, product.write); !written) return written;
+  }
   return {};
 }
 

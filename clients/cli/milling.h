@@ -1,17 +1,45 @@
 #pragma once
 
-#include "clients/cli/local.h"
+#include <optional>
+#include <string>
+
 #include "engine/machine/shape.h"
 #include "engine/simulation/material/milling_recorder.h"
+#include "engine/simulation/run/rehearsal.h"
 
-// Block and tool of `simulate`, and the file that shows what is left.
+namespace CLI {
+class App;
+}
+
+// Block and tool of `simulate`, and the files that show what is left.
 namespace rmlcell::cli {
 
-// Errors: CellInvalidArgument for a machine that mills nothing, a block or a tool that cannot be.
-Result<simulation::Milling> MillingOf(const SimulateOptions& options,
-                                      const machine::MachineShape& shape);
+struct MillingOptions {
+  std::string stock;  // "100x80x10"; empty: material is not modelled
+  std::string tool;   // "flat:3"
+  double cell_mm = 0.1;
+  std::string stl;  // file; empty: none
+  double stl_tolerance_mm = 0.01;
+  std::string relief;      // file; empty: none
+  std::string height_map;  // file; empty: none
+  std::string target;      // file: what should be left; empty: nothing is compared
+  double target_tolerance_mm = 0.1;
+  std::string target_png;  // file; empty: none
+};
 
-// Errors: CellFileUnwritable.
-Status WriteMaterial(const simulation::HeightField& material, const std::string& file);
+// On the command line of a verb. `options` must outlive it.
+void AddMillingOptions(CLI::App& verb, MillingOptions& options);
+
+// `machine`: on whose table the block is; a target that is a program runs on it, too. Errors:
+// CellInvalidArgument for a machine that mills nothing, a block or a tool that cannot be; those of
+// simulation::ReadTarget, of the target's file and, where that is a program, of its run.
+Result<simulation::Milling> MillingOf(const MillingOptions& options,
+                                      const machine::MachineShape& shape,
+                                      const simulation::ProgramMemory& machine);
+
+// The files that were asked for. Errors: CellFileUnwritable.
+Status WriteMaterial(const simulation::HeightField& material,
+                     const std::optional<simulation::Target>& target,
+                     const MillingOptions& options);
 
 }  // namespace rmlcell::cli

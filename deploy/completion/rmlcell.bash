@@ -53,6 +53,7 @@ _rmlcell_options() {
     simulate)
       echo "--help --slot --main --executable --family --profile --machine --origin --inputs --mode --override --simul" \
         "--break --budget --vars --svg --toolpath --samples --plot --stock --tool --cell --stl" \
+        "--stl-tolerance --relief --height-map --target --target-tolerance --target-png" \
         "--state-in --state-out --trace --facts --machine-coordinates --strict --json" ;;
     explain) echo "--help --json" ;;
     diff) echo "--help --svg --json" ;;
@@ -82,7 +83,8 @@ _rmlcell_options() {
 _rmlcell_takes_value() {
   case $1 in
     --slot | --main | --executable | --family | --profile | --machine | --origin | --inputs | --mode | --override | \
-      --simul | --break | --budget | --vars | --svg | --toolpath | --samples | --plot | --stock | --tool | --cell | --stl | --state-in | --state-out | --server | --etag | --form | \
+      --simul | --break | --budget | --vars | --svg | --toolpath | --samples | --plot | --stock | --tool | --cell | --stl | --stl-tolerance | --relief | --height-map | --target | --target-tolerance | --target-png | \
+      --state-in | --state-out | --server | --etag | --form | \
       --output | -o | --kind | --title | --request-id | --pace | --after | --filter | --limit | --move | --turn | --shift) return 0 ;;
   esac
   return 1
@@ -111,6 +113,9 @@ _rmlcell_values() {
     --machine) _rmlcell_files .toml ;;
     --svg) _rmlcell_files .svg ;;
     --stl) _rmlcell_files .stl ;;
+    --relief | --height-map | --target-png) _rmlcell_files .png ;;
+    --target-tolerance) _rmlcell_offer 0.02 0.1 0.5 ;;
+    --stl-tolerance) _rmlcell_offer 0.01 0.1 0 ;;
     --stock) _rmlcell_offer 100x80x10 ;;
     --tool) _rmlcell_offer flat:3 ball:3 vee:6:60 ;;
     --samples) _rmlcell_offer 10 100 1000 10000 ;;

@@ -218,6 +218,42 @@ v1::ProductState ToProto(const simulation::ProductState& product) {
   return message;
 }
 
+v1::TargetFigures ToProto(const simulation::TargetFigures& target) {
+  v1::TargetFigures message;
+  message.set_tolerance_mm(target.tolerance_mm);
+  message.set_left_mm(target.left_mm);
+  message.set_left_x_mm(target.left_at.x_mm);
+  message.set_left_y_mm(target.left_at.y_mm);
+  message.set_left_mm3(target.left_mm3);
+  message.set_deep_mm(target.deep_mm);
+  message.set_deep_x_mm(target.deep_at.x_mm);
+  message.set_deep_y_mm(target.deep_at.y_mm);
+  message.set_deep_mm3(target.deep_mm3);
+  message.set_good_percent(target.good_percent);
+  message.set_compared_mm2(target.compared_mm2);
+  return message;
+}
+
+v1::MillingFigures ToProto(const simulation::MillingFigures& milling) {
+  v1::MillingFigures figures;
+  figures.set_removed_mm3(milling.removed_mm3);
+  figures.set_gouges(static_cast<std::int64_t>(milling.gouges));
+  figures.set_gouge_depth_mm(milling.gouge_depth_mm);
+  if (milling.gouges > 0) SetPlace(milling.gouge_place, *figures.mutable_gouge_place());
+  figures.set_gouge_time_s(ToSeconds(milling.gouge_at));
+  figures.set_below_mm(milling.below_mm);
+  if (milling.below_mm > 0.0) SetPlace(milling.below_place, *figures.mutable_below_place());
+  figures.set_remaining_mm3(milling.remaining_mm3);
+  figures.set_deepest_cut_mm(milling.deepest_cut_mm);
+  figures.set_tool_diameter_mm(milling.tool_diameter_mm);
+  figures.set_deepest_pass_mm(milling.deepest_pass_mm);
+  if (milling.deepest_pass_mm > 0.0) SetPlace(milling.pass_place, *figures.mutable_pass_place());
+  figures.set_shank_depth_mm(milling.shank_depth_mm);
+  if (milling.shank_depth_mm > 0.0) SetPlace(milling.shank_place, *figures.mutable_shank_place());
+  if (milling.target) *figures.mutable_target() = ToProto(*milling.target);
+  return figures;
+}
+
 }  // namespace
 
 v1::RunReport ToProto(const simulation::RunReport& report,
@@ -264,16 +300,7 @@ v1::RunReport ToProto(const simulation::RunReport& report,
   message.set_slow_moves_dropped(static_cast<std::int64_t>(report.slow_moves_dropped));
   message.set_lookahead_starved(static_cast<std::int64_t>(report.lookahead_starved));
   message.set_collisions("not modelled");
-  if (const auto& milling = report.milling) {
-    v1::MillingFigures& figures = *message.mutable_milling();
-    figures.set_removed_mm3(milling->removed_mm3);
-    figures.set_gouges(static_cast<std::int64_t>(milling->gouges));
-    figures.set_gouge_depth_mm(milling->gouge_depth_mm);
-    if (milling->gouges > 0) SetPlace(milling->gouge_place, *figures.mutable_gouge_place());
-    figures.set_gouge_time_s(ToSeconds(milling->gouge_at));
-    figures.set_below_mm(milling->below_mm);
-    if (milling->below_mm > 0.0) SetPlace(milling->below_place, *figures.mutable_below_place());
-  }
+  if (report.milling) *message.mutable_milling() = ToProto(*report.milling);
   SetContours(report, message);
   for (const simulation::AxisViolation& violation : report.violations) {
     *message.add_violations() = ToProto(violation);

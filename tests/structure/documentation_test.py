@@ -141,6 +141,9 @@ class Documents(unittest.TestCase):
     def test_files(self):
         self.run_page(ROOT / "docs" / "files.md")
 
+    def test_material(self):
+        self.run_page(ROOT / "docs" / "material.md")
+
     def test_api(self):
         self.run_page(ROOT / "docs" / "api.md")
 

@@ -73,11 +73,15 @@ Status CheckStock(const Stock& stock) {
                          ": make the cells larger");
 }
 
+HeightField::Size HeightField::SizeOf(const Stock& stock) {
+  return {static_cast<std::size_t>(CellsAlong(stock.x_min, stock.x_max, stock.cell)),
+          static_cast<std::size_t>(CellsAlong(stock.y_min, stock.y_max, stock.cell))};
+}
+
 Result<HeightField> HeightField::Of(const Stock& stock) {
   if (Status sound = CheckStock(stock); !sound) return sound.error();
-  return HeightField(stock,
-                     static_cast<std::size_t>(CellsAlong(stock.x_min, stock.x_max, stock.cell)),
-                     static_cast<std::size_t>(CellsAlong(stock.y_min, stock.y_max, stock.cell)));
+  const Size size = SizeOf(stock);
+  return HeightField(stock, size.columns, size.rows);
 }
 
 HeightField::HeightField(const Stock& stock, std::size_t columns, std::size_t rows)
@@ -135,11 +139,42 @@ void HeightField::ForEachUnder(const ToolPass& pass, Rows rows, Least least, Vis
   }
 }
 
-void HeightField::Cut(const MillTool& tool, const MachinePoint& from, const MachinePoint& to,
-                      Rows rows) {
-  ForEachSwept(tool, from, to, rows, [this](std::size_t cell, float height) {
-    heights_[cell] = std::min(heights_[cell], height);
+double HeightField::Cut(const MillTool& tool, const MachinePoint& from, const MachinePoint& to,
+                        Rows rows) {
+  const auto bottom = static_cast<float>(stock_.bottom);
+  float most = 0.0f;
+  ForEachSwept(tool, from, to, rows, [&](std::size_t cell, float height) {
+    const float before = heights_[cell];
+    most = std::max(most, std::max(before, bottom) - std::max(height, bottom));
+    heights_[cell] = std::min(before, height);
   });
+  return static_cast<double>(most);
+}
+
+double HeightField::ShankDepthOf(const MillTool& tool, const MachinePoint& from,
+                                 const MachinePoint& to) const {
+  struct Collar {
+    double radius_mm;
+    double from_mm;
+  };
+  const double shank = tool.shank_radius_mm > 0.0 ? tool.shank_radius_mm : tool.radius_mm;
+  double deepest = 0.0;
+  for (const Collar& collar : {Collar{tool.flute_mm > 0.0 ? shank : 0.0, tool.flute_mm},
+                               Collar{tool.holder_radius_mm, tool.holder_from_mm}}) {
+    if (!(collar.radius_mm > 0.0) || std::min(from.z(), to.z()) + collar.from_mm >= stock_.top)
+      continue;
+    const ToolPass pass({.radius_mm = collar.radius_mm}, from, to);
+    ForEachUnder(
+        pass, all_rows(),
+        [&](double along, double across) {
+          return pass.LeastBefore(along, across, tool.radius_mm) + collar.from_mm;
+        },
+        [&](std::size_t cell, float height) {
+          const double end = std::max(static_cast<double>(height), stock_.bottom);
+          deepest = std::max(deepest, static_cast<double>(heights_[cell]) - end);
+        });
+  }
+  return deepest;
 }
 
 double HeightField::DepthOf(const MillTool& tool, const MachinePoint& from,
@@ -165,6 +200,16 @@ double HeightField::removed_mm3() const {
     sum += of_row;
   }
   return sum * stock_.cell * stock_.cell;
+}
+
+double HeightField::remaining_mm3() const {
+  const double cells = static_cast<double>(heights_.size());
+  return cells * stock_.cell * stock_.cell * (stock_.top - stock_.bottom) - removed_mm3();
+}
+
+double HeightField::deepest_cut_mm() const {
+  const double least = *std::min_element(heights_.begin(), heights_.end());
+  return std::max(0.0, stock_.top - std::max(least, stock_.bottom));
 }
 
 }  // namespace rmlcell::simulation

@@ -33,23 +33,35 @@ class HeightField {
   // Errors: those of CheckStock.
   static Result<HeightField> Of(const Stock& stock);
 
+  struct Size {
+    std::size_t columns = 0;
+    std::size_t rows = 0;
+  };
+  static Size SizeOf(const Stock& stock);  // precondition: CheckStock is well
+
   struct Rows {
     std::size_t begin = 0;
     std::size_t end = 0;
   };
   Rows all_rows() const { return {0, rows_}; }
 
-  // Takes away what the tool sweeps on a straight move. Rows that nobody else cuts at the same
-  // time.
-  void Cut(const MillTool& tool, const motion::MachinePoint& from, const motion::MachinePoint& to,
-           Rows rows);
-  void Cut(const MillTool& tool, const motion::MachinePoint& from, const motion::MachinePoint& to) {
-    Cut(tool, from, to, all_rows());
+  // Takes away what the tool sweeps on a straight move, and tells the most that it took off over a
+  // cell, not below the bottom. Rows that nobody else cuts at the same time.
+  double Cut(const MillTool& tool, const motion::MachinePoint& from, const motion::MachinePoint& to,
+             Rows rows);
+  double Cut(const MillTool& tool, const motion::MachinePoint& from,
+             const motion::MachinePoint& to) {
+    return Cut(tool, from, to, all_rows());
   }
 
   // How deep the tool would go into what is there on that move; 0 when it stays clear.
   double DepthOf(const MillTool& tool, const motion::MachinePoint& from,
                  const motion::MachinePoint& to) const;
+
+  // How deep shank or holder would go into what is there on that move, where the tool has not cut
+  // it away before them; 0 when they stay clear. Before Cut of the same move.
+  double ShankDepthOf(const MillTool& tool, const motion::MachinePoint& from,
+                      const motion::MachinePoint& to) const;
 
   std::size_t columns() const { return columns_; }
   std::size_t rows() const { return rows_; }
@@ -61,6 +73,8 @@ class HeightField {
 
   // Not below the bottom: what a tool cuts under the block is not its.
   double removed_mm3() const;
+  double remaining_mm3() const;
+  double deepest_cut_mm() const;  // below the top
 
  private:
   HeightField(const Stock& stock, std::size_t columns, std::size_t rows);

@@ -3,18 +3,55 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/number_text.h"
 #include "engine/core/units.h"
 
 namespace rmlcell::simulation {
+namespace {
+
+// What is above the cutting end.
+Status CheckShank(const MillTool& tool) {
+  for (const double value :
+       {tool.flute_mm, tool.shank_radius_mm, tool.holder_radius_mm, tool.holder_from_mm}) {
+    if (!(value >= 0.0) || !std::isfinite(value))
+      return InvalidArgument("measures of a tool are above 0 mm");
+  }
+  constexpr double kLastDigits_mm = 1e-9;  // a ball of 3 mm may cut for 1.5 mm
+  if (tool.flute_mm > 0.0 && tool.flute_mm < ShapeHeight(tool) - kLastDigits_mm) {
+    return InvalidArgument("the tool cuts for " + ShortestText(tool.flute_mm) +
+                           " mm, and its end alone is " + TrimmedText(ShapeHeight(tool), 3) +
+                           " mm high: make flute longer");
+  }
+  if (tool.shank_radius_mm > 0.0 && !(tool.flute_mm > 0.0))
+    return InvalidArgument("a shank begins where the tool ceases to cut: say flute=LENGTH, too");
+  if (tool.holder_radius_mm > 0.0 && tool.holder_from_mm < tool.flute_mm)
+    return InvalidArgument("the holder begins below the end of what cuts");
+  return {};
+}
+
+}  // namespace
+
+double ShapeHeight(const MillTool& tool) {
+  switch (tool.shape) {
+    case MillTool::Shape::kFlat:
+      return 0.0;
+    case MillTool::Shape::kBall:
+      return tool.radius_mm;
+    case MillTool::Shape::kVee:
+      return (tool.radius_mm - tool.tip_radius_mm) / std::tan(tool.half_angle_rad);
+  }
+  return 0.0;
+}
+
 Status CheckTool(const MillTool& tool) {
   if (!(tool.radius_mm > 0.0) || !std::isfinite(tool.radius_mm))
     return InvalidArgument("the radius of a tool is above 0 mm");
-  if (tool.shape != MillTool::Shape::kVee) return {};
+  if (tool.shape != MillTool::Shape::kVee) return CheckShank(tool);
   if (!(tool.half_angle_rad > 0.0) || !(tool.half_angle_rad < 0.5 * kPi))
     return InvalidArgument("half the angle of a vee tool lies between 0 and 90 degrees");
   if (!(tool.tip_radius_mm >= 0.0) || !(tool.tip_radius_mm <= tool.radius_mm))
     return InvalidArgument("the tip of a vee tool is no wider than its shaft");
-  return {};
+  return CheckShank(tool);
 }
 
 ToolPass::ToolPass(const MillTool& tool, const motion::MachinePoint& from,
@@ -56,6 +93,18 @@ double ToolPass::LeastOfVee(double along, double across) const {
     least = std::min(least, at(along + std::sqrt(flat_2)));
   }
   return least;
+}
+
+double ToolPass::LeastBefore(double along, double across, double cutter_radius) const {
+  const Reach r = ReachOf(along, across);
+  if (!r.hit) return HUGE_VAL;
+  const auto lower_of = [&](double a, double b) { return z_ + std::min(slope_ * a, slope_ * b); };
+  const double half_2 = cutter_radius * cutter_radius - across * across;
+  if (half_2 < 0.0) return lower_of(r.low, r.high);
+  const double half = std::sqrt(half_2);
+  const double cut_from = std::max(0.0, along - half);
+  if (cut_from > std::min(length_, along + half)) return lower_of(r.low, r.high);
+  return upright_ ? HUGE_VAL : lower_of(std::min(r.low, cut_from), cut_from);
 }
 
 std::optional<double> SweptHeight(const MillTool& tool, const motion::MachinePoint& from,

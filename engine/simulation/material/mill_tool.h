@@ -14,13 +14,21 @@ namespace rmlcell::simulation {
 struct MillTool {
   enum class Shape { kFlat, kBall, kVee };
   Shape shape = Shape::kFlat;
-  double radius_mm = 0.0;       // of the shaft: nothing is cut beyond it
-  double half_angle_rad = 0.0;  // kVee: between axis and flank, below a quarter turn
-  double tip_radius_mm = 0.0;   // kVee: of the flat at its tip
+  double radius_mm = 0.0;         // of the shaft: nothing is cut beyond it
+  double half_angle_rad = 0.0;    // kVee: between axis and flank, below a quarter turn
+  double tip_radius_mm = 0.0;     // kVee: of the flat at its tip
+  double flute_mm = 0.0;          // length that cuts, from the lowest point on; 0: all of it
+  double shank_radius_mm = 0.0;   // above it; 0: as wide as the cutting part
+  double holder_radius_mm = 0.0;  // 0: none that could get in the way
+  double holder_from_mm = 0.0;    // where it begins above the lowest point
 };
 
+// How high the cutting end reaches before the tool is as wide as its shaft.
+double ShapeHeight(const MillTool& tool);
+
 // Error: CellInvalidArgument for a tool that cannot be: a radius that is not above 0, a half angle
-// not between 0 and a quarter turn, a tip wider than the shaft.
+// not between 0 and a quarter turn, a tip wider than the shaft, a cutting length that ends in the
+// shape, a shank of a tool that cuts all along, a holder that begins below the shank.
 Status CheckTool(const MillTool& tool);
 
 // A tool on a straight move, seen from a point: `along` the move from its start and `across` it.
@@ -51,6 +59,11 @@ class ToolPass {
     return r.hit ? z_ + slope_ * t + radius_ - std::sqrt(std::max(0.0, rise_2)) : HUGE_VAL;
   }
   double LeastOfVee(double along, double across) const;
+
+  // Of what is as wide as this pass and follows a cutter: its own least height over the point while
+  // the cutter has not been there. Infinite where it never comes, or comes behind the cutter on a
+  // plunge, whose cutting part has taken everything on its way down.
+  double LeastBefore(double along, double across, double cutter_radius) const;
 
  private:
   // The tool is over the point while its own place along the move lies in low..high.

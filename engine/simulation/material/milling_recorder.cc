@@ -1,6 +1,7 @@
 #include "engine/simulation/material/milling_recorder.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace rmlcell::simulation {
 namespace {
@@ -11,13 +12,21 @@ constexpr double kGougeLeast_mm = 1e-3;  // less is rounding of heights and plac
 
 Status CheckMilling(const Milling& milling) {
   if (Status sound = CheckTool(milling.tool); !sound) return sound;
-  return CheckStock(milling.stock);
+  if (Status sound = CheckStock(milling.stock); !sound) return sound;
+  if (!milling.target) return {};
+  if (!(milling.target->tolerance_mm >= 0.0) || !std::isfinite(milling.target->tolerance_mm))
+    return InvalidArgument("the tolerance of a target is not below 0 mm");
+  const HeightField::Size size = HeightField::SizeOf(milling.stock);
+  if (milling.target->heights->size() != size.columns * size.rows)
+    return InvalidArgument("the target has other cells than the block");
+  return {};
 }
 
 MillingRecorder::MillingRecorder(const machine::MachineShape& shape, const Milling& milling)
     : origin_(shape.has_work_origin ? shape.work_origin : motion::MachineVector{}),
       tool_(milling.tool),
-      material_(HeightField::Of(milling.stock).value()) {}
+      material_(HeightField::Of(milling.stock).value()),
+      target_(milling.target) {}
 
 void MillingRecorder::OnMotion(const machine::MotionDone& done) {
   const motion::PathPiece& path = done.motion->path;
@@ -36,7 +45,19 @@ void MillingRecorder::OnMotion(const machine::MotionDone& done) {
     }
   }
   NoteBelow(from, to, done.place);
-  material_.Cut(tool_, from, to);
+  const double shank_depth = material_.ShankDepthOf(tool_, from, to);
+  if (shank_depth > std::max(figures_.shank_depth_mm, kGougeLeast_mm)) {
+    figures_.shank_depth_mm = shank_depth;
+    figures_.shank_place = done.place;
+  }
+  const double taken = material_.Cut(tool_, from, to);
+  // A plunge, or a ramp of more than 45 degrees, is no pass; at travel speed it is a gouge.
+  const double across = std::hypot(to.x() - from.x(), to.y() - from.y());
+  const bool is_pass = done.programmed_mm_s > 0.0 && across >= std::abs(to.z() - from.z());
+  if (is_pass && taken > figures_.deepest_pass_mm) {
+    figures_.deepest_pass_mm = taken;
+    figures_.pass_place = done.place;
+  }
 }
 
 // Only over the block: beside it the table may be lower.
@@ -58,6 +79,10 @@ void MillingRecorder::NoteBelow(const motion::MachinePoint& from, const motion::
 MillingFigures MillingRecorder::Figures() const {
   MillingFigures figures = figures_;
   figures.removed_mm3 = material_.removed_mm3();
+  figures.remaining_mm3 = material_.remaining_mm3();
+  figures.deepest_cut_mm = material_.deepest_cut_mm();
+  figures.tool_diameter_mm = 2.0 * tool_.radius_mm;
+  if (target_) figures.target = CompareWithTarget(material_, *target_);
   return figures;
 }
 

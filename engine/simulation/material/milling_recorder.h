@@ -1,8 +1,11 @@
 #pragma once
 
+#include <optional>
+
 #include "engine/machine/observer.h"
 #include "engine/machine/shape.h"
 #include "engine/simulation/material/height_field.h"
+#include "engine/simulation/material/target.h"
 #include "engine/simulation/report/report.h"
 
 namespace rmlcell::simulation {
@@ -12,12 +15,14 @@ namespace rmlcell::simulation {
 struct Milling {
   Stock stock;
   MillTool tool;
+  std::optional<Target> target{};  // what should be left, on the same cells
 };
-// Errors: CellInvalidArgument, as CheckTool and CheckStock have them.
+// Errors: CellInvalidArgument, as CheckTool and CheckStock have them, and for a target of other
+// cells or with a tolerance below 0.
 Status CheckMilling(const Milling& milling);
 
 // Takes the material away that the motions of a run sweep, and tells where the tool went into it at
-// travel speed. motion.md section 9.
+// travel speed, where shank or holder did, and how deep the deepest pass is. motion.md section 9.
 class MillingRecorder final : public machine::RunObserver {
  public:
   // Precondition: CheckMilling is well.
@@ -27,6 +32,7 @@ class MillingRecorder final : public machine::RunObserver {
 
   MillingFigures Figures() const;
   const HeightField& material() const { return material_; }
+  const std::optional<Target>& target() const { return target_; }
 
  private:
   void NoteBelow(const motion::MachinePoint& from, const motion::MachinePoint& to,
@@ -35,6 +41,7 @@ class MillingRecorder final : public machine::RunObserver {
   motion::MachinePoint origin_;  // of the block's frame, machine frame
   MillTool tool_;
   HeightField material_;
+  std::optional<Target> target_;
   MillingFigures figures_;
 };
 

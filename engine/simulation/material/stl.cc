@@ -1,53 +1,112 @@
 #include "engine/simulation/material/stl.h"
 
-#include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <span>
 #include <string>
+
+#include "engine/simulation/material/surface_patches.h"
 
 namespace rmlcell::simulation {
 namespace {
 
 using motion::MachineVector;
 
-// The surface of the body, triangle by triangle, seen counter-clockwise from outside.
-template <class Visit>
-void ForEachTriangle(const HeightField& field, Visit visit) {
-  const Stock& stock = field.stock();
-  const std::size_t nx = field.columns();
-  const std::size_t ny = field.rows();
-  const auto at = [&](std::size_t column, std::size_t row, bool top) {
-    const double height = std::max(static_cast<double>(field.height(column, row)), stock.bottom);
-    return MachineVector{stock.x_min + (static_cast<double>(column) + 0.5) * stock.cell,
-                         stock.y_min + (static_cast<double>(row) + 0.5) * stock.cell,
-                         top ? height : stock.bottom};
+struct Vertex {
+  std::size_t column;
+  std::size_t row;
+};
+
+// A rectangle with all vertices on its sides, both ends included: front and back from left to
+// right, left and right from front to back.
+struct Outline {
+  std::vector<Vertex> front;
+  std::vector<Vertex> back;
+  std::vector<Vertex> left;
+  std::vector<Vertex> right;
+};
+
+// The corners of patches on the sides of a rectangle: its neighbours end there.
+void FindOutline(const SurfacePatches& patches, const Patch& patch, Outline& outline) {
+  const auto along_x = [&](std::size_t row, std::vector<Vertex>& side) {
+    side.clear();
+    for (std::size_t column = patch.left; column <= patch.right; ++column) {
+      if (patches.corner(column, row)) side.push_back({column, row});
+    }
   };
-  const auto quad = [&](const MachineVector& a, const MachineVector& b, const MachineVector& c,
-                        const MachineVector& d) {
-    visit(a, b, c);
-    visit(a, c, d);
+  const auto along_y = [&](std::size_t column, std::vector<Vertex>& side) {
+    side.clear();
+    for (std::size_t row = patch.front; row <= patch.back; ++row) {
+      if (patches.corner(column, row)) side.push_back({column, row});
+    }
   };
-  for (std::size_t y = 0; y + 1 < ny; ++y) {
-    for (std::size_t x = 0; x + 1 < nx; ++x)
-      quad(at(x, y, true), at(x + 1, y, true), at(x + 1, y + 1, true), at(x, y + 1, true));
-  }
-  for (std::size_t x = 0; x + 1 < nx; ++x) {
-    quad(at(x, 0, false), at(x + 1, 0, false), at(x + 1, 0, true), at(x, 0, true));
-    quad(at(x + 1, ny - 1, false), at(x, ny - 1, false), at(x, ny - 1, true),
-         at(x + 1, ny - 1, true));
-  }
-  for (std::size_t y = 0; y + 1 < ny; ++y) {
-    quad(at(0, y + 1, false), at(0, y, false), at(0, y, true), at(0, y + 1, true));
-    quad(at(nx - 1, y, false), at(nx - 1, y + 1, false), at(nx - 1, y + 1, true),
-         at(nx - 1, y, true));
-  }
-  quad(at(0, 0, false), at(0, ny - 1, false), at(nx - 1, ny - 1, false), at(nx - 1, 0, false));
+  along_x(patch.front, outline.front);
+  along_x(patch.back, outline.back);
+  along_y(patch.left, outline.left);
+  along_y(patch.right, outline.right);
 }
 
-std::uint32_t TriangleCount(const HeightField& field) {
-  const std::size_t nx = field.columns() - 1;
-  const std::size_t ny = field.rows() - 1;
-  return static_cast<std::uint32_t>(2 * nx * ny + 4 * (nx + ny) + 2);
+// Triangles of a rectangle between the vertices of its sides, none without area: a fan to the left
+// side, one to the right side, and what is between the fans from front to back.
+template <class Visit>
+void FillOutline(const Outline& outline, Visit visit) {
+  const auto& [front, back, left, right] = outline;
+  const Vertex left_hub = front[1];
+  const Vertex right_hub = back[back.size() - 2];
+  for (std::size_t k = 0; k + 1 < left.size(); ++k) visit(left[k], left_hub, left[k + 1]);
+  for (std::size_t k = 0; k + 1 < right.size(); ++k) visit(right_hub, right[k], right[k + 1]);
+  std::size_t f = 1;
+  std::size_t b = 0;
+  while (f + 1 < front.size() || b + 2 < back.size()) {
+    const bool front_next =
+        b + 2 >= back.size() || (f + 1 < front.size() && front[f + 1].column <= back[b + 1].column);
+    if (front_next) {
+      visit(front[f], front[f + 1], back[b]);
+      ++f;
+    } else {
+      visit(front[f], back[b + 1], back[b]);
+      ++b;
+    }
+  }
+}
+
+// From one vertex of the outer edge to the next, in the sense that has the body on the left.
+template <class Visit>
+void ForEachWall(const VertexGrid& grid, std::span<const Vertex> edge, bool backwards,
+                 Visit visit) {
+  for (std::size_t k = 0; k + 1 < edge.size(); ++k) {
+    const Vertex a = edge[backwards ? k + 1 : k];
+    const Vertex b = edge[backwards ? k : k + 1];
+    const auto at = [&](Vertex v, bool top) {
+      return MachineVector{grid.x(v.column), grid.y(v.row),
+                           top ? grid.z(v.column, v.row) : grid.bottom()};
+    };
+    // Where the block is cut through there is no wall.
+    if (at(b, true).z() > grid.bottom()) visit(at(a, false), at(b, false), at(b, true));
+    if (at(a, true).z() > grid.bottom()) visit(at(a, false), at(b, true), at(a, true));
+  }
+}
+
+// The surface of the body, triangle by triangle.
+template <class Visit>
+void ForEachTriangle(const VertexGrid& grid, const SurfacePatches& patches, Visit visit) {
+  Outline outline;
+  patches.ForEach([&](const Patch& patch) {
+    FindOutline(patches, patch, outline);
+    const auto at = [&](Vertex v) {
+      return MachineVector{grid.x(v.column), grid.y(v.row), grid.z(v.column, v.row)};
+    };
+    FillOutline(outline, [&](Vertex a, Vertex b, Vertex c) { visit(at(a), at(b), at(c)); });
+  });
+  FindOutline(patches, {0, grid.columns() - 1, 0, grid.rows() - 1}, outline);
+  ForEachWall(grid, outline.front, false, visit);
+  ForEachWall(grid, outline.right, false, visit);
+  ForEachWall(grid, outline.back, true, visit);
+  ForEachWall(grid, outline.left, true, visit);
+  const auto below = [&](Vertex v) {
+    return MachineVector{grid.x(v.column), grid.y(v.row), grid.bottom()};
+  };
+  FillOutline(outline, [&](Vertex a, Vertex b, Vertex c) { visit(below(a), below(c), below(b)); });
 }
 
 void PutLittle(std::string& bytes, std::uint32_t value) {
@@ -62,18 +121,23 @@ void PutVector(std::string& bytes, const MachineVector& v) {
 
 }  // namespace
 
-bool WriteStl(const HeightField& field, const std::function<bool(std::string_view)>& sink) {
+bool WriteStl(const HeightField& field, double tolerance_mm,
+              const std::function<bool(std::string_view)>& sink) {
   constexpr std::size_t kPortion = 1 << 20;
+  const VertexGrid grid(field);
+  const SurfacePatches patches(grid, tolerance_mm);
+  std::uint32_t triangles = 0;
+  ForEachTriangle(
+      grid, patches,
+      [&](const MachineVector&, const MachineVector&, const MachineVector&) { ++triangles; });
   std::string bytes = "what is left of the block, mm";  // must not begin with "solid"
   bytes.resize(80, ' ');
-  PutLittle(bytes, TriangleCount(field));
+  PutLittle(bytes, triangles);
   bool wanted = true;
-  ForEachTriangle(field,
+  ForEachTriangle(grid, patches,
                   [&](const MachineVector& a, const MachineVector& b, const MachineVector& c) {
                     if (!wanted) return;
-                    const MachineVector across = (b - a).cross(c - a);
-                    const double length = across.norm();
-                    PutVector(bytes, length > 0.0 ? across * (1.0 / length) : MachineVector{});
+                    PutVector(bytes, (b - a).cross(c - a).normalized());
                     PutVector(bytes, a);
                     PutVector(bytes, b);
                     PutVector(bytes, c);

@@ -7,9 +7,16 @@
 
 namespace rmlcell::simulation {
 
-// Writes what is left of a block as binary STL, little-endian, mm: a closed body with a vertex over
-// the centre of each cell, walls and a flat base. motion.md section 9. The bytes are valid during
-// the call of `sink`; it returns false when it wants no more, and so does this.
-bool WriteStl(const HeightField& field, const std::function<bool(std::string_view)>& sink);
+// As coarse as a mill's own steps: finer is neither seen nor felt.
+inline constexpr double kStlTolerance_mm = 0.01;
+
+// Writes what is left of a block as binary STL, little-endian, mm: a closed body of the outer
+// measures of its cells, with walls and a flat base, seen counter-clockwise from outside. Its
+// surface is nowhere further than the tolerance above or below that of the heights, which lie over
+// the centres of the cells; plane ground is two triangles (surface_patches.h). motion.md section 9.
+// The bytes are valid during the call of `sink`; it returns false when it wants no more, and so
+// does this. Precondition: the tolerance is not below 0.
+bool WriteStl(const HeightField& field, double tolerance_mm,
+              const std::function<bool(std::string_view)>& sink);
 
 }  // namespace rmlcell::simulation

@@ -24,7 +24,7 @@ constexpr double kTickPixels_x = 90.0;  // at least, between two ticks
 constexpr double kTickPixels_y = 26.0;
 constexpr double kMoved = 1e-9;  // mm, rad: an axis that moves less stands
 
-constexpr std::array<std::string_view, motion::kAxisCount> kAxisNames = {"X", "Y", "Z", "A", "B"};
+constexpr std::array<std::string_view, motion::kAxisCount> kAxisTitles = {"X", "Y", "Z", "A", "B"};
 constexpr std::array<std::string_view, motion::kAxisCount> kAxisColours = {
     "#c92a2a", "#2b8a3e", "#0b4fa8", "#b0640a", "#7b3fb5"};
 constexpr std::string_view kFeedColour = "#9aa7b3";
@@ -99,10 +99,10 @@ std::vector<PlotPage::Panel> PlotPage::PanelsOf(const PlotOptions& options) cons
                         .from_zero = true,
                         .hundred = true});
     } else {
-      for (std::size_t axis = 0; axis < kAxisNames.size(); ++axis) {
+      for (std::size_t axis = 0; axis < kAxisTitles.size(); ++axis) {
         const auto [low, high] = Limits(curves_.envelope, kFirstAxis + axis);
         if (!(high - low > kMoved)) continue;
-        panels.push_back({.title = std::string(kAxisNames[axis]),
+        panels.push_back({.title = std::string(kAxisTitles[axis]),
                           .unit = axis < 3 ? "mm" : "rad",
                           .series = {kFirstAxis + axis},
                           .colour = kAxisColours[axis],

@@ -338,6 +338,29 @@ void Table::AddCorners() {
       of_material([](const MillingFigures& m) { return Real(m.gouge_depth_mm); }));
   Add("below_block_mm", "mm", "how far the tool went below that block",
       of_material([](const MillingFigures& m) { return Real(m.below_mm); }));
+  Add("remaining_volume_mm3", "mm3", "what is left of that block",
+      of_material([](const MillingFigures& m) { return Real(m.remaining_mm3); }));
+  Add("deepest_cut_mm", "mm", "depth of the deepest place below the top of that block",
+      of_material([](const MillingFigures& m) { return Real(m.deepest_cut_mm); }));
+  Add("deepest_pass_mm", "mm", "most that one motion across took off that block in depth",
+      of_material([](const MillingFigures& m) { return Real(m.deepest_pass_mm); }));
+  Add("shank_depth_mm", "mm", "how deep shank or holder of the tool went into that block",
+      of_material([](const MillingFigures& m) { return Real(m.shank_depth_mm); }));
+  const auto of_target = [&](auto figure) {
+    return of_material([figure](const MillingFigures& m) {
+      return m.target ? Real(figure(*m.target)) : std::string(kNone);
+    });
+  };
+  Add("target_left_mm", "mm", "highest of what stands above the target",
+      of_target([](const TargetFigures& t) { return t.left_mm; }));
+  Add("target_left_volume_mm3", "mm3", "volume of what stands above the target",
+      of_target([](const TargetFigures& t) { return t.left_mm3; }));
+  Add("target_deep_mm", "mm", "deepest of what is missing below the target",
+      of_target([](const TargetFigures& t) { return t.deep_mm; }));
+  Add("target_deep_volume_mm3", "mm3", "volume of what is missing below the target",
+      of_target([](const TargetFigures& t) { return t.deep_mm3; }));
+  Add("target_good_share", "", "area within the tolerance of the target, by what is compared",
+      of_target([](const TargetFigures& t) { return t.good_percent / 100.0; }));
 }
 
 void Table::AddPoint(const std::string& name, const std::string& unit, const std::string& text,

@@ -237,6 +237,29 @@ struct AxisViolation {
   bool operator==(const AxisViolation&) const = default;
 };
 
+// A place seen from above, from the work origin.
+struct PlanePlace {
+  double x_mm = 0.0;
+  double y_mm = 0.0;
+
+  bool operator==(const PlanePlace&) const = default;
+};
+
+// What is left of a block beside what should be.
+struct TargetFigures {
+  double tolerance_mm = 0.0;  // up to which a difference is none
+  double left_mm = 0.0;       // highest of what stands above the target
+  PlanePlace left_at;         // where that is
+  double left_mm3 = 0.0;
+  double deep_mm = 0.0;  // deepest of what is missing below the target
+  PlanePlace deep_at;    // where that is
+  double deep_mm3 = 0.0;
+  double good_percent = 0.0;  // of the area that is compared: within the tolerance
+  double compared_mm2 = 0.0;
+
+  bool operator==(const TargetFigures&) const = default;
+};
+
 // What a mill took off a block, when it was told of block and tool. motion.md 8.2, 9.
 struct MillingFigures {
   double removed_mm3 = 0.0;
@@ -244,8 +267,16 @@ struct MillingFigures {
   double gouge_depth_mm = 0.0;  // of the deepest
   machine::Place gouge_place;   // where that was
   SimTime gouge_at{0};
-  double below_mm = 0.0;       // how far the tool went below the block
-  machine::Place below_place;  // where it did first
+  double below_mm = 0.0;                  // how far the tool went below the block
+  machine::Place below_place;             // where it did first
+  double remaining_mm3 = 0.0;             // of the block
+  double deepest_cut_mm = 0.0;            // below its top
+  double tool_diameter_mm = 0.0;          // of the cutting part
+  double deepest_pass_mm = 0.0;           // most that one motion across took off over a cell
+  machine::Place pass_place;              // where that was
+  double shank_depth_mm = 0.0;            // deepest that shank or holder went into material
+  machine::Place shank_place;             // where that was
+  std::optional<TargetFigures> target{};  // nothing: there is none
 
   bool operator==(const MillingFigures&) const = default;
 };

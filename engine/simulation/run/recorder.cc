@@ -138,8 +138,8 @@ RunReport Recorder::Report(const machine::Run& run) const {
   return report;
 }
 
-const HeightField* Recorder::material() const {
-  return state_->milling ? &state_->milling->material() : nullptr;
+const MillingRecorder* Recorder::milling() const {
+  return state_->milling ? &*state_->milling : nullptr;
 }
 
 std::string Recorder::Svg(const RunReport& report, const PictureOptions& options) const {

@@ -62,7 +62,7 @@ class Recorder final : public machine::RunObserver {
   void Finish(const machine::Run& run);
 
   // Null when material is not modelled.
-  const HeightField* material() const;
+  const MillingRecorder* milling() const;
 
   // Empty when no picture was asked for.
   std::string Svg(const RunReport& report, const PictureOptions& options) const;

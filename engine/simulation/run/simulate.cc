@@ -47,7 +47,10 @@ Result<SimulationResult> Simulate(const machine::MachineFamily& family, machine:
   result.report = RunToEnd(simulation, request.options);
   result.svg = recorder.Svg(result.report, request.picture);
   result.plot = recorder.PlotSvg(result.report, request.plot);
-  if (recorder.material() != nullptr) result.material = *recorder.material();
+  if (recorder.milling() != nullptr) {
+    result.material = recorder.milling()->material();
+    result.target = recorder.milling()->target();
+  }
   result.machine_state = (*run)->SaveMachine();
   result.executables = (*run)->made_executables();
   for (const std::string& name : request.variables) {

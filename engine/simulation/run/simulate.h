@@ -84,6 +84,7 @@ struct SimulationResult {
   std::string svg;                               // empty when not asked for
   std::string plot;                              // empty when not asked for
   std::optional<HeightField> material;           // what is left of the block, when there is one
+  std::optional<Target> target;                  // what that was compared with
   std::string machine_state;                     // for the next run on this machine
   std::map<int, std::string> executables;        // that the run made, by slot
   std::map<std::string, std::string> variables;  // those asked for and known, by name

@@ -23,6 +23,24 @@ Measured BelowBlock(const RunReport& r) {
 Measured BlockUntouched(const RunReport& r) {
   return {r.milling && !(r.milling->removed_mm3 > 0.0) ? 1.0 : 0.0, {}};
 }
+Measured ShankDepth(const RunReport& r) {
+  if (!r.milling) return {};
+  return {r.milling->shank_depth_mm, r.milling->shank_place};
+}
+Measured PassShare(const RunReport& r) {
+  if (!r.milling || !(r.milling->tool_diameter_mm > 0.0)) return {};
+  return {100.0 * r.milling->deepest_pass_mm / r.milling->tool_diameter_mm, r.milling->pass_place};
+}
+Measured TargetDeep(const RunReport& r) {
+  if (!r.milling || !r.milling->target) return {};
+  const TargetFigures& target = *r.milling->target;
+  return {target.deep_mm > target.tolerance_mm ? target.deep_mm : 0.0, {}};
+}
+Measured TargetLeft(const RunReport& r) {
+  if (!r.milling || !r.milling->target) return {};
+  const TargetFigures& target = *r.milling->target;
+  return {target.left_mm > target.tolerance_mm ? target.left_mm : 0.0, {}};
+}
 Measured TravelLeft(const RunReport& r) {
   if (r.violations.empty()) return {};
   return {static_cast<double>(r.violations.size() + r.violations_dropped),
@@ -31,6 +49,7 @@ Measured TravelLeft(const RunReport& r) {
 
 constexpr double kThroughTheBlock_mm = 1.0;  // deeper than a cut that is to go through
 constexpr double kRounding_mm = 0.01;
+constexpr double kPassShare_percent = 100.1;  // once its diameter, and the rounding of heights
 
 // clang-format off
 constexpr std::array kRules = {
@@ -39,6 +58,10 @@ constexpr std::array kRules = {
     MeasuredRule{{{ErrorCode::kCellBelowBlock, "below_block", kThroughTheBlock_mm, Verdict::kBad, "the tool goes # mm below the block"}, "mm", "how far the tool goes below the block that was given"}, BelowBlock},
     MeasuredRule{{{ErrorCode::kCellBelowBlock, "below_block", kRounding_mm, Verdict::kDoubtful, "the tool goes # mm below the block"}, "mm", "how far the tool goes below the block that was given"}, BelowBlock},
     MeasuredRule{{{ErrorCode::kCellBlockUntouched, "block_untouched", 0.0, Verdict::kDoubtful, "the tool takes nothing off the block"}, "", "1 when nothing is taken off the block that was given"}, BlockUntouched},
+    MeasuredRule{{{ErrorCode::kCellShankInMaterial, "shank_depth", kRounding_mm, Verdict::kBad, "shank or holder goes # mm into material"}, "mm", "how deep shank or holder of the tool goes into the block that was given"}, ShankDepth},
+    MeasuredRule{{{ErrorCode::kCellDeepPass, "pass_share", kPassShare_percent, Verdict::kDoubtful, "one pass is as deep as # % of the width of the tool"}, "%", "most that one motion across takes off in depth, by the diameter of the tool"}, PassShare},
+    MeasuredRule{{{ErrorCode::kCellTargetGouged, "target_deep", 0.0, Verdict::kBad, "the part is cut # mm below its target"}, "mm", "deepest of what is missing below the target, when that is above the tolerance"}, TargetDeep},
+    MeasuredRule{{{ErrorCode::kCellTargetLeft, "target_left", 0.0, Verdict::kDoubtful, "# mm stand above the target"}, "mm", "highest of what stands above the target, when that is above the tolerance"}, TargetLeft},
 };
 // clang-format on
 

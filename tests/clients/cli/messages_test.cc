@@ -456,6 +456,40 @@ TEST_F(Messages, TheLeastThatIsTold) {
   EXPECT_THAT(ReportText(mill), HasSubstr("1 motions at travel speed through material"));
 }
 
+// What is left of a block, and how the cut went, in lines of their own; none for what is not there.
+TEST_F(Messages, AMillTellsOfItsBlock) {
+  v1::RunReport report;
+  report.set_family("rml1");
+  report.mutable_total()->set_plunges(1);
+  v1::MillingFigures& milling = *report.mutable_milling();
+  milling.set_removed_mm3(1.5);
+  EXPECT_THAT(ReportText(report), Not(HasSubstr("target")));
+  milling.set_remaining_mm3(98.5);
+  milling.set_deepest_cut_mm(2.5);
+  milling.set_deepest_pass_mm(1.25);
+  milling.mutable_pass_place()->set_step(4);
+  milling.set_shank_depth_mm(0.5);
+  milling.mutable_shank_place()->set_step(5);
+  v1::TargetFigures& target = *milling.mutable_target();
+  target.set_good_percent(97.5);
+  target.set_compared_mm2(60.0);
+  target.set_tolerance_mm(0.1);
+  target.set_deep_mm(0.75);
+  target.set_deep_x_mm(1.0);
+  target.set_deep_y_mm(2.0);
+  target.set_deep_mm3(0.25);
+  EXPECT_THAT(
+      ReportText(report),
+      HasSubstr(
+          "material      1.500 mm3 taken off\n"
+          "              98.500 mm3 left, the deepest cut 2.500 mm below the top\n"
+          "              deepest pass 1.250 mm at step 4\n"
+          "              shank or holder 0.500 mm in material at step 5\n"
+          "target        97.50 % of 60.0 mm2 within 0.100 mm\n"
+          "              too deep by up to 0.750 mm at X 1.000, Y 2.000; 0.250 mm3 in all\n"));
+  EXPECT_THAT(ReportText(report), Not(HasSubstr("too much left")));
+}
+
 // Of many findings of one kind five are shown, and the others told in one line.
 TEST_F(Messages, FindingsOfOneKindAreCounted) {
   v1::RunReport report;

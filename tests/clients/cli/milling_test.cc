@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "engine/families/families.h"
 #include "tests/clients/cli/cli_folder.h"
 
 namespace rmlcell::cli {
@@ -16,24 +17,28 @@ machine::MachineShape Mill() {
   return shape;
 }
 
-SimulateOptions Block(const std::string& stock, const std::string& tool, double cell_mm = 0.1) {
-  SimulateOptions options;
+simulation::ProgramMemory ThisMill() {
+  return {.family = families::FindFamily("rml1"), .profile = "t1"};
+}
+
+MillingOptions Block(const std::string& stock, const std::string& tool, double cell_mm = 0.1) {
+  MillingOptions options;
   options.stock = stock;
   options.tool = tool;
   options.cell_mm = cell_mm;
   return options;
 }
 
-void ExpectInvalid(const SimulateOptions& options, const machine::MachineShape& shape,
+void ExpectInvalid(const MillingOptions& options, const machine::MachineShape& shape,
                    const std::string& detail) {
-  const auto milling = MillingOf(options, shape);
+  const auto milling = MillingOf(options, shape, ThisMill());
   ASSERT_FALSE(milling) << detail;
   EXPECT_EQ(milling.error().code, ErrorCode::kCellInvalidArgument);
   EXPECT_THAT(milling.error().detail, HasSubstr(detail));
 }
 
 TEST(MillingOf, BlockAndToolAreAsWrittenWithTheCellsAskedFor) {
-  const auto milling = MillingOf(Block("100x80x10@-5,-6,2", "ball:3", 0.25), Mill());
+  const auto milling = MillingOf(Block("100x80x10@-5,-6,2", "ball:3", 0.25), Mill(), ThisMill());
   ASSERT_TRUE(milling);
   EXPECT_EQ(milling->stock, (simulation::Stock{.x_min = -5,
                                                .x_max = 95,
@@ -66,12 +71,12 @@ TEST(WriteMaterial, AFileThatCannotBeWrittenIsAnError) {
       {.x_min = 0, .x_max = 2, .y_min = 0, .y_max = 2, .bottom = -1, .top = 0, .cell = 1});
   ASSERT_TRUE(material);
   for (const std::string& path : {folder.File("none/a.stl"), std::string("/dev/full")}) {
-    const Status written = WriteMaterial(*material, path);
+    const Status written = WriteMaterial(*material, {}, {.stl = path});
     ASSERT_FALSE(written) << path;
     EXPECT_EQ(written.error().code, ErrorCode::kCellFileUnwritable);
     EXPECT_THAT(written.error().detail, HasSubstr(path));
   }
-  EXPECT_TRUE(WriteMaterial(*material, folder.File("a.stl")));
+  EXPECT_TRUE(WriteMaterial(*material, {}, {.stl = folder.File("a.stl")}));
   // A binary STL: 80 bytes of heading, the number of triangles, 50 bytes for each.
   const std::string bytes = folder.Read("a.stl");
   ASSERT_GT(bytes.size(), 84U);
@@ -80,6 +85,7 @@ TEST(WriteMaterial, AFileThatCannotBeWrittenIsAnError) {
   };
   const std::size_t triangles = byte(80) | byte(81) << 8 | byte(82) << 16 | byte(83) << 24;
   EXPECT_EQ(bytes.size(), 84 + 50 * triangles);
+  EXPECT_EQ(triangles, 12U);  // untouched, it is a box
 }
 
 }  // namespace

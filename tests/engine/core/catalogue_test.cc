@@ -169,6 +169,8 @@ TEST(Catalogue, NumbersOfTheCellKeepTheirMeaning) {
       {9308, "CellWaitsForever"},    {9309, "CellVersionMismatch"},
       {9310, "CellJoinRefused"},     {9401, "CellGouge"},
       {9402, "CellBelowBlock"},      {9403, "CellBlockUntouched"},
+      {9411, "CellShankInMaterial"}, {9412, "CellDeepPass"},
+      {9413, "CellTargetGouged"},    {9414, "CellTargetLeft"},
       {9404, "CellCheckCutShort"},
   };
   std::size_t rows = 0;

@@ -178,8 +178,29 @@ TEST(FactsValues, Corners) {
                        {"removed_volume_mm3", "none"},
                        {"gouges", "none"},
                        {"gouge_depth_mm", "none"}});
-  report.milling = MillingFigures{.removed_mm3 = 1.5, .gouges = 2, .gouge_depth_mm = 0.25};
-  ExpectFacts(report, {{"removed_volume_mm3", "1.5"}, {"gouges", "2"}, {"gouge_depth_mm", "0.25"}});
+  report.milling = MillingFigures{.removed_mm3 = 1.5,
+                                  .gouges = 2,
+                                  .gouge_depth_mm = 0.25,
+                                  .remaining_mm3 = 7.5,
+                                  .deepest_cut_mm = 3.5,
+                                  .deepest_pass_mm = 1.25,
+                                  .shank_depth_mm = 0.75};
+  ExpectFacts(report, {{"removed_volume_mm3", "1.5"},
+                       {"gouges", "2"},
+                       {"gouge_depth_mm", "0.25"},
+                       {"remaining_volume_mm3", "7.5"},
+                       {"deepest_cut_mm", "3.5"},
+                       {"deepest_pass_mm", "1.25"},
+                       {"shank_depth_mm", "0.75"},
+                       {"target_left_mm", "none"},
+                       {"target_good_share", "none"}});
+  report.milling->target = TargetFigures{
+      .left_mm = 1.5, .left_mm3 = 2.5, .deep_mm = 3.5, .deep_mm3 = 4.5, .good_percent = 5.5};
+  ExpectFacts(report, {{"target_left_mm", "1.5"},
+                       {"target_left_volume_mm3", "2.5"},
+                       {"target_deep_mm", "3.5"},
+                       {"target_deep_volume_mm3", "4.5"},
+                       {"target_good_share", "0.055"}});
 }
 
 TEST(FactsValues, Positions) {

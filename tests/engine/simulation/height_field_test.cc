@@ -251,6 +251,126 @@ TEST(HeightField, TellsHowDeepAToolWouldGo) {
   EXPECT_NEAR(field.DepthOf(kFlat, {2, 6, -2.5}, {18, 6, -2.5}), 0.5, 1e-6);
 }
 
+// By hand: a tool of 3 mm that cuts for 2 mm, above it a shank. Into a plate with its top at 0.
+TEST(HeightField, TellsHowDeepAShankWouldGo) {
+  const auto with_shank = [](double shank_radius) {
+    return MillTool{.radius_mm = 1.5, .flute_mm = 2.0, .shank_radius_mm = shank_radius};
+  };
+  HeightField field = Field(kPlate);
+  // A plunge of 3 mm: a wider shank sits 1 mm deep on the rim of the hole, a slimmer one is in it.
+  EXPECT_NEAR(field.ShankDepthOf(with_shank(3.0), {10, 6, 2}, {10, 6, -3}), 1.0, 1e-6);
+  EXPECT_EQ(field.ShankDepthOf(with_shank(3.0), {10, 6, 2}, {10, 6, -2}), 0.0);
+  EXPECT_EQ(field.ShankDepthOf(with_shank(1.0), {10, 6, 2}, {10, 6, -3}), 0.0);
+  EXPECT_EQ(field.ShankDepthOf({.radius_mm = 1.5, .flute_mm = 2.0}, {10, 6, 2}, {10, 6, -3}), 0.0);
+  // Across, 3 mm deep: the uppermost millimetre is not cut before the shank comes, whatever its
+  // width. 2 mm deep it is.
+  for (const double radius : {0.0, 1.0, 3.0}) {
+    EXPECT_NEAR(field.ShankDepthOf(with_shank(radius), {2, 6, -3}, {18, 6, -3}), 1.0, 1e-6);
+    EXPECT_EQ(field.ShankDepthOf(with_shank(radius), {2, 6, -2}, {18, 6, -2}), 0.0);
+  }
+  // Down along 16 mm to a depth of 4: at the end 2 mm too deep, which the front of the tool meets
+  // where the next centre of a cell is: up to 0.25 mm before it, a sixteenth of that depth.
+  EXPECT_NEAR(field.ShankDepthOf(with_shank(1.5), {2, 6, 0}, {18, 6, -4}), 2.0, 0.0625);
+  // Up again on the same way: where it begins the tool stands in material already.
+  EXPECT_NEAR(field.ShankDepthOf(with_shank(1.5), {18, 6, -4}, {2, 6, 0}), 2.0, 1e-6);
+  // In a slot as wide as the tool the shank of the same width has room, a wider one has not.
+  field.Cut(kFlat, {2, 6, -3}, {18, 6, -3});
+  EXPECT_EQ(field.ShankDepthOf(with_shank(1.5), {2, 6, -3}, {18, 6, -3}), 0.0);
+  EXPECT_NEAR(field.ShankDepthOf(with_shank(2.0), {2, 6, -3}, {18, 6, -3}), 1.0, 1e-6);
+  // Nothing told, nothing found; a holder of 20 mm at 2.5 mm is half a millimetre deep at 3.
+  EXPECT_EQ(field.ShankDepthOf(kFlat, {10, 3, -3}, {12, 3, -3}), 0.0);
+  const MillTool held{.radius_mm = 1.5, .holder_radius_mm = 10.0, .holder_from_mm = 2.5};
+  EXPECT_NEAR(field.ShankDepthOf(held, {10, 6, 2}, {10, 6, -3}), 0.5, 1e-6);
+  EXPECT_EQ(field.ShankDepthOf(held, {10, 6, 2}, {10, 6, -2.5}), 0.0);
+}
+
+// How long the tool is over a point on a way across, and whether it is so at an end of the way.
+struct Stay {
+  double length = 0.0;
+  bool at_an_end = false;
+};
+Stay StayOver(const MillTool& tool, const motion::MachinePoint& from,
+              const motion::MachinePoint& to, double x, double y) {
+  const double across = std::hypot(to.x() - from.x(), to.y() - from.y());
+  const double wx = (to.x() - from.x()) / across, wy = (to.y() - from.y()) / across;
+  const double along = (x - from.x()) * wx + (y - from.y()) * wy;
+  const double off = (y - from.y()) * wx - (x - from.x()) * wy;
+  if (std::abs(off) > tool.radius_mm) return {.length = HUGE_VAL};  // it is never there
+  const double half = std::sqrt(tool.radius_mm * tool.radius_mm - off * off);
+  const double low = std::max(0.0, along - half), high = std::min(across, along + half);
+  return {std::max(0.0, high - low), low <= 0.0 || high >= across};
+}
+
+// The plain model: 2000 positions of the tool on each of four moves, each cell below each of them
+// looked at. Two positions are `step` apart. Where the tool stays over a cell for longer, or until
+// an end of the way, one of the positions over the cell is within a step of the best place; there
+// the tool is higher by the slope of the way, and its surface by its flank, times that step: 0 for
+// a flat, the cotangent of half the angle for a vee; for a ball, steepest at its rim, by sqrt(2 R
+// step). Cells that the tool only grazes are compared from one side.
+TEST(HeightField, IsWhatAPlainModelSays) {
+  constexpr int kPositions = 2000;
+  std::mt19937 random(21);  // NOLINT: the same every time
+  std::uniform_real_distribution<double> x(-1.0, 7.0), y(-1.0, 5.0), z(-2.0, 0.5), share(0.0, 1.0);
+  const Stock block{.x_max = 6.0, .y_max = 4.0, .bottom = -4.0, .top = 0.0, .cell = 0.125};
+  const auto centre = [](std::size_t index) { return 0.125 * (static_cast<double>(index) + 0.5); };
+  for (int round = 0; round < 9; ++round) {
+    MillTool tool{.shape = round % 3 == 0   ? ToolShape::kFlat
+                           : round % 3 == 1 ? ToolShape::kBall
+                                            : ToolShape::kVee,
+                  .radius_mm = 0.3 + share(random)};
+    tool.half_angle_rad = 0.2 + share(random);
+    tool.tip_radius_mm = round % 2 == 0 ? 0.0 : 0.5 * tool.radius_mm * share(random);
+    HeightField fast = Field(block);
+    std::vector<double> plain(fast.heights().size(), 0.0);
+    std::vector<bool> grazed(plain.size());
+    double step = 0.0;
+    double slope = 0.0;
+    motion::MachinePoint from{x(random), y(random), z(random)};
+    for (int move = 0; move < 4; ++move) {
+      motion::MachinePoint to{x(random), y(random), z(random)};
+      const double across = std::hypot(to.x() - from.x(), to.y() - from.y());
+      if (move == 1 || across < 1.0) to.z() = from.z();
+      fast.Cut(tool, from, to);
+      step = std::max(step, across / kPositions);
+      slope = std::max(slope, std::abs(to.z() - from.z()) / across);
+      for (int k = 0; k <= kPositions; ++k) {
+        const motion::MachinePoint at = from + (to - from) * (1.0 * k / kPositions);
+        const auto first = [&](double place) {
+          return static_cast<std::size_t>(std::max(0.0, (place - tool.radius_mm) / 0.125 - 1.0));
+        };
+        const std::size_t row_end = std::min(fast.rows(), first(at.y()) + 24);
+        const std::size_t column_end = std::min(fast.columns(), first(at.x()) + 24);
+        for (std::size_t row = first(at.y()); row < row_end; ++row) {
+          for (std::size_t column = first(at.x()); column < column_end; ++column) {
+            const double d = std::hypot(centre(column) - at.x(), centre(row) - at.y());
+            if (d > tool.radius_mm) continue;
+            double& height = plain[row * fast.columns() + column];
+            height = std::min(height, at.z() + Surface(tool, d));
+          }
+        }
+      }
+      for (std::size_t cell = 0; cell < plain.size(); ++cell) {
+        const Stay stay =
+            StayOver(tool, from, to, centre(cell % fast.columns()), centre(cell / fast.columns()));
+        if (stay.length < step && !stay.at_an_end) grazed[cell] = true;
+      }
+      from = to;
+    }
+    const double flank = tool.shape == ToolShape::kFlat   ? 0.0
+                         : tool.shape == ToolShape::kBall ? std::sqrt(2.0 * tool.radius_mm / step)
+                                                          : 1.0 / std::tan(tool.half_angle_rad);
+    std::size_t compared = 0;
+    for (std::size_t cell = 0; cell < plain.size(); ++cell) {
+      ASSERT_LE(fast.heights()[cell], plain[cell] + 1e-5) << round << ' ' << cell;
+      if (grazed[cell] && fast.heights()[cell] < plain[cell]) continue;
+      ASSERT_GE(fast.heights()[cell], plain[cell] - step * (flank + slope) - 1e-5)
+          << round << ' ' << cell;
+      ++compared;
+    }
+    EXPECT_GT(compared, plain.size() * 9 / 10);
+  }
+}
+
 TEST(HeightField, RefusesBlocksThatCannotBe) {
   EXPECT_FALSE(HeightField::Of({}));
   Stock stock = kPlate;

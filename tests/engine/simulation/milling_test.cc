@@ -1,16 +1,11 @@
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cmath>
-#include <cstdint>
-#include <map>
 #include <string>
-#include <tuple>
 
 #include "engine/core/units.h"
 #include "engine/simulation/material/milling_recorder.h"
 #include "engine/simulation/material/milling_text.h"
-#include "engine/simulation/material/stl.h"
 #include "tests/engine/simulation/fake_run.h"
 
 namespace rmlcell::simulation {
@@ -132,137 +127,84 @@ TEST(MillingText, ReadsTools) {
   for (const char* wrong :
        {"", "flat", "flat:", "flat:0", "flat:-1", "flat:3:2", "vee:6", "vee:6:180", "drill:3"})
     EXPECT_FALSE(ParseTool(wrong)) << wrong;
+  EXPECT_EQ(ParseTool("cone:6:60")->shape, MillTool::Shape::kVee);
+  EXPECT_EQ(ParseTool("engrave:6:30:0.1")->tip_radius_mm, 0.05);
+  EXPECT_EQ(ParseTool("end:3")->shape, MillTool::Shape::kFlat);
 }
 
-// motion.md 9: closed, and its volume that of the surface over the cell centres.
-TEST(Stl, IsClosedAndHasItsVolume) {
-  HeightField field =
-      HeightField::Of({.x_max = 4.0, .y_max = 3.0, .bottom = -2.0, .top = 0.0, .cell = 0.5})
-          .value();
-  field.Cut({.shape = MillTool::Shape::kBall, .radius_mm = 0.7}, {1, 1, -1}, {3, 2, -0.5});
-  std::string bytes;
-  ASSERT_TRUE(WriteStl(field, [&](std::string_view part) {
-    bytes += part;
-    return true;
-  }));
-  const auto number = [&](std::size_t at) {
-    std::uint32_t value = 0;
-    for (std::size_t k = 4; k-- > 0;)
-      value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
-    return value;
-  };
-  const std::uint32_t triangles = number(80);
-  EXPECT_EQ(triangles, 2u * 7 * 5 + 4 * (7 + 5) + 2);
-  ASSERT_EQ(bytes.size(), 84u + 50u * triangles);
-  // By the divergence theorem, from the file's own numbers.
-  double six_fold = 0.0;
-  for (std::uint32_t t = 0; t < triangles; ++t) {
-    const auto corner = [&](std::size_t k) {
-      const std::size_t at = 84 + 50 * std::size_t{t} + 12 * (k + 1);
-      const auto value = [&](std::size_t c) {
-        return double{std::bit_cast<float>(number(at + 4 * c))};
-      };
-      return MachineVector{value(0), value(1), value(2)};
-    };
-    six_fold += corner(0).dot(corner(1).cross(corner(2)));
-  }
-  // Over each square between four centres: two triangles, (a + b + c) / 3 each.
-  double volume = 0.0;
-  for (std::size_t y = 0; y < 5; ++y) {
-    for (std::size_t x = 0; x < 7; ++x) {
-      const auto h = [&](std::size_t i, std::size_t j) { return field.height(x + i, y + j) + 2.0; };
-      volume +=
-          0.125 * (h(0, 0) + h(1, 0) + h(1, 1)) / 3.0 + 0.125 * (h(0, 0) + h(1, 1) + h(0, 1)) / 3.0;
-    }
-  }
-  EXPECT_NEAR(six_fold / 6.0, volume, 1e-6 * volume);
-}
-
-// The body of a block that begins anywhere: every edge of a triangle is there once in each
-// direction, normals point outwards and are 1 mm long, and its corners are the centres of the
-// corner cells. What is cut below the bottom ends there.
-TEST(Stl, EachEdgeHasItsNeighbour) {
-  HeightField field = HeightField::Of({.x_min = -3.0,
-                                       .x_max = 1.0,
-                                       .y_min = 5.0,
-                                       .y_max = 8.0,
-                                       .bottom = -2.0,
-                                       .top = 1.0,
-                                       .cell = 0.5})
-                          .value();
-  field.Cut({.radius_mm = 0.7}, {-2, 6, -9}, {0, 6.5, -0.5});
-  std::string bytes;
-  ASSERT_TRUE(WriteStl(field, [&](std::string_view part) {
-    bytes += part;
-    return true;
-  }));
-  EXPECT_EQ(bytes.substr(0, 80), "what is left of the block, mm" + std::string(51, ' '));
-  const auto number = [&](std::size_t at) {
-    std::uint32_t value = 0;
-    for (std::size_t k = 4; k-- > 0;)
-      value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
-    return double{std::bit_cast<float>(value)};
-  };
-  const auto vector = [&](std::size_t at) {
-    return MachineVector{number(at), number(at + 4), number(at + 8)};
-  };
-  using Corner = std::tuple<double, double, double>;
-  const auto key = [](const MachineVector& v) { return Corner{v.x(), v.y(), v.z()}; };
-  std::map<std::pair<Corner, Corner>, int> edges;
-  machine::Box box;
-  for (std::size_t at = 84; at + 50 <= bytes.size(); at += 50) {
-    const motion::MachinePoint corners[] = {vector(at + 12), vector(at + 24), vector(at + 36)};
-    const MachineVector across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-    const MachineVector normal = vector(at);
-    EXPECT_EQ(bytes.substr(at + 48, 2), std::string(2, '\0'));
-    if (across.norm() > 0.0) {
-      EXPECT_NEAR((normal - (across * (1.0 / across.norm()))).norm(), 0.0, 1e-5);
-    } else {
-      EXPECT_EQ(normal, MachineVector{});
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-      box.Add(corners[k]);
-      ++edges[{key(corners[k]), key(corners[(k + 1) % 3])}];
-    }
-  }
-  EXPECT_EQ(box.min, (MachineVector{-2.75, 5.25, -2.0}));
-  EXPECT_EQ(box.max, (MachineVector{0.75, 7.75, 1.0}));
-  // The bottom is two triangles, so the lower edges of the sides are parts of its sides; above them
-  // each edge has its neighbour.
-  for (const auto& [edge, count] : edges) {
-    const auto& [from, to] = edge;
-    if (std::get<2>(from) == -2.0 && std::get<2>(to) == -2.0) continue;
-    const auto back = edges.find({to, from});
-    EXPECT_EQ(back != edges.end() ? back->second : 0, count);
+// What is above the cutting end follows by name, in any order.
+TEST(MillingText, ReadsShanksAndHolders) {
+  const Result<MillTool> tool = ParseTool("flat:3:flute=12:shank=6:holder=20@25");
+  ASSERT_TRUE(tool);
+  EXPECT_EQ(tool->radius_mm, 1.5);
+  EXPECT_EQ(tool->flute_mm, 12.0);
+  EXPECT_EQ(tool->shank_radius_mm, 3.0);
+  EXPECT_EQ(tool->holder_radius_mm, 10.0);
+  EXPECT_EQ(tool->holder_from_mm, 25.0);
+  const Result<MillTool> vee = ParseTool("vee:6:90:0.2:holder=20@9:flute=4");
+  ASSERT_TRUE(vee);
+  EXPECT_EQ(vee->tip_radius_mm, 0.1);
+  EXPECT_EQ(vee->flute_mm, 4.0);
+  EXPECT_EQ(vee->holder_from_mm, 9.0);
+  EXPECT_EQ(ParseTool("flat:3")->flute_mm, 0.0);
+  EXPECT_TRUE(ParseTool("ball:3:flute=1.5"));  // as high as its end
+  EXPECT_TRUE(ParseTool("flat:3:flute=5:holder=9@5"));
+  const std::pair<const char*, const char*> refused[] = {
+      {"flat:3:flute", "is no tool"},
+      {"flat:3:flute=", "is no tool"},
+      {"flat:3:flute=0", "is no tool"},
+      {"flat:3:flute=long", "is no tool"},
+      {"flat:3:neck=2", "is no tool"},
+      {"flat:3:flute=5:2", "is no tool"},
+      {"flute=5", "is no tool"},
+      {"flat:flute=5", "is no tool"},
+      {"flat:3:holder=20", "is no tool"},
+      {"flat:3:holder=0@20", "is no tool"},
+      {"flat:3:holder=20@20@20", "is no tool"},
+      {"flat:3:shank=6", "say flute=LENGTH"},
+      {"ball:3:flute=1.4", "its end alone is 1.5 mm high"},
+      {"vee:6:90:flute=2.9", "its end alone is 3.0 mm high"},
+      {"flat:3:flute=9:holder=20@8", "begins below the end of what cuts"},
+      {"flat:3:holder=20@-1", "above 0 mm"}};
+  for (const auto& [text, why] : refused) {
+    const Result<MillTool> wrong = ParseTool(text);
+    ASSERT_FALSE(wrong) << text;
+    EXPECT_NE(wrong.error().detail.find(why), std::string::npos) << wrong.error().detail;
   }
 }
 
-// A large body is handed over in portions; nothing more once nobody wants it.
-TEST(Stl, LargeBodiesComeInPortions) {
-  const HeightField field =
-      HeightField::Of({.x_max = 200.0, .y_max = 100.0, .bottom = -2.0, .top = 0.0, .cell = 1.0})
-          .value();
-  std::size_t sum = 0;
-  int portions = 0;
-  EXPECT_TRUE(WriteStl(field, [&](std::string_view part) {
-    sum += part.size();
-    ++portions;
-    EXPECT_LE(part.size(), (1u << 20) + 134u);
-    return true;
-  }));
-  EXPECT_EQ(sum, 84u + 50u * (2u * 199 * 99 + 4 * (199 + 99) + 2));
-  EXPECT_EQ(portions, 2);
-  portions = 0;
-  EXPECT_FALSE(WriteStl(field, [&](std::string_view) {
-    ++portions;
-    return false;
-  }));
-  EXPECT_EQ(portions, 1);
+// The most that one motion across takes off: not a plunge, not travel, not what was cut before; a
+// ramp of 45 degrees is a pass, a steeper one none.
+TEST(MillingRecorder, TellsTheDeepestPass) {
+  MillingRecorder recorder(MillShape(), kSlot);
+  Tell(recorder, {5, 6, 5}, {5, 6, -4}, 2.0, 1);
+  Tell(recorder, {10, 9, 1}, {12, 9, -1.25}, 2.0, 2);
+  Tell(recorder, {2, 2, -3}, {8, 2, -3}, 0.0, 3);
+  EXPECT_EQ(recorder.Figures().deepest_pass_mm, 0.0);
+  Tell(recorder, {15, 10, 0}, {16.5, 10, -1.5}, 2.0, 4);
+  EXPECT_NEAR(recorder.Figures().deepest_pass_mm, 1.5, 1e-6);
+  EXPECT_EQ(recorder.Figures().pass_place.step, 4);
+  Tell(recorder, {5, 6, -2.5}, {12, 6, -2.5}, 2.0, 5);
+  Tell(recorder, {5, 6, -4}, {12, 6, -4}, 2.0, 6);
+  const MillingFigures figures = recorder.Figures();
+  EXPECT_NEAR(figures.deepest_pass_mm, 2.5, 1e-6);
+  EXPECT_EQ(figures.pass_place.step, 5);
+  EXPECT_EQ(figures.tool_diameter_mm, 3.0);
+  EXPECT_NEAR(figures.deepest_cut_mm, 4.0, 1e-6);
+  EXPECT_NEAR(figures.remaining_mm3 + figures.removed_mm3, 20.0 * 12.0 * 5.0, 1e-6);
 }
 
-TEST(Stl, EndsWhenNobodyWantsMore) {
-  const HeightField field = HeightField::Of(kSlot.stock).value();
-  EXPECT_FALSE(WriteStl(field, [](std::string_view) { return false; }));
+// A shank of 3 mm above 2 mm that cut, 3 mm deep: 1 mm of it in material, once.
+TEST(MillingRecorder, TellsTheShankInMaterial) {
+  Milling milling = kSlot;
+  milling.tool = *ParseTool("flat:3:flute=2");
+  MillingRecorder recorder(MillShape(), milling);
+  Tell(recorder, {5, 6, 5}, {5, 6, -3}, 2.0, 1);
+  EXPECT_EQ(recorder.Figures().shank_depth_mm, 0.0);
+  Tell(recorder, {5, 6, -3}, {9, 6, -3}, 2.0, 2);
+  Tell(recorder, {9, 6, -3}, {12, 6, -2.5}, 2.0, 3);
+  EXPECT_NEAR(recorder.Figures().shank_depth_mm, 1.0, 1e-6);
+  EXPECT_EQ(recorder.Figures().shank_place.step, 2);
 }
 
 }  // namespace

@@ -218,6 +218,52 @@ TEST(Verdict, OfAToolBelowTheBlock) {
   EXPECT_EQ(TextOf(OfStreamInBlock(beside, "20x20x10")), "GOOD");
 }
 
+Judgement OfCutWith(const std::string& commands, const std::string& tool) {
+  SimulationRequest request;
+  request.products.milling = Milling{.stock = *ParseStock("20x20x10"), .tool = *ParseTool(tool)};
+  return VerdictOf(Mill(), MillOf("t1"), Work(commands), std::move(request));
+}
+
+// A tool of 3 mm: 3 mm deep is once its width, a hundredth more is too much of it. A plunge is
+// none.
+TEST(Verdict, OfADeepPass) {
+  const auto pass = [](const std::string& depth) {
+    return "Z200,500,-" + depth + ",1000,500,-" + depth + ",1000,500,200;";
+  };
+  EXPECT_EQ(TextOf(OfCutWith(pass("300"), "flat:3")), "GOOD");
+  EXPECT_EQ(TextOf(OfCutWith(pass("301"), "flat:3")),
+            "DOUBTFUL; CELL-E9412 one pass is as deep as 100.3 % of the width of the tool @6");
+  EXPECT_EQ(TextOf(OfCutWith(pass("301"), "flat:3.1")), "GOOD");
+  EXPECT_EQ(TextOf(OfCutWith("Z500,500,100,500,500,-800,500,500,200;", "flat:3")), "GOOD");
+}
+
+// 4 mm that cut, 4 mm deep, then a hundredth and two more.
+TEST(Verdict, OfAShankInMaterial) {
+  const auto pass = [](const std::string& depth) {
+    return "Z200,500,-" + depth + ",1000,500,-" + depth + ",1000,500,200;";
+  };
+  EXPECT_EQ(TextOf(OfCutWith(pass("401"), "flat:6:flute=4")), "GOOD");
+  EXPECT_EQ(TextOf(OfCutWith(pass("402"), "flat:6:flute=4")),
+            "BAD; CELL-E9411 shank or holder goes 0.020 mm into material @6");
+  EXPECT_EQ(TextOf(OfCutWith(pass("402"), "flat:6")), "GOOD");
+  EXPECT_EQ(TextOf(OfCutWith(pass("402"), "flat:6:flute=4.02:shank=8:holder=30@5")), "GOOD");
+  EXPECT_EQ(OfCutWith(pass("402"), "flat:6:holder=30@4").verdict, Verdict::kBad);
+}
+
+// What a target has more or less than is left counts from its tolerance on.
+TEST(Verdict, OfWhatIsLeftBesideItsTarget) {
+  RunReport report;
+  report.milling = MillingFigures{.removed_mm3 = 1.0};
+  const auto judged = [&](double left_mm, double deep_mm) {
+    report.milling->target =
+        TargetFigures{.tolerance_mm = 0.1, .left_mm = left_mm, .deep_mm = deep_mm};
+    return TextOf(Judge(report));
+  };
+  EXPECT_EQ(judged(0.1, 0.1), "GOOD");
+  EXPECT_EQ(judged(0.11, 0.0), "DOUBTFUL; CELL-E9414 0.110 mm stand above the target");
+  EXPECT_EQ(judged(0.0, 0.11), "BAD; CELL-E9413 the part is cut 0.110 mm below its target");
+}
+
 TEST(Verdict, OfHowARunEnds) {
   RunReport report;
   EXPECT_EQ(TextOf(Judge(report)), "GOOD");

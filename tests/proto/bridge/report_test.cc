@@ -182,11 +182,6 @@ TEST(ReportMessage, EveryFigureHasItsField) {
                         .count = 10}};
   report.violations_dropped = 9;
   report.figures = {{.name = "programmed.cut_length", .unit = "mm", .value = 2.5}};
-  report.milling = {.removed_mm3 = 1.0,
-                    .gouges = 2,
-                    .gouge_depth_mm = 3.0,
-                    .gouge_place = {.program = 4, .step = 5},
-                    .gouge_at = Seconds(6)};
   report.trace = {.made = true, .complete = false, .records = 1, .dropped = 2};
   report.toolpath = {.made = true, .records = 3};
   report.picture = {.made = true, .records = 4};
@@ -218,9 +213,42 @@ TEST(ReportMessage, EveryFigureHasItsField) {
           "variables { key: 'VR[1]' value: '2.5' } parameters { key: 'VMAX' value: '400' } "
           "inputs_hash: 'abc' engine_version: '1.2' trace { made: true records: 1 dropped: 2 } "
           "toolpath { made: true complete: true records: 3 } "
-          "picture { made: true complete: true records: 4 } collisions: 'not modelled' "
-          "milling { removed_mm3: 1 gouges: 2 gouge_depth_mm: 3 gouge_place { program: 4 step: 5 } "
-          "gouge_time_s: 6 }");
+          "picture { made: true complete: true records: 4 } collisions: 'not modelled' ");
+}
+
+TEST(ReportMessage, EveryFigureOfABlockHasItsField) {
+  simulation::RunReport report;
+  report.milling = {.removed_mm3 = 1.0,
+                    .gouges = 2,
+                    .gouge_depth_mm = 3.0,
+                    .gouge_place = {.program = 4, .step = 5},
+                    .gouge_at = Seconds(6),
+                    .below_mm = 7.0,
+                    .below_place = {.program = 8, .step = 9},
+                    .remaining_mm3 = 10.0,
+                    .deepest_cut_mm = 11.0,
+                    .tool_diameter_mm = 12.0,
+                    .deepest_pass_mm = 13.0,
+                    .pass_place = {.program = 14, .step = 15},
+                    .shank_depth_mm = 16.0,
+                    .shank_place = {.program = 17, .step = 18},
+                    .target = simulation::TargetFigures{.tolerance_mm = 19.0,
+                                                        .left_mm = 20.0,
+                                                        .left_at = {21.0, 22.0},
+                                                        .left_mm3 = 23.0,
+                                                        .deep_mm = 24.0,
+                                                        .deep_at = {25.0, 26.0},
+                                                        .deep_mm3 = 27.0,
+                                                        .good_percent = 28.0,
+                                                        .compared_mm2 = 29.0}};
+  ExpectMessage(ToProto(report, {}).milling(),
+                "removed_mm3: 1 gouges: 2 gouge_depth_mm: 3 gouge_place { program: 4 step: 5 } "
+                "gouge_time_s: 6 below_mm: 7 below_place { program: 8 step: 9 } remaining_mm3: 10 "
+                "deepest_cut_mm: 11 deepest_pass_mm: 13 pass_place { program: 14 step: 15 } "
+                "tool_diameter_mm: 12 shank_depth_mm: 16 shank_place { program: 17 step: 18 } "
+                "target { tolerance_mm: 19 left_mm: 20 left_x_mm: 21 left_y_mm: 22 left_mm3: 23 "
+                "deep_mm: 24 deep_x_mm: 25 deep_y_mm: 26 deep_mm3: 27 good_percent: 28 "
+                "compared_mm2: 29 }");
 }
 
 TEST(ReportMessage, EveryFigureOfContoursHasItsField) {

@@ -1,0 +1,45 @@
+#include <CLI/CLI.hpp>
+
+#include "clients/cli/milling.h"
+
+namespace rmlcell::cli {
+
+void AddMillingOptions(CLI::App& verb, MillingOptions& options) {
+  CLI::Option* stock =
+      verb.add_option("--stock", options.stock,
+                      "100x80x10[@X,Y,TOP]: a block on a mill's table, mm from the work origin");
+  CLI::Option* tool = verb.add_option(
+      "--tool", options.tool,
+      "flat:D, ball:D, vee:D:ANGLE[:TIP], with :flute=L:shank=D:holder=D@L: what mills it");
+  stock->needs(tool);
+  tool->needs(stock);
+  verb.add_option("--cell", options.cell_mm,
+                  "edge of the cells that the block is looked at in, mm; default 0.1")
+      ->needs(stock);
+  CLI::Option* stl =
+      verb.add_option("--stl", options.stl, "write what is left of the block, a closed body")
+          ->needs(stock);
+  verb.add_option("--stl-tolerance", options.stl_tolerance_mm,
+                  "how far its surface may be off, mm; default 0.01")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->needs(stl);
+  verb.add_option("--relief", options.relief,
+                  "write a shaded picture of what is left, from above (PNG)")
+      ->needs(stock);
+  verb.add_option("--height-map", options.height_map,
+                  "write the heights of what is left as a grey picture of 16 bits (PNG)")
+      ->needs(stock);
+  CLI::Option* target =
+      verb.add_option("--target", options.target,
+                      "what should be left: a height map, an STL, or another program")
+          ->needs(stock);
+  verb.add_option("--target-tolerance", options.target_tolerance_mm,
+                  "up to which a difference is none, mm; default 0.1")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->needs(target);
+  verb.add_option("--target-png", options.target_png,
+                  "write a picture of what is too deep (red) and left too much (blue)")
+      ->needs(target);
+}
+
+}  // namespace rmlcell::cli

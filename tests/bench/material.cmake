@@ -1,0 +1,1 @@
+rmlcell_executable(material_bench SOURCES material.cc LINKS rmlcell::engine_simulation)

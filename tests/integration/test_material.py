@@ -1,0 +1,246 @@
+"""What a mill leaves of a block: rmlcell simulate --stock and all that goes with it (docs/material.md)."""
+import json
+import os
+import pathlib
+import struct
+import subprocess
+import tempfile
+import unittest
+import zlib
+
+BIN = pathlib.Path(os.environ["RMLCELL_BIN"])
+
+# A groove of 20 mm along X, 1 mm deep, with clearance on the way. 100 units a mm; along the middle of cells of 0.2 mm.
+GROOVE = "VS10;!VZ10;!PZ-100,200;!MC1;PU2010,1510;PD4010,1510;PU0,0;!MC0;"
+BLOCK = ("--stock", "60x30x5", "--tool", "flat:3", "--cell", "0.2")
+
+
+class Material(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.groove = self.folder / "groove.rml"
+        self.groove.write_text(GROOVE)
+
+    def simulate(self, *words, program=None):
+        return subprocess.run([BIN / "rmlcell", "simulate", program or self.groove, "--profile", "t1", *map(str, words)],
+                              capture_output=True, text=True, timeout=120,
+                              env={**os.environ, "NO_COLOR": "1"})
+
+    def good(self, *words, **more):
+        done = self.simulate(*BLOCK, *words, **more)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return done.stdout
+
+    def refused(self, code, text, *words):
+        done = self.simulate(*words)
+        self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+        self.assertIn(code, done.stderr)
+        self.assertIn(text, done.stderr)
+
+    def facts(self, *words, program=None):
+        done = self.simulate(*BLOCK, *words, "--facts", program=program)
+        return dict(line.split(": ", 1) for line in done.stdout.splitlines() if ": " in line)
+
+
+class Stl(Material):
+    def triangles(self, *words, program=None):
+        path = self.folder / "a.stl"
+        self.good("--stl", path, *words, program=program)
+        data = path.read_bytes()
+        count = struct.unpack_from("<I", data, 80)[0]
+        self.assertEqual(len(data), 84 + 50 * count)
+        return [struct.unpack_from("<12f", data, 84 + 50 * k) for k in range(count)]
+
+    # An untouched plate of 60 x 30 mm is a box: 12 triangles, less than a kilobyte.
+    def test_a_plate_is_a_box(self):
+        up = self.folder / "up.rml"
+        up.write_text("PA;PU0,0;")
+        found = self.triangles(program=up)
+        self.assertEqual(len(found), 12)
+        corners = {t[3 * k:3 * k + 3] for t in found for k in (1, 2, 3)}
+        self.assertEqual(corners, {(x, y, z) for x in (0.0, 60.0) for y in (0.0, 30.0) for z in (-5.0, 0.0)})
+
+    # What is missing is what the report says was taken off: 20 mm x 3 mm x 1 mm and two half discs.
+    def test_the_body_lacks_what_was_taken_off(self):
+        volume = 0.0
+        for t in self.triangles("--stl-tolerance", "0"):
+            (ax, ay, az), (bx, by, bz), (cx, cy, cz) = t[3:6], t[6:9], t[9:12]
+            volume += (ax * (by * cz - bz * cy) - ay * (bx * cz - bz * cx) + az * (bx * cy - by * cx)) / 6
+        self.assertAlmostEqual(60 * 30 * 5 - volume, 20 * 3 + 7.07, delta=0.7)
+
+    def test_a_coarser_body_has_fewer_triangles(self):
+        self.assertLess(len(self.triangles("--stl-tolerance", "2")), len(self.triangles()))
+
+    def test_refusals(self):
+        for words, text in ((("--stl-tolerance", "0.1"), "--stl"), ((*BLOCK, "--stl", "a.stl", "--stl-tolerance", "-1"), "tolerance"),
+                            (("--stl", "a.stl"), "--stock")):
+            done = self.simulate(*words)
+            self.assertEqual(done.returncode, 2, done.stdout)
+            self.assertIn(text, done.stderr)
+
+    def test_a_file_that_cannot_be_written(self):
+        for option in ("--stl", "--relief", "--height-map"):
+            for path in ("/dev/full", self.folder / "no" / "x"):
+                self.refused("CELL-E9023", f"{path}: cannot be written", *BLOCK, option, path)
+
+
+def chunks(data):
+    at = 8
+    while at < len(data):
+        length, kind = struct.unpack_from(">I4s", data, at)
+        yield kind.decode(), data[at + 8:at + 8 + length]
+        at += 12 + length
+
+
+class Pictures(Material):
+    def written(self, option, name="a.png", *words):
+        path = self.folder / name
+        self.good(option, path, *words)
+        return path.read_bytes()
+
+    # 60 x 30 mm in cells of 0.2 mm: 300 x 150 pixels, 5000 a metre. The floor is 1 mm below the top of 5 mm: 4/5 of 65535.
+    def test_a_height_map(self):
+        data = self.written("--height-map")
+        found = list(chunks(data))
+        self.assertEqual(struct.unpack(">IIBBBBB", found[0][1]), (300, 150, 16, 0, 0, 0, 0))
+        self.assertEqual(struct.unpack(">IIB", dict(found)["pHYs"]), (5000, 5000, 1))
+        texts = dict(content.decode().split("\0") for kind, content in found if kind == "tEXt")
+        self.assertEqual((texts["Bottom mm"], texts["Top mm"], texts["Cell mm"]), ("-5", "0", "0.2"))
+        self.assertEqual(set(self.heights(data)), {65535, 52428})
+
+    @staticmethod
+    def heights(data):
+        """Pixels of a grey PNG of 16 bits, by the format: filters of rows undone."""
+        width, height = struct.unpack_from(">II", next(content for kind, content in chunks(data) if kind == "IHDR"))
+        raw = zlib.decompress(b"".join(content for kind, content in chunks(data) if kind == "IDAT"))
+        before = bytearray(2 * width)
+        for y in range(height):
+            kind, line = raw[y * (2 * width + 1)], bytearray(raw[y * (2 * width + 1) + 1:(y + 1) * (2 * width + 1)])
+            for k in range(2 * width):
+                a, b, c = line[k - 2] if k > 1 else 0, before[k], before[k - 2] if k > 1 else 0
+                p = a + b - c
+                paeth = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
+                line[k] = (line[k] + (0, a, b, (a + b) // 2, paeth)[kind]) & 255
+            yield from struct.unpack(f">{width}H", line)
+            before = line
+
+    def test_a_relief(self):
+        found = list(chunks(self.written("--relief")))
+        self.assertEqual(struct.unpack(">IIBBBBB", found[0][1]), (300, 150, 8, 2, 0, 0, 0))
+
+    def test_the_same_bytes_each_time(self):
+        for option in ("--relief", "--height-map", "--stl"):
+            self.assertEqual(self.written(option, "a"), self.written(option, "b"))
+
+
+# The same groove, 1.5 mm deep.
+DEEPER = GROOVE.replace("-100", "-150")
+
+
+class Tools(Material):
+    def test_a_shank_in_material_is_bad(self):
+        for tool, code, wanted in (("flat:3:flute=1", 0, "0.0"), ("flat:3:flute=0.5", 1, "0.5"), ("flat:3:flute=0.5:shank=2", 1, "0.5"),
+                                   ("flat:3:holder=20@0.75", 1, "0.25"), ("flat:3", 0, "0.0")):
+            with self.subTest(tool):
+                done = self.simulate("--stock", "60x30x5", "--tool", tool, "--facts")
+                self.assertEqual(done.returncode, code, done.stdout)
+                self.assertIn(f"shank_depth_mm: {wanted}\n", done.stdout)
+                self.assertEqual("CELL-E9411" in self.simulate("--stock", "60x30x5", "--tool", tool).stdout, code == 1)
+
+    # 1 mm deep with a tool of 0.8 mm.
+    def test_a_deep_pass_is_doubtful(self):
+        words = ("--stock", "60x30x5", "--tool", "flat:0.8")
+        self.assertEqual(self.simulate(*words).returncode, 0)
+        done = self.simulate(*words, "--strict")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("one pass is as deep as 125.0 % of the width of the tool (CELL-E9412", done.stdout)
+
+    def test_figures_of_the_cut(self):
+        facts = self.facts()
+        self.assertAlmostEqual(float(facts["removed_volume_mm3"]) + float(facts["remaining_volume_mm3"]), 60 * 30 * 5, places=3)
+        self.assertEqual((facts["deepest_cut_mm"], facts["deepest_pass_mm"], facts["target_left_mm"]), ("1.0", "1.0", "none"))
+
+    def test_refusals(self):
+        for tool, text in (("flat:3:neck=2", "'flat:3:neck=2' is no tool"), ("flat:3:shank=6", "say flute=LENGTH"),
+                           ("ball:3:flute=1", "make flute longer"), ("drill:3", "is no tool: write flat:3, ball:3")):
+            self.refused("CELL-E9003", text, "--stock", "60x30x5", "--tool", tool)
+
+
+class Targets(Material):
+    def setUp(self):
+        super().setUp()
+        self.deeper = self.folder / "deeper.rml"
+        self.deeper.write_text(DEEPER)
+
+    def targets(self, program):
+        """The three forms of what `program` leaves."""
+        self.good("--stl", self.folder / "t.stl", "--height-map", self.folder / "t.png", program=program)
+        return self.folder / "t.stl", self.folder / "t.png", program
+
+    # A program beside what it leaves itself: all good. Heights of the map are half a grey value off at most.
+    def test_itself(self):
+        for target in self.targets(self.groove):
+            facts = self.facts("--target", target, "--target-tolerance", "0.02")
+            self.assertEqual(facts["target_good_share"], "1.0", target)
+            self.assertLess(float(facts["target_deep_mm"]), 0.011)
+            self.assertEqual(facts["verdict"], "GOOD")
+
+    # 0.5 mm are left of about 20 x 3 mm and two half discs; that is doubtful, and an exit code of 0.
+    def test_too_much_left(self):
+        for target in self.targets(self.deeper):
+            with self.subTest(target.name):
+                facts = self.facts("--target", target)
+                self.assertAlmostEqual(float(facts["target_left_mm"]), 0.5, delta=0.011)
+                self.assertEqual((facts["target_deep_mm"] < "0.011", facts["verdict"]), (True, "DOUBTFUL"))
+                self.assertAlmostEqual(float(facts["target_left_volume_mm3"]), 0.5 * 67, delta=6)
+                self.assertIn("CELL-E9414", self.simulate(*BLOCK, "--target", target).stdout)
+                self.assertEqual(self.simulate(*BLOCK, "--target", target, "--strict").returncode, 1)
+                self.assertEqual(self.facts("--target", target, "--target-tolerance", "0.52")["verdict"], "GOOD")
+
+    def test_too_deep(self):
+        for target in self.targets(self.groove):
+            with self.subTest(target.name):
+                done = self.simulate(*BLOCK, "--target", target, program=self.deeper)
+                self.assertEqual(done.returncode, 1, done.stdout)
+                self.assertIn("CELL-E9413", done.stdout)
+                self.assertRegex(done.stdout, r"too deep by up to 0.[45]\d\d mm at X \d+\.\d+, Y 1[3-6]")
+                self.assertNotIn("too much left", done.stdout)
+
+    def test_the_picture(self):
+        path = self.folder / "d.png"
+        self.simulate(*BLOCK, "--target", self.groove, "--target-png", path, program=self.deeper)
+        found = list(chunks(path.read_bytes()))
+        self.assertEqual(struct.unpack(">IIBBBBB", found[0][1]), (300, 150, 8, 2, 0, 0, 0))
+        raw = zlib.decompress(b"".join(content for kind, content in found if kind == "IDAT"))
+        self.assertEqual(raw[1:4], bytes([214, 214, 214]))  # a corner: good
+
+    def test_the_report_as_json(self):
+        milling = json.loads(self.simulate(*BLOCK, "--target", self.deeper, "--json").stdout)["milling"]
+        self.assertEqual(milling["target"]["leftMm"], 0.5)
+        self.assertEqual(milling["target"]["toleranceMm"], 0.1)
+        self.assertEqual(milling["toolDiameterMm"], 3)
+
+    def test_refusals(self):
+        def file(name, data):
+            (self.folder / name).write_bytes(data)
+            return self.folder / name
+        rows = (("CELL-E9022", "none.stl", self.folder / "none.stl"),
+                ("CELL-E9024", "no STL: it neither begins", file("a.stl", b"no body")),
+                ("CELL-E9024", "line 2: 'faced'", file("b.stl", b"solid\nfaced\n")),
+                ("CELL-E9024", "no height map", file("c.png", b"\x89PNG\r\n\x1a\n")),
+                ("CELL-E9003", "lies beside the block", file("d.stl", b"solid\nfacet normal 0 0 1\nvertex 900 0 0\n"
+                                                             b"vertex 901 0 0\nvertex 900 1 0\nendfacet\n")),
+                ("CELL-E9017", "e.rml", file("e.rml", b"")))
+        for code, text, target in rows:
+            with self.subTest(text):
+                self.refused(code, text, *BLOCK, "--target", target)
+        self.assertIn("--stock", self.simulate("--target", self.groove).stderr)
+        self.assertIn("--target", self.simulate(*BLOCK, "--target-png", "x.png").stderr)
+        self.assertEqual(self.simulate(*BLOCK, "--target", self.groove, "--target-tolerance", "-1").returncode, 2)
+        self.refused("CELL-E9023", "/dev/full", *BLOCK, "--target", self.groove, "--target-png", "/dev/full")
+
+
+if __name__ == "__main__":
+    unittest.main()
