@@ -8,5 +8,6 @@ namespace rmlcell::cli {
 
 // The wiring of the command line, by groups of verbs. What runs leaves its exit code.
 void AddTextToolVerbs(CLI::App& app, int& exit_code);
+void AddRml1Verbs(CLI::App& app, int& exit_code);  // `rmlcell rml1 ...`: tools for mills
 
 }  // namespace rmlcell::cli

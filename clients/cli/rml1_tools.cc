@@ -1,0 +1,110 @@
+#include "clients/cli/rml1_tools.h"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "clients/cli/findings_text.h"
+#include "clients/cli/program_files.h"
+#include "clients/cli/terminal.h"
+#include "engine/families/families.h"
+#include "engine/rml1/offline/explain.h"
+#include "proto/bridge/files.h"
+#include "proto/bridge/findings.h"
+
+namespace rmlcell::cli {
+namespace {
+
+constexpr std::string_view kFamily = "rml1";
+
+struct MillProgram {
+  std::string bytes;
+  machine::Parameters parameters;
+};
+
+Result<machine::Parameters> MillParameters(const MillToolOptions& options) {
+  const Result<bridge::MachineFile> machine = ReadMachine(options.machine_file);
+  if (!machine) return machine.error();
+  if (!machine->family.empty() && machine->family != kFamily) {
+    return Error{ErrorCode::kCellUsage,
+                 options.machine_file + " is a machine of the family " + machine->family +
+                     "; these tools are for mills (rml1)",
+                 {}};
+  }
+  return machine::MakeParameters(*families::FindFamily(kFamily),
+                                 options.profile.empty() ? machine->profile : options.profile,
+                                 machine->parameters);
+}
+
+// A stream by any name; a program of another family is refused.
+Result<MillProgram> ReadStream(const MillToolOptions& options) {
+  const machine::MachineFamily* family = families::FamilyOfFileName(options.file);
+  if (family != nullptr && family->info().id != kFamily) {
+    return InvalidArgument(options.file + " is a program for " + std::string(family->info().title) +
+                           ": these tools are for streams of mills");
+  }
+  Result<machine::Parameters> parameters = MillParameters(options);
+  if (!parameters) return parameters.error();
+  Result<std::string> bytes = bridge::ReadFile(options.file, kFileBytesMax);
+  if (!bytes) return bytes.error();
+  if (bytes->empty()) return Error{ErrorCode::kCellEmptyProgram, options.file, {}};
+  return MillProgram{*std::move(bytes), *std::move(parameters)};
+}
+
+std::string Padded(std::string text, std::size_t width, bool left) {
+  if (text.size() >= width) return text;
+  const std::string blanks(width - text.size(), ' ');
+  return left ? blanks + text : text + blanks;
+}
+
+void PrintPhrase(const rml1::ExplainedPhrase& phrase, const std::string& file, bool colour) {
+  std::string line = Padded(std::to_string(phrase.offset), 9, true) + ' ' +
+                     Padded(phrase.command > 0 ? std::to_string(phrase.command) : "-", 8, true) +
+                     "  " + Padded(Visible(phrase.text), 24, false) + "  " + phrase.words;
+  Print(line);
+  for (const Diagnostic& finding : phrase.findings) {
+    Diagnostic named = finding;
+    named.file = file;
+    const bool advice = named.severity == Severity::kAdvice;
+    Print(Paint("                    " + FormatDiagnostic(named, {}),
+                advice ? Colour::kYellow : Colour::kRed, colour));
+  }
+}
+
+void PrintPhraseJson(const rml1::ExplainedPhrase& phrase) {
+  nlohmann::ordered_json line;
+  line["offset"] = phrase.offset;
+  line["command"] = phrase.command;
+  line["name"] = phrase.name;
+  line["text"] = bridge::Utf8(phrase.text);
+  line["words"] = phrase.words;
+  nlohmann::ordered_json findings = nlohmann::ordered_json::array();
+  for (const Diagnostic& finding : phrase.findings) {
+    findings.push_back({{"code", CodeText(finding.code)},
+                        {"detail", bridge::Utf8(finding.detail)},
+                        {"line", finding.where.line},
+                        {"column", finding.where.column}});
+  }
+  line["findings"] = std::move(findings);
+  Print(line.dump());
+}
+
+}  // namespace
+
+int ExplainStream(const MillToolOptions& options) {
+  const Result<MillProgram> program = ReadStream(options);
+  if (!program) return Refuse(program.error());
+  const bool colour = ColourOnOutput();
+  if (!options.json) Print("     byte  command  text                      what it does");
+  const Status told =
+      rml1::Explain(program->bytes, program->parameters, [&](const rml1::ExplainedPhrase& phrase) {
+        if (options.json) {
+          PrintPhraseJson(phrase);
+        } else {
+          PrintPhrase(phrase, options.file, colour);
+        }
+        return std::ferror(stdout) == 0;
+      });
+  return told ? int{kGood} : Refuse(told.error());
+}
+
+}  // namespace rmlcell::cli
