@@ -1,13 +1,17 @@
 #include "clients/cli/rml1_tools.h"
 
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "clients/cli/findings_text.h"
 #include "clients/cli/program_files.h"
 #include "clients/cli/terminal.h"
+#include "clients/cli/tool_answer.h"
 #include "engine/families/families.h"
 #include "engine/rml1/offline/explain.h"
+#include "engine/rml1/offline/from_gcode.h"
+#include "engine/rml1/offline/to_gcode.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
 
@@ -48,6 +52,17 @@ Result<MillProgram> ReadStream(const MillToolOptions& options) {
   if (!bytes) return bytes.error();
   if (bytes->empty()) return Error{ErrorCode::kCellEmptyProgram, options.file, {}};
   return MillProgram{*std::move(bytes), *std::move(parameters)};
+}
+
+std::string OutputOr(const MillToolOptions& options, const char* extension) {
+  if (!options.output.empty()) return options.output;
+  return std::filesystem::path(options.file).replace_extension(extension).string();
+}
+
+void Found(std::vector<Diagnostic>& findings, std::uint64_t dropped, const std::string& file,
+           std::string_view text, ToolAnswer& answer) {
+  for (Diagnostic& finding : findings) finding.file = file;
+  answer.Found(findings, dropped, text);
 }
 
 std::string Padded(std::string text, std::size_t width, bool left) {
@@ -105,6 +120,33 @@ int ExplainStream(const MillToolOptions& options) {
         return std::ferror(stdout) == 0;
       });
   return told ? int{kGood} : Refuse(told.error());
+}
+
+int StreamToGcode(const MillToolOptions& options) {
+  const Result<MillProgram> program = ReadStream(options);
+  if (!program) return Refuse(program.error());
+  Result<rml1::GcodeText> made = rml1::ToGcode(program->bytes, program->parameters);
+  ToolAnswer answer(options.file, options.json);
+  if (!made) return answer.Failed(made.error());
+  Found(made->findings, made->findings_dropped, options.file, program->bytes, answer);
+  return answer.Deliver(made->text, OutputOr(options, ".nc"),
+                        Bytes(static_cast<std::int64_t>(made->text.size())) + " of G-code");
+}
+
+int StreamFromGcode(const FromGcodeToolOptions& options) {
+  const Result<machine::Parameters> parameters = MillParameters(options);
+  if (!parameters) return Refuse(parameters.error());
+  const Result<std::string> text = bridge::ReadFile(options.file, kFileBytesMax);
+  if (!text) return Refuse(text.error());
+  if (text->empty()) return Refuse({ErrorCode::kCellEmptyProgram, options.file, {}});
+  Result<rml1::StreamOfGcode> made = rml1::FromGcode(
+      *text, *parameters, {.tolerance_mm = options.tolerance_mm, .bytes_max = kFileBytesMax});
+  if (!made) return Refuse(made.error());
+  ToolAnswer answer(options.file, options.json);
+  Found(made->findings, made->findings_dropped, options.file, *text, answer);
+  if (!made->ok) return answer.Failed();
+  return answer.Deliver(made->stream, OutputOr(options, ".rml"),
+                        "stream of " + Bytes(static_cast<std::int64_t>(made->stream.size())));
 }
 
 }  // namespace rmlcell::cli

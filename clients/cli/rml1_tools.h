@@ -19,4 +19,12 @@ struct MillToolOptions {
 // To standard output as it comes: long streams need no memory of their length.
 int ExplainStream(const MillToolOptions& options);
 
+// What the mill does with a stream as G-code, and a stream of G-code (docs/gcode.md). Output by
+// default: FILE with .nc, FILE with .rml.
+int StreamToGcode(const MillToolOptions& options);
+struct FromGcodeToolOptions : MillToolOptions {
+  double tolerance_mm = 0.01;
+};
+int StreamFromGcode(const FromGcodeToolOptions& options);
+
 }  // namespace rmlcell::cli

@@ -1,6 +1,8 @@
 #include "engine/rml1/offline/stream_walk.h"
 
+#include "engine/core/number_text.h"
 #include "engine/rml1/command_table.h"
+#include "engine/rml1/verdict_rules.h"
 
 namespace rmlcell::rml1 {
 
@@ -185,6 +187,14 @@ bool StreamWalk::Tell(Phrase& phrase) {
   logical_before_ = phrase.logical;
   physical_before_ = phrase.physical;
   return go_on;
+}
+
+Status CheckIsStream(const Device& device) {
+  const double foreign_percent = device.foreign_percent();
+  if (foreign_percent <= kForeignShareMax_percent) return {};
+  return Error{ErrorCode::kRml1NoProgram,
+               FixedText(foreign_percent, 1) + " % of the bytes belong to no command",
+               {}};
 }
 
 }  // namespace rmlcell::rml1

@@ -106,4 +106,7 @@ class StreamWalk final : private DeviceListener {
   std::int64_t call_ = -1;  // place of an open ^
 };
 
+// Whether what a device has read is a stream at all. Error: Rml1NoProgram (8007).
+Status CheckIsStream(const Device& device);
+
 }  // namespace rmlcell::rml1

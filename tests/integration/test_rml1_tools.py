@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+"""The tools for streams of mills, from the command line."""
+import json
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+
+BIN = pathlib.Path(os.environ["RMLCELL_BIN"])
+
+
+def ask(*words):
+    return subprocess.run([BIN / "rmlcell", *map(str, words)], capture_output=True, text=True, timeout=120,
+                          env={**os.environ, "NO_COLOR": "1"})
+
+
+def run(*words, code=0):
+    done = ask(*words)
+    assert done.returncode == code, (words, done.returncode, done.stdout, done.stderr)
+    return done.stdout
+
+
+STREAM = "PA;VS4;!VZ2;!PZ-50,200;!MC1;PU100,100;PD500,100,500,300;PU0,0;!MC0;\n"
+
+
+class Tools(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def file(self, name, content):
+        path = self.folder / name
+        path.write_text(content)
+        return path
+
+
+class Explain(Tools):
+    def test_each_command_has_its_place_and_its_meaning(self):
+        told = run("rml1", "explain", self.file("a.rml", STREAM), "--profile", "srm-20").splitlines()
+        self.assertEqual(told[0].split()[:3], ["byte", "command", "text"])
+        self.assertRegex(told[2], r"^ +3 +2  VS4 +cutting speed in X and Y 4 mm/s$")
+        # 100 units in a mm; down from 2 mm above the work.
+        self.assertIn("down into the work to Z -0.5 at 2 mm/s; cut to X 5 at 4 mm/s", told[7])
+        self.assertRegex(told[8], r"^ +\d+ +7  500,300 +cut to Y 3 at 4 mm/s$")
+
+    def test_units_are_those_of_the_machine(self):
+        mdx = run("rml1", "explain", self.file("a.rml", STREAM), "--profile", "mdx-20")
+        self.assertIn("cut to X 12.5 at 4 mm/s", mdx)  # 500 / 40
+        own = self.file("mine.toml", 'family = "rml1"\nprofile = "mdx-20"\n[parameters]\nXY_SPEED_MAX = 3\n')
+        self.assertIn("at 3 mm/s", run("rml1", "explain", self.folder / "a.rml", "--machine", own))
+
+    def test_errors_are_said_as_check_says_them(self):
+        source = self.file("a.rml", "PU100;\nQQ;PU1,1;")
+        told = run("rml1", "explain", source)
+        errors = [line for line in run("check", source, code=1).splitlines() if " device error " in line]
+        self.assertEqual(len(errors), 2)
+        for line in errors:
+            self.assertIn(line, told)
+
+    def test_json_has_a_line_for_each_phrase(self):
+        lines = [json.loads(line) for line in
+                 run("rml1", "explain", self.file("a.rml", "PU1,2,3,4;X"), "--json").splitlines()]
+        self.assertEqual([line["offset"] for line in lines], [0, 6, 10])
+        self.assertEqual([line["command"] for line in lines], [1, 1, 0])
+        self.assertEqual(lines[0]["name"], "PU")
+
+    def test_what_is_no_stream_of_a_mill_is_refused(self):
+        self.assertIn("Amada", ask("rml1", "explain", self.file("12.S", "SPEED 20\n")).stderr)
+        run("rml1", "explain", self.folder / "12.S", code=2)
+        run("rml1", "explain", self.file("empty.rml", ""), code=2)
+        run("rml1", "explain", self.folder / "missing.rml", code=2)
+        run("rml1", "explain", self.file("a.rml", STREAM), "--profile", "none-of-them", code=2)
+        laser = self.file("laser.toml", 'family = "optimo"\n')
+        run("rml1", "explain", self.folder / "a.rml", "--machine", laser, code=2)
+
+
+class Gcode(Tools):
+    def facts(self, stream):
+        return run("simulate", stream, "--profile", "srm-20", "--facts")
+
+    def test_the_round_trip_cuts_the_same(self):
+        source = self.file("a.rml", STREAM)
+        self.assertIn("a.nc: ", run("rml1", "to-gcode", source, "--profile", "srm-20"))
+        gcode = (self.folder / "a.nc").read_text()
+        self.assertIn("G1 X5 F240\n", gcode)
+        run("rml1", "from-gcode", self.folder / "a.nc", "--profile", "srm-20", "-o", self.folder / "b.rml")
+        before, after = self.facts(source), self.facts(self.folder / "b.rml")
+        for name in ("rml1.cut_length", "rml1.box_mm.xmax", "rml1.box_mm.zmin", "rml1.plunges"):
+            wanted = re.search(rf"^{re.escape(name)}: .*$", before, re.MULTILINE)
+            self.assertIsNotNone(wanted, before)
+            self.assertIn(wanted.group(), after)
+
+    def test_standard_output_and_json(self):
+        source = self.file("a.rml", STREAM)
+        self.assertTrue(run("rml1", "to-gcode", source, "-o", "-").endswith("M30\n"))
+        told = json.loads(run("rml1", "to-gcode", source, "-o", "-", "--json"))
+        self.assertTrue(told["ok"])
+        self.assertIn("G21", told["content"])
+        self.assertFalse((self.folder / "a.nc").exists())
+
+    def test_what_cannot_be_read_is_refused_with_its_place_and_nothing_is_written(self):
+        source = self.file("a.nc", "G21\nG0 Z5\nG81 X1 Z-1 R1 F60\nG41 X1\n")
+        done = ask("rml1", "from-gcode", source)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"a\.nc:3:1: .*RML1-E8102: G81")
+        self.assertRegex(done.stderr, r"a\.nc:4:1: .*RML1-E8102: G41")
+        self.assertFalse((self.folder / "a.rml").exists())
+        told = json.loads(run("rml1", "from-gcode", source, "--json", code=1))
+        self.assertFalse(told["ok"])
+
+    def test_an_old_result_stays_when_there_is_no_new_one(self):
+        self.file("a.rml", "PU;")
+        run("rml1", "from-gcode", self.file("a.nc", "G91\n"), code=1)
+        self.assertEqual((self.folder / "a.rml").read_text(), "PU;")
+
+    def test_tolerance(self):
+        source = self.file("a.nc", "G1 Z0 F60\nG2 I5\n")
+        rough = run("rml1", "from-gcode", source, "--tolerance", "0.5", "-o", "-").count("Z")
+        fine = run("rml1", "from-gcode", source, "--tolerance", "0.01", "-o", "-").count("Z")
+        self.assertGreater(fine, 5 * rough)
+        run("rml1", "from-gcode", source, "--tolerance", "0", "-o", "-", code=2)
+
+
+if __name__ == "__main__":
+    unittest.main()
