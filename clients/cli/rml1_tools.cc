@@ -1,5 +1,7 @@
 #include "clients/cli/rml1_tools.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -8,9 +10,12 @@
 #include "clients/cli/program_files.h"
 #include "clients/cli/terminal.h"
 #include "clients/cli/tool_answer.h"
+#include "engine/core/number_text.h"
 #include "engine/families/families.h"
 #include "engine/rml1/offline/explain.h"
 #include "engine/rml1/offline/from_gcode.h"
+#include "engine/rml1/offline/rewrite.h"
+#include "engine/rml1/offline/tile.h"
 #include "engine/rml1/offline/to_gcode.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
@@ -54,9 +59,24 @@ Result<MillProgram> ReadStream(const MillToolOptions& options) {
   return MillProgram{*std::move(bytes), *std::move(parameters)};
 }
 
+// By default FILE with another ending; null: standard output.
 std::string OutputOr(const MillToolOptions& options, const char* extension) {
   if (!options.output.empty()) return options.output;
+  if (extension == nullptr) return "-";
   return std::filesystem::path(options.file).replace_extension(extension).string();
+}
+
+// An error in the file; one about what was asked for is a wrong use.
+int FailedAt(const Error& error, const std::string& file, ToolAnswer& answer) {
+  if (error.code == ErrorCode::kCellInvalidArgument || error.code == ErrorCode::kCellParameterRange)
+    return Refuse(error);
+  Diagnostic finding{.code = error.code,
+                     .severity = Lookup(error.code).severity,
+                     .detail = error.detail,
+                     .file = file,
+                     .where = error.where.value_or(SourceSpan{})};
+  answer.Found({std::move(finding)}, 0, {});
+  return answer.Failed();
 }
 
 void Found(std::vector<Diagnostic>& findings, std::uint64_t dropped, const std::string& file,
@@ -127,7 +147,7 @@ int StreamToGcode(const MillToolOptions& options) {
   if (!program) return Refuse(program.error());
   Result<rml1::GcodeText> made = rml1::ToGcode(program->bytes, program->parameters);
   ToolAnswer answer(options.file, options.json);
-  if (!made) return answer.Failed(made.error());
+  if (!made) return FailedAt(made.error(), options.file, answer);
   Found(made->findings, made->findings_dropped, options.file, program->bytes, answer);
   return answer.Deliver(made->text, OutputOr(options, ".nc"),
                         Bytes(static_cast<std::int64_t>(made->text.size())) + " of G-code");
@@ -147,6 +167,48 @@ int StreamFromGcode(const FromGcodeToolOptions& options) {
   if (!made->ok) return answer.Failed();
   return answer.Deliver(made->stream, OutputOr(options, ".rml"),
                         "stream of " + Bytes(static_cast<std::int64_t>(made->stream.size())));
+}
+
+int MoveMillStream(const MoveToolOptions& options) {
+  const Result<MillProgram> program = ReadStream(options);
+  if (!program) return Refuse(program.error());
+  std::array<double, 3> by_mm{};
+  std::ranges::copy(options.by_mm, by_mm.begin());
+  Result<rml1::RewrittenStream> made = rml1::MoveStream(program->bytes, program->parameters, by_mm);
+  ToolAnswer answer(options.file, options.json);
+  if (!made) return FailedAt(made.error(), options.file, answer);
+  Found(made->findings, 0, options.file, program->bytes, answer);
+  const auto& moved = made->moved_mm;
+  return answer.Deliver(made->stream, OutputOr(options, nullptr),
+                        "moved by " + Fixed(moved[0], 3) + "," + Fixed(moved[1], 3) + "," +
+                            Fixed(moved[2], 3) + " mm");
+}
+
+int ScaleMillStream(const StepsToolOptions& options) {
+  const Result<MillProgram> program = ReadStream(options);
+  if (!program) return Refuse(program.error());
+  const Result<rml1::RewrittenStream> made =
+      rml1::ScaleStream(program->bytes, program->parameters, options.from, options.to);
+  ToolAnswer answer(options.file, options.json);
+  if (!made) return FailedAt(made.error(), options.file, answer);
+  return answer.Deliver(made->stream, OutputOr(options, nullptr),
+                        TrimmedText(options.to, 3) + " units in a mm");
+}
+
+int TileMillStream(const TileToolOptions& options) {
+  const Result<MillProgram> program = ReadStream(options);
+  if (!program) return Refuse(program.error());
+  const Result<rml1::TiledStream> made = rml1::TileStream(program->bytes, program->parameters,
+                                                          {.columns = options.columns,
+                                                           .rows = options.rows,
+                                                           .gap_mm = options.gap_mm,
+                                                           .bytes_max = kFileBytesMax});
+  ToolAnswer answer(options.file, options.json);
+  if (!made) return FailedAt(made.error(), options.file, answer);
+  return answer.Deliver(made->stream, OutputOr(options, nullptr),
+                        std::to_string(options.columns * options.rows) + " copies, every " +
+                            Fixed(made->pitch_x_mm, 3) + " mm in X and " +
+                            Fixed(made->pitch_y_mm, 3) + " mm in Y");
 }
 
 }  // namespace rmlcell::cli

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace rmlcell::cli {
 
@@ -26,5 +27,23 @@ struct FromGcodeToolOptions : MillToolOptions {
   double tolerance_mm = 0.01;
 };
 int StreamFromGcode(const FromGcodeToolOptions& options);
+
+// A stream at another place, for a machine with other steps, or many times. Output by default:
+// standard output.
+struct MoveToolOptions : MillToolOptions {
+  std::vector<double> by_mm;  // X, Y and perhaps Z
+};
+int MoveMillStream(const MoveToolOptions& options);
+struct StepsToolOptions : MillToolOptions {
+  double from = 0.0;  // units in a mm
+  double to = 0.0;
+};
+int ScaleMillStream(const StepsToolOptions& options);
+struct TileToolOptions : MillToolOptions {
+  int columns = 1;
+  int rows = 1;
+  double gap_mm = 1.0;
+};
+int TileMillStream(const TileToolOptions& options);
 
 }  // namespace rmlcell::cli

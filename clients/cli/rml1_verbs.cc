@@ -61,6 +61,46 @@ void AddGcode(CLI::App& group, int& exit_code) {
   verb->callback([from, &exit_code] { exit_code = StreamFromGcode(*from); });
 }
 
+constexpr const char* kStreamOutput =
+    "file of the stream, - for standard output; default: standard output";
+
+void AddRewriting(CLI::App& group, int& exit_code) {
+  auto move = std::make_shared<MoveToolOptions>();
+  CLI::App* verb =
+      MillVerb(group, "move", "Move the work of a stream to another place; all other bytes stay",
+               "  rmlcell rml1 move part.rml --by 10,20 -o moved.rml\n"
+               "  rmlcell rml1 move part.rml --by -5,0,-0.2 --profile mdx-20 -o moved.rml",
+               move, "a stream");
+  verb->add_option("--by", move->by_mm, "X,Y or X,Y,Z in mm, rounded to units of the machine")
+      ->delimiter(',')
+      ->expected(2, 3)
+      ->required();
+  AddOutput(*verb, move, kStreamOutput);
+  verb->callback([move, &exit_code] { exit_code = MoveMillStream(*move); });
+
+  auto steps = std::make_shared<StepsToolOptions>();
+  verb = MillVerb(
+      group, "steps", "Convert a stream between machines of different step sizes",
+      "  rmlcell rml1 steps mdx.rml --from 40 --to 100 -o srm.rml    40 units in a mm to 100",
+      steps, "a stream");
+  verb->add_option("--from", steps->from, "units in a mm of the stream: 40 or 100")->required();
+  verb->add_option("--to", steps->to, "units in a mm of what is written")->required();
+  AddOutput(*verb, steps, kStreamOutput);
+  verb->callback([steps, &exit_code] { exit_code = ScaleMillStream(*steps); });
+
+  auto tile = std::make_shared<TileToolOptions>();
+  verb = MillVerb(
+      group, "tile", "Repeat a stream in columns and rows, within the travel",
+      "  rmlcell rml1 tile part.rml --columns 3 --rows 2 --gap 2 --profile srm-20 -o six.rml", tile,
+      "a stream");
+  verb->add_option("--columns", tile->columns, "copies in X; default 1");
+  verb->add_option("--rows", tile->rows, "copies in Y; default 1");
+  verb->add_option("--gap", tile->gap_mm,
+                   "mm between the paths of two copies, so more than the tool; default 1");
+  AddOutput(*verb, tile, kStreamOutput);
+  verb->callback([tile, &exit_code] { exit_code = TileMillStream(*tile); });
+}
+
 }  // namespace
 
 void AddRml1Verbs(CLI::App& app, int& exit_code) {
@@ -69,10 +109,12 @@ void AddRml1Verbs(CLI::App& app, int& exit_code) {
   group->footer(
       "Examples:\n"
       "  rmlcell rml1 explain part.rml --profile srm-20     each command in words\n"
-      "  rmlcell rml1 from-gcode part.nc --profile srm-20   a stream of what a CAM tool wrote");
+      "  rmlcell rml1 from-gcode part.nc --profile srm-20   a stream of what a CAM tool wrote\n"
+      "  rmlcell rml1 tile part.rml --columns 3 --gap 2 -o three.rml");
   group->require_subcommand(1);
   AddExplain(*group, exit_code);
   AddGcode(*group, exit_code);
+  AddRewriting(*group, exit_code);
 }
 
 }  // namespace rmlcell::cli

@@ -124,5 +124,56 @@ class Gcode(Tools):
         run("rml1", "from-gcode", source, "--tolerance", "0", "-o", "-", code=2)
 
 
+class Rewriting(Tools):
+    def test_move(self):
+        source = self.file("a.rml", "PU100,100; PD200,+50 ;PR5,5;")
+        self.assertEqual(run("rml1", "move", source, "--by", "1,-0.5"), "PU200,50; PD300,0 ;PR5,5;")
+        told = run("rml1", "move", source, "--by", "1.004,0", "-o", self.folder / "b.rml")
+        self.assertIn("moved by 1.000,0.000,0.000 mm", told)  # whole units of 0.01 mm
+        self.assertEqual(run("rml1", "move", source, "--by", "-1,2", "--profile", "mdx-20"),
+                         "PU60,180; PD160,130 ;PR5,5;")
+        run("rml1", "move", source, code=2)
+        run("rml1", "move", source, "--by", "1", code=2)
+        run("rml1", "move", source, "--by", "nan,1", code=2)
+
+    def test_move_refuses_with_the_place_and_writes_nothing(self):
+        done = ask("rml1", "move", self.file("a.rml", "PU1,1;\nPU5;"), "--by", "1,1", "-o", self.folder / "b.rml")
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"a\.rml:2:1: .*RML1-E8111")
+        self.assertFalse((self.folder / "b.rml").exists())
+        done = ask("rml1", "move", self.file("c.rml", "PU100,100;PD19900,100;"), "--by", "2,0", "-o", "-")
+        self.assertIn("1 mm uncut beyond the travel", done.stderr)
+
+    def test_steps(self):
+        source = self.file("a.rml", "VS4;!PZ-40,80;PU100,3;PR3,0,3,0;")
+        self.assertEqual(run("rml1", "steps", source, "--from", 40, "--to", 100),
+                         "VS4;!PZ-100,200;PU250,8;PR8,0,7,0;")
+        run("rml1", "steps", source, "--from", 0, "--to", 100, code=2)
+        run("rml1", "steps", source, code=2)
+
+    def test_tile(self):
+        source = self.file("a.rml", STREAM)
+        told = run("rml1", "tile", source, "--columns", 2, "--rows", 3, "--gap", 2, "--profile", "srm-20",
+                   "-o", self.folder / "six.rml")
+        # The cuts are 4 mm and 2 mm long.
+        self.assertIn("6 copies, every 6.000 mm in X and 4.000 mm in Y", told)
+        facts = {name: run("simulate", path, "--profile", "srm-20", "--facts")
+                 for name, path in (("one", source), ("six", self.folder / "six.rml"))}
+        plunges = [float(re.search(r"^rml1\.plunges: (.*)$", text, re.MULTILINE).group(1)) for text in facts.values()]
+        self.assertEqual(plunges, [1, 6])
+        lengths = [float(re.search(r"^rml1\.cut_length: (.*)$", text, re.MULTILINE).group(1))
+                   for text in facts.values()]
+        # Each copy goes down from 2 mm above to 0.5 mm below.
+        self.assertAlmostEqual(lengths[1], 6 * lengths[0], places=3)
+        self.assertIn("rml1.spindle_on_at_end: 0", facts["six"])
+
+    def test_tile_says_what_fits(self):
+        done = ask("rml1", "tile", self.file("a.rml", STREAM), "--columns", 900, "--profile", "srm-20", "-o", "-")
+        self.assertEqual(done.returncode, 1)
+        # 203.2 mm; the first copy ends at 5 mm, and 5 mm are from one to the next: 1 + 39.
+        self.assertIn("at most 40 columns", done.stderr)
+        run("rml1", "tile", self.folder / "a.rml", "--columns", 0, "-o", "-", code=2)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -3,27 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/rml1/offline/command_names.h"
 #include "engine/rml1/offline/phrase_words.h"
 
 namespace rmlcell::rml1 {
-namespace {
-
-// What a command is called under each command-set setting; rml1.md 1.
-struct Names {
-  const char* defaults;
-  const char* xy_speed;
-  const char* up;
-  const char* down;
-  const char* three_axis;
-};
-Names NamesFor(CommandSetting setting) {
-  if (setting == CommandSetting::kMode1) return {"^DF", "F", "M", "D", "Z"};
-  if (setting == CommandSetting::kMode2) return {"DF", "VS", "PU", "PD", "!ZZ"};
-  return {"DF", "VS", "PU", "PD", "Z"};
-}
-
-}  // namespace
-
 std::int64_t NearestUnit(double mm, const Profile& profile) {
   const double units = mm * profile.units_per_mm;
   // 0.0125 mm are half a unit of 0.025 although their product is a bit less.
