@@ -230,6 +230,17 @@ Status WriteProducts(const SimulateOptions& options, const simulation::Simulatio
   return {};
 }
 
+// Streams call no others: a second one would be loaded and never run.
+Status CheckSingle(const SimulateOptions& options, const LoadedFiles& loaded) {
+  if (loaded.family->tools() != nullptr || loaded.programs.size() == 1 || options.main_slot != 0)
+    return {};
+  return Error{ErrorCode::kCellUsage,
+               std::to_string(loaded.programs.size()) +
+                   " programs for a machine whose programs call no others: simulate one at a time, "
+                   "or say which by --main",
+               {}};
+}
+
 }  // namespace
 
 int Simulate(const SimulateOptions& options) {
@@ -238,6 +249,7 @@ int Simulate(const SimulateOptions& options) {
   Result<LoadedFiles> loaded = LoadFiles(options.files, options.slots, options.main_slot,
                                          options.family.empty() ? machine->family : options.family);
   if (!loaded) return Refuse(loaded.error());
+  if (const Status single = CheckSingle(options, *loaded); !single) return Refuse(single.error());
   const Result<v1::SimulationOptions> message = OptionsMessage(options, *loaded->family);
   if (!message) return Refuse(message.error());
   for (const v1::StepPlace* place : {&message->simul(), &message->breakpoint()}) {

@@ -60,6 +60,8 @@ struct DiffOptions {
   std::string before;
   std::string after;
   std::string svg;  // file of a picture of both paths; -: standard output, in place of the text
+  std::string profile;
+  std::string machine_file;
   bool json = false;
 };
 int Diff(const DiffOptions& options);

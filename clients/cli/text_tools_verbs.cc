@@ -133,9 +133,13 @@ void AddTextToolVerbs(CLI::App& app, int& exit_code) {
         "Examples:\n"
         "  rmlcell diff old.S new.S             exit code 1 when they differ\n"
         "  rmlcell diff 12.S 12.O               layout, comments and names do not count\n"
+        "  rmlcell diff a.rml b.rml --profile srm-20   motions, depth, speeds and spindle of a mill\n"
         "  rmlcell diff old.S new.S --svg d.svg  both paths: removed, added, common");
     verb->add_option("A", options->before, "a program")->required();
     verb->add_option("B", options->after, "another one")->required();
+    verb->add_option("--profile", options->profile, "named machine, such as srm-20 or pw-1993");
+    verb->add_option("--machine", options->machine_file,
+                     "machine file (TOML): family, profile, [parameters]");
     verb->add_option("--svg", options->svg, "write a picture of both paths, - for standard output");
     verb->add_flag("--json", options->json, "as JSON");
     verb->callback([options, &exit_code] { exit_code = Diff(*options); });

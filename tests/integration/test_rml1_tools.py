@@ -175,5 +175,50 @@ class Rewriting(Tools):
         run("rml1", "tile", self.folder / "a.rml", "--columns", 0, "-o", "-", code=2)
 
 
+class Families(Tools):
+    """A stream is no text of another machine, whatever tool is given it."""
+
+    def test_tools_for_texts_refuse_streams(self):
+        source = self.file("a.rml", STREAM)
+        for words in (["list"], ["format"], ["format", "--check"], ["convert"], ["compensate"], ["compile"],
+                      ["decompile"], ["transform", "--move", "1,0,0"], ["link", "-o", self.folder / "x"]):
+            done = ask(*words, source)
+            self.assertEqual(done.returncode, 2, words)
+            self.assertIn("a.rml is a program for Roland mill or engraver, RML-1", done.stderr, words)
+        self.assertEqual(source.read_text(), STREAM)
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["a.rml"])
+
+    def test_simulate_refuses_two_streams(self):
+        a, b = self.file("a.rml", STREAM), self.file("b.rml", "PU1,1;")
+        done = ask("simulate", a, b)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("2 programs for a machine whose programs call no others", done.stderr)
+        seven = self.file("7.rml", STREAM)
+        run("simulate", seven, self.file("8.rml", "PU1,1;"), "--main", 7)
+
+    def test_diff_says_what_the_tool_does_differently(self):
+        a = self.file("a.rml", STREAM)
+        same = self.file("b.rml", STREAM.replace("PD500,100,500,300", "D500,100;PD500,300").replace(";", "\n"))
+        self.assertIn("same", run("diff", a, same, "--profile", "srm-20").lower())
+        deeper = self.file("c.rml", STREAM.replace("-50", "-80").replace("VS4", "VS6"))
+        told = run("diff", a, deeper, "--profile", "srm-20", code=1)
+        self.assertIn("Z -0.5 -> -0.8", told)
+        self.assertIn("mm/s 4 -> 6", told)
+        self.assertIn("cut_length  8.5 -> 8.8 mm", told)  # 0.3 mm deeper
+        message = json.loads(run("diff", a, deeper, "--json", code=1))
+        self.assertEqual(message["steps"][0]["aspects"], ["DIFF_ASPECT_PATH"])
+        self.assertTrue(message["compared_runs"])
+        run("diff", a, deeper, "--svg", self.folder / "d.svg", "--profile", "srm-20", code=1)
+        self.assertIn("<svg", (self.folder / "d.svg").read_text())
+
+    def test_diff_refuses_what_cannot_be_compared(self):
+        a = self.file("a.rml", STREAM)
+        done = ask("diff", a, self.file("12.S", "SPEED 20\n"))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("programs for different machines", done.stderr)
+        run("diff", a, self.file("b.rml", "$" * 300), code=2)
+        run("diff", a, a, "--profile", "none-of-them", code=2)
+
+
 if __name__ == "__main__":
     unittest.main()
