@@ -230,12 +230,16 @@ Status WriteProducts(const SimulateOptions& options, const simulation::Simulatio
   return {};
 }
 
-// Streams call no others: a second one would be loaded and never run.
-Status CheckSingle(const SimulateOptions& options, const LoadedFiles& loaded) {
-  if (loaded.family->tools() != nullptr || loaded.programs.size() == 1 || options.main_slot != 0)
-    return {};
+// The programs of a run. Streams call no others: a second one would be loaded and never run.
+Result<LoadedFiles> LoadPrograms(const SimulateOptions& options, const std::string& family) {
+  Result<LoadedFiles> loaded = LoadFiles(options.files, options.slots, options.main_slot,
+                                         options.family.empty() ? family : options.family);
+  if (!loaded || loaded->family->tools() != nullptr || loaded->programs.size() == 1 ||
+      options.main_slot != 0) {
+    return loaded;
+  }
   return Error{ErrorCode::kCellUsage,
-               std::to_string(loaded.programs.size()) +
+               std::to_string(loaded->programs.size()) +
                    " programs for a machine whose programs call no others: simulate one at a time, "
                    "or say which by --main",
                {}};
@@ -246,10 +250,8 @@ Status CheckSingle(const SimulateOptions& options, const LoadedFiles& loaded) {
 int Simulate(const SimulateOptions& options) {
   const Result<bridge::MachineFile> machine = ReadMachine(options.machine_file);
   if (!machine) return Refuse(machine.error());
-  Result<LoadedFiles> loaded = LoadFiles(options.files, options.slots, options.main_slot,
-                                         options.family.empty() ? machine->family : options.family);
+  Result<LoadedFiles> loaded = LoadPrograms(options, machine->family);
   if (!loaded) return Refuse(loaded.error());
-  if (const Status single = CheckSingle(options, *loaded); !single) return Refuse(single.error());
   const Result<v1::SimulationOptions> message = OptionsMessage(options, *loaded->family);
   if (!message) return Refuse(message.error());
   for (const v1::StepPlace* place : {&message->simul(), &message->breakpoint()}) {

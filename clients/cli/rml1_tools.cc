@@ -12,6 +12,7 @@
 #include "clients/cli/tool_answer.h"
 #include "engine/core/number_text.h"
 #include "engine/families/families.h"
+#include "engine/rml1/board/png_bitmap.h"
 #include "engine/rml1/offline/explain.h"
 #include "engine/rml1/offline/from_gcode.h"
 #include "engine/rml1/offline/rewrite.h"
@@ -209,6 +210,36 @@ int TileMillStream(const TileToolOptions& options) {
                         std::to_string(options.columns * options.rows) + " copies, every " +
                             Fixed(made->pitch_x_mm, 3) + " mm in X and " +
                             Fixed(made->pitch_y_mm, 3) + " mm in Y");
+}
+
+int StreamFromPng(const PngToolOptions& options) {
+  const Result<machine::Parameters> parameters = MillParameters(options);
+  if (!parameters) return Refuse(parameters.error());
+  const Result<std::string> bytes = bridge::ReadFile(options.file, kFileBytesMax);
+  if (!bytes) return Refuse(bytes.error());
+  ToolAnswer answer(options.file, options.json);
+  const Result<rml1::PngBitmap> picture = rml1::ReadPng(*bytes, options.invert);
+  if (!picture) return FailedAt(picture.error(), options.file, answer);
+  rml1::BoardOptions board = options.board;
+  constexpr double kInch_mm = 25.4;
+  if (options.dpi != 0.0) {
+    board.pixel_mm = kInch_mm / options.dpi;
+  } else if (picture->pixel_mm) {
+    board.pixel_mm = *picture->pixel_mm;
+  } else {
+    return FailedAt({ErrorCode::kRml1PictureSize, "it has no resolution", {}}, options.file,
+                    answer);
+  }
+  if (!options.at_mm.empty()) {
+    board.at_x_mm = options.at_mm[0];
+    board.at_y_mm = options.at_mm[1];
+  }
+  Result<rml1::BoardStream> made = rml1::StreamOfBoard(picture->bitmap, *parameters, board);
+  if (!made) return FailedAt(made.error(), options.file, answer);
+  Found(made->findings, 0, options.file, {}, answer);
+  return answer.Deliver(made->stream, OutputOr(options, ".rml"),
+                        std::to_string(made->loops) + " lines, picture of " +
+                            Fixed(made->width_mm, 2) + " by " + Fixed(made->height_mm, 2) + " mm");
 }
 
 }  // namespace rmlcell::cli

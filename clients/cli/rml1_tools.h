@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/rml1/board/board_stream.h"
+
 namespace rmlcell::cli {
 
 // The tools for streams of mills. They need no server. An `output` of "-" is standard output;
@@ -45,5 +47,14 @@ struct TileToolOptions : MillToolOptions {
   double gap_mm = 1.0;
 };
 int TileMillStream(const TileToolOptions& options);
+
+// A stream that mills a circuit board, of its picture. Output by default: FILE with .rml.
+struct PngToolOptions : MillToolOptions {
+  rml1::BoardOptions board;
+  double dpi = 0.0;  // 0: as the file says
+  bool invert = false;
+  std::vector<double> at_mm;  // X and Y; empty: 0, 0
+};
+int StreamFromPng(const PngToolOptions& options);
 
 }  // namespace rmlcell::cli

@@ -91,14 +91,52 @@ void AddRewriting(CLI::App& group, int& exit_code) {
   auto tile = std::make_shared<TileToolOptions>();
   verb = MillVerb(
       group, "tile", "Repeat a stream in columns and rows, within the travel",
-      "  rmlcell rml1 tile part.rml --columns 3 --rows 2 --gap 2 --profile srm-20 -o six.rml", tile,
-      "a stream");
+      "  rmlcell rml1 from-png traces.png --tool 0.4 --depth 0.1 --profile srm-20\n"
+      "  rmlcell rml1 tile part.rml --columns 3 --rows 2 --gap 2 --profile srm-20 -o six.rml",
+      tile, "a stream");
   verb->add_option("--columns", tile->columns, "copies in X; default 1");
   verb->add_option("--rows", tile->rows, "copies in Y; default 1");
   verb->add_option("--gap", tile->gap_mm,
                    "mm between the paths of two copies, so more than the tool; default 1");
   AddOutput(*verb, tile, kStreamOutput);
   verb->callback([tile, &exit_code] { exit_code = TileMillStream(*tile); });
+}
+
+void AddPng(CLI::App& group, int& exit_code) {
+  auto options = std::make_shared<PngToolOptions>();
+  rml1::BoardOptions& board = options->board;
+  CLI::App* verb = MillVerb(
+      group, "from-png",
+      "Make a stream that mills a circuit board, of a picture in black and white",
+      "  rmlcell rml1 from-png traces.png --profile srm-20 --tool 0.4 --depth 0.1 --passes 4\n"
+      "  rmlcell rml1 from-png outline.png --profile srm-20 --tool 1 --depth 1.7 --step 0.6 --outline\n"
+      "  rmlcell rml1 from-png traces.png --profile mdx-20 --tool 0.4 --depth 0.1 --dpi 1000 --at 10,10\n\n"
+      "White is copper, or the board with --outline; black is milled. No copper is cut away: lines keep\n"
+      "the radius of the tool from it, and a little more (docs/boards.md).",
+      options, "a PNG");
+  verb->add_option("--tool", board.tool_mm, "diameter where it cuts, mm")->required();
+  verb->add_option("--depth", board.depth_mm, "below Z 0, mm")->required();
+  verb->add_option("--step", board.step_mm, "of the depth at a time, mm; default: all at once");
+  CLI::Option* passes = verb->add_option("--passes", board.passes,
+                                         "lines around the copper, side by side; default 1");
+  CLI::Option* overlap = verb->add_option(
+      "--overlap", board.overlap, "of neighbouring passes, share of the diameter; default 0.5");
+  verb->add_flag("--outline", board.outline, "cut the board out: once around it, holes first")
+      ->excludes(passes)
+      ->excludes(overlap);
+  verb->add_option("--dpi", options->dpi, "pixels an inch; default: as the PNG says");
+  verb->add_option("--at", options->at_mm,
+                   "X,Y in mm of the lower left corner of the picture; default 0,0")
+      ->delimiter(',')
+      ->expected(2);
+  verb->add_option("--feed", board.feed_mm_s, "mm/s around the copper; default 4");
+  verb->add_option("--plunge", board.plunge_mm_s, "mm/s into the work; default 1");
+  verb->add_option("--rpm", board.rpm, "of the spindle; default: as the machine has it");
+  verb->add_option("--clearance", board.clearance_mm, "mm above the work between lines; default 2");
+  verb->add_option("--tolerance", board.tolerance_mm, "mm of points left out; default 0.005");
+  verb->add_flag("--invert", options->invert, "black is copper");
+  AddOutput(*verb, options, "file of the stream, - for standard output; default: FILE with .rml");
+  verb->callback([options, &exit_code] { exit_code = StreamFromPng(*options); });
 }
 
 }  // namespace
@@ -115,6 +153,7 @@ void AddRml1Verbs(CLI::App& app, int& exit_code) {
   AddExplain(*group, exit_code);
   AddGcode(*group, exit_code);
   AddRewriting(*group, exit_code);
+  AddPng(*group, exit_code);
 }
 
 }  // namespace rmlcell::cli

@@ -22,6 +22,26 @@ CLI::App* FileVerb(CLI::App& app, const char* name, const char* text, const char
   return verb;
 }
 
+void AddDiff(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<DiffOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "diff", "Say what two programs do differently: path, time, power, outputs");
+  verb->footer(
+      "Examples:\n"
+      "  rmlcell diff old.S new.S             exit code 1 when they differ\n"
+      "  rmlcell diff 12.S 12.O               layout, comments and names do not count\n"
+      "  rmlcell diff a.rml b.rml --profile srm-20   motions, depth, speeds and spindle of a mill\n"
+      "  rmlcell diff old.S new.S --svg d.svg  both paths: removed, added, common");
+  verb->add_option("A", options->before, "a program")->required();
+  verb->add_option("B", options->after, "another one")->required();
+  verb->add_option("--profile", options->profile, "named machine, such as srm-20 or pw-1993");
+  verb->add_option("--machine", options->machine_file,
+                   "machine file (TOML): family, profile, [parameters]");
+  verb->add_option("--svg", options->svg, "write a picture of both paths, - for standard output");
+  verb->add_flag("--json", options->json, "as JSON");
+  verb->callback([options, &exit_code] { exit_code = Diff(*options); });
+}
+
 }  // namespace
 
 void AddTextToolVerbs(CLI::App& app, int& exit_code) {
@@ -125,25 +145,7 @@ void AddTextToolVerbs(CLI::App& app, int& exit_code) {
              "  rmlcell list 12.S", arguments, "file of the list; default: standard output")
         ->callback([arguments, &exit_code] { exit_code = List(*arguments); });
   }
-  {
-    auto options = std::make_shared<DiffOptions>();
-    CLI::App* verb = app.add_subcommand(
-        "diff", "Say what two programs do differently: path, time, power, outputs");
-    verb->footer(
-        "Examples:\n"
-        "  rmlcell diff old.S new.S             exit code 1 when they differ\n"
-        "  rmlcell diff 12.S 12.O               layout, comments and names do not count\n"
-        "  rmlcell diff a.rml b.rml --profile srm-20   motions, depth, speeds and spindle of a mill\n"
-        "  rmlcell diff old.S new.S --svg d.svg  both paths: removed, added, common");
-    verb->add_option("A", options->before, "a program")->required();
-    verb->add_option("B", options->after, "another one")->required();
-    verb->add_option("--profile", options->profile, "named machine, such as srm-20 or pw-1993");
-    verb->add_option("--machine", options->machine_file,
-                     "machine file (TOML): family, profile, [parameters]");
-    verb->add_option("--svg", options->svg, "write a picture of both paths, - for standard output");
-    verb->add_flag("--json", options->json, "as JSON");
-    verb->callback([options, &exit_code] { exit_code = Diff(*options); });
-  }
+  AddDiff(app, exit_code);
   {
     CLI::App* verb = app.add_subcommand(
         "lsp", "Serve an editor: findings, fixes, hover, jumps, names (language server protocol)");

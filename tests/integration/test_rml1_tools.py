@@ -4,9 +4,11 @@ import json
 import os
 import pathlib
 import re
+import struct
 import subprocess
 import tempfile
 import unittest
+import zlib
 
 BIN = pathlib.Path(os.environ["RMLCELL_BIN"])
 
@@ -218,6 +220,83 @@ class Families(Tools):
         self.assertIn("programs for different machines", done.stderr)
         run("diff", a, self.file("b.rml", "$" * 300), code=2)
         run("diff", a, a, "--profile", "none-of-them", code=2)
+
+
+class FromPng(Tools):
+    def png(self, name, rows, dpi=None):
+        """Lines of '#' for white; the uppermost first."""
+        def chunk(kind, data):
+            return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        data = b"".join(b"\0" + bytes(255 if c == "#" else 0 for c in row) for row in rows)
+        content = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, 0, 0, 0, 0))
+        if dpi:
+            content += chunk(b"pHYs", struct.pack(">IIB", round(dpi / 0.0254), round(dpi / 0.0254), 1))
+        path = self.folder / name
+        path.write_bytes(content + chunk(b"IDAT", zlib.compress(data)) + chunk(b"IEND", b""))
+        return path
+
+    # Two pads of 3 mm by 2 mm, 2 mm apart, 2 mm from the edges of the picture; a pixel is 0.1 mm.
+    PADS = [" " * 120] * 20 + [" " * 20 + "#" * 30 + " " * 20 + "#" * 30 + " " * 20] * 20 + [" " * 120] * 20
+
+    def test_milling_leaves_the_pads_and_takes_the_gap(self):
+        picture = self.png("traces.png", self.PADS, dpi=254)
+        told = run("rml1", "from-png", picture, "--profile", "srm-20", "--tool", 0.8, "--depth", 0.2)
+        self.assertIn("2 lines, picture of 12.00 by 6.00 mm", told)
+        stream, stl = self.folder / "traces.rml", self.folder / "left.stl"
+        simulated = run("simulate", stream, "--profile", "srm-20", "--stock", "12x6x1", "--tool", "flat:0.8",
+                        "--cell", 0.05, "--stl", stl)
+        self.assertIn("verdict       GOOD", simulated)
+        content = stl.read_bytes()
+        count = struct.unpack_from("<I", content, 80)[0]
+        top = max(max(struct.unpack_from("<12f", content, 84 + 50 * t)[5::3]) for t in range(count))
+        pad, gap = [], []
+        for triangle in range(count):
+            numbers = struct.unpack_from("<12f", content, 84 + 50 * triangle)
+            for k in range(3, 12, 3):
+                x, y, z = numbers[k:k + 3]
+                if (2 <= x <= 5 or 7 <= x <= 10) and 2 <= y <= 4:
+                    pad.append(round(z - top, 3))
+                # In the middle of the line right of the first pad: 0.4 mm from its edge, and a little more.
+                if 5.35 <= x <= 5.55 and 2.2 <= y <= 3.8:
+                    gap.append(round(z - top, 3))
+        self.assertTrue(gap)
+        self.assertFalse([z for z in pad if -1 < z < 0], "copper was cut")
+        self.assertLessEqual(max(gap), -0.2)
+
+    def test_sizes_and_places(self):
+        picture = self.png("a.png", self.PADS)
+        words = ("--profile", "srm-20", "--tool", 0.4, "--depth", 0.1, "-o", "-")
+        done = ask("rml1", "from-png", picture, *words)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("RML1-E8123", done.stderr)
+        near = run("rml1", "from-png", picture, "--dpi", 254, *words)
+        far = run("rml1", "from-png", picture, "--dpi", 254, "--at", "10,5", *words)
+        self.assertNotEqual(near, far)
+        self.assertEqual(run("rml1", "move", self.file("n.rml", near), "--by", "10,5").count("Z"), far.count("Z"))
+        full = self.png("full.png", ["#" * 20] * 20, dpi=254)
+        done = ask("rml1", "from-png", full, *words)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("RML1-E8112", done.stderr)
+        run("rml1", "from-png", full, "--at", "5,5", *words)
+
+    def test_outline_goes_down_in_steps(self):
+        board = self.png("o.png", [" " * 60] * 10 + [" " * 10 + "#" * 40 + " " * 10] * 40 + [" " * 60] * 10, dpi=254)
+        stream = run("rml1", "from-png", board, "--profile", "srm-20", "--tool", 0.8, "--depth", 1.5, "--step", 0.5,
+                     "--outline", "-o", "-")
+        for depth in (",-50;", ",-100;", ",-150;"):
+            self.assertIn(depth, stream)
+        run("rml1", "from-png", board, "--tool", 1, "--depth", 1, "--outline", "--passes", 2, code=2)
+
+    def test_refusals(self):
+        words = ("--tool", 0.4, "--depth", 0.1, "--dpi", 254, "-o", self.folder / "x.rml")
+        done = ask("rml1", "from-png", self.file("no.png", "no picture"), *words)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("RML1-E8121", done.stderr)
+        done = ask("rml1", "from-png", self.png("black.png", ["   "]), *words)
+        self.assertIn("RML1-E8124", done.stderr)
+        run("rml1", "from-png", self.png("dot.png", [" # "]), "--tool", 0, "--depth", 0.1, "--dpi", 254, code=2)
+        run("rml1", "from-png", self.folder / "dot.png", "--depth", 0.1, code=2)
+        self.assertFalse((self.folder / "x.rml").exists())
 
 
 if __name__ == "__main__":

@@ -39,6 +39,7 @@ MAY_INCLUDE = {
     "engine/machine": ["engine/core"] + MOTION,
     "engine/rml1": ENGINE,
     "engine/rml1/offline": ENGINE + ["engine/rml1"],
+    "engine/rml1/board": ENGINE + ["engine/rml1", "engine/rml1/offline"],
     "engine/optimo/language": ["engine/core"],
     "engine/optimo/offline": ENGINE + ["engine/optimo/language"],
     "engine/optimo/editing": ["engine/core", "engine/machine", "engine/optimo/language", "engine/optimo/offline"],
@@ -81,7 +82,7 @@ MAY_INCLUDE = {
                     "storage/sqlite"],
     # The language server: no server and no language.
     "clients/lsp": ["engine/core", "engine/machine", "engine/families", RUN],
-    "clients/cli": ["clients/lsp", "engine/core", "engine/machine", "engine/families", "engine/rml1/offline", REPORT, MATERIAL, VERDICT, RUN, "proto", "proto/bridge"],
+    "clients/cli": ["clients/lsp", "engine/core", "engine/machine", "engine/families", "engine/rml1/offline", "engine/rml1/board", REPORT, MATERIAL, VERDICT, RUN, "proto", "proto/bridge"],
 }
 # Of these rooms others may include no other header.
 PUBLIC = {
@@ -95,7 +96,9 @@ PUBLIC = {
                        "tools.h", "editing.h", "run_setup.h", "outcome.h", "inputs.h", "program_file.h"],
     "engine/rml1": ["rml1_family.h", "action.h", "clipping.h", "command_reader.h", "command_table.h", "device.h", "figures.h", "finding.h",
                     "number.h", "physical.h", "profile.h", "programmed.h", "registers.h", "verdict_rules.h"],
-    "engine/rml1/offline": ["explain.h", "from_gcode.h", "rewrite.h", "stream_diff.h", "tile.h", "to_gcode.h"],
+    "engine/rml1/offline": ["explain.h", "from_gcode.h", "rewrite.h", "stream_diff.h", "tile.h", "to_gcode.h",
+                            "phrase_words.h", "stream_writer.h"],
+    "engine/rml1/board": ["bitmap.h", "board_stream.h", "png_bitmap.h"],
     "engine/optimo/language": ["ast.h", "checker.h", "compiler.h", "evaluate.h", "formatter.h", "instruction_set.h",
                                "lexer.h", "linker.h", "printer.h", "program.h", "source_map.h", "staleness.h",
                                "units_of_variables.h", "words.h"],
