@@ -91,7 +91,6 @@ void AddRewriting(CLI::App& group, int& exit_code) {
   auto tile = std::make_shared<TileToolOptions>();
   verb = MillVerb(
       group, "tile", "Repeat a stream in columns and rows, within the travel",
-      "  rmlcell rml1 from-png traces.png --tool 0.4 --depth 0.1 --profile srm-20\n"
       "  rmlcell rml1 tile part.rml --columns 3 --rows 2 --gap 2 --profile srm-20 -o six.rml",
       tile, "a stream");
   verb->add_option("--columns", tile->columns, "copies in X; default 1");
@@ -148,6 +147,7 @@ void AddRml1Verbs(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  rmlcell rml1 explain part.rml --profile srm-20     each command in words\n"
       "  rmlcell rml1 from-gcode part.nc --profile srm-20   a stream of what a CAM tool wrote\n"
+      "  rmlcell rml1 from-png traces.png --tool 0.4 --depth 0.1 --profile srm-20\n"
       "  rmlcell rml1 tile part.rml --columns 3 --gap 2 -o three.rml");
   group->require_subcommand(1);
   AddExplain(*group, exit_code);

@@ -227,6 +227,8 @@ Result<TiledStream> TileStream(std::string_view stream, const machine::Parameter
   StreamWalk walk(*profile, body);
   walk.Run(stream);
   if (const Status known = CheckIsStream(walk.device()); !known) return known.error();
+  if (walk.device().pending())
+    return NotTiled("the data ends inside a command: end it with a semicolon");
   if (!body.found()) return NotTiled("the tool never goes into the work");
   if (const double lost = walk.device().carriage().lost().length; lost > 0.0) {
     return Error{ErrorCode::kRml1DoesNotFit,

@@ -332,6 +332,7 @@ TEST(TileStream, Refuses) {
   EXPECT_EQ(code(kPart, {.rows = 1001}), ErrorCode::kCellInvalidArgument);
   EXPECT_EQ(code(kPart, {.gap_mm = -1}), ErrorCode::kCellInvalidArgument);
   EXPECT_EQ(code("PU1,1;", {.columns = 2}), ErrorCode::kRml1NotRewritten);
+  EXPECT_EQ(code("PD1,1,9,9,", {.columns = 2}), ErrorCode::kRml1NotRewritten);
   EXPECT_EQ(code("", {}), ErrorCode::kCellEmptyProgram);
   EXPECT_EQ(code(kPart, {.columns = 9, .bytes_max = 400}), ErrorCode::kRml1ProductTooLarge);
 }
