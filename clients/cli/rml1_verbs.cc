@@ -91,8 +91,8 @@ void AddRewriting(CLI::App& group, int& exit_code) {
   auto tile = std::make_shared<TileToolOptions>();
   verb = MillVerb(
       group, "tile", "Repeat a stream in columns and rows, within the travel",
-      "  rmlcell rml1 tile part.rml --columns 3 --rows 2 --gap 2 --profile srm-20 -o six.rml",
-      tile, "a stream");
+      "  rmlcell rml1 tile part.rml --columns 3 --rows 2 --gap 2 --profile srm-20 -o six.rml", tile,
+      "a stream");
   verb->add_option("--columns", tile->columns, "copies in X; default 1");
   verb->add_option("--rows", tile->rows, "copies in Y; default 1");
   verb->add_option("--gap", tile->gap_mm,
