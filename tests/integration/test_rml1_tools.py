@@ -209,7 +209,7 @@ class Families(Tools):
         self.assertIn("cut_length  8.5 -> 8.8 mm", told)  # 0.3 mm deeper
         message = json.loads(run("diff", a, deeper, "--json", code=1))
         self.assertEqual(message["steps"][0]["aspects"], ["DIFF_ASPECT_PATH"])
-        self.assertTrue(message["compared_runs"])
+        self.assertTrue(message["comparedRuns"])
         run("diff", a, deeper, "--svg", self.folder / "d.svg", "--profile", "srm-20", code=1)
         self.assertIn("<svg", (self.folder / "d.svg").read_text())
 
