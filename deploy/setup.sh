@@ -29,6 +29,7 @@ libcli11-dev            # command lines
 libtomlplusplus-dev     # configuration and machine files
 nlohmann-json3-dev      # JSON: error details on the web port, messages of the language server
 libboost-dev            # Beast and Asio: the web port and the thread pool (headers only)
+libpng-dev              # pictures of circuit boards
 LIST
 }
 

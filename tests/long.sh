@@ -61,7 +61,8 @@ fuzz_one() {
   program=$(find build/fuzz -name "$target" -type f -perm -u+x | head -n 1)
   case $target in
     optimo_*) seeds=tests/fuzz/corpus/optimo-$(echo "$target" | cut -d_ -f2) ;;
-    rml1_*) seeds=tests/fuzz/corpus/rml1 ;;
+    rml1_device*) seeds=tests/fuzz/corpus/rml1 ;;
+    rml1_*) seeds=tests/fuzz/corpus/rml1-$(echo "$target" | cut -d_ -f2) ;;
     lsp_*) seeds=tests/fuzz/corpus/lsp ;;
   esac
   mkdir -p "$found"
@@ -76,7 +77,7 @@ fuzz() {
   command -v clang++ >/dev/null || bash deploy/setup.sh --fuzz
   cmake --preset fuzz >/dev/null
   local targets=(motion_planner_fuzz optimo_text_fuzz optimo_object_fuzz optimo_convert_fuzz optimo_compensate_fuzz
-                 rml1_device_fuzz lsp_fuzz)
+                 rml1_device_fuzz rml1_walk_fuzz rml1_gcode_fuzz rml1_png_fuzz lsp_fuzz)
   ninja -C build/fuzz "${targets[@]}" >build/long/fuzz_build.log
   export -f fuzz_one
   export seconds

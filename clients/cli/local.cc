@@ -245,13 +245,26 @@ Status CheckPlaces(const v1::SimulationOptions& options, const LoadedFiles& load
   return {};
 }
 
+// The programs of a run. Streams call no others: a second one would be loaded and never run.
+Result<LoadedFiles> LoadPrograms(const SimulateOptions& options, const std::string& family) {
+  Result<LoadedFiles> loaded = LoadFiles(options.files, options.slots, options.main_slot, family);
+  if (!loaded || loaded->family->tools() != nullptr || loaded->programs.size() == 1 ||
+      options.main_slot != 0) {
+    return loaded;
+  }
+  return Error{ErrorCode::kCellUsage,
+               std::to_string(loaded->programs.size()) +
+                   " programs for a machine whose programs call no others: simulate one at a time, "
+                   "or say which by --main",
+               {}};
+}
+
 }  // namespace
 
 int Simulate(const SimulateOptions& options) {
   Result<bridge::MachineFile> machine = ReadMachine(options.machine);
   if (!machine) return Refuse(machine.error());
-  Result<LoadedFiles> loaded =
-      LoadFiles(options.files, options.slots, options.main_slot, machine->family);
+  Result<LoadedFiles> loaded = LoadPrograms(options, machine->family);
   if (!loaded) return Refuse(loaded.error());
   const Status placed = PlaceOrigin(options.machine.origin, *loaded->family, machine->parameters);
   if (!placed) return Refuse(placed.error());

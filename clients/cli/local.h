@@ -3,18 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "clients/cli/machine_choice.h"
 #include "clients/cli/milling.h"
 
 namespace rmlcell::cli {
-
-// For which machine: options on the command line go before those of a file.
-struct MachineChoice {
-  std::string family;
-  std::string profile;
-  std::string file;  // TOML
-  std::vector<double>
-      origin;  // of the program on the machine: X, Y and perhaps Z, mm; empty: as it is
-};
 
 // Verbs that need no server.
 struct CheckOptions {

@@ -406,6 +406,7 @@ int main(int argc, char** argv) {
   int exit_code = kGood;
   AddLocalVerbs(app, exit_code);
   AddTextToolVerbs(app, exit_code);
+  AddRml1Verbs(app, exit_code);
   AddProgramVerbs(app, remote, given, exit_code);
   AddProjectVerbs(app, remote, given, exit_code);
   AddJobVerbs(app, remote, given, exit_code);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "clients/cli/local.h"
+#include "clients/cli/machine_choice.h"
 #include "engine/simulation/run/rehearsal.h"
 #include "proto/bridge/files.h"
 

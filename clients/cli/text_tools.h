@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "clients/cli/machine_choice.h"
+
 namespace rmlcell::cli {
 
 // The off-line tools: they read and write files of Optimo programs and need no
@@ -60,6 +62,7 @@ struct DiffOptions {
   std::string before;
   std::string after;
   std::string svg;  // file of a picture of both paths; -: standard output, in place of the text
+  MachineChoice machine;
   bool json = false;
 };
 int Diff(const DiffOptions& options);

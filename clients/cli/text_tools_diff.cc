@@ -19,7 +19,7 @@ namespace {
 using Response = v1::DiffProgramsResponse;
 
 Result<bridge::ComparedProgram> ReadProgram(const std::string& file) {
-  const auto family = families::FamilyWithTools(file);
+  const auto family = families::FamilyThatCompares(file);
   if (!family) return family.error();
   const Result<LoadedFiles> loaded = LoadFiles({file}, {}, 0, std::string((*family)->info().id));
   if (!loaded) return loaded.error();
@@ -85,8 +85,13 @@ int Diff(const DiffOptions& options) {
     if (!program) return Refuse(program.error());
     programs[i] = *std::move(program);
   }
+  const Result<bridge::MachineFile> machine = ReadMachine(options.machine);
+  if (!machine) return Refuse(machine.error());
   const Result<bridge::ComparisonOutcome> made =
-      bridge::ComparePrograms(programs[0], programs[1], {.picture = !options.svg.empty()});
+      bridge::ComparePrograms(programs[0], programs[1],
+                              {.picture = !options.svg.empty(),
+                               .profile = machine->profile,
+                               .parameters = machine->parameters});
   if (!made) return Refuse(made.error());
   for (std::size_t i = 0; i < 2; ++i)
     ComplainOf(made->diagnostics[i], made->dropped[i], *programs[i].bytes);

@@ -10,16 +10,35 @@
 namespace rmlcell::cli {
 namespace {
 
-constexpr const char* kJsonText = "answer and findings as one JSON object";
-
 CLI::App* FileVerb(CLI::App& app, const char* name, const char* text, const char* examples,
                    const std::shared_ptr<ToolOptions>& arguments, const char* output_text) {
   CLI::App* verb = app.add_subcommand(name, text);
   verb->footer(std::string("Examples:\n") + examples);
   verb->add_option("FILE", arguments->file, "a program")->required();
   verb->add_option("-o,--output", arguments->output, output_text);
-  verb->add_flag("--json", arguments->json, kJsonText);
+  verb->add_flag("--json", arguments->json, kAnswerAsJson);
   return verb;
+}
+
+void AddDiff(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<DiffOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "diff", "Say what two programs do differently: path, time, power, outputs");
+  verb->footer(
+      "Examples:\n"
+      "  rmlcell diff old.S new.S             exit code 1 when they differ\n"
+      "  rmlcell diff 12.S 12.O               layout, comments and names do not count\n"
+      "  rmlcell diff a.rml b.rml --profile srm-20   motions, depth, speeds and spindle of a mill\n"
+      "  rmlcell diff old.S new.S --svg d.svg  both paths: removed, added, common");
+  verb->add_option("A", options->before, "a program")->required();
+  verb->add_option("B", options->after, "the program it is compared with")->required();
+  verb->add_option("--profile", options->machine.profile,
+                   "profile of a machine model, such as srm-20 or pw-1993");
+  verb->add_option("--machine", options->machine.file,
+                   "machine file (TOML): family, profile, [parameters]");
+  verb->add_option("--svg", options->svg, "write a picture of both paths, - for standard output");
+  verb->add_flag("--json", options->json, "as JSON");
+  verb->callback([options, &exit_code] { exit_code = Diff(*options); });
 }
 
 }  // namespace
@@ -64,7 +83,7 @@ void AddTextToolVerbs(CLI::App& app, int& exit_code) {
     verb->add_option("-o,--output", arguments->output,
                      "file of the executable, - for standard output")
         ->required();
-    verb->add_flag("--json", arguments->json, kJsonText);
+    verb->add_flag("--json", arguments->json, kAnswerAsJson);
     verb->callback([arguments, &exit_code] { exit_code = Link(*arguments); });
   }
   {
@@ -92,7 +111,7 @@ void AddTextToolVerbs(CLI::App& app, int& exit_code) {
         "  rmlcell convert old.txt new.S /m     another name: say which way");
     verb->add_option("ARGUMENTS", *arguments, "FILE [OUT] [/i or /m]");
     auto json = std::make_shared<bool>(false);
-    verb->add_flag("--json", *json, kJsonText);
+    verb->add_flag("--json", *json, kAnswerAsJson);
     verb->callback([arguments, json, &exit_code] { exit_code = Convert(*arguments, *json); });
   }
   {
@@ -125,21 +144,7 @@ void AddTextToolVerbs(CLI::App& app, int& exit_code) {
              "  rmlcell list 12.S", arguments, "file of the list; default: standard output")
         ->callback([arguments, &exit_code] { exit_code = List(*arguments); });
   }
-  {
-    auto options = std::make_shared<DiffOptions>();
-    CLI::App* verb = app.add_subcommand(
-        "diff", "Say what two programs do differently: path, time, power, outputs");
-    verb->footer(
-        "Examples:\n"
-        "  rmlcell diff old.S new.S             exit code 1 when they differ\n"
-        "  rmlcell diff 12.S 12.O               layout, comments and names do not count\n"
-        "  rmlcell diff old.S new.S --svg d.svg  both paths: removed, added, common");
-    verb->add_option("A", options->before, "a program")->required();
-    verb->add_option("B", options->after, "the program it is compared with")->required();
-    verb->add_option("--svg", options->svg, "write a picture of both paths, - for standard output");
-    verb->add_flag("--json", options->json, "as JSON");
-    verb->callback([options, &exit_code] { exit_code = Diff(*options); });
-  }
+  AddDiff(app, exit_code);
   {
     CLI::App* verb = app.add_subcommand(
         "lsp", "Serve an editor: findings, fixes, hover, jumps, names (language server protocol)");

@@ -56,7 +56,17 @@ _rmlcell_options() {
         "--stl-tolerance --relief --height-map --target --target-tolerance --target-png" \
         "--state-in --state-out --trace --facts --machine-coordinates --strict --json" ;;
     explain) echo "--help --json" ;;
-    diff) echo "--help --svg --json" ;;
+    diff) echo "--help --profile --machine --svg --json" ;;
+    rml1) echo "--help" ;;
+    "rml1 explain") echo "--help --profile --machine --json" ;;
+    "rml1 to-gcode") echo "--help --profile --machine --output --json" ;;
+    "rml1 from-gcode") echo "--help --profile --machine --output --json --tolerance" ;;
+    "rml1 move") echo "--help --profile --machine --by --output --json" ;;
+    "rml1 steps") echo "--help --profile --machine --from --to --output --json" ;;
+    "rml1 tile") echo "--help --profile --machine --columns --rows --gap --output --json" ;;
+    "rml1 from-png")
+      echo "--help --profile --machine --tool --depth --step --passes --overlap --outline --dpi --at --feed" \
+        "--plunge --rpm --clearance --tolerance --invert --output --json" ;;
     parameters) echo "--help --profile --json" ;;
     compile) echo "--help --map --output --json" ;;
     decompile | compensate | list) echo "--help --output --json" ;;
@@ -85,7 +95,9 @@ _rmlcell_takes_value() {
     --slot | --main | --executable | --family | --profile | --machine | --origin | --inputs | --mode | --override | \
       --simul | --break | --budget | --vars | --svg | --toolpath | --samples | --plot | --stock | --tool | --cell | --stl | --stl-tolerance | --relief | --height-map | --target | --target-tolerance | --target-png | \
       --state-in | --state-out | --server | --etag | --form | \
-      --output | -o | --kind | --title | --request-id | --pace | --after | --filter | --limit | --move | --turn | --shift) return 0 ;;
+      --output | -o | --kind | --title | --request-id | --pace | --after | --filter | --limit | --move | --turn | --shift | \
+      --tolerance | --by | --from | --to | --columns | --rows | --gap | --depth | --step | --passes | --overlap | \
+      --dpi | --at | --feed | --plunge | --rpm | --clearance) return 0 ;;
   esac
   return 1
 }
@@ -117,7 +129,9 @@ _rmlcell_values() {
     --target-tolerance) _rmlcell_offer 0.02 0.1 0.5 ;;
     --stl-tolerance) _rmlcell_offer 0.01 0.1 0 ;;
     --stock) _rmlcell_offer 100x80x10 ;;
-    --tool) _rmlcell_offer flat:3 ball:3 vee:6:60 ;;
+    --tool) if [[ $verb == simulate ]]; then _rmlcell_offer flat:3 ball:3 vee:6:60; fi ;;
+    --from | --to) _rmlcell_offer 40 100 ;;
+    --dpi) _rmlcell_offer 1000 ;;
     --samples) _rmlcell_offer 10 100 1000 10000 ;;
     --plot)
       compopt -o nospace 2>/dev/null
@@ -133,7 +147,12 @@ _rmlcell_positional() {
   case $verb in
     check | simulate | link) _rmlcell_programs_files ;;
     decompile) _rmlcell_files .o ;;
-    compile | format | convert | compensate | transform | list | diff) _rmlcell_files .s .si .cmp .o ;;
+    compile | format | convert | compensate | transform | list) _rmlcell_files .s .si .cmp .o ;;
+    diff) _rmlcell_programs_files ;;
+    rml1) [[ $count -eq 0 ]] && _rmlcell_offer explain to-gcode from-gcode move steps tile from-png ;;
+    "rml1 from-gcode") _rmlcell_files .nc .gcode .ngc .tap .cnc ;;
+    "rml1 from-png") _rmlcell_files .png ;;
+    "rml1 "*) _rmlcell_files .rml .prn ;;
     explain) _rmlcell_codes ;;
     parameters) [[ $count -eq 0 ]] && _rmlcell_offer optimo rml1 ;;
     programs | stale) [[ $count -eq 0 ]] && _rmlcell_machines ;;
@@ -205,6 +224,8 @@ _rmlcell() {
       verb=$word
     elif [[ $verb == projects && ${#given[@]} -eq 0 && $word =~ ^(list|show|create|update|delete|transfer)$ ]]; then
       verb="projects $word"
+    elif [[ $verb == rml1 && ${#given[@]} -eq 0 ]]; then
+      verb="rml1 $word"
     else
       given+=("$word")
     fi
@@ -238,7 +259,7 @@ _rmlcell() {
     _rmlcell_offer $(_rmlcell_options "$verb")
   elif [[ -z $verb ]]; then
     _rmlcell_offer check simulate parameters explain compile decompile link format convert compensate transform list \
-      diff lsp machines programs put get delete stale projects submit watch jobs job cancel report picture
+      diff rml1 lsp machines programs put get delete stale projects submit watch jobs job cancel report picture
   else
     _rmlcell_positional
   fi

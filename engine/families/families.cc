@@ -59,6 +59,29 @@ Result<const machine::MachineFamily*> FamilyWithTools(std::string_view name) {
                {}};
 }
 
+namespace {
+
+StreamDiff DiffOfStreams(const machine::MachineFamily* family) {
+  const auto found = std::ranges::find(StreamComparisons(), family, &StreamComparison::family);
+  return found == StreamComparisons().end() ? nullptr : found->diff;
+}
+
+}  // namespace
+
+Result<const machine::MachineFamily*> FamilyThatCompares(std::string_view name) {
+  const machine::MachineFamily* family = FamilyOfFileName(name);
+  if (family != nullptr && DiffOfStreams(family) != nullptr) return family;
+  return FamilyWithTools(name);
+}
+
+Result<machine::ProgramDiff> Diff(const machine::MachineFamily& family,
+                                  const machine::ComparedObject& a,
+                                  const machine::ComparedObject& b,
+                                  const machine::Parameters& parameters) {
+  if (const StreamDiff diff = DiffOfStreams(&family)) return diff(a, b, parameters);
+  return family.tools()->Diff(a, b);
+}
+
 bool IsObjectFileName(std::string_view name) {
   const std::string_view extension = ExtensionOf(name);
   if (extension.empty() || extension.size() == name.size()) return false;  // ".O" is a name alone

@@ -21,6 +21,26 @@ const machine::MachineFamily* FamilyOfFileName(std::string_view name);
 // nothing the first one that has any. Error: CellInvalidArgument for a family without tools.
 Result<const machine::MachineFamily*> FamilyWithTools(std::string_view name);
 
+// How two programs of a family are compared that are streams; one of texts has tools for that.
+using StreamDiff = Result<machine::ProgramDiff> (*)(const machine::ComparedObject& a,
+                                                    const machine::ComparedObject& b,
+                                                    const machine::Parameters& parameters);
+struct StreamComparison {
+  const machine::MachineFamily* family = nullptr;
+  StreamDiff diff = nullptr;
+};
+std::span<const StreamComparison> StreamComparisons();  // registry.cc
+
+// The family whose programs are compared under this name; as FamilyWithTools, and those whose
+// streams can be. Error: CellInvalidArgument.
+Result<const machine::MachineFamily*> FamilyThatCompares(std::string_view name);
+
+// What two programs of such a family do differently. Errors: those of its comparison.
+Result<machine::ProgramDiff> Diff(const machine::MachineFamily& family,
+                                  const machine::ComparedObject& a,
+                                  const machine::ComparedObject& b,
+                                  const machine::Parameters& parameters);
+
 // The greatest feed override that any family takes, percent.
 double OverrideMax();
 

@@ -5,6 +5,7 @@
 #include "engine/core/catalogue.h"
 #include "engine/families/families.h"
 #include "engine/optimo/control/optimo_family.h"
+#include "engine/rml1/offline/stream_diff.h"
 #include "engine/rml1/rml1_family.h"
 
 namespace rmlcell {
@@ -20,6 +21,12 @@ std::span<const machine::MachineFamily* const> Families() {
       &rml1::Rml1Family(),
   };
   return families;
+}
+
+std::span<const StreamComparison> StreamComparisons() {
+  static const std::array<StreamComparison, 1> comparisons = {
+      {{&rml1::Rml1Family(), rml1::CompareStreams}}};
+  return comparisons;
 }
 
 }  // namespace families

@@ -41,11 +41,11 @@ Reading CommandReader::Put(unsigned char byte, std::int64_t offset) {
     case State::kMarkLetter:
       return AfterMarkLetter(byte, offset);
     case State::kBetween:
-      return Between(byte);
+      return Between(byte, offset);
     case State::kNumber:
       return InNumber(byte);
     case State::kAfterNumber:
-      return AfterNumber(byte);
+      return AfterNumber(byte, offset);
     case State::kListOver:
     case State::kAxisEnd:
       return EndList();
@@ -159,7 +159,7 @@ Reading CommandReader::Found(const CommandRow& row, bool taken) {
 }
 
 // rml1.md 0.4 rule 1.
-Reading CommandReader::Between(unsigned char byte) {
+Reading CommandReader::Between(unsigned char byte, std::int64_t offset) {
   if (IsBlank(byte)) return Nothing();
   if (HasAll()) return EndList();
   if (byte == ',' && count_ > 0 && !comma_) {
@@ -168,6 +168,7 @@ Reading CommandReader::Between(unsigned char byte) {
   }
   if (!NumberReader::CanBegin(byte)) return EndList();
   reader_.Begin(byte);
+  number_offset_ = offset;
   state_ = State::kNumber;
   return Nothing();
 }
@@ -185,10 +186,10 @@ Reading CommandReader::InNumber(unsigned char byte) {
 }
 
 // A number must be followed by a separator before the next one (RML1-2.29, RML1-2.30).
-Reading CommandReader::AfterNumber(unsigned char byte) {
+Reading CommandReader::AfterNumber(unsigned char byte, std::int64_t offset) {
   if (!IsBlank(byte) && byte != ',') return EndList();
   state_ = State::kBetween;
-  return Between(byte);
+  return Between(byte, offset);
 }
 
 // !ZE: axis letter expected (RML1-3D.08, 3D.15 to 3D.22).
@@ -217,6 +218,7 @@ Reading CommandReader::AxisGap(unsigned char byte, std::int64_t offset) {
   if (IsBlank(byte)) return Nothing();
   if (!NumberReader::CanBegin(byte)) return RefuseAxis(ReadError::kAxisValue, offset, byte);
   reader_.Begin(byte);
+  number_offset_ = offset;
   state_ = State::kAxisNumber;
   return Nothing();
 }

@@ -59,6 +59,7 @@ class CommandReader {
   // Valid after the readings that name them.
   const CommandRow& row() const { return *row_; }
   const Number& number() const { return number_; }
+  std::int64_t number_offset() const { return number_offset_; }  // of its first byte
   char axis() const { return axis_; }
   ReadError error() const { return error_; }
   std::int64_t error_offset() const { return error_offset_; }      // of the first discarded byte
@@ -96,9 +97,9 @@ class CommandReader {
   Reading SecondLetter(unsigned char byte, std::int64_t offset);
   Reading AfterMark(unsigned char byte, std::int64_t offset);
   Reading AfterMarkLetter(unsigned char byte, std::int64_t offset);
-  Reading Between(unsigned char byte);
+  Reading Between(unsigned char byte, std::int64_t offset);
   Reading InNumber(unsigned char byte);
-  Reading AfterNumber(unsigned char byte);
+  Reading AfterNumber(unsigned char byte, std::int64_t offset);
   Reading Axis(unsigned char byte, std::int64_t offset);
   Reading AxisGap(unsigned char byte, std::int64_t offset);
   Reading InAxisNumber(unsigned char byte, std::int64_t offset);
@@ -125,6 +126,7 @@ class CommandReader {
   std::int64_t command_offset_ = 0;
   std::int64_t call_offset_ = 0;
   std::int64_t error_offset_ = 0;
+  std::int64_t number_offset_ = 0;
 };
 
 }  // namespace rmlcell::rml1

@@ -88,6 +88,7 @@ void Device::Receive(unsigned char byte, std::int64_t offset, DeviceListener& li
   if (received.abort) {  // RML1-4.08 to 4.12: what has run stays, what has not is forgotten
     buffer_.Clear();
     reader_.Drop();
+    listener.OnAbort(offset);
     return;
   }
   for (const LinkError error : received.errors) {
@@ -131,6 +132,7 @@ bool Device::spindle_turns() const {
 
 void Device::OnReading(const Reading& reading, const DataBuffer::Entry& at,
                        DeviceListener& listener) {
+  listener.OnReading(reading, reader_, at.offset);
   switch (reading.kind) {
     case Reading::Kind::kNothing:
       break;

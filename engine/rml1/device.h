@@ -28,6 +28,9 @@ class DeviceListener {
   virtual ~DeviceListener() = default;
   virtual void OnCommand(const CommandPlace&) {}  // right before its first effect
   virtual void OnFinding(const Finding&) {}       // errors up to the bound of the log, and advice
+  // What the device's reader made of the byte at `offset`, before the device acts on it.
+  virtual void OnReading(const Reading&, const CommandReader&, std::int64_t /*offset*/) {}
+  virtual void OnAbort(std::int64_t /*offset*/) {}  // ESC.K: what has not run is forgotten
 };
 
 // A mill or engraver without its clock: bytes go in, and out come actions, each to be carried out

@@ -23,11 +23,12 @@ struct Side {
   std::optional<simulation::TrialRun> run;  // nothing when it could not begin
 };
 
-// The family of both programs, which has tools.
+// The family of both programs.
 Result<const machine::MachineFamily*> FamilyOf(const std::array<ComparedProgram, 2>& programs) {
-  Result<const machine::MachineFamily*> family = families::FamilyWithTools(programs[0].file_name);
+  Result<const machine::MachineFamily*> family =
+      families::FamilyThatCompares(programs[0].file_name);
   if (!family) return family;
-  const auto other = families::FamilyWithTools(programs[1].file_name);
+  const auto other = families::FamilyThatCompares(programs[1].file_name);
   if (!other) return other;
   if (*family == *other) return family;
   return Error{ErrorCode::kCellInvalidArgument,
@@ -37,19 +38,21 @@ Result<const machine::MachineFamily*> FamilyOf(const std::array<ComparedProgram,
 }
 
 machine::FileForm FormOf(const machine::MachineFamily& family, const ComparedProgram& program) {
-  return program.is_object ? machine::FileForm::kObject
-                           : family.tools()->FormOf(program.file_name, *program.bytes);
+  // A stream is its own object.
+  return program.is_object || family.tools() == nullptr
+             ? machine::FileForm::kObject
+             : family.tools()->FormOf(program.file_name, *program.bytes);
 }
 
 // The object of one program; nothing when it has errors.
 std::optional<std::string> ObjectOf(const machine::MachineFamily& family,
-                                    const ComparedProgram& program, std::vector<Diagnostic>& found,
-                                    std::uint64_t& dropped) {
+                                    const ComparedProgram& program,
+                                    const machine::Parameters& parameters,
+                                    std::vector<Diagnostic>& found, std::uint64_t& dropped) {
   const machine::FileForm form = FormOf(family, program);
   if (form == machine::FileForm::kObject) return *program.bytes;
   machine::CompiledProgram compiled =
-      family.tools()->Compile({.name = program.file_name, .bytes = *program.bytes},
-                              machine::Parameters(family.parameters()),
+      family.tools()->Compile({.name = program.file_name, .bytes = *program.bytes}, parameters,
                               {.advice = false, .inch = form == machine::FileForm::kInchSource});
   found = std::move(compiled.diagnostics);
   dropped = compiled.diagnostics_dropped;
@@ -63,6 +66,8 @@ Result<std::optional<simulation::TrialRun>> Run(const machine::MachineFamily& fa
                                                 const ComparisonOptions& options) {
   const bool object = FormOf(family, program) == machine::FileForm::kObject;
   const simulation::ProgramMemory memory{.family = &family,
+                                         .profile = options.profile,
+                                         .parameters = options.parameters,
                                          .programs = {{.slot = program.slot,
                                                        .name = BaseName(program.file_name),
                                                        .file_name = program.file_name,
@@ -135,7 +140,8 @@ std::string NoteOf(const machine::Outcome& outcome) {
 
 std::string Picture(const machine::MachineFamily& family,
                     const std::array<ComparedProgram, 2>& programs,
-                    const std::array<Side, 2>& sides, const ComparisonOptions& options) {
+                    const std::array<Side, 2>& sides, const machine::Parameters& parameters,
+                    const ComparisonOptions& options) {
   std::vector<simulation::ComparedFigure> figures;
   const auto& before = sides[0].run->figures;
   const auto& after = sides[1].run->figures;
@@ -147,7 +153,7 @@ std::string Picture(const machine::MachineFamily& family,
                                     .title = BaseName(programs[side].file_name),
                                     .note = NoteOf(sides[side].run->outcome)};
   };
-  const machine::MachineShape shape = family.Shape(machine::Parameters(family.parameters()));
+  const machine::MachineShape shape = family.Shape(parameters);
   return simulation::PictureOfDifference(path(0), path(1), shape, figures, {},
                                          options.picture_elements_max);
 }
@@ -164,8 +170,12 @@ Result<ComparisonOutcome> ComparePrograms(const ComparedProgram& before,
   const Result<const machine::MachineFamily*> found = FamilyOf(programs);
   if (!found) return found.error();
   const machine::MachineFamily& family = **found;
+  const Result<machine::Parameters> parameters =
+      machine::MakeParameters(family, options.profile, options.parameters);
+  if (!parameters) return parameters.error();
   for (std::size_t i = 0; i < 2; ++i) {
-    auto object = ObjectOf(family, programs[i], outcome.diagnostics[i], outcome.dropped[i]);
+    auto object =
+        ObjectOf(family, programs[i], *parameters, outcome.diagnostics[i], outcome.dropped[i]);
     outcome.ok = outcome.ok && object;
     if (object) sides[i].object = *std::move(object);
   }
@@ -179,14 +189,14 @@ Result<ComparisonOutcome> ComparePrograms(const ComparedProgram& before,
     return side.run && side.run->outcome.kind == machine::OutcomeKind::kCompleted;
   });
   const std::vector<machine::Figure> none;
-  const Result<machine::ProgramDiff> diff = family.tools()->Diff(
-      {.object = sides[0].object, .figures = both_ran ? sides[0].run->figures : none},
-      {.object = sides[1].object, .figures = both_ran ? sides[1].run->figures : none});
+  const Result<machine::ProgramDiff> diff = families::Diff(
+      family, {.object = sides[0].object, .figures = both_ran ? sides[0].run->figures : none},
+      {.object = sides[1].object, .figures = both_ran ? sides[1].run->figures : none}, *parameters);
   if (!diff) return diff.error();
   outcome.response = MessageOf(*diff, options.changes_max);
   outcome.response.set_compared_runs(both_ran);
   if (options.picture && sides[0].run && sides[1].run) {
-    outcome.response.set_picture_svg(Picture(family, programs, sides, options));
+    outcome.response.set_picture_svg(Picture(family, programs, sides, *parameters, options));
   }
   return outcome;
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,7 @@
 #include "engine/simulation/picture/picture.h"
 #include "rmlcell/v1/program.pb.h"
 
-// What two programs of a family with tools do differently, the same over the wire and on a laptop.
+// What two programs of a family do differently, the same over the wire and on a laptop.
 namespace rmlcell::bridge {
 
 struct ComparedProgram {
@@ -25,6 +26,9 @@ struct ComparisonOptions {
   std::size_t picture_elements_max = simulation::kPictureElementsMax;
   std::size_t changes_max = 10'000;  // beyond these changed steps are only counted
   std::int64_t steps_max = 0;        // of each run; 0: as long as runs may be
+  // Of the machine; a profile by its name, and parameters over it. Neither: the defaults.
+  std::string profile{};
+  std::map<std::string, std::string> parameters{};
   std::function<bool()> go_on{};  // asked now and then; false: the run is given up, without figures
 };
 
@@ -36,7 +40,8 @@ struct ComparisonOutcome {
   std::array<std::uint64_t, 2> dropped{};
 };
 
-// Errors: ObjectCorrupt (7034); CellInvalidArgument for a program of another family.
+// Errors: ObjectCorrupt (7034), those of a comparison of streams and of MakeParameters;
+// CellInvalidArgument for a program of another family, or of one that cannot be compared.
 Result<ComparisonOutcome> ComparePrograms(const ComparedProgram& before,
                                           const ComparedProgram& after,
                                           const ComparisonOptions& options);

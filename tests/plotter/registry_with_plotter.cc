@@ -21,5 +21,8 @@ std::span<const machine::MachineFamily* const> Families() {
   return families;
 }
 
+// Streams of the plotter cannot be compared.
+std::span<const StreamComparison> StreamComparisons() { return {}; }
+
 }  // namespace families
 }  // namespace rmlcell

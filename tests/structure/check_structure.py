@@ -38,6 +38,8 @@ MAY_INCLUDE = {
     RIDE: ["engine/core", GEOMETRY, PROFILE, KINEMATICS, PLANNER],
     "engine/machine": ["engine/core"] + MOTION,
     "engine/rml1": ENGINE,
+    "engine/rml1/offline": ENGINE + ["engine/rml1"],
+    "engine/rml1/board": ENGINE + ["engine/rml1", "engine/rml1/offline"],
     "engine/optimo/language": ["engine/core"],
     "engine/optimo/offline": ENGINE + ["engine/optimo/language"],
     "engine/optimo/editing": ["engine/core", "engine/machine", "engine/optimo/language", "engine/optimo/offline"],
@@ -45,7 +47,7 @@ MAY_INCLUDE = {
     "engine/optimo/ride": ENGINE + ["engine/optimo/language", "engine/optimo/machine"],
     "engine/optimo/control": ENGINE + ["engine/optimo/language", "engine/optimo/offline", "engine/optimo/editing",
                                        "engine/optimo/machine", "engine/optimo/ride"],
-    "engine/families": ["engine/core", "engine/machine", "engine/rml1", "engine/optimo/control"],
+    "engine/families": ["engine/core", "engine/machine", "engine/rml1", "engine/rml1/offline", "engine/optimo/control"],
     PATH: ENGINE,
     REPORT: ENGINE + ["engine/families", PATH],
     TOOLPATH: ENGINE + [PATH],
@@ -80,7 +82,7 @@ MAY_INCLUDE = {
                     "storage/sqlite"],
     # The language server: no server and no language.
     "clients/lsp": ["engine/core", "engine/machine", "engine/families", RUN],
-    "clients/cli": ["clients/lsp", "engine/core", "engine/machine", "engine/families", REPORT, MATERIAL, VERDICT, RUN, "proto", "proto/bridge"],
+    "clients/cli": ["clients/lsp", "engine/core", "engine/machine", "engine/families", "engine/rml1/offline", "engine/rml1/board", REPORT, MATERIAL, VERDICT, RUN, "proto", "proto/bridge"],
 }
 # Of these rooms others may include no other header.
 PUBLIC = {
@@ -92,7 +94,11 @@ PUBLIC = {
     RIDE: ["trajectory.h", "interruption.h", "ride_protocol.h", "path_ride.h"],
     "engine/machine": ["family.h", "run.h", "observer.h", "shape.h", "parameters.h", "profile_files.h", "verdict.h",
                        "tools.h", "editing.h", "run_setup.h", "outcome.h", "inputs.h", "program_file.h"],
-    "engine/rml1": ["rml1_family.h"],
+    "engine/rml1": ["rml1_family.h", "action.h", "clipping.h", "command_reader.h", "command_table.h", "device.h", "figures.h", "finding.h",
+                    "number.h", "physical.h", "profile.h", "programmed.h", "registers.h", "verdict_rules.h"],
+    "engine/rml1/offline": ["explain.h", "from_gcode.h", "rewrite.h", "stream_diff.h", "tile.h", "to_gcode.h",
+                            "phrase_words.h", "stream_writer.h"],
+    "engine/rml1/board": ["bitmap.h", "board_stream.h", "png_bitmap.h"],
     "engine/optimo/language": ["ast.h", "checker.h", "compiler.h", "evaluate.h", "formatter.h", "instruction_set.h",
                                "lexer.h", "linker.h", "printer.h", "program.h", "source_map.h", "staleness.h",
                                "units_of_variables.h", "words.h"],

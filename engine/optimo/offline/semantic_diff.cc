@@ -8,7 +8,7 @@
 
 #include "engine/optimo/language/linker.h"
 #include "engine/optimo/language/printer.h"
-#include "engine/optimo/offline/alignment.h"
+#include "engine/core/alignment.h"
 #include "engine/optimo/offline/semantic_step.h"
 
 namespace rmlcell::optimo {

@@ -481,7 +481,7 @@ TEST_F(Messages, AMillTellsOfItsBlock) {
   EXPECT_THAT(
       ReportText(report),
       HasSubstr(
-          "material      1.500 mm3 taken off\n"
+          "material      1.500 mm3 removed\n"
           "              98.500 mm3 left, the deepest cut 2.500 mm below the top\n"
           "              deepest pass 1.250 mm at step 4\n"
           "              shank or holder 0.500 mm in material at step 5\n"

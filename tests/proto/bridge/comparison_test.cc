@@ -219,10 +219,30 @@ TEST(Comparison, WhatIsNoProgramOfTheOptimo) {
     };
     const Error mill = refused(TextOf("PU;", "part.rml"));
     EXPECT_EQ(mill.code, ErrorCode::kCellInvalidArgument);
-    EXPECT_THAT(mill.detail, HasSubstr("part.rml is a program for Roland"));
+    EXPECT_THAT(mill.detail, HasSubstr("are programs for different machines"));
     EXPECT_EQ(refused(TextOf(std::string("LMR\x01\xFF", 5), "a.O")).code,
               ErrorCode::kObjectCorrupt);
   }
+}
+
+// Streams of mills, on the mill that is named: 100 units in a mm on the SRM-20, 40 on the MDX-20.
+TEST(Comparison, StreamsOfMills) {
+  const ComparedProgram before = TextOf("!MC0;Z0,0,100;Z100,0,-20;!ZM0;", "a.rml");
+  const ComparedProgram after = TextOf("!MC0;Z0,0,100;Z200,0,-20;!ZM0;", "b.rml");
+  for (const auto& [profile, what] :
+       {std::pair("srm-20", "X 1 -> 2"), std::pair("mdx-20", "X 2.5 -> 5")}) {
+    const auto made = ComparePrograms(before, after, {.picture = true, .profile = profile});
+    ASSERT_TRUE(made) << made.error().detail;
+    EXPECT_TRUE(made->ok);
+    EXPECT_TRUE(made->response.compared_runs());
+    EXPECT_THAT(made->response.picture_svg(), HasSubstr("<svg"));
+    ASSERT_EQ(made->response.steps(0).what_size(), 1);
+    EXPECT_EQ(made->response.steps(0).what(0), what);
+  }
+  const auto same = ComparePrograms(before, before, {});
+  ASSERT_TRUE(same);
+  EXPECT_TRUE(same->response.equal());
+  EXPECT_FALSE(ComparePrograms(before, after, {.profile = "no-such"}));
 }
 
 }  // namespace

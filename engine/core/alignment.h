@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-// Which elements of two sequences belong together. Private to the folder.
-namespace rmlcell::optimo {
+// Which elements of two sequences belong together.
+namespace rmlcell {
 
 struct AlignedPair {
   std::size_t a = 0;
@@ -21,4 +21,4 @@ struct AlignedPair {
 inline constexpr std::size_t kDifferencesMax = 2000;
 std::vector<AlignedPair> Align(std::span<const std::uint64_t> a, std::span<const std::uint64_t> b);
 
-}  // namespace rmlcell::optimo
+}  // namespace rmlcell

@@ -1,9 +1,9 @@
-#include "engine/optimo/offline/alignment.h"
+#include "engine/core/alignment.h"
 
 #include <algorithm>
 #include <optional>
 
-namespace rmlcell::optimo {
+namespace rmlcell {
 namespace {
 
 using Keys = std::span<const std::uint64_t>;
@@ -97,4 +97,4 @@ std::vector<AlignedPair> Align(Keys a, Keys b) {
   return pairs;
 }
 
-}  // namespace rmlcell::optimo
+}  // namespace rmlcell

@@ -1,11 +1,11 @@
-#include "engine/optimo/offline/alignment.h"
+#include "engine/core/alignment.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
-namespace rmlcell::optimo {
+namespace rmlcell {
 namespace {
 
 using Keys = std::vector<std::uint64_t>;
@@ -87,4 +87,4 @@ TEST(Alignment, TheLimitOfDifferencesIsTheLastThatIsKept) {
 }
 
 }  // namespace
-}  // namespace rmlcell::optimo
+}  // namespace rmlcell

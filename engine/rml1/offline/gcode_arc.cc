@@ -1,0 +1,88 @@
+#include "engine/rml1/offline/gcode_arc.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/rml1/offline/phrase_words.h"
+
+namespace rmlcell::rml1 {
+namespace {
+
+constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+constexpr double kSamePlace_mm = 1e-6;  // noise of decimals and of inches
+
+Error NoArc(const std::string& detail) { return {ErrorCode::kRml1GcodeArc, detail, {}}; }
+
+// The centre of an arc with R: on the line across the middle of the ends.
+Result<Arc> CentreByRadius(const ArcWords& words) {
+  const double dx = words.to_x - words.from_x;
+  const double dy = words.to_y - words.from_y;
+  const double distance = std::hypot(dx, dy);
+  if (distance <= kSamePlace_mm) return NoArc("R with an end that is the start: give I and J");
+  const double radius = std::abs(*words.r);
+  const double half = distance / 2.0;
+  if (radius < half - kRadiusError_mm) {
+    return NoArc("R is " + ShortNumber(*words.r) + " mm, the ends are " + ShortNumber(distance) +
+                 " mm apart");
+  }
+  const double height = std::sqrt(std::max(0.0, radius * radius - half * half));
+  const bool to_the_left = words.clockwise == (*words.r < 0.0);
+  const double side = to_the_left ? height : -height;
+  Arc arc;
+  arc.centre_x = words.from_x + dx / 2.0 - side * dy / distance;
+  arc.centre_y = words.from_y + dy / 2.0 + side * dx / distance;
+  return arc;
+}
+
+}  // namespace
+
+double Arc::Chords(double tolerance_mm) const {
+  const double share = std::min(1.0, tolerance_mm / radius_mm);
+  const double angle = 2.0 * std::acos(1.0 - share);
+  return std::max(1.0, std::ceil(std::abs(sweep_rad) / angle - 1e-9));
+}
+
+double Arc::XAt(double share) const {
+  return centre_x + radius_mm * std::cos(start_rad + sweep_rad * share);
+}
+
+double Arc::YAt(double share) const {
+  return centre_y + radius_mm * std::sin(start_rad + sweep_rad * share);
+}
+
+Result<Arc> ArcOf(const ArcWords& words) {
+  if (words.r && (words.i || words.j)) return NoArc("both R and a centre");
+  if (!words.r && !words.i && !words.j) return NoArc("neither R nor a centre");
+  Arc arc;
+  if (words.r) {
+    const Result<Arc> made = CentreByRadius(words);
+    if (!made) return made.error();
+    arc = *made;
+  } else {
+    arc.centre_x = words.from_x + words.i.value_or(0.0);
+    arc.centre_y = words.from_y + words.j.value_or(0.0);
+  }
+  const double from_x = words.from_x - arc.centre_x;
+  const double from_y = words.from_y - arc.centre_y;
+  const double to_x = words.to_x - arc.centre_x;
+  const double to_y = words.to_y - arc.centre_y;
+  arc.radius_mm = std::hypot(from_x, from_y);
+  if (!(arc.radius_mm > kSamePlace_mm)) return NoArc("the centre is the start");
+  const double other = std::hypot(to_x, to_y);
+  const double error = std::abs(other - arc.radius_mm);
+  if (error > kRadiusError_mm && error > 1e-3 * arc.radius_mm) {
+    return NoArc("the start is " + ShortNumber(arc.radius_mm) + " mm from the centre, the end " +
+                 ShortNumber(other) + " mm");
+  }
+  arc.start_rad = std::atan2(from_y, from_x);
+  arc.sweep_rad = std::atan2(to_y, to_x) - arc.start_rad;
+  const bool full =
+      std::hypot(words.to_x - words.from_x, words.to_y - words.from_y) <= kSamePlace_mm;
+  if (full) arc.sweep_rad = 0.0;
+  if (words.clockwise && arc.sweep_rad >= 0.0) arc.sweep_rad -= kTurn_rad;
+  if (!words.clockwise && arc.sweep_rad <= 0.0) arc.sweep_rad += kTurn_rad;
+  return arc;
+}
+
+}  // namespace rmlcell::rml1

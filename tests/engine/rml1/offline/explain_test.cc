@@ -1,0 +1,105 @@
+#include "engine/rml1/offline/explain.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/engine/rml1/run_support.h"
+
+namespace rmlcell::rml1 {
+namespace {
+
+std::vector<ExplainedPhrase> ExplainAll(std::string_view stream, std::string_view profile = "t1") {
+  std::vector<ExplainedPhrase> phrases;
+  const Status done = Explain(stream, ParametersOf(profile), [&](const ExplainedPhrase& phrase) {
+    phrases.push_back(phrase);
+    return true;
+  });
+  EXPECT_TRUE(done);
+  return phrases;
+}
+
+std::vector<std::string> Words(std::string_view stream, std::string_view profile = "t1") {
+  std::vector<std::string> words;
+  for (const ExplainedPhrase& phrase : ExplainAll(stream, profile)) words.push_back(phrase.words);
+  return words;
+}
+
+// T1: 100 units in a mm, Z0 20 mm below the top, tool up 5 mm, 2 mm/s, travel 60 mm/s, 4500 rpm
+// (rml1.md 0.2).
+TEST(Explain, MotionsInMillimetresOfTheWork) {
+  EXPECT_EQ(Words("PU100,250;PD100,300;"),
+            (std::vector<std::string>{
+                "spindle starts, 4500 rpm; go to Z 5 at 2 mm/s; go to X 1 Y 2.5 at 60 mm/s",
+                "tool down; down into the work to Z 0 at 2 mm/s; cut to Y 3 at 2 mm/s"}));
+}
+
+// The same numbers on a machine with 40 units in a mm: 100 / 40 = 2.5.
+TEST(Explain, UnitsAreThoseOfTheProfile) {
+  EXPECT_EQ(Words("!PZ0,80;PU100,0;", "mdx-20")[1],
+            "spindle starts, 6500 rpm; go to Z 2 at 2 mm/s; go to X 2.5 at 15 mm/s");
+}
+
+TEST(Explain, SettingsSayWhatHoldsAfterwards) {
+  EXPECT_EQ(Words("VS4;!VZ99;!PZ-150,300;!DW7;!MC0;!RC3;!ZO-1000;PR;PR;PD;"),
+            (std::vector<std::string>{
+                "cutting speed in X and Y 4 mm/s", "speed of Z and of three axes 60 mm/s",
+                "tool down is Z -1.5 mm, tool up is Z 3 mm", "dwell of 7 ms before motions",
+                "the spindle may not turn", "spindle speed 6600 rpm", "Z0 is machine Z -10 mm",
+                "relative coordinates", "relative coordinates",
+                // From the top, 10 mm above Z0, to 1.5 mm below it.
+                "tool down; wait 7 ms; down into the work to Z -1.5 at 60 mm/s"}));
+}
+
+TEST(Explain, PlacesNumbersAndText) {
+  const auto phrases = ExplainAll("PA;\r\n  PU1,2 ,3,4;");
+  ASSERT_EQ(phrases.size(), 3U);
+  EXPECT_EQ(phrases[1].offset, 7);
+  EXPECT_EQ(phrases[1].command, 2U);
+  EXPECT_EQ(phrases[1].name, "PU");
+  EXPECT_EQ(phrases[1].text, "PU1,2");
+  EXPECT_EQ(phrases[2].offset, 14);  // the 3
+  EXPECT_EQ(phrases[2].command, 2U);
+  EXPECT_EQ(phrases[2].text, "3,4");
+}
+
+TEST(Explain, ErrorsStandAtTheirPhraseAsInACheck) {
+  const auto phrases = ExplainAll("XX 12;PU100;Z0,0,-9000;");
+  ASSERT_EQ(phrases.size(), 3U);
+  EXPECT_EQ(phrases[0].words, "5 bytes that are no command");
+  ASSERT_EQ(phrases[0].findings.size(), 3U);
+  EXPECT_EQ(phrases[0].findings[0].code, ErrorCode::kRml1UnknownCommand);
+  EXPECT_EQ(phrases[0].findings[1].code, ErrorCode::kRml1WrongParameters);
+  ASSERT_EQ(phrases[1].findings.size(), 1U);
+  EXPECT_EQ(phrases[1].findings[0].detail, "PU lacks a number of its last set");
+  EXPECT_EQ(phrases[1].words, "not carried out");
+  // The bottom is 40 mm below Z0; the spindle starts, and the tool stays at the bottom.
+  ASSERT_EQ(phrases[2].findings.size(), 1U);
+  EXPECT_EQ(phrases[2].findings[0].code, ErrorCode::kRml1Clipped);
+  EXPECT_NE(phrases[2].words.find("beyond the travel: the commands lead to X 0 Y 0 Z -90"),
+            std::string::npos);
+}
+
+TEST(Explain, EndsAndEdges) {
+  EXPECT_EQ(Words("Z0,0,2000;H;"),
+            (std::vector<std::string>{"the tool does not move",
+                                      "home: up to the top, to the XY origin, spindle off, errors "
+                                      "cleared"}));
+  const auto cut = ExplainAll("PU1");
+  ASSERT_EQ(cut.size(), 1U);
+  ASSERT_EQ(cut[0].findings.size(), 1U);
+  EXPECT_EQ(cut[0].findings[0].code, ErrorCode::kRml1IncompleteCommand);
+  EXPECT_FALSE(Explain("", ParametersOf("t1"), [](const ExplainedPhrase&) { return true; }));
+  EXPECT_EQ(ExplainAll("PU" + std::string(500, ' ') + "1,2;")[0].text, "PU");
+}
+
+TEST(Explain, AJunkFileIsOnePhraseWithAFewFindings) {
+  const auto phrases = ExplainAll(std::string(100'000, '$'));
+  ASSERT_EQ(phrases.size(), 1U);
+  EXPECT_EQ(phrases[0].text.size(), kShownBytes);
+  EXPECT_LE(phrases[0].findings.size(), 4U);
+}
+
+}  // namespace
+}  // namespace rmlcell::rml1

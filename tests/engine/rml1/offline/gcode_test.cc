@@ -1,0 +1,393 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "engine/rml1/offline/from_gcode.h"
+#include "engine/rml1/offline/gcode_arc.h"
+#include "engine/rml1/offline/gcode_words.h"
+#include "engine/rml1/offline/stream_walk.h"
+#include "engine/rml1/offline/stream_writer.h"
+#include "engine/rml1/offline/to_gcode.h"
+#include "tests/engine/rml1/run_support.h"
+
+namespace rmlcell::rml1 {
+namespace {
+
+std::string ToText(std::string_view stream, std::string_view profile = "t1") {
+  const Result<GcodeText> made = ToGcode(stream, ParametersOf(profile));
+  return made ? made->text : made.error().detail;
+}
+
+StreamOfGcode From(std::string_view text, std::string_view profile = "t1",
+                   const FromGcodeOptions& options = {}) {
+  return FromGcode(text, ParametersOf(profile), options).value();
+}
+
+constexpr std::string_view kHead = "DF;\n!MC0;\n";
+
+std::string Body(std::string_view text, std::string_view profile = "t1") {
+  const StreamOfGcode made = From(text, profile);
+  EXPECT_TRUE(made.ok) << (made.findings.empty() ? "" : made.findings.front().detail);
+  EXPECT_EQ(made.stream.substr(0, kHead.size()), kHead);
+  return made.stream.substr(std::min(kHead.size(), made.stream.size()));
+}
+
+ErrorCode CodeOf(std::string_view text) {
+  const StreamOfGcode made = From(text);
+  EXPECT_FALSE(made.ok) << text;
+  EXPECT_TRUE(made.stream.empty());
+  return made.findings.empty() ? ErrorCode::kCellUsage : made.findings.front().code;
+}
+
+// Where the tool goes, in whole units of the work; points that round to one are one.
+class Points final : public PhraseListener {
+ public:
+  explicit Points(const Profile& profile) : profile_(profile) {}
+  bool OnPhrase(const Phrase& phrase) override {
+    for (const Action& action : phrase.actions) {
+      if (action.kind != Action::Kind::kMotion) continue;
+      const auto unit = [&](double value) {
+        return NearestUnit(value / profile_.units_per_mm, profile_);
+      };
+      const Units at{unit(action.to.x - profile_.origin_x), unit(action.to.y - profile_.origin_y),
+                     unit(action.to.z - profile_.z0)};
+      if (points.empty() || !(points.back() == at)) points.push_back(at);
+    }
+    return true;
+  }
+  std::vector<Units> points{{.z = 0}};
+
+ private:
+  const Profile& profile_;
+};
+
+std::vector<Units> PathOf(std::string_view stream, std::string_view profile_id) {
+  const Profile profile = MakeProfile(ParametersOf(profile_id)).value();
+  Points points(profile);
+  points.points = {{.z = NearestUnit(-profile.z0 / profile.units_per_mm, profile)}};
+  StreamWalk(profile, points).Run(stream);
+  return points.points;
+}
+
+// T1: travel 60 mm/s = 3600 mm/min, V 2 mm/s = 120 mm/min, tool up 5 mm above Z0.
+TEST(ToGcode, SaysWhatTheToolDoes) {
+  EXPECT_EQ(ToText("!RC15;VS4;PU100,250;!DW100;PD150,250;!NR;H;"),
+            "(made of an RML-1 stream; X0 Y0 is its work origin, Z0 its Z0)\n"
+            "G21 G90 G17 G94\n"
+            "S15000 M3\n"
+            "G1 Z5 F120\n"
+            "G0 X1 Y2.5\n"
+            "G4 P0.1\n"
+            "G1 Z0\n"
+            "G4 P0.1\n"
+            "G1 X1.5 F240\n"
+            "M0\n"
+            "G0 Z20\n"
+            "G0 X0 Y0\n"
+            "M5\n"
+            "M30\n");
+}
+
+// RML1-3C.32: Z0 moves, the zero of the G-code stays: work Z 0 is 10 mm higher now.
+TEST(ToGcode, TheZeroStaysAndTheFirstWordOfXBringsY) {
+  EXPECT_NE(ToText("!MC0;!ZO-1000;Z100,0,0;").find("G1 X1 Y0 Z10 F120\n"), std::string::npos);
+}
+
+TEST(ToGcode, ClippingIsDoneAndNoted) {
+  const Result<GcodeText> made = ToGcode("!MC0;Z0,0,-9000;", ParametersOf("t1"));
+  ASSERT_TRUE(made);
+  EXPECT_NE(made->text.find("G1 Z-40 F120\n"), std::string::npos);  // the bottom
+  ASSERT_EQ(made->findings.size(), 1U);
+  EXPECT_EQ(made->findings[0].code, ErrorCode::kRml1Clipped);
+}
+
+TEST(ToGcode, RefusesTheRotaryAxisAndWhatIsNoStream) {
+  const auto turned = ToGcode("PU;\n!ZE A90;", ParametersOf("t1a"));
+  ASSERT_FALSE(turned);
+  EXPECT_EQ(turned.error().code, ErrorCode::kRml1RotaryMotion);
+  EXPECT_EQ(turned.error().where->line, 2);
+  const auto prose = ToGcode(std::string(300, '$'), ParametersOf("t1"));
+  ASSERT_FALSE(prose);
+  EXPECT_EQ(prose.error().code, ErrorCode::kRml1NoProgram);
+}
+
+// 600 mm/min are 10 mm/s. X and Y alone above the work: PU at that height.
+TEST(FromGcode, LinesRapidsAndSpindle) {
+  EXPECT_EQ(Body("%\nO12\nN10 G21 G90 (metric)\nM3 S6600 ; on\ng0z2\nG0X1.Y-.5\nG1 Z-0.1F600\n"
+                 "X2.004\nM5\nM30\n%\n"),
+            "!RC6600;\n!MC1;\n!VZ60;\nZ0,0,200;\n!PZ0,200;\nPU100,-50;\n!VZ10;\nZ100,-50,-10;\n"
+            "Z200,-50,-10;\n!MC0;\n");
+}
+
+// The MDX-40A: 50 mm/s in X and Y, 30 mm/s with Z. 2400 mm/min are 40 mm/s.
+TEST(FromGcode, CutsThatZIsTooSlowForAreTwoAxisMotions) {
+  EXPECT_EQ(Body("G1 Z-1 F600\nG1 X5 F2400\nY5 Z0\n", "mdx-40a"),
+            "!VZ10;\nZ0,0,-100;\nVS40;\n!PZ-100,0;\nPD500,0;\n!VZ30;\nZ500,500,0;\n");
+}
+
+TEST(FromGcode, InchesAndOldMachines) {
+  // 0.1 inch = 2.54 mm = 101.6 units of 0.025 mm; 0.5 inch a minute = 0.2117 mm/s, rounded down.
+  EXPECT_EQ(Body("G20 G1 X0.1 Z.25 F0.5\n", "mdx-20"), "!VZ0.2;\nZ102,0,254;\n");
+}
+
+TEST(FromGcode, NamesFollowTheCommandSet) {
+  const auto made = FromGcode("G0 Z1\nG0 X1\nG1 Z-1 F60\n", [] {
+    machine::Parameters parameters = ParametersOf("t1");
+    EXPECT_TRUE(parameters.Set("COMMAND", std::string_view("MODE1")));
+    return parameters;
+  }());
+  EXPECT_EQ(made->stream,
+            "^DF;\n!MC0;\n!VZ60;\nZ0,0,100;\n!PZ0,100;\nM100,0;\n!VZ1;\nZ100,0,-100;\n");
+}
+
+// A wait belongs to the motion behind it, and makes a PU a Z, because PU has none (RML1-3A.57).
+TEST(FromGcode, Waits) {
+  EXPECT_EQ(Body("G0 Z1\nG4 P0.25\nG4 P.25\nG0 X1\nG4 P1\n"),
+            "!VZ60;\nZ0,0,100;\n!DW500;\nZ100,0,100;\n!DW0;\n");
+  EXPECT_EQ(From("G0 Z1\nG4 P1\n").findings.at(0).code, ErrorCode::kRml1GcodeIgnored);
+  EXPECT_EQ(CodeOf("G4 P32.768\n"), ErrorCode::kRml1GcodeRange);
+  EXPECT_EQ(CodeOf("G4 X1\n"), ErrorCode::kRml1GcodeWord);
+}
+
+// A half circle of radius 10 from (0,0) to (20,0) about (10,0): G2 goes over Y > 0.
+TEST(FromGcode, ArcsStayWithinTheTolerance) {
+  const std::string head = "G1 Z0 F600\n";
+  for (const double tolerance : {0.5, 0.05}) {
+    const StreamOfGcode made = From(head + "G2 X20 Y0 I10 J0\n", "t1", {.tolerance_mm = tolerance});
+    ASSERT_TRUE(made.ok);
+    std::vector<Units> path = PathOf(made.stream, "t1");
+    path.erase(path.begin());  // the start, at the top
+    EXPECT_EQ(path.front(), (Units{0, 0, 0}));
+    EXPECT_EQ(path.back(), (Units{2000, 0, 0}));
+    // The middle of every chord is the furthest from the circle; units are 0.01 mm.
+    for (std::size_t k = 1; k < path.size(); ++k) {
+      const double x = static_cast<double>(path[k - 1].x + path[k].x) / 200.0 - 10.0;
+      const double y = static_cast<double>(path[k - 1].y + path[k].y) / 200.0;
+      EXPECT_GE(std::hypot(x, y), 10.0 - tolerance - 0.008);
+      EXPECT_LE(std::hypot(x, y), 10.008);
+      EXPECT_GE(path[k].y, 0);
+    }
+    // pi / (2 acos(1 - t / 10)): 4.97 and 15.7 chords.
+    EXPECT_EQ(path.size(), tolerance == 0.5 ? 6U : 17U);
+  }
+}
+
+TEST(GcodeArc, CentresRadiiAndTurns) {
+  // A quarter from (10,0) to (0,10) about the zero, both ways.
+  const Arc counter = ArcOf({.from_x = 10, .to_y = 10, .i = -10}).value();
+  EXPECT_NEAR(counter.sweep_rad, M_PI / 2, 1e-12);
+  const Arc clockwise = ArcOf({.from_x = 10, .to_y = 10, .clockwise = true, .i = -10}).value();
+  EXPECT_NEAR(clockwise.sweep_rad, -3 * M_PI / 2, 1e-12);
+  // The same quarter by its radius; below 0 the longer arc, whose centre is (10,10).
+  const Arc by_radius = ArcOf({.from_x = 10, .to_y = 10, .r = 10}).value();
+  EXPECT_NEAR(by_radius.centre_x, 0.0, 1e-9);
+  EXPECT_NEAR(by_radius.sweep_rad, M_PI / 2, 1e-9);
+  const Arc longer = ArcOf({.from_x = 10, .to_y = 10, .r = -10}).value();
+  EXPECT_NEAR(longer.centre_x, 10.0, 1e-9);
+  EXPECT_NEAR(longer.centre_y, 10.0, 1e-9);
+  EXPECT_NEAR(longer.sweep_rad, 3 * M_PI / 2, 1e-9);
+  // A full turn ends where it began.
+  const Arc full = ArcOf({.clockwise = true, .i = 5}).value();
+  EXPECT_NEAR(full.sweep_rad, -2 * M_PI, 1e-12);
+  EXPECT_NEAR(full.XAt(1.0), 0.0, 1e-9);
+  for (const ArcWords& bad :
+       {ArcWords{.to_x = 1}, ArcWords{.to_x = 1, .i = 1, .r = 1}, ArcWords{.r = 1},
+        ArcWords{.to_x = 10, .r = 4}, ArcWords{.to_x = 10, .i = 4}, ArcWords{.to_x = 1, .i = 0}}) {
+    ASSERT_FALSE(ArcOf(bad));
+    EXPECT_EQ(ArcOf(bad).error().code, ErrorCode::kRml1GcodeArc);
+  }
+}
+
+TEST(FromGcode, WhatMovesTheToolIsNeverDropped) {
+  for (const char* word : {"G41 X1",    "G81 Z-1 R1 F60",
+                           "G28",       "G91",
+                           "G43 H1",    "G92 X0",
+                           "G53 G0 X0", "G18",
+                           "G93",       "G55",
+                           "G10 L2",    "M4",
+                           "M98 P1",    "A90",
+                           "G0 A1",     "G1.5",
+                           "U1",        "E1",
+                           "P1",        "M6.5"}) {
+    const StreamOfGcode made = From(std::string("G0 X0\n") + word + "\n");
+    EXPECT_FALSE(made.ok) << word;
+    ASSERT_FALSE(made.findings.empty()) << word;
+    EXPECT_EQ(made.findings.front().code, ErrorCode::kRml1GcodeWord) << word;
+    EXPECT_EQ(made.findings.front().where.line, 2) << word;
+  }
+  EXPECT_EQ(CodeOf("G0 X1\nG1 X2\n"), ErrorCode::kRml1GcodeFeed);
+  EXPECT_EQ(CodeOf("F0\n"), ErrorCode::kRml1GcodeFeed);
+  EXPECT_EQ(CodeOf("G0 X1\nM6 T2\n"), ErrorCode::kRml1GcodeWord);
+  EXPECT_EQ(CodeOf("G0 X1 I1\n"), ErrorCode::kRml1GcodeWord);
+  EXPECT_EQ(CodeOf("G0 X90000000\n"), ErrorCode::kRml1GcodeRange);
+  EXPECT_EQ(CodeOf("G2 X1 F60\n"), ErrorCode::kRml1GcodeArc);
+}
+
+TEST(FromGcode, LinesThatCannotBeRead) {
+  for (const char* line : {"G0 X", "G0 X1.2.3", "G0 X--1", "(no end", "/G0 X1", "#1=2", "G0 X[1]",
+                           "G0 G1 X1", "G0 X1 X2", "X1", "\xff", "G4", "S-1", "G0 X1e"}) {
+    EXPECT_EQ(CodeOf(std::string(line) + "\n"), ErrorCode::kRml1GcodeForm) << line;
+  }
+  const StreamOfGcode made = From("G0 X1\r\nG0 Y\rG0 Z#\n");
+  ASSERT_EQ(made.findings.size(), 2U);  // all errors at once, lines of every kind
+  EXPECT_EQ(made.findings[0].where.line, 2);
+  EXPECT_EQ(made.findings[0].where.column, 4);
+  EXPECT_EQ(made.findings[1].where.line, 3);
+}
+
+TEST(FromGcode, WhatSaysNothingIsNotedOnce) {
+  const StreamOfGcode made =
+      From("G54 G40 G80\nT1 M6\nG54 M8\nG64 P0.01\nG0 X1\nM30\nG0 X2\nG0 X3\n");
+  EXPECT_TRUE(made.ok);
+  EXPECT_EQ(made.findings.size(), 8U);  // G54 G40 G80 T M6 M8 G64, and what stands behind the end
+  for (const Diagnostic& finding : made.findings)
+    EXPECT_EQ(finding.code, ErrorCode::kRml1GcodeIgnored);
+  EXPECT_EQ(made.stream.find("200,0"), std::string::npos);
+}
+
+TEST(FromGcode, SpeedsAreRoundedAndSaidOnce) {
+  const StreamOfGcode made = From("G1 Z0 F100\nX1 F101\nX2 F99999\nS700\nS800\n");
+  EXPECT_TRUE(made.ok);
+  ASSERT_EQ(made.findings.size(), 2U);
+  EXPECT_EQ(made.findings[0].detail, "1.667 mm/s becomes 1 mm/s, a speed of the machine");
+  EXPECT_EQ(made.findings[1].detail, "S700 becomes 4500 rpm");
+  // Only stages, evenly spaced from 4500 to 15000: 8000 is the fifth (RML1-9.31).
+  EXPECT_NE(From("S8100\n", "t1s").stream.find("!RC5;"), std::string::npos);
+  EXPECT_EQ(From("S8100\n", "t1f").stream.find("!RC"), std::string::npos);
+}
+
+TEST(FromGcode, BoundsOfWhatIsMade) {
+  const StreamOfGcode made = From("G1 X1 F60\nG1 X2\nG1 X3\nG1 X4\n", "t1", {.bytes_max = 40});
+  EXPECT_FALSE(made.ok);
+  EXPECT_EQ(made.findings.front().code, ErrorCode::kRml1ProductTooLarge);
+  EXPECT_EQ(CodeOf("G1 X0 F60\nG2 I80000 J1\n"), ErrorCode::kRml1GcodeRange);
+  EXPECT_FALSE(From("G1 X0 F60\nG2 I80000\n", "t1", {.tolerance_mm = 1e-7}).ok);
+  EXPECT_FALSE(FromGcode("G0 X1", ParametersOf("t1"), {.tolerance_mm = 0.0}));
+  EXPECT_FALSE(FromGcode("", ParametersOf("t1")));
+}
+
+// docs/gcode.md has the table of words.
+TEST(FromGcode, ThePageHasTheWordsOfTheTable) {
+  const std::string page = ReadFile(std::string(RMLCELL_SOURCE_DIR) + "/docs/gcode.md");
+  std::string wanted;
+  for (const GcodeRow& row : kGcodeRows) {
+    std::string word = row.letter + std::to_string(row.tenths / 10);
+    if (row.tenths % 10 != 0) word += "." + std::to_string(row.tenths % 10);
+    wanted = "\n| `" + word + "` | " + std::string(row.text) + " | ";
+    EXPECT_NE(page.find(wanted), std::string::npos) << wanted;
+  }
+  // And no other: rows of words stand before the table of letters.
+  const std::string words = page.substr(0, page.find("| letter |"));
+  std::size_t rows = 0;
+  for (std::size_t at = words.find("\n| `"); at != std::string::npos;
+       at = words.find("\n| `", at + 1))
+    ++rows;
+  EXPECT_EQ(rows, kGcodeRows.size());
+}
+
+void ExpectSamePath(const std::string& stream, std::string_view profile) {
+  const Result<GcodeText> gcode = ToGcode(stream, ParametersOf(profile));
+  ASSERT_TRUE(gcode) << gcode.error().detail;
+  const StreamOfGcode again = From(gcode->text, profile);
+  ASSERT_TRUE(again.ok) << (again.findings.empty() ? "" : again.findings.front().detail);
+  const std::vector<Units> wanted = PathOf(stream, profile);
+  const std::vector<Units> got = PathOf(again.stream, profile);
+  ASSERT_EQ(wanted.size(), got.size());
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    ASSERT_EQ(wanted[i], got[i]) << i << " of " << wanted.size();
+}
+
+// Motions of every kind, in and out of the travel, in both modes, with heights and origins.
+std::string RandomStream(std::mt19937& random) {
+  const auto number = [&](int low, int high) {
+    return std::to_string(low + static_cast<int>(random() % static_cast<unsigned>(high - low + 1)));
+  };
+  std::string stream;
+  const int commands = 1 + static_cast<int>(random() % 40);
+  for (int i = 0; i < commands; ++i) {
+    const std::string x = number(-3000, 23000), y = number(-3000, 17000), z = number(-4500, 2500);
+    switch (random() % 16) {
+      case 0:
+        stream += "PU" + x + "," + y + ";";
+        break;
+      case 1:
+        stream += "PD" + x + "," + y + ";";
+        break;
+      case 2:
+        stream += "Z" + x + "," + y + "," + z + "\n";
+        break;
+      case 3:
+        stream += "PR" + number(-900, 900) + "," + number(-900, 900) + ";";
+        break;
+      case 4:
+        stream += "PA" + x + "," + y + ";";
+        break;
+      case 5:
+        stream += "!PZ" + number(-900, 0) + "," + number(0, 900) + ";";
+        break;
+      case 6:
+        stream += "!ZM" + number(-6000, 0) + ";";
+        break;
+      case 7:
+        stream += "!ZO" + number(-4000, -1000) + ";";
+        break;
+      case 8:
+        stream += "VS" + number(0, 70) + ";";
+        break;
+      case 9:
+        stream += "!VZ" + number(0, 70) + ";";
+        break;
+      case 10:
+        stream += "!MC" + number(0, 1) + ";";
+        break;
+      case 11:
+        stream += "!DW" + number(0, 200) + ";";
+        break;
+      case 12:
+        stream += "H;";
+        break;
+      case 13:
+        stream += "IN;";
+        break;
+      case 14:
+        stream += "!RC" + number(0, 20) + ";";
+        break;
+      default:
+        stream += "D" + x + "," + y + "," + x + "," + y + ";";
+        break;
+    }
+  }
+  return stream;
+}
+
+TEST(GcodeRoundTrip, TheToolGoesTheSameWayOverRandomStreams) {
+  std::mt19937 random(20261123);  // NOLINT: the same streams in every run
+  for (int i = 0; i < 400; ++i) {
+    const std::string stream = RandomStream(random);
+    SCOPED_TRACE(stream);
+    ExpectSamePath(stream, i % 3 == 0 ? "mdx-40a" : i % 3 == 1 ? "t1" : "mdx-20");
+    if (HasFatalFailure()) return;
+  }
+}
+
+TEST(GcodeRoundTrip, TheToolGoesTheSameWayOverTheCorpus) {
+  const std::string corpus = std::string(RMLCELL_SHARED_DIR) + "/corpus/rml1";
+  if (!std::filesystem::exists(corpus)) GTEST_SKIP() << "no corpus at " << corpus;
+  int programs = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(corpus)) {
+    const std::string extension = entry.path().extension();
+    if (extension != ".rml" && extension != ".prn") continue;
+    SCOPED_TRACE(entry.path());
+    ExpectSamePath(ReadFile(entry.path()), "srm-20");
+    if (HasFatalFailure()) return;
+    ++programs;
+  }
+  EXPECT_EQ(programs, 25);
+}
+
+}  // namespace
+}  // namespace rmlcell::rml1

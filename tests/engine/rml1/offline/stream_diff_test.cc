@@ -1,0 +1,92 @@
+#include "engine/rml1/offline/stream_diff.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/engine/rml1/run_support.h"
+
+namespace rmlcell::rml1 {
+namespace {
+
+using machine::StepChange;
+
+machine::ProgramDiff Diff(std::string_view a, std::string_view b, std::string_view profile = "t1") {
+  const auto made = CompareStreams({.object = a}, {.object = b}, ParametersOf(profile));
+  EXPECT_TRUE(made) << (made ? "" : made.error().detail);
+  return *made;
+}
+
+TEST(CompareStreams, HowItIsWrittenDoesNotCount) {
+  EXPECT_TRUE(Diff("PU100,0,100,50;PD0,0;", " M 100 , 0;M100,50\r\n;D0,0;").equal());
+  EXPECT_TRUE(Diff("V3;Z1,2,3,4,5,6;", "!VZ3.0;!ZZ1,2,3;PR;Z3,3,3;").equal());
+  EXPECT_TRUE(Diff("PU5,5;", "VS9;VS2;PU5,5;").equal());  // a setting without effect
+}
+
+TEST(CompareStreams, WhatChangesIsSaidInMillimetres) {
+  const auto diff = Diff("!MC0;Z0,0,100;Z50,0,-20;", "!MC0;Z0,0,100;V3;Z70,0,-35;");
+  ASSERT_EQ(diff.steps.size(), 1U);
+  const StepChange& change = diff.steps[0];
+  EXPECT_EQ(change.kind, StepChange::Kind::kChanged);
+  EXPECT_EQ(change.step_a, 3);
+  EXPECT_EQ(change.step_b, 4);
+  EXPECT_EQ(change.before, "cut to X 0.5 Z -0.2 at 2 mm/s");
+  EXPECT_EQ(change.after, "cut to X 0.7 Z -0.35 at 3 mm/s");
+  EXPECT_EQ(change.what,
+            (std::vector<std::string>{"X 0.5 -> 0.7", "Z -0.2 -> -0.35", "mm/s 2 -> 3"}));
+  EXPECT_EQ(change.aspects, unsigned{machine::kAspectPath | machine::kAspectTime});
+  EXPECT_NEAR(change.target_moved_mm, 0.25, 1e-9);  // 0.2 in X, 0.15 in Z
+  EXPECT_EQ(diff.aspects, change.aspects);
+}
+
+TEST(CompareStreams, AddedRemovedSpindleWaitsAndPauses) {
+  const auto diff = Diff("PU1,1;PU2,2;PU3,3;", "!RC15;PU1,1;PU3,3;!NR;!DW5;PD;");
+  ASSERT_EQ(diff.steps.size(), 5U);
+  EXPECT_EQ(diff.steps[0].what, (std::vector<std::string>{"spindle speed 4500 -> 15000"}));
+  EXPECT_EQ(diff.steps[0].aspects, unsigned{machine::kAspectPower});
+  EXPECT_EQ(diff.steps[1].kind, StepChange::Kind::kRemoved);
+  EXPECT_EQ(diff.steps[1].before, "go to X 0.02 Y 0.02 at 60 mm/s");
+  EXPECT_EQ(diff.steps[2].kind, StepChange::Kind::kAdded);
+  EXPECT_EQ(diff.steps[2].aspects, unsigned{machine::kAspectFlow});
+  EXPECT_EQ(diff.steps[3].aspects, unsigned{machine::kAspectTime});
+  EXPECT_EQ(diff.steps[4].after, "down into the work to Z 0 at 2 mm/s");
+}
+
+TEST(CompareStreams, FiguresOfRunsButNotOfTheText) {
+  const std::vector<machine::Figure> a = {{"cut_length", "mm", 1.0}, {"programmed.xmax", "", 1.0}};
+  const std::vector<machine::Figure> b = {{"cut_length", "mm", 2.0}, {"programmed.xmax", "", 9.0}};
+  const auto diff = CompareStreams({.object = "PU;", .figures = a}, {.object = "PU;", .figures = b},
+                                   ParametersOf("t1"));
+  ASSERT_TRUE(diff);
+  ASSERT_EQ(diff->figures.size(), 1U);
+  EXPECT_EQ(diff->figures[0].name, "cut_length");
+  EXPECT_EQ(diff->figures[0].after, 2.0);
+}
+
+// More differences than an exact alignment takes, and more than are told.
+TEST(CompareStreams, LongStreams) {
+  std::string a, b;
+  for (int i = 0; i < 30'000; ++i) {
+    a += "PU" + std::to_string(i % 9000) + ",1;";
+    b += "PU" + std::to_string(i % 9000) + ",2;";
+  }
+  const auto diff = Diff(a, b);
+  EXPECT_EQ(diff.steps.size(), 30'000U);
+  EXPECT_FALSE(diff.steps[kToldChangesMax - 1].before.empty());
+  EXPECT_TRUE(diff.steps[kToldChangesMax].before.empty());
+}
+
+TEST(CompareStreams, Refuses) {
+  std::string many;
+  for (std::size_t i = 0; i < kComparedMax + 1; ++i) many += i % 2 == 0 ? "Z1,1,1;" : "Z2,2,2;";
+  const auto refused = CompareStreams({.object = many}, {.object = "PU;"}, ParametersOf("t1"));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kRml1TooManyMotions);
+  const std::string prose(300, '$');
+  const auto none = CompareStreams({.object = "PU;"}, {.object = prose}, ParametersOf("t1"));
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, ErrorCode::kRml1NoProgram);
+}
+
+}  // namespace
+}  // namespace rmlcell::rml1

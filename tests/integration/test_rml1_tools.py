@@ -1,0 +1,303 @@
+#!/usr/bin/env python3
+"""The tools for streams of mills, from the command line."""
+import json
+import os
+import pathlib
+import re
+import struct
+import subprocess
+import tempfile
+import unittest
+import zlib
+
+BIN = pathlib.Path(os.environ["RMLCELL_BIN"])
+
+
+def ask(*words):
+    return subprocess.run([BIN / "rmlcell", *map(str, words)], capture_output=True, text=True, timeout=120,
+                          env={**os.environ, "NO_COLOR": "1"})
+
+
+def run(*words, code=0):
+    done = ask(*words)
+    assert done.returncode == code, (words, done.returncode, done.stdout, done.stderr)
+    return done.stdout
+
+
+STREAM = "PA;VS4;!VZ2;!PZ-50,200;!MC1;PU100,100;PD500,100,500,300;PU0,0;!MC0;\n"
+
+
+class Tools(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def file(self, name, content):
+        path = self.folder / name
+        path.write_text(content)
+        return path
+
+
+class Explain(Tools):
+    def test_each_command_has_its_place_and_its_meaning(self):
+        told = run("rml1", "explain", self.file("a.rml", STREAM), "--profile", "srm-20").splitlines()
+        self.assertEqual(told[0].split()[:3], ["byte", "command", "text"])
+        self.assertRegex(told[2], r"^ +3 +2  VS4 +cutting speed in X and Y 4 mm/s$")
+        # 100 units in a mm; down from 2 mm above the work.
+        self.assertIn("down into the work to Z -0.5 at 2 mm/s; cut to X 5 at 4 mm/s", told[7])
+        self.assertRegex(told[8], r"^ +\d+ +7  500,300 +cut to Y 3 at 4 mm/s$")
+
+    def test_units_are_those_of_the_machine(self):
+        mdx = run("rml1", "explain", self.file("a.rml", STREAM), "--profile", "mdx-20")
+        self.assertIn("cut to X 12.5 at 4 mm/s", mdx)  # 500 / 40
+        own = self.file("mine.toml", 'family = "rml1"\nprofile = "mdx-20"\n[parameters]\nXY_SPEED_MAX = 3\n')
+        self.assertIn("at 3 mm/s", run("rml1", "explain", self.folder / "a.rml", "--machine", own))
+
+    def test_errors_are_said_as_check_says_them(self):
+        source = self.file("a.rml", "PU100;\nQQ;PU1,1;")
+        told = run("rml1", "explain", source)
+        errors = [line for line in run("check", source, code=1).splitlines() if " device error " in line]
+        self.assertEqual(len(errors), 2)
+        for line in errors:
+            self.assertIn(line, told)
+
+    def test_json_has_a_line_for_each_phrase(self):
+        lines = [json.loads(line) for line in
+                 run("rml1", "explain", self.file("a.rml", "PU1,2,3,4;X"), "--json").splitlines()]
+        self.assertEqual([line["offset"] for line in lines], [0, 6, 10])
+        self.assertEqual([line["command"] for line in lines], [1, 1, 0])
+        self.assertEqual(lines[0]["name"], "PU")
+
+    def test_what_is_no_stream_of_a_mill_is_refused(self):
+        self.assertIn("Amada", ask("rml1", "explain", self.file("12.S", "SPEED 20\n")).stderr)
+        run("rml1", "explain", self.folder / "12.S", code=2)
+        run("rml1", "explain", self.file("empty.rml", ""), code=2)
+        run("rml1", "explain", self.folder / "missing.rml", code=2)
+        run("rml1", "explain", self.file("a.rml", STREAM), "--profile", "none-of-them", code=2)
+        laser = self.file("laser.toml", 'family = "optimo"\n')
+        run("rml1", "explain", self.folder / "a.rml", "--machine", laser, code=2)
+
+
+class Gcode(Tools):
+    def facts(self, stream):
+        return run("simulate", stream, "--profile", "srm-20", "--facts")
+
+    def test_the_round_trip_cuts_the_same(self):
+        source = self.file("a.rml", STREAM)
+        self.assertIn("a.nc: ", run("rml1", "to-gcode", source, "--profile", "srm-20"))
+        gcode = (self.folder / "a.nc").read_text()
+        self.assertIn("G1 X5 F240\n", gcode)
+        run("rml1", "from-gcode", self.folder / "a.nc", "--profile", "srm-20", "-o", self.folder / "b.rml")
+        before, after = self.facts(source), self.facts(self.folder / "b.rml")
+        for name in ("rml1.cut_length", "rml1.box_mm.xmax", "rml1.box_mm.zmin", "rml1.plunges"):
+            wanted = re.search(rf"^{re.escape(name)}: .*$", before, re.MULTILINE)
+            self.assertIsNotNone(wanted, before)
+            self.assertIn(wanted.group(), after)
+
+    def test_standard_output_and_json(self):
+        source = self.file("a.rml", STREAM)
+        self.assertTrue(run("rml1", "to-gcode", source, "-o", "-").endswith("M30\n"))
+        told = json.loads(run("rml1", "to-gcode", source, "-o", "-", "--json"))
+        self.assertTrue(told["ok"])
+        self.assertIn("G21", told["content"])
+        self.assertFalse((self.folder / "a.nc").exists())
+
+    def test_what_cannot_be_read_is_refused_with_its_place_and_nothing_is_written(self):
+        source = self.file("a.nc", "G21\nG0 Z5\nG81 X1 Z-1 R1 F60\nG41 X1\n")
+        done = ask("rml1", "from-gcode", source)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"a\.nc:3:1: .*RML1-E8102: G81")
+        self.assertRegex(done.stderr, r"a\.nc:4:1: .*RML1-E8102: G41")
+        self.assertFalse((self.folder / "a.rml").exists())
+        told = json.loads(run("rml1", "from-gcode", source, "--json", code=1))
+        self.assertFalse(told["ok"])
+
+    def test_an_old_result_stays_when_there_is_no_new_one(self):
+        self.file("a.rml", "PU;")
+        run("rml1", "from-gcode", self.file("a.nc", "G91\n"), code=1)
+        self.assertEqual((self.folder / "a.rml").read_text(), "PU;")
+
+    def test_tolerance(self):
+        source = self.file("a.nc", "G1 Z0 F60\nG2 I5\n")
+        rough = run("rml1", "from-gcode", source, "--tolerance", "0.5", "-o", "-").count("Z")
+        fine = run("rml1", "from-gcode", source, "--tolerance", "0.01", "-o", "-").count("Z")
+        self.assertGreater(fine, 5 * rough)
+        run("rml1", "from-gcode", source, "--tolerance", "0", "-o", "-", code=2)
+
+
+class Rewriting(Tools):
+    def test_move(self):
+        source = self.file("a.rml", "PU100,100; PD200,+50 ;PR5,5;")
+        self.assertEqual(run("rml1", "move", source, "--by", "1,-0.5"), "PU200,50; PD300,0 ;PR5,5;")
+        told = run("rml1", "move", source, "--by", "1.004,0", "-o", self.folder / "b.rml")
+        self.assertIn("moved by 1.000,0.000,0.000 mm", told)  # whole units of 0.01 mm
+        self.assertEqual(run("rml1", "move", source, "--by", "-1,2", "--profile", "mdx-20"),
+                         "PU60,180; PD160,130 ;PR5,5;")
+        run("rml1", "move", source, code=2)
+        run("rml1", "move", source, "--by", "1", code=2)
+        run("rml1", "move", source, "--by", "nan,1", code=2)
+
+    def test_move_refuses_with_the_place_and_writes_nothing(self):
+        done = ask("rml1", "move", self.file("a.rml", "PU1,1;\nPU5;"), "--by", "1,1", "-o", self.folder / "b.rml")
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"a\.rml:2:1: .*RML1-E8111")
+        self.assertFalse((self.folder / "b.rml").exists())
+        done = ask("rml1", "move", self.file("c.rml", "PU100,100;PD19900,100;"), "--by", "2,0", "-o", "-")
+        self.assertIn("1 mm uncut beyond the travel", done.stderr)
+
+    def test_steps(self):
+        source = self.file("a.rml", "VS4;!PZ-40,80;PU100,3;PR3,0,3,0;")
+        self.assertEqual(run("rml1", "steps", source, "--from", 40, "--to", 100),
+                         "VS4;!PZ-100,200;PU250,8;PR8,0,7,0;")
+        run("rml1", "steps", source, "--from", 0, "--to", 100, code=2)
+        run("rml1", "steps", source, code=2)
+
+    def test_tile(self):
+        source = self.file("a.rml", STREAM)
+        told = run("rml1", "tile", source, "--columns", 2, "--rows", 3, "--gap", 2, "--profile", "srm-20",
+                   "-o", self.folder / "six.rml")
+        # The cuts are 4 mm and 2 mm long.
+        self.assertIn("6 copies, every 6.000 mm in X and 4.000 mm in Y", told)
+        facts = {name: run("simulate", path, "--profile", "srm-20", "--facts")
+                 for name, path in (("one", source), ("six", self.folder / "six.rml"))}
+        plunges = [float(re.search(r"^rml1\.plunges: (.*)$", text, re.MULTILINE).group(1)) for text in facts.values()]
+        self.assertEqual(plunges, [1, 6])
+        lengths = [float(re.search(r"^rml1\.cut_length: (.*)$", text, re.MULTILINE).group(1))
+                   for text in facts.values()]
+        # Each copy goes down from 2 mm above to 0.5 mm below.
+        self.assertAlmostEqual(lengths[1], 6 * lengths[0], places=3)
+        self.assertIn("rml1.spindle_on_at_end: 0", facts["six"])
+
+    def test_tile_says_what_fits(self):
+        done = ask("rml1", "tile", self.file("a.rml", STREAM), "--columns", 900, "--profile", "srm-20", "-o", "-")
+        self.assertEqual(done.returncode, 1)
+        # 203.2 mm; the first copy ends at 5 mm, and 5 mm are from one to the next: 1 + 39.
+        self.assertIn("at most 40 columns", done.stderr)
+        run("rml1", "tile", self.folder / "a.rml", "--columns", 0, "-o", "-", code=2)
+
+
+class Families(Tools):
+    """A stream is no text of another machine, whatever tool is given it."""
+
+    def test_tools_for_texts_refuse_streams(self):
+        source = self.file("a.rml", STREAM)
+        for words in (["list"], ["format"], ["format", "--check"], ["convert"], ["compensate"], ["compile"],
+                      ["decompile"], ["transform", "--move", "1,0,0"], ["link", "-o", self.folder / "x"]):
+            done = ask(*words, source)
+            self.assertEqual(done.returncode, 2, words)
+            self.assertIn("a.rml is a program for Roland mill or engraver, RML-1", done.stderr, words)
+        self.assertEqual(source.read_text(), STREAM)
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["a.rml"])
+
+    def test_simulate_refuses_two_streams(self):
+        a, b = self.file("a.rml", STREAM), self.file("b.rml", "PU1,1;")
+        done = ask("simulate", a, b)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("2 programs for a machine whose programs call no others", done.stderr)
+        seven = self.file("7.rml", STREAM)
+        run("simulate", seven, self.file("8.rml", "PU1,1;"), "--main", 7)
+
+    def test_diff_says_what_the_tool_does_differently(self):
+        a = self.file("a.rml", STREAM)
+        same = self.file("b.rml", STREAM.replace("PD500,100,500,300", "D500,100;PD500,300").replace(";", "\n"))
+        self.assertIn("same", run("diff", a, same, "--profile", "srm-20").lower())
+        deeper = self.file("c.rml", STREAM.replace("-50", "-80").replace("VS4", "VS6"))
+        told = run("diff", a, deeper, "--profile", "srm-20", code=1)
+        self.assertIn("Z -0.5 -> -0.8", told)
+        self.assertIn("mm/s 4 -> 6", told)
+        self.assertIn("cut_length  8.5 -> 8.8 mm", told)  # 0.3 mm deeper
+        message = json.loads(run("diff", a, deeper, "--json", code=1))
+        self.assertEqual(message["steps"][0]["aspects"], ["DIFF_ASPECT_PATH"])
+        self.assertTrue(message["comparedRuns"])
+        run("diff", a, deeper, "--svg", self.folder / "d.svg", "--profile", "srm-20", code=1)
+        self.assertIn("<svg", (self.folder / "d.svg").read_text())
+
+    def test_diff_refuses_what_cannot_be_compared(self):
+        a = self.file("a.rml", STREAM)
+        done = ask("diff", a, self.file("12.S", "SPEED 20\n"))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("programs for different machines", done.stderr)
+        run("diff", a, self.file("b.rml", "$" * 300), code=2)
+        run("diff", a, a, "--profile", "none-of-them", code=2)
+
+
+class FromPng(Tools):
+    def png(self, name, rows, dpi=None):
+        """Lines of '#' for white; the uppermost first."""
+        def chunk(kind, data):
+            return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        data = b"".join(b"\0" + bytes(255 if c == "#" else 0 for c in row) for row in rows)
+        content = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, 0, 0, 0, 0))
+        if dpi:
+            content += chunk(b"pHYs", struct.pack(">IIB", round(dpi / 0.0254), round(dpi / 0.0254), 1))
+        path = self.folder / name
+        path.write_bytes(content + chunk(b"IDAT", zlib.compress(data)) + chunk(b"IEND", b""))
+        return path
+
+    # Two pads of 3 mm by 2 mm, 2 mm apart, 2 mm from the edges of the picture; a pixel is 0.1 mm.
+    PADS = [" " * 120] * 20 + [" " * 20 + "#" * 30 + " " * 20 + "#" * 30 + " " * 20] * 20 + [" " * 120] * 20
+
+    def test_milling_leaves_the_pads_and_takes_the_gap(self):
+        picture = self.png("traces.png", self.PADS, dpi=254)
+        told = run("rml1", "from-png", picture, "--profile", "srm-20", "--tool", 0.8, "--depth", 0.2)
+        self.assertIn("2 lines, picture of 12.00 by 6.00 mm", told)
+        stream, stl = self.folder / "traces.rml", self.folder / "left.stl"
+        simulated = run("simulate", stream, "--profile", "srm-20", "--stock", "12x6x1", "--tool", "flat:0.8",
+                        "--cell", 0.05, "--stl", stl, "--stl-tolerance", 0)
+        self.assertIn("verdict       GOOD", simulated)
+        content = stl.read_bytes()
+        count = struct.unpack_from("<I", content, 80)[0]
+        top = max(max(struct.unpack_from("<12f", content, 84 + 50 * t)[5::3]) for t in range(count))
+        pad, gap = [], []
+        for triangle in range(count):
+            numbers = struct.unpack_from("<12f", content, 84 + 50 * triangle)
+            for k in range(3, 12, 3):
+                x, y, z = numbers[k:k + 3]
+                if (2 <= x <= 5 or 7 <= x <= 10) and 2 <= y <= 4:
+                    pad.append(round(z - top, 3))
+                # In the middle of the line right of the first pad: 0.4 mm from its edge, and a little more.
+                if 5.35 <= x <= 5.55 and 2.2 <= y <= 3.8:
+                    gap.append(round(z - top, 3))
+        self.assertTrue(gap)
+        self.assertFalse([z for z in pad if -1 < z < 0], "copper was cut")
+        self.assertLessEqual(max(gap), -0.2)
+
+    def test_sizes_and_places(self):
+        picture = self.png("a.png", self.PADS)
+        words = ("--profile", "srm-20", "--tool", 0.4, "--depth", 0.1, "-o", "-")
+        done = ask("rml1", "from-png", picture, *words)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("RML1-E8123", done.stderr)
+        near = run("rml1", "from-png", picture, "--dpi", 254, *words)
+        far = run("rml1", "from-png", picture, "--dpi", 254, "--at", "10,5", *words)
+        self.assertNotEqual(near, far)
+        self.assertEqual(run("rml1", "move", self.file("n.rml", near), "--by", "10,5").count("Z"), far.count("Z"))
+        full = self.png("full.png", ["#" * 20] * 20, dpi=254)
+        done = ask("rml1", "from-png", full, *words)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("RML1-E8112", done.stderr)
+        run("rml1", "from-png", full, "--at", "5,5", *words)
+
+    def test_outline_goes_down_in_steps(self):
+        board = self.png("o.png", [" " * 60] * 10 + [" " * 10 + "#" * 40 + " " * 10] * 40 + [" " * 60] * 10, dpi=254)
+        stream = run("rml1", "from-png", board, "--profile", "srm-20", "--tool", 0.8, "--depth", 1.5, "--step", 0.5,
+                     "--outline", "-o", "-")
+        for depth in (",-50;", ",-100;", ",-150;"):
+            self.assertIn(depth, stream)
+        run("rml1", "from-png", board, "--tool", 1, "--depth", 1, "--outline", "--passes", 2, code=2)
+
+    def test_refusals(self):
+        words = ("--tool", 0.4, "--depth", 0.1, "--dpi", 254, "-o", self.folder / "x.rml")
+        done = ask("rml1", "from-png", self.file("no.png", "no picture"), *words)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("RML1-E8121", done.stderr)
+        done = ask("rml1", "from-png", self.png("black.png", ["   "]), *words)
+        self.assertIn("RML1-E8124", done.stderr)
+        run("rml1", "from-png", self.png("dot.png", [" # "]), "--tool", 0, "--depth", 0.1, "--dpi", 254, code=2)
+        run("rml1", "from-png", self.folder / "dot.png", "--depth", 0.1, code=2)
+        self.assertFalse((self.folder / "x.rml").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
