@@ -248,20 +248,28 @@ class FromPng(Tools):
         self.assertIn("verdict       GOOD", simulated)
         content = stl.read_bytes()
         count = struct.unpack_from("<I", content, 80)[0]
-        top = max(max(struct.unpack_from("<12f", content, 84 + 50 * t)[5::3]) for t in range(count))
-        pad, gap = [], []
-        for triangle in range(count):
-            numbers = struct.unpack_from("<12f", content, 84 + 50 * triangle)
-            for k in range(3, 12, 3):
-                x, y, z = numbers[k:k + 3]
-                if (2 <= x <= 5 or 7 <= x <= 10) and 2 <= y <= 4:
-                    pad.append(round(z - top, 3))
-                # In the middle of the line right of the first pad: 0.4 mm from its edge, and a little more.
-                if 5.35 <= x <= 5.55 and 2.2 <= y <= 3.8:
-                    gap.append(round(z - top, 3))
-        self.assertTrue(gap)
-        self.assertFalse([z for z in pad if -1 < z < 0], "copper was cut")
-        self.assertLessEqual(max(gap), -0.2)
+        triangles = [struct.unpack_from("<9f", content, 84 + 50 * n + 12) for n in range(count)]
+        top = max(max(one[2::3]) for one in triangles)
+
+        def height(x, y):
+            """Of the highest surface over a place."""
+            heights = []
+            for ax, ay, az, bx, by, bz, cx, cy, cz in triangles:
+                twice = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
+                if abs(twice) < 1e-9:
+                    continue  # a wall
+                v = ((x - ax) * (cy - ay) - (cx - ax) * (y - ay)) / twice
+                w = ((bx - ax) * (y - ay) - (x - ax) * (by - ay)) / twice
+                if min(v, w, 1 - v - w) >= -1e-9:
+                    heights.append(az + v * (bz - az) + w * (cz - az))
+            return max(heights) - top
+
+        ways = [0.05 + 0.1 * n for n in range(20)]
+        pads = [height(left + 1.4 * x, 2 + y) for left in (2, 7) for x in ways for y in ways]
+        self.assertAlmostEqual(min(pads), 0.0, places=3, msg="copper was cut")
+        # In the middle of the line right of the first pad: 0.4 mm from its edge, and a little more.
+        gap = [height(x, 2.2 + 0.8 * y) for x in (5.35, 5.45, 5.55) for y in ways]
+        self.assertAlmostEqual(max(gap), -0.2, places=3)
 
     def test_sizes_and_places(self):
         picture = self.png("a.png", self.PADS)

@@ -6,9 +6,9 @@
 #include <optional>
 #include <utility>
 
+#include "engine/core/alignment.h"
 #include "engine/optimo/language/linker.h"
 #include "engine/optimo/language/printer.h"
-#include "engine/core/alignment.h"
 #include "engine/optimo/offline/semantic_step.h"
 
 namespace rmlcell::optimo {
