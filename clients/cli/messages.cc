@@ -278,9 +278,10 @@ std::string MachineText(const machine::MachineFamily& family, const std::string&
   const auto found = std::ranges::find(profiles, profile, &machine::MachineProfile::id);
   if (found != profiles.end()) return std::string(found->title) + " (" + profile + ")";
   if (profiles.empty()) return std::string(family.info().title);
-  // The first one is what the defaults of the family are.
-  return std::string(profiles.front().title) + " (" + std::string(profiles.front().id) +
-         "): no profile was named";
+  const auto made =
+      std::ranges::find(profiles, family.info().default_profile, &machine::MachineProfile::id);
+  const machine::MachineProfile& taken = made != profiles.end() ? *made : profiles.front();
+  return std::string(taken.title) + " (" + std::string(taken.id) + "): no profile was named";
 }
 
 // Where the tip ends and went: as the program counts, or the machine.

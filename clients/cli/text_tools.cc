@@ -171,7 +171,13 @@ int Link(const LinkOptions& options) {
     what += (i == 0 ? " with FUNCTION " : ", ") + std::to_string(linked->functions[i]);
   }
   what += "; store it in slot " + std::to_string(loaded->main_slot + kExecutableOffset);
-  return answer.Deliver(linked->executable, options.output, what);
+  std::string output = options.output;
+  if (output.empty()) {
+    const auto main =
+        std::ranges::find(loaded->programs, loaded->main_slot, &simulation::MemoryProgram::slot);
+    output = WithExtension(main->file_name, tools.extensions().executable);
+  }
+  return answer.Deliver(linked->executable, output, what);
 }
 
 int Format(const FormatOptions& options) {
@@ -206,7 +212,8 @@ int Format(const FormatOptions& options) {
   return exit_code;
 }
 
-int Convert(const std::vector<std::string>& arguments, bool json) {
+int Convert(const ConvertOptions& options) {
+  const std::vector<std::string>& arguments = options.arguments;
   const auto family = families::FamilyWithTools(arguments.empty() ? "" : arguments.front());
   if (!family) return Refuse(family.error());
   const machine::Tools& tools = *(*family)->tools();
@@ -219,7 +226,8 @@ int Convert(const std::vector<std::string>& arguments, bool json) {
         "convert FILE [OUT] /i     any other name, to inches; /m to millimetres");
     return kUsage;
   }
-  const machine::ConvertRequest& wanted = **request;
+  machine::ConvertRequest wanted = **request;
+  if (!options.output.empty()) wanted.output = options.output;
   const Result<std::string> text = bridge::ReadFile(wanted.input, kFileBytesMax);
   if (!text) return Refuse({ErrorCode::kConvertInput, text.error().detail, {}});
   if (tools.FormOf(wanted.input, *text) == FileForm::kObject) {
@@ -229,15 +237,22 @@ int Convert(const std::vector<std::string>& arguments, bool json) {
   }
   const machine::RewrittenText converted =
       tools.Convert(*text, wanted.direction, Names(wanted.input, wanted.output));
-  ToolAnswer answer(wanted.input, json);
+  ToolAnswer answer(wanted.input, options.json);
   answer.Found(converted.diagnostics, 0, *text);
-  if (const Status written = WriteWholeFile(wanted.output, converted.text); !written) {
-    return Refuse({ErrorCode::kConvertOutput, written.error().detail, {}});
+  const int exit_code = HasErrors(converted.diagnostics) ? kProgramErrors : kGood;
+  const bool to_output = wanted.output == "-";
+  if (to_output && !options.json) {
+    PrintRaw(converted.text);
+    return exit_code;
+  }
+  if (!to_output) {
+    if (const Status written = WriteWholeFile(wanted.output, converted.text); !written)
+      return Refuse({ErrorCode::kConvertOutput, written.error().detail, {}});
   }
   return answer.Written(converted.text, wanted.output,
                         wanted.direction == machine::Direction::kToInch ? "inches and degrees"
                                                                         : "millimetres and radians",
-                        HasErrors(converted.diagnostics) ? kProgramErrors : kGood);
+                        exit_code);
 }
 
 int Compensate(const ToolOptions& options) {

@@ -29,7 +29,7 @@ struct LinkOptions {
   std::vector<std::string> files;
   std::vector<std::string> slots;  // "44=FILE"
   int main_slot = 0;
-  std::string output;
+  std::string output;  // empty: that of the program, with .X
   bool json = false;
 };
 int Link(const LinkOptions& options);
@@ -42,8 +42,14 @@ struct FormatOptions {
 };
 int Format(const FormatOptions& options);
 
-// The arguments of CONVERT: file, optional output, /i or /m (OPT-8.54 to 8.67).
-int Convert(const std::vector<std::string>& arguments, bool json);
+// The arguments of CONVERT: file, optional output, /i or /m (OPT-8.54 to 8.67). `output` goes
+// before the one among them.
+struct ConvertOptions {
+  std::vector<std::string> arguments;
+  std::string output;
+  bool json = false;
+};
+int Convert(const ConvertOptions& options);
 
 int Compensate(const ToolOptions& options);
 

@@ -70,7 +70,7 @@ void AddTextToolVerbs(CLI::App& app, int& exit_code) {
         app.add_subcommand("link", "Make the executable of a program with the FUNCTIONs it needs");
     verb->footer(
         "Examples:\n"
-        "  rmlcell link 12.S progs/ -o 112.X                FUNCTIONs from progs/44.S and the like\n"
+        "  rmlcell link 12.S progs/                         writes 12.X; FUNCTIONs from progs/44.S and the like\n"
         "  rmlcell link 12.S --slot 44=f.S -o 112.X && rmlcell put optimo-1 112 112.X");
     verb->add_option("FILES", arguments->files,
                      "the program, then further ones or folders of 44.S ...")
@@ -81,8 +81,7 @@ void AddTextToolVerbs(CLI::App& app, int& exit_code) {
     verb->add_option("--main", arguments->main_slot, "slot of the program")
         ->check(CLI::Range(1, 99));
     verb->add_option("-o,--output", arguments->output,
-                     "file of the executable, - for standard output")
-        ->required();
+                     "file of the executable, - for standard output; default: FILE with .X");
     verb->add_flag("--json", arguments->json, kAnswerAsJson);
     verb->callback([arguments, &exit_code] { exit_code = Link(*arguments); });
   }
@@ -101,18 +100,20 @@ void AddTextToolVerbs(CLI::App& app, int& exit_code) {
     verb->callback([options, &exit_code] { exit_code = Format(*options); });
   }
   {
-    auto arguments = std::make_shared<std::vector<std::string>>();
+    auto arguments = std::make_shared<ConvertOptions>();
     CLI::App* verb =
         app.add_subcommand("convert", "Convert a source between inches/degrees and mm/rad");
     verb->footer(
         "Examples:\n"
         "  rmlcell convert part.SI              writes part.S\n"
+        "  rmlcell convert part.S -o -          to standard output\n"
         "  rmlcell convert part.S new           writes new.SI\n"
         "  rmlcell convert old.txt new.S /m     another name: say which way");
-    verb->add_option("ARGUMENTS", *arguments, "FILE [OUT] [/i or /m]");
-    auto json = std::make_shared<bool>(false);
-    verb->add_flag("--json", *json, kAnswerAsJson);
-    verb->callback([arguments, json, &exit_code] { exit_code = Convert(*arguments, *json); });
+    verb->add_option("ARGUMENTS", arguments->arguments, "FILE [OUT] [/i or /m]");
+    verb->add_option("-o,--output", arguments->output,
+                     "file of the result, - for standard output; default: FILE with .SI or .S");
+    verb->add_flag("--json", arguments->json, kAnswerAsJson);
+    verb->callback([arguments, &exit_code] { exit_code = Convert(*arguments); });
   }
   {
     auto arguments = std::make_shared<ToolOptions>();

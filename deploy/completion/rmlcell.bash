@@ -72,7 +72,7 @@ _rmlcell_options() {
     decompile | compensate | list) echo "--help --output --json" ;;
     link) echo "--help --slot --main --output --json" ;;
     format) echo "--help --check --json" ;;
-    convert) echo "--help --json" ;;
+    convert) echo "--help --output --json" ;;
     lsp) echo "--help --stdio" ;;
     transform) echo "--help --move --turn --shift --output --json" ;;
     machines | programs | delete | stale | projects | job | cancel) echo "$remote" ;;

@@ -70,10 +70,11 @@ bool SameName(std::string_view a, std::string_view b) {
 Result<Parameters> MakeParameters(const MachineFamily& family, const std::string& profile,
                                   const std::map<std::string, std::string>& parameters) {
   Parameters made(family.parameters());
-  if (!profile.empty()) {
+  const std::string wanted(profile.empty() ? family.info().default_profile : profile);
+  if (!wanted.empty()) {
     const auto profiles = family.profiles();
     const auto found = std::ranges::find_if(
-        profiles, [&](const MachineProfile& candidate) { return SameName(candidate.id, profile); });
+        profiles, [&](const MachineProfile& candidate) { return SameName(candidate.id, wanted); });
     if (found == profiles.end()) {
       std::string known;
       for (const MachineProfile& candidate : profiles) known += " " + std::string(candidate.id);

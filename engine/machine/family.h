@@ -32,6 +32,8 @@ struct FamilyInfo {
   bool has_schedules = false;          // laser schedules and process definitions
   bool checked_by_running = false;  // Translate does not follow the motion: CHECK runs the program
   bool hold_in_remote = false;      // the HOLD key works in mode REMOTE, too
+  // What a machine is for which nobody named a profile; empty: its parameters' defaults.
+  std::string_view default_profile{};
   // Parameters that say where program zero lies on the machine: X, Y and Z, in mm. Empty: programs
   // set it themselves.
   std::array<std::string_view, 3> origin_parameters{};

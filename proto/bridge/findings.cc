@@ -332,9 +332,15 @@ int RpcCode(ErrorCode code) {
 
 std::string ErrorText(const Error& error) {
   const CatalogueEntry& entry = Lookup(error.code);
-  std::string what(entry.when);
-  if (!error.detail.empty()) what += ": " + Utf8(error.detail);
-  return CodeText(error.code) + ": " + what + "; " + std::string(entry.advice);
+  // What is wrong with a request is what its detail says; the rest would only be in the way.
+  const bool of_request =
+      error.code == ErrorCode::kCellInvalidArgument || error.code == ErrorCode::kCellUsage;
+  std::string text = CodeText(error.code) + ": ";
+  if (error.detail.empty() || !of_request) text += entry.when;
+  if (!error.detail.empty()) text += (of_request ? "" : ": ") + Utf8(error.detail);
+  if (error.detail.empty() || error.code != ErrorCode::kCellInvalidArgument)
+    text += "; " + std::string(entry.advice);
+  return text;
 }
 
 google::rpc::Status ToRpcStatus(const Error& error, const std::vector<Diagnostic>& diagnostics,

@@ -84,7 +84,7 @@ TEST(FindingsText, ARefusalSaysWhyAndGivesTheCodeOfWrongUse) {
   EXPECT_EQ(told.exit_code, 2);
   EXPECT_EQ(told.output, "");
   EXPECT_EQ(told.errors,
-            "rmlcell: CELL-E9026: the command was used wrongly: no program; see --help\n");
+            "rmlcell: CELL-E9026: no program; see --help\n");
 }
 
 }  // namespace
