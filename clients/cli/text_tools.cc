@@ -221,7 +221,7 @@ int Convert(const std::vector<std::string>& arguments, bool json) {
   }
   const machine::ConvertRequest& wanted = **request;
   const Result<std::string> text = bridge::ReadFile(wanted.input, kFileBytesMax);
-  if (!text) return Refuse({ErrorCode::kConvertInput, text.error().detail, {}});
+  if (!text) return Refuse({tools.codes().convert_input, text.error().detail, {}});
   if (tools.FormOf(wanted.input, *text) == FileForm::kObject) {
     return Refuse({ErrorCode::kCellBadText,
                    wanted.input + " is an object; rmlcell decompile gives its source",
@@ -232,7 +232,7 @@ int Convert(const std::vector<std::string>& arguments, bool json) {
   ToolAnswer answer(wanted.input, json);
   answer.Found(converted.diagnostics, 0, *text);
   if (const Status written = WriteWholeFile(wanted.output, converted.text); !written) {
-    return Refuse({ErrorCode::kConvertOutput, written.error().detail, {}});
+    return Refuse({tools.codes().convert_output, written.error().detail, {}});
   }
   return answer.Written(converted.text, wanted.output,
                         wanted.direction == machine::Direction::kToInch ? "inches and degrees"
@@ -263,7 +263,7 @@ int Rewrite(const ToolOptions& options,
   const std::string& file = options.file;
   const Result<Source> source = ReadSource(file);
   if (!source) return Refuse(source.error());
-  if (source->inch) return Refuse({ErrorCode::kSourceIsInch, file, {}});
+  if (source->inch) return Refuse({source->tools().codes().source_is_inch, file, {}});
   const machine::RewrittenText made = (source->tools().*rewrite)(source->text, by);
   ToolAnswer answer(file, options.json);
   answer.Found(made.diagnostics, 0, source->text);

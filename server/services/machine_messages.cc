@@ -45,7 +45,7 @@ v1::Family ToProto(const machine::MachineFamily& family) {
   for (const std::string& extension : Words(info.extensions)) message.add_extensions(extension);
   for (const std::string& axis : Words(info.axes)) message.add_axes(axis);
   message.set_has_executables(info.has_executables);
-  message.set_has_schedules(info.has_schedules);
+  message.set_has_schedules(info.schedules > 0);
   for (const machine::ParameterInfo& parameter : family.parameters())
     *message.add_parameters() = ToProto(parameter);
   for (const machine::MachineProfile& profile : family.profiles()) {

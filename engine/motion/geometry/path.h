@@ -48,7 +48,7 @@ class PathPiece {
   // How three points make a path; motion.md 3.2.
   enum class ArcCase { kArc, kLine, kLineWarned, kNoTipMotion };
   struct Arc3;
-  // Errors: ArcUndefined (7305) when no single circle goes through the three points.
+  // Errors: CellArcUndefined when no single circle goes through the three points.
   static Result<Arc3> ArcThrough(const TipPose& from, const MachinePoint& via, const TipPose& to);
 
   // A turn of `sweep_rad` about `normal` (unit) through `from`; right-handed, sweep above 0.

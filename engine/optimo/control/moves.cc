@@ -4,6 +4,7 @@
 
 #include "engine/core/number_text.h"
 #include "engine/motion/geometry/hole.h"
+#include "engine/optimo/machine/motion_errors.h"
 
 namespace rmlcell::optimo {
 namespace {
@@ -203,7 +204,7 @@ Result<motion::PathPiece> Moves::CirclePath(const Instruction& i, const motion::
   const Result<motion::TipPose> via = ViaOf(i);
   if (!via) return via.error();
   const Result<motion::PathPiece::Arc3> arc = motion::PathPiece::ArcThrough(from, via->tip, target);
-  if (!arc) return arc.error();
+  if (!arc) return OnOptimo(arc.error());
   if (arc->kind == motion::PathPiece::ArcCase::kLineWarned) {
     telling_.Warn(ErrorCode::kArcIsStraight, "the three points lie on a line", "OPT-B.16");
   }
@@ -232,7 +233,7 @@ Result<bool> Moves::AppendHole(const Programmed& move, const motion::TipPose& fr
                                                              .radius_mm = radius,
                                                              .program_x = program_axes.col(0),
                                                              .program_y = program_axes.col(1)});
-  if (!hole) return hole.error();
+  if (!hole) return OnOptimo(hole.error());
   if (hole->starts_on_axis && parameters_.teach_simulator) {
     return Error{
         ErrorCode::kHoleStartOnAxis, "the hole starts on the line from centre to normal point", {}};

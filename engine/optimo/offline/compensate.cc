@@ -288,7 +288,7 @@ void Compensator::AddLeg(const Instruction& i) {
   if (path_ == PathType::kCir && i.Has(kVia)) {
     leg.via = ProgramVector{*values[5], *values[6], *values[7]};
     const auto arc = motion::PathPiece::ArcThrough({leg.from}, *leg.via, {leg.to});
-    if (!arc) Report(arc.error().code, i, arc.error().detail, "OPT-E.7305");
+    if (!arc) Report(ErrorCode::kArcUndefined, i, arc.error().detail, "OPT-E.7305");
   }
   Prepare(leg);
   if (leg.via) {

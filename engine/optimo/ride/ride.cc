@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/optimo/machine/motion_errors.h"
+
 namespace rmlcell::optimo {
 namespace {
 
@@ -42,7 +44,8 @@ void Ride::Drain() {
 
 Status Ride::Append(motion::MoveCommand command, const MoveNote& note) {
   command.tag = s_.next_tag++;
-  if (Status appended = s_.planner.Append(command); !appended) return appended;
+  if (const Status appended = s_.planner.Append(command); !appended)
+    return OnOptimo(appended.error());
   s_.notes.emplace_back(command.tag, note);
   s_.planned_axes = motion::AxesOn(command.path, command.head, command.path.to());
   if (note.fly || s_.passing) s_.path.appended().push_back({.tag = command.tag, .move = command});

@@ -43,7 +43,7 @@ constexpr double kRounding_mm = 0.01;
 
 // clang-format off
 constexpr std::array kRules = {
-    CommonRule{{{ErrorCode::kTargetOutOfTravel, "travel_violations", 0.0, Verdict::kBad, "motions that leave the travel of an axis: #"}, "", "motions that leave the travel of an axis"}, TravelLeft},
+    CommonRule{{{ErrorCode::kCellTravelLeft, "travel_violations", 0.0, Verdict::kBad, "motions that leave the travel of an axis: #"}, "", "motions that leave the travel of an axis"}, TravelLeft},
     CommonRule{{{ErrorCode::kCellGouge, "gouges", 0.0, Verdict::kBad, "motions at travel speed through material: #"}, "", "motions at travel speed through the block that was given"}, Gouges},
     CommonRule{{{ErrorCode::kCellBelowBlock, "below_block", kThroughTheBlock_mm, Verdict::kBad, "the tool goes # mm below the block"}, "mm", "how far the tool goes below the block that was given"}, BelowBlock},
     CommonRule{{{ErrorCode::kCellBelowBlock, "below_block", kRounding_mm, Verdict::kDoubtful, "the tool goes # mm below the block"}, "mm", "how far the tool goes below the block that was given"}, BelowBlock},
@@ -93,8 +93,11 @@ machine::Judgement JudgeOutcome(const machine::Outcome& outcome) {
 
 machine::Judgement Judge(const RunReport& report) {
   machine::Judgement judgement = JudgeOutcome(report.outcome);
+  const machine::MachineFamily* const family = families::FindFamily(report.family);
   for (const CommonRule& rule : kRules) {
-    const machine::VerdictRule& what = rule.info.rule;
+    machine::VerdictRule what = rule.info.rule;
+    if (family != nullptr && what.code == ErrorCode::kCellTravelLeft)
+      what.code = family->info().travel_left;
     const Measured measured = rule.measure(report);
     // The outcome may have said it.
     const bool said = report.outcome.code == what.code || Told(judgement, what);
@@ -104,8 +107,7 @@ machine::Judgement Judge(const RunReport& report) {
           {.unit = std::string(rule.info.unit), .value = measured.value, .first = measured.first}));
     }
   }
-  if (const machine::MachineFamily* family = families::FindFamily(report.family))
-    AddFamilyRules(*family, report.figures, judgement);
+  if (family != nullptr) AddFamilyRules(*family, report.figures, judgement);
   return judgement;
 }
 

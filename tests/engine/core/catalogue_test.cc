@@ -169,7 +169,10 @@ TEST(Catalogue, NumbersOfTheCellKeepTheirMeaning) {
       {9308, "CellWaitsForever"},    {9309, "CellVersionMismatch"},
       {9310, "CellJoinRefused"},     {9401, "CellGouge"},
       {9402, "CellBelowBlock"},      {9403, "CellBlockUntouched"},
-      {9404, "CellCheckCutShort"},
+      {9404, "CellCheckCutShort"},   {9405, "CellTravelLeft"},
+      {9501, "CellTargetUnusable"},  {9502, "CellNoMotion"},
+      {9503, "CellArcUndefined"},    {9504, "CellHoleRadius"},
+      {9505, "CellHoleNormal"},
   };
   std::size_t rows = 0;
   for (const CatalogueEntry& entry : Catalogue()) {
@@ -178,8 +181,10 @@ TEST(Catalogue, NumbersOfTheCellKeepTheirMeaning) {
     ASSERT_TRUE(cell.contains(entry.number)) << entry.number;
     EXPECT_EQ(entry.symbol, cell.at(entry.number));
     const bool budget = entry.number >= 9301 && entry.number <= 9308;
-    const bool verdict = entry.number >= 9401;
+    const bool verdict = entry.number >= 9401 && entry.number <= 9405;
+    const bool motion = entry.number >= 9501;
     EXPECT_EQ(entry.severity, budget                 ? Severity::kBudget
+                              : motion               ? Severity::kProgram
                               : verdict              ? Severity::kWarning
                               : entry.number == 9025 ? Severity::kAdvice
                                                      : Severity::kRequest)
@@ -268,9 +273,13 @@ TEST(Catalogue, IsSearchedByWhatAPersonMayWrite) {
 // A program without a registry of families has the catalogue alone.
 TEST(Catalogue, HasNoTablesOfItsOwnWithoutFamilies) {
   EXPECT_TRUE(OwnErrorTables().empty());
-  EXPECT_EQ(FamilyPrefix(OwnErrorFamily(0)), "");
-  EXPECT_EQ(static_cast<int>(OwnError(0, 1)), 100'001);
-  EXPECT_EQ(static_cast<int>(OwnError(2, 0)), 120'000);
+  EXPECT_EQ(FamilyPrefix(OwnErrorFamily(OwnErrorTable("PLT"))), "");
+  // Letters count from 1 to the base 27: no prefix is the beginning of another one.
+  EXPECT_EQ(OwnErrorTable("A"), 1);
+  EXPECT_EQ(OwnErrorTable("AA"), 28);
+  EXPECT_EQ(OwnErrorTable("ZZZZ"), 531'440);
+  EXPECT_EQ(static_cast<int>(OwnError(1, 1)), 101'001);
+  EXPECT_EQ(static_cast<int>(OwnError(OwnErrorTable("ZZZZ"), 999)), 531'540'999);
 }
 
 }  // namespace

@@ -76,12 +76,12 @@ TEST(PathArc, DegenerateCases) {
   EXPECT_EQ(through({0, 0, 0}, {0, 0, 0})->path.length(), 0.0);
   for (const MachinePoint& via : {MachineVector{15, 0, 0}, MachineVector{-5, 0, 0}}) {
     ASSERT_FALSE(through(via, {10, 0, 0}));
-    EXPECT_EQ(through(via, {10, 0, 0}).error().code, ErrorCode::kArcUndefined);
+    EXPECT_EQ(through(via, {10, 0, 0}).error().code, ErrorCode::kCellArcUndefined);
   }
-  EXPECT_EQ(through({5, 5, 0}, {0, 0, 0}).error().code, ErrorCode::kArcUndefined);
+  EXPECT_EQ(through({5, 5, 0}, {0, 0, 0}).error().code, ErrorCode::kCellArcUndefined);
   const double bad = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(through({bad, 5, 0}, {9, 0, 0}).error().code, ErrorCode::kArcUndefined);
-  EXPECT_EQ(through({1, 5, 0}, {bad, 0, 0}).error().code, ErrorCode::kArcUndefined);
+  EXPECT_EQ(through({bad, 5, 0}, {9, 0, 0}).error().code, ErrorCode::kCellArcUndefined);
+  EXPECT_EQ(through({1, 5, 0}, {bad, 0, 0}).error().code, ErrorCode::kCellArcUndefined);
 }
 
 // Sagitta h over a chord of 1000: R = (c^2 / 4 + h^2) / (2 h). At R = 6e8 mm the arc still starts,

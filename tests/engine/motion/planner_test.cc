@@ -83,12 +83,12 @@ TEST(Planner, RefusesWhatWouldNeverArrive) {
   Planner planner(StandardMachine());
   MoveCommand move = LineTo({}, {10, 0, 0}, 1);
   move.speed_fraction = 0.0;
-  EXPECT_EQ(planner.Append(move).error().code, ErrorCode::kNoMotion);
+  EXPECT_EQ(planner.Append(move).error().code, ErrorCode::kCellNoMotion);
   move.speed_fraction = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(planner.Append(move).error().code, ErrorCode::kNoMotion);
+  EXPECT_EQ(planner.Append(move).error().code, ErrorCode::kCellNoMotion);
   move.speed_fraction = 1.0;
   move.acceleration_fraction = 0.00099;
-  EXPECT_EQ(planner.Append(move).error().code, ErrorCode::kNoMotion);
+  EXPECT_EQ(planner.Append(move).error().code, ErrorCode::kCellNoMotion);
   move.acceleration_fraction = 0.001;
   EXPECT_TRUE(planner.Append(move));
   planner.Stop();
@@ -110,7 +110,7 @@ TEST(Planner, RefusesWhatIsNotANumber) {
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e200}) {
     EXPECT_EQ(planner.Append(LineTo({}, {bad, 0, 0}, 1)).error().code,
-              ErrorCode::kTargetOutOfTravel);
+              ErrorCode::kCellTargetUnusable);
   }
   EXPECT_FALSE(planner.Next());
 }
