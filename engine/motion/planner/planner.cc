@@ -77,7 +77,7 @@ Status Planner::Append(const MoveCommand& move) {
     if (!IsUsable(move.path.from())) return NotUsable();
     if (NeedsAnchor(move.path, end)) {
       MoveCommand anchored = move;
-      anchored.path = PathPiece::Line(end->tip(), move.path.to().tip());
+      anchored.path = move.path.StraightFrom(*end);
       return Append(anchored);
     }
   }

@@ -178,7 +178,7 @@ void Compensator::Pass(const Instruction& i) {
 void Compensator::PassSysdef(const Instruction& i) {
   FinishChain();
   const std::optional<motion::MachinePoint> in_machine =
-      at_ ? frame_.PointToMachine(motion::ProgramPoint(*at_)) : std::nullopt;
+      at_ ? frame_.PointToMachine(motion::ProgramPoint::FromOrigin(*at_)) : std::nullopt;
   if (!frame_.Set(p_, i)) {
     Report(ErrorCode::kCompSysdef, i, "a rotation of SYSDEF is no number; it is taken as 0",
            "OPT-8.23");

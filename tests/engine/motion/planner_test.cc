@@ -256,7 +256,7 @@ TEST(Planner, TinyStepsAreNotLost) {
   while (const std::optional<PlannedItem> item = planner.Next()) {
     const PathPiece& path = std::get<PlannedMotion>(*item).path;
     EXPECT_LE((path.from().point - last.tip).norm(), 1e-15);
-    last = path.to().tip();
+    last = path.tip_to();
     length += path.length();
   }
   EXPECT_NEAR(length, 1e-4, 1.1e-6);  // the last step of up to 1e-6 mm is dropped
@@ -281,7 +281,7 @@ TEST(Planner, BendKeepsToTheArcBehindIt) {
     const PathPiece& path = std::get<PlannedMotion>(*item).path;
     EXPECT_LE((path.from().point - last.tip).norm(), 1e-12);
     EXPECT_LE((path.At(0.0).point - last.tip).norm(), 1e-9);
-    last = path.to().tip();
+    last = path.tip_to();
   }
   EXPECT_EQ(last.tip, end + (MachineVector{30, 0, 0}));
 }
@@ -305,7 +305,7 @@ TEST(Planner, WindowFullOfPointsThatABendSwallows) {
         while (const std::optional<PlannedItem> item = planner.Next()) {
           const PathPiece& path = std::get<PlannedMotion>(*item).path;
           ASSERT_LE((path.from().point - last.tip).norm(), 1e-9);
-          last = path.to().tip();
+          last = path.tip_to();
           planned += path.length();
         }
       };
