@@ -48,7 +48,7 @@ Status CheckMotions(const std::vector<CheckedFile*>& files, const machine::Input
   }
   const CheckedFile& any = *files.front();
   const Status checked = simulation::CheckTogether(*any.family, *any.parameters, programs, inputs);
-  if (!checked) return checked;
+  if (!checked) return checked.error();
   for (std::size_t n = 0; n < files.size(); ++n) {
     CheckedFile& file = *files[n];
     file.slot = programs[n].program.slot;

@@ -151,7 +151,7 @@ Status AddExecutables(const SimulateOptions& options, const machine::MachineFami
     }
     Result<std::string> bytes = bridge::ReadFile(named->file, kFileBytesMax);
     if (!bytes) return bytes.error();
-    if (const Status good = family.CheckExecutable(*bytes, *slot); !good) return good;
+    if (const Status good = family.CheckExecutable(*bytes, *slot); !good) return good.error();
     const auto program = std::ranges::find(programs, *slot, &simulation::MemoryProgram::slot);
     if (program == programs.end()) {
       return Error{ErrorCode::kCellUsage,
@@ -211,7 +211,8 @@ int TellWhyNot(const SimulateOptions& options, const LoadedFiles& loaded,
 Status WriteProducts(const SimulateOptions& options, const simulation::SimulationResult& result,
                      const std::string& toolpath) {
   if (result.material && !options.stl.empty()) {
-    if (Status written = WriteMaterial(*result.material, options.stl); !written) return written;
+    if (const Status written = WriteMaterial(*result.material, options.stl); !written)
+      return written.error();
   }
   struct Product {
     std::string file;
@@ -225,7 +226,8 @@ Status WriteProducts(const SimulateOptions& options, const simulation::Simulatio
       {options.state_out, result.machine_state}};
   for (const Product& product : products) {
     if (product.file.empty() || (product.may_be_output && product.file == "-")) continue;
-    if (Status written = WriteWholeFile(product.file, product.bytes); !written) return written;
+    if (const Status written = WriteWholeFile(product.file, product.bytes); !written)
+      return written.error();
   }
   return {};
 }

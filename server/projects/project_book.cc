@@ -56,12 +56,13 @@ Status CheckParts(const v1::Project& project) {
     const std::string slot = std::to_string(program.slot());
     const machine::FamilyInfo info = InfoFor(program.source().file_name());
     if (!IsSlot(program.slot())) return Error{info.no_slot, "slot is " + slot, {}};
-    if (Status good = CheckTitle(program.title(), "title of program " + slot); !good) return good;
+    if (const Status good = CheckTitle(program.title(), "title of program " + slot); !good)
+      return good.error();
     if (!slots.insert(program.slot()).second) return Error{info.given_twice, "slot " + slot, {}};
     if (program.source().content().empty()) {
       return Error{info.no_source, "the program of slot " + slot + " has no source", {}};
     }
-    if (Status good = CheckUnits(program); !good) return good;
+    if (const Status good = CheckUnits(program); !good) return good.error();
   }
   const machine::FamilyInfo info = InfoFor({});
   std::set<int> schedules;
@@ -70,8 +71,9 @@ Status CheckParts(const v1::Project& project) {
     if (schedule.number() < 1 || schedule.number() > info.schedules) {
       return Error{info.no_schedule, "laser schedule " + number, {}};
     }
-    if (Status good = CheckTitle(schedule.title(), "title of laser schedule " + number); !good)
-      return good;
+    if (const Status good = CheckTitle(schedule.title(), "title of laser schedule " + number);
+        !good)
+      return good.error();
     if (!schedules.insert(schedule.number()).second)
       return InvalidArgument("laser schedule " + number + " stands twice");
     if (!schedule.mode().empty() && schedule.mode() != "CW" && schedule.mode() != "PULSE") {

@@ -92,7 +92,7 @@ Status CheckMachine(const storage::MachineRecord& machine) {
       known += " " + std::string(one->info().id);
     return Error{ErrorCode::kCellUnknownFamily, "'" + machine.family + "'; there are" + known, {}};
   }
-  if (Status good = CheckTitle(machine.title, "title"); !good) return good;
+  if (const Status good = CheckTitle(machine.title, "title"); !good) return good.error();
   const auto parameters = machine::MakeParameters(*family, machine.profile, machine.parameters);
   if (!parameters) return parameters.error();
   return {};

@@ -406,13 +406,13 @@ Status Moves::ZeroAxes() {
   const motion::AxisPose& zero = parameters_.mechanical_zero;
   motion::AxisPose to = ride_.planned_axes();
   to.column.z() = zero.column.z();
-  if (Status z = ZeroGroup(0, to); !z) return z;
+  if (const Status z = ZeroGroup(0, to); !z) return z.error();
   to.a_rad = zero.a_rad;
   to.b_rad = zero.b_rad;
-  if (Status ab = ZeroGroup(1, to); !ab) return ab;
+  if (const Status ab = ZeroGroup(1, to); !ab) return ab.error();
   to.column.x() = zero.column.x();
   to.column.y() = zero.column.y();
-  if (Status xy = ZeroGroup(2, to); !xy) return xy;
+  if (const Status xy = ZeroGroup(2, to); !xy) return xy.error();
   situation_.machine.zeroed = true;
   ride_.EndChain();
   return {};
@@ -426,7 +426,7 @@ Status Moves::ZeroGroup(int group, const motion::AxisPose& to) {
   command.speed_fraction = 0.1;  // no override: OPT-4.51
   if (command.path.length() > 0.0) {
     const MoveNote note{.place = situation_.place, .path = PathType::kPtp, .last = false};
-    if (Status appended = ride_.Append(command, note); !appended) return appended;
+    if (const Status appended = ride_.Append(command, note); !appended) return appended.error();
   }
   ride_.PutAt(to);
   effects_.ShowBehind(
