@@ -19,7 +19,7 @@ Result<std::string> ParseProjectName(std::string_view name);  // "projects/brack
 Result<std::int64_t> ParseJobName(std::string_view name);     // "jobs/17"
 
 // "machines/optimo-1/programs/45", an executable by its own number. Whether the machine has such a
-// number is its family's to say (jobs/program_place.h).
+// number is its family's to say (records/program_place.h).
 struct ProgramName {
   std::string machine;
   std::int64_t number = 0;  // as it stands in the name

@@ -70,6 +70,20 @@ class TheHouse(unittest.TestCase):
             self.assertTrue(structure.LINES_MAX < count <= lines, f"{path} has {count} lines")
 
 
+class Decisions(unittest.TestCase):
+    def read(self, path):
+        with open(os.path.join(ROOT, path), encoding="utf-8") as file:
+            return file.read()
+
+    def test_0019_lists_the_instructions_with_a_parse_function_of_their_own(self):
+        source = self.read("engine/optimo/language/parser_instructions.cc")
+        body = source[source.index("bool Parser::ParseInstruction("):source.index("bool Parser::ParseOperands(")]
+        own = {word.upper() for word in re.findall(r"case Op::k(\w+):", body)}
+        page = self.read("docs/decisions/0019-stages-tables-and-one-rehearsal.md")
+        listed = re.findall(r"^  \| ([A-Z]+) \|", page, re.MULTILINE)
+        self.assertEqual(sorted(listed), sorted(own))
+
+
 class AMadeUpHouse(unittest.TestCase):
     """One good tree; each test puts one breach into it."""
 
