@@ -120,6 +120,10 @@ PathPiece PathPiece::Circle(const TipPose& from, const MachinePoint& centre,
   return piece;
 }
 
+PathPiece PathPiece::StraightFrom(const PathPose& place) const {
+  return in_axes() ? Joint(place.axes(), to_.axes()) : Line(place.tip(), to_.tip());
+}
+
 PathPiece PathPiece::Part(double s_from, double s_to) const {
   PathPiece part;
   part.AssignPart(*this, s_from, s_to);

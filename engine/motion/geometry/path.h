@@ -65,9 +65,7 @@ class PathPiece {
   }
 
   // The straight way from another place of such a path to the end of this one.
-  PathPiece StraightFrom(const PathPose& place) const {
-    return in_axes() ? Joint(place.axes(), to_.axes()) : Line(place.tip(), to_.tip());
-  }
+  PathPiece StraightFrom(const PathPose& place) const;
 
   // The piece between two values of s, 0 <= s_from < s_to <= length(). Not for sigma pieces.
   PathPiece Part(double s_from, double s_to) const;
