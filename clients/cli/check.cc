@@ -14,6 +14,7 @@
 #include "engine/core/number_text.h"
 #include "engine/families/families.h"
 #include "engine/simulation/run/joint_check.h"
+#include "engine/simulation/run/rehearsal.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/setup.h"
@@ -47,7 +48,7 @@ Status CheckMotions(const std::vector<CheckedFile*>& files, const machine::Input
   }
   const CheckedFile& any = *files.front();
   const Status checked = simulation::CheckTogether(*any.family, *any.parameters, programs, inputs);
-  if (!checked) return checked;
+  if (!checked) return checked.error();
   for (std::size_t n = 0; n < files.size(); ++n) {
     CheckedFile& file = *files[n];
     file.slot = programs[n].program.slot;
@@ -112,22 +113,41 @@ int Show(const CheckedFile& file, const CheckOptions& options) {
   return exit_code;
 }
 
+// --fix: each by its tools, judged by the check that a check is.
+int FixFiles(const std::vector<CheckedFile>& files, const CheckOptions& options) {
+  int exit_code = kGood;
+  for (const CheckedFile& file : files) {
+    if (file.family->tools() == nullptr) {
+      return Refuse({ErrorCode::kCellUsage,
+                     file.name + ": a stream of " + std::string(file.family->info().title) +
+                         " has nothing to fix",
+                     {}});
+    }
+    const Result<std::string> text = bridge::ReadFile(file.name, kFileBytesMax);
+    if (!text) return Refuse(text.error());
+    if (text->empty()) return Refuse({ErrorCode::kCellEmptyProgram, file.name, {}});
+    const auto check = [&](const machine::SourceFile& source) {
+      const std::string bytes(source.bytes);
+      return simulation::TranslateProgram(*file.family, *file.parameters,
+                                          {.file_name = std::string(source.name),
+                                           .bytes = simulation::Borrowed(bytes),
+                                           .is_source = true},
+                                          {.advice = !options.errors_only});
+    };
+    exit_code =
+        std::max(exit_code, FixFile(file.name, *text, check, {options.dry_run, options.json}));
+    if (exit_code > kProgramErrors) return exit_code;
+  }
+  return exit_code;
+}
+
 }  // namespace
 
 int Check(const CheckOptions& options) {
   const Result<bridge::MachineFile> machine = ReadMachine(options.machine);
   if (!machine) return Refuse(machine.error());
-  machine::InputScript inputs;
-  if (!options.inputs_file.empty()) {
-    const Result<std::string> text = bridge::ReadFile(options.inputs_file, kFileBytesMax);
-    if (!text) return Refuse(text.error());
-    v1::SimulationOptions scripted;
-    const Status parsed =
-        bridge::ParseInputFile(*text, options.inputs_file, families::OverrideMax(), scripted);
-    if (!parsed) return Refuse(parsed.error());
-    inputs = bridge::InputsOf(scripted);
-  }
   std::vector<CheckedFile> files;
+  double override_max = 0.0;  // of any of their machines: one script is for all
   for (const std::string& name : options.files) {
     const auto family = FamilyFor(machine->family, name);
     if (!family) return Refuse(family.error());
@@ -137,28 +157,20 @@ int Check(const CheckOptions& options) {
     auto parameters = machine::MakeParameters(**family, machine->profile, changed);
     if (!parameters) return Refuse(parameters.error());
     files.push_back({.name = name, .family = *family, .parameters = *std::move(parameters)});
+    override_max = std::max(override_max, (*family)->info().override_max_percent);
   }
+  machine::InputScript inputs;
+  if (!options.inputs_file.empty()) {
+    const Result<std::string> text = bridge::ReadFile(options.inputs_file, kFileBytesMax);
+    if (!text) return Refuse(text.error());
+    v1::SimulationOptions scripted;
+    const Status parsed =
+        bridge::ParseInputFile(*text, options.inputs_file, override_max, scripted);
+    if (!parsed) return Refuse(parsed.error());
+    inputs = bridge::InputsOf(scripted);
+  }
+  if (options.fix) return FixFiles(files, options);
   int exit_code = kGood;
-  if (options.fix) {
-    for (const CheckedFile& file : files) {
-      if (!file.family->info().has_executables) {
-        return Refuse({ErrorCode::kCellUsage,
-                       file.name + ": a stream of " + std::string(file.family->info().title) +
-                           " has nothing to fix",
-                       {}});
-      }
-      const Result<std::string> text = bridge::ReadFile(file.name, kFileBytesMax);
-      if (!text) return Refuse(text.error());
-      if (text->empty()) return Refuse({ErrorCode::kCellEmptyProgram, file.name, {}});
-      const auto check = [&](const machine::SourceFile& source) {
-        return file.family->Translate(source, *file.parameters, {.advice = !options.errors_only});
-      };
-      exit_code =
-          std::max(exit_code, FixFile(file.name, *text, check, {options.dry_run, options.json}));
-      if (exit_code > kProgramErrors) return exit_code;
-    }
-    return exit_code;
-  }
   std::map<const machine::MachineFamily*, std::vector<CheckedFile*>> to_run;
   for (CheckedFile& file : files) {
     if (!file.family->info().checked_by_running) continue;

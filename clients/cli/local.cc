@@ -137,25 +137,25 @@ Result<v1::SimulationOptions> OptionsMessage(const SimulateOptions& options,
 Status AddExecutables(const SimulateOptions& options, const machine::MachineFamily& family,
                       std::vector<simulation::MemoryProgram>& programs, std::vector<int>& to_make) {
   for (const std::string& text : options.executables) {
-    const Result<std::pair<int, std::string>> named = ParseSlotFile(text);
+    const Result<SlotFile> named = ParseSlotFile(text);
     if (!named) return named.error();
-    if (named->second.empty()) {
-      if (std::ranges::find(programs, named->first, &simulation::MemoryProgram::slot) ==
-          programs.end()) {
+    const Result<int> slot = named->Slot(family);
+    if (!slot) return slot.error();
+    if (named->file.empty()) {
+      if (std::ranges::find(programs, *slot, &simulation::MemoryProgram::slot) == programs.end()) {
         return Error{
             ErrorCode::kCellUsage, "--executable " + text + ": there is no such program", {}};
       }
-      to_make.push_back(named->first);
+      to_make.push_back(*slot);
       continue;
     }
-    Result<std::string> bytes = bridge::ReadFile(named->second, kFileBytesMax);
+    Result<std::string> bytes = bridge::ReadFile(named->file, kFileBytesMax);
     if (!bytes) return bytes.error();
-    if (const Status good = family.CheckExecutable(*bytes, named->first); !good) return good;
-    const auto program =
-        std::ranges::find(programs, named->first, &simulation::MemoryProgram::slot);
+    if (const Status good = family.CheckExecutable(*bytes, *slot); !good) return good.error();
+    const auto program = std::ranges::find(programs, *slot, &simulation::MemoryProgram::slot);
     if (program == programs.end()) {
       return Error{ErrorCode::kCellUsage,
-                   "--executable " + text + ": there is no program " + std::to_string(named->first),
+                   "--executable " + text + ": there is no program " + std::to_string(*slot),
                    {}};
     }
     program->executable = std::make_shared<const std::string>(*std::move(bytes));
@@ -174,7 +174,7 @@ Status MakeExecutable(const machine::MachineFamily& family, machine::RunSetup& s
   const auto found = made.find(slot);
   if (found == made.end()) {
     return Error{
-        (*run)->outcome().code.value_or(ErrorCode::kProgramMissing), (*run)->outcome().detail, {}};
+        (*run)->outcome().code.value_or(family.info().empty_slot), (*run)->outcome().detail, {}};
   }
   setup.programs[slot].executable = std::make_shared<const std::string>(found->second);
   return {};
@@ -211,8 +211,9 @@ int TellWhyNot(const SimulateOptions& options, const LoadedFiles& loaded,
 Status WriteProducts(const SimulateOptions& options, const simulation::SimulationResult& result,
                      const std::string& toolpath) {
   if (result.material) {
-    if (Status written = WriteMaterial(*result.material, result.target, options.milling); !written)
-      return written;
+    if (const Status written = WriteMaterial(*result.material, result.target, options.milling);
+        !written)
+      return written.error();
   }
   struct Product {
     std::string file;
@@ -226,7 +227,8 @@ Status WriteProducts(const SimulateOptions& options, const simulation::Simulatio
       {options.state_out, result.machine_state}};
   for (const Product& product : products) {
     if (product.file.empty() || (product.may_be_output && product.file == "-")) continue;
-    if (Status written = WriteWholeFile(product.file, product.bytes); !written) return written;
+    if (const Status written = WriteWholeFile(product.file, product.bytes); !written)
+      return written.error();
   }
   return {};
 }

@@ -7,6 +7,7 @@
 #include "clients/cli/terminal.h"
 #include "clients/cli/verbs.h"
 #include "clients/cli/version.h"
+#include "engine/families/families.h"
 
 // The rmlcell command: what it can do, and nothing of how.
 namespace {
@@ -43,10 +44,21 @@ errors or its verdict is BAD (with --strict DOUBTFUL, too), 2 wrong use, 3 serve
 
 constexpr const char* kMachineCoordinatesText =
     "positions from the zero of the machine, not of the work";
+// "optimo or rml1".
+std::string FamilyNames() {
+  std::string names;
+  const auto known = rmlcell::families::Families();
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (i > 0) names += i + 1 < known.size() ? ", " : " or ";
+    names += known[i]->info().id;
+  }
+  return names;
+}
+
 constexpr const char* kStrictText = "exit with 1 when the verdict is DOUBTFUL, too";
 
 void AddMachineOptions(CLI::App* verb, MachineChoice& machine) {
-  verb->add_option("--family", machine.family, "optimo or rml1; default: from the file name");
+  verb->add_option("--family", machine.family, FamilyNames() + "; default: from the file name");
   verb->add_option("--profile", machine.profile,
                    "profile of a machine model, such as srm-20 or pw-1993");
   verb->add_option("--machine", machine.file, "machine file (TOML): family, profile, [parameters]");
@@ -168,7 +180,7 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
         "  rmlcell parameters                                    families and their profiles\n"
         "  rmlcell parameters optimo > mine.toml                 a file for --machine, to be changed\n"
         "  rmlcell parameters rml1 --profile srm-20 | less");
-    verb->add_option("FAMILY", *family, "optimo or rml1; none: list the families");
+    verb->add_option("FAMILY", *family, FamilyNames() + "; none: list the families");
     verb->add_option("--profile", *profile, "values of this profile");
     auto json = std::make_shared<bool>(false);
     verb->add_flag("--json", *json, "as JSON");

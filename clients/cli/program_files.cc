@@ -127,75 +127,98 @@ Result<const machine::MachineFamily*> FamilyFor(const std::string& id,
   return Error{ErrorCode::kCellFamilyUnknownFromName, "'" + file_name + "': give --family", {}};
 }
 
-Result<std::pair<int, std::string>> ParseSlotFile(const std::string& text) {
+Result<int> SlotFile::Slot(const machine::MachineFamily& family) const {
+  if (number >= kSlotMin && number <= kSlotMax) return static_cast<int>(number);
+  return Error{family.info().no_slot, "program number is " + std::to_string(number), {}};
+}
+
+Result<SlotFile> ParseSlotFile(const std::string& text) {
   const std::size_t equals = text.find('=');
   const auto number = ParseInteger(text.substr(0, equals));
   if (!number) return Error{ErrorCode::kCellUsage, "'" + text + "': write 44=FILE", {}};
-  if (*number < kSlotMin || *number > kSlotMax) {
-    return Error{ErrorCode::kProgramNumber, "program number is " + std::to_string(*number), {}};
-  }
-  return std::pair(static_cast<int>(*number),
-                   equals == std::string::npos ? std::string() : text.substr(equals + 1));
+  return SlotFile{*number, equals == std::string::npos ? std::string() : text.substr(equals + 1)};
 }
+
+namespace {
+
+struct FoundFiles {
+  std::vector<std::pair<int, std::string>> files;  // slot 0: to be chosen
+  std::set<std::string> in_folders;
+  const machine::MachineFamily* family = nullptr;  // of the first of them; null: none yet
+};
+
+// A folder may hold programs of several machines: only those of the family of the first file count.
+void AddFolder(const std::string& folder, FoundFiles& found) {
+  std::error_code error;
+  std::vector<fs::path> inside;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    inside.push_back(entry.path());
+  std::ranges::sort(inside);
+  for (const fs::path& path : inside) {
+    const auto slot = SlotFromName(path);
+    const machine::MachineFamily* family = families::FamilyOfFileName(path.string());
+    const bool fits = family != nullptr && (found.family == nullptr || family == found.family);
+    if (!slot || !fits || !fs::is_regular_file(path, error)) continue;
+    found.family = family;
+    // The main program may lie in the folder, too.
+    const bool again = std::ranges::any_of(found.files, [&](const auto& one) {
+      return one.first == *slot && fs::equivalent(one.second, path, error);
+    });
+    if (again) continue;
+    found.files.emplace_back(*slot, path.string());
+    found.in_folders.insert(path.string());
+  }
+}
+
+// What --slot names: 44=FILE.
+Status AddNamed(const std::string& text, FoundFiles& found) {
+  const Result<SlotFile> named = ParseSlotFile(text);
+  if (!named) return named.error();
+  if (named->file.empty()) return Error{ErrorCode::kCellUsage, "'" + text + "': write 44=FILE", {}};
+  const machine::MachineFamily* family = found.family;
+  if (family == nullptr) family = families::FamilyOfFileName(named->file);
+  if (family == nullptr)
+    family = families::FamilyWithTools({}).value();  // a name that says nothing
+  const Result<int> slot = named->Slot(*family);
+  if (!slot) return slot.error();
+  found.files.emplace_back(*slot, named->file);
+  return {};
+}
+
+}  // namespace
 
 Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files,
                               const std::vector<std::string>& slots, int main_slot,
                               const std::string& family_id, EmptyInFolders empty) {
-  std::vector<std::pair<int, std::string>> found;  // slot 0: to be chosen
-  std::set<std::string> in_folders;
+  FoundFiles found;
   std::string first_file;
-  // A folder may hold programs of several machines: only those of the family of the first file
-  // count.
   std::error_code ignored;
   const auto named_file = std::ranges::find_if(
       files, [&](const std::string& file) { return !fs::is_directory(file, ignored); });
-  const machine::MachineFamily* wanted = nullptr;
   if (!family_id.empty() || named_file != files.end()) {
     const auto family =
         FamilyFor(family_id, named_file != files.end() ? *named_file : std::string());
     if (!family) return family.error();
-    wanted = *family;
+    found.family = *family;
   }
   for (const std::string& file : files) {
     std::error_code error;
     if (!fs::is_directory(file, error)) {
       if (first_file.empty()) first_file = file;
-      found.emplace_back(SlotFromName(file).value_or(0), file);
+      found.files.emplace_back(SlotFromName(file).value_or(0), file);
       continue;
     }
-    std::vector<fs::path> inside;
-    for (const fs::directory_entry& entry : fs::directory_iterator(file, error))
-      inside.push_back(entry.path());
-    std::ranges::sort(inside);
-    for (const fs::path& path : inside) {
-      const auto slot = SlotFromName(path);
-      const machine::MachineFamily* family = families::FamilyOfFileName(path.string());
-      if (slot && family != nullptr && (wanted == nullptr || family == wanted) &&
-          fs::is_regular_file(path, error)) {
-        wanted = family;
-        // The main program may lie in the folder, too.
-        const bool again = std::ranges::any_of(found, [&](const auto& one) {
-          return one.first == *slot && fs::equivalent(one.second, path, ignored);
-        });
-        if (again) continue;
-        found.emplace_back(*slot, path.string());
-        if (empty == EmptyInFolders::kTaken) in_folders.insert(path.string());
-      }
-    }
+    AddFolder(file, found);
   }
   for (const std::string& text : slots) {
-    Result<std::pair<int, std::string>> named = ParseSlotFile(text);
-    if (!named) return named.error();
-    if (named->second.empty())
-      return Error{ErrorCode::kCellUsage, "'" + text + "': write 44=FILE", {}};
-    found.push_back(std::move(*named));
+    if (const Status added = AddNamed(text, found); !added) return added.error();
   }
-  if (found.empty())
+  if (found.files.empty())
     return Error{
         ErrorCode::kCellUsage, "no program: give a file, or a folder with files like 12.S", {}};
 
   std::map<int, std::string> used;
-  for (auto& [slot, file] : found) {
+  for (auto& [slot, file] : found.files) {
     if (slot == 0 && file == first_file) slot = main_slot;  // 0: none is asked for
     const auto [row, is_new] = used.emplace(slot, file);
     if (!is_new && slot != 0) {
@@ -206,21 +229,22 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files,
     }
   }
   LoadedFiles loaded;
-  if (wanted == nullptr) {
-    const auto family = FamilyFor(family_id, found.front().second);
+  if (found.family == nullptr) {
+    const auto family = FamilyFor(family_id, found.files.front().second);
     if (!family) return family.error();
-    wanted = *family;
+    found.family = *family;
   }
-  loaded.family = wanted;
+  loaded.family = found.family;
   int free_slot = 1;
-  for (auto& [slot, file] : found) {
+  for (auto& [slot, file] : found.files) {
     if (slot == 0) {
       while (used.contains(free_slot) || free_slot == main_slot) ++free_slot;
       slot = free_slot++;
     }
     if (!IsSlot(slot))
-      return Error{ErrorCode::kProgramNumber, "program number is " + std::to_string(slot), {}};
-    Result<simulation::MemoryProgram> program = ReadProgram(file, slot, in_folders.contains(file));
+      return Error{found.family->info().no_slot, "program number is " + std::to_string(slot), {}};
+    Result<simulation::MemoryProgram> program =
+        ReadProgram(file, slot, empty == EmptyInFolders::kTaken && found.in_folders.contains(file));
     if (!program) return program.error();
     if (file == first_file) loaded.main_slot = slot;
     loaded.programs.push_back(std::move(*program));

@@ -24,7 +24,7 @@ struct LoadedFiles {
 // "SLOT=FILE" a program each. The main program is the first file, or `main_slot`.
 // An empty file is an error, unless it lies in a folder and only what is needed is read of that:
 // the caller tells it when it is. Errors: CellFileUnreadable, CellUnknownFamily,
-// CellFamilyUnknownFromName, CellUsage, ProgramNumber, CellEmptyProgram.
+// CellFamilyUnknownFromName, CellUsage, FamilyInfo::no_slot, CellEmptyProgram.
 enum class EmptyInFolders { kRefused, kTaken };
 Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files,
                               const std::vector<std::string>& slots, int main_slot,
@@ -34,8 +34,17 @@ Result<LoadedFiles> LoadFiles(const std::vector<std::string>& files,
 // "progs/44.S" -> 44: the name of a program file tells its slot. Nothing: it tells none.
 std::optional<int> SlotFromName(const std::filesystem::path& path);
 
-// "44=FILE" -> 44, FILE; "44" -> 44 and nothing.
-Result<std::pair<int, std::string>> ParseSlotFile(const std::string& text);
+// "44=FILE" -> 44, FILE; "44" -> 44 and nothing. Error: CellUsage.
+struct SlotFile {
+  std::int64_t number = 0;  // as it is written
+  std::string file;
+
+  // Error: FamilyInfo::no_slot unless the number is 1..99.
+  Result<int> Slot(const machine::MachineFamily& family) const;
+
+  bool operator==(const SlotFile&) const = default;
+};
+Result<SlotFile> ParseSlotFile(const std::string& text);
 
 // Without a file what is chosen on the command line. Errors: CellFileUnreadable, CellBadText.
 Result<bridge::MachineFile> ReadMachine(const MachineChoice& choice);

@@ -61,7 +61,7 @@ Result<v1::Project> ReadProject(const std::string& path) {
   const fs::path file = is_folder ? folder / kProjectFile : fs::path(path);
   Result<v1::Project> project = v1::Project();
   if (!is_folder || fs::exists(file, ignored)) project = ParseProject(file.string());
-  if (!project) return project;
+  if (!project) return project.error();
   if (Status added = AddContents(folder, *project); !added) return added.error();
   if (is_folder && project->programs().empty()) {
     if (Status added = AddNumberedPrograms(path, *project); !added) return added.error();

@@ -154,11 +154,12 @@ int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
   if (!wanted.inputs_file.empty()) {
     const Result<std::string> text = bridge::ReadFile(wanted.inputs_file, kFileBytesMax);
     if (!text) return Refuse(text.error());
-    if (Status parsed =
-            bridge::ParseInputFile(*text, wanted.inputs_file, families::OverrideMax(), options);
-        !parsed) {
+    // Which machine it is the server knows; a file tells it mostly.
+    const machine::MachineFamily* family = families::FamilyOfFileName(wanted.file);
+    const double most =
+        family == nullptr ? families::OverrideMax() : family->info().override_max_percent;
+    if (Status parsed = bridge::ParseInputFile(*text, wanted.inputs_file, most, options); !parsed)
       return Refuse(parsed.error());
-    }
   }
   request.set_request_id(wanted.request_id.empty() ? NewRequestId() : wanted.request_id);
 

@@ -220,15 +220,9 @@ int StreamFromPng(const PngToolOptions& options) {
   const Result<rml1::PngBitmap> picture = rml1::ReadPng(*bytes, options.invert);
   if (!picture) return FailedAt(picture.error(), options.file, answer);
   rml1::BoardOptions board = options.board;
-  constexpr double kInch_mm = 25.4;
-  if (options.dpi != 0.0) {
-    board.pixel_mm = kInch_mm / options.dpi;
-  } else if (picture->pixel_mm) {
-    board.pixel_mm = *picture->pixel_mm;
-  } else {
-    return FailedAt({ErrorCode::kRml1PictureSize, "it has no resolution", {}}, options.file,
-                    answer);
-  }
+  const Result<double> pixel_mm = rml1::PixelSizeOf(*picture, options.dpi);
+  if (!pixel_mm) return FailedAt(pixel_mm.error(), options.file, answer);
+  board.pixel_mm = *pixel_mm;
   if (!options.at_mm.empty()) {
     board.at_x_mm = options.at_mm[0];
     board.at_y_mm = options.at_mm[1];

@@ -229,7 +229,7 @@ int Convert(const ConvertOptions& options) {
   machine::ConvertRequest wanted = **request;
   if (!options.output.empty()) wanted.output = options.output;
   const Result<std::string> text = bridge::ReadFile(wanted.input, kFileBytesMax);
-  if (!text) return Refuse({ErrorCode::kConvertInput, text.error().detail, {}});
+  if (!text) return Refuse({tools.codes().convert_input, text.error().detail, {}});
   if (tools.FormOf(wanted.input, *text) == FileForm::kObject) {
     return Refuse({ErrorCode::kCellBadText,
                    wanted.input + " is an object; rmlcell decompile gives its source",
@@ -247,7 +247,7 @@ int Convert(const ConvertOptions& options) {
   }
   if (!to_output) {
     if (const Status written = WriteWholeFile(wanted.output, converted.text); !written)
-      return Refuse({ErrorCode::kConvertOutput, written.error().detail, {}});
+      return Refuse({tools.codes().convert_output, written.error().detail, {}});
   }
   return answer.Written(converted.text, wanted.output,
                         wanted.direction == machine::Direction::kToInch ? "inches and degrees"
@@ -278,7 +278,7 @@ int Rewrite(const ToolOptions& options,
   const std::string& file = options.file;
   const Result<Source> source = ReadSource(file);
   if (!source) return Refuse(source.error());
-  if (source->inch) return Refuse({ErrorCode::kSourceIsInch, file, {}});
+  if (source->inch) return Refuse({source->tools().codes().source_is_inch, file, {}});
   const machine::RewrittenText made = (source->tools().*rewrite)(source->text, by);
   ToolAnswer answer(file, options.json);
   answer.Found(made.diagnostics, 0, source->text);

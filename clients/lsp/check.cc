@@ -66,7 +66,8 @@ Marked PlaceOf(const Diagnostic& finding, std::string_view text) {
   return {begin, std::min(text.size(), begin + length)};
 }
 
-Json ToJson(const Diagnostic& finding, PositionFinder& positions, std::string_view text) {
+Json ToJson(const Diagnostic& finding, PositionFinder& positions, const Document& document) {
+  const std::string_view text = document.text();
   const CatalogueEntry& entry = Lookup(finding.code);
   std::string message = finding.detail.empty() ? std::string(entry.when) : finding.detail;
   if (!finding.rule.empty()) message += " [" + finding.rule + "]";
@@ -77,8 +78,9 @@ Json ToJson(const Diagnostic& finding, PositionFinder& positions, std::string_vi
                {"code", CodeText(finding.code)},
                {"source", "rmlcell"},
                {"message", std::move(message)}};
-  if (finding.code == ErrorCode::kPracticeAdvice && finding.rule == "OPT-3.47")
-    json["tags"] = Json::array({kTagUnnecessary});  // never reached
+  const machine::Editing* editing = FamilyOf(document).editing();
+  if (editing != nullptr && editing->IsNeverReached(finding))
+    json["tags"] = Json::array({kTagUnnecessary});
   return json;
 }
 
@@ -86,7 +88,7 @@ Json ToJson(const Findings& findings, const Document& document) {
   Json list = Json::array();
   PositionFinder positions(document);
   for (const Diagnostic& finding : findings.list)
-    list.push_back(ToJson(finding, positions, document.text()));
+    list.push_back(ToJson(finding, positions, document));
   if (findings.dropped > 0) {
     const Position end = positions.At(document.text().size());
     list.push_back({{"range", ToJson(Range{end, end})},

@@ -38,6 +38,6 @@ Marked PlaceOf(const Diagnostic& finding, std::string_view text);
 
 // LSP Diagnostic objects.
 Json ToJson(const Findings& findings, const Document& document);
-Json ToJson(const Diagnostic& finding, PositionFinder& positions, std::string_view text);
+Json ToJson(const Diagnostic& finding, PositionFinder& positions, const Document& document);
 
 }  // namespace rmlcell::lsp

@@ -112,7 +112,7 @@ class Actions {
                    {"edit", {{"changes", {{document_.uri(), std::move(edits)}}}}}};
     if (finding != nullptr) {
       PositionFinder of_finding(document_);
-      action["diagnostics"] = Json::array({ToJson(*finding, of_finding, document_.text())});
+      action["diagnostics"] = Json::array({ToJson(*finding, of_finding, document_)});
       action["isPreferred"] = !finding->fixes.empty() && finding->fixes.front().text != "";
     }
     actions_.push_back(std::move(action));

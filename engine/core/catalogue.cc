@@ -11,14 +11,14 @@ namespace rmlcell {
 namespace {
 
 constexpr std::array kCatalogue = {
-#define RMLCELL_ERROR(family, number, symbol, severity, when, advice) \
-  CatalogueEntry{ErrorCode::k##symbol,                                \
-                 ErrorFamily::k##family,                              \
-                 number,                                              \
-                 #symbol,                                             \
-                 Severity::k##severity,                               \
-                 when,                                                \
-                 advice},
+#define RMLCELL_ERROR(family, number, symbol, severity, when, advice, ...) \
+  CatalogueEntry{ErrorCode::k##symbol,                                     \
+                 ErrorFamily::k##family,                                   \
+                 number,                                                   \
+                 #symbol,                                                  \
+                 Severity::k##severity,                                    \
+                 when,                                                     \
+                 advice __VA_OPT__(, Refusal::k##__VA_ARGS__)},
 #include "engine/core/catalogue.def"
 #undef RMLCELL_ERROR
 };
@@ -37,6 +37,14 @@ void ForEachRow(Use use) {
   for (const ErrorTable& table : OwnErrorTables()) std::ranges::for_each(table.rows, use);
 }
 
+// Of the table that a family brings with it; null when there is none.
+const ErrorTable* FindTable(ErrorFamily family) {
+  for (const ErrorTable& table : OwnErrorTables()) {
+    if (!table.rows.empty() && table.rows.front().family == family) return &table;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 std::span<const CatalogueEntry> Catalogue() { return kCatalogue; }
@@ -48,11 +56,9 @@ const CatalogueEntry& Lookup(ErrorCode code) {
   if (index < kCatalogue.size()) return kCatalogue[index];
   RMLCELL_CHECK(index >= kOwnErrorFirst);
   const std::size_t own = index - kOwnErrorFirst;
-  const std::span<const ErrorTable> tables = OwnErrorTables();
-  RMLCELL_CHECK(own / kOwnErrorsMax < tables.size());
-  const std::span<const CatalogueEntry> rows = tables[own / kOwnErrorsMax].rows;
-  RMLCELL_CHECK(own % kOwnErrorsMax < rows.size());
-  return rows[own % kOwnErrorsMax];
+  const ErrorTable* table = FindTable(OwnErrorFamily(static_cast<int>(own / kOwnErrorsMax)));
+  RMLCELL_CHECK(table != nullptr && own % kOwnErrorsMax < table->rows.size());
+  return table->rows[own % kOwnErrorsMax];
 }
 
 std::optional<ErrorCode> FindError(ErrorFamily family, int number) {
@@ -74,10 +80,8 @@ std::string_view FamilyPrefix(ErrorFamily family) {
     default:
       break;
   }
-  const auto table =
-      static_cast<std::size_t>(family) - static_cast<std::size_t>(ErrorFamily::kFirstOfTables);
-  const std::span<const ErrorTable> tables = OwnErrorTables();
-  return table < tables.size() ? tables[table].prefix : std::string_view{};
+  const ErrorTable* table = FindTable(family);
+  return table == nullptr ? std::string_view{} : table->prefix;
 }
 
 std::string_view SeverityName(Severity severity) {

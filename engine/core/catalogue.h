@@ -14,7 +14,7 @@ enum class ErrorFamily {
   kOptimo,
   kRml1,
   kCell,
-  kFirstOfTables,  // and up: of tables that machine families bring, in their order
+  kFirstOfTables,  // and up: of tables that machine families bring
 };
 
 // What the machine does about it; optimo.md section C explains each.
@@ -32,8 +32,25 @@ enum class Severity {
   kRequest,  // the cell refuses a request and nothing changes
 };
 
+// Which sort of refusal a code is to a caller who may try again.
+enum class Refusal {
+  kInvalid,        // the program or request is wrong in itself
+  kNotFound,       // what it names is not there
+  kAlreadyExists,  // it is there already
+  kConflict,       // somebody else was first
+  kPermission,
+  kUnauthenticated,
+  kUnimplemented,
+  kPrecondition,  // not in the present state
+  kExhausted,     // a bound of the machine or the cell is reached
+  kGone,          // it was there
+  kUnavailable,   // not now
+  kInternal,
+  kDataLoss,
+};
+
 enum class ErrorCode {
-#define RMLCELL_ERROR(family, number, symbol, severity, when, advice) k##symbol,
+#define RMLCELL_ERROR(family, number, symbol, ...) k##symbol,
 #include "engine/core/catalogue.def"
 #undef RMLCELL_ERROR
 };
@@ -46,19 +63,33 @@ struct CatalogueEntry {
   Severity severity;
   std::string_view when;    // what happened, a phrase
   std::string_view advice;  // what the operator or programmer can do
+  Refusal refusal = Refusal::kInvalid;
 };
 
 // All rows, in the order of engine/core/catalogue.def.
 std::span<const CatalogueEntry> Catalogue();
 
-// The codes of a machine family that stand in its own folder. Row n has the code OwnError(table, n)
-// and the family of that table.
+// The codes of a machine family that stand in its own folder: constexpr int kTable =
+// OwnErrorTable("PLT"). Row n has the code OwnError(kTable, n) and the family
+// OwnErrorFamily(kTable).
 struct ErrorTable {
-  std::string_view prefix;  // "PLT"
+  std::string_view prefix;  // "PLT", as OwnErrorTable takes it
   std::span<const CatalogueEntry> rows;
 };
 inline constexpr int kOwnErrorFirst = 100'000;
-inline constexpr int kOwnErrorsMax = 10'000;  // of one table
+inline constexpr int kOwnErrorsMax = 1000;  // of one table
+
+// The number of the table with this prefix, 1 to 4 letters A to Z. It is made of the letters, so
+// that no list has to agree with it.
+consteval int OwnErrorTable(std::string_view prefix) {
+  if (prefix.empty() || prefix.size() > 4) throw "a prefix has 1 to 4 letters";
+  int table = 0;
+  for (const char c : prefix) {
+    if (c < 'A' || c > 'Z') throw "a prefix has letters A to Z";
+    table = table * 27 + (c - 'A' + 1);
+  }
+  return table;
+}
 constexpr ErrorCode OwnError(int table, int row) {
   return static_cast<ErrorCode>(kOwnErrorFirst + table * kOwnErrorsMax + row);
 }
@@ -66,8 +97,8 @@ constexpr ErrorFamily OwnErrorFamily(int table) {
   return static_cast<ErrorFamily>(static_cast<int>(ErrorFamily::kFirstOfTables) + table);
 }
 
-// By the number of the table. The registry of families defines this (engine/families/registry.cc);
-// a program that is linked without it has none.
+// In any order, none empty. The registry of families defines this (engine/families/registry.cc); a
+// program that is linked without it has none.
 std::span<const ErrorTable> OwnErrorTables();
 
 const CatalogueEntry& Lookup(ErrorCode code);

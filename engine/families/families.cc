@@ -82,6 +82,20 @@ Result<machine::ProgramDiff> Diff(const machine::MachineFamily& family,
   return family.tools()->Diff(a, b);
 }
 
+Result<const machine::MachineFamily*> FamilyOfObject(std::string_view object) {
+  for (const machine::MachineFamily* family : Families()) {
+    const machine::Tools* tools = family->tools();
+    if (tools != nullptr && tools->FormOf({}, object) == machine::FileForm::kObject) return family;
+  }
+  return FamilyWithTools({});
+}
+
+const machine::MachineFamily* FamilyWithSchedules() {
+  const auto found = std::ranges::find_if(
+      Families(), [](const machine::MachineFamily* one) { return one->info().schedules > 0; });
+  return found == Families().end() ? nullptr : *found;
+}
+
 bool IsObjectFileName(std::string_view name) {
   const std::string_view extension = ExtensionOf(name);
   if (extension.empty() || extension.size() == name.size()) return false;  // ".O" is a name alone

@@ -41,6 +41,14 @@ Result<machine::ProgramDiff> Diff(const machine::MachineFamily& family,
                                   const machine::ComparedObject& b,
                                   const machine::Parameters& parameters);
 
+// The family whose tools an object without a name is for: the one that knows these bytes as an
+// object of its own; where none does the first one with tools, which tells what is wrong with them.
+// Error: CellInvalidArgument where no family has tools.
+Result<const machine::MachineFamily*> FamilyOfObject(std::string_view object);
+
+// The family that has laser schedules and processes; null when there is none.
+const machine::MachineFamily* FamilyWithSchedules();
+
 // The greatest feed override that any family takes, percent.
 double OverrideMax();
 

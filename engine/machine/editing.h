@@ -142,6 +142,8 @@ class Editing {
   virtual std::span<const std::string_view> source_extensions() const = 0;
   // `text` must outlive what is made, and not change.
   virtual std::unique_ptr<EditedProgram> Look(std::string_view text) const = 0;
+  // Whether a finding says that what it marks is never reached.
+  virtual bool IsNeverReached(const Diagnostic& finding) const = 0;
   // A rule of the family that findings name, in a sentence; empty when it is not known.
   virtual std::string_view TextOfRule(std::string_view rule) const = 0;
   // The change that makes the checker pass over a finding from now on; nothing when it must not, or

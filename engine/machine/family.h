@@ -22,6 +22,13 @@ class Run;            // run.h
 class RunObserver;    // observer.h
 struct MachineShape;  // shape.h
 
+// How a check that runs a program reads the codes of its family.
+struct CheckCodes {
+  std::span<const ErrorCode> of_motion{};  // findings of a run that the check tells
+  std::span<const ErrorCode> by_speed{};   // of these warnings only: the speed may be another
+  std::span<const ErrorCode> not_given{};  // of outcomes: what was given to the check is not all
+};
+
 struct FamilyInfo {
   std::string_view id{};               // "optimo"
   std::string_view title{};            // "Amada OPTIMO 5-axis laser"
@@ -29,7 +36,7 @@ struct FamilyInfo {
   std::string_view axes{};             // "X Y Z A B"
   std::string_view editor_language{};  // how editors call its programs: "optimo-rml"
   bool has_executables = false;        // makes executables at slot + 100
-  bool has_schedules = false;          // laser schedules and process definitions
+  int schedules = 0;                // laser schedules 1 to this, and process definitions; or none
   bool checked_by_running = false;  // Translate does not follow the motion: CHECK runs the program
   bool hold_in_remote = false;      // the HOLD key works in mode REMOTE, too
   // What a machine is for which nobody named a profile; empty: its parameters' defaults.
@@ -38,10 +45,17 @@ struct FamilyInfo {
   // set it themselves.
   std::array<std::string_view, 3> origin_parameters{};
   double override_max_percent = 100.0;  // of the feed rate; the least is above 0
-  // The machine's own codes for a number that is no slot, and for a slot without program. A machine
-  // without program memory has none: the cell keeps its programs, and says so in its own words.
-  ErrorCode no_slot = ErrorCode::kCellInvalidArgument;
-  ErrorCode empty_slot = ErrorCode::kCellNotFound;
+
+  // What the machine calls what the cell finds. What has no number in its manual the cell says in
+  // its own words: a machine without program memory has no slots.
+  ErrorCode no_slot = ErrorCode::kCellInvalidArgument;      // a number that is none
+  ErrorCode empty_slot = ErrorCode::kCellNotFound;          // a slot without program
+  ErrorCode no_schedule = ErrorCode::kCellInvalidArgument;  // a number that is no laser schedule
+  ErrorCode travel_left = ErrorCode::kCellTravelLeft;       // a motion leaves the travel of an axis
+  // Of a project: a slot or a process twice; a slot without source, or no program at all.
+  ErrorCode given_twice = ErrorCode::kCellInvalidArgument;
+  ErrorCode no_source = ErrorCode::kCellInvalidArgument;
+  CheckCodes check{};  // where it is checked_by_running
 };
 
 // The key that holds a run from afar: HOLD, after the present instruction; STOP, at once on the

@@ -70,10 +70,16 @@ Status Parameters::Set(std::string_view name, std::string_view text) {
   return {};
 }
 
+Status Parameters::ApplyUnnamed(const MachineProfile& profile) {
+  const Status applied = Apply(profile);
+  if (applied) profile_.clear();
+  return applied;
+}
+
 Status Parameters::Apply(const MachineProfile& profile) {
   Parameters changed = *this;
   for (const ParameterValue& value : profile.values) {
-    if (const Status set = changed.Set(value.name, value.Text()); !set) return set;
+    if (const Status set = changed.Set(value.name, value.Text()); !set) return set.error();
   }
   changed.profile_ = profile.id;
   *this = std::move(changed);

@@ -53,7 +53,9 @@ class Parameters {
   Status Set(std::string_view name, double value);
   Status Set(std::string_view name, std::string_view text);  // a word, or a number as text
   Status Apply(const MachineProfile& profile);
-  // The profile that was applied last; empty: none was.
+  // The same of a family's own choice, which nobody named.
+  Status ApplyUnnamed(const MachineProfile& profile);
+  // The profile that was named; empty: none was.
   const std::string& profile() const { return profile_; }
 
   // Precondition: the family has this parameter, and it is a number, or a word.

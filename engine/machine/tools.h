@@ -66,6 +66,13 @@ struct FileExtensions {
   std::string_view source_map{};   // ".MAP"
 };
 
+// What the tools of a family call what whoever uses them finds.
+struct ToolCodes {
+  ErrorCode source_is_inch = ErrorCode::kCellBadText;  // where it must be metric
+  ErrorCode convert_input = ErrorCode::kCellFileUnreadable;
+  ErrorCode convert_output = ErrorCode::kCellFileUnwritable;
+};
+
 // For the first line of what is made; the engine reads no clock.
 struct FileNames {
   std::string input;
@@ -157,6 +164,7 @@ class Tools {
   virtual ~Tools() = default;
 
   virtual const FileExtensions& extensions() const = 0;
+  virtual const ToolCodes& codes() const = 0;
 
   virtual FileForm FormOf(std::string_view name, std::string_view bytes) const = 0;
 

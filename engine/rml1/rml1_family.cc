@@ -20,7 +20,6 @@ constexpr machine::FamilyInfo kInfo = {.id = "rml1",
                                        .axes = "X Y Z A",
                                        .editor_language = "rml1",
                                        .has_executables = false,
-                                       .has_schedules = false,
                                        .hold_in_remote = true,       // it has no such mode
                                        .default_profile = "srm-20",  // the most common one
                                        .origin_parameters = {"ORIGIN_X", "ORIGIN_Y", "Z0"},

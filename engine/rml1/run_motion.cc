@@ -120,7 +120,7 @@ void MillRun::EndLeg() {
 void MillRun::LeaveLeg(const motion::PathState& along) {
   State& s = state_;
   ReportLeg(along.s);
-  s.tool = ToolAt(s.ride.place().motion.path.At(along.s).tip());
+  s.tool = ToolAt(s.ride.place().motion.path.TipAt(along.s));
   s.ahead.Ride({.length = along.s, .speed = along.speed, .tool = s.tool});
   s.ride.Leave();
   s.busy_from = s.busy_until = s.now;
@@ -152,9 +152,9 @@ void MillRun::ReportLeg(double travelled) {
   const motion::PathPiece& path = leg.path;
   const bool not_begun = s.now == s.busy_from && travelled < path.length();
   if (not_begun) return;
-  const Point from = m.first_leg ? m.from : ToolAt(path.from().tip());
+  const Point from = m.first_leg ? m.from : ToolAt(path.tip_from());
   const bool to_end = leg.ends_move && travelled >= path.length();
-  const Point to = to_end ? m.action.to : ToolAt(path.At(travelled).tip());
+  const Point to = to_end ? m.action.to : ToolAt(path.TipAt(travelled));
   s.physical.OnRide({.from = from,
                      .to = to,
                      .use = m.action.use,

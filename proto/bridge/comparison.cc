@@ -27,9 +27,9 @@ struct Side {
 Result<const machine::MachineFamily*> FamilyOf(const std::array<ComparedProgram, 2>& programs) {
   Result<const machine::MachineFamily*> family =
       families::FamilyThatCompares(programs[0].file_name);
-  if (!family) return family;
+  if (!family) return family.error();
   const auto other = families::FamilyThatCompares(programs[1].file_name);
-  if (!other) return other;
+  if (!other) return other.error();
   if (*family == *other) return family;
   return Error{ErrorCode::kCellInvalidArgument,
                programs[0].file_name + " and " + programs[1].file_name +

@@ -36,7 +36,7 @@ Status ParseInputFile(std::string_view text, const std::string& name, double ove
 // above 0 to that of the family (percent), numbers are finite. Error: CellInvalidArgument.
 Status CheckInputValue(const v1::ScriptedInput& input, double override_max);
 
-// Error: CellInvalidArgument, "allowed are above 0 to 145 %".
+// Error: CellInvalidArgument, naming what is allowed: above 0 to `override_max`, percent.
 Status CheckOverride(double percent, double override_max);
 
 }  // namespace rmlcell::bridge

@@ -289,45 +289,35 @@ Diagnostic FromProto(const v1::Diagnostic& message) {
 }
 
 int RpcCode(ErrorCode code) {
-  switch (code) {
-    case ErrorCode::kCellInternal:
-    case ErrorCode::kCellStoreFailed:
-      return 13;  // INTERNAL
-    case ErrorCode::kCellStoreCorrupt:
-      return 15;  // DATA_LOSS
-    case ErrorCode::kCellUnavailable:
-    case ErrorCode::kCellStoreBusy:
-      return 14;  // UNAVAILABLE
-    case ErrorCode::kCellNotFound:
-    case ErrorCode::kCellUnknownMachine:
-    case ErrorCode::kProgramMissing:
-      return 5;  // NOT_FOUND
-    case ErrorCode::kCellAlreadyExists:
-    case ErrorCode::kCellRequestIdReused:
-      return 6;  // ALREADY_EXISTS
-    case ErrorCode::kCellEtagMismatch:
-    case ErrorCode::kCellLeaseLost:
-      return 10;  // ABORTED
-    case ErrorCode::kCellPermission:
+  switch (Lookup(code).refusal) {
+    case Refusal::kInvalid:
+      return 3;  // INVALID_ARGUMENT
+    case Refusal::kNotFound:
+      return 5;
+    case Refusal::kAlreadyExists:
+      return 6;
+    case Refusal::kPermission:
       return 7;
-    case ErrorCode::kCellUnauthenticated:
-    case ErrorCode::kCellJoinRefused:
-      return 16;
-    case ErrorCode::kCellUnimplemented:
-      return 12;
-    case ErrorCode::kCellPrecondition:
-    case ErrorCode::kCellVersionMismatch:
-    case ErrorCode::kProgramInUse:
-      return 9;  // FAILED_PRECONDITION
-    case ErrorCode::kCellResourceExhausted:
-    case ErrorCode::kCellTooLarge:
-    case ErrorCode::kCmosFull:
+    case Refusal::kExhausted:
       return 8;  // RESOURCE_EXHAUSTED
-    case ErrorCode::kCellEventsGone:
+    case Refusal::kPrecondition:
+      return 9;  // FAILED_PRECONDITION
+    case Refusal::kConflict:
+      return 10;  // ABORTED
+    case Refusal::kGone:
       return 11;  // OUT_OF_RANGE
-    default:
-      return 3;  // INVALID_ARGUMENT: a program or a request that is wrong in itself
+    case Refusal::kUnimplemented:
+      return 12;
+    case Refusal::kInternal:
+      return 13;
+    case Refusal::kUnavailable:
+      return 14;
+    case Refusal::kDataLoss:
+      return 15;
+    case Refusal::kUnauthenticated:
+      return 16;
   }
+  return 3;
 }
 
 std::string ErrorText(const Error& error) {

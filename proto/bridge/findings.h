@@ -58,8 +58,8 @@ int RpcCode(ErrorCode code);
 google::rpc::Status ToRpcStatus(const Error& error, const std::vector<Diagnostic>& diagnostics = {},
                                 std::uint64_t dropped = 0);
 
-// "OPT-E348: radius is 0; give PATH HOLE a radius above zero". Of a request that is wrong the detail
-// alone: "CELL-E9003: 'foo' is no tool: write flat:3".
+// "OPT-E348: radius is 0; give PATH HOLE a radius above zero". Of a request that is wrong the
+// detail alone: "CELL-E9003: 'foo' is no tool: write flat:3".
 std::string ErrorText(const Error& error);
 
 }  // namespace rmlcell::bridge

@@ -312,7 +312,7 @@ Status ApplyTable(const toml::table& parsed, const std::string& name, Config& co
       machines_replaced = true;
       for (const toml::node& node : *list) {
         const Status read = ReadMachine(*node.as_table(), name, changed.machines);
-        if (!read) return read;
+        if (!read) return read.error();
       }
       continue;
     }
@@ -437,11 +437,11 @@ Status ValidateConfig(const Config& config) {
   if (config.listen_grpc.empty()) return Wrong("listen.grpc is empty: nobody could call");
   for (const std::string& address : config.listen_grpc) {
     const Status valid = ValidateAddress("listen.grpc", address);
-    if (!valid) return valid;
+    if (!valid) return valid.error();
   }
   if (!config.listen_web.empty()) {
     const Status valid = ValidateAddress("listen.web", config.listen_web);
-    if (!valid) return valid;
+    if (!valid) return valid.error();
   }
   std::set<std::string> ids;
   for (const MachineConfig& machine : config.machines) {

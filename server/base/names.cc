@@ -88,10 +88,7 @@ Result<ScheduleName> ParseScheduleName(std::string_view name) {
   const auto rest = After(name.substr(slash), "/laserSchedules/");
   const auto number = rest ? Number(*rest) : std::nullopt;
   if (!machine || !number) return Malformed(name, kForm);
-  if (*number < 1 || *number > 63) {
-    return Error{ErrorCode::kScheduleRange, "laser schedule is " + std::to_string(*number), {}};
-  }
-  return ScheduleName{*machine, static_cast<int>(*number)};
+  return ScheduleName{*machine, *number};
 }
 
 Result<storage::Revision> ParseEtag(std::string_view etag) {

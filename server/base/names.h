@@ -19,7 +19,7 @@ Result<std::string> ParseProjectName(std::string_view name);  // "projects/brack
 Result<std::int64_t> ParseJobName(std::string_view name);     // "jobs/17"
 
 // "machines/optimo-1/programs/45", an executable by its own number. Whether the machine has such a
-// number is its family's to say (jobs/program_place.h).
+// number is its family's to say (records/program_place.h).
 struct ProgramName {
   std::string machine;
   std::int64_t number = 0;  // as it stands in the name
@@ -28,12 +28,13 @@ struct ProgramName {
 };
 Result<ProgramName> ParseProgramName(std::string_view name);
 
+// "machines/optimo-1/laserSchedules/11". Whether the machine has such a number is its family's to
+// say, too.
 struct ScheduleName {
   std::string machine;
-  int number = 0;  // 1..63
+  std::int64_t number = 0;
 };
-Result<ScheduleName> ParseScheduleName(
-    std::string_view name);  // ".../laserSchedules/11"; error also: ScheduleRange
+Result<ScheduleName> ParseScheduleName(std::string_view name);
 
 // Etags are revisions in decimal. Empty: whatever is there. "none": must not exist yet.
 // Error: CellEtagMismatch for anything else: it cannot be one of ours.

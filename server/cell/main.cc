@@ -46,9 +46,9 @@ Status Configure(const std::string& file, const std::map<std::string, std::strin
   const auto environment = Environment();
   config.state_directory = DefaultStateDirectory(environment);
   if (!file.empty()) {
-    if (Status read = ReadConfigFile(file, config); !read) return read;
+    if (const Status read = ReadConfigFile(file, config); !read) return read.error();
   }
-  if (Status read = ReadConfigEnvironment(environment, config); !read) return read;
+  if (const Status read = ReadConfigEnvironment(environment, config); !read) return read.error();
   for (const ConfigKey& key : ConfigKeys()) {
     const auto found = flags.find(std::string(key.name));
     if (found == flags.end()) continue;

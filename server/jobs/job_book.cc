@@ -53,7 +53,8 @@ Status CheckBudget(const v1::Budget& budget) {
 Status CheckStepPlace(const v1::StepPlace& place, const std::string& field,
                       const machine::MachineFamily& family) {
   if (place.program() != 0) {
-    if (Status slot = CheckSlot(family, place.program(), field + ".program"); !slot) return slot;
+    if (const Status slot = CheckSlot(family, place.program(), field + ".program"); !slot)
+      return slot.error();
   }
   if (place.step() < 1) return InvalidArgument(field + ".step is below 1");
   return {};
@@ -80,11 +81,11 @@ Status CheckSimulation(const v1::SimulationOptions& options, const machine::Mach
   }
   if (options.has_breakpoint()) {
     const Status valid = CheckStepPlace(options.breakpoint(), "job.simulation.breakpoint", family);
-    if (!valid) return valid;
+    if (!valid) return valid.error();
   }
   if (options.has_simul()) {
     const Status valid = CheckStepPlace(options.simul(), "job.simulation.simul", family);
-    if (!valid) return valid;
+    if (!valid) return valid.error();
   }
   for (const v1::ScriptedInput& input : options.inputs()) {
     if (!(input.at_s() >= 0.0 && std::isfinite(input.at_s()))) {
@@ -101,8 +102,9 @@ Status CheckSimulation(const v1::SimulationOptions& options, const machine::Mach
     }
   }
   for (const v1::SlotProgram& program : options.programs()) {
-    if (Status slot = CheckSlot(family, program.slot(), "job.simulation.programs.slot"); !slot)
-      return slot;
+    if (const Status slot = CheckSlot(family, program.slot(), "job.simulation.programs.slot");
+        !slot)
+      return slot.error();
   }
   return {};
 }
@@ -137,14 +139,15 @@ Status JobBook::AttachProgram(const v1::Job& job, const machine::MachineFamily& 
                               storage::NewJob& made, v1::Job& specification) {
   switch (job.program_source_case()) {
     case v1::Job::kInlineProgram: {
-      if (Status fits = CheckSize(job.inline_program().content(), "job.inline_program"); !fits)
-        return fits;
+      if (const Status fits = CheckSize(job.inline_program().content(), "job.inline_program");
+          !fits)
+        return fits.error();
       if (job.inline_slot() != 0) {
-        if (Status slot = CheckSlot(family, job.inline_slot(), "job.inline_slot"); !slot)
-          return slot;
+        if (const Status slot = CheckSlot(family, job.inline_slot(), "job.inline_slot"); !slot)
+          return slot.error();
       }
-      if (Status fits = CheckFileFamily(job.inline_program().file_name(), family); !fits)
-        return fits;
+      if (const Status fits = CheckFileFamily(job.inline_program().file_name(), family); !fits)
+        return fits.error();
       made.attachments.push_back({std::string(kMainAttachment),
                                   "application/octet-stream",
                                   job.inline_program().content(),
@@ -157,7 +160,7 @@ Status JobBook::AttachProgram(const v1::Job& job, const machine::MachineFamily& 
       if (!name) return name.error();
       if (name->machine != made.machine)
         return InvalidArgument("job.program is not a program of job.machine");
-      if (Status there = CheckNumber(family, *name); !there) return there;
+      if (const Status there = CheckNumber(family, *name); !there) return there.error();
       if (name->executable)
         return Error{family.info().no_slot, "an executable is started by its object", {}};
       const auto found = store_.GetProgramSummary(made.machine, name->slot);

@@ -116,7 +116,8 @@ Status ApplyFilter(std::string_view filter, storage::JobQuery& query) {
     if (!fields.insert(word[0].text).second) {
       return Bad("'" + Readable(word[0].text) + "' stands twice");
     }
-    if (const Status applied = Apply(word[0].text, word[2].text, changed); !applied) return applied;
+    if (const Status applied = Apply(word[0].text, word[2].text, changed); !applied)
+      return applied.error();
     if (left == 3) break;
     if (word[3].quoted || UpperCase(word[3].text) != "AND" || left == 4) {
       return Bad("comparisons are joined by AND, found '" + Readable(word[3].text) + "'");

@@ -43,18 +43,22 @@ v1::StaleExecutable::Reason ReasonOf(machine::StaleReason reason) {
   return v1::StaleExecutable::REASON_DAMAGED;
 }
 
+Error NoSuchSlot(const machine::MachineFamily& family, int number) {
+  return {family.info().no_slot, "program number is " + std::to_string(number), {}};
+}
+
 // The objects that a link may take, and what was said while they were made.
 class LinkMaterial {
  public:
-  LinkMaterial(const machine::Tools& tools, const machine::Parameters& parameters)
-      : tools_(tools), parameters_(parameters) {}
+  // Of a family that has tools.
+  LinkMaterial(const machine::MachineFamily& family, const machine::Parameters& parameters)
+      : family_(family), tools_(*family.tools()), parameters_(parameters) {}
 
   // Those of the request. Error: as MemoryTools::Link.
   Status Add(const v1::LinkProgramRequest& request) {
     for (const v1::LinkProgramRequest::Part& part : request.programs()) {
       if (!IsSlot(part.slot())) {
-        return Error{
-            ErrorCode::kProgramNumber, "program number is " + std::to_string(part.slot()), {}};
+        return NoSuchSlot(family_, part.slot());
       }
       if (objects_.contains(part.slot()) || sources_.contains(part.slot()))
         return GivenTwice(part.slot());
@@ -122,6 +126,7 @@ class LinkMaterial {
     }
   }
 
+  const machine::MachineFamily& family_;
   const machine::Tools& tools_;
   const machine::Parameters& parameters_;
   std::map<int, const v1::ProgramText*> sources_;  // of the request, not compiled yet
@@ -164,13 +169,10 @@ Result<v1::FixProgramResponse> MemoryTools::Fix(const v1::FixProgramRequest& req
 }
 
 Result<v1::LinkProgramResponse> MemoryTools::Link(const v1::LinkProgramRequest& request) {
-  if (!IsSlot(request.slot())) {
-    return Error{
-        ErrorCode::kProgramNumber, "program number is " + std::to_string(request.slot()), {}};
-  }
-  const auto usual = families::FamilyWithTools({});
-  if (!usual) return usual.error();
-  const machine::MachineFamily* family = *usual;
+  const auto named = families::FamilyWithTools(
+      request.programs().empty() ? std::string() : request.programs(0).program().file_name());
+  if (!named) return named.error();
+  const machine::MachineFamily* family = *named;
   machine::Parameters parameters(family->parameters());
   std::vector<storage::ProgramRecord> memory;
   if (!request.machine().empty()) {
@@ -190,7 +192,8 @@ Result<v1::LinkProgramResponse> MemoryTools::Link(const v1::LinkProgramRequest& 
     if (!stored) return stored.error();
     memory = *std::move(stored);
   }
-  LinkMaterial material(*family->tools(), parameters);
+  if (!IsSlot(request.slot())) return NoSuchSlot(*family, request.slot());
+  LinkMaterial material(*family, parameters);
   if (const Status added = material.Add(request); !added) return added.error();
   for (storage::ProgramRecord& program : memory)
     material.AddStored(program.slot, std::move(program.object));
@@ -262,7 +265,7 @@ Result<v1::DecompileProgramResponse> MemoryTools::Decompile(
   } else if (request.object().empty()) {
     return Error{ErrorCode::kCellEmptyProgram, "give an object, or the name of a program", {}};
   }
-  const auto family = families::FamilyWithTools({});
+  const auto family = families::FamilyOfObject(request.object());
   if (!family) return family.error();
   Result<machine::RecoveredSource> source =
       (*family)->tools()->Decompile(request.object(), std::nullopt);

@@ -75,10 +75,11 @@ ProgramError FirstError(const machine::Translation& translation) {
 machine::Translation TranslateFor(const machine::MachineFamily& family,
                                   const machine::Parameters& parameters,
                                   const v1::ProgramText& program, bool advice) {
-  return family.Translate({.name = program.file_name(),
-                           .bytes = program.content(),
-                           .is_object = program.form() == v1::PROGRAM_FORM_OBJECT},
-                          parameters, {.advice = advice, .source = true});
+  return simulation::TranslateProgram(family, parameters,
+                                      {.file_name = program.file_name(),
+                                       .bytes = simulation::Borrowed(program.content()),
+                                       .is_source = program.form() != v1::PROGRAM_FORM_OBJECT},
+                                      {.advice = advice, .source = true});
 }
 
 // "44.S" is program 44, other names take the place of no program of the machine when there is room.
@@ -171,6 +172,8 @@ ProgramResult<v1::Program> ProgramBook::Store(Put put) {
 
   const bool is_object =
       put.form == v1::PROGRAM_FORM_OBJECT || families::IsObjectFileName(put.file_name);
+  // Not as a rehearsal does: what is said here, of objects, too, is said when they are stored
+  // alone.
   machine::Translation translation = family.Translate(
       {.name = BaseName(put.file_name), .bytes = put.bytes, .is_object = is_object}, *parameters,
       {.forced = put.force});

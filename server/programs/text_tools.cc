@@ -48,7 +48,8 @@ Result<ToolText> SourceText(const v1::ProgramText& program) {
 
 Result<ToolText> MetricText(const v1::ProgramText& program) {
   Result<ToolText> text = SourceText(program);
-  if (text && text->inch) return Error{ErrorCode::kSourceIsInch, program.file_name(), {}};
+  if (text && text->inch)
+    return Error{text->tools->codes().source_is_inch, program.file_name(), {}};
   return text;
 }
 

@@ -40,6 +40,13 @@ Status CheckUnits(const v1::ProjectProgram& program) {
                          " says inch: leave the units out, or rename the file");
 }
 
+// How a project speaks of a program: as the machine that its name is for.
+machine::FamilyInfo InfoFor(const std::string& file_name) {
+  const machine::MachineFamily* named = families::FamilyOfFileName(file_name);
+  if (named == nullptr) named = families::FamilyWithSchedules();
+  return named == nullptr ? machine::FamilyInfo{} : named->info();
+}
+
 // What can be said without a machine. Languages are checked when the project is transferred.
 Status CheckParts(const v1::Project& project) {
   if (const Status good = CheckTitle(project.title(), "title"); !good) return good.error();
@@ -47,23 +54,26 @@ Status CheckParts(const v1::Project& project) {
   std::set<int> slots;
   for (const v1::ProjectProgram& program : project.programs()) {
     const std::string slot = std::to_string(program.slot());
-    if (!IsSlot(program.slot())) return Error{ErrorCode::kProgramNumber, "slot is " + slot, {}};
-    if (Status good = CheckTitle(program.title(), "title of program " + slot); !good) return good;
-    if (!slots.insert(program.slot()).second)
-      return Error{ErrorCode::kProjectDuplicate, "slot " + slot, {}};
+    const machine::FamilyInfo info = InfoFor(program.source().file_name());
+    if (!IsSlot(program.slot())) return Error{info.no_slot, "slot is " + slot, {}};
+    if (const Status good = CheckTitle(program.title(), "title of program " + slot); !good)
+      return good.error();
+    if (!slots.insert(program.slot()).second) return Error{info.given_twice, "slot " + slot, {}};
     if (program.source().content().empty()) {
-      return Error{ErrorCode::kProjectSource, "the program of slot " + slot + " has no source", {}};
+      return Error{info.no_source, "the program of slot " + slot + " has no source", {}};
     }
-    if (Status good = CheckUnits(program); !good) return good;
+    if (const Status good = CheckUnits(program); !good) return good.error();
   }
+  const machine::FamilyInfo info = InfoFor({});
   std::set<int> schedules;
   for (const v1::ProjectLaserSchedule& schedule : project.laser_schedules()) {
     const std::string number = std::to_string(schedule.number());
-    if (schedule.number() < 1 || schedule.number() > 63) {
-      return Error{ErrorCode::kScheduleRange, "laser schedule " + number, {}};
+    if (schedule.number() < 1 || schedule.number() > info.schedules) {
+      return Error{info.no_schedule, "laser schedule " + number, {}};
     }
-    if (Status good = CheckTitle(schedule.title(), "title of laser schedule " + number); !good)
-      return good;
+    if (const Status good = CheckTitle(schedule.title(), "title of laser schedule " + number);
+        !good)
+      return good.error();
     if (!schedules.insert(schedule.number()).second)
       return InvalidArgument("laser schedule " + number + " stands twice");
     if (!schedule.mode().empty() && schedule.mode() != "CW" && schedule.mode() != "PULSE") {
@@ -78,7 +88,7 @@ Status CheckParts(const v1::Project& project) {
     const std::string name =
         std::to_string(process.kind()) + "," + std::to_string(process.process());
     if (!processes.insert({process.kind(), process.process()}).second) {
-      return Error{ErrorCode::kProjectDuplicate, "process " + name, {}};
+      return Error{info.given_twice, "process " + name, {}};
     }
   }
   return {};
@@ -267,7 +277,7 @@ ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(
   const auto parameters = machine::MakeParameters(*family, machine->profile, machine->parameters);
   if (!parameters) return parameters.error();
   if (project->programs().empty())
-    return Error{ErrorCode::kProjectSource, "the project has no program", {}};
+    return Error{family->info().no_source, "the project has no program", {}};
 
   // A stream takes any bytes: by its translation alone no source of another family would be
   // refused.
@@ -282,7 +292,7 @@ ProgramResult<v1::TransferProjectResponse> ProjectBook::Transfer(
       family->PlanTransfer(BundleOf(*project), *parameters,
                            {.insert_missing_definitions = request.insert_missing_definitions()});
   if (!plan.ok) {
-    ProgramError wrong{.error = {ErrorCode::kProjectSource, {}, {}},
+    ProgramError wrong{.error = {family->info().no_source, {}, {}},
                        .diagnostics = plan.diagnostics};
     const auto first = std::ranges::find_if(
         plan.diagnostics, [](const Diagnostic& d) { return IsError(d.severity); });

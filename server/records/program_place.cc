@@ -31,6 +31,14 @@ Status CheckSlot(const machine::MachineFamily& family, std::int64_t number,
                {}};
 }
 
+Status CheckSchedule(const machine::MachineFamily& family, std::int64_t number) {
+  const int most = family.info().schedules;
+  if (most == 0)
+    return Error{ErrorCode::kCellPrecondition, "this machine has no laser schedules", {}};
+  if (number >= 1 && number <= most) return {};
+  return Error{family.info().no_schedule, "laser schedule is " + std::to_string(number), {}};
+}
+
 Error EmptySlot(const machine::MachineFamily& family, std::string_view name) {
   return {family.info().empty_slot, "there is no " + std::string(name), {}};
 }

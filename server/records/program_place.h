@@ -27,6 +27,10 @@ Status CheckNumber(const machine::MachineFamily& family, const ProgramName& name
 // FamilyInfo::no_slot unless the number is 1..99; `field` is where it stands.
 Status CheckSlot(const machine::MachineFamily& family, std::int64_t number, std::string_view field);
 
+// CellPrecondition for machines without laser schedules, FamilyInfo::no_schedule for a number that
+// is none.
+Status CheckSchedule(const machine::MachineFamily& family, std::int64_t number);
+
 // FamilyInfo::empty_slot: there is no program of this name.
 Error EmptySlot(const machine::MachineFamily& family, std::string_view name);
 

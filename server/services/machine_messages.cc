@@ -45,7 +45,7 @@ v1::Family ToProto(const machine::MachineFamily& family) {
   for (const std::string& extension : Words(info.extensions)) message.add_extensions(extension);
   for (const std::string& axis : Words(info.axes)) message.add_axes(axis);
   message.set_has_executables(info.has_executables);
-  message.set_has_schedules(info.has_schedules);
+  message.set_has_schedules(info.schedules > 0);
   for (const machine::ParameterInfo& parameter : family.parameters())
     *message.add_parameters() = ToProto(parameter);
   for (const machine::MachineProfile& profile : family.profiles()) {
@@ -92,7 +92,7 @@ Status CheckMachine(const storage::MachineRecord& machine) {
       known += " " + std::string(one->info().id);
     return Error{ErrorCode::kCellUnknownFamily, "'" + machine.family + "'; there are" + known, {}};
   }
-  if (Status good = CheckTitle(machine.title, "title"); !good) return good;
+  if (const Status good = CheckTitle(machine.title, "title"); !good) return good.error();
   const auto parameters = machine::MakeParameters(*family, machine.profile, machine.parameters);
   if (!parameters) return parameters.error();
   return {};

@@ -11,6 +11,7 @@
 #include "server/base/version.h"
 #include "server/jobs/dispatcher.h"
 #include "server/records/job_messages.h"
+#include "server/records/program_place.h"
 #include "server/records/update_mask.h"
 #include "server/services/job_streams.h"
 #include "server/services/machine_messages.h"
@@ -197,10 +198,10 @@ grpc::ServerUnaryReactor* MachineService::PutLaserSchedule(
         const auto machine = store_.GetMachine(name->machine);
         if (!machine) return ToGrpcStatus(machine.error());
         const machine::MachineFamily* family = families::FindFamily(machine->family);
-        if (family == nullptr || !family->info().has_schedules) {
-          return ToGrpcStatus(
-              Error{ErrorCode::kCellPrecondition, "this machine has no laser schedules", {}});
-        }
+        if (family == nullptr)
+          return ToGrpcStatus(Error{ErrorCode::kCellUnknownFamily, machine->family, {}});
+        if (const Status known = CheckSchedule(*family, name->number); !known)
+          return ToGrpcStatus(known.error());
         if (const Status good = CheckTitle(wanted.title(), "title"); !good)
           return ToGrpcStatus(good.error());
         const std::string mode = wanted.mode().empty() ? "CW" : wanted.mode();
@@ -212,7 +213,7 @@ grpc::ServerUnaryReactor* MachineService::PutLaserSchedule(
               Error{ErrorCode::kCellInvalidArgument, "power_percent: allowed are 0 to 100", {}});
         }
         const auto stored = store_.PutSchedule({.machine = name->machine,
-                                                .number = name->number,
+                                                .number = static_cast<int>(name->number),
                                                 .name = wanted.title(),
                                                 .mode = mode,
                                                 .power_percent = wanted.power_percent()},
@@ -230,7 +231,15 @@ grpc::ServerUnaryReactor* MachineService::DeleteLaserSchedule(
                 [this, request](const Caller&) {
                   const auto name = ParseScheduleName(request->name());
                   if (!name) return ToGrpcStatus(name.error());
-                  const Status deleted = store_.DeleteSchedule(name->machine, name->number);
+                  const auto machine = store_.GetMachine(name->machine);
+                  if (!machine) return ToGrpcStatus(machine.error());
+                  const machine::MachineFamily* family = families::FindFamily(machine->family);
+                  if (family == nullptr)
+                    return ToGrpcStatus(Error{ErrorCode::kCellUnknownFamily, machine->family, {}});
+                  if (const Status known = CheckSchedule(*family, name->number); !known)
+                    return ToGrpcStatus(known.error());
+                  const Status deleted =
+                      store_.DeleteSchedule(name->machine, static_cast<int>(name->number));
                   return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
                 });
 }

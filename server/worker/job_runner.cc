@@ -244,31 +244,28 @@ class Attempt {
       events_.OnDiagnostic(SimTime(0), diagnostic);
     const machine::MachineFamily& family = *families::FindFamily(assignment_.family());
     hold_key_ = machine::HoldKey(family.info(), made->setup->mode);
-    simulation::InputDescription inputs = simulation::DescribeInputs(family, *made->setup);
-    simulation::Recorder recorder(family.Shape(made->setup->parameters), std::move(inputs),
-                                  ProductsOf(options));
     if (options.pace() > 0.0) {  // else it is over as soon as that would be known
       Result<std::unique_ptr<simulation::TimetableRun>> timetable_run =
           simulation::TimetableRun::Of(family, *made->setup);
       if (timetable_run) timetable_run_ = *std::move(timetable_run);
     }
-    Result<std::unique_ptr<machine::Run>> run = family.NewRun(std::move(*made->setup), recorder);
-    if (!run) return Refuse(run.error());
-    simulation::Simulation simulation(**run, recorder);
-    if (const End end = Drive(**run, simulation, recorder); end != End::kFinished) return end;
+    const Result<simulation::BegunRun> begun =
+        simulation::Begin(family, std::move(*made->setup), ProductsOf(options));
+    if (!begun) return Refuse(begun.error());
+    if (const End end = Drive(*begun); end != End::kFinished) return end;
 
-    const simulation::RunReport report = simulation.Finish();
+    const simulation::RunReport report = begun->simulation->Finish();
     std::map<std::string, std::string> values;
     for (const std::string& name : *variables) {
-      if (const auto value = (*run)->ReadVariable(name)) values[name] = *value;
+      if (const auto value = begun->run->ReadVariable(name)) values[name] = *value;
     }
     v1::RunReport message = bridge::ToProto(report, values);
     for (const Diagnostic& diagnostic : made->diagnostics)
       *message.add_diagnostics() = bridge::ToProto(diagnostic);
     outcome_ = message.outcome();
-    executables_ = (*run)->made_executables();
+    executables_ = begun->run->made_executables();
     std::string bytes = bridge::StableBytes(message);
-    const std::string picture = recorder.Svg(report, {});
+    const std::string picture = begun->recorder->Svg(report, {});
     if (!Fits(bytes.size() + picture.size())) {
       // What there is of it is kept as far as it fits; the report says why the rest is not there.
       ExceedOutput();
@@ -284,8 +281,10 @@ class Attempt {
     return End::kFinished;
   }
 
-  End Drive(machine::Run& run, simulation::Simulation& simulation,
-            const simulation::Recorder& recorder) {
+  End Drive(const simulation::BegunRun& begun) {
+    machine::Run& run = *begun.run;
+    simulation::Simulation& simulation = *begun.simulation;
+    const simulation::Recorder& recorder = *begun.recorder;
     SimTime slice = std::chrono::milliseconds(100);
     Pacer pacer(assignment_.job().simulation().pace());
     Clock::time_point last_position = Clock::now();

@@ -103,7 +103,7 @@ Status BlobTable::AddChunks(std::int64_t blob, std::size_t first,
                             std::span<const std::string> encoded) {
   for (const std::string& chunk : encoded) {
     const Status added = add_chunk_.With(blob, first++, Bytes{chunk}).Run();
-    if (!added) return added;
+    if (!added) return added.error();
   }
   return {};
 }
@@ -140,7 +140,7 @@ Status BlobTable::ReadChunks(std::int64_t blob, std::size_t size, std::string& c
     if (!*row) return {};
     const std::size_t left = size - std::min(size, content.size());
     const Status read = Decode(chunks.View(0), std::min(left, kChunkBytes), content);
-    if (!read) return read;
+    if (!read) return read.error();
   }
 }
 

@@ -85,7 +85,7 @@ Status StagedContent::WriteAhead() {
     const Status written = writer_->Do([&](WriteContext& context) {
       return context.tables.blobs.AddChunks(held->blob, first, encoded);
     });
-    if (!written) return written;
+    if (!written) return written.error();
     first = number + 1;
     size = 0;
     encoded.clear();

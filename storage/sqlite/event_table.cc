@@ -80,7 +80,7 @@ Result<std::optional<EventTable::Removed>> EventTable::RemoveOfJob(std::int64_t 
                                                                    int count_max) {
   Result<std::optional<Removed>> removed =
       FirstRow<Removed>(last_of_job_.With(job, count_max), ReadRemoved);
-  if (!removed) return removed;
+  if (!removed) return removed.error();
   if (!*removed || (*removed)->count == 0) return std::optional<Removed>();
   const Status gone = remove_of_job_.With(job, (*removed)->sequence).Run();
   if (!gone) return gone.error();

@@ -20,9 +20,9 @@ std::int64_t EventSlack(std::int64_t limit) {
 Status KeepCounters(WriteContext& context) {
   MarkTable& marks = context.tables.marks;
   const Status job = marks.Set(MarkTable::kJob, context.counters.job);
-  if (!job) return job;
+  if (!job) return job.error();
   const Status position = marks.Set(MarkTable::kPosition, context.counters.position);
-  if (!position) return position;
+  if (!position) return position.error();
   return marks.Set(MarkTable::kFence, context.counters.fence);
 }
 
@@ -30,7 +30,7 @@ Status KeepCounters(WriteContext& context) {
 Status NoteGone(WriteContext& context, const EventTable::Removed& removed) {
   context.changed = true;
   const Status job = context.tables.jobs.SetEventsGoneUntil(removed.job, removed.sequence);
-  if (!job) return job;
+  if (!job) return job.error();
   const Result<std::int64_t> before = context.tables.marks.Get(MarkTable::kEventsGoneUntil);
   if (!before) return before.error();
   return context.tables.marks.Set(MarkTable::kEventsGoneUntil, std::max(*before, removed.position));
@@ -42,10 +42,10 @@ Status RemoveJob(WriteContext& context, std::int64_t job) {
   if (!artifacts) return artifacts.error();
   for (const std::int64_t blob : *artifacts) {
     const Status dropped = tables.blobs.Drop(blob);
-    if (!dropped) return dropped;
+    if (!dropped) return dropped.error();
   }
   const Status attempts = tables.attempts.RemoveOf(job);
-  if (!attempts) return attempts;
+  if (!attempts) return attempts.error();
   const Result<std::optional<std::int64_t>> specification = tables.jobs.Remove(job);
   if (!specification) return specification.error();
   context.counters.finished_jobs -= 1;
@@ -94,12 +94,12 @@ Status Housekeeping::RemoveOldJobs(WriteContext& context) const {
     if (!removed) return removed.error();
     if (*removed) {
       const Status noted = NoteGone(context, **removed);
-      if (!noted) return noted;
+      if (!noted) return noted.error();
       events_left -= static_cast<int>((*removed)->count);
       if (events_left <= 0) return {};
     }
     const Status gone = RemoveJob(context, **job);
-    if (!gone) return gone;
+    if (!gone) return gone.error();
   }
   return {};
 }
@@ -114,7 +114,7 @@ Status Housekeeping::RemoveOldEvents(WriteContext& context) const {
   std::int64_t newest = 0;
   for (const EventTable::Removed& of_job : *removed) {
     const Status noted = NoteGone(context, of_job);
-    if (!noted) return noted;
+    if (!noted) return noted.error();
     count += of_job.count;
     newest = std::max(newest, of_job.position);
   }

@@ -39,7 +39,7 @@ WallTime After(WallTime now, std::chrono::milliseconds duration) {
 Status WriteEvents(WriteContext& context, JobRecord& job, int attempt,
                    const std::vector<NewEvent>& events) {
   const Status small_enough = CheckSizes(events);
-  if (!small_enough) return small_enough;
+  if (!small_enough) return small_enough.error();
   for (const NewEvent& event : events) {
     const EventTable::Place place{.position = ++context.counters.position,
                                   .job = job.id,
@@ -47,7 +47,7 @@ Status WriteEvents(WriteContext& context, JobRecord& job, int attempt,
                                   .attempt = attempt,
                                   .at = context.now};
     const Status added = context.tables.events.Add(place, event);
-    if (!added) return added;
+    if (!added) return added.error();
   }
   context.changed = true;
   return {};
@@ -57,7 +57,7 @@ Status WriteEvents(WriteContext& context, JobRecord& job, int attempt,
 Status WriteChange(WriteContext& context, JobRow& row, int attempt,
                    const std::vector<NewEvent>& events) {
   const Status written = WriteEvents(context, row.job, attempt, events);
-  if (!written) return written;
+  if (!written) return written.error();
   context.changed = true;
   return context.tables.jobs.Update(row);
 }
@@ -90,7 +90,7 @@ Result<JobRow> GetHeldRow(WriteContext& context, const Lease& lease) {
 
 Status EndAttempt(WriteContext& context, const Lease& lease, std::string_view how) {
   const Status ended = context.tables.attempts.End(lease.job, lease.attempt, context.now, how);
-  if (!ended) return ended;
+  if (!ended) return ended.error();
   return context.tables.leases.Remove(lease.job);
 }
 

@@ -254,7 +254,7 @@ Result<std::vector<JobRecord>> JobTable::ListUnfinished(JobState state, const Jo
   std::vector<JobRecord> jobs;
   for (const std::string& kind : *kinds) {
     Result<std::vector<JobRecord>> of_kind = ListLane(lane, query, kind);
-    if (!of_kind) return of_kind;
+    if (!of_kind) return of_kind.error();
     std::move(of_kind->begin(), of_kind->end(), std::back_inserter(jobs));
   }
   return jobs;

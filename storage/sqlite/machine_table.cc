@@ -47,12 +47,12 @@ Status MachineTable::Put(const MachineRecord& machine, const Stamp& stamp,
       put_.With(machine.id, machine.family, machine.title, machine.profile, stamp.revision,
                 stamp.created_at, stamp.updated_at, state.bytes, state.blob)
           .Run();
-  if (!put) return put;
+  if (!put) return put.error();
   const Status removed = remove_parameters_.With(machine.id).Run();
-  if (!removed) return removed;
+  if (!removed) return removed.error();
   for (const auto& [name, value] : machine.parameters) {
     const Status added = add_parameter_.With(machine.id, name, value).Run();
-    if (!added) return added;
+    if (!added) return added.error();
   }
   return {};
 }

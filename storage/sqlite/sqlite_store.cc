@@ -29,7 +29,7 @@ Status Prepare(Database& database, const SqliteOptions& options, WallTime now) {
   if (!number) return number.error();
   if (options.check_whole_file) {
     const Status whole = CheckWholeFile(database);
-    if (!whole) return whole;
+    if (!whole) return whole.error();
   }
   const Result<std::string> mode = database.Text("PRAGMA journal_mode = WAL");
   if (!mode) return mode.error();
@@ -41,7 +41,7 @@ Status Prepare(Database& database, const SqliteOptions& options, WallTime now) {
   }
   const Status set = database.Execute("PRAGMA secure_delete = OFF; PRAGMA journal_size_limit = " +
                                       std::to_string(kLogBytesKept));
-  if (!set) return set;
+  if (!set) return set.error();
   return Migrate(database, Migrations(), options.path, now);
 }
 

@@ -39,11 +39,11 @@ class Submission {
     staged_.reserve(job_.attachments.size() + 1);
     const Status specification = Stage(
         StagedContent::Make(writer, job_.specification, StagedContent::Place::kRecordWhenSmall));
-    if (!specification) return specification;
+    if (!specification) return specification.error();
     contents_.specification = &staged_.back().content();
     for (const NewArtifact& attachment : job_.attachments) {
       const Status attached = Stage(StagedContent::Of(writer, attachment));
-      if (!attached) return attached;
+      if (!attached) return attached.error();
       contents_.attachments.push_back(&staged_.back().content());
     }
     return {};
@@ -198,7 +198,7 @@ Result<JobRecord> SqliteStore::GetJob(std::int64_t id) {
 Result<std::vector<JobRecord>> SqliteStore::ListJobs(const JobQuery& query) {
   return readers_->Read([&](Tables& tables) -> Result<std::vector<JobRecord>> {
     Result<std::vector<JobRecord>> jobs = tables.jobs.List(query);
-    if (!jobs) return jobs;
+    if (!jobs) return jobs.error();
     for (JobRecord& job : *jobs) {
       const Status whole = AddSpecification(tables, job);
       if (!whole) return whole.error();
@@ -329,9 +329,9 @@ Result<std::vector<EventRecord>> SqliteStore::AllEvents(std::int64_t after_posit
 Result<std::int64_t> SqliteStore::LastPosition() {
   return readers_->Read([](Tables& tables) -> Result<std::int64_t> {
     const Result<std::int64_t> there = tables.events.LastPosition();
-    if (!there) return there;
+    if (!there) return there.error();
     const Result<std::int64_t> mark = tables.marks.Get(MarkTable::kPosition);
-    if (!mark) return mark;
+    if (!mark) return mark.error();
     return std::max(*there, *mark);
   });
 }
@@ -381,7 +381,7 @@ std::unique_ptr<Store::Subscription> SqliteStore::Watch(std::function<void()> ch
 }
 
 Result<JobRecord> SqliteStore::WithSpecification(Result<JobRecord> job) {
-  if (!job) return job;
+  if (!job) return job.error();
   const Status whole =
       readers_->Read([&](Tables& tables) -> Status { return AddSpecification(tables, *job); });
   // The change is durable by now, and that is what the caller has to know. Whoever needs the

@@ -48,15 +48,15 @@ Status CheckWrites(const std::vector<ProgramWrite>& programs,
     if (!IsSlot(program.slot)) return InvalidArgument(slot);
     if (!slots.insert(program.slot).second) return InvalidArgument(slot + " is written twice");
     const Status object = CheckSize(program.object.size(), "the object for " + slot);
-    if (!object) return object;
+    if (!object) return object.error();
     const Status source =
         CheckSize(program.source ? program.source->size() : 0, "the source for " + slot);
-    if (!source) return source;
+    if (!source) return source.error();
   }
   std::set<int> numbers;
   for (const ScheduleRecord& schedule : schedules) {
     const Status good = CheckSchedule(schedule);
-    if (!good) return good;
+    if (!good) return good.error();
     if (!numbers.insert(schedule.number).second) {
       return InvalidArgument("laser schedule " + std::to_string(schedule.number) +
                              " is written twice");
@@ -92,7 +92,7 @@ Status DropBlobs(WriteContext& context, const ProgramTable::Row& row) {
   for (const std::optional<std::int64_t>& blob :
        {std::optional(row.object_blob), row.source_blob, row.executable_blob}) {
     const Status dropped = context.tables.blobs.Drop(blob);
-    if (!dropped) return dropped;
+    if (!dropped) return dropped.error();
   }
   return {};
 }
@@ -171,18 +171,18 @@ Result<ScheduleRecord> PutScheduleRow(WriteContext& context, ScheduleRecord sche
 Status RemoveProgram(WriteContext& context, std::string_view machine, int slot, Revision expected) {
   Tables& tables = context.tables;
   const Status known = CheckMachine(tables, machine);
-  if (!known) return known;
+  if (!known) return known.error();
   const Result<std::optional<ProgramTable::Row>> found = tables.programs.Find(machine, slot);
   if (!found) return found.error();
   if (!*found) return NoProgram(machine, slot);
   const ProgramTable::Row& row = **found;
   const Status fits = CheckRevision(row.revision, expected, SlotText(machine, slot));
-  if (!fits) return fits;
+  if (!fits) return fits.error();
   const Status removed = tables.programs.Remove(machine, slot);
-  if (!removed) return removed;
+  if (!removed) return removed.error();
   const Status buried =
       tables.buried.Bury(BuriedTable::Kind::kProgram, machine, std::to_string(slot), row.revision);
-  if (!buried) return buried;
+  if (!buried) return buried.error();
   return DropBlobs(context, row);
 }
 
@@ -205,7 +205,7 @@ Result<bool> PutExecutableBlob(WriteContext& context, std::string_view machine, 
 Status RemoveExecutable(WriteContext& context, std::string_view machine, int slot) {
   Tables& tables = context.tables;
   const Status known = CheckMachine(tables, machine);
-  if (!known) return known;
+  if (!known) return known.error();
   const Result<std::optional<ProgramTable::Row>> found = tables.programs.Find(machine, slot);
   if (!found) return found.error();
   if (!*found) return NoProgram(machine, slot);
@@ -213,7 +213,7 @@ Status RemoveExecutable(WriteContext& context, std::string_view machine, int slo
     return Error{ErrorCode::kCellNotFound, SlotText(machine, slot) + " has no executable", {}};
   }
   const Status removed = tables.programs.PutExecutable(machine, slot, {});
-  if (!removed) return removed;
+  if (!removed) return removed.error();
   context.garbage = true;
   return tables.blobs.Drop((*found)->executable_blob);
 }
@@ -221,7 +221,7 @@ Status RemoveExecutable(WriteContext& context, std::string_view machine, int slo
 Status RemoveSchedule(WriteContext& context, std::string_view machine, int number) {
   Tables& tables = context.tables;
   const Status known = CheckMachine(tables, machine);
-  if (!known) return known;
+  if (!known) return known.error();
   const Result<std::optional<ScheduleRecord>> found = tables.schedules.Get(machine, number);
   if (!found) return found.error();
   if (!*found) {
@@ -230,7 +230,7 @@ Status RemoveSchedule(WriteContext& context, std::string_view machine, int numbe
                  {}};
   }
   const Status removed = tables.schedules.Remove(machine, number);
-  if (!removed) return removed;
+  if (!removed) return removed.error();
   return tables.buried.Bury(BuriedTable::Kind::kSchedule, machine, std::to_string(number),
                             (*found)->revision);
 }

@@ -76,12 +76,12 @@ Status RemoveProject(WriteContext& context, std::string_view id, Revision expect
   if (!*found) return NoProject(id);
   const ProjectTable::Facts& before = **found;
   const Status fits = CheckRevision(before.revision, expected, "project " + std::string(id));
-  if (!fits) return fits;
+  if (!fits) return fits.error();
   const Status removed = context.tables.projects.Remove(id);
-  if (!removed) return removed;
+  if (!removed) return removed.error();
   const Status buried =
       context.tables.buried.Bury(BuriedTable::Kind::kProject, "", id, before.revision);
-  if (!buried) return buried;
+  if (!buried) return buried.error();
   context.garbage = true;
   return context.tables.blobs.Drop(before.body_blob);
 }

@@ -50,7 +50,7 @@ Savepoint::~Savepoint() {
 Status Savepoint::Undo() {
   TransactionStatements& statements = *std::exchange(statements_, nullptr);
   const Status undone = statements.rollback_to_.With().Run();
-  if (!undone) return undone;
+  if (!undone) return undone.error();
   return statements.release_.With().Run();
 }
 

@@ -291,7 +291,7 @@ void Writer::Tidy() {
     if (!transaction) return transaction.error();
     WriteContext context{.tables = connection_.tables, .counters = counters_, .now = clock_()};
     const Result<bool> more = housekeeping_.RunSlice(context);
-    if (!more) return more;
+    if (!more) return more.error();
     const Status committed = transaction->Commit();
     if (!committed) return committed.error();
     if (context.changed) changed_();

@@ -14,7 +14,7 @@ namespace {
 std::vector<MoveCommand> Arcs(int count) {
   std::vector<MoveCommand> chain = Contour(count, false);
   for (MoveCommand& move : chain) {
-    const TipPose from = move.path.from().tip(), to = move.path.to().tip();
+    const TipPose from = move.path.tip_from(), to = move.path.tip_to();
     const MachineVector way = to.tip - from.tip;
     const MachinePoint via = from.tip + way * 0.5 + MachineVector{-way.y(), way.x(), 0.0} * 0.01;
     if (const Result<PathPiece::Arc3> arc = PathPiece::ArcThrough(from, via, to)) {

@@ -52,7 +52,7 @@ Figures DirectionOf(const json& input) {
 
 Figures Inverse(const json& input) {
   Figures figures;
-  const MachinePoint tip = OffsetOf(input) * ProgramPoint(PointOf(input.at("tip")));
+  const MachinePoint tip = OffsetOf(input) * ProgramPoint::FromOrigin(PointOf(input.at("tip")));
   Put(figures, "machine_tip", tip);
   Put(figures, "column",
       HeadOf(input).ColumnOf({tip, NumberOf(input, "A"), NumberOf(input, "B")}).column);

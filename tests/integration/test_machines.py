@@ -194,6 +194,10 @@ class Schedules(WithCell):
         self.refused(stub.PutLaserSchedule, self.put(1, machine="none"), UNKNOWN, "CELL-E9009")
         self.refused(stub.PutLaserSchedule, self.put(1, machine="mill-1"), grpc.StatusCode.FAILED_PRECONDITION,
                      "CELL-E9015")
+        for number in (0, 64):
+            self.refused(stub.PutLaserSchedule, self.put(number), BAD, "OPT-E7403")
+            self.refused(stub.DeleteLaserSchedule, machine_pb2.DeleteLaserScheduleRequest(
+                name=f"machines/optimo-1/laserSchedules/{number}"), BAD, "OPT-E7403")
         self.refused(stub.ListLaserSchedules, machine_pb2.ListLaserSchedulesRequest(parent="machines/none"), UNKNOWN,
                      "CELL-E9009")
         self.refused(stub.ListLaserSchedules, machine_pb2.ListLaserSchedulesRequest(parent="none"), BAD, "CELL-E9003")

@@ -143,7 +143,7 @@ class Rewriting(Tools):
         self.assertEqual(done.returncode, 1)
         self.assertRegex(done.stderr, r"a\.rml:2:1: .*RML1-E8111")
         self.assertFalse((self.folder / "b.rml").exists())
-        done = ask("rml1", "move", self.file("c.rml", "PU100,100;PD19900,100;"), "--by", "2,0", "-o", "-")
+        done = ask("rml1", "move", self.file("c.rml", "PU100,100;PD20220,100;"), "--by", "2,0", "-o", "-")
         self.assertIn("1 mm uncut beyond the travel", done.stderr)
 
     def test_steps(self):

@@ -1,9 +1,10 @@
 #include "tests/plotter/plotter.h"
 
 #include <algorithm>
-#include <charconv>
+#include <sstream>
 #include <utility>
 
+#include "engine/core/number_text.h"
 #include "engine/machine/observer.h"
 #include "engine/machine/run.h"
 #include "engine/machine/shape.h"
@@ -14,48 +15,45 @@ namespace {
 using machine::OutcomeKind, machine::Parameters, machine::RunPhase;
 
 constexpr double kSpeed_mm_s = 200.0;
+constexpr std::string_view kPrefix = "PLT";
+constexpr int kErrorTable = OwnErrorTable(kPrefix);
 constexpr ErrorCode kSyntax = OwnError(kErrorTable, 0);
 constexpr ErrorCode kNoPen = OwnError(kErrorTable, 1);
+constexpr ErrorCode kOffThePaper = OwnError(kErrorTable, 2);
 constexpr CatalogueEntry kErrors[] = {
     {kSyntax, OwnErrorFamily(kErrorTable), 1, "PlotterSyntax", Severity::kCompile,
      "a line that is no command", "write SP, PU, PD or WT with its numbers"},
     {kNoPen, OwnErrorFamily(kErrorTable), 2, "PlotterNoPen", Severity::kProgram,
      "drawing without a pen", "take a pen with SP first"},
+    {kOffThePaper, OwnErrorFamily(kErrorTable), 3, "PlotterOffThePaper", Severity::kProgram,
+     "a motion leaves the paper", "draw it smaller, or take larger paper (SIZE)"},
 };
 
 struct Command {
-  std::string_view name;  // "PD"
-  double x = 0.0;         // mm; s of WT, the number of the pen of SP
+  std::string name;  // "PD"
+  double x = 0.0;    // mm; s of WT, the number of the pen of SP
   double y = 0.0;
   int line = 0;
 };
 
-bool TakeNumber(std::string_view& text, double& number) {
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (read.ec != std::errc{}) return false;
-  text.remove_prefix(static_cast<std::size_t>(read.ptr - text.data()));
-  return true;
-}
-
-bool ReadLine(std::string_view text, Command& command) {
-  if (text.size() < 4 || text[2] != ' ') return false;
+bool ReadLine(const std::string& text, Command& command) {
+  if (text.size() < 4) return false;
   command.name = text.substr(0, 2);
-  text.remove_prefix(3);
-  if (!TakeNumber(text, command.x)) return false;
-  if (command.name == "SP") return text.empty() && command.x >= 0.0 && command.x <= 8.0;
-  if (command.name == "WT") return text.empty() && command.x >= 0.0;
+  std::istringstream numbers(text.substr(2));
   const bool moves = command.name == "PU" || command.name == "PD";
-  if (!moves || !text.starts_with(',')) return false;
-  text.remove_prefix(1);
-  return TakeNumber(text, command.y) && text.empty();
+  char comma = ',';
+  numbers >> command.x;
+  if (moves) numbers >> comma >> command.y;
+  if (numbers.fail() || comma != ',' || numbers.peek() != EOF) return false;
+  const bool pen = command.name == "SP" && command.x <= 8.0;
+  return moves || ((pen || command.name == "WT") && command.x >= 0.0);
 }
 
 std::vector<Command> Read(std::string_view text, std::vector<Diagnostic>& findings) {
   std::vector<Command> commands;
-  for (int line = 1; !text.empty(); ++line) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view words = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
+  std::istringstream lines{std::string(text)};
+  std::string words;
+  for (int line = 1; std::getline(lines, words); ++line) {
     Command command{.name = {}, .line = line};
     if (words.empty()) continue;
     if (ReadLine(words, command)) {
@@ -63,7 +61,7 @@ std::vector<Command> Read(std::string_view text, std::vector<Diagnostic>& findin
     } else {
       findings.push_back({.code = kSyntax,
                           .severity = Severity::kCompile,
-                          .detail = "no command: " + std::string(words.substr(0, 20)),
+                          .detail = "no command: " + words.substr(0, 20),
                           .where = {.line = line, .column = 1}});
     }
   }
@@ -151,9 +149,7 @@ class PlotterRun final : public machine::Run {
   }
   const machine::Outcome& outcome() const override { return s_.outcome; }
   std::uint64_t steps_executed() const override { return s_.next; }
-  std::optional<std::string> ReadVariable(std::string_view name) const override {
-    return name == "PEN" ? std::optional(std::to_string(s_.pen)) : std::nullopt;
-  }
+  std::optional<std::string> ReadVariable(std::string_view) const override { return {}; }
   std::vector<machine::Figure> figures() const override { return {}; }
   std::string SaveMachine() const override { return {}; }
   std::unique_ptr<machine::RunSnapshot> Save() const override {
@@ -184,15 +180,36 @@ class PlotterRun final : public machine::Run {
       s_.busy_until = s_.now + FromSeconds(command.x);
       observer_.OnWait({.start = s_.now, .end = s_.busy_until, .place = place()});
     } else if (command.name == "PD" && s_.pen == 0) {
-      observer_.OnDiagnostic(
-          s_.now, {.code = kNoPen, .severity = Severity::kProgram, .detail = "PD without a pen"});
-      End(OutcomeKind::kFailed, kNoPen);
+      Fail(kNoPen, "PD without a pen");
     } else {
       Go(command.name == "PD", {command.x, command.y, 0.0});
     }
   }
 
+  void Fail(ErrorCode code, std::string detail) {
+    observer_.OnDiagnostic(s_.now, {.code = code,
+                                    .severity = Severity::kProgram,
+                                    .detail = detail,
+                                    .where = {.line = place().line},
+                                    .program = place().program,
+                                    .step = place().step});
+    End(OutcomeKind::kFailed, code);
+    s_.outcome.detail = std::move(detail);
+  }
+
   void Go(bool draws, const motion::MachinePoint& to) {
+    for (const int axis : {0, 1}) {
+      const double excess = std::max(-to[axis], to[axis] - setup_.parameters.Number("SIZE"));
+      if (excess <= 0.0) continue;
+      observer_.OnViolation({.at = s_.now,
+                             .place = place(),
+                             .axis = axis,
+                             .excess = excess,
+                             .at_target = true,
+                             .axes = {to},
+                             .tip = {to}});
+      return Fail(kOffThePaper, std::string(1, "XY"[axis]) + " by " + ShortestText(excess) + " mm");
+    }
     motion::Planner planner(Limits(setup_.parameters));
     const Status good = planner.Append({.path = motion::PathPiece::Line({s_.at}, {to}),
                                         .head = motion::MillHead{},
@@ -216,7 +233,7 @@ class PlotterRun final : public machine::Run {
                       .place = place(),
                       .tip = {to},
                       .axes = {to},
-                      .program_point = motion::ProgramPoint(to),
+                      .program_point = motion::ProgramPoint::AsMachine(to),
                       .feed_mm_s = kSpeed_mm_s,
                       .path = draws ? "PD" : "PU"});
   }
@@ -229,21 +246,22 @@ class PlotterRun final : public machine::Run {
 
 constexpr machine::ParameterInfo kParameters[] = {
     {"SIZE", "mm", 300.0, 10.0, 3000.0, {}, "width and height of the paper", {}}};
+constexpr ErrorCode kOfMotion[] = {kOffThePaper};
 constexpr machine::FamilyInfo kInfo{.id = "plotter",
                                     .title = "Pen plotter",
                                     .extensions = ".PLT",
                                     .axes = "X Y",
+                                    .checked_by_running = true,
                                     .hold_in_remote = true,
-                                    .override_max_percent = 120.0};
+                                    .override_max_percent = 120.0,
+                                    .travel_left = kOffThePaper,
+                                    .check = {.of_motion = kOfMotion}};
 
 class Family final : public machine::MachineFamily {
  public:
   const machine::FamilyInfo& info() const override { return kInfo; }
   std::span<const machine::ParameterInfo> parameters() const override { return kParameters; }
   std::span<const machine::MachineProfile> profiles() const override { return {}; }
-  bool HasVariable(const Parameters&, std::string_view name) const override {
-    return name == "PEN";
-  }
   machine::MachineShape Shape(const Parameters& parameters) const override {
     machine::MachineShape shape;
     for (const double corner : {0.0, parameters.Number("SIZE")})
@@ -269,7 +287,7 @@ class Family final : public machine::MachineFamily {
 
 }  // namespace
 
-ErrorTable Errors() { return {.prefix = "PLT", .rows = kErrors}; }
+ErrorTable Errors() { return {.prefix = kPrefix, .rows = kErrors}; }
 
 const machine::MachineFamily& PlotterFamily() {
   static const Family family;

@@ -12,8 +12,7 @@
 //   WT s        waits
 namespace rmlcell::plotter {
 
-inline constexpr int kErrorTable = 0;  // its place in OwnErrorTables
-ErrorTable Errors();                   // PLT-E1, PLT-E2
+ErrorTable Errors();  // PLT-E1, PLT-E2
 
 const machine::MachineFamily& PlotterFamily();
 

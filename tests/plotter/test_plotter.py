@@ -49,6 +49,31 @@ class OnALaptop(unittest.TestCase):
         outcome = json.loads(done.stdout)["outcome"]
         self.assertEqual((outcome["kind"], outcome["code"], outcome["symbol"]), ("KIND_FAILED", "PLT-E2", "PLOTTER_NO_PEN"))
 
+    def test_what_leaves_the_paper_is_bad(self):
+        # The paper has 300 mm: 500 is 200 beyond, -1 is 1.
+        for to, beyond in (("500,10", "X by 200 mm"), ("10,500", "Y by 200 mm"), ("-1,0", "X by 1 mm")):
+            text = f"SP 1\nPD 300,300\nPD {to}\n"
+            checked = self.run_it("check", "square.plt", text=text)
+            self.assertEqual(checked.returncode, 1, checked.stdout)
+            self.assertIn("square.plt:3", checked.stdout)
+            self.assertIn("PLT-E3", checked.stdout)
+            self.assertIn(beyond, checked.stdout)
+            self.assertIn("BAD", checked.stdout)
+            report = json.loads(self.run_it("simulate", "square.plt", "--json", text=text).stdout)
+            outcome = report["outcome"]
+            self.assertEqual((outcome["verdict"], outcome["code"]), ("VERDICT_BAD", "PLT-E3"))
+            self.assertEqual([(one["code"], one["message"]) for one in outcome["reasons"]], [("PLT-E3", beyond)])
+            self.assertEqual(len(report["violations"]), 1)
+        self.assertEqual(self.run_it("check", "square.plt", text="SP 1\nPD 300,300\nPD 0,0\n").returncode, 0)
+
+    def test_it_has_nothing_to_fix(self):
+        refused = self.run_it("check", "--fix", "square.plt")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("has nothing to fix", refused.stderr)
+
+    def test_help_names_it(self):
+        self.assertIn("optimo, rml1 or plotter", " ".join(self.run_it("parameters", "--help").stdout.split()))
+
     def test_its_codes_are_explained(self):
         said = self.run_it("explain", "PLT-E2")
         self.assertEqual(said.returncode, 0, said.stderr)

@@ -87,14 +87,6 @@ TEST(Names, ProgramNumbersAreSlotsOrTheirExecutables) {
   }
 }
 
-// OPT-3.44: laser schedules 1 to 63.
-TEST(Names, ScheduleNumbersAreOneToSixtyThree) {
-  EXPECT_TRUE(ParseScheduleName("machines/m/laserSchedules/1"));
-  EXPECT_TRUE(ParseScheduleName("machines/m/laserSchedules/63"));
-  EXPECT_EQ(CodeOf(ParseScheduleName("machines/m/laserSchedules/0")), ErrorCode::kScheduleRange);
-  EXPECT_EQ(CodeOf(ParseScheduleName("machines/m/laserSchedules/64")), ErrorCode::kScheduleRange);
-}
-
 TEST(Names, AnErrorShowsAReadableBeginningOnly) {
   const Result<std::string> name =
       ParseMachineName("machines/\x1B[2J\xFF" + std::string(1 << 20, 'x'));

@@ -86,6 +86,8 @@ MAY_INCLUDE = {
 }
 # Of these rooms others may include no other header.
 PUBLIC = {
+    "engine/core": ["alignment.h", "catalogue.h", "check.h", "diagnostic.h", "hex.h", "letters.h", "line_table.h",
+                    "number_text.h", "result.h", "ring.h", "text_fixes.h", "units.h"],
     GEOMETRY: ["frames.h", "pose.h", "path.h", "hole.h", "corner_curve.h", "corner_table.h", "blend_curve.h", "least.h"],
     PROFILE: ["speed_profile.h", "speed_passes.h", "ramp_plan.h"],
     KINEMATICS: ["kinematics.h", "axes.h", "machine_limits.h", "axis_demand.h", "speed_bound.h"],
@@ -105,7 +107,8 @@ PUBLIC = {
     "engine/optimo/offline": ["compensate.h", "contour_advice.h", "convert.h", "fix_program.h", "house_programs.h",
                               "listing.h", "project.h", "semantic_diff.h", "transform.h", "translate.h"],
     "engine/optimo/editing": ["optimo_editing.h"],
-    "engine/optimo/machine": ["laser_unit.h", "optimo_parameters.h", "situation.h", "system_cycle.h", "telling.h"],
+    "engine/optimo/machine": ["laser_unit.h", "motion_errors.h", "optimo_parameters.h", "situation.h", "system_cycle.h",
+                              "telling.h"],
     "engine/optimo/ride": ["ride.h", "travel.h"],
     "engine/optimo/control": ["optimo_family.h"],
     PATH: ["part_curve.h", "path_extent.h", "polyline.h", "profile_phases.h", "motion_peaks.h"],
@@ -115,9 +118,15 @@ PUBLIC = {
     MATERIAL: ["height_map.h", "milling_recorder.h", "milling_text.h", "relief.h", "stl.h", "target.h", "target_files.h"],
     VERDICT: ["verdict.h"],
     RUN: ["simulate.h", "motion_check.h", "rehearsal.h", "joint_check.h", "timetable.h", "trial_run.h"],
+    "storage": ["records.h", "store.h"],
     "storage/sqlite": ["sqlite_store.h"],
+    "proto/bridge": ["comparison.h", "encoding.h", "files.h", "findings.h", "framing.h", "header_date.h", "report.h",
+                     "setup.h", "sha256.h"],
+    "server/base": ["config.h", "executor.h", "log.h", "names.h", "readable.h", "steady_clock.h", "version.h"],
     "server/events": ["event_feed.h"],
     "server/jobs": ["dispatcher.h", "job_book.h", "worker_processes.h"],
+    "server/records": ["file_family.h", "job_messages.h", "program_place.h", "update_mask.h"],
+    "server/programs": ["memory_tools.h", "program_book.h", "program_result.h", "text_tools.h"],
     "server/services": ["handbox_service.h", "job_service.h", "machine_messages.h", "machine_service.h",
                         "program_service.h", "project_service.h", "web_resources.h", "worker_service.h"],
     "server/web": ["resource_source.h", "web_server.h"],
@@ -157,6 +166,13 @@ LINES_KNOWN = {}
 
 BAD_NAME = re.compile(r"(^|[_.-])(utils?|helpers?|misc|managers?)([_.-]|$)", re.IGNORECASE)
 BAD_TYPE = re.compile(r"^\s*(?:class|struct)\s+(\w*(?:Manager|Utils?|Helpers?))\b")
+
+# The numbers of a machine's manual: rows of engine/core/catalogue.def that only its own folder may name. The cell
+# learns of them through engine/machine (FamilyInfo, CheckCodes, ToolCodes).
+CATALOGUE = "engine/core/catalogue.def"
+CATALOGUE_ROW = re.compile(r"^RMLCELL_ERROR\((\w+), \d+, (\w+),", re.MULTILINE)
+CODE = re.compile(r"\bErrorCode::k(\w+)|\busing enum (?:\w+::)*ErrorCode\b")
+NEUTRAL_ROWS = "Cell"
 
 SOURCES = ("engine", "storage", "proto/bridge", "server", "clients")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
@@ -216,6 +232,27 @@ def check_purity(path, text, breaches):
             breaches.append(f"{path}:{number}: the engine may not keep state outside its objects")
 
 
+def machine_codes(root):
+    """The rows of a machine family: symbol -> folder of the family."""
+    try:
+        with open(os.path.join(root, CATALOGUE), encoding="utf-8") as file:
+            rows = CATALOGUE_ROW.findall(file.read())
+    except FileNotFoundError:
+        return {}
+    return {symbol: "engine/" + family.lower() for family, symbol in rows if family != NEUTRAL_ROWS}
+
+
+def check_codes(path, text, codes, breaches):
+    for number, line in enumerate(without_comments(text).splitlines(), 1):
+        for found in CODE.finditer(line):
+            if found.group(1) is None:
+                breaches.append(f"{path}:{number}: write ErrorCode::kName, so that its family can be seen")
+                continue
+            folder = codes.get(found.group(1))
+            if folder is not None and not path.startswith((folder + "/", "engine/core/")):
+                breaches.append(f"{path}:{number}: k{found.group(1)} is a number of {folder}, not for this room")
+
+
 def check_names(path, text, breaches):
     for part in path.split("/"):
         if BAD_NAME.search(os.path.splitext(part)[0]):
@@ -236,6 +273,7 @@ def files_under(root):
 
 def check(root):
     breaches = []
+    codes = machine_codes(root)
     for path in files_under(root):
         if not path.endswith((".h", ".cc", ".py", ".cmake", ".sh", ".js")):
             check_names(path, "", breaches)
@@ -250,6 +288,7 @@ def check(root):
                 breaches.append(f"{path}: {len(lines)} lines, at most {limit}")
             if path.startswith(tuple(top + "/" for top in SOURCES)):
                 check_includes(path, lines, breaches)
+                check_codes(path, text, codes, breaches)
             if path.startswith("engine/"):
                 check_purity(path, text, breaches)
     return breaches

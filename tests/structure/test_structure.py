@@ -70,6 +70,20 @@ class TheHouse(unittest.TestCase):
             self.assertTrue(structure.LINES_MAX < count <= lines, f"{path} has {count} lines")
 
 
+class Decisions(unittest.TestCase):
+    def read(self, path):
+        with open(os.path.join(ROOT, path), encoding="utf-8") as file:
+            return file.read()
+
+    def test_0019_lists_the_instructions_with_a_parse_function_of_their_own(self):
+        source = self.read("engine/optimo/language/parser_instructions.cc")
+        body = source[source.index("bool Parser::ParseInstruction("):source.index("bool Parser::ParseOperands(")]
+        own = {word.upper() for word in re.findall(r"case Op::k(\w+):", body)}
+        page = self.read("docs/decisions/0019-stages-tables-and-one-rehearsal.md")
+        listed = re.findall(r"^  \| ([A-Z]+) \|", page, re.MULTILINE)
+        self.assertEqual(sorted(listed), sorted(own))
+
+
 class AMadeUpHouse(unittest.TestCase):
     """One good tree; each test puts one breach into it."""
 
@@ -150,11 +164,54 @@ class AMadeUpHouse(unittest.TestCase):
     def test_what_is_public_is_there(self):
         for room, headers in structure.PUBLIC.items():
             for header in headers:
-                self.assertTrue(os.path.isfile(os.path.join(ROOT, room, header)), f"{room}/{header}")
+                made = os.path.join(ROOT, room, header)  # or made by the build out of .in
+                self.assertTrue(os.path.isfile(made) or os.path.isfile(made + ".in"), f"{room}/{header}")
+
+    def test_every_room_of_several_headers_says_which_are_public(self):
+        for room in structure.MAY_INCLUDE:
+            folder = os.path.join(ROOT, room)
+            headers = [name for name in os.listdir(folder) if name.endswith(".h")] if os.path.isdir(folder) else []
+            if len(headers) >= 2:
+                self.assertIn(room, structure.PUBLIC)
+
+    def test_what_is_public_is_used(self):
+        """A header that no other room includes, by itself or by another public one, is private."""
+        used = set()
+        public = {f"{room}/{header}" for room, headers in structure.PUBLIC.items() for header in headers}
+        for path in structure.files_under(ROOT):
+            if path.endswith((".h", ".cc")):
+                with open(os.path.join(ROOT, path), encoding="utf-8", errors="replace") as file:
+                    for found in re.finditer(r'#\s*include\s*"([^"]+)"', file.read()):
+                        if os.path.dirname(found.group(1)) != os.path.dirname(path) or path in public:
+                            used.add(found.group(1))
+        for room, headers in structure.PUBLIC.items():
+            for header in headers:
+                self.assertIn(f"{room}/{header}", used)
 
     def test_an_include_with_blanks_counts_too(self):
         self.assert_breach("engine/core/a.h", '  #  include   "engine/motion/geometry/path.h"\n', "may not include")
         self.assert_breach("engine/core/a.h", "#include <engine/motion/geometry/path.h>\n", "may not include")
+
+    def test_a_number_of_a_machine_stays_in_its_folder(self):
+        self.GOOD = {**self.GOOD, "engine/core/catalogue.def":
+                     'RMLCELL_ERROR(Optimo, 348, HoleRadiusZero, Program, "a", "b")\n'
+                     'RMLCELL_ERROR(Cell, 9004, CellNotFound, Request, "a", "b", NotFound)\n'}
+        line = "Error a{ErrorCode::kHoleRadiusZero, {}, {}};  // ErrorCode::kHoleRadiusZero\n"
+        for path in ("engine/motion/geometry/a.cc", "engine/machine/a.h", "engine/rml1/a.cc", "server/jobs/a.cc",
+                     "clients/cli/a.cc"):
+            with self.subTest(path=path):
+                self.assert_breach(path, line, "kHoleRadiusZero is a number of engine/optimo")
+        self.assert_breach("server/jobs/a.cc", "using enum rmlcell::ErrorCode;\n", "write ErrorCode::kName")
+        for path, text in (("engine/optimo/language/a.cc", line), ("engine/core/a.cc", line), ("tests/a.cc", line),
+                           ("server/jobs/a.cc", "return ErrorCode::kCellNotFound;\n"),
+                           ("server/jobs/a.cc", "// as ErrorCode::kHoleRadiusZero\n")):
+            with self.subTest(path=path):
+                self.assertEqual(self.breaches(path, text), [])
+
+    def test_the_numbers_of_both_machines_are_known(self):
+        folders = structure.machine_codes(ROOT)
+        self.assertEqual(set(folders.values()), {"engine/optimo", "engine/rml1"})
+        self.assertEqual((folders["HoleRadiusZero"], folders["Rml1WrongParameters"]), ("engine/optimo", "engine/rml1"))
 
     def test_a_room_that_is_not_in_the_table(self):
         self.assert_breach("engine/plasma/torch.h", "#pragma once\n", "does not stand in the table")

@@ -24,7 +24,14 @@ class ProgramPoint {
  public:
   ProgramPoint() = default;
   ProgramPoint(double x, double y, double z) : from_origin_(x, y, z) {}
-  explicit ProgramPoint(const ProgramVector& from_origin) : from_origin_(from_origin) {}
+  // By name, for vectors of both frames are one type.
+  static ProgramPoint FromOrigin(const ProgramVector& from_origin) {
+    return {from_origin.x(), from_origin.y(), from_origin.z()};
+  }
+  // Where the program speaks in the frame of the machine: a machine without another one, or axes.
+  static ProgramPoint AsMachine(const MachinePoint& point) {
+    return {point.x(), point.y(), point.z()};
+  }
 
   double x() const { return from_origin_.x(); }
   double y() const { return from_origin_.y(); }
@@ -67,7 +74,7 @@ class MachineFromProgram {
 
   MachinePoint operator*(const ProgramPoint& point) const { return motion_ * point.from_origin(); }
   ProgramPoint ToProgram(const MachinePoint& point) const {
-    return ProgramPoint(ProgramVector(motion_.inverse() * point));
+    return ProgramPoint::FromOrigin(motion_.inverse() * point);
   }
   // Its columns are the axes of the program.
   Rotation axes() const { return motion_.linear(); }

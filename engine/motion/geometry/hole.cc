@@ -20,12 +20,12 @@ MachineVector InPlane(const MachineVector& v, const MachineVector& normal) {
 
 Result<HolePath> HoleThrough(const HoleCommand& hole) {
   if (!(hole.radius_mm > 0.0)) {
-    return Error{ErrorCode::kHoleRadiusZero, "radius is " + ShortestText(hole.radius_mm), {}};
+    return Error{ErrorCode::kCellHoleRadius, "radius is " + ShortestText(hole.radius_mm), {}};
   }
   const MachineVector axis = hole.normal_point - hole.centre.tip;
   const double axis_length = axis.norm();
   if (!(axis_length > kNormalPointTooClose_mm)) {
-    return Error{ErrorCode::kHoleNormalUndefined, "the normal point is the centre", {}};
+    return Error{ErrorCode::kCellHoleNormal, "the normal point is the centre", {}};
   }
   const MachineVector normal = axis * (1.0 / axis_length);
 

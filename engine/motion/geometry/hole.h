@@ -23,8 +23,8 @@ struct HolePath {
   bool starts_on_axis = false;  // error 129 of the teach simulator, OPT-2.28
 };
 
-// motion.md 3.3; OPT-B.10 to B.14. Errors, in this order (OPT-B.15): HoleRadiusZero (348),
-// HoleNormalUndefined (7309).
+// motion.md 3.3; OPT-B.10 to B.14. Errors, in this order (OPT-B.15): CellHoleRadius,
+// CellHoleNormal.
 Result<HolePath> HoleThrough(const HoleCommand& hole);
 
 }  // namespace rmlcell::motion

@@ -52,11 +52,11 @@ Result<PathPiece::Arc3> PathPiece::ArcThrough(const TipPose& from, const Machine
   const double chord = b.norm();
   const double to_via = a.norm();
   if (!std::isfinite(chord) || !std::isfinite(to_via) || !IsFinite(from.tip)) {
-    return Error{ErrorCode::kArcUndefined, "a coordinate is not a number", {}};
+    return Error{ErrorCode::kCellArcUndefined, "a coordinate is not a number", {}};
   }
   if (chord <= kArcPointTolerance_mm) {
     if (to_via > kArcPointTolerance_mm) {
-      return Error{ErrorCode::kArcUndefined, "the arc ends where it begins", {}};
+      return Error{ErrorCode::kCellArcUndefined, "the arc ends where it begins", {}};
     }
     return Arc3{ArcCase::kNoTipMotion, Line(from, to)};
   }
@@ -73,7 +73,7 @@ Result<PathPiece::Arc3> PathPiece::ArcThrough(const TipPose& from, const Machine
   const double height = offset.norm();
   if (height <= kCollinear_mm) {
     if (along > 0.0 && along < chord) return Arc3{ArcCase::kLineWarned, Line(from, to)};
-    return Error{ErrorCode::kArcUndefined,
+    return Error{ErrorCode::kCellArcUndefined,
                  "the via point is on the line through start and target, outside them",
                  {}};
   }
@@ -118,6 +118,10 @@ PathPiece PathPiece::Circle(const TipPose& from, const MachinePoint& centre,
   piece.shape_ = shape;
   if (sweep_rad != kTurn) piece.to_.point = piece.ArcPoint(sweep_rad);
   return piece;
+}
+
+PathPiece PathPiece::StraightFrom(const PathPose& place) const {
+  return in_axes() ? Joint(place.axes(), to_.axes()) : Line(place.tip(), to_.tip());
 }
 
 PathPiece PathPiece::Part(double s_from, double s_to) const {

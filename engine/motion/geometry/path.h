@@ -2,6 +2,7 @@
 
 #include <variant>
 
+#include "engine/core/check.h"
 #include "engine/core/result.h"
 #include "engine/motion/geometry/corner_curve.h"
 #include "engine/motion/geometry/pose.h"
@@ -48,7 +49,7 @@ class PathPiece {
   // How three points make a path; motion.md 3.2.
   enum class ArcCase { kArc, kLine, kLineWarned, kNoTipMotion };
   struct Arc3;
-  // Errors: ArcUndefined (7305) when no single circle goes through the three points.
+  // Errors: CellArcUndefined when no single circle goes through the three points.
   static Result<Arc3> ArcThrough(const TipPose& from, const MachinePoint& via, const TipPose& to);
 
   // A turn of `sweep_rad` about `normal` (unit) through `from`; right-handed, sweep above 0.
@@ -62,6 +63,9 @@ class PathPiece {
     const PathPose pose = At(s);
     return in_axes() ? Joint(pose.axes(), pose.axes()) : Line(pose.tip(), pose.tip());
   }
+
+  // The straight way from another place of such a path to the end of this one.
+  PathPiece StraightFrom(const PathPose& place) const;
 
   // The piece between two values of s, 0 <= s_from < s_to <= length(). Not for sigma pieces.
   PathPiece Part(double s_from, double s_to) const;
@@ -92,6 +96,21 @@ class PathPiece {
   double b_rate() const { return RateOf(from_.b_rad, to_.b_rad); }
   const PathPose& from() const { return from_; }
   const PathPose& to() const { return to_; }
+
+  // What a place of this path is. Preconditions, checked: not in_axes(); in_axes().
+  TipPose TipOf(const PathPose& place) const {
+    RMLCELL_CHECK(!in_axes());
+    return place.tip();
+  }
+  AxisPose AxesOf(const PathPose& place) const {
+    RMLCELL_CHECK(in_axes());
+    return place.axes();
+  }
+  TipPose TipAt(double s) const { return TipOf(At(s)); }
+  TipPose tip_from() const { return TipOf(from_); }
+  TipPose tip_to() const { return TipOf(to_); }
+  AxisPose axes_from() const { return AxesOf(from_); }
+  AxisPose axes_to() const { return AxesOf(to_); }
 
   // Makes this piece the half of a corner curve: its arc length, and the poses at its ends. `start`
   // is the arc length of the curve before it.

@@ -6,21 +6,27 @@ namespace rmlcell::motion {
 
 struct TipPose;
 struct AxisPose;
+class PathPiece;
+struct PathPlace;
 
-// A place on a path: of the tip, or of the axes where the path is in_axes(). Who knows which says
-// so by tip() or axes(); who has the head asks TipOn or AxesOn (kinematics.h).
+// A place on a path: of the tip, or of the axes where the path is in_axes(). Which one it is only
+// its path can say: PathPiece::TipOf and AxesOf; who has the head asks TipOn or AxesOn
+// (kinematics.h).
 struct PathPose {
   MachinePoint point;
   double a_rad = 0.0;
   double b_rad = 0.0;
 
-  TipPose tip() const;
-  AxisPose axes() const;
-
   bool operator==(const PathPose& other) const {
     return point.x() == other.point.x() && point.y() == other.point.y() &&
            point.z() == other.point.z() && a_rad == other.a_rad && b_rad == other.b_rad;
   }
+
+ private:
+  friend PathPiece;
+  friend PathPlace;
+  TipPose tip() const;
+  AxisPose axes() const;
 };
 
 // Tool tip in the machine frame (mm) and the two head angles (rad). Mills use the tip alone, and

@@ -115,11 +115,11 @@ AxisPose Head::ColumnOf(const TipPose& pose) const {
 }
 
 TipPose TipOn(const PathPiece& path, const Head& head, const PathPose& place) {
-  return path.in_axes() ? head.TipOf(place.axes()) : place.tip();
+  return path.in_axes() ? head.TipOf(path.AxesOf(place)) : path.TipOf(place);
 }
 
 AxisPose AxesOn(const PathPiece& path, const Head& head, const PathPose& place) {
-  return path.in_axes() ? place.axes() : head.ColumnOf(place.tip());
+  return path.in_axes() ? path.AxesOf(place) : head.ColumnOf(path.TipOf(place));
 }
 
 TipPose Head::TipOf(const AxisPose& pose) const {

@@ -40,14 +40,14 @@ bool NeedsAnchor(const PathPiece& path, const PathPose* end) {
 
 // Errors are made elsewhere, so that the moves without one pay nothing for them.
 [[gnu::cold, gnu::noinline]] Status NotUsable() {
-  return Error{ErrorCode::kTargetOutOfTravel, "a coordinate is not a usable number", {}};
+  return Error{ErrorCode::kCellTargetUnusable, "a coordinate is not a usable number", {}};
 }
 [[gnu::cold, gnu::noinline]] Status NoMotion(const char* why) {
-  return Error{ErrorCode::kNoMotion, why, {}};
+  return Error{ErrorCode::kCellNoMotion, why, {}};
 }
 [[gnu::cold, gnu::noinline]] Status TooLittleAcceleration(double share) {
   return Error{
-      ErrorCode::kNoMotion, "the acceleration is " + ShortestText(100.0 * share) + " %", {}};
+      ErrorCode::kCellNoMotion, "the acceleration is " + ShortestText(100.0 * share) + " %", {}};
 }
 
 }  // namespace
@@ -77,7 +77,7 @@ Status Planner::Append(const MoveCommand& move) {
     if (!IsUsable(move.path.from())) return NotUsable();
     if (NeedsAnchor(move.path, end)) {
       MoveCommand anchored = move;
-      anchored.path = PathPiece::Line(end->tip(), move.path.to().tip());
+      anchored.path = move.path.StraightFrom(*end);
       return Append(anchored);
     }
   }

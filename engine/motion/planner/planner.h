@@ -95,10 +95,10 @@ class Planner {
   Planner(Planner&&) noexcept;
   Planner& operator=(Planner&&) noexcept;
 
-  // Errors: NoMotion (7307) when speed or acceleration is too low to ever arrive; TargetOutOfTravel
-  // (7301) when a coordinate is not a number or beyond 1e12. On error the planner is unchanged. A
-  // path of length zero is not an error and adds nothing; without /FLY it makes the passage before
-  // it a stop.
+  // Errors: CellNoMotion when speed or acceleration is too low to ever arrive; CellTargetUnusable
+  // when a coordinate is not a number or beyond 1e12. On error the planner is unchanged. A path of
+  // length zero is not an error and adds nothing; without /FLY it makes the passage before it a
+  // stop.
   Status Append(const MoveCommand& move);
 
   // The machine passes the start of the first move at this speed, with acceleration zero, instead

@@ -1,11 +1,37 @@
 #include "engine/motion/ride/path_ride.h"
 
 #include <algorithm>
+#include <iterator>
 #include <span>
 
 #include "engine/core/check.h"
 
 namespace rmlcell::motion {
+
+void PathRide::ReplaceToCome(std::vector<PlannedItem> items) {
+  to_come_.assign(std::make_move_iterator(items.begin()), std::make_move_iterator(items.end()));
+}
+
+std::optional<std::uint64_t> PathRide::PassMark() {
+  const auto* mark = to_come_.empty() ? nullptr : std::get_if<PlannedMark>(&to_come_.front());
+  if (mark == nullptr) return std::nullopt;
+  const std::uint64_t tag = mark->tag;
+  to_come_.pop_front();
+  return tag;
+}
+
+void PathRide::MeasureInAxesBy(double factor) {
+  if (rides_ && under_way_.motion.path.in_axes()) under_way_.motion.MeasureBy(factor);
+  for (PlannedItem& item : to_come_) {
+    auto* planned = std::get_if<PlannedMotion>(&item);
+    if (planned != nullptr && planned->path.in_axes()) planned->MeasureBy(factor);
+  }
+}
+
+void PathRide::ReplaceAppended(std::size_t n, std::span<const AppendedCommand> commands) {
+  RMLCELL_CHECK(n + commands.size() == appended_.size());
+  std::ranges::copy(commands, appended_.begin() + static_cast<std::ptrdiff_t>(n));
+}
 
 MotionUnderWay& PathRide::Begin(SimTime now) {
   RMLCELL_CHECK(waits_to_begin());

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -44,10 +45,19 @@ class PathRide {
   // Null: none. It is over when the machine Leaves it, not by time alone.
   const MotionUnderWay* under_way() const { return rides_ ? &under_way_ : nullptr; }
   MotionUnderWay* under_way() { return rides_ ? &under_way_ : nullptr; }
-  std::deque<PlannedItem>& to_come() { return to_come_; }
   const std::deque<PlannedItem>& to_come() const { return to_come_; }
   bool busy() const { return rides_ || !to_come_.empty(); }
   bool waits_to_begin() const { return !rides_ && !to_come_.empty(); }
+
+  void Plan(PlannedItem item) { to_come_.push_back(std::move(item)); }  // behind all to come
+  void ReplaceToCome(std::vector<PlannedItem> items);
+  void DropToCome() { to_come_.clear(); }
+  // The tag of the mark that is the first to come, and is passed now; nothing: a motion is, or
+  // nothing is to come.
+  std::optional<std::uint64_t> PassMark();
+  // Of the motion under way and those to come that are planned in the axes:
+  // PlannedMotion::MeasureBy.
+  void MeasureInAxesBy(double factor);
 
   // The first to come, which is a motion, is under way from now on. Precondition: none is.
   MotionUnderWay& Begin(SimTime now);
@@ -59,8 +69,10 @@ class PathRide {
 
   // --- commands whose motions are not over, for who plans them anew ---
 
-  std::deque<AppendedCommand>& appended() { return appended_; }
   const std::deque<AppendedCommand>& appended() const { return appended_; }
+  void Append(AppendedCommand command) { appended_.push_back(std::move(command)); }
+  // Those from the nth on, as many as there are, become these.
+  void ReplaceAppended(std::size_t n, std::span<const AppendedCommand> commands);
   // Of the move with this tag; null when it is over.
   const MoveCommand* Appended(std::uint64_t tag) const;
   // Those before this tag are over.
@@ -83,7 +95,13 @@ class PathRide {
   // HOLD at the end of the move with this tag: the commands behind it are held back. What leads to
   // that end is the caller's to plan.
   void HoldBehind(std::uint64_t tag);
-  std::deque<AppendedCommand>& held() { return held_; }
+  const std::deque<AppendedCommand>& held() const { return held_; }
+  template <class Change>  // void(AppendedCommand&)
+  void ChangeHeld(Change change) {
+    for (AppendedCommand& command : held_) change(command);
+  }
+  // START: they are the caller's to plan, and held back no longer.
+  std::deque<AppendedCommand> TakeHeld() { return std::exchange(held_, {}); }
 
   // START after a STOP: what was interrupted comes first. False: nothing was.
   bool TakeUpInterrupted();

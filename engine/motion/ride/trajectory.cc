@@ -63,7 +63,7 @@ TrajectoryPoint PointAt(const PathPlace& place, const Head& head, const PathStat
 
   TrajectoryPoint point;
   if (place.in_axes) {
-    point.tip = head.TipOf(pose.axes());
+    point.tip = head.TipOf(place.axes());
     point.tip_velocity = velocity.point - swing;
     point.tip_acceleration = acceleration.point - whirl;
     point.axes = Values(pose.point, pose.a_rad, pose.b_rad);
@@ -71,10 +71,10 @@ TrajectoryPoint PointAt(const PathPlace& place, const Head& head, const PathStat
     point.axis_acceleration = Values(acceleration.point, acceleration.a, acceleration.b);
     return point;
   }
-  point.tip = pose.tip();
+  point.tip = place.tip();
   point.tip_velocity = velocity.point;
   point.tip_acceleration = acceleration.point;
-  point.axes = Values(head.ColumnOf(pose.tip()).column, pose.a_rad, pose.b_rad);
+  point.axes = Values(head.ColumnOf(place.tip()).column, pose.a_rad, pose.b_rad);
   point.axis_velocity = Values(velocity.point + swing, velocity.a, velocity.b);
   point.axis_acceleration = Values(acceleration.point + whirl, acceleration.a, acceleration.b);
   return point;

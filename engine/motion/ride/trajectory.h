@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/core/check.h"
 #include "engine/motion/geometry/blend_curve.h"
 #include "engine/motion/planner/planner.h"
 
@@ -28,6 +29,16 @@ struct PathPlace {
   PathPose pose;
   PathDerivatives first;
   PathDerivatives second;
+
+  // Preconditions, checked: not in_axes; in_axes.
+  TipPose tip() const {
+    RMLCELL_CHECK(!in_axes);
+    return pose.tip();
+  }
+  AxisPose axes() const {
+    RMLCELL_CHECK(in_axes);
+    return pose.axes();
+  }
 };
 TrajectoryPoint PointAt(const PathPlace& place, const Head& head, const PathState& state);
 TrajectoryPoint PointAt(const PathPiece& path, const Head& head, const PathState& state);

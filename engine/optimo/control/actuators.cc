@@ -158,7 +158,7 @@ void Actuators::TellZeroed(int group) {
                               .place = situation_.place,
                               .tip = ride_.tip(),
                               .axes = axes,
-                              .program_point = motion::ProgramPoint(axes.column),
+                              .program_point = motion::ProgramPoint::AsMachine(axes.column),
                               .rotary_a = axes.a_rad,
                               .path = kZeroGroups[group],
                               .programmed = false});

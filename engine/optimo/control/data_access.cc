@@ -231,7 +231,7 @@ Status DataAccess::Assign(const Instruction& i) {
   for (int bit = 0; bit < width; ++bit) {
     const Variable place{target.group, static_cast<std::uint8_t>(target.index + bit)};
     const Status written = Write(place, static_cast<float>(*number >> bit & 1));
-    if (!written) return written;
+    if (!written) return written.error();
   }
   return {};
 }
@@ -257,12 +257,12 @@ Status DataAccess::ConnectOutputs(std::uint8_t groups) {
   const bool analogue = (groups & kGroupOa) != 0 && Connected(kGroupOa);
   // Gas 3 makes way for gas 2, whose output comes first below.
   if (logical && !data.ol[kGas3]) {
-    if (Status off = SetOutput(kGas3, false); !off) return off;
+    if (const Status off = SetOutput(kGas3, false); !off) return off.error();
   }
   for (int n = 0; n < kVariableCount; ++n) {
     const auto at = static_cast<std::size_t>(n);
     if (logical) {
-      if (Status set = SetOutput(n, data.ol[at]); !set) return set;
+      if (const Status set = SetOutput(n, data.ol[at]); !set) return set.error();
     }
     if (!analogue) continue;
     effects_.Show({.kind = PassageEffect::Kind::kAnalogue,

@@ -4,6 +4,7 @@
 
 #include "engine/core/number_text.h"
 #include "engine/motion/geometry/hole.h"
+#include "engine/optimo/machine/motion_errors.h"
 
 namespace rmlcell::optimo {
 namespace {
@@ -203,7 +204,7 @@ Result<motion::PathPiece> Moves::CirclePath(const Instruction& i, const motion::
   const Result<motion::TipPose> via = ViaOf(i);
   if (!via) return via.error();
   const Result<motion::PathPiece::Arc3> arc = motion::PathPiece::ArcThrough(from, via->tip, target);
-  if (!arc) return arc.error();
+  if (!arc) return OnOptimo(arc.error());
   if (arc->kind == motion::PathPiece::ArcCase::kLineWarned) {
     telling_.Warn(ErrorCode::kArcIsStraight, "the three points lie on a line", "OPT-B.16");
   }
@@ -232,7 +233,7 @@ Result<bool> Moves::AppendHole(const Programmed& move, const motion::TipPose& fr
                                                              .radius_mm = radius,
                                                              .program_x = program_axes.col(0),
                                                              .program_y = program_axes.col(1)});
-  if (!hole) return hole.error();
+  if (!hole) return OnOptimo(hole.error());
   if (hole->starts_on_axis && parameters_.teach_simulator) {
     return Error{
         ErrorCode::kHoleStartOnAxis, "the hole starts on the line from centre to normal point", {}};
@@ -405,13 +406,13 @@ Status Moves::ZeroAxes() {
   const motion::AxisPose& zero = parameters_.mechanical_zero;
   motion::AxisPose to = ride_.planned_axes();
   to.column.z() = zero.column.z();
-  if (Status z = ZeroGroup(0, to); !z) return z;
+  if (const Status z = ZeroGroup(0, to); !z) return z.error();
   to.a_rad = zero.a_rad;
   to.b_rad = zero.b_rad;
-  if (Status ab = ZeroGroup(1, to); !ab) return ab;
+  if (const Status ab = ZeroGroup(1, to); !ab) return ab.error();
   to.column.x() = zero.column.x();
   to.column.y() = zero.column.y();
-  if (Status xy = ZeroGroup(2, to); !xy) return xy;
+  if (const Status xy = ZeroGroup(2, to); !xy) return xy.error();
   situation_.machine.zeroed = true;
   ride_.EndChain();
   return {};
@@ -425,7 +426,7 @@ Status Moves::ZeroGroup(int group, const motion::AxisPose& to) {
   command.speed_fraction = 0.1;  // no override: OPT-4.51
   if (command.path.length() > 0.0) {
     const MoveNote note{.place = situation_.place, .path = PathType::kPtp, .last = false};
-    if (Status appended = ride_.Append(command, note); !appended) return appended;
+    if (const Status appended = ride_.Append(command, note); !appended) return appended.error();
   }
   ride_.PutAt(to);
   effects_.ShowBehind(

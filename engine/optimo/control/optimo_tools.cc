@@ -26,9 +26,14 @@ constexpr machine::FileExtensions kExtensions{.object = ".O",
                                               .compensated = ".CMP",
                                               .source_map = ".MAP"};
 
+constexpr machine::ToolCodes kCodes{.source_is_inch = ErrorCode::kSourceIsInch,
+                                    .convert_input = ErrorCode::kConvertInput,
+                                    .convert_output = ErrorCode::kConvertOutput};
+
 class Tools final : public machine::Tools {
  public:
   const machine::FileExtensions& extensions() const override { return kExtensions; }
+  const machine::ToolCodes& codes() const override { return kCodes; }
 
   FileForm FormOf(std::string_view name, std::string_view bytes) const override {
     return FormOfFile(name, bytes);

@@ -146,9 +146,10 @@ Status Works::SwitchOn(const WorkTask& task, bool dwell_in_background, When when
   const auto kind = static_cast<std::size_t>(task.kind);
   const auto process = static_cast<std::size_t>(task.process);
   const std::optional<WorkDefinition>& definition = processes.definitions[kind][process];
-  if (Status may = MaySwitchOn(task, definition); !may) return may;
+  if (const Status may = MaySwitchOn(task, definition); !may) return may.error();
   if (definition && definition->schedule > 0) {
-    if (Status selected = SelectSchedule(definition->schedule, when); !selected) return selected;
+    if (const Status selected = SelectSchedule(definition->schedule, when); !selected)
+      return selected.error();
   }
   processes.on[kind][process] = true;
   if (kind == 2 || situation_.simulating()) return {};

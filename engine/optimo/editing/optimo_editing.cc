@@ -61,6 +61,9 @@ class Editing final : public machine::Editing {
   std::unique_ptr<machine::EditedProgram> Look(std::string_view text) const override {
     return std::make_unique<EditedRml>(text);
   }
+  bool IsNeverReached(const Diagnostic& finding) const override {
+    return finding.code == ErrorCode::kPracticeAdvice && finding.rule == "OPT-3.47";
+  }
   std::string_view TextOfRule(std::string_view rule) const override {
     return editing::TextOfRule(rule);
   }

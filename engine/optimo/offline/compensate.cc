@@ -178,7 +178,7 @@ void Compensator::Pass(const Instruction& i) {
 void Compensator::PassSysdef(const Instruction& i) {
   FinishChain();
   const std::optional<motion::MachinePoint> in_machine =
-      at_ ? frame_.PointToMachine(motion::ProgramPoint(*at_)) : std::nullopt;
+      at_ ? frame_.PointToMachine(motion::ProgramPoint::FromOrigin(*at_)) : std::nullopt;
   if (!frame_.Set(p_, i)) {
     Report(ErrorCode::kCompSysdef, i, "a rotation of SYSDEF is no number; it is taken as 0",
            "OPT-8.23");
@@ -288,7 +288,7 @@ void Compensator::AddLeg(const Instruction& i) {
   if (path_ == PathType::kCir && i.Has(kVia)) {
     leg.via = ProgramVector{*values[5], *values[6], *values[7]};
     const auto arc = motion::PathPiece::ArcThrough({leg.from}, *leg.via, {leg.to});
-    if (!arc) Report(arc.error().code, i, arc.error().detail, "OPT-E.7305");
+    if (!arc) Report(ErrorCode::kArcUndefined, i, arc.error().detail, "OPT-E.7305");
   }
   Prepare(leg);
   if (leg.via) {

@@ -28,7 +28,7 @@ class ProgramFrame {
   }
   std::optional<motion::ProgramPoint> PointToProgram(const motion::MachinePoint& p) const {
     if (!translation_) return std::nullopt;
-    return motion::ProgramPoint(DirectionToProgram(p - *translation_));
+    return motion::ProgramPoint::FromOrigin(DirectionToProgram(p - *translation_));
   }
 
  private:

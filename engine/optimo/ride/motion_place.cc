@@ -18,21 +18,20 @@ double PlaceOnArc(const motion::PathPiece& arc, const motion::MachinePoint& poin
   return angle * arc.radius_mm();
 }
 
-motion::AxisValues Values(const motion::PathPose& place) {
-  const motion::AxisPose pose = place.axes();
+motion::AxisValues Values(const motion::AxisPose& pose) {
   return {pose.column.x(), pose.column.y(), pose.column.z(), pose.a_rad, pose.b_rad};
 }
 
 // By the axis that goes farthest.
 PlaceOnMove PlaceInAxes(const motion::PathPiece& motion, const motion::PathPiece& move) {
-  const motion::AxisValues from = Values(move.from()), to = Values(move.to());
+  const motion::AxisValues from = Values(move.axes_from()), to = Values(move.axes_to());
   std::size_t widest = 0;
   for (std::size_t i = 1; i < motion::kAxisCount; ++i) {
     if (std::abs(to[i] - from[i]) > std::abs(to[widest] - from[widest])) widest = i;
   }
-  const double begin = Values(motion.from())[widest];
+  const double begin = Values(motion.axes_from())[widest];
   const double rate = (to[widest] - from[widest]) / move.length();
-  const double rate_of_motion = (Values(motion.to())[widest] - begin) / motion.length();
+  const double rate_of_motion = (Values(motion.axes_to())[widest] - begin) / motion.length();
   return {.begin = (begin - from[widest]) / rate, .scale = rate_of_motion / rate};
 }
 

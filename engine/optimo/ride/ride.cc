@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/optimo/machine/motion_errors.h"
+
 namespace rmlcell::optimo {
 namespace {
 
@@ -37,15 +39,16 @@ MoveNote* Ride::NoteOf(std::uint64_t tag) { return Find(s_.notes, tag); }
 
 void Ride::Drain() {
   while (std::optional<motion::PlannedItem> item = s_.planner.Next())
-    s_.path.to_come().push_back(std::move(*item));
+    s_.path.Plan(std::move(*item));
 }
 
 Status Ride::Append(motion::MoveCommand command, const MoveNote& note) {
   command.tag = s_.next_tag++;
-  if (Status appended = s_.planner.Append(command); !appended) return appended;
+  if (const Status appended = s_.planner.Append(command); !appended)
+    return OnOptimo(appended.error());
   s_.notes.emplace_back(command.tag, note);
   s_.planned_axes = motion::AxesOn(command.path, command.head, command.path.to());
-  if (note.fly || s_.passing) s_.path.appended().push_back({.tag = command.tag, .move = command});
+  if (note.fly || s_.passing) s_.path.Append({.tag = command.tag, .move = command});
   s_.passing = note.fly;
   s_.run_ahead = 0;
   Drain();
@@ -54,7 +57,7 @@ Status Ride::Append(motion::MoveCommand command, const MoveNote& note) {
 
 std::uint64_t Ride::AppendMark() {
   const std::uint64_t tag = s_.next_tag++;
-  if (s_.passing) s_.path.appended().push_back({.tag = tag, .move = std::nullopt});
+  if (s_.passing) s_.path.Append({.tag = tag, .move = std::nullopt});
   s_.planner.Mark(tag);
   Drain();
   return tag;
@@ -85,10 +88,8 @@ bool Ride::RunsAhead() {
 
 void Ride::Start() {
   while (waits_to_start()) {
-    if (const auto* mark = std::get_if<motion::PlannedMark>(&s_.path.to_come().front())) {
-      const std::uint64_t tag = mark->tag;
-      s_.path.to_come().pop_front();
-      listener_.OnMark(tag);
+    if (const std::optional<std::uint64_t> mark = s_.path.PassMark()) {
+      listener_.OnMark(*mark);
       continue;
     }
     const motion::PlannedMotion& motion = s_.path.Begin(situation_.now).motion;
@@ -146,7 +147,7 @@ std::optional<std::uint64_t> Ride::Arrive() {
   motion::AxisPose& axes = situation_.machine.axes;
   axes = done.AxesAt(done.arrival);
   if (done.ended) {
-    s_.path.to_come().clear();
+    s_.path.DropToCome();
     s_.planned_axes = axes;
   }
   if (!busy() && !protocol().comes_to_rest()) s_.beside = Beside::kNo;
@@ -198,7 +199,7 @@ bool Ride::TakeOver() {
   s_.beside = Beside::kNo;  // from here on it is a motion like any other that is waited for
   if (!busy()) return false;
   if (under_way() != nullptr) EndHere();
-  s_.path.to_come().clear();
+  s_.path.DropToCome();
   return true;
 }
 

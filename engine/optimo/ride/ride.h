@@ -182,7 +182,7 @@ class Ride {
   MoveNote* NoteOf(std::uint64_t tag);
 
   void HoldOverManyMoves();
-  void HoldBehind(std::uint64_t tag, const std::vector<motion::PlannedItem>& kept);
+  void HoldBehind(std::uint64_t tag, std::vector<motion::PlannedItem> kept);
   void HoldCommandsBehind(std::uint64_t target);
   void PlanHeld();
 
@@ -196,7 +196,7 @@ class Ride {
   std::optional<motion::Planner> PlanOnward(const Onward& onward,
                                             std::span<const motion::AppendedCommand> later) const;
   void GoOnward(const ChainPlace& place, const Onward& onward,
-                const std::vector<motion::PlannedItem>& kept);
+                std::vector<motion::PlannedItem> kept);
 
   RideState& s_;
   Situation& situation_;

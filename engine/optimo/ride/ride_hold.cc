@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "engine/motion/ride/interruption.h"
@@ -43,7 +44,7 @@ void Ride::Hold() {
       } else {
         kept.emplace_back(exact);
       }
-      return HoldBehind(exact.tag, kept);
+      return HoldBehind(exact.tag, std::move(kept));
     }
     if (const std::optional<PlaceOnMove> place = PlaceOf(exact.path, command->path)) {
       const double way = (command->path.length() - place->begin) / place->scale - state.s;
@@ -64,7 +65,7 @@ void Ride::Hold() {
         } else {
           kept.emplace_back(exact);
         }
-        return HoldBehind(exact.tag, kept);
+        return HoldBehind(exact.tag, std::move(kept));
       }
     }
     if (!under_way) kept.emplace_back(exact);
@@ -130,19 +131,18 @@ void Ride::HoldOverManyMoves() {
   if (!planner) return;
   const std::uint64_t target = later[enough - 1].tag;
   s_.halted_behind = NoteOf(target)->place;
-  GoOnward(place, *onward, kept);
+  GoOnward(place, *onward, std::move(kept));
   planner->Stop();
-  while (std::optional<motion::PlannedItem> item = planner->Next())
-    s_.path.to_come().push_back(*item);
+  while (std::optional<motion::PlannedItem> item = planner->Next()) s_.path.Plan(*std::move(item));
   HoldCommandsBehind(target);
   Start();
 }
 
 // The move of this tag is the last one before the halt; everything that was appended behind it is
 // held back.
-void Ride::HoldBehind(std::uint64_t tag, const std::vector<motion::PlannedItem>& kept) {
+void Ride::HoldBehind(std::uint64_t tag, std::vector<motion::PlannedItem> kept) {
   s_.halted_behind = NoteOf(tag)->place;
-  s_.path.to_come().assign(kept.begin(), kept.end());
+  s_.path.ReplaceToCome(std::move(kept));
   HoldCommandsBehind(tag);
 }
 
@@ -153,18 +153,16 @@ void Ride::HoldCommandsBehind(std::uint64_t target) {
 
 // START after such a HOLD: the moves that were held back, from rest.
 void Ride::PlanHeld() {
-  auto& held = s_.path.held();
-  if (held.empty()) return;
-  for (motion::AppendedCommand& item : held) {
+  if (s_.path.held().empty()) return;
+  for (motion::AppendedCommand& item : s_.path.TakeHeld()) {
     if (!item.move) {
       s_.planner.Mark(item.tag);
     } else {
       // It was accepted before, with the same limits.
       RMLCELL_CHECK(bool(s_.planner.Append(*item.move)));
     }
-    s_.path.appended().push_back(std::move(item));
+    s_.path.Append(std::move(item));
   }
-  held.clear();
   if (!s_.passing) s_.planner.Stop();
   Drain();
 }

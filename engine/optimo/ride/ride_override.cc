@@ -17,7 +17,7 @@ void Ride::ChangeOverride(double percent) {
   const double before = situation_.override_percent;
   if (!(percent > 0.0) || percent == before) return;
   situation_.override_percent = percent;
-  for (motion::AppendedCommand& item : s_.path.held()) AdaptToOverride(item);
+  s_.path.ChangeHeld([&](motion::AppendedCommand& item) { AdaptToOverride(item); });
   if (protocol().Override()) AdaptMotions();
 }
 
@@ -90,15 +90,17 @@ bool Ride::ReplanFrom(const ChainPlace& place, const std::vector<motion::Planned
   const double speed = motion::LimitsOf(*rest.move, parameters_.limits).speed;
   const std::optional<Onward> onward = OnwardFrom(place, *rest.move, speed);
   if (!onward) return false;
-  auto& appended = s_.path.appended();
-  const auto own = appended.begin() + static_cast<std::ptrdiff_t>(onward->own);
-  std::vector<motion::AppendedCommand> later(std::next(own), appended.end());
+  const auto& appended = s_.path.appended();
+  // What is left of its own command, and those behind it.
+  std::vector<motion::AppendedCommand> onwards(
+      appended.begin() + static_cast<std::ptrdiff_t>(onward->own), appended.end());
+  onwards.front() = rest;
+  const std::span later = std::span(onwards).subspan(1);
   for (motion::AppendedCommand& item : later) AdaptToOverride(item);
   std::optional<motion::Planner> planner = PlanOnward(*onward, later);
   if (!planner) return false;
   if (!s_.passing) planner->Stop();
-  std::copy(later.begin(), later.end(), std::next(own));
-  *own = rest;
+  s_.path.ReplaceAppended(onward->own, onwards);
   GoOnward(place, *onward, kept);
   s_.planner = *std::move(planner);
   Drain();
@@ -157,9 +159,9 @@ std::optional<motion::Planner> Ride::PlanOnward(
 
 // The way to the place where the new plan begins takes the place of what was planned.
 void Ride::GoOnward(const ChainPlace& place, const Onward& onward,
-                    const std::vector<motion::PlannedItem>& kept) {
+                    std::vector<motion::PlannedItem> kept) {
   if (place.under_way) TellMotion(situation_.now);
-  s_.path.to_come().assign(kept.begin(), kept.end());
+  s_.path.ReplaceToCome(std::move(kept));
   if (onward.lead_length > 0.0) {
     const motion::PlannedMotion& here = place.motion;
     motion::PlannedMotion lead = here;
@@ -176,21 +178,14 @@ void Ride::GoOnward(const ChainPlace& place, const Onward& onward,
       s_.path.under_way()->motion = lead;
       s_.path.under_way()->Begin(situation_.now);
     } else {
-      s_.path.to_come().emplace_back(lead);
+      s_.path.Plan(lead);
     }
   } else if (place.under_way) {
     situation_.machine.axes = axes();
     s_.path.Leave();
   }
   // One measure for the whole chain: a STOP runs from one motion into the next.
-  if (motion::MotionUnderWay* active = s_.path.under_way();
-      active != nullptr && active->motion.path.in_axes()) {
-    active->motion.MeasureBy(onward.measure);
-  }
-  for (motion::PlannedItem& item : s_.path.to_come()) {
-    auto* planned = std::get_if<motion::PlannedMotion>(&item);
-    if (planned != nullptr && planned->path.in_axes()) planned->MeasureBy(onward.measure);
-  }
+  s_.path.MeasureInAxesBy(onward.measure);
 }
 
 }  // namespace rmlcell::optimo

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <string>
 
+#include "engine/core/units.h"
+
 namespace rmlcell::rml1 {
 namespace {
 
@@ -77,6 +79,12 @@ Result<PngBitmap> ReadPng(std::string_view bytes, bool invert, std::size_t pixel
   constexpr std::uint8_t kLight = 128;
   for (std::uint8_t& pixel : made.bitmap.copper) pixel = (pixel >= kLight) != invert ? 1 : 0;
   return made;
+}
+
+Result<double> PixelSizeOf(const PngBitmap& picture, double dpi) {
+  if (dpi != 0.0) return kMmPerInch / dpi;
+  if (picture.pixel_mm) return *picture.pixel_mm;
+  return Error{ErrorCode::kRml1PictureSize, "it has no resolution", {}};
 }
 
 }  // namespace rmlcell::rml1

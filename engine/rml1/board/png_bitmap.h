@@ -19,4 +19,8 @@ struct PngBitmap {
 // decoded.
 Result<PngBitmap> ReadPng(std::string_view bytes, bool invert, std::size_t pixels_max = kPixelsMax);
 
+// Edge of a pixel in mm: by the dots an inch that were asked for, where they are not 0, else as the
+// file has it. Error: Rml1PictureSize (8123) where neither says it.
+Result<double> PixelSizeOf(const PngBitmap& picture, double dpi);
+
 }  // namespace rmlcell::rml1

@@ -161,7 +161,7 @@ PointSweep ColumnSweep(const PathPart& part) {
     return Straight(path.At(part.from).point, path.At(part.to).point);
   }
   if (!Turns(path) && !path.in_axes()) {  // as the tip goes, somewhere above it
-    const MachineVector arm = part.head.ColumnOf(path.from().tip()).column - path.from().point;
+    const MachineVector arm = part.head.ColumnOf(path.tip_from()).column - path.from().point;
     PointSweep sweep = TipSweep(part);
     for (std::size_t i = 0; i < 3; ++i) {
       sweep[i].minimum += arm[i];

@@ -422,9 +422,9 @@ void Table::AddAxis(std::string_view axis) {
   };
   const std::string of = " of axis " + std::string(axis);
   if (rotary) {
-    add("axis_" + name + "_min_rad", "rad", "least position" + of,
+    add("axis_" + name + "_min_rad", "rad", "least angle" + of,
         [](const AxisFigures& a) { return Real(a.minimum); });
-    add("axis_" + name + "_max_rad", "rad", "greatest position" + of,
+    add("axis_" + name + "_max_rad", "rad", "greatest angle" + of,
         [](const AxisFigures& a) { return Real(a.maximum); });
   }
   add("axis_" + name + "_travel_" + unit, unit, "sum of the ways" + of,
@@ -559,7 +559,7 @@ std::string FactsPage() {
       "the\n"
       "line. Numbers have up to six decimals and a point, in every locale; `none` means that "
       "there\n"
-      "is nothing to say. Positions are in the machine frame unless the key says otherwise.\n\n"
+      "is nothing to say. Points are in the frame of the machine unless the key says otherwise.\n\n"
       "This page is made from the table in `engine/simulation/report/facts.cc` and the figures of the\n"
       "machine families; a test compares it.\n\n"
       "| key | unit | meaning |\n| --- | --- | --- |\n";

@@ -12,24 +12,25 @@
 namespace rmlcell::simulation {
 namespace {
 
-bool IsOfMotion(ErrorCode code) {
-  return code == ErrorCode::kTargetOutOfTravel || code == ErrorCode::kSpeedHeldByAxis ||
-         code == ErrorCode::kFlyReversal || code == ErrorCode::kNoMotion;
+bool Contains(std::span<const ErrorCode> codes, ErrorCode code) {
+  return std::ranges::find(codes, code) != codes.end();
 }
 
 // What one run tells about its motion, and which programs take part.
 class MotionListener final : public machine::RunObserver {
  public:
+  explicit MotionListener(const machine::CheckCodes& codes) : codes_(codes) {}
+
   void OnStep(SimTime /*at*/, const machine::Place& place,
               std::string_view /*instruction*/) override {
     if (place.program != last_program_) reached_.insert(place.program);
     last_program_ = place.program;
   }
   void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override {
-    if (!IsOfMotion(diagnostic.code)) return;
+    if (!Contains(codes_.of_motion, diagnostic.code)) return;
     Diagnostic told = diagnostic;
     // With what comes from outside the speed may be another.
-    if (told.code == ErrorCode::kNoMotion) told.severity = Severity::kWarning;
+    if (Contains(codes_.by_speed, told.code)) told.severity = Severity::kWarning;
     findings_.Add(at, told);
   }
 
@@ -37,12 +38,15 @@ class MotionListener final : public machine::RunObserver {
   const std::set<int>& reached() const { return reached_; }
 
  private:
+  const machine::CheckCodes& codes_;
   FindingList findings_;
   std::set<int> reached_;
   int last_program_ = -1;
 };
 
 struct CheckedRun {
+  explicit CheckedRun(const machine::FamilyInfo& info) : listener(info.check) {}
+
   MotionListener listener;
   std::string cut_short;
   machine::Outcome outcome;
@@ -53,19 +57,12 @@ struct CheckedRun {
 // Whether every run of these programs fails as this one did. That a program or FUNCTION is missing
 // tells of what was given to the check; and what hangs on a variable, an input or a parameter that
 // nothing has set may be another time otherwise: a program that others call is checked alone, too.
-bool FailsForSure(const machine::Run& run) {
+bool FailsForSure(const machine::FamilyInfo& info, const machine::Run& run) {
   if (run.relies_on_what_was()) return false;
   const machine::Outcome& outcome = run.outcome();
   if (outcome.kind != machine::OutcomeKind::kFailed || !outcome.code) return false;
-  switch (*outcome.code) {
-    case ErrorCode::kProgramMissing:
-    case ErrorCode::kFunctionMissing:
-    case ErrorCode::kCallNotExecutable:
-    case ErrorCode::kTargetOutOfTravel:  // told by itself, with its axis
-      return false;
-    default:
-      return true;
-  }
+  // That the travel is left is told by itself, with its axis.
+  return *outcome.code != info.travel_left && !Contains(info.check.not_given, *outcome.code);
 }
 
 Diagnostic DiagnosticOf(const machine::Outcome& outcome) {
@@ -78,8 +75,8 @@ Diagnostic DiagnosticOf(const machine::Outcome& outcome) {
 }
 
 // Empty: the program was followed to its end.
-std::string WhyCutShort(const machine::Outcome& outcome) {
-  if (!outcome.code || *outcome.code == ErrorCode::kTargetOutOfTravel) return {};
+std::string WhyCutShort(const machine::FamilyInfo& info, const machine::Outcome& outcome) {
+  if (!outcome.code || *outcome.code == info.travel_left) return {};
   const CatalogueEntry& entry = Lookup(*outcome.code);
   std::string text = "not at all";
   if (outcome.place.step > 0) text = "only up to step " + std::to_string(outcome.place.step);
@@ -106,9 +103,9 @@ Status RunForCheck(const machine::MachineFamily& family, machine::RunSetup setup
     }
   }
   checked.outcome = (*run)->outcome();
-  checked.for_sure = FailsForSure(**run);
+  checked.for_sure = FailsForSure(family.info(), **run);
   checked.ended_at = (*run)->state().time;
-  checked.cut_short = WhyCutShort(checked.outcome);
+  checked.cut_short = WhyCutShort(family.info(), checked.outcome);
   return {};
 }
 
@@ -123,7 +120,7 @@ Result<MotionCheck> CheckMotion(const machine::MachineFamily& family,
   for (const int slot : slots) {
     machine::RunSetup one = setup;
     one.main_program = slot;
-    CheckedRun& run = runs[slot];
+    CheckedRun& run = runs.try_emplace(slot, family.info()).first->second;
     if (const Status ran = RunForCheck(family, std::move(one), run); !ran) return ran.error();
     for (const int program : run.listener.reached()) {
       if (program != slot) called.insert(program);

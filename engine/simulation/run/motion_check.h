@@ -9,10 +9,10 @@
 
 namespace rmlcell::simulation {
 
-// CHECK of what no text tells: where the motion of a program leaves the travel of an axis (7301),
-// and where an axis holds it back (7321). The program runs in virtual time with the inputs of the
-// setup, by default all off, START being given at every halt; what such a run would do is told,
-// with its time, and that it fails, where it does.
+// CHECK of what no text tells: where the motion of a program leaves the travel of an axis, and
+// what else the family calls a finding of motion (FamilyInfo::check). The program runs in virtual
+// time with the inputs of the setup, by default all off, START being given at every halt; what such
+// a run would do is told, with its time, and that it fails, where it does.
 //
 // Bounds, whatever the program does: an object of 34,000 bytes has some thousand steps, so this is
 // many times round the longest one, and a part takes less than a day.

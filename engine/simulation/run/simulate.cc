@@ -5,6 +5,7 @@
 #include <utility>
 
 namespace rmlcell::simulation {
+
 Simulation::Simulation(machine::Run& run, Recorder& recorder)
     : recorder_(recorder), drive_(run, recorder.inputs().input_times) {
   recorder_.Begin(run);
@@ -36,25 +37,36 @@ RunReport RunToEnd(Simulation& simulation, const SimulationOptions& options) {
   return simulation.Finish();
 }
 
+Result<BegunRun> Begin(const machine::MachineFamily& family, machine::RunSetup setup,
+                       Products products) {
+  BegunRun begun;
+  begun.recorder = std::make_unique<Recorder>(family.Shape(setup.parameters),
+                                              DescribeInputs(family, setup), std::move(products));
+  Result<std::unique_ptr<machine::Run>> run = family.NewRun(std::move(setup), *begun.recorder);
+  if (!run) return run.error();
+  begun.run = *std::move(run);
+  begun.simulation = std::make_unique<Simulation>(*begun.run, *begun.recorder);
+  return begun;
+}
+
 Result<SimulationResult> Simulate(const machine::MachineFamily& family, machine::RunSetup setup,
                                   SimulationRequest request) {
-  Recorder recorder(family.Shape(setup.parameters), DescribeInputs(family, setup),
-                    std::move(request.products));
-  Result<std::unique_ptr<machine::Run>> run = family.NewRun(std::move(setup), recorder);
-  if (!run) return run.error();
-  Simulation simulation(**run, recorder);
+  const Result<BegunRun> begun = Begin(family, std::move(setup), std::move(request.products));
+  if (!begun) return begun.error();
+  const Recorder& recorder = *begun->recorder;
+  const machine::Run& run = *begun->run;
   SimulationResult result;
-  result.report = RunToEnd(simulation, request.options);
+  result.report = RunToEnd(*begun->simulation, request.options);
   result.svg = recorder.Svg(result.report, request.picture);
   result.plot = recorder.PlotSvg(result.report, request.plot);
   if (recorder.milling() != nullptr) {
     result.material = recorder.milling()->material();
     result.target = recorder.milling()->target();
   }
-  result.machine_state = (*run)->SaveMachine();
-  result.executables = (*run)->made_executables();
+  result.machine_state = run.SaveMachine();
+  result.executables = run.made_executables();
   for (const std::string& name : request.variables) {
-    if (auto value = (*run)->ReadVariable(name)) result.variables[name] = *std::move(value);
+    if (auto value = run.ReadVariable(name)) result.variables[name] = *std::move(value);
   }
   return result;
 }

@@ -56,6 +56,16 @@ class Simulation {
   Drive drive_;
 };
 
+// A run at its beginning, with what watches it. The recorder and the run outlive their simulation.
+struct BegunRun {
+  std::unique_ptr<Recorder> recorder{};
+  std::unique_ptr<machine::Run> run{};
+  std::unique_ptr<Simulation> simulation{};
+};
+// Describes the inputs and makes all of it. Errors: those of MachineFamily::NewRun.
+Result<BegunRun> Begin(const machine::MachineFamily& family, machine::RunSetup setup,
+                       Products products);
+
 // How far a run is; views are valid during the call.
 struct Progress {
   machine::RunState state;

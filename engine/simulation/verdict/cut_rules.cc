@@ -38,18 +38,18 @@ constexpr std::string_view kStandText =
 
 // clang-format off
 constexpr std::array kCutRules = {
-    MeasuredRule{{{ErrorCode::kBeamStands, "standing_beam_max", kBurnt_s, Verdict::kBad, "the beam stays # s on a tip that stands"}, "s", kStandText}, Of<&CutFigures::standing_s>},
-    MeasuredRule{{{ErrorCode::kBeamStands, "standing_beam_max", kStandMax_s, Verdict::kDoubtful, "the beam stays # s on a tip that stands"}, "s", kStandText}, Of<&CutFigures::standing_s>},
-    MeasuredRule{{{ErrorCode::kContourSlow, "slow_contour_max", kSlowMax_percent, Verdict::kDoubtful, "# % of a contour is cut below 0.8 of its SPEED"}, "%", "greatest share of a contour that is cut below 0.8 of its SPEED, its first and last ramp left out"}, Of<&CutFigures::slow_percent>},
-    MeasuredRule{{{ErrorCode::kEnergyAboveProcess, "hot_stretch_max", kHotMax_mm, Verdict::kDoubtful, "# mm on end with more than 1.5 times the energy by length of the process"}, "mm", "longest stretch of a contour with more than 1.5 times the energy by length of the process"}, Of<&CutFigures::hot_mm>},
-    MeasuredRule{{{ErrorCode::kEnergyBelowProcess, "weak_stretch_max", kWeakMax_mm, Verdict::kDoubtful, "# mm on end with less than 0.8 of the energy by length of the process"}, "mm", "longest stretch of a contour with less than 0.8 of the energy by length of the process"}, Of<&CutFigures::weak_mm>},
-    MeasuredRule{{{ErrorCode::kCutInPtp, "ptp_cut_length", kRoundingOfCut_mm, Verdict::kDoubtful, "# mm cut in PATH PTP"}, "mm", "way with the beam on at a speed that no SPEED holds"}, Of<&CutFigures::uncontrolled_mm>},
-    MeasuredRule{{{ErrorCode::kHeadSingular, "singular_swing_max", kSwingMax_deg, Verdict::kDoubtful, "A turns # degrees in a contour within 1 degree of B = 0"}, "deg", "most that A turns on end in a contour within 1 degree of B = 0"}, Swing},
-    MeasuredRule{{{ErrorCode::kNearTravelEnd, "near_end_x", 0.0, Verdict::kDoubtful, "a contour goes # mm into the last 5 mm of X"}, "mm", "how far a contour goes into the last 5 mm of the travel of X"}, NearEnd<0>},
-    MeasuredRule{{{ErrorCode::kNearTravelEnd, "near_end_y", 0.0, Verdict::kDoubtful, "a contour goes # mm into the last 5 mm of Y"}, "mm", "how far a contour goes into the last 5 mm of the travel of Y"}, NearEnd<1>},
-    MeasuredRule{{{ErrorCode::kNearTravelEnd, "near_end_z", 0.0, Verdict::kDoubtful, "a contour goes # mm into the last 5 mm of Z"}, "mm", "how far a contour goes into the last 5 mm of the travel of Z"}, NearEnd<2>},
-    MeasuredRule{{{ErrorCode::kNearTravelEnd, "near_end_a", 0.0, Verdict::kDoubtful, "a contour goes # rad into the last degree of A"}, "rad", "how far a contour goes into the last degree of the travel of A"}, NearEnd<3>},
-    MeasuredRule{{{ErrorCode::kNearTravelEnd, "near_end_b", 0.0, Verdict::kDoubtful, "a contour goes # rad into the last degree of B"}, "rad", "how far a contour goes into the last degree of the travel of B"}, NearEnd<4>},
+    MeasuredRule{{{ErrorCode::kCellBeamStands, "standing_beam_max", kBurnt_s, Verdict::kBad, "the beam stays # s on a tip that stands"}, "s", kStandText}, Of<&CutFigures::standing_s>},
+    MeasuredRule{{{ErrorCode::kCellBeamStands, "standing_beam_max", kStandMax_s, Verdict::kDoubtful, "the beam stays # s on a tip that stands"}, "s", kStandText}, Of<&CutFigures::standing_s>},
+    MeasuredRule{{{ErrorCode::kCellContourSlow, "slow_contour_max", kSlowMax_percent, Verdict::kDoubtful, "# % of a contour is cut below 0.8 of its SPEED"}, "%", "greatest share of a contour that is cut below 0.8 of its SPEED, its first and last ramp left out"}, Of<&CutFigures::slow_percent>},
+    MeasuredRule{{{ErrorCode::kCellEnergyAboveProcess, "hot_stretch_max", kHotMax_mm, Verdict::kDoubtful, "# mm on end with more than 1.5 times the energy by length of the process"}, "mm", "longest stretch of a contour with more than 1.5 times the energy by length of the process"}, Of<&CutFigures::hot_mm>},
+    MeasuredRule{{{ErrorCode::kCellEnergyBelowProcess, "weak_stretch_max", kWeakMax_mm, Verdict::kDoubtful, "# mm on end with less than 0.8 of the energy by length of the process"}, "mm", "longest stretch of a contour with less than 0.8 of the energy by length of the process"}, Of<&CutFigures::weak_mm>},
+    MeasuredRule{{{ErrorCode::kCellCutInPtp, "ptp_cut_length", kRoundingOfCut_mm, Verdict::kDoubtful, "# mm cut in PATH PTP"}, "mm", "way with the beam on at a speed that no SPEED holds"}, Of<&CutFigures::uncontrolled_mm>},
+    MeasuredRule{{{ErrorCode::kCellHeadSingular, "singular_swing_max", kSwingMax_deg, Verdict::kDoubtful, "A turns # degrees in a contour within 1 degree of B = 0"}, "deg", "most that A turns on end in a contour within 1 degree of B = 0"}, Swing},
+    MeasuredRule{{{ErrorCode::kCellNearTravelEnd, "near_end_x", 0.0, Verdict::kDoubtful, "a contour goes # mm into the last 5 mm of X"}, "mm", "how far a contour goes into the last 5 mm of the travel of X"}, NearEnd<0>},
+    MeasuredRule{{{ErrorCode::kCellNearTravelEnd, "near_end_y", 0.0, Verdict::kDoubtful, "a contour goes # mm into the last 5 mm of Y"}, "mm", "how far a contour goes into the last 5 mm of the travel of Y"}, NearEnd<1>},
+    MeasuredRule{{{ErrorCode::kCellNearTravelEnd, "near_end_z", 0.0, Verdict::kDoubtful, "a contour goes # mm into the last 5 mm of Z"}, "mm", "how far a contour goes into the last 5 mm of the travel of Z"}, NearEnd<2>},
+    MeasuredRule{{{ErrorCode::kCellNearTravelEnd, "near_end_a", 0.0, Verdict::kDoubtful, "a contour goes # rad into the last degree of A"}, "rad", "how far a contour goes into the last degree of the travel of A"}, NearEnd<3>},
+    MeasuredRule{{{ErrorCode::kCellNearTravelEnd, "near_end_b", 0.0, Verdict::kDoubtful, "a contour goes # rad into the last degree of B"}, "rad", "how far a contour goes into the last degree of the travel of B"}, NearEnd<4>},
 };
 // clang-format on
 

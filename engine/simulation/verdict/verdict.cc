@@ -53,7 +53,7 @@ constexpr double kPassShare_percent = 100.1;  // once its diameter, and the roun
 
 // clang-format off
 constexpr std::array kRules = {
-    MeasuredRule{{{ErrorCode::kTargetOutOfTravel, "travel_violations", 0.0, Verdict::kBad, "motions that leave the travel of an axis: #"}, "", "motions that leave the travel of an axis"}, TravelLeft},
+    MeasuredRule{{{ErrorCode::kCellTravelLeft, "travel_violations", 0.0, Verdict::kBad, "motions that leave the travel of an axis: #"}, "", "motions that leave the travel of an axis"}, TravelLeft},
     MeasuredRule{{{ErrorCode::kCellGouge, "gouges", 0.0, Verdict::kBad, "motions at travel speed through material: #"}, "", "motions at travel speed through the block that was given"}, Gouges},
     MeasuredRule{{{ErrorCode::kCellBelowBlock, "below_block", kThroughTheBlock_mm, Verdict::kBad, "the tool goes # mm below the block"}, "mm", "how far the tool goes below the block that was given"}, BelowBlock},
     MeasuredRule{{{ErrorCode::kCellBelowBlock, "below_block", kRounding_mm, Verdict::kDoubtful, "the tool goes # mm below the block"}, "mm", "how far the tool goes below the block that was given"}, BelowBlock},
@@ -73,9 +73,11 @@ bool Told(const machine::Judgement& judgement, const machine::VerdictRule& rule)
 }
 
 void AddMeasuredRules(std::span<const MeasuredRule> rules, const RunReport& report,
-                      machine::Judgement& judgement) {
+                      const machine::MachineFamily* family, machine::Judgement& judgement) {
   for (const MeasuredRule& rule : rules) {
-    const machine::VerdictRule& what = rule.info.rule;
+    machine::VerdictRule what = rule.info.rule;
+    if (family != nullptr && what.code == ErrorCode::kCellTravelLeft)
+      what.code = family->info().travel_left;
     const Measured measured = rule.measure(report);
     // The outcome may have said it.
     const bool said = report.outcome.code == what.code || Told(judgement, what);
@@ -122,10 +124,10 @@ machine::Judgement JudgeOutcome(const machine::Outcome& outcome) {
 
 machine::Judgement Judge(const RunReport& report) {
   machine::Judgement judgement = JudgeOutcome(report.outcome);
-  AddMeasuredRules(kRules, report, judgement);
-  AddMeasuredRules(CutRules(), report, judgement);
-  if (const machine::MachineFamily* family = families::FindFamily(report.family))
-    AddFamilyRules(*family, report.figures, judgement);
+  const machine::MachineFamily* const family = families::FindFamily(report.family);
+  AddMeasuredRules(kRules, report, family, judgement);
+  AddMeasuredRules(CutRules(), report, family, judgement);
+  if (family != nullptr) AddFamilyRules(*family, report.figures, judgement);
   return judgement;
 }
 

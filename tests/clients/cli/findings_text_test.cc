@@ -83,8 +83,7 @@ TEST(FindingsText, ARefusalSaysWhyAndGivesTheCodeOfWrongUse) {
   const Told told = Hear([] { return Refuse({ErrorCode::kCellUsage, "no program", {}}); });
   EXPECT_EQ(told.exit_code, 2);
   EXPECT_EQ(told.output, "");
-  EXPECT_EQ(told.errors,
-            "rmlcell: CELL-E9026: no program; see --help\n");
+  EXPECT_EQ(told.errors, "rmlcell: CELL-E9026: no program; see --help\n");
 }
 
 }  // namespace

@@ -28,12 +28,12 @@ TEST(ProgramFiles, ANumberAsNameIsTheSlot) {
 }
 
 TEST(ProgramFiles, SlotAndFileAreTwoSidesOfTheFirstEqualsSign) {
-  using Named = std::pair<int, std::string>;
-  EXPECT_EQ(*ParseSlotFile("44=FILE"), Named(44, "FILE"));
-  EXPECT_EQ(*ParseSlotFile("44"), Named(44, ""));
-  EXPECT_EQ(*ParseSlotFile("44="), Named(44, ""));
-  EXPECT_EQ(*ParseSlotFile("1=a=b"), Named(1, "a=b"));
-  EXPECT_EQ(*ParseSlotFile("99=x"), Named(99, "x"));
+  using Named = SlotFile;
+  EXPECT_EQ(*ParseSlotFile("44=FILE"), (Named{44, "FILE"}));
+  EXPECT_EQ(*ParseSlotFile("44"), (Named{44, ""}));
+  EXPECT_EQ(*ParseSlotFile("44="), (Named{44, ""}));
+  EXPECT_EQ(*ParseSlotFile("1=a=b"), (Named{1, "a=b"}));
+  EXPECT_EQ(*ParseSlotFile("99=x"), (Named{99, "x"}));
 }
 
 TEST(ProgramFiles, ASlotIsANumberOf1To99) {
@@ -45,10 +45,16 @@ TEST(ProgramFiles, ASlotIsANumberOf1To99) {
   }
   for (const char* text : {"0=FILE", "100", "-1=FILE", "4294967340=FILE"}) {
     const auto parsed = ParseSlotFile(text);
-    ASSERT_FALSE(parsed) << text;
-    EXPECT_EQ(parsed.error().code, ErrorCode::kProgramNumber) << text;
+    ASSERT_TRUE(parsed) << text;
+    EXPECT_EQ(parsed->Slot(**FamilyFor("optimo", {})).error().code, ErrorCode::kProgramNumber)
+        << text;
+    // A machine without program memory has no number of its own for it.
+    EXPECT_EQ(parsed->Slot(**FamilyFor("rml1", {})).error().code, ErrorCode::kCellInvalidArgument)
+        << text;
   }
-  EXPECT_EQ(ParseSlotFile("100=FILE").error().detail, "program number is 100");
+  const SlotFile beyond{100, "FILE"};
+  EXPECT_EQ(beyond.Slot(**FamilyFor("optimo", {})).error().detail, "program number is 100");
+  EXPECT_EQ(*SlotFile({99, "FILE"}).Slot(**FamilyFor("optimo", {})), 99);
 }
 
 TEST(ProgramFiles, TheFamilyFollowsFromItsIdOrElseFromTheName) {

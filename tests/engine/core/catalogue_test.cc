@@ -144,34 +144,40 @@ TEST(Catalogue, NumbersAreThoseOfTheirFamilyAndUnique) {
 // the others short is advice, what judges a part is a warning, all else refuses a request.
 TEST(Catalogue, NumbersOfTheCellKeepTheirMeaning) {
   const std::map<int, std::string_view> cell = {
-      {9001, "CellInternal"},        {9002, "CellUnavailable"},
-      {9003, "CellInvalidArgument"}, {9004, "CellNotFound"},
-      {9005, "CellAlreadyExists"},   {9006, "CellEtagMismatch"},
-      {9007, "CellTooLarge"},        {9008, "CellUnknownFamily"},
-      {9009, "CellUnknownMachine"},  {9010, "CellUnknownParameter"},
-      {9011, "CellParameterRange"},  {9012, "CellPermission"},
-      {9013, "CellUnauthenticated"}, {9014, "CellUnimplemented"},
-      {9015, "CellPrecondition"},    {9016, "CellChecksum"},
-      {9017, "CellEmptyProgram"},    {9018, "CellFamilyUnknownFromName"},
-      {9019, "CellRequestIdReused"}, {9020, "CellResourceExhausted"},
-      {9021, "CellEventsGone"},      {9022, "CellFileUnreadable"},
-      {9023, "CellFileUnwritable"},  {9024, "CellBadText"},
-      {9025, "CellDiagnosticsCut"},  {9026, "CellUsage"},
-      {9027, "CellToolpathCorrupt"}, {9101, "CellStoreFailed"},
-      {9102, "CellStoreNewer"},      {9103, "CellStoreBusy"},
-      {9104, "CellStoreCorrupt"},    {9105, "CellLeaseLost"},
-      {9106, "CellBadPageToken"},    {9107, "CellBadFilter"},
-      {9201, "CellConfiguration"},   {9202, "CellPortUsed"},
-      {9203, "CellUnsafeListen"},    {9301, "CellWorkerDied"},
-      {9302, "CellMemoryBudget"},    {9303, "CellProcessorBudget"},
-      {9304, "CellStepBudget"},      {9305, "CellTimeBudget"},
-      {9306, "CellOutputBudget"},    {9307, "CellCancelled"},
-      {9308, "CellWaitsForever"},    {9309, "CellVersionMismatch"},
-      {9310, "CellJoinRefused"},     {9401, "CellGouge"},
-      {9402, "CellBelowBlock"},      {9403, "CellBlockUntouched"},
-      {9411, "CellShankInMaterial"}, {9412, "CellDeepPass"},
-      {9413, "CellTargetGouged"},    {9414, "CellTargetLeft"},
-      {9404, "CellCheckCutShort"},
+      {9001, "CellInternal"},           {9002, "CellUnavailable"},
+      {9003, "CellInvalidArgument"},    {9004, "CellNotFound"},
+      {9005, "CellAlreadyExists"},      {9006, "CellEtagMismatch"},
+      {9007, "CellTooLarge"},           {9008, "CellUnknownFamily"},
+      {9009, "CellUnknownMachine"},     {9010, "CellUnknownParameter"},
+      {9011, "CellParameterRange"},     {9012, "CellPermission"},
+      {9013, "CellUnauthenticated"},    {9014, "CellUnimplemented"},
+      {9015, "CellPrecondition"},       {9016, "CellChecksum"},
+      {9017, "CellEmptyProgram"},       {9018, "CellFamilyUnknownFromName"},
+      {9019, "CellRequestIdReused"},    {9020, "CellResourceExhausted"},
+      {9021, "CellEventsGone"},         {9022, "CellFileUnreadable"},
+      {9023, "CellFileUnwritable"},     {9024, "CellBadText"},
+      {9025, "CellDiagnosticsCut"},     {9026, "CellUsage"},
+      {9027, "CellToolpathCorrupt"},    {9101, "CellStoreFailed"},
+      {9102, "CellStoreNewer"},         {9103, "CellStoreBusy"},
+      {9104, "CellStoreCorrupt"},       {9105, "CellLeaseLost"},
+      {9106, "CellBadPageToken"},       {9107, "CellBadFilter"},
+      {9201, "CellConfiguration"},      {9202, "CellPortUsed"},
+      {9203, "CellUnsafeListen"},       {9301, "CellWorkerDied"},
+      {9302, "CellMemoryBudget"},       {9303, "CellProcessorBudget"},
+      {9304, "CellStepBudget"},         {9305, "CellTimeBudget"},
+      {9306, "CellOutputBudget"},       {9307, "CellCancelled"},
+      {9308, "CellWaitsForever"},       {9309, "CellVersionMismatch"},
+      {9310, "CellJoinRefused"},        {9401, "CellGouge"},
+      {9402, "CellBelowBlock"},         {9403, "CellBlockUntouched"},
+      {9411, "CellShankInMaterial"},    {9412, "CellDeepPass"},
+      {9413, "CellTargetGouged"},       {9414, "CellTargetLeft"},
+      {9421, "CellBeamStands"},         {9422, "CellContourSlow"},
+      {9423, "CellEnergyAboveProcess"}, {9424, "CellEnergyBelowProcess"},
+      {9425, "CellCutInPtp"},           {9426, "CellHeadSingular"},
+      {9427, "CellNearTravelEnd"},      {9404, "CellCheckCutShort"},
+      {9405, "CellTravelLeft"},         {9501, "CellTargetUnusable"},
+      {9502, "CellNoMotion"},           {9503, "CellArcUndefined"},
+      {9504, "CellHoleRadius"},         {9505, "CellHoleNormal"},
   };
   std::size_t rows = 0;
   for (const CatalogueEntry& entry : Catalogue()) {
@@ -180,8 +186,10 @@ TEST(Catalogue, NumbersOfTheCellKeepTheirMeaning) {
     ASSERT_TRUE(cell.contains(entry.number)) << entry.number;
     EXPECT_EQ(entry.symbol, cell.at(entry.number));
     const bool budget = entry.number >= 9301 && entry.number <= 9308;
-    const bool verdict = entry.number >= 9401;
+    const bool verdict = entry.number >= 9401 && entry.number <= 9427;
+    const bool motion = entry.number >= 9501;
     EXPECT_EQ(entry.severity, budget                 ? Severity::kBudget
+                              : motion               ? Severity::kProgram
                               : verdict              ? Severity::kWarning
                               : entry.number == 9025 ? Severity::kAdvice
                                                      : Severity::kRequest)
@@ -270,9 +278,13 @@ TEST(Catalogue, IsSearchedByWhatAPersonMayWrite) {
 // A program without a registry of families has the catalogue alone.
 TEST(Catalogue, HasNoTablesOfItsOwnWithoutFamilies) {
   EXPECT_TRUE(OwnErrorTables().empty());
-  EXPECT_EQ(FamilyPrefix(OwnErrorFamily(0)), "");
-  EXPECT_EQ(static_cast<int>(OwnError(0, 1)), 100'001);
-  EXPECT_EQ(static_cast<int>(OwnError(2, 0)), 120'000);
+  EXPECT_EQ(FamilyPrefix(OwnErrorFamily(OwnErrorTable("PLT"))), "");
+  // Letters count from 1 to the base 27: no prefix is the beginning of another one.
+  EXPECT_EQ(OwnErrorTable("A"), 1);
+  EXPECT_EQ(OwnErrorTable("AA"), 28);
+  EXPECT_EQ(OwnErrorTable("ZZZZ"), 531'440);
+  EXPECT_EQ(static_cast<int>(OwnError(1, 1)), 101'001);
+  EXPECT_EQ(static_cast<int>(OwnError(OwnErrorTable("ZZZZ"), 999)), 531'540'999);
 }
 
 }  // namespace

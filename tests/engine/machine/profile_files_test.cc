@@ -72,7 +72,9 @@ TEST(Profiles, AreFoundByForgivingNames) {
   }
   EXPECT_FALSE(MakeParameters(mill, "srm-2", {}));
   EXPECT_FALSE(MakeParameters(mill, "srm-200", {}));
+  // Nobody named one: it is a machine that there is, and is not said to be named.
   EXPECT_EQ(MakeParameters(mill, "", {})->profile(), "");
+  EXPECT_EQ(MakeParameters(mill, "", {})->Number("X_MAX"), 203.2);
 }
 
 }  // namespace

@@ -216,7 +216,7 @@ TEST(AxesCorner, RandomChainsKeepTheLimitsOfEveryAxis) {
       const TrajectoryPoint end = view.At(motion.duration_s());
       last = {{end.axes[0], end.axes[1], end.axes[2]}, end.axes[3], end.axes[4]};
     }
-    const AxisPose target = chain.back().path.to().axes();
+    const AxisPose target = chain.back().path.axes_to();
     EXPECT_NEAR((last.column - target.column).norm(), 0.0, 1e-9) << seed;
     EXPECT_NEAR(last.b_rad, target.b_rad, 1e-12) << seed;
 
@@ -227,7 +227,7 @@ TEST(AxesCorner, RandomChainsKeepTheLimitsOfEveryAxis) {
     }
     std::vector<MoveCommand> back(flown.rbegin(), flown.rend());
     for (MoveCommand& move : back)
-      move.path = PathPiece::Joint(move.path.to().axes(), move.path.from().axes());
+      move.path = PathPiece::Joint(move.path.axes_to(), move.path.axes_from());
     const double forth = CycleTime(PlanOf(flown, machine));
     EXPECT_NEAR(CycleTime(PlanOf(back, machine)), forth, 1e-9 * forth) << seed;
   }

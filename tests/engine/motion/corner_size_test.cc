@@ -116,8 +116,8 @@ TEST(CornerSize, WhereTheCurvatureJumps) {
   for (const bool turned : {false, true}) {
     const Corner corner =
         turned ? Corner::Between(
-                     PathPiece::Circle(right.to().tip(), right.centre(), {0, 0, 1}, 1.0, 0, 0),
-                     PathPiece::Circle(left.to().tip(), left.centre(), {0, 0, -1}, 1.0, 0, 0))
+                     PathPiece::Circle(right.tip_to(), right.centre(), {0, 0, 1}, 1.0, 0, 0),
+                     PathPiece::Circle(left.tip_to(), left.centre(), {0, 0, -1}, 1.0, 0, 0))
                : Corner::Between(left, right);
     EXPECT_EQ(corner.passage(), Passage::kBlend);
     EXPECT_TRUE(corner.straight());

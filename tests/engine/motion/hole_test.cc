@@ -77,11 +77,11 @@ TEST(Hole, StartOnTheCircle) {
 TEST(Hole, Errors) {
   HoleCommand hole = kHole;
   hole.normal_point = hole.centre.tip + MachineVector{0, 0, 1e-6};
-  EXPECT_EQ(HoleThrough(hole).error().code, ErrorCode::kHoleNormalUndefined);
+  EXPECT_EQ(HoleThrough(hole).error().code, ErrorCode::kCellHoleNormal);
   hole.radius_mm = 0.0;
-  EXPECT_EQ(HoleThrough(hole).error().code, ErrorCode::kHoleRadiusZero);
+  EXPECT_EQ(HoleThrough(hole).error().code, ErrorCode::kCellHoleRadius);
   hole.radius_mm = -1.0;
-  EXPECT_EQ(HoleThrough(hole).error().code, ErrorCode::kHoleRadiusZero);
+  EXPECT_EQ(HoleThrough(hole).error().code, ErrorCode::kCellHoleRadius);
 }
 
 }  // namespace

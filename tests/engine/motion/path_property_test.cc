@@ -38,7 +38,7 @@ class Way {
     std::size_t k = 0;
     while (k + 1 < motions_.size() && reached_[k] < x) ++k;
     const PathPiece& path = motions_[k].path;
-    return path.At(x - (reached_[k] - path.tip_length_mm())).tip();
+    return path.TipAt(x - (reached_[k] - path.tip_length_mm()));
   }
 
  private:
@@ -69,9 +69,9 @@ TipPose AsItIs(const TipPose& pose) { return pose; }
 template <class Move>
 PathPiece Moved(const PathPiece& path, Move move) {
   if (path.kind() != PathPiece::Kind::kArc)
-    return PathPiece::Line(move(path.from().tip()), move(path.to().tip()));
-  const TipPose via = move(path.At(0.5 * path.length()).tip());
-  return PathPiece::ArcThrough(move(path.from().tip()), via.tip, move(path.to().tip()))->path;
+    return PathPiece::Line(move(path.tip_from()), move(path.tip_to()));
+  const TipPose via = move(path.TipAt(0.5 * path.length()));
+  return PathPiece::ArcThrough(move(path.tip_from()), via.tip, move(path.tip_to()))->path;
 }
 
 // Property 5: backwards, all /FLY, lines and arcs with a turning head: the same path. Where and how
@@ -89,12 +89,12 @@ RC_GTEST_PROP(PathProperty, BackwardsGoesTheSameWay, ()) {
   std::vector<MoveCommand> back;
   for (auto move = there.rbegin(); move != there.rend(); ++move) {
     MoveCommand turned = *move;
-    turned.path = PathPiece::Line(move->path.to().tip(), move->path.from().tip());
+    turned.path = PathPiece::Line(move->path.tip_to(), move->path.tip_from());
     if (move->path.kind() == PathPiece::Kind::kArc) {
-      turned.path = PathPiece::ArcThrough(move->path.to().tip(),
-                                          move->path.At(0.5 * move->path.length()).point,
-                                          move->path.from().tip())
-                        ->path;
+      turned.path =
+          PathPiece::ArcThrough(move->path.tip_to(), move->path.At(0.5 * move->path.length()).point,
+                                move->path.tip_from())
+              ->path;
     }
     turned.tag = back.size();
     back.push_back(turned);
@@ -168,9 +168,9 @@ RC_GTEST_PROP(PathProperty, SplitLinesGoTheSameWay, ()) {
   std::vector<MoveCommand> split;
   for (const MoveCommand& move : chain) {
     MoveCommand first = move, second = move;
-    const TipPose middle = move.path.At(move.path.length() * dice.Uniform(0.1, 0.9)).tip();
-    first.path = PathPiece::Line(move.path.from().tip(), middle);
-    second.path = PathPiece::Line(middle, move.path.to().tip());
+    const TipPose middle = move.path.TipAt(move.path.length() * dice.Uniform(0.1, 0.9));
+    first.path = PathPiece::Line(move.path.tip_from(), middle);
+    second.path = PathPiece::Line(middle, move.path.tip_to());
     first.fly = true;
     first.overshoot_fraction = 1.0;
     first.tag = split.size();

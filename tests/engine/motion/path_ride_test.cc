@@ -29,8 +29,8 @@ std::vector<PlannedMotion> StraightOn() {
 PathRide RideOver(const std::vector<PlannedMotion>& motions) {
   PathRide ride(HoldRamp::kStays);
   for (const PlannedMotion& motion : motions) {
-    ride.to_come().emplace_back(motion);
-    if (motion.ends_move) ride.to_come().emplace_back(PlannedMark{motion.tag + 10});
+    ride.Plan(motion);
+    if (motion.ends_move) ride.Plan(PlannedMark{motion.tag + 10});
   }
   return ride;
 }
@@ -85,7 +85,7 @@ TEST(PathRide, CountsTheStandstillBehindAMotion) {
   PathRide ride(HoldRamp::kStays);
   PlannedMotion last = StraightOn().back();
   last.settling_s = 0.25;
-  ride.to_come().emplace_back(last);
+  ride.Plan(last);
   const MotionUnderWay& active = ride.Begin(kBegin);
   EXPECT_EQ(active.end - active.arrival, std::chrono::milliseconds(250));
   EXPECT_EQ(active.TipAt(active.arrival).tip.x(), 300.0);
@@ -112,7 +112,7 @@ TEST(PathRide, StopLeavesTheRestForStart) {
   EXPECT_GT(ramp_mm, 1.0);
   EXPECT_LT(ramp_mm, 50.0);
 
-  ride.to_come().clear();  // ridden
+  ride.DropToCome();  // ridden
   EXPECT_TRUE(ride.TakeUpInterrupted());
   EXPECT_EQ(TagsToCome(ride), "2 m12 3 m13");
   EXPECT_NEAR(ramp_mm + LengthToCome(ride), 201.0, 1e-6);
@@ -123,7 +123,7 @@ TEST(PathRide, StopLeavesTheRestForStart) {
 TEST(PathRide, DoesNotStopWhereNotEnoughIsPlanned) {
   const std::vector<PlannedMotion> motions = StraightOn();
   PathRide ride(HoldRamp::kStays);
-  ride.to_come().emplace_back(motions[0]);
+  ride.Plan(motions[0]);
   const SimTime now = ride.Begin(kBegin).start + FromSeconds(motions[0].speed.TimeAt(99.0));
   EXPECT_FALSE(ride.PlanStop(now, StandardMachine().axes).has_value());
   EXPECT_TRUE(ride.protocol().goes());
@@ -132,9 +132,9 @@ TEST(PathRide, DoesNotStopWhereNotEnoughIsPlanned) {
 TEST(PathRide, HoldKeepsTheCommandsBehindItsTarget) {
   PathRide ride(HoldRamp::kStays);
   for (const std::uint64_t tag : {1u, 2u, 4u}) {
-    ride.appended().push_back({.tag = tag, .move = MoveCommand{}});
+    ride.Append({.tag = tag, .move = MoveCommand{}});
   }
-  ride.appended().push_back({.tag = 5, .move = std::nullopt});
+  ride.Append({.tag = 5, .move = std::nullopt});
   EXPECT_NE(ride.Appended(4), nullptr);
   EXPECT_EQ(ride.Appended(5), nullptr);  // a mark
   ride.ForgetBefore(2);
@@ -149,10 +149,63 @@ TEST(PathRide, HoldKeepsTheCommandsBehindItsTarget) {
   EXPECT_EQ(ride.held()[1].tag, 5u);
 }
 
+// START: what a HOLD kept is planned anew, with what has changed meanwhile.
+TEST(PathRide, WhatIsHeldIsChangedAndTaken) {
+  PathRide ride(HoldRamp::kStays);
+  for (const std::uint64_t tag : {1u, 2u, 4u}) ride.Append({.tag = tag, .move = MoveCommand{}});
+  ride.HoldBehind(1);
+  ride.ChangeHeld([](AppendedCommand& command) { command.move->speed_fraction = 0.25; });
+  const std::deque<AppendedCommand> taken = ride.TakeHeld();
+  ASSERT_EQ(taken.size(), 2u);
+  EXPECT_EQ(taken[1].tag, 4u);
+  EXPECT_EQ(taken[1].move->speed_fraction, 0.25);
+  EXPECT_TRUE(ride.held().empty());
+  EXPECT_EQ(ride.appended().size(), 1u);
+}
+
+TEST(PathRide, CommandsFromOneOnAreReplaced) {
+  PathRide ride(HoldRamp::kStays);
+  for (const std::uint64_t tag : {1u, 2u, 4u}) ride.Append({.tag = tag, .move = MoveCommand{}});
+  const std::vector<AppendedCommand> others = {{.tag = 7, .move = std::nullopt},
+                                               {.tag = 8, .move = std::nullopt}};
+  ride.ReplaceAppended(1, others);
+  std::vector<std::uint64_t> tags;
+  for (const AppendedCommand& command : ride.appended()) tags.push_back(command.tag);
+  EXPECT_EQ(tags, (std::vector<std::uint64_t>{1, 7, 8}));
+  EXPECT_DEATH(ride.ReplaceAppended(2, others), "appended_.size");
+}
+
+// A mark is passed where it is first to come; a motion is not.
+TEST(PathRide, MarksArePassedOneByOne) {
+  PathRide ride(HoldRamp::kStays);
+  EXPECT_EQ(ride.PassMark(), std::nullopt);
+  ride.ReplaceToCome({PlannedMark{3}, StraightOn()[0], PlannedMark{5}});
+  EXPECT_EQ(ride.PassMark(), 3u);
+  EXPECT_EQ(ride.PassMark(), std::nullopt);
+  EXPECT_EQ(ride.to_come().size(), 2u);
+  ride.DropToCome();
+  EXPECT_FALSE(ride.busy());
+}
+
+// Half the measure: half the length. What is planned by its tip stays as it is.
+TEST(PathRide, WhatIsPlannedInTheAxesIsMeasuredAnew) {
+  PathRide ride(HoldRamp::kStays);
+  const PlannedMotion by_tip = StraightOn()[0];
+  PlannedMotion in_axes = by_tip;
+  in_axes.path = PathPiece::Joint({{0, 0, 0}}, {{10, 0, 0}});
+  in_axes.path.MeasureBy(4.0);
+  ride.ReplaceToCome({in_axes, by_tip, in_axes});
+  ride.Begin(kBegin);
+  ride.MeasureInAxesBy(0.5);
+  EXPECT_EQ(ride.under_way()->motion.path.length(), 2.0);
+  EXPECT_EQ(std::get<PlannedMotion>(ride.to_come()[0]).path.length(), by_tip.path.length());
+  EXPECT_EQ(std::get<PlannedMotion>(ride.to_come()[1]).path.length(), 2.0);
+}
+
 TEST(PathRide, FinishLeavesNothingToRide) {
   const std::vector<PlannedMotion> motions = StraightOn();
   PathRide ride = RideOver(motions);
-  ride.appended().push_back({.tag = 3, .move = MoveCommand{}});
+  ride.Append({.tag = 3, .move = MoveCommand{}});
   const SimTime now = ride.Begin(kBegin).start + FromSeconds(motions[0].speed.TimeAt(99.0));
   const AxisLimits axes = StandardMachine().axes;
   const auto plan = ride.PlanStop(now, axes);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "engine/core/units.h"
 #include "tests/engine/motion/expect_near.h"
@@ -15,6 +16,41 @@ PathPiece ArcOf(const MachinePoint& from, const MachinePoint& via, const Machine
   const Result<PathPiece::Arc3> arc = PathPiece::ArcThrough({from}, via, {to});
   EXPECT_TRUE(arc);
   return arc ? arc->path : PathPiece{};
+}
+
+// Frames are types: a place of a path is the tip's or the column's as its path says, and nothing
+// takes a place in the machine for one in the program without saying so.
+template <class Pose>
+constexpr bool kSaysTip = requires(const Pose& pose) {
+  pose.tip();
+};
+template <class Pose>
+constexpr bool kSaysAxes = requires(const Pose& pose) {
+  pose.axes();
+};
+static_assert(!kSaysTip<PathPose> && !kSaysAxes<PathPose>);
+static_assert(!std::is_constructible_v<ProgramPoint, MachinePoint>);
+static_assert(!std::is_constructible_v<TipPose, AxisPose>);
+static_assert(!std::is_convertible_v<AxisPose, TipPose>);
+
+TEST(PathPiece, SaysWhatItsPlacesAre) {
+  const PathPiece line = PathPiece::Line({{0, 0, 0}}, {{10, 0, 0}});
+  const PathPiece joint = PathPiece::Joint({{0, 0, 0}}, {{10, 0, 0}});
+  EXPECT_EQ(line.TipAt(5.0), (TipPose{{5, 0, 0}}));
+  EXPECT_EQ(joint.axes_to(), (AxisPose{{10, 0, 0}}));
+  EXPECT_DEATH(static_cast<void>(joint.tip_to()), "in_axes");
+  EXPECT_DEATH(static_cast<void>(line.axes_from()), "in_axes");
+}
+
+// From another place to the same end, and of the same kind.
+TEST(PathPiece, IsMadeStraightFromAnotherPlace) {
+  const PathPiece line = PathPiece::Line({{0, 0, 0}}, {{10, 0, 0}});
+  const PathPiece joint = PathPiece::Joint({{0, 0, 0}}, {{10, 0, 0}});
+  const PathPose there = line.At(4.0);
+  EXPECT_EQ(line.StraightFrom(there).length(), 6.0);
+  EXPECT_EQ(line.StraightFrom(there).tip_to(), line.tip_to());
+  EXPECT_TRUE(joint.StraightFrom(there).in_axes());
+  EXPECT_EQ(joint.StraightFrom(there).axes_from(), (AxisPose{{4, 0, 0}}));
 }
 
 // The manual's line of 2-2: at X = 1700 the tip is at Y 1170, Z -200 and A = B = 0.25. OPT-2.15
@@ -76,12 +112,12 @@ TEST(PathArc, DegenerateCases) {
   EXPECT_EQ(through({0, 0, 0}, {0, 0, 0})->path.length(), 0.0);
   for (const MachinePoint& via : {MachineVector{15, 0, 0}, MachineVector{-5, 0, 0}}) {
     ASSERT_FALSE(through(via, {10, 0, 0}));
-    EXPECT_EQ(through(via, {10, 0, 0}).error().code, ErrorCode::kArcUndefined);
+    EXPECT_EQ(through(via, {10, 0, 0}).error().code, ErrorCode::kCellArcUndefined);
   }
-  EXPECT_EQ(through({5, 5, 0}, {0, 0, 0}).error().code, ErrorCode::kArcUndefined);
+  EXPECT_EQ(through({5, 5, 0}, {0, 0, 0}).error().code, ErrorCode::kCellArcUndefined);
   const double bad = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(through({bad, 5, 0}, {9, 0, 0}).error().code, ErrorCode::kArcUndefined);
-  EXPECT_EQ(through({1, 5, 0}, {bad, 0, 0}).error().code, ErrorCode::kArcUndefined);
+  EXPECT_EQ(through({bad, 5, 0}, {9, 0, 0}).error().code, ErrorCode::kCellArcUndefined);
+  EXPECT_EQ(through({1, 5, 0}, {bad, 0, 0}).error().code, ErrorCode::kCellArcUndefined);
 }
 
 // Sagitta h over a chord of 1000: R = (c^2 / 4 + h^2) / (2 h). At R = 6e8 mm the arc still starts,

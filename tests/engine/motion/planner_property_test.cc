@@ -83,7 +83,7 @@ RC_GTEST_PROP(PlannerProperty, BackwardsTakesTheSameTime, ()) {
   std::vector<MoveCommand> back;
   for (auto move = there.rbegin(); move != there.rend(); ++move) {
     MoveCommand turned = *move;
-    turned.path = PathPiece::Line(move->path.to().tip(), move->path.from().tip());
+    turned.path = PathPiece::Line(move->path.tip_to(), move->path.tip_from());
     turned.tag = back.size();
     back.push_back(turned);
   }
@@ -102,7 +102,7 @@ RC_GTEST_PROP(PlannerProperty, TurnedAndShiftedTakesTheSameTime, ()) {
         {100.0 - p.tip.y(), p.tip.x() - 70.0, p.tip.z() + 12.0}, p.a_rad + kPi / 2, p.b_rad};
   };
   for (MoveCommand& move : turned)
-    move.path = PathPiece::Line(turn(move.path.from().tip()), turn(move.path.to().tip()));
+    move.path = PathPiece::Line(turn(move.path.tip_from()), turn(move.path.tip_to()));
   const double before = Duration(Plan(chain)), after = Duration(Plan(turned));
   RC_ASSERT(std::abs(before - after) <= 1e-7 * std::max(1.0, before));
 }
@@ -119,7 +119,7 @@ RC_GTEST_PROP(PlannerProperty, ScaledTakesTheSameTime, ()) {
       p.tip = p.tip * c;
       return p;
     };
-    move.path = PathPiece::Line(grow(move.path.from().tip()), grow(move.path.to().tip()));
+    move.path = PathPiece::Line(grow(move.path.tip_from()), grow(move.path.tip_to()));
     move.head = GantryHead{.length_mm = GantryHead{}.length_mm * c};
   }
   MachineLimits machine = StandardMachine();
@@ -151,8 +151,8 @@ RC_GTEST_PROP(PlannerProperty, SplitLinesTakeTheSameTime, ()) {
     MoveCommand first = move, second = move;
     const TipPose middle{a + (b - a) * dice.Uniform(0.1, 0.9), move.path.to().a_rad,
                          move.path.to().b_rad};
-    first.path = PathPiece::Line(move.path.from().tip(), middle);
-    second.path = PathPiece::Line(middle, move.path.to().tip());
+    first.path = PathPiece::Line(move.path.tip_from(), middle);
+    second.path = PathPiece::Line(middle, move.path.tip_to());
     first.fly = true;
     first.overshoot_fraction = 1.0;
     first.tag = split.size();

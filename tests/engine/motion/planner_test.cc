@@ -83,12 +83,12 @@ TEST(Planner, RefusesWhatWouldNeverArrive) {
   Planner planner(StandardMachine());
   MoveCommand move = LineTo({}, {10, 0, 0}, 1);
   move.speed_fraction = 0.0;
-  EXPECT_EQ(planner.Append(move).error().code, ErrorCode::kNoMotion);
+  EXPECT_EQ(planner.Append(move).error().code, ErrorCode::kCellNoMotion);
   move.speed_fraction = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(planner.Append(move).error().code, ErrorCode::kNoMotion);
+  EXPECT_EQ(planner.Append(move).error().code, ErrorCode::kCellNoMotion);
   move.speed_fraction = 1.0;
   move.acceleration_fraction = 0.00099;
-  EXPECT_EQ(planner.Append(move).error().code, ErrorCode::kNoMotion);
+  EXPECT_EQ(planner.Append(move).error().code, ErrorCode::kCellNoMotion);
   move.acceleration_fraction = 0.001;
   EXPECT_TRUE(planner.Append(move));
   planner.Stop();
@@ -110,7 +110,7 @@ TEST(Planner, RefusesWhatIsNotANumber) {
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e200}) {
     EXPECT_EQ(planner.Append(LineTo({}, {bad, 0, 0}, 1)).error().code,
-              ErrorCode::kTargetOutOfTravel);
+              ErrorCode::kCellTargetUnusable);
   }
   EXPECT_FALSE(planner.Next());
 }
@@ -256,7 +256,7 @@ TEST(Planner, TinyStepsAreNotLost) {
   while (const std::optional<PlannedItem> item = planner.Next()) {
     const PathPiece& path = std::get<PlannedMotion>(*item).path;
     EXPECT_LE((path.from().point - last.tip).norm(), 1e-15);
-    last = path.to().tip();
+    last = path.tip_to();
     length += path.length();
   }
   EXPECT_NEAR(length, 1e-4, 1.1e-6);  // the last step of up to 1e-6 mm is dropped
@@ -281,7 +281,7 @@ TEST(Planner, BendKeepsToTheArcBehindIt) {
     const PathPiece& path = std::get<PlannedMotion>(*item).path;
     EXPECT_LE((path.from().point - last.tip).norm(), 1e-12);
     EXPECT_LE((path.At(0.0).point - last.tip).norm(), 1e-9);
-    last = path.to().tip();
+    last = path.tip_to();
   }
   EXPECT_EQ(last.tip, end + (MachineVector{30, 0, 0}));
 }
@@ -305,7 +305,7 @@ TEST(Planner, WindowFullOfPointsThatABendSwallows) {
         while (const std::optional<PlannedItem> item = planner.Next()) {
           const PathPiece& path = std::get<PlannedMotion>(*item).path;
           ASSERT_LE((path.from().point - last.tip).norm(), 1e-9);
-          last = path.to().tip();
+          last = path.tip_to();
           planned += path.length();
         }
       };

@@ -132,8 +132,8 @@ TEST(WorkOffset, IsOneTurnAfterTheOther) {
                                    ProgramVector{0, 0, 1}, ProgramVector{4, 5, 6}}) {
       const MachineVector turned = about_z(about_y(about_x(p, a), b), c);
       ExpectNear(offset.axes() * p, turned, 1e-14);
-      ExpectNear(offset * ProgramPoint(p), turned + MachineVector{10, -20, 30}, 1e-13);
-      ExpectNear(offset.ToProgram(offset * ProgramPoint(p)).from_origin(), p, 1e-13);
+      ExpectNear(offset * ProgramPoint::FromOrigin(p), turned + MachineVector{10, -20, 30}, 1e-13);
+      ExpectNear(offset.ToProgram(offset * ProgramPoint::FromOrigin(p)).from_origin(), p, 1e-13);
     }
   }
 }

@@ -21,7 +21,7 @@ TEST(Rml1Family, TellsWhatItIs) {
   const machine::MachineFamily& family = Rml1Family();
   EXPECT_EQ(family.info().id, "rml1");
   EXPECT_FALSE(family.info().has_executables);
-  EXPECT_FALSE(family.info().has_schedules);
+  EXPECT_EQ(family.info().schedules, 0);
   EXPECT_FALSE(family.parameters().empty());
   EXPECT_FALSE(family.profiles().empty());
 }

@@ -62,7 +62,7 @@ TEST(WorkFit, TheAnswerDoesNotHangOnTheOrigin) {
                                 {"10", "10", "-57"},
                                 {"-30", "300", "-1"}}) {
     const auto parameters =
-        machine::MakeParameters(mill, "", {{"ORIGIN_X", x}, {"ORIGIN_Y", y}, {"Z0", z}});
+        machine::MakeParameters(mill, "t1", {{"ORIGIN_X", x}, {"ORIGIN_Y", y}, {"Z0", z}});
     ASSERT_TRUE(bool(parameters));
     const auto made = mill.Translate({.name = "frame.rml", .bytes = stream}, *parameters, {});
     std::map<std::string, double> figures;

@@ -103,7 +103,7 @@ class Script {
                                      .beam_on = options.beam_on,
                                      .power = options.power});
                       }});
-    items_.back().pose = shared->path.to().tip();
+    items_.back().pose = motion::TipOn(shared->path, shared->head, shared->path.to());
     return *this;
   }
 
@@ -135,7 +135,7 @@ class Script {
                  .place = place,
                  .tip = {tip},
                  .axes = {tip},
-                 .program_point = motion::ProgramPoint(tip),
+                 .program_point = motion::ProgramPoint::AsMachine(tip),
                  .rotary_a = 0.0,
                  .feed_mm_s = feed_mm_s,
                  .path = path,

@@ -91,6 +91,23 @@ TEST(Families, ToolsGoByTheName) {
   EXPECT_NE(none.error().detail.find("a.rml"), std::string::npos);
 }
 
+// An object says by itself whose it is; of what nobody knows the first one with tools says why.
+TEST(Families, ObjectsGoByTheirBytes) {
+  const machine::MachineFamily& optimo = *families::FindFamily("optimo");
+  const auto made = optimo.tools()->Compile({.name = "a.S", .bytes = "STOP\n"},
+                                            machine::Parameters(optimo.parameters()), {});
+  ASSERT_TRUE(made.ok);
+  for (const std::string& bytes : {made.object, std::string("no object"), std::string()})
+    EXPECT_EQ(*families::FamilyOfObject(bytes), &optimo);
+}
+
+// OPT-3.44: an Optimo has 63 laser schedules, a mill none.
+TEST(Families, SchedulesAreOfOneFamily) {
+  ASSERT_NE(families::FamilyWithSchedules(), nullptr);
+  EXPECT_EQ(families::FamilyWithSchedules()->info().id, "optimo");
+  EXPECT_EQ(families::FamilyWithSchedules()->info().schedules, 63);
+}
+
 TEST(Families, ObjectsGoByTheName) {
   EXPECT_TRUE(families::IsObjectFileName("12.O"));
   EXPECT_TRUE(families::IsObjectFileName("12.o"));

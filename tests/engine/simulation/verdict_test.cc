@@ -288,6 +288,10 @@ TEST(Verdict, OfAnAxisBeyondItsTravel) {
   RunReport report;
   report.violations = {{.place = {.program = 1, .step = 3}, .axis = "X", .excess = 2.0}};
   report.violations_dropped = 2;
+  // With the number that the machine has for it; else in the words of the cell.
+  EXPECT_EQ(TextOf(Judge(report)),
+            "BAD; CELL-E9405 motions that leave the travel of an axis: 3 @3");
+  report.family = "optimo";
   EXPECT_EQ(TextOf(Judge(report)), "BAD; OPT-E7301 motions that leave the travel of an axis: 3 @3");
   report.outcome = {.kind = machine::OutcomeKind::kFailed,
                     .code = ErrorCode::kTargetOutOfTravel,

@@ -41,6 +41,18 @@ TEST(ProgramPlace, SlotsAreOneToNinetyNine) {
   }
 }
 
+// OPT-3.44: laser schedules 1 to 63; a mill has none.
+TEST(ProgramPlace, SchedulesAreThoseOfTheFamily) {
+  for (const int number : {1, 63}) EXPECT_TRUE(CheckSchedule(Optimo(), number));
+  for (const std::int64_t number : {std::int64_t{0}, std::int64_t{64}, INT64_MAX}) {
+    const Status refused = CheckSchedule(Optimo(), number);
+    ASSERT_FALSE(refused) << number;
+    EXPECT_EQ(refused.error().code, ErrorCode::kScheduleRange);
+    EXPECT_EQ(refused.error().detail, "laser schedule is " + std::to_string(number));
+  }
+  EXPECT_EQ(CodeOf(CheckSchedule(Mill(), 1)), ErrorCode::kCellPrecondition);
+}
+
 // OPT-1.11: the executable of slot n has the number n + 100; a mill has none.
 TEST(ProgramPlace, NumbersAreThoseOfTheFamily) {
   const auto checked = [](const machine::MachineFamily& family, int number) {

@@ -161,6 +161,10 @@ TEST_F(MemoryToolsTest, LinksWhatIsSentAndWhatIsStored) {
   EXPECT_EQ(CodeOf(tools.Link(request)), ErrorCode::kCellInvalidArgument);
   request.set_slot(100);
   EXPECT_EQ(CodeOf(tools.Link(request)), ErrorCode::kProgramNumber);
+  // The name of a program tells whose tools link it: a stream has none.
+  request = LinkRequest(32, {{32, "^IN;!MC1;"}});
+  request.mutable_programs(0)->mutable_program()->set_file_name("part.prn");
+  EXPECT_EQ(CodeOf(tools.Link(request)), ErrorCode::kCellInvalidArgument);
 }
 
 // OPT-8.70: the programmer's own text, comments and blanks included, while the object is that of

@@ -302,7 +302,7 @@ TEST(MachineRules, TheFamily) {
   const machine::MachineFamily& family = OptimoFamily();
   EXPECT_EQ(family.info().id, "optimo");
   EXPECT_TRUE(family.info().has_executables);
-  EXPECT_TRUE(family.info().has_schedules);
+  EXPECT_EQ(family.info().schedules, 63);
   EXPECT_TRUE(family.info().checked_by_running);
   EXPECT_FALSE(family.info().hold_in_remote);  // OPT-4.17
   EXPECT_EQ(family.info().no_slot, ErrorCode::kProgramNumber);

@@ -317,11 +317,11 @@ TEST(MotionRules, ZeroEndsAtTheMechanicalZero) {
       {.variables = {"VR[0]", "VR[1]", "VR[2]", "VR[3]"}});
   EXPECT_THAT(ran.variables, ::testing::Each(::testing::Pair(::testing::_, "0.0")));
   ASSERT_EQ(ran.parts.size(), 4U);
-  const motion::AxisPose after_z = ran.parts[1].motion.path.to().axes();
+  const motion::AxisPose after_z = ran.parts[1].motion.path.axes_to();
   EXPECT_NEAR(after_z.column.z(), 0.0, 1e-9);
   EXPECT_NEAR(after_z.column.x(), 500.0, 1e-9);
   EXPECT_NEAR(after_z.a_rad, 1.0, 1e-6);
-  const motion::AxisPose after_head = ran.parts[2].motion.path.to().axes();
+  const motion::AxisPose after_head = ran.parts[2].motion.path.axes_to();
   EXPECT_NEAR(after_head.column.x(), 500.0, 1e-9);
   EXPECT_NEAR(after_head.a_rad, 0.0, 1e-9);
 }
