@@ -35,6 +35,7 @@ struct FamilyInfo {
   // Parameters that say where program zero lies on the machine: X, Y and Z, in mm. Empty: programs
   // set it themselves.
   std::array<std::string_view, 3> origin_parameters{};
+  std::string_view clamps_parameter{};  // height of the clamps above program zero, mm; empty: none
   double override_max_percent = 100.0;  // of the feed rate; the least is above 0
   // The machine's own codes for a number that is no slot, and for a slot without program. A machine
   // without program memory has none: the cell keeps its programs, and says so in its own words.

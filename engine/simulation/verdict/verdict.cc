@@ -91,7 +91,7 @@ void AddFamilyRules(const machine::MachineFamily& family, std::span<const machin
   for (const machine::VerdictRule& rule : family.verdict_rules()) {
     const auto figure = std::ranges::find(figures, rule.figure, &machine::Figure::name);
     if (figure != figures.end() && figure->value > rule.limit && !Told(judgement, rule))
-      judgement.Add(machine::ReasonOf(rule, *figure));
+      judgement.Add(machine::ReasonOf(rule, *figure, figures));
   }
 }
 
