@@ -92,6 +92,7 @@ TEST(MillRules, FeedRatesThatTheMachineDoesNotHave) {
             "have: 0.5 mm/s in place of 0.1 @6");
   // What is set anew before the cut, or only lifts, costs nothing; nor does rounding to a step.
   EXPECT_EQ(feeds("VS61;VS10;!VZ10;"), "GOOD");
+  EXPECT_EQ(feeds("VS10;!VZ0.1;!VZ10;"), "GOOD");
   EXPECT_EQ(feeds("VS10;!VZ85;").find("RML1-E8003"), std::string::npos);  // a slower plunge
   EXPECT_EQ(feeds("VS10;V85;Z0,0,500;V10;"), "GOOD");
   EXPECT_EQ(feeds("VS10.9;!VZ10.9;"), "GOOD");
