@@ -152,7 +152,7 @@ int Check(const CheckOptions& options) {
     const auto family = FamilyFor(machine->family, name);
     if (!family) return Refuse(family.error());
     std::map<std::string, std::string> changed = machine->parameters;
-    if (const Status placed = PlaceOrigin(options.machine.origin, **family, changed); !placed)
+    if (const Status placed = PlaceWork(options.machine, **family, changed); !placed)
       return Refuse(placed.error());
     auto parameters = machine::MakeParameters(**family, machine->profile, changed);
     if (!parameters) return Refuse(parameters.error());

@@ -268,7 +268,7 @@ int Simulate(const SimulateOptions& options) {
   if (!machine) return Refuse(machine.error());
   Result<LoadedFiles> loaded = LoadPrograms(options, machine->family);
   if (!loaded) return Refuse(loaded.error());
-  const Status placed = PlaceOrigin(options.machine.origin, *loaded->family, machine->parameters);
+  const Status placed = PlaceWork(options.machine, *loaded->family, machine->parameters);
   if (!placed) return Refuse(placed.error());
   const Result<v1::SimulationOptions> message = OptionsMessage(options, *loaded->family);
   if (!message) return Refuse(message.error());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@ struct MachineChoice {
   std::string file;  // TOML
   std::vector<double>
       origin;  // of the program on the machine: X, Y and perhaps Z, mm; empty: as it is
+  std::optional<double> clamps_mm;  // how high they stand above the surface of the work
 };
 
 }  // namespace rmlcell::cli

@@ -65,6 +65,8 @@ void AddMachineOptions(CLI::App* verb, MachineChoice& machine) {
   verb->add_option("--origin", machine.origin,
                    "X,Y[,Z]: where the work origin of a mill lies on the machine, mm")
       ->delimiter(',');
+  verb->add_option("--clamps", machine.clamps_mm,
+                   "how high the clamps of a mill stand above the surface of the work, mm");
 }
 
 void AddCheckVerb(CLI::App& app, int& exit_code) {

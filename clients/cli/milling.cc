@@ -101,7 +101,12 @@ Result<simulation::Milling> MillingOf(const MillingOptions& options,
   Result<simulation::MillTool> tool = simulation::ParseTool(options.tool);
   if (!tool) return tool.error();
   stock->cell = options.cell_mm;
-  simulation::Milling milling{.stock = *stock, .tool = *tool};
+  simulation::Milling milling{.stock = *stock, .tool = *tool, .rpm = options.rpm};
+  if (!options.material.empty()) {
+    const auto chips = simulation::ChipsOf(options.material, 2.0 * tool->radius_mm);
+    if (!chips) return chips.error();
+    milling.chips = *chips;
+  }
   if (Status sound = simulation::CheckMilling(milling); !sound) return sound.error();
   if (options.target.empty()) return milling;
   Result<simulation::Target> target = TargetOf(options, machine, milling);

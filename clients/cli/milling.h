@@ -18,7 +18,9 @@ struct MillingOptions {
   std::string stock;  // "100x80x10"; empty: material is not modelled
   std::string tool;   // "flat:3"
   double cell_mm = 0.1;
-  std::string stl;  // file; empty: none
+  std::string material;  // "wax"; empty: chip loads are not judged
+  double rpm = 0.0;      // of a spindle that is set by hand; 0: as the program says
+  std::string stl;       // file; empty: none
   double stl_tolerance_mm = 0.01;
   std::string relief;      // file; empty: none
   std::string height_map;  // file; empty: none

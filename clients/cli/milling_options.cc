@@ -10,11 +10,20 @@ void AddMillingOptions(CLI::App& verb, MillingOptions& options) {
                       "100x80x10[@X,Y,TOP]: a block on a mill's table, mm from the work origin");
   CLI::Option* tool = verb.add_option(
       "--tool", options.tool,
-      "flat:D, ball:D, vee:D:ANGLE[:TIP], with :flute=L:shank=D:holder=D@L: what mills it");
+      "flat:D, ball:D, vee:D:ANGLE[:TIP], with :flutes=N:flute=L:shank=D:holder=D@L: what mills it");
   stock->needs(tool);
   tool->needs(stock);
   verb.add_option("--cell", options.cell_mm,
                   "edge of the cells that the block is looked at in, mm; default 0.1")
+      ->needs(stock);
+  verb.add_option(
+          "--material", options.material,
+          "foam, wax, plastic, wood, pcb or aluminium: judge what an edge of the tool takes "
+          "off (it needs flutes=N)")
+      ->needs(stock);
+  verb.add_option("--rpm", options.rpm,
+                  "of a spindle that is set by hand; default: as the program says")
+      ->check(CLI::Range(1.0, 1e6))
       ->needs(stock);
   CLI::Option* stl =
       verb.add_option("--stl", options.stl, "write what is left of the block, a closed body")

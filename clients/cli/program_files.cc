@@ -60,6 +60,8 @@ Result<bridge::MachineFile> ReadMachine(const MachineChoice& choice) {
   return machine;
 }
 
+namespace {
+
 Status PlaceOrigin(const std::vector<double>& origin, const machine::MachineFamily& family,
                    std::map<std::string, std::string>& parameters) {
   if (origin.empty()) return {};
@@ -74,6 +76,22 @@ Status PlaceOrigin(const std::vector<double>& origin, const machine::MachineFami
     return Error{ErrorCode::kCellUsage, "--origin: give X,Y or X,Y,Z in mm", {}};
   for (std::size_t axis = 0; axis < origin.size(); ++axis)
     parameters[std::string(names[axis])] = ShortestText(origin[axis]);
+  return {};
+}
+
+}  // namespace
+
+Status PlaceWork(const MachineChoice& choice, const machine::MachineFamily& family,
+                 std::map<std::string, std::string>& parameters) {
+  if (Status placed = PlaceOrigin(choice.origin, family, parameters); !placed) return placed;
+  if (!choice.clamps_mm) return {};
+  const std::string_view name = family.info().clamps_parameter;
+  if (name.empty()) {
+    return Error{ErrorCode::kCellUsage,
+                 "--clamps: a " + std::string(family.info().title) + " knows of no clamps",
+                 {}};
+  }
+  parameters[std::string(name)] = ShortestText(*choice.clamps_mm);
   return {};
 }
 

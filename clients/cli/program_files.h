@@ -49,10 +49,11 @@ Result<SlotFile> ParseSlotFile(const std::string& text);
 // Without a file what is chosen on the command line. Errors: CellFileUnreadable, CellBadText.
 Result<bridge::MachineFile> ReadMachine(const MachineChoice& choice);
 
-// The parameters that bring program zero there. Errors: CellUsage for a family whose programs set
-// it themselves, and for other than two or three numbers.
-Status PlaceOrigin(const std::vector<double>& origin, const machine::MachineFamily& family,
-                   std::map<std::string, std::string>& parameters);
+// The parameters that bring program zero to its place and know of the clamps. Errors: CellUsage for
+// a family whose programs set zero themselves or that knows no clamps, and for an origin of other
+// than two or three numbers.
+Status PlaceWork(const MachineChoice& choice, const machine::MachineFamily& family,
+                 std::map<std::string, std::string>& parameters);
 
 // Writes a file whole or not at all: what stood under this name before is there until the new one
 // is on the disk, and keeps its mode. Error: CellFileUnwritable.

@@ -49,10 +49,10 @@ _rmlcell_options() {
   local remote="--help --server --json"
   case $1 in
     "") echo "--help --version" ;;
-    check) echo "--help --family --profile --machine --origin --inputs --errors-only --fix --dry-run --machine-coordinates --strict --json" ;;
+    check) echo "--help --family --profile --machine --origin --clamps --inputs --errors-only --fix --dry-run --machine-coordinates --strict --json" ;;
     simulate)
-      echo "--help --slot --main --executable --family --profile --machine --origin --inputs --mode --override --simul" \
-        "--break --budget --vars --svg --toolpath --samples --plot --stock --tool --cell --stl" \
+      echo "--help --slot --main --executable --family --profile --machine --origin --clamps --inputs --mode --override --simul" \
+        "--break --budget --vars --svg --toolpath --samples --plot --stock --tool --cell --material --rpm --stl" \
         "--stl-tolerance --relief --height-map --target --target-tolerance --target-png" \
         "--state-in --state-out --trace --facts --machine-coordinates --strict --json" ;;
     explain) echo "--help --json" ;;
@@ -92,8 +92,8 @@ _rmlcell_options() {
 # True when an option takes a value in the next word.
 _rmlcell_takes_value() {
   case $1 in
-    --slot | --main | --executable | --family | --profile | --machine | --origin | --inputs | --mode | --override | \
-      --simul | --break | --budget | --vars | --svg | --toolpath | --samples | --plot | --stock | --tool | --cell | --stl | --stl-tolerance | --relief | --height-map | --target | --target-tolerance | --target-png | \
+    --slot | --main | --executable | --family | --profile | --machine | --origin | --clamps | --inputs | --mode | --override | \
+      --simul | --break | --budget | --vars | --svg | --toolpath | --samples | --plot | --stock | --tool | --cell | --material | --stl | --stl-tolerance | --relief | --height-map | --target | --target-tolerance | --target-png | \
       --state-in | --state-out | --server | --etag | --form | \
       --output | -o | --kind | --title | --request-id | --pace | --after | --filter | --limit | --move | --turn | --shift | \
       --tolerance | --by | --from | --to | --columns | --rows | --gap | --depth | --step | --passes | --overlap | \

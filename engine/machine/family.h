@@ -44,6 +44,7 @@ struct FamilyInfo {
   // Parameters that say where program zero lies on the machine: X, Y and Z, in mm. Empty: programs
   // set it themselves.
   std::array<std::string_view, 3> origin_parameters{};
+  std::string_view clamps_parameter{};  // height of the clamps above program zero, mm; empty: none
   double override_max_percent = 100.0;  // of the feed rate; the least is above 0
 
   // What the machine calls what the cell finds. What has no number in its manual the cell says in

@@ -1,6 +1,7 @@
 #include "engine/machine/verdict.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "engine/core/number_text.h"
@@ -11,6 +12,24 @@ namespace {
 int DecimalsOf(std::string_view unit) {
   if (unit.empty()) return 0;
   return unit == "%" ? 1 : 3;
+}
+
+// "# mm/s in place of #{name}" with its numbers.
+std::string Filled(std::string_view said, const Figure& figure, std::span<const Figure> figures) {
+  std::string text;
+  for (std::size_t mark = said.find('#'); mark != std::string_view::npos; mark = said.find('#')) {
+    text += said.substr(0, mark);
+    said.remove_prefix(mark + 1);
+    if (!said.starts_with('{')) {
+      text += FixedText(figure.value, DecimalsOf(figure.unit));
+      continue;
+    }
+    const std::size_t end = said.find('}');
+    const auto named = std::ranges::find(figures, said.substr(1, end - 1), &Figure::name);
+    if (named != figures.end()) text += ShortestText(std::round(named->value * 1e3) / 1e3);
+    said.remove_prefix(end + 1);
+  }
+  return text.append(said);
 }
 
 }  // namespace
@@ -34,13 +53,10 @@ void Judgement::Add(Reason reason) {
   reasons.insert(behind, std::move(reason));
 }
 
-Reason ReasonOf(const VerdictRule& rule, const Figure& figure) {
-  std::string said(rule.said);
-  if (const std::size_t mark = said.find('#'); mark != std::string::npos)
-    said.replace(mark, 1, FixedText(figure.value, DecimalsOf(figure.unit)));
+Reason ReasonOf(const VerdictRule& rule, const Figure& figure, std::span<const Figure> figures) {
   return {.code = rule.code,
           .verdict = rule.verdict,
-          .said = std::move(said),
+          .said = Filled(rule.said, figure, figures),
           .amount = figure.value,
           .unit = figure.unit,
           .first = figure.first};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,7 +26,9 @@ struct VerdictRule {
   std::string_view figure{};  // "clipped_cut_length"
   double limit = 0.0;
   Verdict verdict = Verdict::kDoubtful;
-  std::string_view said{};  // of the figure, which takes the place of '#': "cuts # mm ..."
+  // Of the figure, which takes the place of '#': "cuts # mm ..."; "#{name}" is another figure of
+  // the same run.
+  std::string_view said{};
 };
 
 // Why a verdict is not GOOD. One for each rule that spoke, however many places it is about.
@@ -49,7 +52,9 @@ struct Judgement {
   bool operator==(const Judgement&) const = default;
 };
 
-// What a rule says of a figure. Lengths and times to 0.001, counts whole, percent to 0.1.
-Reason ReasonOf(const VerdictRule& rule, const Figure& figure);
+// What a rule says of a figure. Lengths and times to 0.001, counts whole, percent to 0.1; other
+// figures that it names are found in `figures`, and are as short as they can be told.
+Reason ReasonOf(const VerdictRule& rule, const Figure& figure,
+                std::span<const Figure> figures = {});
 
 }  // namespace rmlcell::machine

@@ -15,6 +15,10 @@ class CutWatch {
     double mm = 0.0;
     CommandPlace first{};
   };
+  // In the work at a speed that the machine has in place of the one asked for.
+  struct LimitedWay : Way {
+    SpeedLimit worst{};
+  };
 
   struct Ride {
     Point from;
@@ -24,19 +28,45 @@ class CutWatch {
     bool rapid = false;        // at the travel speed
     bool by_xy_speed = false;  // else by the speed of Z
     bool spindle_turns = false;
+    bool plunge = false;         // straight down into the work
+    bool as_fast_as_z = false;   // and as fast as Z travels
+    double clamps_height = 0.0;  // of the clamps above Z 0, device units; 0: none are known
   };
   void OnRide(const Ride& ride, const Registers& registers, const CommandPlace& command);
 
   const Way& spindle_stands() const { return spindle_stands_; }  // in the work
   const Way& no_clearance() const { return no_clearance_; }      // across, not above the surface
   const Way& feed_not_given() const { return feed_not_given_; }  // in the work
+  // Straight down below the surface as fast as Z travels, to where the tool cuts or turns back. A
+  // fast way that a slower one goes on from ends above the material: CAM tools go down like that
+  // where a pass before has cleared the way. A step down on the way of a cut is part of the cut.
+  const Way& fast_plunge() const { return fast_plunge_; }
+  // More than 1 % beside what the program asked for. A plunge that is slower harms nothing.
+  const LimitedWay& feed_limited() const { return feed_limited_; }  // mm/s
+  const LimitedWay& rpm_limited() const { return rpm_limited_; }
+  // Across, lower than the clamps, on the way to the first cut and from the last one on.
+  Way below_clamps() const;
 
  private:
   static void Add(Way& way, double mm, const CommandPlace& command);
+  static void AddLimited(LimitedWay& way, const SpeedLimit& limit, double mm,
+                         const CommandPlace& command);
+  void OnPlunge(const Ride& ride, double mm, const CommandPlace& command);
+  void EndFastPlunge();
+  void OnCut(const Ride& ride, const Registers& registers, const CommandPlace& command);
+  void OnTravel(const Ride& ride, const Registers& registers, const CommandPlace& command);
 
   Way spindle_stands_;
   Way no_clearance_;
   Way feed_not_given_;
+  Way fast_plunge_;
+  Way fast_so_far_;  // of a way down that may go on slower
+  LimitedWay feed_limited_;
+  LimitedWay rpm_limited_;
+  bool has_cut_ = false;
+  bool cutting_ = false;  // across, without having left the work since
+  Way to_work_;           // lower than the clamps: before the first cut
+  Way from_work_;         // since the last one
 };
 
 }  // namespace rmlcell::rml1

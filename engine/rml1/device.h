@@ -134,7 +134,7 @@ class Device {
   void ClearGroup();
   void SetXYSpeed(DeviceListener& listener);
   void SetZSpeed(DeviceListener& listener);
-  double NearestSpeed(const motion::FeedSteps& steps, DeviceListener& listener);
+  double NearestSpeed(const motion::FeedSteps& steps, SpeedLimit& limit, DeviceListener& listener);
   void SetHeights(DeviceListener& listener);
   void SetDwell(DeviceListener& listener);
   void SetRotation();

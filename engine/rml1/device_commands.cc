@@ -224,10 +224,14 @@ void Device::OnGroup(DeviceListener& listener) {
   ClearGroup();
 }
 
-double Device::NearestSpeed(const motion::FeedSteps& steps, DeviceListener& listener) {
+// Rounding to a step of the control is no limit.
+double Device::NearestSpeed(const motion::FeedSteps& steps, SpeedLimit& limit,
+                            DeviceListener& listener) {
   const double wanted = operands_.fixed[0].decimal;
+  limit = {};
   if (wanted < steps.minimum_mm_s || wanted > steps.maximum_mm_s) {
     ++speeds_limited_;
+    limit = {.asked = std::max(wanted, 0.0), .used = steps.Nearest(wanted)};
     Advise(FindingKind::kSpeedLimited, listener, wanted);
   }
   return steps.Nearest(wanted);
@@ -236,8 +240,10 @@ double Device::NearestSpeed(const motion::FeedSteps& steps, DeviceListener& list
 // F, VS: never an error (RML1-3A.46, RML1-3B.28).
 void Device::SetXYSpeed(DeviceListener& listener) {
   registers_.xy_speed_given = operands_.count > 0;
-  registers_.xy_speed =
-      operands_.count == 0 ? profile_->xy_speed : NearestSpeed(profile_->xy_speeds, listener);
+  registers_.xy_limit = {};
+  registers_.xy_speed = operands_.count == 0
+                            ? profile_->xy_speed
+                            : NearestSpeed(profile_->xy_speeds, registers_.xy_limit, listener);
 }
 
 // V, !VZ: an error outside int (RML1-3A.52).
@@ -245,10 +251,11 @@ void Device::SetZSpeed(DeviceListener& listener) {
   if (operands_.count == 0) {
     registers_.z_speed = profile_->z_speed;
     registers_.z_speed_given = false;
+    registers_.z_limit = {};
   } else if (!operands_.fixed[0].Within(kIntMin, kIntMax)) {
     Report(FindingKind::kSettingRange, listener, operands_.fixed[0].decimal);
   } else {
-    registers_.z_speed = NearestSpeed(profile_->z_speeds, listener);
+    registers_.z_speed = NearestSpeed(profile_->z_speeds, registers_.z_limit, listener);
     registers_.z_speed_given = true;
   }
 }
@@ -306,6 +313,13 @@ void Device::SetSpindleSpeed(DeviceListener& listener) {
     rpm = std::clamp(static_cast<int>(wanted) / step * step, profile_->spindle_min_rpm,
                      profile_->spindle_max_rpm);
   }
+  const bool has_it = wanted < kFirstRpm ||
+                      (profile_->spindle_control == SpindleControl::kRpm &&
+                       wanted >= profile_->spindle_min_rpm && wanted <= profile_->spindle_max_rpm);
+  registers_.rpm_limit = {};
+  if (!has_it) {
+    registers_.rpm_limit = {.asked = static_cast<double>(wanted), .used = static_cast<double>(rpm)};
+  }
   if (rpm == registers_.rpm) return;  // RML1-3C.39
   registers_.rpm = rpm;
   if (registers_.spindle_on) actions_.Push(Action::Kind::kSpindleSpeed).rpm = rpm;
@@ -342,6 +356,7 @@ void Device::RestoreDefaults() {
   registers_.xy_speed = profile_->xy_speed;
   registers_.z_speed = profile_->z_speed;
   registers_.xy_speed_given = registers_.z_speed_given = false;
+  registers_.xy_limit = registers_.z_limit = {};
   registers_.dwell_ms = 0;
   registers_.rotation = true;
   registers_.z1 = profile_->z1;

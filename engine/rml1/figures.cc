@@ -4,6 +4,8 @@
 #include <array>
 #include <optional>
 
+#include "engine/rml1/step_guess.h"
+
 namespace rmlcell::rml1 {
 namespace {
 
@@ -14,6 +16,7 @@ struct Source {
   double mm;     // of one device unit
   Point origin;  // of the work, device units
   WorkFit fit;
+  StepGuess step;
   bool rotary;
   std::optional<std::uint64_t> starved;
   bool ended;
@@ -54,6 +57,18 @@ double DepthNow(const Source& s) {
 
 Value IfFits(const WorkFit::Axis& axis, double value) {
   return axis.known && axis.over == 0.0 ? Value(value) : std::nullopt;
+}
+
+Value IfAbove0(double value) { return value > 0.0 ? Value(value) : std::nullopt; }
+
+// Of the work as it would be with the other step.
+Value Otherwise(const Source& s, const WorkFit::Axis& axis) {
+  return s.step.fits_at > 0.0 ? Value(axis.length) : std::nullopt;
+}
+
+// A speed of the machine in place of the one asked for, where that was cut with.
+Value IfLimited(const CutWatch::LimitedWay& way, double speed) {
+  return way.mm > 0.0 ? Value(speed) : std::nullopt;
 }
 
 struct Row {
@@ -103,6 +118,12 @@ constexpr std::array kRows = {
     Row{{"oversize_x", "mm", "by how much the work is larger than the travel of X"}, [](const Source& s) -> Value { return s.fit.x.over; }},
     Row{{"oversize_y", "mm", "by how much it is larger than the travel of Y"}, [](const Source& s) -> Value { return s.fit.y.over; }},
     Row{{"oversize_z", "mm", "by how much it is deeper than the travel of Z"}, [](const Source& s) -> Value { return s.fit.z.over; }},
+    Row{{"step_fits_at", "", "units in a millimetre at which work fits that is too large for the travel as it is: the program may be written for such a machine"}, [](const Source& s) -> Value { return s.step.fits_at; }},
+    Row{{"step_fits_x", "mm", "length in X that the work would have there"}, [](const Source& s) -> Value { return Otherwise(s, s.step.work.x); }},
+    Row{{"step_fits_y", "mm", "length in Y that it would have there"}, [](const Source& s) -> Value { return Otherwise(s, s.step.work.y); }},
+    Row{{"step_fits_z", "mm", "depth that it would have there"}, [](const Source& s) -> Value { return Otherwise(s, s.step.work.z); }},
+    Row{{"step_lift", "mm", "with 100 units in a millimetre: how high the tool rises at most above the surface, where that is 0.2 to 0.5 mm"}, [](const Source& s) -> Value { return IfAbove0(s.step.lift_mm); }},
+    Row{{"step_lift_at_40", "mm", "how high that would be with 40 units in a millimetre"}, [](const Source& s) -> Value { return IfAbove0(s.step.lift_there_mm); }},
     Row{{"box.amin", "deg", "least angle of the rotary axis"}, [](const Source& s) -> Value { return s.rotary ? Low(s.tool.a) : std::nullopt; }},
     Row{{"box.amax", "deg", "greatest angle of the rotary axis"}, [](const Source& s) -> Value { return s.rotary ? High(s.tool.a) : std::nullopt; }},
     Row{{"clipped_length", "mm", "programmed way beyond the cutting range", "clipped", "# mm beyond the cutting range", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return s.device.carriage().clipped_length() * s.mm; }},
@@ -118,6 +139,14 @@ constexpr std::array kRows = {
     Row{{"spindle_stands_length", "mm", "way in the work while the spindle stands"}, [](const Source& s) -> Value { return s.watch.spindle_stands().mm; }, [](const Source& s) { return s.watch.spindle_stands().first; }},
     Row{{"no_clearance_length", "mm", "way across at travel speed, not above the surface of the work, Z 0"}, [](const Source& s) -> Value { return s.watch.no_clearance().mm; }, [](const Source& s) { return s.watch.no_clearance().first; }},
     Row{{"feed_not_given_length", "mm", "way in the work at a speed that the program did not set"}, [](const Source& s) -> Value { return s.watch.feed_not_given().mm; }, [](const Source& s) { return s.watch.feed_not_given().first; }},
+    Row{{"fast_plunge_length", "mm", "way straight down below the surface as fast as Z travels, to where the tool cuts or turns back"}, [](const Source& s) -> Value { return s.watch.fast_plunge().mm; }, [](const Source& s) { return s.watch.fast_plunge().first; }},
+    Row{{"below_clamps_length", "mm", "way across, lower than the clamps, to the first cut and from the last one"}, [](const Source& s) -> Value { return s.watch.below_clamps().mm; }, [](const Source& s) { return s.watch.below_clamps().first; }},
+    Row{{"feed_limited_length", "mm", "way in the work at a speed of the machine in place of one that it does not have"}, [](const Source& s) -> Value { return s.watch.feed_limited().mm; }, [](const Source& s) { return s.watch.feed_limited().first; }},
+    Row{{"feed_limited_asked", "mm/s", "of these the speed asked for that is furthest from what it became"}, [](const Source& s) -> Value { return IfLimited(s.watch.feed_limited(), s.watch.feed_limited().worst.asked); }},
+    Row{{"feed_limited_used", "mm/s", "what that one became"}, [](const Source& s) -> Value { return IfLimited(s.watch.feed_limited(), s.watch.feed_limited().worst.used); }},
+    Row{{"rpm_limited_length", "mm", "way in the work with a spindle speed of the machine in place of one that it does not have"}, [](const Source& s) -> Value { return s.watch.rpm_limited().mm; }, [](const Source& s) { return s.watch.rpm_limited().first; }},
+    Row{{"rpm_limited_asked", "rpm", "of these the spindle speed asked for that is furthest from what it became"}, [](const Source& s) -> Value { return IfLimited(s.watch.rpm_limited(), s.watch.rpm_limited().worst.asked); }},
+    Row{{"rpm_limited_used", "rpm", "what that one became"}, [](const Source& s) -> Value { return IfLimited(s.watch.rpm_limited(), s.watch.rpm_limited().worst.used); }},
     Row{{"depth_at_end", "mm", "how far below the surface the tool stands at the end"}, [](const Source& s) -> Value { return s.ended ? Value(DepthNow(s)) : std::nullopt; }},
     Row{{"spindle_on_at_end", "", "1 when the spindle turns at the end"}, [](const Source& s) -> Value { return s.ended ? Value(s.device.spindle_turns() ? 1.0 : 0.0) : std::nullopt; }},
     Row{{"incomplete_at_end", "", "1 when the data ends inside a command, which is not carried out"}, [](const Source& s) -> Value { return s.ended ? Value(s.device.pending() ? 1.0 : 0.0) : std::nullopt; }},
@@ -201,13 +230,16 @@ std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& phy
                                        std::optional<std::uint64_t> starved) {
   const Profile& profile = physical.profile();
   const Point origin{profile.origin_x, profile.origin_y, device.registers().z0, 0.0};
+  const CuttingRange& travel = device.carriage().range();
+  const WorkFit fit =
+      FitOf(physical.totals().work, device.carriage().lost(), origin, travel, profile.units_per_mm);
   const Source source{.device = device,
                       .tool = physical.totals(),
                       .watch = physical.watch(),
                       .mm = 1.0 / profile.units_per_mm,
                       .origin = origin,
-                      .fit = FitOf(physical.totals().work, device.carriage().lost(), origin,
-                                   device.carriage().range(), profile.units_per_mm),
+                      .fit = fit,
+                      .step = GuessStep(fit, travel, device.programmed().z(), profile.units_per_mm),
                       .rotary = profile.has_rotary,
                       .starved = starved,
                       .ended = ended};

@@ -23,6 +23,7 @@ constexpr std::array kParameters = {
     ParameterInfo{"Z0",             "mm",     -20.0, -1e4,      0.0, {}, "work origin of Z at power-on and after !ZO, machine Z", "RML1-9.11"},
     ParameterInfo{"Z1",             "mm",       0.0, -1e4,      0.0, {}, "default tool-down height, from Z0", "RML1-3A.03"},
     ParameterInfo{"Z2",             "mm",       5.0,  0.0,      1e4, {}, "default tool-up height, from Z0", "RML1-3A.03"},
+    ParameterInfo{"CLAMP_HEIGHT",   "mm",       0.0,  0.0,      1e4, {}, "how far clamps stand above Z0; 0: none that could be in the way", "RML1-9.11"},
     ParameterInfo{"XY_SPEED_MIN",   "mm/s",     0.5, 0.01,      1e4, {}, "lowest cutting speed in X and Y", "RML1-3A.46"},
     ParameterInfo{"XY_SPEED_MAX",   "mm/s",    60.0, 0.01,      1e4, {}, "highest cutting speed in X and Y", "RML1-3A.46"},
     ParameterInfo{"XY_SPEED",       "mm/s",     2.0, 0.01,      1e4, {}, "cutting speed at power-on and after F, VS, DF, IN", "RML1-9.08"},

@@ -1,5 +1,7 @@
 #include "engine/rml1/physical.h"
 
+#include <algorithm>
+
 namespace rmlcell::rml1 {
 
 using machine::MotionUse;
@@ -28,13 +30,17 @@ void Physical::OnRide(const Ride& ride, const Registers& registers, const Comman
     }
   }
   totals_.motion_s += ride.time_s;
+  const double fastest_down = std::min(profile_->travel_speed, profile_->z_speeds.maximum_mm_s);
   watch_.OnRide({.from = ride.from,
                  .to = ride.to,
                  .length_mm = ride.length_mm,
                  .in_work = in_work,
                  .rapid = ride.rapid,
                  .by_xy_speed = ride.chain == Chain::kToolDown,
-                 .spindle_turns = ride.spindle_turns},
+                 .spindle_turns = ride.spindle_turns,
+                 .plunge = plunges,
+                 .as_fast_as_z = registers.z_speed >= fastest_down,
+                 .clamps_height = profile_->clamps_height},
                 registers, command);
   AddToState(ride.time_s, in_work || registers.tool_down);
   depth_ = registers.z0 - ride.to.z;

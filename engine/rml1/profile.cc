@@ -54,6 +54,7 @@ void ReadFigures(const machine::Parameters& from, Profile& profile) {
   profile.z0 = std::clamp(units_of("Z0"), profile.z.low, 0.0);
   profile.z1 = units_of("Z1");
   profile.z2 = units_of("Z2");
+  profile.clamps_height = units_of("CLAMP_HEIGHT");
   profile.xy_speeds.minimum_mm_s = from.Number("XY_SPEED_MIN");
   profile.xy_speeds.maximum_mm_s = from.Number("XY_SPEED_MAX");
   profile.z_speeds.minimum_mm_s = from.Number("Z_SPEED_MIN");

@@ -35,6 +35,7 @@ struct Profile {
   double z0 = 0.0;  // work origin of Z at power-on
   double z1 = 0.0;  // default tool heights, from Z0
   double z2 = 0.0;
+  double clamps_height = 0.0;  // of what holds the work, above Z0; 0: not known
 
   motion::FeedSteps xy_speeds;
   motion::FeedSteps z_speeds;

@@ -1,10 +1,23 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/rml1/profile.h"
 
 namespace rmlcell::rml1 {
+
+// A speed that the program asked for and the machine does not have, with the one that it took.
+struct SpeedLimit {
+  double asked = 0.0;
+  double used = 0.0;
+
+  // By how much they differ, of the greater one: 0 to 1.
+  double off() const {
+    const double greater = std::max(asked, used);
+    return greater > 0.0 ? std::abs(asked - used) / greater : 0.0;
+  }
+};
 
 // What commands set and a new command set reads (RML1-7.08). Heights in device units: z0 from the
 // machine's zero, z1 and z2 from z0 and as they were given, beyond the range too (RML1-9.23).
@@ -23,6 +36,9 @@ struct Registers {
   double z_speed;               // V, !VZ: mm/s
   bool xy_speed_given = false;  // by the program, and not the default of the machine
   bool z_speed_given = false;
+  SpeedLimit xy_limit;  // mm/s; of the speeds above where they were limited
+  SpeedLimit z_limit;
+  SpeedLimit rpm_limit;
   int dwell_ms = 0;
   double z0;
   double z1;

@@ -23,6 +23,7 @@ constexpr machine::FamilyInfo kInfo = {.id = "rml1",
                                        .hold_in_remote = true,       // it has no such mode
                                        .default_profile = "srm-20",  // the most common one
                                        .origin_parameters = {"ORIGIN_X", "ORIGIN_Y", "Z0"},
+                                       .clamps_parameter = "CLAMP_HEIGHT",
                                        .override_max_percent = 145.0};
 
 Diagnostic Plain(ErrorCode code, std::string detail) {

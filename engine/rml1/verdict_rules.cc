@@ -42,6 +42,25 @@ constexpr std::array kRules = {
     VerdictRule{ErrorCode::kRml1NoClearance, "no_clearance_length", kRounding_mm,
                 Verdict::kDoubtful,
                 "# mm across at travel speed, not above the surface of the work"},
+    VerdictRule{ErrorCode::kRml1StepGuess, "step_fits_at", 0.0, Verdict::kDoubtful,
+                "it may be written for # units per mm: the work would be #{step_fits_x} x "
+                "#{step_fits_y} x #{step_fits_z} mm there, and would fit"},
+    VerdictRule{ErrorCode::kRml1StepGuess, "step_lift", 0.0, Verdict::kDoubtful,
+                "it may be written for 40 units per mm: the tool rises # mm above the work, which "
+                "would be #{step_lift_at_40} mm there"},
+    VerdictRule{ErrorCode::kRml1FastPlunge, "fast_plunge_length", kRounding_mm, Verdict::kDoubtful,
+                "# mm straight down to where the tool cuts, as fast as Z travels"},
+    VerdictRule{ErrorCode::kRml1BelowClamps, "below_clamps_length", kRounding_mm,
+                Verdict::kDoubtful,
+                "# mm across to the work or from it, lower than the clamps stand"},
+    VerdictRule{ErrorCode::kRml1SpeedClamped, "feed_limited_length", kRounding_mm,
+                Verdict::kDoubtful,
+                "# mm in the work with feed rates that the machine does not have: "
+                "#{feed_limited_used} mm/s in place of #{feed_limited_asked}"},
+    VerdictRule{ErrorCode::kRml1SpeedClamped, "rpm_limited_length", kRounding_mm,
+                Verdict::kDoubtful,
+                "# mm in the work with spindle speeds that the machine does not have: "
+                "#{rpm_limited_used} rpm in place of #{rpm_limited_asked}"},
     VerdictRule{ErrorCode::kRml1IncompleteCommand, "incomplete_at_end", 0.0, Verdict::kDoubtful,
                 "the data ends inside a command: the last one is not carried out"},
     VerdictRule{ErrorCode::kRml1EndsInWork, "depth_at_end", kRounding_mm, Verdict::kDoubtful,

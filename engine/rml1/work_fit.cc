@@ -17,10 +17,12 @@ WorkFit::Axis Fit(const Extent& wanted, const Travel& travel, double units_per_m
   if (!wanted.known) return {};
   const double low = travel.low - wanted.low;
   const double high = travel.high - wanted.high;
-  if (low > high) return {.known = true, .over = (low - high) / units_per_mm};
+  const double length = (wanted.high - wanted.low) / units_per_mm;
+  if (low > high) return {.known = true, .over = (low - high) / units_per_mm, .length = length};
   return {.known = true,
           .low = std::min(std::max(low, travel.low), high) / units_per_mm,
-          .high = std::max(std::min(high, travel.high), low) / units_per_mm};
+          .high = std::max(std::min(high, travel.high), low) / units_per_mm,
+          .length = length};
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ struct WorkFit {
     double low = 0.0;
     double high = 0.0;
     double over = 0.0;
+    double length = 0.0;  // of the work
   };
   Axis x;
   Axis y;

@@ -157,6 +157,38 @@ class Tools(Material):
         self.assertEqual(done.returncode, 1)
         self.assertIn("one pass is as deep as 125.0 % of the width of the tool (CELL-E9412", done.stdout)
 
+    # 4500 rpm are 75 turns a second: two edges take 10/150 = 0.067 mm each, more than twice 0.03 mm.
+    def test_chip_load_by_material_and_spindle(self):
+        edges = ("--stock", "60x30x5", "--tool", "flat:3:flutes=2")
+
+        def judged(*words):
+            return self.simulate(*edges, *words, "--strict")
+
+        self.assertEqual(judged("--material", "wax").returncode, 0)
+        hard = judged("--material", "aluminium")
+        self.assertEqual(hard.returncode, 1)
+        self.assertIn("an edge takes off 222.2 % of the most that is usual (CELL-E9415", hard.stdout)
+        self.assertEqual(judged("--material", "aluminium", "--rpm", "10000").returncode, 0)
+        self.refused("CELL-E", "no material: aluminium, foam", *edges, "--material", "cheese")
+        self.refused("CELL-E", "flutes=2", *BLOCK, "--material", "wax")
+
+    # The tool comes and goes 2 mm above the block: clamps of 2 mm are no higher, those of 3 mm are.
+    def test_clamps_in_the_way(self):
+        self.assertEqual(self.simulate("--clamps", "2", "--strict").returncode, 0)
+        high = self.simulate("--clamps", "3", "--strict")
+        self.assertEqual(high.returncode, 1)
+        self.assertIn("RML1-E8018", high.stdout)
+        check = subprocess.run([BIN / "rmlcell", "check", self.groove, "--profile", "t1", "--clamps", "3", "--strict"],
+                               capture_output=True, text=True, timeout=60, env={**os.environ, "NO_COLOR": "1"})
+        self.assertEqual(check.returncode, 1)
+        self.assertIn("RML1-E8018", check.stdout)
+        laser = self.folder / "a.S"
+        laser.write_text("EXIT\n")
+        refused = self.simulate("--clamps", "3", program=laser)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("knows of no clamps", refused.stderr)
+        self.refused("CELL-E", "CLAMP_HEIGHT", "--clamps", "-1")
+
     def test_figures_of_the_cut(self):
         facts = self.facts()
         self.assertAlmostEqual(float(facts["removed_volume_mm3"]) + float(facts["remaining_volume_mm3"]), 60 * 30 * 5, places=3)

@@ -21,6 +21,7 @@ struct MillTool {
   double shank_radius_mm = 0.0;   // above it; 0: as wide as the cutting part
   double holder_radius_mm = 0.0;  // 0: none that could get in the way
   double holder_from_mm = 0.0;    // where it begins above the lowest point
+  int flutes = 0;                 // cutting edges; 0: not told
 };
 
 // How high the cutting end reaches before the tool is as wide as its shaft.

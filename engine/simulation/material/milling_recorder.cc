@@ -13,6 +13,10 @@ constexpr double kGougeLeast_mm = 1e-3;  // less is rounding of heights and plac
 Status CheckMilling(const Milling& milling) {
   if (Status sound = CheckTool(milling.tool); !sound) return sound;
   if (Status sound = CheckStock(milling.stock); !sound) return sound;
+  if (milling.chips && milling.tool.flutes == 0)
+    return InvalidArgument("what an edge takes off needs the edges of the tool: flutes=2");
+  if (!(milling.rpm >= 0.0) || !std::isfinite(milling.rpm))
+    return InvalidArgument("a spindle speed is not below 0 rpm");
   if (!milling.target) return {};
   if (!(milling.target->tolerance_mm >= 0.0) || !std::isfinite(milling.target->tolerance_mm))
     return InvalidArgument("the tolerance of a target is not below 0 mm");
@@ -26,7 +30,18 @@ MillingRecorder::MillingRecorder(const machine::MachineShape& shape, const Milli
     : origin_(shape.has_work_origin ? shape.work_origin : motion::MachineVector{}),
       tool_(milling.tool),
       material_(HeightField::Of(milling.stock).value()),
-      target_(milling.target) {}
+      target_(milling.target),
+      chips_(milling.chips),
+      rpm_by_hand_(milling.rpm > 0.0),
+      rpm_(milling.rpm) {
+  if (chips_) figures_.chips.emplace();
+}
+
+void MillingRecorder::OnSignal(const machine::SignalChange& change) {
+  if (rpm_by_hand_) return;
+  if (change.signal == machine::Signal::kSpindle && change.value > 0.0) rpm_ = change.detail;
+  if (change.signal == machine::Signal::kSpindleSpeed) rpm_ = change.value;
+}
 
 void MillingRecorder::OnMotion(const machine::MotionDone& done) {
   const motion::PathPiece& path = done.motion->path;
@@ -58,6 +73,25 @@ void MillingRecorder::OnMotion(const machine::MotionDone& done) {
     figures_.deepest_pass_mm = taken;
     figures_.pass_place = done.place;
   }
+  if (is_pass && taken > kGougeLeast_mm) NoteChip(done.programmed_mm_s, done.place);
+}
+
+// At the feed rate asked for: on ramps and in corners an edge takes less for a moment.
+void MillingRecorder::NoteChip(double feed_mm_s, const machine::Place& place) {
+  if (!chips_ || !(rpm_ > 0.0)) return;
+  const double turns_s = rpm_ / 60.0;
+  const double chip_mm = feed_mm_s / (turns_s * tool_.flutes);
+  const double edge_mm_s = turns_s * 2.0 * kPi * tool_.radius_mm;
+  const auto note = [&](double percent, double& most, machine::Place& where) {
+    if (percent <= most) return;
+    most = percent;
+    where = place;
+  };
+  ChipFigures& figures = *figures_.chips;
+  note(100.0 * chip_mm / chips_->most_mm, figures.thick_percent, figures.thick_place);
+  note(100.0 * (1.0 - chip_mm / chips_->least_mm), figures.thin_percent, figures.thin_place);
+  note(100.0 * edge_mm_s * 0.06 / chips_->speed_most_m_min, figures.speed_percent,
+       figures.speed_place);
 }
 
 // Only over the block: beside it the table may be lower.

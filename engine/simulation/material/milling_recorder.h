@@ -4,6 +4,7 @@
 
 #include "engine/machine/observer.h"
 #include "engine/machine/shape.h"
+#include "engine/simulation/material/chip_load.h"
 #include "engine/simulation/material/height_field.h"
 #include "engine/simulation/material/target.h"
 #include "engine/simulation/report/report.h"
@@ -15,10 +16,12 @@ namespace rmlcell::simulation {
 struct Milling {
   Stock stock;
   MillTool tool;
-  std::optional<Target> target{};  // what should be left, on the same cells
+  std::optional<Target> target{};    // what should be left, on the same cells
+  std::optional<ChipRange> chips{};  // usual for tool and material; the tool has flutes then
+  double rpm = 0.0;                  // of a spindle that is set by hand; 0: as the machine tells
 };
-// Errors: CellInvalidArgument, as CheckTool and CheckStock have them, and for a target of other
-// cells or with a tolerance below 0.
+// Errors: CellInvalidArgument, as CheckTool and CheckStock have them, for a target of other cells
+// or with a tolerance below 0, and for a range of chips without the flutes of the tool.
 Status CheckMilling(const Milling& milling);
 
 // Takes the material away that the motions of a run sweep, and tells where the tool went into it at
@@ -29,6 +32,7 @@ class MillingRecorder final : public machine::RunObserver {
   MillingRecorder(const machine::MachineShape& shape, const Milling& milling);
 
   void OnMotion(const machine::MotionDone& done) override;
+  void OnSignal(const machine::SignalChange& change) override;
 
   MillingFigures Figures() const;
   const HeightField& material() const { return material_; }
@@ -37,11 +41,15 @@ class MillingRecorder final : public machine::RunObserver {
  private:
   void NoteBelow(const motion::MachinePoint& from, const motion::MachinePoint& to,
                  const machine::Place& place);
+  void NoteChip(double feed_mm_s, const machine::Place& place);
 
   motion::MachinePoint origin_;  // of the block's frame, machine frame
   MillTool tool_;
   HeightField material_;
   std::optional<Target> target_;
+  std::optional<ChipRange> chips_;
+  bool rpm_by_hand_ = false;
+  double rpm_ = 0.0;  // 0: not known yet
   MillingFigures figures_;
 };
 

@@ -1,5 +1,6 @@
 #include "engine/simulation/material/milling_text.h"
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,7 +32,7 @@ constexpr ShapeName kShapes[] = {
     {"ball", MillTool::Shape::kBall}, {"vee", MillTool::Shape::kVee},
     {"cone", MillTool::Shape::kVee},  {"engrave", MillTool::Shape::kVee}};
 
-// "flute=12", "shank=6", "holder=20@25"; false: it is none of them.
+// "flutes=2", "flute=12", "shank=6", "holder=20@25"; false: it is none of them.
 bool TakeShankPart(std::string_view part, MillTool& tool) {
   const std::size_t equals = part.find('=');
   const std::string_view name = part.substr(0, equals);
@@ -45,7 +46,11 @@ bool TakeShankPart(std::string_view part, MillTool& tool) {
   }
   const std::optional<double> number = ParseDouble(value);
   if (!number || !(*number > 0.0)) return false;
-  if (name == "flute") {
+  if (name == "flutes") {
+    constexpr double kFlutesMax = 100.0;
+    if (*number != std::floor(*number) || *number > kFlutesMax) return false;
+    tool.flutes = static_cast<int>(*number);
+  } else if (name == "flute") {
     tool.flute_mm = *number;
   } else if (name == "shank") {
     tool.shank_radius_mm = 0.5 * *number;
@@ -92,7 +97,7 @@ Result<MillTool> ParseTool(std::string_view text) {
   const Error wrong = InvalidArgument(
       "'" + std::string(text) +
       "' is no tool: write flat:3, ball:3, vee:6:60 or vee:6:60:0.2, and what is above it as in "
-      "flat:3:flute=12:shank=6:holder=20@25");
+      "flat:3:flutes=2:flute=12:shank=6:holder=20@25");
   const std::size_t named = text.find('=');
   const std::size_t end = named == std::string_view::npos ? text.size() : text.rfind(':', named);
   const std::size_t colon = text.find(':');

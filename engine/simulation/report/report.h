@@ -261,6 +261,19 @@ struct TargetFigures {
 };
 
 // What a mill took off a block, when it was told of block and tool. motion.md 8.2, 9.
+// What the edges of a mill took off, beside what is usual for tool and material. Passes in material
+// alone.
+struct ChipFigures {
+  double thick_percent = 0.0;  // greatest chip load, of the most that is usual
+  machine::Place thick_place;
+  double thin_percent = 0.0;  // how much the least one is below the least that is usual
+  machine::Place thin_place;
+  double speed_percent = 0.0;  // greatest speed of an edge, of the most that is usual
+  machine::Place speed_place;
+
+  bool operator==(const ChipFigures&) const = default;
+};
+
 struct MillingFigures {
   double removed_mm3 = 0.0;
   std::uint64_t gouges = 0;     // motions at travel speed through material
@@ -277,6 +290,7 @@ struct MillingFigures {
   double shank_depth_mm = 0.0;            // deepest that shank or holder went into material
   machine::Place shank_place;             // where that was
   std::optional<TargetFigures> target{};  // nothing: there is none
+  std::optional<ChipFigures> chips{};     // nothing: the material is not told
 
   bool operator==(const MillingFigures&) const = default;
 };

@@ -31,6 +31,11 @@ Measured PassShare(const RunReport& r) {
   if (!r.milling || !(r.milling->tool_diameter_mm > 0.0)) return {};
   return {100.0 * r.milling->deepest_pass_mm / r.milling->tool_diameter_mm, r.milling->pass_place};
 }
+template <double ChipFigures::*kPercent, machine::Place ChipFigures::*kPlace>
+Measured OfChips(const RunReport& r) {
+  if (!r.milling || !r.milling->chips) return {};
+  return {*r.milling->chips.*kPercent, *r.milling->chips.*kPlace};
+}
 Measured TargetDeep(const RunReport& r) {
   if (!r.milling || !r.milling->target) return {};
   const TargetFigures& target = *r.milling->target;
@@ -49,6 +54,8 @@ Measured TravelLeft(const RunReport& r) {
 
 constexpr double kThroughTheBlock_mm = 1.0;  // deeper than a cut that is to go through
 constexpr double kRounding_mm = 0.01;
+constexpr double kTwiceUsual_percent = 200.0;
+constexpr double kHalfUsual_percent = 50.0;
 constexpr double kPassShare_percent = 100.1;  // once its diameter, and the rounding of heights
 
 // clang-format off
@@ -60,6 +67,9 @@ constexpr std::array kRules = {
     MeasuredRule{{{ErrorCode::kCellBlockUntouched, "block_untouched", 0.0, Verdict::kDoubtful, "the tool takes nothing off the block"}, "", "1 when nothing is taken off the block that was given"}, BlockUntouched},
     MeasuredRule{{{ErrorCode::kCellShankInMaterial, "shank_depth", kRounding_mm, Verdict::kBad, "shank or holder goes # mm into material"}, "mm", "how deep shank or holder of the tool goes into the block that was given"}, ShankDepth},
     MeasuredRule{{{ErrorCode::kCellDeepPass, "pass_share", kPassShare_percent, Verdict::kDoubtful, "one pass is as deep as # % of the width of the tool"}, "%", "most that one motion across takes off in depth, by the diameter of the tool"}, PassShare},
+    MeasuredRule{{{ErrorCode::kCellChipThick, "chip_thick", kTwiceUsual_percent, Verdict::kDoubtful, "an edge takes off # % of the most that is usual"}, "%", "greatest chip load, by the most that is usual for tool and material"}, OfChips<&ChipFigures::thick_percent, &ChipFigures::thick_place>},
+    MeasuredRule{{{ErrorCode::kCellChipThin, "chip_thin", kHalfUsual_percent, Verdict::kDoubtful, "an edge takes off # % less than the least that is usual"}, "%", "how far the least chip load is below the least that is usual"}, OfChips<&ChipFigures::thin_percent, &ChipFigures::thin_place>},
+    MeasuredRule{{{ErrorCode::kCellEdgeFast, "edge_speed", kTwiceUsual_percent, Verdict::kDoubtful, "an edge goes at # % of the greatest speed that is usual"}, "%", "greatest speed of an edge, by the greatest that is usual for the material"}, OfChips<&ChipFigures::speed_percent, &ChipFigures::speed_place>},
     MeasuredRule{{{ErrorCode::kCellTargetGouged, "target_deep", 0.0, Verdict::kBad, "the part is cut # mm below its target"}, "mm", "deepest of what is missing below the target, when that is above the tolerance"}, TargetDeep},
     MeasuredRule{{{ErrorCode::kCellTargetLeft, "target_left", 0.0, Verdict::kDoubtful, "# mm stand above the target"}, "mm", "highest of what stands above the target, when that is above the tolerance"}, TargetLeft},
 };
@@ -93,7 +103,7 @@ void AddFamilyRules(const machine::MachineFamily& family, std::span<const machin
   for (const machine::VerdictRule& rule : family.verdict_rules()) {
     const auto figure = std::ranges::find(figures, rule.figure, &machine::Figure::name);
     if (figure != figures.end() && figure->value > rule.limit && !Told(judgement, rule))
-      judgement.Add(machine::ReasonOf(rule, *figure));
+      judgement.Add(machine::ReasonOf(rule, *figure, figures));
   }
 }
 

@@ -188,9 +188,9 @@ TEST(Profile, ReadsEveryNumber) {
   machine::Parameters parameters = ParametersOf("t1");
   double value = 11.0;  // 11, 12, 13: none like another
   for (const char* name :
-       {"X_MAX", "Y_MAX", "ORIGIN_X", "ORIGIN_Y", "Z2", "XY_SPEED_MAX", "Z_SPEED_MAX",
-        "TRAVEL_SPEED", "ACCELERATION", "SPEED_JUMP", "SPINDLE_MIN", "SPINDLE_MAX", "SPINDLE_STEP",
-        "SPIN_UP", "SPIN_DOWN", "A_SPEED", "A_ACCELERATION"}) {
+       {"X_MAX", "Y_MAX", "ORIGIN_X", "ORIGIN_Y", "Z2", "CLAMP_HEIGHT", "XY_SPEED_MAX",
+        "Z_SPEED_MAX", "TRAVEL_SPEED", "ACCELERATION", "SPEED_JUMP", "SPINDLE_MIN", "SPINDLE_MAX",
+        "SPINDLE_STEP", "SPIN_UP", "SPIN_DOWN", "A_SPEED", "A_ACCELERATION"}) {
     ASSERT_TRUE(parameters.Set(name, value++).ok()) << name;
   }
   for (const auto& [name, number] : {std::pair("X_MIN", -1.0),
@@ -214,6 +214,7 @@ TEST(Profile, ReadsEveryNumber) {
                          p.origin_x / 40,
                          p.origin_y / 40,
                          p.z2 / 40,
+                         p.clamps_height / 40,
                          p.xy_speeds.maximum_mm_s,
                          p.z_speeds.maximum_mm_s,
                          p.travel_speed,
@@ -273,6 +274,7 @@ TEST(Profile, ParametersHaveTheirRanges) {
                                {"Z0", -1e4, 0},
                                {"Z1", -1e4, 0},
                                {"Z2", 0, 1e4},
+                               {"CLAMP_HEIGHT", 0, 1e4},
                                {"XY_SPEED_MIN", 0.01, 1e4},
                                {"XY_SPEED_MAX", 0.01, 1e4},
                                {"XY_SPEED", 0.01, 1e4},

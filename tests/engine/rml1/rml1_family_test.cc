@@ -59,6 +59,14 @@ TEST(Rml1Family, ListsItsFigures) {
   TestRun older(parameters, "!1;!0;");
   older.AdvanceToEnd();
   collect(older->figures());
+  // Feed rates and a spindle speed that T1A does not have, and a lift of 0.4 mm; work of 200 mm on
+  // an MDX-15, which would be 80 mm long on a machine with 100 units in a millimetre.
+  TestRun limited(ParametersOf("t1a"), "!RC20000;VS90;!PZ-100,40;PU100,100;PD200,100;");
+  limited.AdvanceToEnd();
+  collect(limited->figures());
+  TestRun large(ParametersOf("mdx-15"), "VS10;!PZ-100,200;PD8000,100;");
+  large.AdvanceToEnd();
+  collect(large->figures());
   std::set<std::string> never;
   for (const auto& [name, unit] : listed) {
     if (!given.contains(name)) never.insert(name);

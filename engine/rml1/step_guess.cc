@@ -1,0 +1,44 @@
+#include "engine/rml1/step_guess.h"
+
+namespace rmlcell::rml1 {
+namespace {
+
+constexpr double kCoarse = 40.0;       // MODELA MDX-15 and MDX-20, and machines before them
+constexpr double kFine = 100.0;        // every later one
+constexpr double kTooLarge_mm = 0.01;  // less is rounding
+
+// Real programs for 100 units a millimetre lift by 1 mm and more, those for 40 by 1 or 2 mm: 40 or
+// 80 units. Who lifts by 0.2 to 0.5 mm here may well mean 0.5 to 1.25 mm there.
+constexpr double kLeastLift = 20.0;  // units
+constexpr double kMostLift = 50.0;
+
+// True: it is no larger than the travel when its lengths shrink so.
+bool Shrinks(WorkFit::Axis& axis, const Travel& travel, double units_per_mm, double by) {
+  axis.length *= by;
+  return axis.length <= (travel.high - travel.low) / units_per_mm;
+}
+
+}  // namespace
+
+StepGuess GuessStep(const WorkFit& fit, const CuttingRange& travel, const Extent& programmed_z,
+                    double units_per_mm) {
+  StepGuess guess;
+  const bool too_large =
+      fit.x.over > kTooLarge_mm || fit.y.over > kTooLarge_mm || fit.z.over > kTooLarge_mm;
+  if (units_per_mm == kCoarse && too_large) {
+    guess.work = fit;
+    const double by = kCoarse / kFine;
+    const bool fits = Shrinks(guess.work.x, travel.x, units_per_mm, by) &&
+                      Shrinks(guess.work.y, travel.y, units_per_mm, by) &&
+                      Shrinks(guess.work.z, travel.z, units_per_mm, by);
+    if (fits) guess.fits_at = kFine;
+  }
+  const bool low = programmed_z.high >= kLeastLift && programmed_z.high <= kMostLift;
+  if (units_per_mm == kFine && fit.x.known && low) {
+    guess.lift_mm = programmed_z.high / kFine;
+    guess.lift_there_mm = programmed_z.high / kCoarse;
+  }
+  return guess;
+}
+
+}  // namespace rmlcell::rml1

@@ -1,0 +1,295 @@
+// Verdicts of streams by the rules for mills that need more than a line: steps, speeds, plunges,
+// clamps; and that a fault never makes a verdict better. docs/verdict.md lists the rules.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "engine/families/families.h"
+#include "engine/simulation/run/drive.h"
+#include "engine/simulation/verdict/verdict.h"
+#include "tests/engine/simulation/verdict_text.h"
+
+namespace rmlcell::simulation {
+namespace {
+
+using machine::Verdict;
+
+machine::Judgement CheckOf(const std::string& stream, const std::string& profile = "t1",
+                           const std::map<std::string, std::string>& changed = {}) {
+  const machine::MachineFamily& mill = *families::FindFamily("rml1");
+  const auto parameters = machine::MakeParameters(mill, profile, changed);
+  EXPECT_TRUE(parameters);
+  return JudgeFigures(
+      mill, mill.Translate({.name = "part.rml", .bytes = stream}, *parameters, {}).figures);
+}
+
+std::string TextOfCheck(const std::string& stream, const std::string& profile = "t1") {
+  return TextOf(CheckOf(stream, profile));
+}
+
+// A stroke from the origin to X, 100 units deep; lifts are 200 units.
+std::string StrokeTo(const std::string& x) {
+  return "VS10;!VZ10;!PZ-100,200;!MC1;PU0,0;PD" + x + ",0;PU0,0;!MC0;";
+}
+
+// The MDX-15 has 40 units in a mm and 152.4 mm, 6096 units, in X. Written for 100 units, work is
+// 2.5 times as long here: up to 15240 units it would fit. RML1-1.08
+TEST(MillRules, WorkThatWouldFitWithTheOtherStep) {
+  EXPECT_EQ(TextOfCheck(StrokeTo("6096"), "mdx-15"), "GOOD");
+  EXPECT_EQ(TextOfCheck(StrokeTo("6097"), "mdx-15"),
+            "BAD; RML1-E8002 the work is 0.025 mm longer in X than the travel: wherever its origin "
+            "is, it does not fit; RML1-E8002 0.025 mm of the work lie beyond the travel and are "
+            "not cut @6; RML1-E8016 it may be written for 100 units per mm: the work would be "
+            "60.97 x 0 x 1 mm there, and would fit");
+  const auto guesses = [](const std::string& x, const std::string& profile) {
+    return TextOfCheck(StrokeTo(x), profile).find("RML1-E8016") != std::string::npos;
+  };
+  EXPECT_TRUE(guesses("15240", "mdx-15"));
+  EXPECT_FALSE(guesses("15241", "mdx-15"));
+  // Where it is already 100, or where only the origin is wrong, there is nothing to guess.
+  EXPECT_FALSE(guesses("20400", "t1"));
+  EXPECT_FALSE(guesses("-400", "mdx-15"));
+}
+
+// 50 units are a lift of 0.5 mm, or of 1.25 mm on a machine with 40 units.
+TEST(MillRules, LiftsAsLowAsWithTheOtherStep) {
+  const auto lift = [](const std::string& units, const std::string& profile = "t1") {
+    return TextOfCheck("VS10;!VZ10;!PZ-100," + units + ";!MC1;PU100,100;PD200,100;PU0,0;!MC0;",
+                       profile);
+  };
+  EXPECT_EQ(lift("19"), "GOOD");
+  EXPECT_EQ(lift("20"),
+            "DOUBTFUL; RML1-E8016 it may be written for 40 units per mm: the tool rises 0.200 mm "
+            "above the work, which would be 0.5 mm there");
+  EXPECT_EQ(lift("50"),
+            "DOUBTFUL; RML1-E8016 it may be written for 40 units per mm: the tool rises 0.500 mm "
+            "above the work, which would be 1.25 mm there");
+  EXPECT_EQ(lift("51"), "GOOD");
+  EXPECT_EQ(lift("40", "mdx-15"), "GOOD");
+}
+
+// T1 has 0.5 to 60 mm/s. 60.6 is 1 % of 60.6 too fast at most; the plunge of 1 mm goes by !VZ, the
+// stroke of 1 mm by VS.
+TEST(MillRules, FeedRatesThatTheMachineDoesNotHave) {
+  const auto feeds = [](const std::string& setting) {
+    return TextOfCheck(setting + "!PZ-100,200;!MC1;PU100,100;PD200,100;PU0,0;!MC0;");
+  };
+  const std::string said =
+      "DOUBTFUL; RML1-E8003 1.000 mm in the work with feed rates that the machine does not have: ";
+  EXPECT_EQ(feeds("VS60.6;!VZ10;"), "GOOD");
+  EXPECT_EQ(feeds("VS61;!VZ10;"), said + "60 mm/s in place of 61 @6");
+  EXPECT_EQ(feeds("VS0;!VZ10;"), said + "0.5 mm/s in place of 0 @6");
+  EXPECT_EQ(feeds("VS10;!VZ0.1;"), said + "0.5 mm/s in place of 0.1 @6");
+  // The worst one is told: 0.1 is four fifths less than 0.5, 61 a sixtieth more than 60.
+  EXPECT_EQ(feeds("VS61;!VZ0.1;"),
+            "DOUBTFUL; RML1-E8003 2.000 mm in the work with feed rates that the machine does not "
+            "have: 0.5 mm/s in place of 0.1 @6");
+  // What is set anew before the cut, or only lifts, costs nothing; nor does rounding to a step.
+  EXPECT_EQ(feeds("VS61;VS10;!VZ10;"), "GOOD");
+  EXPECT_EQ(feeds("VS10;!VZ0.1;!VZ10;"), "GOOD");
+  EXPECT_EQ(feeds("VS10;!VZ85;").find("RML1-E8003"), std::string::npos);  // a slower plunge
+  EXPECT_EQ(feeds("VS10;V85;Z0,0,500;V10;"), "GOOD");
+  EXPECT_EQ(feeds("VS10.9;!VZ10.9;"), "GOOD");
+  EXPECT_EQ(feeds("VS61;!VZ0.1;DF;VS10;!VZ10;"), "GOOD");
+}
+
+// T1 has 4500 to 15000 rpm; RML1-3C.15 to 3C.20. Plunge and stroke are 2 mm.
+TEST(MillRules, SpindleSpeedsThatTheMachineDoesNotHave) {
+  const auto speed = [](const std::string& rc, const std::string& profile) {
+    return TextOfCheck("!RC" + rc + ";VS10;!VZ10;!PZ-100,200;!MC1;PU100,100;PD200,100;PU0,0;!MC0;",
+                       profile);
+  };
+  const std::string said =
+      "DOUBTFUL; RML1-E8003 2.000 mm in the work with spindle speeds that the machine does not "
+      "have: ";
+  EXPECT_EQ(speed("15000", "t1"), "GOOD");
+  EXPECT_EQ(speed("20000", "t1"), said + "15000 rpm in place of 20000 @7");
+  EXPECT_EQ(speed("4000", "t1"), said + "4500 rpm in place of 4000 @7");
+  EXPECT_EQ(speed("4460", "t1"), "GOOD");                                     // 0.9 % below 4500
+  EXPECT_EQ(speed("15", "t1"), "GOOD");                                       // a stage
+  EXPECT_EQ(speed("12000", "t1s"), said + "15000 rpm in place of 12000 @7");  // the last stage
+  EXPECT_EQ(speed("12000", "t1f"), "GOOD");  // set on the machine, not by command
+  EXPECT_EQ(speed("20000;!RC8000", "t1"), "GOOD");
+}
+
+// Z of T1 goes 60 mm/s at most; the plunge from 2 mm above has 1 mm below the surface.
+TEST(MillRules, PlungesAsFastAsZTravels) {
+  const auto down = [](const std::string& commands) {
+    return TextOfCheck("VS10;" + commands + "PU0,0;!MC0;");
+  };
+  const std::string said = " mm straight down to where the tool cuts, as fast as Z travels @";
+  EXPECT_EQ(down("!VZ60;!PZ-100,200;!MC1;PU100,100;PD200,100;"),
+            "DOUBTFUL; RML1-E8017 1.000" + said + "6");
+  EXPECT_EQ(down("!VZ59;!PZ-100,200;!MC1;PU100,100;PD200,100;"), "GOOD");
+  EXPECT_EQ(down("!VZ60;Z100,100,0;!VZ10;Z100,100,-100;!VZ60;Z100,100,100;"), "GOOD");
+  // Steps down on the way of a cut are part of it, as reliefs have them.
+  EXPECT_EQ(down("V10;!PZ-100,200;!MC1;PU100,100;PD200,100;V60;Z200,100,-150,300,100,-150;"),
+            "GOOD");
+  // A hole: 3 mm at once are too fast; 2 mm and the last one slowly are not.
+  EXPECT_EQ(down("!VZ60;Z100,100,10;Z100,100,-300;Z100,100,100;"),
+            "DOUBTFUL; RML1-E8017 3.000" + said + "4");
+  EXPECT_EQ(down("!VZ60;Z100,100,10;Z100,100,-200;!VZ10;Z100,100,-300;Z100,100,100;"), "GOOD");
+}
+
+// RML1-3A.03, RML1-9.23: Z2 below the surface is refused; at the surface travel has no clearance.
+TEST(MillRules, ToolUpHeightsThatAreNotAboveTheSurface) {
+  const auto up = [](const std::string& z2) {
+    return TextOfCheck("VS10;!VZ10;!PZ-100," + z2 + ";!MC1;PU100,100;PD200,100;PU0,0;!MC0;");
+  };
+  EXPECT_EQ(up("0"),
+            "DOUBTFUL; RML1-E8010 3.650 mm across at travel speed, not above the surface of the "
+            "work @5");
+  EXPECT_EQ(up("-1"),
+            "BAD; RML1-E8008 coordinates or heights that were refused: 1 @3; RML1-E8014 places "
+            "that are no command, or have wrong parameters: 1");
+}
+
+// sqrt(2) mm to the work and sqrt(5) mm from it at 2 mm; between two cuts nobody stands a clamp.
+TEST(MillRules, WaysLowerThanTheClamps) {
+  const auto with_clamps = [](const std::string& mm, const std::string& stream) {
+    return TextOf(CheckOf(stream, "t1", {{"CLAMP_HEIGHT", mm}}));
+  };
+  const std::string low =
+      "VS10;!VZ10;!PZ-100,200;!MC1;PU100,100;PD200,100;PU500,500;PD;PU200,100;PD;PU0,0;!MC0;";
+  EXPECT_EQ(with_clamps("0", low), "GOOD");
+  EXPECT_EQ(with_clamps("2", low), "GOOD");
+  EXPECT_EQ(with_clamps("2.01", low),
+            "DOUBTFUL; RML1-E8018 3.650 mm across to the work or from it, lower than the clamps "
+            "stand @5");
+  const std::string high =
+      "VS10;!VZ10;!PZ-100,200;!MC1;Z100,100,2000;PD200,100;PU;Z200,100,2000,0,0,2000;!MC0;";
+  EXPECT_EQ(with_clamps("20", high), "GOOD");
+  // Sloping from 10 mm down to the surface over 10 mm: half of it lies below 5 mm.
+  const std::string slope = "VS10;!VZ10;!PZ-100,200;!MC1;Z0,0,1000;Z1000,0,0;PD1100,0;PU;!MC0;";
+  EXPECT_EQ(with_clamps("5", slope),
+            "DOUBTFUL; RML1-E8018 7.071 mm across to the work or from it, lower than the clamps "
+            "stand @6");
+}
+
+// An orderly program of random strokes on T1: what stands in each list is one command.
+std::vector<std::string> RandomProgram(std::mt19937& random) {
+  const auto number = [&](int low, int high) {
+    return std::to_string(low + static_cast<int>(random() % static_cast<unsigned>(high - low)));
+  };
+  const auto place = [&] { return number(0, 20000) + "," + number(0, 15000); };
+  std::vector<std::string> program = {"VS" + number(1, 50), "!VZ" + number(1, 50),
+                                      "!PZ-" + number(10, 2000) + "," + number(60, 1500), "!MC1"};
+  const int parts = 2 + static_cast<int>(random() % 5U);
+  for (int part = 0; part < parts; ++part) {
+    const std::string start = place();
+    program.push_back("PU" + start);
+    if (random() % 2U == 0) {
+      program.push_back("PD" + place());
+      program.push_back("PA" + place());  // at the height of the tool
+    } else {
+      program.push_back("Z" + start + ",-" + number(1, 4000));
+      program.push_back("Z" + place() + ",-" + number(1, 4000));
+      program.push_back("PU");
+    }
+  }
+  // One of each way of cutting at least, so that every setting matters.
+  for (const std::string command : {"PU0,0", "PD5000,5000", "PU500,0", "Z500,0,-50", "PU0,0"})
+    program.push_back(command);
+  program.push_back("!MC0");
+  return program;
+}
+
+std::string Joined(const std::vector<std::string>& program) {
+  std::string stream;
+  for (const std::string& command : program) stream += command + ";";
+  return stream;
+}
+
+void Replace(std::vector<std::string>& program, std::string_view begins, const std::string& by) {
+  for (std::string& command : program) {
+    if (command.starts_with(begins)) command = by;
+  }
+}
+
+// Each fault with the least verdict that it has, on a program that was GOOD.
+struct Fault {
+  const char* name;
+  Verdict least;
+  void (*put)(std::vector<std::string>&);
+};
+constexpr Fault kFaults[] = {
+    {"no feed in X and Y", Verdict::kDoubtful, [](auto& p) { Replace(p, "VS", ""); }},
+    {"no feed in Z", Verdict::kDoubtful, [](auto& p) { Replace(p, "!VZ", ""); }},
+    {"lifts to the surface", Verdict::kDoubtful, [](auto& p) { Replace(p, "!PZ", "!PZ-100,0"); }},
+    {"no spindle", Verdict::kBad, [](auto& p) { Replace(p, "!MC1", "!MC0"); }},
+    {"beyond the travel", Verdict::kBad, [](auto& p) { Replace(p, "PD5000", "PD5000,30000"); }},
+    {"a feed that there is not", Verdict::kDoubtful,
+     [](auto& p) { p.insert(p.begin() + 2, "VS90"); }},
+    {"no tail", Verdict::kDoubtful, [](auto& p) { p.resize(p.size() - 2); }},
+};
+
+TEST(MillRules, AFaultNeverMakesAVerdictBetter) {
+  std::mt19937 random(20);
+  for (int round = 0; round < 60; ++round) {
+    const std::vector<std::string> orderly = RandomProgram(random);
+    ASSERT_EQ(TextOfCheck(Joined(orderly)), "GOOD") << Joined(orderly);
+    std::vector<Fault> faults(std::begin(kFaults), std::end(kFaults));
+    std::shuffle(faults.begin(), faults.end(), random);
+    std::vector<std::string> faulty = orderly;
+    Verdict before = Verdict::kGood;
+    for (const Fault& fault : faults) {
+      std::vector<std::string> alone = orderly;
+      fault.put(alone);
+      EXPECT_GE(CheckOf(Joined(alone)).verdict, fault.least) << fault.name << Joined(alone);
+      fault.put(faulty);
+      const Verdict now = CheckOf(Joined(faulty)).verdict;
+      EXPECT_GE(now, before) << fault.name << Joined(faulty);
+      before = now;
+    }
+    EXPECT_EQ(before, Verdict::kBad);
+  }
+}
+
+// Travel speed never leads down: RML1-9.28, RML1-9.44, RML1-9.53. So a plunge into the work at the
+// travel speed of the machine is none that a stream can ask for; only by its own speed of Z.
+class FastWaysDown final : public machine::RunObserver {
+ public:
+  void OnMotion(const machine::MotionDone& done) override {
+    if (done.programmed_mm_s > 0.0) return;
+    ++rapid;
+    const motion::PathPiece& path = done.motion->path;
+    if (path.At(done.travelled).point.z() < path.At(done.from).point.z() - 1e-9) ++down;
+  }
+  int rapid = 0;
+  int down = 0;
+};
+
+TEST(MillRules, TravelSpeedNeverLeadsDown) {
+  std::mt19937 random(21);
+  FastWaysDown ways;
+  for (int round = 0; round < 40; ++round) {
+    std::vector<std::string> program = RandomProgram(random);
+    for (const char* command :
+         {"PU30000,100", "PD", "PA100,100", "H", "Z-500,90,-900,400,90,-900", "!ZO-500", "PU50,50",
+          "!ZM-3000", "IN", "@-50,0", "M-40,-40,90,90"}) {
+      const auto at = static_cast<std::ptrdiff_t>(random() % program.size());
+      program.insert(program.begin() + at, command);
+    }
+    machine::RunSetup setup(*machine::MakeParameters(*families::FindFamily("rml1"), "t1", {}));
+    setup.main_program = 1;
+    setup.programs[1].object = std::make_shared<const std::string>(Joined(program));
+    setup.forecast = true;
+    auto run = families::FindFamily("rml1")->NewRun(std::move(setup), ways);
+    ASSERT_TRUE(run);
+    Drive drive(**run, {});
+    while (drive.Step(std::chrono::hours(1)) == machine::RunPhase::kRunning) {
+    }
+    EXPECT_TRUE(drive.finished());
+  }
+  EXPECT_GT(ways.rapid, 100);
+  EXPECT_EQ(ways.down, 0);
+}
+
+}  // namespace
+}  // namespace rmlcell::simulation
