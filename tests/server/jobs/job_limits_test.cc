@@ -248,6 +248,43 @@ TEST_F(JobLimits, OfSlots) {
     EXPECT_EQ(asked(0, {slot}), ErrorCode::kProgramNumber) << slot;
 }
 
+// milling.proto: each message says which field is wrong.
+TEST_F(JobLimits, OfMillings) {
+  const auto asked = [&](const std::string& machine,
+                         const std::function<void(v1::Milling&)>& change) {
+    v1::SubmitJobRequest request = Simulate();
+    request.mutable_job()->set_machine(machine);
+    request.mutable_job()->mutable_inline_program()->set_file_name("part");
+    request.mutable_job()->mutable_inline_program()->set_content("PA;");
+    v1::Milling& milling = *request.mutable_job()->mutable_simulation()->mutable_milling();
+    milling.mutable_stock()->set_size_x_mm(60.0);
+    milling.mutable_stock()->set_size_y_mm(30.0);
+    milling.mutable_stock()->set_size_z_mm(5.0);
+    milling.mutable_tool()->set_shape(v1::MillTool::SHAPE_FLAT);
+    milling.mutable_tool()->set_diameter_mm(3.0);
+    change(milling);
+    request.set_validate_only(true);
+    const Result<v1::Job> job = Submit(request);
+    if (job) return std::string();
+    EXPECT_EQ(job.error().code, kInvalid);
+    return job.error().detail;
+  };
+  using testing::StartsWith;
+  const std::string mill = "machines/mill-1";
+  EXPECT_EQ(asked(mill, [](v1::Milling&) {}), "");
+  EXPECT_THAT(asked("machines/optimo-1", [](v1::Milling&) {}),
+              StartsWith("job.simulation.milling is for mills"));
+  EXPECT_THAT(asked(mill, [](v1::Milling& m) { m.mutable_tool()->set_diameter_mm(0.0); }),
+              StartsWith("job.simulation.milling.tool: the radius"));
+  EXPECT_THAT(asked(mill, [](v1::Milling& m) { m.clear_stock(); }),
+              StartsWith("job.simulation.milling.stock is missing"));
+  // 6000 by 3000 cells of 0.01 mm are 18 million; of 0.005 mm 72 million, more than 67,108,864.
+  EXPECT_EQ(asked(mill, [](v1::Milling& m) { m.set_cell_mm(0.01); }), "");
+  EXPECT_THAT(asked(mill, [](v1::Milling& m) { m.set_cell_mm(0.005); }),
+              testing::AllOf(StartsWith("job.simulation.milling.stock: "),
+                             testing::HasSubstr("make the cells larger")));
+}
+
 // limits.program_bytes for the program and for each further one.
 TEST_F(JobLimits, OfProgramBytes) {
   config.limit_program_bytes = 100;
