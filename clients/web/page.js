@@ -271,8 +271,9 @@ function makeRow() {
     where: element("div", { className: "sub" }),
   };
   row.barLine = element("div", { className: "progress" }, row.bar, row.percent);
-  row.tr.append(element("td", {}, row.title, row.sub), row.machine, element("td", {}, row.chip), row.outcome,
-    element("td", {}, row.time, row.took), element("td", {}, row.look, row.results));
+  const job = element("div", { className: "job" }, row.look, element("div", {}, row.title, row.sub));
+  row.tr.append(element("td", {}, job), row.machine, element("td", {}, row.chip), row.outcome,
+    element("td", {}, row.time, row.took), element("td", {}, row.results));
   return row;
 }
 
@@ -364,7 +365,7 @@ function drawLook(row, job, artifacts) {
   const shown = artifacts.find((one) => one.name === "relief.png") ?? artifacts.find((one) => one.name === "picture.svg");
   if (!shown) return row.look.replaceChildren();
   const text = `${productWord(shown.name)} of job ${lastPart(job.name)}`;
-  const image = element("img", { loading: "lazy", decoding: "async", width: 96, height: 72, alt: text });
+  const image = element("img", { loading: "lazy", width: 96, height: 64, alt: text });
   image.addEventListener("error", () => row.look.replaceChildren());
   image.src = shown.urlPath;
   row.look.replaceChildren(element("a", { href: shown.urlPath, target: "_blank", rel: "noopener", title: text }, image));
