@@ -344,6 +344,9 @@ void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exi
       ->check(CLI::Range(0.0, 1000.0));
   verb->add_option("--inputs", given.submit.inputs_file, "inputs and keys over time");
   AddJobMillingOptions(*verb, given.submit.milling);
+  verb->add_option("--project", given.submit.milling_project,
+                   "block and tool of the same slot's program in this project")
+      ->excludes("--stock");
   verb->add_flag("--trace", given.submit.trace, "keep a trace");
   CLI::Option* watched = verb->add_flag("--watch", given.submit.watch, "watch the job to its end");
   verb->add_flag("--strict", given.submit.strict, kStrictText)->needs(watched);

@@ -47,6 +47,7 @@ struct SubmitRequest {
   double override_percent = 0.0;
   double pace = 0.0;  // virtual seconds a real second; 0: as fast as possible
   JobMillingOptions milling;
+  std::string milling_project;  // whose block and tool count; empty: none
   bool trace = false;
   bool watch = false;
   bool strict = false;  // with watch: a DOUBTFUL verdict is an exit code of 1, too

@@ -167,6 +167,8 @@ int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
   options.set_override_percent(wanted.override_percent);
   options.set_pace(wanted.pace);
   options.set_trace(wanted.trace);
+  if (!wanted.milling_project.empty())
+    options.set_milling_project(FullName("projects", wanted.milling_project));
   if (!wanted.milling.block.stock.empty()) {
     if (Status set = SetMilling(wanted.milling, *options.mutable_milling()); !set)
       return Refuse(set.error());

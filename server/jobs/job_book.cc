@@ -9,13 +9,13 @@
 #include "engine/families/families.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/files.h"
-#include "proto/bridge/milling.h"
 #include "proto/bridge/setup.h"
 #include "proto/bridge/sha256.h"
 #include "server/base/config.h"
 #include "server/base/names.h"
 #include "server/base/readable.h"
 #include "server/jobs/job_filter.h"
+#include "server/jobs/job_milling.h"
 #include "server/records/file_family.h"
 #include "server/records/job_messages.h"
 #include "server/records/program_place.h"
@@ -120,17 +120,6 @@ Status CheckVariables(const v1::SimulationOptions& options, const machine::Machi
                            Readable(name));
   }
   return {};
-}
-
-// Only where a tool takes material off a block.
-Status CheckMilling(const v1::SimulationOptions& options, const machine::MachineFamily& family,
-                    const machine::Parameters& parameters) {
-  if (!options.has_milling()) return {};
-  if (!family.Shape(parameters).has_work_origin) {
-    return InvalidArgument("job.simulation.milling is for mills: this machine removes no material");
-  }
-  const auto milling = bridge::FromProto(options.milling());
-  return milling ? Status() : InvalidArgument("job.simulation.milling." + milling.error().detail);
 }
 
 // Two requests of one request_id must ask for the same: by this alone a submission is acknowledged
@@ -242,7 +231,8 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
   if (!parameters) return parameters.error();
   if (Status good = CheckVariables(job.simulation(), family, *parameters); !good)
     return good.error();
-  if (Status good = CheckMilling(job.simulation(), family, *parameters); !good) return good.error();
+  if (Status good = SettleMilling(store_, family.Shape(*parameters), specification); !good)
+    return good.error();
   std::set<int> further;
   for (v1::SlotProgram& program : *specification.mutable_simulation()->mutable_programs()) {
     const std::string what = "job.simulation.programs of slot " + std::to_string(program.slot());

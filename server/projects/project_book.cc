@@ -10,6 +10,7 @@
 #include "engine/core/units.h"
 #include "engine/families/families.h"
 #include "proto/bridge/findings.h"
+#include "proto/bridge/milling.h"
 #include "proto/bridge/setup.h"
 #include "server/base/names.h"
 #include "server/base/readable.h"
@@ -55,6 +56,9 @@ Status CheckParts(const v1::Project& project) {
       return Error{ErrorCode::kProjectSource, "the program of slot " + slot + " has no source", {}};
     }
     if (Status good = CheckUnits(program); !good) return good;
+    if (!program.has_milling()) continue;
+    if (const auto sound = bridge::FromProto(program.milling()); !sound)
+      return InvalidArgument("program " + slot + ": milling." + sound.error().detail);
   }
   std::set<int> schedules;
   for (const v1::ProjectLaserSchedule& schedule : project.laser_schedules()) {

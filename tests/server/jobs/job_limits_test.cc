@@ -8,6 +8,7 @@
 #include <future>
 #include <limits>
 
+#include "rmlcell/v1/project.pb.h"
 #include "server/base/config.h"
 #include "server/base/names.h"
 #include "server/jobs/job_book.h"
@@ -283,6 +284,52 @@ TEST_F(JobLimits, OfMillings) {
   EXPECT_THAT(asked(mill, [](v1::Milling& m) { m.set_cell_mm(0.005); }),
               testing::AllOf(StartsWith("job.simulation.milling.stock: "),
                              testing::HasSubstr("make the cells larger")));
+}
+
+// SimulationOptions.milling_project: block and tool of the program of the same slot, as they are
+// now; those of the job itself come first.
+TEST_F(JobLimits, AProjectHasBlockAndToolOfItsPrograms) {
+  v1::Project project;
+  for (const int slot : {7, 8}) {
+    v1::ProjectProgram& program = *project.add_programs();
+    program.set_slot(slot);
+    if (slot == 8) continue;
+    v1::Milling& milling = *program.mutable_milling();
+    milling.mutable_stock()->set_size_x_mm(60.0);
+    milling.mutable_stock()->set_size_y_mm(30.0);
+    milling.mutable_stock()->set_size_z_mm(5.0);
+    milling.mutable_tool()->set_shape(v1::MillTool::SHAPE_BALL);
+    milling.mutable_tool()->set_diameter_mm(3.0);
+    milling.set_relief(true);
+  }
+  Must(bed.store().PutProject({.id = "coaster", .body = project.SerializeAsString()}, 0));
+  v1::SubmitJobRequest request = Simulate();
+  v1::Job& job = *request.mutable_job();
+  job.set_machine("machines/mill-1");
+  job.mutable_inline_program()->set_file_name("part");
+  job.mutable_inline_program()->set_content("PA;");
+  job.set_inline_slot(7);
+  job.mutable_simulation()->set_milling_project("projects/coaster");
+  const v1::Job made = Must(book.Get(Must(Submit(request)).name()));
+  EXPECT_EQ(made.simulation().milling().SerializeAsString(),
+            project.programs(0).milling().SerializeAsString());
+  job.set_inline_slot(8);  // its program has none
+  EXPECT_EQ(CodeOf(Submit(request)), ErrorCode::kCellNotFound);
+  job.set_inline_slot(9);  // there is no such program
+  EXPECT_EQ(CodeOf(Submit(request)), ErrorCode::kCellNotFound);
+  *job.mutable_simulation()->mutable_milling() = project.programs(0).milling();
+  job.mutable_simulation()->mutable_milling()->set_cell_mm(0.5);
+  EXPECT_EQ(Must(book.Get(Must(Submit(request)).name())).simulation().milling().cell_mm(), 0.5);
+  job.mutable_simulation()->clear_milling();
+  job.set_inline_slot(7);
+  for (const auto& [name, code] :
+       {std::pair("projects/other", ErrorCode::kCellNotFound), std::pair("coaster", kInvalid)}) {
+    job.mutable_simulation()->set_milling_project(name);
+    EXPECT_EQ(CodeOf(Submit(request)), code) << name;
+  }
+  job.set_machine("machines/optimo-1");
+  job.mutable_simulation()->set_milling_project("projects/coaster");
+  EXPECT_EQ(CodeOf(Submit(request)), kInvalid);  // removes no material
 }
 
 // limits.program_bytes for the program and for each further one.
