@@ -141,7 +141,7 @@ _rmlcell_values() {
       compopt -o nospace 2>/dev/null
       _rmlcell_offer speed power axes speed,power,axes ;;
     --inputs | --toolpath | --state-in | --state-out | --output | -o) _rmlcell_files ;;
-    --products) _rmlcell_offer relief height-map stl relief,stl relief,height-map,stl ;;
+    --products) _rmlcell_offer relief height-map stl ;;
     --project) _rmlcell_projects ;;
     --slot) [[ $verb == submit && -n ${given[0]:-} ]] && _rmlcell_slots "${given[0]}" ;;
   esac

@@ -314,6 +314,11 @@ class Jobs(Material):
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("job.simulation.milling is for mills", done.stderr)
 
+    def ended(self, stub, job):
+        name = submit(stub, job).name
+        wait_for_end(stub, name)
+        return stub.GetJob(job_pb2.GetJobRequest(name=name))
+
     # 5000 by 5000 cells of 4 bytes are 100 MB. The job ends, and its worker takes the next one.
     def test_a_block_beyond_the_memory_of_the_job(self):
         stub = self.cell.jobs()
@@ -326,11 +331,11 @@ class Jobs(Material):
         milling.cell_mm = 0.01
         wanted.budget.memory_bytes = 64 << 20
         workers = sorted(self.cell.worker_processes())
-        ended = wait_for_end(stub, submit(stub, wanted).name)
+        ended = self.ended(stub, wanted)
         self.assertEqual((ended.state, ended.outcome.code), (job_pb2.Job.STATE_FAILED, "CELL-E9302"))
         self.assertEqual(sorted(self.cell.worker_processes()), workers)
         milling.cell_mm = 0.2
-        self.assertEqual(wait_for_end(stub, submit(stub, wanted).name).state, job_pb2.Job.STATE_SUCCEEDED)
+        self.assertEqual(self.ended(stub, wanted).state, job_pb2.Job.STATE_SUCCEEDED)
 
     # Block and tool of the project's program of the same slot; the job keeps them when the project changes.
     def test_a_project_has_block_and_tool(self):
