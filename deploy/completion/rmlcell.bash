@@ -40,7 +40,7 @@ _rmlcell_slots() { _rmlcell_offer $(_rmlcell_ask programs "$1"); }
 _rmlcell_jobs() { _rmlcell_offer $(_rmlcell_ask jobs --limit 50 ${1:+--filter "$1"}); }
 _rmlcell_artifacts() {
   _rmlcell_offer $(RMLCELL_SERVER=${server:-${RMLCELL_SERVER:-}} timeout 1 "${COMP_WORDS[0]}" job "$1" 2>/dev/null |
-    sed -n 's/^product *\\([^ ]*\\).*/\\1/p')
+    sed -n 's/^product *\([^ ]*\).*/\1/p')
 }
 
 # Codes and symbols of the catalogue: OPT-E348, HOLE_RADIUS_ZERO.
