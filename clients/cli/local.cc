@@ -348,7 +348,7 @@ int Simulate(const SimulateOptions& options) {
     request.products.plot = true;
     request.plot.curves = *std::move(curves);
   }
-  if (!options.milling.stock.empty()) {
+  if (!options.milling.block.stock.empty()) {
     Result<simulation::Milling> milling =
         MillingOf(options.milling, loaded->family->Shape(outcome->setup->parameters), memory);
     if (!milling) return Refuse(milling.error());

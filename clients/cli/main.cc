@@ -208,7 +208,7 @@ void AddLocalVerbs(CLI::App& app, int& exit_code) {
 
 // What the verbs of a server are given on the command line; each uses its own.
 struct RemoteArguments {
-  std::string machine, project, job;
+  std::string machine, project, job, artifact;
   std::string file, form, output, etag, filter;
   int slot = 0;
   int limit = 20;
@@ -340,6 +340,7 @@ void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exi
       "  rmlcell submit mill-1 --slot 7 --watch         a stored program, watched live\n"
       "  rmlcell submit optimo-1 part.S --watch         a file, without storing it\n"
       "  rmlcell submit optimo-1 part.S --pace 1 --watch   as fast as the machine would be\n"
+      "  rmlcell submit mill-1 part.rml --stock 100x80x10 --tool flat:3   what is left, as a picture\n"
       "  rmlcell submit optimo-1 part.S --kind check    only what is wrong with it",
       remote);
   verb->add_option("MACHINE", given.submit.machine)->required();
@@ -356,6 +357,10 @@ void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exi
                    "1: as fast as the machine would be; 10: ten times; 0: at once")
       ->check(CLI::Range(0.0, 1000.0));
   verb->add_option("--inputs", given.submit.inputs_file, "inputs and keys over time");
+  AddJobMillingOptions(*verb, given.submit.milling);
+  verb->add_option("--project", given.submit.milling_project,
+                   "block and tool of the same slot's program in this project")
+      ->excludes("--stock");
   verb->add_flag("--trace", given.submit.trace, "keep a trace");
   CLI::Option* watched = verb->add_flag("--watch", given.submit.watch, "watch the job to its end");
   verb->add_flag("--strict", given.submit.strict, kStrictText)->needs(watched);
@@ -389,6 +394,9 @@ void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exi
   CLI::App* cancel = RemoteVerb(app, "cancel", "Cancel a job", "  rmlcell cancel 17", remote);
   cancel->add_option("JOB", given.job)->required();
   cancel->callback([&] { exit_code = CancelJob(remote, given.job); });
+}
+
+void AddProductVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exit_code) {
   CLI::App* report = RemoteVerb(app, "report", "Show the report of a job",
                                 "  rmlcell report 17\n"
                                 "  rmlcell report 17 --json",
@@ -401,6 +409,17 @@ void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exi
   picture->add_option("JOB", given.job)->required();
   picture->add_option("-o,--output", given.output, "file; default: standard output");
   picture->callback([&] { exit_code = JobPicture(remote, given.job, given.output); });
+  CLI::App* artifact =
+      RemoteVerb(app, "artifact", "Get a product of a job, as it is kept",
+                 "  rmlcell job 17                                 which there are\n"
+                 "  rmlcell artifact 17 relief.png -o part.png     what a mill left\n"
+                 "  rmlcell artifact 17 left.stl -o part.stl       the same as a body",
+                 remote);
+  artifact->add_option("JOB", given.job)->required();
+  artifact->add_option("NAME", given.artifact)->required();
+  artifact->add_option("-o,--output", given.output, "file; default: standard output");
+  artifact->callback(
+      [&] { exit_code = JobArtifact(remote, given.job, given.artifact, given.output); });
 }
 
 }  // namespace
@@ -424,6 +443,7 @@ int main(int argc, char** argv) {
   AddProgramVerbs(app, remote, given, exit_code);
   AddProjectVerbs(app, remote, given, exit_code);
   AddJobVerbs(app, remote, given, exit_code);
+  AddProductVerbs(app, remote, given, exit_code);
   const auto named = [&](CLI::App* verb) { return argc > 1 && verb->get_name() == argv[1]; };
   if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(named).empty()) {
     Complain("there is no verb '" + std::string(argv[1]) + "'; rmlcell --help lists them");

@@ -96,11 +96,11 @@ Result<simulation::Milling> MillingOf(const MillingOptions& options,
                                       const simulation::ProgramMemory& machine) {
   if (!shape.has_work_origin)
     return InvalidArgument("--stock is for mills: this machine removes no material");
-  Result<simulation::Stock> stock = simulation::ParseStock(options.stock);
+  Result<simulation::Stock> stock = simulation::ParseStock(options.block.stock);
   if (!stock) return stock.error();
-  Result<simulation::MillTool> tool = simulation::ParseTool(options.tool);
+  Result<simulation::MillTool> tool = simulation::ParseTool(options.block.tool);
   if (!tool) return tool.error();
-  stock->cell = options.cell_mm;
+  stock->cell = options.block.cell_mm;
   simulation::Milling milling{.stock = *stock, .tool = *tool, .rpm = options.rpm};
   if (!options.material.empty()) {
     const auto chips = simulation::ChipsOf(options.material, 2.0 * tool->radius_mm);

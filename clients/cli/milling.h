@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/machine/shape.h"
 #include "engine/simulation/material/milling_recorder.h"
@@ -11,13 +12,17 @@ namespace CLI {
 class App;
 }
 
-// Block and tool of `simulate`, and the files that show what is left.
+// Block and tool of `simulate` and `submit`, and the files that show what is left.
 namespace rmlcell::cli {
 
-struct MillingOptions {
+struct BlockOptions {
   std::string stock;  // "100x80x10"; empty: material is not modelled
   std::string tool;   // "flat:3"
   double cell_mm = 0.1;
+};
+
+struct MillingOptions {
+  BlockOptions block;
   std::string material;  // "wax"; empty: chip loads are not judged
   double rpm = 0.0;      // of a spindle that is set by hand; 0: as the program says
   std::string stl;       // file; empty: none
@@ -29,7 +34,15 @@ struct MillingOptions {
   std::string target_png;  // file; empty: none
 };
 
+// What a job leaves of its block: names that `submit` takes.
+struct JobMillingOptions {
+  BlockOptions block;
+  std::vector<std::string> products = {"relief"};  // "relief", "height-map", "stl"
+  double stl_tolerance_mm = 0.01;
+};
+
 // On the command line of a verb. `options` must outlive it.
+void AddJobMillingOptions(CLI::App& verb, JobMillingOptions& options);
 void AddMillingOptions(CLI::App& verb, MillingOptions& options);
 
 // `machine`: on whose table the block is; a target that is a program runs on it, too. Errors:

@@ -3,8 +3,10 @@
 #include "clients/cli/milling.h"
 
 namespace rmlcell::cli {
+namespace {
 
-void AddMillingOptions(CLI::App& verb, MillingOptions& options) {
+// The option that all others of a block need.
+CLI::Option* AddBlockOptions(CLI::App& verb, BlockOptions& options) {
   CLI::Option* stock =
       verb.add_option("--stock", options.stock,
                       "100x80x10[@X,Y,TOP]: a block on a mill's table, mm from the work origin");
@@ -16,6 +18,31 @@ void AddMillingOptions(CLI::App& verb, MillingOptions& options) {
   verb.add_option("--cell", options.cell_mm,
                   "edge of the cells that the block is looked at in, mm; default 0.1")
       ->needs(stock);
+  return stock;
+}
+
+CLI::Option* AddStlTolerance(CLI::App& verb, double& tolerance_mm) {
+  return verb
+      .add_option("--stl-tolerance", tolerance_mm,
+                  "how far its surface may be off, mm; default 0.01")
+      ->check(CLI::Range(0.0, 1000.0));
+}
+
+}  // namespace
+
+void AddJobMillingOptions(CLI::App& verb, JobMillingOptions& options) {
+  CLI::Option* stock = AddBlockOptions(verb, options.block);
+  CLI::Option* products =
+      verb.add_option("--products", options.products,
+                      "of relief,height-map,stl: what of the block the job leaves; default relief")
+          ->delimiter(',')
+          ->check(CLI::IsMember({"relief", "height-map", "stl"}))
+          ->needs(stock);
+  AddStlTolerance(verb, options.stl_tolerance_mm)->needs(products);
+}
+
+void AddMillingOptions(CLI::App& verb, MillingOptions& options) {
+  CLI::Option* stock = AddBlockOptions(verb, options.block);
   verb.add_option(
           "--material", options.material,
           "foam, wax, plastic, wood, pcb or aluminium: judge what an edge of the tool takes "
@@ -28,10 +55,7 @@ void AddMillingOptions(CLI::App& verb, MillingOptions& options) {
   CLI::Option* stl =
       verb.add_option("--stl", options.stl, "write what is left of the block, a closed body")
           ->needs(stock);
-  verb.add_option("--stl-tolerance", options.stl_tolerance_mm,
-                  "how far its surface may be off, mm; default 0.01")
-      ->check(CLI::Range(0.0, 1000.0))
-      ->needs(stl);
+  AddStlTolerance(verb, options.stl_tolerance_mm)->needs(stl);
   verb.add_option("--relief", options.relief,
                   "write a shaded picture of what is left, from above (PNG)")
       ->needs(stock);

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "clients/cli/milling.h"
+
 namespace rmlcell::cli {
 
 // Verbs that speak to a server.
@@ -44,6 +46,8 @@ struct SubmitRequest {
   std::string inputs_file;
   double override_percent = 0.0;
   double pace = 0.0;  // virtual seconds a real second; 0: as fast as possible
+  JobMillingOptions milling;
+  std::string milling_project;  // whose block and tool count; empty: none
   bool trace = false;
   bool watch = false;
   bool strict = false;  // with watch: a DOUBTFUL verdict is an exit code of 1, too
@@ -55,5 +59,7 @@ int ShowJob(const Remote& remote, const std::string& job);
 int CancelJob(const Remote& remote, const std::string& job);
 int JobReport(const Remote& remote, const std::string& job, bool machine_coordinates);
 int JobPicture(const Remote& remote, const std::string& job, const std::string& output);
+int JobArtifact(const Remote& remote, const std::string& job, const std::string& artifact,
+                const std::string& output);
 
 }  // namespace rmlcell::cli

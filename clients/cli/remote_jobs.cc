@@ -12,6 +12,7 @@
 #include "engine/families/families.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
+#include "proto/bridge/milling.h"
 #include "rmlcell/v1/job.grpc.pb.h"
 
 namespace rmlcell::cli {
@@ -49,6 +50,21 @@ std::string When(const google::protobuf::Timestamp& time) {
 
 // What a job may bring along in one message; larger programs are stored first.
 constexpr std::size_t kInlineBytesMax = 3 << 20;
+
+Status SetMilling(const JobMillingOptions& wanted, v1::Milling& milling) {
+  if (Status set = bridge::SetBlockAndTool(wanted.block.stock, wanted.block.tool, milling); !set)
+    return set;
+  milling.set_cell_mm(wanted.block.cell_mm);
+  milling.set_stl_tolerance_mm(wanted.stl_tolerance_mm);
+  for (const std::string& product : wanted.products) {
+    if (product == "relief") milling.set_relief(true);
+    if (product == "height-map") milling.set_height_map(true);
+    if (product == "stl") milling.set_stl(true);
+  }
+  // What the server would refuse is told before it is asked.
+  const auto sound = bridge::FromProto(milling);
+  return sound ? Status() : sound.error();
+}
 
 // One connection of a watch. Moves `after` on; true: the job ended, and `exit_code` is set.
 bool WatchOnce(const Remote& remote, v1::JobService::Stub& stub, const std::string& name,
@@ -151,6 +167,12 @@ int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
   options.set_override_percent(wanted.override_percent);
   options.set_pace(wanted.pace);
   options.set_trace(wanted.trace);
+  if (!wanted.milling_project.empty())
+    options.set_milling_project(FullName("projects", wanted.milling_project));
+  if (!wanted.milling.block.stock.empty()) {
+    if (Status set = SetMilling(wanted.milling, *options.mutable_milling()); !set)
+      return Refuse(set.error());
+  }
   if (!wanted.inputs_file.empty()) {
     const Result<std::string> text = bridge::ReadFile(wanted.inputs_file, kFileBytesMax);
     if (!text) return Refuse(text.error());
@@ -282,6 +304,27 @@ int JobPicture(const Remote& remote, const std::string& job, const std::string& 
     return kGood;
   }
   if (const Status written = WriteWholeFile(output, response.content()); !written)
+    return Refuse(written.error());
+  return kGood;
+}
+
+int JobArtifact(const Remote& remote, const std::string& job, const std::string& artifact,
+                const std::string& output) {
+  const auto stub = v1::JobService::NewStub(Connect(remote));
+  grpc::ClientContext context;
+  v1::StreamJobArtifactRequest request;
+  request.set_name(FullName("jobs", job));
+  request.set_artifact(artifact);
+  const auto reader = stub->StreamJobArtifact(&context, request);
+  std::string content;
+  v1::StreamJobArtifactResponse message;
+  while (reader->Read(&message)) content += message.chunk();
+  if (const grpc::Status status = reader->Finish(); !status.ok()) return Refused(status, remote);
+  if (output.empty() || output == "-") {
+    PrintRaw(content);
+    return kGood;
+  }
+  if (const Status written = WriteWholeFile(output, content); !written)
     return Refuse(written.error());
   return kGood;
 }

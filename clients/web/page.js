@@ -265,12 +265,14 @@ function makeRow() {
     time: element("div"),
     took: element("div", { className: "sub" }),
     results: element("div", { className: "results" }),
+    look: element("div", { className: "look" }),
     bar: element("progress", { max: 1 }),
     percent: element("span", { className: "number" }),
     where: element("div", { className: "sub" }),
   };
   row.barLine = element("div", { className: "progress" }, row.bar, row.percent);
-  row.tr.append(element("td", {}, row.title, row.sub), row.machine, element("td", {}, row.chip), row.outcome,
+  const job = element("div", { className: "job" }, row.look, element("div", {}, row.title, row.sub));
+  row.tr.append(element("td", {}, job), row.machine, element("td", {}, row.chip), row.outcome,
     element("td", {}, row.time, row.took), element("td", {}, row.results));
   return row;
 }
@@ -355,13 +357,28 @@ function drawOutcome(row, job) {
   }
 }
 
+const PRODUCTS = { "picture.svg": "Picture", "relief.png": "Relief", "height.png": "Heights", "left.stl": "STL" };
+const productWord = (name) => PRODUCTS[name] ?? name[0].toUpperCase() + name.slice(1);
+
+// What the part looks like, small: what a mill left of its block says more than the path.
+function drawLook(row, job, artifacts) {
+  const shown = artifacts.find((one) => one.name === "relief.png") ?? artifacts.find((one) => one.name === "picture.svg");
+  if (!shown) return row.look.replaceChildren();
+  const text = `${productWord(shown.name)} of job ${lastPart(job.name)}`;
+  const image = element("img", { loading: "lazy", width: 96, height: 64, alt: text });
+  image.addEventListener("error", () => row.look.replaceChildren());
+  image.src = shown.urlPath;
+  row.look.replaceChildren(element("a", { href: shown.urlPath, target: "_blank", rel: "noopener", title: text }, image));
+}
+
 function drawResults(row, job) {
   const artifacts = (job.artifacts ?? []).filter((one) => one.urlPath?.startsWith("/v1/"));
   const key = artifacts.map((one) => one.urlPath).join(" ");
   if (row.results.dataset.key === key) return;
   row.results.dataset.key = key;
+  drawLook(row, job, artifacts);
   row.results.replaceChildren(...artifacts.map((one) => {
-    const word = one.name.startsWith("picture") ? "Picture" : one.name[0].toUpperCase() + one.name.slice(1);
+    const word = productWord(one.name);
     const link = element("a", { href: one.urlPath, target: "_blank", rel: "noopener" }, word);
     link.setAttribute("aria-label", `${word} of job ${lastPart(job.name)}, opens in a new tab`);
     if (one.name !== "report") return link;

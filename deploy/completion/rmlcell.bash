@@ -38,6 +38,10 @@ _rmlcell_machines() { _rmlcell_offer $(_rmlcell_ask machines); }
 _rmlcell_projects() { _rmlcell_offer $(_rmlcell_ask projects); }
 _rmlcell_slots() { _rmlcell_offer $(_rmlcell_ask programs "$1"); }
 _rmlcell_jobs() { _rmlcell_offer $(_rmlcell_ask jobs --limit 50 ${1:+--filter "$1"}); }
+_rmlcell_artifacts() {
+  _rmlcell_offer $(RMLCELL_SERVER=${server:-${RMLCELL_SERVER:-}} timeout 1 "${COMP_WORDS[0]}" job "$1" 2>/dev/null |
+    sed -n 's/^product *\([^ ]*\).*/\1/p')
+}
 
 # Codes and symbols of the catalogue: OPT-E348, HOLE_RADIUS_ZERO.
 _rmlcell_codes() {
@@ -79,11 +83,11 @@ _rmlcell_options() {
     put) echo "$remote --etag --check-only --force" ;;
     get) echo "$remote --form --output" ;;
     submit)
-      echo "$remote --slot --kind --title --request-id --override --pace --inputs --trace --watch --strict" ;;
+      echo "$remote --slot --kind --title --request-id --override --pace --inputs --stock --tool --cell --products --stl-tolerance --project --trace --watch --strict" ;;
     report) echo "$remote --machine-coordinates" ;;
     watch) echo "$remote --after --strict" ;;
     jobs) echo "$remote --filter --limit" ;;
-    picture) echo "$remote --output" ;;
+    picture | artifact) echo "$remote --output" ;;
     "projects list" | "projects show" | "projects create" | "projects update" | "projects delete") echo "--help" ;;
     "projects transfer") echo "--help --insert --check-only" ;;
   esac
@@ -97,7 +101,7 @@ _rmlcell_takes_value() {
       --state-in | --state-out | --server | --etag | --form | \
       --output | -o | --kind | --title | --request-id | --pace | --after | --filter | --limit | --move | --turn | --shift | \
       --tolerance | --by | --from | --to | --columns | --rows | --gap | --depth | --step | --passes | --overlap | \
-      --dpi | --at | --feed | --plunge | --rpm | --clearance) return 0 ;;
+      --dpi | --at | --products | --project | --feed | --plunge | --rpm | --clearance) return 0 ;;
   esac
   return 1
 }
@@ -137,6 +141,8 @@ _rmlcell_values() {
       compopt -o nospace 2>/dev/null
       _rmlcell_offer speed power axes speed,power,axes ;;
     --inputs | --toolpath | --state-in | --state-out | --output | -o) _rmlcell_files ;;
+    --products) _rmlcell_offer relief height-map stl ;;
+    --project) _rmlcell_projects ;;
     --slot) [[ $verb == submit && -n ${given[0]:-} ]] && _rmlcell_slots "${given[0]}" ;;
   esac
 }
@@ -175,6 +181,11 @@ _rmlcell_positional() {
     watch | job) [[ $count -eq 0 ]] && _rmlcell_jobs ;;
     cancel) [[ $count -eq 0 ]] && _rmlcell_jobs "finished = false" ;;
     report | picture) [[ $count -eq 0 ]] && _rmlcell_jobs "finished = true" ;;
+    artifact)
+      case $count in
+        0) _rmlcell_jobs "finished = true" ;;
+        1) _rmlcell_artifacts "${given[0]}" ;;
+      esac ;;
     projects) [[ $count -eq 0 ]] && _rmlcell_offer list show create update delete transfer ;;
     "projects show" | "projects delete") [[ $count -eq 0 ]] && _rmlcell_projects ;;
     "projects create") [[ $count -eq 1 ]] && _rmlcell_files .json ;;
@@ -259,7 +270,7 @@ _rmlcell() {
     _rmlcell_offer $(_rmlcell_options "$verb")
   elif [[ -z $verb ]]; then
     _rmlcell_offer check simulate parameters explain compile decompile link format convert compensate transform list \
-      diff rml1 lsp machines programs put get delete stale projects submit watch jobs job cancel report picture
+      diff rml1 lsp machines programs put get delete stale projects submit watch jobs job cancel report picture artifact
   else
     _rmlcell_positional
   fi

@@ -15,6 +15,7 @@
 #include "server/base/names.h"
 #include "server/base/readable.h"
 #include "server/jobs/job_filter.h"
+#include "server/jobs/job_milling.h"
 #include "server/records/file_family.h"
 #include "server/records/job_messages.h"
 #include "server/records/program_place.h"
@@ -232,6 +233,8 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
       machine::MakeParameters(family, machine->profile, values);
   if (!parameters) return parameters.error();
   if (Status good = CheckVariables(job.simulation(), family, *parameters); !good)
+    return good.error();
+  if (Status good = SettleMilling(store_, family.Shape(*parameters), specification); !good)
     return good.error();
   std::set<int> further;
   for (v1::SlotProgram& program : *specification.mutable_simulation()->mutable_programs()) {

@@ -10,6 +10,7 @@
 #include "engine/core/units.h"
 #include "engine/families/families.h"
 #include "proto/bridge/findings.h"
+#include "proto/bridge/milling.h"
 #include "proto/bridge/setup.h"
 #include "server/base/names.h"
 #include "server/base/readable.h"
@@ -63,6 +64,9 @@ Status CheckParts(const v1::Project& project) {
       return Error{info.no_source, "the program of slot " + slot + " has no source", {}};
     }
     if (const Status good = CheckUnits(program); !good) return good.error();
+    if (!program.has_milling()) continue;
+    if (const auto sound = bridge::FromProto(program.milling()); !sound)
+      return InvalidArgument("program " + slot + ": milling." + sound.error().detail);
   }
   const machine::FamilyInfo info = InfoFor({});
   std::set<int> schedules;

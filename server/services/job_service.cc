@@ -184,6 +184,12 @@ grpc::ServerUnaryReactor* JobService::GetJobPicture(grpc::CallbackServerContext*
                 });
 }
 
+grpc::ServerWriteReactor<v1::StreamJobArtifactResponse>* JobService::StreamJobArtifact(
+    grpc::CallbackServerContext* context, const v1::StreamJobArtifactRequest* request) {
+  return Open(room_, context, "JobService/StreamJobArtifact",
+              MakeArtifactStream({room_.executor, open_, book_, feed_, instance_id_}, *request));
+}
+
 grpc::ServerWriteReactor<v1::StreamJobTraceResponse>* JobService::StreamJobTrace(
     grpc::CallbackServerContext* context, const v1::StreamJobTraceRequest* request) {
   return Open(

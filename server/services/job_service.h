@@ -55,6 +55,8 @@ class JobService final : public v1::JobService::CallbackService {
   grpc::ServerUnaryReactor* GetJobPicture(grpc::CallbackServerContext* context,
                                           const v1::GetJobPictureRequest* request,
                                           v1::GetJobPictureResponse* response) override;
+  grpc::ServerWriteReactor<v1::StreamJobArtifactResponse>* StreamJobArtifact(
+      grpc::CallbackServerContext* context, const v1::StreamJobArtifactRequest* request) override;
   grpc::ServerWriteReactor<v1::StreamJobTraceResponse>* StreamJobTrace(
       grpc::CallbackServerContext* context, const v1::StreamJobTraceRequest* request) override;
 

@@ -333,6 +333,42 @@ class TraceStream final : public FramesStream<v1::StreamJobTraceResponse> {
   }
 };
 
+// A product as it is kept, in parts. One without bytes has no part.
+class ArtifactStream final : public PullStream<v1::StreamJobArtifactResponse> {
+ public:
+  ArtifactStream(const JobStreamRoom& room, const v1::StreamJobArtifactRequest& request)
+      : PullStream(room.executor, room.open), book_(room.book), request_(request) {}
+
+ private:
+  static constexpr std::size_t kChunkBytes = 1 << 20;
+
+  Next Make(v1::StreamJobArtifactResponse& message, grpc::Status& status) override {
+    if (!begun_) {
+      begun_ = true;
+      const Result<std::int64_t> job = ParseJobName(request_.name());
+      Result<std::string> bytes = !job ? Result<std::string>(job.error())
+                                  : request_.artifact().empty()
+                                      ? InvalidArgument("artifact is missing: its name")
+                                      : book_.ReadArtifact(*job, request_.artifact());
+      if (!bytes) {
+        status = ToGrpcStatus(bytes.error());
+        return Next::kEnd;
+      }
+      bytes_ = *std::move(bytes);
+    }
+    if (sent_ == bytes_.size()) return Next::kEnd;
+    message.set_chunk(bytes_.substr(sent_, kChunkBytes));
+    sent_ += message.chunk().size();
+    return Next::kMessage;
+  }
+
+  JobBook& book_;
+  v1::StreamJobArtifactRequest request_;
+  bool begun_ = false;
+  std::string bytes_;
+  std::size_t sent_ = 0;
+};
+
 }  // namespace
 
 std::shared_ptr<PullStream<v1::WatchJobResponse>> MakeJobWatch(const JobStreamRoom& room,
@@ -353,6 +389,11 @@ std::shared_ptr<PullStream<v1::StreamJobToolpathResponse>> MakeToolpathStream(
 std::shared_ptr<PullStream<v1::StreamJobTraceResponse>> MakeTraceStream(
     const JobStreamRoom& room, const std::string& job_name) {
   return std::make_shared<TraceStream>(room, job_name, "trace");
+}
+
+std::shared_ptr<PullStream<v1::StreamJobArtifactResponse>> MakeArtifactStream(
+    const JobStreamRoom& room, const v1::StreamJobArtifactRequest& request) {
+  return std::make_shared<ArtifactStream>(room, request);
 }
 
 }  // namespace rmlcell::server

@@ -28,6 +28,8 @@ std::shared_ptr<PullStream<v1::StreamJobToolpathResponse>> MakeToolpathStream(
     const JobStreamRoom& room, const std::string& job_name, int level);
 std::shared_ptr<PullStream<v1::StreamJobTraceResponse>> MakeTraceStream(
     const JobStreamRoom& room, const std::string& job_name);
+std::shared_ptr<PullStream<v1::StreamJobArtifactResponse>> MakeArtifactStream(
+    const JobStreamRoom& room, const v1::StreamJobArtifactRequest& request);
 
 // A stream that ends at once, for calls that are refused.
 template <class Response>

@@ -19,9 +19,11 @@
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/framing.h"
+#include "proto/bridge/milling.h"
 #include "proto/bridge/report.h"
 #include "proto/bridge/setup.h"
 #include "server/worker/job_events.h"
+#include "server/worker/material_files.h"
 #include "server/worker/memory_budget.h"
 #include "server/worker/pacer.h"
 
@@ -187,7 +189,7 @@ class Attempt {
       if (released_) return End::kLost;
     }
     if (CancelOrdered()) return Cancelled();
-    if (ProcessorTime_s() - started_s_ > assignment_.budget().processor_s()) {
+    if (OverTime()) {
       outcome_ = OutcomeFor(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellProcessorBudget);
       return End::kFinished;
     }
@@ -231,6 +233,12 @@ class Attempt {
     const auto variables =
         bridge::ExpandVariables({options.variables().begin(), options.variables().end()});
     if (!variables) return Refuse(variables.error());
+    simulation::Products products = ProductsOf(options);
+    if (options.has_milling()) {
+      Result<simulation::Milling> milling = bridge::FromProto(options.milling());
+      if (!milling) return Refuse(milling.error());
+      products.milling = *std::move(milling);
+    }
     Result<simulation::PreparedRun> made = simulation::PrepareRun(
         Memory(), bridge::RunOptionsOf(options, assignment_.budget(), assignment_.main_program(),
                                        machine::Mode::kRemote));
@@ -250,7 +258,7 @@ class Attempt {
       if (timetable_run) timetable_run_ = *std::move(timetable_run);
     }
     const Result<simulation::BegunRun> begun =
-        simulation::Begin(family, std::move(*made->setup), ProductsOf(options));
+        simulation::Begin(family, std::move(*made->setup), std::move(products));
     if (!begun) return Refuse(begun.error());
     if (const End end = Drive(*begun); end != End::kFinished) return end;
 
@@ -264,21 +272,44 @@ class Attempt {
       *message.add_diagnostics() = bridge::ToProto(diagnostic);
     outcome_ = message.outcome();
     executables_ = begun->run->made_executables();
-    std::string bytes = bridge::StableBytes(message);
-    const std::string picture = begun->recorder->Svg(report, {});
-    if (!Fits(bytes.size() + picture.size())) {
-      // What there is of it is kept as far as it fits; the report says why the rest is not there.
-      ExceedOutput();
-      *message.mutable_outcome() = outcome_;
-      bytes = bridge::StableBytes(message);
+    SendProducts(message, begun->recorder->Svg(report, {}), begun->recorder->milling());
+    return End::kFinished;
+  }
+
+  // All of them or the report alone, which then says why the rest is not there.
+  void SendProducts(v1::RunReport& report, const std::string& picture,
+                    const simulation::MillingRecorder* milling) {
+    const v1::SimulationOptions& options = assignment_.job().simulation();
+    std::string bytes = bridge::StableBytes(report);
+    std::vector<ProductFile> files;
+    const std::size_t smaller = bytes.size() + picture.size();
+    // A run that was broken off has no time left, or nobody who looks at its block.
+    const bool broken_off = outcome_.kind() == v1::Outcome::KIND_BUDGET_EXCEEDED ||
+                            outcome_.kind() == v1::Outcome::KIND_CANCELLED;
+    bool complete = Fits(smaller);
+    bool late = false;
+    if (complete && milling != nullptr && !broken_off) {
+      auto made =
+          MaterialFiles(milling->material(), options.milling(), [&](std::size_t material_bytes) {
+            late = late || OverTime();
+            return !late && Fits(smaller + material_bytes);
+          });
+      complete = made.has_value();
+      if (made) files = *std::move(made);
+    }
+    if (!complete) {
+      outcome_ = OutcomeFor(machine::OutcomeKind::kBudgetExceeded,
+                            late ? ErrorCode::kCellProcessorBudget : ErrorCode::kCellOutputBudget);
+      *report.mutable_outcome() = outcome_;
+      bytes = bridge::StableBytes(report);
       if (Fits(bytes.size())) SendArtifact("report", "application/x-protobuf", bytes);
-      return End::kFinished;
+      return;
     }
     SendArtifact("report", "application/x-protobuf", bytes);
     SendArtifact("toolpath", "application/octet-stream", toolpath_);
     if (options.trace()) SendArtifact("trace", "application/octet-stream", trace_);
     SendArtifact("picture.svg", "image/svg+xml", picture);
-    return End::kFinished;
+    for (const ProductFile& file : files) SendArtifact(file.name, file.media_type, file.bytes);
   }
 
   End Drive(const simulation::BegunRun& begun) {
@@ -326,7 +357,7 @@ class Attempt {
       if (simulation.finished()) break;
       if (recorder.cut_off() || !Fits()) {
         simulation.End(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellOutputBudget);
-      } else if (ProcessorTime_s() - started_s_ > assignment_.budget().processor_s()) {
+      } else if (OverTime()) {
         simulation.End(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellProcessorBudget);
       }
     }
@@ -394,6 +425,10 @@ class Attempt {
           break;
       }
     }
+  }
+
+  bool OverTime() const {
+    return ProcessorTime_s() - started_s_ > assignment_.budget().processor_s();
   }
 
   // Whether all that the job has put out stays in its budget, `more` included.

@@ -6,7 +6,11 @@ import struct
 import subprocess
 import tempfile
 import unittest
+import urllib.error
+import urllib.request
 import zlib
+
+from cell import Cell, inline_job, job_pb2, submit, wait_for_end
 
 BIN = pathlib.Path(os.environ["RMLCELL_BIN"])
 
@@ -272,6 +276,128 @@ class Targets(Material):
         self.assertIn("--target", self.simulate(*BLOCK, "--target-png", "x.png").stderr)
         self.assertEqual(self.simulate(*BLOCK, "--target", self.groove, "--target-tolerance", "-1").returncode, 2)
         self.refused("CELL-E9023", "/dev/full", *BLOCK, "--target", self.groove, "--target-png", "/dev/full")
+
+
+class Jobs(Material):
+    """The same as products of jobs: each file has the bytes that simulate writes."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.cell = Cell().start()
+        cls.addClassCleanup(cls.cell.close)
+
+    FILES = {"relief.png": ("--relief", "image/png"), "height.png": ("--height-map", "image/png"),
+             "left.stl": ("--stl", "model/stl")}
+
+    def submitted(self, *words):
+        done = self.cell.command("submit", "mill-1", self.groove, *words, "--watch", check=False)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return done.stdout.splitlines()[0]
+
+    def fetched(self, job, name, **headers):
+        url = f"http://127.0.0.1:{self.cell.web_port}/v1/{job}/artifacts/{name}"
+        return urllib.request.urlopen(urllib.request.Request(url, headers=headers), timeout=60)
+
+    def products(self, job):
+        listed = self.cell.command("job", job).stdout
+        return {line.split()[1] for line in listed.splitlines() if line.startswith("product ")}
+
+    def test_the_products_are_the_files_of_simulate(self):
+        words = (*BLOCK, "--products", "relief,height-map,stl", "--stl-tolerance", "0.05")
+        job = self.submitted(*words)
+        self.assertLessEqual(set(self.FILES), self.products(job))
+        for name, (option, media_type) in self.FILES.items():
+            path = self.folder / name
+            more = ("--stl-tolerance", "0.05") if option == "--stl" else ()
+            done = subprocess.run([BIN / "rmlcell", "simulate", self.groove, "--profile", "srm-20", *BLOCK, option, path, *more],
+                                  capture_output=True, text=True, timeout=120)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            got = self.folder / "got"
+            self.cell.command("artifact", job, name, "-o", got)
+            self.assertEqual(got.read_bytes(), path.read_bytes(), name)
+            with self.fetched(job, name) as answer:
+                self.assertEqual(answer.headers["Content-Type"], media_type)
+                etag = answer.headers["ETag"]
+                self.assertEqual(answer.read(), path.read_bytes(), name)
+            with self.assertRaises(urllib.error.HTTPError) as caught:
+                self.fetched(job, name, **{"If-None-Match": etag})
+            self.assertEqual(caught.exception.code, 304)
+
+    # 20 mm x 3 mm x 1 mm and two half discs of 1.5 mm.
+    def test_the_report_has_the_figures(self):
+        job = self.submitted(*BLOCK)
+        report = json.loads(self.cell.command("report", job, "--json").stdout)
+        self.assertAlmostEqual(report["milling"]["removedMm3"], 67.07, delta=0.7)
+        self.assertTrue({"relief.png"} <= self.products(job))
+        self.assertFalse({"height.png", "left.stl"} & self.products(job))
+
+    def test_what_is_refused_and_where(self):
+        for words, code, text in (((*BLOCK, "--products", "svg"), 2, "--products"),
+                                  (("--stock", "60x30x5"), 2, "--tool"),
+                                  (("--stock", "60x30", "--tool", "flat:3"), 2, "is no block"),
+                                  (("--stock", "6000x3000x5", "--tool", "flat:3"), 2, "make the cells larger"),
+                                  ((*BLOCK, "--project", "coaster"), 2, "--project")):
+            done = self.cell.command("submit", "mill-1", self.groove, *words, check=False)
+            self.assertEqual((done.returncode, done.stdout), (code, ""), done.stderr)
+            self.assertIn(text, done.stderr)
+        program = self.folder / "a.S"
+        program.write_text("STOP\n")
+        done = self.cell.command("submit", "optimo-1", program, *BLOCK, check=False)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("job.simulation.milling is for mills", done.stderr)
+
+    def ended(self, stub, job):
+        name = submit(stub, job).name
+        wait_for_end(stub, name)
+        return stub.GetJob(job_pb2.GetJobRequest(name=name))
+
+    # 5000 by 5000 cells of 4 bytes are 100 MB. The job ends, and its worker takes the next one.
+    def test_a_block_beyond_the_memory_of_the_job(self):
+        stub = self.cell.jobs()
+        wanted = inline_job("mill-1", "groove.rml", GROOVE)
+        milling = wanted.simulation.milling
+        milling.stock.size_x_mm = milling.stock.size_y_mm = 50
+        milling.stock.size_z_mm = 5
+        milling.tool.shape = 1
+        milling.tool.diameter_mm = 3
+        milling.cell_mm = 0.01
+        wanted.budget.memory_bytes = 64 << 20
+        workers = sorted(self.cell.worker_processes())
+        ended = self.ended(stub, wanted)
+        self.assertEqual((ended.state, ended.outcome.code), (job_pb2.Job.STATE_FAILED, "CELL-E9302"))
+        self.assertEqual(sorted(self.cell.worker_processes()), workers)
+        milling.cell_mm = 0.2
+        self.assertEqual(self.ended(stub, wanted).state, job_pb2.Job.STATE_SUCCEEDED)
+
+    # Block and tool of the project's program of the same slot; the job keeps them when the project changes.
+    def test_a_project_has_block_and_tool(self):
+        folder = self.folder / "coaster"
+        folder.mkdir()
+        (folder / "7.rml").write_text(GROOVE)
+        milling = {"stock": {"sizeXMm": 60, "sizeYMm": 30, "sizeZMm": 5}, "cellMm": 0.2, "relief": True,
+                   "tool": {"shape": "SHAPE_FLAT", "diameterMm": 3}}
+        program = {"slot": 7, "source": {"fileName": "7.rml"}, "milling": milling}
+        (folder / "project.json").write_text(json.dumps({"programs": [program]}))
+        self.cell.command("projects", "create", "coaster", folder)
+        self.cell.command("projects", "transfer", "coaster", "mill-1")
+        job = self.cell.command("submit", "mill-1", "--slot", 7, "--project", "coaster", "--watch").stdout.splitlines()[0]
+        report = json.loads(self.cell.command("report", job, "--json").stdout)
+        self.assertAlmostEqual(report["milling"]["removedMm3"], 67.07, delta=0.7)
+        self.assertIn("relief.png", self.products(job))
+        done = self.cell.command("submit", "mill-1", self.groove, "--slot", 8, "--project", "coaster", check=False)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("projects/coaster has no milling for slot 8", done.stderr)
+        milling["tool"]["diameterMm"] = 0
+        (folder / "project.json").write_text(json.dumps({"programs": [program]}))
+        done = self.cell.command("projects", "update", "coaster", folder, check=False)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("program 7: milling.tool", done.stderr)
+
+    def test_an_artifact_that_is_not_there(self):
+        job = self.submitted()
+        done = self.cell.command("artifact", job, "relief.png", check=False)
+        self.assertEqual((done.returncode, done.stdout), (3, ""))
+        self.assertIn("has no relief.png", done.stderr)
 
 
 if __name__ == "__main__":

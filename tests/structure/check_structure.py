@@ -57,7 +57,7 @@ MAY_INCLUDE = {
     RUN: ENGINE + ["engine/families", REPORT, TOOLPATH, PICTURE, MATERIAL, VERDICT],
     "storage": ["engine/core"],
     "storage/sqlite": ["engine/core", "storage"],
-    "proto/bridge": ["engine/core", "engine/machine", "engine/families", REPORT, PICTURE, RUN, "proto"],
+    "proto/bridge": ["engine/core", "engine/machine", "engine/families", REPORT, PICTURE, MATERIAL, RUN, "proto"],
     # What every room of the server may use.
     "server/base": ["engine/core", "storage"],
     "server/auth": ["engine/core"],
@@ -74,7 +74,7 @@ MAY_INCLUDE = {
                         "server/base", "server/auth", "server/events", "server/records", "server/jobs",
                         "server/programs", "server/projects", "server/web", "storage"],
     # The engine worker: a process of its own, without the store.
-    "server/worker": ["engine/core", "engine/machine", "engine/families", REPORT, VERDICT, RUN, "proto", "proto/bridge",
+    "server/worker": ["engine/core", "engine/machine", "engine/families", REPORT, MATERIAL, VERDICT, RUN, "proto", "proto/bridge",
                       "server/base", "server/records"],
     # The wiring of the server.
     "server/cell": ["engine/core", "proto/bridge", "server/base", "server/auth", "server/events", "server/records",
@@ -120,8 +120,8 @@ PUBLIC = {
     RUN: ["simulate.h", "motion_check.h", "rehearsal.h", "joint_check.h", "timetable.h", "trial_run.h"],
     "storage": ["records.h", "store.h"],
     "storage/sqlite": ["sqlite_store.h"],
-    "proto/bridge": ["comparison.h", "encoding.h", "files.h", "findings.h", "framing.h", "header_date.h", "report.h",
-                     "setup.h", "sha256.h"],
+    "proto/bridge": ["comparison.h", "encoding.h", "files.h", "findings.h", "framing.h", "header_date.h", "milling.h",
+                     "report.h", "setup.h", "sha256.h"],
     "server/base": ["config.h", "executor.h", "log.h", "names.h", "readable.h", "steady_clock.h", "version.h"],
     "server/events": ["event_feed.h"],
     "server/jobs": ["dispatcher.h", "job_book.h", "worker_processes.h"],

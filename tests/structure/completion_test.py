@@ -180,6 +180,7 @@ class Completion(unittest.TestCase):
         self.assertEqual(complete("rmlcell submit mill-1 --slot ", server=address), ["7"])
         self.assertEqual(complete("rmlcell watch ", server=address), ["1"])
         self.assertEqual(complete("rmlcell report ", server=address), ["1"])
+        self.assertEqual(complete("rmlcell artifact 1 pi", server=address), ["picture.svg"])
         self.assertEqual(complete("rmlcell cancel ", server=address), [])
 
 

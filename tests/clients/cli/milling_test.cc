@@ -23,9 +23,9 @@ simulation::ProgramMemory ThisMill() {
 
 MillingOptions Block(const std::string& stock, const std::string& tool, double cell_mm = 0.1) {
   MillingOptions options;
-  options.stock = stock;
-  options.tool = tool;
-  options.cell_mm = cell_mm;
+  options.block.stock = stock;
+  options.block.tool = tool;
+  options.block.cell_mm = cell_mm;
   return options;
 }
 

@@ -8,6 +8,7 @@
 #include <future>
 #include <limits>
 
+#include "rmlcell/v1/project.pb.h"
 #include "server/base/config.h"
 #include "server/base/names.h"
 #include "server/jobs/job_book.h"
@@ -246,6 +247,89 @@ TEST_F(JobLimits, OfSlots) {
   EXPECT_EQ(asked(0, {4, 4}), kInvalid);
   for (const int slot : {-1, 0, 100})
     EXPECT_EQ(asked(0, {slot}), ErrorCode::kProgramNumber) << slot;
+}
+
+// milling.proto: each message says which field is wrong.
+TEST_F(JobLimits, OfMillings) {
+  const auto asked = [&](const std::string& machine,
+                         const std::function<void(v1::Milling&)>& change) {
+    v1::SubmitJobRequest request = Simulate();
+    request.mutable_job()->set_machine(machine);
+    request.mutable_job()->mutable_inline_program()->set_file_name("part");
+    request.mutable_job()->mutable_inline_program()->set_content("PA;");
+    v1::Milling& milling = *request.mutable_job()->mutable_simulation()->mutable_milling();
+    milling.mutable_stock()->set_size_x_mm(60.0);
+    milling.mutable_stock()->set_size_y_mm(30.0);
+    milling.mutable_stock()->set_size_z_mm(5.0);
+    milling.mutable_tool()->set_shape(v1::MillTool::SHAPE_FLAT);
+    milling.mutable_tool()->set_diameter_mm(3.0);
+    change(milling);
+    request.set_validate_only(true);
+    const Result<v1::Job> job = Submit(request);
+    if (job) return std::string();
+    EXPECT_EQ(job.error().code, kInvalid);
+    return job.error().detail;
+  };
+  using testing::StartsWith;
+  const std::string mill = "machines/mill-1";
+  EXPECT_EQ(asked(mill, [](v1::Milling&) {}), "");
+  EXPECT_THAT(asked("machines/optimo-1", [](v1::Milling&) {}),
+              StartsWith("job.simulation.milling is for mills"));
+  EXPECT_THAT(asked(mill, [](v1::Milling& m) { m.mutable_tool()->set_diameter_mm(0.0); }),
+              StartsWith("job.simulation.milling.tool: the radius"));
+  EXPECT_THAT(asked(mill, [](v1::Milling& m) { m.clear_stock(); }),
+              StartsWith("job.simulation.milling.stock is missing"));
+  // 6000 by 3000 cells of 0.01 mm are 18 million; of 0.005 mm 72 million, more than 67,108,864.
+  EXPECT_EQ(asked(mill, [](v1::Milling& m) { m.set_cell_mm(0.01); }), "");
+  EXPECT_THAT(asked(mill, [](v1::Milling& m) { m.set_cell_mm(0.005); }),
+              testing::AllOf(StartsWith("job.simulation.milling.stock: "),
+                             testing::HasSubstr("make the cells larger")));
+}
+
+// SimulationOptions.milling_project: block and tool of the program of the same slot, as they are
+// now; those of the job itself come first.
+TEST_F(JobLimits, AProjectHasBlockAndToolOfItsPrograms) {
+  v1::Project project;
+  for (const int slot : {7, 8}) {
+    v1::ProjectProgram& program = *project.add_programs();
+    program.set_slot(slot);
+    if (slot == 8) continue;
+    v1::Milling& milling = *program.mutable_milling();
+    milling.mutable_stock()->set_size_x_mm(60.0);
+    milling.mutable_stock()->set_size_y_mm(30.0);
+    milling.mutable_stock()->set_size_z_mm(5.0);
+    milling.mutable_tool()->set_shape(v1::MillTool::SHAPE_BALL);
+    milling.mutable_tool()->set_diameter_mm(3.0);
+    milling.set_relief(true);
+  }
+  Must(bed.store().PutProject({.id = "coaster", .body = project.SerializeAsString()}, 0));
+  v1::SubmitJobRequest request = Simulate();
+  v1::Job& job = *request.mutable_job();
+  job.set_machine("machines/mill-1");
+  job.mutable_inline_program()->set_file_name("part");
+  job.mutable_inline_program()->set_content("PA;");
+  job.set_inline_slot(7);
+  job.mutable_simulation()->set_milling_project("projects/coaster");
+  const v1::Job made = Must(book.Get(Must(Submit(request)).name()));
+  EXPECT_EQ(made.simulation().milling().SerializeAsString(),
+            project.programs(0).milling().SerializeAsString());
+  job.set_inline_slot(8);  // its program has none
+  EXPECT_EQ(CodeOf(Submit(request)), ErrorCode::kCellNotFound);
+  job.set_inline_slot(9);  // there is no such program
+  EXPECT_EQ(CodeOf(Submit(request)), ErrorCode::kCellNotFound);
+  *job.mutable_simulation()->mutable_milling() = project.programs(0).milling();
+  job.mutable_simulation()->mutable_milling()->set_cell_mm(0.5);
+  EXPECT_EQ(Must(book.Get(Must(Submit(request)).name())).simulation().milling().cell_mm(), 0.5);
+  job.mutable_simulation()->clear_milling();
+  job.set_inline_slot(7);
+  for (const auto& [name, code] :
+       {std::pair("projects/other", ErrorCode::kCellNotFound), std::pair("coaster", kInvalid)}) {
+    job.mutable_simulation()->set_milling_project(name);
+    EXPECT_EQ(CodeOf(Submit(request)), code) << name;
+  }
+  job.set_machine("machines/optimo-1");
+  job.mutable_simulation()->set_milling_project("projects/coaster");
+  EXPECT_EQ(CodeOf(Submit(request)), kInvalid);  // removes no material
 }
 
 // limits.program_bytes for the program and for each further one.

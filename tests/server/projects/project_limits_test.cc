@@ -274,5 +274,24 @@ TEST_F(ProjectLimits, ADamagedBodyIsToldOf) {
   EXPECT_EQ(Must(bed.store().GetProject("wrong")).title, "t");
 }
 
+// ProjectProgram.milling: as that of a job, but said when it is stored.
+TEST_F(ProjectLimits, OfMillings) {
+  const auto asked = [&](double diameter_mm) {
+    return Asked([&](v1::Project& project) {
+      v1::ProjectProgram& program = *project.add_programs();
+      program.set_slot(7);
+      program.mutable_source()->set_content("PA;");
+      v1::Milling& milling = *program.mutable_milling();
+      milling.mutable_stock()->set_size_x_mm(60.0);
+      milling.mutable_stock()->set_size_y_mm(30.0);
+      milling.mutable_stock()->set_size_z_mm(5.0);
+      milling.mutable_tool()->set_shape(v1::MillTool::SHAPE_FLAT);
+      milling.mutable_tool()->set_diameter_mm(diameter_mm);
+    });
+  };
+  EXPECT_EQ(asked(3.0), std::nullopt);
+  EXPECT_EQ(asked(0.0), ErrorCode::kCellInvalidArgument);
+}
+
 }  // namespace
 }  // namespace rmlcell::server

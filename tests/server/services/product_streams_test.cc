@@ -155,6 +155,40 @@ TEST_F(ProductStreamsTest, ATraceComesInOrderByManyRecordsAMessage) {
   EXPECT_EQ(last, kRecords);
 }
 
+// StreamJobArtifactResponse.chunk: all bytes in order, in parts that a message has room for (4
+// MiB).
+TEST_F(ProductStreamsTest, AnArtifactComesInPartsAsItIsKept) {
+  constexpr std::size_t kMessageBytesMax = 4 << 20;
+  std::string bytes;
+  for (int i = 0; bytes.size() < 2 * kMessageBytesMax; ++i) bytes += std::to_string(i);
+  for (const std::string& kept : {bytes, bytes.substr(0, 1 << 20), std::string("\0x", 2)}) {
+    auto stream = room.Artifact(JobName(room.Ended("left.stl", kept)), "left.stl");
+    std::string together;
+    for (const v1::StreamJobArtifactResponse& message : stream.Rest()) {
+      EXPECT_FALSE(message.chunk().empty());
+      EXPECT_LT(message.chunk().size(), kMessageBytesMax);
+      together += message.chunk();
+    }
+    stream.ExpectGoodEnd();
+    EXPECT_EQ(together, kept);
+  }
+  auto empty = room.Artifact(JobName(room.Ended("toolpath", "")), "toolpath");
+  EXPECT_TRUE(empty.Rest().empty());
+  empty.ExpectGoodEnd();
+}
+
+TEST_F(ProductStreamsTest, AnArtifactThatIsNotThereSaysWhy) {
+  const std::int64_t job = room.Ended("report", "r");
+  auto other = room.Artifact(JobName(job), "relief.png");
+  other.ExpectRefused(grpc::StatusCode::NOT_FOUND, "has no relief.png");
+  auto nameless = room.Artifact(JobName(job), "");
+  nameless.ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "artifact is missing");
+  auto early = room.Artifact(JobName(room.Submit()), "report");
+  early.ExpectRefused(grpc::StatusCode::FAILED_PRECONDITION, "has not ended");
+  auto misnamed = room.Artifact("jobs/x", "report");
+  misnamed.ExpectRefused(grpc::StatusCode::INVALID_ARGUMENT, "CELL-E9003");
+}
+
 TEST_F(ProductStreamsTest, AServerThatStopsEndsThem) {
   const std::int64_t job = room.Ended("toolpath", Frames({BlockWithBend(1)}));
   room.open.StopAll();

@@ -85,4 +85,13 @@ OpenedStream<v1::StreamJobTraceResponse> StreamBed::Trace(const std::string& nam
       [&](grpc::ClientContext* context) { return stub_->StreamJobTrace(context, request); });
 }
 
+OpenedStream<v1::StreamJobArtifactResponse> StreamBed::Artifact(const std::string& name,
+                                                                const std::string& artifact) {
+  v1::StreamJobArtifactRequest request;
+  request.set_name(name);
+  request.set_artifact(artifact);
+  return OpenedStream<v1::StreamJobArtifactResponse>(
+      [&](grpc::ClientContext* context) { return stub_->StreamJobArtifact(context, request); });
+}
+
 }  // namespace rmlcell::server

@@ -104,6 +104,8 @@ class StreamBed {
   OpenedStream<v1::WatchJobsResponse> WatchAll(const v1::WatchJobsRequest& request);
   OpenedStream<v1::StreamJobToolpathResponse> Toolpath(const std::string& name, int level);
   OpenedStream<v1::StreamJobTraceResponse> Trace(const std::string& name);
+  OpenedStream<v1::StreamJobArtifactResponse> Artifact(const std::string& name,
+                                                       const std::string& artifact);
 
   ServerBed bed;
   EventFeed feed{bed.store()};
@@ -128,6 +130,10 @@ class StreamBed {
     grpc::ServerWriteReactor<v1::StreamJobTraceResponse>* StreamJobTrace(
         grpc::CallbackServerContext*, const v1::StreamJobTraceRequest* request) override {
       return MakeTraceStream(room_, request->name())->Begin();
+    }
+    grpc::ServerWriteReactor<v1::StreamJobArtifactResponse>* StreamJobArtifact(
+        grpc::CallbackServerContext*, const v1::StreamJobArtifactRequest* request) override {
+      return MakeArtifactStream(room_, *request)->Begin();
     }
 
    private:
