@@ -6,10 +6,9 @@ lengths. Prints one JSON object a line; exits 1 when a figure is above its limit
 """
 import json
 import os
-import re
-import shutil
-import subprocess
 import sys
+
+import instructions
 
 # Measured with g++ 12, and a tenth of room for another compiler. The goal for acceleration-limited plans is
 # 1,000: reached where the path is kept as it is (mill, 994); with a curve at every corner
@@ -21,20 +20,14 @@ LIMITS = {"jerk": 3470, "trapezoid": 3420, "mill": 1000, "five_axis": 7150, "arc
 SHORT, LONG = 2400, 8400
 
 
-def count(program, what, lines):
-    done = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={os.devnull}", program, what,
-                           str(lines)], capture_output=True, text=True, timeout=300, check=True)
-    return int(re.search(r"Collected : (\d+)", done.stderr).group(1))
-
-
 def main():
-    if shutil.which("valgrind") is None:
+    if not instructions.available():
         print("no valgrind")
-        return 77
+        return instructions.NO_VALGRIND
     program = os.path.join(sys.argv[1], "motion_count")
     failed = False
     for what, limit in LIMITS.items():
-        each = (count(program, what, LONG) - count(program, what, SHORT)) / (LONG - SHORT)
+        each = instructions.each(program, what, SHORT, LONG)
         print(json.dumps({"path": what, "instructions_per_line": round(each, 1), "limit": limit}), flush=True)
         failed = failed or each > limit
     return 1 if failed else 0

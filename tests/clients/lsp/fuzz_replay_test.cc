@@ -2,42 +2,21 @@
 // answer is a message, every edit lies in the text.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <random>
-#include <string>
-#include <vector>
-
 #include "tests/fuzz/lsp_input.h"
+#include "tests/fuzz/seeds.h"
 
 namespace rmlcell::lsp {
 namespace {
 
-std::vector<std::string> Corpus() {
-  std::vector<std::filesystem::path> paths;
-  const std::string folder = std::string(RMLCELL_SOURCE_DIR) + "/tests/fuzz/corpus/lsp";
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    paths.push_back(entry.path());
-  std::ranges::sort(paths);
-  std::vector<std::string> corpus;
-  for (const auto& path : paths) {
-    std::ifstream file(path, std::ios::binary);
-    corpus.emplace_back(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
-  }
-  return corpus;
-}
-
 TEST(FuzzReplay, TheCorpusHoldsWhatItMust) {
-  const auto corpus = Corpus();
+  const auto corpus = fuzz::SeedsOf("lsp");
   EXPECT_GE(corpus.size(), 10U);
   for (const std::string& one : corpus) EXPECT_EQ(TryLsp(one), "") << one;
 }
 
 TEST(FuzzReplay, MutationsOfTheCorpusHoldWhatTheyMust) {
   std::mt19937 random(7);
-  const auto corpus = Corpus();
+  const auto corpus = fuzz::SeedsOf("lsp");
   for (int round = 0; round < 80; ++round) {
     std::string one = corpus[random() % corpus.size()];
     for (unsigned changes = 1 + random() % 4; changes > 0 && one.size() > 2; --changes) {
