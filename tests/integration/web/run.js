@@ -1,7 +1,7 @@
 // Independent clients against the web port of a running server: Connect JSON, Connect binary, gRPC-Web
 // (two implementations), and server-sent events as an EventSource reads them. README.md says how to call it.
 import { execFileSync } from "node:child_process";
-import { copyFileSync, existsSync, mkdtempSync, mkdirSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
+import { copyFileSync, existsSync, mkdtempSync, mkdirSync, readdirSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
@@ -29,7 +29,7 @@ writeFileSync(join(work, "package.json"), '{"type":"module"}');
 const proto = join(here, "../../../proto");
 execFileSync("protoc", ["-I", proto, `--plugin=${join(work, "node_modules/.bin/protoc-gen-es")}`,
   `--es_out=${generated}`, "--es_opt=target=js,import_extension=js",
-  ...["common", "report", "machine", "program", "job"].map((name) => `rmlcell/v1/${name}.proto`),
+  ...readdirSync(join(proto, "rmlcell/v1")).map((name) => `rmlcell/v1/${name}`),
   "google/api/field_behavior.proto", "google/rpc/status.proto", "google/rpc/error_details.proto",
   "grpc/health/v1/health.proto"], { stdio: "inherit" });
 
