@@ -13,7 +13,8 @@ import tempfile
 import time
 import unittest
 
-BIN = pathlib.Path(os.environ["RMLCELL_BIN"])
+from command import BIN, ask
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SHARED = pathlib.Path(os.environ.get("RMLCELL_SHARED", ROOT.parent / "shared"))
 sys.path.insert(0, os.environ["RMLCELL_STUBS"])
@@ -122,8 +123,7 @@ class Cell:
         return project_pb2_grpc.ProjectServiceStub(self.channel())
 
     def command(self, *words, check=True):
-        done = subprocess.run([BIN / "rmlcell", *map(str, words)], capture_output=True, text=True, timeout=120,
-                              env={**os.environ, "RMLCELL_SERVER": self.address})
+        done = ask(*words, server=self.address)
         if check and done.returncode != 0:
             raise AssertionError(f"rmlcell {words} ended with {done.returncode}:\n{done.stdout}{done.stderr}")
         return done

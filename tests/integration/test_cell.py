@@ -2,7 +2,6 @@
 import math
 import os
 import pathlib
-import subprocess
 import tempfile
 import threading
 import time
@@ -11,8 +10,9 @@ import urllib.error
 import urllib.request
 import uuid
 
-from cell import (BIN, COMPLETED, ENDLESS, FAILED, LONG, SQUARE, Cell, WithCell, common_pb2, detail_of, eventually, grpc, inline_job,
+from cell import (COMPLETED, ENDLESS, FAILED, LONG, SQUARE, Cell, WithCell, common_pb2, detail_of, eventually, grpc, inline_job,
                   job_pb2, machine_pb2, program_pb2, submit, wait_for_end, wait_until_it_runs)
+from command import run
 
 
 class Jobs(WithCell):
@@ -38,8 +38,7 @@ class Jobs(WithCell):
             source = pathlib.Path(folder, "square.rml")
             source.write_text(SQUARE)
             path = pathlib.Path(folder, "square.path")
-            subprocess.run([BIN / "rmlcell", "simulate", source, "--profile", "srm-20", "--toolpath", path],
-                           check=True, stdout=subprocess.DEVNULL)
+            run("simulate", source, "--profile", "srm-20", "--toolpath", path)
             framed = b"".join(len(one.block).to_bytes(4, "little") + one.block for one in blocks)
             self.assertEqual(path.read_bytes(), framed)
 

@@ -7,29 +7,12 @@ import tempfile
 import unittest
 
 from cell import BIN, ENDLESS, SQUARE, Cell, eventually, inline_job, job_pb2, submit
+from command import InFolder, ask
 
 
-def run(*words, server=None):
-    environment = {**os.environ, "NO_COLOR": "1"}
-    if server:
-        environment["RMLCELL_SERVER"] = server
-    return subprocess.run([BIN / "rmlcell", *map(str, words)], capture_output=True, text=True, timeout=120,
-                          env=environment)
-
-
-class Local(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def file(self, name, text):
-        path = self.folder / name
-        path.write_text(text)
-        return path
-
+class Local(InFolder):
     def test_check_names_place_code_and_rule(self):
-        done = run("check", self.file("a.S", "SPEED 20\nSPEED 101\n"))
+        done = ask("check", self.file("a.S", "SPEED 20\nSPEED 101\n"))
         self.assertEqual(done.returncode, 1)
         self.assertIn("a.S:2:", done.stdout)
         self.assertIn("OPT-E7004", done.stdout)
@@ -37,11 +20,11 @@ class Local(unittest.TestCase):
     # OPT-E.7301, OPT-B.08: before anything moves, every place with its time; exit code 1.
     def test_check_follows_the_motion(self):
         far = self.file("far.S", "COORD ROBOT\nMOVE (9000.,0.,0.,0.,0.)\nMOVE (0.,0.,0.,13.,0.)\n")
-        done = run("check", far)
+        done = ask("check", far)
         self.assertEqual(done.returncode, 1)
         self.assertRegex(done.stdout, r"far.S:2: error OPT-E7301: X of the target .* 5400.000 mm \(step 2, at 0.000 s\)")
         self.assertRegex(done.stdout, r"far.S:3: error OPT-E7301: A of the target .* 0.400 rad \(step 3, at 2\d.\d+ s\)")
-        findings = json.loads(run("check", far, "--json").stdout)
+        findings = json.loads(ask("check", far, "--json").stdout)
         self.assertFalse(findings.get("ok", False))
         self.assertEqual([(d["code"], d["place"]["step"], d["place"]["line"]) for d in findings["diagnostics"]],
                          [("OPT-E7301", 2, 2), ("OPT-E7301", 3, 3)])
@@ -51,30 +34,30 @@ class Local(unittest.TestCase):
     def test_check_knows_programs_that_call_each_other(self):
         part = self.file("44.S", "COORD ABSOL\nMOVE (4000.,0.,0.,0.,0.)\n")
         main = self.file("45.S", "SYSDEF (-1000.,0.,-300.,0.,0.,0.)\nCALL 44\n")
-        self.assertEqual(run("check", part, main, "--errors-only").returncode, 0)
-        self.assertEqual(run("check", part).returncode, 1)
+        self.assertEqual(ask("check", part, main, "--errors-only").returncode, 0)
+        self.assertEqual(ask("check", part).returncode, 1)
 
     def test_check_says_how_far_it_came(self):
         wait = self.file("w.S", "COORD ROBOT\nWAIT (IL[16])\nMOVE (9000.,0.,0.,0.,0.)\n")
-        done = run("check", wait)
+        done = ask("check", wait)
         self.assertEqual(done.returncode, 0)
         self.assertIn("motion checked only up to step 2, line 2: OPT-E7902", done.stdout)
         inputs = self.file("inputs.txt", "1.5 IL[16] = 1\n")
-        done = run("check", wait, "--inputs", inputs)
+        done = ask("check", wait, "--inputs", inputs)
         self.assertEqual(done.returncode, 1)
         self.assertIn("at 1.500 s", done.stdout)
 
     # motion.md 2.6, 8.2: the simulation goes on, tells all of them, and fails.
     def test_simulate_goes_on_behind_a_violation(self):
         far = self.file("far.S", "COORD ROBOT\nMOVE (9000.,0.,0.,0.,0.)\nMOVE (0.,0.,0.,13.,0.)\n")
-        done = run("simulate", far, "--json")
+        done = ask("simulate", far, "--json")
         self.assertEqual(done.returncode, 1)
         report = json.loads(done.stdout)
         self.assertEqual((report["outcome"]["kind"], report["outcome"]["code"]), ("KIND_FAILED", "OPT-E7301"))
         self.assertEqual([(v["axis"], v["place"]["step"], round(v["excess"], 6)) for v in report["violations"]],
                          [("X", 2, 5400.0), ("A", 3, 0.4)])
         self.assertIn("2 motions leave the travel", report["outcome"]["message"])
-        self.assertIn("travel        2 violations", run("simulate", far).stdout)
+        self.assertIn("travel        2 violations", ask("simulate", far).stdout)
 
     # motion.md 8.2: figures that scripts read from the report.
     def test_the_report_has_the_figures_of_motion(self):
@@ -82,7 +65,7 @@ class Local(unittest.TestCase):
                                  "MOVE (1000.,1000.,-400.,0.,0.)\nSPEED 8\nWORK 1,0/ON\n"
                                  "MOVE (1100.,1000.,-400.,0.,0.)/FLY\nMOVE (1100.,1100.,-400.,0.,0.)\nWORK 1,0/OFF\n"
                                  "SPEED 100\nMOVE (1101.,1100.,-400.,0.,0.)\n")
-        report = json.loads(run("simulate", part, "--json").stdout)
+        report = json.loads(ask("simulate", part, "--json").stdout)
         self.assertAlmostEqual(report["total"]["energyJPerMm"], 28.125, 6)
         self.assertEqual((report["corners"]["blended"], report["corners"]["stopped"]), ("1", "3"))
         self.assertEqual(report["corners"]["deviationPlace"]["step"], 7)
@@ -95,12 +78,12 @@ class Local(unittest.TestCase):
         self.assertAlmostEqual(x["peakSpeedShare"], x["peakSpeed"] / 500.0, 9)
         self.assertEqual(report["collisions"], "not modelled")
         self.assertEqual(report["programs"][0]["corners"], report["corners"])
-        text = run("simulate", part).stdout
+        text = ask("simulate", part).stdout
         for word in ("corners", "too slow", "peak speed", "28.125 J/mm"):
             self.assertIn(word, text)
 
     def test_simulate_prints_the_report_as_json(self):
-        done = run("simulate", self.file("square.rml", SQUARE), "--json")
+        done = ask("simulate", self.file("square.rml", SQUARE), "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
         report = json.loads(done.stdout)
         self.assertEqual(report["outcome"]["kind"], "KIND_COMPLETED")
@@ -108,27 +91,27 @@ class Local(unittest.TestCase):
     def test_simulate_fills_the_memory_from_a_folder(self):
         self.file("12.S", "CALL 13\nVR[1] = VR[0] + 1.\n")
         self.file("13.S", "VR[0] = 41.\n")
-        done = run("simulate", self.folder, "--main", 12, "--vars", "VR[0..1]", "--facts")
+        done = ask("simulate", self.folder, "--main", 12, "--vars", "VR[0..1]", "--facts")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertIn("variable.VR[1]: 42.0", done.stdout)
 
     def test_variables_are_shown_by_number(self):
-        done = run("simulate", self.file("v.S", "VR[2]=1E-7\nVR[10]=0.5\n"), "--vars", "VR[10],VI[3],VR[2]")
+        done = ask("simulate", self.file("v.S", "VR[2]=1E-7\nVR[10]=0.5\n"), "--vars", "VR[10],VI[3],VR[2]")
         shown = [line.split() for line in done.stdout.splitlines() if "[" in line]
         self.assertEqual(shown, [["VI[3]", "0"], ["VR[2]", "1.0E-7"], ["VR[10]", "0.5"]])
 
     def test_an_error_of_a_run_names_its_line(self):
-        done = run("simulate", self.file("d.S", "VR[1]=0\n\n; zero\nVR[0]=1/VR[1]\n"), "--json")
+        done = ask("simulate", self.file("d.S", "VR[1]=0\n\n; zero\nVR[0]=1/VR[1]\n"), "--json")
         place = [d["place"] for d in json.loads(done.stdout)["diagnostics"] if d["code"] == "OPT-E7201"][0]
         self.assertEqual((place["program"], place["step"], place["line"]), (1, 2, 4))
 
     def test_an_error_of_a_mill_is_told_once(self):
-        done = run("simulate", self.file("bad.rml", "PU0,0;QQ5;PD100,100;PU;"))
+        done = ask("simulate", self.file("bad.rml", "PU0,0;QQ5;PD100,100;PU;"))
         self.assertEqual(done.stdout.count("RML1-E1:"), 1, done.stdout)
 
     def test_inputs_over_time_reach_the_program(self):
         inputs = self.file("inputs.txt", "# the operator\n2.5 IL[20] = 1\n")
-        done = run("simulate", self.file("w.S", "WAIT IL[20]\nVI[2] = 7\n"), "--inputs", inputs, "--vars", "VI[2]",
+        done = ask("simulate", self.file("w.S", "WAIT IL[20]\nVI[2] = 7\n"), "--inputs", inputs, "--vars", "VI[2]",
                    "--json")
         report = json.loads(done.stdout)
         self.assertEqual(report["variables"], {"VI[2]": "7"})
@@ -136,7 +119,7 @@ class Local(unittest.TestCase):
 
     def test_the_picture_goes_to_standard_output_and_the_run_keeps_its_exit_code(self):
         state = self.folder / "state"
-        done = run("simulate", self.file("bad.S", "SPEED 20\nVR[0] = 1. / VR[1]\n"), "--svg", "-", "--state-out", state)
+        done = ask("simulate", self.file("bad.S", "SPEED 20\nVR[0] = 1. / VR[1]\n"), "--svg", "-", "--state-out", state)
         self.assertTrue(done.stdout.lstrip().startswith("<"), done.stdout[:80])
         self.assertEqual(done.returncode, 1)
         self.assertGreater(state.stat().st_size, 0)
@@ -147,7 +130,7 @@ class Local(unittest.TestCase):
         state = self.folder / "state"
 
         def report(*words):
-            done = run("simulate", part, "--json", "--state-out", state, *words)
+            done = ask("simulate", part, "--json", "--state-out", state, *words)
             self.assertIn(done.returncode, (0, 1), done.stderr)
             return json.loads(done.stdout)
 
@@ -169,15 +152,15 @@ class Local(unittest.TestCase):
         self.assertEqual(halts("--state-in", state, "--break", "off"), 0)
         self.assertEqual(halts("--state-in", state), 0)
         mill = self.file("a.rml", SQUARE)
-        self.assertEqual(run("simulate", mill, "--break", "off", "--simul", "off").returncode, 0)
-        self.assertEqual(run("simulate", part, "--break", "on").returncode, 2)
+        self.assertEqual(ask("simulate", mill, "--break", "off", "--simul", "off").returncode, 0)
+        self.assertEqual(ask("simulate", part, "--break", "on").returncode, 2)
 
     def test_a_machine_file_whose_values_do_not_fit_together_is_refused(self):
         for family, name, low, high in (("optimo", "a.S", "TRAVEL_X_MIN", "TRAVEL_X_MAX"), ("rml1", "a.rml", "X_MIN", "X_MAX")):
             program = self.file(name, "DELAY 1.\n" if family == "optimo" else "PU;")
             machine = self.file(f"{family}.toml", f'family = "{family}"\n[parameters]\n{low} = 100\n{high} = 50\n')
             for verb in ("simulate", "check"):
-                done = run(verb, program, "--machine", machine)
+                done = ask(verb, program, "--machine", machine)
                 self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
                 self.assertIn("CELL-E9011", done.stderr)
                 self.assertIn(f"{low} is 100", done.stderr)
@@ -187,34 +170,34 @@ class Local(unittest.TestCase):
         for family, profile, program in (("optimo", "pw-1993", self.file("a.S", "MOVE (100.0, 0.0, 0.0, 0.0, 0.0)\n")),
                                          ("rml1", "srm-20", self.file("square.rml", SQUARE))):
             words = ["--profile", profile]
-            listed = run("parameters", family, *words)
+            listed = ask("parameters", family, *words)
             self.assertEqual(listed.returncode, 0, listed.stderr)
             machine = self.file(f"{family}.toml", listed.stdout)
-            plain = run("simulate", program, "--facts", *words)
+            plain = ask("simulate", program, "--facts", *words)
             self.assertEqual(plain.returncode, 0, plain.stderr)
-            self.assertEqual(run("simulate", program, "--facts", "--machine", machine).stdout, plain.stdout)
+            self.assertEqual(ask("simulate", program, "--facts", "--machine", machine).stdout, plain.stdout)
         slow = self.file("slow.toml", (self.folder / "optimo.toml").read_text().replace("\nVMAX = ", "\nVMAX = 1 # "))
-        facts = run("simulate", self.folder / "a.S", "--facts", "--machine", slow).stdout
-        self.assertNotEqual(facts, run("simulate", self.folder / "a.S", "--facts").stdout)
-        self.assertIn("pw-1993", run("parameters").stdout)
-        self.assertEqual(run("parameters", "lathe").returncode, 2)
-        self.assertEqual(run("parameters", "rml1", "--profile", "none").returncode, 2)
+        facts = ask("simulate", self.folder / "a.S", "--facts", "--machine", slow).stdout
+        self.assertNotEqual(facts, ask("simulate", self.folder / "a.S", "--facts").stdout)
+        self.assertIn("pw-1993", ask("parameters").stdout)
+        self.assertEqual(ask("parameters", "lathe").returncode, 2)
+        self.assertEqual(ask("parameters", "rml1", "--profile", "none").returncode, 2)
 
     def test_the_picture_is_written(self):
         picture = self.folder / "p.svg"
-        self.assertEqual(run("simulate", self.file("square.rml", SQUARE), "--svg", picture).returncode, 0)
+        self.assertEqual(ask("simulate", self.file("square.rml", SQUARE), "--svg", picture).returncode, 0)
         self.assertIn("<svg", picture.read_text())
 
     def test_curves_over_time_are_written(self):
         plot = self.folder / "t.svg"
-        done = run("simulate", "--plot", "axes,speed", plot, self.file("square.rml", SQUARE))
+        done = ask("simulate", "--plot", "axes,speed", plot, self.file("square.rml", SQUARE))
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("tip speed", plot.read_text())
-        self.assertEqual(run("simulate", "--plot", "torque", plot, self.file("square.rml", SQUARE)).returncode, 2)
+        self.assertEqual(ask("simulate", "--plot", "torque", plot, self.file("square.rml", SQUARE)).returncode, 2)
 
     def test_samples_are_written(self):
         samples = self.folder / "s.csv"
-        done = run("simulate", self.file("square.rml", SQUARE), "--samples", "100", samples)
+        done = ask("simulate", self.file("square.rml", SQUARE), "--samples", "100", samples)
         self.assertEqual(done.returncode, 0, done.stderr)
         lines = samples.read_text().splitlines()
         self.assertTrue(lines[0].startswith("t_s,"))
@@ -222,13 +205,13 @@ class Local(unittest.TestCase):
         # One line each 10 ms, from the start on; events have lines of their own in between.
         even = [line.split(",")[0] for line in lines[1:] if line.endswith(",")]
         self.assertEqual(even[:3], ["0.000000000", "0.010000000", "0.020000000"])
-        self.assertEqual(run("simulate", self.file("square.rml", SQUARE), "--samples", "0", samples).returncode, 2)
+        self.assertEqual(ask("simulate", self.file("square.rml", SQUARE), "--samples", "0", samples).returncode, 2)
 
     def test_wrong_use_and_missing_files_are_told_apart_from_program_errors(self):
-        self.assertEqual(run("simulate", self.folder / "none.S").returncode, 2)
-        self.assertEqual(run("nonsense").returncode, 2)
-        self.assertEqual(run("explain", "OPT-E348").returncode, 0)
-        self.assertEqual(run("jobs", server="127.0.0.1:1").returncode, 3)
+        self.assertEqual(ask("simulate", self.folder / "none.S").returncode, 2)
+        self.assertEqual(ask("nonsense").returncode, 2)
+        self.assertEqual(ask("explain", "OPT-E348").returncode, 0)
+        self.assertEqual(ask("jobs", server="127.0.0.1:1").returncode, 3)
 
 
 class Refusals(unittest.TestCase):
@@ -241,12 +224,12 @@ class Refusals(unittest.TestCase):
         for name, text in (("a.S", "DELAY 1.\n"), ("b.S", "DELAY 2.\n"), ("a.rml", "PU;"), ("a.SI", "DELAY 1.\n"),
                            ("empty.S", ""), ("empty.rml", ""), ("notes.txt", "DELAY 1.\n"), ("1.S", "DELAY 1.\n")):
             (self.folder / name).write_text(text)
-        self.assertEqual(run("compile", self.folder / "a.S").returncode, 0)
+        self.assertEqual(ask("compile", self.folder / "a.S").returncode, 0)
         (self.folder / "an.O").write_bytes((self.folder / "a.O").read_bytes())
 
     def run_here(self, line):
         """In `line` an @ stands for the folder."""
-        return run(*(word.replace("@", f"{self.folder}/") for word in line.split()))
+        return ask(*(word.replace("@", f"{self.folder}/") for word in line.split()))
 
     def refused(self, rows):
         for line, code, text in rows:
@@ -364,7 +347,7 @@ class Sockets(unittest.TestCase):
                                         stderr=subprocess.PIPE, text=True)
 
             def answers():
-                return run("machines", server=f"unix:{socket}").returncode == 0
+                return ask("machines", server=f"unix:{socket}").returncode == 0
 
             first = server("one")
             self.addCleanup(first.communicate)
@@ -395,15 +378,15 @@ class Remote(unittest.TestCase):
             program.write_text(SQUARE)
             picture = pathlib.Path(folder) / "p.svg"
             at = self.cell.address
-            self.assertEqual(run("put", "mill-1", 7, program, server=at).returncode, 0)
-            done = run("submit", "mill-1", "--slot", 7, "--watch", server=at)
+            self.assertEqual(ask("put", "mill-1", 7, program, server=at).returncode, 0)
+            done = ask("submit", "mill-1", "--slot", 7, "--watch", server=at)
             self.assertEqual(done.returncode, 0, done.stderr)
             job = done.stdout.splitlines()[0]
             self.assertIn("completed", done.stdout.splitlines()[-1])
-            self.assertIn("completed", run("report", job, server=at).stdout)
-            self.assertEqual(run("picture", job, "-o", picture, server=at).returncode, 0)
+            self.assertIn("completed", ask("report", job, server=at).stdout)
+            self.assertEqual(ask("picture", job, "-o", picture, server=at).returncode, 0)
             self.assertIn("<svg", picture.read_text())
-            self.assertIn("succeeded", run("jobs", server=at).stdout)
+            self.assertIn("succeeded", ask("jobs", server=at).stdout)
 
     def test_what_reads_from_a_pipe_sees_each_event_when_it_happens(self):
         stub = self.cell.jobs()
@@ -421,8 +404,8 @@ class Remote(unittest.TestCase):
             program = pathlib.Path(folder) / "a.S"
             program.write_text("SPEED 20\nSPEED 101\n")
             at = self.cell.address
-            done = run("submit", "optimo-1", program, "--kind", "check", "--watch", server=at)
-            report = run("report", done.stdout.splitlines()[0], server=at).stdout
+            done = ask("submit", "optimo-1", program, "--kind", "check", "--watch", server=at)
+            report = ask("report", done.stdout.splitlines()[0], server=at).stdout
             self.assertIn("OPT-E7004", report)
             self.assertNotIn("cycle time", report)
 
@@ -431,8 +414,8 @@ class Remote(unittest.TestCase):
             program = pathlib.Path(folder) / "left-door.rml"
             program.write_text(SQUARE)
             at = self.cell.address
-            done = run("submit", "mill-1", program, "--watch", server=at)
-            report = json.loads(run("report", done.stdout.splitlines()[0], "--json", server=at).stdout)
+            done = ask("submit", "mill-1", program, "--watch", server=at)
+            report = json.loads(ask("report", done.stdout.splitlines()[0], "--json", server=at).stdout)
             self.assertEqual(report["title"], "left-door.rml")
 
     def test_a_project_is_made_of_a_folder(self):
@@ -442,27 +425,27 @@ class Remote(unittest.TestCase):
             (folder / "32.SI").write_text("COORD ABSOL\nMOVE (1.0, 0.0, 0.0, 0.0, 0.0)\n")
             (folder / "notes.txt").write_text("no program")
             (folder / "project.json").write_text('{"title": "Door", "laserSchedules": [{"number": 11}]}')
-            done = run("projects", "create", "door", folder, server=at)
+            done = ask("projects", "create", "door", folder, server=at)
             self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertIn("door", run("projects", "list", server=at).stdout)
-            kept = json.loads(run("projects", "show", "door", "--json", server=at).stdout)
+            self.assertIn("door", ask("projects", "list", server=at).stdout)
+            kept = json.loads(ask("projects", "show", "door", "--json", server=at).stdout)
             self.assertEqual([p["slot"] for p in kept["programs"]], [31, 32])
             self.assertEqual(kept["title"], "Door")
-            self.assertEqual(run("projects", "transfer", "door", "optimo-1", server=at).returncode, 0)
-            self.assertIn("MOVE (1.0,", run("get", "optimo-1", 32, server=at).stdout)  # his own text
+            self.assertEqual(ask("projects", "transfer", "door", "optimo-1", server=at).returncode, 0)
+            self.assertIn("MOVE (1.0,", ask("get", "optimo-1", 32, server=at).stdout)  # his own text
             # Named in the file, and so the only program; its bytes lie beside the file.
             (folder / "project.json").write_text('{"programs": [{"slot": 40, "source": {"fileName": "31.S"}}]}')
-            self.assertEqual(run("projects", "update", "door", folder, server=at).returncode, 0)
-            kept = json.loads(run("projects", "show", "door", "--json", server=at).stdout)
+            self.assertEqual(ask("projects", "update", "door", folder, server=at).returncode, 0)
+            kept = json.loads(ask("projects", "show", "door", "--json", server=at).stdout)
             self.assertEqual([p["slot"] for p in kept["programs"]], [40])
             (folder / "project.json").write_text('{"programs": [{"slot": 40, "source": {"fileName": "none.S"}}]}')
-            done = run("projects", "update", "door", folder, server=at)
+            done = ask("projects", "update", "door", folder, server=at)
             self.assertEqual(done.returncode, 2)
             self.assertIn("none.S", done.stderr)
-            self.assertEqual(run("projects", "delete", "door", server=at).returncode, 0)
-            self.assertNotIn("door", run("projects", "list", server=at).stdout)
+            self.assertEqual(ask("projects", "delete", "door", server=at).returncode, 0)
+            self.assertNotIn("door", ask("projects", "list", server=at).stdout)
             for words in (("show", "door"), ("delete", "projects/door")):
-                gone = run("projects", *words, server=at)
+                gone = ask("projects", *words, server=at)
                 self.assertEqual(gone.returncode, 3)
                 self.assertIn("CELL-E9004", gone.stderr)
 

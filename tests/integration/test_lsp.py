@@ -11,7 +11,8 @@ import threading
 import time
 import unittest
 
-BIN = pathlib.Path(os.environ["RMLCELL_BIN"]).resolve()
+from command import BIN, ask, run
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PATIENCE_S = 60
 
@@ -193,7 +194,7 @@ class Features(Session):
         source = self.folder / "12.S"
         text = (ROOT / "deploy" / "examples" / "bracket.S").read_text() + "VR[98] = 1.\nGOTO 77\nMOVE (1,2,3)\n"
         source.write_text(text)
-        done = subprocess.run([BIN / "rmlcell", "check", source, "--json"], capture_output=True, text=True)
+        done = ask("check", source, "--json")
         wanted = [(one["code"], one["place"]["line"] - 1, one["place"]["column"] - 1)
                   for one in json.loads(done.stdout)["diagnostics"]]
         self.editor.open("12.S", text)
@@ -254,7 +255,7 @@ class Features(Session):
             "textDocument": {"uri": self.editor.uri("12.S")}, "options": {"tabSize": 4, "insertSpaces": True}})
         source = self.folder / "a.S"
         source.write_text(text)
-        subprocess.run([BIN / "rmlcell", "format", source], check=True, capture_output=True)
+        run("format", source)
         self.assertEqual(applied(text, edits), source.read_text())
 
     # OPT-7.37, OPT-7.91

@@ -1,36 +1,26 @@
 """What a mill leaves of a block: rmlcell simulate --stock and all that goes with it (docs/material.md)."""
 import json
-import os
-import pathlib
 import struct
-import subprocess
-import tempfile
 import unittest
 import urllib.error
 import urllib.request
 import zlib
 
 from cell import Cell, inline_job, job_pb2, submit, wait_for_end
-
-BIN = pathlib.Path(os.environ["RMLCELL_BIN"])
+from command import InFolder, ask, run
 
 # A groove of 20 mm along X, 1 mm deep, with clearance on the way. 100 units a mm; along the middle of cells of 0.2 mm.
 GROOVE = "VS10;!VZ10;!PZ-100,200;!MC1;PU2010,1510;PD4010,1510;PU0,0;!MC0;"
 BLOCK = ("--stock", "60x30x5", "--tool", "flat:3", "--cell", "0.2")
 
 
-class Material(unittest.TestCase):
+class Material(InFolder):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        self.groove = self.folder / "groove.rml"
-        self.groove.write_text(GROOVE)
+        super().setUp()
+        self.groove = self.file("groove.rml", GROOVE)
 
     def simulate(self, *words, program=None):
-        return subprocess.run([BIN / "rmlcell", "simulate", program or self.groove, "--profile", "t1", *map(str, words)],
-                              capture_output=True, text=True, timeout=120,
-                              env={**os.environ, "NO_COLOR": "1"})
+        return ask("simulate", program or self.groove, "--profile", "t1", *words)
 
     def good(self, *words, **more):
         done = self.simulate(*BLOCK, *words, **more)
@@ -182,10 +172,7 @@ class Tools(Material):
         high = self.simulate("--clamps", "3", "--strict")
         self.assertEqual(high.returncode, 1)
         self.assertIn("RML1-E8018", high.stdout)
-        check = subprocess.run([BIN / "rmlcell", "check", self.groove, "--profile", "t1", "--clamps", "3", "--strict"],
-                               capture_output=True, text=True, timeout=60, env={**os.environ, "NO_COLOR": "1"})
-        self.assertEqual(check.returncode, 1)
-        self.assertIn("RML1-E8018", check.stdout)
+        self.assertIn("RML1-E8018", run("check", self.groove, "--profile", "t1", "--clamps", "3", "--strict", code=1))
         laser = self.folder / "a.S"
         laser.write_text("EXIT\n")
         refused = self.simulate("--clamps", "3", program=laser)
@@ -309,9 +296,7 @@ class Jobs(Material):
         for name, (option, media_type) in self.FILES.items():
             path = self.folder / name
             more = ("--stl-tolerance", "0.05") if option == "--stl" else ()
-            done = subprocess.run([BIN / "rmlcell", "simulate", self.groove, "--profile", "srm-20", *BLOCK, option, path, *more],
-                                  capture_output=True, text=True, timeout=120)
-            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            run("simulate", self.groove, "--profile", "srm-20", *BLOCK, option, path, *more)
             got = self.folder / "got"
             self.cell.command("artifact", job, name, "-o", got)
             self.assertEqual(got.read_bytes(), path.read_bytes(), name)

@@ -1,45 +1,17 @@
 #!/usr/bin/env python3
 """The tools for streams of mills, from the command line."""
 import json
-import os
-import pathlib
 import re
 import struct
-import subprocess
-import tempfile
 import unittest
 import zlib
 
-BIN = pathlib.Path(os.environ["RMLCELL_BIN"])
-
-
-def ask(*words):
-    return subprocess.run([BIN / "rmlcell", *map(str, words)], capture_output=True, text=True, timeout=120,
-                          env={**os.environ, "NO_COLOR": "1"})
-
-
-def run(*words, code=0):
-    done = ask(*words)
-    assert done.returncode == code, (words, done.returncode, done.stdout, done.stderr)
-    return done.stdout
-
+from command import InFolder, ask, run
 
 STREAM = "PA;VS4;!VZ2;!PZ-50,200;!MC1;PU100,100;PD500,100,500,300;PU0,0;!MC0;\n"
 
 
-class Tools(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def file(self, name, content):
-        path = self.folder / name
-        path.write_text(content)
-        return path
-
-
-class Explain(Tools):
+class Explain(InFolder):
     def test_each_command_has_its_place_and_its_meaning(self):
         told = run("rml1", "explain", self.file("a.rml", STREAM), "--profile", "srm-20").splitlines()
         self.assertEqual(told[0].split()[:3], ["byte", "command", "text"])
@@ -79,7 +51,7 @@ class Explain(Tools):
         run("rml1", "explain", self.folder / "a.rml", "--machine", laser, code=2)
 
 
-class Gcode(Tools):
+class Gcode(InFolder):
     def facts(self, stream):
         return run("simulate", stream, "--profile", "srm-20", "--facts")
 
@@ -126,7 +98,7 @@ class Gcode(Tools):
         run("rml1", "from-gcode", source, "--tolerance", "0", "-o", "-", code=2)
 
 
-class Rewriting(Tools):
+class Rewriting(InFolder):
     def test_move(self):
         source = self.file("a.rml", "PU100,100; PD200,+50 ;PR5,5;")
         self.assertEqual(run("rml1", "move", source, "--by", "1,-0.5"), "PU200,50; PD300,0 ;PR5,5;")
@@ -177,7 +149,7 @@ class Rewriting(Tools):
         run("rml1", "tile", self.folder / "a.rml", "--columns", 0, "-o", "-", code=2)
 
 
-class Families(Tools):
+class Families(InFolder):
     """A stream is no text of another machine, whatever tool is given it."""
 
     def test_tools_for_texts_refuse_streams(self):
@@ -222,7 +194,7 @@ class Families(Tools):
         run("diff", a, a, "--profile", "none-of-them", code=2)
 
 
-class FromPng(Tools):
+class FromPng(InFolder):
     def png(self, name, rows, dpi=None):
         """Lines of '#' for white; the uppermost first."""
         def chunk(kind, data):
