@@ -18,6 +18,7 @@
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
 #include "proto/bridge/setup.h"
+#include "proto/bridge/spooled_bytes.h"
 #include "rmlcell/v1/job.pb.h"
 
 namespace rmlcell::cli {
@@ -63,10 +64,10 @@ Status CheckMotions(const std::vector<CheckedFile*>& files, const machine::Input
 }
 
 Status Translate(CheckedFile& file, const CheckOptions& options) {
-  Result<std::string> text = bridge::ReadFile(file.name, kFileBytesMax);
+  Result<machine::Bytes> text = bridge::ReadProgram(file.name, kFileBytesMax);
   if (!text) return text.error();
-  if (text->empty()) return Error{ErrorCode::kCellEmptyProgram, file.name, {}};
-  file.text = std::make_shared<const std::string>(*std::move(text));
+  if ((*text)->empty()) return Error{ErrorCode::kCellEmptyProgram, file.name, {}};
+  file.text = *std::move(text);
   file.translation =
       simulation::TranslateProgram(*file.family, *file.parameters,
                                    {.file_name = file.name, .bytes = file.text, .is_source = true},
@@ -130,7 +131,7 @@ int FixFiles(const std::vector<CheckedFile>& files, const CheckOptions& options)
       const std::string bytes(source.bytes);
       return simulation::TranslateProgram(*file.family, *file.parameters,
                                           {.file_name = std::string(source.name),
-                                           .bytes = simulation::Borrowed(bytes),
+                                           .bytes = machine::Bytes::Borrowed(bytes),
                                            .is_source = true},
                                           {.advice = !options.errors_only});
     };

@@ -21,6 +21,7 @@
 #include "proto/bridge/framing.h"
 #include "proto/bridge/report.h"
 #include "proto/bridge/setup.h"
+#include "proto/bridge/spooled_bytes.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -158,7 +159,7 @@ Status AddExecutables(const SimulateOptions& options, const machine::MachineFami
                    "--executable " + text + ": there is no program " + std::to_string(*slot),
                    {}};
     }
-    program->executable = std::make_shared<const std::string>(*std::move(bytes));
+    program->executable = machine::Bytes::Of(*std::move(bytes));
   }
   return {};
 }
@@ -176,7 +177,7 @@ Status MakeExecutable(const machine::MachineFamily& family, machine::RunSetup& s
     return Error{
         (*run)->outcome().code.value_or(family.info().empty_slot), (*run)->outcome().detail, {}};
   }
-  setup.programs[slot].executable = std::make_shared<const std::string>(found->second);
+  setup.programs[slot].executable = machine::Bytes::Of(found->second);
   return {};
 }
 
@@ -209,7 +210,7 @@ int TellWhyNot(const SimulateOptions& options, const LoadedFiles& loaded,
 // The files that were asked for. A picture or plot that goes to standard output ("-") is not
 // written here.
 Status WriteProducts(const SimulateOptions& options, const simulation::SimulationResult& result,
-                     const std::string& toolpath) {
+                     const machine::Bytes& toolpath) {
   if (result.material) {
     if (const Status written = WriteMaterial(*result.material, result.target, options.milling);
         !written)
@@ -219,15 +220,17 @@ Status WriteProducts(const SimulateOptions& options, const simulation::Simulatio
     std::string file;
     std::string_view bytes;
     bool may_be_output = false;
+    const machine::BytesKeeper* keeper = nullptr;
   };
   const Product products[] = {
-      {options.toolpath, toolpath},
+      {options.toolpath, *toolpath, false, toolpath.keeper()},
       {options.plot.empty() ? std::string() : options.plot[1], result.plot, true},
       {options.svg, result.svg, true},
       {options.state_out, result.machine_state}};
   for (const Product& product : products) {
     if (product.file.empty() || (product.may_be_output && product.file == "-")) continue;
-    if (const Status written = WriteWholeFile(product.file, product.bytes); !written)
+    if (const Status written = WriteWholeFile(product.file, product.bytes, product.keeper);
+        !written)
       return written.error();
   }
   return {};
@@ -320,7 +323,7 @@ int Simulate(const SimulateOptions& options) {
   }
   request.products.picture = !options.svg.empty();
   request.picture.machine_frame = options.machine_coordinates;
-  std::string toolpath;
+  bridge::SpooledBytes toolpath;
   if (!options.toolpath.empty()) {
     request.products.toolpath = [&toolpath](std::string_view block) {
       bridge::AddFrame(block, toolpath);
@@ -370,7 +373,7 @@ int Simulate(const SimulateOptions& options) {
   progress.Clear();
   if (!result) return Refuse(result.error());
 
-  if (const Status written = WriteProducts(options, *result, toolpath); !written)
+  if (const Status written = WriteProducts(options, *result, toolpath.Finish()); !written)
     return Refuse(written.error());
   if (samples.is_open()) {
     samples.close();

@@ -18,6 +18,7 @@
 #include "engine/core/units.h"
 #include "engine/families/families.h"
 #include "proto/bridge/files.h"
+#include "proto/bridge/spooled_bytes.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -26,13 +27,13 @@ namespace fs = std::filesystem;
 
 Result<simulation::MemoryProgram> ReadProgram(const std::string& file, int slot,
                                               bool may_be_empty) {
-  Result<std::string> bytes = bridge::ReadFile(file, kFileBytesMax);
+  Result<machine::Bytes> bytes = bridge::ReadProgram(file, kFileBytesMax);
   if (!bytes) return bytes.error();
-  if (bytes->empty() && !may_be_empty) return Error{ErrorCode::kCellEmptyProgram, file, {}};
+  if ((*bytes)->empty() && !may_be_empty) return Error{ErrorCode::kCellEmptyProgram, file, {}};
   return simulation::MemoryProgram{.slot = slot,
                                    .name = fs::path(file).stem().string(),
                                    .file_name = file,
-                                   .bytes = std::make_shared<const std::string>(std::move(*bytes)),
+                                   .bytes = *std::move(bytes),
                                    .is_source = true,
                                    .executable = nullptr};
 }
@@ -95,7 +96,8 @@ Status PlaceWork(const MachineChoice& choice, const machine::MachineFamily& fami
   return {};
 }
 
-Status WriteWholeFile(const std::string& path, std::string_view bytes) {
+Status WriteWholeFile(const std::string& path, std::string_view bytes,
+                      const machine::BytesKeeper* keeper) {
   const auto failed = [&](int error) {
     return Error{
         ErrorCode::kCellFileUnwritable, path + ": " + std::generic_category().message(error), {}};
@@ -119,8 +121,10 @@ Status WriteWholeFile(const std::string& path, std::string_view bytes) {
   const mode_t mode = stat(target.c_str(), &before) == 0 ? before.st_mode & 07777U : 0666U & ~mask;
   bool good = fchmod(file, mode) == 0;
   while (good && !bytes.empty()) {
-    const ssize_t written = write(file, bytes.data(), bytes.size());
+    const ssize_t written =
+        write(file, bytes.data(), std::min(bytes.size(), machine::kReleaseEvery));
     good = written > 0;
+    if (keeper != nullptr) keeper->Release();
     if (good) bytes.remove_prefix(static_cast<std::size_t>(written));
   }
   good = good && fsync(file) == 0;

@@ -56,8 +56,10 @@ Status PlaceWork(const MachineChoice& choice, const machine::MachineFamily& fami
                  std::map<std::string, std::string>& parameters);
 
 // Writes a file whole or not at all: what stood under this name before is there until the new one
-// is on the disk, and keeps its mode. Error: CellFileUnwritable.
-Status WriteWholeFile(const std::string& path, std::string_view bytes);
+// is on the disk, and keeps its mode. `keeper`: of the bytes, told while they are written. Error:
+// CellFileUnwritable.
+Status WriteWholeFile(const std::string& path, std::string_view bytes,
+                      const machine::BytesKeeper* keeper = nullptr);
 
 // The family by id, or by the file name.
 Result<const machine::MachineFamily*> FamilyFor(const std::string& id,

@@ -47,7 +47,7 @@ Status AddNumberedPrograms(const std::string& folder, v1::Project& project) {
     v1::ProjectProgram& program = *project.add_programs();
     program.set_slot(found.slot);
     program.mutable_source()->set_file_name(fs::path(found.file_name).filename().string());
-    program.mutable_source()->set_content(*found.bytes);
+    program.mutable_source()->set_content(std::string(*found.bytes));
   }
   return {};
 }

@@ -20,6 +20,7 @@
 #include "engine/rml1/offline/to_gcode.h"
 #include "proto/bridge/files.h"
 #include "proto/bridge/findings.h"
+#include "proto/bridge/spooled_bytes.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -27,7 +28,7 @@ namespace {
 constexpr std::string_view kFamily = "rml1";
 
 struct MillProgram {
-  std::string bytes;
+  machine::Bytes bytes;
   machine::Parameters parameters;
 };
 
@@ -53,9 +54,9 @@ Result<MillProgram> ReadStream(const MillToolOptions& options) {
   }
   Result<machine::Parameters> parameters = MillParameters(options);
   if (!parameters) return parameters.error();
-  Result<std::string> bytes = bridge::ReadFile(options.file, kFileBytesMax);
+  Result<machine::Bytes> bytes = bridge::ReadProgram(options.file, kFileBytesMax);
   if (!bytes) return bytes.error();
-  if (bytes->empty()) return Error{ErrorCode::kCellEmptyProgram, options.file, {}};
+  if ((*bytes)->empty()) return Error{ErrorCode::kCellEmptyProgram, options.file, {}};
   return MillProgram{*std::move(bytes), *std::move(parameters)};
 }
 
@@ -130,8 +131,13 @@ int ExplainStream(const MillToolOptions& options) {
   if (!program) return Refuse(program.error());
   const bool colour = ColourOnOutput();
   if (!options.json) Print("     byte  command  text                      what it does");
+  std::int64_t released = 0;
   const Status told =
-      rml1::Explain(program->bytes, program->parameters, [&](const rml1::ExplainedPhrase& phrase) {
+      rml1::Explain(*program->bytes, program->parameters, [&](const rml1::ExplainedPhrase& phrase) {
+        if (phrase.offset - released > static_cast<std::int64_t>(machine::kReleaseEvery)) {
+          program->bytes.Release();
+          released = phrase.offset;
+        }
         if (options.json) {
           PrintPhraseJson(phrase);
         } else {
@@ -145,10 +151,10 @@ int ExplainStream(const MillToolOptions& options) {
 int StreamToGcode(const MillToolOptions& options) {
   const Result<MillProgram> program = ReadStream(options);
   if (!program) return Refuse(program.error());
-  Result<rml1::GcodeText> made = rml1::ToGcode(program->bytes, program->parameters);
+  Result<rml1::GcodeText> made = rml1::ToGcode(*program->bytes, program->parameters);
   ToolAnswer answer(options.file, options.json);
   if (!made) return FailedAt(made.error(), options.file, answer);
-  Found(made->findings, made->findings_dropped, options.file, program->bytes, answer);
+  Found(made->findings, made->findings_dropped, options.file, *program->bytes, answer);
   return answer.Deliver(made->text, OutputOr(options, ".nc"),
                         Bytes(static_cast<std::int64_t>(made->text.size())) + " of G-code");
 }
@@ -174,10 +180,11 @@ int MoveMillStream(const MoveToolOptions& options) {
   if (!program) return Refuse(program.error());
   std::array<double, 3> by_mm{};
   std::ranges::copy(options.by_mm, by_mm.begin());
-  Result<rml1::RewrittenStream> made = rml1::MoveStream(program->bytes, program->parameters, by_mm);
+  Result<rml1::RewrittenStream> made =
+      rml1::MoveStream(*program->bytes, program->parameters, by_mm);
   ToolAnswer answer(options.file, options.json);
   if (!made) return FailedAt(made.error(), options.file, answer);
-  Found(made->findings, 0, options.file, program->bytes, answer);
+  Found(made->findings, 0, options.file, *program->bytes, answer);
   const auto& moved = made->moved_mm;
   return answer.Deliver(made->stream, OutputOr(options, nullptr),
                         "moved by " + Fixed(moved[0], 3) + "," + Fixed(moved[1], 3) + "," +
@@ -188,7 +195,7 @@ int ScaleMillStream(const StepsToolOptions& options) {
   const Result<MillProgram> program = ReadStream(options);
   if (!program) return Refuse(program.error());
   const Result<rml1::RewrittenStream> made =
-      rml1::ScaleStream(program->bytes, program->parameters, options.from, options.to);
+      rml1::ScaleStream(*program->bytes, program->parameters, options.from, options.to);
   ToolAnswer answer(options.file, options.json);
   if (!made) return FailedAt(made.error(), options.file, answer);
   return answer.Deliver(made->stream, OutputOr(options, nullptr),
@@ -198,7 +205,7 @@ int ScaleMillStream(const StepsToolOptions& options) {
 int TileMillStream(const TileToolOptions& options) {
   const Result<MillProgram> program = ReadStream(options);
   if (!program) return Refuse(program.error());
-  const Result<rml1::TiledStream> made = rml1::TileStream(program->bytes, program->parameters,
+  const Result<rml1::TiledStream> made = rml1::TileStream(*program->bytes, program->parameters,
                                                           {.columns = options.columns,
                                                            .rows = options.rows,
                                                            .gap_mm = options.gap_mm,

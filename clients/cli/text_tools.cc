@@ -152,10 +152,10 @@ int Link(const LinkOptions& options) {
       return std::nullopt;
     }
     const FileForm form = tools.FormOf(program->file_name, *program->bytes);
-    if (form == FileForm::kObject) return objects[slot] = *program->bytes;
-    const auto compiled =
-        CompileFile(program->file_name, {*family, *program->bytes, form == FileForm::kInchSource},
-                    {.advice = false}, answer);
+    if (form == FileForm::kObject) return objects[slot] = std::string(*program->bytes);
+    const auto compiled = CompileFile(
+        program->file_name, {*family, std::string(*program->bytes), form == FileForm::kInchSource},
+        {.advice = false}, answer);
     if (!compiled) {
       good = false;
       return std::nullopt;

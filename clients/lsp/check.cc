@@ -53,7 +53,7 @@ Findings CheckDocument(const Document& document) {
   machine::Translation translation =
       simulation::TranslateProgram(family, machine::Parameters(family.parameters()),
                                    {.file_name = FileNameOfUri(document.uri()),
-                                    .bytes = simulation::Borrowed(text),
+                                    .bytes = machine::Bytes::Borrowed(text),
                                     .is_source = true},
                                    {.advice = true, .unconverted = true});
   return {std::move(translation.diagnostics), translation.diagnostics_dropped};

@@ -44,8 +44,8 @@ TransferPlan MachineFamily::PlanTransfer(const ProjectBundle& project, const Par
         plan.diagnostics.push_back(std::move(diagnostic));
     }
     plan.ok = plan.ok && translation.ok;
-    plan.programs.push_back(
-        {.slot = slot, .source = translation.object, .object = std::move(translation.object)});
+    std::string object = ObjectOf(std::move(translation), program.file.bytes);
+    plan.programs.push_back({.slot = slot, .source = object, .object = object});
   }
   if (!plan.ok) plan.programs.clear();  // every program or none
   return plan;

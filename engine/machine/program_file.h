@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/core/diagnostic.h"
@@ -15,19 +16,27 @@ namespace rmlcell::machine {
 struct SourceFile {
   std::string name{};  // decides units: .SI is inch
   std::string_view bytes{};
-  bool is_object = false;  // whatever the name says
+  const BytesKeeper* keeper = nullptr;  // of the bytes, where whoever reads may release them
+  bool is_object = false;               // whatever the name says
 };
 
 // What the machine would store, and what there is to say about it.
 struct Translation {
   bool ok = false;  // false: nothing may be stored
   std::string object{};
+  // The machine keeps the bytes of the file as they came: `object` has no copy of them.
+  bool as_it_came = false;
   std::vector<Diagnostic> diagnostics{};  // in order of place; at most kDiagnosticsMax
   std::uint64_t diagnostics_dropped = 0;
   std::vector<Figure> figures{};  // "steps", "object_bytes" ...
   SourceNotes source{};           // empty: not asked for, or none
 };
 inline constexpr std::size_t kDiagnosticsMax = 1000;
+
+// What the machine keeps of a good translation of these bytes.
+inline std::string ObjectOf(Translation translation, std::string_view bytes) {
+  return translation.as_it_came ? std::string(bytes) : std::move(translation.object);
+}
 
 struct CheckOptions {
   bool advice = true;   // lint findings of severity warning and advice

@@ -9,14 +9,11 @@
 
 #include "engine/core/diagnostic.h"
 #include "engine/core/units.h"
+#include "engine/machine/bytes.h"
 #include "engine/machine/inputs.h"
 #include "engine/machine/parameters.h"
 
 namespace rmlcell::machine {
-
-// A program as the machine keeps it: object bytes of an Optimo program, the raw stream of a mill.
-// Shared, because a stream may be of hundreds of megabytes and several runs read it.
-using Bytes = std::shared_ptr<const std::string>;
 
 // What is known of the text that a program was made from.
 struct SourceNotes {
@@ -27,7 +24,7 @@ struct SourceNotes {
 struct StoredProgram {
   std::string name{};
   Bytes object{};
-  Bytes executable{};                           // at slot + 100; null when none was made
+  Bytes executable{};                           // at slot + 100; nothing when none was made
   std::shared_ptr<const SourceNotes> source{};  // null when no source is known
 };
 

@@ -258,12 +258,23 @@ std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& phy
   return figures;
 }
 
-void PlaceFigures(std::string_view stream, int program, std::vector<machine::Figure>& figures) {
-  LineCounter lines;
+void PlaceFigures(std::string_view stream, const machine::BytesKeeper* keeper, int program,
+                  std::vector<machine::Figure>& figures) {
+  std::vector<machine::Figure*> placed;
   for (machine::Figure& figure : figures) {
-    if (figure.first.step == 0) continue;
-    figure.first.program = program;
-    figure.first.line = lines.At(stream, figure.first.byte_offset, 0).line;
+    if (figure.first.step != 0) placed.push_back(&figure);
+  }
+  std::ranges::sort(placed, {}, [](const machine::Figure* one) { return one->first.byte_offset; });
+  LineCounter lines;
+  std::int64_t read = 0;
+  for (machine::Figure* figure : placed) {
+    constexpr auto kPart = static_cast<std::int64_t>(machine::kReleaseEvery);
+    for (; figure->first.byte_offset - read > kPart; read += kPart) {
+      lines.At(stream, read + kPart, 0);
+      if (keeper != nullptr) keeper->Release();
+    }
+    figure->first.program = program;
+    figure->first.line = lines.At(stream, figure->first.byte_offset, 0).line;
   }
 }
 

@@ -21,6 +21,7 @@ std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& phy
                                        std::optional<std::uint64_t> starved = {});
 
 // Gives the places of figures their program and line.
-void PlaceFigures(std::string_view stream, int program, std::vector<machine::Figure>& figures);
+void PlaceFigures(std::string_view stream, const machine::BytesKeeper* keeper, int program,
+                  std::vector<machine::Figure>& figures);
 
 }  // namespace rmlcell::rml1

@@ -85,13 +85,10 @@ class Rehearsal {
     tool_ = device_.carriage().physical();
   }
 
-  void Run(std::string_view stream) {
-    std::int64_t offset = 0;
-    for (const char c : stream) {
-      device_.Receive(static_cast<unsigned char>(c), offset++, findings_);
-      while (device_.Step(findings_)) {
-        while (!device_.actions().empty()) CarryOut();
-      }
+  void Run(const machine::SourceFile& file) {
+    for (std::size_t at = 0; at < file.bytes.size(); at += machine::kReleaseEvery) {
+      Read(file.bytes.substr(at, machine::kReleaseEvery), static_cast<std::int64_t>(at));
+      if (file.keeper != nullptr) file.keeper->Release();
     }
     device_.EndOfData();
     if (!device_.pending()) return;
@@ -103,6 +100,14 @@ class Rehearsal {
   std::vector<machine::Figure> Figures() const { return FiguresOf(device_, physical_, true); }
 
  private:
+  void Read(std::string_view part, std::int64_t offset) {
+    for (const char c : part) {
+      device_.Receive(static_cast<unsigned char>(c), offset++, findings_);
+      while (device_.Step(findings_)) {
+        while (!device_.actions().empty()) CarryOut();
+      }
+    }
+  }
   void CarryOut() {
     const Action action = device_.actions().front();
     device_.actions().Pop();
@@ -189,7 +194,7 @@ machine::Translation MillFamily::Translate(const machine::SourceFile& file,
 
   Findings findings(file, options.advice, translation);
   Rehearsal rehearsal(*profile, findings);
-  rehearsal.Run(file.bytes);
+  rehearsal.Run(file);
   const double foreign_percent = rehearsal.device().foreign_percent();
   if (foreign_percent > kForeignShareMax_percent && !options.forced) {
     translation.figures = rehearsal.Figures();
@@ -201,9 +206,9 @@ machine::Translation MillFamily::Translate(const machine::SourceFile& file,
     return translation;
   }
   translation.ok = true;
-  translation.object = std::string(file.bytes);
+  translation.as_it_came = true;
   translation.figures = rehearsal.Figures();
-  PlaceFigures(file.bytes, 0, translation.figures);
+  PlaceFigures(file.bytes, file.keeper, 0, translation.figures);
   translation.figures.push_back(
       {.name = "object_bytes", .unit = "bytes", .value = static_cast<double>(file.bytes.size())});
   return translation;

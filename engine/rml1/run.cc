@@ -84,7 +84,7 @@ MillRun::MillRun(machine::RunSetup setup, std::shared_ptr<const Profile> profile
   state_.place.program = setup_.main_program;
   const auto found = setup_.programs.find(setup_.main_program);
   if (found != setup_.programs.end()) program_ = found->second.object;
-  if (program_ == nullptr) {
+  if (!program_) {
     CloseWith(OutcomeKind::kFailed, ErrorCode::kCellNotFound,
               "no program in slot " + std::to_string(setup_.main_program));
   }
@@ -97,9 +97,7 @@ void MillRun::PutTool() {
   state_.ahead = LookAhead(profile(), state_.tool, state_.override_percent);
 }
 
-std::string_view MillRun::stream() const {
-  return program_ == nullptr ? std::string_view() : std::string_view(*program_);
-}
+std::string_view MillRun::stream() const { return *program_; }
 
 SimTime MillRun::NextInputTime() const {
   return state_.next_input < setup_.inputs.size() ? setup_.inputs[state_.next_input].at : kForever;
@@ -109,6 +107,10 @@ SimTime MillRun::NextInputTime() const {
 // caller then comes first, as a scripted one of that time would.
 RunPhase MillRun::Advance(SimTime until) {
   State& s = state_;
+  if (s.scout.sent() >= released_ + machine::kReleaseEvery) {
+    program_.Release();
+    released_ = s.scout.sent();
+  }
   const std::size_t sent_max = s.sender.sent() + kBytesPerAdvance;
   const std::size_t ahead_max = s.scout.sent() + kBytesPerAdvance;
   const SimTime limit =
@@ -410,7 +412,7 @@ std::vector<machine::Figure> MillRun::figures() const {
       state_.device, state_.physical,
       state_.phase == RunPhase::kFinished && state_.outcome.kind == OutcomeKind::kCompleted,
       state_.ahead.starved());
-  PlaceFigures(stream(), setup_.main_program, figures);
+  PlaceFigures(stream(), program_.keeper(), setup_.main_program, figures);
   return figures;
 }
 

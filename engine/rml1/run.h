@@ -153,6 +153,7 @@ class MillRun final : public machine::Run {
   const machine::RunSetup setup_;
   CommandHalts halts_;
   machine::Bytes program_;
+  std::size_t released_ = 0;  // bytes that were read up to the last release
   machine::RunObserver& observer_;
   State state_;
 };

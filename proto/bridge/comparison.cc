@@ -50,7 +50,7 @@ std::optional<std::string> ObjectOf(const machine::MachineFamily& family,
                                     const machine::Parameters& parameters,
                                     std::vector<Diagnostic>& found, std::uint64_t& dropped) {
   const machine::FileForm form = FormOf(family, program);
-  if (form == machine::FileForm::kObject) return *program.bytes;
+  if (form == machine::FileForm::kObject) return std::string(*program.bytes);
   machine::CompiledProgram compiled =
       family.tools()->Compile({.name = program.file_name, .bytes = *program.bytes}, parameters,
                               {.advice = false, .inch = form == machine::FileForm::kInchSource});

@@ -3,16 +3,101 @@
 #include <google/protobuf/io/coded_stream.h>
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
 #include <google/protobuf/message.h>
+#include <google/protobuf/util/field_mask_util.h>
 #include <google/protobuf/util/json_util.h>
 #include <google/protobuf/util/type_resolver.h>
 #include <google/protobuf/util/type_resolver_util.h>
 
+#include <algorithm>
 #include <memory>
+#include <string_view>
+#include <vector>
 
 namespace rmlcell::bridge {
 namespace {
 
+namespace pb = google::protobuf;
+
 constexpr const char* kUrlPrefix = "type.googleapis.com";
+// The printer of protobuf holds a tree of all that it prints, 100 times the text of a small
+// message. A list that is longer is printed entry by entry.
+constexpr int kWholeListMax = 100;
+
+std::optional<std::string> Printed(const pb::Message& message, bool whitespace) {
+  // The printer follows the bytes, so their order is its order.
+  static const std::unique_ptr<pb::util::TypeResolver> resolver(
+      pb::util::NewTypeResolverForDescriptorPool(kUrlPrefix, pb::DescriptorPool::generated_pool()));
+  pb::util::JsonPrintOptions options;
+  options.always_print_primitive_fields = true;
+  options.add_whitespace = whitespace;
+  std::string json;
+  const auto status = pb::util::BinaryToJsonString(
+      resolver.get(), std::string(kUrlPrefix) + "/" + message.GetDescriptor()->full_name(),
+      StableBytes(message), &json, options);
+  if (!status.ok()) return std::nullopt;
+  return json;
+}
+
+// The place behind `"name":` among the fields of the outermost object.
+std::size_t ValueOf(std::string_view json, std::string_view name) {
+  const std::string key = '"' + std::string(name) + "\":";
+  int depth = 0;
+  bool in_text = false;
+  for (std::size_t at = 0; at < json.size(); ++at) {
+    const char c = json[at];
+    if (in_text) {
+      if (c == '\\') ++at;
+      in_text = c != '"';
+    } else if (c == '"') {
+      if (depth == 1 && json.substr(at, key.size()) == key) return at + key.size();
+      in_text = true;
+    } else if (c == '{' || c == '[') {
+      ++depth;
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+  return std::string_view::npos;
+}
+
+// Fields of `message` with so many entries that they are printed by themselves.
+std::vector<const pb::FieldDescriptor*> LongLists(const pb::Message& message) {
+  std::vector<const pb::FieldDescriptor*> fields;
+  message.GetReflection()->ListFields(message, &fields);
+  std::erase_if(fields, [&](const pb::FieldDescriptor* field) {
+    return !field->is_repeated() || field->is_map() ||
+           field->cpp_type() != pb::FieldDescriptor::CPPTYPE_MESSAGE ||
+           message.GetReflection()->FieldSize(message, field) <= kWholeListMax;
+  });
+  return fields;
+}
+
+// The entries of a list, as they stand between its brackets.
+std::optional<std::string> Entries(const pb::Message& message, const pb::FieldDescriptor* field,
+                                   bool whitespace) {
+  constexpr std::string_view kIndent = "  ";
+  std::string text;
+  const int count = message.GetReflection()->FieldSize(message, field);
+  for (int entry = 0; entry < count; ++entry) {
+    const std::optional<std::string> one =
+        Printed(message.GetReflection()->GetRepeatedMessage(message, field, entry), whitespace);
+    if (!one) return std::nullopt;
+    if (entry > 0) text += ',';
+    if (!whitespace) {
+      text += *one;
+      continue;
+    }
+    text += '\n';
+    for (std::string_view rest = *one; !rest.empty();) {
+      const std::size_t end = std::min(rest.find('\n'), rest.size());
+      if (rest.data() != one->data()) text += '\n';
+      text.append(kIndent).append(rest.substr(0, end));
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+  }
+  if (whitespace) text += "\n ";
+  return text;
+}
 
 }  // namespace
 
@@ -27,19 +112,27 @@ std::string StableBytes(const google::protobuf::Message& message) {
   return bytes;
 }
 
-std::optional<std::string> StableJson(const google::protobuf::Message& message, bool whitespace) {
-  // The printer follows the bytes, so their order is its order.
-  static const std::unique_ptr<google::protobuf::util::TypeResolver> resolver(
-      google::protobuf::util::NewTypeResolverForDescriptorPool(
-          kUrlPrefix, google::protobuf::DescriptorPool::generated_pool()));
-  google::protobuf::util::JsonPrintOptions options;
-  options.always_print_primitive_fields = true;
-  options.add_whitespace = whitespace;
-  std::string json;
-  const auto status = google::protobuf::util::BinaryToJsonString(
-      resolver.get(), std::string(kUrlPrefix) + "/" + message.GetDescriptor()->full_name(),
-      StableBytes(message), &json, options);
-  if (!status.ok()) return std::nullopt;
+std::optional<std::string> StableJson(const pb::Message& message, bool whitespace) {
+  const std::vector<const pb::FieldDescriptor*> lists = LongLists(message);
+  if (lists.empty()) return Printed(message, whitespace);
+  // All but the long lists, which stand there empty.
+  std::vector<const pb::FieldDescriptor*> fields;
+  message.GetReflection()->ListFields(message, &fields);
+  pb::FieldMask rest;
+  for (const pb::FieldDescriptor* field : fields) {
+    if (std::ranges::find(lists, field) == lists.end()) rest.add_paths(field->name());
+  }
+  const std::unique_ptr<pb::Message> shell(message.New());
+  pb::util::FieldMaskUtil::MergeMessageTo(message, rest, {}, shell.get());
+  std::optional<std::string> json = Printed(*shell, whitespace);
+  for (const pb::FieldDescriptor* list : lists) {
+    if (!json) return std::nullopt;
+    const std::size_t value = ValueOf(*json, list->json_name());
+    const std::size_t open = value == std::string::npos ? value : json->find('[', value);
+    const std::optional<std::string> entries = Entries(message, list, whitespace);
+    if (open == std::string::npos || !entries) return std::nullopt;
+    json->insert(open + 1, *entries);
+  }
   return json;
 }
 

@@ -66,14 +66,16 @@ bool NeedsValue(v1::ScriptedInput::Kind kind) {
 
 }  // namespace
 
-Result<std::string> ReadFile(const std::string& path, std::int64_t limit) {
+Status ReadParts(const std::string& path, std::int64_t limit,
+                 const std::function<void(std::string_view)>& part) {
   const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
   if (file == nullptr) return Error{ErrorCode::kCellFileUnreadable, path, {}};
-  std::string text;
+  std::int64_t size = 0;
   char room[1 << 16];
   for (std::size_t n = 0; (n = std::fread(room, 1, sizeof room, file.get())) > 0;) {
-    text.append(room, n);
-    if (static_cast<std::int64_t>(text.size()) > limit) {
+    part({room, n});
+    size += static_cast<std::int64_t>(n);
+    if (size > limit) {
       return Error{ErrorCode::kCellTooLarge,
                    path + " is larger than " + std::to_string(limit) + " bytes",
                    {}};
@@ -81,6 +83,13 @@ Result<std::string> ReadFile(const std::string& path, std::int64_t limit) {
   }
   // A directory opens but cannot be read.
   if (std::ferror(file.get()) != 0) return Error{ErrorCode::kCellFileUnreadable, path, {}};
+  return {};
+}
+
+Result<std::string> ReadFile(const std::string& path, std::int64_t limit) {
+  std::string text;
+  const Status read = ReadParts(path, limit, [&](std::string_view part) { text.append(part); });
+  if (!read) return read.error();
   return text;
 }
 

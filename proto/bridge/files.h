@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -13,6 +14,10 @@ class SimulationOptions;
 
 // Readers of the small files that go with a program. The forms are described in docs/files.md.
 namespace rmlcell::bridge {
+
+// A file part by part. Errors: CellFileUnreadable; CellTooLarge above `limit` bytes.
+Status ReadParts(const std::string& path, std::int64_t limit,
+                 const std::function<void(std::string_view)>& part);
 
 // A whole file. Errors: CellFileUnreadable; CellTooLarge above `limit` bytes.
 Result<std::string> ReadFile(const std::string& path, std::int64_t limit);

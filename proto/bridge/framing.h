@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -9,10 +10,20 @@
 // length, least significant first, then the bytes.
 namespace rmlcell::bridge {
 
-inline void AddFrame(std::string_view frame, std::string& bytes) {
+inline std::array<char, 4> FrameLength(std::string_view frame) {
   const auto size = static_cast<std::uint32_t>(frame.size());
-  for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>((size >> shift) & 0xFF);
-  bytes += frame;
+  std::array<char, 4> length{};
+  for (std::size_t i = 0; i < length.size(); ++i)
+    length[i] = static_cast<char>((size >> 8 * i) & 0xFF);
+  return length;
+}
+
+// To a string, or to anything else that bytes are appended to.
+template <class Bytes>
+void AddFrame(std::string_view frame, Bytes& bytes) {
+  const std::array<char, 4> length = FrameLength(frame);
+  bytes.append(std::string_view(length.data(), length.size()));
+  bytes.append(frame);
 }
 
 // Takes the first frame off; nothing at the end, or when the rest is cut off.

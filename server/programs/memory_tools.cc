@@ -226,9 +226,8 @@ Result<v1::ListStaleExecutablesResponse> MemoryTools::ListStale(
   std::map<int, machine::StoredProgram> programs;
   for (storage::ProgramRecord& program : *memory) {
     machine::StoredProgram& stored = programs[program.slot];
-    stored.object = std::make_shared<const std::string>(std::move(program.object));
-    if (program.executable)
-      stored.executable = std::make_shared<const std::string>(*std::move(program.executable));
+    stored.object = machine::Bytes::Of(std::move(program.object));
+    if (program.executable) stored.executable = machine::Bytes::Of(*std::move(program.executable));
   }
   for (const machine::StaleExecutable& stale :
        family->FindStaleExecutables(programs, {deleted->begin(), deleted->end()})) {
@@ -305,14 +304,14 @@ ProgramResult<v1::DiffProgramsResponse> MemoryTools::Diff(const v1::DiffPrograms
       Result<StoredObject> stored = ObjectOf(sides[i]->name());
       if (!stored) return stored.error();
       programs[i] = {.file_name = stored->file_name,
-                     .bytes = std::make_shared<const std::string>(std::move(stored->object))};
+                     .bytes = machine::Bytes::Of(std::move(stored->object))};
       continue;
     }
     const v1::ProgramText& text = sides[i]->text();
     if (text.content().empty()) return Error{ErrorCode::kCellEmptyProgram, text.file_name(), {}};
     const bool object = text.form() == v1::PROGRAM_FORM_OBJECT;
     programs[i] = {.file_name = text.file_name(),
-                   .bytes = std::make_shared<const std::string>(text.content()),
+                   .bytes = machine::Bytes::Of(text.content()),
                    .is_object = object};
   }
   const auto until = std::chrono::steady_clock::now() + kTrialTimeMax;

@@ -77,7 +77,7 @@ machine::Translation TranslateFor(const machine::MachineFamily& family,
                                   const v1::ProgramText& program, bool advice) {
   return simulation::TranslateProgram(family, parameters,
                                       {.file_name = program.file_name(),
-                                       .bytes = simulation::Borrowed(program.content()),
+                                       .bytes = machine::Bytes::Borrowed(program.content()),
                                        .is_source = program.form() != v1::PROGRAM_FORM_OBJECT},
                                       {.advice = advice, .source = true});
 }
@@ -191,7 +191,11 @@ ProgramResult<v1::Program> ProgramBook::Store(Put put) {
                               .source_name = is_object ? std::string() : BaseName(put.file_name),
                               .expected = *expected};
   // A stream is its own object: kept once.
-  if (!is_object && write.object != put.bytes) write.source = std::move(put.bytes);
+  if (translation.as_it_came) {
+    write.object = std::move(put.bytes);
+  } else if (!is_object && write.object != put.bytes) {
+    write.source = std::move(put.bytes);
+  }
   if (put.validate_only) {
     if (const auto fits = FindExpected(machine.id, place->slot, *expected); !fits)
       return fits.error();
@@ -394,9 +398,8 @@ Status ProgramBook::AddMemory(const Subject& subject, simulation::ProgramMemory&
     simulation::MemoryProgram& made = input.programs.emplace_back();
     made.slot = program.slot;
     made.name = std::move(program.name);
-    made.bytes = std::make_shared<const std::string>(std::move(program.object));
-    if (program.executable)
-      made.executable = std::make_shared<const std::string>(*std::move(program.executable));
+    made.bytes = machine::Bytes::Of(std::move(program.object));
+    if (program.executable) made.executable = machine::Bytes::Of(*std::move(program.executable));
   }
   const auto deleted = store_.ListDeletedPrograms(machine.id);
   if (!deleted) return deleted.error();
@@ -427,7 +430,7 @@ Result<ProgramBook::Checked> ProgramBook::Check(const std::string& family_id,
   const int slot = SlotForCheck(program.file_name(), memory.programs);
   memory.programs.push_back({.slot = slot,
                              .file_name = program.file_name(),
-                             .bytes = simulation::Borrowed(program.content()),
+                             .bytes = machine::Bytes::Borrowed(program.content()),
                              .is_source = program.form() != v1::PROGRAM_FORM_OBJECT});
   Result<simulation::ProgramCheck> check =
       simulation::CheckProgram(memory, *subject->parameters, slot, advice, {});

@@ -277,7 +277,10 @@ grpc::ServerUnaryReactor* ProgramService::CompileProgram(grpc::CallbackServerCon
                       programs_.Translate(request->family(), {}, request->program(), true);
                   if (!translation) return ToGrpcStatus(translation.error());
                   *response->mutable_findings() = FindingsOf(*translation);
-                  if (translation->ok) response->set_object(std::move(translation->object));
+                  if (translation->ok) {
+                    response->set_object(
+                        machine::ObjectOf(*std::move(translation), request->program().content()));
+                  }
                   return grpc::Status::OK;
                 });
 }

@@ -8,7 +8,7 @@
 namespace rmlcell::server {
 namespace {
 
-constexpr std::size_t kBlobBytes = 1 << 20;
+constexpr std::size_t kBlobBytes = 128 << 10;
 
 class Line;
 

@@ -22,6 +22,8 @@
 #include "proto/bridge/milling.h"
 #include "proto/bridge/report.h"
 #include "proto/bridge/setup.h"
+#include "proto/bridge/spooled_bytes.h"
+#include "server/worker/assigned_programs.h"
 #include "server/worker/job_events.h"
 #include "server/worker/material_files.h"
 #include "server/worker/memory_budget.h"
@@ -32,7 +34,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kChunkBytes = 1 << 20;
+constexpr std::size_t kChunkBytes = 128 << 10;
 constexpr std::chrono::milliseconds kPositionInterval{50};  // at most 20 positions a second
 // Virtual time of one step of the simulation: it adapts, so that a step takes about this long.
 constexpr std::chrono::milliseconds kStepTarget{5};
@@ -57,6 +59,7 @@ class Attempt {
   Attempt(ServerLine& line, v1::WorkerAssignment assignment, const std::atomic<bool>& stopping)
       : line_(line),
         assignment_(std::move(assignment)),
+        programs_(assignment_),
         stopping_(stopping),
         events_([this](const v1::WorkerEvents& events) { SendEvents(events); }),
         started_s_(ProcessorTime_s()) {}
@@ -82,52 +85,18 @@ class Attempt {
   bool stop_asked() const { return stop_asked_; }
 
  private:
-  // Programs that were too large for the assignment follow in parts.
   bool ReceivePrograms() {
-    for (v1::AssignedProgram& program : *assignment_.mutable_programs()) {
-      while (static_cast<std::int64_t>(program.content().size()) < program.size()) {
-        std::optional<v1::WorkResponse> message = line_.Receive(std::chrono::seconds(60));
-        if (!message) return false;
-        if (message->has_blob() && message->blob().slot() == program.slot()) {
-          program.mutable_content()->append(message->blob().chunk());
-        } else {
-          Obey(*message);
-        }
-        if (released_) return false;
+    while (!programs_.complete()) {
+      std::optional<v1::WorkResponse> message = line_.Receive(std::chrono::seconds(60));
+      if (!message) return false;
+      if (message->has_blob()) {
+        programs_.Add(message->blob());
+      } else {
+        Obey(*message);
       }
+      if (released_) return false;
     }
     return true;
-  }
-
-  simulation::ProgramMemory Memory() {
-    simulation::ProgramMemory memory{
-        .family = families::FindFamily(assignment_.family()),
-        .profile = assignment_.profile(),
-        .parameters = {assignment_.parameters().begin(), assignment_.parameters().end()},
-        .deleted_programs = {assignment_.deleted_programs().begin(),
-                             assignment_.deleted_programs().end()},
-        .machine_state = assignment_.machine_state()};
-    for (v1::AssignedProgram& program : *assignment_.mutable_programs()) {
-      simulation::MemoryProgram made{
-          .slot = program.slot(),
-          .name = program.title().empty() ? program.file_name() : program.title(),
-          .file_name = program.file_name(),
-          .bytes = std::make_shared<const std::string>(std::move(*program.mutable_content())),
-          .is_source = program.is_source()};
-      if (!program.executable().empty())
-        made.executable = std::make_shared<const std::string>(program.executable());
-      memory.programs.push_back(std::move(made));
-    }
-    if (!assignment_.default_schedules()) {
-      memory.schedules.emplace();
-      for (const v1::AssignedSchedule& schedule : assignment_.schedules()) {
-        memory.schedules->push_back({.number = schedule.number(),
-                                     .name = schedule.title(),
-                                     .mode = schedule.mode(),
-                                     .power_percent = schedule.power_percent()});
-      }
-    }
-    return memory;
   }
 
   // A translation that fails ends the job with its first error; the findings are its report.
@@ -164,7 +133,7 @@ class Attempt {
   }
 
   End Check() {
-    const simulation::ProgramMemory memory = Memory();
+    const simulation::ProgramMemory memory = programs_.Memory();
     const auto parameters =
         machine::MakeParameters(*memory.family, memory.profile, memory.parameters);
     if (!parameters) return Refuse(parameters.error());
@@ -240,8 +209,9 @@ class Attempt {
       products.milling = *std::move(milling);
     }
     Result<simulation::PreparedRun> made = simulation::PrepareRun(
-        Memory(), bridge::RunOptionsOf(options, assignment_.budget(), assignment_.main_program(),
-                                       machine::Mode::kRemote));
+        programs_.Memory(),
+        bridge::RunOptionsOf(options, assignment_.budget(), assignment_.main_program(),
+                             machine::Mode::kRemote));
     if (!made) return Refuse(made.error());
     if (CancelOrdered()) return Cancelled();
     if (!made->setup) {
@@ -306,8 +276,8 @@ class Attempt {
       return;
     }
     SendArtifact("report", "application/x-protobuf", bytes);
-    SendArtifact("toolpath", "application/octet-stream", toolpath_);
-    if (options.trace()) SendArtifact("trace", "application/octet-stream", trace_);
+    SendSpooled("toolpath", toolpath_);
+    if (options.trace()) SendSpooled("trace", trace_);
     SendArtifact("picture.svg", "image/svg+xml", picture);
     for (const ProductFile& file : files) SendArtifact(file.name, file.media_type, file.bytes);
   }
@@ -433,8 +403,9 @@ class Attempt {
 
   // Whether all that the job has put out stays in its budget, `more` included.
   bool Fits(std::size_t more = 0) const {
-    const std::size_t all = trace_.size() + toolpath_.size() + event_bytes_ + more;
-    return static_cast<std::int64_t>(all) <= assignment_.budget().output_bytes();
+    const std::int64_t products = trace_.size() + toolpath_.size();
+    return products + static_cast<std::int64_t>(event_bytes_ + more) <=
+           assignment_.budget().output_bytes();
   }
 
   // At most a window of events is under way: a store that is slow slows the run, not the memory.
@@ -467,16 +438,22 @@ class Attempt {
     line_.Send(message);
   }
 
-  void SendArtifact(const std::string& name, const std::string& media_type,
-                    const std::string& bytes) {
+  void SendSpooled(const std::string& name, bridge::SpooledBytes& product) {
+    const machine::Bytes bytes = product.Finish();
+    SendArtifact(name, "application/octet-stream", *bytes, bytes.keeper());
+  }
+
+  void SendArtifact(const std::string& name, const std::string& media_type, std::string_view bytes,
+                    const machine::BytesKeeper* keeper = nullptr) {
     for (std::size_t sent = 0; sent == 0 || sent < bytes.size(); sent += kChunkBytes) {
       v1::WorkRequest message;
       v1::WorkerArtifact& artifact = *message.mutable_artifact();
       *artifact.mutable_lease() = assignment_.lease();
       artifact.set_name(name);
       artifact.set_media_type(media_type);
-      artifact.set_chunk(bytes.substr(sent, kChunkBytes));
+      artifact.set_chunk(std::string(bytes.substr(sent, kChunkBytes)));
       if (!line_.Send(message)) return;
+      if (keeper != nullptr) keeper->Release();
     }
   }
 
@@ -492,6 +469,7 @@ class Attempt {
 
   ServerLine& line_;
   v1::WorkerAssignment assignment_;
+  AssignedPrograms programs_;
   const std::atomic<bool>& stopping_;
   JobEvents events_;
   double started_s_;
@@ -499,8 +477,8 @@ class Attempt {
   std::map<int, std::string> executables_;
   std::unique_ptr<simulation::TimetableRun> timetable_run_;  // of a run with a pace
   Clock::duration planned_for_{0};
-  std::string trace_;
-  std::string toolpath_;
+  bridge::SpooledBytes trace_;
+  bridge::SpooledBytes toolpath_;
   std::size_t event_bytes_ = 0;
   std::int64_t events_sent_ = 0;
   std::int64_t events_stored_ = 0;

@@ -10,9 +10,10 @@ namespace rmlcell::server {
 namespace {
 
 constexpr std::chrono::seconds kConnectPatience{5};
-// The server may send programs of 256 MiB; while the job runs nobody takes them off, so the reader
-// stops reading and the flow control of the connection holds the rest back.
+// The server may send programs of 256 MiB; while nobody takes them off the reader stops reading,
+// and the flow control of the connection holds the rest back.
 constexpr std::size_t kInboxMax = 64;
+constexpr std::size_t kInboxBytesMax = 1 << 20;
 
 }  // namespace
 
@@ -30,6 +31,8 @@ Result<std::unique_ptr<ServerLine>> ServerLine::Join(const Options& options) {
   Stream& stream = *made->stream_;
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);
+  // The window of a connection would grow to megabytes for programs that are read more slowly.
+  arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
   stream.channel =
       grpc::CreateCustomChannel(options.server, grpc::InsecureChannelCredentials(), arguments);
   if (!stream.channel->WaitForConnected(std::chrono::system_clock::now() + kConnectPatience)) {
@@ -61,7 +64,11 @@ Result<std::unique_ptr<ServerLine>> ServerLine::Join(const Options& options) {
     v1::WorkResponse response;
     while (line->stream_->line->Read(&response)) {
       std::unique_lock lock(line->mutex_);
-      line->arrived_.wait(lock, [line] { return line->inbox_.size() < kInboxMax || line->gone_; });
+      line->arrived_.wait(lock, [line] {
+        return (line->inbox_.size() < kInboxMax && line->inbox_bytes_ < kInboxBytesMax) ||
+               line->gone_;
+      });
+      line->inbox_bytes_ += response.blob().chunk().size();
       line->inbox_.push_back(std::move(response));
       line->arrived_.notify_all();
     }
@@ -91,6 +98,7 @@ std::optional<v1::WorkResponse> ServerLine::Receive(std::chrono::milliseconds pa
   if (inbox_.empty()) return std::nullopt;
   v1::WorkResponse message = std::move(inbox_.front());
   inbox_.pop_front();
+  inbox_bytes_ -= message.blob().chunk().size();
   arrived_.notify_all();
   return message;
 }

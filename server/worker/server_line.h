@@ -50,6 +50,7 @@ class ServerLine {
   mutable std::mutex mutex_;
   std::condition_variable arrived_;
   std::deque<v1::WorkResponse> inbox_;
+  std::size_t inbox_bytes_ = 0;  // of the parts of programs in it
   bool gone_ = false;
   std::thread reader_;
 };

@@ -75,7 +75,7 @@ int Main(std::string_view what, int strokes) {
   if (what == "run") {
     machine::RunSetup setup(*parameters);
     setup.main_program = 1;
-    setup.programs[1].object = std::make_shared<const std::string>(stream);
+    setup.programs[1].object = machine::Bytes::Of(stream);
     const auto result = simulation::Simulate(mill, std::move(setup), {});
     return result && result->report.judgement.verdict == machine::Verdict::kDoubtful ? 0 : 1;
   }

@@ -188,12 +188,12 @@ OptimoMachine& OptimoMachine::Store(int slot, const std::string& source) {
     EXPECT_FALSE(IsError(d.severity)) << FormatDiagnostic(d, source);
   deleted_.erase(slot);
   programs_[slot] = {.name = "program",
-                     .object = std::make_shared<const std::string>(std::move(compiled.object)),
+                     .object = machine::Bytes::Of(std::move(compiled.object)),
                      .executable = nullptr};
   return *this;
 }
 OptimoMachine& OptimoMachine::StoreExecutable(int slot, const std::string& bytes) {
-  programs_.at(slot).executable = std::make_shared<const std::string>(bytes);
+  programs_.at(slot).executable = machine::Bytes::Of(bytes);
   return *this;
 }
 OptimoMachine& OptimoMachine::Delete(int slot) {
@@ -210,7 +210,9 @@ OptimoMachine& OptimoMachine::LoseZero() {
   state_ = EncodeMachineState(state);
   return *this;
 }
-std::string OptimoMachine::Executable(int slot) const { return *programs_.at(slot).executable; }
+std::string OptimoMachine::Executable(int slot) const {
+  return std::string(*programs_.at(slot).executable);
+}
 bool OptimoMachine::HasExecutable(int slot) const {
   const auto found = programs_.find(slot);
   return found != programs_.end() && found->second.executable != nullptr;

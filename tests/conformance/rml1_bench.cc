@@ -244,9 +244,8 @@ Observed RunAsProgram(const Example& example) {
     resumes += stroke.resume ? 1 : 0;
   }
   setup.main_program = 7;
-  setup.programs[7] = {.name = "example",
-                       .object = std::make_shared<const std::string>(bytes),
-                       .executable = nullptr};
+  setup.programs[7] = {
+      .name = "example", .object = machine::Bytes::Of(bytes), .executable = nullptr};
   TraceObserver observer;
   const auto run = Rml1Family().NewRun(std::move(setup), observer).value();
   while (run->Advance(kForever) == machine::RunPhase::kHalted) {

@@ -141,8 +141,7 @@ void CheckRun(const machine::Parameters& parameters, const std::string& stream,
   setup.main_program = 1;
   setup.budget = {.steps = 0, .virtual_time = SimTime::zero()};
   setup.inputs = course.inputs;
-  setup.programs[1] = {
-      .name = {}, .object = std::make_shared<const std::string>(stream), .executable = nullptr};
+  setup.programs[1] = {.name = {}, .object = machine::Bytes::Of(stream), .executable = nullptr};
   MoveObserver observer;
   const auto run = Rml1Family().NewRun(std::move(setup), observer).value();
   run->Advance(std::chrono::milliseconds(course.slice_ms));

@@ -19,7 +19,7 @@ std::string ObjectOf(const std::string& source) {
 std::string ExecutableOf(int slot, const std::string& source) {
   const machine::MachineFamily& family = *families::FindFamily("optimo");
   machine::RunSetup setup{machine::Parameters(family.parameters())};
-  setup.programs[slot].object = std::make_shared<const std::string>(ObjectOf(source));
+  setup.programs[slot].object = machine::Bytes::Of(ObjectOf(source));
   setup.main_program = slot;
   machine::RunObserver observer;
   auto run = family.NewRun(std::move(setup), observer);

@@ -88,7 +88,7 @@ Result<Loaded> ProgramCounter::Acquire(int slot, bool must_be_executable) {
   return Make(slot);
 }
 
-Result<Loaded> ProgramCounter::LoadStored(int slot, const std::string& bytes) {
+Result<Loaded> ProgramCounter::LoadStored(int slot, std::string_view bytes) {
   const std::string name = "executable " + std::to_string(slot + kExecutableOffset);
   Result<Executable> executable = DecodeExecutable(bytes);
   if (!executable) return Error{executable.error().code, name, {}};

@@ -81,7 +81,7 @@ class ProgramCounter {
 
  private:
   bool HasRoomFor(std::size_t bytes) const;
-  Result<Loaded> LoadStored(int slot, const std::string& bytes);
+  Result<Loaded> LoadStored(int slot, std::string_view bytes);
   Result<Loaded> Make(int slot);
 
   ProgramCounterState& s_;

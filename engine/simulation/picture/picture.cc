@@ -7,7 +7,7 @@ namespace rmlcell::simulation {
 
 struct PictureRecorder::State {
   explicit State(const machine::MachineShape& machine_shape)
-      : shape(machine_shape), sketch(machine_shape, kPictureElementsMax) {}
+      : shape(machine_shape), sketch(machine_shape, kSketchElementsMax) {}
 
   machine::MachineShape shape;
   PathSketch sketch;

@@ -14,9 +14,10 @@ namespace rmlcell::simulation {
 
 class PathSketch;
 
-// Path elements kept while a run goes on, and written to a picture. A browser draws this many
-// smoothly; longer programs are drawn coarser, by a tolerance that is still far below a pixel for
-// all but fillings.
+// Path elements kept while a run goes on: 6 MB. Longer programs are drawn coarser, by a tolerance
+// that is below a pixel for all but fillings.
+inline constexpr std::size_t kSketchElementsMax = 65'000;
+// Elements written to a picture: a browser draws this many smoothly.
 inline constexpr std::size_t kPictureElementsMax = 200'000;
 
 enum class PictureView { kXY, kXZ, kYZ, kDirection };
@@ -45,7 +46,7 @@ class PictureRecorder final : public machine::RunObserver {
 
   std::uint64_t elements() const;
   const PathSketch& sketch() const;
-  bool exact() const;  // false: drawn coarser because of kPictureElementsMax
+  bool exact() const;  // false: drawn coarser because of kSketchElementsMax
 
  private:
   struct State;

@@ -73,6 +73,7 @@ class PathDrawing {
       : strokes_(strokes), panel_(panel), depth_(depth) {
     clip_ = {panel.rect.x - kClipMargin_px, panel.rect.y - kClipMargin_px,
              panel.rect.width + 2 * kClipMargin_px, panel.rect.height + 2 * kClipMargin_px};
+    elements_.reserve(strokes.elements.size());
     for (const SketchElement& element : strokes.elements) Project(element);
   }
 

@@ -1,8 +1,9 @@
 #include "engine/simulation/picture/sketch_element.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <unordered_set>
+#include <cstdint>
 #include <utility>
 
 namespace rmlcell::simulation {
@@ -72,6 +73,27 @@ class Stretch {
   MachineVector direction_;
 };
 
+// A set of hashes in one piece of memory: a node for each would take four times as much.
+class SeenKeys {
+ public:
+  explicit SeenKeys(std::size_t keys_max) : slots_(std::bit_ceil(keys_max + keys_max / 2 + 1)) {}
+
+  // False: it was there.
+  bool Insert(std::uint64_t key) {
+    if (key == 0) key = 1;  // 0 is an empty slot
+    const std::size_t mask = slots_.size() - 1;
+    for (std::size_t at = key & mask;; at = (at + 1) & mask) {
+      if (slots_[at] == key) return false;
+      if (slots_[at] != 0) continue;
+      slots_[at] = key;
+      return true;
+    }
+  }
+
+ private:
+  std::vector<std::uint64_t> slots_;
+};
+
 }  // namespace
 
 void MergeStraight(std::vector<SketchElement>& elements, double tolerance) {
@@ -92,10 +114,9 @@ void MergeStraight(std::vector<SketchElement>& elements, double tolerance) {
 
 void DropAlike(std::vector<SketchElement>& elements, double cell) {
   const LookKey key(cell);
-  std::unordered_set<std::uint64_t> seen;
-  seen.reserve(elements.size());
+  SeenKeys seen(elements.size());
   std::erase_if(elements,
-                [&](const SketchElement& element) { return !seen.insert(key.Of(element)).second; });
+                [&](const SketchElement& element) { return !seen.Insert(key.Of(element)); });
 }
 
 }  // namespace rmlcell::simulation

@@ -18,7 +18,7 @@ constexpr Wide kPrime = (Wide{1} << 88) | 0x13B;
 
 class Fnv1a {
  public:
-  void Bytes(std::string_view bytes) {
+  void Raw(std::string_view bytes) {
     for (const char c : bytes) {
       hash_ ^= static_cast<unsigned char>(c);
       hash_ *= kPrime;
@@ -27,12 +27,12 @@ class Fnv1a {
   // Every field goes in with its length or at fixed width: no two setups have the same bytes.
   void Text(std::string_view text) {
     Number(text.size());
-    Bytes(text);
+    Raw(text);
   }
   void Number(std::uint64_t value) {
     for (int shift = 0; shift < 64; shift += 8) {
       const char byte = static_cast<char>(static_cast<unsigned char>(value >> shift));
-      Bytes({&byte, 1});
+      Raw({&byte, 1});
     }
   }
   void Integer(std::int64_t value) { Number(static_cast<std::uint64_t>(value)); }
@@ -52,7 +52,12 @@ class Fnv1a {
 
 void Add(Fnv1a& hash, const machine::Bytes& bytes) {
   hash.Number(bytes ? 1 : 0);
-  if (bytes) hash.Text(*bytes);
+  if (!bytes) return;
+  hash.Number(bytes->size());
+  for (std::size_t at = 0; at < bytes->size(); at += machine::kReleaseEvery) {
+    hash.Raw(bytes->substr(at, machine::kReleaseEvery));
+    bytes.Release();
+  }
 }
 
 void Add(Fnv1a& hash, const std::optional<machine::ProgramStep>& step) {
@@ -91,7 +96,7 @@ void AddSchedules(Fnv1a& hash, const machine::RunSetup& setup) {
 
 std::string Fnv1a128(std::string_view bytes) {
   Fnv1a hash;
-  hash.Bytes(bytes);
+  hash.Raw(bytes);
   return hash.Digits();
 }
 

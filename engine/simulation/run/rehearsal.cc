@@ -13,9 +13,10 @@ machine::StoredProgram Stored(const MemoryProgram& program) {
   return {.name = program.name, .object = program.bytes, .executable = program.executable};
 }
 
-void TakeTranslation(const machine::Translation& translation, machine::StoredProgram& stored) {
-  stored.object = std::make_shared<const std::string>(translation.object);
-  stored.source = std::make_shared<const machine::SourceNotes>(translation.source);
+// `stored` has the bytes that were translated.
+void TakeTranslation(machine::Translation translation, machine::StoredProgram& stored) {
+  if (!translation.as_it_came) stored.object = machine::Bytes::Of(std::move(translation.object));
+  stored.source = std::make_shared<const machine::SourceNotes>(std::move(translation.source));
 }
 
 // Into the setup; translated first, where it is a source. False: it has errors.
@@ -38,8 +39,7 @@ bool AddProgram(const machine::MachineFamily& family, const MemoryProgram& progr
     }
     prepared.diagnostics_dropped += translation.diagnostics_dropped;
     if (!translation.ok) return false;
-    stored.object = std::make_shared<const std::string>(std::move(translation.object));
-    stored.source = std::make_shared<const machine::SourceNotes>(std::move(translation.source));
+    TakeTranslation(std::move(translation), stored);
   }
   setup.programs[program.slot] = std::move(stored);
   return true;
@@ -85,9 +85,11 @@ machine::Translation TranslateProgram(const machine::MachineFamily& family,
                                       const machine::CheckOptions& options) {
   machine::CheckOptions told = options;
   told.forced = told.forced || !program.is_source;  // that was said when it was stored
-  return family.Translate(
-      {.name = program.file_name, .bytes = *program.bytes, .is_object = !program.is_source},
-      parameters, told);
+  return family.Translate({.name = program.file_name,
+                           .bytes = *program.bytes,
+                           .keeper = program.bytes.keeper(),
+                           .is_object = !program.is_source},
+                          parameters, told);
 }
 
 Result<ProgramCheck> CheckProgram(const ProgramMemory& memory,

@@ -14,11 +14,6 @@
 // the worker, the server and the editor.
 namespace rmlcell::simulation {
 
-// Bytes that somebody else keeps, for as long as they are used here.
-inline machine::Bytes Borrowed(const std::string& bytes) {
-  return {std::shared_ptr<const void>(), &bytes};
-}
-
 struct MemoryProgram {
   int slot = 0;
   std::string name{};       // for people

@@ -126,8 +126,7 @@ TEST(HoldKey, HoldsARunOfEveryFamily) {
       RunSetup setup{Parameters(family->parameters())};
       const Translation made = family->Translate(one.source, setup.parameters, {});
       ASSERT_TRUE(made.ok) << info.id;
-      setup.programs[1] = {.name = "part",
-                           .object = std::make_shared<const std::string>(made.object)};
+      setup.programs[1] = {.name = "part", .object = machine::Bytes::Of(made.object)};
       setup.main_program = 1;
       setup.mode = mode;
       Listener listener;

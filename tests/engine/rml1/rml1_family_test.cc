@@ -96,7 +96,7 @@ TEST(Rml1Family, TranslatesAnyBytesToThemselves) {
   for (int byte = 0; byte < 256; ++byte) bytes += static_cast<char>(byte);
   const machine::Translation translation = TranslateText(bytes);
   EXPECT_TRUE(translation.ok);
-  EXPECT_EQ(translation.object, bytes);
+  EXPECT_EQ(machine::ObjectOf(translation, bytes), bytes);
 }
 
 // What is no RML-1 is refused, unless it is forced: more than a tenth of it belongs to no command.

@@ -11,9 +11,8 @@ namespace rmlcell::rml1 {
 machine::RunSetup SetupOf(const machine::Parameters& parameters, std::string stream) {
   machine::RunSetup setup(parameters);
   setup.main_program = 1;
-  setup.programs[1] = {.name = "test",
-                       .object = std::make_shared<const std::string>(std::move(stream)),
-                       .executable = nullptr};
+  setup.programs[1] = {
+      .name = "test", .object = machine::Bytes::Of(std::move(stream)), .executable = nullptr};
   return setup;
 }
 

@@ -84,8 +84,8 @@ machine::Judgement OfChips(const ChipRange& usual, const std::string& tool = "fl
   const machine::MachineFamily& mill = *families::FindFamily("rml1");
   machine::RunSetup setup(*machine::MakeParameters(mill, "t1", {}));
   setup.main_program = 1;
-  setup.programs[1].object = std::make_shared<const std::string>(
-      speeds + "!PZ-100,200;!MC1;PU300,500;PD1000,500;PU0,0;!MC0;");
+  setup.programs[1].object =
+      machine::Bytes::Of(speeds + "!PZ-100,200;!MC1;PU300,500;PD1000,500;PU0,0;!MC0;");
   SimulationRequest request;
   request.products.milling = Milling{
       .stock = *ParseStock("20x20x10"), .tool = *ParseTool(tool), .chips = usual, .rpm = rpm};
@@ -125,7 +125,7 @@ TEST(ChipLoad, CountsPassesInMaterialAlone) {
   const auto judged = [&](const std::string& cut) {
     machine::RunSetup setup(*machine::MakeParameters(mill, "t1", {}));
     setup.main_program = 1;
-    setup.programs[1].object = std::make_shared<const std::string>(
+    setup.programs[1].object = machine::Bytes::Of(
         "VS10;!VZ10;!RC6000;!PZ-100,200;!MC1;PU300,500;PD1000,500;" + cut + "PU0,0;!MC0;");
     SimulationRequest request;
     request.products.milling = Milling{.stock = *ParseStock("20x20x10"),

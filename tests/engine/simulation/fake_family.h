@@ -52,9 +52,8 @@ class FakeFamily final : public machine::MachineFamily {
   static machine::RunSetup Setup() {
     machine::RunSetup setup{machine::Parameters(Table())};
     setup.main_program = 1;
-    setup.programs[1] = {.name = "part.FK",
-                         .object = std::make_shared<const std::string>("move"),
-                         .executable = nullptr};
+    setup.programs[1] = {
+        .name = "part.FK", .object = machine::Bytes::Of("move"), .executable = nullptr};
     return setup;
   }
 

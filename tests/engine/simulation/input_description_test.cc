@@ -35,9 +35,7 @@ TEST(DescribeInputs, SaysWhatItIs) {
 // Design section 4: same inputs, same hash; any field that a run depends on changes it.
 TEST(DescribeInputs, EveryFieldChangesTheHash) {
   using Change = std::function<void(machine::RunSetup&)>;
-  const auto bytes = [](std::string_view text) {
-    return std::make_shared<const std::string>(text);
-  };
+  const auto bytes = [](std::string_view text) { return machine::Bytes::Of(std::string(text)); };
   const std::vector<Change> changes = {
       [](machine::RunSetup&) {},
       [](machine::RunSetup& s) { ASSERT_TRUE(s.parameters.Set("VMAX", 400.0)); },

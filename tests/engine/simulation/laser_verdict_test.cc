@@ -52,7 +52,7 @@ RunReport ReportOfCut(const std::string& source, const Cell& cell = {}) {
       report.judgement = JudgeFindings(made.diagnostics);
       return report;
     }
-    setup.programs[slot].object = std::make_shared<const std::string>(made.object);
+    setup.programs[slot].object = machine::Bytes::Of(made.object);
   }
   setup.main_program = 1;
   setup.forecast = true;

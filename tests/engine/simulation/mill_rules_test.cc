@@ -278,7 +278,7 @@ TEST(MillRules, TravelSpeedNeverLeadsDown) {
     }
     machine::RunSetup setup(*machine::MakeParameters(*families::FindFamily("rml1"), "t1", {}));
     setup.main_program = 1;
-    setup.programs[1].object = std::make_shared<const std::string>(Joined(program));
+    setup.programs[1].object = machine::Bytes::Of(Joined(program));
     setup.forecast = true;
     auto run = families::FindFamily("rml1")->NewRun(std::move(setup), ways);
     ASSERT_TRUE(run);

@@ -17,7 +17,7 @@ machine::RunSetup Memory(const std::map<int, std::string>& programs) {
         family.Translate({.name = "test.S", .bytes = text}, setup.parameters, {.source = true});
     EXPECT_TRUE(made.ok) << text;
     machine::StoredProgram& stored = setup.programs[slot];
-    stored.object = std::make_shared<const std::string>(std::move(made.object));
+    stored.object = machine::Bytes::Of(std::move(made.object));
     stored.source = std::make_shared<const machine::SourceNotes>(std::move(made.source));
   }
   return setup;
@@ -197,7 +197,7 @@ TEST(MotionCheck, FailsWhereEveryRunFails) {
 TEST(MotionCheck, AMillHasNone) {
   const machine::MachineFamily& mill = *families::FindFamily("rml1");
   machine::RunSetup setup{machine::Parameters(mill.parameters())};
-  setup.programs[1].object = std::make_shared<const std::string>("PD;PA99999,0;");
+  setup.programs[1].object = machine::Bytes::Of("PD;PA99999,0;");
   const auto check = CheckMotion(mill, setup, {1});
   ASSERT_TRUE(check);
   EXPECT_TRUE(check->findings.empty());

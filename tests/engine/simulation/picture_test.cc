@@ -354,7 +354,7 @@ TEST(Picture, MillionMovesGiveABoundedPicture) {
                        .travelled = planned.path.length()});
     at = to;
   }
-  EXPECT_LE(recorder.elements(), kPictureElementsMax);
+  EXPECT_LE(recorder.elements(), kSketchElementsMax);
   EXPECT_FALSE(recorder.exact());
   const std::string svg = recorder.Svg(Completed(), {});
   EXPECT_LT(svg.size(), 24 * kPictureElementsMax);

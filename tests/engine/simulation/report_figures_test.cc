@@ -30,7 +30,7 @@ RunReport ReportOf(const std::map<int, std::string>& programs, const Told& told 
     machine::Translation made =
         family.Translate({.name = "test.S", .bytes = text}, setup.parameters, {});
     EXPECT_TRUE(made.ok) << text;
-    setup.programs[slot].object = std::make_shared<const std::string>(std::move(made.object));
+    setup.programs[slot].object = machine::Bytes::Of(std::move(made.object));
   }
   setup.main_program = programs.begin()->first;
   setup.forecast = true;

@@ -224,7 +224,7 @@ TEST(Samples, OfAProgramWithoutAMotion) {
       family.Translate({.name = "test.S", .bytes = "DELAY 1\nWORK 0,0/ON\nDELAY 1\nWORK 0,0/OFF\n"},
                        setup.parameters, {});
   ASSERT_TRUE(made.ok);
-  setup.programs[1].object = std::make_shared<const std::string>(std::move(made.object));
+  setup.programs[1].object = machine::Bytes::Of(std::move(made.object));
   setup.main_program = 1;
   std::string text;
   SimulationRequest request;

@@ -78,7 +78,7 @@ TEST(TimetableRun, TakesAsLongAsTheRun) {
   machine::RunSetup stream{machine::Parameters(mill.parameters())};
   stream.main_program = 1;
   stream.programs[1].object =
-      std::make_shared<const std::string>("!MC1;V10;!PZ-200,200;PD4000,0,4000,3000;PU;!MC0;");
+      machine::Bytes::Of("!MC1;V10;!PZ-200,200;PD4000,0,4000,3000;PU;!MC0;");
   const auto milled = Simulate(mill, stream, {});
   ASSERT_TRUE(bool(milled));
   ASSERT_GT(milled->report.total.time.total(), std::chrono::seconds(3));
@@ -92,7 +92,7 @@ TEST(TimetableRun, TakesAsLongAsTheRun) {
       {.name = "1.S", .bytes = "COORD ABSOL\nDELAY 2.\nMOVE (100.,0.,0.,0.,0.)\nDELAY 3.\n"},
       program.parameters, {});
   ASSERT_TRUE(made.ok);
-  program.programs[1].object = std::make_shared<const std::string>(made.object);
+  program.programs[1].object = machine::Bytes::Of(made.object);
   const auto cut = Simulate(laser, program, {.options = {.at_halt = AtHalt::kStart}});
   ASSERT_TRUE(bool(cut));
   ASSERT_GT(cut->report.total.time.total(), std::chrono::seconds(5));

@@ -17,7 +17,7 @@ Result<TrialRun> RunTrial(const std::string& text) {
   machine::Translation made =
       family.Translate({.name = "test.S", .bytes = text}, setup.parameters, {});
   EXPECT_TRUE(made.ok);
-  setup.programs[1].object = std::make_shared<const std::string>(std::move(made.object));
+  setup.programs[1].object = machine::Bytes::Of(std::move(made.object));
   setup.main_program = 1;
   return RunForComparison(family, std::move(setup), {});
 }

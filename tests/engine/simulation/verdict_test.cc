@@ -32,7 +32,7 @@ Judgement VerdictOf(const machine::MachineFamily& family, const machine::Paramet
                     const std::string& object, SimulationRequest request = {}) {
   machine::RunSetup setup(parameters);
   setup.main_program = 1;
-  setup.programs[1].object = std::make_shared<const std::string>(object);
+  setup.programs[1].object = machine::Bytes::Of(object);
   setup.forecast = true;
   const auto result = Simulate(family, std::move(setup), std::move(request));
   EXPECT_TRUE(result);
@@ -377,7 +377,7 @@ TEST(Figures, MeanOneThingInCheckRunAndReport) {
   for (const auto& [stream, plunges] : streams) {
     machine::RunSetup setup(MillOf("t1"));
     setup.main_program = 1;
-    setup.programs[1].object = std::make_shared<const std::string>(stream);
+    setup.programs[1].object = machine::Bytes::Of(stream);
     const auto run = Simulate(Mill(), std::move(setup), {});
     ASSERT_TRUE(run);
     const auto figure = [](const std::vector<machine::Figure>& figures, std::string_view name) {

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 ComparedProgram TextOf(const std::string& text, const std::string& file_name = "a.S") {
-  return {.file_name = file_name, .bytes = std::make_shared<const std::string>(text)};
+  return {.file_name = file_name, .bytes = machine::Bytes::Of(text)};
 }
 
 ComparisonOutcome Compared(const std::string& before, const std::string& after,

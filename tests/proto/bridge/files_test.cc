@@ -1,5 +1,6 @@
 #include "proto/bridge/files.h"
 
+#include <google/protobuf/util/json_util.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -188,6 +189,30 @@ TEST(Encoding, IsStable) {
       StableJson(outcome, false),
       R"({"kind":"KIND_UNSPECIFIED","code":"X","symbol":"","message":"","advice":"","verdict":"VERDICT_UNSPECIFIED","reasons":[]})");
   EXPECT_NE(StableJson(outcome, true)->find("\n \"code\": \"X\""), std::string::npos);
+}
+
+// A list of 101 entries is printed entry by entry: the text is what the printer of protobuf makes.
+TEST(StableJson, ALongListIsPrintedTheSame) {
+  for (const int count : {99, 100, 101, 250}) {
+    v1::RunReport report;
+    report.set_family("a \"steps\":[ that is none, {");
+    (*report.mutable_variables())["steps"] = "\"steps\":[]";
+    report.mutable_outcome()->set_message("\"steps\":[");
+    for (int n = 0; n < count; ++n) {
+      report.add_steps()->set_step(n);
+      auto& finding = *report.add_diagnostics();
+      finding.set_message("one\n\"of\" {many]");
+      finding.mutable_place()->set_line(n);
+    }
+    for (const bool whitespace : {false, true}) {
+      google::protobuf::util::JsonPrintOptions options;
+      options.always_print_primitive_fields = true;
+      options.add_whitespace = whitespace;
+      std::string whole;
+      ASSERT_TRUE(google::protobuf::util::MessageToJsonString(report, &whole, options).ok());
+      EXPECT_EQ(StableJson(report, whitespace), whole) << count;
+    }
+  }
 }
 
 // "Sun Nov 22 16:10:16 2026": 24 characters, and a date of our days.

@@ -23,7 +23,7 @@ simulation::MemoryProgram Source(int slot, const std::string& text,
   return {.slot = slot,
           .name = "part",
           .file_name = name,
-          .bytes = std::make_shared<const std::string>(text),
+          .bytes = machine::Bytes::Of(text),
           .is_source = true};
 }
 
@@ -99,9 +99,9 @@ TEST(PrepareRun, TakesEverythingOver) {
   input.programs.push_back({.slot = 14,
                             .name = "object",
                             .file_name = "q.O",
-                            .bytes = std::make_shared<const std::string>("bytes"),
+                            .bytes = machine::Bytes::Of("bytes"),
                             .is_source = true,
-                            .executable = std::make_shared<const std::string>("executable")});
+                            .executable = machine::Bytes::Of("executable")});
   input.profile = "mc-1000ipm";
   input.parameters = {{"CYCLE", "0.064"}, {"SETTLE", "0.5"}};
   input.deleted_programs = {3, 4};

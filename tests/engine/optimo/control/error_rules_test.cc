@@ -361,8 +361,7 @@ TEST(ErrorRules, AComputedScheduleOutOfRangeIsCaught) {
 // OPT-B.56: a program that cannot be linked is a fatal error of the run, whatever the reason.
 TEST(ErrorRules, ADamagedProgramIsFatal) {
   machine::RunSetup setup = SetupOf("ERR 9\nCALL 45\nENDTASK\n9 VI[1]=1\n");
-  setup.programs[45] = {.name = "damaged",
-                        .object = std::make_shared<const std::string>("no object")};
+  setup.programs[45] = {.name = "damaged", .object = machine::Bytes::Of("no object")};
   std::vector<Diagnostic> findings;
   struct Listener final : machine::RunObserver {
     explicit Listener(std::vector<Diagnostic>& list) : found(list) {}

@@ -56,7 +56,7 @@ TEST(OptimoFamily, RefusesTravelsThatEndBeforeTheyBegin) {
 }
 
 machine::Bytes Object(const std::string& text) {
-  return std::make_shared<const std::string>(Compile(text, "", {}).object);
+  return machine::Bytes::Of(Compile(text, "", {}).object);
 }
 
 // OPT-1.13, OPT-1.15: each reason, by slot; one FUNCTION was altered, one deleted, one never
@@ -72,13 +72,13 @@ TEST(OptimoFamily, SaysWhichExecutablesAreStaleAndWhy) {
   for (const int slot : {12, 32}) {
     const Result<Executable> linked = Link(slot, lookup, {});
     ASSERT_TRUE(linked);
-    programs[slot].executable = std::make_shared<const std::string>(EncodeExecutable(*linked));
+    programs[slot].executable = machine::Bytes::Of(EncodeExecutable(*linked));
   }
   EXPECT_TRUE(OptimoFamily().FindStaleExecutables(programs, {}).empty());
   programs[44].object = Object("VI[3]=2\n");
   programs.erase(45);
   programs.erase(46);
-  programs[12].executable = std::make_shared<const std::string>("no executable");
+  programs[12].executable = machine::Bytes::Of("no executable");
   const auto stale = OptimoFamily().FindStaleExecutables(programs, {45});
   ASSERT_EQ(stale.size(), 2U);
   EXPECT_EQ(stale[0].slot, 12);

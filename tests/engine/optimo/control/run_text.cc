@@ -101,7 +101,7 @@ machine::Bytes ObjectOf(const std::string& text) {
   for (const Diagnostic& diagnostic : compiled.diagnostics) {
     EXPECT_FALSE(IsError(diagnostic.severity)) << FormatDiagnostic(diagnostic, text);
   }
-  return std::make_shared<const std::string>(std::move(compiled.object));
+  return machine::Bytes::Of(std::move(compiled.object));
 }
 
 }  // namespace
@@ -203,7 +203,7 @@ machine::RunSetup SetupOf(const std::string& main, const RunOptions& options) {
   setup.machine_state = options.machine_state;
   setup.schedules = options.schedules;
   for (const auto& [slot, bytes] : options.executables) {
-    setup.programs[slot].executable = std::make_shared<const std::string>(bytes);
+    setup.programs[slot].executable = machine::Bytes::Of(bytes);
   }
   return setup;
 }

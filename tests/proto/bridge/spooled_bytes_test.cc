@@ -1,0 +1,92 @@
+#include "proto/bridge/spooled_bytes.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace rmlcell::bridge {
+namespace {
+
+// Bytes of which no megabyte is like another.
+std::string Numbered(std::size_t size) {
+  std::string text;
+  for (std::uint64_t n = 0; text.size() < size; ++n) text += std::to_string(n) + ';';
+  text.resize(size);
+  return text;
+}
+
+machine::Bytes Spooled(const std::string& text, std::size_t part) {
+  SpooledBytes spooled;
+  for (std::size_t at = 0; at < text.size(); at += part) {
+    spooled.append(text.substr(at, part));
+    EXPECT_EQ(spooled.size(), static_cast<std::int64_t>(std::min(at + part, text.size())));
+  }
+  return spooled.Finish();
+}
+
+// Below, at and above a megabyte, in parts that fit it and that do not.
+TEST(SpooledBytes, GiveBackWhatCame) {
+  for (const std::size_t size : {0U, 1U, 1'048'575U, 1'048'576U, 1'048'577U, 3'000'000U}) {
+    const std::string text = Numbered(size);
+    for (const std::size_t part : {65'536U, 1'000'003U, 4'000'000U}) {
+      const machine::Bytes bytes = Spooled(text, part);
+      ASSERT_TRUE(bytes) << size;
+      EXPECT_TRUE(*bytes == text) << size << " in parts of " << part;
+      bytes.Release();
+      EXPECT_TRUE(*bytes == text) << size << " once more";
+    }
+  }
+}
+
+TEST(SpooledBytes, BeginAnew) {
+  SpooledBytes spooled;
+  spooled.append(Numbered(2'000'000));
+  const machine::Bytes first = spooled.Finish();
+  EXPECT_EQ(spooled.size(), 0);
+  spooled.append("second");
+  EXPECT_EQ(*spooled.Finish(), "second");
+  EXPECT_TRUE(*first == Numbered(2'000'000));
+}
+
+class NoTemporaryFolder : public testing::Test {
+ protected:
+  NoTemporaryFolder() { ::setenv("TMPDIR", "/nowhere/at/all", 1); }
+  ~NoTemporaryFolder() override { ::unsetenv("TMPDIR"); }
+};
+
+TEST_F(NoTemporaryFolder, ThenTheyStayInMemory) {
+  EXPECT_TRUE(*Spooled(Numbered(3'000'000), 65'536) == Numbered(3'000'000));
+}
+
+// A file may not grow above 2 MiB here: what is in it comes back into memory.
+TEST(SpooledBytes, AFullDiskLosesNothing) {
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  rlimit small = before;
+  small.rlim_cur = 2 << 20;
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const machine::Bytes bytes = Spooled(Numbered(5'000'000), 65'536);
+  std::signal(SIGXFSZ, handler);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  EXPECT_TRUE(*bytes == Numbered(5'000'000));
+}
+
+TEST(ReadProgram, SaysWhatItCannotRead) {
+  EXPECT_EQ(ReadProgram("/nowhere/a.rml", 10).error().code, ErrorCode::kCellFileUnreadable);
+  EXPECT_EQ(ReadProgram("/", 10).error().code, ErrorCode::kCellFileUnreadable);
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "read_program.rml";
+  std::ofstream(file) << "PU;PD1,1;PU";
+  EXPECT_EQ(**ReadProgram(file, 11), "PU;PD1,1;PU");
+  EXPECT_EQ(ReadProgram(file, 10).error().code, ErrorCode::kCellTooLarge);
+  std::filesystem::remove(file);
+}
+
+}  // namespace
+}  // namespace rmlcell::bridge
