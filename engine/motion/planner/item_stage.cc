@@ -40,7 +40,7 @@ std::size_t ItemStage::SectionSize() {
     section_knots_ += span.knots();
     const Number moves = span.last_move - spans().front().first_move;
     if (EndsSection(span, section_knots_ - 1) || section_seen_ == kSectionMax ||
-        moves >= span_stage_.leg_stage().window() / 2) {
+        moves >= legs().window() / 2) {
       section_knots_ = 0;
       return std::exchange(section_seen_, 0);
     }
@@ -53,7 +53,7 @@ bool ItemStage::EndsSection(const Span& span, std::size_t last_knot) const {
   if (!machine().ramps_across_passages || std::isinf(machine().tip_jerk_mm_s3)) return true;
   constexpr double kReaches = 1.0 - 1e-12;
   if (speeds().speed(last_knot) >= span.cap * kReaches) return true;
-  const bool varies = span.in_stretches || span_stage_.MayVary(span);
+  const bool varies = span.in_stretches || span.may_vary;
   return IsBlend(span.report.passage) && !varies;
 }
 
@@ -93,7 +93,7 @@ void ItemStage::PlanSection() {
     if (span.in_stretches) {
       AddCurve(span, knot);
     } else if (blend && k + 1 < section_left_) {
-      PathLimits limits = span_stage_.LimitsOnCurve(span.corner_move, span.report.cut_mm);
+      PathLimits limits = LimitsOnCurve(legs(), span.corner_move, span.report.cut_mm);
       limits.speed = span.cap;
       cells_.push_back({span.curve_length, limits, speed, RampCell::kNoCap, {}});
     }
@@ -104,12 +104,12 @@ void ItemStage::PlanSection() {
 
 // The stretches of the curve behind a span whose own knot is `knot`.
 void ItemStage::AddCurve(const Span& span, std::size_t knot) {
-  PathLimits limits = span_stage_.LimitsInStretches(span);
-  const SpanStage::Stretches stretches = span_stage_.StretchesIn(span);
+  PathLimits limits = LimitsInStretches(legs(), span);
+  const Stretches stretches = StretchesIn(legs(), span);
   const std::size_t count = span.curve_knots();
   std::span<const double> most;
   if (count <= 2 && span.stretches.open > span.stretches.start) {
-    const BendSpeeds half = span_stage_.SpeedsAlong(span);
+    const BendSpeeds half = SpeedsAlong(legs(), span);
     const std::size_t begin = most_.size();
     most_.insert(most_.end(), half.most.begin(), half.most.end());
     most_.insert(most_.end(), half.most.rbegin() + 1, half.most.rend());
@@ -117,7 +117,7 @@ void ItemStage::AddCurve(const Span& span, std::size_t knot) {
   }
   double begin = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
-    const SpanStage::Stretch& stretch = stretches[k];
+    const Stretch& stretch = stretches[k];
     limits.speed = stretch.most;
     RampCell cell{stretch.end - begin, limits, speeds().speed(knot + 1 + k), stretch.end_cap, {}};
     if (!most.empty()) {
@@ -261,7 +261,7 @@ void ItemStage::EmitCurve(const Span& span) {
   }
   const PathPose& middle = span.curve_middle;
   if (span.plain) {
-    const PlainCorner corner = span_stage_.PlainCornerAt(span.corner_move, span.report.cut_mm);
+    const PlainCorner corner = PlainCornerAt(legs(), span.corner_move, span.report.cut_mm);
     const PathPose start = corner.Start(), finish = corner.Finish();
     EmitHalves(span, corner, {start, middle, half, 0.0}, {middle, finish, half, half}, cells);
   } else {
@@ -350,15 +350,15 @@ void ItemStage::EndMove(const Span& span, Number move, PlannedMotion& motion) {
     items_.Push(PlannedMark{marks_.front().tag});
     marks_.PopFront();
   }
-  LegStage& legs = span_stage_.leg_stage();
-  while (legs.moves().first() < move) legs.DropOldestMove();
-  if (move == span.corner_move && legs.moves().end() == move + 1 && !legs.open()) {
-    legs.DropOldestMove();
+  LegStage& from = span_stage_.leg_stage();
+  while (from.moves().first() < move) from.DropOldestMove();
+  if (move == span.corner_move && from.moves().end() == move + 1 && !from.open()) {
+    from.DropOldestMove();
   }
 }
 
 void ItemStage::AddMark(std::uint64_t tag) {
-  if (!span_stage_.leg_stage().open() && moves().empty()) {
+  if (!legs().open() && moves().empty()) {
     items_.Push(PlannedMark{tag});
   } else {
     marks_.Push({tag, moves().end() - 1});

@@ -31,7 +31,6 @@ class ItemStage {
 
  private:
   using Number = SpanStage::Number;
-  using Span = SpanStage::Span;
   using Move = LegStage::Move;
 
   struct WaitingMark {
@@ -59,8 +58,9 @@ class ItemStage {
 
   const Ring<Span>& spans() const { return span_stage_.spans(); }
   const SpeedPasses& speeds() const { return span_stage_.speeds(); }
-  const Ring<Move>& moves() const { return span_stage_.leg_stage().moves(); }
-  const MachineLimits& machine() const { return span_stage_.leg_stage().machine(); }
+  const LegStage& legs() const { return span_stage_.leg_stage(); }
+  const Ring<Move>& moves() const { return legs().moves(); }
+  const MachineLimits& machine() const { return legs().machine(); }
 
   std::size_t SectionSize();
   bool EndsSection(const Span& span, std::size_t last_knot) const;

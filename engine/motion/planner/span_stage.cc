@@ -13,9 +13,6 @@ namespace {
 constexpr double kCutMin_mm = 1e-4;  // a smaller curve is a stop, motion.md 4.4
 constexpr double kSameLimit = 1e-9;  // relative
 
-// A bend that takes all that the axes have takes nine tenths of it at this share of its speed.
-constexpr double kLeavesRoom = 0.95;
-
 // How near the tip comes to where it would be at the end of `path`, on a curve behind it. Both are
 // of the axes.
 double TipDistance(const CornerCurve& curve, const Head& head, const PathPiece& path) {
@@ -179,18 +176,14 @@ double SpanStage::SpeedOn(const Span& span, const Leg& leg, double cut, double w
                                                             leg.corner.PlainCurvature(cut));
   if (axes_follow) return speed;
   const CornerCurve curve =
-      span.plain ? CornerCurve(PlainCornerAt(leg.last_move, cut)) : curves_.back();
+      span.plain ? CornerCurve(PlainCornerAt(leg_stage_, leg.last_move, cut)) : curves_.back();
   return std::min(speed, SpeedOnCurve(curve, head, machine(), speed));
-}
-
-PlainCorner SpanStage::PlainCornerAt(Number corner_move, double cut) const {
-  const PathPiece& in = moves()[corner_move].path;
-  return {in.to(), in.Tangent(0.0), moves()[corner_move + 1].path.Tangent(0.0), cut};
 }
 
 void SpanStage::MakeCurve(Span& span, const Leg& leg, double cut) {
   const Move& in = moves()[leg.last_move];
   span.plain = !leg.in_axes && leg.corner.plain();
+  span.may_vary = axes_follow_ramps_;
   if (span.plain) {
     const PathPiece& out = moves()[leg.last_move + 1].path;
     span.curve_length = leg.corner.PlainLength(cut);
@@ -200,10 +193,12 @@ void SpanStage::MakeCurve(Span& span, const Leg& leg, double cut) {
     span.report.deviation_mm = leg.corner.PlainDeviation(cut);
     return;
   }
-  const CornerCurve curve = CurveAround(leg, cut, span.head_steady);
+  const CurveAround around = CurveAroundEnd(leg_stage_, leg, cut);
+  const CornerCurve& curve = around.curve;
   curves_.Push(curve);
+  span.may_vary = axes_follow_ramps_ && around.head_steady;
   if (leg.in_axes) {
-    span.head_steady = false;  // whatever it does: the speed is not that of the tip
+    span.may_vary = false;  // whatever it does: the speed is not that of the tip
     span.curve_length = curve.way_s();
     span.curve_middle = curve.At(0.5);
     span.report.deviation_mm = TipDistance(curve, in.head, in.path);
@@ -222,34 +217,10 @@ void SpanStage::MakeCurve(Span& span, const Leg& leg, double cut) {
   span.report.deviation_mm = curve.DistanceFrom(in.path.to().point);
 }
 
-// The curve between the place at the distance `cut` before the corner and that behind it; both may
-// lie some moves away.
-CornerCurve SpanStage::CurveAround(const Leg& leg, double cut, bool& head_steady) const {
-  Number before = leg.last_move;
-  double left = cut;
-  while (left > moves()[before].path.length()) {
-    left -= moves()[before].path.length();
-    --before;
-  }
-  const PathPiece& in = moves()[before].path;
-  Number after = leg.last_move + 1;
-  double right = cut;
-  while (right > moves()[after].path.length()) {
-    right -= moves()[after].path.length();
-    ++after;
-  }
-  const PathPiece& out = moves()[after].path;
-  head_steady =
-      in.a_rate() == 0.0 && in.b_rate() == 0.0 && out.a_rate() == 0.0 && out.b_rate() == 0.0;
-  const CurveEnd begin = EndAt(in, in.length() - left);
-  const CurveEnd end = EndAt(out, right);
-  return leg.in_axes ? CornerCurve::InAxes(begin, end, cut) : CornerCurve(begin, end, cut);
-}
-
 // A bend that cannot be passed at OVERSH x Vb but at `steady` may be faster where it is less tight,
 // up to `most`. motion.md 5.4
 void SpanStage::ChooseStretches(Span& span, const Leg& leg, double steady, double most) const {
-  if (!machine().ramps_across_passages || !axes_follow_ramps_ || !span.head_steady) return;
+  if (!machine().ramps_across_passages || !span.may_vary) return;
   if (steady >= leg.limit * (1.0 - kSameLimit)) return;
   span.in_stretches = true;
   span.stretches = {.start = steady, .open = steady, .middle = steady};
@@ -264,69 +235,8 @@ void SpanStage::ChooseStretches(Span& span, const Leg& leg, double steady, doubl
                       .middle = abrupt[abrupt.size() / 2]};
     return;
   }
-  span.stretches = StretchesOf(speeds, 0.5 * span.curve_length, LimitsOnCurve(leg.last_move, cut));
-}
-
-// Those of every move that a curve touches.
-PathLimits SpanStage::LimitsOnCurve(Number corner_move, double cut) const {
-  PathLimits limits = moves()[corner_move].limits;
-  const auto lower = [&](const Move& move) {
-    limits.acceleration = std::min(limits.acceleration, move.limits.acceleration);
-    limits.jerk = std::min(limits.jerk, move.limits.jerk);
-    return move.path.length();
-  };
-  limits.acceleration =
-      std::min(limits.acceleration, machine().curve_tangential * machine().tip_acceleration_mm_s2);
-  double left = cut;
-  for (Number k = corner_move; left > 0.0; --k) {
-    left -= lower(moves()[k]);
-    if (k == moves().first()) break;
-  }
-  left = cut;
-  for (Number k = corner_move + 1; left > 0.0 && k < moves().end(); ++k) left -= lower(moves()[k]);
-  return limits;
-}
-
-PathLimits SpanStage::LimitsInStretches(const Span& span) const {
-  PathLimits limits = LimitsOnCurve(span.corner_move, span.report.cut_mm);
-  limits.speed = span.stretches.open;
-  if (span.head_steady && axes_follow_ramps_) return limits;
-  // No axis moves by more than its speed over that of the tip for a mm of the way.
-  const double whole = limits.speed / kLeavesRoom;
-  for (const std::size_t i : kAxes) {
-    const double per_axis = whole / machine().axes.speed[i];
-    limits.acceleration =
-        std::min(limits.acceleration,
-                 (1.0 - kLeavesRoom * kLeavesRoom) * machine().axes.acceleration[i] * per_axis);
-    if (std::isfinite(limits.jerk)) {
-      limits.jerk = std::min(limits.jerk, machine().axes.jerk[i] * per_axis);
-    }
-  }
-  return limits;
-}
-
-// How fast the curve behind a span may be passed from place to place. Precondition: it is plain.
-BendSpeeds SpanStage::SpeedsAlong(const Span& span) const {
-  Corner corner;
-  corner.Assign(moves()[span.corner_move].path, moves()[span.corner_move + 1].path);
-  return corner.PlainSpeeds(span.report.cut_mm, span.stretches.open, machine());
-}
-
-SpanStage::Stretches SpanStage::StretchesIn(const Span& span) const {
-  const BendStretches& most = span.stretches;
-  Stretches stretches;
-  for (std::size_t k = 0; k < most.count; ++k) {
-    const bool last = k + 1 == most.count;
-    stretches[k] = {
-        .end = span.curve_end(k), .end_cap = last ? most.start : most.middle, .most = most.open};
-  }
-  if (most.count < BendStretches::kAbrupt) return stretches;
-  const auto speeds = AbruptSpeeds(SpeedsAlong(span));
-  for (std::size_t k = 0; k < most.count; ++k) {
-    stretches[k].most = speeds[k];
-    stretches[k].end_cap = std::min(speeds[k], k + 1 < most.count ? speeds[k + 1] : most.start);
-  }
-  return stretches;
+  span.stretches =
+      StretchesOf(speeds, 0.5 * span.curve_length, LimitsOnCurve(leg_stage_, leg.last_move, cut));
 }
 
 // The knots of a span from its `first` on.
@@ -337,8 +247,8 @@ void SpanStage::PushKnots(const Span& span, std::size_t first) {
     ++first;
   }
   if (!span.in_stretches) return;
-  PathLimits limits = LimitsInStretches(span);
-  const Stretches stretches = StretchesIn(span);
+  PathLimits limits = LimitsInStretches(leg_stage_, span);
+  const Stretches stretches = StretchesIn(leg_stage_, span);
   for (std::size_t k = first; k < span.knots(); ++k) {
     const Stretch& stretch = stretches[k - 1];
     limits.speed = stretch.most;
@@ -356,7 +266,7 @@ void SpanStage::LetBendsVary() {
   for (Number k = decided_; k < spans_.end(); ++k, known = 0) {
     Span& span = spans_[k];
     if (known == 0 && IsBlend(span.report.passage) && !span.in_stretches) {
-      if (!span.head_steady || !axes_follow_ramps_) span.cap *= kLeavesRoom;
+      if (!span.may_vary) span.cap *= kLeavesRoom;
       span.in_stretches = true;
       span.stretches = {.start = span.cap, .open = span.cap, .middle = span.cap};
     }

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 
-#include "engine/motion/planner/leg_stage.h"
+#include "engine/motion/planner/span.h"
 
 namespace rmlcell::motion {
 
@@ -14,46 +13,6 @@ namespace rmlcell::motion {
 class SpanStage {
  public:
   using Number = LegStage::Number;  // of a move, a leg, a span
-
-  // From place x_from of one move to place x_to of another, and what ends it.
-  struct Span {
-    Number first_move = 0;
-    Number last_move = 0;
-    double x_from = 0.0;
-    double x_to = 0.0;
-    double length = 0.0;
-    PathLimits limits;
-    Number corner_move = 0;  // the last move before the passage; differs from last_move when the
-                             // curve begins in an earlier one
-    double settling_s = 0.0;
-    double cap = 0.0;  // of the speed at its end, and on the curve behind it or at both its ends
-    bool head_steady = true;  // on the curve behind it
-    // The curve behind it is passed in stretches, with changing speed: a knot at the end of each.
-    // Else it is passed steadily, or belongs to the ramps that run across the knot before it.
-    bool in_stretches = false;
-    BendStretches stretches{};
-    CornerReport report;
-    // When the report says blend:
-    double curve_length = 0.0;
-    PathPose curve_middle;  // at half of its length
-    bool plain = false;  // the curve follows from the corner and the cut; else it waits in curves_
-
-    double curve_end(std::size_t stretch) const {  // arc length from the start of the curve
-      const std::size_t count = stretches.count;
-      return stretch + 1 == count
-                 ? curve_length
-                 : curve_length * static_cast<double>(stretch + 1) / static_cast<double>(count);
-    }
-    std::size_t curve_knots() const { return in_stretches ? stretches.count : 0; }
-    std::size_t knots() const { return 1 + curve_knots(); }
-  };
-  // One stretch of a curve, from its start.
-  struct Stretch {
-    double end = 0.0;      // arc length from the start of the curve
-    double end_cap = 0.0;  // of the speed there
-    double most = 0.0;     // of the speed on the way
-  };
-  using Stretches = std::array<Stretch, BendStretches::kAbrupt>;  // the first curve_knots()
 
   SpanStage(const MachineLimits& machine, std::size_t window);
 
@@ -104,15 +63,6 @@ class SpanStage {
     for (std::size_t k = 0; k < knots; ++k) speeds_.Pop();
   }
 
-  // What the motions of a span are made of.
-  PlainCorner PlainCornerAt(Number corner_move, double cut) const;
-  PathLimits LimitsOnCurve(Number corner_move, double cut) const;
-  PathLimits LimitsInStretches(const Span& span) const;
-  Stretches StretchesIn(const Span& span) const;
-  BendSpeeds SpeedsAlong(const Span& span) const;
-  // Whether the speed on the curve behind it may change although it has no stretches.
-  bool MayVary(const Span& span) const { return span.head_steady && axes_follow_ramps_; }
-
   // The spans that wait, and the speeds of their knots as far as they are final, a line each.
   std::string Dump() const;
 
@@ -136,7 +86,6 @@ class SpanStage {
   std::optional<double> TakeCurve(Span& closing, const Leg& leg, double total,
                                   bool accept_what_is_there);
   void MakeCurve(Span& span, const Leg& leg, double cut);
-  CornerCurve CurveAround(const Leg& leg, double cut, bool& head_steady) const;
   double SpeedOn(const Span& span, const Leg& leg, double cut, double most, bool capped) const;
   void ChooseStretches(Span& span, const Leg& leg, double cut, double most) const;
   void TakeMoves(Span& span, const Leg& leg, const LegPart& part) const;
@@ -158,7 +107,7 @@ class SpanStage {
   std::uint64_t starved_ = 0;
 
   bool axes_keep_up_;  // the axes allow whatever the tip may do on a curve without head rotation
-  bool axes_follow_ramps_;         // on curves without head rotation, whatever the tip does
+  bool axes_follow_ramps_;         // the same, whatever the speed of the tip does there
   double run_length_ = 0.0;        // of the legs before the next one in its run
   double run_cut_ = 0.0;           // what the curve at the start of the run takes of it
   std::size_t speeds_next_ = 0;    // settle again at this many open knots
