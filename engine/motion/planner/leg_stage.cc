@@ -143,6 +143,7 @@ std::string LegStage::Dump() const {
     if (closed(k)) out += ", " + std::string(NameOf(leg.passage)) + " at " + FixedText(leg.cap, 3);
     if (!closed(k)) out += ", open";
     if (closed(k) && leg.ends_run) out += ", ends the run";
+    if (k >= next_ && knows_speed_of(k)) out += ", speed " + FixedText(speed_of(k), 3);
     out += '\n';
   }
   return out;

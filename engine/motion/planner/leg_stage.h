@@ -119,7 +119,7 @@ class LegStage {
   // Where the last accepted move ended; null before the first.
   const PathPose* end() const { return end_known_ ? &end_ : nullptr; }
 
-  // The legs that wait, and what of their speeds is final, a line each.
+  // The legs that wait, and the running speeds at their ends as far as they are final, a line each.
   std::string Dump() const;
 
  private:

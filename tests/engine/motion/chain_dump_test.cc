@@ -69,6 +69,14 @@ TEST(LegStageDump, LegsAreClosedByCorners) {
   EXPECT_EQ(legs.Dump(),
             "leg 0: moves 0 to 1, length 100.000, BLEND at 100.000, ends the run\n"
             "leg 1: moves 2 to 2, length 30.000, STOP at 0.000, ends the run\n");
+  legs.Settle();  // 5 mm are enough to reach 100 mm/s, and to stop
+  EXPECT_EQ(legs.Dump(),
+            "leg 0: moves 0 to 1, length 100.000, BLEND at 100.000, ends the run, speed 100.000\n"
+            "leg 1: moves 2 to 2, length 30.000, STOP at 0.000, ends the run, speed 0.000\n");
+  legs.TakeSpeed();
+  legs.DropTaken();
+  EXPECT_EQ(legs.Dump(),
+            "leg 1: moves 2 to 2, length 30.000, STOP at 0.000, ends the run, speed 0.000\n");
 }
 
 // What is passed straight on is one run, and becomes spans as one: so does the corner of a mill.
