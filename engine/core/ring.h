@@ -26,12 +26,14 @@ class Ring {
     RMLCELL_CHECK(number >= first_ && number < end_);
     return slots_[Slot(number)];
   }
-  const T& operator[](Number number) const {
+  [[gnu::always_inline]] const T& operator[](Number number) const {
     RMLCELL_CHECK(number >= first_ && number < end_);
     return slots_[Slot(number)];
   }
   T& front() { return (*this)[first_]; }
   T& back() { return (*this)[end_ - 1]; }
+  const T& front() const { return (*this)[first_]; }
+  const T& back() const { return (*this)[end_ - 1]; }
 
   // A slot for a new element, holding what some older one left there.
   [[gnu::always_inline]] T& PushSlot() {

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/motion/geometry/frames.h"
+
 namespace rmlcell::rml1 {
 namespace {
+
+motion::ProgramVector XyzOf(const Point& p) { return {p.x, p.y, p.z}; }
 
 // The shares of the way from `from` to `to` between which low <= value <= high, cut into `share`.
 void Narrow(Share& share, double from, double to, const Travel& travel) {
@@ -46,10 +50,7 @@ Point CuttingRange::Nearest(const Point& p) const {
           std::clamp(p.z, z.low, z.high), p.a};
 }
 
-double DistanceXYZ(const Point& a, const Point& b) {
-  return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) +
-                   (a.z - b.z) * (a.z - b.z));
-}
+double DistanceXYZ(const Point& a, const Point& b) { return (XyzOf(a) - XyzOf(b)).norm(); }
 
 bool SamePoint(const Point& a, const Point& b, double zero) {
   return DistanceXYZ(a, b) <= zero && std::abs(a.a - b.a) <= kSameAngle_deg;

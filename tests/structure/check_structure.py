@@ -40,7 +40,8 @@ MAY_INCLUDE = {
     "engine/rml1": ENGINE,
     "engine/rml1/offline": ENGINE + ["engine/rml1"],
     "engine/rml1/board": ENGINE + ["engine/rml1", "engine/rml1/offline"],
-    "engine/optimo/language": ["engine/core"],
+    # Points and directions, and nothing that moves.
+    "engine/optimo/language": ["engine/core", GEOMETRY],
     "engine/optimo/offline": ENGINE + ["engine/optimo/language"],
     "engine/optimo/editing": ["engine/core", "engine/machine", "engine/optimo/language", "engine/optimo/offline"],
     "engine/optimo/machine": ENGINE + ["engine/optimo/language", "engine/optimo/offline"],

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "engine/core/units.h"
 #include "engine/motion/geometry/least.h"
@@ -84,6 +85,58 @@ AxisDerivatives Bounds(const PathPiece& path, const Head& head) {
   return q;
 }
 
+// The limits on a line along which the head turns a little, from places in the middle of a few
+// parts and how far the derivatives can get away from them: within 1 % of what there is,
+// motion.md 5.1. Nothing where that does not tell enough.
+std::optional<PathLimits> LimitsOnShortTurn(const PathPiece& path, const Head& head,
+                                            const AxisLimits& axes, const AxisShares& shares,
+                                            const PathLimits& limits) {
+  constexpr double kRoom = 0.004;
+  constexpr std::size_t kPartsMax = 8;
+  const PathDerivatives first = path.First(0.0);  // and everywhere: there is no second one
+  const double rate = std::abs(first.a) + std::abs(first.b);
+  const double half = 0.5 * path.length();
+  const double drift = half * head.reach_mm() * rate * rate;
+  const double wanted = std::ceil(std::max(drift / first.point.norm(), half * rate) / kRoom);
+  if (!(wanted <= static_cast<double>(kPartsMax))) return std::nullopt;
+  const auto parts = static_cast<std::size_t>(std::max(wanted, 1.0));
+  const double share = 1.0 / static_cast<double>(parts);
+  std::array<AxisDerivatives, kPartsMax> at;
+  std::array<AxisDerivatives, kPartsMax> around;
+  PathLimits sure = limits;  // kept all along
+  PathLimits most = limits;  // more than the places looked at allow there is not
+  for (std::size_t k = 0; k < parts; ++k) {
+    const double s = path.length() * (static_cast<double>(k) + 0.5) * share;
+    at[k] = around[k] = ThroughHead(head, path.At(s), first, {});
+    AxisDerivatives& q = around[k];
+    for (const std::size_t i : kLinearAxes) {
+      q.first[i] = std::abs(q.first[i]) + drift * share;
+      q.second[i] = std::abs(q.second[i]) + drift * share * rate;
+    }
+    if (Allows(q, axes, shares, limits)) continue;
+    sure.speed = std::min(sure.speed, SpeedAllowed(q, axes, shares));
+    most.speed = std::min(most.speed, SpeedAllowed(at[k], axes, shares));
+    if (std::isinf(limits.jerk)) continue;
+    sure.jerk = std::min(sure.jerk, JerkAllowed(q, axes, shares));
+    most.jerk = std::min(most.jerk, JerkAllowed(at[k], axes, shares));
+  }
+  for (std::size_t k = 0; k < parts; ++k) {
+    if (Allows(around[k], axes, shares, sure)) continue;
+    const auto allowed = [&](const AxisDerivatives& q) {
+      return AccelerationAllowed(q, axes, shares, sure.speed);
+    };
+    sure.acceleration = std::min(sure.acceleration, allowed(around[k]));
+    most.acceleration = std::min(most.acceleration, allowed(at[k]));
+  }
+  // An axis that moves little beside the others may be told too little of: then it is searched.
+  constexpr double kNear = 0.99;
+  if (sure.speed >= kNear * most.speed && sure.acceleration >= kNear * most.acceleration &&
+      sure.jerk >= kNear * most.jerk) {
+    return sure;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 double SpeedWithinAxes(const AxisDerivatives& q, const AxisLimits& axes) {
@@ -133,52 +186,7 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
   if (Allows(bounds, axes, shares, limits)) return limits;
 
   if (!arc) {
-    // A short turn: places in the middle of a few parts, and how far the derivatives can get away
-    // from them. Within 1 % of what there is, motion.md 5.1.
-    constexpr double kRoom = 0.004;
-    constexpr std::size_t kPartsMax = 8;
-    const PathDerivatives first = path.First(0.0);  // and everywhere: there is no second one
-    const double rate = std::abs(first.a) + std::abs(first.b);
-    const double half = 0.5 * path.length();
-    const double drift = half * head.reach_mm() * rate * rate;
-    const double wanted = std::ceil(std::max(drift / first.point.norm(), half * rate) / kRoom);
-    if (wanted <= static_cast<double>(kPartsMax)) {
-      const auto parts = static_cast<std::size_t>(std::max(wanted, 1.0));
-      const double share = 1.0 / static_cast<double>(parts);
-      std::array<AxisDerivatives, kPartsMax> at;
-      std::array<AxisDerivatives, kPartsMax> around;
-      PathLimits sure = limits;  // kept all along
-      PathLimits most = limits;  // more than the places looked at allow there is not
-      for (std::size_t k = 0; k < parts; ++k) {
-        const double s = path.length() * (static_cast<double>(k) + 0.5) * share;
-        at[k] = around[k] = ThroughHead(head, path.At(s), first, {});
-        AxisDerivatives& q = around[k];
-        for (const std::size_t i : kLinearAxes) {
-          q.first[i] = std::abs(q.first[i]) + drift * share;
-          q.second[i] = std::abs(q.second[i]) + drift * share * rate;
-        }
-        if (Allows(q, axes, shares, limits)) continue;
-        sure.speed = std::min(sure.speed, SpeedAllowed(q, axes, shares));
-        most.speed = std::min(most.speed, SpeedAllowed(at[k], axes, shares));
-        if (std::isinf(limits.jerk)) continue;
-        sure.jerk = std::min(sure.jerk, JerkAllowed(q, axes, shares));
-        most.jerk = std::min(most.jerk, JerkAllowed(at[k], axes, shares));
-      }
-      for (std::size_t k = 0; k < parts; ++k) {
-        if (Allows(around[k], axes, shares, sure)) continue;
-        const auto allowed = [&](const AxisDerivatives& q) {
-          return AccelerationAllowed(q, axes, shares, sure.speed);
-        };
-        sure.acceleration = std::min(sure.acceleration, allowed(around[k]));
-        most.acceleration = std::min(most.acceleration, allowed(at[k]));
-      }
-      // An axis that moves little beside the others may be told too little of: then it is searched.
-      constexpr double kNear = 0.99;
-      if (sure.speed >= kNear * most.speed && sure.acceleration >= kNear * most.acceleration &&
-          sure.jerk >= kNear * most.jerk) {
-        return sure;
-      }
-    }
+    if (const auto near = LimitsOnShortTurn(path, head, axes, shares, limits)) return *near;
   }
 
   const double turning = std::abs(path.to().a_rad - path.from().a_rad) +

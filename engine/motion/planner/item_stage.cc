@@ -31,16 +31,16 @@ const PlannedItem* ItemStage::Next() {
 
 // How many spans are timed together next; 0 when that is not known yet.
 std::size_t ItemStage::SectionSize() {
-  const std::size_t known = speeds_.final_count();
+  const std::size_t known = speeds().final_count();
   if (known <= section_knots_) return 0;
-  while (spans_.first() + section_seen_ < spans_.end()) {
-    const Span& span = spans_[spans_.first() + section_seen_];
+  while (spans().first() + section_seen_ < spans().end()) {
+    const Span& span = spans()[spans().first() + section_seen_];
     if (section_knots_ + span.knots() > known) break;
     ++section_seen_;
     section_knots_ += span.knots();
-    const Number moves = span.last_move - spans_.front().first_move;
+    const Number moves = span.last_move - spans().front().first_move;
     if (EndsSection(span, section_knots_ - 1) || section_seen_ == kSectionMax ||
-        moves >= window_ / 2) {
+        moves >= legs().window() / 2) {
       section_knots_ = 0;
       return std::exchange(section_seen_, 0);
     }
@@ -50,10 +50,10 @@ std::size_t ItemStage::SectionSize() {
 
 // A knot that is passed as fast as it may be: the speed has no slope there in any good plan.
 bool ItemStage::EndsSection(const Span& span, std::size_t last_knot) const {
-  if (!machine_.ramps_across_passages || std::isinf(machine_.tip_jerk_mm_s3)) return true;
+  if (!machine().ramps_across_passages || std::isinf(machine().tip_jerk_mm_s3)) return true;
   constexpr double kReaches = 1.0 - 1e-12;
-  if (speeds_.speed(last_knot) >= span.cap * kReaches) return true;
-  const bool varies = span.in_stretches || MayVary(span);
+  if (speeds().speed(last_knot) >= span.cap * kReaches) return true;
+  const bool varies = span.in_stretches || span.may_vary;
   return IsBlend(span.report.passage) && !varies;
 }
 
@@ -61,9 +61,9 @@ bool ItemStage::EndsSection(const Span& span, std::size_t last_knot) const {
 void ItemStage::PlanSection() {
   // Only a chain that begins moving can be too fast: the passes see to the rest.
   constexpr double kRoom = 1.0 + 1e-9;
-  const Span& first = spans_.front();
-  if (last_speed_ > speeds_.speed() * kRoom &&
-      RampLength(last_speed_, speeds_.speed(), first.limits) > first.length * kRoom) {
+  const Span& first = spans().front();
+  if (last_speed_ > speeds().speed() * kRoom &&
+      RampLength(last_speed_, speeds().speed(), first.limits) > first.length * kRoom) {
     starts_too_fast_ = true;
   }
   section_cell_ = 0;
@@ -71,7 +71,7 @@ void ItemStage::PlanSection() {
   place_ramp_ = 0;
   alone_ = section_left_ == 1 && !first.in_stretches;
   if (alone_) {
-    lone_ = SpeedProfile::Span(first.length, last_speed_, speeds_.speed(), first.limits);
+    lone_ = SpeedProfile::Span(first.length, last_speed_, speeds().speed(), first.limits);
     return;
   }
   // What lies between the knots at both ends, each with the speed of level 1 at its end. The curve
@@ -81,8 +81,8 @@ void ItemStage::PlanSection() {
   most_.reserve(section_left_ * (2 * BendSpeeds::kSteps + 1));  // cells look into it
   std::size_t knot = 0;
   for (std::size_t k = 0; k < section_left_; ++k) {
-    const Span& span = spans_[spans_.first() + k];
-    const double speed = speeds_.speed(knot);
+    const Span& span = spans()[spans().first() + k];
+    const double speed = speeds().speed(knot);
     const bool blend = IsBlend(span.report.passage);
     const bool free = blend && !span.in_stretches;
     if (span.length > 0.0) {
@@ -93,7 +93,7 @@ void ItemStage::PlanSection() {
     if (span.in_stretches) {
       AddCurve(span, knot);
     } else if (blend && k + 1 < section_left_) {
-      PathLimits limits = LimitsOnCurve(span.corner_move, span.report.cut_mm);
+      PathLimits limits = LimitsOnCurve(legs(), span.corner_move, span.report.cut_mm);
       limits.speed = span.cap;
       cells_.push_back({span.curve_length, limits, speed, RampCell::kNoCap, {}});
     }
@@ -104,12 +104,12 @@ void ItemStage::PlanSection() {
 
 // The stretches of the curve behind a span whose own knot is `knot`.
 void ItemStage::AddCurve(const Span& span, std::size_t knot) {
-  PathLimits limits = LimitsInStretches(span);
-  const Stretches stretches = StretchesIn(span);
+  PathLimits limits = LimitsInStretches(legs(), span);
+  const Stretches stretches = StretchesIn(legs(), span);
   const std::size_t count = span.curve_knots();
   std::span<const double> most;
   if (count <= 2 && span.stretches.open > span.stretches.start) {
-    const BendSpeeds half = SpeedsAlong(span);
+    const BendSpeeds half = SpeedsAlong(legs(), span);
     const std::size_t begin = most_.size();
     most_.insert(most_.end(), half.most.begin(), half.most.end());
     most_.insert(most_.end(), half.most.rbegin() + 1, half.most.rend());
@@ -119,7 +119,7 @@ void ItemStage::AddCurve(const Span& span, std::size_t knot) {
   for (std::size_t k = 0; k < count; ++k) {
     const Stretch& stretch = stretches[k];
     limits.speed = stretch.most;
-    RampCell cell{stretch.end - begin, limits, speeds_.speed(knot + 1 + k), stretch.end_cap, {}};
+    RampCell cell{stretch.end - begin, limits, speeds().speed(knot + 1 + k), stretch.end_cap, {}};
     if (!most.empty()) {
       const std::size_t steps = 2 * BendSpeeds::kSteps / count;
       cell.most = most.subspan(k * steps, steps + 1);
@@ -150,7 +150,7 @@ const SpeedProfile& ItemStage::PresentRamp() {
 
 // The part of the span to `to` of its length, or to its end.
 void ItemStage::TakePart(SpeedProfile& speed, double to, bool to_end) {
-  if (alone_) return TakeRamp(speed, lone_, to_end ? spans_.front().length : to);
+  if (alone_) return TakeRamp(speed, lone_, to_end ? spans().front().length : to);
   const SpeedProfile& ramp = PresentRamp();
   const RampPlan::Timing& timing = ramps_.timing()[section_cell_];
   TakeRamp(speed, ramp, to_end ? timing.to : std::min(timing.from + to, timing.to));
@@ -205,7 +205,7 @@ inline void ItemStage::FinishMotion(const Span& span, Number move, PlannedMotion
 // What is left of the next move between the curves at its ends, and the curve behind it when the
 // span ends there.
 void ItemStage::EmitMove() {
-  Span& span = spans_.front();
+  const Span& span = spans().front();
   const bool blend = IsBlend(span.report.passage);
   if (span.length > 0.0) {
     if (!emitting_) {
@@ -214,7 +214,7 @@ void ItemStage::EmitMove() {
       emit_done_ = 0.0;
     }
     for (bool emitted = false; !emitted && emit_move_ <= span.last_move; ++emit_move_) {
-      const Move& move = moves_[emit_move_];
+      const Move& move = moves()[emit_move_];
       const PathPiece& path = move.path;
       const bool last = emit_move_ == span.last_move;
       const double from = emit_move_ == span.first_move ? span.x_from : 0.0;
@@ -236,15 +236,15 @@ void ItemStage::EmitMove() {
     emitting_ = false;
     ++section_cell_;
   }
-  span.report.speed = speeds_.speed();
-  const double end_speed = speeds_.speed(span.knots() - 1);
+  curve_speed_ = speeds().speed();
+  const double end_speed = speeds().speed(span.knots() - 1);
   if (blend) EmitCurve(span);
   last_speed_ = end_speed;
-  PopSpan();
+  span_stage_.DropOldest();
   --section_left_;
 }
 
-void ItemStage::EmitCurve(Span& span) {
+void ItemStage::EmitCurve(const Span& span) {
   const double half = 0.5 * span.curve_length;
   CurveCells cells;  // none: steady
   if (span.in_stretches || section_left_ > 1) {
@@ -257,18 +257,17 @@ void ItemStage::EmitCurve(Span& span) {
     const RampPlan::Timing& timing = ramps_.timing()[cell];
     const SpeedProfile& ramp = ramps_.ramps()[timing.ramp];
     const double middle = cells.count > 1 ? timing.to : 0.5 * (timing.from + timing.to);
-    span.report.speed = ramp.At(ramp.TimeAt(middle)).speed;
+    curve_speed_ = ramp.At(ramp.TimeAt(middle)).speed;
   }
   const PathPose& middle = span.curve_middle;
   if (span.plain) {
-    const PlainCorner corner = PlainCornerAt(span.corner_move, span.report.cut_mm);
+    const PlainCorner corner = PlainCornerAt(legs(), span.corner_move, span.report.cut_mm);
     const PathPose start = corner.Start(), finish = corner.Finish();
     EmitHalves(span, corner, {start, middle, half, 0.0}, {middle, finish, half, half}, cells);
   } else {
-    const CornerCurve& curve = curves_.front();
+    const CornerCurve& curve = span_stage_.oldest_curve();
     const PathPose start = curve.At(0.0), finish = curve.At(1.0);
     EmitHalves(span, curve, {start, middle, half, 0.0}, {middle, finish, half, half}, cells);
-    curves_.PopFront();
   }
 }
 
@@ -285,7 +284,7 @@ void ItemStage::EmitHalves(const Span& span, const Shape& shape, const Half& fir
   for (Number k = span.last_move; k <= span.corner_move; ++k) {
     double to = half;
     if (k < span.corner_move) {
-      x += moves_[k].path.length() - (k == span.last_move ? span.x_to : 0.0);
+      x += moves()[k].path.length() - (k == span.last_move ? span.x_to : 0.0);
       to = std::min(half * std::max(x, 0.0) / cut, half);
     }
     if (!(to > s)) continue;
@@ -296,8 +295,8 @@ void ItemStage::EmitHalves(const Span& span, const Shape& shape, const Half& fir
   x = 0.0;
   s = 0.0;
   for (Number k = span.corner_move + 1;; ++k) {
-    x += moves_[k].path.length();
-    const bool last = x >= cut || k + 1 == moves_.end();
+    x += moves()[k].path.length();
+    const bool last = x >= cut || k + 1 == moves().end();
     double to = last ? half : std::min(half * x / cut, half);
     if (half + to >= half + half)
       to = half;  // what is left is less than the last digit of the curve
@@ -312,15 +311,16 @@ void ItemStage::EmitCurvePart(const Span& span, Number move, const Shape& shape,
                               const HalfPart& part, CurveCells& cells) {
   // A half is one motion, but for its moves and where the ramp changes.
   for (double s = part.s_from; s < part.s_to;) {
-    PlannedMotion& motion = NewMotion(span, moves_[move]);
-    motion.limits = moves_[move].limits;
+    PlannedMotion& motion = NewMotion(span, moves()[move]);
+    motion.limits = moves()[move].limits;
     double s_to = part.s_to;
     if (cells.count == 0) {
       // A STOP on the way brakes as the move does that this part belongs to.
-      motion.speed = SpeedProfile::Steady(s_to - s, span.report.speed);
-      motion.limits.acceleration = std::min(
-          motion.limits.acceleration, machine_.curve_tangential * machine_.tip_acceleration_mm_s2);
-      motion.limits.speed = span.report.speed;
+      motion.speed = SpeedProfile::Steady(s_to - s, curve_speed_);
+      motion.limits.acceleration =
+          std::min(motion.limits.acceleration,
+                   machine().curve_tangential * machine().tip_acceleration_mm_s2);
+      motion.limits.speed = curve_speed_;
     } else {
       motion.limits = cells_[section_cell_].limits;  // the ramp runs through both halves
       if (span.in_stretches) {
@@ -341,7 +341,7 @@ void ItemStage::EmitCurvePart(const Span& span, Number move, const Shape& shape,
 void ItemStage::EndMove(const Span& span, Number move, PlannedMotion& motion) {
   if (move == span.corner_move) {
     motion.corner = span.report;
-    if (!IsBlend(span.report.passage)) motion.corner.speed = motion.speed.end().speed;
+    motion.corner.speed = IsBlend(span.report.passage) ? curve_speed_ : motion.speed.end().speed;
     motion.settling_s = span.settling_s;
   } else {
     motion.corner = {.passage = Passage::kThrough, .speed = motion.speed.end().speed};
@@ -350,19 +350,23 @@ void ItemStage::EndMove(const Span& span, Number move, PlannedMotion& motion) {
     items_.Push(PlannedMark{marks_.front().tag});
     marks_.PopFront();
   }
-  while (moves_.first() < move) moves_.PopFront();
-  if (move == span.corner_move && moves_.end() == move + 1 && !open_) moves_.PopFront();
-}
-
-void ItemStage::AddMark(std::uint64_t tag) {
-  if (!open_ && moves_.empty()) {
-    items_.Push(PlannedMark{tag});
-  } else {
-    marks_.Push({tag, moves_.end() - 1});
+  LegStage& from = span_stage_.leg_stage();
+  while (from.moves().first() < move) from.DropOldestMove();
+  if (move == span.corner_move && from.moves().end() == move + 1 && !from.open()) {
+    from.DropOldestMove();
   }
 }
 
-void ItemStage::DumpItems(std::string& out) const {
+void ItemStage::AddMark(std::uint64_t tag) {
+  if (!legs().open() && moves().empty()) {
+    items_.Push(PlannedMark{tag});
+  } else {
+    marks_.Push({tag, moves().end() - 1});
+  }
+}
+
+std::string ItemStage::Dump() const {
+  std::string out;
   if (section_left_ > 0) {
     out += "section: " + std::to_string(section_left_) + " spans, from " +
            FixedText(last_speed_, 3) + (alone_ ? ", one profile\n" : ", ramps across\n");
@@ -381,6 +385,7 @@ void ItemStage::DumpItems(std::string& out) const {
     out += "mark " + std::to_string(marks_[k].tag) + ": waits for move " +
            std::to_string(marks_[k].after_move) + '\n';
   }
+  return out;
 }
 
 }  // namespace rmlcell::motion

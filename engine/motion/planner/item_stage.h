@@ -12,21 +12,27 @@ namespace rmlcell::motion {
 // The last stage of the chain. Spans are cut back into moves, on demand, and become motions and
 // marks. Spans between two knots that are passed as fast as they may be are a section: they are
 // timed together, and ramps run across the knots between (motion.md 5.4).
-class ItemStage : public SpanStage {
+class ItemStage {
  public:
-  const PlannedItem* Next();  // see Planner::NextInPlace
+  ItemStage(const MachineLimits& machine, std::size_t window) : span_stage_(machine, window) {}
+
+  // The stage before, which it takes from.
+  SpanStage& span_stage() { return span_stage_; }
+  const SpanStage& span_stage() const { return span_stage_; }
+
+  // The machine passes the start of the first motion at this speed.
+  void BeginAt(double speed) { last_speed_ = speed; }
+  void AddMark(std::uint64_t tag);
+  bool starts_too_fast() const { return starts_too_fast_; }  // see Planner::BeginMoving
+  const PlannedItem* Next();                                 // see Planner::NextInPlace
 
   // The section that is given out and the items and marks that wait, a line each.
-  void DumpItems(std::string& out) const;
-
- protected:
-  ItemStage(const MachineLimits& machine, std::size_t window) : SpanStage(machine, window) {}
-
-  void BeginItemsAt(double speed) { last_speed_ = speed; }
-  void AddMark(std::uint64_t tag);
-  bool item_starts_too_fast() const { return starts_too_fast_; }
+  std::string Dump() const;
 
  private:
+  using Number = SpanStage::Number;
+  using Move = LegStage::Move;
+
   struct WaitingMark {
     std::uint64_t tag = 0;
     Number after_move = 0;
@@ -50,6 +56,12 @@ class ItemStage : public SpanStage {
     bool ends_move;
   };
 
+  const Ring<Span>& spans() const { return span_stage_.spans(); }
+  const SpeedPasses& speeds() const { return span_stage_.speeds(); }
+  const LegStage& legs() const { return span_stage_.leg_stage(); }
+  const Ring<Move>& moves() const { return legs().moves(); }
+  const MachineLimits& machine() const { return legs().machine(); }
+
   std::size_t SectionSize();
   bool EndsSection(const Span& span, std::size_t last_knot) const;
   void PlanSection();
@@ -59,7 +71,7 @@ class ItemStage : public SpanStage {
   void TakePart(SpeedProfile& speed, double to, bool to_end);
   void TakeStretches(SpeedProfile& speed, CurveCells& cells, double& to);
   void EmitMove();
-  void EmitCurve(Span& span);
+  void EmitCurve(const Span& span);
   template <class Shape>  // PlainCorner or CornerCurve
   void EmitHalves(const Span& span, const Shape& shape, const Half& first, const Half& second,
                   CurveCells& cells);
@@ -70,7 +82,9 @@ class ItemStage : public SpanStage {
   void EndMove(const Span& span, Number move, PlannedMotion& motion);
   void FinishMotion(const Span& span, Number move, PlannedMotion& motion, bool ends_move);
 
-  double last_speed_ = 0.0;  // at the end of the last emitted span
+  SpanStage span_stage_;
+  double last_speed_ = 0.0;   // at the end of the last emitted span
+  double curve_speed_ = 0.0;  // in the middle of the curve that is given out
   bool starts_too_fast_ = false;
   std::size_t section_seen_ = 0;   // spans known not to end the next section
   std::size_t section_knots_ = 0;  // theirs

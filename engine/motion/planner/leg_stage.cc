@@ -100,7 +100,7 @@ void LegStage::AddNothing(const PathPose& here, bool fly) {
   if (open_ && !fly) stands_ = true;
 }
 
-bool LegStage::EndLegs() {
+bool LegStage::End() {
   if (!open_) return false;
   CloseLeg(Passage::kStop, false, 0.0);
   open_ = false;
@@ -116,7 +116,7 @@ void LegStage::CloseLeg(Passage passage, bool ends_run, double cap) {
   running_.Push(leg.length, moves_[leg.first_move].limits, leg.cap);
 }
 
-void LegStage::AcceptHalfOfLegs() {
+void LegStage::AcceptHalf() {
   running_.Settle();
   running_.Accept(running_.size() / 2);
 }
@@ -134,17 +134,19 @@ std::string_view NameOf(Passage passage) {
   }
 }
 
-void LegStage::DumpLegs(std::string& out) const {
+std::string LegStage::Dump() const {
+  std::string out;
   for (Number k = legs_.first(); k < legs_.end(); ++k) {
     const Leg& leg = legs_[k];
-    const bool closed = k + 1 < legs_.end() || !open_;
     out += "leg " + std::to_string(k) + ": moves " + std::to_string(leg.first_move) + " to " +
            std::to_string(leg.last_move) + ", length " + FixedText(leg.length, 3);
-    if (closed) out += ", " + std::string(NameOf(leg.passage)) + " at " + FixedText(leg.cap, 3);
-    if (!closed) out += ", open";
-    if (closed && leg.ends_run) out += ", ends the run";
+    if (closed(k)) out += ", " + std::string(NameOf(leg.passage)) + " at " + FixedText(leg.cap, 3);
+    if (!closed(k)) out += ", open";
+    if (closed(k) && leg.ends_run) out += ", ends the run";
+    if (k >= next_ && knows_speed_of(k)) out += ", speed " + FixedText(speed_of(k), 3);
     out += '\n';
   }
+  return out;
 }
 
 }  // namespace rmlcell::motion

@@ -19,14 +19,9 @@ namespace rmlcell::motion {
 // A run is a sequence of legs joined by passages straight on; a curve may take up to half of a run,
 // hence more than the leg next to it.
 //
-// The stages of the chain are one value, each on top of the one before: a copy is a copy of all,
-// and what a stage keeps for itself is private to it.
+// A stage owns the one that it takes from: the chain is one value, and a copy of it a copy of all.
 class LegStage {
  public:
-  // The legs that wait, and what of their speeds is final, a line each.
-  void DumpLegs(std::string& out) const;
-
- protected:
   using Number = std::uint64_t;  // of a move, a leg, a span: counted from the first of the chain
 
   static constexpr std::size_t kBatchMin = 32;  // knots before a backward pass is worth its while
@@ -57,33 +52,62 @@ class LegStage {
 
   LegStage(const MachineLimits& machine, std::size_t window);
 
-  // The speed at which the first move begins, by its own s; and once it is added, by that of its
-  // leg.
-  void BeginLegsAt(double speed) { entry_speed_ = speed; }
+  // In: moves. The speed at which the first one begins, by its own s; and once it is added, by that
+  // of its leg.
+  void BeginAt(double speed) { entry_speed_ = speed; }
   bool begins_moving() const { return entry_speed_ > 0.0; }
   double TakeEntrySpeed() { return std::exchange(entry_speed_, 0.0); }
 
   // The move has passed all checks and has a length above zero. `goes_on`: it begins exactly at
   // end(). True: a leg is closed, or there are many moves: there may be something to decide.
-  bool AddMove(const MoveCommand& move, const PathLimits& limits, bool goes_on);
+  bool Add(const MoveCommand& move, const PathLimits& limits, bool goes_on);
   // A move that goes nowhere stood here.
   void AddNothing(const PathPose& here, bool fly);
   // The machine stands behind the last move. False: it does already.
-  bool EndLegs();
+  bool End();
 
-  static std::size_t OpenKnots(const SpeedPasses& passes) {
-    return passes.size() - passes.final_count();
-  }
   // The passes over legs, when there is enough for them to do; else what is known must do.
-  void SettleLegs() {
-    if (!running_.ends_at_rest() && OpenKnots(running_) < running_next_) return;
+  void Settle() {
+    if (!running_.ends_at_rest() && running_.open_count() < running_next_) return;
     running_.Settle();
-    running_next_ = std::max(kBatchMin, 2 * OpenKnots(running_));
+    running_next_ = std::max(kBatchMin, 2 * running_.open_count());
   }
-  void AcceptHalfOfLegs();
+  void AcceptHalf();
+
+  // Out: legs, from the first one of the present run on.
+  const Ring<Leg>& legs() const { return legs_; }
+  bool closed(Number leg) const { return leg + 1 < legs_.end() || !open_; }
+  // The oldest leg whose running speed was not taken, and whether its speed and those of later ones
+  // are final.
+  Number next() const { return next_; }
+  bool knows_speed_of(Number leg) const { return leg - next_ < running_.final_count(); }
+  // Precondition: it is known.
+  double speed_of(Number leg) const {
+    return running_.speed(static_cast<std::size_t>(leg - next_));
+  }
+  void TakeSpeed() {
+    running_.Pop();
+    ++next_;
+  }
+  // Of the next leg: its run must end there; its end is passed at this speed at most.
+  void EndRun() { legs_[next_].ends_run = true; }
+  void LowerCap(double speed) { legs_[next_].cap = std::min(legs_[next_].cap, speed); }
+  // The legs whose speed was taken.
+  void DropTaken() {
+    while (legs_.first() < next_) legs_.PopFront();
+  }
+
+  // The moves that a leg, a span or an item to come needs.
+  const Ring<Move>& moves() const { return moves_; }
+  bool open() const { return open_; }  // the last leg may still grow, the chain goes on
+  void DropOldestMove() { moves_.PopFront(); }
+
+  const MachineLimits& machine() const { return machine_; }
+  std::size_t window() const { return window_; }
+  std::uint64_t starved() const { return starved_; }  // legs that were ended too early
 
   // LimitsOf, without asking the axes where the answer is known.
-  PathLimits LimitsOfMove(const MoveCommand& move) const {
+  PathLimits LimitsFor(const MoveCommand& move) const {
     const PathPiece& path = move.path;
     const bool simple = lines_follow_tip_ && path.kind() == PathPiece::Kind::kLine &&
                         move.kind == MoveCommand::Kind::kContour &&
@@ -93,21 +117,25 @@ class LegStage {
   }
 
   // Where the last accepted move ended; null before the first.
-  const PathPose* last_end() const { return end_known_ ? &end_ : nullptr; }
+  const PathPose* end() const { return end_known_ ? &end_ : nullptr; }
 
-  MachineLimits machine_;
-  std::size_t window_;
-  std::uint64_t starved_ = 0;  // knots that were decided too early
-
-  Ring<Move> moves_;     // those that a leg, a span or an item to come needs
-  bool open_ = false;    // the last leg may still grow, the chain goes on
-  Ring<Leg> legs_;       // from the first leg of the present run on
-  SpeedPasses running_;  // over legs
+  // The legs that wait, and the running speeds at their ends as far as they are final, a line each.
+  std::string Dump() const;
 
  private:
   static double MeasureByTime(Move& move);
   bool Join(bool goes_on);
   void CloseLeg(Passage passage, bool ends_run, double cap);
+
+  MachineLimits machine_;
+  std::size_t window_;
+  std::uint64_t starved_ = 0;
+
+  Ring<Move> moves_;
+  bool open_ = false;
+  Ring<Leg> legs_;
+  SpeedPasses running_;  // over legs, from the next one on
+  Number next_ = 0;
 
   bool lines_follow_tip_;
   bool stands_ = false;  // although the last move has /FLY: a move that goes nowhere came after it
@@ -118,8 +146,8 @@ class LegStage {
 };
 
 // Here, because it is the hot path of MotionChain::Append.
-[[gnu::always_inline]] inline bool LegStage::AddMove(const MoveCommand& move,
-                                                     const PathLimits& limits, bool goes_on) {
+[[gnu::always_inline]] inline bool LegStage::Add(const MoveCommand& move, const PathLimits& limits,
+                                                 bool goes_on) {
   const Number number = moves_.end();
   Move& slot = moves_.PushSlot();
   slot.path = move.path;

@@ -3,38 +3,30 @@
 namespace rmlcell::motion {
 
 void MotionChain::Append(const MoveCommand& move, const PathLimits& limits, bool goes_on) {
-  const bool work = AddMove(move, limits, goes_on);
-  if (begins_moving()) [[unlikely]] {
-    const double speed = TakeEntrySpeed();
-    BeginSpansAt(speed);
-    BeginItemsAt(speed);
+  const bool work = legs().Add(move, limits, goes_on);
+  if (legs().begins_moving()) [[unlikely]] {
+    const double speed = legs().TakeEntrySpeed();
+    spans().BeginAt(speed);
+    items_.BeginAt(speed);
   }
   if (work) Work();
 }
 
 void MotionChain::Work() {
-  SettleLegs();
-  while (Resolve(false)) {
+  legs().Settle();
+  while (spans().Resolve(false)) {
   }
-  SettleSpans();
-  if (moves_.end() - OldestOpenMove() >= window_) Starve();
+  spans().Settle();
+  if (legs().moves().end() - spans().OldestOpenMove() >= legs().window()) Starve();
 }
 
 // The window is full: what is there must do.
 void MotionChain::Starve() {
   ++starved_;
-  AcceptHalfOfLegs();
-  while (Resolve(true)) {
+  legs().AcceptHalf();
+  while (spans().Resolve(true)) {
   }
-  AcceptHalfOfSpans();
-}
-
-std::string MotionChain::Dump() const {
-  std::string out;
-  DumpLegs(out);
-  DumpSpans(out);
-  DumpItems(out);
-  return out;
+  spans().AcceptHalf();
 }
 
 }  // namespace rmlcell::motion

@@ -13,16 +13,14 @@ namespace {
 constexpr double kCutMin_mm = 1e-4;  // a smaller curve is a stop, motion.md 4.4
 constexpr double kSameLimit = 1e-9;  // relative
 
-// A bend that takes all that the axes have takes nine tenths of it at this share of its speed.
-constexpr double kLeavesRoom = 0.95;
-
-// How near the tip comes to where it would be at `target`, on a curve of the axes.
-double TipDistance(const CornerCurve& curve, const Head& head, const PathPose& target) {
-  const auto tip_of = [&](const PathPose& axes) {
-    return head.TipOf({axes.point, axes.a_rad, axes.b_rad}).tip;
+// How near the tip comes to where it would be at the end of `path`, on a curve behind it. Both are
+// of the axes.
+double TipDistance(const CornerCurve& curve, const Head& head, const PathPiece& path) {
+  const auto tip_of = [&](const PathPose& axes) -> MachinePoint {
+    return TipOn(path, head, axes).tip;
   };
   constexpr int kIntervals = 32;
-  const MachinePoint tip = tip_of(target);
+  const MachinePoint tip = tip_of(path.to());
   return LeastAlong([&](double u) { return (tip_of(curve.At(u)) - tip).norm(); }, 1.0, kIntervals);
 }
 
@@ -48,19 +46,20 @@ bool AxesFollowRamps(const MachineLimits& machine) {
 }  // namespace
 
 SpanStage::SpanStage(const MachineLimits& machine, std::size_t window)
-    : LegStage(machine, window),
+    : leg_stage_(machine, window),
       axes_keep_up_(AxesKeepUp(machine)),
       axes_follow_ramps_(AxesFollowRamps(machine)) {}
 
 // The length of the run that begins behind `leg`, or at least `enough` of it; nothing when that is
 // not known yet.
-std::optional<double> SpanStage::LengthAfter(Number leg, double enough, bool accept_what_is_there) {
+std::optional<double> SpanStage::LengthAfter(Number leg, double enough,
+                                             bool accept_what_is_there) const {
+  const Ring<Leg>& legs = leg_stage_.legs();
   double length = 0.0;
-  for (Number k = leg + 1; k < legs_.end(); ++k) {
-    length += legs_[k].length;
+  for (Number k = leg + 1; k < legs.end(); ++k) {
+    length += legs[k].length;
     if (length >= enough) return length;
-    const bool closed = k + 1 < legs_.end() || !open_;
-    if (closed && legs_[k].ends_run) return length;
+    if (leg_stage_.closed(k) && legs[k].ends_run) return length;
   }
   if (accept_what_is_there) return length;
   return std::nullopt;
@@ -68,125 +67,125 @@ std::optional<double> SpanStage::LengthAfter(Number leg, double enough, bool acc
 
 // Points passed straight on that the curve of `cut` at the end of `leg` swallows keep their speed:
 // the least of them; nothing when they are not known yet.
-std::optional<double> SpanStage::SpeedWithin(Number leg, double cut, bool accept_what_is_there) {
+std::optional<double> SpanStage::SpeedWithin(Number leg, double cut,
+                                             bool accept_what_is_there) const {
+  const Ring<Leg>& legs = leg_stage_.legs();
   double least = HUGE_VAL;
   double beyond = 0.0;
-  for (Number k = leg + 1; k < legs_.end() && beyond + legs_[k].length < cut; ++k) {
-    beyond += legs_[k].length;
-    const auto index = static_cast<std::size_t>(k - leg);
-    const bool known = index < running_.final_count();
+  for (Number k = leg + 1; k < legs.end() && beyond + legs[k].length < cut; ++k) {
+    beyond += legs[k].length;
+    const bool known = leg_stage_.knows_speed_of(k);
     if (!known && !accept_what_is_there) return std::nullopt;
-    least = std::min(least, known ? running_.speed(index) : legs_[k].cap);
+    least = std::min(least, known ? leg_stage_.speed_of(k) : legs[k].cap);
   }
   return least;
 }
 
+// The curve at the end of the next leg, behind a run of length `total`, and the speed there: 0
+// where it turns out to be a stop. Nothing when that is not known yet.
+std::optional<double> SpanStage::TakeCurve(Span& closing, const Leg& leg, double total,
+                                           bool accept_what_is_there) {
+  const Number number = leg_stage_.next();
+  const double wanted = closing.report.wanted_speed;
+  // A curve of the axes takes half of the way by time, and so a quarter on each side.
+  const double share = leg.in_axes ? 0.25 : 0.5;
+  const double uncapped =
+      leg.in_axes ? leg.axes_corner.CutFor(wanted) : leg.corner.CutFor(wanted, machine());
+  const double want = leg.in_axes ? uncapped : std::min(uncapped, leg.corner.cut_max_mm());
+  const std::optional<double> after = LengthAfter(number, want / share, accept_what_is_there);
+  if (!after) return std::nullopt;
+  const double cut = std::min({want, share * total, share * *after});
+  if (!leg.in_axes && cut < kCutMin_mm) {
+    closing.report.passage = Passage::kStopShort;
+    return 0.0;
+  }
+  double swallowed = HUGE_VAL;  // the speed of what the curve takes whole
+  if (leg_stage_.legs()[number + 1].length < cut) {
+    const auto within = SpeedWithin(number, cut, accept_what_is_there);
+    if (!within) return std::nullopt;
+    swallowed = *within;
+  }
+  closing.report.cut_mm = cut;
+  MakeCurve(closing, leg, cut);
+  if (!leg.in_axes && !leg.corner.lines() && curves_.back().HasCusp(cut)) {
+    curves_.PopBack();
+    closing.curve_length = closing.report.cut_mm = closing.report.deviation_mm = 0.0;
+    closing.report.passage = Passage::kStopReversal;
+    return 0.0;
+  }
+  if (!(cut > 0.0)) return 0.0;
+  const bool capped = cut < uncapped;
+  double speed_cap = SpeedOn(closing, leg, cut, wanted, capped);
+  const bool slower = speed_cap < wanted * (1.0 - kSameLimit);
+  closing.report.passage = capped || slower ? Passage::kBlendCapped : Passage::kBlend;
+  speed_cap = std::min(speed_cap, swallowed);
+  ChooseStretches(closing, leg, speed_cap, std::min(leg.limit, swallowed));
+  return closing.in_stretches ? closing.stretches.start : speed_cap;
+}
+
 bool SpanStage::Resolve(bool accept_what_is_there) {
-  if (running_.final_count() == 0) return false;
-  const Number number = resolving_;
-  Leg& leg = legs_[number];
-  const double wanted = running_.speed();
+  const Number number = leg_stage_.next();
+  if (!leg_stage_.knows_speed_of(number)) return false;
+  const Leg& leg = leg_stage_.legs()[number];
+  const double wanted = leg_stage_.speed_of(number);
   const double total = run_length_ + leg.length;
   // Nor may a run fill the window; but it holds what the curve before it takes. Where corners are
   // passed through there is no curve at its end to wait for.
-  const bool through = machine_.corners == MachineLimits::Corners::kThrough;
-  const std::size_t longest = through ? kBatchMin : window_ / 2;
-  if (!leg.ends_run && number - legs_.first() >= longest && total >= run_cut_) {
-    leg.ends_run = true;
+  const bool through = machine().corners == MachineLimits::Corners::kThrough;
+  const std::size_t longest = through ? LegStage::kBatchMin : leg_stage_.window() / 2;
+  if (!leg.ends_run && number - leg_stage_.legs().first() >= longest && total >= run_cut_) {
+    leg_stage_.EndRun();
     if (!through) ++starved_;
   }
   if (!leg.ends_run) {
-    leg.cap = std::min(leg.cap, wanted);
+    leg_stage_.LowerCap(wanted);
     run_length_ = total;
-    ++resolving_;
-    running_.Pop();
+    leg_stage_.TakeSpeed();
     return true;
   }
 
   Span closing;
   closing.report.passage = leg.passage;
   closing.report.wanted_speed = wanted;
-  double cut = 0.0;
-  double speed_cap = 0.0;
-  if (leg.passage == Passage::kThrough) {
-    speed_cap = wanted;
-  } else if (!IsStop(leg.passage)) {
-    // A curve of the axes takes half of the way by time, and so a quarter on each side.
-    const double share = leg.in_axes ? 0.25 : 0.5;
-    const double uncapped =
-        leg.in_axes ? leg.axes_corner.CutFor(wanted) : leg.corner.CutFor(wanted, machine_);
-    const double want = leg.in_axes ? uncapped : std::min(uncapped, leg.corner.cut_max_mm());
-    const std::optional<double> after = LengthAfter(number, want / share, accept_what_is_there);
-    if (!after) return false;
-    cut = std::min({want, share * total, share * *after});
-    double swallowed = HUGE_VAL;  // the speed of what the curve takes whole
-    if (!leg.in_axes && cut < kCutMin_mm) {
-      cut = 0.0;
-      closing.report.passage = Passage::kStopShort;
-    } else {
-      if (legs_[number + 1].length < cut) {
-        const auto within = SpeedWithin(number, cut, accept_what_is_there);
-        if (!within) return false;
-        swallowed = *within;
-      }
-      closing.report.cut_mm = cut;
-      MakeCurve(closing, leg, cut);
-    }
-    if (cut > 0.0 && !leg.in_axes && !leg.corner.lines() && curves_.back().HasCusp(cut)) {
-      curves_.PopBack();
-      cut = 0.0;
-      closing.curve_length = closing.report.deviation_mm = 0.0;
-      closing.report.passage = Passage::kStopReversal;
-    }
-    if (cut > 0.0) {
-      const bool capped = cut < uncapped;
-      speed_cap = SpeedOn(closing, leg, cut, wanted, capped);
-      const bool slower = speed_cap < wanted * (1.0 - kSameLimit);
-      closing.report.passage = capped || slower ? Passage::kBlendCapped : Passage::kBlend;
-      speed_cap = std::min(speed_cap, swallowed);
-      ChooseStretches(closing, leg, speed_cap, std::min(leg.limit, swallowed));
-      if (closing.in_stretches) speed_cap = closing.stretches.start;
-    }
+  double speed_cap = leg.passage == Passage::kThrough ? wanted : 0.0;
+  if (IsBlend(leg.passage)) {
+    const std::optional<double> on_curve = TakeCurve(closing, leg, total, accept_what_is_there);
+    if (!on_curve) return false;
+    speed_cap = *on_curve;
   }
-  closing.report.cut_mm = cut;
   if (closing.report.passage == Passage::kStop)
-    closing.settling_s = moves_[leg.last_move].settling_s;
-  running_.Pop();
+    closing.settling_s = moves()[leg.last_move].settling_s;
+  leg_stage_.TakeSpeed();
   CloseRun(number, total, closing, speed_cap);
   run_length_ = 0.0;
-  run_cut_ = cut;
-  ++resolving_;
-  while (legs_.first() < resolving_) legs_.PopFront();
+  run_cut_ = closing.report.cut_mm;
+  leg_stage_.DropTaken();
   return true;
 }
 
 // The highest steady speed up to `wanted` on the curve that was just made.
 double SpanStage::SpeedOn(const Span& span, const Leg& leg, double cut, double wanted,
-                          bool capped) {
+                          bool capped) const {
   if (leg.in_axes) return capped ? std::min(wanted, leg.axes_corner.SpeedFor(cut)) : wanted;
   double speed = wanted;
-  if (leg.corner.lines() && capped) speed = std::min(speed, leg.corner.PlainSpeed(cut, machine_));
-  const Head& head = moves_[leg.last_move].head;
+  if (leg.corner.lines() && capped) speed = std::min(speed, leg.corner.PlainSpeed(cut, machine()));
+  const Head& head = moves()[leg.last_move].head;
   const bool axes_follow =
       leg.corner.plain() ? axes_keep_up_
-                         : leg.corner.lines() && AxesFollow(curves_.back(), head, machine_, speed,
+                         : leg.corner.lines() && AxesFollow(curves_.back(), head, machine(), speed,
                                                             leg.corner.PlainCurvature(cut));
   if (axes_follow) return speed;
   const CornerCurve curve =
-      span.plain ? CornerCurve(PlainCornerAt(leg.last_move, cut)) : curves_.back();
-  return std::min(speed, SpeedOnCurve(curve, head, machine_, speed));
-}
-
-PlainCorner SpanStage::PlainCornerAt(Number corner_move, double cut) {
-  const PathPiece& in = moves_[corner_move].path;
-  return {in.to(), in.Tangent(0.0), moves_[corner_move + 1].path.Tangent(0.0), cut};
+      span.plain ? CornerCurve(PlainCornerAt(leg_stage_, leg.last_move, cut)) : curves_.back();
+  return std::min(speed, SpeedOnCurve(curve, head, machine(), speed));
 }
 
 void SpanStage::MakeCurve(Span& span, const Leg& leg, double cut) {
-  const Move& in = moves_[leg.last_move];
+  const Move& in = moves()[leg.last_move];
   span.plain = !leg.in_axes && leg.corner.plain();
+  span.may_vary = axes_follow_ramps_;
   if (span.plain) {
-    const PathPiece& out = moves_[leg.last_move + 1].path;
+    const PathPiece& out = moves()[leg.last_move + 1].path;
     span.curve_length = leg.corner.PlainLength(cut);
     span.curve_middle = in.path.to();
     span.curve_middle.point =
@@ -194,13 +193,15 @@ void SpanStage::MakeCurve(Span& span, const Leg& leg, double cut) {
     span.report.deviation_mm = leg.corner.PlainDeviation(cut);
     return;
   }
-  const CornerCurve curve = CurveAround(leg, cut, span.head_steady);
+  const CurveAround around = CurveAroundEnd(leg_stage_, leg, cut);
+  const CornerCurve& curve = around.curve;
   curves_.Push(curve);
+  span.may_vary = axes_follow_ramps_ && around.head_steady;
   if (leg.in_axes) {
-    span.head_steady = false;  // whatever it does: the speed is not that of the tip
+    span.may_vary = false;  // whatever it does: the speed is not that of the tip
     span.curve_length = curve.way_s();
     span.curve_middle = curve.At(0.5);
-    span.report.deviation_mm = TipDistance(curve, in.head, in.path.to());
+    span.report.deviation_mm = TipDistance(curve, in.head, in.path);
     return;
   }
   if (leg.corner.lines()) {
@@ -216,41 +217,17 @@ void SpanStage::MakeCurve(Span& span, const Leg& leg, double cut) {
   span.report.deviation_mm = curve.DistanceFrom(in.path.to().point);
 }
 
-// The curve between the place at the distance `cut` before the corner and that behind it; both may
-// lie some moves away.
-CornerCurve SpanStage::CurveAround(const Leg& leg, double cut, bool& head_steady) {
-  Number before = leg.last_move;
-  double left = cut;
-  while (left > moves_[before].path.length()) {
-    left -= moves_[before].path.length();
-    --before;
-  }
-  const PathPiece& in = moves_[before].path;
-  Number after = leg.last_move + 1;
-  double right = cut;
-  while (right > moves_[after].path.length()) {
-    right -= moves_[after].path.length();
-    ++after;
-  }
-  const PathPiece& out = moves_[after].path;
-  head_steady =
-      in.a_rate() == 0.0 && in.b_rate() == 0.0 && out.a_rate() == 0.0 && out.b_rate() == 0.0;
-  const CurveEnd begin = EndAt(in, in.length() - left);
-  const CurveEnd end = EndAt(out, right);
-  return leg.in_axes ? CornerCurve::InAxes(begin, end, cut) : CornerCurve(begin, end, cut);
-}
-
 // A bend that cannot be passed at OVERSH x Vb but at `steady` may be faster where it is less tight,
 // up to `most`. motion.md 5.4
-void SpanStage::ChooseStretches(Span& span, const Leg& leg, double steady, double most) {
-  if (!machine_.ramps_across_passages || !axes_follow_ramps_ || !span.head_steady) return;
+void SpanStage::ChooseStretches(Span& span, const Leg& leg, double steady, double most) const {
+  if (!machine().ramps_across_passages || !span.may_vary) return;
   if (steady >= leg.limit * (1.0 - kSameLimit)) return;
   span.in_stretches = true;
   span.stretches = {.start = steady, .open = steady, .middle = steady};
   if (!span.plain) return;
   const double cut = span.report.cut_mm;
-  const BendSpeeds speeds = leg.corner.PlainSpeeds(cut, most, machine_);
-  if (std::isinf(machine_.tip_jerk_mm_s3)) {
+  const BendSpeeds speeds = leg.corner.PlainSpeeds(cut, most, machine());
+  if (std::isinf(machine().tip_jerk_mm_s3)) {
     const auto abrupt = AbruptSpeeds(speeds);
     span.stretches = {.count = abrupt.size(),
                       .start = abrupt.front(),
@@ -258,69 +235,8 @@ void SpanStage::ChooseStretches(Span& span, const Leg& leg, double steady, doubl
                       .middle = abrupt[abrupt.size() / 2]};
     return;
   }
-  span.stretches = StretchesOf(speeds, 0.5 * span.curve_length, LimitsOnCurve(leg.last_move, cut));
-}
-
-// Those of every move that a curve touches.
-PathLimits SpanStage::LimitsOnCurve(Number corner_move, double cut) {
-  PathLimits limits = moves_[corner_move].limits;
-  const auto lower = [&](const Move& move) {
-    limits.acceleration = std::min(limits.acceleration, move.limits.acceleration);
-    limits.jerk = std::min(limits.jerk, move.limits.jerk);
-    return move.path.length();
-  };
-  limits.acceleration =
-      std::min(limits.acceleration, machine_.curve_tangential * machine_.tip_acceleration_mm_s2);
-  double left = cut;
-  for (Number k = corner_move; left > 0.0; --k) {
-    left -= lower(moves_[k]);
-    if (k == moves_.first()) break;
-  }
-  left = cut;
-  for (Number k = corner_move + 1; left > 0.0 && k < moves_.end(); ++k) left -= lower(moves_[k]);
-  return limits;
-}
-
-PathLimits SpanStage::LimitsInStretches(const Span& span) {
-  PathLimits limits = LimitsOnCurve(span.corner_move, span.report.cut_mm);
-  limits.speed = span.stretches.open;
-  if (span.head_steady && axes_follow_ramps_) return limits;
-  // No axis moves by more than its speed over that of the tip for a mm of the way.
-  const double whole = limits.speed / kLeavesRoom;
-  for (const std::size_t i : kAxes) {
-    const double per_axis = whole / machine_.axes.speed[i];
-    limits.acceleration =
-        std::min(limits.acceleration,
-                 (1.0 - kLeavesRoom * kLeavesRoom) * machine_.axes.acceleration[i] * per_axis);
-    if (std::isfinite(limits.jerk)) {
-      limits.jerk = std::min(limits.jerk, machine_.axes.jerk[i] * per_axis);
-    }
-  }
-  return limits;
-}
-
-// How fast the curve behind a span may be passed from place to place. Precondition: it is plain.
-BendSpeeds SpanStage::SpeedsAlong(const Span& span) {
-  Corner corner;
-  corner.Assign(moves_[span.corner_move].path, moves_[span.corner_move + 1].path);
-  return corner.PlainSpeeds(span.report.cut_mm, span.stretches.open, machine_);
-}
-
-SpanStage::Stretches SpanStage::StretchesIn(const Span& span) {
-  const BendStretches& most = span.stretches;
-  Stretches stretches;
-  for (std::size_t k = 0; k < most.count; ++k) {
-    const bool last = k + 1 == most.count;
-    stretches[k] = {
-        .end = span.curve_end(k), .end_cap = last ? most.start : most.middle, .most = most.open};
-  }
-  if (most.count < BendStretches::kAbrupt) return stretches;
-  const auto speeds = AbruptSpeeds(SpeedsAlong(span));
-  for (std::size_t k = 0; k < most.count; ++k) {
-    stretches[k].most = speeds[k];
-    stretches[k].end_cap = std::min(speeds[k], k + 1 < most.count ? speeds[k + 1] : most.start);
-  }
-  return stretches;
+  span.stretches =
+      StretchesOf(speeds, 0.5 * span.curve_length, LimitsOnCurve(leg_stage_, leg.last_move, cut));
 }
 
 // The knots of a span from its `first` on.
@@ -331,8 +247,8 @@ void SpanStage::PushKnots(const Span& span, std::size_t first) {
     ++first;
   }
   if (!span.in_stretches) return;
-  PathLimits limits = LimitsInStretches(span);
-  const Stretches stretches = StretchesIn(span);
+  PathLimits limits = LimitsInStretches(leg_stage_, span);
+  const Stretches stretches = StretchesIn(leg_stage_, span);
   for (std::size_t k = first; k < span.knots(); ++k) {
     const Stretch& stretch = stretches[k - 1];
     limits.speed = stretch.most;
@@ -350,7 +266,7 @@ void SpanStage::LetBendsVary() {
   for (Number k = decided_; k < spans_.end(); ++k, known = 0) {
     Span& span = spans_[k];
     if (known == 0 && IsBlend(span.report.passage) && !span.in_stretches) {
-      if (!span.head_steady || !axes_follow_ramps_) span.cap *= kLeavesRoom;
+      if (!span.may_vary) span.cap *= kLeavesRoom;
       span.in_stretches = true;
       span.stretches = {.start = span.cap, .open = span.cap, .middle = span.cap};
     }
@@ -358,14 +274,35 @@ void SpanStage::LetBendsVary() {
   }
 }
 
+// Which moves a part of a leg covers, and the places within the first and the last one.
+[[gnu::always_inline]] inline void SpanStage::TakeMoves(Span& span, const Leg& leg,
+                                                        const LegPart& part) const {
+  span.first_move = leg.first_move;
+  double x = part.leg_start;
+  while (span.first_move < leg.last_move &&
+         x + moves()[span.first_move].path.length() <= part.from) {
+    x += moves()[span.first_move].path.length();
+    ++span.first_move;
+  }
+  span.x_from = part.from - x;
+  span.last_move = span.first_move;
+  while (span.last_move < leg.last_move && x + moves()[span.last_move].path.length() < part.to) {
+    x += moves()[span.last_move].path.length();
+    ++span.last_move;
+  }
+  const double last_length = moves()[span.last_move].path.length();
+  span.x_to = part.to == part.leg_end ? last_length : std::min(part.to - x, last_length);
+}
+
 // The legs from the start of the run to `last_leg`, less what the curves at both ends take, become
 // spans.
 void SpanStage::CloseRun(Number last_leg, double total, const Span& closing, double speed_cap) {
+  const Ring<Leg>& legs = leg_stage_.legs();
   const double begin = run_cut_;
   const double end = std::max(total - closing.report.cut_mm, begin);
   double leg_start = 0.0;
-  for (Number k = legs_.first(); k <= last_leg; ++k) {
-    Leg& leg = legs_[k];
+  for (Number k = legs.first(); k <= last_leg; ++k) {
+    const Leg& leg = legs[k];
     const double leg_end = k == last_leg ? total : leg_start + leg.length;
     const double from = std::max(leg_start, begin);
     const double to = std::min(leg_end, end);
@@ -378,10 +315,10 @@ void SpanStage::CloseRun(Number last_leg, double total, const Span& closing, dou
     Span& span = spans_.PushSlot();
     if (closes) {
       span = closing;
-      span.corner_move = legs_[last_leg].last_move;
+      span.corner_move = legs[last_leg].last_move;
       double swallowed = HUGE_VAL;
       for (Number rest = k; rest < last_leg; ++rest)
-        swallowed = std::min(swallowed, legs_[rest].cap);
+        swallowed = std::min(swallowed, legs[rest].cap);
       BendStretches& most = span.stretches;
       speed_cap = std::min(speed_cap, swallowed);
       most.start = std::min(most.start, swallowed);
@@ -394,37 +331,24 @@ void SpanStage::CloseRun(Number last_leg, double total, const Span& closing, dou
       span.report = {.passage = Passage::kThrough, .wanted_speed = leg.cap};
     }
     span.length = std::max(to - from, 0.0);
-    // Which moves the interval covers; places within the first and the last one.
-    span.first_move = leg.first_move;
-    double x = start;
-    while (span.first_move < leg.last_move && x + moves_[span.first_move].path.length() <= from) {
-      x += moves_[span.first_move].path.length();
-      ++span.first_move;
-    }
-    span.x_from = from - x;
-    span.last_move = span.first_move;
-    while (span.last_move < leg.last_move && x + moves_[span.last_move].path.length() < to) {
-      x += moves_[span.last_move].path.length();
-      ++span.last_move;
-    }
-    const double last_length = moves_[span.last_move].path.length();
-    span.x_to = to == leg_end ? last_length : std::min(to - x, last_length);
-    span.limits = moves_[leg.first_move].limits;
+    TakeMoves(span, leg, {.leg_start = start, .leg_end = leg_end, .from = from, .to = to});
+    span.limits = moves()[leg.first_move].limits;
     const double cap = closes ? speed_cap : leg.cap;
     // Straight on the shape of the path does not hang on what level 1 reaches.
-    span.cap = span.report.passage == Passage::kThrough ? legs_[closes ? last_leg : k].limit : cap;
+    span.cap = span.report.passage == Passage::kThrough ? legs[closes ? last_leg : k].limit : cap;
     PushKnots(span, 0);
     if (closes) break;
   }
 }
 
-void SpanStage::AcceptHalfOfSpans() {
+void SpanStage::AcceptHalf() {
   LetBendsVary();
   speeds_.Settle();
   speeds_.Accept(speeds_.size() / 2);
 }
 
-void SpanStage::DumpSpans(std::string& out) const {
+std::string SpanStage::Dump() const {
+  std::string out;
   std::size_t knot = 0;
   for (Number k = spans_.first(); k < spans_.end(); ++k) {
     const Span& span = spans_[k];
@@ -443,6 +367,7 @@ void SpanStage::DumpSpans(std::string& out) const {
     knot += span.knots();
     out += '\n';
   }
+  return out;
 }
 
 }  // namespace rmlcell::motion

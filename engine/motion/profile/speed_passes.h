@@ -34,6 +34,7 @@ class SpeedPasses {
 
   std::size_t size() const { return knots_.size() - first_; }
   std::size_t final_count() const { return final_; }
+  std::size_t open_count() const { return size() - final_; }
   bool ends_at_rest() const { return size() > 0 && knots_.back().forward == 0.0; }
 
   // Of the oldest knot that was not popped, and of those after it. Precondition: it is final.

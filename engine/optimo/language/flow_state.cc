@@ -1,6 +1,7 @@
 #include "engine/optimo/language/flow_state.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace rmlcell::optimo {
@@ -91,7 +92,7 @@ void StepMove(const Module& module, std::uint32_t at, FlowState& state) {
   const auto path = state.modes.path();
   const auto before = state.target.known();
   const bool straight = path == PathType::kLin || path == PathType::kPtp;
-  const double length = straight && target && before ? Distance(*target, *before) : HUGE_VAL;
+  const double length = straight && target && before ? Distance_mm(*target, *before) : HUGE_VAL;
   state.short_fly.Forget();
   if (fly && length < kShortFly_mm) state.short_fly.Set(at);
   if (fly && length < kTinyFly_mm) {
@@ -180,23 +181,18 @@ std::optional<float> LiteralValueOf(Expression value) {
   return value[0].number;
 }
 
-std::optional<std::array<float, 3>> LiteralTarget(const Module& module, const Instruction& move) {
-  std::array<float, 3> target{};
-  for (std::size_t v = 0; v < target.size(); ++v) {
-    const auto value = LiteralValueOf(module.Value(move, static_cast<int>(v)));
+std::optional<motion::ProgramPoint> LiteralTarget(const Module& module, const Instruction& move) {
+  motion::ProgramVector target;
+  for (int v = 0; v < 3; ++v) {
+    const auto value = LiteralValueOf(module.Value(move, v));
     if (!value) return std::nullopt;
-    target[v] = *value;
+    target[v] = static_cast<double>(*value);
   }
-  return target;
+  return motion::ProgramPoint::FromOrigin(target);
 }
 
-double Distance(const std::array<float, 3>& a, const std::array<float, 3>& b) {
-  double sum = 0.0;
-  for (std::size_t v = 0; v < a.size(); ++v) {
-    const double d = static_cast<double>(a[v]) - static_cast<double>(b[v]);
-    sum += d * d;
-  }
-  return std::sqrt(sum);
+double Distance_mm(const motion::ProgramPoint& a, const motion::ProgramPoint& b) {
+  return (a.from_origin() - b.from_origin()).norm();
 }
 
 FlowState FlowState::AtStart() {
@@ -250,7 +246,7 @@ FlowState FlowState::Kept() {
   state.on.kept = state.off.kept = state.defined.kept = state.undefined.kept = ~ProcessSet{0};
   state.unset.kept.set();
   state.speed = Single<float>::Kept();
-  state.target = Single<std::array<float, 3>>::Kept();
+  state.target = Single<motion::ProgramPoint>::Kept();
   state.short_fly = Single<std::uint32_t>::Kept();
   return state;
 }

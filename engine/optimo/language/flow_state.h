@@ -1,10 +1,10 @@
 #pragma once
 
-#include <array>
 #include <bitset>
 #include <cstdint>
 #include <optional>
 
+#include "engine/motion/geometry/frames.h"
 #include "engine/optimo/language/ast.h"
 #include "engine/optimo/language/dwells.h"
 #include "engine/optimo/language/flow_field.h"
@@ -54,7 +54,7 @@ struct FlowState {
   Facts<ProcessSet> defined, undefined;  // a WORKDEF may have been executed, may not
   Facts<VariableSet> unset;              // may not have been assigned by this program
   Single<float> speed;
-  Single<std::array<float, 3>> target;  // of the last MOVE in ABSOL, as programmed
+  Single<motion::ProgramPoint> target;  // of the last MOVE in ABSOL, as programmed
   Single<std::uint32_t> short_fly;      // the MOVE before, when it was short and had /FLY
 
   bool operator==(const FlowState&) const = default;
@@ -85,10 +85,10 @@ std::optional<Output> OutputSetBy(const Module& module, const Instruction& instr
 inline constexpr int kGas2Output = 8, kGas3Output = 9, kSensorOutput = 11;  // OPT-5.39
 
 // The coordinates of a MOVE, when they are literals or constants.
-std::optional<std::array<float, 3>> LiteralTarget(const Module& module, const Instruction& move);
+std::optional<motion::ProgramPoint> LiteralTarget(const Module& module, const Instruction& move);
 std::optional<float> LiteralValueOf(Expression value);
 
-double Distance(const std::array<float, 3>& a, const std::array<float, 3>& b);
+double Distance_mm(const motion::ProgramPoint& a, const motion::ProgramPoint& b);
 inline constexpr double kShortFly_mm = 1.0;  // OPT-2.51
 inline constexpr double kTinyFly_mm = 0.01;  // OPT-2.52
 

@@ -92,7 +92,7 @@ void MoveAdviser::AdviseSpeed(std::uint32_t at, const FlowState& state) {
   const float speed = *known;
   if (speed == 0.0F) {
     const auto from = state.target.known(), target = LiteralTarget(module_, i);
-    if (!i.Has(kTime) && from && target && Distance(*from, *target) > 0.0)
+    if (!i.Has(kTime) && from && target && Distance_mm(*from, *target) > 0.0)
       Warn(i, ErrorCode::kNoMotion, "SPEED is 0: this MOVE will fail", "OPT-B.22");
     return;
   }
@@ -171,7 +171,7 @@ void MoveAdviser::AdviseShortFly(std::uint32_t at, const FlowState& state) {
   const auto from = state.target.known(), target = LiteralTarget(module_, i);
   const auto several = Choice<TinyMoves>::Bits({TinyMoves::kTwo, TinyMoves::kMore});
   if (!state.tiny_moves.IsAmong(several) || !from || !target) return;
-  if (Distance(*target, *from) < kTinyFly_mm) {
+  if (Distance_mm(*target, *from) < kTinyFly_mm) {
     Warn(i, ErrorCode::kShortFly, "/FLY on several moves in a row shorter than 0.01 mm",
          "OPT-2.52");
   }
@@ -182,22 +182,22 @@ void MoveAdviser::AdviseShortFly(std::uint32_t at, const FlowState& state) {
 void MoveAdviser::AdviseHole(const Instruction& i, const FlowState& state) {
   const bool turned = !state.turned.Is(Turned::kNo);
   if (state.modes.path() != PathType::kHole || !i.Has(kVia) || turned) return;
-  double c[5], n[3];
-  for (int v = 0; v < 5; ++v) {
-    const auto value = LiteralValueOf(module_.Value(i, v));
-    if (!value) return;
-    c[v] = static_cast<double>(*value);
-  }
+  const auto centre = LiteralTarget(module_, i);
+  const auto a_rad = LiteralValueOf(module_.Value(i, 3)),
+             b_rad = LiteralValueOf(module_.Value(i, 4));
+  if (!centre || !a_rad || !b_rad) return;
+  motion::ProgramVector beside;
   for (int v = 0; v < 3; ++v) {
     const auto value = LiteralValueOf(module_.Via(i, v));
     if (!value) return;
-    n[v] = static_cast<double>(*value) - c[v];
+    beside[v] = static_cast<double>(*value);
   }
-  const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  const motion::ProgramVector axis = beside - centre->from_origin();
+  const double length = axis.norm();
   if (length == 0.0) return;
-  const double u[3] = {std::sin(c[3]) * std::sin(c[4]), -std::cos(c[3]) * std::sin(c[4]),
-                       std::cos(c[4])};
-  const double cosine = (n[0] * u[0] + n[1] * u[1] + n[2] * u[2]) / length;
+  const motion::MachineVector tool =
+      motion::ToolDirection(static_cast<double>(*a_rad), static_cast<double>(*b_rad));
+  const double cosine = axis.dot(tool) / length;
   const double angle = std::acos(std::fmin(1.0, std::fmax(-1.0, cosine)));
   if (angle <= kHoleTiltMax_rad) return;
   Warn(i, ErrorCode::kPracticeAdvice,

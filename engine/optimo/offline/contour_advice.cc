@@ -140,13 +140,13 @@ void ContourAdviser::Pass(const Instruction& i) {
 std::optional<PathPiece> ContourAdviser::PieceTo(const Instruction& i,
                                                  const TipPose& target) const {
   if (path_ != PathType::kCir || !i.Has(kVia)) return PathPiece::Line(*at_, target);
-  std::array<double, 3> via{};
+  motion::MachinePoint via;
   for (int v = 0; v < 3; ++v) {
     const auto value = Known(module_.Via(i, v));
     if (!value) return std::nullopt;
-    via[static_cast<std::size_t>(v)] = *value;
+    via[v] = *value;
   }
-  const auto arc = PathPiece::ArcThrough(*at_, {via[0], via[1], via[2]}, target);
+  const auto arc = PathPiece::ArcThrough(*at_, via, target);
   if (!arc) return std::nullopt;
   return arc->path;
 }

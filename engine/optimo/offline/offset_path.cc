@@ -1,6 +1,7 @@
 #include "engine/optimo/offline/offset_path.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -20,42 +21,44 @@ ProgramVector Unit(const ProgramVector& v) {
 }
 bool IsZero(const ProgramVector& v) { return v == ProgramVector{}; }
 
-// A leg's offset curve in the plane normal to the tool, about the corner as origin.
+using PlaneVector = Eigen::Vector2d;  // in the plane normal to the tool, from the corner
+
+// Lengths in a plane are the C library's hypot, whose last digit is not that of norm().
+double LengthOf(const PlaneVector& v) { return std::hypot(v.x(), v.y()); }
+
+// A leg's offset curve in that plane.
 struct PlaneCurve {
   bool circle = false;
-  double x = 0.0, y = 0.0;    // a point of the line, or the centre
-  double dx = 0.0, dy = 0.0;  // direction of the line
+  PlaneVector at;         // a point of the line, or the centre
+  PlaneVector direction;  // of the line
   double radius = 0.0;
 };
 
 // One of the points where both curves meet, the nearest to the origin; nothing when they do not.
 // Precondition: one of them is a circle.
-std::optional<std::pair<double, double>> NearestMeeting(const PlaneCurve& a, const PlaneCurve& b) {
-  std::vector<std::pair<double, double>> points;
+std::optional<PlaneVector> NearestMeeting(const PlaneCurve& a, const PlaneCurve& b) {
+  PlaneVector middle, to_either;
   if (a.circle != b.circle) {
     const PlaneCurve& line = a.circle ? b : a;
     const PlaneCurve& circle = a.circle ? a : b;
-    const double along = (circle.x - line.x) * line.dx + (circle.y - line.y) * line.dy;
-    const double fx = line.x + along * line.dx, fy = line.y + along * line.dy;
-    const double away2 = (fx - circle.x) * (fx - circle.x) + (fy - circle.y) * (fy - circle.y);
-    const double half2 = circle.radius * circle.radius - away2;
+    middle = line.at + line.direction * (circle.at - line.at).dot(line.direction);
+    const double half2 = circle.radius * circle.radius - (middle - circle.at).squaredNorm();
     if (half2 < 0.0) return std::nullopt;
-    const double half = std::sqrt(half2);
-    points.emplace_back(fx + half * line.dx, fy + half * line.dy);
-    points.emplace_back(fx - half * line.dx, fy - half * line.dy);
+    to_either = line.direction * std::sqrt(half2);
   } else {
-    const double dx = b.x - a.x, dy = b.y - a.y, distance = std::hypot(dx, dy);
+    const PlaneVector between = b.at - a.at;
+    const double distance = LengthOf(between);
     if (distance < kTiny) return std::nullopt;
     const double along =
         (distance * distance + a.radius * a.radius - b.radius * b.radius) / (2.0 * distance);
     const double half2 = a.radius * a.radius - along * along;
     if (half2 < 0.0) return std::nullopt;
-    const double half = std::sqrt(half2), ux = dx / distance, uy = dy / distance;
-    points.emplace_back(a.x + along * ux - half * uy, a.y + along * uy + half * ux);
-    points.emplace_back(a.x + along * ux + half * uy, a.y + along * uy - half * ux);
+    const PlaneVector towards = between / distance;
+    middle = a.at + towards * along;
+    to_either = PlaneVector(-towards.y(), towards.x()) * std::sqrt(half2);
   }
-  return *std::ranges::min_element(
-      points, {}, [](const auto& point) { return std::hypot(point.first, point.second); });
+  const std::array<PlaneVector, 2> points = {middle + to_either, middle - to_either};
+  return *std::ranges::min_element(points, {}, LengthOf);
 }
 
 // Towards the centre: the offset makes the arc smaller.
@@ -65,24 +68,21 @@ double OffsetRadius(const Leg& arc, const ProgramVector& at, const ProgramVector
   return arc.radius - offset * normal.dot(inward);
 }
 
-PlaneCurve CurveOf(const Leg& leg, const ProgramVector& corner, const ProgramVector& tangent,
-                   const ProgramVector& normal, const ProgramVector& ex, const ProgramVector& ey,
-                   double offset) {
-  PlaneCurve curve;
+// The plane about a corner.
+struct CornerPlane {
+  ProgramVector corner, ex, ey;
+  PlaneVector Of(const ProgramVector& v) const { return {v.dot(ex), v.dot(ey)}; }
+};
+
+PlaneCurve CurveOf(const Leg& leg, const CornerPlane& plane, const ProgramVector& tangent,
+                   const ProgramVector& normal, double offset) {
   if (leg.is_arc) {
-    curve.circle = true;
-    const ProgramVector to_centre = leg.centre - corner;
-    curve.x = to_centre.dot(ex);
-    curve.y = to_centre.dot(ey);
-    curve.radius = OffsetRadius(leg, corner, normal, offset);
-  } else {
-    const ProgramVector shift = normal * offset;
-    curve.x = shift.dot(ex);
-    curve.y = shift.dot(ey);
-    curve.dx = tangent.dot(ex);
-    curve.dy = tangent.dot(ey);
+    return {.circle = true,
+            .at = plane.Of(leg.centre - plane.corner),
+            .direction = {},
+            .radius = OffsetRadius(leg, plane.corner, normal, offset)};
   }
-  return curve;
+  return {.at = plane.Of(normal * offset), .direction = plane.Of(tangent)};
 }
 
 bool InPlane(const Leg& leg, const ProgramVector& tangent, const ProgramVector& tool) {
@@ -103,12 +103,12 @@ std::optional<ProgramVector> Corner(const Leg& before, const Leg& after, double 
   const bool arc = before.is_arc || after.is_arc;
   if (arc && cosine < kTangent && InPlane(before, before.tangent_to, tool) &&
       InPlane(after, after.tangent_from, tool)) {
-    const ProgramVector ex = Unit(before.tangent_to), ey = tool.cross(ex);
-    const auto meeting =
-        NearestMeeting(CurveOf(before, before.to, before.tangent_to, n1, ex, ey, offset),
-                       CurveOf(after, before.to, after.tangent_from, n2, ex, ey, offset));
+    const ProgramVector ahead = Unit(before.tangent_to);
+    const CornerPlane plane{.corner = before.to, .ex = ahead, .ey = tool.cross(ahead)};
+    const auto meeting = NearestMeeting(CurveOf(before, plane, before.tangent_to, n1, offset),
+                                        CurveOf(after, plane, after.tangent_from, n2, offset));
     if (!meeting) return std::nullopt;
-    return before.to + ex * meeting->first + ey * meeting->second;
+    return before.to + plane.ex * meeting->x() + plane.ey * meeting->y();
   }
   return before.to + (n1 + n2) * (offset / (1.0 + cosine));
 }

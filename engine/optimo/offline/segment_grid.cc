@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 namespace rmlcell::optimo {
 namespace {
@@ -48,16 +49,16 @@ SegmentGrid::SegmentGrid(const std::vector<PathSegment>& segments, double reach)
   double length = 0.0;
   for (const PathSegment& s : segments) {
     for (const ProgramVector& p : {s.from, s.to}) {
-      low_ = {std::min(low_.x(), p.x()), std::min(low_.y(), p.y()), std::min(low_.z(), p.z())};
-      high_ = {std::max(high_.x(), p.x()), std::max(high_.y(), p.y()), std::max(high_.z(), p.z())};
+      low_ = low_.cwiseMin(p);
+      high_ = high_.cwiseMax(p);
     }
     length += (s.from - s.to).norm();
   }
-  std::array<std::pair<double, int>, 3> spread = {
-      {{high_.x() - low_.x(), 0}, {high_.y() - low_.y(), 1}, {high_.z() - low_.z(), 2}}};
-  std::ranges::stable_sort(spread, [](const auto& a, const auto& b) { return a.first > b.first; });
-  axis_u_ = spread[0].second;
-  axis_v_ = spread[1].second;
+  const ProgramVector spread = high_ - low_;
+  std::array<int, 3> axes = {0, 1, 2};
+  std::ranges::stable_sort(axes, std::ranges::greater{}, [&](int axis) { return spread[axis]; });
+  axis_u_ = axes[0];
+  axis_v_ = axes[1];
   // A part of the mean length: then there are a few entries a segment, whatever their lengths, and
   // long ones that lie side by side do not share all of their cells.
   cell_ = std::max(2.0 * reach, length / (kCellsPerSegment * static_cast<double>(segments.size())));
@@ -76,9 +77,9 @@ PathSegment SegmentGrid::Clipped(const PathSegment& segment) const {
   const ProgramVector along = segment.to - segment.from;
   double first = 0.0, last = 1.0;
   for (const int axis : {axis_u_, axis_v_}) {
-    const double from = Coordinate(segment.from, axis), d = Coordinate(along, axis);
-    const double low = Coordinate(low_, axis) - 2.0 * reach_ - from;
-    const double high = Coordinate(high_, axis) + 2.0 * reach_ - from;
+    const double from = segment.from[axis], d = along[axis];
+    const double low = low_[axis] - 2.0 * reach_ - from;
+    const double high = high_[axis] + 2.0 * reach_ - from;
     // Along an axis in which it does not go these are infinite: all of it lies inside, or nothing.
     first = std::fmax(first, std::fmin(low / d, high / d));
     last = std::fmin(last, std::fmax(low / d, high / d));

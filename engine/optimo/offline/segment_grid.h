@@ -16,6 +16,9 @@ struct PathSegment {
   std::size_t leg = 0;  // of which it is a part
 };
 
+// In the two axes of a grid.
+using GridVector = Eigen::Vector2d;
+
 // Where two segments are nearest to each other.
 struct NearestPoints {
   double distance = 0.0;  // mm
@@ -58,11 +61,7 @@ class SegmentGrid {
   // The part of it that lies where there are segments, and a little more; a point when there is
   // none.
   PathSegment Clipped(const PathSegment& segment) const;
-  double U(const motion::ProgramVector& p) const { return Coordinate(p, axis_u_); }
-  double V(const motion::ProgramVector& p) const { return Coordinate(p, axis_v_); }
-  static double Coordinate(const motion::ProgramVector& p, int axis) {
-    return axis == 0 ? p.x() : axis == 1 ? p.y() : p.z();
-  }
+  GridVector InGrid(const motion::ProgramVector& p) const { return {p[axis_u_], p[axis_v_]}; }
   std::uint32_t CellOf(double value) const;
   std::size_t FirstOf(std::uint64_t cell) const;
 
@@ -75,16 +74,16 @@ class SegmentGrid {
 
 template <class EachCell>
 bool SegmentGrid::Cover(const PathSegment& segment, double margin, const EachCell& cell) const {
-  const double u1 = U(segment.from), v1 = V(segment.from), u2 = U(segment.to), v2 = V(segment.to);
-  const double length = std::hypot(u2 - u1, v2 - v1);
-  const double pieces = std::fmax(1.0, std::ceil(length / cell_));
+  const GridVector from = InGrid(segment.from);
+  const GridVector way = InGrid(segment.to) - from;
+  const double pieces = std::fmax(1.0, std::ceil(std::hypot(way.x(), way.y()) / cell_));
   for (double p = 0.0; p < pieces; p += 1.0) {
-    const double ua = u1 + (u2 - u1) * (p / pieces), ub = u1 + (u2 - u1) * ((p + 1.0) / pieces);
-    const double va = v1 + (v2 - v1) * (p / pieces), vb = v1 + (v2 - v1) * ((p + 1.0) / pieces);
-    const std::uint32_t u_end = CellOf(std::fmax(ua, ub) + margin);
-    const std::uint32_t v_end = CellOf(std::fmax(va, vb) + margin);
-    for (std::uint32_t u = CellOf(std::fmin(ua, ub) - margin); u <= u_end; ++u) {
-      for (std::uint32_t v = CellOf(std::fmin(va, vb) - margin); v <= v_end; ++v) {
+    const GridVector begin = from + way * (p / pieces);
+    const GridVector end = from + way * ((p + 1.0) / pieces);
+    const std::uint32_t u_end = CellOf(std::fmax(begin.x(), end.x()) + margin);
+    const std::uint32_t v_end = CellOf(std::fmax(begin.y(), end.y()) + margin);
+    for (std::uint32_t u = CellOf(std::fmin(begin.x(), end.x()) - margin); u <= u_end; ++u) {
+      for (std::uint32_t v = CellOf(std::fmin(begin.y(), end.y()) - margin); v <= v_end; ++v) {
         if (!cell(std::uint64_t{u} << 32 | v)) return false;
       }
     }

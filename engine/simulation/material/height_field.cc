@@ -29,17 +29,14 @@ Span SweptPart(const MachinePoint& from, const MachinePoint& to, double radius, 
     if (half_2 < 0.0) continue;
     span.Include(centre.x() - std::sqrt(half_2), centre.x() + std::sqrt(half_2));
   }
-  const double dx = to.x() - from.x();
-  const double dy = to.y() - from.y();
-  if (std::abs(dy) * radius <= 0.0) return span;
+  const PlanVector way = PlanOf(to - from);
+  if (std::abs(way.y()) * radius <= 0.0) return span;
   // The strip is bounded by lines along the way, `radius` off it; the row meets both.
-  const double length = std::hypot(dx, dy);
-  const double off_x = -dy / length * radius;
-  const double off_y = dx / length * radius;
+  const PlanVector off = PlanVector(-way.y(), way.x()) / LengthOf(way) * radius;
   for (const double side : {-1.0, 1.0}) {
-    const double share = (y - (from.y() + side * off_y)) / dy;
+    const double share = (y - (from.y() + side * off.y())) / way.y();
     if (share < 0.0 || share > 1.0) continue;
-    const double x = from.x() + side * off_x + share * dx;
+    const double x = from.x() + side * off.x() + share * way.x();
     span.Include(x, x);
   }
   return span;

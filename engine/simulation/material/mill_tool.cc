@@ -60,13 +60,12 @@ ToolPass::ToolPass(const MillTool& tool, const motion::MachinePoint& from,
       to_(to),
       radius_(tool.radius_mm),
       tip_radius_(tool.tip_radius_mm),
-      length_(std::hypot(to.x() - from.x(), to.y() - from.y())),
+      length_(LengthOf(PlanOf(to - from))),
       upright_(!(length_ > 0.0)),
       z_(upright_ ? std::min(from.z(), to.z()) : from.z()) {
   if (tool.shape == MillTool::Shape::kVee) rise_ = 1.0 / std::tan(tool.half_angle_rad);
   if (upright_) return;
-  way_x_ = (to.x() - from.x()) / length_;
-  way_y_ = (to.y() - from.y()) / length_;
+  way_ = PlanOf(to - from) / length_;
   slope_ = (to.z() - from.z()) / length_;
   lead_ = slope_ / std::sqrt(1.0 + slope_ * slope_);
 }

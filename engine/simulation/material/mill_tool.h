@@ -9,6 +9,12 @@
 
 namespace rmlcell::simulation {
 
+// X and Y of the machine: directions as they are seen from above.
+using PlanVector = Eigen::Vector2d;
+inline PlanVector PlanOf(const motion::MachineVector& v) { return v.head<2>(); }
+// By hypot of the C library, whose last digit is not that of norm().
+inline double LengthOf(const PlanVector& v) { return std::hypot(v.x(), v.y()); }
+
 // The cutting end of a milling tool, a body of revolution; its lowest point is the programmed one.
 // motion.md section 9.
 struct MillTool {
@@ -43,10 +49,11 @@ class ToolPass {
   const motion::MachinePoint& to() const { return to_; }
   double radius_mm() const { return radius_; }
 
-  // Of a point at (x, y) from the start of the move. A plunge: all of its distance is across.
-  double AlongOf(double x, double y) const { return x * way_x_ + y * way_y_; }
+  // Of a point at (x, y) from the start of the move. A plunge: all of its distance is across. By
+  // single coordinates: whoever asks goes along a row of cells, and only x changes.
+  double AlongOf(double x, double y) const { return x * way_.x() + y * way_.y(); }
   double AcrossOf(double x, double y) const {
-    return upright_ ? std::sqrt(x * x + y * y) : std::abs(y * way_x_ - x * way_y_);
+    return upright_ ? std::sqrt(x * x + y * y) : std::abs(y * way_.x() - x * way_.y());
   }
 
   double LeastOfFlat(double along, double across) const {
@@ -89,8 +96,7 @@ class ToolPass {
   double rise_ = 0.0;  // of a vee tool by its radius
   double length_;      // seen from above
   bool upright_;       // a plunge
-  double way_x_ = 0.0;
-  double way_y_ = 0.0;
+  PlanVector way_;     // of length 1; zero on a plunge
   double z_;
   double slope_ = 0.0;  // of z along the move
   double lead_ = 0.0;   // of a ball: how far ahead of the point its axis is, by half a chord

@@ -67,7 +67,7 @@ void MillingRecorder::OnMotion(const machine::MotionDone& done) {
   }
   const double taken = material_.Cut(tool_, from, to);
   // A plunge, or a ramp of more than 45 degrees, is no pass; at travel speed it is a gouge.
-  const double across = std::hypot(to.x() - from.x(), to.y() - from.y());
+  const double across = LengthOf(PlanOf(to - from));
   const bool is_pass = done.programmed_mm_s > 0.0 && across >= std::abs(to.z() - from.z());
   if (is_pass && taken > figures_.deepest_pass_mm) {
     figures_.deepest_pass_mm = taken;

@@ -31,6 +31,113 @@ void Append(MotionChain& chain, const TipPose& from, const TipPose& to, bool fly
   chain.Append(move, chain.LimitsFor(move), true);
 }
 
+// The same by hand, for a stage that is looked at by itself.
+void Add(LegStage& legs, const TipPose& from, const TipPose& to, bool fly, std::uint64_t tag) {
+  MoveCommand move;
+  move.path = PathPiece::Line(from, to);
+  move.fly = fly;
+  move.tag = tag;
+  legs.Add(move, legs.LimitsFor(move), true);
+}
+
+// 100 mm along X in two lines, then 30 mm along Y, which changes Y by the whole speed.
+void AddAngle(LegStage& legs) {
+  Add(legs, {{0, 0, 0}}, {{40, 0, 0}}, true, 7);
+  Add(legs, {{40, 0, 0}}, {{100, 0, 0}}, true, 8);
+  Add(legs, {{100, 0, 0}}, {{100, 30, 0}}, true, 9);
+}
+
+// A mill whose axes may jump by 5 mm/s: so fast it passes the corner.
+MachineLimits PlainMill() {
+  MachineLimits machine = PlainMachine();
+  machine.corners = MachineLimits::Corners::kThrough;
+  machine.junction_jump_mm_s = 5.0;
+  return machine;
+}
+
+// OVERSH of 100 % asks for the 100 mm/s of both sides at the corner; the last leg may still grow.
+TEST(LegStageDump, LegsAreClosedByCorners) {
+  LegStage legs(PlainMachine(), Planner::kWindow);
+  EXPECT_EQ(legs.Dump(), "");
+  AddAngle(legs);
+  EXPECT_EQ(legs.Dump(),
+            "leg 0: moves 0 to 1, length 100.000, BLEND at 100.000, ends the run\n"
+            "leg 1: moves 2 to 2, length 30.000, open\n");
+  EXPECT_FALSE(legs.closed(1));
+  EXPECT_TRUE(legs.End());
+  EXPECT_FALSE(legs.End());  // it stands already
+  EXPECT_EQ(legs.Dump(),
+            "leg 0: moves 0 to 1, length 100.000, BLEND at 100.000, ends the run\n"
+            "leg 1: moves 2 to 2, length 30.000, STOP at 0.000, ends the run\n");
+  legs.Settle();  // 5 mm are enough to reach 100 mm/s, and to stop
+  EXPECT_EQ(legs.Dump(),
+            "leg 0: moves 0 to 1, length 100.000, BLEND at 100.000, ends the run, speed 100.000\n"
+            "leg 1: moves 2 to 2, length 30.000, STOP at 0.000, ends the run, speed 0.000\n");
+  legs.TakeSpeed();
+  legs.DropTaken();
+  EXPECT_EQ(legs.Dump(),
+            "leg 1: moves 2 to 2, length 30.000, STOP at 0.000, ends the run, speed 0.000\n");
+}
+
+// What is passed straight on is one run, and becomes spans as one: so does the corner of a mill.
+// Before the passes over spans no knot is final. 5 mm/s take 5 * 5 / 2000 mm, so neither line is
+// too short for them.
+TEST(SpanStageDump, SpansTakeTheLegsAndGetTheirSpeeds) {
+  SpanStage spans(PlainMill(), Planner::kWindow);
+  AddAngle(spans.leg_stage());
+  spans.leg_stage().End();
+  EXPECT_FALSE(spans.Resolve(false));  // the running speeds of the legs are not known yet
+  EXPECT_EQ(spans.Dump(), "");
+  spans.leg_stage().Settle();
+  EXPECT_TRUE(spans.Resolve(false));
+  EXPECT_EQ(spans.Dump(), "");
+  EXPECT_TRUE(spans.Resolve(false));
+  EXPECT_EQ(spans.Dump(),
+            "span 0: moves 0 from 0.000 to 1 at 60.000, length 100.000, THROUGH at most 5.000, "
+            "open\n"
+            "span 1: moves 2 from 0.000 to 2 at 30.000, length 30.000, STOP at most 0.000, open\n");
+  EXPECT_FALSE(spans.Resolve(false));
+  EXPECT_EQ(spans.leg_stage().Dump(), "");
+  spans.Settle();
+  EXPECT_EQ(spans.Dump(),
+            "span 0: moves 0 from 0.000 to 1 at 60.000, length 100.000, THROUGH at most 5.000, "
+            "passed at 5.000\n"
+            "span 1: moves 2 from 0.000 to 2 at 30.000, length 30.000, STOP at most 0.000, "
+            "passed at 0.000\n");
+  spans.DropOldest();
+  EXPECT_EQ(spans.Dump(),
+            "span 1: moves 2 from 0.000 to 2 at 30.000, length 30.000, STOP at most 0.000, "
+            "passed at 0.000\n");
+}
+
+// A section ends where a knot is passed as fast as it may be: here each span is one. The second
+// begins with the 5 mm/s of the corner. What is taken of a move is gone from the stages before.
+TEST(ItemStageDump, SectionsAreGivenOutMoveByMove) {
+  ItemStage items(PlainMill(), Planner::kWindow);
+  SpanStage& spans = items.span_stage();
+  LegStage& legs = spans.leg_stage();
+  AddAngle(legs);
+  items.AddMark(4);
+  legs.End();
+  legs.Settle();
+  while (spans.Resolve(false)) {
+  }
+  EXPECT_EQ(items.Next(), nullptr);  // no speed of a span is known
+  spans.Settle();
+  EXPECT_EQ(items.Dump(), "mark 4: waits for move 2\n");
+  EXPECT_EQ(std::get<PlannedMotion>(*items.Next()).tag, 7U);
+  EXPECT_EQ(items.Dump(), "section: 1 spans, from 0.000, one profile\nmark 4: waits for move 2\n");
+  EXPECT_EQ(std::get<PlannedMotion>(*items.Next()).tag, 8U);
+  EXPECT_EQ(items.Dump(), "mark 4: waits for move 2\n");
+  EXPECT_EQ(legs.moves().size(), 2U);  // one that is at its end, and the one behind it
+  const auto& last = std::get<PlannedMotion>(*items.Next());
+  EXPECT_EQ(last.tag, 9U);
+  EXPECT_NEAR(last.speed.At(0.0).speed, 5.0, 1e-9);
+  EXPECT_EQ(items.Dump(), "mark 4\n");
+  EXPECT_EQ(spans.Dump(), "");
+  EXPECT_TRUE(legs.moves().empty());
+}
+
 // Two lines in a row are one leg, and open until the chain is at an end; then a span that takes
 // 0.1 s to speed up over 5 mm, 0.9 s for the 90 mm between and 0.1 s to stop.
 TEST(ChainDump, ALineSplitInTwoIsOneLeg) {
