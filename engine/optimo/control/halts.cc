@@ -16,7 +16,7 @@ void Halts::Halt(std::string_view why) {
   s_.halted_at = situation_.now;
   s_.requests.hold = false;
   s_.requests.stop = false;
-  actuators_.Suspend();
+  actuators_.Hold();
   telling_.observer().OnHalt({.at = situation_.now, .place = situation_.place, .why = why});
 }
 
@@ -42,7 +42,7 @@ void Halts::Resume() {
   works_.Shift(stood);
   situation_.phase = machine::RunPhase::kRunning;
   telling_.observer().OnResume(situation_.now, situation_.place);
-  actuators_.Restore();
+  actuators_.Return();
   ride_.Resume();
   if (s_.place_ahead) situation_.place = *std::exchange(s_.place_ahead, std::nullopt);
 }

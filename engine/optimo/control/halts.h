@@ -16,6 +16,12 @@ struct HaltRequests {
   bool hold = false;  // HOLD; a MOVE that is carried out meanwhile is exact. OPT-4.17
   bool stop = false;  // STOP on a motion that could not be left when the key was pressed
   std::string_view after_step{};  // SINGLE or BREAK, when the step is over; empty: none
+  std::optional<machine::ProgramStep> breakpoint{};  // of BREAK, which stays when met. OPT-6.08
+
+  // BREAK is set at this step.
+  bool breaks_at(const machine::Place& place) const {
+    return breakpoint && breakpoint->program == place.program && breakpoint->step == place.step;
+  }
 };
 
 struct HaltState {

@@ -61,9 +61,14 @@ struct WaitState {
 // goes on beside the program (/NEXT) there is nothing to tell: that time is the motion's.
 class Waits {
  public:
-  Waits(WaitState& state, const Situation& situation, SystemCycle cycle, const Telling& telling,
-        const Ride& ride)
-      : s_(state), situation_(situation), cycle_(cycle), telling_(telling), ride_(ride) {}
+  Waits(WaitState& state, const Situation& situation, const Beam& beam, SystemCycle cycle,
+        const Telling& telling, const Ride& ride)
+      : s_(state),
+        situation_(situation),
+        beam_(beam),
+        cycle_(cycle),
+        telling_(telling),
+        ride_(ride) {}
 
   const Pending& pending() const { return s_.pending; }
   bool waits() const { return s_.pending.kind != Pending::Kind::kNone; }
@@ -101,6 +106,7 @@ class Waits {
  private:
   WaitState& s_;
   const Situation& situation_;
+  const Beam& beam_;
   const SystemCycle cycle_;
   const Telling& telling_;
   const Ride& ride_;
