@@ -21,13 +21,11 @@ Beam Beam::WithPower(const machine::PowerBySpeed& power) const {
 }
 
 Beam Beam::On(const machine::PowerBySpeed& power) const {
-  return WithPower(power).At(BeamStage::kOn);
+  return WithPower(power).At(door_open_ ? BeamStage::kHeld : BeamStage::kOn);
 }
 
-Beam Beam::Off() const { return stage_ == BeamStage::kHeld ? *this : At(BeamStage::kOff); }
-
-Beam Beam::Taken() const { return stage_ == BeamStage::kHeld ? *this : At(BeamStage::kTaken); }
-
+Beam Beam::Off() const { return At(BeamStage::kOff); }
+Beam Beam::Taken() const { return At(BeamStage::kTaken); }
 Beam Beam::Held() const { return on() ? At(BeamStage::kHeld) : *this; }
 
 Beam Beam::DoorOpened() const {
@@ -44,6 +42,7 @@ Beam Beam::DoorClosed() const {
 }
 
 Beam Beam::Returned() const {
+  if (door_open_) return *this;
   Beam next = *this;
   if (shutter_ == Shutter::kClosedByDoor) next.shutter_ = Shutter::kOpen;
   return stage_ == BeamStage::kHeld ? next.At(BeamStage::kOn) : next;

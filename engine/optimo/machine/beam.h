@@ -12,7 +12,7 @@ enum class BeamStage : std::uint8_t {
   kOff,  // no process asks for it
   kOn,
   kTaken,  // WORK 0 or 1 is ON, but the /OFF of another process took the beam away. OPT-3.24
-  kHeld,   // WORK 0 or 1 is ON, but motion was held or the door opened: START brings it. OPT-B.34
+  kHeld,   // WORK 0 or 1 is ON, but motion is held or the door open: START brings it. OPT-B.34
 };
 
 enum class Shutter : std::uint8_t {
@@ -24,20 +24,23 @@ enum class Shutter : std::uint8_t {
 // Beam, shutter and the operator door of a laser: a value. Each of the functions below says what
 // the three are once that has happened; who carries it out tells of the difference (actuators.h).
 //
-//   stage           On      Off    Taken    Held    DoorOpened      Returned   ShutDown
-//   kOff            kOn     -      kTaken   -       -               -          -
-//   kOn             -       kOff   kTaken   kHeld   kHeld           -          kOff
-//   kTaken          kOn     kOff   -        -       -               -          kOff
-//   kHeld           kOn     -      -        -       -               kOn        kOff
+//   stage           On        Off    Taken    Held    DoorOpened      Returned   ShutDown
+//   kOff            kOn *     -      kTaken   -       -               -          -
+//   kOn             -         kOff   kTaken   kHeld   kHeld           -          kOff
+//   kTaken          kOn *     kOff   -        -       -               -          kOff
+//   kHeld           kOn *     kOff   kTaken   -       -               kOn **     kOff
 //
-//   shutter         On      the beam goes off       DoorOpened      Returned   ShutDown
-//   kClosed         kOpen   -                       -               - *        -
-//   kOpen           -       -; of an EFA-51         kClosedByDoor   -          kClosed
-//                           kClosed (OPT-3.15)
-//   kClosedByDoor   kOpen   -                       -               kOpen      kClosed
+//   shutter         On        the beam goes off       DoorOpened      Returned   ShutDown
+//   kClosed         kOpen *   -                       -               - ***      -
+//   kOpen           -         -; of an EFA-51         kClosedByDoor   -          kClosed
+//                             kClosed (OPT-3.15)
+//   kClosedByDoor   kOpen *   -                       -               kOpen **   kClosed
 //
-// "-": stays. * kOpen when the beam comes back. So the beam is on behind an open shutter only, and
-// of an EFA-51 the shutter is open only while the beam is on.
+// "-": stays. * While the door is open the shutter stays, and the stage is kHeld. ** Stays while
+// the door is open. *** kOpen where the beam comes back.
+//
+// So the beam is on behind an open shutter only, the shutter is open behind a closed door only, and
+// of an EFA-51 only while the beam is on.
 class Beam {
  public:
   explicit Beam(Laser laser) : laser_(laser) {}
@@ -56,11 +59,12 @@ class Beam {
   // While it is on, and when it comes back.
   const machine::PowerBySpeed& power() const { return power_; }
 
-  Beam On(const machine::PowerBySpeed& power) const;  // WORK 0 or 1 ON
-  Beam Off() const;                                   // the last of them OFF; an error
-  Beam Taken() const;                                 // a process OFF, and another of them is ON
-  Beam Held() const;                                  // the motion is held
-  Beam DoorOpened() const;                            // OPT-3.17
+  // WORK 0 or 1 ON. One that the door should have refused (OPT-3.19) is passed on the way to rest.
+  Beam On(const machine::PowerBySpeed& power) const;
+  Beam Off() const;         // the last of them OFF; an error
+  Beam Taken() const;       // a process OFF, and another of them is ON
+  Beam Held() const;        // the motion is held
+  Beam DoorOpened() const;  // OPT-3.17
   Beam DoorClosed() const;
   Beam Returned() const;  // START. OPT-3.62
   Beam ShutDown() const;  // the end of a program or of the run. OPT-3.16, OPT-3.18

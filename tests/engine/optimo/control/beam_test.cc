@@ -56,7 +56,7 @@ constexpr Row kRows[] = {
     {kOff, kOn, kOff, kTaken, kOff, kOff, kOff, kOff, kOff},
     {kOn, kOn, kOff, kTaken, kHeld, kHeld, kOn, kOn, kOff},
     {kTaken, kOn, kOff, kTaken, kTaken, kTaken, kTaken, kTaken, kOff},
-    {kHeld, kOn, kHeld, kHeld, kHeld, kHeld, kHeld, kOn, kOff},
+    {kHeld, kOn, kOff, kTaken, kHeld, kHeld, kHeld, kOn, kOff},
 };
 
 TEST(Beam, GoesWhereItsTableHas) {
@@ -66,13 +66,13 @@ TEST(Beam, GoesWhereItsTableHas) {
         SCOPED_TRACE(static_cast<int>(row.stage));
         SCOPED_TRACE(beam.door_open() ? "door open" : "door closed");
         EXPECT_EQ(beam.stage(), row.stage);
-        EXPECT_EQ(beam.On(kPower).stage(), row.on);
+        EXPECT_EQ(beam.On(kPower).stage(), beam.door_open() ? kHeld : row.on);
         EXPECT_EQ(beam.Off().stage(), row.off);
         EXPECT_EQ(beam.Taken().stage(), row.taken);
         EXPECT_EQ(beam.Held().stage(), row.held);
         EXPECT_EQ(beam.DoorOpened().stage(), row.door_opened);
         EXPECT_EQ(beam.DoorClosed().stage(), row.door_closed);
-        EXPECT_EQ(beam.Returned().stage(), row.returned);
+        EXPECT_EQ(beam.Returned().stage(), beam.door_open() ? row.stage : row.returned);
         EXPECT_EQ(beam.ShutDown().stage(), row.shut_down);
       }
     }
@@ -109,11 +109,17 @@ TEST(Beam, TheShutterOfAnArrow) {
   EXPECT_EQ(closed.Returned().shutter(), Shutter::kClosed);
   EXPECT_EQ(open.Returned().shutter(), Shutter::kOpen);
   EXPECT_EQ(again.Returned().shutter(), Shutter::kOpen);
+  EXPECT_EQ(by_door.Returned().shutter(), Shutter::kClosedByDoor);
+  EXPECT_EQ(by_door.On(kPower).shutter(), Shutter::kClosedByDoor);
+  EXPECT_EQ(closed.DoorOpened().On(kPower).shutter(), Shutter::kClosed);
+  // What comes on behind an open door opens its shutter at START.
+  EXPECT_EQ(closed.DoorOpened().On(kPower).DoorClosed().Returned().shutter(), Shutter::kOpen);
 }
 
 // OPT-3.15: of an EFA-51 beam and shutter are one, in whatever stage and through whatever happens.
-// OPT-3.17: of either the beam is on behind an open shutter only.
-TEST(Beam, IsOnBehindAnOpenShutter) {
+// OPT-3.17: of either the beam is on behind an open shutter only, and that is open behind a closed
+// door only.
+TEST(Beam, IsOnBehindAnOpenShutterAndAClosedDoor) {
   for (const Laser laser : kLasers) {
     for (const BeamStage stage : kStages) {
       for (const Beam& beam : AllIn(stage, laser)) {
@@ -121,6 +127,7 @@ TEST(Beam, IsOnBehindAnOpenShutter) {
              {beam, beam.On(kPower), beam.Off(), beam.Taken(), beam.Held(), beam.DoorOpened(),
               beam.DoorClosed(), beam.Returned(), beam.ShutDown()}) {
           EXPECT_TRUE(!next.on() || next.shutter_open());
+          EXPECT_FALSE(next.shutter_open() && next.door_open());
           EXPECT_TRUE(laser == Laser::kArrow || next.on() == next.shutter_open());
         }
       }
