@@ -40,8 +40,7 @@ struct WatchState {
 // goes on meanwhile. OPT-2.54 to 2.58
 //
 //   kIdle     Arm       kArmed: the MOVE has /TIME
-//             Watch     kWatches; kComes, where the program has run ahead
-//             Stand     kStands
+//             Watch     kWatches; kComes, where the program has run ahead: with /END alone
 //   kArmed    Watch     kWatches; kComes, where the program has run ahead
 //             Stand     kStands
 //             Disarm    kIdle: its /END was true at once

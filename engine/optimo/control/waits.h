@@ -52,7 +52,9 @@ struct Polling {
 struct WaitState {
   Pending pending{};
   Polling polling{};
-  bool condition_met = false;    // that the instruction in execution waited for
+  // The instruction in execution has waited for its condition: from the end of kCondition until it
+  // is over, or an error ends it. Meanwhile it may wait for kStandstill.
+  bool condition_met = false;
   bool input_changed = false;    // conditions are to be tested again, before the next tick
   SimTime instruction_since{0};  // when the instruction in execution began
 };

@@ -89,6 +89,7 @@ Status Works::Switch(WorkTask task, bool dwell_in_background, When when) {
   const Status on = SwitchOn(task, dwell_in_background, when);
   if (!on || !task.end) return on;
   task.stage = WorkStage::kEnd;
+  task.start.reset();
   task.stale = true;
   s_.tasks.push_back(std::move(task));
   return {};
@@ -289,14 +290,10 @@ Result<bool> Works::TestTask(std::size_t n) {
   if (!*met) return false;
   waits_.Tell();  // the power of the beam is another one from here
   WorkTask taken = Take(n);
-  if (waits) {
-    const Status switched = Switch(std::move(taken), true, When::kNow);
-    MarkStale();
-    if (!switched) return switched.error();
-  } else {
-    SwitchOff(taken.kind, taken.process, When::kNow);
-    MarkStale();
-  }
+  if (!waits) taken.on = false;  // /END does what /OFF does
+  const Status switched = Switch(std::move(taken), true, When::kNow);
+  MarkStale();
+  if (!switched) return switched.error();
   return true;
 }
 
