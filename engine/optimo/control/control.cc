@@ -255,38 +255,23 @@ void Control::Apply(const machine::InputChange& input) {
       break;
     case machine::InputKind::kDoor:
       // An open door acts as STOP, and the shutter closes. OPT-B.34, OPT-3.17
-      if (input.value != 0.0) PressStop();
+      if (input.value != 0.0) halts_.Stop();
       actuators_.MoveDoor(input.value != 0.0);
       break;
     case machine::InputKind::kStart:
       PressStart();
       break;
     case machine::InputKind::kHold:
-      if (now().mode == machine::Mode::kRemote) break;
-      halts_.requests().hold = true;
-      if (now().running()) ride_.Hold();
+      if (now().mode != machine::Mode::kRemote) halts_.Hold();
       break;
     case machine::InputKind::kStop:
-      PressStop();
+      halts_.Stop();
       break;
     case machine::InputKind::kEmergencyStop:  // no motion is modelled after it (motion.md 6)
       data_.SetLastError(ErrorCode::kEmergencyStop);
       End(machine::OutcomeKind::kFailed, ErrorCode::kEmergencyStop);
       break;
   }
-}
-
-// A HOLD that is still on its way to the target is overtaken, a STOP is not.
-void Control::PressStop() {
-  if (!now().running() || !ride_.protocol().may_stop()) return;
-  if (!ride_.busy() && !ride_.passing()) return halts_.Halt("STOP");
-  const motion::MotionUnderWay* active = ride_.under_way();
-  if (active == nullptr || active->ended || !ride_.Stop()) {
-    halts_.requests().stop = true;
-    return;
-  }
-  halts_.requests().stop = false;
-  if (!ride_.busy()) halts_.HaltOnPath();
 }
 
 void Control::PressStart() {
@@ -328,10 +313,6 @@ void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, s
   now().phase = RunPhase::kFinished;
   s_.outcome = {.kind = kind, .code = code, .detail = std::move(detail), .place = now().place};
   travel_.Judge(s_.outcome);
-}
-
-std::optional<std::string> Control::ReadVariable(std::string_view name) const {
-  return ReadByName(s_.data.area, name);
 }
 
 std::vector<machine::Figure> Control::figures() const {

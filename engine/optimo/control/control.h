@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "engine/optimo/control/control_state.h"
@@ -32,7 +31,6 @@ class Control final : private RideListener {
   void End(machine::OutcomeKind kind, ErrorCode code);
 
   machine::RunState Snapshot() const;
-  std::optional<std::string> ReadVariable(std::string_view name) const;
 
   const ControlState& state() const { return s_; }
   std::vector<machine::Figure> figures() const;
@@ -46,7 +44,6 @@ class Control final : private RideListener {
   void ActOnTime();
   void ActOnPending();
   void ApplyScripted();
-  void PressStop();
   void PressStart();
   void Raise(const Error& error);
   void Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail);

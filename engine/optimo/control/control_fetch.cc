@@ -86,12 +86,7 @@ void Control::Fetch() {
   waits_.EndInstruction();
   ++s_.steps;
   works_.MarkStale();
-  if (!now().running()) return;
-  if (halts_.requests().breaks_at(here)) {
-    halts_.requests().after_step = "BREAK";
-  } else if (now().mode == machine::Mode::kSingle) {
-    halts_.requests().after_step = "SINGLE";
-  }
+  if (now().running()) halts_.EndStep(here);
 }
 
 // True: something moves, and the instruction is fetched again when it is over.

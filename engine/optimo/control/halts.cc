@@ -10,6 +10,27 @@ bool Halts::due() const {
          !requests.after_step.empty();
 }
 
+void Halts::Hold() {
+  s_.requests.hold = true;
+  if (situation_.running()) ride_.Hold();
+}
+
+void Halts::Stop() {
+  if (!situation_.running() || !ride_.protocol().may_stop()) return;
+  if (!ride_.busy() && !ride_.passing()) return Halt("STOP");
+  const motion::MotionUnderWay* active = ride_.under_way();
+  s_.requests.stop = active == nullptr || active->ended || !ride_.Stop();
+  if (!s_.requests.stop && !ride_.busy()) HaltOnPath();
+}
+
+void Halts::EndStep(const machine::Place& place) {
+  if (s_.requests.breaks_at(place)) {
+    s_.requests.after_step = "BREAK";
+  } else if (situation_.mode == machine::Mode::kSingle) {
+    s_.requests.after_step = "SINGLE";
+  }
+}
+
 void Halts::Halt(std::string_view why) {
   waits_.Tell();
   situation_.phase = machine::RunPhase::kHalted;

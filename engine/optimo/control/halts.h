@@ -53,6 +53,14 @@ class Halts {
   // HOLD (OPT-4.17), and a motion that may be held back before a STOP.
   bool due() const;
 
+  // HOLD: the ride ends at a target, or the run halts before the next instruction.
+  void Hold();
+  // STOP: at once, or as soon as the machine can come to rest. A HOLD that is still on its way to
+  // the target is overtaken, a STOP is not.
+  void Stop();
+  // The step that was begun here is over: SINGLE or BREAK may halt behind it.
+  void EndStep(const machine::Place& place);
+
   void Halt(std::string_view why);
   // The motions are at rest, and go on at START: the halt belongs to the move that was under way.
   void HaltOnPath();
