@@ -290,10 +290,14 @@ Result<bool> Works::TestTask(std::size_t n) {
   if (!*met) return false;
   waits_.Tell();  // the power of the beam is another one from here
   WorkTask taken = Take(n);
-  if (!waits) taken.on = false;  // /END does what /OFF does
-  const Status switched = Switch(std::move(taken), true, When::kNow);
-  MarkStale();
-  if (!switched) return switched.error();
+  if (waits) {
+    const Status switched = Switch(std::move(taken), true, When::kNow);
+    MarkStale();
+    if (!switched) return switched.error();
+  } else {
+    SwitchOff(taken.kind, taken.process, When::kNow);
+    MarkStale();
+  }
   return true;
 }
 

@@ -52,7 +52,7 @@ struct WorkState {
 //   kDwell   its time is over                        over: the ramp begins
 //            WORK 0 or 1 of whatever process         over: it decides the power
 //            WORK 2,p /OFF                           over: it takes the beam
-//   kEnd     its condition is true                   over: as WORK n,p /OFF
+//   kEnd     its condition is true                   over: OFF; its kDwell runs on in the dark
 //   any      WORK of the same n, p                   over: that takes its place
 //            the end of its program, an error        over
 class Works {

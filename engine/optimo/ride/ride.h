@@ -18,9 +18,10 @@
 namespace rmlcell::optimo {
 
 // Whether the program goes on beside a motion of /NEXT. A halt on the path leaves it as it is: the
-// motion goes on at START as it did before.
+// motion goes on at START as it did before. While it is not kNo no passage is open: a MOVE takes
+// over first.
 //
-//   any     GoOnBeside   kNow; kComes behind a /FLY passage; kNo when nothing is under way
+//   kNo     GoOnBeside   kNow; kComes behind a /FLY passage; kNo when nothing is under way
 //   kComes  it begins    kNow
 //   any     all is over, TakeOver   kNo
 enum class Beside : std::uint8_t {

@@ -1,5 +1,5 @@
 // The tables of stages in the headers of the control's parts, row by row: move_watch.h, works.h,
-// waits.h and alarms.h. The state is looked at every millisecond while a program runs.
+// waits.h, alarms.h and ride.h. The state is looked at every millisecond while a program runs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -49,6 +49,12 @@ std::string TasksOf(const ControlState& state) {
 
 std::string AlarmOf(const ControlState& state) {
   return state.alarms.deferred ? "deferred" : "none";
+}
+
+std::string BesideOf(const ControlState& state) {
+  constexpr const char* kNames[] = {"no", "comes", "now"};
+  EXPECT_FALSE(state.ride.passing && state.ride.beside != Beside::kNo);
+  return kNames[static_cast<int>(state.ride.beside)];
 }
 
 struct Seen {
@@ -154,7 +160,7 @@ TEST(StagesOfAWork, OneAfterTheOther) {
   EXPECT_THAT(Tasks("WORK 1,0/ON/END (IL[21])/NEXT\nDELAY 2\n"),
               ElementsAre("0.0 dwell+end", "1.0 end", "1.5 -"));
   EXPECT_THAT(Tasks("WORK 1,1/ON/START (IL[20])/END (IL[21])/NEXT\nDELAY 2\n"),
-              ElementsAre("0.0 start", "0.5 dwell+end", "1.5 -"));
+              ElementsAre("0.0 start", "0.5 dwell+end", "1.5 dwell"));
 }
 
 // What takes its place or the beam before: the dwell of 5 s is over at once.
@@ -214,6 +220,17 @@ TEST(StagesOfAWait, EndedByAnError) {
               ElementsAre("0.0 condition", "0.0 time"));
   EXPECT_EQ(Through(fails + "SPEED 0\n" + MoveBy(50, "/TIME (9.,900)"), WaitOf).timed,
             (std::vector<std::string>{"0.0 no motion", "0.0 time"}));
+}
+
+// OPT-2.56: whether the program goes on beside a motion, which excludes that it runs ahead of one.
+TEST(StagesOfNext, Beside) {
+  const auto beside = [](const std::string& steps) { return Through(steps, BesideOf).stages; };
+  EXPECT_THAT(beside(MoveBy(50, "/NEXT") + "DELAY 2\n"), ElementsAre("now", "no"));
+  EXPECT_THAT(beside(MoveBy(50, "/FLY") + MoveBy(100, "/NEXT") + "DELAY 4\n"),
+              ElementsAre("comes", "now", "no"));
+  EXPECT_THAT(beside(MoveBy(50, "") + MoveBy(50, "/NEXT")), ElementsAre("no"));  // it stands there
+  EXPECT_THAT(beside(MoveBy(500, "/NEXT") + "DELAY 0.5\n" + MoveBy(0, "/FLY") + MoveBy(50, "")),
+              ElementsAre("now", "no"));  // taken over
 }
 
 // OPT-3.55, OPT-3.58: an error while the machine stands is handled at once, one ahead of motion
