@@ -23,12 +23,11 @@ void Actuators::Carry(const PassageEffect& effect) {
 }
 
 void Actuators::Take(const PassageEffect& effect) {
-  MachineState& machine = situation_.machine;
   switch (effect.kind) {
     case PassageEffect::Kind::kOutput:
       return SetOutput(effect.index, effect.value);
     case PassageEffect::Kind::kAnalogue: {
-      float& output = machine.data.oa_physical[static_cast<std::size_t>(effect.index)];
+      float& output = s_.outputs.analogue[static_cast<std::size_t>(effect.index)];
       if (output == static_cast<float>(effect.value)) return;
       output = static_cast<float>(effect.value);
       return telling_.Signal(machine::Signal::kAnalogue, effect.index, effect.value);
@@ -36,15 +35,13 @@ void Actuators::Take(const PassageEffect& effect) {
     case PassageEffect::Kind::kBeamOn:
       return BeamOn(effect.power);
     case PassageEffect::Kind::kBeamOff:
-      Darken();
-      situation_.beam.asked = effect.value != 0.0;
-      return;
+      return Become(effect.value != 0.0 ? s_.beam.Taken() : s_.beam.Off());
     case PassageEffect::Kind::kSchedule:
-      if (machine.schedule == effect.index) return;
-      machine.schedule = effect.index;
+      if (s_.outputs.schedule == effect.index) return;
+      s_.outputs.schedule = effect.index;
       return telling_.Signal(machine::Signal::kSchedule, 0, effect.index);
     case PassageEffect::Kind::kTable:
-      machine.table_deg = effect.value;
+      s_.outputs.table_deg = effect.value;
       return telling_.Signal(machine::Signal::kRotaryTable, 0, effect.value);
     case PassageEffect::Kind::kZeroed:
       return TellZeroed(effect.index);
@@ -52,14 +49,14 @@ void Actuators::Take(const PassageEffect& effect) {
 }
 
 void Actuators::SetOutput(int index, double value) {
-  Bits& outputs = situation_.machine.data.ol_physical;
+  Bits& outputs = s_.outputs.logical;
   const auto n = static_cast<std::size_t>(index);
   const bool on = value != 0.0;
-  if (situation_.gas_refused == index) situation_.gas_refused = 0;
+  if (s_.gas_refused == index) s_.gas_refused = 0;
   if (outputs[n] == on) return;
   const int other = OtherGas(index);
   if (on && other >= 0 && outputs[static_cast<std::size_t>(other)]) {
-    situation_.gas_refused = index;
+    s_.gas_refused = index;
     return telling_.Warn(ErrorCode::kGasConflict,
                          "OL[" + std::to_string(index) + "] while another assist gas is on",
                          "OPT-5.40");
@@ -72,76 +69,45 @@ void Actuators::SetOutput(int index, double value) {
   if (index == kSensor) telling_.Signal(machine::Signal::kSensor, 0, value);
 }
 
-void Actuators::OpenShutter() {
-  Beam& beam = situation_.beam;
-  if (beam.shutter_open) return;
-  beam.shutter_open = true;
-  telling_.Signal(machine::Signal::kShutter, 0, 1.0);
-}
-
-void Actuators::CloseShutter() {
-  Beam& beam = situation_.beam;
-  if (!beam.shutter_open) return;
-  beam.shutter_open = false;
-  telling_.Signal(machine::Signal::kShutter, 0, 0.0);
-}
-
-void Actuators::BeamOn(const machine::PowerBySpeed& power) {
-  ride_.TellUpToNow();
-  OpenShutter();
-  Beam& beam = situation_.beam;
-  const bool was_on = std::exchange(beam.on, true);
-  beam.asked = true;
-  beam.power = power;
-  if (!was_on) telling_.Signal(machine::Signal::kBeam, 0, 1.0, power.constant_percent);
-}
-
-void Actuators::BeamOff() {
-  Darken();
-  situation_.beam.asked = false;
-}
-
-void Actuators::Darken() {
-  Beam& beam = situation_.beam;
-  if (!beam.on) return;
-  ride_.TellUpToNow();
-  beam.on = false;
-  telling_.Signal(machine::Signal::kBeam, 0, 0.0);
-  if (parameters_.laser == Laser::kEfa51) CloseShutter();  // beam and shutter are one
-}
-
-void Actuators::Suspend() {
-  if (!situation_.beam.on) return;
-  situation_.beam.returns = true;
-  Darken();
-}
-
-void Actuators::CloseForDoor() {
-  const machine::Place in_execution = std::exchange(situation_.place, ride_.place());
-  Suspend();
-  if (situation_.beam.shutter_open) {
-    situation_.beam.shutter_was_open = true;
-    CloseShutter();
+// A motion is told with the beam that it had. The shutter opens before the beam, and closes behind
+// it.
+void Actuators::Become(const Beam& next) {
+  if (s_.beam.on() || next.on()) ride_.TellUpToNow();
+  const Beam before = std::exchange(s_.beam, next);
+  const bool opens = !before.shutter_open() && next.shutter_open();
+  const bool closes = before.shutter_open() && !next.shutter_open();
+  if (opens) telling_.Signal(machine::Signal::kShutter, 0, 1.0);
+  if (!before.on() && next.on()) {
+    telling_.Signal(machine::Signal::kBeam, 0, 1.0, next.power().constant_percent);
   }
+  if (before.on() && !next.on()) telling_.Signal(machine::Signal::kBeam, 0, 0.0);
+  if (closes) telling_.Signal(machine::Signal::kShutter, 0, 0.0);
+}
+
+void Actuators::BeamOn(const machine::PowerBySpeed& power) { Become(s_.beam.On(power)); }
+void Actuators::BeamOff() { Become(s_.beam.Off()); }
+void Actuators::Hold() { Become(s_.beam.Held()); }
+void Actuators::Return() { Become(s_.beam.Returned()); }
+void Actuators::ShutDown() { Become(s_.beam.ShutDown()); }
+
+void Actuators::ChangePower(const machine::PowerBySpeed& power) {
+  s_.beam = s_.beam.WithPower(power);
+}
+
+void Actuators::MoveDoor(bool open) {
+  if (!open) {
+    s_.beam = s_.beam.DoorClosed();
+    return;
+  }
+  const machine::Place in_execution = std::exchange(situation_.place, ride_.place());
+  Become(s_.beam.DoorOpened());
   situation_.place = in_execution;
 }
 
-void Actuators::Restore() {
-  Beam& beam = situation_.beam;
-  if (std::exchange(beam.shutter_was_open, false)) OpenShutter();
-  if (std::exchange(beam.returns, false)) BeamOn(beam.power);
-}
-
-void Actuators::AllOff() {
-  BeamOff();
-  CloseShutter();
-  situation_.beam.returns = false;
-}
-
 double Actuators::SchedulePower() const {
-  if (situation_.machine.schedule == 0 || !setup_.schedules) return kFullPower;
+  if (s_.outputs.schedule == 0 || !setup_.schedules) return kFullPower;
   for (const machine::LaserSchedule& schedule : *setup_.schedules) {
-    if (schedule.number == situation_.machine.schedule) return schedule.power_percent;
+    if (schedule.number == s_.outputs.schedule) return schedule.power_percent;
   }
   return kFullPower;
 }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "engine/machine/run.h"
+#include "engine/optimo/machine/beam.h"
+#include "engine/optimo/machine/machine_state.h"
 #include "engine/optimo/machine/optimo_parameters.h"
 #include "engine/optimo/machine/situation.h"
 #include "engine/optimo/machine/telling.h"
@@ -23,18 +25,23 @@ struct PassageEffect {
   machine::PowerBySpeed power{};
 };
 
-// What the control switches: beam and shutter, assist gas and outputs, laser schedule, rotary
-// table. It acts now; what it is asked for when it stands so already changes nothing.
-//
-//             shutter   beam
-//   BeamOn    opens     on        its power is another one when it is on already
-//   BeamOff   -         off       with the EFA-51 the shutter closes, too (OPT-3.15)
-//   Suspend   as BeamOff         until Restore: held, stopped, door open (OPT-B.34)
+struct ActuatorState {
+  explicit ActuatorState(Laser laser) : beam(laser) {}
+
+  Beam beam;
+  Outputs outputs{};
+  int gas_refused = 0;  // OL of the assist gas that was switched on last and is refused, OPT-5.40
+};
+
+// What the control switches: beam and shutter (beam.h has what leads from one to the next), assist
+// gas and outputs, laser schedule, rotary table. It acts now, and tells what has changed; what it
+// is asked for when it stands so already changes nothing.
 class Actuators {
  public:
-  Actuators(Situation& situation, const OptimoParameters& parameters,
+  Actuators(ActuatorState& state, Situation& situation, const OptimoParameters& parameters,
             const machine::RunSetup& setup, const Telling& telling, Ride& ride)
-      : situation_(situation),
+      : s_(state),
+        situation_(situation),
         parameters_(parameters),
         setup_(setup),
         telling_(telling),
@@ -46,16 +53,19 @@ class Actuators {
   void BeamOn(const machine::PowerBySpeed& power);
   // No process asks for it any more.
   void BeamOff();
-  void CloseShutter();
-  // The beam, while motion is held: START brings it back.
-  void Suspend();
-  // The door: what is open closes behind it, until Restore. OPT-3.17, OPT-3.62
-  void CloseForDoor();
-  // Whether START would open the shutter or bring the beam back: not while the door is open.
-  bool wants_restore() const { return situation_.beam.returns || situation_.beam.shutter_was_open; }
-  void Restore();
-  // The run is over, whatever the reason. OPT-3.16, 3.18, B.54
-  void AllOff();
+  // Precondition: what of a wait or a motion had the old power is told.
+  void ChangePower(const machine::PowerBySpeed& power);
+  // Motion is held: the beam is off until Return.
+  void Hold();
+  // Of the operator. What an open door switches off is told where the machine is.
+  void MoveDoor(bool open);
+  bool beam_on() const { return s_.beam.on(); }
+  bool door_open() const { return s_.beam.door_open(); }
+  // START is an alarm: the door is open, and the beam or the shutter waits for it. OPT-B.56
+  bool door_blocks_start() const { return door_open() && s_.beam.waits_for_start(); }
+  void Return();
+  // A main program, or the run, is over, whatever the reason. OPT-3.16, 3.18, B.54
+  void ShutDown();
 
   // Of the laser schedule in force, in percent.
   double SchedulePower() const;
@@ -64,11 +74,11 @@ class Actuators {
 
  private:
   void Take(const PassageEffect& effect);
+  void Become(const Beam& next);
   void SetOutput(int index, double value);
-  void OpenShutter();
-  void Darken();
   void TellZeroed(int group);
 
+  ActuatorState& s_;
   Situation& situation_;
   const OptimoParameters& parameters_;
   const machine::RunSetup& setup_;

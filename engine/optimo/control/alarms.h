@@ -4,18 +4,22 @@
 
 #include "engine/core/result.h"
 #include "engine/optimo/control/actuators.h"
+#include "engine/optimo/control/data_access.h"
 #include "engine/optimo/control/move_watch.h"
 #include "engine/optimo/control/program_counter.h"
 #include "engine/optimo/control/waits.h"
+#include "engine/optimo/control/works.h"
 #include "engine/optimo/machine/telling.h"
 #include "engine/optimo/ride/ride.h"
 
 namespace rmlcell::optimo {
 
 struct AlarmState {
-  // Raised ahead of motion: handled when it is over.
-  std::optional<Error> deferred{};
-  machine::Place deferred_place{};
+  struct Raised {
+    Error error;
+    machine::Place place;
+  };
+  std::optional<Raised> deferred{};  // ahead of motion: handled when it is over
 };
 
 // Errors of instructions: the failing one has no effect, whatever moves comes to rest, the beam
@@ -28,15 +32,18 @@ struct AlarmState {
 class Alarms {
  public:
   Alarms(AlarmState& state, Situation& situation, const Telling& telling, ProgramCounter& counter,
-         Ride& ride, Actuators& actuators, Waits& waits, MoveWatch& watch)
+         Ride& ride, Actuators& actuators, DataAccess& data, Waits& waits, MoveWatch& watch,
+         Works& works)
       : s_(state),
         situation_(situation),
         telling_(telling),
         counter_(counter),
         ride_(ride),
         actuators_(actuators),
+        data_(data),
         waits_(waits),
-        watch_(watch) {}
+        watch_(watch),
+        works_(works) {}
 
   bool deferred() const { return s_.deferred.has_value(); }
 
@@ -46,7 +53,7 @@ class Alarms {
 
  private:
   Status Handle(const Error& error);
-  Error NoHandler(int label);
+  void TellNoHandler(const Error& error);
 
   AlarmState& s_;
   Situation& situation_;
@@ -54,8 +61,10 @@ class Alarms {
   ProgramCounter& counter_;
   Ride& ride_;
   Actuators& actuators_;
+  DataAccess& data_;
   Waits& waits_;
   MoveWatch& watch_;
+  Works& works_;
 };
 
 }  // namespace rmlcell::optimo

@@ -19,6 +19,18 @@ void Replace(std::optional<machine::ProgramStep>& kept,
   if (set->step == 0) kept.reset();
 }
 
+// What the run begins with. Precondition: the bytes of the setup were looked at.
+MachineState KeptOf(const OptimoParameters& parameters, const machine::RunSetup& setup) {
+  MachineState kept = NewMachine(parameters);
+  if (!setup.machine_state.empty()) {
+    if (Result<MachineState> state = DecodeMachineState(setup.machine_state)) kept = *state;
+  }
+  // What is set for this run replaces what the machine kept, and is kept like it (OPT-6.08, 6.14).
+  Replace(kept.breakpoint, setup.breakpoint);
+  Replace(kept.simul, setup.simul);
+  return kept;
+}
+
 machine::RunSetup WithBudget(machine::RunSetup setup) {
   if (setup.budget.steps == 0) setup.budget.steps = std::numeric_limits<std::uint64_t>::max();
   if (setup.budget.virtual_time <= SimTime(0)) setup.budget.virtual_time = kForever;
@@ -32,37 +44,27 @@ Control::Control(OptimoParameters parameters, machine::RunSetup setup,
     : parameters_(std::move(parameters)),
       setup_(WithBudget(std::move(setup))),
       cycle_(parameters_.cycle_s),
-      s_(parameters_.limits),
+      s_(parameters_, KeptOf(parameters_, setup_)),
       telling_(now(), setup_, observer),
       travel_(s_.travel, now(), parameters_, telling_, setup_.forecast),
-      ride_(s_.ride, now(), parameters_, travel_, telling_, *this),
-      actuators_(now(), parameters_, setup_, telling_, ride_),
+      ride_(s_.ride, now(), s_.actuators.beam, parameters_, travel_, telling_, *this),
+      actuators_(s_.actuators, now(), parameters_, setup_, telling_, ride_),
       effects_(s_.effects, actuators_, ride_),
       counter_(s_.counter, now(), parameters_, setup_, telling_),
-      data_(now(), parameters_, counter_, ride_, effects_),
-      waits_(s_.waits, now(), cycle_, telling_, ride_),
+      data_(s_.data, now(), parameters_, counter_, ride_, effects_),
+      waits_(s_.waits, now(), s_.actuators.beam, cycle_, telling_, ride_),
       watch_(s_.watch, now(), cycle_, counter_, ride_, data_, waits_),
-      process_watch_(s_.process_watch, now()),
+      process_watch_(s_.process_watch, s_.actuators),
       works_(s_.works, now(), parameters_, cycle_, telling_, counter_, ride_, actuators_, effects_,
              data_, waits_),
       halts_(s_.halts, now(), telling_, ride_, actuators_, waits_, works_),
       moves_(s_.moves, now(), parameters_, telling_, counter_, data_, travel_, ride_, effects_,
              waits_, watch_, halts_.requests()),
       flow_(now(), parameters_, cycle_, telling_, counter_, data_, effects_, waits_),
-      alarms_(s_.alarms, now(), telling_, counter_, ride_, actuators_, waits_, watch_) {
-  MachineState& machine = now().machine;
-  machine = NewMachine(parameters_);
-  if (!setup_.machine_state.empty()) {
-    if (Result<MachineState> state = DecodeMachineState(setup_.machine_state)) machine = *state;
-  }
-  ride_.PutAt(machine.axes);
+      alarms_(s_.alarms, now(), telling_, counter_, ride_, actuators_, data_, waits_, watch_,
+              works_) {
   now().mode = setup_.mode;
   now().override_percent = setup_.override_percent;
-  // What is set for this run replaces what the machine kept, and is kept like it (OPT-6.08, 6.14).
-  Replace(machine.breakpoint, setup_.breakpoint);
-  Replace(machine.simul, setup_.simul);
-  if (machine.simul) now().simulated = {.active = true, .until = *machine.simul};
-  machine.simul.reset();
   // START: the program begins, in SINGLE with its first step (OPT-6.31).
   const Result<Loaded> main = counter_.Acquire(setup_.main_program, false);
   if (main) {
@@ -198,7 +200,7 @@ void Control::ActOnPending() {
     case Pending::Kind::kTime:
       if (now().now < pending.until) break;
       waits_.Tell();
-      if (pending.wait == machine::WaitKind::kPierce) now().beam.power = pending.after;
+      if (pending.wait == machine::WaitKind::kPierce) actuators_.ChangePower(pending.after);
       waits_.End();
       break;
     case Pending::Kind::kCondition: {
@@ -240,62 +242,45 @@ void Control::Apply(const machine::InputChange& input) {
   waits_.InputChanged();
   works_.InputChanged();
   works_.MarkStale();
-  MachineState& machine = now().machine;
   const auto index = static_cast<std::size_t>(std::clamp(input.index, 0, kVariableIndexMax));
   switch (input.kind) {
     case machine::InputKind::kLogical:
-      machine.data.il_physical[index] = input.value != 0.0;
+      data_.SetLogicalInput(index, input.value != 0.0);
       break;
     case machine::InputKind::kAnalogue:
-      machine.data.ia_physical[index] = static_cast<float>(input.value);
+      data_.SetAnalogueInput(index, static_cast<float>(input.value));
       break;
     case machine::InputKind::kOverride:
       ride_.ChangeOverride(input.value);
       break;
     case machine::InputKind::kDoor:
-      machine.door_open = input.value != 0.0;
-      if (!machine.door_open) break;
-      PressStop();  // an open door acts as STOP, and the shutter closes (OPT-B.34, OPT-3.17)
-      actuators_.CloseForDoor();
+      // An open door acts as STOP, and the shutter closes. OPT-B.34, OPT-3.17
+      if (input.value != 0.0) halts_.Stop();
+      actuators_.MoveDoor(input.value != 0.0);
       break;
     case machine::InputKind::kStart:
       PressStart();
       break;
     case machine::InputKind::kHold:
-      if (now().mode == machine::Mode::kRemote) break;
-      halts_.requests().hold = true;
-      if (now().running()) ride_.Hold();
+      if (now().mode != machine::Mode::kRemote) halts_.Hold();
       break;
     case machine::InputKind::kStop:
-      PressStop();
+      halts_.Stop();
       break;
     case machine::InputKind::kEmergencyStop:  // no motion is modelled after it (motion.md 6)
-      SetLastError(machine, ErrorCode::kEmergencyStop);
+      data_.SetLastError(ErrorCode::kEmergencyStop);
       End(machine::OutcomeKind::kFailed, ErrorCode::kEmergencyStop);
       break;
   }
 }
 
-// A HOLD that is still on its way to the target is overtaken, a STOP is not.
-void Control::PressStop() {
-  if (!now().running() || !ride_.protocol().may_stop()) return;
-  if (!ride_.busy() && !ride_.passing()) return halts_.Halt("STOP");
-  const motion::MotionUnderWay* active = ride_.under_way();
-  if (active == nullptr || active->ended || !ride_.Stop()) {
-    halts_.requests().stop = true;
-    return;
-  }
-  halts_.requests().stop = false;
-  if (!ride_.busy()) halts_.HaltOnPath();
-}
-
 void Control::PressStart() {
   if (now().phase != RunPhase::kHalted) return;
-  if (!now().machine.door_open || !actuators_.wants_restore()) return halts_.Resume();
+  if (!actuators_.door_blocks_start()) return halts_.Resume();
   // An alarm: no ERR catches it (OPT-B.56).
   constexpr ErrorCode kCode = ErrorCode::kShutterInterlock;
   const std::string detail = "START with the operator door open";
-  SetLastError(now().machine, kCode);
+  data_.SetLastError(kCode);
   telling_.Warn(kCode, detail, "OPT-3.17");
   Finish(machine::OutcomeKind::kFailed, kCode, detail);
 }
@@ -323,17 +308,11 @@ void Control::Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, s
   ride_.Freeze();
   // A chain of /FLY moves that never stands is still being planned: the run would have come there.
   if (code == ErrorCode::kStepBudget) ride_.TellViolationsToCome();
-  actuators_.AllOff();
-  if (now().simulating() && !now().machine.simul) {
-    now().machine.simul = now().simulated.until;  // its step was not reached: OPT-6.14
-  }
+  actuators_.ShutDown();
+  if (!s_.simul) s_.simul = now().simulated_until;  // its step was not reached: OPT-6.14
   now().phase = RunPhase::kFinished;
   s_.outcome = {.kind = kind, .code = code, .detail = std::move(detail), .place = now().place};
   travel_.Judge(s_.outcome);
-}
-
-std::optional<std::string> Control::ReadVariable(std::string_view name) const {
-  return ReadByName(now().machine.data, name);
 }
 
 std::vector<machine::Figure> Control::figures() const {
@@ -354,7 +333,7 @@ machine::RunState Control::Snapshot() const {
   state.axes = ride_.axes();
   state.tip_speed_mm_s = ride_.tip_speed_mm_s();
   state.override_percent = now().override_percent;
-  state.beam_on = now().beam.on;
+  state.beam_on = actuators_.beam_on();
   return state;
 }
 

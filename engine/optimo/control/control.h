@@ -2,52 +2,14 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "engine/optimo/control/actuators.h"
-#include "engine/optimo/control/alarms.h"
-#include "engine/optimo/control/data_access.h"
+#include "engine/optimo/control/control_state.h"
 #include "engine/optimo/control/flow.h"
-#include "engine/optimo/control/halts.h"
-#include "engine/optimo/control/move_watch.h"
-#include "engine/optimo/control/moves.h"
-#include "engine/optimo/control/passage_effects.h"
-#include "engine/optimo/control/process_watch.h"
-#include "engine/optimo/control/program_counter.h"
-#include "engine/optimo/control/waits.h"
-#include "engine/optimo/control/works.h"
-#include "engine/optimo/machine/situation.h"
 #include "engine/optimo/machine/system_cycle.h"
 #include "engine/optimo/machine/telling.h"
-#include "engine/optimo/ride/ride.h"
-#include "engine/optimo/ride/travel.h"
 
 namespace rmlcell::optimo {
-
-// Everything that the control is at while it runs a program: a snapshot of a run is a copy of it.
-// Each part owns its own.
-struct ControlState {
-  explicit ControlState(const motion::MachineLimits& limits) : ride(limits) {}
-
-  Situation situation{};
-  ProgramCounterState counter{};
-  TravelState travel{};
-  RideState ride;
-  PassageEffectState effects{};
-  WaitState waits{};
-  WatchState watch{};
-  ProcessWatchState process_watch{};
-  WorkState works{};
-  MoveState moves{};
-  HaltState halts{};
-  AlarmState alarms{};
-
-  std::size_t next_input = 0;  // of the script
-  std::uint64_t steps = 0;
-  std::uint64_t steps_at_repeat = 0;  // REPEAT: executed before this repetition
-  machine::Outcome outcome{};
-};
 
 // The control (CRG): fetches instructions and orders the parts that carry them out in virtual time.
 //
@@ -69,7 +31,6 @@ class Control final : private RideListener {
   void End(machine::OutcomeKind kind, ErrorCode code);
 
   machine::RunState Snapshot() const;
-  std::optional<std::string> ReadVariable(std::string_view name) const;
 
   const ControlState& state() const { return s_; }
   std::vector<machine::Figure> figures() const;
@@ -83,7 +44,6 @@ class Control final : private RideListener {
   void ActOnTime();
   void ActOnPending();
   void ApplyScripted();
-  void PressStop();
   void PressStart();
   void Raise(const Error& error);
   void Finish(machine::OutcomeKind kind, std::optional<ErrorCode> code, std::string detail);

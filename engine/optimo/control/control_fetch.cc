@@ -59,7 +59,7 @@ void Control::Fetch() {
   }
   const Instruction& i = counter_.module().instructions[at];
   const machine::Place here = telling_.PlaceOf(counter_.linked().slot, i.step);
-  if (now().simulating() && IsAt(now().simulated.until, here)) {
+  if (IsAt(now().simulated_until, here)) {
     EndSimulation(here);
     if (!now().running()) return;
   }
@@ -86,12 +86,7 @@ void Control::Fetch() {
   waits_.EndInstruction();
   ++s_.steps;
   works_.MarkStale();
-  if (!now().running()) return;
-  if (IsAt(now().machine.breakpoint, here)) {
-    halts_.requests().after_step = "BREAK";
-  } else if (now().mode == machine::Mode::kSingle) {
-    halts_.requests().after_step = "SINGLE";
-  }
+  if (now().running()) halts_.EndStep(here);
 }
 
 // True: something moves, and the instruction is fetched again when it is over.
@@ -162,8 +157,8 @@ bool Control::NeedsStandstill(const Instruction& i) {
 // The first time that control comes to the step: from here on all is real (OPT-6.13, 6.14). What
 // the simulated steps asked for takes effect here.
 void Control::EndSimulation(const machine::Place& here) {
-  const int schedule = now().simulated.schedule;
-  now().simulated = {};
+  const int schedule = works_.TakeSimulatedSchedule();
+  now().simulated_until.reset();
   now().place = here;
   if (const Status connected = data_.ConnectOutputs(kAllGroups); !connected) {
     Raise(connected.error());
@@ -226,10 +221,10 @@ Status Control::Execute(const Instruction& i) {
       return {};
     }
     case Op::kBreak:  // stays when the program ends: OPT-6.08
-      now().machine.breakpoint = step_of();
+      halts_.requests().breakpoint = step_of();
       return {};
     case Op::kSimul:  // of the next start, not of this run: OPT-6.16
-      now().machine.simul = step_of();
+      s_.simul = step_of();
       return {};
     case Op::kTask:
     case Op::kDeclare:
@@ -254,49 +249,40 @@ Status Control::GoTo(const Instruction& i) {
   if (i.Has(kCycle)) now().mode = machine::Mode::kCycle;
   if (i.Has(kRepeat)) now().mode = machine::Mode::kRepeat;
   if (i.Has(kSingle)) now().mode = machine::Mode::kSingle;
-  actuators_.BeamOff();
-  actuators_.CloseShutter();
+  actuators_.ShutDown();
   telling_.observer().OnProgram(now().now, now().place, "go", *slot);
-  now().machine.selected = 0;  // GO selects it anew
+  counter_.Deselect();
   BeginMain(*next, *slot);
   if (i.Has(kSingle)) halts_.Halt("SINGLE");  // waits for START before its first step, OPT-B.62
   return {};
 }
 
-// VI[98]: executions of the main program since it was selected. OPT-7.70, OPT-B.63
 void Control::BeginMain(const Loaded& main, int slot) {
-  counter_.Clear();
-  counter_.Begin(main, {});
-  MachineState& machine = now().machine;
-  float& count = machine.data.vi[98];
-  if (machine.selected != slot) count = 0.0F;
-  machine.selected = slot;
-  if (count < kIntegerMax) count += 1.0F;
+  works_.Clear();
+  data_.CountExecution(counter_.BeginMain(main, slot));
 }
 
 // Of a program the machine stands. OPT-3.34, 3.35, B.54
 void Control::EndModule() {
   if (counter_.in_function()) return counter_.LeaveFunction();
-  ProgramContext& program = counter_.program();
-  program.work_tasks.clear();
-  if (program.processes.any_on()) {
+  const Processes& processes = counter_.program().processes;
+  if (processes.any_on()) {
     telling_.Warn(ErrorCode::kWorkActiveAtEnd, "the program ends with a WORK ON", "OPT-3.34");
-    if (program.processes.beam_on()) process_watch_.OnLeftOn(now().place);
-    program.processes.AllOff();
+    if (processes.beam_on()) process_watch_.OnLeftOn(now().place);
     actuators_.BeamOff();
   }
+  works_.EndProgram();
   if (counter_.call_level() > 1) {
     counter_.EndProgram();
     telling_.observer().OnProgram(now().now, now().place, "return",
                                   counter_.program().program->slot());
     return;
   }
-  actuators_.BeamOff();
-  actuators_.CloseShutter();
+  actuators_.ShutDown();
   if (now().mode != machine::Mode::kRepeat) {
     return Finish(machine::OutcomeKind::kCompleted, std::nullopt, {});
   }
-  const Loaded main = program.program;
+  const Loaded main = counter_.program().program;
   BeginMain(main, main->slot());
   // A program that carries nothing out still takes its turn: else time would stand for ever.
   if (s_.steps == s_.steps_at_repeat) {

@@ -37,7 +37,7 @@ double DataAccess::InputNow(VariableGroup group, int index) const {
       return counter_.program().processes.flag(index - kFirstWorkFlag) ? 1.0 : 0.0;
     }
     if (index == kMotionFlag) return ride_.moves() || ride_.more_to_come() ? 1.0 : 0.0;
-    return situation_.machine.data.il_physical[static_cast<std::size_t>(index)] ? 1.0 : 0.0;
+    return s_.area.il_physical[static_cast<std::size_t>(index)] ? 1.0 : 0.0;
   }
   if (index <= 2) {
     const motion::MachinePoint point =
@@ -46,7 +46,7 @@ double DataAccess::InputNow(VariableGroup group, int index) const {
   }
   if (index == 3) return ride_.axes().a_rad;
   if (index == 4) return ride_.axes().b_rad;
-  return situation_.machine.data.ia_physical[static_cast<std::size_t>(index)];
+  return s_.area.ia_physical[static_cast<std::size_t>(index)];
 }
 
 // Whether the run itself has given the variable its value: an instruction, a caller, the control.
@@ -69,14 +69,14 @@ bool DataAccess::IsOfTheRun(Variable variable) const {
     default:
       break;
   }
-  const auto& written = situation_.reliance.written[static_cast<std::size_t>(variable.group)];
+  const auto& written = s_.written[static_cast<std::size_t>(variable.group)];
   return written[static_cast<std::size_t>(n)];
 }
 
 float DataAccess::Read(Variable variable) {
-  DataArea& data = situation_.machine.data;
+  DataArea& data = s_.area;
   const auto n = static_cast<std::size_t>(variable.index);
-  if (!IsOfTheRun(variable)) situation_.reliance.on_what_was = true;
+  if (!IsOfTheRun(variable)) s_.relied_on_what_was = true;
   switch (variable.group) {
     case VariableGroup::kVr:
       return data.vr[n];
@@ -108,9 +108,9 @@ float DataAccess::Read(Variable variable) {
 
 // On error nothing was written.
 Status DataAccess::Write(Variable variable, float number) {
-  DataArea& data = situation_.machine.data;
+  DataArea& data = s_.area;
   const auto n = static_cast<std::size_t>(variable.index);
-  situation_.reliance.written[static_cast<std::size_t>(variable.group)][n] = true;
+  s_.written[static_cast<std::size_t>(variable.group)][n] = true;
   switch (variable.group) {
     case VariableGroup::kVr:
       data.vr[n] = number;
@@ -145,7 +145,7 @@ Status DataAccess::Write(Variable variable, float number) {
 // The image takes the value in any case; the machine follows unless the output is refused
 // (OPT-5.38): a second gas when its turn comes, for the first may go off at the same passage.
 Status DataAccess::SetOutput(int index, bool on) {
-  situation_.machine.data.ol[static_cast<std::size_t>(index)] = on;
+  s_.area.ol[static_cast<std::size_t>(index)] = on;
   if (!Connected(kGroupOl)) return {};
   if (on && index == kGas3 && parameters_.gas_channels < 3) {
     return Error{ErrorCode::kGas3NotFitted, {}, {}};
@@ -155,6 +155,16 @@ Status DataAccess::SetOutput(int index, bool on) {
                  .index = index,
                  .value = on ? 1.0 : 0.0});
   return {};
+}
+
+void DataAccess::SetLastError(ErrorCode code) {
+  s_.area.vi[99] = static_cast<float>(Lookup(code).number);
+}
+
+void DataAccess::CountExecution(bool selected_anew) {
+  float& count = s_.area.vi[98];
+  if (selected_anew) count = 0.0F;
+  if (count < kIntegerMax) count += 1.0F;
 }
 
 Result<Value> DataAccess::Eval(Expression expression) { return Evaluate(expression, *this); }
@@ -252,7 +262,7 @@ Status DataAccess::SetGroups(const Instruction& i) {
 }
 
 Status DataAccess::ConnectOutputs(std::uint8_t groups) {
-  const DataArea& data = situation_.machine.data;
+  const DataArea& data = s_.area;
   const bool logical = (groups & kGroupOl) != 0;
   const bool analogue = (groups & kGroupOa) != 0 && Connected(kGroupOa);
   // Gas 3 makes way for gas 2, whose output comes first below.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <optional>
 
 #include "engine/optimo/control/passage_effects.h"
@@ -10,6 +11,13 @@
 
 namespace rmlcell::optimo {
 
+struct DataState {
+  DataArea area{};
+  // By the run itself; by group.
+  std::array<std::bitset<kVariableCount>, kVariableGroups> written{};
+  bool relied_on_what_was = false;  // what the run did hung on something that nothing of it had set
+};
+
 // Variables, the images of inputs and outputs, and the expressions that read them; the instructions
 // LET, ASSIGN, UPDATE, IMAGE and REAL.
 //
@@ -17,9 +25,10 @@ namespace rmlcell::optimo {
 // simulation nothing outside is read or written (OPT-6.24, 6.25).
 class DataAccess : private VariableAccess {
  public:
-  DataAccess(Situation& situation, const OptimoParameters& parameters, ProgramCounter& counter,
-             const Ride& ride, PassageEffects& effects)
-      : situation_(situation),
+  DataAccess(DataState& state, const Situation& situation, const OptimoParameters& parameters,
+             ProgramCounter& counter, const Ride& ride, PassageEffects& effects)
+      : s_(state),
+        situation_(situation),
         parameters_(parameters),
         counter_(counter),
         ride_(ride),
@@ -49,6 +58,17 @@ class DataAccess : private VariableAccess {
   Condition ConditionOf(Expression expression) const;
   Result<bool> Truth(const Condition& condition);
 
+  // The image of an output.
+  bool output(int index) const { return s_.area.ol[static_cast<std::size_t>(index)]; }
+  // An input changes outside: IL[index], IA[index].
+  void SetLogicalInput(std::size_t index, bool on) { s_.area.il_physical[index] = on; }
+  void SetAnalogueInput(std::size_t index, float value) { s_.area.ia_physical[index] = value; }
+  // VI[99], the number of the last error.
+  void SetLastError(ErrorCode code);
+  // VI[98], executions of the main program since it was selected: one more. OPT-7.70, OPT-B.63
+  void CountExecution(bool selected_anew);
+  void RelyOnWhatWas() { s_.relied_on_what_was = true; }
+
   // Physical outputs of these groups follow their images again: UPDATE ON, REAL, the end of a
   // simulation. Errors: Gas3NotFitted.
   Status ConnectOutputs(std::uint8_t groups);
@@ -64,7 +84,8 @@ class DataAccess : private VariableAccess {
   double InputNow(VariableGroup group, int index) const;
   bool Connected(std::uint8_t group) const;
 
-  Situation& situation_;
+  DataState& s_;
+  const Situation& situation_;
   const OptimoParameters& parameters_;
   ProgramCounter& counter_;
   const Ride& ride_;

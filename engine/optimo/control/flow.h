@@ -12,7 +12,8 @@
 namespace rmlcell::optimo {
 
 // Instructions that decide what is carried out next, and when: GOTO, GOSUB, IF, FUNCTION, CALL,
-// ERR, NOERR, TIMER, DELAY, WAIT; SETERR.
+// ERR, NOERR, TIMER, DELAY, WAIT; SETERR. What they change is the program counter's and the waits':
+// nothing is kept here.
 class Flow {
  public:
   Flow(const Situation& situation, const OptimoParameters& parameters, SystemCycle cycle,

@@ -16,6 +16,12 @@ struct HaltRequests {
   bool hold = false;  // HOLD; a MOVE that is carried out meanwhile is exact. OPT-4.17
   bool stop = false;  // STOP on a motion that could not be left when the key was pressed
   std::string_view after_step{};  // SINGLE or BREAK, when the step is over; empty: none
+  std::optional<machine::ProgramStep> breakpoint{};  // of BREAK, which stays when met. OPT-6.08
+
+  // BREAK is set at this step.
+  bool breaks_at(const machine::Place& place) const {
+    return breakpoint && breakpoint->program == place.program && breakpoint->step == place.step;
+  }
 };
 
 struct HaltState {
@@ -46,6 +52,14 @@ class Halts {
   // The run is to halt before the next instruction; one whose condition is met is finished before a
   // HOLD (OPT-4.17), and a motion that may be held back before a STOP.
   bool due() const;
+
+  // HOLD: the ride ends at a target, or the run halts before the next instruction.
+  void Hold();
+  // STOP: at once, or as soon as the machine can come to rest. A HOLD that is still on its way to
+  // the target is overtaken, a STOP is not.
+  void Stop();
+  // The step that was begun here is over: SINGLE or BREAK may halt behind it.
+  void EndStep(const machine::Place& place);
 
   void Halt(std::string_view why);
   // The motions are at rest, and go on at START: the halt belongs to the move that was under way.

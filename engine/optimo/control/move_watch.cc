@@ -4,14 +4,14 @@ namespace rmlcell::optimo {
 
 void MoveWatch::Arm(int time_label, double seconds) {
   s_.stage = WatchStage::kArmed;
-  s_.time_gosub = DueGosub{.label = time_label, .level = counter_.level()};
-  s_.time_due = cycle_.TickAfter(situation_.now, seconds);
-  s_.time_limit_s = seconds;
+  s_.time = {.limit_s = seconds,
+             .due = cycle_.TickAfter(situation_.now, seconds),
+             .gosub = {.label = time_label, .level = counter_.level()}};
 }
 
 void MoveWatch::Disarm() {
   s_.stage = WatchStage::kIdle;
-  s_.time_gosub.reset();
+  s_.time.reset();
 }
 
 void MoveWatch::Watch(std::uint64_t first, std::uint64_t last, bool ran_ahead) {
@@ -29,7 +29,7 @@ void MoveWatch::Stand() {
 void MoveWatch::Clear() {
   s_.stage = WatchStage::kIdle;
   s_.end.reset();
-  s_.time_gosub.reset();
+  s_.time.reset();
 }
 
 bool MoveWatch::watches() const {
@@ -51,7 +51,7 @@ SimTime MoveWatch::NextEvent(bool last_input) const {
 }
 
 Status MoveWatch::Look() {
-  if (time_runs() && situation_.now >= s_.time_due && TimeOut()) return {};
+  if (time_runs() && situation_.now >= s_.time->due && TimeOut()) return {};
   const bool stood = stands();
   if (!s_.end || !(stood || watches())) return {};
   if (!cycle_.IsTick(situation_.now, s_.since)) return {};
@@ -96,7 +96,7 @@ void MoveWatch::OnMotionBegins(std::uint64_t tag) {
   if (s_.stage != WatchStage::kComes || tag < s_.first || tag > s_.last) return;
   s_.stage = WatchStage::kWatches;
   s_.since = situation_.now;
-  s_.time_due = cycle_.TickAfter(situation_.now, s_.time_limit_s);
+  if (s_.time) s_.time->due = cycle_.TickAfter(situation_.now, s_.time->limit_s);
 }
 
 void MoveWatch::OnMoveOver(std::uint64_t tag) {

@@ -22,22 +22,25 @@ enum class WatchStage : std::uint8_t {
 };
 
 struct WatchState {
+  struct Time {
+    double limit_s = 0.0;
+    SimTime due{0};
+    DueGosub gosub{};
+  };
+
   WatchStage stage = WatchStage::kIdle;
-  std::uint64_t first = 0;  // tags of its motions: kComes and on, but not kStands
+  std::uint64_t first = 0;  // tags of its motions: kComes, kWatches, kRanOut
   std::uint64_t last = 0;
-  std::optional<Condition> end{};        // of /END
-  std::optional<DueGosub> time_gosub{};  // of /TIME
-  double time_limit_s = 0.0;
-  SimTime time_due{0};
-  SimTime since{0};  // of which the ticks are counted
+  std::optional<Condition> end{};  // /END; not of kIdle
+  std::optional<Time> time{};      // /TIME; not of kIdle
+  SimTime since{0};                // of which the ticks are counted: kComes and on
 };
 
 // /END and /TIME of a MOVE: at its start, at each tick, when time runs out. With /NEXT the program
 // goes on meanwhile. OPT-2.54 to 2.58
 //
 //   kIdle     Arm       kArmed: the MOVE has /TIME
-//             Watch     kWatches; kComes, where the program has run ahead
-//             Stand     kStands
+//             Watch     kWatches; kComes, where the program has run ahead: with /END alone
 //   kArmed    Watch     kWatches; kComes, where the program has run ahead
 //             Stand     kStands
 //             Disarm    kIdle: its /END was true at once
@@ -75,8 +78,9 @@ class MoveWatch {
   // A motion of it is under way, and nothing has ended it yet.
   bool watches() const;
   // A MOVE that waits for its /START ends by its /TIME.
-  bool times_out() const { return waits_.pending().of_move && s_.time_gosub; }
-  SimTime time_due() const { return std::max(situation_.now, s_.time_due); }
+  bool times_out() const { return waits_.pending().of_move && s_.time; }
+  // Precondition: it has a /TIME.
+  SimTime time_due() const { return std::max(situation_.now, s_.time->due); }
   SimTime NextEvent(bool last_input) const;
   // Ends what is to end now. Errors: of /END.
   Status Look();
@@ -88,9 +92,10 @@ class MoveWatch {
   void OnMoveOver(std::uint64_t tag);
 
  private:
-  bool time_runs() const { return s_.time_gosub && s_.stage != WatchStage::kRanOut; }
+  bool time_runs() const { return s_.time && s_.stage != WatchStage::kRanOut; }
   bool TimeOut();
-  void MakeGosubDue() { counter_.program().due_gosub = s_.time_gosub; }
+  // Precondition: it has a /TIME.
+  void MakeGosubDue() { counter_.MakeDue(s_.time->gosub); }
 
   WatchState& s_;
   const Situation& situation_;

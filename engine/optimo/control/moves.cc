@@ -54,7 +54,7 @@ bool Moves::NeedsStandstill(const Instruction& i) {
     if (!value) return true;
     *of = *value;
   }
-  return offset != situation_.machine.tool.offset;
+  return offset != situation_.tool.offset;
 }
 
 Result<Moves::Coordinates> Moves::TargetOf(const Instruction& i) {
@@ -69,7 +69,7 @@ Result<motion::TipPose> Moves::ViaOf(const Instruction& i) {
 
 // In the machine frame.
 motion::TipPose Moves::TipAt(const Coordinates& v) const {
-  return {.tip = situation_.machine.work_offset.frame() * motion::ProgramPoint(v[0], v[1], v[2]),
+  return {.tip = s_.work_offset.frame() * motion::ProgramPoint(v[0], v[1], v[2]),
           .a_rad = v[3],
           .b_rad = v[4]};
 }
@@ -105,10 +105,10 @@ Status Moves::Move(const Instruction& i) {
   if (!*begins) return {};
   const Modal& modal = counter_.modal();
   if (modal.coord == CoordType::kRobot && modal.path != PathType::kPtp) {
-    if (!modal.coord_given) situation_.reliance.on_what_was = true;
+    if (!modal.coord_given) data_.RelyOnWhatWas();
     return Error{ErrorCode::kPathNeedsAbsol, "PATH LIN, CIR and HOLE need COORD ABSOL", {}};
   }
-  if (!situation_.machine.zeroed && !situation_.simulating()) {
+  if (!s_.zeroed && !situation_.simulating()) {
     return Error{ErrorCode::kNotZeroed, {}, {}};
   }
   const Result<Coordinates> target = TargetOf(i);
@@ -161,10 +161,8 @@ Result<bool> Moves::MayBegin(const Instruction& i) {
 
 // How a MOVE with /END or /TIME ends is not known before: the program cannot run ahead of it.
 MoveNote Moves::NoteOf(const Instruction& i, const Coordinates& target) {
-  const std::optional<machine::ProgramStep>& breakpoint = situation_.machine.breakpoint;
   const bool halts = situation_.mode == machine::Mode::kSingle || halts_.hold ||
-                     (breakpoint && breakpoint->program == situation_.place.program &&
-                      breakpoint->step == situation_.place.step);
+                     halts_.breaks_at(situation_.place);
   const bool may_end_early = i.Has(kEnd) || i.Has(kTime);
   const bool fly = i.Has(kFly) && !halts;
   if (fly && may_end_early) {
@@ -226,7 +224,7 @@ Result<bool> Moves::AppendHole(const Programmed& move, const motion::TipPose& fr
   }
   const Result<motion::TipPose> normal = ViaOf(i);
   if (!normal) return normal.error();
-  const motion::Rotation program_axes = situation_.machine.work_offset.frame().axes();
+  const motion::Rotation program_axes = s_.work_offset.frame().axes();
   const Result<motion::HolePath> hole = motion::HoleThrough({.from = from,
                                                              .centre = target,
                                                              .normal_point = normal->tip,
@@ -375,7 +373,7 @@ Status Moves::SetWorkOffset(const Instruction& i) {
       telling_.Warn(ErrorCode::kSysdefAllZero, "SYSDEF with six zeros", "OPT-7.37");
     }
   }
-  situation_.machine.work_offset = offset;
+  s_.work_offset = offset;
   return {};
 }
 
@@ -394,7 +392,7 @@ Status Moves::SetTool(const Instruction& i) {
     telling_.Warn(ErrorCode::kTcpOffAxis, "X or Y of TCP is not zero: applied as a tool offset",
                   "OPT-4.70");
   }
-  situation_.machine.tool = {.offset = {v[0], v[1], v[2]}, .reference = {v[3], v[4], v[5]}};
+  situation_.tool = {.offset = {v[0], v[1], v[2]}, .reference = {v[3], v[4], v[5]}};
   return {};
 }
 
@@ -413,7 +411,7 @@ Status Moves::ZeroAxes() {
   to.column.x() = zero.column.x();
   to.column.y() = zero.column.y();
   if (const Status xy = ZeroGroup(2, to); !xy) return xy.error();
-  situation_.machine.zeroed = true;
+  s_.zeroed = true;
   ride_.EndChain();
   return {};
 }

@@ -16,6 +16,8 @@
 namespace rmlcell::optimo {
 
 struct MoveState {
+  WorkOffsetState work_offset{};  // SYSDEF
+  bool zeroed = true;             // the axes know where they are: ZERO. OPT-B.02
   bool speed_limited_told = false;
 };
 

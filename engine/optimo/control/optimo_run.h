@@ -20,15 +20,11 @@ class OptimoRun final : public machine::Run {
   const machine::Outcome& outcome() const override { return control_.state().outcome; }
   std::uint64_t steps_executed() const override { return control_.state().steps; }
   std::optional<std::string> ReadVariable(std::string_view name) const override {
-    return control_.ReadVariable(name);
+    return ReadByName(control_.state().data.area, name);
   }
-  bool relies_on_what_was() const override {
-    return control_.state().situation.reliance.on_what_was;
-  }
+  bool relies_on_what_was() const override { return control_.state().data.relied_on_what_was; }
   std::vector<machine::Figure> figures() const override { return control_.figures(); }
-  std::string SaveMachine() const override {
-    return EncodeMachineState(control_.state().situation.machine);
-  }
+  std::string SaveMachine() const override { return EncodeMachineState(control_.state().Kept()); }
   std::map<int, std::string> made_executables() const override {
     return control_.state().counter.made_executables;
   }

@@ -59,12 +59,12 @@ void ProcessWatch::OnMotion(const machine::MotionDone& done) {
   if (!(done.programmed_mm_s > 0.0) || done.motion->path.by_sigma()) return;
   const double mm = done.travelled - done.from;
   if (!(mm > 0.0)) return;
-  const Beam& beam = situation_.beam;
+  const Beam& beam = actuators_.beam;
   if (done.beam_on) {
-    if (situation_.gas_refused != 0) s_.gas_refused.Add(mm, done.place);
+    if (actuators_.gas_refused != 0) s_.gas_refused.Add(mm, done.place);
     if (!(done.power.PercentAt(done.programmed_mm_s) > 0.0)) s_.no_power.Add(mm, done.place);
-  } else if (beam.asked) {
-    (beam.shutter_open ? s_.beam_off : s_.shutter_closed).Add(mm, done.place);
+  } else if (beam.asked()) {
+    (beam.shutter_open() ? s_.beam_off : s_.shutter_closed).Add(mm, done.place);
   }
 }
 

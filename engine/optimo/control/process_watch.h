@@ -6,7 +6,7 @@
 
 #include "engine/machine/family.h"
 #include "engine/machine/observer.h"
-#include "engine/optimo/machine/situation.h"
+#include "engine/optimo/control/actuators.h"
 
 namespace rmlcell::optimo {
 
@@ -34,8 +34,8 @@ struct ProcessWatchState {
 // ON, and nobody expects it (OPT-6.20, OPT-6.21).
 class ProcessWatch {
  public:
-  ProcessWatch(ProcessWatchState& state, const Situation& situation)
-      : s_(state), situation_(situation) {}
+  ProcessWatch(ProcessWatchState& state, const ActuatorState& actuators)
+      : s_(state), actuators_(actuators) {}
 
   // A motion was told, or a part of one.
   void OnMotion(const machine::MotionDone& done);
@@ -49,7 +49,7 @@ class ProcessWatch {
 
  private:
   ProcessWatchState& s_;
-  const Situation& situation_;
+  const ActuatorState& actuators_;
 };
 
 }  // namespace rmlcell::optimo

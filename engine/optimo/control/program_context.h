@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "engine/machine/observer.h"
+#include "engine/core/units.h"
 #include "engine/optimo/language/linker.h"
 #include "engine/optimo/machine/laser_unit.h"
 
@@ -69,23 +69,6 @@ struct Condition {
   std::array<float, kParameterCount> parameters{};
 };
 
-// A WORK that is not over when the program goes on: /START with /NEXT, the dwell with /NEXT, /END.
-// OPT-3.38
-struct WorkTask {
-  enum class Stage { kStart, kDwell, kEnd };
-  Stage stage = Stage::kStart;
-  machine::Place place{};
-  int kind = 0;
-  int process = 0;
-  bool on = true;
-  bool stale = true;              // something happened since its condition was tested last
-  SimTime since{0};               // of the instruction; conditions are tested each CYCLE from here
-  SimTime until{0};               // kDwell
-  machine::PowerBySpeed after{};  // kDwell: the power then
-  std::optional<Condition> start{};
-  std::optional<Condition> end{};
-};
-
 // A program that runs or waits for the one that it CALLed.
 struct ProgramContext {
   Loaded program{};
@@ -95,7 +78,6 @@ struct ProgramContext {
   std::optional<ProgramTimer> timer{};
   SimTime timer_left{0};  // stands still while a CALLed program runs, OPT-B.89
   std::optional<DueGosub> due_gosub{};
-  std::vector<WorkTask> work_tasks{};  // stand still while a CALLed program runs
 };
 
 }  // namespace rmlcell::optimo

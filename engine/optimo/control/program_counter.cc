@@ -56,6 +56,12 @@ void ProgramCounter::Begin(Loaded loaded, const std::array<float, kParameterCoun
   s_.programs.push_back(std::move(context));
 }
 
+bool ProgramCounter::BeginMain(const Loaded& loaded, int slot) {
+  s_.programs.clear();
+  Begin(loaded, {});
+  return std::exchange(s_.selected, slot) != slot;
+}
+
 void ProgramCounter::EndProgram() {
   s_.programs.pop_back();
   if (program().timer) program().timer->due = situation_.now + program().timer_left;
@@ -174,6 +180,28 @@ void ProgramCounter::EnterFunction(const LinkedModule& function,
   made.parameters = parameters;
   made.next = program().program->index[static_cast<std::size_t>(made.module)].entry();
   program().frames.push_back(std::move(made));
+}
+
+Result<bool> ProgramCounter::JumpToErrorLabel() {
+  ProgramContext& context = program();
+  for (std::size_t n = context.frames.size(); n-- > 0;) {
+    Frame& frame = context.frames[n];
+    if (!frame.error_label) continue;
+    const int label = *frame.error_label;
+    const std::optional<std::uint32_t> handler =
+        context.program->index[static_cast<std::size_t>(frame.module)].FindLabel(label);
+    if (!handler) {
+      return Error{ErrorCode::kLabelNotFound,
+                   "no sequence number " + std::to_string(label) + " for ERR",
+                   {}};
+    }
+    frame.error_label.reset();
+    frame.next = *handler;
+    context.frames.resize(n + 1);
+    context.due_gosub.reset();
+    return true;
+  }
+  return false;
 }
 
 void ProgramCounter::SetTimer(int label, SimTime due, SimTime period, bool repeats) {

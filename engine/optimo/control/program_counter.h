@@ -15,6 +15,7 @@ struct ProgramCounterState {
   std::vector<ProgramContext> programs{};  // innermost last; empty: none was found
   std::map<int, std::string> made_executables{};
   std::map<int, Loaded> loaded{};  // executables of this run, by slot
+  int selected = 0;                // main program whose executions VI[98] counts, OPT-B.63
 };
 
 // Which instruction is next: programs that CALL programs, modules that call FUNCTIONs, GOSUBs in
@@ -61,7 +62,10 @@ class ProgramCounter {
   void Begin(Loaded loaded, const std::array<float, kParameterCount>& parameters);
   // Of a CALLed program: the one that called it goes on.
   void EndProgram();
-  void Clear() { s_.programs.clear(); }
+  // The main program, in place of all that runs. False: it was selected before. OPT-B.63
+  bool BeginMain(const Loaded& loaded, int slot);
+  // GO selects its program anew.
+  void Deselect() { s_.selected = 0; }
 
   // Errors: LabelNotFound; Gosub: GosubTooDeep, too.
   Status Jump(int label);
@@ -73,11 +77,17 @@ class ProgramCounter {
                      const std::array<float, kParameterCount>& parameters);
   void LeaveFunction() { program().frames.pop_back(); }
 
+  // An error goes on at the label of the innermost module with an armed ERR, up to the main module
+  // of this executable, and disarms it; what is called from there is over. False: none is armed.
+  // Errors: LabelNotFound, where nothing has changed. OPT-3.55, OPT-3.57
+  Result<bool> JumpToErrorLabel();
+
   // `period`, `due`: OPT-B.30
   void SetTimer(int label, SimTime due, SimTime period, bool repeats);
   // The sequence number of a GOSUB that is due between two instructions, of TIMER or of the /TIME
   // of a /NEXT motion: made in the activation that asked for it, and dropped when that is over.
   std::optional<int> TakeDueGosub();
+  void MakeDue(const DueGosub& gosub) { program().due_gosub = gosub; }
 
  private:
   bool HasRoomFor(std::size_t bytes) const;

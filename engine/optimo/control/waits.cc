@@ -24,13 +24,13 @@ void Waits::Tell() {
       pending.kind == Pending::Kind::kCondition || pending.kind == Pending::Kind::kNoMotion;
   if (!timed && !condition) return;
   if (ride_.under_way() == nullptr && situation_.now > pending.told) {
-    const Beam& beam = situation_.beam;
-    telling_.observer().OnWait({.start = pending.told,
-                                .end = situation_.now,
-                                .place = pending.place,
-                                .kind = timed ? pending.wait : machine::WaitKind::kCondition,
-                                .beam_on = beam.on,
-                                .power_percent = beam.on ? beam.power.constant_percent : 0.0});
+    telling_.observer().OnWait(
+        {.start = pending.told,
+         .end = situation_.now,
+         .place = pending.place,
+         .kind = timed ? pending.wait : machine::WaitKind::kCondition,
+         .beam_on = beam_.on(),
+         .power_percent = beam_.on() ? beam_.power().constant_percent : 0.0});
   }
   pending.told = situation_.now;
 }

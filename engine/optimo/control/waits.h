@@ -52,7 +52,9 @@ struct Polling {
 struct WaitState {
   Pending pending{};
   Polling polling{};
-  bool condition_met = false;    // that the instruction in execution waited for
+  // The instruction in execution has waited for its condition: from the end of kCondition until it
+  // is over, or an error ends it. Meanwhile it may wait for kStandstill.
+  bool condition_met = false;
   bool input_changed = false;    // conditions are to be tested again, before the next tick
   SimTime instruction_since{0};  // when the instruction in execution began
 };
@@ -61,9 +63,14 @@ struct WaitState {
 // goes on beside the program (/NEXT) there is nothing to tell: that time is the motion's.
 class Waits {
  public:
-  Waits(WaitState& state, const Situation& situation, SystemCycle cycle, const Telling& telling,
-        const Ride& ride)
-      : s_(state), situation_(situation), cycle_(cycle), telling_(telling), ride_(ride) {}
+  Waits(WaitState& state, const Situation& situation, const Beam& beam, SystemCycle cycle,
+        const Telling& telling, const Ride& ride)
+      : s_(state),
+        situation_(situation),
+        beam_(beam),
+        cycle_(cycle),
+        telling_(telling),
+        ride_(ride) {}
 
   const Pending& pending() const { return s_.pending; }
   bool waits() const { return s_.pending.kind != Pending::Kind::kNone; }
@@ -101,6 +108,7 @@ class Waits {
  private:
   WaitState& s_;
   const Situation& situation_;
+  const Beam& beam_;
   const SystemCycle cycle_;
   const Telling& telling_;
   const Ride& ride_;

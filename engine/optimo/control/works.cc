@@ -45,7 +45,8 @@ Status Works::Define(const Instruction& i) {
 }
 
 Status Works::Work(const Instruction& i) {
-  WorkTask task{.place = situation_.place,
+  WorkTask task{.call_level = counter_.call_level(),
+                .place = situation_.place,
                 .kind = i.numbers[0],
                 .process = i.numbers[1],
                 .on = i.Has(kOn),
@@ -64,7 +65,7 @@ Status Works::Work(const Instruction& i) {
       if (!*met) {
         task.start = data_.ConditionOf(module.Start(i));
         Drop(task.kind, task.process);
-        counter_.program().work_tasks.push_back(std::move(task));
+        s_.tasks.push_back(std::move(task));
         return {};
       }
     }
@@ -87,18 +88,19 @@ Status Works::Switch(WorkTask task, bool dwell_in_background, When when) {
   }
   const Status on = SwitchOn(task, dwell_in_background, when);
   if (!on || !task.end) return on;
-  task.stage = WorkTask::Stage::kEnd;
+  task.stage = WorkStage::kEnd;
+  task.start.reset();
   task.stale = true;
-  counter_.program().work_tasks.push_back(std::move(task));
+  s_.tasks.push_back(std::move(task));
   return {};
 }
 
 // A WORK of the same n, p takes the place of one that still goes on. With kind 0 and 1 the beam has
 // a new power, or none: a dwell of whatever process is over.
 void Works::Drop(int kind, int process) {
-  std::erase_if(counter_.program().work_tasks, [&](const WorkTask& task) {
-    return (task.kind == kind && task.process == process) ||
-           (kind != 2 && task.stage == WorkTask::Stage::kDwell);
+  std::erase_if(s_.tasks, [&](const WorkTask& task) {
+    return IsOfProgram(task) && ((task.kind == kind && task.process == process) ||
+                                 (kind != 2 && task.stage == WorkStage::kDwell));
   });
 }
 
@@ -117,12 +119,12 @@ Status Works::MaySwitchOn(const WorkTask& task,
         {}};
   }
   if (efa && kind == 1) {
-    for (const std::size_t blocking : {2U, 12U, 13U, 14U, 15U}) {
-      if (!situation_.machine.data.ol[blocking]) continue;
+    for (const int blocking : {2, 12, 13, 14, 15}) {
+      if (!data_.output(blocking)) continue;
       return Error{ErrorCode::kRampBlocked, "OL[" + std::to_string(blocking) + "] is on", {}};
     }
   }
-  if (kind != 2 && situation_.machine.door_open && !situation_.simulating()) {
+  if (kind != 2 && actuators_.door_open() && !situation_.simulating()) {
     return Error{ErrorCode::kShutterInterlock, "the operator door is open", {}};
   }
   return {};
@@ -133,7 +135,7 @@ Status Works::SelectSchedule(int number, When when) {
     return Error{ErrorCode::kScheduleMissing, "laser schedule " + std::to_string(number), {}};
   }
   if (situation_.simulating()) {
-    situation_.simulated.schedule = number;
+    s_.simulated_schedule = number;
   } else {
     effects_.Show(
         {.kind = PassageEffect::Kind::kSchedule, .place = situation_.place, .index = number}, when);
@@ -178,12 +180,13 @@ void Works::Pierce(const WorkTask& task, const WorkDefinition& definition, bool 
                          .wait = machine::WaitKind::kPierce,
                          .after = ramp});
   }
-  counter_.program().work_tasks.push_back({.stage = WorkTask::Stage::kDwell,
-                                           .place = task.place,
-                                           .kind = task.kind,
-                                           .process = task.process,
-                                           .until = until,
-                                           .after = ramp});
+  s_.tasks.push_back({.stage = WorkStage::kDwell,
+                      .call_level = task.call_level,
+                      .place = task.place,
+                      .kind = task.kind,
+                      .process = task.process,
+                      .until = until,
+                      .after = ramp});
 }
 
 void Works::SwitchOff(int kind, int process, When when) {
@@ -191,13 +194,14 @@ void Works::SwitchOff(int kind, int process, When when) {
   processes.on[static_cast<std::size_t>(kind)][static_cast<std::size_t>(process)] = false;
   if (situation_.simulating()) return;
   if (kind == 2) {
-    if (processes.beam_on() && situation_.beam.on) {
+    if (processes.beam_on() && actuators_.beam_on()) {
       telling_.Warn(ErrorCode::kBeamOffBySchedule,
                     "WORK 2," + std::to_string(process) + " /OFF switches the beam off",
                     "OPT-3.24");
     }
-    std::erase_if(counter_.program().work_tasks,
-                  [](const WorkTask& task) { return task.stage == WorkTask::Stage::kDwell; });
+    std::erase_if(s_.tasks, [&](const WorkTask& task) {
+      return IsOfProgram(task) && task.stage == WorkStage::kDwell;
+    });
   }
   effects_.Show({.kind = PassageEffect::Kind::kBeamOff,
                  .place = situation_.place,
@@ -207,12 +211,12 @@ void Works::SwitchOff(int kind, int process, When when) {
 
 SimTime Works::NextEvent() const {
   SimTime next = kForever;
-  if (counter_.empty()) return next;
-  for (const WorkTask& task : counter_.program().work_tasks) {
-    if (task.stage == WorkTask::Stage::kDwell) {
+  for (const WorkTask& task : s_.tasks) {
+    if (!IsOfProgram(task)) continue;
+    if (task.stage == WorkStage::kDwell) {
       next = std::min(next, std::max(situation_.now, task.until));
     } else {
-      if (task.stage == WorkTask::Stage::kStart && s_.input_changed) return situation_.now;
+      if (task.stage == WorkStage::kStart && s_.input_changed) return situation_.now;
       if (task.stale || ride_.busy()) {
         next = std::min(next, cycle_.NextTick(situation_.now, task.since));
       }
@@ -222,20 +226,31 @@ SimTime Works::NextEvent() const {
 }
 
 void Works::MarkStale() {
-  if (counter_.empty()) return;
-  for (WorkTask& task : counter_.program().work_tasks) task.stale = true;
+  for (WorkTask& task : s_.tasks) {
+    if (IsOfProgram(task)) task.stale = true;
+  }
 }
 
 void Works::Shift(SimTime stood) {
-  for (WorkTask& task : counter_.program().work_tasks) {
+  for (WorkTask& task : s_.tasks) {
+    if (!IsOfProgram(task)) continue;
     task.since += stood;
     task.until += stood;
   }
 }
 
+void Works::EndProgram() {
+  std::erase_if(s_.tasks, [&](const WorkTask& task) { return IsOfProgram(task); });
+  counter_.program().processes.AllOff();
+}
+
 std::optional<Works::Failure> Works::Run() {
-  for (std::size_t n = 0; n < counter_.program().work_tasks.size();) {
-    const machine::Place place = counter_.program().work_tasks[n].place;
+  for (std::size_t n = 0; n < s_.tasks.size();) {
+    if (!IsOfProgram(s_.tasks[n])) {
+      ++n;
+      continue;
+    }
+    const machine::Place place = s_.tasks[n].place;
     const machine::Place in_execution = situation_.place;
     const Result<bool> taken = TestTask(n);
     situation_.place = in_execution;
@@ -246,26 +261,25 @@ std::optional<Works::Failure> Works::Run() {
 }
 
 WorkTask Works::Take(std::size_t n) {
-  std::vector<WorkTask>& tasks = counter_.program().work_tasks;
-  WorkTask taken = std::move(tasks[n]);
-  tasks.erase(tasks.begin() + static_cast<std::ptrdiff_t>(n));
+  WorkTask taken = std::move(s_.tasks[n]);
+  s_.tasks.erase(s_.tasks.begin() + static_cast<std::ptrdiff_t>(n));
   return taken;
 }
 
 bool Works::EndDwell(std::size_t n) {
-  if (situation_.now < counter_.program().work_tasks[n].until) return false;
+  if (situation_.now < s_.tasks[n].until) return false;
   const WorkTask dwell = Take(n);
   waits_.Tell();
   ride_.TellUpToNow();
-  situation_.beam.power = dwell.after;
+  actuators_.ChangePower(dwell.after);
   return true;
 }
 
 // True: the task was taken from the list. The place is left to be that of the task.
 Result<bool> Works::TestTask(std::size_t n) {
-  WorkTask& task = counter_.program().work_tasks[n];
-  if (task.stage == WorkTask::Stage::kDwell) return EndDwell(n);
-  const bool waits = task.stage == WorkTask::Stage::kStart;
+  WorkTask& task = s_.tasks[n];
+  if (task.stage == WorkStage::kDwell) return EndDwell(n);
+  const bool waits = task.stage == WorkStage::kStart;
   const bool tick = situation_.now > task.since && cycle_.IsTick(situation_.now, task.since);
   if (!tick && !(waits && s_.input_changed)) return false;
   situation_.place = task.place;

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/optimo/control/actuators.h"
 #include "engine/optimo/control/data_access.h"
@@ -11,17 +14,47 @@
 
 namespace rmlcell::optimo {
 
+// A WORK that is not over when the program goes on. OPT-3.38
+enum class WorkStage : std::uint8_t {
+  kStart,  // /START with /NEXT is not true yet: `start` has it
+  kDwell,  // a pierce with /NEXT: peak power, and from `until` on that of `after`
+  kEnd,    // ON until /END is true: `end` has it
+};
+
+struct WorkTask {
+  WorkStage stage = WorkStage::kStart;
+  std::size_t call_level = 0;  // of its program: it stands still while a CALLed one runs
+  machine::Place place{};
+  int kind = 0;
+  int process = 0;
+  bool on = true;                 // kStart: /ON; the others are ON
+  bool stale = true;              // something happened since its condition was tested last
+  SimTime since{0};               // of the instruction; conditions are tested each CYCLE from here
+  SimTime until{0};               // kDwell
+  machine::PowerBySpeed after{};  // kDwell
+  std::optional<Condition> start{};
+  std::optional<Condition> end{};  // kStart, too, where the WORK has one
+};
+
 struct WorkState {
+  std::vector<WorkTask> tasks{};  // those of the innermost program last
   bool input_changed = false;  // a /START in the background is tested again, before its next tick
+  int simulated_schedule = 0;  // that a dry run selected last; 0: none
 };
 
 // WORKDEF and WORK. A WORK may go on in the background: it waits for /START or dwells while the
-// program goes on (/NEXT), or is switched off by /END (OPT-3.38). Then it is a WorkTask of its
-// program:
+// program goes on (/NEXT), or is switched off by /END. Then it is a task of its program:
 //
-//   kStart   /START with /NEXT is not true yet    true: WORK is carried out; kDwell, kEnd or over
-//   kDwell   peak power for the delay             over: the ramp; over
-//   kEnd     ON until /END is true                true: OFF; over
+//   -        WORK whose /START is not true, /NEXT    kStart
+//            pierce of WORK 1 with /NEXT             kDwell
+//            WORK /ON with /END                      kEnd, beside its kDwell
+//   kStart   its condition is true                   carried out: kDwell, kEnd, both or none
+//   kDwell   its time is over                        over: the ramp begins
+//            WORK 0 or 1 of whatever process         over: it decides the power
+//            WORK 2,p /OFF                           over: it takes the beam
+//   kEnd     its condition is true                   over: OFF; its kDwell runs on in the dark
+//   any      WORK of the same n, p                   over: that takes its place
+//            the end of its program, an error        over
 class Works {
  public:
   Works(WorkState& state, Situation& situation, const OptimoParameters& parameters,
@@ -64,9 +97,17 @@ class Works {
   // The machine stood halted so long.
   void Shift(SimTime stood);
 
+  // The program in execution is over, or an error ends what it has going on.
+  void EndProgram();
+  // All programs are.
+  void Clear() { s_.tasks.clear(); }
+  // The laser schedule that a dry run leaves selected, once; 0: none.
+  int TakeSimulatedSchedule() { return std::exchange(s_.simulated_schedule, 0); }
+
  private:
   using When = PassageEffects::When;
 
+  bool IsOfProgram(const WorkTask& task) const { return task.call_level == counter_.call_level(); }
   Status Switch(WorkTask task, bool dwell_in_background, When when);
   Status SwitchOn(const WorkTask& task, bool dwell_in_background, When when);
   void SwitchOff(int kind, int process, When when);

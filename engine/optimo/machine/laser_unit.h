@@ -33,16 +33,6 @@ struct Processes {
   void AllOff() { on = {}; }
 };
 
-// What the beam does: of the laser itself, one per machine. Times and events are the caller's.
-struct Beam {
-  bool on = false;
-  bool asked = false;  // WORK 0 or 1 is ON where the tip is, whatever took the beam away
-  machine::PowerBySpeed power{};
-  bool shutter_open = false;
-  bool shutter_was_open = false;  // closed by the door; START opens it again (OPT-3.62)
-  bool returns = false;           // off while the motion is held: START brings it back (OPT-B.34)
-};
-
 // WORKDEF 1 after its dwell: proportional to the tip speed (OPT-3.39, motion.md 8.1).
 machine::PowerBySpeed RampedPower(const WorkDefinition& definition, double tip_speed_max_mm_s);
 

@@ -85,8 +85,8 @@ void Visit(Archive& archive, State& state) {
   archive.All(data.oa);
   archive.All(data.il_physical);
   archive.All(data.ia_physical);
-  archive.All(data.ol_physical);
-  archive.All(data.oa_physical);
+  archive.All(state.outputs.logical);
+  archive.All(state.outputs.analogue);
   archive.Number(state.axes.column.x());
   archive.Number(state.axes.column.y());
   archive.Number(state.axes.column.z());
@@ -97,8 +97,8 @@ void Visit(Archive& archive, State& state) {
   archive.Number(state.tool.offset.z_mm);
   archive.All(state.tool.reference);
   archive.All(state.work_offset.values);
-  archive.Number(state.schedule);
-  archive.Number(state.table_deg);
+  archive.Number(state.outputs.schedule);
+  archive.Number(state.outputs.table_deg);
 }
 
 void WriteStep(Writer& writer, const std::optional<machine::ProgramStep>& step) {

@@ -18,7 +18,7 @@ inline constexpr int kVariableCount = kVariableIndexMax + 1;
 using Numbers = std::array<float, kVariableCount>;
 using Bits = std::array<bool, kVariableCount>;
 
-// Variables, images and physical I/O. OPT-7.59 to 7.64, OPT-7.96 to 7.101
+// Variables, the images of inputs and outputs, and the inputs. OPT-7.59 to 7.64, OPT-7.96 to 7.101
 struct DataArea {
   Numbers vr{};
   Numbers vi{};  // whole numbers
@@ -29,8 +29,14 @@ struct DataArea {
   Numbers oa{};
   Bits il_physical{};  // as the script of inputs sets them
   Numbers ia_physical{};
-  Bits ol_physical{};
-  Numbers oa_physical{};
+};
+
+// What the machine holds on to outside: outputs, the laser schedule in force, the rotary table.
+struct Outputs {
+  Bits logical{};
+  Numbers analogue{};
+  int schedule = 0;        // 0: none was selected, OPT-3.26
+  double table_deg = 0.0;  // of FUNCTION 99
 };
 
 // "VR[5]" -> "7.0", the groups in either case. Nothing for what names no variable.
@@ -54,17 +60,17 @@ struct ToolState {
   std::array<double, 3> reference{0.0, 0.0, -5.0};  // OPT-4.68
 };
 
-// All that a machine keeps from one run to the next. A value.
+// All that a machine keeps from one run to the next: a run begins with it and leaves another one.
+// While it goes on each part of the control has its own (control_state.h). A value.
 struct MachineState {
   DataArea data{};
+  Outputs outputs{};
   motion::AxisPose axes{};
   ToolState tool{};
   WorkOffsetState work_offset{};
-  int schedule = 0;  // active laser schedule; 0: none was selected, OPT-3.26
   bool zeroed = true;
   bool door_open = false;
-  double table_deg = 0.0;  // rotary table of FUNCTION 99
-  int selected = 0;        // program whose executions VI[98] counts, OPT-B.63
+  int selected = 0;  // program whose executions VI[98] counts, OPT-B.63
   std::optional<machine::ProgramStep> breakpoint{};  // of the instruction BREAK, OPT-6.08
   std::optional<machine::ProgramStep> simul{};       // of SIMUL: arms the next start, OPT-6.16
 };

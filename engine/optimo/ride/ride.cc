@@ -122,19 +122,18 @@ void Ride::TellUpToNow() {
 void Ride::TellMotion(SimTime until) {
   motion::MotionUnderWay& active = *s_.path.under_way();
   if (until <= active.told && until < active.end) return;
-  const Beam& beam = situation_.beam;
   const machine::MotionDone done{
       .start = active.told,
       .end = until,
       .place = s_.note.place,
-      .use = beam.on ? machine::MotionUse::kCut : machine::MotionUse::kTravel,
+      .use = beam_.on() ? machine::MotionUse::kCut : machine::MotionUse::kTravel,
       .motion = &active.motion,
       .from = active.PlaceAt(active.told),
       .travelled = active.PlaceAt(until),
       .profile_start_s = ToSeconds(active.told - active.start),
       .programmed_mm_s = s_.note.feed_mm_s,
-      .beam_on = beam.on,
-      .power = beam.power};
+      .beam_on = beam_.on(),
+      .power = beam_.power()};
   listener_.OnMotionTold(done);
   telling_.observer().OnMotion(done);
   active.told = until;
@@ -144,11 +143,10 @@ std::optional<std::uint64_t> Ride::Arrive() {
   TellMotion(under_way()->end);
   s_.path.Leave();
   const motion::MotionUnderWay& done = s_.path.place();
-  motion::AxisPose& axes = situation_.machine.axes;
-  axes = done.AxesAt(done.arrival);
+  s_.axes = done.AxesAt(done.arrival);
   if (done.ended) {
     s_.path.DropToCome();
-    s_.planned_axes = axes;
+    s_.planned_axes = s_.axes;
   }
   if (!busy() && !protocol().comes_to_rest()) s_.beside = Beside::kNo;
   if (!done.ended && !done.motion.ends_move) return std::nullopt;
@@ -166,8 +164,8 @@ std::optional<std::uint64_t> Ride::Arrive() {
   if (!s_.note.last && !done.ended) return std::nullopt;
   telling_.observer().OnMove({.at = situation_.now,
                               .place = s_.note.place,
-                              .tip = head().TipOf(axes),
-                              .axes = axes,
+                              .tip = head().TipOf(s_.axes),
+                              .axes = s_.axes,
                               .program_point = s_.note.program_point,
                               .rotary_a = s_.note.program_a,
                               .feed_mm_s = s_.note.feed_mm_s,
@@ -213,7 +211,7 @@ bool Ride::EndForError() {
 void Ride::Freeze() {
   if (under_way() != nullptr) {
     TellMotion(situation_.now);
-    situation_.machine.axes = axes();
+    s_.axes = axes();
   }
   s_.path.Finish();
 }
@@ -229,12 +227,12 @@ machine::Place Ride::place() const {
 }
 
 motion::TipPose Ride::tip() const {
-  if (under_way() == nullptr) return head().TipOf(situation_.machine.axes);
+  if (under_way() == nullptr) return head().TipOf(s_.axes);
   return under_way()->TipAt(situation_.now);
 }
 
 motion::AxisPose Ride::axes() const {
-  if (under_way() == nullptr) return situation_.machine.axes;
+  if (under_way() == nullptr) return s_.axes;
   return under_way()->AxesAt(situation_.now);
 }
 

@@ -10,6 +10,7 @@
 
 #include "engine/motion/planner/planner.h"
 #include "engine/motion/ride/path_ride.h"
+#include "engine/optimo/machine/beam.h"
 #include "engine/optimo/ride/move_note.h"
 #include "engine/optimo/ride/travel.h"
 
@@ -17,9 +18,10 @@
 namespace rmlcell::optimo {
 
 // Whether the program goes on beside a motion of /NEXT. A halt on the path leaves it as it is: the
-// motion goes on at START as it did before.
+// motion goes on at START as it did before. While it is not kNo no passage is open: a MOVE takes
+// over first.
 //
-//   any     GoOnBeside   kNow; kComes behind a /FLY passage; kNo when nothing is under way
+//   kNo     GoOnBeside   kNow; kComes behind a /FLY passage; kNo when nothing is under way
 //   kComes  it begins    kNow
 //   any     all is over, TakeOver   kNo
 enum class Beside : std::uint8_t {
@@ -32,6 +34,7 @@ struct RideState {
   explicit RideState(const motion::MachineLimits& limits) : planner(limits) {}
 
   motion::Planner planner;
+  motion::AxisPose axes{};          // where the machine stands while nothing is under way
   motion::AxisPose planned_axes{};  // after everything that was appended
   std::uint64_t next_tag = 1;
   std::deque<std::pair<std::uint64_t, MoveNote>> notes{};  // of motions not over, by tag
@@ -61,10 +64,11 @@ class RideListener {
 // Time is that of the situation: whoever lets it pass calls Arrive() at NextEvent(), and Start().
 class Ride {
  public:
-  Ride(RideState& state, Situation& situation, const OptimoParameters& parameters, Travel& travel,
-       const Telling& telling, RideListener& listener)
+  Ride(RideState& state, Situation& situation, const Beam& beam, const OptimoParameters& parameters,
+       Travel& travel, const Telling& telling, RideListener& listener)
       : s_(state),
         situation_(situation),
+        beam_(beam),
         parameters_(parameters),
         travel_(travel),
         telling_(telling),
@@ -82,7 +86,7 @@ class Ride {
   bool waits_to_start() const { return s_.path.waits_to_begin(); }
   bool more_to_come() const { return !s_.path.to_come().empty(); }
 
-  motion::Head head() const { return HeadOf(situation_.machine, parameters_); }
+  motion::Head head() const { return HeadOf(situation_.tool, parameters_); }
   motion::TipPose tip() const;
   motion::AxisPose axes() const;
   double tip_speed_mm_s() const;
@@ -200,6 +204,7 @@ class Ride {
 
   RideState& s_;
   Situation& situation_;
+  const Beam& beam_;
   const OptimoParameters& parameters_;
   Travel& travel_;
   const Telling& telling_;

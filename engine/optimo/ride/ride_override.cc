@@ -181,7 +181,7 @@ void Ride::GoOnward(const ChainPlace& place, const Onward& onward,
       s_.path.Plan(lead);
     }
   } else if (place.under_way) {
-    situation_.machine.axes = axes();
+    s_.axes = axes();
     s_.path.Leave();
   }
   // One measure for the whole chain: a STOP runs from one motion into the next.

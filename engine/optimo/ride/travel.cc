@@ -49,7 +49,7 @@ std::string TextOf(const std::vector<BeyondTravel>& beyond) {
 // back from where the one before it should not have gone is not to blame for its start.
 std::vector<BeyondTravel> Travel::BeyondTravelOf(const motion::PathPiece& path) const {
   const motion::AxisLimits& limits = parameters_.limits.axes;
-  const motion::Head head = HeadOf(situation_.machine, parameters_);
+  const motion::Head head = HeadOf(situation_.tool, parameters_);
   const auto axes_at = [&](const motion::PathPose& place) {
     return motion::AxesOn(path, head, place);
   };
@@ -85,14 +85,13 @@ Result<std::vector<BeyondTravel>> Travel::Look(const motion::PathPiece& path,
 void Travel::TellViolations(const machine::Place& place, const std::vector<BeyondTravel>& beyond) {
   if (beyond.empty()) return;
   for (const BeyondTravel& one : beyond) {
-    telling_.observer().OnViolation(
-        {.at = situation_.now,
-         .place = place,
-         .axis = one.axis,
-         .excess = one.excess,
-         .at_target = one.at_target,
-         .axes = one.axes,
-         .tip = HeadOf(situation_.machine, parameters_).TipOf(one.axes)});
+    telling_.observer().OnViolation({.at = situation_.now,
+                                     .place = place,
+                                     .axis = one.axis,
+                                     .excess = one.excess,
+                                     .at_target = one.at_target,
+                                     .axes = one.axes,
+                                     .tip = HeadOf(situation_.tool, parameters_).TipOf(one.axes)});
   }
   if (!forecast_) return;  // the alarm says the rest
   const Diagnostic finding{.code = ErrorCode::kTargetOutOfTravel,

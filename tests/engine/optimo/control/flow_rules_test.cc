@@ -241,7 +241,7 @@ TEST(FlowRules, OutputsOutliveTheRun) {
   EXPECT_EQ(ran.Count("OL[16] 0"), 0);
   const Result<MachineState> state = DecodeMachineState(ran.machine_state);
   ASSERT_TRUE(bool(state));
-  EXPECT_TRUE(state->data.ol_physical[16]);
+  EXPECT_TRUE(state->outputs.logical[16]);
 }
 
 // OPT-B.64: HOLD in a CALLed program halts there, after the current instruction.

@@ -38,8 +38,8 @@ TEST(OutputRules, ARefusedOutputKeepsItsImage) {
     EXPECT_THAT(Told(ran), ElementsAre("OL[" + one + "] 1", gas, "E7409"));
     EXPECT_EQ(ran.variables.at("OL[8]") + ran.variables.at("OL[9]"), "11");
     const MachineState state = StateOf(ran);
-    EXPECT_EQ(state.data.ol_physical[8], one == "8");
-    EXPECT_EQ(state.data.ol_physical[9], one == "9");
+    EXPECT_EQ(state.outputs.logical[8], one == "8");
+    EXPECT_EQ(state.outputs.logical[9], one == "9");
   }
 }
 
@@ -100,7 +100,7 @@ TEST(OutputRules, TheThirdGasNeedsItsChannel) {
   const Ran ran = RunText("OL[9]=OFF\nOL[9]=ON\nVI[2]=1\n", {.variables = {"OL[9]", "VI[2]"}});
   EXPECT_EQ(CodeOf(ran), 931);
   EXPECT_EQ(ran.variables.at("OL[9]") + ran.variables.at("VI[2]"), "10");
-  EXPECT_FALSE(StateOf(ran).data.ol_physical[9]);
+  EXPECT_FALSE(StateOf(ran).outputs.logical[9]);
   EXPECT_EQ(CodeOf(RunText("UPDATE OL/OFF\nOL[9]=ON\nUPDATE OL/ON\n")), 931);
   EXPECT_EQ(CodeOf(RunText("OL[9]=ON\n", kThreeGases)), 0);
   // The alarm switches beam and shutter off.
@@ -281,10 +281,10 @@ TEST(OutputRules, VariablesByName) {
 TEST(OutputRules, ImagesAreKept) {
   const Ran first = RunText("OL[16]=ON\nOA[5]=2.5\nUPDATE OL,OA/OFF\nOL[17]=ON\nOA[6]=3.5\n");
   const MachineState state = StateOf(first);
-  EXPECT_TRUE(state.data.ol_physical[16] && state.data.ol[17] && !state.data.ol_physical[17]);
-  EXPECT_EQ(state.data.oa_physical[5], 2.5F);
+  EXPECT_TRUE(state.outputs.logical[16] && state.data.ol[17] && !state.outputs.logical[17]);
+  EXPECT_EQ(state.outputs.analogue[5], 2.5F);
   EXPECT_EQ(state.data.oa[6], 3.5F);
-  EXPECT_EQ(state.data.oa_physical[6], 0.0F);
+  EXPECT_EQ(state.outputs.analogue[6], 0.0F);
   const Ran second =
       RunText("VL[0]=OL[17]\nVR[0]=OA[6]\nUPDATE OL,OA/ON\n",
               {.variables = {"VL[0]", "VR[0]"}, .machine_state = first.machine_state});

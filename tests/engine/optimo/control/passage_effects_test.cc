@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,6 +11,7 @@ namespace rmlcell::optimo::testing::passage_effects {
 namespace {
 
 using machine::InputKind;
+using ::testing::ElementsAre;
 
 constexpr int kMoves = 24;
 constexpr double kStep_mm = 10.0;
@@ -93,6 +95,46 @@ TEST(PassageEffects, OverTwoStops) {
           false);
     }
   }
+}
+
+// The door opened shortly before a corner with a WORK, closed again and START: what was told of
+// beam and shutter, once the machine has come to rest behind the corner.
+std::vector<std::string> ToldOverADoor(const std::string& before, const std::string& at_corner) {
+  const std::string text = "COORD ABSOL\nPATH LIN\nMOVE (0.,1000.,-400.,0.,0.)\nSPEED 50\n" +
+                           before + "MOVE (300.,1000.,-400.,0.,0.)/FLY\n" + at_corner +
+                           "MOVE (600.,1000.,-400.,0.,0.)\n";
+  const double begin = ToSeconds(RunText(text).moves.front().at);
+  // 300 mm at 250 mm/s take more than 1.2 s; the way to rest is 24 mm, of which this is a part.
+  for (double at = begin + 1.1; at < begin + 1.5; at += 0.01) {
+    const Ran ran = RunText(text, {.inputs = {{At(at), InputKind::kDoor, 0, 1.0},
+                                              {At(at + 5.0), InputKind::kDoor, 0, 0.0},
+                                              {At(at + 6.0), InputKind::kStart}}});
+    const double x = XAt(ran, ran.First("halt STOP").at_s);
+    if (x < 305.0 || x > 320.0) continue;
+    std::vector<std::string> told;
+    for (const Ran::Event& event : ran.events) {
+      if (event.what.starts_with("beam") || event.what.starts_with("shutter") ||
+          event.what.starts_with("halt")) {
+        told.push_back(event.what);
+      }
+    }
+    return told;
+  }
+  return {};
+}
+
+// OPT-3.62, OPT-B.34: a beam that the program switches off on the way to rest does not come back.
+TEST(PassageEffects, OffBehindAnOpenDoor) {
+  EXPECT_THAT(ToldOverADoor("WORK 0,0/ON\n", "WORK 0,0/OFF\n"),
+              ElementsAre("shutter open", "beam on 100.0", "beam off", "shutter closed",
+                          "halt STOP", "shutter open", "shutter closed"));
+}
+
+// OPT-3.17, OPT-3.19: one that it switches on there comes on with START, behind the closed door.
+TEST(PassageEffects, OnBehindAnOpenDoor) {
+  EXPECT_THAT(
+      ToldOverADoor("", "WORK 0,0/ON\n"),
+      ElementsAre("halt STOP", "shutter open", "beam on 100.0", "beam off", "shutter closed"));
 }
 
 // OPT-3.38: what is told of the way has a duration, also where the beam comes on as the motion

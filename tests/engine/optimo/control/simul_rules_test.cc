@@ -377,8 +377,8 @@ TEST(SimulRules, OutputsAreSetAtTheResume) {
     EXPECT_EQ(ran.First(what).step, 8) << what;
     EXPECT_EQ(ran.First(what).program, 1) << what;
   }
-  EXPECT_TRUE(StateOf(ran).data.ol_physical[11]);
-  EXPECT_FALSE(StateOf(ran).data.ol_physical[16]);
+  EXPECT_TRUE(StateOf(ran).outputs.logical[11]);
+  EXPECT_FALSE(StateOf(ran).outputs.logical[16]);
 }
 
 // OPT-6.24: in a run that does not resume the outputs stay as they are, on or off.
@@ -390,10 +390,10 @@ TEST(SimulRules, OutputsOfADryRunStay) {
   const MachineState state = StateOf(ran);
   EXPECT_TRUE(state.data.ol[11]);
   EXPECT_FALSE(state.data.ol[16]);
-  EXPECT_FALSE(state.data.ol_physical[11]);
-  EXPECT_TRUE(state.data.ol_physical[16]);
+  EXPECT_FALSE(state.outputs.logical[11]);
+  EXPECT_TRUE(state.outputs.logical[16]);
   EXPECT_EQ(state.data.oa[5], 3.5F);
-  EXPECT_EQ(state.data.oa_physical[5], 2.0F);
+  EXPECT_EQ(state.outputs.analogue[5], 2.0F);
 }
 
 // OPT-6.24, OPT-7.98: a group whose UPDATE is OFF stays disconnected at the resume.
@@ -460,10 +460,10 @@ TEST(SimulRules, TheLastScheduleIsActivatedAtTheResume) {
   EXPECT_EQ(ran.Count("schedule 12"), 0);
   EXPECT_EQ(ran.Count("schedule 11"), 1);
   EXPECT_EQ(ran.First("schedule 11").step, 5);
-  EXPECT_EQ(StateOf(ran).schedule, 11);
+  EXPECT_EQ(StateOf(ran).outputs.schedule, 11);
   const Ran dry = RunText(text, {.simul = Step(9)});
   EXPECT_FALSE(TellsOf(dry, "schedule"));
-  EXPECT_EQ(StateOf(dry).schedule, 0);
+  EXPECT_EQ(StateOf(dry).outputs.schedule, 0);
   EXPECT_FALSE(TellsOf(RunText("VI[2]=1\nVI[2]=2\n", {.simul = Step(2)}), "schedule"));
 }
 
@@ -477,12 +477,12 @@ TEST(SimulRules, TheScheduleOfTheResumeGivesThePower) {
 
 // OPT-6.27: the rotary table is not turned and its position not updated, also after the resume.
 TEST(SimulRules, TheRotaryTableStays) {
-  const std::string at_45 = Encoded([](MachineState& state) { state.table_deg = 45.0; });
+  const std::string at_45 = Encoded([](MachineState& state) { state.outputs.table_deg = 45.0; });
   const Ran ran =
       RunText("FUNCTION 99 (90.)\nDELAY 1\n",
               {.parameters = {{"ROTARY_TABLE", "ON"}}, .simul = Step(2), .machine_state = at_45});
   EXPECT_FALSE(TellsOf(ran, "table"));
-  EXPECT_EQ(StateOf(ran).table_deg, 45.0);
+  EXPECT_EQ(StateOf(ran).outputs.table_deg, 45.0);
   EXPECT_NEAR(ran.time_s, 1.0, 1e-9);
 }
 
