@@ -126,7 +126,7 @@ TEST(HoldKey, HoldsARunOfEveryFamily) {
       RunSetup setup{Parameters(family->parameters())};
       const Translation made = family->Translate(one.source, setup.parameters, {});
       ASSERT_TRUE(made.ok) << info.id;
-      setup.programs[1] = {.name = "part", .object = machine::Bytes::Of(made.object)};
+      setup.programs[1] = {.name = "part", .object = Bytes::Of(ObjectOf(made, one.source.bytes))};
       setup.main_program = 1;
       setup.mode = mode;
       Listener listener;
