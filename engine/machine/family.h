@@ -27,6 +27,8 @@ struct CheckCodes {
   std::span<const ErrorCode> of_motion{};  // findings of a run that the check tells
   std::span<const ErrorCode> by_speed{};   // of these warnings only: the speed may be another
   std::span<const ErrorCode> not_given{};  // of outcomes: what was given to the check is not all
+  // The instruction that sets the work offset, which outlives the program that set it. Empty: none.
+  std::string_view work_offset{};
 };
 
 struct FamilyInfo {

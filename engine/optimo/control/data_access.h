@@ -18,12 +18,13 @@ namespace rmlcell::optimo {
 class DataAccess : private VariableAccess {
  public:
   DataAccess(Situation& situation, const OptimoParameters& parameters, ProgramCounter& counter,
-             const Ride& ride, PassageEffects& effects)
+             const Ride& ride, PassageEffects& effects, machine::RunObserver& observer)
       : situation_(situation),
         parameters_(parameters),
         counter_(counter),
         ride_(ride),
-        effects_(effects) {}
+        effects_(effects),
+        observer_(observer) {}
 
   // Precondition: the instruction is one of those above. Errors: of the expression,
   // IntegerOverflow, AssignGroup, Gas3NotFitted.
@@ -55,7 +56,9 @@ class DataAccess : private VariableAccess {
 
  private:
   float Read(Variable variable) override;
+  float ValueOf(Variable variable);
   bool IsOfTheRun(Variable variable) const;
+  void TellAssumed(Variable variable, float value) const;
   Status Write(Variable variable, float number);
   Status SetOutput(int index, bool on);
   Status Let(const Instruction& i);
@@ -69,6 +72,7 @@ class DataAccess : private VariableAccess {
   ProgramCounter& counter_;
   const Ride& ride_;
   PassageEffects& effects_;
+  machine::RunObserver& observer_;
 };
 
 }  // namespace rmlcell::optimo
