@@ -20,6 +20,7 @@ struct Source {
   bool rotary;
   std::optional<std::uint64_t> starved;
   bool ended;
+  Pauses pauses;
 };
 
 using Value = std::optional<double>;
@@ -122,7 +123,7 @@ constexpr std::array kRows = {
     Row{{"step_fits_x", "mm", "length in X that the work would have there"}, [](const Source& s) -> Value { return Otherwise(s, s.step.work.x); }},
     Row{{"step_fits_y", "mm", "length in Y that it would have there"}, [](const Source& s) -> Value { return Otherwise(s, s.step.work.y); }},
     Row{{"step_fits_z", "mm", "depth that it would have there"}, [](const Source& s) -> Value { return Otherwise(s, s.step.work.z); }},
-    Row{{"step_lift", "mm", "with 100 units in a millimetre: how high the tool rises at most above the surface, where that is 0.2 to 0.5 mm"}, [](const Source& s) -> Value { return IfAbove0(s.step.lift_mm); }},
+    Row{{"step_lift", "mm", "with 100 units in a millimetre: how high the tool rises at most above the surface, where that is 0.2 to 0.5 mm, or less than 1 mm with heights that are round with 40"}, [](const Source& s) -> Value { return IfAbove0(s.step.lift_mm); }},
     Row{{"step_lift_at_40", "mm", "how high that would be with 40 units in a millimetre"}, [](const Source& s) -> Value { return IfAbove0(s.step.lift_there_mm); }},
     Row{{"box.amin", "deg", "least angle of the rotary axis"}, [](const Source& s) -> Value { return s.rotary ? Low(s.tool.a) : std::nullopt; }},
     Row{{"box.amax", "deg", "greatest angle of the rotary axis"}, [](const Source& s) -> Value { return s.rotary ? High(s.tool.a) : std::nullopt; }},
@@ -151,6 +152,7 @@ constexpr std::array kRows = {
     Row{{"spindle_on_at_end", "", "1 when the spindle turns at the end"}, [](const Source& s) -> Value { return s.ended ? Value(s.device.spindle_turns() ? 1.0 : 0.0) : std::nullopt; }},
     Row{{"incomplete_at_end", "", "1 when the data ends inside a command, which is not carried out"}, [](const Source& s) -> Value { return s.ended ? Value(s.device.pending() ? 1.0 : 0.0) : std::nullopt; }},
     Row{{"nothing_cut", "", "1 when the tool never was in the work"}, [](const Source& s) -> Value { return s.ended ? Value(s.tool.cut_mm > 0.0 ? 0.0 : 1.0) : std::nullopt; }},
+    Row{{"waits_for_key", "", "of a check: times that a run waits for the resume key"}, [](const Source& s) -> Value { return IfAny(s.pauses.count); }, [](const Source& s) { return s.pauses.first; }},
     Row{{"speed_clamps", "", "speed words beyond the machine", "speeds", "# limited to those of the machine", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return Count(s.device.speeds_limited()); }},
     Row{{"error_register", "", "command error register"}, [](const Source& s) -> Value { return static_cast<double>(s.device.command_errors().value()); }},
     Row{{"communication_register", "", "communication error register"}, [](const Source& s) -> Value { return static_cast<double>(s.device.link_errors().value()); }},
@@ -227,22 +229,25 @@ std::span<const machine::FigureInfo> FigureTable() {
 }
 
 std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& physical, bool ended,
-                                       std::optional<std::uint64_t> starved) {
+                                       std::optional<std::uint64_t> starved, const Pauses& pauses) {
   const Profile& profile = physical.profile();
   const Point origin{profile.origin_x, profile.origin_y, device.registers().z0, 0.0};
   const CuttingRange& travel = device.carriage().range();
   const WorkFit fit =
       FitOf(physical.totals().work, device.carriage().lost(), origin, travel, profile.units_per_mm);
-  const Source source{.device = device,
-                      .tool = physical.totals(),
-                      .watch = physical.watch(),
-                      .mm = 1.0 / profile.units_per_mm,
-                      .origin = origin,
-                      .fit = fit,
-                      .step = GuessStep(fit, travel, device.programmed().z(), profile.units_per_mm),
-                      .rotary = profile.has_rotary,
-                      .starved = starved,
-                      .ended = ended};
+  const Source source{
+      .device = device,
+      .tool = physical.totals(),
+      .watch = physical.watch(),
+      .mm = 1.0 / profile.units_per_mm,
+      .origin = origin,
+      .fit = fit,
+      .step = GuessStep(fit, travel, {device.programmed().z(), device.programmed().z_grain()},
+                        profile.units_per_mm),
+      .rotary = profile.has_rotary,
+      .starved = starved,
+      .ended = ended,
+      .pauses = pauses};
   std::vector<machine::Figure> figures;
   for (const Row& row : kRows) {
     const Value value = row.value(source);

@@ -100,7 +100,9 @@ class Rehearsal {
   }
 
   const Device& device() const { return device_; }
-  std::vector<machine::Figure> Figures() const { return FiguresOf(device_, physical_, true); }
+  std::vector<machine::Figure> Figures() const {
+    return FiguresOf(device_, physical_, true, {}, pauses_);
+  }
 
  private:
   void CarryOut() {
@@ -116,9 +118,10 @@ class Rehearsal {
                         .spindle_turns = device_.spindle_turns()},
                        device_.registers(), device_.command());
       tool_ = action.to;
-    } else if (action.kind == Action::Kind::kPause && pauses_told_ < kPausesMax) {
-      ++pauses_told_;
+    } else if (action.kind == Action::Kind::kPause) {
       const CommandPlace& place = device_.command();
+      if (pauses_.count == 0) pauses_.first = place;
+      if (++pauses_.count > kPausesMax) return;
       findings_.AddAdvice(ErrorCode::kRml1PausedAtEnd, "the machine waits for its resume key here",
                           "RML1-3C.08", {.length = 3, .byte_offset = place.offset},
                           static_cast<int>(place.number));
@@ -126,14 +129,14 @@ class Rehearsal {
   }
 
   // As the device does with advice of its own.
-  static constexpr int kPausesMax = 1000;
+  static constexpr std::uint64_t kPausesMax = 1000;
 
   const Profile& profile_;
   Findings& findings_;
   Device device_;
   Physical physical_;
   Point tool_;
-  int pauses_told_ = 0;
+  Pauses pauses_;
 };
 
 class MillFamily final : public machine::MachineFamily {

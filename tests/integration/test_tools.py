@@ -292,7 +292,7 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(source.read_bytes(), wrong.encode())
         self.assertIn("+\tSPEED   20\t; slow", patch)
         done = run("check", "--fix", source)
-        self.assertIn("a.S: 2 fixed, 0 left, can be stored", done)
+        self.assertIn("a.S: 2 fixed, GOOD\n", done)
         self.assertEqual(done.count("fixed  "), 2)
         self.assertEqual(source.read_bytes(), b"\tSPEED   20\t; slow\r\nMOVE (1000.,900.,-500.,0.,0.) ; x\r\n")
         self.assertEqual(source.stat().st_mode & 0o777, 0o640)
@@ -302,11 +302,20 @@ class CommandLine(unittest.TestCase):
 
     def test_check_fix_leaves_what_it_cannot_repair_and_refuses_binaries(self):
         source = self.file("a.S", "SPEDE 20\nSPEED 101\n")
-        self.assertIn("1 fixed, 1 left, has errors", run("check", "--fix", source, code=1))
+        left = run("check", "--fix", source, code=1)
+        self.assertIn("1 fixed, BAD, 1 finding\n", left)
+        self.assertIn("(OPT-E7004, line 2)", left)
         self.assertEqual(source.read_text(), "SPEED 20\nSPEED 101\n")
         answer = json.loads(run("check", "--fix", "--json", self.file("b.S", "SPEDE 20\n")))
         self.assertEqual([finding["place"]["line"] for finding in answer["fixed"]], [1])
         self.assertTrue(answer["findings"]["ok"])
+        self.assertEqual(answer["findings"]["verdict"], "VERDICT_GOOD")
+        # What is judged of the motion is judged of what was repaired: 400 mm beyond the travel.
+        far = self.file("c.S", "COORD ROBOT\nSPEDE 20\nMOVE (4000.,0.,0.,0.,0.)\n")
+        self.assertIn("1 fixed, BAD, 1 finding\n", run("check", "--fix", far, code=1))
+        doubt = "COORD ABSOL\nSPEDE 20\nMOVE (4000.,0.,0.,0.,0.)\n"
+        self.assertIn("1 fixed, DOUBTFUL, 1 finding\n", run("check", "--fix", self.file("d.S", doubt)))
+        run("check", "--fix", "--strict", self.file("e.S", doubt), code=1)
         run("compile", self.file("12.S", LINE))
         for name in ["12.O", "m.rml", "zero.S"]:
             path = self.folder / name

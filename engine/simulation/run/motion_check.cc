@@ -93,7 +93,9 @@ struct CheckedRun {
   std::string cut_short;
   machine::Outcome outcome;
   SimTime ended_at{0};
-  bool for_sure = false;  // it failed, and so does every other
+  bool for_sure = false;     // it failed, and so does every other
+  int starts = 0;            // halts that the check ended: a run waits there for somebody
+  machine::Place halted_at;  // the first of them
   std::vector<machine::Reason> reasons;
 };
 
@@ -158,8 +160,12 @@ Status RunForCheck(const machine::MachineFamily& family, machine::RunSetup setup
   if (!run) return run.error();
   Drive drive(**run, inputs.input_times);
   while (drive.Step(kCheckTimeMax) != machine::RunPhase::kFinished) {
-    if (drive.phase() == machine::RunPhase::kHalted && !drive.Start()) {
+    if (drive.phase() != machine::RunPhase::kHalted) continue;
+    const machine::Place here = (*run)->state().place;
+    if (!drive.Start()) {
       drive.End(machine::OutcomeKind::kStopped, ErrorCode::kCellWaitsForever);
+    } else if (checked.starts++ == 0) {
+      checked.halted_at = here;
     }
   }
   recorder.Finish(**run);
@@ -168,6 +174,15 @@ Status RunForCheck(const machine::MachineFamily& family, machine::RunSetup setup
   checked.ended_at = (*run)->state().time;
   checked.cut_short = WhyCutShort(family.info(), checked.outcome);
   checked.reasons = ReasonsOf(recorder.Report(**run), family.info(), checked.listener);
+  if (checked.starts > 0 && checked.outcome.code != ErrorCode::kCellWaitsForever) {
+    checked.reasons.push_back(
+        {.code = ErrorCode::kCellWaitsForever,
+         .verdict = machine::Verdict::kDoubtful,
+         .said = "the run halts until somebody gives START: " + std::to_string(checked.starts) +
+                 (checked.starts == 1 ? " time" : " times"),
+         .amount = static_cast<double>(checked.starts),
+         .first = checked.halted_at});
+  }
   return {};
 }
 

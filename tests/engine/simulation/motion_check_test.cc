@@ -217,6 +217,11 @@ TEST(MotionCheck, DealsReasonsToThePrograms) {
 
 // A halt is answered with START: the program goes on behind it.
 TEST(MotionCheck, GoesOnBehindAHalt) {
+  EXPECT_EQ(VerdictOfCheck("COORD ROBOT\nSTOP\nSTOP\nMOVE (9.,0.,0.,0.,0.)\n"),
+            "DOUBTFUL; CELL-E9308 the run halts until somebody gives START: 2 times @2");
+  EXPECT_EQ(VerdictOfCheck("COORD ROBOT\nSTOP\nMOVE (9.,0.,0.,0.,0.)\n",
+                           {{std::chrono::seconds(5), machine::InputKind::kStart, 0, 1.0}}),
+            "GOOD");
   const MotionCheck check = Checked({{1, "COORD ABSOL\nSTOP\nMOVE (9000.,0.,0.,0.,0.)\n"}}, {1});
   EXPECT_EQ(check.findings.size(), 1U);
 }
