@@ -58,7 +58,8 @@ struct FamilyInfo {
   // Of a project: a slot or a process twice; a slot without source, or no program at all.
   ErrorCode given_twice = ErrorCode::kCellInvalidArgument;
   ErrorCode no_source = ErrorCode::kCellInvalidArgument;
-  CheckCodes check{};  // where it is checked_by_running
+  std::optional<ErrorCode> torn{};  // the data ends inside a command; none: that is an error
+  CheckCodes check{};               // where it is checked_by_running
 };
 
 // The key that holds a run from afar: HOLD, after the present instruction; STOP, at once on the

@@ -24,7 +24,8 @@ constexpr machine::FamilyInfo kInfo = {.id = "rml1",
                                        .default_profile = "srm-20",  // the most common one
                                        .origin_parameters = {"ORIGIN_X", "ORIGIN_Y", "Z0"},
                                        .clamps_parameter = "CLAMP_HEIGHT",
-                                       .override_max_percent = 145.0};
+                                       .override_max_percent = 145.0,
+                                       .torn = ErrorCode::kRml1IncompleteCommand};
 
 Diagnostic Plain(ErrorCode code, std::string detail) {
   return {.code = code,

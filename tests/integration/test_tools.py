@@ -81,6 +81,14 @@ class CommandLine(unittest.TestCase):
         run("link", main, "-o", self.folder / "no.X", code=1)
         self.assertFalse((self.folder / "no.X").exists())
 
+    def test_link_without_a_name_writes_beside_the_program(self):
+        main = self.file("12.S", "FUNCTION 44\n")
+        self.file("44.S", "VR[0] = 1.\nENDTASK\n")
+        run("link", main, self.folder)
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["12.S", "12.X", "44.S"])
+        run("link", main, self.folder, "-o", self.folder / "named.X")
+        self.assertEqual((self.folder / "12.X").read_bytes(), (self.folder / "named.X").read_bytes())
+
     # OPT-9.02: only what is called is compiled, near and far.
     def test_link_leaves_programs_alone_that_nobody_calls(self):
         main = self.file("90.S", "FUNCTION 44\n")
@@ -130,6 +138,19 @@ class CommandLine(unittest.TestCase):
         run("convert", self.folder / "part.S", self.folder / "back")
         for got, wanted in zip(numbers((self.folder / "back.SI").read_text()), [1, 2, -3, 90, 0]):
             self.assertAlmostEqual(got, wanted, places=4)
+
+    # OPT-8.54: 1 in is 25.4 mm; to a file of another name, and to standard output, with nothing else written.
+    def test_convert_writes_where_it_is_told(self):
+        source = self.file("part.SI", "MOVE (1.,2.,-3.,0.,0.)\n")
+        run("convert", source, "-o", self.folder / "there.S")
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["part.SI", "there.S"])
+        told = run("convert", source, "-o", "-")
+        # The first line has the name of the file that it was made for.
+        body = told.split("\n", 1)[1]
+        self.assertEqual(body, (self.folder / "there.S").read_text().split("\n", 1)[1])
+        for got, wanted in zip(numbers(body), [25.4, 50.8, -76.2], strict=False):
+            self.assertAlmostEqual(got, wanted, places=5)
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["part.SI", "there.S"])
 
     # OPT-8.58, OPT-8.66
     def test_convert_refuses_contradictions_and_writes_nothing(self):
@@ -304,7 +325,7 @@ class CommandLine(unittest.TestCase):
         source = self.file("a.S", "SPEDE 20\nSPEED 101\n")
         left = run("check", "--fix", source, code=1)
         self.assertIn("1 fixed, BAD, 1 finding\n", left)
-        self.assertIn("(OPT-E7004, line 2)", left)
+        self.assertIn("(OPT-E7004, step 2 line 2)", left)
         self.assertEqual(source.read_text(), "SPEED 20\nSPEED 101\n")
         answer = json.loads(run("check", "--fix", "--json", self.file("b.S", "SPEDE 20\n")))
         self.assertEqual([finding["place"]["line"] for finding in answer["fixed"]], [1])
