@@ -20,7 +20,6 @@ struct Source {
   bool rotary;
   std::optional<std::uint64_t> starved;
   bool ended;
-  Pauses pauses;
 };
 
 using Value = std::optional<double>;
@@ -152,7 +151,6 @@ constexpr std::array kRows = {
     Row{{"spindle_on_at_end", "", "1 when the spindle turns at the end"}, [](const Source& s) -> Value { return s.ended ? Value(s.device.spindle_turns() ? 1.0 : 0.0) : std::nullopt; }},
     Row{{"incomplete_at_end", "", "1 when the data ends inside a command, which is not carried out"}, [](const Source& s) -> Value { return s.ended ? Value(s.device.pending() ? 1.0 : 0.0) : std::nullopt; }},
     Row{{"nothing_cut", "", "1 when the tool never was in the work"}, [](const Source& s) -> Value { return s.ended ? Value(s.tool.cut_mm > 0.0 ? 0.0 : 1.0) : std::nullopt; }},
-    Row{{"waits_for_key", "", "of a check: times that a run waits for the resume key"}, [](const Source& s) -> Value { return IfAny(s.pauses.count); }, [](const Source& s) { return s.pauses.first; }},
     Row{{"speed_clamps", "", "speed words beyond the machine", "speeds", "# limited to those of the machine", false, machine::FigureInfo::Where::kBoth}, [](const Source& s) -> Value { return Count(s.device.speeds_limited()); }},
     Row{{"error_register", "", "command error register"}, [](const Source& s) -> Value { return static_cast<double>(s.device.command_errors().value()); }},
     Row{{"communication_register", "", "communication error register"}, [](const Source& s) -> Value { return static_cast<double>(s.device.link_errors().value()); }},
@@ -229,7 +227,7 @@ std::span<const machine::FigureInfo> FigureTable() {
 }
 
 std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& physical, bool ended,
-                                       std::optional<std::uint64_t> starved, const Pauses& pauses) {
+                                       std::optional<std::uint64_t> starved) {
   const Profile& profile = physical.profile();
   const Point origin{profile.origin_x, profile.origin_y, device.registers().z0, 0.0};
   const CuttingRange& travel = device.carriage().range();
@@ -246,8 +244,7 @@ std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& phy
                         profile.units_per_mm),
       .rotary = profile.has_rotary,
       .starved = starved,
-      .ended = ended,
-      .pauses = pauses};
+      .ended = ended};
   std::vector<machine::Figure> figures;
   for (const Row& row : kRows) {
     const Value value = row.value(source);

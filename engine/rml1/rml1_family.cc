@@ -101,8 +101,16 @@ class Rehearsal {
   }
 
   const Device& device() const { return device_; }
+  // With what a check alone tells: where it went on and a run waits for the resume key.
   std::vector<machine::Figure> Figures() const {
-    return FiguresOf(device_, physical_, true, {}, pauses_);
+    std::vector<machine::Figure> figures = FiguresOf(device_, physical_, true);
+    if (pauses_ == 0) return figures;
+    figures.push_back({.name = "waits_for_key",
+                       .unit = {},
+                       .value = static_cast<double>(pauses_),
+                       .first = {.step = static_cast<int>(first_pause_.number),
+                                 .byte_offset = first_pause_.offset}});
+    return figures;
   }
 
  private:
@@ -121,8 +129,8 @@ class Rehearsal {
       tool_ = action.to;
     } else if (action.kind == Action::Kind::kPause) {
       const CommandPlace& place = device_.command();
-      if (pauses_.count == 0) pauses_.first = place;
-      if (++pauses_.count > kPausesMax) return;
+      if (pauses_ == 0) first_pause_ = place;
+      if (++pauses_ > kPausesMax) return;
       findings_.AddAdvice(ErrorCode::kRml1PausedAtEnd, "the machine waits for its resume key here",
                           "RML1-3C.08", {.length = 3, .byte_offset = place.offset},
                           static_cast<int>(place.number));
@@ -137,7 +145,8 @@ class Rehearsal {
   Device device_;
   Physical physical_;
   Point tool_;
-  Pauses pauses_;
+  std::uint64_t pauses_ = 0;
+  CommandPlace first_pause_;
 };
 
 class MillFamily final : public machine::MachineFamily {
