@@ -40,7 +40,7 @@ constexpr std::array kRules = {
     VerdictRule{ErrorCode::kRml1SpindleStands, "spindle_stands_length", kRounding_mm, Verdict::kBad,
                 "# mm in the work while the spindle stands"},
     VerdictRule{ErrorCode::kCellWaitsForever, "waits_for_key", 0.0, Verdict::kDoubtful,
-                "the machine waits for its resume key: # times"},
+                "halts that wait for the resume key: #"},
     VerdictRule{ErrorCode::kRml1NoClearance, "no_clearance_length", kRounding_mm,
                 Verdict::kDoubtful,
                 "# mm across at travel speed, not above the surface of the work"},

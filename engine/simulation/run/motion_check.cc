@@ -178,8 +178,7 @@ Status RunForCheck(const machine::MachineFamily& family, machine::RunSetup setup
     checked.reasons.push_back(
         {.code = ErrorCode::kCellWaitsForever,
          .verdict = machine::Verdict::kDoubtful,
-         .said = "the run halts until somebody gives START: " + std::to_string(checked.starts) +
-                 (checked.starts == 1 ? " time" : " times"),
+         .said = "halts that wait for START: " + std::to_string(checked.starts),
          .amount = static_cast<double>(checked.starts),
          .first = checked.halted_at});
   }

@@ -218,7 +218,7 @@ TEST(MotionCheck, DealsReasonsToThePrograms) {
 // A halt is answered with START: the program goes on behind it.
 TEST(MotionCheck, GoesOnBehindAHalt) {
   EXPECT_EQ(VerdictOfCheck("COORD ROBOT\nSTOP\nSTOP\nMOVE (9.,0.,0.,0.,0.)\n"),
-            "DOUBTFUL; CELL-E9308 the run halts until somebody gives START: 2 times @2");
+            "DOUBTFUL; CELL-E9308 halts that wait for START: 2 @2");
   EXPECT_EQ(VerdictOfCheck("COORD ROBOT\nSTOP\nMOVE (9.,0.,0.,0.,0.)\n",
                            {{std::chrono::seconds(5), machine::InputKind::kStart, 0, 1.0}}),
             "GOOD");
