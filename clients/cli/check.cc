@@ -92,19 +92,14 @@ std::string FigureText(const CheckedFile& file, Zero zero) {
 int Show(const CheckedFile& file, const CheckOptions& options) {
   const machine::Translation& translation = file.translation;
   const v1::Findings found = bridge::FindingsOf(*file.family, translation, file.motion, file.slot);
-  const int exit_code = file.ok() ? ExitOf(found.verdict(), options.strict) : int{kProgramErrors};
+  const int exit_code = ExitOf(found, options.strict);
   if (options.json) {
     Print(Json(found));
     return exit_code;
   }
   PrintFindings(translation.diagnostics, translation.diagnostics_dropped, *file.text);
   PrintFindings(file.motion.findings, file.motion.findings_dropped, *file.text);
-  const std::size_t findings = translation.diagnostics.size() + translation.diagnostics_dropped +
-                               file.motion.findings.size() + file.motion.findings_dropped;
-  std::string line = Visible(file.name) + ": " + VerdictText(found.verdict());
-  if (findings > 0)
-    line += ", " + std::to_string(findings) + (findings == 1 ? " finding" : " findings");
-  Print(line);
+  Print(Visible(file.name) + ": " + VerdictText(found.verdict()) + CountText(found));
   // Where it fails the reasons do not say how far it was looked at.
   if (!file.ok()) {
     for (const auto& [slot, why] : file.motion.cut_short) Print("  motion checked " + why);
@@ -115,9 +110,10 @@ int Show(const CheckedFile& file, const CheckOptions& options) {
 }
 
 // --fix: each by its tools, judged by the check that a check is.
-int FixFiles(const std::vector<CheckedFile>& files, const CheckOptions& options) {
+int FixFiles(std::vector<CheckedFile>& files, const machine::InputScript& inputs,
+             const CheckOptions& options) {
   int exit_code = kGood;
-  for (const CheckedFile& file : files) {
+  for (CheckedFile& file : files) {
     if (file.family->tools() == nullptr) {
       return Refuse({ErrorCode::kCellUsage,
                      file.name + ": a stream of " + std::string(file.family->info().title) +
@@ -127,16 +123,26 @@ int FixFiles(const std::vector<CheckedFile>& files, const CheckOptions& options)
     const Result<std::string> text = bridge::ReadFile(file.name, kFileBytesMax);
     if (!text) return Refuse(text.error());
     if (text->empty()) return Refuse({ErrorCode::kCellEmptyProgram, file.name, {}});
-    const auto check = [&](const machine::SourceFile& source) {
+    const auto translate = [&](const machine::SourceFile& source) {
       const std::string bytes(source.bytes);
       return simulation::TranslateProgram(*file.family, *file.parameters,
                                           {.file_name = std::string(source.name),
                                            .bytes = machine::Bytes::Borrowed(bytes),
                                            .is_source = true},
-                                          {.advice = !options.errors_only});
+                                          {.advice = !options.errors_only, .source = true});
     };
-    exit_code =
-        std::max(exit_code, FixFile(file.name, *text, check, {options.dry_run, options.json}));
+    const auto judge = [&](const machine::Translation& left) -> Result<FixCheck::Left> {
+      file.translation = left;
+      if (left.ok && file.family->info().checked_by_running) {
+        const Status ran = CheckMotions({&file}, inputs, !options.errors_only);
+        if (!ran) return ran.error();
+      }
+      return FixCheck::Left{
+          .motion = file.motion,
+          .found = bridge::FindingsOf(*file.family, left, file.motion, file.slot)};
+    };
+    exit_code = std::max(exit_code, FixFile(file.name, *text, {translate, judge},
+                                            {options.dry_run, options.json, options.strict}));
     if (exit_code > kProgramErrors) return exit_code;
   }
   return exit_code;
@@ -170,7 +176,7 @@ int Check(const CheckOptions& options) {
     if (!parsed) return Refuse(parsed.error());
     inputs = bridge::InputsOf(scripted);
   }
-  if (options.fix) return FixFiles(files, options);
+  if (options.fix) return FixFiles(files, inputs, options);
   int exit_code = kGood;
   std::map<const machine::MachineFamily*, std::vector<CheckedFile*>> to_run;
   for (CheckedFile& file : files) {

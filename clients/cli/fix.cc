@@ -8,6 +8,7 @@
 #include "clients/cli/messages.h"
 #include "clients/cli/program_files.h"
 #include "clients/cli/terminal.h"
+#include "clients/cli/verdict_text.h"
 #include "engine/families/families.h"
 #include "proto/bridge/findings.h"
 #include "rmlcell/v1/program.pb.h"
@@ -90,8 +91,7 @@ std::string PatchText(const std::string& file, std::string_view before, std::str
   return out.empty() ? out : "--- " + file + "\n+++ " + file + "\n" + out;
 }
 
-int FixFile(const std::string& file, const std::string& text,
-            const std::function<machine::Translation(const machine::SourceFile&)>& check,
+int FixFile(const std::string& file, const std::string& text, const FixCheck& check,
             const FixOptions& options) {
   const auto family = families::FamilyWithTools(file);
   const Status good = family ? (*family)->tools()->CheckIsText(file, text) : Status(family.error());
@@ -100,7 +100,7 @@ int FixFile(const std::string& file, const std::string& text,
     return kUsage;
   }
   const machine::RepairedText fixing =
-      (*family)->tools()->Fix({.name = file, .bytes = text}, check);
+      (*family)->tools()->Fix({.name = file, .bytes = text}, check.translate);
   const bool changed = fixing.text != text;
   if (changed && !options.dry_run) {
     if (const Status written = WriteWholeFile(file, fixing.text); !written) {
@@ -109,12 +109,13 @@ int FixFile(const std::string& file, const std::string& text,
     }
   }
   const machine::Translation& left = fixing.left;
+  const Result<FixCheck::Left> judged = check.judge(left);
+  if (!judged) return Refuse(judged.error());
   if (options.json) {
     v1::FixProgramResponse message;
     message.set_content(fixing.text);
     for (const Diagnostic& finding : fixing.fixed) *message.add_fixed() = bridge::ToProto(finding);
-    *message.mutable_findings() =
-        bridge::FindingsOf(left.ok, left.diagnostics, left.diagnostics_dropped, left.figures);
+    *message.mutable_findings() = judged->found;
     Print(Json(message));
   } else if (options.dry_run) {
     PrintRaw(PatchText(file, text, fixing.text));
@@ -123,12 +124,15 @@ int FixFile(const std::string& file, const std::string& text,
       Print(Paint("fixed", Colour::kGreen, ColourOnOutput()) + "  " + FixedLine(finding));
     }
     PrintFindings(left.diagnostics, left.diagnostics_dropped, fixing.text);
-    const std::size_t findings = left.diagnostics.size() + left.diagnostics_dropped;
-    Print(file + ": " + std::to_string(fixing.fixed.size()) + " fixed, " +
-          std::to_string(findings) + " left, " + (left.ok ? "can be stored" : "has errors"));
+    PrintFindings(judged->motion.findings, judged->motion.findings_dropped, fixing.text);
+    Print(Visible(file) + ": " + std::to_string(fixing.fixed.size()) + " fixed, " +
+          VerdictText(judged->found.verdict()) + CountText(judged->found));
+    for (const v1::VerdictReason& reason : judged->found.reasons()) {
+      Print("  " + ReasonLine(reason));
+    }
   }
-  if (!left.ok) return kProgramErrors;
-  return options.dry_run && changed ? kProgramErrors : kGood;
+  if (options.dry_run && changed) return kProgramErrors;
+  return ExitOf(judged->found, options.strict);
 }
 
 }  // namespace rmlcell::cli

@@ -109,9 +109,10 @@ int Diff(const DiffOptions& options) {
   } else {
     PrintText(diff);
   }
-  if (!options.json && !diff.compared_runs()) {
-    Complain("no figures: a program does not run to its end by itself");
-  }
+  if (options.json) return diff.equal() ? kGood : kProgramErrors;
+  const bool none = !diff.compared_runs();
+  if (none && diff.notes().empty()) Complain("no figures: a program cannot run by itself");
+  for (const std::string& note : diff.notes()) Complain((none ? "no figures: " : "") + note);
   return diff.equal() ? kGood : kProgramErrors;
 }
 

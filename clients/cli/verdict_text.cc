@@ -52,6 +52,16 @@ int ExitOf(v1::Verdict verdict, bool strict) {
   return good ? kGood : kProgramErrors;
 }
 
+int ExitOf(const v1::Findings& found, bool strict) {
+  return found.ok() ? ExitOf(found.verdict(), strict) : int{kProgramErrors};
+}
+
+std::string CountText(const v1::Findings& found) {
+  const std::int64_t count = found.diagnostics_size() + found.diagnostics_dropped();
+  if (count == 0) return {};
+  return ", " + std::to_string(count) + (count == 1 ? " finding" : " findings");
+}
+
 int ExitOf(const v1::Outcome& outcome, bool strict) {
   if (outcome.verdict() != v1::VERDICT_UNSPECIFIED) return ExitOf(outcome.verdict(), strict);
   // A job that ended before anything was judged, or that an older server ran.

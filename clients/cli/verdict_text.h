@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "rmlcell/v1/common.pb.h"
+#include "rmlcell/v1/program.pb.h"
 #include "rmlcell/v1/report.pb.h"
 
 // What the part will come out like, as the command says it.
@@ -31,5 +32,9 @@ std::string PlaceText(const v1::SourcePlace& place);
 // only when nothing speaks against it.
 int ExitOf(v1::Verdict verdict, bool strict);
 int ExitOf(const v1::Outcome& outcome, bool strict);
+int ExitOf(const v1::Findings& found, bool strict);  // of a check
+
+// ", 1 finding"; empty: there is none.
+std::string CountText(const v1::Findings& found);
 
 }  // namespace rmlcell::cli

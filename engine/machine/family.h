@@ -27,6 +27,8 @@ struct CheckCodes {
   std::span<const ErrorCode> of_motion{};  // findings of a run that the check tells
   std::span<const ErrorCode> by_speed{};   // of these warnings only: the speed may be another
   std::span<const ErrorCode> not_given{};  // of outcomes: what was given to the check is not all
+  // The instruction that sets the work offset, which outlives the program that set it. Empty: none.
+  std::string_view work_offset{};
 };
 
 struct FamilyInfo {
@@ -56,7 +58,8 @@ struct FamilyInfo {
   // Of a project: a slot or a process twice; a slot without source, or no program at all.
   ErrorCode given_twice = ErrorCode::kCellInvalidArgument;
   ErrorCode no_source = ErrorCode::kCellInvalidArgument;
-  CheckCodes check{};  // where it is checked_by_running
+  std::optional<ErrorCode> torn{};  // the data ends inside a command; none: that is an error
+  CheckCodes check{};               // where it is checked_by_running
 };
 
 // The key that holds a run from afar: HOLD, after the present instruction; STOP, at once on the

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "engine/core/diagnostic.h"
 #include "engine/core/units.h"
+#include "engine/machine/inputs.h"
 #include "engine/machine/outcome.h"
 #include "engine/motion/planner/planner.h"
 
@@ -97,10 +99,11 @@ struct Wait {
 struct TravelViolation {
   SimTime at{0};
   Place place{};
-  int axis = 0;             // 0..4: X Y Z A B
-  double excess = 0.0;      // the worst of the motion, mm or rad
-  bool at_target = false;   // the target itself lies outside; else the path on the way
-  motion::AxisPose axes{};  // where it is worst
+  int axis = 0;                 // 0..4: X Y Z A B
+  double excess = 0.0;          // the worst of the motion, mm or rad
+  bool at_target = false;       // the target itself lies outside; else the path on the way
+  bool by_work_offset = false;  // where the axis goes hangs on the work offset in force
+  motion::AxisPose axes{};      // where it is worst
   motion::TipPose tip{};
 };
 
@@ -109,6 +112,16 @@ struct Halt {
   SimTime at{0};
   Place place{};
   std::string_view why{};  // "STOP"
+};
+
+// What a run goes by although nothing of it has set it: a variable, an input, a parameter of a
+// subroutine. Another time it may be another.
+struct Assumed {
+  std::string_view group{};  // "VR"
+  int index = 0;
+  double value = 0.0;
+  bool on_off = false;               // a truth, no number
+  std::optional<InputKind> input{};  // that a script of inputs sets it by, where one can
 };
 
 // Told everything that a run does, in order of virtual time. Structs are valid during the call
@@ -128,6 +141,7 @@ class RunObserver {
   virtual void OnMessage(SimTime /*at*/, const Place&, std::string_view /*text*/) {}
   virtual void OnViolation(const TravelViolation&) {}
   virtual void OnDiagnostic(SimTime /*at*/, const Diagnostic&) {}
+  virtual void OnAssumed(const Assumed&) {}  // each time that it is looked at
 };
 
 }  // namespace rmlcell::machine

@@ -23,8 +23,9 @@ double ShareNotAbove(const Point& from, const Point& to, double height) {
 }  // namespace
 
 void CutWatch::OnRide(const Ride& ride, const Registers& registers, const CommandPlace& command) {
-  if (fast_so_far_.mm > 0.0 && !ride.plunge) EndFastPlunge();
+  if (fast_so_far_.mm > 0.0 && !ride.plunge) EndFastPlunge(ride);
   if (ride.in_work) {
+    if (!ride.plunge) cut_mm_s_ = std::max(cut_mm_s_, ride.speed_mm_s);
     OnCut(ride, registers, command);
     cutting_ = !ride.plunge || cutting_;
     return;
@@ -56,14 +57,29 @@ void CutWatch::OnCut(const Ride& ride, const Registers& registers, const Command
 void CutWatch::OnPlunge(const Ride& ride, double mm, const CommandPlace& command) {
   if (ride.as_fast_as_z && !cutting_) {
     Add(fast_so_far_, mm, command);
+    fast_mm_s_ = ride.speed_mm_s;
   } else if (mm > 0.0) {
     fast_so_far_ = {};
   }
 }
 
-void CutWatch::EndFastPlunge() {
-  Add(fast_plunge_, fast_so_far_.mm, fast_so_far_.first);
+// `next` is a cut, or leads up and away.
+void CutWatch::EndFastPlunge(const Ride& next) {
+  if (!next.in_work) {
+    Add(fast_hole_, fast_so_far_.mm, fast_so_far_.first);
+  } else if (next.speed_mm_s < fast_mm_s_) {
+    Add(fast_plunge_, fast_so_far_.mm, fast_so_far_.first);
+  }
   fast_so_far_ = {};
+}
+
+CutWatch::Way CutWatch::fast_plunge() const {
+  if (cut_mm_s_ >= fast_mm_s_) return fast_plunge_;
+  const bool hole_first =
+      fast_hole_.mm > 0.0 &&
+      (!(fast_plunge_.mm > 0.0) || fast_hole_.first.number < fast_plunge_.first.number);
+  return {.mm = fast_plunge_.mm + fast_hole_.mm,
+          .first = hole_first ? fast_hole_.first : fast_plunge_.first};
 }
 
 void CutWatch::OnTravel(const Ride& ride, const Registers& registers, const CommandPlace& command) {

@@ -30,6 +30,7 @@ class CutWatch {
     bool spindle_turns = false;
     bool plunge = false;         // straight down into the work
     bool as_fast_as_z = false;   // and as fast as Z travels
+    double speed_mm_s = 0.0;     // of a cut or a plunge
     double clamps_height = 0.0;  // of the clamps above Z 0, device units; 0: none are known
   };
   void OnRide(const Ride& ride, const Registers& registers, const CommandPlace& command);
@@ -37,10 +38,12 @@ class CutWatch {
   const Way& spindle_stands() const { return spindle_stands_; }  // in the work
   const Way& no_clearance() const { return no_clearance_; }      // across, not above the surface
   const Way& feed_not_given() const { return feed_not_given_; }  // in the work
-  // Straight down below the surface as fast as Z travels, to where the tool cuts or turns back. A
-  // fast way that a slower one goes on from ends above the material: CAM tools go down like that
-  // where a pass before has cleared the way. A step down on the way of a cut is part of the cut.
-  const Way& fast_plunge() const { return fast_plunge_; }
+  // Straight down below the surface as fast as Z travels, to where the tool cuts slower than that,
+  // or turns back in a program that cuts slower everywhere: on a machine with a slow Z that is the
+  // speed of every plunge. A fast way that a slower one goes on from ends above the material: CAM
+  // tools go down like that where a pass before has cleared the way. A step down on the way of a
+  // cut is part of the cut.
+  Way fast_plunge() const;
   // More than 1 % beside what the program asked for. A plunge that is slower harms nothing.
   const LimitedWay& feed_limited() const { return feed_limited_; }  // mm/s
   const LimitedWay& rpm_limited() const { return rpm_limited_; }
@@ -52,7 +55,7 @@ class CutWatch {
   static void AddLimited(LimitedWay& way, const SpeedLimit& limit, double mm,
                          const CommandPlace& command);
   void OnPlunge(const Ride& ride, double mm, const CommandPlace& command);
-  void EndFastPlunge();
+  void EndFastPlunge(const Ride& next);
   void OnCut(const Ride& ride, const Registers& registers, const CommandPlace& command);
   void OnTravel(const Ride& ride, const Registers& registers, const CommandPlace& command);
 
@@ -60,7 +63,10 @@ class CutWatch {
   Way no_clearance_;
   Way feed_not_given_;
   Way fast_plunge_;
+  Way fast_hole_;    // of ways down that turn back
   Way fast_so_far_;  // of a way down that may go on slower
+  double fast_mm_s_ = 0.0;
+  double cut_mm_s_ = 0.0;  // the fastest across
   LimitedWay feed_limited_;
   LimitedWay rpm_limited_;
   bool has_cut_ = false;

@@ -122,7 +122,7 @@ constexpr std::array kRows = {
     Row{{"step_fits_x", "mm", "length in X that the work would have there"}, [](const Source& s) -> Value { return Otherwise(s, s.step.work.x); }},
     Row{{"step_fits_y", "mm", "length in Y that it would have there"}, [](const Source& s) -> Value { return Otherwise(s, s.step.work.y); }},
     Row{{"step_fits_z", "mm", "depth that it would have there"}, [](const Source& s) -> Value { return Otherwise(s, s.step.work.z); }},
-    Row{{"step_lift", "mm", "with 100 units in a millimetre: how high the tool rises at most above the surface, where that is 0.2 to 0.5 mm"}, [](const Source& s) -> Value { return IfAbove0(s.step.lift_mm); }},
+    Row{{"step_lift", "mm", "with 100 units in a millimetre: how high the tool rises at most above the surface, where that is 0.2 to 0.5 mm, or less than 1 mm with heights that are round with 40"}, [](const Source& s) -> Value { return IfAbove0(s.step.lift_mm); }},
     Row{{"step_lift_at_40", "mm", "how high that would be with 40 units in a millimetre"}, [](const Source& s) -> Value { return IfAbove0(s.step.lift_there_mm); }},
     Row{{"box.amin", "deg", "least angle of the rotary axis"}, [](const Source& s) -> Value { return s.rotary ? Low(s.tool.a) : std::nullopt; }},
     Row{{"box.amax", "deg", "greatest angle of the rotary axis"}, [](const Source& s) -> Value { return s.rotary ? High(s.tool.a) : std::nullopt; }},
@@ -233,16 +233,18 @@ std::vector<machine::Figure> FiguresOf(const Device& device, const Physical& phy
   const CuttingRange& travel = device.carriage().range();
   const WorkFit fit =
       FitOf(physical.totals().work, device.carriage().lost(), origin, travel, profile.units_per_mm);
-  const Source source{.device = device,
-                      .tool = physical.totals(),
-                      .watch = physical.watch(),
-                      .mm = 1.0 / profile.units_per_mm,
-                      .origin = origin,
-                      .fit = fit,
-                      .step = GuessStep(fit, travel, device.programmed().z(), profile.units_per_mm),
-                      .rotary = profile.has_rotary,
-                      .starved = starved,
-                      .ended = ended};
+  const Source source{
+      .device = device,
+      .tool = physical.totals(),
+      .watch = physical.watch(),
+      .mm = 1.0 / profile.units_per_mm,
+      .origin = origin,
+      .fit = fit,
+      .step = GuessStep(fit, travel, {device.programmed().z(), device.programmed().z_grain()},
+                        profile.units_per_mm),
+      .rotary = profile.has_rotary,
+      .starved = starved,
+      .ended = ended};
   std::vector<machine::Figure> figures;
   for (const Row& row : kRows) {
     const Value value = row.value(source);

@@ -1,8 +1,14 @@
 #include "engine/rml1/programmed.h"
 
 #include <cmath>
+#include <numeric>
 
 namespace rmlcell::rml1 {
+namespace {
+
+constexpr double kHeightMax_units = 1e9;  // no machine is as high
+
+}  // namespace
 
 void Programmed::OnSetXY(const CommandRow& row, double x, double y) {
   ApplyEffects(row);
@@ -28,7 +34,7 @@ void Programmed::OnGroup(const AxisGroup& group) {
   const double z = target(group.has_z, group.z, now_.z);
   if (group.has_x) now_.x_extent.Add(x);
   if (group.has_y) now_.y_extent.Add(y);
-  if (group.has_z) now_.z_extent.Add(z);
+  if (group.has_z) AddHeight(z);
   GoTo(x, y, z, false);
 }
 
@@ -80,8 +86,16 @@ void Programmed::ApplyEffects(const CommandRow& row) {
 void Programmed::ToToolHeight() {
   const double z = now_.tool_down ? now_.z1 : now_.z2;
   if (z == now_.z) return;
-  now_.z_extent.Add(z);
+  AddHeight(z);
   GoTo(now_.x, now_.y, z, false);
+}
+
+void Programmed::AddHeight(double z) {
+  now_.z_extent.Add(z);
+  if (now_.z_grain == 1 || z == now_.z) return;
+  const double units = std::abs(z);
+  const bool whole = units == std::floor(units) && units < kHeightMax_units;
+  now_.z_grain = whole ? std::gcd(now_.z_grain, static_cast<std::uint32_t>(units)) : 1;
 }
 
 void Programmed::GoTo(double x, double y, double z, bool two_axis_cut) {

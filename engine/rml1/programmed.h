@@ -61,6 +61,8 @@ class Programmed {
   const Extent& x() const { return now_.x_extent; }
   const Extent& y() const { return now_.y_extent; }
   const Extent& z() const { return now_.z_extent; }
+  // Units that every height is a multiple of; 0: none but 0 was named.
+  std::uint32_t z_grain() const { return now_.z_grain; }
   double cut_length() const { return now_.cut_length; }
   double travel_length() const { return now_.travel_length; }
 
@@ -78,11 +80,13 @@ class Programmed {
     Extent x_extent;
     Extent y_extent;
     Extent z_extent;
+    std::uint32_t z_grain = 0;
     std::array<std::uint64_t, kOpCount> counts{};
   };
 
   void ApplyEffects(const CommandRow& row);
   void ToToolHeight();
+  void AddHeight(double z);
   void GoTo(double x, double y, double z, bool two_axis_cut);
 
   State now_;

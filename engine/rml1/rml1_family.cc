@@ -24,7 +24,8 @@ constexpr machine::FamilyInfo kInfo = {.id = "rml1",
                                        .default_profile = "srm-20",  // the most common one
                                        .origin_parameters = {"ORIGIN_X", "ORIGIN_Y", "Z0"},
                                        .clamps_parameter = "CLAMP_HEIGHT",
-                                       .override_max_percent = 145.0};
+                                       .override_max_percent = 145.0,
+                                       .torn = ErrorCode::kRml1IncompleteCommand};
 
 Diagnostic Plain(ErrorCode code, std::string detail) {
   return {.code = code,
@@ -97,7 +98,17 @@ class Rehearsal {
   }
 
   const Device& device() const { return device_; }
-  std::vector<machine::Figure> Figures() const { return FiguresOf(device_, physical_, true); }
+  // With what a check alone tells: where it went on and a run waits for the resume key.
+  std::vector<machine::Figure> Figures() const {
+    std::vector<machine::Figure> figures = FiguresOf(device_, physical_, true);
+    if (pauses_ == 0) return figures;
+    figures.push_back({.name = "waits_for_key",
+                       .unit = {},
+                       .value = static_cast<double>(pauses_),
+                       .first = {.step = static_cast<int>(first_pause_.number),
+                                 .byte_offset = first_pause_.offset}});
+    return figures;
+  }
 
  private:
   void Read(std::string_view part, std::int64_t offset) {
@@ -121,9 +132,10 @@ class Rehearsal {
                         .spindle_turns = device_.spindle_turns()},
                        device_.registers(), device_.command());
       tool_ = action.to;
-    } else if (action.kind == Action::Kind::kPause && pauses_told_ < kPausesMax) {
-      ++pauses_told_;
+    } else if (action.kind == Action::Kind::kPause) {
       const CommandPlace& place = device_.command();
+      if (pauses_ == 0) first_pause_ = place;
+      if (++pauses_ > kPausesMax) return;
       findings_.AddAdvice(ErrorCode::kRml1PausedAtEnd, "the machine waits for its resume key here",
                           "RML1-3C.08", {.length = 3, .byte_offset = place.offset},
                           static_cast<int>(place.number));
@@ -131,14 +143,15 @@ class Rehearsal {
   }
 
   // As the device does with advice of its own.
-  static constexpr int kPausesMax = 1000;
+  static constexpr std::uint64_t kPausesMax = 1000;
 
   const Profile& profile_;
   Findings& findings_;
   Device device_;
   Physical physical_;
   Point tool_;
-  int pauses_told_ = 0;
+  std::uint64_t pauses_ = 0;
+  CommandPlace first_pause_;
 };
 
 class MillFamily final : public machine::MachineFamily {

@@ -8,9 +8,14 @@ constexpr double kFine = 100.0;        // every later one
 constexpr double kTooLarge_mm = 0.01;  // less is rounding
 
 // Real programs for 100 units a millimetre lift by 1 mm and more, those for 40 by 1 or 2 mm: 40 or
-// 80 units. Who lifts by 0.2 to 0.5 mm here may well mean 0.5 to 1.25 mm there.
+// 80 units. Who lifts by 0.2 to 0.5 mm here may well mean 0.5 to 1.25 mm there; who lifts by less
+// than 1 mm here may, where the heights are round there and not here.
 constexpr double kLeastLift = 20.0;  // units
 constexpr double kMostLift = 50.0;
+constexpr double kMostRoundLift = 99.0;
+// People think of heights in twentieths of a millimetre: 2 units of 40, 5 of 100.
+constexpr std::uint32_t kTwentiethOfCoarse = 2;
+constexpr std::uint32_t kTwentiethOfFine = 5;
 
 // True: it is no larger than the travel when its lengths shrink so.
 bool Shrinks(WorkFit::Axis& axis, const Travel& travel, double units_per_mm, double by) {
@@ -20,8 +25,8 @@ bool Shrinks(WorkFit::Axis& axis, const Travel& travel, double units_per_mm, dou
 
 }  // namespace
 
-StepGuess GuessStep(const WorkFit& fit, const CuttingRange& travel, const Extent& programmed_z,
-                    double units_per_mm) {
+StepGuess GuessStep(const WorkFit& fit, const CuttingRange& travel,
+                    const ProgrammedHeights& heights, double units_per_mm) {
   StepGuess guess;
   const bool too_large =
       fit.x.over > kTooLarge_mm || fit.y.over > kTooLarge_mm || fit.z.over > kTooLarge_mm;
@@ -33,10 +38,13 @@ StepGuess GuessStep(const WorkFit& fit, const CuttingRange& travel, const Extent
                       Shrinks(guess.work.z, travel.z, units_per_mm, by);
     if (fits) guess.fits_at = kFine;
   }
-  const bool low = programmed_z.high >= kLeastLift && programmed_z.high <= kMostLift;
+  const bool round_there =
+      heights.grain % kTwentiethOfCoarse == 0 && heights.grain % kTwentiethOfFine != 0;
+  const double lift = heights.extent.high;
+  const bool low = lift >= kLeastLift && lift <= (round_there ? kMostRoundLift : kMostLift);
   if (units_per_mm == kFine && fit.x.known && low) {
-    guess.lift_mm = programmed_z.high / kFine;
-    guess.lift_there_mm = programmed_z.high / kCoarse;
+    guess.lift_mm = lift / kFine;
+    guess.lift_there_mm = lift / kCoarse;
   }
   return guess;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "engine/rml1/extent.h"
 #include "engine/rml1/work_fit.h"
 
@@ -16,8 +18,15 @@ struct StepGuess {
   double lift_there_mm = 0.0;
 };
 
-// `fit` of the work as it is; `programmed_z` as the program asks for it, units from the surface.
-StepGuess GuessStep(const WorkFit& fit, const CuttingRange& travel, const Extent& programmed_z,
-                    double units_per_mm);
+// The heights that a program asks for, units from the surface: their extent, and what every one of
+// them is a multiple of.
+struct ProgrammedHeights {
+  Extent extent{};
+  std::uint32_t grain = 0;
+};
+
+// `fit` of the work as it is.
+StepGuess GuessStep(const WorkFit& fit, const CuttingRange& travel,
+                    const ProgrammedHeights& heights, double units_per_mm);
 
 }  // namespace rmlcell::rml1

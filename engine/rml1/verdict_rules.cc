@@ -39,6 +39,8 @@ constexpr std::array kRules = {
                 "the work leads # mm below the travel: raise Z0"},
     VerdictRule{ErrorCode::kRml1SpindleStands, "spindle_stands_length", kRounding_mm, Verdict::kBad,
                 "# mm in the work while the spindle stands"},
+    VerdictRule{ErrorCode::kCellWaitsForever, "waits_for_key", 0.0, Verdict::kDoubtful,
+                "halts that wait for the resume key: #"},
     VerdictRule{ErrorCode::kRml1NoClearance, "no_clearance_length", kRounding_mm,
                 Verdict::kDoubtful,
                 "# mm across at travel speed, not above the surface of the work"},

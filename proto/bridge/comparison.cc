@@ -138,6 +138,14 @@ std::string NoteOf(const machine::Outcome& outcome) {
   return text;
 }
 
+// What the figures of a run leave out; empty: nothing.
+std::string LeftOut(const simulation::TrialRun& run, const machine::FamilyInfo& info) {
+  if (std::string note = NoteOf(run.outcome); !note.empty()) return note;
+  const auto torn = std::ranges::find_if(
+      run.reasons, [&](const machine::Reason& reason) { return info.torn == reason.code; });
+  return torn == run.reasons.end() ? std::string() : torn->said;
+}
+
 std::string Picture(const machine::MachineFamily& family,
                     const std::array<ComparedProgram, 2>& programs,
                     const std::array<Side, 2>& sides, const machine::Parameters& parameters,
@@ -195,6 +203,12 @@ Result<ComparisonOutcome> ComparePrograms(const ComparedProgram& before,
   if (!diff) return diff.error();
   outcome.response = MessageOf(*diff, options.changes_max);
   outcome.response.set_compared_runs(both_ran);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string note = sides[i].run ? LeftOut(*sides[i].run, family.info()) : std::string();
+    if (!note.empty()) {
+      outcome.response.add_notes(Utf8(BaseName(programs[i].file_name) + ": " + note));
+    }
+  }
   if (options.picture && sides[0].run && sides[1].run) {
     outcome.response.set_picture_svg(Picture(family, programs, sides, *parameters, options));
   }

@@ -85,7 +85,8 @@ class Sink final : public web::UploadSink {
                          .title = header_.title,
                          .etag = header_.etag,
                          .bytes = std::move(bytes_),
-                         .validate_only = header_.validate_only});
+                         .validate_only = header_.validate_only,
+                         .force = header_.force});
     if (!stored) {
       return Refused(
           bridge::ToRpcStatus(stored.error.error, stored.error.diagnostics, stored.error.dropped));

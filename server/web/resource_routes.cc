@@ -1,6 +1,7 @@
 #include "server/web/resource_routes.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "engine/core/number_text.h"
 #include "engine/core/units.h"
@@ -102,22 +103,24 @@ UploadRoute RouteUpload(const HttpRequest& request, const ProgramContentPath& pa
     return refuse(415, "compressed bodies are not offered");
 
   header.path = path;
-  std::string validate_only;
+  std::string validate_only, force;
   const std::pair<std::string_view, std::string*> parameters[] = {
-      {"file_name", &header.file_name},
-      {"title", &header.title},
-      {"sha256", &header.sha256},
-      {"etag", &header.etag},
-      {"validate_only", &validate_only}};
+      {"file_name", &header.file_name},  {"title", &header.title},
+      {"sha256", &header.sha256},        {"etag", &header.etag},
+      {"validate_only", &validate_only}, {"force", &force}};
   for (const auto& [name, target] : parameters) {
     QueryValue value = QueryParameter(request.query, name);
     if (!value.ok) return refuse(0, "the query has a malformed percent escape");
     *target = std::move(value.value).value_or("");
   }
-  if (!validate_only.empty() && validate_only != "true" && validate_only != "false") {
-    return refuse(0, "validate_only is neither true nor false");
+  const std::tuple<std::string_view, const std::string&, bool&> choices[] = {
+      {"validate_only", validate_only, header.validate_only}, {"force", force, header.force}};
+  for (const auto& [name, value, target] : choices) {
+    if (!value.empty() && value != "true" && value != "false") {
+      return refuse(0, std::string(name) + " is neither true nor false");
+    }
+    target = value == "true";
   }
-  header.validate_only = validate_only == "true";
   if (!header.sha256.empty()) {
     std::optional<std::string> digest = bridge::ReadSha256(header.sha256);
     if (!digest) return refuse(0, "sha256 is not 64 hexadecimal digits");

@@ -26,8 +26,9 @@ struct UploadRoute {
   std::optional<RpcRefusal> refusal;
 };
 
-// Query: file_name, title, sha256, etag, form, validate_only=true. A Content-Type is needed, and
-// not one that a form of a foreign page can send: application/octet-stream is the right one.
+// Query: file_name, title, sha256, etag, form, validate_only=true, force=true. A Content-Type is
+// needed, and not one that a form of a foreign page can send: application/octet-stream is the right
+// one.
 UploadRoute RouteUpload(const HttpRequest& request, const ProgramContentPath& path);
 
 }  // namespace rmlcell::web

@@ -58,6 +58,7 @@ struct UploadHeader {
   std::string sha256;      // of the query, lower-case hexadecimal; empty: not said
   std::int64_t size = -1;  // of the header Content-Length; -1: not known before the end
   bool validate_only = false;
+  bool force = false;  // what looks like no program of the machine at all, too
 };
 
 // How an upload ended: a good answer, or a status with all that there is to say.

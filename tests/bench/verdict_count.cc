@@ -88,7 +88,8 @@ int Main(std::string_view what, int strokes) {
     watch.OnRide(ride, device.registers(), device.command());
   const rml1::CuttingRange& travel = device.carriage().range();
   const rml1::WorkFit fit = rml1::FitOf(kept.work, {}, {}, travel, 100.0);
-  const rml1::StepGuess guess = rml1::GuessStep(fit, travel, device.programmed().z(), 100.0);
+  const rml1::StepGuess guess =
+      rml1::GuessStep(fit, travel, {device.programmed().z(), device.programmed().z_grain()}, 100.0);
   const std::vector<machine::Figure> figures =
       rml1::FiguresOf(device, rml1::Physical(*profile), true);
   const machine::Judgement judgement = simulation::JudgeFigures(mill, figures);

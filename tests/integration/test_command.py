@@ -35,7 +35,23 @@ class Local(InFolder):
         part = self.file("44.S", "COORD ABSOL\nMOVE (4000.,0.,0.,0.,0.)\n")
         main = self.file("45.S", "SYSDEF (-1000.,0.,-300.,0.,0.,0.)\nCALL 44\n")
         self.assertEqual(ask("check", part, main, "--errors-only").returncode, 0)
-        self.assertEqual(ask("check", part).returncode, 1)
+        # Alone it hangs on a SYSDEF that nobody told; with none it would leave the travel.
+        alone = ask("check", part)
+        self.assertEqual(alone.returncode, 0)
+        self.assertIn("44.S: DOUBTFUL", alone.stdout)
+        self.assertIn("by 400.000 mm, if no SYSDEF is in force before (OPT-E7301, program 44 step 2 line 2)", alone.stdout)
+        self.assertEqual(ask("check", part, "--strict").returncode, 1)
+
+    # docs/verdict.md: what a run would be judged by is judged before: 10 mm of WORK 0 without its beam.
+    def test_check_and_simulate_judge_alike(self):
+        cut = self.file("7.S", "COORD ABSOL\nPATH LIN\nMOVE (0.,1000.,-400.,0.,0.)\nSPEED 10\nWORK 0,0 /ON\n"
+                               "MOVE (50.,1000.,-400.,0.,0.)\nWORK 2,5 /OFF\nMOVE (60.,1000.,-400.,0.,0.)\n"
+                               "WORK 0,0 /OFF\n")
+        for verb in ("check", "simulate"):
+            done = ask(verb, cut)
+            self.assertEqual(done.returncode, 1, verb)
+            self.assertIn("BAD", done.stdout, verb)
+            self.assertIn("10.000 mm of a process that is ON with the beam off (OPT-E7414", done.stdout, verb)
 
     def test_check_says_how_far_it_came(self):
         wait = self.file("w.S", "COORD ROBOT\nWAIT (IL[16])\nMOVE (9000.,0.,0.,0.,0.)\n")

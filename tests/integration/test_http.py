@@ -41,6 +41,21 @@ class Web(WithCell):
         self.assertEqual(caught.exception.code, 400)
         self.assertEqual(json.load(caught.exception)["code"], "invalid_argument")
 
+    # RML1-E8007: what belongs to no command is refused with the reason, and stored where that is asked for.
+    def test_an_upload_of_foreign_bytes_is_refused_unless_forced(self):
+        def put(query):
+            request = urllib.request.Request(
+                f"http://127.0.0.1:{self.cell.web_port}/v1/machines/mill-1/programs/91/content?file_name=x.rml{query}",
+                b"$" * 300, {"Content-Type": "application/octet-stream"}, method="POST")
+            with urllib.request.urlopen(request, timeout=60) as answer:
+                return json.load(answer)
+        for query in ("", "&force=false"):
+            with self.assertRaises(urllib.error.HTTPError) as caught:
+                put(query)
+            self.assertEqual(caught.exception.code, 400)
+            self.assertIn("RML1-E8007", caught.exception.read().decode())
+        self.assertEqual(put("&force=true")["name"], "machines/mill-1/programs/91")
+
     def test_json_by_post_answers_like_the_call(self):
         machines = self.post("rmlcell.v1.MachineService/ListMachines", {})["machines"]
         self.assertEqual([machine["name"] for machine in machines], ["machines/mill-1", "machines/optimo-1"])

@@ -185,6 +185,16 @@ class Families(InFolder):
         run("diff", a, deeper, "--svg", self.folder / "d.svg", "--profile", "srm-20", code=1)
         self.assertIn("<svg", (self.folder / "d.svg").read_text())
 
+    # What is known is said, with a note of what is not.
+    def test_diff_of_streams_that_do_not_get_to_their_end(self):
+        a = self.file("a.rml", "VS10;!VZ10;!PZ-100,200;!MC1;PU0,0;PD400,0;PU;!MC0;")
+        torn = ask("diff", a, self.file("b.rml", "VS10;!VZ10;!PZ-100,200;!MC1;PU0,0;PD200,0;PU;!MC"))
+        self.assertEqual(torn.returncode, 1)
+        self.assertIn("cut_length  7 -> 5 mm", torn.stdout)  # 3 mm down, and 4 or 2 mm across
+        self.assertIn("b.rml: the data ends inside a command", torn.stderr)
+        halted = ask("diff", a, self.file("c.rml", "VS10;!VZ10;!PZ-100,200;!MC1;PU0,0;PD400,0;!NR;PU;!MC0;"))
+        self.assertIn("no figures: c.rml: stopped at 1/7, CELL-E9308", halted.stderr)
+
     def test_diff_refuses_what_cannot_be_compared(self):
         a = self.file("a.rml", STREAM)
         done = ask("diff", a, self.file("12.S", "SPEED 20\n"))

@@ -54,6 +54,14 @@ class CommandLine(InFolder):
         run("link", main, "-o", self.folder / "no.X", code=1)
         self.assertFalse((self.folder / "no.X").exists())
 
+    def test_link_without_a_name_writes_beside_the_program(self):
+        main = self.file("12.S", "FUNCTION 44\n")
+        self.file("44.S", "VR[0] = 1.\nENDTASK\n")
+        run("link", main, self.folder)
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["12.S", "12.X", "44.S"])
+        run("link", main, self.folder, "-o", self.folder / "named.X")
+        self.assertEqual((self.folder / "12.X").read_bytes(), (self.folder / "named.X").read_bytes())
+
     # OPT-9.02: only what is called is compiled, near and far.
     def test_link_leaves_programs_alone_that_nobody_calls(self):
         main = self.file("90.S", "FUNCTION 44\n")
@@ -100,6 +108,19 @@ class CommandLine(InFolder):
         run("convert", self.folder / "part.S", self.folder / "back")
         for got, wanted in zip(first_move((self.folder / "back.SI").read_text()), [1, 2, -3, 90, 0]):
             self.assertAlmostEqual(got, wanted, places=4)
+
+    # OPT-8.54: 1 in is 25.4 mm; to a file of another name, and to standard output, with nothing else written.
+    def test_convert_writes_where_it_is_told(self):
+        source = self.file("part.SI", "MOVE (1.,2.,-3.,0.,0.)\n")
+        run("convert", source, "-o", self.folder / "there.S")
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["part.SI", "there.S"])
+        told = run("convert", source, "-o", "-")
+        # The first line has the name of the file that it was made for.
+        body = told.split("\n", 1)[1]
+        self.assertEqual(body, (self.folder / "there.S").read_text().split("\n", 1)[1])
+        for got, wanted in zip(numbers(body), [25.4, 50.8, -76.2], strict=False):
+            self.assertAlmostEqual(got, wanted, places=5)
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["part.SI", "there.S"])
 
     # OPT-8.58, OPT-8.66
     def test_convert_refuses_contradictions_and_writes_nothing(self):
@@ -261,7 +282,7 @@ class CommandLine(InFolder):
         self.assertEqual(source.read_bytes(), wrong.encode())
         self.assertIn("+\tSPEED   20\t; slow", patch)
         done = run("check", "--fix", source)
-        self.assertIn("a.S: 2 fixed, 0 left, can be stored", done)
+        self.assertIn("a.S: 2 fixed, GOOD\n", done)
         self.assertEqual(done.count("fixed  "), 2)
         self.assertEqual(source.read_bytes(), b"\tSPEED   20\t; slow\r\nMOVE (1000.,900.,-500.,0.,0.) ; x\r\n")
         self.assertEqual(source.stat().st_mode & 0o777, 0o640)
@@ -271,11 +292,20 @@ class CommandLine(InFolder):
 
     def test_check_fix_leaves_what_it_cannot_repair_and_refuses_binaries(self):
         source = self.file("a.S", "SPEDE 20\nSPEED 101\n")
-        self.assertIn("1 fixed, 1 left, has errors", run("check", "--fix", source, code=1))
+        left = run("check", "--fix", source, code=1)
+        self.assertIn("1 fixed, BAD, 1 finding\n", left)
+        self.assertIn("(OPT-E7004, step 2 line 2)", left)
         self.assertEqual(source.read_text(), "SPEED 20\nSPEED 101\n")
         answer = json.loads(run("check", "--fix", "--json", self.file("b.S", "SPEDE 20\n")))
         self.assertEqual([finding["place"]["line"] for finding in answer["fixed"]], [1])
         self.assertTrue(answer["findings"]["ok"])
+        self.assertEqual(answer["findings"]["verdict"], "VERDICT_GOOD")
+        # What is judged of the motion is judged of what was repaired: 400 mm beyond the travel.
+        far = self.file("c.S", "COORD ROBOT\nSPEDE 20\nMOVE (4000.,0.,0.,0.,0.)\n")
+        self.assertIn("1 fixed, BAD, 1 finding\n", run("check", "--fix", far, code=1))
+        doubt = "COORD ABSOL\nSPEDE 20\nMOVE (4000.,0.,0.,0.,0.)\n"
+        self.assertIn("1 fixed, DOUBTFUL, 1 finding\n", run("check", "--fix", self.file("d.S", doubt)))
+        run("check", "--fix", "--strict", self.file("e.S", doubt), code=1)
         run("compile", self.file("12.S", LINE))
         for name in ["12.O", "m.rml", "zero.S"]:
             path = self.folder / name

@@ -74,9 +74,28 @@ bool DataAccess::IsOfTheRun(Variable variable) const {
 }
 
 float DataAccess::Read(Variable variable) {
+  const bool of_the_run = IsOfTheRun(variable);
+  const float value = ValueOf(variable);
+  if (!of_the_run) {
+    s_.relied_on_what_was = true;
+    TellAssumed(variable, value);
+  }
+  return value;
+}
+
+void DataAccess::TellAssumed(Variable variable, float value) const {
+  machine::Assumed assumed{
+      .group = GroupName(variable.group), .index = variable.index, .value = value};
+  assumed.on_off = variable.group == VariableGroup::kVl || variable.group == VariableGroup::kIl ||
+                   variable.group == VariableGroup::kOl;
+  if (variable.group == VariableGroup::kIl) assumed.input = machine::InputKind::kLogical;
+  if (variable.group == VariableGroup::kIa) assumed.input = machine::InputKind::kAnalogue;
+  observer_.OnAssumed(assumed);
+}
+
+float DataAccess::ValueOf(Variable variable) {
   DataArea& data = s_.area;
   const auto n = static_cast<std::size_t>(variable.index);
-  if (!IsOfTheRun(variable)) s_.relied_on_what_was = true;
   switch (variable.group) {
     case VariableGroup::kVr:
       return data.vr[n];

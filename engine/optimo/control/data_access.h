@@ -26,13 +26,15 @@ struct DataState {
 class DataAccess : private VariableAccess {
  public:
   DataAccess(DataState& state, const Situation& situation, const OptimoParameters& parameters,
-             ProgramCounter& counter, const Ride& ride, PassageEffects& effects)
+             ProgramCounter& counter, const Ride& ride, PassageEffects& effects,
+             machine::RunObserver& observer)
       : s_(state),
         situation_(situation),
         parameters_(parameters),
         counter_(counter),
         ride_(ride),
-        effects_(effects) {}
+        effects_(effects),
+        observer_(observer) {}
 
   // Precondition: the instruction is one of those above. Errors: of the expression,
   // IntegerOverflow, AssignGroup, Gas3NotFitted.
@@ -75,7 +77,9 @@ class DataAccess : private VariableAccess {
 
  private:
   float Read(Variable variable) override;
+  float ValueOf(Variable variable);
   bool IsOfTheRun(Variable variable) const;
+  void TellAssumed(Variable variable, float value) const;
   Status Write(Variable variable, float number);
   Status SetOutput(int index, bool on);
   Status Let(const Instruction& i);
@@ -90,6 +94,7 @@ class DataAccess : private VariableAccess {
   ProgramCounter& counter_;
   const Ride& ride_;
   PassageEffects& effects_;
+  machine::RunObserver& observer_;
 };
 
 }  // namespace rmlcell::optimo

@@ -10,6 +10,7 @@ namespace rmlcell::optimo {
 namespace {
 
 constexpr double kPercent = 0.01;
+constexpr int kRotaryFirst = 3;              // axis A
 constexpr double kAccelLeast_percent = 0.1;  // OPT-B.22
 
 motion::MoveCommand::Kind KindOf(PathType path, CoordType coord) {
@@ -270,6 +271,9 @@ Result<bool> Moves::Append(const Instruction& i, const motion::PathPiece& path, 
   if (!beyond) return beyond.error();
   note.beyond = *std::move(beyond);
   const Modal& modal = counter_.modal();
+  // SYSDEF leaves A and B as they are programmed (OPT-7.28).
+  for (BeyondTravel& one : note.beyond)
+    one.by_work_offset = modal.coord == CoordType::kAbsol && one.axis < kRotaryFirst;
   motion::MoveCommand command{.kind = KindOf(note.path, modal.coord),
                               .path = path,
                               .head = ride_.head(),

@@ -23,24 +23,26 @@ constexpr std::array kBySpeed = {ErrorCode::kNoMotion};
 constexpr std::array kNotGiven = {ErrorCode::kProgramMissing, ErrorCode::kFunctionMissing,
                                   ErrorCode::kCallNotExecutable};
 
-constexpr machine::FamilyInfo kInfo = {
-    .id = "optimo",
-    .title = "Amada OPTIMO 5-axis laser",
-    .extensions = ".S .SI .CMP .O",
-    .axes = "X Y Z A B",
-    .editor_language = "optimo-rml",
-    .has_executables = true,
-    .schedules = 63,  // OPT-3.44
-    .checked_by_running = true,
-    .hold_in_remote = false,  // OPT-4.17
-    .override_max_percent = 145.0,
-    .no_slot = ErrorCode::kProgramNumber,
-    .empty_slot = ErrorCode::kProgramMissing,
-    .no_schedule = ErrorCode::kScheduleRange,
-    .travel_left = ErrorCode::kTargetOutOfTravel,
-    .given_twice = ErrorCode::kProjectDuplicate,
-    .no_source = ErrorCode::kProjectSource,
-    .check = {.of_motion = kOfMotion, .by_speed = kBySpeed, .not_given = kNotGiven}};
+constexpr machine::CheckCodes kCheck = {
+    .of_motion = kOfMotion, .by_speed = kBySpeed, .not_given = kNotGiven, .work_offset = "SYSDEF"};
+
+constexpr machine::FamilyInfo kInfo = {.id = "optimo",
+                                       .title = "Amada OPTIMO 5-axis laser",
+                                       .extensions = ".S .SI .CMP .O",
+                                       .axes = "X Y Z A B",
+                                       .editor_language = "optimo-rml",
+                                       .has_executables = true,
+                                       .schedules = 63,  // OPT-3.44
+                                       .checked_by_running = true,
+                                       .hold_in_remote = false,  // OPT-4.17
+                                       .override_max_percent = 145.0,
+                                       .no_slot = ErrorCode::kProgramNumber,
+                                       .empty_slot = ErrorCode::kProgramMissing,
+                                       .no_schedule = ErrorCode::kScheduleRange,
+                                       .travel_left = ErrorCode::kTargetOutOfTravel,
+                                       .given_twice = ErrorCode::kProjectDuplicate,
+                                       .no_source = ErrorCode::kProjectSource,
+                                       .check = kCheck};
 
 constexpr std::array kCounts = {
     machine::FigureInfo{"lookahead_starved", "",

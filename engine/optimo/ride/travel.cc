@@ -90,6 +90,7 @@ void Travel::TellViolations(const machine::Place& place, const std::vector<Beyon
                                      .axis = one.axis,
                                      .excess = one.excess,
                                      .at_target = one.at_target,
+                                     .by_work_offset = one.by_work_offset,
                                      .axes = one.axes,
                                      .tip = HeadOf(situation_.tool, parameters_).TipOf(one.axes)});
   }

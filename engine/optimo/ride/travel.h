@@ -23,7 +23,8 @@ struct BeyondTravel {
   int axis = 0;
   double excess = 0.0;  // the worst of the motion, mm or rad
   bool at_target = false;
-  motion::AxisPose axes{};  // where it is worst
+  bool by_work_offset = false;  // of a MOVE in COORD ABSOL: SYSDEF shifts it
+  motion::AxisPose axes{};      // where it is worst
 };
 
 struct TravelState {

@@ -8,6 +8,7 @@
 #include "engine/core/number_text.h"
 #include "engine/simulation/picture/picture_panel.h"
 #include "engine/simulation/picture/svg_shapes.h"
+#include "engine/simulation/picture/text_width.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -121,10 +122,17 @@ class DifferencePage {
                Colour("fill", "#ffffff"));
     AppendLine(body_, {0, kDifferenceHeader}, {static_cast<double>(width_), kDifferenceHeader},
                Colour("stroke", kRule) + " stroke-width=\"1\"");
+    const TextStyle large{.size = 26.0, .bold = true};
+    const std::string arrow = "  →  ";
+    const double room = width_ - 2.0 * kPageMargin - TextWidth(arrow, large);
+    // What the one leaves the other may have; where both are long, half.
+    const auto room_beside = [&](const std::string& other) {
+      return std::max(0.5 * room, room - TextWidth(other, large));
+    };
     AppendText(body_, {kPageMargin, 44.0},
-               Shortened(before_.title, kDifferenceTitleMax) + "  →  " +
-                   Shortened(after_.title, kDifferenceTitleMax),
-               {.size = 26.0, .bold = true});
+               Fitted(before_.title, room_beside(after_.title), large) + arrow +
+                   Fitted(after_.title, room_beside(before_.title), large),
+               large);
     AppendText(body_, {kPageMargin, 70.0},
                same_path() ? "both run along the same path"
                            : "removed: the first alone runs there; added: the second alone",

@@ -7,6 +7,7 @@
 #include "engine/families/families.h"
 #include "engine/simulation/picture/picture_panel.h"
 #include "engine/simulation/picture/svg_shapes.h"
+#include "engine/simulation/picture/text_width.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -15,7 +16,6 @@ constexpr double kPictureHeader = 92.0;
 constexpr double kPictureColumn = 282.0;  // beside the panels
 constexpr double kPictureFooter = 30.0;
 constexpr int kPictureWidthMin = 640;
-constexpr std::size_t kPictureTitleMax = 60;  // characters of a title that fit
 
 constexpr std::size_t kReasonsDrawn = 4;
 constexpr std::size_t kReasonLine = 38;  // characters that fit beside the picture
@@ -121,15 +121,18 @@ class PageWriter {
     AppendRect(body_, {0, 0, static_cast<double>(width_), kPictureHeader}, "fill=\"#ffffff\"");
     AppendLine(body_, {0, kPictureHeader}, {static_cast<double>(width_), kPictureHeader},
                "stroke=\"#d3dae1\" stroke-width=\"1\"");
-    AppendText(body_, {kPageMargin, 44.0}, Shortened(TitleText(), kPictureTitleMax),
-               {.size = 26.0, .bold = true});
+    const double right = width_ - kPageMargin;
+    const std::string duration = DurationText(report_.cycle_time);
+    const TextStyle large{.size = 26.0, .bold = true};
+    AppendText(
+        body_, {kPageMargin, 44.0},
+        Fitted(TitleText(), right - kPageMargin - kTextGap - TextWidth(duration, large), large),
+        large);
     const machine::MachineFamily* family = families::FindFamily(report_.family);
     std::string machine = family != nullptr ? std::string(family->info().title) : report_.family;
     if (!report_.profile.empty()) machine += ", " + report_.profile;
     AppendText(body_, {kPageMargin, 70.0}, machine, {.size = 14.0, .colour = kFaint});
-    const double right = width_ - kPageMargin;
-    AppendText(body_, {right, 44.0}, DurationText(report_.cycle_time),
-               {.size = 26.0, .anchor = "end", .bold = true});
+    AppendText(body_, {right, 44.0}, duration, {.size = 26.0, .anchor = "end", .bold = true});
     AppendText(body_, {right, 70.0}, "cycle time",
                {.size = 14.0, .colour = kFaint, .anchor = "end"});
   }

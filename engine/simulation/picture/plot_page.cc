@@ -8,6 +8,7 @@
 #include "engine/simulation/picture/picture_page.h"
 #include "engine/simulation/picture/picture_view.h"
 #include "engine/simulation/picture/svg_shapes.h"
+#include "engine/simulation/picture/text_width.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -171,8 +172,13 @@ void PlotPage::DrawHeader() {
   AppendRect(body_, {0, 0, page_width_, kPlotHeader}, "fill=\"#ffffff\"");
   AppendLine(body_, {0, kPlotHeader}, {page_width_, kPlotHeader},
              "stroke=\"#d3dae1\" stroke-width=\"1\"");
-  AppendText(body_, {kPageMargin, 40.0}, report_.title.empty() ? "Plot" : report_.title,
-             {.size = 24.0, .bold = true});
+  const double right = page_width_ - kPageMargin;
+  const std::string duration = DurationText(report_.cycle_time);
+  const TextStyle large{.size = 24.0, .bold = true};
+  const std::string title = report_.title.empty() ? "Plot" : report_.title;
+  AppendText(body_, {kPageMargin, 40.0},
+             Fitted(title, right - kPageMargin - kTextGap - TextWidth(duration, large), large),
+             large);
   std::string outcome(OutcomeText(report_.outcome.kind));
   std::replace(outcome.begin(), outcome.end(), '_', ' ');
   if (report_.outcome.code) outcome += "  " + CodeText(*report_.outcome.code);
@@ -180,13 +186,14 @@ void PlotPage::DrawHeader() {
   outcome = std::string(machine::VerdictText(judged.verdict)) + ", " + outcome;
   if (!judged.reasons.empty())
     outcome += ": " + Shortened(judged.reasons.front().said, kReasonPlotted);
-  AppendText(
-      body_, {kPageMargin, 64.0}, outcome,
-      {.size = 14.0, .colour = judged.verdict == machine::Verdict::kGood ? kFaint : "#b42318"});
-  const double right = page_width_ - kPageMargin;
-  AppendText(body_, {right, 40.0}, DurationText(report_.cycle_time),
-             {.size = 24.0, .anchor = "end", .bold = true});
-  AppendText(body_, {right, 64.0}, "cycle time", {.size = 14.0, .colour = kFaint, .anchor = "end"});
+  const TextStyle small{.size = 14.0,
+                        .colour = judged.verdict == machine::Verdict::kGood ? kFaint : "#b42318"};
+  constexpr std::string_view kCaption = "cycle time";
+  AppendText(body_, {kPageMargin, 64.0},
+             Fitted(outcome, right - kPageMargin - kTextGap - TextWidth(kCaption, small), small),
+             small);
+  AppendText(body_, {right, 40.0}, duration, {.size = 24.0, .anchor = "end", .bold = true});
+  AppendText(body_, {right, 64.0}, kCaption, {.size = 14.0, .colour = kFaint, .anchor = "end"});
 }
 
 void PlotPage::DrawTimeGrid(double top, double bottom) {

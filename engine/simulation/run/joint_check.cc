@@ -47,6 +47,10 @@ void Deal(const MotionCheck& check, const Owners& owners) {
     const auto owner = owners.find(finding.program);
     if (owner != owners.end()) owner->second->motion.findings.push_back(finding);
   }
+  for (const machine::Reason& reason : check.reasons) {
+    const auto owner = owners.find(reason.first.program);
+    if (owner != owners.end()) owner->second->motion.reasons.push_back(reason);
+  }
   for (const auto& [slot, why] : check.cut_short) {
     const auto owner = owners.find(slot);
     if (owner != owners.end()) owner->second->motion.cut_short[slot] = why;

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "engine/machine/observer.h"
 #include "engine/simulation/report/finding_list.h"
+#include "engine/simulation/run/assumptions.h"
 #include "engine/simulation/run/drive.h"
+#include "engine/simulation/run/recorder.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -16,42 +19,84 @@ bool Contains(std::span<const ErrorCode> codes, ErrorCode code) {
   return std::ranges::find(codes, code) != codes.end();
 }
 
+machine::Place PlaceOf(const Diagnostic& finding) {
+  return {.program = finding.program,
+          .step = finding.step,
+          .line = finding.where.line,
+          .byte_offset = finding.where.byte_offset};
+}
+
 // What one run tells about its motion, and which programs take part.
 class MotionListener final : public machine::RunObserver {
  public:
-  explicit MotionListener(const machine::CheckCodes& codes) : codes_(codes) {}
+  MotionListener(const machine::FamilyInfo& info, const machine::InputScript& inputs)
+      : info_(info), assumptions_(inputs) {}
 
-  void OnStep(SimTime /*at*/, const machine::Place& place,
-              std::string_view /*instruction*/) override {
+  void OnStep(SimTime /*at*/, const machine::Place& place, std::string_view instruction) override {
     if (place.program != last_program_) reached_.insert(place.program);
     last_program_ = place.program;
+    if (!info_.check.work_offset.empty() && instruction == info_.check.work_offset)
+      offset_set_ = true;
+  }
+  void OnAssumed(const machine::Assumed& assumed) override { assumptions_.Add(assumed); }
+  void OnViolation(const machine::TravelViolation& violation) override {
+    if (!violation.by_work_offset) anywhere_ = true;
   }
   void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override {
-    if (!Contains(codes_.of_motion, diagnostic.code)) return;
+    const machine::CheckCodes& codes = info_.check;
+    if (!Contains(codes.of_motion, diagnostic.code)) return;
     Diagnostic told = diagnostic;
     // With what comes from outside the speed may be another.
-    if (Contains(codes_.by_speed, told.code)) told.severity = Severity::kWarning;
+    if (Contains(codes.by_speed, told.code)) told.severity = Severity::kWarning;
+    const bool of_travel = told.code == info_.travel_left;
+    const bool by_offset = of_travel && !std::exchange(anywhere_, false) && !offset_set_;
+    const std::string assumed = by_offset ? NoOffset() : assumptions_.Text();
+    if (IsError(told.severity) && !assumed.empty()) {
+      told.severity = Severity::kWarning;
+      told.detail += assumed;
+      if (std::ranges::find(doubts_, told.code, &machine::Reason::code) == doubts_.end()) {
+        doubts_.push_back({.code = told.code,
+                           .verdict = machine::Verdict::kDoubtful,
+                           .said = told.detail,
+                           .first = PlaceOf(told)});
+      }
+    }
     findings_.Add(at, told);
   }
 
   const FindingList& findings() const { return findings_; }
   const std::set<int>& reached() const { return reached_; }
+  const Assumptions& assumptions() const { return assumptions_; }
+  // Errors that hang on something that was assumed: the first of each code.
+  const std::vector<machine::Reason>& doubts() const { return doubts_; }
 
  private:
-  const machine::CheckCodes& codes_;
+  std::string NoOffset() const {
+    return ", if no " + std::string(info_.check.work_offset) + " is in force before";
+  }
+
+  const machine::FamilyInfo& info_;
   FindingList findings_;
+  Assumptions assumptions_;
+  std::vector<machine::Reason> doubts_;
   std::set<int> reached_;
   int last_program_ = -1;
+  bool offset_set_ = false;  // by the run
+  bool anywhere_ = false;    // an axis leaves its travel whatever the work offset is
 };
 
 struct CheckedRun {
-  explicit CheckedRun(const machine::FamilyInfo& info) : listener(info.check) {}
+  CheckedRun(const machine::FamilyInfo& info, const machine::InputScript& inputs)
+      : listener(info, inputs) {}
 
   MotionListener listener;
   std::string cut_short;
   machine::Outcome outcome;
   SimTime ended_at{0};
-  bool for_sure = false;  // it failed, and so does every other
+  bool for_sure = false;     // it failed, and so does every other
+  int starts = 0;            // halts that the check ended: a run waits there for somebody
+  machine::Place halted_at;  // the first of them
+  std::vector<machine::Reason> reasons;
 };
 
 // Whether every run of these programs fails as this one did. That a program or FUNCTION is missing
@@ -86,27 +131,70 @@ std::string WhyCutShort(const machine::FamilyInfo& info, const machine::Outcome&
   return text;
 }
 
+// By what the figures of a run are judged. How it ended, and that it leaves the travel, is told
+// with its place by the findings.
+std::vector<machine::Reason> ReasonsOf(const RunReport& report, const machine::FamilyInfo& info,
+                                       const MotionListener& listener) {
+  std::vector<machine::Reason> reasons = listener.doubts();
+  const std::string assumed = listener.assumptions().Text();
+  for (machine::Reason reason : report.judgement.reasons) {
+    if (reason.code == report.outcome.code || reason.code == info.travel_left) continue;
+    if (reason.verdict == machine::Verdict::kBad && !assumed.empty()) {
+      reason.verdict = machine::Verdict::kDoubtful;
+      reason.said += assumed;
+    }
+    reasons.push_back(std::move(reason));
+  }
+  return reasons;
+}
+
 Status RunForCheck(const machine::MachineFamily& family, machine::RunSetup setup,
                    CheckedRun& checked) {
   setup.mode = machine::Mode::kCycle;
   setup.forecast = true;
   setup.budget = {.steps = kCheckStepsMax, .virtual_time = kCheckTimeMax};
-  std::vector<SimTime> input_times;
-  for (const machine::InputChange& input : setup.inputs) input_times.push_back(input.at);
-  const auto run = family.NewRun(std::move(setup), checked.listener);
+  InputDescription inputs{.family = std::string(family.info().id)};
+  for (const machine::InputChange& input : setup.inputs) inputs.input_times.push_back(input.at);
+  Recorder recorder(family.Shape(setup.parameters), inputs, {.also = &checked.listener});
+  const auto run = family.NewRun(std::move(setup), recorder);
   if (!run) return run.error();
-  // No report is made: that would take more time than the run.
-  Drive drive(**run, input_times);
+  Drive drive(**run, inputs.input_times);
   while (drive.Step(kCheckTimeMax) != machine::RunPhase::kFinished) {
-    if (drive.phase() == machine::RunPhase::kHalted && !drive.Start()) {
+    if (drive.phase() != machine::RunPhase::kHalted) continue;
+    const machine::Place here = (*run)->state().place;
+    if (!drive.Start()) {
       drive.End(machine::OutcomeKind::kStopped, ErrorCode::kCellWaitsForever);
+    } else if (checked.starts++ == 0) {
+      checked.halted_at = here;
     }
   }
+  recorder.Finish(**run);
   checked.outcome = (*run)->outcome();
   checked.for_sure = FailsForSure(family.info(), **run);
   checked.ended_at = (*run)->state().time;
   checked.cut_short = WhyCutShort(family.info(), checked.outcome);
+  checked.reasons = ReasonsOf(recorder.Report(**run), family.info(), checked.listener);
+  if (checked.starts > 0 && checked.outcome.code != ErrorCode::kCellWaitsForever) {
+    checked.reasons.push_back(
+        {.code = ErrorCode::kCellWaitsForever,
+         .verdict = machine::Verdict::kDoubtful,
+         .said = "halts that wait for START: " + std::to_string(checked.starts),
+         .amount = static_cast<double>(checked.starts),
+         .first = checked.halted_at});
+  }
   return {};
+}
+
+// Two runs that call the same program may say the same of it: the more serious counts.
+void AddReason(machine::Reason reason, std::vector<machine::Reason>& reasons) {
+  const auto same = std::ranges::find_if(reasons, [&](const machine::Reason& other) {
+    return other.code == reason.code && other.first.program == reason.first.program;
+  });
+  if (same == reasons.end()) {
+    reasons.push_back(std::move(reason));
+  } else if (std::tie(reason.verdict, reason.amount) > std::tie(same->verdict, same->amount)) {
+    *same = std::move(reason);
+  }
 }
 
 }  // namespace
@@ -120,7 +208,7 @@ Result<MotionCheck> CheckMotion(const machine::MachineFamily& family,
   for (const int slot : slots) {
     machine::RunSetup one = setup;
     one.main_program = slot;
-    CheckedRun& run = runs.try_emplace(slot, family.info()).first->second;
+    CheckedRun& run = runs.try_emplace(slot, family.info(), setup.inputs).first->second;
     if (const Status ran = RunForCheck(family, std::move(one), run); !ran) return ran.error();
     for (const int program : run.listener.reached()) {
       if (program != slot) called.insert(program);
@@ -135,6 +223,10 @@ Result<MotionCheck> CheckMotion(const machine::MachineFamily& family,
     if (!run.cut_short.empty()) check.cut_short[slot] = run.cut_short;
     for (const Finding& finding : run.listener.findings().findings()) {
       all.Add(finding.first_at, finding.diagnostic);
+    }
+    for (machine::Reason reason : run.reasons) {
+      if (reason.first.program == 0) reason.first.program = slot;
+      AddReason(std::move(reason), check.reasons);
     }
     if (run.for_sure) all.Add(run.ended_at, DiagnosticOf(run.outcome));
     check.findings_dropped += run.listener.findings().dropped();

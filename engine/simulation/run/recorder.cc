@@ -89,6 +89,9 @@ void Recorder::OnViolation(const machine::TravelViolation& violation) {
 void Recorder::OnDiagnostic(SimTime at, const Diagnostic& diagnostic) {
   state_->All([&](machine::RunObserver& to) { to.OnDiagnostic(at, diagnostic); });
 }
+void Recorder::OnAssumed(const machine::Assumed& assumed) {
+  state_->All([&](machine::RunObserver& to) { to.OnAssumed(assumed); });
+}
 
 void Recorder::Begin(const machine::Run& run) {
   const machine::RunState state = run.state();

@@ -46,6 +46,7 @@ class Recorder final : public machine::RunObserver {
   void OnMessage(SimTime at, const machine::Place& place, std::string_view text) override;
   void OnViolation(const machine::TravelViolation& violation) override;
   void OnDiagnostic(SimTime at, const Diagnostic& diagnostic) override;
+  void OnAssumed(const machine::Assumed& assumed) override;
 
   // Once, before the run goes on: where the machine stands.
   void Begin(const machine::Run& run);

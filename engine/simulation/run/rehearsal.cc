@@ -128,8 +128,15 @@ Result<MotionCheck> CheckMotionOf(const ProgramMemory& memory,
 machine::Judgement JudgeCheck(const machine::MachineFamily& family,
                               const machine::Translation& translation, const MotionCheck& motion) {
   if (!translation.ok) return JudgeFindings(translation.diagnostics);
-  if (motion.has_errors()) return JudgeFindings(motion.findings);
-  machine::Judgement judgement = JudgeFigures(family, translation.figures);
+  machine::Judgement judgement = motion.has_errors() ? JudgeFindings(motion.findings)
+                                                     : JudgeFigures(family, translation.figures);
+  for (const machine::Reason& reason : motion.reasons) {
+    // An error that is sure in one place, too, is told as that.
+    if (std::ranges::find(judgement.reasons, reason.code, &machine::Reason::code) ==
+        judgement.reasons.end())
+      judgement.Add(reason);
+  }
+  if (motion.has_errors()) return judgement;
   for (const auto& [slot, why] : motion.cut_short) {
     judgement.Add({.code = ErrorCode::kCellCheckCutShort,
                    .verdict = machine::Verdict::kDoubtful,

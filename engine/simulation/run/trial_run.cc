@@ -15,6 +15,7 @@ Result<TrialRun> RunForComparison(const machine::MachineFamily& family, machine:
   if (!result) return result.error();
   const RunReport& report = result->report;
   run.outcome = report.outcome;
+  run.reasons = report.judgement.reasons;
   if (report.outcome.kind == machine::OutcomeKind::kCompleted) {
     run.figures = {{"cycle_time", "s", ToSeconds(report.cycle_time)},
                    {"cut_length", "mm", report.total.cut_mm},

@@ -11,6 +11,7 @@ namespace rmlcell::simulation {
 // A run whose figures and path are compared with those of another one.
 struct TrialRun {
   machine::Outcome outcome;
+  std::vector<machine::Reason> reasons;  // of its verdict
   // "cycle_time" s, "cut_length" mm, "travel_length" mm, "beam_on_time" s, "pierces",
   // "beam_energy" J; none when the program did not run to its end by itself.
   std::vector<machine::Figure> figures;

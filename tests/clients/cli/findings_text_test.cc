@@ -84,6 +84,25 @@ TEST(FindingsText, ARefusalSaysWhyAndGivesTheCodeOfWrongUse) {
   EXPECT_EQ(told.exit_code, 2);
   EXPECT_EQ(told.output, "");
   EXPECT_EQ(told.errors, "rmlcell: CELL-E9026: no program; see --help\n");
+  // So of every wrong request: the detail alone, without what wrong requests are in general. Where
+  // there is no detail, that is all there is to say.
+  const auto refused = [](ErrorCode code, const std::string& detail) {
+    return Hear([&] { return Refuse({code, detail, {}}); }).errors;
+  };
+  const CatalogueEntry& entry = Lookup(ErrorCode::kCellInvalidArgument);
+  const std::string advice =
+      entry.advice.empty() ? std::string() : "; " + std::string(entry.advice);
+  EXPECT_EQ(refused(ErrorCode::kCellInvalidArgument, "'foo' is no tool"),
+            "rmlcell: CELL-E9003: 'foo' is no tool\n");
+  EXPECT_EQ(refused(ErrorCode::kCellInvalidArgument, ""),
+            "rmlcell: CELL-E9003: " + std::string(entry.when) + advice + "\n");
+}
+
+TEST(FindingsText, ARefusalOfAnotherKindSaysWhatHappenedToo) {
+  const CatalogueEntry& entry = Lookup(ErrorCode::kCellEmptyProgram);
+  const Told told = Hear([] { return Refuse({ErrorCode::kCellEmptyProgram, "a.S", {}}); });
+  EXPECT_TRUE(told.errors.starts_with("rmlcell: CELL-E9017: " + std::string(entry.when) + ": a.S"))
+      << told.errors;
 }
 
 }  // namespace

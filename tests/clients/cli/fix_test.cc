@@ -10,6 +10,8 @@
 #include <random>
 #include <sstream>
 
+#include "engine/families/families.h"
+#include "proto/bridge/findings.h"
 #include "tests/clients/cli/cli_folder.h"
 
 namespace rmlcell::cli {
@@ -41,12 +43,21 @@ machine::Translation CheckWords(const machine::SourceFile& file) {
   return found;
 }
 
+// Judged as a check does, of a program without motion.
+FixCheck Check(const std::function<machine::Translation(const machine::SourceFile&)>& translate,
+               const simulation::MotionCheck& motion = {}) {
+  return {translate, [motion](const machine::Translation& left) -> Result<FixCheck::Left> {
+            return FixCheck::Left{
+                motion, bridge::FindingsOf(*families::FindFamily("optimo"), left, motion, 1)};
+          }};
+}
+
 class FixFileTest : public testing::Test {
  protected:
   // Fixes a file with this text in the folder.
   Told Fix(const std::string& text, const FixOptions& options) {
     const std::string file = folder.Put("a.S", text);
-    return Hear([&] { return FixFile(file, text, CheckWords, options); });
+    return Hear([&] { return FixFile(file, text, Check(CheckWords), options); });
   }
   CliFolder folder;
 };
@@ -56,8 +67,7 @@ TEST_F(FixFileTest, WritesWhatIsRepairedAndSaysSo) {
   EXPECT_EQ(told.exit_code, 0);
   EXPECT_EQ(folder.Read("a.S"), "SPEED 20\r\n\tSPEED 30 ; slow");
   EXPECT_THAT(told.output, HasSubstr("fixed  " + folder.File("a.S") + ":1:1: error OPT-E7011"));
-  EXPECT_TRUE(told.output.ends_with(folder.File("a.S") + ": 2 fixed, 0 left, can be stored\n"))
-      << told.output;
+  EXPECT_TRUE(told.output.ends_with(folder.File("a.S") + ": 2 fixed, GOOD\n")) << told.output;
   EXPECT_EQ(told.errors, "");
 }
 
@@ -65,20 +75,45 @@ TEST_F(FixFileTest, TheExitCodeIsThatOfACheckOfTheResult) {
   Told told = Fix("SPEDE 20\nWRONG\n", {});
   EXPECT_EQ(told.exit_code, 1);
   EXPECT_EQ(folder.Read("a.S"), "SPEED 20\nWRONG\n");
-  EXPECT_THAT(told.output, HasSubstr("a.S: 1 fixed, 1 left, has errors\n"));
+  EXPECT_THAT(told.output,
+              HasSubstr("a.S: 1 fixed, BAD, 1 finding\n  WRONG (OPT-E7011, line 1); "));
   told = Fix("SPEDE 20\nSTYLE\n", {});
   EXPECT_EQ(told.exit_code, 0);
-  EXPECT_THAT(told.output, HasSubstr("a.S: 1 fixed, 1 left, can be stored\n"));
+  EXPECT_THAT(told.output, HasSubstr("a.S: 1 fixed, GOOD, 1 finding\n"));
   told = Fix("SPEED 20\n", {});
   EXPECT_EQ(told.exit_code, 0);
-  EXPECT_THAT(told.output, HasSubstr("a.S: 0 fixed, 0 left, can be stored\n"));
+  EXPECT_THAT(told.output, HasSubstr("a.S: 0 fixed, GOOD\n"));
+}
+
+// The words and the exit code are those of a check of the result, its motion included.
+TEST_F(FixFileTest, IsJudgedAsACheckIs) {
+  simulation::MotionCheck motion;
+  motion.findings = {{.code = ErrorCode::kTargetOutOfTravel,
+                      .severity = Severity::kWarning,
+                      .detail = "X goes too far",
+                      .where = {.line = 1}}};
+  motion.reasons = {{.code = ErrorCode::kTargetOutOfTravel,
+                     .verdict = machine::Verdict::kDoubtful,
+                     .said = "X goes too far"}};
+  const std::string file = folder.Put("b.S", "SPEDE 20\n");
+  const auto fix = [&](const FixOptions& options) {
+    return Hear([&] { return FixFile(file, "SPEDE 20\n", Check(CheckWords, motion), options); });
+  };
+  const Told told = fix({});
+  EXPECT_EQ(told.exit_code, 0);
+  EXPECT_THAT(told.output, HasSubstr("1: warning OPT-E7301: X goes too far\n"));
+  EXPECT_THAT(told.output,
+              HasSubstr("b.S: 1 fixed, DOUBTFUL, 1 finding\n  X goes too far (OPT-E7301)"));
+  EXPECT_EQ(fix({.strict = true}).exit_code, 1);
+  const json answer = json::parse(fix({.json = true}).output, nullptr, false);
+  EXPECT_EQ(answer["findings"]["verdict"], "VERDICT_DOUBTFUL");
 }
 
 // The file is not there: writing it would fail, or make it.
 TEST_F(FixFileTest, WritesOnlyWhenSomethingChanged) {
   const std::string nowhere = folder.File("none/a.S");
   const auto fix = [&](const std::string& text, const FixOptions& options) {
-    return Hear([&] { return FixFile(nowhere, text, CheckWords, options); });
+    return Hear([&] { return FixFile(nowhere, text, Check(CheckWords), options); });
   };
   EXPECT_EQ(fix("SPEED 20\n", {}).exit_code, 0);
   EXPECT_EQ(fix("WRONG\n", {}).exit_code, 1);
@@ -134,7 +169,7 @@ TEST_F(FixFileTest, WhatIsNoTextIsRefusedUnlookedAt) {
     const std::string& name = row.first;
     const std::string& text = row.second;
     const std::string file = folder.Put(name, text);
-    const Told told = Hear([&] { return FixFile(file, text, never, {}); });
+    const Told told = Hear([&] { return FixFile(file, text, Check(never), {}); });
     EXPECT_EQ(told.exit_code, 2) << name;
     EXPECT_EQ(told.output, "");
     EXPECT_TRUE(told.errors.starts_with("rmlcell: CELL-E")) << told.errors;

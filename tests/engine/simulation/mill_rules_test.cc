@@ -71,6 +71,18 @@ TEST(MillRules, LiftsAsLowAsWithTheOtherStep) {
             "DOUBTFUL; RML1-E8016 it may be written for 40 units per mm: the tool rises 0.500 mm "
             "above the work, which would be 1.25 mm there");
   EXPECT_EQ(lift("51"), "GOOD");
+  // 88 and 100 units are 2.2 and 2.5 mm with 40: twentieths of a millimetre, as people think of
+  // them. With 100, 0.88 mm is none. 80 and 100 units are round with both, 102 too high to tell.
+  EXPECT_EQ(lift("88"),
+            "DOUBTFUL; RML1-E8016 it may be written for 40 units per mm: the tool rises 0.880 mm "
+            "above the work, which would be 2.2 mm there");
+  EXPECT_EQ(lift("98").substr(0, 20), "DOUBTFUL; RML1-E8016");
+  EXPECT_EQ(lift("80"), "GOOD");
+  EXPECT_EQ(lift("99"), "GOOD");
+  EXPECT_EQ(lift("102"), "GOOD");
+  // One height that is round with neither: nothing to guess.
+  EXPECT_EQ(TextOfCheck("VS10;!VZ10;!PZ-100,88;!MC1;PU100,100;PD200,100;Z200,100,-101;PU0,0;!MC0;"),
+            "GOOD");
   EXPECT_EQ(lift("40", "mdx-15"), "GOOD");
 }
 
@@ -135,6 +147,33 @@ TEST(MillRules, PlungesAsFastAsZTravels) {
   EXPECT_EQ(down("!VZ60;Z100,100,10;Z100,100,-300;Z100,100,100;"),
             "DOUBTFUL; RML1-E8017 3.000" + said + "4");
   EXPECT_EQ(down("!VZ60;Z100,100,10;Z100,100,-200;!VZ10;Z100,100,-300;Z100,100,100;"), "GOOD");
+}
+
+// Where the tool cuts as fast as it plunges, the way down is as usual: on the MDX-15, with 15 mm/s
+// in all axes, many a program has no other speed. 40 units are 1 mm there.
+TEST(MillRules, PlungesAtTheSpeedOfTheCut) {
+  const auto slow = [](const std::string& speeds) {
+    return TextOfCheck(speeds + "!PZ-40,80;!MC1;PU400,400;PD800,400;PU0,0;!MC0;", "mdx-15");
+  };
+  const std::string said =
+      "DOUBTFUL; RML1-E8017 1.000 mm straight down to where the tool cuts, as fast as Z travels @6";
+  EXPECT_EQ(slow("VS15;!VZ15;"), "GOOD");
+  EXPECT_EQ(slow("VS14;!VZ15;"), said);
+  EXPECT_EQ(slow("VS14;!VZ14;"), "GOOD");
+  // Ways down that turn back are judged by the fastest cut of the program, before or behind them.
+  const std::string hole = "!VZ15;!PZ-40,80;!MC1;PU100,100;PD;PU;";
+  const std::string stroke = "PU400,400;PD800,400;PU0,0;";
+  EXPECT_EQ(TextOfCheck("VS15;" + hole + stroke + "!MC0;", "mdx-15"), "GOOD");
+  EXPECT_EQ(TextOfCheck("VS15;" + hole + stroke + "VS5;" + "!VZ5;" + stroke + "!MC0;", "mdx-15"),
+            "GOOD");
+  EXPECT_EQ(TextOfCheck("VS14;" + hole + "!VZ5;" + stroke + "!MC0;", "mdx-15"), said);
+  EXPECT_EQ(TextOfCheck("VS15;" + hole + "PU0,0;!MC0;", "mdx-15"), said);
+}
+
+// RML1-3C.08: a run waits at !NR, and so a check says, which looks behind it all the same.
+TEST(MillRules, WaitsForTheResumeKey) {
+  EXPECT_EQ(TextOfCheck("VS10;!VZ10;!PZ-100,200;!MC1;PU0,0;PD400,0;PU0,0;!NR;!NR;!MC0;"),
+            "DOUBTFUL; CELL-E9308 halts that wait for the resume key: 2 @8");
 }
 
 // RML1-3A.03, RML1-9.23: Z2 below the surface is refused; at the surface travel has no clearance.

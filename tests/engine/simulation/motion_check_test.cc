@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "engine/families/families.h"
+#include "engine/simulation/run/rehearsal.h"
 #include "tests/engine/simulation/fake_family.h"
+#include "tests/engine/simulation/verdict_text.h"
 
 namespace rmlcell::simulation {
 namespace {
@@ -33,7 +35,13 @@ MotionCheck Checked(const std::map<int, std::string>& programs, const std::set<i
 }
 
 const std::string kPart =
-    "COORD ABSOL\nPATH LIN\nMOVE (4000.,0.,0.,0.,0.)\nMOVE (4100.,0.,0.,0.,0.)\n";
+    "SYSDEF\nCOORD ABSOL\nPATH LIN\nMOVE (4000.,0.,0.,0.,0.)\nMOVE (4100.,0.,0.,0.,0.)\n";
+
+// CHECK of one program in slot 45, as people read it.
+std::string VerdictOfCheck(const std::string& text, const machine::InputScript& inputs = {}) {
+  return TextOf(JudgeCheck(*families::FindFamily("optimo"), {.ok = true},
+                           Checked({{45, text}}, {45}, inputs)));
+}
 
 // OPT-E.7301: code, program, step, line and the time at which a run would do it.
 TEST(MotionCheck, FindsEveryViolationWithItsPlace) {
@@ -42,10 +50,10 @@ TEST(MotionCheck, FindsEveryViolationWithItsPlace) {
   EXPECT_TRUE(check.has_errors());
   EXPECT_EQ(check.findings[0].code, ErrorCode::kTargetOutOfTravel);
   EXPECT_EQ(check.findings[0].program, 45);
-  EXPECT_EQ(check.findings[0].step, 3);
-  EXPECT_EQ(check.findings[0].where.line, 3);
+  EXPECT_EQ(check.findings[0].step, 4);
+  EXPECT_EQ(check.findings[0].where.line, 4);
   EXPECT_EQ(check.findings[0].at, SimTime(0));
-  EXPECT_EQ(check.findings[1].step, 4);
+  EXPECT_EQ(check.findings[1].step, 5);
   EXPECT_GT(*check.findings[1].at, SimTime(0));
   EXPECT_TRUE(check.cut_short.empty());
 }
@@ -53,9 +61,11 @@ TEST(MotionCheck, FindsEveryViolationWithItsPlace) {
 // OPT-B.09: the SYSDEF of the caller brings the part into the travel; only alone would it leave it.
 TEST(MotionCheck, AProgramIsLookedAtWithTheOffsetOfItsCaller) {
   const std::string caller = "SYSDEF (-1000.,0.,-300.,0.,0.,0.)\nCALL 44\n";
-  const std::map<int, std::string> programs = {{44, kPart}, {45, caller}};
+  const std::string part = kPart.substr(kPart.find('\n') + 1);  // has no SYSDEF of its own
+  const std::map<int, std::string> programs = {{44, part}, {45, caller}};
   EXPECT_TRUE(Checked(programs, {44, 45}).findings.empty());
   EXPECT_EQ(Checked(programs, {44}).findings.size(), 2U);
+  EXPECT_FALSE(Checked(programs, {44}).has_errors());  // nobody knows who calls it
   // The same the other way round: the fault is the caller's offset, the place that of the step.
   const MotionCheck far = Checked({{44, "COORD ABSOL\nMOVE (100.,0.,0.,0.,0.)\n"},
                                    {45, "SYSDEF (5000.,0.,0.,0.,0.,0.)\nCALL 44\n"}},
@@ -67,7 +77,7 @@ TEST(MotionCheck, AProgramIsLookedAtWithTheOffsetOfItsCaller) {
 // OPT-4.55: a tool that is 500 mm shorter brings the column below the end of Z: -1000 + 300 - 500 =
 // -1200 is inside -1300, -1150 + 300 - 500 = -1350 is 50 outside.
 TEST(MotionCheck, TheToolCounts) {
-  const std::string tool = "TCP (0.,0.,500.,0.,0.,0.)\nCOORD ABSOL\n";
+  const std::string tool = "SYSDEF\nTCP (0.,0.,500.,0.,0.,0.)\nCOORD ABSOL\n";
   EXPECT_TRUE(Checked({{1, tool + "MOVE (500.,500.,-1000.,0.,0.)\n"}}, {1}).findings.empty());
   const MotionCheck low = Checked({{1, tool + "MOVE (500.,500.,-1150.,0.,0.)\n"}}, {1});
   ASSERT_EQ(low.findings.size(), 1U);
@@ -129,8 +139,89 @@ TEST(MotionCheck, StopsWhereAnInputIsMissing) {
   EXPECT_EQ(ToSeconds(*with.findings[0].at), 5.0);
 }
 
+// OPT-7.28: SYSDEF outlives the program that set it. Where X, Y and Z go hangs on it, in COORD
+// ABSOL alone; A and B never. 4000 - 3600 = 400; 13 - 12.6 = 0.4.
+TEST(MotionCheck, DoubtsATravelErrorThatHangsOnAnOffsetBefore) {
+  const std::string x = "MOVE (4000.,0.,0.,0.,0.)\n";
+  EXPECT_EQ(
+      VerdictOfCheck("COORD ABSOL\n" + x),
+      "DOUBTFUL; OPT-E7301 X of the target leaves its travel by 400.000 mm, if no SYSDEF is in "
+      "force before @2");
+  const std::string bad = "BAD; OPT-E7301 X of the target leaves its travel by 400.000 mm @";
+  EXPECT_EQ(VerdictOfCheck("SYSDEF\nCOORD ABSOL\n" + x), bad + "3");
+  EXPECT_EQ(VerdictOfCheck("SYSDEF (1.,0.,0.,0.,0.,0.)\nCOORD ABSOL\nMOVE (3999.,0.,0.,0.,0.)\n"),
+            bad + "3");
+  EXPECT_EQ(VerdictOfCheck("COORD ROBOT\n" + x), bad + "2");
+  EXPECT_EQ(VerdictOfCheck("COORD ABSOL\nMOVE (500.,500.,-400.,13.,0.)\n"),
+            "BAD; OPT-E7301 A of the target leaves its travel by 0.400 rad @2");
+  // One that is sure speaks for those that are not.
+  EXPECT_EQ(VerdictOfCheck("COORD ABSOL\n" + x + "SYSDEF\n" + x), bad + "4");
+}
+
+// OPT-7.104: a SYSDEF of variables that an operator, or another program, set before.
+TEST(MotionCheck, DoubtsATravelErrorThatHangsOnAVariable) {
+  const std::string move = "COORD ABSOL\nMOVE (4000.,0.,0.,0.,0.)\n";
+  EXPECT_EQ(
+      VerdictOfCheck("SYSDEF (VR[86],VR[87],0.,0.,0.,0.)\n" + move),
+      "DOUBTFUL; OPT-E7301 X of the target leaves its travel by 400.000 mm, if VR[86] is 0 (and "
+      "1 more is as it was) @3");
+  EXPECT_EQ(VerdictOfCheck("VR[86] = 1.\nVR[87] = 0.\nSYSDEF (VR[86],VR[87],0.,0.,0.,0.)\n" + move),
+            "BAD; OPT-E7301 X of the target leaves its travel by 401.000 mm @5");
+}
+
+// What the script of inputs says is told, and nothing that the check had to assume.
+TEST(MotionCheck, DoubtsATravelErrorThatHangsOnAnInput) {
+  const std::string text =
+      "COORD ROBOT\nIF IL[5] THEN 10\nMOVE (4000.,0.,0.,0.,0.)\n10 COORD ROBOT\n";
+  EXPECT_EQ(
+      VerdictOfCheck(text),
+      "DOUBTFUL; OPT-E7301 X of the target leaves its travel by 400.000 mm, if IL[5] is OFF @3");
+  EXPECT_EQ(VerdictOfCheck(text, {{SimTime(0), machine::InputKind::kLogical, 5, 1.0}}), "GOOD");
+  EXPECT_EQ(VerdictOfCheck(text, {{SimTime(0), machine::InputKind::kLogical, 5, 0.0}}),
+            "BAD; OPT-E7301 X of the target leaves its travel by 400.000 mm @3");
+  // What is looked at later has no part in it.
+  EXPECT_EQ(VerdictOfCheck("COORD ROBOT\nMOVE (4000.,0.,0.,0.,0.)\nVR[1] = VR[2]\n"),
+            "BAD; OPT-E7301 X of the target leaves its travel by 400.000 mm @2");
+}
+
+// The rules of a run judge a check, too: the programs of laser_verdict_test.cc.
+TEST(MotionCheck, IsJudgedByTheRulesOfARun) {
+  const std::string from = "COORD ABSOL\nPATH LIN\nMOVE (0.,1000.,-400.,0.,0.)\nSPEED 10\n";
+  const std::string to = "MOVE (50.,1000.,-400.,0.,0.)\n";
+  const std::string beyond = "MOVE (60.,1000.,-400.,0.,0.)\n";
+  const std::string without_beam = "WORK 0,0 /ON\n" + to + "WORK 2,5 /OFF\n" + beyond;
+  const std::string off = "WORK 0,0 /OFF\n";
+  EXPECT_EQ(VerdictOfCheck(from + "WORK 0,0 /ON\n" + to + off), "GOOD");
+  EXPECT_EQ(VerdictOfCheck(from + without_beam + off),
+            "BAD; OPT-E7414 10.000 mm of a process that is ON with the beam off @8");
+  EXPECT_EQ(
+      VerdictOfCheck("IF IL[5] THEN 10\n" + from + without_beam + off + "10 COORD ROBOT\n"),
+      "DOUBTFUL; OPT-E7414 10.000 mm of a process that is ON with the beam off, if IL[5] is OFF "
+      "@9");
+  // A beam that stands 2 s behind the way, nothing of it piercing.
+  EXPECT_EQ(VerdictOfCheck(from + "WORK 0,0 /ON\n" + to + "DELAY 2.\n" + off).substr(0, 16),
+            "BAD; CELL-E9421 ");
+}
+
+// A reason belongs to the program that does it, however it was run.
+TEST(MotionCheck, DealsReasonsToThePrograms) {
+  const std::string cut =
+      "COORD ABSOL\nPATH LIN\nMOVE (0.,1000.,-400.,0.,0.)\nSPEED 10\nWORK 0,0 /ON\n"
+      "MOVE (50.,1000.,-400.,0.,0.)\n";
+  const MotionCheck check =
+      Checked({{44, cut}, {45, "CALL 44\n"}, {46, "CALL 44\n"}}, {44, 45, 46});
+  ASSERT_EQ(check.reasons.size(), 1U);
+  EXPECT_EQ(check.reasons[0].code, ErrorCode::kWorkActiveAtEnd);
+  EXPECT_EQ(check.reasons[0].first.program, 44);
+}
+
 // A halt is answered with START: the program goes on behind it.
 TEST(MotionCheck, GoesOnBehindAHalt) {
+  EXPECT_EQ(VerdictOfCheck("COORD ROBOT\nSTOP\nSTOP\nMOVE (9.,0.,0.,0.,0.)\n"),
+            "DOUBTFUL; CELL-E9308 halts that wait for START: 2 @2");
+  EXPECT_EQ(VerdictOfCheck("COORD ROBOT\nSTOP\nMOVE (9.,0.,0.,0.,0.)\n",
+                           {{std::chrono::seconds(5), machine::InputKind::kStart, 0, 1.0}}),
+            "GOOD");
   const MotionCheck check = Checked({{1, "COORD ABSOL\nSTOP\nMOVE (9000.,0.,0.,0.,0.)\n"}}, {1});
   EXPECT_EQ(check.findings.size(), 1U);
 }

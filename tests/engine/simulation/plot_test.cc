@@ -31,6 +31,33 @@ Drawn Draw(const Script& script, const machine::MachineShape& shape, const std::
   return {recorder.Svg(report, {.curves = *parsed}), report.cycle_time};
 }
 
+// A long name ends before the time of the cycle begins, on the narrowest page too; the document has
+// all of it.
+TEST(Plot, ALongNameDoesNotRunIntoTheTime) {
+  PlotRecorder recorder(Laser());
+  RunReport report;
+  report.title = std::string(90, 'W') + ".S";
+  report.cycle_time = std::chrono::seconds(3723);
+  for (const int width : {640, 1200, 4000}) {
+    const std::string svg = recorder.Svg(report, {.width_px = width});
+    EXPECT_NE(svg.find("<title>" + report.title + "</title>"), std::string::npos) << width;
+    const std::size_t shown = svg.find(">WWW", svg.find("</title>"));
+    ASSERT_NE(shown, std::string::npos) << width;
+    const std::string text = svg.substr(shown + 1, svg.find('<', shown) - shown - 1);
+    // W is 0.944 wide, at 24 px, in the widest font and bold: 27.911 px.
+    const double w_px = 0.944 * 24.0 * 1.12 * 1.1;
+    const auto letters = static_cast<double>(std::ranges::count(text, 'W'));
+    const double room = width - 2 * 36.0 - 24.0;
+    if (width < 4000) {
+      EXPECT_TRUE(text.ends_with("…")) << text;
+      EXPECT_LT(letters * w_px, room);
+      EXPECT_GT(letters * w_px, 0.5 * room);  // and no shorter than it must
+    } else {
+      EXPECT_EQ(text, report.title);  // 90 letters are 2512 px
+    }
+  }
+}
+
 // The corners of the nth curve of the picture, in pixels.
 std::vector<ScreenPoint> Curve(const std::string& svg, int number) {
   std::size_t at = 0;

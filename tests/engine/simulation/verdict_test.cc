@@ -356,9 +356,14 @@ TEST(Verdict, DocumentListsExactlyTheRules) {
              " | " + std::string(rule.said) + " |\n";
   };
   for (const VerdictRuleInfo& info : CommonVerdictRules()) add(info.rule);
+  // What a check alone tells stands in no report.
+  const auto checked = Mill().Translate({.name = "a.rml", .bytes = "!NR;"}, MillOf("t1"), {});
   for (const machine::MachineFamily* family : families::Families()) {
     for (const machine::VerdictRule& rule : family->verdict_rules()) {
       add(rule);
+      if (std::ranges::find(checked.figures, rule.figure, &machine::Figure::name) !=
+          checked.figures.end())
+        continue;
       EXPECT_TRUE(std::ranges::any_of(family->figures(), [&](const machine::FigureInfo& info) {
         return info.name == rule.figure;
       })) << rule.figure;

@@ -151,6 +151,27 @@ TEST(Comparison, OfRunsThatDoNotEndByThemselves) {
   EXPECT_TRUE(runs(ends, "DELAY 2\n", {.steps_max = 100, .go_on = [] { return true; }}));
 }
 
+// What the figures leave out: a stream that ends inside a command is run up to there, one that
+// halts is not compared. Work of 4 mm, and 7 mm with the second stroke.
+TEST(Comparison, NotesSayWhatTheFiguresLeaveOut) {
+  const std::string begin = "VS10;!VZ10;!PZ-100,200;!MC1;PU0,0;PD400,0;";
+  const auto diff = [&](const std::string& after) {
+    const auto outcome = ComparePrograms(TextOf(begin + "PU;!MC0;", "a.rml"),
+                                         TextOf(begin + after, "folder/b.rml"), {});
+    EXPECT_TRUE(outcome);
+    return outcome->response;
+  };
+  EXPECT_TRUE(diff("PU;!MC0;").notes().empty());
+  const v1::DiffProgramsResponse torn = diff("PU;PD400,");
+  EXPECT_TRUE(torn.compared_runs());
+  EXPECT_THAT(torn.notes(),
+              ElementsAre("b.rml: the data ends inside a command: the last one is not "
+                          "carried out"));
+  const v1::DiffProgramsResponse halted = diff("PU;!NR;!MC0;");
+  EXPECT_FALSE(halted.compared_runs());
+  EXPECT_THAT(halted.notes(), ElementsAre("b.rml: stopped at 1/8, CELL-E9308"));
+}
+
 // An object that does not fit into the memory of the control cannot run (OPT-1.08); its steps are
 // compared all the same.
 TEST(Comparison, OfObjectsThatAreTooLong) {

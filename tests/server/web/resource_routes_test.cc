@@ -69,8 +69,12 @@ TEST(UploadRoutes, Query) {
   EXPECT_EQ(route.header.title, "x&y");
   EXPECT_EQ(route.header.size, 12);
   EXPECT_TRUE(route.header.validate_only);
-  for (const std::string& query : {std::string("sha256=12"), "sha256=" + std::string(64, 'g'),
-                                   std::string("validate_only=yes"), std::string("title=%f")}) {
+  EXPECT_FALSE(route.header.force);
+  EXPECT_TRUE(RouteUpload(At("/", "force=true"), path).header.force);
+  EXPECT_FALSE(RouteUpload(At("/", "force=false"), path).header.force);
+  for (const std::string& query :
+       {std::string("sha256=12"), "sha256=" + std::string(64, 'g'),
+        std::string("validate_only=yes"), std::string("force=1"), std::string("title=%f")}) {
     const UploadRoute refused = RouteUpload(At("/", query), path);
     ASSERT_TRUE(refused.refusal) << query;
     EXPECT_EQ(refused.refusal->status.code, kCodeInvalidArgument) << query;

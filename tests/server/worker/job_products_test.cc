@@ -27,20 +27,32 @@ class JobProducts : public JobRunnerTest {
 
 // OPT-2.35 is a finding of the text, OPT-E7301 of the motion: both are found by one check.
 TEST_F(JobProducts, ACheckFindsWhatTheMotionWouldMeet) {
-  Work(CheckOf("COORD ABSOL\nPATH LIN\nMOVE (4000.,0.,0.,0.,0.)\nMOVE (4100.,0.,0.,0.,0.)\n"));
+  Work(CheckOf(
+      "SYSDEF\nCOORD ABSOL\nPATH LIN\nMOVE (4000.,0.,0.,0.,0.)\nMOVE (4100.,0.,0.,0.,0.)\n"));
   EXPECT_THAT(Codes(), ElementsAre("OPT-E7301", "OPT-E7301"));
-  EXPECT_EQ(Report().diagnostics(1).place().step(), 4);
-  EXPECT_EQ(Report().diagnostics(1).place().line(), 4);
+  EXPECT_EQ(Report().diagnostics(1).place().step(), 5);
+  EXPECT_EQ(Report().diagnostics(1).place().line(), 5);
   EXPECT_GT(Report().diagnostics(1).time_s(), 0.0);
   EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_FAILED);
   EXPECT_EQ(Outcome().code(), "OPT-E7301");
   EXPECT_EQ(Outcome().place().program(), 45);
-  EXPECT_EQ(Outcome().place().step(), 3);
-  EXPECT_EQ(Outcome().place().line(), 3);
+  EXPECT_EQ(Outcome().place().step(), 4);
+  EXPECT_EQ(Outcome().place().line(), 4);
   EXPECT_EQ(Report().motion_check(), "");
   ASSERT_EQ(Events().size(), 2U);
   EXPECT_EQ(Events()[0].virtual_time_ns(), 0);
   EXPECT_GT(Events()[1].virtual_time_ns(), 0);
+}
+
+// OPT-7.28: without a SYSDEF of its own where it goes hangs on the one before: a person should
+// look.
+TEST_F(JobProducts, ACheckThatHadToAssumeDoubts) {
+  Work(CheckOf("COORD ABSOL\nMOVE (4000.,0.,0.,0.,0.)\n"));
+  EXPECT_THAT(Codes(), ElementsAre("OPT-E7301"));
+  EXPECT_EQ(Outcome().kind(), v1::Outcome::KIND_COMPLETED);
+  EXPECT_EQ(Outcome().verdict(), v1::VERDICT_DOUBTFUL);
+  ASSERT_EQ(Outcome().reasons_size(), 1);
+  EXPECT_THAT(Outcome().reasons(0).message(), HasSubstr("if no SYSDEF is in force before"));
 }
 
 // Advice is told and ends nothing (OPT-2.16).
