@@ -207,34 +207,97 @@ int TellWhyNot(const SimulateOptions& options, const LoadedFiles& loaded,
   return kProgramErrors;
 }
 
-// The files that were asked for. A picture or plot that goes to standard output ("-") is not
-// written here.
-Status WriteProducts(const SimulateOptions& options, const simulation::SimulationResult& result,
-                     const machine::Bytes& toolpath) {
-  if (result.material) {
-    if (const Status written = WriteMaterial(*result.material, result.target, options.milling);
-        !written)
-      return written.error();
+// What a run leaves besides its report, as the options ask for it. Must outlive the run.
+class RunProducts {
+ public:
+  explicit RunProducts(const SimulateOptions& options) : options_(options) {}
+
+  // Errors: CellUsage, CellInvalidArgument, CellFileUnwritable.
+  Status AskFor(simulation::SimulationRequest& request) {
+    request.products.picture = !options_.svg.empty();
+    request.picture.machine_frame = options_.machine_coordinates;
+    if (options_.trace) AskForTrace(request.products);
+    if (!options_.toolpath.empty()) {
+      request.products.toolpath = [this](std::string_view block) {
+        bridge::AddFrame(block, toolpath_);
+        return true;
+      };
+    }
+    if (!options_.plot.empty()) {
+      Result<std::vector<simulation::PlotCurve>> curves =
+          simulation::ParsePlotCurves(options_.plot[0]);
+      if (!curves) return curves.error();
+      request.products.plot = true;
+      request.plot.curves = *std::move(curves);
+    }
+    return options_.samples.empty() ? Status() : AskForSamples(request.products);
   }
-  struct Product {
-    std::string file;
-    std::string_view bytes;
-    bool may_be_output = false;
-    const machine::BytesKeeper* keeper = nullptr;
-  };
-  const Product products[] = {
-      {options.toolpath, *toolpath, false, toolpath.keeper()},
-      {options.plot.empty() ? std::string() : options.plot[1], result.plot, true},
-      {options.svg, result.svg, true},
-      {options.state_out, result.machine_state}};
-  for (const Product& product : products) {
-    if (product.file.empty() || (product.may_be_output && product.file == "-")) continue;
-    if (const Status written = WriteWholeFile(product.file, product.bytes, product.keeper);
-        !written)
-      return written.error();
+
+  // A picture or plot that goes to standard output ("-") is not written here.
+  Status Write(const simulation::SimulationResult& result) {
+    if (result.material) {
+      if (Status written = WriteMaterial(*result.material, result.target, options_.milling);
+          !written)
+        return written;
+    }
+    const std::string plot = options_.plot.empty() ? std::string() : options_.plot[1];
+    const machine::Bytes toolpath = toolpath_.Finish();
+    for (const Status& written :
+         {WriteFile(options_.toolpath, *toolpath, toolpath.keeper()),
+          plot == "-" ? Status() : WriteFile(plot, result.plot),
+          options_.svg == "-" ? Status() : WriteFile(options_.svg, result.svg),
+          WriteFile(options_.state_out, result.machine_state)}) {
+      if (!written) return written;
+    }
+    if (!samples_.is_open()) return {};
+    samples_.close();
+    if (samples_) return {};
+    return Error{
+        ErrorCode::kCellFileUnwritable, options_.samples[1] + ": not written to its end", {}};
   }
-  return {};
-}
+
+  // Of --trace with --json: a part of the report.
+  void MoveTraceTo(v1::RunReport& report) {
+    report.mutable_trace_records()->Swap(traced_.mutable_trace_records());
+  }
+
+ private:
+  void AskForTrace(simulation::Products& products) {
+    products.trace = [this](const simulation::TraceRecord& record) {
+      if (options_.json) {
+        *traced_.add_trace_records() = bridge::ToProto(record);
+      } else {
+        Print(simulation::TraceText(record));
+      }
+      return true;
+    };
+  }
+
+  Status AskForSamples(simulation::Products& products) {
+    const Result<double> rate = simulation::ParseSampleRate(options_.samples[0]);
+    if (!rate) return rate.error();
+    samples_.open(options_.samples[1], std::ios::binary | std::ios::trunc);
+    if (!samples_) {
+      return Error{ErrorCode::kCellFileUnwritable, options_.samples[1] + ": cannot be written", {}};
+    }
+    products.samples_hz = *rate;
+    products.samples = [this](std::string_view lines) {
+      return static_cast<bool>(
+          samples_.write(lines.data(), static_cast<std::streamsize>(lines.size())));
+    };
+    return {};
+  }
+
+  static Status WriteFile(const std::string& file, std::string_view bytes,
+                          const machine::BytesKeeper* keeper = nullptr) {
+    return file.empty() ? Status() : WriteWholeFile(file, bytes, keeper);
+  }
+
+  const SimulateOptions& options_;
+  v1::RunReport traced_;
+  bridge::SpooledBytes toolpath_;
+  std::ofstream samples_;
+};
 
 // Whether the programs that --simul and --break name are in the memory.
 Status CheckPlaces(const v1::SimulationOptions& options, const LoadedFiles& loaded) {
@@ -264,100 +327,91 @@ Result<LoadedFiles> LoadPrograms(const SimulateOptions& options, const std::stri
                {}};
 }
 
+// What runs, on which machine, and what is asked about it.
+struct PreparedCommand {
+  LoadedFiles loaded;
+  simulation::ProgramMemory memory;
+  simulation::PreparedRun run;
+  std::vector<std::string> variables;
+};
+
+Result<PreparedCommand> Prepare(const SimulateOptions& options) {
+  Result<bridge::MachineFile> machine = ReadMachine(options.machine);
+  if (!machine) return machine.error();
+  Result<LoadedFiles> loaded = LoadPrograms(options, machine->family);
+  if (!loaded) return loaded.error();
+  if (Status placed = PlaceWork(options.machine, *loaded->family, machine->parameters); !placed)
+    return placed.error();
+  const Result<v1::SimulationOptions> message = OptionsMessage(options, *loaded->family);
+  if (!message) return message.error();
+  if (Status there = CheckPlaces(*message, *loaded); !there) return there.error();
+  v1::Budget budget;
+  if (Status parsed = ParseBudget(options.budget, budget); !parsed) return parsed.error();
+  Result<std::vector<std::string>> variables =
+      bridge::ExpandVariables(SplitCommas(options.variables));
+  if (!variables) return variables.error();
+  std::vector<int> to_make;
+  if (Status added = AddExecutables(options, *loaded->family, loaded->programs, to_make); !added)
+    return added.error();
+  Result<std::string> state = std::string();
+  if (!options.state_in.empty()) state = bridge::ReadFile(options.state_in, kFileBytesMax);
+  if (!state) return state.error();
+
+  simulation::ProgramMemory memory{.family = loaded->family,
+                                   .profile = machine->profile,
+                                   .parameters = machine->parameters,
+                                   .programs = loaded->programs,
+                                   .machine_state = *std::move(state)};
+  Result<simulation::PreparedRun> run = simulation::PrepareRun(
+      memory, bridge::RunOptionsOf(*message, budget, loaded->main_slot, machine::Mode::kCycle));
+  if (!run) return run.error();
+  for (const int slot : to_make) {
+    if (!run->setup) break;  // it is told why
+    if (Status made = MakeExecutable(*loaded->family, *run->setup, slot); !made)
+      return made.error();
+  }
+  return PreparedCommand{*std::move(loaded), std::move(memory), *std::move(run),
+                         *std::move(variables)};
+}
+
+// The picture or plot, where that is to be a file of its own, or the report.
+void TellResult(const SimulateOptions& options, const simulation::SimulationResult& result,
+                const simulation::PreparedRun& run, v1::RunReport report) {
+  if (options.svg == "-") {
+    PrintRaw(result.svg);
+  } else if (!options.plot.empty() && options.plot[1] == "-") {
+    PrintRaw(result.plot);
+  } else if (options.json) {
+    Print(Json(report));
+  } else if (options.facts) {
+    PrintRaw(simulation::FactsText(result.report));
+    for (const auto& [name, value] : result.variables) Print("variable." + name + ": " + value);
+  } else {
+    PrintFindings(run.diagnostics, run.diagnostics_dropped, {});
+    DropFindings(run.diagnostics, report);
+    PrintRaw(ReportText(report, options.machine_coordinates ? Zero::kMachine : Zero::kWork));
+  }
+}
+
 }  // namespace
 
 int Simulate(const SimulateOptions& options) {
-  Result<bridge::MachineFile> machine = ReadMachine(options.machine);
-  if (!machine) return Refuse(machine.error());
-  Result<LoadedFiles> loaded = LoadPrograms(options, machine->family);
-  if (!loaded) return Refuse(loaded.error());
-  const Status placed = PlaceWork(options.machine, *loaded->family, machine->parameters);
-  if (!placed) return Refuse(placed.error());
-  const Result<v1::SimulationOptions> message = OptionsMessage(options, *loaded->family);
-  if (!message) return Refuse(message.error());
-  const Status there = CheckPlaces(*message, *loaded);
-  if (!there) return Refuse(there.error());
-  v1::Budget budget;
-  if (Status parsed = ParseBudget(options.budget, budget); !parsed) return Refuse(parsed.error());
-  const auto variables = bridge::ExpandVariables(SplitCommas(options.variables));
-  if (!variables) return Refuse(variables.error());
-  std::vector<int> executables_to_make;
-  if (Status added =
-          AddExecutables(options, *loaded->family, loaded->programs, executables_to_make);
-      !added) {
-    return Refuse(added.error());
-  }
-  std::string state;
-  if (!options.state_in.empty()) {
-    Result<std::string> bytes = bridge::ReadFile(options.state_in, kFileBytesMax);
-    if (!bytes) return Refuse(bytes.error());
-    state = std::move(*bytes);
-  }
-
-  const simulation::ProgramMemory memory{.family = loaded->family,
-                                         .profile = machine->profile,
-                                         .parameters = machine->parameters,
-                                         .programs = loaded->programs,
-                                         .machine_state = state};
-  Result<simulation::PreparedRun> outcome = simulation::PrepareRun(
-      memory, bridge::RunOptionsOf(*message, budget, loaded->main_slot, machine::Mode::kCycle));
-  if (!outcome) return Refuse(outcome.error());
-  if (!outcome->setup) return TellWhyNot(options, *loaded, *outcome);
-  for (const int slot : executables_to_make) {
-    if (Status made = MakeExecutable(*loaded->family, *outcome->setup, slot); !made)
-      return Refuse(made.error());
-  }
+  Result<PreparedCommand> prepared = Prepare(options);
+  if (!prepared) return Refuse(prepared.error());
+  const machine::MachineFamily& family = *prepared->loaded.family;
+  simulation::PreparedRun& run = prepared->run;
+  if (!run.setup) return TellWhyNot(options, prepared->loaded, run);
 
   simulation::SimulationRequest request;
-  v1::RunReport traced;
-  if (options.trace && options.json) {
-    request.products.trace = [&](const simulation::TraceRecord& record) {
-      *traced.add_trace_records() = bridge::ToProto(record);
-      return true;
-    };
-  } else if (options.trace) {
-    request.products.trace = [](const simulation::TraceRecord& record) {
-      Print(simulation::TraceText(record));
-      return true;
-    };
-  }
-  request.products.picture = !options.svg.empty();
-  request.picture.machine_frame = options.machine_coordinates;
-  bridge::SpooledBytes toolpath;
-  if (!options.toolpath.empty()) {
-    request.products.toolpath = [&toolpath](std::string_view block) {
-      bridge::AddFrame(block, toolpath);
-      return true;
-    };
-  }
-  std::ofstream samples;
-  if (!options.samples.empty()) {
-    const Result<double> rate = simulation::ParseSampleRate(options.samples[0]);
-    if (!rate) return Refuse(rate.error());
-    samples.open(options.samples[1], std::ios::binary | std::ios::trunc);
-    if (!samples)
-      return Refuse(
-          {ErrorCode::kCellFileUnwritable, options.samples[1] + ": cannot be written", {}});
-    request.products.samples_hz = *rate;
-    request.products.samples = [&samples](std::string_view lines) {
-      return static_cast<bool>(
-          samples.write(lines.data(), static_cast<std::streamsize>(lines.size())));
-    };
-  }
-  if (!options.plot.empty()) {
-    Result<std::vector<simulation::PlotCurve>> curves =
-        simulation::ParsePlotCurves(options.plot[0]);
-    if (!curves) return Refuse(curves.error());
-    request.products.plot = true;
-    request.plot.curves = *std::move(curves);
-  }
+  RunProducts products(options);
+  if (Status asked = products.AskFor(request); !asked) return Refuse(asked.error());
   if (!options.milling.block.stock.empty()) {
     Result<simulation::Milling> milling =
-        MillingOf(options.milling, loaded->family->Shape(outcome->setup->parameters), memory);
+        MillingOf(options.milling, family.Shape(run.setup->parameters), prepared->memory);
     if (!milling) return Refuse(milling.error());
-    request.products.milling = *milling;
+    request.products.milling = *std::move(milling);
   }
-  request.variables = *variables;
+  request.variables = prepared->variables;
   ProgressLine progress;
   request.options.slice = std::chrono::seconds(10);
   int slices = 0;
@@ -369,40 +423,20 @@ int Simulate(const SimulateOptions& options) {
     return true;
   };
   const Result<simulation::SimulationResult> result =
-      simulation::Simulate(*loaded->family, std::move(*outcome->setup), std::move(request));
+      simulation::Simulate(family, *std::move(run.setup), std::move(request));
   progress.Clear();
   if (!result) return Refuse(result.error());
-
-  if (const Status written = WriteProducts(options, *result, toolpath.Finish()); !written)
-    return Refuse(written.error());
-  if (samples.is_open()) {
-    samples.close();
-    if (!samples)
-      return Refuse(
-          {ErrorCode::kCellFileUnwritable, options.samples[1] + ": not written to its end", {}});
+  if (Status written = products.Write(*result); !written) return Refuse(written.error());
+  for (const std::string& name : prepared->variables) {
+    if (result->variables.contains(name)) continue;
+    Complain("the machine has no variable " + name);
+    break;
   }
-  const bool picture_on_output = options.svg == "-";
-  const bool plot_on_output = !options.plot.empty() && options.plot[1] == "-";
-  const auto unknown = std::ranges::find_if(
-      *variables, [&](const std::string& name) { return !result->variables.contains(name); });
-  if (unknown != variables->end()) Complain("the machine has no variable " + *unknown);
   v1::RunReport report = bridge::ToProto(result->report, result->variables);
-  if (picture_on_output) {
-    PrintRaw(result->svg);  // in place of the report: it is to be a file of its own
-  } else if (plot_on_output) {
-    PrintRaw(result->plot);
-  } else if (options.json) {
-    report.mutable_trace_records()->Swap(traced.mutable_trace_records());
-    Print(Json(report));
-  } else if (options.facts) {
-    PrintRaw(simulation::FactsText(result->report));
-    for (const auto& [name, value] : result->variables) Print("variable." + name + ": " + value);
-  } else {
-    PrintFindings(outcome->diagnostics, outcome->diagnostics_dropped, {});
-    DropFindings(outcome->diagnostics, report);
-    PrintRaw(ReportText(report, options.machine_coordinates ? Zero::kMachine : Zero::kWork));
-  }
-  return ExitOf(report.outcome(), options.strict);
+  const v1::Outcome outcome = report.outcome();
+  products.MoveTraceTo(report);
+  TellResult(options, *result, run, std::move(report));
+  return ExitOf(outcome, options.strict);
 }
 
 int Explain(const std::vector<std::string>& codes, bool json) {

@@ -118,7 +118,7 @@ class CommandLine(InFolder):
         # The first line has the name of the file that it was made for.
         body = told.split("\n", 1)[1]
         self.assertEqual(body, (self.folder / "there.S").read_text().split("\n", 1)[1])
-        for got, wanted in zip(numbers(body), [25.4, 50.8, -76.2], strict=False):
+        for got, wanted in zip(first_move(body), [25.4, 50.8, -76.2], strict=False):
             self.assertAlmostEqual(got, wanted, places=5)
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["part.SI", "there.S"])
 
