@@ -153,7 +153,7 @@ class MachineFamily {
   virtual ~MachineFamily() = default;
   virtual const FamilyInfo& info() const = 0;
   virtual std::span<const ParameterInfo> parameters() const = 0;
-  virtual std::span<const MachineProfile> profiles() const = 0;
+  virtual std::span<const MachineProfile> profiles() const { return {}; }
 
   // Whether the parameters of a machine fit together: what no range of a single one tells. Whoever
   // takes parameters from outside asks this before anything is kept or run. Error:

@@ -66,16 +66,16 @@ class Run {
   virtual std::uint64_t steps_executed() const = 0;
 
   // "VR[5]" -> "7.0"; nothing when the family has no such variable.
-  virtual std::optional<std::string> ReadVariable(std::string_view name) const = 0;
+  virtual std::optional<std::string> ReadVariable(std::string_view /*name*/) const { return {}; }
 
   // What it did hung on something that was there before it and that nothing of it has set: a
   // variable, an input, the parameters of a subroutine. Another time it may do something else.
   virtual bool relies_on_what_was() const { return false; }
 
-  virtual std::vector<Figure> figures() const = 0;
+  virtual std::vector<Figure> figures() const { return {}; }
 
   // What the machine keeps for the next run: variables, images, offsets, position. Versioned bytes.
-  virtual std::string SaveMachine() const = 0;
+  virtual std::string SaveMachine() const { return {}; }
 
   // Executables that this run made, by slot; the cell stores them at slot + 100 (OPT-1.11).
   virtual std::map<int, std::string> made_executables() const { return {}; }

@@ -12,20 +12,19 @@
 namespace rmlcell::plotter {
 namespace {
 
-using machine::OutcomeKind, machine::Parameters, machine::RunPhase;
+using machine::InputKind, machine::OutcomeKind, machine::Parameters, machine::RunPhase;
 
 constexpr double kSpeed_mm_s = 200.0;
-constexpr std::string_view kPrefix = "PLT";
-constexpr int kErrorTable = OwnErrorTable(kPrefix);
-constexpr ErrorCode kSyntax = OwnError(kErrorTable, 0);
-constexpr ErrorCode kNoPen = OwnError(kErrorTable, 1);
-constexpr ErrorCode kOffThePaper = OwnError(kErrorTable, 2);
+constexpr int kTable = OwnErrorTable("PLT");
+constexpr ErrorCode kSyntax = OwnError(kTable, 0);
+constexpr ErrorCode kNoPen = OwnError(kTable, 1);
+constexpr ErrorCode kOffThePaper = OwnError(kTable, 2);
 constexpr CatalogueEntry kErrors[] = {
-    {kSyntax, OwnErrorFamily(kErrorTable), 1, "PlotterSyntax", Severity::kCompile,
+    {kSyntax, OwnErrorFamily(kTable), 1, "PlotterSyntax", Severity::kCompile,
      "a line that is no command", "write SP, PU, PD or WT with its numbers"},
-    {kNoPen, OwnErrorFamily(kErrorTable), 2, "PlotterNoPen", Severity::kProgram,
-     "drawing without a pen", "take a pen with SP first"},
-    {kOffThePaper, OwnErrorFamily(kErrorTable), 3, "PlotterOffThePaper", Severity::kProgram,
+    {kNoPen, OwnErrorFamily(kTable), 2, "PlotterNoPen", Severity::kProgram, "drawing without a pen",
+     "take a pen with SP first"},
+    {kOffThePaper, OwnErrorFamily(kTable), 3, "PlotterOffThePaper", Severity::kProgram,
      "a motion leaves the paper", "draw it smaller, or take larger paper (SIZE)"},
 };
 
@@ -45,8 +44,8 @@ bool ReadLine(const std::string& text, Command& command) {
   numbers >> command.x;
   if (moves) numbers >> comma >> command.y;
   if (numbers.fail() || comma != ',' || numbers.peek() != EOF) return false;
-  const bool pen = command.name == "SP" && command.x <= 8.0;
-  return moves || ((pen || command.name == "WT") && command.x >= 0.0);
+  return moves || (command.name == "SP" && command.x >= 0.0 && command.x <= 8.0) ||
+         (command.name == "WT" && command.x >= 0.0);
 }
 
 std::vector<Command> Read(std::string_view text, std::vector<Diagnostic>& findings) {
@@ -58,12 +57,11 @@ std::vector<Command> Read(std::string_view text, std::vector<Diagnostic>& findin
     if (words.empty()) continue;
     if (ReadLine(words, command)) {
       commands.push_back(command);
-    } else {
-      findings.push_back({.code = kSyntax,
-                          .severity = Severity::kCompile,
-                          .detail = "no command: " + words.substr(0, 20),
-                          .where = {.line = line, .column = 1}});
+      continue;
     }
+    Diagnostic wrong{.code = kSyntax, .severity = Severity::kCompile, .where = {.line = line}};
+    wrong.detail = "no command: " + words.substr(0, 20);
+    findings.push_back(std::move(wrong));
   }
   return commands;
 }
@@ -79,7 +77,7 @@ motion::MachineLimits Limits(const Parameters& parameters) {
   return limits;
 }
 
-// All that changes while a program runs: a copy of it is a snapshot.
+// All that changes while a program runs: a copy is a snapshot.
 struct State final : machine::RunSnapshot {
   SimTime now{0};
   SimTime busy_until{0};  // of the command on its way
@@ -92,7 +90,6 @@ struct State final : machine::RunSnapshot {
   RunPhase phase = RunPhase::kRunning;
   machine::Outcome outcome;
 };
-
 class PlotterRun final : public machine::Run {
  public:
   PlotterRun(machine::RunSetup setup, machine::RunObserver& observer)
@@ -124,10 +121,9 @@ class PlotterRun final : public machine::Run {
   }
 
   void Apply(const machine::InputChange& input) override {
-    using Kind = machine::InputKind;
-    if (input.kind == Kind::kOverride) s_.override_percent = input.value;
-    if (input.kind == Kind::kHold || input.kind == Kind::kStop) s_.hold = true;
-    if (input.kind != Kind::kStart || s_.phase != RunPhase::kHalted) return;
+    if (input.kind == InputKind::kOverride) s_.override_percent = input.value;
+    if (input.kind == InputKind::kHold || input.kind == InputKind::kStop) s_.hold = true;
+    if (input.kind != InputKind::kStart || s_.phase != RunPhase::kHalted) return;
     s_.hold = false;
     s_.phase = RunPhase::kRunning;
     observer_.OnResume(s_.now, place());
@@ -140,18 +136,13 @@ class PlotterRun final : public machine::Run {
   }
 
   machine::RunState state() const override {
-    return {.time = s_.now,
-            .phase = s_.phase,
-            .place = place(),
-            .tip = {s_.at},
-            .axes = {s_.at},
-            .override_percent = s_.override_percent};
+    machine::RunState now{.time = s_.now, .phase = s_.phase, .place = place(), .tip = {s_.at}};
+    now.axes = {s_.at};
+    now.override_percent = s_.override_percent;
+    return now;
   }
   const machine::Outcome& outcome() const override { return s_.outcome; }
   std::uint64_t steps_executed() const override { return s_.next; }
-  std::optional<std::string> ReadVariable(std::string_view) const override { return {}; }
-  std::vector<machine::Figure> figures() const override { return {}; }
-  std::string SaveMachine() const override { return {}; }
   std::unique_ptr<machine::RunSnapshot> Save() const override {
     return std::make_unique<State>(s_);
   }
@@ -256,12 +247,10 @@ constexpr machine::FamilyInfo kInfo{.id = "plotter",
                                     .override_max_percent = 120.0,
                                     .travel_left = kOffThePaper,
                                     .check = {.of_motion = kOfMotion}};
-
 class Family final : public machine::MachineFamily {
  public:
   const machine::FamilyInfo& info() const override { return kInfo; }
   std::span<const machine::ParameterInfo> parameters() const override { return kParameters; }
-  std::span<const machine::MachineProfile> profiles() const override { return {}; }
   machine::MachineShape Shape(const Parameters& parameters) const override {
     machine::MachineShape shape;
     for (const double corner : {0.0, parameters.Number("SIZE")})
@@ -275,7 +264,7 @@ class Family final : public machine::MachineFamily {
     const std::size_t steps = Read(file.bytes, made.diagnostics).size();
     for (Diagnostic& finding : made.diagnostics) finding.file = file.name;
     made.ok = made.diagnostics.empty();
-    made.object = file.bytes;
+    made.as_it_came = true;
     made.figures.push_back({"steps", "", static_cast<double>(steps)});
     return made;
   }
@@ -287,8 +276,7 @@ class Family final : public machine::MachineFamily {
 
 }  // namespace
 
-ErrorTable Errors() { return {.prefix = kPrefix, .rows = kErrors}; }
-
+ErrorTable Errors() { return {.prefix = "PLT", .rows = kErrors}; }
 const machine::MachineFamily& PlotterFamily() {
   static const Family family;
   return family;
