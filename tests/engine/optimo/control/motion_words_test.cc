@@ -113,6 +113,7 @@ TEST(MotionWords, AttributesOfMove) {
   const Ran end = RunText(kSlow + kAlongX + "/END (IL[20])\nVI[2]=1\n",
                           {.inputs = {On(0.0, 20)}, .variables = {"VI[2]"}});
   EXPECT_NEAR(end.end.tip.tip.x(), 21.02, kReal_mm);
+  EXPECT_EQ(end.time_s, 0.0);
   EXPECT_EQ(end.variables.at("VI[2]"), "1");
   // 2 s are over at 42 cycles, when 100.8 mm less half a run-up lie behind; half a run-up to rest.
   const Ran time = RunText(kSlow + "MOVE (521.02,2201.2,-350.,0.,0.)/TIME (2.,900)\nVI[3]=VI[2]\n" +

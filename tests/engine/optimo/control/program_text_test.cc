@@ -23,9 +23,11 @@ TEST(ProgramText, SequenceNumbers) {
        {"DECLARE E1 = VR[1]\nGOTO 10\nVI[2]=9\n10 E1 = 5.\n", "VI[2]", "0"}});
 }
 
-// OPT-6.01, OPT-6.03, OPT-1.20, OPT-1.30: DECLAREs, comments, blank lines and lone sequence numbers
-// are no steps; DEFINE, TASK and ENDTASK are, and a statement of several lines is one.
+// OPT-6.01, OPT-6.03, OPT-1.01, OPT-1.20, OPT-1.30: DECLAREs, comments, blank lines and lone
+// sequence numbers are no steps; DEFINE, TASK and ENDTASK are, and a statement of several lines is
+// one.
 TEST(ProgramText, WhatIsAStep) {
+  EXPECT_THAT(RunText("SPEED 20\n").steps_begun, ElementsAre(1));
   EXPECT_THAT(RunText("DECLARE X = VR[0]\n; text\n\n10\nDEFINE PAR[0] = INT\nX = 1.\nENDTASK\n")
                   .steps_begun,
               ElementsAre(1, 2, 3));

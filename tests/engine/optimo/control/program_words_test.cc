@@ -91,8 +91,8 @@ TEST(ProgramWords, Errors) {
   EXPECT_EQ(shown.variables.at("VI[2]"), "0");
 }
 
-// OPT-W.03, OPT-W.27, OPT-W.40: BREAK halts behind its step, and NOBREAK, which is no word of this
-// machine, leaves it where it is. SIMUL is for the next run: DELAY 3 is passed over then.
+// OPT-W.03, OPT-W.27, OPT-W.40: BREAK halts behind its step, and NOBREAK, which has no effect,
+// leaves it where it is. SIMUL is for the next run: DELAY 3 is passed over then.
 TEST(ProgramWords, BreakAndSimul) {
   const Ran ran = RunText("BREAK 3\nNOBREAK\nVI[2]=1\nVI[2]=2\n", {.variables = {"VI[2]"}});
   EXPECT_EQ(ran.First("halt BREAK").step, 3);
@@ -139,8 +139,7 @@ TEST(ProgramWords, LogicalConstants) {
   }
 }
 
-// OPT-W.69, OPT-W.70, OPT-W.71: what no other word of functions gives: e to the first, its inverse,
-// the decimal logarithm, truncation and the rest of a division.
+// OPT-W.69, OPT-W.70, OPT-W.71: every function, in radians, and MOD: known values to six places.
 TEST(ProgramWords, Functions) {
   const auto value = [](const std::string& expression) {
     return std::stod(Value("VR[0]=" + expression + "\n", "VR[0]"));
