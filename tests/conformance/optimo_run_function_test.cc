@@ -222,6 +222,34 @@ TEST(OptimoRunSamples, SampleTwo) {
   EXPECT_NEAR(ran.run().state().axes.b_rad, 0.0, 1e-9);
 }
 
+// OPT-10.04, OPT-2.39: the contours as programmed are 1886.232 mm long; OVERSH 0 rounds no corner.
+TEST(OptimoRunSamples, SampleTwoCutsItsWholeLength) {
+  const std::string source = CorpusProgram("sample2-cylind.S");
+  if (source.empty()) GTEST_SKIP() << "the shared corpus is not here";
+  OptimoMachine machine;
+  StoreHousePrograms(machine);
+  EXPECT_NEAR(machine.Run("OVERSH 0\n" + source).BeamLength(), 1886.232, 1e-3);
+}
+
+// OPT-10.12: program 1 runs program 2, here one that moves the coordinates, and goes on in tip
+// coordinates of the machine: 350 mm below, where the column stands at -50.
+TEST(OptimoRunSamples, SensorCalibration) {
+  const std::string source = CorpusProgram("special-1.S");
+  if (source.empty()) GTEST_SKIP() << "the shared corpus is not here";
+  OptimoMachine machine;
+  machine.Store(2, "SYSDEF (10.,20.,30.,0.,0.,0.)\nVI[3]=VI[3]+1\n");
+  const Ran ran = machine.Run(source + "VR[1] = IA[2]\nMOVE (1000.,1000.,-400.,0.,0.)\n");
+  EXPECT_TRUE(ran.completed());
+  EXPECT_EQ(ran.Var("VI[3]"), "1");
+  const std::pair<int, double> values[] = {{43, -105.5}, {44, 2217.2}, {45, -962.0}, {46, 0.0},
+                                           {47, 0.0},    {48, -942.0}, {49, -600.0}};
+  for (const auto& [variable, wanted] : values)
+    EXPECT_NEAR(ran.Number("VR[" + std::to_string(variable) + "]"), wanted, 1e-4) << variable;
+  EXPECT_NEAR(ran.Number("VR[1]"), -350.0, 1e-4);
+  const motion::MachinePoint tip = ran.run().state().tip.tip;
+  EXPECT_NEAR((tip - motion::MachinePoint(1000.0, 1000.0, -400.0)).norm(), 0.0, 1e-4);
+}
+
 // OPT-10.11, OPT-8.11: moves under compensation are written with five decimals, all their numbers.
 TEST(OptimoRunSamples, SampleThreeGoesOnInFiveDecimals) {
   const std::string source = CorpusProgram("sample3.S");

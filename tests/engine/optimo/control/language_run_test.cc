@@ -13,32 +13,19 @@ namespace {
 
 using machine::InputKind;
 
-// A program, a variable, and its value at the end.
-struct Row {
-  std::string text;
-  std::string variable;
-  std::string wanted;
-};
-
-void Expect(const std::vector<Row>& rows, const RunOptions& options = {}) {
-  for (const Row& row : rows) {
-    EXPECT_EQ(Value(row.text, row.variable, options), row.wanted) << row.text;
-  }
-}
-
 // OPT-7.24, OPT-7.25: a numeric condition is true when it is not zero; THEN and ELSE go to sequence
 // numbers.
 TEST(LanguageRun, ConditionsOfIf) {
   const std::string after = " THEN 50 ELSE 60\nVI[3]=9\nENDTASK\n50 VI[3]=5\nENDTASK\n60 VI[3]=6\n";
-  Expect({{"VI[2]=-3\nIF VI[2]" + after, "VI[3]", "5"},
-          {"VI[2]=0\nIF VI[2]" + after, "VI[3]", "6"},
-          {"VR[2]=0.001\nIF VR[2]" + after, "VI[3]", "5"},
-          {"IF 1" + after, "VI[3]", "5"},
-          {"IF 0" + after, "VI[3]", "6"},
-          {"VL[2]=ON\nIF VL[2]" + after, "VI[3]", "5"},
-          {"IF VL[2]" + after, "VI[3]", "6"}});
+  ExpectValues({{"VI[2]=-3\nIF VI[2]" + after, "VI[3]", "5"},
+                {"VI[2]=0\nIF VI[2]" + after, "VI[3]", "6"},
+                {"VR[2]=0.001\nIF VR[2]" + after, "VI[3]", "5"},
+                {"IF 1" + after, "VI[3]", "5"},
+                {"IF 0" + after, "VI[3]", "6"},
+                {"VL[2]=ON\nIF VL[2]" + after, "VI[3]", "5"},
+                {"IF VL[2]" + after, "VI[3]", "6"}});
   const std::string only = " THEN 50\nVI[3]=9\nENDTASK\n50 VI[3]=5\n";
-  Expect({{"IF VI[2]" + only, "VI[3]", "9"}, {"IF 2" + only, "VI[3]", "5"}});
+  ExpectValues({{"IF VI[2]" + only, "VI[3]", "9"}, {"IF 2" + only, "VI[3]", "5"}});
 }
 
 // OPT-7.26, OPT-B.44: a relation binds tighter than AND; 100 is not more than 100.
@@ -49,16 +36,16 @@ TEST(LanguageRun, RelationsInConditions) {
       "\nIF (VR[1] > 0.) AND IL[3] THEN 50 ELSE 60\n50 VI[3]=5\nENDTASK\n60 VI[3]=6\n";
   const std::string open =
       "\nIF IL[3] AND VR[1] > 5. THEN 50 ELSE 60\n50 VI[3]=5\nENDTASK\n60 VI[3]=6\n";
-  Expect({{dist + "100.5" + far, "VI[3]", "5"},
-          {dist + "100" + far, "VI[3]", "9"},
-          {"VR[1]=1." + both, "VI[3]", "6"},
-          {"VR[1]=6." + open, "VI[3]", "6"}});
+  ExpectValues({{dist + "100.5" + far, "VI[3]", "5"},
+                {dist + "100" + far, "VI[3]", "9"},
+                {"VR[1]=1." + both, "VI[3]", "6"},
+                {"VR[1]=6." + open, "VI[3]", "6"}});
   const RunOptions on{.inputs = {{SimTime(0), InputKind::kLogical, 3, 1.0}}};
-  Expect({{"VR[1]=1." + both, "VI[3]", "5"},
-          {"VR[1]=0." + both, "VI[3]", "6"},
-          {"VR[1]=6." + open, "VI[3]", "5"},
-          {"VR[1]=5." + open, "VI[3]", "6"}},
-         on);
+  ExpectValues({{"VR[1]=1." + both, "VI[3]", "5"},
+                {"VR[1]=0." + both, "VI[3]", "6"},
+                {"VR[1]=6." + open, "VI[3]", "5"},
+                {"VR[1]=5." + open, "VI[3]", "6"}},
+               on);
 }
 
 // OPT-7.85, OPT-B.87: all relations, on both sides of equality; both forms of "not equal".
@@ -78,13 +65,13 @@ TEST(LanguageRun, EveryRelation) {
 // OPT-7.86, OPT-B.43, OPT-B.45: the first '=' assigns, a further one compares, logically with 0
 // and 1.
 TEST(LanguageRun, EqualsComparesAndAssigns) {
-  Expect({{"VR[1]=2.\nVL[3] = VR[1] = 2.\n", "VL[3]", "1"},
-          {"VR[1]=3.\nVL[3] = VR[1] = 2.\n", "VL[3]", "0"},
-          {"VL[3] = IL[3] = 1\n", "VL[3]", "0"},
-          {"VL[3] = IL[3] = 0\n", "VL[3]", "1"},
-          {"VL[3] = (1 < 2) = (3 < 4)\n", "VL[3]", "1"}});
-  Expect({{"VL[3] = IL[3] = 1\n", "VL[3]", "1"}},
-         {.inputs = {{SimTime(0), InputKind::kLogical, 3, 1.0}}});
+  ExpectValues({{"VR[1]=2.\nVL[3] = VR[1] = 2.\n", "VL[3]", "1"},
+                {"VR[1]=3.\nVL[3] = VR[1] = 2.\n", "VL[3]", "0"},
+                {"VL[3] = IL[3] = 1\n", "VL[3]", "0"},
+                {"VL[3] = IL[3] = 0\n", "VL[3]", "1"},
+                {"VL[3] = (1 < 2) = (3 < 4)\n", "VL[3]", "1"}});
+  ExpectValues({{"VL[3] = IL[3] = 1\n", "VL[3]", "1"}},
+               {.inputs = {{SimTime(0), InputKind::kLogical, 3, 1.0}}});
 }
 
 // OPT-7.88, OPT-7.92: logical assignments from inputs.
@@ -93,33 +80,33 @@ TEST(LanguageRun, LogicalAssignments) {
     const RunOptions options{
         .inputs = {{SimTime(0), InputKind::kLogical, 32, static_cast<double>(bits & 1)},
                    {SimTime(0), InputKind::kLogical, 27, static_cast<double>(bits >> 1)}}};
-    Expect({{"OL [15] = IL [32] AND IL [27]\n", "OL[15]", bits == 3 ? "1" : "0"},
-            {"OL [16] = IL [32] or IL [27]\n", "OL[16]", bits != 0 ? "1" : "0"},
-            {"VL[16] = IL[32] XOR IL[27]\n", "VL[16]", bits == 1 || bits == 2 ? "1" : "0"},
-            {"VL[16] = NOT IL[32]\n", "VL[16]", (bits & 1) == 0 ? "1" : "0"}},
-           options);
+    ExpectValues({{"OL [15] = IL [32] AND IL [27]\n", "OL[15]", bits == 3 ? "1" : "0"},
+                  {"OL [16] = IL [32] or IL [27]\n", "OL[16]", bits != 0 ? "1" : "0"},
+                  {"VL[16] = IL[32] XOR IL[27]\n", "VL[16]", bits == 1 || bits == 2 ? "1" : "0"},
+                  {"VL[16] = NOT IL[32]\n", "VL[16]", (bits & 1) == 0 ? "1" : "0"}},
+                 options);
   }
 }
 
 // OPT-7.93, OPT-7.94, OPT-7.84: an INTEGER in a REAL place is converted; functions take their
 // argument in parentheses, with blanks before them or not.
 TEST(LanguageRun, NumericAssignments) {
-  Expect({{"VR[1]=1\n", "VR[1]", "1.0"},
-          {"VI[2]=-7\nVR[0]=VI[2]\n", "VR[0]", "-7.0"},
-          {"VR[5]=PI/2\nVR[0] = SIN (VR [5]) +8\n", "VR[0]", "9.0"},
-          {"VI[2]=7\nVI[3]=VI[2]/2\n", "VI[3]", "3"}});
+  ExpectValues({{"VR[1]=1\n", "VR[1]", "1.0"},
+                {"VI[2]=-7\nVR[0]=VI[2]\n", "VR[0]", "-7.0"},
+                {"VR[5]=PI/2\nVR[0] = SIN (VR [5]) +8\n", "VR[0]", "9.0"},
+                {"VI[2]=7\nVI[3]=VI[2]/2\n", "VI[3]", "3"}});
 }
 
 // OPT-B.42, OPT-7.54: every form of number, also with exponent; the comma of WORK 1,00 separates.
 TEST(LanguageRun, FormsOfNumbers) {
-  Expect({{"VR[0]=5\n", "VR[0]", "5.0"},
-          {"VR[0]=5.\n", "VR[0]", "5.0"},
-          {"VR[0]=.5\n", "VR[0]", "0.5"},
-          {"VR[0]=5.0\n", "VR[0]", "5.0"},
-          {"VR[0]=5E2\n", "VR[0]", "500.0"},
-          {"VR[0]=5.E-1\n", "VR[0]", "0.5"},
-          {"VR[0]=.5E+1\n", "VR[0]", "5.0"},
-          {"VR[0]=5.0 E 1\n", "VR[0]", "50.0"}});
+  ExpectValues({{"VR[0]=5\n", "VR[0]", "5.0"},
+                {"VR[0]=5.\n", "VR[0]", "5.0"},
+                {"VR[0]=.5\n", "VR[0]", "0.5"},
+                {"VR[0]=5.0\n", "VR[0]", "5.0"},
+                {"VR[0]=5E2\n", "VR[0]", "500.0"},
+                {"VR[0]=5.E-1\n", "VR[0]", "0.5"},
+                {"VR[0]=.5E+1\n", "VR[0]", "5.0"},
+                {"VR[0]=5.0 E 1\n", "VR[0]", "50.0"}});
   EXPECT_NEAR(RunText("DELAY .5\n").time_s, 0.5, 1e-9);
   EXPECT_EQ(CodeOf(RunText("WORKDEF 1,00 (5.,80.,0.,90.)\nWORK 1,0/ON\nWORK 1,00/OFF\n")), 0);
 }
@@ -149,10 +136,10 @@ TEST(LanguageRun, RealsAreShownShort) {
 
 // OPT-W.73, OPT-7.57: PI is 3.14159, by itself, declared, and in expressions.
 TEST(LanguageRun, PiIsFiveDecimals) {
-  Expect({{"VR[0]=PI\n", "VR[0]", "3.14159"},
-          {"DECLARE P = PI\nVR[0]=P\n", "VR[0]", "3.14159"},
-          {"VR[30]=PI/2\n", "VR[30]", "1.570795"},
-          {"VR[0]=2*PI\n", "VR[0]", "6.28318"}});
+  ExpectValues({{"VR[0]=PI\n", "VR[0]", "3.14159"},
+                {"DECLARE P = PI\nVR[0]=P\n", "VR[0]", "3.14159"},
+                {"VR[30]=PI/2\n", "VR[30]", "1.570795"},
+                {"VR[0]=2*PI\n", "VR[0]", "6.28318"}});
   EXPECT_EQ(CodeOf(RunText("MOVE (1000.,1000.,-50.,PI/2,0.)\n")), 0);
   EXPECT_NEAR(RunText("MOVE (1000.,1000.,-50.,PI/2,0.)\n").end.axes.a_rad, 1.570795, 1e-6);
 }
@@ -176,13 +163,13 @@ TEST(LanguageRun, ArithmeticErrorsAreCaught) {
 
 // OPT-B.49, OPT-7.46: the first eight characters of a name count when the program runs.
 TEST(LanguageRun, NamesAreCut) {
-  Expect({{"DECLARE POSITION1 = VR[1]\nPOSITION = 5.\n", "VR[1]", "5.0"}});
+  ExpectValues({{"DECLARE POSITION1 = VR[1]\nPOSITION = 5.\n", "VR[1]", "5.0"}});
 }
 
 // OPT-7.19, OPT-7.16: of the labels of a GOTO only the one that is taken must exist.
 TEST(LanguageRun, OnlyTheTakenLabelMustExist) {
   const std::string text = "GOTO VI[2] (20,999)\nVI[3]=9\nENDTASK\n20 VI[3]=2\n";
-  Expect({{"VI[2]=1\n" + text, "VI[3]", "2"}, {"VI[2]=3\n" + text, "VI[3]", "9"}});
+  ExpectValues({{"VI[2]=1\n" + text, "VI[3]", "2"}, {"VI[2]=3\n" + text, "VI[3]", "9"}});
   EXPECT_EQ(CodeOf(RunText("VI[2]=2\n" + text)), 60);
   EXPECT_EQ(CodeOf(RunText("IF VL[1] THEN 99 ELSE 5\n5 VI[2]=1\n")), 0);
   EXPECT_EQ(CodeOf(RunText("IF VL[1] THEN 5 ELSE 99\n5 VI[2]=1\n")), 60);
@@ -191,7 +178,7 @@ TEST(LanguageRun, OnlyTheTakenLabelMustExist) {
 // OPT-7.108: a REAL is truncated as a program number and as the value of ASSIGN.
 TEST(LanguageRun, RealNumbersOfPrograms) {
   const RunOptions options{.programs = {{46, "VI[3]=46\n"}, {47, "VI[3]=47\n"}}};
-  Expect(
+  ExpectValues(
       {{"VR[1]=46.9\nGO VR[1]\n", "VI[3]", "46"},
        {"VR[1]=46.9\nCALL VR[1]\n", "VI[3]", "46"},
        {"VR[1]=5.9\nASSIGN VL[22]=VR[1] /8\nVI[3]=0\nIF VL[22] AND VL[24] AND NOT VL[23] THEN 5\nENDTASK\n"
@@ -203,7 +190,7 @@ TEST(LanguageRun, RealNumbersOfPrograms) {
 // OPT-B.86, OPT-7.02: the number of GO ends at the attribute, that of CALL at its parameters.
 TEST(LanguageRun, NumbersOfProgramsEndWhereTheyShould) {
   const RunOptions options{.programs = {{46, "VI[3]=46\n"}, {45, "VR[3]=PAR[0]\n"}}};
-  Expect({{"GO 46/C\n", "VI[3]", "46"}, {"CALL 45(7.)\n", "VR[3]", "7.0"}}, options);
+  ExpectValues({{"GO 46/C\n", "VI[3]", "46"}, {"CALL 45(7.)\n", "VR[3]", "7.0"}}, options);
 }
 
 // OPT-7.28, OPT-B.50: each of the six values of SYSDEF is its own; the word alone cancels.

@@ -255,6 +255,12 @@ std::string Value(const std::string& text, const std::string& variable, RunOptio
   return RunText(text, options).variables[variable];
 }
 
+void ExpectValues(const std::vector<ValueRow>& rows, const RunOptions& options) {
+  for (const ValueRow& row : rows) {
+    EXPECT_EQ(Value(row.text, row.variable, options), row.wanted) << row.text;
+  }
+}
+
 int CodeOf(const Ran& ran) { return ran.outcome.code ? Lookup(*ran.outcome.code).number : 0; }
 
 SimTime At(double seconds) { return FromSeconds(seconds); }

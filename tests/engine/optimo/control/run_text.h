@@ -86,6 +86,15 @@ Ran RunText(const std::string& main, const RunOptions& options = {});
 // The value that a variable has in the end.
 std::string Value(const std::string& text, const std::string& variable, RunOptions options = {});
 
+// A program, a variable, and the value that it has in the end.
+struct ValueRow {
+  std::string text;
+  std::string variable;
+  std::string wanted;
+};
+
+void ExpectValues(const std::vector<ValueRow>& rows, const RunOptions& options = {});
+
 // The number of the code that a run ended with; 0: none.
 int CodeOf(const Ran& ran);
 
