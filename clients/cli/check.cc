@@ -48,8 +48,10 @@ Status CheckMotions(const std::vector<CheckedFile*>& files, const machine::Input
                                         file->translation)}});
   }
   const CheckedFile& any = *files.front();
-  const Status checked = simulation::CheckTogether(*any.family, *any.parameters, programs, inputs);
-  if (!checked) return checked.error();
+  if (const Status checked =
+          simulation::CheckTogether(*any.family, *any.parameters, programs, inputs);
+      !checked)
+    return checked.error();
   for (std::size_t n = 0; n < files.size(); ++n) {
     CheckedFile& file = *files[n];
     file.slot = programs[n].program.slot;
@@ -134,8 +136,8 @@ int FixFiles(std::vector<CheckedFile>& files, const machine::InputScript& inputs
     const auto judge = [&](const machine::Translation& left) -> Result<FixCheck::Left> {
       file.translation = left;
       if (left.ok && file.family->info().checked_by_running) {
-        const Status ran = CheckMotions({&file}, inputs, !options.errors_only);
-        if (!ran) return ran.error();
+        if (const Status ran = CheckMotions({&file}, inputs, !options.errors_only); !ran)
+          return ran.error();
       }
       return FixCheck::Left{
           .motion = file.motion,
@@ -171,9 +173,10 @@ int Check(const CheckOptions& options) {
     const Result<std::string> text = bridge::ReadFile(options.inputs_file, kFileBytesMax);
     if (!text) return Refuse(text.error());
     v1::SimulationOptions scripted;
-    const Status parsed =
-        bridge::ParseInputFile(*text, options.inputs_file, override_max, scripted);
-    if (!parsed) return Refuse(parsed.error());
+    if (const Status parsed =
+            bridge::ParseInputFile(*text, options.inputs_file, override_max, scripted);
+        !parsed)
+      return Refuse(parsed.error());
     inputs = bridge::InputsOf(scripted);
   }
   if (options.fix) return FixFiles(files, inputs, options);

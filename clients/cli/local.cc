@@ -127,7 +127,8 @@ Result<v1::SimulationOptions> OptionsMessage(const SimulateOptions& options,
   if (!options.inputs_file.empty()) {
     const Result<std::string> text = bridge::ReadFile(options.inputs_file, kFileBytesMax);
     if (!text) return text.error();
-    if (Status parsed = bridge::ParseInputFile(*text, options.inputs_file, override_max, message);
+    if (const Status parsed =
+            bridge::ParseInputFile(*text, options.inputs_file, override_max, message);
         !parsed)
       return parsed.error();
   }
@@ -161,23 +162,6 @@ Status AddExecutables(const SimulateOptions& options, const machine::MachineFami
     }
     program->executable = machine::Bytes::Of(*std::move(bytes));
   }
-  return {};
-}
-
-// Runs program `slot` far enough to make its executable: the control makes it at START (OPT-1.11).
-Status MakeExecutable(const machine::MachineFamily& family, machine::RunSetup& setup, int slot) {
-  machine::RunSetup short_setup = setup;
-  short_setup.main_program = slot;
-  machine::RunObserver nobody;
-  const Result<std::unique_ptr<machine::Run>> run = family.NewRun(std::move(short_setup), nobody);
-  if (!run) return run.error();
-  const std::map<int, std::string> made = (*run)->made_executables();
-  const auto found = made.find(slot);
-  if (found == made.end()) {
-    return Error{
-        (*run)->outcome().code.value_or(family.info().empty_slot), (*run)->outcome().detail, {}};
-  }
-  setup.programs[slot].executable = machine::Bytes::Of(found->second);
   return {};
 }
 
@@ -236,9 +220,9 @@ class RunProducts {
   // A picture or plot that goes to standard output ("-") is not written here.
   Status Write(const simulation::SimulationResult& result) {
     if (result.material) {
-      if (Status written = WriteMaterial(*result.material, result.target, options_.milling);
+      if (const Status written = WriteMaterial(*result.material, result.target, options_.milling);
           !written)
-        return written;
+        return written.error();
     }
     const std::string plot = options_.plot.empty() ? std::string() : options_.plot[1];
     const machine::Bytes toolpath = toolpath_.Finish();
@@ -340,18 +324,20 @@ Result<PreparedCommand> Prepare(const SimulateOptions& options) {
   if (!machine) return machine.error();
   Result<LoadedFiles> loaded = LoadPrograms(options, machine->family);
   if (!loaded) return loaded.error();
-  if (Status placed = PlaceWork(options.machine, *loaded->family, machine->parameters); !placed)
+  if (const Status placed = PlaceWork(options.machine, *loaded->family, machine->parameters);
+      !placed)
     return placed.error();
   const Result<v1::SimulationOptions> message = OptionsMessage(options, *loaded->family);
   if (!message) return message.error();
-  if (Status there = CheckPlaces(*message, *loaded); !there) return there.error();
+  if (const Status there = CheckPlaces(*message, *loaded); !there) return there.error();
   v1::Budget budget;
-  if (Status parsed = ParseBudget(options.budget, budget); !parsed) return parsed.error();
+  if (const Status parsed = ParseBudget(options.budget, budget); !parsed) return parsed.error();
   Result<std::vector<std::string>> variables =
       bridge::ExpandVariables(SplitCommas(options.variables));
   if (!variables) return variables.error();
   std::vector<int> to_make;
-  if (Status added = AddExecutables(options, *loaded->family, loaded->programs, to_make); !added)
+  if (const Status added = AddExecutables(options, *loaded->family, loaded->programs, to_make);
+      !added)
     return added.error();
   Result<std::string> state = std::string();
   if (!options.state_in.empty()) state = bridge::ReadFile(options.state_in, kFileBytesMax);
@@ -367,7 +353,7 @@ Result<PreparedCommand> Prepare(const SimulateOptions& options) {
   if (!run) return run.error();
   for (const int slot : to_make) {
     if (!run->setup) break;  // it is told why
-    if (Status made = MakeExecutable(*loaded->family, *run->setup, slot); !made)
+    if (const Status made = simulation::MakeExecutable(*loaded->family, *run->setup, slot); !made)
       return made.error();
   }
   return PreparedCommand{*std::move(loaded), std::move(memory), *std::move(run),
@@ -404,7 +390,7 @@ int Simulate(const SimulateOptions& options) {
 
   simulation::SimulationRequest request;
   RunProducts products(options);
-  if (Status asked = products.AskFor(request); !asked) return Refuse(asked.error());
+  if (const Status asked = products.AskFor(request); !asked) return Refuse(asked.error());
   if (!options.milling.block.stock.empty()) {
     Result<simulation::Milling> milling =
         MillingOf(options.milling, family.Shape(run.setup->parameters), prepared->memory);
@@ -426,7 +412,7 @@ int Simulate(const SimulateOptions& options) {
       simulation::Simulate(family, *std::move(run.setup), std::move(request));
   progress.Clear();
   if (!result) return Refuse(result.error());
-  if (Status written = products.Write(*result); !written) return Refuse(written.error());
+  if (const Status written = products.Write(*result); !written) return Refuse(written.error());
   for (const std::string& name : prepared->variables) {
     if (result->variables.contains(name)) continue;
     Complain("the machine has no variable " + name);

@@ -107,12 +107,12 @@ Result<simulation::Milling> MillingOf(const MillingOptions& options,
     if (!chips) return chips.error();
     milling.chips = *chips;
   }
-  if (Status sound = simulation::CheckMilling(milling); !sound) return sound.error();
+  if (const Status sound = simulation::CheckMilling(milling); !sound) return sound.error();
   if (options.target.empty()) return milling;
   Result<simulation::Target> target = TargetOf(options, machine, milling);
   if (!target) return target.error();
   milling.target = *std::move(target);
-  if (Status sound = simulation::CheckMilling(milling); !sound) return sound.error();
+  if (const Status sound = simulation::CheckMilling(milling); !sound) return sound.error();
   return milling;
 }
 
@@ -137,7 +137,8 @@ Status WriteMaterial(const simulation::HeightField& material,
   };
   for (const Product& product : products) {
     if (product.file.empty()) continue;
-    if (Status written = WritePortions(product.file, product.write); !written) return written;
+    if (const Status written = WritePortions(product.file, product.write); !written)
+      return written.error();
   }
   return {};
 }

@@ -84,7 +84,8 @@ Status PlaceOrigin(const std::vector<double>& origin, const machine::MachineFami
 
 Status PlaceWork(const MachineChoice& choice, const machine::MachineFamily& family,
                  std::map<std::string, std::string>& parameters) {
-  if (Status placed = PlaceOrigin(choice.origin, family, parameters); !placed) return placed;
+  if (const Status placed = PlaceOrigin(choice.origin, family, parameters); !placed)
+    return placed.error();
   if (!choice.clamps_mm) return {};
   const std::string_view name = family.info().clamps_parameter;
   if (name.empty()) {

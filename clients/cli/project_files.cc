@@ -62,9 +62,9 @@ Result<v1::Project> ReadProject(const std::string& path) {
   Result<v1::Project> project = v1::Project();
   if (!is_folder || fs::exists(file, ignored)) project = ParseProject(file.string());
   if (!project) return project.error();
-  if (Status added = AddContents(folder, *project); !added) return added.error();
+  if (const Status added = AddContents(folder, *project); !added) return added.error();
   if (is_folder && project->programs().empty()) {
-    if (Status added = AddNumberedPrograms(path, *project); !added) return added.error();
+    if (const Status added = AddNumberedPrograms(path, *project); !added) return added.error();
   }
   return project;
 }

@@ -52,8 +52,9 @@ std::string When(const google::protobuf::Timestamp& time) {
 constexpr std::size_t kInlineBytesMax = 3 << 20;
 
 Status SetMilling(const JobMillingOptions& wanted, v1::Milling& milling) {
-  if (Status set = bridge::SetBlockAndTool(wanted.block.stock, wanted.block.tool, milling); !set)
-    return set;
+  if (const Status set = bridge::SetBlockAndTool(wanted.block.stock, wanted.block.tool, milling);
+      !set)
+    return set.error();
   milling.set_cell_mm(wanted.block.cell_mm);
   milling.set_stl_tolerance_mm(wanted.stl_tolerance_mm);
   for (const std::string& product : wanted.products) {
@@ -170,7 +171,7 @@ int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
   if (!wanted.milling_project.empty())
     options.set_milling_project(FullName("projects", wanted.milling_project));
   if (!wanted.milling.block.stock.empty()) {
-    if (Status set = SetMilling(wanted.milling, *options.mutable_milling()); !set)
+    if (const Status set = SetMilling(wanted.milling, *options.mutable_milling()); !set)
       return Refuse(set.error());
   }
   if (!wanted.inputs_file.empty()) {
@@ -180,7 +181,8 @@ int SubmitJob(const Remote& remote, const SubmitRequest& wanted) {
     const machine::MachineFamily* family = families::FamilyOfFileName(wanted.file);
     const double most =
         family == nullptr ? families::OverrideMax() : family->info().override_max_percent;
-    if (Status parsed = bridge::ParseInputFile(*text, wanted.inputs_file, most, options); !parsed)
+    if (const Status parsed = bridge::ParseInputFile(*text, wanted.inputs_file, most, options);
+        !parsed)
       return Refuse(parsed.error());
   }
   request.set_request_id(wanted.request_id.empty() ? NewRequestId() : wanted.request_id);

@@ -81,8 +81,9 @@ Result<Parameters> MakeParameters(const MachineFamily& family, const std::string
       return Error{
           ErrorCode::kCellInvalidArgument, "no profile '" + profile + "'; there are" + known, {}};
     }
-    const Status applied = profile.empty() ? made.ApplyUnnamed(*found) : made.Apply(*found);
-    if (!applied) return applied.error();
+    if (const Status applied = profile.empty() ? made.ApplyUnnamed(*found) : made.Apply(*found);
+        !applied)
+      return applied.error();
   }
   for (const auto& [name, value] : parameters) {
     if (const Status set = made.Set(name, std::string_view(value)); !set) return set.error();

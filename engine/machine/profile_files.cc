@@ -60,7 +60,7 @@ Status ProfileFiles::Add(const ProfileText& file) {
 Result<ProfileFiles> ProfileFiles::Read(std::span<const ProfileText> files) {
   ProfileFiles made;
   for (const ProfileText& file : files) {
-    if (Status added = made.Add(file); !added) return added.error();
+    if (const Status added = made.Add(file); !added) return added.error();
   }
   return made;
 }

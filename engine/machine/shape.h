@@ -8,27 +8,30 @@
 
 namespace rmlcell::machine {
 
-// An axis-parallel box in space, mm. A new one is empty: it holds no point.
-struct Box {
-  motion::MachinePoint min{kNone, kNone, kNone};
-  motion::MachinePoint max{-kNone, -kNone, -kNone};
+// An axis-parallel box in a frame, mm. A new one is empty: it holds no point.
+template <class Point>
+struct BoxOf {
+  Point min{kNone, kNone, kNone};
+  Point max{-kNone, -kNone, -kNone};
 
   bool empty() const { return min.x() > max.x(); }
   double diagonal_mm() const { return empty() ? 0.0 : (min - max).norm(); }
-  void Add(const motion::MachinePoint& p) {
-    min = {std::min(min.x(), p.x()), std::min(min.y(), p.y()), std::min(min.z(), p.z())};
-    max = {std::max(max.x(), p.x()), std::max(max.y(), p.y()), std::max(max.z(), p.z())};
+  void Add(const Point& p) {
+    min = Point(std::min(min.x(), p.x()), std::min(min.y(), p.y()), std::min(min.z(), p.z()));
+    max = Point(std::max(max.x(), p.x()), std::max(max.y(), p.y()), std::max(max.z(), p.z()));
   }
-  void Add(const Box& other) {
+  void Add(const BoxOf& other) {
     if (other.empty()) return;
     Add(other.min);
     Add(other.max);
   }
-  bool operator==(const Box&) const = default;
+  bool operator==(const BoxOf&) const = default;
 
  private:
   static constexpr double kNone = std::numeric_limits<double>::infinity();
 };
+using Box = BoxOf<motion::MachinePoint>;
+using ProgramBox = BoxOf<motion::ProgramPoint>;  // as the program wrote its points
 
 // What report and pictures need to know of a machine beyond what its runs tell.
 struct MachineShape {

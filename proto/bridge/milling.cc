@@ -38,7 +38,8 @@ Result<simulation::MillTool> FromProto(const v1::MillTool& tool) {
   if (made.shape != simulation::MillTool::Shape::kVee &&
       (tool.angle_rad() != 0.0 || tool.tip_diameter_mm() != 0.0))
     return InvalidArgument("tool: angle_rad and tip_diameter_mm are for SHAPE_VEE");
-  if (Status sound = simulation::CheckTool(made); !sound) return Within("tool", sound.error());
+  if (const Status sound = simulation::CheckTool(made); !sound)
+    return Within("tool", sound.error());
   return made;
 }
 
@@ -85,7 +86,8 @@ Result<simulation::Milling> FromProto(const v1::Milling& milling) {
   if (!tool) return tool.error();
   const double cell_mm = milling.cell_mm() > 0.0 ? milling.cell_mm() : kCellStandard_mm;
   simulation::Milling made{.stock = FromProto(block, cell_mm), .tool = *tool};
-  if (Status sound = simulation::CheckMilling(made); !sound) return Within("stock", sound.error());
+  if (const Status sound = simulation::CheckMilling(made); !sound)
+    return Within("stock", sound.error());
   return made;
 }
 

@@ -19,6 +19,8 @@ void SetPlace(const machine::Place& place, v1::SourcePlace& message) {
   message = bridge::ToProto(place);
 }
 
+v1::Point ToProto(const motion::ProgramPoint& point) { return ToProto(point.from_origin()); }
+
 v1::Position PositionOf(const motion::TipPose& tip, const motion::AxisPose& axes) {
   v1::Position message;
   *message.mutable_tip() = ToProto(tip.tip);
@@ -28,8 +30,8 @@ v1::Position PositionOf(const motion::TipPose& tip, const motion::AxisPose& axes
   return message;
 }
 
-template <class Message>
-void SetBox(const machine::Box& box, v1::Box* (Message::*mutable_box)(), Message& report) {
+template <class Message, class Point>
+void SetBox(const machine::BoxOf<Point>& box, v1::Box* (Message::*mutable_box)(), Message& report) {
   if (box.empty()) return;
   v1::Box& message = *(report.*mutable_box)();
   *message.mutable_low() = ToProto(box.min);
@@ -267,8 +269,7 @@ v1::RunReport ToProto(const simulation::RunReport& report,
   *message.mutable_final_position() =
       PositionOf(report.final_position.tip, report.final_position.axes);
   if (report.work_origin) *message.mutable_work_origin() = ToProto(*report.work_origin);
-  *message.mutable_final_program_point() =
-      ToProto(report.final_position.program_point.from_origin());
+  *message.mutable_final_program_point() = ToProto(report.final_position.program_point);
   message.add_final_program_angles(report.final_position.program_a);
   message.add_final_program_angles(report.final_position.program_b);
   message.set_shutter_open_s(ToSeconds(report.total.shutter_open));
@@ -328,7 +329,7 @@ v1::TraceRecord ToProto(const simulation::TraceRecord& record) {
   switch (record.kind) {
     case TraceKind::kMove:
       message.set_text(std::string(record.text));
-      *message.mutable_point() = ToProto(record.program_point.from_origin());
+      *message.mutable_point() = ToProto(record.program_point);
       message.add_angles(record.program_a);
       message.add_angles(record.program_b);
       *message.mutable_position() = PositionOf(record.tip, record.axes);

@@ -311,8 +311,8 @@ Status ApplyTable(const toml::table& parsed, const std::string& name, Config& co
       if (!machines_replaced) changed.machines.clear();
       machines_replaced = true;
       for (const toml::node& node : *list) {
-        const Status read = ReadMachine(*node.as_table(), name, changed.machines);
-        if (!read) return read.error();
+        if (const Status read = ReadMachine(*node.as_table(), name, changed.machines); !read)
+          return read.error();
       }
       continue;
     }
@@ -440,8 +440,8 @@ Status ValidateConfig(const Config& config) {
     if (!valid) return valid.error();
   }
   if (!config.listen_web.empty()) {
-    const Status valid = ValidateAddress("listen.web", config.listen_web);
-    if (!valid) return valid.error();
+    if (const Status valid = ValidateAddress("listen.web", config.listen_web); !valid)
+      return valid.error();
   }
   std::set<std::string> ids;
   for (const MachineConfig& machine : config.machines) {

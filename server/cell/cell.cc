@@ -145,7 +145,7 @@ Status Cell::Parts::MakeMachines() {
                                         .family = machine.family,
                                         .title = machine.title,
                                         .profile = machine.profile};
-    if (Status good = CheckMachine(record); !good) {
+    if (const Status good = CheckMachine(record); !good) {
       return Error{
           ErrorCode::kCellConfiguration, "machine " + machine.id + ": " + good.error().detail, {}};
     }
@@ -163,14 +163,14 @@ Status Cell::Parts::Listen(const std::string& join_token) {
   programs = std::make_unique<ProgramBook>(*store, config);
   tools = std::make_unique<MemoryTools>(*store, *programs);
   projects = std::make_unique<ProjectBook>(*store);
-  const CallRoom room{gate, *executor, config.limit_message_bytes};
-  job_service = std::make_unique<JobService>(room, *book, *dispatcher, *feed, open, instance_id);
+  const CallNeeds needs{gate, *executor, config.limit_message_bytes};
+  job_service = std::make_unique<JobService>(needs, *book, *dispatcher, *feed, open, instance_id);
   machine_service =
-      std::make_unique<MachineService>(room, *store, *dispatcher, config, instance_id);
-  program_service = std::make_unique<ProgramService>(room, *programs, *tools, open);
-  project_service = std::make_unique<ProjectService>(room, *projects);
-  handbox_service = std::make_unique<HandboxService>(room);
-  worker_service = std::make_unique<WorkerService>(room, *dispatcher);
+      std::make_unique<MachineService>(needs, *store, *dispatcher, config, instance_id);
+  program_service = std::make_unique<ProgramService>(needs, *programs, *tools, open);
+  project_service = std::make_unique<ProjectService>(needs, *projects);
+  handbox_service = std::make_unique<HandboxService>(needs);
+  worker_service = std::make_unique<WorkerService>(needs, *dispatcher);
 
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
@@ -259,10 +259,10 @@ Result<std::unique_ptr<Cell>> Cell::Start(const Config& config) {
   const std::string join_token =
       config.workers_join_token.empty() ? RandomText() : config.workers_join_token;
   // The lock of the store first: a second server on the same store must not listen for a moment.
-  if (Status opened = parts.OpenStore(); !opened) return opened.error();
-  if (Status listening = parts.Listen(join_token); !listening) return listening.error();
-  if (Status listening = parts.ListenWeb(); !listening) return listening.error();
-  if (Status started = parts.StartWorkers(join_token); !started) return started.error();
+  if (const Status opened = parts.OpenStore(); !opened) return opened.error();
+  if (const Status listening = parts.Listen(join_token); !listening) return listening.error();
+  if (const Status listening = parts.ListenWeb(); !listening) return listening.error();
+  if (const Status started = parts.StartWorkers(join_token); !started) return started.error();
   return cell;
 }
 

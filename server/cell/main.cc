@@ -52,7 +52,7 @@ Status Configure(const std::string& file, const std::map<std::string, std::strin
   for (const ConfigKey& key : ConfigKeys()) {
     const auto found = flags.find(std::string(key.name));
     if (found == flags.end()) continue;
-    if (Status set = key.set(config, found->second); !set) {
+    if (const Status set = key.set(config, found->second); !set) {
       return Error{
           ErrorCode::kCellConfiguration, "--" + found->first + " " + set.error().detail, {}};
     }
@@ -91,13 +91,13 @@ Every key of the configuration is a flag too, and a variable of the environment:
     return app.exit(error) == 0 ? 0 : 64;
   }
   Config config;
-  if (Status configured = Configure(file, flags, config); !configured)
+  if (const Status configured = Configure(file, flags, config); !configured)
     return Refuse(configured.error());
   if (print) {
     std::fputs(PrintConfig(config).c_str(), stdout);
     return 0;
   }
-  if (Status log = StartLog("rmlcelld", config.log_level, config.log_format, config.log_file);
+  if (const Status log = StartLog("rmlcelld", config.log_level, config.log_format, config.log_file);
       !log) {
     return Refuse(log.error());
   }

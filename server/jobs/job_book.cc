@@ -201,7 +201,7 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
   if (const Status good = CheckTitle(job.title(), "job.title"); !good) return good.error();
   if (job.attempts_max() < 0 || job.attempts_max() > 10)
     return InvalidArgument("job.attempts_max: allowed are 1 to 10");
-  if (Status valid = CheckBudget(job.budget()); !valid) return valid.error();
+  if (const Status valid = CheckBudget(job.budget()); !valid) return valid.error();
   const Result<std::string> machine_id = ParseMachineName(job.machine());
   if (!machine_id) return machine_id.error();
   const Result<storage::MachineRecord> machine = store_.GetMachine(*machine_id);
@@ -209,7 +209,7 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
   const machine::MachineFamily* known = families::FindFamily(machine->family);
   if (known == nullptr) return Error{ErrorCode::kCellUnknownFamily, machine->family, {}};
   const machine::MachineFamily& family = *known;
-  if (Status valid = CheckSimulation(job.simulation(), family); !valid) return valid.error();
+  if (const Status valid = CheckSimulation(job.simulation(), family); !valid) return valid.error();
 
   storage::NewJob made{.request_id = request.request_id(),
                        .request_hash = request.request_id().empty() ? "" : RequestHash(request),
@@ -225,22 +225,23 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
                        .attachments = {},
                        .events = {StateEvent(storage::JobState::kQueued)}};
   v1::Job specification = job;
-  if (Status attached = AttachProgram(job, family, made, specification); !attached)
+  if (const Status attached = AttachProgram(job, family, made, specification); !attached)
     return attached.error();
   std::map<std::string, std::string> values = machine->parameters;
   for (const auto& [name, value] : job.simulation().parameters()) values[name] = value;
   const Result<machine::Parameters> parameters =
       machine::MakeParameters(family, machine->profile, values);
   if (!parameters) return parameters.error();
-  if (Status good = CheckVariables(job.simulation(), family, *parameters); !good)
+  if (const Status good = CheckVariables(job.simulation(), family, *parameters); !good)
     return good.error();
-  if (Status good = SettleMilling(store_, family.Shape(*parameters), specification); !good)
+  if (const Status good = SettleMilling(store_, family.Shape(*parameters), specification); !good)
     return good.error();
   std::set<int> further;
   for (v1::SlotProgram& program : *specification.mutable_simulation()->mutable_programs()) {
     const std::string what = "job.simulation.programs of slot " + std::to_string(program.slot());
-    if (Status fits = CheckSize(program.program().content(), what); !fits) return fits.error();
-    if (Status fits = CheckFileFamily(program.program().file_name(), family); !fits)
+    if (const Status fits = CheckSize(program.program().content(), what); !fits)
+      return fits.error();
+    if (const Status fits = CheckFileFamily(program.program().file_name(), family); !fits)
       return fits.error();
     if (!further.insert(program.slot()).second) return InvalidArgument(what + " stands twice");
     if (job.has_inline_program() && program.slot() == InlineSlotOf(job)) {
@@ -317,7 +318,7 @@ Result<v1::ListJobsResponse> JobBook::List(const v1::ListJobsRequest& request) {
   const Result<int> size = PageSize(request.page_size(), kJobPages);
   if (!size) return size.error();
   query.limit = *size + 1;  // one more tells whether there is a next page
-  if (Status applied = ApplyFilter(request.filter(), query); !applied) return applied.error();
+  if (const Status applied = ApplyFilter(request.filter(), query); !applied) return applied.error();
   if (!request.page_token().empty()) {
     const auto before = ParseInteger(request.page_token());
     if (!before || *before <= 0) return Error{ErrorCode::kCellBadPageToken, {}, {}};

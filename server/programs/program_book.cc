@@ -152,7 +152,7 @@ ProgramResult<v1::Program> ProgramBook::Store(Put put) {
   const machine::MachineFamily& family = *place->family;
   const storage::MachineRecord& machine = place->machine;
   if (put.bytes.empty()) return Error{ErrorCode::kCellEmptyProgram, put.file_name, {}};
-  if (Status fits = CheckSize(static_cast<std::int64_t>(put.bytes.size())); !fits)
+  if (const Status fits = CheckSize(static_cast<std::int64_t>(put.bytes.size())); !fits)
     return fits.error();
   if (const Status good = CheckTitle(put.title, "title"); !good) return good.error();
   if (put.file_name.size() > kFileNameMax)

@@ -105,12 +105,25 @@ machine::ProcessDefinition DefinitionOf(const v1::ProjectProcess& process) {
           .note = process.note()};
 }
 
-// What is wrong with a project by itself. Of what its definitions say any family may have an
-// opinion: only one has processes at all (OPT-3.01 to 3.08).
+// Whether a program of the project is for a machine of the family, by its name; where no name says
+// anything, the family that has processes.
+bool IsFor(const v1::Project& project, const machine::MachineFamily& family) {
+  bool named = false;
+  for (const v1::ProjectProgram& program : project.programs()) {
+    const machine::MachineFamily* one = families::FamilyOfFileName(program.source().file_name());
+    if (one == &family) return true;
+    named = named || one != nullptr;
+  }
+  return !named && families::FamilyWithSchedules() == &family;
+}
+
+// What is wrong with a project by itself: its definitions, to the families that it is for (OPT-3.01
+// to 3.08).
 std::optional<ProgramError> FindFault(const v1::Project& project) {
   if (const Status good = CheckParts(project); !good) return ProgramError{good.error(), {}, 0};
   std::vector<Diagnostic> found;
   for (const machine::MachineFamily* family : families::Families()) {
+    if (!IsFor(project, *family)) continue;
     for (const v1::ProjectProcess& process : project.processes()) {
       std::ranges::move(family->CheckProcess(DefinitionOf(process)), std::back_inserter(found));
     }
@@ -183,7 +196,7 @@ const v1::ProjectProgram* FindProgram(const v1::Project& project, int slot) {
 }  // namespace
 
 ProgramResult<v1::Project> ProjectBook::Create(const v1::CreateProjectRequest& request) {
-  if (Status id = CheckResourceId(request.project_id(), "project_id"); !id) return id.error();
+  if (const Status id = CheckResourceId(request.project_id(), "project_id"); !id) return id.error();
   if (auto fault = FindFault(request.project())) return *std::move(fault);
   storage::ProjectRecord record = RecordOf(request.project_id(), request.project());
   if (request.validate_only()) {

@@ -32,13 +32,13 @@ grpc::Status ToGrpcStatus(const Error& error, const std::vector<Diagnostic>& dia
   return {static_cast<grpc::StatusCode>(rich.code()), rich.message(), rich.SerializeAsString()};
 }
 
-Status CheckSize(const CallRoom& room, const google::protobuf::Message& request) {
+Status CheckSize(const CallNeeds& needs, const google::protobuf::Message& request) {
   const auto size = static_cast<std::int64_t>(request.ByteSizeLong());
-  if (size <= room.message_bytes_max) return {};
+  if (size <= needs.message_bytes_max) return {};
   return Error{
       ErrorCode::kCellTooLarge,
       "the message has " + std::to_string(size) + " bytes, one call takes " +
-          std::to_string(room.message_bytes_max) +
+          std::to_string(needs.message_bytes_max) +
           "; send a large program by chunks (UploadProgram, rmlcell put), and name its slot in a job",
       {}};
 }
@@ -66,9 +66,9 @@ void LogCall(std::string_view method, const Caller& caller, const grpc::Status& 
   }
 }
 
-grpc::ServerUnaryReactor* NotYet(const CallRoom& room, grpc::CallbackServerContext* context,
+grpc::ServerUnaryReactor* NotYet(const CallNeeds& needs, grpc::CallbackServerContext* context,
                                  std::string_view method) {
-  return Answer(room, context, method, [method = std::string(method)](const Caller&) {
+  return Answer(needs, context, method, [method = std::string(method)](const Caller&) {
     return ToGrpcStatus(Error{ErrorCode::kCellUnimplemented, method, {}});
   });
 }

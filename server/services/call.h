@@ -17,7 +17,7 @@
 namespace rmlcell::server {
 
 // What a call needs before its own work begins.
-struct CallRoom {
+struct CallNeeds {
   const Gate& gate;
   Executor& executor;
   std::int64_t message_bytes_max;  // limits.message_bytes
@@ -32,19 +32,19 @@ void LogCall(std::string_view method, const Caller& caller, const grpc::Status& 
 // that whoever is a little over gets the code and the advice; larger ones are not worth the memory.
 inline constexpr std::int64_t kRefusalBytes = 16 << 20;
 // Error: CellTooLarge.
-Status CheckSize(const CallRoom& room, const google::protobuf::Message& request);
+Status CheckSize(const CallNeeds& needs, const google::protobuf::Message& request);
 
 // Runs `work(caller)`, which returns a grpc::Status, on the executor and finishes the call with it.
 template <class Work>
-grpc::ServerUnaryReactor* Answer(const CallRoom& room, grpc::CallbackServerContext* context,
+grpc::ServerUnaryReactor* Answer(const CallNeeds& needs, grpc::CallbackServerContext* context,
                                  std::string_view method, Work work) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  Result<Caller> caller = Admit(room.gate, *context, method);
+  Result<Caller> caller = Admit(needs.gate, *context, method);
   if (!caller) {
     reactor->Finish(ToGrpcStatus(caller.error()));
     return reactor;
   }
-  room.executor.Post([reactor, method, caller = std::move(*caller), work = std::move(work)] {
+  needs.executor.Post([reactor, method, caller = std::move(*caller), work = std::move(work)] {
     const auto begin = std::chrono::steady_clock::now();
     grpc::Status status;
     try {
@@ -61,17 +61,17 @@ grpc::ServerUnaryReactor* Answer(const CallRoom& room, grpc::CallbackServerConte
 
 // The same for a request that may be of any size.
 template <class Work>
-grpc::ServerUnaryReactor* Answer(const CallRoom& room, grpc::CallbackServerContext* context,
+grpc::ServerUnaryReactor* Answer(const CallNeeds& needs, grpc::CallbackServerContext* context,
                                  const google::protobuf::Message& request, std::string_view method,
                                  Work work) {
-  const Status size = CheckSize(room, request);
-  if (size) return Answer(room, context, method, std::move(work));
-  return Answer(room, context, method,
+  const Status size = CheckSize(needs, request);
+  if (size) return Answer(needs, context, method, std::move(work));
+  return Answer(needs, context, method,
                 [error = size.error()](const Caller&) { return ToGrpcStatus(error); });
 }
 
 // A method of a later version.
-grpc::ServerUnaryReactor* NotYet(const CallRoom& room, grpc::CallbackServerContext* context,
+grpc::ServerUnaryReactor* NotYet(const CallNeeds& needs, grpc::CallbackServerContext* context,
                                  std::string_view method);
 
 }  // namespace rmlcell::server

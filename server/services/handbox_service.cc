@@ -7,18 +7,18 @@ namespace rmlcell::server {
 grpc::ServerUnaryReactor* HandboxService::CreateHandboxSession(
     grpc::CallbackServerContext* context, const v1::CreateHandboxSessionRequest*,
     v1::HandboxSession*) {
-  return NotYet(room_, context, "HandboxService/CreateHandboxSession");
+  return NotYet(needs_, context, "HandboxService/CreateHandboxSession");
 }
 
 grpc::ServerUnaryReactor* HandboxService::PressKey(grpc::CallbackServerContext* context,
                                                    const v1::PressKeyRequest*,
                                                    v1::HandboxSession*) {
-  return NotYet(room_, context, "HandboxService/PressKey");
+  return NotYet(needs_, context, "HandboxService/PressKey");
 }
 
 grpc::ServerWriteReactor<v1::WatchHandboxSessionResponse>* HandboxService::WatchHandboxSession(
     grpc::CallbackServerContext* context, const v1::WatchHandboxSessionRequest*) {
-  const auto caller = Admit(room_.gate, *context, "HandboxService/WatchHandboxSession");
+  const auto caller = Admit(needs_.gate, *context, "HandboxService/WatchHandboxSession");
   const Error error =
       caller ? Error{ErrorCode::kCellUnimplemented, "HandboxService/WatchHandboxSession", {}}
              : caller.error();
@@ -28,7 +28,7 @@ grpc::ServerWriteReactor<v1::WatchHandboxSessionResponse>* HandboxService::Watch
 grpc::ServerUnaryReactor* HandboxService::DeleteHandboxSession(
     grpc::CallbackServerContext* context, const v1::DeleteHandboxSessionRequest*,
     google::protobuf::Empty*) {
-  return NotYet(room_, context, "HandboxService/DeleteHandboxSession");
+  return NotYet(needs_, context, "HandboxService/DeleteHandboxSession");
 }
 
 }  // namespace rmlcell::server

@@ -8,7 +8,7 @@ namespace rmlcell::server {
 // Teach sessions come in a later version; the methods pass the gate and say so.
 class HandboxService final : public v1::HandboxService::CallbackService {
  public:
-  explicit HandboxService(CallRoom room) : room_(room) {}
+  explicit HandboxService(CallNeeds needs) : needs_(needs) {}
 
   grpc::ServerUnaryReactor* CreateHandboxSession(grpc::CallbackServerContext* context,
                                                  const v1::CreateHandboxSessionRequest* request,
@@ -23,7 +23,7 @@ class HandboxService final : public v1::HandboxService::CallbackService {
                                                  google::protobuf::Empty* response) override;
 
  private:
-  CallRoom room_;
+  CallNeeds needs_;
 };
 
 }  // namespace rmlcell::server

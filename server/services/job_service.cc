@@ -17,8 +17,8 @@ grpc::ServerUnaryReactor* JobService::SubmitJob(grpc::CallbackServerContext* con
                                                 const v1::SubmitJobRequest* request,
                                                 v1::Job* response) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  const Result<Caller> caller = Admit(room_.gate, *context, "JobService/SubmitJob");
-  const Status size = CheckSize(room_, *request);
+  const Result<Caller> caller = Admit(needs_.gate, *context, "JobService/SubmitJob");
+  const Status size = CheckSize(needs_, *request);
   if (!caller || !size) {
     reactor->Finish(ToGrpcStatus(caller ? size.error() : caller.error()));
     return reactor;
@@ -41,7 +41,7 @@ grpc::ServerUnaryReactor* JobService::SubmitJob(grpc::CallbackServerContext* con
 
 grpc::ServerUnaryReactor* JobService::GetJob(grpc::CallbackServerContext* context,
                                              const v1::GetJobRequest* request, v1::Job* response) {
-  return Answer(room_, context, *request, "JobService/GetJob",
+  return Answer(needs_, context, *request, "JobService/GetJob",
                 [this, request, response](const Caller&) {
                   Result<v1::Job> job = book_.Get(request->name());
                   if (!job) return ToGrpcStatus(job.error());
@@ -53,7 +53,7 @@ grpc::ServerUnaryReactor* JobService::GetJob(grpc::CallbackServerContext* contex
 grpc::ServerUnaryReactor* JobService::ListJobs(grpc::CallbackServerContext* context,
                                                const v1::ListJobsRequest* request,
                                                v1::ListJobsResponse* response) {
-  return Answer(room_, context, *request, "JobService/ListJobs",
+  return Answer(needs_, context, *request, "JobService/ListJobs",
                 [this, request, response](const Caller&) {
                   Result<v1::ListJobsResponse> jobs = book_.List(*request);
                   if (!jobs) return ToGrpcStatus(jobs.error());
@@ -65,7 +65,7 @@ grpc::ServerUnaryReactor* JobService::ListJobs(grpc::CallbackServerContext* cont
 grpc::ServerUnaryReactor* JobService::CancelJob(grpc::CallbackServerContext* context,
                                                 const v1::CancelJobRequest* request,
                                                 v1::Job* response) {
-  return Answer(room_, context, *request, "JobService/CancelJob",
+  return Answer(needs_, context, *request, "JobService/CancelJob",
                 [this, request, response](const Caller&) {
                   const Result<std::int64_t> id = ParseJobName(request->name());
                   if (!id) return ToGrpcStatus(id.error());
@@ -79,7 +79,7 @@ grpc::ServerUnaryReactor* JobService::CancelJob(grpc::CallbackServerContext* con
 grpc::ServerUnaryReactor* JobService::Order(grpc::CallbackServerContext* context,
                                             std::string_view method, const std::string& name,
                                             int kind, double value, v1::Job* response) {
-  return Answer(room_, context, method, [this, name, kind, value, response](const Caller&) {
+  return Answer(needs_, context, method, [this, name, kind, value, response](const Caller&) {
     const Result<std::int64_t> id = ParseJobName(name);
     if (!id) return ToGrpcStatus(id.error());
     if (kind == v1::WorkerControl::KIND_OVERRIDE) {
@@ -123,10 +123,11 @@ grpc::ServerUnaryReactor* JobService::SetJobOverride(grpc::CallbackServerContext
 namespace {
 
 template <class Response>
-grpc::ServerWriteReactor<Response>* Open(const CallRoom& room, grpc::CallbackServerContext* context,
+grpc::ServerWriteReactor<Response>* Open(const CallNeeds& needs,
+                                         grpc::CallbackServerContext* context,
                                          std::string_view method,
                                          const std::shared_ptr<PullStream<Response>>& stream) {
-  const Result<Caller> caller = Admit(room.gate, *context, method);
+  const Result<Caller> caller = Admit(needs.gate, *context, method);
   if (!caller) return new RefusedStream<Response>(ToGrpcStatus(caller.error()));
   return stream->Begin();
 }
@@ -135,20 +136,20 @@ grpc::ServerWriteReactor<Response>* Open(const CallRoom& room, grpc::CallbackSer
 
 grpc::ServerWriteReactor<v1::WatchJobResponse>* JobService::WatchJob(
     grpc::CallbackServerContext* context, const v1::WatchJobRequest* request) {
-  return Open(room_, context, "JobService/WatchJob",
-              MakeJobWatch({room_.executor, open_, book_, feed_, instance_id_}, *request));
+  return Open(needs_, context, "JobService/WatchJob",
+              MakeJobWatch({needs_.executor, open_, book_, feed_, instance_id_}, *request));
 }
 
 grpc::ServerWriteReactor<v1::WatchJobsResponse>* JobService::WatchJobs(
     grpc::CallbackServerContext* context, const v1::WatchJobsRequest* request) {
-  return Open(room_, context, "JobService/WatchJobs",
-              MakeJobsWatch({room_.executor, open_, book_, feed_, instance_id_}, *request));
+  return Open(needs_, context, "JobService/WatchJobs",
+              MakeJobsWatch({needs_.executor, open_, book_, feed_, instance_id_}, *request));
 }
 
 grpc::ServerUnaryReactor* JobService::GetJobReport(grpc::CallbackServerContext* context,
                                                    const v1::GetJobReportRequest* request,
                                                    v1::RunReport* response) {
-  return Answer(room_, context, *request, "JobService/GetJobReport",
+  return Answer(needs_, context, *request, "JobService/GetJobReport",
                 [this, request, response](const Caller&) {
                   const Result<std::int64_t> id = ParseJobName(request->name());
                   if (!id) return ToGrpcStatus(id.error());
@@ -164,15 +165,15 @@ grpc::ServerUnaryReactor* JobService::GetJobReport(grpc::CallbackServerContext* 
 
 grpc::ServerWriteReactor<v1::StreamJobToolpathResponse>* JobService::StreamJobToolpath(
     grpc::CallbackServerContext* context, const v1::StreamJobToolpathRequest* request) {
-  return Open(room_, context, "JobService/StreamJobToolpath",
-              MakeToolpathStream({room_.executor, open_, book_, feed_, instance_id_},
+  return Open(needs_, context, "JobService/StreamJobToolpath",
+              MakeToolpathStream({needs_.executor, open_, book_, feed_, instance_id_},
                                  request->name(), request->level()));
 }
 
 grpc::ServerUnaryReactor* JobService::GetJobPicture(grpc::CallbackServerContext* context,
                                                     const v1::GetJobPictureRequest* request,
                                                     v1::GetJobPictureResponse* response) {
-  return Answer(room_, context, *request, "JobService/GetJobPicture",
+  return Answer(needs_, context, *request, "JobService/GetJobPicture",
                 [this, request, response](const Caller&) {
                   const Result<std::int64_t> id = ParseJobName(request->name());
                   if (!id) return ToGrpcStatus(id.error());
@@ -186,15 +187,15 @@ grpc::ServerUnaryReactor* JobService::GetJobPicture(grpc::CallbackServerContext*
 
 grpc::ServerWriteReactor<v1::StreamJobArtifactResponse>* JobService::StreamJobArtifact(
     grpc::CallbackServerContext* context, const v1::StreamJobArtifactRequest* request) {
-  return Open(room_, context, "JobService/StreamJobArtifact",
-              MakeArtifactStream({room_.executor, open_, book_, feed_, instance_id_}, *request));
+  return Open(needs_, context, "JobService/StreamJobArtifact",
+              MakeArtifactStream({needs_.executor, open_, book_, feed_, instance_id_}, *request));
 }
 
 grpc::ServerWriteReactor<v1::StreamJobTraceResponse>* JobService::StreamJobTrace(
     grpc::CallbackServerContext* context, const v1::StreamJobTraceRequest* request) {
   return Open(
-      room_, context, "JobService/StreamJobTrace",
-      MakeTraceStream({room_.executor, open_, book_, feed_, instance_id_}, request->name()));
+      needs_, context, "JobService/StreamJobTrace",
+      MakeTraceStream({needs_.executor, open_, book_, feed_, instance_id_}, request->name()));
 }
 
 }  // namespace rmlcell::server

@@ -15,9 +15,9 @@ class JobBook;
 // Converts, calls, converts: the rules live in server/jobs.
 class JobService final : public v1::JobService::CallbackService {
  public:
-  JobService(CallRoom room, JobBook& book, Dispatcher& dispatcher, EventFeed& feed,
+  JobService(CallNeeds needs, JobBook& book, Dispatcher& dispatcher, EventFeed& feed,
              OpenStreams& open, std::string instance_id)
-      : room_(room),
+      : needs_(needs),
         book_(book),
         dispatcher_(dispatcher),
         feed_(feed),
@@ -65,7 +65,7 @@ class JobService final : public v1::JobService::CallbackService {
                                   const std::string& name, int kind, double value,
                                   v1::Job* response);
 
-  CallRoom room_;
+  CallNeeds needs_;
   JobBook& book_;
   Dispatcher& dispatcher_;
   EventFeed& feed_;

@@ -34,15 +34,15 @@ Status CheckPosition(std::int64_t after, std::int64_t last, const std::string& o
 // told; the end of the job ends the stream.
 class JobWatch final : public PullStream<v1::WatchJobResponse> {
  public:
-  JobWatch(const JobStreamRoom& room, const v1::WatchJobRequest& request)
-      : PullStream(room.executor, room.open),
-        room_(room),
+  JobWatch(const JobStreamNeeds& needs, const v1::WatchJobRequest& request)
+      : PullStream(needs.executor, needs.open),
+        needs_(needs),
         request_(request),
         cursor_(request.after_sequence()) {}
 
  private:
   Next Make(v1::WatchJobResponse& message, grpc::Status& status) override {
-    message.set_instance_id(room_.instance_id);
+    message.set_instance_id(needs_.instance_id);
     if (!begun_) {
       begun_ = true;
       return MakeSnapshot(message, status);
@@ -59,7 +59,7 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
     }
     if (ended_ || Gone(status)) return Next::kEnd;
     if (!request_.events_only()) {
-      if (const auto progress = room_.feed.ProgressAfter(job_, progress_seen_)) {
+      if (const auto progress = needs_.feed.ProgressAfter(job_, progress_seen_)) {
         progress_seen_ = progress->version;
         message.mutable_progress()->ParseFromString(*progress->bytes);
         return Next::kMessage;
@@ -69,14 +69,14 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
   }
 
   Next MakeSnapshot(v1::WatchJobResponse& message, grpc::Status& status) {
-    Result<v1::Job> job = room_.book.Get(request_.name());
+    Result<v1::Job> job = needs_.book.Get(request_.name());
     if (!job) {
       status = ToGrpcStatus(job.error());
       return Next::kEnd;
     }
     job_ = *ParseJobName(request_.name());
     // Subscribed before the log is read: what comes in between wakes us again.
-    subscription_ = room_.feed.Subscribe(job_, [this] { Wake(); });
+    subscription_ = needs_.feed.Subscribe(job_, [this] { Wake(); });
     if (const Status there = CheckPosition(cursor_, job->last_sequence(), "the job"); !there) {
       status = ToGrpcStatus(there.error());
       return Next::kEnd;
@@ -87,7 +87,7 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
   }
 
   bool ReadEvents(grpc::Status& status) {
-    auto events = room_.feed.JobEvents(job_, cursor_, kReadAhead);
+    auto events = needs_.feed.JobEvents(job_, cursor_, kReadAhead);
     if (!events) {
       status = ToGrpcStatus(events.error());
       return false;
@@ -100,7 +100,7 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
   bool Gone(grpc::Status&) const { return final_sequence_ >= 0 && cursor_ >= final_sequence_; }
 
   bool MakeGoodbye(v1::WatchJobResponse& message) override {
-    message.set_instance_id(room_.instance_id);
+    message.set_instance_id(needs_.instance_id);
     message.set_reconnect("the server stops; watch again after sequence " +
                           std::to_string(cursor_));
     return true;
@@ -108,7 +108,7 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
 
   void Closed() override { subscription_.reset(); }
 
-  JobStreamRoom room_;
+  JobStreamNeeds needs_;
   v1::WatchJobRequest request_;
   std::int64_t cursor_;
   std::int64_t job_ = 0;
@@ -123,22 +123,22 @@ class JobWatch final : public PullStream<v1::WatchJobResponse> {
 // The same for all jobs, or some: the sequence is the position in the log of the cell.
 class JobsWatch final : public PullStream<v1::WatchJobsResponse> {
  public:
-  JobsWatch(const JobStreamRoom& room, const v1::WatchJobsRequest& request)
-      : PullStream(room.executor, room.open),
-        room_(room),
+  JobsWatch(const JobStreamNeeds& needs, const v1::WatchJobsRequest& request)
+      : PullStream(needs.executor, needs.open),
+        needs_(needs),
         request_(request),
         cursor_(request.after_sequence()) {}
 
  private:
   Next Make(v1::WatchJobsResponse& message, grpc::Status& status) override {
-    message.set_instance_id(room_.instance_id);
+    message.set_instance_id(needs_.instance_id);
     if (!begun_) {
       begun_ = true;
       return MakeSnapshot(message, status);
     }
     for (;;) {
       if (read_ahead_.empty()) {
-        auto events = room_.feed.EventsAfter(cursor_, kReadAhead);
+        auto events = needs_.feed.EventsAfter(cursor_, kReadAhead);
         if (!events) {
           status = ToGrpcStatus(events.error());
           return Next::kEnd;
@@ -167,13 +167,13 @@ class JobsWatch final : public PullStream<v1::WatchJobsResponse> {
       }
       jobs_.insert(*id);
     }
-    subscription_ = room_.feed.Subscribe(std::nullopt, [this] { Wake(); });
-    Result<v1::CellSnapshot> snapshot = room_.book.Snapshot();
+    subscription_ = needs_.feed.Subscribe(std::nullopt, [this] { Wake(); });
+    Result<v1::CellSnapshot> snapshot = needs_.book.Snapshot();
     if (!snapshot) {
       status = ToGrpcStatus(snapshot.error());
       return Next::kEnd;
     }
-    const auto machines = room_.book.Machines();
+    const auto machines = needs_.book.Machines();
     if (!machines) {
       status = ToGrpcStatus(machines.error());
       return Next::kEnd;
@@ -193,7 +193,7 @@ class JobsWatch final : public PullStream<v1::WatchJobsResponse> {
 
   bool MakeProgress(v1::WatchJobsResponse& message) {
     if (progress_.empty()) {
-      for (ProgressText& progress : room_.feed.AllProgressAfter(progress_seen_)) {
+      for (ProgressText& progress : needs_.feed.AllProgressAfter(progress_seen_)) {
         if (Wanted(progress.job)) progress_.push_back(std::move(progress));
       }
     }
@@ -205,7 +205,7 @@ class JobsWatch final : public PullStream<v1::WatchJobsResponse> {
   }
 
   bool MakeGoodbye(v1::WatchJobsResponse& message) override {
-    message.set_instance_id(room_.instance_id);
+    message.set_instance_id(needs_.instance_id);
     message.set_reconnect("the server stops; watch again after sequence " +
                           std::to_string(cursor_));
     return true;
@@ -213,7 +213,7 @@ class JobsWatch final : public PullStream<v1::WatchJobsResponse> {
 
   void Closed() override { subscription_.reset(); }
 
-  JobStreamRoom room_;
+  JobStreamNeeds needs_;
   v1::WatchJobsRequest request_;
   std::int64_t cursor_;
   std::uint64_t progress_seen_ = 0;
@@ -229,9 +229,9 @@ template <class Response>
 class FramesStream : public PullStream<Response> {
  public:
   using typename PullStream<Response>::Next;
-  FramesStream(const JobStreamRoom& room, std::string job_name, std::string artifact)
-      : PullStream<Response>(room.executor, room.open),
-        room_(room),
+  FramesStream(const JobStreamNeeds& needs, std::string job_name, std::string artifact)
+      : PullStream<Response>(needs.executor, needs.open),
+        needs_(needs),
         job_name_(std::move(job_name)),
         artifact_(std::move(artifact)) {}
 
@@ -241,11 +241,11 @@ class FramesStream : public PullStream<Response> {
 
   // All frames, as they are stored.
   virtual Result<std::string> Read(std::int64_t job) {
-    return room_.book.ReadArtifact(job, artifact_);
+    return needs_.book.ReadArtifact(job, artifact_);
   }
 
   const std::string& job_name() const { return job_name_; }
-  JobBook& book() const { return room_.book; }
+  JobBook& book() const { return needs_.book; }
 
  private:
   Next Make(Response& message, grpc::Status& status) override {
@@ -268,7 +268,7 @@ class FramesStream : public PullStream<Response> {
     return any ? Next::kMessage : Next::kEnd;
   }
 
-  JobStreamRoom room_;
+  JobStreamNeeds needs_;
   std::string job_name_;
   std::string artifact_;
   bool begun_ = false;
@@ -295,8 +295,8 @@ std::string AtLevel(std::string_view frames, double stored_mm, int level) {
 
 class ToolpathStream final : public FramesStream<v1::StreamJobToolpathResponse> {
  public:
-  ToolpathStream(const JobStreamRoom& room, std::string job_name, int level)
-      : FramesStream(room, std::move(job_name), "toolpath"), level_(level) {}
+  ToolpathStream(const JobStreamNeeds& needs, std::string job_name, int level)
+      : FramesStream(needs, std::move(job_name), "toolpath"), level_(level) {}
 
  private:
   Result<std::string> Read(std::int64_t job) override {
@@ -336,8 +336,8 @@ class TraceStream final : public FramesStream<v1::StreamJobTraceResponse> {
 // A product as it is kept, in parts. One without bytes has no part.
 class ArtifactStream final : public PullStream<v1::StreamJobArtifactResponse> {
  public:
-  ArtifactStream(const JobStreamRoom& room, const v1::StreamJobArtifactRequest& request)
-      : PullStream(room.executor, room.open), book_(room.book), request_(request) {}
+  ArtifactStream(const JobStreamNeeds& needs, const v1::StreamJobArtifactRequest& request)
+      : PullStream(needs.executor, needs.open), book_(needs.book), request_(request) {}
 
  private:
   static constexpr std::size_t kChunkBytes = 1 << 20;
@@ -371,29 +371,29 @@ class ArtifactStream final : public PullStream<v1::StreamJobArtifactResponse> {
 
 }  // namespace
 
-std::shared_ptr<PullStream<v1::WatchJobResponse>> MakeJobWatch(const JobStreamRoom& room,
+std::shared_ptr<PullStream<v1::WatchJobResponse>> MakeJobWatch(const JobStreamNeeds& needs,
                                                                const v1::WatchJobRequest& request) {
-  return std::make_shared<JobWatch>(room, request);
+  return std::make_shared<JobWatch>(needs, request);
 }
 
 std::shared_ptr<PullStream<v1::WatchJobsResponse>> MakeJobsWatch(
-    const JobStreamRoom& room, const v1::WatchJobsRequest& request) {
-  return std::make_shared<JobsWatch>(room, request);
+    const JobStreamNeeds& needs, const v1::WatchJobsRequest& request) {
+  return std::make_shared<JobsWatch>(needs, request);
 }
 
 std::shared_ptr<PullStream<v1::StreamJobToolpathResponse>> MakeToolpathStream(
-    const JobStreamRoom& room, const std::string& job_name, int level) {
-  return std::make_shared<ToolpathStream>(room, job_name, level);
+    const JobStreamNeeds& needs, const std::string& job_name, int level) {
+  return std::make_shared<ToolpathStream>(needs, job_name, level);
 }
 
 std::shared_ptr<PullStream<v1::StreamJobTraceResponse>> MakeTraceStream(
-    const JobStreamRoom& room, const std::string& job_name) {
-  return std::make_shared<TraceStream>(room, job_name, "trace");
+    const JobStreamNeeds& needs, const std::string& job_name) {
+  return std::make_shared<TraceStream>(needs, job_name, "trace");
 }
 
 std::shared_ptr<PullStream<v1::StreamJobArtifactResponse>> MakeArtifactStream(
-    const JobStreamRoom& room, const v1::StreamJobArtifactRequest& request) {
-  return std::make_shared<ArtifactStream>(room, request);
+    const JobStreamNeeds& needs, const v1::StreamJobArtifactRequest& request) {
+  return std::make_shared<ArtifactStream>(needs, request);
 }
 
 }  // namespace rmlcell::server

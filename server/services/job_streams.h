@@ -12,7 +12,7 @@ class EventFeed;
 class JobBook;
 
 // What a stream of jobs works with.
-struct JobStreamRoom {
+struct JobStreamNeeds {
   Executor& executor;
   OpenStreams& open;
   JobBook& book;
@@ -20,16 +20,16 @@ struct JobStreamRoom {
   std::string instance_id;
 };
 
-std::shared_ptr<PullStream<v1::WatchJobResponse>> MakeJobWatch(const JobStreamRoom& room,
+std::shared_ptr<PullStream<v1::WatchJobResponse>> MakeJobWatch(const JobStreamNeeds& needs,
                                                                const v1::WatchJobRequest& request);
 std::shared_ptr<PullStream<v1::WatchJobsResponse>> MakeJobsWatch(
-    const JobStreamRoom& room, const v1::WatchJobsRequest& request);
+    const JobStreamNeeds& needs, const v1::WatchJobsRequest& request);
 std::shared_ptr<PullStream<v1::StreamJobToolpathResponse>> MakeToolpathStream(
-    const JobStreamRoom& room, const std::string& job_name, int level);
+    const JobStreamNeeds& needs, const std::string& job_name, int level);
 std::shared_ptr<PullStream<v1::StreamJobTraceResponse>> MakeTraceStream(
-    const JobStreamRoom& room, const std::string& job_name);
+    const JobStreamNeeds& needs, const std::string& job_name);
 std::shared_ptr<PullStream<v1::StreamJobArtifactResponse>> MakeArtifactStream(
-    const JobStreamRoom& room, const v1::StreamJobArtifactRequest& request);
+    const JobStreamNeeds& needs, const v1::StreamJobArtifactRequest& request);
 
 // A stream that ends at once, for calls that are refused.
 template <class Response>

@@ -33,9 +33,9 @@ storage::MachineRecord FromProto(const v1::Machine& message, const std::string& 
 
 }  // namespace
 
-MachineService::MachineService(CallRoom room, storage::Store& store, const Dispatcher& dispatcher,
+MachineService::MachineService(CallNeeds needs, storage::Store& store, const Dispatcher& dispatcher,
                                const Config& config, std::string instance_id)
-    : room_(room),
+    : needs_(needs),
       store_(store),
       dispatcher_(dispatcher),
       config_(config),
@@ -45,7 +45,7 @@ MachineService::MachineService(CallRoom room, storage::Store& store, const Dispa
 
 grpc::ServerUnaryReactor* MachineService::GetCell(grpc::CallbackServerContext* context,
                                                   const v1::GetCellRequest*, v1::Cell* response) {
-  return Answer(room_, context, "MachineService/GetCell", [this, response](const Caller&) {
+  return Answer(needs_, context, "MachineService/GetCell", [this, response](const Caller&) {
     const auto counts = store_.CountJobs();
     if (!counts) return ToGrpcStatus(counts.error());
     response->set_version(std::string(kVersion));
@@ -63,7 +63,7 @@ grpc::ServerUnaryReactor* MachineService::GetCell(grpc::CallbackServerContext* c
 grpc::ServerUnaryReactor* MachineService::ListFamilies(grpc::CallbackServerContext* context,
                                                        const v1::ListFamiliesRequest*,
                                                        v1::ListFamiliesResponse* response) {
-  return Answer(room_, context, "MachineService/ListFamilies", [response](const Caller&) {
+  return Answer(needs_, context, "MachineService/ListFamilies", [response](const Caller&) {
     for (const machine::MachineFamily* family : families::Families()) {
       *response->add_families() = ToProto(*family);
     }
@@ -74,13 +74,14 @@ grpc::ServerUnaryReactor* MachineService::ListFamilies(grpc::CallbackServerConte
 grpc::ServerUnaryReactor* MachineService::CreateMachine(grpc::CallbackServerContext* context,
                                                         const v1::CreateMachineRequest* request,
                                                         v1::Machine* response) {
-  return Answer(room_, context, *request, "MachineService/CreateMachine",
+  return Answer(needs_, context, *request, "MachineService/CreateMachine",
                 [this, request, response](const Caller&) {
-                  if (Status id = CheckResourceId(request->machine_id(), "machine_id"); !id)
+                  if (const Status id = CheckResourceId(request->machine_id(), "machine_id"); !id)
                     return ToGrpcStatus(id.error());
                   const storage::MachineRecord record =
                       FromProto(request->machine(), request->machine_id());
-                  if (Status good = CheckMachine(record); !good) return ToGrpcStatus(good.error());
+                  if (const Status good = CheckMachine(record); !good)
+                    return ToGrpcStatus(good.error());
                   if (request->validate_only()) {
                     *response = ToProto(record);
                     response->clear_etag();
@@ -96,7 +97,7 @@ grpc::ServerUnaryReactor* MachineService::CreateMachine(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* MachineService::GetMachine(grpc::CallbackServerContext* context,
                                                      const v1::GetMachineRequest* request,
                                                      v1::Machine* response) {
-  return Answer(room_, context, *request, "MachineService/GetMachine",
+  return Answer(needs_, context, *request, "MachineService/GetMachine",
                 [this, request, response](const Caller&) {
                   const auto id = ParseMachineName(request->name());
                   if (!id) return ToGrpcStatus(id.error());
@@ -111,7 +112,7 @@ grpc::ServerUnaryReactor* MachineService::ListMachines(grpc::CallbackServerConte
                                                        const v1::ListMachinesRequest* request,
                                                        v1::ListMachinesResponse* response) {
   return Answer(
-      room_, context, *request, "MachineService/ListMachines",
+      needs_, context, *request, "MachineService/ListMachines",
       [this, request, response](const Caller&) {
         const Result<int> size = PageSize(request->page_size(), kMachinePages);
         if (!size) return ToGrpcStatus(size.error());
@@ -133,7 +134,7 @@ grpc::ServerUnaryReactor* MachineService::UpdateMachine(grpc::CallbackServerCont
                                                         const v1::UpdateMachineRequest* request,
                                                         v1::Machine* response) {
   return Answer(
-      room_, context, *request, "MachineService/UpdateMachine",
+      needs_, context, *request, "MachineService/UpdateMachine",
       [this, request, response](const Caller&) {
         const auto id = ParseMachineName(request->machine().name());
         if (!id) return ToGrpcStatus(id.error());
@@ -152,7 +153,7 @@ grpc::ServerUnaryReactor* MachineService::UpdateMachine(grpc::CallbackServerCont
         if (named->contains("title")) record->title = wanted.title;
         if (named->contains("profile")) record->profile = wanted.profile;
         if (named->contains("parameters")) record->parameters = wanted.parameters;
-        if (Status good = CheckMachine(*record); !good) return ToGrpcStatus(good.error());
+        if (const Status good = CheckMachine(*record); !good) return ToGrpcStatus(good.error());
         if (request->validate_only()) {
           *response = ToProto(*record);
           return grpc::Status::OK;
@@ -169,7 +170,7 @@ grpc::ServerUnaryReactor* MachineService::UpdateMachine(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* MachineService::ListLaserSchedules(
     grpc::CallbackServerContext* context, const v1::ListLaserSchedulesRequest* request,
     v1::ListLaserSchedulesResponse* response) {
-  return Answer(room_, context, *request, "MachineService/ListLaserSchedules",
+  return Answer(needs_, context, *request, "MachineService/ListLaserSchedules",
                 [this, request, response](const Caller&) {
                   const auto id = ParseMachineName(request->parent());
                   if (!id) return ToGrpcStatus(id.error());
@@ -188,7 +189,7 @@ grpc::ServerUnaryReactor* MachineService::PutLaserSchedule(
     grpc::CallbackServerContext* context, const v1::PutLaserScheduleRequest* request,
     v1::LaserSchedule* response) {
   return Answer(
-      room_, context, *request, "MachineService/PutLaserSchedule",
+      needs_, context, *request, "MachineService/PutLaserSchedule",
       [this, request, response](const Caller&) {
         const v1::LaserSchedule& wanted = request->laser_schedule();
         const auto name = ParseScheduleName(wanted.name());
@@ -227,7 +228,7 @@ grpc::ServerUnaryReactor* MachineService::PutLaserSchedule(
 grpc::ServerUnaryReactor* MachineService::DeleteLaserSchedule(
     grpc::CallbackServerContext* context, const v1::DeleteLaserScheduleRequest* request,
     google::protobuf::Empty*) {
-  return Answer(room_, context, *request, "MachineService/DeleteLaserSchedule",
+  return Answer(needs_, context, *request, "MachineService/DeleteLaserSchedule",
                 [this, request](const Caller&) {
                   const auto name = ParseScheduleName(request->name());
                   if (!name) return ToGrpcStatus(name.error());
@@ -246,7 +247,7 @@ grpc::ServerUnaryReactor* MachineService::DeleteLaserSchedule(
 
 grpc::ServerWriteReactor<v1::WatchMachineResponse>* MachineService::WatchMachine(
     grpc::CallbackServerContext* context, const v1::WatchMachineRequest*) {
-  const auto caller = Admit(room_.gate, *context, "MachineService/WatchMachine");
+  const auto caller = Admit(needs_.gate, *context, "MachineService/WatchMachine");
   const Error error = caller
                           ? Error{ErrorCode::kCellUnimplemented, "MachineService/WatchMachine", {}}
                           : caller.error();
@@ -256,7 +257,7 @@ grpc::ServerWriteReactor<v1::WatchMachineResponse>* MachineService::WatchMachine
 #define RMLCELL_LATER(method, request, response)                                         \
   grpc::ServerUnaryReactor* MachineService::method(grpc::CallbackServerContext* context, \
                                                    const v1::request*, v1::response*) {  \
-    return NotYet(room_, context, "MachineService/" #method);                            \
+    return NotYet(needs_, context, "MachineService/" #method);                           \
   }
 RMLCELL_LATER(SetMode, SetModeRequest, MachineState)
 RMLCELL_LATER(StartMachine, StartMachineRequest, MachineState)

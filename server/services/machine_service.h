@@ -13,7 +13,7 @@ struct Config;
 
 class MachineService final : public v1::MachineService::CallbackService {
  public:
-  MachineService(CallRoom room, storage::Store& store, const Dispatcher& dispatcher,
+  MachineService(CallNeeds needs, storage::Store& store, const Dispatcher& dispatcher,
                  const Config& config, std::string instance_id);
 
   grpc::ServerUnaryReactor* GetCell(grpc::CallbackServerContext* context,
@@ -67,7 +67,7 @@ class MachineService final : public v1::MachineService::CallbackService {
                                            v1::WriteVariablesResponse* response) override;
 
  private:
-  CallRoom room_;
+  CallNeeds needs_;
   storage::Store& store_;
   const Dispatcher& dispatcher_;
   const Config& config_;

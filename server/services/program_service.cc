@@ -26,8 +26,8 @@ v1::Findings FindingsOf(const machine::Translation& translation) {
 // right.
 class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
  public:
-  Upload(const CallRoom& room, ProgramBook& programs, Caller caller, v1::Program* response)
-      : room_(room), programs_(programs), caller_(std::move(caller)), response_(response) {
+  Upload(const CallNeeds& needs, ProgramBook& programs, Caller caller, v1::Program* response)
+      : needs_(needs), programs_(programs), caller_(std::move(caller)), response_(response) {
     StartRead(&message_);
   }
 
@@ -80,7 +80,7 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
     if (digest_.Hex() != header_.sha256())
       return End(Error{ErrorCode::kCellChecksum, "SHA-256 differs", {}});
     finished_ = true;
-    room_.executor.Post([this] {
+    needs_.executor.Post([this] {
       const ProgramResult<v1::Program> stored =
           programs_.Store({.name = header_.name(),
                            .file_name = header_.file_name(),
@@ -108,7 +108,7 @@ class Upload final : public grpc::ServerReadReactor<v1::UploadProgramRequest> {
 
   void OnDone() override { delete this; }
 
-  CallRoom room_;
+  CallNeeds needs_;
   ProgramBook& programs_;
   Caller caller_;
   v1::Program* response_;
@@ -167,7 +167,7 @@ class Download final : public PullStream<v1::DownloadProgramResponse> {
 grpc::ServerUnaryReactor* ProgramService::PutProgram(grpc::CallbackServerContext* context,
                                                      const v1::PutProgramRequest* request,
                                                      v1::Program* response) {
-  return Answer(room_, context, *request, "ProgramService/PutProgram",
+  return Answer(needs_, context, *request, "ProgramService/PutProgram",
                 [this, request, response](const Caller&) {
                   const ProgramResult<v1::Program> stored =
                       programs_.Store({.name = request->name(),
@@ -186,15 +186,15 @@ grpc::ServerUnaryReactor* ProgramService::PutProgram(grpc::CallbackServerContext
 
 grpc::ServerReadReactor<v1::UploadProgramRequest>* ProgramService::UploadProgram(
     grpc::CallbackServerContext* context, v1::Program* response) {
-  Result<Caller> caller = Admit(room_.gate, *context, "ProgramService/UploadProgram");
+  Result<Caller> caller = Admit(needs_.gate, *context, "ProgramService/UploadProgram");
   if (!caller) return new RefusedUpload(ToGrpcStatus(caller.error()));
-  return new Upload(room_, programs_, std::move(*caller), response);
+  return new Upload(needs_, programs_, std::move(*caller), response);
 }
 
 grpc::ServerUnaryReactor* ProgramService::GetProgram(grpc::CallbackServerContext* context,
                                                      const v1::GetProgramRequest* request,
                                                      v1::Program* response) {
-  return Answer(room_, context, *request, "ProgramService/GetProgram",
+  return Answer(needs_, context, *request, "ProgramService/GetProgram",
                 [this, request, response](const Caller&) {
                   Result<v1::Program> program = programs_.Get(request->name());
                   if (!program) return ToGrpcStatus(program.error());
@@ -206,7 +206,7 @@ grpc::ServerUnaryReactor* ProgramService::GetProgram(grpc::CallbackServerContext
 grpc::ServerUnaryReactor* ProgramService::GetProgramContent(
     grpc::CallbackServerContext* context, const v1::GetProgramContentRequest* request,
     v1::GetProgramContentResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/GetProgramContent",
+  return Answer(needs_, context, *request, "ProgramService/GetProgramContent",
                 [this, request, response](const Caller&) {
                   Result<ProgramBook::Content> content =
                       programs_.Read(request->name(), request->form());
@@ -227,15 +227,15 @@ grpc::ServerUnaryReactor* ProgramService::GetProgramContent(
 
 grpc::ServerWriteReactor<v1::DownloadProgramResponse>* ProgramService::DownloadProgram(
     grpc::CallbackServerContext* context, const v1::DownloadProgramRequest* request) {
-  const Result<Caller> caller = Admit(room_.gate, *context, "ProgramService/DownloadProgram");
+  const Result<Caller> caller = Admit(needs_.gate, *context, "ProgramService/DownloadProgram");
   if (!caller) return new RefusedStream<v1::DownloadProgramResponse>(ToGrpcStatus(caller.error()));
-  return std::make_shared<Download>(room_.executor, open_, programs_, *request)->Begin();
+  return std::make_shared<Download>(needs_.executor, open_, programs_, *request)->Begin();
 }
 
 grpc::ServerUnaryReactor* ProgramService::ListPrograms(grpc::CallbackServerContext* context,
                                                        const v1::ListProgramsRequest* request,
                                                        v1::ListProgramsResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/ListPrograms",
+  return Answer(needs_, context, *request, "ProgramService/ListPrograms",
                 [this, request, response](const Caller&) {
                   Result<v1::ListProgramsResponse> programs = programs_.List(*request);
                   if (!programs) return ToGrpcStatus(programs.error());
@@ -247,7 +247,7 @@ grpc::ServerUnaryReactor* ProgramService::ListPrograms(grpc::CallbackServerConte
 grpc::ServerUnaryReactor* ProgramService::DeleteProgram(grpc::CallbackServerContext* context,
                                                         const v1::DeleteProgramRequest* request,
                                                         google::protobuf::Empty*) {
-  return Answer(room_, context, *request, "ProgramService/DeleteProgram",
+  return Answer(needs_, context, *request, "ProgramService/DeleteProgram",
                 [this, request](const Caller&) {
                   const Status deleted = programs_.Delete(*request);
                   return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
@@ -257,7 +257,7 @@ grpc::ServerUnaryReactor* ProgramService::DeleteProgram(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* ProgramService::CheckProgram(grpc::CallbackServerContext* context,
                                                        const v1::CheckProgramRequest* request,
                                                        v1::CheckProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/CheckProgram",
+  return Answer(needs_, context, *request, "ProgramService/CheckProgram",
                 [this, request, response](const Caller&) {
                   const auto checked = programs_.Check(request->family(), request->machine(),
                                                        request->program(), !request->errors_only());
@@ -271,7 +271,7 @@ grpc::ServerUnaryReactor* ProgramService::CheckProgram(grpc::CallbackServerConte
 grpc::ServerUnaryReactor* ProgramService::CompileProgram(grpc::CallbackServerContext* context,
                                                          const v1::CompileProgramRequest* request,
                                                          v1::CompileProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/CompileProgram",
+  return Answer(needs_, context, *request, "ProgramService/CompileProgram",
                 [this, request, response](const Caller&) {
                   auto translation =
                       programs_.Translate(request->family(), {}, request->program(), true);
@@ -288,7 +288,7 @@ grpc::ServerUnaryReactor* ProgramService::CompileProgram(grpc::CallbackServerCon
 grpc::ServerUnaryReactor* ProgramService::FormatProgram(grpc::CallbackServerContext* context,
                                                         const v1::FormatProgramRequest* request,
                                                         v1::FormatProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/FormatProgram",
+  return Answer(needs_, context, *request, "ProgramService/FormatProgram",
                 [request, response](const Caller&) {
                   auto made = FormatText(*request);
                   if (!made) return ToGrpcStatus(made.error());
@@ -300,7 +300,7 @@ grpc::ServerUnaryReactor* ProgramService::FormatProgram(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* ProgramService::DecompileProgram(
     grpc::CallbackServerContext* context, const v1::DecompileProgramRequest* request,
     v1::DecompileProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/DecompileProgram",
+  return Answer(needs_, context, *request, "ProgramService/DecompileProgram",
                 [this, request, response](const Caller&) {
                   auto made = tools_.Decompile(*request);
                   if (!made) return ToGrpcStatus(made.error());
@@ -312,7 +312,7 @@ grpc::ServerUnaryReactor* ProgramService::DecompileProgram(
 grpc::ServerUnaryReactor* ProgramService::FixProgram(grpc::CallbackServerContext* context,
                                                      const v1::FixProgramRequest* request,
                                                      v1::FixProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/FixProgram",
+  return Answer(needs_, context, *request, "ProgramService/FixProgram",
                 [this, request, response](const Caller&) {
                   auto made = tools_.Fix(*request);
                   if (!made) return ToGrpcStatus(made.error());
@@ -324,7 +324,7 @@ grpc::ServerUnaryReactor* ProgramService::FixProgram(grpc::CallbackServerContext
 grpc::ServerUnaryReactor* ProgramService::LinkProgram(grpc::CallbackServerContext* context,
                                                       const v1::LinkProgramRequest* request,
                                                       v1::LinkProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/LinkProgram",
+  return Answer(needs_, context, *request, "ProgramService/LinkProgram",
                 [this, request, response](const Caller&) {
                   auto made = tools_.Link(*request);
                   if (!made) return ToGrpcStatus(made.error());
@@ -336,7 +336,7 @@ grpc::ServerUnaryReactor* ProgramService::LinkProgram(grpc::CallbackServerContex
 grpc::ServerUnaryReactor* ProgramService::ListStaleExecutables(
     grpc::CallbackServerContext* context, const v1::ListStaleExecutablesRequest* request,
     v1::ListStaleExecutablesResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/ListStaleExecutables",
+  return Answer(needs_, context, *request, "ProgramService/ListStaleExecutables",
                 [this, request, response](const Caller&) {
                   auto made = tools_.ListStale(*request);
                   if (!made) return ToGrpcStatus(made.error());
@@ -348,7 +348,7 @@ grpc::ServerUnaryReactor* ProgramService::ListStaleExecutables(
 grpc::ServerUnaryReactor* ProgramService::ShiftProgram(grpc::CallbackServerContext* context,
                                                        const v1::ShiftProgramRequest* request,
                                                        v1::ShiftProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/ShiftProgram",
+  return Answer(needs_, context, *request, "ProgramService/ShiftProgram",
                 [request, response](const Caller&) {
                   auto made = ShiftText(*request);
                   if (!made) return ToGrpcStatus(made.error());
@@ -360,7 +360,7 @@ grpc::ServerUnaryReactor* ProgramService::ShiftProgram(grpc::CallbackServerConte
 grpc::ServerUnaryReactor* ProgramService::MakeListing(grpc::CallbackServerContext* context,
                                                       const v1::MakeListingRequest* request,
                                                       v1::MakeListingResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/MakeListing",
+  return Answer(needs_, context, *request, "ProgramService/MakeListing",
                 [request, response](const Caller&) {
                   auto made = ListText(*request);
                   if (!made) return ToGrpcStatus(made.error());
@@ -372,7 +372,7 @@ grpc::ServerUnaryReactor* ProgramService::MakeListing(grpc::CallbackServerContex
 grpc::ServerUnaryReactor* ProgramService::DiffPrograms(grpc::CallbackServerContext* context,
                                                        const v1::DiffProgramsRequest* request,
                                                        v1::DiffProgramsResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/DiffPrograms",
+  return Answer(needs_, context, *request, "ProgramService/DiffPrograms",
                 [this, request, response](const Caller&) {
                   ProgramResult<v1::DiffProgramsResponse> made = tools_.Diff(*request);
                   if (!made) return ToGrpcStatus(made.error);
@@ -384,7 +384,7 @@ grpc::ServerUnaryReactor* ProgramService::DiffPrograms(grpc::CallbackServerConte
 grpc::ServerUnaryReactor* ProgramService::ConvertProgram(grpc::CallbackServerContext* context,
                                                          const v1::ConvertProgramRequest* request,
                                                          v1::ConvertProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/ConvertProgram",
+  return Answer(needs_, context, *request, "ProgramService/ConvertProgram",
                 [request, response](const Caller&) {
                   auto made = ConvertText(*request, bridge::HeaderDate());
                   if (!made) return ToGrpcStatus(made.error());
@@ -396,7 +396,7 @@ grpc::ServerUnaryReactor* ProgramService::ConvertProgram(grpc::CallbackServerCon
 grpc::ServerUnaryReactor* ProgramService::CompensateProgram(
     grpc::CallbackServerContext* context, const v1::CompensateProgramRequest* request,
     v1::CompensateProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/CompensateProgram",
+  return Answer(needs_, context, *request, "ProgramService/CompensateProgram",
                 [request, response](const Caller&) {
                   auto made = CompensateText(*request, bridge::HeaderDate());
                   if (!made) return ToGrpcStatus(made.error());
@@ -408,7 +408,7 @@ grpc::ServerUnaryReactor* ProgramService::CompensateProgram(
 grpc::ServerUnaryReactor* ProgramService::TransformProgram(
     grpc::CallbackServerContext* context, const v1::TransformProgramRequest* request,
     v1::TransformProgramResponse* response) {
-  return Answer(room_, context, *request, "ProgramService/TransformProgram",
+  return Answer(needs_, context, *request, "ProgramService/TransformProgram",
                 [request, response](const Caller&) {
                   auto made = TransformText(*request);
                   if (!made) return ToGrpcStatus(made.error());
@@ -421,7 +421,7 @@ grpc::ServerUnaryReactor* ProgramService::ExplainError(grpc::CallbackServerConte
                                                        const v1::ExplainErrorRequest* request,
                                                        v1::ExplainErrorResponse* response) {
   return Answer(
-      room_, context, *request, "ProgramService/ExplainError", [request, response](const Caller&) {
+      needs_, context, *request, "ProgramService/ExplainError", [request, response](const Caller&) {
         if (request->code().empty()) {
           for (const CatalogueEntry& entry : Catalogue())
             *response->add_errors() = bridge::Explain(entry);

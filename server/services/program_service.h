@@ -15,8 +15,8 @@ class ProgramBook;
 // engine.
 class ProgramService final : public v1::ProgramService::CallbackService {
  public:
-  ProgramService(CallRoom room, ProgramBook& programs, MemoryTools& tools, OpenStreams& open)
-      : room_(room), programs_(programs), tools_(tools), open_(open) {}
+  ProgramService(CallNeeds needs, ProgramBook& programs, MemoryTools& tools, OpenStreams& open)
+      : needs_(needs), programs_(programs), tools_(tools), open_(open) {}
 
   grpc::ServerUnaryReactor* PutProgram(grpc::CallbackServerContext* context,
                                        const v1::PutProgramRequest* request,
@@ -81,7 +81,7 @@ class ProgramService final : public v1::ProgramService::CallbackService {
                                          v1::ExplainErrorResponse* response) override;
 
  private:
-  CallRoom room_;
+  CallNeeds needs_;
   ProgramBook& programs_;
   MemoryTools& tools_;
   OpenStreams& open_;

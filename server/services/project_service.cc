@@ -9,7 +9,7 @@ namespace rmlcell::server {
 grpc::ServerUnaryReactor* ProjectService::CreateProject(grpc::CallbackServerContext* context,
                                                         const v1::CreateProjectRequest* request,
                                                         v1::Project* response) {
-  return Answer(room_, context, *request, "ProjectService/CreateProject",
+  return Answer(needs_, context, *request, "ProjectService/CreateProject",
                 [this, request, response](const Caller&) {
                   ProgramResult<v1::Project> project = book_.Create(*request);
                   if (!project) return ToGrpcStatus(project.error);
@@ -21,7 +21,7 @@ grpc::ServerUnaryReactor* ProjectService::CreateProject(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* ProjectService::GetProject(grpc::CallbackServerContext* context,
                                                      const v1::GetProjectRequest* request,
                                                      v1::Project* response) {
-  return Answer(room_, context, *request, "ProjectService/GetProject",
+  return Answer(needs_, context, *request, "ProjectService/GetProject",
                 [this, request, response](const Caller&) {
                   Result<v1::Project> project = book_.Get(request->name());
                   if (!project) return ToGrpcStatus(project.error());
@@ -33,7 +33,7 @@ grpc::ServerUnaryReactor* ProjectService::GetProject(grpc::CallbackServerContext
 grpc::ServerUnaryReactor* ProjectService::ListProjects(grpc::CallbackServerContext* context,
                                                        const v1::ListProjectsRequest* request,
                                                        v1::ListProjectsResponse* response) {
-  return Answer(room_, context, *request, "ProjectService/ListProjects",
+  return Answer(needs_, context, *request, "ProjectService/ListProjects",
                 [this, request, response](const Caller&) {
                   Result<v1::ListProjectsResponse> projects = book_.List(*request);
                   if (!projects) return ToGrpcStatus(projects.error());
@@ -45,7 +45,7 @@ grpc::ServerUnaryReactor* ProjectService::ListProjects(grpc::CallbackServerConte
 grpc::ServerUnaryReactor* ProjectService::UpdateProject(grpc::CallbackServerContext* context,
                                                         const v1::UpdateProjectRequest* request,
                                                         v1::Project* response) {
-  return Answer(room_, context, *request, "ProjectService/UpdateProject",
+  return Answer(needs_, context, *request, "ProjectService/UpdateProject",
                 [this, request, response](const Caller&) {
                   ProgramResult<v1::Project> project = book_.Update(*request);
                   if (!project) return ToGrpcStatus(project.error);
@@ -57,7 +57,7 @@ grpc::ServerUnaryReactor* ProjectService::UpdateProject(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* ProjectService::DeleteProject(grpc::CallbackServerContext* context,
                                                         const v1::DeleteProjectRequest* request,
                                                         google::protobuf::Empty*) {
-  return Answer(room_, context, *request, "ProjectService/DeleteProject",
+  return Answer(needs_, context, *request, "ProjectService/DeleteProject",
                 [this, request](const Caller&) {
                   const Status deleted = book_.Delete(*request);
                   return deleted ? grpc::Status::OK : ToGrpcStatus(deleted.error());
@@ -67,7 +67,7 @@ grpc::ServerUnaryReactor* ProjectService::DeleteProject(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* ProjectService::TransferProject(grpc::CallbackServerContext* context,
                                                           const v1::TransferProjectRequest* request,
                                                           v1::TransferProjectResponse* response) {
-  return Answer(room_, context, *request, "ProjectService/TransferProject",
+  return Answer(needs_, context, *request, "ProjectService/TransferProject",
                 [this, request, response](const Caller&) {
                   ProgramResult<v1::TransferProjectResponse> transferred = book_.Transfer(*request);
                   if (!transferred) return ToGrpcStatus(transferred.error);
@@ -79,12 +79,12 @@ grpc::ServerUnaryReactor* ProjectService::TransferProject(grpc::CallbackServerCo
 grpc::ServerUnaryReactor* ProjectService::TransferProjectFromMachine(
     grpc::CallbackServerContext* context, const v1::TransferProjectFromMachineRequest*,
     v1::Project*) {
-  return NotYet(room_, context, "ProjectService/TransferProjectFromMachine");
+  return NotYet(needs_, context, "ProjectService/TransferProjectFromMachine");
 }
 
 grpc::ServerWriteReactor<v1::ExportProjectResponse>* ProjectService::ExportProject(
     grpc::CallbackServerContext* context, const v1::ExportProjectRequest*) {
-  const auto caller = Admit(room_.gate, *context, "ProjectService/ExportProject");
+  const auto caller = Admit(needs_.gate, *context, "ProjectService/ExportProject");
   const Error error = caller
                           ? Error{ErrorCode::kCellUnimplemented, "ProjectService/ExportProject", {}}
                           : caller.error();
@@ -94,7 +94,7 @@ grpc::ServerWriteReactor<v1::ExportProjectResponse>* ProjectService::ExportProje
 grpc::ServerUnaryReactor* ProjectService::ImportProject(grpc::CallbackServerContext* context,
                                                         const v1::ImportProjectRequest*,
                                                         v1::Project*) {
-  return NotYet(room_, context, "ProjectService/ImportProject");
+  return NotYet(needs_, context, "ProjectService/ImportProject");
 }
 
 }  // namespace rmlcell::server

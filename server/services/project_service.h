@@ -11,7 +11,7 @@ class ProjectBook;
 
 class ProjectService final : public v1::ProjectService::CallbackService {
  public:
-  ProjectService(CallRoom room, ProjectBook& book) : room_(room), book_(book) {}
+  ProjectService(CallNeeds needs, ProjectBook& book) : needs_(needs), book_(book) {}
 
   grpc::ServerUnaryReactor* CreateProject(grpc::CallbackServerContext* context,
                                           const v1::CreateProjectRequest* request,
@@ -41,7 +41,7 @@ class ProjectService final : public v1::ProjectService::CallbackService {
                                           v1::Project* response) override;
 
  private:
-  CallRoom room_;
+  CallNeeds needs_;
   ProjectBook& book_;
 };
 

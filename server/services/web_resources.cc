@@ -65,9 +65,10 @@ class Sink final : public web::UploadSink {
       : programs_(programs), header_(header), form_(form) {}
 
   Status Append(std::string_view chunk) override {
-    if (Status fits = programs_.CheckSize(static_cast<std::int64_t>(bytes_.size() + chunk.size()));
+    if (const Status fits =
+            programs_.CheckSize(static_cast<std::int64_t>(bytes_.size() + chunk.size()));
         !fits)
-      return fits;
+      return fits.error();
     digest_.Add(chunk);
     bytes_ += chunk;
     return {};

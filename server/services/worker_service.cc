@@ -157,7 +157,7 @@ class RefusedLine final : public grpc::ServerBidiReactor<v1::WorkRequest, v1::Wo
 
 grpc::ServerBidiReactor<v1::WorkRequest, v1::WorkResponse>* WorkerService::Work(
     grpc::CallbackServerContext* context) {
-  const Result<Caller> caller = Admit(room_.gate, *context, "WorkerService/Work");
+  const Result<Caller> caller = Admit(needs_.gate, *context, "WorkerService/Work");
   if (!caller) return new RefusedLine(ToGrpcStatus(caller.error()));
   return new Line(dispatcher_);
 }

@@ -11,13 +11,13 @@ class Dispatcher;
 // dispatcher knows.
 class WorkerService final : public v1::WorkerService::CallbackService {
  public:
-  WorkerService(CallRoom room, Dispatcher& dispatcher) : room_(room), dispatcher_(dispatcher) {}
+  WorkerService(CallNeeds needs, Dispatcher& dispatcher) : needs_(needs), dispatcher_(dispatcher) {}
 
   grpc::ServerBidiReactor<v1::WorkRequest, v1::WorkResponse>* Work(
       grpc::CallbackServerContext* context) override;
 
  private:
-  CallRoom room_;
+  CallNeeds needs_;
   Dispatcher& dispatcher_;
 };
 

@@ -163,7 +163,7 @@ Result<std::unique_ptr<WebServer>> WebServer::Start(WebOptions options,
                                                     ResourceSource& resources, WebLogger logger) {
   auto core =
       std::make_unique<Core>(std::move(options), std::move(channel), resources, std::move(logger));
-  if (Status status = core->Listen(); !status) return status.error();
+  if (const Status status = core->Listen(); !status) return status.error();
   core->Accept();
   core->RunThreads();
   return std::unique_ptr<WebServer>(new WebServer(std::move(core)));

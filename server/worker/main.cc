@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 64;
   }
-  if (Status log = StartLog(name, log_level, log_format, {}); !log) return 69;
+  if (const Status log = StartLog(name, log_level, log_format, {}); !log) return 69;
   ::signal(SIGPIPE, SIG_IGN);
   // Only noted: the job is handed back by the thread that works on it.
   struct sigaction action {};

@@ -37,8 +37,8 @@ ArtifactTable::ArtifactTable(Database& database)
       remove_(database, "DELETE FROM artifact WHERE job = ?1 RETURNING blob") {}
 
 Result<bool> ArtifactTable::Add(std::int64_t job, const NewArtifact& artifact, std::int64_t blob) {
-  const Status added = add_.With(job, artifact.name, artifact.media_type, blob).Run();
-  if (!added) return added.error();
+  if (const Status added = add_.With(job, artifact.name, artifact.media_type, blob).Run(); !added)
+    return added.error();
   return add_.changes() == 1;
 }
 

@@ -48,8 +48,7 @@ Result<std::int64_t> BlobTable::PutBlob(const PreparedContent& content) {
   const Result<std::optional<std::int64_t>> known = Find(content.sha256);
   if (!known) return known.error();
   if (*known) {  // also a content that lost its last reference and was not swept yet
-    const Status referred = refer_.With(**known, 1).Run();
-    if (!referred) return referred.error();
+    if (const Status referred = refer_.With(**known, 1).Run(); !referred) return referred.error();
     return **known;
   }
   if (content.must_exist) {
@@ -61,21 +60,22 @@ Result<std::int64_t> BlobTable::PutBlob(const PreparedContent& content) {
 Result<std::int64_t> BlobTable::InsertWhole(const PreparedContent& content) {
   const bool in_row = content.encoded.size() <= kContentInRowMax;
   const std::optional<Bytes> bytes = in_row ? std::optional(Bytes{content.encoded}) : std::nullopt;
-  const Status inserted =
-      insert_.With(Bytes{content.sha256}, content.bytes.size(), 1, 0, bytes).Run();
-  if (!inserted) return inserted.error();
+  if (const Status inserted =
+          insert_.With(Bytes{content.sha256}, content.bytes.size(), 1, 0, bytes).Run();
+      !inserted)
+    return inserted.error();
   const std::int64_t blob = sqlite3_last_insert_rowid(database_.handle());
   if (in_row) return blob;
-  const Status added = AddChunks(blob, 0, std::span(&content.encoded, 1));
-  if (!added) return added.error();
+  if (const Status added = AddChunks(blob, 0, std::span(&content.encoded, 1)); !added)
+    return added.error();
   return blob;
 }
 
 Result<std::int64_t> BlobTable::Seal(const PreparedContent& content) {
-  const Status sealed = seal_.With(content.staged_blob, Bytes{content.sha256}).Run();
-  if (!sealed) return sealed.error();
-  const Status referred = refer_.With(content.staged_blob, 1).Run();
-  if (!referred) return referred.error();
+  if (const Status sealed = seal_.With(content.staged_blob, Bytes{content.sha256}).Run(); !sealed)
+    return sealed.error();
+  if (const Status referred = refer_.With(content.staged_blob, 1).Run(); !referred)
+    return referred.error();
   return content.staged_blob;
 }
 
@@ -90,20 +90,19 @@ Result<BlobTable::Held> BlobTable::Hold(std::string_view sha256, std::size_t siz
   const Result<std::optional<std::int64_t>> known = Find(sha256);
   if (!known) return known.error();
   if (*known) {
-    const Status held = hold_.With(**known, 1).Run();
-    if (!held) return held.error();
+    if (const Status held = hold_.With(**known, 1).Run(); !held) return held.error();
     return Held{.blob = **known, .whole = true};
   }
-  const Status inserted = insert_.With(std::nullopt, size, 0, 1, std::nullopt).Run();
-  if (!inserted) return inserted.error();
+  if (const Status inserted = insert_.With(std::nullopt, size, 0, 1, std::nullopt).Run(); !inserted)
+    return inserted.error();
   return Held{.blob = sqlite3_last_insert_rowid(database_.handle()), .whole = false};
 }
 
 Status BlobTable::AddChunks(std::int64_t blob, std::size_t first,
                             std::span<const std::string> encoded) {
   for (const std::string& chunk : encoded) {
-    const Status added = add_chunk_.With(blob, first++, Bytes{chunk}).Run();
-    if (!added) return added.error();
+    if (const Status added = add_chunk_.With(blob, first++, Bytes{chunk}).Run(); !added)
+      return added.error();
   }
   return {};
 }
@@ -139,8 +138,8 @@ Status BlobTable::ReadChunks(std::int64_t blob, std::size_t size, std::string& c
     if (!row) return row.error();
     if (!*row) return {};
     const std::size_t left = size - std::min(size, content.size());
-    const Status read = Decode(chunks.View(0), std::min(left, kChunkBytes), content);
-    if (!read) return read.error();
+    if (const Status read = Decode(chunks.View(0), std::min(left, kChunkBytes), content); !read)
+      return read.error();
   }
 }
 
@@ -160,14 +159,12 @@ Result<bool> BlobTable::Sweep(int blobs_max, int chunks_max) {
     if (*blob == 0) return false;
     // From now on the content counts as missing: with a part of its chunks it must not be found
     // again.
-    const Status unsealed = unseal_.With(*blob).Run();
-    if (!unsealed) return unsealed.error();
-    const Status chunks = remove_chunks_.With(*blob, chunks_max).Run();
-    if (!chunks) return chunks.error();
+    if (const Status unsealed = unseal_.With(*blob).Run(); !unsealed) return unsealed.error();
+    if (const Status chunks = remove_chunks_.With(*blob, chunks_max).Run(); !chunks)
+      return chunks.error();
     chunks_max -= static_cast<int>(remove_chunks_.changes());
     if (chunks_max <= 0) return true;  // it may have more
-    const Status removed = remove_.With(*blob).Run();
-    if (!removed) return removed.error();
+    if (const Status removed = remove_.With(*blob).Run(); !removed) return removed.error();
     if (remove_.changes() != 1) return Damaged(*blob, "is not there");
   }
   return true;

@@ -38,8 +38,7 @@ Result<StagedContent> StagedContent::Make(Writer& writer, std::string_view bytes
     content.encoded = *std::move(encoded);
     return staged;
   }
-  const Status written = staged.WriteAhead();
-  if (!written) return written.error();
+  if (const Status written = staged.WriteAhead(); !written) return written.error();
   return staged;
 }
 

@@ -71,8 +71,7 @@ Result<std::vector<EventTable::Removed>> EventTable::RemoveUntil(std::int64_t po
   if (!last) return last.error();
   Result<std::vector<Removed>> removed = AllRows<Removed>(jobs_until_.With(*last), ReadRemoved);
   if (!removed || removed->empty()) return removed;
-  const Status gone = remove_until_.With(*last).Run();
-  if (!gone) return gone.error();
+  if (const Status gone = remove_until_.With(*last).Run(); !gone) return gone.error();
   return removed;
 }
 
@@ -82,8 +81,8 @@ Result<std::optional<EventTable::Removed>> EventTable::RemoveOfJob(std::int64_t 
       FirstRow<Removed>(last_of_job_.With(job, count_max), ReadRemoved);
   if (!removed) return removed.error();
   if (!*removed || (*removed)->count == 0) return std::optional<Removed>();
-  const Status gone = remove_of_job_.With(job, (*removed)->sequence).Run();
-  if (!gone) return gone.error();
+  if (const Status gone = remove_of_job_.With(job, (*removed)->sequence).Run(); !gone)
+    return gone.error();
   return removed;
 }
 

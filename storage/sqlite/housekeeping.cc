@@ -19,18 +19,18 @@ std::int64_t EventSlack(std::int64_t limit) {
 // The rows that the numbers were last given to may go now: the numbers must not come again.
 Status KeepCounters(WriteContext& context) {
   MarkTable& marks = context.tables.marks;
-  const Status job = marks.Set(MarkTable::kJob, context.counters.job);
-  if (!job) return job.error();
-  const Status position = marks.Set(MarkTable::kPosition, context.counters.position);
-  if (!position) return position.error();
+  if (const Status job = marks.Set(MarkTable::kJob, context.counters.job); !job) return job.error();
+  if (const Status position = marks.Set(MarkTable::kPosition, context.counters.position); !position)
+    return position.error();
   return marks.Set(MarkTable::kFence, context.counters.fence);
 }
 
 // From now on a reader that asks for these events is told that they are gone.
 Status NoteGone(WriteContext& context, const EventTable::Removed& removed) {
   context.changed = true;
-  const Status job = context.tables.jobs.SetEventsGoneUntil(removed.job, removed.sequence);
-  if (!job) return job.error();
+  if (const Status job = context.tables.jobs.SetEventsGoneUntil(removed.job, removed.sequence);
+      !job)
+    return job.error();
   const Result<std::int64_t> before = context.tables.marks.Get(MarkTable::kEventsGoneUntil);
   if (!before) return before.error();
   return context.tables.marks.Set(MarkTable::kEventsGoneUntil, std::max(*before, removed.position));
@@ -41,11 +41,9 @@ Status RemoveJob(WriteContext& context, std::int64_t job) {
   const Result<std::vector<std::int64_t>> artifacts = tables.artifacts.RemoveOf(job);
   if (!artifacts) return artifacts.error();
   for (const std::int64_t blob : *artifacts) {
-    const Status dropped = tables.blobs.Drop(blob);
-    if (!dropped) return dropped.error();
+    if (const Status dropped = tables.blobs.Drop(blob); !dropped) return dropped.error();
   }
-  const Status attempts = tables.attempts.RemoveOf(job);
-  if (!attempts) return attempts.error();
+  if (const Status attempts = tables.attempts.RemoveOf(job); !attempts) return attempts.error();
   const Result<std::optional<std::int64_t>> specification = tables.jobs.Remove(job);
   if (!specification) return specification.error();
   context.counters.finished_jobs -= 1;
@@ -70,12 +68,9 @@ bool Housekeeping::HasOldEvents(const Counters& counters) const {
 
 Result<bool> Housekeeping::RunSlice(WriteContext& context) const {
   if (IsDue(context.counters)) {
-    const Status kept = KeepCounters(context);
-    if (!kept) return kept.error();
-    const Status jobs = RemoveOldJobs(context);
-    if (!jobs) return jobs.error();
-    const Status events = RemoveOldEvents(context);
-    if (!events) return events.error();
+    if (const Status kept = KeepCounters(context); !kept) return kept.error();
+    if (const Status jobs = RemoveOldJobs(context); !jobs) return jobs.error();
+    if (const Status events = RemoveOldEvents(context); !events) return events.error();
   }
   const Result<bool> swept = context.tables.blobs.Sweep(kBlobsPerSlice, kChunksPerSlice);
   if (!swept) return swept.error();
@@ -93,13 +88,11 @@ Status Housekeeping::RemoveOldJobs(WriteContext& context) const {
         context.tables.events.RemoveOfJob(**job, events_left);
     if (!removed) return removed.error();
     if (*removed) {
-      const Status noted = NoteGone(context, **removed);
-      if (!noted) return noted.error();
+      if (const Status noted = NoteGone(context, **removed); !noted) return noted.error();
       events_left -= static_cast<int>((*removed)->count);
       if (events_left <= 0) return {};
     }
-    const Status gone = RemoveJob(context, **job);
-    if (!gone) return gone.error();
+    if (const Status gone = RemoveJob(context, **job); !gone) return gone.error();
   }
   return {};
 }
@@ -113,8 +106,7 @@ Status Housekeeping::RemoveOldEvents(WriteContext& context) const {
   std::int64_t count = 0;
   std::int64_t newest = 0;
   for (const EventTable::Removed& of_job : *removed) {
-    const Status noted = NoteGone(context, of_job);
-    if (!noted) return noted.error();
+    if (const Status noted = NoteGone(context, of_job); !noted) return noted.error();
     count += of_job.count;
     newest = std::max(newest, of_job.position);
   }

@@ -38,16 +38,14 @@ WallTime After(WallTime now, std::chrono::milliseconds duration) {
 // Numbers and writes events; the job has the new last sequence, its row not yet.
 Status WriteEvents(WriteContext& context, JobRecord& job, int attempt,
                    const std::vector<NewEvent>& events) {
-  const Status small_enough = CheckSizes(events);
-  if (!small_enough) return small_enough.error();
+  if (const Status small_enough = CheckSizes(events); !small_enough) return small_enough.error();
   for (const NewEvent& event : events) {
     const EventTable::Place place{.position = ++context.counters.position,
                                   .job = job.id,
                                   .sequence = ++job.last_sequence,
                                   .attempt = attempt,
                                   .at = context.now};
-    const Status added = context.tables.events.Add(place, event);
-    if (!added) return added.error();
+    if (const Status added = context.tables.events.Add(place, event); !added) return added.error();
   }
   context.changed = true;
   return {};
@@ -56,8 +54,8 @@ Status WriteEvents(WriteContext& context, JobRecord& job, int attempt,
 // The end of every change of a job: its events, then its row.
 Status WriteChange(WriteContext& context, JobRow& row, int attempt,
                    const std::vector<NewEvent>& events) {
-  const Status written = WriteEvents(context, row.job, attempt, events);
-  if (!written) return written.error();
+  if (const Status written = WriteEvents(context, row.job, attempt, events); !written)
+    return written.error();
   context.changed = true;
   return context.tables.jobs.Update(row);
 }
@@ -83,14 +81,14 @@ Status CheckHolder(WriteContext& context, const Lease& lease) {
 }
 
 Result<JobRow> GetHeldRow(WriteContext& context, const Lease& lease) {
-  const Status held = CheckHolder(context, lease);
-  if (!held) return held.error();
+  if (const Status held = CheckHolder(context, lease); !held) return held.error();
   return GetRow(context, lease.job);
 }
 
 Status EndAttempt(WriteContext& context, const Lease& lease, std::string_view how) {
-  const Status ended = context.tables.attempts.End(lease.job, lease.attempt, context.now, how);
-  if (!ended) return ended.error();
+  if (const Status ended = context.tables.attempts.End(lease.job, lease.attempt, context.now, how);
+      !ended)
+    return ended.error();
   return context.tables.leases.Remove(lease.job);
 }
 
@@ -151,8 +149,8 @@ Result<JobRecord> LoseAttempt(WriteContext& context, const Lease& lease, std::st
   } else {
     EndJob(context, job, policy.outcome);
   }
-  const Status written = WriteChange(context, *row, kOutsideAnAttempt, *events);
-  if (!written) return written.error();
+  if (const Status written = WriteChange(context, *row, kOutsideAnAttempt, *events); !written)
+    return written.error();
   return std::move(job);
 }
 
@@ -227,14 +225,16 @@ Result<SubmittedJob> SubmitJob(WriteContext& context, const NewJob& job,
   if (!job.specification.empty()) {
     const Result<ContentColumns> columns = context.tables.blobs.Put(*contents.specification);
     if (!columns) return columns.error();
-    const Status put = context.tables.jobs.PutSpecification(record.id, *columns);
-    if (!put) return put.error();
+    if (const Status put = context.tables.jobs.PutSpecification(record.id, *columns); !put)
+      return put.error();
   }
-  const Status attached = AddArtifacts(context, record.id, job.attachments, contents.attachments);
-  if (!attached) return attached.error();
+  if (const Status attached =
+          AddArtifacts(context, record.id, job.attachments, contents.attachments);
+      !attached)
+    return attached.error();
   record.last_sequence = 0;
-  const Status written = WriteEvents(context, record, kOutsideAnAttempt, job.events);
-  if (!written) return written.error();
+  if (const Status written = WriteEvents(context, record, kOutsideAnAttempt, job.events); !written)
+    return written.error();
   return SubmittedJob{.job = std::move(record), .already_there = false};
 }
 
@@ -251,8 +251,8 @@ Result<JobRecord> CancelJob(WriteContext& context, std::int64_t id,
     if (!written) return written.error();
   } else if (!job.cancel_requested) {
     job.cancel_requested = true;
-    const Status written = WriteChange(context, *row, kOutsideAnAttempt, {});
-    if (!written) return written.error();
+    if (const Status written = WriteChange(context, *row, kOutsideAnAttempt, {}); !written)
+      return written.error();
   }
   return std::move(job);
 }
@@ -280,18 +280,18 @@ Result<std::optional<LeasedJob>> AcquireJob(WriteContext& context, std::string_v
               .fence = ++context.counters.fence,
               .worker = std::string(worker),
               .until = After(context.now, duration)};
-  const Status leased = context.tables.leases.Add(lease);
-  if (!leased) return leased.error();
-  const Status begun = context.tables.attempts.Add({.job = job.id,
-                                                    .number = lease.attempt,
-                                                    .worker = lease.worker,
-                                                    .fence = lease.fence,
-                                                    .started_at = context.now,
-                                                    .ended_at = {},
-                                                    .how_it_ended = {}});
-  if (!begun) return begun.error();
-  const Status written = WriteChange(context, *row, lease.attempt, events);
-  if (!written) return written.error();
+  if (const Status leased = context.tables.leases.Add(lease); !leased) return leased.error();
+  if (const Status begun = context.tables.attempts.Add({.job = job.id,
+                                                        .number = lease.attempt,
+                                                        .worker = lease.worker,
+                                                        .fence = lease.fence,
+                                                        .started_at = context.now,
+                                                        .ended_at = {},
+                                                        .how_it_ended = {}});
+      !begun)
+    return begun.error();
+  if (const Status written = WriteChange(context, *row, lease.attempt, events); !written)
+    return written.error();
   return std::optional(LeasedJob{.lease = std::move(lease), .job = std::move(job)});
 }
 
@@ -299,8 +299,10 @@ Result<JobRecord> RenewLease(WriteContext& context, const Lease& lease,
                              std::chrono::milliseconds duration) {
   Result<JobRow> row = GetHeldRow(context, lease);
   if (!row) return row.error();
-  const Status prolonged = context.tables.leases.Prolong(lease.job, After(context.now, duration));
-  if (!prolonged) return prolonged.error();
+  if (const Status prolonged =
+          context.tables.leases.Prolong(lease.job, After(context.now, duration));
+      !prolonged)
+    return prolonged.error();
   return std::move(row->job);
 }
 
@@ -308,10 +310,11 @@ Result<std::int64_t> AppendEvents(WriteContext& context, const Lease& lease,
                                   const std::vector<NewEvent>& events) {
   Result<JobRow> row = GetHeldRow(context, lease);
   if (!row) return row.error();
-  const Status written = WriteEvents(context, row->job, lease.attempt, events);
-  if (!written) return written.error();
-  const Status noted = context.tables.jobs.SetLastSequence(row->job.id, row->job.last_sequence);
-  if (!noted) return noted.error();
+  if (const Status written = WriteEvents(context, row->job, lease.attempt, events); !written)
+    return written.error();
+  if (const Status noted = context.tables.jobs.SetLastSequence(row->job.id, row->job.last_sequence);
+      !noted)
+    return noted.error();
   return row->job.last_sequence;
 }
 
@@ -319,17 +322,16 @@ Result<JobRecord> FinishJob(WriteContext& context, const Lease& lease, const Job
                             const std::vector<NewArtifact>& artifacts,
                             const std::vector<const PreparedContent*>& contents,
                             const std::vector<NewEvent>& events) {
-  const Status final_state = CheckFinal(outcome);
-  if (!final_state) return final_state.error();
+  if (const Status final_state = CheckFinal(outcome); !final_state) return final_state.error();
   Result<JobRow> row = GetHeldRow(context, lease);
   if (!row) return row.error();
-  const Status added = AddArtifacts(context, lease.job, artifacts, contents);
-  if (!added) return added.error();
-  const Status ended = EndAttempt(context, lease, HowItEnded(outcome.state));
-  if (!ended) return ended.error();
+  if (const Status added = AddArtifacts(context, lease.job, artifacts, contents); !added)
+    return added.error();
+  if (const Status ended = EndAttempt(context, lease, HowItEnded(outcome.state)); !ended)
+    return ended.error();
   EndJob(context, row->job, outcome);
-  const Status written = WriteChange(context, *row, lease.attempt, events);
-  if (!written) return written.error();
+  if (const Status written = WriteChange(context, *row, lease.attempt, events); !written)
+    return written.error();
   return std::move(row->job);
 }
 
@@ -337,20 +339,18 @@ Result<JobRecord> HandBackJob(WriteContext& context, const Lease& lease,
                               const std::vector<NewEvent>& events) {
   Result<JobRow> row = GetHeldRow(context, lease);
   if (!row) return row.error();
-  const Status ended = EndAttempt(context, lease, "handed back");
-  if (!ended) return ended.error();
+  if (const Status ended = EndAttempt(context, lease, "handed back"); !ended) return ended.error();
   row->job.attempts -= 1;
   SetState(context, row->job, JobState::kQueued);
-  const Status written = WriteChange(context, *row, lease.attempt, events);
-  if (!written) return written.error();
+  if (const Status written = WriteChange(context, *row, lease.attempt, events); !written)
+    return written.error();
   return std::move(row->job);
 }
 
 Result<JobRecord> AbandonJob(WriteContext& context, const Lease& lease, const LossPolicy& policy) {
-  const Status final_state = CheckFinal(policy.outcome);
-  if (!final_state) return final_state.error();
-  const Status held = CheckHolder(context, lease);
-  if (!held) return held.error();
+  if (const Status final_state = CheckFinal(policy.outcome); !final_state)
+    return final_state.error();
+  if (const Status held = CheckHolder(context, lease); !held) return held.error();
   return LoseAttempt(context, lease, "abandoned", policy);
 }
 

@@ -131,12 +131,13 @@ JobTable::JobTable(Database& database, BlobTable& blobs)
                             " RETURNING specification_blob") {}
 
 Result<bool> JobTable::Insert(const JobRecord& job) {
-  const Status inserted =
-      insert_
-          .With(job.id, job.request_id, job.request_hash, job.machine, job.kind, job.title,
-                job.caller, job.attempts_max, job.last_sequence, job.created_at)
-          .Run();
-  if (!inserted) return inserted.error();
+  if (const Status inserted =
+          insert_
+              .With(job.id, job.request_id, job.request_hash, job.machine, job.kind, job.title,
+                    job.caller, job.attempts_max, job.last_sequence, job.created_at)
+              .Run();
+      !inserted)
+    return inserted.error();
   return insert_.changes() == 1;
 }
 
@@ -202,8 +203,7 @@ Result<std::optional<std::int64_t>> JobTable::OldestFinished() {
 }
 
 Result<std::optional<std::int64_t>> JobTable::Remove(std::int64_t id) {
-  const Status removed = remove_.With(id).Run();
-  if (!removed) return removed.error();
+  if (const Status removed = remove_.With(id).Run(); !removed) return removed.error();
   if (remove_.changes() != 1) {
     return Error{ErrorCode::kCellStoreCorrupt, "job " + std::to_string(id) + " is not there", {}};
   }
@@ -236,8 +236,7 @@ Result<std::vector<JobRecord>> JobTable::List(const JobQuery& query) {
   const bool wants_finished =
       query.state ? wants(*query.state) && IsFinal(*query.state) : query.finished.value_or(true);
   if (wants_finished) {
-    const Status added = add(ListFinished(query));
-    if (!added) return added.error();
+    if (const Status added = add(ListFinished(query)); !added) return added.error();
   }
   std::ranges::sort(jobs, std::greater(), &JobRecord::id);
   if (jobs.size() > static_cast<std::size_t>(query.limit)) {

@@ -43,16 +43,17 @@ Result<std::vector<MachineRecord>> MachineTable::List() {
 
 Status MachineTable::Put(const MachineRecord& machine, const Stamp& stamp,
                          const ContentColumns& state) {
-  const Status put =
-      put_.With(machine.id, machine.family, machine.title, machine.profile, stamp.revision,
-                stamp.created_at, stamp.updated_at, state.bytes, state.blob)
-          .Run();
-  if (!put) return put.error();
-  const Status removed = remove_parameters_.With(machine.id).Run();
-  if (!removed) return removed.error();
+  if (const Status put =
+          put_.With(machine.id, machine.family, machine.title, machine.profile, stamp.revision,
+                    stamp.created_at, stamp.updated_at, state.bytes, state.blob)
+              .Run();
+      !put)
+    return put.error();
+  if (const Status removed = remove_parameters_.With(machine.id).Run(); !removed)
+    return removed.error();
   for (const auto& [name, value] : machine.parameters) {
-    const Status added = add_parameter_.With(machine.id, name, value).Run();
-    if (!added) return added.error();
+    if (const Status added = add_parameter_.With(machine.id, name, value).Run(); !added)
+      return added.error();
   }
   return {};
 }

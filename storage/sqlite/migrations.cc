@@ -25,14 +25,15 @@ Status Apply(Database& database, TransactionStatements& statements, const Migrat
   Result<Transaction> transaction = Transaction::Begin(statements, Transaction::Kind::kWrite);
   if (!transaction) return transaction.error();
   const std::string founding = migration.number == 1 ? FoundingSql() : std::string();
-  const Status done = database.Execute(founding + std::string(migration.sql));
-  if (!done) return done.error();
+  if (const Status done = database.Execute(founding + std::string(migration.sql)); !done)
+    return done.error();
   Statement note(database, "INSERT INTO migration (number, what, at) VALUES (?1, ?2, ?3)");
-  const Status noted = note.With(migration.number, migration.what, now).Run();
-  if (!noted) return noted.error();
-  const Status numbered =
-      database.Execute("PRAGMA user_version = " + std::to_string(migration.number));
-  if (!numbered) return numbered.error();
+  if (const Status noted = note.With(migration.number, migration.what, now).Run(); !noted)
+    return noted.error();
+  if (const Status numbered =
+          database.Execute("PRAGMA user_version = " + std::to_string(migration.number));
+      !numbered)
+    return numbered.error();
   return transaction->Commit();
 }
 
@@ -68,14 +69,14 @@ Status Migrate(Database& database, std::span<const Migration> migrations, const 
   const auto done = static_cast<std::size_t>(*number);
   if (done == migrations.size()) return {};
   if (done > 0) {
-    const Status copied = database.CopyTo(path + ".version-" + std::to_string(done));
-    if (!copied) return copied.error();
+    if (const Status copied = database.CopyTo(path + ".version-" + std::to_string(done)); !copied)
+      return copied.error();
   }
   TransactionStatements statements(database);
   for (std::size_t i = done; i < migrations.size(); ++i) {
     RMLCELL_CHECK(migrations[i].number == static_cast<int>(i) + 1);
-    const Status applied = Apply(database, statements, migrations[i], now);
-    if (!applied) return applied.error();
+    if (const Status applied = Apply(database, statements, migrations[i], now); !applied)
+      return applied.error();
   }
   return {};
 }

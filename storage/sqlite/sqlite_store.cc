@@ -28,8 +28,7 @@ Status Prepare(Database& database, const SqliteOptions& options, WallTime now) {
   const Result<int> number = StoreNumber(database, Migrations());
   if (!number) return number.error();
   if (options.check_whole_file) {
-    const Status whole = CheckWholeFile(database);
-    if (!whole) return whole.error();
+    if (const Status whole = CheckWholeFile(database); !whole) return whole.error();
   }
   const Result<std::string> mode = database.Text("PRAGMA journal_mode = WAL");
   if (!mode) return mode.error();
@@ -69,14 +68,17 @@ Status Raise(Result<std::int64_t> from_rows, Result<std::int64_t> mark, std::int
 Result<Counters> ReadCounters(Tables& tables) {
   Counters counters;
   MarkTable& marks = tables.marks;
-  const Status job = Raise(tables.jobs.LastId(), marks.Get(MarkTable::kJob), counters.job);
-  if (!job) return job.error();
-  const Status position =
-      Raise(tables.events.LastPosition(), marks.Get(MarkTable::kPosition), counters.position);
-  if (!position) return position.error();
-  const Status fence =
-      Raise(tables.attempts.LastFence(), marks.Get(MarkTable::kFence), counters.fence);
-  if (!fence) return fence.error();
+  if (const Status job = Raise(tables.jobs.LastId(), marks.Get(MarkTable::kJob), counters.job);
+      !job)
+    return job.error();
+  if (const Status position =
+          Raise(tables.events.LastPosition(), marks.Get(MarkTable::kPosition), counters.position);
+      !position)
+    return position.error();
+  if (const Status fence =
+          Raise(tables.attempts.LastFence(), marks.Get(MarkTable::kFence), counters.fence);
+      !fence)
+    return fence.error();
   const Result<JobTable::Counts> jobs = tables.jobs.Count();
   if (!jobs) return jobs.error();
   counters.queued_jobs = jobs->queued;
@@ -94,13 +96,11 @@ Result<std::unique_ptr<Store>> Open(const SqliteOptions& options, Clock clock) {
   if (options.path.empty()) {
     return Error{ErrorCode::kCellStoreFailed, "no file is named for the store", {}};
   }
-  const Status directory = MakeDirectoryOf(options.path);
-  if (!directory) return directory.error();
+  if (const Status directory = MakeDirectoryOf(options.path); !directory) return directory.error();
   Result<StoreLock> lock = StoreLock::Take(options.path + ".lock");
   if (!lock) return lock.error();
   // Under the lock: closing a file drops the locks that SQLite has on it elsewhere in this process.
-  const Status file = MakePrivateFile(options.path);
-  if (!file) return file.error();
+  if (const Status file = MakePrivateFile(options.path); !file) return file.error();
 
   ConnectionOptions for_writer{
       .vfs = options.vfs, .busy_timeout = options.busy_timeout, .cache_kib = kWriterCacheKib};

@@ -54,8 +54,7 @@ Status MakeDirectory(const std::filesystem::path& directory) {
   if (directory.empty()) return {};
   std::error_code ignored;
   if (std::filesystem::is_directory(directory, ignored)) return {};
-  const Status above = MakeDirectory(directory.parent_path());
-  if (!above) return above.error();
+  if (const Status above = MakeDirectory(directory.parent_path()); !above) return above.error();
   if (mkdir(directory.c_str(), kPrivateDirectory) != 0 && errno != EEXIST) {
     return FileError("cannot make directory", directory.string(), errno);
   }

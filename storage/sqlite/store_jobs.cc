@@ -42,8 +42,8 @@ class Submission {
     if (!specification) return specification.error();
     contents_.specification = &staged_.back().content();
     for (const NewArtifact& attachment : job_.attachments) {
-      const Status attached = Stage(StagedContent::Of(writer, attachment));
-      if (!attached) return attached.error();
+      if (const Status attached = Stage(StagedContent::Of(writer, attachment)); !attached)
+        return attached.error();
       contents_.attachments.push_back(&staged_.back().content());
     }
     return {};
@@ -163,8 +163,8 @@ void SqliteStore::Submit(NewJob job, std::function<void(Result<SubmittedJob>)> d
 
 Result<SubmittedJob> SqliteStore::SubmitAndWait(NewJob job) {
   Submission submission(std::move(job));
-  const Status prepared = submission.Prepare(writer_, request_ids_, clock_);
-  if (!prepared) return prepared.error();
+  if (const Status prepared = submission.Prepare(writer_, request_ids_, clock_); !prepared)
+    return prepared.error();
   Result<SubmittedJob> submitted =
       writer_.Do([&](WriteContext& context) { return submission.Run(context); });
   if (submitted) submission.Complete(*submitted);
@@ -179,8 +179,7 @@ Result<std::optional<JobRecord>> SqliteStore::FindSubmitted(std::string_view req
     if (!*known) return std::optional<JobRecord>();
     JobRecord& job = (*known)->job;
     if (job.request_hash != request_hash) return RequestIdReused(job.id);
-    const Status whole = AddSpecification(tables, job);
-    if (!whole) return whole.error();
+    if (const Status whole = AddSpecification(tables, job); !whole) return whole.error();
     return std::optional<JobRecord>(std::move(job));
   });
 }
@@ -189,8 +188,7 @@ Result<JobRecord> SqliteStore::GetJob(std::int64_t id) {
   return readers_->Read([&](Tables& tables) -> Result<JobRecord> {
     Result<JobRow> row = GetRow(tables, id);
     if (!row) return row.error();
-    const Status whole = AddSpecification(tables, row->job);
-    if (!whole) return whole.error();
+    if (const Status whole = AddSpecification(tables, row->job); !whole) return whole.error();
     return std::move(row->job);
   });
 }
@@ -200,8 +198,7 @@ Result<std::vector<JobRecord>> SqliteStore::ListJobs(const JobQuery& query) {
     Result<std::vector<JobRecord>> jobs = tables.jobs.List(query);
     if (!jobs) return jobs.error();
     for (JobRecord& job : *jobs) {
-      const Status whole = AddSpecification(tables, job);
-      if (!whole) return whole.error();
+      if (const Status whole = AddSpecification(tables, job); !whole) return whole.error();
     }
     return jobs;
   });

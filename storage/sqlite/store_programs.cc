@@ -47,16 +47,16 @@ Status CheckWrites(const std::vector<ProgramWrite>& programs,
     const std::string slot = "slot " + std::to_string(program.slot);
     if (!IsSlot(program.slot)) return InvalidArgument(slot);
     if (!slots.insert(program.slot).second) return InvalidArgument(slot + " is written twice");
-    const Status object = CheckSize(program.object.size(), "the object for " + slot);
-    if (!object) return object.error();
-    const Status source =
-        CheckSize(program.source ? program.source->size() : 0, "the source for " + slot);
-    if (!source) return source.error();
+    if (const Status object = CheckSize(program.object.size(), "the object for " + slot); !object)
+      return object.error();
+    if (const Status source =
+            CheckSize(program.source ? program.source->size() : 0, "the source for " + slot);
+        !source)
+      return source.error();
   }
   std::set<int> numbers;
   for (const ScheduleRecord& schedule : schedules) {
-    const Status good = CheckSchedule(schedule);
-    if (!good) return good.error();
+    if (const Status good = CheckSchedule(schedule); !good) return good.error();
     if (!numbers.insert(schedule.number).second) {
       return InvalidArgument("laser schedule " + std::to_string(schedule.number) +
                              " is written twice");
@@ -91,8 +91,7 @@ Status DropBlobs(WriteContext& context, const ProgramTable::Row& row) {
   context.garbage = true;
   for (const std::optional<std::int64_t>& blob :
        {std::optional(row.object_blob), row.source_blob, row.executable_blob}) {
-    const Status dropped = context.tables.blobs.Drop(blob);
-    if (!dropped) return dropped.error();
+    if (const Status dropped = context.tables.blobs.Drop(blob); !dropped) return dropped.error();
   }
   return {};
 }
@@ -104,9 +103,10 @@ Result<ProgramSummary> PutProgramRow(WriteContext& context, std::string_view mac
       tables.programs.Find(machine, program.slot);
   if (!found) return found.error();
   const std::optional<ProgramTable::Row>& before = *found;
-  const Status fits = CheckRevision(before ? std::optional(before->revision) : std::nullopt,
-                                    program.expected, SlotText(machine, program.slot));
-  if (!fits) return fits.error();
+  if (const Status fits = CheckRevision(before ? std::optional(before->revision) : std::nullopt,
+                                        program.expected, SlotText(machine, program.slot));
+      !fits)
+    return fits.error();
   Revision last = before ? before->revision : 0;
   if (!before) {
     const Result<Revision> buried =
@@ -129,12 +129,12 @@ Result<ProgramSummary> PutProgramRow(WriteContext& context, std::string_view mac
     if (!source) return source.error();
     row.source_blob = *source;
   }
-  const Status put =
-      tables.programs.Put(machine, program.slot, program.name, program.source_name, row);
-  if (!put) return put.error();
+  if (const Status put =
+          tables.programs.Put(machine, program.slot, program.name, program.source_name, row);
+      !put)
+    return put.error();
   if (before) {
-    const Status dropped = DropBlobs(context, *before);
-    if (!dropped) return dropped.error();
+    if (const Status dropped = DropBlobs(context, *before); !dropped) return dropped.error();
   }
   const Result<std::optional<ProgramSummary>> summary =
       tables.programs.Summary(machine, program.slot);
@@ -151,9 +151,10 @@ Result<ScheduleRecord> PutScheduleRow(WriteContext& context, ScheduleRecord sche
   if (!before) return before.error();
   const std::string what =
       "laser schedule " + std::to_string(schedule.number) + " of " + schedule.machine;
-  const Status fits =
-      CheckRevision(*before ? std::optional((*before)->revision) : std::nullopt, expected, what);
-  if (!fits) return fits.error();
+  if (const Status fits = CheckRevision(*before ? std::optional((*before)->revision) : std::nullopt,
+                                        expected, what);
+      !fits)
+    return fits.error();
   if (*before) {
     schedule.revision = (*before)->revision + 1;
   } else {
@@ -163,26 +164,25 @@ Result<ScheduleRecord> PutScheduleRow(WriteContext& context, ScheduleRecord sche
     schedule.revision = *buried + 1;
   }
   schedule.updated_at = context.now;
-  const Status put = tables.schedules.Put(schedule);
-  if (!put) return put.error();
+  if (const Status put = tables.schedules.Put(schedule); !put) return put.error();
   return schedule;
 }
 
 Status RemoveProgram(WriteContext& context, std::string_view machine, int slot, Revision expected) {
   Tables& tables = context.tables;
-  const Status known = CheckMachine(tables, machine);
-  if (!known) return known.error();
+  if (const Status known = CheckMachine(tables, machine); !known) return known.error();
   const Result<std::optional<ProgramTable::Row>> found = tables.programs.Find(machine, slot);
   if (!found) return found.error();
   if (!*found) return NoProgram(machine, slot);
   const ProgramTable::Row& row = **found;
-  const Status fits = CheckRevision(row.revision, expected, SlotText(machine, slot));
-  if (!fits) return fits.error();
-  const Status removed = tables.programs.Remove(machine, slot);
-  if (!removed) return removed.error();
-  const Status buried =
-      tables.buried.Bury(BuriedTable::Kind::kProgram, machine, std::to_string(slot), row.revision);
-  if (!buried) return buried.error();
+  if (const Status fits = CheckRevision(row.revision, expected, SlotText(machine, slot)); !fits)
+    return fits.error();
+  if (const Status removed = tables.programs.Remove(machine, slot); !removed)
+    return removed.error();
+  if (const Status buried = tables.buried.Bury(BuriedTable::Kind::kProgram, machine,
+                                               std::to_string(slot), row.revision);
+      !buried)
+    return buried.error();
   return DropBlobs(context, row);
 }
 
@@ -194,34 +194,32 @@ Result<bool> PutExecutableBlob(WriteContext& context, std::string_view machine, 
   if (!*found || (*found)->revision != object_revision) return false;
   const Result<std::int64_t> blob = tables.blobs.PutBlob(executable);
   if (!blob) return blob.error();
-  const Status put = tables.programs.PutExecutable(machine, slot, *blob);
-  if (!put) return put.error();
+  if (const Status put = tables.programs.PutExecutable(machine, slot, *blob); !put)
+    return put.error();
   context.garbage = true;
-  const Status dropped = tables.blobs.Drop((*found)->executable_blob);
-  if (!dropped) return dropped.error();
+  if (const Status dropped = tables.blobs.Drop((*found)->executable_blob); !dropped)
+    return dropped.error();
   return true;
 }
 
 Status RemoveExecutable(WriteContext& context, std::string_view machine, int slot) {
   Tables& tables = context.tables;
-  const Status known = CheckMachine(tables, machine);
-  if (!known) return known.error();
+  if (const Status known = CheckMachine(tables, machine); !known) return known.error();
   const Result<std::optional<ProgramTable::Row>> found = tables.programs.Find(machine, slot);
   if (!found) return found.error();
   if (!*found) return NoProgram(machine, slot);
   if (!(*found)->executable_blob) {
     return Error{ErrorCode::kCellNotFound, SlotText(machine, slot) + " has no executable", {}};
   }
-  const Status removed = tables.programs.PutExecutable(machine, slot, {});
-  if (!removed) return removed.error();
+  if (const Status removed = tables.programs.PutExecutable(machine, slot, {}); !removed)
+    return removed.error();
   context.garbage = true;
   return tables.blobs.Drop((*found)->executable_blob);
 }
 
 Status RemoveSchedule(WriteContext& context, std::string_view machine, int number) {
   Tables& tables = context.tables;
-  const Status known = CheckMachine(tables, machine);
-  if (!known) return known.error();
+  if (const Status known = CheckMachine(tables, machine); !known) return known.error();
   const Result<std::optional<ScheduleRecord>> found = tables.schedules.Get(machine, number);
   if (!found) return found.error();
   if (!*found) {
@@ -229,8 +227,8 @@ Status RemoveSchedule(WriteContext& context, std::string_view machine, int numbe
                  "laser schedule " + std::to_string(number) + " of " + std::string(machine),
                  {}};
   }
-  const Status removed = tables.schedules.Remove(machine, number);
-  if (!removed) return removed.error();
+  if (const Status removed = tables.schedules.Remove(machine, number); !removed)
+    return removed.error();
   return tables.buried.Bury(BuriedTable::Kind::kSchedule, machine, std::to_string(number),
                             (*found)->revision);
 }
@@ -240,16 +238,14 @@ Status RemoveSchedule(WriteContext& context, std::string_view machine, int numbe
 Result<std::vector<ProgramSummary>> SqliteStore::ListPrograms(std::string_view machine,
                                                               int after_slot, int limit) {
   return readers_->Read([&](Tables& tables) -> Result<std::vector<ProgramSummary>> {
-    const Status known = CheckMachine(tables, machine);
-    if (!known) return known.error();
+    if (const Status known = CheckMachine(tables, machine); !known) return known.error();
     return tables.programs.List(machine, after_slot, std::max(limit, 0));
   });
 }
 
 Result<ProgramRecord> SqliteStore::GetProgram(std::string_view machine, int slot) {
   return readers_->Read([&](Tables& tables) -> Result<ProgramRecord> {
-    const Status known = CheckMachine(tables, machine);
-    if (!known) return known.error();
+    if (const Status known = CheckMachine(tables, machine); !known) return known.error();
     Result<std::optional<ProgramRecord>> program = tables.programs.Get(machine, slot);
     if (!program) return program.error();
     if (!*program) return NoProgram(machine, slot);
@@ -259,8 +255,7 @@ Result<ProgramRecord> SqliteStore::GetProgram(std::string_view machine, int slot
 
 Result<ProgramSummary> SqliteStore::GetProgramSummary(std::string_view machine, int slot) {
   return readers_->Read([&](Tables& tables) -> Result<ProgramSummary> {
-    const Status known = CheckMachine(tables, machine);
-    if (!known) return known.error();
+    if (const Status known = CheckMachine(tables, machine); !known) return known.error();
     Result<std::optional<ProgramSummary>> summary = tables.programs.Summary(machine, slot);
     if (!summary) return summary.error();
     if (!*summary) return NoProgram(machine, slot);
@@ -270,16 +265,14 @@ Result<ProgramSummary> SqliteStore::GetProgramSummary(std::string_view machine, 
 
 Result<std::vector<ProgramRecord>> SqliteStore::GetProgramMemory(std::string_view machine) {
   return readers_->Read([&](Tables& tables) -> Result<std::vector<ProgramRecord>> {
-    const Status known = CheckMachine(tables, machine);
-    if (!known) return known.error();
+    if (const Status known = CheckMachine(tables, machine); !known) return known.error();
     return tables.programs.Memory(machine, ProgramTable::Parts::kWithoutSource);
   });
 }
 
 Result<std::vector<int>> SqliteStore::ListDeletedPrograms(std::string_view machine) {
   return readers_->Read([&](Tables& tables) -> Result<std::vector<int>> {
-    const Status known = CheckMachine(tables, machine);
-    if (!known) return known.error();
+    if (const Status known = CheckMachine(tables, machine); !known) return known.error();
     return tables.buried.Numbers(BuriedTable::Kind::kProgram, machine);
   });
 }
@@ -287,13 +280,11 @@ Result<std::vector<int>> SqliteStore::ListDeletedPrograms(std::string_view machi
 Result<std::vector<ProgramSummary>> SqliteStore::PutPrograms(
     std::string_view machine, const std::vector<ProgramWrite>& programs,
     const std::vector<ScheduleRecord>& schedules) {
-  const Status good = CheckWrites(programs, schedules);
-  if (!good) return good.error();
+  if (const Status good = CheckWrites(programs, schedules); !good) return good.error();
   const Result<std::vector<StagedProgram>> staged = StageAll(writer_, programs);
   if (!staged) return staged.error();
   return writer_.Do([&](WriteContext& context) -> Result<std::vector<ProgramSummary>> {
-    const Status known = CheckMachine(context.tables, machine);
-    if (!known) return known.error();
+    if (const Status known = CheckMachine(context.tables, machine); !known) return known.error();
     std::vector<ProgramSummary> summaries;
     for (std::size_t i = 0; i < programs.size(); ++i) {
       Result<ProgramSummary> put = PutProgramRow(context, machine, programs[i], (*staged)[i]);
@@ -316,8 +307,8 @@ Status SqliteStore::DeleteProgram(std::string_view machine, int slot, Revision e
 
 Result<bool> SqliteStore::PutExecutable(std::string_view machine, int slot,
                                         Revision object_revision, std::string_view executable) {
-  const Status good = CheckSize(executable.size(), "the executable");
-  if (!good) return good.error();
+  if (const Status good = CheckSize(executable.size(), "the executable"); !good)
+    return good.error();
   const Result<StagedContent> staged =
       StagedContent::Make(writer_, executable, StagedContent::Place::kBlob);
   if (!staged) return staged.error();
@@ -333,18 +324,16 @@ Status SqliteStore::DeleteExecutable(std::string_view machine, int slot) {
 
 Result<std::vector<ScheduleRecord>> SqliteStore::ListSchedules(std::string_view machine) {
   return readers_->Read([&](Tables& tables) -> Result<std::vector<ScheduleRecord>> {
-    const Status known = CheckMachine(tables, machine);
-    if (!known) return known.error();
+    if (const Status known = CheckMachine(tables, machine); !known) return known.error();
     return tables.schedules.List(machine);
   });
 }
 
 Result<ScheduleRecord> SqliteStore::PutSchedule(const ScheduleRecord& schedule, Revision expected) {
-  const Status good = CheckSchedule(schedule);
-  if (!good) return good.error();
+  if (const Status good = CheckSchedule(schedule); !good) return good.error();
   return writer_.Do([&](WriteContext& context) -> Result<ScheduleRecord> {
-    const Status known = CheckMachine(context.tables, schedule.machine);
-    if (!known) return known.error();
+    if (const Status known = CheckMachine(context.tables, schedule.machine); !known)
+      return known.error();
     return PutScheduleRow(context, schedule, expected);
   });
 }

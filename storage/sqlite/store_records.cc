@@ -21,20 +21,21 @@ Result<Stamp> PutMachineRow(WriteContext& context, const MachineRecord& machine,
   const Result<std::optional<MachineTable::Facts>> found = context.tables.machines.Find(machine.id);
   if (!found) return found.error();
   const std::optional<MachineTable::Facts>& before = *found;
-  const Status fits =
-      CheckRevision(before ? std::optional(before->revision) : std::nullopt, expected,
-                    "machine " + machine.id, ErrorCode::kCellUnknownMachine);
-  if (!fits) return fits.error();
+  if (const Status fits =
+          CheckRevision(before ? std::optional(before->revision) : std::nullopt, expected,
+                        "machine " + machine.id, ErrorCode::kCellUnknownMachine);
+      !fits)
+    return fits.error();
   const Stamp stamp{.revision = before ? before->revision + 1 : 1,
                     .created_at = before ? before->created_at : context.now,
                     .updated_at = context.now};
   const Result<ContentColumns> columns = context.tables.blobs.Put(state);
   if (!columns) return columns.error();
-  const Status put = context.tables.machines.Put(machine, stamp, *columns);
-  if (!put) return put.error();
+  if (const Status put = context.tables.machines.Put(machine, stamp, *columns); !put)
+    return put.error();
   if (before) {
-    const Status dropped = context.tables.blobs.Drop(before->state_blob);
-    if (!dropped) return dropped.error();
+    if (const Status dropped = context.tables.blobs.Drop(before->state_blob); !dropped)
+      return dropped.error();
   }
   context.garbage = true;
   return stamp;
@@ -45,9 +46,10 @@ Result<Stamp> PutProjectRow(WriteContext& context, const ProjectRecord& project,
   const Result<std::optional<ProjectTable::Facts>> found = context.tables.projects.Find(project.id);
   if (!found) return found.error();
   const std::optional<ProjectTable::Facts>& before = *found;
-  const Status fits = CheckRevision(before ? std::optional(before->revision) : std::nullopt,
-                                    expected, "project " + project.id);
-  if (!fits) return fits.error();
+  if (const Status fits = CheckRevision(before ? std::optional(before->revision) : std::nullopt,
+                                        expected, "project " + project.id);
+      !fits)
+    return fits.error();
   Revision last = before ? before->revision : 0;
   if (!before) {
     const Result<Revision> buried =
@@ -60,11 +62,11 @@ Result<Stamp> PutProjectRow(WriteContext& context, const ProjectRecord& project,
                     .updated_at = context.now};
   const Result<ContentColumns> columns = context.tables.blobs.Put(body);
   if (!columns) return columns.error();
-  const Status put = context.tables.projects.Put(project, stamp, *columns);
-  if (!put) return put.error();
+  if (const Status put = context.tables.projects.Put(project, stamp, *columns); !put)
+    return put.error();
   if (before) {
-    const Status dropped = context.tables.blobs.Drop(before->body_blob);
-    if (!dropped) return dropped.error();
+    if (const Status dropped = context.tables.blobs.Drop(before->body_blob); !dropped)
+      return dropped.error();
   }
   context.garbage = true;
   return stamp;
@@ -75,13 +77,14 @@ Status RemoveProject(WriteContext& context, std::string_view id, Revision expect
   if (!found) return found.error();
   if (!*found) return NoProject(id);
   const ProjectTable::Facts& before = **found;
-  const Status fits = CheckRevision(before.revision, expected, "project " + std::string(id));
-  if (!fits) return fits.error();
-  const Status removed = context.tables.projects.Remove(id);
-  if (!removed) return removed.error();
-  const Status buried =
-      context.tables.buried.Bury(BuriedTable::Kind::kProject, "", id, before.revision);
-  if (!buried) return buried.error();
+  if (const Status fits = CheckRevision(before.revision, expected, "project " + std::string(id));
+      !fits)
+    return fits.error();
+  if (const Status removed = context.tables.projects.Remove(id); !removed) return removed.error();
+  if (const Status buried =
+          context.tables.buried.Bury(BuriedTable::Kind::kProject, "", id, before.revision);
+      !buried)
+    return buried.error();
   context.garbage = true;
   return context.tables.blobs.Drop(before.body_blob);
 }

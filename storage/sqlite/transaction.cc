@@ -21,8 +21,7 @@ TransactionStatements::TransactionStatements(Database& database)
 
 Result<Transaction> Transaction::Begin(TransactionStatements& statements, Kind kind) {
   Statement& begin = kind == Kind::kWrite ? statements.begin_write_ : statements.begin_read_;
-  const Status begun = begin.With().Run();
-  if (!begun) return begun.error();
+  if (const Status begun = begin.With().Run(); !begun) return begun.error();
   return Transaction(&statements);
 }
 
@@ -38,8 +37,7 @@ Status Transaction::Commit() {
 }
 
 Result<Savepoint> Savepoint::Begin(TransactionStatements& statements) {
-  const Status begun = statements.savepoint_.With().Run();
-  if (!begun) return begun.error();
+  if (const Status begun = statements.savepoint_.With().Run(); !begun) return begun.error();
   return Savepoint(&statements);
 }
 
@@ -49,8 +47,7 @@ Savepoint::~Savepoint() {
 
 Status Savepoint::Undo() {
   TransactionStatements& statements = *std::exchange(statements_, nullptr);
-  const Status undone = statements.rollback_to_.With().Run();
-  if (!undone) return undone.error();
+  if (const Status undone = statements.rollback_to_.With().Run(); !undone) return undone.error();
   return statements.release_.With().Run();
 }
 

@@ -226,8 +226,7 @@ Writer::Outcome Writer::TryBatch(std::span<Pending> batch, Undo undo) {
   }
   WriteContext context{.tables = connection_.tables, .counters = counters_, .now = {}};
   for (Pending& pending : batch) {
-    const Status sound = RunOne(pending, context, undo);
-    if (!sound) return lose(sound.error());
+    if (const Status sound = RunOne(pending, context, undo); !sound) return lose(sound.error());
     if (pending.status) continue;
     // SQLite has ended the transaction: what followed would each be a transaction of its own.
     if (!transaction->alive()) return lose(Error(pending.status.error()));
@@ -236,8 +235,7 @@ Writer::Outcome Writer::TryBatch(std::span<Pending> batch, Undo undo) {
       return Outcome::kSpoilt;
     }
   }
-  const Status committed = transaction->Commit();
-  if (!committed) return lose(committed.error());
+  if (const Status committed = transaction->Commit(); !committed) return lose(committed.error());
   PublishCounts();
   tidy_ = tidy_ || context.garbage || housekeeping_.IsDue(counters_);
   untold_ = untold_ || context.changed;
@@ -292,8 +290,7 @@ void Writer::Tidy() {
     WriteContext context{.tables = connection_.tables, .counters = counters_, .now = clock_()};
     const Result<bool> more = housekeeping_.RunSlice(context);
     if (!more) return more.error();
-    const Status committed = transaction->Commit();
-    if (!committed) return committed.error();
+    if (const Status committed = transaction->Commit(); !committed) return committed.error();
     if (context.changed) changed_();
     return more;
   };

@@ -5,6 +5,7 @@
 #define EIGEN_NO_MALLOC  // fixed sizes only
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 // Points and directions, by the frame that they are told in; mm for points. motion.md section 2.
 // Never `auto` for an expression: it would refer to operands that are gone.
@@ -13,6 +14,12 @@ namespace rmlcell::motion {
 // The frame of the machine.
 using MachinePoint = Eigen::Vector3d;
 using MachineVector = Eigen::Vector3d;  // directions, differences and derivatives of points
+
+// X and Y of either frame: places and directions as they are seen from above.
+using PlanVector = Eigen::Vector2d;
+inline PlanVector PlanOf(const Eigen::Vector3d& v) { return v.head<2>(); }
+// By hypot of the C library, whose last digit is not that of norm().
+inline double LengthOf(const PlanVector& v) { return std::hypot(v.x(), v.y()); }
 
 // The frame of the part program: that of the machine, moved and turned by SYSDEF, or the units of a
 // stream from its origin. Directions, and places as vectors from its origin where one program is

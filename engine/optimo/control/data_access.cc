@@ -259,8 +259,8 @@ Status DataAccess::Assign(const Instruction& i) {
   }
   for (int bit = 0; bit < width; ++bit) {
     const Variable place{target.group, static_cast<std::uint8_t>(target.index + bit)};
-    const Status written = Write(place, static_cast<float>(*number >> bit & 1));
-    if (!written) return written.error();
+    if (const Status written = Write(place, static_cast<float>(*number >> bit & 1)); !written)
+      return written.error();
   }
   return {};
 }

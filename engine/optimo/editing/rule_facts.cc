@@ -67,7 +67,7 @@ constexpr std::array kRuleFacts = {
     RuleFact{"OPT-3.37", "IL[87 + p] is 1 while a process with number p from 0 to 7 is ON."},
     RuleFact{"OPT-3.38", "WORK takes /START, /END and /NEXT; /TIME does nothing there."},
     RuleFact{"OPT-3.44", "A laser schedule that is selected must be stored."},
-    RuleFact{"OPT-3.45", "DELAY waits 0 or more seconds; the feed override has no effect on it."},
+    RuleFact{"OPT-3.45", "DELAY waits 0 or more seconds; the override has no effect on it."},
     RuleFact{"OPT-3.46", "ENDTASK ends a program and is assumed at the end of the text."},
     RuleFact{"OPT-3.47", "What stands behind ENDTASK is reached by jumps only."},
     RuleFact{"OPT-3.49", "PAUSE and STOP halt the program; START goes on behind them."},

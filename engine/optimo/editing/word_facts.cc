@@ -26,7 +26,7 @@ constexpr auto kWordFacts = std::to_array<WordFact>({
     {Word::kCoord, "COORD ABSOL | ROBOT", "What the coordinates of MOVE mean: ABSOL the tip of the tool, with all kinds of PATH; ROBOT the column, PTP only."},
     {Word::kDeclare, "DECLARE name = value", "Names a number, a logical constant, PI or a variable. No step. Eight characters of a name count, and it belongs to this program alone."},
     {Word::kDefine, "DEFINE PAR[n] = FLOAT | INT | LOGIC", "Type of a parameter, before its first use; FLOAT without it."},
-    {Word::kDelay, "DELAY seconds", "Waits, whatever the feed override. The machine stands still, so a /FLY before it is cancelled."},
+    {Word::kDelay, "DELAY seconds", "Waits, whatever the override. The machine stands still, so a /FLY before it is cancelled."},
     {Word::kDisable, "", kWithoutEffect},
     {Word::kElse, "IF condition THEN sequence number ELSE sequence number", "Where IF goes on when its condition is false."},
     {Word::kEnable, "", kWithoutEffect},

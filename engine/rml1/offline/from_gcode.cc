@@ -359,10 +359,8 @@ void Interpreter::MoveArc(const Orders& orders, GcodeUse motion, double x, doubl
     if (word == nullptr) return std::nullopt;
     return word->value * unit_mm_;
   };
-  const Result<Arc> arc = ArcOf({.from_x = x_,
-                                 .from_y = y_,
-                                 .to_x = x,
-                                 .to_y = y,
+  const Result<Arc> arc = ArcOf({.from = {x_, y_},
+                                 .to = {x, y},
                                  .clockwise = motion == GcodeUse::kArcClockwise,
                                  .i = value('I'),
                                  .j = value('J'),
@@ -376,7 +374,8 @@ void Interpreter::MoveArc(const Orders& orders, GcodeUse motion, double x, doubl
   const auto count = static_cast<int>(chords);
   for (int k = 1; k < count; ++k) {
     const double share = k / chords;
-    CutTo(arc->XAt(share), arc->YAt(share), z_ + (z - z_) * share, where);
+    const motion::PlanVector at = arc->At(share);
+    CutTo(at.x(), at.y(), z_ + (z - z_) * share, where);
   }
   CutTo(x, y, z, where);
 }

@@ -9,6 +9,8 @@
 namespace rmlcell::rml1 {
 namespace {
 
+using motion::LengthOf, motion::PlanVector;
+
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 constexpr double kSamePlace_mm = 1e-6;  // noise of decimals and of inches
 
@@ -16,9 +18,8 @@ Error NoArc(const std::string& detail) { return {ErrorCode::kRml1GcodeArc, detai
 
 // The centre of an arc with R: on the line across the middle of the ends.
 Result<Arc> CentreByRadius(const ArcWords& words) {
-  const double dx = words.to_x - words.from_x;
-  const double dy = words.to_y - words.from_y;
-  const double distance = std::hypot(dx, dy);
+  const PlanVector chord = words.to - words.from;
+  const double distance = LengthOf(chord);
   if (distance <= kSamePlace_mm) return NoArc("R with an end that is the start: give I and J");
   const double radius = std::abs(*words.r);
   const double half = distance / 2.0;
@@ -30,8 +31,8 @@ Result<Arc> CentreByRadius(const ArcWords& words) {
   const bool to_the_left = words.clockwise == (*words.r < 0.0);
   const double side = to_the_left ? height : -height;
   Arc arc;
-  arc.centre_x = words.from_x + dx / 2.0 - side * dy / distance;
-  arc.centre_y = words.from_y + dy / 2.0 + side * dx / distance;
+  const PlanVector left(-chord.y(), chord.x());
+  arc.centre = words.from + chord / 2.0 + side * left / distance;
   return arc;
 }
 
@@ -43,12 +44,9 @@ double Arc::Chords(double tolerance_mm) const {
   return std::max(1.0, std::ceil(std::abs(sweep_rad) / angle - 1e-9));
 }
 
-double Arc::XAt(double share) const {
-  return centre_x + radius_mm * std::cos(start_rad + sweep_rad * share);
-}
-
-double Arc::YAt(double share) const {
-  return centre_y + radius_mm * std::sin(start_rad + sweep_rad * share);
+PlanVector Arc::At(double share) const {
+  const double angle = start_rad + sweep_rad * share;
+  return centre + radius_mm * PlanVector(std::cos(angle), std::sin(angle));
 }
 
 Result<Arc> ArcOf(const ArcWords& words) {
@@ -60,25 +58,21 @@ Result<Arc> ArcOf(const ArcWords& words) {
     if (!made) return made.error();
     arc = *made;
   } else {
-    arc.centre_x = words.from_x + words.i.value_or(0.0);
-    arc.centre_y = words.from_y + words.j.value_or(0.0);
+    arc.centre = words.from + PlanVector(words.i.value_or(0.0), words.j.value_or(0.0));
   }
-  const double from_x = words.from_x - arc.centre_x;
-  const double from_y = words.from_y - arc.centre_y;
-  const double to_x = words.to_x - arc.centre_x;
-  const double to_y = words.to_y - arc.centre_y;
-  arc.radius_mm = std::hypot(from_x, from_y);
+  const PlanVector from = words.from - arc.centre;
+  const PlanVector to = words.to - arc.centre;
+  arc.radius_mm = LengthOf(from);
   if (!(arc.radius_mm > kSamePlace_mm)) return NoArc("the centre is the start");
-  const double other = std::hypot(to_x, to_y);
+  const double other = LengthOf(to);
   const double error = std::abs(other - arc.radius_mm);
   if (error > kRadiusError_mm && error > 1e-3 * arc.radius_mm) {
     return NoArc("the start is " + ShortNumber(arc.radius_mm) + " mm from the centre, the end " +
                  ShortNumber(other) + " mm");
   }
-  arc.start_rad = std::atan2(from_y, from_x);
-  arc.sweep_rad = std::atan2(to_y, to_x) - arc.start_rad;
-  const bool full =
-      std::hypot(words.to_x - words.from_x, words.to_y - words.from_y) <= kSamePlace_mm;
+  arc.start_rad = std::atan2(from.y(), from.x());
+  arc.sweep_rad = std::atan2(to.y(), to.x()) - arc.start_rad;
+  const bool full = LengthOf(words.to - words.from) <= kSamePlace_mm;
   if (full) arc.sweep_rad = 0.0;
   if (words.clockwise && arc.sweep_rad >= 0.0) arc.sweep_rad -= kTurn_rad;
   if (!words.clockwise && arc.sweep_rad <= 0.0) arc.sweep_rad += kTurn_rad;

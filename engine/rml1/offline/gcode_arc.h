@@ -3,15 +3,14 @@
 #include <optional>
 
 #include "engine/core/result.h"
+#include "engine/motion/geometry/frames.h"
 
 namespace rmlcell::rml1 {
 
 // An arc in X and Y as G2 and G3 give it, mm.
 struct ArcWords {
-  double from_x = 0.0;
-  double from_y = 0.0;
-  double to_x = 0.0;
-  double to_y = 0.0;
+  motion::PlanVector from{};
+  motion::PlanVector to{};
   bool clockwise = false;  // G2
   std::optional<double> i;
   std::optional<double> j;
@@ -19,8 +18,7 @@ struct ArcWords {
 };
 
 struct Arc {
-  double centre_x = 0.0;
-  double centre_y = 0.0;
+  motion::PlanVector centre{};
   double radius_mm = 0.0;
   double start_rad = 0.0;
   double sweep_rad = 0.0;  // counterclockwise is positive
@@ -28,8 +26,7 @@ struct Arc {
   // How many chords stay within the tolerance of it: a chord of an angle a is radius * (1 - cos(a /
   // 2)) away from its arc. At least 1.
   double Chords(double tolerance_mm) const;
-  double XAt(double share) const;
-  double YAt(double share) const;
+  motion::PlanVector At(double share) const;
 };
 
 // I and J: from the start to the centre; an end that is the start is a full turn. R: its sign tells

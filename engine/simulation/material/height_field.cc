@@ -76,7 +76,7 @@ HeightField::Size HeightField::SizeOf(const Stock& stock) {
 }
 
 Result<HeightField> HeightField::Of(const Stock& stock) {
-  if (Status sound = CheckStock(stock); !sound) return sound.error();
+  if (const Status sound = CheckStock(stock); !sound) return sound.error();
   const Size size = SizeOf(stock);
   return HeightField(stock, size.columns, size.rows);
 }

@@ -75,7 +75,7 @@ Result<HeightMap> ReadHeightMap(std::string_view bytes) {
   }
   map.stock.x_max = map.stock.x_min + static_cast<double>(map.columns) * map.stock.cell;
   map.stock.y_max = map.stock.y_min + static_cast<double>(map.rows) * map.stock.cell;
-  if (Status sound = CheckStock(map.stock); !sound)
+  if (const Status sound = CheckStock(map.stock); !sound)
     return Error{ErrorCode::kCellBadText, "no height map: " + sound.error().detail, {}};
   for (const double end : {map.stock.bottom, map.stock.top}) {
     if (!std::isfinite(static_cast<float>(end)))

@@ -9,11 +9,7 @@
 
 namespace rmlcell::simulation {
 
-// X and Y of the machine: directions as they are seen from above.
-using PlanVector = Eigen::Vector2d;
-inline PlanVector PlanOf(const motion::MachineVector& v) { return v.head<2>(); }
-// By hypot of the C library, whose last digit is not that of norm().
-inline double LengthOf(const PlanVector& v) { return std::hypot(v.x(), v.y()); }
+using motion::LengthOf, motion::PlanOf, motion::PlanVector;
 
 // The cutting end of a milling tool, a body of revolution; its lowest point is the programmed one.
 // motion.md section 9.

@@ -11,8 +11,8 @@ constexpr double kGougeLeast_mm = 1e-3;  // less is rounding of heights and plac
 }  // namespace
 
 Status CheckMilling(const Milling& milling) {
-  if (Status sound = CheckTool(milling.tool); !sound) return sound;
-  if (Status sound = CheckStock(milling.stock); !sound) return sound;
+  if (const Status sound = CheckTool(milling.tool); !sound) return sound.error();
+  if (const Status sound = CheckStock(milling.stock); !sound) return sound.error();
   if (milling.chips && milling.tool.flutes == 0)
     return InvalidArgument("what an edge takes off needs the edges of the tool: flutes=2");
   if (!(milling.rpm >= 0.0) || !std::isfinite(milling.rpm))

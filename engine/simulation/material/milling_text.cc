@@ -117,7 +117,7 @@ Result<MillTool> ParseTool(std::string_view text) {
     if (!TakeShankPart(part, tool)) return wrong;
     rest.remove_prefix(part.size());
   }
-  if (Status sound = CheckTool(tool); !sound) return sound.error();
+  if (const Status sound = CheckTool(tool); !sound) return sound.error();
   return tool;
 }
 

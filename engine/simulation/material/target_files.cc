@@ -65,13 +65,14 @@ class TargetRaster {
 
 bool TargetRaster::Raise(const StlTriangle& triangle) {
   const auto& [a, b, c] = triangle.corners;
-  const double ux = double{b[0]} - a[0], uy = double{b[1]} - a[1], uz = double{b[2]} - a[2];
-  const double vx = double{c[0]} - a[0], vy = double{c[1]} - a[1], vz = double{c[2]} - a[2];
-  const double area = ux * vy - uy * vx;
+  const auto edge_to = [&a](const std::array<float, 3>& corner) -> motion::MachineVector {
+    return {double{corner[0]} - a[0], double{corner[1]} - a[1], double{corner[2]} - a[2]};
+  };
+  const motion::MachineVector normal = edge_to(b).cross(edge_to(c));
   // Upright ones have no area from above: their upper edges belong to others, too.
-  if (std::abs(area) < 1e-12) return true;
-  const double slope_x = (uz * vy - uy * vz) / area;
-  const double slope_y = (ux * vz - uz * vx) / area;
+  if (std::abs(normal.z()) < 1e-12) return true;
+  const double slope_x = -normal.x() / normal.z();
+  const double slope_y = -normal.y() / normal.z();
   const auto [z_low, z_high] = std::minmax({a[2], b[2], c[2]});
   const auto [y_low, y_high] = std::minmax({a[1], b[1], c[1]});
   const Cells rows = CellsIn(0.0, 0.0, y_low, y_high);

@@ -95,8 +95,9 @@ class Table {
   void AddPositions();
   void AddPoint(const std::string& name, const std::string& unit, const std::string& text,
                 std::function<MachineVector(const RunReport&)> point);
+  template <class Point>
   void AddBox(const std::string& name, const std::string& unit, const std::string& text,
-              machine::Box ScopeFigures::*box);
+              machine::BoxOf<Point> ScopeFigures::*box);
   void AddAxes();
   void AddAxis(std::string_view axis);
   void AddFindings();
@@ -391,16 +392,20 @@ void Table::AddPositions() {
            [](const RunReport& r) { return r.final_position.program_point.from_origin(); });
 }
 
+const MachineVector& VectorOf(const MachineVector& point) { return point; }
+const MachineVector& VectorOf(const motion::ProgramPoint& point) { return point.from_origin(); }
+
+template <class Point>
 void Table::AddBox(const std::string& name, const std::string& unit, const std::string& text,
-                   machine::Box ScopeFigures::*box) {
+                   machine::BoxOf<Point> ScopeFigures::*box) {
   for (int i = 0; i < 3; ++i) {
     for (const bool low : {true, false}) {
       Add(name + kCoordinates[i] + (low ? "_min" : "_max") + Unit(unit), unit,
           (low ? "least " : "greatest ") + CoordinateName(kCoordinates[i]) + text,
           [box, low, i](const RunReport& r) {
-            const machine::Box& b = r.*box;
+            const machine::BoxOf<Point>& b = r.*box;
             if (b.empty()) return std::string(kNone);
-            return Real((low ? b.min : b.max)[i]);
+            return Real(VectorOf(low ? b.min : b.max)[i]);
           });
     }
   }

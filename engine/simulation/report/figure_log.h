@@ -23,7 +23,7 @@ class FigureLog {
     const std::optional<SlowMove>& slow;
   };
   void Add(const Motion& motion);
-  void AddProgrammed(const motion::ProgramPoint& point) { programmed_.Add(point.from_origin()); }
+  void AddProgrammed(const motion::ProgramPoint& point) { programmed_.Add(point); }
 
   BeamTimes& beam() { return beam_; }
 
@@ -35,7 +35,7 @@ class FigureLog {
   BeamTimes beam_;
   CornerLog corners_;
   SpeedShortfall shortfall_;
-  machine::Box programmed_;
+  machine::ProgramBox programmed_;
   machine::Box tip_;
   machine::Box cut_;
   machine::Box column_;

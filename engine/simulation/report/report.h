@@ -315,10 +315,10 @@ struct ScopeFigures {
   CornerFigures corners;
   SpeedShortfall shortfall;
 
-  machine::Box programmed;  // points as the program wrote them
-  machine::Box tip;         // where the tip was, machine frame; true extremes of arcs
-  machine::Box cut;         // where it cut
-  machine::Box column;      // gantry: the column; mill: the same as the tip
+  machine::ProgramBox programmed;
+  machine::Box tip;     // where the tip was, machine frame; true extremes of arcs
+  machine::Box cut;     // where it cut
+  machine::Box column;  // gantry: the column; mill: the same as the tip
   AxisFigures tip_figures;
   std::vector<AxisFigures> axes;
 

@@ -33,6 +33,12 @@ bool Drive::Start() {
   return true;
 }
 
+bool Drive::StartOrEnd() {
+  if (Start()) return true;
+  End(machine::OutcomeKind::kStopped, ErrorCode::kCellWaitsForever);
+  return false;
+}
+
 void Drive::End(machine::OutcomeKind kind, ErrorCode code) {
   if (finished()) return;
   run_.End(kind, code);

@@ -21,6 +21,9 @@ class Drive {
 
   // START, where it is halted. False: the START before changed nothing, and none ever will.
   bool Start();
+  // Where it is halted: START, or its end where that changes nothing (CellWaitsForever). True: it
+  // was started.
+  bool StartOrEnd();
 
   void End(machine::OutcomeKind kind, ErrorCode code);
 

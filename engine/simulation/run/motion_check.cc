@@ -162,11 +162,7 @@ Status RunForCheck(const machine::MachineFamily& family, machine::RunSetup setup
   while (drive.Step(kCheckTimeMax) != machine::RunPhase::kFinished) {
     if (drive.phase() != machine::RunPhase::kHalted) continue;
     const machine::Place here = (*run)->state().place;
-    if (!drive.Start()) {
-      drive.End(machine::OutcomeKind::kStopped, ErrorCode::kCellWaitsForever);
-    } else if (checked.starts++ == 0) {
-      checked.halted_at = here;
-    }
+    if (drive.StartOrEnd() && checked.starts++ == 0) checked.halted_at = here;
   }
   recorder.Finish(**run);
   checked.outcome = (*run)->outcome();

@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "engine/families/families.h"
+#include "engine/machine/observer.h"
+#include "engine/machine/run.h"
 #include "engine/simulation/verdict/verdict.h"
 
 namespace rmlcell::simulation {
@@ -77,6 +79,22 @@ Result<PreparedRun> PrepareRun(const ProgramMemory& memory, const RunOptions& op
   }
   if (good) prepared.setup.emplace(std::move(setup));
   return prepared;
+}
+
+Status MakeExecutable(const machine::MachineFamily& family, machine::RunSetup& setup, int slot) {
+  machine::RunSetup short_setup = setup;
+  short_setup.main_program = slot;
+  machine::RunObserver nobody;
+  const Result<std::unique_ptr<machine::Run>> run = family.NewRun(std::move(short_setup), nobody);
+  if (!run) return run.error();
+  std::map<int, std::string> made = (*run)->made_executables();
+  const auto found = made.find(slot);
+  if (found == made.end()) {
+    return Error{
+        (*run)->outcome().code.value_or(family.info().empty_slot), (*run)->outcome().detail, {}};
+  }
+  setup.programs[slot].executable = machine::Bytes::Of(std::move(found->second));
+  return {};
 }
 
 machine::Translation TranslateProgram(const machine::MachineFamily& family,

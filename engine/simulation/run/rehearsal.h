@@ -58,6 +58,10 @@ struct PreparedRun {
 // Errors: those of machine::MakeParameters: the request itself is wrong.
 Result<PreparedRun> PrepareRun(const ProgramMemory& memory, const RunOptions& options);
 
+// Makes the executable of program `slot` of a prepared run, as its machine makes it at START
+// (OPT-1.11), and puts it there. Errors: what ends the run before it is made.
+Status MakeExecutable(const machine::MachineFamily& family, machine::RunSetup& setup, int slot);
+
 // The translation of one program, whatever it is stored as.
 machine::Translation TranslateProgram(const machine::MachineFamily& family,
                                       const machine::Parameters& parameters,

@@ -30,9 +30,11 @@ RunReport RunToEnd(Simulation& simulation, const SimulationOptions& options) {
       break;
     }
     if (simulation.phase() != machine::RunPhase::kHalted) continue;
-    if (options.at_halt == AtHalt::kStart && simulation.Start()) continue;
-    simulation.End(machine::OutcomeKind::kStopped, ErrorCode::kCellWaitsForever);
-    break;
+    if (options.at_halt == AtHalt::kStart) {
+      simulation.StartOrEnd();
+    } else {
+      simulation.End(machine::OutcomeKind::kStopped, ErrorCode::kCellWaitsForever);
+    }
   }
   return simulation.Finish();
 }

@@ -31,6 +31,7 @@ class Simulation {
   machine::RunPhase Step(SimTime slice) { return drive_.Step(slice); }
   // START, where it is halted. False: the START before changed nothing, and none ever will.
   bool Start() { return drive_.Start(); }
+  bool StartOrEnd() { return drive_.StartOrEnd(); }
 
   // A key or input at the present time. Hold, resume, stop and override act through this.
   void Apply(const machine::InputChange& input) { drive_.run().Apply(input); }

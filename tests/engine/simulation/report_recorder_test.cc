@@ -323,7 +323,7 @@ TEST(ReportRecorder, OutcomeFindingsAndPosition) {
   EXPECT_EQ(report.findings[0].count, 2u);
   EXPECT_EQ(report.final_position.tip.tip, (MachineVector{3, 4, 0}));
   EXPECT_EQ(report.final_position.program_point, (motion::ProgramPoint{3, 4, 0}));
-  EXPECT_EQ(report.programmed.max, (MachineVector{3, 4, 0}));
+  EXPECT_EQ(report.programmed.max, (motion::ProgramPoint{3, 4, 0}));
   EXPECT_EQ(report.figures.size(), 1u);
 }
 
@@ -333,7 +333,7 @@ TEST(ReportRecorder, AMoveOfTheMachineIsNotProgrammed) {
   script.Step(1, 1).Line({}, {3, 4, 0}).Move({3, 4, 0}, 50.0, "LIN");
   script.Step(1, 2).Line({3, 4, 0}, {9, 9, 9}).Move({9, 9, 9}, 0.0, "ZERO_Z", false);
   const RunReport report = ReportOf(script, {});
-  EXPECT_EQ(report.programmed.max, (MachineVector{3, 4, 0}));
+  EXPECT_EQ(report.programmed.max, (motion::ProgramPoint{3, 4, 0}));
   EXPECT_EQ(report.final_position.program_point, (motion::ProgramPoint{3, 4, 0}));
   EXPECT_EQ(report.final_position.tip.tip, (MachineVector{9, 9, 9}));
 }

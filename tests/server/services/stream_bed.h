@@ -114,30 +114,30 @@ class StreamBed {
  private:
   class Service final : public v1::JobService::CallbackService {
    public:
-    explicit Service(JobStreamRoom room) : room_(std::move(room)) {}
+    explicit Service(JobStreamNeeds needs) : needs_(std::move(needs)) {}
     grpc::ServerWriteReactor<v1::WatchJobResponse>* WatchJob(
         grpc::CallbackServerContext*, const v1::WatchJobRequest* request) override {
-      return MakeJobWatch(room_, *request)->Begin();
+      return MakeJobWatch(needs_, *request)->Begin();
     }
     grpc::ServerWriteReactor<v1::WatchJobsResponse>* WatchJobs(
         grpc::CallbackServerContext*, const v1::WatchJobsRequest* request) override {
-      return MakeJobsWatch(room_, *request)->Begin();
+      return MakeJobsWatch(needs_, *request)->Begin();
     }
     grpc::ServerWriteReactor<v1::StreamJobToolpathResponse>* StreamJobToolpath(
         grpc::CallbackServerContext*, const v1::StreamJobToolpathRequest* request) override {
-      return MakeToolpathStream(room_, request->name(), request->level())->Begin();
+      return MakeToolpathStream(needs_, request->name(), request->level())->Begin();
     }
     grpc::ServerWriteReactor<v1::StreamJobTraceResponse>* StreamJobTrace(
         grpc::CallbackServerContext*, const v1::StreamJobTraceRequest* request) override {
-      return MakeTraceStream(room_, request->name())->Begin();
+      return MakeTraceStream(needs_, request->name())->Begin();
     }
     grpc::ServerWriteReactor<v1::StreamJobArtifactResponse>* StreamJobArtifact(
         grpc::CallbackServerContext*, const v1::StreamJobArtifactRequest* request) override {
-      return MakeArtifactStream(room_, *request)->Begin();
+      return MakeArtifactStream(needs_, *request)->Begin();
     }
 
    private:
-    JobStreamRoom room_;
+    JobStreamNeeds needs_;
   };
 
   Config config_;

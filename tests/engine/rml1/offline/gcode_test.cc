@@ -178,25 +178,26 @@ TEST(FromGcode, ArcsStayWithinTheTolerance) {
 
 TEST(GcodeArc, CentresRadiiAndTurns) {
   // A quarter from (10,0) to (0,10) about the zero, both ways.
-  const Arc counter = ArcOf({.from_x = 10, .to_y = 10, .i = -10}).value();
+  const Arc counter = ArcOf({.from = {10, 0}, .to = {0, 10}, .i = -10}).value();
   EXPECT_NEAR(counter.sweep_rad, M_PI / 2, 1e-12);
-  const Arc clockwise = ArcOf({.from_x = 10, .to_y = 10, .clockwise = true, .i = -10}).value();
+  const Arc clockwise =
+      ArcOf({.from = {10, 0}, .to = {0, 10}, .clockwise = true, .i = -10}).value();
   EXPECT_NEAR(clockwise.sweep_rad, -3 * M_PI / 2, 1e-12);
   // The same quarter by its radius; below 0 the longer arc, whose centre is (10,10).
-  const Arc by_radius = ArcOf({.from_x = 10, .to_y = 10, .r = 10}).value();
-  EXPECT_NEAR(by_radius.centre_x, 0.0, 1e-9);
+  const Arc by_radius = ArcOf({.from = {10, 0}, .to = {0, 10}, .r = 10}).value();
+  EXPECT_NEAR(by_radius.centre.x(), 0.0, 1e-9);
   EXPECT_NEAR(by_radius.sweep_rad, M_PI / 2, 1e-9);
-  const Arc longer = ArcOf({.from_x = 10, .to_y = 10, .r = -10}).value();
-  EXPECT_NEAR(longer.centre_x, 10.0, 1e-9);
-  EXPECT_NEAR(longer.centre_y, 10.0, 1e-9);
+  const Arc longer = ArcOf({.from = {10, 0}, .to = {0, 10}, .r = -10}).value();
+  EXPECT_NEAR(longer.centre.x(), 10.0, 1e-9);
+  EXPECT_NEAR(longer.centre.y(), 10.0, 1e-9);
   EXPECT_NEAR(longer.sweep_rad, 3 * M_PI / 2, 1e-9);
   // A full turn ends where it began.
   const Arc full = ArcOf({.clockwise = true, .i = 5}).value();
   EXPECT_NEAR(full.sweep_rad, -2 * M_PI, 1e-12);
-  EXPECT_NEAR(full.XAt(1.0), 0.0, 1e-9);
-  for (const ArcWords& bad :
-       {ArcWords{.to_x = 1}, ArcWords{.to_x = 1, .i = 1, .r = 1}, ArcWords{.r = 1},
-        ArcWords{.to_x = 10, .r = 4}, ArcWords{.to_x = 10, .i = 4}, ArcWords{.to_x = 1, .i = 0}}) {
+  EXPECT_NEAR(full.At(1.0).x(), 0.0, 1e-9);
+  for (const ArcWords& bad : {ArcWords{.to = {1, 0}}, ArcWords{.to = {1, 0}, .i = 1, .r = 1},
+                              ArcWords{.r = 1}, ArcWords{.to = {10, 0}, .r = 4},
+                              ArcWords{.to = {10, 0}, .i = 4}, ArcWords{.to = {1, 0}, .i = 0}}) {
     ASSERT_FALSE(ArcOf(bad));
     EXPECT_EQ(ArcOf(bad).error().code, ErrorCode::kRml1GcodeArc);
   }
