@@ -118,8 +118,13 @@ bool RampPlan::Pass() {
   for (std::size_t k = count - 1; k > 0; --k) {
     speeds_[k - 1] = Reachable(speeds_[k], cells_[k], speeds_[k - 1]);
   }
-  return start_speed_ <= speeds_[0] ||
-         RampLength(start_speed_, speeds_[0], cells_[0].limits) <= cells_[0].length * (1.0 + kRoom);
+  const RampCell& first = cells_[0];
+  if (start_speed_ <= speeds_[0] ||
+      RampLength(start_speed_, speeds_[0], first.limits) <= first.length * (1.0 + kRoom)) {
+    return true;
+  }
+  // Of a short ramp the length hangs on the last digits of both speeds.
+  return Reach(speeds_[0], first.length, first.limits) >= start_speed_ * (1.0 - kRoom);
 }
 
 void RampPlan::LevelOne() {
