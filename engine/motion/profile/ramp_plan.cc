@@ -48,14 +48,15 @@ struct RampPlan::Try {
 // The limits that a ramp breaks.
 struct RampPlan::Excess {
   double lowest_broken = std::numeric_limits<double>::infinity();
-  double most = 1.0 + kRoom;  // speed over limit
+  double most = 1.0;  // speed over limit
   std::size_t worst = Try::kNone;
   bool worst_is_end = false;
 
   void Keep(double speed, double cap, std::size_t cell, bool at_end) {
     if (speed <= cap * (1.0 + kRoom)) return;
     lowest_broken = std::min(lowest_broken, cap);
-    if (speed <= cap * most) return;
+    // The end of a stretch and the stretch behind it are often broken alike: the first one counts.
+    if (speed <= cap * most * (1.0 + kRoom)) return;
     most = speed / cap;
     worst = cell;
     worst_is_end = at_end;
