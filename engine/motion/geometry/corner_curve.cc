@@ -126,7 +126,10 @@ double CornerCurve::JerkPerCube(double u) const {
   const MachineVector change = first.cross(third);
   const double n = cross.norm();
   const double kappa = n / (square * speed);
-  const double n_change = n > 0.0 ? cross.dot(change) / n : change.norm();
+  // Where the curve meets a line it does not bend, and what rounding leaves of that points
+  // anywhere: it begins to bend the way that it changes.
+  constexpr double kNoTurn_rad = 1e-10;  // by u
+  const double n_change = n > kNoTurn_rad * square ? cross.dot(change) / n : change.norm();
   const double kappa_change =
       (n_change / (square * speed) - 3.0 * n * first.dot(second) / (square * square * speed)) /
       speed;

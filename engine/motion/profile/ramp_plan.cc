@@ -48,14 +48,15 @@ struct RampPlan::Try {
 // The limits that a ramp breaks.
 struct RampPlan::Excess {
   double lowest_broken = std::numeric_limits<double>::infinity();
-  double most = 1.0 + kRoom;  // speed over limit
+  double most = 1.0;  // speed over limit
   std::size_t worst = Try::kNone;
   bool worst_is_end = false;
 
   void Keep(double speed, double cap, std::size_t cell, bool at_end) {
     if (speed <= cap * (1.0 + kRoom)) return;
     lowest_broken = std::min(lowest_broken, cap);
-    if (speed <= cap * most) return;
+    // The end of a stretch and the stretch behind it are often broken alike: the first one counts.
+    if (speed <= cap * most * (1.0 + kRoom)) return;
     most = speed / cap;
     worst = cell;
     worst_is_end = at_end;
@@ -118,8 +119,13 @@ bool RampPlan::Pass() {
   for (std::size_t k = count - 1; k > 0; --k) {
     speeds_[k - 1] = Reachable(speeds_[k], cells_[k], speeds_[k - 1]);
   }
-  return start_speed_ <= speeds_[0] ||
-         RampLength(start_speed_, speeds_[0], cells_[0].limits) <= cells_[0].length * (1.0 + kRoom);
+  const RampCell& first = cells_[0];
+  if (start_speed_ <= speeds_[0] ||
+      RampLength(start_speed_, speeds_[0], first.limits) <= first.length * (1.0 + kRoom)) {
+    return true;
+  }
+  // Of a short ramp the length hangs on the last digits of both speeds.
+  return Reach(speeds_[0], first.length, first.limits) >= start_speed_ * (1.0 - kRoom);
 }
 
 void RampPlan::LevelOne() {

@@ -64,6 +64,49 @@ TEST(RampPlan, OneRampOverStretchesOfOneLimit) {
   EXPECT_EQ(plan.timing()[4].ramp, plan.timing()[0].ramp);  // the whole speed-up is one ramp
 }
 
+// Braking to rest all the way, level 1 is at its last reach at every end, also of a first stretch
+// so short that the length of its ramp hangs on the last digits of its speeds. One ramp over the
+// last two stretches is faster by far, however long the first one is.
+TEST(RampPlan, LastDigitsOfAShortStretchDoNotKeepTheRestApart) {
+  for (int k = 1; k <= 2000; ++k) {
+    std::vector<RampCell> cells(3, RampCell{.length = 1.0, .limits = kCellLimits});
+    cells[0].length = 1e-5 * k;
+    cells[1].end_speed = Reach(0.0, cells[2].length, kCellLimits);
+    cells[0].end_speed = Reach(cells[1].end_speed, cells[1].length, kCellLimits);
+    const double start = Reach(cells[0].end_speed, cells[0].length, kCellLimits);
+    RampPlan plan;
+    plan.Plan(cells, start);
+    const double joined =
+        SpeedProfile::Span(2.0, cells[0].end_speed, 0.0, kCellLimits).duration_s() +
+        SpeedProfile::Span(cells[0].length, start, cells[0].end_speed, kCellLimits).duration_s();
+    EXPECT_LT(joined, 0.97 * LevelOneTime(cells, start));
+    EXPECT_LE(TimeOf(plan), joined * (1 + 1e-12)) << cells[0].length;
+  }
+}
+
+// Where one ramp over a long way is too fast at the end of one stretch, it is as much too fast at
+// the start of the next with the same limit: a tie, which last digits must not decide. With every
+// length, speed, acceleration and jerk times c the time is the same. motion.md 10, property 6
+TEST(RampPlan, ScaledLongWaysTakeTheSameTime) {
+  const auto time_of = [](double c) {
+    const auto cell = [c](double length, double speed, double end_cap) {
+      return RampCell{.length = length * c,
+                      .limits = {speed * c, 300.0 * c, 6000.0 * c},
+                      .end_cap = end_cap * c};
+    };
+    std::vector<RampCell> cells{cell(6.1, 150, 73),   cell(4.5, 103, 100),   cell(4.5, 103, 73),
+                                cell(4.4, 150, 37),   cell(0.8, 37, 37),     cell(3, 150, 3.1),
+                                cell(0.06, 3.1, 3.1), cell(0.05, 6.2, 0.47), cell(7e-4, 0.47, 0.47),
+                                cell(0.004, 150, 150)};
+    TimeByLevelOne(cells, 0.0, 0.0);
+    RampPlan plan;
+    plan.Plan(cells, 0.0);
+    return TimeOf(plan);
+  };
+  const double time = time_of(1.0);
+  for (int k = 1; k <= 200; ++k) EXPECT_NEAR(time_of(1.0 + 0.01 * k), time, 1e-9 * time) << k;
+}
+
 // A stretch in the middle that allows only 20 mm/s is passed at 20, and not at more just before it.
 TEST(RampPlan, SlowStretchIsKept) {
   std::vector<RampCell> cells(9, RampCell{.length = 2.0, .limits = kCellLimits, .end_speed = 0.0});

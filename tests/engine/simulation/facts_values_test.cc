@@ -228,7 +228,8 @@ TEST(FactsValues, Boxes) {
     made.Add(motion::MachineVector{first + 3, first + 4, first + 5});
     return made;
   };
-  report.programmed = box(10);
+  report.programmed.Add(motion::ProgramPoint(10, 11, 12));
+  report.programmed.Add(motion::ProgramPoint(13, 14, 15));
   report.tip = box(20);
   report.cut = box(30);
   report.column = box(40);

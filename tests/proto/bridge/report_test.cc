@@ -50,10 +50,11 @@ const std::string kFigures =
     "travel_length_mm: 13 plunge_length_mm: 14 beam_on_s: 16 beam_switches: 16 pierces: 17 "
     "plunges: 18 energy_j: 55 energy_j_per_mm: 2 energy_j_per_mm_max: 22 shutter_open_s: 19 ";
 
-machine::Box BoxOf(double low, double high) {
-  machine::Box box;
-  box.Add(motion::MachineVector{low, low + 1, low + 2});
-  box.Add(motion::MachineVector{high, high + 1, high + 2});
+template <class Point = motion::MachinePoint>
+machine::BoxOf<Point> Spanning(double low, double high) {
+  machine::BoxOf<Point> box;
+  box.Add(Point(low, low + 1, low + 2));
+  box.Add(Point(high, high + 1, high + 2));
   return box;
 }
 
@@ -79,10 +80,10 @@ simulation::ScopeFigures Scope() {
                      .worst = {.program = 1, .step = 2, .line = 3, .byte_offset = 4},
                      .wanted_mm_s = 100.0,
                      .reached_mm_s = 25.0};
-  scope.programmed = BoxOf(1, 10);
-  scope.tip = BoxOf(2, 20);
-  scope.cut = BoxOf(3, 30);
-  scope.column = BoxOf(4, 40);
+  scope.programmed = Spanning<motion::ProgramPoint>(1, 10);
+  scope.tip = Spanning(2, 20);
+  scope.cut = Spanning(3, 30);
+  scope.column = Spanning(4, 40);
   scope.tip_figures = {.name = "tip", .travel = 5.0, .peak_speed = 6.0};
   scope.axes = {{.name = "A",
                  .rotary = true,
