@@ -4,6 +4,7 @@
 #include "server/base/config.h"
 #include "server/base/names.h"
 #include "server/jobs/job_book.h"
+#include "server/jobs/job_milling.h"
 #include "server/records/job_messages.h"
 
 namespace rmlcell::server {
@@ -42,15 +43,18 @@ class ProgramsOfAssignment {
     program.set_title(title);
     program.set_file_name(file_name);
     program.set_is_source(is_source);
-    program.set_size(static_cast<std::int64_t>(bytes.size()));
     if (executable) program.set_executable(*executable);
-    if (bytes.size() <= kInlineBytes && inline_total_ + bytes.size() <= kInlineTotal) {
-      inline_total_ += bytes.size();
-      program.set_content(std::move(bytes));
-    } else {
-      large_[slot] = std::make_shared<const std::string>(std::move(bytes));
-    }
+    SetContent(program, std::move(bytes));
     by_slot_[slot] = std::move(program);
+  }
+
+  // What should be left of the block of the job.
+  void AddTarget(const v1::MillTarget& target, std::string bytes) {
+    const v1::ProgramText& program = target.inline_program();
+    v1::AssignedProgram& made = *assignment_.mutable_target();
+    made.set_file_name(target.has_file() ? target.file().file_name() : program.file_name());
+    made.set_is_source(target.has_inline_program() && program.form() != v1::PROGRAM_FORM_OBJECT);
+    SetContent(made, std::move(bytes));
   }
 
   void Finish() {
@@ -59,9 +63,20 @@ class ProgramsOfAssignment {
         messages_.programs.emplace_back(slot, large_[slot]);
       *assignment_.add_programs() = std::move(program);
     }
+    if (large_.contains(0)) messages_.programs.emplace_back(0, large_[0]);
   }
 
  private:
+  void SetContent(v1::AssignedProgram& program, std::string bytes) {
+    program.set_size(static_cast<std::int64_t>(bytes.size()));
+    if (bytes.size() <= kInlineBytes && inline_total_ + bytes.size() <= kInlineTotal) {
+      inline_total_ += bytes.size();
+      program.set_content(std::move(bytes));
+    } else {
+      large_[program.slot()] = std::make_shared<const std::string>(std::move(bytes));
+    }
+  }
+
   v1::WorkerAssignment& assignment_;
   AssignmentMessages& messages_;
   std::map<int, v1::AssignedProgram> by_slot_;
@@ -140,6 +155,11 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
     if (!bytes) return bytes.error();
     programs.Add(further.slot(), {}, further.program().file_name(), std::move(*bytes),
                  further.program().form() != v1::PROGRAM_FORM_OBJECT, std::nullopt);
+  }
+  if (job.simulation().milling().has_target() && job.kind() != v1::JOB_KIND_CHECK) {
+    Result<std::string> bytes = attached(kTargetAttachment);
+    if (!bytes) return bytes.error();
+    programs.AddTarget(job.simulation().milling().target(), *std::move(bytes));
   }
   // An executable that is linked while the memory has programs that the machine has not, or not any
   // more, holds their code: it is for this job only.

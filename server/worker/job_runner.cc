@@ -218,6 +218,9 @@ class Attempt {
       ReportFindings(*made, simulation::JudgeFindings(made->diagnostics));
       return End::kFinished;
     }
+    if (products.milling) {
+      if (const std::optional<End> end = SetTarget(*products.milling)) return *end;
+    }
     for (const Diagnostic& diagnostic : made->diagnostics)
       events_.OnDiagnostic(SimTime(0), diagnostic);
     const machine::MachineFamily& family = *families::FindFamily(assignment_.family());
@@ -242,44 +245,93 @@ class Attempt {
       *message.add_diagnostics() = bridge::ToProto(diagnostic);
     outcome_ = message.outcome();
     executables_ = begun->run->made_executables();
-    SendProducts(message, begun->recorder->Svg(report, {}), begun->recorder->milling());
-    return End::kFinished;
+    return SendProducts(message, begun->recorder->Svg(report, {}), begun->recorder->milling());
   }
 
-  // All of them or the report alone, which then says why the rest is not there.
-  void SendProducts(v1::RunReport& report, const std::string& picture,
-                    const simulation::MillingRecorder* milling) {
+  // What is left is compared with the target of the job, when it has one. An end: there will be no
+  // run.
+  std::optional<End> SetTarget(simulation::Milling& milling) {
+    const v1::SimulationOptions& options = assignment_.job().simulation();
+    if (!assignment_.has_target()) return std::nullopt;
+    // As the command runs such a program: by itself, with nobody at its keys.
+    const simulation::RunOptions all = bridge::RunOptionsOf(
+        options, assignment_.budget(), assignment_.main_program(), machine::Mode::kCycle);
+    Result<std::vector<float>> heights = programs_.TargetHeights(
+        milling,
+        {.parameters = all.parameters, .mode = machine::Mode::kCycle, .budget = all.budget},
+        [this] { return StopAsked() == Stop::kNone; });
+    if (const Stop stop = StopAsked(); stop != Stop::kNone) return EndOf(stop);
+    if (!heights) {
+      const std::string& name = assignment_.target().file_name();
+      return Refuse({heights.error().code,
+                     (name.empty() ? "target: " : "target " + name + ": ") + heights.error().detail,
+                     {}});
+    }
+    milling.target = simulation::Target{
+        .heights = std::make_shared<const std::vector<float>>(*std::move(heights)),
+        .tolerance_mm = bridge::TargetToleranceOf(options.milling().target())};
+    return std::nullopt;
+  }
+
+  // All of them; or the report alone, which then says why the rest is not there. A job that is
+  // cancelled meanwhile leaves no files of its block.
+  End SendProducts(v1::RunReport& report, const std::string& picture,
+                   const simulation::MillingRecorder* milling) {
     const v1::SimulationOptions& options = assignment_.job().simulation();
     std::string bytes = bridge::StableBytes(report);
-    std::vector<ProductFile> files;
     const std::size_t smaller = bytes.size() + picture.size();
     // A run that was broken off has no time left, or nobody who looks at its block.
     const bool broken_off = outcome_.kind() == v1::Outcome::KIND_BUDGET_EXCEEDED ||
                             outcome_.kind() == v1::Outcome::KIND_CANCELLED;
-    bool complete = Fits(smaller);
-    bool late = false;
-    if (complete && milling != nullptr && !broken_off) {
-      auto made =
-          MaterialFiles(milling->material(), options.milling(), [&](std::size_t material_bytes) {
-            late = late || OverTime();
-            return !late && Fits(smaller + material_bytes);
-          });
-      complete = made.has_value();
-      if (made) files = *std::move(made);
+    std::optional<std::vector<ProductFile>> files;
+    if (Fits(smaller)) files.emplace();
+    Stop stop = Stop::kNone;
+    if (files && milling != nullptr && !broken_off) {
+      const std::optional<simulation::Target>& target = milling->target();
+      files = MaterialFiles(milling->material(), target ? &*target : nullptr, options.milling(),
+                            [&](std::size_t material_bytes) {
+                              stop = StopAsked();
+                              return stop == Stop::kNone && Fits(smaller + material_bytes);
+                            });
     }
-    if (!complete) {
-      outcome_ = OutcomeFor(machine::OutcomeKind::kBudgetExceeded,
-                            late ? ErrorCode::kCellProcessorBudget : ErrorCode::kCellOutputBudget);
+    if (stop == Stop::kLost || stop == Stop::kHandBack) return EndOf(stop);
+    if (stop == Stop::kCancel) files.emplace();
+    if (!files || stop != Stop::kNone) {
+      if (stop == Stop::kNone) {
+        ExceedOutput();
+      } else {
+        (void)EndOf(stop);
+      }
       *report.mutable_outcome() = outcome_;
       bytes = bridge::StableBytes(report);
-      if (Fits(bytes.size())) SendArtifact("report", "application/x-protobuf", bytes);
-      return;
     }
-    SendArtifact("report", "application/x-protobuf", bytes);
+    if (files || Fits(bytes.size())) SendArtifact("report", "application/x-protobuf", bytes);
+    if (!files) return End::kFinished;
     SendSpooled("toolpath", toolpath_);
     if (options.trace()) SendSpooled("trace", trace_);
     SendArtifact("picture.svg", "image/svg+xml", picture);
-    for (const ProductFile& file : files) SendArtifact(file.name, file.media_type, file.bytes);
+    for (const ProductFile& file : *files) SendArtifact(file.name, file.media_type, file.bytes);
+    return End::kFinished;
+  }
+
+  // Why work that is no run, and so has nobody who drives it, should end where it is.
+  enum class Stop { kNone, kLost, kHandBack, kCancel, kOverTime };
+
+  Stop StopAsked() {
+    while (const std::optional<v1::WorkResponse> message = line_.TryReceive()) Obey(*message);
+    if (released_ || line_.gone()) return Stop::kLost;
+    if (stopping_ || stop_asked_) return Stop::kHandBack;
+    if (CancelOrdered()) return Stop::kCancel;
+    return OverTime() ? Stop::kOverTime : Stop::kNone;
+  }
+
+  // Precondition: not kNone.
+  End EndOf(Stop stop) {
+    if (stop == Stop::kLost) return End::kLost;
+    if (stop == Stop::kHandBack) return End::kHandBack;
+    if (stop == Stop::kCancel) return Cancelled();
+    outcome_ = OutcomeFor(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellProcessorBudget);
+    return End::kFinished;
   }
 
   End Drive(const simulation::BegunRun& begun) {
