@@ -6,7 +6,6 @@
 #include "engine/core/units.h"
 #include "engine/simulation/material/milling_text.h"
 #include "engine/simulation/material/stl.h"
-#include "engine/simulation/material/stl_reader.h"
 #include "engine/simulation/material/target_files.h"
 #include "rmlcell/v1/milling.pb.h"
 

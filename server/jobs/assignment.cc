@@ -84,6 +84,23 @@ class ProgramsOfAssignment {
   std::size_t inline_total_ = 0;
 };
 
+Result<std::string> Attached(storage::Store& store, std::int64_t job, std::string_view name) {
+  const auto artifact = store.GetArtifact(job, name);
+  if (!artifact) return artifact.error();
+  return store.ReadBlob(artifact->sha256);
+}
+
+// A check takes no material off, and so compares nothing.
+Status AddTarget(storage::Store& store, std::int64_t id, const v1::Job& job,
+                 ProgramsOfAssignment& programs) {
+  const v1::Milling& milling = job.simulation().milling();
+  if (!milling.has_target() || job.kind() == v1::JOB_KIND_CHECK) return {};
+  Result<std::string> bytes = Attached(store, id, kTargetAttachment);
+  if (!bytes) return bytes.error();
+  programs.AddTarget(milling.target(), *std::move(bytes));
+  return {};
+}
+
 }  // namespace
 
 Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& config,
@@ -106,12 +123,7 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
   *assignment.mutable_budget() = BudgetOf(job.budget(), config);
 
   // The attached bytes count for the program that is started: its slot may have been stored again.
-  const auto attached = [&](std::string_view name) -> Result<std::string> {
-    const auto artifact = store.GetArtifact(leased.job.id, name);
-    if (!artifact) return artifact.error();
-    return store.ReadBlob(artifact->sha256);
-  };
-  Result<std::string> main_bytes = attached(kMainAttachment);
+  Result<std::string> main_bytes = Attached(store, leased.job.id, kMainAttachment);
   if (!main_bytes) return main_bytes.error();
 
   ProgramsOfAssignment programs(assignment, messages);
@@ -151,16 +163,12 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
   programs.Add(main_slot, main_title, file_name, std::move(*main_bytes), is_source,
                main_executable);
   for (const v1::SlotProgram& further : job.simulation().programs()) {
-    Result<std::string> bytes = attached(AttachmentName(further.slot()));
+    Result<std::string> bytes = Attached(store, leased.job.id, AttachmentName(further.slot()));
     if (!bytes) return bytes.error();
     programs.Add(further.slot(), {}, further.program().file_name(), std::move(*bytes),
                  further.program().form() != v1::PROGRAM_FORM_OBJECT, std::nullopt);
   }
-  if (job.simulation().milling().has_target() && job.kind() != v1::JOB_KIND_CHECK) {
-    Result<std::string> bytes = attached(kTargetAttachment);
-    if (!bytes) return bytes.error();
-    programs.AddTarget(job.simulation().milling().target(), *std::move(bytes));
-  }
+  if (Status added = AddTarget(store, leased.job.id, job, programs); !added) return added.error();
   // An executable that is linked while the memory has programs that the machine has not, or not any
   // more, holds their code: it is for this job only.
   const bool as_stored = stored_main && job.simulation().programs().empty() &&
