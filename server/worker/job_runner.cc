@@ -18,13 +18,12 @@
 #include "engine/simulation/verdict/verdict.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
-#include "proto/bridge/framing.h"
 #include "proto/bridge/milling.h"
 #include "proto/bridge/report.h"
 #include "proto/bridge/setup.h"
-#include "proto/bridge/spooled_bytes.h"
 #include "server/worker/assigned_programs.h"
 #include "server/worker/job_events.h"
+#include "server/worker/job_output.h"
 #include "server/worker/material_files.h"
 #include "server/worker/memory_budget.h"
 #include "server/worker/pacer.h"
@@ -34,7 +33,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kChunkBytes = 128 << 10;
 constexpr std::chrono::milliseconds kPositionInterval{50};  // at most 20 positions a second
 // Virtual time of one step of the simulation: it adapts, so that a step takes about this long.
 constexpr std::chrono::milliseconds kStepTarget{5};
@@ -61,6 +59,7 @@ class Attempt {
         assignment_(std::move(assignment)),
         programs_(assignment_),
         stopping_(stopping),
+        output_(line, assignment_.lease(), assignment_.budget().output_bytes()),
         events_([this](const v1::WorkerEvents& events) { SendEvents(events); }),
         started_s_(ProcessorTime_s()) {}
 
@@ -124,8 +123,8 @@ class Attempt {
     bridge::SetJudgement(judgement, outcome_);
     *report.mutable_outcome() = outcome_;
     const std::string bytes = bridge::StableBytes(report);
-    if (!Fits(bytes.size())) return ExceedOutput();
-    SendArtifact("report", "application/x-protobuf", bytes);
+    if (!output_.Fits(bytes.size())) return ExceedOutput();
+    output_.Send("report", "application/x-protobuf", bytes);
   }
 
   void ExceedOutput() {
@@ -181,14 +180,10 @@ class Attempt {
     simulation::Products products;
     if (options.trace()) {
       products.trace = [this](const simulation::TraceRecord& record) {
-        bridge::AddFrame(bridge::ToProto(record).SerializeAsString(), trace_);
-        return Fits();
+        return output_.AddTrace(bridge::ToProto(record).SerializeAsString());
       };
     }
-    products.toolpath = [this](std::string_view block) {
-      bridge::AddFrame(block, toolpath_);
-      return Fits();
-    };
+    products.toolpath = [this](std::string_view block) { return output_.AddToolpath(block); };
     if (options.toolpath_tolerance_mm() > 0.0) {
       products.toolpath_options.tolerance_mm = options.toolpath_tolerance_mm();
     }
@@ -284,14 +279,14 @@ class Attempt {
     const bool broken_off = outcome_.kind() == v1::Outcome::KIND_BUDGET_EXCEEDED ||
                             outcome_.kind() == v1::Outcome::KIND_CANCELLED;
     std::optional<std::vector<ProductFile>> files;
-    if (Fits(smaller)) files.emplace();
+    if (output_.Fits(smaller)) files.emplace();
     Stop stop = Stop::kNone;
     if (files && milling != nullptr && !broken_off) {
       const std::optional<simulation::Target>& target = milling->target();
       files = MaterialFiles(milling->material(), target ? &*target : nullptr, options.milling(),
                             [&](std::size_t material_bytes) {
                               stop = StopAsked();
-                              return stop == Stop::kNone && Fits(smaller + material_bytes);
+                              return stop == Stop::kNone && output_.Fits(smaller + material_bytes);
                             });
     }
     if (stop == Stop::kLost || stop == Stop::kHandBack) return EndOf(stop);
@@ -305,12 +300,13 @@ class Attempt {
       *report.mutable_outcome() = outcome_;
       bytes = bridge::StableBytes(report);
     }
-    if (files || Fits(bytes.size())) SendArtifact("report", "application/x-protobuf", bytes);
+    if (files || output_.Fits(bytes.size()))
+      output_.Send("report", "application/x-protobuf", bytes);
     if (!files) return End::kFinished;
-    SendSpooled("toolpath", toolpath_);
-    if (options.trace()) SendSpooled("trace", trace_);
-    SendArtifact("picture.svg", "image/svg+xml", picture);
-    for (const ProductFile& file : *files) SendArtifact(file.name, file.media_type, file.bytes);
+    output_.SendToolpath();
+    if (options.trace()) output_.SendTrace();
+    output_.Send("picture.svg", "image/svg+xml", picture);
+    for (const ProductFile& file : *files) output_.Send(file.name, file.media_type, file.bytes);
     return End::kFinished;
   }
 
@@ -377,7 +373,7 @@ class Attempt {
         SendPosition(run);
       }
       if (simulation.finished()) break;
-      if (recorder.cut_off() || !Fits()) {
+      if (recorder.cut_off() || !output_.Fits()) {
         simulation.End(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellOutputBudget);
       } else if (OverTime()) {
         simulation.End(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellProcessorBudget);
@@ -453,19 +449,12 @@ class Attempt {
     return ProcessorTime_s() - started_s_ > assignment_.budget().processor_s();
   }
 
-  // Whether all that the job has put out stays in its budget, `more` included.
-  bool Fits(std::size_t more = 0) const {
-    const std::int64_t products = trace_.size() + toolpath_.size();
-    return products + static_cast<std::int64_t>(event_bytes_ + more) <=
-           assignment_.budget().output_bytes();
-  }
-
   // At most a window of events is under way: a store that is slow slows the run, not the memory.
   void SendEvents(const v1::WorkerEvents& events) {
     v1::WorkRequest message;
     *message.mutable_events() = events;
     *message.mutable_events()->mutable_lease() = assignment_.lease();
-    event_bytes_ += events.ByteSizeLong();
+    output_.CountEvents(events.ByteSizeLong());
     if (!line_.Send(message)) return;
     events_sent_ += events.events_size();
     while (events_sent_ - events_stored_ > line_.events_window() && !line_.gone() && !released_) {
@@ -490,25 +479,6 @@ class Attempt {
     line_.Send(message);
   }
 
-  void SendSpooled(const std::string& name, bridge::SpooledBytes& product) {
-    const machine::Bytes bytes = product.Finish();
-    SendArtifact(name, "application/octet-stream", *bytes, bytes.keeper());
-  }
-
-  void SendArtifact(const std::string& name, const std::string& media_type, std::string_view bytes,
-                    const machine::BytesKeeper* keeper = nullptr) {
-    for (std::size_t sent = 0; sent == 0 || sent < bytes.size(); sent += kChunkBytes) {
-      v1::WorkRequest message;
-      v1::WorkerArtifact& artifact = *message.mutable_artifact();
-      *artifact.mutable_lease() = assignment_.lease();
-      artifact.set_name(name);
-      artifact.set_media_type(media_type);
-      artifact.set_chunk(std::string(bytes.substr(sent, kChunkBytes)));
-      if (!line_.Send(message)) return;
-      if (keeper != nullptr) keeper->Release();
-    }
-  }
-
   void Finish() {
     v1::WorkRequest message;
     v1::WorkerFinish& finish = *message.mutable_finish();
@@ -523,15 +493,13 @@ class Attempt {
   v1::WorkerAssignment assignment_;
   AssignedPrograms programs_;
   const std::atomic<bool>& stopping_;
+  JobOutput output_;
   JobEvents events_;
   double started_s_;
   v1::Outcome outcome_;
   std::map<int, std::string> executables_;
   std::unique_ptr<simulation::TimetableRun> timetable_run_;  // of a run with a pace
   Clock::duration planned_for_{0};
-  bridge::SpooledBytes trace_;
-  bridge::SpooledBytes toolpath_;
-  std::size_t event_bytes_ = 0;
   std::int64_t events_sent_ = 0;
   std::int64_t events_stored_ = 0;
   std::vector<v1::WorkerControl> orders_;  // not carried out yet
