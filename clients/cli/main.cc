@@ -341,6 +341,7 @@ void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exi
       "  rmlcell submit optimo-1 part.S --watch         a file, without storing it\n"
       "  rmlcell submit optimo-1 part.S --pace 1 --watch   as fast as the machine would be\n"
       "  rmlcell submit mill-1 part.rml --stock 100x80x10 --tool flat:3   what is left, as a picture\n"
+      "  rmlcell submit mill-1 new.rml --stock 100x80x10 --tool flat:3 --target old.stl --products target   beside what should be left\n"
       "  rmlcell submit optimo-1 part.S --kind check    only what is wrong with it",
       remote);
   verb->add_option("MACHINE", given.submit.machine)->required();
@@ -359,7 +360,7 @@ void AddJobVerbs(CLI::App& app, Remote& remote, RemoteArguments& given, int& exi
   verb->add_option("--inputs", given.submit.inputs_file, "inputs and keys over time");
   AddJobMillingOptions(*verb, given.submit.milling);
   verb->add_option("--project", given.submit.milling_project,
-                   "block and tool of the same slot's program in this project")
+                   "block, tool and target of the same slot's program in this project")
       ->excludes("--stock");
   verb->add_flag("--trace", given.submit.trace, "keep a trace");
   CLI::Option* watched = verb->add_flag("--watch", given.submit.watch, "watch the job to its end");

@@ -12,8 +12,9 @@
 #include "engine/simulation/material/relief.h"
 #include "engine/simulation/material/stl.h"
 #include "engine/simulation/material/target_files.h"
-#include "engine/simulation/run/simulate.h"
+#include "engine/simulation/run/milled_target.h"
 #include "proto/bridge/files.h"
+#include "proto/bridge/milling.h"
 
 namespace rmlcell::cli {
 namespace {
@@ -48,29 +49,8 @@ Result<std::vector<float>> MilledBy(const std::string& file,
   simulation::ProgramMemory memory = machine;
   memory.programs = loaded->programs;
   memory.machine_state.clear();
-  Result<simulation::PreparedRun> prepared = simulation::PrepareRun(
-      memory, {.main_program = loaded->main_slot, .mode = machine::Mode::kCycle});
-  if (!prepared) return prepared.error();
-  if (!prepared->setup)
-    return Error{ErrorCode::kCellBadText, "the program has errors: rmlcell check lists them", {}};
-  simulation::SimulationRequest request;
-  request.products.milling = milling;
-  Result<simulation::SimulationResult> result =
-      simulation::Simulate(*loaded->family, std::move(*prepared->setup), std::move(request));
-  if (!result) return result.error();
-  const machine::Outcome& outcome = result->report.outcome;
-  if (outcome.kind != machine::OutcomeKind::kCompleted) {
-    return Error{outcome.code.value_or(ErrorCode::kCellWaitsForever),
-                 "the program does not run to its end; " + outcome.detail,
-                 {}};
-  }
-  return result->material->heights();
-}
-
-bool IsNamedStl(const std::string& file) {
-  const std::size_t dot = file.rfind('.');
-  const std::string_view end = dot == std::string_view::npos ? file : file.substr(dot);
-  return end == ".stl" || end == ".STL" || end == ".Stl";
+  return simulation::MilledTarget(
+      memory, {.main_program = loaded->main_slot, .mode = machine::Mode::kCycle}, milling);
 }
 
 // A height map, a body, or what another program leaves.
@@ -78,15 +58,16 @@ Result<simulation::Target> TargetOf(const MillingOptions& options,
                                     const simulation::ProgramMemory& machine,
                                     const simulation::Milling& milling) {
   constexpr std::uint64_t kTargetBytesMax = 1u << 30;
-  const Result<std::string> bytes = bridge::ReadFile(options.target, kTargetBytesMax);
+  const Result<std::string> bytes = bridge::ReadFile(options.block.target, kTargetBytesMax);
   if (!bytes) return bytes.error();
-  const bool read = simulation::IsPng(*bytes) || IsNamedStl(options.target);
+  const bool read = simulation::IsTargetFile(*bytes, options.block.target);
   Result<std::vector<float>> heights = read ? simulation::ReadTarget(*bytes, milling.stock)
-                                            : MilledBy(options.target, machine, milling);
-  if (!heights) return WithFile(options.target, heights.error());
+                                            : MilledBy(options.block.target, machine, milling);
+  if (!heights) return WithFile(options.block.target, heights.error());
   return simulation::Target{
       .heights = std::make_shared<const std::vector<float>>(*std::move(heights)),
-      .tolerance_mm = options.target_tolerance_mm};
+      .tolerance_mm =
+          options.block.target_tolerance_mm.value_or(bridge::kTargetToleranceStandard_mm)};
 }
 
 }  // namespace
@@ -101,14 +82,14 @@ Result<simulation::Milling> MillingOf(const MillingOptions& options,
   Result<simulation::MillTool> tool = simulation::ParseTool(options.block.tool);
   if (!tool) return tool.error();
   stock->cell = options.block.cell_mm;
-  simulation::Milling milling{.stock = *stock, .tool = *tool, .rpm = options.rpm};
-  if (!options.material.empty()) {
-    const auto chips = simulation::ChipsOf(options.material, 2.0 * tool->radius_mm);
+  simulation::Milling milling{.stock = *stock, .tool = *tool, .rpm = options.block.rpm};
+  if (!options.block.material.empty()) {
+    const auto chips = simulation::ChipsOf(options.block.material, 2.0 * tool->radius_mm);
     if (!chips) return chips.error();
     milling.chips = *chips;
   }
   if (const Status sound = simulation::CheckMilling(milling); !sound) return sound.error();
-  if (options.target.empty()) return milling;
+  if (options.block.target.empty()) return milling;
   Result<simulation::Target> target = TargetOf(options, machine, milling);
   if (!target) return target.error();
   milling.target = *std::move(target);

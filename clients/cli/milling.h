@@ -19,25 +19,26 @@ struct BlockOptions {
   std::string stock;  // "100x80x10"; empty: material is not modelled
   std::string tool;   // "flat:3"
   double cell_mm = 0.1;
+  std::string material;  // "wax"; empty: chip loads are not judged
+  double rpm = 0.0;      // of a spindle that is set by hand; 0: as the program says
+  std::string target;    // file: what should be left; empty: nothing is compared
+  std::optional<double> target_tolerance_mm{};  // nothing: 0.1
 };
 
 struct MillingOptions {
   BlockOptions block;
-  std::string material;  // "wax"; empty: chip loads are not judged
-  double rpm = 0.0;      // of a spindle that is set by hand; 0: as the program says
-  std::string stl;       // file; empty: none
+  std::string stl;  // file; empty: none
   double stl_tolerance_mm = 0.01;
   std::string relief;      // file; empty: none
   std::string height_map;  // file; empty: none
-  std::string target;      // file: what should be left; empty: nothing is compared
-  double target_tolerance_mm = 0.1;
   std::string target_png;  // file; empty: none
 };
 
 // What a job leaves of its block: names that `submit` takes.
 struct JobMillingOptions {
   BlockOptions block;
-  std::vector<std::string> products = {"relief"};  // "relief", "height-map", "stl"
+  int target_slot = 0;                             // of a stored program; 0: none
+  std::vector<std::string> products = {"relief"};  // "relief", "height-map", "stl", "target"
   double stl_tolerance_mm = 0.01;
 };
 

@@ -5,8 +5,12 @@
 namespace rmlcell::cli {
 namespace {
 
-// The option that all others of a block need.
-CLI::Option* AddBlockOptions(CLI::App& verb, BlockOptions& options) {
+struct OptionsOfABlock {
+  CLI::Option* stock;  // that all others need
+  CLI::Option* target;
+};
+
+OptionsOfABlock AddBlockOptions(CLI::App& verb, BlockOptions& options) {
   CLI::Option* stock =
       verb.add_option("--stock", options.stock,
                       "100x80x10[@X,Y,TOP]: a block on a mill's table, mm from the work origin");
@@ -18,7 +22,27 @@ CLI::Option* AddBlockOptions(CLI::App& verb, BlockOptions& options) {
   verb.add_option("--cell", options.cell_mm,
                   "edge of the cells that the block is looked at in, mm; default 0.1")
       ->needs(stock);
-  return stock;
+  verb.add_option(
+          "--material", options.material,
+          "foam, wax, plastic, wood, pcb or aluminium: judge what an edge of the tool takes "
+          "off (it needs flutes=N)")
+      ->needs(stock);
+  verb.add_option("--rpm", options.rpm,
+                  "of a spindle that is set by hand; default: as the program says")
+      ->check(CLI::Range(1.0, 1e6))
+      ->needs(stock);
+  CLI::Option* target =
+      verb.add_option("--target", options.target,
+                      "what should be left: a height map, an STL, or another program")
+          ->needs(stock);
+  return {stock, target};
+}
+
+CLI::Option* AddTargetTolerance(CLI::App& verb, BlockOptions& options) {
+  return verb
+      .add_option("--target-tolerance", options.target_tolerance_mm,
+                  "up to which a difference is none, mm; default 0.1")
+      ->check(CLI::Range(0.0, 1000.0));
 }
 
 CLI::Option* AddStlTolerance(CLI::App& verb, double& tolerance_mm) {
@@ -31,48 +55,39 @@ CLI::Option* AddStlTolerance(CLI::App& verb, double& tolerance_mm) {
 }  // namespace
 
 void AddJobMillingOptions(CLI::App& verb, JobMillingOptions& options) {
-  CLI::Option* stock = AddBlockOptions(verb, options.block);
+  const OptionsOfABlock block = AddBlockOptions(verb, options.block);
+  verb.add_option("--target-slot", options.target_slot,
+                  "what should be left: what the program of this slot leaves")
+      ->check(CLI::Range(1, 99))
+      ->needs(block.stock)
+      ->excludes(block.target);
+  AddTargetTolerance(verb, options.block)->needs(block.stock);
   CLI::Option* products =
-      verb.add_option("--products", options.products,
-                      "of relief,height-map,stl: what of the block the job leaves; default relief")
+      verb.add_option(
+              "--products", options.products,
+              "of relief,height-map,stl,target: what of the block the job leaves; default relief")
           ->delimiter(',')
-          ->check(CLI::IsMember({"relief", "height-map", "stl"}))
-          ->needs(stock);
+          ->check(CLI::IsMember({"relief", "height-map", "stl", "target"}))
+          ->needs(block.stock);
   AddStlTolerance(verb, options.stl_tolerance_mm)->needs(products);
 }
 
 void AddMillingOptions(CLI::App& verb, MillingOptions& options) {
-  CLI::Option* stock = AddBlockOptions(verb, options.block);
-  verb.add_option(
-          "--material", options.material,
-          "foam, wax, plastic, wood, pcb or aluminium: judge what an edge of the tool takes "
-          "off (it needs flutes=N)")
-      ->needs(stock);
-  verb.add_option("--rpm", options.rpm,
-                  "of a spindle that is set by hand; default: as the program says")
-      ->check(CLI::Range(1.0, 1e6))
-      ->needs(stock);
+  const OptionsOfABlock block = AddBlockOptions(verb, options.block);
   CLI::Option* stl =
       verb.add_option("--stl", options.stl, "write what is left of the block, a closed body")
-          ->needs(stock);
+          ->needs(block.stock);
   AddStlTolerance(verb, options.stl_tolerance_mm)->needs(stl);
   verb.add_option("--relief", options.relief,
                   "write a shaded picture of what is left, from above (PNG)")
-      ->needs(stock);
+      ->needs(block.stock);
   verb.add_option("--height-map", options.height_map,
                   "write the heights of what is left as a grey picture of 16 bits (PNG)")
-      ->needs(stock);
-  CLI::Option* target =
-      verb.add_option("--target", options.target,
-                      "what should be left: a height map, an STL, or another program")
-          ->needs(stock);
-  verb.add_option("--target-tolerance", options.target_tolerance_mm,
-                  "up to which a difference is none, mm; default 0.1")
-      ->check(CLI::Range(0.0, 1000.0))
-      ->needs(target);
+      ->needs(block.stock);
+  AddTargetTolerance(verb, options.block)->needs(block.target);
   verb.add_option("--target-png", options.target_png,
                   "write a picture of what is too deep (red) and left too much (blue)")
-      ->needs(target);
+      ->needs(block.target);
 }
 
 }  // namespace rmlcell::cli

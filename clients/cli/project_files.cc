@@ -26,15 +26,27 @@ Result<v1::Project> ParseProject(const std::string& file) {
   return project;
 }
 
+// Of a program or a target: both have a file name and a content.
+template <class Text>
+Status AddContent(const fs::path& folder, Text& text) {
+  if (!text.content().empty() || text.file_name().empty()) return {};
+  Result<std::string> bytes = bridge::ReadFile((folder / text.file_name()).string(), kFileBytesMax);
+  if (!bytes) return bytes.error();
+  text.set_content(*std::move(bytes));
+  text.set_file_name(fs::path(text.file_name()).filename().string());
+  return {};
+}
+
 Status AddContents(const fs::path& folder, v1::Project& project) {
   for (v1::ProjectProgram& program : *project.mutable_programs()) {
-    v1::ProgramText& source = *program.mutable_source();
-    if (!source.content().empty() || source.file_name().empty()) continue;
-    Result<std::string> bytes =
-        bridge::ReadFile((folder / source.file_name()).string(), kFileBytesMax);
-    if (!bytes) return bytes.error();
-    source.set_content(*std::move(bytes));
-    source.set_file_name(fs::path(source.file_name()).filename().string());
+    if (const Status added = AddContent(folder, *program.mutable_source()); !added)
+      return added.error();
+    if (!program.milling().has_target()) continue;
+    v1::MillTarget& target = *program.mutable_milling()->mutable_target();
+    Status added;
+    if (target.has_file()) added = AddContent(folder, *target.mutable_file());
+    if (target.has_inline_program()) added = AddContent(folder, *target.mutable_inline_program());
+    if (!added) return added;
   }
   return {};
 }

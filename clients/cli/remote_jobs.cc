@@ -51,20 +51,52 @@ std::string When(const google::protobuf::Timestamp& time) {
 // What a job may bring along in one message; larger programs are stored first.
 constexpr std::size_t kInlineBytesMax = 3 << 20;
 
+// Of a target that comes with the job: what a server takes at most, however it is set up.
+constexpr std::size_t kTargetBytesMax = 64 << 20;
+
+Status SetTarget(const JobMillingOptions& wanted, bool picture, v1::Milling& milling) {
+  const BlockOptions& block = wanted.block;
+  if (block.target.empty() && wanted.target_slot == 0) {
+    if (!picture && !block.target_tolerance_mm) return {};
+    return Error{ErrorCode::kCellUsage,
+                 std::string(picture ? "--products target" : "--target-tolerance") +
+                     " needs --target or --target-slot",
+                 {}};
+  }
+  v1::MillTarget& target = *milling.mutable_target();
+  target.set_picture(picture);
+  if (block.target_tolerance_mm) target.set_tolerance_mm(*block.target_tolerance_mm);
+  if (block.target.empty()) {
+    target.set_slot(wanted.target_slot);
+    return {};
+  }
+  Result<std::string> bytes = bridge::ReadFile(block.target, kTargetBytesMax);
+  if (!bytes) return bytes.error();
+  bridge::SetTargetFile(bridge::Utf8(std::filesystem::path(block.target).filename().string()),
+                        *std::move(bytes), target);
+  const Status sound = bridge::CheckTarget(target);
+  if (sound) return {};
+  return Error{sound.error().code, "--target " + block.target + ": " + sound.error().detail, {}};
+}
+
 Status SetMilling(const JobMillingOptions& wanted, v1::Milling& milling) {
-  if (const Status set = bridge::SetBlockAndTool(wanted.block.stock, wanted.block.tool, milling);
-      !set)
+  const BlockOptions& block = wanted.block;
+  if (const Status set = bridge::SetBlockAndTool(block.stock, block.tool, milling); !set)
     return set.error();
-  milling.set_cell_mm(wanted.block.cell_mm);
+  milling.set_cell_mm(block.cell_mm);
+  milling.set_material(bridge::Utf8(block.material));
+  milling.set_rpm(block.rpm);
   milling.set_stl_tolerance_mm(wanted.stl_tolerance_mm);
+  bool difference = false;
   for (const std::string& product : wanted.products) {
     if (product == "relief") milling.set_relief(true);
     if (product == "height-map") milling.set_height_map(true);
     if (product == "stl") milling.set_stl(true);
+    if (product == "target") difference = true;
   }
   // What the server would refuse is told before it is asked.
-  const auto sound = bridge::FromProto(milling);
-  return sound ? Status() : sound.error();
+  if (const auto sound = bridge::FromProto(milling); !sound) return sound.error();
+  return SetTarget(wanted, difference, milling);
 }
 
 // One connection of a watch. Moves `after` on; true: the job ended, and `exit_code` is set.

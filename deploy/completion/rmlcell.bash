@@ -83,7 +83,7 @@ _rmlcell_options() {
     put) echo "$remote --etag --check-only --force" ;;
     get) echo "$remote --form --output" ;;
     submit)
-      echo "$remote --slot --kind --title --request-id --override --pace --inputs --stock --tool --cell --products --stl-tolerance --project --trace --watch --strict" ;;
+      echo "$remote --slot --kind --title --request-id --override --pace --inputs --stock --tool --cell --material --rpm --target --target-slot --target-tolerance --products --stl-tolerance --project --trace --watch --strict" ;;
     report) echo "$remote --machine-coordinates" ;;
     watch) echo "$remote --after --strict" ;;
     jobs) echo "$remote --filter --limit" ;;
@@ -97,7 +97,7 @@ _rmlcell_options() {
 _rmlcell_takes_value() {
   case $1 in
     --slot | --main | --executable | --family | --profile | --machine | --origin | --clamps | --inputs | --mode | --override | \
-      --simul | --break | --budget | --vars | --svg | --toolpath | --samples | --plot | --stock | --tool | --cell | --material | --stl | --stl-tolerance | --relief | --height-map | --target | --target-tolerance | --target-png | \
+      --simul | --break | --budget | --vars | --svg | --toolpath | --samples | --plot | --stock | --tool | --cell | --material | --stl | --stl-tolerance | --relief | --height-map | --target | --target-slot | --target-tolerance | --target-png | \
       --state-in | --state-out | --server | --etag | --form | \
       --output | -o | --kind | --title | --request-id | --pace | --after | --filter | --limit | --move | --turn | --shift | \
       --tolerance | --by | --from | --to | --columns | --rows | --gap | --depth | --step | --passes | --overlap | \
@@ -133,7 +133,7 @@ _rmlcell_values() {
     --target-tolerance) _rmlcell_offer 0.02 0.1 0.5 ;;
     --stl-tolerance) _rmlcell_offer 0.01 0.1 0 ;;
     --stock) _rmlcell_offer 100x80x10 ;;
-    --tool) if [[ $verb == simulate ]]; then _rmlcell_offer flat:3 ball:3 vee:6:60; fi ;;
+    --tool) if [[ $verb == simulate || $verb == submit ]]; then _rmlcell_offer flat:3 ball:3 vee:6:60; fi ;;
     --from | --to) _rmlcell_offer 40 100 ;;
     --dpi) _rmlcell_offer 1000 ;;
     --samples) _rmlcell_offer 10 100 1000 10000 ;;
@@ -141,9 +141,9 @@ _rmlcell_values() {
       compopt -o nospace 2>/dev/null
       _rmlcell_offer speed power axes speed,power,axes ;;
     --inputs | --toolpath | --state-in | --state-out | --output | -o) _rmlcell_files ;;
-    --products) _rmlcell_offer relief height-map stl ;;
+    --products) _rmlcell_offer relief height-map stl target ;;
     --project) _rmlcell_projects ;;
-    --slot) [[ $verb == submit && -n ${given[0]:-} ]] && _rmlcell_slots "${given[0]}" ;;
+    --slot | --target-slot) [[ $verb == submit && -n ${given[0]:-} ]] && _rmlcell_slots "${given[0]}" ;;
   esac
 }
 

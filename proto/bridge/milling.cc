@@ -1,17 +1,31 @@
 #include "proto/bridge/milling.h"
 
+#include <utility>
+
 #include "engine/core/number_text.h"
+#include "engine/core/units.h"
 #include "engine/simulation/material/milling_text.h"
 #include "engine/simulation/material/stl.h"
+#include "engine/simulation/material/target_files.h"
 #include "rmlcell/v1/milling.pb.h"
 
 namespace rmlcell::bridge {
 namespace {
 
-constexpr double kStlToleranceMax_mm = 1000.0;
+constexpr double kToleranceMax_mm = 1000.0;
+constexpr int kFlutesMax = 100;
+constexpr double kRpmMin = 1.0;
+constexpr double kRpmMax = 1e6;
+constexpr std::string_view kPngType = "image/png";
+constexpr std::string_view kStlType = "model/stl";
+
+Status CheckTolerance(const std::string& field, double tolerance_mm) {
+  if (tolerance_mm >= 0.0 && tolerance_mm <= kToleranceMax_mm) return {};
+  return InvalidArgument(field + " is " + ShortestText(tolerance_mm) + ", allowed are 0 to 1000");
+}
 
 Error Within(const std::string& field, const Error& error) {
-  return InvalidArgument(field + ": " + error.detail);
+  return {error.code, field + ": " + error.detail, {}};
 }
 
 Result<simulation::MillTool> FromProto(const v1::MillTool& tool) {
@@ -19,7 +33,8 @@ Result<simulation::MillTool> FromProto(const v1::MillTool& tool) {
                             .flute_mm = tool.flute_mm(),
                             .shank_radius_mm = 0.5 * tool.shank_diameter_mm(),
                             .holder_radius_mm = 0.5 * tool.holder_diameter_mm(),
-                            .holder_from_mm = tool.holder_from_mm()};
+                            .holder_from_mm = tool.holder_from_mm(),
+                            .flutes = tool.flutes()};
   switch (tool.shape()) {
     case v1::MillTool::SHAPE_FLAT:
       made.shape = simulation::MillTool::Shape::kFlat;
@@ -38,6 +53,10 @@ Result<simulation::MillTool> FromProto(const v1::MillTool& tool) {
   if (made.shape != simulation::MillTool::Shape::kVee &&
       (tool.angle_rad() != 0.0 || tool.tip_diameter_mm() != 0.0))
     return InvalidArgument("tool: angle_rad and tip_diameter_mm are for SHAPE_VEE");
+  if (tool.flutes() < 0 || tool.flutes() > kFlutesMax) {
+    return InvalidArgument("tool.flutes is " + std::to_string(tool.flutes()) +
+                           ", allowed are 1 to 100, or 0 when it is not known");
+  }
   if (const Status sound = simulation::CheckTool(made); !sound)
     return Within("tool", sound.error());
   return made;
@@ -51,6 +70,22 @@ simulation::Stock FromProto(const v1::Stock& stock, double cell_mm) {
           .bottom = stock.top_mm() - stock.size_z_mm(),
           .top = stock.top_mm(),
           .cell = cell_mm};
+}
+
+// What judges the chips of a tool. Errors: CellInvalidArgument.
+Status SetChips(const v1::Milling& milling, simulation::Milling& made) {
+  made.rpm = milling.rpm();
+  if (made.rpm != 0.0 && !(made.rpm >= kRpmMin && made.rpm <= kRpmMax)) {
+    return InvalidArgument("rpm is " + ShortestText(made.rpm) +
+                           ", allowed are 1 to 1,000,000, or 0 for what the program says");
+  }
+  if (milling.material().empty()) return {};
+  const auto chips = simulation::ChipsOf(milling.material(), 2.0 * made.tool.radius_mm);
+  if (!chips) return Within("material", chips.error());
+  made.chips = *chips;
+  if (made.tool.flutes > 0) return {};
+  return InvalidArgument(
+      "tool.flutes is missing: what an edge takes off needs the edges of the tool (flutes=2)");
 }
 
 v1::MillTool::Shape ToProto(simulation::MillTool::Shape shape) {
@@ -78,14 +113,13 @@ Result<simulation::Milling> FromProto(const v1::Milling& milling) {
   if (!(milling.cell_mm() >= 0.0))
     return InvalidArgument("cell_mm is " + ShortestText(milling.cell_mm()) +
                            ": above 0, or 0 for 0.1");
-  const double tolerance_mm = StlToleranceOf(milling);
-  if (!(tolerance_mm >= 0.0 && tolerance_mm <= kStlToleranceMax_mm))
-    return InvalidArgument("stl_tolerance_mm is " + ShortestText(tolerance_mm) +
-                           ", allowed are 0 to 1000");
+  const Status body = CheckTolerance("stl_tolerance_mm", StlToleranceOf(milling));
+  if (!body) return body.error();
   const Result<simulation::MillTool> tool = FromProto(milling.tool());
   if (!tool) return tool.error();
   const double cell_mm = milling.cell_mm() > 0.0 ? milling.cell_mm() : kCellStandard_mm;
   simulation::Milling made{.stock = FromProto(block, cell_mm), .tool = *tool};
+  if (const Status chips = SetChips(milling, made); !chips) return chips.error();
   if (const Status sound = simulation::CheckMilling(made); !sound)
     return Within("stock", sound.error());
   return made;
@@ -112,7 +146,59 @@ Status SetBlockAndTool(const std::string& stock, const std::string& tool, v1::Mi
   tool_out.set_shank_diameter_mm(2.0 * made->shank_radius_mm);
   tool_out.set_holder_diameter_mm(2.0 * made->holder_radius_mm);
   tool_out.set_holder_from_mm(made->holder_from_mm);
+  tool_out.set_flutes(made->flutes);
   return {};
+}
+
+Status CheckTarget(const v1::MillTarget& target) {
+  const Status tolerance = CheckTolerance("target.tolerance_mm", TargetToleranceOf(target));
+  if (!tolerance) return tolerance;
+  switch (target.source_case()) {
+    case v1::MillTarget::kFile:
+      break;
+    case v1::MillTarget::kInlineProgram:
+      if (!target.inline_program().content().empty()) return {};
+      return Error{ErrorCode::kCellEmptyProgram, "target.inline_program", {}};
+    case v1::MillTarget::kSlot:
+      if (IsSlot(target.slot())) return {};
+      return InvalidArgument("target.slot is " + std::to_string(target.slot()) +
+                             ", allowed are 1 to 99");
+    case v1::MillTarget::SOURCE_NOT_SET:
+      return InvalidArgument("target is missing: file, inline_program or slot");
+  }
+  const v1::TargetFile& file = target.file();
+  if (file.content().empty()) return InvalidArgument("target.file.content is empty");
+  const std::string& type = file.media_type();
+  if (!type.empty() && type != kPngType && type != kStlType) {
+    return InvalidArgument(
+        "target.file.media_type: image/png or model/stl; a program stands in inline_program");
+  }
+  const bool is_png = simulation::IsPng(file.content());
+  const bool named_png = type == kPngType || (type.empty() && file.file_name().ends_with(".png"));
+  if (named_png && !is_png) {
+    return Error{ErrorCode::kCellBadText, "target.file: no height map: it is no PNG", {}};
+  }
+  if (is_png && type != kStlType) return {};
+  const Status begins = simulation::CheckStlBeginning(file.content());
+  return begins ? begins : Within("target.file", begins.error());
+}
+
+void SetTargetFile(std::string file_name, std::string bytes, v1::MillTarget& target) {
+  if (simulation::IsTargetFile(bytes, file_name)) {
+    target.mutable_file()->set_file_name(std::move(file_name));
+    target.mutable_file()->set_content(std::move(bytes));
+  } else {
+    target.mutable_inline_program()->set_file_name(std::move(file_name));
+    target.mutable_inline_program()->set_content(std::move(bytes));
+  }
+}
+
+std::string TargetMediaType(const v1::MillTarget& target) {
+  return std::string(simulation::IsPng(target.file().content()) ? kPngType : kStlType);
+}
+
+double TargetToleranceOf(const v1::MillTarget& target) {
+  return target.has_tolerance_mm() ? target.tolerance_mm() : kTargetToleranceStandard_mm;
 }
 
 double StlToleranceOf(const v1::Milling& milling) {

@@ -166,6 +166,8 @@ std::vector<ConfigKey> MakeKeys() {
        RMLCELL_INTEGER(limit_message_bytes, 65'536, 64 * kMiB)},
       {"limits.program_bytes", "largest program, 1024 to 268435456 bytes",
        RMLCELL_INTEGER(limit_program_bytes, 1024, 256 * kMiB)},
+      {"limits.target_bytes", "largest target of a job, 1024 to 67108864 bytes",
+       RMLCELL_INTEGER(limit_target_bytes, 1024, 64 * kMiB)},
       {"limits.steps", "executed steps of a job, 1 to 10^12",
        RMLCELL_INTEGER(limit_steps, 1, 1'000'000'000'000)},
       {"limits.virtual_time_s", "virtual time of a job, 0.001 to 31536000 s",

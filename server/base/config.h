@@ -38,6 +38,7 @@ struct Config {
 
   std::int64_t limit_message_bytes = 4 << 20;
   std::int64_t limit_program_bytes = 256 << 20;
+  std::int64_t limit_target_bytes = 16 << 20;
   std::int64_t limit_steps = 1'000'000'000;
   double limit_virtual_time_s = 30.0 * 24 * 3600;
   std::int64_t limit_memory_bytes = 1LL << 30;

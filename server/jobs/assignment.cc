@@ -4,6 +4,7 @@
 #include "server/base/config.h"
 #include "server/base/names.h"
 #include "server/jobs/job_book.h"
+#include "server/jobs/job_milling.h"
 #include "server/records/job_messages.h"
 
 namespace rmlcell::server {
@@ -42,15 +43,18 @@ class ProgramsOfAssignment {
     program.set_title(title);
     program.set_file_name(file_name);
     program.set_is_source(is_source);
-    program.set_size(static_cast<std::int64_t>(bytes.size()));
     if (executable) program.set_executable(*executable);
-    if (bytes.size() <= kInlineBytes && inline_total_ + bytes.size() <= kInlineTotal) {
-      inline_total_ += bytes.size();
-      program.set_content(std::move(bytes));
-    } else {
-      large_[slot] = std::make_shared<const std::string>(std::move(bytes));
-    }
+    SetContent(program, std::move(bytes));
     by_slot_[slot] = std::move(program);
+  }
+
+  // What should be left of the block of the job.
+  void AddTarget(const v1::MillTarget& target, std::string bytes) {
+    const v1::ProgramText& program = target.inline_program();
+    v1::AssignedProgram& made = *assignment_.mutable_target();
+    made.set_file_name(target.has_file() ? target.file().file_name() : program.file_name());
+    made.set_is_source(target.has_inline_program() && program.form() != v1::PROGRAM_FORM_OBJECT);
+    SetContent(made, std::move(bytes));
   }
 
   void Finish() {
@@ -59,15 +63,43 @@ class ProgramsOfAssignment {
         messages_.programs.emplace_back(slot, large_[slot]);
       *assignment_.add_programs() = std::move(program);
     }
+    if (large_.contains(0)) messages_.programs.emplace_back(0, large_[0]);
   }
 
  private:
+  void SetContent(v1::AssignedProgram& program, std::string bytes) {
+    program.set_size(static_cast<std::int64_t>(bytes.size()));
+    if (bytes.size() <= kInlineBytes && inline_total_ + bytes.size() <= kInlineTotal) {
+      inline_total_ += bytes.size();
+      program.set_content(std::move(bytes));
+    } else {
+      large_[program.slot()] = std::make_shared<const std::string>(std::move(bytes));
+    }
+  }
+
   v1::WorkerAssignment& assignment_;
   AssignmentMessages& messages_;
   std::map<int, v1::AssignedProgram> by_slot_;
   std::map<int, std::shared_ptr<const std::string>> large_;
   std::size_t inline_total_ = 0;
 };
+
+Result<std::string> Attached(storage::Store& store, std::int64_t job, std::string_view name) {
+  const auto artifact = store.GetArtifact(job, name);
+  if (!artifact) return artifact.error();
+  return store.ReadBlob(artifact->sha256);
+}
+
+// A check takes no material off, and so compares nothing.
+Status AddTarget(storage::Store& store, std::int64_t id, const v1::Job& job,
+                 ProgramsOfAssignment& programs) {
+  const v1::Milling& milling = job.simulation().milling();
+  if (!milling.has_target() || job.kind() == v1::JOB_KIND_CHECK) return {};
+  Result<std::string> bytes = Attached(store, id, kTargetAttachment);
+  if (!bytes) return bytes.error();
+  programs.AddTarget(milling.target(), *std::move(bytes));
+  return {};
+}
 
 }  // namespace
 
@@ -91,12 +123,7 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
   *assignment.mutable_budget() = BudgetOf(job.budget(), config);
 
   // The attached bytes count for the program that is started: its slot may have been stored again.
-  const auto attached = [&](std::string_view name) -> Result<std::string> {
-    const auto artifact = store.GetArtifact(leased.job.id, name);
-    if (!artifact) return artifact.error();
-    return store.ReadBlob(artifact->sha256);
-  };
-  Result<std::string> main_bytes = attached(kMainAttachment);
+  Result<std::string> main_bytes = Attached(store, leased.job.id, kMainAttachment);
   if (!main_bytes) return main_bytes.error();
 
   ProgramsOfAssignment programs(assignment, messages);
@@ -136,11 +163,13 @@ Result<AssignmentMessages> MakeAssignment(storage::Store& store, const Config& c
   programs.Add(main_slot, main_title, file_name, std::move(*main_bytes), is_source,
                main_executable);
   for (const v1::SlotProgram& further : job.simulation().programs()) {
-    Result<std::string> bytes = attached(AttachmentName(further.slot()));
+    Result<std::string> bytes = Attached(store, leased.job.id, AttachmentName(further.slot()));
     if (!bytes) return bytes.error();
     programs.Add(further.slot(), {}, further.program().file_name(), std::move(*bytes),
                  further.program().form() != v1::PROGRAM_FORM_OBJECT, std::nullopt);
   }
+  if (const Status added = AddTarget(store, leased.job.id, job, programs); !added)
+    return added.error();
   // An executable that is linked while the memory has programs that the machine has not, or not any
   // more, holds their code: it is for this job only.
   const bool as_stored = stored_main && job.simulation().programs().empty() &&

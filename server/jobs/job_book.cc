@@ -234,7 +234,9 @@ Result<storage::NewJob> JobBook::Prepare(const v1::SubmitJobRequest& request,
   if (!parameters) return parameters.error();
   if (const Status good = CheckVariables(job.simulation(), family, *parameters); !good)
     return good.error();
-  if (const Status good = SettleMilling(store_, family.Shape(*parameters), specification); !good)
+  if (const Status good =
+          SettleMilling(store_, config_, family, family.Shape(*parameters), made, specification);
+      !good)
     return good.error();
   std::set<int> further;
   for (v1::SlotProgram& program : *specification.mutable_simulation()->mutable_programs()) {

@@ -24,7 +24,8 @@ class JobBook {
 
   // Checks everything that can be checked before work begins, makes the job durable, then calls
   // `done`, from a thread of the store or before it returns. Bytes of programs are kept with the
-  // job, so that a slot that is stored again meanwhile changes nothing. Errors:
+  // job, and so are those of a target, so that a slot that is stored again meanwhile changes
+  // nothing. Errors:
   // CellInvalidArgument, CellUnknownMachine, FamilyInfo::no_slot and empty_slot, CellEmptyProgram,
   // CellTooLarge, CellParameterRange, CellUnimplemented (RUN), CellRequestIdReused,
   // CellResourceExhausted.

@@ -67,6 +67,11 @@ Status CheckParts(const v1::Project& project) {
     if (!program.has_milling()) continue;
     if (const auto sound = bridge::FromProto(program.milling()); !sound)
       return InvalidArgument("program " + slot + ": milling." + sound.error().detail);
+    if (!program.milling().has_target()) continue;
+    const Status sound = bridge::CheckTarget(program.milling().target());
+    if (!sound) {
+      return Error{sound.error().code, "program " + slot + ": milling." + sound.error().detail, {}};
+    }
   }
   const machine::FamilyInfo info = InfoFor({});
   std::set<int> schedules;
@@ -236,8 +241,13 @@ Result<v1::ListProjectsResponse> ProjectBook::List(const v1::ListProjectsRequest
     }
     Result<v1::Project> project = ProjectOf(record);
     if (!project) return project.error();
-    for (v1::ProjectProgram& program : *project->mutable_programs())
+    for (v1::ProjectProgram& program : *project->mutable_programs()) {
       program.mutable_source()->clear_content();
+      if (!program.milling().has_target()) continue;
+      v1::MillTarget& target = *program.mutable_milling()->mutable_target();
+      if (target.has_file()) target.mutable_file()->clear_content();
+      if (target.has_inline_program()) target.mutable_inline_program()->clear_content();
+    }
     *response.add_projects() = *std::move(project);
   }
   return response;

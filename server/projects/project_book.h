@@ -16,7 +16,8 @@ class ProjectBook {
 
   // Errors: ProgramNumber (7101), ProjectDuplicate (7861), ProjectSource (7862), ScheduleRange,
   // those of process definitions (7402, 7403, 7004, 7019; OPT-3.01 to 3.08), CellAlreadyExists;
-  // CellInvalidArgument, also for a program in UNITS_METRIC whose name says inch (OPT-8.72).
+  // CellInvalidArgument, also for a program in UNITS_METRIC whose name says inch (OPT-8.72); those
+  // of bridge::CheckTarget.
   ProgramResult<v1::Project> Create(const v1::CreateProjectRequest& request);
   Result<v1::Project> Get(std::string_view name);
   Result<v1::ListProjectsResponse> List(const v1::ListProjectsRequest& request);

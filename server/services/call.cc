@@ -39,7 +39,7 @@ Status CheckSize(const CallNeeds& needs, const google::protobuf::Message& reques
       ErrorCode::kCellTooLarge,
       "the message has " + std::to_string(size) + " bytes, one call takes " +
           std::to_string(needs.message_bytes_max) +
-          "; send a large program by chunks (UploadProgram, rmlcell put), and name its slot in a job",
+          " (limits.message_bytes); send a large program by chunks (UploadProgram, rmlcell put), and name its slot in a job",
       {}};
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/core/units.h"
 #include "engine/families/families.h"
 
 namespace rmlcell::server {
@@ -11,26 +12,35 @@ AssignedPrograms::AssignedPrograms(const v1::WorkerAssignment& assignment)
     : assignment_(assignment) {
   for (const v1::AssignedProgram& program : assignment.programs())
     bytes_[program.slot()].append(program.content());
+  if (assignment.has_target()) bytes_[0].append(assignment.target().content());
+}
+
+bool AssignedPrograms::IsComplete(const v1::AssignedProgram& program) const {
+  return bytes_.at(program.slot()).size() >= program.size();
 }
 
 bool AssignedPrograms::complete() const {
-  return std::ranges::all_of(assignment_.programs(), [this](const v1::AssignedProgram& program) {
-    return bytes_.at(program.slot()).size() >= program.size();
-  });
+  return std::ranges::all_of(
+             assignment_.programs(),
+             [this](const v1::AssignedProgram& program) { return IsComplete(program); }) &&
+         (!assignment_.has_target() || IsComplete(assignment_.target()));
 }
 
 void AssignedPrograms::Add(const v1::WorkerBlob& part) {
   if (const auto of = bytes_.find(part.slot()); of != bytes_.end()) of->second.append(part.chunk());
 }
 
+simulation::ProgramMemory AssignedPrograms::EmptyMemory() const {
+  return {.family = families::FindFamily(assignment_.family()),
+          .profile = assignment_.profile(),
+          .parameters = {assignment_.parameters().begin(), assignment_.parameters().end()}};
+}
+
 simulation::ProgramMemory AssignedPrograms::Memory() {
-  simulation::ProgramMemory memory{
-      .family = families::FindFamily(assignment_.family()),
-      .profile = assignment_.profile(),
-      .parameters = {assignment_.parameters().begin(), assignment_.parameters().end()},
-      .deleted_programs = {assignment_.deleted_programs().begin(),
-                           assignment_.deleted_programs().end()},
-      .machine_state = assignment_.machine_state()};
+  simulation::ProgramMemory memory = EmptyMemory();
+  memory.deleted_programs = {assignment_.deleted_programs().begin(),
+                             assignment_.deleted_programs().end()};
+  memory.machine_state = assignment_.machine_state();
   for (const v1::AssignedProgram& program : assignment_.programs()) {
     simulation::MemoryProgram made{
         .slot = program.slot(),
@@ -51,6 +61,22 @@ simulation::ProgramMemory AssignedPrograms::Memory() {
     }
   }
   return memory;
+}
+
+Result<std::vector<float>> AssignedPrograms::TargetHeights(const simulation::Milling& milling,
+                                                           simulation::RunOptions options,
+                                                           const simulation::StillWanted& wanted) {
+  const v1::AssignedProgram& target = assignment_.target();
+  machine::Bytes bytes = bytes_.at(0).Finish();
+  if (assignment_.job().simulation().milling().target().has_file())
+    return simulation::ReadTarget(*bytes, milling.stock, wanted);
+  simulation::ProgramMemory memory = EmptyMemory();
+  memory.programs.push_back({.slot = kSlotMin,
+                             .file_name = target.file_name(),
+                             .bytes = std::move(bytes),
+                             .is_source = target.is_source()});
+  options.main_program = kSlotMin;
+  return simulation::MilledTarget(memory, options, milling, wanted);
 }
 
 }  // namespace rmlcell::server

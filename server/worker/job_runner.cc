@@ -18,13 +18,12 @@
 #include "engine/simulation/verdict/verdict.h"
 #include "proto/bridge/encoding.h"
 #include "proto/bridge/findings.h"
-#include "proto/bridge/framing.h"
 #include "proto/bridge/milling.h"
 #include "proto/bridge/report.h"
 #include "proto/bridge/setup.h"
-#include "proto/bridge/spooled_bytes.h"
 #include "server/worker/assigned_programs.h"
 #include "server/worker/job_events.h"
+#include "server/worker/job_output.h"
 #include "server/worker/material_files.h"
 #include "server/worker/memory_budget.h"
 #include "server/worker/pacer.h"
@@ -34,7 +33,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kChunkBytes = 128 << 10;
 constexpr std::chrono::milliseconds kPositionInterval{50};  // at most 20 positions a second
 // Virtual time of one step of the simulation: it adapts, so that a step takes about this long.
 constexpr std::chrono::milliseconds kStepTarget{5};
@@ -61,6 +59,7 @@ class Attempt {
         assignment_(std::move(assignment)),
         programs_(assignment_),
         stopping_(stopping),
+        output_(line, assignment_.lease(), assignment_.budget().output_bytes()),
         events_([this](const v1::WorkerEvents& events) { SendEvents(events); }),
         started_s_(ProcessorTime_s()) {}
 
@@ -124,8 +123,8 @@ class Attempt {
     bridge::SetJudgement(judgement, outcome_);
     *report.mutable_outcome() = outcome_;
     const std::string bytes = bridge::StableBytes(report);
-    if (!Fits(bytes.size())) return ExceedOutput();
-    SendArtifact("report", "application/x-protobuf", bytes);
+    if (!output_.Fits(bytes.size())) return ExceedOutput();
+    output_.Send("report", "application/x-protobuf", bytes);
   }
 
   void ExceedOutput() {
@@ -181,14 +180,10 @@ class Attempt {
     simulation::Products products;
     if (options.trace()) {
       products.trace = [this](const simulation::TraceRecord& record) {
-        bridge::AddFrame(bridge::ToProto(record).SerializeAsString(), trace_);
-        return Fits();
+        return output_.AddTrace(bridge::ToProto(record).SerializeAsString());
       };
     }
-    products.toolpath = [this](std::string_view block) {
-      bridge::AddFrame(block, toolpath_);
-      return Fits();
-    };
+    products.toolpath = [this](std::string_view block) { return output_.AddToolpath(block); };
     if (options.toolpath_tolerance_mm() > 0.0) {
       products.toolpath_options.tolerance_mm = options.toolpath_tolerance_mm();
     }
@@ -218,6 +213,9 @@ class Attempt {
       ReportFindings(*made, simulation::JudgeFindings(made->diagnostics));
       return End::kFinished;
     }
+    if (products.milling) {
+      if (const std::optional<End> end = SetTarget(*products.milling)) return *end;
+    }
     for (const Diagnostic& diagnostic : made->diagnostics)
       events_.OnDiagnostic(SimTime(0), diagnostic);
     const machine::MachineFamily& family = *families::FindFamily(assignment_.family());
@@ -242,44 +240,94 @@ class Attempt {
       *message.add_diagnostics() = bridge::ToProto(diagnostic);
     outcome_ = message.outcome();
     executables_ = begun->run->made_executables();
-    SendProducts(message, begun->recorder->Svg(report, {}), begun->recorder->milling());
-    return End::kFinished;
+    return SendProducts(message, begun->recorder->Svg(report, {}), begun->recorder->milling());
   }
 
-  // All of them or the report alone, which then says why the rest is not there.
-  void SendProducts(v1::RunReport& report, const std::string& picture,
-                    const simulation::MillingRecorder* milling) {
+  // What is left is compared with the target of the job, when it has one. An end: there will be no
+  // run.
+  std::optional<End> SetTarget(simulation::Milling& milling) {
+    const v1::SimulationOptions& options = assignment_.job().simulation();
+    if (!assignment_.has_target()) return std::nullopt;
+    // As the command runs such a program: by itself, with nobody at its keys.
+    const simulation::RunOptions all = bridge::RunOptionsOf(
+        options, assignment_.budget(), assignment_.main_program(), machine::Mode::kCycle);
+    Result<std::vector<float>> heights = programs_.TargetHeights(
+        milling,
+        {.parameters = all.parameters, .mode = machine::Mode::kCycle, .budget = all.budget},
+        [this] { return StopAsked() == Stop::kNone; });
+    if (const Stop stop = StopAsked(); stop != Stop::kNone) return EndOf(stop);
+    if (!heights) {
+      const std::string& name = assignment_.target().file_name();
+      return Refuse({heights.error().code,
+                     (name.empty() ? "target: " : "target " + name + ": ") + heights.error().detail,
+                     {}});
+    }
+    milling.target = simulation::Target{
+        .heights = std::make_shared<const std::vector<float>>(*std::move(heights)),
+        .tolerance_mm = bridge::TargetToleranceOf(options.milling().target())};
+    return std::nullopt;
+  }
+
+  // All of them; or the report alone, which then says why the rest is not there. A job that is
+  // cancelled meanwhile leaves no files of its block.
+  End SendProducts(v1::RunReport& report, const std::string& picture,
+                   const simulation::MillingRecorder* milling) {
     const v1::SimulationOptions& options = assignment_.job().simulation();
     std::string bytes = bridge::StableBytes(report);
-    std::vector<ProductFile> files;
     const std::size_t smaller = bytes.size() + picture.size();
     // A run that was broken off has no time left, or nobody who looks at its block.
     const bool broken_off = outcome_.kind() == v1::Outcome::KIND_BUDGET_EXCEEDED ||
                             outcome_.kind() == v1::Outcome::KIND_CANCELLED;
-    bool complete = Fits(smaller);
-    bool late = false;
-    if (complete && milling != nullptr && !broken_off) {
-      auto made =
-          MaterialFiles(milling->material(), options.milling(), [&](std::size_t material_bytes) {
-            late = late || OverTime();
-            return !late && Fits(smaller + material_bytes);
-          });
-      complete = made.has_value();
-      if (made) files = *std::move(made);
+    std::optional<std::vector<ProductFile>> files;
+    if (output_.Fits(smaller)) files.emplace();
+    Stop stop = Stop::kNone;
+    if (files && milling != nullptr && !broken_off) {
+      const std::optional<simulation::Target>& target = milling->target();
+      files = MaterialFiles(milling->material(), target ? &*target : nullptr, options.milling(),
+                            [&](std::size_t material_bytes) {
+                              stop = StopAsked();
+                              return stop == Stop::kNone && output_.Fits(smaller + material_bytes);
+                            });
     }
-    if (!complete) {
-      outcome_ = OutcomeFor(machine::OutcomeKind::kBudgetExceeded,
-                            late ? ErrorCode::kCellProcessorBudget : ErrorCode::kCellOutputBudget);
+    if (stop == Stop::kLost || stop == Stop::kHandBack) return EndOf(stop);
+    if (stop == Stop::kCancel) files.emplace();
+    if (!files || stop != Stop::kNone) {
+      if (stop == Stop::kNone) {
+        ExceedOutput();
+      } else {
+        (void)EndOf(stop);
+      }
       *report.mutable_outcome() = outcome_;
       bytes = bridge::StableBytes(report);
-      if (Fits(bytes.size())) SendArtifact("report", "application/x-protobuf", bytes);
-      return;
     }
-    SendArtifact("report", "application/x-protobuf", bytes);
-    SendSpooled("toolpath", toolpath_);
-    if (options.trace()) SendSpooled("trace", trace_);
-    SendArtifact("picture.svg", "image/svg+xml", picture);
-    for (const ProductFile& file : files) SendArtifact(file.name, file.media_type, file.bytes);
+    if (files || output_.Fits(bytes.size()))
+      output_.Send("report", "application/x-protobuf", bytes);
+    if (!files) return End::kFinished;
+    output_.SendToolpath();
+    if (options.trace()) output_.SendTrace();
+    output_.Send("picture.svg", "image/svg+xml", picture);
+    for (const ProductFile& file : *files) output_.Send(file.name, file.media_type, file.bytes);
+    return End::kFinished;
+  }
+
+  // Why work that is no run, and so has nobody who drives it, should end where it is.
+  enum class Stop { kNone, kLost, kHandBack, kCancel, kOverTime };
+
+  Stop StopAsked() {
+    while (const std::optional<v1::WorkResponse> message = line_.TryReceive()) Obey(*message);
+    if (released_ || line_.gone()) return Stop::kLost;
+    if (stopping_ || stop_asked_) return Stop::kHandBack;
+    if (CancelOrdered()) return Stop::kCancel;
+    return OverTime() ? Stop::kOverTime : Stop::kNone;
+  }
+
+  // Precondition: not kNone.
+  End EndOf(Stop stop) {
+    if (stop == Stop::kLost) return End::kLost;
+    if (stop == Stop::kHandBack) return End::kHandBack;
+    if (stop == Stop::kCancel) return Cancelled();
+    outcome_ = OutcomeFor(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellProcessorBudget);
+    return End::kFinished;
   }
 
   End Drive(const simulation::BegunRun& begun) {
@@ -325,7 +373,7 @@ class Attempt {
         SendPosition(run);
       }
       if (simulation.finished()) break;
-      if (recorder.cut_off() || !Fits()) {
+      if (recorder.cut_off() || !output_.Fits()) {
         simulation.End(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellOutputBudget);
       } else if (OverTime()) {
         simulation.End(machine::OutcomeKind::kBudgetExceeded, ErrorCode::kCellProcessorBudget);
@@ -401,19 +449,12 @@ class Attempt {
     return ProcessorTime_s() - started_s_ > assignment_.budget().processor_s();
   }
 
-  // Whether all that the job has put out stays in its budget, `more` included.
-  bool Fits(std::size_t more = 0) const {
-    const std::int64_t products = trace_.size() + toolpath_.size();
-    return products + static_cast<std::int64_t>(event_bytes_ + more) <=
-           assignment_.budget().output_bytes();
-  }
-
   // At most a window of events is under way: a store that is slow slows the run, not the memory.
   void SendEvents(const v1::WorkerEvents& events) {
     v1::WorkRequest message;
     *message.mutable_events() = events;
     *message.mutable_events()->mutable_lease() = assignment_.lease();
-    event_bytes_ += events.ByteSizeLong();
+    output_.CountEvents(events.ByteSizeLong());
     if (!line_.Send(message)) return;
     events_sent_ += events.events_size();
     while (events_sent_ - events_stored_ > line_.events_window() && !line_.gone() && !released_) {
@@ -438,25 +479,6 @@ class Attempt {
     line_.Send(message);
   }
 
-  void SendSpooled(const std::string& name, bridge::SpooledBytes& product) {
-    const machine::Bytes bytes = product.Finish();
-    SendArtifact(name, "application/octet-stream", *bytes, bytes.keeper());
-  }
-
-  void SendArtifact(const std::string& name, const std::string& media_type, std::string_view bytes,
-                    const machine::BytesKeeper* keeper = nullptr) {
-    for (std::size_t sent = 0; sent == 0 || sent < bytes.size(); sent += kChunkBytes) {
-      v1::WorkRequest message;
-      v1::WorkerArtifact& artifact = *message.mutable_artifact();
-      *artifact.mutable_lease() = assignment_.lease();
-      artifact.set_name(name);
-      artifact.set_media_type(media_type);
-      artifact.set_chunk(std::string(bytes.substr(sent, kChunkBytes)));
-      if (!line_.Send(message)) return;
-      if (keeper != nullptr) keeper->Release();
-    }
-  }
-
   void Finish() {
     v1::WorkRequest message;
     v1::WorkerFinish& finish = *message.mutable_finish();
@@ -471,15 +493,13 @@ class Attempt {
   v1::WorkerAssignment assignment_;
   AssignedPrograms programs_;
   const std::atomic<bool>& stopping_;
+  JobOutput output_;
   JobEvents events_;
   double started_s_;
   v1::Outcome outcome_;
   std::map<int, std::string> executables_;
   std::unique_ptr<simulation::TimetableRun> timetable_run_;  // of a run with a pace
   Clock::duration planned_for_{0};
-  bridge::SpooledBytes trace_;
-  bridge::SpooledBytes toolpath_;
-  std::size_t event_bytes_ = 0;
   std::int64_t events_sent_ = 0;
   std::int64_t events_stored_ = 0;
   std::vector<v1::WorkerControl> orders_;  // not carried out yet

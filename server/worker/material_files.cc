@@ -7,6 +7,7 @@
 #include "engine/simulation/material/height_map.h"
 #include "engine/simulation/material/relief.h"
 #include "engine/simulation/material/stl.h"
+#include "engine/simulation/material/target.h"
 #include "proto/bridge/milling.h"
 #include "rmlcell/v1/milling.pb.h"
 
@@ -48,8 +49,8 @@ class Collector {
 }  // namespace
 
 std::optional<std::vector<ProductFile>> MaterialFiles(
-    const simulation::HeightField& material, const v1::Milling& wanted,
-    const std::function<bool(std::size_t)>& fits) {
+    const simulation::HeightField& material, const simulation::Target* target,
+    const v1::Milling& wanted, const std::function<bool(std::size_t)>& fits) {
   struct File {
     bool wanted;
     const char* name;
@@ -65,6 +66,8 @@ std::optional<std::vector<ProductFile>> MaterialFiles(
        [&](const Sink& sink) {
          return simulation::WriteStl(material, bridge::StlToleranceOf(wanted), sink);
        }},
+      {target != nullptr && wanted.target().picture(), "target.png", "image/png",
+       [&](const Sink& sink) { return simulation::WriteDifference(material, *target, sink); }},
   };
   std::vector<ProductFile> made;
   std::size_t together = 0;

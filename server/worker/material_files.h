@@ -7,6 +7,7 @@
 
 namespace rmlcell::simulation {
 class HeightField;
+struct Target;
 }  // namespace rmlcell::simulation
 namespace rmlcell::v1 {
 class Milling;
@@ -21,10 +22,13 @@ struct ProductFile {
   std::string bytes;
 };
 
-// What a job wants of what is left of its block: the relief, then the heights, then the body.
-// `fits` is asked before any bytes are kept, with how many that makes of all files together;
-// nothing is returned as soon as it says no. Throws std::bad_alloc beyond the memory of the job.
+// What a job wants of what is left of its block: the relief, then the heights, the body, and the
+// picture of what differs from `target`, which is null where there is none. `fits` is asked before
+// any bytes are kept, with how many that makes of all files together, and some times a second while
+// there are none; nothing is returned as soon as it says no. Throws std::bad_alloc beyond the
+// memory of the job.
 std::optional<std::vector<ProductFile>> MaterialFiles(const simulation::HeightField& material,
+                                                      const simulation::Target* target,
                                                       const v1::Milling& wanted,
                                                       const std::function<bool(std::size_t)>& fits);
 

@@ -1,12 +1,14 @@
 """What a mill leaves of a block: rmlcell simulate --stock and all that goes with it (docs/material.md)."""
 import json
 import struct
+import time
 import unittest
 import urllib.error
 import urllib.request
 import zlib
 
-from cell import Cell, inline_job, job_pb2, submit, wait_for_end
+import grpc
+from cell import Cell, detail_of, eventually, inline_job, job_pb2, submit, wait_for_end, wait_until_it_runs
 from command import InFolder, ask, run
 
 # A groove of 20 mm along X, 1 mm deep, with clearance on the way. 100 units a mm; along the middle of cells of 0.2 mm.
@@ -265,21 +267,11 @@ class Targets(Material):
         self.refused("CELL-E9023", "/dev/full", *BLOCK, "--target", self.groove, "--target-png", "/dev/full")
 
 
-class Jobs(Material):
-    """The same as products of jobs: each file has the bytes that simulate writes."""
-
+class WithServer(Material):
     @classmethod
     def setUpClass(cls):
         cls.cell = Cell().start()
         cls.addClassCleanup(cls.cell.close)
-
-    FILES = {"relief.png": ("--relief", "image/png"), "height.png": ("--height-map", "image/png"),
-             "left.stl": ("--stl", "model/stl")}
-
-    def submitted(self, *words):
-        done = self.cell.command("submit", "mill-1", self.groove, *words, "--watch", check=False)
-        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        return done.stdout.splitlines()[0]
 
     def fetched(self, job, name, **headers):
         url = f"http://127.0.0.1:{self.cell.web_port}/v1/{job}/artifacts/{name}"
@@ -288,6 +280,23 @@ class Jobs(Material):
     def products(self, job):
         listed = self.cell.command("job", job).stdout
         return {line.split()[1] for line in listed.splitlines() if line.startswith("product ")}
+
+    def ended(self, stub, job):
+        name = submit(stub, job).name
+        wait_for_end(stub, name)
+        return stub.GetJob(job_pb2.GetJobRequest(name=name))
+
+
+class Jobs(WithServer):
+    """The same as products of jobs: each file has the bytes that simulate writes."""
+
+    FILES = {"relief.png": ("--relief", "image/png"), "height.png": ("--height-map", "image/png"),
+             "left.stl": ("--stl", "model/stl")}
+
+    def submitted(self, *words):
+        done = self.cell.command("submit", "mill-1", self.groove, *words, "--watch", check=False)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return done.stdout.splitlines()[0]
 
     def test_the_products_are_the_files_of_simulate(self):
         words = (*BLOCK, "--products", "relief,height-map,stl", "--stl-tolerance", "0.05")
@@ -331,11 +340,6 @@ class Jobs(Material):
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("job.simulation.milling is for mills", done.stderr)
 
-    def ended(self, stub, job):
-        name = submit(stub, job).name
-        wait_for_end(stub, name)
-        return stub.GetJob(job_pb2.GetJobRequest(name=name))
-
     # 5000 by 5000 cells of 4 bytes are 100 MB. The job ends, and its worker takes the next one.
     def test_a_block_beyond_the_memory_of_the_job(self):
         stub = self.cell.jobs()
@@ -347,6 +351,7 @@ class Jobs(Material):
         milling.tool.diameter_mm = 3
         milling.cell_mm = 0.01
         wanted.budget.memory_bytes = 64 << 20
+        self.assertTrue(eventually(lambda: len(self.cell.worker_processes()) == 2))
         workers = sorted(self.cell.worker_processes())
         ended = self.ended(stub, wanted)
         self.assertEqual((ended.state, ended.outcome.code), (job_pb2.Job.STATE_FAILED, "CELL-E9302"))
@@ -383,6 +388,197 @@ class Jobs(Material):
         done = self.cell.command("artifact", job, "relief.png", check=False)
         self.assertEqual((done.returncode, done.stdout), (3, ""))
         self.assertIn("has no relief.png", done.stderr)
+
+
+def layers(count):
+    """A binary STL of so many triangles that each lie over all of the block."""
+    triangle = struct.pack("<12fH", 0, 0, 1, -1, -1, 0, 200, -1, 0, -1, 200, 0, 0)
+    return bytes(80) + struct.pack("<I", count) + count * triangle
+
+
+class JobTargets(WithServer):
+    """A job beside its target, and the chips of its tool: what simulate says of the same inputs."""
+
+    def setUp(self):
+        super().setUp()
+        self.deeper = self.file("deeper.rml", DEEPER)
+
+    def command_says(self, program, *words):
+        done = ask("simulate", program, "--profile", "srm-20", *BLOCK, *words, "--json")
+        self.assertIn(done.returncode, (0, 1), done.stderr)
+        return json.loads(done.stdout)
+
+    def ended_job(self, *words, program=None):
+        done = self.cell.command("submit", "mill-1", *([program] if program else []), *words, "--watch", check=False)
+        self.assertIn(done.returncode, (0, 1), done.stderr)
+        return done.stdout.splitlines()[0]
+
+    def same(self, job, wanted):
+        report = json.loads(self.cell.command("report", job, "--json").stdout)
+        self.assertEqual(report["milling"], wanted["milling"])
+        self.assertEqual(report["outcome"], wanted["outcome"])
+        return report
+
+    def test_figures_verdict_and_picture_are_those_of_simulate(self):
+        run("simulate", self.groove, "--profile", "srm-20", *BLOCK, "--stl", self.folder / "t.stl", "--height-map", self.folder / "t.png")
+        picture, got = self.folder / "d.png", self.folder / "got.png"
+        for program, target, verdict in ((self.deeper, self.folder / "t.stl", "BAD"), (self.deeper, self.folder / "t.png", "BAD"),
+                                         (self.deeper, self.groove, "BAD"), (self.groove, self.deeper, "DOUBTFUL"),
+                                         (self.groove, self.groove, "GOOD")):
+            with self.subTest(f"{program.name} beside {target.name}"):
+                words = ("--target", target, "--target-tolerance", "0.02")
+                wanted = self.command_says(program, *words, "--target-png", picture)
+                job = self.ended_job(*BLOCK, *words, "--products", "relief,target", program=program)
+                report = self.same(job, wanted)
+                self.assertEqual(report["milling"]["target"]["toleranceMm"], 0.02)
+                self.assertEqual(report["outcome"]["verdict"], "VERDICT_" + verdict)
+                self.cell.command("artifact", job, "target.png", "-o", got)
+                self.assertEqual(got.read_bytes(), picture.read_bytes())
+                with self.fetched(job, "target.png") as answer:
+                    self.assertEqual(answer.headers["Content-Type"], "image/png")
+
+    # 0.5 mm too deep, as the file says that was stored when the job was submitted.
+    def test_a_stored_program(self):
+        self.cell.command("put", "mill-1", 21, self.groove)
+        job = self.ended_job(*BLOCK, "--target-slot", 21, program=self.deeper)
+        report = self.same(job, self.command_says(self.deeper, "--target", self.groove))
+        self.assertEqual(report["milling"]["target"]["deepMm"], 0.5)
+        self.assertNotIn("target.png", self.products(job))
+        done = self.cell.command("submit", "mill-1", self.groove, *BLOCK, "--target-slot", 22, check=False)
+        self.assertEqual((done.returncode, done.stdout), (3, ""), done.stderr)
+        self.assertIn("machines/mill-1/programs/22", done.stderr)
+
+    # 10 mm/s at 4500 rpm and two edges are 0.067 mm, 222.2 % of 0.03 mm; at 10000 rpm it is the usual.
+    def test_chips_are_judged_as_by_simulate(self):
+        edges = ("--stock", "60x30x5", "--tool", "flat:3:flutes=2", "--material", "aluminium")
+        for rpm, codes in (("4500", ["CELL-E9415"]), ("10000", [])):
+            wanted = json.loads(ask("simulate", self.groove, "--profile", "srm-20", *edges, "--rpm", rpm, "--json").stdout)
+            report = self.same(self.ended_job(*edges, "--rpm", rpm, program=self.groove), wanted)
+            self.assertEqual([reason["code"] for reason in report["outcome"].get("reasons", [])], codes)
+
+    def test_what_the_command_refuses(self):
+        wrong = self.file("a.stl", "no body")
+        for words, code, text in ((("--target", wrong), "CELL-E9024", "no STL"),
+                                  (("--target", self.folder / "none.stl"), "CELL-E9022", "none.stl"),
+                                  (("--target", self.file("e.rml", "")), "CELL-E9017", "e.rml"),
+                                  (("--products", "target"), "CELL-E9026", "--target or --target-slot"),
+                                  (("--target-tolerance", "1"), "CELL-E9026", "--target or --target-slot"),
+                                  (("--material", "wax"), "CELL-E9003", "flutes=2"),
+                                  (("--material", "cheese"), "CELL-E9003", "aluminium, foam")):
+            with self.subTest(text):
+                done = self.cell.command("submit", "mill-1", self.groove, *BLOCK, *words, check=False)
+                self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+                self.assertIn(code, done.stderr)
+                self.assertIn(text, done.stderr)
+        for words in (("--target", self.groove), (*BLOCK, "--target", self.groove, "--target-slot", "3"),
+                      (*BLOCK, "--target-slot", "100"), (*BLOCK, "--rpm", "0.5")):
+            self.assertEqual(self.cell.command("submit", "mill-1", self.groove, *words, check=False).returncode, 2, words)
+
+    def wanted(self, cell_mm=0.2):
+        job = inline_job("mill-1", "groove.rml", GROOVE)
+        milling = job.simulation.milling
+        milling.stock.size_x_mm, milling.stock.size_y_mm, milling.stock.size_z_mm = 60, 30, 5
+        milling.tool.shape, milling.tool.diameter_mm, milling.cell_mm = 1, 3, cell_mm
+        return job, milling
+
+    # What a server knows at once it refuses; what takes reading ends the job, with code and advice.
+    def test_what_the_server_refuses(self):
+        stub = self.cell.jobs()
+        for change, code, text in ((lambda t: t.file.SetInParent(), "CELL-E9003", "target.file.content is empty"),
+                                   (lambda t: setattr(t.file, "content", b"PA;"), "CELL-E9024", "target.file: no STL"),
+                                   (lambda t: setattr(t, "slot", 100), "CELL-E9003", "target.slot is 100"),
+                                   (lambda t: setattr(t, "tolerance_mm", -1), "CELL-E9003", "target.tolerance_mm is -1"),
+                                   (lambda t: setattr(t.inline_program, "file_name", "a.S"), "CELL-E9017", "target.inline_program")):
+            job, milling = self.wanted()
+            change(milling.target)
+            with self.subTest(text), self.assertRaises(grpc.RpcError) as caught:
+                submit(stub, job)
+            self.assertEqual(detail_of(caught.exception).code, code)
+            self.assertIn("job.simulation.milling." + text, caught.exception.details())
+        far = b"solid\nfacet normal 0 0 1\nvertex 900 0 0\nvertex 901 0 0\nvertex 900 1 0\nendfacet\n"
+        for content, code, text in ((b"\x89PNG\r\n\x1a\n", "CELL-E9024", "no height map"), (b"solid\nfaced\n", "CELL-E9024", "line 2: 'faced'"),
+                                    (far, "CELL-E9003", "lies beside the block")):
+            job, milling = self.wanted()
+            milling.target.file.content = content
+            ended = self.ended(stub, job)
+            self.assertEqual((ended.state, ended.outcome.code), (job_pb2.Job.STATE_FAILED, code))
+            self.assertIn(text, ended.outcome.message)
+            self.assertTrue(ended.outcome.advice)
+
+    # 4 MiB is what a call may be.
+    def test_a_target_that_is_too_large_for_a_call(self):
+        large = self.folder / "large.stl"
+        large.write_bytes(layers(100_000))
+        done = self.cell.command("submit", "mill-1", self.groove, *BLOCK, "--target", large, check=False)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("one call takes 4194304 (limits.message_bytes)", done.stderr)
+
+    # 250 layers over 18 million cells take many seconds; the job ends as soon as it is asked to.
+    def test_a_cancel_is_obeyed_before_the_run_begins(self):
+        stub = self.cell.jobs()
+        job, milling = self.wanted(cell_mm=0.01)
+        milling.target.file.content = layers(250)
+        name = submit(stub, job).name
+        wait_until_it_runs(stub, name)
+        stub.CancelJob(job_pb2.CancelJobRequest(name=name))
+        began = time.monotonic()
+        wait_for_end(stub, name)
+        self.assertLess(time.monotonic() - began, 5)
+        ended = stub.GetJob(job_pb2.GetJobRequest(name=name))
+        self.assertEqual((ended.state, ended.outcome.code), (job_pb2.Job.STATE_CANCELLED, "CELL-E9307"))
+        self.assertEqual({product.name for product in ended.artifacts}, {"program", "target"})
+
+    # Heights, body and pictures of 18 million cells take seconds; the run itself is over at once.
+    def test_a_cancel_is_obeyed_between_the_products(self):
+        stub = self.cell.jobs()
+        job, milling = self.wanted(cell_mm=0.01)
+        milling.height_map = milling.relief = milling.stl = True
+        name = submit(stub, job).name
+        wait_until_it_runs(stub, name)
+        stub.CancelJob(job_pb2.CancelJobRequest(name=name))
+        wait_for_end(stub, name)
+        ended = stub.GetJob(job_pb2.GetJobRequest(name=name))
+        self.assertEqual(ended.state, job_pb2.Job.STATE_CANCELLED)
+        self.assertFalse({product.name for product in ended.artifacts} & {"left.stl", "height.png", "relief.png"})
+
+    def test_a_project_has_a_target(self):
+        folder = self.folder / "beside"
+        folder.mkdir()
+        (folder / "9.rml").write_text(DEEPER)
+        (folder / "parts").mkdir()
+        (folder / "parts" / "old.rml").write_text(GROOVE)
+        milling = {"stock": {"sizeXMm": 60, "sizeYMm": 30, "sizeZMm": 5}, "cellMm": 0.2, "tool": {"shape": "SHAPE_FLAT", "diameterMm": 3},
+                   "target": {"inlineProgram": {"fileName": "parts/old.rml"}, "picture": True}}
+        program = {"slot": 9, "source": {"fileName": "9.rml"}, "milling": milling}
+
+        def write():
+            (folder / "project.json").write_text(json.dumps({"programs": [program]}))
+        write()
+        self.cell.command("projects", "create", "beside", folder)
+        self.cell.command("projects", "transfer", "beside", "mill-1")
+        wanted = self.command_says(self.deeper, "--target", self.groove, "--target-png", self.folder / "d.png")
+        # The job has its program at 9, the command at 1.
+        wanted = json.loads(json.dumps(wanted).replace('"program": 1,', '"program": 9,'))
+        got = self.folder / "got.png"
+
+        def submitted():
+            job = self.ended_job("--slot", 9, "--project", "beside")
+            self.same(job, wanted)
+            self.cell.command("artifact", job, "target.png", "-o", got)
+            self.assertEqual(got.read_bytes(), (self.folder / "d.png").read_bytes())
+        submitted()
+        # The same by a stored program of the machine.
+        self.cell.command("put", "mill-1", 10, self.groove)
+        milling["target"] = {"slot": 10, "picture": True}
+        write()
+        self.cell.command("projects", "update", "beside", folder)
+        submitted()
+        (folder / "a.stl").write_text("no body")
+        milling["target"] = {"file": {"fileName": "a.stl"}}
+        write()
+        done = self.cell.command("projects", "update", "beside", folder, check=False)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("program 9: milling.target.file: no STL", done.stderr)
 
 
 if __name__ == "__main__":

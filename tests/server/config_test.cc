@@ -55,6 +55,7 @@ std::vector<KeyCase> AllKeys() {
       {"jobs.keep_finished", "0", "10000000", "10000000", {"-1", "10000001"}, no_integer},
       {"limits.message_bytes", "65536", "67108864", "67108864", {"65535", "67108865"}, no_integer},
       {"limits.program_bytes", "1024", "2048", "2048", {"1023", "268435457"}, no_integer},
+      {"limits.target_bytes", "1024", "67108864", "67108864", {"1023", "67108865"}, no_integer},
       {"limits.steps", "1", "1000000000000", "1000000000000", {"0", "1000000000001"}, no_integer},
       {"limits.virtual_time_s",
        "0.001",

@@ -118,7 +118,7 @@ PUBLIC = {
     PICTURE: ["picture.h", "picture_difference.h", "plot.h"],
     MATERIAL: ["height_map.h", "milling_recorder.h", "milling_text.h", "relief.h", "stl.h", "target.h", "target_files.h"],
     VERDICT: ["verdict.h"],
-    RUN: ["simulate.h", "motion_check.h", "rehearsal.h", "joint_check.h", "timetable.h", "trial_run.h"],
+    RUN: ["simulate.h", "motion_check.h", "rehearsal.h", "joint_check.h", "milled_target.h", "timetable.h", "trial_run.h"],
     "storage": ["records.h", "store.h"],
     "storage/sqlite": ["sqlite_store.h"],
     "proto/bridge": ["comparison.h", "encoding.h", "files.h", "findings.h", "framing.h", "header_date.h", "milling.h",

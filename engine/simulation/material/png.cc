@@ -100,6 +100,7 @@ bool EncodePng(const Writing& to, const PngHeading& heading, std::span<const png
   png_set_text(to.png, to.info, texts.data(), static_cast<int>(texts.size()));
   png_write_info(to.png, to.info);
   for (std::size_t k = 0; k < heading.height; ++k) {
+    if (!(*to.stream.sink)({})) return false;
     row(k, row_bytes);
     png_write_row(to.png, row_bytes.data());
   }

@@ -25,8 +25,9 @@ struct PngHeading {
 };
 
 // `row` fills the bytes of one row, the uppermost first. The bytes are valid during the call of
-// `sink`; it returns false when it wants no more, and so does this. Precondition: the picture has a
-// width and a height; no key is longer than 79 bytes.
+// `sink`; it returns false when it wants no more, and so does this. Before each row it is asked
+// with no bytes: what packs well is long in the making. Precondition: the picture has a width and a
+// height; no key is longer than 79 bytes.
 bool WritePng(const PngHeading& heading,
               const std::function<void(std::size_t, std::span<std::uint8_t>)>& row,
               const std::function<bool(std::string_view)>& sink);

@@ -87,9 +87,11 @@ void ForEachWall(const VertexGrid& grid, std::span<const Vertex> edge, bool back
   }
 }
 
-// The surface of the body, triangle by triangle.
+// The surface of the body, triangle by triangle; no further than the patch where `wanted` becomes
+// false.
 template <class Visit>
-void ForEachTriangle(const VertexGrid& grid, const SurfacePatches& patches, Visit visit) {
+void ForEachTriangle(const VertexGrid& grid, const SurfacePatches& patches, const bool& wanted,
+                     Visit visit) {
   Outline outline;
   patches.ForEach([&](const Patch& patch) {
     FindOutline(patches, patch, outline);
@@ -97,7 +99,9 @@ void ForEachTriangle(const VertexGrid& grid, const SurfacePatches& patches, Visi
       return MachineVector{grid.x(v.column), grid.y(v.row), grid.z(v.column, v.row)};
     };
     FillOutline(outline, [&](Vertex a, Vertex b, Vertex c) { visit(at(a), at(b), at(c)); });
+    return wanted;
   });
+  if (!wanted) return;
   FindOutline(patches, {0, grid.columns() - 1, 0, grid.rows() - 1}, outline);
   ForEachWall(grid, outline.front, false, visit);
   ForEachWall(grid, outline.right, false, visit);
@@ -125,16 +129,19 @@ bool WriteStl(const HeightField& field, double tolerance_mm,
               const std::function<bool(std::string_view)>& sink) {
   constexpr std::size_t kPortion = 1 << 20;
   const VertexGrid grid(field);
-  const SurfacePatches patches(grid, tolerance_mm);
+  const SurfacePatches patches(grid, tolerance_mm, [&] { return sink({}); });
+  if (!patches.complete()) return false;
+  bool wanted = true;
   std::uint32_t triangles = 0;
-  ForEachTriangle(
-      grid, patches,
-      [&](const MachineVector&, const MachineVector&, const MachineVector&) { ++triangles; });
+  ForEachTriangle(grid, patches, wanted,
+                  [&](const MachineVector&, const MachineVector&, const MachineVector&) {
+                    if (++triangles % kPortion == 0) wanted = wanted && sink({});
+                  });
+  if (!wanted) return false;
   std::string bytes = "what is left of the block, mm";  // must not begin with "solid"
   bytes.resize(80, ' ');
   PutLittle(bytes, triangles);
-  bool wanted = true;
-  ForEachTriangle(grid, patches,
+  ForEachTriangle(grid, patches, wanted,
                   [&](const MachineVector& a, const MachineVector& b, const MachineVector& c) {
                     if (!wanted) return;
                     PutVector(bytes, (b - a).cross(c - a).normalized());

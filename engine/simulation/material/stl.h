@@ -15,7 +15,8 @@ inline constexpr double kStlTolerance_mm = 0.01;
 // surface is nowhere further than the tolerance above or below that of the heights, which lie over
 // the centres of the cells; plane ground is two triangles (surface_patches.h). motion.md section 9.
 // The bytes are valid during the call of `sink`; it returns false when it wants no more, and so
-// does this. Precondition: the tolerance is not below 0.
+// does this. While nothing is ready yet it is asked with no bytes, some times a second.
+// Precondition: the tolerance is not below 0.
 bool WriteStl(const HeightField& field, double tolerance_mm,
               const std::function<bool(std::string_view)>& sink);
 

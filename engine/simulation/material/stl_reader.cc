@@ -119,12 +119,15 @@ Result<std::vector<StlTriangle>> ReadText(std::string_view bytes) {
 
 }  // namespace
 
+Status CheckStlBeginning(std::string_view bytes) {
+  if (IsBinaryStl(bytes) || bytes.substr(0, 5) == "solid") return {};
+  return NoStl("it neither begins with 'solid' nor is as long as its number of triangles says");
+}
+
 Result<std::vector<StlTriangle>> ReadStl(std::string_view bytes) {
-  const bool binary = IsBinaryStl(bytes);
-  if (!binary && bytes.substr(0, 5) != "solid") {
-    return NoStl("it neither begins with 'solid' nor is as long as its number of triangles says");
-  }
-  Result<std::vector<StlTriangle>> triangles = binary ? ReadBinary(bytes) : ReadText(bytes);
+  if (const Status begins = CheckStlBeginning(bytes); !begins) return begins.error();
+  Result<std::vector<StlTriangle>> triangles =
+      IsBinaryStl(bytes) ? ReadBinary(bytes) : ReadText(bytes);
   if (triangles && triangles->empty()) return NoStl("it has no triangle");
   return triangles;
 }

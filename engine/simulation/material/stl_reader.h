@@ -19,4 +19,7 @@ inline constexpr std::size_t kStlTrianglesMax = 1u << 24;  // 800 MB of binary S
 // more than kStlTrianglesMax.
 Result<std::vector<StlTriangle>> ReadStl(std::string_view bytes);
 
+// What can be said of an STL by its first bytes and its length. Error: CellBadText.
+Status CheckStlBeginning(std::string_view bytes);
+
 }  // namespace rmlcell::simulation

@@ -5,6 +5,8 @@
 namespace rmlcell::simulation {
 namespace {
 
+constexpr std::size_t kLooksMax = 1 << 22;  // about 20 ms
+
 // How far a patch is from the plane that its corners suggest.
 struct Roughness {
   double height = 0.0;   // between two planes parallel to that one, with all vertices between them
@@ -44,9 +46,10 @@ Roughness RoughnessOf(const VertexGrid& grid, const Patch& patch, std::vector<do
 
 }  // namespace
 
-SurfacePatches::SurfacePatches(const VertexGrid& grid, double tolerance_mm)
+SurfacePatches::SurfacePatches(const VertexGrid& grid, double tolerance_mm,
+                               const std::function<bool()>& wanted)
     : grid_(grid), tolerance_(tolerance_mm), corners_(grid.columns() * grid.rows()) {
-  Divide(Whole());
+  Divide(Whole(), wanted);
 }
 
 std::pair<Patch, Patch> SurfacePatches::Halves(const Patch& patch, bool across_x) {
@@ -60,14 +63,21 @@ std::pair<Patch, Patch> SurfacePatches::Halves(const Patch& patch, bool across_x
   return {first, second};
 }
 
-void SurfacePatches::Divide(const Patch& whole) {
+void SurfacePatches::Divide(const Patch& whole, const std::function<bool()>& wanted) {
   std::vector<Patch> open{whole};
   std::vector<double> row_before;
+  std::size_t looked_at = 0;  // vertices since it was asked
   while (!open.empty()) {
     const Patch patch = open.back();
     open.pop_back();
     const std::size_t width = patch.right - patch.left;
     const std::size_t depth = patch.back - patch.front;
+    looked_at += (width + 1) * (depth + 1);
+    if (looked_at > kLooksMax) {
+      looked_at = 0;
+      complete_ = wanted();
+      if (!complete_) return;
+    }
     Roughness rough;
     if (width > 1 || depth > 1) rough = RoughnessOf(grid_, patch, row_before);
     const bool halved = rough.height > tolerance_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -62,15 +63,18 @@ struct Patch {
 // log2(columns) + log2(rows) halvings at most; kept are 4 bits a vertex and one for its corners.
 class SurfacePatches {
  public:
-  // Precondition: the tolerance is not below 0. The grid must outlive this.
-  SurfacePatches(const VertexGrid& grid, double tolerance_mm);
+  // `wanted` is asked now and then; as soon as it says no the division is left as it is, and is not
+  // complete. Precondition: the tolerance is not below 0. The grid must outlive this.
+  SurfacePatches(const VertexGrid& grid, double tolerance_mm, const std::function<bool()>& wanted);
+
+  bool complete() const { return complete_; }
 
   // Whether a patch has a corner there.
   bool corner(std::size_t column, std::size_t row) const {
     return corners_[row * grid_.columns() + column];
   }
 
-  // In the same order each time.
+  // In the same order each time, until `visit` returns false. Precondition: complete().
   template <class Visit>
   void ForEach(Visit visit) const {
     std::vector<Patch> open{Whole()};
@@ -78,7 +82,7 @@ class SurfacePatches {
       const Patch patch = open.back();
       open.pop_back();
       if (!decisions_[next]) {
-        visit(patch);
+        if (!visit(patch)) return;
         continue;
       }
       const auto [first, second] = Halves(patch, decisions_[next + 1]);
@@ -90,12 +94,13 @@ class SurfacePatches {
  private:
   Patch Whole() const { return {0, grid_.columns() - 1, 0, grid_.rows() - 1}; }
   static std::pair<Patch, Patch> Halves(const Patch& patch, bool across_x);
-  void Divide(const Patch& whole);
+  void Divide(const Patch& whole, const std::function<bool()>& wanted);
 
   const VertexGrid& grid_;
   double tolerance_;
   std::vector<bool> decisions_;  // two a patch, before those of its halves: halved, and across X
   std::vector<bool> corners_;
+  bool complete_ = true;
 };
 
 }  // namespace rmlcell::simulation

@@ -13,6 +13,7 @@ constexpr float kSaysNothing = std::numeric_limits<float>::quiet_NaN();
 // hundreds.
 constexpr std::uint64_t kLayersMax = 256;
 constexpr std::uint64_t kLooksFree = 1u << 24;
+constexpr std::uint64_t kLooksUnasked = 1u << 22;  // about 20 ms
 
 class TargetRaster {
  public:
@@ -40,6 +41,7 @@ class TargetRaster {
 
   // Raises the cells under a triangle to it. False: that was too much work.
   bool Raise(const StlTriangle& triangle);
+  std::uint64_t looks_left() const { return looks_left_; }
 
   std::vector<float> Take() { return std::move(heights_); }
 
@@ -129,7 +131,8 @@ std::vector<float> TargetOfMap(const HeightMap& map, const Stock& stock) {
   return heights;
 }
 
-Result<std::vector<float>> TargetOfBody(const std::vector<StlTriangle>& body, const Stock& stock) {
+Result<std::vector<float>> TargetOfBody(const std::vector<StlTriangle>& body, const Stock& stock,
+                                        const StillWanted& wanted) {
   double x_low = HUGE_VAL, x_high = -HUGE_VAL, y_low = HUGE_VAL, y_high = -HUGE_VAL;
   for (const StlTriangle& triangle : body) {
     for (const auto& corner : triangle.corners) {
@@ -144,7 +147,12 @@ Result<std::vector<float>> TargetOfBody(const std::vector<StlTriangle>& body, co
   if (extent.none())
     return InvalidArgument("the target lies beside the block: its origin is the work origin, mm");
   raster.Fill(extent, static_cast<float>(stock.bottom));
+  std::uint64_t ask_at = raster.looks_left();
   for (const StlTriangle& triangle : body) {
+    if (raster.looks_left() <= ask_at) {
+      if (wanted && !wanted()) return Error{ErrorCode::kCellCancelled, {}, {}};
+      ask_at = raster.looks_left() - std::min(raster.looks_left(), kLooksUnasked);
+    }
     if (!raster.Raise(triangle)) {
       return Error{
           ErrorCode::kCellTooLarge, "the STL lies over itself hundreds of times; simplify it", {}};
@@ -155,7 +163,14 @@ Result<std::vector<float>> TargetOfBody(const std::vector<StlTriangle>& body, co
 
 bool IsPng(std::string_view bytes) { return bytes.substr(0, 4) == "\x89PNG"; }
 
-Result<std::vector<float>> ReadTarget(std::string_view bytes, const Stock& stock) {
+bool IsTargetFile(std::string_view bytes, std::string_view file_name) {
+  if (IsPng(bytes)) return true;
+  const std::string_view end = file_name.substr(std::min(file_name.rfind('.'), file_name.size()));
+  return end == ".stl" || end == ".STL" || end == ".Stl";
+}
+
+Result<std::vector<float>> ReadTarget(std::string_view bytes, const Stock& stock,
+                                      const StillWanted& wanted) {
   if (IsPng(bytes)) {
     const Result<HeightMap> map = ReadHeightMap(bytes);
     if (!map) return map.error();
@@ -163,7 +178,7 @@ Result<std::vector<float>> ReadTarget(std::string_view bytes, const Stock& stock
   }
   const Result<std::vector<StlTriangle>> body = ReadStl(bytes);
   if (!body) return body.error();
-  return TargetOfBody(*body, stock);
+  return TargetOfBody(*body, stock, wanted);
 }
 
 }  // namespace rmlcell::simulation

@@ -127,5 +127,25 @@ TEST_F(ReadProjectTest, WhatIsNoProjectIsRefused) {
   ExpectRefused(folder.File("q"), ErrorCode::kCellBadText, "project.json");
 }
 
+// A target of a program is a file beside the JSON file, too.
+TEST_F(ReadProjectTest, TargetsLieBesideItLikewise) {
+  folder.Put("p/a.rml", "PA;");
+  folder.Put("p/parts/old.rml", "PD;");
+  folder.Put("p/a.stl", "solid");
+  const v1::Project project = Read(folder.Put("p/any.json", R"({"programs": [
+    {"slot": 1, "source": {"fileName": "a.rml"},
+     "milling": {"target": {"inlineProgram": {"fileName": "parts/old.rml"}}}},
+    {"slot": 2, "source": {"fileName": "a.rml"}, "milling": {"target": {"file": {"fileName": "a.stl"}}}},
+    {"slot": 3, "source": {"fileName": "a.rml"}, "milling": {"target": {"slot": 4}}}]})"));
+  ASSERT_EQ(project.programs_size(), 3);
+  EXPECT_EQ(project.programs(0).milling().target().inline_program().content(), "PD;");
+  EXPECT_EQ(project.programs(0).milling().target().inline_program().file_name(), "old.rml");
+  EXPECT_EQ(project.programs(1).milling().target().file().content(), "solid");
+  EXPECT_EQ(project.programs(2).milling().target().slot(), 4);
+  ExpectRefused(folder.Put("q/any.json", R"({"programs": [{"slot": 1, "milling":
+    {"target": {"file": {"fileName": "none.stl"}}}}]})"),
+                ErrorCode::kCellFileUnreadable, "none.stl");
+}
+
 }  // namespace
 }  // namespace rmlcell::cli

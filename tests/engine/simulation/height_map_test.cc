@@ -176,5 +176,22 @@ TEST(HeightMap, GivesNoMemoryForAHeadingAlone) {
   ExpectRefused(with_size(8000), "it ends too early");
 }
 
+// A picture of one grey packs into nothing, however long it is in the making: asked before each
+// row.
+TEST(Png, WhoeverWaitsIsAskedBeforeEachRow) {
+  for (const int most : {7, 3}) {
+    int asked = 0;
+    int rows = 0;
+    const bool written = WritePng(
+        {.width = 5, .height = 7}, [&](std::size_t, std::span<std::uint8_t>) { ++rows; },
+        [&](std::string_view part) {
+          if (part.empty()) ++asked;
+          return asked <= most;
+        });
+    EXPECT_EQ(written, most == 7);
+    EXPECT_EQ(rows, most);
+  }
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

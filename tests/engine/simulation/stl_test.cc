@@ -285,5 +285,29 @@ TEST(Stl, EndsWhenNobodyWantsMore) {
   EXPECT_FALSE(WriteStl(Plate(1.0), 0.0, [](std::string_view) { return false; }));
 }
 
+// Before the first triangle there is much to look at: 2400 x 2000 cells are 4.8 million, and
+// whoever waits is asked after each 4.2 million.
+TEST(Stl, WhoeverWaitsIsAskedWhileNothingIsReady) {
+  HeightField field =
+      HeightField::Of({.x_max = 240.0, .y_max = 200.0, .bottom = -2.0, .top = 0.0, .cell = 0.1})
+          .value();
+  std::size_t bytes = 0;
+  int asked = 0;
+  const auto wanted = [&](int most) {
+    bytes = 0;
+    asked = 0;
+    return WriteStl(field, 0.01, [&, most](std::string_view part) {
+      bytes += part.size();
+      if (part.empty()) ++asked;
+      return asked <= most;
+    });
+  };
+  EXPECT_TRUE(wanted(1));
+  EXPECT_EQ(asked, 1);
+  EXPECT_EQ(bytes, 84U + 50U * 12U);  // a plate is a box
+  EXPECT_FALSE(wanted(0));
+  EXPECT_EQ(bytes, 0U);
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

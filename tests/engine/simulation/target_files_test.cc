@@ -159,5 +159,30 @@ TEST(TargetFiles, ABodyThatLiesOverItselfTooOftenIsRefused) {
   EXPECT_TRUE(TargetOfBody(some, stock));
 }
 
+// Each layer is 160,000 looks; asked at the first, and then after 4.2 million: every 27th.
+TEST(TargetFiles, ABodyIsGivenUpWhenItIsNotWantedAnyMore) {
+  const Stock stock{.x_max = 40.0, .y_max = 40.0, .bottom = -1.0, .top = 0.0, .cell = 0.1};
+  const std::vector<StlTriangle> body(
+      100, StlTriangle{{{{-40.0f, 0.0f, 0.0f}, {80.0f, 0.0f, 0.0f}, {20.0f, 90.0f, 0.0f}}}});
+  int asked = 0;
+  EXPECT_TRUE(TargetOfBody(body, stock, [&] {
+    ++asked;
+    return true;
+  }));
+  EXPECT_EQ(asked, 4);
+  const auto heights = TargetOfBody(body, stock, [&] { return --asked > 1; });
+  ASSERT_FALSE(heights);
+  EXPECT_EQ(heights.error().code, ErrorCode::kCellCancelled);
+  EXPECT_EQ(asked, 1);
+}
+
+// docs/material.md: a PNG by its bytes, an STL by its name; any other is a program.
+TEST(TargetFiles, AreToldFromPrograms) {
+  EXPECT_TRUE(IsTargetFile("\x89PNG", "part.rml"));
+  for (const char* name : {"a.stl", "a.b.STL", ".Stl"}) EXPECT_TRUE(IsTargetFile("PA;", name));
+  for (const char* name : {"", "stl", "a.stl.rml", "a.stlx", "a."})
+    EXPECT_FALSE(IsTargetFile("PA;", name)) << name;
+}
+
 }  // namespace
 }  // namespace rmlcell::simulation

@@ -293,5 +293,35 @@ TEST_F(ProjectLimits, OfMillings) {
   EXPECT_EQ(asked(0.0), ErrorCode::kCellInvalidArgument);
 }
 
+// Likewise its target. Lists leave out what is large.
+TEST_F(ProjectLimits, OfTargets) {
+  v1::CreateProjectRequest request;
+  request.set_project_id("coaster");
+  v1::ProjectProgram& program = *request.mutable_project()->add_programs();
+  program.set_slot(7);
+  program.mutable_source()->set_content("PA;");
+  v1::Milling& milling = *program.mutable_milling();
+  milling.mutable_stock()->set_size_x_mm(60.0);
+  milling.mutable_stock()->set_size_y_mm(30.0);
+  milling.mutable_stock()->set_size_z_mm(5.0);
+  milling.mutable_tool()->set_shape(v1::MillTool::SHAPE_FLAT);
+  milling.mutable_tool()->set_diameter_mm(3.0);
+  v1::MillTarget& target = *milling.mutable_target();
+  const auto missing = book.Create(request);
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error.error.code, ErrorCode::kCellInvalidArgument);
+  EXPECT_EQ(missing.error.error.detail,
+            "program 7: milling.target is missing: file, inline_program or slot");
+  target.mutable_file()->set_content("PA;");
+  EXPECT_EQ(book.Create(request).error.error.code, ErrorCode::kCellBadText);
+  target.mutable_file()->set_content("solid\nendsolid\n");
+  ASSERT_TRUE(book.Create(request));
+  const auto kept = Must(book.Get("projects/coaster"));
+  EXPECT_EQ(kept.programs(0).milling().target().file().content(), "solid\nendsolid\n");
+  const v1::MillTarget listed = Page(1).projects(0).programs(0).milling().target();
+  EXPECT_TRUE(listed.has_file());
+  EXPECT_EQ(listed.file().content(), "");
+}
+
 }  // namespace
 }  // namespace rmlcell::server

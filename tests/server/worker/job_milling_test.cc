@@ -182,9 +182,10 @@ TEST_F(JobMilling, AFileForWhichThereIsNoMemoryIsOutOfMemory) {
     v1::Milling milling;
     (milling.*wants)(true);
     const auto none = [](std::size_t) -> bool { throw std::bad_alloc(); };
-    EXPECT_THROW(MaterialFiles(*field, milling, none), std::bad_alloc);
-    EXPECT_FALSE(MaterialFiles(*field, milling, [](std::size_t) { return false; }));
-    EXPECT_EQ(MaterialFiles(*field, milling, [](std::size_t) { return true; })->size(), 1U);
+    EXPECT_THROW(MaterialFiles(*field, nullptr, milling, none), std::bad_alloc);
+    EXPECT_FALSE(MaterialFiles(*field, nullptr, milling, [](std::size_t) { return false; }));
+    EXPECT_EQ(MaterialFiles(*field, nullptr, milling, [](std::size_t) { return true; })->size(),
+              1U);
   }
 }
 

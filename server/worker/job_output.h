@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "proto/bridge/spooled_bytes.h"
+#include "rmlcell/v1/worker.pb.h"
+#include "server/worker/server_line.h"
+
+namespace rmlcell::server {
+
+// What a job puts out: the products that grow while it runs, within its budget, and how each goes
+// to the server.
+class JobOutput {
+ public:
+  // Both outlive this. `bytes_max`: of trace, toolpath, events and all other products together.
+  JobOutput(ServerLine& line, const v1::WorkerLease& lease, std::int64_t bytes_max)
+      : line_(line), lease_(lease), bytes_max_(bytes_max) {}
+
+  // One record of the trace, one block of the toolpath, events that were sent. False: that is more
+  // than the budget.
+  bool AddTrace(std::string_view record);
+  bool AddToolpath(std::string_view block);
+  void CountEvents(std::size_t bytes) { event_bytes_ += bytes; }
+
+  // Whether all that the job has put out stays in its budget, `more` included.
+  bool Fits(std::size_t more = 0) const;
+
+  // Once, at the end.
+  void SendTrace() { SendSpooled("trace", trace_); }
+  void SendToolpath() { SendSpooled("toolpath", toolpath_); }
+  void Send(const std::string& name, const std::string& media_type, std::string_view bytes,
+            const machine::BytesKeeper* keeper = nullptr);
+
+ private:
+  void SendSpooled(const std::string& name, bridge::SpooledBytes& product);
+
+  ServerLine& line_;
+  const v1::WorkerLease& lease_;
+  std::int64_t bytes_max_;
+  bridge::SpooledBytes trace_;
+  bridge::SpooledBytes toolpath_;
+  std::size_t event_bytes_ = 0;
+};
+
+}  // namespace rmlcell::server
