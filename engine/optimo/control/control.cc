@@ -59,12 +59,12 @@ Control::Control(OptimoParameters parameters, machine::RunSetup setup,
              data_, waits_),
       halts_(s_.halts, now(), telling_, ride_, actuators_, waits_, works_),
       moves_(s_.moves, now(), parameters_, telling_, counter_, data_, travel_, ride_, effects_,
-             waits_, watch_, halts_.requests()),
+             waits_, watch_, halts_),
       flow_(now(), parameters_, cycle_, telling_, counter_, data_, effects_, waits_),
       alarms_(s_.alarms, now(), telling_, counter_, ride_, actuators_, data_, waits_, watch_,
               works_) {
   now().mode = setup_.mode;
-  now().override_percent = setup_.override_percent;
+  s_.ride.override_percent = setup_.override_percent;
   // START: the program begins, in SINGLE with its first step (OPT-6.31).
   const Result<Loaded> main = counter_.Acquire(setup_.main_program, false);
   if (main) {
@@ -108,7 +108,7 @@ RunPhase Control::Advance(SimTime until) {
 
 bool Control::MayFetch() const {
   return now().running() && !waits_.waits() && !ride_.protocol().comes_to_rest() &&
-         (!ride_.busy() || ride_.beside() || (halts_.requests().stop && ride_.passing()));
+         (!ride_.busy() || ride_.beside() || (halts_.stop_waits() && ride_.passing()));
 }
 
 // Nothing outside can change the condition any more, and no motion either.
@@ -158,10 +158,7 @@ void Control::ActOnTime() {
   }
   ride_.Start();
   if (ride_.protocol().comes_to_rest() && !ride_.busy()) return halts_.HaltOnPath();
-  if (halts_.requests().stop && ride_.under_way() != nullptr && ride_.Stop()) {
-    halts_.requests().stop = false;
-    if (!ride_.busy()) return halts_.HaltOnPath();
-  }
+  if (halts_.StopNow()) return;
   if (!alarms_.deferred()) {
     const bool rides = watch_.watches();
     if (const Status looked = watch_.Look(); !looked) {
@@ -328,11 +325,11 @@ machine::RunState Control::Snapshot() const {
   state.time = now().now;
   state.phase = now().phase;
   state.place = ride_.motion_place();
-  state.instruction = Describe(now().op).name;
+  state.instruction = Describe(s_.op).name;
   state.tip = ride_.tip();
   state.axes = ride_.axes();
   state.tip_speed_mm_s = ride_.tip_speed_mm_s();
-  state.override_percent = now().override_percent;
+  state.override_percent = s_.ride.override_percent;
   state.beam_on = actuators_.beam_on();
   return state;
 }

@@ -1,5 +1,3 @@
-#include <utility>
-
 #include "engine/optimo/control/control.h"
 
 // One instruction after the other.
@@ -37,11 +35,8 @@ void Control::Fetch() {
   const bool at_end = at >= counter_.module().instructions.size();
   if (halts_.due()) {
     if (StandFirst()) return;
-    HaltRequests& requests = halts_.requests();
-    const std::string_view after_step = std::exchange(requests.after_step, {});
     const bool over = at_end && counter_.call_level() == 1 && !counter_.in_function();
-    if (after_step.empty()) return halts_.Halt(requests.stop ? "STOP" : "HOLD");
-    if (!over) return halts_.Halt(after_step);
+    if (halts_.HaltHere(over)) return;
   }
   if (!ride_.passing() && !waits_.condition_met()) {
     if (const std::optional<int> label = counter_.TakeDueGosub()) {
@@ -68,7 +63,7 @@ void Control::Fetch() {
                   std::to_string(s_.steps) + " steps were executed");
   }
   now().place = here;
-  now().op = i.op;
+  s_.op = i.op;
   if (!MayCarryOut(i)) return;
   const bool polls =
       i.reads_machine && i.op != Op::kMove && !waits_.condition_met() && !now().simulating();
@@ -221,7 +216,7 @@ Status Control::Execute(const Instruction& i) {
       return {};
     }
     case Op::kBreak:  // stays when the program ends: OPT-6.08
-      halts_.requests().breakpoint = step_of();
+      halts_.SetBreakpoint(step_of());
       return {};
     case Op::kSimul:  // of the next start, not of this run: OPT-6.16
       s_.simul = step_of();

@@ -11,7 +11,7 @@ ControlState::ControlState(const OptimoParameters& parameters, const MachineStat
   if (kept.door_open) actuators.beam = actuators.beam.DoorOpened();
   counter.selected = kept.selected;
   data.area = kept.data;
-  halts.requests.breakpoint = kept.breakpoint;
+  halts.breakpoint = kept.breakpoint;
   moves.work_offset = kept.work_offset;
   moves.zeroed = kept.zeroed;
 }
@@ -25,7 +25,7 @@ MachineState ControlState::Kept() const {
           .zeroed = moves.zeroed,
           .door_open = actuators.beam.door_open(),
           .selected = counter.selected,
-          .breakpoint = halts.requests.breakpoint,
+          .breakpoint = halts.breakpoint,
           .simul = simul};
 }
 

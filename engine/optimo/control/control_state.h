@@ -15,6 +15,7 @@
 #include "engine/optimo/control/program_counter.h"
 #include "engine/optimo/control/waits.h"
 #include "engine/optimo/control/works.h"
+#include "engine/optimo/language/instruction_set.h"
 #include "engine/optimo/machine/situation.h"
 #include "engine/optimo/ride/ride.h"
 #include "engine/optimo/ride/travel.h"
@@ -48,6 +49,7 @@ struct ControlState {
   AlarmState alarms{};
 
   std::optional<machine::ProgramStep> simul{};  // SIMUL: arms the next start, OPT-6.16
+  Op op = Op::kInvalid;                         // in execution, as it is shown
   std::size_t next_input = 0;                   // of the script
   std::uint64_t steps = 0;
   std::uint64_t steps_at_repeat = 0;  // REPEAT: executed before this repetition

@@ -130,7 +130,7 @@ Status Flow::CallProgram(const Instruction& i) {
 
 Status Flow::SetTimer(const Instruction& i) {
   if (i.Has(kDis)) {
-    counter_.program().timer.reset();
+    counter_.ClearTimer();
     return {};
   }
   const Result<double> seconds = data_.Real(counter_.module().Value(i, 0));

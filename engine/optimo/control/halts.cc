@@ -5,13 +5,21 @@
 namespace rmlcell::optimo {
 
 bool Halts::due() const {
-  const HaltRequests& requests = s_.requests;
-  return (requests.hold && !waits_.condition_met()) || (requests.stop && !ride_.passing()) ||
-         !requests.after_step.empty();
+  return (s_.hold && !waits_.condition_met()) || (s_.stop && !ride_.passing()) ||
+         s_.after_step != AfterStep::kNone;
+}
+
+bool Halts::breaks_at(const machine::Place& place) const {
+  return s_.breakpoint && s_.breakpoint->program == place.program &&
+         s_.breakpoint->step == place.step;
+}
+
+bool Halts::will_halt_behind(const machine::Place& place) const {
+  return situation_.mode == machine::Mode::kSingle || s_.hold || breaks_at(place);
 }
 
 void Halts::Hold() {
-  s_.requests.hold = true;
+  s_.hold = true;
   if (situation_.running()) ride_.Hold();
 }
 
@@ -19,24 +27,43 @@ void Halts::Stop() {
   if (!situation_.running() || !ride_.protocol().may_stop()) return;
   if (!ride_.busy() && !ride_.passing()) return Halt("STOP");
   const motion::MotionUnderWay* active = ride_.under_way();
-  s_.requests.stop = active == nullptr || active->ended || !ride_.Stop();
-  if (!s_.requests.stop && !ride_.busy()) HaltOnPath();
+  s_.stop = active == nullptr || active->ended || !ride_.Stop();
+  if (!s_.stop && !ride_.busy()) HaltOnPath();
+}
+
+bool Halts::StopNow() {
+  if (!s_.stop || ride_.under_way() == nullptr || !ride_.Stop()) return false;
+  s_.stop = false;
+  if (ride_.busy()) return false;
+  HaltOnPath();
+  return true;
 }
 
 void Halts::EndStep(const machine::Place& place) {
-  if (s_.requests.breaks_at(place)) {
-    s_.requests.after_step = "BREAK";
+  if (breaks_at(place)) {
+    s_.after_step = AfterStep::kBreak;
   } else if (situation_.mode == machine::Mode::kSingle) {
-    s_.requests.after_step = "SINGLE";
+    s_.after_step = AfterStep::kSingle;
   }
+}
+
+bool Halts::HaltHere(bool program_over) {
+  const AfterStep after_step = std::exchange(s_.after_step, AfterStep::kNone);
+  if (after_step == AfterStep::kNone) {
+    Halt(s_.stop ? "STOP" : "HOLD");
+    return true;
+  }
+  if (program_over) return false;
+  Halt(after_step == AfterStep::kBreak ? "BREAK" : "SINGLE");
+  return true;
 }
 
 void Halts::Halt(std::string_view why) {
   waits_.Tell();
   situation_.phase = machine::RunPhase::kHalted;
   s_.halted_at = situation_.now;
-  s_.requests.hold = false;
-  s_.requests.stop = false;
+  s_.hold = false;
+  s_.stop = false;
   actuators_.Hold();
   telling_.observer().OnHalt({.at = situation_.now, .place = situation_.place, .why = why});
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string_view>
 
@@ -10,22 +11,19 @@
 
 namespace rmlcell::optimo {
 
-// What is to halt the run before its next instruction. All may be wanted at once: a halt ends HOLD
-// and STOP, and that after a step comes first.
-struct HaltRequests {
-  bool hold = false;  // HOLD; a MOVE that is carried out meanwhile is exact. OPT-4.17
-  bool stop = false;  // STOP on a motion that could not be left when the key was pressed
-  std::string_view after_step{};  // SINGLE or BREAK, when the step is over; empty: none
-  std::optional<machine::ProgramStep> breakpoint{};  // of BREAK, which stays when met. OPT-6.08
-
-  // BREAK is set at this step.
-  bool breaks_at(const machine::Place& place) const {
-    return breakpoint && breakpoint->program == place.program && breakpoint->step == place.step;
-  }
+// What halts the run behind the step that was carried out last.
+enum class AfterStep : std::uint8_t {
+  kNone,
+  kSingle,  // the mode. OPT-6.31
+  kBreak,   // the breakpoint stands at it. OPT-6.08
 };
 
 struct HaltState {
-  HaltRequests requests{};
+  // Any of the three may be wanted together: the halt after a step comes first.
+  bool hold = false;  // HOLD; a MOVE that is carried out meanwhile is exact. OPT-4.17
+  bool stop = false;  // STOP on a motion that could not be left when the key was pressed
+  AfterStep after_step = AfterStep::kNone;
+  std::optional<machine::ProgramStep> breakpoint{};  // of BREAK
   SimTime halted_at{0};
   // Where the program had run ahead to when HOLD or STOP halted the motion; while halted.
   std::optional<machine::Place> place_ahead{};
@@ -33,8 +31,20 @@ struct HaltState {
 
 // Halts of the run, where time stands for the program and the beam is off, until START.
 //
-//   RunPhase::kRunning   Halt, HaltOnPath   kHalted
-//   RunPhase::kHalted    Resume             kRunning
+//   phase      by                                                        next
+//   kRunning   Halt, HaltOnPath; HaltHere, StopNow where they say so     kHalted
+//   kHalted    Resume                                                    kRunning
+//   any        Finish (Control)                                          kFinished, for good
+//
+//   request      set by                               cleared by
+//   hold         Hold; halted: for the next START     any halt
+//   stop         Stop, where the motion under way     Stop, StopNow: it can, and comes to rest;
+//                cannot be left yet                   any halt
+//   after_step   EndStep: kBreak at the breakpoint,   HaltHere, with a halt; without one where the
+//                else kSingle in SINGLE               main program is over. Other halts leave it
+//   breakpoint   SetBreakpoint; what the machine kept never: the next BREAK replaces it. OPT-6.08
+//
+// In kFinished nothing is set or cleared.
 class Halts {
  public:
   Halts(HaltState& state, Situation& situation, const Telling& telling, Ride& ride,
@@ -47,11 +57,13 @@ class Halts {
         waits_(waits),
         works_(works) {}
 
-  HaltRequests& requests() { return s_.requests; }
-  const HaltRequests& requests() const { return s_.requests; }
   // The run is to halt before the next instruction; one whose condition is met is finished before a
   // HOLD (OPT-4.17), and a motion that may be held back before a STOP.
   bool due() const;
+  // A STOP waits until more of the motions is planned, or until the one under way is over.
+  bool stop_waits() const { return s_.stop; }
+  // The run halts behind the step at this place: nothing may pass its target without a stop.
+  bool will_halt_behind(const machine::Place& place) const;
 
   // HOLD: the ride ends at a target, or the run halts before the next instruction.
   void Hold();
@@ -60,7 +72,15 @@ class Halts {
   void Stop();
   // The step that was begun here is over: SINGLE or BREAK may halt behind it.
   void EndStep(const machine::Place& place);
+  // BREAK
+  void SetBreakpoint(const machine::ProgramStep& step) { s_.breakpoint = step; }
 
+  // Time passed. A STOP that waited brings the machine to rest from here, where it can. True: it
+  // stands already, and the run is halted.
+  bool StopNow();
+  // The machine stands behind the last step. False: the step was the last of the main program, and
+  // no halt comes behind it. Precondition: due().
+  bool HaltHere(bool program_over);
   void Halt(std::string_view why);
   // The motions are at rest, and go on at START: the halt belongs to the move that was under way.
   void HaltOnPath();
@@ -70,6 +90,8 @@ class Halts {
   void Resume();
 
  private:
+  bool breaks_at(const machine::Place& place) const;
+
   HaltState& s_;
   Situation& situation_;
   const Telling& telling_;

@@ -162,8 +162,7 @@ Result<bool> Moves::MayBegin(const Instruction& i) {
 
 // How a MOVE with /END or /TIME ends is not known before: the program cannot run ahead of it.
 MoveNote Moves::NoteOf(const Instruction& i, const Coordinates& target) {
-  const bool halts = situation_.mode == machine::Mode::kSingle || halts_.hold ||
-                     halts_.breaks_at(situation_.place);
+  const bool halts = halts_.will_halt_behind(situation_.place);
   const bool may_end_early = i.Has(kEnd) || i.Has(kTime);
   const bool fly = i.Has(kFly) && !halts;
   if (fly && may_end_early) {
@@ -256,7 +255,7 @@ Result<bool> Moves::AppendHole(const Programmed& move, const motion::TipPose& fr
 // SPEED x override, which is told once where it is too much. OPT-4.38
 double Moves::SpeedFraction() {
   const double speed =
-      counter_.modal().speed_percent * kPercent * situation_.override_percent * kPercent;
+      counter_.modal().speed_percent * kPercent * ride_.override_percent() * kPercent;
   if (speed <= 1.0) return speed;
   if (!s_.speed_limited_told) {
     s_.speed_limited_told = true;

@@ -27,8 +27,7 @@ class Moves {
  public:
   Moves(MoveState& state, Situation& situation, const OptimoParameters& parameters,
         const Telling& telling, ProgramCounter& counter, DataAccess& data, Travel& travel,
-        Ride& ride, PassageEffects& effects, Waits& waits, MoveWatch& watch,
-        const HaltRequests& halts)
+        Ride& ride, PassageEffects& effects, Waits& waits, MoveWatch& watch, const Halts& halts)
       : s_(state),
         situation_(situation),
         parameters_(parameters),
@@ -104,7 +103,7 @@ class Moves {
   PassageEffects& effects_;
   Waits& waits_;
   MoveWatch& watch_;
-  const HaltRequests& halts_;
+  const Halts& halts_;
 };
 
 }  // namespace rmlcell::optimo

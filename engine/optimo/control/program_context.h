@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -45,14 +46,30 @@ struct Modal {
   std::uint8_t imaged = 0;            // IMAGE
 };
 
+// What the TIMER of a program is at; the table is in program_counter.h.
+enum class TimerStage : std::uint8_t {
+  kNone,    // none is set
+  kCounts,  // to the time when its GOSUB is due
+  kRuns,    // its GOSUB runs, of /AUTO: it is made anew when that is over
+  kStands,  // still, while a CALLed program runs. OPT-B.89
+};
+
 // TIMER. It belongs to the activation that set it: sequence numbers are local to a module.
 struct ProgramTimer {
-  SimTime due{0};
-  SimTime period{0};
+  SimTime due{0};     // kCounts: its GOSUB; kRuns: the next one
+  SimTime period{0};  // of /AUTO
   int label = 0;
-  bool repeats = false;
-  std::size_t level = 0;    // ProgramContext::frames.size() where it was set
-  std::size_t running = 0;  // depth of its GOSUB while that runs; 0: it does not
+  bool repeats = false;                // /AUTO
+  std::size_t level = 0;               // ProgramContext::frames.size() where it was set
+  std::optional<std::size_t> gosub{};  // the depth of its GOSUB while that runs
+  std::optional<SimTime> left{};       // kStands: up to `due`
+
+  // Of one that is set. What it was before it stood still is kept: its GOSUB may have made the
+  // CALL.
+  TimerStage Stage() const {
+    if (left) return TimerStage::kStands;
+    return gosub ? TimerStage::kRuns : TimerStage::kCounts;
+  }
 };
 
 // A GOSUB that is made between two instructions: /TIME of a /NEXT motion.
@@ -76,8 +93,9 @@ struct ProgramContext {
   Modal modal{};
   Processes processes{};
   std::optional<ProgramTimer> timer{};
-  SimTime timer_left{0};  // stands still while a CALLed program runs, OPT-B.89
   std::optional<DueGosub> due_gosub{};
+
+  TimerStage timer_stage() const { return timer ? timer->Stage() : TimerStage::kNone; }
 };
 
 }  // namespace rmlcell::optimo

@@ -49,9 +49,7 @@ void ProgramCounter::Begin(Loaded loaded, const std::array<float, kParameterCoun
   context.program = std::move(loaded);
   if (!empty()) {
     ProgramContext& caller = program();
-    if (caller.timer) {
-      caller.timer_left = std::max(SimTime(0), caller.timer->due - situation_.now);
-    }
+    if (caller.timer) caller.timer->left = std::max(SimTime(0), caller.timer->due - situation_.now);
   }
   s_.programs.push_back(std::move(context));
 }
@@ -64,7 +62,8 @@ bool ProgramCounter::BeginMain(const Loaded& loaded, int slot) {
 
 void ProgramCounter::EndProgram() {
   s_.programs.pop_back();
-  if (program().timer) program().timer->due = situation_.now + program().timer_left;
+  std::optional<ProgramTimer>& timer = program().timer;
+  if (timer) timer->due = situation_.now + *std::exchange(timer->left, std::nullopt);
 }
 
 // CMOS holds objects and executables together. OPT-B.73
@@ -153,8 +152,8 @@ Status ProgramCounter::Gosub(int label) {
 
 void ProgramCounter::ReturnFromGosub() {
   std::optional<ProgramTimer>& timer = program().timer;
-  if (timer && timer->level == level() && timer->running >= frame().returns.size()) {
-    timer->running = 0;
+  if (timer && timer->level == level() && timer->gosub >= frame().returns.size()) {
+    timer->gosub.reset();
     // Else a handler longer than its period would be all that runs.
     SkipMissed(*timer, situation_.now);
   }
@@ -223,11 +222,11 @@ std::optional<int> ProgramCounter::TakeDueGosub() {
     context.timer.reset();
     return std::nullopt;
   }
-  if (situation_.now < timer.due || timer.running > 0) return std::nullopt;
+  if (situation_.now < timer.due || timer.Stage() != TimerStage::kCounts) return std::nullopt;
   const int label = timer.label;
   if (timer.repeats) {
     SkipMissed(timer, situation_.now);
-    timer.running = frame().returns.size() + 1;
+    timer.gosub = frame().returns.size() + 1;
   } else {
     context.timer.reset();
   }

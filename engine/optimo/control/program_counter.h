@@ -24,6 +24,18 @@ struct ProgramCounterState {
 //   CALL, GO          Begin            the end of a program   EndProgram
 //   FUNCTION          EnterFunction    its ENDTASK, RETURN    LeaveFunction
 //   GOSUB, TIMER      Gosub            RETURN                 ReturnFromGosub
+//
+//   timer     by                                        next
+//   any       TIMER           SetTimer                  kCounts: a new one takes its place
+//             TIMER /DIS      ClearTimer                kNone
+//   kCounts   it is due       TakeDueGosub              kRuns with /AUTO, else kNone: its GOSUB is
+//                                                       made
+//   kRuns     RETURN from it  ReturnFromGosub           kCounts, to the next period not yet missed
+//   kCounts,  CALL            Begin                     kStands
+//   kRuns     activation over TakeDueGosub, in that     kNone
+//                             which called it
+//   kStands   end of CALLed   EndProgram                what it was before, with the time left
+//   any       GO, the end of its program                kNone: each program has its own
 class ProgramCounter {
  public:
   ProgramCounter(ProgramCounterState& state, const Situation& situation,
@@ -84,6 +96,7 @@ class ProgramCounter {
 
   // `period`, `due`: OPT-B.30
   void SetTimer(int label, SimTime due, SimTime period, bool repeats);
+  void ClearTimer() { program().timer.reset(); }
   // The sequence number of a GOSUB that is due between two instructions, of TIMER or of the /TIME
   // of a /NEXT motion: made in the activation that asked for it, and dropped when that is over.
   std::optional<int> TakeDueGosub();

@@ -43,13 +43,14 @@ void Ride::Drain() {
 }
 
 Status Ride::Append(motion::MoveCommand command, const MoveNote& note) {
+  RMLCELL_CHECK(s_.program == GoesOn::kNo || passing());
   command.tag = s_.next_tag++;
   if (const Status appended = s_.planner.Append(command); !appended)
     return OnOptimo(appended.error());
   s_.notes.emplace_back(command.tag, note);
   s_.planned_axes = motion::AxesOn(command.path, command.head, command.path.to());
-  if (note.fly || s_.passing) s_.path.Append({.tag = command.tag, .move = command});
-  s_.passing = note.fly;
+  if (note.fly || passing()) s_.path.Append({.tag = command.tag, .move = command});
+  s_.program = note.fly ? GoesOn::kAhead : GoesOn::kNo;
   s_.run_ahead = 0;
   Drain();
   return {};
@@ -57,7 +58,7 @@ Status Ride::Append(motion::MoveCommand command, const MoveNote& note) {
 
 std::uint64_t Ride::AppendMark() {
   const std::uint64_t tag = s_.next_tag++;
-  if (s_.passing) s_.path.Append({.tag = tag, .move = std::nullopt});
+  if (passing()) s_.path.Append({.tag = tag, .move = std::nullopt});
   s_.planner.Mark(tag);
   Drain();
   return tag;
@@ -65,17 +66,17 @@ std::uint64_t Ride::AppendMark() {
 
 void Ride::EndChain() {
   s_.planner.Stop();
-  s_.passing = false;
+  if (passing()) s_.program = GoesOn::kNo;
   Drain();
 }
 
 void Ride::GoOnBeside(std::uint64_t tag, bool ran_ahead) {
   EndChain();
   if (ran_ahead) {
-    s_.beside = Beside::kComes;
+    s_.program = GoesOn::kComes;
     s_.beside_from = tag;
   } else {
-    s_.beside = busy() ? Beside::kNow : Beside::kNo;
+    s_.program = busy() ? GoesOn::kBeside : GoesOn::kNo;
   }
   Start();
 }
@@ -95,7 +96,7 @@ void Ride::Start() {
     const motion::PlannedMotion& motion = s_.path.Begin(situation_.now).motion;
     const std::uint64_t tag = motion.tag;
     s_.note = {};
-    if (s_.beside == Beside::kComes && tag >= s_.beside_from) s_.beside = Beside::kNow;
+    if (s_.program == GoesOn::kComes && tag >= s_.beside_from) s_.program = GoesOn::kBeside;
     if (MoveNote* note = NoteOf(tag)) {
       const std::vector<BeyondTravel> beyond = std::move(note->beyond);
       note->beyond.clear();
@@ -148,7 +149,7 @@ std::optional<std::uint64_t> Ride::Arrive() {
     s_.path.DropToCome();
     s_.planned_axes = s_.axes;
   }
-  if (!busy() && !protocol().comes_to_rest()) s_.beside = Beside::kNo;
+  if (!busy() && !protocol().comes_to_rest()) EndBeside();
   if (!done.ended && !done.motion.ends_move) return std::nullopt;
   const motion::CornerReport& corner = done.motion.corner;
   if (corner.passage == motion::Passage::kStopReversal) {
@@ -193,8 +194,13 @@ void Ride::EndHere() {
   active.Begin(situation_.now);
 }
 
+// What the program goes on beside is over; a passage stays open.
+void Ride::EndBeside() {
+  if (!passing()) s_.program = GoesOn::kNo;
+}
+
 bool Ride::TakeOver() {
-  s_.beside = Beside::kNo;  // from here on it is a motion like any other that is waited for
+  EndBeside();  // from here on it is a motion like any other that is waited for
   if (!busy()) return false;
   if (under_way() != nullptr) EndHere();
   s_.path.DropToCome();

@@ -17,17 +17,24 @@
 // The motions of the machine in time: planned, under way, interrupted, held back.
 namespace rmlcell::optimo {
 
-// Whether the program goes on beside a motion of /NEXT. A halt on the path leaves it as it is: the
-// motion goes on at START as it did before. While it is not kNo no passage is open: a MOVE takes
-// over first.
+// Whether the program goes on while there are motions. A halt on the path leaves it as it is: the
+// motions go on at START as they did before.
 //
-//   kNo     GoOnBeside   kNow; kComes behind a /FLY passage; kNo when nothing is under way
-//   kComes  it begins    kNow
-//   any     all is over, TakeOver   kNo
-enum class Beside : std::uint8_t {
-  kNo,
-  kComes,  // behind a /FLY passage: from the motion of RideState::beside_from on
-  kNow,    // beside the one under way
+//   kNo       Append of a motion with /FLY     kAhead
+//   kAhead    Append                           kAhead with /FLY, else kNo
+//             EndChain                         kNo
+//   kNo,      GoOnBeside                       kBeside; kComes, where the program has run ahead;
+//   kAhead                                     kNo, where nothing is under way any more
+//   kComes    its motion begins                kBeside
+//   kComes,   all is over, TakeOver            kNo
+//   kBeside
+//
+// Beside a motion of /NEXT nothing is appended: a MOVE takes over first, all else that moves waits.
+enum class GoesOn : std::uint8_t {
+  kNo,      // it waits for them
+  kAhead,   // it runs ahead of a /FLY motion, which the planner may hold back
+  kComes,   // it waits for the motion of /NEXT behind a passage: that of RideState::beside_from
+  kBeside,  // it goes on beside the motion of /NEXT under way
 };
 
 struct RideState {
@@ -38,14 +45,14 @@ struct RideState {
   motion::AxisPose planned_axes{};  // after everything that was appended
   std::uint64_t next_tag = 1;
   std::deque<std::pair<std::uint64_t, MoveNote>> notes{};  // of motions not over, by tag
-  bool passing = false;                                    // see Ride::passing
   int run_ahead = 0;                                       // see Ride::RunsAhead
+  double override_percent = 100.0;
 
   // Commands are kept in it while /FLY passages are open.
   motion::PathRide path{motion::HoldRamp::kStays};
   MoveNote note{};  // of the motion under way
-  Beside beside = Beside::kNo;
-  std::uint64_t beside_from = 0;
+  GoesOn program = GoesOn::kNo;
+  std::uint64_t beside_from = 0;   // kComes
   machine::Place halted_behind{};  // the move that HOLD made exact, or that STOP interrupted
 };
 
@@ -64,8 +71,9 @@ class RideListener {
 // Time is that of the situation: whoever lets it pass calls Arrive() at NextEvent(), and Start().
 class Ride {
  public:
-  Ride(RideState& state, Situation& situation, const Beam& beam, const OptimoParameters& parameters,
-       Travel& travel, const Telling& telling, RideListener& listener)
+  Ride(RideState& state, const Situation& situation, const Beam& beam,
+       const OptimoParameters& parameters, Travel& travel, const Telling& telling,
+       RideListener& listener)
       : s_(state),
         situation_(situation),
         beam_(beam),
@@ -79,13 +87,14 @@ class Ride {
   // Motions are under way or to come.
   bool busy() const { return s_.path.busy(); }
   // The planner may hold a /FLY motion back.
-  bool passing() const { return s_.passing; }
-  bool beside() const { return s_.beside == Beside::kNow; }
+  bool passing() const { return s_.program == GoesOn::kAhead; }
+  bool beside() const { return s_.program == GoesOn::kBeside; }
   const motion::MotionUnderWay* under_way() const { return s_.path.under_way(); }
   bool moves() const { return under_way() != nullptr && situation_.now < under_way()->arrival; }
   bool waits_to_start() const { return s_.path.waits_to_begin(); }
   bool more_to_come() const { return !s_.path.to_come().empty(); }
 
+  double override_percent() const { return s_.override_percent; }
   motion::Head head() const { return HeadOf(situation_.tool, parameters_); }
   motion::TipPose tip() const;
   motion::AxisPose axes() const;
@@ -104,7 +113,8 @@ class Ride {
   // The machine stands there, and nothing is planned.
   void PutAt(const motion::AxisPose& axes) { s_.planned_axes = axes; }
 
-  // The motion behind all others. Errors: of Planner::Append; nothing has changed then.
+  // The motion behind all others. Precondition: none of /NEXT goes on. Errors: of Planner::Append;
+  // nothing has changed then.
   Status Append(motion::MoveCommand command, const MoveNote& note);
   // Something that happens behind what was appended: its tag.
   std::uint64_t AppendMark();
@@ -181,6 +191,7 @@ class Ride {
   };
 
   void Drain();
+  void EndBeside();
   void TellMotion(SimTime until);
   const MoveNote* NoteOf(std::uint64_t tag) const;
   MoveNote* NoteOf(std::uint64_t tag);
@@ -203,7 +214,7 @@ class Ride {
                 std::vector<motion::PlannedItem> kept);
 
   RideState& s_;
-  Situation& situation_;
+  const Situation& situation_;
   const Beam& beam_;
   const OptimoParameters& parameters_;
   Travel& travel_;

@@ -163,7 +163,7 @@ void Ride::PlanHeld() {
     }
     s_.path.Append(std::move(item));
   }
-  if (!s_.passing) s_.planner.Stop();
+  if (!passing()) s_.planner.Stop();
   Drain();
 }
 

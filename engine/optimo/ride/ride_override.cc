@@ -14,9 +14,8 @@
 namespace rmlcell::optimo {
 
 void Ride::ChangeOverride(double percent) {
-  const double before = situation_.override_percent;
-  if (!(percent > 0.0) || percent == before) return;
-  situation_.override_percent = percent;
+  if (!(percent > 0.0) || percent == s_.override_percent) return;
+  s_.override_percent = percent;
   s_.path.ChangeHeld([&](motion::AppendedCommand& item) { AdaptToOverride(item); });
   if (protocol().Override()) AdaptMotions();
 }
@@ -48,7 +47,7 @@ void Ride::AdaptMotions() {
 }
 
 double Ride::FractionOf(const MoveNote& note) const {
-  return std::min(note.speed_percent * situation_.override_percent * 1e-4, 1.0);
+  return std::min(note.speed_percent * s_.override_percent * 1e-4, 1.0);
 }
 
 // A command that was appended with another override, and what is told of its feed rate.
@@ -99,7 +98,7 @@ bool Ride::ReplanFrom(const ChainPlace& place, const std::vector<motion::Planned
   for (motion::AppendedCommand& item : later) AdaptToOverride(item);
   std::optional<motion::Planner> planner = PlanOnward(*onward, later);
   if (!planner) return false;
-  if (!s_.passing) planner->Stop();
+  if (!passing()) planner->Stop();
   s_.path.ReplaceAppended(onward->own, onwards);
   GoOnward(place, *onward, kept);
   s_.planner = *std::move(planner);

@@ -26,7 +26,7 @@ machine::Place Ride::Rest() {
 void Ride::Resume() {
   const bool interrupted = s_.path.TakeUpInterrupted();
   PlanHeld();
-  if (!busy()) s_.beside = Beside::kNo;
+  if (!busy()) EndBeside();
   const bool overridden = protocol().Resume();
   if (interrupted && overridden) {
     Start();

@@ -1,5 +1,6 @@
 // The tables of stages in the headers of the control's parts, row by row: move_watch.h, works.h,
-// waits.h, alarms.h and ride.h. The state is looked at every millisecond while a program runs.
+// waits.h, alarms.h, halts.h, program_counter.h (TIMER) and ride.h. The state is looked at every
+// millisecond while a program runs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -51,10 +52,38 @@ std::string AlarmOf(const ControlState& state) {
   return state.alarms.deferred ? "deferred" : "none";
 }
 
-std::string BesideOf(const ControlState& state) {
-  constexpr const char* kNames[] = {"no", "comes", "now"};
-  EXPECT_FALSE(state.ride.passing && state.ride.beside != Beside::kNo);
-  return kNames[static_cast<int>(state.ride.beside)];
+std::string GoesOnOf(const ControlState& state) {
+  constexpr const char* kNames[] = {"no", "ahead", "comes", "beside"};
+  return kNames[static_cast<int>(state.ride.program)];
+}
+
+// Of each program, the innermost last.
+std::string TimersOf(const ControlState& state) {
+  constexpr const char* kNames[] = {"none", "counts", "runs", "stands"};
+  std::string text;
+  for (const ProgramContext& program : state.counter.programs) {
+    const bool calls = &program != &state.counter.programs.back();
+    EXPECT_EQ(program.timer_stage() == TimerStage::kStands, calls && program.timer.has_value());
+    text += text.empty() ? "" : "+";
+    text += kNames[static_cast<int>(program.timer_stage())];
+  }
+  return text;
+}
+
+std::string HaltsOf(const ControlState& state) {
+  constexpr const char* kPhases[] = {"running", "halted", "finished"};
+  constexpr const char* kSteps[] = {"", " SINGLE", " BREAK"};
+  const HaltState& halts = state.halts;
+  const bool halted = state.situation.phase == machine::RunPhase::kHalted;
+  EXPECT_FALSE(halts.place_ahead && !halted);
+  EXPECT_FALSE(halts.stop && halted);
+  std::string text = kPhases[static_cast<int>(state.situation.phase)];
+  if (halts.hold) text += " hold";
+  if (halts.stop) text += " stop";
+  text += kSteps[static_cast<int>(halts.after_step)];
+  if (halts.place_ahead) text += " on the path";
+  if (halts.breakpoint) text += " (" + std::to_string(halts.breakpoint->step) + ")";
+  return text;
 }
 
 struct Seen {
@@ -62,6 +91,20 @@ struct Seen {
   std::vector<std::string> timed;   // the same, with the tenth of a second that it was seen from
   int gosubs = 0;                   // VI[3]
 };
+
+// What is seen of a run until it is finished.
+Seen SeenOf(Control& control, const Show& show) {
+  Seen seen;
+  for (int ms = 0; ms < 20'000; ++ms) {
+    if (control.Advance(std::chrono::milliseconds(ms)) == machine::RunPhase::kFinished) break;
+    const std::string stage = show(control.state());
+    if (!seen.stages.empty() && seen.stages.back() == stage) continue;
+    seen.stages.push_back(stage);
+    seen.timed.push_back(std::to_string(ms / 1000) + "." + std::to_string(ms % 1000 / 100) + " " +
+                         stage);
+  }
+  return seen;
+}
 
 // What was seen of a program that goes on for a second once its steps are over. Errors go to 800,
 // times that ran out to 900. IL[20] is on from 0.5 s on, IL[21] from 1.5 s on.
@@ -76,15 +119,7 @@ Seen Through(const std::string& steps, const Show& show,
                   {At(1.5), InputKind::kLogical, 21, 1.0}}});
   machine::RunObserver nobody;
   Control control(Resolve(setup.parameters), setup, nobody);
-  Seen seen;
-  for (int ms = 0; ms < 20'000; ++ms) {
-    if (control.Advance(std::chrono::milliseconds(ms)) == machine::RunPhase::kFinished) break;
-    const std::string stage = show(control.state());
-    if (!seen.stages.empty() && seen.stages.back() == stage) continue;
-    seen.stages.push_back(stage);
-    seen.timed.push_back(std::to_string(ms / 1000) + "." + std::to_string(ms % 1000 / 100) + " " +
-                         stage);
-  }
+  Seen seen = SeenOf(control, show);
   EXPECT_EQ(control.state().outcome.kind, machine::OutcomeKind::kCompleted);
   seen.gosubs = static_cast<int>(control.state().data.area.vi[3]);
   return seen;
@@ -222,15 +257,26 @@ TEST(StagesOfAWait, EndedByAnError) {
             (std::vector<std::string>{"0.0 no motion", "0.0 time"}));
 }
 
-// OPT-2.56: whether the program goes on beside a motion, which excludes that it runs ahead of one.
-TEST(StagesOfNext, Beside) {
-  const auto beside = [](const std::string& steps) { return Through(steps, BesideOf).stages; };
-  EXPECT_THAT(beside(MoveBy(50, "/NEXT") + "DELAY 2\n"), ElementsAre("now", "no"));
-  EXPECT_THAT(beside(MoveBy(50, "/FLY") + MoveBy(100, "/NEXT") + "DELAY 4\n"),
-              ElementsAre("comes", "now", "no"));
-  EXPECT_THAT(beside(MoveBy(50, "") + MoveBy(50, "/NEXT")), ElementsAre("no"));  // it stands there
-  EXPECT_THAT(beside(MoveBy(500, "/NEXT") + "DELAY 0.5\n" + MoveBy(0, "/FLY") + MoveBy(50, "")),
-              ElementsAre("now", "no"));  // taken over
+// A /FLY chain of 80 moves, round a square of 1 mm: more than the planner decides at once, so that
+// the motion begins while the program is in the midst of them.
+const std::string kRounds =
+    "10 MOVE (22.02,2201.2,-350.,0.,0.)/FLY\nMOVE (22.02,2200.2,-350.,0.,0.)/FLY\n"
+    "MOVE (21.02,2200.2,-350.,0.,0.)/FLY\nMOVE (21.02,2201.2,-350.,0.,0.)/FLY\n"
+    "VI[2]=VI[2]+1\nIF VI[2] < 20 THEN 10\n";
+
+// OPT-2.49, OPT-2.56: whether the program runs ahead of a motion or goes on beside one.
+TEST(StagesOfNext, AheadAndBeside) {
+  const auto seen = [](const std::string& steps) { return Through(steps, GoesOnOf).stages; };
+  EXPECT_THAT(seen(MoveBy(50, "") + MoveBy(50, "/NEXT")), ElementsAre("no"));  // it stands there
+  EXPECT_THAT(seen(kRounds + MoveBy(50, "")), ElementsAre("ahead", "no"));
+  EXPECT_THAT(seen(kRounds + "COORD ABSOL\n"), ElementsAre("ahead", "no"));
+  EXPECT_THAT(seen(MoveBy(50, "/NEXT") + "DELAY 2\n"), ElementsAre("beside", "no"));
+  EXPECT_THAT(seen(MoveBy(50, "/FLY") + MoveBy(100, "/NEXT") + "DELAY 4\n"),
+              ElementsAre("comes", "beside", "no"));
+  EXPECT_THAT(seen(kRounds + MoveBy(50, "/NEXT") + "DELAY 4\n"),
+              ElementsAre("ahead", "comes", "beside", "no"));
+  EXPECT_THAT(seen(MoveBy(500, "/NEXT") + "DELAY 0.5\n" + MoveBy(0, "/FLY") + MoveBy(50, "")),
+              ElementsAre("beside", "no"));  // taken over
 }
 
 // OPT-3.55, OPT-3.58: an error while the machine stands is handled at once, one ahead of motion
@@ -241,6 +287,145 @@ TEST(StagesOfAnAlarm, DeferredWhileTheMachineMoves) {
               ElementsAre("0.0 deferred", "1.1 none"));  // 50 mm at 50 mm/s, and the stop
   const Seen waits = Through(MoveBy(50, "/FLY") + "VR[0]=1/0\n", WaitOf);
   EXPECT_THAT(waits.timed, ElementsAre("0.0 standstill", "1.1 time"));
+}
+
+std::vector<std::string> Timers(const std::string& steps,
+                                const std::map<int, std::string>& programs = {}) {
+  return Through(steps, TimersOf, programs).timed;
+}
+
+// OPT-B.59: set, due, made, set anew and switched off. Its GOSUB is made between two instructions.
+TEST(StagesOfATimer, OneAfterTheOther) {
+  const std::string handlers =
+      "GOTO 10\n910 DELAY 1\nRETURN\n920 DELAY 1\nTIMER (9.,900)\nDELAY 1\nRETURN\n10 ";
+  EXPECT_THAT(Timers(""), ElementsAre("0.0 none"));
+  EXPECT_THAT(Timers("TIMER (.5,900)\nDELAY 2\n"), ElementsAre("0.0 counts", "2.0 none"));
+  EXPECT_THAT(Timers("TIMER (9.,900)\nDELAY 1\nTIMER /DIS\n"),
+              ElementsAre("0.0 counts", "1.0 none"));
+  EXPECT_THAT(Timers(handlers + "TIMER (.5,910)/AUTO\nDELAY 1\nDELAY 1\n"),
+              ElementsAre("0.0 counts", "1.0 runs", "2.0 counts", "3.0 runs", "4.0 counts",
+                          "5.0 runs"));  // behind the DELAY of the end, too
+  EXPECT_THAT(Timers(handlers + "TIMER (.5,910)\nDELAY 1\nDELAY 1\n"),
+              ElementsAre("0.0 counts", "1.0 none"));  // while its GOSUB runs, too
+  EXPECT_THAT(Timers(handlers + "TIMER (.5,920)/AUTO\nDELAY 1\n"),
+              ElementsAre("0.0 counts", "1.0 runs", "2.0 counts"));
+  EXPECT_THAT(Timers(handlers + "TIMER (.5,910)/AUTO\nDELAY 1\nTIMER /DIS\n"),
+              ElementsAre("0.0 counts", "1.0 runs", "2.0 none"));
+}
+
+// OPT-B.89, OPT-B.59: each program has its own, that of a caller stands still, and goes on as what
+// it was; one of a FUNCTION ends with it.
+TEST(StagesOfATimer, OfTheirPrograms) {
+  EXPECT_THAT(Timers("TIMER (9.,900)\nDELAY 1\nCALL 45\nDELAY 1\n", {{45, "DELAY 1\n"}}),
+              ElementsAre("0.0 counts", "1.0 stands+none", "2.0 counts"));
+  EXPECT_THAT(Timers("TIMER (9.,900)\nDELAY 1\nCALL 45\nDELAY 1\n",
+                     {{45, "DELAY 1\nTIMER (9.,900)\nDELAY 1\nENDTASK\n900 RETURN\n"}}),
+              ElementsAre("0.0 counts", "1.0 stands+none", "2.0 stands+counts", "3.0 counts"));
+  EXPECT_THAT(Timers("GOTO 10\n910 CALL 45\nDELAY 1\nRETURN\n"
+                     "10 TIMER (.5,910)/AUTO\nDELAY 1\nTIMER /DIS\n",
+                     {{45, "DELAY 1\n"}}),
+              ElementsAre("0.0 counts", "1.0 stands+none", "2.0 runs", "3.0 none"));
+  EXPECT_THAT(
+      Timers("DELAY 1\nFUNCTION 44\n", {{44, "TIMER (9.,900)\nDELAY 1\nENDTASK\n900 RETURN\n"}}),
+      ElementsAre("0.0 none", "1.0 counts", "2.0 none"));
+  EXPECT_THAT(Timers("TIMER (9.,900)\nDELAY 1\nGO 46\n", {{46, "DELAY 1\n"}}),
+              ElementsAre("0.0 counts", "1.0 none"));
+}
+
+// What was seen of a program while keys were pressed, and what is left at its end.
+std::vector<std::string> Halts(const std::string& text, const RunOptions& options) {
+  const machine::RunSetup setup = SetupOf(text, options);
+  machine::RunObserver nobody;
+  Control control(Resolve(setup.parameters), setup, nobody);
+  std::vector<std::string> seen = SeenOf(control, HaltsOf).timed;
+  seen.push_back(HaltsOf(control.state()));
+  return seen;
+}
+
+machine::InputChange Key(double at_s, InputKind kind) { return {At(at_s), kind}; }
+
+const std::string kTwo = "DELAY 1\nDELAY 1\n";
+
+// OPT-4.17, OPT-4.18: between instructions and inside of one; a halt ends what was asked for.
+TEST(StagesOfAHalt, OfKeys) {
+  EXPECT_THAT(
+      Halts(kTwo, {.inputs = {Key(0.5, InputKind::kHold), Key(3.0, InputKind::kStart)}}),
+      ElementsAre("0.0 running", "0.5 running hold", "1.0 halted", "3.0 running", "finished"));
+  EXPECT_THAT(
+      Halts(kTwo, {.inputs = {Key(0.2, InputKind::kHold), Key(0.5, InputKind::kStop),
+                              Key(3.0, InputKind::kStart)}}),
+      ElementsAre("0.0 running", "0.2 running hold", "0.5 halted", "3.0 running", "finished"));
+  // HOLD while it is halted: for the next START.
+  EXPECT_THAT(Halts(kTwo, {.inputs = {Key(0.5, InputKind::kStop), Key(1.0, InputKind::kHold),
+                                      Key(2.0, InputKind::kStart), Key(4.0, InputKind::kStart)}}),
+              ElementsAre("0.0 running", "0.5 halted", "1.0 halted hold", "2.0 running hold",
+                          "2.5 halted", "4.0 running", "finished"));
+}
+
+const std::string kAlongX = "COORD ABSOL\nPATH LIN\nSPEED 10\n";
+
+// OPT-4.18: STOP on a motion. Of 50 mm/s the ramp takes 0.0707 s.
+TEST(StagesOfAHalt, OnThePath) {
+  EXPECT_THAT(Halts(kAlongX + MoveBy(100, ""),
+                    {.inputs = {Key(1.0, InputKind::kStop), Key(3.0, InputKind::kStart)}}),
+              ElementsAre("0.0 running", "1.0 halted on the path", "3.0 running", "finished"));
+}
+
+// OPT-4.18: 2 ms before the end of what is planned the machine cannot come to rest on it: it
+// brakes from there on, over what the program has appended meanwhile.
+TEST(StagesOfAHalt, AStopThatNeedsMoreMotions) {
+  const machine::RunSetup setup = SetupOf(kAlongX + kRounds);
+  machine::RunObserver nobody;
+  Control control(Resolve(setup.parameters), setup, nobody);
+  const motion::PathRide& path = control.state().ride.path;
+  SimTime now{0};
+  control.Advance(now);
+  while (!path.to_come().empty()) control.Advance(now += std::chrono::milliseconds(1));
+  now = path.under_way()->end - std::chrono::milliseconds(2);
+  control.Advance(now);
+  ASSERT_EQ(GoesOnOf(control.state()), "ahead");
+  control.Apply({now, InputKind::kStop});
+  EXPECT_EQ(HaltsOf(control.state()), "running stop");
+  control.Advance(now + std::chrono::milliseconds(1));
+  EXPECT_EQ(HaltsOf(control.state()), "running stop");
+  control.Advance(now + std::chrono::milliseconds(3));
+  EXPECT_EQ(HaltsOf(control.state()), "running");
+  control.Advance(now + At(0.3));
+  EXPECT_EQ(HaltsOf(control.state()), "halted on the path");
+}
+
+// OPT-6.31, OPT-6.08: behind each step in SINGLE, behind that of the breakpoint, which stays; not
+// behind the end of the program.
+TEST(StagesOfAHalt, BehindAStep) {
+  const RunOptions single{.inputs = {Key(2.0, InputKind::kStart)}, .mode = machine::Mode::kSingle};
+  EXPECT_THAT(Halts(kTwo, single),
+              ElementsAre("0.0 running SINGLE", "1.0 halted", "2.0 running SINGLE", "finished"));
+  RunOptions stopped{.inputs = {Key(0.5, InputKind::kStop), Key(2.0, InputKind::kStart),
+                                Key(3.0, InputKind::kStart)},
+                     .mode = machine::Mode::kSingle};
+  EXPECT_THAT(Halts(kTwo, stopped),
+              ElementsAre("0.0 running SINGLE", "0.5 halted SINGLE", "2.0 running SINGLE",
+                          "2.5 halted", "3.0 running SINGLE", "finished"));
+  RunOptions both = single;
+  both.breakpoint = machine::ProgramStep{.program = 1, .step = 1};
+  EXPECT_THAT(Halts(kTwo, both), ElementsAre("0.0 running BREAK (1)", "1.0 halted (1)",
+                                             "2.0 running SINGLE (1)", "finished (1)"));
+  EXPECT_THAT(
+      Halts("BREAK 2\n" + kTwo,
+            {.inputs = {Key(2.0, InputKind::kStart)}, .breakpoint = machine::ProgramStep{1, 3}}),
+      ElementsAre("0.0 running BREAK (2)", "1.0 halted (2)", "2.0 running (2)", "finished (2)"));
+}
+
+// The run is over from any phase, and what was asked for is left as it is.
+TEST(StagesOfAHalt, Finished) {
+  const auto ended = [](std::vector<machine::InputChange> keys, machine::Mode mode) {
+    keys.push_back(Key(0.8, InputKind::kEmergencyStop));
+    return Halts(kTwo, {.inputs = keys, .mode = mode});
+  };
+  EXPECT_THAT(ended({Key(0.5, InputKind::kHold)}, machine::Mode::kCycle),
+              ElementsAre("0.0 running", "0.5 running hold", "finished hold"));
+  EXPECT_THAT(ended({Key(0.5, InputKind::kStop)}, machine::Mode::kSingle),
+              ElementsAre("0.0 running SINGLE", "0.5 halted SINGLE", "finished SINGLE"));
 }
 
 }  // namespace
