@@ -28,6 +28,7 @@ struct AppendedCommand {
 //   Stop(plan)     the ramp to rest             the rest, from there  -
 //   HoldBehind     the family's: up to a target -                     the commands behind it
 //   Resume         interrupted comes first      empty                 the family plans it
+//   DropRest       as it is, then nothing       empty                 as they are
 //   Finish         nothing                      empty                 empty
 //
 // How motions are planned, and what belongs to one besides its plan, is the family's. One that
@@ -51,7 +52,11 @@ class PathRide {
 
   void Plan(PlannedItem item) { to_come_.push_back(std::move(item)); }  // behind all to come
   void ReplaceToCome(std::vector<PlannedItem> items);
-  void DropToCome() { to_come_.clear(); }
+  // All that would follow the motion under way, of what a STOP interrupted, too.
+  void DropRest() {
+    to_come_.clear();
+    interrupted_.clear();
+  }
   // The tag of the mark that is the first to come, and is passed now; nothing: a motion is, or
   // nothing is to come.
   std::optional<std::uint64_t> PassMark();

@@ -32,7 +32,9 @@ void Halts::Stop() {
 }
 
 bool Halts::StopNow() {
-  if (!s_.stop || ride_.under_way() == nullptr || !ride_.Stop()) return false;
+  const motion::MotionUnderWay* active = ride_.under_way();
+  // What /END or /TIME brings to rest comes to rest first, and what follows begins from there.
+  if (!s_.stop || active == nullptr || active->ended || !ride_.Stop()) return false;
   s_.stop = false;
   if (ride_.busy()) return false;
   HaltOnPath();

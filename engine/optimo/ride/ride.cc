@@ -146,7 +146,7 @@ std::optional<std::uint64_t> Ride::Arrive() {
   const motion::MotionUnderWay& done = s_.path.place();
   s_.axes = done.AxesAt(done.arrival);
   if (done.ended) {
-    s_.path.DropToCome();
+    s_.path.DropRest();
     s_.planned_axes = s_.axes;
   }
   if (!busy() && !protocol().comes_to_rest()) EndBeside();
@@ -203,7 +203,7 @@ bool Ride::TakeOver() {
   EndBeside();  // from here on it is a motion like any other that is waited for
   if (!busy()) return false;
   if (under_way() != nullptr) EndHere();
-  s_.path.DropToCome();
+  s_.path.DropRest();
   return true;
 }
 

@@ -112,7 +112,7 @@ TEST(PathRide, StopLeavesTheRestForStart) {
   EXPECT_GT(ramp_mm, 1.0);
   EXPECT_LT(ramp_mm, 50.0);
 
-  ride.DropToCome();  // ridden
+  ride.DropRest();  // ridden
   EXPECT_TRUE(ride.TakeUpInterrupted());
   EXPECT_EQ(TagsToCome(ride), "2 m12 3 m13");
   EXPECT_NEAR(ramp_mm + LengthToCome(ride), 201.0, 1e-6);
@@ -183,7 +183,7 @@ TEST(PathRide, MarksArePassedOneByOne) {
   EXPECT_EQ(ride.PassMark(), 3u);
   EXPECT_EQ(ride.PassMark(), std::nullopt);
   EXPECT_EQ(ride.to_come().size(), 2u);
-  ride.DropToCome();
+  ride.DropRest();
   EXPECT_FALSE(ride.busy());
 }
 

@@ -211,6 +211,24 @@ TEST(HaltRules, TheClockOfABackgroundWorkStandsWhileHalted) {
   EXPECT_EQ(ran.events[ran.events.size() - 3].what, "beam off");
 }
 
+// OPT-4.18, OPT-2.51: a STOP while /TIME brings the tip to rest, at 50 mm/s from 0.5 s on, 0.12 s
+// long: what follows begins where the tip rests. From X 0 to 600 at 50 mm/s it is 12 s on its way,
+// less what it went in the half second, 25 mm at most.
+TEST(HaltRules, AStopWhileTimeBrakesLosesNoWay) {
+  const std::string text = "COORD ABSOL\nPATH LIN\nMOVE (0.,1000.,-400.,0.,0.)\nSPEED 10\n" +
+                           MoveX(500, "/TIME (.5,900)") + "900 DELAY 1\n" + MoveX(600, "");
+  const double begin = BeginOf(text);
+  for (const double after : {0.49, 0.52, 0.55, 0.58, 0.61, 0.8}) {
+    const Ran ran = RunText(text, {.inputs = {Key(begin + after, InputKind::kStop),
+                                              Key(begin + 5.0, InputKind::kStart)}});
+    SCOPED_TRACE(after);
+    EXPECT_EQ(ran.Count("halt STOP"), 1);
+    ExpectWithinLimits(ran, true, "STOP at " + std::to_string(after));
+    EXPECT_NEAR(ran.moves.back().tip.tip.x(), 600.0, 1e-4);
+    EXPECT_GT(ran.time_s, begin + 5.0 + 575.0 / 50.0);
+  }
+}
+
 // OPT-7.68, OPT-2.60: IL[95] is 1 until standstill, not until the machine has settled: 100 mm at 50
 // mm/s are over after 2.0707 s, the tick behind that is 2.112 s.
 TEST(HaltRules, TheMotionFlagIsOffAtStandstill) {
