@@ -44,6 +44,7 @@ Status CheckMotions(const std::vector<CheckedFile*>& files, const machine::Input
   for (const CheckedFile* file : files) {
     programs.push_back({.program = {.slot = SlotFromName(file->name).value_or(0),
                                     .name = file->name,
+                                    .bytes = file->text,
                                     .translation = std::make_shared<const machine::Translation>(
                                         file->translation)}});
   }

@@ -47,7 +47,6 @@ bool ReadLine(const std::string& text, Command& command) {
   return moves || (command.name == "SP" && command.x >= 0.0 && command.x <= 8.0) ||
          (command.name == "WT" && command.x >= 0.0);
 }
-
 std::vector<Command> Read(std::string_view text, std::vector<Diagnostic>& findings) {
   std::vector<Command> commands;
   std::istringstream lines{std::string(text)};
@@ -59,7 +58,8 @@ std::vector<Command> Read(std::string_view text, std::vector<Diagnostic>& findin
       commands.push_back(command);
       continue;
     }
-    Diagnostic wrong{.code = kSyntax, .severity = Severity::kCompile, .where = {.line = line}};
+    Diagnostic wrong{
+        .code = kSyntax, .severity = Severity::kCompile, .where = {.line = line, .column = 1}};
     wrong.detail = "no command: " + words.substr(0, 20);
     findings.push_back(std::move(wrong));
   }

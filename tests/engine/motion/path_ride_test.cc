@@ -112,10 +112,25 @@ TEST(PathRide, StopLeavesTheRestForStart) {
   EXPECT_GT(ramp_mm, 1.0);
   EXPECT_LT(ramp_mm, 50.0);
 
-  ride.DropRest();  // ridden
+  ride.ReplaceToCome({});  // ridden
   EXPECT_TRUE(ride.TakeUpInterrupted());
   EXPECT_EQ(TagsToCome(ride), "2 m12 3 m13");
   EXPECT_NEAR(ramp_mm + LengthToCome(ride), 201.0, 1e-6);
+  EXPECT_FALSE(ride.TakeUpInterrupted());
+}
+
+// A move that is ended on its way takes all with it that would follow, of what a STOP interrupted,
+// too.
+TEST(PathRide, AnEndedMoveLeavesNoRest) {
+  const std::vector<PlannedMotion> motions = StraightOn();
+  PathRide ride(HoldRamp::kStays);
+  ride.ReplaceToCome({motions.begin(), motions.end()});
+  const SimTime now = ride.Begin(kBegin).start + FromSeconds(motions[0].speed.TimeAt(99.0));
+  const auto plan = ride.PlanStop(now, StandardMachine().axes);
+  ASSERT_TRUE(plan.has_value());
+  ride.Stop(*plan, StandardMachine().axes);
+  ride.DropRest();
+  EXPECT_TRUE(ride.to_come().empty());
   EXPECT_FALSE(ride.TakeUpInterrupted());
 }
 
