@@ -80,7 +80,8 @@ Status Translate(CheckedFile& file, const CheckOptions& options) {
 
 // The figures that people want of a check: those that the family gives a row, else all on one line.
 std::string FigureText(const CheckedFile& file, Zero zero) {
-  const std::string rows = FigureRows(*file.family, file.translation.figures, zero);
+  const std::string rows = FigureRows(*file.family, file.translation.figures,
+                                      std::string(file.parameters->profile()), zero);
   if (!rows.empty()) return rows;
   std::string line;
   for (const machine::Figure& figure : file.translation.figures) {

@@ -396,7 +396,8 @@ std::string ReportText(const v1::RunReport& report, Zero zero) {
 }
 
 std::string FigureRows(const machine::MachineFamily& family,
-                       const std::vector<machine::Figure>& figures, Zero zero) {
+                       const std::vector<machine::Figure>& figures, const std::string& profile,
+                       Zero zero) {
   Rows rows;
   const auto value = [&](std::string_view name) -> std::optional<double> {
     const auto found = std::ranges::find(figures, name, &machine::Figure::name);
@@ -405,6 +406,7 @@ std::string FigureRows(const machine::MachineFamily& family,
   AddFigureRows(family, machine::FigureInfo::Where::kCheck, value, rows);
   if (zero == Zero::kMachine)
     AddFigureRows(family, machine::FigureInfo::Where::kCheckMachine, value, rows);
+  if (!rows.empty()) rows.emplace(rows.begin(), "machine", MachineText(family, profile));
   return TextOf(rows);
 }
 

@@ -18,7 +18,8 @@ enum class Zero { kWork, kMachine };
 std::string ReportText(const v1::RunReport& report, Zero zero = Zero::kWork);
 // The rows that a family gives its figures of a check; empty when it gives none.
 std::string FigureRows(const machine::MachineFamily& family,
-                       const std::vector<machine::Figure>& figures, Zero zero = Zero::kWork);
+                       const std::vector<machine::Figure>& figures, const std::string& profile,
+                       Zero zero = Zero::kWork);
 std::string OutcomeLine(const v1::Outcome& outcome);
 std::string EventLine(const v1::JobEvent& event);
 std::string StateName(v1::Job::State state);  // "running"

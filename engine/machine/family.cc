@@ -53,16 +53,44 @@ TransferPlan MachineFamily::PlanTransfer(const ProjectBundle& project, const Par
 
 namespace {
 
-// "SRM-20", "srm20" and "srm_20" are the srm-20.
-bool SameName(std::string_view a, std::string_view b) {
-  const auto plain = [](std::string_view name) {
-    std::string letters;
-    for (const char c : name) {
-      if (c != '-' && c != '_' && c != ' ') letters += c;
-    }
-    return letters;
-  };
-  return EqualIgnoringCase(plain(a), plain(b));
+std::string Plain(std::string_view name) {
+  std::string letters;
+  for (const char c : name) {
+    if (c != '-' && c != '_' && c != ' ') letters += c;
+  }
+  return UpperCase(letters);
+}
+
+// "SRM-20", "srm20", "srm_20" and "Roland monoFab SRM-20" are the srm-20.
+const MachineProfile* FindProfile(std::span<const MachineProfile> profiles,
+                                  std::string_view wanted) {
+  const std::string plain = Plain(wanted);
+  const auto found = std::ranges::find_if(profiles, [&](const MachineProfile& one) {
+    return Plain(one.id) == plain || Plain(one.title) == plain;
+  });
+  return found == profiles.end() ? nullptr : &*found;
+}
+
+Error NoProfile(std::span<const MachineProfile> profiles, const std::string& wanted) {
+  const std::string plain = Plain(wanted);
+  std::string known;
+  std::string near;
+  for (const MachineProfile& one : profiles) {
+    const std::string id = Plain(one.id);
+    known += " " + std::string(one.id);
+    if (plain.size() > 1 && (id.find(plain) != std::string::npos ||
+                             (id.size() > 1 && plain.find(id) != std::string::npos)))
+      near += (near.empty() ? "" : " or ") + std::string(one.id);
+  }
+  std::string detail = "no profile '" + wanted + "'";
+  if (EqualIgnoringCase(std::string_view(plain).substr(plain.find_last_of('.') + 1), "toml")) {
+    detail += ": a file of one's own goes to --machine";
+  } else if (!near.empty()) {
+    detail += "; did you mean " + near + "?";
+  } else {
+    detail += "; there are" + known;
+  }
+  return {ErrorCode::kCellInvalidArgument, std::move(detail), {}};
 }
 
 }  // namespace
@@ -73,14 +101,8 @@ Result<Parameters> MakeParameters(const MachineFamily& family, const std::string
   const std::string wanted(profile.empty() ? family.info().default_profile : profile);
   if (!wanted.empty()) {
     const auto profiles = family.profiles();
-    const auto found = std::ranges::find_if(
-        profiles, [&](const MachineProfile& candidate) { return SameName(candidate.id, wanted); });
-    if (found == profiles.end()) {
-      std::string known;
-      for (const MachineProfile& candidate : profiles) known += " " + std::string(candidate.id);
-      return Error{
-          ErrorCode::kCellInvalidArgument, "no profile '" + profile + "'; there are" + known, {}};
-    }
+    const MachineProfile* found = FindProfile(profiles, wanted);
+    if (found == nullptr) return NoProfile(profiles, wanted);
     if (const Status applied = profile.empty() ? made.ApplyUnnamed(*found) : made.Apply(*found);
         !applied)
       return applied.error();

@@ -34,6 +34,8 @@ Value High(const Extent& extent, double factor = 1.0) {
   return extent.known ? Value(extent.high * factor) : std::nullopt;
 }
 Value Moved(Value value, double by) { return value ? Value(*value + by) : std::nullopt; }
+// A check carries a stream out without time: a 0 would be a claim.
+Value IfTimed(const Source& s, double seconds) { return s.starved ? Value(seconds) : std::nullopt; }
 Value IfAny(std::uint64_t count) { return count > 0 ? Value(Count(count)) : std::nullopt; }
 
 template <int kNumber>
@@ -84,12 +86,12 @@ constexpr std::array kRows = {
     Row{{"cut_length", "mm", "way of the tool in the work: cuts and plunges", "path", "cut # mm", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return s.tool.cut_mm; }},
     Row{{"travel_length", "mm", "the rest of its way", "path", "travel # mm", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return s.tool.travel_mm; }},
     Row{{"plunges", "", "times that the tool went down into the work; steps of one way down are one", "plunges", "#", true, machine::FigureInfo::Where::kCheck}, [](const Source& s) -> Value { return Count(s.tool.plunges); }},
-    Row{{"motion_time", "s", "moving"}, [](const Source& s) -> Value { return s.tool.motion_s; }},
-    Row{{"tool_up_time", "s", "the rest of the time of motions and waits", "tool", "up # s", true}, [](const Source& s) -> Value { return s.tool.up_s; }},
-    Row{{"tool_down_time", "s", "moving or waiting in the work, or in tool state down", "tool", "down # s", true}, [](const Source& s) -> Value { return s.tool.down_s; }},
-    Row{{"dwell_time", "s", "waits of W and !DW"}, [](const Source& s) -> Value { return s.tool.dwell_s; }},
-    Row{{"spindle_time", "s", "waits for the spindle to turn steadily or to stand"}, [](const Source& s) -> Value { return s.tool.spindle_s; }},
-    Row{{"halted_time", "s", "waits for a key"}, [](const Source& s) -> Value { return s.tool.halted_s; }},
+    Row{{"motion_time", "s", "moving"}, [](const Source& s) -> Value { return IfTimed(s, s.tool.motion_s); }},
+    Row{{"tool_up_time", "s", "the rest of the time of motions and waits", "tool", "up # s", true}, [](const Source& s) -> Value { return IfTimed(s, s.tool.up_s); }},
+    Row{{"tool_down_time", "s", "moving or waiting in the work, or in tool state down", "tool", "down # s", true}, [](const Source& s) -> Value { return IfTimed(s, s.tool.down_s); }},
+    Row{{"dwell_time", "s", "waits of W and !DW"}, [](const Source& s) -> Value { return IfTimed(s, s.tool.dwell_s); }},
+    Row{{"spindle_time", "s", "waits for the spindle to turn steadily or to stand"}, [](const Source& s) -> Value { return IfTimed(s, s.tool.spindle_s); }},
+    Row{{"halted_time", "s", "waits for a key"}, [](const Source& s) -> Value { return IfTimed(s, s.tool.halted_s); }},
     Row{{"lookahead_starved", "", "times that the planner had to decide before it could see enough"}, [](const Source& s) -> Value { return s.starved ? Value(Count(*s.starved)) : std::nullopt; }},
     Row{{"box.xmin", "units", "least X of the tool, work coordinates"}, [](const Source& s) -> Value { return Low(s.tool.x); }},
     Row{{"box.xmax", "units", "greatest X of the tool, work coordinates"}, [](const Source& s) -> Value { return High(s.tool.x); }},

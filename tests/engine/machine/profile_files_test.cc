@@ -64,7 +64,8 @@ TEST(ProfileFiles, OfTheMillsAreWhole) {
 // "SRM-20" as people write it.
 TEST(Profiles, AreFoundByForgivingNames) {
   const MachineFamily& mill = *families::FindFamily("rml1");
-  for (const char* name : {"srm-20", "SRM-20", "srm20", "Srm_20", "SRM 20"}) {
+  for (const char* name :
+       {"srm-20", "SRM-20", "srm20", "Srm_20", "SRM 20", "Roland monoFab SRM-20"}) {
     const Result<Parameters> parameters = MakeParameters(mill, name, {});
     ASSERT_TRUE(parameters) << name;
     EXPECT_EQ(parameters->profile(), "srm-20");
@@ -72,6 +73,15 @@ TEST(Profiles, AreFoundByForgivingNames) {
   }
   EXPECT_FALSE(MakeParameters(mill, "srm-2", {}));
   EXPECT_FALSE(MakeParameters(mill, "srm-200", {}));
+  const auto said = [&](const std::string& name) {
+    const Result<Parameters> none = MakeParameters(mill, name, {});
+    return none ? std::string() : none.error().detail;
+  };
+  EXPECT_EQ(said("mdx40"), "no profile 'mdx40'; did you mean mdx-40a or mdx-40a-rotary?");
+  EXPECT_EQ(said("mdx-540s"), "no profile 'mdx-540s'; did you mean mdx-540?");
+  EXPECT_EQ(said("Roland SRM-20"), "no profile 'Roland SRM-20'; did you mean srm-20?");
+  EXPECT_EQ(said("my.toml"), "no profile 'my.toml': a file of one's own goes to --machine");
+  EXPECT_TRUE(said("lathe").starts_with("no profile 'lathe'; there are ")) << said("lathe");
   // Nobody named one: it is a machine that there is, and is not said to be named.
   EXPECT_EQ(MakeParameters(mill, "", {})->profile(), "");
   EXPECT_EQ(MakeParameters(mill, "", {})->Number("X_MAX"), 203.2);
