@@ -1,6 +1,7 @@
 #include "engine/motion/corner/corner.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "engine/motion/geometry/corner_table.h"
@@ -153,20 +154,24 @@ double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLim
                     double enough) {
   const double normal = machine.normal_acceleration();
   const double jerk = machine.normal_jerk();
+  // By the normal acceleration, by the jerk and by the speed and acceleration of each axis.
   const auto allowed = [&](double u) {
     const PathDerivatives first = curve.FirstByLength(u);
     const PathDerivatives second = curve.SecondByLength(u);
     const double kappa = second.point.norm();
-    double speed = SpeedWithinAxes(ThroughHead(head, curve.At(u), first, second), machine.axes);
-    if (kappa > 0.0) speed = std::min(speed, std::sqrt(normal / kappa));
+    const AxisDerivatives q = ThroughHead(head, curve.At(u), first, second);
+    std::array<double, 2 + 2 * kAxisCount> speeds;
+    speeds[0] = kappa > 0.0 ? std::sqrt(normal / kappa) : HUGE_VAL;
+    speeds[1] = HUGE_VAL;
     if (std::isfinite(jerk)) {
       const double per_cube = curve.JerkPerCube(u);
-      if (per_cube > 0.0) speed = std::min(speed, std::cbrt(jerk / per_cube));
+      if (per_cube > 0.0) speeds[1] = std::cbrt(jerk / per_cube);
     }
-    return speed;
+    std::ranges::copy(SpeedsWithinAxes(q, machine.axes), speeds.begin() + 2);
+    return speeds;
   };
   constexpr int kIntervals = 48;
-  const double least = LeastAlong(allowed, 1.0, kIntervals, enough);
+  const double least = LeastOfAll(allowed, 1.0, kIntervals, enough);
   // Near a cusp all happens between two samples: as far about the sharpest place as the curve needs
   // to turn.
   const double sharpest = curve.SlowestPlace();
@@ -175,7 +180,7 @@ double SpeedOnCurve(const CornerCurve& curve, const Head& head, const MachineLim
   constexpr double kWidths = 8.0;
   const double from = std::max(0.0, sharpest - kWidths * width);
   const double to = std::min(1.0, sharpest + kWidths * width);
-  return std::min(least, LeastAlong([&](double u) { return allowed(from + u); }, to - from,
+  return std::min(least, LeastOfAll([&](double u) { return allowed(from + u); }, to - from,
                                     kIntervals, enough));
 }
 

@@ -7,62 +7,93 @@
 
 namespace rmlcell::motion {
 
-// The least value of `f` over [0, length], sampled at `intervals` equal steps; every sample minimum
-// that could win is refined by golden sections to some 1e-9. `f` is smooth between samples, or the
-// least of such. Who only asks whether it falls below `enough` gets any value above that when it
-// does not.
+// Where golden sections close in on the least of `f` between two places: to 3e-8 of the way between
+// them, where the value is flat to 1e-15.
 template <class F>
-double LeastAlong(F f, double length, int intervals, double enough = HUGE_VAL) {
-  constexpr double kCandidate = 0.95;  // a sample above best / 0.95 hides no lower value
+double LeastBySections(F f, double low, double high) {
   constexpr double kGolden = 0.6180339887498949;
-  constexpr int kSections = 40;  // 0.618^40 = 4e-9 of the bracket; the value is flat there
+  constexpr int kSections = 36;
+  double left = high - kGolden * (high - low);
+  double right = low + kGolden * (high - low);
+  double at_left = f(left);
+  double at_right = f(right);
+  for (int section = 0; section < kSections; ++section) {
+    if (at_left < at_right) {
+      high = right;
+      right = left;
+      at_right = at_left;
+      left = high - kGolden * (high - low);
+      at_left = f(left);
+    } else {
+      low = left;
+      left = right;
+      at_left = at_right;
+      right = low + kGolden * (high - low);
+      at_right = f(right);
+    }
+  }
+  return std::min(at_left, at_right);
+}
+
+// The least of several positive values over [0, length], to some 1e-9: `f` gives them all for a
+// place, as an array. Each is sampled at `intervals` equal steps, at least three, and is smooth
+// between them. A valley of one may be the lowest place of all though others are lower at the
+// samples about it, so each value's are looked at by themselves. Who only asks whether anything
+// falls below `enough` gets some value above that when nothing does.
+template <class F>
+double LeastOfAll(F f, double length, int intervals, double enough = HUGE_VAL) {
+  using Values = decltype(f(length));
+  constexpr double kGain = 1e-12;  // relative; less is rounding
+  constexpr int kKept = 64;        // samples kept for the second look; the others are taken again
   const auto place = [&](int k) { return length * k / intervals; };
-  constexpr int kKept = 64;  // samples kept for the second look; the others are taken again
-  std::array<double, kKept + 1> kept;
+  std::array<Values, kKept + 1> kept;
   double best = HUGE_VAL;
   for (int k = 0; k <= intervals; ++k) {
-    const double value = f(place(k));
-    if (k <= kKept) kept[static_cast<std::size_t>(k)] = value;
-    best = std::min(best, value);
+    const Values values = f(place(k));
+    if (k <= kKept) kept[static_cast<std::size_t>(k)] = values;
+    for (const double value : values) best = std::min(best, value);
   }
-  if (best * kCandidate >= enough) return best;
   const auto sample = [&](int k) {
     return k <= kKept ? kept[static_cast<std::size_t>(k)] : f(place(k));
   };
-  const double worth_a_look = best / kCandidate;
-
-  double before = HUGE_VAL;
-  double here = sample(0);
-  for (int k = 0; k <= intervals; ++k) {
-    const double after = k < intervals ? sample(k + 1) : HUGE_VAL;
-    if (here <= worth_a_look && here <= before && here <= after) {
-      double low = place(std::max(k - 1, 0));
-      double high = place(std::min(k + 1, intervals));
-      double left = high - kGolden * (high - low);
-      double right = low + kGolden * (high - low);
-      double at_left = f(left);
-      double at_right = f(right);
-      for (int section = 0; section < kSections; ++section) {
-        if (at_left < at_right) {
-          high = right;
-          right = left;
-          at_right = at_left;
-          left = high - kGolden * (high - low);
-          at_left = f(left);
-        } else {
-          low = left;
-          left = right;
-          at_left = at_right;
-          right = low + kGolden * (high - low);
-          at_right = f(right);
-        }
+  // Where a value is low its reciprocal, what is asked of the machine, has a peak. That bends
+  // downwards, so it stays below its sides drawn on: from the sample `beside` over the one `at`.
+  const auto drawn_on = [](double beside, double at) { return 2.0 / at - 1.0 / beside; };
+  // At an end there is but one side, and curves may change their bend just there: it is looked at
+  // also when it is near the least.
+  constexpr double kNear = 0.95;
+  const auto at_end = [&](double inner, double next, double end) {
+    return std::max(drawn_on(inner, next), 1.0 / (kNear * end));
+  };
+  const auto look = [&](std::size_t which, double most_asked, int from, int to) {
+    if (!(most_asked * std::min(best, enough) > 1.0 + kGain)) return;
+    const auto one = [&](double x) { return f(x)[which]; };
+    best = std::min(best, LeastBySections(one, place(from), place(to)));
+  };
+  Values before = sample(0);
+  Values here = sample(1);
+  for (int k = 1; k < intervals; ++k) {
+    const Values after = sample(k + 1);
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      const double a = before[i], b = here[i], c = after[i];
+      if (b <= a && b <= c) {
+        look(i, drawn_on(std::max(a, c), b), k - 1, k + 1);
+      } else if (k == 1 && a < b) {
+        look(i, at_end(c, b, a), 0, 1);
+      } else if (k == intervals - 1 && c < b) {
+        look(i, at_end(a, b, c), k, intervals);
       }
-      best = std::min({best, at_left, at_right});
     }
     before = here;
     here = after;
   }
   return best;
+}
+
+// The same of a single value.
+template <class F>
+double LeastAlong(F f, double length, int intervals, double enough = HUGE_VAL) {
+  return LeastOfAll([&](double x) { return std::array{f(x)}; }, length, intervals, enough);
 }
 
 }  // namespace rmlcell::motion

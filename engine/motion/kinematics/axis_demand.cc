@@ -17,33 +17,43 @@ constexpr int kIntervalsMin = 16;
 constexpr double kTurningMax_rad =
     60.0;  // more than any travel: bounds will do, a search would last
 
-// The least of the axes' answers to `ask`, which gives a limit for one axis.
-template <class Ask>
-double Least(Ask ask) {
+using OfAxes = std::array<double, kAxisCount>;
+
+template <std::size_t kCount>
+double Least(const std::array<double, kCount>& limits) {
   double least = HUGE_VAL;
-  for (const std::size_t axis : kAxes) least = std::min(least, ask(axis));
+  for (const double limit : limits) least = std::min(least, limit);
   return least;
 }
 
-double SpeedAllowed(const AxisDerivatives& q, const AxisLimits& axes, const AxisShares& shares) {
-  return Least([&](std::size_t i) {
-    const double by_speed = shares.speed * axes.speed[i] / std::abs(q.first[i]);
-    return std::min(by_speed, std::sqrt(0.5 * shares.acceleration * axes.acceleration[i] /
-                                        std::abs(q.second[i])));
-  });
+// What each axis allows. By its speed, and by its acceleration in the bend.
+SpeedsOfAxes SpeedsAllowed(const AxisDerivatives& q, const AxisLimits& axes,
+                           const AxisShares& shares) {
+  SpeedsOfAxes speeds;
+  for (const std::size_t i : kAxes) {
+    speeds[i] = shares.speed * axes.speed[i] / std::abs(q.first[i]);
+    speeds[kAxisCount + i] =
+        std::sqrt(0.5 * shares.acceleration * axes.acceleration[i] / std::abs(q.second[i]));
+  }
+  return speeds;
 }
 
-double AccelerationAllowed(const AxisDerivatives& q, const AxisLimits& axes,
-                           const AxisShares& shares, double speed) {
-  return Least([&](std::size_t i) {
+OfAxes AccelerationsAllowed(const AxisDerivatives& q, const AxisLimits& axes,
+                            const AxisShares& shares, double speed) {
+  OfAxes accelerations;
+  for (const std::size_t i : kAxes) {
     const double taken = std::abs(q.second[i]) * speed * speed;
-    return (shares.acceleration * axes.acceleration[i] - taken) / std::abs(q.first[i]);
-  });
+    accelerations[i] = (shares.acceleration * axes.acceleration[i] - taken) / std::abs(q.first[i]);
+  }
+  return accelerations;
 }
 
-double JerkAllowed(const AxisDerivatives& q, const AxisLimits& axes, const AxisShares& shares) {
-  return Least(
-      [&](std::size_t i) { return shares.acceleration * axes.jerk[i] / std::abs(q.first[i]); });
+OfAxes JerksAllowed(const AxisDerivatives& q, const AxisLimits& axes, const AxisShares& shares) {
+  OfAxes jerks;
+  for (const std::size_t i : kAxes) {
+    jerks[i] = shares.acceleration * axes.jerk[i] / std::abs(q.first[i]);
+  }
+  return jerks;
 }
 
 // Whether no axis is asked for more than it can, without a division: nearly always so.
@@ -114,16 +124,16 @@ std::optional<PathLimits> LimitsOnShortTurn(const PathPiece& path, const Head& h
       q.second[i] = std::abs(q.second[i]) + drift * share * rate;
     }
     if (Allows(q, axes, shares, limits)) continue;
-    sure.speed = std::min(sure.speed, SpeedAllowed(q, axes, shares));
-    most.speed = std::min(most.speed, SpeedAllowed(at[k], axes, shares));
+    sure.speed = std::min(sure.speed, Least(SpeedsAllowed(q, axes, shares)));
+    most.speed = std::min(most.speed, Least(SpeedsAllowed(at[k], axes, shares)));
     if (std::isinf(limits.jerk)) continue;
-    sure.jerk = std::min(sure.jerk, JerkAllowed(q, axes, shares));
-    most.jerk = std::min(most.jerk, JerkAllowed(at[k], axes, shares));
+    sure.jerk = std::min(sure.jerk, Least(JerksAllowed(q, axes, shares)));
+    most.jerk = std::min(most.jerk, Least(JerksAllowed(at[k], axes, shares)));
   }
   for (std::size_t k = 0; k < parts; ++k) {
     if (Allows(around[k], axes, shares, sure)) continue;
     const auto allowed = [&](const AxisDerivatives& q) {
-      return AccelerationAllowed(q, axes, shares, sure.speed);
+      return Least(AccelerationsAllowed(q, axes, shares, sure.speed));
     };
     sure.acceleration = std::min(sure.acceleration, allowed(around[k]));
     most.acceleration = std::min(most.acceleration, allowed(at[k]));
@@ -139,12 +149,14 @@ std::optional<PathLimits> LimitsOnShortTurn(const PathPiece& path, const Head& h
 
 }  // namespace
 
-double SpeedWithinAxes(const AxisDerivatives& q, const AxisLimits& axes) {
-  return Least([&](std::size_t i) {
-    const double by_speed = axes.speed[i] / std::abs(q.first[i]);
-    if (q.second[i] == 0.0) return by_speed;
-    return std::min(by_speed, std::sqrt(axes.acceleration[i] / std::abs(q.second[i])));
-  });
+SpeedsOfAxes SpeedsWithinAxes(const AxisDerivatives& q, const AxisLimits& axes) {
+  SpeedsOfAxes speeds;
+  for (const std::size_t i : kAxes) {
+    speeds[i] = axes.speed[i] / std::abs(q.first[i]);
+    speeds[kAxisCount + i] =
+        q.second[i] == 0.0 ? HUGE_VAL : std::sqrt(axes.acceleration[i] / std::abs(q.second[i]));
+  }
+  return speeds;
 }
 
 AxisDerivatives DerivativesAt(const PathPiece& path, const Head& head, double s) {
@@ -175,11 +187,11 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
   const bool constant = path.kind() == PathPiece::Kind::kJoint || (!arc && !turns);
   const AxisDerivatives bounds = constant ? DerivativesAt(path, head, 0.0) : Bounds(path, head);
   const auto by_bounds = [&] {
-    limits.speed = std::min(limits.speed, SpeedAllowed(bounds, axes, shares));
-    limits.acceleration =
-        std::min(limits.acceleration, AccelerationAllowed(bounds, axes, shares, limits.speed));
+    limits.speed = std::min(limits.speed, Least(SpeedsAllowed(bounds, axes, shares)));
+    limits.acceleration = std::min(limits.acceleration,
+                                   Least(AccelerationsAllowed(bounds, axes, shares, limits.speed)));
     if (std::isfinite(limits.jerk))
-      limits.jerk = std::min(limits.jerk, JerkAllowed(bounds, axes, shares));
+      limits.jerk = std::min(limits.jerk, Least(JerksAllowed(bounds, axes, shares)));
     return limits;
   };
   if (constant) return by_bounds();
@@ -195,18 +207,20 @@ PathLimits WithinAxes(const PathPiece& path, const Head& head, const AxisLimits&
   if (!(turning <= kTurningMax_rad)) return by_bounds();
   const int intervals =
       std::max(static_cast<int>(std::ceil(turning / kSampleAngle_rad)), kIntervalsMin);
-  const auto least = [&](auto limit) {
-    return LeastAlong([&](double s) { return limit(DerivativesAt(path, head, s)); }, path.length(),
-                      intervals);
+  const auto least = [&](auto allowed) {
+    return LeastOfAll([&](double s) { return allowed(DerivativesAt(path, head, s)); },
+                      path.length(), intervals);
   };
-  limits.speed = std::min(
-      limits.speed, least([&](const AxisDerivatives& q) { return SpeedAllowed(q, axes, shares); }));
+  limits.speed =
+      std::min(limits.speed,
+               least([&](const AxisDerivatives& q) { return SpeedsAllowed(q, axes, shares); }));
   limits.acceleration = std::min(limits.acceleration, least([&](const AxisDerivatives& q) {
-                                   return AccelerationAllowed(q, axes, shares, limits.speed);
+                                   return AccelerationsAllowed(q, axes, shares, limits.speed);
                                  }));
   if (std::isfinite(limits.jerk)) {
-    limits.jerk = std::min(
-        limits.jerk, least([&](const AxisDerivatives& q) { return JerkAllowed(q, axes, shares); }));
+    limits.jerk =
+        std::min(limits.jerk,
+                 least([&](const AxisDerivatives& q) { return JerksAllowed(q, axes, shares); }));
   }
   return limits;
 }

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "engine/motion/corner/corner.h"
@@ -183,6 +186,47 @@ TEST(SpeedOnCurve, EachLimitAlone) {
              dense([&](double u) { return std::sqrt(70.0 / std::abs(demand(u).second[axis])); }));
     }
   }
+}
+
+// In a bend of the first chain the acceleration of Y has its valley at u = 0.5121, between samples
+// at which other limits are lower; in one of the second the jerk has its own at u = 0.9999, beside
+// the last sample. Against a dense search about the lowest of 5,001 places. motion.md 4.3
+TEST(SpeedOnCurve, ValleyOfOneBesideAnother) {
+  const MachineLimits machine = StandardMachine();
+  const Head head;
+  int bends = 0;
+  std::vector<PlannedMotion> motions =
+      Plan(RandomChain(34715435417, 20, {.all_fly = true, .longest_mm = 0.1}));
+  std::ranges::copy(Plan(RandomChain(1013, 30, {.all_fly = true})), std::back_inserter(motions));
+  for (const PlannedMotion& motion : motions) {
+    if (motion.path.kind() != PathPiece::Kind::kBlend || motion.path.plain_corner()) continue;
+    const CornerCurve& curve = motion.path.curve();
+    const auto allowed = [&](double u) {
+      const PathDerivatives second = curve.SecondByLength(u);
+      const AxisDerivatives q = ThroughHead(head, curve.At(u), curve.FirstByLength(u), second);
+      double least = std::min(std::sqrt(1600.0 / second.point.norm()),
+                              std::cbrt(32000.0 / curve.JerkPerCube(u)));
+      for (std::size_t i = 0; i < kAxisCount; ++i) {
+        least = std::min({least, machine.axes.speed[i] / std::abs(q.first[i]),
+                          std::sqrt(machine.axes.acceleration[i] / std::abs(q.second[i]))});
+      }
+      return least;
+    };
+    double where = 0.0, least = HUGE_VAL;
+    for (const double step : {2e-4, 2e-7}) {
+      const double middle = step < 1e-4 ? where : 0.5;
+      for (int k = -2500; k <= 2500; ++k) {
+        const double u = std::clamp(middle + step * k, 0.0, 1.0);
+        if (const double here = allowed(u); here < least) {
+          least = here;
+          where = u;
+        }
+      }
+    }
+    EXPECT_NEAR(SpeedOnCurve(curve, head, machine), least, 1e-9 * least) << where;
+    ++bends;
+  }
+  EXPECT_GE(bends, 10);
 }
 
 // The short cut may only say yes where it is so, for each figure of each axis; and it does say yes
@@ -400,6 +444,13 @@ TEST(LeastAlong, FindsTheLeast) {
     };
     EXPECT_NEAR(LeastAlong(two, 4.0, intervals), 1.8999, 1e-8) << intervals;
   }
+  // At sample 25 of 48 the second is lower than the first's valley beside it looks, and at 26 lower
+  // still; the first comes down to 1 between 24 and 25.
+  const auto both = [](double x) {
+    const double k = x * 48.0;
+    return std::array{1.0 + 0.4 * (k - 24.58) * (k - 24.58), 1.02 + 0.04 * (k - 26.0) * (k - 26.0)};
+  };
+  EXPECT_NEAR(LeastOfAll(both, 1.0, 48), 1.0, 1e-9);
   // Above `enough` it need not look closely: seventeen samples will do.
   int calls = 0;
   const auto counted = [&calls](double x) {
