@@ -30,8 +30,8 @@ void Physical::OnRide(const Ride& ride, const Registers& registers, const Comman
     }
   }
   totals_.motion_s += ride.time_s;
-  const double fastest_down = std::min(profile_->travel_speed, profile_->z_speeds.maximum_mm_s);
   const bool by_xy_speed = ride.chain == Chain::kToolDown;
+  const motion::FeedSteps& speeds = by_xy_speed ? profile_->xy_speeds : profile_->z_speeds;
   watch_.OnRide({.from = ride.from,
                  .to = ride.to,
                  .length_mm = ride.length_mm,
@@ -40,8 +40,8 @@ void Physical::OnRide(const Ride& ride, const Registers& registers, const Comman
                  .by_xy_speed = by_xy_speed,
                  .spindle_turns = ride.spindle_turns,
                  .plunge = plunges,
-                 .as_fast_as_z = registers.z_speed >= fastest_down,
                  .speed_mm_s = by_xy_speed ? registers.xy_speed : registers.z_speed,
+                 .fastest_mm_s = std::min(profile_->travel_speed, speeds.maximum_mm_s),
                  .clamps_height = profile_->clamps_height},
                 registers, command);
   AddToState(ride.time_s, in_work || registers.tool_down);
