@@ -25,7 +25,10 @@ double ShareNotAbove(const Point& from, const Point& to, double height) {
   return (height - low) / (high - low);
 }
 
-bool Fast(const CutWatch::Ride& ride) { return ride.speed_mm_s >= kFastShare * ride.fastest_mm_s; }
+// By V, which lifts have, too; F (VS) is of cuts alone.
+bool Fast(const CutWatch::Ride& ride) {
+  return !ride.by_xy_speed && ride.speed_mm_s >= kFastShare * ride.fastest_z_mm_s;
+}
 
 // More down than across.
 bool DropsSteeply(const CutWatch::Ride& ride) {
@@ -124,7 +127,6 @@ void CutWatch::OnVisit(const Ride& ride, const Registers& registers, const Comma
 }
 
 void CutWatch::OnCrossing(const Ride& ride, double mm, const CommandPlace& command) {
-  if (ride.by_xy_speed) visit_.enters_fast = false;  // the speed of no lift, that may be left
   if (Fast(ride) && !RisesSteeply(ride)) {
     Add(visit_.fast, mm, command);
     visit_.fast_mm_s = std::min(visit_.fast_mm_s, ride.speed_mm_s);

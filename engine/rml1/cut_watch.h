@@ -29,10 +29,10 @@ class CutWatch {
     bool rapid = false;        // at the travel speed
     bool by_xy_speed = false;  // else by the speed of Z
     bool spindle_turns = false;
-    bool plunge = false;         // straight down into the work
-    double speed_mm_s = 0.0;     // of a cut or a plunge
-    double fastest_mm_s = 0.0;   // that it can be
-    double clamps_height = 0.0;  // of the clamps above Z 0, device units; 0: none are known
+    bool plunge = false;          // straight down into the work
+    double speed_mm_s = 0.0;      // of a cut or a plunge
+    double fastest_z_mm_s = 0.0;  // that Z travels
+    double clamps_height = 0.0;   // of the clamps above Z 0, device units; 0: none are known
   };
   void OnRide(const Ride& ride, const Registers& registers, const CommandPlace& command);
 
@@ -45,8 +45,8 @@ class CutWatch {
   // above the material: CAM tools go down like that where a pass before has cleared the way. A step
   // down on the way of a cut is part of the cut.
   Way fast_plunge() const;
-  // Across below the surface nearly as fast as the machine goes, between cuts at half of that or
-  // less, or in a visit to the work that goes down as fast by V while such cuts are elsewhere. A
+  // Across below the surface by V, nearly as fast as Z travels, between cuts at half of that or
+  // less, or in a visit to the work that goes down as fast while such cuts are elsewhere. A
   // way that leads down slowly is no slow cut: ramps are slow before a fast pass.
   Way fast_across() const;
   // More than 1 % beside what the program asked for. A plunge that is slower harms nothing.

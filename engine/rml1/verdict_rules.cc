@@ -53,8 +53,8 @@ constexpr std::array kRules = {
     VerdictRule{ErrorCode::kRml1FastPlunge, "fast_plunge_length", kRounding_mm, Verdict::kDoubtful,
                 "# mm down to where the tool cuts, nearly as fast as Z travels"},
     VerdictRule{ErrorCode::kRml1FastAcross, "fast_across_length", kRounding_mm, Verdict::kDoubtful,
-                "# mm across in the work, nearly as fast as the machine goes, where other cuts "
-                "take half of that or less"},
+                "# mm across in the work, nearly as fast as Z travels, where other cuts take "
+                "half of that or less"},
     VerdictRule{ErrorCode::kRml1BelowClamps, "below_clamps_length", kRounding_mm,
                 Verdict::kDoubtful,
                 "# mm across to the work or from it, lower than the clamps stand"},

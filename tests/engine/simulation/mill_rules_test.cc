@@ -164,7 +164,7 @@ TEST(MillRules, SteepWaysDownArePlunges) {
   EXPECT_EQ(ramp("60", "199"), "DOUBTFUL; RML1-E8017 1.411" + said);  // sqrt(2^2 + 1.99^2) / 2
   // At 45 degrees it is a way across.
   EXPECT_EQ(ramp("60", "200"),
-            "DOUBTFUL; RML1-E8019 1.414 mm across in the work, nearly as fast as the machine goes, "
+            "DOUBTFUL; RML1-E8019 1.414 mm across in the work, nearly as fast as Z travels, "
             "where other cuts take half of that or less @3");
   // Down the walls of a relief, behind its first cut.
   EXPECT_EQ(TextOfCheck("!MC1;V10;Z0,0,200,0,0,-10;V60;Z500,0,-10,501,0,-300,900,0,-300;"
@@ -180,7 +180,7 @@ TEST(MillRules, WaysAcrossAtTheSpeedOfLifts) {
                        ";Z4000,1000,-50;Z4000,1000,200;!MC0;");
   };
   const std::string said =
-      " mm across in the work, nearly as fast as the machine goes, where other cuts take half of "
+      " mm across in the work, nearly as fast as Z travels, where other cuts take half of "
       "that or less @";
   EXPECT_EQ(across("5", "60"), "DOUBTFUL; RML1-E8019 22.361" + said + "8");
   EXPECT_EQ(across("30", "60"), "DOUBTFUL; RML1-E8019 22.361" + said + "8");
@@ -210,9 +210,12 @@ TEST(MillRules, FastPassesBesideSlowOnes) {
   };
   EXPECT_EQ(second("10", "60"), "GOOD");
   EXPECT_EQ(second("60", "60"),
-            "DOUBTFUL; RML1-E8019 10.000 mm across in the work, nearly as fast as the machine "
-            "goes, where other cuts take half of that or less @12");
+            "DOUBTFUL; RML1-E8019 10.000 mm across in the work, nearly as fast as Z travels, "
+            "where other cuts take half of that or less @12");
   EXPECT_EQ(second("47", "47"), "GOOD");
+  // VS is no speed of lifts: back in its groove a tool may be as fast as it likes.
+  EXPECT_EQ(TextOfCheck("VS10;!VZ10;!PZ-50,200;!MC1;PU0,0;PD1000,0;VS60;PD0,0;PU0,0;!MC0;"),
+            "GOOD");
   // No cut of the program is slower.
   EXPECT_EQ(TextOfCheck("V60;!MC1;Z0,0,200;Z0,0,-50;Z1000,0,-50;Z1000,0,200;!MC0;"), "GOOD");
   EXPECT_EQ(TextOfCheck("!MC1;V10;Z0,0,200;Z0,0,0;Z1000,0,-50;V60;Z0,0,-50;Z0,0,200;!MC0;"),
